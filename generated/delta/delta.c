@@ -606,13 +606,13 @@ int delta_prepare(const delta_params *params, delta_model *model)
         /* (rus-d_phi_3) coefficient of the acceleration in: inertia force of link 3 from its turning
            about its reference point */
         const real rus_d_phi_3_in_axes3_xy = rus_h_3_in_spec3_z*rus_w_3_in_axes3_y;
-        /* (rus-trace_J_3) half the trace of that inertia tensor */
-        const real rus_trace_J_3 = R(0.5)*rus_J_3_in_spec3_xx + R(0.5)*rus_J_3_in_spec3_yy +
-            R(0.5)*rus_J_3_in_spec3_zz;
         /* (rus-Sigma_3) second moment of mass of the links that turn with link 3 */
-        const real rus_Sigma_3_in_axes3_xx = rus_trace_J_3 - rus_J_3_in_spec3_xx;
-        const real rus_Sigma_3_in_axes3_yy = rus_trace_J_3 - rus_J_3_in_spec3_zz;
-        const real rus_Sigma_3_in_axes3_zz = rus_trace_J_3 - rus_J_3_in_spec3_yy;
+        const real rus_Sigma_3_t = rus_J_3_in_spec3_xx + rus_J_3_in_spec3_yy +
+            rus_J_3_in_spec3_zz;
+        const real rus_Sigma_3_t_2 = R(0.5)*rus_Sigma_3_t;
+        const real rus_Sigma_3_in_axes3_xx = rus_Sigma_3_t_2 - rus_J_3_in_spec3_xx;
+        const real rus_Sigma_3_in_axes3_yy = rus_Sigma_3_t_2 - rus_J_3_in_spec3_zz;
+        const real rus_Sigma_3_in_axes3_zz = rus_Sigma_3_t_2 - rus_J_3_in_spec3_yy;
         /* (rus-d_Gamma_3) coefficient of the acceleration in: moment about axis 3 of the distal links'
            inertia and weight */
         const real rus_d_Gamma_3_t = rus_J_3_in_spec3_yy*rus_w_3_in_axes3_y;
@@ -1076,6 +1076,24 @@ INLINE void unlimited(size_t rows, size_t size, size_t w, const size_t *places, 
     }
 }
 
+INLINE void least_entry(size_t n, const real *a, real *x)
+{
+    *x = a[0];
+    for (size_t e = 1; e < n; ++e) {
+        *x = lesser(*x, a[e]);
+    }
+}
+
+/* Of the first n entries the product, and the last over the first, 0 where that is 0. */
+INLINE void spread(size_t n, const real *a, real *product_of, real *ratio)
+{
+    *product_of = 1;
+    for (size_t e = 0; e < n; ++e) {
+        *product_of *= a[e];
+    }
+    *ratio = magnitude(a[0]) > 0 ? a[n - 1]/a[0] : a[0];
+}
+
 /* 1 where no entry is negative, else 0. */
 INLINE void not_negative(size_t size, size_t w, const real *a, real *x, real *flags)
 {
@@ -1126,216 +1144,641 @@ static void moved(const real *X, const real *step, real part, real *to)
     }
 }
 
+/* ---- what functions of the state share; v: values for others ---- */
+
+typedef struct {
+    real rus_S_x, rus_S_y, rus_S_z, rus_Kd_1, rus_Kc_1, rus_Ks_1, rus_rho2_1, rus_disc_1, rus_root_1,
+        inv_rus_rho2_1, rus_c_1, rus_s_1, rus_xi_1_t, rus_x_2_in_axes1_x, rus_rho2_2, rus_root_2,
+        inv_rus_rho2_2, rus_c_2, rus_s_2_t, rus_c_3, rus_e_1_in_axes3_x, rus_r_1_t,
+        rus_r_1_in_axes1_z, rus_r_1_t_2, rus_r_1_in_axes1_x, rus_r_1_in_axes3_z, rus_v_1_t_2,
+        rus_v_1_in_axes3_y, rus_v_1_in_axes3_z, inv_rus_v_1_t_2, rus_w_2_in_axes3_z, rus_qd_1_t,
+        rus_qd_1_t_2, rus_qd_1_t_5, rus_qd_1_t_6, rus_bias_t, rus_d_2_in_axes3_z, axis_z_rus_axes3_x,
+        axis_z_rus_axes3_y, axis_z_rus_axes3_z, axis_y_rus_axes3_x, axis_y_rus_axes3_y,
+        axis_y_rus_axes3_z, rus_v_1_t, rus_w_1_t_7, rus_w_1_t_8, rus_w_1_t_9, rus_J_3_t_10,
+        rus_J_3_t_11, rus_J_3_t_15, rus_J_3_t_17, rus_d_alpha_3_in_axes3_xz, rus_d_alpha_3_t,
+        rus_d_Gamma_2_in_axes3_z, rus_d_c_in_axes3_xx, rus_d_c_in_axes3_xy, rus_d_c_in_axes3_xz,
+        rus_d_c_in_axes3_yz, axis_x_rus_axes3_x, axis_x_rus_axes3_y, axis_x_rus_axes3_z,
+        rus_acc_3_in_axes3_x, rus_acc_3_in_axes3_y, rus_acc_3_in_axes3_z, rus_c_in_axes3_x,
+        rus_c_in_axes3_y, rus_c_in_axes3_z;
+} values_rus;
+
+INLINE void stage_rus_X(const prepared *m, size_t w, size_t i, size_t j, const real *X, values_rus
+    *v)
+{
+    /* (rus-S) from the base point to the connection point */
+    const real rus_base_point_x = m->rus_base_point_x[i];
+    const real rus_platform_point_x = m->rus_platform_point_x[i];
+    const real t_x = X[0*w + j];
+    const real rus_S_x = rus_platform_point_x + t_x - rus_base_point_x;
+    const real rus_base_point_y = m->rus_base_point_y[i];
+    const real rus_platform_point_y = m->rus_platform_point_y[i];
+    const real t_y = X[1*w + j];
+    const real rus_S_y = rus_platform_point_y + t_y - rus_base_point_y;
+    const real rus_base_point_z = m->rus_base_point_z[i];
+    const real rus_platform_point_z = m->rus_platform_point_z[i];
+    const real t_z = X[2*w + j];
+    const real rus_S_z = rus_platform_point_z + t_z - rus_base_point_z;
+    /* (rus-Kd_1) projection on the centre's direction, from the distance fixed by the joints beyond
+       joint 1 */
+    const real rus_Kd_1_t = rus_S_x*rus_S_x + rus_S_y*rus_S_y + rus_S_z*rus_S_z;
+    const real rus_J_3_t = m->rus_J_3_t[i];
+    const real rus_J_3_t_2 = m->rus_J_3_t_2[i];
+    const real rus_Kd_1 = rus_J_3_t + R(0.5)*rus_Kd_1_t - rus_J_3_t_2;
+    /* (rus-Kc_1) factor of the cosine in the equation of joint 1 */
+    const real rus_base_frame_xx = m->rus_base_frame_xx[i];
+    const real rus_base_frame_yx = m->rus_base_frame_yx[i];
+    const real rus_base_frame_zx = m->rus_base_frame_zx[i];
+    const real rus_joint2_offset_x = m->rus_joint2_offset_x[i];
+    const real rus_Kc_1 = rus_joint2_offset_x*(rus_S_x*rus_base_frame_xx +
+        rus_S_y*rus_base_frame_yx + rus_S_z*rus_base_frame_zx);
+    /* (rus-Ks_1) factor of the sine in the equation of joint 1 */
+    const real rus_base_frame_xy = m->rus_base_frame_xy[i];
+    const real rus_base_frame_yy = m->rus_base_frame_yy[i];
+    const real rus_base_frame_zy = m->rus_base_frame_zy[i];
+    const real rus_Ks_1 = rus_joint2_offset_x*(rus_S_x*rus_base_frame_xy +
+        rus_S_y*rus_base_frame_yy + rus_S_z*rus_base_frame_zy);
+    /* (rus-rho2_1) squared amplitude */
+    const real rus_rho2_1 = rus_Kc_1*rus_Kc_1 + rus_Ks_1*rus_Ks_1;
+    /* (rus-disc_1) discriminant */
+    const real rus_disc_1 = rus_rho2_1 - rus_Kd_1*rus_Kd_1;
+    /* (rus-root_1) root, with the sign of the branch */
+    const real rus_branch_1 = m->rus_branch_1[i];
+    const real rus_root_1 = rus_branch_1*root(rus_disc_1);
+    /* (rus-c_1) cosine of the angle of joint 1 from its reference direction */
+    const real inv_rus_rho2_1 = 1/rus_rho2_1;
+    const real rus_c_1 = inv_rus_rho2_1*(rus_Kc_1*rus_Kd_1 - rus_Ks_1*rus_root_1);
+    /* (rus-s_1) sine of the angle of joint 1 from its reference direction */
+    const real rus_s_1 = inv_rus_rho2_1*(rus_Kc_1*rus_root_1 + rus_Kd_1*rus_Ks_1);
+    /* (rus-xi_1) the vector from joint 1 to the connection point, resolved along link 1 */
+    const real inv_rus_size_t = m->inv_rus_size_t[i];
+    const real rus_xi_1_t = inv_rus_size_t*rus_joint2_offset_x*rus_root_1;
+    /* (rus-x_2) from the origin of joint 2 to the connection point */
+    const real rus_x_2_in_axes1_x = inv_rus_size_t*rus_Kd_1*rus_joint2_offset_x -
+        rus_joint2_offset_x;
+    /* (rus-rho2_2) squared amplitude */
+    const real rus_rho2_2 = rus_x_2_in_axes1_x*rus_x_2_in_axes1_x + rus_xi_1_t*rus_xi_1_t;
+    /* (rus-root_2) root, with the sign of the branch */
+    const real rus_branch_2 = m->rus_branch_2[i];
+    const real rus_root_2 = rus_branch_2*root(rus_rho2_2);
+    /* (rus-c_2) cosine of the angle of joint 2 from its reference direction */
+    const real inv_rus_rho2_2 = 1/rus_rho2_2;
+    const real rus_c_2 = inv_rus_rho2_2*rus_root_2*rus_x_2_in_axes1_x;
+    /* (rus-s_2) sine of the angle of joint 2 from its reference direction */
+    const real rus_s_2_t = inv_rus_rho2_2*rus_root_2*rus_xi_1_t;
+    /* (rus-c_3) cosine of the angle of joint 3 from its reference direction */
+    const real inv_rus_size_t_2 = m->inv_rus_size_t_2[i];
+    const real rus_platform_joint_offset_x = m->rus_platform_joint_offset_x[i];
+    const real rus_c_3 = inv_rus_size_t_2*rus_platform_joint_offset_x*rus_root_2;
+    /* (rus-r_1) from joint 1 to the connection point, along the links */
+    const real rus_base_frame_xz = m->rus_base_frame_xz[i];
+    const real rus_base_frame_yz = m->rus_base_frame_yz[i];
+    const real rus_base_frame_zz = m->rus_base_frame_zz[i];
+    const real rus_e_1_in_axes3_x =
+        inv_rus_size_t_2*rus_platform_joint_offset_x*(rus_S_x*rus_base_frame_xz +
+        rus_S_y*rus_base_frame_yz + rus_S_z*rus_base_frame_zz);
+    const real rus_r_1_t = rus_c_3*rus_platform_joint_offset_x;
+    const real rus_r_1_in_axes1_z = rus_e_1_in_axes3_x*rus_platform_joint_offset_x;
+    const real rus_r_1_t_2 = rus_r_1_t*rus_s_2_t;
+    const real rus_r_1_in_axes1_x = rus_joint2_offset_x + rus_c_2*rus_r_1_t;
+    const real rus_r_1_in_axes3_z = rus_r_1_in_axes1_x*rus_s_2_t - rus_c_2*rus_r_1_t_2;
+    /* (rus-v_1) velocity of the connection point per rate of joint 1 */
+    const real rus_v_1_t = rus_c_2*rus_r_1_in_axes1_x + rus_r_1_t_2*rus_s_2_t;
+    const real rus_v_1_t_2 = rus_c_3*rus_r_1_in_axes3_z;
+    const real rus_v_1_in_axes3_y = -rus_e_1_in_axes3_x*rus_r_1_in_axes3_z;
+    const real rus_v_1_in_axes3_z = rus_c_3*(rus_c_3*rus_v_1_t +
+        rus_e_1_in_axes3_x*rus_r_1_in_axes1_z) +
+        rus_e_1_in_axes3_x*(rus_e_1_in_axes3_x*rus_v_1_t - rus_c_3*rus_r_1_in_axes1_z);
+    /* (rus-w_1) reciprocal vector 1 */
+    const real inv_rus_v_1_t_2 = 1/rus_v_1_t_2;
+    /* (rus-w_2) reciprocal vector 2 */
+    const real rus_w_2_in_axes3_z = 1/rus_r_1_t;
+    /* (rus-qd_1) rate of joint 1 */
+    const real rus_qd_1_t = rus_c_1*rus_s_2_t - rus_c_2*rus_s_1;
+    const real rus_qd_1_t_2 = rus_c_1*rus_c_2 + rus_s_1*rus_s_2_t;
+    const real rus_qd_1_t_3 = rus_c_2*rus_e_1_in_axes3_x;
+    const real rus_qd_1_t_4 = rus_e_1_in_axes3_x*rus_s_2_t;
+    const real rus_qd_1_t_5 = rus_c_1*rus_qd_1_t_3 + rus_qd_1_t_4*rus_s_1;
+    const real rus_qd_1_t_6 = rus_qd_1_t_3*rus_s_1 - rus_c_1*rus_qd_1_t_4;
+    /* (rus-bias) acceleration of the connection point at zero joint accelerations */
+    const real rus_bias_t = rus_c_2*rus_joint2_offset_x;
+    const real rus_d_2_in_axes3_z = rus_joint2_offset_x*rus_s_2_t;
+    /* (rus-w_1) reciprocal vector 1 */
+    const real rus_w_1_t = rus_c_1*rus_s_2_t - rus_c_2*rus_s_1;
+    const real rus_w_1_t_2 = rus_c_1*rus_c_2 + rus_s_1*rus_s_2_t;
+    const real axis_z_rus_axes3_x = rus_base_frame_xx*rus_w_1_t +
+        rus_base_frame_xy*rus_w_1_t_2;
+    const real axis_z_rus_axes3_y = rus_base_frame_yx*rus_w_1_t +
+        rus_base_frame_yy*rus_w_1_t_2;
+    const real axis_z_rus_axes3_z = rus_base_frame_zx*rus_w_1_t +
+        rus_base_frame_zy*rus_w_1_t_2;
+    const real rus_w_1_t_3 = rus_c_2*rus_e_1_in_axes3_x;
+    const real rus_w_1_t_4 = rus_e_1_in_axes3_x*rus_s_2_t;
+    const real rus_w_1_t_5 = rus_c_1*rus_w_1_t_3 + rus_s_1*rus_w_1_t_4;
+    const real rus_w_1_t_6 = rus_s_1*rus_w_1_t_3 - rus_c_1*rus_w_1_t_4;
+    const real axis_y_rus_axes3_x = rus_base_frame_xx*rus_w_1_t_5 +
+        rus_base_frame_xy*rus_w_1_t_6 - rus_base_frame_xz*rus_c_3;
+    const real axis_y_rus_axes3_y = rus_base_frame_yx*rus_w_1_t_5 +
+        rus_base_frame_yy*rus_w_1_t_6 - rus_base_frame_yz*rus_c_3;
+    const real axis_y_rus_axes3_z = rus_base_frame_zx*rus_w_1_t_5 +
+        rus_base_frame_zy*rus_w_1_t_6 - rus_base_frame_zz*rus_c_3;
+    v->rus_S_x = rus_S_x;
+    v->rus_S_y = rus_S_y;
+    v->rus_S_z = rus_S_z;
+    v->rus_Kd_1 = rus_Kd_1;
+    v->rus_Kc_1 = rus_Kc_1;
+    v->rus_Ks_1 = rus_Ks_1;
+    v->rus_rho2_1 = rus_rho2_1;
+    v->rus_disc_1 = rus_disc_1;
+    v->rus_root_1 = rus_root_1;
+    v->inv_rus_rho2_1 = inv_rus_rho2_1;
+    v->rus_c_1 = rus_c_1;
+    v->rus_s_1 = rus_s_1;
+    v->rus_xi_1_t = rus_xi_1_t;
+    v->rus_x_2_in_axes1_x = rus_x_2_in_axes1_x;
+    v->rus_rho2_2 = rus_rho2_2;
+    v->rus_root_2 = rus_root_2;
+    v->inv_rus_rho2_2 = inv_rus_rho2_2;
+    v->rus_c_2 = rus_c_2;
+    v->rus_s_2_t = rus_s_2_t;
+    v->rus_c_3 = rus_c_3;
+    v->rus_e_1_in_axes3_x = rus_e_1_in_axes3_x;
+    v->rus_r_1_t = rus_r_1_t;
+    v->rus_r_1_in_axes1_z = rus_r_1_in_axes1_z;
+    v->rus_r_1_t_2 = rus_r_1_t_2;
+    v->rus_r_1_in_axes1_x = rus_r_1_in_axes1_x;
+    v->rus_r_1_in_axes3_z = rus_r_1_in_axes3_z;
+    v->rus_v_1_t_2 = rus_v_1_t_2;
+    v->rus_v_1_in_axes3_y = rus_v_1_in_axes3_y;
+    v->rus_v_1_in_axes3_z = rus_v_1_in_axes3_z;
+    v->inv_rus_v_1_t_2 = inv_rus_v_1_t_2;
+    v->rus_w_2_in_axes3_z = rus_w_2_in_axes3_z;
+    v->rus_qd_1_t = rus_qd_1_t;
+    v->rus_qd_1_t_2 = rus_qd_1_t_2;
+    v->rus_qd_1_t_5 = rus_qd_1_t_5;
+    v->rus_qd_1_t_6 = rus_qd_1_t_6;
+    v->rus_bias_t = rus_bias_t;
+    v->rus_d_2_in_axes3_z = rus_d_2_in_axes3_z;
+    v->axis_z_rus_axes3_x = axis_z_rus_axes3_x;
+    v->axis_z_rus_axes3_y = axis_z_rus_axes3_y;
+    v->axis_z_rus_axes3_z = axis_z_rus_axes3_z;
+    v->axis_y_rus_axes3_x = axis_y_rus_axes3_x;
+    v->axis_y_rus_axes3_y = axis_y_rus_axes3_y;
+    v->axis_y_rus_axes3_z = axis_y_rus_axes3_z;
+}
+
+INLINE void stage_rus_H_condition(values_rus *v)
+{
+    /* (rus-v_1) velocity of the connection point per rate of joint 1 */
+    const real rus_v_1_t = v->rus_c_3*(v->rus_r_1_in_axes1_x*v->rus_s_2_t -
+        v->rus_c_2*v->rus_r_1_t*v->rus_s_2_t);
+    /* (rus-w_1) reciprocal vector 1 */
+    const real inv_rus_v_1_t = 1/rus_v_1_t;
+    const real rus_w_1_t_7 = inv_rus_v_1_t*(v->axis_y_rus_axes3_y*v->axis_z_rus_axes3_z -
+        v->axis_y_rus_axes3_z*v->axis_z_rus_axes3_y);
+    const real rus_w_1_t_8 = inv_rus_v_1_t*(v->axis_y_rus_axes3_z*v->axis_z_rus_axes3_x -
+        v->axis_y_rus_axes3_x*v->axis_z_rus_axes3_z);
+    const real rus_w_1_t_9 = inv_rus_v_1_t*(v->axis_y_rus_axes3_x*v->axis_z_rus_axes3_y -
+        v->axis_y_rus_axes3_y*v->axis_z_rus_axes3_x);
+    v->rus_v_1_t = rus_v_1_t;
+    v->rus_w_1_t_7 = rus_w_1_t_7;
+    v->rus_w_1_t_8 = rus_w_1_t_8;
+    v->rus_w_1_t_9 = rus_w_1_t_9;
+}
+
+INLINE void stage_rus_M_dynamics(const prepared *m, size_t w, size_t i, size_t j, const real *X,
+    values_rus *v)
+{
+    /* (rus-J_3) inertia tensor of link 3 about the connection point */
+    const real rus_base_point_x = m->rus_base_point_x[i];
+    const real rus_platform_point_x = m->rus_platform_point_x[i];
+    const real t_x = X[0*w + j];
+    const real rus_J_3_t_3 = rus_platform_point_x + t_x - rus_base_point_x;
+    const real rus_base_point_y = m->rus_base_point_y[i];
+    const real rus_platform_point_y = m->rus_platform_point_y[i];
+    const real t_y = X[1*w + j];
+    const real rus_J_3_t_4 = rus_platform_point_y + t_y - rus_base_point_y;
+    const real rus_base_point_z = m->rus_base_point_z[i];
+    const real rus_platform_point_z = m->rus_platform_point_z[i];
+    const real t_z = X[2*w + j];
+    const real rus_J_3_t_5 = rus_platform_point_z + t_z - rus_base_point_z;
+    const real rus_J_3_t_6 = rus_J_3_t_3*rus_J_3_t_3 + rus_J_3_t_4*rus_J_3_t_4 +
+        rus_J_3_t_5*rus_J_3_t_5;
+    const real rus_J_3_t = m->rus_J_3_t[i];
+    const real rus_J_3_t_2 = m->rus_J_3_t_2[i];
+    const real rus_J_3_t_7 = rus_J_3_t + R(0.5)*rus_J_3_t_6 - rus_J_3_t_2;
+    const real rus_base_frame_xx = m->rus_base_frame_xx[i];
+    const real rus_base_frame_yx = m->rus_base_frame_yx[i];
+    const real rus_base_frame_zx = m->rus_base_frame_zx[i];
+    const real rus_joint2_offset_x = m->rus_joint2_offset_x[i];
+    const real rus_J_3_t_8 = rus_joint2_offset_x*(rus_J_3_t_3*rus_base_frame_xx +
+        rus_J_3_t_4*rus_base_frame_yx + rus_J_3_t_5*rus_base_frame_zx);
+    const real rus_base_frame_xy = m->rus_base_frame_xy[i];
+    const real rus_base_frame_yy = m->rus_base_frame_yy[i];
+    const real rus_base_frame_zy = m->rus_base_frame_zy[i];
+    const real rus_J_3_t_9 = rus_joint2_offset_x*(rus_J_3_t_3*rus_base_frame_xy +
+        rus_J_3_t_4*rus_base_frame_yy + rus_J_3_t_5*rus_base_frame_zy);
+    const real rus_J_3_t_10 = rus_J_3_t_8*rus_J_3_t_8 + rus_J_3_t_9*rus_J_3_t_9;
+    const real rus_J_3_t_11 = rus_J_3_t_10 - rus_J_3_t_7*rus_J_3_t_7;
+    const real rus_branch_1 = m->rus_branch_1[i];
+    const real rus_J_3_t_12 = root(rus_J_3_t_11)*rus_branch_1;
+    const real inv_rus_size_t = m->inv_rus_size_t[i];
+    const real rus_J_3_t_13 = inv_rus_size_t*rus_J_3_t_12*rus_joint2_offset_x;
+    const real rus_J_3_t_14 = inv_rus_size_t*rus_J_3_t_7*rus_joint2_offset_x -
+        rus_joint2_offset_x;
+    const real rus_J_3_t_15 = rus_J_3_t_13*rus_J_3_t_13 + rus_J_3_t_14*rus_J_3_t_14;
+    const real rus_branch_2 = m->rus_branch_2[i];
+    const real rus_J_3_t_16 = root(rus_J_3_t_15)*rus_branch_2;
+    const real inv_rus_size_t_2 = m->inv_rus_size_t_2[i];
+    const real rus_platform_joint_offset_x = m->rus_platform_joint_offset_x[i];
+    const real rus_J_3_t_17 = inv_rus_size_t_2*rus_J_3_t_16*rus_platform_joint_offset_x;
+    const real rus_base_frame_xz = m->rus_base_frame_xz[i];
+    const real rus_base_frame_yz = m->rus_base_frame_yz[i];
+    const real rus_base_frame_zz = m->rus_base_frame_zz[i];
+    const real rus_e_1_in_axes3_x =
+        inv_rus_size_t_2*rus_platform_joint_offset_x*(rus_J_3_t_3*rus_base_frame_xz +
+        rus_J_3_t_4*rus_base_frame_yz + rus_J_3_t_5*rus_base_frame_zz);
+    const real rus_J_3_in_spec3_xy = m->rus_J_3_in_spec3_xy[i];
+    const real rus_J_3_in_spec3_yz = m->rus_J_3_in_spec3_yz[i];
+    const real rus_J_3_in_axes2_yz = rus_J_3_in_spec3_xy*rus_e_1_in_axes3_x +
+        rus_J_3_in_spec3_yz*rus_J_3_t_17;
+    const real rus_J_3_in_spec3_xx = m->rus_J_3_in_spec3_xx[i];
+    const real rus_J_3_in_spec3_xz = m->rus_J_3_in_spec3_xz[i];
+    const real rus_J_3_in_spec3_zz = m->rus_J_3_in_spec3_zz[i];
+    const real rus_J_3_in_axes1_zz = rus_J_3_t_17*(rus_J_3_in_spec3_xz*rus_e_1_in_axes3_x +
+        rus_J_3_in_spec3_zz*rus_J_3_t_17) -
+        rus_e_1_in_axes3_x*(-rus_J_3_in_spec3_xx*rus_e_1_in_axes3_x -
+        rus_J_3_in_spec3_xz*rus_J_3_t_17);
+    /* (rus-c_1) cosine of the angle of joint 1 from its reference direction */
+    const real inv_rus_J_3_t_10 = 1/rus_J_3_t_10;
+    const real rus_c_1 = inv_rus_J_3_t_10*(rus_J_3_t_7*rus_J_3_t_8 -
+        rus_J_3_t_12*rus_J_3_t_9);
+    /* (rus-s_1) sine of the angle of joint 1 from its reference direction */
+    const real rus_s_1 = inv_rus_J_3_t_10*(rus_J_3_t_12*rus_J_3_t_8 +
+        rus_J_3_t_7*rus_J_3_t_9);
+    /* (rus-c_2) cosine of the angle of joint 2 from its reference direction */
+    const real inv_rus_J_3_t_15 = 1/rus_J_3_t_15;
+    const real rus_c_2 = inv_rus_J_3_t_15*rus_J_3_t_14*rus_J_3_t_16;
+    /* (rus-s_2) sine of the angle of joint 2 from its reference direction */
+    const real rus_s_2_t = inv_rus_J_3_t_15*rus_J_3_t_13*rus_J_3_t_16;
+    /* (rus-r_1) from joint 1 to the connection point, along the links */
+    const real rus_r_1_t = rus_J_3_t_17*rus_platform_joint_offset_x;
+    const real rus_r_1_in_axes1_z = rus_e_1_in_axes3_x*rus_platform_joint_offset_x;
+    const real rus_r_1_t_2 = rus_r_1_t*rus_s_2_t;
+    const real rus_r_1_in_axes1_x = rus_joint2_offset_x + rus_c_2*rus_r_1_t;
+    const real rus_r_1_in_axes3_z = rus_r_1_in_axes1_x*rus_s_2_t - rus_c_2*rus_r_1_t_2;
+    /* (rus-v_1) velocity of the connection point per rate of joint 1 */
+    const real rus_v_1_t = rus_c_2*rus_r_1_in_axes1_x + rus_r_1_t_2*rus_s_2_t;
+    const real rus_v_1_t_2 = rus_J_3_t_17*rus_r_1_in_axes3_z;
+    const real rus_v_1_in_axes3_y = -rus_e_1_in_axes3_x*rus_r_1_in_axes3_z;
+    const real rus_v_1_in_axes3_z = rus_J_3_t_17*(rus_J_3_t_17*rus_v_1_t +
+        rus_e_1_in_axes3_x*rus_r_1_in_axes1_z) +
+        rus_e_1_in_axes3_x*(rus_e_1_in_axes3_x*rus_v_1_t - rus_J_3_t_17*rus_r_1_in_axes1_z);
+    /* (rus-w_1) reciprocal vector 1 */
+    const real inv_rus_v_1_t_2 = 1/rus_v_1_t_2;
+    /* (rus-w_2) reciprocal vector 2 */
+    const real rus_w_2_in_axes3_z = 1/rus_r_1_t;
+    const real rus_w_2_in_axes3_x = inv_rus_v_1_t_2*rus_v_1_in_axes3_z*rus_w_2_in_axes3_z;
+    /* (rus-w_3) reciprocal vector 3 */
+    const real rus_w_3_in_axes3_y = m->rus_w_3_in_axes3_y[i];
+    const real rus_w_3_in_axes3_x = inv_rus_v_1_t_2*rus_v_1_in_axes3_y*rus_w_3_in_axes3_y;
+    /* (rus-d_alpha_3) coefficient of the acceleration in: angular acceleration of link 3 */
+    const real rus_d_alpha_3_in_axes3_xz = rus_e_1_in_axes3_x*rus_w_2_in_axes3_z;
+    const real rus_d_alpha_3_t = rus_J_3_t_17*rus_w_2_in_axes3_z;
+    /* (rus-d_Gamma_3) coefficient of the acceleration in: moment about axis 3 of the distal links'
+       inertia and weight */
+    const real rus_d_Gamma_3_in_axes3_z = rus_J_3_in_axes2_yz*rus_w_2_in_axes3_z;
+    const real rus_d_Gamma_3_t = m->rus_d_Gamma_3_t[i];
+    const real rus_h_3_in_spec3_z = m->rus_h_3_in_spec3_z[i];
+    const real rus_d_Gamma_3_in_axes3_x = rus_h_3_in_spec3_z -
+        inv_rus_v_1_t_2*(rus_J_3_in_axes2_yz - rus_d_Gamma_3_in_axes3_z*rus_v_1_in_axes3_z -
+        rus_d_Gamma_3_t*rus_v_1_in_axes3_y);
+    /* (rus-d_Gamma_2) coefficient of the acceleration in: moment about axis 2 of the distal links'
+       inertia and weight */
+    const real rus_h_3_in_spec3_y = m->rus_h_3_in_spec3_y[i];
+    const real rus_d_Gamma_2_t = rus_J_3_t_17*rus_h_3_in_spec3_y;
+    const real rus_d_Gamma_2_t_2 = rus_J_3_in_axes1_zz*rus_w_2_in_axes3_z;
+    const real rus_d_Gamma_2_t_3 = rus_J_3_in_axes2_yz*rus_w_3_in_axes3_y;
+    const real rus_d_Gamma_2_t_4 = rus_d_Gamma_2_t_2*rus_v_1_in_axes3_z;
+    const real rus_d_Gamma_2_t_5 = rus_d_Gamma_2_t_3*rus_v_1_in_axes3_y;
+    const real rus_d_Gamma_2_in_axes3_x = inv_rus_v_1_t_2*(rus_d_Gamma_2_t_4 +
+        rus_d_Gamma_2_t_5 - rus_J_3_in_axes1_zz) - rus_d_Gamma_2_t;
+    const real rus_d_Gamma_2_in_axes3_y = rus_d_Gamma_2_t_3 -
+        rus_e_1_in_axes3_x*rus_h_3_in_spec3_y;
+    const real rus_h_3_in_spec3_x = m->rus_h_3_in_spec3_x[i];
+    const real rus_d_Gamma_2_in_axes3_z = rus_d_Gamma_2_t_2 + rus_J_3_t_17*rus_h_3_in_spec3_x
+        - rus_e_1_in_axes3_x*rus_h_3_in_spec3_z;
+    /* (rus-d_Gamma_1) coefficient of the acceleration in: moment about axis 1 of the distal links'
+       inertia and weight */
+    const real rus_J_1_in_spec1_zz = m->rus_J_1_in_spec1_zz[i];
+    const real rus_d_Gamma_1_in_axes3_x = inv_rus_v_1_t_2*(rus_d_Gamma_2_t_4 +
+        rus_d_Gamma_2_t_5 - rus_J_1_in_spec1_zz - rus_J_3_in_axes1_zz) - rus_d_Gamma_2_t;
+    /* (rus-d_c) coefficient of the acceleration in: leg force on the platform without actuation and
+       without the mass at the connection point */
+    const real rus_d_c_in_axes3_xx = inv_rus_v_1_t_2*rus_d_Gamma_1_in_axes3_x -
+        rus_d_Gamma_2_in_axes3_x*rus_w_2_in_axes3_x -
+        rus_d_Gamma_3_in_axes3_x*rus_w_3_in_axes3_x -
+        rus_h_3_in_spec3_y*(inv_rus_v_1_t_2*rus_J_3_t_17 - rus_J_3_t_17*rus_w_2_in_axes3_x) -
+        rus_h_3_in_spec3_z*rus_w_3_in_axes3_x;
+    const real rus_d_Gamma_3_in_axes3_y = m->rus_d_Gamma_3_in_axes3_y[i];
+    const real rus_d_phi_3_in_axes3_xy = m->rus_d_phi_3_in_axes3_xy[i];
+    const real rus_d_c_in_axes3_xy = inv_rus_v_1_t_2*rus_d_Gamma_2_in_axes3_y -
+        rus_d_phi_3_in_axes3_xy - rus_d_Gamma_2_in_axes3_y*rus_w_2_in_axes3_x -
+        rus_d_Gamma_3_in_axes3_y*rus_w_3_in_axes3_x;
+    const real rus_d_c_in_axes3_xz = inv_rus_v_1_t_2*rus_d_Gamma_2_in_axes3_z +
+        rus_d_alpha_3_t*rus_h_3_in_spec3_y - rus_d_Gamma_2_in_axes3_z*rus_w_2_in_axes3_x -
+        rus_d_Gamma_3_in_axes3_z*rus_w_3_in_axes3_x;
+    const real rus_d_c_in_axes3_yz = rus_d_alpha_3_in_axes3_xz*rus_h_3_in_spec3_y -
+        rus_d_Gamma_3_in_axes3_z*rus_w_3_in_axes3_y;
+    v->rus_J_3_t_10 = rus_J_3_t_10;
+    v->rus_J_3_t_11 = rus_J_3_t_11;
+    v->rus_J_3_t_15 = rus_J_3_t_15;
+    v->rus_J_3_t_17 = rus_J_3_t_17;
+    v->rus_e_1_in_axes3_x = rus_e_1_in_axes3_x;
+    v->rus_c_1 = rus_c_1;
+    v->rus_s_1 = rus_s_1;
+    v->rus_c_2 = rus_c_2;
+    v->rus_s_2_t = rus_s_2_t;
+    v->rus_r_1_t = rus_r_1_t;
+    v->rus_v_1_t_2 = rus_v_1_t_2;
+    v->rus_v_1_in_axes3_y = rus_v_1_in_axes3_y;
+    v->rus_v_1_in_axes3_z = rus_v_1_in_axes3_z;
+    v->inv_rus_v_1_t_2 = inv_rus_v_1_t_2;
+    v->rus_w_2_in_axes3_z = rus_w_2_in_axes3_z;
+    v->rus_d_alpha_3_in_axes3_xz = rus_d_alpha_3_in_axes3_xz;
+    v->rus_d_alpha_3_t = rus_d_alpha_3_t;
+    v->rus_d_Gamma_2_in_axes3_z = rus_d_Gamma_2_in_axes3_z;
+    v->rus_d_c_in_axes3_xx = rus_d_c_in_axes3_xx;
+    v->rus_d_c_in_axes3_xy = rus_d_c_in_axes3_xy;
+    v->rus_d_c_in_axes3_xz = rus_d_c_in_axes3_xz;
+    v->rus_d_c_in_axes3_yz = rus_d_c_in_axes3_yz;
+}
+
+INLINE void stage_rus_legs_required(const prepared *m, size_t w, size_t i, size_t j, const real
+    *V, const real *A, values_rus *v)
+{
+    /* (rus-w_1) reciprocal vector 1 */
+    const real axis_x_rus_axes3_x = v->axis_y_rus_axes3_y*v->axis_z_rus_axes3_z -
+        v->axis_y_rus_axes3_z*v->axis_z_rus_axes3_y;
+    const real axis_x_rus_axes3_y = v->axis_y_rus_axes3_z*v->axis_z_rus_axes3_x -
+        v->axis_y_rus_axes3_x*v->axis_z_rus_axes3_z;
+    const real axis_x_rus_axes3_z = v->axis_y_rus_axes3_x*v->axis_z_rus_axes3_y -
+        v->axis_y_rus_axes3_y*v->axis_z_rus_axes3_x;
+    const real rus_w_1_t_7 = axis_x_rus_axes3_x*v->inv_rus_v_1_t_2;
+    const real rus_w_1_t_8 = axis_x_rus_axes3_y*v->inv_rus_v_1_t_2;
+    const real rus_w_1_t_9 = axis_x_rus_axes3_z*v->inv_rus_v_1_t_2;
+    /* (rus-qd_1) rate of joint 1 */
+    const real t_dot_x = V[0*w + j];
+    const real t_dot_y = V[1*w + j];
+    const real t_dot_z = V[2*w + j];
+    const real rus_qd_1_t = v->inv_rus_v_1_t_2*(axis_x_rus_axes3_x*t_dot_x +
+        axis_x_rus_axes3_y*t_dot_y + axis_x_rus_axes3_z*t_dot_z);
+    /* (rus-qd_3) rate of joint 3 */
+    const real rus_qd_3_t = v->axis_y_rus_axes3_x*t_dot_x + v->axis_y_rus_axes3_y*t_dot_y +
+        v->axis_y_rus_axes3_z*t_dot_z + rus_qd_1_t*v->rus_v_1_in_axes3_y;
+    const real rus_w_3_in_axes3_y = m->rus_w_3_in_axes3_y[i];
+    const real rus_qd_3 = rus_qd_3_t*rus_w_3_in_axes3_y;
+    /* (rus-omega_1) angular velocity of link 1 */
+    const real rus_omega_1_in_axes3_x = -v->rus_e_1_in_axes3_x*rus_qd_1_t;
+    const real rus_omega_1_in_axes3_y = v->rus_c_3*rus_qd_1_t;
+    /* (rus-omega_2) angular velocity of link 2 */
+    const real rus_omega_2_in_axes2_z = v->rus_w_2_in_axes3_z*(v->axis_z_rus_axes3_x*t_dot_x +
+        v->axis_z_rus_axes3_y*t_dot_y + v->axis_z_rus_axes3_z*t_dot_z +
+        rus_qd_1_t*v->rus_v_1_in_axes3_z) - rus_qd_1_t;
+    const real rus_omega_2_in_axes3_x = v->rus_e_1_in_axes3_x*rus_omega_2_in_axes2_z;
+    const real rus_omega_2_in_axes3_y = -v->rus_c_3*rus_omega_2_in_axes2_z;
+    /* (rus-W_3) centripetal tensor of link 3 */
+    const real rus_W_3_in_axes3_yz = rus_omega_2_in_axes3_y*rus_qd_3;
+    const real rus_W_3_in_axes3_xz = rus_omega_2_in_axes3_x*rus_qd_3;
+    const real rus_W_3_in_axes3_xy = rus_omega_2_in_axes3_x*rus_omega_2_in_axes3_y;
+    /* (rus-S_ddot) acceleration of the connection point */
+    const real t_ddot_x = A[0*w + j];
+    const real t_ddot_y = A[1*w + j];
+    const real t_ddot_z = A[2*w + j];
+    const real rus_S_ddot_in_axes3_x = axis_x_rus_axes3_x*t_ddot_x +
+        axis_x_rus_axes3_y*t_ddot_y + axis_x_rus_axes3_z*t_ddot_z;
+    const real rus_S_ddot_in_axes3_y = v->axis_y_rus_axes3_x*t_ddot_x +
+        v->axis_y_rus_axes3_y*t_ddot_y + v->axis_y_rus_axes3_z*t_ddot_z;
+    const real rus_S_ddot_in_axes3_z = v->axis_z_rus_axes3_x*t_ddot_x +
+        v->axis_z_rus_axes3_y*t_ddot_y + v->axis_z_rus_axes3_z*t_ddot_z;
+    /* (rus-bias) acceleration of the connection point at zero joint accelerations */
+    const real rus_bias_t_2 = v->rus_bias_t*v->rus_c_3*rus_omega_1_in_axes3_y -
+        v->rus_bias_t*v->rus_e_1_in_axes3_x*rus_omega_1_in_axes3_x;
+    const real rus_platform_joint_offset_x = m->rus_platform_joint_offset_x[i];
+    const real rus_bias_t_3 = -rus_omega_2_in_axes3_y*rus_platform_joint_offset_x;
+    const real rus_bias_in_axes3_x = rus_bias_t_3*rus_omega_2_in_axes3_y -
+        rus_bias_t_2*rus_omega_1_in_axes3_y - rus_qd_3*rus_qd_3_t;
+    const real rus_bias_in_axes3_y = rus_bias_t_2*rus_omega_1_in_axes3_x -
+        rus_bias_t_3*rus_omega_2_in_axes3_x;
+    const real rus_bias_in_axes3_z = rus_W_3_in_axes3_xz*rus_platform_joint_offset_x +
+        rus_omega_2_in_axes3_x*rus_qd_3_t -
+        v->rus_d_2_in_axes3_z*rus_omega_1_in_axes3_x*rus_omega_1_in_axes3_x -
+        v->rus_d_2_in_axes3_z*rus_omega_1_in_axes3_y*rus_omega_1_in_axes3_y;
+    /* (rus-rel) acceleration of the connection point left to the joint accelerations */
+    const real rus_rel_in_axes3_x = rus_S_ddot_in_axes3_x - rus_bias_in_axes3_x;
+    const real rus_rel_in_axes3_y = rus_S_ddot_in_axes3_y - rus_bias_in_axes3_y;
+    const real rus_rel_in_axes3_z = rus_S_ddot_in_axes3_z - rus_bias_in_axes3_z;
+    /* (rus-qdd_1) acceleration of joint 1 */
+    const real rus_qdd_1_t = v->inv_rus_v_1_t_2*rus_rel_in_axes3_x;
+    /* (rus-qdd_3) acceleration of joint 3 */
+    const real rus_qdd_3_t = rus_w_3_in_axes3_y*(-rus_rel_in_axes3_y -
+        rus_qdd_1_t*v->rus_v_1_in_axes3_y);
+    /* (rus-alpha_2) angular acceleration of link 2 */
+    const real rus_alpha_2_in_axes2_z = v->rus_w_2_in_axes3_z*(rus_rel_in_axes3_z +
+        rus_qdd_1_t*v->rus_v_1_in_axes3_z) - rus_qdd_1_t;
+    const real rus_alpha_2_in_axes3_x = rus_alpha_2_in_axes2_z*v->rus_e_1_in_axes3_x;
+    const real rus_alpha_2_in_axes3_y = -rus_alpha_2_in_axes2_z*v->rus_c_3;
+    /* (rus-alpha_3) angular acceleration of link 3 */
+    const real rus_alpha_3_in_axes3_x = rus_W_3_in_axes3_yz + rus_alpha_2_in_axes3_x;
+    const real rus_alpha_3_in_axes3_y = rus_alpha_2_in_axes3_y - rus_W_3_in_axes3_xz;
+    /* (rus-B_3) acceleration tensor of link 3 */
+    const real rus_B_3_in_axes3_xy = rus_W_3_in_axes3_xy + rus_qdd_3_t;
+    const real rus_B_3_in_axes3_yx = rus_W_3_in_axes3_xy - rus_qdd_3_t;
+    const real rus_B_3_in_axes3_zx = rus_W_3_in_axes3_xz - rus_alpha_3_in_axes3_y;
+    const real rus_B_3_in_axes3_zy = rus_W_3_in_axes3_yz + rus_alpha_3_in_axes3_x;
+    /* (rus-acc_3) acceleration of the reference point of link 3, less gravity */
+    const real gravity_x = m->gravity_x;
+    const real gravity_y = m->gravity_y;
+    const real gravity_z = m->gravity_z;
+    const real rus_acc_3_in_axes3_x = rus_S_ddot_in_axes3_x - axis_x_rus_axes3_x*gravity_x -
+        axis_x_rus_axes3_y*gravity_y - axis_x_rus_axes3_z*gravity_z;
+    const real rus_acc_3_in_axes3_y = rus_S_ddot_in_axes3_y - v->axis_y_rus_axes3_x*gravity_x
+        - v->axis_y_rus_axes3_y*gravity_y - v->axis_y_rus_axes3_z*gravity_z;
+    const real rus_acc_3_in_axes3_z = rus_S_ddot_in_axes3_z - v->axis_z_rus_axes3_x*gravity_x
+        - v->axis_z_rus_axes3_y*gravity_y - v->axis_z_rus_axes3_z*gravity_z;
+    /* (rus-mu_3) inertia moment of the links that turn with link 3, about their reference points */
+    const real rus_mu_3_t = rus_omega_2_in_axes3_x*rus_omega_2_in_axes3_x;
+    const real rus_mu_3_t_2 = rus_omega_2_in_axes3_y*rus_omega_2_in_axes3_y;
+    const real rus_mu_3_t_3 = rus_qd_3*rus_qd_3;
+    const real rus_J_3_in_spec3_xy = m->rus_J_3_in_spec3_xy[i];
+    const real rus_J_3_in_spec3_xz = m->rus_J_3_in_spec3_xz[i];
+    const real rus_J_3_in_spec3_yz = m->rus_J_3_in_spec3_yz[i];
+    const real rus_Sigma_3_in_axes3_yy = m->rus_Sigma_3_in_axes3_yy[i];
+    const real rus_Sigma_3_in_axes3_zz = m->rus_Sigma_3_in_axes3_zz[i];
+    const real rus_h_3_in_spec3_y = m->rus_h_3_in_spec3_y[i];
+    const real rus_h_3_in_spec3_z = m->rus_h_3_in_spec3_z[i];
+    const real rus_mu_3_in_axes3_x = rus_B_3_in_axes3_yx*rus_J_3_in_spec3_xy +
+        rus_B_3_in_axes3_zx*rus_J_3_in_spec3_xz + rus_B_3_in_axes3_zy*rus_Sigma_3_in_axes3_yy
+        + rus_Sigma_3_in_axes3_zz*rus_alpha_2_in_axes3_x - rus_J_3_in_spec3_yz*(rus_mu_3_t_2 -
+        rus_mu_3_t_3) - rus_acc_3_in_axes3_y*rus_h_3_in_spec3_y -
+        rus_acc_3_in_axes3_z*rus_h_3_in_spec3_z;
+    const real rus_Sigma_3_in_axes3_xx = m->rus_Sigma_3_in_axes3_xx[i];
+    const real rus_h_3_in_spec3_x = m->rus_h_3_in_spec3_x[i];
+    const real rus_mu_3_in_axes3_y = rus_B_3_in_axes3_xy*rus_J_3_in_spec3_yz +
+        rus_Sigma_3_in_axes3_zz*rus_alpha_2_in_axes3_y +
+        rus_acc_3_in_axes3_x*rus_h_3_in_spec3_y - rus_B_3_in_axes3_zx*rus_Sigma_3_in_axes3_xx
+        - rus_B_3_in_axes3_zy*rus_J_3_in_spec3_xz - rus_J_3_in_spec3_xy*(rus_mu_3_t -
+        rus_mu_3_t_3) - rus_acc_3_in_axes3_z*rus_h_3_in_spec3_x;
+    const real rus_mu_3_in_axes3_z = rus_B_3_in_axes3_yx*rus_Sigma_3_in_axes3_xx +
+        rus_J_3_in_spec3_xy*rus_alpha_2_in_axes3_x + rus_acc_3_in_axes3_x*rus_h_3_in_spec3_z +
+        rus_acc_3_in_axes3_y*rus_h_3_in_spec3_x - rus_B_3_in_axes3_xy*rus_Sigma_3_in_axes3_yy
+        - rus_J_3_in_spec3_xz*(rus_mu_3_t - rus_mu_3_t_2) -
+        rus_J_3_in_spec3_yz*rus_alpha_2_in_axes3_y;
+    const real rus_mu_3_in_axes1_z = v->rus_e_1_in_axes3_x*rus_mu_3_in_axes3_x -
+        v->rus_c_3*rus_mu_3_in_axes3_y;
+    /* (rus-mu_1) inertia moment of the links that turn with link 1, about their reference points */
+    const real rus_J_1_in_spec1_zz = m->rus_J_1_in_spec1_zz[i];
+    const real rus_h_1_in_spec1_x = m->rus_h_1_in_spec1_x[i];
+    const real rus_h_1_in_spec1_y = m->rus_h_1_in_spec1_y[i];
+    const real rus_mu_1_t = m->rus_mu_1_t[i];
+    const real rus_mu_1_t_2 = m->rus_mu_1_t_2[i];
+    const real rus_mu_1_in_axes1_z = rus_h_1_in_spec1_y*(v->rus_c_1*rus_mu_1_t +
+        rus_mu_1_t_2*v->rus_s_1) - rus_J_1_in_spec1_zz*rus_qdd_1_t -
+        rus_h_1_in_spec1_x*(v->rus_c_1*rus_mu_1_t_2 - rus_mu_1_t*v->rus_s_1);
+    /* (rus-N_1) moment about joint 1 of the links from 1 outwards, the force at the connection point
+       left out */
+    const real rus_N_1_in_axes1_z = rus_mu_1_in_axes1_z + rus_mu_3_in_axes1_z;
+    /* (rus-G) force at the connection point that balances the leg's inertia and weight along all
+       degrees of freedom */
+    const real rus_G_in_axes3_z = rus_mu_3_in_axes1_z*v->rus_w_2_in_axes3_z;
+    const real rus_G_in_axes3_y = rus_mu_3_in_axes3_z*rus_w_3_in_axes3_y;
+    /* (rus-c) leg force on the platform without actuation and without the mass at the connection
+       point */
+    const real rus_c_in_axes3_x = v->inv_rus_v_1_t_2*(rus_N_1_in_axes1_z -
+        rus_G_in_axes3_y*v->rus_v_1_in_axes3_y - rus_G_in_axes3_z*v->rus_v_1_in_axes3_z) +
+        rus_B_3_in_axes3_xy*rus_h_3_in_spec3_z + rus_h_3_in_spec3_x*(rus_mu_3_t_2 +
+        rus_mu_3_t_3) - rus_alpha_2_in_axes3_y*rus_h_3_in_spec3_y;
+    const real rus_c_in_axes3_y = rus_alpha_2_in_axes3_x*rus_h_3_in_spec3_y - rus_G_in_axes3_y
+        - rus_B_3_in_axes3_yx*rus_h_3_in_spec3_x - rus_h_3_in_spec3_z*(rus_mu_3_t +
+        rus_mu_3_t_3);
+    const real rus_c_in_axes3_z = rus_B_3_in_axes3_zy*rus_h_3_in_spec3_z +
+        rus_h_3_in_spec3_y*(rus_mu_3_t + rus_mu_3_t_2) - rus_G_in_axes3_z -
+        rus_B_3_in_axes3_zx*rus_h_3_in_spec3_x;
+    v->axis_x_rus_axes3_x = axis_x_rus_axes3_x;
+    v->axis_x_rus_axes3_y = axis_x_rus_axes3_y;
+    v->axis_x_rus_axes3_z = axis_x_rus_axes3_z;
+    v->rus_w_1_t_7 = rus_w_1_t_7;
+    v->rus_w_1_t_8 = rus_w_1_t_8;
+    v->rus_w_1_t_9 = rus_w_1_t_9;
+    v->rus_acc_3_in_axes3_x = rus_acc_3_in_axes3_x;
+    v->rus_acc_3_in_axes3_y = rus_acc_3_in_axes3_y;
+    v->rus_acc_3_in_axes3_z = rus_acc_3_in_axes3_z;
+    v->rus_c_in_axes3_x = rus_c_in_axes3_x;
+    v->rus_c_in_axes3_y = rus_c_in_axes3_y;
+    v->rus_c_in_axes3_z = rus_c_in_axes3_z;
+}
+
 /* ---- functions of the state: M, Z, H and the like ---- */
 
 /* ---- dynamics ---- */
-INLINE void dynamics_before(size_t w, const real *X, const real *V, real *s)
+INLINE void dynamics_before()
 {
-    for (size_t k = 0; k < w; ++k) {
-        /* X: named entries */
-        const real X_0 = X[0*w + k];
-        const real t_x = X_0;
-        const real X_1 = X[1*w + k];
-        const real t_y = X_1;
-        const real X_2 = X[2*w + k];
-        const real t_z = X_2;
-        /* V: named entries */
-        const real V_0 = V[0*w + k];
-        const real t_dot_x = V_0;
-        const real V_1 = V[1*w + k];
-        const real t_dot_y = V_1;
-        const real V_2 = V[2*w + k];
-        const real t_dot_z = V_2;
-        s[0*w + k] = t_x;
-        s[1*w + k] = t_y;
-        s[2*w + k] = t_z;
-        s[3*w + k] = t_dot_x;
-        s[4*w + k] = t_dot_y;
-        s[5*w + k] = t_dot_z;
-    }
 }
 
-INLINE void dynamics_legs_rus(const prepared *m, size_t w, size_t leg, size_t legs, const real *s,
-    size_t states, size_t count, int add, real *terms, real *o)
+INLINE void dynamics_legs_rus(const prepared *m, size_t w, size_t leg, size_t legs, size_t states,
+    size_t count, int add, const real *X, const real *V, real *terms, real *o)
 {
     for (size_t k = 0; k < count; ++k) {
         const size_t i = leg + legs*k;
         const size_t j = states*k;
-        /* (rus-J_3) inertia tensor of link 3 about the connection point */
-        const real rus_base_point_x = m->rus_base_point_x[i];
-        const real rus_platform_point_x = m->rus_platform_point_x[i];
-        const real t_x = s[0*w + j];
-        const real rus_J_3_t_3 = rus_platform_point_x + t_x - rus_base_point_x;
-        const real rus_base_point_y = m->rus_base_point_y[i];
-        const real rus_platform_point_y = m->rus_platform_point_y[i];
-        const real t_y = s[1*w + j];
-        const real rus_J_3_t_4 = rus_platform_point_y + t_y - rus_base_point_y;
-        const real rus_base_point_z = m->rus_base_point_z[i];
-        const real rus_platform_point_z = m->rus_platform_point_z[i];
-        const real t_z = s[2*w + j];
-        const real rus_J_3_t_5 = rus_platform_point_z + t_z - rus_base_point_z;
-        const real rus_J_3_t_6 = rus_J_3_t_3*rus_J_3_t_3 + rus_J_3_t_4*rus_J_3_t_4 +
-            rus_J_3_t_5*rus_J_3_t_5;
-        const real rus_J_3_t = m->rus_J_3_t[i];
-        const real rus_J_3_t_2 = m->rus_J_3_t_2[i];
-        const real rus_J_3_t_7 = rus_J_3_t + R(0.5)*rus_J_3_t_6 - rus_J_3_t_2;
-        const real rus_base_frame_xx = m->rus_base_frame_xx[i];
-        const real rus_base_frame_yx = m->rus_base_frame_yx[i];
-        const real rus_base_frame_zx = m->rus_base_frame_zx[i];
-        const real rus_J_3_t_8 = rus_J_3_t_3*rus_base_frame_xx + rus_J_3_t_4*rus_base_frame_yx +
-            rus_J_3_t_5*rus_base_frame_zx;
-        const real rus_joint2_offset_x = m->rus_joint2_offset_x[i];
-        const real rus_J_3_t_9 = rus_J_3_t_8*rus_joint2_offset_x;
-        const real rus_base_frame_xy = m->rus_base_frame_xy[i];
-        const real rus_base_frame_yy = m->rus_base_frame_yy[i];
-        const real rus_base_frame_zy = m->rus_base_frame_zy[i];
-        const real rus_J_3_t_10 = rus_J_3_t_3*rus_base_frame_xy + rus_J_3_t_4*rus_base_frame_yy +
-            rus_J_3_t_5*rus_base_frame_zy;
-        const real rus_J_3_t_11 = rus_J_3_t_10*rus_joint2_offset_x;
-        const real rus_J_3_t_12 = rus_J_3_t_11*rus_J_3_t_11 + rus_J_3_t_9*rus_J_3_t_9;
-        const real rus_J_3_t_13 = rus_J_3_t_12 - rus_J_3_t_7*rus_J_3_t_7;
-        const real rus_branch_1 = m->rus_branch_1[i];
-        const real rus_J_3_t_14 = root(rus_J_3_t_13)*rus_branch_1;
-        const real inv_rus_size_t = m->inv_rus_size_t[i];
-        const real rus_J_3_t_15 = inv_rus_size_t*rus_J_3_t_14*rus_joint2_offset_x;
-        const real rus_base_frame_xz = m->rus_base_frame_xz[i];
-        const real rus_base_frame_yz = m->rus_base_frame_yz[i];
-        const real rus_base_frame_zz = m->rus_base_frame_zz[i];
-        const real rus_J_3_t_16 = rus_J_3_t_3*rus_base_frame_xz + rus_J_3_t_4*rus_base_frame_yz +
-            rus_J_3_t_5*rus_base_frame_zz;
-        const real rus_J_3_t_17 = inv_rus_size_t*rus_J_3_t_7*rus_joint2_offset_x -
-            rus_joint2_offset_x;
-        const real rus_J_3_t_18 = rus_J_3_t_15*rus_J_3_t_15 + rus_J_3_t_17*rus_J_3_t_17;
-        const real rus_branch_2 = m->rus_branch_2[i];
-        const real rus_J_3_t_19 = root(rus_J_3_t_18)*rus_branch_2;
-        const real inv_rus_size_t_2 = m->inv_rus_size_t_2[i];
-        const real rus_platform_joint_offset_x = m->rus_platform_joint_offset_x[i];
-        const real rus_e_1_in_axes3_y =
-            -inv_rus_size_t_2*rus_J_3_t_19*rus_platform_joint_offset_x;
-        const real rus_e_1_in_axes3_x = inv_rus_size_t_2*rus_J_3_t_16*rus_platform_joint_offset_x;
-        const real rus_J_3_in_spec3_xy = m->rus_J_3_in_spec3_xy[i];
-        const real rus_J_3_in_spec3_yz = m->rus_J_3_in_spec3_yz[i];
-        const real rus_J_3_in_axes2_xz = rus_J_3_in_spec3_xy*rus_e_1_in_axes3_x -
-            rus_J_3_in_spec3_yz*rus_e_1_in_axes3_y;
-        const real rus_J_3_in_spec3_xx = m->rus_J_3_in_spec3_xx[i];
-        const real rus_J_3_in_spec3_xz = m->rus_J_3_in_spec3_xz[i];
-        const real rus_J_3_in_spec3_zz = m->rus_J_3_in_spec3_zz[i];
-        const real rus_J_3_in_axes1_zz =
-            rus_e_1_in_axes3_x*(rus_J_3_in_spec3_xx*rus_e_1_in_axes3_x -
-            rus_J_3_in_spec3_xz*rus_e_1_in_axes3_y) +
-            rus_e_1_in_axes3_y*(rus_J_3_in_spec3_zz*rus_e_1_in_axes3_y -
-            rus_J_3_in_spec3_xz*rus_e_1_in_axes3_x);
-        /* (rus-c_1) cosine of the angle of joint 1 from its reference direction */
-        const real inv_rus_J_3_t_12 = 1/rus_J_3_t_12;
-        const real rus_c_1 = inv_rus_J_3_t_12*(rus_J_3_t_7*rus_J_3_t_9 -
-            rus_J_3_t_11*rus_J_3_t_14);
-        /* (rus-s_1) sine of the angle of joint 1 from its reference direction */
-        const real rus_s_1 = inv_rus_J_3_t_12*(rus_J_3_t_11*rus_J_3_t_7 +
-            rus_J_3_t_14*rus_J_3_t_9);
-        /* (rus-c_2) cosine of the angle of joint 2 from its reference direction */
-        const real inv_rus_J_3_t_18 = 1/rus_J_3_t_18;
-        const real rus_c_2 = inv_rus_J_3_t_18*rus_J_3_t_15*rus_J_3_t_19;
-        /* (rus-s_2) sine of the angle of joint 2 from its reference direction */
-        const real rus_s_2 = inv_rus_J_3_t_18*rus_J_3_t_17*rus_J_3_t_19;
-        /* (rus-r_1) from joint 1 to the connection point, along the links */
-        const real rus_r_1_t = -rus_e_1_in_axes3_y*rus_platform_joint_offset_x;
-        const real rus_r_1_in_axes1_z = rus_e_1_in_axes3_x*rus_platform_joint_offset_x;
-        const real rus_r_1_t_2 = rus_c_2*rus_r_1_t;
-        const real rus_r_1_in_axes1_x = rus_joint2_offset_x + rus_r_1_t*rus_s_2;
-        const real rus_r_1_in_axes3_z = rus_c_2*rus_r_1_in_axes1_x - rus_r_1_t_2*rus_s_2;
-        /* (rus-v_1) velocity of the connection point per rate of joint 1 */
-        const real rus_v_1_t = rus_c_2*rus_r_1_t_2 + rus_r_1_in_axes1_x*rus_s_2;
-        const real rus_v_1_t_2 = -rus_e_1_in_axes3_y*rus_r_1_in_axes3_z;
-        const real rus_v_1_in_axes3_y = -rus_e_1_in_axes3_x*rus_r_1_in_axes3_z;
-        const real rus_v_1_in_axes3_z = rus_e_1_in_axes3_x*(rus_e_1_in_axes3_x*rus_v_1_t +
-            rus_e_1_in_axes3_y*rus_r_1_in_axes1_z) -
-            rus_e_1_in_axes3_y*(rus_e_1_in_axes3_x*rus_r_1_in_axes1_z -
-            rus_e_1_in_axes3_y*rus_v_1_t);
+        values_rus v;
+        stage_rus_M_dynamics(m, w, i, j, X, &v);
         /* (rus-w_1) reciprocal vector 1 */
-        const real rus_w_1_t = rus_c_1*rus_c_2 - rus_s_1*rus_s_2;
-        const real rus_w_1_t_2 = rus_c_1*rus_s_2 + rus_c_2*rus_s_1;
+        const real rus_w_1_t = v.rus_c_1*v.rus_s_2_t - v.rus_c_2*v.rus_s_1;
+        const real rus_w_1_t_2 = v.rus_c_1*v.rus_c_2 + v.rus_s_1*v.rus_s_2_t;
+        const real rus_base_frame_xx = m->rus_base_frame_xx[i];
+        const real rus_base_frame_xy = m->rus_base_frame_xy[i];
         const real axis_z_rus_axes3_x = rus_base_frame_xx*rus_w_1_t +
             rus_base_frame_xy*rus_w_1_t_2;
+        const real rus_base_frame_yx = m->rus_base_frame_yx[i];
+        const real rus_base_frame_yy = m->rus_base_frame_yy[i];
         const real axis_z_rus_axes3_y = rus_base_frame_yx*rus_w_1_t +
             rus_base_frame_yy*rus_w_1_t_2;
+        const real rus_base_frame_zx = m->rus_base_frame_zx[i];
+        const real rus_base_frame_zy = m->rus_base_frame_zy[i];
         const real axis_z_rus_axes3_z = rus_base_frame_zx*rus_w_1_t +
             rus_base_frame_zy*rus_w_1_t_2;
-        const real rus_w_1_t_3 = rus_e_1_in_axes3_x*rus_s_2;
-        const real rus_w_1_t_4 = rus_c_2*rus_e_1_in_axes3_x;
-        const real rus_w_1_t_5 = rus_c_1*rus_w_1_t_3 + rus_s_1*rus_w_1_t_4;
-        const real rus_w_1_t_6 = rus_s_1*rus_w_1_t_3 - rus_c_1*rus_w_1_t_4;
+        const real rus_w_1_t_3 = v.rus_c_2*v.rus_e_1_in_axes3_x;
+        const real rus_w_1_t_4 = v.rus_e_1_in_axes3_x*v.rus_s_2_t;
+        const real rus_w_1_t_5 = v.rus_c_1*rus_w_1_t_3 + v.rus_s_1*rus_w_1_t_4;
+        const real rus_w_1_t_6 = v.rus_s_1*rus_w_1_t_3 - v.rus_c_1*rus_w_1_t_4;
+        const real rus_base_frame_xz = m->rus_base_frame_xz[i];
         const real axis_y_rus_axes3_x = rus_base_frame_xx*rus_w_1_t_5 +
-            rus_base_frame_xy*rus_w_1_t_6 + rus_base_frame_xz*rus_e_1_in_axes3_y;
+            rus_base_frame_xy*rus_w_1_t_6 - v.rus_J_3_t_17*rus_base_frame_xz;
+        const real rus_base_frame_yz = m->rus_base_frame_yz[i];
         const real axis_y_rus_axes3_y = rus_base_frame_yx*rus_w_1_t_5 +
-            rus_base_frame_yy*rus_w_1_t_6 + rus_base_frame_yz*rus_e_1_in_axes3_y;
+            rus_base_frame_yy*rus_w_1_t_6 - v.rus_J_3_t_17*rus_base_frame_yz;
+        const real rus_base_frame_zz = m->rus_base_frame_zz[i];
         const real axis_y_rus_axes3_z = rus_base_frame_zx*rus_w_1_t_5 +
-            rus_base_frame_zy*rus_w_1_t_6 + rus_base_frame_zz*rus_e_1_in_axes3_y;
+            rus_base_frame_zy*rus_w_1_t_6 - v.rus_J_3_t_17*rus_base_frame_zz;
         const real axis_x_rus_axes3_x = axis_y_rus_axes3_y*axis_z_rus_axes3_z -
             axis_y_rus_axes3_z*axis_z_rus_axes3_y;
         const real axis_x_rus_axes3_y = axis_y_rus_axes3_z*axis_z_rus_axes3_x -
             axis_y_rus_axes3_x*axis_z_rus_axes3_z;
         const real axis_x_rus_axes3_z = axis_y_rus_axes3_x*axis_z_rus_axes3_y -
             axis_y_rus_axes3_y*axis_z_rus_axes3_x;
-        const real inv_rus_v_1_t_2 = 1/rus_v_1_t_2;
-        const real rus_w_1_t_7 = axis_x_rus_axes3_x*inv_rus_v_1_t_2;
-        const real rus_w_1_t_8 = axis_x_rus_axes3_y*inv_rus_v_1_t_2;
-        const real rus_w_1_t_9 = axis_x_rus_axes3_z*inv_rus_v_1_t_2;
-        /* (rus-w_2) reciprocal vector 2 */
-        const real rus_w_2_in_axes3_z = 1/rus_r_1_t;
-        const real rus_w_2_in_axes3_x = inv_rus_v_1_t_2*rus_v_1_in_axes3_z*rus_w_2_in_axes3_z;
-        /* (rus-w_3) reciprocal vector 3 */
-        const real rus_w_3_in_axes3_y = m->rus_w_3_in_axes3_y[i];
-        const real rus_w_3_in_axes3_x = inv_rus_v_1_t_2*rus_v_1_in_axes3_y*rus_w_3_in_axes3_y;
+        const real rus_w_1_t_7 = axis_x_rus_axes3_x*v.inv_rus_v_1_t_2;
+        const real rus_w_1_t_8 = axis_x_rus_axes3_y*v.inv_rus_v_1_t_2;
+        const real rus_w_1_t_9 = axis_x_rus_axes3_z*v.inv_rus_v_1_t_2;
         /* (rus-qd_1) rate of joint 1 */
-        const real t_dot_x = s[3*w + j];
-        const real t_dot_y = s[4*w + j];
-        const real t_dot_z = s[5*w + j];
-        const real rus_qd_1 = -inv_rus_v_1_t_2*(axis_x_rus_axes3_x*t_dot_x +
+        const real t_dot_x = V[0*w + j];
+        const real t_dot_y = V[1*w + j];
+        const real t_dot_z = V[2*w + j];
+        const real rus_qd_1_t = v.inv_rus_v_1_t_2*(axis_x_rus_axes3_x*t_dot_x +
             axis_x_rus_axes3_y*t_dot_y + axis_x_rus_axes3_z*t_dot_z);
         /* (rus-qd_3) rate of joint 3 */
         const real rus_qd_3_t = axis_y_rus_axes3_x*t_dot_x + axis_y_rus_axes3_y*t_dot_y +
-            axis_y_rus_axes3_z*t_dot_z - rus_qd_1*rus_v_1_in_axes3_y;
+            axis_y_rus_axes3_z*t_dot_z + rus_qd_1_t*v.rus_v_1_in_axes3_y;
+        const real rus_w_3_in_axes3_y = m->rus_w_3_in_axes3_y[i];
         const real rus_qd_3 = rus_qd_3_t*rus_w_3_in_axes3_y;
         /* (rus-omega_1) angular velocity of link 1 */
-        const real rus_omega_1_in_axes3_x = rus_e_1_in_axes3_x*rus_qd_1;
-        const real rus_omega_1_in_axes3_y = rus_e_1_in_axes3_y*rus_qd_1;
+        const real rus_omega_1_in_axes3_x = -v.rus_e_1_in_axes3_x*rus_qd_1_t;
+        const real rus_omega_1_in_axes3_y = v.rus_J_3_t_17*rus_qd_1_t;
         /* (rus-omega_2) angular velocity of link 2 */
-        const real rus_omega_2_in_axes2_z = rus_qd_1 +
-            rus_w_2_in_axes3_z*(axis_z_rus_axes3_x*t_dot_x + axis_z_rus_axes3_y*t_dot_y +
-            axis_z_rus_axes3_z*t_dot_z - rus_qd_1*rus_v_1_in_axes3_z);
-        const real rus_omega_2_in_axes3_x = rus_e_1_in_axes3_x*rus_omega_2_in_axes2_z;
-        const real rus_omega_2_in_axes3_y = rus_e_1_in_axes3_y*rus_omega_2_in_axes2_z;
+        const real rus_omega_2_in_axes2_z = v.rus_w_2_in_axes3_z*(axis_z_rus_axes3_x*t_dot_x +
+            axis_z_rus_axes3_y*t_dot_y + axis_z_rus_axes3_z*t_dot_z +
+            rus_qd_1_t*v.rus_v_1_in_axes3_z) - rus_qd_1_t;
+        const real rus_omega_2_in_axes3_x = v.rus_e_1_in_axes3_x*rus_omega_2_in_axes2_z;
+        const real rus_omega_2_in_axes3_y = -v.rus_J_3_t_17*rus_omega_2_in_axes2_z;
         /* (rus-W_3) centripetal tensor of link 3 */
         const real rus_W_3_in_axes3_yz = rus_omega_2_in_axes3_y*rus_qd_3;
         const real rus_W_3_in_axes3_xz = rus_omega_2_in_axes3_x*rus_qd_3;
         const real rus_W_3_in_axes3_xy = rus_omega_2_in_axes3_x*rus_omega_2_in_axes3_y;
         /* (rus-bias) acceleration of the connection point at zero joint accelerations */
-        const real rus_d_2_in_axes3_z = rus_c_2*rus_joint2_offset_x;
-        const real rus_bias_t = rus_joint2_offset_x*rus_s_2;
-        const real rus_bias_t_2 = rus_bias_t*rus_e_1_in_axes3_x*rus_omega_1_in_axes3_x +
-            rus_bias_t*rus_e_1_in_axes3_y*rus_omega_1_in_axes3_y;
-        const real rus_bias_t_3 = rus_omega_2_in_axes3_y*rus_platform_joint_offset_x;
-        const real rus_bias_in_axes3_x = rus_bias_t_2*rus_omega_1_in_axes3_y -
-            rus_bias_t_3*rus_omega_2_in_axes3_y - rus_qd_3*rus_qd_3_t;
-        const real rus_bias_in_axes3_y = rus_bias_t_3*rus_omega_2_in_axes3_x -
-            rus_bias_t_2*rus_omega_1_in_axes3_x;
+        const real rus_joint2_offset_x = m->rus_joint2_offset_x[i];
+        const real rus_bias_t = v.rus_c_2*rus_joint2_offset_x;
+        const real rus_d_2_in_axes3_z = rus_joint2_offset_x*v.rus_s_2_t;
+        const real rus_bias_t_2 = v.rus_J_3_t_17*rus_bias_t*rus_omega_1_in_axes3_y -
+            rus_bias_t*v.rus_e_1_in_axes3_x*rus_omega_1_in_axes3_x;
+        const real rus_platform_joint_offset_x = m->rus_platform_joint_offset_x[i];
+        const real rus_bias_t_3 = -rus_omega_2_in_axes3_y*rus_platform_joint_offset_x;
+        const real rus_bias_in_axes3_x = rus_bias_t_3*rus_omega_2_in_axes3_y -
+            rus_bias_t_2*rus_omega_1_in_axes3_y - rus_qd_3*rus_qd_3_t;
+        const real rus_bias_in_axes3_y = rus_bias_t_2*rus_omega_1_in_axes3_x -
+            rus_bias_t_3*rus_omega_2_in_axes3_x;
         const real rus_bias_in_axes3_z = rus_W_3_in_axes3_xz*rus_platform_joint_offset_x +
             rus_omega_2_in_axes3_x*rus_qd_3_t -
             rus_d_2_in_axes3_z*rus_omega_1_in_axes3_x*rus_omega_1_in_axes3_x -
             rus_d_2_in_axes3_z*rus_omega_1_in_axes3_y*rus_omega_1_in_axes3_y;
         /* (rus-qdd_1_o) remainder without the acceleration in: acceleration of joint 1 */
-        const real rus_qdd_1_o = inv_rus_v_1_t_2*rus_bias_in_axes3_x;
+        const real rus_qdd_1_o = v.inv_rus_v_1_t_2*rus_bias_in_axes3_x;
         /* (rus-qdd_3_o) remainder without the acceleration in: acceleration of joint 3 */
         const real rus_qdd_3_o = -rus_w_3_in_axes3_y*(rus_bias_in_axes3_y +
-            rus_qdd_1_o*rus_v_1_in_axes3_y);
+            rus_qdd_1_o*v.rus_v_1_in_axes3_y);
         /* (rus-alpha_2_o) remainder without the acceleration in: angular acceleration of link 2 */
         const real rus_alpha_2_o_in_axes2_z = rus_qdd_1_o -
-            rus_w_2_in_axes3_z*(rus_bias_in_axes3_z + rus_qdd_1_o*rus_v_1_in_axes3_z);
-        const real rus_alpha_2_o_in_axes3_x = rus_alpha_2_o_in_axes2_z*rus_e_1_in_axes3_x;
-        const real rus_alpha_2_o_in_axes3_y = rus_alpha_2_o_in_axes2_z*rus_e_1_in_axes3_y;
-        /* (rus-d_alpha_3) coefficient of the acceleration in: angular acceleration of link 3 */
-        const real rus_d_alpha_3_in_axes3_xz = rus_e_1_in_axes3_x*rus_w_2_in_axes3_z;
-        const real rus_d_alpha_3_in_axes3_yz = rus_e_1_in_axes3_y*rus_w_2_in_axes3_z;
+            v.rus_w_2_in_axes3_z*(rus_bias_in_axes3_z + rus_qdd_1_o*v.rus_v_1_in_axes3_z);
+        const real rus_alpha_2_o_in_axes3_x = rus_alpha_2_o_in_axes2_z*v.rus_e_1_in_axes3_x;
+        const real rus_alpha_2_o_in_axes3_y = -v.rus_J_3_t_17*rus_alpha_2_o_in_axes2_z;
         /* (rus-alpha_3_o) remainder without the acceleration in: angular acceleration of link 3 */
         const real rus_alpha_3_o_in_axes3_x = rus_W_3_in_axes3_yz + rus_alpha_2_o_in_axes3_x;
         const real rus_alpha_3_o_in_axes3_y = rus_alpha_2_o_in_axes3_y - rus_W_3_in_axes3_xz;
@@ -1358,6 +1801,9 @@ INLINE void dynamics_legs_rus(const prepared *m, size_t w, size_t leg, size_t le
             + axis_y_rus_axes3_z*gravity_z;
         const real rus_g_in_axes3_z = axis_z_rus_axes3_x*gravity_x + axis_z_rus_axes3_y*gravity_y
             + axis_z_rus_axes3_z*gravity_z;
+        const real rus_J_3_in_spec3_xy = m->rus_J_3_in_spec3_xy[i];
+        const real rus_J_3_in_spec3_xz = m->rus_J_3_in_spec3_xz[i];
+        const real rus_J_3_in_spec3_yz = m->rus_J_3_in_spec3_yz[i];
         const real rus_Sigma_3_in_axes3_yy = m->rus_Sigma_3_in_axes3_yy[i];
         const real rus_Sigma_3_in_axes3_zz = m->rus_Sigma_3_in_axes3_zz[i];
         const real rus_h_3_in_spec3_y = m->rus_h_3_in_spec3_y[i];
@@ -1380,28 +1826,8 @@ INLINE void dynamics_legs_rus(const prepared *m, size_t w, size_t leg, size_t le
             rus_B_3_o_in_axes3_xy*rus_Sigma_3_in_axes3_yy - rus_J_3_in_spec3_xz*(rus_mu_3_o_t -
             rus_mu_3_o_t_2) - rus_J_3_in_spec3_yz*rus_alpha_2_o_in_axes3_y -
             rus_g_in_axes3_x*rus_h_3_in_spec3_z - rus_g_in_axes3_y*rus_h_3_in_spec3_x;
-        const real rus_mu_3_o_in_axes1_z = rus_e_1_in_axes3_x*rus_mu_3_o_in_axes3_x +
-            rus_e_1_in_axes3_y*rus_mu_3_o_in_axes3_y;
-        /* (rus-d_Gamma_3) coefficient of the acceleration in: moment about axis 3 of the distal links'
-           inertia and weight */
-        const real rus_d_Gamma_3_in_axes3_z = rus_J_3_in_axes2_xz*rus_w_2_in_axes3_z;
-        const real rus_d_Gamma_3_t = m->rus_d_Gamma_3_t[i];
-        const real rus_d_Gamma_3_in_axes3_x = rus_h_3_in_spec3_z -
-            inv_rus_v_1_t_2*(rus_J_3_in_axes2_xz - rus_d_Gamma_3_in_axes3_z*rus_v_1_in_axes3_z -
-            rus_d_Gamma_3_t*rus_v_1_in_axes3_y);
-        /* (rus-d_Gamma_2) coefficient of the acceleration in: moment about axis 2 of the distal links'
-           inertia and weight */
-        const real rus_d_Gamma_2_t = rus_e_1_in_axes3_y*rus_h_3_in_spec3_y;
-        const real rus_d_Gamma_2_t_2 = rus_J_3_in_axes1_zz*rus_w_2_in_axes3_z;
-        const real rus_d_Gamma_2_t_3 = rus_J_3_in_axes2_xz*rus_w_3_in_axes3_y;
-        const real rus_d_Gamma_2_t_4 = rus_d_Gamma_2_t_2*rus_v_1_in_axes3_z;
-        const real rus_d_Gamma_2_t_5 = rus_d_Gamma_2_t_3*rus_v_1_in_axes3_y;
-        const real rus_d_Gamma_2_in_axes3_x = rus_d_Gamma_2_t -
-            inv_rus_v_1_t_2*(rus_J_3_in_axes1_zz - rus_d_Gamma_2_t_4 - rus_d_Gamma_2_t_5);
-        const real rus_d_Gamma_2_in_axes3_y = rus_d_Gamma_2_t_3 -
-            rus_e_1_in_axes3_x*rus_h_3_in_spec3_y;
-        const real rus_d_Gamma_2_in_axes3_z = rus_d_Gamma_2_t_2 -
-            rus_e_1_in_axes3_x*rus_h_3_in_spec3_z - rus_e_1_in_axes3_y*rus_h_3_in_spec3_x;
+        const real rus_mu_3_o_in_axes1_z = v.rus_e_1_in_axes3_x*rus_mu_3_o_in_axes3_x -
+            v.rus_J_3_t_17*rus_mu_3_o_in_axes3_y;
         /* (rus-mu_1_o) remainder without the acceleration in: inertia moment of the links that turn with
            link 1, about their reference points */
         const real rus_J_1_in_spec1_zz = m->rus_J_1_in_spec1_zz[i];
@@ -1410,42 +1836,19 @@ INLINE void dynamics_legs_rus(const prepared *m, size_t w, size_t leg, size_t le
         const real rus_mu_1_t = m->rus_mu_1_t[i];
         const real rus_mu_1_t_2 = m->rus_mu_1_t_2[i];
         const real rus_mu_1_o_in_axes1_z = rus_J_1_in_spec1_zz*rus_qdd_1_o +
-            rus_h_1_in_spec1_y*(rus_c_1*rus_mu_1_t + rus_mu_1_t_2*rus_s_1) -
-            rus_h_1_in_spec1_x*(rus_c_1*rus_mu_1_t_2 - rus_mu_1_t*rus_s_1);
+            rus_h_1_in_spec1_y*(v.rus_c_1*rus_mu_1_t + rus_mu_1_t_2*v.rus_s_1) -
+            rus_h_1_in_spec1_x*(v.rus_c_1*rus_mu_1_t_2 - rus_mu_1_t*v.rus_s_1);
         /* (rus-N_1_o) remainder without the acceleration in: moment about joint 1 of the links from 1
            outwards, the force at the connection point left out */
         const real rus_N_1_o_in_axes1_z = rus_mu_1_o_in_axes1_z + rus_mu_3_o_in_axes1_z;
-        /* (rus-d_Gamma_1) coefficient of the acceleration in: moment about axis 1 of the distal links'
-           inertia and weight */
-        const real rus_d_Gamma_1_in_axes3_x = rus_d_Gamma_2_t -
-            inv_rus_v_1_t_2*(rus_J_1_in_spec1_zz + rus_J_3_in_axes1_zz - rus_d_Gamma_2_t_4 -
-            rus_d_Gamma_2_t_5);
         /* (rus-G_o) remainder without the acceleration in: force at the connection point that balances
            the leg's inertia and weight along all degrees of freedom */
-        const real rus_G_o_in_axes3_z = rus_mu_3_o_in_axes1_z*rus_w_2_in_axes3_z;
+        const real rus_G_o_in_axes3_z = rus_mu_3_o_in_axes1_z*v.rus_w_2_in_axes3_z;
         const real rus_G_o_in_axes3_y = rus_mu_3_o_in_axes3_z*rus_w_3_in_axes3_y;
-        /* (rus-d_c) coefficient of the acceleration in: leg force on the platform without actuation and
-           without the mass at the connection point */
-        const real rus_d_c_in_axes3_xx = inv_rus_v_1_t_2*rus_d_Gamma_1_in_axes3_x -
-            rus_d_Gamma_2_in_axes3_x*rus_w_2_in_axes3_x -
-            rus_d_Gamma_3_in_axes3_x*rus_w_3_in_axes3_x -
-            rus_h_3_in_spec3_y*(rus_e_1_in_axes3_y*rus_w_2_in_axes3_x -
-            inv_rus_v_1_t_2*rus_e_1_in_axes3_y) - rus_h_3_in_spec3_z*rus_w_3_in_axes3_x;
-        const real rus_d_Gamma_3_in_axes3_y = m->rus_d_Gamma_3_in_axes3_y[i];
-        const real rus_d_phi_3_in_axes3_xy = m->rus_d_phi_3_in_axes3_xy[i];
-        const real rus_d_c_in_axes3_xy = inv_rus_v_1_t_2*rus_d_Gamma_2_in_axes3_y -
-            rus_d_phi_3_in_axes3_xy - rus_d_Gamma_2_in_axes3_y*rus_w_2_in_axes3_x -
-            rus_d_Gamma_3_in_axes3_y*rus_w_3_in_axes3_x;
-        const real rus_d_c_in_axes3_xz = inv_rus_v_1_t_2*rus_d_Gamma_2_in_axes3_z -
-            rus_d_Gamma_2_in_axes3_z*rus_w_2_in_axes3_x -
-            rus_d_Gamma_3_in_axes3_z*rus_w_3_in_axes3_x -
-            rus_d_alpha_3_in_axes3_yz*rus_h_3_in_spec3_y;
-        const real rus_d_c_in_axes3_yz = rus_d_alpha_3_in_axes3_xz*rus_h_3_in_spec3_y -
-            rus_d_Gamma_3_in_axes3_z*rus_w_3_in_axes3_y;
         /* (rus-c_o) remainder without the acceleration in: leg force on the platform without actuation
            and without the mass at the connection point */
-        const real rus_c_o_in_axes3_x = inv_rus_v_1_t_2*(rus_N_1_o_in_axes1_z -
-            rus_G_o_in_axes3_y*rus_v_1_in_axes3_y - rus_G_o_in_axes3_z*rus_v_1_in_axes3_z) +
+        const real rus_c_o_in_axes3_x = v.inv_rus_v_1_t_2*(rus_N_1_o_in_axes1_z -
+            rus_G_o_in_axes3_y*v.rus_v_1_in_axes3_y - rus_G_o_in_axes3_z*v.rus_v_1_in_axes3_z) +
             rus_B_3_o_in_axes3_xy*rus_h_3_in_spec3_z + rus_h_3_in_spec3_x*(rus_mu_3_o_t_2 +
             rus_mu_3_o_t_3) - rus_alpha_2_o_in_axes3_y*rus_h_3_in_spec3_y;
         const real rus_c_o_in_axes3_y = rus_alpha_2_o_in_axes3_x*rus_h_3_in_spec3_y -
@@ -1456,36 +1859,36 @@ INLINE void dynamics_legs_rus(const prepared *m, size_t w, size_t leg, size_t le
             rus_B_3_o_in_axes3_zx*rus_h_3_in_spec3_x;
         /* (rus-Q) inertia of the leg at the connection point, without the mass gathered there */
         const real rus_d_c_in_axes3_yy = m->rus_d_c_in_axes3_yy[i];
-        const real rus_Q_t = rus_d_c_in_axes3_xx - rus_d_c_in_axes3_yy;
+        const real rus_Q_t = v.rus_d_c_in_axes3_xx - rus_d_c_in_axes3_yy;
         const real rus_Q_t_2 = R(0.5)*rus_Q_t;
-        const real rus_Q_t_3 = rus_d_c_in_axes3_xx + rus_d_Gamma_2_in_axes3_z*rus_w_2_in_axes3_z -
-            rus_d_alpha_3_in_axes3_xz*rus_h_3_in_spec3_z -
-            rus_d_alpha_3_in_axes3_yz*rus_h_3_in_spec3_x;
+        const real rus_Q_t_3 = v.rus_d_c_in_axes3_xx +
+            v.rus_d_Gamma_2_in_axes3_z*v.rus_w_2_in_axes3_z + v.rus_d_alpha_3_t*rus_h_3_in_spec3_x
+            - v.rus_d_alpha_3_in_axes3_xz*rus_h_3_in_spec3_z;
         const real rus_Q_t_4 = R(0.5)*rus_Q_t_3;
-        const real rus_Q_t_5 = axis_x_rus_axes3_x*rus_d_c_in_axes3_xy +
-            axis_z_rus_axes3_x*rus_d_c_in_axes3_yz - axis_y_rus_axes3_x*rus_Q_t_2;
-        const real rus_Q_t_6 = axis_x_rus_axes3_y*rus_d_c_in_axes3_xy +
-            axis_z_rus_axes3_y*rus_d_c_in_axes3_yz - axis_y_rus_axes3_y*rus_Q_t_2;
-        const real rus_Q_t_7 = axis_x_rus_axes3_z*rus_d_c_in_axes3_xy +
-            axis_z_rus_axes3_z*rus_d_c_in_axes3_yz - axis_y_rus_axes3_z*rus_Q_t_2;
+        const real rus_Q_t_5 = axis_x_rus_axes3_x*v.rus_d_c_in_axes3_xy +
+            axis_z_rus_axes3_x*v.rus_d_c_in_axes3_yz - axis_y_rus_axes3_x*rus_Q_t_2;
+        const real rus_Q_t_6 = axis_x_rus_axes3_y*v.rus_d_c_in_axes3_xy +
+            axis_z_rus_axes3_y*v.rus_d_c_in_axes3_yz - axis_y_rus_axes3_y*rus_Q_t_2;
+        const real rus_Q_t_7 = axis_x_rus_axes3_z*v.rus_d_c_in_axes3_xy +
+            axis_z_rus_axes3_z*v.rus_d_c_in_axes3_yz - axis_y_rus_axes3_z*rus_Q_t_2;
         const real rus_Q_t_8 = axis_z_rus_axes3_x*rus_Q_t_4 -
-            axis_x_rus_axes3_x*rus_d_c_in_axes3_xz;
+            axis_x_rus_axes3_x*v.rus_d_c_in_axes3_xz;
         const real rus_Q_t_9 = axis_z_rus_axes3_y*rus_Q_t_4 -
-            axis_x_rus_axes3_y*rus_d_c_in_axes3_xz;
+            axis_x_rus_axes3_y*v.rus_d_c_in_axes3_xz;
         const real rus_Q_t_10 = axis_z_rus_axes3_z*rus_Q_t_4 -
-            axis_x_rus_axes3_z*rus_d_c_in_axes3_xz;
+            axis_x_rus_axes3_z*v.rus_d_c_in_axes3_xz;
         const real rus_Q_t_11 = axis_y_rus_axes3_x*rus_Q_t_5 - axis_z_rus_axes3_x*rus_Q_t_8;
-        const real rus_Q_xx = -2*rus_Q_t_11 - rus_d_c_in_axes3_xx;
+        const real rus_Q_xx = -2*rus_Q_t_11 - v.rus_d_c_in_axes3_xx;
         const real rus_Q_xy = axis_z_rus_axes3_x*rus_Q_t_9 + axis_z_rus_axes3_y*rus_Q_t_8 -
             axis_y_rus_axes3_x*rus_Q_t_6 - axis_y_rus_axes3_y*rus_Q_t_5;
         const real rus_Q_xz = axis_z_rus_axes3_x*rus_Q_t_10 + axis_z_rus_axes3_z*rus_Q_t_8 -
             axis_y_rus_axes3_x*rus_Q_t_7 - axis_y_rus_axes3_z*rus_Q_t_5;
         const real rus_Q_t_12 = axis_y_rus_axes3_y*rus_Q_t_6 - axis_z_rus_axes3_y*rus_Q_t_9;
-        const real rus_Q_yy = -2*rus_Q_t_12 - rus_d_c_in_axes3_xx;
+        const real rus_Q_yy = -2*rus_Q_t_12 - v.rus_d_c_in_axes3_xx;
         const real rus_Q_yz = axis_z_rus_axes3_y*rus_Q_t_10 + axis_z_rus_axes3_z*rus_Q_t_9 -
             axis_y_rus_axes3_y*rus_Q_t_7 - axis_y_rus_axes3_z*rus_Q_t_6;
         const real rus_Q_t_13 = axis_y_rus_axes3_z*rus_Q_t_7 - axis_z_rus_axes3_z*rus_Q_t_10;
-        const real rus_Q_zz = -2*rus_Q_t_13 - rus_d_c_in_axes3_xx;
+        const real rus_Q_zz = -2*rus_Q_t_13 - v.rus_d_c_in_axes3_xx;
         /* (rus-U) velocity and gravity terms of the leg force */
         const real rus_U_x = -axis_x_rus_axes3_x*rus_c_o_in_axes3_x -
             axis_y_rus_axes3_x*rus_c_o_in_axes3_y - axis_z_rus_axes3_x*rus_c_o_in_axes3_z;
@@ -1512,11 +1915,11 @@ INLINE void dynamics_legs_rus(const prepared *m, size_t w, size_t leg, size_t le
         const real rus_rho2_1_t = m->rus_rho2_1_t[i];
         const real rus_size_t_3 = m->rus_size_t_3[i];
         const real rus_size = m->rus_size[i];
-        o[4*count + k] = UNLESS(magnitude(rus_J_3_t_12) > TOLERANCE*TOLERANCE*rus_rho2_1_t) +
-            UNLESS(magnitude(rus_J_3_t_18) > TOLERANCE*TOLERANCE*rus_size_t_3) +
-            UNLESS(magnitude(rus_r_1_t) > TOLERANCE*rus_size) + UNLESS(magnitude(rus_v_1_t_2) >
-            TOLERANCE*rus_size);
-        o[3*count + k] = UNLESS(rus_J_3_t_13 >= 0);
+        o[4*count + k] = UNLESS(magnitude(v.rus_J_3_t_10) > TOLERANCE*TOLERANCE*rus_rho2_1_t) +
+            UNLESS(magnitude(v.rus_J_3_t_15) > TOLERANCE*TOLERANCE*rus_size_t_3) +
+            UNLESS(magnitude(v.rus_r_1_t) > TOLERANCE*rus_size) + UNLESS(magnitude(v.rus_v_1_t_2)
+            > TOLERANCE*rus_size);
+        o[3*count + k] = UNLESS(v.rus_J_3_t_11 >= 0);
     }
 }
 
@@ -1524,7 +1927,7 @@ INLINE void dynamics_place_rus(size_t w, size_t count, const real *o, size_t leg
     real *H, verdict *t)
 {
     for (size_t k = 0; k < w; ++k) {
-        H[(0*NU + leg)*w + k] = o[0*count + first + k];
+        H[leg*w + k] = o[0*count + first + k];
         H[(NU + leg)*w + k] = o[1*count + first + k];
         H[(2*NU + leg)*w + k] = o[2*count + first + k];
         t->unreachable[k] += o[3*count + first + k];
@@ -1556,12 +1959,12 @@ INLINE void dynamics_after(const prepared *m, size_t w, const real *sums, real *
         const real Z_t_z_of_legs = sums[8*w + k];
         const real Z_t_z = Z_p_z + Z_t_z_of_legs;
         /* (M_tt) translational block of M */
-        M[0*NV*w + k] = M_tt_xx;
+        M[0*w + k] = M_tt_xx;
         const real M_tt_xy = sums[1*w + k];
-        M[(0*NV + 1)*w + k] = M_tt_xy;
+        M[1*w + k] = M_tt_xy;
         M[NV*w + k] = M_tt_xy;
         const real M_tt_xz = sums[2*w + k];
-        M[(0*NV + 2)*w + k] = M_tt_xz;
+        M[2*w + k] = M_tt_xz;
         M[2*NV*w + k] = M_tt_xz;
         M[(NV + 1)*w + k] = M_tt_yy;
         const real M_tt_yz = sums[4*w + k];
@@ -1580,12 +1983,10 @@ INLINE void dynamics_after(const prepared *m, size_t w, const real *sums, real *
 INLINE void dynamics_run(const prepared *m, const real *X, const real *V, real *M, real *Z, real
     *H, verdict *t)
 {
-    real s[6] = {0};
     real sums[9] = {0};
-    real terms_rus[9*LEGS(LEGS_OF_rus)] = {0};
-    real o_rus[6*LEGS(LEGS_OF_rus)] = {0};
-    dynamics_before(1, X, V, s);
-    dynamics_legs_rus(m, 1, 0, 1, s, 0, LEGS(LEGS_OF_rus), 0, terms_rus, o_rus);
+    real terms_rus[9*LEGS(LEGS_OF_rus)] = {0}, o_rus[6*LEGS(LEGS_OF_rus)] = {0};
+    dynamics_before();
+    dynamics_legs_rus(m, 1, 0, 1, 0, LEGS(LEGS_OF_rus), 0, X, V, terms_rus, o_rus);
     for (size_t leg = 0; leg < LEGS_OF_rus; ++leg) {
         dynamics_place_rus(1, LEGS(LEGS_OF_rus), o_rus, leg, leg, H, t);
     }
@@ -1598,205 +1999,55 @@ INLINE void dynamics_run(const prepared *m, const real *X, const real *V, real *
 INLINE void dynamics_run_lanes(const prepared *m, const real *X, const real *V, real *M, real *Z,
     real *H, verdict *t)
 {
-    real s[6*LANES];
     real sums[9*LANES];
     real o_rus[6*LANES];
-    dynamics_before(LANES, X, V, s);
+    dynamics_before();
     clear(sums, 9*LANES);
     for (size_t leg = 0; leg < LEGS_OF_rus; ++leg) {
-        dynamics_legs_rus(m, LANES, leg, 0, s, 1, LANES, 1, sums, o_rus);
+        dynamics_legs_rus(m, LANES, leg, 0, 1, LANES, 1, X, V, sums, o_rus);
         dynamics_place_rus(LANES, LANES, o_rus, leg, 0, H, t);
     }
     dynamics_after(m, LANES, sums, M, Z, t);
 }
 
 /* ---- M ---- */
-INLINE void M_before(size_t w, const real *X, real *s)
+INLINE void M_before()
 {
-    for (size_t k = 0; k < w; ++k) {
-        /* X: named entries */
-        const real X_0 = X[0*w + k];
-        const real t_x = X_0;
-        const real X_1 = X[1*w + k];
-        const real t_y = X_1;
-        const real X_2 = X[2*w + k];
-        const real t_z = X_2;
-        s[0*w + k] = t_x;
-        s[1*w + k] = t_y;
-        s[2*w + k] = t_z;
-    }
 }
 
-INLINE void M_legs_rus(const prepared *m, size_t w, size_t leg, size_t legs, const real *s, size_t
-    states, size_t count, int add, real *terms, real *o)
+INLINE void M_legs_rus(const prepared *m, size_t w, size_t leg, size_t legs, size_t states, size_t
+    count, int add, const real *X, real *terms, real *o)
 {
     for (size_t k = 0; k < count; ++k) {
         const size_t i = leg + legs*k;
         const size_t j = states*k;
-        /* (rus-J_3) inertia tensor of link 3 about the connection point */
-        const real rus_base_point_x = m->rus_base_point_x[i];
-        const real rus_platform_point_x = m->rus_platform_point_x[i];
-        const real t_x = s[0*w + j];
-        const real rus_J_3_t_3 = rus_platform_point_x + t_x - rus_base_point_x;
-        const real rus_base_point_y = m->rus_base_point_y[i];
-        const real rus_platform_point_y = m->rus_platform_point_y[i];
-        const real t_y = s[1*w + j];
-        const real rus_J_3_t_4 = rus_platform_point_y + t_y - rus_base_point_y;
-        const real rus_base_point_z = m->rus_base_point_z[i];
-        const real rus_platform_point_z = m->rus_platform_point_z[i];
-        const real t_z = s[2*w + j];
-        const real rus_J_3_t_5 = rus_platform_point_z + t_z - rus_base_point_z;
-        const real rus_J_3_t_6 = rus_J_3_t_3*rus_J_3_t_3 + rus_J_3_t_4*rus_J_3_t_4 +
-            rus_J_3_t_5*rus_J_3_t_5;
-        const real rus_J_3_t = m->rus_J_3_t[i];
-        const real rus_J_3_t_2 = m->rus_J_3_t_2[i];
-        const real rus_J_3_t_7 = rus_J_3_t + R(0.5)*rus_J_3_t_6 - rus_J_3_t_2;
-        const real rus_base_frame_xx = m->rus_base_frame_xx[i];
-        const real rus_base_frame_yx = m->rus_base_frame_yx[i];
-        const real rus_base_frame_zx = m->rus_base_frame_zx[i];
-        const real rus_J_3_t_8 = rus_J_3_t_3*rus_base_frame_xx + rus_J_3_t_4*rus_base_frame_yx +
-            rus_J_3_t_5*rus_base_frame_zx;
-        const real rus_joint2_offset_x = m->rus_joint2_offset_x[i];
-        const real rus_J_3_t_9 = rus_J_3_t_8*rus_joint2_offset_x;
-        const real rus_base_frame_xy = m->rus_base_frame_xy[i];
-        const real rus_base_frame_yy = m->rus_base_frame_yy[i];
-        const real rus_base_frame_zy = m->rus_base_frame_zy[i];
-        const real rus_J_3_t_10 = rus_J_3_t_3*rus_base_frame_xy + rus_J_3_t_4*rus_base_frame_yy +
-            rus_J_3_t_5*rus_base_frame_zy;
-        const real rus_J_3_t_11 = rus_J_3_t_10*rus_joint2_offset_x;
-        const real rus_J_3_t_12 = rus_J_3_t_11*rus_J_3_t_11 + rus_J_3_t_9*rus_J_3_t_9;
-        const real rus_J_3_t_13 = rus_J_3_t_12 - rus_J_3_t_7*rus_J_3_t_7;
-        const real rus_branch_1 = m->rus_branch_1[i];
-        const real rus_J_3_t_14 = root(rus_J_3_t_13)*rus_branch_1;
-        const real inv_rus_size_t = m->inv_rus_size_t[i];
-        const real rus_J_3_t_15 = inv_rus_size_t*rus_J_3_t_14*rus_joint2_offset_x;
-        const real rus_base_frame_xz = m->rus_base_frame_xz[i];
-        const real rus_base_frame_yz = m->rus_base_frame_yz[i];
-        const real rus_base_frame_zz = m->rus_base_frame_zz[i];
-        const real rus_J_3_t_16 = rus_J_3_t_3*rus_base_frame_xz + rus_J_3_t_4*rus_base_frame_yz +
-            rus_J_3_t_5*rus_base_frame_zz;
-        const real rus_J_3_t_17 = inv_rus_size_t*rus_J_3_t_7*rus_joint2_offset_x -
-            rus_joint2_offset_x;
-        const real rus_J_3_t_18 = rus_J_3_t_15*rus_J_3_t_15 + rus_J_3_t_17*rus_J_3_t_17;
-        const real rus_branch_2 = m->rus_branch_2[i];
-        const real rus_J_3_t_19 = root(rus_J_3_t_18)*rus_branch_2;
-        const real inv_rus_size_t_2 = m->inv_rus_size_t_2[i];
-        const real rus_platform_joint_offset_x = m->rus_platform_joint_offset_x[i];
-        const real rus_e_1_in_axes3_y =
-            -inv_rus_size_t_2*rus_J_3_t_19*rus_platform_joint_offset_x;
-        const real rus_e_1_in_axes3_x = inv_rus_size_t_2*rus_J_3_t_16*rus_platform_joint_offset_x;
-        const real rus_J_3_in_spec3_xy = m->rus_J_3_in_spec3_xy[i];
-        const real rus_J_3_in_spec3_yz = m->rus_J_3_in_spec3_yz[i];
-        const real rus_J_3_in_axes2_xz = rus_J_3_in_spec3_xy*rus_e_1_in_axes3_x -
-            rus_J_3_in_spec3_yz*rus_e_1_in_axes3_y;
-        const real rus_J_3_in_spec3_xx = m->rus_J_3_in_spec3_xx[i];
-        const real rus_J_3_in_spec3_xz = m->rus_J_3_in_spec3_xz[i];
-        const real rus_J_3_in_spec3_zz = m->rus_J_3_in_spec3_zz[i];
-        const real rus_J_3_in_axes1_zz =
-            rus_e_1_in_axes3_x*(rus_J_3_in_spec3_xx*rus_e_1_in_axes3_x -
-            rus_J_3_in_spec3_xz*rus_e_1_in_axes3_y) +
-            rus_e_1_in_axes3_y*(rus_J_3_in_spec3_zz*rus_e_1_in_axes3_y -
-            rus_J_3_in_spec3_xz*rus_e_1_in_axes3_x);
-        /* (rus-c_1) cosine of the angle of joint 1 from its reference direction */
-        const real inv_rus_J_3_t_12 = 1/rus_J_3_t_12;
-        const real rus_c_1 = inv_rus_J_3_t_12*(rus_J_3_t_7*rus_J_3_t_9 -
-            rus_J_3_t_11*rus_J_3_t_14);
-        /* (rus-s_1) sine of the angle of joint 1 from its reference direction */
-        const real rus_s_1 = inv_rus_J_3_t_12*(rus_J_3_t_11*rus_J_3_t_7 +
-            rus_J_3_t_14*rus_J_3_t_9);
-        /* (rus-c_2) cosine of the angle of joint 2 from its reference direction */
-        const real inv_rus_J_3_t_18 = 1/rus_J_3_t_18;
-        const real rus_c_2 = inv_rus_J_3_t_18*rus_J_3_t_15*rus_J_3_t_19;
-        /* (rus-s_2) sine of the angle of joint 2 from its reference direction */
-        const real rus_s_2 = inv_rus_J_3_t_18*rus_J_3_t_17*rus_J_3_t_19;
-        /* (rus-r_1) from joint 1 to the connection point, along the links */
-        const real rus_r_1_t = -rus_e_1_in_axes3_y*rus_platform_joint_offset_x;
-        const real rus_r_1_in_axes1_z = rus_e_1_in_axes3_x*rus_platform_joint_offset_x;
-        const real rus_r_1_t_2 = rus_c_2*rus_r_1_t;
-        const real rus_r_1_in_axes1_x = rus_joint2_offset_x + rus_r_1_t*rus_s_2;
-        const real rus_r_1_in_axes3_z = rus_c_2*rus_r_1_in_axes1_x - rus_r_1_t_2*rus_s_2;
-        /* (rus-v_1) velocity of the connection point per rate of joint 1 */
-        const real rus_v_1_t = rus_c_2*rus_r_1_t_2 + rus_r_1_in_axes1_x*rus_s_2;
-        const real rus_v_1_t_2 = -rus_e_1_in_axes3_y*rus_r_1_in_axes3_z;
-        const real rus_v_1_in_axes3_y = -rus_e_1_in_axes3_x*rus_r_1_in_axes3_z;
-        const real rus_v_1_in_axes3_z = rus_e_1_in_axes3_x*(rus_e_1_in_axes3_x*rus_v_1_t +
-            rus_e_1_in_axes3_y*rus_r_1_in_axes1_z) -
-            rus_e_1_in_axes3_y*(rus_e_1_in_axes3_x*rus_r_1_in_axes1_z -
-            rus_e_1_in_axes3_y*rus_v_1_t);
-        /* (rus-w_1) reciprocal vector 1 */
-        const real inv_rus_v_1_t_2 = 1/rus_v_1_t_2;
-        /* (rus-w_2) reciprocal vector 2 */
-        const real rus_w_2_in_axes3_z = 1/rus_r_1_t;
-        const real rus_w_2_in_axes3_x = inv_rus_v_1_t_2*rus_v_1_in_axes3_z*rus_w_2_in_axes3_z;
-        /* (rus-w_3) reciprocal vector 3 */
-        const real rus_w_3_in_axes3_y = m->rus_w_3_in_axes3_y[i];
-        const real rus_w_3_in_axes3_x = inv_rus_v_1_t_2*rus_v_1_in_axes3_y*rus_w_3_in_axes3_y;
-        /* (rus-d_alpha_3) coefficient of the acceleration in: angular acceleration of link 3 */
-        const real rus_d_alpha_3_in_axes3_xz = rus_e_1_in_axes3_x*rus_w_2_in_axes3_z;
-        const real rus_d_alpha_3_in_axes3_yz = rus_e_1_in_axes3_y*rus_w_2_in_axes3_z;
-        /* (rus-d_Gamma_3) coefficient of the acceleration in: moment about axis 3 of the distal links'
-           inertia and weight */
-        const real rus_d_Gamma_3_in_axes3_z = rus_J_3_in_axes2_xz*rus_w_2_in_axes3_z;
-        const real rus_d_Gamma_3_t = m->rus_d_Gamma_3_t[i];
-        const real rus_h_3_in_spec3_z = m->rus_h_3_in_spec3_z[i];
-        const real rus_d_Gamma_3_in_axes3_x = rus_h_3_in_spec3_z -
-            inv_rus_v_1_t_2*(rus_J_3_in_axes2_xz - rus_d_Gamma_3_in_axes3_z*rus_v_1_in_axes3_z -
-            rus_d_Gamma_3_t*rus_v_1_in_axes3_y);
-        /* (rus-d_Gamma_2) coefficient of the acceleration in: moment about axis 2 of the distal links'
-           inertia and weight */
-        const real rus_h_3_in_spec3_y = m->rus_h_3_in_spec3_y[i];
-        const real rus_d_Gamma_2_t = rus_e_1_in_axes3_y*rus_h_3_in_spec3_y;
-        const real rus_d_Gamma_2_t_2 = rus_J_3_in_axes1_zz*rus_w_2_in_axes3_z;
-        const real rus_d_Gamma_2_t_3 = rus_J_3_in_axes2_xz*rus_w_3_in_axes3_y;
-        const real rus_d_Gamma_2_t_4 = rus_d_Gamma_2_t_2*rus_v_1_in_axes3_z;
-        const real rus_d_Gamma_2_t_5 = rus_d_Gamma_2_t_3*rus_v_1_in_axes3_y;
-        const real rus_d_Gamma_2_in_axes3_x = rus_d_Gamma_2_t -
-            inv_rus_v_1_t_2*(rus_J_3_in_axes1_zz - rus_d_Gamma_2_t_4 - rus_d_Gamma_2_t_5);
-        const real rus_d_Gamma_2_in_axes3_y = rus_d_Gamma_2_t_3 -
-            rus_e_1_in_axes3_x*rus_h_3_in_spec3_y;
-        const real rus_h_3_in_spec3_x = m->rus_h_3_in_spec3_x[i];
-        const real rus_d_Gamma_2_in_axes3_z = rus_d_Gamma_2_t_2 -
-            rus_e_1_in_axes3_x*rus_h_3_in_spec3_z - rus_e_1_in_axes3_y*rus_h_3_in_spec3_x;
-        /* (rus-d_Gamma_1) coefficient of the acceleration in: moment about axis 1 of the distal links'
-           inertia and weight */
-        const real rus_J_1_in_spec1_zz = m->rus_J_1_in_spec1_zz[i];
-        const real rus_d_Gamma_1_in_axes3_x = rus_d_Gamma_2_t -
-            inv_rus_v_1_t_2*(rus_J_1_in_spec1_zz + rus_J_3_in_axes1_zz - rus_d_Gamma_2_t_4 -
-            rus_d_Gamma_2_t_5);
-        /* (rus-d_c) coefficient of the acceleration in: leg force on the platform without actuation and
-           without the mass at the connection point */
-        const real rus_d_c_in_axes3_xx = inv_rus_v_1_t_2*rus_d_Gamma_1_in_axes3_x -
-            rus_d_Gamma_2_in_axes3_x*rus_w_2_in_axes3_x -
-            rus_d_Gamma_3_in_axes3_x*rus_w_3_in_axes3_x -
-            rus_h_3_in_spec3_y*(rus_e_1_in_axes3_y*rus_w_2_in_axes3_x -
-            inv_rus_v_1_t_2*rus_e_1_in_axes3_y) - rus_h_3_in_spec3_z*rus_w_3_in_axes3_x;
-        const real rus_d_Gamma_3_in_axes3_y = m->rus_d_Gamma_3_in_axes3_y[i];
-        const real rus_d_phi_3_in_axes3_xy = m->rus_d_phi_3_in_axes3_xy[i];
-        const real rus_d_c_in_axes3_xy = inv_rus_v_1_t_2*rus_d_Gamma_2_in_axes3_y -
-            rus_d_phi_3_in_axes3_xy - rus_d_Gamma_2_in_axes3_y*rus_w_2_in_axes3_x -
-            rus_d_Gamma_3_in_axes3_y*rus_w_3_in_axes3_x;
-        const real rus_d_c_in_axes3_xz = inv_rus_v_1_t_2*rus_d_Gamma_2_in_axes3_z -
-            rus_d_Gamma_2_in_axes3_z*rus_w_2_in_axes3_x -
-            rus_d_Gamma_3_in_axes3_z*rus_w_3_in_axes3_x -
-            rus_d_alpha_3_in_axes3_yz*rus_h_3_in_spec3_y;
-        const real rus_d_c_in_axes3_yz = rus_d_alpha_3_in_axes3_xz*rus_h_3_in_spec3_y -
-            rus_d_Gamma_3_in_axes3_z*rus_w_3_in_axes3_y;
+        values_rus v;
+        stage_rus_M_dynamics(m, w, i, j, X, &v);
         /* (rus-Q) inertia of the leg at the connection point, without the mass gathered there */
-        const real rus_Q_t = rus_c_1*rus_c_2 - rus_s_1*rus_s_2;
-        const real rus_Q_t_2 = rus_c_1*rus_s_2 + rus_c_2*rus_s_1;
+        const real rus_Q_t = v.rus_c_1*v.rus_s_2_t - v.rus_c_2*v.rus_s_1;
+        const real rus_Q_t_2 = v.rus_c_1*v.rus_c_2 + v.rus_s_1*v.rus_s_2_t;
+        const real rus_base_frame_xx = m->rus_base_frame_xx[i];
+        const real rus_base_frame_xy = m->rus_base_frame_xy[i];
         const real axis_z_rus_axes3_x = rus_Q_t*rus_base_frame_xx + rus_Q_t_2*rus_base_frame_xy;
+        const real rus_base_frame_yx = m->rus_base_frame_yx[i];
+        const real rus_base_frame_yy = m->rus_base_frame_yy[i];
         const real axis_z_rus_axes3_y = rus_Q_t*rus_base_frame_yx + rus_Q_t_2*rus_base_frame_yy;
+        const real rus_base_frame_zx = m->rus_base_frame_zx[i];
+        const real rus_base_frame_zy = m->rus_base_frame_zy[i];
         const real axis_z_rus_axes3_z = rus_Q_t*rus_base_frame_zx + rus_Q_t_2*rus_base_frame_zy;
-        const real rus_Q_t_3 = rus_e_1_in_axes3_x*rus_s_2;
-        const real rus_Q_t_4 = rus_c_2*rus_e_1_in_axes3_x;
-        const real rus_Q_t_5 = rus_Q_t_3*rus_c_1 + rus_Q_t_4*rus_s_1;
-        const real rus_Q_t_6 = rus_Q_t_3*rus_s_1 - rus_Q_t_4*rus_c_1;
+        const real rus_Q_t_3 = v.rus_c_2*v.rus_e_1_in_axes3_x;
+        const real rus_Q_t_4 = v.rus_e_1_in_axes3_x*v.rus_s_2_t;
+        const real rus_Q_t_5 = rus_Q_t_3*v.rus_c_1 + rus_Q_t_4*v.rus_s_1;
+        const real rus_Q_t_6 = rus_Q_t_3*v.rus_s_1 - rus_Q_t_4*v.rus_c_1;
+        const real rus_base_frame_xz = m->rus_base_frame_xz[i];
         const real axis_y_rus_axes3_x = rus_Q_t_5*rus_base_frame_xx + rus_Q_t_6*rus_base_frame_xy
-            + rus_base_frame_xz*rus_e_1_in_axes3_y;
+            - v.rus_J_3_t_17*rus_base_frame_xz;
+        const real rus_base_frame_yz = m->rus_base_frame_yz[i];
         const real axis_y_rus_axes3_y = rus_Q_t_5*rus_base_frame_yx + rus_Q_t_6*rus_base_frame_yy
-            + rus_base_frame_yz*rus_e_1_in_axes3_y;
+            - v.rus_J_3_t_17*rus_base_frame_yz;
+        const real rus_base_frame_zz = m->rus_base_frame_zz[i];
         const real axis_y_rus_axes3_z = rus_Q_t_5*rus_base_frame_zx + rus_Q_t_6*rus_base_frame_zy
-            + rus_base_frame_zz*rus_e_1_in_axes3_y;
+            - v.rus_J_3_t_17*rus_base_frame_zz;
         const real axis_x_rus_axes3_x = axis_y_rus_axes3_y*axis_z_rus_axes3_z -
             axis_y_rus_axes3_z*axis_z_rus_axes3_y;
         const real axis_x_rus_axes3_y = axis_y_rus_axes3_z*axis_z_rus_axes3_x -
@@ -1804,36 +2055,38 @@ INLINE void M_legs_rus(const prepared *m, size_t w, size_t leg, size_t legs, con
         const real axis_x_rus_axes3_z = axis_y_rus_axes3_x*axis_z_rus_axes3_y -
             axis_y_rus_axes3_y*axis_z_rus_axes3_x;
         const real rus_d_c_in_axes3_yy = m->rus_d_c_in_axes3_yy[i];
-        const real rus_Q_t_7 = rus_d_c_in_axes3_xx - rus_d_c_in_axes3_yy;
+        const real rus_Q_t_7 = v.rus_d_c_in_axes3_xx - rus_d_c_in_axes3_yy;
         const real rus_Q_t_8 = R(0.5)*rus_Q_t_7;
-        const real rus_Q_t_9 = rus_d_c_in_axes3_xx + rus_d_Gamma_2_in_axes3_z*rus_w_2_in_axes3_z -
-            rus_d_alpha_3_in_axes3_xz*rus_h_3_in_spec3_z -
-            rus_d_alpha_3_in_axes3_yz*rus_h_3_in_spec3_x;
+        const real rus_h_3_in_spec3_x = m->rus_h_3_in_spec3_x[i];
+        const real rus_h_3_in_spec3_z = m->rus_h_3_in_spec3_z[i];
+        const real rus_Q_t_9 = v.rus_d_c_in_axes3_xx +
+            v.rus_d_Gamma_2_in_axes3_z*v.rus_w_2_in_axes3_z + v.rus_d_alpha_3_t*rus_h_3_in_spec3_x
+            - v.rus_d_alpha_3_in_axes3_xz*rus_h_3_in_spec3_z;
         const real rus_Q_t_10 = R(0.5)*rus_Q_t_9;
-        const real rus_Q_t_11 = axis_x_rus_axes3_x*rus_d_c_in_axes3_xy +
-            axis_z_rus_axes3_x*rus_d_c_in_axes3_yz - axis_y_rus_axes3_x*rus_Q_t_8;
-        const real rus_Q_t_12 = axis_x_rus_axes3_y*rus_d_c_in_axes3_xy +
-            axis_z_rus_axes3_y*rus_d_c_in_axes3_yz - axis_y_rus_axes3_y*rus_Q_t_8;
-        const real rus_Q_t_13 = axis_x_rus_axes3_z*rus_d_c_in_axes3_xy +
-            axis_z_rus_axes3_z*rus_d_c_in_axes3_yz - axis_y_rus_axes3_z*rus_Q_t_8;
+        const real rus_Q_t_11 = axis_x_rus_axes3_x*v.rus_d_c_in_axes3_xy +
+            axis_z_rus_axes3_x*v.rus_d_c_in_axes3_yz - axis_y_rus_axes3_x*rus_Q_t_8;
+        const real rus_Q_t_12 = axis_x_rus_axes3_y*v.rus_d_c_in_axes3_xy +
+            axis_z_rus_axes3_y*v.rus_d_c_in_axes3_yz - axis_y_rus_axes3_y*rus_Q_t_8;
+        const real rus_Q_t_13 = axis_x_rus_axes3_z*v.rus_d_c_in_axes3_xy +
+            axis_z_rus_axes3_z*v.rus_d_c_in_axes3_yz - axis_y_rus_axes3_z*rus_Q_t_8;
         const real rus_Q_t_14 = axis_z_rus_axes3_x*rus_Q_t_10 -
-            axis_x_rus_axes3_x*rus_d_c_in_axes3_xz;
+            axis_x_rus_axes3_x*v.rus_d_c_in_axes3_xz;
         const real rus_Q_t_15 = axis_z_rus_axes3_y*rus_Q_t_10 -
-            axis_x_rus_axes3_y*rus_d_c_in_axes3_xz;
+            axis_x_rus_axes3_y*v.rus_d_c_in_axes3_xz;
         const real rus_Q_t_16 = axis_z_rus_axes3_z*rus_Q_t_10 -
-            axis_x_rus_axes3_z*rus_d_c_in_axes3_xz;
+            axis_x_rus_axes3_z*v.rus_d_c_in_axes3_xz;
         const real rus_Q_t_17 = axis_y_rus_axes3_x*rus_Q_t_11 - axis_z_rus_axes3_x*rus_Q_t_14;
-        const real rus_Q_xx = -2*rus_Q_t_17 - rus_d_c_in_axes3_xx;
+        const real rus_Q_xx = -2*rus_Q_t_17 - v.rus_d_c_in_axes3_xx;
         const real rus_Q_xy = axis_z_rus_axes3_x*rus_Q_t_15 + axis_z_rus_axes3_y*rus_Q_t_14 -
             axis_y_rus_axes3_x*rus_Q_t_12 - axis_y_rus_axes3_y*rus_Q_t_11;
         const real rus_Q_xz = axis_z_rus_axes3_x*rus_Q_t_16 + axis_z_rus_axes3_z*rus_Q_t_14 -
             axis_y_rus_axes3_x*rus_Q_t_13 - axis_y_rus_axes3_z*rus_Q_t_11;
         const real rus_Q_t_18 = axis_y_rus_axes3_y*rus_Q_t_12 - axis_z_rus_axes3_y*rus_Q_t_15;
-        const real rus_Q_yy = -2*rus_Q_t_18 - rus_d_c_in_axes3_xx;
+        const real rus_Q_yy = -2*rus_Q_t_18 - v.rus_d_c_in_axes3_xx;
         const real rus_Q_yz = axis_z_rus_axes3_y*rus_Q_t_16 + axis_z_rus_axes3_z*rus_Q_t_15 -
             axis_y_rus_axes3_y*rus_Q_t_13 - axis_y_rus_axes3_z*rus_Q_t_12;
         const real rus_Q_t_19 = axis_y_rus_axes3_z*rus_Q_t_13 - axis_z_rus_axes3_z*rus_Q_t_16;
-        const real rus_Q_zz = -2*rus_Q_t_19 - rus_d_c_in_axes3_xx;
+        const real rus_Q_zz = -2*rus_Q_t_19 - v.rus_d_c_in_axes3_xx;
         /* (M_tt) translational block of M */
         gather(&terms[0*count + k], add, rus_Q_xx);  /* M_tt_xx_of_legs */
         gather(&terms[1*count + k], add, rus_Q_xy);  /* M_tt_xy */
@@ -1844,11 +2097,11 @@ INLINE void M_legs_rus(const prepared *m, size_t w, size_t leg, size_t legs, con
         const real rus_rho2_1_t = m->rus_rho2_1_t[i];
         const real rus_size_t_3 = m->rus_size_t_3[i];
         const real rus_size = m->rus_size[i];
-        o[1*count + k] = UNLESS(magnitude(rus_J_3_t_12) > TOLERANCE*TOLERANCE*rus_rho2_1_t) +
-            UNLESS(magnitude(rus_J_3_t_18) > TOLERANCE*TOLERANCE*rus_size_t_3) +
-            UNLESS(magnitude(rus_r_1_t) > TOLERANCE*rus_size) + UNLESS(magnitude(rus_v_1_t_2) >
-            TOLERANCE*rus_size);
-        o[0*count + k] = UNLESS(rus_J_3_t_13 >= 0);
+        o[1*count + k] = UNLESS(magnitude(v.rus_J_3_t_10) > TOLERANCE*TOLERANCE*rus_rho2_1_t) +
+            UNLESS(magnitude(v.rus_J_3_t_15) > TOLERANCE*TOLERANCE*rus_size_t_3) +
+            UNLESS(magnitude(v.rus_r_1_t) > TOLERANCE*rus_size) + UNLESS(magnitude(v.rus_v_1_t_2)
+            > TOLERANCE*rus_size);
+        o[0*count + k] = UNLESS(v.rus_J_3_t_11 >= 0);
     }
 }
 
@@ -1872,12 +2125,12 @@ INLINE void M_after(const prepared *m, size_t w, const real *sums, real *M, verd
         const real M_tt_zz_of_legs = sums[5*w + k];
         const real M_tt_zz = M_tt_zz_of_legs + m_star;
         /* (M_tt) translational block of M */
-        M[0*NV*w + k] = M_tt_xx;
+        M[0*w + k] = M_tt_xx;
         const real M_tt_xy = sums[1*w + k];
-        M[(0*NV + 1)*w + k] = M_tt_xy;
+        M[1*w + k] = M_tt_xy;
         M[NV*w + k] = M_tt_xy;
         const real M_tt_xz = sums[2*w + k];
-        M[(0*NV + 2)*w + k] = M_tt_xz;
+        M[2*w + k] = M_tt_xz;
         M[2*NV*w + k] = M_tt_xz;
         M[(NV + 1)*w + k] = M_tt_yy;
         const real M_tt_yz = sums[4*w + k];
@@ -1890,12 +2143,10 @@ INLINE void M_after(const prepared *m, size_t w, const real *sums, real *M, verd
 
 INLINE void M_run(const prepared *m, const real *X, real *M, verdict *t)
 {
-    real s[3] = {0};
     real sums[6] = {0};
-    real terms_rus[6*LEGS(LEGS_OF_rus)] = {0};
-    real o_rus[2*LEGS(LEGS_OF_rus)] = {0};
-    M_before(1, X, s);
-    M_legs_rus(m, 1, 0, 1, s, 0, LEGS(LEGS_OF_rus), 0, terms_rus, o_rus);
+    real terms_rus[6*LEGS(LEGS_OF_rus)] = {0}, o_rus[2*LEGS(LEGS_OF_rus)] = {0};
+    M_before();
+    M_legs_rus(m, 1, 0, 1, 0, LEGS(LEGS_OF_rus), 0, X, terms_rus, o_rus);
     for (size_t leg = 0; leg < LEGS_OF_rus; ++leg) {
         M_place_rus(1, LEGS(LEGS_OF_rus), o_rus, leg, t);
     }
@@ -1907,214 +2158,104 @@ INLINE void M_run(const prepared *m, const real *X, real *M, verdict *t)
 
 INLINE void M_run_lanes(const prepared *m, const real *X, real *M, verdict *t)
 {
-    real s[3*LANES];
     real sums[6*LANES];
     real o_rus[2*LANES];
-    M_before(LANES, X, s);
+    M_before();
     clear(sums, 6*LANES);
     for (size_t leg = 0; leg < LEGS_OF_rus; ++leg) {
-        M_legs_rus(m, LANES, leg, 0, s, 1, LANES, 1, sums, o_rus);
+        M_legs_rus(m, LANES, leg, 0, 1, LANES, 1, X, sums, o_rus);
         M_place_rus(LANES, LANES, o_rus, 0, t);
     }
     M_after(m, LANES, sums, M, t);
 }
 
 /* ---- Z ---- */
-INLINE void Z_before(size_t w, const real *X, const real *V, real *s)
+INLINE void Z_before()
 {
-    for (size_t k = 0; k < w; ++k) {
-        /* X: named entries */
-        const real X_0 = X[0*w + k];
-        const real t_x = X_0;
-        const real X_1 = X[1*w + k];
-        const real t_y = X_1;
-        const real X_2 = X[2*w + k];
-        const real t_z = X_2;
-        /* V: named entries */
-        const real V_0 = V[0*w + k];
-        const real t_dot_x = V_0;
-        const real V_1 = V[1*w + k];
-        const real t_dot_y = V_1;
-        const real V_2 = V[2*w + k];
-        const real t_dot_z = V_2;
-        s[0*w + k] = t_x;
-        s[1*w + k] = t_y;
-        s[2*w + k] = t_z;
-        s[3*w + k] = t_dot_x;
-        s[4*w + k] = t_dot_y;
-        s[5*w + k] = t_dot_z;
-    }
 }
 
-INLINE void Z_legs_rus(const prepared *m, size_t w, size_t leg, size_t legs, const real *s, size_t
-    states, size_t count, int add, real *terms, real *o)
+INLINE void Z_legs_rus(const prepared *m, size_t w, size_t leg, size_t legs, size_t states, size_t
+    count, int add, const real *X, const real *V, real *terms, real *o)
 {
     for (size_t k = 0; k < count; ++k) {
         const size_t i = leg + legs*k;
         const size_t j = states*k;
-        /* (rus-S) from the base point to the connection point */
-        const real rus_base_point_x = m->rus_base_point_x[i];
-        const real rus_platform_point_x = m->rus_platform_point_x[i];
-        const real t_x = s[0*w + j];
-        const real rus_S_x = rus_platform_point_x + t_x - rus_base_point_x;
-        const real rus_base_point_y = m->rus_base_point_y[i];
-        const real rus_platform_point_y = m->rus_platform_point_y[i];
-        const real t_y = s[1*w + j];
-        const real rus_S_y = rus_platform_point_y + t_y - rus_base_point_y;
-        const real rus_base_point_z = m->rus_base_point_z[i];
-        const real rus_platform_point_z = m->rus_platform_point_z[i];
-        const real t_z = s[2*w + j];
-        const real rus_S_z = rus_platform_point_z + t_z - rus_base_point_z;
-        /* (rus-Kd_1) projection on the centre's direction, from the distance fixed by the joints beyond
-           joint 1 */
-        const real rus_Kd_1_t = rus_S_x*rus_S_x + rus_S_y*rus_S_y + rus_S_z*rus_S_z;
-        const real rus_J_3_t = m->rus_J_3_t[i];
-        const real rus_J_3_t_2 = m->rus_J_3_t_2[i];
-        const real rus_Kd_1 = rus_J_3_t + R(0.5)*rus_Kd_1_t - rus_J_3_t_2;
-        /* (rus-px_1) component along the reference direction */
-        const real rus_base_frame_xx = m->rus_base_frame_xx[i];
-        const real rus_base_frame_yx = m->rus_base_frame_yx[i];
-        const real rus_base_frame_zx = m->rus_base_frame_zx[i];
-        const real rus_px_1 = rus_S_x*rus_base_frame_xx + rus_S_y*rus_base_frame_yx +
-            rus_S_z*rus_base_frame_zx;
-        /* (rus-py_1) component across the reference direction */
-        const real rus_base_frame_xy = m->rus_base_frame_xy[i];
-        const real rus_base_frame_yy = m->rus_base_frame_yy[i];
-        const real rus_base_frame_zy = m->rus_base_frame_zy[i];
-        const real rus_py_1 = rus_S_x*rus_base_frame_xy + rus_S_y*rus_base_frame_yy +
-            rus_S_z*rus_base_frame_zy;
-        /* (rus-Kc_1) factor of the cosine in the equation of joint 1 */
-        const real rus_joint2_offset_x = m->rus_joint2_offset_x[i];
-        const real rus_Kc_1 = rus_joint2_offset_x*rus_px_1;
-        /* (rus-Ks_1) factor of the sine in the equation of joint 1 */
-        const real rus_Ks_1 = rus_joint2_offset_x*rus_py_1;
-        /* (rus-rho2_1) squared amplitude */
-        const real rus_rho2_1 = rus_Kc_1*rus_Kc_1 + rus_Ks_1*rus_Ks_1;
-        /* (rus-disc_1) discriminant */
-        const real rus_disc_1 = rus_rho2_1 - rus_Kd_1*rus_Kd_1;
-        /* (rus-root_1) root, with the sign of the branch */
-        const real rus_branch_1 = m->rus_branch_1[i];
-        const real rus_root_1 = rus_branch_1*root(rus_disc_1);
-        /* (rus-c_1) cosine of the angle of joint 1 from its reference direction */
-        const real inv_rus_rho2_1 = 1/rus_rho2_1;
-        const real rus_c_1 = inv_rus_rho2_1*(rus_Kc_1*rus_Kd_1 - rus_Ks_1*rus_root_1);
-        /* (rus-s_1) sine of the angle of joint 1 from its reference direction */
-        const real rus_s_1 = inv_rus_rho2_1*(rus_Kc_1*rus_root_1 + rus_Kd_1*rus_Ks_1);
-        /* (rus-xi_1) the vector from joint 1 to the connection point, resolved along link 1 */
-        const real inv_rus_size_t = m->inv_rus_size_t[i];
-        const real rus_xi_1_t = inv_rus_size_t*rus_joint2_offset_x*rus_root_1;
-        const real rus_base_frame_xz = m->rus_base_frame_xz[i];
-        const real rus_base_frame_yz = m->rus_base_frame_yz[i];
-        const real rus_base_frame_zz = m->rus_base_frame_zz[i];
-        const real rus_xi_1_in_axes1_z = rus_S_x*rus_base_frame_xz + rus_S_y*rus_base_frame_yz +
-            rus_S_z*rus_base_frame_zz;
-        /* (rus-x_2) from the origin of joint 2 to the connection point */
-        const real rus_x_2_in_axes1_x = inv_rus_size_t*rus_Kd_1*rus_joint2_offset_x -
-            rus_joint2_offset_x;
-        /* (rus-rho2_2) squared amplitude */
-        const real rus_rho2_2 = rus_x_2_in_axes1_x*rus_x_2_in_axes1_x + rus_xi_1_t*rus_xi_1_t;
-        /* (rus-root_2) root, with the sign of the branch */
-        const real rus_branch_2 = m->rus_branch_2[i];
-        const real rus_root_2 = rus_branch_2*root(rus_rho2_2);
-        /* (rus-c_2) cosine of the angle of joint 2 from its reference direction */
-        const real inv_rus_rho2_2 = 1/rus_rho2_2;
-        const real rus_c_2 = inv_rus_rho2_2*rus_root_2*rus_xi_1_t;
-        /* (rus-s_2) sine of the angle of joint 2 from its reference direction */
-        const real rus_s_2 = inv_rus_rho2_2*rus_root_2*rus_x_2_in_axes1_x;
-        /* (rus-c_3) cosine of the angle of joint 3 from its reference direction */
-        const real inv_rus_size_t_2 = m->inv_rus_size_t_2[i];
-        const real rus_platform_joint_offset_x = m->rus_platform_joint_offset_x[i];
-        const real rus_c_3 = -inv_rus_size_t_2*rus_platform_joint_offset_x*rus_root_2;
-        /* (rus-s_3) sine of the angle of joint 3 from its reference direction */
-        const real rus_s_3 = inv_rus_size_t_2*rus_platform_joint_offset_x*rus_xi_1_in_axes1_z;
-        /* (rus-r_1) from joint 1 to the connection point, along the links */
-        const real rus_r_1_t = -rus_c_3*rus_platform_joint_offset_x;
-        const real rus_r_1_in_axes1_z = rus_platform_joint_offset_x*rus_s_3;
-        const real rus_r_1_t_2 = rus_c_2*rus_r_1_t;
-        const real rus_r_1_in_axes1_x = rus_joint2_offset_x + rus_r_1_t*rus_s_2;
-        const real rus_r_1_in_axes3_z = rus_c_2*rus_r_1_in_axes1_x - rus_r_1_t_2*rus_s_2;
-        /* (rus-v_1) velocity of the connection point per rate of joint 1 */
-        const real rus_v_1_t = rus_c_2*rus_r_1_t_2 + rus_r_1_in_axes1_x*rus_s_2;
-        const real rus_v_1_t_2 = -rus_c_3*rus_r_1_in_axes3_z;
-        const real rus_v_1_in_axes3_y = -rus_r_1_in_axes3_z*rus_s_3;
-        const real rus_v_1_in_axes3_z = rus_s_3*(rus_c_3*rus_r_1_in_axes1_z + rus_s_3*rus_v_1_t) -
-            rus_c_3*(rus_r_1_in_axes1_z*rus_s_3 - rus_c_3*rus_v_1_t);
-        /* (rus-w_1) reciprocal vector 1 */
-        const real inv_rus_v_1_t_2 = 1/rus_v_1_t_2;
-        /* (rus-w_2) reciprocal vector 2 */
-        const real rus_w_2_in_axes3_z = 1/rus_r_1_t;
+        values_rus v;
+        stage_rus_X(m, w, i, j, X, &v);
         /* (rus-qd_1) rate of joint 1 */
-        const real rus_qd_1_t = rus_c_1*rus_c_2 - rus_s_1*rus_s_2;
-        const real rus_qd_1_t_2 = rus_c_1*rus_s_2 + rus_c_2*rus_s_1;
-        const real axis_z_rus_axes3_x = rus_base_frame_xx*rus_qd_1_t +
-            rus_base_frame_xy*rus_qd_1_t_2;
-        const real axis_z_rus_axes3_y = rus_base_frame_yx*rus_qd_1_t +
-            rus_base_frame_yy*rus_qd_1_t_2;
-        const real axis_z_rus_axes3_z = rus_base_frame_zx*rus_qd_1_t +
-            rus_base_frame_zy*rus_qd_1_t_2;
-        const real rus_qd_1_t_3 = rus_s_2*rus_s_3;
-        const real rus_qd_1_t_4 = rus_c_2*rus_s_3;
-        const real rus_qd_1_t_5 = rus_c_1*rus_qd_1_t_3 + rus_qd_1_t_4*rus_s_1;
-        const real rus_qd_1_t_6 = rus_qd_1_t_3*rus_s_1 - rus_c_1*rus_qd_1_t_4;
-        const real axis_y_rus_axes3_x = rus_base_frame_xx*rus_qd_1_t_5 +
-            rus_base_frame_xy*rus_qd_1_t_6 + rus_base_frame_xz*rus_c_3;
-        const real axis_y_rus_axes3_y = rus_base_frame_yx*rus_qd_1_t_5 +
-            rus_base_frame_yy*rus_qd_1_t_6 + rus_base_frame_yz*rus_c_3;
-        const real axis_y_rus_axes3_z = rus_base_frame_zx*rus_qd_1_t_5 +
-            rus_base_frame_zy*rus_qd_1_t_6 + rus_base_frame_zz*rus_c_3;
+        const real rus_base_frame_xx = m->rus_base_frame_xx[i];
+        const real rus_base_frame_xy = m->rus_base_frame_xy[i];
+        const real axis_z_rus_axes3_x = rus_base_frame_xx*v.rus_qd_1_t +
+            rus_base_frame_xy*v.rus_qd_1_t_2;
+        const real rus_base_frame_yx = m->rus_base_frame_yx[i];
+        const real rus_base_frame_yy = m->rus_base_frame_yy[i];
+        const real axis_z_rus_axes3_y = rus_base_frame_yx*v.rus_qd_1_t +
+            rus_base_frame_yy*v.rus_qd_1_t_2;
+        const real rus_base_frame_zx = m->rus_base_frame_zx[i];
+        const real rus_base_frame_zy = m->rus_base_frame_zy[i];
+        const real axis_z_rus_axes3_z = rus_base_frame_zx*v.rus_qd_1_t +
+            rus_base_frame_zy*v.rus_qd_1_t_2;
+        const real rus_base_frame_xz = m->rus_base_frame_xz[i];
+        const real axis_y_rus_axes3_x = rus_base_frame_xx*v.rus_qd_1_t_5 +
+            rus_base_frame_xy*v.rus_qd_1_t_6 - rus_base_frame_xz*v.rus_c_3;
+        const real rus_base_frame_yz = m->rus_base_frame_yz[i];
+        const real axis_y_rus_axes3_y = rus_base_frame_yx*v.rus_qd_1_t_5 +
+            rus_base_frame_yy*v.rus_qd_1_t_6 - rus_base_frame_yz*v.rus_c_3;
+        const real rus_base_frame_zz = m->rus_base_frame_zz[i];
+        const real axis_y_rus_axes3_z = rus_base_frame_zx*v.rus_qd_1_t_5 +
+            rus_base_frame_zy*v.rus_qd_1_t_6 - rus_base_frame_zz*v.rus_c_3;
         const real axis_x_rus_axes3_x = axis_y_rus_axes3_y*axis_z_rus_axes3_z -
             axis_y_rus_axes3_z*axis_z_rus_axes3_y;
         const real axis_x_rus_axes3_y = axis_y_rus_axes3_z*axis_z_rus_axes3_x -
             axis_y_rus_axes3_x*axis_z_rus_axes3_z;
         const real axis_x_rus_axes3_z = axis_y_rus_axes3_x*axis_z_rus_axes3_y -
             axis_y_rus_axes3_y*axis_z_rus_axes3_x;
-        const real t_dot_x = s[3*w + j];
-        const real t_dot_y = s[4*w + j];
-        const real t_dot_z = s[5*w + j];
-        const real rus_qd_1 = -inv_rus_v_1_t_2*(axis_x_rus_axes3_x*t_dot_x +
+        const real t_dot_x = V[0*w + j];
+        const real t_dot_y = V[1*w + j];
+        const real t_dot_z = V[2*w + j];
+        const real rus_qd_1_t_7 = v.inv_rus_v_1_t_2*(axis_x_rus_axes3_x*t_dot_x +
             axis_x_rus_axes3_y*t_dot_y + axis_x_rus_axes3_z*t_dot_z);
         /* (rus-qd_3) rate of joint 3 */
         const real rus_qd_3_t = axis_y_rus_axes3_x*t_dot_x + axis_y_rus_axes3_y*t_dot_y +
-            axis_y_rus_axes3_z*t_dot_z - rus_qd_1*rus_v_1_in_axes3_y;
+            axis_y_rus_axes3_z*t_dot_z + rus_qd_1_t_7*v.rus_v_1_in_axes3_y;
         const real rus_w_3_in_axes3_y = m->rus_w_3_in_axes3_y[i];
         const real rus_qd_3 = rus_qd_3_t*rus_w_3_in_axes3_y;
         /* (rus-omega_1) angular velocity of link 1 */
-        const real rus_omega_1_in_axes3_x = rus_qd_1*rus_s_3;
-        const real rus_omega_1_in_axes3_y = rus_c_3*rus_qd_1;
+        const real rus_omega_1_in_axes3_x = -v.rus_e_1_in_axes3_x*rus_qd_1_t_7;
+        const real rus_omega_1_in_axes3_y = v.rus_c_3*rus_qd_1_t_7;
         /* (rus-omega_2) angular velocity of link 2 */
-        const real rus_omega_2_in_axes2_z = rus_qd_1 +
-            rus_w_2_in_axes3_z*(axis_z_rus_axes3_x*t_dot_x + axis_z_rus_axes3_y*t_dot_y +
-            axis_z_rus_axes3_z*t_dot_z - rus_qd_1*rus_v_1_in_axes3_z);
-        const real rus_omega_2_in_axes3_x = rus_omega_2_in_axes2_z*rus_s_3;
-        const real rus_omega_2_in_axes3_y = rus_c_3*rus_omega_2_in_axes2_z;
+        const real rus_omega_2_in_axes2_z = v.rus_w_2_in_axes3_z*(axis_z_rus_axes3_x*t_dot_x +
+            axis_z_rus_axes3_y*t_dot_y + axis_z_rus_axes3_z*t_dot_z +
+            rus_qd_1_t_7*v.rus_v_1_in_axes3_z) - rus_qd_1_t_7;
+        const real rus_omega_2_in_axes3_x = v.rus_e_1_in_axes3_x*rus_omega_2_in_axes2_z;
+        const real rus_omega_2_in_axes3_y = -v.rus_c_3*rus_omega_2_in_axes2_z;
         /* (rus-W_3) centripetal tensor of link 3 */
         const real rus_W_3_in_axes3_yz = rus_omega_2_in_axes3_y*rus_qd_3;
         const real rus_W_3_in_axes3_xz = rus_omega_2_in_axes3_x*rus_qd_3;
         const real rus_W_3_in_axes3_xy = rus_omega_2_in_axes3_x*rus_omega_2_in_axes3_y;
         /* (rus-bias) acceleration of the connection point at zero joint accelerations */
-        const real rus_d_2_in_axes3_z = rus_c_2*rus_joint2_offset_x;
-        const real rus_bias_t = rus_joint2_offset_x*rus_s_2;
-        const real rus_bias_t_2 = rus_bias_t*rus_c_3*rus_omega_1_in_axes3_y +
-            rus_bias_t*rus_omega_1_in_axes3_x*rus_s_3;
-        const real rus_bias_t_3 = rus_omega_2_in_axes3_y*rus_platform_joint_offset_x;
-        const real rus_bias_in_axes3_x = rus_bias_t_2*rus_omega_1_in_axes3_y -
-            rus_bias_t_3*rus_omega_2_in_axes3_y - rus_qd_3*rus_qd_3_t;
-        const real rus_bias_in_axes3_y = rus_bias_t_3*rus_omega_2_in_axes3_x -
-            rus_bias_t_2*rus_omega_1_in_axes3_x;
+        const real rus_bias_t_2 = v.rus_bias_t*v.rus_c_3*rus_omega_1_in_axes3_y -
+            v.rus_bias_t*v.rus_e_1_in_axes3_x*rus_omega_1_in_axes3_x;
+        const real rus_platform_joint_offset_x = m->rus_platform_joint_offset_x[i];
+        const real rus_bias_t_3 = -rus_omega_2_in_axes3_y*rus_platform_joint_offset_x;
+        const real rus_bias_in_axes3_x = rus_bias_t_3*rus_omega_2_in_axes3_y -
+            rus_bias_t_2*rus_omega_1_in_axes3_y - rus_qd_3*rus_qd_3_t;
+        const real rus_bias_in_axes3_y = rus_bias_t_2*rus_omega_1_in_axes3_x -
+            rus_bias_t_3*rus_omega_2_in_axes3_x;
         const real rus_bias_in_axes3_z = rus_W_3_in_axes3_xz*rus_platform_joint_offset_x +
             rus_omega_2_in_axes3_x*rus_qd_3_t -
-            rus_d_2_in_axes3_z*rus_omega_1_in_axes3_x*rus_omega_1_in_axes3_x -
-            rus_d_2_in_axes3_z*rus_omega_1_in_axes3_y*rus_omega_1_in_axes3_y;
+            v.rus_d_2_in_axes3_z*rus_omega_1_in_axes3_x*rus_omega_1_in_axes3_x -
+            v.rus_d_2_in_axes3_z*rus_omega_1_in_axes3_y*rus_omega_1_in_axes3_y;
         /* (rus-qdd_1_o) remainder without the acceleration in: acceleration of joint 1 */
-        const real rus_qdd_1_o = inv_rus_v_1_t_2*rus_bias_in_axes3_x;
+        const real rus_qdd_1_o = v.inv_rus_v_1_t_2*rus_bias_in_axes3_x;
         /* (rus-qdd_3_o) remainder without the acceleration in: acceleration of joint 3 */
         const real rus_qdd_3_o = -rus_w_3_in_axes3_y*(rus_bias_in_axes3_y +
-            rus_qdd_1_o*rus_v_1_in_axes3_y);
+            rus_qdd_1_o*v.rus_v_1_in_axes3_y);
         /* (rus-alpha_2_o) remainder without the acceleration in: angular acceleration of link 2 */
         const real rus_alpha_2_o_in_axes2_z = rus_qdd_1_o -
-            rus_w_2_in_axes3_z*(rus_bias_in_axes3_z + rus_qdd_1_o*rus_v_1_in_axes3_z);
-        const real rus_alpha_2_o_in_axes3_x = rus_alpha_2_o_in_axes2_z*rus_s_3;
-        const real rus_alpha_2_o_in_axes3_y = rus_alpha_2_o_in_axes2_z*rus_c_3;
+            v.rus_w_2_in_axes3_z*(rus_bias_in_axes3_z + rus_qdd_1_o*v.rus_v_1_in_axes3_z);
+        const real rus_alpha_2_o_in_axes3_x = rus_alpha_2_o_in_axes2_z*v.rus_e_1_in_axes3_x;
+        const real rus_alpha_2_o_in_axes3_y = -rus_alpha_2_o_in_axes2_z*v.rus_c_3;
         /* (rus-alpha_3_o) remainder without the acceleration in: angular acceleration of link 3 */
         const real rus_alpha_3_o_in_axes3_x = rus_W_3_in_axes3_yz + rus_alpha_2_o_in_axes3_x;
         const real rus_alpha_3_o_in_axes3_y = rus_alpha_2_o_in_axes3_y - rus_W_3_in_axes3_xz;
@@ -2162,8 +2303,8 @@ INLINE void Z_legs_rus(const prepared *m, size_t w, size_t leg, size_t legs, con
             rus_B_3_o_in_axes3_xy*rus_Sigma_3_in_axes3_yy - rus_J_3_in_spec3_xz*(rus_mu_3_o_t -
             rus_mu_3_o_t_2) - rus_J_3_in_spec3_yz*rus_alpha_2_o_in_axes3_y -
             rus_g_in_axes3_x*rus_h_3_in_spec3_z - rus_g_in_axes3_y*rus_h_3_in_spec3_x;
-        const real rus_mu_3_o_in_axes1_z = rus_c_3*rus_mu_3_o_in_axes3_y +
-            rus_mu_3_o_in_axes3_x*rus_s_3;
+        const real rus_mu_3_o_in_axes1_z = v.rus_e_1_in_axes3_x*rus_mu_3_o_in_axes3_x -
+            v.rus_c_3*rus_mu_3_o_in_axes3_y;
         /* (rus-mu_1_o) remainder without the acceleration in: inertia moment of the links that turn with
            link 1, about their reference points */
         const real rus_J_1_in_spec1_zz = m->rus_J_1_in_spec1_zz[i];
@@ -2172,19 +2313,19 @@ INLINE void Z_legs_rus(const prepared *m, size_t w, size_t leg, size_t legs, con
         const real rus_mu_1_t = m->rus_mu_1_t[i];
         const real rus_mu_1_t_2 = m->rus_mu_1_t_2[i];
         const real rus_mu_1_o_in_axes1_z = rus_J_1_in_spec1_zz*rus_qdd_1_o +
-            rus_h_1_in_spec1_y*(rus_c_1*rus_mu_1_t + rus_mu_1_t_2*rus_s_1) -
-            rus_h_1_in_spec1_x*(rus_c_1*rus_mu_1_t_2 - rus_mu_1_t*rus_s_1);
+            rus_h_1_in_spec1_y*(v.rus_c_1*rus_mu_1_t + rus_mu_1_t_2*v.rus_s_1) -
+            rus_h_1_in_spec1_x*(v.rus_c_1*rus_mu_1_t_2 - rus_mu_1_t*v.rus_s_1);
         /* (rus-N_1_o) remainder without the acceleration in: moment about joint 1 of the links from 1
            outwards, the force at the connection point left out */
         const real rus_N_1_o_in_axes1_z = rus_mu_1_o_in_axes1_z + rus_mu_3_o_in_axes1_z;
         /* (rus-G_o) remainder without the acceleration in: force at the connection point that balances
            the leg's inertia and weight along all degrees of freedom */
-        const real rus_G_o_in_axes3_z = rus_mu_3_o_in_axes1_z*rus_w_2_in_axes3_z;
+        const real rus_G_o_in_axes3_z = rus_mu_3_o_in_axes1_z*v.rus_w_2_in_axes3_z;
         const real rus_G_o_in_axes3_y = rus_mu_3_o_in_axes3_z*rus_w_3_in_axes3_y;
         /* (rus-c_o) remainder without the acceleration in: leg force on the platform without actuation
            and without the mass at the connection point */
-        const real rus_c_o_in_axes3_x = inv_rus_v_1_t_2*(rus_N_1_o_in_axes1_z -
-            rus_G_o_in_axes3_y*rus_v_1_in_axes3_y - rus_G_o_in_axes3_z*rus_v_1_in_axes3_z) +
+        const real rus_c_o_in_axes3_x = v.inv_rus_v_1_t_2*(rus_N_1_o_in_axes1_z -
+            rus_G_o_in_axes3_y*v.rus_v_1_in_axes3_y - rus_G_o_in_axes3_z*v.rus_v_1_in_axes3_z) +
             rus_B_3_o_in_axes3_xy*rus_h_3_in_spec3_z + rus_h_3_in_spec3_x*(rus_mu_3_o_t_2 +
             rus_mu_3_o_t_3) - rus_alpha_2_o_in_axes3_y*rus_h_3_in_spec3_y;
         const real rus_c_o_in_axes3_y = rus_alpha_2_o_in_axes3_x*rus_h_3_in_spec3_y -
@@ -2207,11 +2348,11 @@ INLINE void Z_legs_rus(const prepared *m, size_t w, size_t leg, size_t legs, con
         const real rus_rho2_1_t = m->rus_rho2_1_t[i];
         const real rus_size_t_3 = m->rus_size_t_3[i];
         const real rus_size = m->rus_size[i];
-        o[1*count + k] = UNLESS(magnitude(rus_rho2_1) > TOLERANCE*TOLERANCE*rus_rho2_1_t) +
-            UNLESS(magnitude(rus_rho2_2) > TOLERANCE*TOLERANCE*rus_size_t_3) +
-            UNLESS(magnitude(rus_r_1_t) > TOLERANCE*rus_size) + UNLESS(magnitude(rus_v_1_t_2) >
-            TOLERANCE*rus_size);
-        o[0*count + k] = UNLESS(rus_disc_1 >= 0);
+        o[1*count + k] = UNLESS(magnitude(v.rus_rho2_1) > TOLERANCE*TOLERANCE*rus_rho2_1_t) +
+            UNLESS(magnitude(v.rus_rho2_2) > TOLERANCE*TOLERANCE*rus_size_t_3) +
+            UNLESS(magnitude(v.rus_r_1_t) > TOLERANCE*rus_size) + UNLESS(magnitude(v.rus_v_1_t_2)
+            > TOLERANCE*rus_size);
+        o[0*count + k] = UNLESS(v.rus_disc_1 >= 0);
     }
 }
 
@@ -2246,12 +2387,10 @@ INLINE void Z_after(const prepared *m, size_t w, const real *sums, real *Z, verd
 
 INLINE void Z_run(const prepared *m, const real *X, const real *V, real *Z, verdict *t)
 {
-    real s[6] = {0};
     real sums[3] = {0};
-    real terms_rus[3*LEGS(LEGS_OF_rus)] = {0};
-    real o_rus[2*LEGS(LEGS_OF_rus)] = {0};
-    Z_before(1, X, V, s);
-    Z_legs_rus(m, 1, 0, 1, s, 0, LEGS(LEGS_OF_rus), 0, terms_rus, o_rus);
+    real terms_rus[3*LEGS(LEGS_OF_rus)] = {0}, o_rus[2*LEGS(LEGS_OF_rus)] = {0};
+    Z_before();
+    Z_legs_rus(m, 1, 0, 1, 0, LEGS(LEGS_OF_rus), 0, X, V, terms_rus, o_rus);
     for (size_t leg = 0; leg < LEGS_OF_rus; ++leg) {
         Z_place_rus(1, LEGS(LEGS_OF_rus), o_rus, leg, t);
     }
@@ -2263,160 +2402,44 @@ INLINE void Z_run(const prepared *m, const real *X, const real *V, real *Z, verd
 
 INLINE void Z_run_lanes(const prepared *m, const real *X, const real *V, real *Z, verdict *t)
 {
-    real s[6*LANES];
     real sums[3*LANES];
     real o_rus[2*LANES];
-    Z_before(LANES, X, V, s);
+    Z_before();
     clear(sums, 3*LANES);
     for (size_t leg = 0; leg < LEGS_OF_rus; ++leg) {
-        Z_legs_rus(m, LANES, leg, 0, s, 1, LANES, 1, sums, o_rus);
+        Z_legs_rus(m, LANES, leg, 0, 1, LANES, 1, X, V, sums, o_rus);
         Z_place_rus(LANES, LANES, o_rus, 0, t);
     }
     Z_after(m, LANES, sums, Z, t);
 }
 
 /* ---- H ---- */
-INLINE void H_before(size_t w, const real *X, real *s)
+INLINE void H_before()
 {
-    for (size_t k = 0; k < w; ++k) {
-        /* X: named entries */
-        const real X_0 = X[0*w + k];
-        const real t_x = X_0;
-        const real X_1 = X[1*w + k];
-        const real t_y = X_1;
-        const real X_2 = X[2*w + k];
-        const real t_z = X_2;
-        s[0*w + k] = t_x;
-        s[1*w + k] = t_y;
-        s[2*w + k] = t_z;
-    }
 }
 
-INLINE void H_legs_rus(const prepared *m, size_t w, size_t leg, size_t legs, const real *s, size_t
-    states, size_t count, real *o)
+INLINE void H_legs_rus(const prepared *m, size_t w, size_t leg, size_t legs, size_t states, size_t
+    count, const real *X, real *o)
 {
     for (size_t k = 0; k < count; ++k) {
         const size_t i = leg + legs*k;
         const size_t j = states*k;
-        /* (rus-S) from the base point to the connection point */
-        const real rus_base_point_x = m->rus_base_point_x[i];
-        const real rus_platform_point_x = m->rus_platform_point_x[i];
-        const real t_x = s[0*w + j];
-        const real rus_S_x = rus_platform_point_x + t_x - rus_base_point_x;
-        const real rus_base_point_y = m->rus_base_point_y[i];
-        const real rus_platform_point_y = m->rus_platform_point_y[i];
-        const real t_y = s[1*w + j];
-        const real rus_S_y = rus_platform_point_y + t_y - rus_base_point_y;
-        const real rus_base_point_z = m->rus_base_point_z[i];
-        const real rus_platform_point_z = m->rus_platform_point_z[i];
-        const real t_z = s[2*w + j];
-        const real rus_S_z = rus_platform_point_z + t_z - rus_base_point_z;
-        /* (rus-Kd_1) projection on the centre's direction, from the distance fixed by the joints beyond
-           joint 1 */
-        const real rus_Kd_1_t = rus_S_x*rus_S_x + rus_S_y*rus_S_y + rus_S_z*rus_S_z;
-        const real rus_J_3_t = m->rus_J_3_t[i];
-        const real rus_J_3_t_2 = m->rus_J_3_t_2[i];
-        const real rus_Kd_1 = rus_J_3_t + R(0.5)*rus_Kd_1_t - rus_J_3_t_2;
-        /* (rus-px_1) component along the reference direction */
-        const real rus_base_frame_xx = m->rus_base_frame_xx[i];
-        const real rus_base_frame_yx = m->rus_base_frame_yx[i];
-        const real rus_base_frame_zx = m->rus_base_frame_zx[i];
-        const real rus_px_1 = rus_S_x*rus_base_frame_xx + rus_S_y*rus_base_frame_yx +
-            rus_S_z*rus_base_frame_zx;
-        /* (rus-py_1) component across the reference direction */
-        const real rus_base_frame_xy = m->rus_base_frame_xy[i];
-        const real rus_base_frame_yy = m->rus_base_frame_yy[i];
-        const real rus_base_frame_zy = m->rus_base_frame_zy[i];
-        const real rus_py_1 = rus_S_x*rus_base_frame_xy + rus_S_y*rus_base_frame_yy +
-            rus_S_z*rus_base_frame_zy;
-        /* (rus-Kc_1) factor of the cosine in the equation of joint 1 */
-        const real rus_joint2_offset_x = m->rus_joint2_offset_x[i];
-        const real rus_Kc_1 = rus_joint2_offset_x*rus_px_1;
-        /* (rus-Ks_1) factor of the sine in the equation of joint 1 */
-        const real rus_Ks_1 = rus_joint2_offset_x*rus_py_1;
-        /* (rus-rho2_1) squared amplitude */
-        const real rus_rho2_1 = rus_Kc_1*rus_Kc_1 + rus_Ks_1*rus_Ks_1;
-        /* (rus-disc_1) discriminant */
-        const real rus_disc_1 = rus_rho2_1 - rus_Kd_1*rus_Kd_1;
-        /* (rus-root_1) root, with the sign of the branch */
-        const real rus_branch_1 = m->rus_branch_1[i];
-        const real rus_root_1 = rus_branch_1*root(rus_disc_1);
-        /* (rus-c_1) cosine of the angle of joint 1 from its reference direction */
-        const real inv_rus_rho2_1 = 1/rus_rho2_1;
-        const real rus_c_1 = inv_rus_rho2_1*(rus_Kc_1*rus_Kd_1 - rus_Ks_1*rus_root_1);
-        /* (rus-s_1) sine of the angle of joint 1 from its reference direction */
-        const real rus_s_1 = inv_rus_rho2_1*(rus_Kc_1*rus_root_1 + rus_Kd_1*rus_Ks_1);
-        /* (rus-xi_1) the vector from joint 1 to the connection point, resolved along link 1 */
-        const real inv_rus_size_t = m->inv_rus_size_t[i];
-        const real rus_xi_1_t = inv_rus_size_t*rus_joint2_offset_x*rus_root_1;
-        const real rus_base_frame_xz = m->rus_base_frame_xz[i];
-        const real rus_base_frame_yz = m->rus_base_frame_yz[i];
-        const real rus_base_frame_zz = m->rus_base_frame_zz[i];
-        const real rus_xi_1_in_axes1_z = rus_S_x*rus_base_frame_xz + rus_S_y*rus_base_frame_yz +
-            rus_S_z*rus_base_frame_zz;
-        /* (rus-x_2) from the origin of joint 2 to the connection point */
-        const real rus_x_2_in_axes1_x = inv_rus_size_t*rus_Kd_1*rus_joint2_offset_x -
-            rus_joint2_offset_x;
-        /* (rus-rho2_2) squared amplitude */
-        const real rus_rho2_2 = rus_x_2_in_axes1_x*rus_x_2_in_axes1_x + rus_xi_1_t*rus_xi_1_t;
-        /* (rus-root_2) root, with the sign of the branch */
-        const real rus_branch_2 = m->rus_branch_2[i];
-        const real rus_root_2 = rus_branch_2*root(rus_rho2_2);
-        /* (rus-c_2) cosine of the angle of joint 2 from its reference direction */
-        const real inv_rus_rho2_2 = 1/rus_rho2_2;
-        const real rus_c_2 = inv_rus_rho2_2*rus_root_2*rus_xi_1_t;
-        /* (rus-s_2) sine of the angle of joint 2 from its reference direction */
-        const real rus_s_2 = inv_rus_rho2_2*rus_root_2*rus_x_2_in_axes1_x;
-        /* (rus-c_3) cosine of the angle of joint 3 from its reference direction */
-        const real inv_rus_size_t_2 = m->inv_rus_size_t_2[i];
-        const real rus_platform_joint_offset_x = m->rus_platform_joint_offset_x[i];
-        const real rus_c_3 = -inv_rus_size_t_2*rus_platform_joint_offset_x*rus_root_2;
-        /* (rus-s_3) sine of the angle of joint 3 from its reference direction */
-        const real rus_s_3 = inv_rus_size_t_2*rus_platform_joint_offset_x*rus_xi_1_in_axes1_z;
-        /* (rus-r_1) from joint 1 to the connection point, along the links */
-        const real rus_r_1_t = -rus_c_3*rus_platform_joint_offset_x;
-        const real rus_r_1_in_axes1_x = rus_joint2_offset_x + rus_r_1_t*rus_s_2;
-        /* (rus-v_1) velocity of the connection point per rate of joint 1 */
-        const real rus_v_1_t = -rus_c_3*(rus_c_2*rus_r_1_in_axes1_x - rus_c_2*rus_r_1_t*rus_s_2);
+        values_rus v;
+        stage_rus_X(m, w, i, j, X, &v);
+        stage_rus_H_condition(&v);
         /* (rus-w_1) reciprocal vector 1 */
-        const real rus_w_1_t = rus_c_1*rus_c_2 - rus_s_1*rus_s_2;
-        const real rus_w_1_t_2 = rus_c_1*rus_s_2 + rus_c_2*rus_s_1;
-        const real axis_z_rus_axes3_x = rus_base_frame_xx*rus_w_1_t +
-            rus_base_frame_xy*rus_w_1_t_2;
-        const real axis_z_rus_axes3_y = rus_base_frame_yx*rus_w_1_t +
-            rus_base_frame_yy*rus_w_1_t_2;
-        const real axis_z_rus_axes3_z = rus_base_frame_zx*rus_w_1_t +
-            rus_base_frame_zy*rus_w_1_t_2;
-        const real rus_w_1_t_3 = rus_s_2*rus_s_3;
-        const real rus_w_1_t_4 = rus_c_2*rus_s_3;
-        const real rus_w_1_t_5 = rus_c_1*rus_w_1_t_3 + rus_s_1*rus_w_1_t_4;
-        const real rus_w_1_t_6 = rus_s_1*rus_w_1_t_3 - rus_c_1*rus_w_1_t_4;
-        const real axis_y_rus_axes3_x = rus_base_frame_xx*rus_w_1_t_5 +
-            rus_base_frame_xy*rus_w_1_t_6 + rus_base_frame_xz*rus_c_3;
-        const real axis_y_rus_axes3_y = rus_base_frame_yx*rus_w_1_t_5 +
-            rus_base_frame_yy*rus_w_1_t_6 + rus_base_frame_yz*rus_c_3;
-        const real axis_y_rus_axes3_z = rus_base_frame_zx*rus_w_1_t_5 +
-            rus_base_frame_zy*rus_w_1_t_6 + rus_base_frame_zz*rus_c_3;
-        const real inv_rus_v_1_t = 1/rus_v_1_t;
-        const real rus_w_1_t_7 = inv_rus_v_1_t*(axis_y_rus_axes3_y*axis_z_rus_axes3_z -
-            axis_y_rus_axes3_z*axis_z_rus_axes3_y);
-        const real rus_w_1_t_8 = inv_rus_v_1_t*(axis_y_rus_axes3_z*axis_z_rus_axes3_x -
-            axis_y_rus_axes3_x*axis_z_rus_axes3_z);
-        const real rus_w_1_t_9 = inv_rus_v_1_t*(axis_y_rus_axes3_x*axis_z_rus_axes3_y -
-            axis_y_rus_axes3_y*axis_z_rus_axes3_x);
-        /* (rus-w_1) reciprocal vector 1 */
-        o[0*count + k] = -rus_w_1_t_7;
-        o[1*count + k] = -rus_w_1_t_8;
-        o[2*count + k] = -rus_w_1_t_9;
-        o[5*count + k] = rus_w_1_t_7 + (rus_w_1_t_8 + rus_w_1_t_9);
+        o[0*count + k] = -v.rus_w_1_t_7;
+        o[1*count + k] = -v.rus_w_1_t_8;
+        o[2*count + k] = -v.rus_w_1_t_9;
+        o[5*count + k] = v.rus_w_1_t_7 + (v.rus_w_1_t_8 + v.rus_w_1_t_9);
         const real rus_rho2_1_t = m->rus_rho2_1_t[i];
         const real rus_size_t_3 = m->rus_size_t_3[i];
         const real rus_size = m->rus_size[i];
-        o[4*count + k] = UNLESS(magnitude(rus_rho2_1) > TOLERANCE*TOLERANCE*rus_rho2_1_t) +
-            UNLESS(magnitude(rus_rho2_2) > TOLERANCE*TOLERANCE*rus_size_t_3) +
-            UNLESS(magnitude(rus_r_1_t) > TOLERANCE*rus_size) + UNLESS(magnitude(rus_v_1_t) >
+        o[4*count + k] = UNLESS(magnitude(v.rus_rho2_1) > TOLERANCE*TOLERANCE*rus_rho2_1_t) +
+            UNLESS(magnitude(v.rus_rho2_2) > TOLERANCE*TOLERANCE*rus_size_t_3) +
+            UNLESS(magnitude(v.rus_r_1_t) > TOLERANCE*rus_size) + UNLESS(magnitude(v.rus_v_1_t) >
             TOLERANCE*rus_size);
-        o[3*count + k] = UNLESS(rus_disc_1 >= 0);
+        o[3*count + k] = UNLESS(v.rus_disc_1 >= 0);
     }
 }
 
@@ -2424,7 +2447,7 @@ INLINE void H_place_rus(size_t w, size_t count, const real *o, size_t leg, size_
     verdict *t)
 {
     for (size_t k = 0; k < w; ++k) {
-        H[(0*NU + leg)*w + k] = o[0*count + first + k];
+        H[leg*w + k] = o[0*count + first + k];
         H[(NU + leg)*w + k] = o[1*count + first + k];
         H[(2*NU + leg)*w + k] = o[2*count + first + k];
         t->unreachable[k] += o[3*count + first + k];
@@ -2435,10 +2458,9 @@ INLINE void H_place_rus(size_t w, size_t count, const real *o, size_t leg, size_
 
 INLINE void H_run(const prepared *m, const real *X, real *H, verdict *t)
 {
-    real s[3] = {0};
     real o_rus[6*LEGS(LEGS_OF_rus)] = {0};
-    H_before(1, X, s);
-    H_legs_rus(m, 1, 0, 1, s, 0, LEGS(LEGS_OF_rus), o_rus);
+    H_before();
+    H_legs_rus(m, 1, 0, 1, 0, LEGS(LEGS_OF_rus), X, o_rus);
     for (size_t leg = 0; leg < LEGS_OF_rus; ++leg) {
         H_place_rus(1, LEGS(LEGS_OF_rus), o_rus, leg, leg, H, t);
     }
@@ -2446,352 +2468,72 @@ INLINE void H_run(const prepared *m, const real *X, real *H, verdict *t)
 
 INLINE void H_run_lanes(const prepared *m, const real *X, real *H, verdict *t)
 {
-    real s[3*LANES];
     real o_rus[6*LANES];
-    H_before(LANES, X, s);
+    H_before();
     for (size_t leg = 0; leg < LEGS_OF_rus; ++leg) {
-        H_legs_rus(m, LANES, leg, 0, s, 1, LANES, o_rus);
+        H_legs_rus(m, LANES, leg, 0, 1, LANES, X, o_rus);
         H_place_rus(LANES, LANES, o_rus, leg, 0, H, t);
     }
 }
 
 /* ---- required ---- */
-INLINE void required_before(const prepared *m, size_t w, const real *X, const real *V, const real
-    *A, real *s)
+INLINE void required_before(const prepared *m, size_t w, const real *A, real *s)
 {
     for (size_t k = 0; k < w; ++k) {
-        /* X: named entries */
-        const real X_0 = X[0*w + k];
-        const real t_x = X_0;
-        const real X_1 = X[1*w + k];
-        const real t_y = X_1;
-        const real X_2 = X[2*w + k];
-        const real t_z = X_2;
-        /* V: named entries */
-        const real V_0 = V[0*w + k];
-        const real t_dot_x = V_0;
-        const real V_1 = V[1*w + k];
-        const real t_dot_y = V_1;
-        const real V_2 = V[2*w + k];
-        const real t_dot_z = V_2;
-        /* A: named entries */
-        const real A_0 = A[0*w + k];
-        const real t_ddot_x = A_0;
-        const real A_1 = A[1*w + k];
-        const real t_ddot_y = A_1;
-        const real A_2 = A[2*w + k];
-        const real t_ddot_z = A_2;
         /* (a_t) acceleration of the platform origin, less gravity */
         const real gravity_x = m->gravity_x;
+        const real t_ddot_x = A[0*w + k];
         const real a_t_x = t_ddot_x - gravity_x;
         const real gravity_y = m->gravity_y;
+        const real t_ddot_y = A[1*w + k];
         const real a_t_y = t_ddot_y - gravity_y;
         const real gravity_z = m->gravity_z;
+        const real t_ddot_z = A[2*w + k];
         const real a_t_z = t_ddot_z - gravity_z;
         /* (f_p) inertia force of the platform less its weight */
         const real m_star = m->m_star;
         const real f_p_x = a_t_x*m_star;
         const real f_p_y = a_t_y*m_star;
         const real f_p_z = a_t_z*m_star;
-        s[0*w + k] = t_x;
-        s[1*w + k] = t_y;
-        s[2*w + k] = t_z;
-        s[3*w + k] = t_dot_x;
-        s[4*w + k] = t_dot_y;
-        s[5*w + k] = t_dot_z;
-        s[6*w + k] = t_ddot_x;
-        s[7*w + k] = t_ddot_y;
-        s[8*w + k] = t_ddot_z;
-        s[9*w + k] = f_p_x;
-        s[10*w + k] = f_p_y;
-        s[11*w + k] = f_p_z;
+        s[0*w + k] = f_p_x;
+        s[1*w + k] = f_p_y;
+        s[2*w + k] = f_p_z;
     }
 }
 
-INLINE void required_legs_rus(const prepared *m, size_t w, size_t leg, size_t legs, const real *s,
-    size_t states, size_t count, int add, real *terms, real *o)
+INLINE void required_legs_rus(const prepared *m, size_t w, size_t leg, size_t legs, size_t states,
+    size_t count, int add, const real *X, const real *V, const real *A, real *terms, real *o)
 {
     for (size_t k = 0; k < count; ++k) {
         const size_t i = leg + legs*k;
         const size_t j = states*k;
-        /* (rus-S) from the base point to the connection point */
-        const real rus_base_point_x = m->rus_base_point_x[i];
-        const real rus_platform_point_x = m->rus_platform_point_x[i];
-        const real t_x = s[0*w + j];
-        const real rus_S_x = rus_platform_point_x + t_x - rus_base_point_x;
-        const real rus_base_point_y = m->rus_base_point_y[i];
-        const real rus_platform_point_y = m->rus_platform_point_y[i];
-        const real t_y = s[1*w + j];
-        const real rus_S_y = rus_platform_point_y + t_y - rus_base_point_y;
-        const real rus_base_point_z = m->rus_base_point_z[i];
-        const real rus_platform_point_z = m->rus_platform_point_z[i];
-        const real t_z = s[2*w + j];
-        const real rus_S_z = rus_platform_point_z + t_z - rus_base_point_z;
-        /* (rus-Kd_1) projection on the centre's direction, from the distance fixed by the joints beyond
-           joint 1 */
-        const real rus_Kd_1_t = rus_S_x*rus_S_x + rus_S_y*rus_S_y + rus_S_z*rus_S_z;
-        const real rus_J_3_t = m->rus_J_3_t[i];
-        const real rus_J_3_t_2 = m->rus_J_3_t_2[i];
-        const real rus_Kd_1 = rus_J_3_t + R(0.5)*rus_Kd_1_t - rus_J_3_t_2;
-        /* (rus-px_1) component along the reference direction */
-        const real rus_base_frame_xx = m->rus_base_frame_xx[i];
-        const real rus_base_frame_yx = m->rus_base_frame_yx[i];
-        const real rus_base_frame_zx = m->rus_base_frame_zx[i];
-        const real rus_px_1 = rus_S_x*rus_base_frame_xx + rus_S_y*rus_base_frame_yx +
-            rus_S_z*rus_base_frame_zx;
-        /* (rus-py_1) component across the reference direction */
-        const real rus_base_frame_xy = m->rus_base_frame_xy[i];
-        const real rus_base_frame_yy = m->rus_base_frame_yy[i];
-        const real rus_base_frame_zy = m->rus_base_frame_zy[i];
-        const real rus_py_1 = rus_S_x*rus_base_frame_xy + rus_S_y*rus_base_frame_yy +
-            rus_S_z*rus_base_frame_zy;
-        /* (rus-Kc_1) factor of the cosine in the equation of joint 1 */
-        const real rus_joint2_offset_x = m->rus_joint2_offset_x[i];
-        const real rus_Kc_1 = rus_joint2_offset_x*rus_px_1;
-        /* (rus-Ks_1) factor of the sine in the equation of joint 1 */
-        const real rus_Ks_1 = rus_joint2_offset_x*rus_py_1;
-        /* (rus-rho2_1) squared amplitude */
-        const real rus_rho2_1 = rus_Kc_1*rus_Kc_1 + rus_Ks_1*rus_Ks_1;
-        /* (rus-disc_1) discriminant */
-        const real rus_disc_1 = rus_rho2_1 - rus_Kd_1*rus_Kd_1;
-        /* (rus-root_1) root, with the sign of the branch */
-        const real rus_branch_1 = m->rus_branch_1[i];
-        const real rus_root_1 = rus_branch_1*root(rus_disc_1);
-        /* (rus-c_1) cosine of the angle of joint 1 from its reference direction */
-        const real inv_rus_rho2_1 = 1/rus_rho2_1;
-        const real rus_c_1 = inv_rus_rho2_1*(rus_Kc_1*rus_Kd_1 - rus_Ks_1*rus_root_1);
-        /* (rus-s_1) sine of the angle of joint 1 from its reference direction */
-        const real rus_s_1 = inv_rus_rho2_1*(rus_Kc_1*rus_root_1 + rus_Kd_1*rus_Ks_1);
-        /* (rus-xi_1) the vector from joint 1 to the connection point, resolved along link 1 */
-        const real inv_rus_size_t = m->inv_rus_size_t[i];
-        const real rus_xi_1_t = inv_rus_size_t*rus_joint2_offset_x*rus_root_1;
-        const real rus_base_frame_xz = m->rus_base_frame_xz[i];
-        const real rus_base_frame_yz = m->rus_base_frame_yz[i];
-        const real rus_base_frame_zz = m->rus_base_frame_zz[i];
-        const real rus_xi_1_in_axes1_z = rus_S_x*rus_base_frame_xz + rus_S_y*rus_base_frame_yz +
-            rus_S_z*rus_base_frame_zz;
-        /* (rus-x_2) from the origin of joint 2 to the connection point */
-        const real rus_x_2_in_axes1_x = inv_rus_size_t*rus_Kd_1*rus_joint2_offset_x -
-            rus_joint2_offset_x;
-        /* (rus-rho2_2) squared amplitude */
-        const real rus_rho2_2 = rus_x_2_in_axes1_x*rus_x_2_in_axes1_x + rus_xi_1_t*rus_xi_1_t;
-        /* (rus-root_2) root, with the sign of the branch */
-        const real rus_branch_2 = m->rus_branch_2[i];
-        const real rus_root_2 = rus_branch_2*root(rus_rho2_2);
-        /* (rus-c_2) cosine of the angle of joint 2 from its reference direction */
-        const real inv_rus_rho2_2 = 1/rus_rho2_2;
-        const real rus_c_2 = inv_rus_rho2_2*rus_root_2*rus_xi_1_t;
-        /* (rus-s_2) sine of the angle of joint 2 from its reference direction */
-        const real rus_s_2 = inv_rus_rho2_2*rus_root_2*rus_x_2_in_axes1_x;
-        /* (rus-c_3) cosine of the angle of joint 3 from its reference direction */
-        const real inv_rus_size_t_2 = m->inv_rus_size_t_2[i];
-        const real rus_platform_joint_offset_x = m->rus_platform_joint_offset_x[i];
-        const real rus_c_3 = -inv_rus_size_t_2*rus_platform_joint_offset_x*rus_root_2;
-        /* (rus-s_3) sine of the angle of joint 3 from its reference direction */
-        const real rus_s_3 = inv_rus_size_t_2*rus_platform_joint_offset_x*rus_xi_1_in_axes1_z;
-        /* (rus-r_1) from joint 1 to the connection point, along the links */
-        const real rus_r_1_t = -rus_c_3*rus_platform_joint_offset_x;
-        const real rus_r_1_in_axes1_z = rus_platform_joint_offset_x*rus_s_3;
-        const real rus_r_1_t_2 = rus_c_2*rus_r_1_t;
-        const real rus_r_1_in_axes1_x = rus_joint2_offset_x + rus_r_1_t*rus_s_2;
-        const real rus_r_1_in_axes3_z = rus_c_2*rus_r_1_in_axes1_x - rus_r_1_t_2*rus_s_2;
-        /* (rus-v_1) velocity of the connection point per rate of joint 1 */
-        const real rus_v_1_t = rus_c_2*rus_r_1_t_2 + rus_r_1_in_axes1_x*rus_s_2;
-        const real rus_v_1_t_2 = -rus_c_3*rus_r_1_in_axes3_z;
-        const real rus_v_1_in_axes3_y = -rus_r_1_in_axes3_z*rus_s_3;
-        const real rus_v_1_in_axes3_z = rus_s_3*(rus_c_3*rus_r_1_in_axes1_z + rus_s_3*rus_v_1_t) -
-            rus_c_3*(rus_r_1_in_axes1_z*rus_s_3 - rus_c_3*rus_v_1_t);
-        /* (rus-w_1) reciprocal vector 1 */
-        const real rus_w_1_t = rus_c_1*rus_c_2 - rus_s_1*rus_s_2;
-        const real rus_w_1_t_2 = rus_c_1*rus_s_2 + rus_c_2*rus_s_1;
-        const real axis_z_rus_axes3_x = rus_base_frame_xx*rus_w_1_t +
-            rus_base_frame_xy*rus_w_1_t_2;
-        const real axis_z_rus_axes3_y = rus_base_frame_yx*rus_w_1_t +
-            rus_base_frame_yy*rus_w_1_t_2;
-        const real axis_z_rus_axes3_z = rus_base_frame_zx*rus_w_1_t +
-            rus_base_frame_zy*rus_w_1_t_2;
-        const real rus_w_1_t_3 = rus_s_2*rus_s_3;
-        const real rus_w_1_t_4 = rus_c_2*rus_s_3;
-        const real rus_w_1_t_5 = rus_c_1*rus_w_1_t_3 + rus_s_1*rus_w_1_t_4;
-        const real rus_w_1_t_6 = rus_s_1*rus_w_1_t_3 - rus_c_1*rus_w_1_t_4;
-        const real axis_y_rus_axes3_x = rus_base_frame_xx*rus_w_1_t_5 +
-            rus_base_frame_xy*rus_w_1_t_6 + rus_base_frame_xz*rus_c_3;
-        const real axis_y_rus_axes3_y = rus_base_frame_yx*rus_w_1_t_5 +
-            rus_base_frame_yy*rus_w_1_t_6 + rus_base_frame_yz*rus_c_3;
-        const real axis_y_rus_axes3_z = rus_base_frame_zx*rus_w_1_t_5 +
-            rus_base_frame_zy*rus_w_1_t_6 + rus_base_frame_zz*rus_c_3;
-        const real axis_x_rus_axes3_x = axis_y_rus_axes3_y*axis_z_rus_axes3_z -
-            axis_y_rus_axes3_z*axis_z_rus_axes3_y;
-        const real axis_x_rus_axes3_y = axis_y_rus_axes3_z*axis_z_rus_axes3_x -
-            axis_y_rus_axes3_x*axis_z_rus_axes3_z;
-        const real axis_x_rus_axes3_z = axis_y_rus_axes3_x*axis_z_rus_axes3_y -
-            axis_y_rus_axes3_y*axis_z_rus_axes3_x;
-        const real inv_rus_v_1_t_2 = 1/rus_v_1_t_2;
-        const real rus_w_1_t_7 = axis_x_rus_axes3_x*inv_rus_v_1_t_2;
-        const real rus_w_1_t_8 = axis_x_rus_axes3_y*inv_rus_v_1_t_2;
-        const real rus_w_1_t_9 = axis_x_rus_axes3_z*inv_rus_v_1_t_2;
-        /* (rus-w_2) reciprocal vector 2 */
-        const real rus_w_2_in_axes3_z = 1/rus_r_1_t;
-        /* (rus-qd_1) rate of joint 1 */
-        const real t_dot_x = s[3*w + j];
-        const real t_dot_y = s[4*w + j];
-        const real t_dot_z = s[5*w + j];
-        const real rus_qd_1 = -inv_rus_v_1_t_2*(axis_x_rus_axes3_x*t_dot_x +
-            axis_x_rus_axes3_y*t_dot_y + axis_x_rus_axes3_z*t_dot_z);
-        /* (rus-qd_3) rate of joint 3 */
-        const real rus_qd_3_t = axis_y_rus_axes3_x*t_dot_x + axis_y_rus_axes3_y*t_dot_y +
-            axis_y_rus_axes3_z*t_dot_z - rus_qd_1*rus_v_1_in_axes3_y;
-        const real rus_w_3_in_axes3_y = m->rus_w_3_in_axes3_y[i];
-        const real rus_qd_3 = rus_qd_3_t*rus_w_3_in_axes3_y;
-        /* (rus-omega_1) angular velocity of link 1 */
-        const real rus_omega_1_in_axes3_x = rus_qd_1*rus_s_3;
-        const real rus_omega_1_in_axes3_y = rus_c_3*rus_qd_1;
-        /* (rus-omega_2) angular velocity of link 2 */
-        const real rus_omega_2_in_axes2_z = rus_qd_1 +
-            rus_w_2_in_axes3_z*(axis_z_rus_axes3_x*t_dot_x + axis_z_rus_axes3_y*t_dot_y +
-            axis_z_rus_axes3_z*t_dot_z - rus_qd_1*rus_v_1_in_axes3_z);
-        const real rus_omega_2_in_axes3_x = rus_omega_2_in_axes2_z*rus_s_3;
-        const real rus_omega_2_in_axes3_y = rus_c_3*rus_omega_2_in_axes2_z;
-        /* (rus-W_3) centripetal tensor of link 3 */
-        const real rus_W_3_in_axes3_yz = rus_omega_2_in_axes3_y*rus_qd_3;
-        const real rus_W_3_in_axes3_xz = rus_omega_2_in_axes3_x*rus_qd_3;
-        const real rus_W_3_in_axes3_xy = rus_omega_2_in_axes3_x*rus_omega_2_in_axes3_y;
-        /* (rus-S_ddot) acceleration of the connection point */
-        const real t_ddot_x = s[6*w + j];
-        const real t_ddot_y = s[7*w + j];
-        const real t_ddot_z = s[8*w + j];
-        const real rus_S_ddot_in_axes3_x = axis_x_rus_axes3_x*t_ddot_x +
-            axis_x_rus_axes3_y*t_ddot_y + axis_x_rus_axes3_z*t_ddot_z;
-        const real rus_S_ddot_in_axes3_y = axis_y_rus_axes3_x*t_ddot_x +
-            axis_y_rus_axes3_y*t_ddot_y + axis_y_rus_axes3_z*t_ddot_z;
-        const real rus_S_ddot_in_axes3_z = axis_z_rus_axes3_x*t_ddot_x +
-            axis_z_rus_axes3_y*t_ddot_y + axis_z_rus_axes3_z*t_ddot_z;
-        /* (rus-bias) acceleration of the connection point at zero joint accelerations */
-        const real rus_d_2_in_axes3_z = rus_c_2*rus_joint2_offset_x;
-        const real rus_bias_t = rus_joint2_offset_x*rus_s_2;
-        const real rus_bias_t_2 = rus_bias_t*rus_c_3*rus_omega_1_in_axes3_y +
-            rus_bias_t*rus_omega_1_in_axes3_x*rus_s_3;
-        const real rus_bias_t_3 = rus_omega_2_in_axes3_y*rus_platform_joint_offset_x;
-        const real rus_bias_in_axes3_x = rus_bias_t_2*rus_omega_1_in_axes3_y -
-            rus_bias_t_3*rus_omega_2_in_axes3_y - rus_qd_3*rus_qd_3_t;
-        const real rus_bias_in_axes3_y = rus_bias_t_3*rus_omega_2_in_axes3_x -
-            rus_bias_t_2*rus_omega_1_in_axes3_x;
-        const real rus_bias_in_axes3_z = rus_W_3_in_axes3_xz*rus_platform_joint_offset_x +
-            rus_omega_2_in_axes3_x*rus_qd_3_t -
-            rus_d_2_in_axes3_z*rus_omega_1_in_axes3_x*rus_omega_1_in_axes3_x -
-            rus_d_2_in_axes3_z*rus_omega_1_in_axes3_y*rus_omega_1_in_axes3_y;
-        /* (rus-rel) acceleration of the connection point left to the joint accelerations */
-        const real rus_rel_in_axes3_x = rus_S_ddot_in_axes3_x - rus_bias_in_axes3_x;
-        const real rus_rel_in_axes3_y = rus_S_ddot_in_axes3_y - rus_bias_in_axes3_y;
-        const real rus_rel_in_axes3_z = rus_S_ddot_in_axes3_z - rus_bias_in_axes3_z;
-        /* (rus-qdd_1) acceleration of joint 1 */
-        const real rus_qdd_1_t = inv_rus_v_1_t_2*rus_rel_in_axes3_x;
-        /* (rus-qdd_3) acceleration of joint 3 */
-        const real rus_qdd_3_t = rus_w_3_in_axes3_y*(-rus_rel_in_axes3_y -
-            rus_qdd_1_t*rus_v_1_in_axes3_y);
-        /* (rus-alpha_2) angular acceleration of link 2 */
-        const real rus_alpha_2_in_axes2_z = rus_w_2_in_axes3_z*(rus_rel_in_axes3_z +
-            rus_qdd_1_t*rus_v_1_in_axes3_z) - rus_qdd_1_t;
-        const real rus_alpha_2_in_axes3_x = rus_alpha_2_in_axes2_z*rus_s_3;
-        const real rus_alpha_2_in_axes3_y = rus_alpha_2_in_axes2_z*rus_c_3;
-        /* (rus-alpha_3) angular acceleration of link 3 */
-        const real rus_alpha_3_in_axes3_x = rus_W_3_in_axes3_yz + rus_alpha_2_in_axes3_x;
-        const real rus_alpha_3_in_axes3_y = rus_alpha_2_in_axes3_y - rus_W_3_in_axes3_xz;
-        /* (rus-B_3) acceleration tensor of link 3 */
-        const real rus_B_3_in_axes3_xy = rus_W_3_in_axes3_xy + rus_qdd_3_t;
-        const real rus_B_3_in_axes3_yx = rus_W_3_in_axes3_xy - rus_qdd_3_t;
-        const real rus_B_3_in_axes3_zx = rus_W_3_in_axes3_xz - rus_alpha_3_in_axes3_y;
-        const real rus_B_3_in_axes3_zy = rus_W_3_in_axes3_yz + rus_alpha_3_in_axes3_x;
-        /* (rus-acc_3) acceleration of the reference point of link 3, less gravity */
-        const real gravity_x = m->gravity_x;
-        const real gravity_y = m->gravity_y;
-        const real gravity_z = m->gravity_z;
-        const real rus_acc_3_in_axes3_x = rus_S_ddot_in_axes3_x - axis_x_rus_axes3_x*gravity_x -
-            axis_x_rus_axes3_y*gravity_y - axis_x_rus_axes3_z*gravity_z;
-        const real rus_acc_3_in_axes3_y = rus_S_ddot_in_axes3_y - axis_y_rus_axes3_x*gravity_x -
-            axis_y_rus_axes3_y*gravity_y - axis_y_rus_axes3_z*gravity_z;
-        const real rus_acc_3_in_axes3_z = rus_S_ddot_in_axes3_z - axis_z_rus_axes3_x*gravity_x -
-            axis_z_rus_axes3_y*gravity_y - axis_z_rus_axes3_z*gravity_z;
-        /* (rus-mu_3) inertia moment of the links that turn with link 3, about their reference points */
-        const real rus_mu_3_t = rus_omega_2_in_axes3_x*rus_omega_2_in_axes3_x;
-        const real rus_mu_3_t_2 = rus_omega_2_in_axes3_y*rus_omega_2_in_axes3_y;
-        const real rus_mu_3_t_3 = rus_qd_3*rus_qd_3;
-        const real rus_J_3_in_spec3_xy = m->rus_J_3_in_spec3_xy[i];
-        const real rus_J_3_in_spec3_xz = m->rus_J_3_in_spec3_xz[i];
-        const real rus_J_3_in_spec3_yz = m->rus_J_3_in_spec3_yz[i];
-        const real rus_Sigma_3_in_axes3_yy = m->rus_Sigma_3_in_axes3_yy[i];
-        const real rus_Sigma_3_in_axes3_zz = m->rus_Sigma_3_in_axes3_zz[i];
-        const real rus_h_3_in_spec3_y = m->rus_h_3_in_spec3_y[i];
-        const real rus_h_3_in_spec3_z = m->rus_h_3_in_spec3_z[i];
-        const real rus_mu_3_in_axes3_x = rus_B_3_in_axes3_yx*rus_J_3_in_spec3_xy +
-            rus_B_3_in_axes3_zx*rus_J_3_in_spec3_xz + rus_B_3_in_axes3_zy*rus_Sigma_3_in_axes3_yy
-            + rus_Sigma_3_in_axes3_zz*rus_alpha_2_in_axes3_x - rus_J_3_in_spec3_yz*(rus_mu_3_t_2 -
-            rus_mu_3_t_3) - rus_acc_3_in_axes3_y*rus_h_3_in_spec3_y -
-            rus_acc_3_in_axes3_z*rus_h_3_in_spec3_z;
-        const real rus_Sigma_3_in_axes3_xx = m->rus_Sigma_3_in_axes3_xx[i];
-        const real rus_h_3_in_spec3_x = m->rus_h_3_in_spec3_x[i];
-        const real rus_mu_3_in_axes3_y = rus_B_3_in_axes3_xy*rus_J_3_in_spec3_yz +
-            rus_Sigma_3_in_axes3_zz*rus_alpha_2_in_axes3_y +
-            rus_acc_3_in_axes3_x*rus_h_3_in_spec3_y - rus_B_3_in_axes3_zx*rus_Sigma_3_in_axes3_xx
-            - rus_B_3_in_axes3_zy*rus_J_3_in_spec3_xz - rus_J_3_in_spec3_xy*(rus_mu_3_t -
-            rus_mu_3_t_3) - rus_acc_3_in_axes3_z*rus_h_3_in_spec3_x;
-        const real rus_mu_3_in_axes3_z = rus_B_3_in_axes3_yx*rus_Sigma_3_in_axes3_xx +
-            rus_J_3_in_spec3_xy*rus_alpha_2_in_axes3_x + rus_acc_3_in_axes3_x*rus_h_3_in_spec3_z +
-            rus_acc_3_in_axes3_y*rus_h_3_in_spec3_x - rus_B_3_in_axes3_xy*rus_Sigma_3_in_axes3_yy
-            - rus_J_3_in_spec3_xz*(rus_mu_3_t - rus_mu_3_t_2) -
-            rus_J_3_in_spec3_yz*rus_alpha_2_in_axes3_y;
-        const real rus_mu_3_in_axes1_z = rus_c_3*rus_mu_3_in_axes3_y +
-            rus_mu_3_in_axes3_x*rus_s_3;
-        /* (rus-mu_1) inertia moment of the links that turn with link 1, about their reference points */
-        const real rus_J_1_in_spec1_zz = m->rus_J_1_in_spec1_zz[i];
-        const real rus_h_1_in_spec1_x = m->rus_h_1_in_spec1_x[i];
-        const real rus_h_1_in_spec1_y = m->rus_h_1_in_spec1_y[i];
-        const real rus_mu_1_t = m->rus_mu_1_t[i];
-        const real rus_mu_1_t_2 = m->rus_mu_1_t_2[i];
-        const real rus_mu_1_in_axes1_z = rus_h_1_in_spec1_y*(rus_c_1*rus_mu_1_t +
-            rus_mu_1_t_2*rus_s_1) - rus_J_1_in_spec1_zz*rus_qdd_1_t -
-            rus_h_1_in_spec1_x*(rus_c_1*rus_mu_1_t_2 - rus_mu_1_t*rus_s_1);
-        /* (rus-N_1) moment about joint 1 of the links from 1 outwards, the force at the connection point
-           left out */
-        const real rus_N_1_in_axes1_z = rus_mu_1_in_axes1_z + rus_mu_3_in_axes1_z;
-        /* (rus-G) force at the connection point that balances the leg's inertia and weight along all
-           degrees of freedom */
-        const real rus_G_in_axes3_z = rus_mu_3_in_axes1_z*rus_w_2_in_axes3_z;
-        const real rus_G_in_axes3_y = rus_mu_3_in_axes3_z*rus_w_3_in_axes3_y;
+        values_rus v;
+        stage_rus_X(m, w, i, j, X, &v);
+        stage_rus_legs_required(m, w, i, j, V, A, &v);
         /* (rus-c) leg force on the platform without actuation and without the mass at the connection
            point */
-        const real rus_c_in_axes3_x = inv_rus_v_1_t_2*(rus_N_1_in_axes1_z -
-            rus_G_in_axes3_y*rus_v_1_in_axes3_y - rus_G_in_axes3_z*rus_v_1_in_axes3_z) +
-            rus_B_3_in_axes3_xy*rus_h_3_in_spec3_z + rus_h_3_in_spec3_x*(rus_mu_3_t_2 +
-            rus_mu_3_t_3) - rus_alpha_2_in_axes3_y*rus_h_3_in_spec3_y;
-        const real rus_c_in_axes3_y = rus_alpha_2_in_axes3_x*rus_h_3_in_spec3_y - rus_G_in_axes3_y
-            - rus_B_3_in_axes3_yx*rus_h_3_in_spec3_x - rus_h_3_in_spec3_z*(rus_mu_3_t +
-            rus_mu_3_t_3);
-        const real rus_c_in_axes3_z = rus_B_3_in_axes3_zy*rus_h_3_in_spec3_z +
-            rus_h_3_in_spec3_y*(rus_mu_3_t + rus_mu_3_t_2) - rus_G_in_axes3_z -
-            rus_B_3_in_axes3_zx*rus_h_3_in_spec3_x;
-        const real rus_c_x = axis_x_rus_axes3_x*rus_c_in_axes3_x +
-            axis_y_rus_axes3_x*rus_c_in_axes3_y + axis_z_rus_axes3_x*rus_c_in_axes3_z;
-        const real rus_c_y = axis_x_rus_axes3_y*rus_c_in_axes3_x +
-            axis_y_rus_axes3_y*rus_c_in_axes3_y + axis_z_rus_axes3_y*rus_c_in_axes3_z;
-        const real rus_c_z = axis_x_rus_axes3_z*rus_c_in_axes3_x +
-            axis_y_rus_axes3_z*rus_c_in_axes3_y + axis_z_rus_axes3_z*rus_c_in_axes3_z;
+        const real rus_c_x = v.axis_x_rus_axes3_x*v.rus_c_in_axes3_x +
+            v.axis_y_rus_axes3_x*v.rus_c_in_axes3_y + v.axis_z_rus_axes3_x*v.rus_c_in_axes3_z;
+        const real rus_c_y = v.axis_x_rus_axes3_y*v.rus_c_in_axes3_x +
+            v.axis_y_rus_axes3_y*v.rus_c_in_axes3_y + v.axis_z_rus_axes3_y*v.rus_c_in_axes3_z;
+        const real rus_c_z = v.axis_x_rus_axes3_z*v.rus_c_in_axes3_x +
+            v.axis_y_rus_axes3_z*v.rus_c_in_axes3_y + v.axis_z_rus_axes3_z*v.rus_c_in_axes3_z;
         /* (R_t) force that actuators and external wrench must give */
         gather(&terms[0*count + k], add, rus_c_x);  /* R_t_x_of_legs */
         gather(&terms[1*count + k], add, rus_c_y);  /* R_t_y_of_legs */
         gather(&terms[2*count + k], add, rus_c_z);  /* R_t_z_of_legs */
         /* (rus-w_1) reciprocal vector 1 */
-        o[0*count + k] = -rus_w_1_t_7;
-        o[1*count + k] = -rus_w_1_t_8;
-        o[2*count + k] = -rus_w_1_t_9;
+        o[0*count + k] = -v.rus_w_1_t_7;
+        o[1*count + k] = -v.rus_w_1_t_8;
+        o[2*count + k] = -v.rus_w_1_t_9;
         const real rus_rho2_1_t = m->rus_rho2_1_t[i];
         const real rus_size_t_3 = m->rus_size_t_3[i];
         const real rus_size = m->rus_size[i];
-        o[4*count + k] = UNLESS(magnitude(rus_rho2_1) > TOLERANCE*TOLERANCE*rus_rho2_1_t) +
-            UNLESS(magnitude(rus_rho2_2) > TOLERANCE*TOLERANCE*rus_size_t_3) +
-            UNLESS(magnitude(rus_r_1_t) > TOLERANCE*rus_size) + UNLESS(magnitude(rus_v_1_t_2) >
-            TOLERANCE*rus_size);
-        o[3*count + k] = UNLESS(rus_disc_1 >= 0);
+        o[4*count + k] = UNLESS(magnitude(v.rus_rho2_1) > TOLERANCE*TOLERANCE*rus_rho2_1_t) +
+            UNLESS(magnitude(v.rus_rho2_2) > TOLERANCE*TOLERANCE*rus_size_t_3) +
+            UNLESS(magnitude(v.rus_r_1_t) > TOLERANCE*rus_size) + UNLESS(magnitude(v.rus_v_1_t_2)
+            > TOLERANCE*rus_size);
+        o[3*count + k] = UNLESS(v.rus_disc_1 >= 0);
     }
 }
 
@@ -2799,7 +2541,7 @@ INLINE void required_place_rus(size_t w, size_t count, const real *o, size_t leg
     real *H, verdict *t)
 {
     for (size_t k = 0; k < w; ++k) {
-        H[(0*NU + leg)*w + k] = o[0*count + first + k];
+        H[leg*w + k] = o[0*count + first + k];
         H[(NU + leg)*w + k] = o[1*count + first + k];
         H[(2*NU + leg)*w + k] = o[2*count + first + k];
         t->unreachable[k] += o[3*count + first + k];
@@ -2812,13 +2554,13 @@ INLINE void required_after(size_t w, const real *s, const real *sums, real *requ
     for (size_t k = 0; k < w; ++k) {
         /* (R_t) force that actuators and external wrench must give */
         const real R_t_x_of_legs = sums[0*w + k];
-        const real f_p_x = s[9*w + k];
+        const real f_p_x = s[0*w + k];
         const real R_t_x = f_p_x - R_t_x_of_legs;
         const real R_t_y_of_legs = sums[1*w + k];
-        const real f_p_y = s[10*w + k];
+        const real f_p_y = s[1*w + k];
         const real R_t_y = f_p_y - R_t_y_of_legs;
         const real R_t_z_of_legs = sums[2*w + k];
-        const real f_p_z = s[11*w + k];
+        const real f_p_z = s[2*w + k];
         const real R_t_z = f_p_z - R_t_z_of_legs;
         /* (R_t) force that actuators and external wrench must give */
         required[0*w + k] = R_t_x;
@@ -2830,12 +2572,10 @@ INLINE void required_after(size_t w, const real *s, const real *sums, real *requ
 INLINE void required_run(const prepared *m, const real *X, const real *V, const real *A, real
     *required, real *H, verdict *t)
 {
-    real s[12] = {0};
-    real sums[3] = {0};
-    real terms_rus[3*LEGS(LEGS_OF_rus)] = {0};
-    real o_rus[5*LEGS(LEGS_OF_rus)] = {0};
-    required_before(m, 1, X, V, A, s);
-    required_legs_rus(m, 1, 0, 1, s, 0, LEGS(LEGS_OF_rus), 0, terms_rus, o_rus);
+    real s[3] = {0}, sums[3] = {0};
+    real terms_rus[3*LEGS(LEGS_OF_rus)] = {0}, o_rus[5*LEGS(LEGS_OF_rus)] = {0};
+    required_before(m, 1, A, s);
+    required_legs_rus(m, 1, 0, 1, 0, LEGS(LEGS_OF_rus), 0, X, V, A, terms_rus, o_rus);
     for (size_t leg = 0; leg < LEGS_OF_rus; ++leg) {
         required_place_rus(1, LEGS(LEGS_OF_rus), o_rus, leg, leg, H, t);
     }
@@ -2848,114 +2588,47 @@ INLINE void required_run(const prepared *m, const real *X, const real *V, const 
 INLINE void required_run_lanes(const prepared *m, const real *X, const real *V, const real *A,
     real *required, real *H, verdict *t)
 {
-    real s[12*LANES];
-    real sums[3*LANES];
+    real s[3*LANES], sums[3*LANES];
     real o_rus[5*LANES];
-    required_before(m, LANES, X, V, A, s);
+    required_before(m, LANES, A, s);
     clear(sums, 3*LANES);
     for (size_t leg = 0; leg < LEGS_OF_rus; ++leg) {
-        required_legs_rus(m, LANES, leg, 0, s, 1, LANES, 1, sums, o_rus);
+        required_legs_rus(m, LANES, leg, 0, 1, LANES, 1, X, V, A, sums, o_rus);
         required_place_rus(LANES, LANES, o_rus, leg, 0, H, t);
     }
     required_after(LANES, s, sums, required);
 }
 
 /* ---- inverse_kinematics ---- */
-INLINE void inverse_kinematics_before(size_t w, const real *X, real *s)
+INLINE void inverse_kinematics_before()
 {
-    for (size_t k = 0; k < w; ++k) {
-        /* X: named entries */
-        const real X_0 = X[0*w + k];
-        const real t_x = X_0;
-        const real X_1 = X[1*w + k];
-        const real t_y = X_1;
-        const real X_2 = X[2*w + k];
-        const real t_z = X_2;
-        s[0*w + k] = t_x;
-        s[1*w + k] = t_y;
-        s[2*w + k] = t_z;
-    }
 }
 
 INLINE void inverse_kinematics_legs_rus(const prepared *m, size_t w, size_t leg, size_t legs,
-    const real *s, size_t states, size_t count, real *o)
+    size_t states, size_t count, const real *X, real *o)
 {
     for (size_t k = 0; k < count; ++k) {
         const size_t i = leg + legs*k;
         const size_t j = states*k;
-        /* (rus-S) from the base point to the connection point */
-        const real rus_base_point_x = m->rus_base_point_x[i];
-        const real rus_platform_point_x = m->rus_platform_point_x[i];
-        const real t_x = s[0*w + j];
-        const real rus_S_x = rus_platform_point_x + t_x - rus_base_point_x;
-        const real rus_base_point_y = m->rus_base_point_y[i];
-        const real rus_platform_point_y = m->rus_platform_point_y[i];
-        const real t_y = s[1*w + j];
-        const real rus_S_y = rus_platform_point_y + t_y - rus_base_point_y;
-        const real rus_base_point_z = m->rus_base_point_z[i];
-        const real rus_platform_point_z = m->rus_platform_point_z[i];
-        const real t_z = s[2*w + j];
-        const real rus_S_z = rus_platform_point_z + t_z - rus_base_point_z;
-        /* (rus-Kd_1) projection on the centre's direction, from the distance fixed by the joints beyond
-           joint 1 */
-        const real rus_Kd_1_t = rus_S_x*rus_S_x + rus_S_y*rus_S_y + rus_S_z*rus_S_z;
-        const real rus_J_3_t = m->rus_J_3_t[i];
-        const real rus_J_3_t_2 = m->rus_J_3_t_2[i];
-        const real rus_Kd_1 = rus_J_3_t + R(0.5)*rus_Kd_1_t - rus_J_3_t_2;
-        /* (rus-px_1) component along the reference direction */
-        const real rus_base_frame_xx = m->rus_base_frame_xx[i];
-        const real rus_base_frame_yx = m->rus_base_frame_yx[i];
-        const real rus_base_frame_zx = m->rus_base_frame_zx[i];
-        const real rus_px_1 = rus_S_x*rus_base_frame_xx + rus_S_y*rus_base_frame_yx +
-            rus_S_z*rus_base_frame_zx;
-        /* (rus-py_1) component across the reference direction */
-        const real rus_base_frame_xy = m->rus_base_frame_xy[i];
-        const real rus_base_frame_yy = m->rus_base_frame_yy[i];
-        const real rus_base_frame_zy = m->rus_base_frame_zy[i];
-        const real rus_py_1 = rus_S_x*rus_base_frame_xy + rus_S_y*rus_base_frame_yy +
-            rus_S_z*rus_base_frame_zy;
-        /* (rus-Kc_1) factor of the cosine in the equation of joint 1 */
-        const real rus_joint2_offset_x = m->rus_joint2_offset_x[i];
-        const real rus_Kc_1 = rus_joint2_offset_x*rus_px_1;
-        /* (rus-Ks_1) factor of the sine in the equation of joint 1 */
-        const real rus_Ks_1 = rus_joint2_offset_x*rus_py_1;
-        /* (rus-rho2_1) squared amplitude */
-        const real rus_rho2_1 = rus_Kc_1*rus_Kc_1 + rus_Ks_1*rus_Ks_1;
-        /* (rus-disc_1) discriminant */
-        const real rus_disc_1 = rus_rho2_1 - rus_Kd_1*rus_Kd_1;
-        /* (rus-root_1) root, with the sign of the branch */
-        const real rus_branch_1 = m->rus_branch_1[i];
-        const real rus_root_1 = rus_branch_1*root(rus_disc_1);
+        values_rus v;
+        stage_rus_X(m, w, i, j, X, &v);
         /* (rus-q_1) displacement of joint 1 */
-        const real inv_rus_rho2_1 = 1/rus_rho2_1;
-        const real rus_q_1 = angle(inv_rus_rho2_1*(rus_Kc_1*rus_root_1 + rus_Kd_1*rus_Ks_1),
-            inv_rus_rho2_1*(rus_Kc_1*rus_Kd_1 - rus_Ks_1*rus_root_1));
-        /* (rus-xi_1) the vector from joint 1 to the connection point, resolved along link 1 */
-        const real inv_rus_size_t = m->inv_rus_size_t[i];
-        const real rus_xi_1_t = inv_rus_size_t*rus_joint2_offset_x*rus_root_1;
+        const real rus_q_1 = angle(v.inv_rus_rho2_1*(v.rus_Kc_1*v.rus_root_1 +
+            v.rus_Kd_1*v.rus_Ks_1), v.inv_rus_rho2_1*(v.rus_Kc_1*v.rus_Kd_1 -
+            v.rus_Ks_1*v.rus_root_1));
+        /* (rus-q_2) displacement of joint 2 */
+        const real rus_q_2 = angle(-v.inv_rus_rho2_2*v.rus_root_2*v.rus_xi_1_t,
+            v.inv_rus_rho2_2*v.rus_root_2*v.rus_x_2_in_axes1_x);
+        /* (rus-q_3) displacement of joint 3 */
+        const real inv_rus_size_t_2 = m->inv_rus_size_t_2[i];
         const real rus_base_frame_xz = m->rus_base_frame_xz[i];
         const real rus_base_frame_yz = m->rus_base_frame_yz[i];
         const real rus_base_frame_zz = m->rus_base_frame_zz[i];
-        const real rus_xi_1_in_axes1_z = rus_S_x*rus_base_frame_xz + rus_S_y*rus_base_frame_yz +
-            rus_S_z*rus_base_frame_zz;
-        /* (rus-x_2) from the origin of joint 2 to the connection point */
-        const real rus_x_2_in_axes1_x = inv_rus_size_t*rus_Kd_1*rus_joint2_offset_x -
-            rus_joint2_offset_x;
-        /* (rus-rho2_2) squared amplitude */
-        const real rus_rho2_2 = rus_x_2_in_axes1_x*rus_x_2_in_axes1_x + rus_xi_1_t*rus_xi_1_t;
-        /* (rus-root_2) root, with the sign of the branch */
-        const real rus_branch_2 = m->rus_branch_2[i];
-        const real rus_root_2 = rus_branch_2*root(rus_rho2_2);
-        /* (rus-q_2) displacement of joint 2 */
-        const real inv_rus_rho2_2 = 1/rus_rho2_2;
-        const real rus_q_2 = angle(-inv_rus_rho2_2*rus_root_2*rus_xi_1_t,
-            inv_rus_rho2_2*rus_root_2*rus_x_2_in_axes1_x);
-        /* (rus-q_3) displacement of joint 3 */
-        const real inv_rus_size_t_2 = m->inv_rus_size_t_2[i];
         const real rus_platform_joint_offset_x = m->rus_platform_joint_offset_x[i];
         const real rus_q_3 =
-            angle(-inv_rus_size_t_2*rus_platform_joint_offset_x*rus_xi_1_in_axes1_z,
-            inv_rus_size_t_2*rus_platform_joint_offset_x*rus_root_2);
+            angle(-inv_rus_size_t_2*rus_platform_joint_offset_x*(v.rus_S_x*rus_base_frame_xz +
+            v.rus_S_y*rus_base_frame_yz + v.rus_S_z*rus_base_frame_zz),
+            inv_rus_size_t_2*rus_platform_joint_offset_x*v.rus_root_2);
         /* (rus-q_1) displacement of joint 1 */
         o[0*count + k] = rus_q_1;
         /* (rus-q_2) displacement of joint 2 */
@@ -2965,9 +2638,9 @@ INLINE void inverse_kinematics_legs_rus(const prepared *m, size_t w, size_t leg,
         o[5*count + k] = rus_q_1 + (rus_q_2 + rus_q_3);
         const real rus_rho2_1_t = m->rus_rho2_1_t[i];
         const real rus_size_t_3 = m->rus_size_t_3[i];
-        o[4*count + k] = UNLESS(magnitude(rus_rho2_1) > TOLERANCE*TOLERANCE*rus_rho2_1_t) +
-            UNLESS(magnitude(rus_rho2_2) > TOLERANCE*TOLERANCE*rus_size_t_3);
-        o[3*count + k] = UNLESS(rus_disc_1 >= 0);
+        o[4*count + k] = UNLESS(magnitude(v.rus_rho2_1) > TOLERANCE*TOLERANCE*rus_rho2_1_t) +
+            UNLESS(magnitude(v.rus_rho2_2) > TOLERANCE*TOLERANCE*rus_size_t_3);
+        o[3*count + k] = UNLESS(v.rus_disc_1 >= 0);
     }
 }
 
@@ -2986,10 +2659,9 @@ INLINE void inverse_kinematics_place_rus(size_t w, size_t count, const real *o, 
 
 INLINE void inverse_kinematics_run(const prepared *m, const real *X, real *q, verdict *t)
 {
-    real s[3] = {0};
     real o_rus[6*LEGS(LEGS_OF_rus)] = {0};
-    inverse_kinematics_before(1, X, s);
-    inverse_kinematics_legs_rus(m, 1, 0, 1, s, 0, LEGS(LEGS_OF_rus), o_rus);
+    inverse_kinematics_before();
+    inverse_kinematics_legs_rus(m, 1, 0, 1, 0, LEGS(LEGS_OF_rus), X, o_rus);
     for (size_t leg = 0; leg < LEGS_OF_rus; ++leg) {
         inverse_kinematics_place_rus(1, LEGS(LEGS_OF_rus), o_rus, leg, leg, q, t);
     }
@@ -2997,185 +2669,88 @@ INLINE void inverse_kinematics_run(const prepared *m, const real *X, real *q, ve
 
 INLINE void inverse_kinematics_run_lanes(const prepared *m, const real *X, real *q, verdict *t)
 {
-    real s[3*LANES];
     real o_rus[6*LANES];
-    inverse_kinematics_before(LANES, X, s);
+    inverse_kinematics_before();
     for (size_t leg = 0; leg < LEGS_OF_rus; ++leg) {
-        inverse_kinematics_legs_rus(m, LANES, leg, 0, s, 1, LANES, o_rus);
+        inverse_kinematics_legs_rus(m, LANES, leg, 0, 1, LANES, X, o_rus);
         inverse_kinematics_place_rus(LANES, LANES, o_rus, leg, 0, q, t);
     }
 }
 
 /* ---- joint_rates ---- */
-INLINE void joint_rates_before(size_t w, const real *X, const real *V, real *s)
+INLINE void joint_rates_before()
 {
-    for (size_t k = 0; k < w; ++k) {
-        /* X: named entries */
-        const real X_0 = X[0*w + k];
-        const real t_x = X_0;
-        const real X_1 = X[1*w + k];
-        const real t_y = X_1;
-        const real X_2 = X[2*w + k];
-        const real t_z = X_2;
-        /* V: named entries */
-        const real V_0 = V[0*w + k];
-        const real t_dot_x = V_0;
-        const real V_1 = V[1*w + k];
-        const real t_dot_y = V_1;
-        const real V_2 = V[2*w + k];
-        const real t_dot_z = V_2;
-        s[0*w + k] = t_x;
-        s[1*w + k] = t_y;
-        s[2*w + k] = t_z;
-        s[3*w + k] = t_dot_x;
-        s[4*w + k] = t_dot_y;
-        s[5*w + k] = t_dot_z;
-    }
 }
 
-INLINE void joint_rates_legs_rus(const prepared *m, size_t w, size_t leg, size_t legs, const real
-    *s, size_t states, size_t count, real *o)
+INLINE void joint_rates_legs_rus(const prepared *m, size_t w, size_t leg, size_t legs, size_t
+    states, size_t count, const real *X, const real *V, real *o)
 {
     for (size_t k = 0; k < count; ++k) {
         const size_t i = leg + legs*k;
         const size_t j = states*k;
-        /* (rus-S) from the base point to the connection point */
-        const real rus_base_point_x = m->rus_base_point_x[i];
-        const real rus_platform_point_x = m->rus_platform_point_x[i];
-        const real t_x = s[0*w + j];
-        const real rus_S_x = rus_platform_point_x + t_x - rus_base_point_x;
-        const real rus_base_point_y = m->rus_base_point_y[i];
-        const real rus_platform_point_y = m->rus_platform_point_y[i];
-        const real t_y = s[1*w + j];
-        const real rus_S_y = rus_platform_point_y + t_y - rus_base_point_y;
-        const real rus_base_point_z = m->rus_base_point_z[i];
-        const real rus_platform_point_z = m->rus_platform_point_z[i];
-        const real t_z = s[2*w + j];
-        const real rus_S_z = rus_platform_point_z + t_z - rus_base_point_z;
-        /* (rus-Kd_1) projection on the centre's direction, from the distance fixed by the joints beyond
-           joint 1 */
-        const real rus_Kd_1_t = rus_S_x*rus_S_x + rus_S_y*rus_S_y + rus_S_z*rus_S_z;
-        const real rus_J_3_t = m->rus_J_3_t[i];
-        const real rus_J_3_t_2 = m->rus_J_3_t_2[i];
-        const real rus_Kd_1 = rus_J_3_t + R(0.5)*rus_Kd_1_t - rus_J_3_t_2;
-        /* (rus-px_1) component along the reference direction */
-        const real rus_base_frame_xx = m->rus_base_frame_xx[i];
-        const real rus_base_frame_yx = m->rus_base_frame_yx[i];
-        const real rus_base_frame_zx = m->rus_base_frame_zx[i];
-        const real rus_px_1 = rus_S_x*rus_base_frame_xx + rus_S_y*rus_base_frame_yx +
-            rus_S_z*rus_base_frame_zx;
-        /* (rus-py_1) component across the reference direction */
-        const real rus_base_frame_xy = m->rus_base_frame_xy[i];
-        const real rus_base_frame_yy = m->rus_base_frame_yy[i];
-        const real rus_base_frame_zy = m->rus_base_frame_zy[i];
-        const real rus_py_1 = rus_S_x*rus_base_frame_xy + rus_S_y*rus_base_frame_yy +
-            rus_S_z*rus_base_frame_zy;
-        /* (rus-Kc_1) factor of the cosine in the equation of joint 1 */
-        const real rus_joint2_offset_x = m->rus_joint2_offset_x[i];
-        const real rus_Kc_1 = rus_joint2_offset_x*rus_px_1;
-        /* (rus-Ks_1) factor of the sine in the equation of joint 1 */
-        const real rus_Ks_1 = rus_joint2_offset_x*rus_py_1;
-        /* (rus-rho2_1) squared amplitude */
-        const real rus_rho2_1 = rus_Kc_1*rus_Kc_1 + rus_Ks_1*rus_Ks_1;
-        /* (rus-disc_1) discriminant */
-        const real rus_disc_1 = rus_rho2_1 - rus_Kd_1*rus_Kd_1;
-        /* (rus-root_1) root, with the sign of the branch */
-        const real rus_branch_1 = m->rus_branch_1[i];
-        const real rus_root_1 = rus_branch_1*root(rus_disc_1);
-        /* (rus-c_1) cosine of the angle of joint 1 from its reference direction */
-        const real inv_rus_rho2_1 = 1/rus_rho2_1;
-        const real rus_c_1 = inv_rus_rho2_1*(rus_Kc_1*rus_Kd_1 - rus_Ks_1*rus_root_1);
-        /* (rus-s_1) sine of the angle of joint 1 from its reference direction */
-        const real rus_s_1 = inv_rus_rho2_1*(rus_Kc_1*rus_root_1 + rus_Kd_1*rus_Ks_1);
-        /* (rus-xi_1) the vector from joint 1 to the connection point, resolved along link 1 */
-        const real inv_rus_size_t = m->inv_rus_size_t[i];
-        const real rus_xi_1_t = inv_rus_size_t*rus_joint2_offset_x*rus_root_1;
-        const real rus_base_frame_xz = m->rus_base_frame_xz[i];
-        const real rus_base_frame_yz = m->rus_base_frame_yz[i];
-        const real rus_base_frame_zz = m->rus_base_frame_zz[i];
-        const real rus_xi_1_in_axes1_z = rus_S_x*rus_base_frame_xz + rus_S_y*rus_base_frame_yz +
-            rus_S_z*rus_base_frame_zz;
-        /* (rus-x_2) from the origin of joint 2 to the connection point */
-        const real rus_x_2_in_axes1_x = inv_rus_size_t*rus_Kd_1*rus_joint2_offset_x -
-            rus_joint2_offset_x;
-        /* (rus-rho2_2) squared amplitude */
-        const real rus_rho2_2 = rus_x_2_in_axes1_x*rus_x_2_in_axes1_x + rus_xi_1_t*rus_xi_1_t;
-        /* (rus-root_2) root, with the sign of the branch */
-        const real rus_branch_2 = m->rus_branch_2[i];
-        const real rus_root_2 = rus_branch_2*root(rus_rho2_2);
-        /* (rus-c_2) cosine of the angle of joint 2 from its reference direction */
-        const real inv_rus_rho2_2 = 1/rus_rho2_2;
-        const real rus_c_2 = inv_rus_rho2_2*rus_root_2*rus_xi_1_t;
-        /* (rus-s_2) sine of the angle of joint 2 from its reference direction */
-        const real rus_s_2 = inv_rus_rho2_2*rus_root_2*rus_x_2_in_axes1_x;
-        /* (rus-c_3) cosine of the angle of joint 3 from its reference direction */
-        const real inv_rus_size_t_2 = m->inv_rus_size_t_2[i];
-        const real rus_platform_joint_offset_x = m->rus_platform_joint_offset_x[i];
-        const real rus_c_3 = -inv_rus_size_t_2*rus_platform_joint_offset_x*rus_root_2;
-        /* (rus-s_3) sine of the angle of joint 3 from its reference direction */
-        const real rus_s_3 = inv_rus_size_t_2*rus_platform_joint_offset_x*rus_xi_1_in_axes1_z;
-        /* (rus-r_1) from joint 1 to the connection point, along the links */
-        const real rus_r_1_t = -rus_c_3*rus_platform_joint_offset_x;
-        const real rus_r_1_in_axes1_z = rus_platform_joint_offset_x*rus_s_3;
-        const real rus_r_1_t_2 = rus_c_2*rus_r_1_t;
-        const real rus_r_1_in_axes1_x = rus_joint2_offset_x + rus_r_1_t*rus_s_2;
-        const real rus_r_1_in_axes3_z = rus_c_2*rus_r_1_in_axes1_x - rus_r_1_t_2*rus_s_2;
+        values_rus v;
+        stage_rus_X(m, w, i, j, X, &v);
         /* (rus-v_1) velocity of the connection point per rate of joint 1 */
-        const real rus_v_1_t = -rus_c_3*rus_r_1_in_axes3_z;
+        const real rus_v_1_t = v.rus_c_3*v.rus_r_1_in_axes3_z;
         /* (rus-qd_1) rate of joint 1 */
-        const real rus_qd_1_t = rus_c_1*rus_c_2 - rus_s_1*rus_s_2;
-        const real rus_qd_1_t_2 = rus_c_1*rus_s_2 + rus_c_2*rus_s_1;
-        const real axis_z_rus_axes3_x = rus_base_frame_xx*rus_qd_1_t +
-            rus_base_frame_xy*rus_qd_1_t_2;
-        const real axis_z_rus_axes3_y = rus_base_frame_yx*rus_qd_1_t +
-            rus_base_frame_yy*rus_qd_1_t_2;
-        const real axis_z_rus_axes3_z = rus_base_frame_zx*rus_qd_1_t +
-            rus_base_frame_zy*rus_qd_1_t_2;
-        const real rus_qd_1_t_3 = rus_s_2*rus_s_3;
-        const real rus_qd_1_t_4 = rus_c_2*rus_s_3;
-        const real rus_qd_1_t_5 = rus_c_1*rus_qd_1_t_3 + rus_qd_1_t_4*rus_s_1;
-        const real rus_qd_1_t_6 = rus_qd_1_t_3*rus_s_1 - rus_c_1*rus_qd_1_t_4;
-        const real axis_y_rus_axes3_x = rus_base_frame_xx*rus_qd_1_t_5 +
-            rus_base_frame_xy*rus_qd_1_t_6 + rus_base_frame_xz*rus_c_3;
-        const real axis_y_rus_axes3_y = rus_base_frame_yx*rus_qd_1_t_5 +
-            rus_base_frame_yy*rus_qd_1_t_6 + rus_base_frame_yz*rus_c_3;
-        const real axis_y_rus_axes3_z = rus_base_frame_zx*rus_qd_1_t_5 +
-            rus_base_frame_zy*rus_qd_1_t_6 + rus_base_frame_zz*rus_c_3;
-        const real t_dot_x = s[3*w + j];
-        const real t_dot_y = s[4*w + j];
-        const real t_dot_z = s[5*w + j];
-        const real rus_qd_1 = -(t_dot_x*(axis_y_rus_axes3_y*axis_z_rus_axes3_z -
+        const real rus_base_frame_xx = m->rus_base_frame_xx[i];
+        const real rus_base_frame_xy = m->rus_base_frame_xy[i];
+        const real axis_z_rus_axes3_x = rus_base_frame_xx*v.rus_qd_1_t +
+            rus_base_frame_xy*v.rus_qd_1_t_2;
+        const real rus_base_frame_yx = m->rus_base_frame_yx[i];
+        const real rus_base_frame_yy = m->rus_base_frame_yy[i];
+        const real axis_z_rus_axes3_y = rus_base_frame_yx*v.rus_qd_1_t +
+            rus_base_frame_yy*v.rus_qd_1_t_2;
+        const real rus_base_frame_zx = m->rus_base_frame_zx[i];
+        const real rus_base_frame_zy = m->rus_base_frame_zy[i];
+        const real axis_z_rus_axes3_z = rus_base_frame_zx*v.rus_qd_1_t +
+            rus_base_frame_zy*v.rus_qd_1_t_2;
+        const real rus_base_frame_xz = m->rus_base_frame_xz[i];
+        const real axis_y_rus_axes3_x = rus_base_frame_xx*v.rus_qd_1_t_5 +
+            rus_base_frame_xy*v.rus_qd_1_t_6 - rus_base_frame_xz*v.rus_c_3;
+        const real rus_base_frame_yz = m->rus_base_frame_yz[i];
+        const real axis_y_rus_axes3_y = rus_base_frame_yx*v.rus_qd_1_t_5 +
+            rus_base_frame_yy*v.rus_qd_1_t_6 - rus_base_frame_yz*v.rus_c_3;
+        const real rus_base_frame_zz = m->rus_base_frame_zz[i];
+        const real axis_y_rus_axes3_z = rus_base_frame_zx*v.rus_qd_1_t_5 +
+            rus_base_frame_zy*v.rus_qd_1_t_6 - rus_base_frame_zz*v.rus_c_3;
+        const real t_dot_x = V[0*w + j];
+        const real t_dot_y = V[1*w + j];
+        const real t_dot_z = V[2*w + j];
+        const real rus_qd_1_t_7 = (t_dot_x*(axis_y_rus_axes3_y*axis_z_rus_axes3_z -
             axis_y_rus_axes3_z*axis_z_rus_axes3_y) +
             t_dot_y*(axis_y_rus_axes3_z*axis_z_rus_axes3_x -
             axis_y_rus_axes3_x*axis_z_rus_axes3_z) +
             t_dot_z*(axis_y_rus_axes3_x*axis_z_rus_axes3_y -
             axis_y_rus_axes3_y*axis_z_rus_axes3_x))/rus_v_1_t;
         /* (rus-qd_2) rate of joint 2 */
-        const real rus_qd_2_t = rus_c_2*rus_r_1_t_2 + rus_r_1_in_axes1_x*rus_s_2;
+        const real rus_qd_2_t = v.rus_c_2*v.rus_r_1_in_axes1_x + v.rus_r_1_t_2*v.rus_s_2_t;
         const real rus_qd_2_t_2 = axis_z_rus_axes3_x*t_dot_x + axis_z_rus_axes3_y*t_dot_y +
-            axis_z_rus_axes3_z*t_dot_z - rus_qd_1*(rus_s_3*(rus_c_3*rus_r_1_in_axes1_z +
-            rus_qd_2_t*rus_s_3) - rus_c_3*(rus_r_1_in_axes1_z*rus_s_3 - rus_c_3*rus_qd_2_t));
-        const real rus_qd_2 = rus_qd_2_t_2/rus_r_1_t;
+            axis_z_rus_axes3_z*t_dot_z + rus_qd_1_t_7*(v.rus_c_3*(v.rus_c_3*rus_qd_2_t +
+            v.rus_e_1_in_axes3_x*v.rus_r_1_in_axes1_z) +
+            v.rus_e_1_in_axes3_x*(v.rus_e_1_in_axes3_x*rus_qd_2_t -
+            v.rus_c_3*v.rus_r_1_in_axes1_z));
+        const real rus_qd_2 = rus_qd_2_t_2/v.rus_r_1_t;
         /* (rus-qd_3) rate of joint 3 */
         const real rus_w_3_in_axes3_y = m->rus_w_3_in_axes3_y[i];
         const real rus_qd_3 = rus_w_3_in_axes3_y*(axis_y_rus_axes3_x*t_dot_x +
-            axis_y_rus_axes3_y*t_dot_y + axis_y_rus_axes3_z*t_dot_z +
-            rus_qd_1*rus_r_1_in_axes3_z*rus_s_3);
+            axis_y_rus_axes3_y*t_dot_y + axis_y_rus_axes3_z*t_dot_z -
+            v.rus_e_1_in_axes3_x*rus_qd_1_t_7*v.rus_r_1_in_axes3_z);
         /* (rus-qd_1) rate of joint 1 */
-        o[0*count + k] = rus_qd_1;
+        o[0*count + k] = -rus_qd_1_t_7;
         /* (rus-qd_2) rate of joint 2 */
         o[1*count + k] = rus_qd_2;
         /* (rus-qd_3) rate of joint 3 */
         o[2*count + k] = rus_qd_3;
-        o[5*count + k] = rus_qd_1 + (rus_qd_2 + rus_qd_3);
+        o[5*count + k] = rus_qd_1_t_7 + (rus_qd_2 + rus_qd_3);
         const real rus_rho2_1_t = m->rus_rho2_1_t[i];
         const real rus_size_t_3 = m->rus_size_t_3[i];
         const real rus_size = m->rus_size[i];
-        o[4*count + k] = UNLESS(magnitude(rus_rho2_1) > TOLERANCE*TOLERANCE*rus_rho2_1_t) +
-            UNLESS(magnitude(rus_rho2_2) > TOLERANCE*TOLERANCE*rus_size_t_3) +
-            UNLESS(magnitude(rus_r_1_t) > TOLERANCE*rus_size) + UNLESS(magnitude(rus_v_1_t) >
+        o[4*count + k] = UNLESS(magnitude(v.rus_rho2_1) > TOLERANCE*TOLERANCE*rus_rho2_1_t) +
+            UNLESS(magnitude(v.rus_rho2_2) > TOLERANCE*TOLERANCE*rus_size_t_3) +
+            UNLESS(magnitude(v.rus_r_1_t) > TOLERANCE*rus_size) + UNLESS(magnitude(rus_v_1_t) >
             TOLERANCE*rus_size);
-        o[3*count + k] = UNLESS(rus_disc_1 >= 0);
+        o[3*count + k] = UNLESS(v.rus_disc_1 >= 0);
     }
 }
 
@@ -3194,10 +2769,9 @@ INLINE void joint_rates_place_rus(size_t w, size_t count, const real *o, size_t 
 
 INLINE void joint_rates_run(const prepared *m, const real *X, const real *V, real *qd, verdict *t)
 {
-    real s[6] = {0};
     real o_rus[6*LEGS(LEGS_OF_rus)] = {0};
-    joint_rates_before(1, X, V, s);
-    joint_rates_legs_rus(m, 1, 0, 1, s, 0, LEGS(LEGS_OF_rus), o_rus);
+    joint_rates_before();
+    joint_rates_legs_rus(m, 1, 0, 1, 0, LEGS(LEGS_OF_rus), X, V, o_rus);
     for (size_t leg = 0; leg < LEGS_OF_rus; ++leg) {
         joint_rates_place_rus(1, LEGS(LEGS_OF_rus), o_rus, leg, leg, qd, t);
     }
@@ -3206,212 +2780,91 @@ INLINE void joint_rates_run(const prepared *m, const real *X, const real *V, rea
 INLINE void joint_rates_run_lanes(const prepared *m, const real *X, const real *V, real *qd,
     verdict *t)
 {
-    real s[6*LANES];
     real o_rus[6*LANES];
-    joint_rates_before(LANES, X, V, s);
+    joint_rates_before();
     for (size_t leg = 0; leg < LEGS_OF_rus; ++leg) {
-        joint_rates_legs_rus(m, LANES, leg, 0, s, 1, LANES, o_rus);
+        joint_rates_legs_rus(m, LANES, leg, 0, 1, LANES, X, V, o_rus);
         joint_rates_place_rus(LANES, LANES, o_rus, leg, 0, qd, t);
     }
 }
 
 /* ---- joint_accelerations ---- */
-INLINE void joint_accelerations_before(size_t w, const real *X, const real *V, const real *A, real
-    *s)
+INLINE void joint_accelerations_before()
 {
-    for (size_t k = 0; k < w; ++k) {
-        /* X: named entries */
-        const real X_0 = X[0*w + k];
-        const real t_x = X_0;
-        const real X_1 = X[1*w + k];
-        const real t_y = X_1;
-        const real X_2 = X[2*w + k];
-        const real t_z = X_2;
-        /* V: named entries */
-        const real V_0 = V[0*w + k];
-        const real t_dot_x = V_0;
-        const real V_1 = V[1*w + k];
-        const real t_dot_y = V_1;
-        const real V_2 = V[2*w + k];
-        const real t_dot_z = V_2;
-        /* A: named entries */
-        const real A_0 = A[0*w + k];
-        const real t_ddot_x = A_0;
-        const real A_1 = A[1*w + k];
-        const real t_ddot_y = A_1;
-        const real A_2 = A[2*w + k];
-        const real t_ddot_z = A_2;
-        s[0*w + k] = t_x;
-        s[1*w + k] = t_y;
-        s[2*w + k] = t_z;
-        s[3*w + k] = t_dot_x;
-        s[4*w + k] = t_dot_y;
-        s[5*w + k] = t_dot_z;
-        s[6*w + k] = t_ddot_x;
-        s[7*w + k] = t_ddot_y;
-        s[8*w + k] = t_ddot_z;
-    }
 }
 
 INLINE void joint_accelerations_legs_rus(const prepared *m, size_t w, size_t leg, size_t legs,
-    const real *s, size_t states, size_t count, real *o)
+    size_t states, size_t count, const real *X, const real *V, const real *A, real *o)
 {
     for (size_t k = 0; k < count; ++k) {
         const size_t i = leg + legs*k;
         const size_t j = states*k;
-        /* (rus-S) from the base point to the connection point */
-        const real rus_base_point_x = m->rus_base_point_x[i];
-        const real rus_platform_point_x = m->rus_platform_point_x[i];
-        const real t_x = s[0*w + j];
-        const real rus_S_x = rus_platform_point_x + t_x - rus_base_point_x;
-        const real rus_base_point_y = m->rus_base_point_y[i];
-        const real rus_platform_point_y = m->rus_platform_point_y[i];
-        const real t_y = s[1*w + j];
-        const real rus_S_y = rus_platform_point_y + t_y - rus_base_point_y;
-        const real rus_base_point_z = m->rus_base_point_z[i];
-        const real rus_platform_point_z = m->rus_platform_point_z[i];
-        const real t_z = s[2*w + j];
-        const real rus_S_z = rus_platform_point_z + t_z - rus_base_point_z;
-        /* (rus-Kd_1) projection on the centre's direction, from the distance fixed by the joints beyond
-           joint 1 */
-        const real rus_Kd_1_t = rus_S_x*rus_S_x + rus_S_y*rus_S_y + rus_S_z*rus_S_z;
-        const real rus_J_3_t = m->rus_J_3_t[i];
-        const real rus_J_3_t_2 = m->rus_J_3_t_2[i];
-        const real rus_Kd_1 = rus_J_3_t + R(0.5)*rus_Kd_1_t - rus_J_3_t_2;
-        /* (rus-px_1) component along the reference direction */
-        const real rus_base_frame_xx = m->rus_base_frame_xx[i];
-        const real rus_base_frame_yx = m->rus_base_frame_yx[i];
-        const real rus_base_frame_zx = m->rus_base_frame_zx[i];
-        const real rus_px_1 = rus_S_x*rus_base_frame_xx + rus_S_y*rus_base_frame_yx +
-            rus_S_z*rus_base_frame_zx;
-        /* (rus-py_1) component across the reference direction */
-        const real rus_base_frame_xy = m->rus_base_frame_xy[i];
-        const real rus_base_frame_yy = m->rus_base_frame_yy[i];
-        const real rus_base_frame_zy = m->rus_base_frame_zy[i];
-        const real rus_py_1 = rus_S_x*rus_base_frame_xy + rus_S_y*rus_base_frame_yy +
-            rus_S_z*rus_base_frame_zy;
-        /* (rus-Kc_1) factor of the cosine in the equation of joint 1 */
-        const real rus_joint2_offset_x = m->rus_joint2_offset_x[i];
-        const real rus_Kc_1 = rus_joint2_offset_x*rus_px_1;
-        /* (rus-Ks_1) factor of the sine in the equation of joint 1 */
-        const real rus_Ks_1 = rus_joint2_offset_x*rus_py_1;
-        /* (rus-rho2_1) squared amplitude */
-        const real rus_rho2_1 = rus_Kc_1*rus_Kc_1 + rus_Ks_1*rus_Ks_1;
-        /* (rus-disc_1) discriminant */
-        const real rus_disc_1 = rus_rho2_1 - rus_Kd_1*rus_Kd_1;
-        /* (rus-root_1) root, with the sign of the branch */
-        const real rus_branch_1 = m->rus_branch_1[i];
-        const real rus_root_1 = rus_branch_1*root(rus_disc_1);
-        /* (rus-c_1) cosine of the angle of joint 1 from its reference direction */
-        const real inv_rus_rho2_1 = 1/rus_rho2_1;
-        const real rus_c_1 = inv_rus_rho2_1*(rus_Kc_1*rus_Kd_1 - rus_Ks_1*rus_root_1);
-        /* (rus-s_1) sine of the angle of joint 1 from its reference direction */
-        const real rus_s_1 = inv_rus_rho2_1*(rus_Kc_1*rus_root_1 + rus_Kd_1*rus_Ks_1);
-        /* (rus-xi_1) the vector from joint 1 to the connection point, resolved along link 1 */
-        const real inv_rus_size_t = m->inv_rus_size_t[i];
-        const real rus_xi_1_t = inv_rus_size_t*rus_joint2_offset_x*rus_root_1;
-        const real rus_base_frame_xz = m->rus_base_frame_xz[i];
-        const real rus_base_frame_yz = m->rus_base_frame_yz[i];
-        const real rus_base_frame_zz = m->rus_base_frame_zz[i];
-        const real rus_xi_1_in_axes1_z = rus_S_x*rus_base_frame_xz + rus_S_y*rus_base_frame_yz +
-            rus_S_z*rus_base_frame_zz;
-        /* (rus-x_2) from the origin of joint 2 to the connection point */
-        const real rus_x_2_in_axes1_x = inv_rus_size_t*rus_Kd_1*rus_joint2_offset_x -
-            rus_joint2_offset_x;
-        /* (rus-rho2_2) squared amplitude */
-        const real rus_rho2_2 = rus_x_2_in_axes1_x*rus_x_2_in_axes1_x + rus_xi_1_t*rus_xi_1_t;
-        /* (rus-root_2) root, with the sign of the branch */
-        const real rus_branch_2 = m->rus_branch_2[i];
-        const real rus_root_2 = rus_branch_2*root(rus_rho2_2);
-        /* (rus-c_2) cosine of the angle of joint 2 from its reference direction */
-        const real inv_rus_rho2_2 = 1/rus_rho2_2;
-        const real rus_c_2 = inv_rus_rho2_2*rus_root_2*rus_xi_1_t;
-        /* (rus-s_2) sine of the angle of joint 2 from its reference direction */
-        const real rus_s_2 = inv_rus_rho2_2*rus_root_2*rus_x_2_in_axes1_x;
-        /* (rus-c_3) cosine of the angle of joint 3 from its reference direction */
-        const real inv_rus_size_t_2 = m->inv_rus_size_t_2[i];
-        const real rus_platform_joint_offset_x = m->rus_platform_joint_offset_x[i];
-        const real rus_c_3 = -inv_rus_size_t_2*rus_platform_joint_offset_x*rus_root_2;
-        /* (rus-s_3) sine of the angle of joint 3 from its reference direction */
-        const real rus_s_3 = inv_rus_size_t_2*rus_platform_joint_offset_x*rus_xi_1_in_axes1_z;
-        /* (rus-r_1) from joint 1 to the connection point, along the links */
-        const real rus_r_1_t = -rus_c_3*rus_platform_joint_offset_x;
-        const real rus_r_1_in_axes1_z = rus_platform_joint_offset_x*rus_s_3;
-        const real rus_r_1_t_2 = rus_c_2*rus_r_1_t;
-        const real rus_r_1_in_axes1_x = rus_joint2_offset_x + rus_r_1_t*rus_s_2;
-        const real rus_r_1_in_axes3_z = rus_c_2*rus_r_1_in_axes1_x - rus_r_1_t_2*rus_s_2;
-        /* (rus-v_1) velocity of the connection point per rate of joint 1 */
-        const real rus_v_1_t = rus_c_2*rus_r_1_t_2 + rus_r_1_in_axes1_x*rus_s_2;
-        const real rus_v_1_t_2 = -rus_c_3*rus_r_1_in_axes3_z;
-        const real rus_v_1_in_axes3_y = -rus_r_1_in_axes3_z*rus_s_3;
-        const real rus_v_1_in_axes3_z = rus_s_3*(rus_c_3*rus_r_1_in_axes1_z + rus_s_3*rus_v_1_t) -
-            rus_c_3*(rus_r_1_in_axes1_z*rus_s_3 - rus_c_3*rus_v_1_t);
-        /* (rus-w_1) reciprocal vector 1 */
-        const real inv_rus_v_1_t_2 = 1/rus_v_1_t_2;
-        /* (rus-w_2) reciprocal vector 2 */
-        const real rus_w_2_in_axes3_z = 1/rus_r_1_t;
+        values_rus v;
+        stage_rus_X(m, w, i, j, X, &v);
         /* (rus-qd_1) rate of joint 1 */
-        const real rus_qd_1_t = rus_c_1*rus_c_2 - rus_s_1*rus_s_2;
-        const real rus_qd_1_t_2 = rus_c_1*rus_s_2 + rus_c_2*rus_s_1;
-        const real axis_z_rus_axes3_x = rus_base_frame_xx*rus_qd_1_t +
-            rus_base_frame_xy*rus_qd_1_t_2;
-        const real axis_z_rus_axes3_y = rus_base_frame_yx*rus_qd_1_t +
-            rus_base_frame_yy*rus_qd_1_t_2;
-        const real axis_z_rus_axes3_z = rus_base_frame_zx*rus_qd_1_t +
-            rus_base_frame_zy*rus_qd_1_t_2;
-        const real rus_qd_1_t_3 = rus_s_2*rus_s_3;
-        const real rus_qd_1_t_4 = rus_c_2*rus_s_3;
-        const real rus_qd_1_t_5 = rus_c_1*rus_qd_1_t_3 + rus_qd_1_t_4*rus_s_1;
-        const real rus_qd_1_t_6 = rus_qd_1_t_3*rus_s_1 - rus_c_1*rus_qd_1_t_4;
-        const real axis_y_rus_axes3_x = rus_base_frame_xx*rus_qd_1_t_5 +
-            rus_base_frame_xy*rus_qd_1_t_6 + rus_base_frame_xz*rus_c_3;
-        const real axis_y_rus_axes3_y = rus_base_frame_yx*rus_qd_1_t_5 +
-            rus_base_frame_yy*rus_qd_1_t_6 + rus_base_frame_yz*rus_c_3;
-        const real axis_y_rus_axes3_z = rus_base_frame_zx*rus_qd_1_t_5 +
-            rus_base_frame_zy*rus_qd_1_t_6 + rus_base_frame_zz*rus_c_3;
+        const real rus_base_frame_xx = m->rus_base_frame_xx[i];
+        const real rus_base_frame_xy = m->rus_base_frame_xy[i];
+        const real axis_z_rus_axes3_x = rus_base_frame_xx*v.rus_qd_1_t +
+            rus_base_frame_xy*v.rus_qd_1_t_2;
+        const real rus_base_frame_yx = m->rus_base_frame_yx[i];
+        const real rus_base_frame_yy = m->rus_base_frame_yy[i];
+        const real axis_z_rus_axes3_y = rus_base_frame_yx*v.rus_qd_1_t +
+            rus_base_frame_yy*v.rus_qd_1_t_2;
+        const real rus_base_frame_zx = m->rus_base_frame_zx[i];
+        const real rus_base_frame_zy = m->rus_base_frame_zy[i];
+        const real axis_z_rus_axes3_z = rus_base_frame_zx*v.rus_qd_1_t +
+            rus_base_frame_zy*v.rus_qd_1_t_2;
+        const real rus_base_frame_xz = m->rus_base_frame_xz[i];
+        const real axis_y_rus_axes3_x = rus_base_frame_xx*v.rus_qd_1_t_5 +
+            rus_base_frame_xy*v.rus_qd_1_t_6 - rus_base_frame_xz*v.rus_c_3;
+        const real rus_base_frame_yz = m->rus_base_frame_yz[i];
+        const real axis_y_rus_axes3_y = rus_base_frame_yx*v.rus_qd_1_t_5 +
+            rus_base_frame_yy*v.rus_qd_1_t_6 - rus_base_frame_yz*v.rus_c_3;
+        const real rus_base_frame_zz = m->rus_base_frame_zz[i];
+        const real axis_y_rus_axes3_z = rus_base_frame_zx*v.rus_qd_1_t_5 +
+            rus_base_frame_zy*v.rus_qd_1_t_6 - rus_base_frame_zz*v.rus_c_3;
         const real axis_x_rus_axes3_x = axis_y_rus_axes3_y*axis_z_rus_axes3_z -
             axis_y_rus_axes3_z*axis_z_rus_axes3_y;
         const real axis_x_rus_axes3_y = axis_y_rus_axes3_z*axis_z_rus_axes3_x -
             axis_y_rus_axes3_x*axis_z_rus_axes3_z;
         const real axis_x_rus_axes3_z = axis_y_rus_axes3_x*axis_z_rus_axes3_y -
             axis_y_rus_axes3_y*axis_z_rus_axes3_x;
-        const real t_dot_x = s[3*w + j];
-        const real t_dot_y = s[4*w + j];
-        const real t_dot_z = s[5*w + j];
-        const real rus_qd_1 = -inv_rus_v_1_t_2*(axis_x_rus_axes3_x*t_dot_x +
+        const real t_dot_x = V[0*w + j];
+        const real t_dot_y = V[1*w + j];
+        const real t_dot_z = V[2*w + j];
+        const real rus_qd_1_t_7 = v.inv_rus_v_1_t_2*(axis_x_rus_axes3_x*t_dot_x +
             axis_x_rus_axes3_y*t_dot_y + axis_x_rus_axes3_z*t_dot_z);
         /* (rus-qd_3) rate of joint 3 */
         const real rus_qd_3_t = axis_y_rus_axes3_x*t_dot_x + axis_y_rus_axes3_y*t_dot_y +
-            axis_y_rus_axes3_z*t_dot_z - rus_qd_1*rus_v_1_in_axes3_y;
+            axis_y_rus_axes3_z*t_dot_z + rus_qd_1_t_7*v.rus_v_1_in_axes3_y;
         const real rus_w_3_in_axes3_y = m->rus_w_3_in_axes3_y[i];
         const real rus_qd_3 = rus_qd_3_t*rus_w_3_in_axes3_y;
         /* (rus-omega_1) angular velocity of link 1 */
-        const real rus_omega_1_in_axes3_x = rus_qd_1*rus_s_3;
-        const real rus_omega_1_in_axes3_y = rus_c_3*rus_qd_1;
+        const real rus_omega_1_in_axes3_x = -v.rus_e_1_in_axes3_x*rus_qd_1_t_7;
+        const real rus_omega_1_in_axes3_y = v.rus_c_3*rus_qd_1_t_7;
         /* (rus-omega_2) angular velocity of link 2 */
-        const real rus_omega_2_in_axes2_z = rus_qd_1 +
-            rus_w_2_in_axes3_z*(axis_z_rus_axes3_x*t_dot_x + axis_z_rus_axes3_y*t_dot_y +
-            axis_z_rus_axes3_z*t_dot_z - rus_qd_1*rus_v_1_in_axes3_z);
-        const real rus_omega_2_in_axes3_x = rus_omega_2_in_axes2_z*rus_s_3;
-        const real rus_omega_2_in_axes3_y = rus_c_3*rus_omega_2_in_axes2_z;
+        const real rus_omega_2_in_axes2_z = v.rus_w_2_in_axes3_z*(axis_z_rus_axes3_x*t_dot_x +
+            axis_z_rus_axes3_y*t_dot_y + axis_z_rus_axes3_z*t_dot_z +
+            rus_qd_1_t_7*v.rus_v_1_in_axes3_z) - rus_qd_1_t_7;
+        const real rus_omega_2_in_axes3_x = v.rus_e_1_in_axes3_x*rus_omega_2_in_axes2_z;
+        const real rus_omega_2_in_axes3_y = -v.rus_c_3*rus_omega_2_in_axes2_z;
         /* (rus-bias) acceleration of the connection point at zero joint accelerations */
-        const real rus_d_2_in_axes3_z = rus_c_2*rus_joint2_offset_x;
-        const real rus_bias_t = rus_joint2_offset_x*rus_s_2;
-        const real rus_bias_t_2 = rus_bias_t*rus_c_3*rus_omega_1_in_axes3_y +
-            rus_bias_t*rus_omega_1_in_axes3_x*rus_s_3;
-        const real rus_bias_t_3 = rus_omega_2_in_axes3_y*rus_platform_joint_offset_x;
-        const real rus_bias_in_axes3_x = rus_bias_t_2*rus_omega_1_in_axes3_y -
-            rus_bias_t_3*rus_omega_2_in_axes3_y - rus_qd_3*rus_qd_3_t;
-        const real rus_bias_in_axes3_y = rus_bias_t_3*rus_omega_2_in_axes3_x -
-            rus_bias_t_2*rus_omega_1_in_axes3_x;
+        const real rus_bias_t_2 = v.rus_bias_t*v.rus_c_3*rus_omega_1_in_axes3_y -
+            v.rus_bias_t*v.rus_e_1_in_axes3_x*rus_omega_1_in_axes3_x;
+        const real rus_platform_joint_offset_x = m->rus_platform_joint_offset_x[i];
+        const real rus_bias_t_3 = -rus_omega_2_in_axes3_y*rus_platform_joint_offset_x;
+        const real rus_bias_in_axes3_x = rus_bias_t_3*rus_omega_2_in_axes3_y -
+            rus_bias_t_2*rus_omega_1_in_axes3_y - rus_qd_3*rus_qd_3_t;
+        const real rus_bias_in_axes3_y = rus_bias_t_2*rus_omega_1_in_axes3_x -
+            rus_bias_t_3*rus_omega_2_in_axes3_x;
         const real rus_bias_in_axes3_z = rus_omega_2_in_axes3_x*rus_qd_3_t +
             rus_omega_2_in_axes3_x*rus_platform_joint_offset_x*rus_qd_3 -
-            rus_d_2_in_axes3_z*rus_omega_1_in_axes3_x*rus_omega_1_in_axes3_x -
-            rus_d_2_in_axes3_z*rus_omega_1_in_axes3_y*rus_omega_1_in_axes3_y;
+            v.rus_d_2_in_axes3_z*rus_omega_1_in_axes3_x*rus_omega_1_in_axes3_x -
+            v.rus_d_2_in_axes3_z*rus_omega_1_in_axes3_y*rus_omega_1_in_axes3_y;
         /* (rus-rel) acceleration of the connection point left to the joint accelerations */
-        const real t_ddot_x = s[6*w + j];
-        const real t_ddot_y = s[7*w + j];
-        const real t_ddot_z = s[8*w + j];
+        const real t_ddot_x = A[0*w + j];
+        const real t_ddot_y = A[1*w + j];
+        const real t_ddot_z = A[2*w + j];
         const real rus_rel_in_axes3_x = axis_x_rus_axes3_x*t_ddot_x + axis_x_rus_axes3_y*t_ddot_y
             + axis_x_rus_axes3_z*t_ddot_z - rus_bias_in_axes3_x;
         const real rus_rel_in_axes3_y = axis_y_rus_axes3_x*t_ddot_x + axis_y_rus_axes3_y*t_ddot_y
@@ -3419,13 +2872,13 @@ INLINE void joint_accelerations_legs_rus(const prepared *m, size_t w, size_t leg
         const real rus_rel_in_axes3_z = axis_z_rus_axes3_x*t_ddot_x + axis_z_rus_axes3_y*t_ddot_y
             + axis_z_rus_axes3_z*t_ddot_z - rus_bias_in_axes3_z;
         /* (rus-qdd_1) acceleration of joint 1 */
-        const real rus_qdd_1_t = inv_rus_v_1_t_2*rus_rel_in_axes3_x;
+        const real rus_qdd_1_t = v.inv_rus_v_1_t_2*rus_rel_in_axes3_x;
         /* (rus-qdd_2) acceleration of joint 2 */
-        const real rus_qdd_2 = rus_w_2_in_axes3_z*(rus_rel_in_axes3_z +
-            rus_qdd_1_t*rus_v_1_in_axes3_z);
+        const real rus_qdd_2 = v.rus_w_2_in_axes3_z*(rus_rel_in_axes3_z +
+            rus_qdd_1_t*v.rus_v_1_in_axes3_z);
         /* (rus-qdd_3) acceleration of joint 3 */
         const real rus_qdd_3_t = rus_w_3_in_axes3_y*(-rus_rel_in_axes3_y -
-            rus_qdd_1_t*rus_v_1_in_axes3_y);
+            rus_qdd_1_t*v.rus_v_1_in_axes3_y);
         /* (rus-qdd_1) acceleration of joint 1 */
         o[0*count + k] = -rus_qdd_1_t;
         /* (rus-qdd_2) acceleration of joint 2 */
@@ -3436,11 +2889,11 @@ INLINE void joint_accelerations_legs_rus(const prepared *m, size_t w, size_t leg
         const real rus_rho2_1_t = m->rus_rho2_1_t[i];
         const real rus_size_t_3 = m->rus_size_t_3[i];
         const real rus_size = m->rus_size[i];
-        o[4*count + k] = UNLESS(magnitude(rus_rho2_1) > TOLERANCE*TOLERANCE*rus_rho2_1_t) +
-            UNLESS(magnitude(rus_rho2_2) > TOLERANCE*TOLERANCE*rus_size_t_3) +
-            UNLESS(magnitude(rus_r_1_t) > TOLERANCE*rus_size) + UNLESS(magnitude(rus_v_1_t_2) >
-            TOLERANCE*rus_size);
-        o[3*count + k] = UNLESS(rus_disc_1 >= 0);
+        o[4*count + k] = UNLESS(magnitude(v.rus_rho2_1) > TOLERANCE*TOLERANCE*rus_rho2_1_t) +
+            UNLESS(magnitude(v.rus_rho2_2) > TOLERANCE*TOLERANCE*rus_size_t_3) +
+            UNLESS(magnitude(v.rus_r_1_t) > TOLERANCE*rus_size) + UNLESS(magnitude(v.rus_v_1_t_2)
+            > TOLERANCE*rus_size);
+        o[3*count + k] = UNLESS(v.rus_disc_1 >= 0);
     }
 }
 
@@ -3460,10 +2913,9 @@ INLINE void joint_accelerations_place_rus(size_t w, size_t count, const real *o,
 INLINE void joint_accelerations_run(const prepared *m, const real *X, const real *V, const real
     *A, real *qdd, verdict *t)
 {
-    real s[9] = {0};
     real o_rus[6*LEGS(LEGS_OF_rus)] = {0};
-    joint_accelerations_before(1, X, V, A, s);
-    joint_accelerations_legs_rus(m, 1, 0, 1, s, 0, LEGS(LEGS_OF_rus), o_rus);
+    joint_accelerations_before();
+    joint_accelerations_legs_rus(m, 1, 0, 1, 0, LEGS(LEGS_OF_rus), X, V, A, o_rus);
     for (size_t leg = 0; leg < LEGS_OF_rus; ++leg) {
         joint_accelerations_place_rus(1, LEGS(LEGS_OF_rus), o_rus, leg, leg, qdd, t);
     }
@@ -3472,341 +2924,61 @@ INLINE void joint_accelerations_run(const prepared *m, const real *X, const real
 INLINE void joint_accelerations_run_lanes(const prepared *m, const real *X, const real *V, const
     real *A, real *qdd, verdict *t)
 {
-    real s[9*LANES];
     real o_rus[6*LANES];
-    joint_accelerations_before(LANES, X, V, A, s);
+    joint_accelerations_before();
     for (size_t leg = 0; leg < LEGS_OF_rus; ++leg) {
-        joint_accelerations_legs_rus(m, LANES, leg, 0, s, 1, LANES, o_rus);
+        joint_accelerations_legs_rus(m, LANES, leg, 0, 1, LANES, X, V, A, o_rus);
         joint_accelerations_place_rus(LANES, LANES, o_rus, leg, 0, qdd, t);
     }
 }
 
 /* ---- legs ---- */
-INLINE void legs_before(size_t w, const real *X, const real *V, const real *A, real *s)
+INLINE void legs_before()
 {
-    for (size_t k = 0; k < w; ++k) {
-        /* X: named entries */
-        const real X_0 = X[0*w + k];
-        const real t_x = X_0;
-        const real X_1 = X[1*w + k];
-        const real t_y = X_1;
-        const real X_2 = X[2*w + k];
-        const real t_z = X_2;
-        /* V: named entries */
-        const real V_0 = V[0*w + k];
-        const real t_dot_x = V_0;
-        const real V_1 = V[1*w + k];
-        const real t_dot_y = V_1;
-        const real V_2 = V[2*w + k];
-        const real t_dot_z = V_2;
-        /* A: named entries */
-        const real A_0 = A[0*w + k];
-        const real t_ddot_x = A_0;
-        const real A_1 = A[1*w + k];
-        const real t_ddot_y = A_1;
-        const real A_2 = A[2*w + k];
-        const real t_ddot_z = A_2;
-        s[0*w + k] = t_x;
-        s[1*w + k] = t_y;
-        s[2*w + k] = t_z;
-        s[3*w + k] = t_dot_x;
-        s[4*w + k] = t_dot_y;
-        s[5*w + k] = t_dot_z;
-        s[6*w + k] = t_ddot_x;
-        s[7*w + k] = t_ddot_y;
-        s[8*w + k] = t_ddot_z;
-    }
 }
 
-INLINE void legs_legs_rus(const prepared *m, size_t w, size_t leg, size_t legs, const real *s,
-    size_t states, size_t count, real *o)
+INLINE void legs_legs_rus(const prepared *m, size_t w, size_t leg, size_t legs, size_t states,
+    size_t count, const real *X, const real *V, const real *A, real *o)
 {
     for (size_t k = 0; k < count; ++k) {
         const size_t i = leg + legs*k;
         const size_t j = states*k;
-        /* (rus-S) from the base point to the connection point */
-        const real rus_base_point_x = m->rus_base_point_x[i];
-        const real rus_platform_point_x = m->rus_platform_point_x[i];
-        const real t_x = s[0*w + j];
-        const real rus_S_x = rus_platform_point_x + t_x - rus_base_point_x;
-        const real rus_base_point_y = m->rus_base_point_y[i];
-        const real rus_platform_point_y = m->rus_platform_point_y[i];
-        const real t_y = s[1*w + j];
-        const real rus_S_y = rus_platform_point_y + t_y - rus_base_point_y;
-        const real rus_base_point_z = m->rus_base_point_z[i];
-        const real rus_platform_point_z = m->rus_platform_point_z[i];
-        const real t_z = s[2*w + j];
-        const real rus_S_z = rus_platform_point_z + t_z - rus_base_point_z;
-        /* (rus-Kd_1) projection on the centre's direction, from the distance fixed by the joints beyond
-           joint 1 */
-        const real rus_Kd_1_t = rus_S_x*rus_S_x + rus_S_y*rus_S_y + rus_S_z*rus_S_z;
-        const real rus_J_3_t = m->rus_J_3_t[i];
-        const real rus_J_3_t_2 = m->rus_J_3_t_2[i];
-        const real rus_Kd_1 = rus_J_3_t + R(0.5)*rus_Kd_1_t - rus_J_3_t_2;
-        /* (rus-px_1) component along the reference direction */
-        const real rus_base_frame_xx = m->rus_base_frame_xx[i];
-        const real rus_base_frame_yx = m->rus_base_frame_yx[i];
-        const real rus_base_frame_zx = m->rus_base_frame_zx[i];
-        const real rus_px_1 = rus_S_x*rus_base_frame_xx + rus_S_y*rus_base_frame_yx +
-            rus_S_z*rus_base_frame_zx;
-        /* (rus-py_1) component across the reference direction */
-        const real rus_base_frame_xy = m->rus_base_frame_xy[i];
-        const real rus_base_frame_yy = m->rus_base_frame_yy[i];
-        const real rus_base_frame_zy = m->rus_base_frame_zy[i];
-        const real rus_py_1 = rus_S_x*rus_base_frame_xy + rus_S_y*rus_base_frame_yy +
-            rus_S_z*rus_base_frame_zy;
-        /* (rus-Kc_1) factor of the cosine in the equation of joint 1 */
-        const real rus_joint2_offset_x = m->rus_joint2_offset_x[i];
-        const real rus_Kc_1 = rus_joint2_offset_x*rus_px_1;
-        /* (rus-Ks_1) factor of the sine in the equation of joint 1 */
-        const real rus_Ks_1 = rus_joint2_offset_x*rus_py_1;
-        /* (rus-rho2_1) squared amplitude */
-        const real rus_rho2_1 = rus_Kc_1*rus_Kc_1 + rus_Ks_1*rus_Ks_1;
-        /* (rus-disc_1) discriminant */
-        const real rus_disc_1 = rus_rho2_1 - rus_Kd_1*rus_Kd_1;
-        /* (rus-root_1) root, with the sign of the branch */
-        const real rus_branch_1 = m->rus_branch_1[i];
-        const real rus_root_1 = rus_branch_1*root(rus_disc_1);
-        /* (rus-c_1) cosine of the angle of joint 1 from its reference direction */
-        const real inv_rus_rho2_1 = 1/rus_rho2_1;
-        const real rus_c_1 = inv_rus_rho2_1*(rus_Kc_1*rus_Kd_1 - rus_Ks_1*rus_root_1);
-        /* (rus-s_1) sine of the angle of joint 1 from its reference direction */
-        const real rus_s_1 = inv_rus_rho2_1*(rus_Kc_1*rus_root_1 + rus_Kd_1*rus_Ks_1);
-        /* (rus-xi_1) the vector from joint 1 to the connection point, resolved along link 1 */
-        const real inv_rus_size_t = m->inv_rus_size_t[i];
-        const real rus_xi_1_t = inv_rus_size_t*rus_joint2_offset_x*rus_root_1;
-        const real rus_base_frame_xz = m->rus_base_frame_xz[i];
-        const real rus_base_frame_yz = m->rus_base_frame_yz[i];
-        const real rus_base_frame_zz = m->rus_base_frame_zz[i];
-        const real rus_xi_1_in_axes1_z = rus_S_x*rus_base_frame_xz + rus_S_y*rus_base_frame_yz +
-            rus_S_z*rus_base_frame_zz;
-        /* (rus-x_2) from the origin of joint 2 to the connection point */
-        const real rus_x_2_in_axes1_x = inv_rus_size_t*rus_Kd_1*rus_joint2_offset_x -
-            rus_joint2_offset_x;
-        /* (rus-rho2_2) squared amplitude */
-        const real rus_rho2_2 = rus_x_2_in_axes1_x*rus_x_2_in_axes1_x + rus_xi_1_t*rus_xi_1_t;
-        /* (rus-root_2) root, with the sign of the branch */
-        const real rus_branch_2 = m->rus_branch_2[i];
-        const real rus_root_2 = rus_branch_2*root(rus_rho2_2);
-        /* (rus-c_2) cosine of the angle of joint 2 from its reference direction */
-        const real inv_rus_rho2_2 = 1/rus_rho2_2;
-        const real rus_c_2 = inv_rus_rho2_2*rus_root_2*rus_xi_1_t;
-        /* (rus-s_2) sine of the angle of joint 2 from its reference direction */
-        const real rus_s_2 = inv_rus_rho2_2*rus_root_2*rus_x_2_in_axes1_x;
-        /* (rus-c_3) cosine of the angle of joint 3 from its reference direction */
-        const real inv_rus_size_t_2 = m->inv_rus_size_t_2[i];
-        const real rus_platform_joint_offset_x = m->rus_platform_joint_offset_x[i];
-        const real rus_c_3 = -inv_rus_size_t_2*rus_platform_joint_offset_x*rus_root_2;
-        /* (rus-s_3) sine of the angle of joint 3 from its reference direction */
-        const real rus_s_3 = inv_rus_size_t_2*rus_platform_joint_offset_x*rus_xi_1_in_axes1_z;
-        /* (rus-r_1) from joint 1 to the connection point, along the links */
-        const real rus_r_1_t = -rus_c_3*rus_platform_joint_offset_x;
-        const real rus_r_1_in_axes1_z = rus_platform_joint_offset_x*rus_s_3;
-        const real rus_r_1_t_2 = rus_c_2*rus_r_1_t;
-        const real rus_r_1_in_axes1_x = rus_joint2_offset_x + rus_r_1_t*rus_s_2;
-        const real rus_r_1_in_axes3_z = rus_c_2*rus_r_1_in_axes1_x - rus_r_1_t_2*rus_s_2;
-        /* (rus-v_1) velocity of the connection point per rate of joint 1 */
-        const real rus_v_1_t = rus_c_2*rus_r_1_t_2 + rus_r_1_in_axes1_x*rus_s_2;
-        const real rus_v_1_t_2 = -rus_c_3*rus_r_1_in_axes3_z;
-        const real rus_v_1_in_axes3_y = -rus_r_1_in_axes3_z*rus_s_3;
-        const real rus_v_1_in_axes3_z = rus_s_3*(rus_c_3*rus_r_1_in_axes1_z + rus_s_3*rus_v_1_t) -
-            rus_c_3*(rus_r_1_in_axes1_z*rus_s_3 - rus_c_3*rus_v_1_t);
-        /* (rus-w_1) reciprocal vector 1 */
-        const real rus_w_1_t = rus_c_1*rus_c_2 - rus_s_1*rus_s_2;
-        const real rus_w_1_t_2 = rus_c_1*rus_s_2 + rus_c_2*rus_s_1;
-        const real axis_z_rus_axes3_x = rus_base_frame_xx*rus_w_1_t +
-            rus_base_frame_xy*rus_w_1_t_2;
-        const real axis_z_rus_axes3_y = rus_base_frame_yx*rus_w_1_t +
-            rus_base_frame_yy*rus_w_1_t_2;
-        const real axis_z_rus_axes3_z = rus_base_frame_zx*rus_w_1_t +
-            rus_base_frame_zy*rus_w_1_t_2;
-        const real rus_w_1_t_3 = rus_s_2*rus_s_3;
-        const real rus_w_1_t_4 = rus_c_2*rus_s_3;
-        const real rus_w_1_t_5 = rus_c_1*rus_w_1_t_3 + rus_s_1*rus_w_1_t_4;
-        const real rus_w_1_t_6 = rus_s_1*rus_w_1_t_3 - rus_c_1*rus_w_1_t_4;
-        const real axis_y_rus_axes3_x = rus_base_frame_xx*rus_w_1_t_5 +
-            rus_base_frame_xy*rus_w_1_t_6 + rus_base_frame_xz*rus_c_3;
-        const real axis_y_rus_axes3_y = rus_base_frame_yx*rus_w_1_t_5 +
-            rus_base_frame_yy*rus_w_1_t_6 + rus_base_frame_yz*rus_c_3;
-        const real axis_y_rus_axes3_z = rus_base_frame_zx*rus_w_1_t_5 +
-            rus_base_frame_zy*rus_w_1_t_6 + rus_base_frame_zz*rus_c_3;
-        const real axis_x_rus_axes3_x = axis_y_rus_axes3_y*axis_z_rus_axes3_z -
-            axis_y_rus_axes3_z*axis_z_rus_axes3_y;
-        const real axis_x_rus_axes3_y = axis_y_rus_axes3_z*axis_z_rus_axes3_x -
-            axis_y_rus_axes3_x*axis_z_rus_axes3_z;
-        const real axis_x_rus_axes3_z = axis_y_rus_axes3_x*axis_z_rus_axes3_y -
-            axis_y_rus_axes3_y*axis_z_rus_axes3_x;
-        const real inv_rus_v_1_t_2 = 1/rus_v_1_t_2;
-        const real rus_w_1_t_7 = axis_x_rus_axes3_x*inv_rus_v_1_t_2;
-        const real rus_w_1_t_8 = axis_x_rus_axes3_y*inv_rus_v_1_t_2;
-        const real rus_w_1_t_9 = axis_x_rus_axes3_z*inv_rus_v_1_t_2;
-        /* (rus-w_2) reciprocal vector 2 */
-        const real rus_w_2_in_axes3_z = 1/rus_r_1_t;
-        /* (rus-qd_1) rate of joint 1 */
-        const real t_dot_x = s[3*w + j];
-        const real t_dot_y = s[4*w + j];
-        const real t_dot_z = s[5*w + j];
-        const real rus_qd_1 = -inv_rus_v_1_t_2*(axis_x_rus_axes3_x*t_dot_x +
-            axis_x_rus_axes3_y*t_dot_y + axis_x_rus_axes3_z*t_dot_z);
-        /* (rus-qd_3) rate of joint 3 */
-        const real rus_qd_3_t = axis_y_rus_axes3_x*t_dot_x + axis_y_rus_axes3_y*t_dot_y +
-            axis_y_rus_axes3_z*t_dot_z - rus_qd_1*rus_v_1_in_axes3_y;
-        const real rus_w_3_in_axes3_y = m->rus_w_3_in_axes3_y[i];
-        const real rus_qd_3 = rus_qd_3_t*rus_w_3_in_axes3_y;
-        /* (rus-omega_1) angular velocity of link 1 */
-        const real rus_omega_1_in_axes3_x = rus_qd_1*rus_s_3;
-        const real rus_omega_1_in_axes3_y = rus_c_3*rus_qd_1;
-        /* (rus-omega_2) angular velocity of link 2 */
-        const real rus_omega_2_in_axes2_z = rus_qd_1 +
-            rus_w_2_in_axes3_z*(axis_z_rus_axes3_x*t_dot_x + axis_z_rus_axes3_y*t_dot_y +
-            axis_z_rus_axes3_z*t_dot_z - rus_qd_1*rus_v_1_in_axes3_z);
-        const real rus_omega_2_in_axes3_x = rus_omega_2_in_axes2_z*rus_s_3;
-        const real rus_omega_2_in_axes3_y = rus_c_3*rus_omega_2_in_axes2_z;
-        /* (rus-W_3) centripetal tensor of link 3 */
-        const real rus_W_3_in_axes3_yz = rus_omega_2_in_axes3_y*rus_qd_3;
-        const real rus_W_3_in_axes3_xz = rus_omega_2_in_axes3_x*rus_qd_3;
-        const real rus_W_3_in_axes3_xy = rus_omega_2_in_axes3_x*rus_omega_2_in_axes3_y;
-        /* (rus-S_ddot) acceleration of the connection point */
-        const real t_ddot_x = s[6*w + j];
-        const real t_ddot_y = s[7*w + j];
-        const real t_ddot_z = s[8*w + j];
-        const real rus_S_ddot_in_axes3_x = axis_x_rus_axes3_x*t_ddot_x +
-            axis_x_rus_axes3_y*t_ddot_y + axis_x_rus_axes3_z*t_ddot_z;
-        const real rus_S_ddot_in_axes3_y = axis_y_rus_axes3_x*t_ddot_x +
-            axis_y_rus_axes3_y*t_ddot_y + axis_y_rus_axes3_z*t_ddot_z;
-        const real rus_S_ddot_in_axes3_z = axis_z_rus_axes3_x*t_ddot_x +
-            axis_z_rus_axes3_y*t_ddot_y + axis_z_rus_axes3_z*t_ddot_z;
-        /* (rus-bias) acceleration of the connection point at zero joint accelerations */
-        const real rus_d_2_in_axes3_z = rus_c_2*rus_joint2_offset_x;
-        const real rus_bias_t = rus_joint2_offset_x*rus_s_2;
-        const real rus_bias_t_2 = rus_bias_t*rus_c_3*rus_omega_1_in_axes3_y +
-            rus_bias_t*rus_omega_1_in_axes3_x*rus_s_3;
-        const real rus_bias_t_3 = rus_omega_2_in_axes3_y*rus_platform_joint_offset_x;
-        const real rus_bias_in_axes3_x = rus_bias_t_2*rus_omega_1_in_axes3_y -
-            rus_bias_t_3*rus_omega_2_in_axes3_y - rus_qd_3*rus_qd_3_t;
-        const real rus_bias_in_axes3_y = rus_bias_t_3*rus_omega_2_in_axes3_x -
-            rus_bias_t_2*rus_omega_1_in_axes3_x;
-        const real rus_bias_in_axes3_z = rus_W_3_in_axes3_xz*rus_platform_joint_offset_x +
-            rus_omega_2_in_axes3_x*rus_qd_3_t -
-            rus_d_2_in_axes3_z*rus_omega_1_in_axes3_x*rus_omega_1_in_axes3_x -
-            rus_d_2_in_axes3_z*rus_omega_1_in_axes3_y*rus_omega_1_in_axes3_y;
-        /* (rus-rel) acceleration of the connection point left to the joint accelerations */
-        const real rus_rel_in_axes3_x = rus_S_ddot_in_axes3_x - rus_bias_in_axes3_x;
-        const real rus_rel_in_axes3_y = rus_S_ddot_in_axes3_y - rus_bias_in_axes3_y;
-        const real rus_rel_in_axes3_z = rus_S_ddot_in_axes3_z - rus_bias_in_axes3_z;
-        /* (rus-qdd_1) acceleration of joint 1 */
-        const real rus_qdd_1_t = inv_rus_v_1_t_2*rus_rel_in_axes3_x;
-        /* (rus-qdd_3) acceleration of joint 3 */
-        const real rus_qdd_3_t = rus_w_3_in_axes3_y*(-rus_rel_in_axes3_y -
-            rus_qdd_1_t*rus_v_1_in_axes3_y);
-        /* (rus-alpha_2) angular acceleration of link 2 */
-        const real rus_alpha_2_in_axes2_z = rus_w_2_in_axes3_z*(rus_rel_in_axes3_z +
-            rus_qdd_1_t*rus_v_1_in_axes3_z) - rus_qdd_1_t;
-        const real rus_alpha_2_in_axes3_x = rus_alpha_2_in_axes2_z*rus_s_3;
-        const real rus_alpha_2_in_axes3_y = rus_alpha_2_in_axes2_z*rus_c_3;
-        /* (rus-alpha_3) angular acceleration of link 3 */
-        const real rus_alpha_3_in_axes3_x = rus_W_3_in_axes3_yz + rus_alpha_2_in_axes3_x;
-        const real rus_alpha_3_in_axes3_y = rus_alpha_2_in_axes3_y - rus_W_3_in_axes3_xz;
-        /* (rus-B_3) acceleration tensor of link 3 */
-        const real rus_B_3_in_axes3_xy = rus_W_3_in_axes3_xy + rus_qdd_3_t;
-        const real rus_B_3_in_axes3_yx = rus_W_3_in_axes3_xy - rus_qdd_3_t;
-        const real rus_B_3_in_axes3_zx = rus_W_3_in_axes3_xz - rus_alpha_3_in_axes3_y;
-        const real rus_B_3_in_axes3_zy = rus_W_3_in_axes3_yz + rus_alpha_3_in_axes3_x;
-        /* (rus-acc_3) acceleration of the reference point of link 3, less gravity */
-        const real gravity_x = m->gravity_x;
-        const real gravity_y = m->gravity_y;
-        const real gravity_z = m->gravity_z;
-        const real rus_acc_3_in_axes3_x = rus_S_ddot_in_axes3_x - axis_x_rus_axes3_x*gravity_x -
-            axis_x_rus_axes3_y*gravity_y - axis_x_rus_axes3_z*gravity_z;
-        const real rus_acc_3_in_axes3_y = rus_S_ddot_in_axes3_y - axis_y_rus_axes3_x*gravity_x -
-            axis_y_rus_axes3_y*gravity_y - axis_y_rus_axes3_z*gravity_z;
-        const real rus_acc_3_in_axes3_z = rus_S_ddot_in_axes3_z - axis_z_rus_axes3_x*gravity_x -
-            axis_z_rus_axes3_y*gravity_y - axis_z_rus_axes3_z*gravity_z;
-        /* (rus-mu_3) inertia moment of the links that turn with link 3, about their reference points */
-        const real rus_mu_3_t = rus_omega_2_in_axes3_x*rus_omega_2_in_axes3_x;
-        const real rus_mu_3_t_2 = rus_omega_2_in_axes3_y*rus_omega_2_in_axes3_y;
-        const real rus_mu_3_t_3 = rus_qd_3*rus_qd_3;
-        const real rus_J_3_in_spec3_xy = m->rus_J_3_in_spec3_xy[i];
-        const real rus_J_3_in_spec3_xz = m->rus_J_3_in_spec3_xz[i];
-        const real rus_J_3_in_spec3_yz = m->rus_J_3_in_spec3_yz[i];
-        const real rus_Sigma_3_in_axes3_yy = m->rus_Sigma_3_in_axes3_yy[i];
-        const real rus_Sigma_3_in_axes3_zz = m->rus_Sigma_3_in_axes3_zz[i];
-        const real rus_h_3_in_spec3_y = m->rus_h_3_in_spec3_y[i];
-        const real rus_h_3_in_spec3_z = m->rus_h_3_in_spec3_z[i];
-        const real rus_mu_3_in_axes3_x = rus_B_3_in_axes3_yx*rus_J_3_in_spec3_xy +
-            rus_B_3_in_axes3_zx*rus_J_3_in_spec3_xz + rus_B_3_in_axes3_zy*rus_Sigma_3_in_axes3_yy
-            + rus_Sigma_3_in_axes3_zz*rus_alpha_2_in_axes3_x - rus_J_3_in_spec3_yz*(rus_mu_3_t_2 -
-            rus_mu_3_t_3) - rus_acc_3_in_axes3_y*rus_h_3_in_spec3_y -
-            rus_acc_3_in_axes3_z*rus_h_3_in_spec3_z;
-        const real rus_Sigma_3_in_axes3_xx = m->rus_Sigma_3_in_axes3_xx[i];
-        const real rus_h_3_in_spec3_x = m->rus_h_3_in_spec3_x[i];
-        const real rus_mu_3_in_axes3_y = rus_B_3_in_axes3_xy*rus_J_3_in_spec3_yz +
-            rus_Sigma_3_in_axes3_zz*rus_alpha_2_in_axes3_y +
-            rus_acc_3_in_axes3_x*rus_h_3_in_spec3_y - rus_B_3_in_axes3_zx*rus_Sigma_3_in_axes3_xx
-            - rus_B_3_in_axes3_zy*rus_J_3_in_spec3_xz - rus_J_3_in_spec3_xy*(rus_mu_3_t -
-            rus_mu_3_t_3) - rus_acc_3_in_axes3_z*rus_h_3_in_spec3_x;
-        const real rus_mu_3_in_axes3_z = rus_B_3_in_axes3_yx*rus_Sigma_3_in_axes3_xx +
-            rus_J_3_in_spec3_xy*rus_alpha_2_in_axes3_x + rus_acc_3_in_axes3_x*rus_h_3_in_spec3_z +
-            rus_acc_3_in_axes3_y*rus_h_3_in_spec3_x - rus_B_3_in_axes3_xy*rus_Sigma_3_in_axes3_yy
-            - rus_J_3_in_spec3_xz*(rus_mu_3_t - rus_mu_3_t_2) -
-            rus_J_3_in_spec3_yz*rus_alpha_2_in_axes3_y;
-        const real rus_mu_3_in_axes1_z = rus_c_3*rus_mu_3_in_axes3_y +
-            rus_mu_3_in_axes3_x*rus_s_3;
-        /* (rus-mu_1) inertia moment of the links that turn with link 1, about their reference points */
-        const real rus_J_1_in_spec1_zz = m->rus_J_1_in_spec1_zz[i];
-        const real rus_h_1_in_spec1_x = m->rus_h_1_in_spec1_x[i];
-        const real rus_h_1_in_spec1_y = m->rus_h_1_in_spec1_y[i];
-        const real rus_mu_1_t = m->rus_mu_1_t[i];
-        const real rus_mu_1_t_2 = m->rus_mu_1_t_2[i];
-        const real rus_mu_1_in_axes1_z = rus_h_1_in_spec1_y*(rus_c_1*rus_mu_1_t +
-            rus_mu_1_t_2*rus_s_1) - rus_J_1_in_spec1_zz*rus_qdd_1_t -
-            rus_h_1_in_spec1_x*(rus_c_1*rus_mu_1_t_2 - rus_mu_1_t*rus_s_1);
-        /* (rus-N_1) moment about joint 1 of the links from 1 outwards, the force at the connection point
-           left out */
-        const real rus_N_1_in_axes1_z = rus_mu_1_in_axes1_z + rus_mu_3_in_axes1_z;
-        /* (rus-G) force at the connection point that balances the leg's inertia and weight along all
-           degrees of freedom */
-        const real rus_G_in_axes3_z = rus_mu_3_in_axes1_z*rus_w_2_in_axes3_z;
-        const real rus_G_in_axes3_y = rus_mu_3_in_axes3_z*rus_w_3_in_axes3_y;
-        /* (rus-c) leg force on the platform without actuation and without the mass at the connection
-           point */
-        const real rus_c_in_axes3_x = inv_rus_v_1_t_2*(rus_N_1_in_axes1_z -
-            rus_G_in_axes3_y*rus_v_1_in_axes3_y - rus_G_in_axes3_z*rus_v_1_in_axes3_z) +
-            rus_B_3_in_axes3_xy*rus_h_3_in_spec3_z + rus_h_3_in_spec3_x*(rus_mu_3_t_2 +
-            rus_mu_3_t_3) - rus_alpha_2_in_axes3_y*rus_h_3_in_spec3_y;
-        const real rus_c_in_axes3_y = rus_alpha_2_in_axes3_x*rus_h_3_in_spec3_y - rus_G_in_axes3_y
-            - rus_B_3_in_axes3_yx*rus_h_3_in_spec3_x - rus_h_3_in_spec3_z*(rus_mu_3_t +
-            rus_mu_3_t_3);
-        const real rus_c_in_axes3_z = rus_B_3_in_axes3_zy*rus_h_3_in_spec3_z +
-            rus_h_3_in_spec3_y*(rus_mu_3_t + rus_mu_3_t_2) - rus_G_in_axes3_z -
-            rus_B_3_in_axes3_zx*rus_h_3_in_spec3_x;
+        values_rus v;
+        stage_rus_X(m, w, i, j, X, &v);
+        stage_rus_legs_required(m, w, i, j, V, A, &v);
         /* (rus-c_true) leg force on the platform without actuation, the last link's mass included */
         const real rus_link3_mass = m->rus_link3_mass[i];
-        const real rus_c_true_in_axes3_x = rus_c_in_axes3_x - rus_acc_3_in_axes3_x*rus_link3_mass;
-        const real rus_c_true_in_axes3_y = rus_c_in_axes3_y - rus_acc_3_in_axes3_y*rus_link3_mass;
-        const real rus_c_true_in_axes3_z = rus_c_in_axes3_z - rus_acc_3_in_axes3_z*rus_link3_mass;
-        const real rus_c_true_x = axis_x_rus_axes3_x*rus_c_true_in_axes3_x +
-            axis_y_rus_axes3_x*rus_c_true_in_axes3_y + axis_z_rus_axes3_x*rus_c_true_in_axes3_z;
-        const real rus_c_true_y = axis_x_rus_axes3_y*rus_c_true_in_axes3_x +
-            axis_y_rus_axes3_y*rus_c_true_in_axes3_y + axis_z_rus_axes3_y*rus_c_true_in_axes3_z;
-        const real rus_c_true_z = axis_x_rus_axes3_z*rus_c_true_in_axes3_x +
-            axis_y_rus_axes3_z*rus_c_true_in_axes3_y + axis_z_rus_axes3_z*rus_c_true_in_axes3_z;
+        const real rus_c_true_in_axes3_x = v.rus_c_in_axes3_x -
+            v.rus_acc_3_in_axes3_x*rus_link3_mass;
+        const real rus_c_true_in_axes3_y = v.rus_c_in_axes3_y -
+            v.rus_acc_3_in_axes3_y*rus_link3_mass;
+        const real rus_c_true_in_axes3_z = v.rus_c_in_axes3_z -
+            v.rus_acc_3_in_axes3_z*rus_link3_mass;
+        const real rus_c_true_x = v.axis_x_rus_axes3_x*rus_c_true_in_axes3_x +
+            v.axis_y_rus_axes3_x*rus_c_true_in_axes3_y +
+            v.axis_z_rus_axes3_x*rus_c_true_in_axes3_z;
+        const real rus_c_true_y = v.axis_x_rus_axes3_y*rus_c_true_in_axes3_x +
+            v.axis_y_rus_axes3_y*rus_c_true_in_axes3_y +
+            v.axis_z_rus_axes3_y*rus_c_true_in_axes3_z;
+        const real rus_c_true_z = v.axis_x_rus_axes3_z*rus_c_true_in_axes3_x +
+            v.axis_y_rus_axes3_z*rus_c_true_in_axes3_y +
+            v.axis_z_rus_axes3_z*rus_c_true_in_axes3_z;
         /* (rus-c_true) leg force on the platform without actuation, the last link's mass included */
         o[0*count + k] = rus_c_true_x;
         o[1*count + k] = rus_c_true_y;
         o[2*count + k] = rus_c_true_z;
         /* (rus-w_1) reciprocal vector 1 */
-        o[3*count + k] = -rus_w_1_t_7;
-        o[4*count + k] = -rus_w_1_t_8;
-        o[5*count + k] = -rus_w_1_t_9;
+        o[3*count + k] = -v.rus_w_1_t_7;
+        o[4*count + k] = -v.rus_w_1_t_8;
+        o[5*count + k] = -v.rus_w_1_t_9;
         const real rus_rho2_1_t = m->rus_rho2_1_t[i];
         const real rus_size_t_3 = m->rus_size_t_3[i];
         const real rus_size = m->rus_size[i];
-        o[7*count + k] = UNLESS(magnitude(rus_rho2_1) > TOLERANCE*TOLERANCE*rus_rho2_1_t) +
-            UNLESS(magnitude(rus_rho2_2) > TOLERANCE*TOLERANCE*rus_size_t_3) +
-            UNLESS(magnitude(rus_r_1_t) > TOLERANCE*rus_size) + UNLESS(magnitude(rus_v_1_t_2) >
-            TOLERANCE*rus_size);
-        o[6*count + k] = UNLESS(rus_disc_1 >= 0);
+        o[7*count + k] = UNLESS(magnitude(v.rus_rho2_1) > TOLERANCE*TOLERANCE*rus_rho2_1_t) +
+            UNLESS(magnitude(v.rus_rho2_2) > TOLERANCE*TOLERANCE*rus_size_t_3) +
+            UNLESS(magnitude(v.rus_r_1_t) > TOLERANCE*rus_size) + UNLESS(magnitude(v.rus_v_1_t_2)
+            > TOLERANCE*rus_size);
+        o[6*count + k] = UNLESS(v.rus_disc_1 >= 0);
     }
 }
 
@@ -3828,10 +3000,9 @@ INLINE void legs_place_rus(size_t w, size_t count, const real *o, size_t leg, si
 INLINE void legs_run(const prepared *m, const real *X, const real *V, const real *A, real
     *leg_force, real *actuator, verdict *t)
 {
-    real s[9] = {0};
     real o_rus[8*LEGS(LEGS_OF_rus)] = {0};
-    legs_before(1, X, V, A, s);
-    legs_legs_rus(m, 1, 0, 1, s, 0, LEGS(LEGS_OF_rus), o_rus);
+    legs_before();
+    legs_legs_rus(m, 1, 0, 1, 0, LEGS(LEGS_OF_rus), X, V, A, o_rus);
     for (size_t leg = 0; leg < LEGS_OF_rus; ++leg) {
         legs_place_rus(1, LEGS(LEGS_OF_rus), o_rus, leg, leg, leg_force, actuator, t);
     }
@@ -3841,13 +3012,6 @@ INLINE void legs_run(const prepared *m, const real *X, const real *V, const real
 INLINE void potential_before(const prepared *m, size_t w, const real *X, real *s)
 {
     for (size_t k = 0; k < w; ++k) {
-        /* X: named entries */
-        const real X_0 = X[0*w + k];
-        const real t_x = X_0;
-        const real X_1 = X[1*w + k];
-        const real t_y = X_1;
-        const real X_2 = X[2*w + k];
-        const real t_z = X_2;
         /* (potential) potential energy */
         const real gravity_x = m->gravity_x;
         const real gravity_y = m->gravity_y;
@@ -3856,100 +3020,28 @@ INLINE void potential_before(const prepared *m, size_t w, const real *X, real *s
         const real h_star_y = m->h_star_y;
         const real h_star_z = m->h_star_z;
         const real m_star = m->m_star;
+        const real t_x = X[0*w + k];
+        const real t_y = X[1*w + k];
+        const real t_z = X[2*w + k];
         const real potential_t = gravity_x*(h_star_x + m_star*t_x) + gravity_y*(h_star_y +
             m_star*t_y) + gravity_z*(h_star_z + m_star*t_z);
-        s[0*w + k] = t_x;
-        s[1*w + k] = t_y;
-        s[2*w + k] = t_z;
-        s[3*w + k] = potential_t;
+        s[0*w + k] = potential_t;
     }
 }
 
-INLINE void potential_legs_rus(const prepared *m, size_t w, size_t leg, size_t legs, const real
-    *s, size_t states, size_t count, int add, real *terms, real *o)
+INLINE void potential_legs_rus(const prepared *m, size_t w, size_t leg, size_t legs, size_t
+    states, size_t count, int add, const real *X, real *terms, real *o)
 {
     for (size_t k = 0; k < count; ++k) {
         const size_t i = leg + legs*k;
         const size_t j = states*k;
-        /* (rus-S) from the base point to the connection point */
-        const real rus_base_point_x = m->rus_base_point_x[i];
-        const real rus_platform_point_x = m->rus_platform_point_x[i];
-        const real t_x = s[0*w + j];
-        const real rus_S_x = rus_platform_point_x + t_x - rus_base_point_x;
-        const real rus_base_point_y = m->rus_base_point_y[i];
-        const real rus_platform_point_y = m->rus_platform_point_y[i];
-        const real t_y = s[1*w + j];
-        const real rus_S_y = rus_platform_point_y + t_y - rus_base_point_y;
-        const real rus_base_point_z = m->rus_base_point_z[i];
-        const real rus_platform_point_z = m->rus_platform_point_z[i];
-        const real t_z = s[2*w + j];
-        const real rus_S_z = rus_platform_point_z + t_z - rus_base_point_z;
-        /* (rus-Kd_1) projection on the centre's direction, from the distance fixed by the joints beyond
-           joint 1 */
-        const real rus_Kd_1_t = rus_S_x*rus_S_x + rus_S_y*rus_S_y + rus_S_z*rus_S_z;
-        const real rus_J_3_t = m->rus_J_3_t[i];
-        const real rus_J_3_t_2 = m->rus_J_3_t_2[i];
-        const real rus_Kd_1 = rus_J_3_t + R(0.5)*rus_Kd_1_t - rus_J_3_t_2;
-        /* (rus-px_1) component along the reference direction */
-        const real rus_base_frame_xx = m->rus_base_frame_xx[i];
-        const real rus_base_frame_yx = m->rus_base_frame_yx[i];
-        const real rus_base_frame_zx = m->rus_base_frame_zx[i];
-        const real rus_px_1 = rus_S_x*rus_base_frame_xx + rus_S_y*rus_base_frame_yx +
-            rus_S_z*rus_base_frame_zx;
-        /* (rus-py_1) component across the reference direction */
-        const real rus_base_frame_xy = m->rus_base_frame_xy[i];
-        const real rus_base_frame_yy = m->rus_base_frame_yy[i];
-        const real rus_base_frame_zy = m->rus_base_frame_zy[i];
-        const real rus_py_1 = rus_S_x*rus_base_frame_xy + rus_S_y*rus_base_frame_yy +
-            rus_S_z*rus_base_frame_zy;
-        /* (rus-Kc_1) factor of the cosine in the equation of joint 1 */
-        const real rus_joint2_offset_x = m->rus_joint2_offset_x[i];
-        const real rus_Kc_1 = rus_joint2_offset_x*rus_px_1;
-        /* (rus-Ks_1) factor of the sine in the equation of joint 1 */
-        const real rus_Ks_1 = rus_joint2_offset_x*rus_py_1;
-        /* (rus-rho2_1) squared amplitude */
-        const real rus_rho2_1 = rus_Kc_1*rus_Kc_1 + rus_Ks_1*rus_Ks_1;
-        /* (rus-disc_1) discriminant */
-        const real rus_disc_1 = rus_rho2_1 - rus_Kd_1*rus_Kd_1;
-        /* (rus-root_1) root, with the sign of the branch */
-        const real rus_branch_1 = m->rus_branch_1[i];
-        const real rus_root_1 = rus_branch_1*root(rus_disc_1);
-        /* (rus-c_1) cosine of the angle of joint 1 from its reference direction */
-        const real inv_rus_rho2_1 = 1/rus_rho2_1;
-        const real rus_c_1 = inv_rus_rho2_1*(rus_Kc_1*rus_Kd_1 - rus_Ks_1*rus_root_1);
-        /* (rus-s_1) sine of the angle of joint 1 from its reference direction */
-        const real rus_s_1 = inv_rus_rho2_1*(rus_Kc_1*rus_root_1 + rus_Kd_1*rus_Ks_1);
-        /* (rus-xi_1) the vector from joint 1 to the connection point, resolved along link 1 */
-        const real inv_rus_size_t = m->inv_rus_size_t[i];
-        const real rus_xi_1_t = inv_rus_size_t*rus_joint2_offset_x*rus_root_1;
-        const real rus_base_frame_xz = m->rus_base_frame_xz[i];
-        const real rus_base_frame_yz = m->rus_base_frame_yz[i];
-        const real rus_base_frame_zz = m->rus_base_frame_zz[i];
-        const real rus_xi_1_in_axes1_z = rus_S_x*rus_base_frame_xz + rus_S_y*rus_base_frame_yz +
-            rus_S_z*rus_base_frame_zz;
-        /* (rus-x_2) from the origin of joint 2 to the connection point */
-        const real rus_x_2_in_axes1_x = inv_rus_size_t*rus_Kd_1*rus_joint2_offset_x -
-            rus_joint2_offset_x;
-        /* (rus-rho2_2) squared amplitude */
-        const real rus_rho2_2 = rus_x_2_in_axes1_x*rus_x_2_in_axes1_x + rus_xi_1_t*rus_xi_1_t;
-        /* (rus-root_2) root, with the sign of the branch */
-        const real rus_branch_2 = m->rus_branch_2[i];
-        const real rus_root_2 = rus_branch_2*root(rus_rho2_2);
-        /* (rus-c_2) cosine of the angle of joint 2 from its reference direction */
-        const real inv_rus_rho2_2 = 1/rus_rho2_2;
-        const real rus_c_2 = inv_rus_rho2_2*rus_root_2*rus_xi_1_t;
-        /* (rus-s_2) sine of the angle of joint 2 from its reference direction */
-        const real rus_s_2 = inv_rus_rho2_2*rus_root_2*rus_x_2_in_axes1_x;
-        /* (rus-c_3) cosine of the angle of joint 3 from its reference direction */
-        const real inv_rus_size_t_2 = m->inv_rus_size_t_2[i];
-        const real rus_platform_joint_offset_x = m->rus_platform_joint_offset_x[i];
-        const real rus_c_3 = -inv_rus_size_t_2*rus_platform_joint_offset_x*rus_root_2;
-        /* (rus-s_3) sine of the angle of joint 3 from its reference direction */
-        const real rus_s_3 = inv_rus_size_t_2*rus_platform_joint_offset_x*rus_xi_1_in_axes1_z;
+        values_rus v;
+        stage_rus_X(m, w, i, j, X, &v);
         /* (potential) potential energy */
         const real rus_h_3_in_spec3_x = m->rus_h_3_in_spec3_x[i];
         const real rus_h_3_in_spec3_z = m->rus_h_3_in_spec3_z[i];
-        const real rus_potential_t_4 = rus_c_3*rus_h_3_in_spec3_x + rus_h_3_in_spec3_z*rus_s_3;
+        const real rus_potential_t_4 = v.rus_e_1_in_axes3_x*rus_h_3_in_spec3_z -
+            v.rus_c_3*rus_h_3_in_spec3_x;
         const real rus_g_in_axes1_z = m->rus_g_in_axes1_z[i];
         const real rus_h_1_in_spec1_x = m->rus_h_1_in_spec1_x[i];
         const real rus_h_1_in_spec1_y = m->rus_h_1_in_spec1_y[i];
@@ -3962,20 +3054,20 @@ INLINE void potential_legs_rus(const prepared *m, size_t w, size_t leg, size_t l
         const real rus_potential_t_2 = m->rus_potential_t_2[i];
         const real rus_potential_t_3 = m->rus_potential_t_3[i];
         const real rus_potential_t_5 = rus_g_in_axes1_z*(rus_h_1_in_spec1_z + rus_potential_t_3 +
-            rus_h_3_in_spec3_x*rus_s_3 - rus_c_3*rus_h_3_in_spec3_z) + (rus_c_1*rus_mu_1_t +
-            rus_mu_1_t_2*rus_s_1)*(rus_h_1_in_spec1_x + rus_c_2*rus_h_3_in_spec3_y +
-            rus_link1_mass*(rus_c_1*rus_potential_t + rus_potential_t_2*rus_s_1) -
-            rus_potential_t_4*rus_s_2) + (rus_c_1*rus_mu_1_t_2 -
-            rus_mu_1_t*rus_s_1)*(rus_h_1_in_spec1_y + rus_c_2*rus_potential_t_4 +
-            rus_h_3_in_spec3_y*rus_s_2 + rus_link1_mass*(rus_c_1*rus_potential_t_2 -
-            rus_potential_t*rus_s_1));
+            v.rus_c_3*rus_h_3_in_spec3_z + v.rus_e_1_in_axes3_x*rus_h_3_in_spec3_x) +
+            (v.rus_c_1*rus_mu_1_t + rus_mu_1_t_2*v.rus_s_1)*(rus_h_1_in_spec1_x +
+            rus_h_3_in_spec3_y*v.rus_s_2_t + rus_link1_mass*(v.rus_c_1*rus_potential_t +
+            rus_potential_t_2*v.rus_s_1) - v.rus_c_2*rus_potential_t_4) + (v.rus_c_1*rus_mu_1_t_2
+            - rus_mu_1_t*v.rus_s_1)*(rus_h_1_in_spec1_y + v.rus_c_2*rus_h_3_in_spec3_y +
+            rus_link1_mass*(v.rus_c_1*rus_potential_t_2 - rus_potential_t*v.rus_s_1) +
+            rus_potential_t_4*v.rus_s_2_t);
         /* (potential) potential energy */
         gather(&terms[0*count + k], add, rus_potential_t_5);  /* potential_of_legs */
         const real rus_rho2_1_t = m->rus_rho2_1_t[i];
         const real rus_size_t_3 = m->rus_size_t_3[i];
-        o[1*count + k] = UNLESS(magnitude(rus_rho2_1) > TOLERANCE*TOLERANCE*rus_rho2_1_t) +
-            UNLESS(magnitude(rus_rho2_2) > TOLERANCE*TOLERANCE*rus_size_t_3);
-        o[0*count + k] = UNLESS(rus_disc_1 >= 0);
+        o[1*count + k] = UNLESS(magnitude(v.rus_rho2_1) > TOLERANCE*TOLERANCE*rus_rho2_1_t) +
+            UNLESS(magnitude(v.rus_rho2_2) > TOLERANCE*TOLERANCE*rus_size_t_3);
+        o[0*count + k] = UNLESS(v.rus_disc_1 >= 0);
     }
 }
 
@@ -3992,7 +3084,7 @@ INLINE void potential_after(size_t w, const real *s, const real *sums, real *pot
     for (size_t k = 0; k < w; ++k) {
         /* (potential) potential energy */
         const real potential_of_legs = sums[0*w + k];
-        const real potential_t = s[3*w + k];
+        const real potential_t = s[0*w + k];
         const real potential_ = -potential_of_legs - potential_t;
         /* (potential) potential energy */
         potential[0*w + k] = potential_;
@@ -4001,12 +3093,10 @@ INLINE void potential_after(size_t w, const real *s, const real *sums, real *pot
 
 INLINE void potential_run(const prepared *m, const real *X, real *potential, verdict *t)
 {
-    real s[4] = {0};
-    real sums[1] = {0};
-    real terms_rus[LEGS(LEGS_OF_rus)] = {0};
-    real o_rus[2*LEGS(LEGS_OF_rus)] = {0};
+    real s[1] = {0}, sums[1] = {0};
+    real terms_rus[LEGS(LEGS_OF_rus)] = {0}, o_rus[2*LEGS(LEGS_OF_rus)] = {0};
     potential_before(m, 1, X, s);
-    potential_legs_rus(m, 1, 0, 1, s, 0, LEGS(LEGS_OF_rus), 0, terms_rus, o_rus);
+    potential_legs_rus(m, 1, 0, 1, 0, LEGS(LEGS_OF_rus), 0, X, terms_rus, o_rus);
     for (size_t leg = 0; leg < LEGS_OF_rus; ++leg) {
         potential_place_rus(1, LEGS(LEGS_OF_rus), o_rus, leg, t);
     }
@@ -4017,20 +3107,9 @@ INLINE void potential_run(const prepared *m, const real *X, real *potential, ver
 }
 
 /* ---- condition ---- */
-INLINE void condition_before(const prepared *m, size_t w, const real *X, real *s, real *lengths,
-    verdict *t)
+INLINE void condition_before(const prepared *m, size_t w, real *lengths, verdict *t)
 {
     for (size_t k = 0; k < w; ++k) {
-        /* X: named entries */
-        const real X_0 = X[0*w + k];
-        const real t_x = X_0;
-        const real X_1 = X[1*w + k];
-        const real t_y = X_1;
-        const real X_2 = X[2*w + k];
-        const real t_z = X_2;
-        s[0*w + k] = t_x;
-        s[1*w + k] = t_y;
-        s[2*w + k] = t_z;
         /* (legs_size) rms size of the legs, taken where the platform points coincide */
         const real legs_size = m->legs_size;
         lengths[1*w + k] = legs_size;
@@ -4038,124 +3117,21 @@ INLINE void condition_before(const prepared *m, size_t w, const real *X, real *s
     }
 }
 
-INLINE void condition_legs_rus(const prepared *m, size_t w, size_t leg, size_t legs, const real
-    *s, size_t states, size_t count, int add, real *terms, real *o)
+INLINE void condition_legs_rus(const prepared *m, size_t w, size_t leg, size_t legs, size_t
+    states, size_t count, int add, const real *X, real *terms, real *o)
 {
     for (size_t k = 0; k < count; ++k) {
         const size_t i = leg + legs*k;
         const size_t j = states*k;
-        /* (rus-S) from the base point to the connection point */
-        const real rus_base_point_x = m->rus_base_point_x[i];
-        const real rus_platform_point_x = m->rus_platform_point_x[i];
-        const real t_x = s[0*w + j];
-        const real rus_S_x = rus_platform_point_x + t_x - rus_base_point_x;
-        const real rus_base_point_y = m->rus_base_point_y[i];
-        const real rus_platform_point_y = m->rus_platform_point_y[i];
-        const real t_y = s[1*w + j];
-        const real rus_S_y = rus_platform_point_y + t_y - rus_base_point_y;
-        const real rus_base_point_z = m->rus_base_point_z[i];
-        const real rus_platform_point_z = m->rus_platform_point_z[i];
-        const real t_z = s[2*w + j];
-        const real rus_S_z = rus_platform_point_z + t_z - rus_base_point_z;
-        /* (rus-Kd_1) projection on the centre's direction, from the distance fixed by the joints beyond
-           joint 1 */
-        const real rus_Kd_1_t = rus_S_x*rus_S_x + rus_S_y*rus_S_y + rus_S_z*rus_S_z;
-        const real rus_J_3_t = m->rus_J_3_t[i];
-        const real rus_J_3_t_2 = m->rus_J_3_t_2[i];
-        const real rus_Kd_1 = rus_J_3_t + R(0.5)*rus_Kd_1_t - rus_J_3_t_2;
-        /* (rus-px_1) component along the reference direction */
-        const real rus_base_frame_xx = m->rus_base_frame_xx[i];
-        const real rus_base_frame_yx = m->rus_base_frame_yx[i];
-        const real rus_base_frame_zx = m->rus_base_frame_zx[i];
-        const real rus_px_1 = rus_S_x*rus_base_frame_xx + rus_S_y*rus_base_frame_yx +
-            rus_S_z*rus_base_frame_zx;
-        /* (rus-py_1) component across the reference direction */
-        const real rus_base_frame_xy = m->rus_base_frame_xy[i];
-        const real rus_base_frame_yy = m->rus_base_frame_yy[i];
-        const real rus_base_frame_zy = m->rus_base_frame_zy[i];
-        const real rus_py_1 = rus_S_x*rus_base_frame_xy + rus_S_y*rus_base_frame_yy +
-            rus_S_z*rus_base_frame_zy;
-        /* (rus-Kc_1) factor of the cosine in the equation of joint 1 */
-        const real rus_joint2_offset_x = m->rus_joint2_offset_x[i];
-        const real rus_Kc_1 = rus_joint2_offset_x*rus_px_1;
-        /* (rus-Ks_1) factor of the sine in the equation of joint 1 */
-        const real rus_Ks_1 = rus_joint2_offset_x*rus_py_1;
-        /* (rus-rho2_1) squared amplitude */
-        const real rus_rho2_1 = rus_Kc_1*rus_Kc_1 + rus_Ks_1*rus_Ks_1;
-        /* (rus-disc_1) discriminant */
-        const real rus_disc_1 = rus_rho2_1 - rus_Kd_1*rus_Kd_1;
-        /* (rus-root_1) root, with the sign of the branch */
-        const real rus_branch_1 = m->rus_branch_1[i];
-        const real rus_root_1 = rus_branch_1*root(rus_disc_1);
-        /* (rus-c_1) cosine of the angle of joint 1 from its reference direction */
-        const real inv_rus_rho2_1 = 1/rus_rho2_1;
-        const real rus_c_1 = inv_rus_rho2_1*(rus_Kc_1*rus_Kd_1 - rus_Ks_1*rus_root_1);
-        /* (rus-s_1) sine of the angle of joint 1 from its reference direction */
-        const real rus_s_1 = inv_rus_rho2_1*(rus_Kc_1*rus_root_1 + rus_Kd_1*rus_Ks_1);
-        /* (rus-xi_1) the vector from joint 1 to the connection point, resolved along link 1 */
-        const real inv_rus_size_t = m->inv_rus_size_t[i];
-        const real rus_xi_1_t = inv_rus_size_t*rus_joint2_offset_x*rus_root_1;
-        const real rus_base_frame_xz = m->rus_base_frame_xz[i];
-        const real rus_base_frame_yz = m->rus_base_frame_yz[i];
-        const real rus_base_frame_zz = m->rus_base_frame_zz[i];
-        const real rus_xi_1_in_axes1_z = rus_S_x*rus_base_frame_xz + rus_S_y*rus_base_frame_yz +
-            rus_S_z*rus_base_frame_zz;
-        /* (rus-x_2) from the origin of joint 2 to the connection point */
-        const real rus_x_2_in_axes1_x = inv_rus_size_t*rus_Kd_1*rus_joint2_offset_x -
-            rus_joint2_offset_x;
-        /* (rus-rho2_2) squared amplitude */
-        const real rus_rho2_2 = rus_x_2_in_axes1_x*rus_x_2_in_axes1_x + rus_xi_1_t*rus_xi_1_t;
-        /* (rus-root_2) root, with the sign of the branch */
-        const real rus_branch_2 = m->rus_branch_2[i];
-        const real rus_root_2 = rus_branch_2*root(rus_rho2_2);
-        /* (rus-c_2) cosine of the angle of joint 2 from its reference direction */
-        const real inv_rus_rho2_2 = 1/rus_rho2_2;
-        const real rus_c_2 = inv_rus_rho2_2*rus_root_2*rus_xi_1_t;
-        /* (rus-s_2) sine of the angle of joint 2 from its reference direction */
-        const real rus_s_2 = inv_rus_rho2_2*rus_root_2*rus_x_2_in_axes1_x;
-        /* (rus-c_3) cosine of the angle of joint 3 from its reference direction */
-        const real inv_rus_size_t_2 = m->inv_rus_size_t_2[i];
-        const real rus_platform_joint_offset_x = m->rus_platform_joint_offset_x[i];
-        const real rus_c_3 = -inv_rus_size_t_2*rus_platform_joint_offset_x*rus_root_2;
-        /* (rus-s_3) sine of the angle of joint 3 from its reference direction */
-        const real rus_s_3 = inv_rus_size_t_2*rus_platform_joint_offset_x*rus_xi_1_in_axes1_z;
-        /* (rus-r_1) from joint 1 to the connection point, along the links */
-        const real rus_r_1_t = -rus_c_3*rus_platform_joint_offset_x;
-        const real rus_r_1_in_axes1_x = rus_joint2_offset_x + rus_r_1_t*rus_s_2;
-        /* (rus-v_1) velocity of the connection point per rate of joint 1 */
-        const real rus_v_1_t = -rus_c_3*(rus_c_2*rus_r_1_in_axes1_x - rus_c_2*rus_r_1_t*rus_s_2);
-        /* (rus-w_1) reciprocal vector 1 */
-        const real rus_w_1_t = rus_c_1*rus_c_2 - rus_s_1*rus_s_2;
-        const real rus_w_1_t_2 = rus_c_1*rus_s_2 + rus_c_2*rus_s_1;
-        const real axis_z_rus_axes3_x = rus_base_frame_xx*rus_w_1_t +
-            rus_base_frame_xy*rus_w_1_t_2;
-        const real axis_z_rus_axes3_y = rus_base_frame_yx*rus_w_1_t +
-            rus_base_frame_yy*rus_w_1_t_2;
-        const real axis_z_rus_axes3_z = rus_base_frame_zx*rus_w_1_t +
-            rus_base_frame_zy*rus_w_1_t_2;
-        const real rus_w_1_t_3 = rus_s_2*rus_s_3;
-        const real rus_w_1_t_4 = rus_c_2*rus_s_3;
-        const real rus_w_1_t_5 = rus_c_1*rus_w_1_t_3 + rus_s_1*rus_w_1_t_4;
-        const real rus_w_1_t_6 = rus_s_1*rus_w_1_t_3 - rus_c_1*rus_w_1_t_4;
-        const real axis_y_rus_axes3_x = rus_base_frame_xx*rus_w_1_t_5 +
-            rus_base_frame_xy*rus_w_1_t_6 + rus_base_frame_xz*rus_c_3;
-        const real axis_y_rus_axes3_y = rus_base_frame_yx*rus_w_1_t_5 +
-            rus_base_frame_yy*rus_w_1_t_6 + rus_base_frame_yz*rus_c_3;
-        const real axis_y_rus_axes3_z = rus_base_frame_zx*rus_w_1_t_5 +
-            rus_base_frame_zy*rus_w_1_t_6 + rus_base_frame_zz*rus_c_3;
-        const real inv_rus_v_1_t = 1/rus_v_1_t;
-        const real rus_w_1_t_7 = inv_rus_v_1_t*(axis_y_rus_axes3_y*axis_z_rus_axes3_z -
-            axis_y_rus_axes3_z*axis_z_rus_axes3_y);
-        const real rus_w_1_t_8 = inv_rus_v_1_t*(axis_y_rus_axes3_z*axis_z_rus_axes3_x -
-            axis_y_rus_axes3_x*axis_z_rus_axes3_z);
-        const real rus_w_1_t_9 = inv_rus_v_1_t*(axis_y_rus_axes3_x*axis_z_rus_axes3_y -
-            axis_y_rus_axes3_y*axis_z_rus_axes3_x);
+        values_rus v;
+        stage_rus_X(m, w, i, j, X, &v);
+        stage_rus_H_condition(&v);
         /* (rus-G) force at the connection point that balances the leg's inertia and weight along all
            degrees of freedom */
-        const real rus_pivot_size = magnitude(rus_rho2_1);
-        const real rus_pivot_size_2 = magnitude(rus_rho2_2);
-        const real rus_pivot_size_3 = magnitude(rus_r_1_t);
-        const real rus_pivot_size_4 = magnitude(rus_v_1_t);
+        const real rus_pivot_size = magnitude(v.rus_rho2_1);
+        const real rus_pivot_size_2 = magnitude(v.rus_rho2_2);
+        const real rus_pivot_size_3 = magnitude(v.rus_r_1_t);
+        const real rus_pivot_size_4 = magnitude(v.rus_v_1_t);
         const real inv_rus_rho2_1_t = m->inv_rus_rho2_1_t[i];
         const real inv_rus_size = m->inv_rus_size[i];
         const real inv_rus_size_t_3 = m->inv_rus_size_t_3[i];
@@ -4164,33 +3140,36 @@ INLINE void condition_legs_rus(const prepared *m, size_t w, size_t leg, size_t l
             root(inv_rus_size_t_3*rus_pivot_size_2));
         /* (spread) rms distance of the platform points from their centroid */
         const real b_c_in_platform_x = m->b_c_in_platform_x;
+        const real rus_platform_point_x = m->rus_platform_point_x[i];
         const real rus_spread_t = b_c_in_platform_x - rus_platform_point_x;
         const real b_c_in_platform_y = m->b_c_in_platform_y;
+        const real rus_platform_point_y = m->rus_platform_point_y[i];
         const real rus_spread_t_2 = b_c_in_platform_y - rus_platform_point_y;
         const real b_c_in_platform_z = m->b_c_in_platform_z;
+        const real rus_platform_point_z = m->rus_platform_point_z[i];
         const real rus_spread_t_3 = b_c_in_platform_z - rus_platform_point_z;
         const real rus_spread_t_4 = rus_spread_t*rus_spread_t + rus_spread_t_2*rus_spread_t_2 +
             rus_spread_t_3*rus_spread_t_3;
         /* (spread) rms distance of the platform points from their centroid */
         gather(&terms[0*count + k], add, rus_spread_t_4);  /* spread_rus */
         /* (rus-w_1) reciprocal vector 1 */
-        o[0*count + k] = -rus_w_1_t_7;
-        o[1*count + k] = -rus_w_1_t_8;
-        o[2*count + k] = -rus_w_1_t_9;
+        o[0*count + k] = -v.rus_w_1_t_7;
+        o[1*count + k] = -v.rus_w_1_t_8;
+        o[2*count + k] = -v.rus_w_1_t_9;
         /* (rus-G) force at the connection point that balances the leg's inertia and weight along all
            degrees of freedom */
         o[3*count + k] = rus_least_pivots;
-        o[4*count + k] = rus_disc_1;
-        o[7*count + k] = (rus_w_1_t_7 + rus_w_1_t_8) + (rus_w_1_t_9 + (rus_least_pivots +
-            rus_disc_1));
+        o[4*count + k] = v.rus_disc_1;
+        o[7*count + k] = (v.rus_w_1_t_7 + v.rus_w_1_t_8) + (v.rus_w_1_t_9 + (rus_least_pivots +
+            v.rus_disc_1));
         const real rus_rho2_1_t = m->rus_rho2_1_t[i];
         const real rus_size_t_3 = m->rus_size_t_3[i];
         const real rus_size = m->rus_size[i];
-        o[6*count + k] = UNLESS(magnitude(rus_rho2_1) > TOLERANCE*TOLERANCE*rus_rho2_1_t) +
-            UNLESS(magnitude(rus_rho2_2) > TOLERANCE*TOLERANCE*rus_size_t_3) +
-            UNLESS(magnitude(rus_r_1_t) > TOLERANCE*rus_size) + UNLESS(magnitude(rus_v_1_t) >
+        o[6*count + k] = UNLESS(magnitude(v.rus_rho2_1) > TOLERANCE*TOLERANCE*rus_rho2_1_t) +
+            UNLESS(magnitude(v.rus_rho2_2) > TOLERANCE*TOLERANCE*rus_size_t_3) +
+            UNLESS(magnitude(v.rus_r_1_t) > TOLERANCE*rus_size) + UNLESS(magnitude(v.rus_v_1_t) >
             TOLERANCE*rus_size);
-        o[5*count + k] = UNLESS(rus_disc_1 >= 0);
+        o[5*count + k] = UNLESS(v.rus_disc_1 >= 0);
     }
 }
 
@@ -4198,7 +3177,7 @@ INLINE void condition_place_rus(size_t w, size_t count, const real *o, size_t le
     real *H, real *pivots, real *reach, verdict *t)
 {
     for (size_t k = 0; k < w; ++k) {
-        H[(0*NU + leg)*w + k] = o[0*count + first + k];
+        H[leg*w + k] = o[0*count + first + k];
         H[(NU + leg)*w + k] = o[1*count + first + k];
         H[(2*NU + leg)*w + k] = o[2*count + first + k];
         pivots[leg*w + k] = o[3*count + first + k];
@@ -4226,12 +3205,10 @@ INLINE void condition_after(const prepared *m, size_t w, const real *sums, real 
 INLINE void condition_run(const prepared *m, const real *X, real *H, real *lengths, real *pivots,
     real *reach, verdict *t)
 {
-    real s[3] = {0};
     real sums[1] = {0};
-    real terms_rus[LEGS(LEGS_OF_rus)] = {0};
-    real o_rus[8*LEGS(LEGS_OF_rus)] = {0};
-    condition_before(m, 1, X, s, lengths, t);
-    condition_legs_rus(m, 1, 0, 1, s, 0, LEGS(LEGS_OF_rus), 0, terms_rus, o_rus);
+    real terms_rus[LEGS(LEGS_OF_rus)] = {0}, o_rus[8*LEGS(LEGS_OF_rus)] = {0};
+    condition_before(m, 1, lengths, t);
+    condition_legs_rus(m, 1, 0, 1, 0, LEGS(LEGS_OF_rus), 0, X, terms_rus, o_rus);
     for (size_t leg = 0; leg < LEGS_OF_rus; ++leg) {
         condition_place_rus(1, LEGS(LEGS_OF_rus), o_rus, leg, leg, H, pivots, reach, t);
     }
@@ -4736,11 +3713,56 @@ INLINE void condition_one(const prepared *m, const real *X, real *sigma_out, rea
     }
 }
 
+INLINE void manipulability_one(const prepared *m, const real *X, real *measure_out, real
+    *isotropy_out, int *code)
+{
+    real H[NV*NU] = {0}, lengths[2] = {0}, pivots[NL] = {0}, reach[NL] = {0}, singular_values_1[NV] =
+        {0}, measure[1] = {0}, isotropy[1] = {0};
+    verdict why;
+    start(1, &why);
+    check(NQ, 1, X, why.invalid);
+    condition_run(m, X, H, lengths, pivots, reach, &why);
+    singular_values(NV, NU, H, singular_values_1);
+    spread(NV, singular_values_1, measure, isotropy);
+    check(1, 1, measure, why.overflow);
+    check(1, 1, isotropy, why.overflow);
+    judge(&why, code);
+    copy(1, measure, measure_out);
+    copy(1, isotropy, isotropy_out);
+    if (*code != OK) {
+        refuse(1, measure_out);
+        refuse(1, isotropy_out);
+    }
+}
+
+INLINE void singularity_distance_one(const prepared *m, const real *X, real *actuators_out, real
+    *legs_out, int *code)
+{
+    real H[NV*NU] = {0}, lengths[2] = {0}, pivots[NL] = {0}, reach[NL] = {0}, singular_values_1[NV] =
+        {0}, spread_1[1] = {0}, actuators[1] = {0}, legs[1] = {0};
+    verdict why;
+    start(1, &why);
+    check(NQ, 1, X, why.invalid);
+    condition_run(m, X, H, lengths, pivots, reach, &why);
+    singular_values(NV, NU, H, singular_values_1);
+    spread(NV, singular_values_1, spread_1, actuators);
+    least_entry(NL, pivots, legs);
+    check(1, 1, actuators, why.overflow);
+    check(1, 1, legs, why.overflow);
+    judge(&why, code);
+    copy(1, actuators, actuators_out);
+    copy(1, legs, legs_out);
+    if (*code != OK) {
+        refuse(1, actuators_out);
+        refuse(1, legs_out);
+    }
+}
+
 static void mismatch_one(const prepared *m, const real *X, const real *q_actuated, real *gap_out,
     int *code)
 {
     static const size_t places_gap[] = {0, 1, 2};
-    real q[NJ] = {0}, take_1[3] = {0}, subtract_1[NU] = {0}, gap[NU] = {0};
+    real q[NJ] = {0}, q_of_inverse_kinematics_from_0[3] = {0}, subtract_1[NU] = {0}, gap[NU] = {0};
     verdict why;
     start(1, &why);
     const real total_in = total(X, NQ) + total(q_actuated, NU);
@@ -4749,9 +3771,9 @@ static void mismatch_one(const prepared *m, const real *X, const real *q_actuate
         check(NU, 1, q_actuated, why.invalid);
     }
     inverse_kinematics_run(m, X, q, &why);
-    take(3, 1, delta_ACTUATED, q, take_1);
+    take(3, 1, delta_ACTUATED, q, q_of_inverse_kinematics_from_0);
     for (size_t i = 0; i < NU; ++i) {
-        subtract_1[i] = q_actuated[i] - take_1[i];
+        subtract_1[i] = q_actuated[i] - q_of_inverse_kinematics_from_0[i];
     }
     for (size_t i = 0; i < NU; ++i) {
         gap[i] = subtract_1[i];
@@ -5186,274 +4208,258 @@ INLINE void interpolate_one(const real *X0, const real *X1, const real *s, real 
 
 /* ---- one state, and batches ---- */
 
-int delta_M(const delta_model *model, const delta_real *X, delta_real *M)
+int delta_M(const prepared *model, const real *X, real *M)
 {
     int code;
     M_one(model, X, M, &code);
     return code;
 }
 
-size_t delta_M_batch(const delta_model *model, size_t n, const delta_real *X, delta_real *M, int
-    *status)
+size_t delta_M_batch(const prepared *model, size_t n, const real *X, real *M, int *status)
 {
-    size_t failed = 0, i = 0;
-    for (; LANES > 1 && i + LANES <= n; i += LANES) {
-        int codes[LANES];
-        M_lanes(model, X + NQ*i, M + NV*NV*i, codes);
-        for (size_t k = 0; k < LANES; ++k) {
+    size_t failed = 0, w;
+    for (size_t i = 0; i < n; i += w) {
+        int codes[LANES] = {INVALID};
+        w = LANES > 1 && i + LANES <= n ? LANES : 1;
+        if (w > 1) {
+            M_lanes(model, X + NQ*i, M + NV*NV*i, codes);
+        }
+        for (size_t k = 0; k < w; ++k) {
             if (codes[k] != OK) {
                 codes[k] = delta_M(model, X + NQ*(i + k), M + NV*NV*(i + k));
             }
         }
-        failed += record(codes, LANES, status ? status + i : NULL);
-    }
-    for (; i < n; ++i) {
-        const int code = delta_M(model, X + NQ*i, M + NV*NV*i);
-        failed += record(&code, 1, status ? status + i : NULL);
+        failed += record(codes, w, status ? status + i : NULL);
     }
     return failed;
 }
 
-int delta_Z(const delta_model *model, const delta_real *X, const delta_real *V, delta_real *Z)
+int delta_Z(const prepared *model, const real *X, const real *V, real *Z)
 {
     int code;
     Z_one(model, X, V, Z, &code);
     return code;
 }
 
-size_t delta_Z_batch(const delta_model *model, size_t n, const delta_real *X, const delta_real *V,
-    delta_real *Z, int *status)
+size_t delta_Z_batch(const prepared *model, size_t n, const real *X, const real *V, real *Z, int
+    *status)
 {
-    size_t failed = 0, i = 0;
-    for (; LANES > 1 && i + LANES <= n; i += LANES) {
-        int codes[LANES];
-        Z_lanes(model, X + NQ*i, V + NV*i, Z + NV*i, codes);
-        for (size_t k = 0; k < LANES; ++k) {
+    size_t failed = 0, w;
+    for (size_t i = 0; i < n; i += w) {
+        int codes[LANES] = {INVALID};
+        w = LANES > 1 && i + LANES <= n ? LANES : 1;
+        if (w > 1) {
+            Z_lanes(model, X + NQ*i, V + NV*i, Z + NV*i, codes);
+        }
+        for (size_t k = 0; k < w; ++k) {
             if (codes[k] != OK) {
                 codes[k] = delta_Z(model, X + NQ*(i + k), V + NV*(i + k), Z + NV*(i + k));
             }
         }
-        failed += record(codes, LANES, status ? status + i : NULL);
-    }
-    for (; i < n; ++i) {
-        const int code = delta_Z(model, X + NQ*i, V + NV*i, Z + NV*i);
-        failed += record(&code, 1, status ? status + i : NULL);
+        failed += record(codes, w, status ? status + i : NULL);
     }
     return failed;
 }
 
-int delta_H(const delta_model *model, const delta_real *X, delta_real *H)
+int delta_H(const prepared *model, const real *X, real *H)
 {
     int code;
     H_one(model, X, H, &code);
     return code;
 }
 
-size_t delta_H_batch(const delta_model *model, size_t n, const delta_real *X, delta_real *H, int
-    *status)
+size_t delta_H_batch(const prepared *model, size_t n, const real *X, real *H, int *status)
 {
-    size_t failed = 0, i = 0;
-    for (; LANES > 1 && i + LANES <= n; i += LANES) {
-        int codes[LANES];
-        H_lanes(model, X + NQ*i, H + NV*NU*i, codes);
-        for (size_t k = 0; k < LANES; ++k) {
+    size_t failed = 0, w;
+    for (size_t i = 0; i < n; i += w) {
+        int codes[LANES] = {INVALID};
+        w = LANES > 1 && i + LANES <= n ? LANES : 1;
+        if (w > 1) {
+            H_lanes(model, X + NQ*i, H + NV*NU*i, codes);
+        }
+        for (size_t k = 0; k < w; ++k) {
             if (codes[k] != OK) {
                 codes[k] = delta_H(model, X + NQ*(i + k), H + NV*NU*(i + k));
             }
         }
-        failed += record(codes, LANES, status ? status + i : NULL);
-    }
-    for (; i < n; ++i) {
-        const int code = delta_H(model, X + NQ*i, H + NV*NU*i);
-        failed += record(&code, 1, status ? status + i : NULL);
+        failed += record(codes, w, status ? status + i : NULL);
     }
     return failed;
 }
 
-int delta_inverse_kinematics(const delta_model *model, const delta_real *X, delta_real *q)
+int delta_inverse_kinematics(const prepared *model, const real *X, real *q)
 {
     int code;
     inverse_kinematics_one(model, X, q, &code);
     return code;
 }
 
-size_t delta_inverse_kinematics_batch(const delta_model *model, size_t n, const delta_real *X,
-    delta_real *q, int *status)
+size_t delta_inverse_kinematics_batch(const prepared *model, size_t n, const real *X, real *q, int
+    *status)
 {
-    size_t failed = 0, i = 0;
-    for (; LANES > 1 && i + LANES <= n; i += LANES) {
-        int codes[LANES];
-        inverse_kinematics_lanes(model, X + NQ*i, q + NJ*i, codes);
-        for (size_t k = 0; k < LANES; ++k) {
+    size_t failed = 0, w;
+    for (size_t i = 0; i < n; i += w) {
+        int codes[LANES] = {INVALID};
+        w = LANES > 1 && i + LANES <= n ? LANES : 1;
+        if (w > 1) {
+            inverse_kinematics_lanes(model, X + NQ*i, q + NJ*i, codes);
+        }
+        for (size_t k = 0; k < w; ++k) {
             if (codes[k] != OK) {
                 codes[k] = delta_inverse_kinematics(model, X + NQ*(i + k), q + NJ*(i + k));
             }
         }
-        failed += record(codes, LANES, status ? status + i : NULL);
-    }
-    for (; i < n; ++i) {
-        const int code = delta_inverse_kinematics(model, X + NQ*i, q + NJ*i);
-        failed += record(&code, 1, status ? status + i : NULL);
+        failed += record(codes, w, status ? status + i : NULL);
     }
     return failed;
 }
 
-int delta_joint_rates(const delta_model *model, const delta_real *X, const delta_real *V,
-    delta_real *rates)
+int delta_joint_rates(const prepared *model, const real *X, const real *V, real *rates)
 {
     int code;
     joint_rates_one(model, X, V, rates, &code);
     return code;
 }
 
-size_t delta_joint_rates_batch(const delta_model *model, size_t n, const delta_real *X, const
-    delta_real *V, delta_real *rates, int *status)
+size_t delta_joint_rates_batch(const prepared *model, size_t n, const real *X, const real *V, real
+    *rates, int *status)
 {
-    size_t failed = 0, i = 0;
-    for (; LANES > 1 && i + LANES <= n; i += LANES) {
-        int codes[LANES];
-        joint_rates_lanes(model, X + NQ*i, V + NV*i, rates + NJ*i, codes);
-        for (size_t k = 0; k < LANES; ++k) {
+    size_t failed = 0, w;
+    for (size_t i = 0; i < n; i += w) {
+        int codes[LANES] = {INVALID};
+        w = LANES > 1 && i + LANES <= n ? LANES : 1;
+        if (w > 1) {
+            joint_rates_lanes(model, X + NQ*i, V + NV*i, rates + NJ*i, codes);
+        }
+        for (size_t k = 0; k < w; ++k) {
             if (codes[k] != OK) {
                 codes[k] = delta_joint_rates(model, X + NQ*(i + k), V + NV*(i + k), rates + NJ*(i + k));
             }
         }
-        failed += record(codes, LANES, status ? status + i : NULL);
-    }
-    for (; i < n; ++i) {
-        const int code = delta_joint_rates(model, X + NQ*i, V + NV*i, rates + NJ*i);
-        failed += record(&code, 1, status ? status + i : NULL);
+        failed += record(codes, w, status ? status + i : NULL);
     }
     return failed;
 }
 
-int delta_joint_accelerations(const delta_model *model, const delta_real *X, const delta_real *V,
-    const delta_real *A, delta_real *accelerations)
+int delta_joint_accelerations(const prepared *model, const real *X, const real *V, const real *A,
+    real *accelerations)
 {
     int code;
     joint_accelerations_one(model, X, V, A, accelerations, &code);
     return code;
 }
 
-size_t delta_joint_accelerations_batch(const delta_model *model, size_t n, const delta_real *X,
-    const delta_real *V, const delta_real *A, delta_real *accelerations, int *status)
+size_t delta_joint_accelerations_batch(const prepared *model, size_t n, const real *X, const real
+    *V, const real *A, real *accelerations, int *status)
 {
-    size_t failed = 0, i = 0;
-    for (; LANES > 1 && i + LANES <= n; i += LANES) {
-        int codes[LANES];
-        joint_accelerations_lanes(model, X + NQ*i, V + NV*i, A + NV*i, accelerations + NJ*i, codes);
-        for (size_t k = 0; k < LANES; ++k) {
+    size_t failed = 0, w;
+    for (size_t i = 0; i < n; i += w) {
+        int codes[LANES] = {INVALID};
+        w = LANES > 1 && i + LANES <= n ? LANES : 1;
+        if (w > 1) {
+            joint_accelerations_lanes(model, X + NQ*i, V + NV*i, A + NV*i, accelerations + NJ*i, codes);
+        }
+        for (size_t k = 0; k < w; ++k) {
             if (codes[k] != OK) {
                 codes[k] = delta_joint_accelerations(model, X + NQ*(i + k), V + NV*(i + k), A + NV*(i + k),
                     accelerations + NJ*(i + k));
             }
         }
-        failed += record(codes, LANES, status ? status + i : NULL);
-    }
-    for (; i < n; ++i) {
-        const int code = delta_joint_accelerations(model, X + NQ*i, V + NV*i, A + NV*i, accelerations +
-            NJ*i);
-        failed += record(&code, 1, status ? status + i : NULL);
+        failed += record(codes, w, status ? status + i : NULL);
     }
     return failed;
 }
 
-int delta_dynamics(const delta_model *model, const delta_real *X, const delta_real *V, delta_real
-    *M, delta_real *Z, delta_real *H)
+int delta_dynamics(const prepared *model, const real *X, const real *V, real *M, real *Z, real *H)
 {
     int code;
     dynamics_one(model, X, V, M, Z, H, &code);
     return code;
 }
 
-size_t delta_dynamics_batch(const delta_model *model, size_t n, const delta_real *X, const
-    delta_real *V, delta_real *M, delta_real *Z, delta_real *H, int *status)
+size_t delta_dynamics_batch(const prepared *model, size_t n, const real *X, const real *V, real
+    *M, real *Z, real *H, int *status)
 {
-    size_t failed = 0, i = 0;
-    for (; LANES > 1 && i + LANES <= n; i += LANES) {
-        int codes[LANES];
-        dynamics_lanes(model, X + NQ*i, V + NV*i, M + NV*NV*i, Z + NV*i, H + NV*NU*i, codes);
-        for (size_t k = 0; k < LANES; ++k) {
+    size_t failed = 0, w;
+    for (size_t i = 0; i < n; i += w) {
+        int codes[LANES] = {INVALID};
+        w = LANES > 1 && i + LANES <= n ? LANES : 1;
+        if (w > 1) {
+            dynamics_lanes(model, X + NQ*i, V + NV*i, M + NV*NV*i, Z + NV*i, H + NV*NU*i, codes);
+        }
+        for (size_t k = 0; k < w; ++k) {
             if (codes[k] != OK) {
                 codes[k] = delta_dynamics(model, X + NQ*(i + k), V + NV*(i + k), M + NV*NV*(i + k), Z + NV*(i +
                     k), H + NV*NU*(i + k));
             }
         }
-        failed += record(codes, LANES, status ? status + i : NULL);
-    }
-    for (; i < n; ++i) {
-        const int code = delta_dynamics(model, X + NQ*i, V + NV*i, M + NV*NV*i, Z + NV*i, H + NV*NU*i);
-        failed += record(&code, 1, status ? status + i : NULL);
+        failed += record(codes, w, status ? status + i : NULL);
     }
     return failed;
 }
 
-int delta_inverse_dynamics(const delta_model *model, const delta_real *X, const delta_real *V,
-    const delta_real *A, const delta_real *wrench, delta_real *tau)
+int delta_inverse_dynamics(const prepared *model, const real *X, const real *V, const real *A,
+    const real *wrench, real *tau)
 {
     int code;
     inverse_dynamics_one(model, X, V, A, wrench, tau, &code);
     return code;
 }
 
-size_t delta_inverse_dynamics_batch(const delta_model *model, size_t n, const delta_real *X, const
-    delta_real *V, const delta_real *A, const delta_real *wrench, delta_real *tau, int *status)
+size_t delta_inverse_dynamics_batch(const prepared *model, size_t n, const real *X, const real *V,
+    const real *A, const real *wrench, real *tau, int *status)
 {
-    size_t failed = 0, i = 0;
-    for (; LANES > 1 && i + LANES <= n; i += LANES) {
-        int codes[LANES];
-        inverse_dynamics_lanes(model, X + NQ*i, V + NV*i, A + NV*i, wrench ? wrench + NW*i : NULL, tau +
-            NU*i, codes);
-        for (size_t k = 0; k < LANES; ++k) {
+    size_t failed = 0, w;
+    for (size_t i = 0; i < n; i += w) {
+        int codes[LANES] = {INVALID};
+        w = LANES > 1 && i + LANES <= n ? LANES : 1;
+        if (w > 1) {
+            inverse_dynamics_lanes(model, X + NQ*i, V + NV*i, A + NV*i, wrench ? wrench + NW*i : NULL, tau +
+                NU*i, codes);
+        }
+        for (size_t k = 0; k < w; ++k) {
             if (codes[k] != OK) {
                 codes[k] = delta_inverse_dynamics(model, X + NQ*(i + k), V + NV*(i + k), A + NV*(i + k), wrench ?
                     wrench + NW*(i + k) : NULL, tau + NU*(i + k));
             }
         }
-        failed += record(codes, LANES, status ? status + i : NULL);
-    }
-    for (; i < n; ++i) {
-        const int code = delta_inverse_dynamics(model, X + NQ*i, V + NV*i, A + NV*i, wrench ? wrench +
-            NW*i : NULL, tau + NU*i);
-        failed += record(&code, 1, status ? status + i : NULL);
+        failed += record(codes, w, status ? status + i : NULL);
     }
     return failed;
 }
 
-int delta_forward_dynamics(const delta_model *model, const delta_real *X, const delta_real *V,
-    const delta_real *tau, const delta_real *wrench, delta_real *A)
+int delta_forward_dynamics(const prepared *model, const real *X, const real *V, const real *tau,
+    const real *wrench, real *A)
 {
     int code;
     forward_dynamics_one(model, X, V, tau, wrench, A, &code);
     return code;
 }
 
-size_t delta_forward_dynamics_batch(const delta_model *model, size_t n, const delta_real *X, const
-    delta_real *V, const delta_real *tau, const delta_real *wrench, delta_real *A, int *status)
+size_t delta_forward_dynamics_batch(const prepared *model, size_t n, const real *X, const real *V,
+    const real *tau, const real *wrench, real *A, int *status)
 {
-    size_t failed = 0, i = 0;
-    for (; LANES > 1 && i + LANES <= n; i += LANES) {
-        int codes[LANES];
-        forward_dynamics_lanes(model, X + NQ*i, V + NV*i, tau + NU*i, wrench ? wrench + NW*i : NULL, A +
-            NV*i, codes);
-        for (size_t k = 0; k < LANES; ++k) {
+    size_t failed = 0, w;
+    for (size_t i = 0; i < n; i += w) {
+        int codes[LANES] = {INVALID};
+        w = LANES > 1 && i + LANES <= n ? LANES : 1;
+        if (w > 1) {
+            forward_dynamics_lanes(model, X + NQ*i, V + NV*i, tau + NU*i, wrench ? wrench + NW*i : NULL, A +
+                NV*i, codes);
+        }
+        for (size_t k = 0; k < w; ++k) {
             if (codes[k] != OK) {
                 codes[k] = delta_forward_dynamics(model, X + NQ*(i + k), V + NV*(i + k), tau + NU*(i + k), wrench
                     ? wrench + NW*(i + k) : NULL, A + NV*(i + k));
             }
         }
-        failed += record(codes, LANES, status ? status + i : NULL);
-    }
-    for (; i < n; ++i) {
-        const int code = delta_forward_dynamics(model, X + NQ*i, V + NV*i, tau + NU*i, wrench ? wrench +
-            NW*i : NULL, A + NV*i);
-        failed += record(&code, 1, status ? status + i : NULL);
+        failed += record(codes, w, status ? status + i : NULL);
     }
     return failed;
 }
 
-int delta_complete_acceleration(const delta_model *model, const delta_real *X, const delta_real
-    *V, const delta_real *A, const delta_real *wrench, delta_real *completed)
+int delta_complete_acceleration(const prepared *model, const real *X, const real *V, const real
+    *A, const real *wrench, real *completed)
 {
     int code;
     (void)model;
@@ -5464,12 +4470,11 @@ int delta_complete_acceleration(const delta_model *model, const delta_real *X, c
     return code;
 }
 
-size_t delta_complete_acceleration_batch(const delta_model *model, size_t n, const delta_real *X,
-    const delta_real *V, const delta_real *A, const delta_real *wrench, delta_real *completed, int
-    *status)
+size_t delta_complete_acceleration_batch(const prepared *model, size_t n, const real *X, const
+    real *V, const real *A, const real *wrench, real *completed, int *status)
 {
-    size_t failed = 0, i = 0;
-    for (; i < n; ++i) {
+    size_t failed = 0;
+    for (size_t i = 0; i < n; ++i) {
         const int code = delta_complete_acceleration(model, X + NQ*i, V + NV*i, A + NV*i, wrench ? wrench
             + NW*i : NULL, completed + NV*i);
         failed += record(&code, 1, status ? status + i : NULL);
@@ -5477,19 +4482,19 @@ size_t delta_complete_acceleration_batch(const delta_model *model, size_t n, con
     return failed;
 }
 
-int delta_leg_reactions(const delta_model *model, const delta_real *X, const delta_real *V, const
-    delta_real *A, const delta_real *wrench, delta_real *forces)
+int delta_leg_reactions(const prepared *model, const real *X, const real *V, const real *A, const
+    real *wrench, real *forces)
 {
     int code;
     leg_reactions_one(model, X, V, A, wrench, forces, &code);
     return code;
 }
 
-size_t delta_leg_reactions_batch(const delta_model *model, size_t n, const delta_real *X, const
-    delta_real *V, const delta_real *A, const delta_real *wrench, delta_real *forces, int *status)
+size_t delta_leg_reactions_batch(const prepared *model, size_t n, const real *X, const real *V,
+    const real *A, const real *wrench, real *forces, int *status)
 {
-    size_t failed = 0, i = 0;
-    for (; i < n; ++i) {
+    size_t failed = 0;
+    for (size_t i = 0; i < n; ++i) {
         const int code = delta_leg_reactions(model, X + NQ*i, V + NV*i, A + NV*i, wrench ? wrench + NW*i :
             NULL, forces + 9*i);
         failed += record(&code, 1, status ? status + i : NULL);
@@ -5497,65 +4502,99 @@ size_t delta_leg_reactions_batch(const delta_model *model, size_t n, const delta
     return failed;
 }
 
-int delta_energy(const delta_model *model, const delta_real *X, const delta_real *V, delta_real
-    *kinetic, delta_real *potential)
+int delta_energy(const prepared *model, const real *X, const real *V, real *kinetic, real
+    *potential)
 {
     int code;
     energy_one(model, X, V, kinetic, potential, &code);
     return code;
 }
 
-size_t delta_energy_batch(const delta_model *model, size_t n, const delta_real *X, const
-    delta_real *V, delta_real *kinetic, delta_real *potential, int *status)
+size_t delta_energy_batch(const prepared *model, size_t n, const real *X, const real *V, real
+    *kinetic, real *potential, int *status)
 {
-    size_t failed = 0, i = 0;
-    for (; i < n; ++i) {
+    size_t failed = 0;
+    for (size_t i = 0; i < n; ++i) {
         const int code = delta_energy(model, X + NQ*i, V + NV*i, kinetic + i, potential + i);
         failed += record(&code, 1, status ? status + i : NULL);
     }
     return failed;
 }
 
-int delta_condition(const delta_model *model, const delta_real *X, delta_real *sigma, delta_real
-    *legs)
+int delta_condition(const prepared *model, const real *X, real *sigma, real *legs)
 {
     int code;
     condition_one(model, X, sigma, legs, &code);
     return code;
 }
 
-size_t delta_condition_batch(const delta_model *model, size_t n, const delta_real *X, delta_real
-    *sigma, delta_real *legs, int *status)
+size_t delta_condition_batch(const prepared *model, size_t n, const real *X, real *sigma, real
+    *legs, int *status)
 {
-    size_t failed = 0, i = 0;
-    for (; i < n; ++i) {
+    size_t failed = 0;
+    for (size_t i = 0; i < n; ++i) {
         const int code = delta_condition(model, X + NQ*i, sigma + 3*i, legs + 3*i);
         failed += record(&code, 1, status ? status + i : NULL);
     }
     return failed;
 }
 
-int delta_forward_kinematics(const delta_model *model, const delta_real *q_actuated, const
-    delta_real *X0, delta_real *X)
+int delta_manipulability(const prepared *model, const real *X, real *measure, real *isotropy)
+{
+    int code;
+    manipulability_one(model, X, measure, isotropy, &code);
+    return code;
+}
+
+size_t delta_manipulability_batch(const prepared *model, size_t n, const real *X, real *measure,
+    real *isotropy, int *status)
+{
+    size_t failed = 0;
+    for (size_t i = 0; i < n; ++i) {
+        const int code = delta_manipulability(model, X + NQ*i, measure + i, isotropy + i);
+        failed += record(&code, 1, status ? status + i : NULL);
+    }
+    return failed;
+}
+
+int delta_singularity_distance(const prepared *model, const real *X, real *actuators, real *legs)
+{
+    int code;
+    singularity_distance_one(model, X, actuators, legs, &code);
+    return code;
+}
+
+size_t delta_singularity_distance_batch(const prepared *model, size_t n, const real *X, real
+    *actuators, real *legs, int *status)
+{
+    size_t failed = 0;
+    for (size_t i = 0; i < n; ++i) {
+        const int code = delta_singularity_distance(model, X + NQ*i, actuators + i, legs + i);
+        failed += record(&code, 1, status ? status + i : NULL);
+    }
+    return failed;
+}
+
+int delta_forward_kinematics(const prepared *model, const real *q_actuated, const real *X0, real
+    *X)
 {
     int code;
     forward_kinematics_one(model, q_actuated, X0, X, &code);
     return code;
 }
 
-size_t delta_forward_kinematics_batch(const delta_model *model, size_t n, const delta_real
-    *q_actuated, const delta_real *X0, delta_real *X, int *status)
+size_t delta_forward_kinematics_batch(const prepared *model, size_t n, const real *q_actuated,
+    const real *X0, real *X, int *status)
 {
-    size_t failed = 0, i = 0;
-    for (; i < n; ++i) {
+    size_t failed = 0;
+    for (size_t i = 0; i < n; ++i) {
         const int code = delta_forward_kinematics(model, q_actuated + NU*i, X0 + NQ*i, X + NQ*i);
         failed += record(&code, 1, status ? status + i : NULL);
     }
     return failed;
 }
 
-int delta_dissipation(const delta_model *model, const delta_real *X, const delta_real *V,
-    delta_real *dissipation)
+int delta_dissipation(const prepared *model, const real *X, const real *V, real *dissipation)
 {
     int code;
     (void)model;
@@ -5564,268 +4603,254 @@ int delta_dissipation(const delta_model *model, const delta_real *X, const delta
     return code;
 }
 
-size_t delta_dissipation_batch(const delta_model *model, size_t n, const delta_real *X, const
-    delta_real *V, delta_real *dissipation, int *status)
+size_t delta_dissipation_batch(const prepared *model, size_t n, const real *X, const real *V, real
+    *dissipation, int *status)
 {
-    size_t failed = 0, i = 0;
-    for (; i < n; ++i) {
+    size_t failed = 0;
+    for (size_t i = 0; i < n; ++i) {
         const int code = delta_dissipation(model, X + NQ*i, V + NV*i, dissipation + i);
         failed += record(&code, 1, status ? status + i : NULL);
     }
     return failed;
 }
 
-int delta_momentum(const delta_model *model, const delta_real *X, const delta_real *V, delta_real
-    *momentum)
+int delta_momentum(const prepared *model, const real *X, const real *V, real *momentum)
 {
     int code;
     momentum_one(model, X, V, momentum, &code);
     return code;
 }
 
-size_t delta_momentum_batch(const delta_model *model, size_t n, const delta_real *X, const
-    delta_real *V, delta_real *momentum, int *status)
+size_t delta_momentum_batch(const prepared *model, size_t n, const real *X, const real *V, real
+    *momentum, int *status)
 {
-    size_t failed = 0, i = 0;
-    for (; LANES > 1 && i + LANES <= n; i += LANES) {
-        int codes[LANES];
-        momentum_lanes(model, X + NQ*i, V + NV*i, momentum + NV*i, codes);
-        for (size_t k = 0; k < LANES; ++k) {
+    size_t failed = 0, w;
+    for (size_t i = 0; i < n; i += w) {
+        int codes[LANES] = {INVALID};
+        w = LANES > 1 && i + LANES <= n ? LANES : 1;
+        if (w > 1) {
+            momentum_lanes(model, X + NQ*i, V + NV*i, momentum + NV*i, codes);
+        }
+        for (size_t k = 0; k < w; ++k) {
             if (codes[k] != OK) {
                 codes[k] = delta_momentum(model, X + NQ*(i + k), V + NV*(i + k), momentum + NV*(i + k));
             }
         }
-        failed += record(codes, LANES, status ? status + i : NULL);
-    }
-    for (; i < n; ++i) {
-        const int code = delta_momentum(model, X + NQ*i, V + NV*i, momentum + NV*i);
-        failed += record(&code, 1, status ? status + i : NULL);
+        failed += record(codes, w, status ? status + i : NULL);
     }
     return failed;
 }
 
-int delta_joint_margins(const delta_model *model, const delta_real *X, delta_real *margins)
+int delta_joint_margins(const prepared *model, const real *X, real *margins)
 {
     int code;
     joint_margins_one(model, X, margins, &code);
     return code;
 }
 
-size_t delta_joint_margins_batch(const delta_model *model, size_t n, const delta_real *X,
-    delta_real *margins, int *status)
+size_t delta_joint_margins_batch(const prepared *model, size_t n, const real *X, real *margins,
+    int *status)
 {
-    size_t failed = 0, i = 0;
-    for (; LANES > 1 && i + LANES <= n; i += LANES) {
-        int codes[LANES];
-        joint_margins_lanes(model, X + NQ*i, margins + NJ*i, codes);
-        for (size_t k = 0; k < LANES; ++k) {
+    size_t failed = 0, w;
+    for (size_t i = 0; i < n; i += w) {
+        int codes[LANES] = {INVALID};
+        w = LANES > 1 && i + LANES <= n ? LANES : 1;
+        if (w > 1) {
+            joint_margins_lanes(model, X + NQ*i, margins + NJ*i, codes);
+        }
+        for (size_t k = 0; k < w; ++k) {
             if (codes[k] != OK) {
                 codes[k] = delta_joint_margins(model, X + NQ*(i + k), margins + NJ*(i + k));
             }
         }
-        failed += record(codes, LANES, status ? status + i : NULL);
-    }
-    for (; i < n; ++i) {
-        const int code = delta_joint_margins(model, X + NQ*i, margins + NJ*i);
-        failed += record(&code, 1, status ? status + i : NULL);
+        failed += record(codes, w, status ? status + i : NULL);
     }
     return failed;
 }
 
-int delta_within_limits(const delta_model *model, const delta_real *X, delta_real *within)
+int delta_within_limits(const prepared *model, const real *X, real *within)
 {
     int code;
     within_limits_one(model, X, within, &code);
     return code;
 }
 
-size_t delta_within_limits_batch(const delta_model *model, size_t n, const delta_real *X,
-    delta_real *within, int *status)
+size_t delta_within_limits_batch(const prepared *model, size_t n, const real *X, real *within, int
+    *status)
 {
-    size_t failed = 0, i = 0;
-    for (; LANES > 1 && i + LANES <= n; i += LANES) {
-        int codes[LANES];
-        within_limits_lanes(model, X + NQ*i, within + i, codes);
-        for (size_t k = 0; k < LANES; ++k) {
+    size_t failed = 0, w;
+    for (size_t i = 0; i < n; i += w) {
+        int codes[LANES] = {INVALID};
+        w = LANES > 1 && i + LANES <= n ? LANES : 1;
+        if (w > 1) {
+            within_limits_lanes(model, X + NQ*i, within + i, codes);
+        }
+        for (size_t k = 0; k < w; ++k) {
             if (codes[k] != OK) {
                 codes[k] = delta_within_limits(model, X + NQ*(i + k), within + (i + k));
             }
         }
-        failed += record(codes, LANES, status ? status + i : NULL);
-    }
-    for (; i < n; ++i) {
-        const int code = delta_within_limits(model, X + NQ*i, within + i);
-        failed += record(&code, 1, status ? status + i : NULL);
+        failed += record(codes, w, status ? status + i : NULL);
     }
     return failed;
 }
 
-int delta_actuator_positions(const delta_model *model, const delta_real *X, delta_real *q)
+int delta_actuator_positions(const prepared *model, const real *X, real *q)
 {
     int code;
     actuator_positions_one(model, X, q, &code);
     return code;
 }
 
-size_t delta_actuator_positions_batch(const delta_model *model, size_t n, const delta_real *X,
-    delta_real *q, int *status)
+size_t delta_actuator_positions_batch(const prepared *model, size_t n, const real *X, real *q, int
+    *status)
 {
-    size_t failed = 0, i = 0;
-    for (; LANES > 1 && i + LANES <= n; i += LANES) {
-        int codes[LANES];
-        actuator_positions_lanes(model, X + NQ*i, q + NU*i, codes);
-        for (size_t k = 0; k < LANES; ++k) {
+    size_t failed = 0, w;
+    for (size_t i = 0; i < n; i += w) {
+        int codes[LANES] = {INVALID};
+        w = LANES > 1 && i + LANES <= n ? LANES : 1;
+        if (w > 1) {
+            actuator_positions_lanes(model, X + NQ*i, q + NU*i, codes);
+        }
+        for (size_t k = 0; k < w; ++k) {
             if (codes[k] != OK) {
                 codes[k] = delta_actuator_positions(model, X + NQ*(i + k), q + NU*(i + k));
             }
         }
-        failed += record(codes, LANES, status ? status + i : NULL);
-    }
-    for (; i < n; ++i) {
-        const int code = delta_actuator_positions(model, X + NQ*i, q + NU*i);
-        failed += record(&code, 1, status ? status + i : NULL);
+        failed += record(codes, w, status ? status + i : NULL);
     }
     return failed;
 }
 
-int delta_actuator_rates(const delta_model *model, const delta_real *X, const delta_real *V,
-    delta_real *rates)
+int delta_actuator_rates(const prepared *model, const real *X, const real *V, real *rates)
 {
     int code;
     actuator_rates_one(model, X, V, rates, &code);
     return code;
 }
 
-size_t delta_actuator_rates_batch(const delta_model *model, size_t n, const delta_real *X, const
-    delta_real *V, delta_real *rates, int *status)
+size_t delta_actuator_rates_batch(const prepared *model, size_t n, const real *X, const real *V,
+    real *rates, int *status)
 {
-    size_t failed = 0, i = 0;
-    for (; LANES > 1 && i + LANES <= n; i += LANES) {
-        int codes[LANES];
-        actuator_rates_lanes(model, X + NQ*i, V + NV*i, rates + NU*i, codes);
-        for (size_t k = 0; k < LANES; ++k) {
+    size_t failed = 0, w;
+    for (size_t i = 0; i < n; i += w) {
+        int codes[LANES] = {INVALID};
+        w = LANES > 1 && i + LANES <= n ? LANES : 1;
+        if (w > 1) {
+            actuator_rates_lanes(model, X + NQ*i, V + NV*i, rates + NU*i, codes);
+        }
+        for (size_t k = 0; k < w; ++k) {
             if (codes[k] != OK) {
                 codes[k] = delta_actuator_rates(model, X + NQ*(i + k), V + NV*(i + k), rates + NU*(i + k));
             }
         }
-        failed += record(codes, LANES, status ? status + i : NULL);
-    }
-    for (; i < n; ++i) {
-        const int code = delta_actuator_rates(model, X + NQ*i, V + NV*i, rates + NU*i);
-        failed += record(&code, 1, status ? status + i : NULL);
+        failed += record(codes, w, status ? status + i : NULL);
     }
     return failed;
 }
 
-int delta_actuator_accelerations(const delta_model *model, const delta_real *X, const delta_real
-    *V, const delta_real *A, delta_real *accelerations)
+int delta_actuator_accelerations(const prepared *model, const real *X, const real *V, const real
+    *A, real *accelerations)
 {
     int code;
     actuator_accelerations_one(model, X, V, A, accelerations, &code);
     return code;
 }
 
-size_t delta_actuator_accelerations_batch(const delta_model *model, size_t n, const delta_real *X,
-    const delta_real *V, const delta_real *A, delta_real *accelerations, int *status)
+size_t delta_actuator_accelerations_batch(const prepared *model, size_t n, const real *X, const
+    real *V, const real *A, real *accelerations, int *status)
 {
-    size_t failed = 0, i = 0;
-    for (; LANES > 1 && i + LANES <= n; i += LANES) {
-        int codes[LANES];
-        actuator_accelerations_lanes(model, X + NQ*i, V + NV*i, A + NV*i, accelerations + NU*i, codes);
-        for (size_t k = 0; k < LANES; ++k) {
+    size_t failed = 0, w;
+    for (size_t i = 0; i < n; i += w) {
+        int codes[LANES] = {INVALID};
+        w = LANES > 1 && i + LANES <= n ? LANES : 1;
+        if (w > 1) {
+            actuator_accelerations_lanes(model, X + NQ*i, V + NV*i, A + NV*i, accelerations + NU*i, codes);
+        }
+        for (size_t k = 0; k < w; ++k) {
             if (codes[k] != OK) {
                 codes[k] = delta_actuator_accelerations(model, X + NQ*(i + k), V + NV*(i + k), A + NV*(i + k),
                     accelerations + NU*(i + k));
             }
         }
-        failed += record(codes, LANES, status ? status + i : NULL);
-    }
-    for (; i < n; ++i) {
-        const int code = delta_actuator_accelerations(model, X + NQ*i, V + NV*i, A + NV*i, accelerations +
-            NU*i);
-        failed += record(&code, 1, status ? status + i : NULL);
+        failed += record(codes, w, status ? status + i : NULL);
     }
     return failed;
 }
 
-int delta_power(const delta_model *model, const delta_real *X, const delta_real *V, const
-    delta_real *tau, delta_real *power)
+int delta_power(const prepared *model, const real *X, const real *V, const real *tau, real *power)
 {
     int code;
     power_one(model, X, V, tau, power, &code);
     return code;
 }
 
-size_t delta_power_batch(const delta_model *model, size_t n, const delta_real *X, const delta_real
-    *V, const delta_real *tau, delta_real *power, int *status)
+size_t delta_power_batch(const prepared *model, size_t n, const real *X, const real *V, const real
+    *tau, real *power, int *status)
 {
-    size_t failed = 0, i = 0;
-    for (; LANES > 1 && i + LANES <= n; i += LANES) {
-        int codes[LANES];
-        power_lanes(model, X + NQ*i, V + NV*i, tau + NU*i, power + i, codes);
-        for (size_t k = 0; k < LANES; ++k) {
+    size_t failed = 0, w;
+    for (size_t i = 0; i < n; i += w) {
+        int codes[LANES] = {INVALID};
+        w = LANES > 1 && i + LANES <= n ? LANES : 1;
+        if (w > 1) {
+            power_lanes(model, X + NQ*i, V + NV*i, tau + NU*i, power + i, codes);
+        }
+        for (size_t k = 0; k < w; ++k) {
             if (codes[k] != OK) {
                 codes[k] = delta_power(model, X + NQ*(i + k), V + NV*(i + k), tau + NU*(i + k), power + (i + k));
             }
         }
-        failed += record(codes, LANES, status ? status + i : NULL);
-    }
-    for (; i < n; ++i) {
-        const int code = delta_power(model, X + NQ*i, V + NV*i, tau + NU*i, power + i);
-        failed += record(&code, 1, status ? status + i : NULL);
+        failed += record(codes, w, status ? status + i : NULL);
     }
     return failed;
 }
 
-int delta_retract(const delta_real *X, const delta_real *step, delta_real *X_moved)
+int delta_retract(const real *X, const real *step, real *X_moved)
 {
     int code;
     retract_one(X, step, X_moved, &code);
     return code;
 }
 
-size_t delta_retract_batch(size_t n, const delta_real *X, const delta_real *step, delta_real
-    *X_moved, int *status)
+size_t delta_retract_batch(size_t n, const real *X, const real *step, real *X_moved, int *status)
 {
-    size_t failed = 0, i = 0;
-    for (; i < n; ++i) {
+    size_t failed = 0;
+    for (size_t i = 0; i < n; ++i) {
         const int code = delta_retract(X + NQ*i, step + NV*i, X_moved + NQ*i);
         failed += record(&code, 1, status ? status + i : NULL);
     }
     return failed;
 }
 
-int delta_difference(const delta_real *X0, const delta_real *X1, delta_real *step)
+int delta_difference(const real *X0, const real *X1, real *step)
 {
     int code;
     difference_one(X0, X1, step, &code);
     return code;
 }
 
-size_t delta_difference_batch(size_t n, const delta_real *X0, const delta_real *X1, delta_real
-    *step, int *status)
+size_t delta_difference_batch(size_t n, const real *X0, const real *X1, real *step, int *status)
 {
-    size_t failed = 0, i = 0;
-    for (; i < n; ++i) {
+    size_t failed = 0;
+    for (size_t i = 0; i < n; ++i) {
         const int code = delta_difference(X0 + NQ*i, X1 + NQ*i, step + NV*i);
         failed += record(&code, 1, status ? status + i : NULL);
     }
     return failed;
 }
 
-int delta_interpolate(const delta_real *X0, const delta_real *X1, const delta_real *s, delta_real
-    *X)
+int delta_interpolate(const real *X0, const real *X1, const real *s, real *X)
 {
     int code;
     interpolate_one(X0, X1, s, X, &code);
     return code;
 }
 
-size_t delta_interpolate_batch(size_t n, const delta_real *X0, const delta_real *X1, const
-    delta_real *s, delta_real *X, int *status)
+size_t delta_interpolate_batch(size_t n, const real *X0, const real *X1, const real *s, real *X,
+    int *status)
 {
-    size_t failed = 0, i = 0;
-    for (; i < n; ++i) {
+    size_t failed = 0;
+    for (size_t i = 0; i < n; ++i) {
         const int code = delta_interpolate(X0 + NQ*i, X1 + NQ*i, s + i, X + NQ*i);
         failed += record(&code, 1, status ? status + i : NULL);
     }

@@ -225,6 +225,22 @@ int delta_condition(const delta_model *model, const delta_real *X, delta_real *s
 size_t delta_condition_batch(const delta_model *model, size_t n, const delta_real *X, delta_real
     *sigma, delta_real *legs, int *status);
 
+/* Manipulability of forces: the product of the singular values that condition has by default, and
+   the least over the largest of them. 262 mul, 147 add, 9 div, 13 sqrt, 0 trig; the singular
+   values apart. In: X (NQ). Out: measure (1), isotropy (1). */
+int delta_manipulability(const delta_model *model, const delta_real *X, delta_real *measure,
+    delta_real *isotropy);
+size_t delta_manipulability_batch(const delta_model *model, size_t n, const delta_real *X,
+    delta_real *measure, delta_real *isotropy, int *status);
+
+/* How near actuators and legs are to being singular: relative distances, 0 where they are. 262
+   mul, 147 add, 9 div, 13 sqrt, 0 trig; the singular values apart. In: X (NQ). Out: actuators
+   (1), legs (1). */
+int delta_singularity_distance(const delta_model *model, const delta_real *X, delta_real
+    *actuators, delta_real *legs);
+size_t delta_singularity_distance_batch(const delta_model *model, size_t n, const delta_real *X,
+    delta_real *actuators, delta_real *legs, int *status);
+
 /* X at which the actuated joints stand at q_actuated, by Gauss-Newton from X0. Extra coordinates
    that actuators do not determine stay. Impossible where no pose is found. In: q_actuated (NU),
    X0 (NQ). Out: X (NQ). */

@@ -59,10 +59,12 @@ __all__ = [
     "joint_margins",
     "joint_rates",
     "leg_reactions",
+    "manipulability",
     "momentum",
     "null_space",
     "power",
     "retract",
+    "singularity_distance",
     "within_limits",
 ]
 
@@ -556,12 +558,12 @@ def _prepare(p):
     rus_w_3_in_axes3_y = 1.0/rus_platform_joint_offset_x
     # (rus-d_phi_3) coefficient of the acceleration in: inertia force of link 3 from its turning about its reference point
     rus_d_phi_3_in_axes3_xy = rus_h_3_in_spec3_z*rus_w_3_in_axes3_y
-    # (rus-trace_J_3) half the trace of that inertia tensor
-    rus_trace_J_3 = 0.5*rus_J_3_in_spec3_xx + 0.5*rus_J_3_in_spec3_yy + 0.5*rus_J_3_in_spec3_zz
     # (rus-Sigma_3) second moment of mass of the links that turn with link 3
-    rus_Sigma_3_in_axes3_xx = rus_trace_J_3 - rus_J_3_in_spec3_xx
-    rus_Sigma_3_in_axes3_yy = rus_trace_J_3 - rus_J_3_in_spec3_zz
-    rus_Sigma_3_in_axes3_zz = rus_trace_J_3 - rus_J_3_in_spec3_yy
+    rus_Sigma_3_t = rus_J_3_in_spec3_xx + rus_J_3_in_spec3_yy + rus_J_3_in_spec3_zz
+    rus_Sigma_3_t_2 = 0.5*rus_Sigma_3_t
+    rus_Sigma_3_in_axes3_xx = rus_Sigma_3_t_2 - rus_J_3_in_spec3_xx
+    rus_Sigma_3_in_axes3_yy = rus_Sigma_3_t_2 - rus_J_3_in_spec3_zz
+    rus_Sigma_3_in_axes3_zz = rus_Sigma_3_t_2 - rus_J_3_in_spec3_yy
     # (rus-d_Gamma_3) coefficient of the acceleration in: moment about axis 3 of the distal links' inertia and weight
     rus_d_Gamma_3_t = rus_J_3_in_spec3_yy*rus_w_3_in_axes3_y
     rus_d_Gamma_3_in_axes3_y = rus_d_Gamma_3_t + rus_h_3_in_spec3_x
@@ -826,6 +828,24 @@ def _constants(p, name):
     return p._cache[name]
 
 
+class _Vector(list):
+    """A vector, or a matrix row by row, of a single state."""
+
+    def __add__(self, other):
+        return _Vector([a + b for a, b in zip(self, other)])
+
+    def __sub__(self, other):
+        return _Vector([a - b for a, b in zip(self, other)])
+
+    def __neg__(self):
+        return _Vector([-a for a in self])
+
+
+def _are_finite(rows):
+    """Whether lists of floats have finite entries alone."""
+    return math.isfinite(sum(map(sum, rows))) or all(all(map(math.isfinite, row)) for row in rows)
+
+
 class _Floats:
     """Functions of a state after another, in Python floats: the way for few states."""
 
@@ -855,11 +875,32 @@ class _Floats:
         """Lists that a function gives at a state."""
         try:
             ok, arrays = function(self, *given)
-        except (ZeroDivisionError, OverflowError, ValueError):
+        except (ArithmeticError, ValueError):
             ok = False
-        if ok and all(all(map(math.isfinite, array)) for array in arrays):
+        if ok and _are_finite(arrays):
             return arrays
         return [[np.nan] * math.prod(_SHAPES[n]) for n in names]
+
+    def solved(self, order, a, b):
+        """Solutions, straight through; and which are beyond doubt."""
+        sure, x = np.zeros(self.states, dtype=bool), np.full(b.shape, np.nan)
+        for k, given in enumerate(zip(a.T.tolist(), b.T.tolist())):
+            try:
+                sure[k], (x[:, k],) = order(self, *given)
+            except ZeroDivisionError:
+                pass
+        return sure, x
+
+
+class _Single(_Floats):
+    """A single state in lists of floats throughout."""
+
+    def run(self, function, names, *vectors):
+        """Arrays of a function, row by row; ArithmeticError or ValueError where the state is impossible."""
+        ok, arrays = function(self, *vectors)
+        if not (ok and _are_finite(arrays)):
+            raise ArithmeticError
+        return [_Vector(a) for a in arrays]
 
 
 class _Arrays:
@@ -889,20 +930,27 @@ class _Arrays:
     def zeros(self, name):
         return np.zeros((math.prod(_SHAPES[name]), self.states))
 
-    def computed(self, function, names, vectors):
-        """Flags and arrays (*shape, states) of a function."""
+    def computed(self, function, *vectors):
+        """Flags and arrays (entries, states) of a function."""
         if self.kept is None:
-            flags, arrays = function(self, *vectors)
-        else:
-            if self.done not in self.kept:
-                self.kept[self.done] = _Replay(self.p, function, [len(v) for v in vectors], self.states)
-            flags, arrays = self.kept[self.done].run(vectors)
-            self.done += 1
-        return flags, [a.reshape(*_SHAPES[n], self.states) for a, n in zip(arrays, names)]
+            return function(self, *vectors)
+        if self.done not in self.kept:
+            self.kept[self.done] = _Replay(self.p, function, [len(v) for v in vectors], self.states)
+        self.done += 1
+        return self.kept[self.done - 1].run(vectors)
+
+    def shaped(self, names, arrays):
+        return [a.reshape(*_SHAPES[n], self.states) for a, n in zip(arrays, names)]
+
+    def solved(self, order, a, b):
+        """Solutions, straight through; and which are beyond doubt."""
+        sure, (x,) = self.computed(order, a, b)
+        return sure, np.array(x)
 
     def run(self, function, names, *vectors):
         """Arrays (*shape, states) of a function; NaN where the state is impossible."""
-        ok, arrays = self.computed(function, names, vectors)
+        ok, arrays = self.computed(function, *vectors)
+        arrays = self.shaped(names, arrays)
         ok = np.logical_and(ok, _finite(arrays, self.states))
         if not np.all(ok):
             for a in arrays:
@@ -919,10 +967,10 @@ class _Judged(_Arrays):
 
     def run(self, function, names, *vectors):
         """Arrays (*shape, states) of a function, also where they are nonsense."""
-        (valid, reached, clear), arrays = self.computed(function, names, vectors)
+        (valid, reached, clear), arrays = self.computed(function, *vectors)
         for code, good in ((3, valid), (1, reached), (2, clear)):
             self.failed[code] |= np.logical_not(good)
-        return arrays
+        return self.shaped(names, arrays)
 
     def closed(self, q):
         """q, noting where the iteration has not converged."""
@@ -934,26 +982,90 @@ class _Judged(_Arrays):
         return np.select(list(self.failed.values()), list(self.failed), np.where(possible, 0, 3))
 
 
+_IN_ONE = {}  # by function
+
+
+def _in_one(function):
+    """A function that tells whether a state is possible, of one that tells why not."""
+
+    def run(m, *vectors):
+        (valid, reached, clear), arrays = function(m, *vectors)
+        return valid & reached & clear, arrays
+
+    return _IN_ONE.setdefault(function, run)
+
+
 def _mode(p, states, kept=None):
     """The faster way for so many states."""
     return (_Floats if 0 < states <= _FEW else _Arrays)(p, states, kept)
 
 
-def _call(function, steps, p, *arguments, mode=_mode, unbounded=False):
+def _call(function, steps, p, *arguments, mode=_mode, unbounded=False, plain=()):
     """What the steps give at arguments (name, value, shape of a state, default, rule).
 
-    Where that may be infinite only NaN makes a state impossible.
+    Where that may be infinite only NaN makes a state impossible.  `plain` has the shapes of results
+    where a single state needs no arrays.
     """
+    p, read = _given(p), [a[-1] != "unused" for a in arguments]
+    lists = plain and _lists(arguments)
+    if lists:
+        found = _state(_Single(p, 1), steps, lists, read)
+        results = [_result(a, shape) for a, shape in zip(found or plain, plain)]
+        return results[0] if len(results) == 1 else tuple(results)
     given = [_argument(function, *a) for a in arguments]
     shapes = [a[2] for a in arguments]
     leads = {a[0]: v.shape[: v.ndim - len(a[2])] for a, v in zip(arguments, given)}
-    lead, p = _lead(leads), _given(p)
-    read = [a[4:] != ("unused",) for a in arguments]
-    if lead or mode is _Judged:
+    lead = _lead(leads)
+    if plain and 0 < math.prod(lead) <= _FEW:
+        results = _few(steps, p, lead, given, shapes, read, plain)
+    elif lead or mode is _Judged:
         results = _many(steps, p, lead, given, shapes, read, mode, unbounded)
     else:
         results = _one(steps, p, given, shapes, read, unbounded)
     return results[0] if len(results) == 1 else tuple(results)
+
+
+def _lists(arguments):
+    """Arguments of a single state as lists, where they are such arrays as they mostly are."""
+    found = []
+    for row in arguments:
+        value, shape = row[1:3]
+        if type(value) is np.ndarray:
+            if value.shape != shape or value.dtype is not _REAL or row[-1] == "positive":
+                return None
+            found.append(_Vector(value.tolist()))
+        elif value is None and len(row) > 3 and row[3] is not None:
+            found.append(_Vector(row[3] if isinstance(row[3], tuple) else [row[3]] * shape[0]))
+        else:
+            return None
+    return found
+
+
+def _state(m, steps, given, read):
+    """Lists that the steps give at a state; None where it is impossible."""
+    try:
+        found = steps(m, *given)
+    except (ArithmeticError, ValueError):
+        return None
+    return found if _are_finite(list(compress(given, read))) and _are_finite(found) else None
+
+
+def _result(found, shape):
+    """The array of a list; of an impossible state, for which its shape is given, NaN."""
+    if found is shape:
+        return np.full(shape, np.nan)
+    return np.array(found) if len(shape) == 1 else np.array(found).reshape(shape)
+
+
+def _few(steps, p, lead, given, shapes, read, plain):
+    """Results at a few states, one after another."""
+    m, rows = _Single(p, 1), []
+    for v, shape in zip(given, shapes):
+        flat = np.broadcast_to(v, lead + shape).reshape(math.prod(lead), -1)
+        rows.append(map(_Vector, flat.tolist()))
+    impossible = [[np.nan] * math.prod(shape) for shape in plain]
+    found = [_state(m, steps, state, read) or impossible for state in zip(*rows)]
+    return [np.array(a).reshape(lead + shape) for a, shape in zip(zip(*found), plain)]
 
 
 def _one(steps, p, given, shapes, read, unbounded):
@@ -972,7 +1084,11 @@ def _many(steps, p, lead, given, shapes, read, mode, unbounded):
     """Results at many states, block by block; the last block begins where it is as long as the others."""
     count = math.prod(lead)
     size, kept = min(count, _BLOCK), {} if count >= _MANY else None
-    flat = [np.broadcast_to(v, lead + s).reshape(count, *s) for v, s in zip(given, shapes)]
+    # one value for all states stands for itself
+    flat = [
+        np.broadcast_to(v, lead + s).reshape(count, *s) if v.ndim > len(s) else v
+        for v, s in zip(given, shapes)
+    ]
     possible, status, outputs = np.ones(count, dtype=bool), np.zeros(count, dtype=int), []
     if count > size:
         # Never touched, freed at once: the C library, which learns from it, then keeps the memory
@@ -981,7 +1097,7 @@ def _many(steps, p, lead, given, shapes, read, mode, unbounded):
     with np.errstate(all="ignore"):
         for stop in (*range(size, count, max(size, 1)), count):
             block = slice(stop - size, stop)
-            states = [_states_last(v[block]) for v in flat]
+            states = [_states_last(v, s, block) for v, s in zip(flat, shapes)]
             m, good = mode(p, size, kept), possible[block]
             found = steps(m, *states)
             if not outputs:
@@ -1001,15 +1117,17 @@ def _many(steps, p, lead, given, shapes, read, mode, unbounded):
     return [a.reshape(lead + a.shape[1:])[()] for a in outputs]
 
 
-def _states_last(a):
-    """A contiguous array (*shape, states) of one (states, *shape)."""
-    return np.ascontiguousarray(a.transpose(*range(1, a.ndim), 0))
+def _states_last(a, shape, block):
+    """An array (*shape, states) of a block of one (states, *shape), or of a value for all."""
+    if a.ndim == len(shape):
+        return np.broadcast_to(a[..., None], (*shape, block.stop - block.start))
+    return np.ascontiguousarray(a[block].transpose(*range(1, a.ndim), 0))
 
 
 def _finite(arrays, states):
     """In which states all entries of arrays (*shape, states) are finite."""
     flat = [a.reshape(math.prod(a.shape[:-1]), states) for a in arrays]
-    good = np.isfinite(sum(np.add.reduce(a, axis=0) for a in flat))
+    good = np.isfinite(sum(np.einsum("es->s", a) for a in flat))
     if not np.all(good):  # or the sum is too large
         good = np.logical_and.reduce([np.isfinite(a).all(axis=0) for a in flat])
     return good
@@ -1118,6 +1236,8 @@ class _Record:
 
     def made(self, operation, *operands):
         """The result of an operation."""
+        if operation in _WITHOUT and operands[0] is _WITHOUT[operation]:
+            return operands[1]
         numbers = [self.number(operand) for operand in operands]
         if all(self.kinds[n] == "one" for n in numbers):
             kind = "one"
@@ -1154,6 +1274,7 @@ class _Record:
         return counts
 
 
+_WITHOUT = {np.logical_and: True}  # first operands that change nothing
 _OF_FLAGS = {np.logical_and, np.greater, np.greater_equal}
 _RECORDS = {}  # by function
 
@@ -1165,11 +1286,12 @@ class _Replay:
         if function not in _RECORDS:
             _RECORDS[function] = _Record(p, function, sizes)
         r = _RECORDS[function]
-        made = {kind: _rows(n, states, bool if kind == "flag" else float) for kind, n in r.counts.items()}
-        made["one"] = [np.empty(()) for _ in range(r.counts["one"])]
-        made["out"] = _rows(sum(r.sizes), states)
-        self.inputs = [_rows(size, states) for size in sizes]
-        self.arrays = np.split(made["out"], np.cumsum(r.sizes)[:-1])
+        rows = _rows(r.counts["state"] + sum(r.sizes) + sum(sizes), states)
+        given, out, state = np.split(rows, np.cumsum((sum(sizes), sum(r.sizes))))
+        made = {"state": state, "out": out, "one": [np.empty(()) for _ in range(r.counts["one"])]}
+        made["flag"] = np.empty((r.counts["flag"], states), dtype=bool)
+        self.inputs = np.split(given, np.cumsum(sizes)[:-1])
+        self.arrays = np.split(out, np.cumsum(r.sizes)[:-1])
         at = {number: np.array(value) for value, number in r.literals.items()}
         for values, given in zip(r.inputs, self.inputs):
             at |= {v.number: row for v, row in zip(values, given)}
@@ -1191,9 +1313,26 @@ class _Replay:
         return self.flags, self.arrays
 
 
-def _rows(count, states, kind=float):
-    """Rows of so many states, a cache line apart from each other."""
-    return np.empty((count, states + 8), dtype=kind)[:, :states]
+def _rows(count, states):
+    """Rows of so many states in one piece, which the system keeps in a few large pages if it is told.
+
+    NumPy tells it of pieces from 4 MB on.  It makes operations a third faster.
+    """
+    row = states + 8  # a cache line further: rows do not compete for the same places of the cache
+    piece = np.empty(max(count * row, 2 * _PAGE) + _PAGE)
+    start = -(piece.ctypes.data // piece.itemsize) % _PAGE
+    return piece[start : start + count * row].reshape(count, row)[:, :states]
+
+
+_PAGE = (2 << 20) // 8  # numbers in a large page
+
+
+def _times(a, b):
+    """Products of matrices (m, n, states) with vectors (n, states)."""
+    if isinstance(b, _Vector):
+        rows = (a[k : k + len(b)] for k in range(0, len(a), len(b)))
+        return _Vector([sum([x * y for x, y in zip(row, b)]) for row in rows])
+    return np.einsum("ijs,js->is", a, b)
 
 
 def _with_forces(a, amounts, directions, legs):
@@ -1257,8 +1396,10 @@ _CLEARLY = 2.0  # rows change places only for a pivot that is larger by this fac
 
 def _solve(a, b):
     """x with a x = b, a (n, n, states), b (n, states): rows scaled, partial pivoting; NaN if singular."""
+    if isinstance(b, _Vector):
+        return _Vector(_solve_one([a[k : k + len(b)] for k in range(0, len(a), len(b))], b))
     n, states = b.shape
-    if 0 < states <= _FEW:
+    if 0 < states <= 8:
         systems = zip(a.transpose(2, 0, 1).tolist(), b.T.tolist())
         return np.array([_solve_one(*each) for each in systems]).T.reshape(n, states)
     size = np.max(np.abs(a), axis=1, initial=0.0)
@@ -1283,6 +1424,38 @@ def _solve(a, b):
         known = np.einsum("js,js->s", rows[k, k + 1 : n], x[k + 1 :])
         x[k] = (rows[k, n] - known) / rows[k, k]
     x[:, ~(good & np.isfinite(x).all(axis=0))] = np.nan
+    return x
+
+
+class _Order:
+    """How a system is solved near home.
+
+    Args:
+        solve: the function for so many equations.
+        rows: in the order of their pivots.
+        limits: of multiples, column by column, and of 1/pivot.
+    """
+
+    def __init__(self, solve, rows, limits):
+        self.solve, self.rows, self.limits = solve, rows, limits
+
+    def __call__(self, m, a, b):
+        """Solutions of a x = b, and whether these are beyond doubt."""
+        return self.solve(a, b, self.rows, self.limits)
+
+
+def _straight(m, a, b, order):
+    """The same, in the order of rows at home; with a choice of rows only where that is in doubt."""
+    if isinstance(b, _Vector):
+        try:
+            sure, (x,) = order(m, a, b)
+        except ZeroDivisionError:
+            sure = False
+        return _Vector(x) if sure else _solve(a, b)
+    sure, x = m.solved(order, a.reshape(-1, m.states), b)
+    at = np.flatnonzero(np.logical_not(sure))
+    if at.size:
+        x[:, at] = _solve(a[..., at], b[:, at])
     return x
 
 
@@ -1339,6 +1512,16 @@ def _singular_values(a):
     values = np.linalg.svd(a, compute_uv=False).T.copy()
     values[:, bad] = np.nan
     return values
+
+
+def _least_entry(a):
+    """The least entry."""
+    return np.min(a, axis=0)
+
+
+def _spread(a, n):
+    """Of the first n entries the product, and the last over the first, 0 where that is 0."""
+    return np.prod(a[:n], axis=0), np.where(a[0] == 0.0, 0.0, a[n - 1] / a[0])
 
 
 def _least_squares(a, b, least):
@@ -1446,83 +1629,78 @@ def _run_dynamics(m, X, V):
         rus_J_3_t_6 = rus_J_3_t_3*rus_J_3_t_3 + rus_J_3_t_4*rus_J_3_t_4 + rus_J_3_t_5*rus_J_3_t_5
         rus_J_3_t_7 = rus_J_3_t + 0.5*rus_J_3_t_6 - rus_J_3_t_2
         rus_J_3_t_8 = (
-        rus_J_3_t_3*rus_base_frame_xx + rus_J_3_t_4*rus_base_frame_yx +
-            rus_J_3_t_5*rus_base_frame_zx
+        rus_joint2_offset_x*(rus_J_3_t_3*rus_base_frame_xx + rus_J_3_t_4*rus_base_frame_yx +
+            rus_J_3_t_5*rus_base_frame_zx)
         )
-        rus_J_3_t_9 = rus_J_3_t_8*rus_joint2_offset_x
-        rus_J_3_t_10 = (
-        rus_J_3_t_3*rus_base_frame_xy + rus_J_3_t_4*rus_base_frame_yy +
-            rus_J_3_t_5*rus_base_frame_zy
+        rus_J_3_t_9 = (
+        rus_joint2_offset_x*(rus_J_3_t_3*rus_base_frame_xy + rus_J_3_t_4*rus_base_frame_yy +
+            rus_J_3_t_5*rus_base_frame_zy)
         )
-        rus_J_3_t_11 = rus_J_3_t_10*rus_joint2_offset_x
-        rus_J_3_t_12 = rus_J_3_t_11*rus_J_3_t_11 + rus_J_3_t_9*rus_J_3_t_9
-        rus_J_3_t_13 = rus_J_3_t_12 - rus_J_3_t_7*rus_J_3_t_7
-        rus_J_3_t_14 = sqrt(rus_J_3_t_13)*rus_branch_1
-        rus_J_3_t_15 = inv_rus_size_t*rus_J_3_t_14*rus_joint2_offset_x
-        rus_J_3_t_16 = (
-        rus_J_3_t_3*rus_base_frame_xz + rus_J_3_t_4*rus_base_frame_yz +
-            rus_J_3_t_5*rus_base_frame_zz
+        rus_J_3_t_10 = rus_J_3_t_8*rus_J_3_t_8 + rus_J_3_t_9*rus_J_3_t_9
+        rus_J_3_t_11 = rus_J_3_t_10 - rus_J_3_t_7*rus_J_3_t_7
+        rus_J_3_t_12 = sqrt(rus_J_3_t_11)*rus_branch_1
+        rus_J_3_t_13 = inv_rus_size_t*rus_J_3_t_12*rus_joint2_offset_x
+        rus_J_3_t_14 = inv_rus_size_t*rus_J_3_t_7*rus_joint2_offset_x - rus_joint2_offset_x
+        rus_J_3_t_15 = rus_J_3_t_13*rus_J_3_t_13 + rus_J_3_t_14*rus_J_3_t_14
+        rus_J_3_t_16 = sqrt(rus_J_3_t_15)*rus_branch_2
+        rus_J_3_t_17 = inv_rus_size_t_2*rus_J_3_t_16*rus_platform_joint_offset_x
+        rus_e_1_in_axes3_x = (
+        inv_rus_size_t_2*rus_platform_joint_offset_x*(rus_J_3_t_3*rus_base_frame_xz +
+            rus_J_3_t_4*rus_base_frame_yz + rus_J_3_t_5*rus_base_frame_zz)
         )
-        rus_J_3_t_17 = inv_rus_size_t*rus_J_3_t_7*rus_joint2_offset_x - rus_joint2_offset_x
-        rus_J_3_t_18 = rus_J_3_t_15*rus_J_3_t_15 + rus_J_3_t_17*rus_J_3_t_17
-        rus_J_3_t_19 = sqrt(rus_J_3_t_18)*rus_branch_2
-        rus_e_1_in_axes3_y = -inv_rus_size_t_2*rus_J_3_t_19*rus_platform_joint_offset_x
-        rus_e_1_in_axes3_x = inv_rus_size_t_2*rus_J_3_t_16*rus_platform_joint_offset_x
-        rus_J_3_in_axes2_xz = (
-        rus_J_3_in_spec3_xy*rus_e_1_in_axes3_x - rus_J_3_in_spec3_yz*rus_e_1_in_axes3_y
+        rus_J_3_in_axes2_yz = (
+        rus_J_3_in_spec3_xy*rus_e_1_in_axes3_x + rus_J_3_in_spec3_yz*rus_J_3_t_17
         )
         rus_J_3_in_axes1_zz = (
-        rus_e_1_in_axes3_x*(rus_J_3_in_spec3_xx*rus_e_1_in_axes3_x -
-            rus_J_3_in_spec3_xz*rus_e_1_in_axes3_y) +
-            rus_e_1_in_axes3_y*(rus_J_3_in_spec3_zz*rus_e_1_in_axes3_y -
-            rus_J_3_in_spec3_xz*rus_e_1_in_axes3_x)
+        rus_J_3_t_17*(rus_J_3_in_spec3_xz*rus_e_1_in_axes3_x + rus_J_3_in_spec3_zz*rus_J_3_t_17) -
+            rus_e_1_in_axes3_x*(-rus_J_3_in_spec3_xx*rus_e_1_in_axes3_x -
+            rus_J_3_in_spec3_xz*rus_J_3_t_17)
         )
         # (rus-c_1) cosine of the angle of joint 1 from its reference direction
-        inv_rus_J_3_t_12 = 1.0/rus_J_3_t_12
-        rus_c_1 = inv_rus_J_3_t_12*(rus_J_3_t_7*rus_J_3_t_9 - rus_J_3_t_11*rus_J_3_t_14)
+        inv_rus_J_3_t_10 = 1.0/rus_J_3_t_10
+        rus_c_1 = inv_rus_J_3_t_10*(rus_J_3_t_7*rus_J_3_t_8 - rus_J_3_t_12*rus_J_3_t_9)
         # (rus-s_1) sine of the angle of joint 1 from its reference direction
-        rus_s_1 = inv_rus_J_3_t_12*(rus_J_3_t_11*rus_J_3_t_7 + rus_J_3_t_14*rus_J_3_t_9)
+        rus_s_1 = inv_rus_J_3_t_10*(rus_J_3_t_12*rus_J_3_t_8 + rus_J_3_t_7*rus_J_3_t_9)
         # (rus-c_2) cosine of the angle of joint 2 from its reference direction
-        inv_rus_J_3_t_18 = 1.0/rus_J_3_t_18
-        rus_c_2 = inv_rus_J_3_t_18*rus_J_3_t_15*rus_J_3_t_19
+        inv_rus_J_3_t_15 = 1.0/rus_J_3_t_15
+        rus_c_2 = inv_rus_J_3_t_15*rus_J_3_t_14*rus_J_3_t_16
         # (rus-s_2) sine of the angle of joint 2 from its reference direction
-        rus_s_2 = inv_rus_J_3_t_18*rus_J_3_t_17*rus_J_3_t_19
+        rus_s_2_t = inv_rus_J_3_t_15*rus_J_3_t_13*rus_J_3_t_16
         # (rus-r_1) from joint 1 to the connection point, along the links
-        rus_r_1_t = -rus_e_1_in_axes3_y*rus_platform_joint_offset_x
+        rus_r_1_t = rus_J_3_t_17*rus_platform_joint_offset_x
         rus_r_1_in_axes1_z = rus_e_1_in_axes3_x*rus_platform_joint_offset_x
-        rus_r_1_t_2 = rus_c_2*rus_r_1_t
-        rus_r_1_in_axes1_x = rus_joint2_offset_x + rus_r_1_t*rus_s_2
-        rus_r_1_in_axes3_z = rus_c_2*rus_r_1_in_axes1_x - rus_r_1_t_2*rus_s_2
+        rus_r_1_t_2 = rus_r_1_t*rus_s_2_t
+        rus_r_1_in_axes1_x = rus_joint2_offset_x + rus_c_2*rus_r_1_t
+        rus_r_1_in_axes3_z = rus_r_1_in_axes1_x*rus_s_2_t - rus_c_2*rus_r_1_t_2
         # (rus-v_1) velocity of the connection point per rate of joint 1
-        rus_v_1_t = rus_c_2*rus_r_1_t_2 + rus_r_1_in_axes1_x*rus_s_2
-        rus_v_1_t_2 = -rus_e_1_in_axes3_y*rus_r_1_in_axes3_z
+        rus_v_1_t = rus_c_2*rus_r_1_in_axes1_x + rus_r_1_t_2*rus_s_2_t
+        rus_v_1_t_2 = rus_J_3_t_17*rus_r_1_in_axes3_z
         rus_v_1_in_axes3_y = -rus_e_1_in_axes3_x*rus_r_1_in_axes3_z
         rus_v_1_in_axes3_z = (
-        rus_e_1_in_axes3_x*(rus_e_1_in_axes3_x*rus_v_1_t + rus_e_1_in_axes3_y*rus_r_1_in_axes1_z)
-            - rus_e_1_in_axes3_y*(rus_e_1_in_axes3_x*rus_r_1_in_axes1_z -
-            rus_e_1_in_axes3_y*rus_v_1_t)
+        rus_J_3_t_17*(rus_J_3_t_17*rus_v_1_t + rus_e_1_in_axes3_x*rus_r_1_in_axes1_z) +
+            rus_e_1_in_axes3_x*(rus_e_1_in_axes3_x*rus_v_1_t - rus_J_3_t_17*rus_r_1_in_axes1_z)
         )
         # (rus-w_1) reciprocal vector 1
-        rus_w_1_t = rus_c_1*rus_c_2 - rus_s_1*rus_s_2
-        rus_w_1_t_2 = rus_c_1*rus_s_2 + rus_c_2*rus_s_1
+        rus_w_1_t = rus_c_1*rus_s_2_t - rus_c_2*rus_s_1
+        rus_w_1_t_2 = rus_c_1*rus_c_2 + rus_s_1*rus_s_2_t
         axis_z_rus_axes3_x = rus_base_frame_xx*rus_w_1_t + rus_base_frame_xy*rus_w_1_t_2
         axis_z_rus_axes3_y = rus_base_frame_yx*rus_w_1_t + rus_base_frame_yy*rus_w_1_t_2
         axis_z_rus_axes3_z = rus_base_frame_zx*rus_w_1_t + rus_base_frame_zy*rus_w_1_t_2
-        rus_w_1_t_3 = rus_e_1_in_axes3_x*rus_s_2
-        rus_w_1_t_4 = rus_c_2*rus_e_1_in_axes3_x
+        rus_w_1_t_3 = rus_c_2*rus_e_1_in_axes3_x
+        rus_w_1_t_4 = rus_e_1_in_axes3_x*rus_s_2_t
         rus_w_1_t_5 = rus_c_1*rus_w_1_t_3 + rus_s_1*rus_w_1_t_4
         rus_w_1_t_6 = rus_s_1*rus_w_1_t_3 - rus_c_1*rus_w_1_t_4
         axis_y_rus_axes3_x = (
-        rus_base_frame_xx*rus_w_1_t_5 + rus_base_frame_xy*rus_w_1_t_6 +
-            rus_base_frame_xz*rus_e_1_in_axes3_y
+        rus_base_frame_xx*rus_w_1_t_5 + rus_base_frame_xy*rus_w_1_t_6 -
+            rus_J_3_t_17*rus_base_frame_xz
         )
         axis_y_rus_axes3_y = (
-        rus_base_frame_yx*rus_w_1_t_5 + rus_base_frame_yy*rus_w_1_t_6 +
-            rus_base_frame_yz*rus_e_1_in_axes3_y
+        rus_base_frame_yx*rus_w_1_t_5 + rus_base_frame_yy*rus_w_1_t_6 -
+            rus_J_3_t_17*rus_base_frame_yz
         )
         axis_y_rus_axes3_z = (
-        rus_base_frame_zx*rus_w_1_t_5 + rus_base_frame_zy*rus_w_1_t_6 +
-            rus_base_frame_zz*rus_e_1_in_axes3_y
+        rus_base_frame_zx*rus_w_1_t_5 + rus_base_frame_zy*rus_w_1_t_6 -
+            rus_J_3_t_17*rus_base_frame_zz
         )
         axis_x_rus_axes3_x = (
         axis_y_rus_axes3_y*axis_z_rus_axes3_z - axis_y_rus_axes3_z*axis_z_rus_axes3_y
@@ -1543,44 +1721,44 @@ def _run_dynamics(m, X, V):
         # (rus-w_3) reciprocal vector 3
         rus_w_3_in_axes3_x = inv_rus_v_1_t_2*rus_v_1_in_axes3_y*rus_w_3_in_axes3_y
         # (rus-qd_1) rate of joint 1
-        rus_qd_1 = (
-        -inv_rus_v_1_t_2*(axis_x_rus_axes3_x*t_dot_x + axis_x_rus_axes3_y*t_dot_y +
+        rus_qd_1_t = (
+        inv_rus_v_1_t_2*(axis_x_rus_axes3_x*t_dot_x + axis_x_rus_axes3_y*t_dot_y +
             axis_x_rus_axes3_z*t_dot_z)
         )
         # (rus-qd_3) rate of joint 3
         rus_qd_3_t = (
-        axis_y_rus_axes3_x*t_dot_x + axis_y_rus_axes3_y*t_dot_y + axis_y_rus_axes3_z*t_dot_z -
-            rus_qd_1*rus_v_1_in_axes3_y
+        axis_y_rus_axes3_x*t_dot_x + axis_y_rus_axes3_y*t_dot_y + axis_y_rus_axes3_z*t_dot_z +
+            rus_qd_1_t*rus_v_1_in_axes3_y
         )
         rus_qd_3 = rus_qd_3_t*rus_w_3_in_axes3_y
         # (rus-omega_1) angular velocity of link 1
-        rus_omega_1_in_axes3_x = rus_e_1_in_axes3_x*rus_qd_1
-        rus_omega_1_in_axes3_y = rus_e_1_in_axes3_y*rus_qd_1
+        rus_omega_1_in_axes3_x = -rus_e_1_in_axes3_x*rus_qd_1_t
+        rus_omega_1_in_axes3_y = rus_J_3_t_17*rus_qd_1_t
         # (rus-omega_2) angular velocity of link 2
         rus_omega_2_in_axes2_z = (
-        rus_qd_1 + rus_w_2_in_axes3_z*(axis_z_rus_axes3_x*t_dot_x + axis_z_rus_axes3_y*t_dot_y +
-            axis_z_rus_axes3_z*t_dot_z - rus_qd_1*rus_v_1_in_axes3_z)
+        rus_w_2_in_axes3_z*(axis_z_rus_axes3_x*t_dot_x + axis_z_rus_axes3_y*t_dot_y +
+            axis_z_rus_axes3_z*t_dot_z + rus_qd_1_t*rus_v_1_in_axes3_z) - rus_qd_1_t
         )
         rus_omega_2_in_axes3_x = rus_e_1_in_axes3_x*rus_omega_2_in_axes2_z
-        rus_omega_2_in_axes3_y = rus_e_1_in_axes3_y*rus_omega_2_in_axes2_z
+        rus_omega_2_in_axes3_y = -rus_J_3_t_17*rus_omega_2_in_axes2_z
         # (rus-W_3) centripetal tensor of link 3
         rus_W_3_in_axes3_yz = rus_omega_2_in_axes3_y*rus_qd_3
         rus_W_3_in_axes3_xz = rus_omega_2_in_axes3_x*rus_qd_3
         rus_W_3_in_axes3_xy = rus_omega_2_in_axes3_x*rus_omega_2_in_axes3_y
         # (rus-bias) acceleration of the connection point at zero joint accelerations
-        rus_d_2_in_axes3_z = rus_c_2*rus_joint2_offset_x
-        rus_bias_t = rus_joint2_offset_x*rus_s_2
+        rus_bias_t = rus_c_2*rus_joint2_offset_x
+        rus_d_2_in_axes3_z = rus_joint2_offset_x*rus_s_2_t
         rus_bias_t_2 = (
-        rus_bias_t*rus_e_1_in_axes3_x*rus_omega_1_in_axes3_x +
-            rus_bias_t*rus_e_1_in_axes3_y*rus_omega_1_in_axes3_y
+        rus_J_3_t_17*rus_bias_t*rus_omega_1_in_axes3_y -
+            rus_bias_t*rus_e_1_in_axes3_x*rus_omega_1_in_axes3_x
         )
-        rus_bias_t_3 = rus_omega_2_in_axes3_y*rus_platform_joint_offset_x
+        rus_bias_t_3 = -rus_omega_2_in_axes3_y*rus_platform_joint_offset_x
         rus_bias_in_axes3_x = (
-        rus_bias_t_2*rus_omega_1_in_axes3_y - rus_bias_t_3*rus_omega_2_in_axes3_y -
+        rus_bias_t_3*rus_omega_2_in_axes3_y - rus_bias_t_2*rus_omega_1_in_axes3_y -
             rus_qd_3*rus_qd_3_t
         )
         rus_bias_in_axes3_y = (
-        rus_bias_t_3*rus_omega_2_in_axes3_x - rus_bias_t_2*rus_omega_1_in_axes3_x
+        rus_bias_t_2*rus_omega_1_in_axes3_x - rus_bias_t_3*rus_omega_2_in_axes3_x
         )
         rus_bias_in_axes3_z = (
         rus_W_3_in_axes3_xz*rus_platform_joint_offset_x + rus_omega_2_in_axes3_x*rus_qd_3_t -
@@ -1596,10 +1774,10 @@ def _run_dynamics(m, X, V):
         rus_qdd_1_o - rus_w_2_in_axes3_z*(rus_bias_in_axes3_z + rus_qdd_1_o*rus_v_1_in_axes3_z)
         )
         rus_alpha_2_o_in_axes3_x = rus_alpha_2_o_in_axes2_z*rus_e_1_in_axes3_x
-        rus_alpha_2_o_in_axes3_y = rus_alpha_2_o_in_axes2_z*rus_e_1_in_axes3_y
+        rus_alpha_2_o_in_axes3_y = -rus_J_3_t_17*rus_alpha_2_o_in_axes2_z
         # (rus-d_alpha_3) coefficient of the acceleration in: angular acceleration of link 3
         rus_d_alpha_3_in_axes3_xz = rus_e_1_in_axes3_x*rus_w_2_in_axes3_z
-        rus_d_alpha_3_in_axes3_yz = rus_e_1_in_axes3_y*rus_w_2_in_axes3_z
+        rus_d_alpha_3_t = rus_J_3_t_17*rus_w_2_in_axes3_z
         # (rus-alpha_3_o) remainder without the acceleration in: angular acceleration of link 3
         rus_alpha_3_o_in_axes3_x = rus_W_3_in_axes3_yz + rus_alpha_2_o_in_axes3_x
         rus_alpha_3_o_in_axes3_y = rus_alpha_2_o_in_axes3_y - rus_W_3_in_axes3_xz
@@ -1643,28 +1821,28 @@ def _run_dynamics(m, X, V):
             rus_g_in_axes3_x*rus_h_3_in_spec3_z - rus_g_in_axes3_y*rus_h_3_in_spec3_x
         )
         rus_mu_3_o_in_axes1_z = (
-        rus_e_1_in_axes3_x*rus_mu_3_o_in_axes3_x + rus_e_1_in_axes3_y*rus_mu_3_o_in_axes3_y
+        rus_e_1_in_axes3_x*rus_mu_3_o_in_axes3_x - rus_J_3_t_17*rus_mu_3_o_in_axes3_y
         )
         # (rus-d_Gamma_3) coefficient of the acceleration in: moment about axis 3 of the distal links' inertia and weight
-        rus_d_Gamma_3_in_axes3_z = rus_J_3_in_axes2_xz*rus_w_2_in_axes3_z
+        rus_d_Gamma_3_in_axes3_z = rus_J_3_in_axes2_yz*rus_w_2_in_axes3_z
         rus_d_Gamma_3_in_axes3_x = (
-        rus_h_3_in_spec3_z - inv_rus_v_1_t_2*(rus_J_3_in_axes2_xz -
+        rus_h_3_in_spec3_z - inv_rus_v_1_t_2*(rus_J_3_in_axes2_yz -
             rus_d_Gamma_3_in_axes3_z*rus_v_1_in_axes3_z - rus_d_Gamma_3_t*rus_v_1_in_axes3_y)
         )
         # (rus-d_Gamma_2) coefficient of the acceleration in: moment about axis 2 of the distal links' inertia and weight
-        rus_d_Gamma_2_t = rus_e_1_in_axes3_y*rus_h_3_in_spec3_y
+        rus_d_Gamma_2_t = rus_J_3_t_17*rus_h_3_in_spec3_y
         rus_d_Gamma_2_t_2 = rus_J_3_in_axes1_zz*rus_w_2_in_axes3_z
-        rus_d_Gamma_2_t_3 = rus_J_3_in_axes2_xz*rus_w_3_in_axes3_y
+        rus_d_Gamma_2_t_3 = rus_J_3_in_axes2_yz*rus_w_3_in_axes3_y
         rus_d_Gamma_2_t_4 = rus_d_Gamma_2_t_2*rus_v_1_in_axes3_z
         rus_d_Gamma_2_t_5 = rus_d_Gamma_2_t_3*rus_v_1_in_axes3_y
         rus_d_Gamma_2_in_axes3_x = (
-        rus_d_Gamma_2_t - inv_rus_v_1_t_2*(rus_J_3_in_axes1_zz - rus_d_Gamma_2_t_4 -
-            rus_d_Gamma_2_t_5)
+        inv_rus_v_1_t_2*(rus_d_Gamma_2_t_4 + rus_d_Gamma_2_t_5 - rus_J_3_in_axes1_zz) -
+            rus_d_Gamma_2_t
         )
         rus_d_Gamma_2_in_axes3_y = rus_d_Gamma_2_t_3 - rus_e_1_in_axes3_x*rus_h_3_in_spec3_y
         rus_d_Gamma_2_in_axes3_z = (
-        rus_d_Gamma_2_t_2 - rus_e_1_in_axes3_x*rus_h_3_in_spec3_z -
-            rus_e_1_in_axes3_y*rus_h_3_in_spec3_x
+        rus_d_Gamma_2_t_2 + rus_J_3_t_17*rus_h_3_in_spec3_x -
+            rus_e_1_in_axes3_x*rus_h_3_in_spec3_z
         )
         # (rus-mu_1_o) remainder without the acceleration in: inertia moment of the links that turn with link 1, about their reference points
         rus_mu_1_o_in_axes1_z = (
@@ -1675,8 +1853,8 @@ def _run_dynamics(m, X, V):
         rus_N_1_o_in_axes1_z = rus_mu_1_o_in_axes1_z + rus_mu_3_o_in_axes1_z
         # (rus-d_Gamma_1) coefficient of the acceleration in: moment about axis 1 of the distal links' inertia and weight
         rus_d_Gamma_1_in_axes3_x = (
-        rus_d_Gamma_2_t - inv_rus_v_1_t_2*(rus_J_1_in_spec1_zz + rus_J_3_in_axes1_zz -
-            rus_d_Gamma_2_t_4 - rus_d_Gamma_2_t_5)
+        inv_rus_v_1_t_2*(rus_d_Gamma_2_t_4 + rus_d_Gamma_2_t_5 - rus_J_1_in_spec1_zz -
+            rus_J_3_in_axes1_zz) - rus_d_Gamma_2_t
         )
         # (rus-G_o) remainder without the acceleration in: force at the connection point that balances the leg's inertia and weight along all degrees of freedom
         rus_G_o_in_axes3_z = rus_mu_3_o_in_axes1_z*rus_w_2_in_axes3_z
@@ -1685,8 +1863,8 @@ def _run_dynamics(m, X, V):
         rus_d_c_in_axes3_xx = (
         inv_rus_v_1_t_2*rus_d_Gamma_1_in_axes3_x - rus_d_Gamma_2_in_axes3_x*rus_w_2_in_axes3_x -
             rus_d_Gamma_3_in_axes3_x*rus_w_3_in_axes3_x -
-            rus_h_3_in_spec3_y*(rus_e_1_in_axes3_y*rus_w_2_in_axes3_x -
-            inv_rus_v_1_t_2*rus_e_1_in_axes3_y) - rus_h_3_in_spec3_z*rus_w_3_in_axes3_x
+            rus_h_3_in_spec3_y*(inv_rus_v_1_t_2*rus_J_3_t_17 - rus_J_3_t_17*rus_w_2_in_axes3_x) -
+            rus_h_3_in_spec3_z*rus_w_3_in_axes3_x
         )
         rus_d_c_in_axes3_xy = (
         inv_rus_v_1_t_2*rus_d_Gamma_2_in_axes3_y - rus_d_phi_3_in_axes3_xy -
@@ -1694,9 +1872,9 @@ def _run_dynamics(m, X, V):
             rus_d_Gamma_3_in_axes3_y*rus_w_3_in_axes3_x
         )
         rus_d_c_in_axes3_xz = (
-        inv_rus_v_1_t_2*rus_d_Gamma_2_in_axes3_z - rus_d_Gamma_2_in_axes3_z*rus_w_2_in_axes3_x -
-            rus_d_Gamma_3_in_axes3_z*rus_w_3_in_axes3_x -
-            rus_d_alpha_3_in_axes3_yz*rus_h_3_in_spec3_y
+        inv_rus_v_1_t_2*rus_d_Gamma_2_in_axes3_z + rus_d_alpha_3_t*rus_h_3_in_spec3_y -
+            rus_d_Gamma_2_in_axes3_z*rus_w_2_in_axes3_x -
+            rus_d_Gamma_3_in_axes3_z*rus_w_3_in_axes3_x
         )
         rus_d_c_in_axes3_yz = (
         rus_d_alpha_3_in_axes3_xz*rus_h_3_in_spec3_y - rus_d_Gamma_3_in_axes3_z*rus_w_3_in_axes3_y
@@ -1721,9 +1899,8 @@ def _run_dynamics(m, X, V):
         rus_Q_t = rus_d_c_in_axes3_xx - rus_d_c_in_axes3_yy
         rus_Q_t_2 = 0.5*rus_Q_t
         rus_Q_t_3 = (
-        rus_d_c_in_axes3_xx + rus_d_Gamma_2_in_axes3_z*rus_w_2_in_axes3_z -
-            rus_d_alpha_3_in_axes3_xz*rus_h_3_in_spec3_z -
-            rus_d_alpha_3_in_axes3_yz*rus_h_3_in_spec3_x
+        rus_d_c_in_axes3_xx + rus_d_Gamma_2_in_axes3_z*rus_w_2_in_axes3_z +
+            rus_d_alpha_3_t*rus_h_3_in_spec3_x - rus_d_alpha_3_in_axes3_xz*rus_h_3_in_spec3_z
         )
         rus_Q_t_4 = 0.5*rus_Q_t_3
         rus_Q_t_5 = (
@@ -1773,8 +1950,8 @@ def _run_dynamics(m, X, V):
             axis_z_rus_axes3_z*rus_c_o_in_axes3_z
         )
         ok = (
-        ok & (abs(rus_J_3_t_12) > _TOLERANCE * _TOLERANCE * rus_rho2_1_t) & (rus_J_3_t_13 >= 0.0)
-            & (abs(rus_J_3_t_18) > _TOLERANCE * _TOLERANCE * rus_size_t_3) & (abs(rus_r_1_t) >
+        ok & (abs(rus_J_3_t_10) > _TOLERANCE * _TOLERANCE * rus_rho2_1_t) & (rus_J_3_t_11 >= 0.0)
+            & (abs(rus_J_3_t_15) > _TOLERANCE * _TOLERANCE * rus_size_t_3) & (abs(rus_r_1_t) >
             _TOLERANCE * rus_size) & (abs(rus_v_1_t_2) > _TOLERANCE * rus_size)
         )
         # (M_tt) translational block of M
@@ -1852,61 +2029,56 @@ def _run_M(m, X):
         rus_J_3_t_6 = rus_J_3_t_3*rus_J_3_t_3 + rus_J_3_t_4*rus_J_3_t_4 + rus_J_3_t_5*rus_J_3_t_5
         rus_J_3_t_7 = rus_J_3_t + 0.5*rus_J_3_t_6 - rus_J_3_t_2
         rus_J_3_t_8 = (
-        rus_J_3_t_3*rus_base_frame_xx + rus_J_3_t_4*rus_base_frame_yx +
-            rus_J_3_t_5*rus_base_frame_zx
+        rus_joint2_offset_x*(rus_J_3_t_3*rus_base_frame_xx + rus_J_3_t_4*rus_base_frame_yx +
+            rus_J_3_t_5*rus_base_frame_zx)
         )
-        rus_J_3_t_9 = rus_J_3_t_8*rus_joint2_offset_x
-        rus_J_3_t_10 = (
-        rus_J_3_t_3*rus_base_frame_xy + rus_J_3_t_4*rus_base_frame_yy +
-            rus_J_3_t_5*rus_base_frame_zy
+        rus_J_3_t_9 = (
+        rus_joint2_offset_x*(rus_J_3_t_3*rus_base_frame_xy + rus_J_3_t_4*rus_base_frame_yy +
+            rus_J_3_t_5*rus_base_frame_zy)
         )
-        rus_J_3_t_11 = rus_J_3_t_10*rus_joint2_offset_x
-        rus_J_3_t_12 = rus_J_3_t_11*rus_J_3_t_11 + rus_J_3_t_9*rus_J_3_t_9
-        rus_J_3_t_13 = rus_J_3_t_12 - rus_J_3_t_7*rus_J_3_t_7
-        rus_J_3_t_14 = sqrt(rus_J_3_t_13)*rus_branch_1
-        rus_J_3_t_15 = inv_rus_size_t*rus_J_3_t_14*rus_joint2_offset_x
-        rus_J_3_t_16 = (
-        rus_J_3_t_3*rus_base_frame_xz + rus_J_3_t_4*rus_base_frame_yz +
-            rus_J_3_t_5*rus_base_frame_zz
+        rus_J_3_t_10 = rus_J_3_t_8*rus_J_3_t_8 + rus_J_3_t_9*rus_J_3_t_9
+        rus_J_3_t_11 = rus_J_3_t_10 - rus_J_3_t_7*rus_J_3_t_7
+        rus_J_3_t_12 = sqrt(rus_J_3_t_11)*rus_branch_1
+        rus_J_3_t_13 = inv_rus_size_t*rus_J_3_t_12*rus_joint2_offset_x
+        rus_J_3_t_14 = inv_rus_size_t*rus_J_3_t_7*rus_joint2_offset_x - rus_joint2_offset_x
+        rus_J_3_t_15 = rus_J_3_t_13*rus_J_3_t_13 + rus_J_3_t_14*rus_J_3_t_14
+        rus_J_3_t_16 = sqrt(rus_J_3_t_15)*rus_branch_2
+        rus_J_3_t_17 = inv_rus_size_t_2*rus_J_3_t_16*rus_platform_joint_offset_x
+        rus_e_1_in_axes3_x = (
+        inv_rus_size_t_2*rus_platform_joint_offset_x*(rus_J_3_t_3*rus_base_frame_xz +
+            rus_J_3_t_4*rus_base_frame_yz + rus_J_3_t_5*rus_base_frame_zz)
         )
-        rus_J_3_t_17 = inv_rus_size_t*rus_J_3_t_7*rus_joint2_offset_x - rus_joint2_offset_x
-        rus_J_3_t_18 = rus_J_3_t_15*rus_J_3_t_15 + rus_J_3_t_17*rus_J_3_t_17
-        rus_J_3_t_19 = sqrt(rus_J_3_t_18)*rus_branch_2
-        rus_e_1_in_axes3_y = -inv_rus_size_t_2*rus_J_3_t_19*rus_platform_joint_offset_x
-        rus_e_1_in_axes3_x = inv_rus_size_t_2*rus_J_3_t_16*rus_platform_joint_offset_x
-        rus_J_3_in_axes2_xz = (
-        rus_J_3_in_spec3_xy*rus_e_1_in_axes3_x - rus_J_3_in_spec3_yz*rus_e_1_in_axes3_y
+        rus_J_3_in_axes2_yz = (
+        rus_J_3_in_spec3_xy*rus_e_1_in_axes3_x + rus_J_3_in_spec3_yz*rus_J_3_t_17
         )
         rus_J_3_in_axes1_zz = (
-        rus_e_1_in_axes3_x*(rus_J_3_in_spec3_xx*rus_e_1_in_axes3_x -
-            rus_J_3_in_spec3_xz*rus_e_1_in_axes3_y) +
-            rus_e_1_in_axes3_y*(rus_J_3_in_spec3_zz*rus_e_1_in_axes3_y -
-            rus_J_3_in_spec3_xz*rus_e_1_in_axes3_x)
+        rus_J_3_t_17*(rus_J_3_in_spec3_xz*rus_e_1_in_axes3_x + rus_J_3_in_spec3_zz*rus_J_3_t_17) -
+            rus_e_1_in_axes3_x*(-rus_J_3_in_spec3_xx*rus_e_1_in_axes3_x -
+            rus_J_3_in_spec3_xz*rus_J_3_t_17)
         )
         # (rus-c_1) cosine of the angle of joint 1 from its reference direction
-        inv_rus_J_3_t_12 = 1.0/rus_J_3_t_12
-        rus_c_1 = inv_rus_J_3_t_12*(rus_J_3_t_7*rus_J_3_t_9 - rus_J_3_t_11*rus_J_3_t_14)
+        inv_rus_J_3_t_10 = 1.0/rus_J_3_t_10
+        rus_c_1 = inv_rus_J_3_t_10*(rus_J_3_t_7*rus_J_3_t_8 - rus_J_3_t_12*rus_J_3_t_9)
         # (rus-s_1) sine of the angle of joint 1 from its reference direction
-        rus_s_1 = inv_rus_J_3_t_12*(rus_J_3_t_11*rus_J_3_t_7 + rus_J_3_t_14*rus_J_3_t_9)
+        rus_s_1 = inv_rus_J_3_t_10*(rus_J_3_t_12*rus_J_3_t_8 + rus_J_3_t_7*rus_J_3_t_9)
         # (rus-c_2) cosine of the angle of joint 2 from its reference direction
-        inv_rus_J_3_t_18 = 1.0/rus_J_3_t_18
-        rus_c_2 = inv_rus_J_3_t_18*rus_J_3_t_15*rus_J_3_t_19
+        inv_rus_J_3_t_15 = 1.0/rus_J_3_t_15
+        rus_c_2 = inv_rus_J_3_t_15*rus_J_3_t_14*rus_J_3_t_16
         # (rus-s_2) sine of the angle of joint 2 from its reference direction
-        rus_s_2 = inv_rus_J_3_t_18*rus_J_3_t_17*rus_J_3_t_19
+        rus_s_2_t = inv_rus_J_3_t_15*rus_J_3_t_13*rus_J_3_t_16
         # (rus-r_1) from joint 1 to the connection point, along the links
-        rus_r_1_t = -rus_e_1_in_axes3_y*rus_platform_joint_offset_x
+        rus_r_1_t = rus_J_3_t_17*rus_platform_joint_offset_x
         rus_r_1_in_axes1_z = rus_e_1_in_axes3_x*rus_platform_joint_offset_x
-        rus_r_1_t_2 = rus_c_2*rus_r_1_t
-        rus_r_1_in_axes1_x = rus_joint2_offset_x + rus_r_1_t*rus_s_2
-        rus_r_1_in_axes3_z = rus_c_2*rus_r_1_in_axes1_x - rus_r_1_t_2*rus_s_2
+        rus_r_1_t_2 = rus_r_1_t*rus_s_2_t
+        rus_r_1_in_axes1_x = rus_joint2_offset_x + rus_c_2*rus_r_1_t
+        rus_r_1_in_axes3_z = rus_r_1_in_axes1_x*rus_s_2_t - rus_c_2*rus_r_1_t_2
         # (rus-v_1) velocity of the connection point per rate of joint 1
-        rus_v_1_t = rus_c_2*rus_r_1_t_2 + rus_r_1_in_axes1_x*rus_s_2
-        rus_v_1_t_2 = -rus_e_1_in_axes3_y*rus_r_1_in_axes3_z
+        rus_v_1_t = rus_c_2*rus_r_1_in_axes1_x + rus_r_1_t_2*rus_s_2_t
+        rus_v_1_t_2 = rus_J_3_t_17*rus_r_1_in_axes3_z
         rus_v_1_in_axes3_y = -rus_e_1_in_axes3_x*rus_r_1_in_axes3_z
         rus_v_1_in_axes3_z = (
-        rus_e_1_in_axes3_x*(rus_e_1_in_axes3_x*rus_v_1_t + rus_e_1_in_axes3_y*rus_r_1_in_axes1_z)
-            - rus_e_1_in_axes3_y*(rus_e_1_in_axes3_x*rus_r_1_in_axes1_z -
-            rus_e_1_in_axes3_y*rus_v_1_t)
+        rus_J_3_t_17*(rus_J_3_t_17*rus_v_1_t + rus_e_1_in_axes3_x*rus_r_1_in_axes1_z) +
+            rus_e_1_in_axes3_x*(rus_e_1_in_axes3_x*rus_v_1_t - rus_J_3_t_17*rus_r_1_in_axes1_z)
         )
         # (rus-w_1) reciprocal vector 1
         inv_rus_v_1_t_2 = 1.0/rus_v_1_t_2
@@ -1917,39 +2089,39 @@ def _run_M(m, X):
         rus_w_3_in_axes3_x = inv_rus_v_1_t_2*rus_v_1_in_axes3_y*rus_w_3_in_axes3_y
         # (rus-d_alpha_3) coefficient of the acceleration in: angular acceleration of link 3
         rus_d_alpha_3_in_axes3_xz = rus_e_1_in_axes3_x*rus_w_2_in_axes3_z
-        rus_d_alpha_3_in_axes3_yz = rus_e_1_in_axes3_y*rus_w_2_in_axes3_z
+        rus_d_alpha_3_t = rus_J_3_t_17*rus_w_2_in_axes3_z
         # (rus-d_Gamma_3) coefficient of the acceleration in: moment about axis 3 of the distal links' inertia and weight
-        rus_d_Gamma_3_in_axes3_z = rus_J_3_in_axes2_xz*rus_w_2_in_axes3_z
+        rus_d_Gamma_3_in_axes3_z = rus_J_3_in_axes2_yz*rus_w_2_in_axes3_z
         rus_d_Gamma_3_in_axes3_x = (
-        rus_h_3_in_spec3_z - inv_rus_v_1_t_2*(rus_J_3_in_axes2_xz -
+        rus_h_3_in_spec3_z - inv_rus_v_1_t_2*(rus_J_3_in_axes2_yz -
             rus_d_Gamma_3_in_axes3_z*rus_v_1_in_axes3_z - rus_d_Gamma_3_t*rus_v_1_in_axes3_y)
         )
         # (rus-d_Gamma_2) coefficient of the acceleration in: moment about axis 2 of the distal links' inertia and weight
-        rus_d_Gamma_2_t = rus_e_1_in_axes3_y*rus_h_3_in_spec3_y
+        rus_d_Gamma_2_t = rus_J_3_t_17*rus_h_3_in_spec3_y
         rus_d_Gamma_2_t_2 = rus_J_3_in_axes1_zz*rus_w_2_in_axes3_z
-        rus_d_Gamma_2_t_3 = rus_J_3_in_axes2_xz*rus_w_3_in_axes3_y
+        rus_d_Gamma_2_t_3 = rus_J_3_in_axes2_yz*rus_w_3_in_axes3_y
         rus_d_Gamma_2_t_4 = rus_d_Gamma_2_t_2*rus_v_1_in_axes3_z
         rus_d_Gamma_2_t_5 = rus_d_Gamma_2_t_3*rus_v_1_in_axes3_y
         rus_d_Gamma_2_in_axes3_x = (
-        rus_d_Gamma_2_t - inv_rus_v_1_t_2*(rus_J_3_in_axes1_zz - rus_d_Gamma_2_t_4 -
-            rus_d_Gamma_2_t_5)
+        inv_rus_v_1_t_2*(rus_d_Gamma_2_t_4 + rus_d_Gamma_2_t_5 - rus_J_3_in_axes1_zz) -
+            rus_d_Gamma_2_t
         )
         rus_d_Gamma_2_in_axes3_y = rus_d_Gamma_2_t_3 - rus_e_1_in_axes3_x*rus_h_3_in_spec3_y
         rus_d_Gamma_2_in_axes3_z = (
-        rus_d_Gamma_2_t_2 - rus_e_1_in_axes3_x*rus_h_3_in_spec3_z -
-            rus_e_1_in_axes3_y*rus_h_3_in_spec3_x
+        rus_d_Gamma_2_t_2 + rus_J_3_t_17*rus_h_3_in_spec3_x -
+            rus_e_1_in_axes3_x*rus_h_3_in_spec3_z
         )
         # (rus-d_Gamma_1) coefficient of the acceleration in: moment about axis 1 of the distal links' inertia and weight
         rus_d_Gamma_1_in_axes3_x = (
-        rus_d_Gamma_2_t - inv_rus_v_1_t_2*(rus_J_1_in_spec1_zz + rus_J_3_in_axes1_zz -
-            rus_d_Gamma_2_t_4 - rus_d_Gamma_2_t_5)
+        inv_rus_v_1_t_2*(rus_d_Gamma_2_t_4 + rus_d_Gamma_2_t_5 - rus_J_1_in_spec1_zz -
+            rus_J_3_in_axes1_zz) - rus_d_Gamma_2_t
         )
         # (rus-d_c) coefficient of the acceleration in: leg force on the platform without actuation and without the mass at the connection point
         rus_d_c_in_axes3_xx = (
         inv_rus_v_1_t_2*rus_d_Gamma_1_in_axes3_x - rus_d_Gamma_2_in_axes3_x*rus_w_2_in_axes3_x -
             rus_d_Gamma_3_in_axes3_x*rus_w_3_in_axes3_x -
-            rus_h_3_in_spec3_y*(rus_e_1_in_axes3_y*rus_w_2_in_axes3_x -
-            inv_rus_v_1_t_2*rus_e_1_in_axes3_y) - rus_h_3_in_spec3_z*rus_w_3_in_axes3_x
+            rus_h_3_in_spec3_y*(inv_rus_v_1_t_2*rus_J_3_t_17 - rus_J_3_t_17*rus_w_2_in_axes3_x) -
+            rus_h_3_in_spec3_z*rus_w_3_in_axes3_x
         )
         rus_d_c_in_axes3_xy = (
         inv_rus_v_1_t_2*rus_d_Gamma_2_in_axes3_y - rus_d_phi_3_in_axes3_xy -
@@ -1957,34 +2129,31 @@ def _run_M(m, X):
             rus_d_Gamma_3_in_axes3_y*rus_w_3_in_axes3_x
         )
         rus_d_c_in_axes3_xz = (
-        inv_rus_v_1_t_2*rus_d_Gamma_2_in_axes3_z - rus_d_Gamma_2_in_axes3_z*rus_w_2_in_axes3_x -
-            rus_d_Gamma_3_in_axes3_z*rus_w_3_in_axes3_x -
-            rus_d_alpha_3_in_axes3_yz*rus_h_3_in_spec3_y
+        inv_rus_v_1_t_2*rus_d_Gamma_2_in_axes3_z + rus_d_alpha_3_t*rus_h_3_in_spec3_y -
+            rus_d_Gamma_2_in_axes3_z*rus_w_2_in_axes3_x -
+            rus_d_Gamma_3_in_axes3_z*rus_w_3_in_axes3_x
         )
         rus_d_c_in_axes3_yz = (
         rus_d_alpha_3_in_axes3_xz*rus_h_3_in_spec3_y - rus_d_Gamma_3_in_axes3_z*rus_w_3_in_axes3_y
         )
         # (rus-Q) inertia of the leg at the connection point, without the mass gathered there
-        rus_Q_t = rus_c_1*rus_c_2 - rus_s_1*rus_s_2
-        rus_Q_t_2 = rus_c_1*rus_s_2 + rus_c_2*rus_s_1
+        rus_Q_t = rus_c_1*rus_s_2_t - rus_c_2*rus_s_1
+        rus_Q_t_2 = rus_c_1*rus_c_2 + rus_s_1*rus_s_2_t
         axis_z_rus_axes3_x = rus_Q_t*rus_base_frame_xx + rus_Q_t_2*rus_base_frame_xy
         axis_z_rus_axes3_y = rus_Q_t*rus_base_frame_yx + rus_Q_t_2*rus_base_frame_yy
         axis_z_rus_axes3_z = rus_Q_t*rus_base_frame_zx + rus_Q_t_2*rus_base_frame_zy
-        rus_Q_t_3 = rus_e_1_in_axes3_x*rus_s_2
-        rus_Q_t_4 = rus_c_2*rus_e_1_in_axes3_x
+        rus_Q_t_3 = rus_c_2*rus_e_1_in_axes3_x
+        rus_Q_t_4 = rus_e_1_in_axes3_x*rus_s_2_t
         rus_Q_t_5 = rus_Q_t_3*rus_c_1 + rus_Q_t_4*rus_s_1
         rus_Q_t_6 = rus_Q_t_3*rus_s_1 - rus_Q_t_4*rus_c_1
         axis_y_rus_axes3_x = (
-        rus_Q_t_5*rus_base_frame_xx + rus_Q_t_6*rus_base_frame_xy +
-            rus_base_frame_xz*rus_e_1_in_axes3_y
+        rus_Q_t_5*rus_base_frame_xx + rus_Q_t_6*rus_base_frame_xy - rus_J_3_t_17*rus_base_frame_xz
         )
         axis_y_rus_axes3_y = (
-        rus_Q_t_5*rus_base_frame_yx + rus_Q_t_6*rus_base_frame_yy +
-            rus_base_frame_yz*rus_e_1_in_axes3_y
+        rus_Q_t_5*rus_base_frame_yx + rus_Q_t_6*rus_base_frame_yy - rus_J_3_t_17*rus_base_frame_yz
         )
         axis_y_rus_axes3_z = (
-        rus_Q_t_5*rus_base_frame_zx + rus_Q_t_6*rus_base_frame_zy +
-            rus_base_frame_zz*rus_e_1_in_axes3_y
+        rus_Q_t_5*rus_base_frame_zx + rus_Q_t_6*rus_base_frame_zy - rus_J_3_t_17*rus_base_frame_zz
         )
         axis_x_rus_axes3_x = (
         axis_y_rus_axes3_y*axis_z_rus_axes3_z - axis_y_rus_axes3_z*axis_z_rus_axes3_y
@@ -1998,9 +2167,8 @@ def _run_M(m, X):
         rus_Q_t_7 = rus_d_c_in_axes3_xx - rus_d_c_in_axes3_yy
         rus_Q_t_8 = 0.5*rus_Q_t_7
         rus_Q_t_9 = (
-        rus_d_c_in_axes3_xx + rus_d_Gamma_2_in_axes3_z*rus_w_2_in_axes3_z -
-            rus_d_alpha_3_in_axes3_xz*rus_h_3_in_spec3_z -
-            rus_d_alpha_3_in_axes3_yz*rus_h_3_in_spec3_x
+        rus_d_c_in_axes3_xx + rus_d_Gamma_2_in_axes3_z*rus_w_2_in_axes3_z +
+            rus_d_alpha_3_t*rus_h_3_in_spec3_x - rus_d_alpha_3_in_axes3_xz*rus_h_3_in_spec3_z
         )
         rus_Q_t_10 = 0.5*rus_Q_t_9
         rus_Q_t_11 = (
@@ -2037,8 +2205,8 @@ def _run_M(m, X):
         rus_Q_t_19 = axis_y_rus_axes3_z*rus_Q_t_13 - axis_z_rus_axes3_z*rus_Q_t_16
         rus_Q_zz = -2.0*rus_Q_t_19 - rus_d_c_in_axes3_xx
         ok = (
-        ok & (abs(rus_J_3_t_12) > _TOLERANCE * _TOLERANCE * rus_rho2_1_t) & (rus_J_3_t_13 >= 0.0)
-            & (abs(rus_J_3_t_18) > _TOLERANCE * _TOLERANCE * rus_size_t_3) & (abs(rus_r_1_t) >
+        ok & (abs(rus_J_3_t_10) > _TOLERANCE * _TOLERANCE * rus_rho2_1_t) & (rus_J_3_t_11 >= 0.0)
+            & (abs(rus_J_3_t_15) > _TOLERANCE * _TOLERANCE * rus_size_t_3) & (abs(rus_r_1_t) >
             _TOLERANCE * rus_size) & (abs(rus_v_1_t_2) > _TOLERANCE * rus_size)
         )
         # (M_tt) translational block of M
@@ -2107,18 +2275,16 @@ def _run_Z(m, X, V):
         # (rus-Kd_1) projection on the centre's direction, from the distance fixed by the joints beyond joint 1
         rus_Kd_1_t = rus_S_x*rus_S_x + rus_S_y*rus_S_y + rus_S_z*rus_S_z
         rus_Kd_1 = rus_J_3_t + 0.5*rus_Kd_1_t - rus_J_3_t_2
-        # (rus-px_1) component along the reference direction
-        rus_px_1 = (
-        rus_S_x*rus_base_frame_xx + rus_S_y*rus_base_frame_yx + rus_S_z*rus_base_frame_zx
-        )
-        # (rus-py_1) component across the reference direction
-        rus_py_1 = (
-        rus_S_x*rus_base_frame_xy + rus_S_y*rus_base_frame_yy + rus_S_z*rus_base_frame_zy
-        )
         # (rus-Kc_1) factor of the cosine in the equation of joint 1
-        rus_Kc_1 = rus_joint2_offset_x*rus_px_1
+        rus_Kc_1 = (
+        rus_joint2_offset_x*(rus_S_x*rus_base_frame_xx + rus_S_y*rus_base_frame_yx +
+            rus_S_z*rus_base_frame_zx)
+        )
         # (rus-Ks_1) factor of the sine in the equation of joint 1
-        rus_Ks_1 = rus_joint2_offset_x*rus_py_1
+        rus_Ks_1 = (
+        rus_joint2_offset_x*(rus_S_x*rus_base_frame_xy + rus_S_y*rus_base_frame_yy +
+            rus_S_z*rus_base_frame_zy)
+        )
         # (rus-rho2_1) squared amplitude
         rus_rho2_1 = rus_Kc_1*rus_Kc_1 + rus_Ks_1*rus_Ks_1
         # (rus-disc_1) discriminant
@@ -2132,9 +2298,6 @@ def _run_Z(m, X, V):
         rus_s_1 = inv_rus_rho2_1*(rus_Kc_1*rus_root_1 + rus_Kd_1*rus_Ks_1)
         # (rus-xi_1) the vector from joint 1 to the connection point, resolved along link 1
         rus_xi_1_t = inv_rus_size_t*rus_joint2_offset_x*rus_root_1
-        rus_xi_1_in_axes1_z = (
-        rus_S_x*rus_base_frame_xz + rus_S_y*rus_base_frame_yz + rus_S_z*rus_base_frame_zz
-        )
         # (rus-x_2) from the origin of joint 2 to the connection point
         rus_x_2_in_axes1_x = inv_rus_size_t*rus_Kd_1*rus_joint2_offset_x - rus_joint2_offset_x
         # (rus-rho2_2) squared amplitude
@@ -2143,51 +2306,53 @@ def _run_Z(m, X, V):
         rus_root_2 = rus_branch_2*sqrt(rus_rho2_2)
         # (rus-c_2) cosine of the angle of joint 2 from its reference direction
         inv_rus_rho2_2 = 1.0/rus_rho2_2
-        rus_c_2 = inv_rus_rho2_2*rus_root_2*rus_xi_1_t
+        rus_c_2 = inv_rus_rho2_2*rus_root_2*rus_x_2_in_axes1_x
         # (rus-s_2) sine of the angle of joint 2 from its reference direction
-        rus_s_2 = inv_rus_rho2_2*rus_root_2*rus_x_2_in_axes1_x
+        rus_s_2_t = inv_rus_rho2_2*rus_root_2*rus_xi_1_t
         # (rus-c_3) cosine of the angle of joint 3 from its reference direction
-        rus_c_3 = -inv_rus_size_t_2*rus_platform_joint_offset_x*rus_root_2
-        # (rus-s_3) sine of the angle of joint 3 from its reference direction
-        rus_s_3 = inv_rus_size_t_2*rus_platform_joint_offset_x*rus_xi_1_in_axes1_z
+        rus_c_3 = inv_rus_size_t_2*rus_platform_joint_offset_x*rus_root_2
         # (rus-r_1) from joint 1 to the connection point, along the links
-        rus_r_1_t = -rus_c_3*rus_platform_joint_offset_x
-        rus_r_1_in_axes1_z = rus_platform_joint_offset_x*rus_s_3
-        rus_r_1_t_2 = rus_c_2*rus_r_1_t
-        rus_r_1_in_axes1_x = rus_joint2_offset_x + rus_r_1_t*rus_s_2
-        rus_r_1_in_axes3_z = rus_c_2*rus_r_1_in_axes1_x - rus_r_1_t_2*rus_s_2
+        rus_e_1_in_axes3_x = (
+        inv_rus_size_t_2*rus_platform_joint_offset_x*(rus_S_x*rus_base_frame_xz +
+            rus_S_y*rus_base_frame_yz + rus_S_z*rus_base_frame_zz)
+        )
+        rus_r_1_t = rus_c_3*rus_platform_joint_offset_x
+        rus_r_1_in_axes1_z = rus_e_1_in_axes3_x*rus_platform_joint_offset_x
+        rus_r_1_t_2 = rus_r_1_t*rus_s_2_t
+        rus_r_1_in_axes1_x = rus_joint2_offset_x + rus_c_2*rus_r_1_t
+        rus_r_1_in_axes3_z = rus_r_1_in_axes1_x*rus_s_2_t - rus_c_2*rus_r_1_t_2
         # (rus-v_1) velocity of the connection point per rate of joint 1
-        rus_v_1_t = rus_c_2*rus_r_1_t_2 + rus_r_1_in_axes1_x*rus_s_2
-        rus_v_1_t_2 = -rus_c_3*rus_r_1_in_axes3_z
-        rus_v_1_in_axes3_y = -rus_r_1_in_axes3_z*rus_s_3
+        rus_v_1_t = rus_c_2*rus_r_1_in_axes1_x + rus_r_1_t_2*rus_s_2_t
+        rus_v_1_t_2 = rus_c_3*rus_r_1_in_axes3_z
+        rus_v_1_in_axes3_y = -rus_e_1_in_axes3_x*rus_r_1_in_axes3_z
         rus_v_1_in_axes3_z = (
-        rus_s_3*(rus_c_3*rus_r_1_in_axes1_z + rus_s_3*rus_v_1_t) -
-            rus_c_3*(rus_r_1_in_axes1_z*rus_s_3 - rus_c_3*rus_v_1_t)
+        rus_c_3*(rus_c_3*rus_v_1_t + rus_e_1_in_axes3_x*rus_r_1_in_axes1_z) +
+            rus_e_1_in_axes3_x*(rus_e_1_in_axes3_x*rus_v_1_t - rus_c_3*rus_r_1_in_axes1_z)
         )
         # (rus-w_1) reciprocal vector 1
         inv_rus_v_1_t_2 = 1.0/rus_v_1_t_2
         # (rus-w_2) reciprocal vector 2
         rus_w_2_in_axes3_z = 1.0/rus_r_1_t
         # (rus-qd_1) rate of joint 1
-        rus_qd_1_t = rus_c_1*rus_c_2 - rus_s_1*rus_s_2
-        rus_qd_1_t_2 = rus_c_1*rus_s_2 + rus_c_2*rus_s_1
+        rus_qd_1_t = rus_c_1*rus_s_2_t - rus_c_2*rus_s_1
+        rus_qd_1_t_2 = rus_c_1*rus_c_2 + rus_s_1*rus_s_2_t
         axis_z_rus_axes3_x = rus_base_frame_xx*rus_qd_1_t + rus_base_frame_xy*rus_qd_1_t_2
         axis_z_rus_axes3_y = rus_base_frame_yx*rus_qd_1_t + rus_base_frame_yy*rus_qd_1_t_2
         axis_z_rus_axes3_z = rus_base_frame_zx*rus_qd_1_t + rus_base_frame_zy*rus_qd_1_t_2
-        rus_qd_1_t_3 = rus_s_2*rus_s_3
-        rus_qd_1_t_4 = rus_c_2*rus_s_3
+        rus_qd_1_t_3 = rus_c_2*rus_e_1_in_axes3_x
+        rus_qd_1_t_4 = rus_e_1_in_axes3_x*rus_s_2_t
         rus_qd_1_t_5 = rus_c_1*rus_qd_1_t_3 + rus_qd_1_t_4*rus_s_1
         rus_qd_1_t_6 = rus_qd_1_t_3*rus_s_1 - rus_c_1*rus_qd_1_t_4
         axis_y_rus_axes3_x = (
-        rus_base_frame_xx*rus_qd_1_t_5 + rus_base_frame_xy*rus_qd_1_t_6 +
+        rus_base_frame_xx*rus_qd_1_t_5 + rus_base_frame_xy*rus_qd_1_t_6 -
             rus_base_frame_xz*rus_c_3
         )
         axis_y_rus_axes3_y = (
-        rus_base_frame_yx*rus_qd_1_t_5 + rus_base_frame_yy*rus_qd_1_t_6 +
+        rus_base_frame_yx*rus_qd_1_t_5 + rus_base_frame_yy*rus_qd_1_t_6 -
             rus_base_frame_yz*rus_c_3
         )
         axis_y_rus_axes3_z = (
-        rus_base_frame_zx*rus_qd_1_t_5 + rus_base_frame_zy*rus_qd_1_t_6 +
+        rus_base_frame_zx*rus_qd_1_t_5 + rus_base_frame_zy*rus_qd_1_t_6 -
             rus_base_frame_zz*rus_c_3
         )
         axis_x_rus_axes3_x = (
@@ -2199,43 +2364,44 @@ def _run_Z(m, X, V):
         axis_x_rus_axes3_z = (
         axis_y_rus_axes3_x*axis_z_rus_axes3_y - axis_y_rus_axes3_y*axis_z_rus_axes3_x
         )
-        rus_qd_1 = (
-        -inv_rus_v_1_t_2*(axis_x_rus_axes3_x*t_dot_x + axis_x_rus_axes3_y*t_dot_y +
+        rus_qd_1_t_7 = (
+        inv_rus_v_1_t_2*(axis_x_rus_axes3_x*t_dot_x + axis_x_rus_axes3_y*t_dot_y +
             axis_x_rus_axes3_z*t_dot_z)
         )
         # (rus-qd_3) rate of joint 3
         rus_qd_3_t = (
-        axis_y_rus_axes3_x*t_dot_x + axis_y_rus_axes3_y*t_dot_y + axis_y_rus_axes3_z*t_dot_z -
-            rus_qd_1*rus_v_1_in_axes3_y
+        axis_y_rus_axes3_x*t_dot_x + axis_y_rus_axes3_y*t_dot_y + axis_y_rus_axes3_z*t_dot_z +
+            rus_qd_1_t_7*rus_v_1_in_axes3_y
         )
         rus_qd_3 = rus_qd_3_t*rus_w_3_in_axes3_y
         # (rus-omega_1) angular velocity of link 1
-        rus_omega_1_in_axes3_x = rus_qd_1*rus_s_3
-        rus_omega_1_in_axes3_y = rus_c_3*rus_qd_1
+        rus_omega_1_in_axes3_x = -rus_e_1_in_axes3_x*rus_qd_1_t_7
+        rus_omega_1_in_axes3_y = rus_c_3*rus_qd_1_t_7
         # (rus-omega_2) angular velocity of link 2
         rus_omega_2_in_axes2_z = (
-        rus_qd_1 + rus_w_2_in_axes3_z*(axis_z_rus_axes3_x*t_dot_x + axis_z_rus_axes3_y*t_dot_y +
-            axis_z_rus_axes3_z*t_dot_z - rus_qd_1*rus_v_1_in_axes3_z)
+        rus_w_2_in_axes3_z*(axis_z_rus_axes3_x*t_dot_x + axis_z_rus_axes3_y*t_dot_y +
+            axis_z_rus_axes3_z*t_dot_z + rus_qd_1_t_7*rus_v_1_in_axes3_z) - rus_qd_1_t_7
         )
-        rus_omega_2_in_axes3_x = rus_omega_2_in_axes2_z*rus_s_3
-        rus_omega_2_in_axes3_y = rus_c_3*rus_omega_2_in_axes2_z
+        rus_omega_2_in_axes3_x = rus_e_1_in_axes3_x*rus_omega_2_in_axes2_z
+        rus_omega_2_in_axes3_y = -rus_c_3*rus_omega_2_in_axes2_z
         # (rus-W_3) centripetal tensor of link 3
         rus_W_3_in_axes3_yz = rus_omega_2_in_axes3_y*rus_qd_3
         rus_W_3_in_axes3_xz = rus_omega_2_in_axes3_x*rus_qd_3
         rus_W_3_in_axes3_xy = rus_omega_2_in_axes3_x*rus_omega_2_in_axes3_y
         # (rus-bias) acceleration of the connection point at zero joint accelerations
-        rus_d_2_in_axes3_z = rus_c_2*rus_joint2_offset_x
-        rus_bias_t = rus_joint2_offset_x*rus_s_2
+        rus_bias_t = rus_c_2*rus_joint2_offset_x
+        rus_d_2_in_axes3_z = rus_joint2_offset_x*rus_s_2_t
         rus_bias_t_2 = (
-        rus_bias_t*rus_c_3*rus_omega_1_in_axes3_y + rus_bias_t*rus_omega_1_in_axes3_x*rus_s_3
+        rus_bias_t*rus_c_3*rus_omega_1_in_axes3_y -
+            rus_bias_t*rus_e_1_in_axes3_x*rus_omega_1_in_axes3_x
         )
-        rus_bias_t_3 = rus_omega_2_in_axes3_y*rus_platform_joint_offset_x
+        rus_bias_t_3 = -rus_omega_2_in_axes3_y*rus_platform_joint_offset_x
         rus_bias_in_axes3_x = (
-        rus_bias_t_2*rus_omega_1_in_axes3_y - rus_bias_t_3*rus_omega_2_in_axes3_y -
+        rus_bias_t_3*rus_omega_2_in_axes3_y - rus_bias_t_2*rus_omega_1_in_axes3_y -
             rus_qd_3*rus_qd_3_t
         )
         rus_bias_in_axes3_y = (
-        rus_bias_t_3*rus_omega_2_in_axes3_x - rus_bias_t_2*rus_omega_1_in_axes3_x
+        rus_bias_t_2*rus_omega_1_in_axes3_x - rus_bias_t_3*rus_omega_2_in_axes3_x
         )
         rus_bias_in_axes3_z = (
         rus_W_3_in_axes3_xz*rus_platform_joint_offset_x + rus_omega_2_in_axes3_x*rus_qd_3_t -
@@ -2250,8 +2416,8 @@ def _run_Z(m, X, V):
         rus_alpha_2_o_in_axes2_z = (
         rus_qdd_1_o - rus_w_2_in_axes3_z*(rus_bias_in_axes3_z + rus_qdd_1_o*rus_v_1_in_axes3_z)
         )
-        rus_alpha_2_o_in_axes3_x = rus_alpha_2_o_in_axes2_z*rus_s_3
-        rus_alpha_2_o_in_axes3_y = rus_alpha_2_o_in_axes2_z*rus_c_3
+        rus_alpha_2_o_in_axes3_x = rus_alpha_2_o_in_axes2_z*rus_e_1_in_axes3_x
+        rus_alpha_2_o_in_axes3_y = -rus_alpha_2_o_in_axes2_z*rus_c_3
         # (rus-alpha_3_o) remainder without the acceleration in: angular acceleration of link 3
         rus_alpha_3_o_in_axes3_x = rus_W_3_in_axes3_yz + rus_alpha_2_o_in_axes3_x
         rus_alpha_3_o_in_axes3_y = rus_alpha_2_o_in_axes3_y - rus_W_3_in_axes3_xz
@@ -2294,7 +2460,9 @@ def _run_Z(m, X, V):
             rus_mu_3_o_t_2) - rus_J_3_in_spec3_yz*rus_alpha_2_o_in_axes3_y -
             rus_g_in_axes3_x*rus_h_3_in_spec3_z - rus_g_in_axes3_y*rus_h_3_in_spec3_x
         )
-        rus_mu_3_o_in_axes1_z = rus_c_3*rus_mu_3_o_in_axes3_y + rus_mu_3_o_in_axes3_x*rus_s_3
+        rus_mu_3_o_in_axes1_z = (
+        rus_e_1_in_axes3_x*rus_mu_3_o_in_axes3_x - rus_c_3*rus_mu_3_o_in_axes3_y
+        )
         # (rus-mu_1_o) remainder without the acceleration in: inertia moment of the links that turn with link 1, about their reference points
         rus_mu_1_o_in_axes1_z = (
         rus_J_1_in_spec1_zz*rus_qdd_1_o + rus_h_1_in_spec1_y*(rus_c_1*rus_mu_1_t +
@@ -2383,18 +2551,16 @@ def _run_H(m, X):
         # (rus-Kd_1) projection on the centre's direction, from the distance fixed by the joints beyond joint 1
         rus_Kd_1_t = rus_S_x*rus_S_x + rus_S_y*rus_S_y + rus_S_z*rus_S_z
         rus_Kd_1 = rus_J_3_t + 0.5*rus_Kd_1_t - rus_J_3_t_2
-        # (rus-px_1) component along the reference direction
-        rus_px_1 = (
-        rus_S_x*rus_base_frame_xx + rus_S_y*rus_base_frame_yx + rus_S_z*rus_base_frame_zx
-        )
-        # (rus-py_1) component across the reference direction
-        rus_py_1 = (
-        rus_S_x*rus_base_frame_xy + rus_S_y*rus_base_frame_yy + rus_S_z*rus_base_frame_zy
-        )
         # (rus-Kc_1) factor of the cosine in the equation of joint 1
-        rus_Kc_1 = rus_joint2_offset_x*rus_px_1
+        rus_Kc_1 = (
+        rus_joint2_offset_x*(rus_S_x*rus_base_frame_xx + rus_S_y*rus_base_frame_yx +
+            rus_S_z*rus_base_frame_zx)
+        )
         # (rus-Ks_1) factor of the sine in the equation of joint 1
-        rus_Ks_1 = rus_joint2_offset_x*rus_py_1
+        rus_Ks_1 = (
+        rus_joint2_offset_x*(rus_S_x*rus_base_frame_xy + rus_S_y*rus_base_frame_yy +
+            rus_S_z*rus_base_frame_zy)
+        )
         # (rus-rho2_1) squared amplitude
         rus_rho2_1 = rus_Kc_1*rus_Kc_1 + rus_Ks_1*rus_Ks_1
         # (rus-disc_1) discriminant
@@ -2408,9 +2574,6 @@ def _run_H(m, X):
         rus_s_1 = inv_rus_rho2_1*(rus_Kc_1*rus_root_1 + rus_Kd_1*rus_Ks_1)
         # (rus-xi_1) the vector from joint 1 to the connection point, resolved along link 1
         rus_xi_1_t = inv_rus_size_t*rus_joint2_offset_x*rus_root_1
-        rus_xi_1_in_axes1_z = (
-        rus_S_x*rus_base_frame_xz + rus_S_y*rus_base_frame_yz + rus_S_z*rus_base_frame_zz
-        )
         # (rus-x_2) from the origin of joint 2 to the connection point
         rus_x_2_in_axes1_x = inv_rus_size_t*rus_Kd_1*rus_joint2_offset_x - rus_joint2_offset_x
         # (rus-rho2_2) squared amplitude
@@ -2419,36 +2582,38 @@ def _run_H(m, X):
         rus_root_2 = rus_branch_2*sqrt(rus_rho2_2)
         # (rus-c_2) cosine of the angle of joint 2 from its reference direction
         inv_rus_rho2_2 = 1.0/rus_rho2_2
-        rus_c_2 = inv_rus_rho2_2*rus_root_2*rus_xi_1_t
+        rus_c_2 = inv_rus_rho2_2*rus_root_2*rus_x_2_in_axes1_x
         # (rus-s_2) sine of the angle of joint 2 from its reference direction
-        rus_s_2 = inv_rus_rho2_2*rus_root_2*rus_x_2_in_axes1_x
+        rus_s_2_t = inv_rus_rho2_2*rus_root_2*rus_xi_1_t
         # (rus-c_3) cosine of the angle of joint 3 from its reference direction
-        rus_c_3 = -inv_rus_size_t_2*rus_platform_joint_offset_x*rus_root_2
-        # (rus-s_3) sine of the angle of joint 3 from its reference direction
-        rus_s_3 = inv_rus_size_t_2*rus_platform_joint_offset_x*rus_xi_1_in_axes1_z
+        rus_c_3 = inv_rus_size_t_2*rus_platform_joint_offset_x*rus_root_2
         # (rus-r_1) from joint 1 to the connection point, along the links
-        rus_r_1_t = -rus_c_3*rus_platform_joint_offset_x
-        rus_r_1_in_axes1_x = rus_joint2_offset_x + rus_r_1_t*rus_s_2
+        rus_r_1_t = rus_c_3*rus_platform_joint_offset_x
+        rus_r_1_in_axes1_x = rus_joint2_offset_x + rus_c_2*rus_r_1_t
         # (rus-v_1) velocity of the connection point per rate of joint 1
-        rus_v_1_t = -rus_c_3*(rus_c_2*rus_r_1_in_axes1_x - rus_c_2*rus_r_1_t*rus_s_2)
+        rus_v_1_t = rus_c_3*(rus_r_1_in_axes1_x*rus_s_2_t - rus_c_2*rus_r_1_t*rus_s_2_t)
         # (rus-w_1) reciprocal vector 1
-        rus_w_1_t = rus_c_1*rus_c_2 - rus_s_1*rus_s_2
-        rus_w_1_t_2 = rus_c_1*rus_s_2 + rus_c_2*rus_s_1
+        rus_e_1_in_axes3_x = (
+        inv_rus_size_t_2*rus_platform_joint_offset_x*(rus_S_x*rus_base_frame_xz +
+            rus_S_y*rus_base_frame_yz + rus_S_z*rus_base_frame_zz)
+        )
+        rus_w_1_t = rus_c_1*rus_s_2_t - rus_c_2*rus_s_1
+        rus_w_1_t_2 = rus_c_1*rus_c_2 + rus_s_1*rus_s_2_t
         axis_z_rus_axes3_x = rus_base_frame_xx*rus_w_1_t + rus_base_frame_xy*rus_w_1_t_2
         axis_z_rus_axes3_y = rus_base_frame_yx*rus_w_1_t + rus_base_frame_yy*rus_w_1_t_2
         axis_z_rus_axes3_z = rus_base_frame_zx*rus_w_1_t + rus_base_frame_zy*rus_w_1_t_2
-        rus_w_1_t_3 = rus_s_2*rus_s_3
-        rus_w_1_t_4 = rus_c_2*rus_s_3
+        rus_w_1_t_3 = rus_c_2*rus_e_1_in_axes3_x
+        rus_w_1_t_4 = rus_e_1_in_axes3_x*rus_s_2_t
         rus_w_1_t_5 = rus_c_1*rus_w_1_t_3 + rus_s_1*rus_w_1_t_4
         rus_w_1_t_6 = rus_s_1*rus_w_1_t_3 - rus_c_1*rus_w_1_t_4
         axis_y_rus_axes3_x = (
-        rus_base_frame_xx*rus_w_1_t_5 + rus_base_frame_xy*rus_w_1_t_6 + rus_base_frame_xz*rus_c_3
+        rus_base_frame_xx*rus_w_1_t_5 + rus_base_frame_xy*rus_w_1_t_6 - rus_base_frame_xz*rus_c_3
         )
         axis_y_rus_axes3_y = (
-        rus_base_frame_yx*rus_w_1_t_5 + rus_base_frame_yy*rus_w_1_t_6 + rus_base_frame_yz*rus_c_3
+        rus_base_frame_yx*rus_w_1_t_5 + rus_base_frame_yy*rus_w_1_t_6 - rus_base_frame_yz*rus_c_3
         )
         axis_y_rus_axes3_z = (
-        rus_base_frame_zx*rus_w_1_t_5 + rus_base_frame_zy*rus_w_1_t_6 + rus_base_frame_zz*rus_c_3
+        rus_base_frame_zx*rus_w_1_t_5 + rus_base_frame_zy*rus_w_1_t_6 - rus_base_frame_zz*rus_c_3
         )
         inv_rus_v_1_t = 1.0/rus_v_1_t
         rus_w_1_t_7 = (
@@ -2533,18 +2698,16 @@ def _run_required(m, X, V, A):
         # (rus-Kd_1) projection on the centre's direction, from the distance fixed by the joints beyond joint 1
         rus_Kd_1_t = rus_S_x*rus_S_x + rus_S_y*rus_S_y + rus_S_z*rus_S_z
         rus_Kd_1 = rus_J_3_t + 0.5*rus_Kd_1_t - rus_J_3_t_2
-        # (rus-px_1) component along the reference direction
-        rus_px_1 = (
-        rus_S_x*rus_base_frame_xx + rus_S_y*rus_base_frame_yx + rus_S_z*rus_base_frame_zx
-        )
-        # (rus-py_1) component across the reference direction
-        rus_py_1 = (
-        rus_S_x*rus_base_frame_xy + rus_S_y*rus_base_frame_yy + rus_S_z*rus_base_frame_zy
-        )
         # (rus-Kc_1) factor of the cosine in the equation of joint 1
-        rus_Kc_1 = rus_joint2_offset_x*rus_px_1
+        rus_Kc_1 = (
+        rus_joint2_offset_x*(rus_S_x*rus_base_frame_xx + rus_S_y*rus_base_frame_yx +
+            rus_S_z*rus_base_frame_zx)
+        )
         # (rus-Ks_1) factor of the sine in the equation of joint 1
-        rus_Ks_1 = rus_joint2_offset_x*rus_py_1
+        rus_Ks_1 = (
+        rus_joint2_offset_x*(rus_S_x*rus_base_frame_xy + rus_S_y*rus_base_frame_yy +
+            rus_S_z*rus_base_frame_zy)
+        )
         # (rus-rho2_1) squared amplitude
         rus_rho2_1 = rus_Kc_1*rus_Kc_1 + rus_Ks_1*rus_Ks_1
         # (rus-disc_1) discriminant
@@ -2558,9 +2721,6 @@ def _run_required(m, X, V, A):
         rus_s_1 = inv_rus_rho2_1*(rus_Kc_1*rus_root_1 + rus_Kd_1*rus_Ks_1)
         # (rus-xi_1) the vector from joint 1 to the connection point, resolved along link 1
         rus_xi_1_t = inv_rus_size_t*rus_joint2_offset_x*rus_root_1
-        rus_xi_1_in_axes1_z = (
-        rus_S_x*rus_base_frame_xz + rus_S_y*rus_base_frame_yz + rus_S_z*rus_base_frame_zz
-        )
         # (rus-x_2) from the origin of joint 2 to the connection point
         rus_x_2_in_axes1_x = inv_rus_size_t*rus_Kd_1*rus_joint2_offset_x - rus_joint2_offset_x
         # (rus-rho2_2) squared amplitude
@@ -2569,45 +2729,47 @@ def _run_required(m, X, V, A):
         rus_root_2 = rus_branch_2*sqrt(rus_rho2_2)
         # (rus-c_2) cosine of the angle of joint 2 from its reference direction
         inv_rus_rho2_2 = 1.0/rus_rho2_2
-        rus_c_2 = inv_rus_rho2_2*rus_root_2*rus_xi_1_t
+        rus_c_2 = inv_rus_rho2_2*rus_root_2*rus_x_2_in_axes1_x
         # (rus-s_2) sine of the angle of joint 2 from its reference direction
-        rus_s_2 = inv_rus_rho2_2*rus_root_2*rus_x_2_in_axes1_x
+        rus_s_2_t = inv_rus_rho2_2*rus_root_2*rus_xi_1_t
         # (rus-c_3) cosine of the angle of joint 3 from its reference direction
-        rus_c_3 = -inv_rus_size_t_2*rus_platform_joint_offset_x*rus_root_2
-        # (rus-s_3) sine of the angle of joint 3 from its reference direction
-        rus_s_3 = inv_rus_size_t_2*rus_platform_joint_offset_x*rus_xi_1_in_axes1_z
+        rus_c_3 = inv_rus_size_t_2*rus_platform_joint_offset_x*rus_root_2
         # (rus-r_1) from joint 1 to the connection point, along the links
-        rus_r_1_t = -rus_c_3*rus_platform_joint_offset_x
-        rus_r_1_in_axes1_z = rus_platform_joint_offset_x*rus_s_3
-        rus_r_1_t_2 = rus_c_2*rus_r_1_t
-        rus_r_1_in_axes1_x = rus_joint2_offset_x + rus_r_1_t*rus_s_2
-        rus_r_1_in_axes3_z = rus_c_2*rus_r_1_in_axes1_x - rus_r_1_t_2*rus_s_2
+        rus_e_1_in_axes3_x = (
+        inv_rus_size_t_2*rus_platform_joint_offset_x*(rus_S_x*rus_base_frame_xz +
+            rus_S_y*rus_base_frame_yz + rus_S_z*rus_base_frame_zz)
+        )
+        rus_r_1_t = rus_c_3*rus_platform_joint_offset_x
+        rus_r_1_in_axes1_z = rus_e_1_in_axes3_x*rus_platform_joint_offset_x
+        rus_r_1_t_2 = rus_r_1_t*rus_s_2_t
+        rus_r_1_in_axes1_x = rus_joint2_offset_x + rus_c_2*rus_r_1_t
+        rus_r_1_in_axes3_z = rus_r_1_in_axes1_x*rus_s_2_t - rus_c_2*rus_r_1_t_2
         # (rus-v_1) velocity of the connection point per rate of joint 1
-        rus_v_1_t = rus_c_2*rus_r_1_t_2 + rus_r_1_in_axes1_x*rus_s_2
-        rus_v_1_t_2 = -rus_c_3*rus_r_1_in_axes3_z
-        rus_v_1_in_axes3_y = -rus_r_1_in_axes3_z*rus_s_3
+        rus_v_1_t = rus_c_2*rus_r_1_in_axes1_x + rus_r_1_t_2*rus_s_2_t
+        rus_v_1_t_2 = rus_c_3*rus_r_1_in_axes3_z
+        rus_v_1_in_axes3_y = -rus_e_1_in_axes3_x*rus_r_1_in_axes3_z
         rus_v_1_in_axes3_z = (
-        rus_s_3*(rus_c_3*rus_r_1_in_axes1_z + rus_s_3*rus_v_1_t) -
-            rus_c_3*(rus_r_1_in_axes1_z*rus_s_3 - rus_c_3*rus_v_1_t)
+        rus_c_3*(rus_c_3*rus_v_1_t + rus_e_1_in_axes3_x*rus_r_1_in_axes1_z) +
+            rus_e_1_in_axes3_x*(rus_e_1_in_axes3_x*rus_v_1_t - rus_c_3*rus_r_1_in_axes1_z)
         )
         # (rus-w_1) reciprocal vector 1
-        rus_w_1_t = rus_c_1*rus_c_2 - rus_s_1*rus_s_2
-        rus_w_1_t_2 = rus_c_1*rus_s_2 + rus_c_2*rus_s_1
+        rus_w_1_t = rus_c_1*rus_s_2_t - rus_c_2*rus_s_1
+        rus_w_1_t_2 = rus_c_1*rus_c_2 + rus_s_1*rus_s_2_t
         axis_z_rus_axes3_x = rus_base_frame_xx*rus_w_1_t + rus_base_frame_xy*rus_w_1_t_2
         axis_z_rus_axes3_y = rus_base_frame_yx*rus_w_1_t + rus_base_frame_yy*rus_w_1_t_2
         axis_z_rus_axes3_z = rus_base_frame_zx*rus_w_1_t + rus_base_frame_zy*rus_w_1_t_2
-        rus_w_1_t_3 = rus_s_2*rus_s_3
-        rus_w_1_t_4 = rus_c_2*rus_s_3
+        rus_w_1_t_3 = rus_c_2*rus_e_1_in_axes3_x
+        rus_w_1_t_4 = rus_e_1_in_axes3_x*rus_s_2_t
         rus_w_1_t_5 = rus_c_1*rus_w_1_t_3 + rus_s_1*rus_w_1_t_4
         rus_w_1_t_6 = rus_s_1*rus_w_1_t_3 - rus_c_1*rus_w_1_t_4
         axis_y_rus_axes3_x = (
-        rus_base_frame_xx*rus_w_1_t_5 + rus_base_frame_xy*rus_w_1_t_6 + rus_base_frame_xz*rus_c_3
+        rus_base_frame_xx*rus_w_1_t_5 + rus_base_frame_xy*rus_w_1_t_6 - rus_base_frame_xz*rus_c_3
         )
         axis_y_rus_axes3_y = (
-        rus_base_frame_yx*rus_w_1_t_5 + rus_base_frame_yy*rus_w_1_t_6 + rus_base_frame_yz*rus_c_3
+        rus_base_frame_yx*rus_w_1_t_5 + rus_base_frame_yy*rus_w_1_t_6 - rus_base_frame_yz*rus_c_3
         )
         axis_y_rus_axes3_z = (
-        rus_base_frame_zx*rus_w_1_t_5 + rus_base_frame_zy*rus_w_1_t_6 + rus_base_frame_zz*rus_c_3
+        rus_base_frame_zx*rus_w_1_t_5 + rus_base_frame_zy*rus_w_1_t_6 - rus_base_frame_zz*rus_c_3
         )
         axis_x_rus_axes3_x = (
         axis_y_rus_axes3_y*axis_z_rus_axes3_z - axis_y_rus_axes3_z*axis_z_rus_axes3_y
@@ -2625,26 +2787,26 @@ def _run_required(m, X, V, A):
         # (rus-w_2) reciprocal vector 2
         rus_w_2_in_axes3_z = 1.0/rus_r_1_t
         # (rus-qd_1) rate of joint 1
-        rus_qd_1 = (
-        -inv_rus_v_1_t_2*(axis_x_rus_axes3_x*t_dot_x + axis_x_rus_axes3_y*t_dot_y +
+        rus_qd_1_t = (
+        inv_rus_v_1_t_2*(axis_x_rus_axes3_x*t_dot_x + axis_x_rus_axes3_y*t_dot_y +
             axis_x_rus_axes3_z*t_dot_z)
         )
         # (rus-qd_3) rate of joint 3
         rus_qd_3_t = (
-        axis_y_rus_axes3_x*t_dot_x + axis_y_rus_axes3_y*t_dot_y + axis_y_rus_axes3_z*t_dot_z -
-            rus_qd_1*rus_v_1_in_axes3_y
+        axis_y_rus_axes3_x*t_dot_x + axis_y_rus_axes3_y*t_dot_y + axis_y_rus_axes3_z*t_dot_z +
+            rus_qd_1_t*rus_v_1_in_axes3_y
         )
         rus_qd_3 = rus_qd_3_t*rus_w_3_in_axes3_y
         # (rus-omega_1) angular velocity of link 1
-        rus_omega_1_in_axes3_x = rus_qd_1*rus_s_3
-        rus_omega_1_in_axes3_y = rus_c_3*rus_qd_1
+        rus_omega_1_in_axes3_x = -rus_e_1_in_axes3_x*rus_qd_1_t
+        rus_omega_1_in_axes3_y = rus_c_3*rus_qd_1_t
         # (rus-omega_2) angular velocity of link 2
         rus_omega_2_in_axes2_z = (
-        rus_qd_1 + rus_w_2_in_axes3_z*(axis_z_rus_axes3_x*t_dot_x + axis_z_rus_axes3_y*t_dot_y +
-            axis_z_rus_axes3_z*t_dot_z - rus_qd_1*rus_v_1_in_axes3_z)
+        rus_w_2_in_axes3_z*(axis_z_rus_axes3_x*t_dot_x + axis_z_rus_axes3_y*t_dot_y +
+            axis_z_rus_axes3_z*t_dot_z + rus_qd_1_t*rus_v_1_in_axes3_z) - rus_qd_1_t
         )
-        rus_omega_2_in_axes3_x = rus_omega_2_in_axes2_z*rus_s_3
-        rus_omega_2_in_axes3_y = rus_c_3*rus_omega_2_in_axes2_z
+        rus_omega_2_in_axes3_x = rus_e_1_in_axes3_x*rus_omega_2_in_axes2_z
+        rus_omega_2_in_axes3_y = -rus_c_3*rus_omega_2_in_axes2_z
         # (rus-W_3) centripetal tensor of link 3
         rus_W_3_in_axes3_yz = rus_omega_2_in_axes3_y*rus_qd_3
         rus_W_3_in_axes3_xz = rus_omega_2_in_axes3_x*rus_qd_3
@@ -2660,18 +2822,19 @@ def _run_required(m, X, V, A):
         axis_z_rus_axes3_x*t_ddot_x + axis_z_rus_axes3_y*t_ddot_y + axis_z_rus_axes3_z*t_ddot_z
         )
         # (rus-bias) acceleration of the connection point at zero joint accelerations
-        rus_d_2_in_axes3_z = rus_c_2*rus_joint2_offset_x
-        rus_bias_t = rus_joint2_offset_x*rus_s_2
+        rus_bias_t = rus_c_2*rus_joint2_offset_x
+        rus_d_2_in_axes3_z = rus_joint2_offset_x*rus_s_2_t
         rus_bias_t_2 = (
-        rus_bias_t*rus_c_3*rus_omega_1_in_axes3_y + rus_bias_t*rus_omega_1_in_axes3_x*rus_s_3
+        rus_bias_t*rus_c_3*rus_omega_1_in_axes3_y -
+            rus_bias_t*rus_e_1_in_axes3_x*rus_omega_1_in_axes3_x
         )
-        rus_bias_t_3 = rus_omega_2_in_axes3_y*rus_platform_joint_offset_x
+        rus_bias_t_3 = -rus_omega_2_in_axes3_y*rus_platform_joint_offset_x
         rus_bias_in_axes3_x = (
-        rus_bias_t_2*rus_omega_1_in_axes3_y - rus_bias_t_3*rus_omega_2_in_axes3_y -
+        rus_bias_t_3*rus_omega_2_in_axes3_y - rus_bias_t_2*rus_omega_1_in_axes3_y -
             rus_qd_3*rus_qd_3_t
         )
         rus_bias_in_axes3_y = (
-        rus_bias_t_3*rus_omega_2_in_axes3_x - rus_bias_t_2*rus_omega_1_in_axes3_x
+        rus_bias_t_2*rus_omega_1_in_axes3_x - rus_bias_t_3*rus_omega_2_in_axes3_x
         )
         rus_bias_in_axes3_z = (
         rus_W_3_in_axes3_xz*rus_platform_joint_offset_x + rus_omega_2_in_axes3_x*rus_qd_3_t -
@@ -2690,8 +2853,8 @@ def _run_required(m, X, V, A):
         rus_alpha_2_in_axes2_z = (
         rus_w_2_in_axes3_z*(rus_rel_in_axes3_z + rus_qdd_1_t*rus_v_1_in_axes3_z) - rus_qdd_1_t
         )
-        rus_alpha_2_in_axes3_x = rus_alpha_2_in_axes2_z*rus_s_3
-        rus_alpha_2_in_axes3_y = rus_alpha_2_in_axes2_z*rus_c_3
+        rus_alpha_2_in_axes3_x = rus_alpha_2_in_axes2_z*rus_e_1_in_axes3_x
+        rus_alpha_2_in_axes3_y = -rus_alpha_2_in_axes2_z*rus_c_3
         # (rus-alpha_3) angular acceleration of link 3
         rus_alpha_3_in_axes3_x = rus_W_3_in_axes3_yz + rus_alpha_2_in_axes3_x
         rus_alpha_3_in_axes3_y = rus_alpha_2_in_axes3_y - rus_W_3_in_axes3_xz
@@ -2736,7 +2899,7 @@ def _run_required(m, X, V, A):
             rus_B_3_in_axes3_xy*rus_Sigma_3_in_axes3_yy - rus_J_3_in_spec3_xz*(rus_mu_3_t -
             rus_mu_3_t_2) - rus_J_3_in_spec3_yz*rus_alpha_2_in_axes3_y
         )
-        rus_mu_3_in_axes1_z = rus_c_3*rus_mu_3_in_axes3_y + rus_mu_3_in_axes3_x*rus_s_3
+        rus_mu_3_in_axes1_z = rus_e_1_in_axes3_x*rus_mu_3_in_axes3_x - rus_c_3*rus_mu_3_in_axes3_y
         # (rus-mu_1) inertia moment of the links that turn with link 1, about their reference points
         rus_mu_1_in_axes1_z = (
         rus_h_1_in_spec1_y*(rus_c_1*rus_mu_1_t + rus_mu_1_t_2*rus_s_1) -
@@ -2830,18 +2993,16 @@ def _run_inverse_kinematics(m, X):
         # (rus-Kd_1) projection on the centre's direction, from the distance fixed by the joints beyond joint 1
         rus_Kd_1_t = rus_S_x*rus_S_x + rus_S_y*rus_S_y + rus_S_z*rus_S_z
         rus_Kd_1 = rus_J_3_t + 0.5*rus_Kd_1_t - rus_J_3_t_2
-        # (rus-px_1) component along the reference direction
-        rus_px_1 = (
-        rus_S_x*rus_base_frame_xx + rus_S_y*rus_base_frame_yx + rus_S_z*rus_base_frame_zx
-        )
-        # (rus-py_1) component across the reference direction
-        rus_py_1 = (
-        rus_S_x*rus_base_frame_xy + rus_S_y*rus_base_frame_yy + rus_S_z*rus_base_frame_zy
-        )
         # (rus-Kc_1) factor of the cosine in the equation of joint 1
-        rus_Kc_1 = rus_joint2_offset_x*rus_px_1
+        rus_Kc_1 = (
+        rus_joint2_offset_x*(rus_S_x*rus_base_frame_xx + rus_S_y*rus_base_frame_yx +
+            rus_S_z*rus_base_frame_zx)
+        )
         # (rus-Ks_1) factor of the sine in the equation of joint 1
-        rus_Ks_1 = rus_joint2_offset_x*rus_py_1
+        rus_Ks_1 = (
+        rus_joint2_offset_x*(rus_S_x*rus_base_frame_xy + rus_S_y*rus_base_frame_yy +
+            rus_S_z*rus_base_frame_zy)
+        )
         # (rus-rho2_1) squared amplitude
         rus_rho2_1 = rus_Kc_1*rus_Kc_1 + rus_Ks_1*rus_Ks_1
         # (rus-disc_1) discriminant
@@ -2856,9 +3017,6 @@ def _run_inverse_kinematics(m, X):
         )
         # (rus-xi_1) the vector from joint 1 to the connection point, resolved along link 1
         rus_xi_1_t = inv_rus_size_t*rus_joint2_offset_x*rus_root_1
-        rus_xi_1_in_axes1_z = (
-        rus_S_x*rus_base_frame_xz + rus_S_y*rus_base_frame_yz + rus_S_z*rus_base_frame_zz
-        )
         # (rus-x_2) from the origin of joint 2 to the connection point
         rus_x_2_in_axes1_x = inv_rus_size_t*rus_Kd_1*rus_joint2_offset_x - rus_joint2_offset_x
         # (rus-rho2_2) squared amplitude
@@ -2872,7 +3030,8 @@ def _run_inverse_kinematics(m, X):
         )
         # (rus-q_3) displacement of joint 3
         rus_q_3 = (
-        atan2(-inv_rus_size_t_2*rus_platform_joint_offset_x*rus_xi_1_in_axes1_z,
+        atan2(-inv_rus_size_t_2*rus_platform_joint_offset_x*(rus_S_x*rus_base_frame_xz +
+            rus_S_y*rus_base_frame_yz + rus_S_z*rus_base_frame_zz),
             inv_rus_size_t_2*rus_platform_joint_offset_x*rus_root_2)
         )
         ok = (
@@ -2925,18 +3084,16 @@ def _run_joint_rates(m, X, V):
         # (rus-Kd_1) projection on the centre's direction, from the distance fixed by the joints beyond joint 1
         rus_Kd_1_t = rus_S_x*rus_S_x + rus_S_y*rus_S_y + rus_S_z*rus_S_z
         rus_Kd_1 = rus_J_3_t + 0.5*rus_Kd_1_t - rus_J_3_t_2
-        # (rus-px_1) component along the reference direction
-        rus_px_1 = (
-        rus_S_x*rus_base_frame_xx + rus_S_y*rus_base_frame_yx + rus_S_z*rus_base_frame_zx
-        )
-        # (rus-py_1) component across the reference direction
-        rus_py_1 = (
-        rus_S_x*rus_base_frame_xy + rus_S_y*rus_base_frame_yy + rus_S_z*rus_base_frame_zy
-        )
         # (rus-Kc_1) factor of the cosine in the equation of joint 1
-        rus_Kc_1 = rus_joint2_offset_x*rus_px_1
+        rus_Kc_1 = (
+        rus_joint2_offset_x*(rus_S_x*rus_base_frame_xx + rus_S_y*rus_base_frame_yx +
+            rus_S_z*rus_base_frame_zx)
+        )
         # (rus-Ks_1) factor of the sine in the equation of joint 1
-        rus_Ks_1 = rus_joint2_offset_x*rus_py_1
+        rus_Ks_1 = (
+        rus_joint2_offset_x*(rus_S_x*rus_base_frame_xy + rus_S_y*rus_base_frame_yy +
+            rus_S_z*rus_base_frame_zy)
+        )
         # (rus-rho2_1) squared amplitude
         rus_rho2_1 = rus_Kc_1*rus_Kc_1 + rus_Ks_1*rus_Ks_1
         # (rus-disc_1) discriminant
@@ -2950,9 +3107,6 @@ def _run_joint_rates(m, X, V):
         rus_s_1 = inv_rus_rho2_1*(rus_Kc_1*rus_root_1 + rus_Kd_1*rus_Ks_1)
         # (rus-xi_1) the vector from joint 1 to the connection point, resolved along link 1
         rus_xi_1_t = inv_rus_size_t*rus_joint2_offset_x*rus_root_1
-        rus_xi_1_in_axes1_z = (
-        rus_S_x*rus_base_frame_xz + rus_S_y*rus_base_frame_yz + rus_S_z*rus_base_frame_zz
-        )
         # (rus-x_2) from the origin of joint 2 to the connection point
         rus_x_2_in_axes1_x = inv_rus_size_t*rus_Kd_1*rus_joint2_offset_x - rus_joint2_offset_x
         # (rus-rho2_2) squared amplitude
@@ -2961,62 +3115,64 @@ def _run_joint_rates(m, X, V):
         rus_root_2 = rus_branch_2*sqrt(rus_rho2_2)
         # (rus-c_2) cosine of the angle of joint 2 from its reference direction
         inv_rus_rho2_2 = 1.0/rus_rho2_2
-        rus_c_2 = inv_rus_rho2_2*rus_root_2*rus_xi_1_t
+        rus_c_2 = inv_rus_rho2_2*rus_root_2*rus_x_2_in_axes1_x
         # (rus-s_2) sine of the angle of joint 2 from its reference direction
-        rus_s_2 = inv_rus_rho2_2*rus_root_2*rus_x_2_in_axes1_x
+        rus_s_2_t = inv_rus_rho2_2*rus_root_2*rus_xi_1_t
         # (rus-c_3) cosine of the angle of joint 3 from its reference direction
-        rus_c_3 = -inv_rus_size_t_2*rus_platform_joint_offset_x*rus_root_2
-        # (rus-s_3) sine of the angle of joint 3 from its reference direction
-        rus_s_3 = inv_rus_size_t_2*rus_platform_joint_offset_x*rus_xi_1_in_axes1_z
+        rus_c_3 = inv_rus_size_t_2*rus_platform_joint_offset_x*rus_root_2
         # (rus-r_1) from joint 1 to the connection point, along the links
-        rus_r_1_t = -rus_c_3*rus_platform_joint_offset_x
-        rus_r_1_in_axes1_z = rus_platform_joint_offset_x*rus_s_3
-        rus_r_1_t_2 = rus_c_2*rus_r_1_t
-        rus_r_1_in_axes1_x = rus_joint2_offset_x + rus_r_1_t*rus_s_2
-        rus_r_1_in_axes3_z = rus_c_2*rus_r_1_in_axes1_x - rus_r_1_t_2*rus_s_2
+        rus_e_1_in_axes3_x = (
+        inv_rus_size_t_2*rus_platform_joint_offset_x*(rus_S_x*rus_base_frame_xz +
+            rus_S_y*rus_base_frame_yz + rus_S_z*rus_base_frame_zz)
+        )
+        rus_r_1_t = rus_c_3*rus_platform_joint_offset_x
+        rus_r_1_in_axes1_z = rus_e_1_in_axes3_x*rus_platform_joint_offset_x
+        rus_r_1_t_2 = rus_r_1_t*rus_s_2_t
+        rus_r_1_in_axes1_x = rus_joint2_offset_x + rus_c_2*rus_r_1_t
+        rus_r_1_in_axes3_z = rus_r_1_in_axes1_x*rus_s_2_t - rus_c_2*rus_r_1_t_2
         # (rus-v_1) velocity of the connection point per rate of joint 1
-        rus_v_1_t = -rus_c_3*rus_r_1_in_axes3_z
+        rus_v_1_t = rus_c_3*rus_r_1_in_axes3_z
         # (rus-qd_1) rate of joint 1
-        rus_qd_1_t = rus_c_1*rus_c_2 - rus_s_1*rus_s_2
-        rus_qd_1_t_2 = rus_c_1*rus_s_2 + rus_c_2*rus_s_1
+        rus_qd_1_t = rus_c_1*rus_s_2_t - rus_c_2*rus_s_1
+        rus_qd_1_t_2 = rus_c_1*rus_c_2 + rus_s_1*rus_s_2_t
         axis_z_rus_axes3_x = rus_base_frame_xx*rus_qd_1_t + rus_base_frame_xy*rus_qd_1_t_2
         axis_z_rus_axes3_y = rus_base_frame_yx*rus_qd_1_t + rus_base_frame_yy*rus_qd_1_t_2
         axis_z_rus_axes3_z = rus_base_frame_zx*rus_qd_1_t + rus_base_frame_zy*rus_qd_1_t_2
-        rus_qd_1_t_3 = rus_s_2*rus_s_3
-        rus_qd_1_t_4 = rus_c_2*rus_s_3
+        rus_qd_1_t_3 = rus_c_2*rus_e_1_in_axes3_x
+        rus_qd_1_t_4 = rus_e_1_in_axes3_x*rus_s_2_t
         rus_qd_1_t_5 = rus_c_1*rus_qd_1_t_3 + rus_qd_1_t_4*rus_s_1
         rus_qd_1_t_6 = rus_qd_1_t_3*rus_s_1 - rus_c_1*rus_qd_1_t_4
         axis_y_rus_axes3_x = (
-        rus_base_frame_xx*rus_qd_1_t_5 + rus_base_frame_xy*rus_qd_1_t_6 +
+        rus_base_frame_xx*rus_qd_1_t_5 + rus_base_frame_xy*rus_qd_1_t_6 -
             rus_base_frame_xz*rus_c_3
         )
         axis_y_rus_axes3_y = (
-        rus_base_frame_yx*rus_qd_1_t_5 + rus_base_frame_yy*rus_qd_1_t_6 +
+        rus_base_frame_yx*rus_qd_1_t_5 + rus_base_frame_yy*rus_qd_1_t_6 -
             rus_base_frame_yz*rus_c_3
         )
         axis_y_rus_axes3_z = (
-        rus_base_frame_zx*rus_qd_1_t_5 + rus_base_frame_zy*rus_qd_1_t_6 +
+        rus_base_frame_zx*rus_qd_1_t_5 + rus_base_frame_zy*rus_qd_1_t_6 -
             rus_base_frame_zz*rus_c_3
         )
-        rus_qd_1 = (
-        -(t_dot_x*(axis_y_rus_axes3_y*axis_z_rus_axes3_z - axis_y_rus_axes3_z*axis_z_rus_axes3_y)
-            + t_dot_y*(axis_y_rus_axes3_z*axis_z_rus_axes3_x -
+        rus_qd_1_t_7 = (
+        (t_dot_x*(axis_y_rus_axes3_y*axis_z_rus_axes3_z - axis_y_rus_axes3_z*axis_z_rus_axes3_y) +
+            t_dot_y*(axis_y_rus_axes3_z*axis_z_rus_axes3_x -
             axis_y_rus_axes3_x*axis_z_rus_axes3_z) +
             t_dot_z*(axis_y_rus_axes3_x*axis_z_rus_axes3_y -
             axis_y_rus_axes3_y*axis_z_rus_axes3_x))/rus_v_1_t
         )
         # (rus-qd_2) rate of joint 2
-        rus_qd_2_t = rus_c_2*rus_r_1_t_2 + rus_r_1_in_axes1_x*rus_s_2
+        rus_qd_2_t = rus_c_2*rus_r_1_in_axes1_x + rus_r_1_t_2*rus_s_2_t
         rus_qd_2_t_2 = (
-        axis_z_rus_axes3_x*t_dot_x + axis_z_rus_axes3_y*t_dot_y + axis_z_rus_axes3_z*t_dot_z -
-            rus_qd_1*(rus_s_3*(rus_c_3*rus_r_1_in_axes1_z + rus_qd_2_t*rus_s_3) -
-            rus_c_3*(rus_r_1_in_axes1_z*rus_s_3 - rus_c_3*rus_qd_2_t))
+        axis_z_rus_axes3_x*t_dot_x + axis_z_rus_axes3_y*t_dot_y + axis_z_rus_axes3_z*t_dot_z +
+            rus_qd_1_t_7*(rus_c_3*(rus_c_3*rus_qd_2_t + rus_e_1_in_axes3_x*rus_r_1_in_axes1_z) +
+            rus_e_1_in_axes3_x*(rus_e_1_in_axes3_x*rus_qd_2_t - rus_c_3*rus_r_1_in_axes1_z))
         )
         rus_qd_2 = rus_qd_2_t_2/rus_r_1_t
         # (rus-qd_3) rate of joint 3
         rus_qd_3 = (
         rus_w_3_in_axes3_y*(axis_y_rus_axes3_x*t_dot_x + axis_y_rus_axes3_y*t_dot_y +
-            axis_y_rus_axes3_z*t_dot_z + rus_qd_1*rus_r_1_in_axes3_z*rus_s_3)
+            axis_y_rus_axes3_z*t_dot_z - rus_e_1_in_axes3_x*rus_qd_1_t_7*rus_r_1_in_axes3_z)
         )
         ok = (
         ok & (abs(rus_rho2_1) > _TOLERANCE * _TOLERANCE * rus_rho2_1_t) & (rus_disc_1 >= 0.0) &
@@ -3024,7 +3180,7 @@ def _run_joint_rates(m, X, V):
             _TOLERANCE * rus_size) & (abs(rus_v_1_t) > _TOLERANCE * rus_size)
         )
         # (rus-qd_1) rate of joint 1
-        out_qd[_qd_rus[0][leg]] = rus_qd_1
+        out_qd[_qd_rus[0][leg]] = -rus_qd_1_t_7
         # (rus-qd_2) rate of joint 2
         out_qd[_qd_rus[1][leg]] = rus_qd_2
         # (rus-qd_3) rate of joint 3
@@ -3076,18 +3232,16 @@ def _run_joint_accelerations(m, X, V, A):
         # (rus-Kd_1) projection on the centre's direction, from the distance fixed by the joints beyond joint 1
         rus_Kd_1_t = rus_S_x*rus_S_x + rus_S_y*rus_S_y + rus_S_z*rus_S_z
         rus_Kd_1 = rus_J_3_t + 0.5*rus_Kd_1_t - rus_J_3_t_2
-        # (rus-px_1) component along the reference direction
-        rus_px_1 = (
-        rus_S_x*rus_base_frame_xx + rus_S_y*rus_base_frame_yx + rus_S_z*rus_base_frame_zx
-        )
-        # (rus-py_1) component across the reference direction
-        rus_py_1 = (
-        rus_S_x*rus_base_frame_xy + rus_S_y*rus_base_frame_yy + rus_S_z*rus_base_frame_zy
-        )
         # (rus-Kc_1) factor of the cosine in the equation of joint 1
-        rus_Kc_1 = rus_joint2_offset_x*rus_px_1
+        rus_Kc_1 = (
+        rus_joint2_offset_x*(rus_S_x*rus_base_frame_xx + rus_S_y*rus_base_frame_yx +
+            rus_S_z*rus_base_frame_zx)
+        )
         # (rus-Ks_1) factor of the sine in the equation of joint 1
-        rus_Ks_1 = rus_joint2_offset_x*rus_py_1
+        rus_Ks_1 = (
+        rus_joint2_offset_x*(rus_S_x*rus_base_frame_xy + rus_S_y*rus_base_frame_yy +
+            rus_S_z*rus_base_frame_zy)
+        )
         # (rus-rho2_1) squared amplitude
         rus_rho2_1 = rus_Kc_1*rus_Kc_1 + rus_Ks_1*rus_Ks_1
         # (rus-disc_1) discriminant
@@ -3101,9 +3255,6 @@ def _run_joint_accelerations(m, X, V, A):
         rus_s_1 = inv_rus_rho2_1*(rus_Kc_1*rus_root_1 + rus_Kd_1*rus_Ks_1)
         # (rus-xi_1) the vector from joint 1 to the connection point, resolved along link 1
         rus_xi_1_t = inv_rus_size_t*rus_joint2_offset_x*rus_root_1
-        rus_xi_1_in_axes1_z = (
-        rus_S_x*rus_base_frame_xz + rus_S_y*rus_base_frame_yz + rus_S_z*rus_base_frame_zz
-        )
         # (rus-x_2) from the origin of joint 2 to the connection point
         rus_x_2_in_axes1_x = inv_rus_size_t*rus_Kd_1*rus_joint2_offset_x - rus_joint2_offset_x
         # (rus-rho2_2) squared amplitude
@@ -3112,51 +3263,53 @@ def _run_joint_accelerations(m, X, V, A):
         rus_root_2 = rus_branch_2*sqrt(rus_rho2_2)
         # (rus-c_2) cosine of the angle of joint 2 from its reference direction
         inv_rus_rho2_2 = 1.0/rus_rho2_2
-        rus_c_2 = inv_rus_rho2_2*rus_root_2*rus_xi_1_t
+        rus_c_2 = inv_rus_rho2_2*rus_root_2*rus_x_2_in_axes1_x
         # (rus-s_2) sine of the angle of joint 2 from its reference direction
-        rus_s_2 = inv_rus_rho2_2*rus_root_2*rus_x_2_in_axes1_x
+        rus_s_2_t = inv_rus_rho2_2*rus_root_2*rus_xi_1_t
         # (rus-c_3) cosine of the angle of joint 3 from its reference direction
-        rus_c_3 = -inv_rus_size_t_2*rus_platform_joint_offset_x*rus_root_2
-        # (rus-s_3) sine of the angle of joint 3 from its reference direction
-        rus_s_3 = inv_rus_size_t_2*rus_platform_joint_offset_x*rus_xi_1_in_axes1_z
+        rus_c_3 = inv_rus_size_t_2*rus_platform_joint_offset_x*rus_root_2
         # (rus-r_1) from joint 1 to the connection point, along the links
-        rus_r_1_t = -rus_c_3*rus_platform_joint_offset_x
-        rus_r_1_in_axes1_z = rus_platform_joint_offset_x*rus_s_3
-        rus_r_1_t_2 = rus_c_2*rus_r_1_t
-        rus_r_1_in_axes1_x = rus_joint2_offset_x + rus_r_1_t*rus_s_2
-        rus_r_1_in_axes3_z = rus_c_2*rus_r_1_in_axes1_x - rus_r_1_t_2*rus_s_2
+        rus_e_1_in_axes3_x = (
+        inv_rus_size_t_2*rus_platform_joint_offset_x*(rus_S_x*rus_base_frame_xz +
+            rus_S_y*rus_base_frame_yz + rus_S_z*rus_base_frame_zz)
+        )
+        rus_r_1_t = rus_c_3*rus_platform_joint_offset_x
+        rus_r_1_in_axes1_z = rus_e_1_in_axes3_x*rus_platform_joint_offset_x
+        rus_r_1_t_2 = rus_r_1_t*rus_s_2_t
+        rus_r_1_in_axes1_x = rus_joint2_offset_x + rus_c_2*rus_r_1_t
+        rus_r_1_in_axes3_z = rus_r_1_in_axes1_x*rus_s_2_t - rus_c_2*rus_r_1_t_2
         # (rus-v_1) velocity of the connection point per rate of joint 1
-        rus_v_1_t = rus_c_2*rus_r_1_t_2 + rus_r_1_in_axes1_x*rus_s_2
-        rus_v_1_t_2 = -rus_c_3*rus_r_1_in_axes3_z
-        rus_v_1_in_axes3_y = -rus_r_1_in_axes3_z*rus_s_3
+        rus_v_1_t = rus_c_2*rus_r_1_in_axes1_x + rus_r_1_t_2*rus_s_2_t
+        rus_v_1_t_2 = rus_c_3*rus_r_1_in_axes3_z
+        rus_v_1_in_axes3_y = -rus_e_1_in_axes3_x*rus_r_1_in_axes3_z
         rus_v_1_in_axes3_z = (
-        rus_s_3*(rus_c_3*rus_r_1_in_axes1_z + rus_s_3*rus_v_1_t) -
-            rus_c_3*(rus_r_1_in_axes1_z*rus_s_3 - rus_c_3*rus_v_1_t)
+        rus_c_3*(rus_c_3*rus_v_1_t + rus_e_1_in_axes3_x*rus_r_1_in_axes1_z) +
+            rus_e_1_in_axes3_x*(rus_e_1_in_axes3_x*rus_v_1_t - rus_c_3*rus_r_1_in_axes1_z)
         )
         # (rus-w_1) reciprocal vector 1
         inv_rus_v_1_t_2 = 1.0/rus_v_1_t_2
         # (rus-w_2) reciprocal vector 2
         rus_w_2_in_axes3_z = 1.0/rus_r_1_t
         # (rus-qd_1) rate of joint 1
-        rus_qd_1_t = rus_c_1*rus_c_2 - rus_s_1*rus_s_2
-        rus_qd_1_t_2 = rus_c_1*rus_s_2 + rus_c_2*rus_s_1
+        rus_qd_1_t = rus_c_1*rus_s_2_t - rus_c_2*rus_s_1
+        rus_qd_1_t_2 = rus_c_1*rus_c_2 + rus_s_1*rus_s_2_t
         axis_z_rus_axes3_x = rus_base_frame_xx*rus_qd_1_t + rus_base_frame_xy*rus_qd_1_t_2
         axis_z_rus_axes3_y = rus_base_frame_yx*rus_qd_1_t + rus_base_frame_yy*rus_qd_1_t_2
         axis_z_rus_axes3_z = rus_base_frame_zx*rus_qd_1_t + rus_base_frame_zy*rus_qd_1_t_2
-        rus_qd_1_t_3 = rus_s_2*rus_s_3
-        rus_qd_1_t_4 = rus_c_2*rus_s_3
+        rus_qd_1_t_3 = rus_c_2*rus_e_1_in_axes3_x
+        rus_qd_1_t_4 = rus_e_1_in_axes3_x*rus_s_2_t
         rus_qd_1_t_5 = rus_c_1*rus_qd_1_t_3 + rus_qd_1_t_4*rus_s_1
         rus_qd_1_t_6 = rus_qd_1_t_3*rus_s_1 - rus_c_1*rus_qd_1_t_4
         axis_y_rus_axes3_x = (
-        rus_base_frame_xx*rus_qd_1_t_5 + rus_base_frame_xy*rus_qd_1_t_6 +
+        rus_base_frame_xx*rus_qd_1_t_5 + rus_base_frame_xy*rus_qd_1_t_6 -
             rus_base_frame_xz*rus_c_3
         )
         axis_y_rus_axes3_y = (
-        rus_base_frame_yx*rus_qd_1_t_5 + rus_base_frame_yy*rus_qd_1_t_6 +
+        rus_base_frame_yx*rus_qd_1_t_5 + rus_base_frame_yy*rus_qd_1_t_6 -
             rus_base_frame_yz*rus_c_3
         )
         axis_y_rus_axes3_z = (
-        rus_base_frame_zx*rus_qd_1_t_5 + rus_base_frame_zy*rus_qd_1_t_6 +
+        rus_base_frame_zx*rus_qd_1_t_5 + rus_base_frame_zy*rus_qd_1_t_6 -
             rus_base_frame_zz*rus_c_3
         )
         axis_x_rus_axes3_x = (
@@ -3168,39 +3321,40 @@ def _run_joint_accelerations(m, X, V, A):
         axis_x_rus_axes3_z = (
         axis_y_rus_axes3_x*axis_z_rus_axes3_y - axis_y_rus_axes3_y*axis_z_rus_axes3_x
         )
-        rus_qd_1 = (
-        -inv_rus_v_1_t_2*(axis_x_rus_axes3_x*t_dot_x + axis_x_rus_axes3_y*t_dot_y +
+        rus_qd_1_t_7 = (
+        inv_rus_v_1_t_2*(axis_x_rus_axes3_x*t_dot_x + axis_x_rus_axes3_y*t_dot_y +
             axis_x_rus_axes3_z*t_dot_z)
         )
         # (rus-qd_3) rate of joint 3
         rus_qd_3_t = (
-        axis_y_rus_axes3_x*t_dot_x + axis_y_rus_axes3_y*t_dot_y + axis_y_rus_axes3_z*t_dot_z -
-            rus_qd_1*rus_v_1_in_axes3_y
+        axis_y_rus_axes3_x*t_dot_x + axis_y_rus_axes3_y*t_dot_y + axis_y_rus_axes3_z*t_dot_z +
+            rus_qd_1_t_7*rus_v_1_in_axes3_y
         )
         rus_qd_3 = rus_qd_3_t*rus_w_3_in_axes3_y
         # (rus-omega_1) angular velocity of link 1
-        rus_omega_1_in_axes3_x = rus_qd_1*rus_s_3
-        rus_omega_1_in_axes3_y = rus_c_3*rus_qd_1
+        rus_omega_1_in_axes3_x = -rus_e_1_in_axes3_x*rus_qd_1_t_7
+        rus_omega_1_in_axes3_y = rus_c_3*rus_qd_1_t_7
         # (rus-omega_2) angular velocity of link 2
         rus_omega_2_in_axes2_z = (
-        rus_qd_1 + rus_w_2_in_axes3_z*(axis_z_rus_axes3_x*t_dot_x + axis_z_rus_axes3_y*t_dot_y +
-            axis_z_rus_axes3_z*t_dot_z - rus_qd_1*rus_v_1_in_axes3_z)
+        rus_w_2_in_axes3_z*(axis_z_rus_axes3_x*t_dot_x + axis_z_rus_axes3_y*t_dot_y +
+            axis_z_rus_axes3_z*t_dot_z + rus_qd_1_t_7*rus_v_1_in_axes3_z) - rus_qd_1_t_7
         )
-        rus_omega_2_in_axes3_x = rus_omega_2_in_axes2_z*rus_s_3
-        rus_omega_2_in_axes3_y = rus_c_3*rus_omega_2_in_axes2_z
+        rus_omega_2_in_axes3_x = rus_e_1_in_axes3_x*rus_omega_2_in_axes2_z
+        rus_omega_2_in_axes3_y = -rus_c_3*rus_omega_2_in_axes2_z
         # (rus-bias) acceleration of the connection point at zero joint accelerations
-        rus_d_2_in_axes3_z = rus_c_2*rus_joint2_offset_x
-        rus_bias_t = rus_joint2_offset_x*rus_s_2
+        rus_bias_t = rus_c_2*rus_joint2_offset_x
+        rus_d_2_in_axes3_z = rus_joint2_offset_x*rus_s_2_t
         rus_bias_t_2 = (
-        rus_bias_t*rus_c_3*rus_omega_1_in_axes3_y + rus_bias_t*rus_omega_1_in_axes3_x*rus_s_3
+        rus_bias_t*rus_c_3*rus_omega_1_in_axes3_y -
+            rus_bias_t*rus_e_1_in_axes3_x*rus_omega_1_in_axes3_x
         )
-        rus_bias_t_3 = rus_omega_2_in_axes3_y*rus_platform_joint_offset_x
+        rus_bias_t_3 = -rus_omega_2_in_axes3_y*rus_platform_joint_offset_x
         rus_bias_in_axes3_x = (
-        rus_bias_t_2*rus_omega_1_in_axes3_y - rus_bias_t_3*rus_omega_2_in_axes3_y -
+        rus_bias_t_3*rus_omega_2_in_axes3_y - rus_bias_t_2*rus_omega_1_in_axes3_y -
             rus_qd_3*rus_qd_3_t
         )
         rus_bias_in_axes3_y = (
-        rus_bias_t_3*rus_omega_2_in_axes3_x - rus_bias_t_2*rus_omega_1_in_axes3_x
+        rus_bias_t_2*rus_omega_1_in_axes3_x - rus_bias_t_3*rus_omega_2_in_axes3_x
         )
         rus_bias_in_axes3_z = (
         rus_omega_2_in_axes3_x*rus_qd_3_t +
@@ -3291,18 +3445,16 @@ def _run_legs(m, X, V, A):
         # (rus-Kd_1) projection on the centre's direction, from the distance fixed by the joints beyond joint 1
         rus_Kd_1_t = rus_S_x*rus_S_x + rus_S_y*rus_S_y + rus_S_z*rus_S_z
         rus_Kd_1 = rus_J_3_t + 0.5*rus_Kd_1_t - rus_J_3_t_2
-        # (rus-px_1) component along the reference direction
-        rus_px_1 = (
-        rus_S_x*rus_base_frame_xx + rus_S_y*rus_base_frame_yx + rus_S_z*rus_base_frame_zx
-        )
-        # (rus-py_1) component across the reference direction
-        rus_py_1 = (
-        rus_S_x*rus_base_frame_xy + rus_S_y*rus_base_frame_yy + rus_S_z*rus_base_frame_zy
-        )
         # (rus-Kc_1) factor of the cosine in the equation of joint 1
-        rus_Kc_1 = rus_joint2_offset_x*rus_px_1
+        rus_Kc_1 = (
+        rus_joint2_offset_x*(rus_S_x*rus_base_frame_xx + rus_S_y*rus_base_frame_yx +
+            rus_S_z*rus_base_frame_zx)
+        )
         # (rus-Ks_1) factor of the sine in the equation of joint 1
-        rus_Ks_1 = rus_joint2_offset_x*rus_py_1
+        rus_Ks_1 = (
+        rus_joint2_offset_x*(rus_S_x*rus_base_frame_xy + rus_S_y*rus_base_frame_yy +
+            rus_S_z*rus_base_frame_zy)
+        )
         # (rus-rho2_1) squared amplitude
         rus_rho2_1 = rus_Kc_1*rus_Kc_1 + rus_Ks_1*rus_Ks_1
         # (rus-disc_1) discriminant
@@ -3316,9 +3468,6 @@ def _run_legs(m, X, V, A):
         rus_s_1 = inv_rus_rho2_1*(rus_Kc_1*rus_root_1 + rus_Kd_1*rus_Ks_1)
         # (rus-xi_1) the vector from joint 1 to the connection point, resolved along link 1
         rus_xi_1_t = inv_rus_size_t*rus_joint2_offset_x*rus_root_1
-        rus_xi_1_in_axes1_z = (
-        rus_S_x*rus_base_frame_xz + rus_S_y*rus_base_frame_yz + rus_S_z*rus_base_frame_zz
-        )
         # (rus-x_2) from the origin of joint 2 to the connection point
         rus_x_2_in_axes1_x = inv_rus_size_t*rus_Kd_1*rus_joint2_offset_x - rus_joint2_offset_x
         # (rus-rho2_2) squared amplitude
@@ -3327,45 +3476,47 @@ def _run_legs(m, X, V, A):
         rus_root_2 = rus_branch_2*sqrt(rus_rho2_2)
         # (rus-c_2) cosine of the angle of joint 2 from its reference direction
         inv_rus_rho2_2 = 1.0/rus_rho2_2
-        rus_c_2 = inv_rus_rho2_2*rus_root_2*rus_xi_1_t
+        rus_c_2 = inv_rus_rho2_2*rus_root_2*rus_x_2_in_axes1_x
         # (rus-s_2) sine of the angle of joint 2 from its reference direction
-        rus_s_2 = inv_rus_rho2_2*rus_root_2*rus_x_2_in_axes1_x
+        rus_s_2_t = inv_rus_rho2_2*rus_root_2*rus_xi_1_t
         # (rus-c_3) cosine of the angle of joint 3 from its reference direction
-        rus_c_3 = -inv_rus_size_t_2*rus_platform_joint_offset_x*rus_root_2
-        # (rus-s_3) sine of the angle of joint 3 from its reference direction
-        rus_s_3 = inv_rus_size_t_2*rus_platform_joint_offset_x*rus_xi_1_in_axes1_z
+        rus_c_3 = inv_rus_size_t_2*rus_platform_joint_offset_x*rus_root_2
         # (rus-r_1) from joint 1 to the connection point, along the links
-        rus_r_1_t = -rus_c_3*rus_platform_joint_offset_x
-        rus_r_1_in_axes1_z = rus_platform_joint_offset_x*rus_s_3
-        rus_r_1_t_2 = rus_c_2*rus_r_1_t
-        rus_r_1_in_axes1_x = rus_joint2_offset_x + rus_r_1_t*rus_s_2
-        rus_r_1_in_axes3_z = rus_c_2*rus_r_1_in_axes1_x - rus_r_1_t_2*rus_s_2
+        rus_e_1_in_axes3_x = (
+        inv_rus_size_t_2*rus_platform_joint_offset_x*(rus_S_x*rus_base_frame_xz +
+            rus_S_y*rus_base_frame_yz + rus_S_z*rus_base_frame_zz)
+        )
+        rus_r_1_t = rus_c_3*rus_platform_joint_offset_x
+        rus_r_1_in_axes1_z = rus_e_1_in_axes3_x*rus_platform_joint_offset_x
+        rus_r_1_t_2 = rus_r_1_t*rus_s_2_t
+        rus_r_1_in_axes1_x = rus_joint2_offset_x + rus_c_2*rus_r_1_t
+        rus_r_1_in_axes3_z = rus_r_1_in_axes1_x*rus_s_2_t - rus_c_2*rus_r_1_t_2
         # (rus-v_1) velocity of the connection point per rate of joint 1
-        rus_v_1_t = rus_c_2*rus_r_1_t_2 + rus_r_1_in_axes1_x*rus_s_2
-        rus_v_1_t_2 = -rus_c_3*rus_r_1_in_axes3_z
-        rus_v_1_in_axes3_y = -rus_r_1_in_axes3_z*rus_s_3
+        rus_v_1_t = rus_c_2*rus_r_1_in_axes1_x + rus_r_1_t_2*rus_s_2_t
+        rus_v_1_t_2 = rus_c_3*rus_r_1_in_axes3_z
+        rus_v_1_in_axes3_y = -rus_e_1_in_axes3_x*rus_r_1_in_axes3_z
         rus_v_1_in_axes3_z = (
-        rus_s_3*(rus_c_3*rus_r_1_in_axes1_z + rus_s_3*rus_v_1_t) -
-            rus_c_3*(rus_r_1_in_axes1_z*rus_s_3 - rus_c_3*rus_v_1_t)
+        rus_c_3*(rus_c_3*rus_v_1_t + rus_e_1_in_axes3_x*rus_r_1_in_axes1_z) +
+            rus_e_1_in_axes3_x*(rus_e_1_in_axes3_x*rus_v_1_t - rus_c_3*rus_r_1_in_axes1_z)
         )
         # (rus-w_1) reciprocal vector 1
-        rus_w_1_t = rus_c_1*rus_c_2 - rus_s_1*rus_s_2
-        rus_w_1_t_2 = rus_c_1*rus_s_2 + rus_c_2*rus_s_1
+        rus_w_1_t = rus_c_1*rus_s_2_t - rus_c_2*rus_s_1
+        rus_w_1_t_2 = rus_c_1*rus_c_2 + rus_s_1*rus_s_2_t
         axis_z_rus_axes3_x = rus_base_frame_xx*rus_w_1_t + rus_base_frame_xy*rus_w_1_t_2
         axis_z_rus_axes3_y = rus_base_frame_yx*rus_w_1_t + rus_base_frame_yy*rus_w_1_t_2
         axis_z_rus_axes3_z = rus_base_frame_zx*rus_w_1_t + rus_base_frame_zy*rus_w_1_t_2
-        rus_w_1_t_3 = rus_s_2*rus_s_3
-        rus_w_1_t_4 = rus_c_2*rus_s_3
+        rus_w_1_t_3 = rus_c_2*rus_e_1_in_axes3_x
+        rus_w_1_t_4 = rus_e_1_in_axes3_x*rus_s_2_t
         rus_w_1_t_5 = rus_c_1*rus_w_1_t_3 + rus_s_1*rus_w_1_t_4
         rus_w_1_t_6 = rus_s_1*rus_w_1_t_3 - rus_c_1*rus_w_1_t_4
         axis_y_rus_axes3_x = (
-        rus_base_frame_xx*rus_w_1_t_5 + rus_base_frame_xy*rus_w_1_t_6 + rus_base_frame_xz*rus_c_3
+        rus_base_frame_xx*rus_w_1_t_5 + rus_base_frame_xy*rus_w_1_t_6 - rus_base_frame_xz*rus_c_3
         )
         axis_y_rus_axes3_y = (
-        rus_base_frame_yx*rus_w_1_t_5 + rus_base_frame_yy*rus_w_1_t_6 + rus_base_frame_yz*rus_c_3
+        rus_base_frame_yx*rus_w_1_t_5 + rus_base_frame_yy*rus_w_1_t_6 - rus_base_frame_yz*rus_c_3
         )
         axis_y_rus_axes3_z = (
-        rus_base_frame_zx*rus_w_1_t_5 + rus_base_frame_zy*rus_w_1_t_6 + rus_base_frame_zz*rus_c_3
+        rus_base_frame_zx*rus_w_1_t_5 + rus_base_frame_zy*rus_w_1_t_6 - rus_base_frame_zz*rus_c_3
         )
         axis_x_rus_axes3_x = (
         axis_y_rus_axes3_y*axis_z_rus_axes3_z - axis_y_rus_axes3_z*axis_z_rus_axes3_y
@@ -3383,26 +3534,26 @@ def _run_legs(m, X, V, A):
         # (rus-w_2) reciprocal vector 2
         rus_w_2_in_axes3_z = 1.0/rus_r_1_t
         # (rus-qd_1) rate of joint 1
-        rus_qd_1 = (
-        -inv_rus_v_1_t_2*(axis_x_rus_axes3_x*t_dot_x + axis_x_rus_axes3_y*t_dot_y +
+        rus_qd_1_t = (
+        inv_rus_v_1_t_2*(axis_x_rus_axes3_x*t_dot_x + axis_x_rus_axes3_y*t_dot_y +
             axis_x_rus_axes3_z*t_dot_z)
         )
         # (rus-qd_3) rate of joint 3
         rus_qd_3_t = (
-        axis_y_rus_axes3_x*t_dot_x + axis_y_rus_axes3_y*t_dot_y + axis_y_rus_axes3_z*t_dot_z -
-            rus_qd_1*rus_v_1_in_axes3_y
+        axis_y_rus_axes3_x*t_dot_x + axis_y_rus_axes3_y*t_dot_y + axis_y_rus_axes3_z*t_dot_z +
+            rus_qd_1_t*rus_v_1_in_axes3_y
         )
         rus_qd_3 = rus_qd_3_t*rus_w_3_in_axes3_y
         # (rus-omega_1) angular velocity of link 1
-        rus_omega_1_in_axes3_x = rus_qd_1*rus_s_3
-        rus_omega_1_in_axes3_y = rus_c_3*rus_qd_1
+        rus_omega_1_in_axes3_x = -rus_e_1_in_axes3_x*rus_qd_1_t
+        rus_omega_1_in_axes3_y = rus_c_3*rus_qd_1_t
         # (rus-omega_2) angular velocity of link 2
         rus_omega_2_in_axes2_z = (
-        rus_qd_1 + rus_w_2_in_axes3_z*(axis_z_rus_axes3_x*t_dot_x + axis_z_rus_axes3_y*t_dot_y +
-            axis_z_rus_axes3_z*t_dot_z - rus_qd_1*rus_v_1_in_axes3_z)
+        rus_w_2_in_axes3_z*(axis_z_rus_axes3_x*t_dot_x + axis_z_rus_axes3_y*t_dot_y +
+            axis_z_rus_axes3_z*t_dot_z + rus_qd_1_t*rus_v_1_in_axes3_z) - rus_qd_1_t
         )
-        rus_omega_2_in_axes3_x = rus_omega_2_in_axes2_z*rus_s_3
-        rus_omega_2_in_axes3_y = rus_c_3*rus_omega_2_in_axes2_z
+        rus_omega_2_in_axes3_x = rus_e_1_in_axes3_x*rus_omega_2_in_axes2_z
+        rus_omega_2_in_axes3_y = -rus_c_3*rus_omega_2_in_axes2_z
         # (rus-W_3) centripetal tensor of link 3
         rus_W_3_in_axes3_yz = rus_omega_2_in_axes3_y*rus_qd_3
         rus_W_3_in_axes3_xz = rus_omega_2_in_axes3_x*rus_qd_3
@@ -3418,18 +3569,19 @@ def _run_legs(m, X, V, A):
         axis_z_rus_axes3_x*t_ddot_x + axis_z_rus_axes3_y*t_ddot_y + axis_z_rus_axes3_z*t_ddot_z
         )
         # (rus-bias) acceleration of the connection point at zero joint accelerations
-        rus_d_2_in_axes3_z = rus_c_2*rus_joint2_offset_x
-        rus_bias_t = rus_joint2_offset_x*rus_s_2
+        rus_bias_t = rus_c_2*rus_joint2_offset_x
+        rus_d_2_in_axes3_z = rus_joint2_offset_x*rus_s_2_t
         rus_bias_t_2 = (
-        rus_bias_t*rus_c_3*rus_omega_1_in_axes3_y + rus_bias_t*rus_omega_1_in_axes3_x*rus_s_3
+        rus_bias_t*rus_c_3*rus_omega_1_in_axes3_y -
+            rus_bias_t*rus_e_1_in_axes3_x*rus_omega_1_in_axes3_x
         )
-        rus_bias_t_3 = rus_omega_2_in_axes3_y*rus_platform_joint_offset_x
+        rus_bias_t_3 = -rus_omega_2_in_axes3_y*rus_platform_joint_offset_x
         rus_bias_in_axes3_x = (
-        rus_bias_t_2*rus_omega_1_in_axes3_y - rus_bias_t_3*rus_omega_2_in_axes3_y -
+        rus_bias_t_3*rus_omega_2_in_axes3_y - rus_bias_t_2*rus_omega_1_in_axes3_y -
             rus_qd_3*rus_qd_3_t
         )
         rus_bias_in_axes3_y = (
-        rus_bias_t_3*rus_omega_2_in_axes3_x - rus_bias_t_2*rus_omega_1_in_axes3_x
+        rus_bias_t_2*rus_omega_1_in_axes3_x - rus_bias_t_3*rus_omega_2_in_axes3_x
         )
         rus_bias_in_axes3_z = (
         rus_W_3_in_axes3_xz*rus_platform_joint_offset_x + rus_omega_2_in_axes3_x*rus_qd_3_t -
@@ -3448,8 +3600,8 @@ def _run_legs(m, X, V, A):
         rus_alpha_2_in_axes2_z = (
         rus_w_2_in_axes3_z*(rus_rel_in_axes3_z + rus_qdd_1_t*rus_v_1_in_axes3_z) - rus_qdd_1_t
         )
-        rus_alpha_2_in_axes3_x = rus_alpha_2_in_axes2_z*rus_s_3
-        rus_alpha_2_in_axes3_y = rus_alpha_2_in_axes2_z*rus_c_3
+        rus_alpha_2_in_axes3_x = rus_alpha_2_in_axes2_z*rus_e_1_in_axes3_x
+        rus_alpha_2_in_axes3_y = -rus_alpha_2_in_axes2_z*rus_c_3
         # (rus-alpha_3) angular acceleration of link 3
         rus_alpha_3_in_axes3_x = rus_W_3_in_axes3_yz + rus_alpha_2_in_axes3_x
         rus_alpha_3_in_axes3_y = rus_alpha_2_in_axes3_y - rus_W_3_in_axes3_xz
@@ -3494,7 +3646,7 @@ def _run_legs(m, X, V, A):
             rus_B_3_in_axes3_xy*rus_Sigma_3_in_axes3_yy - rus_J_3_in_spec3_xz*(rus_mu_3_t -
             rus_mu_3_t_2) - rus_J_3_in_spec3_yz*rus_alpha_2_in_axes3_y
         )
-        rus_mu_3_in_axes1_z = rus_c_3*rus_mu_3_in_axes3_y + rus_mu_3_in_axes3_x*rus_s_3
+        rus_mu_3_in_axes1_z = rus_e_1_in_axes3_x*rus_mu_3_in_axes3_x - rus_c_3*rus_mu_3_in_axes3_y
         # (rus-mu_1) inertia moment of the links that turn with link 1, about their reference points
         rus_mu_1_in_axes1_z = (
         rus_h_1_in_spec1_y*(rus_c_1*rus_mu_1_t + rus_mu_1_t_2*rus_s_1) -
@@ -3593,18 +3745,16 @@ def _run_potential(m, X):
         # (rus-Kd_1) projection on the centre's direction, from the distance fixed by the joints beyond joint 1
         rus_Kd_1_t = rus_S_x*rus_S_x + rus_S_y*rus_S_y + rus_S_z*rus_S_z
         rus_Kd_1 = rus_J_3_t + 0.5*rus_Kd_1_t - rus_J_3_t_2
-        # (rus-px_1) component along the reference direction
-        rus_px_1 = (
-        rus_S_x*rus_base_frame_xx + rus_S_y*rus_base_frame_yx + rus_S_z*rus_base_frame_zx
-        )
-        # (rus-py_1) component across the reference direction
-        rus_py_1 = (
-        rus_S_x*rus_base_frame_xy + rus_S_y*rus_base_frame_yy + rus_S_z*rus_base_frame_zy
-        )
         # (rus-Kc_1) factor of the cosine in the equation of joint 1
-        rus_Kc_1 = rus_joint2_offset_x*rus_px_1
+        rus_Kc_1 = (
+        rus_joint2_offset_x*(rus_S_x*rus_base_frame_xx + rus_S_y*rus_base_frame_yx +
+            rus_S_z*rus_base_frame_zx)
+        )
         # (rus-Ks_1) factor of the sine in the equation of joint 1
-        rus_Ks_1 = rus_joint2_offset_x*rus_py_1
+        rus_Ks_1 = (
+        rus_joint2_offset_x*(rus_S_x*rus_base_frame_xy + rus_S_y*rus_base_frame_yy +
+            rus_S_z*rus_base_frame_zy)
+        )
         # (rus-rho2_1) squared amplitude
         rus_rho2_1 = rus_Kc_1*rus_Kc_1 + rus_Ks_1*rus_Ks_1
         # (rus-disc_1) discriminant
@@ -3618,9 +3768,6 @@ def _run_potential(m, X):
         rus_s_1 = inv_rus_rho2_1*(rus_Kc_1*rus_root_1 + rus_Kd_1*rus_Ks_1)
         # (rus-xi_1) the vector from joint 1 to the connection point, resolved along link 1
         rus_xi_1_t = inv_rus_size_t*rus_joint2_offset_x*rus_root_1
-        rus_xi_1_in_axes1_z = (
-        rus_S_x*rus_base_frame_xz + rus_S_y*rus_base_frame_yz + rus_S_z*rus_base_frame_zz
-        )
         # (rus-x_2) from the origin of joint 2 to the connection point
         rus_x_2_in_axes1_x = inv_rus_size_t*rus_Kd_1*rus_joint2_offset_x - rus_joint2_offset_x
         # (rus-rho2_2) squared amplitude
@@ -3629,24 +3776,26 @@ def _run_potential(m, X):
         rus_root_2 = rus_branch_2*sqrt(rus_rho2_2)
         # (rus-c_2) cosine of the angle of joint 2 from its reference direction
         inv_rus_rho2_2 = 1.0/rus_rho2_2
-        rus_c_2 = inv_rus_rho2_2*rus_root_2*rus_xi_1_t
+        rus_c_2 = inv_rus_rho2_2*rus_root_2*rus_x_2_in_axes1_x
         # (rus-s_2) sine of the angle of joint 2 from its reference direction
-        rus_s_2 = inv_rus_rho2_2*rus_root_2*rus_x_2_in_axes1_x
+        rus_s_2_t = inv_rus_rho2_2*rus_root_2*rus_xi_1_t
         # (rus-c_3) cosine of the angle of joint 3 from its reference direction
-        rus_c_3 = -inv_rus_size_t_2*rus_platform_joint_offset_x*rus_root_2
-        # (rus-s_3) sine of the angle of joint 3 from its reference direction
-        rus_s_3 = inv_rus_size_t_2*rus_platform_joint_offset_x*rus_xi_1_in_axes1_z
+        rus_c_3 = inv_rus_size_t_2*rus_platform_joint_offset_x*rus_root_2
         # (potential) potential energy
-        rus_potential_t_4 = rus_c_3*rus_h_3_in_spec3_x + rus_h_3_in_spec3_z*rus_s_3
+        rus_e_1_in_axes3_x = (
+        inv_rus_size_t_2*rus_platform_joint_offset_x*(rus_S_x*rus_base_frame_xz +
+            rus_S_y*rus_base_frame_yz + rus_S_z*rus_base_frame_zz)
+        )
+        rus_potential_t_4 = rus_e_1_in_axes3_x*rus_h_3_in_spec3_z - rus_c_3*rus_h_3_in_spec3_x
         rus_potential_t_5 = (
-        rus_g_in_axes1_z*(rus_h_1_in_spec1_z + rus_potential_t_3 + rus_h_3_in_spec3_x*rus_s_3 -
-            rus_c_3*rus_h_3_in_spec3_z) + (rus_c_1*rus_mu_1_t +
-            rus_mu_1_t_2*rus_s_1)*(rus_h_1_in_spec1_x + rus_c_2*rus_h_3_in_spec3_y +
+        rus_g_in_axes1_z*(rus_h_1_in_spec1_z + rus_potential_t_3 + rus_c_3*rus_h_3_in_spec3_z +
+            rus_e_1_in_axes3_x*rus_h_3_in_spec3_x) + (rus_c_1*rus_mu_1_t +
+            rus_mu_1_t_2*rus_s_1)*(rus_h_1_in_spec1_x + rus_h_3_in_spec3_y*rus_s_2_t +
             rus_link1_mass*(rus_c_1*rus_potential_t + rus_potential_t_2*rus_s_1) -
-            rus_potential_t_4*rus_s_2) + (rus_c_1*rus_mu_1_t_2 -
-            rus_mu_1_t*rus_s_1)*(rus_h_1_in_spec1_y + rus_c_2*rus_potential_t_4 +
-            rus_h_3_in_spec3_y*rus_s_2 + rus_link1_mass*(rus_c_1*rus_potential_t_2 -
-            rus_potential_t*rus_s_1))
+            rus_c_2*rus_potential_t_4) + (rus_c_1*rus_mu_1_t_2 -
+            rus_mu_1_t*rus_s_1)*(rus_h_1_in_spec1_y + rus_c_2*rus_h_3_in_spec3_y +
+            rus_link1_mass*(rus_c_1*rus_potential_t_2 - rus_potential_t*rus_s_1) +
+            rus_potential_t_4*rus_s_2_t)
         )
         ok = (
         ok & (abs(rus_rho2_1) > _TOLERANCE * _TOLERANCE * rus_rho2_1_t) & (rus_disc_1 >= 0.0) &
@@ -3701,18 +3850,16 @@ def _run_condition(m, X):
         # (rus-Kd_1) projection on the centre's direction, from the distance fixed by the joints beyond joint 1
         rus_Kd_1_t = rus_S_x*rus_S_x + rus_S_y*rus_S_y + rus_S_z*rus_S_z
         rus_Kd_1 = rus_J_3_t + 0.5*rus_Kd_1_t - rus_J_3_t_2
-        # (rus-px_1) component along the reference direction
-        rus_px_1 = (
-        rus_S_x*rus_base_frame_xx + rus_S_y*rus_base_frame_yx + rus_S_z*rus_base_frame_zx
-        )
-        # (rus-py_1) component across the reference direction
-        rus_py_1 = (
-        rus_S_x*rus_base_frame_xy + rus_S_y*rus_base_frame_yy + rus_S_z*rus_base_frame_zy
-        )
         # (rus-Kc_1) factor of the cosine in the equation of joint 1
-        rus_Kc_1 = rus_joint2_offset_x*rus_px_1
+        rus_Kc_1 = (
+        rus_joint2_offset_x*(rus_S_x*rus_base_frame_xx + rus_S_y*rus_base_frame_yx +
+            rus_S_z*rus_base_frame_zx)
+        )
         # (rus-Ks_1) factor of the sine in the equation of joint 1
-        rus_Ks_1 = rus_joint2_offset_x*rus_py_1
+        rus_Ks_1 = (
+        rus_joint2_offset_x*(rus_S_x*rus_base_frame_xy + rus_S_y*rus_base_frame_yy +
+            rus_S_z*rus_base_frame_zy)
+        )
         # (rus-rho2_1) squared amplitude
         rus_rho2_1 = rus_Kc_1*rus_Kc_1 + rus_Ks_1*rus_Ks_1
         # (rus-disc_1) discriminant
@@ -3726,9 +3873,6 @@ def _run_condition(m, X):
         rus_s_1 = inv_rus_rho2_1*(rus_Kc_1*rus_root_1 + rus_Kd_1*rus_Ks_1)
         # (rus-xi_1) the vector from joint 1 to the connection point, resolved along link 1
         rus_xi_1_t = inv_rus_size_t*rus_joint2_offset_x*rus_root_1
-        rus_xi_1_in_axes1_z = (
-        rus_S_x*rus_base_frame_xz + rus_S_y*rus_base_frame_yz + rus_S_z*rus_base_frame_zz
-        )
         # (rus-x_2) from the origin of joint 2 to the connection point
         rus_x_2_in_axes1_x = inv_rus_size_t*rus_Kd_1*rus_joint2_offset_x - rus_joint2_offset_x
         # (rus-rho2_2) squared amplitude
@@ -3737,36 +3881,38 @@ def _run_condition(m, X):
         rus_root_2 = rus_branch_2*sqrt(rus_rho2_2)
         # (rus-c_2) cosine of the angle of joint 2 from its reference direction
         inv_rus_rho2_2 = 1.0/rus_rho2_2
-        rus_c_2 = inv_rus_rho2_2*rus_root_2*rus_xi_1_t
+        rus_c_2 = inv_rus_rho2_2*rus_root_2*rus_x_2_in_axes1_x
         # (rus-s_2) sine of the angle of joint 2 from its reference direction
-        rus_s_2 = inv_rus_rho2_2*rus_root_2*rus_x_2_in_axes1_x
+        rus_s_2_t = inv_rus_rho2_2*rus_root_2*rus_xi_1_t
         # (rus-c_3) cosine of the angle of joint 3 from its reference direction
-        rus_c_3 = -inv_rus_size_t_2*rus_platform_joint_offset_x*rus_root_2
-        # (rus-s_3) sine of the angle of joint 3 from its reference direction
-        rus_s_3 = inv_rus_size_t_2*rus_platform_joint_offset_x*rus_xi_1_in_axes1_z
+        rus_c_3 = inv_rus_size_t_2*rus_platform_joint_offset_x*rus_root_2
         # (rus-r_1) from joint 1 to the connection point, along the links
-        rus_r_1_t = -rus_c_3*rus_platform_joint_offset_x
-        rus_r_1_in_axes1_x = rus_joint2_offset_x + rus_r_1_t*rus_s_2
+        rus_r_1_t = rus_c_3*rus_platform_joint_offset_x
+        rus_r_1_in_axes1_x = rus_joint2_offset_x + rus_c_2*rus_r_1_t
         # (rus-v_1) velocity of the connection point per rate of joint 1
-        rus_v_1_t = -rus_c_3*(rus_c_2*rus_r_1_in_axes1_x - rus_c_2*rus_r_1_t*rus_s_2)
+        rus_v_1_t = rus_c_3*(rus_r_1_in_axes1_x*rus_s_2_t - rus_c_2*rus_r_1_t*rus_s_2_t)
         # (rus-w_1) reciprocal vector 1
-        rus_w_1_t = rus_c_1*rus_c_2 - rus_s_1*rus_s_2
-        rus_w_1_t_2 = rus_c_1*rus_s_2 + rus_c_2*rus_s_1
+        rus_e_1_in_axes3_x = (
+        inv_rus_size_t_2*rus_platform_joint_offset_x*(rus_S_x*rus_base_frame_xz +
+            rus_S_y*rus_base_frame_yz + rus_S_z*rus_base_frame_zz)
+        )
+        rus_w_1_t = rus_c_1*rus_s_2_t - rus_c_2*rus_s_1
+        rus_w_1_t_2 = rus_c_1*rus_c_2 + rus_s_1*rus_s_2_t
         axis_z_rus_axes3_x = rus_base_frame_xx*rus_w_1_t + rus_base_frame_xy*rus_w_1_t_2
         axis_z_rus_axes3_y = rus_base_frame_yx*rus_w_1_t + rus_base_frame_yy*rus_w_1_t_2
         axis_z_rus_axes3_z = rus_base_frame_zx*rus_w_1_t + rus_base_frame_zy*rus_w_1_t_2
-        rus_w_1_t_3 = rus_s_2*rus_s_3
-        rus_w_1_t_4 = rus_c_2*rus_s_3
+        rus_w_1_t_3 = rus_c_2*rus_e_1_in_axes3_x
+        rus_w_1_t_4 = rus_e_1_in_axes3_x*rus_s_2_t
         rus_w_1_t_5 = rus_c_1*rus_w_1_t_3 + rus_s_1*rus_w_1_t_4
         rus_w_1_t_6 = rus_s_1*rus_w_1_t_3 - rus_c_1*rus_w_1_t_4
         axis_y_rus_axes3_x = (
-        rus_base_frame_xx*rus_w_1_t_5 + rus_base_frame_xy*rus_w_1_t_6 + rus_base_frame_xz*rus_c_3
+        rus_base_frame_xx*rus_w_1_t_5 + rus_base_frame_xy*rus_w_1_t_6 - rus_base_frame_xz*rus_c_3
         )
         axis_y_rus_axes3_y = (
-        rus_base_frame_yx*rus_w_1_t_5 + rus_base_frame_yy*rus_w_1_t_6 + rus_base_frame_yz*rus_c_3
+        rus_base_frame_yx*rus_w_1_t_5 + rus_base_frame_yy*rus_w_1_t_6 - rus_base_frame_yz*rus_c_3
         )
         axis_y_rus_axes3_z = (
-        rus_base_frame_zx*rus_w_1_t_5 + rus_base_frame_zy*rus_w_1_t_6 + rus_base_frame_zz*rus_c_3
+        rus_base_frame_zx*rus_w_1_t_5 + rus_base_frame_zy*rus_w_1_t_6 - rus_base_frame_zz*rus_c_3
         )
         inv_rus_v_1_t = 1.0/rus_v_1_t
         rus_w_1_t_7 = (
@@ -3819,6 +3965,39 @@ def _run_condition(m, X):
     return (valid, reached, clear), (out_H, out_lengths, out_pivots, out_reach,)
 
 
+def _straight_3(a, b, rows, limits):
+    """Solve 3 equations a x = b straight through; and whether that is beyond doubt."""
+    (a00, a01, a02,), (a10, a11, a12,), (a20, a21, a22,), = [a[3 * k : 3 * k + 3] for k in rows]
+    b0, b1, b2, = [b[k] for k in rows]
+    l10, l20, l21, l0, l1, l2, = limits
+    f0 = 1.0/a00
+    g10 = a10*f0
+    a11 = a11 - g10*a01
+    a12 = a12 - g10*a02
+    b1 = b1 - g10*b0
+    g20 = a20*f0
+    a21 = a21 - g20*a01
+    a22 = a22 - g20*a02
+    b2 = b2 - g20*b0
+    f1 = 1.0/a11
+    g21 = a21*f1
+    a22 = a22 - g21*a12
+    b2 = b2 - g21*b1
+    f2 = 1.0/a22
+    x2 = b2*f2
+    x1 = (b1 - a12*x2)*f1
+    x0 = (b0 - a02*x2 - a01*x1)*f0
+    sure = (
+    (abs(g10) <= l10) & (abs(g20) <= l20) & (abs(g21) <= l21) & (abs(f0) <= l0) & (abs(f1) <= l1)
+        & (abs(f2) <= l2) & (abs(x0 + x1 + x2 + a00 + a11 + a22) < math.inf)
+    )
+    return sure, ([x0, x1, x2],)
+
+
+_ORDERS = (  # how systems are solved near home
+    _Order(_straight_3, (0, 1, 2), (10, 40, 40, 1000, 1000, 250,)),
+    _Order(_straight_3, (0, 1, 2), (10, 10, 10, 62.5, 62.5, 62.5,)),
+)
 _Q = None  # where a quaternion begins in X
 _DEFAULT = Parameters()
 
@@ -3862,17 +4041,17 @@ def _steps_inverse_dynamics(m, X, V, A, wrench, weights):
     required, H = m.run(_run_required, ("required", "H"), X, V, A)
     extend_1 = wrench
     subtract_1 = required - extend_1
-    tau = _solve(H, subtract_1)
+    tau = _straight(m, H, subtract_1, _ORDERS[0])
     return (tau,)
 
 
 def _steps_forward_dynamics(m, X, V, tau, wrench):
     M, Z, H = m.run(_run_dynamics, ("M", "Z", "H"), X, V)
-    times_1 = np.einsum("ijs,js->is", H, tau)
+    times_1 = _times(H, tau)
     extend_1 = wrench
     add_1 = times_1 + extend_1
     subtract_1 = add_1 - Z
-    A = _solve(M, subtract_1)
+    A = _straight(m, M, subtract_1, _ORDERS[1])
     return (A,)
 
 
@@ -3885,7 +4064,7 @@ def _steps_leg_reactions(m, X, V, A, wrench):
     required, H = m.run(_run_required, ("required", "H"), X, V, A)
     extend_1 = wrench
     subtract_1 = required - extend_1
-    solve_1 = _solve(H, subtract_1)
+    solve_1 = _straight(m, H, subtract_1, _ORDERS[0])
     leg_force, actuator = m.run(_run_legs, ("leg_force", "actuator"), X, V, A)
     forces = _with_forces(leg_force, solve_1, actuator, [0, 1, 2])
     return (forces,)
@@ -3911,10 +4090,29 @@ def _steps_condition(m, X, length):
     return (sigma, legs,)
 
 
+def _steps_manipulability(m, X):
+    (
+    H, lengths, pivots, reach,
+    ) = m.run(_in_one(_run_condition), ("H", "lengths", "pivots", "reach"), X)
+    singular_values_1 = _singular_values(H)
+    measure, isotropy = _spread(singular_values_1, 3)
+    return (measure, isotropy,)
+
+
+def _steps_singularity_distance(m, X):
+    (
+    H, lengths, pivots, reach,
+    ) = m.run(_in_one(_run_condition), ("H", "lengths", "pivots", "reach"), X)
+    singular_values_1 = _singular_values(H)
+    spread_1, actuators = _spread(singular_values_1, 3)
+    legs = _least_entry(pivots)
+    return (actuators, legs,)
+
+
 def _steps_mismatch(m, X, q_actuated):
     q, = m.run(_run_inverse_kinematics, ("q",), X)
-    take_1 = q[[0, 3, 6]]
-    subtract_1 = q_actuated - take_1
+    q_of_inverse_kinematics_from_0 = q[[0, 3, 6]]
+    subtract_1 = q_actuated - q_of_inverse_kinematics_from_0
     gap = _wrapped(subtract_1, [0, 1, 2])
     return (gap,)
 
@@ -3937,7 +4135,7 @@ def _steps_dissipation(m, X, V):
 
 def _steps_momentum(m, X, V):
     M, = m.run(_run_M, ("M",), X)
-    momentum = np.einsum("ijs,js->is", M, V)
+    momentum = _times(M, V)
     return (momentum,)
 
 
@@ -3974,7 +4172,7 @@ def _steps_actuator_accelerations(m, X, V, A):
 
 def _steps_power(m, X, V, tau):
     H, = m.run(_run_H, ("H",), X)
-    times_1 = np.einsum("ijs,js->is", H, tau)
+    times_1 = _times(H, tau)
     power = np.sum(times_1 * V, axis=0)
     return (power,)
 
@@ -4009,6 +4207,7 @@ def M(X, p=None):
     return _call(
         "M", _steps_M, p,
         ("X", X, (NQ,)),
+        plain=((NV, NV,),),
     )
 
 
@@ -4027,6 +4226,7 @@ def Z(X, V, p=None):
         "Z", _steps_Z, p,
         ("X", X, (NQ,)),
         ("V", V, (NV,)),
+        plain=((NV,),),
     )
 
 
@@ -4043,6 +4243,7 @@ def H(X, p=None):
     return _call(
         "H", _steps_H, p,
         ("X", X, (NQ,)),
+        plain=((NV, NU,),),
     )
 
 
@@ -4061,6 +4262,7 @@ def inverse_kinematics(X, p=None):
     return _call(
         "inverse_kinematics", _steps_inverse_kinematics, p,
         ("X", X, (NQ,)),
+        plain=((NJ,),),
     )
 
 
@@ -4079,6 +4281,7 @@ def joint_rates(X, V, p=None):
         "joint_rates", _steps_joint_rates, p,
         ("X", X, (NQ,)),
         ("V", V, (NV,)),
+        plain=((NJ,),),
     )
 
 
@@ -4099,6 +4302,7 @@ def joint_accelerations(X, V, A, p=None):
         ("X", X, (NQ,)),
         ("V", V, (NV,)),
         ("A", A, (NV,)),
+        plain=((NJ,),),
     )
 
 
@@ -4119,6 +4323,7 @@ def dynamics(X, V, p=None):
         "dynamics", _steps_dynamics, p,
         ("X", X, (NQ,)),
         ("V", V, (NV,)),
+        plain=((NV, NV,), (NV,), (NV, NU,),),
     )
 
 
@@ -4146,6 +4351,7 @@ def inverse_dynamics(X, V, A, p=None, *, wrench=None, weights=None):
         ("A", A, (NV,)),
         ("wrench", wrench, (NW,), 0.0),
         ("weights", weights, (NU,), 1.0, "positive"),
+        plain=((NU,),),
     )
 
 
@@ -4168,6 +4374,7 @@ def forward_dynamics(X, V, tau, p=None, *, wrench=None):
         ("V", V, (NV,)),
         ("tau", tau, (NU,)),
         ("wrench", wrench, (NW,), 0.0),
+        plain=((NV,),),
     )
 
 
@@ -4192,6 +4399,7 @@ def complete_acceleration(X, V, A, p=None, *, wrench=None):
         ("V", V, (NV,), None, "unused"),
         ("A", A, (NV,)),
         ("wrench", wrench, (NW,), 0.0, "unused"),
+        plain=((NV,),),
     )
 
 
@@ -4280,6 +4488,41 @@ def condition(X, p=None, *, length=None):
     )
 
 
+def manipulability(X, p=None):
+    """Manipulability of forces: the product of the singular values that `condition` has by
+    default, and the least over the largest of them.
+
+    Args:
+        X: pose, and extra coordinates (..., NQ).
+        p: parameters, by default those of the specification.
+
+    Returns:
+        measure: product of the singular values (...,).
+        isotropy: least over largest value, 1 where H is isotropic (...,).
+    """
+    return _call(
+        "manipulability", _steps_manipulability, p,
+        ("X", X, (NQ,)),
+    )
+
+
+def singularity_distance(X, p=None):
+    """How near actuators and legs are to being singular: relative distances, 0 where they are.
+
+    Args:
+        X: pose, and extra coordinates (..., NQ).
+        p: parameters, by default those of the specification.
+
+    Returns:
+        actuators: of H from matrices of lower rank, over its norm (...,).
+        legs: least pivot of all legs (...,).
+    """
+    return _call(
+        "singularity_distance", _steps_singularity_distance, p,
+        ("X", X, (NQ,)),
+    )
+
+
 def forward_kinematics(q_actuated, X0, p=None):
     """X at which the actuated joints stand at q_actuated, by Gauss-Newton from X0.
 
@@ -4335,6 +4578,7 @@ def momentum(X, V, p=None):
         "momentum", _steps_momentum, p,
         ("X", X, (NQ,)),
         ("V", V, (NV,)),
+        plain=((NV,),),
     )
 
 
@@ -4461,6 +4705,7 @@ def retract(X, step):
         "retract", _steps_retract, None,
         ("X", X, (NQ,)),
         ("step", step, (NV,)),
+        plain=((NQ,),),
     )
 
 
@@ -4478,6 +4723,7 @@ def difference(X0, X1):
         "difference", _steps_difference, None,
         ("X0", X0, (NQ,)),
         ("X1", X1, (NQ,)),
+        plain=((NV,),),
     )
 
 

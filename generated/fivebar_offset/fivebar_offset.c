@@ -993,6 +993,61 @@ static void least_squares(size_t rows, size_t n, real *a, real *x)
     }
 }
 
+/* Turn the rows of a[rows][stride] among themselves, so that columns 0 to n - 1 are zero from row
+   `rank` on; columns beyond go along.  Returns the last diagonal entry as a fraction of the first: of a matrix of
+   this rank it is not small. */
+static real rotate(size_t rows, size_t stride, size_t n, size_t rank, real *a)
+{
+    real v[BIG] = {0}, first = 0, last = 0;
+    for (size_t p = 0; p < rank; ++p) {
+        size_t best = 0;
+        real most = 0;
+        for (size_t j = 0; j < n; ++j) {
+            real square = 0;
+            for (size_t i = p; i < rows; ++i) {
+                square += a[i*stride + j]*a[i*stride + j];
+            }
+            best = square > most ? j : best;
+            most = square > most ? square : most;
+        }
+        const real size = a[p*stride + best] > 0 ? -root(most) : root(most);
+        for (size_t i = p; i < rows; ++i) {
+            v[i] = a[i*stride + best];
+        }
+        v[p] -= size;
+        for (size_t j = 0; j < stride && most > 0; ++j) {
+            real sum = 0;
+            for (size_t i = p; i < rows; ++i) {
+                sum += v[i]*a[i*stride + j];
+            }
+            for (size_t i = p; i < rows; ++i) {
+                a[i*stride + j] += sum/(v[p]*size)*v[i];
+            }
+        }
+        last = magnitude(size);
+        first = p == 0 ? last : first;
+    }
+    return last/first;
+}
+
+/* Orthonormal columns x[n][n - rank] with a x = 0, for a[m][n] of this rank. */
+static void null_basis(size_t m, size_t n, size_t rank, const real *a, real *x)
+{
+    real t[2*BIG*BIG] = {0};
+    for (size_t j = 0; j < n; ++j) {
+        for (size_t i = 0; i < m; ++i) {
+            t[j*(m + n) + i] = a[i*n + j];
+        }
+        t[j*(m + n) + m + j] = 1;
+    }
+    rotate(n, m + n, m, rank, t);
+    for (size_t j = 0; j < n; ++j) {
+        for (size_t c = rank; c < n; ++c) {
+            x[j*(n - rank) + c - rank] = t[c*(m + n) + m + j];
+        }
+    }
+}
+
 /* Turn columns p and q of a[rows][columns] until they are perpendicular; returns whether they were
    not, to rounding. */
 static int turn_columns(size_t rows, size_t columns, size_t p, size_t q, real *a)
@@ -1067,6 +1122,15 @@ INLINE void product(size_t m, size_t n, size_t p, size_t w, const real *a, const
     }
 }
 
+INLINE void transpose(size_t m, size_t n, size_t w, const real *a, real *x)
+{
+    for (size_t e = 0; e < m*n; ++e) {
+        for (size_t k = 0; k < w; ++k) {
+            x[((e%n)*m + e/n)*w + k] = a[e*w + k];
+        }
+    }
+}
+
 /* a . b */
 INLINE void inner(size_t n, size_t w, const real *a, const real *b, real *x)
 {
@@ -1101,6 +1165,24 @@ INLINE void unlimited(size_t rows, size_t size, size_t w, const size_t *places, 
             x[places[i]*w + k] = R(INFINITY);
         }
     }
+}
+
+INLINE void least_entry(size_t n, const real *a, real *x)
+{
+    *x = a[0];
+    for (size_t e = 1; e < n; ++e) {
+        *x = lesser(*x, a[e]);
+    }
+}
+
+/* Of the first n entries the product, and the last over the first, 0 where that is 0. */
+INLINE void spread(size_t n, const real *a, real *product_of, real *ratio)
+{
+    *product_of = 1;
+    for (size_t e = 0; e < n; ++e) {
+        *product_of *= a[e];
+    }
+    *ratio = magnitude(a[0]) > 0 ? a[n - 1]/a[0] : a[0];
 }
 
 /* 1 where no entry is negative, else 0. */
@@ -1214,124 +1296,585 @@ static void moved(const real *X, const real *step, real part, real *to)
     }
 }
 
+/* ---- what functions of the state share; v: values for others ---- */
+
+typedef struct {
+    real W_p_xx, R_xx, R_yx, h_star_x, h_star_y;
+} values;
+
+INLINE void stage_V(size_t w, size_t k, const real *V, values *v)
+{
+    /* (W_p) centripetal tensor of the platform */
+    const real omega_z = V[2*w + k];
+    const real W_p_xx = -omega_z*omega_z;
+    v->W_p_xx = W_p_xx;
+}
+
+INLINE void stage_X(const prepared *m, size_t w, size_t k, const real *X, values *v)
+{
+    /* X: named entries */
+    const real X_2 = X[2*w + k];
+    const real R_xx = cosine(X_2);
+    const real R_yx = sine(X_2);
+    /* (h_star) first moment about the platform origin */
+    const real h_star_in_platform_x = m->h_star_in_platform_x;
+    const real h_star_in_platform_y = m->h_star_in_platform_y;
+    const real h_star_x = R_xx*h_star_in_platform_x - R_yx*h_star_in_platform_y;
+    const real h_star_y = R_xx*h_star_in_platform_y + R_yx*h_star_in_platform_x;
+    v->R_xx = R_xx;
+    v->R_yx = R_yx;
+    v->h_star_x = h_star_x;
+    v->h_star_y = h_star_y;
+}
+
+typedef struct {
+    real crank_q_x, crank_q_y, crank_rho2_1, crank_c_1, crank_s_1, axis_y_crank_axes1_x,
+        axis_x_crank_axes1_x, crank_n_c_x, crank_n_c_y, crank_w_1_x, crank_w_1_y, crank_H_a_1_z,
+        crank_Hk_a_1_z, crank_a_p_x, crank_a_p_y, crank_S_ddot_x, crank_S_ddot_y, crank_Q_xx,
+        crank_Q_xy, crank_Q_yy, crank_M_ta_t, crank_M_ta_t_2, crank_M_aa_t, crank_S_dot_t,
+        crank_S_dot_t_2, crank_S_dot_in_axes1_y, crank_c_t, crank_c_t_2;
+} values_crank;
+
+INLINE void stage_crank_X(const prepared *m, size_t w, size_t i, size_t j, const real *s, const
+    real *X, values_crank *v)
+{
+    /* (crank-S) from the base point to the connection point */
+    const real R_xx = s[0*w + j];
+    const real R_yx = s[1*w + j];
+    const real crank_platform_point_x = m->crank_platform_point_x[i];
+    const real crank_platform_point_y = m->crank_platform_point_y[i];
+    const real crank_q_x = R_xx*crank_platform_point_x - R_yx*crank_platform_point_y;
+    const real crank_q_y = R_xx*crank_platform_point_y + R_yx*crank_platform_point_x;
+    const real crank_base_point_x = m->crank_base_point_x[i];
+    const real t_x = X[0*w + j];
+    const real crank_S_x = crank_q_x + t_x - crank_base_point_x;
+    const real crank_base_point_y = m->crank_base_point_y[i];
+    const real t_y = X[1*w + j];
+    const real crank_S_y = crank_q_y + t_y - crank_base_point_y;
+    const real crank_base_frame_xx = m->crank_base_frame_xx[i];
+    const real crank_base_frame_yx = m->crank_base_frame_yx[i];
+    const real crank_S_in_turn1_x = crank_S_x*crank_base_frame_xx +
+        crank_S_y*crank_base_frame_yx;
+    const real crank_base_frame_xy = m->crank_base_frame_xy[i];
+    const real crank_base_frame_yy = m->crank_base_frame_yy[i];
+    const real crank_S_in_turn1_y = crank_S_x*crank_base_frame_xy +
+        crank_S_y*crank_base_frame_yy;
+    /* (crank-rho2_1) squared amplitude */
+    const real crank_size_t = m->crank_size_t[i];
+    const real crank_rho2_1 = crank_size_t*(crank_S_in_turn1_x*crank_S_in_turn1_x +
+        crank_S_in_turn1_y*crank_S_in_turn1_y);
+    /* (crank-c_1) cosine of the angle of joint 1 from its reference direction */
+    const real crank_c_1_t = 1/(root(crank_rho2_1));
+    const real crank_platform_joint_offset_x = m->crank_platform_joint_offset_x[i];
+    const real crank_c_1 = crank_S_in_turn1_x*crank_c_1_t*crank_platform_joint_offset_x;
+    /* (crank-s_1) sine of the angle of joint 1 from its reference direction */
+    const real crank_s_1 = crank_S_in_turn1_y*crank_c_1_t*crank_platform_joint_offset_x;
+    /* (crank-S_dot) velocity of the connection point */
+    const real axis_y_crank_axes1_x = crank_base_frame_xy*crank_c_1 -
+        crank_base_frame_xx*crank_s_1;
+    const real axis_x_crank_axes1_x = crank_base_frame_yy*crank_c_1 -
+        crank_base_frame_yx*crank_s_1;
+    /* (crank-n_c) direction of the constraint force */
+    const real crank_n_c_in_axes1_x = m->crank_n_c_in_axes1_x[i];
+    const real crank_n_c_x = axis_x_crank_axes1_x*crank_n_c_in_axes1_x;
+    const real crank_n_c_y = -axis_y_crank_axes1_x*crank_n_c_in_axes1_x;
+    /* (crank-w_1) reciprocal vector 1 */
+    const real crank_w_1_in_axes1_y = m->crank_w_1_in_axes1_y[i];
+    const real crank_w_1_x = axis_y_crank_axes1_x*crank_w_1_in_axes1_y;
+    const real crank_w_1_y = axis_x_crank_axes1_x*crank_w_1_in_axes1_y;
+    /* (crank-H_a_1) moment of the column's unit force about the platform origin */
+    const real crank_H_a_1_z = crank_q_x*crank_w_1_y - crank_q_y*crank_w_1_x;
+    /* (crank-Hk_a_1) moment of the column's unit force about the platform origin */
+    const real crank_Hk_a_1_z = crank_n_c_y*crank_q_x - crank_n_c_x*crank_q_y;
+    v->crank_q_x = crank_q_x;
+    v->crank_q_y = crank_q_y;
+    v->crank_rho2_1 = crank_rho2_1;
+    v->crank_c_1 = crank_c_1;
+    v->crank_s_1 = crank_s_1;
+    v->axis_y_crank_axes1_x = axis_y_crank_axes1_x;
+    v->axis_x_crank_axes1_x = axis_x_crank_axes1_x;
+    v->crank_n_c_x = crank_n_c_x;
+    v->crank_n_c_y = crank_n_c_y;
+    v->crank_w_1_x = crank_w_1_x;
+    v->crank_w_1_y = crank_w_1_y;
+    v->crank_H_a_1_z = crank_H_a_1_z;
+    v->crank_Hk_a_1_z = crank_Hk_a_1_z;
+}
+
+INLINE void stage_crank_A_X(size_t w, size_t j, const real *A, values_crank *v)
+{
+    /* (crank-a_p) acceleration of the connection point without its centripetal part */
+    const real alpha_z = A[2*w + j];
+    const real t_ddot_x = A[0*w + j];
+    const real crank_a_p_x = t_ddot_x - alpha_z*v->crank_q_y;
+    const real t_ddot_y = A[1*w + j];
+    const real crank_a_p_y = t_ddot_y + alpha_z*v->crank_q_x;
+    v->crank_a_p_x = crank_a_p_x;
+    v->crank_a_p_y = crank_a_p_y;
+}
+
+INLINE void stage_crank_A_V_X(size_t w, size_t j, const real *V, values_crank *v)
+{
+    /* (crank-S_ddot) acceleration of the connection point */
+    const real omega_z = V[2*w + j];
+    const real crank_S_ddot_x = v->crank_a_p_x - v->crank_q_x*omega_z*omega_z;
+    const real crank_S_ddot_y = v->crank_a_p_y - v->crank_q_y*omega_z*omega_z;
+    v->crank_S_ddot_x = crank_S_ddot_x;
+    v->crank_S_ddot_y = crank_S_ddot_y;
+}
+
+INLINE void stage_crank_M_dynamics(const prepared *m, size_t i, values_crank *v)
+{
+    /* (crank-Q) inertia of the leg at the connection point, without the mass gathered there */
+    const real crank_d_G_in_axes1_yy = m->crank_d_G_in_axes1_yy[i];
+    const real crank_Q_t = v->axis_y_crank_axes1_x*crank_d_G_in_axes1_yy;
+    const real crank_Q_xx = v->axis_y_crank_axes1_x*crank_Q_t;
+    const real crank_Q_xy = v->axis_x_crank_axes1_x*crank_Q_t;
+    const real crank_Q_yy =
+        v->axis_x_crank_axes1_x*v->axis_x_crank_axes1_x*crank_d_G_in_axes1_yy;
+    /* (M_ta) coupling block of M */
+    const real crank_M_ta_t = crank_Q_xy*v->crank_q_x - crank_Q_xx*v->crank_q_y;
+    const real crank_M_ta_t_2 = crank_Q_yy*v->crank_q_x - crank_Q_xy*v->crank_q_y;
+    /* (M_aa) rotational block of M */
+    const real crank_M_aa_t = crank_M_ta_t_2*v->crank_q_x - crank_M_ta_t*v->crank_q_y;
+    v->crank_Q_xx = crank_Q_xx;
+    v->crank_Q_xy = crank_Q_xy;
+    v->crank_Q_yy = crank_Q_yy;
+    v->crank_M_ta_t = crank_M_ta_t;
+    v->crank_M_ta_t_2 = crank_M_ta_t_2;
+    v->crank_M_aa_t = crank_M_aa_t;
+}
+
+INLINE void stage_crank_constraint_bias_dynamics(size_t w, size_t j, const real *V, values_crank
+    *v)
+{
+    /* (crank-S_dot) velocity of the connection point */
+    const real omega_z = V[2*w + j];
+    const real crank_S_dot_t = v->crank_q_y*omega_z;
+    const real crank_S_dot_t_2 = v->crank_q_x*omega_z;
+    const real t_dot_x = V[0*w + j];
+    const real crank_S_dot_x = t_dot_x - crank_S_dot_t;
+    const real t_dot_y = V[1*w + j];
+    const real crank_S_dot_y = crank_S_dot_t_2 + t_dot_y;
+    const real crank_S_dot_in_axes1_y = v->axis_x_crank_axes1_x*crank_S_dot_y +
+        v->axis_y_crank_axes1_x*crank_S_dot_x;
+    v->crank_S_dot_t = crank_S_dot_t;
+    v->crank_S_dot_t_2 = crank_S_dot_t_2;
+    v->crank_S_dot_in_axes1_y = crank_S_dot_in_axes1_y;
+}
+
+INLINE void stage_crank_legs_required(const prepared *m, size_t i, values_crank *v)
+{
+    /* (crank-mu_1) inertia moment of the links that turn with link 1, about their reference points */
+    const real crank_J_1_in_spec1_zz = m->crank_J_1_in_spec1_zz[i];
+    const real crank_h_1_in_spec1_x = m->crank_h_1_in_spec1_x[i];
+    const real crank_h_1_in_spec1_y = m->crank_h_1_in_spec1_y[i];
+    const real crank_mu_1_t = m->crank_mu_1_t[i];
+    const real crank_mu_1_t_2 = m->crank_mu_1_t_2[i];
+    const real crank_w_1_in_axes1_y = m->crank_w_1_in_axes1_y[i];
+    const real crank_mu_1_in_axes1_z = crank_h_1_in_spec1_y*(v->crank_c_1*crank_mu_1_t +
+        crank_mu_1_t_2*v->crank_s_1) +
+        crank_J_1_in_spec1_zz*crank_w_1_in_axes1_y*(v->axis_x_crank_axes1_x*v->crank_S_ddot_y
+        + v->axis_y_crank_axes1_x*v->crank_S_ddot_x) -
+        crank_h_1_in_spec1_x*(v->crank_c_1*crank_mu_1_t_2 - crank_mu_1_t*v->crank_s_1);
+    /* (crank-G) force at the connection point that balances the leg's inertia and weight along all
+       degrees of freedom */
+    const real crank_G_in_axes1_y = crank_mu_1_in_axes1_z*crank_w_1_in_axes1_y;
+    /* (crank-c) leg force on the platform without actuation and without the mass at the connection
+       point */
+    const real crank_c_t = v->axis_y_crank_axes1_x*crank_G_in_axes1_y;
+    const real crank_c_t_2 = v->axis_x_crank_axes1_x*crank_G_in_axes1_y;
+    v->crank_c_t = crank_c_t;
+    v->crank_c_t_2 = crank_c_t_2;
+}
+
+typedef struct {
+    real rrr_q_x, rrr_q_y, rrr_rho2_1, rrr_disc_1, rrr_c_1, rrr_s_1, rrr_c_2, rrr_s_2,
+        rrr_r_1_in_axes1_y, rrr_r_1_in_axes1_x, rrr_r_1_in_axes2_x, rrr_r_1_in_axes2_y, rrr_w_1_t,
+        rrr_w_1_t_2, axis_y_rrr_axes2_x, axis_x_rrr_axes2_x, rrr_w_1_in_axes2_x, rrr_w_1_x, rrr_w_1_y,
+        rrr_qd_1_t, rrr_qd_1_t_2, rrr_a_p_x, rrr_a_p_y, rrr_S_dot_t, rrr_S_dot_t_2, rrr_S_dot_x,
+        rrr_S_dot_y, rrr_W_1_t, rrr_W_2_t, rrr_bias_in_axes2_x, rrr_S_ddot_x, rrr_S_ddot_y,
+        rrr_H_a_1_z, rrr_w_2_in_axes2_x, rrr_d_Gamma_2_in_axes2_x, rrr_d_Gamma_1_in_axes2_x,
+        rrr_d_c_in_axes2_xy, rrr_Kd_1, rrr_Kc_1, rrr_Ks_1, rrr_root_1, inv_rrr_rho2_1,
+        rrr_x_2_in_axes1_x, rrr_acc_2_in_axes2_x, rrr_acc_2_in_axes2_y, rrr_c_in_axes2_x,
+        rrr_c_in_axes2_y;
+} values_rrr;
+
+INLINE void stage_rrr_X(const prepared *m, size_t w, size_t i, size_t j, const real *s, const real
+    *X, values_rrr *v)
+{
+    /* (rrr-S) from the base point to the connection point */
+    const real R_xx = s[0*w + j];
+    const real R_yx = s[1*w + j];
+    const real rrr_platform_point_x = m->rrr_platform_point_x[i];
+    const real rrr_platform_point_y = m->rrr_platform_point_y[i];
+    const real rrr_q_x = R_xx*rrr_platform_point_x - R_yx*rrr_platform_point_y;
+    const real rrr_q_y = R_xx*rrr_platform_point_y + R_yx*rrr_platform_point_x;
+    const real rrr_base_point_x = m->rrr_base_point_x[i];
+    const real t_x = X[0*w + j];
+    const real rrr_S_x = rrr_q_x + t_x - rrr_base_point_x;
+    const real rrr_base_point_y = m->rrr_base_point_y[i];
+    const real t_y = X[1*w + j];
+    const real rrr_S_y = rrr_q_y + t_y - rrr_base_point_y;
+    /* (rrr-Kd_1) projection on the centre's direction, from the distance fixed by the joints beyond
+       joint 1 */
+    const real rrr_Kd_1_t_3 = rrr_S_x*rrr_S_x + rrr_S_y*rrr_S_y;
+    const real rrr_Kd_1_t = m->rrr_Kd_1_t[i];
+    const real rrr_Kd_1_t_2 = m->rrr_Kd_1_t_2[i];
+    const real rrr_Kd_1 = rrr_Kd_1_t + R(0.5)*rrr_Kd_1_t_3 - rrr_Kd_1_t_2;
+    /* (rrr-Kc_1) factor of the cosine in the equation of joint 1 */
+    const real rrr_base_frame_xx = m->rrr_base_frame_xx[i];
+    const real rrr_base_frame_yx = m->rrr_base_frame_yx[i];
+    const real rrr_joint2_offset_x = m->rrr_joint2_offset_x[i];
+    const real rrr_Kc_1 = rrr_joint2_offset_x*(rrr_S_x*rrr_base_frame_xx +
+        rrr_S_y*rrr_base_frame_yx);
+    /* (rrr-Ks_1) factor of the sine in the equation of joint 1 */
+    const real rrr_base_frame_xy = m->rrr_base_frame_xy[i];
+    const real rrr_base_frame_yy = m->rrr_base_frame_yy[i];
+    const real rrr_Ks_1 = rrr_joint2_offset_x*(rrr_S_x*rrr_base_frame_xy +
+        rrr_S_y*rrr_base_frame_yy);
+    /* (rrr-rho2_1) squared amplitude */
+    const real rrr_rho2_1 = rrr_Kc_1*rrr_Kc_1 + rrr_Ks_1*rrr_Ks_1;
+    /* (rrr-disc_1) discriminant */
+    const real rrr_disc_1 = rrr_rho2_1 - rrr_Kd_1*rrr_Kd_1;
+    /* (rrr-root_1) root, with the sign of the branch */
+    const real rrr_branch_1 = m->rrr_branch_1[i];
+    const real rrr_root_1 = rrr_branch_1*root(rrr_disc_1);
+    /* (rrr-c_1) cosine of the angle of joint 1 from its reference direction */
+    const real inv_rrr_rho2_1 = 1/rrr_rho2_1;
+    const real rrr_c_1 = inv_rrr_rho2_1*(rrr_Kc_1*rrr_Kd_1 - rrr_Ks_1*rrr_root_1);
+    /* (rrr-s_1) sine of the angle of joint 1 from its reference direction */
+    const real rrr_s_1 = inv_rrr_rho2_1*(rrr_Kc_1*rrr_root_1 + rrr_Kd_1*rrr_Ks_1);
+    /* (rrr-x_2) from the origin of joint 2 to the connection point */
+    const real inv_rrr_size_t = m->inv_rrr_size_t[i];
+    const real rrr_x_2_in_axes1_x = inv_rrr_size_t*rrr_Kd_1*rrr_joint2_offset_x -
+        rrr_joint2_offset_x;
+    /* (rrr-c_2) cosine of the angle of joint 2 from its reference direction */
+    const real inv_rrr_size_t_2 = m->inv_rrr_size_t_2[i];
+    const real rrr_platform_joint_offset_x = m->rrr_platform_joint_offset_x[i];
+    const real rrr_c_2 = inv_rrr_size_t_2*rrr_platform_joint_offset_x*rrr_x_2_in_axes1_x;
+    /* (rrr-s_2) sine of the angle of joint 2 from its reference direction */
+    const real rrr_s_2 =
+        -inv_rrr_size_t*inv_rrr_size_t_2*rrr_joint2_offset_x*rrr_platform_joint_offset_x*rrr_root_1;
+    /* (rrr-r_1) from joint 1 to the connection point, along the links */
+    const real rrr_r_1_in_axes1_y = rrr_platform_joint_offset_x*rrr_s_2;
+    const real rrr_r_1_in_axes1_x = rrr_joint2_offset_x + rrr_c_2*rrr_platform_joint_offset_x;
+    const real rrr_r_1_in_axes2_x = rrr_c_2*rrr_r_1_in_axes1_x + rrr_r_1_in_axes1_y*rrr_s_2;
+    const real rrr_r_1_in_axes2_y = rrr_c_2*rrr_r_1_in_axes1_y - rrr_r_1_in_axes1_x*rrr_s_2;
+    /* (rrr-w_1) reciprocal vector 1 */
+    const real rrr_w_1_t = rrr_c_1*rrr_s_2 + rrr_c_2*rrr_s_1;
+    const real rrr_w_1_t_2 = rrr_c_1*rrr_c_2 - rrr_s_1*rrr_s_2;
+    const real axis_y_rrr_axes2_x = rrr_base_frame_xy*rrr_w_1_t_2 -
+        rrr_base_frame_xx*rrr_w_1_t;
+    const real axis_x_rrr_axes2_x = rrr_base_frame_yy*rrr_w_1_t_2 -
+        rrr_base_frame_yx*rrr_w_1_t;
+    const real rrr_w_1_in_axes2_x = -1/rrr_r_1_in_axes2_y;
+    const real rrr_w_1_x = axis_x_rrr_axes2_x*rrr_w_1_in_axes2_x;
+    const real rrr_w_1_y = -axis_y_rrr_axes2_x*rrr_w_1_in_axes2_x;
+    /* (rrr-qd_1) rate of joint 1 */
+    const real rrr_qd_1_t = rrr_c_1*rrr_s_2 + rrr_c_2*rrr_s_1;
+    const real rrr_qd_1_t_2 = rrr_c_1*rrr_c_2 - rrr_s_1*rrr_s_2;
+    v->rrr_q_x = rrr_q_x;
+    v->rrr_q_y = rrr_q_y;
+    v->rrr_rho2_1 = rrr_rho2_1;
+    v->rrr_disc_1 = rrr_disc_1;
+    v->rrr_c_1 = rrr_c_1;
+    v->rrr_s_1 = rrr_s_1;
+    v->rrr_c_2 = rrr_c_2;
+    v->rrr_s_2 = rrr_s_2;
+    v->rrr_r_1_in_axes1_y = rrr_r_1_in_axes1_y;
+    v->rrr_r_1_in_axes1_x = rrr_r_1_in_axes1_x;
+    v->rrr_r_1_in_axes2_x = rrr_r_1_in_axes2_x;
+    v->rrr_r_1_in_axes2_y = rrr_r_1_in_axes2_y;
+    v->rrr_w_1_t = rrr_w_1_t;
+    v->rrr_w_1_t_2 = rrr_w_1_t_2;
+    v->axis_y_rrr_axes2_x = axis_y_rrr_axes2_x;
+    v->axis_x_rrr_axes2_x = axis_x_rrr_axes2_x;
+    v->rrr_w_1_in_axes2_x = rrr_w_1_in_axes2_x;
+    v->rrr_w_1_x = rrr_w_1_x;
+    v->rrr_w_1_y = rrr_w_1_y;
+    v->rrr_qd_1_t = rrr_qd_1_t;
+    v->rrr_qd_1_t_2 = rrr_qd_1_t_2;
+}
+
+INLINE void stage_rrr_A_X(size_t w, size_t j, const real *A, values_rrr *v)
+{
+    /* (rrr-a_p) acceleration of the connection point without its centripetal part */
+    const real alpha_z = A[2*w + j];
+    const real t_ddot_x = A[0*w + j];
+    const real rrr_a_p_x = t_ddot_x - alpha_z*v->rrr_q_y;
+    const real t_ddot_y = A[1*w + j];
+    const real rrr_a_p_y = t_ddot_y + alpha_z*v->rrr_q_x;
+    v->rrr_a_p_x = rrr_a_p_x;
+    v->rrr_a_p_y = rrr_a_p_y;
+}
+
+INLINE void stage_rrr_V_X(const prepared *m, size_t w, size_t i, size_t j, const real *V,
+    values_rrr *v)
+{
+    /* (rrr-S_dot) velocity of the connection point */
+    const real omega_z = V[2*w + j];
+    const real rrr_S_dot_t = omega_z*v->rrr_q_y;
+    const real rrr_S_dot_t_2 = omega_z*v->rrr_q_x;
+    const real t_dot_x = V[0*w + j];
+    const real rrr_S_dot_x = t_dot_x - rrr_S_dot_t;
+    const real t_dot_y = V[1*w + j];
+    const real rrr_S_dot_y = rrr_S_dot_t_2 + t_dot_y;
+    /* (rrr-qd_1) rate of joint 1 */
+    const real rrr_qd_1 = v->rrr_w_1_in_axes2_x*(v->axis_x_rrr_axes2_x*rrr_S_dot_x -
+        v->axis_y_rrr_axes2_x*rrr_S_dot_y);
+    /* (rrr-W_1) centripetal tensor of link 1 */
+    const real rrr_W_1_t = rrr_qd_1*rrr_qd_1;
+    /* (rrr-omega_2) angular velocity of link 2 */
+    const real rrr_w_2_in_axes2_y = m->rrr_w_2_in_axes2_y[i];
+    const real rrr_omega_2_in_axes2_z = rrr_qd_1 +
+        rrr_w_2_in_axes2_y*(v->axis_x_rrr_axes2_x*rrr_S_dot_y +
+        v->axis_y_rrr_axes2_x*rrr_S_dot_x - rrr_qd_1*v->rrr_r_1_in_axes2_x);
+    /* (rrr-W_2) centripetal tensor of link 2 */
+    const real rrr_W_2_t = rrr_omega_2_in_axes2_z*rrr_omega_2_in_axes2_z;
+    /* (rrr-bias) acceleration of the connection point at zero joint accelerations */
+    const real rrr_joint2_offset_x = m->rrr_joint2_offset_x[i];
+    const real rrr_platform_joint_offset_x = m->rrr_platform_joint_offset_x[i];
+    const real rrr_bias_in_axes2_x = -rrr_W_2_t*rrr_platform_joint_offset_x -
+        rrr_W_1_t*v->rrr_c_2*rrr_joint2_offset_x;
+    v->rrr_S_dot_t = rrr_S_dot_t;
+    v->rrr_S_dot_t_2 = rrr_S_dot_t_2;
+    v->rrr_S_dot_x = rrr_S_dot_x;
+    v->rrr_S_dot_y = rrr_S_dot_y;
+    v->rrr_W_1_t = rrr_W_1_t;
+    v->rrr_W_2_t = rrr_W_2_t;
+    v->rrr_bias_in_axes2_x = rrr_bias_in_axes2_x;
+}
+
+INLINE void stage_rrr_A_V_X(size_t w, size_t j, const real *V, values_rrr *v)
+{
+    /* (rrr-S_ddot) acceleration of the connection point */
+    const real omega_z = V[2*w + j];
+    const real rrr_S_ddot_x = v->rrr_a_p_x - omega_z*v->rrr_S_dot_t_2;
+    const real rrr_S_ddot_y = v->rrr_a_p_y - omega_z*v->rrr_S_dot_t;
+    v->rrr_S_ddot_x = rrr_S_ddot_x;
+    v->rrr_S_ddot_y = rrr_S_ddot_y;
+}
+
+INLINE void stage_rrr_H_condition(const prepared *m, size_t i, values_rrr *v)
+{
+    /* (rrr-r_1) from joint 1 to the connection point, along the links */
+    const real rrr_platform_joint_offset_x = m->rrr_platform_joint_offset_x[i];
+    const real rrr_r_1_in_axes2_y = v->rrr_c_2*rrr_platform_joint_offset_x*v->rrr_s_2 -
+        v->rrr_r_1_in_axes1_x*v->rrr_s_2;
+    /* (rrr-w_1) reciprocal vector 1 */
+    const real rrr_w_1_in_axes2_x = -1/rrr_r_1_in_axes2_y;
+    const real rrr_base_frame_yx = m->rrr_base_frame_yx[i];
+    const real rrr_base_frame_yy = m->rrr_base_frame_yy[i];
+    const real rrr_w_1_x = rrr_w_1_in_axes2_x*(rrr_base_frame_yy*v->rrr_w_1_t_2 -
+        rrr_base_frame_yx*v->rrr_w_1_t);
+    const real rrr_base_frame_xx = m->rrr_base_frame_xx[i];
+    const real rrr_base_frame_xy = m->rrr_base_frame_xy[i];
+    const real rrr_w_1_y = -rrr_w_1_in_axes2_x*(rrr_base_frame_xy*v->rrr_w_1_t_2 -
+        rrr_base_frame_xx*v->rrr_w_1_t);
+    /* (rrr-H_a_1) moment of the column's unit force about the platform origin */
+    const real rrr_H_a_1_z = v->rrr_q_x*rrr_w_1_y - v->rrr_q_y*rrr_w_1_x;
+    v->rrr_r_1_in_axes2_y = rrr_r_1_in_axes2_y;
+    v->rrr_w_1_x = rrr_w_1_x;
+    v->rrr_w_1_y = rrr_w_1_y;
+    v->rrr_H_a_1_z = rrr_H_a_1_z;
+}
+
+INLINE void stage_rrr_M_dynamics(const prepared *m, size_t i, values_rrr *v)
+{
+    /* (rrr-w_2) reciprocal vector 2 */
+    const real rrr_w_2_in_axes2_y = m->rrr_w_2_in_axes2_y[i];
+    const real rrr_w_2_in_axes2_x =
+        -v->rrr_r_1_in_axes2_x*v->rrr_w_1_in_axes2_x*rrr_w_2_in_axes2_y;
+    /* (rrr-d_Gamma_2) coefficient of the acceleration in: moment about axis 2 of the distal links'
+       inertia and weight */
+    const real rrr_d_Gamma_2_t = m->rrr_d_Gamma_2_t[i];
+    const real rrr_d_Gamma_2_t_2 = rrr_d_Gamma_2_t*v->rrr_r_1_in_axes2_x;
+    const real rrr_J_2_in_spec2_zz = m->rrr_J_2_in_spec2_zz[i];
+    const real rrr_h_2_in_spec2_y = m->rrr_h_2_in_spec2_y[i];
+    const real rrr_d_Gamma_2_in_axes2_x = v->rrr_w_1_in_axes2_x*(rrr_J_2_in_spec2_zz -
+        rrr_d_Gamma_2_t_2) - rrr_h_2_in_spec2_y;
+    /* (rrr-d_Gamma_1) coefficient of the acceleration in: moment about axis 1 of the distal links'
+       inertia and weight */
+    const real rrr_Jc_1_in_axes1_zz = m->rrr_Jc_1_in_axes1_zz[i];
+    const real rrr_d_Gamma_1_in_axes2_x = v->rrr_w_1_in_axes2_x*(rrr_Jc_1_in_axes1_zz -
+        rrr_d_Gamma_2_t_2) - rrr_h_2_in_spec2_y;
+    /* (rrr-d_c) coefficient of the acceleration in: leg force on the platform without actuation and
+       without the mass at the connection point */
+    const real rrr_d_Gamma_2_in_axes2_y = m->rrr_d_Gamma_2_in_axes2_y[i];
+    const real rrr_d_phi_2_t = m->rrr_d_phi_2_t[i];
+    const real rrr_d_c_in_axes2_xy = rrr_d_phi_2_t -
+        rrr_d_Gamma_2_in_axes2_y*v->rrr_w_1_in_axes2_x -
+        rrr_d_Gamma_2_in_axes2_y*rrr_w_2_in_axes2_x;
+    v->rrr_w_2_in_axes2_x = rrr_w_2_in_axes2_x;
+    v->rrr_d_Gamma_2_in_axes2_x = rrr_d_Gamma_2_in_axes2_x;
+    v->rrr_d_Gamma_1_in_axes2_x = rrr_d_Gamma_1_in_axes2_x;
+    v->rrr_d_c_in_axes2_xy = rrr_d_c_in_axes2_xy;
+}
+
+INLINE void stage_rrr_inverse_kinematics_potential(const prepared *m, size_t w, size_t i, size_t
+    j, const real *s, const real *X, values_rrr *v)
+{
+    /* (rrr-S) from the base point to the connection point */
+    const real R_xx = s[0*w + j];
+    const real R_yx = s[1*w + j];
+    const real rrr_base_point_x = m->rrr_base_point_x[i];
+    const real rrr_platform_point_x = m->rrr_platform_point_x[i];
+    const real rrr_platform_point_y = m->rrr_platform_point_y[i];
+    const real t_x = X[0*w + j];
+    const real rrr_S_x = t_x + R_xx*rrr_platform_point_x - rrr_base_point_x -
+        R_yx*rrr_platform_point_y;
+    const real rrr_base_point_y = m->rrr_base_point_y[i];
+    const real t_y = X[1*w + j];
+    const real rrr_S_y = t_y + R_xx*rrr_platform_point_y + R_yx*rrr_platform_point_x -
+        rrr_base_point_y;
+    /* (rrr-Kd_1) projection on the centre's direction, from the distance fixed by the joints beyond
+       joint 1 */
+    const real rrr_Kd_1_t_3 = rrr_S_x*rrr_S_x + rrr_S_y*rrr_S_y;
+    const real rrr_Kd_1_t = m->rrr_Kd_1_t[i];
+    const real rrr_Kd_1_t_2 = m->rrr_Kd_1_t_2[i];
+    const real rrr_Kd_1 = rrr_Kd_1_t + R(0.5)*rrr_Kd_1_t_3 - rrr_Kd_1_t_2;
+    /* (rrr-Kc_1) factor of the cosine in the equation of joint 1 */
+    const real rrr_base_frame_xx = m->rrr_base_frame_xx[i];
+    const real rrr_base_frame_yx = m->rrr_base_frame_yx[i];
+    const real rrr_joint2_offset_x = m->rrr_joint2_offset_x[i];
+    const real rrr_Kc_1 = rrr_joint2_offset_x*(rrr_S_x*rrr_base_frame_xx +
+        rrr_S_y*rrr_base_frame_yx);
+    /* (rrr-Ks_1) factor of the sine in the equation of joint 1 */
+    const real rrr_base_frame_xy = m->rrr_base_frame_xy[i];
+    const real rrr_base_frame_yy = m->rrr_base_frame_yy[i];
+    const real rrr_Ks_1 = rrr_joint2_offset_x*(rrr_S_x*rrr_base_frame_xy +
+        rrr_S_y*rrr_base_frame_yy);
+    /* (rrr-rho2_1) squared amplitude */
+    const real rrr_rho2_1 = rrr_Kc_1*rrr_Kc_1 + rrr_Ks_1*rrr_Ks_1;
+    /* (rrr-disc_1) discriminant */
+    const real rrr_disc_1 = rrr_rho2_1 - rrr_Kd_1*rrr_Kd_1;
+    /* (rrr-root_1) root, with the sign of the branch */
+    const real rrr_branch_1 = m->rrr_branch_1[i];
+    const real rrr_root_1 = rrr_branch_1*root(rrr_disc_1);
+    /* (rrr-q_1) displacement of joint 1 */
+    const real inv_rrr_rho2_1 = 1/rrr_rho2_1;
+    /* (rrr-x_2) from the origin of joint 2 to the connection point */
+    const real inv_rrr_size_t = m->inv_rrr_size_t[i];
+    const real rrr_x_2_in_axes1_x = inv_rrr_size_t*rrr_Kd_1*rrr_joint2_offset_x -
+        rrr_joint2_offset_x;
+    v->rrr_Kd_1 = rrr_Kd_1;
+    v->rrr_Kc_1 = rrr_Kc_1;
+    v->rrr_Ks_1 = rrr_Ks_1;
+    v->rrr_rho2_1 = rrr_rho2_1;
+    v->rrr_disc_1 = rrr_disc_1;
+    v->rrr_root_1 = rrr_root_1;
+    v->inv_rrr_rho2_1 = inv_rrr_rho2_1;
+    v->rrr_x_2_in_axes1_x = rrr_x_2_in_axes1_x;
+}
+
+INLINE void stage_rrr_legs_required(const prepared *m, size_t i, values_rrr *v)
+{
+    /* (rrr-S_ddot) acceleration of the connection point */
+    const real rrr_S_ddot_in_axes2_x = v->axis_x_rrr_axes2_x*v->rrr_S_ddot_x -
+        v->axis_y_rrr_axes2_x*v->rrr_S_ddot_y;
+    const real rrr_S_ddot_in_axes2_y = v->axis_x_rrr_axes2_x*v->rrr_S_ddot_y +
+        v->axis_y_rrr_axes2_x*v->rrr_S_ddot_x;
+    /* (rrr-rel) acceleration of the connection point left to the joint accelerations */
+    const real rrr_rel_in_axes2_x = rrr_S_ddot_in_axes2_x - v->rrr_bias_in_axes2_x;
+    const real rrr_joint2_offset_x = m->rrr_joint2_offset_x[i];
+    const real rrr_rel_in_axes2_y = rrr_S_ddot_in_axes2_y -
+        v->rrr_W_1_t*rrr_joint2_offset_x*v->rrr_s_2;
+    /* (rrr-B_1) acceleration tensor of link 1 */
+    const real rrr_B_1_in_axes1_xy = -rrr_rel_in_axes2_x*v->rrr_w_1_in_axes2_x;
+    /* (rrr-alpha_2) angular acceleration of link 2 */
+    const real rrr_w_2_in_axes2_y = m->rrr_w_2_in_axes2_y[i];
+    const real rrr_alpha_2_in_axes2_z = rrr_w_2_in_axes2_y*(rrr_rel_in_axes2_y +
+        rrr_B_1_in_axes1_xy*v->rrr_r_1_in_axes2_x) - rrr_B_1_in_axes1_xy;
+    /* (rrr-acc_2) acceleration of the reference point of link 2, less gravity */
+    const real gravity_x = m->gravity_x;
+    const real gravity_y = m->gravity_y;
+    const real rrr_acc_2_in_axes2_x = rrr_S_ddot_in_axes2_x + v->axis_y_rrr_axes2_x*gravity_y
+        - v->axis_x_rrr_axes2_x*gravity_x;
+    const real rrr_acc_2_in_axes2_y = rrr_S_ddot_in_axes2_y - v->axis_x_rrr_axes2_x*gravity_y
+        - v->axis_y_rrr_axes2_x*gravity_x;
+    /* (rrr-mu_2) inertia moment of the links that turn with link 2, about their reference points */
+    const real rrr_J_2_in_spec2_zz = m->rrr_J_2_in_spec2_zz[i];
+    const real rrr_h_2_in_spec2_x = m->rrr_h_2_in_spec2_x[i];
+    const real rrr_h_2_in_spec2_y = m->rrr_h_2_in_spec2_y[i];
+    const real rrr_mu_2_in_axes2_z = rrr_J_2_in_spec2_zz*rrr_alpha_2_in_axes2_z +
+        rrr_acc_2_in_axes2_y*rrr_h_2_in_spec2_x - rrr_acc_2_in_axes2_x*rrr_h_2_in_spec2_y;
+    /* (rrr-mu_1) inertia moment of the links that turn with link 1, about their reference points */
+    const real rrr_J_1_in_spec1_zz = m->rrr_J_1_in_spec1_zz[i];
+    const real rrr_h_1_in_spec1_x = m->rrr_h_1_in_spec1_x[i];
+    const real rrr_h_1_in_spec1_y = m->rrr_h_1_in_spec1_y[i];
+    const real rrr_mu_1_t = m->rrr_mu_1_t[i];
+    const real rrr_mu_1_t_2 = m->rrr_mu_1_t_2[i];
+    const real rrr_mu_1_in_axes1_z = rrr_h_1_in_spec1_y*(v->rrr_c_1*rrr_mu_1_t +
+        rrr_mu_1_t_2*v->rrr_s_1) - rrr_B_1_in_axes1_xy*rrr_J_1_in_spec1_zz -
+        rrr_h_1_in_spec1_x*(v->rrr_c_1*rrr_mu_1_t_2 - rrr_mu_1_t*v->rrr_s_1);
+    /* (rrr-N_1) moment about joint 1 of the links from 1 outwards, the force at the connection point
+       left out */
+    const real rrr_N_1_in_axes1_z = rrr_mu_1_in_axes1_z + rrr_mu_2_in_axes2_z;
+    /* (rrr-G) force at the connection point that balances the leg's inertia and weight along all
+       degrees of freedom */
+    const real rrr_G_in_axes2_y = rrr_mu_2_in_axes2_z*rrr_w_2_in_axes2_y;
+    /* (rrr-c) leg force on the platform without actuation and without the mass at the connection
+       point */
+    const real rrr_c_in_axes2_x = v->rrr_W_2_t*rrr_h_2_in_spec2_x +
+        rrr_alpha_2_in_axes2_z*rrr_h_2_in_spec2_y +
+        v->rrr_w_1_in_axes2_x*(rrr_G_in_axes2_y*v->rrr_r_1_in_axes2_x - rrr_N_1_in_axes1_z);
+    const real rrr_c_in_axes2_y = v->rrr_W_2_t*rrr_h_2_in_spec2_y - rrr_G_in_axes2_y -
+        rrr_alpha_2_in_axes2_z*rrr_h_2_in_spec2_x;
+    v->rrr_acc_2_in_axes2_x = rrr_acc_2_in_axes2_x;
+    v->rrr_acc_2_in_axes2_y = rrr_acc_2_in_axes2_y;
+    v->rrr_c_in_axes2_x = rrr_c_in_axes2_x;
+    v->rrr_c_in_axes2_y = rrr_c_in_axes2_y;
+}
+
 /* ---- functions of the state: M, Z, H and the like ---- */
 
 /* ---- dynamics ---- */
 INLINE void dynamics_before(const prepared *m, size_t w, const real *X, const real *V, real *s)
 {
     for (size_t k = 0; k < w; ++k) {
-        /* X: named entries */
-        const real X_0 = X[0*w + k];
-        const real t_x = X_0;
-        const real X_1 = X[1*w + k];
-        const real t_y = X_1;
-        const real X_2 = X[2*w + k];
-        const real R_xx = cosine(X_2);
-        const real R_yx = sine(X_2);
-        /* V: named entries */
-        const real V_0 = V[0*w + k];
-        const real t_dot_x = V_0;
-        const real V_1 = V[1*w + k];
-        const real t_dot_y = V_1;
-        const real V_2 = V[2*w + k];
-        const real omega_z = V_2;
-        /* (W_p) centripetal tensor of the platform */
-        const real W_p_xx = -omega_z*omega_z;
-        /* (h_star) first moment about the platform origin */
-        const real h_star_in_platform_x = m->h_star_in_platform_x;
-        const real h_star_in_platform_y = m->h_star_in_platform_y;
-        const real h_star_x = R_xx*h_star_in_platform_x - R_yx*h_star_in_platform_y;
-        const real h_star_y = R_xx*h_star_in_platform_y + R_yx*h_star_in_platform_x;
+        values v;
+        stage_V(w, k, V, &v);
+        stage_X(m, w, k, X, &v);
         /* (Z_p) centripetal force and weight of the platform */
         const real Z_p_t = m->Z_p_t;
-        const real Z_p_x = W_p_xx*h_star_x - Z_p_t;
+        const real Z_p_x = v.W_p_xx*v.h_star_x - Z_p_t;
         const real Z_p_t_2 = m->Z_p_t_2;
-        const real Z_p_y = W_p_xx*h_star_y - Z_p_t_2;
+        const real Z_p_y = v.W_p_xx*v.h_star_y - Z_p_t_2;
         /* (Z_q) gyroscopic moment and moment of the weight of the platform */
         const real gravity_x = m->gravity_x;
         const real gravity_y = m->gravity_y;
-        const real Z_q_z = gravity_x*h_star_y - gravity_y*h_star_x;
-        s[0*w + k] = t_x;
-        s[1*w + k] = t_y;
-        s[2*w + k] = R_xx;
-        s[3*w + k] = R_yx;
-        s[4*w + k] = t_dot_x;
-        s[5*w + k] = t_dot_y;
-        s[6*w + k] = omega_z;
-        s[7*w + k] = h_star_x;
-        s[8*w + k] = h_star_y;
-        s[9*w + k] = Z_p_x;
-        s[10*w + k] = Z_p_y;
-        s[11*w + k] = Z_q_z;
+        const real Z_q_z = gravity_x*v.h_star_y - gravity_y*v.h_star_x;
+        s[0*w + k] = v.R_xx;
+        s[1*w + k] = v.R_yx;
+        s[2*w + k] = v.h_star_x;
+        s[3*w + k] = v.h_star_y;
+        s[4*w + k] = Z_p_x;
+        s[5*w + k] = Z_p_y;
+        s[6*w + k] = Z_q_z;
     }
 }
 
 INLINE void dynamics_legs_crank(const prepared *m, size_t w, size_t leg, size_t legs, const real
-    *s, size_t states, size_t count, int add, real *terms, real *o)
+    *s, size_t states, size_t count, int add, const real *X, const real *V, real *terms, real *o)
 {
     for (size_t k = 0; k < count; ++k) {
         const size_t i = leg + legs*k;
         const size_t j = states*k;
-        /* (crank-S) from the base point to the connection point */
-        const real R_xx = s[2*w + j];
-        const real R_yx = s[3*w + j];
-        const real crank_platform_point_x = m->crank_platform_point_x[i];
-        const real crank_platform_point_y = m->crank_platform_point_y[i];
-        const real crank_q_x = R_xx*crank_platform_point_x - R_yx*crank_platform_point_y;
-        const real crank_q_y = R_xx*crank_platform_point_y + R_yx*crank_platform_point_x;
-        const real crank_base_point_x = m->crank_base_point_x[i];
-        const real t_x = s[0*w + j];
-        const real crank_S_x = crank_q_x + t_x - crank_base_point_x;
-        const real crank_base_point_y = m->crank_base_point_y[i];
-        const real t_y = s[1*w + j];
-        const real crank_S_y = crank_q_y + t_y - crank_base_point_y;
-        /* (crank-rho2_1) squared amplitude */
-        const real crank_base_frame_xy = m->crank_base_frame_xy[i];
-        const real crank_base_frame_yy = m->crank_base_frame_yy[i];
-        const real crank_rho2_1_t = crank_S_x*crank_base_frame_xy + crank_S_y*crank_base_frame_yy;
-        const real crank_base_frame_xx = m->crank_base_frame_xx[i];
-        const real crank_base_frame_yx = m->crank_base_frame_yx[i];
-        const real crank_rho2_1_t_2 = crank_S_x*crank_base_frame_xx +
-            crank_S_y*crank_base_frame_yx;
-        const real crank_size_t = m->crank_size_t[i];
-        const real crank_rho2_1 = crank_size_t*(crank_rho2_1_t*crank_rho2_1_t +
-            crank_rho2_1_t_2*crank_rho2_1_t_2);
-        /* (crank-c_1) cosine of the angle of joint 1 from its reference direction */
-        const real crank_c_1_t = 1/(root(crank_rho2_1));
-        const real crank_platform_joint_offset_x = m->crank_platform_joint_offset_x[i];
-        const real crank_c_1 = crank_c_1_t*crank_platform_joint_offset_x*crank_rho2_1_t_2;
-        /* (crank-s_1) sine of the angle of joint 1 from its reference direction */
-        const real crank_s_1 = crank_c_1_t*crank_platform_joint_offset_x*crank_rho2_1_t;
-        /* (crank-S_dot) velocity of the connection point */
-        const real axis_y_crank_axes1_x = crank_base_frame_xy*crank_c_1 -
-            crank_base_frame_xx*crank_s_1;
-        const real axis_x_crank_axes1_x = crank_base_frame_yy*crank_c_1 -
-            crank_base_frame_yx*crank_s_1;
-        const real omega_z = s[6*w + j];
-        const real crank_S_dot_t = crank_q_y*omega_z;
-        const real crank_S_dot_t_2 = crank_q_x*omega_z;
-        const real t_dot_x = s[4*w + j];
-        const real crank_S_dot_x = t_dot_x - crank_S_dot_t;
-        const real t_dot_y = s[5*w + j];
-        const real crank_S_dot_y = crank_S_dot_t_2 + t_dot_y;
-        const real crank_S_dot_in_axes1_y = axis_x_crank_axes1_x*crank_S_dot_y +
-            axis_y_crank_axes1_x*crank_S_dot_x;
-        /* (crank-n_c) direction of the constraint force */
-        const real crank_n_c_in_axes1_x = m->crank_n_c_in_axes1_x[i];
-        const real crank_n_c_x = axis_x_crank_axes1_x*crank_n_c_in_axes1_x;
-        const real crank_n_c_y = -axis_y_crank_axes1_x*crank_n_c_in_axes1_x;
-        /* (crank-w_1) reciprocal vector 1 */
-        const real crank_w_1_in_axes1_y = m->crank_w_1_in_axes1_y[i];
-        const real crank_w_1_x = axis_y_crank_axes1_x*crank_w_1_in_axes1_y;
-        const real crank_w_1_y = axis_x_crank_axes1_x*crank_w_1_in_axes1_y;
+        values_crank v;
+        stage_crank_X(m, w, i, j, s, X, &v);
+        stage_crank_M_dynamics(m, i, &v);
+        stage_crank_constraint_bias_dynamics(w, j, V, &v);
         /* (crank-u_1) centripetal acceleration of the connection point */
-        const real crank_u_1_x = -crank_S_dot_t_2*omega_z;
-        const real crank_u_1_t = crank_S_dot_t*omega_z;
+        const real omega_z = V[2*w + j];
+        const real crank_u_1_x = -v.crank_S_dot_t_2*omega_z;
+        const real crank_u_1_t = v.crank_S_dot_t*omega_z;
         /* (crank-rel_o) remainder without the acceleration in: acceleration of the connection point left
            to the joint accelerations */
-        const real crank_rel_o_in_axes1_x = axis_x_crank_axes1_x*crank_u_1_x +
-            axis_y_crank_axes1_x*crank_u_1_t +
-            crank_S_dot_in_axes1_y*crank_S_dot_in_axes1_y*crank_w_1_in_axes1_y;
+        const real crank_w_1_in_axes1_y = m->crank_w_1_in_axes1_y[i];
+        const real crank_rel_o_in_axes1_x = v.axis_x_crank_axes1_x*crank_u_1_x +
+            v.axis_y_crank_axes1_x*crank_u_1_t +
+            v.crank_S_dot_in_axes1_y*v.crank_S_dot_in_axes1_y*crank_w_1_in_axes1_y;
         /* (crank-mu_1_o) remainder without the acceleration in: inertia moment of the links that turn
            with link 1, about their reference points */
         const real crank_J_1_in_spec1_zz = m->crank_J_1_in_spec1_zz[i];
@@ -1339,68 +1882,54 @@ INLINE void dynamics_legs_crank(const prepared *m, size_t w, size_t leg, size_t 
         const real crank_h_1_in_spec1_y = m->crank_h_1_in_spec1_y[i];
         const real crank_mu_1_t = m->crank_mu_1_t[i];
         const real crank_mu_1_t_2 = m->crank_mu_1_t_2[i];
-        const real crank_mu_1_o_in_axes1_z = crank_h_1_in_spec1_y*(crank_c_1*crank_mu_1_t +
-            crank_mu_1_t_2*crank_s_1) +
-            crank_J_1_in_spec1_zz*crank_w_1_in_axes1_y*(axis_y_crank_axes1_x*crank_u_1_x -
-            axis_x_crank_axes1_x*crank_u_1_t) - crank_h_1_in_spec1_x*(crank_c_1*crank_mu_1_t_2 -
-            crank_mu_1_t*crank_s_1);
+        const real crank_mu_1_o_in_axes1_z = crank_h_1_in_spec1_y*(v.crank_c_1*crank_mu_1_t +
+            crank_mu_1_t_2*v.crank_s_1) +
+            crank_J_1_in_spec1_zz*crank_w_1_in_axes1_y*(v.axis_y_crank_axes1_x*crank_u_1_x -
+            v.axis_x_crank_axes1_x*crank_u_1_t) - crank_h_1_in_spec1_x*(v.crank_c_1*crank_mu_1_t_2
+            - crank_mu_1_t*v.crank_s_1);
         /* (crank-G_o) remainder without the acceleration in: force at the connection point that balances
            the leg's inertia and weight along all degrees of freedom */
         const real crank_G_o_in_axes1_y = crank_mu_1_o_in_axes1_z*crank_w_1_in_axes1_y;
-        /* (crank-Q) inertia of the leg at the connection point, without the mass gathered there */
-        const real crank_d_G_in_axes1_yy = m->crank_d_G_in_axes1_yy[i];
-        const real crank_Q_t = axis_y_crank_axes1_x*crank_d_G_in_axes1_yy;
-        const real crank_Q_xx = axis_y_crank_axes1_x*crank_Q_t;
-        const real crank_Q_xy = axis_x_crank_axes1_x*crank_Q_t;
-        const real crank_Q_yy = axis_x_crank_axes1_x*axis_x_crank_axes1_x*crank_d_G_in_axes1_yy;
         /* (crank-U) velocity and gravity terms of the leg force */
-        const real crank_U_x = axis_y_crank_axes1_x*crank_G_o_in_axes1_y;
-        const real crank_U_y = axis_x_crank_axes1_x*crank_G_o_in_axes1_y;
-        /* (M_ta) coupling block of M */
-        const real crank_M_ta_t = crank_Q_xy*crank_q_x - crank_Q_xx*crank_q_y;
-        const real crank_M_ta_t_2 = crank_Q_yy*crank_q_x - crank_Q_xy*crank_q_y;
-        /* (M_aa) rotational block of M */
-        const real crank_M_aa_t = crank_M_ta_t_2*crank_q_x - crank_M_ta_t*crank_q_y;
+        const real crank_U_x = v.axis_y_crank_axes1_x*crank_G_o_in_axes1_y;
+        const real crank_U_y = v.axis_x_crank_axes1_x*crank_G_o_in_axes1_y;
         /* (Z_a) rotational part of Z */
-        const real crank_Z_a_t = crank_U_y*crank_q_x - crank_U_x*crank_q_y;
-        /* (crank-H_a_1) moment of the column's unit force about the platform origin */
-        const real crank_H_a_1_z = crank_q_x*crank_w_1_y - crank_q_y*crank_w_1_x;
-        /* (crank-Hk_a_1) moment of the column's unit force about the platform origin */
-        const real crank_Hk_a_1_z = crank_n_c_y*crank_q_x - crank_n_c_x*crank_q_y;
+        const real crank_Z_a_t = crank_U_y*v.crank_q_x - crank_U_x*v.crank_q_y;
         /* (crank-gamma_c1) part of the constraint's second derivative that does not hold the acceleration
            */
+        const real crank_n_c_in_axes1_x = m->crank_n_c_in_axes1_x[i];
         const real crank_gamma_c1 = crank_n_c_in_axes1_x*crank_rel_o_in_axes1_x;
         /* (M_tt) translational block of M */
-        gather(&terms[0*count + k], add, crank_Q_xx);  /* M_tt_xx_of_legs */
-        gather(&terms[1*count + k], add, crank_Q_xy);  /* M_tt_xy */
-        gather(&terms[2*count + k], add, crank_Q_yy);  /* M_tt_yy_of_legs */
+        gather(&terms[0*count + k], add, v.crank_Q_xx);  /* M_tt_xx_of_legs */
+        gather(&terms[1*count + k], add, v.crank_Q_xy);  /* M_tt_xy */
+        gather(&terms[2*count + k], add, v.crank_Q_yy);  /* M_tt_yy_of_legs */
         /* (M_ta) coupling block of M */
-        gather(&terms[3*count + k], add, crank_M_ta_t);  /* M_ta_xz_of_legs */
-        gather(&terms[4*count + k], add, crank_M_ta_t_2);  /* M_ta_yz_of_legs */
+        gather(&terms[3*count + k], add, v.crank_M_ta_t);  /* M_ta_xz_of_legs */
+        gather(&terms[4*count + k], add, v.crank_M_ta_t_2);  /* M_ta_yz_of_legs */
         /* (M_aa) rotational block of M */
-        gather(&terms[5*count + k], add, crank_M_aa_t);  /* M_aa_zz_of_legs */
+        gather(&terms[5*count + k], add, v.crank_M_aa_t);  /* M_aa_zz_of_legs */
         /* (Z_t) translational part of Z */
         gather(&terms[6*count + k], add, crank_U_x);  /* Z_t_x_of_legs */
         gather(&terms[7*count + k], add, crank_U_y);  /* Z_t_y_of_legs */
         /* (Z_a) rotational part of Z */
         gather(&terms[8*count + k], add, crank_Z_a_t);  /* Z_a_z_of_legs */
         /* (crank-w_1) reciprocal vector 1 */
-        o[0*count + k] = crank_w_1_x;
-        o[1*count + k] = crank_w_1_y;
+        o[0*count + k] = v.crank_w_1_x;
+        o[1*count + k] = v.crank_w_1_y;
         /* (crank-H_a_1) moment of the column's unit force about the platform origin */
-        o[2*count + k] = crank_H_a_1_z;
+        o[2*count + k] = v.crank_H_a_1_z;
         /* (crank-n_c) direction of the constraint force */
-        o[3*count + k] = crank_n_c_x;
-        o[4*count + k] = crank_n_c_y;
+        o[3*count + k] = v.crank_n_c_x;
+        o[4*count + k] = v.crank_n_c_y;
         /* (crank-Hk_a_1) moment of the column's unit force about the platform origin */
-        o[5*count + k] = crank_Hk_a_1_z;
+        o[5*count + k] = v.crank_Hk_a_1_z;
         /* (crank-gamma_c1) part of the constraint's second derivative that does not hold the acceleration
            */
         o[6*count + k] = crank_gamma_c1;
-        o[8*count + k] = (crank_w_1_x + (crank_w_1_y + crank_H_a_1_z)) + ((crank_n_c_x +
-            crank_n_c_y) + (crank_Hk_a_1_z + crank_gamma_c1));
+        o[8*count + k] = (v.crank_w_1_x + (v.crank_w_1_y + v.crank_H_a_1_z)) + ((v.crank_n_c_x +
+            v.crank_n_c_y) + (v.crank_Hk_a_1_z + crank_gamma_c1));
         const real crank_root_1_t = m->crank_root_1_t[i];
-        o[7*count + k] = UNLESS(magnitude(crank_rho2_1) > TOLERANCE*TOLERANCE*crank_root_1_t);
+        o[7*count + k] = UNLESS(magnitude(v.crank_rho2_1) > TOLERANCE*TOLERANCE*crank_root_1_t);
     }
 }
 
@@ -1408,10 +1937,10 @@ INLINE void dynamics_place_crank(size_t w, size_t count, const real *o, size_t f
     real *Hk, real *constraint_bias, verdict *t)
 {
     for (size_t k = 0; k < w; ++k) {
-        H[0*NU*w + k] = o[0*count + first + k];
+        H[0*w + k] = o[0*count + first + k];
         H[NU*w + k] = o[1*count + first + k];
         H[2*NU*w + k] = o[2*count + first + k];
-        Hk[0*NC*w + k] = o[3*count + first + k];
+        Hk[0*w + k] = o[3*count + first + k];
         Hk[NC*w + k] = o[4*count + first + k];
         Hk[2*NC*w + k] = o[5*count + first + k];
         constraint_bias[0*w + k] = o[6*count + first + k];
@@ -1421,131 +1950,43 @@ INLINE void dynamics_place_crank(size_t w, size_t count, const real *o, size_t f
 }
 
 INLINE void dynamics_legs_rrr(const prepared *m, size_t w, size_t leg, size_t legs, const real *s,
-    size_t states, size_t count, int add, real *terms, real *o)
+    size_t states, size_t count, int add, const real *X, const real *V, real *terms, real *o)
 {
     for (size_t k = 0; k < count; ++k) {
         const size_t i = leg + legs*k;
         const size_t j = states*k;
-        /* (rrr-S) from the base point to the connection point */
-        const real R_xx = s[2*w + j];
-        const real R_yx = s[3*w + j];
-        const real rrr_platform_point_x = m->rrr_platform_point_x[i];
-        const real rrr_platform_point_y = m->rrr_platform_point_y[i];
-        const real rrr_q_x = R_xx*rrr_platform_point_x - R_yx*rrr_platform_point_y;
-        const real rrr_q_y = R_xx*rrr_platform_point_y + R_yx*rrr_platform_point_x;
-        const real rrr_base_point_x = m->rrr_base_point_x[i];
-        const real t_x = s[0*w + j];
-        const real rrr_S_x = rrr_q_x + t_x - rrr_base_point_x;
-        const real rrr_base_point_y = m->rrr_base_point_y[i];
-        const real t_y = s[1*w + j];
-        const real rrr_S_y = rrr_q_y + t_y - rrr_base_point_y;
-        /* (rrr-Kd_1) projection on the centre's direction, from the distance fixed by the joints beyond
-           joint 1 */
-        const real rrr_Kd_1_t_3 = rrr_S_x*rrr_S_x + rrr_S_y*rrr_S_y;
-        const real rrr_Kd_1_t = m->rrr_Kd_1_t[i];
-        const real rrr_Kd_1_t_2 = m->rrr_Kd_1_t_2[i];
-        const real rrr_Kd_1 = rrr_Kd_1_t + R(0.5)*rrr_Kd_1_t_3 - rrr_Kd_1_t_2;
-        /* (rrr-px_1) component along the reference direction */
-        const real rrr_base_frame_xx = m->rrr_base_frame_xx[i];
-        const real rrr_base_frame_yx = m->rrr_base_frame_yx[i];
-        const real rrr_px_1 = rrr_S_x*rrr_base_frame_xx + rrr_S_y*rrr_base_frame_yx;
-        /* (rrr-py_1) component across the reference direction */
-        const real rrr_base_frame_xy = m->rrr_base_frame_xy[i];
-        const real rrr_base_frame_yy = m->rrr_base_frame_yy[i];
-        const real rrr_py_1 = rrr_S_x*rrr_base_frame_xy + rrr_S_y*rrr_base_frame_yy;
-        /* (rrr-Kc_1) factor of the cosine in the equation of joint 1 */
-        const real rrr_joint2_offset_x = m->rrr_joint2_offset_x[i];
-        const real rrr_Kc_1 = rrr_joint2_offset_x*rrr_px_1;
-        /* (rrr-Ks_1) factor of the sine in the equation of joint 1 */
-        const real rrr_Ks_1 = rrr_joint2_offset_x*rrr_py_1;
-        /* (rrr-rho2_1) squared amplitude */
-        const real rrr_rho2_1 = rrr_Kc_1*rrr_Kc_1 + rrr_Ks_1*rrr_Ks_1;
-        /* (rrr-disc_1) discriminant */
-        const real rrr_disc_1 = rrr_rho2_1 - rrr_Kd_1*rrr_Kd_1;
-        /* (rrr-root_1) root, with the sign of the branch */
-        const real rrr_branch_1 = m->rrr_branch_1[i];
-        const real rrr_root_1 = rrr_branch_1*root(rrr_disc_1);
-        /* (rrr-c_1) cosine of the angle of joint 1 from its reference direction */
-        const real inv_rrr_rho2_1 = 1/rrr_rho2_1;
-        const real rrr_c_1 = inv_rrr_rho2_1*(rrr_Kc_1*rrr_Kd_1 - rrr_Ks_1*rrr_root_1);
-        /* (rrr-s_1) sine of the angle of joint 1 from its reference direction */
-        const real rrr_s_1 = inv_rrr_rho2_1*(rrr_Kc_1*rrr_root_1 + rrr_Kd_1*rrr_Ks_1);
-        /* (rrr-x_2) from the origin of joint 2 to the connection point */
-        const real inv_rrr_size_t = m->inv_rrr_size_t[i];
-        const real rrr_x_2_in_axes1_x = inv_rrr_size_t*rrr_Kd_1*rrr_joint2_offset_x -
-            rrr_joint2_offset_x;
-        /* (rrr-c_2) cosine of the angle of joint 2 from its reference direction */
-        const real inv_rrr_size_t_2 = m->inv_rrr_size_t_2[i];
-        const real rrr_platform_joint_offset_x = m->rrr_platform_joint_offset_x[i];
-        const real rrr_c_2 = inv_rrr_size_t_2*rrr_platform_joint_offset_x*rrr_x_2_in_axes1_x;
-        /* (rrr-s_2) sine of the angle of joint 2 from its reference direction */
-        const real rrr_s_2 =
-            -inv_rrr_size_t*inv_rrr_size_t_2*rrr_joint2_offset_x*rrr_platform_joint_offset_x*rrr_root_1;
-        /* (rrr-S_dot) velocity of the connection point */
-        const real omega_z = s[6*w + j];
-        const real rrr_S_dot_t = omega_z*rrr_q_y;
-        const real rrr_S_dot_t_2 = omega_z*rrr_q_x;
-        const real t_dot_x = s[4*w + j];
-        const real rrr_S_dot_x = t_dot_x - rrr_S_dot_t;
-        const real t_dot_y = s[5*w + j];
-        const real rrr_S_dot_y = rrr_S_dot_t_2 + t_dot_y;
-        /* (rrr-r_1) from joint 1 to the connection point, along the links */
-        const real rrr_r_1_in_axes1_y = rrr_platform_joint_offset_x*rrr_s_2;
-        const real rrr_r_1_in_axes1_x = rrr_joint2_offset_x + rrr_c_2*rrr_platform_joint_offset_x;
-        const real rrr_r_1_in_axes2_x = rrr_c_2*rrr_r_1_in_axes1_x + rrr_r_1_in_axes1_y*rrr_s_2;
-        const real rrr_r_1_in_axes2_y = rrr_c_2*rrr_r_1_in_axes1_y - rrr_r_1_in_axes1_x*rrr_s_2;
-        /* (rrr-w_1) reciprocal vector 1 */
-        const real rrr_w_1_t = rrr_c_1*rrr_s_2 + rrr_c_2*rrr_s_1;
-        const real rrr_w_1_t_2 = rrr_c_1*rrr_c_2 - rrr_s_1*rrr_s_2;
-        const real axis_y_rrr_axes2_x = rrr_base_frame_xy*rrr_w_1_t_2 -
-            rrr_base_frame_xx*rrr_w_1_t;
-        const real axis_x_rrr_axes2_x = rrr_base_frame_yy*rrr_w_1_t_2 -
-            rrr_base_frame_yx*rrr_w_1_t;
-        const real rrr_w_1_in_axes2_x = -1/rrr_r_1_in_axes2_y;
-        const real rrr_w_1_x = axis_x_rrr_axes2_x*rrr_w_1_in_axes2_x;
-        const real rrr_w_1_y = -axis_y_rrr_axes2_x*rrr_w_1_in_axes2_x;
-        /* (rrr-w_2) reciprocal vector 2 */
-        const real rrr_w_2_in_axes2_y = m->rrr_w_2_in_axes2_y[i];
-        const real rrr_w_2_in_axes2_x = -rrr_r_1_in_axes2_x*rrr_w_1_in_axes2_x*rrr_w_2_in_axes2_y;
-        /* (rrr-qd_1) rate of joint 1 */
-        const real rrr_qd_1 = rrr_w_1_in_axes2_x*(axis_x_rrr_axes2_x*rrr_S_dot_x -
-            axis_y_rrr_axes2_x*rrr_S_dot_y);
-        /* (rrr-W_1) centripetal tensor of link 1 */
-        const real rrr_W_1_t = rrr_qd_1*rrr_qd_1;
-        /* (rrr-omega_2) angular velocity of link 2 */
-        const real rrr_omega_2_in_axes2_z = rrr_qd_1 +
-            rrr_w_2_in_axes2_y*(axis_x_rrr_axes2_x*rrr_S_dot_y + axis_y_rrr_axes2_x*rrr_S_dot_x -
-            rrr_qd_1*rrr_r_1_in_axes2_x);
-        /* (rrr-W_2) centripetal tensor of link 2 */
-        const real rrr_W_2_t = rrr_omega_2_in_axes2_z*rrr_omega_2_in_axes2_z;
+        values_rrr v;
+        stage_rrr_X(m, w, i, j, s, X, &v);
+        stage_rrr_V_X(m, w, i, j, V, &v);
+        stage_rrr_M_dynamics(m, i, &v);
         /* (rrr-u_1) centripetal acceleration of the connection point */
-        const real rrr_u_1_x = -omega_z*rrr_S_dot_t_2;
-        const real rrr_u_1_t = omega_z*rrr_S_dot_t;
-        const real rrr_u_1_in_axes2_x = axis_x_rrr_axes2_x*rrr_u_1_x +
-            axis_y_rrr_axes2_x*rrr_u_1_t;
-        const real rrr_u_1_in_axes2_y = axis_y_rrr_axes2_x*rrr_u_1_x -
-            axis_x_rrr_axes2_x*rrr_u_1_t;
-        /* (rrr-bias) acceleration of the connection point at zero joint accelerations */
-        const real rrr_bias_in_axes2_x = -rrr_W_2_t*rrr_platform_joint_offset_x -
-            rrr_W_1_t*rrr_c_2*rrr_joint2_offset_x;
+        const real omega_z = V[2*w + j];
+        const real rrr_u_1_x = -omega_z*v.rrr_S_dot_t_2;
+        const real rrr_u_1_t = omega_z*v.rrr_S_dot_t;
+        const real rrr_u_1_in_axes2_x = v.axis_x_rrr_axes2_x*rrr_u_1_x +
+            v.axis_y_rrr_axes2_x*rrr_u_1_t;
+        const real rrr_u_1_in_axes2_y = v.axis_y_rrr_axes2_x*rrr_u_1_x -
+            v.axis_x_rrr_axes2_x*rrr_u_1_t;
         /* (rrr-rel_o) remainder without the acceleration in: acceleration of the connection point left to
            the joint accelerations */
-        const real rrr_rel_o_in_axes2_x = rrr_u_1_in_axes2_x - rrr_bias_in_axes2_x;
+        const real rrr_rel_o_in_axes2_x = rrr_u_1_in_axes2_x - v.rrr_bias_in_axes2_x;
+        const real rrr_joint2_offset_x = m->rrr_joint2_offset_x[i];
         const real rrr_rel_o_in_axes2_y = rrr_u_1_in_axes2_y -
-            rrr_W_1_t*rrr_joint2_offset_x*rrr_s_2;
+            v.rrr_W_1_t*rrr_joint2_offset_x*v.rrr_s_2;
         /* (rrr-B_1_o) remainder of the acceleration tensor of link 1 */
-        const real rrr_B_1_o_in_axes1_xy = -rrr_rel_o_in_axes2_x*rrr_w_1_in_axes2_x;
+        const real rrr_B_1_o_in_axes1_xy = -rrr_rel_o_in_axes2_x*v.rrr_w_1_in_axes2_x;
         /* (rrr-alpha_2_o) remainder without the acceleration in: angular acceleration of link 2 */
+        const real rrr_w_2_in_axes2_y = m->rrr_w_2_in_axes2_y[i];
         const real rrr_alpha_2_o_in_axes2_z = rrr_w_2_in_axes2_y*(rrr_rel_o_in_axes2_y +
-            rrr_B_1_o_in_axes1_xy*rrr_r_1_in_axes2_x) - rrr_B_1_o_in_axes1_xy;
+            rrr_B_1_o_in_axes1_xy*v.rrr_r_1_in_axes2_x) - rrr_B_1_o_in_axes1_xy;
         /* (rrr-acc_2_o) remainder without the acceleration in: acceleration of the reference point of
            link 2, less gravity */
         const real gravity_x = m->gravity_x;
         const real gravity_y = m->gravity_y;
-        const real rrr_acc_2_o_in_axes2_x = rrr_u_1_in_axes2_x + axis_y_rrr_axes2_x*gravity_y -
-            axis_x_rrr_axes2_x*gravity_x;
-        const real rrr_acc_2_o_in_axes2_y = rrr_u_1_in_axes2_y - axis_x_rrr_axes2_x*gravity_y -
-            axis_y_rrr_axes2_x*gravity_x;
+        const real rrr_acc_2_o_in_axes2_x = rrr_u_1_in_axes2_x + v.axis_y_rrr_axes2_x*gravity_y -
+            v.axis_x_rrr_axes2_x*gravity_x;
+        const real rrr_acc_2_o_in_axes2_y = rrr_u_1_in_axes2_y - v.axis_x_rrr_axes2_x*gravity_y -
+            v.axis_y_rrr_axes2_x*gravity_x;
         /* (rrr-mu_2_o) remainder without the acceleration in: inertia moment of the links that turn with
            link 2, about their reference points */
         const real rrr_J_2_in_spec2_zz = m->rrr_J_2_in_spec2_zz[i];
@@ -1553,12 +1994,6 @@ INLINE void dynamics_legs_rrr(const prepared *m, size_t w, size_t leg, size_t le
         const real rrr_h_2_in_spec2_y = m->rrr_h_2_in_spec2_y[i];
         const real rrr_mu_2_o_in_axes2_z = rrr_J_2_in_spec2_zz*rrr_alpha_2_o_in_axes2_z +
             rrr_acc_2_o_in_axes2_y*rrr_h_2_in_spec2_x - rrr_acc_2_o_in_axes2_x*rrr_h_2_in_spec2_y;
-        /* (rrr-d_Gamma_2) coefficient of the acceleration in: moment about axis 2 of the distal links'
-           inertia and weight */
-        const real rrr_d_Gamma_2_t = m->rrr_d_Gamma_2_t[i];
-        const real rrr_d_Gamma_2_t_2 = rrr_d_Gamma_2_t*rrr_r_1_in_axes2_x;
-        const real rrr_d_Gamma_2_in_axes2_x = rrr_w_1_in_axes2_x*(rrr_J_2_in_spec2_zz -
-            rrr_d_Gamma_2_t_2) - rrr_h_2_in_spec2_y;
         /* (rrr-mu_1_o) remainder without the acceleration in: inertia moment of the links that turn with
            link 1, about their reference points */
         const real rrr_J_1_in_spec1_zz = m->rrr_J_1_in_spec1_zz[i];
@@ -1566,61 +2001,49 @@ INLINE void dynamics_legs_rrr(const prepared *m, size_t w, size_t leg, size_t le
         const real rrr_h_1_in_spec1_y = m->rrr_h_1_in_spec1_y[i];
         const real rrr_mu_1_t = m->rrr_mu_1_t[i];
         const real rrr_mu_1_t_2 = m->rrr_mu_1_t_2[i];
-        const real rrr_mu_1_o_in_axes1_z = rrr_h_1_in_spec1_y*(rrr_c_1*rrr_mu_1_t +
-            rrr_mu_1_t_2*rrr_s_1) - rrr_B_1_o_in_axes1_xy*rrr_J_1_in_spec1_zz -
-            rrr_h_1_in_spec1_x*(rrr_c_1*rrr_mu_1_t_2 - rrr_mu_1_t*rrr_s_1);
+        const real rrr_mu_1_o_in_axes1_z = rrr_h_1_in_spec1_y*(v.rrr_c_1*rrr_mu_1_t +
+            rrr_mu_1_t_2*v.rrr_s_1) - rrr_B_1_o_in_axes1_xy*rrr_J_1_in_spec1_zz -
+            rrr_h_1_in_spec1_x*(v.rrr_c_1*rrr_mu_1_t_2 - rrr_mu_1_t*v.rrr_s_1);
         /* (rrr-N_1_o) remainder without the acceleration in: moment about joint 1 of the links from 1
            outwards, the force at the connection point left out */
         const real rrr_N_1_o_in_axes1_z = rrr_mu_1_o_in_axes1_z + rrr_mu_2_o_in_axes2_z;
-        /* (rrr-d_Gamma_1) coefficient of the acceleration in: moment about axis 1 of the distal links'
-           inertia and weight */
-        const real rrr_Jc_1_in_axes1_zz = m->rrr_Jc_1_in_axes1_zz[i];
-        const real rrr_d_Gamma_1_in_axes2_x = rrr_w_1_in_axes2_x*(rrr_Jc_1_in_axes1_zz -
-            rrr_d_Gamma_2_t_2) - rrr_h_2_in_spec2_y;
         /* (rrr-G_o) remainder without the acceleration in: force at the connection point that balances
            the leg's inertia and weight along all degrees of freedom */
         const real rrr_G_o_in_axes2_y = rrr_mu_2_o_in_axes2_z*rrr_w_2_in_axes2_y;
-        /* (rrr-d_c) coefficient of the acceleration in: leg force on the platform without actuation and
-           without the mass at the connection point */
-        const real rrr_d_Gamma_2_in_axes2_y = m->rrr_d_Gamma_2_in_axes2_y[i];
-        const real rrr_d_phi_2_t = m->rrr_d_phi_2_t[i];
-        const real rrr_d_c_in_axes2_xy = rrr_d_phi_2_t -
-            rrr_d_Gamma_2_in_axes2_y*rrr_w_1_in_axes2_x -
-            rrr_d_Gamma_2_in_axes2_y*rrr_w_2_in_axes2_x;
         /* (rrr-c_o) remainder without the acceleration in: leg force on the platform without actuation
            and without the mass at the connection point */
-        const real rrr_c_o_in_axes2_x = rrr_W_2_t*rrr_h_2_in_spec2_x +
+        const real rrr_c_o_in_axes2_x = v.rrr_W_2_t*rrr_h_2_in_spec2_x +
             rrr_alpha_2_o_in_axes2_z*rrr_h_2_in_spec2_y +
-            rrr_w_1_in_axes2_x*(rrr_G_o_in_axes2_y*rrr_r_1_in_axes2_x - rrr_N_1_o_in_axes1_z);
-        const real rrr_c_o_in_axes2_y = rrr_W_2_t*rrr_h_2_in_spec2_y - rrr_G_o_in_axes2_y -
+            v.rrr_w_1_in_axes2_x*(rrr_G_o_in_axes2_y*v.rrr_r_1_in_axes2_x - rrr_N_1_o_in_axes1_z);
+        const real rrr_c_o_in_axes2_y = v.rrr_W_2_t*rrr_h_2_in_spec2_y - rrr_G_o_in_axes2_y -
             rrr_alpha_2_o_in_axes2_z*rrr_h_2_in_spec2_x;
         /* (rrr-Q) inertia of the leg at the connection point, without the mass gathered there */
         const real rrr_d_c_in_axes2_yy = m->rrr_d_c_in_axes2_yy[i];
-        const real rrr_Q_t = rrr_h_2_in_spec2_y*(rrr_w_1_in_axes2_x + rrr_w_2_in_axes2_x) -
-            rrr_d_c_in_axes2_yy - rrr_d_Gamma_1_in_axes2_x*rrr_w_1_in_axes2_x -
-            rrr_d_Gamma_2_in_axes2_x*rrr_w_2_in_axes2_x;
+        const real rrr_Q_t = rrr_h_2_in_spec2_y*(v.rrr_w_1_in_axes2_x + v.rrr_w_2_in_axes2_x) -
+            rrr_d_c_in_axes2_yy - v.rrr_d_Gamma_1_in_axes2_x*v.rrr_w_1_in_axes2_x -
+            v.rrr_d_Gamma_2_in_axes2_x*v.rrr_w_2_in_axes2_x;
         const real rrr_Q_t_2 = R(0.5)*rrr_Q_t;
-        const real rrr_Q_t_3 = axis_x_rrr_axes2_x*rrr_Q_t_2 +
-            axis_y_rrr_axes2_x*rrr_d_c_in_axes2_xy;
-        const real rrr_Q_t_4 = axis_y_rrr_axes2_x*rrr_Q_t_2 -
-            axis_x_rrr_axes2_x*rrr_d_c_in_axes2_xy;
-        const real rrr_Q_xx = -rrr_d_c_in_axes2_yy - 2*axis_x_rrr_axes2_x*rrr_Q_t_3;
-        const real rrr_Q_xy = axis_x_rrr_axes2_x*rrr_Q_t_4 + axis_y_rrr_axes2_x*rrr_Q_t_3;
-        const real rrr_Q_yy = -rrr_d_c_in_axes2_yy - 2*axis_y_rrr_axes2_x*rrr_Q_t_4;
+        const real rrr_Q_t_3 = v.axis_x_rrr_axes2_x*rrr_Q_t_2 +
+            v.axis_y_rrr_axes2_x*v.rrr_d_c_in_axes2_xy;
+        const real rrr_Q_t_4 = v.axis_y_rrr_axes2_x*rrr_Q_t_2 -
+            v.axis_x_rrr_axes2_x*v.rrr_d_c_in_axes2_xy;
+        const real rrr_Q_xx = -rrr_d_c_in_axes2_yy - 2*v.axis_x_rrr_axes2_x*rrr_Q_t_3;
+        const real rrr_Q_xy = v.axis_x_rrr_axes2_x*rrr_Q_t_4 + v.axis_y_rrr_axes2_x*rrr_Q_t_3;
+        const real rrr_Q_yy = -rrr_d_c_in_axes2_yy - 2*v.axis_y_rrr_axes2_x*rrr_Q_t_4;
         /* (rrr-U) velocity and gravity terms of the leg force */
-        const real rrr_U_x = -axis_x_rrr_axes2_x*rrr_c_o_in_axes2_x -
-            axis_y_rrr_axes2_x*rrr_c_o_in_axes2_y;
-        const real rrr_U_y = axis_y_rrr_axes2_x*rrr_c_o_in_axes2_x -
-            axis_x_rrr_axes2_x*rrr_c_o_in_axes2_y;
+        const real rrr_U_x = -v.axis_x_rrr_axes2_x*rrr_c_o_in_axes2_x -
+            v.axis_y_rrr_axes2_x*rrr_c_o_in_axes2_y;
+        const real rrr_U_y = v.axis_y_rrr_axes2_x*rrr_c_o_in_axes2_x -
+            v.axis_x_rrr_axes2_x*rrr_c_o_in_axes2_y;
         /* (M_ta) coupling block of M */
-        const real rrr_M_ta_t = rrr_Q_xy*rrr_q_x - rrr_Q_xx*rrr_q_y;
-        const real rrr_M_ta_t_2 = rrr_Q_yy*rrr_q_x - rrr_Q_xy*rrr_q_y;
+        const real rrr_M_ta_t = rrr_Q_xy*v.rrr_q_x - rrr_Q_xx*v.rrr_q_y;
+        const real rrr_M_ta_t_2 = rrr_Q_yy*v.rrr_q_x - rrr_Q_xy*v.rrr_q_y;
         /* (M_aa) rotational block of M */
-        const real rrr_M_aa_t = rrr_M_ta_t_2*rrr_q_x - rrr_M_ta_t*rrr_q_y;
+        const real rrr_M_aa_t = rrr_M_ta_t_2*v.rrr_q_x - rrr_M_ta_t*v.rrr_q_y;
         /* (Z_a) rotational part of Z */
-        const real rrr_Z_a_t = rrr_U_y*rrr_q_x - rrr_U_x*rrr_q_y;
+        const real rrr_Z_a_t = rrr_U_y*v.rrr_q_x - rrr_U_x*v.rrr_q_y;
         /* (rrr-H_a_1) moment of the column's unit force about the platform origin */
-        const real rrr_H_a_1_z = rrr_q_x*rrr_w_1_y - rrr_q_y*rrr_w_1_x;
+        const real rrr_H_a_1_z = v.rrr_q_x*v.rrr_w_1_y - v.rrr_q_y*v.rrr_w_1_x;
         /* (M_tt) translational block of M */
         gather(&terms[0*count + k], add, rrr_Q_xx);  /* M_tt_xx_of_legs */
         gather(&terms[1*count + k], add, rrr_Q_xy);  /* M_tt_xy */
@@ -1636,16 +2059,16 @@ INLINE void dynamics_legs_rrr(const prepared *m, size_t w, size_t leg, size_t le
         /* (Z_a) rotational part of Z */
         gather(&terms[8*count + k], add, rrr_Z_a_t);  /* Z_a_z_of_legs */
         /* (rrr-w_1) reciprocal vector 1 */
-        o[0*count + k] = rrr_w_1_x;
-        o[1*count + k] = rrr_w_1_y;
+        o[0*count + k] = v.rrr_w_1_x;
+        o[1*count + k] = v.rrr_w_1_y;
         /* (rrr-H_a_1) moment of the column's unit force about the platform origin */
         o[2*count + k] = rrr_H_a_1_z;
-        o[5*count + k] = rrr_w_1_x + (rrr_w_1_y + rrr_H_a_1_z);
+        o[5*count + k] = v.rrr_w_1_x + (v.rrr_w_1_y + rrr_H_a_1_z);
         const real rrr_rho2_1_t = m->rrr_rho2_1_t[i];
         const real rrr_size = m->rrr_size[i];
-        o[4*count + k] = UNLESS(magnitude(rrr_rho2_1) > TOLERANCE*TOLERANCE*rrr_rho2_1_t) +
-            UNLESS(magnitude(rrr_r_1_in_axes2_y) > TOLERANCE*rrr_size);
-        o[3*count + k] = UNLESS(rrr_disc_1 >= 0);
+        o[4*count + k] = UNLESS(magnitude(v.rrr_rho2_1) > TOLERANCE*TOLERANCE*rrr_rho2_1_t) +
+            UNLESS(magnitude(v.rrr_r_1_in_axes2_y) > TOLERANCE*rrr_size);
+        o[3*count + k] = UNLESS(v.rrr_disc_1 >= 0);
     }
 }
 
@@ -1653,7 +2076,7 @@ INLINE void dynamics_place_rrr(size_t w, size_t count, const real *o, size_t fir
     verdict *t)
 {
     for (size_t k = 0; k < w; ++k) {
-        H[(0*NU + 1)*w + k] = o[0*count + first + k];
+        H[1*w + k] = o[0*count + first + k];
         H[(NU + 1)*w + k] = o[1*count + first + k];
         H[(2*NU + 1)*w + k] = o[2*count + first + k];
         t->unreachable[k] += o[3*count + first + k];
@@ -1674,34 +2097,34 @@ INLINE void dynamics_after(const prepared *m, size_t w, const real *s, const rea
         const real M_tt_yy = M_tt_yy_of_legs + m_star;
         /* (M_ta) coupling block of M */
         const real M_ta_xz_of_legs = sums[3*w + k];
-        const real h_star_y = s[8*w + k];
+        const real h_star_y = s[3*w + k];
         const real M_ta_xz = M_ta_xz_of_legs - h_star_y;
         const real M_ta_yz_of_legs = sums[4*w + k];
-        const real h_star_x = s[7*w + k];
+        const real h_star_x = s[2*w + k];
         const real M_ta_yz = M_ta_yz_of_legs + h_star_x;
         /* (M_aa) rotational block of M */
         const real J_star_zz = m->J_star_zz;
         const real M_aa_zz_of_legs = sums[5*w + k];
         const real M_aa_zz = J_star_zz + M_aa_zz_of_legs;
         /* (Z_t) translational part of Z */
-        const real Z_p_x = s[9*w + k];
+        const real Z_p_x = s[4*w + k];
         const real Z_t_x_of_legs = sums[6*w + k];
         const real Z_t_x = Z_p_x + Z_t_x_of_legs;
-        const real Z_p_y = s[10*w + k];
+        const real Z_p_y = s[5*w + k];
         const real Z_t_y_of_legs = sums[7*w + k];
         const real Z_t_y = Z_p_y + Z_t_y_of_legs;
         /* (Z_a) rotational part of Z */
         const real Z_a_z_of_legs = sums[8*w + k];
-        const real Z_q_z = s[11*w + k];
+        const real Z_q_z = s[6*w + k];
         const real Z_a_z = Z_a_z_of_legs + Z_q_z;
         /* (M_tt) translational block of M */
-        M[0*NV*w + k] = M_tt_xx;
+        M[0*w + k] = M_tt_xx;
         const real M_tt_xy = sums[1*w + k];
-        M[(0*NV + 1)*w + k] = M_tt_xy;
+        M[1*w + k] = M_tt_xy;
         M[NV*w + k] = M_tt_xy;
         M[(NV + 1)*w + k] = M_tt_yy;
         /* (M_ta) coupling block of M */
-        M[(0*NV + 2)*w + k] = M_ta_xz;
+        M[2*w + k] = M_ta_xz;
         M[2*NV*w + k] = M_ta_xz;
         M[(NV + 2)*w + k] = M_ta_yz;
         M[(2*NV + 1)*w + k] = M_ta_yz;
@@ -1720,21 +2143,18 @@ INLINE void dynamics_after(const prepared *m, size_t w, const real *s, const rea
 INLINE void dynamics_run(const prepared *m, const real *X, const real *V, real *M, real *Z, real
     *H, real *Hk, real *constraint_bias, verdict *t)
 {
-    real s[12] = {0};
-    real sums[9] = {0};
-    real terms_crank[9*LEGS(LEGS_OF_crank)] = {0};
-    real o_crank[9*LEGS(LEGS_OF_crank)] = {0};
-    real terms_rrr[9*LEGS(LEGS_OF_rrr)] = {0};
-    real o_rrr[6*LEGS(LEGS_OF_rrr)] = {0};
+    real s[7] = {0}, sums[9] = {0};
+    real terms_crank[9*LEGS(LEGS_OF_crank)] = {0}, o_crank[9*LEGS(LEGS_OF_crank)] = {0};
+    real terms_rrr[9*LEGS(LEGS_OF_rrr)] = {0}, o_rrr[6*LEGS(LEGS_OF_rrr)] = {0};
     dynamics_before(m, 1, X, V, s);
-    dynamics_legs_crank(m, 1, 0, 1, s, 0, LEGS(LEGS_OF_crank), 0, terms_crank, o_crank);
+    dynamics_legs_crank(m, 1, 0, 1, s, 0, LEGS(LEGS_OF_crank), 0, X, V, terms_crank, o_crank);
+    dynamics_legs_rrr(m, 1, 0, 1, s, 0, LEGS(LEGS_OF_rrr), 0, X, V, terms_rrr, o_rrr);
     for (size_t leg = 0; leg < LEGS_OF_crank; ++leg) {
         dynamics_place_crank(1, LEGS(LEGS_OF_crank), o_crank, leg, H, Hk, constraint_bias, t);
     }
     for (size_t n = 0; n < 9; ++n) {
         sums[n] = total(terms_crank + n*LEGS(LEGS_OF_crank), LEGS_OF_crank);
     }
-    dynamics_legs_rrr(m, 1, 0, 1, s, 0, LEGS(LEGS_OF_rrr), 0, terms_rrr, o_rrr);
     for (size_t leg = 0; leg < LEGS_OF_rrr; ++leg) {
         dynamics_place_rrr(1, LEGS(LEGS_OF_rrr), o_rrr, leg, H, t);
     }
@@ -1747,18 +2167,17 @@ INLINE void dynamics_run(const prepared *m, const real *X, const real *V, real *
 INLINE void dynamics_run_lanes(const prepared *m, const real *X, const real *V, real *M, real *Z,
     real *H, real *Hk, real *constraint_bias, verdict *t)
 {
-    real s[12*LANES];
-    real sums[9*LANES];
+    real s[7*LANES], sums[9*LANES];
     real o_crank[9*LANES];
     real o_rrr[6*LANES];
     dynamics_before(m, LANES, X, V, s);
     clear(sums, 9*LANES);
     for (size_t leg = 0; leg < LEGS_OF_crank; ++leg) {
-        dynamics_legs_crank(m, LANES, leg, 0, s, 1, LANES, 1, sums, o_crank);
+        dynamics_legs_crank(m, LANES, leg, 0, s, 1, LANES, 1, X, V, sums, o_crank);
         dynamics_place_crank(LANES, LANES, o_crank, 0, H, Hk, constraint_bias, t);
     }
     for (size_t leg = 0; leg < LEGS_OF_rrr; ++leg) {
-        dynamics_legs_rrr(m, LANES, leg, 0, s, 1, LANES, 1, sums, o_rrr);
+        dynamics_legs_rrr(m, LANES, leg, 0, s, 1, LANES, 1, X, V, sums, o_rrr);
         dynamics_place_rrr(LANES, LANES, o_rrr, 0, H, t);
     }
     dynamics_after(m, LANES, s, sums, M, Z, t);
@@ -1768,90 +2187,35 @@ INLINE void dynamics_run_lanes(const prepared *m, const real *X, const real *V, 
 INLINE void M_before(const prepared *m, size_t w, const real *X, real *s)
 {
     for (size_t k = 0; k < w; ++k) {
-        /* X: named entries */
-        const real X_0 = X[0*w + k];
-        const real t_x = X_0;
-        const real X_1 = X[1*w + k];
-        const real t_y = X_1;
-        const real X_2 = X[2*w + k];
-        const real R_xx = cosine(X_2);
-        const real R_yx = sine(X_2);
-        /* (h_star) first moment about the platform origin */
-        const real h_star_in_platform_x = m->h_star_in_platform_x;
-        const real h_star_in_platform_y = m->h_star_in_platform_y;
-        const real h_star_x = R_xx*h_star_in_platform_x - R_yx*h_star_in_platform_y;
-        const real h_star_y = R_xx*h_star_in_platform_y + R_yx*h_star_in_platform_x;
-        s[0*w + k] = t_x;
-        s[1*w + k] = t_y;
-        s[2*w + k] = R_xx;
-        s[3*w + k] = R_yx;
-        s[4*w + k] = h_star_x;
-        s[5*w + k] = h_star_y;
+        values v;
+        stage_X(m, w, k, X, &v);
+        s[0*w + k] = v.R_xx;
+        s[1*w + k] = v.R_yx;
+        s[2*w + k] = v.h_star_x;
+        s[3*w + k] = v.h_star_y;
     }
 }
 
 INLINE void M_legs_crank(const prepared *m, size_t w, size_t leg, size_t legs, const real *s,
-    size_t states, size_t count, int add, real *terms, real *o)
+    size_t states, size_t count, int add, const real *X, real *terms, real *o)
 {
     for (size_t k = 0; k < count; ++k) {
         const size_t i = leg + legs*k;
         const size_t j = states*k;
-        /* (crank-S) from the base point to the connection point */
-        const real R_xx = s[2*w + j];
-        const real R_yx = s[3*w + j];
-        const real crank_platform_point_x = m->crank_platform_point_x[i];
-        const real crank_platform_point_y = m->crank_platform_point_y[i];
-        const real crank_q_x = R_xx*crank_platform_point_x - R_yx*crank_platform_point_y;
-        const real crank_q_y = R_xx*crank_platform_point_y + R_yx*crank_platform_point_x;
-        const real crank_base_point_x = m->crank_base_point_x[i];
-        const real t_x = s[0*w + j];
-        const real crank_S_x = crank_q_x + t_x - crank_base_point_x;
-        const real crank_base_point_y = m->crank_base_point_y[i];
-        const real t_y = s[1*w + j];
-        const real crank_S_y = crank_q_y + t_y - crank_base_point_y;
-        /* (crank-rho2_1) squared amplitude */
-        const real crank_base_frame_xy = m->crank_base_frame_xy[i];
-        const real crank_base_frame_yy = m->crank_base_frame_yy[i];
-        const real crank_rho2_1_t = crank_S_x*crank_base_frame_xy + crank_S_y*crank_base_frame_yy;
-        const real crank_base_frame_xx = m->crank_base_frame_xx[i];
-        const real crank_base_frame_yx = m->crank_base_frame_yx[i];
-        const real crank_rho2_1_t_2 = crank_S_x*crank_base_frame_xx +
-            crank_S_y*crank_base_frame_yx;
-        const real crank_size_t = m->crank_size_t[i];
-        const real crank_rho2_1 = crank_size_t*(crank_rho2_1_t*crank_rho2_1_t +
-            crank_rho2_1_t_2*crank_rho2_1_t_2);
-        /* (crank-c_1) cosine of the angle of joint 1 from its reference direction */
-        const real crank_c_1_t = 1/(root(crank_rho2_1));
-        const real crank_platform_joint_offset_x = m->crank_platform_joint_offset_x[i];
-        const real crank_c_1 = crank_c_1_t*crank_platform_joint_offset_x*crank_rho2_1_t_2;
-        /* (crank-s_1) sine of the angle of joint 1 from its reference direction */
-        const real crank_s_1 = crank_c_1_t*crank_platform_joint_offset_x*crank_rho2_1_t;
-        /* (crank-Q) inertia of the leg at the connection point, without the mass gathered there */
-        const real axis_y_crank_axes1_x = crank_base_frame_xy*crank_c_1 -
-            crank_base_frame_xx*crank_s_1;
-        const real axis_x_crank_axes1_x = crank_base_frame_yy*crank_c_1 -
-            crank_base_frame_yx*crank_s_1;
-        const real crank_d_G_in_axes1_yy = m->crank_d_G_in_axes1_yy[i];
-        const real crank_Q_t = axis_y_crank_axes1_x*crank_d_G_in_axes1_yy;
-        const real crank_Q_xx = axis_y_crank_axes1_x*crank_Q_t;
-        const real crank_Q_xy = axis_x_crank_axes1_x*crank_Q_t;
-        const real crank_Q_yy = axis_x_crank_axes1_x*axis_x_crank_axes1_x*crank_d_G_in_axes1_yy;
-        /* (M_ta) coupling block of M */
-        const real crank_M_ta_t = crank_Q_xy*crank_q_x - crank_Q_xx*crank_q_y;
-        const real crank_M_ta_t_2 = crank_Q_yy*crank_q_x - crank_Q_xy*crank_q_y;
-        /* (M_aa) rotational block of M */
-        const real crank_M_aa_t = crank_M_ta_t_2*crank_q_x - crank_M_ta_t*crank_q_y;
+        values_crank v;
+        stage_crank_X(m, w, i, j, s, X, &v);
+        stage_crank_M_dynamics(m, i, &v);
         /* (M_tt) translational block of M */
-        gather(&terms[0*count + k], add, crank_Q_xx);  /* M_tt_xx_of_legs */
-        gather(&terms[1*count + k], add, crank_Q_xy);  /* M_tt_xy */
-        gather(&terms[2*count + k], add, crank_Q_yy);  /* M_tt_yy_of_legs */
+        gather(&terms[0*count + k], add, v.crank_Q_xx);  /* M_tt_xx_of_legs */
+        gather(&terms[1*count + k], add, v.crank_Q_xy);  /* M_tt_xy */
+        gather(&terms[2*count + k], add, v.crank_Q_yy);  /* M_tt_yy_of_legs */
         /* (M_ta) coupling block of M */
-        gather(&terms[3*count + k], add, crank_M_ta_t);  /* M_ta_xz_of_legs */
-        gather(&terms[4*count + k], add, crank_M_ta_t_2);  /* M_ta_yz_of_legs */
+        gather(&terms[3*count + k], add, v.crank_M_ta_t);  /* M_ta_xz_of_legs */
+        gather(&terms[4*count + k], add, v.crank_M_ta_t_2);  /* M_ta_yz_of_legs */
         /* (M_aa) rotational block of M */
-        gather(&terms[5*count + k], add, crank_M_aa_t);  /* M_aa_zz_of_legs */
+        gather(&terms[5*count + k], add, v.crank_M_aa_t);  /* M_aa_zz_of_legs */
         const real crank_root_1_t = m->crank_root_1_t[i];
-        o[0*count + k] = UNLESS(magnitude(crank_rho2_1) > TOLERANCE*TOLERANCE*crank_root_1_t);
+        o[0*count + k] = UNLESS(magnitude(v.crank_rho2_1) > TOLERANCE*TOLERANCE*crank_root_1_t);
     }
 }
 
@@ -1863,118 +2227,41 @@ INLINE void M_place_crank(size_t w, size_t count, const real *o, size_t first, v
 }
 
 INLINE void M_legs_rrr(const prepared *m, size_t w, size_t leg, size_t legs, const real *s, size_t
-    states, size_t count, int add, real *terms, real *o)
+    states, size_t count, int add, const real *X, real *terms, real *o)
 {
     for (size_t k = 0; k < count; ++k) {
         const size_t i = leg + legs*k;
         const size_t j = states*k;
-        /* (rrr-S) from the base point to the connection point */
-        const real R_xx = s[2*w + j];
-        const real R_yx = s[3*w + j];
-        const real rrr_platform_point_x = m->rrr_platform_point_x[i];
-        const real rrr_platform_point_y = m->rrr_platform_point_y[i];
-        const real rrr_q_x = R_xx*rrr_platform_point_x - R_yx*rrr_platform_point_y;
-        const real rrr_q_y = R_xx*rrr_platform_point_y + R_yx*rrr_platform_point_x;
-        const real rrr_base_point_x = m->rrr_base_point_x[i];
-        const real t_x = s[0*w + j];
-        const real rrr_S_x = rrr_q_x + t_x - rrr_base_point_x;
-        const real rrr_base_point_y = m->rrr_base_point_y[i];
-        const real t_y = s[1*w + j];
-        const real rrr_S_y = rrr_q_y + t_y - rrr_base_point_y;
-        /* (rrr-Kd_1) projection on the centre's direction, from the distance fixed by the joints beyond
-           joint 1 */
-        const real rrr_Kd_1_t_3 = rrr_S_x*rrr_S_x + rrr_S_y*rrr_S_y;
-        const real rrr_Kd_1_t = m->rrr_Kd_1_t[i];
-        const real rrr_Kd_1_t_2 = m->rrr_Kd_1_t_2[i];
-        const real rrr_Kd_1 = rrr_Kd_1_t + R(0.5)*rrr_Kd_1_t_3 - rrr_Kd_1_t_2;
-        /* (rrr-px_1) component along the reference direction */
-        const real rrr_base_frame_xx = m->rrr_base_frame_xx[i];
-        const real rrr_base_frame_yx = m->rrr_base_frame_yx[i];
-        const real rrr_px_1 = rrr_S_x*rrr_base_frame_xx + rrr_S_y*rrr_base_frame_yx;
-        /* (rrr-py_1) component across the reference direction */
-        const real rrr_base_frame_xy = m->rrr_base_frame_xy[i];
-        const real rrr_base_frame_yy = m->rrr_base_frame_yy[i];
-        const real rrr_py_1 = rrr_S_x*rrr_base_frame_xy + rrr_S_y*rrr_base_frame_yy;
-        /* (rrr-Kc_1) factor of the cosine in the equation of joint 1 */
-        const real rrr_joint2_offset_x = m->rrr_joint2_offset_x[i];
-        const real rrr_Kc_1 = rrr_joint2_offset_x*rrr_px_1;
-        /* (rrr-Ks_1) factor of the sine in the equation of joint 1 */
-        const real rrr_Ks_1 = rrr_joint2_offset_x*rrr_py_1;
-        /* (rrr-rho2_1) squared amplitude */
-        const real rrr_rho2_1 = rrr_Kc_1*rrr_Kc_1 + rrr_Ks_1*rrr_Ks_1;
-        /* (rrr-disc_1) discriminant */
-        const real rrr_disc_1 = rrr_rho2_1 - rrr_Kd_1*rrr_Kd_1;
-        /* (rrr-root_1) root, with the sign of the branch */
-        const real rrr_branch_1 = m->rrr_branch_1[i];
-        const real rrr_root_1 = rrr_branch_1*root(rrr_disc_1);
-        /* (rrr-c_1) cosine of the angle of joint 1 from its reference direction */
-        const real inv_rrr_rho2_1 = 1/rrr_rho2_1;
-        const real rrr_c_1 = inv_rrr_rho2_1*(rrr_Kc_1*rrr_Kd_1 - rrr_Ks_1*rrr_root_1);
-        /* (rrr-s_1) sine of the angle of joint 1 from its reference direction */
-        const real rrr_s_1 = inv_rrr_rho2_1*(rrr_Kc_1*rrr_root_1 + rrr_Kd_1*rrr_Ks_1);
-        /* (rrr-x_2) from the origin of joint 2 to the connection point */
-        const real inv_rrr_size_t = m->inv_rrr_size_t[i];
-        const real rrr_x_2_in_axes1_x = inv_rrr_size_t*rrr_Kd_1*rrr_joint2_offset_x -
-            rrr_joint2_offset_x;
-        /* (rrr-c_2) cosine of the angle of joint 2 from its reference direction */
-        const real inv_rrr_size_t_2 = m->inv_rrr_size_t_2[i];
-        const real rrr_platform_joint_offset_x = m->rrr_platform_joint_offset_x[i];
-        const real rrr_c_2 = inv_rrr_size_t_2*rrr_platform_joint_offset_x*rrr_x_2_in_axes1_x;
-        /* (rrr-s_2) sine of the angle of joint 2 from its reference direction */
-        const real rrr_s_2 =
-            -inv_rrr_size_t*inv_rrr_size_t_2*rrr_joint2_offset_x*rrr_platform_joint_offset_x*rrr_root_1;
-        /* (rrr-r_1) from joint 1 to the connection point, along the links */
-        const real rrr_r_1_in_axes1_y = rrr_platform_joint_offset_x*rrr_s_2;
-        const real rrr_r_1_in_axes1_x = rrr_joint2_offset_x + rrr_c_2*rrr_platform_joint_offset_x;
-        const real rrr_r_1_in_axes2_x = rrr_c_2*rrr_r_1_in_axes1_x + rrr_r_1_in_axes1_y*rrr_s_2;
-        const real rrr_r_1_in_axes2_y = rrr_c_2*rrr_r_1_in_axes1_y - rrr_r_1_in_axes1_x*rrr_s_2;
-        /* (rrr-w_1) reciprocal vector 1 */
-        const real rrr_w_1_in_axes2_x = -1/rrr_r_1_in_axes2_y;
-        /* (rrr-w_2) reciprocal vector 2 */
-        const real rrr_w_2_in_axes2_y = m->rrr_w_2_in_axes2_y[i];
-        const real rrr_w_2_in_axes2_x = -rrr_r_1_in_axes2_x*rrr_w_1_in_axes2_x*rrr_w_2_in_axes2_y;
-        /* (rrr-d_Gamma_2) coefficient of the acceleration in: moment about axis 2 of the distal links'
-           inertia and weight */
-        const real rrr_d_Gamma_2_t = m->rrr_d_Gamma_2_t[i];
-        const real rrr_d_Gamma_2_t_2 = rrr_d_Gamma_2_t*rrr_r_1_in_axes2_x;
-        const real rrr_J_2_in_spec2_zz = m->rrr_J_2_in_spec2_zz[i];
-        const real rrr_h_2_in_spec2_y = m->rrr_h_2_in_spec2_y[i];
-        const real rrr_d_Gamma_2_in_axes2_x = rrr_w_1_in_axes2_x*(rrr_J_2_in_spec2_zz -
-            rrr_d_Gamma_2_t_2) - rrr_h_2_in_spec2_y;
-        /* (rrr-d_Gamma_1) coefficient of the acceleration in: moment about axis 1 of the distal links'
-           inertia and weight */
-        const real rrr_Jc_1_in_axes1_zz = m->rrr_Jc_1_in_axes1_zz[i];
-        const real rrr_d_Gamma_1_in_axes2_x = rrr_w_1_in_axes2_x*(rrr_Jc_1_in_axes1_zz -
-            rrr_d_Gamma_2_t_2) - rrr_h_2_in_spec2_y;
-        /* (rrr-d_c) coefficient of the acceleration in: leg force on the platform without actuation and
-           without the mass at the connection point */
-        const real rrr_d_Gamma_2_in_axes2_y = m->rrr_d_Gamma_2_in_axes2_y[i];
-        const real rrr_d_phi_2_t = m->rrr_d_phi_2_t[i];
-        const real rrr_d_c_in_axes2_xy = rrr_d_phi_2_t -
-            rrr_d_Gamma_2_in_axes2_y*rrr_w_1_in_axes2_x -
-            rrr_d_Gamma_2_in_axes2_y*rrr_w_2_in_axes2_x;
+        values_rrr v;
+        stage_rrr_X(m, w, i, j, s, X, &v);
+        stage_rrr_M_dynamics(m, i, &v);
         /* (rrr-Q) inertia of the leg at the connection point, without the mass gathered there */
-        const real rrr_Q_t = rrr_c_1*rrr_s_2 + rrr_c_2*rrr_s_1;
-        const real rrr_Q_t_2 = rrr_c_1*rrr_c_2 - rrr_s_1*rrr_s_2;
+        const real rrr_Q_t = v.rrr_c_1*v.rrr_s_2 + v.rrr_c_2*v.rrr_s_1;
+        const real rrr_Q_t_2 = v.rrr_c_1*v.rrr_c_2 - v.rrr_s_1*v.rrr_s_2;
+        const real rrr_base_frame_xx = m->rrr_base_frame_xx[i];
+        const real rrr_base_frame_xy = m->rrr_base_frame_xy[i];
         const real axis_y_rrr_axes2_x = rrr_Q_t_2*rrr_base_frame_xy - rrr_Q_t*rrr_base_frame_xx;
+        const real rrr_base_frame_yx = m->rrr_base_frame_yx[i];
+        const real rrr_base_frame_yy = m->rrr_base_frame_yy[i];
         const real axis_x_rrr_axes2_x = rrr_Q_t_2*rrr_base_frame_yy - rrr_Q_t*rrr_base_frame_yx;
         const real rrr_d_c_in_axes2_yy = m->rrr_d_c_in_axes2_yy[i];
-        const real rrr_Q_t_3 = rrr_h_2_in_spec2_y*(rrr_w_1_in_axes2_x + rrr_w_2_in_axes2_x) -
-            rrr_d_c_in_axes2_yy - rrr_d_Gamma_1_in_axes2_x*rrr_w_1_in_axes2_x -
-            rrr_d_Gamma_2_in_axes2_x*rrr_w_2_in_axes2_x;
+        const real rrr_h_2_in_spec2_y = m->rrr_h_2_in_spec2_y[i];
+        const real rrr_Q_t_3 = rrr_h_2_in_spec2_y*(v.rrr_w_1_in_axes2_x + v.rrr_w_2_in_axes2_x) -
+            rrr_d_c_in_axes2_yy - v.rrr_d_Gamma_1_in_axes2_x*v.rrr_w_1_in_axes2_x -
+            v.rrr_d_Gamma_2_in_axes2_x*v.rrr_w_2_in_axes2_x;
         const real rrr_Q_t_4 = R(0.5)*rrr_Q_t_3;
         const real rrr_Q_t_5 = axis_x_rrr_axes2_x*rrr_Q_t_4 +
-            axis_y_rrr_axes2_x*rrr_d_c_in_axes2_xy;
+            axis_y_rrr_axes2_x*v.rrr_d_c_in_axes2_xy;
         const real rrr_Q_t_6 = axis_y_rrr_axes2_x*rrr_Q_t_4 -
-            axis_x_rrr_axes2_x*rrr_d_c_in_axes2_xy;
+            axis_x_rrr_axes2_x*v.rrr_d_c_in_axes2_xy;
         const real rrr_Q_xx = -rrr_d_c_in_axes2_yy - 2*axis_x_rrr_axes2_x*rrr_Q_t_5;
         const real rrr_Q_xy = axis_x_rrr_axes2_x*rrr_Q_t_6 + axis_y_rrr_axes2_x*rrr_Q_t_5;
         const real rrr_Q_yy = -rrr_d_c_in_axes2_yy - 2*axis_y_rrr_axes2_x*rrr_Q_t_6;
         /* (M_ta) coupling block of M */
-        const real rrr_M_ta_t = rrr_Q_xy*rrr_q_x - rrr_Q_xx*rrr_q_y;
-        const real rrr_M_ta_t_2 = rrr_Q_yy*rrr_q_x - rrr_Q_xy*rrr_q_y;
+        const real rrr_M_ta_t = rrr_Q_xy*v.rrr_q_x - rrr_Q_xx*v.rrr_q_y;
+        const real rrr_M_ta_t_2 = rrr_Q_yy*v.rrr_q_x - rrr_Q_xy*v.rrr_q_y;
         /* (M_aa) rotational block of M */
-        const real rrr_M_aa_t = rrr_M_ta_t_2*rrr_q_x - rrr_M_ta_t*rrr_q_y;
+        const real rrr_M_aa_t = rrr_M_ta_t_2*v.rrr_q_x - rrr_M_ta_t*v.rrr_q_y;
         /* (M_tt) translational block of M */
         gather(&terms[0*count + k], add, rrr_Q_xx);  /* M_tt_xx_of_legs */
         gather(&terms[1*count + k], add, rrr_Q_xy);  /* M_tt_xy */
@@ -1986,9 +2273,9 @@ INLINE void M_legs_rrr(const prepared *m, size_t w, size_t leg, size_t legs, con
         gather(&terms[5*count + k], add, rrr_M_aa_t);  /* M_aa_zz_of_legs */
         const real rrr_rho2_1_t = m->rrr_rho2_1_t[i];
         const real rrr_size = m->rrr_size[i];
-        o[1*count + k] = UNLESS(magnitude(rrr_rho2_1) > TOLERANCE*TOLERANCE*rrr_rho2_1_t) +
-            UNLESS(magnitude(rrr_r_1_in_axes2_y) > TOLERANCE*rrr_size);
-        o[0*count + k] = UNLESS(rrr_disc_1 >= 0);
+        o[1*count + k] = UNLESS(magnitude(v.rrr_rho2_1) > TOLERANCE*TOLERANCE*rrr_rho2_1_t) +
+            UNLESS(magnitude(v.rrr_r_1_in_axes2_y) > TOLERANCE*rrr_size);
+        o[0*count + k] = UNLESS(v.rrr_disc_1 >= 0);
     }
 }
 
@@ -2012,23 +2299,23 @@ INLINE void M_after(const prepared *m, size_t w, const real *s, const real *sums
         const real M_tt_yy = M_tt_yy_of_legs + m_star;
         /* (M_ta) coupling block of M */
         const real M_ta_xz_of_legs = sums[3*w + k];
-        const real h_star_y = s[5*w + k];
+        const real h_star_y = s[3*w + k];
         const real M_ta_xz = M_ta_xz_of_legs - h_star_y;
         const real M_ta_yz_of_legs = sums[4*w + k];
-        const real h_star_x = s[4*w + k];
+        const real h_star_x = s[2*w + k];
         const real M_ta_yz = M_ta_yz_of_legs + h_star_x;
         /* (M_aa) rotational block of M */
         const real J_star_zz = m->J_star_zz;
         const real M_aa_zz_of_legs = sums[5*w + k];
         const real M_aa_zz = J_star_zz + M_aa_zz_of_legs;
         /* (M_tt) translational block of M */
-        M[0*NV*w + k] = M_tt_xx;
+        M[0*w + k] = M_tt_xx;
         const real M_tt_xy = sums[1*w + k];
-        M[(0*NV + 1)*w + k] = M_tt_xy;
+        M[1*w + k] = M_tt_xy;
         M[NV*w + k] = M_tt_xy;
         M[(NV + 1)*w + k] = M_tt_yy;
         /* (M_ta) coupling block of M */
-        M[(0*NV + 2)*w + k] = M_ta_xz;
+        M[2*w + k] = M_ta_xz;
         M[2*NV*w + k] = M_ta_xz;
         M[(NV + 2)*w + k] = M_ta_yz;
         M[(2*NV + 1)*w + k] = M_ta_yz;
@@ -2040,21 +2327,18 @@ INLINE void M_after(const prepared *m, size_t w, const real *s, const real *sums
 
 INLINE void M_run(const prepared *m, const real *X, real *M, verdict *t)
 {
-    real s[6] = {0};
-    real sums[6] = {0};
-    real terms_crank[6*LEGS(LEGS_OF_crank)] = {0};
-    real o_crank[LEGS(LEGS_OF_crank)] = {0};
-    real terms_rrr[6*LEGS(LEGS_OF_rrr)] = {0};
-    real o_rrr[2*LEGS(LEGS_OF_rrr)] = {0};
+    real s[4] = {0}, sums[6] = {0};
+    real terms_crank[6*LEGS(LEGS_OF_crank)] = {0}, o_crank[LEGS(LEGS_OF_crank)] = {0};
+    real terms_rrr[6*LEGS(LEGS_OF_rrr)] = {0}, o_rrr[2*LEGS(LEGS_OF_rrr)] = {0};
     M_before(m, 1, X, s);
-    M_legs_crank(m, 1, 0, 1, s, 0, LEGS(LEGS_OF_crank), 0, terms_crank, o_crank);
+    M_legs_crank(m, 1, 0, 1, s, 0, LEGS(LEGS_OF_crank), 0, X, terms_crank, o_crank);
+    M_legs_rrr(m, 1, 0, 1, s, 0, LEGS(LEGS_OF_rrr), 0, X, terms_rrr, o_rrr);
     for (size_t leg = 0; leg < LEGS_OF_crank; ++leg) {
         M_place_crank(1, LEGS(LEGS_OF_crank), o_crank, leg, t);
     }
     for (size_t n = 0; n < 6; ++n) {
         sums[n] = total(terms_crank + n*LEGS(LEGS_OF_crank), LEGS_OF_crank);
     }
-    M_legs_rrr(m, 1, 0, 1, s, 0, LEGS(LEGS_OF_rrr), 0, terms_rrr, o_rrr);
     for (size_t leg = 0; leg < LEGS_OF_rrr; ++leg) {
         M_place_rrr(1, LEGS(LEGS_OF_rrr), o_rrr, leg, t);
     }
@@ -2066,18 +2350,17 @@ INLINE void M_run(const prepared *m, const real *X, real *M, verdict *t)
 
 INLINE void M_run_lanes(const prepared *m, const real *X, real *M, verdict *t)
 {
-    real s[6*LANES];
-    real sums[6*LANES];
+    real s[4*LANES], sums[6*LANES];
     real o_crank[LANES];
     real o_rrr[2*LANES];
     M_before(m, LANES, X, s);
     clear(sums, 6*LANES);
     for (size_t leg = 0; leg < LEGS_OF_crank; ++leg) {
-        M_legs_crank(m, LANES, leg, 0, s, 1, LANES, 1, sums, o_crank);
+        M_legs_crank(m, LANES, leg, 0, s, 1, LANES, 1, X, sums, o_crank);
         M_place_crank(LANES, LANES, o_crank, 0, t);
     }
     for (size_t leg = 0; leg < LEGS_OF_rrr; ++leg) {
-        M_legs_rrr(m, LANES, leg, 0, s, 1, LANES, 1, sums, o_rrr);
+        M_legs_rrr(m, LANES, leg, 0, s, 1, LANES, 1, X, sums, o_rrr);
         M_place_rrr(LANES, LANES, o_rrr, 0, t);
     }
     M_after(m, LANES, s, sums, M, t);
@@ -2087,119 +2370,63 @@ INLINE void M_run_lanes(const prepared *m, const real *X, real *M, verdict *t)
 INLINE void Z_before(const prepared *m, size_t w, const real *X, const real *V, real *s)
 {
     for (size_t k = 0; k < w; ++k) {
-        /* X: named entries */
-        const real X_0 = X[0*w + k];
-        const real t_x = X_0;
-        const real X_1 = X[1*w + k];
-        const real t_y = X_1;
-        const real X_2 = X[2*w + k];
-        const real R_xx = cosine(X_2);
-        const real R_yx = sine(X_2);
-        /* V: named entries */
-        const real V_0 = V[0*w + k];
-        const real t_dot_x = V_0;
-        const real V_1 = V[1*w + k];
-        const real t_dot_y = V_1;
-        const real V_2 = V[2*w + k];
-        const real omega_z = V_2;
-        /* (W_p) centripetal tensor of the platform */
-        const real W_p_xx = -omega_z*omega_z;
-        /* (h_star) first moment about the platform origin */
-        const real h_star_in_platform_x = m->h_star_in_platform_x;
-        const real h_star_in_platform_y = m->h_star_in_platform_y;
-        const real h_star_x = R_xx*h_star_in_platform_x - R_yx*h_star_in_platform_y;
-        const real h_star_y = R_xx*h_star_in_platform_y + R_yx*h_star_in_platform_x;
+        values v;
+        stage_V(w, k, V, &v);
+        stage_X(m, w, k, X, &v);
         /* (Z_p) centripetal force and weight of the platform */
         const real Z_p_t = m->Z_p_t;
-        const real Z_p_x = W_p_xx*h_star_x - Z_p_t;
+        const real Z_p_x = v.W_p_xx*v.h_star_x - Z_p_t;
         const real Z_p_t_2 = m->Z_p_t_2;
-        const real Z_p_y = W_p_xx*h_star_y - Z_p_t_2;
+        const real Z_p_y = v.W_p_xx*v.h_star_y - Z_p_t_2;
         /* (Z_q) gyroscopic moment and moment of the weight of the platform */
         const real gravity_x = m->gravity_x;
         const real gravity_y = m->gravity_y;
-        const real Z_q_z = gravity_x*h_star_y - gravity_y*h_star_x;
-        s[0*w + k] = t_x;
-        s[1*w + k] = t_y;
-        s[2*w + k] = R_xx;
-        s[3*w + k] = R_yx;
-        s[4*w + k] = t_dot_x;
-        s[5*w + k] = t_dot_y;
-        s[6*w + k] = omega_z;
-        s[7*w + k] = Z_p_x;
-        s[8*w + k] = Z_p_y;
-        s[9*w + k] = Z_q_z;
+        const real Z_q_z = gravity_x*v.h_star_y - gravity_y*v.h_star_x;
+        s[0*w + k] = v.R_xx;
+        s[1*w + k] = v.R_yx;
+        s[2*w + k] = Z_p_x;
+        s[3*w + k] = Z_p_y;
+        s[4*w + k] = Z_q_z;
     }
 }
 
 INLINE void Z_legs_crank(const prepared *m, size_t w, size_t leg, size_t legs, const real *s,
-    size_t states, size_t count, int add, real *terms, real *o)
+    size_t states, size_t count, int add, const real *X, const real *V, real *terms, real *o)
 {
     for (size_t k = 0; k < count; ++k) {
         const size_t i = leg + legs*k;
         const size_t j = states*k;
-        /* (crank-S) from the base point to the connection point */
-        const real R_xx = s[2*w + j];
-        const real R_yx = s[3*w + j];
-        const real crank_platform_point_x = m->crank_platform_point_x[i];
-        const real crank_platform_point_y = m->crank_platform_point_y[i];
-        const real crank_q_x = R_xx*crank_platform_point_x - R_yx*crank_platform_point_y;
-        const real crank_q_y = R_xx*crank_platform_point_y + R_yx*crank_platform_point_x;
-        const real crank_base_point_x = m->crank_base_point_x[i];
-        const real t_x = s[0*w + j];
-        const real crank_S_x = crank_q_x + t_x - crank_base_point_x;
-        const real crank_base_point_y = m->crank_base_point_y[i];
-        const real t_y = s[1*w + j];
-        const real crank_S_y = crank_q_y + t_y - crank_base_point_y;
-        /* (crank-rho2_1) squared amplitude */
-        const real crank_base_frame_xy = m->crank_base_frame_xy[i];
-        const real crank_base_frame_yy = m->crank_base_frame_yy[i];
-        const real crank_rho2_1_t = crank_S_x*crank_base_frame_xy + crank_S_y*crank_base_frame_yy;
-        const real crank_base_frame_xx = m->crank_base_frame_xx[i];
-        const real crank_base_frame_yx = m->crank_base_frame_yx[i];
-        const real crank_rho2_1_t_2 = crank_S_x*crank_base_frame_xx +
-            crank_S_y*crank_base_frame_yx;
-        const real crank_size_t = m->crank_size_t[i];
-        const real crank_rho2_1 = crank_size_t*(crank_rho2_1_t*crank_rho2_1_t +
-            crank_rho2_1_t_2*crank_rho2_1_t_2);
-        /* (crank-c_1) cosine of the angle of joint 1 from its reference direction */
-        const real crank_c_1_t = 1/(root(crank_rho2_1));
-        const real crank_platform_joint_offset_x = m->crank_platform_joint_offset_x[i];
-        const real crank_c_1 = crank_c_1_t*crank_platform_joint_offset_x*crank_rho2_1_t_2;
-        /* (crank-s_1) sine of the angle of joint 1 from its reference direction */
-        const real crank_s_1 = crank_c_1_t*crank_platform_joint_offset_x*crank_rho2_1_t;
+        values_crank v;
+        stage_crank_X(m, w, i, j, s, X, &v);
         /* (crank-mu_1_o) remainder without the acceleration in: inertia moment of the links that turn
            with link 1, about their reference points */
-        const real axis_y_crank_axes1_x = crank_base_frame_xy*crank_c_1 -
-            crank_base_frame_xx*crank_s_1;
-        const real axis_x_crank_axes1_x = crank_base_frame_yy*crank_c_1 -
-            crank_base_frame_yx*crank_s_1;
         const real crank_J_1_in_spec1_zz = m->crank_J_1_in_spec1_zz[i];
         const real crank_h_1_in_spec1_x = m->crank_h_1_in_spec1_x[i];
         const real crank_h_1_in_spec1_y = m->crank_h_1_in_spec1_y[i];
         const real crank_mu_1_t = m->crank_mu_1_t[i];
         const real crank_mu_1_t_2 = m->crank_mu_1_t_2[i];
         const real crank_w_1_in_axes1_y = m->crank_w_1_in_axes1_y[i];
-        const real omega_z = s[6*w + j];
-        const real crank_mu_1_o_in_axes1_z = crank_h_1_in_spec1_y*(crank_c_1*crank_mu_1_t +
-            crank_mu_1_t_2*crank_s_1) +
-            crank_J_1_in_spec1_zz*crank_w_1_in_axes1_y*(-axis_x_crank_axes1_x*crank_q_y*omega_z*omega_z
-            - axis_y_crank_axes1_x*crank_q_x*omega_z*omega_z) -
-            crank_h_1_in_spec1_x*(crank_c_1*crank_mu_1_t_2 - crank_mu_1_t*crank_s_1);
+        const real omega_z = V[2*w + j];
+        const real crank_mu_1_o_in_axes1_z = crank_h_1_in_spec1_y*(v.crank_c_1*crank_mu_1_t +
+            crank_mu_1_t_2*v.crank_s_1) +
+            crank_J_1_in_spec1_zz*crank_w_1_in_axes1_y*(-v.axis_x_crank_axes1_x*v.crank_q_y*omega_z*omega_z
+            - v.axis_y_crank_axes1_x*v.crank_q_x*omega_z*omega_z) -
+            crank_h_1_in_spec1_x*(v.crank_c_1*crank_mu_1_t_2 - crank_mu_1_t*v.crank_s_1);
         /* (crank-G_o) remainder without the acceleration in: force at the connection point that balances
            the leg's inertia and weight along all degrees of freedom */
         const real crank_G_o_in_axes1_y = crank_mu_1_o_in_axes1_z*crank_w_1_in_axes1_y;
         /* (crank-U) velocity and gravity terms of the leg force */
-        const real crank_U_x = axis_y_crank_axes1_x*crank_G_o_in_axes1_y;
-        const real crank_U_y = axis_x_crank_axes1_x*crank_G_o_in_axes1_y;
+        const real crank_U_x = v.axis_y_crank_axes1_x*crank_G_o_in_axes1_y;
+        const real crank_U_y = v.axis_x_crank_axes1_x*crank_G_o_in_axes1_y;
         /* (Z_a) rotational part of Z */
-        const real crank_Z_a_t = crank_U_y*crank_q_x - crank_U_x*crank_q_y;
+        const real crank_Z_a_t = crank_U_y*v.crank_q_x - crank_U_x*v.crank_q_y;
         /* (Z_t) translational part of Z */
         gather(&terms[0*count + k], add, crank_U_x);  /* Z_t_x_of_legs */
         gather(&terms[1*count + k], add, crank_U_y);  /* Z_t_y_of_legs */
         /* (Z_a) rotational part of Z */
         gather(&terms[2*count + k], add, crank_Z_a_t);  /* Z_a_z_of_legs */
         const real crank_root_1_t = m->crank_root_1_t[i];
-        o[0*count + k] = UNLESS(magnitude(crank_rho2_1) > TOLERANCE*TOLERANCE*crank_root_1_t);
+        o[0*count + k] = UNLESS(magnitude(v.crank_rho2_1) > TOLERANCE*TOLERANCE*crank_root_1_t);
     }
 }
 
@@ -2211,119 +2438,57 @@ INLINE void Z_place_crank(size_t w, size_t count, const real *o, size_t first, v
 }
 
 INLINE void Z_legs_rrr(const prepared *m, size_t w, size_t leg, size_t legs, const real *s, size_t
-    states, size_t count, int add, real *terms, real *o)
+    states, size_t count, int add, const real *X, const real *V, real *terms, real *o)
 {
     for (size_t k = 0; k < count; ++k) {
         const size_t i = leg + legs*k;
         const size_t j = states*k;
-        /* (rrr-S) from the base point to the connection point */
-        const real R_xx = s[2*w + j];
-        const real R_yx = s[3*w + j];
-        const real rrr_platform_point_x = m->rrr_platform_point_x[i];
-        const real rrr_platform_point_y = m->rrr_platform_point_y[i];
-        const real rrr_q_x = R_xx*rrr_platform_point_x - R_yx*rrr_platform_point_y;
-        const real rrr_q_y = R_xx*rrr_platform_point_y + R_yx*rrr_platform_point_x;
-        const real rrr_base_point_x = m->rrr_base_point_x[i];
-        const real t_x = s[0*w + j];
-        const real rrr_S_x = rrr_q_x + t_x - rrr_base_point_x;
-        const real rrr_base_point_y = m->rrr_base_point_y[i];
-        const real t_y = s[1*w + j];
-        const real rrr_S_y = rrr_q_y + t_y - rrr_base_point_y;
-        /* (rrr-Kd_1) projection on the centre's direction, from the distance fixed by the joints beyond
-           joint 1 */
-        const real rrr_Kd_1_t_3 = rrr_S_x*rrr_S_x + rrr_S_y*rrr_S_y;
-        const real rrr_Kd_1_t = m->rrr_Kd_1_t[i];
-        const real rrr_Kd_1_t_2 = m->rrr_Kd_1_t_2[i];
-        const real rrr_Kd_1 = rrr_Kd_1_t + R(0.5)*rrr_Kd_1_t_3 - rrr_Kd_1_t_2;
-        /* (rrr-px_1) component along the reference direction */
-        const real rrr_base_frame_xx = m->rrr_base_frame_xx[i];
-        const real rrr_base_frame_yx = m->rrr_base_frame_yx[i];
-        const real rrr_px_1 = rrr_S_x*rrr_base_frame_xx + rrr_S_y*rrr_base_frame_yx;
-        /* (rrr-py_1) component across the reference direction */
-        const real rrr_base_frame_xy = m->rrr_base_frame_xy[i];
-        const real rrr_base_frame_yy = m->rrr_base_frame_yy[i];
-        const real rrr_py_1 = rrr_S_x*rrr_base_frame_xy + rrr_S_y*rrr_base_frame_yy;
-        /* (rrr-Kc_1) factor of the cosine in the equation of joint 1 */
-        const real rrr_joint2_offset_x = m->rrr_joint2_offset_x[i];
-        const real rrr_Kc_1 = rrr_joint2_offset_x*rrr_px_1;
-        /* (rrr-Ks_1) factor of the sine in the equation of joint 1 */
-        const real rrr_Ks_1 = rrr_joint2_offset_x*rrr_py_1;
-        /* (rrr-rho2_1) squared amplitude */
-        const real rrr_rho2_1 = rrr_Kc_1*rrr_Kc_1 + rrr_Ks_1*rrr_Ks_1;
-        /* (rrr-disc_1) discriminant */
-        const real rrr_disc_1 = rrr_rho2_1 - rrr_Kd_1*rrr_Kd_1;
-        /* (rrr-root_1) root, with the sign of the branch */
-        const real rrr_branch_1 = m->rrr_branch_1[i];
-        const real rrr_root_1 = rrr_branch_1*root(rrr_disc_1);
-        /* (rrr-c_1) cosine of the angle of joint 1 from its reference direction */
-        const real inv_rrr_rho2_1 = 1/rrr_rho2_1;
-        const real rrr_c_1 = inv_rrr_rho2_1*(rrr_Kc_1*rrr_Kd_1 - rrr_Ks_1*rrr_root_1);
-        /* (rrr-s_1) sine of the angle of joint 1 from its reference direction */
-        const real rrr_s_1 = inv_rrr_rho2_1*(rrr_Kc_1*rrr_root_1 + rrr_Kd_1*rrr_Ks_1);
-        /* (rrr-x_2) from the origin of joint 2 to the connection point */
-        const real inv_rrr_size_t = m->inv_rrr_size_t[i];
-        const real rrr_x_2_in_axes1_x = inv_rrr_size_t*rrr_Kd_1*rrr_joint2_offset_x -
-            rrr_joint2_offset_x;
-        /* (rrr-c_2) cosine of the angle of joint 2 from its reference direction */
-        const real inv_rrr_size_t_2 = m->inv_rrr_size_t_2[i];
-        const real rrr_platform_joint_offset_x = m->rrr_platform_joint_offset_x[i];
-        const real rrr_c_2 = inv_rrr_size_t_2*rrr_platform_joint_offset_x*rrr_x_2_in_axes1_x;
-        /* (rrr-s_2) sine of the angle of joint 2 from its reference direction */
-        const real rrr_s_2 =
-            -inv_rrr_size_t*inv_rrr_size_t_2*rrr_joint2_offset_x*rrr_platform_joint_offset_x*rrr_root_1;
-        /* (rrr-S_dot) velocity of the connection point */
-        const real omega_z = s[6*w + j];
-        const real rrr_S_dot_t = omega_z*rrr_q_y;
-        const real rrr_S_dot_t_2 = omega_z*rrr_q_x;
-        const real t_dot_x = s[4*w + j];
-        const real rrr_S_dot_x = t_dot_x - rrr_S_dot_t;
-        const real t_dot_y = s[5*w + j];
-        const real rrr_S_dot_y = rrr_S_dot_t_2 + t_dot_y;
-        /* (rrr-r_1) from joint 1 to the connection point, along the links */
-        const real rrr_r_1_in_axes1_y = rrr_platform_joint_offset_x*rrr_s_2;
-        const real rrr_r_1_in_axes1_x = rrr_joint2_offset_x + rrr_c_2*rrr_platform_joint_offset_x;
-        const real rrr_r_1_in_axes2_x = rrr_c_2*rrr_r_1_in_axes1_x + rrr_r_1_in_axes1_y*rrr_s_2;
-        const real rrr_r_1_in_axes2_y = rrr_c_2*rrr_r_1_in_axes1_y - rrr_r_1_in_axes1_x*rrr_s_2;
-        /* (rrr-w_1) reciprocal vector 1 */
-        const real rrr_w_1_in_axes2_x = -1/rrr_r_1_in_axes2_y;
+        values_rrr v;
+        stage_rrr_X(m, w, i, j, s, X, &v);
+        stage_rrr_V_X(m, w, i, j, V, &v);
         /* (rrr-qd_1) rate of joint 1 */
-        const real rrr_qd_1_t = rrr_c_1*rrr_s_2 + rrr_c_2*rrr_s_1;
-        const real rrr_qd_1_t_2 = rrr_c_1*rrr_c_2 - rrr_s_1*rrr_s_2;
-        const real axis_y_rrr_axes2_x = rrr_base_frame_xy*rrr_qd_1_t_2 -
-            rrr_base_frame_xx*rrr_qd_1_t;
-        const real axis_x_rrr_axes2_x = rrr_base_frame_yy*rrr_qd_1_t_2 -
-            rrr_base_frame_yx*rrr_qd_1_t;
-        const real rrr_qd_1 = rrr_w_1_in_axes2_x*(axis_x_rrr_axes2_x*rrr_S_dot_x -
-            axis_y_rrr_axes2_x*rrr_S_dot_y);
+        const real rrr_base_frame_xx = m->rrr_base_frame_xx[i];
+        const real rrr_base_frame_xy = m->rrr_base_frame_xy[i];
+        const real axis_y_rrr_axes2_x = rrr_base_frame_xy*v.rrr_qd_1_t_2 -
+            rrr_base_frame_xx*v.rrr_qd_1_t;
+        const real rrr_base_frame_yx = m->rrr_base_frame_yx[i];
+        const real rrr_base_frame_yy = m->rrr_base_frame_yy[i];
+        const real axis_x_rrr_axes2_x = rrr_base_frame_yy*v.rrr_qd_1_t_2 -
+            rrr_base_frame_yx*v.rrr_qd_1_t;
+        const real rrr_qd_1 = v.rrr_w_1_in_axes2_x*(axis_x_rrr_axes2_x*v.rrr_S_dot_x -
+            axis_y_rrr_axes2_x*v.rrr_S_dot_y);
         /* (rrr-W_1) centripetal tensor of link 1 */
         const real rrr_W_1_t = rrr_qd_1*rrr_qd_1;
         /* (rrr-omega_2) angular velocity of link 2 */
         const real rrr_w_2_in_axes2_y = m->rrr_w_2_in_axes2_y[i];
         const real rrr_omega_2_in_axes2_z = rrr_qd_1 +
-            rrr_w_2_in_axes2_y*(axis_x_rrr_axes2_x*rrr_S_dot_y + axis_y_rrr_axes2_x*rrr_S_dot_x -
-            rrr_qd_1*rrr_r_1_in_axes2_x);
+            rrr_w_2_in_axes2_y*(axis_x_rrr_axes2_x*v.rrr_S_dot_y +
+            axis_y_rrr_axes2_x*v.rrr_S_dot_x - rrr_qd_1*v.rrr_r_1_in_axes2_x);
         /* (rrr-W_2) centripetal tensor of link 2 */
         const real rrr_W_2_t = rrr_omega_2_in_axes2_z*rrr_omega_2_in_axes2_z;
         /* (rrr-u_1) centripetal acceleration of the connection point */
-        const real rrr_u_1_x = -omega_z*rrr_S_dot_t_2;
-        const real rrr_u_1_t = omega_z*rrr_S_dot_t;
+        const real omega_z = V[2*w + j];
+        const real rrr_u_1_x = -omega_z*v.rrr_S_dot_t_2;
+        const real rrr_u_1_t = omega_z*v.rrr_S_dot_t;
         const real rrr_u_1_in_axes2_x = axis_x_rrr_axes2_x*rrr_u_1_x +
             axis_y_rrr_axes2_x*rrr_u_1_t;
         const real rrr_u_1_in_axes2_y = axis_y_rrr_axes2_x*rrr_u_1_x -
             axis_x_rrr_axes2_x*rrr_u_1_t;
         /* (rrr-bias) acceleration of the connection point at zero joint accelerations */
+        const real rrr_joint2_offset_x = m->rrr_joint2_offset_x[i];
+        const real rrr_platform_joint_offset_x = m->rrr_platform_joint_offset_x[i];
         const real rrr_bias_in_axes2_x = -rrr_W_2_t*rrr_platform_joint_offset_x -
-            rrr_W_1_t*rrr_c_2*rrr_joint2_offset_x;
+            rrr_W_1_t*v.rrr_c_2*rrr_joint2_offset_x;
         /* (rrr-rel_o) remainder without the acceleration in: acceleration of the connection point left to
            the joint accelerations */
         const real rrr_rel_o_in_axes2_x = rrr_u_1_in_axes2_x - rrr_bias_in_axes2_x;
         const real rrr_rel_o_in_axes2_y = rrr_u_1_in_axes2_y -
-            rrr_W_1_t*rrr_joint2_offset_x*rrr_s_2;
+            rrr_W_1_t*rrr_joint2_offset_x*v.rrr_s_2;
         /* (rrr-B_1_o) remainder of the acceleration tensor of link 1 */
-        const real rrr_B_1_o_in_axes1_xy = -rrr_rel_o_in_axes2_x*rrr_w_1_in_axes2_x;
+        const real rrr_B_1_o_in_axes1_xy = -rrr_rel_o_in_axes2_x*v.rrr_w_1_in_axes2_x;
         /* (rrr-alpha_2_o) remainder without the acceleration in: angular acceleration of link 2 */
         const real rrr_alpha_2_o_in_axes2_z = rrr_w_2_in_axes2_y*(rrr_rel_o_in_axes2_y +
-            rrr_B_1_o_in_axes1_xy*rrr_r_1_in_axes2_x) - rrr_B_1_o_in_axes1_xy;
+            rrr_B_1_o_in_axes1_xy*v.rrr_r_1_in_axes2_x) - rrr_B_1_o_in_axes1_xy;
         /* (rrr-acc_2_o) remainder without the acceleration in: acceleration of the reference point of
            link 2, less gravity */
         const real gravity_x = m->gravity_x;
@@ -2346,9 +2511,9 @@ INLINE void Z_legs_rrr(const prepared *m, size_t w, size_t leg, size_t legs, con
         const real rrr_h_1_in_spec1_y = m->rrr_h_1_in_spec1_y[i];
         const real rrr_mu_1_t = m->rrr_mu_1_t[i];
         const real rrr_mu_1_t_2 = m->rrr_mu_1_t_2[i];
-        const real rrr_mu_1_o_in_axes1_z = rrr_h_1_in_spec1_y*(rrr_c_1*rrr_mu_1_t +
-            rrr_mu_1_t_2*rrr_s_1) - rrr_B_1_o_in_axes1_xy*rrr_J_1_in_spec1_zz -
-            rrr_h_1_in_spec1_x*(rrr_c_1*rrr_mu_1_t_2 - rrr_mu_1_t*rrr_s_1);
+        const real rrr_mu_1_o_in_axes1_z = rrr_h_1_in_spec1_y*(v.rrr_c_1*rrr_mu_1_t +
+            rrr_mu_1_t_2*v.rrr_s_1) - rrr_B_1_o_in_axes1_xy*rrr_J_1_in_spec1_zz -
+            rrr_h_1_in_spec1_x*(v.rrr_c_1*rrr_mu_1_t_2 - rrr_mu_1_t*v.rrr_s_1);
         /* (rrr-N_1_o) remainder without the acceleration in: moment about joint 1 of the links from 1
            outwards, the force at the connection point left out */
         const real rrr_N_1_o_in_axes1_z = rrr_mu_1_o_in_axes1_z + rrr_mu_2_o_in_axes2_z;
@@ -2359,7 +2524,7 @@ INLINE void Z_legs_rrr(const prepared *m, size_t w, size_t leg, size_t legs, con
            and without the mass at the connection point */
         const real rrr_c_o_in_axes2_x = rrr_W_2_t*rrr_h_2_in_spec2_x +
             rrr_alpha_2_o_in_axes2_z*rrr_h_2_in_spec2_y +
-            rrr_w_1_in_axes2_x*(rrr_G_o_in_axes2_y*rrr_r_1_in_axes2_x - rrr_N_1_o_in_axes1_z);
+            v.rrr_w_1_in_axes2_x*(rrr_G_o_in_axes2_y*v.rrr_r_1_in_axes2_x - rrr_N_1_o_in_axes1_z);
         const real rrr_c_o_in_axes2_y = rrr_W_2_t*rrr_h_2_in_spec2_y - rrr_G_o_in_axes2_y -
             rrr_alpha_2_o_in_axes2_z*rrr_h_2_in_spec2_x;
         /* (rrr-U) velocity and gravity terms of the leg force */
@@ -2368,7 +2533,7 @@ INLINE void Z_legs_rrr(const prepared *m, size_t w, size_t leg, size_t legs, con
         const real rrr_U_y = axis_y_rrr_axes2_x*rrr_c_o_in_axes2_x -
             axis_x_rrr_axes2_x*rrr_c_o_in_axes2_y;
         /* (Z_a) rotational part of Z */
-        const real rrr_Z_a_t = rrr_U_y*rrr_q_x - rrr_U_x*rrr_q_y;
+        const real rrr_Z_a_t = rrr_U_y*v.rrr_q_x - rrr_U_x*v.rrr_q_y;
         /* (Z_t) translational part of Z */
         gather(&terms[0*count + k], add, rrr_U_x);  /* Z_t_x_of_legs */
         gather(&terms[1*count + k], add, rrr_U_y);  /* Z_t_y_of_legs */
@@ -2376,9 +2541,9 @@ INLINE void Z_legs_rrr(const prepared *m, size_t w, size_t leg, size_t legs, con
         gather(&terms[2*count + k], add, rrr_Z_a_t);  /* Z_a_z_of_legs */
         const real rrr_rho2_1_t = m->rrr_rho2_1_t[i];
         const real rrr_size = m->rrr_size[i];
-        o[1*count + k] = UNLESS(magnitude(rrr_rho2_1) > TOLERANCE*TOLERANCE*rrr_rho2_1_t) +
-            UNLESS(magnitude(rrr_r_1_in_axes2_y) > TOLERANCE*rrr_size);
-        o[0*count + k] = UNLESS(rrr_disc_1 >= 0);
+        o[1*count + k] = UNLESS(magnitude(v.rrr_rho2_1) > TOLERANCE*TOLERANCE*rrr_rho2_1_t) +
+            UNLESS(magnitude(v.rrr_r_1_in_axes2_y) > TOLERANCE*rrr_size);
+        o[0*count + k] = UNLESS(v.rrr_disc_1 >= 0);
     }
 }
 
@@ -2394,15 +2559,15 @@ INLINE void Z_after(size_t w, const real *s, const real *sums, real *Z, verdict 
 {
     for (size_t k = 0; k < w; ++k) {
         /* (Z_t) translational part of Z */
-        const real Z_p_x = s[7*w + k];
+        const real Z_p_x = s[2*w + k];
         const real Z_t_x_of_legs = sums[0*w + k];
         const real Z_t_x = Z_p_x + Z_t_x_of_legs;
-        const real Z_p_y = s[8*w + k];
+        const real Z_p_y = s[3*w + k];
         const real Z_t_y_of_legs = sums[1*w + k];
         const real Z_t_y = Z_p_y + Z_t_y_of_legs;
         /* (Z_a) rotational part of Z */
         const real Z_a_z_of_legs = sums[2*w + k];
-        const real Z_q_z = s[9*w + k];
+        const real Z_q_z = s[4*w + k];
         const real Z_a_z = Z_a_z_of_legs + Z_q_z;
         /* (Z_t) translational part of Z */
         Z[0*w + k] = Z_t_x;
@@ -2415,21 +2580,18 @@ INLINE void Z_after(size_t w, const real *s, const real *sums, real *Z, verdict 
 
 INLINE void Z_run(const prepared *m, const real *X, const real *V, real *Z, verdict *t)
 {
-    real s[10] = {0};
-    real sums[3] = {0};
-    real terms_crank[3*LEGS(LEGS_OF_crank)] = {0};
-    real o_crank[LEGS(LEGS_OF_crank)] = {0};
-    real terms_rrr[3*LEGS(LEGS_OF_rrr)] = {0};
-    real o_rrr[2*LEGS(LEGS_OF_rrr)] = {0};
+    real s[5] = {0}, sums[3] = {0};
+    real terms_crank[3*LEGS(LEGS_OF_crank)] = {0}, o_crank[LEGS(LEGS_OF_crank)] = {0};
+    real terms_rrr[3*LEGS(LEGS_OF_rrr)] = {0}, o_rrr[2*LEGS(LEGS_OF_rrr)] = {0};
     Z_before(m, 1, X, V, s);
-    Z_legs_crank(m, 1, 0, 1, s, 0, LEGS(LEGS_OF_crank), 0, terms_crank, o_crank);
+    Z_legs_crank(m, 1, 0, 1, s, 0, LEGS(LEGS_OF_crank), 0, X, V, terms_crank, o_crank);
+    Z_legs_rrr(m, 1, 0, 1, s, 0, LEGS(LEGS_OF_rrr), 0, X, V, terms_rrr, o_rrr);
     for (size_t leg = 0; leg < LEGS_OF_crank; ++leg) {
         Z_place_crank(1, LEGS(LEGS_OF_crank), o_crank, leg, t);
     }
     for (size_t n = 0; n < 3; ++n) {
         sums[n] = total(terms_crank + n*LEGS(LEGS_OF_crank), LEGS_OF_crank);
     }
-    Z_legs_rrr(m, 1, 0, 1, s, 0, LEGS(LEGS_OF_rrr), 0, terms_rrr, o_rrr);
     for (size_t leg = 0; leg < LEGS_OF_rrr; ++leg) {
         Z_place_rrr(1, LEGS(LEGS_OF_rrr), o_rrr, leg, t);
     }
@@ -2441,86 +2603,53 @@ INLINE void Z_run(const prepared *m, const real *X, const real *V, real *Z, verd
 
 INLINE void Z_run_lanes(const prepared *m, const real *X, const real *V, real *Z, verdict *t)
 {
-    real s[10*LANES];
-    real sums[3*LANES];
+    real s[5*LANES], sums[3*LANES];
     real o_crank[LANES];
     real o_rrr[2*LANES];
     Z_before(m, LANES, X, V, s);
     clear(sums, 3*LANES);
     for (size_t leg = 0; leg < LEGS_OF_crank; ++leg) {
-        Z_legs_crank(m, LANES, leg, 0, s, 1, LANES, 1, sums, o_crank);
+        Z_legs_crank(m, LANES, leg, 0, s, 1, LANES, 1, X, V, sums, o_crank);
         Z_place_crank(LANES, LANES, o_crank, 0, t);
     }
     for (size_t leg = 0; leg < LEGS_OF_rrr; ++leg) {
-        Z_legs_rrr(m, LANES, leg, 0, s, 1, LANES, 1, sums, o_rrr);
+        Z_legs_rrr(m, LANES, leg, 0, s, 1, LANES, 1, X, V, sums, o_rrr);
         Z_place_rrr(LANES, LANES, o_rrr, 0, t);
     }
     Z_after(LANES, s, sums, Z, t);
 }
 
 /* ---- H ---- */
-INLINE void H_before(size_t w, const real *X, real *s)
+INLINE void H_before(const prepared *m, size_t w, const real *X, real *s)
 {
     for (size_t k = 0; k < w; ++k) {
-        /* X: named entries */
-        const real X_0 = X[0*w + k];
-        const real t_x = X_0;
-        const real X_1 = X[1*w + k];
-        const real t_y = X_1;
-        const real X_2 = X[2*w + k];
-        const real R_xx = cosine(X_2);
-        const real R_yx = sine(X_2);
-        s[0*w + k] = t_x;
-        s[1*w + k] = t_y;
-        s[2*w + k] = R_xx;
-        s[3*w + k] = R_yx;
+        values v;
+        stage_X(m, w, k, X, &v);
+        s[0*w + k] = v.R_xx;
+        s[1*w + k] = v.R_yx;
     }
 }
 
 INLINE void H_legs_crank(const prepared *m, size_t w, size_t leg, size_t legs, const real *s,
-    size_t states, size_t count, real *o)
+    size_t states, size_t count, const real *X, real *o)
 {
     for (size_t k = 0; k < count; ++k) {
         const size_t i = leg + legs*k;
         const size_t j = states*k;
-        /* (crank-S) from the base point to the connection point */
-        const real R_xx = s[2*w + j];
-        const real R_yx = s[3*w + j];
-        const real crank_platform_point_x = m->crank_platform_point_x[i];
-        const real crank_platform_point_y = m->crank_platform_point_y[i];
-        const real crank_q_x = R_xx*crank_platform_point_x - R_yx*crank_platform_point_y;
-        const real crank_q_y = R_xx*crank_platform_point_y + R_yx*crank_platform_point_x;
-        const real crank_base_point_x = m->crank_base_point_x[i];
-        const real t_x = s[0*w + j];
-        const real crank_S_x = crank_q_x + t_x - crank_base_point_x;
-        const real crank_base_point_y = m->crank_base_point_y[i];
-        const real t_y = s[1*w + j];
-        const real crank_S_y = crank_q_y + t_y - crank_base_point_y;
-        /* (crank-rho2_1) squared amplitude */
-        const real crank_base_frame_xy = m->crank_base_frame_xy[i];
-        const real crank_base_frame_yy = m->crank_base_frame_yy[i];
-        const real crank_rho2_1_t = crank_S_x*crank_base_frame_xy + crank_S_y*crank_base_frame_yy;
-        const real crank_base_frame_xx = m->crank_base_frame_xx[i];
-        const real crank_base_frame_yx = m->crank_base_frame_yx[i];
-        const real crank_rho2_1_t_2 = crank_S_x*crank_base_frame_xx +
-            crank_S_y*crank_base_frame_yx;
-        const real crank_size_t = m->crank_size_t[i];
-        const real crank_rho2_1 = crank_size_t*(crank_rho2_1_t*crank_rho2_1_t +
-            crank_rho2_1_t_2*crank_rho2_1_t_2);
-        /* (crank-c_1) cosine of the angle of joint 1 from its reference direction */
-        const real crank_c_1_t = 1/(root(crank_rho2_1));
-        const real crank_platform_joint_offset_x = m->crank_platform_joint_offset_x[i];
-        const real crank_c_1 = crank_c_1_t*crank_platform_joint_offset_x*crank_rho2_1_t_2;
-        /* (crank-s_1) sine of the angle of joint 1 from its reference direction */
-        const real crank_s_1 = crank_c_1_t*crank_platform_joint_offset_x*crank_rho2_1_t;
+        values_crank v;
+        stage_crank_X(m, w, i, j, s, X, &v);
         /* (crank-w_1) reciprocal vector 1 */
+        const real crank_base_frame_xx = m->crank_base_frame_xx[i];
+        const real crank_base_frame_xy = m->crank_base_frame_xy[i];
         const real crank_w_1_in_axes1_y = m->crank_w_1_in_axes1_y[i];
-        const real crank_w_1_x = crank_w_1_in_axes1_y*(crank_base_frame_xy*crank_c_1 -
-            crank_base_frame_xx*crank_s_1);
-        const real crank_w_1_y = crank_w_1_in_axes1_y*(crank_base_frame_yy*crank_c_1 -
-            crank_base_frame_yx*crank_s_1);
+        const real crank_w_1_x = crank_w_1_in_axes1_y*(crank_base_frame_xy*v.crank_c_1 -
+            crank_base_frame_xx*v.crank_s_1);
+        const real crank_base_frame_yx = m->crank_base_frame_yx[i];
+        const real crank_base_frame_yy = m->crank_base_frame_yy[i];
+        const real crank_w_1_y = crank_w_1_in_axes1_y*(crank_base_frame_yy*v.crank_c_1 -
+            crank_base_frame_yx*v.crank_s_1);
         /* (crank-H_a_1) moment of the column's unit force about the platform origin */
-        const real crank_H_a_1_z = crank_q_x*crank_w_1_y - crank_q_y*crank_w_1_x;
+        const real crank_H_a_1_z = v.crank_q_x*crank_w_1_y - v.crank_q_y*crank_w_1_x;
         /* (crank-w_1) reciprocal vector 1 */
         o[0*count + k] = crank_w_1_x;
         o[1*count + k] = crank_w_1_y;
@@ -2528,7 +2657,7 @@ INLINE void H_legs_crank(const prepared *m, size_t w, size_t leg, size_t legs, c
         o[2*count + k] = crank_H_a_1_z;
         o[4*count + k] = crank_w_1_x + (crank_w_1_y + crank_H_a_1_z);
         const real crank_root_1_t = m->crank_root_1_t[i];
-        o[3*count + k] = UNLESS(magnitude(crank_rho2_1) > TOLERANCE*TOLERANCE*crank_root_1_t);
+        o[3*count + k] = UNLESS(magnitude(v.crank_rho2_1) > TOLERANCE*TOLERANCE*crank_root_1_t);
     }
 }
 
@@ -2536,7 +2665,7 @@ INLINE void H_place_crank(size_t w, size_t count, const real *o, size_t first, r
     *t)
 {
     for (size_t k = 0; k < w; ++k) {
-        H[0*NU*w + k] = o[0*count + first + k];
+        H[0*w + k] = o[0*count + first + k];
         H[NU*w + k] = o[1*count + first + k];
         H[2*NU*w + k] = o[2*count + first + k];
         t->singular[k] += o[3*count + first + k];
@@ -2545,98 +2674,32 @@ INLINE void H_place_crank(size_t w, size_t count, const real *o, size_t first, r
 }
 
 INLINE void H_legs_rrr(const prepared *m, size_t w, size_t leg, size_t legs, const real *s, size_t
-    states, size_t count, real *o)
+    states, size_t count, const real *X, real *o)
 {
     for (size_t k = 0; k < count; ++k) {
         const size_t i = leg + legs*k;
         const size_t j = states*k;
-        /* (rrr-S) from the base point to the connection point */
-        const real R_xx = s[2*w + j];
-        const real R_yx = s[3*w + j];
-        const real rrr_platform_point_x = m->rrr_platform_point_x[i];
-        const real rrr_platform_point_y = m->rrr_platform_point_y[i];
-        const real rrr_q_x = R_xx*rrr_platform_point_x - R_yx*rrr_platform_point_y;
-        const real rrr_q_y = R_xx*rrr_platform_point_y + R_yx*rrr_platform_point_x;
-        const real rrr_base_point_x = m->rrr_base_point_x[i];
-        const real t_x = s[0*w + j];
-        const real rrr_S_x = rrr_q_x + t_x - rrr_base_point_x;
-        const real rrr_base_point_y = m->rrr_base_point_y[i];
-        const real t_y = s[1*w + j];
-        const real rrr_S_y = rrr_q_y + t_y - rrr_base_point_y;
-        /* (rrr-Kd_1) projection on the centre's direction, from the distance fixed by the joints beyond
-           joint 1 */
-        const real rrr_Kd_1_t_3 = rrr_S_x*rrr_S_x + rrr_S_y*rrr_S_y;
-        const real rrr_Kd_1_t = m->rrr_Kd_1_t[i];
-        const real rrr_Kd_1_t_2 = m->rrr_Kd_1_t_2[i];
-        const real rrr_Kd_1 = rrr_Kd_1_t + R(0.5)*rrr_Kd_1_t_3 - rrr_Kd_1_t_2;
-        /* (rrr-px_1) component along the reference direction */
-        const real rrr_base_frame_xx = m->rrr_base_frame_xx[i];
-        const real rrr_base_frame_yx = m->rrr_base_frame_yx[i];
-        const real rrr_px_1 = rrr_S_x*rrr_base_frame_xx + rrr_S_y*rrr_base_frame_yx;
-        /* (rrr-py_1) component across the reference direction */
-        const real rrr_base_frame_xy = m->rrr_base_frame_xy[i];
-        const real rrr_base_frame_yy = m->rrr_base_frame_yy[i];
-        const real rrr_py_1 = rrr_S_x*rrr_base_frame_xy + rrr_S_y*rrr_base_frame_yy;
-        /* (rrr-Kc_1) factor of the cosine in the equation of joint 1 */
-        const real rrr_joint2_offset_x = m->rrr_joint2_offset_x[i];
-        const real rrr_Kc_1 = rrr_joint2_offset_x*rrr_px_1;
-        /* (rrr-Ks_1) factor of the sine in the equation of joint 1 */
-        const real rrr_Ks_1 = rrr_joint2_offset_x*rrr_py_1;
-        /* (rrr-rho2_1) squared amplitude */
-        const real rrr_rho2_1 = rrr_Kc_1*rrr_Kc_1 + rrr_Ks_1*rrr_Ks_1;
-        /* (rrr-disc_1) discriminant */
-        const real rrr_disc_1 = rrr_rho2_1 - rrr_Kd_1*rrr_Kd_1;
-        /* (rrr-root_1) root, with the sign of the branch */
-        const real rrr_branch_1 = m->rrr_branch_1[i];
-        const real rrr_root_1 = rrr_branch_1*root(rrr_disc_1);
-        /* (rrr-c_1) cosine of the angle of joint 1 from its reference direction */
-        const real inv_rrr_rho2_1 = 1/rrr_rho2_1;
-        const real rrr_c_1 = inv_rrr_rho2_1*(rrr_Kc_1*rrr_Kd_1 - rrr_Ks_1*rrr_root_1);
-        /* (rrr-s_1) sine of the angle of joint 1 from its reference direction */
-        const real rrr_s_1 = inv_rrr_rho2_1*(rrr_Kc_1*rrr_root_1 + rrr_Kd_1*rrr_Ks_1);
-        /* (rrr-x_2) from the origin of joint 2 to the connection point */
-        const real inv_rrr_size_t = m->inv_rrr_size_t[i];
-        const real rrr_x_2_in_axes1_x = inv_rrr_size_t*rrr_Kd_1*rrr_joint2_offset_x -
-            rrr_joint2_offset_x;
-        /* (rrr-c_2) cosine of the angle of joint 2 from its reference direction */
-        const real inv_rrr_size_t_2 = m->inv_rrr_size_t_2[i];
-        const real rrr_platform_joint_offset_x = m->rrr_platform_joint_offset_x[i];
-        const real rrr_c_2 = inv_rrr_size_t_2*rrr_platform_joint_offset_x*rrr_x_2_in_axes1_x;
-        /* (rrr-s_2) sine of the angle of joint 2 from its reference direction */
-        const real rrr_s_2 =
-            -inv_rrr_size_t*inv_rrr_size_t_2*rrr_joint2_offset_x*rrr_platform_joint_offset_x*rrr_root_1;
-        /* (rrr-r_1) from joint 1 to the connection point, along the links */
-        const real rrr_r_1_in_axes1_x = rrr_joint2_offset_x + rrr_c_2*rrr_platform_joint_offset_x;
-        const real rrr_r_1_in_axes2_y = rrr_c_2*rrr_platform_joint_offset_x*rrr_s_2 -
-            rrr_r_1_in_axes1_x*rrr_s_2;
+        values_rrr v;
+        stage_rrr_X(m, w, i, j, s, X, &v);
+        stage_rrr_H_condition(m, i, &v);
         /* (rrr-w_1) reciprocal vector 1 */
-        const real rrr_w_1_t = rrr_c_1*rrr_s_2 + rrr_c_2*rrr_s_1;
-        const real rrr_w_1_t_2 = rrr_c_1*rrr_c_2 - rrr_s_1*rrr_s_2;
-        const real rrr_w_1_in_axes2_x = -1/rrr_r_1_in_axes2_y;
-        const real rrr_w_1_x = rrr_w_1_in_axes2_x*(rrr_base_frame_yy*rrr_w_1_t_2 -
-            rrr_base_frame_yx*rrr_w_1_t);
-        const real rrr_w_1_y = -rrr_w_1_in_axes2_x*(rrr_base_frame_xy*rrr_w_1_t_2 -
-            rrr_base_frame_xx*rrr_w_1_t);
+        o[0*count + k] = v.rrr_w_1_x;
+        o[1*count + k] = v.rrr_w_1_y;
         /* (rrr-H_a_1) moment of the column's unit force about the platform origin */
-        const real rrr_H_a_1_z = rrr_q_x*rrr_w_1_y - rrr_q_y*rrr_w_1_x;
-        /* (rrr-w_1) reciprocal vector 1 */
-        o[0*count + k] = rrr_w_1_x;
-        o[1*count + k] = rrr_w_1_y;
-        /* (rrr-H_a_1) moment of the column's unit force about the platform origin */
-        o[2*count + k] = rrr_H_a_1_z;
-        o[5*count + k] = rrr_w_1_x + (rrr_w_1_y + rrr_H_a_1_z);
+        o[2*count + k] = v.rrr_H_a_1_z;
+        o[5*count + k] = v.rrr_w_1_x + (v.rrr_w_1_y + v.rrr_H_a_1_z);
         const real rrr_rho2_1_t = m->rrr_rho2_1_t[i];
         const real rrr_size = m->rrr_size[i];
-        o[4*count + k] = UNLESS(magnitude(rrr_rho2_1) > TOLERANCE*TOLERANCE*rrr_rho2_1_t) +
-            UNLESS(magnitude(rrr_r_1_in_axes2_y) > TOLERANCE*rrr_size);
-        o[3*count + k] = UNLESS(rrr_disc_1 >= 0);
+        o[4*count + k] = UNLESS(magnitude(v.rrr_rho2_1) > TOLERANCE*TOLERANCE*rrr_rho2_1_t) +
+            UNLESS(magnitude(v.rrr_r_1_in_axes2_y) > TOLERANCE*rrr_size);
+        o[3*count + k] = UNLESS(v.rrr_disc_1 >= 0);
     }
 }
 
 INLINE void H_place_rrr(size_t w, size_t count, const real *o, size_t first, real *H, verdict *t)
 {
     for (size_t k = 0; k < w; ++k) {
-        H[(0*NU + 1)*w + k] = o[0*count + first + k];
+        H[1*w + k] = o[0*count + first + k];
         H[(NU + 1)*w + k] = o[1*count + first + k];
         H[(2*NU + 1)*w + k] = o[2*count + first + k];
         t->unreachable[k] += o[3*count + first + k];
@@ -2647,15 +2710,15 @@ INLINE void H_place_rrr(size_t w, size_t count, const real *o, size_t first, rea
 
 INLINE void H_run(const prepared *m, const real *X, real *H, verdict *t)
 {
-    real s[4] = {0};
+    real s[2] = {0};
     real o_crank[5*LEGS(LEGS_OF_crank)] = {0};
     real o_rrr[6*LEGS(LEGS_OF_rrr)] = {0};
-    H_before(1, X, s);
-    H_legs_crank(m, 1, 0, 1, s, 0, LEGS(LEGS_OF_crank), o_crank);
+    H_before(m, 1, X, s);
+    H_legs_crank(m, 1, 0, 1, s, 0, LEGS(LEGS_OF_crank), X, o_crank);
+    H_legs_rrr(m, 1, 0, 1, s, 0, LEGS(LEGS_OF_rrr), X, o_rrr);
     for (size_t leg = 0; leg < LEGS_OF_crank; ++leg) {
         H_place_crank(1, LEGS(LEGS_OF_crank), o_crank, leg, H, t);
     }
-    H_legs_rrr(m, 1, 0, 1, s, 0, LEGS(LEGS_OF_rrr), o_rrr);
     for (size_t leg = 0; leg < LEGS_OF_rrr; ++leg) {
         H_place_rrr(1, LEGS(LEGS_OF_rrr), o_rrr, leg, H, t);
     }
@@ -2663,83 +2726,51 @@ INLINE void H_run(const prepared *m, const real *X, real *H, verdict *t)
 
 INLINE void H_run_lanes(const prepared *m, const real *X, real *H, verdict *t)
 {
-    real s[4*LANES];
+    real s[2*LANES];
     real o_crank[5*LANES];
     real o_rrr[6*LANES];
-    H_before(LANES, X, s);
+    H_before(m, LANES, X, s);
     for (size_t leg = 0; leg < LEGS_OF_crank; ++leg) {
-        H_legs_crank(m, LANES, leg, 0, s, 1, LANES, o_crank);
+        H_legs_crank(m, LANES, leg, 0, s, 1, LANES, X, o_crank);
         H_place_crank(LANES, LANES, o_crank, 0, H, t);
     }
     for (size_t leg = 0; leg < LEGS_OF_rrr; ++leg) {
-        H_legs_rrr(m, LANES, leg, 0, s, 1, LANES, o_rrr);
+        H_legs_rrr(m, LANES, leg, 0, s, 1, LANES, X, o_rrr);
         H_place_rrr(LANES, LANES, o_rrr, 0, H, t);
     }
 }
 
 /* ---- Hk ---- */
-INLINE void Hk_before(size_t w, const real *X, real *s)
+INLINE void Hk_before(const prepared *m, size_t w, const real *X, real *s)
 {
     for (size_t k = 0; k < w; ++k) {
-        /* X: named entries */
-        const real X_0 = X[0*w + k];
-        const real t_x = X_0;
-        const real X_1 = X[1*w + k];
-        const real t_y = X_1;
-        const real X_2 = X[2*w + k];
-        const real R_xx = cosine(X_2);
-        const real R_yx = sine(X_2);
-        s[0*w + k] = t_x;
-        s[1*w + k] = t_y;
-        s[2*w + k] = R_xx;
-        s[3*w + k] = R_yx;
+        values v;
+        stage_X(m, w, k, X, &v);
+        s[0*w + k] = v.R_xx;
+        s[1*w + k] = v.R_yx;
     }
 }
 
 INLINE void Hk_legs_crank(const prepared *m, size_t w, size_t leg, size_t legs, const real *s,
-    size_t states, size_t count, real *o)
+    size_t states, size_t count, const real *X, real *o)
 {
     for (size_t k = 0; k < count; ++k) {
         const size_t i = leg + legs*k;
         const size_t j = states*k;
-        /* (crank-S) from the base point to the connection point */
-        const real R_xx = s[2*w + j];
-        const real R_yx = s[3*w + j];
-        const real crank_platform_point_x = m->crank_platform_point_x[i];
-        const real crank_platform_point_y = m->crank_platform_point_y[i];
-        const real crank_q_x = R_xx*crank_platform_point_x - R_yx*crank_platform_point_y;
-        const real crank_q_y = R_xx*crank_platform_point_y + R_yx*crank_platform_point_x;
-        const real crank_base_point_x = m->crank_base_point_x[i];
-        const real t_x = s[0*w + j];
-        const real crank_S_x = crank_q_x + t_x - crank_base_point_x;
-        const real crank_base_point_y = m->crank_base_point_y[i];
-        const real t_y = s[1*w + j];
-        const real crank_S_y = crank_q_y + t_y - crank_base_point_y;
-        /* (crank-rho2_1) squared amplitude */
-        const real crank_base_frame_xy = m->crank_base_frame_xy[i];
-        const real crank_base_frame_yy = m->crank_base_frame_yy[i];
-        const real crank_rho2_1_t = crank_S_x*crank_base_frame_xy + crank_S_y*crank_base_frame_yy;
-        const real crank_base_frame_xx = m->crank_base_frame_xx[i];
-        const real crank_base_frame_yx = m->crank_base_frame_yx[i];
-        const real crank_rho2_1_t_2 = crank_S_x*crank_base_frame_xx +
-            crank_S_y*crank_base_frame_yx;
-        const real crank_size_t = m->crank_size_t[i];
-        const real crank_rho2_1 = crank_size_t*(crank_rho2_1_t*crank_rho2_1_t +
-            crank_rho2_1_t_2*crank_rho2_1_t_2);
-        /* (crank-c_1) cosine of the angle of joint 1 from its reference direction */
-        const real crank_c_1_t = 1/(root(crank_rho2_1));
-        const real crank_platform_joint_offset_x = m->crank_platform_joint_offset_x[i];
-        const real crank_c_1 = crank_c_1_t*crank_platform_joint_offset_x*crank_rho2_1_t_2;
-        /* (crank-s_1) sine of the angle of joint 1 from its reference direction */
-        const real crank_s_1 = crank_c_1_t*crank_platform_joint_offset_x*crank_rho2_1_t;
+        values_crank v;
+        stage_crank_X(m, w, i, j, s, X, &v);
         /* (crank-n_c) direction of the constraint force */
+        const real crank_base_frame_yx = m->crank_base_frame_yx[i];
+        const real crank_base_frame_yy = m->crank_base_frame_yy[i];
         const real crank_n_c_in_axes1_x = m->crank_n_c_in_axes1_x[i];
-        const real crank_n_c_x = crank_n_c_in_axes1_x*(crank_base_frame_yy*crank_c_1 -
-            crank_base_frame_yx*crank_s_1);
-        const real crank_n_c_y = -crank_n_c_in_axes1_x*(crank_base_frame_xy*crank_c_1 -
-            crank_base_frame_xx*crank_s_1);
+        const real crank_n_c_x = crank_n_c_in_axes1_x*(crank_base_frame_yy*v.crank_c_1 -
+            crank_base_frame_yx*v.crank_s_1);
+        const real crank_base_frame_xx = m->crank_base_frame_xx[i];
+        const real crank_base_frame_xy = m->crank_base_frame_xy[i];
+        const real crank_n_c_y = -crank_n_c_in_axes1_x*(crank_base_frame_xy*v.crank_c_1 -
+            crank_base_frame_xx*v.crank_s_1);
         /* (crank-Hk_a_1) moment of the column's unit force about the platform origin */
-        const real crank_Hk_a_1_z = crank_n_c_y*crank_q_x - crank_n_c_x*crank_q_y;
+        const real crank_Hk_a_1_z = crank_n_c_y*v.crank_q_x - crank_n_c_x*v.crank_q_y;
         /* (crank-n_c) direction of the constraint force */
         o[0*count + k] = crank_n_c_x;
         o[1*count + k] = crank_n_c_y;
@@ -2747,7 +2778,7 @@ INLINE void Hk_legs_crank(const prepared *m, size_t w, size_t leg, size_t legs, 
         o[2*count + k] = crank_Hk_a_1_z;
         o[4*count + k] = crank_n_c_x + (crank_n_c_y + crank_Hk_a_1_z);
         const real crank_root_1_t = m->crank_root_1_t[i];
-        o[3*count + k] = UNLESS(magnitude(crank_rho2_1) > TOLERANCE*TOLERANCE*crank_root_1_t);
+        o[3*count + k] = UNLESS(magnitude(v.crank_rho2_1) > TOLERANCE*TOLERANCE*crank_root_1_t);
     }
 }
 
@@ -2755,7 +2786,7 @@ INLINE void Hk_place_crank(size_t w, size_t count, const real *o, size_t first, 
     *t)
 {
     for (size_t k = 0; k < w; ++k) {
-        Hk[0*NC*w + k] = o[0*count + first + k];
+        Hk[0*w + k] = o[0*count + first + k];
         Hk[NC*w + k] = o[1*count + first + k];
         Hk[2*NC*w + k] = o[2*count + first + k];
         t->singular[k] += o[3*count + first + k];
@@ -2765,10 +2796,10 @@ INLINE void Hk_place_crank(size_t w, size_t count, const real *o, size_t first, 
 
 INLINE void Hk_run(const prepared *m, const real *X, real *Hk, verdict *t)
 {
-    real s[4] = {0};
+    real s[2] = {0};
     real o_crank[5*LEGS(LEGS_OF_crank)] = {0};
-    Hk_before(1, X, s);
-    Hk_legs_crank(m, 1, 0, 1, s, 0, LEGS(LEGS_OF_crank), o_crank);
+    Hk_before(m, 1, X, s);
+    Hk_legs_crank(m, 1, 0, 1, s, 0, LEGS(LEGS_OF_crank), X, o_crank);
     for (size_t leg = 0; leg < LEGS_OF_crank; ++leg) {
         Hk_place_crank(1, LEGS(LEGS_OF_crank), o_crank, leg, Hk, t);
     }
@@ -2776,101 +2807,43 @@ INLINE void Hk_run(const prepared *m, const real *X, real *Hk, verdict *t)
 
 INLINE void Hk_run_lanes(const prepared *m, const real *X, real *Hk, verdict *t)
 {
-    real s[4*LANES];
+    real s[2*LANES];
     real o_crank[5*LANES];
-    Hk_before(LANES, X, s);
+    Hk_before(m, LANES, X, s);
     for (size_t leg = 0; leg < LEGS_OF_crank; ++leg) {
-        Hk_legs_crank(m, LANES, leg, 0, s, 1, LANES, o_crank);
+        Hk_legs_crank(m, LANES, leg, 0, s, 1, LANES, X, o_crank);
         Hk_place_crank(LANES, LANES, o_crank, 0, Hk, t);
     }
 }
 
 /* ---- constraint_bias ---- */
-INLINE void constraint_bias_before(size_t w, const real *X, const real *V, real *s)
+INLINE void constraint_bias_before(const prepared *m, size_t w, const real *X, real *s)
 {
     for (size_t k = 0; k < w; ++k) {
-        /* X: named entries */
-        const real X_0 = X[0*w + k];
-        const real t_x = X_0;
-        const real X_1 = X[1*w + k];
-        const real t_y = X_1;
-        const real X_2 = X[2*w + k];
-        const real R_xx = cosine(X_2);
-        const real R_yx = sine(X_2);
-        /* V: named entries */
-        const real V_0 = V[0*w + k];
-        const real t_dot_x = V_0;
-        const real V_1 = V[1*w + k];
-        const real t_dot_y = V_1;
-        const real V_2 = V[2*w + k];
-        const real omega_z = V_2;
-        s[0*w + k] = t_x;
-        s[1*w + k] = t_y;
-        s[2*w + k] = R_xx;
-        s[3*w + k] = R_yx;
-        s[4*w + k] = t_dot_x;
-        s[5*w + k] = t_dot_y;
-        s[6*w + k] = omega_z;
+        values v;
+        stage_X(m, w, k, X, &v);
+        s[0*w + k] = v.R_xx;
+        s[1*w + k] = v.R_yx;
     }
 }
 
 INLINE void constraint_bias_legs_crank(const prepared *m, size_t w, size_t leg, size_t legs, const
-    real *s, size_t states, size_t count, real *o)
+    real *s, size_t states, size_t count, const real *X, const real *V, real *o)
 {
     for (size_t k = 0; k < count; ++k) {
         const size_t i = leg + legs*k;
         const size_t j = states*k;
-        /* (crank-S) from the base point to the connection point */
-        const real R_xx = s[2*w + j];
-        const real R_yx = s[3*w + j];
-        const real crank_platform_point_x = m->crank_platform_point_x[i];
-        const real crank_platform_point_y = m->crank_platform_point_y[i];
-        const real crank_q_x = R_xx*crank_platform_point_x - R_yx*crank_platform_point_y;
-        const real crank_q_y = R_xx*crank_platform_point_y + R_yx*crank_platform_point_x;
-        const real crank_base_point_x = m->crank_base_point_x[i];
-        const real t_x = s[0*w + j];
-        const real crank_S_x = crank_q_x + t_x - crank_base_point_x;
-        const real crank_base_point_y = m->crank_base_point_y[i];
-        const real t_y = s[1*w + j];
-        const real crank_S_y = crank_q_y + t_y - crank_base_point_y;
-        /* (crank-rho2_1) squared amplitude */
-        const real crank_base_frame_xy = m->crank_base_frame_xy[i];
-        const real crank_base_frame_yy = m->crank_base_frame_yy[i];
-        const real crank_rho2_1_t = crank_S_x*crank_base_frame_xy + crank_S_y*crank_base_frame_yy;
-        const real crank_base_frame_xx = m->crank_base_frame_xx[i];
-        const real crank_base_frame_yx = m->crank_base_frame_yx[i];
-        const real crank_rho2_1_t_2 = crank_S_x*crank_base_frame_xx +
-            crank_S_y*crank_base_frame_yx;
-        const real crank_size_t = m->crank_size_t[i];
-        const real crank_rho2_1 = crank_size_t*(crank_rho2_1_t*crank_rho2_1_t +
-            crank_rho2_1_t_2*crank_rho2_1_t_2);
-        /* (crank-c_1) cosine of the angle of joint 1 from its reference direction */
-        const real crank_c_1_t = 1/(root(crank_rho2_1));
-        const real crank_platform_joint_offset_x = m->crank_platform_joint_offset_x[i];
-        const real crank_c_1 = crank_c_1_t*crank_platform_joint_offset_x*crank_rho2_1_t_2;
-        /* (crank-s_1) sine of the angle of joint 1 from its reference direction */
-        const real crank_s_1 = crank_c_1_t*crank_platform_joint_offset_x*crank_rho2_1_t;
-        /* (crank-S_dot) velocity of the connection point */
-        const real axis_y_crank_axes1_x = crank_base_frame_xy*crank_c_1 -
-            crank_base_frame_xx*crank_s_1;
-        const real axis_x_crank_axes1_x = crank_base_frame_yy*crank_c_1 -
-            crank_base_frame_yx*crank_s_1;
-        const real omega_z = s[6*w + j];
-        const real crank_S_dot_t = crank_q_y*omega_z;
-        const real crank_S_dot_t_2 = crank_q_x*omega_z;
-        const real t_dot_x = s[4*w + j];
-        const real crank_S_dot_x = t_dot_x - crank_S_dot_t;
-        const real t_dot_y = s[5*w + j];
-        const real crank_S_dot_y = crank_S_dot_t_2 + t_dot_y;
-        const real crank_S_dot_in_axes1_y = axis_x_crank_axes1_x*crank_S_dot_y +
-            axis_y_crank_axes1_x*crank_S_dot_x;
+        values_crank v;
+        stage_crank_X(m, w, i, j, s, X, &v);
+        stage_crank_constraint_bias_dynamics(w, j, V, &v);
         /* (crank-rel_o) remainder without the acceleration in: acceleration of the connection point left
            to the joint accelerations */
         const real crank_w_1_in_axes1_y = m->crank_w_1_in_axes1_y[i];
+        const real omega_z = V[2*w + j];
         const real crank_rel_o_in_axes1_x =
-            crank_S_dot_in_axes1_y*crank_S_dot_in_axes1_y*crank_w_1_in_axes1_y +
-            axis_y_crank_axes1_x*crank_S_dot_t*omega_z -
-            axis_x_crank_axes1_x*crank_S_dot_t_2*omega_z;
+            v.crank_S_dot_in_axes1_y*v.crank_S_dot_in_axes1_y*crank_w_1_in_axes1_y +
+            v.axis_y_crank_axes1_x*v.crank_S_dot_t*omega_z -
+            v.axis_x_crank_axes1_x*v.crank_S_dot_t_2*omega_z;
         /* (crank-gamma_c1) part of the constraint's second derivative that does not hold the acceleration
            */
         const real crank_n_c_in_axes1_x = m->crank_n_c_in_axes1_x[i];
@@ -2880,7 +2853,7 @@ INLINE void constraint_bias_legs_crank(const prepared *m, size_t w, size_t leg, 
         o[0*count + k] = crank_gamma_c1;
         o[2*count + k] = crank_gamma_c1;
         const real crank_root_1_t = m->crank_root_1_t[i];
-        o[1*count + k] = UNLESS(magnitude(crank_rho2_1) > TOLERANCE*TOLERANCE*crank_root_1_t);
+        o[1*count + k] = UNLESS(magnitude(v.crank_rho2_1) > TOLERANCE*TOLERANCE*crank_root_1_t);
     }
 }
 
@@ -2897,10 +2870,10 @@ INLINE void constraint_bias_place_crank(size_t w, size_t count, const real *o, s
 INLINE void constraint_bias_run(const prepared *m, const real *X, const real *V, real
     *constraint_bias, verdict *t)
 {
-    real s[7] = {0};
+    real s[2] = {0};
     real o_crank[3*LEGS(LEGS_OF_crank)] = {0};
-    constraint_bias_before(1, X, V, s);
-    constraint_bias_legs_crank(m, 1, 0, 1, s, 0, LEGS(LEGS_OF_crank), o_crank);
+    constraint_bias_before(m, 1, X, s);
+    constraint_bias_legs_crank(m, 1, 0, 1, s, 0, LEGS(LEGS_OF_crank), X, V, o_crank);
     for (size_t leg = 0; leg < LEGS_OF_crank; ++leg) {
         constraint_bias_place_crank(1, LEGS(LEGS_OF_crank), o_crank, leg, constraint_bias, t);
     }
@@ -2909,11 +2882,11 @@ INLINE void constraint_bias_run(const prepared *m, const real *X, const real *V,
 INLINE void constraint_bias_run_lanes(const prepared *m, const real *X, const real *V, real
     *constraint_bias, verdict *t)
 {
-    real s[7*LANES];
+    real s[2*LANES];
     real o_crank[3*LANES];
-    constraint_bias_before(LANES, X, V, s);
+    constraint_bias_before(m, LANES, X, s);
     for (size_t leg = 0; leg < LEGS_OF_crank; ++leg) {
-        constraint_bias_legs_crank(m, LANES, leg, 0, s, 1, LANES, o_crank);
+        constraint_bias_legs_crank(m, LANES, leg, 0, s, 1, LANES, X, V, o_crank);
         constraint_bias_place_crank(LANES, LANES, o_crank, 0, constraint_bias, t);
     }
 }
@@ -2923,162 +2896,63 @@ INLINE void required_before(const prepared *m, size_t w, const real *X, const re
     *A, real *s)
 {
     for (size_t k = 0; k < w; ++k) {
-        /* X: named entries */
-        const real X_0 = X[0*w + k];
-        const real t_x = X_0;
-        const real X_1 = X[1*w + k];
-        const real t_y = X_1;
-        const real X_2 = X[2*w + k];
-        const real R_xx = cosine(X_2);
-        const real R_yx = sine(X_2);
-        /* V: named entries */
-        const real V_0 = V[0*w + k];
-        const real t_dot_x = V_0;
-        const real V_1 = V[1*w + k];
-        const real t_dot_y = V_1;
-        const real V_2 = V[2*w + k];
-        const real omega_z = V_2;
-        /* A: named entries */
-        const real A_0 = A[0*w + k];
-        const real t_ddot_x = A_0;
-        const real A_1 = A[1*w + k];
-        const real t_ddot_y = A_1;
-        const real A_2 = A[2*w + k];
-        const real alpha_z = A_2;
-        /* (W_p) centripetal tensor of the platform */
-        const real W_p_xx = -omega_z*omega_z;
-        /* (h_star) first moment about the platform origin */
-        const real h_star_in_platform_x = m->h_star_in_platform_x;
-        const real h_star_in_platform_y = m->h_star_in_platform_y;
-        const real h_star_x = R_xx*h_star_in_platform_x - R_yx*h_star_in_platform_y;
-        const real h_star_y = R_xx*h_star_in_platform_y + R_yx*h_star_in_platform_x;
+        values v;
+        stage_V(w, k, V, &v);
+        stage_X(m, w, k, X, &v);
         /* (a_t) acceleration of the platform origin, less gravity */
         const real gravity_x = m->gravity_x;
+        const real t_ddot_x = A[0*w + k];
         const real a_t_x = t_ddot_x - gravity_x;
         const real gravity_y = m->gravity_y;
+        const real t_ddot_y = A[1*w + k];
         const real a_t_y = t_ddot_y - gravity_y;
         /* (f_p) inertia force of the platform less its weight */
+        const real alpha_z = A[2*w + k];
         const real m_star = m->m_star;
-        const real f_p_x = W_p_xx*h_star_x + a_t_x*m_star - alpha_z*h_star_y;
-        const real f_p_y = W_p_xx*h_star_y + a_t_y*m_star + alpha_z*h_star_x;
+        const real f_p_x = v.W_p_xx*v.h_star_x + a_t_x*m_star - alpha_z*v.h_star_y;
+        const real f_p_y = v.W_p_xx*v.h_star_y + a_t_y*m_star + alpha_z*v.h_star_x;
         /* (mu_p) inertia moment of the platform less that of its weight */
         const real J_star_zz = m->J_star_zz;
-        const real mu_p_z = J_star_zz*alpha_z + a_t_y*h_star_x - a_t_x*h_star_y;
-        s[0*w + k] = t_x;
-        s[1*w + k] = t_y;
-        s[2*w + k] = R_xx;
-        s[3*w + k] = R_yx;
-        s[4*w + k] = t_dot_x;
-        s[5*w + k] = t_dot_y;
-        s[6*w + k] = omega_z;
-        s[7*w + k] = t_ddot_x;
-        s[8*w + k] = t_ddot_y;
-        s[9*w + k] = alpha_z;
-        s[10*w + k] = f_p_x;
-        s[11*w + k] = f_p_y;
-        s[12*w + k] = mu_p_z;
+        const real mu_p_z = J_star_zz*alpha_z + a_t_y*v.h_star_x - a_t_x*v.h_star_y;
+        s[0*w + k] = v.R_xx;
+        s[1*w + k] = v.R_yx;
+        s[2*w + k] = f_p_x;
+        s[3*w + k] = f_p_y;
+        s[4*w + k] = mu_p_z;
     }
 }
 
 INLINE void required_legs_crank(const prepared *m, size_t w, size_t leg, size_t legs, const real
-    *s, size_t states, size_t count, int add, real *terms, real *o)
+    *s, size_t states, size_t count, int add, const real *X, const real *V, const real *A, real
+    *terms, real *o)
 {
     for (size_t k = 0; k < count; ++k) {
         const size_t i = leg + legs*k;
         const size_t j = states*k;
-        /* (crank-S) from the base point to the connection point */
-        const real R_xx = s[2*w + j];
-        const real R_yx = s[3*w + j];
-        const real crank_platform_point_x = m->crank_platform_point_x[i];
-        const real crank_platform_point_y = m->crank_platform_point_y[i];
-        const real crank_q_x = R_xx*crank_platform_point_x - R_yx*crank_platform_point_y;
-        const real crank_q_y = R_xx*crank_platform_point_y + R_yx*crank_platform_point_x;
-        const real crank_base_point_x = m->crank_base_point_x[i];
-        const real t_x = s[0*w + j];
-        const real crank_S_x = crank_q_x + t_x - crank_base_point_x;
-        const real crank_base_point_y = m->crank_base_point_y[i];
-        const real t_y = s[1*w + j];
-        const real crank_S_y = crank_q_y + t_y - crank_base_point_y;
-        /* (crank-rho2_1) squared amplitude */
-        const real crank_base_frame_xy = m->crank_base_frame_xy[i];
-        const real crank_base_frame_yy = m->crank_base_frame_yy[i];
-        const real crank_rho2_1_t = crank_S_x*crank_base_frame_xy + crank_S_y*crank_base_frame_yy;
-        const real crank_base_frame_xx = m->crank_base_frame_xx[i];
-        const real crank_base_frame_yx = m->crank_base_frame_yx[i];
-        const real crank_rho2_1_t_2 = crank_S_x*crank_base_frame_xx +
-            crank_S_y*crank_base_frame_yx;
-        const real crank_size_t = m->crank_size_t[i];
-        const real crank_rho2_1 = crank_size_t*(crank_rho2_1_t*crank_rho2_1_t +
-            crank_rho2_1_t_2*crank_rho2_1_t_2);
-        /* (crank-c_1) cosine of the angle of joint 1 from its reference direction */
-        const real crank_c_1_t = 1/(root(crank_rho2_1));
-        const real crank_platform_joint_offset_x = m->crank_platform_joint_offset_x[i];
-        const real crank_c_1 = crank_c_1_t*crank_platform_joint_offset_x*crank_rho2_1_t_2;
-        /* (crank-s_1) sine of the angle of joint 1 from its reference direction */
-        const real crank_s_1 = crank_c_1_t*crank_platform_joint_offset_x*crank_rho2_1_t;
-        /* (crank-n_c) direction of the constraint force */
-        const real axis_y_crank_axes1_x = crank_base_frame_xy*crank_c_1 -
-            crank_base_frame_xx*crank_s_1;
-        const real axis_x_crank_axes1_x = crank_base_frame_yy*crank_c_1 -
-            crank_base_frame_yx*crank_s_1;
-        const real crank_n_c_in_axes1_x = m->crank_n_c_in_axes1_x[i];
-        const real crank_n_c_x = axis_x_crank_axes1_x*crank_n_c_in_axes1_x;
-        const real crank_n_c_y = -axis_y_crank_axes1_x*crank_n_c_in_axes1_x;
-        /* (crank-w_1) reciprocal vector 1 */
-        const real crank_w_1_in_axes1_y = m->crank_w_1_in_axes1_y[i];
-        const real crank_w_1_x = axis_y_crank_axes1_x*crank_w_1_in_axes1_y;
-        const real crank_w_1_y = axis_x_crank_axes1_x*crank_w_1_in_axes1_y;
-        /* (crank-a_p) acceleration of the connection point without its centripetal part */
-        const real alpha_z = s[9*w + j];
-        const real t_ddot_x = s[7*w + j];
-        const real crank_a_p_x = t_ddot_x - alpha_z*crank_q_y;
-        const real t_ddot_y = s[8*w + j];
-        const real crank_a_p_y = t_ddot_y + alpha_z*crank_q_x;
-        /* (crank-S_ddot) acceleration of the connection point */
-        const real omega_z = s[6*w + j];
-        const real crank_S_ddot_x = crank_a_p_x - crank_q_x*omega_z*omega_z;
-        const real crank_S_ddot_y = crank_a_p_y - crank_q_y*omega_z*omega_z;
-        /* (crank-mu_1) inertia moment of the links that turn with link 1, about their reference points */
-        const real crank_J_1_in_spec1_zz = m->crank_J_1_in_spec1_zz[i];
-        const real crank_h_1_in_spec1_x = m->crank_h_1_in_spec1_x[i];
-        const real crank_h_1_in_spec1_y = m->crank_h_1_in_spec1_y[i];
-        const real crank_mu_1_t = m->crank_mu_1_t[i];
-        const real crank_mu_1_t_2 = m->crank_mu_1_t_2[i];
-        const real crank_mu_1_in_axes1_z = crank_h_1_in_spec1_y*(crank_c_1*crank_mu_1_t +
-            crank_mu_1_t_2*crank_s_1) +
-            crank_J_1_in_spec1_zz*crank_w_1_in_axes1_y*(axis_x_crank_axes1_x*crank_S_ddot_y +
-            axis_y_crank_axes1_x*crank_S_ddot_x) - crank_h_1_in_spec1_x*(crank_c_1*crank_mu_1_t_2
-            - crank_mu_1_t*crank_s_1);
-        /* (crank-G) force at the connection point that balances the leg's inertia and weight along all
-           degrees of freedom */
-        const real crank_G_in_axes1_y = crank_mu_1_in_axes1_z*crank_w_1_in_axes1_y;
-        /* (crank-c) leg force on the platform without actuation and without the mass at the connection
-           point */
-        const real crank_c_t = axis_y_crank_axes1_x*crank_G_in_axes1_y;
-        const real crank_c_t_2 = axis_x_crank_axes1_x*crank_G_in_axes1_y;
+        values_crank v;
+        stage_crank_X(m, w, i, j, s, X, &v);
+        stage_crank_A_X(w, j, A, &v);
+        stage_crank_A_V_X(w, j, V, &v);
+        stage_crank_legs_required(m, i, &v);
         /* (R_a) moment that actuators and external wrench must give */
-        const real crank_R_a_t = crank_c_t_2*crank_q_x - crank_c_t*crank_q_y;
-        /* (crank-H_a_1) moment of the column's unit force about the platform origin */
-        const real crank_H_a_1_z = crank_q_x*crank_w_1_y - crank_q_y*crank_w_1_x;
-        /* (crank-Hk_a_1) moment of the column's unit force about the platform origin */
-        const real crank_Hk_a_1_z = crank_n_c_y*crank_q_x - crank_n_c_x*crank_q_y;
+        const real crank_R_a_t = v.crank_c_t_2*v.crank_q_x - v.crank_c_t*v.crank_q_y;
         /* (R_t) force that actuators and external wrench must give */
-        gather(&terms[0*count + k], add, crank_c_t);  /* R_t_x_of_legs */
-        gather(&terms[1*count + k], add, crank_c_t_2);  /* R_t_y_of_legs */
+        gather(&terms[0*count + k], add, v.crank_c_t);  /* R_t_x_of_legs */
+        gather(&terms[1*count + k], add, v.crank_c_t_2);  /* R_t_y_of_legs */
         /* (R_a) moment that actuators and external wrench must give */
         gather(&terms[2*count + k], add, crank_R_a_t);  /* R_a_z_of_legs */
         /* (crank-w_1) reciprocal vector 1 */
-        o[0*count + k] = crank_w_1_x;
-        o[1*count + k] = crank_w_1_y;
+        o[0*count + k] = v.crank_w_1_x;
+        o[1*count + k] = v.crank_w_1_y;
         /* (crank-H_a_1) moment of the column's unit force about the platform origin */
-        o[2*count + k] = crank_H_a_1_z;
+        o[2*count + k] = v.crank_H_a_1_z;
         /* (crank-n_c) direction of the constraint force */
-        o[3*count + k] = crank_n_c_x;
-        o[4*count + k] = crank_n_c_y;
+        o[3*count + k] = v.crank_n_c_x;
+        o[4*count + k] = v.crank_n_c_y;
         /* (crank-Hk_a_1) moment of the column's unit force about the platform origin */
-        o[5*count + k] = crank_Hk_a_1_z;
+        o[5*count + k] = v.crank_Hk_a_1_z;
         const real crank_root_1_t = m->crank_root_1_t[i];
-        o[6*count + k] = UNLESS(magnitude(crank_rho2_1) > TOLERANCE*TOLERANCE*crank_root_1_t);
+        o[6*count + k] = UNLESS(magnitude(v.crank_rho2_1) > TOLERANCE*TOLERANCE*crank_root_1_t);
     }
 }
 
@@ -3086,10 +2960,10 @@ INLINE void required_place_crank(size_t w, size_t count, const real *o, size_t f
     real *Hk, verdict *t)
 {
     for (size_t k = 0; k < w; ++k) {
-        H[0*NU*w + k] = o[0*count + first + k];
+        H[0*w + k] = o[0*count + first + k];
         H[NU*w + k] = o[1*count + first + k];
         H[2*NU*w + k] = o[2*count + first + k];
-        Hk[0*NC*w + k] = o[3*count + first + k];
+        Hk[0*w + k] = o[3*count + first + k];
         Hk[NC*w + k] = o[4*count + first + k];
         Hk[2*NC*w + k] = o[5*count + first + k];
         t->singular[k] += o[6*count + first + k];
@@ -3097,184 +2971,43 @@ INLINE void required_place_crank(size_t w, size_t count, const real *o, size_t f
 }
 
 INLINE void required_legs_rrr(const prepared *m, size_t w, size_t leg, size_t legs, const real *s,
-    size_t states, size_t count, int add, real *terms, real *o)
+    size_t states, size_t count, int add, const real *X, const real *V, const real *A, real
+    *terms, real *o)
 {
     for (size_t k = 0; k < count; ++k) {
         const size_t i = leg + legs*k;
         const size_t j = states*k;
-        /* (rrr-S) from the base point to the connection point */
-        const real R_xx = s[2*w + j];
-        const real R_yx = s[3*w + j];
-        const real rrr_platform_point_x = m->rrr_platform_point_x[i];
-        const real rrr_platform_point_y = m->rrr_platform_point_y[i];
-        const real rrr_q_x = R_xx*rrr_platform_point_x - R_yx*rrr_platform_point_y;
-        const real rrr_q_y = R_xx*rrr_platform_point_y + R_yx*rrr_platform_point_x;
-        const real rrr_base_point_x = m->rrr_base_point_x[i];
-        const real t_x = s[0*w + j];
-        const real rrr_S_x = rrr_q_x + t_x - rrr_base_point_x;
-        const real rrr_base_point_y = m->rrr_base_point_y[i];
-        const real t_y = s[1*w + j];
-        const real rrr_S_y = rrr_q_y + t_y - rrr_base_point_y;
-        /* (rrr-Kd_1) projection on the centre's direction, from the distance fixed by the joints beyond
-           joint 1 */
-        const real rrr_Kd_1_t_3 = rrr_S_x*rrr_S_x + rrr_S_y*rrr_S_y;
-        const real rrr_Kd_1_t = m->rrr_Kd_1_t[i];
-        const real rrr_Kd_1_t_2 = m->rrr_Kd_1_t_2[i];
-        const real rrr_Kd_1 = rrr_Kd_1_t + R(0.5)*rrr_Kd_1_t_3 - rrr_Kd_1_t_2;
-        /* (rrr-px_1) component along the reference direction */
-        const real rrr_base_frame_xx = m->rrr_base_frame_xx[i];
-        const real rrr_base_frame_yx = m->rrr_base_frame_yx[i];
-        const real rrr_px_1 = rrr_S_x*rrr_base_frame_xx + rrr_S_y*rrr_base_frame_yx;
-        /* (rrr-py_1) component across the reference direction */
-        const real rrr_base_frame_xy = m->rrr_base_frame_xy[i];
-        const real rrr_base_frame_yy = m->rrr_base_frame_yy[i];
-        const real rrr_py_1 = rrr_S_x*rrr_base_frame_xy + rrr_S_y*rrr_base_frame_yy;
-        /* (rrr-Kc_1) factor of the cosine in the equation of joint 1 */
-        const real rrr_joint2_offset_x = m->rrr_joint2_offset_x[i];
-        const real rrr_Kc_1 = rrr_joint2_offset_x*rrr_px_1;
-        /* (rrr-Ks_1) factor of the sine in the equation of joint 1 */
-        const real rrr_Ks_1 = rrr_joint2_offset_x*rrr_py_1;
-        /* (rrr-rho2_1) squared amplitude */
-        const real rrr_rho2_1 = rrr_Kc_1*rrr_Kc_1 + rrr_Ks_1*rrr_Ks_1;
-        /* (rrr-disc_1) discriminant */
-        const real rrr_disc_1 = rrr_rho2_1 - rrr_Kd_1*rrr_Kd_1;
-        /* (rrr-root_1) root, with the sign of the branch */
-        const real rrr_branch_1 = m->rrr_branch_1[i];
-        const real rrr_root_1 = rrr_branch_1*root(rrr_disc_1);
-        /* (rrr-c_1) cosine of the angle of joint 1 from its reference direction */
-        const real inv_rrr_rho2_1 = 1/rrr_rho2_1;
-        const real rrr_c_1 = inv_rrr_rho2_1*(rrr_Kc_1*rrr_Kd_1 - rrr_Ks_1*rrr_root_1);
-        /* (rrr-s_1) sine of the angle of joint 1 from its reference direction */
-        const real rrr_s_1 = inv_rrr_rho2_1*(rrr_Kc_1*rrr_root_1 + rrr_Kd_1*rrr_Ks_1);
-        /* (rrr-x_2) from the origin of joint 2 to the connection point */
-        const real inv_rrr_size_t = m->inv_rrr_size_t[i];
-        const real rrr_x_2_in_axes1_x = inv_rrr_size_t*rrr_Kd_1*rrr_joint2_offset_x -
-            rrr_joint2_offset_x;
-        /* (rrr-c_2) cosine of the angle of joint 2 from its reference direction */
-        const real inv_rrr_size_t_2 = m->inv_rrr_size_t_2[i];
-        const real rrr_platform_joint_offset_x = m->rrr_platform_joint_offset_x[i];
-        const real rrr_c_2 = inv_rrr_size_t_2*rrr_platform_joint_offset_x*rrr_x_2_in_axes1_x;
-        /* (rrr-s_2) sine of the angle of joint 2 from its reference direction */
-        const real rrr_s_2 =
-            -inv_rrr_size_t*inv_rrr_size_t_2*rrr_joint2_offset_x*rrr_platform_joint_offset_x*rrr_root_1;
-        /* (rrr-S_dot) velocity of the connection point */
-        const real omega_z = s[6*w + j];
-        const real rrr_S_dot_t = omega_z*rrr_q_y;
-        const real rrr_S_dot_t_2 = omega_z*rrr_q_x;
-        const real t_dot_x = s[4*w + j];
-        const real rrr_S_dot_x = t_dot_x - rrr_S_dot_t;
-        const real t_dot_y = s[5*w + j];
-        const real rrr_S_dot_y = rrr_S_dot_t_2 + t_dot_y;
-        /* (rrr-r_1) from joint 1 to the connection point, along the links */
-        const real rrr_r_1_in_axes1_y = rrr_platform_joint_offset_x*rrr_s_2;
-        const real rrr_r_1_in_axes1_x = rrr_joint2_offset_x + rrr_c_2*rrr_platform_joint_offset_x;
-        const real rrr_r_1_in_axes2_x = rrr_c_2*rrr_r_1_in_axes1_x + rrr_r_1_in_axes1_y*rrr_s_2;
-        const real rrr_r_1_in_axes2_y = rrr_c_2*rrr_r_1_in_axes1_y - rrr_r_1_in_axes1_x*rrr_s_2;
-        /* (rrr-w_1) reciprocal vector 1 */
-        const real rrr_w_1_t = rrr_c_1*rrr_s_2 + rrr_c_2*rrr_s_1;
-        const real rrr_w_1_t_2 = rrr_c_1*rrr_c_2 - rrr_s_1*rrr_s_2;
-        const real axis_y_rrr_axes2_x = rrr_base_frame_xy*rrr_w_1_t_2 -
-            rrr_base_frame_xx*rrr_w_1_t;
-        const real axis_x_rrr_axes2_x = rrr_base_frame_yy*rrr_w_1_t_2 -
-            rrr_base_frame_yx*rrr_w_1_t;
-        const real rrr_w_1_in_axes2_x = -1/rrr_r_1_in_axes2_y;
-        const real rrr_w_1_x = axis_x_rrr_axes2_x*rrr_w_1_in_axes2_x;
-        const real rrr_w_1_y = -axis_y_rrr_axes2_x*rrr_w_1_in_axes2_x;
-        /* (rrr-qd_1) rate of joint 1 */
-        const real rrr_qd_1 = rrr_w_1_in_axes2_x*(axis_x_rrr_axes2_x*rrr_S_dot_x -
-            axis_y_rrr_axes2_x*rrr_S_dot_y);
-        /* (rrr-W_1) centripetal tensor of link 1 */
-        const real rrr_W_1_t = rrr_qd_1*rrr_qd_1;
-        /* (rrr-omega_2) angular velocity of link 2 */
-        const real rrr_w_2_in_axes2_y = m->rrr_w_2_in_axes2_y[i];
-        const real rrr_omega_2_in_axes2_z = rrr_qd_1 +
-            rrr_w_2_in_axes2_y*(axis_x_rrr_axes2_x*rrr_S_dot_y + axis_y_rrr_axes2_x*rrr_S_dot_x -
-            rrr_qd_1*rrr_r_1_in_axes2_x);
-        /* (rrr-W_2) centripetal tensor of link 2 */
-        const real rrr_W_2_t = rrr_omega_2_in_axes2_z*rrr_omega_2_in_axes2_z;
-        /* (rrr-a_p) acceleration of the connection point without its centripetal part */
-        const real alpha_z = s[9*w + j];
-        const real t_ddot_x = s[7*w + j];
-        const real rrr_a_p_x = t_ddot_x - alpha_z*rrr_q_y;
-        const real t_ddot_y = s[8*w + j];
-        const real rrr_a_p_y = t_ddot_y + alpha_z*rrr_q_x;
-        /* (rrr-S_ddot) acceleration of the connection point */
-        const real rrr_S_ddot_x = rrr_a_p_x - omega_z*rrr_S_dot_t_2;
-        const real rrr_S_ddot_y = rrr_a_p_y - omega_z*rrr_S_dot_t;
-        const real rrr_S_ddot_in_axes2_x = axis_x_rrr_axes2_x*rrr_S_ddot_x -
-            axis_y_rrr_axes2_x*rrr_S_ddot_y;
-        const real rrr_S_ddot_in_axes2_y = axis_x_rrr_axes2_x*rrr_S_ddot_y +
-            axis_y_rrr_axes2_x*rrr_S_ddot_x;
-        /* (rrr-bias) acceleration of the connection point at zero joint accelerations */
-        const real rrr_bias_in_axes2_x = -rrr_W_2_t*rrr_platform_joint_offset_x -
-            rrr_W_1_t*rrr_c_2*rrr_joint2_offset_x;
-        /* (rrr-rel) acceleration of the connection point left to the joint accelerations */
-        const real rrr_rel_in_axes2_x = rrr_S_ddot_in_axes2_x - rrr_bias_in_axes2_x;
-        const real rrr_rel_in_axes2_y = rrr_S_ddot_in_axes2_y -
-            rrr_W_1_t*rrr_joint2_offset_x*rrr_s_2;
-        /* (rrr-B_1) acceleration tensor of link 1 */
-        const real rrr_B_1_in_axes1_xy = -rrr_rel_in_axes2_x*rrr_w_1_in_axes2_x;
-        /* (rrr-alpha_2) angular acceleration of link 2 */
-        const real rrr_alpha_2_in_axes2_z = rrr_w_2_in_axes2_y*(rrr_rel_in_axes2_y +
-            rrr_B_1_in_axes1_xy*rrr_r_1_in_axes2_x) - rrr_B_1_in_axes1_xy;
-        /* (rrr-acc_2) acceleration of the reference point of link 2, less gravity */
-        const real gravity_x = m->gravity_x;
-        const real gravity_y = m->gravity_y;
-        const real rrr_acc_2_in_axes2_x = rrr_S_ddot_in_axes2_x + axis_y_rrr_axes2_x*gravity_y -
-            axis_x_rrr_axes2_x*gravity_x;
-        const real rrr_acc_2_in_axes2_y = rrr_S_ddot_in_axes2_y - axis_x_rrr_axes2_x*gravity_y -
-            axis_y_rrr_axes2_x*gravity_x;
-        /* (rrr-mu_2) inertia moment of the links that turn with link 2, about their reference points */
-        const real rrr_J_2_in_spec2_zz = m->rrr_J_2_in_spec2_zz[i];
-        const real rrr_h_2_in_spec2_x = m->rrr_h_2_in_spec2_x[i];
-        const real rrr_h_2_in_spec2_y = m->rrr_h_2_in_spec2_y[i];
-        const real rrr_mu_2_in_axes2_z = rrr_J_2_in_spec2_zz*rrr_alpha_2_in_axes2_z +
-            rrr_acc_2_in_axes2_y*rrr_h_2_in_spec2_x - rrr_acc_2_in_axes2_x*rrr_h_2_in_spec2_y;
-        /* (rrr-mu_1) inertia moment of the links that turn with link 1, about their reference points */
-        const real rrr_J_1_in_spec1_zz = m->rrr_J_1_in_spec1_zz[i];
-        const real rrr_h_1_in_spec1_x = m->rrr_h_1_in_spec1_x[i];
-        const real rrr_h_1_in_spec1_y = m->rrr_h_1_in_spec1_y[i];
-        const real rrr_mu_1_t = m->rrr_mu_1_t[i];
-        const real rrr_mu_1_t_2 = m->rrr_mu_1_t_2[i];
-        const real rrr_mu_1_in_axes1_z = rrr_h_1_in_spec1_y*(rrr_c_1*rrr_mu_1_t +
-            rrr_mu_1_t_2*rrr_s_1) - rrr_B_1_in_axes1_xy*rrr_J_1_in_spec1_zz -
-            rrr_h_1_in_spec1_x*(rrr_c_1*rrr_mu_1_t_2 - rrr_mu_1_t*rrr_s_1);
-        /* (rrr-N_1) moment about joint 1 of the links from 1 outwards, the force at the connection point
-           left out */
-        const real rrr_N_1_in_axes1_z = rrr_mu_1_in_axes1_z + rrr_mu_2_in_axes2_z;
-        /* (rrr-G) force at the connection point that balances the leg's inertia and weight along all
-           degrees of freedom */
-        const real rrr_G_in_axes2_y = rrr_mu_2_in_axes2_z*rrr_w_2_in_axes2_y;
+        values_rrr v;
+        stage_rrr_X(m, w, i, j, s, X, &v);
+        stage_rrr_A_X(w, j, A, &v);
+        stage_rrr_V_X(m, w, i, j, V, &v);
+        stage_rrr_A_V_X(w, j, V, &v);
+        stage_rrr_legs_required(m, i, &v);
         /* (rrr-c) leg force on the platform without actuation and without the mass at the connection
            point */
-        const real rrr_c_in_axes2_x = rrr_W_2_t*rrr_h_2_in_spec2_x +
-            rrr_alpha_2_in_axes2_z*rrr_h_2_in_spec2_y +
-            rrr_w_1_in_axes2_x*(rrr_G_in_axes2_y*rrr_r_1_in_axes2_x - rrr_N_1_in_axes1_z);
-        const real rrr_c_in_axes2_y = rrr_W_2_t*rrr_h_2_in_spec2_y - rrr_G_in_axes2_y -
-            rrr_alpha_2_in_axes2_z*rrr_h_2_in_spec2_x;
-        const real rrr_c_x = axis_x_rrr_axes2_x*rrr_c_in_axes2_x +
-            axis_y_rrr_axes2_x*rrr_c_in_axes2_y;
-        const real rrr_c_y = axis_x_rrr_axes2_x*rrr_c_in_axes2_y -
-            axis_y_rrr_axes2_x*rrr_c_in_axes2_x;
+        const real rrr_c_x = v.axis_x_rrr_axes2_x*v.rrr_c_in_axes2_x +
+            v.axis_y_rrr_axes2_x*v.rrr_c_in_axes2_y;
+        const real rrr_c_y = v.axis_x_rrr_axes2_x*v.rrr_c_in_axes2_y -
+            v.axis_y_rrr_axes2_x*v.rrr_c_in_axes2_x;
         /* (R_a) moment that actuators and external wrench must give */
-        const real rrr_R_a_t = rrr_c_x*rrr_q_y - rrr_c_y*rrr_q_x;
+        const real rrr_R_a_t = rrr_c_x*v.rrr_q_y - rrr_c_y*v.rrr_q_x;
         /* (rrr-H_a_1) moment of the column's unit force about the platform origin */
-        const real rrr_H_a_1_z = rrr_q_x*rrr_w_1_y - rrr_q_y*rrr_w_1_x;
+        const real rrr_H_a_1_z = v.rrr_q_x*v.rrr_w_1_y - v.rrr_q_y*v.rrr_w_1_x;
         /* (R_t) force that actuators and external wrench must give */
         gather(&terms[3*count + k], add, rrr_c_x);  /* R_t_t */
         gather(&terms[4*count + k], add, rrr_c_y);  /* R_t_t_2 */
         /* (R_a) moment that actuators and external wrench must give */
         gather(&terms[2*count + k], add, rrr_R_a_t);  /* R_a_z_of_legs */
         /* (rrr-w_1) reciprocal vector 1 */
-        o[0*count + k] = rrr_w_1_x;
-        o[1*count + k] = rrr_w_1_y;
+        o[0*count + k] = v.rrr_w_1_x;
+        o[1*count + k] = v.rrr_w_1_y;
         /* (rrr-H_a_1) moment of the column's unit force about the platform origin */
         o[2*count + k] = rrr_H_a_1_z;
         const real rrr_rho2_1_t = m->rrr_rho2_1_t[i];
         const real rrr_size = m->rrr_size[i];
-        o[4*count + k] = UNLESS(magnitude(rrr_rho2_1) > TOLERANCE*TOLERANCE*rrr_rho2_1_t) +
-            UNLESS(magnitude(rrr_r_1_in_axes2_y) > TOLERANCE*rrr_size);
-        o[3*count + k] = UNLESS(rrr_disc_1 >= 0);
+        o[4*count + k] = UNLESS(magnitude(v.rrr_rho2_1) > TOLERANCE*TOLERANCE*rrr_rho2_1_t) +
+            UNLESS(magnitude(v.rrr_r_1_in_axes2_y) > TOLERANCE*rrr_size);
+        o[3*count + k] = UNLESS(v.rrr_disc_1 >= 0);
     }
 }
 
@@ -3282,7 +3015,7 @@ INLINE void required_place_rrr(size_t w, size_t count, const real *o, size_t fir
     verdict *t)
 {
     for (size_t k = 0; k < w; ++k) {
-        H[(0*NU + 1)*w + k] = o[0*count + first + k];
+        H[1*w + k] = o[0*count + first + k];
         H[(NU + 1)*w + k] = o[1*count + first + k];
         H[(2*NU + 1)*w + k] = o[2*count + first + k];
         t->unreachable[k] += o[3*count + first + k];
@@ -3296,15 +3029,15 @@ INLINE void required_after(size_t w, const real *s, const real *sums, real *requ
         /* (R_t) force that actuators and external wrench must give */
         const real R_t_t = sums[3*w + k];
         const real R_t_x_of_legs = sums[0*w + k];
-        const real f_p_x = s[10*w + k];
+        const real f_p_x = s[2*w + k];
         const real R_t_x = R_t_x_of_legs + f_p_x - R_t_t;
         const real R_t_t_2 = sums[4*w + k];
         const real R_t_y_of_legs = sums[1*w + k];
-        const real f_p_y = s[11*w + k];
+        const real f_p_y = s[3*w + k];
         const real R_t_y = R_t_y_of_legs + f_p_y - R_t_t_2;
         /* (R_a) moment that actuators and external wrench must give */
         const real R_a_z_of_legs = sums[2*w + k];
-        const real mu_p_z = s[12*w + k];
+        const real mu_p_z = s[4*w + k];
         const real R_a_z = R_a_z_of_legs + mu_p_z;
         /* (R_t) force that actuators and external wrench must give */
         required[0*w + k] = R_t_x;
@@ -3317,21 +3050,18 @@ INLINE void required_after(size_t w, const real *s, const real *sums, real *requ
 INLINE void required_run(const prepared *m, const real *X, const real *V, const real *A, real
     *required, real *H, real *Hk, verdict *t)
 {
-    real s[13] = {0};
-    real sums[5] = {0};
-    real terms_crank[5*LEGS(LEGS_OF_crank)] = {0};
-    real o_crank[7*LEGS(LEGS_OF_crank)] = {0};
-    real terms_rrr[5*LEGS(LEGS_OF_rrr)] = {0};
-    real o_rrr[5*LEGS(LEGS_OF_rrr)] = {0};
+    real s[5] = {0}, sums[5] = {0};
+    real terms_crank[5*LEGS(LEGS_OF_crank)] = {0}, o_crank[7*LEGS(LEGS_OF_crank)] = {0};
+    real terms_rrr[5*LEGS(LEGS_OF_rrr)] = {0}, o_rrr[5*LEGS(LEGS_OF_rrr)] = {0};
     required_before(m, 1, X, V, A, s);
-    required_legs_crank(m, 1, 0, 1, s, 0, LEGS(LEGS_OF_crank), 0, terms_crank, o_crank);
+    required_legs_crank(m, 1, 0, 1, s, 0, LEGS(LEGS_OF_crank), 0, X, V, A, terms_crank, o_crank);
+    required_legs_rrr(m, 1, 0, 1, s, 0, LEGS(LEGS_OF_rrr), 0, X, V, A, terms_rrr, o_rrr);
     for (size_t leg = 0; leg < LEGS_OF_crank; ++leg) {
         required_place_crank(1, LEGS(LEGS_OF_crank), o_crank, leg, H, Hk, t);
     }
     for (size_t n = 0; n < 5; ++n) {
         sums[n] = total(terms_crank + n*LEGS(LEGS_OF_crank), LEGS_OF_crank);
     }
-    required_legs_rrr(m, 1, 0, 1, s, 0, LEGS(LEGS_OF_rrr), 0, terms_rrr, o_rrr);
     for (size_t leg = 0; leg < LEGS_OF_rrr; ++leg) {
         required_place_rrr(1, LEGS(LEGS_OF_rrr), o_rrr, leg, H, t);
     }
@@ -3344,77 +3074,69 @@ INLINE void required_run(const prepared *m, const real *X, const real *V, const 
 INLINE void required_run_lanes(const prepared *m, const real *X, const real *V, const real *A,
     real *required, real *H, real *Hk, verdict *t)
 {
-    real s[13*LANES];
-    real sums[5*LANES];
+    real s[5*LANES], sums[5*LANES];
     real o_crank[7*LANES];
     real o_rrr[5*LANES];
     required_before(m, LANES, X, V, A, s);
     clear(sums, 5*LANES);
     for (size_t leg = 0; leg < LEGS_OF_crank; ++leg) {
-        required_legs_crank(m, LANES, leg, 0, s, 1, LANES, 1, sums, o_crank);
+        required_legs_crank(m, LANES, leg, 0, s, 1, LANES, 1, X, V, A, sums, o_crank);
         required_place_crank(LANES, LANES, o_crank, 0, H, Hk, t);
     }
     for (size_t leg = 0; leg < LEGS_OF_rrr; ++leg) {
-        required_legs_rrr(m, LANES, leg, 0, s, 1, LANES, 1, sums, o_rrr);
+        required_legs_rrr(m, LANES, leg, 0, s, 1, LANES, 1, X, V, A, sums, o_rrr);
         required_place_rrr(LANES, LANES, o_rrr, 0, H, t);
     }
     required_after(LANES, s, sums, required);
 }
 
 /* ---- inverse_kinematics ---- */
-INLINE void inverse_kinematics_before(size_t w, const real *X, real *s)
+INLINE void inverse_kinematics_before(const prepared *m, size_t w, const real *X, real *s)
 {
     for (size_t k = 0; k < w; ++k) {
-        /* X: named entries */
-        const real X_0 = X[0*w + k];
-        const real t_x = X_0;
-        const real X_1 = X[1*w + k];
-        const real t_y = X_1;
-        const real X_2 = X[2*w + k];
-        const real R_xx = cosine(X_2);
-        const real R_yx = sine(X_2);
-        s[0*w + k] = t_x;
-        s[1*w + k] = t_y;
-        s[2*w + k] = R_xx;
-        s[3*w + k] = R_yx;
+        values v;
+        stage_X(m, w, k, X, &v);
+        s[0*w + k] = v.R_xx;
+        s[1*w + k] = v.R_yx;
     }
 }
 
 INLINE void inverse_kinematics_legs_crank(const prepared *m, size_t w, size_t leg, size_t legs,
-    const real *s, size_t states, size_t count, real *o)
+    const real *s, size_t states, size_t count, const real *X, real *o)
 {
     for (size_t k = 0; k < count; ++k) {
         const size_t i = leg + legs*k;
         const size_t j = states*k;
         /* (crank-S) from the base point to the connection point */
-        const real R_xx = s[2*w + j];
-        const real R_yx = s[3*w + j];
+        const real R_xx = s[0*w + j];
+        const real R_yx = s[1*w + j];
         const real crank_base_point_x = m->crank_base_point_x[i];
         const real crank_platform_point_x = m->crank_platform_point_x[i];
         const real crank_platform_point_y = m->crank_platform_point_y[i];
-        const real t_x = s[0*w + j];
+        const real t_x = X[0*w + j];
         const real crank_S_x = t_x + R_xx*crank_platform_point_x - crank_base_point_x -
             R_yx*crank_platform_point_y;
         const real crank_base_point_y = m->crank_base_point_y[i];
-        const real t_y = s[1*w + j];
+        const real t_y = X[1*w + j];
         const real crank_S_y = t_y + R_xx*crank_platform_point_y + R_yx*crank_platform_point_x -
             crank_base_point_y;
-        /* (crank-rho2_1) squared amplitude */
-        const real crank_base_frame_xy = m->crank_base_frame_xy[i];
-        const real crank_base_frame_yy = m->crank_base_frame_yy[i];
-        const real crank_rho2_1_t = crank_S_x*crank_base_frame_xy + crank_S_y*crank_base_frame_yy;
         const real crank_base_frame_xx = m->crank_base_frame_xx[i];
         const real crank_base_frame_yx = m->crank_base_frame_yx[i];
-        const real crank_rho2_1_t_2 = crank_S_x*crank_base_frame_xx +
+        const real crank_S_in_turn1_x = crank_S_x*crank_base_frame_xx +
             crank_S_y*crank_base_frame_yx;
+        const real crank_base_frame_xy = m->crank_base_frame_xy[i];
+        const real crank_base_frame_yy = m->crank_base_frame_yy[i];
+        const real crank_S_in_turn1_y = crank_S_x*crank_base_frame_xy +
+            crank_S_y*crank_base_frame_yy;
+        /* (crank-rho2_1) squared amplitude */
         const real crank_size_t = m->crank_size_t[i];
-        const real crank_rho2_1 = crank_size_t*(crank_rho2_1_t*crank_rho2_1_t +
-            crank_rho2_1_t_2*crank_rho2_1_t_2);
+        const real crank_rho2_1 = crank_size_t*(crank_S_in_turn1_x*crank_S_in_turn1_x +
+            crank_S_in_turn1_y*crank_S_in_turn1_y);
         /* (crank-q_1) displacement of joint 1 */
         const real crank_q_1_t = 1/(root(crank_rho2_1));
         const real crank_platform_joint_offset_x = m->crank_platform_joint_offset_x[i];
-        const real crank_q_1 = angle(crank_platform_joint_offset_x*crank_q_1_t*crank_rho2_1_t,
-            crank_platform_joint_offset_x*crank_q_1_t*crank_rho2_1_t_2);
+        const real crank_q_1 = angle(crank_S_in_turn1_y*crank_platform_joint_offset_x*crank_q_1_t,
+            crank_S_in_turn1_x*crank_platform_joint_offset_x*crank_q_1_t);
         /* (crank-q_1) displacement of joint 1 */
         o[0*count + k] = crank_q_1;
         o[2*count + k] = crank_q_1;
@@ -3434,72 +3156,33 @@ INLINE void inverse_kinematics_place_crank(size_t w, size_t count, const real *o
 }
 
 INLINE void inverse_kinematics_legs_rrr(const prepared *m, size_t w, size_t leg, size_t legs,
-    const real *s, size_t states, size_t count, real *o)
+    const real *s, size_t states, size_t count, const real *X, real *o)
 {
     for (size_t k = 0; k < count; ++k) {
         const size_t i = leg + legs*k;
         const size_t j = states*k;
-        /* (rrr-S) from the base point to the connection point */
-        const real R_xx = s[2*w + j];
-        const real R_yx = s[3*w + j];
-        const real rrr_base_point_x = m->rrr_base_point_x[i];
-        const real rrr_platform_point_x = m->rrr_platform_point_x[i];
-        const real rrr_platform_point_y = m->rrr_platform_point_y[i];
-        const real t_x = s[0*w + j];
-        const real rrr_S_x = t_x + R_xx*rrr_platform_point_x - rrr_base_point_x -
-            R_yx*rrr_platform_point_y;
-        const real rrr_base_point_y = m->rrr_base_point_y[i];
-        const real t_y = s[1*w + j];
-        const real rrr_S_y = t_y + R_xx*rrr_platform_point_y + R_yx*rrr_platform_point_x -
-            rrr_base_point_y;
-        /* (rrr-Kd_1) projection on the centre's direction, from the distance fixed by the joints beyond
-           joint 1 */
-        const real rrr_Kd_1_t_3 = rrr_S_x*rrr_S_x + rrr_S_y*rrr_S_y;
-        const real rrr_Kd_1_t = m->rrr_Kd_1_t[i];
-        const real rrr_Kd_1_t_2 = m->rrr_Kd_1_t_2[i];
-        const real rrr_Kd_1 = rrr_Kd_1_t + R(0.5)*rrr_Kd_1_t_3 - rrr_Kd_1_t_2;
-        /* (rrr-px_1) component along the reference direction */
-        const real rrr_base_frame_xx = m->rrr_base_frame_xx[i];
-        const real rrr_base_frame_yx = m->rrr_base_frame_yx[i];
-        const real rrr_px_1 = rrr_S_x*rrr_base_frame_xx + rrr_S_y*rrr_base_frame_yx;
-        /* (rrr-py_1) component across the reference direction */
-        const real rrr_base_frame_xy = m->rrr_base_frame_xy[i];
-        const real rrr_base_frame_yy = m->rrr_base_frame_yy[i];
-        const real rrr_py_1 = rrr_S_x*rrr_base_frame_xy + rrr_S_y*rrr_base_frame_yy;
-        /* (rrr-Kc_1) factor of the cosine in the equation of joint 1 */
-        const real rrr_joint2_offset_x = m->rrr_joint2_offset_x[i];
-        const real rrr_Kc_1 = rrr_joint2_offset_x*rrr_px_1;
-        /* (rrr-Ks_1) factor of the sine in the equation of joint 1 */
-        const real rrr_Ks_1 = rrr_joint2_offset_x*rrr_py_1;
-        /* (rrr-rho2_1) squared amplitude */
-        const real rrr_rho2_1 = rrr_Kc_1*rrr_Kc_1 + rrr_Ks_1*rrr_Ks_1;
-        /* (rrr-disc_1) discriminant */
-        const real rrr_disc_1 = rrr_rho2_1 - rrr_Kd_1*rrr_Kd_1;
-        /* (rrr-root_1) root, with the sign of the branch */
-        const real rrr_branch_1 = m->rrr_branch_1[i];
-        const real rrr_root_1 = rrr_branch_1*root(rrr_disc_1);
+        values_rrr v;
+        stage_rrr_inverse_kinematics_potential(m, w, i, j, s, X, &v);
         /* (rrr-q_1) displacement of joint 1 */
-        const real inv_rrr_rho2_1 = 1/rrr_rho2_1;
-        const real rrr_q_1 = angle(inv_rrr_rho2_1*(rrr_Kc_1*rrr_root_1 + rrr_Kd_1*rrr_Ks_1),
-            inv_rrr_rho2_1*(rrr_Kc_1*rrr_Kd_1 - rrr_Ks_1*rrr_root_1));
-        /* (rrr-x_2) from the origin of joint 2 to the connection point */
-        const real inv_rrr_size_t = m->inv_rrr_size_t[i];
-        const real rrr_x_2_in_axes1_x = inv_rrr_size_t*rrr_Kd_1*rrr_joint2_offset_x -
-            rrr_joint2_offset_x;
+        const real rrr_q_1 = angle(v.inv_rrr_rho2_1*(v.rrr_Kc_1*v.rrr_root_1 +
+            v.rrr_Kd_1*v.rrr_Ks_1), v.inv_rrr_rho2_1*(v.rrr_Kc_1*v.rrr_Kd_1 -
+            v.rrr_Ks_1*v.rrr_root_1));
         /* (rrr-q_2) displacement of joint 2 */
+        const real inv_rrr_size_t = m->inv_rrr_size_t[i];
         const real inv_rrr_size_t_2 = m->inv_rrr_size_t_2[i];
+        const real rrr_joint2_offset_x = m->rrr_joint2_offset_x[i];
         const real rrr_platform_joint_offset_x = m->rrr_platform_joint_offset_x[i];
         const real rrr_q_2 =
-            angle(-inv_rrr_size_t*inv_rrr_size_t_2*rrr_joint2_offset_x*rrr_platform_joint_offset_x*rrr_root_1,
-            inv_rrr_size_t_2*rrr_platform_joint_offset_x*rrr_x_2_in_axes1_x);
+            angle(-inv_rrr_size_t*inv_rrr_size_t_2*rrr_joint2_offset_x*rrr_platform_joint_offset_x*v.rrr_root_1,
+            inv_rrr_size_t_2*rrr_platform_joint_offset_x*v.rrr_x_2_in_axes1_x);
         /* (rrr-q_1) displacement of joint 1 */
         o[0*count + k] = rrr_q_1;
         /* (rrr-q_2) displacement of joint 2 */
         o[1*count + k] = rrr_q_2;
         o[4*count + k] = rrr_q_1 + rrr_q_2;
         const real rrr_rho2_1_t = m->rrr_rho2_1_t[i];
-        o[3*count + k] = UNLESS(magnitude(rrr_rho2_1) > TOLERANCE*TOLERANCE*rrr_rho2_1_t);
-        o[2*count + k] = UNLESS(rrr_disc_1 >= 0);
+        o[3*count + k] = UNLESS(magnitude(v.rrr_rho2_1) > TOLERANCE*TOLERANCE*rrr_rho2_1_t);
+        o[2*count + k] = UNLESS(v.rrr_disc_1 >= 0);
     }
 }
 
@@ -3517,15 +3200,15 @@ INLINE void inverse_kinematics_place_rrr(size_t w, size_t count, const real *o, 
 
 INLINE void inverse_kinematics_run(const prepared *m, const real *X, real *q, verdict *t)
 {
-    real s[4] = {0};
+    real s[2] = {0};
     real o_crank[3*LEGS(LEGS_OF_crank)] = {0};
     real o_rrr[5*LEGS(LEGS_OF_rrr)] = {0};
-    inverse_kinematics_before(1, X, s);
-    inverse_kinematics_legs_crank(m, 1, 0, 1, s, 0, LEGS(LEGS_OF_crank), o_crank);
+    inverse_kinematics_before(m, 1, X, s);
+    inverse_kinematics_legs_crank(m, 1, 0, 1, s, 0, LEGS(LEGS_OF_crank), X, o_crank);
+    inverse_kinematics_legs_rrr(m, 1, 0, 1, s, 0, LEGS(LEGS_OF_rrr), X, o_rrr);
     for (size_t leg = 0; leg < LEGS_OF_crank; ++leg) {
         inverse_kinematics_place_crank(1, LEGS(LEGS_OF_crank), o_crank, leg, q, t);
     }
-    inverse_kinematics_legs_rrr(m, 1, 0, 1, s, 0, LEGS(LEGS_OF_rrr), o_rrr);
     for (size_t leg = 0; leg < LEGS_OF_rrr; ++leg) {
         inverse_kinematics_place_rrr(1, LEGS(LEGS_OF_rrr), o_rrr, leg, q, t);
     }
@@ -3533,101 +3216,60 @@ INLINE void inverse_kinematics_run(const prepared *m, const real *X, real *q, ve
 
 INLINE void inverse_kinematics_run_lanes(const prepared *m, const real *X, real *q, verdict *t)
 {
-    real s[4*LANES];
+    real s[2*LANES];
     real o_crank[3*LANES];
     real o_rrr[5*LANES];
-    inverse_kinematics_before(LANES, X, s);
+    inverse_kinematics_before(m, LANES, X, s);
     for (size_t leg = 0; leg < LEGS_OF_crank; ++leg) {
-        inverse_kinematics_legs_crank(m, LANES, leg, 0, s, 1, LANES, o_crank);
+        inverse_kinematics_legs_crank(m, LANES, leg, 0, s, 1, LANES, X, o_crank);
         inverse_kinematics_place_crank(LANES, LANES, o_crank, 0, q, t);
     }
     for (size_t leg = 0; leg < LEGS_OF_rrr; ++leg) {
-        inverse_kinematics_legs_rrr(m, LANES, leg, 0, s, 1, LANES, o_rrr);
+        inverse_kinematics_legs_rrr(m, LANES, leg, 0, s, 1, LANES, X, o_rrr);
         inverse_kinematics_place_rrr(LANES, LANES, o_rrr, 0, q, t);
     }
 }
 
 /* ---- joint_rates ---- */
-INLINE void joint_rates_before(size_t w, const real *X, const real *V, real *s)
+INLINE void joint_rates_before(const prepared *m, size_t w, const real *X, real *s)
 {
     for (size_t k = 0; k < w; ++k) {
-        /* X: named entries */
-        const real X_0 = X[0*w + k];
-        const real t_x = X_0;
-        const real X_1 = X[1*w + k];
-        const real t_y = X_1;
-        const real X_2 = X[2*w + k];
-        const real R_xx = cosine(X_2);
-        const real R_yx = sine(X_2);
-        /* V: named entries */
-        const real V_0 = V[0*w + k];
-        const real t_dot_x = V_0;
-        const real V_1 = V[1*w + k];
-        const real t_dot_y = V_1;
-        const real V_2 = V[2*w + k];
-        const real omega_z = V_2;
-        s[0*w + k] = t_x;
-        s[1*w + k] = t_y;
-        s[2*w + k] = R_xx;
-        s[3*w + k] = R_yx;
-        s[4*w + k] = t_dot_x;
-        s[5*w + k] = t_dot_y;
-        s[6*w + k] = omega_z;
+        values v;
+        stage_X(m, w, k, X, &v);
+        s[0*w + k] = v.R_xx;
+        s[1*w + k] = v.R_yx;
     }
 }
 
 INLINE void joint_rates_legs_crank(const prepared *m, size_t w, size_t leg, size_t legs, const
-    real *s, size_t states, size_t count, real *o)
+    real *s, size_t states, size_t count, const real *X, const real *V, real *o)
 {
     for (size_t k = 0; k < count; ++k) {
         const size_t i = leg + legs*k;
         const size_t j = states*k;
-        /* (crank-S) from the base point to the connection point */
-        const real R_xx = s[2*w + j];
-        const real R_yx = s[3*w + j];
-        const real crank_platform_point_x = m->crank_platform_point_x[i];
-        const real crank_platform_point_y = m->crank_platform_point_y[i];
-        const real crank_q_x = R_xx*crank_platform_point_x - R_yx*crank_platform_point_y;
-        const real crank_q_y = R_xx*crank_platform_point_y + R_yx*crank_platform_point_x;
-        const real crank_base_point_x = m->crank_base_point_x[i];
-        const real t_x = s[0*w + j];
-        const real crank_S_x = crank_q_x + t_x - crank_base_point_x;
-        const real crank_base_point_y = m->crank_base_point_y[i];
-        const real t_y = s[1*w + j];
-        const real crank_S_y = crank_q_y + t_y - crank_base_point_y;
-        /* (crank-rho2_1) squared amplitude */
-        const real crank_base_frame_xy = m->crank_base_frame_xy[i];
-        const real crank_base_frame_yy = m->crank_base_frame_yy[i];
-        const real crank_rho2_1_t = crank_S_x*crank_base_frame_xy + crank_S_y*crank_base_frame_yy;
-        const real crank_base_frame_xx = m->crank_base_frame_xx[i];
-        const real crank_base_frame_yx = m->crank_base_frame_yx[i];
-        const real crank_rho2_1_t_2 = crank_S_x*crank_base_frame_xx +
-            crank_S_y*crank_base_frame_yx;
-        const real crank_size_t = m->crank_size_t[i];
-        const real crank_rho2_1 = crank_size_t*(crank_rho2_1_t*crank_rho2_1_t +
-            crank_rho2_1_t_2*crank_rho2_1_t_2);
-        /* (crank-c_1) cosine of the angle of joint 1 from its reference direction */
-        const real crank_c_1_t = 1/(root(crank_rho2_1));
-        const real crank_platform_joint_offset_x = m->crank_platform_joint_offset_x[i];
-        const real crank_c_1 = crank_c_1_t*crank_platform_joint_offset_x*crank_rho2_1_t_2;
-        /* (crank-s_1) sine of the angle of joint 1 from its reference direction */
-        const real crank_s_1 = crank_c_1_t*crank_platform_joint_offset_x*crank_rho2_1_t;
+        values_crank v;
+        stage_crank_X(m, w, i, j, s, X, &v);
         /* (crank-S_dot) velocity of the connection point */
-        const real omega_z = s[6*w + j];
-        const real t_dot_x = s[4*w + j];
-        const real crank_S_dot_x = t_dot_x - crank_q_y*omega_z;
-        const real t_dot_y = s[5*w + j];
-        const real crank_S_dot_y = t_dot_y + crank_q_x*omega_z;
+        const real omega_z = V[2*w + j];
+        const real t_dot_x = V[0*w + j];
+        const real crank_S_dot_x = t_dot_x - v.crank_q_y*omega_z;
+        const real t_dot_y = V[1*w + j];
+        const real crank_S_dot_y = t_dot_y + v.crank_q_x*omega_z;
         /* (crank-qd_1) rate of joint 1 */
+        const real crank_base_frame_xx = m->crank_base_frame_xx[i];
+        const real crank_base_frame_xy = m->crank_base_frame_xy[i];
+        const real crank_base_frame_yx = m->crank_base_frame_yx[i];
+        const real crank_base_frame_yy = m->crank_base_frame_yy[i];
         const real crank_w_1_in_axes1_y = m->crank_w_1_in_axes1_y[i];
-        const real crank_qd_1 = crank_w_1_in_axes1_y*(crank_S_dot_x*(crank_base_frame_xy*crank_c_1
-            - crank_base_frame_xx*crank_s_1) + crank_S_dot_y*(crank_base_frame_yy*crank_c_1 -
-            crank_base_frame_yx*crank_s_1));
+        const real crank_qd_1 =
+            crank_w_1_in_axes1_y*(crank_S_dot_x*(crank_base_frame_xy*v.crank_c_1 -
+            crank_base_frame_xx*v.crank_s_1) + crank_S_dot_y*(crank_base_frame_yy*v.crank_c_1 -
+            crank_base_frame_yx*v.crank_s_1));
         /* (crank-qd_1) rate of joint 1 */
         o[0*count + k] = crank_qd_1;
         o[2*count + k] = crank_qd_1;
         const real crank_root_1_t = m->crank_root_1_t[i];
-        o[1*count + k] = UNLESS(magnitude(crank_rho2_1) > TOLERANCE*TOLERANCE*crank_root_1_t);
+        o[1*count + k] = UNLESS(magnitude(v.crank_rho2_1) > TOLERANCE*TOLERANCE*crank_root_1_t);
     }
 }
 
@@ -3642,90 +3284,35 @@ INLINE void joint_rates_place_crank(size_t w, size_t count, const real *o, size_
 }
 
 INLINE void joint_rates_legs_rrr(const prepared *m, size_t w, size_t leg, size_t legs, const real
-    *s, size_t states, size_t count, real *o)
+    *s, size_t states, size_t count, const real *X, const real *V, real *o)
 {
     for (size_t k = 0; k < count; ++k) {
         const size_t i = leg + legs*k;
         const size_t j = states*k;
-        /* (rrr-S) from the base point to the connection point */
-        const real R_xx = s[2*w + j];
-        const real R_yx = s[3*w + j];
-        const real rrr_platform_point_x = m->rrr_platform_point_x[i];
-        const real rrr_platform_point_y = m->rrr_platform_point_y[i];
-        const real rrr_q_x = R_xx*rrr_platform_point_x - R_yx*rrr_platform_point_y;
-        const real rrr_q_y = R_xx*rrr_platform_point_y + R_yx*rrr_platform_point_x;
-        const real rrr_base_point_x = m->rrr_base_point_x[i];
-        const real t_x = s[0*w + j];
-        const real rrr_S_x = rrr_q_x + t_x - rrr_base_point_x;
-        const real rrr_base_point_y = m->rrr_base_point_y[i];
-        const real t_y = s[1*w + j];
-        const real rrr_S_y = rrr_q_y + t_y - rrr_base_point_y;
-        /* (rrr-Kd_1) projection on the centre's direction, from the distance fixed by the joints beyond
-           joint 1 */
-        const real rrr_Kd_1_t_3 = rrr_S_x*rrr_S_x + rrr_S_y*rrr_S_y;
-        const real rrr_Kd_1_t = m->rrr_Kd_1_t[i];
-        const real rrr_Kd_1_t_2 = m->rrr_Kd_1_t_2[i];
-        const real rrr_Kd_1 = rrr_Kd_1_t + R(0.5)*rrr_Kd_1_t_3 - rrr_Kd_1_t_2;
-        /* (rrr-px_1) component along the reference direction */
-        const real rrr_base_frame_xx = m->rrr_base_frame_xx[i];
-        const real rrr_base_frame_yx = m->rrr_base_frame_yx[i];
-        const real rrr_px_1 = rrr_S_x*rrr_base_frame_xx + rrr_S_y*rrr_base_frame_yx;
-        /* (rrr-py_1) component across the reference direction */
-        const real rrr_base_frame_xy = m->rrr_base_frame_xy[i];
-        const real rrr_base_frame_yy = m->rrr_base_frame_yy[i];
-        const real rrr_py_1 = rrr_S_x*rrr_base_frame_xy + rrr_S_y*rrr_base_frame_yy;
-        /* (rrr-Kc_1) factor of the cosine in the equation of joint 1 */
-        const real rrr_joint2_offset_x = m->rrr_joint2_offset_x[i];
-        const real rrr_Kc_1 = rrr_joint2_offset_x*rrr_px_1;
-        /* (rrr-Ks_1) factor of the sine in the equation of joint 1 */
-        const real rrr_Ks_1 = rrr_joint2_offset_x*rrr_py_1;
-        /* (rrr-rho2_1) squared amplitude */
-        const real rrr_rho2_1 = rrr_Kc_1*rrr_Kc_1 + rrr_Ks_1*rrr_Ks_1;
-        /* (rrr-disc_1) discriminant */
-        const real rrr_disc_1 = rrr_rho2_1 - rrr_Kd_1*rrr_Kd_1;
-        /* (rrr-root_1) root, with the sign of the branch */
-        const real rrr_branch_1 = m->rrr_branch_1[i];
-        const real rrr_root_1 = rrr_branch_1*root(rrr_disc_1);
-        /* (rrr-c_1) cosine of the angle of joint 1 from its reference direction */
-        const real inv_rrr_rho2_1 = 1/rrr_rho2_1;
-        const real rrr_c_1 = inv_rrr_rho2_1*(rrr_Kc_1*rrr_Kd_1 - rrr_Ks_1*rrr_root_1);
-        /* (rrr-s_1) sine of the angle of joint 1 from its reference direction */
-        const real rrr_s_1 = inv_rrr_rho2_1*(rrr_Kc_1*rrr_root_1 + rrr_Kd_1*rrr_Ks_1);
-        /* (rrr-x_2) from the origin of joint 2 to the connection point */
-        const real inv_rrr_size_t = m->inv_rrr_size_t[i];
-        const real rrr_x_2_in_axes1_x = inv_rrr_size_t*rrr_Kd_1*rrr_joint2_offset_x -
-            rrr_joint2_offset_x;
-        /* (rrr-c_2) cosine of the angle of joint 2 from its reference direction */
-        const real inv_rrr_size_t_2 = m->inv_rrr_size_t_2[i];
-        const real rrr_platform_joint_offset_x = m->rrr_platform_joint_offset_x[i];
-        const real rrr_c_2 = inv_rrr_size_t_2*rrr_platform_joint_offset_x*rrr_x_2_in_axes1_x;
-        /* (rrr-s_2) sine of the angle of joint 2 from its reference direction */
-        const real rrr_s_2 =
-            -inv_rrr_size_t*inv_rrr_size_t_2*rrr_joint2_offset_x*rrr_platform_joint_offset_x*rrr_root_1;
+        values_rrr v;
+        stage_rrr_X(m, w, i, j, s, X, &v);
         /* (rrr-S_dot) velocity of the connection point */
-        const real omega_z = s[6*w + j];
-        const real t_dot_x = s[4*w + j];
-        const real rrr_S_dot_x = t_dot_x - omega_z*rrr_q_y;
-        const real t_dot_y = s[5*w + j];
-        const real rrr_S_dot_y = t_dot_y + omega_z*rrr_q_x;
-        /* (rrr-r_1) from joint 1 to the connection point, along the links */
-        const real rrr_r_1_in_axes1_y = rrr_platform_joint_offset_x*rrr_s_2;
-        const real rrr_r_1_in_axes1_x = rrr_joint2_offset_x + rrr_c_2*rrr_platform_joint_offset_x;
-        const real rrr_r_1_in_axes2_y = rrr_c_2*rrr_r_1_in_axes1_y - rrr_r_1_in_axes1_x*rrr_s_2;
+        const real omega_z = V[2*w + j];
+        const real t_dot_x = V[0*w + j];
+        const real rrr_S_dot_x = t_dot_x - omega_z*v.rrr_q_y;
+        const real t_dot_y = V[1*w + j];
+        const real rrr_S_dot_y = t_dot_y + omega_z*v.rrr_q_x;
         /* (rrr-qd_1) rate of joint 1 */
-        const real rrr_qd_1_t = rrr_c_1*rrr_s_2 + rrr_c_2*rrr_s_1;
-        const real rrr_qd_1_t_2 = rrr_c_1*rrr_c_2 - rrr_s_1*rrr_s_2;
-        const real axis_y_rrr_axes2_x = rrr_base_frame_xy*rrr_qd_1_t_2 -
-            rrr_base_frame_xx*rrr_qd_1_t;
-        const real axis_x_rrr_axes2_x = rrr_base_frame_yy*rrr_qd_1_t_2 -
-            rrr_base_frame_yx*rrr_qd_1_t;
+        const real rrr_base_frame_xx = m->rrr_base_frame_xx[i];
+        const real rrr_base_frame_xy = m->rrr_base_frame_xy[i];
+        const real axis_y_rrr_axes2_x = rrr_base_frame_xy*v.rrr_qd_1_t_2 -
+            rrr_base_frame_xx*v.rrr_qd_1_t;
+        const real rrr_base_frame_yx = m->rrr_base_frame_yx[i];
+        const real rrr_base_frame_yy = m->rrr_base_frame_yy[i];
+        const real axis_x_rrr_axes2_x = rrr_base_frame_yy*v.rrr_qd_1_t_2 -
+            rrr_base_frame_yx*v.rrr_qd_1_t;
         const real rrr_qd_1 = -(axis_x_rrr_axes2_x*rrr_S_dot_x -
-            axis_y_rrr_axes2_x*rrr_S_dot_y)/rrr_r_1_in_axes2_y;
+            axis_y_rrr_axes2_x*rrr_S_dot_y)/v.rrr_r_1_in_axes2_y;
         /* (rrr-qd_2) rate of joint 2 */
         const real rrr_w_2_in_axes2_y = m->rrr_w_2_in_axes2_y[i];
         const real rrr_qd_2 = rrr_w_2_in_axes2_y*(axis_x_rrr_axes2_x*rrr_S_dot_y +
-            axis_y_rrr_axes2_x*rrr_S_dot_x - rrr_qd_1*(rrr_c_2*rrr_r_1_in_axes1_x +
-            rrr_r_1_in_axes1_y*rrr_s_2));
+            axis_y_rrr_axes2_x*rrr_S_dot_x - rrr_qd_1*(v.rrr_c_2*v.rrr_r_1_in_axes1_x +
+            v.rrr_r_1_in_axes1_y*v.rrr_s_2));
         /* (rrr-qd_1) rate of joint 1 */
         o[0*count + k] = rrr_qd_1;
         /* (rrr-qd_2) rate of joint 2 */
@@ -3733,9 +3320,9 @@ INLINE void joint_rates_legs_rrr(const prepared *m, size_t w, size_t leg, size_t
         o[4*count + k] = rrr_qd_1 + rrr_qd_2;
         const real rrr_rho2_1_t = m->rrr_rho2_1_t[i];
         const real rrr_size = m->rrr_size[i];
-        o[3*count + k] = UNLESS(magnitude(rrr_rho2_1) > TOLERANCE*TOLERANCE*rrr_rho2_1_t) +
-            UNLESS(magnitude(rrr_r_1_in_axes2_y) > TOLERANCE*rrr_size);
-        o[2*count + k] = UNLESS(rrr_disc_1 >= 0);
+        o[3*count + k] = UNLESS(magnitude(v.rrr_rho2_1) > TOLERANCE*TOLERANCE*rrr_rho2_1_t) +
+            UNLESS(magnitude(v.rrr_r_1_in_axes2_y) > TOLERANCE*rrr_size);
+        o[2*count + k] = UNLESS(v.rrr_disc_1 >= 0);
     }
 }
 
@@ -3753,15 +3340,15 @@ INLINE void joint_rates_place_rrr(size_t w, size_t count, const real *o, size_t 
 
 INLINE void joint_rates_run(const prepared *m, const real *X, const real *V, real *qd, verdict *t)
 {
-    real s[7] = {0};
+    real s[2] = {0};
     real o_crank[3*LEGS(LEGS_OF_crank)] = {0};
     real o_rrr[5*LEGS(LEGS_OF_rrr)] = {0};
-    joint_rates_before(1, X, V, s);
-    joint_rates_legs_crank(m, 1, 0, 1, s, 0, LEGS(LEGS_OF_crank), o_crank);
+    joint_rates_before(m, 1, X, s);
+    joint_rates_legs_crank(m, 1, 0, 1, s, 0, LEGS(LEGS_OF_crank), X, V, o_crank);
+    joint_rates_legs_rrr(m, 1, 0, 1, s, 0, LEGS(LEGS_OF_rrr), X, V, o_rrr);
     for (size_t leg = 0; leg < LEGS_OF_crank; ++leg) {
         joint_rates_place_crank(1, LEGS(LEGS_OF_crank), o_crank, leg, qd, t);
     }
-    joint_rates_legs_rrr(m, 1, 0, 1, s, 0, LEGS(LEGS_OF_rrr), o_rrr);
     for (size_t leg = 0; leg < LEGS_OF_rrr; ++leg) {
         joint_rates_place_rrr(1, LEGS(LEGS_OF_rrr), o_rrr, leg, qd, t);
     }
@@ -3770,117 +3357,57 @@ INLINE void joint_rates_run(const prepared *m, const real *X, const real *V, rea
 INLINE void joint_rates_run_lanes(const prepared *m, const real *X, const real *V, real *qd,
     verdict *t)
 {
-    real s[7*LANES];
+    real s[2*LANES];
     real o_crank[3*LANES];
     real o_rrr[5*LANES];
-    joint_rates_before(LANES, X, V, s);
+    joint_rates_before(m, LANES, X, s);
     for (size_t leg = 0; leg < LEGS_OF_crank; ++leg) {
-        joint_rates_legs_crank(m, LANES, leg, 0, s, 1, LANES, o_crank);
+        joint_rates_legs_crank(m, LANES, leg, 0, s, 1, LANES, X, V, o_crank);
         joint_rates_place_crank(LANES, LANES, o_crank, 0, qd, t);
     }
     for (size_t leg = 0; leg < LEGS_OF_rrr; ++leg) {
-        joint_rates_legs_rrr(m, LANES, leg, 0, s, 1, LANES, o_rrr);
+        joint_rates_legs_rrr(m, LANES, leg, 0, s, 1, LANES, X, V, o_rrr);
         joint_rates_place_rrr(LANES, LANES, o_rrr, 0, qd, t);
     }
 }
 
 /* ---- joint_accelerations ---- */
-INLINE void joint_accelerations_before(size_t w, const real *X, const real *V, const real *A, real
-    *s)
+INLINE void joint_accelerations_before(const prepared *m, size_t w, const real *X, real *s)
 {
     for (size_t k = 0; k < w; ++k) {
-        /* X: named entries */
-        const real X_0 = X[0*w + k];
-        const real t_x = X_0;
-        const real X_1 = X[1*w + k];
-        const real t_y = X_1;
-        const real X_2 = X[2*w + k];
-        const real R_xx = cosine(X_2);
-        const real R_yx = sine(X_2);
-        /* V: named entries */
-        const real V_0 = V[0*w + k];
-        const real t_dot_x = V_0;
-        const real V_1 = V[1*w + k];
-        const real t_dot_y = V_1;
-        const real V_2 = V[2*w + k];
-        const real omega_z = V_2;
-        /* A: named entries */
-        const real A_0 = A[0*w + k];
-        const real t_ddot_x = A_0;
-        const real A_1 = A[1*w + k];
-        const real t_ddot_y = A_1;
-        const real A_2 = A[2*w + k];
-        const real alpha_z = A_2;
-        s[0*w + k] = t_x;
-        s[1*w + k] = t_y;
-        s[2*w + k] = R_xx;
-        s[3*w + k] = R_yx;
-        s[4*w + k] = t_dot_x;
-        s[5*w + k] = t_dot_y;
-        s[6*w + k] = omega_z;
-        s[7*w + k] = t_ddot_x;
-        s[8*w + k] = t_ddot_y;
-        s[9*w + k] = alpha_z;
+        values v;
+        stage_X(m, w, k, X, &v);
+        s[0*w + k] = v.R_xx;
+        s[1*w + k] = v.R_yx;
     }
 }
 
 INLINE void joint_accelerations_legs_crank(const prepared *m, size_t w, size_t leg, size_t legs,
-    const real *s, size_t states, size_t count, real *o)
+    const real *s, size_t states, size_t count, const real *X, const real *V, const real *A, real
+    *o)
 {
     for (size_t k = 0; k < count; ++k) {
         const size_t i = leg + legs*k;
         const size_t j = states*k;
-        /* (crank-S) from the base point to the connection point */
-        const real R_xx = s[2*w + j];
-        const real R_yx = s[3*w + j];
-        const real crank_platform_point_x = m->crank_platform_point_x[i];
-        const real crank_platform_point_y = m->crank_platform_point_y[i];
-        const real crank_q_x = R_xx*crank_platform_point_x - R_yx*crank_platform_point_y;
-        const real crank_q_y = R_xx*crank_platform_point_y + R_yx*crank_platform_point_x;
-        const real crank_base_point_x = m->crank_base_point_x[i];
-        const real t_x = s[0*w + j];
-        const real crank_S_x = crank_q_x + t_x - crank_base_point_x;
-        const real crank_base_point_y = m->crank_base_point_y[i];
-        const real t_y = s[1*w + j];
-        const real crank_S_y = crank_q_y + t_y - crank_base_point_y;
-        /* (crank-rho2_1) squared amplitude */
-        const real crank_base_frame_xy = m->crank_base_frame_xy[i];
-        const real crank_base_frame_yy = m->crank_base_frame_yy[i];
-        const real crank_rho2_1_t = crank_S_x*crank_base_frame_xy + crank_S_y*crank_base_frame_yy;
-        const real crank_base_frame_xx = m->crank_base_frame_xx[i];
-        const real crank_base_frame_yx = m->crank_base_frame_yx[i];
-        const real crank_rho2_1_t_2 = crank_S_x*crank_base_frame_xx +
-            crank_S_y*crank_base_frame_yx;
-        const real crank_size_t = m->crank_size_t[i];
-        const real crank_rho2_1 = crank_size_t*(crank_rho2_1_t*crank_rho2_1_t +
-            crank_rho2_1_t_2*crank_rho2_1_t_2);
-        /* (crank-c_1) cosine of the angle of joint 1 from its reference direction */
-        const real crank_c_1_t = 1/(root(crank_rho2_1));
-        const real crank_platform_joint_offset_x = m->crank_platform_joint_offset_x[i];
-        const real crank_c_1 = crank_c_1_t*crank_platform_joint_offset_x*crank_rho2_1_t_2;
-        /* (crank-s_1) sine of the angle of joint 1 from its reference direction */
-        const real crank_s_1 = crank_c_1_t*crank_platform_joint_offset_x*crank_rho2_1_t;
-        /* (crank-a_p) acceleration of the connection point without its centripetal part */
-        const real alpha_z = s[9*w + j];
-        const real t_ddot_x = s[7*w + j];
-        const real crank_a_p_x = t_ddot_x - alpha_z*crank_q_y;
-        const real t_ddot_y = s[8*w + j];
-        const real crank_a_p_y = t_ddot_y + alpha_z*crank_q_x;
-        /* (crank-S_ddot) acceleration of the connection point */
-        const real omega_z = s[6*w + j];
-        const real crank_S_ddot_x = crank_a_p_x - crank_q_x*omega_z*omega_z;
-        const real crank_S_ddot_y = crank_a_p_y - crank_q_y*omega_z*omega_z;
+        values_crank v;
+        stage_crank_X(m, w, i, j, s, X, &v);
+        stage_crank_A_X(w, j, A, &v);
+        stage_crank_A_V_X(w, j, V, &v);
         /* (crank-qdd_1) acceleration of joint 1 */
+        const real crank_base_frame_xx = m->crank_base_frame_xx[i];
+        const real crank_base_frame_xy = m->crank_base_frame_xy[i];
+        const real crank_base_frame_yx = m->crank_base_frame_yx[i];
+        const real crank_base_frame_yy = m->crank_base_frame_yy[i];
         const real crank_w_1_in_axes1_y = m->crank_w_1_in_axes1_y[i];
         const real crank_qdd_1 =
-            crank_w_1_in_axes1_y*(crank_S_ddot_x*(crank_base_frame_xy*crank_c_1 -
-            crank_base_frame_xx*crank_s_1) + crank_S_ddot_y*(crank_base_frame_yy*crank_c_1 -
-            crank_base_frame_yx*crank_s_1));
+            crank_w_1_in_axes1_y*(v.crank_S_ddot_x*(crank_base_frame_xy*v.crank_c_1 -
+            crank_base_frame_xx*v.crank_s_1) + v.crank_S_ddot_y*(crank_base_frame_yy*v.crank_c_1 -
+            crank_base_frame_yx*v.crank_s_1));
         /* (crank-qdd_1) acceleration of joint 1 */
         o[0*count + k] = crank_qdd_1;
         o[2*count + k] = crank_qdd_1;
         const real crank_root_1_t = m->crank_root_1_t[i];
-        o[1*count + k] = UNLESS(magnitude(crank_rho2_1) > TOLERANCE*TOLERANCE*crank_root_1_t);
+        o[1*count + k] = UNLESS(magnitude(v.crank_rho2_1) > TOLERANCE*TOLERANCE*crank_root_1_t);
     }
 }
 
@@ -3895,120 +3422,51 @@ INLINE void joint_accelerations_place_crank(size_t w, size_t count, const real *
 }
 
 INLINE void joint_accelerations_legs_rrr(const prepared *m, size_t w, size_t leg, size_t legs,
-    const real *s, size_t states, size_t count, real *o)
+    const real *s, size_t states, size_t count, const real *X, const real *V, const real *A, real
+    *o)
 {
     for (size_t k = 0; k < count; ++k) {
         const size_t i = leg + legs*k;
         const size_t j = states*k;
-        /* (rrr-S) from the base point to the connection point */
-        const real R_xx = s[2*w + j];
-        const real R_yx = s[3*w + j];
-        const real rrr_platform_point_x = m->rrr_platform_point_x[i];
-        const real rrr_platform_point_y = m->rrr_platform_point_y[i];
-        const real rrr_q_x = R_xx*rrr_platform_point_x - R_yx*rrr_platform_point_y;
-        const real rrr_q_y = R_xx*rrr_platform_point_y + R_yx*rrr_platform_point_x;
-        const real rrr_base_point_x = m->rrr_base_point_x[i];
-        const real t_x = s[0*w + j];
-        const real rrr_S_x = rrr_q_x + t_x - rrr_base_point_x;
-        const real rrr_base_point_y = m->rrr_base_point_y[i];
-        const real t_y = s[1*w + j];
-        const real rrr_S_y = rrr_q_y + t_y - rrr_base_point_y;
-        /* (rrr-Kd_1) projection on the centre's direction, from the distance fixed by the joints beyond
-           joint 1 */
-        const real rrr_Kd_1_t_3 = rrr_S_x*rrr_S_x + rrr_S_y*rrr_S_y;
-        const real rrr_Kd_1_t = m->rrr_Kd_1_t[i];
-        const real rrr_Kd_1_t_2 = m->rrr_Kd_1_t_2[i];
-        const real rrr_Kd_1 = rrr_Kd_1_t + R(0.5)*rrr_Kd_1_t_3 - rrr_Kd_1_t_2;
-        /* (rrr-px_1) component along the reference direction */
-        const real rrr_base_frame_xx = m->rrr_base_frame_xx[i];
-        const real rrr_base_frame_yx = m->rrr_base_frame_yx[i];
-        const real rrr_px_1 = rrr_S_x*rrr_base_frame_xx + rrr_S_y*rrr_base_frame_yx;
-        /* (rrr-py_1) component across the reference direction */
-        const real rrr_base_frame_xy = m->rrr_base_frame_xy[i];
-        const real rrr_base_frame_yy = m->rrr_base_frame_yy[i];
-        const real rrr_py_1 = rrr_S_x*rrr_base_frame_xy + rrr_S_y*rrr_base_frame_yy;
-        /* (rrr-Kc_1) factor of the cosine in the equation of joint 1 */
-        const real rrr_joint2_offset_x = m->rrr_joint2_offset_x[i];
-        const real rrr_Kc_1 = rrr_joint2_offset_x*rrr_px_1;
-        /* (rrr-Ks_1) factor of the sine in the equation of joint 1 */
-        const real rrr_Ks_1 = rrr_joint2_offset_x*rrr_py_1;
-        /* (rrr-rho2_1) squared amplitude */
-        const real rrr_rho2_1 = rrr_Kc_1*rrr_Kc_1 + rrr_Ks_1*rrr_Ks_1;
-        /* (rrr-disc_1) discriminant */
-        const real rrr_disc_1 = rrr_rho2_1 - rrr_Kd_1*rrr_Kd_1;
-        /* (rrr-root_1) root, with the sign of the branch */
-        const real rrr_branch_1 = m->rrr_branch_1[i];
-        const real rrr_root_1 = rrr_branch_1*root(rrr_disc_1);
-        /* (rrr-c_1) cosine of the angle of joint 1 from its reference direction */
-        const real inv_rrr_rho2_1 = 1/rrr_rho2_1;
-        const real rrr_c_1 = inv_rrr_rho2_1*(rrr_Kc_1*rrr_Kd_1 - rrr_Ks_1*rrr_root_1);
-        /* (rrr-s_1) sine of the angle of joint 1 from its reference direction */
-        const real rrr_s_1 = inv_rrr_rho2_1*(rrr_Kc_1*rrr_root_1 + rrr_Kd_1*rrr_Ks_1);
-        /* (rrr-x_2) from the origin of joint 2 to the connection point */
-        const real inv_rrr_size_t = m->inv_rrr_size_t[i];
-        const real rrr_x_2_in_axes1_x = inv_rrr_size_t*rrr_Kd_1*rrr_joint2_offset_x -
-            rrr_joint2_offset_x;
-        /* (rrr-c_2) cosine of the angle of joint 2 from its reference direction */
-        const real inv_rrr_size_t_2 = m->inv_rrr_size_t_2[i];
-        const real rrr_platform_joint_offset_x = m->rrr_platform_joint_offset_x[i];
-        const real rrr_c_2 = inv_rrr_size_t_2*rrr_platform_joint_offset_x*rrr_x_2_in_axes1_x;
-        /* (rrr-s_2) sine of the angle of joint 2 from its reference direction */
-        const real rrr_s_2 =
-            -inv_rrr_size_t*inv_rrr_size_t_2*rrr_joint2_offset_x*rrr_platform_joint_offset_x*rrr_root_1;
-        /* (rrr-S_dot) velocity of the connection point */
-        const real omega_z = s[6*w + j];
-        const real rrr_S_dot_t = omega_z*rrr_q_y;
-        const real rrr_S_dot_t_2 = omega_z*rrr_q_x;
-        const real t_dot_x = s[4*w + j];
-        const real rrr_S_dot_x = t_dot_x - rrr_S_dot_t;
-        const real t_dot_y = s[5*w + j];
-        const real rrr_S_dot_y = rrr_S_dot_t_2 + t_dot_y;
-        /* (rrr-r_1) from joint 1 to the connection point, along the links */
-        const real rrr_r_1_in_axes1_y = rrr_platform_joint_offset_x*rrr_s_2;
-        const real rrr_r_1_in_axes1_x = rrr_joint2_offset_x + rrr_c_2*rrr_platform_joint_offset_x;
-        const real rrr_r_1_in_axes2_x = rrr_c_2*rrr_r_1_in_axes1_x + rrr_r_1_in_axes1_y*rrr_s_2;
-        const real rrr_r_1_in_axes2_y = rrr_c_2*rrr_r_1_in_axes1_y - rrr_r_1_in_axes1_x*rrr_s_2;
-        /* (rrr-w_1) reciprocal vector 1 */
-        const real rrr_w_1_in_axes2_x = -1/rrr_r_1_in_axes2_y;
+        values_rrr v;
+        stage_rrr_X(m, w, i, j, s, X, &v);
+        stage_rrr_A_X(w, j, A, &v);
+        stage_rrr_V_X(m, w, i, j, V, &v);
+        stage_rrr_A_V_X(w, j, V, &v);
         /* (rrr-qd_1) rate of joint 1 */
-        const real rrr_qd_1_t = rrr_c_1*rrr_s_2 + rrr_c_2*rrr_s_1;
-        const real rrr_qd_1_t_2 = rrr_c_1*rrr_c_2 - rrr_s_1*rrr_s_2;
-        const real axis_y_rrr_axes2_x = rrr_base_frame_xy*rrr_qd_1_t_2 -
-            rrr_base_frame_xx*rrr_qd_1_t;
-        const real axis_x_rrr_axes2_x = rrr_base_frame_yy*rrr_qd_1_t_2 -
-            rrr_base_frame_yx*rrr_qd_1_t;
-        const real rrr_qd_1 = rrr_w_1_in_axes2_x*(axis_x_rrr_axes2_x*rrr_S_dot_x -
-            axis_y_rrr_axes2_x*rrr_S_dot_y);
+        const real rrr_base_frame_xx = m->rrr_base_frame_xx[i];
+        const real rrr_base_frame_xy = m->rrr_base_frame_xy[i];
+        const real axis_y_rrr_axes2_x = rrr_base_frame_xy*v.rrr_qd_1_t_2 -
+            rrr_base_frame_xx*v.rrr_qd_1_t;
+        const real rrr_base_frame_yx = m->rrr_base_frame_yx[i];
+        const real rrr_base_frame_yy = m->rrr_base_frame_yy[i];
+        const real axis_x_rrr_axes2_x = rrr_base_frame_yy*v.rrr_qd_1_t_2 -
+            rrr_base_frame_yx*v.rrr_qd_1_t;
+        const real rrr_qd_1 = v.rrr_w_1_in_axes2_x*(axis_x_rrr_axes2_x*v.rrr_S_dot_x -
+            axis_y_rrr_axes2_x*v.rrr_S_dot_y);
         /* (rrr-W_1) centripetal tensor of link 1 */
         const real rrr_W_1_t = rrr_qd_1*rrr_qd_1;
         /* (rrr-omega_2) angular velocity of link 2 */
         const real rrr_w_2_in_axes2_y = m->rrr_w_2_in_axes2_y[i];
         const real rrr_omega_2_in_axes2_z = rrr_qd_1 +
-            rrr_w_2_in_axes2_y*(axis_x_rrr_axes2_x*rrr_S_dot_y + axis_y_rrr_axes2_x*rrr_S_dot_x -
-            rrr_qd_1*rrr_r_1_in_axes2_x);
-        /* (rrr-a_p) acceleration of the connection point without its centripetal part */
-        const real alpha_z = s[9*w + j];
-        const real t_ddot_x = s[7*w + j];
-        const real rrr_a_p_x = t_ddot_x - alpha_z*rrr_q_y;
-        const real t_ddot_y = s[8*w + j];
-        const real rrr_a_p_y = t_ddot_y + alpha_z*rrr_q_x;
-        /* (rrr-S_ddot) acceleration of the connection point */
-        const real rrr_S_ddot_x = rrr_a_p_x - omega_z*rrr_S_dot_t_2;
-        const real rrr_S_ddot_y = rrr_a_p_y - omega_z*rrr_S_dot_t;
+            rrr_w_2_in_axes2_y*(axis_x_rrr_axes2_x*v.rrr_S_dot_y +
+            axis_y_rrr_axes2_x*v.rrr_S_dot_x - rrr_qd_1*v.rrr_r_1_in_axes2_x);
         /* (rrr-bias) acceleration of the connection point at zero joint accelerations */
+        const real rrr_joint2_offset_x = m->rrr_joint2_offset_x[i];
+        const real rrr_platform_joint_offset_x = m->rrr_platform_joint_offset_x[i];
         const real rrr_bias_in_axes2_x =
             -rrr_omega_2_in_axes2_z*rrr_omega_2_in_axes2_z*rrr_platform_joint_offset_x -
-            rrr_W_1_t*rrr_c_2*rrr_joint2_offset_x;
+            rrr_W_1_t*v.rrr_c_2*rrr_joint2_offset_x;
         /* (rrr-rel) acceleration of the connection point left to the joint accelerations */
-        const real rrr_rel_in_axes2_x = axis_x_rrr_axes2_x*rrr_S_ddot_x - rrr_bias_in_axes2_x -
-            axis_y_rrr_axes2_x*rrr_S_ddot_y;
-        const real rrr_rel_in_axes2_y = axis_x_rrr_axes2_x*rrr_S_ddot_y +
-            axis_y_rrr_axes2_x*rrr_S_ddot_x - rrr_W_1_t*rrr_joint2_offset_x*rrr_s_2;
+        const real rrr_rel_in_axes2_x = axis_x_rrr_axes2_x*v.rrr_S_ddot_x - rrr_bias_in_axes2_x -
+            axis_y_rrr_axes2_x*v.rrr_S_ddot_y;
+        const real rrr_rel_in_axes2_y = axis_x_rrr_axes2_x*v.rrr_S_ddot_y +
+            axis_y_rrr_axes2_x*v.rrr_S_ddot_x - rrr_W_1_t*rrr_joint2_offset_x*v.rrr_s_2;
         /* (rrr-qdd_1) acceleration of joint 1 */
-        const real rrr_qdd_1_t = -rrr_rel_in_axes2_x*rrr_w_1_in_axes2_x;
+        const real rrr_qdd_1_t = -rrr_rel_in_axes2_x*v.rrr_w_1_in_axes2_x;
         /* (rrr-qdd_2) acceleration of joint 2 */
         const real rrr_qdd_2 = rrr_w_2_in_axes2_y*(rrr_rel_in_axes2_y +
-            rrr_qdd_1_t*rrr_r_1_in_axes2_x);
+            rrr_qdd_1_t*v.rrr_r_1_in_axes2_x);
         /* (rrr-qdd_1) acceleration of joint 1 */
         o[0*count + k] = -rrr_qdd_1_t;
         /* (rrr-qdd_2) acceleration of joint 2 */
@@ -4016,9 +3474,9 @@ INLINE void joint_accelerations_legs_rrr(const prepared *m, size_t w, size_t leg
         o[4*count + k] = rrr_qdd_1_t + rrr_qdd_2;
         const real rrr_rho2_1_t = m->rrr_rho2_1_t[i];
         const real rrr_size = m->rrr_size[i];
-        o[3*count + k] = UNLESS(magnitude(rrr_rho2_1) > TOLERANCE*TOLERANCE*rrr_rho2_1_t) +
-            UNLESS(magnitude(rrr_r_1_in_axes2_y) > TOLERANCE*rrr_size);
-        o[2*count + k] = UNLESS(rrr_disc_1 >= 0);
+        o[3*count + k] = UNLESS(magnitude(v.rrr_rho2_1) > TOLERANCE*TOLERANCE*rrr_rho2_1_t) +
+            UNLESS(magnitude(v.rrr_r_1_in_axes2_y) > TOLERANCE*rrr_size);
+        o[2*count + k] = UNLESS(v.rrr_disc_1 >= 0);
     }
 }
 
@@ -4037,15 +3495,15 @@ INLINE void joint_accelerations_place_rrr(size_t w, size_t count, const real *o,
 INLINE void joint_accelerations_run(const prepared *m, const real *X, const real *V, const real
     *A, real *qdd, verdict *t)
 {
-    real s[10] = {0};
+    real s[2] = {0};
     real o_crank[3*LEGS(LEGS_OF_crank)] = {0};
     real o_rrr[5*LEGS(LEGS_OF_rrr)] = {0};
-    joint_accelerations_before(1, X, V, A, s);
-    joint_accelerations_legs_crank(m, 1, 0, 1, s, 0, LEGS(LEGS_OF_crank), o_crank);
+    joint_accelerations_before(m, 1, X, s);
+    joint_accelerations_legs_crank(m, 1, 0, 1, s, 0, LEGS(LEGS_OF_crank), X, V, A, o_crank);
+    joint_accelerations_legs_rrr(m, 1, 0, 1, s, 0, LEGS(LEGS_OF_rrr), X, V, A, o_rrr);
     for (size_t leg = 0; leg < LEGS_OF_crank; ++leg) {
         joint_accelerations_place_crank(1, LEGS(LEGS_OF_crank), o_crank, leg, qdd, t);
     }
-    joint_accelerations_legs_rrr(m, 1, 0, 1, s, 0, LEGS(LEGS_OF_rrr), o_rrr);
     for (size_t leg = 0; leg < LEGS_OF_rrr; ++leg) {
         joint_accelerations_place_rrr(1, LEGS(LEGS_OF_rrr), o_rrr, leg, qdd, t);
     }
@@ -4054,76 +3512,69 @@ INLINE void joint_accelerations_run(const prepared *m, const real *X, const real
 INLINE void joint_accelerations_run_lanes(const prepared *m, const real *X, const real *V, const
     real *A, real *qdd, verdict *t)
 {
-    real s[10*LANES];
+    real s[2*LANES];
     real o_crank[3*LANES];
     real o_rrr[5*LANES];
-    joint_accelerations_before(LANES, X, V, A, s);
+    joint_accelerations_before(m, LANES, X, s);
     for (size_t leg = 0; leg < LEGS_OF_crank; ++leg) {
-        joint_accelerations_legs_crank(m, LANES, leg, 0, s, 1, LANES, o_crank);
+        joint_accelerations_legs_crank(m, LANES, leg, 0, s, 1, LANES, X, V, A, o_crank);
         joint_accelerations_place_crank(LANES, LANES, o_crank, 0, qdd, t);
     }
     for (size_t leg = 0; leg < LEGS_OF_rrr; ++leg) {
-        joint_accelerations_legs_rrr(m, LANES, leg, 0, s, 1, LANES, o_rrr);
+        joint_accelerations_legs_rrr(m, LANES, leg, 0, s, 1, LANES, X, V, A, o_rrr);
         joint_accelerations_place_rrr(LANES, LANES, o_rrr, 0, qdd, t);
     }
 }
 
 /* ---- constraints ---- */
-INLINE void constraints_before(size_t w, const real *X, real *s)
+INLINE void constraints_before(const prepared *m, size_t w, const real *X, real *s)
 {
     for (size_t k = 0; k < w; ++k) {
-        /* X: named entries */
-        const real X_0 = X[0*w + k];
-        const real t_x = X_0;
-        const real X_1 = X[1*w + k];
-        const real t_y = X_1;
-        const real X_2 = X[2*w + k];
-        const real R_xx = cosine(X_2);
-        const real R_yx = sine(X_2);
-        s[0*w + k] = t_x;
-        s[1*w + k] = t_y;
-        s[2*w + k] = R_xx;
-        s[3*w + k] = R_yx;
+        values v;
+        stage_X(m, w, k, X, &v);
+        s[0*w + k] = v.R_xx;
+        s[1*w + k] = v.R_yx;
     }
 }
 
 INLINE void constraints_legs_crank(const prepared *m, size_t w, size_t leg, size_t legs, const
-    real *s, size_t states, size_t count, real *o)
+    real *s, size_t states, size_t count, const real *X, real *o)
 {
     for (size_t k = 0; k < count; ++k) {
         const size_t i = leg + legs*k;
         const size_t j = states*k;
         /* (crank-S) from the base point to the connection point */
-        const real R_xx = s[2*w + j];
-        const real R_yx = s[3*w + j];
+        const real R_xx = s[0*w + j];
+        const real R_yx = s[1*w + j];
         const real crank_base_point_x = m->crank_base_point_x[i];
         const real crank_platform_point_x = m->crank_platform_point_x[i];
         const real crank_platform_point_y = m->crank_platform_point_y[i];
-        const real t_x = s[0*w + j];
+        const real t_x = X[0*w + j];
         const real crank_S_x = t_x + R_xx*crank_platform_point_x - crank_base_point_x -
             R_yx*crank_platform_point_y;
         const real crank_base_point_y = m->crank_base_point_y[i];
-        const real t_y = s[1*w + j];
+        const real t_y = X[1*w + j];
         const real crank_S_y = t_y + R_xx*crank_platform_point_y + R_yx*crank_platform_point_x -
             crank_base_point_y;
-        /* (crank-rho2_1) squared amplitude */
-        const real crank_base_frame_xy = m->crank_base_frame_xy[i];
-        const real crank_base_frame_yy = m->crank_base_frame_yy[i];
-        const real crank_rho2_1_t = crank_S_x*crank_base_frame_xy + crank_S_y*crank_base_frame_yy;
         const real crank_base_frame_xx = m->crank_base_frame_xx[i];
         const real crank_base_frame_yx = m->crank_base_frame_yx[i];
-        const real crank_rho2_1_t_2 = crank_S_x*crank_base_frame_xx +
+        const real crank_S_in_turn1_x = crank_S_x*crank_base_frame_xx +
             crank_S_y*crank_base_frame_yx;
+        const real crank_base_frame_xy = m->crank_base_frame_xy[i];
+        const real crank_base_frame_yy = m->crank_base_frame_yy[i];
+        const real crank_S_in_turn1_y = crank_S_x*crank_base_frame_xy +
+            crank_S_y*crank_base_frame_yy;
+        /* (crank-rho2_1) squared amplitude */
         const real crank_size_t = m->crank_size_t[i];
-        const real crank_rho2_1 = crank_size_t*(crank_rho2_1_t*crank_rho2_1_t +
-            crank_rho2_1_t_2*crank_rho2_1_t_2);
+        const real crank_rho2_1 = crank_size_t*(crank_S_in_turn1_x*crank_S_in_turn1_x +
+            crank_S_in_turn1_y*crank_S_in_turn1_y);
         /* (crank-phi_c1) loop-closure residual along the constraint force */
         const real crank_phi_c1_t = 1/(root(crank_rho2_1));
         const real crank_n_c_in_axes1_x = m->crank_n_c_in_axes1_x[i];
         const real crank_platform_joint_offset_x = m->crank_platform_joint_offset_x[i];
         const real crank_phi_c1 =
-            crank_n_c_in_axes1_x*(crank_phi_c1_t*crank_platform_joint_offset_x*crank_rho2_1_t*crank_rho2_1_t
-            + crank_phi_c1_t*crank_platform_joint_offset_x*crank_rho2_1_t_2*crank_rho2_1_t_2 -
+            crank_n_c_in_axes1_x*(crank_S_in_turn1_x*crank_S_in_turn1_x*crank_phi_c1_t*crank_platform_joint_offset_x
+            + crank_S_in_turn1_y*crank_S_in_turn1_y*crank_phi_c1_t*crank_platform_joint_offset_x -
             crank_platform_joint_offset_x);
         /* (crank-phi_c1) loop-closure residual along the constraint force */
         o[0*count + k] = crank_phi_c1;
@@ -4145,10 +3596,10 @@ INLINE void constraints_place_crank(size_t w, size_t count, const real *o, size_
 
 INLINE void constraints_run(const prepared *m, const real *X, real *constraints, verdict *t)
 {
-    real s[4] = {0};
+    real s[2] = {0};
     real o_crank[3*LEGS(LEGS_OF_crank)] = {0};
-    constraints_before(1, X, s);
-    constraints_legs_crank(m, 1, 0, 1, s, 0, LEGS(LEGS_OF_crank), o_crank);
+    constraints_before(m, 1, X, s);
+    constraints_legs_crank(m, 1, 0, 1, s, 0, LEGS(LEGS_OF_crank), X, o_crank);
     for (size_t leg = 0; leg < LEGS_OF_crank; ++leg) {
         constraints_place_crank(1, LEGS(LEGS_OF_crank), o_crank, leg, constraints, t);
     }
@@ -4156,142 +3607,49 @@ INLINE void constraints_run(const prepared *m, const real *X, real *constraints,
 
 INLINE void constraints_run_lanes(const prepared *m, const real *X, real *constraints, verdict *t)
 {
-    real s[4*LANES];
+    real s[2*LANES];
     real o_crank[3*LANES];
-    constraints_before(LANES, X, s);
+    constraints_before(m, LANES, X, s);
     for (size_t leg = 0; leg < LEGS_OF_crank; ++leg) {
-        constraints_legs_crank(m, LANES, leg, 0, s, 1, LANES, o_crank);
+        constraints_legs_crank(m, LANES, leg, 0, s, 1, LANES, X, o_crank);
         constraints_place_crank(LANES, LANES, o_crank, 0, constraints, t);
     }
 }
 
 /* ---- legs ---- */
-INLINE void legs_before(size_t w, const real *X, const real *V, const real *A, real *s)
+INLINE void legs_before(const prepared *m, size_t w, const real *X, real *s)
 {
     for (size_t k = 0; k < w; ++k) {
-        /* X: named entries */
-        const real X_0 = X[0*w + k];
-        const real t_x = X_0;
-        const real X_1 = X[1*w + k];
-        const real t_y = X_1;
-        const real X_2 = X[2*w + k];
-        const real R_xx = cosine(X_2);
-        const real R_yx = sine(X_2);
-        /* V: named entries */
-        const real V_0 = V[0*w + k];
-        const real t_dot_x = V_0;
-        const real V_1 = V[1*w + k];
-        const real t_dot_y = V_1;
-        const real V_2 = V[2*w + k];
-        const real omega_z = V_2;
-        /* A: named entries */
-        const real A_0 = A[0*w + k];
-        const real t_ddot_x = A_0;
-        const real A_1 = A[1*w + k];
-        const real t_ddot_y = A_1;
-        const real A_2 = A[2*w + k];
-        const real alpha_z = A_2;
-        s[0*w + k] = t_x;
-        s[1*w + k] = t_y;
-        s[2*w + k] = R_xx;
-        s[3*w + k] = R_yx;
-        s[4*w + k] = t_dot_x;
-        s[5*w + k] = t_dot_y;
-        s[6*w + k] = omega_z;
-        s[7*w + k] = t_ddot_x;
-        s[8*w + k] = t_ddot_y;
-        s[9*w + k] = alpha_z;
+        values v;
+        stage_X(m, w, k, X, &v);
+        s[0*w + k] = v.R_xx;
+        s[1*w + k] = v.R_yx;
     }
 }
 
 INLINE void legs_legs_crank(const prepared *m, size_t w, size_t leg, size_t legs, const real *s,
-    size_t states, size_t count, real *o)
+    size_t states, size_t count, const real *X, const real *V, const real *A, real *o)
 {
     for (size_t k = 0; k < count; ++k) {
         const size_t i = leg + legs*k;
         const size_t j = states*k;
-        /* (crank-S) from the base point to the connection point */
-        const real R_xx = s[2*w + j];
-        const real R_yx = s[3*w + j];
-        const real crank_platform_point_x = m->crank_platform_point_x[i];
-        const real crank_platform_point_y = m->crank_platform_point_y[i];
-        const real crank_q_x = R_xx*crank_platform_point_x - R_yx*crank_platform_point_y;
-        const real crank_q_y = R_xx*crank_platform_point_y + R_yx*crank_platform_point_x;
-        const real crank_base_point_x = m->crank_base_point_x[i];
-        const real t_x = s[0*w + j];
-        const real crank_S_x = crank_q_x + t_x - crank_base_point_x;
-        const real crank_base_point_y = m->crank_base_point_y[i];
-        const real t_y = s[1*w + j];
-        const real crank_S_y = crank_q_y + t_y - crank_base_point_y;
-        /* (crank-rho2_1) squared amplitude */
-        const real crank_base_frame_xy = m->crank_base_frame_xy[i];
-        const real crank_base_frame_yy = m->crank_base_frame_yy[i];
-        const real crank_rho2_1_t = crank_S_x*crank_base_frame_xy + crank_S_y*crank_base_frame_yy;
-        const real crank_base_frame_xx = m->crank_base_frame_xx[i];
-        const real crank_base_frame_yx = m->crank_base_frame_yx[i];
-        const real crank_rho2_1_t_2 = crank_S_x*crank_base_frame_xx +
-            crank_S_y*crank_base_frame_yx;
-        const real crank_size_t = m->crank_size_t[i];
-        const real crank_rho2_1 = crank_size_t*(crank_rho2_1_t*crank_rho2_1_t +
-            crank_rho2_1_t_2*crank_rho2_1_t_2);
-        /* (crank-c_1) cosine of the angle of joint 1 from its reference direction */
-        const real crank_c_1_t = 1/(root(crank_rho2_1));
-        const real crank_platform_joint_offset_x = m->crank_platform_joint_offset_x[i];
-        const real crank_c_1 = crank_c_1_t*crank_platform_joint_offset_x*crank_rho2_1_t_2;
-        /* (crank-s_1) sine of the angle of joint 1 from its reference direction */
-        const real crank_s_1 = crank_c_1_t*crank_platform_joint_offset_x*crank_rho2_1_t;
-        /* (crank-n_c) direction of the constraint force */
-        const real axis_y_crank_axes1_x = crank_base_frame_xy*crank_c_1 -
-            crank_base_frame_xx*crank_s_1;
-        const real axis_x_crank_axes1_x = crank_base_frame_yy*crank_c_1 -
-            crank_base_frame_yx*crank_s_1;
-        const real crank_n_c_in_axes1_x = m->crank_n_c_in_axes1_x[i];
-        const real crank_n_c_x = axis_x_crank_axes1_x*crank_n_c_in_axes1_x;
-        const real crank_n_c_y = -axis_y_crank_axes1_x*crank_n_c_in_axes1_x;
-        /* (crank-w_1) reciprocal vector 1 */
-        const real crank_w_1_in_axes1_y = m->crank_w_1_in_axes1_y[i];
-        const real crank_w_1_x = axis_y_crank_axes1_x*crank_w_1_in_axes1_y;
-        const real crank_w_1_y = axis_x_crank_axes1_x*crank_w_1_in_axes1_y;
-        /* (crank-a_p) acceleration of the connection point without its centripetal part */
-        const real alpha_z = s[9*w + j];
-        const real t_ddot_x = s[7*w + j];
-        const real crank_a_p_x = t_ddot_x - alpha_z*crank_q_y;
-        const real t_ddot_y = s[8*w + j];
-        const real crank_a_p_y = t_ddot_y + alpha_z*crank_q_x;
-        /* (crank-S_ddot) acceleration of the connection point */
-        const real omega_z = s[6*w + j];
-        const real crank_S_ddot_x = crank_a_p_x - crank_q_x*omega_z*omega_z;
-        const real crank_S_ddot_y = crank_a_p_y - crank_q_y*omega_z*omega_z;
-        /* (crank-mu_1) inertia moment of the links that turn with link 1, about their reference points */
-        const real crank_J_1_in_spec1_zz = m->crank_J_1_in_spec1_zz[i];
-        const real crank_h_1_in_spec1_x = m->crank_h_1_in_spec1_x[i];
-        const real crank_h_1_in_spec1_y = m->crank_h_1_in_spec1_y[i];
-        const real crank_mu_1_t = m->crank_mu_1_t[i];
-        const real crank_mu_1_t_2 = m->crank_mu_1_t_2[i];
-        const real crank_mu_1_in_axes1_z = crank_h_1_in_spec1_y*(crank_c_1*crank_mu_1_t +
-            crank_mu_1_t_2*crank_s_1) +
-            crank_J_1_in_spec1_zz*crank_w_1_in_axes1_y*(axis_x_crank_axes1_x*crank_S_ddot_y +
-            axis_y_crank_axes1_x*crank_S_ddot_x) - crank_h_1_in_spec1_x*(crank_c_1*crank_mu_1_t_2
-            - crank_mu_1_t*crank_s_1);
-        /* (crank-G) force at the connection point that balances the leg's inertia and weight along all
-           degrees of freedom */
-        const real crank_G_in_axes1_y = crank_mu_1_in_axes1_z*crank_w_1_in_axes1_y;
+        values_crank v;
+        stage_crank_X(m, w, i, j, s, X, &v);
+        stage_crank_A_X(w, j, A, &v);
+        stage_crank_A_V_X(w, j, V, &v);
+        stage_crank_legs_required(m, i, &v);
         /* (crank-c) leg force on the platform without actuation and without the mass at the connection
            point */
-        const real crank_c_t = axis_y_crank_axes1_x*crank_G_in_axes1_y;
-        const real crank_c_t_2 = axis_x_crank_axes1_x*crank_G_in_axes1_y;
-        /* (crank-c) leg force on the platform without actuation and without the mass at the connection
-           point */
-        o[0*count + k] = -crank_c_t;
-        o[1*count + k] = -crank_c_t_2;
+        o[0*count + k] = -v.crank_c_t;
+        o[1*count + k] = -v.crank_c_t_2;
         /* (crank-w_1) reciprocal vector 1 */
-        o[2*count + k] = crank_w_1_x;
-        o[3*count + k] = crank_w_1_y;
+        o[2*count + k] = v.crank_w_1_x;
+        o[3*count + k] = v.crank_w_1_y;
         /* (crank-n_c) direction of the constraint force */
-        o[4*count + k] = crank_n_c_x;
-        o[5*count + k] = crank_n_c_y;
+        o[4*count + k] = v.crank_n_c_x;
+        o[5*count + k] = v.crank_n_c_y;
         const real crank_root_1_t = m->crank_root_1_t[i];
-        o[6*count + k] = UNLESS(magnitude(crank_rho2_1) > TOLERANCE*TOLERANCE*crank_root_1_t);
+        o[6*count + k] = UNLESS(magnitude(v.crank_rho2_1) > TOLERANCE*TOLERANCE*crank_root_1_t);
     }
 }
 
@@ -4310,180 +3668,38 @@ INLINE void legs_place_crank(size_t w, size_t count, const real *o, size_t first
 }
 
 INLINE void legs_legs_rrr(const prepared *m, size_t w, size_t leg, size_t legs, const real *s,
-    size_t states, size_t count, real *o)
+    size_t states, size_t count, const real *X, const real *V, const real *A, real *o)
 {
     for (size_t k = 0; k < count; ++k) {
         const size_t i = leg + legs*k;
         const size_t j = states*k;
-        /* (rrr-S) from the base point to the connection point */
-        const real R_xx = s[2*w + j];
-        const real R_yx = s[3*w + j];
-        const real rrr_platform_point_x = m->rrr_platform_point_x[i];
-        const real rrr_platform_point_y = m->rrr_platform_point_y[i];
-        const real rrr_q_x = R_xx*rrr_platform_point_x - R_yx*rrr_platform_point_y;
-        const real rrr_q_y = R_xx*rrr_platform_point_y + R_yx*rrr_platform_point_x;
-        const real rrr_base_point_x = m->rrr_base_point_x[i];
-        const real t_x = s[0*w + j];
-        const real rrr_S_x = rrr_q_x + t_x - rrr_base_point_x;
-        const real rrr_base_point_y = m->rrr_base_point_y[i];
-        const real t_y = s[1*w + j];
-        const real rrr_S_y = rrr_q_y + t_y - rrr_base_point_y;
-        /* (rrr-Kd_1) projection on the centre's direction, from the distance fixed by the joints beyond
-           joint 1 */
-        const real rrr_Kd_1_t_3 = rrr_S_x*rrr_S_x + rrr_S_y*rrr_S_y;
-        const real rrr_Kd_1_t = m->rrr_Kd_1_t[i];
-        const real rrr_Kd_1_t_2 = m->rrr_Kd_1_t_2[i];
-        const real rrr_Kd_1 = rrr_Kd_1_t + R(0.5)*rrr_Kd_1_t_3 - rrr_Kd_1_t_2;
-        /* (rrr-px_1) component along the reference direction */
-        const real rrr_base_frame_xx = m->rrr_base_frame_xx[i];
-        const real rrr_base_frame_yx = m->rrr_base_frame_yx[i];
-        const real rrr_px_1 = rrr_S_x*rrr_base_frame_xx + rrr_S_y*rrr_base_frame_yx;
-        /* (rrr-py_1) component across the reference direction */
-        const real rrr_base_frame_xy = m->rrr_base_frame_xy[i];
-        const real rrr_base_frame_yy = m->rrr_base_frame_yy[i];
-        const real rrr_py_1 = rrr_S_x*rrr_base_frame_xy + rrr_S_y*rrr_base_frame_yy;
-        /* (rrr-Kc_1) factor of the cosine in the equation of joint 1 */
-        const real rrr_joint2_offset_x = m->rrr_joint2_offset_x[i];
-        const real rrr_Kc_1 = rrr_joint2_offset_x*rrr_px_1;
-        /* (rrr-Ks_1) factor of the sine in the equation of joint 1 */
-        const real rrr_Ks_1 = rrr_joint2_offset_x*rrr_py_1;
-        /* (rrr-rho2_1) squared amplitude */
-        const real rrr_rho2_1 = rrr_Kc_1*rrr_Kc_1 + rrr_Ks_1*rrr_Ks_1;
-        /* (rrr-disc_1) discriminant */
-        const real rrr_disc_1 = rrr_rho2_1 - rrr_Kd_1*rrr_Kd_1;
-        /* (rrr-root_1) root, with the sign of the branch */
-        const real rrr_branch_1 = m->rrr_branch_1[i];
-        const real rrr_root_1 = rrr_branch_1*root(rrr_disc_1);
-        /* (rrr-c_1) cosine of the angle of joint 1 from its reference direction */
-        const real inv_rrr_rho2_1 = 1/rrr_rho2_1;
-        const real rrr_c_1 = inv_rrr_rho2_1*(rrr_Kc_1*rrr_Kd_1 - rrr_Ks_1*rrr_root_1);
-        /* (rrr-s_1) sine of the angle of joint 1 from its reference direction */
-        const real rrr_s_1 = inv_rrr_rho2_1*(rrr_Kc_1*rrr_root_1 + rrr_Kd_1*rrr_Ks_1);
-        /* (rrr-x_2) from the origin of joint 2 to the connection point */
-        const real inv_rrr_size_t = m->inv_rrr_size_t[i];
-        const real rrr_x_2_in_axes1_x = inv_rrr_size_t*rrr_Kd_1*rrr_joint2_offset_x -
-            rrr_joint2_offset_x;
-        /* (rrr-c_2) cosine of the angle of joint 2 from its reference direction */
-        const real inv_rrr_size_t_2 = m->inv_rrr_size_t_2[i];
-        const real rrr_platform_joint_offset_x = m->rrr_platform_joint_offset_x[i];
-        const real rrr_c_2 = inv_rrr_size_t_2*rrr_platform_joint_offset_x*rrr_x_2_in_axes1_x;
-        /* (rrr-s_2) sine of the angle of joint 2 from its reference direction */
-        const real rrr_s_2 =
-            -inv_rrr_size_t*inv_rrr_size_t_2*rrr_joint2_offset_x*rrr_platform_joint_offset_x*rrr_root_1;
-        /* (rrr-S_dot) velocity of the connection point */
-        const real omega_z = s[6*w + j];
-        const real rrr_S_dot_t = omega_z*rrr_q_y;
-        const real rrr_S_dot_t_2 = omega_z*rrr_q_x;
-        const real t_dot_x = s[4*w + j];
-        const real rrr_S_dot_x = t_dot_x - rrr_S_dot_t;
-        const real t_dot_y = s[5*w + j];
-        const real rrr_S_dot_y = rrr_S_dot_t_2 + t_dot_y;
-        /* (rrr-r_1) from joint 1 to the connection point, along the links */
-        const real rrr_r_1_in_axes1_y = rrr_platform_joint_offset_x*rrr_s_2;
-        const real rrr_r_1_in_axes1_x = rrr_joint2_offset_x + rrr_c_2*rrr_platform_joint_offset_x;
-        const real rrr_r_1_in_axes2_x = rrr_c_2*rrr_r_1_in_axes1_x + rrr_r_1_in_axes1_y*rrr_s_2;
-        const real rrr_r_1_in_axes2_y = rrr_c_2*rrr_r_1_in_axes1_y - rrr_r_1_in_axes1_x*rrr_s_2;
-        /* (rrr-w_1) reciprocal vector 1 */
-        const real rrr_w_1_t = rrr_c_1*rrr_s_2 + rrr_c_2*rrr_s_1;
-        const real rrr_w_1_t_2 = rrr_c_1*rrr_c_2 - rrr_s_1*rrr_s_2;
-        const real axis_y_rrr_axes2_x = rrr_base_frame_xy*rrr_w_1_t_2 -
-            rrr_base_frame_xx*rrr_w_1_t;
-        const real axis_x_rrr_axes2_x = rrr_base_frame_yy*rrr_w_1_t_2 -
-            rrr_base_frame_yx*rrr_w_1_t;
-        const real rrr_w_1_in_axes2_x = -1/rrr_r_1_in_axes2_y;
-        const real rrr_w_1_x = axis_x_rrr_axes2_x*rrr_w_1_in_axes2_x;
-        const real rrr_w_1_y = -axis_y_rrr_axes2_x*rrr_w_1_in_axes2_x;
-        /* (rrr-qd_1) rate of joint 1 */
-        const real rrr_qd_1 = rrr_w_1_in_axes2_x*(axis_x_rrr_axes2_x*rrr_S_dot_x -
-            axis_y_rrr_axes2_x*rrr_S_dot_y);
-        /* (rrr-W_1) centripetal tensor of link 1 */
-        const real rrr_W_1_t = rrr_qd_1*rrr_qd_1;
-        /* (rrr-omega_2) angular velocity of link 2 */
-        const real rrr_w_2_in_axes2_y = m->rrr_w_2_in_axes2_y[i];
-        const real rrr_omega_2_in_axes2_z = rrr_qd_1 +
-            rrr_w_2_in_axes2_y*(axis_x_rrr_axes2_x*rrr_S_dot_y + axis_y_rrr_axes2_x*rrr_S_dot_x -
-            rrr_qd_1*rrr_r_1_in_axes2_x);
-        /* (rrr-W_2) centripetal tensor of link 2 */
-        const real rrr_W_2_t = rrr_omega_2_in_axes2_z*rrr_omega_2_in_axes2_z;
-        /* (rrr-a_p) acceleration of the connection point without its centripetal part */
-        const real alpha_z = s[9*w + j];
-        const real t_ddot_x = s[7*w + j];
-        const real rrr_a_p_x = t_ddot_x - alpha_z*rrr_q_y;
-        const real t_ddot_y = s[8*w + j];
-        const real rrr_a_p_y = t_ddot_y + alpha_z*rrr_q_x;
-        /* (rrr-S_ddot) acceleration of the connection point */
-        const real rrr_S_ddot_x = rrr_a_p_x - omega_z*rrr_S_dot_t_2;
-        const real rrr_S_ddot_y = rrr_a_p_y - omega_z*rrr_S_dot_t;
-        const real rrr_S_ddot_in_axes2_x = axis_x_rrr_axes2_x*rrr_S_ddot_x -
-            axis_y_rrr_axes2_x*rrr_S_ddot_y;
-        const real rrr_S_ddot_in_axes2_y = axis_x_rrr_axes2_x*rrr_S_ddot_y +
-            axis_y_rrr_axes2_x*rrr_S_ddot_x;
-        /* (rrr-bias) acceleration of the connection point at zero joint accelerations */
-        const real rrr_bias_in_axes2_x = -rrr_W_2_t*rrr_platform_joint_offset_x -
-            rrr_W_1_t*rrr_c_2*rrr_joint2_offset_x;
-        /* (rrr-rel) acceleration of the connection point left to the joint accelerations */
-        const real rrr_rel_in_axes2_x = rrr_S_ddot_in_axes2_x - rrr_bias_in_axes2_x;
-        const real rrr_rel_in_axes2_y = rrr_S_ddot_in_axes2_y -
-            rrr_W_1_t*rrr_joint2_offset_x*rrr_s_2;
-        /* (rrr-B_1) acceleration tensor of link 1 */
-        const real rrr_B_1_in_axes1_xy = -rrr_rel_in_axes2_x*rrr_w_1_in_axes2_x;
-        /* (rrr-alpha_2) angular acceleration of link 2 */
-        const real rrr_alpha_2_in_axes2_z = rrr_w_2_in_axes2_y*(rrr_rel_in_axes2_y +
-            rrr_B_1_in_axes1_xy*rrr_r_1_in_axes2_x) - rrr_B_1_in_axes1_xy;
-        /* (rrr-acc_2) acceleration of the reference point of link 2, less gravity */
-        const real gravity_x = m->gravity_x;
-        const real gravity_y = m->gravity_y;
-        const real rrr_acc_2_in_axes2_x = rrr_S_ddot_in_axes2_x + axis_y_rrr_axes2_x*gravity_y -
-            axis_x_rrr_axes2_x*gravity_x;
-        const real rrr_acc_2_in_axes2_y = rrr_S_ddot_in_axes2_y - axis_x_rrr_axes2_x*gravity_y -
-            axis_y_rrr_axes2_x*gravity_x;
-        /* (rrr-mu_2) inertia moment of the links that turn with link 2, about their reference points */
-        const real rrr_J_2_in_spec2_zz = m->rrr_J_2_in_spec2_zz[i];
-        const real rrr_h_2_in_spec2_x = m->rrr_h_2_in_spec2_x[i];
-        const real rrr_h_2_in_spec2_y = m->rrr_h_2_in_spec2_y[i];
-        const real rrr_mu_2_in_axes2_z = rrr_J_2_in_spec2_zz*rrr_alpha_2_in_axes2_z +
-            rrr_acc_2_in_axes2_y*rrr_h_2_in_spec2_x - rrr_acc_2_in_axes2_x*rrr_h_2_in_spec2_y;
-        /* (rrr-mu_1) inertia moment of the links that turn with link 1, about their reference points */
-        const real rrr_J_1_in_spec1_zz = m->rrr_J_1_in_spec1_zz[i];
-        const real rrr_h_1_in_spec1_x = m->rrr_h_1_in_spec1_x[i];
-        const real rrr_h_1_in_spec1_y = m->rrr_h_1_in_spec1_y[i];
-        const real rrr_mu_1_t = m->rrr_mu_1_t[i];
-        const real rrr_mu_1_t_2 = m->rrr_mu_1_t_2[i];
-        const real rrr_mu_1_in_axes1_z = rrr_h_1_in_spec1_y*(rrr_c_1*rrr_mu_1_t +
-            rrr_mu_1_t_2*rrr_s_1) - rrr_B_1_in_axes1_xy*rrr_J_1_in_spec1_zz -
-            rrr_h_1_in_spec1_x*(rrr_c_1*rrr_mu_1_t_2 - rrr_mu_1_t*rrr_s_1);
-        /* (rrr-N_1) moment about joint 1 of the links from 1 outwards, the force at the connection point
-           left out */
-        const real rrr_N_1_in_axes1_z = rrr_mu_1_in_axes1_z + rrr_mu_2_in_axes2_z;
-        /* (rrr-G) force at the connection point that balances the leg's inertia and weight along all
-           degrees of freedom */
-        const real rrr_G_in_axes2_y = rrr_mu_2_in_axes2_z*rrr_w_2_in_axes2_y;
-        /* (rrr-c) leg force on the platform without actuation and without the mass at the connection
-           point */
-        const real rrr_c_in_axes2_x = rrr_W_2_t*rrr_h_2_in_spec2_x +
-            rrr_alpha_2_in_axes2_z*rrr_h_2_in_spec2_y +
-            rrr_w_1_in_axes2_x*(rrr_G_in_axes2_y*rrr_r_1_in_axes2_x - rrr_N_1_in_axes1_z);
-        const real rrr_c_in_axes2_y = rrr_W_2_t*rrr_h_2_in_spec2_y - rrr_G_in_axes2_y -
-            rrr_alpha_2_in_axes2_z*rrr_h_2_in_spec2_x;
+        values_rrr v;
+        stage_rrr_X(m, w, i, j, s, X, &v);
+        stage_rrr_A_X(w, j, A, &v);
+        stage_rrr_V_X(m, w, i, j, V, &v);
+        stage_rrr_A_V_X(w, j, V, &v);
+        stage_rrr_legs_required(m, i, &v);
         /* (rrr-c_true) leg force on the platform without actuation, the last link's mass included */
         const real rrr_link2_mass = m->rrr_link2_mass[i];
-        const real rrr_c_true_in_axes2_x = rrr_c_in_axes2_x - rrr_acc_2_in_axes2_x*rrr_link2_mass;
-        const real rrr_c_true_in_axes2_y = rrr_c_in_axes2_y - rrr_acc_2_in_axes2_y*rrr_link2_mass;
-        const real rrr_c_true_x = axis_x_rrr_axes2_x*rrr_c_true_in_axes2_x +
-            axis_y_rrr_axes2_x*rrr_c_true_in_axes2_y;
-        const real rrr_c_true_y = axis_x_rrr_axes2_x*rrr_c_true_in_axes2_y -
-            axis_y_rrr_axes2_x*rrr_c_true_in_axes2_x;
+        const real rrr_c_true_in_axes2_x = v.rrr_c_in_axes2_x -
+            v.rrr_acc_2_in_axes2_x*rrr_link2_mass;
+        const real rrr_c_true_in_axes2_y = v.rrr_c_in_axes2_y -
+            v.rrr_acc_2_in_axes2_y*rrr_link2_mass;
+        const real rrr_c_true_x = v.axis_x_rrr_axes2_x*rrr_c_true_in_axes2_x +
+            v.axis_y_rrr_axes2_x*rrr_c_true_in_axes2_y;
+        const real rrr_c_true_y = v.axis_x_rrr_axes2_x*rrr_c_true_in_axes2_y -
+            v.axis_y_rrr_axes2_x*rrr_c_true_in_axes2_x;
         /* (rrr-c_true) leg force on the platform without actuation, the last link's mass included */
         o[0*count + k] = rrr_c_true_x;
         o[1*count + k] = rrr_c_true_y;
         /* (rrr-w_1) reciprocal vector 1 */
-        o[2*count + k] = rrr_w_1_x;
-        o[3*count + k] = rrr_w_1_y;
+        o[2*count + k] = v.rrr_w_1_x;
+        o[3*count + k] = v.rrr_w_1_y;
         const real rrr_rho2_1_t = m->rrr_rho2_1_t[i];
         const real rrr_size = m->rrr_size[i];
-        o[5*count + k] = UNLESS(magnitude(rrr_rho2_1) > TOLERANCE*TOLERANCE*rrr_rho2_1_t) +
-            UNLESS(magnitude(rrr_r_1_in_axes2_y) > TOLERANCE*rrr_size);
-        o[4*count + k] = UNLESS(rrr_disc_1 >= 0);
+        o[5*count + k] = UNLESS(magnitude(v.rrr_rho2_1) > TOLERANCE*TOLERANCE*rrr_rho2_1_t) +
+            UNLESS(magnitude(v.rrr_r_1_in_axes2_y) > TOLERANCE*rrr_size);
+        o[4*count + k] = UNLESS(v.rrr_disc_1 >= 0);
     }
 }
 
@@ -4503,18 +3719,18 @@ INLINE void legs_place_rrr(size_t w, size_t count, const real *o, size_t first, 
 INLINE void legs_run(const prepared *m, const real *X, const real *V, const real *A, real
     *leg_force, real *actuator, real *constraint_direction, verdict *t)
 {
-    real s[10] = {0};
+    real s[2] = {0};
     real o_crank[7*LEGS(LEGS_OF_crank)] = {0};
     real o_rrr[6*LEGS(LEGS_OF_rrr)] = {0};
     clear(leg_force, 3*NL);
     clear(actuator, 6);
     clear(constraint_direction, 3*NC);
-    legs_before(1, X, V, A, s);
-    legs_legs_crank(m, 1, 0, 1, s, 0, LEGS(LEGS_OF_crank), o_crank);
+    legs_before(m, 1, X, s);
+    legs_legs_crank(m, 1, 0, 1, s, 0, LEGS(LEGS_OF_crank), X, V, A, o_crank);
+    legs_legs_rrr(m, 1, 0, 1, s, 0, LEGS(LEGS_OF_rrr), X, V, A, o_rrr);
     for (size_t leg = 0; leg < LEGS_OF_crank; ++leg) {
         legs_place_crank(1, LEGS(LEGS_OF_crank), o_crank, leg, leg_force, actuator, constraint_direction, t);
     }
-    legs_legs_rrr(m, 1, 0, 1, s, 0, LEGS(LEGS_OF_rrr), o_rrr);
     for (size_t leg = 0; leg < LEGS_OF_rrr; ++leg) {
         legs_place_rrr(1, LEGS(LEGS_OF_rrr), o_rrr, leg, leg_force, actuator, t);
     }
@@ -4524,67 +3740,62 @@ INLINE void legs_run(const prepared *m, const real *X, const real *V, const real
 INLINE void potential_before(const prepared *m, size_t w, const real *X, real *s)
 {
     for (size_t k = 0; k < w; ++k) {
-        /* X: named entries */
-        const real X_0 = X[0*w + k];
-        const real t_x = X_0;
-        const real X_1 = X[1*w + k];
-        const real t_y = X_1;
-        const real X_2 = X[2*w + k];
-        const real R_xx = cosine(X_2);
-        const real R_yx = sine(X_2);
+        values v;
+        stage_X(m, w, k, X, &v);
         /* (potential) potential energy */
         const real gravity_x = m->gravity_x;
         const real gravity_y = m->gravity_y;
         const real h_star_in_platform_x = m->h_star_in_platform_x;
         const real h_star_in_platform_y = m->h_star_in_platform_y;
         const real m_star = m->m_star;
-        const real potential_t = gravity_x*(R_xx*h_star_in_platform_x + m_star*t_x -
-            R_yx*h_star_in_platform_y) + gravity_y*(R_xx*h_star_in_platform_y +
-            R_yx*h_star_in_platform_x + m_star*t_y);
-        s[0*w + k] = t_x;
-        s[1*w + k] = t_y;
-        s[2*w + k] = R_xx;
-        s[3*w + k] = R_yx;
-        s[4*w + k] = potential_t;
+        const real t_x = X[0*w + k];
+        const real t_y = X[1*w + k];
+        const real potential_t = gravity_x*(v.R_xx*h_star_in_platform_x + m_star*t_x -
+            v.R_yx*h_star_in_platform_y) + gravity_y*(v.R_xx*h_star_in_platform_y +
+            v.R_yx*h_star_in_platform_x + m_star*t_y);
+        s[0*w + k] = v.R_xx;
+        s[1*w + k] = v.R_yx;
+        s[2*w + k] = potential_t;
     }
 }
 
 INLINE void potential_legs_crank(const prepared *m, size_t w, size_t leg, size_t legs, const real
-    *s, size_t states, size_t count, int add, real *terms, real *o)
+    *s, size_t states, size_t count, int add, const real *X, real *terms, real *o)
 {
     for (size_t k = 0; k < count; ++k) {
         const size_t i = leg + legs*k;
         const size_t j = states*k;
         /* (crank-S) from the base point to the connection point */
-        const real R_xx = s[2*w + j];
-        const real R_yx = s[3*w + j];
+        const real R_xx = s[0*w + j];
+        const real R_yx = s[1*w + j];
         const real crank_base_point_x = m->crank_base_point_x[i];
         const real crank_platform_point_x = m->crank_platform_point_x[i];
         const real crank_platform_point_y = m->crank_platform_point_y[i];
-        const real t_x = s[0*w + j];
+        const real t_x = X[0*w + j];
         const real crank_S_x = t_x + R_xx*crank_platform_point_x - crank_base_point_x -
             R_yx*crank_platform_point_y;
         const real crank_base_point_y = m->crank_base_point_y[i];
-        const real t_y = s[1*w + j];
+        const real t_y = X[1*w + j];
         const real crank_S_y = t_y + R_xx*crank_platform_point_y + R_yx*crank_platform_point_x -
             crank_base_point_y;
-        /* (crank-rho2_1) squared amplitude */
-        const real crank_base_frame_xy = m->crank_base_frame_xy[i];
-        const real crank_base_frame_yy = m->crank_base_frame_yy[i];
-        const real crank_rho2_1_t = crank_S_x*crank_base_frame_xy + crank_S_y*crank_base_frame_yy;
         const real crank_base_frame_xx = m->crank_base_frame_xx[i];
         const real crank_base_frame_yx = m->crank_base_frame_yx[i];
-        const real crank_rho2_1_t_2 = crank_S_x*crank_base_frame_xx +
+        const real crank_S_in_turn1_x = crank_S_x*crank_base_frame_xx +
             crank_S_y*crank_base_frame_yx;
+        const real crank_base_frame_xy = m->crank_base_frame_xy[i];
+        const real crank_base_frame_yy = m->crank_base_frame_yy[i];
+        const real crank_S_in_turn1_y = crank_S_x*crank_base_frame_xy +
+            crank_S_y*crank_base_frame_yy;
+        /* (crank-rho2_1) squared amplitude */
         const real crank_size_t = m->crank_size_t[i];
-        const real crank_rho2_1 = crank_size_t*(crank_rho2_1_t*crank_rho2_1_t +
-            crank_rho2_1_t_2*crank_rho2_1_t_2);
+        const real crank_rho2_1 = crank_size_t*(crank_S_in_turn1_x*crank_S_in_turn1_x +
+            crank_S_in_turn1_y*crank_S_in_turn1_y);
         /* (crank-c_1) cosine of the angle of joint 1 from its reference direction */
         const real crank_c_1_t = 1/(root(crank_rho2_1));
         const real crank_platform_joint_offset_x = m->crank_platform_joint_offset_x[i];
-        const real crank_c_1 = crank_c_1_t*crank_platform_joint_offset_x*crank_rho2_1_t_2;
+        const real crank_c_1 = crank_S_in_turn1_x*crank_c_1_t*crank_platform_joint_offset_x;
         /* (crank-s_1) sine of the angle of joint 1 from its reference direction */
-        const real crank_s_1 = crank_c_1_t*crank_platform_joint_offset_x*crank_rho2_1_t;
+        const real crank_s_1 = crank_S_in_turn1_y*crank_c_1_t*crank_platform_joint_offset_x;
         /* (potential) potential energy */
         const real crank_h_1_in_spec1_x = m->crank_h_1_in_spec1_x[i];
         const real crank_h_1_in_spec1_y = m->crank_h_1_in_spec1_y[i];
@@ -4615,66 +3826,26 @@ INLINE void potential_place_crank(size_t w, size_t count, const real *o, size_t 
 }
 
 INLINE void potential_legs_rrr(const prepared *m, size_t w, size_t leg, size_t legs, const real
-    *s, size_t states, size_t count, int add, real *terms, real *o)
+    *s, size_t states, size_t count, int add, const real *X, real *terms, real *o)
 {
     for (size_t k = 0; k < count; ++k) {
         const size_t i = leg + legs*k;
         const size_t j = states*k;
-        /* (rrr-S) from the base point to the connection point */
-        const real R_xx = s[2*w + j];
-        const real R_yx = s[3*w + j];
-        const real rrr_base_point_x = m->rrr_base_point_x[i];
-        const real rrr_platform_point_x = m->rrr_platform_point_x[i];
-        const real rrr_platform_point_y = m->rrr_platform_point_y[i];
-        const real t_x = s[0*w + j];
-        const real rrr_S_x = t_x + R_xx*rrr_platform_point_x - rrr_base_point_x -
-            R_yx*rrr_platform_point_y;
-        const real rrr_base_point_y = m->rrr_base_point_y[i];
-        const real t_y = s[1*w + j];
-        const real rrr_S_y = t_y + R_xx*rrr_platform_point_y + R_yx*rrr_platform_point_x -
-            rrr_base_point_y;
-        /* (rrr-Kd_1) projection on the centre's direction, from the distance fixed by the joints beyond
-           joint 1 */
-        const real rrr_Kd_1_t_3 = rrr_S_x*rrr_S_x + rrr_S_y*rrr_S_y;
-        const real rrr_Kd_1_t = m->rrr_Kd_1_t[i];
-        const real rrr_Kd_1_t_2 = m->rrr_Kd_1_t_2[i];
-        const real rrr_Kd_1 = rrr_Kd_1_t + R(0.5)*rrr_Kd_1_t_3 - rrr_Kd_1_t_2;
-        /* (rrr-px_1) component along the reference direction */
-        const real rrr_base_frame_xx = m->rrr_base_frame_xx[i];
-        const real rrr_base_frame_yx = m->rrr_base_frame_yx[i];
-        const real rrr_px_1 = rrr_S_x*rrr_base_frame_xx + rrr_S_y*rrr_base_frame_yx;
-        /* (rrr-py_1) component across the reference direction */
-        const real rrr_base_frame_xy = m->rrr_base_frame_xy[i];
-        const real rrr_base_frame_yy = m->rrr_base_frame_yy[i];
-        const real rrr_py_1 = rrr_S_x*rrr_base_frame_xy + rrr_S_y*rrr_base_frame_yy;
-        /* (rrr-Kc_1) factor of the cosine in the equation of joint 1 */
-        const real rrr_joint2_offset_x = m->rrr_joint2_offset_x[i];
-        const real rrr_Kc_1 = rrr_joint2_offset_x*rrr_px_1;
-        /* (rrr-Ks_1) factor of the sine in the equation of joint 1 */
-        const real rrr_Ks_1 = rrr_joint2_offset_x*rrr_py_1;
-        /* (rrr-rho2_1) squared amplitude */
-        const real rrr_rho2_1 = rrr_Kc_1*rrr_Kc_1 + rrr_Ks_1*rrr_Ks_1;
-        /* (rrr-disc_1) discriminant */
-        const real rrr_disc_1 = rrr_rho2_1 - rrr_Kd_1*rrr_Kd_1;
-        /* (rrr-root_1) root, with the sign of the branch */
-        const real rrr_branch_1 = m->rrr_branch_1[i];
-        const real rrr_root_1 = rrr_branch_1*root(rrr_disc_1);
+        values_rrr v;
+        stage_rrr_inverse_kinematics_potential(m, w, i, j, s, X, &v);
         /* (rrr-c_1) cosine of the angle of joint 1 from its reference direction */
-        const real inv_rrr_rho2_1 = 1/rrr_rho2_1;
-        const real rrr_c_1 = inv_rrr_rho2_1*(rrr_Kc_1*rrr_Kd_1 - rrr_Ks_1*rrr_root_1);
+        const real rrr_c_1 = v.inv_rrr_rho2_1*(v.rrr_Kc_1*v.rrr_Kd_1 - v.rrr_Ks_1*v.rrr_root_1);
         /* (rrr-s_1) sine of the angle of joint 1 from its reference direction */
-        const real rrr_s_1 = inv_rrr_rho2_1*(rrr_Kc_1*rrr_root_1 + rrr_Kd_1*rrr_Ks_1);
-        /* (rrr-x_2) from the origin of joint 2 to the connection point */
-        const real inv_rrr_size_t = m->inv_rrr_size_t[i];
-        const real rrr_x_2_in_axes1_x = inv_rrr_size_t*rrr_Kd_1*rrr_joint2_offset_x -
-            rrr_joint2_offset_x;
+        const real rrr_s_1 = v.inv_rrr_rho2_1*(v.rrr_Kc_1*v.rrr_root_1 + v.rrr_Kd_1*v.rrr_Ks_1);
         /* (rrr-c_2) cosine of the angle of joint 2 from its reference direction */
         const real inv_rrr_size_t_2 = m->inv_rrr_size_t_2[i];
         const real rrr_platform_joint_offset_x = m->rrr_platform_joint_offset_x[i];
-        const real rrr_c_2 = inv_rrr_size_t_2*rrr_platform_joint_offset_x*rrr_x_2_in_axes1_x;
+        const real rrr_c_2 = inv_rrr_size_t_2*rrr_platform_joint_offset_x*v.rrr_x_2_in_axes1_x;
         /* (rrr-s_2) sine of the angle of joint 2 from its reference direction */
+        const real inv_rrr_size_t = m->inv_rrr_size_t[i];
+        const real rrr_joint2_offset_x = m->rrr_joint2_offset_x[i];
         const real rrr_s_2 =
-            -inv_rrr_size_t*inv_rrr_size_t_2*rrr_joint2_offset_x*rrr_platform_joint_offset_x*rrr_root_1;
+            -inv_rrr_size_t*inv_rrr_size_t_2*rrr_joint2_offset_x*rrr_platform_joint_offset_x*v.rrr_root_1;
         /* (potential) potential energy */
         const real rrr_h_1_in_spec1_x = m->rrr_h_1_in_spec1_x[i];
         const real rrr_h_1_in_spec1_y = m->rrr_h_1_in_spec1_y[i];
@@ -4695,8 +3866,8 @@ INLINE void potential_legs_rrr(const prepared *m, size_t w, size_t leg, size_t l
         /* (potential) potential energy */
         gather(&terms[1*count + k], add, rrr_potential_t_3);  /* potential_t_2 */
         const real rrr_rho2_1_t = m->rrr_rho2_1_t[i];
-        o[1*count + k] = UNLESS(magnitude(rrr_rho2_1) > TOLERANCE*TOLERANCE*rrr_rho2_1_t);
-        o[0*count + k] = UNLESS(rrr_disc_1 >= 0);
+        o[1*count + k] = UNLESS(magnitude(v.rrr_rho2_1) > TOLERANCE*TOLERANCE*rrr_rho2_1_t);
+        o[0*count + k] = UNLESS(v.rrr_disc_1 >= 0);
     }
 }
 
@@ -4713,7 +3884,7 @@ INLINE void potential_after(size_t w, const real *s, const real *sums, real *pot
     for (size_t k = 0; k < w; ++k) {
         /* (potential) potential energy */
         const real potential_of_legs = sums[0*w + k];
-        const real potential_t = s[4*w + k];
+        const real potential_t = s[2*w + k];
         const real potential_t_2 = sums[1*w + k];
         const real potential_ = potential_of_legs - potential_t - potential_t_2;
         /* (potential) potential energy */
@@ -4723,21 +3894,18 @@ INLINE void potential_after(size_t w, const real *s, const real *sums, real *pot
 
 INLINE void potential_run(const prepared *m, const real *X, real *potential, verdict *t)
 {
-    real s[5] = {0};
-    real sums[2] = {0};
-    real terms_crank[2*LEGS(LEGS_OF_crank)] = {0};
-    real o_crank[LEGS(LEGS_OF_crank)] = {0};
-    real terms_rrr[2*LEGS(LEGS_OF_rrr)] = {0};
-    real o_rrr[2*LEGS(LEGS_OF_rrr)] = {0};
+    real s[3] = {0}, sums[2] = {0};
+    real terms_crank[2*LEGS(LEGS_OF_crank)] = {0}, o_crank[LEGS(LEGS_OF_crank)] = {0};
+    real terms_rrr[2*LEGS(LEGS_OF_rrr)] = {0}, o_rrr[2*LEGS(LEGS_OF_rrr)] = {0};
     potential_before(m, 1, X, s);
-    potential_legs_crank(m, 1, 0, 1, s, 0, LEGS(LEGS_OF_crank), 0, terms_crank, o_crank);
+    potential_legs_crank(m, 1, 0, 1, s, 0, LEGS(LEGS_OF_crank), 0, X, terms_crank, o_crank);
+    potential_legs_rrr(m, 1, 0, 1, s, 0, LEGS(LEGS_OF_rrr), 0, X, terms_rrr, o_rrr);
     for (size_t leg = 0; leg < LEGS_OF_crank; ++leg) {
         potential_place_crank(1, LEGS(LEGS_OF_crank), o_crank, leg, t);
     }
     for (size_t n = 0; n < 2; ++n) {
         sums[n] = total(terms_crank + n*LEGS(LEGS_OF_crank), LEGS_OF_crank);
     }
-    potential_legs_rrr(m, 1, 0, 1, s, 0, LEGS(LEGS_OF_rrr), 0, terms_rrr, o_rrr);
     for (size_t leg = 0; leg < LEGS_OF_rrr; ++leg) {
         potential_place_rrr(1, LEGS(LEGS_OF_rrr), o_rrr, leg, t);
     }
@@ -4752,18 +3920,10 @@ INLINE void condition_before(const prepared *m, size_t w, const real *X, real *s
     verdict *t)
 {
     for (size_t k = 0; k < w; ++k) {
-        /* X: named entries */
-        const real X_0 = X[0*w + k];
-        const real t_x = X_0;
-        const real X_1 = X[1*w + k];
-        const real t_y = X_1;
-        const real X_2 = X[2*w + k];
-        const real R_xx = cosine(X_2);
-        const real R_yx = sine(X_2);
-        s[0*w + k] = t_x;
-        s[1*w + k] = t_y;
-        s[2*w + k] = R_xx;
-        s[3*w + k] = R_yx;
+        values v;
+        stage_X(m, w, k, X, &v);
+        s[0*w + k] = v.R_xx;
+        s[1*w + k] = v.R_yx;
         /* (legs_size) rms size of the legs, taken where the platform points coincide */
         const real legs_size = m->legs_size;
         lengths[1*w + k] = legs_size;
@@ -4772,86 +3932,44 @@ INLINE void condition_before(const prepared *m, size_t w, const real *X, real *s
 }
 
 INLINE void condition_legs_crank(const prepared *m, size_t w, size_t leg, size_t legs, const real
-    *s, size_t states, size_t count, int add, real *terms, real *o)
+    *s, size_t states, size_t count, int add, const real *X, real *terms, real *o)
 {
     for (size_t k = 0; k < count; ++k) {
         const size_t i = leg + legs*k;
         const size_t j = states*k;
-        /* (crank-S) from the base point to the connection point */
-        const real R_xx = s[2*w + j];
-        const real R_yx = s[3*w + j];
-        const real crank_platform_point_x = m->crank_platform_point_x[i];
-        const real crank_platform_point_y = m->crank_platform_point_y[i];
-        const real crank_q_x = R_xx*crank_platform_point_x - R_yx*crank_platform_point_y;
-        const real crank_q_y = R_xx*crank_platform_point_y + R_yx*crank_platform_point_x;
-        const real crank_base_point_x = m->crank_base_point_x[i];
-        const real t_x = s[0*w + j];
-        const real crank_S_x = crank_q_x + t_x - crank_base_point_x;
-        const real crank_base_point_y = m->crank_base_point_y[i];
-        const real t_y = s[1*w + j];
-        const real crank_S_y = crank_q_y + t_y - crank_base_point_y;
-        /* (crank-rho2_1) squared amplitude */
-        const real crank_base_frame_xy = m->crank_base_frame_xy[i];
-        const real crank_base_frame_yy = m->crank_base_frame_yy[i];
-        const real crank_rho2_1_t = crank_S_x*crank_base_frame_xy + crank_S_y*crank_base_frame_yy;
-        const real crank_base_frame_xx = m->crank_base_frame_xx[i];
-        const real crank_base_frame_yx = m->crank_base_frame_yx[i];
-        const real crank_rho2_1_t_2 = crank_S_x*crank_base_frame_xx +
-            crank_S_y*crank_base_frame_yx;
-        const real crank_size_t = m->crank_size_t[i];
-        const real crank_rho2_1 = crank_size_t*(crank_rho2_1_t*crank_rho2_1_t +
-            crank_rho2_1_t_2*crank_rho2_1_t_2);
+        values_crank v;
+        stage_crank_X(m, w, i, j, s, X, &v);
         /* (crank-root_1) amplitude: off the manifold the nearest angle is taken */
-        const real crank_pivot_size = magnitude(crank_rho2_1);
+        const real crank_pivot_size = magnitude(v.crank_rho2_1);
         const real inv_crank_root_1_t = m->inv_crank_root_1_t[i];
         const real crank_pivot_root = root(crank_pivot_size*inv_crank_root_1_t);
-        /* (crank-c_1) cosine of the angle of joint 1 from its reference direction */
-        const real crank_c_1_t = 1/(root(crank_rho2_1));
-        const real crank_platform_joint_offset_x = m->crank_platform_joint_offset_x[i];
-        const real crank_c_1 = crank_c_1_t*crank_platform_joint_offset_x*crank_rho2_1_t_2;
-        /* (crank-s_1) sine of the angle of joint 1 from its reference direction */
-        const real crank_s_1 = crank_c_1_t*crank_platform_joint_offset_x*crank_rho2_1_t;
-        /* (crank-n_c) direction of the constraint force */
-        const real axis_y_crank_axes1_x = crank_base_frame_xy*crank_c_1 -
-            crank_base_frame_xx*crank_s_1;
-        const real axis_x_crank_axes1_x = crank_base_frame_yy*crank_c_1 -
-            crank_base_frame_yx*crank_s_1;
-        const real crank_n_c_in_axes1_x = m->crank_n_c_in_axes1_x[i];
-        const real crank_n_c_x = axis_x_crank_axes1_x*crank_n_c_in_axes1_x;
-        const real crank_n_c_y = -axis_y_crank_axes1_x*crank_n_c_in_axes1_x;
-        /* (crank-w_1) reciprocal vector 1 */
-        const real crank_w_1_in_axes1_y = m->crank_w_1_in_axes1_y[i];
-        const real crank_w_1_x = axis_y_crank_axes1_x*crank_w_1_in_axes1_y;
-        const real crank_w_1_y = axis_x_crank_axes1_x*crank_w_1_in_axes1_y;
-        /* (crank-H_a_1) moment of the column's unit force about the platform origin */
-        const real crank_H_a_1_z = crank_q_x*crank_w_1_y - crank_q_y*crank_w_1_x;
-        /* (crank-Hk_a_1) moment of the column's unit force about the platform origin */
-        const real crank_Hk_a_1_z = crank_n_c_y*crank_q_x - crank_n_c_x*crank_q_y;
         /* (spread) rms distance of the platform points from their centroid */
         const real b_c_in_platform_x = m->b_c_in_platform_x;
+        const real crank_platform_point_x = m->crank_platform_point_x[i];
         const real crank_spread_t = b_c_in_platform_x - crank_platform_point_x;
         const real b_c_in_platform_y = m->b_c_in_platform_y;
+        const real crank_platform_point_y = m->crank_platform_point_y[i];
         const real crank_spread_t_2 = b_c_in_platform_y - crank_platform_point_y;
         const real crank_spread_t_3 = crank_spread_t*crank_spread_t +
             crank_spread_t_2*crank_spread_t_2;
         /* (spread) rms distance of the platform points from their centroid */
         gather(&terms[0*count + k], add, crank_spread_t_3);  /* spread_crank */
         /* (crank-w_1) reciprocal vector 1 */
-        o[0*count + k] = crank_w_1_x;
-        o[1*count + k] = crank_w_1_y;
+        o[0*count + k] = v.crank_w_1_x;
+        o[1*count + k] = v.crank_w_1_y;
         /* (crank-H_a_1) moment of the column's unit force about the platform origin */
-        o[2*count + k] = crank_H_a_1_z;
+        o[2*count + k] = v.crank_H_a_1_z;
         /* (crank-n_c) direction of the constraint force */
-        o[3*count + k] = crank_n_c_x;
-        o[4*count + k] = crank_n_c_y;
+        o[3*count + k] = v.crank_n_c_x;
+        o[4*count + k] = v.crank_n_c_y;
         /* (crank-Hk_a_1) moment of the column's unit force about the platform origin */
-        o[5*count + k] = crank_Hk_a_1_z;
+        o[5*count + k] = v.crank_Hk_a_1_z;
         /* (crank-root_1) amplitude: off the manifold the nearest angle is taken */
         o[6*count + k] = crank_pivot_root;
-        o[8*count + k] = (crank_w_1_x + (crank_w_1_y + crank_H_a_1_z)) + ((crank_n_c_x +
-            crank_n_c_y) + (crank_Hk_a_1_z + crank_pivot_root));
+        o[8*count + k] = (v.crank_w_1_x + (v.crank_w_1_y + v.crank_H_a_1_z)) + ((v.crank_n_c_x +
+            v.crank_n_c_y) + (v.crank_Hk_a_1_z + crank_pivot_root));
         const real crank_root_1_t = m->crank_root_1_t[i];
-        o[7*count + k] = UNLESS(magnitude(crank_rho2_1) > TOLERANCE*TOLERANCE*crank_root_1_t);
+        o[7*count + k] = UNLESS(magnitude(v.crank_rho2_1) > TOLERANCE*TOLERANCE*crank_root_1_t);
     }
 }
 
@@ -4859,10 +3977,10 @@ INLINE void condition_place_crank(size_t w, size_t count, const real *o, size_t 
     real *Hk, real *pivots, verdict *t)
 {
     for (size_t k = 0; k < w; ++k) {
-        H[0*NU*w + k] = o[0*count + first + k];
+        H[0*w + k] = o[0*count + first + k];
         H[NU*w + k] = o[1*count + first + k];
         H[2*NU*w + k] = o[2*count + first + k];
-        Hk[0*NC*w + k] = o[3*count + first + k];
+        Hk[0*w + k] = o[3*count + first + k];
         Hk[NC*w + k] = o[4*count + first + k];
         Hk[2*NC*w + k] = o[5*count + first + k];
         pivots[0*w + k] = o[6*count + first + k];
@@ -4872,112 +3990,48 @@ INLINE void condition_place_crank(size_t w, size_t count, const real *o, size_t 
 }
 
 INLINE void condition_legs_rrr(const prepared *m, size_t w, size_t leg, size_t legs, const real
-    *s, size_t states, size_t count, int add, real *terms, real *o)
+    *s, size_t states, size_t count, int add, const real *X, real *terms, real *o)
 {
     for (size_t k = 0; k < count; ++k) {
         const size_t i = leg + legs*k;
         const size_t j = states*k;
-        /* (rrr-S) from the base point to the connection point */
-        const real R_xx = s[2*w + j];
-        const real R_yx = s[3*w + j];
-        const real rrr_platform_point_x = m->rrr_platform_point_x[i];
-        const real rrr_platform_point_y = m->rrr_platform_point_y[i];
-        const real rrr_q_x = R_xx*rrr_platform_point_x - R_yx*rrr_platform_point_y;
-        const real rrr_q_y = R_xx*rrr_platform_point_y + R_yx*rrr_platform_point_x;
-        const real rrr_base_point_x = m->rrr_base_point_x[i];
-        const real t_x = s[0*w + j];
-        const real rrr_S_x = rrr_q_x + t_x - rrr_base_point_x;
-        const real rrr_base_point_y = m->rrr_base_point_y[i];
-        const real t_y = s[1*w + j];
-        const real rrr_S_y = rrr_q_y + t_y - rrr_base_point_y;
-        /* (rrr-Kd_1) projection on the centre's direction, from the distance fixed by the joints beyond
-           joint 1 */
-        const real rrr_Kd_1_t_3 = rrr_S_x*rrr_S_x + rrr_S_y*rrr_S_y;
-        const real rrr_Kd_1_t = m->rrr_Kd_1_t[i];
-        const real rrr_Kd_1_t_2 = m->rrr_Kd_1_t_2[i];
-        const real rrr_Kd_1 = rrr_Kd_1_t + R(0.5)*rrr_Kd_1_t_3 - rrr_Kd_1_t_2;
-        /* (rrr-px_1) component along the reference direction */
-        const real rrr_base_frame_xx = m->rrr_base_frame_xx[i];
-        const real rrr_base_frame_yx = m->rrr_base_frame_yx[i];
-        const real rrr_px_1 = rrr_S_x*rrr_base_frame_xx + rrr_S_y*rrr_base_frame_yx;
-        /* (rrr-py_1) component across the reference direction */
-        const real rrr_base_frame_xy = m->rrr_base_frame_xy[i];
-        const real rrr_base_frame_yy = m->rrr_base_frame_yy[i];
-        const real rrr_py_1 = rrr_S_x*rrr_base_frame_xy + rrr_S_y*rrr_base_frame_yy;
-        /* (rrr-Kc_1) factor of the cosine in the equation of joint 1 */
-        const real rrr_joint2_offset_x = m->rrr_joint2_offset_x[i];
-        const real rrr_Kc_1 = rrr_joint2_offset_x*rrr_px_1;
-        /* (rrr-Ks_1) factor of the sine in the equation of joint 1 */
-        const real rrr_Ks_1 = rrr_joint2_offset_x*rrr_py_1;
-        /* (rrr-rho2_1) squared amplitude */
-        const real rrr_rho2_1 = rrr_Kc_1*rrr_Kc_1 + rrr_Ks_1*rrr_Ks_1;
-        /* (rrr-disc_1) discriminant */
-        const real rrr_disc_1 = rrr_rho2_1 - rrr_Kd_1*rrr_Kd_1;
-        /* (rrr-root_1) root, with the sign of the branch */
-        const real rrr_branch_1 = m->rrr_branch_1[i];
-        const real rrr_root_1 = rrr_branch_1*root(rrr_disc_1);
-        /* (rrr-c_1) cosine of the angle of joint 1 from its reference direction */
-        const real inv_rrr_rho2_1 = 1/rrr_rho2_1;
-        const real rrr_c_1 = inv_rrr_rho2_1*(rrr_Kc_1*rrr_Kd_1 - rrr_Ks_1*rrr_root_1);
-        /* (rrr-s_1) sine of the angle of joint 1 from its reference direction */
-        const real rrr_s_1 = inv_rrr_rho2_1*(rrr_Kc_1*rrr_root_1 + rrr_Kd_1*rrr_Ks_1);
-        /* (rrr-x_2) from the origin of joint 2 to the connection point */
-        const real inv_rrr_size_t = m->inv_rrr_size_t[i];
-        const real rrr_x_2_in_axes1_x = inv_rrr_size_t*rrr_Kd_1*rrr_joint2_offset_x -
-            rrr_joint2_offset_x;
-        /* (rrr-c_2) cosine of the angle of joint 2 from its reference direction */
-        const real inv_rrr_size_t_2 = m->inv_rrr_size_t_2[i];
-        const real rrr_platform_joint_offset_x = m->rrr_platform_joint_offset_x[i];
-        const real rrr_c_2 = inv_rrr_size_t_2*rrr_platform_joint_offset_x*rrr_x_2_in_axes1_x;
-        /* (rrr-s_2) sine of the angle of joint 2 from its reference direction */
-        const real rrr_s_2 =
-            -inv_rrr_size_t*inv_rrr_size_t_2*rrr_joint2_offset_x*rrr_platform_joint_offset_x*rrr_root_1;
-        /* (rrr-r_1) from joint 1 to the connection point, along the links */
-        const real rrr_r_1_in_axes1_x = rrr_joint2_offset_x + rrr_c_2*rrr_platform_joint_offset_x;
-        const real rrr_r_1_in_axes2_y = rrr_c_2*rrr_platform_joint_offset_x*rrr_s_2 -
-            rrr_r_1_in_axes1_x*rrr_s_2;
-        /* (rrr-w_1) reciprocal vector 1 */
-        const real rrr_w_1_t = rrr_c_1*rrr_s_2 + rrr_c_2*rrr_s_1;
-        const real rrr_w_1_t_2 = rrr_c_1*rrr_c_2 - rrr_s_1*rrr_s_2;
-        const real rrr_w_1_in_axes2_x = -1/rrr_r_1_in_axes2_y;
-        const real rrr_w_1_x = rrr_w_1_in_axes2_x*(rrr_base_frame_yy*rrr_w_1_t_2 -
-            rrr_base_frame_yx*rrr_w_1_t);
-        const real rrr_w_1_y = -rrr_w_1_in_axes2_x*(rrr_base_frame_xy*rrr_w_1_t_2 -
-            rrr_base_frame_xx*rrr_w_1_t);
+        values_rrr v;
+        stage_rrr_X(m, w, i, j, s, X, &v);
+        stage_rrr_H_condition(m, i, &v);
         /* (rrr-G) force at the connection point that balances the leg's inertia and weight along all
            degrees of freedom */
-        const real rrr_pivot_size = magnitude(rrr_rho2_1);
-        const real rrr_pivot_size_2 = magnitude(rrr_r_1_in_axes2_y);
+        const real rrr_pivot_size = magnitude(v.rrr_rho2_1);
+        const real rrr_pivot_size_2 = magnitude(v.rrr_r_1_in_axes2_y);
         const real inv_rrr_rho2_1_t = m->inv_rrr_rho2_1_t[i];
         const real inv_rrr_size = m->inv_rrr_size[i];
         const real rrr_least_pivots = lesser(root(inv_rrr_rho2_1_t*rrr_pivot_size),
             inv_rrr_size*rrr_pivot_size_2);
-        /* (rrr-H_a_1) moment of the column's unit force about the platform origin */
-        const real rrr_H_a_1_z = rrr_q_x*rrr_w_1_y - rrr_q_y*rrr_w_1_x;
         /* (spread) rms distance of the platform points from their centroid */
         const real b_c_in_platform_x = m->b_c_in_platform_x;
+        const real rrr_platform_point_x = m->rrr_platform_point_x[i];
         const real rrr_spread_t = b_c_in_platform_x - rrr_platform_point_x;
         const real b_c_in_platform_y = m->b_c_in_platform_y;
+        const real rrr_platform_point_y = m->rrr_platform_point_y[i];
         const real rrr_spread_t_2 = b_c_in_platform_y - rrr_platform_point_y;
         const real rrr_spread_t_3 = rrr_spread_t*rrr_spread_t + rrr_spread_t_2*rrr_spread_t_2;
         /* (spread) rms distance of the platform points from their centroid */
         gather(&terms[1*count + k], add, rrr_spread_t_3);  /* spread_rrr */
         /* (rrr-w_1) reciprocal vector 1 */
-        o[0*count + k] = rrr_w_1_x;
-        o[1*count + k] = rrr_w_1_y;
+        o[0*count + k] = v.rrr_w_1_x;
+        o[1*count + k] = v.rrr_w_1_y;
         /* (rrr-H_a_1) moment of the column's unit force about the platform origin */
-        o[2*count + k] = rrr_H_a_1_z;
+        o[2*count + k] = v.rrr_H_a_1_z;
         /* (rrr-G) force at the connection point that balances the leg's inertia and weight along all
            degrees of freedom */
         o[3*count + k] = rrr_least_pivots;
-        o[4*count + k] = rrr_disc_1;
-        o[7*count + k] = (rrr_w_1_x + rrr_w_1_y) + (rrr_H_a_1_z + (rrr_least_pivots +
-            rrr_disc_1));
+        o[4*count + k] = v.rrr_disc_1;
+        o[7*count + k] = (v.rrr_w_1_x + v.rrr_w_1_y) + (v.rrr_H_a_1_z + (rrr_least_pivots +
+            v.rrr_disc_1));
         const real rrr_rho2_1_t = m->rrr_rho2_1_t[i];
         const real rrr_size = m->rrr_size[i];
-        o[6*count + k] = UNLESS(magnitude(rrr_rho2_1) > TOLERANCE*TOLERANCE*rrr_rho2_1_t) +
-            UNLESS(magnitude(rrr_r_1_in_axes2_y) > TOLERANCE*rrr_size);
-        o[5*count + k] = UNLESS(rrr_disc_1 >= 0);
+        o[6*count + k] = UNLESS(magnitude(v.rrr_rho2_1) > TOLERANCE*TOLERANCE*rrr_rho2_1_t) +
+            UNLESS(magnitude(v.rrr_r_1_in_axes2_y) > TOLERANCE*rrr_size);
+        o[5*count + k] = UNLESS(v.rrr_disc_1 >= 0);
     }
 }
 
@@ -4985,7 +4039,7 @@ INLINE void condition_place_rrr(size_t w, size_t count, const real *o, size_t fi
     *pivots, real *reach, verdict *t)
 {
     for (size_t k = 0; k < w; ++k) {
-        H[(0*NU + 1)*w + k] = o[0*count + first + k];
+        H[1*w + k] = o[0*count + first + k];
         H[(NU + 1)*w + k] = o[1*count + first + k];
         H[(2*NU + 1)*w + k] = o[2*count + first + k];
         pivots[1*w + k] = o[3*count + first + k];
@@ -5012,22 +4066,19 @@ INLINE void condition_after(size_t w, const real *sums, real *lengths, verdict *
 INLINE void condition_run(const prepared *m, const real *X, real *H, real *Hk, real *lengths, real
     *pivots, real *reach, verdict *t)
 {
-    real s[4] = {0};
-    real sums[2] = {0};
-    real terms_crank[2*LEGS(LEGS_OF_crank)] = {0};
-    real o_crank[9*LEGS(LEGS_OF_crank)] = {0};
-    real terms_rrr[2*LEGS(LEGS_OF_rrr)] = {0};
-    real o_rrr[8*LEGS(LEGS_OF_rrr)] = {0};
+    real s[2] = {0}, sums[2] = {0};
+    real terms_crank[2*LEGS(LEGS_OF_crank)] = {0}, o_crank[9*LEGS(LEGS_OF_crank)] = {0};
+    real terms_rrr[2*LEGS(LEGS_OF_rrr)] = {0}, o_rrr[8*LEGS(LEGS_OF_rrr)] = {0};
     clear(reach, NL);
     condition_before(m, 1, X, s, lengths, t);
-    condition_legs_crank(m, 1, 0, 1, s, 0, LEGS(LEGS_OF_crank), 0, terms_crank, o_crank);
+    condition_legs_crank(m, 1, 0, 1, s, 0, LEGS(LEGS_OF_crank), 0, X, terms_crank, o_crank);
+    condition_legs_rrr(m, 1, 0, 1, s, 0, LEGS(LEGS_OF_rrr), 0, X, terms_rrr, o_rrr);
     for (size_t leg = 0; leg < LEGS_OF_crank; ++leg) {
         condition_place_crank(1, LEGS(LEGS_OF_crank), o_crank, leg, H, Hk, pivots, t);
     }
     for (size_t n = 0; n < 2; ++n) {
         sums[n] = total(terms_crank + n*LEGS(LEGS_OF_crank), LEGS_OF_crank);
     }
-    condition_legs_rrr(m, 1, 0, 1, s, 0, LEGS(LEGS_OF_rrr), 0, terms_rrr, o_rrr);
     for (size_t leg = 0; leg < LEGS_OF_rrr; ++leg) {
         condition_place_rrr(1, LEGS(LEGS_OF_rrr), o_rrr, leg, H, pivots, reach, t);
     }
@@ -5784,6 +4835,99 @@ INLINE void condition_constrained_one(const prepared *m, const real *X, const re
     }
 }
 
+INLINE void manipulability_one(const prepared *m, const real *X, real *measure_out, real
+    *isotropy_out, int *code)
+{
+    static const size_t places_divide_rows_1[] = {2};
+    static const size_t places_divide_rows_2[] = {2};
+    real H[NV*NU] = {0}, Hk[NV*NC] = {0}, lengths[2] = {0}, pivots[NL] = {0}, reach[NL] = {0},
+        subtract_1[1] = {0}, choose_length_1[1] = {0}, divide_rows_1[NV*NU] = {0}, subtract_2[1] =
+        {0}, choose_length_2[1] = {0}, divide_rows_2[NV*NC] = {0}, transposed_1[NC*NV] = {0},
+        null_basis_1[2*NV] = {0}, transposed_2[2*NV] = {0}, product_1[NU*NU] = {0},
+        singular_values_1[NU] = {0}, measure[1] = {0}, isotropy[1] = {0};
+    verdict why;
+    start(1, &why);
+    check(NQ, 1, X, why.invalid);
+    condition_run(m, X, H, Hk, lengths, pivots, reach, &why);
+    const real *const entry_1 = lengths;
+    for (size_t i = 0; i < 1; ++i) {
+        subtract_1[i] = entry_1[i] - entry_1[i];
+    }
+    for (size_t i = 0; i < 1; ++i) {
+        choose_length_1[i] = subtract_1[i] > 0 ? subtract_1[i] : lengths[i] > TINY*lengths[1 + i]
+            ? lengths[i] : lengths[1 + i];
+    }
+    for (size_t i = 0; i < NV*NU; ++i) {
+        divide_rows_1[i] = H[i];
+    }
+    divide_rows(1, NU, 1, places_divide_rows_1, choose_length_1, divide_rows_1);
+    const real *const entry_2 = lengths;
+    for (size_t i = 0; i < 1; ++i) {
+        subtract_2[i] = entry_2[i] - entry_2[i];
+    }
+    for (size_t i = 0; i < 1; ++i) {
+        choose_length_2[i] = subtract_2[i] > 0 ? subtract_2[i] : lengths[i] > TINY*lengths[1 + i]
+            ? lengths[i] : lengths[1 + i];
+    }
+    for (size_t i = 0; i < NV*NC; ++i) {
+        divide_rows_2[i] = Hk[i];
+    }
+    divide_rows(NC, NC, 1, places_divide_rows_2, choose_length_2, divide_rows_2);
+    transpose(NV, NC, 1, divide_rows_2, transposed_1);
+    null_basis(NC, NV, NC, transposed_1, null_basis_1);
+    transpose(NV, 2, 1, null_basis_1, transposed_2);
+    product(2, NV, NU, 1, transposed_2, divide_rows_1, product_1);
+    singular_values(NU, NU, product_1, singular_values_1);
+    spread(NU, singular_values_1, measure, isotropy);
+    check(1, 1, measure, why.overflow);
+    check(1, 1, isotropy, why.overflow);
+    judge(&why, code);
+    copy(1, measure, measure_out);
+    copy(1, isotropy, isotropy_out);
+    if (*code != OK) {
+        refuse(1, measure_out);
+        refuse(1, isotropy_out);
+    }
+}
+
+INLINE void singularity_distance_one(const prepared *m, const real *X, real *actuators_out, real
+    *legs_out, int *code)
+{
+    static const size_t places_divide_rows_1[] = {2};
+    real H[NV*NU] = {0}, Hk[NV*NC] = {0}, lengths[2] = {0}, pivots[NL] = {0}, reach[NL] = {0},
+        beside_1[NV*NV] = {0}, subtract_1[1] = {0}, choose_length_1[1] = {0}, divide_rows_1[NV*NV] =
+        {0}, singular_values_1[NV] = {0}, spread_1[1] = {0}, actuators[1] = {0}, legs[1] = {0};
+    verdict why;
+    start(1, &why);
+    check(NQ, 1, X, why.invalid);
+    condition_run(m, X, H, Hk, lengths, pivots, reach, &why);
+    beside(NV, NU, NC, H, Hk, beside_1);
+    const real *const entry_1 = lengths;
+    for (size_t i = 0; i < 1; ++i) {
+        subtract_1[i] = entry_1[i] - entry_1[i];
+    }
+    for (size_t i = 0; i < 1; ++i) {
+        choose_length_1[i] = subtract_1[i] > 0 ? subtract_1[i] : lengths[i] > TINY*lengths[1 + i]
+            ? lengths[i] : lengths[1 + i];
+    }
+    for (size_t i = 0; i < NV*NV; ++i) {
+        divide_rows_1[i] = beside_1[i];
+    }
+    divide_rows(1, NV, 1, places_divide_rows_1, choose_length_1, divide_rows_1);
+    singular_values(NV, NV, divide_rows_1, singular_values_1);
+    spread(NV, singular_values_1, spread_1, actuators);
+    least_entry(NL, pivots, legs);
+    check(1, 1, actuators, why.overflow);
+    check(1, 1, legs, why.overflow);
+    judge(&why, code);
+    copy(1, actuators, actuators_out);
+    copy(1, legs, legs_out);
+    if (*code != OK) {
+        refuse(1, actuators_out);
+        refuse(1, legs_out);
+    }
+}
+
 static void mismatch_one(const prepared *m, const real *X, const real *q_actuated, real *gap_out,
     int *code)
 {
@@ -5797,9 +4941,9 @@ static void mismatch_one(const prepared *m, const real *X, const real *q_actuate
         check(NU, 1, q_actuated, why.invalid);
     }
     inverse_kinematics_run(m, X, q, &why);
-    const real *const take_1 = q;
+    const real *const q_of_inverse_kinematics_from_0 = q;
     for (size_t i = 0; i < NU; ++i) {
-        subtract_1[i] = q_actuated[i] - take_1[i];
+        subtract_1[i] = q_actuated[i] - q_of_inverse_kinematics_from_0[i];
     }
     for (size_t i = 0; i < NU; ++i) {
         wrap_turns_1[i] = subtract_1[i];
@@ -6267,8 +5411,8 @@ INLINE void rotation_one(const real *X, real *R_out, int *code)
     verdict why;
     start(1, &why);
     check(NQ, 1, X, why.invalid);
-    const real *const take_1 = X + 2;
-    rotation_of_angle(take_1, R);
+    const real *const X_from_2 = X + 2;
+    rotation_of_angle(X_from_2, R);
     check(4, 1, R, why.overflow);
     judge(&why, code);
     copy(4, R, R_out);
@@ -6398,377 +5542,344 @@ INLINE void interpolate_one(const real *X0, const real *X1, const real *s, real 
 
 /* ---- one state, and batches ---- */
 
-int fivebar_offset_M(const fivebar_offset_model *model, const fivebar_offset_real *X,
-    fivebar_offset_real *M)
+int fivebar_offset_M(const prepared *model, const real *X, real *M)
 {
     int code;
     M_one(model, X, M, &code);
     return code;
 }
 
-size_t fivebar_offset_M_batch(const fivebar_offset_model *model, size_t n, const
-    fivebar_offset_real *X, fivebar_offset_real *M, int *status)
+size_t fivebar_offset_M_batch(const prepared *model, size_t n, const real *X, real *M, int
+    *status)
 {
-    size_t failed = 0, i = 0;
-    for (; LANES > 1 && i + LANES <= n; i += LANES) {
-        int codes[LANES];
-        M_lanes(model, X + NQ*i, M + NV*NV*i, codes);
-        for (size_t k = 0; k < LANES; ++k) {
+    size_t failed = 0, w;
+    for (size_t i = 0; i < n; i += w) {
+        int codes[LANES] = {INVALID};
+        w = LANES > 1 && i + LANES <= n ? LANES : 1;
+        if (w > 1) {
+            M_lanes(model, X + NQ*i, M + NV*NV*i, codes);
+        }
+        for (size_t k = 0; k < w; ++k) {
             if (codes[k] != OK) {
                 codes[k] = fivebar_offset_M(model, X + NQ*(i + k), M + NV*NV*(i + k));
             }
         }
-        failed += record(codes, LANES, status ? status + i : NULL);
-    }
-    for (; i < n; ++i) {
-        const int code = fivebar_offset_M(model, X + NQ*i, M + NV*NV*i);
-        failed += record(&code, 1, status ? status + i : NULL);
+        failed += record(codes, w, status ? status + i : NULL);
     }
     return failed;
 }
 
-int fivebar_offset_Z(const fivebar_offset_model *model, const fivebar_offset_real *X, const
-    fivebar_offset_real *V, fivebar_offset_real *Z)
+int fivebar_offset_Z(const prepared *model, const real *X, const real *V, real *Z)
 {
     int code;
     Z_one(model, X, V, Z, &code);
     return code;
 }
 
-size_t fivebar_offset_Z_batch(const fivebar_offset_model *model, size_t n, const
-    fivebar_offset_real *X, const fivebar_offset_real *V, fivebar_offset_real *Z, int *status)
+size_t fivebar_offset_Z_batch(const prepared *model, size_t n, const real *X, const real *V, real
+    *Z, int *status)
 {
-    size_t failed = 0, i = 0;
-    for (; LANES > 1 && i + LANES <= n; i += LANES) {
-        int codes[LANES];
-        Z_lanes(model, X + NQ*i, V + NV*i, Z + NV*i, codes);
-        for (size_t k = 0; k < LANES; ++k) {
+    size_t failed = 0, w;
+    for (size_t i = 0; i < n; i += w) {
+        int codes[LANES] = {INVALID};
+        w = LANES > 1 && i + LANES <= n ? LANES : 1;
+        if (w > 1) {
+            Z_lanes(model, X + NQ*i, V + NV*i, Z + NV*i, codes);
+        }
+        for (size_t k = 0; k < w; ++k) {
             if (codes[k] != OK) {
                 codes[k] = fivebar_offset_Z(model, X + NQ*(i + k), V + NV*(i + k), Z + NV*(i + k));
             }
         }
-        failed += record(codes, LANES, status ? status + i : NULL);
-    }
-    for (; i < n; ++i) {
-        const int code = fivebar_offset_Z(model, X + NQ*i, V + NV*i, Z + NV*i);
-        failed += record(&code, 1, status ? status + i : NULL);
+        failed += record(codes, w, status ? status + i : NULL);
     }
     return failed;
 }
 
-int fivebar_offset_H(const fivebar_offset_model *model, const fivebar_offset_real *X,
-    fivebar_offset_real *H)
+int fivebar_offset_H(const prepared *model, const real *X, real *H)
 {
     int code;
     H_one(model, X, H, &code);
     return code;
 }
 
-size_t fivebar_offset_H_batch(const fivebar_offset_model *model, size_t n, const
-    fivebar_offset_real *X, fivebar_offset_real *H, int *status)
+size_t fivebar_offset_H_batch(const prepared *model, size_t n, const real *X, real *H, int
+    *status)
 {
-    size_t failed = 0, i = 0;
-    for (; LANES > 1 && i + LANES <= n; i += LANES) {
-        int codes[LANES];
-        H_lanes(model, X + NQ*i, H + NV*NU*i, codes);
-        for (size_t k = 0; k < LANES; ++k) {
+    size_t failed = 0, w;
+    for (size_t i = 0; i < n; i += w) {
+        int codes[LANES] = {INVALID};
+        w = LANES > 1 && i + LANES <= n ? LANES : 1;
+        if (w > 1) {
+            H_lanes(model, X + NQ*i, H + NV*NU*i, codes);
+        }
+        for (size_t k = 0; k < w; ++k) {
             if (codes[k] != OK) {
                 codes[k] = fivebar_offset_H(model, X + NQ*(i + k), H + NV*NU*(i + k));
             }
         }
-        failed += record(codes, LANES, status ? status + i : NULL);
-    }
-    for (; i < n; ++i) {
-        const int code = fivebar_offset_H(model, X + NQ*i, H + NV*NU*i);
-        failed += record(&code, 1, status ? status + i : NULL);
+        failed += record(codes, w, status ? status + i : NULL);
     }
     return failed;
 }
 
-int fivebar_offset_Hk(const fivebar_offset_model *model, const fivebar_offset_real *X,
-    fivebar_offset_real *Hk)
+int fivebar_offset_Hk(const prepared *model, const real *X, real *Hk)
 {
     int code;
     Hk_one(model, X, Hk, &code);
     return code;
 }
 
-size_t fivebar_offset_Hk_batch(const fivebar_offset_model *model, size_t n, const
-    fivebar_offset_real *X, fivebar_offset_real *Hk, int *status)
+size_t fivebar_offset_Hk_batch(const prepared *model, size_t n, const real *X, real *Hk, int
+    *status)
 {
-    size_t failed = 0, i = 0;
-    for (; LANES > 1 && i + LANES <= n; i += LANES) {
-        int codes[LANES];
-        Hk_lanes(model, X + NQ*i, Hk + NV*NC*i, codes);
-        for (size_t k = 0; k < LANES; ++k) {
+    size_t failed = 0, w;
+    for (size_t i = 0; i < n; i += w) {
+        int codes[LANES] = {INVALID};
+        w = LANES > 1 && i + LANES <= n ? LANES : 1;
+        if (w > 1) {
+            Hk_lanes(model, X + NQ*i, Hk + NV*NC*i, codes);
+        }
+        for (size_t k = 0; k < w; ++k) {
             if (codes[k] != OK) {
                 codes[k] = fivebar_offset_Hk(model, X + NQ*(i + k), Hk + NV*NC*(i + k));
             }
         }
-        failed += record(codes, LANES, status ? status + i : NULL);
-    }
-    for (; i < n; ++i) {
-        const int code = fivebar_offset_Hk(model, X + NQ*i, Hk + NV*NC*i);
-        failed += record(&code, 1, status ? status + i : NULL);
+        failed += record(codes, w, status ? status + i : NULL);
     }
     return failed;
 }
 
-int fivebar_offset_constraints(const fivebar_offset_model *model, const fivebar_offset_real *X,
-    fivebar_offset_real *residual)
+int fivebar_offset_constraints(const prepared *model, const real *X, real *residual)
 {
     int code;
     constraints_one(model, X, residual, &code);
     return code;
 }
 
-size_t fivebar_offset_constraints_batch(const fivebar_offset_model *model, size_t n, const
-    fivebar_offset_real *X, fivebar_offset_real *residual, int *status)
+size_t fivebar_offset_constraints_batch(const prepared *model, size_t n, const real *X, real
+    *residual, int *status)
 {
-    size_t failed = 0, i = 0;
-    for (; LANES > 1 && i + LANES <= n; i += LANES) {
-        int codes[LANES];
-        constraints_lanes(model, X + NQ*i, residual + NC*i, codes);
-        for (size_t k = 0; k < LANES; ++k) {
+    size_t failed = 0, w;
+    for (size_t i = 0; i < n; i += w) {
+        int codes[LANES] = {INVALID};
+        w = LANES > 1 && i + LANES <= n ? LANES : 1;
+        if (w > 1) {
+            constraints_lanes(model, X + NQ*i, residual + NC*i, codes);
+        }
+        for (size_t k = 0; k < w; ++k) {
             if (codes[k] != OK) {
                 codes[k] = fivebar_offset_constraints(model, X + NQ*(i + k), residual + NC*(i + k));
             }
         }
-        failed += record(codes, LANES, status ? status + i : NULL);
-    }
-    for (; i < n; ++i) {
-        const int code = fivebar_offset_constraints(model, X + NQ*i, residual + NC*i);
-        failed += record(&code, 1, status ? status + i : NULL);
+        failed += record(codes, w, status ? status + i : NULL);
     }
     return failed;
 }
 
-int fivebar_offset_constraint_bias(const fivebar_offset_model *model, const fivebar_offset_real
-    *X, const fivebar_offset_real *V, fivebar_offset_real *bias)
+int fivebar_offset_constraint_bias(const prepared *model, const real *X, const real *V, real
+    *bias)
 {
     int code;
     constraint_bias_one(model, X, V, bias, &code);
     return code;
 }
 
-size_t fivebar_offset_constraint_bias_batch(const fivebar_offset_model *model, size_t n, const
-    fivebar_offset_real *X, const fivebar_offset_real *V, fivebar_offset_real *bias, int *status)
+size_t fivebar_offset_constraint_bias_batch(const prepared *model, size_t n, const real *X, const
+    real *V, real *bias, int *status)
 {
-    size_t failed = 0, i = 0;
-    for (; LANES > 1 && i + LANES <= n; i += LANES) {
-        int codes[LANES];
-        constraint_bias_lanes(model, X + NQ*i, V + NV*i, bias + NC*i, codes);
-        for (size_t k = 0; k < LANES; ++k) {
+    size_t failed = 0, w;
+    for (size_t i = 0; i < n; i += w) {
+        int codes[LANES] = {INVALID};
+        w = LANES > 1 && i + LANES <= n ? LANES : 1;
+        if (w > 1) {
+            constraint_bias_lanes(model, X + NQ*i, V + NV*i, bias + NC*i, codes);
+        }
+        for (size_t k = 0; k < w; ++k) {
             if (codes[k] != OK) {
                 codes[k] = fivebar_offset_constraint_bias(model, X + NQ*(i + k), V + NV*(i + k), bias + NC*(i +
                     k));
             }
         }
-        failed += record(codes, LANES, status ? status + i : NULL);
-    }
-    for (; i < n; ++i) {
-        const int code = fivebar_offset_constraint_bias(model, X + NQ*i, V + NV*i, bias + NC*i);
-        failed += record(&code, 1, status ? status + i : NULL);
+        failed += record(codes, w, status ? status + i : NULL);
     }
     return failed;
 }
 
-int fivebar_offset_inverse_kinematics(const fivebar_offset_model *model, const fivebar_offset_real
-    *X, fivebar_offset_real *q)
+int fivebar_offset_inverse_kinematics(const prepared *model, const real *X, real *q)
 {
     int code;
     inverse_kinematics_one(model, X, q, &code);
     return code;
 }
 
-size_t fivebar_offset_inverse_kinematics_batch(const fivebar_offset_model *model, size_t n, const
-    fivebar_offset_real *X, fivebar_offset_real *q, int *status)
+size_t fivebar_offset_inverse_kinematics_batch(const prepared *model, size_t n, const real *X,
+    real *q, int *status)
 {
-    size_t failed = 0, i = 0;
-    for (; LANES > 1 && i + LANES <= n; i += LANES) {
-        int codes[LANES];
-        inverse_kinematics_lanes(model, X + NQ*i, q + NJ*i, codes);
-        for (size_t k = 0; k < LANES; ++k) {
+    size_t failed = 0, w;
+    for (size_t i = 0; i < n; i += w) {
+        int codes[LANES] = {INVALID};
+        w = LANES > 1 && i + LANES <= n ? LANES : 1;
+        if (w > 1) {
+            inverse_kinematics_lanes(model, X + NQ*i, q + NJ*i, codes);
+        }
+        for (size_t k = 0; k < w; ++k) {
             if (codes[k] != OK) {
                 codes[k] = fivebar_offset_inverse_kinematics(model, X + NQ*(i + k), q + NJ*(i + k));
             }
         }
-        failed += record(codes, LANES, status ? status + i : NULL);
-    }
-    for (; i < n; ++i) {
-        const int code = fivebar_offset_inverse_kinematics(model, X + NQ*i, q + NJ*i);
-        failed += record(&code, 1, status ? status + i : NULL);
+        failed += record(codes, w, status ? status + i : NULL);
     }
     return failed;
 }
 
-int fivebar_offset_joint_rates(const fivebar_offset_model *model, const fivebar_offset_real *X,
-    const fivebar_offset_real *V, fivebar_offset_real *rates)
+int fivebar_offset_joint_rates(const prepared *model, const real *X, const real *V, real *rates)
 {
     int code;
     joint_rates_one(model, X, V, rates, &code);
     return code;
 }
 
-size_t fivebar_offset_joint_rates_batch(const fivebar_offset_model *model, size_t n, const
-    fivebar_offset_real *X, const fivebar_offset_real *V, fivebar_offset_real *rates, int *status)
+size_t fivebar_offset_joint_rates_batch(const prepared *model, size_t n, const real *X, const real
+    *V, real *rates, int *status)
 {
-    size_t failed = 0, i = 0;
-    for (; LANES > 1 && i + LANES <= n; i += LANES) {
-        int codes[LANES];
-        joint_rates_lanes(model, X + NQ*i, V + NV*i, rates + NJ*i, codes);
-        for (size_t k = 0; k < LANES; ++k) {
+    size_t failed = 0, w;
+    for (size_t i = 0; i < n; i += w) {
+        int codes[LANES] = {INVALID};
+        w = LANES > 1 && i + LANES <= n ? LANES : 1;
+        if (w > 1) {
+            joint_rates_lanes(model, X + NQ*i, V + NV*i, rates + NJ*i, codes);
+        }
+        for (size_t k = 0; k < w; ++k) {
             if (codes[k] != OK) {
                 codes[k] = fivebar_offset_joint_rates(model, X + NQ*(i + k), V + NV*(i + k), rates + NJ*(i + k));
             }
         }
-        failed += record(codes, LANES, status ? status + i : NULL);
-    }
-    for (; i < n; ++i) {
-        const int code = fivebar_offset_joint_rates(model, X + NQ*i, V + NV*i, rates + NJ*i);
-        failed += record(&code, 1, status ? status + i : NULL);
+        failed += record(codes, w, status ? status + i : NULL);
     }
     return failed;
 }
 
-int fivebar_offset_joint_accelerations(const fivebar_offset_model *model, const
-    fivebar_offset_real *X, const fivebar_offset_real *V, const fivebar_offset_real *A,
-    fivebar_offset_real *accelerations)
+int fivebar_offset_joint_accelerations(const prepared *model, const real *X, const real *V, const
+    real *A, real *accelerations)
 {
     int code;
     joint_accelerations_one(model, X, V, A, accelerations, &code);
     return code;
 }
 
-size_t fivebar_offset_joint_accelerations_batch(const fivebar_offset_model *model, size_t n, const
-    fivebar_offset_real *X, const fivebar_offset_real *V, const fivebar_offset_real *A,
-    fivebar_offset_real *accelerations, int *status)
+size_t fivebar_offset_joint_accelerations_batch(const prepared *model, size_t n, const real *X,
+    const real *V, const real *A, real *accelerations, int *status)
 {
-    size_t failed = 0, i = 0;
-    for (; LANES > 1 && i + LANES <= n; i += LANES) {
-        int codes[LANES];
-        joint_accelerations_lanes(model, X + NQ*i, V + NV*i, A + NV*i, accelerations + NJ*i, codes);
-        for (size_t k = 0; k < LANES; ++k) {
+    size_t failed = 0, w;
+    for (size_t i = 0; i < n; i += w) {
+        int codes[LANES] = {INVALID};
+        w = LANES > 1 && i + LANES <= n ? LANES : 1;
+        if (w > 1) {
+            joint_accelerations_lanes(model, X + NQ*i, V + NV*i, A + NV*i, accelerations + NJ*i, codes);
+        }
+        for (size_t k = 0; k < w; ++k) {
             if (codes[k] != OK) {
                 codes[k] = fivebar_offset_joint_accelerations(model, X + NQ*(i + k), V + NV*(i + k), A + NV*(i +
                     k), accelerations + NJ*(i + k));
             }
         }
-        failed += record(codes, LANES, status ? status + i : NULL);
-    }
-    for (; i < n; ++i) {
-        const int code = fivebar_offset_joint_accelerations(model, X + NQ*i, V + NV*i, A + NV*i,
-            accelerations + NJ*i);
-        failed += record(&code, 1, status ? status + i : NULL);
+        failed += record(codes, w, status ? status + i : NULL);
     }
     return failed;
 }
 
-int fivebar_offset_dynamics(const fivebar_offset_model *model, const fivebar_offset_real *X, const
-    fivebar_offset_real *V, fivebar_offset_real *M, fivebar_offset_real *Z, fivebar_offset_real
-    *H)
+int fivebar_offset_dynamics(const prepared *model, const real *X, const real *V, real *M, real *Z,
+    real *H)
 {
     int code;
     dynamics_one(model, X, V, M, Z, H, &code);
     return code;
 }
 
-size_t fivebar_offset_dynamics_batch(const fivebar_offset_model *model, size_t n, const
-    fivebar_offset_real *X, const fivebar_offset_real *V, fivebar_offset_real *M,
-    fivebar_offset_real *Z, fivebar_offset_real *H, int *status)
+size_t fivebar_offset_dynamics_batch(const prepared *model, size_t n, const real *X, const real
+    *V, real *M, real *Z, real *H, int *status)
 {
-    size_t failed = 0, i = 0;
-    for (; LANES > 1 && i + LANES <= n; i += LANES) {
-        int codes[LANES];
-        dynamics_lanes(model, X + NQ*i, V + NV*i, M + NV*NV*i, Z + NV*i, H + NV*NU*i, codes);
-        for (size_t k = 0; k < LANES; ++k) {
+    size_t failed = 0, w;
+    for (size_t i = 0; i < n; i += w) {
+        int codes[LANES] = {INVALID};
+        w = LANES > 1 && i + LANES <= n ? LANES : 1;
+        if (w > 1) {
+            dynamics_lanes(model, X + NQ*i, V + NV*i, M + NV*NV*i, Z + NV*i, H + NV*NU*i, codes);
+        }
+        for (size_t k = 0; k < w; ++k) {
             if (codes[k] != OK) {
                 codes[k] = fivebar_offset_dynamics(model, X + NQ*(i + k), V + NV*(i + k), M + NV*NV*(i + k), Z +
                     NV*(i + k), H + NV*NU*(i + k));
             }
         }
-        failed += record(codes, LANES, status ? status + i : NULL);
-    }
-    for (; i < n; ++i) {
-        const int code = fivebar_offset_dynamics(model, X + NQ*i, V + NV*i, M + NV*NV*i, Z + NV*i, H +
-            NV*NU*i);
-        failed += record(&code, 1, status ? status + i : NULL);
+        failed += record(codes, w, status ? status + i : NULL);
     }
     return failed;
 }
 
-int fivebar_offset_inverse_dynamics(const fivebar_offset_model *model, const fivebar_offset_real
-    *X, const fivebar_offset_real *V, const fivebar_offset_real *A, const fivebar_offset_real
-    *wrench, fivebar_offset_real *tau, fivebar_offset_real *lambda)
+int fivebar_offset_inverse_dynamics(const prepared *model, const real *X, const real *V, const
+    real *A, const real *wrench, real *tau, real *lambda)
 {
     int code;
     inverse_dynamics_one(model, X, V, A, wrench, tau, lambda, &code);
     return code;
 }
 
-size_t fivebar_offset_inverse_dynamics_batch(const fivebar_offset_model *model, size_t n, const
-    fivebar_offset_real *X, const fivebar_offset_real *V, const fivebar_offset_real *A, const
-    fivebar_offset_real *wrench, fivebar_offset_real *tau, fivebar_offset_real *lambda, int
-    *status)
+size_t fivebar_offset_inverse_dynamics_batch(const prepared *model, size_t n, const real *X, const
+    real *V, const real *A, const real *wrench, real *tau, real *lambda, int *status)
 {
-    size_t failed = 0, i = 0;
-    for (; LANES > 1 && i + LANES <= n; i += LANES) {
-        int codes[LANES];
-        inverse_dynamics_lanes(model, X + NQ*i, V + NV*i, A + NV*i, wrench ? wrench + NW*i : NULL, tau +
-            NU*i, lambda + NC*i, codes);
-        for (size_t k = 0; k < LANES; ++k) {
+    size_t failed = 0, w;
+    for (size_t i = 0; i < n; i += w) {
+        int codes[LANES] = {INVALID};
+        w = LANES > 1 && i + LANES <= n ? LANES : 1;
+        if (w > 1) {
+            inverse_dynamics_lanes(model, X + NQ*i, V + NV*i, A + NV*i, wrench ? wrench + NW*i : NULL, tau +
+                NU*i, lambda + NC*i, codes);
+        }
+        for (size_t k = 0; k < w; ++k) {
             if (codes[k] != OK) {
                 codes[k] = fivebar_offset_inverse_dynamics(model, X + NQ*(i + k), V + NV*(i + k), A + NV*(i + k),
                     wrench ? wrench + NW*(i + k) : NULL, tau + NU*(i + k), lambda + NC*(i + k));
             }
         }
-        failed += record(codes, LANES, status ? status + i : NULL);
-    }
-    for (; i < n; ++i) {
-        const int code = fivebar_offset_inverse_dynamics(model, X + NQ*i, V + NV*i, A + NV*i, wrench ?
-            wrench + NW*i : NULL, tau + NU*i, lambda + NC*i);
-        failed += record(&code, 1, status ? status + i : NULL);
+        failed += record(codes, w, status ? status + i : NULL);
     }
     return failed;
 }
 
-int fivebar_offset_forward_dynamics(const fivebar_offset_model *model, const fivebar_offset_real
-    *X, const fivebar_offset_real *V, const fivebar_offset_real *tau, const fivebar_offset_real
-    *wrench, fivebar_offset_real *A, fivebar_offset_real *lambda)
+int fivebar_offset_forward_dynamics(const prepared *model, const real *X, const real *V, const
+    real *tau, const real *wrench, real *A, real *lambda)
 {
     int code;
     forward_dynamics_one(model, X, V, tau, wrench, A, lambda, &code);
     return code;
 }
 
-size_t fivebar_offset_forward_dynamics_batch(const fivebar_offset_model *model, size_t n, const
-    fivebar_offset_real *X, const fivebar_offset_real *V, const fivebar_offset_real *tau, const
-    fivebar_offset_real *wrench, fivebar_offset_real *A, fivebar_offset_real *lambda, int *status)
+size_t fivebar_offset_forward_dynamics_batch(const prepared *model, size_t n, const real *X, const
+    real *V, const real *tau, const real *wrench, real *A, real *lambda, int *status)
 {
-    size_t failed = 0, i = 0;
-    for (; LANES > 1 && i + LANES <= n; i += LANES) {
-        int codes[LANES];
-        forward_dynamics_lanes(model, X + NQ*i, V + NV*i, tau + NU*i, wrench ? wrench + NW*i : NULL, A +
-            NV*i, lambda + NC*i, codes);
-        for (size_t k = 0; k < LANES; ++k) {
+    size_t failed = 0, w;
+    for (size_t i = 0; i < n; i += w) {
+        int codes[LANES] = {INVALID};
+        w = LANES > 1 && i + LANES <= n ? LANES : 1;
+        if (w > 1) {
+            forward_dynamics_lanes(model, X + NQ*i, V + NV*i, tau + NU*i, wrench ? wrench + NW*i : NULL, A +
+                NV*i, lambda + NC*i, codes);
+        }
+        for (size_t k = 0; k < w; ++k) {
             if (codes[k] != OK) {
                 codes[k] = fivebar_offset_forward_dynamics(model, X + NQ*(i + k), V + NV*(i + k), tau + NU*(i +
                     k), wrench ? wrench + NW*(i + k) : NULL, A + NV*(i + k), lambda + NC*(i + k));
             }
         }
-        failed += record(codes, LANES, status ? status + i : NULL);
-    }
-    for (; i < n; ++i) {
-        const int code = fivebar_offset_forward_dynamics(model, X + NQ*i, V + NV*i, tau + NU*i, wrench ?
-            wrench + NW*i : NULL, A + NV*i, lambda + NC*i);
-        failed += record(&code, 1, status ? status + i : NULL);
+        failed += record(codes, w, status ? status + i : NULL);
     }
     return failed;
 }
 
-int fivebar_offset_complete_acceleration(const fivebar_offset_model *model, const
-    fivebar_offset_real *X, const fivebar_offset_real *V, const fivebar_offset_real *A, const
-    fivebar_offset_real *wrench, fivebar_offset_real *completed)
+int fivebar_offset_complete_acceleration(const prepared *model, const real *X, const real *V,
+    const real *A, const real *wrench, real *completed)
 {
     int code;
     (void)model;
@@ -6779,12 +5890,11 @@ int fivebar_offset_complete_acceleration(const fivebar_offset_model *model, cons
     return code;
 }
 
-size_t fivebar_offset_complete_acceleration_batch(const fivebar_offset_model *model, size_t n,
-    const fivebar_offset_real *X, const fivebar_offset_real *V, const fivebar_offset_real *A,
-    const fivebar_offset_real *wrench, fivebar_offset_real *completed, int *status)
+size_t fivebar_offset_complete_acceleration_batch(const prepared *model, size_t n, const real *X,
+    const real *V, const real *A, const real *wrench, real *completed, int *status)
 {
-    size_t failed = 0, i = 0;
-    for (; i < n; ++i) {
+    size_t failed = 0;
+    for (size_t i = 0; i < n; ++i) {
         const int code = fivebar_offset_complete_acceleration(model, X + NQ*i, V + NV*i, A + NV*i, wrench
             ? wrench + NW*i : NULL, completed + NV*i);
         failed += record(&code, 1, status ? status + i : NULL);
@@ -6792,21 +5902,19 @@ size_t fivebar_offset_complete_acceleration_batch(const fivebar_offset_model *mo
     return failed;
 }
 
-int fivebar_offset_leg_reactions(const fivebar_offset_model *model, const fivebar_offset_real *X,
-    const fivebar_offset_real *V, const fivebar_offset_real *A, const fivebar_offset_real *wrench,
-    fivebar_offset_real *forces)
+int fivebar_offset_leg_reactions(const prepared *model, const real *X, const real *V, const real
+    *A, const real *wrench, real *forces)
 {
     int code;
     leg_reactions_one(model, X, V, A, wrench, forces, &code);
     return code;
 }
 
-size_t fivebar_offset_leg_reactions_batch(const fivebar_offset_model *model, size_t n, const
-    fivebar_offset_real *X, const fivebar_offset_real *V, const fivebar_offset_real *A, const
-    fivebar_offset_real *wrench, fivebar_offset_real *forces, int *status)
+size_t fivebar_offset_leg_reactions_batch(const prepared *model, size_t n, const real *X, const
+    real *V, const real *A, const real *wrench, real *forces, int *status)
 {
-    size_t failed = 0, i = 0;
-    for (; i < n; ++i) {
+    size_t failed = 0;
+    for (size_t i = 0; i < n; ++i) {
         const int code = fivebar_offset_leg_reactions(model, X + NQ*i, V + NV*i, A + NV*i, wrench ? wrench
             + NW*i : NULL, forces + 6*i);
         failed += record(&code, 1, status ? status + i : NULL);
@@ -6814,106 +5922,139 @@ size_t fivebar_offset_leg_reactions_batch(const fivebar_offset_model *model, siz
     return failed;
 }
 
-int fivebar_offset_energy(const fivebar_offset_model *model, const fivebar_offset_real *X, const
-    fivebar_offset_real *V, fivebar_offset_real *kinetic, fivebar_offset_real *potential)
+int fivebar_offset_energy(const prepared *model, const real *X, const real *V, real *kinetic, real
+    *potential)
 {
     int code;
     energy_one(model, X, V, kinetic, potential, &code);
     return code;
 }
 
-size_t fivebar_offset_energy_batch(const fivebar_offset_model *model, size_t n, const
-    fivebar_offset_real *X, const fivebar_offset_real *V, fivebar_offset_real *kinetic,
-    fivebar_offset_real *potential, int *status)
+size_t fivebar_offset_energy_batch(const prepared *model, size_t n, const real *X, const real *V,
+    real *kinetic, real *potential, int *status)
 {
-    size_t failed = 0, i = 0;
-    for (; i < n; ++i) {
+    size_t failed = 0;
+    for (size_t i = 0; i < n; ++i) {
         const int code = fivebar_offset_energy(model, X + NQ*i, V + NV*i, kinetic + i, potential + i);
         failed += record(&code, 1, status ? status + i : NULL);
     }
     return failed;
 }
 
-int fivebar_offset_condition(const fivebar_offset_model *model, const fivebar_offset_real *X,
-    fivebar_offset_real *sigma, fivebar_offset_real *legs)
+int fivebar_offset_condition(const prepared *model, const real *X, real *sigma, real *legs)
 {
     int code;
     condition_one(model, X, NULL, sigma, legs, &code);
     return code;
 }
 
-size_t fivebar_offset_condition_batch(const fivebar_offset_model *model, size_t n, const
-    fivebar_offset_real *X, fivebar_offset_real *sigma, fivebar_offset_real *legs, int *status)
+size_t fivebar_offset_condition_batch(const prepared *model, size_t n, const real *X, real *sigma,
+    real *legs, int *status)
 {
-    size_t failed = 0, i = 0;
-    for (; i < n; ++i) {
+    size_t failed = 0;
+    for (size_t i = 0; i < n; ++i) {
         const int code = fivebar_offset_condition(model, X + NQ*i, sigma + 2*i, legs + 2*i);
         failed += record(&code, 1, status ? status + i : NULL);
     }
     return failed;
 }
 
-int fivebar_offset_condition_constrained(const fivebar_offset_model *model, const
-    fivebar_offset_real *X, fivebar_offset_real *sigma, fivebar_offset_real *legs)
+int fivebar_offset_condition_constrained(const prepared *model, const real *X, real *sigma, real
+    *legs)
 {
     int code;
     condition_constrained_one(model, X, NULL, sigma, legs, &code);
     return code;
 }
 
-size_t fivebar_offset_condition_constrained_batch(const fivebar_offset_model *model, size_t n,
-    const fivebar_offset_real *X, fivebar_offset_real *sigma, fivebar_offset_real *legs, int
-    *status)
+size_t fivebar_offset_condition_constrained_batch(const prepared *model, size_t n, const real *X,
+    real *sigma, real *legs, int *status)
 {
-    size_t failed = 0, i = 0;
-    for (; i < n; ++i) {
+    size_t failed = 0;
+    for (size_t i = 0; i < n; ++i) {
         const int code = fivebar_offset_condition_constrained(model, X + NQ*i, sigma + 3*i, legs + 2*i);
         failed += record(&code, 1, status ? status + i : NULL);
     }
     return failed;
 }
 
-int fivebar_offset_forward_kinematics(const fivebar_offset_model *model, const fivebar_offset_real
-    *q_actuated, const fivebar_offset_real *X0, fivebar_offset_real *X)
+int fivebar_offset_manipulability(const prepared *model, const real *X, real *measure, real
+    *isotropy)
+{
+    int code;
+    manipulability_one(model, X, measure, isotropy, &code);
+    return code;
+}
+
+size_t fivebar_offset_manipulability_batch(const prepared *model, size_t n, const real *X, real
+    *measure, real *isotropy, int *status)
+{
+    size_t failed = 0;
+    for (size_t i = 0; i < n; ++i) {
+        const int code = fivebar_offset_manipulability(model, X + NQ*i, measure + i, isotropy + i);
+        failed += record(&code, 1, status ? status + i : NULL);
+    }
+    return failed;
+}
+
+int fivebar_offset_singularity_distance(const prepared *model, const real *X, real *actuators,
+    real *legs)
+{
+    int code;
+    singularity_distance_one(model, X, actuators, legs, &code);
+    return code;
+}
+
+size_t fivebar_offset_singularity_distance_batch(const prepared *model, size_t n, const real *X,
+    real *actuators, real *legs, int *status)
+{
+    size_t failed = 0;
+    for (size_t i = 0; i < n; ++i) {
+        const int code = fivebar_offset_singularity_distance(model, X + NQ*i, actuators + i, legs + i);
+        failed += record(&code, 1, status ? status + i : NULL);
+    }
+    return failed;
+}
+
+int fivebar_offset_forward_kinematics(const prepared *model, const real *q_actuated, const real
+    *X0, real *X)
 {
     int code;
     forward_kinematics_one(model, q_actuated, X0, X, &code);
     return code;
 }
 
-size_t fivebar_offset_forward_kinematics_batch(const fivebar_offset_model *model, size_t n, const
-    fivebar_offset_real *q_actuated, const fivebar_offset_real *X0, fivebar_offset_real *X, int
-    *status)
+size_t fivebar_offset_forward_kinematics_batch(const prepared *model, size_t n, const real
+    *q_actuated, const real *X0, real *X, int *status)
 {
-    size_t failed = 0, i = 0;
-    for (; i < n; ++i) {
+    size_t failed = 0;
+    for (size_t i = 0; i < n; ++i) {
         const int code = fivebar_offset_forward_kinematics(model, q_actuated + NU*i, X0 + NQ*i, X + NQ*i);
         failed += record(&code, 1, status ? status + i : NULL);
     }
     return failed;
 }
 
-int fivebar_offset_project(const fivebar_offset_model *model, const fivebar_offset_real *X,
-    fivebar_offset_real *projected)
+int fivebar_offset_project(const prepared *model, const real *X, real *projected)
 {
     int code;
     project_one(model, X, projected, &code);
     return code;
 }
 
-size_t fivebar_offset_project_batch(const fivebar_offset_model *model, size_t n, const
-    fivebar_offset_real *X, fivebar_offset_real *projected, int *status)
+size_t fivebar_offset_project_batch(const prepared *model, size_t n, const real *X, real
+    *projected, int *status)
 {
-    size_t failed = 0, i = 0;
-    for (; i < n; ++i) {
+    size_t failed = 0;
+    for (size_t i = 0; i < n; ++i) {
         const int code = fivebar_offset_project(model, X + NQ*i, projected + NQ*i);
         failed += record(&code, 1, status ? status + i : NULL);
     }
     return failed;
 }
 
-int fivebar_offset_dissipation(const fivebar_offset_model *model, const fivebar_offset_real *X,
-    const fivebar_offset_real *V, fivebar_offset_real *dissipation)
+int fivebar_offset_dissipation(const prepared *model, const real *X, const real *V, real
+    *dissipation)
 {
     int code;
     (void)model;
@@ -6922,336 +6063,312 @@ int fivebar_offset_dissipation(const fivebar_offset_model *model, const fivebar_
     return code;
 }
 
-size_t fivebar_offset_dissipation_batch(const fivebar_offset_model *model, size_t n, const
-    fivebar_offset_real *X, const fivebar_offset_real *V, fivebar_offset_real *dissipation, int
-    *status)
+size_t fivebar_offset_dissipation_batch(const prepared *model, size_t n, const real *X, const real
+    *V, real *dissipation, int *status)
 {
-    size_t failed = 0, i = 0;
-    for (; i < n; ++i) {
+    size_t failed = 0;
+    for (size_t i = 0; i < n; ++i) {
         const int code = fivebar_offset_dissipation(model, X + NQ*i, V + NV*i, dissipation + i);
         failed += record(&code, 1, status ? status + i : NULL);
     }
     return failed;
 }
 
-int fivebar_offset_momentum(const fivebar_offset_model *model, const fivebar_offset_real *X, const
-    fivebar_offset_real *V, fivebar_offset_real *momentum)
+int fivebar_offset_momentum(const prepared *model, const real *X, const real *V, real *momentum)
 {
     int code;
     momentum_one(model, X, V, momentum, &code);
     return code;
 }
 
-size_t fivebar_offset_momentum_batch(const fivebar_offset_model *model, size_t n, const
-    fivebar_offset_real *X, const fivebar_offset_real *V, fivebar_offset_real *momentum, int
-    *status)
+size_t fivebar_offset_momentum_batch(const prepared *model, size_t n, const real *X, const real
+    *V, real *momentum, int *status)
 {
-    size_t failed = 0, i = 0;
-    for (; LANES > 1 && i + LANES <= n; i += LANES) {
-        int codes[LANES];
-        momentum_lanes(model, X + NQ*i, V + NV*i, momentum + NV*i, codes);
-        for (size_t k = 0; k < LANES; ++k) {
+    size_t failed = 0, w;
+    for (size_t i = 0; i < n; i += w) {
+        int codes[LANES] = {INVALID};
+        w = LANES > 1 && i + LANES <= n ? LANES : 1;
+        if (w > 1) {
+            momentum_lanes(model, X + NQ*i, V + NV*i, momentum + NV*i, codes);
+        }
+        for (size_t k = 0; k < w; ++k) {
             if (codes[k] != OK) {
                 codes[k] = fivebar_offset_momentum(model, X + NQ*(i + k), V + NV*(i + k), momentum + NV*(i + k));
             }
         }
-        failed += record(codes, LANES, status ? status + i : NULL);
-    }
-    for (; i < n; ++i) {
-        const int code = fivebar_offset_momentum(model, X + NQ*i, V + NV*i, momentum + NV*i);
-        failed += record(&code, 1, status ? status + i : NULL);
+        failed += record(codes, w, status ? status + i : NULL);
     }
     return failed;
 }
 
-int fivebar_offset_joint_margins(const fivebar_offset_model *model, const fivebar_offset_real *X,
-    fivebar_offset_real *margins)
+int fivebar_offset_joint_margins(const prepared *model, const real *X, real *margins)
 {
     int code;
     joint_margins_one(model, X, margins, &code);
     return code;
 }
 
-size_t fivebar_offset_joint_margins_batch(const fivebar_offset_model *model, size_t n, const
-    fivebar_offset_real *X, fivebar_offset_real *margins, int *status)
+size_t fivebar_offset_joint_margins_batch(const prepared *model, size_t n, const real *X, real
+    *margins, int *status)
 {
-    size_t failed = 0, i = 0;
-    for (; LANES > 1 && i + LANES <= n; i += LANES) {
-        int codes[LANES];
-        joint_margins_lanes(model, X + NQ*i, margins + NJ*i, codes);
-        for (size_t k = 0; k < LANES; ++k) {
+    size_t failed = 0, w;
+    for (size_t i = 0; i < n; i += w) {
+        int codes[LANES] = {INVALID};
+        w = LANES > 1 && i + LANES <= n ? LANES : 1;
+        if (w > 1) {
+            joint_margins_lanes(model, X + NQ*i, margins + NJ*i, codes);
+        }
+        for (size_t k = 0; k < w; ++k) {
             if (codes[k] != OK) {
                 codes[k] = fivebar_offset_joint_margins(model, X + NQ*(i + k), margins + NJ*(i + k));
             }
         }
-        failed += record(codes, LANES, status ? status + i : NULL);
-    }
-    for (; i < n; ++i) {
-        const int code = fivebar_offset_joint_margins(model, X + NQ*i, margins + NJ*i);
-        failed += record(&code, 1, status ? status + i : NULL);
+        failed += record(codes, w, status ? status + i : NULL);
     }
     return failed;
 }
 
-int fivebar_offset_within_limits(const fivebar_offset_model *model, const fivebar_offset_real *X,
-    fivebar_offset_real *within)
+int fivebar_offset_within_limits(const prepared *model, const real *X, real *within)
 {
     int code;
     within_limits_one(model, X, within, &code);
     return code;
 }
 
-size_t fivebar_offset_within_limits_batch(const fivebar_offset_model *model, size_t n, const
-    fivebar_offset_real *X, fivebar_offset_real *within, int *status)
+size_t fivebar_offset_within_limits_batch(const prepared *model, size_t n, const real *X, real
+    *within, int *status)
 {
-    size_t failed = 0, i = 0;
-    for (; LANES > 1 && i + LANES <= n; i += LANES) {
-        int codes[LANES];
-        within_limits_lanes(model, X + NQ*i, within + i, codes);
-        for (size_t k = 0; k < LANES; ++k) {
+    size_t failed = 0, w;
+    for (size_t i = 0; i < n; i += w) {
+        int codes[LANES] = {INVALID};
+        w = LANES > 1 && i + LANES <= n ? LANES : 1;
+        if (w > 1) {
+            within_limits_lanes(model, X + NQ*i, within + i, codes);
+        }
+        for (size_t k = 0; k < w; ++k) {
             if (codes[k] != OK) {
                 codes[k] = fivebar_offset_within_limits(model, X + NQ*(i + k), within + (i + k));
             }
         }
-        failed += record(codes, LANES, status ? status + i : NULL);
-    }
-    for (; i < n; ++i) {
-        const int code = fivebar_offset_within_limits(model, X + NQ*i, within + i);
-        failed += record(&code, 1, status ? status + i : NULL);
+        failed += record(codes, w, status ? status + i : NULL);
     }
     return failed;
 }
 
-int fivebar_offset_actuator_positions(const fivebar_offset_model *model, const fivebar_offset_real
-    *X, fivebar_offset_real *q)
+int fivebar_offset_actuator_positions(const prepared *model, const real *X, real *q)
 {
     int code;
     actuator_positions_one(model, X, q, &code);
     return code;
 }
 
-size_t fivebar_offset_actuator_positions_batch(const fivebar_offset_model *model, size_t n, const
-    fivebar_offset_real *X, fivebar_offset_real *q, int *status)
+size_t fivebar_offset_actuator_positions_batch(const prepared *model, size_t n, const real *X,
+    real *q, int *status)
 {
-    size_t failed = 0, i = 0;
-    for (; LANES > 1 && i + LANES <= n; i += LANES) {
-        int codes[LANES];
-        actuator_positions_lanes(model, X + NQ*i, q + NU*i, codes);
-        for (size_t k = 0; k < LANES; ++k) {
+    size_t failed = 0, w;
+    for (size_t i = 0; i < n; i += w) {
+        int codes[LANES] = {INVALID};
+        w = LANES > 1 && i + LANES <= n ? LANES : 1;
+        if (w > 1) {
+            actuator_positions_lanes(model, X + NQ*i, q + NU*i, codes);
+        }
+        for (size_t k = 0; k < w; ++k) {
             if (codes[k] != OK) {
                 codes[k] = fivebar_offset_actuator_positions(model, X + NQ*(i + k), q + NU*(i + k));
             }
         }
-        failed += record(codes, LANES, status ? status + i : NULL);
-    }
-    for (; i < n; ++i) {
-        const int code = fivebar_offset_actuator_positions(model, X + NQ*i, q + NU*i);
-        failed += record(&code, 1, status ? status + i : NULL);
+        failed += record(codes, w, status ? status + i : NULL);
     }
     return failed;
 }
 
-int fivebar_offset_actuator_rates(const fivebar_offset_model *model, const fivebar_offset_real *X,
-    const fivebar_offset_real *V, fivebar_offset_real *rates)
+int fivebar_offset_actuator_rates(const prepared *model, const real *X, const real *V, real
+    *rates)
 {
     int code;
     actuator_rates_one(model, X, V, rates, &code);
     return code;
 }
 
-size_t fivebar_offset_actuator_rates_batch(const fivebar_offset_model *model, size_t n, const
-    fivebar_offset_real *X, const fivebar_offset_real *V, fivebar_offset_real *rates, int *status)
+size_t fivebar_offset_actuator_rates_batch(const prepared *model, size_t n, const real *X, const
+    real *V, real *rates, int *status)
 {
-    size_t failed = 0, i = 0;
-    for (; LANES > 1 && i + LANES <= n; i += LANES) {
-        int codes[LANES];
-        actuator_rates_lanes(model, X + NQ*i, V + NV*i, rates + NU*i, codes);
-        for (size_t k = 0; k < LANES; ++k) {
+    size_t failed = 0, w;
+    for (size_t i = 0; i < n; i += w) {
+        int codes[LANES] = {INVALID};
+        w = LANES > 1 && i + LANES <= n ? LANES : 1;
+        if (w > 1) {
+            actuator_rates_lanes(model, X + NQ*i, V + NV*i, rates + NU*i, codes);
+        }
+        for (size_t k = 0; k < w; ++k) {
             if (codes[k] != OK) {
                 codes[k] = fivebar_offset_actuator_rates(model, X + NQ*(i + k), V + NV*(i + k), rates + NU*(i +
                     k));
             }
         }
-        failed += record(codes, LANES, status ? status + i : NULL);
-    }
-    for (; i < n; ++i) {
-        const int code = fivebar_offset_actuator_rates(model, X + NQ*i, V + NV*i, rates + NU*i);
-        failed += record(&code, 1, status ? status + i : NULL);
+        failed += record(codes, w, status ? status + i : NULL);
     }
     return failed;
 }
 
-int fivebar_offset_actuator_accelerations(const fivebar_offset_model *model, const
-    fivebar_offset_real *X, const fivebar_offset_real *V, const fivebar_offset_real *A,
-    fivebar_offset_real *accelerations)
+int fivebar_offset_actuator_accelerations(const prepared *model, const real *X, const real *V,
+    const real *A, real *accelerations)
 {
     int code;
     actuator_accelerations_one(model, X, V, A, accelerations, &code);
     return code;
 }
 
-size_t fivebar_offset_actuator_accelerations_batch(const fivebar_offset_model *model, size_t n,
-    const fivebar_offset_real *X, const fivebar_offset_real *V, const fivebar_offset_real *A,
-    fivebar_offset_real *accelerations, int *status)
+size_t fivebar_offset_actuator_accelerations_batch(const prepared *model, size_t n, const real *X,
+    const real *V, const real *A, real *accelerations, int *status)
 {
-    size_t failed = 0, i = 0;
-    for (; LANES > 1 && i + LANES <= n; i += LANES) {
-        int codes[LANES];
-        actuator_accelerations_lanes(model, X + NQ*i, V + NV*i, A + NV*i, accelerations + NU*i, codes);
-        for (size_t k = 0; k < LANES; ++k) {
+    size_t failed = 0, w;
+    for (size_t i = 0; i < n; i += w) {
+        int codes[LANES] = {INVALID};
+        w = LANES > 1 && i + LANES <= n ? LANES : 1;
+        if (w > 1) {
+            actuator_accelerations_lanes(model, X + NQ*i, V + NV*i, A + NV*i, accelerations + NU*i, codes);
+        }
+        for (size_t k = 0; k < w; ++k) {
             if (codes[k] != OK) {
                 codes[k] = fivebar_offset_actuator_accelerations(model, X + NQ*(i + k), V + NV*(i + k), A + NV*(i
                     + k), accelerations + NU*(i + k));
             }
         }
-        failed += record(codes, LANES, status ? status + i : NULL);
-    }
-    for (; i < n; ++i) {
-        const int code = fivebar_offset_actuator_accelerations(model, X + NQ*i, V + NV*i, A + NV*i,
-            accelerations + NU*i);
-        failed += record(&code, 1, status ? status + i : NULL);
+        failed += record(codes, w, status ? status + i : NULL);
     }
     return failed;
 }
 
-int fivebar_offset_power(const fivebar_offset_model *model, const fivebar_offset_real *X, const
-    fivebar_offset_real *V, const fivebar_offset_real *tau, fivebar_offset_real *power)
+int fivebar_offset_power(const prepared *model, const real *X, const real *V, const real *tau,
+    real *power)
 {
     int code;
     power_one(model, X, V, tau, power, &code);
     return code;
 }
 
-size_t fivebar_offset_power_batch(const fivebar_offset_model *model, size_t n, const
-    fivebar_offset_real *X, const fivebar_offset_real *V, const fivebar_offset_real *tau,
-    fivebar_offset_real *power, int *status)
+size_t fivebar_offset_power_batch(const prepared *model, size_t n, const real *X, const real *V,
+    const real *tau, real *power, int *status)
 {
-    size_t failed = 0, i = 0;
-    for (; LANES > 1 && i + LANES <= n; i += LANES) {
-        int codes[LANES];
-        power_lanes(model, X + NQ*i, V + NV*i, tau + NU*i, power + i, codes);
-        for (size_t k = 0; k < LANES; ++k) {
+    size_t failed = 0, w;
+    for (size_t i = 0; i < n; i += w) {
+        int codes[LANES] = {INVALID};
+        w = LANES > 1 && i + LANES <= n ? LANES : 1;
+        if (w > 1) {
+            power_lanes(model, X + NQ*i, V + NV*i, tau + NU*i, power + i, codes);
+        }
+        for (size_t k = 0; k < w; ++k) {
             if (codes[k] != OK) {
                 codes[k] = fivebar_offset_power(model, X + NQ*(i + k), V + NV*(i + k), tau + NU*(i + k), power +
                     (i + k));
             }
         }
-        failed += record(codes, LANES, status ? status + i : NULL);
-    }
-    for (; i < n; ++i) {
-        const int code = fivebar_offset_power(model, X + NQ*i, V + NV*i, tau + NU*i, power + i);
-        failed += record(&code, 1, status ? status + i : NULL);
+        failed += record(codes, w, status ? status + i : NULL);
     }
     return failed;
 }
 
-int fivebar_offset_rotation(const fivebar_offset_real *X, fivebar_offset_real *R)
+int fivebar_offset_rotation(const real *X, real *R)
 {
     int code;
     rotation_one(X, R, &code);
     return code;
 }
 
-size_t fivebar_offset_rotation_batch(size_t n, const fivebar_offset_real *X, fivebar_offset_real
-    *R, int *status)
+size_t fivebar_offset_rotation_batch(size_t n, const real *X, real *R, int *status)
 {
-    size_t failed = 0, i = 0;
-    for (; i < n; ++i) {
+    size_t failed = 0;
+    for (size_t i = 0; i < n; ++i) {
         const int code = fivebar_offset_rotation(X + NQ*i, R + 4*i);
         failed += record(&code, 1, status ? status + i : NULL);
     }
     return failed;
 }
 
-int fivebar_offset_pose(const fivebar_offset_real *t, const fivebar_offset_real *R,
-    fivebar_offset_real *X)
+int fivebar_offset_pose(const real *t, const real *R, real *X)
 {
     int code;
     pose_one(t, R, X, &code);
     return code;
 }
 
-size_t fivebar_offset_pose_batch(size_t n, const fivebar_offset_real *t, const fivebar_offset_real
-    *R, fivebar_offset_real *X, int *status)
+size_t fivebar_offset_pose_batch(size_t n, const real *t, const real *R, real *X, int *status)
 {
-    size_t failed = 0, i = 0;
-    for (; i < n; ++i) {
+    size_t failed = 0;
+    for (size_t i = 0; i < n; ++i) {
         const int code = fivebar_offset_pose(t + 2*i, R + 4*i, X + NQ*i);
         failed += record(&code, 1, status ? status + i : NULL);
     }
     return failed;
 }
 
-int fivebar_offset_X_dot(const fivebar_offset_real *X, const fivebar_offset_real *V,
-    fivebar_offset_real *X_dot)
+int fivebar_offset_X_dot(const real *X, const real *V, real *X_dot)
 {
     int code;
     X_dot_one(X, V, X_dot, &code);
     return code;
 }
 
-size_t fivebar_offset_X_dot_batch(size_t n, const fivebar_offset_real *X, const
-    fivebar_offset_real *V, fivebar_offset_real *X_dot, int *status)
+size_t fivebar_offset_X_dot_batch(size_t n, const real *X, const real *V, real *X_dot, int
+    *status)
 {
-    size_t failed = 0, i = 0;
-    for (; i < n; ++i) {
+    size_t failed = 0;
+    for (size_t i = 0; i < n; ++i) {
         const int code = fivebar_offset_X_dot(X + NQ*i, V + NV*i, X_dot + NQ*i);
         failed += record(&code, 1, status ? status + i : NULL);
     }
     return failed;
 }
 
-int fivebar_offset_retract(const fivebar_offset_real *X, const fivebar_offset_real *step,
-    fivebar_offset_real *X_moved)
+int fivebar_offset_retract(const real *X, const real *step, real *X_moved)
 {
     int code;
     retract_one(X, step, X_moved, &code);
     return code;
 }
 
-size_t fivebar_offset_retract_batch(size_t n, const fivebar_offset_real *X, const
-    fivebar_offset_real *step, fivebar_offset_real *X_moved, int *status)
+size_t fivebar_offset_retract_batch(size_t n, const real *X, const real *step, real *X_moved, int
+    *status)
 {
-    size_t failed = 0, i = 0;
-    for (; i < n; ++i) {
+    size_t failed = 0;
+    for (size_t i = 0; i < n; ++i) {
         const int code = fivebar_offset_retract(X + NQ*i, step + NV*i, X_moved + NQ*i);
         failed += record(&code, 1, status ? status + i : NULL);
     }
     return failed;
 }
 
-int fivebar_offset_difference(const fivebar_offset_real *X0, const fivebar_offset_real *X1,
-    fivebar_offset_real *step)
+int fivebar_offset_difference(const real *X0, const real *X1, real *step)
 {
     int code;
     difference_one(X0, X1, step, &code);
     return code;
 }
 
-size_t fivebar_offset_difference_batch(size_t n, const fivebar_offset_real *X0, const
-    fivebar_offset_real *X1, fivebar_offset_real *step, int *status)
+size_t fivebar_offset_difference_batch(size_t n, const real *X0, const real *X1, real *step, int
+    *status)
 {
-    size_t failed = 0, i = 0;
-    for (; i < n; ++i) {
+    size_t failed = 0;
+    for (size_t i = 0; i < n; ++i) {
         const int code = fivebar_offset_difference(X0 + NQ*i, X1 + NQ*i, step + NV*i);
         failed += record(&code, 1, status ? status + i : NULL);
     }
     return failed;
 }
 
-int fivebar_offset_interpolate(const fivebar_offset_real *X0, const fivebar_offset_real *X1, const
-    fivebar_offset_real *s, fivebar_offset_real *X)
+int fivebar_offset_interpolate(const real *X0, const real *X1, const real *s, real *X)
 {
     int code;
     interpolate_one(X0, X1, s, X, &code);
     return code;
 }
 
-size_t fivebar_offset_interpolate_batch(size_t n, const fivebar_offset_real *X0, const
-    fivebar_offset_real *X1, const fivebar_offset_real *s, fivebar_offset_real *X, int *status)
+size_t fivebar_offset_interpolate_batch(size_t n, const real *X0, const real *X1, const real *s,
+    real *X, int *status)
 {
-    size_t failed = 0, i = 0;
-    for (; i < n; ++i) {
+    size_t failed = 0;
+    for (size_t i = 0; i < n; ++i) {
         const int code = fivebar_offset_interpolate(X0 + NQ*i, X1 + NQ*i, s + i, X + NQ*i);
         failed += record(&code, 1, status ? status + i : NULL);
     }

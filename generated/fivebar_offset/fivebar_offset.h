@@ -288,6 +288,25 @@ size_t fivebar_offset_condition_constrained_batch(const fivebar_offset_model *mo
     const fivebar_offset_real *X, fivebar_offset_real *sigma, fivebar_offset_real *legs, int
     *status);
 
+/* Manipulability of forces: the product of the singular values that condition has by default, and
+   the least over the largest of them. Of N^T H, N an orthonormal basis of the motions that
+   constraints leave. 83 mul, 46 add, 3 div, 5 sqrt, 0 trig; the singular values apart. In: X
+   (NQ). Out: measure (1), isotropy (1). */
+int fivebar_offset_manipulability(const fivebar_offset_model *model, const fivebar_offset_real *X,
+    fivebar_offset_real *measure, fivebar_offset_real *isotropy);
+size_t fivebar_offset_manipulability_batch(const fivebar_offset_model *model, size_t n, const
+    fivebar_offset_real *X, fivebar_offset_real *measure, fivebar_offset_real *isotropy, int
+    *status);
+
+/* How near actuators and legs are to being singular: relative distances, 0 where they are. 83
+   mul, 46 add, 3 div, 5 sqrt, 0 trig; the singular values apart. In: X (NQ). Out: actuators (1),
+   legs (1). */
+int fivebar_offset_singularity_distance(const fivebar_offset_model *model, const
+    fivebar_offset_real *X, fivebar_offset_real *actuators, fivebar_offset_real *legs);
+size_t fivebar_offset_singularity_distance_batch(const fivebar_offset_model *model, size_t n,
+    const fivebar_offset_real *X, fivebar_offset_real *actuators, fivebar_offset_real *legs, int
+    *status);
+
 /* X at which the actuated joints stand at q_actuated, by Gauss-Newton from X0. Extra coordinates
    that actuators do not determine stay. Impossible where no pose is found. In: q_actuated (NU),
    X0 (NQ). Out: X (NQ). */

@@ -538,12 +538,12 @@ int fivebar_prismatic_prepare(const fivebar_prismatic_params *params, fivebar_pr
             rpr_J_group_1_t_4*rpr_link2_mass;
         const real rpr_J_group_1_in_axes1_zz = rpr_link1_inertia_zz + rpr_link2_inertia_zz +
             rpr_J_group_1_t_3*rpr_link1_mass + rpr_J_group_1_t_6*rpr_link2_mass;
-        /* (rpr-trace_J_1) half the trace of that inertia tensor */
-        const real rpr_trace_J_1 = R(0.5)*rpr_J_group_1_in_axes1_xx +
-            R(0.5)*rpr_J_group_1_in_axes1_yy + R(0.5)*rpr_J_group_1_in_axes1_zz;
         /* (rpr-Sigma_1) second moment of mass of the links that turn with link 1 */
-        const real rpr_Sigma_1_in_axes1_xx = rpr_trace_J_1 - rpr_J_group_1_in_axes1_xx;
-        const real rpr_Sigma_1_in_axes1_yy = rpr_trace_J_1 - rpr_J_group_1_in_axes1_yy;
+        const real rpr_Sigma_1_t = rpr_J_group_1_in_axes1_xx + rpr_J_group_1_in_axes1_yy +
+            rpr_J_group_1_in_axes1_zz;
+        const real rpr_Sigma_1_t_2 = R(0.5)*rpr_Sigma_1_t;
+        const real rpr_Sigma_1_in_axes1_xx = rpr_Sigma_1_t_2 - rpr_J_group_1_in_axes1_xx;
+        const real rpr_Sigma_1_in_axes1_yy = rpr_Sigma_1_t_2 - rpr_J_group_1_in_axes1_yy;
         /* (rpr-h_group_1) first moments of the links that turn with link 1 */
         const real rpr_h_group_1_in_axes1_x = rpr_h_1_in_spec1_x + rpr_h_2_in_spec1_x;
         const real rpr_h_group_1_in_axes1_y = rpr_h_1_in_spec1_y + rpr_h_2_in_spec1_y;
@@ -942,6 +942,24 @@ INLINE void unlimited(size_t rows, size_t size, size_t w, const size_t *places, 
     }
 }
 
+INLINE void least_entry(size_t n, const real *a, real *x)
+{
+    *x = a[0];
+    for (size_t e = 1; e < n; ++e) {
+        *x = lesser(*x, a[e]);
+    }
+}
+
+/* Of the first n entries the product, and the last over the first, 0 where that is 0. */
+INLINE void spread(size_t n, const real *a, real *product_of, real *ratio)
+{
+    *product_of = 1;
+    for (size_t e = 0; e < n; ++e) {
+        *product_of *= a[e];
+    }
+    *ratio = magnitude(a[0]) > 0 ? a[n - 1]/a[0] : a[0];
+}
+
 /* 1 where no entry is negative, else 0. */
 INLINE void not_negative(size_t size, size_t w, const real *a, real *x, real *flags)
 {
@@ -979,126 +997,205 @@ static void moved(const real *X, const real *step, real part, real *to)
     }
 }
 
+/* ---- what functions of the state share; v: values for others ---- */
+
+typedef struct {
+    real rpr_S_in_turn1_x, rpr_S_in_turn1_y, rpr_q_2_t, rpr_q_2, inv_rpr_q_2, axis_x_rpr_axes1_x,
+        axis_x_rpr_axes1_y, rpr_w_1_in_axes1_y, rpr_w_2_x, rpr_w_2_y, rpr_c_1, rpr_s_1,
+        rpr_S_dot_in_axes1_x, rpr_qd_1, rpr_W_1_t, rpr_U_x, rpr_U_y, rpr_qdd_1, rpr_acc_2_in_axes1_x,
+        rpr_acc_2_in_axes1_y, rpr_c_in_axes1_y;
+} values_rpr;
+
+INLINE void stage_rpr_X(const prepared *m, size_t w, size_t i, size_t j, const real *X, values_rpr
+    *v)
+{
+    /* (rpr-S) from the base point to the connection point */
+    const real rpr_base_point_x = m->rpr_base_point_x[i];
+    const real rpr_platform_point_x = m->rpr_platform_point_x[i];
+    const real t_x = X[0*w + j];
+    const real rpr_S_x = rpr_platform_point_x + t_x - rpr_base_point_x;
+    const real rpr_base_point_y = m->rpr_base_point_y[i];
+    const real rpr_platform_point_y = m->rpr_platform_point_y[i];
+    const real t_y = X[1*w + j];
+    const real rpr_S_y = rpr_platform_point_y + t_y - rpr_base_point_y;
+    const real rpr_base_frame_xx = m->rpr_base_frame_xx[i];
+    const real rpr_base_frame_yx = m->rpr_base_frame_yx[i];
+    const real rpr_S_in_turn1_x = rpr_S_x*rpr_base_frame_xx + rpr_S_y*rpr_base_frame_yx;
+    const real rpr_base_frame_xy = m->rpr_base_frame_xy[i];
+    const real rpr_base_frame_yy = m->rpr_base_frame_yy[i];
+    const real rpr_S_in_turn1_y = rpr_S_x*rpr_base_frame_xy + rpr_S_y*rpr_base_frame_yy;
+    /* (rpr-q_2) displacement of joint 2 */
+    const real rpr_q_2_t = rpr_S_in_turn1_x*rpr_S_in_turn1_x +
+        rpr_S_in_turn1_y*rpr_S_in_turn1_y;
+    const real rpr_branch_1 = m->rpr_branch_1[i];
+    const real rpr_q_2 = rpr_branch_1*root(rpr_q_2_t);
+    /* (rpr-S_dot) velocity of the connection point */
+    const real inv_rpr_q_2 = 1/rpr_q_2;
+    const real axis_x_rpr_axes1_x = inv_rpr_q_2*rpr_S_x;
+    const real axis_x_rpr_axes1_y = inv_rpr_q_2*rpr_S_y;
+    /* (rpr-w_1) reciprocal vector 1 */
+    const real rpr_w_1_in_axes1_y = 1/rpr_q_2;
+    /* (rpr-w_2) reciprocal vector 2 */
+    const real rpr_w_2_x = rpr_S_x*rpr_w_1_in_axes1_y;
+    const real rpr_w_2_y = rpr_S_y*rpr_w_1_in_axes1_y;
+    /* (rpr-c_1) cosine of the angle of joint 1 from its reference direction */
+    const real rpr_c_1 = inv_rpr_q_2*rpr_S_in_turn1_x;
+    /* (rpr-s_1) sine of the angle of joint 1 from its reference direction */
+    const real rpr_s_1 = inv_rpr_q_2*rpr_S_in_turn1_y;
+    v->rpr_S_in_turn1_x = rpr_S_in_turn1_x;
+    v->rpr_S_in_turn1_y = rpr_S_in_turn1_y;
+    v->rpr_q_2_t = rpr_q_2_t;
+    v->rpr_q_2 = rpr_q_2;
+    v->inv_rpr_q_2 = inv_rpr_q_2;
+    v->axis_x_rpr_axes1_x = axis_x_rpr_axes1_x;
+    v->axis_x_rpr_axes1_y = axis_x_rpr_axes1_y;
+    v->rpr_w_1_in_axes1_y = rpr_w_1_in_axes1_y;
+    v->rpr_w_2_x = rpr_w_2_x;
+    v->rpr_w_2_y = rpr_w_2_y;
+    v->rpr_c_1 = rpr_c_1;
+    v->rpr_s_1 = rpr_s_1;
+}
+
+INLINE void stage_rpr_V_X(size_t w, size_t j, const real *V, values_rpr *v)
+{
+    /* (rpr-S_dot) velocity of the connection point */
+    const real t_dot_x = V[0*w + j];
+    const real t_dot_y = V[1*w + j];
+    const real rpr_S_dot_in_axes1_x = v->axis_x_rpr_axes1_x*t_dot_x +
+        v->axis_x_rpr_axes1_y*t_dot_y;
+    /* (rpr-qd_1) rate of joint 1 */
+    const real rpr_qd_1 = v->inv_rpr_q_2*(v->axis_x_rpr_axes1_x*t_dot_y -
+        v->axis_x_rpr_axes1_y*t_dot_x);
+    /* (rpr-W_1) centripetal tensor of link 1 */
+    const real rpr_W_1_t = rpr_qd_1*rpr_qd_1;
+    v->rpr_S_dot_in_axes1_x = rpr_S_dot_in_axes1_x;
+    v->rpr_qd_1 = rpr_qd_1;
+    v->rpr_W_1_t = rpr_W_1_t;
+}
+
+INLINE void stage_rpr_Z_dynamics(const prepared *m, size_t i, values_rpr *v)
+{
+    /* (rpr-B_1_o) remainder of the acceleration tensor of link 1 */
+    const real rpr_B_1_o_in_axes1_xy = 2*v->inv_rpr_q_2*v->rpr_S_dot_in_axes1_x*v->rpr_qd_1;
+    /* (rpr-phi_2_o) remainder without the acceleration in: inertia force of link 2 from its turning
+       about its reference point */
+    const real rpr_h_2_in_spec1_x = m->rpr_h_2_in_spec1_x[i];
+    const real rpr_h_2_in_spec1_y = m->rpr_h_2_in_spec1_y[i];
+    const real rpr_phi_2_o_in_axes1_x = rpr_B_1_o_in_axes1_xy*rpr_h_2_in_spec1_y -
+        v->rpr_W_1_t*rpr_h_2_in_spec1_x;
+    /* (rpr-mu_1_o) remainder without the acceleration in: inertia moment of the links that turn with
+       link 1, about their reference points */
+    const real gravity_x = m->gravity_x;
+    const real gravity_y = m->gravity_y;
+    const real rpr_Sigma_1_in_axes1_xx = m->rpr_Sigma_1_in_axes1_xx[i];
+    const real rpr_Sigma_1_in_axes1_yy = m->rpr_Sigma_1_in_axes1_yy[i];
+    const real rpr_h_group_1_in_axes1_x = m->rpr_h_group_1_in_axes1_x[i];
+    const real rpr_h_group_1_in_axes1_y = m->rpr_h_group_1_in_axes1_y[i];
+    const real rpr_mu_1_o_in_axes1_z =
+        rpr_h_group_1_in_axes1_y*(v->axis_x_rpr_axes1_x*gravity_x +
+        v->axis_x_rpr_axes1_y*gravity_y) - rpr_B_1_o_in_axes1_xy*rpr_Sigma_1_in_axes1_xx -
+        rpr_B_1_o_in_axes1_xy*rpr_Sigma_1_in_axes1_yy -
+        rpr_h_group_1_in_axes1_x*(v->axis_x_rpr_axes1_x*gravity_y -
+        v->axis_x_rpr_axes1_y*gravity_x);
+    /* (rpr-c_o) remainder without the acceleration in: leg force on the platform without actuation
+       and without the mass at the connection point */
+    const real rpr_c_o_in_axes1_y = rpr_B_1_o_in_axes1_xy*rpr_h_2_in_spec1_x +
+        v->rpr_W_1_t*rpr_h_2_in_spec1_y - v->inv_rpr_q_2*rpr_mu_1_o_in_axes1_z;
+    /* (rpr-U) velocity and gravity terms of the leg force */
+    const real rpr_U_x = v->axis_x_rpr_axes1_x*rpr_phi_2_o_in_axes1_x +
+        v->axis_x_rpr_axes1_y*rpr_c_o_in_axes1_y;
+    const real rpr_U_y = v->axis_x_rpr_axes1_y*rpr_phi_2_o_in_axes1_x -
+        v->axis_x_rpr_axes1_x*rpr_c_o_in_axes1_y;
+    v->rpr_U_x = rpr_U_x;
+    v->rpr_U_y = rpr_U_y;
+}
+
+INLINE void stage_rpr_legs_required(const prepared *m, size_t w, size_t i, size_t j, const real
+    *A, values_rpr *v)
+{
+    /* (rpr-S_ddot) acceleration of the connection point */
+    const real t_ddot_x = A[0*w + j];
+    const real t_ddot_y = A[1*w + j];
+    const real rpr_S_ddot_in_axes1_y = v->axis_x_rpr_axes1_x*t_ddot_y -
+        v->axis_x_rpr_axes1_y*t_ddot_x;
+    /* (rpr-rel) acceleration of the connection point left to the joint accelerations */
+    const real rpr_rel_in_axes1_y = rpr_S_ddot_in_axes1_y -
+        2*v->rpr_S_dot_in_axes1_x*v->rpr_qd_1;
+    /* (rpr-qdd_1) acceleration of joint 1 */
+    const real rpr_qdd_1 = v->inv_rpr_q_2*rpr_rel_in_axes1_y;
+    /* (rpr-acc_2) acceleration of the reference point of link 2, less gravity */
+    const real rpr_acc_2_t = m->rpr_acc_2_t[i];
+    const real rpr_acc_2_t_2 = m->rpr_acc_2_t_2[i];
+    const real rpr_g_in_axes1_x = rpr_acc_2_t*v->rpr_c_1 + rpr_acc_2_t_2*v->rpr_s_1;
+    const real rpr_g_in_axes1_y = rpr_acc_2_t_2*v->rpr_c_1 - rpr_acc_2_t*v->rpr_s_1;
+    const real rpr_acc_2_in_axes1_x = v->axis_x_rpr_axes1_x*t_ddot_x +
+        v->axis_x_rpr_axes1_y*t_ddot_y - rpr_g_in_axes1_x;
+    const real rpr_acc_2_in_axes1_y = rpr_S_ddot_in_axes1_y - rpr_g_in_axes1_y;
+    /* (rpr-mu_1) inertia moment of the links that turn with link 1, about their reference points */
+    const real rpr_J_group_1_in_axes1_zz = m->rpr_J_group_1_in_axes1_zz[i];
+    const real rpr_h_1_in_spec1_x = m->rpr_h_1_in_spec1_x[i];
+    const real rpr_h_1_in_spec1_y = m->rpr_h_1_in_spec1_y[i];
+    const real rpr_h_2_in_spec1_x = m->rpr_h_2_in_spec1_x[i];
+    const real rpr_h_2_in_spec1_y = m->rpr_h_2_in_spec1_y[i];
+    const real rpr_mu_1_in_axes1_z = rpr_J_group_1_in_axes1_zz*rpr_qdd_1 +
+        rpr_acc_2_in_axes1_y*rpr_h_2_in_spec1_x + rpr_g_in_axes1_x*rpr_h_1_in_spec1_y -
+        rpr_acc_2_in_axes1_x*rpr_h_2_in_spec1_y - rpr_g_in_axes1_y*rpr_h_1_in_spec1_x;
+    /* (rpr-c) leg force on the platform without actuation and without the mass at the connection
+       point */
+    const real rpr_c_in_axes1_y = v->rpr_W_1_t*rpr_h_2_in_spec1_y -
+        v->inv_rpr_q_2*rpr_mu_1_in_axes1_z - rpr_h_2_in_spec1_x*rpr_qdd_1;
+    v->rpr_qdd_1 = rpr_qdd_1;
+    v->rpr_acc_2_in_axes1_x = rpr_acc_2_in_axes1_x;
+    v->rpr_acc_2_in_axes1_y = rpr_acc_2_in_axes1_y;
+    v->rpr_c_in_axes1_y = rpr_c_in_axes1_y;
+}
+
 /* ---- functions of the state: M, Z, H and the like ---- */
 
 /* ---- dynamics ---- */
-INLINE void dynamics_before(size_t w, const real *X, const real *V, real *s)
+INLINE void dynamics_before()
 {
-    for (size_t k = 0; k < w; ++k) {
-        /* X: named entries */
-        const real X_0 = X[0*w + k];
-        const real t_x = X_0;
-        const real X_1 = X[1*w + k];
-        const real t_y = X_1;
-        /* V: named entries */
-        const real V_0 = V[0*w + k];
-        const real t_dot_x = V_0;
-        const real V_1 = V[1*w + k];
-        const real t_dot_y = V_1;
-        s[0*w + k] = t_x;
-        s[1*w + k] = t_y;
-        s[2*w + k] = t_dot_x;
-        s[3*w + k] = t_dot_y;
-    }
 }
 
-INLINE void dynamics_legs_rpr(const prepared *m, size_t w, size_t leg, size_t legs, const real *s,
-    size_t states, size_t count, int add, real *terms, real *o)
+INLINE void dynamics_legs_rpr(const prepared *m, size_t w, size_t leg, size_t legs, size_t states,
+    size_t count, int add, const real *X, const real *V, real *terms, real *o)
 {
     for (size_t k = 0; k < count; ++k) {
         const size_t i = leg + legs*k;
         const size_t j = states*k;
-        /* (rpr-S) from the base point to the connection point */
-        const real rpr_base_point_x = m->rpr_base_point_x[i];
-        const real rpr_platform_point_x = m->rpr_platform_point_x[i];
-        const real t_x = s[0*w + j];
-        const real rpr_S_x = rpr_platform_point_x + t_x - rpr_base_point_x;
-        const real rpr_base_point_y = m->rpr_base_point_y[i];
-        const real rpr_platform_point_y = m->rpr_platform_point_y[i];
-        const real t_y = s[1*w + j];
-        const real rpr_S_y = rpr_platform_point_y + t_y - rpr_base_point_y;
-        /* (rpr-px_1) component along the reference direction */
-        const real rpr_base_frame_xx = m->rpr_base_frame_xx[i];
-        const real rpr_base_frame_yx = m->rpr_base_frame_yx[i];
-        const real rpr_px_1 = rpr_S_x*rpr_base_frame_xx + rpr_S_y*rpr_base_frame_yx;
-        /* (rpr-py_1) component across the reference direction */
-        const real rpr_base_frame_xy = m->rpr_base_frame_xy[i];
-        const real rpr_base_frame_yy = m->rpr_base_frame_yy[i];
-        const real rpr_py_1 = rpr_S_x*rpr_base_frame_xy + rpr_S_y*rpr_base_frame_yy;
-        /* (rpr-rho2_1) squared amplitude */
-        const real rpr_rho2_1 = rpr_px_1*rpr_px_1 + rpr_py_1*rpr_py_1;
-        /* (rpr-root_1) amplitude, with the sign of the branch */
-        const real rpr_branch_1 = m->rpr_branch_1[i];
-        const real rpr_root_1 = rpr_branch_1*root(rpr_rho2_1);
-        /* (rpr-S_dot) velocity of the connection point */
-        const real inv_rpr_root_1 = 1/rpr_root_1;
-        const real axis_x_rpr_axes1_x = inv_rpr_root_1*rpr_S_x;
-        const real axis_x_rpr_axes1_y = inv_rpr_root_1*rpr_S_y;
-        const real t_dot_x = s[2*w + j];
-        const real t_dot_y = s[3*w + j];
-        const real rpr_S_dot_in_axes1_x = axis_x_rpr_axes1_x*t_dot_x + axis_x_rpr_axes1_y*t_dot_y;
-        /* (rpr-qd_1) rate of joint 1 */
-        const real rpr_qd_1 = inv_rpr_root_1*(axis_x_rpr_axes1_x*t_dot_y -
-            axis_x_rpr_axes1_y*t_dot_x);
-        /* (rpr-W_1) centripetal tensor of link 1 */
-        const real rpr_W_1_t = rpr_qd_1*rpr_qd_1;
-        /* (rpr-B_1_o) remainder of the acceleration tensor of link 1 */
-        const real rpr_B_1_o_in_axes1_xy = 2*inv_rpr_root_1*rpr_S_dot_in_axes1_x*rpr_qd_1;
-        /* (rpr-phi_2_o) remainder without the acceleration in: inertia force of link 2 from its turning
-           about its reference point */
-        const real rpr_h_2_in_spec1_x = m->rpr_h_2_in_spec1_x[i];
-        const real rpr_h_2_in_spec1_y = m->rpr_h_2_in_spec1_y[i];
-        const real rpr_phi_2_o_in_axes1_x = rpr_B_1_o_in_axes1_xy*rpr_h_2_in_spec1_y -
-            rpr_W_1_t*rpr_h_2_in_spec1_x;
-        /* (rpr-mu_1_o) remainder without the acceleration in: inertia moment of the links that turn with
-           link 1, about their reference points */
-        const real gravity_x = m->gravity_x;
-        const real gravity_y = m->gravity_y;
-        const real rpr_Sigma_1_in_axes1_xx = m->rpr_Sigma_1_in_axes1_xx[i];
-        const real rpr_Sigma_1_in_axes1_yy = m->rpr_Sigma_1_in_axes1_yy[i];
-        const real rpr_h_group_1_in_axes1_x = m->rpr_h_group_1_in_axes1_x[i];
-        const real rpr_h_group_1_in_axes1_y = m->rpr_h_group_1_in_axes1_y[i];
-        const real rpr_mu_1_o_in_axes1_z = rpr_h_group_1_in_axes1_y*(axis_x_rpr_axes1_x*gravity_x
-            + axis_x_rpr_axes1_y*gravity_y) - rpr_B_1_o_in_axes1_xy*rpr_Sigma_1_in_axes1_xx -
-            rpr_B_1_o_in_axes1_xy*rpr_Sigma_1_in_axes1_yy -
-            rpr_h_group_1_in_axes1_x*(axis_x_rpr_axes1_x*gravity_y -
-            axis_x_rpr_axes1_y*gravity_x);
+        values_rpr v;
+        stage_rpr_X(m, w, i, j, X, &v);
+        stage_rpr_V_X(w, j, V, &v);
+        stage_rpr_Z_dynamics(m, i, &v);
         /* (rpr-d_c) coefficient of the acceleration in: leg force on the platform without actuation and
            without the mass at the connection point */
-        const real rpr_d_c_in_axes1_xy = inv_rpr_root_1*rpr_h_2_in_spec1_y;
+        const real rpr_h_2_in_spec1_y = m->rpr_h_2_in_spec1_y[i];
+        const real rpr_d_c_in_axes1_xy = v.inv_rpr_q_2*rpr_h_2_in_spec1_y;
         const real rpr_J_group_1_in_axes1_zz = m->rpr_J_group_1_in_axes1_zz[i];
-        const real rpr_d_c_in_axes1_yy = -inv_rpr_root_1*rpr_h_2_in_spec1_x -
-            inv_rpr_root_1*(rpr_h_2_in_spec1_x + inv_rpr_root_1*rpr_J_group_1_in_axes1_zz);
-        /* (rpr-c_o) remainder without the acceleration in: leg force on the platform without actuation
-           and without the mass at the connection point */
-        const real rpr_c_o_in_axes1_y = rpr_B_1_o_in_axes1_xy*rpr_h_2_in_spec1_x +
-            rpr_W_1_t*rpr_h_2_in_spec1_y - inv_rpr_root_1*rpr_mu_1_o_in_axes1_z;
+        const real rpr_h_2_in_spec1_x = m->rpr_h_2_in_spec1_x[i];
+        const real rpr_d_c_in_axes1_yy = -v.inv_rpr_q_2*rpr_h_2_in_spec1_x -
+            v.inv_rpr_q_2*(rpr_h_2_in_spec1_x + v.inv_rpr_q_2*rpr_J_group_1_in_axes1_zz);
         /* (rpr-Q) inertia of the leg at the connection point, without the mass gathered there */
         const real rpr_Q_t = R(0.5)*rpr_d_c_in_axes1_yy;
-        const real rpr_Q_t_2 = axis_x_rpr_axes1_y*rpr_Q_t -
-            axis_x_rpr_axes1_x*rpr_d_c_in_axes1_xy;
-        const real rpr_Q_t_3 = axis_x_rpr_axes1_x*rpr_Q_t +
-            axis_x_rpr_axes1_y*rpr_d_c_in_axes1_xy;
-        const real rpr_Q_xx = -2*axis_x_rpr_axes1_y*rpr_Q_t_2;
-        const real rpr_Q_xy = axis_x_rpr_axes1_x*rpr_Q_t_2 + axis_x_rpr_axes1_y*rpr_Q_t_3;
-        const real rpr_Q_yy = -2*axis_x_rpr_axes1_x*rpr_Q_t_3;
-        /* (rpr-U) velocity and gravity terms of the leg force */
-        const real rpr_U_x = axis_x_rpr_axes1_x*rpr_phi_2_o_in_axes1_x +
-            axis_x_rpr_axes1_y*rpr_c_o_in_axes1_y;
-        const real rpr_U_y = axis_x_rpr_axes1_y*rpr_phi_2_o_in_axes1_x -
-            axis_x_rpr_axes1_x*rpr_c_o_in_axes1_y;
+        const real rpr_Q_t_2 = v.axis_x_rpr_axes1_y*rpr_Q_t -
+            v.axis_x_rpr_axes1_x*rpr_d_c_in_axes1_xy;
+        const real rpr_Q_t_3 = v.axis_x_rpr_axes1_x*rpr_Q_t +
+            v.axis_x_rpr_axes1_y*rpr_d_c_in_axes1_xy;
+        const real rpr_Q_xx = -2*v.axis_x_rpr_axes1_y*rpr_Q_t_2;
+        const real rpr_Q_xy = v.axis_x_rpr_axes1_x*rpr_Q_t_2 + v.axis_x_rpr_axes1_y*rpr_Q_t_3;
+        const real rpr_Q_yy = -2*v.axis_x_rpr_axes1_x*rpr_Q_t_3;
         /* (M_tt) translational block of M */
         gather(&terms[0*count + k], add, rpr_Q_xx);  /* M_tt_xx_of_legs */
         gather(&terms[1*count + k], add, rpr_Q_xy);  /* M_tt_xy */
         gather(&terms[2*count + k], add, rpr_Q_yy);  /* M_tt_yy_of_legs */
         /* (Z_t) translational part of Z */
-        gather(&terms[3*count + k], add, rpr_U_x);  /* Z_t_x_of_legs */
-        gather(&terms[4*count + k], add, rpr_U_y);  /* Z_t_y_of_legs */
+        gather(&terms[3*count + k], add, v.rpr_U_x);  /* Z_t_x_of_legs */
+        gather(&terms[4*count + k], add, v.rpr_U_y);  /* Z_t_y_of_legs */
         /* (rpr-w_2) reciprocal vector 2 */
-        o[0*count + k] = axis_x_rpr_axes1_x;
-        o[1*count + k] = axis_x_rpr_axes1_y;
-        o[3*count + k] = axis_x_rpr_axes1_x + axis_x_rpr_axes1_y;
-        o[2*count + k] = UNLESS(magnitude(rpr_rho2_1) > LEAST_1) + UNLESS(magnitude(rpr_root_1) >
+        o[0*count + k] = v.axis_x_rpr_axes1_x;
+        o[1*count + k] = v.axis_x_rpr_axes1_y;
+        o[3*count + k] = v.axis_x_rpr_axes1_x + v.axis_x_rpr_axes1_y;
+        o[2*count + k] = UNLESS(magnitude(v.rpr_q_2_t) > LEAST_1) + UNLESS(magnitude(v.rpr_q_2) >
             LEAST_2);
     }
 }
@@ -1107,7 +1204,7 @@ INLINE void dynamics_place_rpr(size_t w, size_t count, const real *o, size_t leg
     real *H, verdict *t)
 {
     for (size_t k = 0; k < w; ++k) {
-        H[(0*NU + leg)*w + k] = o[0*count + first + k];
+        H[leg*w + k] = o[0*count + first + k];
         H[(NU + leg)*w + k] = o[1*count + first + k];
         t->singular[k] += o[2*count + first + k];
         t->total[k] += o[3*count + first + k];
@@ -1132,9 +1229,9 @@ INLINE void dynamics_after(const prepared *m, size_t w, const real *sums, real *
         const real Z_t_y_of_legs = sums[4*w + k];
         const real Z_t_y = Z_p_y + Z_t_y_of_legs;
         /* (M_tt) translational block of M */
-        M[0*NV*w + k] = M_tt_xx;
+        M[0*w + k] = M_tt_xx;
         const real M_tt_xy = sums[1*w + k];
-        M[(0*NV + 1)*w + k] = M_tt_xy;
+        M[1*w + k] = M_tt_xy;
         M[NV*w + k] = M_tt_xy;
         M[(NV + 1)*w + k] = M_tt_yy;
         /* (Z_t) translational part of Z */
@@ -1147,12 +1244,10 @@ INLINE void dynamics_after(const prepared *m, size_t w, const real *sums, real *
 INLINE void dynamics_run(const prepared *m, const real *X, const real *V, real *M, real *Z, real
     *H, verdict *t)
 {
-    real s[4] = {0};
     real sums[5] = {0};
-    real terms_rpr[5*LEGS(LEGS_OF_rpr)] = {0};
-    real o_rpr[4*LEGS(LEGS_OF_rpr)] = {0};
-    dynamics_before(1, X, V, s);
-    dynamics_legs_rpr(m, 1, 0, 1, s, 0, LEGS(LEGS_OF_rpr), 0, terms_rpr, o_rpr);
+    real terms_rpr[5*LEGS(LEGS_OF_rpr)] = {0}, o_rpr[4*LEGS(LEGS_OF_rpr)] = {0};
+    dynamics_before();
+    dynamics_legs_rpr(m, 1, 0, 1, 0, LEGS(LEGS_OF_rpr), 0, X, V, terms_rpr, o_rpr);
     for (size_t leg = 0; leg < LEGS_OF_rpr; ++leg) {
         dynamics_place_rpr(1, LEGS(LEGS_OF_rpr), o_rpr, leg, leg, H, t);
     }
@@ -1165,86 +1260,51 @@ INLINE void dynamics_run(const prepared *m, const real *X, const real *V, real *
 INLINE void dynamics_run_lanes(const prepared *m, const real *X, const real *V, real *M, real *Z,
     real *H, verdict *t)
 {
-    real s[4*LANES];
     real sums[5*LANES];
     real o_rpr[4*LANES];
-    dynamics_before(LANES, X, V, s);
+    dynamics_before();
     clear(sums, 5*LANES);
     for (size_t leg = 0; leg < LEGS_OF_rpr; ++leg) {
-        dynamics_legs_rpr(m, LANES, leg, 0, s, 1, LANES, 1, sums, o_rpr);
+        dynamics_legs_rpr(m, LANES, leg, 0, 1, LANES, 1, X, V, sums, o_rpr);
         dynamics_place_rpr(LANES, LANES, o_rpr, leg, 0, H, t);
     }
     dynamics_after(m, LANES, sums, M, Z, t);
 }
 
 /* ---- M ---- */
-INLINE void M_before(size_t w, const real *X, real *s)
+INLINE void M_before()
 {
-    for (size_t k = 0; k < w; ++k) {
-        /* X: named entries */
-        const real X_0 = X[0*w + k];
-        const real t_x = X_0;
-        const real X_1 = X[1*w + k];
-        const real t_y = X_1;
-        s[0*w + k] = t_x;
-        s[1*w + k] = t_y;
-    }
 }
 
-INLINE void M_legs_rpr(const prepared *m, size_t w, size_t leg, size_t legs, const real *s, size_t
-    states, size_t count, int add, real *terms, real *o)
+INLINE void M_legs_rpr(const prepared *m, size_t w, size_t leg, size_t legs, size_t states, size_t
+    count, int add, const real *X, real *terms, real *o)
 {
     for (size_t k = 0; k < count; ++k) {
         const size_t i = leg + legs*k;
         const size_t j = states*k;
-        /* (rpr-S) from the base point to the connection point */
-        const real rpr_base_point_x = m->rpr_base_point_x[i];
-        const real rpr_platform_point_x = m->rpr_platform_point_x[i];
-        const real t_x = s[0*w + j];
-        const real rpr_S_x = rpr_platform_point_x + t_x - rpr_base_point_x;
-        const real rpr_base_point_y = m->rpr_base_point_y[i];
-        const real rpr_platform_point_y = m->rpr_platform_point_y[i];
-        const real t_y = s[1*w + j];
-        const real rpr_S_y = rpr_platform_point_y + t_y - rpr_base_point_y;
-        /* (rpr-px_1) component along the reference direction */
-        const real rpr_base_frame_xx = m->rpr_base_frame_xx[i];
-        const real rpr_base_frame_yx = m->rpr_base_frame_yx[i];
-        const real rpr_px_1 = rpr_S_x*rpr_base_frame_xx + rpr_S_y*rpr_base_frame_yx;
-        /* (rpr-py_1) component across the reference direction */
-        const real rpr_base_frame_xy = m->rpr_base_frame_xy[i];
-        const real rpr_base_frame_yy = m->rpr_base_frame_yy[i];
-        const real rpr_py_1 = rpr_S_x*rpr_base_frame_xy + rpr_S_y*rpr_base_frame_yy;
-        /* (rpr-rho2_1) squared amplitude */
-        const real rpr_rho2_1 = rpr_px_1*rpr_px_1 + rpr_py_1*rpr_py_1;
-        /* (rpr-root_1) amplitude, with the sign of the branch */
-        const real rpr_branch_1 = m->rpr_branch_1[i];
-        const real rpr_root_1 = rpr_branch_1*root(rpr_rho2_1);
-        /* (rpr-w_1) reciprocal vector 1 */
-        const real rpr_w_1_in_axes1_y = 1/rpr_root_1;
-        /* (rpr-w_2) reciprocal vector 2 */
-        const real rpr_w_2_x = rpr_S_x*rpr_w_1_in_axes1_y;
-        const real rpr_w_2_y = rpr_S_y*rpr_w_1_in_axes1_y;
+        values_rpr v;
+        stage_rpr_X(m, w, i, j, X, &v);
         /* (rpr-d_c) coefficient of the acceleration in: leg force on the platform without actuation and
            without the mass at the connection point */
         const real rpr_h_2_in_spec1_y = m->rpr_h_2_in_spec1_y[i];
-        const real rpr_d_c_in_axes1_xy = rpr_h_2_in_spec1_y*rpr_w_1_in_axes1_y;
+        const real rpr_d_c_in_axes1_xy = rpr_h_2_in_spec1_y*v.rpr_w_1_in_axes1_y;
         const real rpr_J_group_1_in_axes1_zz = m->rpr_J_group_1_in_axes1_zz[i];
         const real rpr_h_2_in_spec1_x = m->rpr_h_2_in_spec1_x[i];
-        const real rpr_d_c_in_axes1_yy = -rpr_h_2_in_spec1_x*rpr_w_1_in_axes1_y -
-            rpr_w_1_in_axes1_y*(rpr_h_2_in_spec1_x +
-            rpr_J_group_1_in_axes1_zz*rpr_w_1_in_axes1_y);
+        const real rpr_d_c_in_axes1_yy = -rpr_h_2_in_spec1_x*v.rpr_w_1_in_axes1_y -
+            v.rpr_w_1_in_axes1_y*(rpr_h_2_in_spec1_x +
+            rpr_J_group_1_in_axes1_zz*v.rpr_w_1_in_axes1_y);
         /* (rpr-Q) inertia of the leg at the connection point, without the mass gathered there */
         const real rpr_Q_t = R(0.5)*rpr_d_c_in_axes1_yy;
-        const real rpr_Q_t_2 = rpr_Q_t*rpr_w_2_y - rpr_d_c_in_axes1_xy*rpr_w_2_x;
-        const real rpr_Q_t_3 = rpr_Q_t*rpr_w_2_x + rpr_d_c_in_axes1_xy*rpr_w_2_y;
-        const real rpr_Q_xx = -2*rpr_Q_t_2*rpr_w_2_y;
-        const real rpr_Q_xy = rpr_Q_t_2*rpr_w_2_x + rpr_Q_t_3*rpr_w_2_y;
-        const real rpr_Q_yy = -2*rpr_Q_t_3*rpr_w_2_x;
+        const real rpr_Q_t_2 = rpr_Q_t*v.rpr_w_2_y - rpr_d_c_in_axes1_xy*v.rpr_w_2_x;
+        const real rpr_Q_t_3 = rpr_Q_t*v.rpr_w_2_x + rpr_d_c_in_axes1_xy*v.rpr_w_2_y;
+        const real rpr_Q_xx = -2*rpr_Q_t_2*v.rpr_w_2_y;
+        const real rpr_Q_xy = rpr_Q_t_2*v.rpr_w_2_x + rpr_Q_t_3*v.rpr_w_2_y;
+        const real rpr_Q_yy = -2*rpr_Q_t_3*v.rpr_w_2_x;
         /* (M_tt) translational block of M */
         gather(&terms[0*count + k], add, rpr_Q_xx);  /* M_tt_xx_of_legs */
         gather(&terms[1*count + k], add, rpr_Q_xy);  /* M_tt_xy */
         gather(&terms[2*count + k], add, rpr_Q_yy);  /* M_tt_yy_of_legs */
-        o[0*count + k] = UNLESS(magnitude(rpr_rho2_1) > LEAST_1) + UNLESS(magnitude(rpr_root_1) >
+        o[0*count + k] = UNLESS(magnitude(v.rpr_q_2_t) > LEAST_1) + UNLESS(magnitude(v.rpr_q_2) >
             LEAST_2);
     }
 }
@@ -1266,9 +1326,9 @@ INLINE void M_after(const prepared *m, size_t w, const real *sums, real *M, verd
         const real M_tt_yy_of_legs = sums[2*w + k];
         const real M_tt_yy = M_tt_yy_of_legs + m_star;
         /* (M_tt) translational block of M */
-        M[0*NV*w + k] = M_tt_xx;
+        M[0*w + k] = M_tt_xx;
         const real M_tt_xy = sums[1*w + k];
-        M[(0*NV + 1)*w + k] = M_tt_xy;
+        M[1*w + k] = M_tt_xy;
         M[NV*w + k] = M_tt_xy;
         M[(NV + 1)*w + k] = M_tt_yy;
         t->total[k] += M_tt_xx + (M_tt_xy + M_tt_yy);
@@ -1277,12 +1337,10 @@ INLINE void M_after(const prepared *m, size_t w, const real *sums, real *M, verd
 
 INLINE void M_run(const prepared *m, const real *X, real *M, verdict *t)
 {
-    real s[2] = {0};
     real sums[3] = {0};
-    real terms_rpr[3*LEGS(LEGS_OF_rpr)] = {0};
-    real o_rpr[LEGS(LEGS_OF_rpr)] = {0};
-    M_before(1, X, s);
-    M_legs_rpr(m, 1, 0, 1, s, 0, LEGS(LEGS_OF_rpr), 0, terms_rpr, o_rpr);
+    real terms_rpr[3*LEGS(LEGS_OF_rpr)] = {0}, o_rpr[LEGS(LEGS_OF_rpr)] = {0};
+    M_before();
+    M_legs_rpr(m, 1, 0, 1, 0, LEGS(LEGS_OF_rpr), 0, X, terms_rpr, o_rpr);
     for (size_t leg = 0; leg < LEGS_OF_rpr; ++leg) {
         M_place_rpr(1, LEGS(LEGS_OF_rpr), o_rpr, leg, t);
     }
@@ -1294,113 +1352,36 @@ INLINE void M_run(const prepared *m, const real *X, real *M, verdict *t)
 
 INLINE void M_run_lanes(const prepared *m, const real *X, real *M, verdict *t)
 {
-    real s[2*LANES];
     real sums[3*LANES];
     real o_rpr[LANES];
-    M_before(LANES, X, s);
+    M_before();
     clear(sums, 3*LANES);
     for (size_t leg = 0; leg < LEGS_OF_rpr; ++leg) {
-        M_legs_rpr(m, LANES, leg, 0, s, 1, LANES, 1, sums, o_rpr);
+        M_legs_rpr(m, LANES, leg, 0, 1, LANES, 1, X, sums, o_rpr);
         M_place_rpr(LANES, LANES, o_rpr, 0, t);
     }
     M_after(m, LANES, sums, M, t);
 }
 
 /* ---- Z ---- */
-INLINE void Z_before(size_t w, const real *X, const real *V, real *s)
+INLINE void Z_before()
 {
-    for (size_t k = 0; k < w; ++k) {
-        /* X: named entries */
-        const real X_0 = X[0*w + k];
-        const real t_x = X_0;
-        const real X_1 = X[1*w + k];
-        const real t_y = X_1;
-        /* V: named entries */
-        const real V_0 = V[0*w + k];
-        const real t_dot_x = V_0;
-        const real V_1 = V[1*w + k];
-        const real t_dot_y = V_1;
-        s[0*w + k] = t_x;
-        s[1*w + k] = t_y;
-        s[2*w + k] = t_dot_x;
-        s[3*w + k] = t_dot_y;
-    }
 }
 
-INLINE void Z_legs_rpr(const prepared *m, size_t w, size_t leg, size_t legs, const real *s, size_t
-    states, size_t count, int add, real *terms, real *o)
+INLINE void Z_legs_rpr(const prepared *m, size_t w, size_t leg, size_t legs, size_t states, size_t
+    count, int add, const real *X, const real *V, real *terms, real *o)
 {
     for (size_t k = 0; k < count; ++k) {
         const size_t i = leg + legs*k;
         const size_t j = states*k;
-        /* (rpr-S) from the base point to the connection point */
-        const real rpr_base_point_x = m->rpr_base_point_x[i];
-        const real rpr_platform_point_x = m->rpr_platform_point_x[i];
-        const real t_x = s[0*w + j];
-        const real rpr_S_x = rpr_platform_point_x + t_x - rpr_base_point_x;
-        const real rpr_base_point_y = m->rpr_base_point_y[i];
-        const real rpr_platform_point_y = m->rpr_platform_point_y[i];
-        const real t_y = s[1*w + j];
-        const real rpr_S_y = rpr_platform_point_y + t_y - rpr_base_point_y;
-        /* (rpr-px_1) component along the reference direction */
-        const real rpr_base_frame_xx = m->rpr_base_frame_xx[i];
-        const real rpr_base_frame_yx = m->rpr_base_frame_yx[i];
-        const real rpr_px_1 = rpr_S_x*rpr_base_frame_xx + rpr_S_y*rpr_base_frame_yx;
-        /* (rpr-py_1) component across the reference direction */
-        const real rpr_base_frame_xy = m->rpr_base_frame_xy[i];
-        const real rpr_base_frame_yy = m->rpr_base_frame_yy[i];
-        const real rpr_py_1 = rpr_S_x*rpr_base_frame_xy + rpr_S_y*rpr_base_frame_yy;
-        /* (rpr-rho2_1) squared amplitude */
-        const real rpr_rho2_1 = rpr_px_1*rpr_px_1 + rpr_py_1*rpr_py_1;
-        /* (rpr-root_1) amplitude, with the sign of the branch */
-        const real rpr_branch_1 = m->rpr_branch_1[i];
-        const real rpr_root_1 = rpr_branch_1*root(rpr_rho2_1);
-        /* (rpr-S_dot) velocity of the connection point */
-        const real inv_rpr_root_1 = 1/rpr_root_1;
-        const real axis_x_rpr_axes1_x = inv_rpr_root_1*rpr_S_x;
-        const real axis_x_rpr_axes1_y = inv_rpr_root_1*rpr_S_y;
-        const real t_dot_x = s[2*w + j];
-        const real t_dot_y = s[3*w + j];
-        const real rpr_S_dot_in_axes1_x = axis_x_rpr_axes1_x*t_dot_x + axis_x_rpr_axes1_y*t_dot_y;
-        /* (rpr-qd_1) rate of joint 1 */
-        const real rpr_qd_1 = inv_rpr_root_1*(axis_x_rpr_axes1_x*t_dot_y -
-            axis_x_rpr_axes1_y*t_dot_x);
-        /* (rpr-W_1) centripetal tensor of link 1 */
-        const real rpr_W_1_t = rpr_qd_1*rpr_qd_1;
-        /* (rpr-B_1_o) remainder of the acceleration tensor of link 1 */
-        const real rpr_B_1_o_in_axes1_xy = 2*inv_rpr_root_1*rpr_S_dot_in_axes1_x*rpr_qd_1;
-        /* (rpr-phi_2_o) remainder without the acceleration in: inertia force of link 2 from its turning
-           about its reference point */
-        const real rpr_h_2_in_spec1_x = m->rpr_h_2_in_spec1_x[i];
-        const real rpr_h_2_in_spec1_y = m->rpr_h_2_in_spec1_y[i];
-        const real rpr_phi_2_o_in_axes1_x = rpr_B_1_o_in_axes1_xy*rpr_h_2_in_spec1_y -
-            rpr_W_1_t*rpr_h_2_in_spec1_x;
-        /* (rpr-mu_1_o) remainder without the acceleration in: inertia moment of the links that turn with
-           link 1, about their reference points */
-        const real gravity_x = m->gravity_x;
-        const real gravity_y = m->gravity_y;
-        const real rpr_Sigma_1_in_axes1_xx = m->rpr_Sigma_1_in_axes1_xx[i];
-        const real rpr_Sigma_1_in_axes1_yy = m->rpr_Sigma_1_in_axes1_yy[i];
-        const real rpr_h_group_1_in_axes1_x = m->rpr_h_group_1_in_axes1_x[i];
-        const real rpr_h_group_1_in_axes1_y = m->rpr_h_group_1_in_axes1_y[i];
-        const real rpr_mu_1_o_in_axes1_z = rpr_h_group_1_in_axes1_y*(axis_x_rpr_axes1_x*gravity_x
-            + axis_x_rpr_axes1_y*gravity_y) - rpr_B_1_o_in_axes1_xy*rpr_Sigma_1_in_axes1_xx -
-            rpr_B_1_o_in_axes1_xy*rpr_Sigma_1_in_axes1_yy -
-            rpr_h_group_1_in_axes1_x*(axis_x_rpr_axes1_x*gravity_y -
-            axis_x_rpr_axes1_y*gravity_x);
-        /* (rpr-c_o) remainder without the acceleration in: leg force on the platform without actuation
-           and without the mass at the connection point */
-        const real rpr_c_o_in_axes1_y = rpr_B_1_o_in_axes1_xy*rpr_h_2_in_spec1_x +
-            rpr_W_1_t*rpr_h_2_in_spec1_y - inv_rpr_root_1*rpr_mu_1_o_in_axes1_z;
-        /* (rpr-U) velocity and gravity terms of the leg force */
-        const real rpr_U_x = axis_x_rpr_axes1_x*rpr_phi_2_o_in_axes1_x +
-            axis_x_rpr_axes1_y*rpr_c_o_in_axes1_y;
-        const real rpr_U_y = axis_x_rpr_axes1_y*rpr_phi_2_o_in_axes1_x -
-            axis_x_rpr_axes1_x*rpr_c_o_in_axes1_y;
+        values_rpr v;
+        stage_rpr_X(m, w, i, j, X, &v);
+        stage_rpr_V_X(w, j, V, &v);
+        stage_rpr_Z_dynamics(m, i, &v);
         /* (Z_t) translational part of Z */
-        gather(&terms[0*count + k], add, rpr_U_x);  /* Z_t_x_of_legs */
-        gather(&terms[1*count + k], add, rpr_U_y);  /* Z_t_y_of_legs */
-        o[0*count + k] = UNLESS(magnitude(rpr_rho2_1) > LEAST_1) + UNLESS(magnitude(rpr_root_1) >
+        gather(&terms[0*count + k], add, v.rpr_U_x);  /* Z_t_x_of_legs */
+        gather(&terms[1*count + k], add, v.rpr_U_y);  /* Z_t_y_of_legs */
+        o[0*count + k] = UNLESS(magnitude(v.rpr_q_2_t) > LEAST_1) + UNLESS(magnitude(v.rpr_q_2) >
             LEAST_2);
     }
 }
@@ -1431,12 +1412,10 @@ INLINE void Z_after(const prepared *m, size_t w, const real *sums, real *Z, verd
 
 INLINE void Z_run(const prepared *m, const real *X, const real *V, real *Z, verdict *t)
 {
-    real s[4] = {0};
     real sums[2] = {0};
-    real terms_rpr[2*LEGS(LEGS_OF_rpr)] = {0};
-    real o_rpr[LEGS(LEGS_OF_rpr)] = {0};
-    Z_before(1, X, V, s);
-    Z_legs_rpr(m, 1, 0, 1, s, 0, LEGS(LEGS_OF_rpr), 0, terms_rpr, o_rpr);
+    real terms_rpr[2*LEGS(LEGS_OF_rpr)] = {0}, o_rpr[LEGS(LEGS_OF_rpr)] = {0};
+    Z_before();
+    Z_legs_rpr(m, 1, 0, 1, 0, LEGS(LEGS_OF_rpr), 0, X, V, terms_rpr, o_rpr);
     for (size_t leg = 0; leg < LEGS_OF_rpr; ++leg) {
         Z_place_rpr(1, LEGS(LEGS_OF_rpr), o_rpr, leg, t);
     }
@@ -1448,70 +1427,35 @@ INLINE void Z_run(const prepared *m, const real *X, const real *V, real *Z, verd
 
 INLINE void Z_run_lanes(const prepared *m, const real *X, const real *V, real *Z, verdict *t)
 {
-    real s[4*LANES];
     real sums[2*LANES];
     real o_rpr[LANES];
-    Z_before(LANES, X, V, s);
+    Z_before();
     clear(sums, 2*LANES);
     for (size_t leg = 0; leg < LEGS_OF_rpr; ++leg) {
-        Z_legs_rpr(m, LANES, leg, 0, s, 1, LANES, 1, sums, o_rpr);
+        Z_legs_rpr(m, LANES, leg, 0, 1, LANES, 1, X, V, sums, o_rpr);
         Z_place_rpr(LANES, LANES, o_rpr, 0, t);
     }
     Z_after(m, LANES, sums, Z, t);
 }
 
 /* ---- H ---- */
-INLINE void H_before(size_t w, const real *X, real *s)
+INLINE void H_before()
 {
-    for (size_t k = 0; k < w; ++k) {
-        /* X: named entries */
-        const real X_0 = X[0*w + k];
-        const real t_x = X_0;
-        const real X_1 = X[1*w + k];
-        const real t_y = X_1;
-        s[0*w + k] = t_x;
-        s[1*w + k] = t_y;
-    }
 }
 
-INLINE void H_legs_rpr(const prepared *m, size_t w, size_t leg, size_t legs, const real *s, size_t
-    states, size_t count, real *o)
+INLINE void H_legs_rpr(const prepared *m, size_t w, size_t leg, size_t legs, size_t states, size_t
+    count, const real *X, real *o)
 {
     for (size_t k = 0; k < count; ++k) {
         const size_t i = leg + legs*k;
         const size_t j = states*k;
-        /* (rpr-S) from the base point to the connection point */
-        const real rpr_base_point_x = m->rpr_base_point_x[i];
-        const real rpr_platform_point_x = m->rpr_platform_point_x[i];
-        const real t_x = s[0*w + j];
-        const real rpr_S_x = rpr_platform_point_x + t_x - rpr_base_point_x;
-        const real rpr_base_point_y = m->rpr_base_point_y[i];
-        const real rpr_platform_point_y = m->rpr_platform_point_y[i];
-        const real t_y = s[1*w + j];
-        const real rpr_S_y = rpr_platform_point_y + t_y - rpr_base_point_y;
-        /* (rpr-px_1) component along the reference direction */
-        const real rpr_base_frame_xx = m->rpr_base_frame_xx[i];
-        const real rpr_base_frame_yx = m->rpr_base_frame_yx[i];
-        const real rpr_px_1 = rpr_S_x*rpr_base_frame_xx + rpr_S_y*rpr_base_frame_yx;
-        /* (rpr-py_1) component across the reference direction */
-        const real rpr_base_frame_xy = m->rpr_base_frame_xy[i];
-        const real rpr_base_frame_yy = m->rpr_base_frame_yy[i];
-        const real rpr_py_1 = rpr_S_x*rpr_base_frame_xy + rpr_S_y*rpr_base_frame_yy;
-        /* (rpr-rho2_1) squared amplitude */
-        const real rpr_rho2_1 = rpr_px_1*rpr_px_1 + rpr_py_1*rpr_py_1;
-        /* (rpr-root_1) amplitude, with the sign of the branch */
-        const real rpr_branch_1 = m->rpr_branch_1[i];
-        const real rpr_root_1 = rpr_branch_1*root(rpr_rho2_1);
-        /* (rpr-w_1) reciprocal vector 1 */
-        const real rpr_w_1_in_axes1_y = 1/rpr_root_1;
+        values_rpr v;
+        stage_rpr_X(m, w, i, j, X, &v);
         /* (rpr-w_2) reciprocal vector 2 */
-        const real rpr_w_2_x = rpr_S_x*rpr_w_1_in_axes1_y;
-        const real rpr_w_2_y = rpr_S_y*rpr_w_1_in_axes1_y;
-        /* (rpr-w_2) reciprocal vector 2 */
-        o[0*count + k] = rpr_w_2_x;
-        o[1*count + k] = rpr_w_2_y;
-        o[3*count + k] = rpr_w_2_x + rpr_w_2_y;
-        o[2*count + k] = UNLESS(magnitude(rpr_rho2_1) > LEAST_1) + UNLESS(magnitude(rpr_root_1) >
+        o[0*count + k] = v.rpr_w_2_x;
+        o[1*count + k] = v.rpr_w_2_y;
+        o[3*count + k] = v.rpr_w_2_x + v.rpr_w_2_y;
+        o[2*count + k] = UNLESS(magnitude(v.rpr_q_2_t) > LEAST_1) + UNLESS(magnitude(v.rpr_q_2) >
             LEAST_2);
     }
 }
@@ -1520,7 +1464,7 @@ INLINE void H_place_rpr(size_t w, size_t count, const real *o, size_t leg, size_
     verdict *t)
 {
     for (size_t k = 0; k < w; ++k) {
-        H[(0*NU + leg)*w + k] = o[0*count + first + k];
+        H[leg*w + k] = o[0*count + first + k];
         H[(NU + leg)*w + k] = o[1*count + first + k];
         t->singular[k] += o[2*count + first + k];
         t->total[k] += o[3*count + first + k];
@@ -1529,10 +1473,9 @@ INLINE void H_place_rpr(size_t w, size_t count, const real *o, size_t leg, size_
 
 INLINE void H_run(const prepared *m, const real *X, real *H, verdict *t)
 {
-    real s[2] = {0};
     real o_rpr[4*LEGS(LEGS_OF_rpr)] = {0};
-    H_before(1, X, s);
-    H_legs_rpr(m, 1, 0, 1, s, 0, LEGS(LEGS_OF_rpr), o_rpr);
+    H_before();
+    H_legs_rpr(m, 1, 0, 1, 0, LEGS(LEGS_OF_rpr), X, o_rpr);
     for (size_t leg = 0; leg < LEGS_OF_rpr; ++leg) {
         H_place_rpr(1, LEGS(LEGS_OF_rpr), o_rpr, leg, leg, H, t);
     }
@@ -1540,143 +1483,62 @@ INLINE void H_run(const prepared *m, const real *X, real *H, verdict *t)
 
 INLINE void H_run_lanes(const prepared *m, const real *X, real *H, verdict *t)
 {
-    real s[2*LANES];
     real o_rpr[4*LANES];
-    H_before(LANES, X, s);
+    H_before();
     for (size_t leg = 0; leg < LEGS_OF_rpr; ++leg) {
-        H_legs_rpr(m, LANES, leg, 0, s, 1, LANES, o_rpr);
+        H_legs_rpr(m, LANES, leg, 0, 1, LANES, X, o_rpr);
         H_place_rpr(LANES, LANES, o_rpr, leg, 0, H, t);
     }
 }
 
 /* ---- required ---- */
-INLINE void required_before(const prepared *m, size_t w, const real *X, const real *V, const real
-    *A, real *s)
+INLINE void required_before(const prepared *m, size_t w, const real *A, real *s)
 {
     for (size_t k = 0; k < w; ++k) {
-        /* X: named entries */
-        const real X_0 = X[0*w + k];
-        const real t_x = X_0;
-        const real X_1 = X[1*w + k];
-        const real t_y = X_1;
-        /* V: named entries */
-        const real V_0 = V[0*w + k];
-        const real t_dot_x = V_0;
-        const real V_1 = V[1*w + k];
-        const real t_dot_y = V_1;
-        /* A: named entries */
-        const real A_0 = A[0*w + k];
-        const real t_ddot_x = A_0;
-        const real A_1 = A[1*w + k];
-        const real t_ddot_y = A_1;
         /* (a_t) acceleration of the platform origin, less gravity */
         const real gravity_x = m->gravity_x;
+        const real t_ddot_x = A[0*w + k];
         const real a_t_x = t_ddot_x - gravity_x;
         const real gravity_y = m->gravity_y;
+        const real t_ddot_y = A[1*w + k];
         const real a_t_y = t_ddot_y - gravity_y;
         /* (f_p) inertia force of the platform less its weight */
         const real m_star = m->m_star;
         const real f_p_x = a_t_x*m_star;
         const real f_p_y = a_t_y*m_star;
-        s[0*w + k] = t_x;
-        s[1*w + k] = t_y;
-        s[2*w + k] = t_dot_x;
-        s[3*w + k] = t_dot_y;
-        s[4*w + k] = t_ddot_x;
-        s[5*w + k] = t_ddot_y;
-        s[6*w + k] = f_p_x;
-        s[7*w + k] = f_p_y;
+        s[0*w + k] = f_p_x;
+        s[1*w + k] = f_p_y;
     }
 }
 
-INLINE void required_legs_rpr(const prepared *m, size_t w, size_t leg, size_t legs, const real *s,
-    size_t states, size_t count, int add, real *terms, real *o)
+INLINE void required_legs_rpr(const prepared *m, size_t w, size_t leg, size_t legs, size_t states,
+    size_t count, int add, const real *X, const real *V, const real *A, real *terms, real *o)
 {
     for (size_t k = 0; k < count; ++k) {
         const size_t i = leg + legs*k;
         const size_t j = states*k;
-        /* (rpr-S) from the base point to the connection point */
-        const real rpr_base_point_x = m->rpr_base_point_x[i];
-        const real rpr_platform_point_x = m->rpr_platform_point_x[i];
-        const real t_x = s[0*w + j];
-        const real rpr_S_x = rpr_platform_point_x + t_x - rpr_base_point_x;
-        const real rpr_base_point_y = m->rpr_base_point_y[i];
-        const real rpr_platform_point_y = m->rpr_platform_point_y[i];
-        const real t_y = s[1*w + j];
-        const real rpr_S_y = rpr_platform_point_y + t_y - rpr_base_point_y;
-        /* (rpr-px_1) component along the reference direction */
-        const real rpr_base_frame_xx = m->rpr_base_frame_xx[i];
-        const real rpr_base_frame_yx = m->rpr_base_frame_yx[i];
-        const real rpr_px_1 = rpr_S_x*rpr_base_frame_xx + rpr_S_y*rpr_base_frame_yx;
-        /* (rpr-py_1) component across the reference direction */
-        const real rpr_base_frame_xy = m->rpr_base_frame_xy[i];
-        const real rpr_base_frame_yy = m->rpr_base_frame_yy[i];
-        const real rpr_py_1 = rpr_S_x*rpr_base_frame_xy + rpr_S_y*rpr_base_frame_yy;
-        /* (rpr-rho2_1) squared amplitude */
-        const real rpr_rho2_1 = rpr_px_1*rpr_px_1 + rpr_py_1*rpr_py_1;
-        /* (rpr-root_1) amplitude, with the sign of the branch */
-        const real rpr_branch_1 = m->rpr_branch_1[i];
-        const real rpr_root_1 = rpr_branch_1*root(rpr_rho2_1);
-        /* (rpr-c_1) cosine of the angle of joint 1 from its reference direction */
-        const real inv_rpr_root_1 = 1/rpr_root_1;
-        const real rpr_c_1 = inv_rpr_root_1*rpr_px_1;
-        /* (rpr-s_1) sine of the angle of joint 1 from its reference direction */
-        const real rpr_s_1 = inv_rpr_root_1*rpr_py_1;
-        /* (rpr-S_dot) velocity of the connection point */
-        const real axis_x_rpr_axes1_x = inv_rpr_root_1*rpr_S_x;
-        const real axis_x_rpr_axes1_y = inv_rpr_root_1*rpr_S_y;
-        const real t_dot_x = s[2*w + j];
-        const real t_dot_y = s[3*w + j];
-        const real rpr_S_dot_in_axes1_x = axis_x_rpr_axes1_x*t_dot_x + axis_x_rpr_axes1_y*t_dot_y;
-        /* (rpr-qd_1) rate of joint 1 */
-        const real rpr_qd_1 = inv_rpr_root_1*(axis_x_rpr_axes1_x*t_dot_y -
-            axis_x_rpr_axes1_y*t_dot_x);
-        /* (rpr-W_1) centripetal tensor of link 1 */
-        const real rpr_W_1_t = rpr_qd_1*rpr_qd_1;
-        /* (rpr-S_ddot) acceleration of the connection point */
-        const real t_ddot_x = s[4*w + j];
-        const real t_ddot_y = s[5*w + j];
-        const real rpr_S_ddot_in_axes1_y = axis_x_rpr_axes1_x*t_ddot_y -
-            axis_x_rpr_axes1_y*t_ddot_x;
-        /* (rpr-rel) acceleration of the connection point left to the joint accelerations */
-        const real rpr_rel_in_axes1_y = rpr_S_ddot_in_axes1_y - 2*rpr_S_dot_in_axes1_x*rpr_qd_1;
-        /* (rpr-qdd_1) acceleration of joint 1 */
-        const real rpr_qdd_1 = inv_rpr_root_1*rpr_rel_in_axes1_y;
-        /* (rpr-acc_2) acceleration of the reference point of link 2, less gravity */
-        const real rpr_acc_2_t = m->rpr_acc_2_t[i];
-        const real rpr_acc_2_t_2 = m->rpr_acc_2_t_2[i];
-        const real rpr_g_in_axes1_x = rpr_acc_2_t*rpr_c_1 + rpr_acc_2_t_2*rpr_s_1;
-        const real rpr_g_in_axes1_y = rpr_acc_2_t_2*rpr_c_1 - rpr_acc_2_t*rpr_s_1;
-        const real rpr_acc_2_in_axes1_x = axis_x_rpr_axes1_x*t_ddot_x +
-            axis_x_rpr_axes1_y*t_ddot_y - rpr_g_in_axes1_x;
-        const real rpr_acc_2_in_axes1_y = rpr_S_ddot_in_axes1_y - rpr_g_in_axes1_y;
+        values_rpr v;
+        stage_rpr_X(m, w, i, j, X, &v);
+        stage_rpr_V_X(w, j, V, &v);
+        stage_rpr_legs_required(m, w, i, j, A, &v);
         /* (rpr-phi_2) inertia force of link 2 from its turning about its reference point */
         const real rpr_h_2_in_spec1_x = m->rpr_h_2_in_spec1_x[i];
         const real rpr_h_2_in_spec1_y = m->rpr_h_2_in_spec1_y[i];
-        const real rpr_phi_2_in_axes1_x = -rpr_W_1_t*rpr_h_2_in_spec1_x -
-            rpr_h_2_in_spec1_y*rpr_qdd_1;
-        /* (rpr-mu_1) inertia moment of the links that turn with link 1, about their reference points */
-        const real rpr_J_group_1_in_axes1_zz = m->rpr_J_group_1_in_axes1_zz[i];
-        const real rpr_h_1_in_spec1_x = m->rpr_h_1_in_spec1_x[i];
-        const real rpr_h_1_in_spec1_y = m->rpr_h_1_in_spec1_y[i];
-        const real rpr_mu_1_in_axes1_z = rpr_J_group_1_in_axes1_zz*rpr_qdd_1 +
-            rpr_acc_2_in_axes1_y*rpr_h_2_in_spec1_x + rpr_g_in_axes1_x*rpr_h_1_in_spec1_y -
-            rpr_acc_2_in_axes1_x*rpr_h_2_in_spec1_y - rpr_g_in_axes1_y*rpr_h_1_in_spec1_x;
+        const real rpr_phi_2_in_axes1_x = -v.rpr_W_1_t*rpr_h_2_in_spec1_x -
+            rpr_h_2_in_spec1_y*v.rpr_qdd_1;
         /* (rpr-c) leg force on the platform without actuation and without the mass at the connection
            point */
-        const real rpr_c_in_axes1_y = rpr_W_1_t*rpr_h_2_in_spec1_y -
-            inv_rpr_root_1*rpr_mu_1_in_axes1_z - rpr_h_2_in_spec1_x*rpr_qdd_1;
-        const real rpr_c_x = -axis_x_rpr_axes1_x*rpr_phi_2_in_axes1_x -
-            axis_x_rpr_axes1_y*rpr_c_in_axes1_y;
-        const real rpr_c_y = axis_x_rpr_axes1_x*rpr_c_in_axes1_y -
-            axis_x_rpr_axes1_y*rpr_phi_2_in_axes1_x;
+        const real rpr_c_x = -v.axis_x_rpr_axes1_x*rpr_phi_2_in_axes1_x -
+            v.axis_x_rpr_axes1_y*v.rpr_c_in_axes1_y;
+        const real rpr_c_y = v.axis_x_rpr_axes1_x*v.rpr_c_in_axes1_y -
+            v.axis_x_rpr_axes1_y*rpr_phi_2_in_axes1_x;
         /* (R_t) force that actuators and external wrench must give */
         gather(&terms[0*count + k], add, rpr_c_x);  /* R_t_x_of_legs */
         gather(&terms[1*count + k], add, rpr_c_y);  /* R_t_y_of_legs */
         /* (rpr-w_2) reciprocal vector 2 */
-        o[0*count + k] = axis_x_rpr_axes1_x;
-        o[1*count + k] = axis_x_rpr_axes1_y;
-        o[2*count + k] = UNLESS(magnitude(rpr_rho2_1) > LEAST_1) + UNLESS(magnitude(rpr_root_1) >
+        o[0*count + k] = v.axis_x_rpr_axes1_x;
+        o[1*count + k] = v.axis_x_rpr_axes1_y;
+        o[2*count + k] = UNLESS(magnitude(v.rpr_q_2_t) > LEAST_1) + UNLESS(magnitude(v.rpr_q_2) >
             LEAST_2);
     }
 }
@@ -1685,7 +1547,7 @@ INLINE void required_place_rpr(size_t w, size_t count, const real *o, size_t leg
     real *H, verdict *t)
 {
     for (size_t k = 0; k < w; ++k) {
-        H[(0*NU + leg)*w + k] = o[0*count + first + k];
+        H[leg*w + k] = o[0*count + first + k];
         H[(NU + leg)*w + k] = o[1*count + first + k];
         t->singular[k] += o[2*count + first + k];
     }
@@ -1696,10 +1558,10 @@ INLINE void required_after(size_t w, const real *s, const real *sums, real *requ
     for (size_t k = 0; k < w; ++k) {
         /* (R_t) force that actuators and external wrench must give */
         const real R_t_x_of_legs = sums[0*w + k];
-        const real f_p_x = s[6*w + k];
+        const real f_p_x = s[0*w + k];
         const real R_t_x = f_p_x - R_t_x_of_legs;
         const real R_t_y_of_legs = sums[1*w + k];
-        const real f_p_y = s[7*w + k];
+        const real f_p_y = s[1*w + k];
         const real R_t_y = f_p_y - R_t_y_of_legs;
         /* (R_t) force that actuators and external wrench must give */
         required[0*w + k] = R_t_x;
@@ -1710,12 +1572,10 @@ INLINE void required_after(size_t w, const real *s, const real *sums, real *requ
 INLINE void required_run(const prepared *m, const real *X, const real *V, const real *A, real
     *required, real *H, verdict *t)
 {
-    real s[8] = {0};
-    real sums[2] = {0};
-    real terms_rpr[2*LEGS(LEGS_OF_rpr)] = {0};
-    real o_rpr[3*LEGS(LEGS_OF_rpr)] = {0};
-    required_before(m, 1, X, V, A, s);
-    required_legs_rpr(m, 1, 0, 1, s, 0, LEGS(LEGS_OF_rpr), 0, terms_rpr, o_rpr);
+    real s[2] = {0}, sums[2] = {0};
+    real terms_rpr[2*LEGS(LEGS_OF_rpr)] = {0}, o_rpr[3*LEGS(LEGS_OF_rpr)] = {0};
+    required_before(m, 1, A, s);
+    required_legs_rpr(m, 1, 0, 1, 0, LEGS(LEGS_OF_rpr), 0, X, V, A, terms_rpr, o_rpr);
     for (size_t leg = 0; leg < LEGS_OF_rpr; ++leg) {
         required_place_rpr(1, LEGS(LEGS_OF_rpr), o_rpr, leg, leg, H, t);
     }
@@ -1728,69 +1588,39 @@ INLINE void required_run(const prepared *m, const real *X, const real *V, const 
 INLINE void required_run_lanes(const prepared *m, const real *X, const real *V, const real *A,
     real *required, real *H, verdict *t)
 {
-    real s[8*LANES];
-    real sums[2*LANES];
+    real s[2*LANES], sums[2*LANES];
     real o_rpr[3*LANES];
-    required_before(m, LANES, X, V, A, s);
+    required_before(m, LANES, A, s);
     clear(sums, 2*LANES);
     for (size_t leg = 0; leg < LEGS_OF_rpr; ++leg) {
-        required_legs_rpr(m, LANES, leg, 0, s, 1, LANES, 1, sums, o_rpr);
+        required_legs_rpr(m, LANES, leg, 0, 1, LANES, 1, X, V, A, sums, o_rpr);
         required_place_rpr(LANES, LANES, o_rpr, leg, 0, H, t);
     }
     required_after(LANES, s, sums, required);
 }
 
 /* ---- inverse_kinematics ---- */
-INLINE void inverse_kinematics_before(size_t w, const real *X, real *s)
+INLINE void inverse_kinematics_before()
 {
-    for (size_t k = 0; k < w; ++k) {
-        /* X: named entries */
-        const real X_0 = X[0*w + k];
-        const real t_x = X_0;
-        const real X_1 = X[1*w + k];
-        const real t_y = X_1;
-        s[0*w + k] = t_x;
-        s[1*w + k] = t_y;
-    }
 }
 
 INLINE void inverse_kinematics_legs_rpr(const prepared *m, size_t w, size_t leg, size_t legs,
-    const real *s, size_t states, size_t count, real *o)
+    size_t states, size_t count, const real *X, real *o)
 {
     for (size_t k = 0; k < count; ++k) {
         const size_t i = leg + legs*k;
         const size_t j = states*k;
-        /* (rpr-S) from the base point to the connection point */
-        const real rpr_base_point_x = m->rpr_base_point_x[i];
-        const real rpr_platform_point_x = m->rpr_platform_point_x[i];
-        const real t_x = s[0*w + j];
-        const real rpr_S_x = rpr_platform_point_x + t_x - rpr_base_point_x;
-        const real rpr_base_point_y = m->rpr_base_point_y[i];
-        const real rpr_platform_point_y = m->rpr_platform_point_y[i];
-        const real t_y = s[1*w + j];
-        const real rpr_S_y = rpr_platform_point_y + t_y - rpr_base_point_y;
-        /* (rpr-px_1) component along the reference direction */
-        const real rpr_base_frame_xx = m->rpr_base_frame_xx[i];
-        const real rpr_base_frame_yx = m->rpr_base_frame_yx[i];
-        const real rpr_px_1 = rpr_S_x*rpr_base_frame_xx + rpr_S_y*rpr_base_frame_yx;
-        /* (rpr-py_1) component across the reference direction */
-        const real rpr_base_frame_xy = m->rpr_base_frame_xy[i];
-        const real rpr_base_frame_yy = m->rpr_base_frame_yy[i];
-        const real rpr_py_1 = rpr_S_x*rpr_base_frame_xy + rpr_S_y*rpr_base_frame_yy;
-        /* (rpr-rho2_1) squared amplitude */
-        const real rpr_rho2_1 = rpr_px_1*rpr_px_1 + rpr_py_1*rpr_py_1;
-        /* (rpr-root_1) amplitude, with the sign of the branch */
-        const real rpr_branch_1 = m->rpr_branch_1[i];
-        const real rpr_root_1 = rpr_branch_1*root(rpr_rho2_1);
+        values_rpr v;
+        stage_rpr_X(m, w, i, j, X, &v);
         /* (rpr-q_1) displacement of joint 1 */
-        const real inv_rpr_root_1 = 1/rpr_root_1;
-        const real rpr_q_1 = angle(inv_rpr_root_1*rpr_py_1, inv_rpr_root_1*rpr_px_1);
+        const real rpr_q_1 = angle(v.inv_rpr_q_2*v.rpr_S_in_turn1_y,
+            v.inv_rpr_q_2*v.rpr_S_in_turn1_x);
         /* (rpr-q_1) displacement of joint 1 */
         o[0*count + k] = rpr_q_1;
         /* (rpr-q_2) displacement of joint 2 */
-        o[1*count + k] = rpr_root_1;
-        o[3*count + k] = rpr_q_1 + rpr_root_1;
-        o[2*count + k] = UNLESS(magnitude(rpr_rho2_1) > LEAST_1) + UNLESS(magnitude(rpr_root_1) >
+        o[1*count + k] = v.rpr_q_2;
+        o[3*count + k] = rpr_q_1 + v.rpr_q_2;
+        o[2*count + k] = UNLESS(magnitude(v.rpr_q_2_t) > LEAST_1) + UNLESS(magnitude(v.rpr_q_2) >
             LEAST_2);
     }
 }
@@ -1808,10 +1638,9 @@ INLINE void inverse_kinematics_place_rpr(size_t w, size_t count, const real *o, 
 
 INLINE void inverse_kinematics_run(const prepared *m, const real *X, real *q, verdict *t)
 {
-    real s[2] = {0};
     real o_rpr[4*LEGS(LEGS_OF_rpr)] = {0};
-    inverse_kinematics_before(1, X, s);
-    inverse_kinematics_legs_rpr(m, 1, 0, 1, s, 0, LEGS(LEGS_OF_rpr), o_rpr);
+    inverse_kinematics_before();
+    inverse_kinematics_legs_rpr(m, 1, 0, 1, 0, LEGS(LEGS_OF_rpr), X, o_rpr);
     for (size_t leg = 0; leg < LEGS_OF_rpr; ++leg) {
         inverse_kinematics_place_rpr(1, LEGS(LEGS_OF_rpr), o_rpr, leg, leg, q, t);
     }
@@ -1819,80 +1648,34 @@ INLINE void inverse_kinematics_run(const prepared *m, const real *X, real *q, ve
 
 INLINE void inverse_kinematics_run_lanes(const prepared *m, const real *X, real *q, verdict *t)
 {
-    real s[2*LANES];
     real o_rpr[4*LANES];
-    inverse_kinematics_before(LANES, X, s);
+    inverse_kinematics_before();
     for (size_t leg = 0; leg < LEGS_OF_rpr; ++leg) {
-        inverse_kinematics_legs_rpr(m, LANES, leg, 0, s, 1, LANES, o_rpr);
+        inverse_kinematics_legs_rpr(m, LANES, leg, 0, 1, LANES, X, o_rpr);
         inverse_kinematics_place_rpr(LANES, LANES, o_rpr, leg, 0, q, t);
     }
 }
 
 /* ---- joint_rates ---- */
-INLINE void joint_rates_before(size_t w, const real *X, const real *V, real *s)
+INLINE void joint_rates_before()
 {
-    for (size_t k = 0; k < w; ++k) {
-        /* X: named entries */
-        const real X_0 = X[0*w + k];
-        const real t_x = X_0;
-        const real X_1 = X[1*w + k];
-        const real t_y = X_1;
-        /* V: named entries */
-        const real V_0 = V[0*w + k];
-        const real t_dot_x = V_0;
-        const real V_1 = V[1*w + k];
-        const real t_dot_y = V_1;
-        s[0*w + k] = t_x;
-        s[1*w + k] = t_y;
-        s[2*w + k] = t_dot_x;
-        s[3*w + k] = t_dot_y;
-    }
 }
 
-INLINE void joint_rates_legs_rpr(const prepared *m, size_t w, size_t leg, size_t legs, const real
-    *s, size_t states, size_t count, real *o)
+INLINE void joint_rates_legs_rpr(const prepared *m, size_t w, size_t leg, size_t legs, size_t
+    states, size_t count, const real *X, const real *V, real *o)
 {
     for (size_t k = 0; k < count; ++k) {
         const size_t i = leg + legs*k;
         const size_t j = states*k;
-        /* (rpr-S) from the base point to the connection point */
-        const real rpr_base_point_x = m->rpr_base_point_x[i];
-        const real rpr_platform_point_x = m->rpr_platform_point_x[i];
-        const real t_x = s[0*w + j];
-        const real rpr_S_x = rpr_platform_point_x + t_x - rpr_base_point_x;
-        const real rpr_base_point_y = m->rpr_base_point_y[i];
-        const real rpr_platform_point_y = m->rpr_platform_point_y[i];
-        const real t_y = s[1*w + j];
-        const real rpr_S_y = rpr_platform_point_y + t_y - rpr_base_point_y;
-        /* (rpr-px_1) component along the reference direction */
-        const real rpr_base_frame_xx = m->rpr_base_frame_xx[i];
-        const real rpr_base_frame_yx = m->rpr_base_frame_yx[i];
-        const real rpr_px_1 = rpr_S_x*rpr_base_frame_xx + rpr_S_y*rpr_base_frame_yx;
-        /* (rpr-py_1) component across the reference direction */
-        const real rpr_base_frame_xy = m->rpr_base_frame_xy[i];
-        const real rpr_base_frame_yy = m->rpr_base_frame_yy[i];
-        const real rpr_py_1 = rpr_S_x*rpr_base_frame_xy + rpr_S_y*rpr_base_frame_yy;
-        /* (rpr-rho2_1) squared amplitude */
-        const real rpr_rho2_1 = rpr_px_1*rpr_px_1 + rpr_py_1*rpr_py_1;
-        /* (rpr-root_1) amplitude, with the sign of the branch */
-        const real rpr_branch_1 = m->rpr_branch_1[i];
-        const real rpr_root_1 = rpr_branch_1*root(rpr_rho2_1);
-        /* (rpr-S_dot) velocity of the connection point */
-        const real inv_rpr_root_1 = 1/rpr_root_1;
-        const real axis_x_rpr_axes1_x = inv_rpr_root_1*rpr_S_x;
-        const real axis_x_rpr_axes1_y = inv_rpr_root_1*rpr_S_y;
-        const real t_dot_x = s[2*w + j];
-        const real t_dot_y = s[3*w + j];
-        const real rpr_S_dot_in_axes1_x = axis_x_rpr_axes1_x*t_dot_x + axis_x_rpr_axes1_y*t_dot_y;
+        values_rpr v;
+        stage_rpr_X(m, w, i, j, X, &v);
+        stage_rpr_V_X(w, j, V, &v);
         /* (rpr-qd_1) rate of joint 1 */
-        const real rpr_qd_1 = inv_rpr_root_1*(axis_x_rpr_axes1_x*t_dot_y -
-            axis_x_rpr_axes1_y*t_dot_x);
-        /* (rpr-qd_1) rate of joint 1 */
-        o[0*count + k] = rpr_qd_1;
+        o[0*count + k] = v.rpr_qd_1;
         /* (rpr-qd_2) rate of joint 2 */
-        o[1*count + k] = rpr_S_dot_in_axes1_x;
-        o[3*count + k] = rpr_qd_1 + rpr_S_dot_in_axes1_x;
-        o[2*count + k] = UNLESS(magnitude(rpr_rho2_1) > LEAST_1) + UNLESS(magnitude(rpr_root_1) >
+        o[1*count + k] = v.rpr_S_dot_in_axes1_x;
+        o[3*count + k] = v.rpr_qd_1 + v.rpr_S_dot_in_axes1_x;
+        o[2*count + k] = UNLESS(magnitude(v.rpr_q_2_t) > LEAST_1) + UNLESS(magnitude(v.rpr_q_2) >
             LEAST_2);
     }
 }
@@ -1910,10 +1693,9 @@ INLINE void joint_rates_place_rpr(size_t w, size_t count, const real *o, size_t 
 
 INLINE void joint_rates_run(const prepared *m, const real *X, const real *V, real *qd, verdict *t)
 {
-    real s[4] = {0};
     real o_rpr[4*LEGS(LEGS_OF_rpr)] = {0};
-    joint_rates_before(1, X, V, s);
-    joint_rates_legs_rpr(m, 1, 0, 1, s, 0, LEGS(LEGS_OF_rpr), o_rpr);
+    joint_rates_before();
+    joint_rates_legs_rpr(m, 1, 0, 1, 0, LEGS(LEGS_OF_rpr), X, V, o_rpr);
     for (size_t leg = 0; leg < LEGS_OF_rpr; ++leg) {
         joint_rates_place_rpr(1, LEGS(LEGS_OF_rpr), o_rpr, leg, leg, qd, t);
     }
@@ -1922,97 +1704,43 @@ INLINE void joint_rates_run(const prepared *m, const real *X, const real *V, rea
 INLINE void joint_rates_run_lanes(const prepared *m, const real *X, const real *V, real *qd,
     verdict *t)
 {
-    real s[4*LANES];
     real o_rpr[4*LANES];
-    joint_rates_before(LANES, X, V, s);
+    joint_rates_before();
     for (size_t leg = 0; leg < LEGS_OF_rpr; ++leg) {
-        joint_rates_legs_rpr(m, LANES, leg, 0, s, 1, LANES, o_rpr);
+        joint_rates_legs_rpr(m, LANES, leg, 0, 1, LANES, X, V, o_rpr);
         joint_rates_place_rpr(LANES, LANES, o_rpr, leg, 0, qd, t);
     }
 }
 
 /* ---- joint_accelerations ---- */
-INLINE void joint_accelerations_before(size_t w, const real *X, const real *V, const real *A, real
-    *s)
+INLINE void joint_accelerations_before()
 {
-    for (size_t k = 0; k < w; ++k) {
-        /* X: named entries */
-        const real X_0 = X[0*w + k];
-        const real t_x = X_0;
-        const real X_1 = X[1*w + k];
-        const real t_y = X_1;
-        /* V: named entries */
-        const real V_0 = V[0*w + k];
-        const real t_dot_x = V_0;
-        const real V_1 = V[1*w + k];
-        const real t_dot_y = V_1;
-        /* A: named entries */
-        const real A_0 = A[0*w + k];
-        const real t_ddot_x = A_0;
-        const real A_1 = A[1*w + k];
-        const real t_ddot_y = A_1;
-        s[0*w + k] = t_x;
-        s[1*w + k] = t_y;
-        s[2*w + k] = t_dot_x;
-        s[3*w + k] = t_dot_y;
-        s[4*w + k] = t_ddot_x;
-        s[5*w + k] = t_ddot_y;
-    }
 }
 
 INLINE void joint_accelerations_legs_rpr(const prepared *m, size_t w, size_t leg, size_t legs,
-    const real *s, size_t states, size_t count, real *o)
+    size_t states, size_t count, const real *X, const real *V, const real *A, real *o)
 {
     for (size_t k = 0; k < count; ++k) {
         const size_t i = leg + legs*k;
         const size_t j = states*k;
-        /* (rpr-S) from the base point to the connection point */
-        const real rpr_base_point_x = m->rpr_base_point_x[i];
-        const real rpr_platform_point_x = m->rpr_platform_point_x[i];
-        const real t_x = s[0*w + j];
-        const real rpr_S_x = rpr_platform_point_x + t_x - rpr_base_point_x;
-        const real rpr_base_point_y = m->rpr_base_point_y[i];
-        const real rpr_platform_point_y = m->rpr_platform_point_y[i];
-        const real t_y = s[1*w + j];
-        const real rpr_S_y = rpr_platform_point_y + t_y - rpr_base_point_y;
-        /* (rpr-px_1) component along the reference direction */
-        const real rpr_base_frame_xx = m->rpr_base_frame_xx[i];
-        const real rpr_base_frame_yx = m->rpr_base_frame_yx[i];
-        const real rpr_px_1 = rpr_S_x*rpr_base_frame_xx + rpr_S_y*rpr_base_frame_yx;
-        /* (rpr-py_1) component across the reference direction */
-        const real rpr_base_frame_xy = m->rpr_base_frame_xy[i];
-        const real rpr_base_frame_yy = m->rpr_base_frame_yy[i];
-        const real rpr_py_1 = rpr_S_x*rpr_base_frame_xy + rpr_S_y*rpr_base_frame_yy;
-        /* (rpr-rho2_1) squared amplitude */
-        const real rpr_rho2_1 = rpr_px_1*rpr_px_1 + rpr_py_1*rpr_py_1;
-        /* (rpr-root_1) amplitude, with the sign of the branch */
-        const real rpr_branch_1 = m->rpr_branch_1[i];
-        const real rpr_root_1 = rpr_branch_1*root(rpr_rho2_1);
-        /* (rpr-S_dot) velocity of the connection point */
-        const real inv_rpr_root_1 = 1/rpr_root_1;
-        const real axis_x_rpr_axes1_x = inv_rpr_root_1*rpr_S_x;
-        const real axis_x_rpr_axes1_y = inv_rpr_root_1*rpr_S_y;
-        const real t_dot_x = s[2*w + j];
-        const real t_dot_y = s[3*w + j];
-        const real rpr_S_dot_in_axes1_x = axis_x_rpr_axes1_x*t_dot_x + axis_x_rpr_axes1_y*t_dot_y;
-        /* (rpr-qd_1) rate of joint 1 */
-        const real rpr_qd_1 = inv_rpr_root_1*(axis_x_rpr_axes1_x*t_dot_y -
-            axis_x_rpr_axes1_y*t_dot_x);
+        values_rpr v;
+        stage_rpr_X(m, w, i, j, X, &v);
+        stage_rpr_V_X(w, j, V, &v);
         /* (rpr-rel) acceleration of the connection point left to the joint accelerations */
-        const real t_ddot_x = s[4*w + j];
-        const real t_ddot_y = s[5*w + j];
-        const real rpr_rel_in_axes1_x = axis_x_rpr_axes1_x*t_ddot_x + axis_x_rpr_axes1_y*t_ddot_y
-            + rpr_qd_1*rpr_qd_1*rpr_root_1;
-        const real rpr_rel_in_axes1_y = axis_x_rpr_axes1_x*t_ddot_y - axis_x_rpr_axes1_y*t_ddot_x
-            - 2*rpr_S_dot_in_axes1_x*rpr_qd_1;
+        const real t_ddot_x = A[0*w + j];
+        const real t_ddot_y = A[1*w + j];
+        const real rpr_rel_in_axes1_x = v.axis_x_rpr_axes1_x*t_ddot_x +
+            v.axis_x_rpr_axes1_y*t_ddot_y + v.rpr_q_2*v.rpr_qd_1*v.rpr_qd_1;
+        const real rpr_rel_in_axes1_y = v.axis_x_rpr_axes1_x*t_ddot_y -
+            v.axis_x_rpr_axes1_y*t_ddot_x - 2*v.rpr_S_dot_in_axes1_x*v.rpr_qd_1;
         /* (rpr-qdd_1) acceleration of joint 1 */
-        const real rpr_qdd_1 = inv_rpr_root_1*rpr_rel_in_axes1_y;
+        const real rpr_qdd_1 = v.inv_rpr_q_2*rpr_rel_in_axes1_y;
         /* (rpr-qdd_1) acceleration of joint 1 */
         o[0*count + k] = rpr_qdd_1;
         /* (rpr-qdd_2) acceleration of joint 2 */
         o[1*count + k] = rpr_rel_in_axes1_x;
         o[3*count + k] = rpr_qdd_1 + rpr_rel_in_axes1_x;
-        o[2*count + k] = UNLESS(magnitude(rpr_rho2_1) > LEAST_1) + UNLESS(magnitude(rpr_root_1) >
+        o[2*count + k] = UNLESS(magnitude(v.rpr_q_2_t) > LEAST_1) + UNLESS(magnitude(v.rpr_q_2) >
             LEAST_2);
     }
 }
@@ -2031,10 +1759,9 @@ INLINE void joint_accelerations_place_rpr(size_t w, size_t count, const real *o,
 INLINE void joint_accelerations_run(const prepared *m, const real *X, const real *V, const real
     *A, real *qdd, verdict *t)
 {
-    real s[6] = {0};
     real o_rpr[4*LEGS(LEGS_OF_rpr)] = {0};
-    joint_accelerations_before(1, X, V, A, s);
-    joint_accelerations_legs_rpr(m, 1, 0, 1, s, 0, LEGS(LEGS_OF_rpr), o_rpr);
+    joint_accelerations_before();
+    joint_accelerations_legs_rpr(m, 1, 0, 1, 0, LEGS(LEGS_OF_rpr), X, V, A, o_rpr);
     for (size_t leg = 0; leg < LEGS_OF_rpr; ++leg) {
         joint_accelerations_place_rpr(1, LEGS(LEGS_OF_rpr), o_rpr, leg, leg, qdd, t);
     }
@@ -2043,133 +1770,48 @@ INLINE void joint_accelerations_run(const prepared *m, const real *X, const real
 INLINE void joint_accelerations_run_lanes(const prepared *m, const real *X, const real *V, const
     real *A, real *qdd, verdict *t)
 {
-    real s[6*LANES];
     real o_rpr[4*LANES];
-    joint_accelerations_before(LANES, X, V, A, s);
+    joint_accelerations_before();
     for (size_t leg = 0; leg < LEGS_OF_rpr; ++leg) {
-        joint_accelerations_legs_rpr(m, LANES, leg, 0, s, 1, LANES, o_rpr);
+        joint_accelerations_legs_rpr(m, LANES, leg, 0, 1, LANES, X, V, A, o_rpr);
         joint_accelerations_place_rpr(LANES, LANES, o_rpr, leg, 0, qdd, t);
     }
 }
 
 /* ---- legs ---- */
-INLINE void legs_before(size_t w, const real *X, const real *V, const real *A, real *s)
+INLINE void legs_before()
 {
-    for (size_t k = 0; k < w; ++k) {
-        /* X: named entries */
-        const real X_0 = X[0*w + k];
-        const real t_x = X_0;
-        const real X_1 = X[1*w + k];
-        const real t_y = X_1;
-        /* V: named entries */
-        const real V_0 = V[0*w + k];
-        const real t_dot_x = V_0;
-        const real V_1 = V[1*w + k];
-        const real t_dot_y = V_1;
-        /* A: named entries */
-        const real A_0 = A[0*w + k];
-        const real t_ddot_x = A_0;
-        const real A_1 = A[1*w + k];
-        const real t_ddot_y = A_1;
-        s[0*w + k] = t_x;
-        s[1*w + k] = t_y;
-        s[2*w + k] = t_dot_x;
-        s[3*w + k] = t_dot_y;
-        s[4*w + k] = t_ddot_x;
-        s[5*w + k] = t_ddot_y;
-    }
 }
 
-INLINE void legs_legs_rpr(const prepared *m, size_t w, size_t leg, size_t legs, const real *s,
-    size_t states, size_t count, real *o)
+INLINE void legs_legs_rpr(const prepared *m, size_t w, size_t leg, size_t legs, size_t states,
+    size_t count, const real *X, const real *V, const real *A, real *o)
 {
     for (size_t k = 0; k < count; ++k) {
         const size_t i = leg + legs*k;
         const size_t j = states*k;
-        /* (rpr-S) from the base point to the connection point */
-        const real rpr_base_point_x = m->rpr_base_point_x[i];
-        const real rpr_platform_point_x = m->rpr_platform_point_x[i];
-        const real t_x = s[0*w + j];
-        const real rpr_S_x = rpr_platform_point_x + t_x - rpr_base_point_x;
-        const real rpr_base_point_y = m->rpr_base_point_y[i];
-        const real rpr_platform_point_y = m->rpr_platform_point_y[i];
-        const real t_y = s[1*w + j];
-        const real rpr_S_y = rpr_platform_point_y + t_y - rpr_base_point_y;
-        /* (rpr-px_1) component along the reference direction */
-        const real rpr_base_frame_xx = m->rpr_base_frame_xx[i];
-        const real rpr_base_frame_yx = m->rpr_base_frame_yx[i];
-        const real rpr_px_1 = rpr_S_x*rpr_base_frame_xx + rpr_S_y*rpr_base_frame_yx;
-        /* (rpr-py_1) component across the reference direction */
-        const real rpr_base_frame_xy = m->rpr_base_frame_xy[i];
-        const real rpr_base_frame_yy = m->rpr_base_frame_yy[i];
-        const real rpr_py_1 = rpr_S_x*rpr_base_frame_xy + rpr_S_y*rpr_base_frame_yy;
-        /* (rpr-rho2_1) squared amplitude */
-        const real rpr_rho2_1 = rpr_px_1*rpr_px_1 + rpr_py_1*rpr_py_1;
-        /* (rpr-root_1) amplitude, with the sign of the branch */
-        const real rpr_branch_1 = m->rpr_branch_1[i];
-        const real rpr_root_1 = rpr_branch_1*root(rpr_rho2_1);
-        /* (rpr-c_1) cosine of the angle of joint 1 from its reference direction */
-        const real inv_rpr_root_1 = 1/rpr_root_1;
-        const real rpr_c_1 = inv_rpr_root_1*rpr_px_1;
-        /* (rpr-s_1) sine of the angle of joint 1 from its reference direction */
-        const real rpr_s_1 = inv_rpr_root_1*rpr_py_1;
-        /* (rpr-S_dot) velocity of the connection point */
-        const real axis_x_rpr_axes1_x = inv_rpr_root_1*rpr_S_x;
-        const real axis_x_rpr_axes1_y = inv_rpr_root_1*rpr_S_y;
-        const real t_dot_x = s[2*w + j];
-        const real t_dot_y = s[3*w + j];
-        const real rpr_S_dot_in_axes1_x = axis_x_rpr_axes1_x*t_dot_x + axis_x_rpr_axes1_y*t_dot_y;
-        /* (rpr-qd_1) rate of joint 1 */
-        const real rpr_qd_1 = inv_rpr_root_1*(axis_x_rpr_axes1_x*t_dot_y -
-            axis_x_rpr_axes1_y*t_dot_x);
-        /* (rpr-W_1) centripetal tensor of link 1 */
-        const real rpr_W_1_t = rpr_qd_1*rpr_qd_1;
-        /* (rpr-S_ddot) acceleration of the connection point */
-        const real t_ddot_x = s[4*w + j];
-        const real t_ddot_y = s[5*w + j];
-        const real rpr_S_ddot_in_axes1_y = axis_x_rpr_axes1_x*t_ddot_y -
-            axis_x_rpr_axes1_y*t_ddot_x;
-        /* (rpr-rel) acceleration of the connection point left to the joint accelerations */
-        const real rpr_rel_in_axes1_y = rpr_S_ddot_in_axes1_y - 2*rpr_S_dot_in_axes1_x*rpr_qd_1;
-        /* (rpr-qdd_1) acceleration of joint 1 */
-        const real rpr_qdd_1 = inv_rpr_root_1*rpr_rel_in_axes1_y;
-        /* (rpr-acc_2) acceleration of the reference point of link 2, less gravity */
-        const real rpr_acc_2_t = m->rpr_acc_2_t[i];
-        const real rpr_acc_2_t_2 = m->rpr_acc_2_t_2[i];
-        const real rpr_g_in_axes1_x = rpr_acc_2_t*rpr_c_1 + rpr_acc_2_t_2*rpr_s_1;
-        const real rpr_g_in_axes1_y = rpr_acc_2_t_2*rpr_c_1 - rpr_acc_2_t*rpr_s_1;
-        const real rpr_acc_2_in_axes1_x = axis_x_rpr_axes1_x*t_ddot_x +
-            axis_x_rpr_axes1_y*t_ddot_y - rpr_g_in_axes1_x;
-        const real rpr_acc_2_in_axes1_y = rpr_S_ddot_in_axes1_y - rpr_g_in_axes1_y;
-        /* (rpr-mu_1) inertia moment of the links that turn with link 1, about their reference points */
-        const real rpr_J_group_1_in_axes1_zz = m->rpr_J_group_1_in_axes1_zz[i];
-        const real rpr_h_1_in_spec1_x = m->rpr_h_1_in_spec1_x[i];
-        const real rpr_h_1_in_spec1_y = m->rpr_h_1_in_spec1_y[i];
+        values_rpr v;
+        stage_rpr_X(m, w, i, j, X, &v);
+        stage_rpr_V_X(w, j, V, &v);
+        stage_rpr_legs_required(m, w, i, j, A, &v);
+        /* (rpr-c_true) leg force on the platform without actuation, the last link's mass included */
         const real rpr_h_2_in_spec1_x = m->rpr_h_2_in_spec1_x[i];
         const real rpr_h_2_in_spec1_y = m->rpr_h_2_in_spec1_y[i];
-        const real rpr_mu_1_in_axes1_z = rpr_J_group_1_in_axes1_zz*rpr_qdd_1 +
-            rpr_acc_2_in_axes1_y*rpr_h_2_in_spec1_x + rpr_g_in_axes1_x*rpr_h_1_in_spec1_y -
-            rpr_acc_2_in_axes1_x*rpr_h_2_in_spec1_y - rpr_g_in_axes1_y*rpr_h_1_in_spec1_x;
-        /* (rpr-c) leg force on the platform without actuation and without the mass at the connection
-           point */
-        const real rpr_c_in_axes1_y = rpr_W_1_t*rpr_h_2_in_spec1_y -
-            inv_rpr_root_1*rpr_mu_1_in_axes1_z - rpr_h_2_in_spec1_x*rpr_qdd_1;
-        /* (rpr-c_true) leg force on the platform without actuation, the last link's mass included */
         const real rpr_link2_mass = m->rpr_link2_mass[i];
-        const real rpr_c_true_in_axes1_x = rpr_W_1_t*rpr_h_2_in_spec1_x +
-            rpr_h_2_in_spec1_y*rpr_qdd_1 - rpr_acc_2_in_axes1_x*rpr_link2_mass;
-        const real rpr_c_true_in_axes1_y = rpr_c_in_axes1_y - rpr_acc_2_in_axes1_y*rpr_link2_mass;
-        const real rpr_c_true_x = axis_x_rpr_axes1_x*rpr_c_true_in_axes1_x -
-            axis_x_rpr_axes1_y*rpr_c_true_in_axes1_y;
-        const real rpr_c_true_y = axis_x_rpr_axes1_x*rpr_c_true_in_axes1_y +
-            axis_x_rpr_axes1_y*rpr_c_true_in_axes1_x;
+        const real rpr_c_true_in_axes1_x = v.rpr_W_1_t*rpr_h_2_in_spec1_x +
+            rpr_h_2_in_spec1_y*v.rpr_qdd_1 - v.rpr_acc_2_in_axes1_x*rpr_link2_mass;
+        const real rpr_c_true_in_axes1_y = v.rpr_c_in_axes1_y -
+            v.rpr_acc_2_in_axes1_y*rpr_link2_mass;
+        const real rpr_c_true_x = v.axis_x_rpr_axes1_x*rpr_c_true_in_axes1_x -
+            v.axis_x_rpr_axes1_y*rpr_c_true_in_axes1_y;
+        const real rpr_c_true_y = v.axis_x_rpr_axes1_x*rpr_c_true_in_axes1_y +
+            v.axis_x_rpr_axes1_y*rpr_c_true_in_axes1_x;
         /* (rpr-c_true) leg force on the platform without actuation, the last link's mass included */
         o[0*count + k] = rpr_c_true_x;
         o[1*count + k] = rpr_c_true_y;
         /* (rpr-w_2) reciprocal vector 2 */
-        o[2*count + k] = axis_x_rpr_axes1_x;
-        o[3*count + k] = axis_x_rpr_axes1_y;
-        o[4*count + k] = UNLESS(magnitude(rpr_rho2_1) > LEAST_1) + UNLESS(magnitude(rpr_root_1) >
+        o[2*count + k] = v.axis_x_rpr_axes1_x;
+        o[3*count + k] = v.axis_x_rpr_axes1_y;
+        o[4*count + k] = UNLESS(magnitude(v.rpr_q_2_t) > LEAST_1) + UNLESS(magnitude(v.rpr_q_2) >
             LEAST_2);
     }
 }
@@ -2189,12 +1831,11 @@ INLINE void legs_place_rpr(size_t w, size_t count, const real *o, size_t leg, si
 INLINE void legs_run(const prepared *m, const real *X, const real *V, const real *A, real
     *leg_force, real *actuator, verdict *t)
 {
-    real s[6] = {0};
     real o_rpr[5*LEGS(LEGS_OF_rpr)] = {0};
     clear(leg_force, 3*NL);
     clear(actuator, 6);
-    legs_before(1, X, V, A, s);
-    legs_legs_rpr(m, 1, 0, 1, s, 0, LEGS(LEGS_OF_rpr), o_rpr);
+    legs_before();
+    legs_legs_rpr(m, 1, 0, 1, 0, LEGS(LEGS_OF_rpr), X, V, A, o_rpr);
     for (size_t leg = 0; leg < LEGS_OF_rpr; ++leg) {
         legs_place_rpr(1, LEGS(LEGS_OF_rpr), o_rpr, leg, leg, leg_force, actuator, t);
     }
@@ -2204,58 +1845,28 @@ INLINE void legs_run(const prepared *m, const real *X, const real *V, const real
 INLINE void potential_before(const prepared *m, size_t w, const real *X, real *s)
 {
     for (size_t k = 0; k < w; ++k) {
-        /* X: named entries */
-        const real X_0 = X[0*w + k];
-        const real t_x = X_0;
-        const real X_1 = X[1*w + k];
-        const real t_y = X_1;
         /* (potential) potential energy */
         const real gravity_x = m->gravity_x;
         const real gravity_y = m->gravity_y;
         const real h_star_x = m->h_star_x;
         const real h_star_y = m->h_star_y;
         const real m_star = m->m_star;
+        const real t_x = X[0*w + k];
+        const real t_y = X[1*w + k];
         const real potential_t = gravity_x*(h_star_x + m_star*t_x) + gravity_y*(h_star_y +
             m_star*t_y);
-        s[0*w + k] = t_x;
-        s[1*w + k] = t_y;
-        s[2*w + k] = potential_t;
+        s[0*w + k] = potential_t;
     }
 }
 
-INLINE void potential_legs_rpr(const prepared *m, size_t w, size_t leg, size_t legs, const real
-    *s, size_t states, size_t count, int add, real *terms, real *o)
+INLINE void potential_legs_rpr(const prepared *m, size_t w, size_t leg, size_t legs, size_t
+    states, size_t count, int add, const real *X, real *terms, real *o)
 {
     for (size_t k = 0; k < count; ++k) {
         const size_t i = leg + legs*k;
         const size_t j = states*k;
-        /* (rpr-S) from the base point to the connection point */
-        const real rpr_base_point_x = m->rpr_base_point_x[i];
-        const real rpr_platform_point_x = m->rpr_platform_point_x[i];
-        const real t_x = s[0*w + j];
-        const real rpr_S_x = rpr_platform_point_x + t_x - rpr_base_point_x;
-        const real rpr_base_point_y = m->rpr_base_point_y[i];
-        const real rpr_platform_point_y = m->rpr_platform_point_y[i];
-        const real t_y = s[1*w + j];
-        const real rpr_S_y = rpr_platform_point_y + t_y - rpr_base_point_y;
-        /* (rpr-px_1) component along the reference direction */
-        const real rpr_base_frame_xx = m->rpr_base_frame_xx[i];
-        const real rpr_base_frame_yx = m->rpr_base_frame_yx[i];
-        const real rpr_px_1 = rpr_S_x*rpr_base_frame_xx + rpr_S_y*rpr_base_frame_yx;
-        /* (rpr-py_1) component across the reference direction */
-        const real rpr_base_frame_xy = m->rpr_base_frame_xy[i];
-        const real rpr_base_frame_yy = m->rpr_base_frame_yy[i];
-        const real rpr_py_1 = rpr_S_x*rpr_base_frame_xy + rpr_S_y*rpr_base_frame_yy;
-        /* (rpr-rho2_1) squared amplitude */
-        const real rpr_rho2_1 = rpr_px_1*rpr_px_1 + rpr_py_1*rpr_py_1;
-        /* (rpr-root_1) amplitude, with the sign of the branch */
-        const real rpr_branch_1 = m->rpr_branch_1[i];
-        const real rpr_root_1 = rpr_branch_1*root(rpr_rho2_1);
-        /* (rpr-c_1) cosine of the angle of joint 1 from its reference direction */
-        const real inv_rpr_root_1 = 1/rpr_root_1;
-        const real rpr_c_1 = inv_rpr_root_1*rpr_px_1;
-        /* (rpr-s_1) sine of the angle of joint 1 from its reference direction */
-        const real rpr_s_1 = inv_rpr_root_1*rpr_py_1;
+        values_rpr v;
+        stage_rpr_X(m, w, i, j, X, &v);
         /* (potential) potential energy */
         const real rpr_acc_2_t = m->rpr_acc_2_t[i];
         const real rpr_acc_2_t_2 = m->rpr_acc_2_t_2[i];
@@ -2266,14 +1877,15 @@ INLINE void potential_legs_rpr(const prepared *m, size_t w, size_t leg, size_t l
         const real rpr_link1_mass = m->rpr_link1_mass[i];
         const real rpr_potential_t = m->rpr_potential_t[i];
         const real rpr_potential_t_2 = m->rpr_potential_t_2[i];
-        const real rpr_potential_t_3 = (rpr_acc_2_t*rpr_c_1 +
-            rpr_acc_2_t_2*rpr_s_1)*(rpr_h_1_in_spec1_x + rpr_h_2_in_spec1_x +
-            rpr_link1_mass*(rpr_c_1*rpr_potential_t + rpr_potential_t_2*rpr_s_1)) +
-            (rpr_acc_2_t_2*rpr_c_1 - rpr_acc_2_t*rpr_s_1)*(rpr_h_1_in_spec1_y + rpr_h_2_in_spec1_y
-            + rpr_link1_mass*(rpr_c_1*rpr_potential_t_2 - rpr_potential_t*rpr_s_1));
+        const real rpr_potential_t_3 = (rpr_acc_2_t*v.rpr_c_1 +
+            rpr_acc_2_t_2*v.rpr_s_1)*(rpr_h_1_in_spec1_x + rpr_h_2_in_spec1_x +
+            rpr_link1_mass*(v.rpr_c_1*rpr_potential_t + rpr_potential_t_2*v.rpr_s_1)) +
+            (rpr_acc_2_t_2*v.rpr_c_1 - rpr_acc_2_t*v.rpr_s_1)*(rpr_h_1_in_spec1_y +
+            rpr_h_2_in_spec1_y + rpr_link1_mass*(v.rpr_c_1*rpr_potential_t_2 -
+            rpr_potential_t*v.rpr_s_1));
         /* (potential) potential energy */
         gather(&terms[0*count + k], add, rpr_potential_t_3);  /* potential_of_legs */
-        o[0*count + k] = UNLESS(magnitude(rpr_rho2_1) > LEAST_1) + UNLESS(magnitude(rpr_root_1) >
+        o[0*count + k] = UNLESS(magnitude(v.rpr_q_2_t) > LEAST_1) + UNLESS(magnitude(v.rpr_q_2) >
             LEAST_2);
     }
 }
@@ -2290,7 +1902,7 @@ INLINE void potential_after(size_t w, const real *s, const real *sums, real *pot
     for (size_t k = 0; k < w; ++k) {
         /* (potential) potential energy */
         const real potential_of_legs = sums[0*w + k];
-        const real potential_t = s[2*w + k];
+        const real potential_t = s[0*w + k];
         const real potential_ = -potential_of_legs - potential_t;
         /* (potential) potential energy */
         potential[0*w + k] = potential_;
@@ -2299,12 +1911,10 @@ INLINE void potential_after(size_t w, const real *s, const real *sums, real *pot
 
 INLINE void potential_run(const prepared *m, const real *X, real *potential, verdict *t)
 {
-    real s[3] = {0};
-    real sums[1] = {0};
-    real terms_rpr[LEGS(LEGS_OF_rpr)] = {0};
-    real o_rpr[LEGS(LEGS_OF_rpr)] = {0};
+    real s[1] = {0}, sums[1] = {0};
+    real terms_rpr[LEGS(LEGS_OF_rpr)] = {0}, o_rpr[LEGS(LEGS_OF_rpr)] = {0};
     potential_before(m, 1, X, s);
-    potential_legs_rpr(m, 1, 0, 1, s, 0, LEGS(LEGS_OF_rpr), 0, terms_rpr, o_rpr);
+    potential_legs_rpr(m, 1, 0, 1, 0, LEGS(LEGS_OF_rpr), 0, X, terms_rpr, o_rpr);
     for (size_t leg = 0; leg < LEGS_OF_rpr; ++leg) {
         potential_place_rpr(1, LEGS(LEGS_OF_rpr), o_rpr, leg, t);
     }
@@ -2315,17 +1925,9 @@ INLINE void potential_run(const prepared *m, const real *X, real *potential, ver
 }
 
 /* ---- condition ---- */
-INLINE void condition_before(const prepared *m, size_t w, const real *X, real *s, real *lengths,
-    verdict *t)
+INLINE void condition_before(const prepared *m, size_t w, real *lengths, verdict *t)
 {
     for (size_t k = 0; k < w; ++k) {
-        /* X: named entries */
-        const real X_0 = X[0*w + k];
-        const real t_x = X_0;
-        const real X_1 = X[1*w + k];
-        const real t_y = X_1;
-        s[0*w + k] = t_x;
-        s[1*w + k] = t_y;
         /* (legs_size) rms size of the legs, taken where the platform points coincide */
         const real legs_size = m->legs_size;
         lengths[1*w + k] = legs_size;
@@ -2333,61 +1935,38 @@ INLINE void condition_before(const prepared *m, size_t w, const real *X, real *s
     }
 }
 
-INLINE void condition_legs_rpr(const prepared *m, size_t w, size_t leg, size_t legs, const real
-    *s, size_t states, size_t count, int add, real *terms, real *o)
+INLINE void condition_legs_rpr(const prepared *m, size_t w, size_t leg, size_t legs, size_t
+    states, size_t count, int add, const real *X, real *terms, real *o)
 {
     for (size_t k = 0; k < count; ++k) {
         const size_t i = leg + legs*k;
         const size_t j = states*k;
-        /* (rpr-S) from the base point to the connection point */
-        const real rpr_base_point_x = m->rpr_base_point_x[i];
-        const real rpr_platform_point_x = m->rpr_platform_point_x[i];
-        const real t_x = s[0*w + j];
-        const real rpr_S_x = rpr_platform_point_x + t_x - rpr_base_point_x;
-        const real rpr_base_point_y = m->rpr_base_point_y[i];
-        const real rpr_platform_point_y = m->rpr_platform_point_y[i];
-        const real t_y = s[1*w + j];
-        const real rpr_S_y = rpr_platform_point_y + t_y - rpr_base_point_y;
-        /* (rpr-px_1) component along the reference direction */
-        const real rpr_base_frame_xx = m->rpr_base_frame_xx[i];
-        const real rpr_base_frame_yx = m->rpr_base_frame_yx[i];
-        const real rpr_px_1 = rpr_S_x*rpr_base_frame_xx + rpr_S_y*rpr_base_frame_yx;
-        /* (rpr-py_1) component across the reference direction */
-        const real rpr_base_frame_xy = m->rpr_base_frame_xy[i];
-        const real rpr_base_frame_yy = m->rpr_base_frame_yy[i];
-        const real rpr_py_1 = rpr_S_x*rpr_base_frame_xy + rpr_S_y*rpr_base_frame_yy;
-        /* (rpr-rho2_1) squared amplitude */
-        const real rpr_rho2_1 = rpr_px_1*rpr_px_1 + rpr_py_1*rpr_py_1;
-        /* (rpr-root_1) amplitude, with the sign of the branch */
-        const real rpr_branch_1 = m->rpr_branch_1[i];
-        const real rpr_root_1 = rpr_branch_1*root(rpr_rho2_1);
-        /* (rpr-w_1) reciprocal vector 1 */
-        const real rpr_w_1_in_axes1_y = 1/rpr_root_1;
-        /* (rpr-w_2) reciprocal vector 2 */
-        const real rpr_w_2_x = rpr_S_x*rpr_w_1_in_axes1_y;
-        const real rpr_w_2_y = rpr_S_y*rpr_w_1_in_axes1_y;
+        values_rpr v;
+        stage_rpr_X(m, w, i, j, X, &v);
         /* (rpr-G) force at the connection point that balances the leg's inertia and weight along all
            degrees of freedom */
-        const real rpr_pivot_size = magnitude(rpr_rho2_1);
-        const real rpr_pivot_size_2 = magnitude(rpr_root_1);
+        const real rpr_pivot_size = magnitude(v.rpr_q_2_t);
+        const real rpr_pivot_size_2 = magnitude(v.rpr_q_2);
         const real rpr_least_pivots = lesser(R(1.3333333333333333)*root(rpr_pivot_size),
             R(1.3333333333333333)*rpr_pivot_size_2);
         /* (spread) rms distance of the platform points from their centroid */
         const real b_c_in_platform_x = m->b_c_in_platform_x;
+        const real rpr_platform_point_x = m->rpr_platform_point_x[i];
         const real rpr_spread_t = b_c_in_platform_x - rpr_platform_point_x;
         const real b_c_in_platform_y = m->b_c_in_platform_y;
+        const real rpr_platform_point_y = m->rpr_platform_point_y[i];
         const real rpr_spread_t_2 = b_c_in_platform_y - rpr_platform_point_y;
         const real rpr_spread_t_3 = rpr_spread_t*rpr_spread_t + rpr_spread_t_2*rpr_spread_t_2;
         /* (spread) rms distance of the platform points from their centroid */
         gather(&terms[0*count + k], add, rpr_spread_t_3);  /* spread_rpr */
         /* (rpr-w_2) reciprocal vector 2 */
-        o[0*count + k] = rpr_w_2_x;
-        o[1*count + k] = rpr_w_2_y;
+        o[0*count + k] = v.rpr_w_2_x;
+        o[1*count + k] = v.rpr_w_2_y;
         /* (rpr-G) force at the connection point that balances the leg's inertia and weight along all
            degrees of freedom */
         o[2*count + k] = rpr_least_pivots;
-        o[4*count + k] = rpr_w_2_x + (rpr_w_2_y + rpr_least_pivots);
-        o[3*count + k] = UNLESS(magnitude(rpr_rho2_1) > LEAST_1) + UNLESS(magnitude(rpr_root_1) >
+        o[4*count + k] = v.rpr_w_2_x + (v.rpr_w_2_y + rpr_least_pivots);
+        o[3*count + k] = UNLESS(magnitude(v.rpr_q_2_t) > LEAST_1) + UNLESS(magnitude(v.rpr_q_2) >
             LEAST_2);
     }
 }
@@ -2396,7 +1975,7 @@ INLINE void condition_place_rpr(size_t w, size_t count, const real *o, size_t le
     real *H, real *pivots, verdict *t)
 {
     for (size_t k = 0; k < w; ++k) {
-        H[(0*NU + leg)*w + k] = o[0*count + first + k];
+        H[leg*w + k] = o[0*count + first + k];
         H[(NU + leg)*w + k] = o[1*count + first + k];
         pivots[leg*w + k] = o[2*count + first + k];
         t->singular[k] += o[3*count + first + k];
@@ -2421,13 +2000,11 @@ INLINE void condition_after(const prepared *m, size_t w, const real *sums, real 
 INLINE void condition_run(const prepared *m, const real *X, real *H, real *lengths, real *pivots,
     real *reach, verdict *t)
 {
-    real s[2] = {0};
     real sums[1] = {0};
-    real terms_rpr[LEGS(LEGS_OF_rpr)] = {0};
-    real o_rpr[5*LEGS(LEGS_OF_rpr)] = {0};
+    real terms_rpr[LEGS(LEGS_OF_rpr)] = {0}, o_rpr[5*LEGS(LEGS_OF_rpr)] = {0};
     clear(reach, NL);
-    condition_before(m, 1, X, s, lengths, t);
-    condition_legs_rpr(m, 1, 0, 1, s, 0, LEGS(LEGS_OF_rpr), 0, terms_rpr, o_rpr);
+    condition_before(m, 1, lengths, t);
+    condition_legs_rpr(m, 1, 0, 1, 0, LEGS(LEGS_OF_rpr), 0, X, terms_rpr, o_rpr);
     for (size_t leg = 0; leg < LEGS_OF_rpr; ++leg) {
         condition_place_rpr(1, LEGS(LEGS_OF_rpr), o_rpr, leg, leg, H, pivots, t);
     }
@@ -2912,10 +2489,55 @@ INLINE void condition_one(const prepared *m, const real *X, real *sigma_out, rea
     }
 }
 
+INLINE void manipulability_one(const prepared *m, const real *X, real *measure_out, real
+    *isotropy_out, int *code)
+{
+    real H[NV*NU] = {0}, lengths[2] = {0}, pivots[NL] = {0}, reach[NL] = {0}, singular_values_1[NV] =
+        {0}, measure[1] = {0}, isotropy[1] = {0};
+    verdict why;
+    start(1, &why);
+    check(NQ, 1, X, why.invalid);
+    condition_run(m, X, H, lengths, pivots, reach, &why);
+    singular_values(NV, NU, H, singular_values_1);
+    spread(NV, singular_values_1, measure, isotropy);
+    check(1, 1, measure, why.overflow);
+    check(1, 1, isotropy, why.overflow);
+    judge(&why, code);
+    copy(1, measure, measure_out);
+    copy(1, isotropy, isotropy_out);
+    if (*code != OK) {
+        refuse(1, measure_out);
+        refuse(1, isotropy_out);
+    }
+}
+
+INLINE void singularity_distance_one(const prepared *m, const real *X, real *actuators_out, real
+    *legs_out, int *code)
+{
+    real H[NV*NU] = {0}, lengths[2] = {0}, pivots[NL] = {0}, reach[NL] = {0}, singular_values_1[NV] =
+        {0}, spread_1[1] = {0}, actuators[1] = {0}, legs[1] = {0};
+    verdict why;
+    start(1, &why);
+    check(NQ, 1, X, why.invalid);
+    condition_run(m, X, H, lengths, pivots, reach, &why);
+    singular_values(NV, NU, H, singular_values_1);
+    spread(NV, singular_values_1, spread_1, actuators);
+    least_entry(NL, pivots, legs);
+    check(1, 1, actuators, why.overflow);
+    check(1, 1, legs, why.overflow);
+    judge(&why, code);
+    copy(1, actuators, actuators_out);
+    copy(1, legs, legs_out);
+    if (*code != OK) {
+        refuse(1, actuators_out);
+        refuse(1, legs_out);
+    }
+}
+
 static void mismatch_one(const prepared *m, const real *X, const real *q_actuated, real *gap_out,
     int *code)
 {
-    real q[NJ] = {0}, take_1[2] = {0}, gap[NU] = {0};
+    real q[NJ] = {0}, q_of_inverse_kinematics_from_1[2] = {0}, gap[NU] = {0};
     verdict why;
     start(1, &why);
     const real total_in = total(X, NQ) + total(q_actuated, NU);
@@ -2924,9 +2546,9 @@ static void mismatch_one(const prepared *m, const real *X, const real *q_actuate
         check(NU, 1, q_actuated, why.invalid);
     }
     inverse_kinematics_run(m, X, q, &why);
-    take(2, 1, fivebar_prismatic_ACTUATED, q, take_1);
+    take(2, 1, fivebar_prismatic_ACTUATED, q, q_of_inverse_kinematics_from_1);
     for (size_t i = 0; i < NU; ++i) {
-        gap[i] = q_actuated[i] - take_1[i];
+        gap[i] = q_actuated[i] - q_of_inverse_kinematics_from_1[i];
     }
     check(NU, 1, gap, why.overflow);
     judge(&why, code);
@@ -3357,291 +2979,263 @@ INLINE void interpolate_one(const real *X0, const real *X1, const real *s, real 
 
 /* ---- one state, and batches ---- */
 
-int fivebar_prismatic_M(const fivebar_prismatic_model *model, const fivebar_prismatic_real *X,
-    fivebar_prismatic_real *M)
+int fivebar_prismatic_M(const prepared *model, const real *X, real *M)
 {
     int code;
     M_one(model, X, M, &code);
     return code;
 }
 
-size_t fivebar_prismatic_M_batch(const fivebar_prismatic_model *model, size_t n, const
-    fivebar_prismatic_real *X, fivebar_prismatic_real *M, int *status)
+size_t fivebar_prismatic_M_batch(const prepared *model, size_t n, const real *X, real *M, int
+    *status)
 {
-    size_t failed = 0, i = 0;
-    for (; LANES > 1 && i + LANES <= n; i += LANES) {
-        int codes[LANES];
-        M_lanes(model, X + NQ*i, M + NV*NV*i, codes);
-        for (size_t k = 0; k < LANES; ++k) {
+    size_t failed = 0, w;
+    for (size_t i = 0; i < n; i += w) {
+        int codes[LANES] = {INVALID};
+        w = LANES > 1 && i + LANES <= n ? LANES : 1;
+        if (w > 1) {
+            M_lanes(model, X + NQ*i, M + NV*NV*i, codes);
+        }
+        for (size_t k = 0; k < w; ++k) {
             if (codes[k] != OK) {
                 codes[k] = fivebar_prismatic_M(model, X + NQ*(i + k), M + NV*NV*(i + k));
             }
         }
-        failed += record(codes, LANES, status ? status + i : NULL);
-    }
-    for (; i < n; ++i) {
-        const int code = fivebar_prismatic_M(model, X + NQ*i, M + NV*NV*i);
-        failed += record(&code, 1, status ? status + i : NULL);
+        failed += record(codes, w, status ? status + i : NULL);
     }
     return failed;
 }
 
-int fivebar_prismatic_Z(const fivebar_prismatic_model *model, const fivebar_prismatic_real *X,
-    const fivebar_prismatic_real *V, fivebar_prismatic_real *Z)
+int fivebar_prismatic_Z(const prepared *model, const real *X, const real *V, real *Z)
 {
     int code;
     Z_one(model, X, V, Z, &code);
     return code;
 }
 
-size_t fivebar_prismatic_Z_batch(const fivebar_prismatic_model *model, size_t n, const
-    fivebar_prismatic_real *X, const fivebar_prismatic_real *V, fivebar_prismatic_real *Z, int
-    *status)
+size_t fivebar_prismatic_Z_batch(const prepared *model, size_t n, const real *X, const real *V,
+    real *Z, int *status)
 {
-    size_t failed = 0, i = 0;
-    for (; LANES > 1 && i + LANES <= n; i += LANES) {
-        int codes[LANES];
-        Z_lanes(model, X + NQ*i, V + NV*i, Z + NV*i, codes);
-        for (size_t k = 0; k < LANES; ++k) {
+    size_t failed = 0, w;
+    for (size_t i = 0; i < n; i += w) {
+        int codes[LANES] = {INVALID};
+        w = LANES > 1 && i + LANES <= n ? LANES : 1;
+        if (w > 1) {
+            Z_lanes(model, X + NQ*i, V + NV*i, Z + NV*i, codes);
+        }
+        for (size_t k = 0; k < w; ++k) {
             if (codes[k] != OK) {
                 codes[k] = fivebar_prismatic_Z(model, X + NQ*(i + k), V + NV*(i + k), Z + NV*(i + k));
             }
         }
-        failed += record(codes, LANES, status ? status + i : NULL);
-    }
-    for (; i < n; ++i) {
-        const int code = fivebar_prismatic_Z(model, X + NQ*i, V + NV*i, Z + NV*i);
-        failed += record(&code, 1, status ? status + i : NULL);
+        failed += record(codes, w, status ? status + i : NULL);
     }
     return failed;
 }
 
-int fivebar_prismatic_H(const fivebar_prismatic_model *model, const fivebar_prismatic_real *X,
-    fivebar_prismatic_real *H)
+int fivebar_prismatic_H(const prepared *model, const real *X, real *H)
 {
     int code;
     H_one(model, X, H, &code);
     return code;
 }
 
-size_t fivebar_prismatic_H_batch(const fivebar_prismatic_model *model, size_t n, const
-    fivebar_prismatic_real *X, fivebar_prismatic_real *H, int *status)
+size_t fivebar_prismatic_H_batch(const prepared *model, size_t n, const real *X, real *H, int
+    *status)
 {
-    size_t failed = 0, i = 0;
-    for (; LANES > 1 && i + LANES <= n; i += LANES) {
-        int codes[LANES];
-        H_lanes(model, X + NQ*i, H + NV*NU*i, codes);
-        for (size_t k = 0; k < LANES; ++k) {
+    size_t failed = 0, w;
+    for (size_t i = 0; i < n; i += w) {
+        int codes[LANES] = {INVALID};
+        w = LANES > 1 && i + LANES <= n ? LANES : 1;
+        if (w > 1) {
+            H_lanes(model, X + NQ*i, H + NV*NU*i, codes);
+        }
+        for (size_t k = 0; k < w; ++k) {
             if (codes[k] != OK) {
                 codes[k] = fivebar_prismatic_H(model, X + NQ*(i + k), H + NV*NU*(i + k));
             }
         }
-        failed += record(codes, LANES, status ? status + i : NULL);
-    }
-    for (; i < n; ++i) {
-        const int code = fivebar_prismatic_H(model, X + NQ*i, H + NV*NU*i);
-        failed += record(&code, 1, status ? status + i : NULL);
+        failed += record(codes, w, status ? status + i : NULL);
     }
     return failed;
 }
 
-int fivebar_prismatic_inverse_kinematics(const fivebar_prismatic_model *model, const
-    fivebar_prismatic_real *X, fivebar_prismatic_real *q)
+int fivebar_prismatic_inverse_kinematics(const prepared *model, const real *X, real *q)
 {
     int code;
     inverse_kinematics_one(model, X, q, &code);
     return code;
 }
 
-size_t fivebar_prismatic_inverse_kinematics_batch(const fivebar_prismatic_model *model, size_t n,
-    const fivebar_prismatic_real *X, fivebar_prismatic_real *q, int *status)
+size_t fivebar_prismatic_inverse_kinematics_batch(const prepared *model, size_t n, const real *X,
+    real *q, int *status)
 {
-    size_t failed = 0, i = 0;
-    for (; LANES > 1 && i + LANES <= n; i += LANES) {
-        int codes[LANES];
-        inverse_kinematics_lanes(model, X + NQ*i, q + NJ*i, codes);
-        for (size_t k = 0; k < LANES; ++k) {
+    size_t failed = 0, w;
+    for (size_t i = 0; i < n; i += w) {
+        int codes[LANES] = {INVALID};
+        w = LANES > 1 && i + LANES <= n ? LANES : 1;
+        if (w > 1) {
+            inverse_kinematics_lanes(model, X + NQ*i, q + NJ*i, codes);
+        }
+        for (size_t k = 0; k < w; ++k) {
             if (codes[k] != OK) {
                 codes[k] = fivebar_prismatic_inverse_kinematics(model, X + NQ*(i + k), q + NJ*(i + k));
             }
         }
-        failed += record(codes, LANES, status ? status + i : NULL);
-    }
-    for (; i < n; ++i) {
-        const int code = fivebar_prismatic_inverse_kinematics(model, X + NQ*i, q + NJ*i);
-        failed += record(&code, 1, status ? status + i : NULL);
+        failed += record(codes, w, status ? status + i : NULL);
     }
     return failed;
 }
 
-int fivebar_prismatic_joint_rates(const fivebar_prismatic_model *model, const
-    fivebar_prismatic_real *X, const fivebar_prismatic_real *V, fivebar_prismatic_real *rates)
+int fivebar_prismatic_joint_rates(const prepared *model, const real *X, const real *V, real
+    *rates)
 {
     int code;
     joint_rates_one(model, X, V, rates, &code);
     return code;
 }
 
-size_t fivebar_prismatic_joint_rates_batch(const fivebar_prismatic_model *model, size_t n, const
-    fivebar_prismatic_real *X, const fivebar_prismatic_real *V, fivebar_prismatic_real *rates, int
-    *status)
+size_t fivebar_prismatic_joint_rates_batch(const prepared *model, size_t n, const real *X, const
+    real *V, real *rates, int *status)
 {
-    size_t failed = 0, i = 0;
-    for (; LANES > 1 && i + LANES <= n; i += LANES) {
-        int codes[LANES];
-        joint_rates_lanes(model, X + NQ*i, V + NV*i, rates + NJ*i, codes);
-        for (size_t k = 0; k < LANES; ++k) {
+    size_t failed = 0, w;
+    for (size_t i = 0; i < n; i += w) {
+        int codes[LANES] = {INVALID};
+        w = LANES > 1 && i + LANES <= n ? LANES : 1;
+        if (w > 1) {
+            joint_rates_lanes(model, X + NQ*i, V + NV*i, rates + NJ*i, codes);
+        }
+        for (size_t k = 0; k < w; ++k) {
             if (codes[k] != OK) {
                 codes[k] = fivebar_prismatic_joint_rates(model, X + NQ*(i + k), V + NV*(i + k), rates + NJ*(i +
                     k));
             }
         }
-        failed += record(codes, LANES, status ? status + i : NULL);
-    }
-    for (; i < n; ++i) {
-        const int code = fivebar_prismatic_joint_rates(model, X + NQ*i, V + NV*i, rates + NJ*i);
-        failed += record(&code, 1, status ? status + i : NULL);
+        failed += record(codes, w, status ? status + i : NULL);
     }
     return failed;
 }
 
-int fivebar_prismatic_joint_accelerations(const fivebar_prismatic_model *model, const
-    fivebar_prismatic_real *X, const fivebar_prismatic_real *V, const fivebar_prismatic_real *A,
-    fivebar_prismatic_real *accelerations)
+int fivebar_prismatic_joint_accelerations(const prepared *model, const real *X, const real *V,
+    const real *A, real *accelerations)
 {
     int code;
     joint_accelerations_one(model, X, V, A, accelerations, &code);
     return code;
 }
 
-size_t fivebar_prismatic_joint_accelerations_batch(const fivebar_prismatic_model *model, size_t n,
-    const fivebar_prismatic_real *X, const fivebar_prismatic_real *V, const fivebar_prismatic_real
-    *A, fivebar_prismatic_real *accelerations, int *status)
+size_t fivebar_prismatic_joint_accelerations_batch(const prepared *model, size_t n, const real *X,
+    const real *V, const real *A, real *accelerations, int *status)
 {
-    size_t failed = 0, i = 0;
-    for (; LANES > 1 && i + LANES <= n; i += LANES) {
-        int codes[LANES];
-        joint_accelerations_lanes(model, X + NQ*i, V + NV*i, A + NV*i, accelerations + NJ*i, codes);
-        for (size_t k = 0; k < LANES; ++k) {
+    size_t failed = 0, w;
+    for (size_t i = 0; i < n; i += w) {
+        int codes[LANES] = {INVALID};
+        w = LANES > 1 && i + LANES <= n ? LANES : 1;
+        if (w > 1) {
+            joint_accelerations_lanes(model, X + NQ*i, V + NV*i, A + NV*i, accelerations + NJ*i, codes);
+        }
+        for (size_t k = 0; k < w; ++k) {
             if (codes[k] != OK) {
                 codes[k] = fivebar_prismatic_joint_accelerations(model, X + NQ*(i + k), V + NV*(i + k), A + NV*(i
                     + k), accelerations + NJ*(i + k));
             }
         }
-        failed += record(codes, LANES, status ? status + i : NULL);
-    }
-    for (; i < n; ++i) {
-        const int code = fivebar_prismatic_joint_accelerations(model, X + NQ*i, V + NV*i, A + NV*i,
-            accelerations + NJ*i);
-        failed += record(&code, 1, status ? status + i : NULL);
+        failed += record(codes, w, status ? status + i : NULL);
     }
     return failed;
 }
 
-int fivebar_prismatic_dynamics(const fivebar_prismatic_model *model, const fivebar_prismatic_real
-    *X, const fivebar_prismatic_real *V, fivebar_prismatic_real *M, fivebar_prismatic_real *Z,
-    fivebar_prismatic_real *H)
+int fivebar_prismatic_dynamics(const prepared *model, const real *X, const real *V, real *M, real
+    *Z, real *H)
 {
     int code;
     dynamics_one(model, X, V, M, Z, H, &code);
     return code;
 }
 
-size_t fivebar_prismatic_dynamics_batch(const fivebar_prismatic_model *model, size_t n, const
-    fivebar_prismatic_real *X, const fivebar_prismatic_real *V, fivebar_prismatic_real *M,
-    fivebar_prismatic_real *Z, fivebar_prismatic_real *H, int *status)
+size_t fivebar_prismatic_dynamics_batch(const prepared *model, size_t n, const real *X, const real
+    *V, real *M, real *Z, real *H, int *status)
 {
-    size_t failed = 0, i = 0;
-    for (; LANES > 1 && i + LANES <= n; i += LANES) {
-        int codes[LANES];
-        dynamics_lanes(model, X + NQ*i, V + NV*i, M + NV*NV*i, Z + NV*i, H + NV*NU*i, codes);
-        for (size_t k = 0; k < LANES; ++k) {
+    size_t failed = 0, w;
+    for (size_t i = 0; i < n; i += w) {
+        int codes[LANES] = {INVALID};
+        w = LANES > 1 && i + LANES <= n ? LANES : 1;
+        if (w > 1) {
+            dynamics_lanes(model, X + NQ*i, V + NV*i, M + NV*NV*i, Z + NV*i, H + NV*NU*i, codes);
+        }
+        for (size_t k = 0; k < w; ++k) {
             if (codes[k] != OK) {
                 codes[k] = fivebar_prismatic_dynamics(model, X + NQ*(i + k), V + NV*(i + k), M + NV*NV*(i + k), Z
                     + NV*(i + k), H + NV*NU*(i + k));
             }
         }
-        failed += record(codes, LANES, status ? status + i : NULL);
-    }
-    for (; i < n; ++i) {
-        const int code = fivebar_prismatic_dynamics(model, X + NQ*i, V + NV*i, M + NV*NV*i, Z + NV*i, H +
-            NV*NU*i);
-        failed += record(&code, 1, status ? status + i : NULL);
+        failed += record(codes, w, status ? status + i : NULL);
     }
     return failed;
 }
 
-int fivebar_prismatic_inverse_dynamics(const fivebar_prismatic_model *model, const
-    fivebar_prismatic_real *X, const fivebar_prismatic_real *V, const fivebar_prismatic_real *A,
-    const fivebar_prismatic_real *wrench, fivebar_prismatic_real *tau)
+int fivebar_prismatic_inverse_dynamics(const prepared *model, const real *X, const real *V, const
+    real *A, const real *wrench, real *tau)
 {
     int code;
     inverse_dynamics_one(model, X, V, A, wrench, tau, &code);
     return code;
 }
 
-size_t fivebar_prismatic_inverse_dynamics_batch(const fivebar_prismatic_model *model, size_t n,
-    const fivebar_prismatic_real *X, const fivebar_prismatic_real *V, const fivebar_prismatic_real
-    *A, const fivebar_prismatic_real *wrench, fivebar_prismatic_real *tau, int *status)
+size_t fivebar_prismatic_inverse_dynamics_batch(const prepared *model, size_t n, const real *X,
+    const real *V, const real *A, const real *wrench, real *tau, int *status)
 {
-    size_t failed = 0, i = 0;
-    for (; LANES > 1 && i + LANES <= n; i += LANES) {
-        int codes[LANES];
-        inverse_dynamics_lanes(model, X + NQ*i, V + NV*i, A + NV*i, wrench ? wrench + NW*i : NULL, tau +
-            NU*i, codes);
-        for (size_t k = 0; k < LANES; ++k) {
+    size_t failed = 0, w;
+    for (size_t i = 0; i < n; i += w) {
+        int codes[LANES] = {INVALID};
+        w = LANES > 1 && i + LANES <= n ? LANES : 1;
+        if (w > 1) {
+            inverse_dynamics_lanes(model, X + NQ*i, V + NV*i, A + NV*i, wrench ? wrench + NW*i : NULL, tau +
+                NU*i, codes);
+        }
+        for (size_t k = 0; k < w; ++k) {
             if (codes[k] != OK) {
                 codes[k] = fivebar_prismatic_inverse_dynamics(model, X + NQ*(i + k), V + NV*(i + k), A + NV*(i +
                     k), wrench ? wrench + NW*(i + k) : NULL, tau + NU*(i + k));
             }
         }
-        failed += record(codes, LANES, status ? status + i : NULL);
-    }
-    for (; i < n; ++i) {
-        const int code = fivebar_prismatic_inverse_dynamics(model, X + NQ*i, V + NV*i, A + NV*i, wrench ?
-            wrench + NW*i : NULL, tau + NU*i);
-        failed += record(&code, 1, status ? status + i : NULL);
+        failed += record(codes, w, status ? status + i : NULL);
     }
     return failed;
 }
 
-int fivebar_prismatic_forward_dynamics(const fivebar_prismatic_model *model, const
-    fivebar_prismatic_real *X, const fivebar_prismatic_real *V, const fivebar_prismatic_real *tau,
-    const fivebar_prismatic_real *wrench, fivebar_prismatic_real *A)
+int fivebar_prismatic_forward_dynamics(const prepared *model, const real *X, const real *V, const
+    real *tau, const real *wrench, real *A)
 {
     int code;
     forward_dynamics_one(model, X, V, tau, wrench, A, &code);
     return code;
 }
 
-size_t fivebar_prismatic_forward_dynamics_batch(const fivebar_prismatic_model *model, size_t n,
-    const fivebar_prismatic_real *X, const fivebar_prismatic_real *V, const fivebar_prismatic_real
-    *tau, const fivebar_prismatic_real *wrench, fivebar_prismatic_real *A, int *status)
+size_t fivebar_prismatic_forward_dynamics_batch(const prepared *model, size_t n, const real *X,
+    const real *V, const real *tau, const real *wrench, real *A, int *status)
 {
-    size_t failed = 0, i = 0;
-    for (; LANES > 1 && i + LANES <= n; i += LANES) {
-        int codes[LANES];
-        forward_dynamics_lanes(model, X + NQ*i, V + NV*i, tau + NU*i, wrench ? wrench + NW*i : NULL, A +
-            NV*i, codes);
-        for (size_t k = 0; k < LANES; ++k) {
+    size_t failed = 0, w;
+    for (size_t i = 0; i < n; i += w) {
+        int codes[LANES] = {INVALID};
+        w = LANES > 1 && i + LANES <= n ? LANES : 1;
+        if (w > 1) {
+            forward_dynamics_lanes(model, X + NQ*i, V + NV*i, tau + NU*i, wrench ? wrench + NW*i : NULL, A +
+                NV*i, codes);
+        }
+        for (size_t k = 0; k < w; ++k) {
             if (codes[k] != OK) {
                 codes[k] = fivebar_prismatic_forward_dynamics(model, X + NQ*(i + k), V + NV*(i + k), tau + NU*(i +
                     k), wrench ? wrench + NW*(i + k) : NULL, A + NV*(i + k));
             }
         }
-        failed += record(codes, LANES, status ? status + i : NULL);
-    }
-    for (; i < n; ++i) {
-        const int code = fivebar_prismatic_forward_dynamics(model, X + NQ*i, V + NV*i, tau + NU*i, wrench
-            ? wrench + NW*i : NULL, A + NV*i);
-        failed += record(&code, 1, status ? status + i : NULL);
+        failed += record(codes, w, status ? status + i : NULL);
     }
     return failed;
 }
 
-int fivebar_prismatic_complete_acceleration(const fivebar_prismatic_model *model, const
-    fivebar_prismatic_real *X, const fivebar_prismatic_real *V, const fivebar_prismatic_real *A,
-    const fivebar_prismatic_real *wrench, fivebar_prismatic_real *completed)
+int fivebar_prismatic_complete_acceleration(const prepared *model, const real *X, const real *V,
+    const real *A, const real *wrench, real *completed)
 {
     int code;
     (void)model;
@@ -3652,13 +3246,11 @@ int fivebar_prismatic_complete_acceleration(const fivebar_prismatic_model *model
     return code;
 }
 
-size_t fivebar_prismatic_complete_acceleration_batch(const fivebar_prismatic_model *model, size_t
-    n, const fivebar_prismatic_real *X, const fivebar_prismatic_real *V, const
-    fivebar_prismatic_real *A, const fivebar_prismatic_real *wrench, fivebar_prismatic_real
-    *completed, int *status)
+size_t fivebar_prismatic_complete_acceleration_batch(const prepared *model, size_t n, const real
+    *X, const real *V, const real *A, const real *wrench, real *completed, int *status)
 {
-    size_t failed = 0, i = 0;
-    for (; i < n; ++i) {
+    size_t failed = 0;
+    for (size_t i = 0; i < n; ++i) {
         const int code = fivebar_prismatic_complete_acceleration(model, X + NQ*i, V + NV*i, A + NV*i,
             wrench ? wrench + NW*i : NULL, completed + NV*i);
         failed += record(&code, 1, status ? status + i : NULL);
@@ -3666,21 +3258,19 @@ size_t fivebar_prismatic_complete_acceleration_batch(const fivebar_prismatic_mod
     return failed;
 }
 
-int fivebar_prismatic_leg_reactions(const fivebar_prismatic_model *model, const
-    fivebar_prismatic_real *X, const fivebar_prismatic_real *V, const fivebar_prismatic_real *A,
-    const fivebar_prismatic_real *wrench, fivebar_prismatic_real *forces)
+int fivebar_prismatic_leg_reactions(const prepared *model, const real *X, const real *V, const
+    real *A, const real *wrench, real *forces)
 {
     int code;
     leg_reactions_one(model, X, V, A, wrench, forces, &code);
     return code;
 }
 
-size_t fivebar_prismatic_leg_reactions_batch(const fivebar_prismatic_model *model, size_t n, const
-    fivebar_prismatic_real *X, const fivebar_prismatic_real *V, const fivebar_prismatic_real *A,
-    const fivebar_prismatic_real *wrench, fivebar_prismatic_real *forces, int *status)
+size_t fivebar_prismatic_leg_reactions_batch(const prepared *model, size_t n, const real *X, const
+    real *V, const real *A, const real *wrench, real *forces, int *status)
 {
-    size_t failed = 0, i = 0;
-    for (; i < n; ++i) {
+    size_t failed = 0;
+    for (size_t i = 0; i < n; ++i) {
         const int code = fivebar_prismatic_leg_reactions(model, X + NQ*i, V + NV*i, A + NV*i, wrench ?
             wrench + NW*i : NULL, forces + 6*i);
         failed += record(&code, 1, status ? status + i : NULL);
@@ -3688,62 +3278,94 @@ size_t fivebar_prismatic_leg_reactions_batch(const fivebar_prismatic_model *mode
     return failed;
 }
 
-int fivebar_prismatic_energy(const fivebar_prismatic_model *model, const fivebar_prismatic_real
-    *X, const fivebar_prismatic_real *V, fivebar_prismatic_real *kinetic, fivebar_prismatic_real
-    *potential)
+int fivebar_prismatic_energy(const prepared *model, const real *X, const real *V, real *kinetic,
+    real *potential)
 {
     int code;
     energy_one(model, X, V, kinetic, potential, &code);
     return code;
 }
 
-size_t fivebar_prismatic_energy_batch(const fivebar_prismatic_model *model, size_t n, const
-    fivebar_prismatic_real *X, const fivebar_prismatic_real *V, fivebar_prismatic_real *kinetic,
-    fivebar_prismatic_real *potential, int *status)
+size_t fivebar_prismatic_energy_batch(const prepared *model, size_t n, const real *X, const real
+    *V, real *kinetic, real *potential, int *status)
 {
-    size_t failed = 0, i = 0;
-    for (; i < n; ++i) {
+    size_t failed = 0;
+    for (size_t i = 0; i < n; ++i) {
         const int code = fivebar_prismatic_energy(model, X + NQ*i, V + NV*i, kinetic + i, potential + i);
         failed += record(&code, 1, status ? status + i : NULL);
     }
     return failed;
 }
 
-int fivebar_prismatic_condition(const fivebar_prismatic_model *model, const fivebar_prismatic_real
-    *X, fivebar_prismatic_real *sigma, fivebar_prismatic_real *legs)
+int fivebar_prismatic_condition(const prepared *model, const real *X, real *sigma, real *legs)
 {
     int code;
     condition_one(model, X, sigma, legs, &code);
     return code;
 }
 
-size_t fivebar_prismatic_condition_batch(const fivebar_prismatic_model *model, size_t n, const
-    fivebar_prismatic_real *X, fivebar_prismatic_real *sigma, fivebar_prismatic_real *legs, int
-    *status)
+size_t fivebar_prismatic_condition_batch(const prepared *model, size_t n, const real *X, real
+    *sigma, real *legs, int *status)
 {
-    size_t failed = 0, i = 0;
-    for (; i < n; ++i) {
+    size_t failed = 0;
+    for (size_t i = 0; i < n; ++i) {
         const int code = fivebar_prismatic_condition(model, X + NQ*i, sigma + 2*i, legs + 2*i);
         failed += record(&code, 1, status ? status + i : NULL);
     }
     return failed;
 }
 
-int fivebar_prismatic_forward_kinematics(const fivebar_prismatic_model *model, const
-    fivebar_prismatic_real *q_actuated, const fivebar_prismatic_real *X0, fivebar_prismatic_real
-    *X)
+int fivebar_prismatic_manipulability(const prepared *model, const real *X, real *measure, real
+    *isotropy)
+{
+    int code;
+    manipulability_one(model, X, measure, isotropy, &code);
+    return code;
+}
+
+size_t fivebar_prismatic_manipulability_batch(const prepared *model, size_t n, const real *X, real
+    *measure, real *isotropy, int *status)
+{
+    size_t failed = 0;
+    for (size_t i = 0; i < n; ++i) {
+        const int code = fivebar_prismatic_manipulability(model, X + NQ*i, measure + i, isotropy + i);
+        failed += record(&code, 1, status ? status + i : NULL);
+    }
+    return failed;
+}
+
+int fivebar_prismatic_singularity_distance(const prepared *model, const real *X, real *actuators,
+    real *legs)
+{
+    int code;
+    singularity_distance_one(model, X, actuators, legs, &code);
+    return code;
+}
+
+size_t fivebar_prismatic_singularity_distance_batch(const prepared *model, size_t n, const real
+    *X, real *actuators, real *legs, int *status)
+{
+    size_t failed = 0;
+    for (size_t i = 0; i < n; ++i) {
+        const int code = fivebar_prismatic_singularity_distance(model, X + NQ*i, actuators + i, legs + i);
+        failed += record(&code, 1, status ? status + i : NULL);
+    }
+    return failed;
+}
+
+int fivebar_prismatic_forward_kinematics(const prepared *model, const real *q_actuated, const real
+    *X0, real *X)
 {
     int code;
     forward_kinematics_one(model, q_actuated, X0, X, &code);
     return code;
 }
 
-size_t fivebar_prismatic_forward_kinematics_batch(const fivebar_prismatic_model *model, size_t n,
-    const fivebar_prismatic_real *q_actuated, const fivebar_prismatic_real *X0,
-    fivebar_prismatic_real *X, int *status)
+size_t fivebar_prismatic_forward_kinematics_batch(const prepared *model, size_t n, const real
+    *q_actuated, const real *X0, real *X, int *status)
 {
-    size_t failed = 0, i = 0;
-    for (; i < n; ++i) {
+    size_t failed = 0;
+    for (size_t i = 0; i < n; ++i) {
         const int code = fivebar_prismatic_forward_kinematics(model, q_actuated + NU*i, X0 + NQ*i, X +
             NQ*i);
         failed += record(&code, 1, status ? status + i : NULL);
@@ -3751,8 +3373,7 @@ size_t fivebar_prismatic_forward_kinematics_batch(const fivebar_prismatic_model 
     return failed;
 }
 
-int fivebar_prismatic_dissipation(const fivebar_prismatic_model *model, const
-    fivebar_prismatic_real *X, const fivebar_prismatic_real *V, fivebar_prismatic_real
+int fivebar_prismatic_dissipation(const prepared *model, const real *X, const real *V, real
     *dissipation)
 {
     int code;
@@ -3762,284 +3383,262 @@ int fivebar_prismatic_dissipation(const fivebar_prismatic_model *model, const
     return code;
 }
 
-size_t fivebar_prismatic_dissipation_batch(const fivebar_prismatic_model *model, size_t n, const
-    fivebar_prismatic_real *X, const fivebar_prismatic_real *V, fivebar_prismatic_real
-    *dissipation, int *status)
+size_t fivebar_prismatic_dissipation_batch(const prepared *model, size_t n, const real *X, const
+    real *V, real *dissipation, int *status)
 {
-    size_t failed = 0, i = 0;
-    for (; i < n; ++i) {
+    size_t failed = 0;
+    for (size_t i = 0; i < n; ++i) {
         const int code = fivebar_prismatic_dissipation(model, X + NQ*i, V + NV*i, dissipation + i);
         failed += record(&code, 1, status ? status + i : NULL);
     }
     return failed;
 }
 
-int fivebar_prismatic_momentum(const fivebar_prismatic_model *model, const fivebar_prismatic_real
-    *X, const fivebar_prismatic_real *V, fivebar_prismatic_real *momentum)
+int fivebar_prismatic_momentum(const prepared *model, const real *X, const real *V, real
+    *momentum)
 {
     int code;
     momentum_one(model, X, V, momentum, &code);
     return code;
 }
 
-size_t fivebar_prismatic_momentum_batch(const fivebar_prismatic_model *model, size_t n, const
-    fivebar_prismatic_real *X, const fivebar_prismatic_real *V, fivebar_prismatic_real *momentum,
-    int *status)
+size_t fivebar_prismatic_momentum_batch(const prepared *model, size_t n, const real *X, const real
+    *V, real *momentum, int *status)
 {
-    size_t failed = 0, i = 0;
-    for (; LANES > 1 && i + LANES <= n; i += LANES) {
-        int codes[LANES];
-        momentum_lanes(model, X + NQ*i, V + NV*i, momentum + NV*i, codes);
-        for (size_t k = 0; k < LANES; ++k) {
+    size_t failed = 0, w;
+    for (size_t i = 0; i < n; i += w) {
+        int codes[LANES] = {INVALID};
+        w = LANES > 1 && i + LANES <= n ? LANES : 1;
+        if (w > 1) {
+            momentum_lanes(model, X + NQ*i, V + NV*i, momentum + NV*i, codes);
+        }
+        for (size_t k = 0; k < w; ++k) {
             if (codes[k] != OK) {
                 codes[k] = fivebar_prismatic_momentum(model, X + NQ*(i + k), V + NV*(i + k), momentum + NV*(i +
                     k));
             }
         }
-        failed += record(codes, LANES, status ? status + i : NULL);
-    }
-    for (; i < n; ++i) {
-        const int code = fivebar_prismatic_momentum(model, X + NQ*i, V + NV*i, momentum + NV*i);
-        failed += record(&code, 1, status ? status + i : NULL);
+        failed += record(codes, w, status ? status + i : NULL);
     }
     return failed;
 }
 
-int fivebar_prismatic_joint_margins(const fivebar_prismatic_model *model, const
-    fivebar_prismatic_real *X, fivebar_prismatic_real *margins)
+int fivebar_prismatic_joint_margins(const prepared *model, const real *X, real *margins)
 {
     int code;
     joint_margins_one(model, X, margins, &code);
     return code;
 }
 
-size_t fivebar_prismatic_joint_margins_batch(const fivebar_prismatic_model *model, size_t n, const
-    fivebar_prismatic_real *X, fivebar_prismatic_real *margins, int *status)
+size_t fivebar_prismatic_joint_margins_batch(const prepared *model, size_t n, const real *X, real
+    *margins, int *status)
 {
-    size_t failed = 0, i = 0;
-    for (; LANES > 1 && i + LANES <= n; i += LANES) {
-        int codes[LANES];
-        joint_margins_lanes(model, X + NQ*i, margins + NJ*i, codes);
-        for (size_t k = 0; k < LANES; ++k) {
+    size_t failed = 0, w;
+    for (size_t i = 0; i < n; i += w) {
+        int codes[LANES] = {INVALID};
+        w = LANES > 1 && i + LANES <= n ? LANES : 1;
+        if (w > 1) {
+            joint_margins_lanes(model, X + NQ*i, margins + NJ*i, codes);
+        }
+        for (size_t k = 0; k < w; ++k) {
             if (codes[k] != OK) {
                 codes[k] = fivebar_prismatic_joint_margins(model, X + NQ*(i + k), margins + NJ*(i + k));
             }
         }
-        failed += record(codes, LANES, status ? status + i : NULL);
-    }
-    for (; i < n; ++i) {
-        const int code = fivebar_prismatic_joint_margins(model, X + NQ*i, margins + NJ*i);
-        failed += record(&code, 1, status ? status + i : NULL);
+        failed += record(codes, w, status ? status + i : NULL);
     }
     return failed;
 }
 
-int fivebar_prismatic_within_limits(const fivebar_prismatic_model *model, const
-    fivebar_prismatic_real *X, fivebar_prismatic_real *within)
+int fivebar_prismatic_within_limits(const prepared *model, const real *X, real *within)
 {
     int code;
     within_limits_one(model, X, within, &code);
     return code;
 }
 
-size_t fivebar_prismatic_within_limits_batch(const fivebar_prismatic_model *model, size_t n, const
-    fivebar_prismatic_real *X, fivebar_prismatic_real *within, int *status)
+size_t fivebar_prismatic_within_limits_batch(const prepared *model, size_t n, const real *X, real
+    *within, int *status)
 {
-    size_t failed = 0, i = 0;
-    for (; LANES > 1 && i + LANES <= n; i += LANES) {
-        int codes[LANES];
-        within_limits_lanes(model, X + NQ*i, within + i, codes);
-        for (size_t k = 0; k < LANES; ++k) {
+    size_t failed = 0, w;
+    for (size_t i = 0; i < n; i += w) {
+        int codes[LANES] = {INVALID};
+        w = LANES > 1 && i + LANES <= n ? LANES : 1;
+        if (w > 1) {
+            within_limits_lanes(model, X + NQ*i, within + i, codes);
+        }
+        for (size_t k = 0; k < w; ++k) {
             if (codes[k] != OK) {
                 codes[k] = fivebar_prismatic_within_limits(model, X + NQ*(i + k), within + (i + k));
             }
         }
-        failed += record(codes, LANES, status ? status + i : NULL);
-    }
-    for (; i < n; ++i) {
-        const int code = fivebar_prismatic_within_limits(model, X + NQ*i, within + i);
-        failed += record(&code, 1, status ? status + i : NULL);
+        failed += record(codes, w, status ? status + i : NULL);
     }
     return failed;
 }
 
-int fivebar_prismatic_actuator_positions(const fivebar_prismatic_model *model, const
-    fivebar_prismatic_real *X, fivebar_prismatic_real *q)
+int fivebar_prismatic_actuator_positions(const prepared *model, const real *X, real *q)
 {
     int code;
     actuator_positions_one(model, X, q, &code);
     return code;
 }
 
-size_t fivebar_prismatic_actuator_positions_batch(const fivebar_prismatic_model *model, size_t n,
-    const fivebar_prismatic_real *X, fivebar_prismatic_real *q, int *status)
+size_t fivebar_prismatic_actuator_positions_batch(const prepared *model, size_t n, const real *X,
+    real *q, int *status)
 {
-    size_t failed = 0, i = 0;
-    for (; LANES > 1 && i + LANES <= n; i += LANES) {
-        int codes[LANES];
-        actuator_positions_lanes(model, X + NQ*i, q + NU*i, codes);
-        for (size_t k = 0; k < LANES; ++k) {
+    size_t failed = 0, w;
+    for (size_t i = 0; i < n; i += w) {
+        int codes[LANES] = {INVALID};
+        w = LANES > 1 && i + LANES <= n ? LANES : 1;
+        if (w > 1) {
+            actuator_positions_lanes(model, X + NQ*i, q + NU*i, codes);
+        }
+        for (size_t k = 0; k < w; ++k) {
             if (codes[k] != OK) {
                 codes[k] = fivebar_prismatic_actuator_positions(model, X + NQ*(i + k), q + NU*(i + k));
             }
         }
-        failed += record(codes, LANES, status ? status + i : NULL);
-    }
-    for (; i < n; ++i) {
-        const int code = fivebar_prismatic_actuator_positions(model, X + NQ*i, q + NU*i);
-        failed += record(&code, 1, status ? status + i : NULL);
+        failed += record(codes, w, status ? status + i : NULL);
     }
     return failed;
 }
 
-int fivebar_prismatic_actuator_rates(const fivebar_prismatic_model *model, const
-    fivebar_prismatic_real *X, const fivebar_prismatic_real *V, fivebar_prismatic_real *rates)
+int fivebar_prismatic_actuator_rates(const prepared *model, const real *X, const real *V, real
+    *rates)
 {
     int code;
     actuator_rates_one(model, X, V, rates, &code);
     return code;
 }
 
-size_t fivebar_prismatic_actuator_rates_batch(const fivebar_prismatic_model *model, size_t n,
-    const fivebar_prismatic_real *X, const fivebar_prismatic_real *V, fivebar_prismatic_real
-    *rates, int *status)
+size_t fivebar_prismatic_actuator_rates_batch(const prepared *model, size_t n, const real *X,
+    const real *V, real *rates, int *status)
 {
-    size_t failed = 0, i = 0;
-    for (; LANES > 1 && i + LANES <= n; i += LANES) {
-        int codes[LANES];
-        actuator_rates_lanes(model, X + NQ*i, V + NV*i, rates + NU*i, codes);
-        for (size_t k = 0; k < LANES; ++k) {
+    size_t failed = 0, w;
+    for (size_t i = 0; i < n; i += w) {
+        int codes[LANES] = {INVALID};
+        w = LANES > 1 && i + LANES <= n ? LANES : 1;
+        if (w > 1) {
+            actuator_rates_lanes(model, X + NQ*i, V + NV*i, rates + NU*i, codes);
+        }
+        for (size_t k = 0; k < w; ++k) {
             if (codes[k] != OK) {
                 codes[k] = fivebar_prismatic_actuator_rates(model, X + NQ*(i + k), V + NV*(i + k), rates + NU*(i +
                     k));
             }
         }
-        failed += record(codes, LANES, status ? status + i : NULL);
-    }
-    for (; i < n; ++i) {
-        const int code = fivebar_prismatic_actuator_rates(model, X + NQ*i, V + NV*i, rates + NU*i);
-        failed += record(&code, 1, status ? status + i : NULL);
+        failed += record(codes, w, status ? status + i : NULL);
     }
     return failed;
 }
 
-int fivebar_prismatic_actuator_accelerations(const fivebar_prismatic_model *model, const
-    fivebar_prismatic_real *X, const fivebar_prismatic_real *V, const fivebar_prismatic_real *A,
-    fivebar_prismatic_real *accelerations)
+int fivebar_prismatic_actuator_accelerations(const prepared *model, const real *X, const real *V,
+    const real *A, real *accelerations)
 {
     int code;
     actuator_accelerations_one(model, X, V, A, accelerations, &code);
     return code;
 }
 
-size_t fivebar_prismatic_actuator_accelerations_batch(const fivebar_prismatic_model *model, size_t
-    n, const fivebar_prismatic_real *X, const fivebar_prismatic_real *V, const
-    fivebar_prismatic_real *A, fivebar_prismatic_real *accelerations, int *status)
+size_t fivebar_prismatic_actuator_accelerations_batch(const prepared *model, size_t n, const real
+    *X, const real *V, const real *A, real *accelerations, int *status)
 {
-    size_t failed = 0, i = 0;
-    for (; LANES > 1 && i + LANES <= n; i += LANES) {
-        int codes[LANES];
-        actuator_accelerations_lanes(model, X + NQ*i, V + NV*i, A + NV*i, accelerations + NU*i, codes);
-        for (size_t k = 0; k < LANES; ++k) {
+    size_t failed = 0, w;
+    for (size_t i = 0; i < n; i += w) {
+        int codes[LANES] = {INVALID};
+        w = LANES > 1 && i + LANES <= n ? LANES : 1;
+        if (w > 1) {
+            actuator_accelerations_lanes(model, X + NQ*i, V + NV*i, A + NV*i, accelerations + NU*i, codes);
+        }
+        for (size_t k = 0; k < w; ++k) {
             if (codes[k] != OK) {
                 codes[k] = fivebar_prismatic_actuator_accelerations(model, X + NQ*(i + k), V + NV*(i + k), A +
                     NV*(i + k), accelerations + NU*(i + k));
             }
         }
-        failed += record(codes, LANES, status ? status + i : NULL);
-    }
-    for (; i < n; ++i) {
-        const int code = fivebar_prismatic_actuator_accelerations(model, X + NQ*i, V + NV*i, A + NV*i,
-            accelerations + NU*i);
-        failed += record(&code, 1, status ? status + i : NULL);
+        failed += record(codes, w, status ? status + i : NULL);
     }
     return failed;
 }
 
-int fivebar_prismatic_power(const fivebar_prismatic_model *model, const fivebar_prismatic_real *X,
-    const fivebar_prismatic_real *V, const fivebar_prismatic_real *tau, fivebar_prismatic_real
-    *power)
+int fivebar_prismatic_power(const prepared *model, const real *X, const real *V, const real *tau,
+    real *power)
 {
     int code;
     power_one(model, X, V, tau, power, &code);
     return code;
 }
 
-size_t fivebar_prismatic_power_batch(const fivebar_prismatic_model *model, size_t n, const
-    fivebar_prismatic_real *X, const fivebar_prismatic_real *V, const fivebar_prismatic_real *tau,
-    fivebar_prismatic_real *power, int *status)
+size_t fivebar_prismatic_power_batch(const prepared *model, size_t n, const real *X, const real
+    *V, const real *tau, real *power, int *status)
 {
-    size_t failed = 0, i = 0;
-    for (; LANES > 1 && i + LANES <= n; i += LANES) {
-        int codes[LANES];
-        power_lanes(model, X + NQ*i, V + NV*i, tau + NU*i, power + i, codes);
-        for (size_t k = 0; k < LANES; ++k) {
+    size_t failed = 0, w;
+    for (size_t i = 0; i < n; i += w) {
+        int codes[LANES] = {INVALID};
+        w = LANES > 1 && i + LANES <= n ? LANES : 1;
+        if (w > 1) {
+            power_lanes(model, X + NQ*i, V + NV*i, tau + NU*i, power + i, codes);
+        }
+        for (size_t k = 0; k < w; ++k) {
             if (codes[k] != OK) {
                 codes[k] = fivebar_prismatic_power(model, X + NQ*(i + k), V + NV*(i + k), tau + NU*(i + k), power
                     + (i + k));
             }
         }
-        failed += record(codes, LANES, status ? status + i : NULL);
-    }
-    for (; i < n; ++i) {
-        const int code = fivebar_prismatic_power(model, X + NQ*i, V + NV*i, tau + NU*i, power + i);
-        failed += record(&code, 1, status ? status + i : NULL);
+        failed += record(codes, w, status ? status + i : NULL);
     }
     return failed;
 }
 
-int fivebar_prismatic_retract(const fivebar_prismatic_real *X, const fivebar_prismatic_real *step,
-    fivebar_prismatic_real *X_moved)
+int fivebar_prismatic_retract(const real *X, const real *step, real *X_moved)
 {
     int code;
     retract_one(X, step, X_moved, &code);
     return code;
 }
 
-size_t fivebar_prismatic_retract_batch(size_t n, const fivebar_prismatic_real *X, const
-    fivebar_prismatic_real *step, fivebar_prismatic_real *X_moved, int *status)
+size_t fivebar_prismatic_retract_batch(size_t n, const real *X, const real *step, real *X_moved,
+    int *status)
 {
-    size_t failed = 0, i = 0;
-    for (; i < n; ++i) {
+    size_t failed = 0;
+    for (size_t i = 0; i < n; ++i) {
         const int code = fivebar_prismatic_retract(X + NQ*i, step + NV*i, X_moved + NQ*i);
         failed += record(&code, 1, status ? status + i : NULL);
     }
     return failed;
 }
 
-int fivebar_prismatic_difference(const fivebar_prismatic_real *X0, const fivebar_prismatic_real
-    *X1, fivebar_prismatic_real *step)
+int fivebar_prismatic_difference(const real *X0, const real *X1, real *step)
 {
     int code;
     difference_one(X0, X1, step, &code);
     return code;
 }
 
-size_t fivebar_prismatic_difference_batch(size_t n, const fivebar_prismatic_real *X0, const
-    fivebar_prismatic_real *X1, fivebar_prismatic_real *step, int *status)
+size_t fivebar_prismatic_difference_batch(size_t n, const real *X0, const real *X1, real *step,
+    int *status)
 {
-    size_t failed = 0, i = 0;
-    for (; i < n; ++i) {
+    size_t failed = 0;
+    for (size_t i = 0; i < n; ++i) {
         const int code = fivebar_prismatic_difference(X0 + NQ*i, X1 + NQ*i, step + NV*i);
         failed += record(&code, 1, status ? status + i : NULL);
     }
     return failed;
 }
 
-int fivebar_prismatic_interpolate(const fivebar_prismatic_real *X0, const fivebar_prismatic_real
-    *X1, const fivebar_prismatic_real *s, fivebar_prismatic_real *X)
+int fivebar_prismatic_interpolate(const real *X0, const real *X1, const real *s, real *X)
 {
     int code;
     interpolate_one(X0, X1, s, X, &code);
     return code;
 }
 
-size_t fivebar_prismatic_interpolate_batch(size_t n, const fivebar_prismatic_real *X0, const
-    fivebar_prismatic_real *X1, const fivebar_prismatic_real *s, fivebar_prismatic_real *X, int
-    *status)
+size_t fivebar_prismatic_interpolate_batch(size_t n, const real *X0, const real *X1, const real
+    *s, real *X, int *status)
 {
-    size_t failed = 0, i = 0;
-    for (; i < n; ++i) {
+    size_t failed = 0;
+    for (size_t i = 0; i < n; ++i) {
         const int code = fivebar_prismatic_interpolate(X0 + NQ*i, X1 + NQ*i, s + i, X + NQ*i);
         failed += record(&code, 1, status ? status + i : NULL);
     }

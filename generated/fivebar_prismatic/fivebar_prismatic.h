@@ -233,6 +233,24 @@ size_t fivebar_prismatic_condition_batch(const fivebar_prismatic_model *model, s
     fivebar_prismatic_real *X, fivebar_prismatic_real *sigma, fivebar_prismatic_real *legs, int
     *status);
 
+/* Manipulability of forces: the product of the singular values that condition has by default, and
+   the least over the largest of them. 27 mul, 24 add, 2 div, 5 sqrt, 0 trig; the singular values
+   apart. In: X (NQ). Out: measure (1), isotropy (1). */
+int fivebar_prismatic_manipulability(const fivebar_prismatic_model *model, const
+    fivebar_prismatic_real *X, fivebar_prismatic_real *measure, fivebar_prismatic_real *isotropy);
+size_t fivebar_prismatic_manipulability_batch(const fivebar_prismatic_model *model, size_t n,
+    const fivebar_prismatic_real *X, fivebar_prismatic_real *measure, fivebar_prismatic_real
+    *isotropy, int *status);
+
+/* How near actuators and legs are to being singular: relative distances, 0 where they are. 27
+   mul, 24 add, 2 div, 5 sqrt, 0 trig; the singular values apart. In: X (NQ). Out: actuators (1),
+   legs (1). */
+int fivebar_prismatic_singularity_distance(const fivebar_prismatic_model *model, const
+    fivebar_prismatic_real *X, fivebar_prismatic_real *actuators, fivebar_prismatic_real *legs);
+size_t fivebar_prismatic_singularity_distance_batch(const fivebar_prismatic_model *model, size_t
+    n, const fivebar_prismatic_real *X, fivebar_prismatic_real *actuators, fivebar_prismatic_real
+    *legs, int *status);
+
 /* X at which the actuated joints stand at q_actuated, by Gauss-Newton from X0. Extra coordinates
    that actuators do not determine stay. Impossible where no pose is found. In: q_actuated (NU),
    X0 (NQ). Out: X (NQ). */

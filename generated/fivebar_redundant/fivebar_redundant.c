@@ -955,7 +955,7 @@ APART void solve_apart(size_t n, const real *b, real *rows, real *x, real *singu
     solve_state(n, b, rows, x, singular);
 }
 
-#define BIG 3  /* most rows or columns of a matrix that is not square, or not solved */
+#define BIG 4  /* most rows or columns of a matrix that is not square, or not solved */
 
 /* Reflect rows p, p + 1, ... so that column p is zero below row p; columns beyond go along.
    The reflection's vector is left in column p, the diagonal entry is returned. */
@@ -1208,6 +1208,15 @@ INLINE void product(size_t m, size_t n, size_t p, size_t w, const real *a, const
     }
 }
 
+INLINE void transpose(size_t m, size_t n, size_t w, const real *a, real *x)
+{
+    for (size_t e = 0; e < m*n; ++e) {
+        for (size_t k = 0; k < w; ++k) {
+            x[((e%n)*m + e/n)*w + k] = a[e*w + k];
+        }
+    }
+}
+
 /* a . b */
 INLINE void inner(size_t n, size_t w, const real *a, const real *b, real *x)
 {
@@ -1242,6 +1251,24 @@ INLINE void unlimited(size_t rows, size_t size, size_t w, const size_t *places, 
             x[places[i]*w + k] = R(INFINITY);
         }
     }
+}
+
+INLINE void least_entry(size_t n, const real *a, real *x)
+{
+    *x = a[0];
+    for (size_t e = 1; e < n; ++e) {
+        *x = lesser(*x, a[e]);
+    }
+}
+
+/* Of the first n entries the product, and the last over the first, 0 where that is 0. */
+INLINE void spread(size_t n, const real *a, real *product_of, real *ratio)
+{
+    *product_of = 1;
+    for (size_t e = 0; e < n; ++e) {
+        *product_of *= a[e];
+    }
+    *ratio = magnitude(a[0]) > 0 ? a[n - 1]/a[0] : a[0];
 }
 
 /* 1 where no entry is negative, else 0. */
@@ -1280,6 +1307,151 @@ INLINE void wrap_turns(size_t rows, size_t n, const size_t *places, real *x)
     }
 }
 
+/* Flag a state of which inputs are not known, or else nothing is found. */
+INLINE void doubt(int known, int found, real *unreachable, real *overflow)
+{
+    *overflow += UNLESS(known);
+    *unreachable += UNLESS(found || !known);
+}
+
+/* The bound that is missed by most, n if none; sign is 1 for a lower, -1 for an upper one. */
+static size_t missed_bound(size_t n, const real *start, const real *t, const real *least,
+        const real *most, const real *side, real *sign)
+{
+    const real size = largest(start, n), endless = largest(start + n, n);
+    real first = 0, second = 0;
+    size_t worst = n;
+    for (size_t k = 0; k < 2*n; ++k) {
+        const size_t i = k < n ? k : k - n;
+        const real s = k < n ? 1 : -1, bound = k < n ? least[i] : most[i], gap = s*(bound - t[i]);
+        const real rate = magnitude(t[n + i]) > PIVOT*endless ? -s*t[n + i] : 0;
+        const int is_missed = rate > 0 || (rate >= 0 && gap > PIVOT*(size + magnitude(bound)));
+        if (is_missed && is_finite(bound) && !(magnitude(side[i]) > 0)
+            && (rate > second || (rate >= second && gap > first))) {
+            worst = i;
+            first = gap;
+            second = rate;
+            *sign = s;
+        }
+    }
+    return worst;
+}
+
+/* x with gram x = right at the bounds that are kept, zero elsewhere. */
+static void at_bounds(size_t n, const real *gram, const real *side, const real *right, real *x)
+{
+    real rows[BIG*(BIG + 4)] = {0}, unsure = 0;
+    const size_t stride = stride_of(n, 1);
+    for (size_t i = 0; i < n; ++i) {
+        for (size_t j = 0; j < n; ++j) {
+            rows[i*stride + j] = magnitude(side[i]*side[j]) > 0 ? gram[i*n + j] : R(i == j);
+        }
+        rows[i*stride + n] = magnitude(side[i]) > 0 ? right[i] : 0;
+    }
+    solve_one(n, stride, rows, x, &unsure);
+}
+
+/* Points from amounts of the normals. */
+static void moved_by(size_t n, const real *start, const real *gram, const real *amounts, real *t)
+{
+    for (size_t e = 0; e < 2*n; ++e) {
+        const real *const row = gram + e%n*n, *const own = amounts + (e < n ? 0 : n);
+        t[e] = start[e];
+        for (size_t j = 0; j < n; ++j) {
+            t[e] += row[j]*own[j];
+        }
+    }
+}
+
+/* The point nearest to the start at the bounds on these sides. */
+static void settle(size_t n, const real *start, const real *gram, const real *least,
+        const real *most, const real *side, real *t)
+{
+    real amounts[2*BIG] = {0}, right[2*BIG] = {0};
+    for (size_t i = 0; i < n; ++i) {
+        right[i] = (side[i] > 0 ? least[i] : most[i]) - start[i];
+        right[n + i] = -start[n + i];
+    }
+    at_bounds(n, gram, side, right, amounts);
+    at_bounds(n, gram, side, right + n, amounts + n);
+    moved_by(n, start, gram, amounts, t);
+    for (size_t i = 0; i < n; ++i) {
+        t[i] = side[i] > 0 || t[i] < least[i] ? least[i] : side[i] < 0 || t[i] > most[i] ? most[i] : t[i];
+    }
+}
+
+#define TURNS 20  /* steps of the search, for every bounded force */
+
+/* Whether there are such points; t[2*n] is the nearest one. */
+static int nearest_point(size_t n, const real *start, const real *gram, const real *least,
+        const real *most, real *t)
+{
+    real amounts[2*BIG] = {0}, side[BIG] = {0}, right[BIG] = {0}, without[BIG] = {0}, sign = 0;
+    size_t p = n;
+    for (size_t turn = 0; turn < TURNS*n; ++turn) {
+        moved_by(n, start, gram, amounts, t);
+        p = p < n ? p : missed_bound(n, start, t, least, most, side, &sign);
+        if (p >= n) {
+            settle(n, start, gram, least, most, side, t);
+            return 1;
+        }
+        for (size_t i = 0; i < n; ++i) {
+            right[i] = sign*gram[i*n + p];
+        }
+        at_bounds(n, gram, side, right, without);
+        real apart = gram[p*n + p], clear = 1;
+        for (size_t i = 0; i < n; ++i) {
+            apart -= right[i]*without[i];
+            clear += without[i]*without[i];
+        }
+        clear *= PIVOT;  /* above what rounding makes of zero */
+        size_t leaving = 2*n;
+        real first = 0, second = 0;
+        if (apart > clear) {
+            leaving = n;
+            first = sign*((sign > 0 ? least[p] : most[p]) - t[p])/apart;
+            second = -sign*t[n + p]/apart;
+        }
+        for (size_t i = 0; i < n; ++i) {
+            const real share = side[i]*without[i] > clear ? without[i] : R(INFINITY);
+            const real shift = amounts[i]/share, rate = amounts[n + i]/share;
+            if (is_finite(share)
+                && (leaving == 2*n || rate < second || (rate <= second && shift < first))) {
+                leaving = i;
+                first = shift;
+                second = rate;
+            }
+        }
+        if (leaving == 2*n) {
+            return 0;
+        }
+        for (size_t i = 0; i < n; ++i) {
+            amounts[i] -= without[i]*first;
+            amounts[n + i] -= without[i]*second;
+        }
+        amounts[p] += sign*first;
+        amounts[n + p] += sign*second;
+        if (leaving == n) {
+            side[p] = sign;
+            p = n;
+        } else {
+            side[leaving] = amounts[leaving] = amounts[n + leaving] = 0;
+        }
+    }
+    return 0;
+}
+
+/* Of the a + b y with entries from c to d the one nearest to a. */
+static void nearest_within(size_t n, const real *a, const real *b, const real *c, const real *d,
+        real *x, real *unreachable, real *overflow)
+{
+    real start[2*BIG] = {0}, t[2*BIG] = {0};
+    copy(n, a, start);
+    const int known = all_finite(a, n) && all_finite(b, n*n) && all_finite(c, n) && all_finite(d, n);
+    doubt(known, known && nearest_point(n, start, b, c, d, t), unreachable, overflow);
+    copy(n, t, x);
+}
+
 /* Residuals [m, rad] at which searches stop, with steps that are halved and without, and that count
    as solved. */
 #define CLOSED BY_TYPE(5e-5, 1e-13, 1e-16)
@@ -1294,140 +1466,533 @@ static void moved(const real *X, const real *step, real part, real *to)
     }
 }
 
+/* ---- what functions of the state share; v: values for others ---- */
+
+typedef struct {
+    real rrr_Kd_1, rrr_Kc_1, rrr_Ks_1, rrr_rho2_1, rrr_disc_1, rrr_root_1, inv_rrr_rho2_1, rrr_c_1,
+        rrr_s_1, rrr_x_2_in_axes1_x, rrr_c_2, rrr_s_2, rrr_r_1_in_axes1_y, rrr_r_1_in_axes1_x,
+        rrr_r_1_in_axes2_x, rrr_r_1_in_axes2_y, rrr_w_1_t, rrr_w_1_t_2, axis_y_rrr_axes2_x,
+        axis_x_rrr_axes2_x, rrr_w_1_in_axes2_x, rrr_w_1_x, rrr_w_1_y, rrr_qd_1_t, rrr_qd_1_t_2,
+        rrr_W_1_in_axes1_xx, rrr_W_2_t, rrr_bias_in_axes2_x, rrr_w_2_in_axes2_x,
+        rrr_d_Gamma_2_in_axes2_x, rrr_d_Gamma_1_in_axes2_x, rrr_d_c_in_axes2_xy, rrr_acc_2_in_axes2_x,
+        rrr_acc_2_in_axes2_y, rrr_c_in_axes2_x, rrr_c_in_axes2_y;
+} values_rrr;
+
+INLINE void stage_rrr_X(const prepared *m, size_t w, size_t i, size_t j, const real *X, values_rrr
+    *v)
+{
+    /* (rrr-S) from the base point to the connection point */
+    const real rrr_base_point_x = m->rrr_base_point_x[i];
+    const real rrr_platform_point_x = m->rrr_platform_point_x[i];
+    const real t_x = X[0*w + j];
+    const real rrr_S_x = rrr_platform_point_x + t_x - rrr_base_point_x;
+    const real rrr_base_point_y = m->rrr_base_point_y[i];
+    const real rrr_platform_point_y = m->rrr_platform_point_y[i];
+    const real t_y = X[1*w + j];
+    const real rrr_S_y = rrr_platform_point_y + t_y - rrr_base_point_y;
+    /* (rrr-Kd_1) projection on the centre's direction, from the distance fixed by the joints beyond
+       joint 1 */
+    const real rrr_Kd_1_t_3 = rrr_S_x*rrr_S_x + rrr_S_y*rrr_S_y;
+    const real rrr_Kd_1_t = m->rrr_Kd_1_t[i];
+    const real rrr_Kd_1_t_2 = m->rrr_Kd_1_t_2[i];
+    const real rrr_Kd_1 = rrr_Kd_1_t + R(0.5)*rrr_Kd_1_t_3 - rrr_Kd_1_t_2;
+    /* (rrr-Kc_1) factor of the cosine in the equation of joint 1 */
+    const real rrr_base_frame_xx = m->rrr_base_frame_xx[i];
+    const real rrr_base_frame_yx = m->rrr_base_frame_yx[i];
+    const real rrr_joint2_offset_x = m->rrr_joint2_offset_x[i];
+    const real rrr_Kc_1 = rrr_joint2_offset_x*(rrr_S_x*rrr_base_frame_xx +
+        rrr_S_y*rrr_base_frame_yx);
+    /* (rrr-Ks_1) factor of the sine in the equation of joint 1 */
+    const real rrr_base_frame_xy = m->rrr_base_frame_xy[i];
+    const real rrr_base_frame_yy = m->rrr_base_frame_yy[i];
+    const real rrr_Ks_1 = rrr_joint2_offset_x*(rrr_S_x*rrr_base_frame_xy +
+        rrr_S_y*rrr_base_frame_yy);
+    /* (rrr-rho2_1) squared amplitude */
+    const real rrr_rho2_1 = rrr_Kc_1*rrr_Kc_1 + rrr_Ks_1*rrr_Ks_1;
+    /* (rrr-disc_1) discriminant */
+    const real rrr_disc_1 = rrr_rho2_1 - rrr_Kd_1*rrr_Kd_1;
+    /* (rrr-root_1) root, with the sign of the branch */
+    const real rrr_branch_1 = m->rrr_branch_1[i];
+    const real rrr_root_1 = rrr_branch_1*root(rrr_disc_1);
+    /* (rrr-c_1) cosine of the angle of joint 1 from its reference direction */
+    const real inv_rrr_rho2_1 = 1/rrr_rho2_1;
+    const real rrr_c_1 = inv_rrr_rho2_1*(rrr_Kc_1*rrr_Kd_1 - rrr_Ks_1*rrr_root_1);
+    /* (rrr-s_1) sine of the angle of joint 1 from its reference direction */
+    const real rrr_s_1 = inv_rrr_rho2_1*(rrr_Kc_1*rrr_root_1 + rrr_Kd_1*rrr_Ks_1);
+    /* (rrr-x_2) from the origin of joint 2 to the connection point */
+    const real inv_rrr_size_t = m->inv_rrr_size_t[i];
+    const real rrr_x_2_in_axes1_x = inv_rrr_size_t*rrr_Kd_1*rrr_joint2_offset_x -
+        rrr_joint2_offset_x;
+    /* (rrr-c_2) cosine of the angle of joint 2 from its reference direction */
+    const real inv_rrr_size_t_2 = m->inv_rrr_size_t_2[i];
+    const real rrr_platform_joint_offset_x = m->rrr_platform_joint_offset_x[i];
+    const real rrr_c_2 = inv_rrr_size_t_2*rrr_platform_joint_offset_x*rrr_x_2_in_axes1_x;
+    /* (rrr-s_2) sine of the angle of joint 2 from its reference direction */
+    const real rrr_s_2 =
+        -inv_rrr_size_t*inv_rrr_size_t_2*rrr_joint2_offset_x*rrr_platform_joint_offset_x*rrr_root_1;
+    /* (rrr-r_1) from joint 1 to the connection point, along the links */
+    const real rrr_r_1_in_axes1_y = rrr_platform_joint_offset_x*rrr_s_2;
+    const real rrr_r_1_in_axes1_x = rrr_joint2_offset_x + rrr_c_2*rrr_platform_joint_offset_x;
+    const real rrr_r_1_in_axes2_x = rrr_c_2*rrr_r_1_in_axes1_x + rrr_r_1_in_axes1_y*rrr_s_2;
+    const real rrr_r_1_in_axes2_y = rrr_c_2*rrr_r_1_in_axes1_y - rrr_r_1_in_axes1_x*rrr_s_2;
+    /* (rrr-w_1) reciprocal vector 1 */
+    const real rrr_w_1_t = rrr_c_1*rrr_s_2 + rrr_c_2*rrr_s_1;
+    const real rrr_w_1_t_2 = rrr_c_1*rrr_c_2 - rrr_s_1*rrr_s_2;
+    const real axis_y_rrr_axes2_x = rrr_base_frame_xy*rrr_w_1_t_2 -
+        rrr_base_frame_xx*rrr_w_1_t;
+    const real axis_x_rrr_axes2_x = rrr_base_frame_yy*rrr_w_1_t_2 -
+        rrr_base_frame_yx*rrr_w_1_t;
+    const real rrr_w_1_in_axes2_x = -1/rrr_r_1_in_axes2_y;
+    const real rrr_w_1_x = axis_x_rrr_axes2_x*rrr_w_1_in_axes2_x;
+    const real rrr_w_1_y = -axis_y_rrr_axes2_x*rrr_w_1_in_axes2_x;
+    /* (rrr-qd_1) rate of joint 1 */
+    const real rrr_qd_1_t = rrr_c_1*rrr_s_2 + rrr_c_2*rrr_s_1;
+    const real rrr_qd_1_t_2 = rrr_c_1*rrr_c_2 - rrr_s_1*rrr_s_2;
+    v->rrr_Kd_1 = rrr_Kd_1;
+    v->rrr_Kc_1 = rrr_Kc_1;
+    v->rrr_Ks_1 = rrr_Ks_1;
+    v->rrr_rho2_1 = rrr_rho2_1;
+    v->rrr_disc_1 = rrr_disc_1;
+    v->rrr_root_1 = rrr_root_1;
+    v->inv_rrr_rho2_1 = inv_rrr_rho2_1;
+    v->rrr_c_1 = rrr_c_1;
+    v->rrr_s_1 = rrr_s_1;
+    v->rrr_x_2_in_axes1_x = rrr_x_2_in_axes1_x;
+    v->rrr_c_2 = rrr_c_2;
+    v->rrr_s_2 = rrr_s_2;
+    v->rrr_r_1_in_axes1_y = rrr_r_1_in_axes1_y;
+    v->rrr_r_1_in_axes1_x = rrr_r_1_in_axes1_x;
+    v->rrr_r_1_in_axes2_x = rrr_r_1_in_axes2_x;
+    v->rrr_r_1_in_axes2_y = rrr_r_1_in_axes2_y;
+    v->rrr_w_1_t = rrr_w_1_t;
+    v->rrr_w_1_t_2 = rrr_w_1_t_2;
+    v->axis_y_rrr_axes2_x = axis_y_rrr_axes2_x;
+    v->axis_x_rrr_axes2_x = axis_x_rrr_axes2_x;
+    v->rrr_w_1_in_axes2_x = rrr_w_1_in_axes2_x;
+    v->rrr_w_1_x = rrr_w_1_x;
+    v->rrr_w_1_y = rrr_w_1_y;
+    v->rrr_qd_1_t = rrr_qd_1_t;
+    v->rrr_qd_1_t_2 = rrr_qd_1_t_2;
+}
+
+INLINE void stage_rrr_V_X(const prepared *m, size_t w, size_t i, size_t j, const real *V,
+    values_rrr *v)
+{
+    /* (rrr-qd_1) rate of joint 1 */
+    const real t_dot_x = V[0*w + j];
+    const real t_dot_y = V[1*w + j];
+    const real rrr_qd_1 = v->rrr_w_1_in_axes2_x*(v->axis_x_rrr_axes2_x*t_dot_x -
+        v->axis_y_rrr_axes2_x*t_dot_y);
+    /* (rrr-W_1) centripetal tensor of link 1 */
+    const real rrr_W_1_in_axes1_xx = -rrr_qd_1*rrr_qd_1;
+    /* (rrr-omega_2) angular velocity of link 2 */
+    const real rrr_w_2_in_axes2_y = m->rrr_w_2_in_axes2_y[i];
+    const real rrr_omega_2_in_axes2_z = rrr_qd_1 +
+        rrr_w_2_in_axes2_y*(v->axis_x_rrr_axes2_x*t_dot_y + v->axis_y_rrr_axes2_x*t_dot_x -
+        rrr_qd_1*v->rrr_r_1_in_axes2_x);
+    /* (rrr-W_2) centripetal tensor of link 2 */
+    const real rrr_W_2_t = rrr_omega_2_in_axes2_z*rrr_omega_2_in_axes2_z;
+    /* (rrr-bias) acceleration of the connection point at zero joint accelerations */
+    const real rrr_joint2_offset_x = m->rrr_joint2_offset_x[i];
+    const real rrr_platform_joint_offset_x = m->rrr_platform_joint_offset_x[i];
+    const real rrr_bias_in_axes2_x = rrr_W_1_in_axes1_xx*v->rrr_c_2*rrr_joint2_offset_x -
+        rrr_W_2_t*rrr_platform_joint_offset_x;
+    v->rrr_W_1_in_axes1_xx = rrr_W_1_in_axes1_xx;
+    v->rrr_W_2_t = rrr_W_2_t;
+    v->rrr_bias_in_axes2_x = rrr_bias_in_axes2_x;
+}
+
+INLINE void stage_rrr_H_condition(const prepared *m, size_t i, values_rrr *v)
+{
+    /* (rrr-r_1) from joint 1 to the connection point, along the links */
+    const real rrr_platform_joint_offset_x = m->rrr_platform_joint_offset_x[i];
+    const real rrr_r_1_in_axes2_y = v->rrr_c_2*rrr_platform_joint_offset_x*v->rrr_s_2 -
+        v->rrr_r_1_in_axes1_x*v->rrr_s_2;
+    /* (rrr-w_1) reciprocal vector 1 */
+    const real rrr_w_1_in_axes2_x = -1/rrr_r_1_in_axes2_y;
+    const real rrr_base_frame_yx = m->rrr_base_frame_yx[i];
+    const real rrr_base_frame_yy = m->rrr_base_frame_yy[i];
+    const real rrr_w_1_x = rrr_w_1_in_axes2_x*(rrr_base_frame_yy*v->rrr_w_1_t_2 -
+        rrr_base_frame_yx*v->rrr_w_1_t);
+    const real rrr_base_frame_xx = m->rrr_base_frame_xx[i];
+    const real rrr_base_frame_xy = m->rrr_base_frame_xy[i];
+    const real rrr_w_1_y = -rrr_w_1_in_axes2_x*(rrr_base_frame_xy*v->rrr_w_1_t_2 -
+        rrr_base_frame_xx*v->rrr_w_1_t);
+    v->rrr_r_1_in_axes2_y = rrr_r_1_in_axes2_y;
+    v->rrr_w_1_x = rrr_w_1_x;
+    v->rrr_w_1_y = rrr_w_1_y;
+}
+
+INLINE void stage_rrr_M_dynamics(const prepared *m, size_t i, values_rrr *v)
+{
+    /* (rrr-w_2) reciprocal vector 2 */
+    const real rrr_w_2_in_axes2_y = m->rrr_w_2_in_axes2_y[i];
+    const real rrr_w_2_in_axes2_x =
+        -v->rrr_r_1_in_axes2_x*v->rrr_w_1_in_axes2_x*rrr_w_2_in_axes2_y;
+    /* (rrr-d_Gamma_2) coefficient of the acceleration in: moment about axis 2 of the distal links'
+       inertia and weight */
+    const real rrr_d_Gamma_2_t = m->rrr_d_Gamma_2_t[i];
+    const real rrr_d_Gamma_2_t_2 = rrr_d_Gamma_2_t*v->rrr_r_1_in_axes2_x;
+    const real rrr_J_2_in_spec2_zz = m->rrr_J_2_in_spec2_zz[i];
+    const real rrr_h_2_in_spec2_y = m->rrr_h_2_in_spec2_y[i];
+    const real rrr_d_Gamma_2_in_axes2_x = v->rrr_w_1_in_axes2_x*(rrr_J_2_in_spec2_zz -
+        rrr_d_Gamma_2_t_2) - rrr_h_2_in_spec2_y;
+    /* (rrr-d_Gamma_1) coefficient of the acceleration in: moment about axis 1 of the distal links'
+       inertia and weight */
+    const real rrr_Jc_1_in_axes1_zz = m->rrr_Jc_1_in_axes1_zz[i];
+    const real rrr_d_Gamma_1_in_axes2_x = v->rrr_w_1_in_axes2_x*(rrr_Jc_1_in_axes1_zz -
+        rrr_d_Gamma_2_t_2) - rrr_h_2_in_spec2_y;
+    /* (rrr-d_c) coefficient of the acceleration in: leg force on the platform without actuation and
+       without the mass at the connection point */
+    const real rrr_d_Gamma_2_in_axes2_y = m->rrr_d_Gamma_2_in_axes2_y[i];
+    const real rrr_d_phi_2_t = m->rrr_d_phi_2_t[i];
+    const real rrr_d_c_in_axes2_xy = rrr_d_phi_2_t -
+        rrr_d_Gamma_2_in_axes2_y*v->rrr_w_1_in_axes2_x -
+        rrr_d_Gamma_2_in_axes2_y*rrr_w_2_in_axes2_x;
+    v->rrr_w_2_in_axes2_x = rrr_w_2_in_axes2_x;
+    v->rrr_d_Gamma_2_in_axes2_x = rrr_d_Gamma_2_in_axes2_x;
+    v->rrr_d_Gamma_1_in_axes2_x = rrr_d_Gamma_1_in_axes2_x;
+    v->rrr_d_c_in_axes2_xy = rrr_d_c_in_axes2_xy;
+}
+
+INLINE void stage_rrr_legs_required(const prepared *m, size_t w, size_t i, size_t j, const real
+    *A, values_rrr *v)
+{
+    /* (rrr-S_ddot) acceleration of the connection point */
+    const real t_ddot_x = A[0*w + j];
+    const real t_ddot_y = A[1*w + j];
+    const real rrr_S_ddot_in_axes2_x = v->axis_x_rrr_axes2_x*t_ddot_x -
+        v->axis_y_rrr_axes2_x*t_ddot_y;
+    const real rrr_S_ddot_in_axes2_y = v->axis_x_rrr_axes2_x*t_ddot_y +
+        v->axis_y_rrr_axes2_x*t_ddot_x;
+    /* (rrr-rel) acceleration of the connection point left to the joint accelerations */
+    const real rrr_rel_in_axes2_x = rrr_S_ddot_in_axes2_x - v->rrr_bias_in_axes2_x;
+    const real rrr_joint2_offset_x = m->rrr_joint2_offset_x[i];
+    const real rrr_rel_in_axes2_y = rrr_S_ddot_in_axes2_y +
+        v->rrr_W_1_in_axes1_xx*rrr_joint2_offset_x*v->rrr_s_2;
+    /* (rrr-B_1) acceleration tensor of link 1 */
+    const real rrr_B_1_in_axes1_xy = -rrr_rel_in_axes2_x*v->rrr_w_1_in_axes2_x;
+    /* (rrr-alpha_2) angular acceleration of link 2 */
+    const real rrr_w_2_in_axes2_y = m->rrr_w_2_in_axes2_y[i];
+    const real rrr_alpha_2_in_axes2_z = rrr_w_2_in_axes2_y*(rrr_rel_in_axes2_y +
+        rrr_B_1_in_axes1_xy*v->rrr_r_1_in_axes2_x) - rrr_B_1_in_axes1_xy;
+    /* (rrr-acc_2) acceleration of the reference point of link 2, less gravity */
+    const real gravity_x = m->gravity_x;
+    const real gravity_y = m->gravity_y;
+    const real rrr_acc_2_in_axes2_x = rrr_S_ddot_in_axes2_x + v->axis_y_rrr_axes2_x*gravity_y
+        - v->axis_x_rrr_axes2_x*gravity_x;
+    const real rrr_acc_2_in_axes2_y = rrr_S_ddot_in_axes2_y - v->axis_x_rrr_axes2_x*gravity_y
+        - v->axis_y_rrr_axes2_x*gravity_x;
+    /* (rrr-mu_2) inertia moment of the links that turn with link 2, about their reference points */
+    const real rrr_J_2_in_spec2_zz = m->rrr_J_2_in_spec2_zz[i];
+    const real rrr_h_2_in_spec2_x = m->rrr_h_2_in_spec2_x[i];
+    const real rrr_h_2_in_spec2_y = m->rrr_h_2_in_spec2_y[i];
+    const real rrr_mu_2_in_axes2_z = rrr_J_2_in_spec2_zz*rrr_alpha_2_in_axes2_z +
+        rrr_acc_2_in_axes2_y*rrr_h_2_in_spec2_x - rrr_acc_2_in_axes2_x*rrr_h_2_in_spec2_y;
+    /* (rrr-mu_1) inertia moment of the links that turn with link 1, about their reference points */
+    const real rrr_J_1_in_spec1_zz = m->rrr_J_1_in_spec1_zz[i];
+    const real rrr_h_1_in_spec1_x = m->rrr_h_1_in_spec1_x[i];
+    const real rrr_h_1_in_spec1_y = m->rrr_h_1_in_spec1_y[i];
+    const real rrr_mu_1_t = m->rrr_mu_1_t[i];
+    const real rrr_mu_1_t_2 = m->rrr_mu_1_t_2[i];
+    const real rrr_mu_1_in_axes1_z = rrr_h_1_in_spec1_y*(v->rrr_c_1*rrr_mu_1_t +
+        rrr_mu_1_t_2*v->rrr_s_1) - rrr_B_1_in_axes1_xy*rrr_J_1_in_spec1_zz -
+        rrr_h_1_in_spec1_x*(v->rrr_c_1*rrr_mu_1_t_2 - rrr_mu_1_t*v->rrr_s_1);
+    /* (rrr-N_1) moment about joint 1 of the links from 1 outwards, the force at the connection point
+       left out */
+    const real rrr_N_1_in_axes1_z = rrr_mu_1_in_axes1_z + rrr_mu_2_in_axes2_z;
+    /* (rrr-G) force at the connection point that balances the leg's inertia and weight along all
+       degrees of freedom */
+    const real rrr_G_in_axes2_y = rrr_mu_2_in_axes2_z*rrr_w_2_in_axes2_y;
+    /* (rrr-c) leg force on the platform without actuation and without the mass at the connection
+       point */
+    const real rrr_c_in_axes2_x = v->rrr_W_2_t*rrr_h_2_in_spec2_x +
+        rrr_alpha_2_in_axes2_z*rrr_h_2_in_spec2_y +
+        v->rrr_w_1_in_axes2_x*(rrr_G_in_axes2_y*v->rrr_r_1_in_axes2_x - rrr_N_1_in_axes1_z);
+    const real rrr_c_in_axes2_y = v->rrr_W_2_t*rrr_h_2_in_spec2_y - rrr_G_in_axes2_y -
+        rrr_alpha_2_in_axes2_z*rrr_h_2_in_spec2_x;
+    v->rrr_acc_2_in_axes2_x = rrr_acc_2_in_axes2_x;
+    v->rrr_acc_2_in_axes2_y = rrr_acc_2_in_axes2_y;
+    v->rrr_c_in_axes2_x = rrr_c_in_axes2_x;
+    v->rrr_c_in_axes2_y = rrr_c_in_axes2_y;
+}
+
+typedef struct {
+    real rrr_leg1_Kd_1, rrr_leg1_Kc_1, rrr_leg1_Ks_1, rrr_leg1_rho2_1, rrr_leg1_disc_1,
+        rrr_leg1_root_1, inv_rrr_leg1_rho2_1, rrr_leg1_c_1, rrr_leg1_s_1, rrr_leg1_x_2_in_axes1_x,
+        rrr_leg1_c_2, rrr_leg1_s_2, rrr_leg1_r_1_in_axes1_y, rrr_leg1_r_1_in_axes1_x,
+        rrr_leg1_r_1_in_axes2_x, rrr_leg1_r_1_in_axes2_y, axis_y_rrr_leg1_axes2_x,
+        axis_x_rrr_leg1_axes2_x, rrr_leg1_w_1_in_axes2_x, rrr_leg1_w_1_x, rrr_leg1_w_1_y,
+        rrr_leg1_w_2_in_axes2_x, rrr_leg1_w_2_x, rrr_leg1_w_2_y, rrr_leg1_qd_1_t, rrr_leg1_qd_1_t_2,
+        rrr_leg1_W_1_in_axes1_xx, rrr_leg1_W_2_t, rrr_leg1_bias_in_axes2_x,
+        rrr_leg1_d_Gamma_2_in_axes2_x, rrr_leg1_d_Gamma_1_in_axes2_x, rrr_leg1_d_c_in_axes2_xy,
+        rrr_leg1_acc_2_in_axes2_x, rrr_leg1_acc_2_in_axes2_y, rrr_leg1_c_in_axes2_x,
+        rrr_leg1_c_in_axes2_y;
+} values_rrr_leg1;
+
+INLINE void stage_rrr_leg1_X(const prepared *m, size_t w, size_t i, size_t j, const real *X,
+    values_rrr_leg1 *v)
+{
+    /* (rrr_leg1-S) from the base point to the connection point */
+    const real rrr_leg1_base_point_x = m->rrr_leg1_base_point_x[i];
+    const real rrr_leg1_platform_point_x = m->rrr_leg1_platform_point_x[i];
+    const real t_x = X[0*w + j];
+    const real rrr_leg1_S_x = rrr_leg1_platform_point_x + t_x - rrr_leg1_base_point_x;
+    const real rrr_leg1_base_point_y = m->rrr_leg1_base_point_y[i];
+    const real rrr_leg1_platform_point_y = m->rrr_leg1_platform_point_y[i];
+    const real t_y = X[1*w + j];
+    const real rrr_leg1_S_y = rrr_leg1_platform_point_y + t_y - rrr_leg1_base_point_y;
+    /* (rrr_leg1-Kd_1) projection on the centre's direction, from the distance fixed by the joints
+       beyond joint 1 */
+    const real rrr_leg1_Kd_1_t_3 = rrr_leg1_S_x*rrr_leg1_S_x + rrr_leg1_S_y*rrr_leg1_S_y;
+    const real rrr_leg1_Kd_1_t = m->rrr_leg1_Kd_1_t[i];
+    const real rrr_leg1_Kd_1_t_2 = m->rrr_leg1_Kd_1_t_2[i];
+    const real rrr_leg1_Kd_1 = rrr_leg1_Kd_1_t + R(0.5)*rrr_leg1_Kd_1_t_3 - rrr_leg1_Kd_1_t_2;
+    /* (rrr_leg1-Kc_1) factor of the cosine in the equation of joint 1 */
+    const real rrr_leg1_base_frame_xx = m->rrr_leg1_base_frame_xx[i];
+    const real rrr_leg1_base_frame_yx = m->rrr_leg1_base_frame_yx[i];
+    const real rrr_leg1_joint2_offset_x = m->rrr_leg1_joint2_offset_x[i];
+    const real rrr_leg1_Kc_1 = rrr_leg1_joint2_offset_x*(rrr_leg1_S_x*rrr_leg1_base_frame_xx +
+        rrr_leg1_S_y*rrr_leg1_base_frame_yx);
+    /* (rrr_leg1-Ks_1) factor of the sine in the equation of joint 1 */
+    const real rrr_leg1_base_frame_xy = m->rrr_leg1_base_frame_xy[i];
+    const real rrr_leg1_base_frame_yy = m->rrr_leg1_base_frame_yy[i];
+    const real rrr_leg1_Ks_1 = rrr_leg1_joint2_offset_x*(rrr_leg1_S_x*rrr_leg1_base_frame_xy +
+        rrr_leg1_S_y*rrr_leg1_base_frame_yy);
+    /* (rrr_leg1-rho2_1) squared amplitude */
+    const real rrr_leg1_rho2_1 = rrr_leg1_Kc_1*rrr_leg1_Kc_1 + rrr_leg1_Ks_1*rrr_leg1_Ks_1;
+    /* (rrr_leg1-disc_1) discriminant */
+    const real rrr_leg1_disc_1 = rrr_leg1_rho2_1 - rrr_leg1_Kd_1*rrr_leg1_Kd_1;
+    /* (rrr_leg1-root_1) root, with the sign of the branch */
+    const real rrr_leg1_branch_1 = m->rrr_leg1_branch_1[i];
+    const real rrr_leg1_root_1 = rrr_leg1_branch_1*root(rrr_leg1_disc_1);
+    /* (rrr_leg1-c_1) cosine of the angle of joint 1 from its reference direction */
+    const real inv_rrr_leg1_rho2_1 = 1/rrr_leg1_rho2_1;
+    const real rrr_leg1_c_1 = inv_rrr_leg1_rho2_1*(rrr_leg1_Kc_1*rrr_leg1_Kd_1 -
+        rrr_leg1_Ks_1*rrr_leg1_root_1);
+    /* (rrr_leg1-s_1) sine of the angle of joint 1 from its reference direction */
+    const real rrr_leg1_s_1 = inv_rrr_leg1_rho2_1*(rrr_leg1_Kc_1*rrr_leg1_root_1 +
+        rrr_leg1_Kd_1*rrr_leg1_Ks_1);
+    /* (rrr_leg1-x_2) from the origin of joint 2 to the connection point */
+    const real inv_rrr_leg1_size_t = m->inv_rrr_leg1_size_t[i];
+    const real rrr_leg1_x_2_in_axes1_x =
+        inv_rrr_leg1_size_t*rrr_leg1_Kd_1*rrr_leg1_joint2_offset_x - rrr_leg1_joint2_offset_x;
+    /* (rrr_leg1-c_2) cosine of the angle of joint 2 from its reference direction */
+    const real inv_rrr_leg1_size_t_2 = m->inv_rrr_leg1_size_t_2[i];
+    const real rrr_leg1_platform_joint_offset_x = m->rrr_leg1_platform_joint_offset_x[i];
+    const real rrr_leg1_c_2 =
+        inv_rrr_leg1_size_t_2*rrr_leg1_platform_joint_offset_x*rrr_leg1_x_2_in_axes1_x;
+    /* (rrr_leg1-s_2) sine of the angle of joint 2 from its reference direction */
+    const real rrr_leg1_s_2 =
+        -inv_rrr_leg1_size_t*inv_rrr_leg1_size_t_2*rrr_leg1_joint2_offset_x*rrr_leg1_platform_joint_offset_x*rrr_leg1_root_1;
+    /* (rrr_leg1-r_1) from joint 1 to the connection point, along the links */
+    const real rrr_leg1_r_1_in_axes1_y = rrr_leg1_platform_joint_offset_x*rrr_leg1_s_2;
+    const real rrr_leg1_r_1_in_axes1_x = rrr_leg1_joint2_offset_x +
+        rrr_leg1_c_2*rrr_leg1_platform_joint_offset_x;
+    const real rrr_leg1_r_1_in_axes2_x = rrr_leg1_c_2*rrr_leg1_r_1_in_axes1_x +
+        rrr_leg1_r_1_in_axes1_y*rrr_leg1_s_2;
+    const real rrr_leg1_r_1_in_axes2_y = rrr_leg1_c_2*rrr_leg1_r_1_in_axes1_y -
+        rrr_leg1_r_1_in_axes1_x*rrr_leg1_s_2;
+    /* (rrr_leg1-w_1) reciprocal vector 1 */
+    const real rrr_leg1_w_1_t = rrr_leg1_c_1*rrr_leg1_s_2 + rrr_leg1_c_2*rrr_leg1_s_1;
+    const real rrr_leg1_w_1_t_2 = rrr_leg1_c_1*rrr_leg1_c_2 - rrr_leg1_s_1*rrr_leg1_s_2;
+    const real axis_y_rrr_leg1_axes2_x = rrr_leg1_base_frame_xy*rrr_leg1_w_1_t_2 -
+        rrr_leg1_base_frame_xx*rrr_leg1_w_1_t;
+    const real axis_x_rrr_leg1_axes2_x = rrr_leg1_base_frame_yy*rrr_leg1_w_1_t_2 -
+        rrr_leg1_base_frame_yx*rrr_leg1_w_1_t;
+    const real rrr_leg1_w_1_in_axes2_x = -1/rrr_leg1_r_1_in_axes2_y;
+    const real rrr_leg1_w_1_x = axis_x_rrr_leg1_axes2_x*rrr_leg1_w_1_in_axes2_x;
+    const real rrr_leg1_w_1_y = -axis_y_rrr_leg1_axes2_x*rrr_leg1_w_1_in_axes2_x;
+    /* (rrr_leg1-w_2) reciprocal vector 2 */
+    const real rrr_leg1_w_2_in_axes2_y = m->rrr_leg1_w_2_in_axes2_y[i];
+    const real rrr_leg1_w_2_in_axes2_x =
+        -rrr_leg1_r_1_in_axes2_x*rrr_leg1_w_1_in_axes2_x*rrr_leg1_w_2_in_axes2_y;
+    const real rrr_leg1_w_2_x = axis_x_rrr_leg1_axes2_x*rrr_leg1_w_2_in_axes2_x +
+        axis_y_rrr_leg1_axes2_x*rrr_leg1_w_2_in_axes2_y;
+    const real rrr_leg1_w_2_y = axis_x_rrr_leg1_axes2_x*rrr_leg1_w_2_in_axes2_y -
+        axis_y_rrr_leg1_axes2_x*rrr_leg1_w_2_in_axes2_x;
+    /* (rrr_leg1-qd_1) rate of joint 1 */
+    const real rrr_leg1_qd_1_t = rrr_leg1_c_1*rrr_leg1_s_2 + rrr_leg1_c_2*rrr_leg1_s_1;
+    const real rrr_leg1_qd_1_t_2 = rrr_leg1_c_1*rrr_leg1_c_2 - rrr_leg1_s_1*rrr_leg1_s_2;
+    v->rrr_leg1_Kd_1 = rrr_leg1_Kd_1;
+    v->rrr_leg1_Kc_1 = rrr_leg1_Kc_1;
+    v->rrr_leg1_Ks_1 = rrr_leg1_Ks_1;
+    v->rrr_leg1_rho2_1 = rrr_leg1_rho2_1;
+    v->rrr_leg1_disc_1 = rrr_leg1_disc_1;
+    v->rrr_leg1_root_1 = rrr_leg1_root_1;
+    v->inv_rrr_leg1_rho2_1 = inv_rrr_leg1_rho2_1;
+    v->rrr_leg1_c_1 = rrr_leg1_c_1;
+    v->rrr_leg1_s_1 = rrr_leg1_s_1;
+    v->rrr_leg1_x_2_in_axes1_x = rrr_leg1_x_2_in_axes1_x;
+    v->rrr_leg1_c_2 = rrr_leg1_c_2;
+    v->rrr_leg1_s_2 = rrr_leg1_s_2;
+    v->rrr_leg1_r_1_in_axes1_y = rrr_leg1_r_1_in_axes1_y;
+    v->rrr_leg1_r_1_in_axes1_x = rrr_leg1_r_1_in_axes1_x;
+    v->rrr_leg1_r_1_in_axes2_x = rrr_leg1_r_1_in_axes2_x;
+    v->rrr_leg1_r_1_in_axes2_y = rrr_leg1_r_1_in_axes2_y;
+    v->axis_y_rrr_leg1_axes2_x = axis_y_rrr_leg1_axes2_x;
+    v->axis_x_rrr_leg1_axes2_x = axis_x_rrr_leg1_axes2_x;
+    v->rrr_leg1_w_1_in_axes2_x = rrr_leg1_w_1_in_axes2_x;
+    v->rrr_leg1_w_1_x = rrr_leg1_w_1_x;
+    v->rrr_leg1_w_1_y = rrr_leg1_w_1_y;
+    v->rrr_leg1_w_2_in_axes2_x = rrr_leg1_w_2_in_axes2_x;
+    v->rrr_leg1_w_2_x = rrr_leg1_w_2_x;
+    v->rrr_leg1_w_2_y = rrr_leg1_w_2_y;
+    v->rrr_leg1_qd_1_t = rrr_leg1_qd_1_t;
+    v->rrr_leg1_qd_1_t_2 = rrr_leg1_qd_1_t_2;
+}
+
+INLINE void stage_rrr_leg1_V_X(const prepared *m, size_t w, size_t i, size_t j, const real *V,
+    values_rrr_leg1 *v)
+{
+    /* (rrr_leg1-qd_1) rate of joint 1 */
+    const real t_dot_x = V[0*w + j];
+    const real t_dot_y = V[1*w + j];
+    const real rrr_leg1_qd_1 = v->rrr_leg1_w_1_in_axes2_x*(v->axis_x_rrr_leg1_axes2_x*t_dot_x
+        - v->axis_y_rrr_leg1_axes2_x*t_dot_y);
+    /* (rrr_leg1-W_1) centripetal tensor of link 1 */
+    const real rrr_leg1_W_1_in_axes1_xx = -rrr_leg1_qd_1*rrr_leg1_qd_1;
+    /* (rrr_leg1-omega_2) angular velocity of link 2 */
+    const real rrr_leg1_w_2_in_axes2_y = m->rrr_leg1_w_2_in_axes2_y[i];
+    const real rrr_leg1_omega_2_in_axes2_z = rrr_leg1_qd_1 +
+        rrr_leg1_w_2_in_axes2_y*(v->axis_x_rrr_leg1_axes2_x*t_dot_y +
+        v->axis_y_rrr_leg1_axes2_x*t_dot_x - rrr_leg1_qd_1*v->rrr_leg1_r_1_in_axes2_x);
+    /* (rrr_leg1-W_2) centripetal tensor of link 2 */
+    const real rrr_leg1_W_2_t = rrr_leg1_omega_2_in_axes2_z*rrr_leg1_omega_2_in_axes2_z;
+    /* (rrr_leg1-bias) acceleration of the connection point at zero joint accelerations */
+    const real rrr_leg1_joint2_offset_x = m->rrr_leg1_joint2_offset_x[i];
+    const real rrr_leg1_platform_joint_offset_x = m->rrr_leg1_platform_joint_offset_x[i];
+    const real rrr_leg1_bias_in_axes2_x =
+        rrr_leg1_W_1_in_axes1_xx*v->rrr_leg1_c_2*rrr_leg1_joint2_offset_x -
+        rrr_leg1_W_2_t*rrr_leg1_platform_joint_offset_x;
+    v->rrr_leg1_W_1_in_axes1_xx = rrr_leg1_W_1_in_axes1_xx;
+    v->rrr_leg1_W_2_t = rrr_leg1_W_2_t;
+    v->rrr_leg1_bias_in_axes2_x = rrr_leg1_bias_in_axes2_x;
+}
+
+INLINE void stage_rrr_leg1_M_dynamics(const prepared *m, size_t i, values_rrr_leg1 *v)
+{
+    /* (rrr_leg1-d_Gamma_2) coefficient of the acceleration in: moment about axis 2 of the distal
+       links' inertia and weight */
+    const real rrr_leg1_d_Gamma_2_t = m->rrr_leg1_d_Gamma_2_t[i];
+    const real rrr_leg1_d_Gamma_2_t_2 = rrr_leg1_d_Gamma_2_t*v->rrr_leg1_r_1_in_axes2_x;
+    const real rrr_leg1_J_2_in_spec2_zz = m->rrr_leg1_J_2_in_spec2_zz[i];
+    const real rrr_leg1_h_2_in_spec2_y = m->rrr_leg1_h_2_in_spec2_y[i];
+    const real rrr_leg1_d_Gamma_2_in_axes2_x =
+        v->rrr_leg1_w_1_in_axes2_x*(rrr_leg1_J_2_in_spec2_zz - rrr_leg1_d_Gamma_2_t_2) -
+        rrr_leg1_h_2_in_spec2_y;
+    /* (rrr_leg1-d_Gamma_1) coefficient of the acceleration in: moment about axis 1 of the distal
+       links' inertia and weight */
+    const real rrr_leg1_Jc_1_in_axes1_zz = m->rrr_leg1_Jc_1_in_axes1_zz[i];
+    const real rrr_leg1_d_Gamma_1_in_axes2_x =
+        v->rrr_leg1_w_1_in_axes2_x*(rrr_leg1_Jc_1_in_axes1_zz - rrr_leg1_d_Gamma_2_t_2) -
+        rrr_leg1_h_2_in_spec2_y;
+    /* (rrr_leg1-d_c) coefficient of the acceleration in: leg force on the platform without actuation
+       and without the mass at the connection point */
+    const real rrr_leg1_d_Gamma_2_in_axes2_y = m->rrr_leg1_d_Gamma_2_in_axes2_y[i];
+    const real rrr_leg1_d_phi_2_t = m->rrr_leg1_d_phi_2_t[i];
+    const real rrr_leg1_d_c_in_axes2_xy = rrr_leg1_d_phi_2_t -
+        rrr_leg1_d_Gamma_2_in_axes2_y*v->rrr_leg1_w_1_in_axes2_x -
+        rrr_leg1_d_Gamma_2_in_axes2_y*v->rrr_leg1_w_2_in_axes2_x;
+    v->rrr_leg1_d_Gamma_2_in_axes2_x = rrr_leg1_d_Gamma_2_in_axes2_x;
+    v->rrr_leg1_d_Gamma_1_in_axes2_x = rrr_leg1_d_Gamma_1_in_axes2_x;
+    v->rrr_leg1_d_c_in_axes2_xy = rrr_leg1_d_c_in_axes2_xy;
+}
+
+INLINE void stage_rrr_leg1_legs_required(const prepared *m, size_t w, size_t i, size_t j, const
+    real *A, values_rrr_leg1 *v)
+{
+    /* (rrr_leg1-S_ddot) acceleration of the connection point */
+    const real t_ddot_x = A[0*w + j];
+    const real t_ddot_y = A[1*w + j];
+    const real rrr_leg1_S_ddot_in_axes2_x = v->axis_x_rrr_leg1_axes2_x*t_ddot_x -
+        v->axis_y_rrr_leg1_axes2_x*t_ddot_y;
+    const real rrr_leg1_S_ddot_in_axes2_y = v->axis_x_rrr_leg1_axes2_x*t_ddot_y +
+        v->axis_y_rrr_leg1_axes2_x*t_ddot_x;
+    /* (rrr_leg1-rel) acceleration of the connection point left to the joint accelerations */
+    const real rrr_leg1_rel_in_axes2_x = rrr_leg1_S_ddot_in_axes2_x -
+        v->rrr_leg1_bias_in_axes2_x;
+    const real rrr_leg1_joint2_offset_x = m->rrr_leg1_joint2_offset_x[i];
+    const real rrr_leg1_rel_in_axes2_y = rrr_leg1_S_ddot_in_axes2_y +
+        v->rrr_leg1_W_1_in_axes1_xx*rrr_leg1_joint2_offset_x*v->rrr_leg1_s_2;
+    /* (rrr_leg1-B_1) acceleration tensor of link 1 */
+    const real rrr_leg1_B_1_in_axes1_xy = -rrr_leg1_rel_in_axes2_x*v->rrr_leg1_w_1_in_axes2_x;
+    /* (rrr_leg1-alpha_2) angular acceleration of link 2 */
+    const real rrr_leg1_w_2_in_axes2_y = m->rrr_leg1_w_2_in_axes2_y[i];
+    const real rrr_leg1_alpha_2_in_axes2_z = rrr_leg1_w_2_in_axes2_y*(rrr_leg1_rel_in_axes2_y
+        + rrr_leg1_B_1_in_axes1_xy*v->rrr_leg1_r_1_in_axes2_x) - rrr_leg1_B_1_in_axes1_xy;
+    /* (rrr_leg1-acc_2) acceleration of the reference point of link 2, less gravity */
+    const real gravity_x = m->gravity_x;
+    const real gravity_y = m->gravity_y;
+    const real rrr_leg1_acc_2_in_axes2_x = rrr_leg1_S_ddot_in_axes2_x +
+        v->axis_y_rrr_leg1_axes2_x*gravity_y - v->axis_x_rrr_leg1_axes2_x*gravity_x;
+    const real rrr_leg1_acc_2_in_axes2_y = rrr_leg1_S_ddot_in_axes2_y -
+        v->axis_x_rrr_leg1_axes2_x*gravity_y - v->axis_y_rrr_leg1_axes2_x*gravity_x;
+    /* (rrr_leg1-mu_2) inertia moment of the links that turn with link 2, about their reference points
+       */
+    const real rrr_leg1_J_2_in_spec2_zz = m->rrr_leg1_J_2_in_spec2_zz[i];
+    const real rrr_leg1_h_2_in_spec2_x = m->rrr_leg1_h_2_in_spec2_x[i];
+    const real rrr_leg1_h_2_in_spec2_y = m->rrr_leg1_h_2_in_spec2_y[i];
+    const real rrr_leg1_mu_2_in_axes2_z = rrr_leg1_J_2_in_spec2_zz*rrr_leg1_alpha_2_in_axes2_z
+        + rrr_leg1_acc_2_in_axes2_y*rrr_leg1_h_2_in_spec2_x -
+        rrr_leg1_acc_2_in_axes2_x*rrr_leg1_h_2_in_spec2_y;
+    /* (rrr_leg1-mu_1) inertia moment of the links that turn with link 1, about their reference points
+       */
+    const real rrr_leg1_J_1_in_spec1_zz = m->rrr_leg1_J_1_in_spec1_zz[i];
+    const real rrr_leg1_h_1_in_spec1_x = m->rrr_leg1_h_1_in_spec1_x[i];
+    const real rrr_leg1_h_1_in_spec1_y = m->rrr_leg1_h_1_in_spec1_y[i];
+    const real rrr_leg1_mu_1_t = m->rrr_leg1_mu_1_t[i];
+    const real rrr_leg1_mu_1_t_2 = m->rrr_leg1_mu_1_t_2[i];
+    const real rrr_leg1_mu_1_in_axes1_z =
+        rrr_leg1_h_1_in_spec1_y*(v->rrr_leg1_c_1*rrr_leg1_mu_1_t +
+        rrr_leg1_mu_1_t_2*v->rrr_leg1_s_1) - rrr_leg1_B_1_in_axes1_xy*rrr_leg1_J_1_in_spec1_zz
+        - rrr_leg1_h_1_in_spec1_x*(v->rrr_leg1_c_1*rrr_leg1_mu_1_t_2 -
+        rrr_leg1_mu_1_t*v->rrr_leg1_s_1);
+    /* (rrr_leg1-N_1) moment about joint 1 of the links from 1 outwards, the force at the connection
+       point left out */
+    const real rrr_leg1_N_1_in_axes1_z = rrr_leg1_mu_1_in_axes1_z + rrr_leg1_mu_2_in_axes2_z;
+    /* (rrr_leg1-G) force at the connection point that balances the leg's inertia and weight along all
+       degrees of freedom */
+    const real rrr_leg1_G_in_axes2_y = rrr_leg1_mu_2_in_axes2_z*rrr_leg1_w_2_in_axes2_y;
+    /* (rrr_leg1-c) leg force on the platform without actuation and without the mass at the connection
+       point */
+    const real rrr_leg1_c_in_axes2_x = v->rrr_leg1_W_2_t*rrr_leg1_h_2_in_spec2_x +
+        rrr_leg1_alpha_2_in_axes2_z*rrr_leg1_h_2_in_spec2_y +
+        v->rrr_leg1_w_1_in_axes2_x*(rrr_leg1_G_in_axes2_y*v->rrr_leg1_r_1_in_axes2_x -
+        rrr_leg1_N_1_in_axes1_z);
+    const real rrr_leg1_c_in_axes2_y = v->rrr_leg1_W_2_t*rrr_leg1_h_2_in_spec2_y -
+        rrr_leg1_G_in_axes2_y - rrr_leg1_alpha_2_in_axes2_z*rrr_leg1_h_2_in_spec2_x;
+    v->rrr_leg1_acc_2_in_axes2_x = rrr_leg1_acc_2_in_axes2_x;
+    v->rrr_leg1_acc_2_in_axes2_y = rrr_leg1_acc_2_in_axes2_y;
+    v->rrr_leg1_c_in_axes2_x = rrr_leg1_c_in_axes2_x;
+    v->rrr_leg1_c_in_axes2_y = rrr_leg1_c_in_axes2_y;
+}
+
 /* ---- functions of the state: M, Z, H and the like ---- */
 
 /* ---- dynamics ---- */
-INLINE void dynamics_before(size_t w, const real *X, const real *V, real *s)
+INLINE void dynamics_before()
 {
-    for (size_t k = 0; k < w; ++k) {
-        /* X: named entries */
-        const real X_0 = X[0*w + k];
-        const real t_x = X_0;
-        const real X_1 = X[1*w + k];
-        const real t_y = X_1;
-        /* V: named entries */
-        const real V_0 = V[0*w + k];
-        const real t_dot_x = V_0;
-        const real V_1 = V[1*w + k];
-        const real t_dot_y = V_1;
-        s[0*w + k] = t_x;
-        s[1*w + k] = t_y;
-        s[2*w + k] = t_dot_x;
-        s[3*w + k] = t_dot_y;
-    }
 }
 
-INLINE void dynamics_legs_rrr_leg1(const prepared *m, size_t w, size_t leg, size_t legs, const
-    real *s, size_t states, size_t count, int add, real *terms, real *o)
+INLINE void dynamics_legs_rrr_leg1(const prepared *m, size_t w, size_t leg, size_t legs, size_t
+    states, size_t count, int add, const real *X, const real *V, real *terms, real *o)
 {
     for (size_t k = 0; k < count; ++k) {
         const size_t i = leg + legs*k;
         const size_t j = states*k;
-        /* (rrr_leg1-S) from the base point to the connection point */
-        const real rrr_leg1_base_point_x = m->rrr_leg1_base_point_x[i];
-        const real rrr_leg1_platform_point_x = m->rrr_leg1_platform_point_x[i];
-        const real t_x = s[0*w + j];
-        const real rrr_leg1_S_x = rrr_leg1_platform_point_x + t_x - rrr_leg1_base_point_x;
-        const real rrr_leg1_base_point_y = m->rrr_leg1_base_point_y[i];
-        const real rrr_leg1_platform_point_y = m->rrr_leg1_platform_point_y[i];
-        const real t_y = s[1*w + j];
-        const real rrr_leg1_S_y = rrr_leg1_platform_point_y + t_y - rrr_leg1_base_point_y;
-        /* (rrr_leg1-Kd_1) projection on the centre's direction, from the distance fixed by the joints
-           beyond joint 1 */
-        const real rrr_leg1_Kd_1_t_3 = rrr_leg1_S_x*rrr_leg1_S_x + rrr_leg1_S_y*rrr_leg1_S_y;
-        const real rrr_leg1_Kd_1_t = m->rrr_leg1_Kd_1_t[i];
-        const real rrr_leg1_Kd_1_t_2 = m->rrr_leg1_Kd_1_t_2[i];
-        const real rrr_leg1_Kd_1 = rrr_leg1_Kd_1_t + R(0.5)*rrr_leg1_Kd_1_t_3 - rrr_leg1_Kd_1_t_2;
-        /* (rrr_leg1-px_1) component along the reference direction */
-        const real rrr_leg1_base_frame_xx = m->rrr_leg1_base_frame_xx[i];
-        const real rrr_leg1_base_frame_yx = m->rrr_leg1_base_frame_yx[i];
-        const real rrr_leg1_px_1 = rrr_leg1_S_x*rrr_leg1_base_frame_xx +
-            rrr_leg1_S_y*rrr_leg1_base_frame_yx;
-        /* (rrr_leg1-py_1) component across the reference direction */
-        const real rrr_leg1_base_frame_xy = m->rrr_leg1_base_frame_xy[i];
-        const real rrr_leg1_base_frame_yy = m->rrr_leg1_base_frame_yy[i];
-        const real rrr_leg1_py_1 = rrr_leg1_S_x*rrr_leg1_base_frame_xy +
-            rrr_leg1_S_y*rrr_leg1_base_frame_yy;
-        /* (rrr_leg1-Kc_1) factor of the cosine in the equation of joint 1 */
-        const real rrr_leg1_joint2_offset_x = m->rrr_leg1_joint2_offset_x[i];
-        const real rrr_leg1_Kc_1 = rrr_leg1_joint2_offset_x*rrr_leg1_px_1;
-        /* (rrr_leg1-Ks_1) factor of the sine in the equation of joint 1 */
-        const real rrr_leg1_Ks_1 = rrr_leg1_joint2_offset_x*rrr_leg1_py_1;
-        /* (rrr_leg1-rho2_1) squared amplitude */
-        const real rrr_leg1_rho2_1 = rrr_leg1_Kc_1*rrr_leg1_Kc_1 + rrr_leg1_Ks_1*rrr_leg1_Ks_1;
-        /* (rrr_leg1-disc_1) discriminant */
-        const real rrr_leg1_disc_1 = rrr_leg1_rho2_1 - rrr_leg1_Kd_1*rrr_leg1_Kd_1;
-        /* (rrr_leg1-root_1) root, with the sign of the branch */
-        const real rrr_leg1_branch_1 = m->rrr_leg1_branch_1[i];
-        const real rrr_leg1_root_1 = rrr_leg1_branch_1*root(rrr_leg1_disc_1);
-        /* (rrr_leg1-c_1) cosine of the angle of joint 1 from its reference direction */
-        const real inv_rrr_leg1_rho2_1 = 1/rrr_leg1_rho2_1;
-        const real rrr_leg1_c_1 = inv_rrr_leg1_rho2_1*(rrr_leg1_Kc_1*rrr_leg1_Kd_1 -
-            rrr_leg1_Ks_1*rrr_leg1_root_1);
-        /* (rrr_leg1-s_1) sine of the angle of joint 1 from its reference direction */
-        const real rrr_leg1_s_1 = inv_rrr_leg1_rho2_1*(rrr_leg1_Kc_1*rrr_leg1_root_1 +
-            rrr_leg1_Kd_1*rrr_leg1_Ks_1);
-        /* (rrr_leg1-x_2) from the origin of joint 2 to the connection point */
-        const real inv_rrr_leg1_size_t = m->inv_rrr_leg1_size_t[i];
-        const real rrr_leg1_x_2_in_axes1_x =
-            inv_rrr_leg1_size_t*rrr_leg1_Kd_1*rrr_leg1_joint2_offset_x - rrr_leg1_joint2_offset_x;
-        /* (rrr_leg1-c_2) cosine of the angle of joint 2 from its reference direction */
-        const real inv_rrr_leg1_size_t_2 = m->inv_rrr_leg1_size_t_2[i];
-        const real rrr_leg1_platform_joint_offset_x = m->rrr_leg1_platform_joint_offset_x[i];
-        const real rrr_leg1_c_2 =
-            inv_rrr_leg1_size_t_2*rrr_leg1_platform_joint_offset_x*rrr_leg1_x_2_in_axes1_x;
-        /* (rrr_leg1-s_2) sine of the angle of joint 2 from its reference direction */
-        const real rrr_leg1_s_2 =
-            -inv_rrr_leg1_size_t*inv_rrr_leg1_size_t_2*rrr_leg1_joint2_offset_x*rrr_leg1_platform_joint_offset_x*rrr_leg1_root_1;
-        /* (rrr_leg1-r_1) from joint 1 to the connection point, along the links */
-        const real rrr_leg1_r_1_in_axes1_y = rrr_leg1_platform_joint_offset_x*rrr_leg1_s_2;
-        const real rrr_leg1_r_1_in_axes1_x = rrr_leg1_joint2_offset_x +
-            rrr_leg1_c_2*rrr_leg1_platform_joint_offset_x;
-        const real rrr_leg1_r_1_in_axes2_x = rrr_leg1_c_2*rrr_leg1_r_1_in_axes1_x +
-            rrr_leg1_r_1_in_axes1_y*rrr_leg1_s_2;
-        const real rrr_leg1_r_1_in_axes2_y = rrr_leg1_c_2*rrr_leg1_r_1_in_axes1_y -
-            rrr_leg1_r_1_in_axes1_x*rrr_leg1_s_2;
-        /* (rrr_leg1-w_1) reciprocal vector 1 */
-        const real rrr_leg1_w_1_t = rrr_leg1_c_1*rrr_leg1_s_2 + rrr_leg1_c_2*rrr_leg1_s_1;
-        const real rrr_leg1_w_1_t_2 = rrr_leg1_c_1*rrr_leg1_c_2 - rrr_leg1_s_1*rrr_leg1_s_2;
-        const real axis_y_rrr_leg1_axes2_x = rrr_leg1_base_frame_xy*rrr_leg1_w_1_t_2 -
-            rrr_leg1_base_frame_xx*rrr_leg1_w_1_t;
-        const real axis_x_rrr_leg1_axes2_x = rrr_leg1_base_frame_yy*rrr_leg1_w_1_t_2 -
-            rrr_leg1_base_frame_yx*rrr_leg1_w_1_t;
-        const real rrr_leg1_w_1_in_axes2_x = -1/rrr_leg1_r_1_in_axes2_y;
-        const real rrr_leg1_w_1_x = axis_x_rrr_leg1_axes2_x*rrr_leg1_w_1_in_axes2_x;
-        const real rrr_leg1_w_1_y = -axis_y_rrr_leg1_axes2_x*rrr_leg1_w_1_in_axes2_x;
-        /* (rrr_leg1-w_2) reciprocal vector 2 */
-        const real rrr_leg1_w_2_in_axes2_y = m->rrr_leg1_w_2_in_axes2_y[i];
-        const real rrr_leg1_w_2_in_axes2_x =
-            -rrr_leg1_r_1_in_axes2_x*rrr_leg1_w_1_in_axes2_x*rrr_leg1_w_2_in_axes2_y;
-        const real rrr_leg1_w_2_x = axis_x_rrr_leg1_axes2_x*rrr_leg1_w_2_in_axes2_x +
-            axis_y_rrr_leg1_axes2_x*rrr_leg1_w_2_in_axes2_y;
-        const real rrr_leg1_w_2_y = axis_x_rrr_leg1_axes2_x*rrr_leg1_w_2_in_axes2_y -
-            axis_y_rrr_leg1_axes2_x*rrr_leg1_w_2_in_axes2_x;
-        /* (rrr_leg1-qd_1) rate of joint 1 */
-        const real t_dot_x = s[2*w + j];
-        const real t_dot_y = s[3*w + j];
-        const real rrr_leg1_qd_1 = rrr_leg1_w_1_in_axes2_x*(axis_x_rrr_leg1_axes2_x*t_dot_x -
-            axis_y_rrr_leg1_axes2_x*t_dot_y);
-        /* (rrr_leg1-W_1) centripetal tensor of link 1 */
-        const real rrr_leg1_W_1_in_axes1_xx = -rrr_leg1_qd_1*rrr_leg1_qd_1;
-        /* (rrr_leg1-omega_2) angular velocity of link 2 */
-        const real rrr_leg1_omega_2_in_axes2_z = rrr_leg1_qd_1 +
-            rrr_leg1_w_2_in_axes2_y*(axis_x_rrr_leg1_axes2_x*t_dot_y +
-            axis_y_rrr_leg1_axes2_x*t_dot_x - rrr_leg1_qd_1*rrr_leg1_r_1_in_axes2_x);
-        /* (rrr_leg1-W_2) centripetal tensor of link 2 */
-        const real rrr_leg1_W_2_t = rrr_leg1_omega_2_in_axes2_z*rrr_leg1_omega_2_in_axes2_z;
-        /* (rrr_leg1-bias) acceleration of the connection point at zero joint accelerations */
-        const real rrr_leg1_bias_in_axes2_x =
-            rrr_leg1_W_1_in_axes1_xx*rrr_leg1_c_2*rrr_leg1_joint2_offset_x -
-            rrr_leg1_W_2_t*rrr_leg1_platform_joint_offset_x;
+        values_rrr_leg1 v;
+        stage_rrr_leg1_X(m, w, i, j, X, &v);
+        stage_rrr_leg1_V_X(m, w, i, j, V, &v);
+        stage_rrr_leg1_M_dynamics(m, i, &v);
         /* (rrr_leg1-qdd_1_o) remainder without the acceleration in: acceleration of joint 1 */
-        const real rrr_leg1_qdd_1_o = -rrr_leg1_bias_in_axes2_x*rrr_leg1_w_1_in_axes2_x;
+        const real rrr_leg1_qdd_1_o = -v.rrr_leg1_bias_in_axes2_x*v.rrr_leg1_w_1_in_axes2_x;
         /* (rrr_leg1-alpha_2_o) remainder without the acceleration in: angular acceleration of link 2 */
+        const real rrr_leg1_joint2_offset_x = m->rrr_leg1_joint2_offset_x[i];
+        const real rrr_leg1_w_2_in_axes2_y = m->rrr_leg1_w_2_in_axes2_y[i];
         const real rrr_leg1_alpha_2_o_in_axes2_z = rrr_leg1_qdd_1_o +
-            rrr_leg1_w_2_in_axes2_y*(rrr_leg1_W_1_in_axes1_xx*rrr_leg1_joint2_offset_x*rrr_leg1_s_2
-            - rrr_leg1_qdd_1_o*rrr_leg1_r_1_in_axes2_x);
+            rrr_leg1_w_2_in_axes2_y*(v.rrr_leg1_W_1_in_axes1_xx*rrr_leg1_joint2_offset_x*v.rrr_leg1_s_2
+            - rrr_leg1_qdd_1_o*v.rrr_leg1_r_1_in_axes2_x);
         /* (rrr_leg1-mu_2_o) remainder without the acceleration in: inertia moment of the links that turn
            with link 2, about their reference points */
         const real gravity_x = m->gravity_x;
@@ -1437,17 +2002,10 @@ INLINE void dynamics_legs_rrr_leg1(const prepared *m, size_t w, size_t leg, size
         const real rrr_leg1_h_2_in_spec2_y = m->rrr_leg1_h_2_in_spec2_y[i];
         const real rrr_leg1_mu_2_o_in_axes2_z =
             rrr_leg1_J_2_in_spec2_zz*rrr_leg1_alpha_2_o_in_axes2_z +
-            rrr_leg1_h_2_in_spec2_y*(axis_x_rrr_leg1_axes2_x*gravity_x -
-            axis_y_rrr_leg1_axes2_x*gravity_y) -
-            rrr_leg1_h_2_in_spec2_x*(axis_x_rrr_leg1_axes2_x*gravity_y +
-            axis_y_rrr_leg1_axes2_x*gravity_x);
-        /* (rrr_leg1-d_Gamma_2) coefficient of the acceleration in: moment about axis 2 of the distal
-           links' inertia and weight */
-        const real rrr_leg1_d_Gamma_2_t = m->rrr_leg1_d_Gamma_2_t[i];
-        const real rrr_leg1_d_Gamma_2_t_2 = rrr_leg1_d_Gamma_2_t*rrr_leg1_r_1_in_axes2_x;
-        const real rrr_leg1_d_Gamma_2_in_axes2_x =
-            rrr_leg1_w_1_in_axes2_x*(rrr_leg1_J_2_in_spec2_zz - rrr_leg1_d_Gamma_2_t_2) -
-            rrr_leg1_h_2_in_spec2_y;
+            rrr_leg1_h_2_in_spec2_y*(v.axis_x_rrr_leg1_axes2_x*gravity_x -
+            v.axis_y_rrr_leg1_axes2_x*gravity_y) -
+            rrr_leg1_h_2_in_spec2_x*(v.axis_x_rrr_leg1_axes2_x*gravity_y +
+            v.axis_y_rrr_leg1_axes2_x*gravity_x);
         /* (rrr_leg1-mu_1_o) remainder without the acceleration in: inertia moment of the links that turn
            with link 1, about their reference points */
         const real rrr_leg1_J_1_in_spec1_zz = m->rrr_leg1_J_1_in_spec1_zz[i];
@@ -1456,60 +2014,47 @@ INLINE void dynamics_legs_rrr_leg1(const prepared *m, size_t w, size_t leg, size
         const real rrr_leg1_mu_1_t = m->rrr_leg1_mu_1_t[i];
         const real rrr_leg1_mu_1_t_2 = m->rrr_leg1_mu_1_t_2[i];
         const real rrr_leg1_mu_1_o_in_axes1_z = rrr_leg1_J_1_in_spec1_zz*rrr_leg1_qdd_1_o +
-            rrr_leg1_h_1_in_spec1_y*(rrr_leg1_c_1*rrr_leg1_mu_1_t +
-            rrr_leg1_mu_1_t_2*rrr_leg1_s_1) -
-            rrr_leg1_h_1_in_spec1_x*(rrr_leg1_c_1*rrr_leg1_mu_1_t_2 -
-            rrr_leg1_mu_1_t*rrr_leg1_s_1);
+            rrr_leg1_h_1_in_spec1_y*(v.rrr_leg1_c_1*rrr_leg1_mu_1_t +
+            rrr_leg1_mu_1_t_2*v.rrr_leg1_s_1) -
+            rrr_leg1_h_1_in_spec1_x*(v.rrr_leg1_c_1*rrr_leg1_mu_1_t_2 -
+            rrr_leg1_mu_1_t*v.rrr_leg1_s_1);
         /* (rrr_leg1-N_1_o) remainder without the acceleration in: moment about joint 1 of the links from
            1 outwards, the force at the connection point left out */
         const real rrr_leg1_N_1_o_in_axes1_z = rrr_leg1_mu_1_o_in_axes1_z +
             rrr_leg1_mu_2_o_in_axes2_z;
-        /* (rrr_leg1-d_Gamma_1) coefficient of the acceleration in: moment about axis 1 of the distal
-           links' inertia and weight */
-        const real rrr_leg1_Jc_1_in_axes1_zz = m->rrr_leg1_Jc_1_in_axes1_zz[i];
-        const real rrr_leg1_d_Gamma_1_in_axes2_x =
-            rrr_leg1_w_1_in_axes2_x*(rrr_leg1_Jc_1_in_axes1_zz - rrr_leg1_d_Gamma_2_t_2) -
-            rrr_leg1_h_2_in_spec2_y;
         /* (rrr_leg1-G_o) remainder without the acceleration in: force at the connection point that
            balances the leg's inertia and weight along all degrees of freedom */
         const real rrr_leg1_G_o_in_axes2_y = rrr_leg1_mu_2_o_in_axes2_z*rrr_leg1_w_2_in_axes2_y;
-        /* (rrr_leg1-d_c) coefficient of the acceleration in: leg force on the platform without actuation
-           and without the mass at the connection point */
-        const real rrr_leg1_d_Gamma_2_in_axes2_y = m->rrr_leg1_d_Gamma_2_in_axes2_y[i];
-        const real rrr_leg1_d_phi_2_t = m->rrr_leg1_d_phi_2_t[i];
-        const real rrr_leg1_d_c_in_axes2_xy = rrr_leg1_d_phi_2_t -
-            rrr_leg1_d_Gamma_2_in_axes2_y*rrr_leg1_w_1_in_axes2_x -
-            rrr_leg1_d_Gamma_2_in_axes2_y*rrr_leg1_w_2_in_axes2_x;
         /* (rrr_leg1-c_o) remainder without the acceleration in: leg force on the platform without
            actuation and without the mass at the connection point */
-        const real rrr_leg1_c_o_in_axes2_x = rrr_leg1_W_2_t*rrr_leg1_h_2_in_spec2_x +
+        const real rrr_leg1_c_o_in_axes2_x = v.rrr_leg1_W_2_t*rrr_leg1_h_2_in_spec2_x +
             rrr_leg1_alpha_2_o_in_axes2_z*rrr_leg1_h_2_in_spec2_y +
-            rrr_leg1_w_1_in_axes2_x*(rrr_leg1_G_o_in_axes2_y*rrr_leg1_r_1_in_axes2_x -
+            v.rrr_leg1_w_1_in_axes2_x*(rrr_leg1_G_o_in_axes2_y*v.rrr_leg1_r_1_in_axes2_x -
             rrr_leg1_N_1_o_in_axes1_z);
-        const real rrr_leg1_c_o_in_axes2_y = rrr_leg1_W_2_t*rrr_leg1_h_2_in_spec2_y -
+        const real rrr_leg1_c_o_in_axes2_y = v.rrr_leg1_W_2_t*rrr_leg1_h_2_in_spec2_y -
             rrr_leg1_G_o_in_axes2_y - rrr_leg1_alpha_2_o_in_axes2_z*rrr_leg1_h_2_in_spec2_x;
         /* (rrr_leg1-Q) inertia of the leg at the connection point, without the mass gathered there */
         const real rrr_leg1_d_c_in_axes2_yy = m->rrr_leg1_d_c_in_axes2_yy[i];
-        const real rrr_leg1_Q_t = rrr_leg1_h_2_in_spec2_y*(rrr_leg1_w_1_in_axes2_x +
-            rrr_leg1_w_2_in_axes2_x) - rrr_leg1_d_c_in_axes2_yy -
-            rrr_leg1_d_Gamma_1_in_axes2_x*rrr_leg1_w_1_in_axes2_x -
-            rrr_leg1_d_Gamma_2_in_axes2_x*rrr_leg1_w_2_in_axes2_x;
+        const real rrr_leg1_Q_t = rrr_leg1_h_2_in_spec2_y*(v.rrr_leg1_w_1_in_axes2_x +
+            v.rrr_leg1_w_2_in_axes2_x) - rrr_leg1_d_c_in_axes2_yy -
+            v.rrr_leg1_d_Gamma_1_in_axes2_x*v.rrr_leg1_w_1_in_axes2_x -
+            v.rrr_leg1_d_Gamma_2_in_axes2_x*v.rrr_leg1_w_2_in_axes2_x;
         const real rrr_leg1_Q_t_2 = R(0.5)*rrr_leg1_Q_t;
-        const real rrr_leg1_Q_t_3 = axis_x_rrr_leg1_axes2_x*rrr_leg1_Q_t_2 +
-            axis_y_rrr_leg1_axes2_x*rrr_leg1_d_c_in_axes2_xy;
-        const real rrr_leg1_Q_t_4 = axis_y_rrr_leg1_axes2_x*rrr_leg1_Q_t_2 -
-            axis_x_rrr_leg1_axes2_x*rrr_leg1_d_c_in_axes2_xy;
+        const real rrr_leg1_Q_t_3 = v.axis_x_rrr_leg1_axes2_x*rrr_leg1_Q_t_2 +
+            v.axis_y_rrr_leg1_axes2_x*v.rrr_leg1_d_c_in_axes2_xy;
+        const real rrr_leg1_Q_t_4 = v.axis_y_rrr_leg1_axes2_x*rrr_leg1_Q_t_2 -
+            v.axis_x_rrr_leg1_axes2_x*v.rrr_leg1_d_c_in_axes2_xy;
         const real rrr_leg1_Q_xx = -rrr_leg1_d_c_in_axes2_yy -
-            2*axis_x_rrr_leg1_axes2_x*rrr_leg1_Q_t_3;
-        const real rrr_leg1_Q_xy = axis_x_rrr_leg1_axes2_x*rrr_leg1_Q_t_4 +
-            axis_y_rrr_leg1_axes2_x*rrr_leg1_Q_t_3;
+            2*v.axis_x_rrr_leg1_axes2_x*rrr_leg1_Q_t_3;
+        const real rrr_leg1_Q_xy = v.axis_x_rrr_leg1_axes2_x*rrr_leg1_Q_t_4 +
+            v.axis_y_rrr_leg1_axes2_x*rrr_leg1_Q_t_3;
         const real rrr_leg1_Q_yy = -rrr_leg1_d_c_in_axes2_yy -
-            2*axis_y_rrr_leg1_axes2_x*rrr_leg1_Q_t_4;
+            2*v.axis_y_rrr_leg1_axes2_x*rrr_leg1_Q_t_4;
         /* (rrr_leg1-U) velocity and gravity terms of the leg force */
-        const real rrr_leg1_U_x = -axis_x_rrr_leg1_axes2_x*rrr_leg1_c_o_in_axes2_x -
-            axis_y_rrr_leg1_axes2_x*rrr_leg1_c_o_in_axes2_y;
-        const real rrr_leg1_U_y = axis_y_rrr_leg1_axes2_x*rrr_leg1_c_o_in_axes2_x -
-            axis_x_rrr_leg1_axes2_x*rrr_leg1_c_o_in_axes2_y;
+        const real rrr_leg1_U_x = -v.axis_x_rrr_leg1_axes2_x*rrr_leg1_c_o_in_axes2_x -
+            v.axis_y_rrr_leg1_axes2_x*rrr_leg1_c_o_in_axes2_y;
+        const real rrr_leg1_U_y = v.axis_y_rrr_leg1_axes2_x*rrr_leg1_c_o_in_axes2_x -
+            v.axis_x_rrr_leg1_axes2_x*rrr_leg1_c_o_in_axes2_y;
         /* (M_tt) translational block of M */
         gather(&terms[0*count + k], add, rrr_leg1_Q_xx);  /* M_tt_xx_of_legs */
         gather(&terms[1*count + k], add, rrr_leg1_Q_xy);  /* M_tt_xy */
@@ -1518,18 +2063,19 @@ INLINE void dynamics_legs_rrr_leg1(const prepared *m, size_t w, size_t leg, size
         gather(&terms[3*count + k], add, rrr_leg1_U_x);  /* Z_t_x_of_legs */
         gather(&terms[4*count + k], add, rrr_leg1_U_y);  /* Z_t_y_of_legs */
         /* (rrr_leg1-w_1) reciprocal vector 1 */
-        o[0*count + k] = rrr_leg1_w_1_x;
-        o[1*count + k] = rrr_leg1_w_1_y;
+        o[0*count + k] = v.rrr_leg1_w_1_x;
+        o[1*count + k] = v.rrr_leg1_w_1_y;
         /* (rrr_leg1-w_2) reciprocal vector 2 */
-        o[2*count + k] = rrr_leg1_w_2_x;
-        o[3*count + k] = rrr_leg1_w_2_y;
-        o[6*count + k] = (rrr_leg1_w_1_x + rrr_leg1_w_1_y) + (rrr_leg1_w_2_x + rrr_leg1_w_2_y);
+        o[2*count + k] = v.rrr_leg1_w_2_x;
+        o[3*count + k] = v.rrr_leg1_w_2_y;
+        o[6*count + k] = (v.rrr_leg1_w_1_x + v.rrr_leg1_w_1_y) + (v.rrr_leg1_w_2_x +
+            v.rrr_leg1_w_2_y);
         const real rrr_leg1_rho2_1_t = m->rrr_leg1_rho2_1_t[i];
         const real rrr_leg1_size = m->rrr_leg1_size[i];
-        o[5*count + k] = UNLESS(magnitude(rrr_leg1_rho2_1) >
-            TOLERANCE*TOLERANCE*rrr_leg1_rho2_1_t) + UNLESS(magnitude(rrr_leg1_r_1_in_axes2_y) >
+        o[5*count + k] = UNLESS(magnitude(v.rrr_leg1_rho2_1) >
+            TOLERANCE*TOLERANCE*rrr_leg1_rho2_1_t) + UNLESS(magnitude(v.rrr_leg1_r_1_in_axes2_y) >
             TOLERANCE*rrr_leg1_size);
-        o[4*count + k] = UNLESS(rrr_leg1_disc_1 >= 0);
+        o[4*count + k] = UNLESS(v.rrr_leg1_disc_1 >= 0);
     }
 }
 
@@ -1537,9 +2083,9 @@ INLINE void dynamics_place_rrr_leg1(size_t w, size_t count, const real *o, size_
     verdict *t)
 {
     for (size_t k = 0; k < w; ++k) {
-        H[0*NU*w + k] = o[0*count + first + k];
+        H[0*w + k] = o[0*count + first + k];
         H[NU*w + k] = o[1*count + first + k];
-        H[(0*NU + 1)*w + k] = o[2*count + first + k];
+        H[1*w + k] = o[2*count + first + k];
         H[(NU + 1)*w + k] = o[3*count + first + k];
         t->unreachable[k] += o[4*count + first + k];
         t->singular[k] += o[5*count + first + k];
@@ -1547,103 +2093,24 @@ INLINE void dynamics_place_rrr_leg1(size_t w, size_t count, const real *o, size_
     }
 }
 
-INLINE void dynamics_legs_rrr(const prepared *m, size_t w, size_t leg, size_t legs, const real *s,
-    size_t states, size_t count, int add, real *terms, real *o)
+INLINE void dynamics_legs_rrr(const prepared *m, size_t w, size_t leg, size_t legs, size_t states,
+    size_t count, int add, const real *X, const real *V, real *terms, real *o)
 {
     for (size_t k = 0; k < count; ++k) {
         const size_t i = leg + legs*k;
         const size_t j = states*k;
-        /* (rrr-S) from the base point to the connection point */
-        const real rrr_base_point_x = m->rrr_base_point_x[i];
-        const real rrr_platform_point_x = m->rrr_platform_point_x[i];
-        const real t_x = s[0*w + j];
-        const real rrr_S_x = rrr_platform_point_x + t_x - rrr_base_point_x;
-        const real rrr_base_point_y = m->rrr_base_point_y[i];
-        const real rrr_platform_point_y = m->rrr_platform_point_y[i];
-        const real t_y = s[1*w + j];
-        const real rrr_S_y = rrr_platform_point_y + t_y - rrr_base_point_y;
-        /* (rrr-Kd_1) projection on the centre's direction, from the distance fixed by the joints beyond
-           joint 1 */
-        const real rrr_Kd_1_t_3 = rrr_S_x*rrr_S_x + rrr_S_y*rrr_S_y;
-        const real rrr_Kd_1_t = m->rrr_Kd_1_t[i];
-        const real rrr_Kd_1_t_2 = m->rrr_Kd_1_t_2[i];
-        const real rrr_Kd_1 = rrr_Kd_1_t + R(0.5)*rrr_Kd_1_t_3 - rrr_Kd_1_t_2;
-        /* (rrr-px_1) component along the reference direction */
-        const real rrr_base_frame_xx = m->rrr_base_frame_xx[i];
-        const real rrr_base_frame_yx = m->rrr_base_frame_yx[i];
-        const real rrr_px_1 = rrr_S_x*rrr_base_frame_xx + rrr_S_y*rrr_base_frame_yx;
-        /* (rrr-py_1) component across the reference direction */
-        const real rrr_base_frame_xy = m->rrr_base_frame_xy[i];
-        const real rrr_base_frame_yy = m->rrr_base_frame_yy[i];
-        const real rrr_py_1 = rrr_S_x*rrr_base_frame_xy + rrr_S_y*rrr_base_frame_yy;
-        /* (rrr-Kc_1) factor of the cosine in the equation of joint 1 */
-        const real rrr_joint2_offset_x = m->rrr_joint2_offset_x[i];
-        const real rrr_Kc_1 = rrr_joint2_offset_x*rrr_px_1;
-        /* (rrr-Ks_1) factor of the sine in the equation of joint 1 */
-        const real rrr_Ks_1 = rrr_joint2_offset_x*rrr_py_1;
-        /* (rrr-rho2_1) squared amplitude */
-        const real rrr_rho2_1 = rrr_Kc_1*rrr_Kc_1 + rrr_Ks_1*rrr_Ks_1;
-        /* (rrr-disc_1) discriminant */
-        const real rrr_disc_1 = rrr_rho2_1 - rrr_Kd_1*rrr_Kd_1;
-        /* (rrr-root_1) root, with the sign of the branch */
-        const real rrr_branch_1 = m->rrr_branch_1[i];
-        const real rrr_root_1 = rrr_branch_1*root(rrr_disc_1);
-        /* (rrr-c_1) cosine of the angle of joint 1 from its reference direction */
-        const real inv_rrr_rho2_1 = 1/rrr_rho2_1;
-        const real rrr_c_1 = inv_rrr_rho2_1*(rrr_Kc_1*rrr_Kd_1 - rrr_Ks_1*rrr_root_1);
-        /* (rrr-s_1) sine of the angle of joint 1 from its reference direction */
-        const real rrr_s_1 = inv_rrr_rho2_1*(rrr_Kc_1*rrr_root_1 + rrr_Kd_1*rrr_Ks_1);
-        /* (rrr-x_2) from the origin of joint 2 to the connection point */
-        const real inv_rrr_size_t = m->inv_rrr_size_t[i];
-        const real rrr_x_2_in_axes1_x = inv_rrr_size_t*rrr_Kd_1*rrr_joint2_offset_x -
-            rrr_joint2_offset_x;
-        /* (rrr-c_2) cosine of the angle of joint 2 from its reference direction */
-        const real inv_rrr_size_t_2 = m->inv_rrr_size_t_2[i];
-        const real rrr_platform_joint_offset_x = m->rrr_platform_joint_offset_x[i];
-        const real rrr_c_2 = inv_rrr_size_t_2*rrr_platform_joint_offset_x*rrr_x_2_in_axes1_x;
-        /* (rrr-s_2) sine of the angle of joint 2 from its reference direction */
-        const real rrr_s_2 =
-            -inv_rrr_size_t*inv_rrr_size_t_2*rrr_joint2_offset_x*rrr_platform_joint_offset_x*rrr_root_1;
-        /* (rrr-r_1) from joint 1 to the connection point, along the links */
-        const real rrr_r_1_in_axes1_y = rrr_platform_joint_offset_x*rrr_s_2;
-        const real rrr_r_1_in_axes1_x = rrr_joint2_offset_x + rrr_c_2*rrr_platform_joint_offset_x;
-        const real rrr_r_1_in_axes2_x = rrr_c_2*rrr_r_1_in_axes1_x + rrr_r_1_in_axes1_y*rrr_s_2;
-        const real rrr_r_1_in_axes2_y = rrr_c_2*rrr_r_1_in_axes1_y - rrr_r_1_in_axes1_x*rrr_s_2;
-        /* (rrr-w_1) reciprocal vector 1 */
-        const real rrr_w_1_t = rrr_c_1*rrr_s_2 + rrr_c_2*rrr_s_1;
-        const real rrr_w_1_t_2 = rrr_c_1*rrr_c_2 - rrr_s_1*rrr_s_2;
-        const real axis_y_rrr_axes2_x = rrr_base_frame_xy*rrr_w_1_t_2 -
-            rrr_base_frame_xx*rrr_w_1_t;
-        const real axis_x_rrr_axes2_x = rrr_base_frame_yy*rrr_w_1_t_2 -
-            rrr_base_frame_yx*rrr_w_1_t;
-        const real rrr_w_1_in_axes2_x = -1/rrr_r_1_in_axes2_y;
-        const real rrr_w_1_x = axis_x_rrr_axes2_x*rrr_w_1_in_axes2_x;
-        const real rrr_w_1_y = -axis_y_rrr_axes2_x*rrr_w_1_in_axes2_x;
-        /* (rrr-w_2) reciprocal vector 2 */
-        const real rrr_w_2_in_axes2_y = m->rrr_w_2_in_axes2_y[i];
-        const real rrr_w_2_in_axes2_x = -rrr_r_1_in_axes2_x*rrr_w_1_in_axes2_x*rrr_w_2_in_axes2_y;
-        /* (rrr-qd_1) rate of joint 1 */
-        const real t_dot_x = s[2*w + j];
-        const real t_dot_y = s[3*w + j];
-        const real rrr_qd_1 = rrr_w_1_in_axes2_x*(axis_x_rrr_axes2_x*t_dot_x -
-            axis_y_rrr_axes2_x*t_dot_y);
-        /* (rrr-W_1) centripetal tensor of link 1 */
-        const real rrr_W_1_in_axes1_xx = -rrr_qd_1*rrr_qd_1;
-        /* (rrr-omega_2) angular velocity of link 2 */
-        const real rrr_omega_2_in_axes2_z = rrr_qd_1 +
-            rrr_w_2_in_axes2_y*(axis_x_rrr_axes2_x*t_dot_y + axis_y_rrr_axes2_x*t_dot_x -
-            rrr_qd_1*rrr_r_1_in_axes2_x);
-        /* (rrr-W_2) centripetal tensor of link 2 */
-        const real rrr_W_2_t = rrr_omega_2_in_axes2_z*rrr_omega_2_in_axes2_z;
-        /* (rrr-bias) acceleration of the connection point at zero joint accelerations */
-        const real rrr_bias_in_axes2_x = rrr_W_1_in_axes1_xx*rrr_c_2*rrr_joint2_offset_x -
-            rrr_W_2_t*rrr_platform_joint_offset_x;
+        values_rrr v;
+        stage_rrr_X(m, w, i, j, X, &v);
+        stage_rrr_V_X(m, w, i, j, V, &v);
+        stage_rrr_M_dynamics(m, i, &v);
         /* (rrr-qdd_1_o) remainder without the acceleration in: acceleration of joint 1 */
-        const real rrr_qdd_1_o = -rrr_bias_in_axes2_x*rrr_w_1_in_axes2_x;
+        const real rrr_qdd_1_o = -v.rrr_bias_in_axes2_x*v.rrr_w_1_in_axes2_x;
         /* (rrr-alpha_2_o) remainder without the acceleration in: angular acceleration of link 2 */
+        const real rrr_joint2_offset_x = m->rrr_joint2_offset_x[i];
+        const real rrr_w_2_in_axes2_y = m->rrr_w_2_in_axes2_y[i];
         const real rrr_alpha_2_o_in_axes2_z = rrr_qdd_1_o +
-            rrr_w_2_in_axes2_y*(rrr_W_1_in_axes1_xx*rrr_joint2_offset_x*rrr_s_2 -
-            rrr_qdd_1_o*rrr_r_1_in_axes2_x);
+            rrr_w_2_in_axes2_y*(v.rrr_W_1_in_axes1_xx*rrr_joint2_offset_x*v.rrr_s_2 -
+            rrr_qdd_1_o*v.rrr_r_1_in_axes2_x);
         /* (rrr-mu_2_o) remainder without the acceleration in: inertia moment of the links that turn with
            link 2, about their reference points */
         const real gravity_x = m->gravity_x;
@@ -1652,14 +2119,8 @@ INLINE void dynamics_legs_rrr(const prepared *m, size_t w, size_t leg, size_t le
         const real rrr_h_2_in_spec2_x = m->rrr_h_2_in_spec2_x[i];
         const real rrr_h_2_in_spec2_y = m->rrr_h_2_in_spec2_y[i];
         const real rrr_mu_2_o_in_axes2_z = rrr_J_2_in_spec2_zz*rrr_alpha_2_o_in_axes2_z +
-            rrr_h_2_in_spec2_y*(axis_x_rrr_axes2_x*gravity_x - axis_y_rrr_axes2_x*gravity_y) -
-            rrr_h_2_in_spec2_x*(axis_x_rrr_axes2_x*gravity_y + axis_y_rrr_axes2_x*gravity_x);
-        /* (rrr-d_Gamma_2) coefficient of the acceleration in: moment about axis 2 of the distal links'
-           inertia and weight */
-        const real rrr_d_Gamma_2_t = m->rrr_d_Gamma_2_t[i];
-        const real rrr_d_Gamma_2_t_2 = rrr_d_Gamma_2_t*rrr_r_1_in_axes2_x;
-        const real rrr_d_Gamma_2_in_axes2_x = rrr_w_1_in_axes2_x*(rrr_J_2_in_spec2_zz -
-            rrr_d_Gamma_2_t_2) - rrr_h_2_in_spec2_y;
+            rrr_h_2_in_spec2_y*(v.axis_x_rrr_axes2_x*gravity_x - v.axis_y_rrr_axes2_x*gravity_y) -
+            rrr_h_2_in_spec2_x*(v.axis_x_rrr_axes2_x*gravity_y + v.axis_y_rrr_axes2_x*gravity_x);
         /* (rrr-mu_1_o) remainder without the acceleration in: inertia moment of the links that turn with
            link 1, about their reference points */
         const real rrr_J_1_in_spec1_zz = m->rrr_J_1_in_spec1_zz[i];
@@ -1668,51 +2129,39 @@ INLINE void dynamics_legs_rrr(const prepared *m, size_t w, size_t leg, size_t le
         const real rrr_mu_1_t = m->rrr_mu_1_t[i];
         const real rrr_mu_1_t_2 = m->rrr_mu_1_t_2[i];
         const real rrr_mu_1_o_in_axes1_z = rrr_J_1_in_spec1_zz*rrr_qdd_1_o +
-            rrr_h_1_in_spec1_y*(rrr_c_1*rrr_mu_1_t + rrr_mu_1_t_2*rrr_s_1) -
-            rrr_h_1_in_spec1_x*(rrr_c_1*rrr_mu_1_t_2 - rrr_mu_1_t*rrr_s_1);
+            rrr_h_1_in_spec1_y*(v.rrr_c_1*rrr_mu_1_t + rrr_mu_1_t_2*v.rrr_s_1) -
+            rrr_h_1_in_spec1_x*(v.rrr_c_1*rrr_mu_1_t_2 - rrr_mu_1_t*v.rrr_s_1);
         /* (rrr-N_1_o) remainder without the acceleration in: moment about joint 1 of the links from 1
            outwards, the force at the connection point left out */
         const real rrr_N_1_o_in_axes1_z = rrr_mu_1_o_in_axes1_z + rrr_mu_2_o_in_axes2_z;
-        /* (rrr-d_Gamma_1) coefficient of the acceleration in: moment about axis 1 of the distal links'
-           inertia and weight */
-        const real rrr_Jc_1_in_axes1_zz = m->rrr_Jc_1_in_axes1_zz[i];
-        const real rrr_d_Gamma_1_in_axes2_x = rrr_w_1_in_axes2_x*(rrr_Jc_1_in_axes1_zz -
-            rrr_d_Gamma_2_t_2) - rrr_h_2_in_spec2_y;
         /* (rrr-G_o) remainder without the acceleration in: force at the connection point that balances
            the leg's inertia and weight along all degrees of freedom */
         const real rrr_G_o_in_axes2_y = rrr_mu_2_o_in_axes2_z*rrr_w_2_in_axes2_y;
-        /* (rrr-d_c) coefficient of the acceleration in: leg force on the platform without actuation and
-           without the mass at the connection point */
-        const real rrr_d_Gamma_2_in_axes2_y = m->rrr_d_Gamma_2_in_axes2_y[i];
-        const real rrr_d_phi_2_t = m->rrr_d_phi_2_t[i];
-        const real rrr_d_c_in_axes2_xy = rrr_d_phi_2_t -
-            rrr_d_Gamma_2_in_axes2_y*rrr_w_1_in_axes2_x -
-            rrr_d_Gamma_2_in_axes2_y*rrr_w_2_in_axes2_x;
         /* (rrr-c_o) remainder without the acceleration in: leg force on the platform without actuation
            and without the mass at the connection point */
-        const real rrr_c_o_in_axes2_x = rrr_W_2_t*rrr_h_2_in_spec2_x +
+        const real rrr_c_o_in_axes2_x = v.rrr_W_2_t*rrr_h_2_in_spec2_x +
             rrr_alpha_2_o_in_axes2_z*rrr_h_2_in_spec2_y +
-            rrr_w_1_in_axes2_x*(rrr_G_o_in_axes2_y*rrr_r_1_in_axes2_x - rrr_N_1_o_in_axes1_z);
-        const real rrr_c_o_in_axes2_y = rrr_W_2_t*rrr_h_2_in_spec2_y - rrr_G_o_in_axes2_y -
+            v.rrr_w_1_in_axes2_x*(rrr_G_o_in_axes2_y*v.rrr_r_1_in_axes2_x - rrr_N_1_o_in_axes1_z);
+        const real rrr_c_o_in_axes2_y = v.rrr_W_2_t*rrr_h_2_in_spec2_y - rrr_G_o_in_axes2_y -
             rrr_alpha_2_o_in_axes2_z*rrr_h_2_in_spec2_x;
         /* (rrr-Q) inertia of the leg at the connection point, without the mass gathered there */
         const real rrr_d_c_in_axes2_yy = m->rrr_d_c_in_axes2_yy[i];
-        const real rrr_Q_t = rrr_h_2_in_spec2_y*(rrr_w_1_in_axes2_x + rrr_w_2_in_axes2_x) -
-            rrr_d_c_in_axes2_yy - rrr_d_Gamma_1_in_axes2_x*rrr_w_1_in_axes2_x -
-            rrr_d_Gamma_2_in_axes2_x*rrr_w_2_in_axes2_x;
+        const real rrr_Q_t = rrr_h_2_in_spec2_y*(v.rrr_w_1_in_axes2_x + v.rrr_w_2_in_axes2_x) -
+            rrr_d_c_in_axes2_yy - v.rrr_d_Gamma_1_in_axes2_x*v.rrr_w_1_in_axes2_x -
+            v.rrr_d_Gamma_2_in_axes2_x*v.rrr_w_2_in_axes2_x;
         const real rrr_Q_t_2 = R(0.5)*rrr_Q_t;
-        const real rrr_Q_t_3 = axis_x_rrr_axes2_x*rrr_Q_t_2 +
-            axis_y_rrr_axes2_x*rrr_d_c_in_axes2_xy;
-        const real rrr_Q_t_4 = axis_y_rrr_axes2_x*rrr_Q_t_2 -
-            axis_x_rrr_axes2_x*rrr_d_c_in_axes2_xy;
-        const real rrr_Q_xx = -rrr_d_c_in_axes2_yy - 2*axis_x_rrr_axes2_x*rrr_Q_t_3;
-        const real rrr_Q_xy = axis_x_rrr_axes2_x*rrr_Q_t_4 + axis_y_rrr_axes2_x*rrr_Q_t_3;
-        const real rrr_Q_yy = -rrr_d_c_in_axes2_yy - 2*axis_y_rrr_axes2_x*rrr_Q_t_4;
+        const real rrr_Q_t_3 = v.axis_x_rrr_axes2_x*rrr_Q_t_2 +
+            v.axis_y_rrr_axes2_x*v.rrr_d_c_in_axes2_xy;
+        const real rrr_Q_t_4 = v.axis_y_rrr_axes2_x*rrr_Q_t_2 -
+            v.axis_x_rrr_axes2_x*v.rrr_d_c_in_axes2_xy;
+        const real rrr_Q_xx = -rrr_d_c_in_axes2_yy - 2*v.axis_x_rrr_axes2_x*rrr_Q_t_3;
+        const real rrr_Q_xy = v.axis_x_rrr_axes2_x*rrr_Q_t_4 + v.axis_y_rrr_axes2_x*rrr_Q_t_3;
+        const real rrr_Q_yy = -rrr_d_c_in_axes2_yy - 2*v.axis_y_rrr_axes2_x*rrr_Q_t_4;
         /* (rrr-U) velocity and gravity terms of the leg force */
-        const real rrr_U_x = -axis_x_rrr_axes2_x*rrr_c_o_in_axes2_x -
-            axis_y_rrr_axes2_x*rrr_c_o_in_axes2_y;
-        const real rrr_U_y = axis_y_rrr_axes2_x*rrr_c_o_in_axes2_x -
-            axis_x_rrr_axes2_x*rrr_c_o_in_axes2_y;
+        const real rrr_U_x = -v.axis_x_rrr_axes2_x*rrr_c_o_in_axes2_x -
+            v.axis_y_rrr_axes2_x*rrr_c_o_in_axes2_y;
+        const real rrr_U_y = v.axis_y_rrr_axes2_x*rrr_c_o_in_axes2_x -
+            v.axis_x_rrr_axes2_x*rrr_c_o_in_axes2_y;
         /* (M_tt) translational block of M */
         gather(&terms[0*count + k], add, rrr_Q_xx);  /* M_tt_xx_of_legs */
         gather(&terms[1*count + k], add, rrr_Q_xy);  /* M_tt_xy */
@@ -1721,14 +2170,14 @@ INLINE void dynamics_legs_rrr(const prepared *m, size_t w, size_t leg, size_t le
         gather(&terms[3*count + k], add, rrr_U_x);  /* Z_t_x_of_legs */
         gather(&terms[4*count + k], add, rrr_U_y);  /* Z_t_y_of_legs */
         /* (rrr-w_1) reciprocal vector 1 */
-        o[0*count + k] = rrr_w_1_x;
-        o[1*count + k] = rrr_w_1_y;
-        o[4*count + k] = rrr_w_1_x + rrr_w_1_y;
+        o[0*count + k] = v.rrr_w_1_x;
+        o[1*count + k] = v.rrr_w_1_y;
+        o[4*count + k] = v.rrr_w_1_x + v.rrr_w_1_y;
         const real rrr_rho2_1_t = m->rrr_rho2_1_t[i];
         const real rrr_size = m->rrr_size[i];
-        o[3*count + k] = UNLESS(magnitude(rrr_rho2_1) > TOLERANCE*TOLERANCE*rrr_rho2_1_t) +
-            UNLESS(magnitude(rrr_r_1_in_axes2_y) > TOLERANCE*rrr_size);
-        o[2*count + k] = UNLESS(rrr_disc_1 >= 0);
+        o[3*count + k] = UNLESS(magnitude(v.rrr_rho2_1) > TOLERANCE*TOLERANCE*rrr_rho2_1_t) +
+            UNLESS(magnitude(v.rrr_r_1_in_axes2_y) > TOLERANCE*rrr_size);
+        o[2*count + k] = UNLESS(v.rrr_disc_1 >= 0);
     }
 }
 
@@ -1736,7 +2185,7 @@ INLINE void dynamics_place_rrr(size_t w, size_t count, const real *o, size_t fir
     verdict *t)
 {
     for (size_t k = 0; k < w; ++k) {
-        H[(0*NU + 2)*w + k] = o[0*count + first + k];
+        H[2*w + k] = o[0*count + first + k];
         H[(NU + 2)*w + k] = o[1*count + first + k];
         t->unreachable[k] += o[2*count + first + k];
         t->singular[k] += o[3*count + first + k];
@@ -1762,9 +2211,9 @@ INLINE void dynamics_after(const prepared *m, size_t w, const real *sums, real *
         const real Z_t_y_of_legs = sums[4*w + k];
         const real Z_t_y = Z_p_y + Z_t_y_of_legs;
         /* (M_tt) translational block of M */
-        M[0*NV*w + k] = M_tt_xx;
+        M[0*w + k] = M_tt_xx;
         const real M_tt_xy = sums[1*w + k];
-        M[(0*NV + 1)*w + k] = M_tt_xy;
+        M[1*w + k] = M_tt_xy;
         M[NV*w + k] = M_tt_xy;
         M[(NV + 1)*w + k] = M_tt_yy;
         /* (Z_t) translational part of Z */
@@ -1777,21 +2226,18 @@ INLINE void dynamics_after(const prepared *m, size_t w, const real *sums, real *
 INLINE void dynamics_run(const prepared *m, const real *X, const real *V, real *M, real *Z, real
     *H, verdict *t)
 {
-    real s[4] = {0};
     real sums[5] = {0};
-    real terms_rrr_leg1[5*LEGS(LEGS_OF_rrr_leg1)] = {0};
-    real o_rrr_leg1[7*LEGS(LEGS_OF_rrr_leg1)] = {0};
-    real terms_rrr[5*LEGS(LEGS_OF_rrr)] = {0};
-    real o_rrr[5*LEGS(LEGS_OF_rrr)] = {0};
-    dynamics_before(1, X, V, s);
-    dynamics_legs_rrr_leg1(m, 1, 0, 1, s, 0, LEGS(LEGS_OF_rrr_leg1), 0, terms_rrr_leg1, o_rrr_leg1);
+    real terms_rrr_leg1[5*LEGS(LEGS_OF_rrr_leg1)] = {0}, o_rrr_leg1[7*LEGS(LEGS_OF_rrr_leg1)] = {0};
+    real terms_rrr[5*LEGS(LEGS_OF_rrr)] = {0}, o_rrr[5*LEGS(LEGS_OF_rrr)] = {0};
+    dynamics_before();
+    dynamics_legs_rrr_leg1(m, 1, 0, 1, 0, LEGS(LEGS_OF_rrr_leg1), 0, X, V, terms_rrr_leg1, o_rrr_leg1);
+    dynamics_legs_rrr(m, 1, 0, 1, 0, LEGS(LEGS_OF_rrr), 0, X, V, terms_rrr, o_rrr);
     for (size_t leg = 0; leg < LEGS_OF_rrr_leg1; ++leg) {
         dynamics_place_rrr_leg1(1, LEGS(LEGS_OF_rrr_leg1), o_rrr_leg1, leg, H, t);
     }
     for (size_t n = 0; n < 5; ++n) {
         sums[n] = total(terms_rrr_leg1 + n*LEGS(LEGS_OF_rrr_leg1), LEGS_OF_rrr_leg1);
     }
-    dynamics_legs_rrr(m, 1, 0, 1, s, 0, LEGS(LEGS_OF_rrr), 0, terms_rrr, o_rrr);
     for (size_t leg = 0; leg < LEGS_OF_rrr; ++leg) {
         dynamics_place_rrr(1, LEGS(LEGS_OF_rrr), o_rrr, leg, H, t);
     }
@@ -1804,152 +2250,58 @@ INLINE void dynamics_run(const prepared *m, const real *X, const real *V, real *
 INLINE void dynamics_run_lanes(const prepared *m, const real *X, const real *V, real *M, real *Z,
     real *H, verdict *t)
 {
-    real s[4*LANES];
     real sums[5*LANES];
     real o_rrr_leg1[7*LANES];
     real o_rrr[5*LANES];
-    dynamics_before(LANES, X, V, s);
+    dynamics_before();
     clear(sums, 5*LANES);
     for (size_t leg = 0; leg < LEGS_OF_rrr_leg1; ++leg) {
-        dynamics_legs_rrr_leg1(m, LANES, leg, 0, s, 1, LANES, 1, sums, o_rrr_leg1);
+        dynamics_legs_rrr_leg1(m, LANES, leg, 0, 1, LANES, 1, X, V, sums, o_rrr_leg1);
         dynamics_place_rrr_leg1(LANES, LANES, o_rrr_leg1, 0, H, t);
     }
     for (size_t leg = 0; leg < LEGS_OF_rrr; ++leg) {
-        dynamics_legs_rrr(m, LANES, leg, 0, s, 1, LANES, 1, sums, o_rrr);
+        dynamics_legs_rrr(m, LANES, leg, 0, 1, LANES, 1, X, V, sums, o_rrr);
         dynamics_place_rrr(LANES, LANES, o_rrr, 0, H, t);
     }
     dynamics_after(m, LANES, sums, M, Z, t);
 }
 
 /* ---- M ---- */
-INLINE void M_before(size_t w, const real *X, real *s)
+INLINE void M_before()
 {
-    for (size_t k = 0; k < w; ++k) {
-        /* X: named entries */
-        const real X_0 = X[0*w + k];
-        const real t_x = X_0;
-        const real X_1 = X[1*w + k];
-        const real t_y = X_1;
-        s[0*w + k] = t_x;
-        s[1*w + k] = t_y;
-    }
 }
 
-INLINE void M_legs_rrr_leg1(const prepared *m, size_t w, size_t leg, size_t legs, const real *s,
-    size_t states, size_t count, int add, real *terms, real *o)
+INLINE void M_legs_rrr_leg1(const prepared *m, size_t w, size_t leg, size_t legs, size_t states,
+    size_t count, int add, const real *X, real *terms, real *o)
 {
     for (size_t k = 0; k < count; ++k) {
         const size_t i = leg + legs*k;
         const size_t j = states*k;
-        /* (rrr_leg1-S) from the base point to the connection point */
-        const real rrr_leg1_base_point_x = m->rrr_leg1_base_point_x[i];
-        const real rrr_leg1_platform_point_x = m->rrr_leg1_platform_point_x[i];
-        const real t_x = s[0*w + j];
-        const real rrr_leg1_S_x = rrr_leg1_platform_point_x + t_x - rrr_leg1_base_point_x;
-        const real rrr_leg1_base_point_y = m->rrr_leg1_base_point_y[i];
-        const real rrr_leg1_platform_point_y = m->rrr_leg1_platform_point_y[i];
-        const real t_y = s[1*w + j];
-        const real rrr_leg1_S_y = rrr_leg1_platform_point_y + t_y - rrr_leg1_base_point_y;
-        /* (rrr_leg1-Kd_1) projection on the centre's direction, from the distance fixed by the joints
-           beyond joint 1 */
-        const real rrr_leg1_Kd_1_t_3 = rrr_leg1_S_x*rrr_leg1_S_x + rrr_leg1_S_y*rrr_leg1_S_y;
-        const real rrr_leg1_Kd_1_t = m->rrr_leg1_Kd_1_t[i];
-        const real rrr_leg1_Kd_1_t_2 = m->rrr_leg1_Kd_1_t_2[i];
-        const real rrr_leg1_Kd_1 = rrr_leg1_Kd_1_t + R(0.5)*rrr_leg1_Kd_1_t_3 - rrr_leg1_Kd_1_t_2;
-        /* (rrr_leg1-px_1) component along the reference direction */
-        const real rrr_leg1_base_frame_xx = m->rrr_leg1_base_frame_xx[i];
-        const real rrr_leg1_base_frame_yx = m->rrr_leg1_base_frame_yx[i];
-        const real rrr_leg1_px_1 = rrr_leg1_S_x*rrr_leg1_base_frame_xx +
-            rrr_leg1_S_y*rrr_leg1_base_frame_yx;
-        /* (rrr_leg1-py_1) component across the reference direction */
-        const real rrr_leg1_base_frame_xy = m->rrr_leg1_base_frame_xy[i];
-        const real rrr_leg1_base_frame_yy = m->rrr_leg1_base_frame_yy[i];
-        const real rrr_leg1_py_1 = rrr_leg1_S_x*rrr_leg1_base_frame_xy +
-            rrr_leg1_S_y*rrr_leg1_base_frame_yy;
-        /* (rrr_leg1-Kc_1) factor of the cosine in the equation of joint 1 */
-        const real rrr_leg1_joint2_offset_x = m->rrr_leg1_joint2_offset_x[i];
-        const real rrr_leg1_Kc_1 = rrr_leg1_joint2_offset_x*rrr_leg1_px_1;
-        /* (rrr_leg1-Ks_1) factor of the sine in the equation of joint 1 */
-        const real rrr_leg1_Ks_1 = rrr_leg1_joint2_offset_x*rrr_leg1_py_1;
-        /* (rrr_leg1-rho2_1) squared amplitude */
-        const real rrr_leg1_rho2_1 = rrr_leg1_Kc_1*rrr_leg1_Kc_1 + rrr_leg1_Ks_1*rrr_leg1_Ks_1;
-        /* (rrr_leg1-disc_1) discriminant */
-        const real rrr_leg1_disc_1 = rrr_leg1_rho2_1 - rrr_leg1_Kd_1*rrr_leg1_Kd_1;
-        /* (rrr_leg1-root_1) root, with the sign of the branch */
-        const real rrr_leg1_branch_1 = m->rrr_leg1_branch_1[i];
-        const real rrr_leg1_root_1 = rrr_leg1_branch_1*root(rrr_leg1_disc_1);
-        /* (rrr_leg1-c_1) cosine of the angle of joint 1 from its reference direction */
-        const real inv_rrr_leg1_rho2_1 = 1/rrr_leg1_rho2_1;
-        const real rrr_leg1_c_1 = inv_rrr_leg1_rho2_1*(rrr_leg1_Kc_1*rrr_leg1_Kd_1 -
-            rrr_leg1_Ks_1*rrr_leg1_root_1);
-        /* (rrr_leg1-s_1) sine of the angle of joint 1 from its reference direction */
-        const real rrr_leg1_s_1 = inv_rrr_leg1_rho2_1*(rrr_leg1_Kc_1*rrr_leg1_root_1 +
-            rrr_leg1_Kd_1*rrr_leg1_Ks_1);
-        /* (rrr_leg1-x_2) from the origin of joint 2 to the connection point */
-        const real inv_rrr_leg1_size_t = m->inv_rrr_leg1_size_t[i];
-        const real rrr_leg1_x_2_in_axes1_x =
-            inv_rrr_leg1_size_t*rrr_leg1_Kd_1*rrr_leg1_joint2_offset_x - rrr_leg1_joint2_offset_x;
-        /* (rrr_leg1-c_2) cosine of the angle of joint 2 from its reference direction */
-        const real inv_rrr_leg1_size_t_2 = m->inv_rrr_leg1_size_t_2[i];
-        const real rrr_leg1_platform_joint_offset_x = m->rrr_leg1_platform_joint_offset_x[i];
-        const real rrr_leg1_c_2 =
-            inv_rrr_leg1_size_t_2*rrr_leg1_platform_joint_offset_x*rrr_leg1_x_2_in_axes1_x;
-        /* (rrr_leg1-s_2) sine of the angle of joint 2 from its reference direction */
-        const real rrr_leg1_s_2 =
-            -inv_rrr_leg1_size_t*inv_rrr_leg1_size_t_2*rrr_leg1_joint2_offset_x*rrr_leg1_platform_joint_offset_x*rrr_leg1_root_1;
-        /* (rrr_leg1-r_1) from joint 1 to the connection point, along the links */
-        const real rrr_leg1_r_1_in_axes1_y = rrr_leg1_platform_joint_offset_x*rrr_leg1_s_2;
-        const real rrr_leg1_r_1_in_axes1_x = rrr_leg1_joint2_offset_x +
-            rrr_leg1_c_2*rrr_leg1_platform_joint_offset_x;
-        const real rrr_leg1_r_1_in_axes2_x = rrr_leg1_c_2*rrr_leg1_r_1_in_axes1_x +
-            rrr_leg1_r_1_in_axes1_y*rrr_leg1_s_2;
-        const real rrr_leg1_r_1_in_axes2_y = rrr_leg1_c_2*rrr_leg1_r_1_in_axes1_y -
-            rrr_leg1_r_1_in_axes1_x*rrr_leg1_s_2;
-        /* (rrr_leg1-w_1) reciprocal vector 1 */
-        const real rrr_leg1_w_1_in_axes2_x = -1/rrr_leg1_r_1_in_axes2_y;
-        /* (rrr_leg1-w_2) reciprocal vector 2 */
-        const real rrr_leg1_w_2_in_axes2_y = m->rrr_leg1_w_2_in_axes2_y[i];
-        const real rrr_leg1_w_2_in_axes2_x =
-            -rrr_leg1_r_1_in_axes2_x*rrr_leg1_w_1_in_axes2_x*rrr_leg1_w_2_in_axes2_y;
-        /* (rrr_leg1-d_Gamma_2) coefficient of the acceleration in: moment about axis 2 of the distal
-           links' inertia and weight */
-        const real rrr_leg1_d_Gamma_2_t = m->rrr_leg1_d_Gamma_2_t[i];
-        const real rrr_leg1_d_Gamma_2_t_2 = rrr_leg1_d_Gamma_2_t*rrr_leg1_r_1_in_axes2_x;
-        const real rrr_leg1_J_2_in_spec2_zz = m->rrr_leg1_J_2_in_spec2_zz[i];
-        const real rrr_leg1_h_2_in_spec2_y = m->rrr_leg1_h_2_in_spec2_y[i];
-        const real rrr_leg1_d_Gamma_2_in_axes2_x =
-            rrr_leg1_w_1_in_axes2_x*(rrr_leg1_J_2_in_spec2_zz - rrr_leg1_d_Gamma_2_t_2) -
-            rrr_leg1_h_2_in_spec2_y;
-        /* (rrr_leg1-d_Gamma_1) coefficient of the acceleration in: moment about axis 1 of the distal
-           links' inertia and weight */
-        const real rrr_leg1_Jc_1_in_axes1_zz = m->rrr_leg1_Jc_1_in_axes1_zz[i];
-        const real rrr_leg1_d_Gamma_1_in_axes2_x =
-            rrr_leg1_w_1_in_axes2_x*(rrr_leg1_Jc_1_in_axes1_zz - rrr_leg1_d_Gamma_2_t_2) -
-            rrr_leg1_h_2_in_spec2_y;
-        /* (rrr_leg1-d_c) coefficient of the acceleration in: leg force on the platform without actuation
-           and without the mass at the connection point */
-        const real rrr_leg1_d_Gamma_2_in_axes2_y = m->rrr_leg1_d_Gamma_2_in_axes2_y[i];
-        const real rrr_leg1_d_phi_2_t = m->rrr_leg1_d_phi_2_t[i];
-        const real rrr_leg1_d_c_in_axes2_xy = rrr_leg1_d_phi_2_t -
-            rrr_leg1_d_Gamma_2_in_axes2_y*rrr_leg1_w_1_in_axes2_x -
-            rrr_leg1_d_Gamma_2_in_axes2_y*rrr_leg1_w_2_in_axes2_x;
+        values_rrr_leg1 v;
+        stage_rrr_leg1_X(m, w, i, j, X, &v);
+        stage_rrr_leg1_M_dynamics(m, i, &v);
         /* (rrr_leg1-Q) inertia of the leg at the connection point, without the mass gathered there */
-        const real rrr_leg1_Q_t = rrr_leg1_c_1*rrr_leg1_s_2 + rrr_leg1_c_2*rrr_leg1_s_1;
-        const real rrr_leg1_Q_t_2 = rrr_leg1_c_1*rrr_leg1_c_2 - rrr_leg1_s_1*rrr_leg1_s_2;
+        const real rrr_leg1_Q_t = v.rrr_leg1_c_1*v.rrr_leg1_s_2 + v.rrr_leg1_c_2*v.rrr_leg1_s_1;
+        const real rrr_leg1_Q_t_2 = v.rrr_leg1_c_1*v.rrr_leg1_c_2 - v.rrr_leg1_s_1*v.rrr_leg1_s_2;
+        const real rrr_leg1_base_frame_xx = m->rrr_leg1_base_frame_xx[i];
+        const real rrr_leg1_base_frame_xy = m->rrr_leg1_base_frame_xy[i];
         const real axis_y_rrr_leg1_axes2_x = rrr_leg1_Q_t_2*rrr_leg1_base_frame_xy -
             rrr_leg1_Q_t*rrr_leg1_base_frame_xx;
+        const real rrr_leg1_base_frame_yx = m->rrr_leg1_base_frame_yx[i];
+        const real rrr_leg1_base_frame_yy = m->rrr_leg1_base_frame_yy[i];
         const real axis_x_rrr_leg1_axes2_x = rrr_leg1_Q_t_2*rrr_leg1_base_frame_yy -
             rrr_leg1_Q_t*rrr_leg1_base_frame_yx;
         const real rrr_leg1_d_c_in_axes2_yy = m->rrr_leg1_d_c_in_axes2_yy[i];
-        const real rrr_leg1_Q_t_3 = rrr_leg1_h_2_in_spec2_y*(rrr_leg1_w_1_in_axes2_x +
-            rrr_leg1_w_2_in_axes2_x) - rrr_leg1_d_c_in_axes2_yy -
-            rrr_leg1_d_Gamma_1_in_axes2_x*rrr_leg1_w_1_in_axes2_x -
-            rrr_leg1_d_Gamma_2_in_axes2_x*rrr_leg1_w_2_in_axes2_x;
+        const real rrr_leg1_h_2_in_spec2_y = m->rrr_leg1_h_2_in_spec2_y[i];
+        const real rrr_leg1_Q_t_3 = rrr_leg1_h_2_in_spec2_y*(v.rrr_leg1_w_1_in_axes2_x +
+            v.rrr_leg1_w_2_in_axes2_x) - rrr_leg1_d_c_in_axes2_yy -
+            v.rrr_leg1_d_Gamma_1_in_axes2_x*v.rrr_leg1_w_1_in_axes2_x -
+            v.rrr_leg1_d_Gamma_2_in_axes2_x*v.rrr_leg1_w_2_in_axes2_x;
         const real rrr_leg1_Q_t_4 = R(0.5)*rrr_leg1_Q_t_3;
         const real rrr_leg1_Q_t_5 = axis_x_rrr_leg1_axes2_x*rrr_leg1_Q_t_4 +
-            axis_y_rrr_leg1_axes2_x*rrr_leg1_d_c_in_axes2_xy;
+            axis_y_rrr_leg1_axes2_x*v.rrr_leg1_d_c_in_axes2_xy;
         const real rrr_leg1_Q_t_6 = axis_y_rrr_leg1_axes2_x*rrr_leg1_Q_t_4 -
-            axis_x_rrr_leg1_axes2_x*rrr_leg1_d_c_in_axes2_xy;
+            axis_x_rrr_leg1_axes2_x*v.rrr_leg1_d_c_in_axes2_xy;
         const real rrr_leg1_Q_xx = -rrr_leg1_d_c_in_axes2_yy -
             2*axis_x_rrr_leg1_axes2_x*rrr_leg1_Q_t_5;
         const real rrr_leg1_Q_xy = axis_x_rrr_leg1_axes2_x*rrr_leg1_Q_t_6 +
@@ -1962,10 +2314,10 @@ INLINE void M_legs_rrr_leg1(const prepared *m, size_t w, size_t leg, size_t legs
         gather(&terms[2*count + k], add, rrr_leg1_Q_yy);  /* M_tt_yy_of_legs */
         const real rrr_leg1_rho2_1_t = m->rrr_leg1_rho2_1_t[i];
         const real rrr_leg1_size = m->rrr_leg1_size[i];
-        o[1*count + k] = UNLESS(magnitude(rrr_leg1_rho2_1) >
-            TOLERANCE*TOLERANCE*rrr_leg1_rho2_1_t) + UNLESS(magnitude(rrr_leg1_r_1_in_axes2_y) >
+        o[1*count + k] = UNLESS(magnitude(v.rrr_leg1_rho2_1) >
+            TOLERANCE*TOLERANCE*rrr_leg1_rho2_1_t) + UNLESS(magnitude(v.rrr_leg1_r_1_in_axes2_y) >
             TOLERANCE*rrr_leg1_size);
-        o[0*count + k] = UNLESS(rrr_leg1_disc_1 >= 0);
+        o[0*count + k] = UNLESS(v.rrr_leg1_disc_1 >= 0);
     }
 }
 
@@ -1977,107 +2329,34 @@ INLINE void M_place_rrr_leg1(size_t w, size_t count, const real *o, size_t first
     }
 }
 
-INLINE void M_legs_rrr(const prepared *m, size_t w, size_t leg, size_t legs, const real *s, size_t
-    states, size_t count, int add, real *terms, real *o)
+INLINE void M_legs_rrr(const prepared *m, size_t w, size_t leg, size_t legs, size_t states, size_t
+    count, int add, const real *X, real *terms, real *o)
 {
     for (size_t k = 0; k < count; ++k) {
         const size_t i = leg + legs*k;
         const size_t j = states*k;
-        /* (rrr-S) from the base point to the connection point */
-        const real rrr_base_point_x = m->rrr_base_point_x[i];
-        const real rrr_platform_point_x = m->rrr_platform_point_x[i];
-        const real t_x = s[0*w + j];
-        const real rrr_S_x = rrr_platform_point_x + t_x - rrr_base_point_x;
-        const real rrr_base_point_y = m->rrr_base_point_y[i];
-        const real rrr_platform_point_y = m->rrr_platform_point_y[i];
-        const real t_y = s[1*w + j];
-        const real rrr_S_y = rrr_platform_point_y + t_y - rrr_base_point_y;
-        /* (rrr-Kd_1) projection on the centre's direction, from the distance fixed by the joints beyond
-           joint 1 */
-        const real rrr_Kd_1_t_3 = rrr_S_x*rrr_S_x + rrr_S_y*rrr_S_y;
-        const real rrr_Kd_1_t = m->rrr_Kd_1_t[i];
-        const real rrr_Kd_1_t_2 = m->rrr_Kd_1_t_2[i];
-        const real rrr_Kd_1 = rrr_Kd_1_t + R(0.5)*rrr_Kd_1_t_3 - rrr_Kd_1_t_2;
-        /* (rrr-px_1) component along the reference direction */
-        const real rrr_base_frame_xx = m->rrr_base_frame_xx[i];
-        const real rrr_base_frame_yx = m->rrr_base_frame_yx[i];
-        const real rrr_px_1 = rrr_S_x*rrr_base_frame_xx + rrr_S_y*rrr_base_frame_yx;
-        /* (rrr-py_1) component across the reference direction */
-        const real rrr_base_frame_xy = m->rrr_base_frame_xy[i];
-        const real rrr_base_frame_yy = m->rrr_base_frame_yy[i];
-        const real rrr_py_1 = rrr_S_x*rrr_base_frame_xy + rrr_S_y*rrr_base_frame_yy;
-        /* (rrr-Kc_1) factor of the cosine in the equation of joint 1 */
-        const real rrr_joint2_offset_x = m->rrr_joint2_offset_x[i];
-        const real rrr_Kc_1 = rrr_joint2_offset_x*rrr_px_1;
-        /* (rrr-Ks_1) factor of the sine in the equation of joint 1 */
-        const real rrr_Ks_1 = rrr_joint2_offset_x*rrr_py_1;
-        /* (rrr-rho2_1) squared amplitude */
-        const real rrr_rho2_1 = rrr_Kc_1*rrr_Kc_1 + rrr_Ks_1*rrr_Ks_1;
-        /* (rrr-disc_1) discriminant */
-        const real rrr_disc_1 = rrr_rho2_1 - rrr_Kd_1*rrr_Kd_1;
-        /* (rrr-root_1) root, with the sign of the branch */
-        const real rrr_branch_1 = m->rrr_branch_1[i];
-        const real rrr_root_1 = rrr_branch_1*root(rrr_disc_1);
-        /* (rrr-c_1) cosine of the angle of joint 1 from its reference direction */
-        const real inv_rrr_rho2_1 = 1/rrr_rho2_1;
-        const real rrr_c_1 = inv_rrr_rho2_1*(rrr_Kc_1*rrr_Kd_1 - rrr_Ks_1*rrr_root_1);
-        /* (rrr-s_1) sine of the angle of joint 1 from its reference direction */
-        const real rrr_s_1 = inv_rrr_rho2_1*(rrr_Kc_1*rrr_root_1 + rrr_Kd_1*rrr_Ks_1);
-        /* (rrr-x_2) from the origin of joint 2 to the connection point */
-        const real inv_rrr_size_t = m->inv_rrr_size_t[i];
-        const real rrr_x_2_in_axes1_x = inv_rrr_size_t*rrr_Kd_1*rrr_joint2_offset_x -
-            rrr_joint2_offset_x;
-        /* (rrr-c_2) cosine of the angle of joint 2 from its reference direction */
-        const real inv_rrr_size_t_2 = m->inv_rrr_size_t_2[i];
-        const real rrr_platform_joint_offset_x = m->rrr_platform_joint_offset_x[i];
-        const real rrr_c_2 = inv_rrr_size_t_2*rrr_platform_joint_offset_x*rrr_x_2_in_axes1_x;
-        /* (rrr-s_2) sine of the angle of joint 2 from its reference direction */
-        const real rrr_s_2 =
-            -inv_rrr_size_t*inv_rrr_size_t_2*rrr_joint2_offset_x*rrr_platform_joint_offset_x*rrr_root_1;
-        /* (rrr-r_1) from joint 1 to the connection point, along the links */
-        const real rrr_r_1_in_axes1_y = rrr_platform_joint_offset_x*rrr_s_2;
-        const real rrr_r_1_in_axes1_x = rrr_joint2_offset_x + rrr_c_2*rrr_platform_joint_offset_x;
-        const real rrr_r_1_in_axes2_x = rrr_c_2*rrr_r_1_in_axes1_x + rrr_r_1_in_axes1_y*rrr_s_2;
-        const real rrr_r_1_in_axes2_y = rrr_c_2*rrr_r_1_in_axes1_y - rrr_r_1_in_axes1_x*rrr_s_2;
-        /* (rrr-w_1) reciprocal vector 1 */
-        const real rrr_w_1_in_axes2_x = -1/rrr_r_1_in_axes2_y;
-        /* (rrr-w_2) reciprocal vector 2 */
-        const real rrr_w_2_in_axes2_y = m->rrr_w_2_in_axes2_y[i];
-        const real rrr_w_2_in_axes2_x = -rrr_r_1_in_axes2_x*rrr_w_1_in_axes2_x*rrr_w_2_in_axes2_y;
-        /* (rrr-d_Gamma_2) coefficient of the acceleration in: moment about axis 2 of the distal links'
-           inertia and weight */
-        const real rrr_d_Gamma_2_t = m->rrr_d_Gamma_2_t[i];
-        const real rrr_d_Gamma_2_t_2 = rrr_d_Gamma_2_t*rrr_r_1_in_axes2_x;
-        const real rrr_J_2_in_spec2_zz = m->rrr_J_2_in_spec2_zz[i];
-        const real rrr_h_2_in_spec2_y = m->rrr_h_2_in_spec2_y[i];
-        const real rrr_d_Gamma_2_in_axes2_x = rrr_w_1_in_axes2_x*(rrr_J_2_in_spec2_zz -
-            rrr_d_Gamma_2_t_2) - rrr_h_2_in_spec2_y;
-        /* (rrr-d_Gamma_1) coefficient of the acceleration in: moment about axis 1 of the distal links'
-           inertia and weight */
-        const real rrr_Jc_1_in_axes1_zz = m->rrr_Jc_1_in_axes1_zz[i];
-        const real rrr_d_Gamma_1_in_axes2_x = rrr_w_1_in_axes2_x*(rrr_Jc_1_in_axes1_zz -
-            rrr_d_Gamma_2_t_2) - rrr_h_2_in_spec2_y;
-        /* (rrr-d_c) coefficient of the acceleration in: leg force on the platform without actuation and
-           without the mass at the connection point */
-        const real rrr_d_Gamma_2_in_axes2_y = m->rrr_d_Gamma_2_in_axes2_y[i];
-        const real rrr_d_phi_2_t = m->rrr_d_phi_2_t[i];
-        const real rrr_d_c_in_axes2_xy = rrr_d_phi_2_t -
-            rrr_d_Gamma_2_in_axes2_y*rrr_w_1_in_axes2_x -
-            rrr_d_Gamma_2_in_axes2_y*rrr_w_2_in_axes2_x;
+        values_rrr v;
+        stage_rrr_X(m, w, i, j, X, &v);
+        stage_rrr_M_dynamics(m, i, &v);
         /* (rrr-Q) inertia of the leg at the connection point, without the mass gathered there */
-        const real rrr_Q_t = rrr_c_1*rrr_s_2 + rrr_c_2*rrr_s_1;
-        const real rrr_Q_t_2 = rrr_c_1*rrr_c_2 - rrr_s_1*rrr_s_2;
+        const real rrr_Q_t = v.rrr_c_1*v.rrr_s_2 + v.rrr_c_2*v.rrr_s_1;
+        const real rrr_Q_t_2 = v.rrr_c_1*v.rrr_c_2 - v.rrr_s_1*v.rrr_s_2;
+        const real rrr_base_frame_xx = m->rrr_base_frame_xx[i];
+        const real rrr_base_frame_xy = m->rrr_base_frame_xy[i];
         const real axis_y_rrr_axes2_x = rrr_Q_t_2*rrr_base_frame_xy - rrr_Q_t*rrr_base_frame_xx;
+        const real rrr_base_frame_yx = m->rrr_base_frame_yx[i];
+        const real rrr_base_frame_yy = m->rrr_base_frame_yy[i];
         const real axis_x_rrr_axes2_x = rrr_Q_t_2*rrr_base_frame_yy - rrr_Q_t*rrr_base_frame_yx;
         const real rrr_d_c_in_axes2_yy = m->rrr_d_c_in_axes2_yy[i];
-        const real rrr_Q_t_3 = rrr_h_2_in_spec2_y*(rrr_w_1_in_axes2_x + rrr_w_2_in_axes2_x) -
-            rrr_d_c_in_axes2_yy - rrr_d_Gamma_1_in_axes2_x*rrr_w_1_in_axes2_x -
-            rrr_d_Gamma_2_in_axes2_x*rrr_w_2_in_axes2_x;
+        const real rrr_h_2_in_spec2_y = m->rrr_h_2_in_spec2_y[i];
+        const real rrr_Q_t_3 = rrr_h_2_in_spec2_y*(v.rrr_w_1_in_axes2_x + v.rrr_w_2_in_axes2_x) -
+            rrr_d_c_in_axes2_yy - v.rrr_d_Gamma_1_in_axes2_x*v.rrr_w_1_in_axes2_x -
+            v.rrr_d_Gamma_2_in_axes2_x*v.rrr_w_2_in_axes2_x;
         const real rrr_Q_t_4 = R(0.5)*rrr_Q_t_3;
         const real rrr_Q_t_5 = axis_x_rrr_axes2_x*rrr_Q_t_4 +
-            axis_y_rrr_axes2_x*rrr_d_c_in_axes2_xy;
+            axis_y_rrr_axes2_x*v.rrr_d_c_in_axes2_xy;
         const real rrr_Q_t_6 = axis_y_rrr_axes2_x*rrr_Q_t_4 -
-            axis_x_rrr_axes2_x*rrr_d_c_in_axes2_xy;
+            axis_x_rrr_axes2_x*v.rrr_d_c_in_axes2_xy;
         const real rrr_Q_xx = -rrr_d_c_in_axes2_yy - 2*axis_x_rrr_axes2_x*rrr_Q_t_5;
         const real rrr_Q_xy = axis_x_rrr_axes2_x*rrr_Q_t_6 + axis_y_rrr_axes2_x*rrr_Q_t_5;
         const real rrr_Q_yy = -rrr_d_c_in_axes2_yy - 2*axis_y_rrr_axes2_x*rrr_Q_t_6;
@@ -2087,9 +2366,9 @@ INLINE void M_legs_rrr(const prepared *m, size_t w, size_t leg, size_t legs, con
         gather(&terms[2*count + k], add, rrr_Q_yy);  /* M_tt_yy_of_legs */
         const real rrr_rho2_1_t = m->rrr_rho2_1_t[i];
         const real rrr_size = m->rrr_size[i];
-        o[1*count + k] = UNLESS(magnitude(rrr_rho2_1) > TOLERANCE*TOLERANCE*rrr_rho2_1_t) +
-            UNLESS(magnitude(rrr_r_1_in_axes2_y) > TOLERANCE*rrr_size);
-        o[0*count + k] = UNLESS(rrr_disc_1 >= 0);
+        o[1*count + k] = UNLESS(magnitude(v.rrr_rho2_1) > TOLERANCE*TOLERANCE*rrr_rho2_1_t) +
+            UNLESS(magnitude(v.rrr_r_1_in_axes2_y) > TOLERANCE*rrr_size);
+        o[0*count + k] = UNLESS(v.rrr_disc_1 >= 0);
     }
 }
 
@@ -2111,9 +2390,9 @@ INLINE void M_after(const prepared *m, size_t w, const real *sums, real *M, verd
         const real M_tt_yy_of_legs = sums[2*w + k];
         const real M_tt_yy = M_tt_yy_of_legs + m_star;
         /* (M_tt) translational block of M */
-        M[0*NV*w + k] = M_tt_xx;
+        M[0*w + k] = M_tt_xx;
         const real M_tt_xy = sums[1*w + k];
-        M[(0*NV + 1)*w + k] = M_tt_xy;
+        M[1*w + k] = M_tt_xy;
         M[NV*w + k] = M_tt_xy;
         M[(NV + 1)*w + k] = M_tt_yy;
         t->total[k] += M_tt_xx + (M_tt_xy + M_tt_yy);
@@ -2122,21 +2401,18 @@ INLINE void M_after(const prepared *m, size_t w, const real *sums, real *M, verd
 
 INLINE void M_run(const prepared *m, const real *X, real *M, verdict *t)
 {
-    real s[2] = {0};
     real sums[3] = {0};
-    real terms_rrr_leg1[3*LEGS(LEGS_OF_rrr_leg1)] = {0};
-    real o_rrr_leg1[2*LEGS(LEGS_OF_rrr_leg1)] = {0};
-    real terms_rrr[3*LEGS(LEGS_OF_rrr)] = {0};
-    real o_rrr[2*LEGS(LEGS_OF_rrr)] = {0};
-    M_before(1, X, s);
-    M_legs_rrr_leg1(m, 1, 0, 1, s, 0, LEGS(LEGS_OF_rrr_leg1), 0, terms_rrr_leg1, o_rrr_leg1);
+    real terms_rrr_leg1[3*LEGS(LEGS_OF_rrr_leg1)] = {0}, o_rrr_leg1[2*LEGS(LEGS_OF_rrr_leg1)] = {0};
+    real terms_rrr[3*LEGS(LEGS_OF_rrr)] = {0}, o_rrr[2*LEGS(LEGS_OF_rrr)] = {0};
+    M_before();
+    M_legs_rrr_leg1(m, 1, 0, 1, 0, LEGS(LEGS_OF_rrr_leg1), 0, X, terms_rrr_leg1, o_rrr_leg1);
+    M_legs_rrr(m, 1, 0, 1, 0, LEGS(LEGS_OF_rrr), 0, X, terms_rrr, o_rrr);
     for (size_t leg = 0; leg < LEGS_OF_rrr_leg1; ++leg) {
         M_place_rrr_leg1(1, LEGS(LEGS_OF_rrr_leg1), o_rrr_leg1, leg, t);
     }
     for (size_t n = 0; n < 3; ++n) {
         sums[n] = total(terms_rrr_leg1 + n*LEGS(LEGS_OF_rrr_leg1), LEGS_OF_rrr_leg1);
     }
-    M_legs_rrr(m, 1, 0, 1, s, 0, LEGS(LEGS_OF_rrr), 0, terms_rrr, o_rrr);
     for (size_t leg = 0; leg < LEGS_OF_rrr; ++leg) {
         M_place_rrr(1, LEGS(LEGS_OF_rrr), o_rrr, leg, t);
     }
@@ -2148,126 +2424,47 @@ INLINE void M_run(const prepared *m, const real *X, real *M, verdict *t)
 
 INLINE void M_run_lanes(const prepared *m, const real *X, real *M, verdict *t)
 {
-    real s[2*LANES];
     real sums[3*LANES];
     real o_rrr_leg1[2*LANES];
     real o_rrr[2*LANES];
-    M_before(LANES, X, s);
+    M_before();
     clear(sums, 3*LANES);
     for (size_t leg = 0; leg < LEGS_OF_rrr_leg1; ++leg) {
-        M_legs_rrr_leg1(m, LANES, leg, 0, s, 1, LANES, 1, sums, o_rrr_leg1);
+        M_legs_rrr_leg1(m, LANES, leg, 0, 1, LANES, 1, X, sums, o_rrr_leg1);
         M_place_rrr_leg1(LANES, LANES, o_rrr_leg1, 0, t);
     }
     for (size_t leg = 0; leg < LEGS_OF_rrr; ++leg) {
-        M_legs_rrr(m, LANES, leg, 0, s, 1, LANES, 1, sums, o_rrr);
+        M_legs_rrr(m, LANES, leg, 0, 1, LANES, 1, X, sums, o_rrr);
         M_place_rrr(LANES, LANES, o_rrr, 0, t);
     }
     M_after(m, LANES, sums, M, t);
 }
 
 /* ---- Z ---- */
-INLINE void Z_before(size_t w, const real *X, const real *V, real *s)
+INLINE void Z_before()
 {
-    for (size_t k = 0; k < w; ++k) {
-        /* X: named entries */
-        const real X_0 = X[0*w + k];
-        const real t_x = X_0;
-        const real X_1 = X[1*w + k];
-        const real t_y = X_1;
-        /* V: named entries */
-        const real V_0 = V[0*w + k];
-        const real t_dot_x = V_0;
-        const real V_1 = V[1*w + k];
-        const real t_dot_y = V_1;
-        s[0*w + k] = t_x;
-        s[1*w + k] = t_y;
-        s[2*w + k] = t_dot_x;
-        s[3*w + k] = t_dot_y;
-    }
 }
 
-INLINE void Z_legs_rrr_leg1(const prepared *m, size_t w, size_t leg, size_t legs, const real *s,
-    size_t states, size_t count, int add, real *terms, real *o)
+INLINE void Z_legs_rrr_leg1(const prepared *m, size_t w, size_t leg, size_t legs, size_t states,
+    size_t count, int add, const real *X, const real *V, real *terms, real *o)
 {
     for (size_t k = 0; k < count; ++k) {
         const size_t i = leg + legs*k;
         const size_t j = states*k;
-        /* (rrr_leg1-S) from the base point to the connection point */
-        const real rrr_leg1_base_point_x = m->rrr_leg1_base_point_x[i];
-        const real rrr_leg1_platform_point_x = m->rrr_leg1_platform_point_x[i];
-        const real t_x = s[0*w + j];
-        const real rrr_leg1_S_x = rrr_leg1_platform_point_x + t_x - rrr_leg1_base_point_x;
-        const real rrr_leg1_base_point_y = m->rrr_leg1_base_point_y[i];
-        const real rrr_leg1_platform_point_y = m->rrr_leg1_platform_point_y[i];
-        const real t_y = s[1*w + j];
-        const real rrr_leg1_S_y = rrr_leg1_platform_point_y + t_y - rrr_leg1_base_point_y;
-        /* (rrr_leg1-Kd_1) projection on the centre's direction, from the distance fixed by the joints
-           beyond joint 1 */
-        const real rrr_leg1_Kd_1_t_3 = rrr_leg1_S_x*rrr_leg1_S_x + rrr_leg1_S_y*rrr_leg1_S_y;
-        const real rrr_leg1_Kd_1_t = m->rrr_leg1_Kd_1_t[i];
-        const real rrr_leg1_Kd_1_t_2 = m->rrr_leg1_Kd_1_t_2[i];
-        const real rrr_leg1_Kd_1 = rrr_leg1_Kd_1_t + R(0.5)*rrr_leg1_Kd_1_t_3 - rrr_leg1_Kd_1_t_2;
-        /* (rrr_leg1-px_1) component along the reference direction */
-        const real rrr_leg1_base_frame_xx = m->rrr_leg1_base_frame_xx[i];
-        const real rrr_leg1_base_frame_yx = m->rrr_leg1_base_frame_yx[i];
-        const real rrr_leg1_px_1 = rrr_leg1_S_x*rrr_leg1_base_frame_xx +
-            rrr_leg1_S_y*rrr_leg1_base_frame_yx;
-        /* (rrr_leg1-py_1) component across the reference direction */
-        const real rrr_leg1_base_frame_xy = m->rrr_leg1_base_frame_xy[i];
-        const real rrr_leg1_base_frame_yy = m->rrr_leg1_base_frame_yy[i];
-        const real rrr_leg1_py_1 = rrr_leg1_S_x*rrr_leg1_base_frame_xy +
-            rrr_leg1_S_y*rrr_leg1_base_frame_yy;
-        /* (rrr_leg1-Kc_1) factor of the cosine in the equation of joint 1 */
-        const real rrr_leg1_joint2_offset_x = m->rrr_leg1_joint2_offset_x[i];
-        const real rrr_leg1_Kc_1 = rrr_leg1_joint2_offset_x*rrr_leg1_px_1;
-        /* (rrr_leg1-Ks_1) factor of the sine in the equation of joint 1 */
-        const real rrr_leg1_Ks_1 = rrr_leg1_joint2_offset_x*rrr_leg1_py_1;
-        /* (rrr_leg1-rho2_1) squared amplitude */
-        const real rrr_leg1_rho2_1 = rrr_leg1_Kc_1*rrr_leg1_Kc_1 + rrr_leg1_Ks_1*rrr_leg1_Ks_1;
-        /* (rrr_leg1-disc_1) discriminant */
-        const real rrr_leg1_disc_1 = rrr_leg1_rho2_1 - rrr_leg1_Kd_1*rrr_leg1_Kd_1;
-        /* (rrr_leg1-root_1) root, with the sign of the branch */
-        const real rrr_leg1_branch_1 = m->rrr_leg1_branch_1[i];
-        const real rrr_leg1_root_1 = rrr_leg1_branch_1*root(rrr_leg1_disc_1);
-        /* (rrr_leg1-c_1) cosine of the angle of joint 1 from its reference direction */
-        const real inv_rrr_leg1_rho2_1 = 1/rrr_leg1_rho2_1;
-        const real rrr_leg1_c_1 = inv_rrr_leg1_rho2_1*(rrr_leg1_Kc_1*rrr_leg1_Kd_1 -
-            rrr_leg1_Ks_1*rrr_leg1_root_1);
-        /* (rrr_leg1-s_1) sine of the angle of joint 1 from its reference direction */
-        const real rrr_leg1_s_1 = inv_rrr_leg1_rho2_1*(rrr_leg1_Kc_1*rrr_leg1_root_1 +
-            rrr_leg1_Kd_1*rrr_leg1_Ks_1);
-        /* (rrr_leg1-x_2) from the origin of joint 2 to the connection point */
-        const real inv_rrr_leg1_size_t = m->inv_rrr_leg1_size_t[i];
-        const real rrr_leg1_x_2_in_axes1_x =
-            inv_rrr_leg1_size_t*rrr_leg1_Kd_1*rrr_leg1_joint2_offset_x - rrr_leg1_joint2_offset_x;
-        /* (rrr_leg1-c_2) cosine of the angle of joint 2 from its reference direction */
-        const real inv_rrr_leg1_size_t_2 = m->inv_rrr_leg1_size_t_2[i];
-        const real rrr_leg1_platform_joint_offset_x = m->rrr_leg1_platform_joint_offset_x[i];
-        const real rrr_leg1_c_2 =
-            inv_rrr_leg1_size_t_2*rrr_leg1_platform_joint_offset_x*rrr_leg1_x_2_in_axes1_x;
-        /* (rrr_leg1-s_2) sine of the angle of joint 2 from its reference direction */
-        const real rrr_leg1_s_2 =
-            -inv_rrr_leg1_size_t*inv_rrr_leg1_size_t_2*rrr_leg1_joint2_offset_x*rrr_leg1_platform_joint_offset_x*rrr_leg1_root_1;
-        /* (rrr_leg1-r_1) from joint 1 to the connection point, along the links */
-        const real rrr_leg1_r_1_in_axes1_y = rrr_leg1_platform_joint_offset_x*rrr_leg1_s_2;
-        const real rrr_leg1_r_1_in_axes1_x = rrr_leg1_joint2_offset_x +
-            rrr_leg1_c_2*rrr_leg1_platform_joint_offset_x;
-        const real rrr_leg1_r_1_in_axes2_x = rrr_leg1_c_2*rrr_leg1_r_1_in_axes1_x +
-            rrr_leg1_r_1_in_axes1_y*rrr_leg1_s_2;
-        const real rrr_leg1_r_1_in_axes2_y = rrr_leg1_c_2*rrr_leg1_r_1_in_axes1_y -
-            rrr_leg1_r_1_in_axes1_x*rrr_leg1_s_2;
-        /* (rrr_leg1-w_1) reciprocal vector 1 */
-        const real rrr_leg1_w_1_in_axes2_x = -1/rrr_leg1_r_1_in_axes2_y;
+        values_rrr_leg1 v;
+        stage_rrr_leg1_X(m, w, i, j, X, &v);
         /* (rrr_leg1-qd_1) rate of joint 1 */
-        const real rrr_leg1_qd_1_t = rrr_leg1_c_1*rrr_leg1_s_2 + rrr_leg1_c_2*rrr_leg1_s_1;
-        const real rrr_leg1_qd_1_t_2 = rrr_leg1_c_1*rrr_leg1_c_2 - rrr_leg1_s_1*rrr_leg1_s_2;
-        const real axis_y_rrr_leg1_axes2_x = rrr_leg1_base_frame_xy*rrr_leg1_qd_1_t_2 -
-            rrr_leg1_base_frame_xx*rrr_leg1_qd_1_t;
-        const real axis_x_rrr_leg1_axes2_x = rrr_leg1_base_frame_yy*rrr_leg1_qd_1_t_2 -
-            rrr_leg1_base_frame_yx*rrr_leg1_qd_1_t;
-        const real t_dot_x = s[2*w + j];
-        const real t_dot_y = s[3*w + j];
-        const real rrr_leg1_qd_1 = rrr_leg1_w_1_in_axes2_x*(axis_x_rrr_leg1_axes2_x*t_dot_x -
+        const real rrr_leg1_base_frame_xx = m->rrr_leg1_base_frame_xx[i];
+        const real rrr_leg1_base_frame_xy = m->rrr_leg1_base_frame_xy[i];
+        const real axis_y_rrr_leg1_axes2_x = rrr_leg1_base_frame_xy*v.rrr_leg1_qd_1_t_2 -
+            rrr_leg1_base_frame_xx*v.rrr_leg1_qd_1_t;
+        const real rrr_leg1_base_frame_yx = m->rrr_leg1_base_frame_yx[i];
+        const real rrr_leg1_base_frame_yy = m->rrr_leg1_base_frame_yy[i];
+        const real axis_x_rrr_leg1_axes2_x = rrr_leg1_base_frame_yy*v.rrr_leg1_qd_1_t_2 -
+            rrr_leg1_base_frame_yx*v.rrr_leg1_qd_1_t;
+        const real t_dot_x = V[0*w + j];
+        const real t_dot_y = V[1*w + j];
+        const real rrr_leg1_qd_1 = v.rrr_leg1_w_1_in_axes2_x*(axis_x_rrr_leg1_axes2_x*t_dot_x -
             axis_y_rrr_leg1_axes2_x*t_dot_y);
         /* (rrr_leg1-W_1) centripetal tensor of link 1 */
         const real rrr_leg1_W_1_in_axes1_xx = -rrr_leg1_qd_1*rrr_leg1_qd_1;
@@ -2275,19 +2472,21 @@ INLINE void Z_legs_rrr_leg1(const prepared *m, size_t w, size_t leg, size_t legs
         const real rrr_leg1_w_2_in_axes2_y = m->rrr_leg1_w_2_in_axes2_y[i];
         const real rrr_leg1_omega_2_in_axes2_z = rrr_leg1_qd_1 +
             rrr_leg1_w_2_in_axes2_y*(axis_x_rrr_leg1_axes2_x*t_dot_y +
-            axis_y_rrr_leg1_axes2_x*t_dot_x - rrr_leg1_qd_1*rrr_leg1_r_1_in_axes2_x);
+            axis_y_rrr_leg1_axes2_x*t_dot_x - rrr_leg1_qd_1*v.rrr_leg1_r_1_in_axes2_x);
         /* (rrr_leg1-W_2) centripetal tensor of link 2 */
         const real rrr_leg1_W_2_t = rrr_leg1_omega_2_in_axes2_z*rrr_leg1_omega_2_in_axes2_z;
         /* (rrr_leg1-bias) acceleration of the connection point at zero joint accelerations */
+        const real rrr_leg1_joint2_offset_x = m->rrr_leg1_joint2_offset_x[i];
+        const real rrr_leg1_platform_joint_offset_x = m->rrr_leg1_platform_joint_offset_x[i];
         const real rrr_leg1_bias_in_axes2_x =
-            rrr_leg1_W_1_in_axes1_xx*rrr_leg1_c_2*rrr_leg1_joint2_offset_x -
+            rrr_leg1_W_1_in_axes1_xx*v.rrr_leg1_c_2*rrr_leg1_joint2_offset_x -
             rrr_leg1_W_2_t*rrr_leg1_platform_joint_offset_x;
         /* (rrr_leg1-qdd_1_o) remainder without the acceleration in: acceleration of joint 1 */
-        const real rrr_leg1_qdd_1_o = -rrr_leg1_bias_in_axes2_x*rrr_leg1_w_1_in_axes2_x;
+        const real rrr_leg1_qdd_1_o = -rrr_leg1_bias_in_axes2_x*v.rrr_leg1_w_1_in_axes2_x;
         /* (rrr_leg1-alpha_2_o) remainder without the acceleration in: angular acceleration of link 2 */
         const real rrr_leg1_alpha_2_o_in_axes2_z = rrr_leg1_qdd_1_o +
-            rrr_leg1_w_2_in_axes2_y*(rrr_leg1_W_1_in_axes1_xx*rrr_leg1_joint2_offset_x*rrr_leg1_s_2
-            - rrr_leg1_qdd_1_o*rrr_leg1_r_1_in_axes2_x);
+            rrr_leg1_w_2_in_axes2_y*(rrr_leg1_W_1_in_axes1_xx*rrr_leg1_joint2_offset_x*v.rrr_leg1_s_2
+            - rrr_leg1_qdd_1_o*v.rrr_leg1_r_1_in_axes2_x);
         /* (rrr_leg1-mu_2_o) remainder without the acceleration in: inertia moment of the links that turn
            with link 2, about their reference points */
         const real gravity_x = m->gravity_x;
@@ -2309,10 +2508,10 @@ INLINE void Z_legs_rrr_leg1(const prepared *m, size_t w, size_t leg, size_t legs
         const real rrr_leg1_mu_1_t = m->rrr_leg1_mu_1_t[i];
         const real rrr_leg1_mu_1_t_2 = m->rrr_leg1_mu_1_t_2[i];
         const real rrr_leg1_mu_1_o_in_axes1_z = rrr_leg1_J_1_in_spec1_zz*rrr_leg1_qdd_1_o +
-            rrr_leg1_h_1_in_spec1_y*(rrr_leg1_c_1*rrr_leg1_mu_1_t +
-            rrr_leg1_mu_1_t_2*rrr_leg1_s_1) -
-            rrr_leg1_h_1_in_spec1_x*(rrr_leg1_c_1*rrr_leg1_mu_1_t_2 -
-            rrr_leg1_mu_1_t*rrr_leg1_s_1);
+            rrr_leg1_h_1_in_spec1_y*(v.rrr_leg1_c_1*rrr_leg1_mu_1_t +
+            rrr_leg1_mu_1_t_2*v.rrr_leg1_s_1) -
+            rrr_leg1_h_1_in_spec1_x*(v.rrr_leg1_c_1*rrr_leg1_mu_1_t_2 -
+            rrr_leg1_mu_1_t*v.rrr_leg1_s_1);
         /* (rrr_leg1-N_1_o) remainder without the acceleration in: moment about joint 1 of the links from
            1 outwards, the force at the connection point left out */
         const real rrr_leg1_N_1_o_in_axes1_z = rrr_leg1_mu_1_o_in_axes1_z +
@@ -2324,7 +2523,7 @@ INLINE void Z_legs_rrr_leg1(const prepared *m, size_t w, size_t leg, size_t legs
            actuation and without the mass at the connection point */
         const real rrr_leg1_c_o_in_axes2_x = rrr_leg1_W_2_t*rrr_leg1_h_2_in_spec2_x +
             rrr_leg1_alpha_2_o_in_axes2_z*rrr_leg1_h_2_in_spec2_y +
-            rrr_leg1_w_1_in_axes2_x*(rrr_leg1_G_o_in_axes2_y*rrr_leg1_r_1_in_axes2_x -
+            v.rrr_leg1_w_1_in_axes2_x*(rrr_leg1_G_o_in_axes2_y*v.rrr_leg1_r_1_in_axes2_x -
             rrr_leg1_N_1_o_in_axes1_z);
         const real rrr_leg1_c_o_in_axes2_y = rrr_leg1_W_2_t*rrr_leg1_h_2_in_spec2_y -
             rrr_leg1_G_o_in_axes2_y - rrr_leg1_alpha_2_o_in_axes2_z*rrr_leg1_h_2_in_spec2_x;
@@ -2338,10 +2537,10 @@ INLINE void Z_legs_rrr_leg1(const prepared *m, size_t w, size_t leg, size_t legs
         gather(&terms[1*count + k], add, rrr_leg1_U_y);  /* Z_t_y_of_legs */
         const real rrr_leg1_rho2_1_t = m->rrr_leg1_rho2_1_t[i];
         const real rrr_leg1_size = m->rrr_leg1_size[i];
-        o[1*count + k] = UNLESS(magnitude(rrr_leg1_rho2_1) >
-            TOLERANCE*TOLERANCE*rrr_leg1_rho2_1_t) + UNLESS(magnitude(rrr_leg1_r_1_in_axes2_y) >
+        o[1*count + k] = UNLESS(magnitude(v.rrr_leg1_rho2_1) >
+            TOLERANCE*TOLERANCE*rrr_leg1_rho2_1_t) + UNLESS(magnitude(v.rrr_leg1_r_1_in_axes2_y) >
             TOLERANCE*rrr_leg1_size);
-        o[0*count + k] = UNLESS(rrr_leg1_disc_1 >= 0);
+        o[0*count + k] = UNLESS(v.rrr_leg1_disc_1 >= 0);
     }
 }
 
@@ -2353,80 +2552,26 @@ INLINE void Z_place_rrr_leg1(size_t w, size_t count, const real *o, size_t first
     }
 }
 
-INLINE void Z_legs_rrr(const prepared *m, size_t w, size_t leg, size_t legs, const real *s, size_t
-    states, size_t count, int add, real *terms, real *o)
+INLINE void Z_legs_rrr(const prepared *m, size_t w, size_t leg, size_t legs, size_t states, size_t
+    count, int add, const real *X, const real *V, real *terms, real *o)
 {
     for (size_t k = 0; k < count; ++k) {
         const size_t i = leg + legs*k;
         const size_t j = states*k;
-        /* (rrr-S) from the base point to the connection point */
-        const real rrr_base_point_x = m->rrr_base_point_x[i];
-        const real rrr_platform_point_x = m->rrr_platform_point_x[i];
-        const real t_x = s[0*w + j];
-        const real rrr_S_x = rrr_platform_point_x + t_x - rrr_base_point_x;
-        const real rrr_base_point_y = m->rrr_base_point_y[i];
-        const real rrr_platform_point_y = m->rrr_platform_point_y[i];
-        const real t_y = s[1*w + j];
-        const real rrr_S_y = rrr_platform_point_y + t_y - rrr_base_point_y;
-        /* (rrr-Kd_1) projection on the centre's direction, from the distance fixed by the joints beyond
-           joint 1 */
-        const real rrr_Kd_1_t_3 = rrr_S_x*rrr_S_x + rrr_S_y*rrr_S_y;
-        const real rrr_Kd_1_t = m->rrr_Kd_1_t[i];
-        const real rrr_Kd_1_t_2 = m->rrr_Kd_1_t_2[i];
-        const real rrr_Kd_1 = rrr_Kd_1_t + R(0.5)*rrr_Kd_1_t_3 - rrr_Kd_1_t_2;
-        /* (rrr-px_1) component along the reference direction */
-        const real rrr_base_frame_xx = m->rrr_base_frame_xx[i];
-        const real rrr_base_frame_yx = m->rrr_base_frame_yx[i];
-        const real rrr_px_1 = rrr_S_x*rrr_base_frame_xx + rrr_S_y*rrr_base_frame_yx;
-        /* (rrr-py_1) component across the reference direction */
-        const real rrr_base_frame_xy = m->rrr_base_frame_xy[i];
-        const real rrr_base_frame_yy = m->rrr_base_frame_yy[i];
-        const real rrr_py_1 = rrr_S_x*rrr_base_frame_xy + rrr_S_y*rrr_base_frame_yy;
-        /* (rrr-Kc_1) factor of the cosine in the equation of joint 1 */
-        const real rrr_joint2_offset_x = m->rrr_joint2_offset_x[i];
-        const real rrr_Kc_1 = rrr_joint2_offset_x*rrr_px_1;
-        /* (rrr-Ks_1) factor of the sine in the equation of joint 1 */
-        const real rrr_Ks_1 = rrr_joint2_offset_x*rrr_py_1;
-        /* (rrr-rho2_1) squared amplitude */
-        const real rrr_rho2_1 = rrr_Kc_1*rrr_Kc_1 + rrr_Ks_1*rrr_Ks_1;
-        /* (rrr-disc_1) discriminant */
-        const real rrr_disc_1 = rrr_rho2_1 - rrr_Kd_1*rrr_Kd_1;
-        /* (rrr-root_1) root, with the sign of the branch */
-        const real rrr_branch_1 = m->rrr_branch_1[i];
-        const real rrr_root_1 = rrr_branch_1*root(rrr_disc_1);
-        /* (rrr-c_1) cosine of the angle of joint 1 from its reference direction */
-        const real inv_rrr_rho2_1 = 1/rrr_rho2_1;
-        const real rrr_c_1 = inv_rrr_rho2_1*(rrr_Kc_1*rrr_Kd_1 - rrr_Ks_1*rrr_root_1);
-        /* (rrr-s_1) sine of the angle of joint 1 from its reference direction */
-        const real rrr_s_1 = inv_rrr_rho2_1*(rrr_Kc_1*rrr_root_1 + rrr_Kd_1*rrr_Ks_1);
-        /* (rrr-x_2) from the origin of joint 2 to the connection point */
-        const real inv_rrr_size_t = m->inv_rrr_size_t[i];
-        const real rrr_x_2_in_axes1_x = inv_rrr_size_t*rrr_Kd_1*rrr_joint2_offset_x -
-            rrr_joint2_offset_x;
-        /* (rrr-c_2) cosine of the angle of joint 2 from its reference direction */
-        const real inv_rrr_size_t_2 = m->inv_rrr_size_t_2[i];
-        const real rrr_platform_joint_offset_x = m->rrr_platform_joint_offset_x[i];
-        const real rrr_c_2 = inv_rrr_size_t_2*rrr_platform_joint_offset_x*rrr_x_2_in_axes1_x;
-        /* (rrr-s_2) sine of the angle of joint 2 from its reference direction */
-        const real rrr_s_2 =
-            -inv_rrr_size_t*inv_rrr_size_t_2*rrr_joint2_offset_x*rrr_platform_joint_offset_x*rrr_root_1;
-        /* (rrr-r_1) from joint 1 to the connection point, along the links */
-        const real rrr_r_1_in_axes1_y = rrr_platform_joint_offset_x*rrr_s_2;
-        const real rrr_r_1_in_axes1_x = rrr_joint2_offset_x + rrr_c_2*rrr_platform_joint_offset_x;
-        const real rrr_r_1_in_axes2_x = rrr_c_2*rrr_r_1_in_axes1_x + rrr_r_1_in_axes1_y*rrr_s_2;
-        const real rrr_r_1_in_axes2_y = rrr_c_2*rrr_r_1_in_axes1_y - rrr_r_1_in_axes1_x*rrr_s_2;
-        /* (rrr-w_1) reciprocal vector 1 */
-        const real rrr_w_1_in_axes2_x = -1/rrr_r_1_in_axes2_y;
+        values_rrr v;
+        stage_rrr_X(m, w, i, j, X, &v);
         /* (rrr-qd_1) rate of joint 1 */
-        const real rrr_qd_1_t = rrr_c_1*rrr_s_2 + rrr_c_2*rrr_s_1;
-        const real rrr_qd_1_t_2 = rrr_c_1*rrr_c_2 - rrr_s_1*rrr_s_2;
-        const real axis_y_rrr_axes2_x = rrr_base_frame_xy*rrr_qd_1_t_2 -
-            rrr_base_frame_xx*rrr_qd_1_t;
-        const real axis_x_rrr_axes2_x = rrr_base_frame_yy*rrr_qd_1_t_2 -
-            rrr_base_frame_yx*rrr_qd_1_t;
-        const real t_dot_x = s[2*w + j];
-        const real t_dot_y = s[3*w + j];
-        const real rrr_qd_1 = rrr_w_1_in_axes2_x*(axis_x_rrr_axes2_x*t_dot_x -
+        const real rrr_base_frame_xx = m->rrr_base_frame_xx[i];
+        const real rrr_base_frame_xy = m->rrr_base_frame_xy[i];
+        const real axis_y_rrr_axes2_x = rrr_base_frame_xy*v.rrr_qd_1_t_2 -
+            rrr_base_frame_xx*v.rrr_qd_1_t;
+        const real rrr_base_frame_yx = m->rrr_base_frame_yx[i];
+        const real rrr_base_frame_yy = m->rrr_base_frame_yy[i];
+        const real axis_x_rrr_axes2_x = rrr_base_frame_yy*v.rrr_qd_1_t_2 -
+            rrr_base_frame_yx*v.rrr_qd_1_t;
+        const real t_dot_x = V[0*w + j];
+        const real t_dot_y = V[1*w + j];
+        const real rrr_qd_1 = v.rrr_w_1_in_axes2_x*(axis_x_rrr_axes2_x*t_dot_x -
             axis_y_rrr_axes2_x*t_dot_y);
         /* (rrr-W_1) centripetal tensor of link 1 */
         const real rrr_W_1_in_axes1_xx = -rrr_qd_1*rrr_qd_1;
@@ -2434,18 +2579,20 @@ INLINE void Z_legs_rrr(const prepared *m, size_t w, size_t leg, size_t legs, con
         const real rrr_w_2_in_axes2_y = m->rrr_w_2_in_axes2_y[i];
         const real rrr_omega_2_in_axes2_z = rrr_qd_1 +
             rrr_w_2_in_axes2_y*(axis_x_rrr_axes2_x*t_dot_y + axis_y_rrr_axes2_x*t_dot_x -
-            rrr_qd_1*rrr_r_1_in_axes2_x);
+            rrr_qd_1*v.rrr_r_1_in_axes2_x);
         /* (rrr-W_2) centripetal tensor of link 2 */
         const real rrr_W_2_t = rrr_omega_2_in_axes2_z*rrr_omega_2_in_axes2_z;
         /* (rrr-bias) acceleration of the connection point at zero joint accelerations */
-        const real rrr_bias_in_axes2_x = rrr_W_1_in_axes1_xx*rrr_c_2*rrr_joint2_offset_x -
+        const real rrr_joint2_offset_x = m->rrr_joint2_offset_x[i];
+        const real rrr_platform_joint_offset_x = m->rrr_platform_joint_offset_x[i];
+        const real rrr_bias_in_axes2_x = rrr_W_1_in_axes1_xx*v.rrr_c_2*rrr_joint2_offset_x -
             rrr_W_2_t*rrr_platform_joint_offset_x;
         /* (rrr-qdd_1_o) remainder without the acceleration in: acceleration of joint 1 */
-        const real rrr_qdd_1_o = -rrr_bias_in_axes2_x*rrr_w_1_in_axes2_x;
+        const real rrr_qdd_1_o = -rrr_bias_in_axes2_x*v.rrr_w_1_in_axes2_x;
         /* (rrr-alpha_2_o) remainder without the acceleration in: angular acceleration of link 2 */
         const real rrr_alpha_2_o_in_axes2_z = rrr_qdd_1_o +
-            rrr_w_2_in_axes2_y*(rrr_W_1_in_axes1_xx*rrr_joint2_offset_x*rrr_s_2 -
-            rrr_qdd_1_o*rrr_r_1_in_axes2_x);
+            rrr_w_2_in_axes2_y*(rrr_W_1_in_axes1_xx*rrr_joint2_offset_x*v.rrr_s_2 -
+            rrr_qdd_1_o*v.rrr_r_1_in_axes2_x);
         /* (rrr-mu_2_o) remainder without the acceleration in: inertia moment of the links that turn with
            link 2, about their reference points */
         const real gravity_x = m->gravity_x;
@@ -2464,8 +2611,8 @@ INLINE void Z_legs_rrr(const prepared *m, size_t w, size_t leg, size_t legs, con
         const real rrr_mu_1_t = m->rrr_mu_1_t[i];
         const real rrr_mu_1_t_2 = m->rrr_mu_1_t_2[i];
         const real rrr_mu_1_o_in_axes1_z = rrr_J_1_in_spec1_zz*rrr_qdd_1_o +
-            rrr_h_1_in_spec1_y*(rrr_c_1*rrr_mu_1_t + rrr_mu_1_t_2*rrr_s_1) -
-            rrr_h_1_in_spec1_x*(rrr_c_1*rrr_mu_1_t_2 - rrr_mu_1_t*rrr_s_1);
+            rrr_h_1_in_spec1_y*(v.rrr_c_1*rrr_mu_1_t + rrr_mu_1_t_2*v.rrr_s_1) -
+            rrr_h_1_in_spec1_x*(v.rrr_c_1*rrr_mu_1_t_2 - rrr_mu_1_t*v.rrr_s_1);
         /* (rrr-N_1_o) remainder without the acceleration in: moment about joint 1 of the links from 1
            outwards, the force at the connection point left out */
         const real rrr_N_1_o_in_axes1_z = rrr_mu_1_o_in_axes1_z + rrr_mu_2_o_in_axes2_z;
@@ -2476,7 +2623,7 @@ INLINE void Z_legs_rrr(const prepared *m, size_t w, size_t leg, size_t legs, con
            and without the mass at the connection point */
         const real rrr_c_o_in_axes2_x = rrr_W_2_t*rrr_h_2_in_spec2_x +
             rrr_alpha_2_o_in_axes2_z*rrr_h_2_in_spec2_y +
-            rrr_w_1_in_axes2_x*(rrr_G_o_in_axes2_y*rrr_r_1_in_axes2_x - rrr_N_1_o_in_axes1_z);
+            v.rrr_w_1_in_axes2_x*(rrr_G_o_in_axes2_y*v.rrr_r_1_in_axes2_x - rrr_N_1_o_in_axes1_z);
         const real rrr_c_o_in_axes2_y = rrr_W_2_t*rrr_h_2_in_spec2_y - rrr_G_o_in_axes2_y -
             rrr_alpha_2_o_in_axes2_z*rrr_h_2_in_spec2_x;
         /* (rrr-U) velocity and gravity terms of the leg force */
@@ -2489,9 +2636,9 @@ INLINE void Z_legs_rrr(const prepared *m, size_t w, size_t leg, size_t legs, con
         gather(&terms[1*count + k], add, rrr_U_y);  /* Z_t_y_of_legs */
         const real rrr_rho2_1_t = m->rrr_rho2_1_t[i];
         const real rrr_size = m->rrr_size[i];
-        o[1*count + k] = UNLESS(magnitude(rrr_rho2_1) > TOLERANCE*TOLERANCE*rrr_rho2_1_t) +
-            UNLESS(magnitude(rrr_r_1_in_axes2_y) > TOLERANCE*rrr_size);
-        o[0*count + k] = UNLESS(rrr_disc_1 >= 0);
+        o[1*count + k] = UNLESS(magnitude(v.rrr_rho2_1) > TOLERANCE*TOLERANCE*rrr_rho2_1_t) +
+            UNLESS(magnitude(v.rrr_r_1_in_axes2_y) > TOLERANCE*rrr_size);
+        o[0*count + k] = UNLESS(v.rrr_disc_1 >= 0);
     }
 }
 
@@ -2522,21 +2669,18 @@ INLINE void Z_after(const prepared *m, size_t w, const real *sums, real *Z, verd
 
 INLINE void Z_run(const prepared *m, const real *X, const real *V, real *Z, verdict *t)
 {
-    real s[4] = {0};
     real sums[2] = {0};
-    real terms_rrr_leg1[2*LEGS(LEGS_OF_rrr_leg1)] = {0};
-    real o_rrr_leg1[2*LEGS(LEGS_OF_rrr_leg1)] = {0};
-    real terms_rrr[2*LEGS(LEGS_OF_rrr)] = {0};
-    real o_rrr[2*LEGS(LEGS_OF_rrr)] = {0};
-    Z_before(1, X, V, s);
-    Z_legs_rrr_leg1(m, 1, 0, 1, s, 0, LEGS(LEGS_OF_rrr_leg1), 0, terms_rrr_leg1, o_rrr_leg1);
+    real terms_rrr_leg1[2*LEGS(LEGS_OF_rrr_leg1)] = {0}, o_rrr_leg1[2*LEGS(LEGS_OF_rrr_leg1)] = {0};
+    real terms_rrr[2*LEGS(LEGS_OF_rrr)] = {0}, o_rrr[2*LEGS(LEGS_OF_rrr)] = {0};
+    Z_before();
+    Z_legs_rrr_leg1(m, 1, 0, 1, 0, LEGS(LEGS_OF_rrr_leg1), 0, X, V, terms_rrr_leg1, o_rrr_leg1);
+    Z_legs_rrr(m, 1, 0, 1, 0, LEGS(LEGS_OF_rrr), 0, X, V, terms_rrr, o_rrr);
     for (size_t leg = 0; leg < LEGS_OF_rrr_leg1; ++leg) {
         Z_place_rrr_leg1(1, LEGS(LEGS_OF_rrr_leg1), o_rrr_leg1, leg, t);
     }
     for (size_t n = 0; n < 2; ++n) {
         sums[n] = total(terms_rrr_leg1 + n*LEGS(LEGS_OF_rrr_leg1), LEGS_OF_rrr_leg1);
     }
-    Z_legs_rrr(m, 1, 0, 1, s, 0, LEGS(LEGS_OF_rrr), 0, terms_rrr, o_rrr);
     for (size_t leg = 0; leg < LEGS_OF_rrr; ++leg) {
         Z_place_rrr(1, LEGS(LEGS_OF_rrr), o_rrr, leg, t);
     }
@@ -2548,137 +2692,58 @@ INLINE void Z_run(const prepared *m, const real *X, const real *V, real *Z, verd
 
 INLINE void Z_run_lanes(const prepared *m, const real *X, const real *V, real *Z, verdict *t)
 {
-    real s[4*LANES];
     real sums[2*LANES];
     real o_rrr_leg1[2*LANES];
     real o_rrr[2*LANES];
-    Z_before(LANES, X, V, s);
+    Z_before();
     clear(sums, 2*LANES);
     for (size_t leg = 0; leg < LEGS_OF_rrr_leg1; ++leg) {
-        Z_legs_rrr_leg1(m, LANES, leg, 0, s, 1, LANES, 1, sums, o_rrr_leg1);
+        Z_legs_rrr_leg1(m, LANES, leg, 0, 1, LANES, 1, X, V, sums, o_rrr_leg1);
         Z_place_rrr_leg1(LANES, LANES, o_rrr_leg1, 0, t);
     }
     for (size_t leg = 0; leg < LEGS_OF_rrr; ++leg) {
-        Z_legs_rrr(m, LANES, leg, 0, s, 1, LANES, 1, sums, o_rrr);
+        Z_legs_rrr(m, LANES, leg, 0, 1, LANES, 1, X, V, sums, o_rrr);
         Z_place_rrr(LANES, LANES, o_rrr, 0, t);
     }
     Z_after(m, LANES, sums, Z, t);
 }
 
 /* ---- H ---- */
-INLINE void H_before(size_t w, const real *X, real *s)
+INLINE void H_before()
 {
-    for (size_t k = 0; k < w; ++k) {
-        /* X: named entries */
-        const real X_0 = X[0*w + k];
-        const real t_x = X_0;
-        const real X_1 = X[1*w + k];
-        const real t_y = X_1;
-        s[0*w + k] = t_x;
-        s[1*w + k] = t_y;
-    }
 }
 
-INLINE void H_legs_rrr_leg1(const prepared *m, size_t w, size_t leg, size_t legs, const real *s,
-    size_t states, size_t count, real *o)
+INLINE void H_legs_rrr_leg1(const prepared *m, size_t w, size_t leg, size_t legs, size_t states,
+    size_t count, const real *X, real *o)
 {
     for (size_t k = 0; k < count; ++k) {
         const size_t i = leg + legs*k;
         const size_t j = states*k;
-        /* (rrr_leg1-S) from the base point to the connection point */
-        const real rrr_leg1_base_point_x = m->rrr_leg1_base_point_x[i];
-        const real rrr_leg1_platform_point_x = m->rrr_leg1_platform_point_x[i];
-        const real t_x = s[0*w + j];
-        const real rrr_leg1_S_x = rrr_leg1_platform_point_x + t_x - rrr_leg1_base_point_x;
-        const real rrr_leg1_base_point_y = m->rrr_leg1_base_point_y[i];
-        const real rrr_leg1_platform_point_y = m->rrr_leg1_platform_point_y[i];
-        const real t_y = s[1*w + j];
-        const real rrr_leg1_S_y = rrr_leg1_platform_point_y + t_y - rrr_leg1_base_point_y;
-        /* (rrr_leg1-Kd_1) projection on the centre's direction, from the distance fixed by the joints
-           beyond joint 1 */
-        const real rrr_leg1_Kd_1_t_3 = rrr_leg1_S_x*rrr_leg1_S_x + rrr_leg1_S_y*rrr_leg1_S_y;
-        const real rrr_leg1_Kd_1_t = m->rrr_leg1_Kd_1_t[i];
-        const real rrr_leg1_Kd_1_t_2 = m->rrr_leg1_Kd_1_t_2[i];
-        const real rrr_leg1_Kd_1 = rrr_leg1_Kd_1_t + R(0.5)*rrr_leg1_Kd_1_t_3 - rrr_leg1_Kd_1_t_2;
-        /* (rrr_leg1-px_1) component along the reference direction */
-        const real rrr_leg1_base_frame_xx = m->rrr_leg1_base_frame_xx[i];
-        const real rrr_leg1_base_frame_yx = m->rrr_leg1_base_frame_yx[i];
-        const real rrr_leg1_px_1 = rrr_leg1_S_x*rrr_leg1_base_frame_xx +
-            rrr_leg1_S_y*rrr_leg1_base_frame_yx;
-        /* (rrr_leg1-py_1) component across the reference direction */
-        const real rrr_leg1_base_frame_xy = m->rrr_leg1_base_frame_xy[i];
-        const real rrr_leg1_base_frame_yy = m->rrr_leg1_base_frame_yy[i];
-        const real rrr_leg1_py_1 = rrr_leg1_S_x*rrr_leg1_base_frame_xy +
-            rrr_leg1_S_y*rrr_leg1_base_frame_yy;
-        /* (rrr_leg1-Kc_1) factor of the cosine in the equation of joint 1 */
-        const real rrr_leg1_joint2_offset_x = m->rrr_leg1_joint2_offset_x[i];
-        const real rrr_leg1_Kc_1 = rrr_leg1_joint2_offset_x*rrr_leg1_px_1;
-        /* (rrr_leg1-Ks_1) factor of the sine in the equation of joint 1 */
-        const real rrr_leg1_Ks_1 = rrr_leg1_joint2_offset_x*rrr_leg1_py_1;
-        /* (rrr_leg1-rho2_1) squared amplitude */
-        const real rrr_leg1_rho2_1 = rrr_leg1_Kc_1*rrr_leg1_Kc_1 + rrr_leg1_Ks_1*rrr_leg1_Ks_1;
-        /* (rrr_leg1-disc_1) discriminant */
-        const real rrr_leg1_disc_1 = rrr_leg1_rho2_1 - rrr_leg1_Kd_1*rrr_leg1_Kd_1;
-        /* (rrr_leg1-root_1) root, with the sign of the branch */
-        const real rrr_leg1_branch_1 = m->rrr_leg1_branch_1[i];
-        const real rrr_leg1_root_1 = rrr_leg1_branch_1*root(rrr_leg1_disc_1);
-        /* (rrr_leg1-c_1) cosine of the angle of joint 1 from its reference direction */
-        const real inv_rrr_leg1_rho2_1 = 1/rrr_leg1_rho2_1;
-        const real rrr_leg1_c_1 = inv_rrr_leg1_rho2_1*(rrr_leg1_Kc_1*rrr_leg1_Kd_1 -
-            rrr_leg1_Ks_1*rrr_leg1_root_1);
-        /* (rrr_leg1-s_1) sine of the angle of joint 1 from its reference direction */
-        const real rrr_leg1_s_1 = inv_rrr_leg1_rho2_1*(rrr_leg1_Kc_1*rrr_leg1_root_1 +
-            rrr_leg1_Kd_1*rrr_leg1_Ks_1);
-        /* (rrr_leg1-x_2) from the origin of joint 2 to the connection point */
-        const real inv_rrr_leg1_size_t = m->inv_rrr_leg1_size_t[i];
-        const real rrr_leg1_x_2_in_axes1_x =
-            inv_rrr_leg1_size_t*rrr_leg1_Kd_1*rrr_leg1_joint2_offset_x - rrr_leg1_joint2_offset_x;
-        /* (rrr_leg1-c_2) cosine of the angle of joint 2 from its reference direction */
-        const real inv_rrr_leg1_size_t_2 = m->inv_rrr_leg1_size_t_2[i];
-        const real rrr_leg1_platform_joint_offset_x = m->rrr_leg1_platform_joint_offset_x[i];
-        const real rrr_leg1_c_2 =
-            inv_rrr_leg1_size_t_2*rrr_leg1_platform_joint_offset_x*rrr_leg1_x_2_in_axes1_x;
-        /* (rrr_leg1-s_2) sine of the angle of joint 2 from its reference direction */
-        const real rrr_leg1_s_2 =
-            -inv_rrr_leg1_size_t*inv_rrr_leg1_size_t_2*rrr_leg1_joint2_offset_x*rrr_leg1_platform_joint_offset_x*rrr_leg1_root_1;
-        /* (rrr_leg1-r_1) from joint 1 to the connection point, along the links */
-        const real rrr_leg1_r_1_in_axes1_y = rrr_leg1_platform_joint_offset_x*rrr_leg1_s_2;
-        const real rrr_leg1_r_1_in_axes1_x = rrr_leg1_joint2_offset_x +
-            rrr_leg1_c_2*rrr_leg1_platform_joint_offset_x;
-        const real rrr_leg1_r_1_in_axes2_y = rrr_leg1_c_2*rrr_leg1_r_1_in_axes1_y -
-            rrr_leg1_r_1_in_axes1_x*rrr_leg1_s_2;
-        /* (rrr_leg1-w_1) reciprocal vector 1 */
-        const real rrr_leg1_w_1_t = rrr_leg1_c_1*rrr_leg1_s_2 + rrr_leg1_c_2*rrr_leg1_s_1;
-        const real rrr_leg1_w_1_t_2 = rrr_leg1_c_1*rrr_leg1_c_2 - rrr_leg1_s_1*rrr_leg1_s_2;
-        const real axis_y_rrr_leg1_axes2_x = rrr_leg1_base_frame_xy*rrr_leg1_w_1_t_2 -
-            rrr_leg1_base_frame_xx*rrr_leg1_w_1_t;
-        const real axis_x_rrr_leg1_axes2_x = rrr_leg1_base_frame_yy*rrr_leg1_w_1_t_2 -
-            rrr_leg1_base_frame_yx*rrr_leg1_w_1_t;
-        const real rrr_leg1_w_1_in_axes2_x = -1/rrr_leg1_r_1_in_axes2_y;
-        const real rrr_leg1_w_1_x = axis_x_rrr_leg1_axes2_x*rrr_leg1_w_1_in_axes2_x;
-        const real rrr_leg1_w_1_y = -axis_y_rrr_leg1_axes2_x*rrr_leg1_w_1_in_axes2_x;
+        values_rrr_leg1 v;
+        stage_rrr_leg1_X(m, w, i, j, X, &v);
         /* (rrr_leg1-w_2) reciprocal vector 2 */
         const real rrr_leg1_w_2_in_axes2_y = m->rrr_leg1_w_2_in_axes2_y[i];
         const real rrr_leg1_w_2_in_axes2_x =
-            -rrr_leg1_w_1_in_axes2_x*rrr_leg1_w_2_in_axes2_y*(rrr_leg1_c_2*rrr_leg1_r_1_in_axes1_x
-            + rrr_leg1_r_1_in_axes1_y*rrr_leg1_s_2);
-        const real rrr_leg1_w_2_x = axis_x_rrr_leg1_axes2_x*rrr_leg1_w_2_in_axes2_x +
-            axis_y_rrr_leg1_axes2_x*rrr_leg1_w_2_in_axes2_y;
-        const real rrr_leg1_w_2_y = axis_x_rrr_leg1_axes2_x*rrr_leg1_w_2_in_axes2_y -
-            axis_y_rrr_leg1_axes2_x*rrr_leg1_w_2_in_axes2_x;
+            -v.rrr_leg1_w_1_in_axes2_x*rrr_leg1_w_2_in_axes2_y*(v.rrr_leg1_c_2*v.rrr_leg1_r_1_in_axes1_x
+            + v.rrr_leg1_r_1_in_axes1_y*v.rrr_leg1_s_2);
+        const real rrr_leg1_w_2_x = v.axis_x_rrr_leg1_axes2_x*rrr_leg1_w_2_in_axes2_x +
+            v.axis_y_rrr_leg1_axes2_x*rrr_leg1_w_2_in_axes2_y;
+        const real rrr_leg1_w_2_y = v.axis_x_rrr_leg1_axes2_x*rrr_leg1_w_2_in_axes2_y -
+            v.axis_y_rrr_leg1_axes2_x*rrr_leg1_w_2_in_axes2_x;
         /* (rrr_leg1-w_1) reciprocal vector 1 */
-        o[0*count + k] = rrr_leg1_w_1_x;
-        o[1*count + k] = rrr_leg1_w_1_y;
+        o[0*count + k] = v.rrr_leg1_w_1_x;
+        o[1*count + k] = v.rrr_leg1_w_1_y;
         /* (rrr_leg1-w_2) reciprocal vector 2 */
         o[2*count + k] = rrr_leg1_w_2_x;
         o[3*count + k] = rrr_leg1_w_2_y;
-        o[6*count + k] = (rrr_leg1_w_1_x + rrr_leg1_w_1_y) + (rrr_leg1_w_2_x + rrr_leg1_w_2_y);
+        o[6*count + k] = (v.rrr_leg1_w_1_x + v.rrr_leg1_w_1_y) + (rrr_leg1_w_2_x +
+            rrr_leg1_w_2_y);
         const real rrr_leg1_rho2_1_t = m->rrr_leg1_rho2_1_t[i];
         const real rrr_leg1_size = m->rrr_leg1_size[i];
-        o[5*count + k] = UNLESS(magnitude(rrr_leg1_rho2_1) >
-            TOLERANCE*TOLERANCE*rrr_leg1_rho2_1_t) + UNLESS(magnitude(rrr_leg1_r_1_in_axes2_y) >
+        o[5*count + k] = UNLESS(magnitude(v.rrr_leg1_rho2_1) >
+            TOLERANCE*TOLERANCE*rrr_leg1_rho2_1_t) + UNLESS(magnitude(v.rrr_leg1_r_1_in_axes2_y) >
             TOLERANCE*rrr_leg1_size);
-        o[4*count + k] = UNLESS(rrr_leg1_disc_1 >= 0);
+        o[4*count + k] = UNLESS(v.rrr_leg1_disc_1 >= 0);
     }
 }
 
@@ -2686,9 +2751,9 @@ INLINE void H_place_rrr_leg1(size_t w, size_t count, const real *o, size_t first
     *t)
 {
     for (size_t k = 0; k < w; ++k) {
-        H[0*NU*w + k] = o[0*count + first + k];
+        H[0*w + k] = o[0*count + first + k];
         H[NU*w + k] = o[1*count + first + k];
-        H[(0*NU + 1)*w + k] = o[2*count + first + k];
+        H[1*w + k] = o[2*count + first + k];
         H[(NU + 1)*w + k] = o[3*count + first + k];
         t->unreachable[k] += o[4*count + first + k];
         t->singular[k] += o[5*count + first + k];
@@ -2696,91 +2761,31 @@ INLINE void H_place_rrr_leg1(size_t w, size_t count, const real *o, size_t first
     }
 }
 
-INLINE void H_legs_rrr(const prepared *m, size_t w, size_t leg, size_t legs, const real *s, size_t
-    states, size_t count, real *o)
+INLINE void H_legs_rrr(const prepared *m, size_t w, size_t leg, size_t legs, size_t states, size_t
+    count, const real *X, real *o)
 {
     for (size_t k = 0; k < count; ++k) {
         const size_t i = leg + legs*k;
         const size_t j = states*k;
-        /* (rrr-S) from the base point to the connection point */
-        const real rrr_base_point_x = m->rrr_base_point_x[i];
-        const real rrr_platform_point_x = m->rrr_platform_point_x[i];
-        const real t_x = s[0*w + j];
-        const real rrr_S_x = rrr_platform_point_x + t_x - rrr_base_point_x;
-        const real rrr_base_point_y = m->rrr_base_point_y[i];
-        const real rrr_platform_point_y = m->rrr_platform_point_y[i];
-        const real t_y = s[1*w + j];
-        const real rrr_S_y = rrr_platform_point_y + t_y - rrr_base_point_y;
-        /* (rrr-Kd_1) projection on the centre's direction, from the distance fixed by the joints beyond
-           joint 1 */
-        const real rrr_Kd_1_t_3 = rrr_S_x*rrr_S_x + rrr_S_y*rrr_S_y;
-        const real rrr_Kd_1_t = m->rrr_Kd_1_t[i];
-        const real rrr_Kd_1_t_2 = m->rrr_Kd_1_t_2[i];
-        const real rrr_Kd_1 = rrr_Kd_1_t + R(0.5)*rrr_Kd_1_t_3 - rrr_Kd_1_t_2;
-        /* (rrr-px_1) component along the reference direction */
-        const real rrr_base_frame_xx = m->rrr_base_frame_xx[i];
-        const real rrr_base_frame_yx = m->rrr_base_frame_yx[i];
-        const real rrr_px_1 = rrr_S_x*rrr_base_frame_xx + rrr_S_y*rrr_base_frame_yx;
-        /* (rrr-py_1) component across the reference direction */
-        const real rrr_base_frame_xy = m->rrr_base_frame_xy[i];
-        const real rrr_base_frame_yy = m->rrr_base_frame_yy[i];
-        const real rrr_py_1 = rrr_S_x*rrr_base_frame_xy + rrr_S_y*rrr_base_frame_yy;
-        /* (rrr-Kc_1) factor of the cosine in the equation of joint 1 */
-        const real rrr_joint2_offset_x = m->rrr_joint2_offset_x[i];
-        const real rrr_Kc_1 = rrr_joint2_offset_x*rrr_px_1;
-        /* (rrr-Ks_1) factor of the sine in the equation of joint 1 */
-        const real rrr_Ks_1 = rrr_joint2_offset_x*rrr_py_1;
-        /* (rrr-rho2_1) squared amplitude */
-        const real rrr_rho2_1 = rrr_Kc_1*rrr_Kc_1 + rrr_Ks_1*rrr_Ks_1;
-        /* (rrr-disc_1) discriminant */
-        const real rrr_disc_1 = rrr_rho2_1 - rrr_Kd_1*rrr_Kd_1;
-        /* (rrr-root_1) root, with the sign of the branch */
-        const real rrr_branch_1 = m->rrr_branch_1[i];
-        const real rrr_root_1 = rrr_branch_1*root(rrr_disc_1);
-        /* (rrr-c_1) cosine of the angle of joint 1 from its reference direction */
-        const real inv_rrr_rho2_1 = 1/rrr_rho2_1;
-        const real rrr_c_1 = inv_rrr_rho2_1*(rrr_Kc_1*rrr_Kd_1 - rrr_Ks_1*rrr_root_1);
-        /* (rrr-s_1) sine of the angle of joint 1 from its reference direction */
-        const real rrr_s_1 = inv_rrr_rho2_1*(rrr_Kc_1*rrr_root_1 + rrr_Kd_1*rrr_Ks_1);
-        /* (rrr-x_2) from the origin of joint 2 to the connection point */
-        const real inv_rrr_size_t = m->inv_rrr_size_t[i];
-        const real rrr_x_2_in_axes1_x = inv_rrr_size_t*rrr_Kd_1*rrr_joint2_offset_x -
-            rrr_joint2_offset_x;
-        /* (rrr-c_2) cosine of the angle of joint 2 from its reference direction */
-        const real inv_rrr_size_t_2 = m->inv_rrr_size_t_2[i];
-        const real rrr_platform_joint_offset_x = m->rrr_platform_joint_offset_x[i];
-        const real rrr_c_2 = inv_rrr_size_t_2*rrr_platform_joint_offset_x*rrr_x_2_in_axes1_x;
-        /* (rrr-s_2) sine of the angle of joint 2 from its reference direction */
-        const real rrr_s_2 =
-            -inv_rrr_size_t*inv_rrr_size_t_2*rrr_joint2_offset_x*rrr_platform_joint_offset_x*rrr_root_1;
-        /* (rrr-r_1) from joint 1 to the connection point, along the links */
-        const real rrr_r_1_in_axes1_x = rrr_joint2_offset_x + rrr_c_2*rrr_platform_joint_offset_x;
-        const real rrr_r_1_in_axes2_y = rrr_c_2*rrr_platform_joint_offset_x*rrr_s_2 -
-            rrr_r_1_in_axes1_x*rrr_s_2;
+        values_rrr v;
+        stage_rrr_X(m, w, i, j, X, &v);
+        stage_rrr_H_condition(m, i, &v);
         /* (rrr-w_1) reciprocal vector 1 */
-        const real rrr_w_1_t = rrr_c_1*rrr_s_2 + rrr_c_2*rrr_s_1;
-        const real rrr_w_1_t_2 = rrr_c_1*rrr_c_2 - rrr_s_1*rrr_s_2;
-        const real rrr_w_1_in_axes2_x = -1/rrr_r_1_in_axes2_y;
-        const real rrr_w_1_x = rrr_w_1_in_axes2_x*(rrr_base_frame_yy*rrr_w_1_t_2 -
-            rrr_base_frame_yx*rrr_w_1_t);
-        const real rrr_w_1_y = -rrr_w_1_in_axes2_x*(rrr_base_frame_xy*rrr_w_1_t_2 -
-            rrr_base_frame_xx*rrr_w_1_t);
-        /* (rrr-w_1) reciprocal vector 1 */
-        o[0*count + k] = rrr_w_1_x;
-        o[1*count + k] = rrr_w_1_y;
-        o[4*count + k] = rrr_w_1_x + rrr_w_1_y;
+        o[0*count + k] = v.rrr_w_1_x;
+        o[1*count + k] = v.rrr_w_1_y;
+        o[4*count + k] = v.rrr_w_1_x + v.rrr_w_1_y;
         const real rrr_rho2_1_t = m->rrr_rho2_1_t[i];
         const real rrr_size = m->rrr_size[i];
-        o[3*count + k] = UNLESS(magnitude(rrr_rho2_1) > TOLERANCE*TOLERANCE*rrr_rho2_1_t) +
-            UNLESS(magnitude(rrr_r_1_in_axes2_y) > TOLERANCE*rrr_size);
-        o[2*count + k] = UNLESS(rrr_disc_1 >= 0);
+        o[3*count + k] = UNLESS(magnitude(v.rrr_rho2_1) > TOLERANCE*TOLERANCE*rrr_rho2_1_t) +
+            UNLESS(magnitude(v.rrr_r_1_in_axes2_y) > TOLERANCE*rrr_size);
+        o[2*count + k] = UNLESS(v.rrr_disc_1 >= 0);
     }
 }
 
 INLINE void H_place_rrr(size_t w, size_t count, const real *o, size_t first, real *H, verdict *t)
 {
     for (size_t k = 0; k < w; ++k) {
-        H[(0*NU + 2)*w + k] = o[0*count + first + k];
+        H[2*w + k] = o[0*count + first + k];
         H[(NU + 2)*w + k] = o[1*count + first + k];
         t->unreachable[k] += o[2*count + first + k];
         t->singular[k] += o[3*count + first + k];
@@ -2790,15 +2795,14 @@ INLINE void H_place_rrr(size_t w, size_t count, const real *o, size_t first, rea
 
 INLINE void H_run(const prepared *m, const real *X, real *H, verdict *t)
 {
-    real s[2] = {0};
     real o_rrr_leg1[7*LEGS(LEGS_OF_rrr_leg1)] = {0};
     real o_rrr[5*LEGS(LEGS_OF_rrr)] = {0};
-    H_before(1, X, s);
-    H_legs_rrr_leg1(m, 1, 0, 1, s, 0, LEGS(LEGS_OF_rrr_leg1), o_rrr_leg1);
+    H_before();
+    H_legs_rrr_leg1(m, 1, 0, 1, 0, LEGS(LEGS_OF_rrr_leg1), X, o_rrr_leg1);
+    H_legs_rrr(m, 1, 0, 1, 0, LEGS(LEGS_OF_rrr), X, o_rrr);
     for (size_t leg = 0; leg < LEGS_OF_rrr_leg1; ++leg) {
         H_place_rrr_leg1(1, LEGS(LEGS_OF_rrr_leg1), o_rrr_leg1, leg, H, t);
     }
-    H_legs_rrr(m, 1, 0, 1, s, 0, LEGS(LEGS_OF_rrr), o_rrr);
     for (size_t leg = 0; leg < LEGS_OF_rrr; ++leg) {
         H_place_rrr(1, LEGS(LEGS_OF_rrr), o_rrr, leg, H, t);
     }
@@ -2806,242 +2810,71 @@ INLINE void H_run(const prepared *m, const real *X, real *H, verdict *t)
 
 INLINE void H_run_lanes(const prepared *m, const real *X, real *H, verdict *t)
 {
-    real s[2*LANES];
     real o_rrr_leg1[7*LANES];
     real o_rrr[5*LANES];
-    H_before(LANES, X, s);
+    H_before();
     for (size_t leg = 0; leg < LEGS_OF_rrr_leg1; ++leg) {
-        H_legs_rrr_leg1(m, LANES, leg, 0, s, 1, LANES, o_rrr_leg1);
+        H_legs_rrr_leg1(m, LANES, leg, 0, 1, LANES, X, o_rrr_leg1);
         H_place_rrr_leg1(LANES, LANES, o_rrr_leg1, 0, H, t);
     }
     for (size_t leg = 0; leg < LEGS_OF_rrr; ++leg) {
-        H_legs_rrr(m, LANES, leg, 0, s, 1, LANES, o_rrr);
+        H_legs_rrr(m, LANES, leg, 0, 1, LANES, X, o_rrr);
         H_place_rrr(LANES, LANES, o_rrr, 0, H, t);
     }
 }
 
 /* ---- required ---- */
-INLINE void required_before(const prepared *m, size_t w, const real *X, const real *V, const real
-    *A, real *s)
+INLINE void required_before(const prepared *m, size_t w, const real *A, real *s)
 {
     for (size_t k = 0; k < w; ++k) {
-        /* X: named entries */
-        const real X_0 = X[0*w + k];
-        const real t_x = X_0;
-        const real X_1 = X[1*w + k];
-        const real t_y = X_1;
-        /* V: named entries */
-        const real V_0 = V[0*w + k];
-        const real t_dot_x = V_0;
-        const real V_1 = V[1*w + k];
-        const real t_dot_y = V_1;
-        /* A: named entries */
-        const real A_0 = A[0*w + k];
-        const real t_ddot_x = A_0;
-        const real A_1 = A[1*w + k];
-        const real t_ddot_y = A_1;
         /* (a_t) acceleration of the platform origin, less gravity */
         const real gravity_x = m->gravity_x;
+        const real t_ddot_x = A[0*w + k];
         const real a_t_x = t_ddot_x - gravity_x;
         const real gravity_y = m->gravity_y;
+        const real t_ddot_y = A[1*w + k];
         const real a_t_y = t_ddot_y - gravity_y;
         /* (f_p) inertia force of the platform less its weight */
         const real m_star = m->m_star;
         const real f_p_x = a_t_x*m_star;
         const real f_p_y = a_t_y*m_star;
-        s[0*w + k] = t_x;
-        s[1*w + k] = t_y;
-        s[2*w + k] = t_dot_x;
-        s[3*w + k] = t_dot_y;
-        s[4*w + k] = t_ddot_x;
-        s[5*w + k] = t_ddot_y;
-        s[6*w + k] = f_p_x;
-        s[7*w + k] = f_p_y;
+        s[0*w + k] = f_p_x;
+        s[1*w + k] = f_p_y;
     }
 }
 
-INLINE void required_legs_rrr_leg1(const prepared *m, size_t w, size_t leg, size_t legs, const
-    real *s, size_t states, size_t count, int add, real *terms, real *o)
+INLINE void required_legs_rrr_leg1(const prepared *m, size_t w, size_t leg, size_t legs, size_t
+    states, size_t count, int add, const real *X, const real *V, const real *A, real *terms, real
+    *o)
 {
     for (size_t k = 0; k < count; ++k) {
         const size_t i = leg + legs*k;
         const size_t j = states*k;
-        /* (rrr_leg1-S) from the base point to the connection point */
-        const real rrr_leg1_base_point_x = m->rrr_leg1_base_point_x[i];
-        const real rrr_leg1_platform_point_x = m->rrr_leg1_platform_point_x[i];
-        const real t_x = s[0*w + j];
-        const real rrr_leg1_S_x = rrr_leg1_platform_point_x + t_x - rrr_leg1_base_point_x;
-        const real rrr_leg1_base_point_y = m->rrr_leg1_base_point_y[i];
-        const real rrr_leg1_platform_point_y = m->rrr_leg1_platform_point_y[i];
-        const real t_y = s[1*w + j];
-        const real rrr_leg1_S_y = rrr_leg1_platform_point_y + t_y - rrr_leg1_base_point_y;
-        /* (rrr_leg1-Kd_1) projection on the centre's direction, from the distance fixed by the joints
-           beyond joint 1 */
-        const real rrr_leg1_Kd_1_t_3 = rrr_leg1_S_x*rrr_leg1_S_x + rrr_leg1_S_y*rrr_leg1_S_y;
-        const real rrr_leg1_Kd_1_t = m->rrr_leg1_Kd_1_t[i];
-        const real rrr_leg1_Kd_1_t_2 = m->rrr_leg1_Kd_1_t_2[i];
-        const real rrr_leg1_Kd_1 = rrr_leg1_Kd_1_t + R(0.5)*rrr_leg1_Kd_1_t_3 - rrr_leg1_Kd_1_t_2;
-        /* (rrr_leg1-px_1) component along the reference direction */
-        const real rrr_leg1_base_frame_xx = m->rrr_leg1_base_frame_xx[i];
-        const real rrr_leg1_base_frame_yx = m->rrr_leg1_base_frame_yx[i];
-        const real rrr_leg1_px_1 = rrr_leg1_S_x*rrr_leg1_base_frame_xx +
-            rrr_leg1_S_y*rrr_leg1_base_frame_yx;
-        /* (rrr_leg1-py_1) component across the reference direction */
-        const real rrr_leg1_base_frame_xy = m->rrr_leg1_base_frame_xy[i];
-        const real rrr_leg1_base_frame_yy = m->rrr_leg1_base_frame_yy[i];
-        const real rrr_leg1_py_1 = rrr_leg1_S_x*rrr_leg1_base_frame_xy +
-            rrr_leg1_S_y*rrr_leg1_base_frame_yy;
-        /* (rrr_leg1-Kc_1) factor of the cosine in the equation of joint 1 */
-        const real rrr_leg1_joint2_offset_x = m->rrr_leg1_joint2_offset_x[i];
-        const real rrr_leg1_Kc_1 = rrr_leg1_joint2_offset_x*rrr_leg1_px_1;
-        /* (rrr_leg1-Ks_1) factor of the sine in the equation of joint 1 */
-        const real rrr_leg1_Ks_1 = rrr_leg1_joint2_offset_x*rrr_leg1_py_1;
-        /* (rrr_leg1-rho2_1) squared amplitude */
-        const real rrr_leg1_rho2_1 = rrr_leg1_Kc_1*rrr_leg1_Kc_1 + rrr_leg1_Ks_1*rrr_leg1_Ks_1;
-        /* (rrr_leg1-disc_1) discriminant */
-        const real rrr_leg1_disc_1 = rrr_leg1_rho2_1 - rrr_leg1_Kd_1*rrr_leg1_Kd_1;
-        /* (rrr_leg1-root_1) root, with the sign of the branch */
-        const real rrr_leg1_branch_1 = m->rrr_leg1_branch_1[i];
-        const real rrr_leg1_root_1 = rrr_leg1_branch_1*root(rrr_leg1_disc_1);
-        /* (rrr_leg1-c_1) cosine of the angle of joint 1 from its reference direction */
-        const real inv_rrr_leg1_rho2_1 = 1/rrr_leg1_rho2_1;
-        const real rrr_leg1_c_1 = inv_rrr_leg1_rho2_1*(rrr_leg1_Kc_1*rrr_leg1_Kd_1 -
-            rrr_leg1_Ks_1*rrr_leg1_root_1);
-        /* (rrr_leg1-s_1) sine of the angle of joint 1 from its reference direction */
-        const real rrr_leg1_s_1 = inv_rrr_leg1_rho2_1*(rrr_leg1_Kc_1*rrr_leg1_root_1 +
-            rrr_leg1_Kd_1*rrr_leg1_Ks_1);
-        /* (rrr_leg1-x_2) from the origin of joint 2 to the connection point */
-        const real inv_rrr_leg1_size_t = m->inv_rrr_leg1_size_t[i];
-        const real rrr_leg1_x_2_in_axes1_x =
-            inv_rrr_leg1_size_t*rrr_leg1_Kd_1*rrr_leg1_joint2_offset_x - rrr_leg1_joint2_offset_x;
-        /* (rrr_leg1-c_2) cosine of the angle of joint 2 from its reference direction */
-        const real inv_rrr_leg1_size_t_2 = m->inv_rrr_leg1_size_t_2[i];
-        const real rrr_leg1_platform_joint_offset_x = m->rrr_leg1_platform_joint_offset_x[i];
-        const real rrr_leg1_c_2 =
-            inv_rrr_leg1_size_t_2*rrr_leg1_platform_joint_offset_x*rrr_leg1_x_2_in_axes1_x;
-        /* (rrr_leg1-s_2) sine of the angle of joint 2 from its reference direction */
-        const real rrr_leg1_s_2 =
-            -inv_rrr_leg1_size_t*inv_rrr_leg1_size_t_2*rrr_leg1_joint2_offset_x*rrr_leg1_platform_joint_offset_x*rrr_leg1_root_1;
-        /* (rrr_leg1-r_1) from joint 1 to the connection point, along the links */
-        const real rrr_leg1_r_1_in_axes1_y = rrr_leg1_platform_joint_offset_x*rrr_leg1_s_2;
-        const real rrr_leg1_r_1_in_axes1_x = rrr_leg1_joint2_offset_x +
-            rrr_leg1_c_2*rrr_leg1_platform_joint_offset_x;
-        const real rrr_leg1_r_1_in_axes2_x = rrr_leg1_c_2*rrr_leg1_r_1_in_axes1_x +
-            rrr_leg1_r_1_in_axes1_y*rrr_leg1_s_2;
-        const real rrr_leg1_r_1_in_axes2_y = rrr_leg1_c_2*rrr_leg1_r_1_in_axes1_y -
-            rrr_leg1_r_1_in_axes1_x*rrr_leg1_s_2;
-        /* (rrr_leg1-w_1) reciprocal vector 1 */
-        const real rrr_leg1_w_1_t = rrr_leg1_c_1*rrr_leg1_s_2 + rrr_leg1_c_2*rrr_leg1_s_1;
-        const real rrr_leg1_w_1_t_2 = rrr_leg1_c_1*rrr_leg1_c_2 - rrr_leg1_s_1*rrr_leg1_s_2;
-        const real axis_y_rrr_leg1_axes2_x = rrr_leg1_base_frame_xy*rrr_leg1_w_1_t_2 -
-            rrr_leg1_base_frame_xx*rrr_leg1_w_1_t;
-        const real axis_x_rrr_leg1_axes2_x = rrr_leg1_base_frame_yy*rrr_leg1_w_1_t_2 -
-            rrr_leg1_base_frame_yx*rrr_leg1_w_1_t;
-        const real rrr_leg1_w_1_in_axes2_x = -1/rrr_leg1_r_1_in_axes2_y;
-        const real rrr_leg1_w_1_x = axis_x_rrr_leg1_axes2_x*rrr_leg1_w_1_in_axes2_x;
-        const real rrr_leg1_w_1_y = -axis_y_rrr_leg1_axes2_x*rrr_leg1_w_1_in_axes2_x;
-        /* (rrr_leg1-w_2) reciprocal vector 2 */
-        const real rrr_leg1_w_2_in_axes2_y = m->rrr_leg1_w_2_in_axes2_y[i];
-        const real rrr_leg1_w_2_in_axes2_x =
-            -rrr_leg1_r_1_in_axes2_x*rrr_leg1_w_1_in_axes2_x*rrr_leg1_w_2_in_axes2_y;
-        const real rrr_leg1_w_2_x = axis_x_rrr_leg1_axes2_x*rrr_leg1_w_2_in_axes2_x +
-            axis_y_rrr_leg1_axes2_x*rrr_leg1_w_2_in_axes2_y;
-        const real rrr_leg1_w_2_y = axis_x_rrr_leg1_axes2_x*rrr_leg1_w_2_in_axes2_y -
-            axis_y_rrr_leg1_axes2_x*rrr_leg1_w_2_in_axes2_x;
-        /* (rrr_leg1-qd_1) rate of joint 1 */
-        const real t_dot_x = s[2*w + j];
-        const real t_dot_y = s[3*w + j];
-        const real rrr_leg1_qd_1 = rrr_leg1_w_1_in_axes2_x*(axis_x_rrr_leg1_axes2_x*t_dot_x -
-            axis_y_rrr_leg1_axes2_x*t_dot_y);
-        /* (rrr_leg1-W_1) centripetal tensor of link 1 */
-        const real rrr_leg1_W_1_in_axes1_xx = -rrr_leg1_qd_1*rrr_leg1_qd_1;
-        /* (rrr_leg1-omega_2) angular velocity of link 2 */
-        const real rrr_leg1_omega_2_in_axes2_z = rrr_leg1_qd_1 +
-            rrr_leg1_w_2_in_axes2_y*(axis_x_rrr_leg1_axes2_x*t_dot_y +
-            axis_y_rrr_leg1_axes2_x*t_dot_x - rrr_leg1_qd_1*rrr_leg1_r_1_in_axes2_x);
-        /* (rrr_leg1-W_2) centripetal tensor of link 2 */
-        const real rrr_leg1_W_2_t = rrr_leg1_omega_2_in_axes2_z*rrr_leg1_omega_2_in_axes2_z;
-        /* (rrr_leg1-S_ddot) acceleration of the connection point */
-        const real t_ddot_x = s[4*w + j];
-        const real t_ddot_y = s[5*w + j];
-        const real rrr_leg1_S_ddot_in_axes2_x = axis_x_rrr_leg1_axes2_x*t_ddot_x -
-            axis_y_rrr_leg1_axes2_x*t_ddot_y;
-        const real rrr_leg1_S_ddot_in_axes2_y = axis_x_rrr_leg1_axes2_x*t_ddot_y +
-            axis_y_rrr_leg1_axes2_x*t_ddot_x;
-        /* (rrr_leg1-bias) acceleration of the connection point at zero joint accelerations */
-        const real rrr_leg1_bias_in_axes2_x =
-            rrr_leg1_W_1_in_axes1_xx*rrr_leg1_c_2*rrr_leg1_joint2_offset_x -
-            rrr_leg1_W_2_t*rrr_leg1_platform_joint_offset_x;
-        /* (rrr_leg1-rel) acceleration of the connection point left to the joint accelerations */
-        const real rrr_leg1_rel_in_axes2_x = rrr_leg1_S_ddot_in_axes2_x -
-            rrr_leg1_bias_in_axes2_x;
-        const real rrr_leg1_rel_in_axes2_y = rrr_leg1_S_ddot_in_axes2_y +
-            rrr_leg1_W_1_in_axes1_xx*rrr_leg1_joint2_offset_x*rrr_leg1_s_2;
-        /* (rrr_leg1-B_1) acceleration tensor of link 1 */
-        const real rrr_leg1_B_1_in_axes1_xy = -rrr_leg1_rel_in_axes2_x*rrr_leg1_w_1_in_axes2_x;
-        /* (rrr_leg1-alpha_2) angular acceleration of link 2 */
-        const real rrr_leg1_alpha_2_in_axes2_z = rrr_leg1_w_2_in_axes2_y*(rrr_leg1_rel_in_axes2_y
-            + rrr_leg1_B_1_in_axes1_xy*rrr_leg1_r_1_in_axes2_x) - rrr_leg1_B_1_in_axes1_xy;
-        /* (rrr_leg1-acc_2) acceleration of the reference point of link 2, less gravity */
-        const real gravity_x = m->gravity_x;
-        const real gravity_y = m->gravity_y;
-        const real rrr_leg1_acc_2_in_axes2_x = rrr_leg1_S_ddot_in_axes2_x +
-            axis_y_rrr_leg1_axes2_x*gravity_y - axis_x_rrr_leg1_axes2_x*gravity_x;
-        const real rrr_leg1_acc_2_in_axes2_y = rrr_leg1_S_ddot_in_axes2_y -
-            axis_x_rrr_leg1_axes2_x*gravity_y - axis_y_rrr_leg1_axes2_x*gravity_x;
-        /* (rrr_leg1-mu_2) inertia moment of the links that turn with link 2, about their reference points
-           */
-        const real rrr_leg1_J_2_in_spec2_zz = m->rrr_leg1_J_2_in_spec2_zz[i];
-        const real rrr_leg1_h_2_in_spec2_x = m->rrr_leg1_h_2_in_spec2_x[i];
-        const real rrr_leg1_h_2_in_spec2_y = m->rrr_leg1_h_2_in_spec2_y[i];
-        const real rrr_leg1_mu_2_in_axes2_z = rrr_leg1_J_2_in_spec2_zz*rrr_leg1_alpha_2_in_axes2_z
-            + rrr_leg1_acc_2_in_axes2_y*rrr_leg1_h_2_in_spec2_x -
-            rrr_leg1_acc_2_in_axes2_x*rrr_leg1_h_2_in_spec2_y;
-        /* (rrr_leg1-mu_1) inertia moment of the links that turn with link 1, about their reference points
-           */
-        const real rrr_leg1_J_1_in_spec1_zz = m->rrr_leg1_J_1_in_spec1_zz[i];
-        const real rrr_leg1_h_1_in_spec1_x = m->rrr_leg1_h_1_in_spec1_x[i];
-        const real rrr_leg1_h_1_in_spec1_y = m->rrr_leg1_h_1_in_spec1_y[i];
-        const real rrr_leg1_mu_1_t = m->rrr_leg1_mu_1_t[i];
-        const real rrr_leg1_mu_1_t_2 = m->rrr_leg1_mu_1_t_2[i];
-        const real rrr_leg1_mu_1_in_axes1_z =
-            rrr_leg1_h_1_in_spec1_y*(rrr_leg1_c_1*rrr_leg1_mu_1_t +
-            rrr_leg1_mu_1_t_2*rrr_leg1_s_1) - rrr_leg1_B_1_in_axes1_xy*rrr_leg1_J_1_in_spec1_zz -
-            rrr_leg1_h_1_in_spec1_x*(rrr_leg1_c_1*rrr_leg1_mu_1_t_2 -
-            rrr_leg1_mu_1_t*rrr_leg1_s_1);
-        /* (rrr_leg1-N_1) moment about joint 1 of the links from 1 outwards, the force at the connection
-           point left out */
-        const real rrr_leg1_N_1_in_axes1_z = rrr_leg1_mu_1_in_axes1_z + rrr_leg1_mu_2_in_axes2_z;
-        /* (rrr_leg1-G) force at the connection point that balances the leg's inertia and weight along all
-           degrees of freedom */
-        const real rrr_leg1_G_in_axes2_y = rrr_leg1_mu_2_in_axes2_z*rrr_leg1_w_2_in_axes2_y;
+        values_rrr_leg1 v;
+        stage_rrr_leg1_X(m, w, i, j, X, &v);
+        stage_rrr_leg1_V_X(m, w, i, j, V, &v);
+        stage_rrr_leg1_legs_required(m, w, i, j, A, &v);
         /* (rrr_leg1-c) leg force on the platform without actuation and without the mass at the connection
            point */
-        const real rrr_leg1_c_in_axes2_x = rrr_leg1_W_2_t*rrr_leg1_h_2_in_spec2_x +
-            rrr_leg1_alpha_2_in_axes2_z*rrr_leg1_h_2_in_spec2_y +
-            rrr_leg1_w_1_in_axes2_x*(rrr_leg1_G_in_axes2_y*rrr_leg1_r_1_in_axes2_x -
-            rrr_leg1_N_1_in_axes1_z);
-        const real rrr_leg1_c_in_axes2_y = rrr_leg1_W_2_t*rrr_leg1_h_2_in_spec2_y -
-            rrr_leg1_G_in_axes2_y - rrr_leg1_alpha_2_in_axes2_z*rrr_leg1_h_2_in_spec2_x;
-        const real rrr_leg1_c_x = axis_x_rrr_leg1_axes2_x*rrr_leg1_c_in_axes2_x +
-            axis_y_rrr_leg1_axes2_x*rrr_leg1_c_in_axes2_y;
-        const real rrr_leg1_c_y = axis_x_rrr_leg1_axes2_x*rrr_leg1_c_in_axes2_y -
-            axis_y_rrr_leg1_axes2_x*rrr_leg1_c_in_axes2_x;
+        const real rrr_leg1_c_x = v.axis_x_rrr_leg1_axes2_x*v.rrr_leg1_c_in_axes2_x +
+            v.axis_y_rrr_leg1_axes2_x*v.rrr_leg1_c_in_axes2_y;
+        const real rrr_leg1_c_y = v.axis_x_rrr_leg1_axes2_x*v.rrr_leg1_c_in_axes2_y -
+            v.axis_y_rrr_leg1_axes2_x*v.rrr_leg1_c_in_axes2_x;
         /* (R_t) force that actuators and external wrench must give */
         gather(&terms[0*count + k], add, rrr_leg1_c_x);  /* R_t_x_of_legs */
         gather(&terms[1*count + k], add, rrr_leg1_c_y);  /* R_t_y_of_legs */
         /* (rrr_leg1-w_1) reciprocal vector 1 */
-        o[0*count + k] = rrr_leg1_w_1_x;
-        o[1*count + k] = rrr_leg1_w_1_y;
+        o[0*count + k] = v.rrr_leg1_w_1_x;
+        o[1*count + k] = v.rrr_leg1_w_1_y;
         /* (rrr_leg1-w_2) reciprocal vector 2 */
-        o[2*count + k] = rrr_leg1_w_2_x;
-        o[3*count + k] = rrr_leg1_w_2_y;
+        o[2*count + k] = v.rrr_leg1_w_2_x;
+        o[3*count + k] = v.rrr_leg1_w_2_y;
         const real rrr_leg1_rho2_1_t = m->rrr_leg1_rho2_1_t[i];
         const real rrr_leg1_size = m->rrr_leg1_size[i];
-        o[5*count + k] = UNLESS(magnitude(rrr_leg1_rho2_1) >
-            TOLERANCE*TOLERANCE*rrr_leg1_rho2_1_t) + UNLESS(magnitude(rrr_leg1_r_1_in_axes2_y) >
+        o[5*count + k] = UNLESS(magnitude(v.rrr_leg1_rho2_1) >
+            TOLERANCE*TOLERANCE*rrr_leg1_rho2_1_t) + UNLESS(magnitude(v.rrr_leg1_r_1_in_axes2_y) >
             TOLERANCE*rrr_leg1_size);
-        o[4*count + k] = UNLESS(rrr_leg1_disc_1 >= 0);
+        o[4*count + k] = UNLESS(v.rrr_leg1_disc_1 >= 0);
     }
 }
 
@@ -3049,170 +2882,42 @@ INLINE void required_place_rrr_leg1(size_t w, size_t count, const real *o, size_
     verdict *t)
 {
     for (size_t k = 0; k < w; ++k) {
-        H[0*NU*w + k] = o[0*count + first + k];
+        H[0*w + k] = o[0*count + first + k];
         H[NU*w + k] = o[1*count + first + k];
-        H[(0*NU + 1)*w + k] = o[2*count + first + k];
+        H[1*w + k] = o[2*count + first + k];
         H[(NU + 1)*w + k] = o[3*count + first + k];
         t->unreachable[k] += o[4*count + first + k];
         t->singular[k] += o[5*count + first + k];
     }
 }
 
-INLINE void required_legs_rrr(const prepared *m, size_t w, size_t leg, size_t legs, const real *s,
-    size_t states, size_t count, int add, real *terms, real *o)
+INLINE void required_legs_rrr(const prepared *m, size_t w, size_t leg, size_t legs, size_t states,
+    size_t count, int add, const real *X, const real *V, const real *A, real *terms, real *o)
 {
     for (size_t k = 0; k < count; ++k) {
         const size_t i = leg + legs*k;
         const size_t j = states*k;
-        /* (rrr-S) from the base point to the connection point */
-        const real rrr_base_point_x = m->rrr_base_point_x[i];
-        const real rrr_platform_point_x = m->rrr_platform_point_x[i];
-        const real t_x = s[0*w + j];
-        const real rrr_S_x = rrr_platform_point_x + t_x - rrr_base_point_x;
-        const real rrr_base_point_y = m->rrr_base_point_y[i];
-        const real rrr_platform_point_y = m->rrr_platform_point_y[i];
-        const real t_y = s[1*w + j];
-        const real rrr_S_y = rrr_platform_point_y + t_y - rrr_base_point_y;
-        /* (rrr-Kd_1) projection on the centre's direction, from the distance fixed by the joints beyond
-           joint 1 */
-        const real rrr_Kd_1_t_3 = rrr_S_x*rrr_S_x + rrr_S_y*rrr_S_y;
-        const real rrr_Kd_1_t = m->rrr_Kd_1_t[i];
-        const real rrr_Kd_1_t_2 = m->rrr_Kd_1_t_2[i];
-        const real rrr_Kd_1 = rrr_Kd_1_t + R(0.5)*rrr_Kd_1_t_3 - rrr_Kd_1_t_2;
-        /* (rrr-px_1) component along the reference direction */
-        const real rrr_base_frame_xx = m->rrr_base_frame_xx[i];
-        const real rrr_base_frame_yx = m->rrr_base_frame_yx[i];
-        const real rrr_px_1 = rrr_S_x*rrr_base_frame_xx + rrr_S_y*rrr_base_frame_yx;
-        /* (rrr-py_1) component across the reference direction */
-        const real rrr_base_frame_xy = m->rrr_base_frame_xy[i];
-        const real rrr_base_frame_yy = m->rrr_base_frame_yy[i];
-        const real rrr_py_1 = rrr_S_x*rrr_base_frame_xy + rrr_S_y*rrr_base_frame_yy;
-        /* (rrr-Kc_1) factor of the cosine in the equation of joint 1 */
-        const real rrr_joint2_offset_x = m->rrr_joint2_offset_x[i];
-        const real rrr_Kc_1 = rrr_joint2_offset_x*rrr_px_1;
-        /* (rrr-Ks_1) factor of the sine in the equation of joint 1 */
-        const real rrr_Ks_1 = rrr_joint2_offset_x*rrr_py_1;
-        /* (rrr-rho2_1) squared amplitude */
-        const real rrr_rho2_1 = rrr_Kc_1*rrr_Kc_1 + rrr_Ks_1*rrr_Ks_1;
-        /* (rrr-disc_1) discriminant */
-        const real rrr_disc_1 = rrr_rho2_1 - rrr_Kd_1*rrr_Kd_1;
-        /* (rrr-root_1) root, with the sign of the branch */
-        const real rrr_branch_1 = m->rrr_branch_1[i];
-        const real rrr_root_1 = rrr_branch_1*root(rrr_disc_1);
-        /* (rrr-c_1) cosine of the angle of joint 1 from its reference direction */
-        const real inv_rrr_rho2_1 = 1/rrr_rho2_1;
-        const real rrr_c_1 = inv_rrr_rho2_1*(rrr_Kc_1*rrr_Kd_1 - rrr_Ks_1*rrr_root_1);
-        /* (rrr-s_1) sine of the angle of joint 1 from its reference direction */
-        const real rrr_s_1 = inv_rrr_rho2_1*(rrr_Kc_1*rrr_root_1 + rrr_Kd_1*rrr_Ks_1);
-        /* (rrr-x_2) from the origin of joint 2 to the connection point */
-        const real inv_rrr_size_t = m->inv_rrr_size_t[i];
-        const real rrr_x_2_in_axes1_x = inv_rrr_size_t*rrr_Kd_1*rrr_joint2_offset_x -
-            rrr_joint2_offset_x;
-        /* (rrr-c_2) cosine of the angle of joint 2 from its reference direction */
-        const real inv_rrr_size_t_2 = m->inv_rrr_size_t_2[i];
-        const real rrr_platform_joint_offset_x = m->rrr_platform_joint_offset_x[i];
-        const real rrr_c_2 = inv_rrr_size_t_2*rrr_platform_joint_offset_x*rrr_x_2_in_axes1_x;
-        /* (rrr-s_2) sine of the angle of joint 2 from its reference direction */
-        const real rrr_s_2 =
-            -inv_rrr_size_t*inv_rrr_size_t_2*rrr_joint2_offset_x*rrr_platform_joint_offset_x*rrr_root_1;
-        /* (rrr-r_1) from joint 1 to the connection point, along the links */
-        const real rrr_r_1_in_axes1_y = rrr_platform_joint_offset_x*rrr_s_2;
-        const real rrr_r_1_in_axes1_x = rrr_joint2_offset_x + rrr_c_2*rrr_platform_joint_offset_x;
-        const real rrr_r_1_in_axes2_x = rrr_c_2*rrr_r_1_in_axes1_x + rrr_r_1_in_axes1_y*rrr_s_2;
-        const real rrr_r_1_in_axes2_y = rrr_c_2*rrr_r_1_in_axes1_y - rrr_r_1_in_axes1_x*rrr_s_2;
-        /* (rrr-w_1) reciprocal vector 1 */
-        const real rrr_w_1_t = rrr_c_1*rrr_s_2 + rrr_c_2*rrr_s_1;
-        const real rrr_w_1_t_2 = rrr_c_1*rrr_c_2 - rrr_s_1*rrr_s_2;
-        const real axis_y_rrr_axes2_x = rrr_base_frame_xy*rrr_w_1_t_2 -
-            rrr_base_frame_xx*rrr_w_1_t;
-        const real axis_x_rrr_axes2_x = rrr_base_frame_yy*rrr_w_1_t_2 -
-            rrr_base_frame_yx*rrr_w_1_t;
-        const real rrr_w_1_in_axes2_x = -1/rrr_r_1_in_axes2_y;
-        const real rrr_w_1_x = axis_x_rrr_axes2_x*rrr_w_1_in_axes2_x;
-        const real rrr_w_1_y = -axis_y_rrr_axes2_x*rrr_w_1_in_axes2_x;
-        /* (rrr-qd_1) rate of joint 1 */
-        const real t_dot_x = s[2*w + j];
-        const real t_dot_y = s[3*w + j];
-        const real rrr_qd_1 = rrr_w_1_in_axes2_x*(axis_x_rrr_axes2_x*t_dot_x -
-            axis_y_rrr_axes2_x*t_dot_y);
-        /* (rrr-W_1) centripetal tensor of link 1 */
-        const real rrr_W_1_in_axes1_xx = -rrr_qd_1*rrr_qd_1;
-        /* (rrr-omega_2) angular velocity of link 2 */
-        const real rrr_w_2_in_axes2_y = m->rrr_w_2_in_axes2_y[i];
-        const real rrr_omega_2_in_axes2_z = rrr_qd_1 +
-            rrr_w_2_in_axes2_y*(axis_x_rrr_axes2_x*t_dot_y + axis_y_rrr_axes2_x*t_dot_x -
-            rrr_qd_1*rrr_r_1_in_axes2_x);
-        /* (rrr-W_2) centripetal tensor of link 2 */
-        const real rrr_W_2_t = rrr_omega_2_in_axes2_z*rrr_omega_2_in_axes2_z;
-        /* (rrr-S_ddot) acceleration of the connection point */
-        const real t_ddot_x = s[4*w + j];
-        const real t_ddot_y = s[5*w + j];
-        const real rrr_S_ddot_in_axes2_x = axis_x_rrr_axes2_x*t_ddot_x -
-            axis_y_rrr_axes2_x*t_ddot_y;
-        const real rrr_S_ddot_in_axes2_y = axis_x_rrr_axes2_x*t_ddot_y +
-            axis_y_rrr_axes2_x*t_ddot_x;
-        /* (rrr-bias) acceleration of the connection point at zero joint accelerations */
-        const real rrr_bias_in_axes2_x = rrr_W_1_in_axes1_xx*rrr_c_2*rrr_joint2_offset_x -
-            rrr_W_2_t*rrr_platform_joint_offset_x;
-        /* (rrr-rel) acceleration of the connection point left to the joint accelerations */
-        const real rrr_rel_in_axes2_x = rrr_S_ddot_in_axes2_x - rrr_bias_in_axes2_x;
-        const real rrr_rel_in_axes2_y = rrr_S_ddot_in_axes2_y +
-            rrr_W_1_in_axes1_xx*rrr_joint2_offset_x*rrr_s_2;
-        /* (rrr-B_1) acceleration tensor of link 1 */
-        const real rrr_B_1_in_axes1_xy = -rrr_rel_in_axes2_x*rrr_w_1_in_axes2_x;
-        /* (rrr-alpha_2) angular acceleration of link 2 */
-        const real rrr_alpha_2_in_axes2_z = rrr_w_2_in_axes2_y*(rrr_rel_in_axes2_y +
-            rrr_B_1_in_axes1_xy*rrr_r_1_in_axes2_x) - rrr_B_1_in_axes1_xy;
-        /* (rrr-acc_2) acceleration of the reference point of link 2, less gravity */
-        const real gravity_x = m->gravity_x;
-        const real gravity_y = m->gravity_y;
-        const real rrr_acc_2_in_axes2_x = rrr_S_ddot_in_axes2_x + axis_y_rrr_axes2_x*gravity_y -
-            axis_x_rrr_axes2_x*gravity_x;
-        const real rrr_acc_2_in_axes2_y = rrr_S_ddot_in_axes2_y - axis_x_rrr_axes2_x*gravity_y -
-            axis_y_rrr_axes2_x*gravity_x;
-        /* (rrr-mu_2) inertia moment of the links that turn with link 2, about their reference points */
-        const real rrr_J_2_in_spec2_zz = m->rrr_J_2_in_spec2_zz[i];
-        const real rrr_h_2_in_spec2_x = m->rrr_h_2_in_spec2_x[i];
-        const real rrr_h_2_in_spec2_y = m->rrr_h_2_in_spec2_y[i];
-        const real rrr_mu_2_in_axes2_z = rrr_J_2_in_spec2_zz*rrr_alpha_2_in_axes2_z +
-            rrr_acc_2_in_axes2_y*rrr_h_2_in_spec2_x - rrr_acc_2_in_axes2_x*rrr_h_2_in_spec2_y;
-        /* (rrr-mu_1) inertia moment of the links that turn with link 1, about their reference points */
-        const real rrr_J_1_in_spec1_zz = m->rrr_J_1_in_spec1_zz[i];
-        const real rrr_h_1_in_spec1_x = m->rrr_h_1_in_spec1_x[i];
-        const real rrr_h_1_in_spec1_y = m->rrr_h_1_in_spec1_y[i];
-        const real rrr_mu_1_t = m->rrr_mu_1_t[i];
-        const real rrr_mu_1_t_2 = m->rrr_mu_1_t_2[i];
-        const real rrr_mu_1_in_axes1_z = rrr_h_1_in_spec1_y*(rrr_c_1*rrr_mu_1_t +
-            rrr_mu_1_t_2*rrr_s_1) - rrr_B_1_in_axes1_xy*rrr_J_1_in_spec1_zz -
-            rrr_h_1_in_spec1_x*(rrr_c_1*rrr_mu_1_t_2 - rrr_mu_1_t*rrr_s_1);
-        /* (rrr-N_1) moment about joint 1 of the links from 1 outwards, the force at the connection point
-           left out */
-        const real rrr_N_1_in_axes1_z = rrr_mu_1_in_axes1_z + rrr_mu_2_in_axes2_z;
-        /* (rrr-G) force at the connection point that balances the leg's inertia and weight along all
-           degrees of freedom */
-        const real rrr_G_in_axes2_y = rrr_mu_2_in_axes2_z*rrr_w_2_in_axes2_y;
+        values_rrr v;
+        stage_rrr_X(m, w, i, j, X, &v);
+        stage_rrr_V_X(m, w, i, j, V, &v);
+        stage_rrr_legs_required(m, w, i, j, A, &v);
         /* (rrr-c) leg force on the platform without actuation and without the mass at the connection
            point */
-        const real rrr_c_in_axes2_x = rrr_W_2_t*rrr_h_2_in_spec2_x +
-            rrr_alpha_2_in_axes2_z*rrr_h_2_in_spec2_y +
-            rrr_w_1_in_axes2_x*(rrr_G_in_axes2_y*rrr_r_1_in_axes2_x - rrr_N_1_in_axes1_z);
-        const real rrr_c_in_axes2_y = rrr_W_2_t*rrr_h_2_in_spec2_y - rrr_G_in_axes2_y -
-            rrr_alpha_2_in_axes2_z*rrr_h_2_in_spec2_x;
-        const real rrr_c_x = axis_x_rrr_axes2_x*rrr_c_in_axes2_x +
-            axis_y_rrr_axes2_x*rrr_c_in_axes2_y;
-        const real rrr_c_y = axis_x_rrr_axes2_x*rrr_c_in_axes2_y -
-            axis_y_rrr_axes2_x*rrr_c_in_axes2_x;
+        const real rrr_c_x = v.axis_x_rrr_axes2_x*v.rrr_c_in_axes2_x +
+            v.axis_y_rrr_axes2_x*v.rrr_c_in_axes2_y;
+        const real rrr_c_y = v.axis_x_rrr_axes2_x*v.rrr_c_in_axes2_y -
+            v.axis_y_rrr_axes2_x*v.rrr_c_in_axes2_x;
         /* (R_t) force that actuators and external wrench must give */
         gather(&terms[0*count + k], add, rrr_c_x);  /* R_t_x_of_legs */
         gather(&terms[1*count + k], add, rrr_c_y);  /* R_t_y_of_legs */
         /* (rrr-w_1) reciprocal vector 1 */
-        o[0*count + k] = rrr_w_1_x;
-        o[1*count + k] = rrr_w_1_y;
+        o[0*count + k] = v.rrr_w_1_x;
+        o[1*count + k] = v.rrr_w_1_y;
         const real rrr_rho2_1_t = m->rrr_rho2_1_t[i];
         const real rrr_size = m->rrr_size[i];
-        o[3*count + k] = UNLESS(magnitude(rrr_rho2_1) > TOLERANCE*TOLERANCE*rrr_rho2_1_t) +
-            UNLESS(magnitude(rrr_r_1_in_axes2_y) > TOLERANCE*rrr_size);
-        o[2*count + k] = UNLESS(rrr_disc_1 >= 0);
+        o[3*count + k] = UNLESS(magnitude(v.rrr_rho2_1) > TOLERANCE*TOLERANCE*rrr_rho2_1_t) +
+            UNLESS(magnitude(v.rrr_r_1_in_axes2_y) > TOLERANCE*rrr_size);
+        o[2*count + k] = UNLESS(v.rrr_disc_1 >= 0);
     }
 }
 
@@ -3220,7 +2925,7 @@ INLINE void required_place_rrr(size_t w, size_t count, const real *o, size_t fir
     verdict *t)
 {
     for (size_t k = 0; k < w; ++k) {
-        H[(0*NU + 2)*w + k] = o[0*count + first + k];
+        H[2*w + k] = o[0*count + first + k];
         H[(NU + 2)*w + k] = o[1*count + first + k];
         t->unreachable[k] += o[2*count + first + k];
         t->singular[k] += o[3*count + first + k];
@@ -3232,10 +2937,10 @@ INLINE void required_after(size_t w, const real *s, const real *sums, real *requ
     for (size_t k = 0; k < w; ++k) {
         /* (R_t) force that actuators and external wrench must give */
         const real R_t_x_of_legs = sums[0*w + k];
-        const real f_p_x = s[6*w + k];
+        const real f_p_x = s[0*w + k];
         const real R_t_x = f_p_x - R_t_x_of_legs;
         const real R_t_y_of_legs = sums[1*w + k];
-        const real f_p_y = s[7*w + k];
+        const real f_p_y = s[1*w + k];
         const real R_t_y = f_p_y - R_t_y_of_legs;
         /* (R_t) force that actuators and external wrench must give */
         required[0*w + k] = R_t_x;
@@ -3246,21 +2951,18 @@ INLINE void required_after(size_t w, const real *s, const real *sums, real *requ
 INLINE void required_run(const prepared *m, const real *X, const real *V, const real *A, real
     *required, real *H, verdict *t)
 {
-    real s[8] = {0};
-    real sums[2] = {0};
-    real terms_rrr_leg1[2*LEGS(LEGS_OF_rrr_leg1)] = {0};
-    real o_rrr_leg1[6*LEGS(LEGS_OF_rrr_leg1)] = {0};
-    real terms_rrr[2*LEGS(LEGS_OF_rrr)] = {0};
-    real o_rrr[4*LEGS(LEGS_OF_rrr)] = {0};
-    required_before(m, 1, X, V, A, s);
-    required_legs_rrr_leg1(m, 1, 0, 1, s, 0, LEGS(LEGS_OF_rrr_leg1), 0, terms_rrr_leg1, o_rrr_leg1);
+    real s[2] = {0}, sums[2] = {0};
+    real terms_rrr_leg1[2*LEGS(LEGS_OF_rrr_leg1)] = {0}, o_rrr_leg1[6*LEGS(LEGS_OF_rrr_leg1)] = {0};
+    real terms_rrr[2*LEGS(LEGS_OF_rrr)] = {0}, o_rrr[4*LEGS(LEGS_OF_rrr)] = {0};
+    required_before(m, 1, A, s);
+    required_legs_rrr_leg1(m, 1, 0, 1, 0, LEGS(LEGS_OF_rrr_leg1), 0, X, V, A, terms_rrr_leg1, o_rrr_leg1);
+    required_legs_rrr(m, 1, 0, 1, 0, LEGS(LEGS_OF_rrr), 0, X, V, A, terms_rrr, o_rrr);
     for (size_t leg = 0; leg < LEGS_OF_rrr_leg1; ++leg) {
         required_place_rrr_leg1(1, LEGS(LEGS_OF_rrr_leg1), o_rrr_leg1, leg, H, t);
     }
     for (size_t n = 0; n < 2; ++n) {
         sums[n] = total(terms_rrr_leg1 + n*LEGS(LEGS_OF_rrr_leg1), LEGS_OF_rrr_leg1);
     }
-    required_legs_rrr(m, 1, 0, 1, s, 0, LEGS(LEGS_OF_rrr), 0, terms_rrr, o_rrr);
     for (size_t leg = 0; leg < LEGS_OF_rrr; ++leg) {
         required_place_rrr(1, LEGS(LEGS_OF_rrr), o_rrr, leg, H, t);
     }
@@ -3271,86 +2973,40 @@ INLINE void required_run(const prepared *m, const real *X, const real *V, const 
 }
 
 /* ---- inverse_kinematics ---- */
-INLINE void inverse_kinematics_before(size_t w, const real *X, real *s)
+INLINE void inverse_kinematics_before()
 {
-    for (size_t k = 0; k < w; ++k) {
-        /* X: named entries */
-        const real X_0 = X[0*w + k];
-        const real t_x = X_0;
-        const real X_1 = X[1*w + k];
-        const real t_y = X_1;
-        s[0*w + k] = t_x;
-        s[1*w + k] = t_y;
-    }
 }
 
 INLINE void inverse_kinematics_legs_rrr_leg1(const prepared *m, size_t w, size_t leg, size_t legs,
-    const real *s, size_t states, size_t count, real *o)
+    size_t states, size_t count, const real *X, real *o)
 {
     for (size_t k = 0; k < count; ++k) {
         const size_t i = leg + legs*k;
         const size_t j = states*k;
-        /* (rrr_leg1-S) from the base point to the connection point */
-        const real rrr_leg1_base_point_x = m->rrr_leg1_base_point_x[i];
-        const real rrr_leg1_platform_point_x = m->rrr_leg1_platform_point_x[i];
-        const real t_x = s[0*w + j];
-        const real rrr_leg1_S_x = rrr_leg1_platform_point_x + t_x - rrr_leg1_base_point_x;
-        const real rrr_leg1_base_point_y = m->rrr_leg1_base_point_y[i];
-        const real rrr_leg1_platform_point_y = m->rrr_leg1_platform_point_y[i];
-        const real t_y = s[1*w + j];
-        const real rrr_leg1_S_y = rrr_leg1_platform_point_y + t_y - rrr_leg1_base_point_y;
-        /* (rrr_leg1-Kd_1) projection on the centre's direction, from the distance fixed by the joints
-           beyond joint 1 */
-        const real rrr_leg1_Kd_1_t_3 = rrr_leg1_S_x*rrr_leg1_S_x + rrr_leg1_S_y*rrr_leg1_S_y;
-        const real rrr_leg1_Kd_1_t = m->rrr_leg1_Kd_1_t[i];
-        const real rrr_leg1_Kd_1_t_2 = m->rrr_leg1_Kd_1_t_2[i];
-        const real rrr_leg1_Kd_1 = rrr_leg1_Kd_1_t + R(0.5)*rrr_leg1_Kd_1_t_3 - rrr_leg1_Kd_1_t_2;
-        /* (rrr_leg1-px_1) component along the reference direction */
-        const real rrr_leg1_base_frame_xx = m->rrr_leg1_base_frame_xx[i];
-        const real rrr_leg1_base_frame_yx = m->rrr_leg1_base_frame_yx[i];
-        const real rrr_leg1_px_1 = rrr_leg1_S_x*rrr_leg1_base_frame_xx +
-            rrr_leg1_S_y*rrr_leg1_base_frame_yx;
-        /* (rrr_leg1-py_1) component across the reference direction */
-        const real rrr_leg1_base_frame_xy = m->rrr_leg1_base_frame_xy[i];
-        const real rrr_leg1_base_frame_yy = m->rrr_leg1_base_frame_yy[i];
-        const real rrr_leg1_py_1 = rrr_leg1_S_x*rrr_leg1_base_frame_xy +
-            rrr_leg1_S_y*rrr_leg1_base_frame_yy;
-        /* (rrr_leg1-Kc_1) factor of the cosine in the equation of joint 1 */
-        const real rrr_leg1_joint2_offset_x = m->rrr_leg1_joint2_offset_x[i];
-        const real rrr_leg1_Kc_1 = rrr_leg1_joint2_offset_x*rrr_leg1_px_1;
-        /* (rrr_leg1-Ks_1) factor of the sine in the equation of joint 1 */
-        const real rrr_leg1_Ks_1 = rrr_leg1_joint2_offset_x*rrr_leg1_py_1;
-        /* (rrr_leg1-rho2_1) squared amplitude */
-        const real rrr_leg1_rho2_1 = rrr_leg1_Kc_1*rrr_leg1_Kc_1 + rrr_leg1_Ks_1*rrr_leg1_Ks_1;
-        /* (rrr_leg1-disc_1) discriminant */
-        const real rrr_leg1_disc_1 = rrr_leg1_rho2_1 - rrr_leg1_Kd_1*rrr_leg1_Kd_1;
-        /* (rrr_leg1-root_1) root, with the sign of the branch */
-        const real rrr_leg1_branch_1 = m->rrr_leg1_branch_1[i];
-        const real rrr_leg1_root_1 = rrr_leg1_branch_1*root(rrr_leg1_disc_1);
+        values_rrr_leg1 v;
+        stage_rrr_leg1_X(m, w, i, j, X, &v);
         /* (rrr_leg1-q_1) displacement of joint 1 */
-        const real inv_rrr_leg1_rho2_1 = 1/rrr_leg1_rho2_1;
-        const real rrr_leg1_q_1 = angle(inv_rrr_leg1_rho2_1*(rrr_leg1_Kc_1*rrr_leg1_root_1 +
-            rrr_leg1_Kd_1*rrr_leg1_Ks_1), inv_rrr_leg1_rho2_1*(rrr_leg1_Kc_1*rrr_leg1_Kd_1 -
-            rrr_leg1_Ks_1*rrr_leg1_root_1));
-        /* (rrr_leg1-x_2) from the origin of joint 2 to the connection point */
-        const real inv_rrr_leg1_size_t = m->inv_rrr_leg1_size_t[i];
-        const real rrr_leg1_x_2_in_axes1_x =
-            inv_rrr_leg1_size_t*rrr_leg1_Kd_1*rrr_leg1_joint2_offset_x - rrr_leg1_joint2_offset_x;
+        const real rrr_leg1_q_1 = angle(v.inv_rrr_leg1_rho2_1*(v.rrr_leg1_Kc_1*v.rrr_leg1_root_1 +
+            v.rrr_leg1_Kd_1*v.rrr_leg1_Ks_1),
+            v.inv_rrr_leg1_rho2_1*(v.rrr_leg1_Kc_1*v.rrr_leg1_Kd_1 -
+            v.rrr_leg1_Ks_1*v.rrr_leg1_root_1));
         /* (rrr_leg1-q_2) displacement of joint 2 */
+        const real inv_rrr_leg1_size_t = m->inv_rrr_leg1_size_t[i];
         const real inv_rrr_leg1_size_t_2 = m->inv_rrr_leg1_size_t_2[i];
+        const real rrr_leg1_joint2_offset_x = m->rrr_leg1_joint2_offset_x[i];
         const real rrr_leg1_platform_joint_offset_x = m->rrr_leg1_platform_joint_offset_x[i];
         const real rrr_leg1_q_2 =
-            angle(-inv_rrr_leg1_size_t*inv_rrr_leg1_size_t_2*rrr_leg1_joint2_offset_x*rrr_leg1_platform_joint_offset_x*rrr_leg1_root_1,
-            inv_rrr_leg1_size_t_2*rrr_leg1_platform_joint_offset_x*rrr_leg1_x_2_in_axes1_x);
+            angle(-inv_rrr_leg1_size_t*inv_rrr_leg1_size_t_2*rrr_leg1_joint2_offset_x*rrr_leg1_platform_joint_offset_x*v.rrr_leg1_root_1,
+            inv_rrr_leg1_size_t_2*rrr_leg1_platform_joint_offset_x*v.rrr_leg1_x_2_in_axes1_x);
         /* (rrr_leg1-q_1) displacement of joint 1 */
         o[0*count + k] = rrr_leg1_q_1;
         /* (rrr_leg1-q_2) displacement of joint 2 */
         o[1*count + k] = rrr_leg1_q_2;
         o[4*count + k] = rrr_leg1_q_1 + rrr_leg1_q_2;
         const real rrr_leg1_rho2_1_t = m->rrr_leg1_rho2_1_t[i];
-        o[3*count + k] = UNLESS(magnitude(rrr_leg1_rho2_1) >
+        o[3*count + k] = UNLESS(magnitude(v.rrr_leg1_rho2_1) >
             TOLERANCE*TOLERANCE*rrr_leg1_rho2_1_t);
-        o[2*count + k] = UNLESS(rrr_leg1_disc_1 >= 0);
+        o[2*count + k] = UNLESS(v.rrr_leg1_disc_1 >= 0);
     }
 }
 
@@ -3367,68 +3023,33 @@ INLINE void inverse_kinematics_place_rrr_leg1(size_t w, size_t count, const real
 }
 
 INLINE void inverse_kinematics_legs_rrr(const prepared *m, size_t w, size_t leg, size_t legs,
-    const real *s, size_t states, size_t count, real *o)
+    size_t states, size_t count, const real *X, real *o)
 {
     for (size_t k = 0; k < count; ++k) {
         const size_t i = leg + legs*k;
         const size_t j = states*k;
-        /* (rrr-S) from the base point to the connection point */
-        const real rrr_base_point_x = m->rrr_base_point_x[i];
-        const real rrr_platform_point_x = m->rrr_platform_point_x[i];
-        const real t_x = s[0*w + j];
-        const real rrr_S_x = rrr_platform_point_x + t_x - rrr_base_point_x;
-        const real rrr_base_point_y = m->rrr_base_point_y[i];
-        const real rrr_platform_point_y = m->rrr_platform_point_y[i];
-        const real t_y = s[1*w + j];
-        const real rrr_S_y = rrr_platform_point_y + t_y - rrr_base_point_y;
-        /* (rrr-Kd_1) projection on the centre's direction, from the distance fixed by the joints beyond
-           joint 1 */
-        const real rrr_Kd_1_t_3 = rrr_S_x*rrr_S_x + rrr_S_y*rrr_S_y;
-        const real rrr_Kd_1_t = m->rrr_Kd_1_t[i];
-        const real rrr_Kd_1_t_2 = m->rrr_Kd_1_t_2[i];
-        const real rrr_Kd_1 = rrr_Kd_1_t + R(0.5)*rrr_Kd_1_t_3 - rrr_Kd_1_t_2;
-        /* (rrr-px_1) component along the reference direction */
-        const real rrr_base_frame_xx = m->rrr_base_frame_xx[i];
-        const real rrr_base_frame_yx = m->rrr_base_frame_yx[i];
-        const real rrr_px_1 = rrr_S_x*rrr_base_frame_xx + rrr_S_y*rrr_base_frame_yx;
-        /* (rrr-py_1) component across the reference direction */
-        const real rrr_base_frame_xy = m->rrr_base_frame_xy[i];
-        const real rrr_base_frame_yy = m->rrr_base_frame_yy[i];
-        const real rrr_py_1 = rrr_S_x*rrr_base_frame_xy + rrr_S_y*rrr_base_frame_yy;
-        /* (rrr-Kc_1) factor of the cosine in the equation of joint 1 */
-        const real rrr_joint2_offset_x = m->rrr_joint2_offset_x[i];
-        const real rrr_Kc_1 = rrr_joint2_offset_x*rrr_px_1;
-        /* (rrr-Ks_1) factor of the sine in the equation of joint 1 */
-        const real rrr_Ks_1 = rrr_joint2_offset_x*rrr_py_1;
-        /* (rrr-rho2_1) squared amplitude */
-        const real rrr_rho2_1 = rrr_Kc_1*rrr_Kc_1 + rrr_Ks_1*rrr_Ks_1;
-        /* (rrr-disc_1) discriminant */
-        const real rrr_disc_1 = rrr_rho2_1 - rrr_Kd_1*rrr_Kd_1;
-        /* (rrr-root_1) root, with the sign of the branch */
-        const real rrr_branch_1 = m->rrr_branch_1[i];
-        const real rrr_root_1 = rrr_branch_1*root(rrr_disc_1);
+        values_rrr v;
+        stage_rrr_X(m, w, i, j, X, &v);
         /* (rrr-q_1) displacement of joint 1 */
-        const real inv_rrr_rho2_1 = 1/rrr_rho2_1;
-        const real rrr_q_1 = angle(inv_rrr_rho2_1*(rrr_Kc_1*rrr_root_1 + rrr_Kd_1*rrr_Ks_1),
-            inv_rrr_rho2_1*(rrr_Kc_1*rrr_Kd_1 - rrr_Ks_1*rrr_root_1));
-        /* (rrr-x_2) from the origin of joint 2 to the connection point */
-        const real inv_rrr_size_t = m->inv_rrr_size_t[i];
-        const real rrr_x_2_in_axes1_x = inv_rrr_size_t*rrr_Kd_1*rrr_joint2_offset_x -
-            rrr_joint2_offset_x;
+        const real rrr_q_1 = angle(v.inv_rrr_rho2_1*(v.rrr_Kc_1*v.rrr_root_1 +
+            v.rrr_Kd_1*v.rrr_Ks_1), v.inv_rrr_rho2_1*(v.rrr_Kc_1*v.rrr_Kd_1 -
+            v.rrr_Ks_1*v.rrr_root_1));
         /* (rrr-q_2) displacement of joint 2 */
+        const real inv_rrr_size_t = m->inv_rrr_size_t[i];
         const real inv_rrr_size_t_2 = m->inv_rrr_size_t_2[i];
+        const real rrr_joint2_offset_x = m->rrr_joint2_offset_x[i];
         const real rrr_platform_joint_offset_x = m->rrr_platform_joint_offset_x[i];
         const real rrr_q_2 =
-            angle(-inv_rrr_size_t*inv_rrr_size_t_2*rrr_joint2_offset_x*rrr_platform_joint_offset_x*rrr_root_1,
-            inv_rrr_size_t_2*rrr_platform_joint_offset_x*rrr_x_2_in_axes1_x);
+            angle(-inv_rrr_size_t*inv_rrr_size_t_2*rrr_joint2_offset_x*rrr_platform_joint_offset_x*v.rrr_root_1,
+            inv_rrr_size_t_2*rrr_platform_joint_offset_x*v.rrr_x_2_in_axes1_x);
         /* (rrr-q_1) displacement of joint 1 */
         o[0*count + k] = rrr_q_1;
         /* (rrr-q_2) displacement of joint 2 */
         o[1*count + k] = rrr_q_2;
         o[4*count + k] = rrr_q_1 + rrr_q_2;
         const real rrr_rho2_1_t = m->rrr_rho2_1_t[i];
-        o[3*count + k] = UNLESS(magnitude(rrr_rho2_1) > TOLERANCE*TOLERANCE*rrr_rho2_1_t);
-        o[2*count + k] = UNLESS(rrr_disc_1 >= 0);
+        o[3*count + k] = UNLESS(magnitude(v.rrr_rho2_1) > TOLERANCE*TOLERANCE*rrr_rho2_1_t);
+        o[2*count + k] = UNLESS(v.rrr_disc_1 >= 0);
     }
 }
 
@@ -3446,15 +3067,14 @@ INLINE void inverse_kinematics_place_rrr(size_t w, size_t count, const real *o, 
 
 INLINE void inverse_kinematics_run(const prepared *m, const real *X, real *q, verdict *t)
 {
-    real s[2] = {0};
     real o_rrr_leg1[5*LEGS(LEGS_OF_rrr_leg1)] = {0};
     real o_rrr[5*LEGS(LEGS_OF_rrr)] = {0};
-    inverse_kinematics_before(1, X, s);
-    inverse_kinematics_legs_rrr_leg1(m, 1, 0, 1, s, 0, LEGS(LEGS_OF_rrr_leg1), o_rrr_leg1);
+    inverse_kinematics_before();
+    inverse_kinematics_legs_rrr_leg1(m, 1, 0, 1, 0, LEGS(LEGS_OF_rrr_leg1), X, o_rrr_leg1);
+    inverse_kinematics_legs_rrr(m, 1, 0, 1, 0, LEGS(LEGS_OF_rrr), X, o_rrr);
     for (size_t leg = 0; leg < LEGS_OF_rrr_leg1; ++leg) {
         inverse_kinematics_place_rrr_leg1(1, LEGS(LEGS_OF_rrr_leg1), o_rrr_leg1, leg, q, t);
     }
-    inverse_kinematics_legs_rrr(m, 1, 0, 1, s, 0, LEGS(LEGS_OF_rrr), o_rrr);
     for (size_t leg = 0; leg < LEGS_OF_rrr; ++leg) {
         inverse_kinematics_place_rrr(1, LEGS(LEGS_OF_rrr), o_rrr, leg, q, t);
     }
@@ -3462,125 +3082,51 @@ INLINE void inverse_kinematics_run(const prepared *m, const real *X, real *q, ve
 
 INLINE void inverse_kinematics_run_lanes(const prepared *m, const real *X, real *q, verdict *t)
 {
-    real s[2*LANES];
     real o_rrr_leg1[5*LANES];
     real o_rrr[5*LANES];
-    inverse_kinematics_before(LANES, X, s);
+    inverse_kinematics_before();
     for (size_t leg = 0; leg < LEGS_OF_rrr_leg1; ++leg) {
-        inverse_kinematics_legs_rrr_leg1(m, LANES, leg, 0, s, 1, LANES, o_rrr_leg1);
+        inverse_kinematics_legs_rrr_leg1(m, LANES, leg, 0, 1, LANES, X, o_rrr_leg1);
         inverse_kinematics_place_rrr_leg1(LANES, LANES, o_rrr_leg1, 0, q, t);
     }
     for (size_t leg = 0; leg < LEGS_OF_rrr; ++leg) {
-        inverse_kinematics_legs_rrr(m, LANES, leg, 0, s, 1, LANES, o_rrr);
+        inverse_kinematics_legs_rrr(m, LANES, leg, 0, 1, LANES, X, o_rrr);
         inverse_kinematics_place_rrr(LANES, LANES, o_rrr, 0, q, t);
     }
 }
 
 /* ---- joint_rates ---- */
-INLINE void joint_rates_before(size_t w, const real *X, const real *V, real *s)
+INLINE void joint_rates_before()
 {
-    for (size_t k = 0; k < w; ++k) {
-        /* X: named entries */
-        const real X_0 = X[0*w + k];
-        const real t_x = X_0;
-        const real X_1 = X[1*w + k];
-        const real t_y = X_1;
-        /* V: named entries */
-        const real V_0 = V[0*w + k];
-        const real t_dot_x = V_0;
-        const real V_1 = V[1*w + k];
-        const real t_dot_y = V_1;
-        s[0*w + k] = t_x;
-        s[1*w + k] = t_y;
-        s[2*w + k] = t_dot_x;
-        s[3*w + k] = t_dot_y;
-    }
 }
 
-INLINE void joint_rates_legs_rrr_leg1(const prepared *m, size_t w, size_t leg, size_t legs, const
-    real *s, size_t states, size_t count, real *o)
+INLINE void joint_rates_legs_rrr_leg1(const prepared *m, size_t w, size_t leg, size_t legs, size_t
+    states, size_t count, const real *X, const real *V, real *o)
 {
     for (size_t k = 0; k < count; ++k) {
         const size_t i = leg + legs*k;
         const size_t j = states*k;
-        /* (rrr_leg1-S) from the base point to the connection point */
-        const real rrr_leg1_base_point_x = m->rrr_leg1_base_point_x[i];
-        const real rrr_leg1_platform_point_x = m->rrr_leg1_platform_point_x[i];
-        const real t_x = s[0*w + j];
-        const real rrr_leg1_S_x = rrr_leg1_platform_point_x + t_x - rrr_leg1_base_point_x;
-        const real rrr_leg1_base_point_y = m->rrr_leg1_base_point_y[i];
-        const real rrr_leg1_platform_point_y = m->rrr_leg1_platform_point_y[i];
-        const real t_y = s[1*w + j];
-        const real rrr_leg1_S_y = rrr_leg1_platform_point_y + t_y - rrr_leg1_base_point_y;
-        /* (rrr_leg1-Kd_1) projection on the centre's direction, from the distance fixed by the joints
-           beyond joint 1 */
-        const real rrr_leg1_Kd_1_t_3 = rrr_leg1_S_x*rrr_leg1_S_x + rrr_leg1_S_y*rrr_leg1_S_y;
-        const real rrr_leg1_Kd_1_t = m->rrr_leg1_Kd_1_t[i];
-        const real rrr_leg1_Kd_1_t_2 = m->rrr_leg1_Kd_1_t_2[i];
-        const real rrr_leg1_Kd_1 = rrr_leg1_Kd_1_t + R(0.5)*rrr_leg1_Kd_1_t_3 - rrr_leg1_Kd_1_t_2;
-        /* (rrr_leg1-px_1) component along the reference direction */
-        const real rrr_leg1_base_frame_xx = m->rrr_leg1_base_frame_xx[i];
-        const real rrr_leg1_base_frame_yx = m->rrr_leg1_base_frame_yx[i];
-        const real rrr_leg1_px_1 = rrr_leg1_S_x*rrr_leg1_base_frame_xx +
-            rrr_leg1_S_y*rrr_leg1_base_frame_yx;
-        /* (rrr_leg1-py_1) component across the reference direction */
-        const real rrr_leg1_base_frame_xy = m->rrr_leg1_base_frame_xy[i];
-        const real rrr_leg1_base_frame_yy = m->rrr_leg1_base_frame_yy[i];
-        const real rrr_leg1_py_1 = rrr_leg1_S_x*rrr_leg1_base_frame_xy +
-            rrr_leg1_S_y*rrr_leg1_base_frame_yy;
-        /* (rrr_leg1-Kc_1) factor of the cosine in the equation of joint 1 */
-        const real rrr_leg1_joint2_offset_x = m->rrr_leg1_joint2_offset_x[i];
-        const real rrr_leg1_Kc_1 = rrr_leg1_joint2_offset_x*rrr_leg1_px_1;
-        /* (rrr_leg1-Ks_1) factor of the sine in the equation of joint 1 */
-        const real rrr_leg1_Ks_1 = rrr_leg1_joint2_offset_x*rrr_leg1_py_1;
-        /* (rrr_leg1-rho2_1) squared amplitude */
-        const real rrr_leg1_rho2_1 = rrr_leg1_Kc_1*rrr_leg1_Kc_1 + rrr_leg1_Ks_1*rrr_leg1_Ks_1;
-        /* (rrr_leg1-disc_1) discriminant */
-        const real rrr_leg1_disc_1 = rrr_leg1_rho2_1 - rrr_leg1_Kd_1*rrr_leg1_Kd_1;
-        /* (rrr_leg1-root_1) root, with the sign of the branch */
-        const real rrr_leg1_branch_1 = m->rrr_leg1_branch_1[i];
-        const real rrr_leg1_root_1 = rrr_leg1_branch_1*root(rrr_leg1_disc_1);
-        /* (rrr_leg1-c_1) cosine of the angle of joint 1 from its reference direction */
-        const real inv_rrr_leg1_rho2_1 = 1/rrr_leg1_rho2_1;
-        const real rrr_leg1_c_1 = inv_rrr_leg1_rho2_1*(rrr_leg1_Kc_1*rrr_leg1_Kd_1 -
-            rrr_leg1_Ks_1*rrr_leg1_root_1);
-        /* (rrr_leg1-s_1) sine of the angle of joint 1 from its reference direction */
-        const real rrr_leg1_s_1 = inv_rrr_leg1_rho2_1*(rrr_leg1_Kc_1*rrr_leg1_root_1 +
-            rrr_leg1_Kd_1*rrr_leg1_Ks_1);
-        /* (rrr_leg1-x_2) from the origin of joint 2 to the connection point */
-        const real inv_rrr_leg1_size_t = m->inv_rrr_leg1_size_t[i];
-        const real rrr_leg1_x_2_in_axes1_x =
-            inv_rrr_leg1_size_t*rrr_leg1_Kd_1*rrr_leg1_joint2_offset_x - rrr_leg1_joint2_offset_x;
-        /* (rrr_leg1-c_2) cosine of the angle of joint 2 from its reference direction */
-        const real inv_rrr_leg1_size_t_2 = m->inv_rrr_leg1_size_t_2[i];
-        const real rrr_leg1_platform_joint_offset_x = m->rrr_leg1_platform_joint_offset_x[i];
-        const real rrr_leg1_c_2 =
-            inv_rrr_leg1_size_t_2*rrr_leg1_platform_joint_offset_x*rrr_leg1_x_2_in_axes1_x;
-        /* (rrr_leg1-s_2) sine of the angle of joint 2 from its reference direction */
-        const real rrr_leg1_s_2 =
-            -inv_rrr_leg1_size_t*inv_rrr_leg1_size_t_2*rrr_leg1_joint2_offset_x*rrr_leg1_platform_joint_offset_x*rrr_leg1_root_1;
-        /* (rrr_leg1-r_1) from joint 1 to the connection point, along the links */
-        const real rrr_leg1_r_1_in_axes1_y = rrr_leg1_platform_joint_offset_x*rrr_leg1_s_2;
-        const real rrr_leg1_r_1_in_axes1_x = rrr_leg1_joint2_offset_x +
-            rrr_leg1_c_2*rrr_leg1_platform_joint_offset_x;
-        const real rrr_leg1_r_1_in_axes2_y = rrr_leg1_c_2*rrr_leg1_r_1_in_axes1_y -
-            rrr_leg1_r_1_in_axes1_x*rrr_leg1_s_2;
+        values_rrr_leg1 v;
+        stage_rrr_leg1_X(m, w, i, j, X, &v);
         /* (rrr_leg1-qd_1) rate of joint 1 */
-        const real rrr_leg1_qd_1_t = rrr_leg1_c_1*rrr_leg1_s_2 + rrr_leg1_c_2*rrr_leg1_s_1;
-        const real rrr_leg1_qd_1_t_2 = rrr_leg1_c_1*rrr_leg1_c_2 - rrr_leg1_s_1*rrr_leg1_s_2;
-        const real axis_y_rrr_leg1_axes2_x = rrr_leg1_base_frame_xy*rrr_leg1_qd_1_t_2 -
-            rrr_leg1_base_frame_xx*rrr_leg1_qd_1_t;
-        const real axis_x_rrr_leg1_axes2_x = rrr_leg1_base_frame_yy*rrr_leg1_qd_1_t_2 -
-            rrr_leg1_base_frame_yx*rrr_leg1_qd_1_t;
-        const real t_dot_x = s[2*w + j];
-        const real t_dot_y = s[3*w + j];
+        const real rrr_leg1_base_frame_xx = m->rrr_leg1_base_frame_xx[i];
+        const real rrr_leg1_base_frame_xy = m->rrr_leg1_base_frame_xy[i];
+        const real axis_y_rrr_leg1_axes2_x = rrr_leg1_base_frame_xy*v.rrr_leg1_qd_1_t_2 -
+            rrr_leg1_base_frame_xx*v.rrr_leg1_qd_1_t;
+        const real rrr_leg1_base_frame_yx = m->rrr_leg1_base_frame_yx[i];
+        const real rrr_leg1_base_frame_yy = m->rrr_leg1_base_frame_yy[i];
+        const real axis_x_rrr_leg1_axes2_x = rrr_leg1_base_frame_yy*v.rrr_leg1_qd_1_t_2 -
+            rrr_leg1_base_frame_yx*v.rrr_leg1_qd_1_t;
+        const real t_dot_x = V[0*w + j];
+        const real t_dot_y = V[1*w + j];
         const real rrr_leg1_qd_1 = -(axis_x_rrr_leg1_axes2_x*t_dot_x -
-            axis_y_rrr_leg1_axes2_x*t_dot_y)/rrr_leg1_r_1_in_axes2_y;
+            axis_y_rrr_leg1_axes2_x*t_dot_y)/v.rrr_leg1_r_1_in_axes2_y;
         /* (rrr_leg1-qd_2) rate of joint 2 */
         const real rrr_leg1_w_2_in_axes2_y = m->rrr_leg1_w_2_in_axes2_y[i];
         const real rrr_leg1_qd_2 = rrr_leg1_w_2_in_axes2_y*(axis_x_rrr_leg1_axes2_x*t_dot_y +
-            axis_y_rrr_leg1_axes2_x*t_dot_x - rrr_leg1_qd_1*(rrr_leg1_c_2*rrr_leg1_r_1_in_axes1_x
-            + rrr_leg1_r_1_in_axes1_y*rrr_leg1_s_2));
+            axis_y_rrr_leg1_axes2_x*t_dot_x -
+            rrr_leg1_qd_1*(v.rrr_leg1_c_2*v.rrr_leg1_r_1_in_axes1_x +
+            v.rrr_leg1_r_1_in_axes1_y*v.rrr_leg1_s_2));
         /* (rrr_leg1-qd_1) rate of joint 1 */
         o[0*count + k] = rrr_leg1_qd_1;
         /* (rrr_leg1-qd_2) rate of joint 2 */
@@ -3588,10 +3134,10 @@ INLINE void joint_rates_legs_rrr_leg1(const prepared *m, size_t w, size_t leg, s
         o[4*count + k] = rrr_leg1_qd_1 + rrr_leg1_qd_2;
         const real rrr_leg1_rho2_1_t = m->rrr_leg1_rho2_1_t[i];
         const real rrr_leg1_size = m->rrr_leg1_size[i];
-        o[3*count + k] = UNLESS(magnitude(rrr_leg1_rho2_1) >
-            TOLERANCE*TOLERANCE*rrr_leg1_rho2_1_t) + UNLESS(magnitude(rrr_leg1_r_1_in_axes2_y) >
+        o[3*count + k] = UNLESS(magnitude(v.rrr_leg1_rho2_1) >
+            TOLERANCE*TOLERANCE*rrr_leg1_rho2_1_t) + UNLESS(magnitude(v.rrr_leg1_r_1_in_axes2_y) >
             TOLERANCE*rrr_leg1_size);
-        o[2*count + k] = UNLESS(rrr_leg1_disc_1 >= 0);
+        o[2*count + k] = UNLESS(v.rrr_leg1_disc_1 >= 0);
     }
 }
 
@@ -3607,83 +3153,32 @@ INLINE void joint_rates_place_rrr_leg1(size_t w, size_t count, const real *o, si
     }
 }
 
-INLINE void joint_rates_legs_rrr(const prepared *m, size_t w, size_t leg, size_t legs, const real
-    *s, size_t states, size_t count, real *o)
+INLINE void joint_rates_legs_rrr(const prepared *m, size_t w, size_t leg, size_t legs, size_t
+    states, size_t count, const real *X, const real *V, real *o)
 {
     for (size_t k = 0; k < count; ++k) {
         const size_t i = leg + legs*k;
         const size_t j = states*k;
-        /* (rrr-S) from the base point to the connection point */
-        const real rrr_base_point_x = m->rrr_base_point_x[i];
-        const real rrr_platform_point_x = m->rrr_platform_point_x[i];
-        const real t_x = s[0*w + j];
-        const real rrr_S_x = rrr_platform_point_x + t_x - rrr_base_point_x;
-        const real rrr_base_point_y = m->rrr_base_point_y[i];
-        const real rrr_platform_point_y = m->rrr_platform_point_y[i];
-        const real t_y = s[1*w + j];
-        const real rrr_S_y = rrr_platform_point_y + t_y - rrr_base_point_y;
-        /* (rrr-Kd_1) projection on the centre's direction, from the distance fixed by the joints beyond
-           joint 1 */
-        const real rrr_Kd_1_t_3 = rrr_S_x*rrr_S_x + rrr_S_y*rrr_S_y;
-        const real rrr_Kd_1_t = m->rrr_Kd_1_t[i];
-        const real rrr_Kd_1_t_2 = m->rrr_Kd_1_t_2[i];
-        const real rrr_Kd_1 = rrr_Kd_1_t + R(0.5)*rrr_Kd_1_t_3 - rrr_Kd_1_t_2;
-        /* (rrr-px_1) component along the reference direction */
-        const real rrr_base_frame_xx = m->rrr_base_frame_xx[i];
-        const real rrr_base_frame_yx = m->rrr_base_frame_yx[i];
-        const real rrr_px_1 = rrr_S_x*rrr_base_frame_xx + rrr_S_y*rrr_base_frame_yx;
-        /* (rrr-py_1) component across the reference direction */
-        const real rrr_base_frame_xy = m->rrr_base_frame_xy[i];
-        const real rrr_base_frame_yy = m->rrr_base_frame_yy[i];
-        const real rrr_py_1 = rrr_S_x*rrr_base_frame_xy + rrr_S_y*rrr_base_frame_yy;
-        /* (rrr-Kc_1) factor of the cosine in the equation of joint 1 */
-        const real rrr_joint2_offset_x = m->rrr_joint2_offset_x[i];
-        const real rrr_Kc_1 = rrr_joint2_offset_x*rrr_px_1;
-        /* (rrr-Ks_1) factor of the sine in the equation of joint 1 */
-        const real rrr_Ks_1 = rrr_joint2_offset_x*rrr_py_1;
-        /* (rrr-rho2_1) squared amplitude */
-        const real rrr_rho2_1 = rrr_Kc_1*rrr_Kc_1 + rrr_Ks_1*rrr_Ks_1;
-        /* (rrr-disc_1) discriminant */
-        const real rrr_disc_1 = rrr_rho2_1 - rrr_Kd_1*rrr_Kd_1;
-        /* (rrr-root_1) root, with the sign of the branch */
-        const real rrr_branch_1 = m->rrr_branch_1[i];
-        const real rrr_root_1 = rrr_branch_1*root(rrr_disc_1);
-        /* (rrr-c_1) cosine of the angle of joint 1 from its reference direction */
-        const real inv_rrr_rho2_1 = 1/rrr_rho2_1;
-        const real rrr_c_1 = inv_rrr_rho2_1*(rrr_Kc_1*rrr_Kd_1 - rrr_Ks_1*rrr_root_1);
-        /* (rrr-s_1) sine of the angle of joint 1 from its reference direction */
-        const real rrr_s_1 = inv_rrr_rho2_1*(rrr_Kc_1*rrr_root_1 + rrr_Kd_1*rrr_Ks_1);
-        /* (rrr-x_2) from the origin of joint 2 to the connection point */
-        const real inv_rrr_size_t = m->inv_rrr_size_t[i];
-        const real rrr_x_2_in_axes1_x = inv_rrr_size_t*rrr_Kd_1*rrr_joint2_offset_x -
-            rrr_joint2_offset_x;
-        /* (rrr-c_2) cosine of the angle of joint 2 from its reference direction */
-        const real inv_rrr_size_t_2 = m->inv_rrr_size_t_2[i];
-        const real rrr_platform_joint_offset_x = m->rrr_platform_joint_offset_x[i];
-        const real rrr_c_2 = inv_rrr_size_t_2*rrr_platform_joint_offset_x*rrr_x_2_in_axes1_x;
-        /* (rrr-s_2) sine of the angle of joint 2 from its reference direction */
-        const real rrr_s_2 =
-            -inv_rrr_size_t*inv_rrr_size_t_2*rrr_joint2_offset_x*rrr_platform_joint_offset_x*rrr_root_1;
-        /* (rrr-r_1) from joint 1 to the connection point, along the links */
-        const real rrr_r_1_in_axes1_y = rrr_platform_joint_offset_x*rrr_s_2;
-        const real rrr_r_1_in_axes1_x = rrr_joint2_offset_x + rrr_c_2*rrr_platform_joint_offset_x;
-        const real rrr_r_1_in_axes2_y = rrr_c_2*rrr_r_1_in_axes1_y - rrr_r_1_in_axes1_x*rrr_s_2;
+        values_rrr v;
+        stage_rrr_X(m, w, i, j, X, &v);
         /* (rrr-qd_1) rate of joint 1 */
-        const real rrr_qd_1_t = rrr_c_1*rrr_s_2 + rrr_c_2*rrr_s_1;
-        const real rrr_qd_1_t_2 = rrr_c_1*rrr_c_2 - rrr_s_1*rrr_s_2;
-        const real axis_y_rrr_axes2_x = rrr_base_frame_xy*rrr_qd_1_t_2 -
-            rrr_base_frame_xx*rrr_qd_1_t;
-        const real axis_x_rrr_axes2_x = rrr_base_frame_yy*rrr_qd_1_t_2 -
-            rrr_base_frame_yx*rrr_qd_1_t;
-        const real t_dot_x = s[2*w + j];
-        const real t_dot_y = s[3*w + j];
+        const real rrr_base_frame_xx = m->rrr_base_frame_xx[i];
+        const real rrr_base_frame_xy = m->rrr_base_frame_xy[i];
+        const real axis_y_rrr_axes2_x = rrr_base_frame_xy*v.rrr_qd_1_t_2 -
+            rrr_base_frame_xx*v.rrr_qd_1_t;
+        const real rrr_base_frame_yx = m->rrr_base_frame_yx[i];
+        const real rrr_base_frame_yy = m->rrr_base_frame_yy[i];
+        const real axis_x_rrr_axes2_x = rrr_base_frame_yy*v.rrr_qd_1_t_2 -
+            rrr_base_frame_yx*v.rrr_qd_1_t;
+        const real t_dot_x = V[0*w + j];
+        const real t_dot_y = V[1*w + j];
         const real rrr_qd_1 = -(axis_x_rrr_axes2_x*t_dot_x -
-            axis_y_rrr_axes2_x*t_dot_y)/rrr_r_1_in_axes2_y;
+            axis_y_rrr_axes2_x*t_dot_y)/v.rrr_r_1_in_axes2_y;
         /* (rrr-qd_2) rate of joint 2 */
         const real rrr_w_2_in_axes2_y = m->rrr_w_2_in_axes2_y[i];
         const real rrr_qd_2 = rrr_w_2_in_axes2_y*(axis_x_rrr_axes2_x*t_dot_y +
-            axis_y_rrr_axes2_x*t_dot_x - rrr_qd_1*(rrr_c_2*rrr_r_1_in_axes1_x +
-            rrr_r_1_in_axes1_y*rrr_s_2));
+            axis_y_rrr_axes2_x*t_dot_x - rrr_qd_1*(v.rrr_c_2*v.rrr_r_1_in_axes1_x +
+            v.rrr_r_1_in_axes1_y*v.rrr_s_2));
         /* (rrr-qd_1) rate of joint 1 */
         o[0*count + k] = rrr_qd_1;
         /* (rrr-qd_2) rate of joint 2 */
@@ -3691,9 +3186,9 @@ INLINE void joint_rates_legs_rrr(const prepared *m, size_t w, size_t leg, size_t
         o[4*count + k] = rrr_qd_1 + rrr_qd_2;
         const real rrr_rho2_1_t = m->rrr_rho2_1_t[i];
         const real rrr_size = m->rrr_size[i];
-        o[3*count + k] = UNLESS(magnitude(rrr_rho2_1) > TOLERANCE*TOLERANCE*rrr_rho2_1_t) +
-            UNLESS(magnitude(rrr_r_1_in_axes2_y) > TOLERANCE*rrr_size);
-        o[2*count + k] = UNLESS(rrr_disc_1 >= 0);
+        o[3*count + k] = UNLESS(magnitude(v.rrr_rho2_1) > TOLERANCE*TOLERANCE*rrr_rho2_1_t) +
+            UNLESS(magnitude(v.rrr_r_1_in_axes2_y) > TOLERANCE*rrr_size);
+        o[2*count + k] = UNLESS(v.rrr_disc_1 >= 0);
     }
 }
 
@@ -3711,15 +3206,14 @@ INLINE void joint_rates_place_rrr(size_t w, size_t count, const real *o, size_t 
 
 INLINE void joint_rates_run(const prepared *m, const real *X, const real *V, real *qd, verdict *t)
 {
-    real s[4] = {0};
     real o_rrr_leg1[5*LEGS(LEGS_OF_rrr_leg1)] = {0};
     real o_rrr[5*LEGS(LEGS_OF_rrr)] = {0};
-    joint_rates_before(1, X, V, s);
-    joint_rates_legs_rrr_leg1(m, 1, 0, 1, s, 0, LEGS(LEGS_OF_rrr_leg1), o_rrr_leg1);
+    joint_rates_before();
+    joint_rates_legs_rrr_leg1(m, 1, 0, 1, 0, LEGS(LEGS_OF_rrr_leg1), X, V, o_rrr_leg1);
+    joint_rates_legs_rrr(m, 1, 0, 1, 0, LEGS(LEGS_OF_rrr), X, V, o_rrr);
     for (size_t leg = 0; leg < LEGS_OF_rrr_leg1; ++leg) {
         joint_rates_place_rrr_leg1(1, LEGS(LEGS_OF_rrr_leg1), o_rrr_leg1, leg, qd, t);
     }
-    joint_rates_legs_rrr(m, 1, 0, 1, s, 0, LEGS(LEGS_OF_rrr), o_rrr);
     for (size_t leg = 0; leg < LEGS_OF_rrr; ++leg) {
         joint_rates_place_rrr(1, LEGS(LEGS_OF_rrr), o_rrr, leg, qd, t);
     }
@@ -3728,131 +3222,44 @@ INLINE void joint_rates_run(const prepared *m, const real *X, const real *V, rea
 INLINE void joint_rates_run_lanes(const prepared *m, const real *X, const real *V, real *qd,
     verdict *t)
 {
-    real s[4*LANES];
     real o_rrr_leg1[5*LANES];
     real o_rrr[5*LANES];
-    joint_rates_before(LANES, X, V, s);
+    joint_rates_before();
     for (size_t leg = 0; leg < LEGS_OF_rrr_leg1; ++leg) {
-        joint_rates_legs_rrr_leg1(m, LANES, leg, 0, s, 1, LANES, o_rrr_leg1);
+        joint_rates_legs_rrr_leg1(m, LANES, leg, 0, 1, LANES, X, V, o_rrr_leg1);
         joint_rates_place_rrr_leg1(LANES, LANES, o_rrr_leg1, 0, qd, t);
     }
     for (size_t leg = 0; leg < LEGS_OF_rrr; ++leg) {
-        joint_rates_legs_rrr(m, LANES, leg, 0, s, 1, LANES, o_rrr);
+        joint_rates_legs_rrr(m, LANES, leg, 0, 1, LANES, X, V, o_rrr);
         joint_rates_place_rrr(LANES, LANES, o_rrr, 0, qd, t);
     }
 }
 
 /* ---- joint_accelerations ---- */
-INLINE void joint_accelerations_before(size_t w, const real *X, const real *V, const real *A, real
-    *s)
+INLINE void joint_accelerations_before()
 {
-    for (size_t k = 0; k < w; ++k) {
-        /* X: named entries */
-        const real X_0 = X[0*w + k];
-        const real t_x = X_0;
-        const real X_1 = X[1*w + k];
-        const real t_y = X_1;
-        /* V: named entries */
-        const real V_0 = V[0*w + k];
-        const real t_dot_x = V_0;
-        const real V_1 = V[1*w + k];
-        const real t_dot_y = V_1;
-        /* A: named entries */
-        const real A_0 = A[0*w + k];
-        const real t_ddot_x = A_0;
-        const real A_1 = A[1*w + k];
-        const real t_ddot_y = A_1;
-        s[0*w + k] = t_x;
-        s[1*w + k] = t_y;
-        s[2*w + k] = t_dot_x;
-        s[3*w + k] = t_dot_y;
-        s[4*w + k] = t_ddot_x;
-        s[5*w + k] = t_ddot_y;
-    }
 }
 
 INLINE void joint_accelerations_legs_rrr_leg1(const prepared *m, size_t w, size_t leg, size_t
-    legs, const real *s, size_t states, size_t count, real *o)
+    legs, size_t states, size_t count, const real *X, const real *V, const real *A, real *o)
 {
     for (size_t k = 0; k < count; ++k) {
         const size_t i = leg + legs*k;
         const size_t j = states*k;
-        /* (rrr_leg1-S) from the base point to the connection point */
-        const real rrr_leg1_base_point_x = m->rrr_leg1_base_point_x[i];
-        const real rrr_leg1_platform_point_x = m->rrr_leg1_platform_point_x[i];
-        const real t_x = s[0*w + j];
-        const real rrr_leg1_S_x = rrr_leg1_platform_point_x + t_x - rrr_leg1_base_point_x;
-        const real rrr_leg1_base_point_y = m->rrr_leg1_base_point_y[i];
-        const real rrr_leg1_platform_point_y = m->rrr_leg1_platform_point_y[i];
-        const real t_y = s[1*w + j];
-        const real rrr_leg1_S_y = rrr_leg1_platform_point_y + t_y - rrr_leg1_base_point_y;
-        /* (rrr_leg1-Kd_1) projection on the centre's direction, from the distance fixed by the joints
-           beyond joint 1 */
-        const real rrr_leg1_Kd_1_t_3 = rrr_leg1_S_x*rrr_leg1_S_x + rrr_leg1_S_y*rrr_leg1_S_y;
-        const real rrr_leg1_Kd_1_t = m->rrr_leg1_Kd_1_t[i];
-        const real rrr_leg1_Kd_1_t_2 = m->rrr_leg1_Kd_1_t_2[i];
-        const real rrr_leg1_Kd_1 = rrr_leg1_Kd_1_t + R(0.5)*rrr_leg1_Kd_1_t_3 - rrr_leg1_Kd_1_t_2;
-        /* (rrr_leg1-px_1) component along the reference direction */
-        const real rrr_leg1_base_frame_xx = m->rrr_leg1_base_frame_xx[i];
-        const real rrr_leg1_base_frame_yx = m->rrr_leg1_base_frame_yx[i];
-        const real rrr_leg1_px_1 = rrr_leg1_S_x*rrr_leg1_base_frame_xx +
-            rrr_leg1_S_y*rrr_leg1_base_frame_yx;
-        /* (rrr_leg1-py_1) component across the reference direction */
-        const real rrr_leg1_base_frame_xy = m->rrr_leg1_base_frame_xy[i];
-        const real rrr_leg1_base_frame_yy = m->rrr_leg1_base_frame_yy[i];
-        const real rrr_leg1_py_1 = rrr_leg1_S_x*rrr_leg1_base_frame_xy +
-            rrr_leg1_S_y*rrr_leg1_base_frame_yy;
-        /* (rrr_leg1-Kc_1) factor of the cosine in the equation of joint 1 */
-        const real rrr_leg1_joint2_offset_x = m->rrr_leg1_joint2_offset_x[i];
-        const real rrr_leg1_Kc_1 = rrr_leg1_joint2_offset_x*rrr_leg1_px_1;
-        /* (rrr_leg1-Ks_1) factor of the sine in the equation of joint 1 */
-        const real rrr_leg1_Ks_1 = rrr_leg1_joint2_offset_x*rrr_leg1_py_1;
-        /* (rrr_leg1-rho2_1) squared amplitude */
-        const real rrr_leg1_rho2_1 = rrr_leg1_Kc_1*rrr_leg1_Kc_1 + rrr_leg1_Ks_1*rrr_leg1_Ks_1;
-        /* (rrr_leg1-disc_1) discriminant */
-        const real rrr_leg1_disc_1 = rrr_leg1_rho2_1 - rrr_leg1_Kd_1*rrr_leg1_Kd_1;
-        /* (rrr_leg1-root_1) root, with the sign of the branch */
-        const real rrr_leg1_branch_1 = m->rrr_leg1_branch_1[i];
-        const real rrr_leg1_root_1 = rrr_leg1_branch_1*root(rrr_leg1_disc_1);
-        /* (rrr_leg1-c_1) cosine of the angle of joint 1 from its reference direction */
-        const real inv_rrr_leg1_rho2_1 = 1/rrr_leg1_rho2_1;
-        const real rrr_leg1_c_1 = inv_rrr_leg1_rho2_1*(rrr_leg1_Kc_1*rrr_leg1_Kd_1 -
-            rrr_leg1_Ks_1*rrr_leg1_root_1);
-        /* (rrr_leg1-s_1) sine of the angle of joint 1 from its reference direction */
-        const real rrr_leg1_s_1 = inv_rrr_leg1_rho2_1*(rrr_leg1_Kc_1*rrr_leg1_root_1 +
-            rrr_leg1_Kd_1*rrr_leg1_Ks_1);
-        /* (rrr_leg1-x_2) from the origin of joint 2 to the connection point */
-        const real inv_rrr_leg1_size_t = m->inv_rrr_leg1_size_t[i];
-        const real rrr_leg1_x_2_in_axes1_x =
-            inv_rrr_leg1_size_t*rrr_leg1_Kd_1*rrr_leg1_joint2_offset_x - rrr_leg1_joint2_offset_x;
-        /* (rrr_leg1-c_2) cosine of the angle of joint 2 from its reference direction */
-        const real inv_rrr_leg1_size_t_2 = m->inv_rrr_leg1_size_t_2[i];
-        const real rrr_leg1_platform_joint_offset_x = m->rrr_leg1_platform_joint_offset_x[i];
-        const real rrr_leg1_c_2 =
-            inv_rrr_leg1_size_t_2*rrr_leg1_platform_joint_offset_x*rrr_leg1_x_2_in_axes1_x;
-        /* (rrr_leg1-s_2) sine of the angle of joint 2 from its reference direction */
-        const real rrr_leg1_s_2 =
-            -inv_rrr_leg1_size_t*inv_rrr_leg1_size_t_2*rrr_leg1_joint2_offset_x*rrr_leg1_platform_joint_offset_x*rrr_leg1_root_1;
-        /* (rrr_leg1-r_1) from joint 1 to the connection point, along the links */
-        const real rrr_leg1_r_1_in_axes1_y = rrr_leg1_platform_joint_offset_x*rrr_leg1_s_2;
-        const real rrr_leg1_r_1_in_axes1_x = rrr_leg1_joint2_offset_x +
-            rrr_leg1_c_2*rrr_leg1_platform_joint_offset_x;
-        const real rrr_leg1_r_1_in_axes2_x = rrr_leg1_c_2*rrr_leg1_r_1_in_axes1_x +
-            rrr_leg1_r_1_in_axes1_y*rrr_leg1_s_2;
-        const real rrr_leg1_r_1_in_axes2_y = rrr_leg1_c_2*rrr_leg1_r_1_in_axes1_y -
-            rrr_leg1_r_1_in_axes1_x*rrr_leg1_s_2;
-        /* (rrr_leg1-w_1) reciprocal vector 1 */
-        const real rrr_leg1_w_1_in_axes2_x = -1/rrr_leg1_r_1_in_axes2_y;
+        values_rrr_leg1 v;
+        stage_rrr_leg1_X(m, w, i, j, X, &v);
         /* (rrr_leg1-qd_1) rate of joint 1 */
-        const real rrr_leg1_qd_1_t = rrr_leg1_c_1*rrr_leg1_s_2 + rrr_leg1_c_2*rrr_leg1_s_1;
-        const real rrr_leg1_qd_1_t_2 = rrr_leg1_c_1*rrr_leg1_c_2 - rrr_leg1_s_1*rrr_leg1_s_2;
-        const real axis_y_rrr_leg1_axes2_x = rrr_leg1_base_frame_xy*rrr_leg1_qd_1_t_2 -
-            rrr_leg1_base_frame_xx*rrr_leg1_qd_1_t;
-        const real axis_x_rrr_leg1_axes2_x = rrr_leg1_base_frame_yy*rrr_leg1_qd_1_t_2 -
-            rrr_leg1_base_frame_yx*rrr_leg1_qd_1_t;
-        const real t_dot_x = s[2*w + j];
-        const real t_dot_y = s[3*w + j];
-        const real rrr_leg1_qd_1 = rrr_leg1_w_1_in_axes2_x*(axis_x_rrr_leg1_axes2_x*t_dot_x -
+        const real rrr_leg1_base_frame_xx = m->rrr_leg1_base_frame_xx[i];
+        const real rrr_leg1_base_frame_xy = m->rrr_leg1_base_frame_xy[i];
+        const real axis_y_rrr_leg1_axes2_x = rrr_leg1_base_frame_xy*v.rrr_leg1_qd_1_t_2 -
+            rrr_leg1_base_frame_xx*v.rrr_leg1_qd_1_t;
+        const real rrr_leg1_base_frame_yx = m->rrr_leg1_base_frame_yx[i];
+        const real rrr_leg1_base_frame_yy = m->rrr_leg1_base_frame_yy[i];
+        const real axis_x_rrr_leg1_axes2_x = rrr_leg1_base_frame_yy*v.rrr_leg1_qd_1_t_2 -
+            rrr_leg1_base_frame_yx*v.rrr_leg1_qd_1_t;
+        const real t_dot_x = V[0*w + j];
+        const real t_dot_y = V[1*w + j];
+        const real rrr_leg1_qd_1 = v.rrr_leg1_w_1_in_axes2_x*(axis_x_rrr_leg1_axes2_x*t_dot_x -
             axis_y_rrr_leg1_axes2_x*t_dot_y);
         /* (rrr_leg1-W_1) centripetal tensor of link 1 */
         const real rrr_leg1_W_1_in_axes1_xx = -rrr_leg1_qd_1*rrr_leg1_qd_1;
@@ -3860,24 +3267,26 @@ INLINE void joint_accelerations_legs_rrr_leg1(const prepared *m, size_t w, size_
         const real rrr_leg1_w_2_in_axes2_y = m->rrr_leg1_w_2_in_axes2_y[i];
         const real rrr_leg1_omega_2_in_axes2_z = rrr_leg1_qd_1 +
             rrr_leg1_w_2_in_axes2_y*(axis_x_rrr_leg1_axes2_x*t_dot_y +
-            axis_y_rrr_leg1_axes2_x*t_dot_x - rrr_leg1_qd_1*rrr_leg1_r_1_in_axes2_x);
+            axis_y_rrr_leg1_axes2_x*t_dot_x - rrr_leg1_qd_1*v.rrr_leg1_r_1_in_axes2_x);
         /* (rrr_leg1-bias) acceleration of the connection point at zero joint accelerations */
+        const real rrr_leg1_joint2_offset_x = m->rrr_leg1_joint2_offset_x[i];
+        const real rrr_leg1_platform_joint_offset_x = m->rrr_leg1_platform_joint_offset_x[i];
         const real rrr_leg1_bias_in_axes2_x =
-            rrr_leg1_W_1_in_axes1_xx*rrr_leg1_c_2*rrr_leg1_joint2_offset_x -
+            rrr_leg1_W_1_in_axes1_xx*v.rrr_leg1_c_2*rrr_leg1_joint2_offset_x -
             rrr_leg1_omega_2_in_axes2_z*rrr_leg1_omega_2_in_axes2_z*rrr_leg1_platform_joint_offset_x;
         /* (rrr_leg1-rel) acceleration of the connection point left to the joint accelerations */
-        const real t_ddot_x = s[4*w + j];
-        const real t_ddot_y = s[5*w + j];
+        const real t_ddot_x = A[0*w + j];
+        const real t_ddot_y = A[1*w + j];
         const real rrr_leg1_rel_in_axes2_x = axis_x_rrr_leg1_axes2_x*t_ddot_x -
             rrr_leg1_bias_in_axes2_x - axis_y_rrr_leg1_axes2_x*t_ddot_y;
         const real rrr_leg1_rel_in_axes2_y = axis_x_rrr_leg1_axes2_x*t_ddot_y +
             axis_y_rrr_leg1_axes2_x*t_ddot_x +
-            rrr_leg1_W_1_in_axes1_xx*rrr_leg1_joint2_offset_x*rrr_leg1_s_2;
+            rrr_leg1_W_1_in_axes1_xx*rrr_leg1_joint2_offset_x*v.rrr_leg1_s_2;
         /* (rrr_leg1-qdd_1) acceleration of joint 1 */
-        const real rrr_leg1_qdd_1_t = -rrr_leg1_rel_in_axes2_x*rrr_leg1_w_1_in_axes2_x;
+        const real rrr_leg1_qdd_1_t = -rrr_leg1_rel_in_axes2_x*v.rrr_leg1_w_1_in_axes2_x;
         /* (rrr_leg1-qdd_2) acceleration of joint 2 */
         const real rrr_leg1_qdd_2 = rrr_leg1_w_2_in_axes2_y*(rrr_leg1_rel_in_axes2_y +
-            rrr_leg1_qdd_1_t*rrr_leg1_r_1_in_axes2_x);
+            rrr_leg1_qdd_1_t*v.rrr_leg1_r_1_in_axes2_x);
         /* (rrr_leg1-qdd_1) acceleration of joint 1 */
         o[0*count + k] = -rrr_leg1_qdd_1_t;
         /* (rrr_leg1-qdd_2) acceleration of joint 2 */
@@ -3885,10 +3294,10 @@ INLINE void joint_accelerations_legs_rrr_leg1(const prepared *m, size_t w, size_
         o[4*count + k] = rrr_leg1_qdd_1_t + rrr_leg1_qdd_2;
         const real rrr_leg1_rho2_1_t = m->rrr_leg1_rho2_1_t[i];
         const real rrr_leg1_size = m->rrr_leg1_size[i];
-        o[3*count + k] = UNLESS(magnitude(rrr_leg1_rho2_1) >
-            TOLERANCE*TOLERANCE*rrr_leg1_rho2_1_t) + UNLESS(magnitude(rrr_leg1_r_1_in_axes2_y) >
+        o[3*count + k] = UNLESS(magnitude(v.rrr_leg1_rho2_1) >
+            TOLERANCE*TOLERANCE*rrr_leg1_rho2_1_t) + UNLESS(magnitude(v.rrr_leg1_r_1_in_axes2_y) >
             TOLERANCE*rrr_leg1_size);
-        o[2*count + k] = UNLESS(rrr_leg1_disc_1 >= 0);
+        o[2*count + k] = UNLESS(v.rrr_leg1_disc_1 >= 0);
     }
 }
 
@@ -3905,79 +3314,25 @@ INLINE void joint_accelerations_place_rrr_leg1(size_t w, size_t count, const rea
 }
 
 INLINE void joint_accelerations_legs_rrr(const prepared *m, size_t w, size_t leg, size_t legs,
-    const real *s, size_t states, size_t count, real *o)
+    size_t states, size_t count, const real *X, const real *V, const real *A, real *o)
 {
     for (size_t k = 0; k < count; ++k) {
         const size_t i = leg + legs*k;
         const size_t j = states*k;
-        /* (rrr-S) from the base point to the connection point */
-        const real rrr_base_point_x = m->rrr_base_point_x[i];
-        const real rrr_platform_point_x = m->rrr_platform_point_x[i];
-        const real t_x = s[0*w + j];
-        const real rrr_S_x = rrr_platform_point_x + t_x - rrr_base_point_x;
-        const real rrr_base_point_y = m->rrr_base_point_y[i];
-        const real rrr_platform_point_y = m->rrr_platform_point_y[i];
-        const real t_y = s[1*w + j];
-        const real rrr_S_y = rrr_platform_point_y + t_y - rrr_base_point_y;
-        /* (rrr-Kd_1) projection on the centre's direction, from the distance fixed by the joints beyond
-           joint 1 */
-        const real rrr_Kd_1_t_3 = rrr_S_x*rrr_S_x + rrr_S_y*rrr_S_y;
-        const real rrr_Kd_1_t = m->rrr_Kd_1_t[i];
-        const real rrr_Kd_1_t_2 = m->rrr_Kd_1_t_2[i];
-        const real rrr_Kd_1 = rrr_Kd_1_t + R(0.5)*rrr_Kd_1_t_3 - rrr_Kd_1_t_2;
-        /* (rrr-px_1) component along the reference direction */
-        const real rrr_base_frame_xx = m->rrr_base_frame_xx[i];
-        const real rrr_base_frame_yx = m->rrr_base_frame_yx[i];
-        const real rrr_px_1 = rrr_S_x*rrr_base_frame_xx + rrr_S_y*rrr_base_frame_yx;
-        /* (rrr-py_1) component across the reference direction */
-        const real rrr_base_frame_xy = m->rrr_base_frame_xy[i];
-        const real rrr_base_frame_yy = m->rrr_base_frame_yy[i];
-        const real rrr_py_1 = rrr_S_x*rrr_base_frame_xy + rrr_S_y*rrr_base_frame_yy;
-        /* (rrr-Kc_1) factor of the cosine in the equation of joint 1 */
-        const real rrr_joint2_offset_x = m->rrr_joint2_offset_x[i];
-        const real rrr_Kc_1 = rrr_joint2_offset_x*rrr_px_1;
-        /* (rrr-Ks_1) factor of the sine in the equation of joint 1 */
-        const real rrr_Ks_1 = rrr_joint2_offset_x*rrr_py_1;
-        /* (rrr-rho2_1) squared amplitude */
-        const real rrr_rho2_1 = rrr_Kc_1*rrr_Kc_1 + rrr_Ks_1*rrr_Ks_1;
-        /* (rrr-disc_1) discriminant */
-        const real rrr_disc_1 = rrr_rho2_1 - rrr_Kd_1*rrr_Kd_1;
-        /* (rrr-root_1) root, with the sign of the branch */
-        const real rrr_branch_1 = m->rrr_branch_1[i];
-        const real rrr_root_1 = rrr_branch_1*root(rrr_disc_1);
-        /* (rrr-c_1) cosine of the angle of joint 1 from its reference direction */
-        const real inv_rrr_rho2_1 = 1/rrr_rho2_1;
-        const real rrr_c_1 = inv_rrr_rho2_1*(rrr_Kc_1*rrr_Kd_1 - rrr_Ks_1*rrr_root_1);
-        /* (rrr-s_1) sine of the angle of joint 1 from its reference direction */
-        const real rrr_s_1 = inv_rrr_rho2_1*(rrr_Kc_1*rrr_root_1 + rrr_Kd_1*rrr_Ks_1);
-        /* (rrr-x_2) from the origin of joint 2 to the connection point */
-        const real inv_rrr_size_t = m->inv_rrr_size_t[i];
-        const real rrr_x_2_in_axes1_x = inv_rrr_size_t*rrr_Kd_1*rrr_joint2_offset_x -
-            rrr_joint2_offset_x;
-        /* (rrr-c_2) cosine of the angle of joint 2 from its reference direction */
-        const real inv_rrr_size_t_2 = m->inv_rrr_size_t_2[i];
-        const real rrr_platform_joint_offset_x = m->rrr_platform_joint_offset_x[i];
-        const real rrr_c_2 = inv_rrr_size_t_2*rrr_platform_joint_offset_x*rrr_x_2_in_axes1_x;
-        /* (rrr-s_2) sine of the angle of joint 2 from its reference direction */
-        const real rrr_s_2 =
-            -inv_rrr_size_t*inv_rrr_size_t_2*rrr_joint2_offset_x*rrr_platform_joint_offset_x*rrr_root_1;
-        /* (rrr-r_1) from joint 1 to the connection point, along the links */
-        const real rrr_r_1_in_axes1_y = rrr_platform_joint_offset_x*rrr_s_2;
-        const real rrr_r_1_in_axes1_x = rrr_joint2_offset_x + rrr_c_2*rrr_platform_joint_offset_x;
-        const real rrr_r_1_in_axes2_x = rrr_c_2*rrr_r_1_in_axes1_x + rrr_r_1_in_axes1_y*rrr_s_2;
-        const real rrr_r_1_in_axes2_y = rrr_c_2*rrr_r_1_in_axes1_y - rrr_r_1_in_axes1_x*rrr_s_2;
-        /* (rrr-w_1) reciprocal vector 1 */
-        const real rrr_w_1_in_axes2_x = -1/rrr_r_1_in_axes2_y;
+        values_rrr v;
+        stage_rrr_X(m, w, i, j, X, &v);
         /* (rrr-qd_1) rate of joint 1 */
-        const real rrr_qd_1_t = rrr_c_1*rrr_s_2 + rrr_c_2*rrr_s_1;
-        const real rrr_qd_1_t_2 = rrr_c_1*rrr_c_2 - rrr_s_1*rrr_s_2;
-        const real axis_y_rrr_axes2_x = rrr_base_frame_xy*rrr_qd_1_t_2 -
-            rrr_base_frame_xx*rrr_qd_1_t;
-        const real axis_x_rrr_axes2_x = rrr_base_frame_yy*rrr_qd_1_t_2 -
-            rrr_base_frame_yx*rrr_qd_1_t;
-        const real t_dot_x = s[2*w + j];
-        const real t_dot_y = s[3*w + j];
-        const real rrr_qd_1 = rrr_w_1_in_axes2_x*(axis_x_rrr_axes2_x*t_dot_x -
+        const real rrr_base_frame_xx = m->rrr_base_frame_xx[i];
+        const real rrr_base_frame_xy = m->rrr_base_frame_xy[i];
+        const real axis_y_rrr_axes2_x = rrr_base_frame_xy*v.rrr_qd_1_t_2 -
+            rrr_base_frame_xx*v.rrr_qd_1_t;
+        const real rrr_base_frame_yx = m->rrr_base_frame_yx[i];
+        const real rrr_base_frame_yy = m->rrr_base_frame_yy[i];
+        const real axis_x_rrr_axes2_x = rrr_base_frame_yy*v.rrr_qd_1_t_2 -
+            rrr_base_frame_yx*v.rrr_qd_1_t;
+        const real t_dot_x = V[0*w + j];
+        const real t_dot_y = V[1*w + j];
+        const real rrr_qd_1 = v.rrr_w_1_in_axes2_x*(axis_x_rrr_axes2_x*t_dot_x -
             axis_y_rrr_axes2_x*t_dot_y);
         /* (rrr-W_1) centripetal tensor of link 1 */
         const real rrr_W_1_in_axes1_xx = -rrr_qd_1*rrr_qd_1;
@@ -3985,22 +3340,24 @@ INLINE void joint_accelerations_legs_rrr(const prepared *m, size_t w, size_t leg
         const real rrr_w_2_in_axes2_y = m->rrr_w_2_in_axes2_y[i];
         const real rrr_omega_2_in_axes2_z = rrr_qd_1 +
             rrr_w_2_in_axes2_y*(axis_x_rrr_axes2_x*t_dot_y + axis_y_rrr_axes2_x*t_dot_x -
-            rrr_qd_1*rrr_r_1_in_axes2_x);
+            rrr_qd_1*v.rrr_r_1_in_axes2_x);
         /* (rrr-bias) acceleration of the connection point at zero joint accelerations */
-        const real rrr_bias_in_axes2_x = rrr_W_1_in_axes1_xx*rrr_c_2*rrr_joint2_offset_x -
+        const real rrr_joint2_offset_x = m->rrr_joint2_offset_x[i];
+        const real rrr_platform_joint_offset_x = m->rrr_platform_joint_offset_x[i];
+        const real rrr_bias_in_axes2_x = rrr_W_1_in_axes1_xx*v.rrr_c_2*rrr_joint2_offset_x -
             rrr_omega_2_in_axes2_z*rrr_omega_2_in_axes2_z*rrr_platform_joint_offset_x;
         /* (rrr-rel) acceleration of the connection point left to the joint accelerations */
-        const real t_ddot_x = s[4*w + j];
-        const real t_ddot_y = s[5*w + j];
+        const real t_ddot_x = A[0*w + j];
+        const real t_ddot_y = A[1*w + j];
         const real rrr_rel_in_axes2_x = axis_x_rrr_axes2_x*t_ddot_x - rrr_bias_in_axes2_x -
             axis_y_rrr_axes2_x*t_ddot_y;
         const real rrr_rel_in_axes2_y = axis_x_rrr_axes2_x*t_ddot_y + axis_y_rrr_axes2_x*t_ddot_x
-            + rrr_W_1_in_axes1_xx*rrr_joint2_offset_x*rrr_s_2;
+            + rrr_W_1_in_axes1_xx*rrr_joint2_offset_x*v.rrr_s_2;
         /* (rrr-qdd_1) acceleration of joint 1 */
-        const real rrr_qdd_1_t = -rrr_rel_in_axes2_x*rrr_w_1_in_axes2_x;
+        const real rrr_qdd_1_t = -rrr_rel_in_axes2_x*v.rrr_w_1_in_axes2_x;
         /* (rrr-qdd_2) acceleration of joint 2 */
         const real rrr_qdd_2 = rrr_w_2_in_axes2_y*(rrr_rel_in_axes2_y +
-            rrr_qdd_1_t*rrr_r_1_in_axes2_x);
+            rrr_qdd_1_t*v.rrr_r_1_in_axes2_x);
         /* (rrr-qdd_1) acceleration of joint 1 */
         o[0*count + k] = -rrr_qdd_1_t;
         /* (rrr-qdd_2) acceleration of joint 2 */
@@ -4008,9 +3365,9 @@ INLINE void joint_accelerations_legs_rrr(const prepared *m, size_t w, size_t leg
         o[4*count + k] = rrr_qdd_1_t + rrr_qdd_2;
         const real rrr_rho2_1_t = m->rrr_rho2_1_t[i];
         const real rrr_size = m->rrr_size[i];
-        o[3*count + k] = UNLESS(magnitude(rrr_rho2_1) > TOLERANCE*TOLERANCE*rrr_rho2_1_t) +
-            UNLESS(magnitude(rrr_r_1_in_axes2_y) > TOLERANCE*rrr_size);
-        o[2*count + k] = UNLESS(rrr_disc_1 >= 0);
+        o[3*count + k] = UNLESS(magnitude(v.rrr_rho2_1) > TOLERANCE*TOLERANCE*rrr_rho2_1_t) +
+            UNLESS(magnitude(v.rrr_r_1_in_axes2_y) > TOLERANCE*rrr_size);
+        o[2*count + k] = UNLESS(v.rrr_disc_1 >= 0);
     }
 }
 
@@ -4029,15 +3386,14 @@ INLINE void joint_accelerations_place_rrr(size_t w, size_t count, const real *o,
 INLINE void joint_accelerations_run(const prepared *m, const real *X, const real *V, const real
     *A, real *qdd, verdict *t)
 {
-    real s[6] = {0};
     real o_rrr_leg1[5*LEGS(LEGS_OF_rrr_leg1)] = {0};
     real o_rrr[5*LEGS(LEGS_OF_rrr)] = {0};
-    joint_accelerations_before(1, X, V, A, s);
-    joint_accelerations_legs_rrr_leg1(m, 1, 0, 1, s, 0, LEGS(LEGS_OF_rrr_leg1), o_rrr_leg1);
+    joint_accelerations_before();
+    joint_accelerations_legs_rrr_leg1(m, 1, 0, 1, 0, LEGS(LEGS_OF_rrr_leg1), X, V, A, o_rrr_leg1);
+    joint_accelerations_legs_rrr(m, 1, 0, 1, 0, LEGS(LEGS_OF_rrr), X, V, A, o_rrr);
     for (size_t leg = 0; leg < LEGS_OF_rrr_leg1; ++leg) {
         joint_accelerations_place_rrr_leg1(1, LEGS(LEGS_OF_rrr_leg1), o_rrr_leg1, leg, qdd, t);
     }
-    joint_accelerations_legs_rrr(m, 1, 0, 1, s, 0, LEGS(LEGS_OF_rrr), o_rrr);
     for (size_t leg = 0; leg < LEGS_OF_rrr; ++leg) {
         joint_accelerations_place_rrr(1, LEGS(LEGS_OF_rrr), o_rrr, leg, qdd, t);
     }
@@ -4046,236 +3402,59 @@ INLINE void joint_accelerations_run(const prepared *m, const real *X, const real
 INLINE void joint_accelerations_run_lanes(const prepared *m, const real *X, const real *V, const
     real *A, real *qdd, verdict *t)
 {
-    real s[6*LANES];
     real o_rrr_leg1[5*LANES];
     real o_rrr[5*LANES];
-    joint_accelerations_before(LANES, X, V, A, s);
+    joint_accelerations_before();
     for (size_t leg = 0; leg < LEGS_OF_rrr_leg1; ++leg) {
-        joint_accelerations_legs_rrr_leg1(m, LANES, leg, 0, s, 1, LANES, o_rrr_leg1);
+        joint_accelerations_legs_rrr_leg1(m, LANES, leg, 0, 1, LANES, X, V, A, o_rrr_leg1);
         joint_accelerations_place_rrr_leg1(LANES, LANES, o_rrr_leg1, 0, qdd, t);
     }
     for (size_t leg = 0; leg < LEGS_OF_rrr; ++leg) {
-        joint_accelerations_legs_rrr(m, LANES, leg, 0, s, 1, LANES, o_rrr);
+        joint_accelerations_legs_rrr(m, LANES, leg, 0, 1, LANES, X, V, A, o_rrr);
         joint_accelerations_place_rrr(LANES, LANES, o_rrr, 0, qdd, t);
     }
 }
 
 /* ---- legs ---- */
-INLINE void legs_before(size_t w, const real *X, const real *V, const real *A, real *s)
+INLINE void legs_before()
 {
-    for (size_t k = 0; k < w; ++k) {
-        /* X: named entries */
-        const real X_0 = X[0*w + k];
-        const real t_x = X_0;
-        const real X_1 = X[1*w + k];
-        const real t_y = X_1;
-        /* V: named entries */
-        const real V_0 = V[0*w + k];
-        const real t_dot_x = V_0;
-        const real V_1 = V[1*w + k];
-        const real t_dot_y = V_1;
-        /* A: named entries */
-        const real A_0 = A[0*w + k];
-        const real t_ddot_x = A_0;
-        const real A_1 = A[1*w + k];
-        const real t_ddot_y = A_1;
-        s[0*w + k] = t_x;
-        s[1*w + k] = t_y;
-        s[2*w + k] = t_dot_x;
-        s[3*w + k] = t_dot_y;
-        s[4*w + k] = t_ddot_x;
-        s[5*w + k] = t_ddot_y;
-    }
 }
 
-INLINE void legs_legs_rrr_leg1(const prepared *m, size_t w, size_t leg, size_t legs, const real
-    *s, size_t states, size_t count, real *o)
+INLINE void legs_legs_rrr_leg1(const prepared *m, size_t w, size_t leg, size_t legs, size_t
+    states, size_t count, const real *X, const real *V, const real *A, real *o)
 {
     for (size_t k = 0; k < count; ++k) {
         const size_t i = leg + legs*k;
         const size_t j = states*k;
-        /* (rrr_leg1-S) from the base point to the connection point */
-        const real rrr_leg1_base_point_x = m->rrr_leg1_base_point_x[i];
-        const real rrr_leg1_platform_point_x = m->rrr_leg1_platform_point_x[i];
-        const real t_x = s[0*w + j];
-        const real rrr_leg1_S_x = rrr_leg1_platform_point_x + t_x - rrr_leg1_base_point_x;
-        const real rrr_leg1_base_point_y = m->rrr_leg1_base_point_y[i];
-        const real rrr_leg1_platform_point_y = m->rrr_leg1_platform_point_y[i];
-        const real t_y = s[1*w + j];
-        const real rrr_leg1_S_y = rrr_leg1_platform_point_y + t_y - rrr_leg1_base_point_y;
-        /* (rrr_leg1-Kd_1) projection on the centre's direction, from the distance fixed by the joints
-           beyond joint 1 */
-        const real rrr_leg1_Kd_1_t_3 = rrr_leg1_S_x*rrr_leg1_S_x + rrr_leg1_S_y*rrr_leg1_S_y;
-        const real rrr_leg1_Kd_1_t = m->rrr_leg1_Kd_1_t[i];
-        const real rrr_leg1_Kd_1_t_2 = m->rrr_leg1_Kd_1_t_2[i];
-        const real rrr_leg1_Kd_1 = rrr_leg1_Kd_1_t + R(0.5)*rrr_leg1_Kd_1_t_3 - rrr_leg1_Kd_1_t_2;
-        /* (rrr_leg1-px_1) component along the reference direction */
-        const real rrr_leg1_base_frame_xx = m->rrr_leg1_base_frame_xx[i];
-        const real rrr_leg1_base_frame_yx = m->rrr_leg1_base_frame_yx[i];
-        const real rrr_leg1_px_1 = rrr_leg1_S_x*rrr_leg1_base_frame_xx +
-            rrr_leg1_S_y*rrr_leg1_base_frame_yx;
-        /* (rrr_leg1-py_1) component across the reference direction */
-        const real rrr_leg1_base_frame_xy = m->rrr_leg1_base_frame_xy[i];
-        const real rrr_leg1_base_frame_yy = m->rrr_leg1_base_frame_yy[i];
-        const real rrr_leg1_py_1 = rrr_leg1_S_x*rrr_leg1_base_frame_xy +
-            rrr_leg1_S_y*rrr_leg1_base_frame_yy;
-        /* (rrr_leg1-Kc_1) factor of the cosine in the equation of joint 1 */
-        const real rrr_leg1_joint2_offset_x = m->rrr_leg1_joint2_offset_x[i];
-        const real rrr_leg1_Kc_1 = rrr_leg1_joint2_offset_x*rrr_leg1_px_1;
-        /* (rrr_leg1-Ks_1) factor of the sine in the equation of joint 1 */
-        const real rrr_leg1_Ks_1 = rrr_leg1_joint2_offset_x*rrr_leg1_py_1;
-        /* (rrr_leg1-rho2_1) squared amplitude */
-        const real rrr_leg1_rho2_1 = rrr_leg1_Kc_1*rrr_leg1_Kc_1 + rrr_leg1_Ks_1*rrr_leg1_Ks_1;
-        /* (rrr_leg1-disc_1) discriminant */
-        const real rrr_leg1_disc_1 = rrr_leg1_rho2_1 - rrr_leg1_Kd_1*rrr_leg1_Kd_1;
-        /* (rrr_leg1-root_1) root, with the sign of the branch */
-        const real rrr_leg1_branch_1 = m->rrr_leg1_branch_1[i];
-        const real rrr_leg1_root_1 = rrr_leg1_branch_1*root(rrr_leg1_disc_1);
-        /* (rrr_leg1-c_1) cosine of the angle of joint 1 from its reference direction */
-        const real inv_rrr_leg1_rho2_1 = 1/rrr_leg1_rho2_1;
-        const real rrr_leg1_c_1 = inv_rrr_leg1_rho2_1*(rrr_leg1_Kc_1*rrr_leg1_Kd_1 -
-            rrr_leg1_Ks_1*rrr_leg1_root_1);
-        /* (rrr_leg1-s_1) sine of the angle of joint 1 from its reference direction */
-        const real rrr_leg1_s_1 = inv_rrr_leg1_rho2_1*(rrr_leg1_Kc_1*rrr_leg1_root_1 +
-            rrr_leg1_Kd_1*rrr_leg1_Ks_1);
-        /* (rrr_leg1-x_2) from the origin of joint 2 to the connection point */
-        const real inv_rrr_leg1_size_t = m->inv_rrr_leg1_size_t[i];
-        const real rrr_leg1_x_2_in_axes1_x =
-            inv_rrr_leg1_size_t*rrr_leg1_Kd_1*rrr_leg1_joint2_offset_x - rrr_leg1_joint2_offset_x;
-        /* (rrr_leg1-c_2) cosine of the angle of joint 2 from its reference direction */
-        const real inv_rrr_leg1_size_t_2 = m->inv_rrr_leg1_size_t_2[i];
-        const real rrr_leg1_platform_joint_offset_x = m->rrr_leg1_platform_joint_offset_x[i];
-        const real rrr_leg1_c_2 =
-            inv_rrr_leg1_size_t_2*rrr_leg1_platform_joint_offset_x*rrr_leg1_x_2_in_axes1_x;
-        /* (rrr_leg1-s_2) sine of the angle of joint 2 from its reference direction */
-        const real rrr_leg1_s_2 =
-            -inv_rrr_leg1_size_t*inv_rrr_leg1_size_t_2*rrr_leg1_joint2_offset_x*rrr_leg1_platform_joint_offset_x*rrr_leg1_root_1;
-        /* (rrr_leg1-r_1) from joint 1 to the connection point, along the links */
-        const real rrr_leg1_r_1_in_axes1_y = rrr_leg1_platform_joint_offset_x*rrr_leg1_s_2;
-        const real rrr_leg1_r_1_in_axes1_x = rrr_leg1_joint2_offset_x +
-            rrr_leg1_c_2*rrr_leg1_platform_joint_offset_x;
-        const real rrr_leg1_r_1_in_axes2_x = rrr_leg1_c_2*rrr_leg1_r_1_in_axes1_x +
-            rrr_leg1_r_1_in_axes1_y*rrr_leg1_s_2;
-        const real rrr_leg1_r_1_in_axes2_y = rrr_leg1_c_2*rrr_leg1_r_1_in_axes1_y -
-            rrr_leg1_r_1_in_axes1_x*rrr_leg1_s_2;
-        /* (rrr_leg1-w_1) reciprocal vector 1 */
-        const real rrr_leg1_w_1_t = rrr_leg1_c_1*rrr_leg1_s_2 + rrr_leg1_c_2*rrr_leg1_s_1;
-        const real rrr_leg1_w_1_t_2 = rrr_leg1_c_1*rrr_leg1_c_2 - rrr_leg1_s_1*rrr_leg1_s_2;
-        const real axis_y_rrr_leg1_axes2_x = rrr_leg1_base_frame_xy*rrr_leg1_w_1_t_2 -
-            rrr_leg1_base_frame_xx*rrr_leg1_w_1_t;
-        const real axis_x_rrr_leg1_axes2_x = rrr_leg1_base_frame_yy*rrr_leg1_w_1_t_2 -
-            rrr_leg1_base_frame_yx*rrr_leg1_w_1_t;
-        const real rrr_leg1_w_1_in_axes2_x = -1/rrr_leg1_r_1_in_axes2_y;
-        const real rrr_leg1_w_1_x = axis_x_rrr_leg1_axes2_x*rrr_leg1_w_1_in_axes2_x;
-        const real rrr_leg1_w_1_y = -axis_y_rrr_leg1_axes2_x*rrr_leg1_w_1_in_axes2_x;
-        /* (rrr_leg1-w_2) reciprocal vector 2 */
-        const real rrr_leg1_w_2_in_axes2_y = m->rrr_leg1_w_2_in_axes2_y[i];
-        const real rrr_leg1_w_2_in_axes2_x =
-            -rrr_leg1_r_1_in_axes2_x*rrr_leg1_w_1_in_axes2_x*rrr_leg1_w_2_in_axes2_y;
-        const real rrr_leg1_w_2_x = axis_x_rrr_leg1_axes2_x*rrr_leg1_w_2_in_axes2_x +
-            axis_y_rrr_leg1_axes2_x*rrr_leg1_w_2_in_axes2_y;
-        const real rrr_leg1_w_2_y = axis_x_rrr_leg1_axes2_x*rrr_leg1_w_2_in_axes2_y -
-            axis_y_rrr_leg1_axes2_x*rrr_leg1_w_2_in_axes2_x;
-        /* (rrr_leg1-qd_1) rate of joint 1 */
-        const real t_dot_x = s[2*w + j];
-        const real t_dot_y = s[3*w + j];
-        const real rrr_leg1_qd_1 = rrr_leg1_w_1_in_axes2_x*(axis_x_rrr_leg1_axes2_x*t_dot_x -
-            axis_y_rrr_leg1_axes2_x*t_dot_y);
-        /* (rrr_leg1-W_1) centripetal tensor of link 1 */
-        const real rrr_leg1_W_1_in_axes1_xx = -rrr_leg1_qd_1*rrr_leg1_qd_1;
-        /* (rrr_leg1-omega_2) angular velocity of link 2 */
-        const real rrr_leg1_omega_2_in_axes2_z = rrr_leg1_qd_1 +
-            rrr_leg1_w_2_in_axes2_y*(axis_x_rrr_leg1_axes2_x*t_dot_y +
-            axis_y_rrr_leg1_axes2_x*t_dot_x - rrr_leg1_qd_1*rrr_leg1_r_1_in_axes2_x);
-        /* (rrr_leg1-W_2) centripetal tensor of link 2 */
-        const real rrr_leg1_W_2_t = rrr_leg1_omega_2_in_axes2_z*rrr_leg1_omega_2_in_axes2_z;
-        /* (rrr_leg1-S_ddot) acceleration of the connection point */
-        const real t_ddot_x = s[4*w + j];
-        const real t_ddot_y = s[5*w + j];
-        const real rrr_leg1_S_ddot_in_axes2_x = axis_x_rrr_leg1_axes2_x*t_ddot_x -
-            axis_y_rrr_leg1_axes2_x*t_ddot_y;
-        const real rrr_leg1_S_ddot_in_axes2_y = axis_x_rrr_leg1_axes2_x*t_ddot_y +
-            axis_y_rrr_leg1_axes2_x*t_ddot_x;
-        /* (rrr_leg1-bias) acceleration of the connection point at zero joint accelerations */
-        const real rrr_leg1_bias_in_axes2_x =
-            rrr_leg1_W_1_in_axes1_xx*rrr_leg1_c_2*rrr_leg1_joint2_offset_x -
-            rrr_leg1_W_2_t*rrr_leg1_platform_joint_offset_x;
-        /* (rrr_leg1-rel) acceleration of the connection point left to the joint accelerations */
-        const real rrr_leg1_rel_in_axes2_x = rrr_leg1_S_ddot_in_axes2_x -
-            rrr_leg1_bias_in_axes2_x;
-        const real rrr_leg1_rel_in_axes2_y = rrr_leg1_S_ddot_in_axes2_y +
-            rrr_leg1_W_1_in_axes1_xx*rrr_leg1_joint2_offset_x*rrr_leg1_s_2;
-        /* (rrr_leg1-B_1) acceleration tensor of link 1 */
-        const real rrr_leg1_B_1_in_axes1_xy = -rrr_leg1_rel_in_axes2_x*rrr_leg1_w_1_in_axes2_x;
-        /* (rrr_leg1-alpha_2) angular acceleration of link 2 */
-        const real rrr_leg1_alpha_2_in_axes2_z = rrr_leg1_w_2_in_axes2_y*(rrr_leg1_rel_in_axes2_y
-            + rrr_leg1_B_1_in_axes1_xy*rrr_leg1_r_1_in_axes2_x) - rrr_leg1_B_1_in_axes1_xy;
-        /* (rrr_leg1-acc_2) acceleration of the reference point of link 2, less gravity */
-        const real gravity_x = m->gravity_x;
-        const real gravity_y = m->gravity_y;
-        const real rrr_leg1_acc_2_in_axes2_x = rrr_leg1_S_ddot_in_axes2_x +
-            axis_y_rrr_leg1_axes2_x*gravity_y - axis_x_rrr_leg1_axes2_x*gravity_x;
-        const real rrr_leg1_acc_2_in_axes2_y = rrr_leg1_S_ddot_in_axes2_y -
-            axis_x_rrr_leg1_axes2_x*gravity_y - axis_y_rrr_leg1_axes2_x*gravity_x;
-        /* (rrr_leg1-mu_2) inertia moment of the links that turn with link 2, about their reference points
-           */
-        const real rrr_leg1_J_2_in_spec2_zz = m->rrr_leg1_J_2_in_spec2_zz[i];
-        const real rrr_leg1_h_2_in_spec2_x = m->rrr_leg1_h_2_in_spec2_x[i];
-        const real rrr_leg1_h_2_in_spec2_y = m->rrr_leg1_h_2_in_spec2_y[i];
-        const real rrr_leg1_mu_2_in_axes2_z = rrr_leg1_J_2_in_spec2_zz*rrr_leg1_alpha_2_in_axes2_z
-            + rrr_leg1_acc_2_in_axes2_y*rrr_leg1_h_2_in_spec2_x -
-            rrr_leg1_acc_2_in_axes2_x*rrr_leg1_h_2_in_spec2_y;
-        /* (rrr_leg1-mu_1) inertia moment of the links that turn with link 1, about their reference points
-           */
-        const real rrr_leg1_J_1_in_spec1_zz = m->rrr_leg1_J_1_in_spec1_zz[i];
-        const real rrr_leg1_h_1_in_spec1_x = m->rrr_leg1_h_1_in_spec1_x[i];
-        const real rrr_leg1_h_1_in_spec1_y = m->rrr_leg1_h_1_in_spec1_y[i];
-        const real rrr_leg1_mu_1_t = m->rrr_leg1_mu_1_t[i];
-        const real rrr_leg1_mu_1_t_2 = m->rrr_leg1_mu_1_t_2[i];
-        const real rrr_leg1_mu_1_in_axes1_z =
-            rrr_leg1_h_1_in_spec1_y*(rrr_leg1_c_1*rrr_leg1_mu_1_t +
-            rrr_leg1_mu_1_t_2*rrr_leg1_s_1) - rrr_leg1_B_1_in_axes1_xy*rrr_leg1_J_1_in_spec1_zz -
-            rrr_leg1_h_1_in_spec1_x*(rrr_leg1_c_1*rrr_leg1_mu_1_t_2 -
-            rrr_leg1_mu_1_t*rrr_leg1_s_1);
-        /* (rrr_leg1-N_1) moment about joint 1 of the links from 1 outwards, the force at the connection
-           point left out */
-        const real rrr_leg1_N_1_in_axes1_z = rrr_leg1_mu_1_in_axes1_z + rrr_leg1_mu_2_in_axes2_z;
-        /* (rrr_leg1-G) force at the connection point that balances the leg's inertia and weight along all
-           degrees of freedom */
-        const real rrr_leg1_G_in_axes2_y = rrr_leg1_mu_2_in_axes2_z*rrr_leg1_w_2_in_axes2_y;
-        /* (rrr_leg1-c) leg force on the platform without actuation and without the mass at the connection
-           point */
-        const real rrr_leg1_c_in_axes2_x = rrr_leg1_W_2_t*rrr_leg1_h_2_in_spec2_x +
-            rrr_leg1_alpha_2_in_axes2_z*rrr_leg1_h_2_in_spec2_y +
-            rrr_leg1_w_1_in_axes2_x*(rrr_leg1_G_in_axes2_y*rrr_leg1_r_1_in_axes2_x -
-            rrr_leg1_N_1_in_axes1_z);
-        const real rrr_leg1_c_in_axes2_y = rrr_leg1_W_2_t*rrr_leg1_h_2_in_spec2_y -
-            rrr_leg1_G_in_axes2_y - rrr_leg1_alpha_2_in_axes2_z*rrr_leg1_h_2_in_spec2_x;
+        values_rrr_leg1 v;
+        stage_rrr_leg1_X(m, w, i, j, X, &v);
+        stage_rrr_leg1_V_X(m, w, i, j, V, &v);
+        stage_rrr_leg1_legs_required(m, w, i, j, A, &v);
         /* (rrr_leg1-c_true) leg force on the platform without actuation, the last link's mass included */
         const real rrr_leg1_link2_mass = m->rrr_leg1_link2_mass[i];
-        const real rrr_leg1_c_true_in_axes2_x = rrr_leg1_c_in_axes2_x -
-            rrr_leg1_acc_2_in_axes2_x*rrr_leg1_link2_mass;
-        const real rrr_leg1_c_true_in_axes2_y = rrr_leg1_c_in_axes2_y -
-            rrr_leg1_acc_2_in_axes2_y*rrr_leg1_link2_mass;
-        const real rrr_leg1_c_true_x = axis_x_rrr_leg1_axes2_x*rrr_leg1_c_true_in_axes2_x +
-            axis_y_rrr_leg1_axes2_x*rrr_leg1_c_true_in_axes2_y;
-        const real rrr_leg1_c_true_y = axis_x_rrr_leg1_axes2_x*rrr_leg1_c_true_in_axes2_y -
-            axis_y_rrr_leg1_axes2_x*rrr_leg1_c_true_in_axes2_x;
+        const real rrr_leg1_c_true_in_axes2_x = v.rrr_leg1_c_in_axes2_x -
+            v.rrr_leg1_acc_2_in_axes2_x*rrr_leg1_link2_mass;
+        const real rrr_leg1_c_true_in_axes2_y = v.rrr_leg1_c_in_axes2_y -
+            v.rrr_leg1_acc_2_in_axes2_y*rrr_leg1_link2_mass;
+        const real rrr_leg1_c_true_x = v.axis_x_rrr_leg1_axes2_x*rrr_leg1_c_true_in_axes2_x +
+            v.axis_y_rrr_leg1_axes2_x*rrr_leg1_c_true_in_axes2_y;
+        const real rrr_leg1_c_true_y = v.axis_x_rrr_leg1_axes2_x*rrr_leg1_c_true_in_axes2_y -
+            v.axis_y_rrr_leg1_axes2_x*rrr_leg1_c_true_in_axes2_x;
         /* (rrr_leg1-c_true) leg force on the platform without actuation, the last link's mass included */
         o[0*count + k] = rrr_leg1_c_true_x;
         o[1*count + k] = rrr_leg1_c_true_y;
         /* (rrr_leg1-w_1) reciprocal vector 1 */
-        o[2*count + k] = rrr_leg1_w_1_x;
-        o[3*count + k] = rrr_leg1_w_1_y;
+        o[2*count + k] = v.rrr_leg1_w_1_x;
+        o[3*count + k] = v.rrr_leg1_w_1_y;
         /* (rrr_leg1-w_2) reciprocal vector 2 */
-        o[4*count + k] = rrr_leg1_w_2_x;
-        o[5*count + k] = rrr_leg1_w_2_y;
+        o[4*count + k] = v.rrr_leg1_w_2_x;
+        o[5*count + k] = v.rrr_leg1_w_2_y;
         const real rrr_leg1_rho2_1_t = m->rrr_leg1_rho2_1_t[i];
         const real rrr_leg1_size = m->rrr_leg1_size[i];
-        o[7*count + k] = UNLESS(magnitude(rrr_leg1_rho2_1) >
-            TOLERANCE*TOLERANCE*rrr_leg1_rho2_1_t) + UNLESS(magnitude(rrr_leg1_r_1_in_axes2_y) >
+        o[7*count + k] = UNLESS(magnitude(v.rrr_leg1_rho2_1) >
+            TOLERANCE*TOLERANCE*rrr_leg1_rho2_1_t) + UNLESS(magnitude(v.rrr_leg1_r_1_in_axes2_y) >
             TOLERANCE*rrr_leg1_size);
-        o[6*count + k] = UNLESS(rrr_leg1_disc_1 >= 0);
+        o[6*count + k] = UNLESS(v.rrr_leg1_disc_1 >= 0);
     }
 }
 
@@ -4294,165 +3473,37 @@ INLINE void legs_place_rrr_leg1(size_t w, size_t count, const real *o, size_t fi
     }
 }
 
-INLINE void legs_legs_rrr(const prepared *m, size_t w, size_t leg, size_t legs, const real *s,
-    size_t states, size_t count, real *o)
+INLINE void legs_legs_rrr(const prepared *m, size_t w, size_t leg, size_t legs, size_t states,
+    size_t count, const real *X, const real *V, const real *A, real *o)
 {
     for (size_t k = 0; k < count; ++k) {
         const size_t i = leg + legs*k;
         const size_t j = states*k;
-        /* (rrr-S) from the base point to the connection point */
-        const real rrr_base_point_x = m->rrr_base_point_x[i];
-        const real rrr_platform_point_x = m->rrr_platform_point_x[i];
-        const real t_x = s[0*w + j];
-        const real rrr_S_x = rrr_platform_point_x + t_x - rrr_base_point_x;
-        const real rrr_base_point_y = m->rrr_base_point_y[i];
-        const real rrr_platform_point_y = m->rrr_platform_point_y[i];
-        const real t_y = s[1*w + j];
-        const real rrr_S_y = rrr_platform_point_y + t_y - rrr_base_point_y;
-        /* (rrr-Kd_1) projection on the centre's direction, from the distance fixed by the joints beyond
-           joint 1 */
-        const real rrr_Kd_1_t_3 = rrr_S_x*rrr_S_x + rrr_S_y*rrr_S_y;
-        const real rrr_Kd_1_t = m->rrr_Kd_1_t[i];
-        const real rrr_Kd_1_t_2 = m->rrr_Kd_1_t_2[i];
-        const real rrr_Kd_1 = rrr_Kd_1_t + R(0.5)*rrr_Kd_1_t_3 - rrr_Kd_1_t_2;
-        /* (rrr-px_1) component along the reference direction */
-        const real rrr_base_frame_xx = m->rrr_base_frame_xx[i];
-        const real rrr_base_frame_yx = m->rrr_base_frame_yx[i];
-        const real rrr_px_1 = rrr_S_x*rrr_base_frame_xx + rrr_S_y*rrr_base_frame_yx;
-        /* (rrr-py_1) component across the reference direction */
-        const real rrr_base_frame_xy = m->rrr_base_frame_xy[i];
-        const real rrr_base_frame_yy = m->rrr_base_frame_yy[i];
-        const real rrr_py_1 = rrr_S_x*rrr_base_frame_xy + rrr_S_y*rrr_base_frame_yy;
-        /* (rrr-Kc_1) factor of the cosine in the equation of joint 1 */
-        const real rrr_joint2_offset_x = m->rrr_joint2_offset_x[i];
-        const real rrr_Kc_1 = rrr_joint2_offset_x*rrr_px_1;
-        /* (rrr-Ks_1) factor of the sine in the equation of joint 1 */
-        const real rrr_Ks_1 = rrr_joint2_offset_x*rrr_py_1;
-        /* (rrr-rho2_1) squared amplitude */
-        const real rrr_rho2_1 = rrr_Kc_1*rrr_Kc_1 + rrr_Ks_1*rrr_Ks_1;
-        /* (rrr-disc_1) discriminant */
-        const real rrr_disc_1 = rrr_rho2_1 - rrr_Kd_1*rrr_Kd_1;
-        /* (rrr-root_1) root, with the sign of the branch */
-        const real rrr_branch_1 = m->rrr_branch_1[i];
-        const real rrr_root_1 = rrr_branch_1*root(rrr_disc_1);
-        /* (rrr-c_1) cosine of the angle of joint 1 from its reference direction */
-        const real inv_rrr_rho2_1 = 1/rrr_rho2_1;
-        const real rrr_c_1 = inv_rrr_rho2_1*(rrr_Kc_1*rrr_Kd_1 - rrr_Ks_1*rrr_root_1);
-        /* (rrr-s_1) sine of the angle of joint 1 from its reference direction */
-        const real rrr_s_1 = inv_rrr_rho2_1*(rrr_Kc_1*rrr_root_1 + rrr_Kd_1*rrr_Ks_1);
-        /* (rrr-x_2) from the origin of joint 2 to the connection point */
-        const real inv_rrr_size_t = m->inv_rrr_size_t[i];
-        const real rrr_x_2_in_axes1_x = inv_rrr_size_t*rrr_Kd_1*rrr_joint2_offset_x -
-            rrr_joint2_offset_x;
-        /* (rrr-c_2) cosine of the angle of joint 2 from its reference direction */
-        const real inv_rrr_size_t_2 = m->inv_rrr_size_t_2[i];
-        const real rrr_platform_joint_offset_x = m->rrr_platform_joint_offset_x[i];
-        const real rrr_c_2 = inv_rrr_size_t_2*rrr_platform_joint_offset_x*rrr_x_2_in_axes1_x;
-        /* (rrr-s_2) sine of the angle of joint 2 from its reference direction */
-        const real rrr_s_2 =
-            -inv_rrr_size_t*inv_rrr_size_t_2*rrr_joint2_offset_x*rrr_platform_joint_offset_x*rrr_root_1;
-        /* (rrr-r_1) from joint 1 to the connection point, along the links */
-        const real rrr_r_1_in_axes1_y = rrr_platform_joint_offset_x*rrr_s_2;
-        const real rrr_r_1_in_axes1_x = rrr_joint2_offset_x + rrr_c_2*rrr_platform_joint_offset_x;
-        const real rrr_r_1_in_axes2_x = rrr_c_2*rrr_r_1_in_axes1_x + rrr_r_1_in_axes1_y*rrr_s_2;
-        const real rrr_r_1_in_axes2_y = rrr_c_2*rrr_r_1_in_axes1_y - rrr_r_1_in_axes1_x*rrr_s_2;
-        /* (rrr-w_1) reciprocal vector 1 */
-        const real rrr_w_1_t = rrr_c_1*rrr_s_2 + rrr_c_2*rrr_s_1;
-        const real rrr_w_1_t_2 = rrr_c_1*rrr_c_2 - rrr_s_1*rrr_s_2;
-        const real axis_y_rrr_axes2_x = rrr_base_frame_xy*rrr_w_1_t_2 -
-            rrr_base_frame_xx*rrr_w_1_t;
-        const real axis_x_rrr_axes2_x = rrr_base_frame_yy*rrr_w_1_t_2 -
-            rrr_base_frame_yx*rrr_w_1_t;
-        const real rrr_w_1_in_axes2_x = -1/rrr_r_1_in_axes2_y;
-        const real rrr_w_1_x = axis_x_rrr_axes2_x*rrr_w_1_in_axes2_x;
-        const real rrr_w_1_y = -axis_y_rrr_axes2_x*rrr_w_1_in_axes2_x;
-        /* (rrr-qd_1) rate of joint 1 */
-        const real t_dot_x = s[2*w + j];
-        const real t_dot_y = s[3*w + j];
-        const real rrr_qd_1 = rrr_w_1_in_axes2_x*(axis_x_rrr_axes2_x*t_dot_x -
-            axis_y_rrr_axes2_x*t_dot_y);
-        /* (rrr-W_1) centripetal tensor of link 1 */
-        const real rrr_W_1_in_axes1_xx = -rrr_qd_1*rrr_qd_1;
-        /* (rrr-omega_2) angular velocity of link 2 */
-        const real rrr_w_2_in_axes2_y = m->rrr_w_2_in_axes2_y[i];
-        const real rrr_omega_2_in_axes2_z = rrr_qd_1 +
-            rrr_w_2_in_axes2_y*(axis_x_rrr_axes2_x*t_dot_y + axis_y_rrr_axes2_x*t_dot_x -
-            rrr_qd_1*rrr_r_1_in_axes2_x);
-        /* (rrr-W_2) centripetal tensor of link 2 */
-        const real rrr_W_2_t = rrr_omega_2_in_axes2_z*rrr_omega_2_in_axes2_z;
-        /* (rrr-S_ddot) acceleration of the connection point */
-        const real t_ddot_x = s[4*w + j];
-        const real t_ddot_y = s[5*w + j];
-        const real rrr_S_ddot_in_axes2_x = axis_x_rrr_axes2_x*t_ddot_x -
-            axis_y_rrr_axes2_x*t_ddot_y;
-        const real rrr_S_ddot_in_axes2_y = axis_x_rrr_axes2_x*t_ddot_y +
-            axis_y_rrr_axes2_x*t_ddot_x;
-        /* (rrr-bias) acceleration of the connection point at zero joint accelerations */
-        const real rrr_bias_in_axes2_x = rrr_W_1_in_axes1_xx*rrr_c_2*rrr_joint2_offset_x -
-            rrr_W_2_t*rrr_platform_joint_offset_x;
-        /* (rrr-rel) acceleration of the connection point left to the joint accelerations */
-        const real rrr_rel_in_axes2_x = rrr_S_ddot_in_axes2_x - rrr_bias_in_axes2_x;
-        const real rrr_rel_in_axes2_y = rrr_S_ddot_in_axes2_y +
-            rrr_W_1_in_axes1_xx*rrr_joint2_offset_x*rrr_s_2;
-        /* (rrr-B_1) acceleration tensor of link 1 */
-        const real rrr_B_1_in_axes1_xy = -rrr_rel_in_axes2_x*rrr_w_1_in_axes2_x;
-        /* (rrr-alpha_2) angular acceleration of link 2 */
-        const real rrr_alpha_2_in_axes2_z = rrr_w_2_in_axes2_y*(rrr_rel_in_axes2_y +
-            rrr_B_1_in_axes1_xy*rrr_r_1_in_axes2_x) - rrr_B_1_in_axes1_xy;
-        /* (rrr-acc_2) acceleration of the reference point of link 2, less gravity */
-        const real gravity_x = m->gravity_x;
-        const real gravity_y = m->gravity_y;
-        const real rrr_acc_2_in_axes2_x = rrr_S_ddot_in_axes2_x + axis_y_rrr_axes2_x*gravity_y -
-            axis_x_rrr_axes2_x*gravity_x;
-        const real rrr_acc_2_in_axes2_y = rrr_S_ddot_in_axes2_y - axis_x_rrr_axes2_x*gravity_y -
-            axis_y_rrr_axes2_x*gravity_x;
-        /* (rrr-mu_2) inertia moment of the links that turn with link 2, about their reference points */
-        const real rrr_J_2_in_spec2_zz = m->rrr_J_2_in_spec2_zz[i];
-        const real rrr_h_2_in_spec2_x = m->rrr_h_2_in_spec2_x[i];
-        const real rrr_h_2_in_spec2_y = m->rrr_h_2_in_spec2_y[i];
-        const real rrr_mu_2_in_axes2_z = rrr_J_2_in_spec2_zz*rrr_alpha_2_in_axes2_z +
-            rrr_acc_2_in_axes2_y*rrr_h_2_in_spec2_x - rrr_acc_2_in_axes2_x*rrr_h_2_in_spec2_y;
-        /* (rrr-mu_1) inertia moment of the links that turn with link 1, about their reference points */
-        const real rrr_J_1_in_spec1_zz = m->rrr_J_1_in_spec1_zz[i];
-        const real rrr_h_1_in_spec1_x = m->rrr_h_1_in_spec1_x[i];
-        const real rrr_h_1_in_spec1_y = m->rrr_h_1_in_spec1_y[i];
-        const real rrr_mu_1_t = m->rrr_mu_1_t[i];
-        const real rrr_mu_1_t_2 = m->rrr_mu_1_t_2[i];
-        const real rrr_mu_1_in_axes1_z = rrr_h_1_in_spec1_y*(rrr_c_1*rrr_mu_1_t +
-            rrr_mu_1_t_2*rrr_s_1) - rrr_B_1_in_axes1_xy*rrr_J_1_in_spec1_zz -
-            rrr_h_1_in_spec1_x*(rrr_c_1*rrr_mu_1_t_2 - rrr_mu_1_t*rrr_s_1);
-        /* (rrr-N_1) moment about joint 1 of the links from 1 outwards, the force at the connection point
-           left out */
-        const real rrr_N_1_in_axes1_z = rrr_mu_1_in_axes1_z + rrr_mu_2_in_axes2_z;
-        /* (rrr-G) force at the connection point that balances the leg's inertia and weight along all
-           degrees of freedom */
-        const real rrr_G_in_axes2_y = rrr_mu_2_in_axes2_z*rrr_w_2_in_axes2_y;
-        /* (rrr-c) leg force on the platform without actuation and without the mass at the connection
-           point */
-        const real rrr_c_in_axes2_x = rrr_W_2_t*rrr_h_2_in_spec2_x +
-            rrr_alpha_2_in_axes2_z*rrr_h_2_in_spec2_y +
-            rrr_w_1_in_axes2_x*(rrr_G_in_axes2_y*rrr_r_1_in_axes2_x - rrr_N_1_in_axes1_z);
-        const real rrr_c_in_axes2_y = rrr_W_2_t*rrr_h_2_in_spec2_y - rrr_G_in_axes2_y -
-            rrr_alpha_2_in_axes2_z*rrr_h_2_in_spec2_x;
+        values_rrr v;
+        stage_rrr_X(m, w, i, j, X, &v);
+        stage_rrr_V_X(m, w, i, j, V, &v);
+        stage_rrr_legs_required(m, w, i, j, A, &v);
         /* (rrr-c_true) leg force on the platform without actuation, the last link's mass included */
         const real rrr_link2_mass = m->rrr_link2_mass[i];
-        const real rrr_c_true_in_axes2_x = rrr_c_in_axes2_x - rrr_acc_2_in_axes2_x*rrr_link2_mass;
-        const real rrr_c_true_in_axes2_y = rrr_c_in_axes2_y - rrr_acc_2_in_axes2_y*rrr_link2_mass;
-        const real rrr_c_true_x = axis_x_rrr_axes2_x*rrr_c_true_in_axes2_x +
-            axis_y_rrr_axes2_x*rrr_c_true_in_axes2_y;
-        const real rrr_c_true_y = axis_x_rrr_axes2_x*rrr_c_true_in_axes2_y -
-            axis_y_rrr_axes2_x*rrr_c_true_in_axes2_x;
+        const real rrr_c_true_in_axes2_x = v.rrr_c_in_axes2_x -
+            v.rrr_acc_2_in_axes2_x*rrr_link2_mass;
+        const real rrr_c_true_in_axes2_y = v.rrr_c_in_axes2_y -
+            v.rrr_acc_2_in_axes2_y*rrr_link2_mass;
+        const real rrr_c_true_x = v.axis_x_rrr_axes2_x*rrr_c_true_in_axes2_x +
+            v.axis_y_rrr_axes2_x*rrr_c_true_in_axes2_y;
+        const real rrr_c_true_y = v.axis_x_rrr_axes2_x*rrr_c_true_in_axes2_y -
+            v.axis_y_rrr_axes2_x*rrr_c_true_in_axes2_x;
         /* (rrr-c_true) leg force on the platform without actuation, the last link's mass included */
         o[0*count + k] = rrr_c_true_x;
         o[1*count + k] = rrr_c_true_y;
         /* (rrr-w_1) reciprocal vector 1 */
-        o[2*count + k] = rrr_w_1_x;
-        o[3*count + k] = rrr_w_1_y;
+        o[2*count + k] = v.rrr_w_1_x;
+        o[3*count + k] = v.rrr_w_1_y;
         const real rrr_rho2_1_t = m->rrr_rho2_1_t[i];
         const real rrr_size = m->rrr_size[i];
-        o[5*count + k] = UNLESS(magnitude(rrr_rho2_1) > TOLERANCE*TOLERANCE*rrr_rho2_1_t) +
-            UNLESS(magnitude(rrr_r_1_in_axes2_y) > TOLERANCE*rrr_size);
-        o[4*count + k] = UNLESS(rrr_disc_1 >= 0);
+        o[5*count + k] = UNLESS(magnitude(v.rrr_rho2_1) > TOLERANCE*TOLERANCE*rrr_rho2_1_t) +
+            UNLESS(magnitude(v.rrr_r_1_in_axes2_y) > TOLERANCE*rrr_size);
+        o[4*count + k] = UNLESS(v.rrr_disc_1 >= 0);
     }
 }
 
@@ -4472,17 +3523,16 @@ INLINE void legs_place_rrr(size_t w, size_t count, const real *o, size_t first, 
 INLINE void legs_run(const prepared *m, const real *X, const real *V, const real *A, real
     *leg_force, real *actuator, verdict *t)
 {
-    real s[6] = {0};
     real o_rrr_leg1[8*LEGS(LEGS_OF_rrr_leg1)] = {0};
     real o_rrr[6*LEGS(LEGS_OF_rrr)] = {0};
     clear(leg_force, 3*NL);
     clear(actuator, 9);
-    legs_before(1, X, V, A, s);
-    legs_legs_rrr_leg1(m, 1, 0, 1, s, 0, LEGS(LEGS_OF_rrr_leg1), o_rrr_leg1);
+    legs_before();
+    legs_legs_rrr_leg1(m, 1, 0, 1, 0, LEGS(LEGS_OF_rrr_leg1), X, V, A, o_rrr_leg1);
+    legs_legs_rrr(m, 1, 0, 1, 0, LEGS(LEGS_OF_rrr), X, V, A, o_rrr);
     for (size_t leg = 0; leg < LEGS_OF_rrr_leg1; ++leg) {
         legs_place_rrr_leg1(1, LEGS(LEGS_OF_rrr_leg1), o_rrr_leg1, leg, leg_force, actuator, t);
     }
-    legs_legs_rrr(m, 1, 0, 1, s, 0, LEGS(LEGS_OF_rrr), o_rrr);
     for (size_t leg = 0; leg < LEGS_OF_rrr; ++leg) {
         legs_place_rrr(1, LEGS(LEGS_OF_rrr), o_rrr, leg, leg_force, actuator, t);
     }
@@ -4492,87 +3542,28 @@ INLINE void legs_run(const prepared *m, const real *X, const real *V, const real
 INLINE void potential_before(const prepared *m, size_t w, const real *X, real *s)
 {
     for (size_t k = 0; k < w; ++k) {
-        /* X: named entries */
-        const real X_0 = X[0*w + k];
-        const real t_x = X_0;
-        const real X_1 = X[1*w + k];
-        const real t_y = X_1;
         /* (potential) potential energy */
         const real gravity_x = m->gravity_x;
         const real gravity_y = m->gravity_y;
         const real h_star_x = m->h_star_x;
         const real h_star_y = m->h_star_y;
         const real m_star = m->m_star;
+        const real t_x = X[0*w + k];
+        const real t_y = X[1*w + k];
         const real potential_t = gravity_x*(h_star_x + m_star*t_x) + gravity_y*(h_star_y +
             m_star*t_y);
-        s[0*w + k] = t_x;
-        s[1*w + k] = t_y;
-        s[2*w + k] = potential_t;
+        s[0*w + k] = potential_t;
     }
 }
 
-INLINE void potential_legs_rrr_leg1(const prepared *m, size_t w, size_t leg, size_t legs, const
-    real *s, size_t states, size_t count, int add, real *terms, real *o)
+INLINE void potential_legs_rrr_leg1(const prepared *m, size_t w, size_t leg, size_t legs, size_t
+    states, size_t count, int add, const real *X, real *terms, real *o)
 {
     for (size_t k = 0; k < count; ++k) {
         const size_t i = leg + legs*k;
         const size_t j = states*k;
-        /* (rrr_leg1-S) from the base point to the connection point */
-        const real rrr_leg1_base_point_x = m->rrr_leg1_base_point_x[i];
-        const real rrr_leg1_platform_point_x = m->rrr_leg1_platform_point_x[i];
-        const real t_x = s[0*w + j];
-        const real rrr_leg1_S_x = rrr_leg1_platform_point_x + t_x - rrr_leg1_base_point_x;
-        const real rrr_leg1_base_point_y = m->rrr_leg1_base_point_y[i];
-        const real rrr_leg1_platform_point_y = m->rrr_leg1_platform_point_y[i];
-        const real t_y = s[1*w + j];
-        const real rrr_leg1_S_y = rrr_leg1_platform_point_y + t_y - rrr_leg1_base_point_y;
-        /* (rrr_leg1-Kd_1) projection on the centre's direction, from the distance fixed by the joints
-           beyond joint 1 */
-        const real rrr_leg1_Kd_1_t_3 = rrr_leg1_S_x*rrr_leg1_S_x + rrr_leg1_S_y*rrr_leg1_S_y;
-        const real rrr_leg1_Kd_1_t = m->rrr_leg1_Kd_1_t[i];
-        const real rrr_leg1_Kd_1_t_2 = m->rrr_leg1_Kd_1_t_2[i];
-        const real rrr_leg1_Kd_1 = rrr_leg1_Kd_1_t + R(0.5)*rrr_leg1_Kd_1_t_3 - rrr_leg1_Kd_1_t_2;
-        /* (rrr_leg1-px_1) component along the reference direction */
-        const real rrr_leg1_base_frame_xx = m->rrr_leg1_base_frame_xx[i];
-        const real rrr_leg1_base_frame_yx = m->rrr_leg1_base_frame_yx[i];
-        const real rrr_leg1_px_1 = rrr_leg1_S_x*rrr_leg1_base_frame_xx +
-            rrr_leg1_S_y*rrr_leg1_base_frame_yx;
-        /* (rrr_leg1-py_1) component across the reference direction */
-        const real rrr_leg1_base_frame_xy = m->rrr_leg1_base_frame_xy[i];
-        const real rrr_leg1_base_frame_yy = m->rrr_leg1_base_frame_yy[i];
-        const real rrr_leg1_py_1 = rrr_leg1_S_x*rrr_leg1_base_frame_xy +
-            rrr_leg1_S_y*rrr_leg1_base_frame_yy;
-        /* (rrr_leg1-Kc_1) factor of the cosine in the equation of joint 1 */
-        const real rrr_leg1_joint2_offset_x = m->rrr_leg1_joint2_offset_x[i];
-        const real rrr_leg1_Kc_1 = rrr_leg1_joint2_offset_x*rrr_leg1_px_1;
-        /* (rrr_leg1-Ks_1) factor of the sine in the equation of joint 1 */
-        const real rrr_leg1_Ks_1 = rrr_leg1_joint2_offset_x*rrr_leg1_py_1;
-        /* (rrr_leg1-rho2_1) squared amplitude */
-        const real rrr_leg1_rho2_1 = rrr_leg1_Kc_1*rrr_leg1_Kc_1 + rrr_leg1_Ks_1*rrr_leg1_Ks_1;
-        /* (rrr_leg1-disc_1) discriminant */
-        const real rrr_leg1_disc_1 = rrr_leg1_rho2_1 - rrr_leg1_Kd_1*rrr_leg1_Kd_1;
-        /* (rrr_leg1-root_1) root, with the sign of the branch */
-        const real rrr_leg1_branch_1 = m->rrr_leg1_branch_1[i];
-        const real rrr_leg1_root_1 = rrr_leg1_branch_1*root(rrr_leg1_disc_1);
-        /* (rrr_leg1-c_1) cosine of the angle of joint 1 from its reference direction */
-        const real inv_rrr_leg1_rho2_1 = 1/rrr_leg1_rho2_1;
-        const real rrr_leg1_c_1 = inv_rrr_leg1_rho2_1*(rrr_leg1_Kc_1*rrr_leg1_Kd_1 -
-            rrr_leg1_Ks_1*rrr_leg1_root_1);
-        /* (rrr_leg1-s_1) sine of the angle of joint 1 from its reference direction */
-        const real rrr_leg1_s_1 = inv_rrr_leg1_rho2_1*(rrr_leg1_Kc_1*rrr_leg1_root_1 +
-            rrr_leg1_Kd_1*rrr_leg1_Ks_1);
-        /* (rrr_leg1-x_2) from the origin of joint 2 to the connection point */
-        const real inv_rrr_leg1_size_t = m->inv_rrr_leg1_size_t[i];
-        const real rrr_leg1_x_2_in_axes1_x =
-            inv_rrr_leg1_size_t*rrr_leg1_Kd_1*rrr_leg1_joint2_offset_x - rrr_leg1_joint2_offset_x;
-        /* (rrr_leg1-c_2) cosine of the angle of joint 2 from its reference direction */
-        const real inv_rrr_leg1_size_t_2 = m->inv_rrr_leg1_size_t_2[i];
-        const real rrr_leg1_platform_joint_offset_x = m->rrr_leg1_platform_joint_offset_x[i];
-        const real rrr_leg1_c_2 =
-            inv_rrr_leg1_size_t_2*rrr_leg1_platform_joint_offset_x*rrr_leg1_x_2_in_axes1_x;
-        /* (rrr_leg1-s_2) sine of the angle of joint 2 from its reference direction */
-        const real rrr_leg1_s_2 =
-            -inv_rrr_leg1_size_t*inv_rrr_leg1_size_t_2*rrr_leg1_joint2_offset_x*rrr_leg1_platform_joint_offset_x*rrr_leg1_root_1;
+        values_rrr_leg1 v;
+        stage_rrr_leg1_X(m, w, i, j, X, &v);
         /* (potential) potential energy */
         const real rrr_leg1_h_1_in_spec1_x = m->rrr_leg1_h_1_in_spec1_x[i];
         const real rrr_leg1_h_1_in_spec1_y = m->rrr_leg1_h_1_in_spec1_y[i];
@@ -4583,22 +3574,22 @@ INLINE void potential_legs_rrr_leg1(const prepared *m, size_t w, size_t leg, siz
         const real rrr_leg1_mu_1_t_2 = m->rrr_leg1_mu_1_t_2[i];
         const real rrr_leg1_potential_t = m->rrr_leg1_potential_t[i];
         const real rrr_leg1_potential_t_2 = m->rrr_leg1_potential_t_2[i];
-        const real rrr_leg1_potential_t_3 = (rrr_leg1_c_1*rrr_leg1_mu_1_t +
-            rrr_leg1_mu_1_t_2*rrr_leg1_s_1)*(rrr_leg1_h_1_in_spec1_x +
-            rrr_leg1_c_2*rrr_leg1_h_2_in_spec2_x +
-            rrr_leg1_link1_mass*(rrr_leg1_c_1*rrr_leg1_potential_t +
-            rrr_leg1_potential_t_2*rrr_leg1_s_1) - rrr_leg1_h_2_in_spec2_y*rrr_leg1_s_2) +
-            (rrr_leg1_c_1*rrr_leg1_mu_1_t_2 -
-            rrr_leg1_mu_1_t*rrr_leg1_s_1)*(rrr_leg1_h_1_in_spec1_y +
-            rrr_leg1_c_2*rrr_leg1_h_2_in_spec2_y + rrr_leg1_h_2_in_spec2_x*rrr_leg1_s_2 +
-            rrr_leg1_link1_mass*(rrr_leg1_c_1*rrr_leg1_potential_t_2 -
-            rrr_leg1_potential_t*rrr_leg1_s_1));
+        const real rrr_leg1_potential_t_3 = (v.rrr_leg1_c_1*rrr_leg1_mu_1_t +
+            rrr_leg1_mu_1_t_2*v.rrr_leg1_s_1)*(rrr_leg1_h_1_in_spec1_x +
+            v.rrr_leg1_c_2*rrr_leg1_h_2_in_spec2_x +
+            rrr_leg1_link1_mass*(v.rrr_leg1_c_1*rrr_leg1_potential_t +
+            rrr_leg1_potential_t_2*v.rrr_leg1_s_1) - rrr_leg1_h_2_in_spec2_y*v.rrr_leg1_s_2) +
+            (v.rrr_leg1_c_1*rrr_leg1_mu_1_t_2 -
+            rrr_leg1_mu_1_t*v.rrr_leg1_s_1)*(rrr_leg1_h_1_in_spec1_y +
+            v.rrr_leg1_c_2*rrr_leg1_h_2_in_spec2_y + rrr_leg1_h_2_in_spec2_x*v.rrr_leg1_s_2 +
+            rrr_leg1_link1_mass*(v.rrr_leg1_c_1*rrr_leg1_potential_t_2 -
+            rrr_leg1_potential_t*v.rrr_leg1_s_1));
         /* (potential) potential energy */
         gather(&terms[0*count + k], add, -rrr_leg1_potential_t_3);  /* potential_of_legs */
         const real rrr_leg1_rho2_1_t = m->rrr_leg1_rho2_1_t[i];
-        o[1*count + k] = UNLESS(magnitude(rrr_leg1_rho2_1) >
+        o[1*count + k] = UNLESS(magnitude(v.rrr_leg1_rho2_1) >
             TOLERANCE*TOLERANCE*rrr_leg1_rho2_1_t);
-        o[0*count + k] = UNLESS(rrr_leg1_disc_1 >= 0);
+        o[0*count + k] = UNLESS(v.rrr_leg1_disc_1 >= 0);
     }
 }
 
@@ -4611,63 +3602,14 @@ INLINE void potential_place_rrr_leg1(size_t w, size_t count, const real *o, size
     }
 }
 
-INLINE void potential_legs_rrr(const prepared *m, size_t w, size_t leg, size_t legs, const real
-    *s, size_t states, size_t count, int add, real *terms, real *o)
+INLINE void potential_legs_rrr(const prepared *m, size_t w, size_t leg, size_t legs, size_t
+    states, size_t count, int add, const real *X, real *terms, real *o)
 {
     for (size_t k = 0; k < count; ++k) {
         const size_t i = leg + legs*k;
         const size_t j = states*k;
-        /* (rrr-S) from the base point to the connection point */
-        const real rrr_base_point_x = m->rrr_base_point_x[i];
-        const real rrr_platform_point_x = m->rrr_platform_point_x[i];
-        const real t_x = s[0*w + j];
-        const real rrr_S_x = rrr_platform_point_x + t_x - rrr_base_point_x;
-        const real rrr_base_point_y = m->rrr_base_point_y[i];
-        const real rrr_platform_point_y = m->rrr_platform_point_y[i];
-        const real t_y = s[1*w + j];
-        const real rrr_S_y = rrr_platform_point_y + t_y - rrr_base_point_y;
-        /* (rrr-Kd_1) projection on the centre's direction, from the distance fixed by the joints beyond
-           joint 1 */
-        const real rrr_Kd_1_t_3 = rrr_S_x*rrr_S_x + rrr_S_y*rrr_S_y;
-        const real rrr_Kd_1_t = m->rrr_Kd_1_t[i];
-        const real rrr_Kd_1_t_2 = m->rrr_Kd_1_t_2[i];
-        const real rrr_Kd_1 = rrr_Kd_1_t + R(0.5)*rrr_Kd_1_t_3 - rrr_Kd_1_t_2;
-        /* (rrr-px_1) component along the reference direction */
-        const real rrr_base_frame_xx = m->rrr_base_frame_xx[i];
-        const real rrr_base_frame_yx = m->rrr_base_frame_yx[i];
-        const real rrr_px_1 = rrr_S_x*rrr_base_frame_xx + rrr_S_y*rrr_base_frame_yx;
-        /* (rrr-py_1) component across the reference direction */
-        const real rrr_base_frame_xy = m->rrr_base_frame_xy[i];
-        const real rrr_base_frame_yy = m->rrr_base_frame_yy[i];
-        const real rrr_py_1 = rrr_S_x*rrr_base_frame_xy + rrr_S_y*rrr_base_frame_yy;
-        /* (rrr-Kc_1) factor of the cosine in the equation of joint 1 */
-        const real rrr_joint2_offset_x = m->rrr_joint2_offset_x[i];
-        const real rrr_Kc_1 = rrr_joint2_offset_x*rrr_px_1;
-        /* (rrr-Ks_1) factor of the sine in the equation of joint 1 */
-        const real rrr_Ks_1 = rrr_joint2_offset_x*rrr_py_1;
-        /* (rrr-rho2_1) squared amplitude */
-        const real rrr_rho2_1 = rrr_Kc_1*rrr_Kc_1 + rrr_Ks_1*rrr_Ks_1;
-        /* (rrr-disc_1) discriminant */
-        const real rrr_disc_1 = rrr_rho2_1 - rrr_Kd_1*rrr_Kd_1;
-        /* (rrr-root_1) root, with the sign of the branch */
-        const real rrr_branch_1 = m->rrr_branch_1[i];
-        const real rrr_root_1 = rrr_branch_1*root(rrr_disc_1);
-        /* (rrr-c_1) cosine of the angle of joint 1 from its reference direction */
-        const real inv_rrr_rho2_1 = 1/rrr_rho2_1;
-        const real rrr_c_1 = inv_rrr_rho2_1*(rrr_Kc_1*rrr_Kd_1 - rrr_Ks_1*rrr_root_1);
-        /* (rrr-s_1) sine of the angle of joint 1 from its reference direction */
-        const real rrr_s_1 = inv_rrr_rho2_1*(rrr_Kc_1*rrr_root_1 + rrr_Kd_1*rrr_Ks_1);
-        /* (rrr-x_2) from the origin of joint 2 to the connection point */
-        const real inv_rrr_size_t = m->inv_rrr_size_t[i];
-        const real rrr_x_2_in_axes1_x = inv_rrr_size_t*rrr_Kd_1*rrr_joint2_offset_x -
-            rrr_joint2_offset_x;
-        /* (rrr-c_2) cosine of the angle of joint 2 from its reference direction */
-        const real inv_rrr_size_t_2 = m->inv_rrr_size_t_2[i];
-        const real rrr_platform_joint_offset_x = m->rrr_platform_joint_offset_x[i];
-        const real rrr_c_2 = inv_rrr_size_t_2*rrr_platform_joint_offset_x*rrr_x_2_in_axes1_x;
-        /* (rrr-s_2) sine of the angle of joint 2 from its reference direction */
-        const real rrr_s_2 =
-            -inv_rrr_size_t*inv_rrr_size_t_2*rrr_joint2_offset_x*rrr_platform_joint_offset_x*rrr_root_1;
+        values_rrr v;
+        stage_rrr_X(m, w, i, j, X, &v);
         /* (potential) potential energy */
         const real rrr_h_1_in_spec1_x = m->rrr_h_1_in_spec1_x[i];
         const real rrr_h_1_in_spec1_y = m->rrr_h_1_in_spec1_y[i];
@@ -4678,18 +3620,18 @@ INLINE void potential_legs_rrr(const prepared *m, size_t w, size_t leg, size_t l
         const real rrr_mu_1_t_2 = m->rrr_mu_1_t_2[i];
         const real rrr_potential_t = m->rrr_potential_t[i];
         const real rrr_potential_t_2 = m->rrr_potential_t_2[i];
-        const real rrr_potential_t_3 = (rrr_c_1*rrr_mu_1_t +
-            rrr_mu_1_t_2*rrr_s_1)*(rrr_h_1_in_spec1_x + rrr_c_2*rrr_h_2_in_spec2_x +
-            rrr_link1_mass*(rrr_c_1*rrr_potential_t + rrr_potential_t_2*rrr_s_1) -
-            rrr_h_2_in_spec2_y*rrr_s_2) + (rrr_c_1*rrr_mu_1_t_2 -
-            rrr_mu_1_t*rrr_s_1)*(rrr_h_1_in_spec1_y + rrr_c_2*rrr_h_2_in_spec2_y +
-            rrr_h_2_in_spec2_x*rrr_s_2 + rrr_link1_mass*(rrr_c_1*rrr_potential_t_2 -
-            rrr_potential_t*rrr_s_1));
+        const real rrr_potential_t_3 = (v.rrr_c_1*rrr_mu_1_t +
+            rrr_mu_1_t_2*v.rrr_s_1)*(rrr_h_1_in_spec1_x + v.rrr_c_2*rrr_h_2_in_spec2_x +
+            rrr_link1_mass*(v.rrr_c_1*rrr_potential_t + rrr_potential_t_2*v.rrr_s_1) -
+            rrr_h_2_in_spec2_y*v.rrr_s_2) + (v.rrr_c_1*rrr_mu_1_t_2 -
+            rrr_mu_1_t*v.rrr_s_1)*(rrr_h_1_in_spec1_y + v.rrr_c_2*rrr_h_2_in_spec2_y +
+            rrr_h_2_in_spec2_x*v.rrr_s_2 + rrr_link1_mass*(v.rrr_c_1*rrr_potential_t_2 -
+            rrr_potential_t*v.rrr_s_1));
         /* (potential) potential energy */
         gather(&terms[1*count + k], add, rrr_potential_t_3);  /* potential_t_2 */
         const real rrr_rho2_1_t = m->rrr_rho2_1_t[i];
-        o[1*count + k] = UNLESS(magnitude(rrr_rho2_1) > TOLERANCE*TOLERANCE*rrr_rho2_1_t);
-        o[0*count + k] = UNLESS(rrr_disc_1 >= 0);
+        o[1*count + k] = UNLESS(magnitude(v.rrr_rho2_1) > TOLERANCE*TOLERANCE*rrr_rho2_1_t);
+        o[0*count + k] = UNLESS(v.rrr_disc_1 >= 0);
     }
 }
 
@@ -4706,7 +3648,7 @@ INLINE void potential_after(size_t w, const real *s, const real *sums, real *pot
     for (size_t k = 0; k < w; ++k) {
         /* (potential) potential energy */
         const real potential_of_legs = sums[0*w + k];
-        const real potential_t = s[2*w + k];
+        const real potential_t = s[0*w + k];
         const real potential_t_2 = sums[1*w + k];
         const real potential_ = potential_of_legs - potential_t - potential_t_2;
         /* (potential) potential energy */
@@ -4716,21 +3658,18 @@ INLINE void potential_after(size_t w, const real *s, const real *sums, real *pot
 
 INLINE void potential_run(const prepared *m, const real *X, real *potential, verdict *t)
 {
-    real s[3] = {0};
-    real sums[2] = {0};
-    real terms_rrr_leg1[2*LEGS(LEGS_OF_rrr_leg1)] = {0};
-    real o_rrr_leg1[2*LEGS(LEGS_OF_rrr_leg1)] = {0};
-    real terms_rrr[2*LEGS(LEGS_OF_rrr)] = {0};
-    real o_rrr[2*LEGS(LEGS_OF_rrr)] = {0};
+    real s[1] = {0}, sums[2] = {0};
+    real terms_rrr_leg1[2*LEGS(LEGS_OF_rrr_leg1)] = {0}, o_rrr_leg1[2*LEGS(LEGS_OF_rrr_leg1)] = {0};
+    real terms_rrr[2*LEGS(LEGS_OF_rrr)] = {0}, o_rrr[2*LEGS(LEGS_OF_rrr)] = {0};
     potential_before(m, 1, X, s);
-    potential_legs_rrr_leg1(m, 1, 0, 1, s, 0, LEGS(LEGS_OF_rrr_leg1), 0, terms_rrr_leg1, o_rrr_leg1);
+    potential_legs_rrr_leg1(m, 1, 0, 1, 0, LEGS(LEGS_OF_rrr_leg1), 0, X, terms_rrr_leg1, o_rrr_leg1);
+    potential_legs_rrr(m, 1, 0, 1, 0, LEGS(LEGS_OF_rrr), 0, X, terms_rrr, o_rrr);
     for (size_t leg = 0; leg < LEGS_OF_rrr_leg1; ++leg) {
         potential_place_rrr_leg1(1, LEGS(LEGS_OF_rrr_leg1), o_rrr_leg1, leg, t);
     }
     for (size_t n = 0; n < 2; ++n) {
         sums[n] = total(terms_rrr_leg1 + n*LEGS(LEGS_OF_rrr_leg1), LEGS_OF_rrr_leg1);
     }
-    potential_legs_rrr(m, 1, 0, 1, s, 0, LEGS(LEGS_OF_rrr), 0, terms_rrr, o_rrr);
     for (size_t leg = 0; leg < LEGS_OF_rrr; ++leg) {
         potential_place_rrr(1, LEGS(LEGS_OF_rrr), o_rrr, leg, t);
     }
@@ -4741,17 +3680,9 @@ INLINE void potential_run(const prepared *m, const real *X, real *potential, ver
 }
 
 /* ---- condition ---- */
-INLINE void condition_before(const prepared *m, size_t w, const real *X, real *s, real *lengths,
-    verdict *t)
+INLINE void condition_before(const prepared *m, size_t w, real *lengths, verdict *t)
 {
     for (size_t k = 0; k < w; ++k) {
-        /* X: named entries */
-        const real X_0 = X[0*w + k];
-        const real t_x = X_0;
-        const real X_1 = X[1*w + k];
-        const real t_y = X_1;
-        s[0*w + k] = t_x;
-        s[1*w + k] = t_y;
         /* (legs_size) rms size of the legs, taken where the platform points coincide */
         const real legs_size = m->legs_size;
         lengths[1*w + k] = legs_size;
@@ -4759,128 +3690,60 @@ INLINE void condition_before(const prepared *m, size_t w, const real *X, real *s
     }
 }
 
-INLINE void condition_legs_rrr_leg1(const prepared *m, size_t w, size_t leg, size_t legs, const
-    real *s, size_t states, size_t count, int add, real *terms, real *o)
+INLINE void condition_legs_rrr_leg1(const prepared *m, size_t w, size_t leg, size_t legs, size_t
+    states, size_t count, int add, const real *X, real *terms, real *o)
 {
     for (size_t k = 0; k < count; ++k) {
         const size_t i = leg + legs*k;
         const size_t j = states*k;
-        /* (rrr_leg1-S) from the base point to the connection point */
-        const real rrr_leg1_base_point_x = m->rrr_leg1_base_point_x[i];
-        const real rrr_leg1_platform_point_x = m->rrr_leg1_platform_point_x[i];
-        const real t_x = s[0*w + j];
-        const real rrr_leg1_S_x = rrr_leg1_platform_point_x + t_x - rrr_leg1_base_point_x;
-        const real rrr_leg1_base_point_y = m->rrr_leg1_base_point_y[i];
-        const real rrr_leg1_platform_point_y = m->rrr_leg1_platform_point_y[i];
-        const real t_y = s[1*w + j];
-        const real rrr_leg1_S_y = rrr_leg1_platform_point_y + t_y - rrr_leg1_base_point_y;
-        /* (rrr_leg1-Kd_1) projection on the centre's direction, from the distance fixed by the joints
-           beyond joint 1 */
-        const real rrr_leg1_Kd_1_t_3 = rrr_leg1_S_x*rrr_leg1_S_x + rrr_leg1_S_y*rrr_leg1_S_y;
-        const real rrr_leg1_Kd_1_t = m->rrr_leg1_Kd_1_t[i];
-        const real rrr_leg1_Kd_1_t_2 = m->rrr_leg1_Kd_1_t_2[i];
-        const real rrr_leg1_Kd_1 = rrr_leg1_Kd_1_t + R(0.5)*rrr_leg1_Kd_1_t_3 - rrr_leg1_Kd_1_t_2;
-        /* (rrr_leg1-px_1) component along the reference direction */
-        const real rrr_leg1_base_frame_xx = m->rrr_leg1_base_frame_xx[i];
-        const real rrr_leg1_base_frame_yx = m->rrr_leg1_base_frame_yx[i];
-        const real rrr_leg1_px_1 = rrr_leg1_S_x*rrr_leg1_base_frame_xx +
-            rrr_leg1_S_y*rrr_leg1_base_frame_yx;
-        /* (rrr_leg1-py_1) component across the reference direction */
-        const real rrr_leg1_base_frame_xy = m->rrr_leg1_base_frame_xy[i];
-        const real rrr_leg1_base_frame_yy = m->rrr_leg1_base_frame_yy[i];
-        const real rrr_leg1_py_1 = rrr_leg1_S_x*rrr_leg1_base_frame_xy +
-            rrr_leg1_S_y*rrr_leg1_base_frame_yy;
-        /* (rrr_leg1-Kc_1) factor of the cosine in the equation of joint 1 */
-        const real rrr_leg1_joint2_offset_x = m->rrr_leg1_joint2_offset_x[i];
-        const real rrr_leg1_Kc_1 = rrr_leg1_joint2_offset_x*rrr_leg1_px_1;
-        /* (rrr_leg1-Ks_1) factor of the sine in the equation of joint 1 */
-        const real rrr_leg1_Ks_1 = rrr_leg1_joint2_offset_x*rrr_leg1_py_1;
-        /* (rrr_leg1-rho2_1) squared amplitude */
-        const real rrr_leg1_rho2_1 = rrr_leg1_Kc_1*rrr_leg1_Kc_1 + rrr_leg1_Ks_1*rrr_leg1_Ks_1;
-        /* (rrr_leg1-disc_1) discriminant */
-        const real rrr_leg1_disc_1 = rrr_leg1_rho2_1 - rrr_leg1_Kd_1*rrr_leg1_Kd_1;
-        /* (rrr_leg1-root_1) root, with the sign of the branch */
-        const real rrr_leg1_branch_1 = m->rrr_leg1_branch_1[i];
-        const real rrr_leg1_root_1 = rrr_leg1_branch_1*root(rrr_leg1_disc_1);
-        /* (rrr_leg1-c_1) cosine of the angle of joint 1 from its reference direction */
-        const real inv_rrr_leg1_rho2_1 = 1/rrr_leg1_rho2_1;
-        const real rrr_leg1_c_1 = inv_rrr_leg1_rho2_1*(rrr_leg1_Kc_1*rrr_leg1_Kd_1 -
-            rrr_leg1_Ks_1*rrr_leg1_root_1);
-        /* (rrr_leg1-s_1) sine of the angle of joint 1 from its reference direction */
-        const real rrr_leg1_s_1 = inv_rrr_leg1_rho2_1*(rrr_leg1_Kc_1*rrr_leg1_root_1 +
-            rrr_leg1_Kd_1*rrr_leg1_Ks_1);
-        /* (rrr_leg1-x_2) from the origin of joint 2 to the connection point */
-        const real inv_rrr_leg1_size_t = m->inv_rrr_leg1_size_t[i];
-        const real rrr_leg1_x_2_in_axes1_x =
-            inv_rrr_leg1_size_t*rrr_leg1_Kd_1*rrr_leg1_joint2_offset_x - rrr_leg1_joint2_offset_x;
-        /* (rrr_leg1-c_2) cosine of the angle of joint 2 from its reference direction */
-        const real inv_rrr_leg1_size_t_2 = m->inv_rrr_leg1_size_t_2[i];
-        const real rrr_leg1_platform_joint_offset_x = m->rrr_leg1_platform_joint_offset_x[i];
-        const real rrr_leg1_c_2 =
-            inv_rrr_leg1_size_t_2*rrr_leg1_platform_joint_offset_x*rrr_leg1_x_2_in_axes1_x;
-        /* (rrr_leg1-s_2) sine of the angle of joint 2 from its reference direction */
-        const real rrr_leg1_s_2 =
-            -inv_rrr_leg1_size_t*inv_rrr_leg1_size_t_2*rrr_leg1_joint2_offset_x*rrr_leg1_platform_joint_offset_x*rrr_leg1_root_1;
-        /* (rrr_leg1-r_1) from joint 1 to the connection point, along the links */
-        const real rrr_leg1_r_1_in_axes1_y = rrr_leg1_platform_joint_offset_x*rrr_leg1_s_2;
-        const real rrr_leg1_r_1_in_axes1_x = rrr_leg1_joint2_offset_x +
-            rrr_leg1_c_2*rrr_leg1_platform_joint_offset_x;
-        const real rrr_leg1_r_1_in_axes2_y = rrr_leg1_c_2*rrr_leg1_r_1_in_axes1_y -
-            rrr_leg1_r_1_in_axes1_x*rrr_leg1_s_2;
-        /* (rrr_leg1-w_1) reciprocal vector 1 */
-        const real rrr_leg1_w_1_t = rrr_leg1_c_1*rrr_leg1_s_2 + rrr_leg1_c_2*rrr_leg1_s_1;
-        const real rrr_leg1_w_1_t_2 = rrr_leg1_c_1*rrr_leg1_c_2 - rrr_leg1_s_1*rrr_leg1_s_2;
-        const real axis_y_rrr_leg1_axes2_x = rrr_leg1_base_frame_xy*rrr_leg1_w_1_t_2 -
-            rrr_leg1_base_frame_xx*rrr_leg1_w_1_t;
-        const real axis_x_rrr_leg1_axes2_x = rrr_leg1_base_frame_yy*rrr_leg1_w_1_t_2 -
-            rrr_leg1_base_frame_yx*rrr_leg1_w_1_t;
-        const real rrr_leg1_w_1_in_axes2_x = -1/rrr_leg1_r_1_in_axes2_y;
-        const real rrr_leg1_w_1_x = axis_x_rrr_leg1_axes2_x*rrr_leg1_w_1_in_axes2_x;
-        const real rrr_leg1_w_1_y = -axis_y_rrr_leg1_axes2_x*rrr_leg1_w_1_in_axes2_x;
+        values_rrr_leg1 v;
+        stage_rrr_leg1_X(m, w, i, j, X, &v);
         /* (rrr_leg1-w_2) reciprocal vector 2 */
         const real rrr_leg1_w_2_in_axes2_y = m->rrr_leg1_w_2_in_axes2_y[i];
         const real rrr_leg1_w_2_in_axes2_x =
-            -rrr_leg1_w_1_in_axes2_x*rrr_leg1_w_2_in_axes2_y*(rrr_leg1_c_2*rrr_leg1_r_1_in_axes1_x
-            + rrr_leg1_r_1_in_axes1_y*rrr_leg1_s_2);
-        const real rrr_leg1_w_2_x = axis_x_rrr_leg1_axes2_x*rrr_leg1_w_2_in_axes2_x +
-            axis_y_rrr_leg1_axes2_x*rrr_leg1_w_2_in_axes2_y;
-        const real rrr_leg1_w_2_y = axis_x_rrr_leg1_axes2_x*rrr_leg1_w_2_in_axes2_y -
-            axis_y_rrr_leg1_axes2_x*rrr_leg1_w_2_in_axes2_x;
+            -v.rrr_leg1_w_1_in_axes2_x*rrr_leg1_w_2_in_axes2_y*(v.rrr_leg1_c_2*v.rrr_leg1_r_1_in_axes1_x
+            + v.rrr_leg1_r_1_in_axes1_y*v.rrr_leg1_s_2);
+        const real rrr_leg1_w_2_x = v.axis_x_rrr_leg1_axes2_x*rrr_leg1_w_2_in_axes2_x +
+            v.axis_y_rrr_leg1_axes2_x*rrr_leg1_w_2_in_axes2_y;
+        const real rrr_leg1_w_2_y = v.axis_x_rrr_leg1_axes2_x*rrr_leg1_w_2_in_axes2_y -
+            v.axis_y_rrr_leg1_axes2_x*rrr_leg1_w_2_in_axes2_x;
         /* (rrr_leg1-G) force at the connection point that balances the leg's inertia and weight along all
            degrees of freedom */
-        const real rrr_leg1_pivot_size = magnitude(rrr_leg1_rho2_1);
-        const real rrr_leg1_pivot_size_2 = magnitude(rrr_leg1_r_1_in_axes2_y);
+        const real rrr_leg1_pivot_size = magnitude(v.rrr_leg1_rho2_1);
+        const real rrr_leg1_pivot_size_2 = magnitude(v.rrr_leg1_r_1_in_axes2_y);
         const real inv_rrr_leg1_rho2_1_t = m->inv_rrr_leg1_rho2_1_t[i];
         const real inv_rrr_leg1_size = m->inv_rrr_leg1_size[i];
         const real rrr_leg1_least_pivots = lesser(root(inv_rrr_leg1_rho2_1_t*rrr_leg1_pivot_size),
             inv_rrr_leg1_size*rrr_leg1_pivot_size_2);
         /* (spread) rms distance of the platform points from their centroid */
         const real b_c_in_platform_x = m->b_c_in_platform_x;
+        const real rrr_leg1_platform_point_x = m->rrr_leg1_platform_point_x[i];
         const real rrr_leg1_spread_t = b_c_in_platform_x - rrr_leg1_platform_point_x;
         const real b_c_in_platform_y = m->b_c_in_platform_y;
+        const real rrr_leg1_platform_point_y = m->rrr_leg1_platform_point_y[i];
         const real rrr_leg1_spread_t_2 = b_c_in_platform_y - rrr_leg1_platform_point_y;
         const real rrr_leg1_spread_t_3 = rrr_leg1_spread_t*rrr_leg1_spread_t +
             rrr_leg1_spread_t_2*rrr_leg1_spread_t_2;
         /* (spread) rms distance of the platform points from their centroid */
         gather(&terms[0*count + k], add, rrr_leg1_spread_t_3);  /* spread_rrr_leg1 */
         /* (rrr_leg1-w_1) reciprocal vector 1 */
-        o[0*count + k] = rrr_leg1_w_1_x;
-        o[1*count + k] = rrr_leg1_w_1_y;
+        o[0*count + k] = v.rrr_leg1_w_1_x;
+        o[1*count + k] = v.rrr_leg1_w_1_y;
         /* (rrr_leg1-w_2) reciprocal vector 2 */
         o[2*count + k] = rrr_leg1_w_2_x;
         o[3*count + k] = rrr_leg1_w_2_y;
         /* (rrr_leg1-G) force at the connection point that balances the leg's inertia and weight along all
            degrees of freedom */
         o[4*count + k] = rrr_leg1_least_pivots;
-        o[5*count + k] = rrr_leg1_disc_1;
-        o[8*count + k] = (rrr_leg1_w_1_x + (rrr_leg1_w_1_y + rrr_leg1_w_2_x)) + (rrr_leg1_w_2_y +
-            (rrr_leg1_least_pivots + rrr_leg1_disc_1));
+        o[5*count + k] = v.rrr_leg1_disc_1;
+        o[8*count + k] = (v.rrr_leg1_w_1_x + (v.rrr_leg1_w_1_y + rrr_leg1_w_2_x)) +
+            (rrr_leg1_w_2_y + (rrr_leg1_least_pivots + v.rrr_leg1_disc_1));
         const real rrr_leg1_rho2_1_t = m->rrr_leg1_rho2_1_t[i];
         const real rrr_leg1_size = m->rrr_leg1_size[i];
-        o[7*count + k] = UNLESS(magnitude(rrr_leg1_rho2_1) >
-            TOLERANCE*TOLERANCE*rrr_leg1_rho2_1_t) + UNLESS(magnitude(rrr_leg1_r_1_in_axes2_y) >
+        o[7*count + k] = UNLESS(magnitude(v.rrr_leg1_rho2_1) >
+            TOLERANCE*TOLERANCE*rrr_leg1_rho2_1_t) + UNLESS(magnitude(v.rrr_leg1_r_1_in_axes2_y) >
             TOLERANCE*rrr_leg1_size);
-        o[6*count + k] = UNLESS(rrr_leg1_disc_1 >= 0);
+        o[6*count + k] = UNLESS(v.rrr_leg1_disc_1 >= 0);
     }
 }
 
@@ -4888,9 +3751,9 @@ INLINE void condition_place_rrr_leg1(size_t w, size_t count, const real *o, size
     real *pivots, real *reach, verdict *t)
 {
     for (size_t k = 0; k < w; ++k) {
-        H[0*NU*w + k] = o[0*count + first + k];
+        H[0*w + k] = o[0*count + first + k];
         H[NU*w + k] = o[1*count + first + k];
-        H[(0*NU + 1)*w + k] = o[2*count + first + k];
+        H[1*w + k] = o[2*count + first + k];
         H[(NU + 1)*w + k] = o[3*count + first + k];
         pivots[0*w + k] = o[4*count + first + k];
         reach[0*w + k] = o[5*count + first + k];
@@ -4900,104 +3763,46 @@ INLINE void condition_place_rrr_leg1(size_t w, size_t count, const real *o, size
     }
 }
 
-INLINE void condition_legs_rrr(const prepared *m, size_t w, size_t leg, size_t legs, const real
-    *s, size_t states, size_t count, int add, real *terms, real *o)
+INLINE void condition_legs_rrr(const prepared *m, size_t w, size_t leg, size_t legs, size_t
+    states, size_t count, int add, const real *X, real *terms, real *o)
 {
     for (size_t k = 0; k < count; ++k) {
         const size_t i = leg + legs*k;
         const size_t j = states*k;
-        /* (rrr-S) from the base point to the connection point */
-        const real rrr_base_point_x = m->rrr_base_point_x[i];
-        const real rrr_platform_point_x = m->rrr_platform_point_x[i];
-        const real t_x = s[0*w + j];
-        const real rrr_S_x = rrr_platform_point_x + t_x - rrr_base_point_x;
-        const real rrr_base_point_y = m->rrr_base_point_y[i];
-        const real rrr_platform_point_y = m->rrr_platform_point_y[i];
-        const real t_y = s[1*w + j];
-        const real rrr_S_y = rrr_platform_point_y + t_y - rrr_base_point_y;
-        /* (rrr-Kd_1) projection on the centre's direction, from the distance fixed by the joints beyond
-           joint 1 */
-        const real rrr_Kd_1_t_3 = rrr_S_x*rrr_S_x + rrr_S_y*rrr_S_y;
-        const real rrr_Kd_1_t = m->rrr_Kd_1_t[i];
-        const real rrr_Kd_1_t_2 = m->rrr_Kd_1_t_2[i];
-        const real rrr_Kd_1 = rrr_Kd_1_t + R(0.5)*rrr_Kd_1_t_3 - rrr_Kd_1_t_2;
-        /* (rrr-px_1) component along the reference direction */
-        const real rrr_base_frame_xx = m->rrr_base_frame_xx[i];
-        const real rrr_base_frame_yx = m->rrr_base_frame_yx[i];
-        const real rrr_px_1 = rrr_S_x*rrr_base_frame_xx + rrr_S_y*rrr_base_frame_yx;
-        /* (rrr-py_1) component across the reference direction */
-        const real rrr_base_frame_xy = m->rrr_base_frame_xy[i];
-        const real rrr_base_frame_yy = m->rrr_base_frame_yy[i];
-        const real rrr_py_1 = rrr_S_x*rrr_base_frame_xy + rrr_S_y*rrr_base_frame_yy;
-        /* (rrr-Kc_1) factor of the cosine in the equation of joint 1 */
-        const real rrr_joint2_offset_x = m->rrr_joint2_offset_x[i];
-        const real rrr_Kc_1 = rrr_joint2_offset_x*rrr_px_1;
-        /* (rrr-Ks_1) factor of the sine in the equation of joint 1 */
-        const real rrr_Ks_1 = rrr_joint2_offset_x*rrr_py_1;
-        /* (rrr-rho2_1) squared amplitude */
-        const real rrr_rho2_1 = rrr_Kc_1*rrr_Kc_1 + rrr_Ks_1*rrr_Ks_1;
-        /* (rrr-disc_1) discriminant */
-        const real rrr_disc_1 = rrr_rho2_1 - rrr_Kd_1*rrr_Kd_1;
-        /* (rrr-root_1) root, with the sign of the branch */
-        const real rrr_branch_1 = m->rrr_branch_1[i];
-        const real rrr_root_1 = rrr_branch_1*root(rrr_disc_1);
-        /* (rrr-c_1) cosine of the angle of joint 1 from its reference direction */
-        const real inv_rrr_rho2_1 = 1/rrr_rho2_1;
-        const real rrr_c_1 = inv_rrr_rho2_1*(rrr_Kc_1*rrr_Kd_1 - rrr_Ks_1*rrr_root_1);
-        /* (rrr-s_1) sine of the angle of joint 1 from its reference direction */
-        const real rrr_s_1 = inv_rrr_rho2_1*(rrr_Kc_1*rrr_root_1 + rrr_Kd_1*rrr_Ks_1);
-        /* (rrr-x_2) from the origin of joint 2 to the connection point */
-        const real inv_rrr_size_t = m->inv_rrr_size_t[i];
-        const real rrr_x_2_in_axes1_x = inv_rrr_size_t*rrr_Kd_1*rrr_joint2_offset_x -
-            rrr_joint2_offset_x;
-        /* (rrr-c_2) cosine of the angle of joint 2 from its reference direction */
-        const real inv_rrr_size_t_2 = m->inv_rrr_size_t_2[i];
-        const real rrr_platform_joint_offset_x = m->rrr_platform_joint_offset_x[i];
-        const real rrr_c_2 = inv_rrr_size_t_2*rrr_platform_joint_offset_x*rrr_x_2_in_axes1_x;
-        /* (rrr-s_2) sine of the angle of joint 2 from its reference direction */
-        const real rrr_s_2 =
-            -inv_rrr_size_t*inv_rrr_size_t_2*rrr_joint2_offset_x*rrr_platform_joint_offset_x*rrr_root_1;
-        /* (rrr-r_1) from joint 1 to the connection point, along the links */
-        const real rrr_r_1_in_axes1_x = rrr_joint2_offset_x + rrr_c_2*rrr_platform_joint_offset_x;
-        const real rrr_r_1_in_axes2_y = rrr_c_2*rrr_platform_joint_offset_x*rrr_s_2 -
-            rrr_r_1_in_axes1_x*rrr_s_2;
-        /* (rrr-w_1) reciprocal vector 1 */
-        const real rrr_w_1_t = rrr_c_1*rrr_s_2 + rrr_c_2*rrr_s_1;
-        const real rrr_w_1_t_2 = rrr_c_1*rrr_c_2 - rrr_s_1*rrr_s_2;
-        const real rrr_w_1_in_axes2_x = -1/rrr_r_1_in_axes2_y;
-        const real rrr_w_1_x = rrr_w_1_in_axes2_x*(rrr_base_frame_yy*rrr_w_1_t_2 -
-            rrr_base_frame_yx*rrr_w_1_t);
-        const real rrr_w_1_y = -rrr_w_1_in_axes2_x*(rrr_base_frame_xy*rrr_w_1_t_2 -
-            rrr_base_frame_xx*rrr_w_1_t);
+        values_rrr v;
+        stage_rrr_X(m, w, i, j, X, &v);
+        stage_rrr_H_condition(m, i, &v);
         /* (rrr-G) force at the connection point that balances the leg's inertia and weight along all
            degrees of freedom */
-        const real rrr_pivot_size = magnitude(rrr_rho2_1);
-        const real rrr_pivot_size_2 = magnitude(rrr_r_1_in_axes2_y);
+        const real rrr_pivot_size = magnitude(v.rrr_rho2_1);
+        const real rrr_pivot_size_2 = magnitude(v.rrr_r_1_in_axes2_y);
         const real inv_rrr_rho2_1_t = m->inv_rrr_rho2_1_t[i];
         const real inv_rrr_size = m->inv_rrr_size[i];
         const real rrr_least_pivots = lesser(root(inv_rrr_rho2_1_t*rrr_pivot_size),
             inv_rrr_size*rrr_pivot_size_2);
         /* (spread) rms distance of the platform points from their centroid */
         const real b_c_in_platform_x = m->b_c_in_platform_x;
+        const real rrr_platform_point_x = m->rrr_platform_point_x[i];
         const real rrr_spread_t = b_c_in_platform_x - rrr_platform_point_x;
         const real b_c_in_platform_y = m->b_c_in_platform_y;
+        const real rrr_platform_point_y = m->rrr_platform_point_y[i];
         const real rrr_spread_t_2 = b_c_in_platform_y - rrr_platform_point_y;
         const real rrr_spread_t_3 = rrr_spread_t*rrr_spread_t + rrr_spread_t_2*rrr_spread_t_2;
         /* (spread) rms distance of the platform points from their centroid */
         gather(&terms[1*count + k], add, rrr_spread_t_3);  /* spread_rrr */
         /* (rrr-w_1) reciprocal vector 1 */
-        o[0*count + k] = rrr_w_1_x;
-        o[1*count + k] = rrr_w_1_y;
+        o[0*count + k] = v.rrr_w_1_x;
+        o[1*count + k] = v.rrr_w_1_y;
         /* (rrr-G) force at the connection point that balances the leg's inertia and weight along all
            degrees of freedom */
         o[2*count + k] = rrr_least_pivots;
-        o[3*count + k] = rrr_disc_1;
-        o[6*count + k] = (rrr_w_1_x + rrr_w_1_y) + (rrr_least_pivots + rrr_disc_1);
+        o[3*count + k] = v.rrr_disc_1;
+        o[6*count + k] = (v.rrr_w_1_x + v.rrr_w_1_y) + (rrr_least_pivots + v.rrr_disc_1);
         const real rrr_rho2_1_t = m->rrr_rho2_1_t[i];
         const real rrr_size = m->rrr_size[i];
-        o[5*count + k] = UNLESS(magnitude(rrr_rho2_1) > TOLERANCE*TOLERANCE*rrr_rho2_1_t) +
-            UNLESS(magnitude(rrr_r_1_in_axes2_y) > TOLERANCE*rrr_size);
-        o[4*count + k] = UNLESS(rrr_disc_1 >= 0);
+        o[5*count + k] = UNLESS(magnitude(v.rrr_rho2_1) > TOLERANCE*TOLERANCE*rrr_rho2_1_t) +
+            UNLESS(magnitude(v.rrr_r_1_in_axes2_y) > TOLERANCE*rrr_size);
+        o[4*count + k] = UNLESS(v.rrr_disc_1 >= 0);
     }
 }
 
@@ -5005,7 +3810,7 @@ INLINE void condition_place_rrr(size_t w, size_t count, const real *o, size_t fi
     *pivots, real *reach, verdict *t)
 {
     for (size_t k = 0; k < w; ++k) {
-        H[(0*NU + 2)*w + k] = o[0*count + first + k];
+        H[2*w + k] = o[0*count + first + k];
         H[(NU + 2)*w + k] = o[1*count + first + k];
         pivots[1*w + k] = o[2*count + first + k];
         reach[1*w + k] = o[3*count + first + k];
@@ -5031,21 +3836,18 @@ INLINE void condition_after(size_t w, const real *sums, real *lengths, verdict *
 INLINE void condition_run(const prepared *m, const real *X, real *H, real *lengths, real *pivots,
     real *reach, verdict *t)
 {
-    real s[2] = {0};
     real sums[2] = {0};
-    real terms_rrr_leg1[2*LEGS(LEGS_OF_rrr_leg1)] = {0};
-    real o_rrr_leg1[9*LEGS(LEGS_OF_rrr_leg1)] = {0};
-    real terms_rrr[2*LEGS(LEGS_OF_rrr)] = {0};
-    real o_rrr[7*LEGS(LEGS_OF_rrr)] = {0};
-    condition_before(m, 1, X, s, lengths, t);
-    condition_legs_rrr_leg1(m, 1, 0, 1, s, 0, LEGS(LEGS_OF_rrr_leg1), 0, terms_rrr_leg1, o_rrr_leg1);
+    real terms_rrr_leg1[2*LEGS(LEGS_OF_rrr_leg1)] = {0}, o_rrr_leg1[9*LEGS(LEGS_OF_rrr_leg1)] = {0};
+    real terms_rrr[2*LEGS(LEGS_OF_rrr)] = {0}, o_rrr[7*LEGS(LEGS_OF_rrr)] = {0};
+    condition_before(m, 1, lengths, t);
+    condition_legs_rrr_leg1(m, 1, 0, 1, 0, LEGS(LEGS_OF_rrr_leg1), 0, X, terms_rrr_leg1, o_rrr_leg1);
+    condition_legs_rrr(m, 1, 0, 1, 0, LEGS(LEGS_OF_rrr), 0, X, terms_rrr, o_rrr);
     for (size_t leg = 0; leg < LEGS_OF_rrr_leg1; ++leg) {
         condition_place_rrr_leg1(1, LEGS(LEGS_OF_rrr_leg1), o_rrr_leg1, leg, H, pivots, reach, t);
     }
     for (size_t n = 0; n < 2; ++n) {
         sums[n] = total(terms_rrr_leg1 + n*LEGS(LEGS_OF_rrr_leg1), LEGS_OF_rrr_leg1);
     }
-    condition_legs_rrr(m, 1, 0, 1, s, 0, LEGS(LEGS_OF_rrr), 0, terms_rrr, o_rrr);
     for (size_t leg = 0; leg < LEGS_OF_rrr; ++leg) {
         condition_place_rrr(1, LEGS(LEGS_OF_rrr), o_rrr, leg, H, pivots, reach, t);
     }
@@ -5518,6 +4320,93 @@ INLINE void condition_one(const prepared *m, const real *X, real *sigma_out, rea
     }
 }
 
+INLINE void manipulability_one(const prepared *m, const real *X, real *measure_out, real
+    *isotropy_out, int *code)
+{
+    real H[NV*NU] = {0}, lengths[2] = {0}, pivots[NL] = {0}, reach[NL] = {0}, singular_values_1[NV] =
+        {0}, measure[1] = {0}, isotropy[1] = {0};
+    verdict why;
+    start(1, &why);
+    check(NQ, 1, X, why.invalid);
+    condition_run(m, X, H, lengths, pivots, reach, &why);
+    singular_values(NV, NU, H, singular_values_1);
+    spread(NV, singular_values_1, measure, isotropy);
+    check(1, 1, measure, why.overflow);
+    check(1, 1, isotropy, why.overflow);
+    judge(&why, code);
+    copy(1, measure, measure_out);
+    copy(1, isotropy, isotropy_out);
+    if (*code != OK) {
+        refuse(1, measure_out);
+        refuse(1, isotropy_out);
+    }
+}
+
+INLINE void singularity_distance_one(const prepared *m, const real *X, real *actuators_out, real
+    *legs_out, int *code)
+{
+    real H[NV*NU] = {0}, lengths[2] = {0}, pivots[NL] = {0}, reach[NL] = {0}, singular_values_1[NV] =
+        {0}, spread_1[1] = {0}, actuators[1] = {0}, legs[1] = {0};
+    verdict why;
+    start(1, &why);
+    check(NQ, 1, X, why.invalid);
+    condition_run(m, X, H, lengths, pivots, reach, &why);
+    singular_values(NV, NU, H, singular_values_1);
+    spread(NV, singular_values_1, spread_1, actuators);
+    least_entry(NL, pivots, legs);
+    check(1, 1, actuators, why.overflow);
+    check(1, 1, legs, why.overflow);
+    judge(&why, code);
+    copy(1, actuators, actuators_out);
+    copy(1, legs, legs_out);
+    if (*code != OK) {
+        refuse(1, actuators_out);
+        refuse(1, legs_out);
+    }
+}
+
+INLINE void force_distribution_one(const prepared *m, const real *X, const real *V, const real *A,
+    const real *tau_min, const real *tau_max, const real *wrench, const real *reference, real
+    *tau_out, int *code)
+{
+    real wrench_in[NW], reference_in[NU], required[NV] = {0}, H[NV*NU] = {0}, subtract_1[NV] = {0},
+        least_norm_1[NU] = {0}, null_basis_1[NU] = {0}, transposed_1[NU] = {0}, product_1[NU*NU] =
+        {0}, times_1[NU] = {0}, add_1[NU] = {0}, tau[NU] = {0};
+    verdict why;
+    start(1, &why);
+    const real total_in = total(X, NQ) + total(V, NV) + total(A, NV) + total(tau_min, NU) +
+        total(tau_max, NU);
+    if (!is_finite(total_in)) {
+        check(NQ, 1, X, why.invalid);
+        check(NV, 1, V, why.invalid);
+        check(NV, 1, A, why.invalid);
+        check(NU, 1, tau_min, why.invalid);
+        check(NU, 1, tau_max, why.invalid);
+    }
+    wrench = optional(NW, wrench, 0, wrench_in, why.invalid);
+    reference = optional(NU, reference, 0, reference_in, why.invalid);
+    required_run(m, X, V, A, required, H, &why);
+    const real *const extend_1 = wrench;
+    for (size_t i = 0; i < NV; ++i) {
+        subtract_1[i] = required[i] - extend_1[i];
+    }
+    least_norm(NV, NU, H, subtract_1, least_norm_1, why.singular);
+    null_basis(NV, NU, NV, H, null_basis_1);
+    transpose(NU, 1, 1, null_basis_1, transposed_1);
+    product(NU, 1, NU, 1, null_basis_1, transposed_1, product_1);
+    product(NU, NU, 1, 1, product_1, reference, times_1);
+    for (size_t i = 0; i < NU; ++i) {
+        add_1[i] = least_norm_1[i] + times_1[i];
+    }
+    nearest_within(NU, add_1, product_1, tau_min, tau_max, tau, why.unreachable, why.overflow);
+    check(NU, 1, tau, why.overflow);
+    judge(&why, code);
+    copy(NU, tau, tau_out);
+    if (*code != OK) {
+        refuse(NU, tau_out);
+    }
+}
+
 static void mismatch_one(const prepared *m, const real *X, const real *q_actuated, real *gap_out,
     int *code)
 {
@@ -5530,9 +4419,9 @@ static void mismatch_one(const prepared *m, const real *X, const real *q_actuate
         check(NU, 1, q_actuated, why.invalid);
     }
     inverse_kinematics_run(m, X, q, &why);
-    const real *const take_1 = q;
+    const real *const q_of_inverse_kinematics_from_0 = q;
     for (size_t i = 0; i < NU; ++i) {
-        subtract_1[i] = q_actuated[i] - take_1[i];
+        subtract_1[i] = q_actuated[i] - q_of_inverse_kinematics_from_0[i];
     }
     for (size_t i = 0; i < NU; ++i) {
         gap[i] = subtract_1[i];
@@ -5966,235 +4855,214 @@ INLINE void interpolate_one(const real *X0, const real *X1, const real *s, real 
 
 /* ---- one state, and batches ---- */
 
-int fivebar_redundant_M(const fivebar_redundant_model *model, const fivebar_redundant_real *X,
-    fivebar_redundant_real *M)
+int fivebar_redundant_M(const prepared *model, const real *X, real *M)
 {
     int code;
     M_one(model, X, M, &code);
     return code;
 }
 
-size_t fivebar_redundant_M_batch(const fivebar_redundant_model *model, size_t n, const
-    fivebar_redundant_real *X, fivebar_redundant_real *M, int *status)
+size_t fivebar_redundant_M_batch(const prepared *model, size_t n, const real *X, real *M, int
+    *status)
 {
-    size_t failed = 0, i = 0;
-    for (; LANES > 1 && i + LANES <= n; i += LANES) {
-        int codes[LANES];
-        M_lanes(model, X + NQ*i, M + NV*NV*i, codes);
-        for (size_t k = 0; k < LANES; ++k) {
+    size_t failed = 0, w;
+    for (size_t i = 0; i < n; i += w) {
+        int codes[LANES] = {INVALID};
+        w = LANES > 1 && i + LANES <= n ? LANES : 1;
+        if (w > 1) {
+            M_lanes(model, X + NQ*i, M + NV*NV*i, codes);
+        }
+        for (size_t k = 0; k < w; ++k) {
             if (codes[k] != OK) {
                 codes[k] = fivebar_redundant_M(model, X + NQ*(i + k), M + NV*NV*(i + k));
             }
         }
-        failed += record(codes, LANES, status ? status + i : NULL);
-    }
-    for (; i < n; ++i) {
-        const int code = fivebar_redundant_M(model, X + NQ*i, M + NV*NV*i);
-        failed += record(&code, 1, status ? status + i : NULL);
+        failed += record(codes, w, status ? status + i : NULL);
     }
     return failed;
 }
 
-int fivebar_redundant_Z(const fivebar_redundant_model *model, const fivebar_redundant_real *X,
-    const fivebar_redundant_real *V, fivebar_redundant_real *Z)
+int fivebar_redundant_Z(const prepared *model, const real *X, const real *V, real *Z)
 {
     int code;
     Z_one(model, X, V, Z, &code);
     return code;
 }
 
-size_t fivebar_redundant_Z_batch(const fivebar_redundant_model *model, size_t n, const
-    fivebar_redundant_real *X, const fivebar_redundant_real *V, fivebar_redundant_real *Z, int
-    *status)
+size_t fivebar_redundant_Z_batch(const prepared *model, size_t n, const real *X, const real *V,
+    real *Z, int *status)
 {
-    size_t failed = 0, i = 0;
-    for (; LANES > 1 && i + LANES <= n; i += LANES) {
-        int codes[LANES];
-        Z_lanes(model, X + NQ*i, V + NV*i, Z + NV*i, codes);
-        for (size_t k = 0; k < LANES; ++k) {
+    size_t failed = 0, w;
+    for (size_t i = 0; i < n; i += w) {
+        int codes[LANES] = {INVALID};
+        w = LANES > 1 && i + LANES <= n ? LANES : 1;
+        if (w > 1) {
+            Z_lanes(model, X + NQ*i, V + NV*i, Z + NV*i, codes);
+        }
+        for (size_t k = 0; k < w; ++k) {
             if (codes[k] != OK) {
                 codes[k] = fivebar_redundant_Z(model, X + NQ*(i + k), V + NV*(i + k), Z + NV*(i + k));
             }
         }
-        failed += record(codes, LANES, status ? status + i : NULL);
-    }
-    for (; i < n; ++i) {
-        const int code = fivebar_redundant_Z(model, X + NQ*i, V + NV*i, Z + NV*i);
-        failed += record(&code, 1, status ? status + i : NULL);
+        failed += record(codes, w, status ? status + i : NULL);
     }
     return failed;
 }
 
-int fivebar_redundant_H(const fivebar_redundant_model *model, const fivebar_redundant_real *X,
-    fivebar_redundant_real *H)
+int fivebar_redundant_H(const prepared *model, const real *X, real *H)
 {
     int code;
     H_one(model, X, H, &code);
     return code;
 }
 
-size_t fivebar_redundant_H_batch(const fivebar_redundant_model *model, size_t n, const
-    fivebar_redundant_real *X, fivebar_redundant_real *H, int *status)
+size_t fivebar_redundant_H_batch(const prepared *model, size_t n, const real *X, real *H, int
+    *status)
 {
-    size_t failed = 0, i = 0;
-    for (; LANES > 1 && i + LANES <= n; i += LANES) {
-        int codes[LANES];
-        H_lanes(model, X + NQ*i, H + NV*NU*i, codes);
-        for (size_t k = 0; k < LANES; ++k) {
+    size_t failed = 0, w;
+    for (size_t i = 0; i < n; i += w) {
+        int codes[LANES] = {INVALID};
+        w = LANES > 1 && i + LANES <= n ? LANES : 1;
+        if (w > 1) {
+            H_lanes(model, X + NQ*i, H + NV*NU*i, codes);
+        }
+        for (size_t k = 0; k < w; ++k) {
             if (codes[k] != OK) {
                 codes[k] = fivebar_redundant_H(model, X + NQ*(i + k), H + NV*NU*(i + k));
             }
         }
-        failed += record(codes, LANES, status ? status + i : NULL);
-    }
-    for (; i < n; ++i) {
-        const int code = fivebar_redundant_H(model, X + NQ*i, H + NV*NU*i);
-        failed += record(&code, 1, status ? status + i : NULL);
+        failed += record(codes, w, status ? status + i : NULL);
     }
     return failed;
 }
 
-int fivebar_redundant_inverse_kinematics(const fivebar_redundant_model *model, const
-    fivebar_redundant_real *X, fivebar_redundant_real *q)
+int fivebar_redundant_inverse_kinematics(const prepared *model, const real *X, real *q)
 {
     int code;
     inverse_kinematics_one(model, X, q, &code);
     return code;
 }
 
-size_t fivebar_redundant_inverse_kinematics_batch(const fivebar_redundant_model *model, size_t n,
-    const fivebar_redundant_real *X, fivebar_redundant_real *q, int *status)
+size_t fivebar_redundant_inverse_kinematics_batch(const prepared *model, size_t n, const real *X,
+    real *q, int *status)
 {
-    size_t failed = 0, i = 0;
-    for (; LANES > 1 && i + LANES <= n; i += LANES) {
-        int codes[LANES];
-        inverse_kinematics_lanes(model, X + NQ*i, q + NJ*i, codes);
-        for (size_t k = 0; k < LANES; ++k) {
+    size_t failed = 0, w;
+    for (size_t i = 0; i < n; i += w) {
+        int codes[LANES] = {INVALID};
+        w = LANES > 1 && i + LANES <= n ? LANES : 1;
+        if (w > 1) {
+            inverse_kinematics_lanes(model, X + NQ*i, q + NJ*i, codes);
+        }
+        for (size_t k = 0; k < w; ++k) {
             if (codes[k] != OK) {
                 codes[k] = fivebar_redundant_inverse_kinematics(model, X + NQ*(i + k), q + NJ*(i + k));
             }
         }
-        failed += record(codes, LANES, status ? status + i : NULL);
-    }
-    for (; i < n; ++i) {
-        const int code = fivebar_redundant_inverse_kinematics(model, X + NQ*i, q + NJ*i);
-        failed += record(&code, 1, status ? status + i : NULL);
+        failed += record(codes, w, status ? status + i : NULL);
     }
     return failed;
 }
 
-int fivebar_redundant_joint_rates(const fivebar_redundant_model *model, const
-    fivebar_redundant_real *X, const fivebar_redundant_real *V, fivebar_redundant_real *rates)
+int fivebar_redundant_joint_rates(const prepared *model, const real *X, const real *V, real
+    *rates)
 {
     int code;
     joint_rates_one(model, X, V, rates, &code);
     return code;
 }
 
-size_t fivebar_redundant_joint_rates_batch(const fivebar_redundant_model *model, size_t n, const
-    fivebar_redundant_real *X, const fivebar_redundant_real *V, fivebar_redundant_real *rates, int
-    *status)
+size_t fivebar_redundant_joint_rates_batch(const prepared *model, size_t n, const real *X, const
+    real *V, real *rates, int *status)
 {
-    size_t failed = 0, i = 0;
-    for (; LANES > 1 && i + LANES <= n; i += LANES) {
-        int codes[LANES];
-        joint_rates_lanes(model, X + NQ*i, V + NV*i, rates + NJ*i, codes);
-        for (size_t k = 0; k < LANES; ++k) {
+    size_t failed = 0, w;
+    for (size_t i = 0; i < n; i += w) {
+        int codes[LANES] = {INVALID};
+        w = LANES > 1 && i + LANES <= n ? LANES : 1;
+        if (w > 1) {
+            joint_rates_lanes(model, X + NQ*i, V + NV*i, rates + NJ*i, codes);
+        }
+        for (size_t k = 0; k < w; ++k) {
             if (codes[k] != OK) {
                 codes[k] = fivebar_redundant_joint_rates(model, X + NQ*(i + k), V + NV*(i + k), rates + NJ*(i +
                     k));
             }
         }
-        failed += record(codes, LANES, status ? status + i : NULL);
-    }
-    for (; i < n; ++i) {
-        const int code = fivebar_redundant_joint_rates(model, X + NQ*i, V + NV*i, rates + NJ*i);
-        failed += record(&code, 1, status ? status + i : NULL);
+        failed += record(codes, w, status ? status + i : NULL);
     }
     return failed;
 }
 
-int fivebar_redundant_joint_accelerations(const fivebar_redundant_model *model, const
-    fivebar_redundant_real *X, const fivebar_redundant_real *V, const fivebar_redundant_real *A,
-    fivebar_redundant_real *accelerations)
+int fivebar_redundant_joint_accelerations(const prepared *model, const real *X, const real *V,
+    const real *A, real *accelerations)
 {
     int code;
     joint_accelerations_one(model, X, V, A, accelerations, &code);
     return code;
 }
 
-size_t fivebar_redundant_joint_accelerations_batch(const fivebar_redundant_model *model, size_t n,
-    const fivebar_redundant_real *X, const fivebar_redundant_real *V, const fivebar_redundant_real
-    *A, fivebar_redundant_real *accelerations, int *status)
+size_t fivebar_redundant_joint_accelerations_batch(const prepared *model, size_t n, const real *X,
+    const real *V, const real *A, real *accelerations, int *status)
 {
-    size_t failed = 0, i = 0;
-    for (; LANES > 1 && i + LANES <= n; i += LANES) {
-        int codes[LANES];
-        joint_accelerations_lanes(model, X + NQ*i, V + NV*i, A + NV*i, accelerations + NJ*i, codes);
-        for (size_t k = 0; k < LANES; ++k) {
+    size_t failed = 0, w;
+    for (size_t i = 0; i < n; i += w) {
+        int codes[LANES] = {INVALID};
+        w = LANES > 1 && i + LANES <= n ? LANES : 1;
+        if (w > 1) {
+            joint_accelerations_lanes(model, X + NQ*i, V + NV*i, A + NV*i, accelerations + NJ*i, codes);
+        }
+        for (size_t k = 0; k < w; ++k) {
             if (codes[k] != OK) {
                 codes[k] = fivebar_redundant_joint_accelerations(model, X + NQ*(i + k), V + NV*(i + k), A + NV*(i
                     + k), accelerations + NJ*(i + k));
             }
         }
-        failed += record(codes, LANES, status ? status + i : NULL);
-    }
-    for (; i < n; ++i) {
-        const int code = fivebar_redundant_joint_accelerations(model, X + NQ*i, V + NV*i, A + NV*i,
-            accelerations + NJ*i);
-        failed += record(&code, 1, status ? status + i : NULL);
+        failed += record(codes, w, status ? status + i : NULL);
     }
     return failed;
 }
 
-int fivebar_redundant_dynamics(const fivebar_redundant_model *model, const fivebar_redundant_real
-    *X, const fivebar_redundant_real *V, fivebar_redundant_real *M, fivebar_redundant_real *Z,
-    fivebar_redundant_real *H)
+int fivebar_redundant_dynamics(const prepared *model, const real *X, const real *V, real *M, real
+    *Z, real *H)
 {
     int code;
     dynamics_one(model, X, V, M, Z, H, &code);
     return code;
 }
 
-size_t fivebar_redundant_dynamics_batch(const fivebar_redundant_model *model, size_t n, const
-    fivebar_redundant_real *X, const fivebar_redundant_real *V, fivebar_redundant_real *M,
-    fivebar_redundant_real *Z, fivebar_redundant_real *H, int *status)
+size_t fivebar_redundant_dynamics_batch(const prepared *model, size_t n, const real *X, const real
+    *V, real *M, real *Z, real *H, int *status)
 {
-    size_t failed = 0, i = 0;
-    for (; LANES > 1 && i + LANES <= n; i += LANES) {
-        int codes[LANES];
-        dynamics_lanes(model, X + NQ*i, V + NV*i, M + NV*NV*i, Z + NV*i, H + NV*NU*i, codes);
-        for (size_t k = 0; k < LANES; ++k) {
+    size_t failed = 0, w;
+    for (size_t i = 0; i < n; i += w) {
+        int codes[LANES] = {INVALID};
+        w = LANES > 1 && i + LANES <= n ? LANES : 1;
+        if (w > 1) {
+            dynamics_lanes(model, X + NQ*i, V + NV*i, M + NV*NV*i, Z + NV*i, H + NV*NU*i, codes);
+        }
+        for (size_t k = 0; k < w; ++k) {
             if (codes[k] != OK) {
                 codes[k] = fivebar_redundant_dynamics(model, X + NQ*(i + k), V + NV*(i + k), M + NV*NV*(i + k), Z
                     + NV*(i + k), H + NV*NU*(i + k));
             }
         }
-        failed += record(codes, LANES, status ? status + i : NULL);
-    }
-    for (; i < n; ++i) {
-        const int code = fivebar_redundant_dynamics(model, X + NQ*i, V + NV*i, M + NV*NV*i, Z + NV*i, H +
-            NV*NU*i);
-        failed += record(&code, 1, status ? status + i : NULL);
+        failed += record(codes, w, status ? status + i : NULL);
     }
     return failed;
 }
 
-int fivebar_redundant_inverse_dynamics(const fivebar_redundant_model *model, const
-    fivebar_redundant_real *X, const fivebar_redundant_real *V, const fivebar_redundant_real *A,
-    const fivebar_redundant_real *wrench, fivebar_redundant_real *tau)
+int fivebar_redundant_inverse_dynamics(const prepared *model, const real *X, const real *V, const
+    real *A, const real *wrench, real *tau)
 {
     int code;
     inverse_dynamics_one(model, X, V, A, wrench, NULL, tau, &code);
     return code;
 }
 
-size_t fivebar_redundant_inverse_dynamics_batch(const fivebar_redundant_model *model, size_t n,
-    const fivebar_redundant_real *X, const fivebar_redundant_real *V, const fivebar_redundant_real
-    *A, const fivebar_redundant_real *wrench, fivebar_redundant_real *tau, int *status)
+size_t fivebar_redundant_inverse_dynamics_batch(const prepared *model, size_t n, const real *X,
+    const real *V, const real *A, const real *wrench, real *tau, int *status)
 {
-    size_t failed = 0, i = 0;
-    for (; i < n; ++i) {
+    size_t failed = 0;
+    for (size_t i = 0; i < n; ++i) {
         const int code = fivebar_redundant_inverse_dynamics(model, X + NQ*i, V + NV*i, A + NV*i, wrench ?
             wrench + NW*i : NULL, tau + NU*i);
         failed += record(&code, 1, status ? status + i : NULL);
@@ -6202,23 +5070,20 @@ size_t fivebar_redundant_inverse_dynamics_batch(const fivebar_redundant_model *m
     return failed;
 }
 
-int fivebar_redundant_inverse_dynamics_weighted(const fivebar_redundant_model *model, const
-    fivebar_redundant_real *X, const fivebar_redundant_real *V, const fivebar_redundant_real *A,
-    const fivebar_redundant_real *wrench, const fivebar_redundant_real *weights,
-    fivebar_redundant_real *tau)
+int fivebar_redundant_inverse_dynamics_weighted(const prepared *model, const real *X, const real
+    *V, const real *A, const real *wrench, const real *weights, real *tau)
 {
     int code;
     inverse_dynamics_one(model, X, V, A, wrench, weights, tau, &code);
     return code;
 }
 
-size_t fivebar_redundant_inverse_dynamics_weighted_batch(const fivebar_redundant_model *model,
-    size_t n, const fivebar_redundant_real *X, const fivebar_redundant_real *V, const
-    fivebar_redundant_real *A, const fivebar_redundant_real *wrench, const fivebar_redundant_real
-    *weights, fivebar_redundant_real *tau, int *status)
+size_t fivebar_redundant_inverse_dynamics_weighted_batch(const prepared *model, size_t n, const
+    real *X, const real *V, const real *A, const real *wrench, const real *weights, real *tau, int
+    *status)
 {
-    size_t failed = 0, i = 0;
-    for (; i < n; ++i) {
+    size_t failed = 0;
+    for (size_t i = 0; i < n; ++i) {
         const int code = fivebar_redundant_inverse_dynamics_weighted(model, X + NQ*i, V + NV*i, A + NV*i,
             wrench ? wrench + NW*i : NULL, weights + NU*i, tau + NU*i);
         failed += record(&code, 1, status ? status + i : NULL);
@@ -6226,43 +5091,38 @@ size_t fivebar_redundant_inverse_dynamics_weighted_batch(const fivebar_redundant
     return failed;
 }
 
-int fivebar_redundant_forward_dynamics(const fivebar_redundant_model *model, const
-    fivebar_redundant_real *X, const fivebar_redundant_real *V, const fivebar_redundant_real *tau,
-    const fivebar_redundant_real *wrench, fivebar_redundant_real *A)
+int fivebar_redundant_forward_dynamics(const prepared *model, const real *X, const real *V, const
+    real *tau, const real *wrench, real *A)
 {
     int code;
     forward_dynamics_one(model, X, V, tau, wrench, A, &code);
     return code;
 }
 
-size_t fivebar_redundant_forward_dynamics_batch(const fivebar_redundant_model *model, size_t n,
-    const fivebar_redundant_real *X, const fivebar_redundant_real *V, const fivebar_redundant_real
-    *tau, const fivebar_redundant_real *wrench, fivebar_redundant_real *A, int *status)
+size_t fivebar_redundant_forward_dynamics_batch(const prepared *model, size_t n, const real *X,
+    const real *V, const real *tau, const real *wrench, real *A, int *status)
 {
-    size_t failed = 0, i = 0;
-    for (; LANES > 1 && i + LANES <= n; i += LANES) {
-        int codes[LANES];
-        forward_dynamics_lanes(model, X + NQ*i, V + NV*i, tau + NU*i, wrench ? wrench + NW*i : NULL, A +
-            NV*i, codes);
-        for (size_t k = 0; k < LANES; ++k) {
+    size_t failed = 0, w;
+    for (size_t i = 0; i < n; i += w) {
+        int codes[LANES] = {INVALID};
+        w = LANES > 1 && i + LANES <= n ? LANES : 1;
+        if (w > 1) {
+            forward_dynamics_lanes(model, X + NQ*i, V + NV*i, tau + NU*i, wrench ? wrench + NW*i : NULL, A +
+                NV*i, codes);
+        }
+        for (size_t k = 0; k < w; ++k) {
             if (codes[k] != OK) {
                 codes[k] = fivebar_redundant_forward_dynamics(model, X + NQ*(i + k), V + NV*(i + k), tau + NU*(i +
                     k), wrench ? wrench + NW*(i + k) : NULL, A + NV*(i + k));
             }
         }
-        failed += record(codes, LANES, status ? status + i : NULL);
-    }
-    for (; i < n; ++i) {
-        const int code = fivebar_redundant_forward_dynamics(model, X + NQ*i, V + NV*i, tau + NU*i, wrench
-            ? wrench + NW*i : NULL, A + NV*i);
-        failed += record(&code, 1, status ? status + i : NULL);
+        failed += record(codes, w, status ? status + i : NULL);
     }
     return failed;
 }
 
-int fivebar_redundant_complete_acceleration(const fivebar_redundant_model *model, const
-    fivebar_redundant_real *X, const fivebar_redundant_real *V, const fivebar_redundant_real *A,
-    const fivebar_redundant_real *wrench, fivebar_redundant_real *completed)
+int fivebar_redundant_complete_acceleration(const prepared *model, const real *X, const real *V,
+    const real *A, const real *wrench, real *completed)
 {
     int code;
     (void)model;
@@ -6273,13 +5133,11 @@ int fivebar_redundant_complete_acceleration(const fivebar_redundant_model *model
     return code;
 }
 
-size_t fivebar_redundant_complete_acceleration_batch(const fivebar_redundant_model *model, size_t
-    n, const fivebar_redundant_real *X, const fivebar_redundant_real *V, const
-    fivebar_redundant_real *A, const fivebar_redundant_real *wrench, fivebar_redundant_real
-    *completed, int *status)
+size_t fivebar_redundant_complete_acceleration_batch(const prepared *model, size_t n, const real
+    *X, const real *V, const real *A, const real *wrench, real *completed, int *status)
 {
-    size_t failed = 0, i = 0;
-    for (; i < n; ++i) {
+    size_t failed = 0;
+    for (size_t i = 0; i < n; ++i) {
         const int code = fivebar_redundant_complete_acceleration(model, X + NQ*i, V + NV*i, A + NV*i,
             wrench ? wrench + NW*i : NULL, completed + NV*i);
         failed += record(&code, 1, status ? status + i : NULL);
@@ -6287,21 +5145,19 @@ size_t fivebar_redundant_complete_acceleration_batch(const fivebar_redundant_mod
     return failed;
 }
 
-int fivebar_redundant_leg_reactions(const fivebar_redundant_model *model, const
-    fivebar_redundant_real *X, const fivebar_redundant_real *V, const fivebar_redundant_real *A,
-    const fivebar_redundant_real *wrench, fivebar_redundant_real *forces)
+int fivebar_redundant_leg_reactions(const prepared *model, const real *X, const real *V, const
+    real *A, const real *wrench, real *forces)
 {
     int code;
     leg_reactions_one(model, X, V, A, wrench, forces, &code);
     return code;
 }
 
-size_t fivebar_redundant_leg_reactions_batch(const fivebar_redundant_model *model, size_t n, const
-    fivebar_redundant_real *X, const fivebar_redundant_real *V, const fivebar_redundant_real *A,
-    const fivebar_redundant_real *wrench, fivebar_redundant_real *forces, int *status)
+size_t fivebar_redundant_leg_reactions_batch(const prepared *model, size_t n, const real *X, const
+    real *V, const real *A, const real *wrench, real *forces, int *status)
 {
-    size_t failed = 0, i = 0;
-    for (; i < n; ++i) {
+    size_t failed = 0;
+    for (size_t i = 0; i < n; ++i) {
         const int code = fivebar_redundant_leg_reactions(model, X + NQ*i, V + NV*i, A + NV*i, wrench ?
             wrench + NW*i : NULL, forces + 6*i);
         failed += record(&code, 1, status ? status + i : NULL);
@@ -6309,81 +5165,135 @@ size_t fivebar_redundant_leg_reactions_batch(const fivebar_redundant_model *mode
     return failed;
 }
 
-int fivebar_redundant_energy(const fivebar_redundant_model *model, const fivebar_redundant_real
-    *X, const fivebar_redundant_real *V, fivebar_redundant_real *kinetic, fivebar_redundant_real
-    *potential)
+int fivebar_redundant_energy(const prepared *model, const real *X, const real *V, real *kinetic,
+    real *potential)
 {
     int code;
     energy_one(model, X, V, kinetic, potential, &code);
     return code;
 }
 
-size_t fivebar_redundant_energy_batch(const fivebar_redundant_model *model, size_t n, const
-    fivebar_redundant_real *X, const fivebar_redundant_real *V, fivebar_redundant_real *kinetic,
-    fivebar_redundant_real *potential, int *status)
+size_t fivebar_redundant_energy_batch(const prepared *model, size_t n, const real *X, const real
+    *V, real *kinetic, real *potential, int *status)
 {
-    size_t failed = 0, i = 0;
-    for (; i < n; ++i) {
+    size_t failed = 0;
+    for (size_t i = 0; i < n; ++i) {
         const int code = fivebar_redundant_energy(model, X + NQ*i, V + NV*i, kinetic + i, potential + i);
         failed += record(&code, 1, status ? status + i : NULL);
     }
     return failed;
 }
 
-int fivebar_redundant_null_space(const fivebar_redundant_model *model, const
-    fivebar_redundant_real *X, fivebar_redundant_real *basis)
+int fivebar_redundant_null_space(const prepared *model, const real *X, real *basis)
 {
     int code;
     null_space_one(model, X, basis, &code);
     return code;
 }
 
-size_t fivebar_redundant_null_space_batch(const fivebar_redundant_model *model, size_t n, const
-    fivebar_redundant_real *X, fivebar_redundant_real *basis, int *status)
+size_t fivebar_redundant_null_space_batch(const prepared *model, size_t n, const real *X, real
+    *basis, int *status)
 {
-    size_t failed = 0, i = 0;
-    for (; i < n; ++i) {
+    size_t failed = 0;
+    for (size_t i = 0; i < n; ++i) {
         const int code = fivebar_redundant_null_space(model, X + NQ*i, basis + NU*i);
         failed += record(&code, 1, status ? status + i : NULL);
     }
     return failed;
 }
 
-int fivebar_redundant_condition(const fivebar_redundant_model *model, const fivebar_redundant_real
-    *X, fivebar_redundant_real *sigma, fivebar_redundant_real *legs)
+int fivebar_redundant_condition(const prepared *model, const real *X, real *sigma, real *legs)
 {
     int code;
     condition_one(model, X, sigma, legs, &code);
     return code;
 }
 
-size_t fivebar_redundant_condition_batch(const fivebar_redundant_model *model, size_t n, const
-    fivebar_redundant_real *X, fivebar_redundant_real *sigma, fivebar_redundant_real *legs, int
-    *status)
+size_t fivebar_redundant_condition_batch(const prepared *model, size_t n, const real *X, real
+    *sigma, real *legs, int *status)
 {
-    size_t failed = 0, i = 0;
-    for (; i < n; ++i) {
+    size_t failed = 0;
+    for (size_t i = 0; i < n; ++i) {
         const int code = fivebar_redundant_condition(model, X + NQ*i, sigma + 2*i, legs + 2*i);
         failed += record(&code, 1, status ? status + i : NULL);
     }
     return failed;
 }
 
-int fivebar_redundant_forward_kinematics(const fivebar_redundant_model *model, const
-    fivebar_redundant_real *q_actuated, const fivebar_redundant_real *X0, fivebar_redundant_real
-    *X)
+int fivebar_redundant_manipulability(const prepared *model, const real *X, real *measure, real
+    *isotropy)
+{
+    int code;
+    manipulability_one(model, X, measure, isotropy, &code);
+    return code;
+}
+
+size_t fivebar_redundant_manipulability_batch(const prepared *model, size_t n, const real *X, real
+    *measure, real *isotropy, int *status)
+{
+    size_t failed = 0;
+    for (size_t i = 0; i < n; ++i) {
+        const int code = fivebar_redundant_manipulability(model, X + NQ*i, measure + i, isotropy + i);
+        failed += record(&code, 1, status ? status + i : NULL);
+    }
+    return failed;
+}
+
+int fivebar_redundant_singularity_distance(const prepared *model, const real *X, real *actuators,
+    real *legs)
+{
+    int code;
+    singularity_distance_one(model, X, actuators, legs, &code);
+    return code;
+}
+
+size_t fivebar_redundant_singularity_distance_batch(const prepared *model, size_t n, const real
+    *X, real *actuators, real *legs, int *status)
+{
+    size_t failed = 0;
+    for (size_t i = 0; i < n; ++i) {
+        const int code = fivebar_redundant_singularity_distance(model, X + NQ*i, actuators + i, legs + i);
+        failed += record(&code, 1, status ? status + i : NULL);
+    }
+    return failed;
+}
+
+int fivebar_redundant_force_distribution(const prepared *model, const real *X, const real *V,
+    const real *A, const real *tau_min, const real *tau_max, const real *wrench, const real
+    *reference, real *tau)
+{
+    int code;
+    force_distribution_one(model, X, V, A, tau_min, tau_max, wrench, reference, tau, &code);
+    return code;
+}
+
+size_t fivebar_redundant_force_distribution_batch(const prepared *model, size_t n, const real *X,
+    const real *V, const real *A, const real *tau_min, const real *tau_max, const real *wrench,
+    const real *reference, real *tau, int *status)
+{
+    size_t failed = 0;
+    for (size_t i = 0; i < n; ++i) {
+        const int code = fivebar_redundant_force_distribution(model, X + NQ*i, V + NV*i, A + NV*i, tau_min
+            + NU*i, tau_max + NU*i, wrench ? wrench + NW*i : NULL, reference ? reference + NU*i : NULL,
+            tau + NU*i);
+        failed += record(&code, 1, status ? status + i : NULL);
+    }
+    return failed;
+}
+
+int fivebar_redundant_forward_kinematics(const prepared *model, const real *q_actuated, const real
+    *X0, real *X)
 {
     int code;
     forward_kinematics_one(model, q_actuated, X0, X, &code);
     return code;
 }
 
-size_t fivebar_redundant_forward_kinematics_batch(const fivebar_redundant_model *model, size_t n,
-    const fivebar_redundant_real *q_actuated, const fivebar_redundant_real *X0,
-    fivebar_redundant_real *X, int *status)
+size_t fivebar_redundant_forward_kinematics_batch(const prepared *model, size_t n, const real
+    *q_actuated, const real *X0, real *X, int *status)
 {
-    size_t failed = 0, i = 0;
-    for (; i < n; ++i) {
+    size_t failed = 0;
+    for (size_t i = 0; i < n; ++i) {
         const int code = fivebar_redundant_forward_kinematics(model, q_actuated + NU*i, X0 + NQ*i, X +
             NQ*i);
         failed += record(&code, 1, status ? status + i : NULL);
@@ -6391,8 +5301,7 @@ size_t fivebar_redundant_forward_kinematics_batch(const fivebar_redundant_model 
     return failed;
 }
 
-int fivebar_redundant_dissipation(const fivebar_redundant_model *model, const
-    fivebar_redundant_real *X, const fivebar_redundant_real *V, fivebar_redundant_real
+int fivebar_redundant_dissipation(const prepared *model, const real *X, const real *V, real
     *dissipation)
 {
     int code;
@@ -6402,284 +5311,262 @@ int fivebar_redundant_dissipation(const fivebar_redundant_model *model, const
     return code;
 }
 
-size_t fivebar_redundant_dissipation_batch(const fivebar_redundant_model *model, size_t n, const
-    fivebar_redundant_real *X, const fivebar_redundant_real *V, fivebar_redundant_real
-    *dissipation, int *status)
+size_t fivebar_redundant_dissipation_batch(const prepared *model, size_t n, const real *X, const
+    real *V, real *dissipation, int *status)
 {
-    size_t failed = 0, i = 0;
-    for (; i < n; ++i) {
+    size_t failed = 0;
+    for (size_t i = 0; i < n; ++i) {
         const int code = fivebar_redundant_dissipation(model, X + NQ*i, V + NV*i, dissipation + i);
         failed += record(&code, 1, status ? status + i : NULL);
     }
     return failed;
 }
 
-int fivebar_redundant_momentum(const fivebar_redundant_model *model, const fivebar_redundant_real
-    *X, const fivebar_redundant_real *V, fivebar_redundant_real *momentum)
+int fivebar_redundant_momentum(const prepared *model, const real *X, const real *V, real
+    *momentum)
 {
     int code;
     momentum_one(model, X, V, momentum, &code);
     return code;
 }
 
-size_t fivebar_redundant_momentum_batch(const fivebar_redundant_model *model, size_t n, const
-    fivebar_redundant_real *X, const fivebar_redundant_real *V, fivebar_redundant_real *momentum,
-    int *status)
+size_t fivebar_redundant_momentum_batch(const prepared *model, size_t n, const real *X, const real
+    *V, real *momentum, int *status)
 {
-    size_t failed = 0, i = 0;
-    for (; LANES > 1 && i + LANES <= n; i += LANES) {
-        int codes[LANES];
-        momentum_lanes(model, X + NQ*i, V + NV*i, momentum + NV*i, codes);
-        for (size_t k = 0; k < LANES; ++k) {
+    size_t failed = 0, w;
+    for (size_t i = 0; i < n; i += w) {
+        int codes[LANES] = {INVALID};
+        w = LANES > 1 && i + LANES <= n ? LANES : 1;
+        if (w > 1) {
+            momentum_lanes(model, X + NQ*i, V + NV*i, momentum + NV*i, codes);
+        }
+        for (size_t k = 0; k < w; ++k) {
             if (codes[k] != OK) {
                 codes[k] = fivebar_redundant_momentum(model, X + NQ*(i + k), V + NV*(i + k), momentum + NV*(i +
                     k));
             }
         }
-        failed += record(codes, LANES, status ? status + i : NULL);
-    }
-    for (; i < n; ++i) {
-        const int code = fivebar_redundant_momentum(model, X + NQ*i, V + NV*i, momentum + NV*i);
-        failed += record(&code, 1, status ? status + i : NULL);
+        failed += record(codes, w, status ? status + i : NULL);
     }
     return failed;
 }
 
-int fivebar_redundant_joint_margins(const fivebar_redundant_model *model, const
-    fivebar_redundant_real *X, fivebar_redundant_real *margins)
+int fivebar_redundant_joint_margins(const prepared *model, const real *X, real *margins)
 {
     int code;
     joint_margins_one(model, X, margins, &code);
     return code;
 }
 
-size_t fivebar_redundant_joint_margins_batch(const fivebar_redundant_model *model, size_t n, const
-    fivebar_redundant_real *X, fivebar_redundant_real *margins, int *status)
+size_t fivebar_redundant_joint_margins_batch(const prepared *model, size_t n, const real *X, real
+    *margins, int *status)
 {
-    size_t failed = 0, i = 0;
-    for (; LANES > 1 && i + LANES <= n; i += LANES) {
-        int codes[LANES];
-        joint_margins_lanes(model, X + NQ*i, margins + NJ*i, codes);
-        for (size_t k = 0; k < LANES; ++k) {
+    size_t failed = 0, w;
+    for (size_t i = 0; i < n; i += w) {
+        int codes[LANES] = {INVALID};
+        w = LANES > 1 && i + LANES <= n ? LANES : 1;
+        if (w > 1) {
+            joint_margins_lanes(model, X + NQ*i, margins + NJ*i, codes);
+        }
+        for (size_t k = 0; k < w; ++k) {
             if (codes[k] != OK) {
                 codes[k] = fivebar_redundant_joint_margins(model, X + NQ*(i + k), margins + NJ*(i + k));
             }
         }
-        failed += record(codes, LANES, status ? status + i : NULL);
-    }
-    for (; i < n; ++i) {
-        const int code = fivebar_redundant_joint_margins(model, X + NQ*i, margins + NJ*i);
-        failed += record(&code, 1, status ? status + i : NULL);
+        failed += record(codes, w, status ? status + i : NULL);
     }
     return failed;
 }
 
-int fivebar_redundant_within_limits(const fivebar_redundant_model *model, const
-    fivebar_redundant_real *X, fivebar_redundant_real *within)
+int fivebar_redundant_within_limits(const prepared *model, const real *X, real *within)
 {
     int code;
     within_limits_one(model, X, within, &code);
     return code;
 }
 
-size_t fivebar_redundant_within_limits_batch(const fivebar_redundant_model *model, size_t n, const
-    fivebar_redundant_real *X, fivebar_redundant_real *within, int *status)
+size_t fivebar_redundant_within_limits_batch(const prepared *model, size_t n, const real *X, real
+    *within, int *status)
 {
-    size_t failed = 0, i = 0;
-    for (; LANES > 1 && i + LANES <= n; i += LANES) {
-        int codes[LANES];
-        within_limits_lanes(model, X + NQ*i, within + i, codes);
-        for (size_t k = 0; k < LANES; ++k) {
+    size_t failed = 0, w;
+    for (size_t i = 0; i < n; i += w) {
+        int codes[LANES] = {INVALID};
+        w = LANES > 1 && i + LANES <= n ? LANES : 1;
+        if (w > 1) {
+            within_limits_lanes(model, X + NQ*i, within + i, codes);
+        }
+        for (size_t k = 0; k < w; ++k) {
             if (codes[k] != OK) {
                 codes[k] = fivebar_redundant_within_limits(model, X + NQ*(i + k), within + (i + k));
             }
         }
-        failed += record(codes, LANES, status ? status + i : NULL);
-    }
-    for (; i < n; ++i) {
-        const int code = fivebar_redundant_within_limits(model, X + NQ*i, within + i);
-        failed += record(&code, 1, status ? status + i : NULL);
+        failed += record(codes, w, status ? status + i : NULL);
     }
     return failed;
 }
 
-int fivebar_redundant_actuator_positions(const fivebar_redundant_model *model, const
-    fivebar_redundant_real *X, fivebar_redundant_real *q)
+int fivebar_redundant_actuator_positions(const prepared *model, const real *X, real *q)
 {
     int code;
     actuator_positions_one(model, X, q, &code);
     return code;
 }
 
-size_t fivebar_redundant_actuator_positions_batch(const fivebar_redundant_model *model, size_t n,
-    const fivebar_redundant_real *X, fivebar_redundant_real *q, int *status)
+size_t fivebar_redundant_actuator_positions_batch(const prepared *model, size_t n, const real *X,
+    real *q, int *status)
 {
-    size_t failed = 0, i = 0;
-    for (; LANES > 1 && i + LANES <= n; i += LANES) {
-        int codes[LANES];
-        actuator_positions_lanes(model, X + NQ*i, q + NU*i, codes);
-        for (size_t k = 0; k < LANES; ++k) {
+    size_t failed = 0, w;
+    for (size_t i = 0; i < n; i += w) {
+        int codes[LANES] = {INVALID};
+        w = LANES > 1 && i + LANES <= n ? LANES : 1;
+        if (w > 1) {
+            actuator_positions_lanes(model, X + NQ*i, q + NU*i, codes);
+        }
+        for (size_t k = 0; k < w; ++k) {
             if (codes[k] != OK) {
                 codes[k] = fivebar_redundant_actuator_positions(model, X + NQ*(i + k), q + NU*(i + k));
             }
         }
-        failed += record(codes, LANES, status ? status + i : NULL);
-    }
-    for (; i < n; ++i) {
-        const int code = fivebar_redundant_actuator_positions(model, X + NQ*i, q + NU*i);
-        failed += record(&code, 1, status ? status + i : NULL);
+        failed += record(codes, w, status ? status + i : NULL);
     }
     return failed;
 }
 
-int fivebar_redundant_actuator_rates(const fivebar_redundant_model *model, const
-    fivebar_redundant_real *X, const fivebar_redundant_real *V, fivebar_redundant_real *rates)
+int fivebar_redundant_actuator_rates(const prepared *model, const real *X, const real *V, real
+    *rates)
 {
     int code;
     actuator_rates_one(model, X, V, rates, &code);
     return code;
 }
 
-size_t fivebar_redundant_actuator_rates_batch(const fivebar_redundant_model *model, size_t n,
-    const fivebar_redundant_real *X, const fivebar_redundant_real *V, fivebar_redundant_real
-    *rates, int *status)
+size_t fivebar_redundant_actuator_rates_batch(const prepared *model, size_t n, const real *X,
+    const real *V, real *rates, int *status)
 {
-    size_t failed = 0, i = 0;
-    for (; LANES > 1 && i + LANES <= n; i += LANES) {
-        int codes[LANES];
-        actuator_rates_lanes(model, X + NQ*i, V + NV*i, rates + NU*i, codes);
-        for (size_t k = 0; k < LANES; ++k) {
+    size_t failed = 0, w;
+    for (size_t i = 0; i < n; i += w) {
+        int codes[LANES] = {INVALID};
+        w = LANES > 1 && i + LANES <= n ? LANES : 1;
+        if (w > 1) {
+            actuator_rates_lanes(model, X + NQ*i, V + NV*i, rates + NU*i, codes);
+        }
+        for (size_t k = 0; k < w; ++k) {
             if (codes[k] != OK) {
                 codes[k] = fivebar_redundant_actuator_rates(model, X + NQ*(i + k), V + NV*(i + k), rates + NU*(i +
                     k));
             }
         }
-        failed += record(codes, LANES, status ? status + i : NULL);
-    }
-    for (; i < n; ++i) {
-        const int code = fivebar_redundant_actuator_rates(model, X + NQ*i, V + NV*i, rates + NU*i);
-        failed += record(&code, 1, status ? status + i : NULL);
+        failed += record(codes, w, status ? status + i : NULL);
     }
     return failed;
 }
 
-int fivebar_redundant_actuator_accelerations(const fivebar_redundant_model *model, const
-    fivebar_redundant_real *X, const fivebar_redundant_real *V, const fivebar_redundant_real *A,
-    fivebar_redundant_real *accelerations)
+int fivebar_redundant_actuator_accelerations(const prepared *model, const real *X, const real *V,
+    const real *A, real *accelerations)
 {
     int code;
     actuator_accelerations_one(model, X, V, A, accelerations, &code);
     return code;
 }
 
-size_t fivebar_redundant_actuator_accelerations_batch(const fivebar_redundant_model *model, size_t
-    n, const fivebar_redundant_real *X, const fivebar_redundant_real *V, const
-    fivebar_redundant_real *A, fivebar_redundant_real *accelerations, int *status)
+size_t fivebar_redundant_actuator_accelerations_batch(const prepared *model, size_t n, const real
+    *X, const real *V, const real *A, real *accelerations, int *status)
 {
-    size_t failed = 0, i = 0;
-    for (; LANES > 1 && i + LANES <= n; i += LANES) {
-        int codes[LANES];
-        actuator_accelerations_lanes(model, X + NQ*i, V + NV*i, A + NV*i, accelerations + NU*i, codes);
-        for (size_t k = 0; k < LANES; ++k) {
+    size_t failed = 0, w;
+    for (size_t i = 0; i < n; i += w) {
+        int codes[LANES] = {INVALID};
+        w = LANES > 1 && i + LANES <= n ? LANES : 1;
+        if (w > 1) {
+            actuator_accelerations_lanes(model, X + NQ*i, V + NV*i, A + NV*i, accelerations + NU*i, codes);
+        }
+        for (size_t k = 0; k < w; ++k) {
             if (codes[k] != OK) {
                 codes[k] = fivebar_redundant_actuator_accelerations(model, X + NQ*(i + k), V + NV*(i + k), A +
                     NV*(i + k), accelerations + NU*(i + k));
             }
         }
-        failed += record(codes, LANES, status ? status + i : NULL);
-    }
-    for (; i < n; ++i) {
-        const int code = fivebar_redundant_actuator_accelerations(model, X + NQ*i, V + NV*i, A + NV*i,
-            accelerations + NU*i);
-        failed += record(&code, 1, status ? status + i : NULL);
+        failed += record(codes, w, status ? status + i : NULL);
     }
     return failed;
 }
 
-int fivebar_redundant_power(const fivebar_redundant_model *model, const fivebar_redundant_real *X,
-    const fivebar_redundant_real *V, const fivebar_redundant_real *tau, fivebar_redundant_real
-    *power)
+int fivebar_redundant_power(const prepared *model, const real *X, const real *V, const real *tau,
+    real *power)
 {
     int code;
     power_one(model, X, V, tau, power, &code);
     return code;
 }
 
-size_t fivebar_redundant_power_batch(const fivebar_redundant_model *model, size_t n, const
-    fivebar_redundant_real *X, const fivebar_redundant_real *V, const fivebar_redundant_real *tau,
-    fivebar_redundant_real *power, int *status)
+size_t fivebar_redundant_power_batch(const prepared *model, size_t n, const real *X, const real
+    *V, const real *tau, real *power, int *status)
 {
-    size_t failed = 0, i = 0;
-    for (; LANES > 1 && i + LANES <= n; i += LANES) {
-        int codes[LANES];
-        power_lanes(model, X + NQ*i, V + NV*i, tau + NU*i, power + i, codes);
-        for (size_t k = 0; k < LANES; ++k) {
+    size_t failed = 0, w;
+    for (size_t i = 0; i < n; i += w) {
+        int codes[LANES] = {INVALID};
+        w = LANES > 1 && i + LANES <= n ? LANES : 1;
+        if (w > 1) {
+            power_lanes(model, X + NQ*i, V + NV*i, tau + NU*i, power + i, codes);
+        }
+        for (size_t k = 0; k < w; ++k) {
             if (codes[k] != OK) {
                 codes[k] = fivebar_redundant_power(model, X + NQ*(i + k), V + NV*(i + k), tau + NU*(i + k), power
                     + (i + k));
             }
         }
-        failed += record(codes, LANES, status ? status + i : NULL);
-    }
-    for (; i < n; ++i) {
-        const int code = fivebar_redundant_power(model, X + NQ*i, V + NV*i, tau + NU*i, power + i);
-        failed += record(&code, 1, status ? status + i : NULL);
+        failed += record(codes, w, status ? status + i : NULL);
     }
     return failed;
 }
 
-int fivebar_redundant_retract(const fivebar_redundant_real *X, const fivebar_redundant_real *step,
-    fivebar_redundant_real *X_moved)
+int fivebar_redundant_retract(const real *X, const real *step, real *X_moved)
 {
     int code;
     retract_one(X, step, X_moved, &code);
     return code;
 }
 
-size_t fivebar_redundant_retract_batch(size_t n, const fivebar_redundant_real *X, const
-    fivebar_redundant_real *step, fivebar_redundant_real *X_moved, int *status)
+size_t fivebar_redundant_retract_batch(size_t n, const real *X, const real *step, real *X_moved,
+    int *status)
 {
-    size_t failed = 0, i = 0;
-    for (; i < n; ++i) {
+    size_t failed = 0;
+    for (size_t i = 0; i < n; ++i) {
         const int code = fivebar_redundant_retract(X + NQ*i, step + NV*i, X_moved + NQ*i);
         failed += record(&code, 1, status ? status + i : NULL);
     }
     return failed;
 }
 
-int fivebar_redundant_difference(const fivebar_redundant_real *X0, const fivebar_redundant_real
-    *X1, fivebar_redundant_real *step)
+int fivebar_redundant_difference(const real *X0, const real *X1, real *step)
 {
     int code;
     difference_one(X0, X1, step, &code);
     return code;
 }
 
-size_t fivebar_redundant_difference_batch(size_t n, const fivebar_redundant_real *X0, const
-    fivebar_redundant_real *X1, fivebar_redundant_real *step, int *status)
+size_t fivebar_redundant_difference_batch(size_t n, const real *X0, const real *X1, real *step,
+    int *status)
 {
-    size_t failed = 0, i = 0;
-    for (; i < n; ++i) {
+    size_t failed = 0;
+    for (size_t i = 0; i < n; ++i) {
         const int code = fivebar_redundant_difference(X0 + NQ*i, X1 + NQ*i, step + NV*i);
         failed += record(&code, 1, status ? status + i : NULL);
     }
     return failed;
 }
 
-int fivebar_redundant_interpolate(const fivebar_redundant_real *X0, const fivebar_redundant_real
-    *X1, const fivebar_redundant_real *s, fivebar_redundant_real *X)
+int fivebar_redundant_interpolate(const real *X0, const real *X1, const real *s, real *X)
 {
     int code;
     interpolate_one(X0, X1, s, X, &code);
     return code;
 }
 
-size_t fivebar_redundant_interpolate_batch(size_t n, const fivebar_redundant_real *X0, const
-    fivebar_redundant_real *X1, const fivebar_redundant_real *s, fivebar_redundant_real *X, int
-    *status)
+size_t fivebar_redundant_interpolate_batch(size_t n, const real *X0, const real *X1, const real
+    *s, real *X, int *status)
 {
-    size_t failed = 0, i = 0;
-    for (; i < n; ++i) {
+    size_t failed = 0;
+    for (size_t i = 0; i < n; ++i) {
         const int code = fivebar_redundant_interpolate(X0 + NQ*i, X1 + NQ*i, s + i, X + NQ*i);
         failed += record(&code, 1, status ? status + i : NULL);
     }

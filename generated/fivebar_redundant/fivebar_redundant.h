@@ -293,6 +293,41 @@ size_t fivebar_redundant_condition_batch(const fivebar_redundant_model *model, s
     fivebar_redundant_real *X, fivebar_redundant_real *sigma, fivebar_redundant_real *legs, int
     *status);
 
+/* Manipulability of forces: the product of the singular values that condition has by default, and
+   the least over the largest of them. 100 mul, 54 add, 4 div, 5 sqrt, 0 trig; the singular values
+   apart. In: X (NQ). Out: measure (1), isotropy (1). */
+int fivebar_redundant_manipulability(const fivebar_redundant_model *model, const
+    fivebar_redundant_real *X, fivebar_redundant_real *measure, fivebar_redundant_real *isotropy);
+size_t fivebar_redundant_manipulability_batch(const fivebar_redundant_model *model, size_t n,
+    const fivebar_redundant_real *X, fivebar_redundant_real *measure, fivebar_redundant_real
+    *isotropy, int *status);
+
+/* How near actuators and legs are to being singular: relative distances, 0 where they are. 100
+   mul, 54 add, 4 div, 5 sqrt, 0 trig; the singular values apart. In: X (NQ). Out: actuators (1),
+   legs (1). */
+int fivebar_redundant_singularity_distance(const fivebar_redundant_model *model, const
+    fivebar_redundant_real *X, fivebar_redundant_real *actuators, fivebar_redundant_real *legs);
+size_t fivebar_redundant_singularity_distance_batch(const fivebar_redundant_model *model, size_t
+    n, const fivebar_redundant_real *X, fivebar_redundant_real *actuators, fivebar_redundant_real
+    *legs, int *status);
+
+/* Actuator forces from tau_min to tau_max for the acceleration A: the nearest to reference. By
+   the dual active-set method of Goldfarb and Idnani; continuous along a motion. Impossible
+   (UNREACHABLE) where no forces within the bounds give the acceleration. Cables pull with
+   negative forces: tau_max = -t keeps tensions of t at least. 186 mul, 112 add, 4 div, 2 sqrt, 0
+   trig; the search apart. In: X (NQ), V (NV), A (NV), tau_min (NU), tau_max (NU), wrench (NW, or
+   NULL), reference (NU, or NULL). Out: tau (NU). */
+int fivebar_redundant_force_distribution(const fivebar_redundant_model *model, const
+    fivebar_redundant_real *X, const fivebar_redundant_real *V, const fivebar_redundant_real *A,
+    const fivebar_redundant_real *tau_min, const fivebar_redundant_real *tau_max, const
+    fivebar_redundant_real *wrench, const fivebar_redundant_real *reference,
+    fivebar_redundant_real *tau);
+size_t fivebar_redundant_force_distribution_batch(const fivebar_redundant_model *model, size_t n,
+    const fivebar_redundant_real *X, const fivebar_redundant_real *V, const fivebar_redundant_real
+    *A, const fivebar_redundant_real *tau_min, const fivebar_redundant_real *tau_max, const
+    fivebar_redundant_real *wrench, const fivebar_redundant_real *reference,
+    fivebar_redundant_real *tau, int *status);
+
 /* X at which the actuated joints stand at q_actuated, by Gauss-Newton from X0. Extra coordinates
    that actuators do not determine stay. Impossible where no pose is found. In: q_actuated (NU),
    X0 (NQ). Out: X (NQ). */

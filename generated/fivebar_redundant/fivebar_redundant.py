@@ -50,6 +50,7 @@ __all__ = [
     "dissipation",
     "dynamics",
     "energy",
+    "force_distribution",
     "forward_dynamics",
     "forward_kinematics",
     "interpolate",
@@ -59,10 +60,12 @@ __all__ = [
     "joint_margins",
     "joint_rates",
     "leg_reactions",
+    "manipulability",
     "momentum",
     "null_space",
     "power",
     "retract",
+    "singularity_distance",
     "within_limits",
 ]
 
@@ -992,6 +995,24 @@ def _constants(p, name):
     return p._cache[name]
 
 
+class _Vector(list):
+    """A vector, or a matrix row by row, of a single state."""
+
+    def __add__(self, other):
+        return _Vector([a + b for a, b in zip(self, other)])
+
+    def __sub__(self, other):
+        return _Vector([a - b for a, b in zip(self, other)])
+
+    def __neg__(self):
+        return _Vector([-a for a in self])
+
+
+def _are_finite(rows):
+    """Whether lists of floats have finite entries alone."""
+    return math.isfinite(sum(map(sum, rows))) or all(all(map(math.isfinite, row)) for row in rows)
+
+
 class _Floats:
     """Functions of a state after another, in Python floats: the way for few states."""
 
@@ -1021,11 +1042,32 @@ class _Floats:
         """Lists that a function gives at a state."""
         try:
             ok, arrays = function(self, *given)
-        except (ZeroDivisionError, OverflowError, ValueError):
+        except (ArithmeticError, ValueError):
             ok = False
-        if ok and all(all(map(math.isfinite, array)) for array in arrays):
+        if ok and _are_finite(arrays):
             return arrays
         return [[np.nan] * math.prod(_SHAPES[n]) for n in names]
+
+    def solved(self, order, a, b):
+        """Solutions, straight through; and which are beyond doubt."""
+        sure, x = np.zeros(self.states, dtype=bool), np.full(b.shape, np.nan)
+        for k, given in enumerate(zip(a.T.tolist(), b.T.tolist())):
+            try:
+                sure[k], (x[:, k],) = order(self, *given)
+            except ZeroDivisionError:
+                pass
+        return sure, x
+
+
+class _Single(_Floats):
+    """A single state in lists of floats throughout."""
+
+    def run(self, function, names, *vectors):
+        """Arrays of a function, row by row; ArithmeticError or ValueError where the state is impossible."""
+        ok, arrays = function(self, *vectors)
+        if not (ok and _are_finite(arrays)):
+            raise ArithmeticError
+        return [_Vector(a) for a in arrays]
 
 
 class _Arrays:
@@ -1055,20 +1097,27 @@ class _Arrays:
     def zeros(self, name):
         return np.zeros((math.prod(_SHAPES[name]), self.states))
 
-    def computed(self, function, names, vectors):
-        """Flags and arrays (*shape, states) of a function."""
+    def computed(self, function, *vectors):
+        """Flags and arrays (entries, states) of a function."""
         if self.kept is None:
-            flags, arrays = function(self, *vectors)
-        else:
-            if self.done not in self.kept:
-                self.kept[self.done] = _Replay(self.p, function, [len(v) for v in vectors], self.states)
-            flags, arrays = self.kept[self.done].run(vectors)
-            self.done += 1
-        return flags, [a.reshape(*_SHAPES[n], self.states) for a, n in zip(arrays, names)]
+            return function(self, *vectors)
+        if self.done not in self.kept:
+            self.kept[self.done] = _Replay(self.p, function, [len(v) for v in vectors], self.states)
+        self.done += 1
+        return self.kept[self.done - 1].run(vectors)
+
+    def shaped(self, names, arrays):
+        return [a.reshape(*_SHAPES[n], self.states) for a, n in zip(arrays, names)]
+
+    def solved(self, order, a, b):
+        """Solutions, straight through; and which are beyond doubt."""
+        sure, (x,) = self.computed(order, a, b)
+        return sure, np.array(x)
 
     def run(self, function, names, *vectors):
         """Arrays (*shape, states) of a function; NaN where the state is impossible."""
-        ok, arrays = self.computed(function, names, vectors)
+        ok, arrays = self.computed(function, *vectors)
+        arrays = self.shaped(names, arrays)
         ok = np.logical_and(ok, _finite(arrays, self.states))
         if not np.all(ok):
             for a in arrays:
@@ -1085,10 +1134,10 @@ class _Judged(_Arrays):
 
     def run(self, function, names, *vectors):
         """Arrays (*shape, states) of a function, also where they are nonsense."""
-        (valid, reached, clear), arrays = self.computed(function, names, vectors)
+        (valid, reached, clear), arrays = self.computed(function, *vectors)
         for code, good in ((3, valid), (1, reached), (2, clear)):
             self.failed[code] |= np.logical_not(good)
-        return arrays
+        return self.shaped(names, arrays)
 
     def closed(self, q):
         """q, noting where the iteration has not converged."""
@@ -1100,26 +1149,90 @@ class _Judged(_Arrays):
         return np.select(list(self.failed.values()), list(self.failed), np.where(possible, 0, 3))
 
 
+_IN_ONE = {}  # by function
+
+
+def _in_one(function):
+    """A function that tells whether a state is possible, of one that tells why not."""
+
+    def run(m, *vectors):
+        (valid, reached, clear), arrays = function(m, *vectors)
+        return valid & reached & clear, arrays
+
+    return _IN_ONE.setdefault(function, run)
+
+
 def _mode(p, states, kept=None):
     """The faster way for so many states."""
     return (_Floats if 0 < states <= _FEW else _Arrays)(p, states, kept)
 
 
-def _call(function, steps, p, *arguments, mode=_mode, unbounded=False):
+def _call(function, steps, p, *arguments, mode=_mode, unbounded=False, plain=()):
     """What the steps give at arguments (name, value, shape of a state, default, rule).
 
-    Where that may be infinite only NaN makes a state impossible.
+    Where that may be infinite only NaN makes a state impossible.  `plain` has the shapes of results
+    where a single state needs no arrays.
     """
+    p, read = _given(p), [a[-1] != "unused" for a in arguments]
+    lists = plain and _lists(arguments)
+    if lists:
+        found = _state(_Single(p, 1), steps, lists, read)
+        results = [_result(a, shape) for a, shape in zip(found or plain, plain)]
+        return results[0] if len(results) == 1 else tuple(results)
     given = [_argument(function, *a) for a in arguments]
     shapes = [a[2] for a in arguments]
     leads = {a[0]: v.shape[: v.ndim - len(a[2])] for a, v in zip(arguments, given)}
-    lead, p = _lead(leads), _given(p)
-    read = [a[4:] != ("unused",) for a in arguments]
-    if lead or mode is _Judged:
+    lead = _lead(leads)
+    if plain and 0 < math.prod(lead) <= _FEW:
+        results = _few(steps, p, lead, given, shapes, read, plain)
+    elif lead or mode is _Judged:
         results = _many(steps, p, lead, given, shapes, read, mode, unbounded)
     else:
         results = _one(steps, p, given, shapes, read, unbounded)
     return results[0] if len(results) == 1 else tuple(results)
+
+
+def _lists(arguments):
+    """Arguments of a single state as lists, where they are such arrays as they mostly are."""
+    found = []
+    for row in arguments:
+        value, shape = row[1:3]
+        if type(value) is np.ndarray:
+            if value.shape != shape or value.dtype is not _REAL or row[-1] == "positive":
+                return None
+            found.append(_Vector(value.tolist()))
+        elif value is None and len(row) > 3 and row[3] is not None:
+            found.append(_Vector(row[3] if isinstance(row[3], tuple) else [row[3]] * shape[0]))
+        else:
+            return None
+    return found
+
+
+def _state(m, steps, given, read):
+    """Lists that the steps give at a state; None where it is impossible."""
+    try:
+        found = steps(m, *given)
+    except (ArithmeticError, ValueError):
+        return None
+    return found if _are_finite(list(compress(given, read))) and _are_finite(found) else None
+
+
+def _result(found, shape):
+    """The array of a list; of an impossible state, for which its shape is given, NaN."""
+    if found is shape:
+        return np.full(shape, np.nan)
+    return np.array(found) if len(shape) == 1 else np.array(found).reshape(shape)
+
+
+def _few(steps, p, lead, given, shapes, read, plain):
+    """Results at a few states, one after another."""
+    m, rows = _Single(p, 1), []
+    for v, shape in zip(given, shapes):
+        flat = np.broadcast_to(v, lead + shape).reshape(math.prod(lead), -1)
+        rows.append(map(_Vector, flat.tolist()))
+    impossible = [[np.nan] * math.prod(shape) for shape in plain]
+    found = [_state(m, steps, state, read) or impossible for state in zip(*rows)]
+    return [np.array(a).reshape(lead + shape) for a, shape in zip(zip(*found), plain)]
 
 
 def _one(steps, p, given, shapes, read, unbounded):
@@ -1138,7 +1251,11 @@ def _many(steps, p, lead, given, shapes, read, mode, unbounded):
     """Results at many states, block by block; the last block begins where it is as long as the others."""
     count = math.prod(lead)
     size, kept = min(count, _BLOCK), {} if count >= _MANY else None
-    flat = [np.broadcast_to(v, lead + s).reshape(count, *s) for v, s in zip(given, shapes)]
+    # one value for all states stands for itself
+    flat = [
+        np.broadcast_to(v, lead + s).reshape(count, *s) if v.ndim > len(s) else v
+        for v, s in zip(given, shapes)
+    ]
     possible, status, outputs = np.ones(count, dtype=bool), np.zeros(count, dtype=int), []
     if count > size:
         # Never touched, freed at once: the C library, which learns from it, then keeps the memory
@@ -1147,7 +1264,7 @@ def _many(steps, p, lead, given, shapes, read, mode, unbounded):
     with np.errstate(all="ignore"):
         for stop in (*range(size, count, max(size, 1)), count):
             block = slice(stop - size, stop)
-            states = [_states_last(v[block]) for v in flat]
+            states = [_states_last(v, s, block) for v, s in zip(flat, shapes)]
             m, good = mode(p, size, kept), possible[block]
             found = steps(m, *states)
             if not outputs:
@@ -1167,15 +1284,17 @@ def _many(steps, p, lead, given, shapes, read, mode, unbounded):
     return [a.reshape(lead + a.shape[1:])[()] for a in outputs]
 
 
-def _states_last(a):
-    """A contiguous array (*shape, states) of one (states, *shape)."""
-    return np.ascontiguousarray(a.transpose(*range(1, a.ndim), 0))
+def _states_last(a, shape, block):
+    """An array (*shape, states) of a block of one (states, *shape), or of a value for all."""
+    if a.ndim == len(shape):
+        return np.broadcast_to(a[..., None], (*shape, block.stop - block.start))
+    return np.ascontiguousarray(a[block].transpose(*range(1, a.ndim), 0))
 
 
 def _finite(arrays, states):
     """In which states all entries of arrays (*shape, states) are finite."""
     flat = [a.reshape(math.prod(a.shape[:-1]), states) for a in arrays]
-    good = np.isfinite(sum(np.add.reduce(a, axis=0) for a in flat))
+    good = np.isfinite(sum(np.einsum("es->s", a) for a in flat))
     if not np.all(good):  # or the sum is too large
         good = np.logical_and.reduce([np.isfinite(a).all(axis=0) for a in flat])
     return good
@@ -1284,6 +1403,8 @@ class _Record:
 
     def made(self, operation, *operands):
         """The result of an operation."""
+        if operation in _WITHOUT and operands[0] is _WITHOUT[operation]:
+            return operands[1]
         numbers = [self.number(operand) for operand in operands]
         if all(self.kinds[n] == "one" for n in numbers):
             kind = "one"
@@ -1320,6 +1441,7 @@ class _Record:
         return counts
 
 
+_WITHOUT = {np.logical_and: True}  # first operands that change nothing
 _OF_FLAGS = {np.logical_and, np.greater, np.greater_equal}
 _RECORDS = {}  # by function
 
@@ -1331,11 +1453,12 @@ class _Replay:
         if function not in _RECORDS:
             _RECORDS[function] = _Record(p, function, sizes)
         r = _RECORDS[function]
-        made = {kind: _rows(n, states, bool if kind == "flag" else float) for kind, n in r.counts.items()}
-        made["one"] = [np.empty(()) for _ in range(r.counts["one"])]
-        made["out"] = _rows(sum(r.sizes), states)
-        self.inputs = [_rows(size, states) for size in sizes]
-        self.arrays = np.split(made["out"], np.cumsum(r.sizes)[:-1])
+        rows = _rows(r.counts["state"] + sum(r.sizes) + sum(sizes), states)
+        given, out, state = np.split(rows, np.cumsum((sum(sizes), sum(r.sizes))))
+        made = {"state": state, "out": out, "one": [np.empty(()) for _ in range(r.counts["one"])]}
+        made["flag"] = np.empty((r.counts["flag"], states), dtype=bool)
+        self.inputs = np.split(given, np.cumsum(sizes)[:-1])
+        self.arrays = np.split(out, np.cumsum(r.sizes)[:-1])
         at = {number: np.array(value) for value, number in r.literals.items()}
         for values, given in zip(r.inputs, self.inputs):
             at |= {v.number: row for v, row in zip(values, given)}
@@ -1357,9 +1480,26 @@ class _Replay:
         return self.flags, self.arrays
 
 
-def _rows(count, states, kind=float):
-    """Rows of so many states, a cache line apart from each other."""
-    return np.empty((count, states + 8), dtype=kind)[:, :states]
+def _rows(count, states):
+    """Rows of so many states in one piece, which the system keeps in a few large pages if it is told.
+
+    NumPy tells it of pieces from 4 MB on.  It makes operations a third faster.
+    """
+    row = states + 8  # a cache line further: rows do not compete for the same places of the cache
+    piece = np.empty(max(count * row, 2 * _PAGE) + _PAGE)
+    start = -(piece.ctypes.data // piece.itemsize) % _PAGE
+    return piece[start : start + count * row].reshape(count, row)[:, :states]
+
+
+_PAGE = (2 << 20) // 8  # numbers in a large page
+
+
+def _times(a, b):
+    """Products of matrices (m, n, states) with vectors (n, states)."""
+    if isinstance(b, _Vector):
+        rows = (a[k : k + len(b)] for k in range(0, len(a), len(b)))
+        return _Vector([sum([x * y for x, y in zip(row, b)]) for row in rows])
+    return np.einsum("ijs,js->is", a, b)
 
 
 def _with_forces(a, amounts, directions, legs):
@@ -1423,8 +1563,10 @@ _CLEARLY = 2.0  # rows change places only for a pivot that is larger by this fac
 
 def _solve(a, b):
     """x with a x = b, a (n, n, states), b (n, states): rows scaled, partial pivoting; NaN if singular."""
+    if isinstance(b, _Vector):
+        return _Vector(_solve_one([a[k : k + len(b)] for k in range(0, len(a), len(b))], b))
     n, states = b.shape
-    if 0 < states <= _FEW:
+    if 0 < states <= 8:
         systems = zip(a.transpose(2, 0, 1).tolist(), b.T.tolist())
         return np.array([_solve_one(*each) for each in systems]).T.reshape(n, states)
     size = np.max(np.abs(a), axis=1, initial=0.0)
@@ -1449,6 +1591,38 @@ def _solve(a, b):
         known = np.einsum("js,js->s", rows[k, k + 1 : n], x[k + 1 :])
         x[k] = (rows[k, n] - known) / rows[k, k]
     x[:, ~(good & np.isfinite(x).all(axis=0))] = np.nan
+    return x
+
+
+class _Order:
+    """How a system is solved near home.
+
+    Args:
+        solve: the function for so many equations.
+        rows: in the order of their pivots.
+        limits: of multiples, column by column, and of 1/pivot.
+    """
+
+    def __init__(self, solve, rows, limits):
+        self.solve, self.rows, self.limits = solve, rows, limits
+
+    def __call__(self, m, a, b):
+        """Solutions of a x = b, and whether these are beyond doubt."""
+        return self.solve(a, b, self.rows, self.limits)
+
+
+def _straight(m, a, b, order):
+    """The same, in the order of rows at home; with a choice of rows only where that is in doubt."""
+    if isinstance(b, _Vector):
+        try:
+            sure, (x,) = order(m, a, b)
+        except ZeroDivisionError:
+            sure = False
+        return _Vector(x) if sure else _solve(a, b)
+    sure, x = m.solved(order, a.reshape(-1, m.states), b)
+    at = np.flatnonzero(np.logical_not(sure))
+    if at.size:
+        x[:, at] = _solve(a[..., at], b[:, at])
     return x
 
 
@@ -1522,6 +1696,94 @@ def _singular_values(a):
     values = np.linalg.svd(a, compute_uv=False).T.copy()
     values[:, bad] = np.nan
     return values
+
+
+_TURNS = 20  # steps of a search, for every bounded force
+
+
+def _least_entry(a):
+    """The least entry."""
+    return np.min(a, axis=0)
+
+
+def _spread(a, n):
+    """Of the first n entries the product, and the last over the first, 0 where that is 0."""
+    return np.prod(a[:n], axis=0), np.where(a[0] == 0.0, 0.0, a[n - 1] / a[0])
+
+
+def _missed_bound(start, t, bounds, side):
+    """The bound that is missed by most, and 1 for a lower, -1 for an upper one; None if none is."""
+    size, endless = np.max(np.abs(start), axis=0)
+    found = None
+    for sign, bound in zip((1.0, -1.0), bounds):
+        for k in np.flatnonzero(np.isfinite(bound) & (side == 0.0)).tolist():
+            gap, rate = sign * (bound[k] - t[k, 0]), -sign * t[k, 1]
+            rate = rate if abs(rate) > _PIVOT * endless else 0.0
+            if rate > 0.0 or (rate == 0.0 and gap > _PIVOT * (size + abs(bound[k]))):
+                if found is None or (rate, gap) > found[0]:
+                    found = (rate, gap), (k, sign)
+    return found and found[1]
+
+
+def _at_bounds(start, gram, bounds, side):
+    """The point nearest to the start at the bounds on these sides."""
+    kept = np.flatnonzero(side)
+    bound = np.where(side > 0.0, *bounds)[kept]
+    right = np.column_stack((bound, np.zeros(len(kept)))) - start[kept]
+    t = start + gram[:, kept] @ np.linalg.solve(gram[np.ix_(kept, kept)], right)
+    t[kept, 0] = bound
+    t[:, 0] = np.clip(t[:, 0], *bounds)
+    return t
+
+
+def _nearest_point(start, gram, *bounds):
+    """The point (n, 2) within the bounds that is nearest to the start; None if there is none."""
+    amounts, side, new = np.zeros_like(start), np.zeros(len(start)), None
+    for _ in range(_TURNS * len(start)):
+        t = start + gram @ amounts
+        new = new or _missed_bound(start, t, bounds, side)
+        if new is None:
+            return _at_bounds(start, gram, bounds, side)
+        p, sign = new
+        kept, without = np.flatnonzero(side), np.zeros(len(side))
+        without[kept] = np.linalg.solve(gram[np.ix_(kept, kept)], sign * gram[kept, p])
+        apart, clear = gram[p, p] - sign * gram[p] @ without, _PIVOT * (1.0 + without @ without)
+        leaving = [k for k in kept.tolist() if side[k] * without[k] > clear]
+        steps = [(*(amounts[k, ::-1] / without[k]).tolist(), k) for k in leaving]
+        if apart > clear:
+            gap = sign * (bounds[0 if sign > 0.0 else 1][p] - t[p, 0])
+            steps.append((-sign * t[p, 1] / apart, gap / apart, -1))
+        if not steps:
+            return None
+        *step, k = min(steps)
+        amounts -= np.outer(without, step[::-1])
+        amounts[p] += sign * np.array(step[::-1])
+        if k < 0:
+            side[p], new = sign, None
+        else:
+            side[k] = amounts[k] = 0.0
+    return None
+
+
+def _each_state(find, size, *operands):
+    """What is found at every state; NaN where that is None, or something is not finite."""
+    found = np.full((size, operands[0].shape[-1]), np.nan)
+    for k in range(found.shape[1]):
+        own = [a[..., k] for a in operands]
+        if all(np.isfinite(a).all() for a in own):
+            made = find(*own)
+            found[:, k] = np.nan if made is None else made
+    return found
+
+
+def _nearest_within(a, b, c, d):
+    """Of the a + b y with entries from c to d the one nearest to a; NaN if there is none."""
+
+    def find(a, b, c, d):
+        t = _nearest_point(np.column_stack((a, np.zeros(len(a)))), b, c, d)
+        return None if t is None else t[:, 0]
+
+    return _each_state(find, len(a), a, b, c, d)
 
 
 def _least_squares(a, b, least):
@@ -1621,14 +1883,16 @@ def _run_dynamics(m, X, V):
         # (rrr_leg1-Kd_1) projection on the centre's direction, from the distance fixed by the joints beyond joint 1
         rrr_leg1_Kd_1_t_3 = rrr_leg1_S_x*rrr_leg1_S_x + rrr_leg1_S_y*rrr_leg1_S_y
         rrr_leg1_Kd_1 = rrr_leg1_Kd_1_t + 0.5*rrr_leg1_Kd_1_t_3 - rrr_leg1_Kd_1_t_2
-        # (rrr_leg1-px_1) component along the reference direction
-        rrr_leg1_px_1 = rrr_leg1_S_x*rrr_leg1_base_frame_xx + rrr_leg1_S_y*rrr_leg1_base_frame_yx
-        # (rrr_leg1-py_1) component across the reference direction
-        rrr_leg1_py_1 = rrr_leg1_S_x*rrr_leg1_base_frame_xy + rrr_leg1_S_y*rrr_leg1_base_frame_yy
         # (rrr_leg1-Kc_1) factor of the cosine in the equation of joint 1
-        rrr_leg1_Kc_1 = rrr_leg1_joint2_offset_x*rrr_leg1_px_1
+        rrr_leg1_Kc_1 = (
+        rrr_leg1_joint2_offset_x*(rrr_leg1_S_x*rrr_leg1_base_frame_xx +
+            rrr_leg1_S_y*rrr_leg1_base_frame_yx)
+        )
         # (rrr_leg1-Ks_1) factor of the sine in the equation of joint 1
-        rrr_leg1_Ks_1 = rrr_leg1_joint2_offset_x*rrr_leg1_py_1
+        rrr_leg1_Ks_1 = (
+        rrr_leg1_joint2_offset_x*(rrr_leg1_S_x*rrr_leg1_base_frame_xy +
+            rrr_leg1_S_y*rrr_leg1_base_frame_yy)
+        )
         # (rrr_leg1-rho2_1) squared amplitude
         rrr_leg1_rho2_1 = rrr_leg1_Kc_1*rrr_leg1_Kc_1 + rrr_leg1_Ks_1*rrr_leg1_Ks_1
         # (rrr_leg1-disc_1) discriminant
@@ -1827,14 +2091,10 @@ def _run_dynamics(m, X, V):
         # (rrr-Kd_1) projection on the centre's direction, from the distance fixed by the joints beyond joint 1
         rrr_Kd_1_t_3 = rrr_S_x*rrr_S_x + rrr_S_y*rrr_S_y
         rrr_Kd_1 = rrr_Kd_1_t + 0.5*rrr_Kd_1_t_3 - rrr_Kd_1_t_2
-        # (rrr-px_1) component along the reference direction
-        rrr_px_1 = rrr_S_x*rrr_base_frame_xx + rrr_S_y*rrr_base_frame_yx
-        # (rrr-py_1) component across the reference direction
-        rrr_py_1 = rrr_S_x*rrr_base_frame_xy + rrr_S_y*rrr_base_frame_yy
         # (rrr-Kc_1) factor of the cosine in the equation of joint 1
-        rrr_Kc_1 = rrr_joint2_offset_x*rrr_px_1
+        rrr_Kc_1 = rrr_joint2_offset_x*(rrr_S_x*rrr_base_frame_xx + rrr_S_y*rrr_base_frame_yx)
         # (rrr-Ks_1) factor of the sine in the equation of joint 1
-        rrr_Ks_1 = rrr_joint2_offset_x*rrr_py_1
+        rrr_Ks_1 = rrr_joint2_offset_x*(rrr_S_x*rrr_base_frame_xy + rrr_S_y*rrr_base_frame_yy)
         # (rrr-rho2_1) squared amplitude
         rrr_rho2_1 = rrr_Kc_1*rrr_Kc_1 + rrr_Ks_1*rrr_Ks_1
         # (rrr-disc_1) discriminant
@@ -2006,14 +2266,16 @@ def _run_M(m, X):
         # (rrr_leg1-Kd_1) projection on the centre's direction, from the distance fixed by the joints beyond joint 1
         rrr_leg1_Kd_1_t_3 = rrr_leg1_S_x*rrr_leg1_S_x + rrr_leg1_S_y*rrr_leg1_S_y
         rrr_leg1_Kd_1 = rrr_leg1_Kd_1_t + 0.5*rrr_leg1_Kd_1_t_3 - rrr_leg1_Kd_1_t_2
-        # (rrr_leg1-px_1) component along the reference direction
-        rrr_leg1_px_1 = rrr_leg1_S_x*rrr_leg1_base_frame_xx + rrr_leg1_S_y*rrr_leg1_base_frame_yx
-        # (rrr_leg1-py_1) component across the reference direction
-        rrr_leg1_py_1 = rrr_leg1_S_x*rrr_leg1_base_frame_xy + rrr_leg1_S_y*rrr_leg1_base_frame_yy
         # (rrr_leg1-Kc_1) factor of the cosine in the equation of joint 1
-        rrr_leg1_Kc_1 = rrr_leg1_joint2_offset_x*rrr_leg1_px_1
+        rrr_leg1_Kc_1 = (
+        rrr_leg1_joint2_offset_x*(rrr_leg1_S_x*rrr_leg1_base_frame_xx +
+            rrr_leg1_S_y*rrr_leg1_base_frame_yx)
+        )
         # (rrr_leg1-Ks_1) factor of the sine in the equation of joint 1
-        rrr_leg1_Ks_1 = rrr_leg1_joint2_offset_x*rrr_leg1_py_1
+        rrr_leg1_Ks_1 = (
+        rrr_leg1_joint2_offset_x*(rrr_leg1_S_x*rrr_leg1_base_frame_xy +
+            rrr_leg1_S_y*rrr_leg1_base_frame_yy)
+        )
         # (rrr_leg1-rho2_1) squared amplitude
         rrr_leg1_rho2_1 = rrr_leg1_Kc_1*rrr_leg1_Kc_1 + rrr_leg1_Ks_1*rrr_leg1_Ks_1
         # (rrr_leg1-disc_1) discriminant
@@ -2125,14 +2387,10 @@ def _run_M(m, X):
         # (rrr-Kd_1) projection on the centre's direction, from the distance fixed by the joints beyond joint 1
         rrr_Kd_1_t_3 = rrr_S_x*rrr_S_x + rrr_S_y*rrr_S_y
         rrr_Kd_1 = rrr_Kd_1_t + 0.5*rrr_Kd_1_t_3 - rrr_Kd_1_t_2
-        # (rrr-px_1) component along the reference direction
-        rrr_px_1 = rrr_S_x*rrr_base_frame_xx + rrr_S_y*rrr_base_frame_yx
-        # (rrr-py_1) component across the reference direction
-        rrr_py_1 = rrr_S_x*rrr_base_frame_xy + rrr_S_y*rrr_base_frame_yy
         # (rrr-Kc_1) factor of the cosine in the equation of joint 1
-        rrr_Kc_1 = rrr_joint2_offset_x*rrr_px_1
+        rrr_Kc_1 = rrr_joint2_offset_x*(rrr_S_x*rrr_base_frame_xx + rrr_S_y*rrr_base_frame_yx)
         # (rrr-Ks_1) factor of the sine in the equation of joint 1
-        rrr_Ks_1 = rrr_joint2_offset_x*rrr_py_1
+        rrr_Ks_1 = rrr_joint2_offset_x*(rrr_S_x*rrr_base_frame_xy + rrr_S_y*rrr_base_frame_yy)
         # (rrr-rho2_1) squared amplitude
         rrr_rho2_1 = rrr_Kc_1*rrr_Kc_1 + rrr_Ks_1*rrr_Ks_1
         # (rrr-disc_1) discriminant
@@ -2246,14 +2504,16 @@ def _run_Z(m, X, V):
         # (rrr_leg1-Kd_1) projection on the centre's direction, from the distance fixed by the joints beyond joint 1
         rrr_leg1_Kd_1_t_3 = rrr_leg1_S_x*rrr_leg1_S_x + rrr_leg1_S_y*rrr_leg1_S_y
         rrr_leg1_Kd_1 = rrr_leg1_Kd_1_t + 0.5*rrr_leg1_Kd_1_t_3 - rrr_leg1_Kd_1_t_2
-        # (rrr_leg1-px_1) component along the reference direction
-        rrr_leg1_px_1 = rrr_leg1_S_x*rrr_leg1_base_frame_xx + rrr_leg1_S_y*rrr_leg1_base_frame_yx
-        # (rrr_leg1-py_1) component across the reference direction
-        rrr_leg1_py_1 = rrr_leg1_S_x*rrr_leg1_base_frame_xy + rrr_leg1_S_y*rrr_leg1_base_frame_yy
         # (rrr_leg1-Kc_1) factor of the cosine in the equation of joint 1
-        rrr_leg1_Kc_1 = rrr_leg1_joint2_offset_x*rrr_leg1_px_1
+        rrr_leg1_Kc_1 = (
+        rrr_leg1_joint2_offset_x*(rrr_leg1_S_x*rrr_leg1_base_frame_xx +
+            rrr_leg1_S_y*rrr_leg1_base_frame_yx)
+        )
         # (rrr_leg1-Ks_1) factor of the sine in the equation of joint 1
-        rrr_leg1_Ks_1 = rrr_leg1_joint2_offset_x*rrr_leg1_py_1
+        rrr_leg1_Ks_1 = (
+        rrr_leg1_joint2_offset_x*(rrr_leg1_S_x*rrr_leg1_base_frame_xy +
+            rrr_leg1_S_y*rrr_leg1_base_frame_yy)
+        )
         # (rrr_leg1-rho2_1) squared amplitude
         rrr_leg1_rho2_1 = rrr_leg1_Kc_1*rrr_leg1_Kc_1 + rrr_leg1_Ks_1*rrr_leg1_Ks_1
         # (rrr_leg1-disc_1) discriminant
@@ -2393,14 +2653,10 @@ def _run_Z(m, X, V):
         # (rrr-Kd_1) projection on the centre's direction, from the distance fixed by the joints beyond joint 1
         rrr_Kd_1_t_3 = rrr_S_x*rrr_S_x + rrr_S_y*rrr_S_y
         rrr_Kd_1 = rrr_Kd_1_t + 0.5*rrr_Kd_1_t_3 - rrr_Kd_1_t_2
-        # (rrr-px_1) component along the reference direction
-        rrr_px_1 = rrr_S_x*rrr_base_frame_xx + rrr_S_y*rrr_base_frame_yx
-        # (rrr-py_1) component across the reference direction
-        rrr_py_1 = rrr_S_x*rrr_base_frame_xy + rrr_S_y*rrr_base_frame_yy
         # (rrr-Kc_1) factor of the cosine in the equation of joint 1
-        rrr_Kc_1 = rrr_joint2_offset_x*rrr_px_1
+        rrr_Kc_1 = rrr_joint2_offset_x*(rrr_S_x*rrr_base_frame_xx + rrr_S_y*rrr_base_frame_yx)
         # (rrr-Ks_1) factor of the sine in the equation of joint 1
-        rrr_Ks_1 = rrr_joint2_offset_x*rrr_py_1
+        rrr_Ks_1 = rrr_joint2_offset_x*(rrr_S_x*rrr_base_frame_xy + rrr_S_y*rrr_base_frame_yy)
         # (rrr-rho2_1) squared amplitude
         rrr_rho2_1 = rrr_Kc_1*rrr_Kc_1 + rrr_Ks_1*rrr_Ks_1
         # (rrr-disc_1) discriminant
@@ -2522,14 +2778,16 @@ def _run_H(m, X):
         # (rrr_leg1-Kd_1) projection on the centre's direction, from the distance fixed by the joints beyond joint 1
         rrr_leg1_Kd_1_t_3 = rrr_leg1_S_x*rrr_leg1_S_x + rrr_leg1_S_y*rrr_leg1_S_y
         rrr_leg1_Kd_1 = rrr_leg1_Kd_1_t + 0.5*rrr_leg1_Kd_1_t_3 - rrr_leg1_Kd_1_t_2
-        # (rrr_leg1-px_1) component along the reference direction
-        rrr_leg1_px_1 = rrr_leg1_S_x*rrr_leg1_base_frame_xx + rrr_leg1_S_y*rrr_leg1_base_frame_yx
-        # (rrr_leg1-py_1) component across the reference direction
-        rrr_leg1_py_1 = rrr_leg1_S_x*rrr_leg1_base_frame_xy + rrr_leg1_S_y*rrr_leg1_base_frame_yy
         # (rrr_leg1-Kc_1) factor of the cosine in the equation of joint 1
-        rrr_leg1_Kc_1 = rrr_leg1_joint2_offset_x*rrr_leg1_px_1
+        rrr_leg1_Kc_1 = (
+        rrr_leg1_joint2_offset_x*(rrr_leg1_S_x*rrr_leg1_base_frame_xx +
+            rrr_leg1_S_y*rrr_leg1_base_frame_yx)
+        )
         # (rrr_leg1-Ks_1) factor of the sine in the equation of joint 1
-        rrr_leg1_Ks_1 = rrr_leg1_joint2_offset_x*rrr_leg1_py_1
+        rrr_leg1_Ks_1 = (
+        rrr_leg1_joint2_offset_x*(rrr_leg1_S_x*rrr_leg1_base_frame_xy +
+            rrr_leg1_S_y*rrr_leg1_base_frame_yy)
+        )
         # (rrr_leg1-rho2_1) squared amplitude
         rrr_leg1_rho2_1 = rrr_leg1_Kc_1*rrr_leg1_Kc_1 + rrr_leg1_Ks_1*rrr_leg1_Ks_1
         # (rrr_leg1-disc_1) discriminant
@@ -2613,14 +2871,10 @@ def _run_H(m, X):
         # (rrr-Kd_1) projection on the centre's direction, from the distance fixed by the joints beyond joint 1
         rrr_Kd_1_t_3 = rrr_S_x*rrr_S_x + rrr_S_y*rrr_S_y
         rrr_Kd_1 = rrr_Kd_1_t + 0.5*rrr_Kd_1_t_3 - rrr_Kd_1_t_2
-        # (rrr-px_1) component along the reference direction
-        rrr_px_1 = rrr_S_x*rrr_base_frame_xx + rrr_S_y*rrr_base_frame_yx
-        # (rrr-py_1) component across the reference direction
-        rrr_py_1 = rrr_S_x*rrr_base_frame_xy + rrr_S_y*rrr_base_frame_yy
         # (rrr-Kc_1) factor of the cosine in the equation of joint 1
-        rrr_Kc_1 = rrr_joint2_offset_x*rrr_px_1
+        rrr_Kc_1 = rrr_joint2_offset_x*(rrr_S_x*rrr_base_frame_xx + rrr_S_y*rrr_base_frame_yx)
         # (rrr-Ks_1) factor of the sine in the equation of joint 1
-        rrr_Ks_1 = rrr_joint2_offset_x*rrr_py_1
+        rrr_Ks_1 = rrr_joint2_offset_x*(rrr_S_x*rrr_base_frame_xy + rrr_S_y*rrr_base_frame_yy)
         # (rrr-rho2_1) squared amplitude
         rrr_rho2_1 = rrr_Kc_1*rrr_Kc_1 + rrr_Ks_1*rrr_Ks_1
         # (rrr-disc_1) discriminant
@@ -2712,14 +2966,16 @@ def _run_required(m, X, V, A):
         # (rrr_leg1-Kd_1) projection on the centre's direction, from the distance fixed by the joints beyond joint 1
         rrr_leg1_Kd_1_t_3 = rrr_leg1_S_x*rrr_leg1_S_x + rrr_leg1_S_y*rrr_leg1_S_y
         rrr_leg1_Kd_1 = rrr_leg1_Kd_1_t + 0.5*rrr_leg1_Kd_1_t_3 - rrr_leg1_Kd_1_t_2
-        # (rrr_leg1-px_1) component along the reference direction
-        rrr_leg1_px_1 = rrr_leg1_S_x*rrr_leg1_base_frame_xx + rrr_leg1_S_y*rrr_leg1_base_frame_yx
-        # (rrr_leg1-py_1) component across the reference direction
-        rrr_leg1_py_1 = rrr_leg1_S_x*rrr_leg1_base_frame_xy + rrr_leg1_S_y*rrr_leg1_base_frame_yy
         # (rrr_leg1-Kc_1) factor of the cosine in the equation of joint 1
-        rrr_leg1_Kc_1 = rrr_leg1_joint2_offset_x*rrr_leg1_px_1
+        rrr_leg1_Kc_1 = (
+        rrr_leg1_joint2_offset_x*(rrr_leg1_S_x*rrr_leg1_base_frame_xx +
+            rrr_leg1_S_y*rrr_leg1_base_frame_yx)
+        )
         # (rrr_leg1-Ks_1) factor of the sine in the equation of joint 1
-        rrr_leg1_Ks_1 = rrr_leg1_joint2_offset_x*rrr_leg1_py_1
+        rrr_leg1_Ks_1 = (
+        rrr_leg1_joint2_offset_x*(rrr_leg1_S_x*rrr_leg1_base_frame_xy +
+            rrr_leg1_S_y*rrr_leg1_base_frame_yy)
+        )
         # (rrr_leg1-rho2_1) squared amplitude
         rrr_leg1_rho2_1 = rrr_leg1_Kc_1*rrr_leg1_Kc_1 + rrr_leg1_Ks_1*rrr_leg1_Ks_1
         # (rrr_leg1-disc_1) discriminant
@@ -2896,14 +3152,10 @@ def _run_required(m, X, V, A):
         # (rrr-Kd_1) projection on the centre's direction, from the distance fixed by the joints beyond joint 1
         rrr_Kd_1_t_3 = rrr_S_x*rrr_S_x + rrr_S_y*rrr_S_y
         rrr_Kd_1 = rrr_Kd_1_t + 0.5*rrr_Kd_1_t_3 - rrr_Kd_1_t_2
-        # (rrr-px_1) component along the reference direction
-        rrr_px_1 = rrr_S_x*rrr_base_frame_xx + rrr_S_y*rrr_base_frame_yx
-        # (rrr-py_1) component across the reference direction
-        rrr_py_1 = rrr_S_x*rrr_base_frame_xy + rrr_S_y*rrr_base_frame_yy
         # (rrr-Kc_1) factor of the cosine in the equation of joint 1
-        rrr_Kc_1 = rrr_joint2_offset_x*rrr_px_1
+        rrr_Kc_1 = rrr_joint2_offset_x*(rrr_S_x*rrr_base_frame_xx + rrr_S_y*rrr_base_frame_yx)
         # (rrr-Ks_1) factor of the sine in the equation of joint 1
-        rrr_Ks_1 = rrr_joint2_offset_x*rrr_py_1
+        rrr_Ks_1 = rrr_joint2_offset_x*(rrr_S_x*rrr_base_frame_xy + rrr_S_y*rrr_base_frame_yy)
         # (rrr-rho2_1) squared amplitude
         rrr_rho2_1 = rrr_Kc_1*rrr_Kc_1 + rrr_Ks_1*rrr_Ks_1
         # (rrr-disc_1) discriminant
@@ -3044,14 +3296,16 @@ def _run_inverse_kinematics(m, X):
         # (rrr_leg1-Kd_1) projection on the centre's direction, from the distance fixed by the joints beyond joint 1
         rrr_leg1_Kd_1_t_3 = rrr_leg1_S_x*rrr_leg1_S_x + rrr_leg1_S_y*rrr_leg1_S_y
         rrr_leg1_Kd_1 = rrr_leg1_Kd_1_t + 0.5*rrr_leg1_Kd_1_t_3 - rrr_leg1_Kd_1_t_2
-        # (rrr_leg1-px_1) component along the reference direction
-        rrr_leg1_px_1 = rrr_leg1_S_x*rrr_leg1_base_frame_xx + rrr_leg1_S_y*rrr_leg1_base_frame_yx
-        # (rrr_leg1-py_1) component across the reference direction
-        rrr_leg1_py_1 = rrr_leg1_S_x*rrr_leg1_base_frame_xy + rrr_leg1_S_y*rrr_leg1_base_frame_yy
         # (rrr_leg1-Kc_1) factor of the cosine in the equation of joint 1
-        rrr_leg1_Kc_1 = rrr_leg1_joint2_offset_x*rrr_leg1_px_1
+        rrr_leg1_Kc_1 = (
+        rrr_leg1_joint2_offset_x*(rrr_leg1_S_x*rrr_leg1_base_frame_xx +
+            rrr_leg1_S_y*rrr_leg1_base_frame_yx)
+        )
         # (rrr_leg1-Ks_1) factor of the sine in the equation of joint 1
-        rrr_leg1_Ks_1 = rrr_leg1_joint2_offset_x*rrr_leg1_py_1
+        rrr_leg1_Ks_1 = (
+        rrr_leg1_joint2_offset_x*(rrr_leg1_S_x*rrr_leg1_base_frame_xy +
+            rrr_leg1_S_y*rrr_leg1_base_frame_yy)
+        )
         # (rrr_leg1-rho2_1) squared amplitude
         rrr_leg1_rho2_1 = rrr_leg1_Kc_1*rrr_leg1_Kc_1 + rrr_leg1_Ks_1*rrr_leg1_Ks_1
         # (rrr_leg1-disc_1) discriminant
@@ -3094,14 +3348,10 @@ def _run_inverse_kinematics(m, X):
         # (rrr-Kd_1) projection on the centre's direction, from the distance fixed by the joints beyond joint 1
         rrr_Kd_1_t_3 = rrr_S_x*rrr_S_x + rrr_S_y*rrr_S_y
         rrr_Kd_1 = rrr_Kd_1_t + 0.5*rrr_Kd_1_t_3 - rrr_Kd_1_t_2
-        # (rrr-px_1) component along the reference direction
-        rrr_px_1 = rrr_S_x*rrr_base_frame_xx + rrr_S_y*rrr_base_frame_yx
-        # (rrr-py_1) component across the reference direction
-        rrr_py_1 = rrr_S_x*rrr_base_frame_xy + rrr_S_y*rrr_base_frame_yy
         # (rrr-Kc_1) factor of the cosine in the equation of joint 1
-        rrr_Kc_1 = rrr_joint2_offset_x*rrr_px_1
+        rrr_Kc_1 = rrr_joint2_offset_x*(rrr_S_x*rrr_base_frame_xx + rrr_S_y*rrr_base_frame_yx)
         # (rrr-Ks_1) factor of the sine in the equation of joint 1
-        rrr_Ks_1 = rrr_joint2_offset_x*rrr_py_1
+        rrr_Ks_1 = rrr_joint2_offset_x*(rrr_S_x*rrr_base_frame_xy + rrr_S_y*rrr_base_frame_yy)
         # (rrr-rho2_1) squared amplitude
         rrr_rho2_1 = rrr_Kc_1*rrr_Kc_1 + rrr_Ks_1*rrr_Ks_1
         # (rrr-disc_1) discriminant
@@ -3160,14 +3410,16 @@ def _run_joint_rates(m, X, V):
         # (rrr_leg1-Kd_1) projection on the centre's direction, from the distance fixed by the joints beyond joint 1
         rrr_leg1_Kd_1_t_3 = rrr_leg1_S_x*rrr_leg1_S_x + rrr_leg1_S_y*rrr_leg1_S_y
         rrr_leg1_Kd_1 = rrr_leg1_Kd_1_t + 0.5*rrr_leg1_Kd_1_t_3 - rrr_leg1_Kd_1_t_2
-        # (rrr_leg1-px_1) component along the reference direction
-        rrr_leg1_px_1 = rrr_leg1_S_x*rrr_leg1_base_frame_xx + rrr_leg1_S_y*rrr_leg1_base_frame_yx
-        # (rrr_leg1-py_1) component across the reference direction
-        rrr_leg1_py_1 = rrr_leg1_S_x*rrr_leg1_base_frame_xy + rrr_leg1_S_y*rrr_leg1_base_frame_yy
         # (rrr_leg1-Kc_1) factor of the cosine in the equation of joint 1
-        rrr_leg1_Kc_1 = rrr_leg1_joint2_offset_x*rrr_leg1_px_1
+        rrr_leg1_Kc_1 = (
+        rrr_leg1_joint2_offset_x*(rrr_leg1_S_x*rrr_leg1_base_frame_xx +
+            rrr_leg1_S_y*rrr_leg1_base_frame_yx)
+        )
         # (rrr_leg1-Ks_1) factor of the sine in the equation of joint 1
-        rrr_leg1_Ks_1 = rrr_leg1_joint2_offset_x*rrr_leg1_py_1
+        rrr_leg1_Ks_1 = (
+        rrr_leg1_joint2_offset_x*(rrr_leg1_S_x*rrr_leg1_base_frame_xy +
+            rrr_leg1_S_y*rrr_leg1_base_frame_yy)
+        )
         # (rrr_leg1-rho2_1) squared amplitude
         rrr_leg1_rho2_1 = rrr_leg1_Kc_1*rrr_leg1_Kc_1 + rrr_leg1_Ks_1*rrr_leg1_Ks_1
         # (rrr_leg1-disc_1) discriminant
@@ -3244,14 +3496,10 @@ def _run_joint_rates(m, X, V):
         # (rrr-Kd_1) projection on the centre's direction, from the distance fixed by the joints beyond joint 1
         rrr_Kd_1_t_3 = rrr_S_x*rrr_S_x + rrr_S_y*rrr_S_y
         rrr_Kd_1 = rrr_Kd_1_t + 0.5*rrr_Kd_1_t_3 - rrr_Kd_1_t_2
-        # (rrr-px_1) component along the reference direction
-        rrr_px_1 = rrr_S_x*rrr_base_frame_xx + rrr_S_y*rrr_base_frame_yx
-        # (rrr-py_1) component across the reference direction
-        rrr_py_1 = rrr_S_x*rrr_base_frame_xy + rrr_S_y*rrr_base_frame_yy
         # (rrr-Kc_1) factor of the cosine in the equation of joint 1
-        rrr_Kc_1 = rrr_joint2_offset_x*rrr_px_1
+        rrr_Kc_1 = rrr_joint2_offset_x*(rrr_S_x*rrr_base_frame_xx + rrr_S_y*rrr_base_frame_yx)
         # (rrr-Ks_1) factor of the sine in the equation of joint 1
-        rrr_Ks_1 = rrr_joint2_offset_x*rrr_py_1
+        rrr_Ks_1 = rrr_joint2_offset_x*(rrr_S_x*rrr_base_frame_xy + rrr_S_y*rrr_base_frame_yy)
         # (rrr-rho2_1) squared amplitude
         rrr_rho2_1 = rrr_Kc_1*rrr_Kc_1 + rrr_Ks_1*rrr_Ks_1
         # (rrr-disc_1) discriminant
@@ -3333,14 +3581,16 @@ def _run_joint_accelerations(m, X, V, A):
         # (rrr_leg1-Kd_1) projection on the centre's direction, from the distance fixed by the joints beyond joint 1
         rrr_leg1_Kd_1_t_3 = rrr_leg1_S_x*rrr_leg1_S_x + rrr_leg1_S_y*rrr_leg1_S_y
         rrr_leg1_Kd_1 = rrr_leg1_Kd_1_t + 0.5*rrr_leg1_Kd_1_t_3 - rrr_leg1_Kd_1_t_2
-        # (rrr_leg1-px_1) component along the reference direction
-        rrr_leg1_px_1 = rrr_leg1_S_x*rrr_leg1_base_frame_xx + rrr_leg1_S_y*rrr_leg1_base_frame_yx
-        # (rrr_leg1-py_1) component across the reference direction
-        rrr_leg1_py_1 = rrr_leg1_S_x*rrr_leg1_base_frame_xy + rrr_leg1_S_y*rrr_leg1_base_frame_yy
         # (rrr_leg1-Kc_1) factor of the cosine in the equation of joint 1
-        rrr_leg1_Kc_1 = rrr_leg1_joint2_offset_x*rrr_leg1_px_1
+        rrr_leg1_Kc_1 = (
+        rrr_leg1_joint2_offset_x*(rrr_leg1_S_x*rrr_leg1_base_frame_xx +
+            rrr_leg1_S_y*rrr_leg1_base_frame_yx)
+        )
         # (rrr_leg1-Ks_1) factor of the sine in the equation of joint 1
-        rrr_leg1_Ks_1 = rrr_leg1_joint2_offset_x*rrr_leg1_py_1
+        rrr_leg1_Ks_1 = (
+        rrr_leg1_joint2_offset_x*(rrr_leg1_S_x*rrr_leg1_base_frame_xy +
+            rrr_leg1_S_y*rrr_leg1_base_frame_yy)
+        )
         # (rrr_leg1-rho2_1) squared amplitude
         rrr_leg1_rho2_1 = rrr_leg1_Kc_1*rrr_leg1_Kc_1 + rrr_leg1_Ks_1*rrr_leg1_Ks_1
         # (rrr_leg1-disc_1) discriminant
@@ -3444,14 +3694,10 @@ def _run_joint_accelerations(m, X, V, A):
         # (rrr-Kd_1) projection on the centre's direction, from the distance fixed by the joints beyond joint 1
         rrr_Kd_1_t_3 = rrr_S_x*rrr_S_x + rrr_S_y*rrr_S_y
         rrr_Kd_1 = rrr_Kd_1_t + 0.5*rrr_Kd_1_t_3 - rrr_Kd_1_t_2
-        # (rrr-px_1) component along the reference direction
-        rrr_px_1 = rrr_S_x*rrr_base_frame_xx + rrr_S_y*rrr_base_frame_yx
-        # (rrr-py_1) component across the reference direction
-        rrr_py_1 = rrr_S_x*rrr_base_frame_xy + rrr_S_y*rrr_base_frame_yy
         # (rrr-Kc_1) factor of the cosine in the equation of joint 1
-        rrr_Kc_1 = rrr_joint2_offset_x*rrr_px_1
+        rrr_Kc_1 = rrr_joint2_offset_x*(rrr_S_x*rrr_base_frame_xx + rrr_S_y*rrr_base_frame_yx)
         # (rrr-Ks_1) factor of the sine in the equation of joint 1
-        rrr_Ks_1 = rrr_joint2_offset_x*rrr_py_1
+        rrr_Ks_1 = rrr_joint2_offset_x*(rrr_S_x*rrr_base_frame_xy + rrr_S_y*rrr_base_frame_yy)
         # (rrr-rho2_1) squared amplitude
         rrr_rho2_1 = rrr_Kc_1*rrr_Kc_1 + rrr_Ks_1*rrr_Ks_1
         # (rrr-disc_1) discriminant
@@ -3560,14 +3806,16 @@ def _run_legs(m, X, V, A):
         # (rrr_leg1-Kd_1) projection on the centre's direction, from the distance fixed by the joints beyond joint 1
         rrr_leg1_Kd_1_t_3 = rrr_leg1_S_x*rrr_leg1_S_x + rrr_leg1_S_y*rrr_leg1_S_y
         rrr_leg1_Kd_1 = rrr_leg1_Kd_1_t + 0.5*rrr_leg1_Kd_1_t_3 - rrr_leg1_Kd_1_t_2
-        # (rrr_leg1-px_1) component along the reference direction
-        rrr_leg1_px_1 = rrr_leg1_S_x*rrr_leg1_base_frame_xx + rrr_leg1_S_y*rrr_leg1_base_frame_yx
-        # (rrr_leg1-py_1) component across the reference direction
-        rrr_leg1_py_1 = rrr_leg1_S_x*rrr_leg1_base_frame_xy + rrr_leg1_S_y*rrr_leg1_base_frame_yy
         # (rrr_leg1-Kc_1) factor of the cosine in the equation of joint 1
-        rrr_leg1_Kc_1 = rrr_leg1_joint2_offset_x*rrr_leg1_px_1
+        rrr_leg1_Kc_1 = (
+        rrr_leg1_joint2_offset_x*(rrr_leg1_S_x*rrr_leg1_base_frame_xx +
+            rrr_leg1_S_y*rrr_leg1_base_frame_yx)
+        )
         # (rrr_leg1-Ks_1) factor of the sine in the equation of joint 1
-        rrr_leg1_Ks_1 = rrr_leg1_joint2_offset_x*rrr_leg1_py_1
+        rrr_leg1_Ks_1 = (
+        rrr_leg1_joint2_offset_x*(rrr_leg1_S_x*rrr_leg1_base_frame_xy +
+            rrr_leg1_S_y*rrr_leg1_base_frame_yy)
+        )
         # (rrr_leg1-rho2_1) squared amplitude
         rrr_leg1_rho2_1 = rrr_leg1_Kc_1*rrr_leg1_Kc_1 + rrr_leg1_Ks_1*rrr_leg1_Ks_1
         # (rrr_leg1-disc_1) discriminant
@@ -3750,14 +3998,10 @@ def _run_legs(m, X, V, A):
         # (rrr-Kd_1) projection on the centre's direction, from the distance fixed by the joints beyond joint 1
         rrr_Kd_1_t_3 = rrr_S_x*rrr_S_x + rrr_S_y*rrr_S_y
         rrr_Kd_1 = rrr_Kd_1_t + 0.5*rrr_Kd_1_t_3 - rrr_Kd_1_t_2
-        # (rrr-px_1) component along the reference direction
-        rrr_px_1 = rrr_S_x*rrr_base_frame_xx + rrr_S_y*rrr_base_frame_yx
-        # (rrr-py_1) component across the reference direction
-        rrr_py_1 = rrr_S_x*rrr_base_frame_xy + rrr_S_y*rrr_base_frame_yy
         # (rrr-Kc_1) factor of the cosine in the equation of joint 1
-        rrr_Kc_1 = rrr_joint2_offset_x*rrr_px_1
+        rrr_Kc_1 = rrr_joint2_offset_x*(rrr_S_x*rrr_base_frame_xx + rrr_S_y*rrr_base_frame_yx)
         # (rrr-Ks_1) factor of the sine in the equation of joint 1
-        rrr_Ks_1 = rrr_joint2_offset_x*rrr_py_1
+        rrr_Ks_1 = rrr_joint2_offset_x*(rrr_S_x*rrr_base_frame_xy + rrr_S_y*rrr_base_frame_yy)
         # (rrr-rho2_1) squared amplitude
         rrr_rho2_1 = rrr_Kc_1*rrr_Kc_1 + rrr_Ks_1*rrr_Ks_1
         # (rrr-disc_1) discriminant
@@ -3906,14 +4150,16 @@ def _run_potential(m, X):
         # (rrr_leg1-Kd_1) projection on the centre's direction, from the distance fixed by the joints beyond joint 1
         rrr_leg1_Kd_1_t_3 = rrr_leg1_S_x*rrr_leg1_S_x + rrr_leg1_S_y*rrr_leg1_S_y
         rrr_leg1_Kd_1 = rrr_leg1_Kd_1_t + 0.5*rrr_leg1_Kd_1_t_3 - rrr_leg1_Kd_1_t_2
-        # (rrr_leg1-px_1) component along the reference direction
-        rrr_leg1_px_1 = rrr_leg1_S_x*rrr_leg1_base_frame_xx + rrr_leg1_S_y*rrr_leg1_base_frame_yx
-        # (rrr_leg1-py_1) component across the reference direction
-        rrr_leg1_py_1 = rrr_leg1_S_x*rrr_leg1_base_frame_xy + rrr_leg1_S_y*rrr_leg1_base_frame_yy
         # (rrr_leg1-Kc_1) factor of the cosine in the equation of joint 1
-        rrr_leg1_Kc_1 = rrr_leg1_joint2_offset_x*rrr_leg1_px_1
+        rrr_leg1_Kc_1 = (
+        rrr_leg1_joint2_offset_x*(rrr_leg1_S_x*rrr_leg1_base_frame_xx +
+            rrr_leg1_S_y*rrr_leg1_base_frame_yx)
+        )
         # (rrr_leg1-Ks_1) factor of the sine in the equation of joint 1
-        rrr_leg1_Ks_1 = rrr_leg1_joint2_offset_x*rrr_leg1_py_1
+        rrr_leg1_Ks_1 = (
+        rrr_leg1_joint2_offset_x*(rrr_leg1_S_x*rrr_leg1_base_frame_xy +
+            rrr_leg1_S_y*rrr_leg1_base_frame_yy)
+        )
         # (rrr_leg1-rho2_1) squared amplitude
         rrr_leg1_rho2_1 = rrr_leg1_Kc_1*rrr_leg1_Kc_1 + rrr_leg1_Ks_1*rrr_leg1_Ks_1
         # (rrr_leg1-disc_1) discriminant
@@ -3975,14 +4221,10 @@ def _run_potential(m, X):
         # (rrr-Kd_1) projection on the centre's direction, from the distance fixed by the joints beyond joint 1
         rrr_Kd_1_t_3 = rrr_S_x*rrr_S_x + rrr_S_y*rrr_S_y
         rrr_Kd_1 = rrr_Kd_1_t + 0.5*rrr_Kd_1_t_3 - rrr_Kd_1_t_2
-        # (rrr-px_1) component along the reference direction
-        rrr_px_1 = rrr_S_x*rrr_base_frame_xx + rrr_S_y*rrr_base_frame_yx
-        # (rrr-py_1) component across the reference direction
-        rrr_py_1 = rrr_S_x*rrr_base_frame_xy + rrr_S_y*rrr_base_frame_yy
         # (rrr-Kc_1) factor of the cosine in the equation of joint 1
-        rrr_Kc_1 = rrr_joint2_offset_x*rrr_px_1
+        rrr_Kc_1 = rrr_joint2_offset_x*(rrr_S_x*rrr_base_frame_xx + rrr_S_y*rrr_base_frame_yx)
         # (rrr-Ks_1) factor of the sine in the equation of joint 1
-        rrr_Ks_1 = rrr_joint2_offset_x*rrr_py_1
+        rrr_Ks_1 = rrr_joint2_offset_x*(rrr_S_x*rrr_base_frame_xy + rrr_S_y*rrr_base_frame_yy)
         # (rrr-rho2_1) squared amplitude
         rrr_rho2_1 = rrr_Kc_1*rrr_Kc_1 + rrr_Ks_1*rrr_Ks_1
         # (rrr-disc_1) discriminant
@@ -4057,14 +4299,16 @@ def _run_condition(m, X):
         # (rrr_leg1-Kd_1) projection on the centre's direction, from the distance fixed by the joints beyond joint 1
         rrr_leg1_Kd_1_t_3 = rrr_leg1_S_x*rrr_leg1_S_x + rrr_leg1_S_y*rrr_leg1_S_y
         rrr_leg1_Kd_1 = rrr_leg1_Kd_1_t + 0.5*rrr_leg1_Kd_1_t_3 - rrr_leg1_Kd_1_t_2
-        # (rrr_leg1-px_1) component along the reference direction
-        rrr_leg1_px_1 = rrr_leg1_S_x*rrr_leg1_base_frame_xx + rrr_leg1_S_y*rrr_leg1_base_frame_yx
-        # (rrr_leg1-py_1) component across the reference direction
-        rrr_leg1_py_1 = rrr_leg1_S_x*rrr_leg1_base_frame_xy + rrr_leg1_S_y*rrr_leg1_base_frame_yy
         # (rrr_leg1-Kc_1) factor of the cosine in the equation of joint 1
-        rrr_leg1_Kc_1 = rrr_leg1_joint2_offset_x*rrr_leg1_px_1
+        rrr_leg1_Kc_1 = (
+        rrr_leg1_joint2_offset_x*(rrr_leg1_S_x*rrr_leg1_base_frame_xx +
+            rrr_leg1_S_y*rrr_leg1_base_frame_yx)
+        )
         # (rrr_leg1-Ks_1) factor of the sine in the equation of joint 1
-        rrr_leg1_Ks_1 = rrr_leg1_joint2_offset_x*rrr_leg1_py_1
+        rrr_leg1_Ks_1 = (
+        rrr_leg1_joint2_offset_x*(rrr_leg1_S_x*rrr_leg1_base_frame_xy +
+            rrr_leg1_S_y*rrr_leg1_base_frame_yy)
+        )
         # (rrr_leg1-rho2_1) squared amplitude
         rrr_leg1_rho2_1 = rrr_leg1_Kc_1*rrr_leg1_Kc_1 + rrr_leg1_Ks_1*rrr_leg1_Ks_1
         # (rrr_leg1-disc_1) discriminant
@@ -4169,14 +4413,10 @@ def _run_condition(m, X):
         # (rrr-Kd_1) projection on the centre's direction, from the distance fixed by the joints beyond joint 1
         rrr_Kd_1_t_3 = rrr_S_x*rrr_S_x + rrr_S_y*rrr_S_y
         rrr_Kd_1 = rrr_Kd_1_t + 0.5*rrr_Kd_1_t_3 - rrr_Kd_1_t_2
-        # (rrr-px_1) component along the reference direction
-        rrr_px_1 = rrr_S_x*rrr_base_frame_xx + rrr_S_y*rrr_base_frame_yx
-        # (rrr-py_1) component across the reference direction
-        rrr_py_1 = rrr_S_x*rrr_base_frame_xy + rrr_S_y*rrr_base_frame_yy
         # (rrr-Kc_1) factor of the cosine in the equation of joint 1
-        rrr_Kc_1 = rrr_joint2_offset_x*rrr_px_1
+        rrr_Kc_1 = rrr_joint2_offset_x*(rrr_S_x*rrr_base_frame_xx + rrr_S_y*rrr_base_frame_yx)
         # (rrr-Ks_1) factor of the sine in the equation of joint 1
-        rrr_Ks_1 = rrr_joint2_offset_x*rrr_py_1
+        rrr_Ks_1 = rrr_joint2_offset_x*(rrr_S_x*rrr_base_frame_xy + rrr_S_y*rrr_base_frame_yy)
         # (rrr-rho2_1) squared amplitude
         rrr_rho2_1 = rrr_Kc_1*rrr_Kc_1 + rrr_Ks_1*rrr_Ks_1
         # (rrr-disc_1) discriminant
@@ -4241,6 +4481,27 @@ def _run_condition(m, X):
     return (valid, reached, clear), (out_H, out_lengths, out_pivots, out_reach,)
 
 
+def _straight_2(a, b, rows, limits):
+    """Solve 2 equations a x = b straight through; and whether that is beyond doubt."""
+    (a00, a01,), (a10, a11,), = [a[2 * k : 2 * k + 2] for k in rows]
+    b0, b1, = [b[k] for k in rows]
+    l10, l0, l1, = limits
+    f0 = 1.0/a00
+    g10 = a10*f0
+    a11 = a11 - g10*a01
+    b1 = b1 - g10*b0
+    f1 = 1.0/a11
+    x1 = b1*f1
+    x0 = (b0 - a01*x1)*f0
+    sure = (
+    (abs(g10) <= l10) & (abs(f0) <= l0) & (abs(f1) <= l1) & (abs(x0 + x1 + a00 + a11) < math.inf)
+    )
+    return sure, ([x0, x1],)
+
+
+_ORDERS = (  # how systems are solved near home
+    _Order(_straight_2, (0, 1), (40, 1000, 250,)),
+)
 _Q = None  # where a quaternion begins in X
 _DEFAULT = Parameters()
 
@@ -4293,11 +4554,11 @@ def _steps_inverse_dynamics(m, X, V, A, wrench, weights):
 
 def _steps_forward_dynamics(m, X, V, tau, wrench):
     M, Z, H = m.run(_run_dynamics, ("M", "Z", "H"), X, V)
-    times_1 = np.einsum("ijs,js->is", H, tau)
+    times_1 = _times(H, tau)
     extend_1 = wrench
     add_1 = times_1 + extend_1
     subtract_1 = add_1 - Z
-    A = _solve(M, subtract_1)
+    A = _straight(m, M, subtract_1, _ORDERS[0])
     return (A,)
 
 
@@ -4336,10 +4597,43 @@ def _steps_condition(m, X, length):
     return (sigma, legs,)
 
 
+def _steps_manipulability(m, X):
+    (
+    H, lengths, pivots, reach,
+    ) = m.run(_in_one(_run_condition), ("H", "lengths", "pivots", "reach"), X)
+    singular_values_1 = _singular_values(H)
+    measure, isotropy = _spread(singular_values_1, 2)
+    return (measure, isotropy,)
+
+
+def _steps_singularity_distance(m, X):
+    (
+    H, lengths, pivots, reach,
+    ) = m.run(_in_one(_run_condition), ("H", "lengths", "pivots", "reach"), X)
+    singular_values_1 = _singular_values(H)
+    spread_1, actuators = _spread(singular_values_1, 2)
+    legs = _least_entry(pivots)
+    return (actuators, legs,)
+
+
+def _steps_force_distribution(m, X, V, A, tau_min, tau_max, wrench, reference):
+    required, H = m.run(_run_required, ("required", "H"), X, V, A)
+    extend_1 = wrench
+    subtract_1 = required - extend_1
+    least_norm_1 = _least_norm(H, subtract_1)
+    null_basis_1 = _null_basis(H, 2)
+    transposed_1 = np.swapaxes(null_basis_1, 0, 1)
+    product_1 = np.einsum("iks,kjs->ijs", null_basis_1, transposed_1)
+    times_1 = _times(product_1, reference)
+    add_1 = least_norm_1 + times_1
+    tau = _nearest_within(add_1, product_1, tau_min, tau_max)
+    return (tau,)
+
+
 def _steps_mismatch(m, X, q_actuated):
     q, = m.run(_run_inverse_kinematics, ("q",), X)
-    take_1 = q[0:3]
-    subtract_1 = q_actuated - take_1
+    q_of_inverse_kinematics_from_0 = q[0:3]
+    subtract_1 = q_actuated - q_of_inverse_kinematics_from_0
     gap = _wrapped(subtract_1, [0, 1, 2])
     return (gap,)
 
@@ -4362,7 +4656,7 @@ def _steps_dissipation(m, X, V):
 
 def _steps_momentum(m, X, V):
     M, = m.run(_run_M, ("M",), X)
-    momentum = np.einsum("ijs,js->is", M, V)
+    momentum = _times(M, V)
     return (momentum,)
 
 
@@ -4399,7 +4693,7 @@ def _steps_actuator_accelerations(m, X, V, A):
 
 def _steps_power(m, X, V, tau):
     H, = m.run(_run_H, ("H",), X)
-    times_1 = np.einsum("ijs,js->is", H, tau)
+    times_1 = _times(H, tau)
     power = np.sum(times_1 * V, axis=0)
     return (power,)
 
@@ -4434,6 +4728,7 @@ def M(X, p=None):
     return _call(
         "M", _steps_M, p,
         ("X", X, (NQ,)),
+        plain=((NV, NV,),),
     )
 
 
@@ -4452,6 +4747,7 @@ def Z(X, V, p=None):
         "Z", _steps_Z, p,
         ("X", X, (NQ,)),
         ("V", V, (NV,)),
+        plain=((NV,),),
     )
 
 
@@ -4468,6 +4764,7 @@ def H(X, p=None):
     return _call(
         "H", _steps_H, p,
         ("X", X, (NQ,)),
+        plain=((NV, NU,),),
     )
 
 
@@ -4486,6 +4783,7 @@ def inverse_kinematics(X, p=None):
     return _call(
         "inverse_kinematics", _steps_inverse_kinematics, p,
         ("X", X, (NQ,)),
+        plain=((NJ,),),
     )
 
 
@@ -4504,6 +4802,7 @@ def joint_rates(X, V, p=None):
         "joint_rates", _steps_joint_rates, p,
         ("X", X, (NQ,)),
         ("V", V, (NV,)),
+        plain=((NJ,),),
     )
 
 
@@ -4524,6 +4823,7 @@ def joint_accelerations(X, V, A, p=None):
         ("X", X, (NQ,)),
         ("V", V, (NV,)),
         ("A", A, (NV,)),
+        plain=((NJ,),),
     )
 
 
@@ -4544,6 +4844,7 @@ def dynamics(X, V, p=None):
         "dynamics", _steps_dynamics, p,
         ("X", X, (NQ,)),
         ("V", V, (NV,)),
+        plain=((NV, NV,), (NV,), (NV, NU,),),
     )
 
 
@@ -4591,6 +4892,7 @@ def forward_dynamics(X, V, tau, p=None, *, wrench=None):
         ("V", V, (NV,)),
         ("tau", tau, (NU,)),
         ("wrench", wrench, (NW,), 0.0),
+        plain=((NV,),),
     )
 
 
@@ -4615,6 +4917,7 @@ def complete_acceleration(X, V, A, p=None, *, wrench=None):
         ("V", V, (NV,), None, "unused"),
         ("A", A, (NV,)),
         ("wrench", wrench, (NW,), 0.0, "unused"),
+        plain=((NV,),),
     )
 
 
@@ -4701,6 +5004,74 @@ def condition(X, p=None, *, length=None):
     )
 
 
+def manipulability(X, p=None):
+    """Manipulability of forces: the product of the singular values that `condition` has by
+    default, and the least over the largest of them.
+
+    Args:
+        X: pose, and extra coordinates (..., NQ).
+        p: parameters, by default those of the specification.
+
+    Returns:
+        measure: product of the singular values (...,).
+        isotropy: least over largest value, 1 where H is isotropic (...,).
+    """
+    return _call(
+        "manipulability", _steps_manipulability, p,
+        ("X", X, (NQ,)),
+    )
+
+
+def singularity_distance(X, p=None):
+    """How near actuators and legs are to being singular: relative distances, 0 where they are.
+
+    Args:
+        X: pose, and extra coordinates (..., NQ).
+        p: parameters, by default those of the specification.
+
+    Returns:
+        actuators: of H from matrices of lower rank, over its norm (...,).
+        legs: least pivot of all legs (...,).
+    """
+    return _call(
+        "singularity_distance", _steps_singularity_distance, p,
+        ("X", X, (NQ,)),
+    )
+
+
+def force_distribution(X, V, A, tau_min, tau_max, p=None, *, wrench=None, reference=None):
+    """Actuator forces from tau_min to tau_max for the acceleration A: the nearest to reference.
+
+    By the dual active-set method of Goldfarb and Idnani; continuous along a motion.
+
+    Impossible (UNREACHABLE) where no forces within the bounds give the acceleration. Cables pull
+    with negative forces: tau_max = -t keeps tensions of t at least.
+
+    Args:
+        X: pose, and extra coordinates (..., NQ).
+        V: velocity (..., NV).
+        A: acceleration (..., NV).
+        tau_min: least actuator forces [N or N m] (..., NU).
+        tau_max: largest actuator forces [N or N m] (..., NU).
+        wrench: external wrench on the platform, by default zero (..., NW).
+        reference: actuator forces to be near to [N or N m], by default zero (..., NU).
+        p: parameters, by default those of the specification.
+
+    Returns:
+        tau: actuator forces [N or N m] (..., NU).
+    """
+    return _call(
+        "force_distribution", _steps_force_distribution, p,
+        ("X", X, (NQ,)),
+        ("V", V, (NV,)),
+        ("A", A, (NV,)),
+        ("tau_min", tau_min, (NU,)),
+        ("tau_max", tau_max, (NU,)),
+        ("wrench", wrench, (NW,), 0.0),
+        ("reference", reference, (NU,), 0.0),
+    )
+
+
 def forward_kinematics(q_actuated, X0, p=None):
     """X at which the actuated joints stand at q_actuated, by Gauss-Newton from X0.
 
@@ -4756,6 +5127,7 @@ def momentum(X, V, p=None):
         "momentum", _steps_momentum, p,
         ("X", X, (NQ,)),
         ("V", V, (NV,)),
+        plain=((NV,),),
     )
 
 
@@ -4882,6 +5254,7 @@ def retract(X, step):
         "retract", _steps_retract, None,
         ("X", X, (NQ,)),
         ("step", step, (NV,)),
+        plain=((NQ,),),
     )
 
 
@@ -4899,6 +5272,7 @@ def difference(X0, X1):
         "difference", _steps_difference, None,
         ("X0", X0, (NQ,)),
         ("X1", X1, (NQ,)),
+        plain=((NV,),),
     )
 
 

@@ -994,6 +994,24 @@ INLINE void unlimited(size_t rows, size_t size, size_t w, const size_t *places, 
     }
 }
 
+INLINE void least_entry(size_t n, const real *a, real *x)
+{
+    *x = a[0];
+    for (size_t e = 1; e < n; ++e) {
+        *x = lesser(*x, a[e]);
+    }
+}
+
+/* Of the first n entries the product, and the last over the first, 0 where that is 0. */
+INLINE void spread(size_t n, const real *a, real *product_of, real *ratio)
+{
+    *product_of = 1;
+    for (size_t e = 0; e < n; ++e) {
+        *product_of *= a[e];
+    }
+    *ratio = magnitude(a[0]) > 0 ? a[n - 1]/a[0] : a[0];
+}
+
 /* 1 where no entry is negative, else 0. */
 INLINE void not_negative(size_t size, size_t w, const real *a, real *x, real *flags)
 {
@@ -1044,126 +1062,279 @@ static void moved(const real *X, const real *step, real part, real *to)
     }
 }
 
+/* ---- what functions of the state share; v: values for others ---- */
+
+typedef struct {
+    real rrr_Kd_1, rrr_Kc_1, rrr_Ks_1, rrr_rho2_1, rrr_disc_1, rrr_root_1, inv_rrr_rho2_1, rrr_c_1,
+        rrr_s_1, rrr_x_2_in_axes1_x, rrr_c_2, rrr_s_2, rrr_r_1_in_axes1_y, rrr_r_1_in_axes1_x,
+        rrr_r_1_in_axes2_x, rrr_r_1_in_axes2_y, rrr_w_1_t, rrr_w_1_t_2, axis_y_rrr_axes2_x,
+        axis_x_rrr_axes2_x, inv_rrr_r_1_in_axes2_y, rrr_w_1_x, rrr_w_1_y, rrr_qd_1_t_2,
+        rrr_W_1_in_axes1_xx, rrr_W_2_t, rrr_bias_in_axes2_x, rrr_w_2_in_axes2_x,
+        rrr_d_Gamma_2_in_axes2_x, rrr_d_Gamma_1_in_axes2_x, rrr_d_c_in_axes2_xy, rrr_acc_2_in_axes2_x,
+        rrr_acc_2_in_axes2_y, rrr_c_in_axes2_x, rrr_c_in_axes2_y;
+} values_rrr;
+
+INLINE void stage_rrr_X(const prepared *m, size_t w, size_t i, size_t j, const real *X, values_rrr
+    *v)
+{
+    /* (rrr-S) from the base point to the connection point */
+    const real rrr_base_point_x = m->rrr_base_point_x[i];
+    const real rrr_platform_point_x = m->rrr_platform_point_x[i];
+    const real t_x = X[0*w + j];
+    const real rrr_S_x = rrr_platform_point_x + t_x - rrr_base_point_x;
+    const real rrr_base_point_y = m->rrr_base_point_y[i];
+    const real rrr_platform_point_y = m->rrr_platform_point_y[i];
+    const real t_y = X[1*w + j];
+    const real rrr_S_y = rrr_platform_point_y + t_y - rrr_base_point_y;
+    /* (rrr-Kd_1) projection on the centre's direction, from the distance fixed by the joints beyond
+       joint 1 */
+    const real rrr_Kd_1_t_3 = rrr_S_x*rrr_S_x + rrr_S_y*rrr_S_y;
+    const real rrr_Kd_1_t = m->rrr_Kd_1_t[i];
+    const real rrr_Kd_1_t_2 = m->rrr_Kd_1_t_2[i];
+    const real rrr_Kd_1 = rrr_Kd_1_t + R(0.5)*rrr_Kd_1_t_3 - rrr_Kd_1_t_2;
+    /* (rrr-Kc_1) factor of the cosine in the equation of joint 1 */
+    const real rrr_base_frame_xx = m->rrr_base_frame_xx[i];
+    const real rrr_base_frame_yx = m->rrr_base_frame_yx[i];
+    const real rrr_joint2_offset_x = m->rrr_joint2_offset_x[i];
+    const real rrr_Kc_1 = rrr_joint2_offset_x*(rrr_S_x*rrr_base_frame_xx +
+        rrr_S_y*rrr_base_frame_yx);
+    /* (rrr-Ks_1) factor of the sine in the equation of joint 1 */
+    const real rrr_base_frame_xy = m->rrr_base_frame_xy[i];
+    const real rrr_base_frame_yy = m->rrr_base_frame_yy[i];
+    const real rrr_Ks_1 = rrr_joint2_offset_x*(rrr_S_x*rrr_base_frame_xy +
+        rrr_S_y*rrr_base_frame_yy);
+    /* (rrr-rho2_1) squared amplitude */
+    const real rrr_rho2_1 = rrr_Kc_1*rrr_Kc_1 + rrr_Ks_1*rrr_Ks_1;
+    /* (rrr-disc_1) discriminant */
+    const real rrr_disc_1 = rrr_rho2_1 - rrr_Kd_1*rrr_Kd_1;
+    /* (rrr-root_1) root, with the sign of the branch */
+    const real rrr_branch_1 = m->rrr_branch_1[i];
+    const real rrr_root_1 = rrr_branch_1*root(rrr_disc_1);
+    /* (rrr-c_1) cosine of the angle of joint 1 from its reference direction */
+    const real inv_rrr_rho2_1 = 1/rrr_rho2_1;
+    const real rrr_c_1 = inv_rrr_rho2_1*(rrr_Kc_1*rrr_Kd_1 - rrr_Ks_1*rrr_root_1);
+    /* (rrr-s_1) sine of the angle of joint 1 from its reference direction */
+    const real rrr_s_1 = inv_rrr_rho2_1*(rrr_Kc_1*rrr_root_1 + rrr_Kd_1*rrr_Ks_1);
+    /* (rrr-x_2) from the origin of joint 2 to the connection point */
+    const real inv_rrr_size_t = m->inv_rrr_size_t[i];
+    const real rrr_x_2_in_axes1_x = inv_rrr_size_t*rrr_Kd_1*rrr_joint2_offset_x -
+        rrr_joint2_offset_x;
+    /* (rrr-c_2) cosine of the angle of joint 2 from its reference direction */
+    const real inv_rrr_size_t_2 = m->inv_rrr_size_t_2[i];
+    const real rrr_platform_joint_offset_x = m->rrr_platform_joint_offset_x[i];
+    const real rrr_c_2 = inv_rrr_size_t_2*rrr_platform_joint_offset_x*rrr_x_2_in_axes1_x;
+    /* (rrr-s_2) sine of the angle of joint 2 from its reference direction */
+    const real rrr_s_2 =
+        -inv_rrr_size_t*inv_rrr_size_t_2*rrr_joint2_offset_x*rrr_platform_joint_offset_x*rrr_root_1;
+    /* (rrr-r_1) from joint 1 to the connection point, along the links */
+    const real rrr_r_1_in_axes1_y = rrr_platform_joint_offset_x*rrr_s_2;
+    const real rrr_r_1_in_axes1_x = rrr_joint2_offset_x + rrr_c_2*rrr_platform_joint_offset_x;
+    const real rrr_r_1_in_axes2_x = rrr_c_2*rrr_r_1_in_axes1_x + rrr_r_1_in_axes1_y*rrr_s_2;
+    const real rrr_r_1_in_axes2_y = rrr_c_2*rrr_r_1_in_axes1_y - rrr_r_1_in_axes1_x*rrr_s_2;
+    /* (rrr-w_1) reciprocal vector 1 */
+    const real rrr_w_1_t = rrr_c_1*rrr_s_2 + rrr_c_2*rrr_s_1;
+    const real rrr_w_1_t_2 = rrr_c_1*rrr_c_2 - rrr_s_1*rrr_s_2;
+    const real axis_y_rrr_axes2_x = rrr_base_frame_xy*rrr_w_1_t_2 -
+        rrr_base_frame_xx*rrr_w_1_t;
+    const real axis_x_rrr_axes2_x = rrr_base_frame_yy*rrr_w_1_t_2 -
+        rrr_base_frame_yx*rrr_w_1_t;
+    const real inv_rrr_r_1_in_axes2_y = 1/rrr_r_1_in_axes2_y;
+    const real rrr_w_1_x = -axis_x_rrr_axes2_x*inv_rrr_r_1_in_axes2_y;
+    const real rrr_w_1_y = axis_y_rrr_axes2_x*inv_rrr_r_1_in_axes2_y;
+    /* (rrr-qd_1) rate of joint 1 */
+    const real rrr_qd_1_t_2 = rrr_c_1*rrr_c_2 - rrr_s_1*rrr_s_2;
+    v->rrr_Kd_1 = rrr_Kd_1;
+    v->rrr_Kc_1 = rrr_Kc_1;
+    v->rrr_Ks_1 = rrr_Ks_1;
+    v->rrr_rho2_1 = rrr_rho2_1;
+    v->rrr_disc_1 = rrr_disc_1;
+    v->rrr_root_1 = rrr_root_1;
+    v->inv_rrr_rho2_1 = inv_rrr_rho2_1;
+    v->rrr_c_1 = rrr_c_1;
+    v->rrr_s_1 = rrr_s_1;
+    v->rrr_x_2_in_axes1_x = rrr_x_2_in_axes1_x;
+    v->rrr_c_2 = rrr_c_2;
+    v->rrr_s_2 = rrr_s_2;
+    v->rrr_r_1_in_axes1_y = rrr_r_1_in_axes1_y;
+    v->rrr_r_1_in_axes1_x = rrr_r_1_in_axes1_x;
+    v->rrr_r_1_in_axes2_x = rrr_r_1_in_axes2_x;
+    v->rrr_r_1_in_axes2_y = rrr_r_1_in_axes2_y;
+    v->rrr_w_1_t = rrr_w_1_t;
+    v->rrr_w_1_t_2 = rrr_w_1_t_2;
+    v->axis_y_rrr_axes2_x = axis_y_rrr_axes2_x;
+    v->axis_x_rrr_axes2_x = axis_x_rrr_axes2_x;
+    v->inv_rrr_r_1_in_axes2_y = inv_rrr_r_1_in_axes2_y;
+    v->rrr_w_1_x = rrr_w_1_x;
+    v->rrr_w_1_y = rrr_w_1_y;
+    v->rrr_qd_1_t_2 = rrr_qd_1_t_2;
+}
+
+INLINE void stage_rrr_V_X(const prepared *m, size_t w, size_t i, size_t j, const real *V,
+    values_rrr *v)
+{
+    /* (rrr-qd_1) rate of joint 1 */
+    const real t_dot_x = V[0*w + j];
+    const real t_dot_y = V[1*w + j];
+    const real rrr_qd_1_t = v->inv_rrr_r_1_in_axes2_y*(v->axis_x_rrr_axes2_x*t_dot_x -
+        v->axis_y_rrr_axes2_x*t_dot_y);
+    /* (rrr-W_1) centripetal tensor of link 1 */
+    const real rrr_W_1_in_axes1_xx = -rrr_qd_1_t*rrr_qd_1_t;
+    /* (rrr-omega_2) angular velocity of link 2 */
+    const real rrr_w_2_in_axes2_y = m->rrr_w_2_in_axes2_y[i];
+    const real rrr_omega_2_in_axes2_z = rrr_w_2_in_axes2_y*(v->axis_x_rrr_axes2_x*t_dot_y +
+        v->axis_y_rrr_axes2_x*t_dot_x + rrr_qd_1_t*v->rrr_r_1_in_axes2_x) - rrr_qd_1_t;
+    /* (rrr-W_2) centripetal tensor of link 2 */
+    const real rrr_W_2_t = rrr_omega_2_in_axes2_z*rrr_omega_2_in_axes2_z;
+    /* (rrr-bias) acceleration of the connection point at zero joint accelerations */
+    const real rrr_joint2_offset_x = m->rrr_joint2_offset_x[i];
+    const real rrr_platform_joint_offset_x = m->rrr_platform_joint_offset_x[i];
+    const real rrr_bias_in_axes2_x = rrr_W_1_in_axes1_xx*v->rrr_c_2*rrr_joint2_offset_x -
+        rrr_W_2_t*rrr_platform_joint_offset_x;
+    v->rrr_W_1_in_axes1_xx = rrr_W_1_in_axes1_xx;
+    v->rrr_W_2_t = rrr_W_2_t;
+    v->rrr_bias_in_axes2_x = rrr_bias_in_axes2_x;
+}
+
+INLINE void stage_rrr_H_condition(const prepared *m, size_t i, values_rrr *v)
+{
+    /* (rrr-r_1) from joint 1 to the connection point, along the links */
+    const real rrr_platform_joint_offset_x = m->rrr_platform_joint_offset_x[i];
+    const real rrr_r_1_in_axes2_y = v->rrr_c_2*rrr_platform_joint_offset_x*v->rrr_s_2 -
+        v->rrr_r_1_in_axes1_x*v->rrr_s_2;
+    /* (rrr-w_1) reciprocal vector 1 */
+    const real inv_rrr_r_1_in_axes2_y = 1/rrr_r_1_in_axes2_y;
+    const real rrr_base_frame_yx = m->rrr_base_frame_yx[i];
+    const real rrr_base_frame_yy = m->rrr_base_frame_yy[i];
+    const real rrr_w_1_x = -inv_rrr_r_1_in_axes2_y*(rrr_base_frame_yy*v->rrr_w_1_t_2 -
+        rrr_base_frame_yx*v->rrr_w_1_t);
+    const real rrr_base_frame_xx = m->rrr_base_frame_xx[i];
+    const real rrr_base_frame_xy = m->rrr_base_frame_xy[i];
+    const real rrr_w_1_y = inv_rrr_r_1_in_axes2_y*(rrr_base_frame_xy*v->rrr_w_1_t_2 -
+        rrr_base_frame_xx*v->rrr_w_1_t);
+    v->rrr_r_1_in_axes2_y = rrr_r_1_in_axes2_y;
+    v->rrr_w_1_x = rrr_w_1_x;
+    v->rrr_w_1_y = rrr_w_1_y;
+}
+
+INLINE void stage_rrr_M_dynamics(const prepared *m, size_t i, values_rrr *v)
+{
+    /* (rrr-w_2) reciprocal vector 2 */
+    const real rrr_w_2_in_axes2_y = m->rrr_w_2_in_axes2_y[i];
+    const real rrr_w_2_in_axes2_x =
+        v->inv_rrr_r_1_in_axes2_y*v->rrr_r_1_in_axes2_x*rrr_w_2_in_axes2_y;
+    /* (rrr-d_Gamma_2) coefficient of the acceleration in: moment about axis 2 of the distal links'
+       inertia and weight */
+    const real rrr_d_Gamma_2_t = m->rrr_d_Gamma_2_t[i];
+    const real rrr_d_Gamma_2_t_2 = rrr_d_Gamma_2_t*v->rrr_r_1_in_axes2_x;
+    const real rrr_J_2_in_spec2_zz = m->rrr_J_2_in_spec2_zz[i];
+    const real rrr_h_2_in_spec2_y = m->rrr_h_2_in_spec2_y[i];
+    const real rrr_d_Gamma_2_in_axes2_x = -rrr_h_2_in_spec2_y -
+        v->inv_rrr_r_1_in_axes2_y*(rrr_J_2_in_spec2_zz - rrr_d_Gamma_2_t_2);
+    /* (rrr-d_Gamma_1) coefficient of the acceleration in: moment about axis 1 of the distal links'
+       inertia and weight */
+    const real rrr_Jc_1_in_axes1_zz = m->rrr_Jc_1_in_axes1_zz[i];
+    const real rrr_d_Gamma_1_in_axes2_x = -rrr_h_2_in_spec2_y -
+        v->inv_rrr_r_1_in_axes2_y*(rrr_Jc_1_in_axes1_zz - rrr_d_Gamma_2_t_2);
+    /* (rrr-d_c) coefficient of the acceleration in: leg force on the platform without actuation and
+       without the mass at the connection point */
+    const real rrr_d_Gamma_2_in_axes2_y = m->rrr_d_Gamma_2_in_axes2_y[i];
+    const real rrr_d_phi_2_in_axes2_xy = m->rrr_d_phi_2_in_axes2_xy[i];
+    const real rrr_d_c_in_axes2_xy = v->inv_rrr_r_1_in_axes2_y*rrr_d_Gamma_2_in_axes2_y -
+        rrr_d_phi_2_in_axes2_xy - rrr_d_Gamma_2_in_axes2_y*rrr_w_2_in_axes2_x;
+    v->rrr_w_2_in_axes2_x = rrr_w_2_in_axes2_x;
+    v->rrr_d_Gamma_2_in_axes2_x = rrr_d_Gamma_2_in_axes2_x;
+    v->rrr_d_Gamma_1_in_axes2_x = rrr_d_Gamma_1_in_axes2_x;
+    v->rrr_d_c_in_axes2_xy = rrr_d_c_in_axes2_xy;
+}
+
+INLINE void stage_rrr_legs_required(const prepared *m, size_t w, size_t i, size_t j, const real
+    *A, values_rrr *v)
+{
+    /* (rrr-S_ddot) acceleration of the connection point */
+    const real t_ddot_x = A[0*w + j];
+    const real t_ddot_y = A[1*w + j];
+    const real rrr_S_ddot_in_axes2_x = v->axis_x_rrr_axes2_x*t_ddot_x -
+        v->axis_y_rrr_axes2_x*t_ddot_y;
+    const real rrr_S_ddot_in_axes2_y = v->axis_x_rrr_axes2_x*t_ddot_y +
+        v->axis_y_rrr_axes2_x*t_ddot_x;
+    /* (rrr-rel) acceleration of the connection point left to the joint accelerations */
+    const real rrr_rel_in_axes2_x = rrr_S_ddot_in_axes2_x - v->rrr_bias_in_axes2_x;
+    const real rrr_joint2_offset_x = m->rrr_joint2_offset_x[i];
+    const real rrr_rel_in_axes2_y = rrr_S_ddot_in_axes2_y +
+        v->rrr_W_1_in_axes1_xx*rrr_joint2_offset_x*v->rrr_s_2;
+    /* (rrr-B_1) acceleration tensor of link 1 */
+    const real rrr_B_1_in_axes1_xy = v->inv_rrr_r_1_in_axes2_y*rrr_rel_in_axes2_x;
+    /* (rrr-alpha_2) angular acceleration of link 2 */
+    const real rrr_w_2_in_axes2_y = m->rrr_w_2_in_axes2_y[i];
+    const real rrr_alpha_2_in_axes2_z = rrr_w_2_in_axes2_y*(rrr_rel_in_axes2_y +
+        rrr_B_1_in_axes1_xy*v->rrr_r_1_in_axes2_x) - rrr_B_1_in_axes1_xy;
+    /* (rrr-acc_2) acceleration of the reference point of link 2, less gravity */
+    const real gravity_x = m->gravity_x;
+    const real gravity_y = m->gravity_y;
+    const real rrr_acc_2_in_axes2_x = rrr_S_ddot_in_axes2_x + v->axis_y_rrr_axes2_x*gravity_y
+        - v->axis_x_rrr_axes2_x*gravity_x;
+    const real rrr_acc_2_in_axes2_y = rrr_S_ddot_in_axes2_y - v->axis_x_rrr_axes2_x*gravity_y
+        - v->axis_y_rrr_axes2_x*gravity_x;
+    /* (rrr-mu_2) inertia moment of the links that turn with link 2, about their reference points */
+    const real rrr_J_2_in_spec2_zz = m->rrr_J_2_in_spec2_zz[i];
+    const real rrr_h_2_in_spec2_x = m->rrr_h_2_in_spec2_x[i];
+    const real rrr_h_2_in_spec2_y = m->rrr_h_2_in_spec2_y[i];
+    const real rrr_mu_2_in_axes2_z = rrr_J_2_in_spec2_zz*rrr_alpha_2_in_axes2_z +
+        rrr_acc_2_in_axes2_y*rrr_h_2_in_spec2_x - rrr_acc_2_in_axes2_x*rrr_h_2_in_spec2_y;
+    /* (rrr-mu_1) inertia moment of the links that turn with link 1, about their reference points */
+    const real rrr_J_1_in_spec1_zz = m->rrr_J_1_in_spec1_zz[i];
+    const real rrr_h_1_in_spec1_x = m->rrr_h_1_in_spec1_x[i];
+    const real rrr_h_1_in_spec1_y = m->rrr_h_1_in_spec1_y[i];
+    const real rrr_mu_1_t = m->rrr_mu_1_t[i];
+    const real rrr_mu_1_t_2 = m->rrr_mu_1_t_2[i];
+    const real rrr_mu_1_in_axes1_z = rrr_h_1_in_spec1_y*(v->rrr_c_1*rrr_mu_1_t +
+        rrr_mu_1_t_2*v->rrr_s_1) - rrr_B_1_in_axes1_xy*rrr_J_1_in_spec1_zz -
+        rrr_h_1_in_spec1_x*(v->rrr_c_1*rrr_mu_1_t_2 - rrr_mu_1_t*v->rrr_s_1);
+    /* (rrr-N_1) moment about joint 1 of the links from 1 outwards, the force at the connection point
+       left out */
+    const real rrr_N_1_in_axes1_z = rrr_mu_1_in_axes1_z + rrr_mu_2_in_axes2_z;
+    /* (rrr-G) force at the connection point that balances the leg's inertia and weight along all
+       degrees of freedom */
+    const real rrr_G_in_axes2_y = rrr_mu_2_in_axes2_z*rrr_w_2_in_axes2_y;
+    /* (rrr-c) leg force on the platform without actuation and without the mass at the connection
+       point */
+    const real rrr_c_in_axes2_x = v->rrr_W_2_t*rrr_h_2_in_spec2_x +
+        rrr_alpha_2_in_axes2_z*rrr_h_2_in_spec2_y -
+        v->inv_rrr_r_1_in_axes2_y*(rrr_G_in_axes2_y*v->rrr_r_1_in_axes2_x -
+        rrr_N_1_in_axes1_z);
+    const real rrr_c_in_axes2_y = v->rrr_W_2_t*rrr_h_2_in_spec2_y - rrr_G_in_axes2_y -
+        rrr_alpha_2_in_axes2_z*rrr_h_2_in_spec2_x;
+    v->rrr_acc_2_in_axes2_x = rrr_acc_2_in_axes2_x;
+    v->rrr_acc_2_in_axes2_y = rrr_acc_2_in_axes2_y;
+    v->rrr_c_in_axes2_x = rrr_c_in_axes2_x;
+    v->rrr_c_in_axes2_y = rrr_c_in_axes2_y;
+}
+
 /* ---- functions of the state: M, Z, H and the like ---- */
 
 /* ---- dynamics ---- */
-INLINE void dynamics_before(size_t w, const real *X, const real *V, real *s)
+INLINE void dynamics_before()
 {
-    for (size_t k = 0; k < w; ++k) {
-        /* X: named entries */
-        const real X_0 = X[0*w + k];
-        const real t_x = X_0;
-        const real X_1 = X[1*w + k];
-        const real t_y = X_1;
-        /* V: named entries */
-        const real V_0 = V[0*w + k];
-        const real t_dot_x = V_0;
-        const real V_1 = V[1*w + k];
-        const real t_dot_y = V_1;
-        s[0*w + k] = t_x;
-        s[1*w + k] = t_y;
-        s[2*w + k] = t_dot_x;
-        s[3*w + k] = t_dot_y;
-    }
 }
 
-INLINE void dynamics_legs_rrr(const prepared *m, size_t w, size_t leg, size_t legs, const real *s,
-    size_t states, size_t count, int add, real *terms, real *o)
+INLINE void dynamics_legs_rrr(const prepared *m, size_t w, size_t leg, size_t legs, size_t states,
+    size_t count, int add, const real *X, const real *V, real *terms, real *o)
 {
     for (size_t k = 0; k < count; ++k) {
         const size_t i = leg + legs*k;
         const size_t j = states*k;
-        /* (rrr-S) from the base point to the connection point */
-        const real rrr_base_point_x = m->rrr_base_point_x[i];
-        const real rrr_platform_point_x = m->rrr_platform_point_x[i];
-        const real t_x = s[0*w + j];
-        const real rrr_S_x = rrr_platform_point_x + t_x - rrr_base_point_x;
-        const real rrr_base_point_y = m->rrr_base_point_y[i];
-        const real rrr_platform_point_y = m->rrr_platform_point_y[i];
-        const real t_y = s[1*w + j];
-        const real rrr_S_y = rrr_platform_point_y + t_y - rrr_base_point_y;
-        /* (rrr-Kd_1) projection on the centre's direction, from the distance fixed by the joints beyond
-           joint 1 */
-        const real rrr_Kd_1_t_3 = rrr_S_x*rrr_S_x + rrr_S_y*rrr_S_y;
-        const real rrr_Kd_1_t = m->rrr_Kd_1_t[i];
-        const real rrr_Kd_1_t_2 = m->rrr_Kd_1_t_2[i];
-        const real rrr_Kd_1 = rrr_Kd_1_t + R(0.5)*rrr_Kd_1_t_3 - rrr_Kd_1_t_2;
-        /* (rrr-px_1) component along the reference direction */
-        const real rrr_base_frame_xx = m->rrr_base_frame_xx[i];
-        const real rrr_base_frame_yx = m->rrr_base_frame_yx[i];
-        const real rrr_px_1 = rrr_S_x*rrr_base_frame_xx + rrr_S_y*rrr_base_frame_yx;
-        /* (rrr-py_1) component across the reference direction */
-        const real rrr_base_frame_xy = m->rrr_base_frame_xy[i];
-        const real rrr_base_frame_yy = m->rrr_base_frame_yy[i];
-        const real rrr_py_1 = rrr_S_x*rrr_base_frame_xy + rrr_S_y*rrr_base_frame_yy;
-        /* (rrr-Kc_1) factor of the cosine in the equation of joint 1 */
-        const real rrr_joint2_offset_x = m->rrr_joint2_offset_x[i];
-        const real rrr_Kc_1 = rrr_joint2_offset_x*rrr_px_1;
-        /* (rrr-Ks_1) factor of the sine in the equation of joint 1 */
-        const real rrr_Ks_1 = rrr_joint2_offset_x*rrr_py_1;
-        /* (rrr-rho2_1) squared amplitude */
-        const real rrr_rho2_1 = rrr_Kc_1*rrr_Kc_1 + rrr_Ks_1*rrr_Ks_1;
-        /* (rrr-disc_1) discriminant */
-        const real rrr_disc_1 = rrr_rho2_1 - rrr_Kd_1*rrr_Kd_1;
-        /* (rrr-root_1) root, with the sign of the branch */
-        const real rrr_branch_1 = m->rrr_branch_1[i];
-        const real rrr_root_1 = rrr_branch_1*root(rrr_disc_1);
-        /* (rrr-c_1) cosine of the angle of joint 1 from its reference direction */
-        const real inv_rrr_rho2_1 = 1/rrr_rho2_1;
-        const real rrr_c_1 = inv_rrr_rho2_1*(rrr_Kc_1*rrr_Kd_1 - rrr_Ks_1*rrr_root_1);
-        /* (rrr-s_1) sine of the angle of joint 1 from its reference direction */
-        const real rrr_s_1 = inv_rrr_rho2_1*(rrr_Kc_1*rrr_root_1 + rrr_Kd_1*rrr_Ks_1);
-        /* (rrr-x_2) from the origin of joint 2 to the connection point */
-        const real inv_rrr_size_t = m->inv_rrr_size_t[i];
-        const real rrr_x_2_in_axes1_x = inv_rrr_size_t*rrr_Kd_1*rrr_joint2_offset_x -
-            rrr_joint2_offset_x;
-        /* (rrr-c_2) cosine of the angle of joint 2 from its reference direction */
-        const real inv_rrr_size_t_2 = m->inv_rrr_size_t_2[i];
-        const real rrr_platform_joint_offset_x = m->rrr_platform_joint_offset_x[i];
-        const real rrr_c_2 = inv_rrr_size_t_2*rrr_platform_joint_offset_x*rrr_x_2_in_axes1_x;
-        /* (rrr-s_2) sine of the angle of joint 2 from its reference direction */
-        const real rrr_s_2 =
-            -inv_rrr_size_t*inv_rrr_size_t_2*rrr_joint2_offset_x*rrr_platform_joint_offset_x*rrr_root_1;
-        /* (rrr-r_1) from joint 1 to the connection point, along the links */
-        const real rrr_r_1_in_axes1_y = rrr_platform_joint_offset_x*rrr_s_2;
-        const real rrr_r_1_in_axes1_x = rrr_joint2_offset_x + rrr_c_2*rrr_platform_joint_offset_x;
-        const real rrr_r_1_in_axes2_x = rrr_c_2*rrr_r_1_in_axes1_x + rrr_r_1_in_axes1_y*rrr_s_2;
-        const real rrr_r_1_in_axes2_y = rrr_c_2*rrr_r_1_in_axes1_y - rrr_r_1_in_axes1_x*rrr_s_2;
-        /* (rrr-w_1) reciprocal vector 1 */
-        const real rrr_w_1_t = rrr_c_1*rrr_s_2 + rrr_c_2*rrr_s_1;
-        const real rrr_w_1_t_2 = rrr_c_1*rrr_c_2 - rrr_s_1*rrr_s_2;
-        const real axis_y_rrr_axes2_x = rrr_base_frame_xy*rrr_w_1_t_2 -
-            rrr_base_frame_xx*rrr_w_1_t;
-        const real axis_x_rrr_axes2_x = rrr_base_frame_yy*rrr_w_1_t_2 -
-            rrr_base_frame_yx*rrr_w_1_t;
-        const real inv_rrr_r_1_in_axes2_y = 1/rrr_r_1_in_axes2_y;
-        const real rrr_w_1_x = -axis_x_rrr_axes2_x*inv_rrr_r_1_in_axes2_y;
-        const real rrr_w_1_y = axis_y_rrr_axes2_x*inv_rrr_r_1_in_axes2_y;
-        /* (rrr-w_2) reciprocal vector 2 */
-        const real rrr_w_2_in_axes2_y = m->rrr_w_2_in_axes2_y[i];
-        const real rrr_w_2_in_axes2_x =
-            inv_rrr_r_1_in_axes2_y*rrr_r_1_in_axes2_x*rrr_w_2_in_axes2_y;
-        /* (rrr-qd_1) rate of joint 1 */
-        const real t_dot_x = s[2*w + j];
-        const real t_dot_y = s[3*w + j];
-        const real rrr_qd_1_t = inv_rrr_r_1_in_axes2_y*(axis_x_rrr_axes2_x*t_dot_x -
-            axis_y_rrr_axes2_x*t_dot_y);
-        /* (rrr-W_1) centripetal tensor of link 1 */
-        const real rrr_W_1_in_axes1_xx = -rrr_qd_1_t*rrr_qd_1_t;
-        /* (rrr-omega_2) angular velocity of link 2 */
-        const real rrr_omega_2_in_axes2_z = rrr_w_2_in_axes2_y*(axis_x_rrr_axes2_x*t_dot_y +
-            axis_y_rrr_axes2_x*t_dot_x + rrr_qd_1_t*rrr_r_1_in_axes2_x) - rrr_qd_1_t;
-        /* (rrr-W_2) centripetal tensor of link 2 */
-        const real rrr_W_2_t = rrr_omega_2_in_axes2_z*rrr_omega_2_in_axes2_z;
-        /* (rrr-bias) acceleration of the connection point at zero joint accelerations */
-        const real rrr_bias_in_axes2_x = rrr_W_1_in_axes1_xx*rrr_c_2*rrr_joint2_offset_x -
-            rrr_W_2_t*rrr_platform_joint_offset_x;
+        values_rrr v;
+        stage_rrr_X(m, w, i, j, X, &v);
+        stage_rrr_V_X(m, w, i, j, V, &v);
+        stage_rrr_M_dynamics(m, i, &v);
         /* (rrr-qdd_1_o) remainder without the acceleration in: acceleration of joint 1 */
-        const real rrr_qdd_1_o = inv_rrr_r_1_in_axes2_y*rrr_bias_in_axes2_x;
+        const real rrr_qdd_1_o = v.inv_rrr_r_1_in_axes2_y*v.rrr_bias_in_axes2_x;
         /* (rrr-alpha_2_o) remainder without the acceleration in: angular acceleration of link 2 */
+        const real rrr_joint2_offset_x = m->rrr_joint2_offset_x[i];
+        const real rrr_w_2_in_axes2_y = m->rrr_w_2_in_axes2_y[i];
         const real rrr_alpha_2_o_in_axes2_z = rrr_qdd_1_o +
-            rrr_w_2_in_axes2_y*(rrr_W_1_in_axes1_xx*rrr_joint2_offset_x*rrr_s_2 -
-            rrr_qdd_1_o*rrr_r_1_in_axes2_x);
+            rrr_w_2_in_axes2_y*(v.rrr_W_1_in_axes1_xx*rrr_joint2_offset_x*v.rrr_s_2 -
+            rrr_qdd_1_o*v.rrr_r_1_in_axes2_x);
         /* (rrr-mu_2_o) remainder without the acceleration in: inertia moment of the links that turn with
            link 2, about their reference points */
         const real gravity_x = m->gravity_x;
@@ -1172,14 +1343,8 @@ INLINE void dynamics_legs_rrr(const prepared *m, size_t w, size_t leg, size_t le
         const real rrr_h_2_in_spec2_x = m->rrr_h_2_in_spec2_x[i];
         const real rrr_h_2_in_spec2_y = m->rrr_h_2_in_spec2_y[i];
         const real rrr_mu_2_o_in_axes2_z = rrr_J_2_in_spec2_zz*rrr_alpha_2_o_in_axes2_z +
-            rrr_h_2_in_spec2_y*(axis_x_rrr_axes2_x*gravity_x - axis_y_rrr_axes2_x*gravity_y) -
-            rrr_h_2_in_spec2_x*(axis_x_rrr_axes2_x*gravity_y + axis_y_rrr_axes2_x*gravity_x);
-        /* (rrr-d_Gamma_2) coefficient of the acceleration in: moment about axis 2 of the distal links'
-           inertia and weight */
-        const real rrr_d_Gamma_2_t = m->rrr_d_Gamma_2_t[i];
-        const real rrr_d_Gamma_2_t_2 = rrr_d_Gamma_2_t*rrr_r_1_in_axes2_x;
-        const real rrr_d_Gamma_2_in_axes2_x = -rrr_h_2_in_spec2_y -
-            inv_rrr_r_1_in_axes2_y*(rrr_J_2_in_spec2_zz - rrr_d_Gamma_2_t_2);
+            rrr_h_2_in_spec2_y*(v.axis_x_rrr_axes2_x*gravity_x - v.axis_y_rrr_axes2_x*gravity_y) -
+            rrr_h_2_in_spec2_x*(v.axis_x_rrr_axes2_x*gravity_y + v.axis_y_rrr_axes2_x*gravity_x);
         /* (rrr-mu_1_o) remainder without the acceleration in: inertia moment of the links that turn with
            link 1, about their reference points */
         const real rrr_J_1_in_spec1_zz = m->rrr_J_1_in_spec1_zz[i];
@@ -1188,50 +1353,40 @@ INLINE void dynamics_legs_rrr(const prepared *m, size_t w, size_t leg, size_t le
         const real rrr_mu_1_t = m->rrr_mu_1_t[i];
         const real rrr_mu_1_t_2 = m->rrr_mu_1_t_2[i];
         const real rrr_mu_1_o_in_axes1_z = rrr_J_1_in_spec1_zz*rrr_qdd_1_o +
-            rrr_h_1_in_spec1_y*(rrr_c_1*rrr_mu_1_t + rrr_mu_1_t_2*rrr_s_1) -
-            rrr_h_1_in_spec1_x*(rrr_c_1*rrr_mu_1_t_2 - rrr_mu_1_t*rrr_s_1);
+            rrr_h_1_in_spec1_y*(v.rrr_c_1*rrr_mu_1_t + rrr_mu_1_t_2*v.rrr_s_1) -
+            rrr_h_1_in_spec1_x*(v.rrr_c_1*rrr_mu_1_t_2 - rrr_mu_1_t*v.rrr_s_1);
         /* (rrr-N_1_o) remainder without the acceleration in: moment about joint 1 of the links from 1
            outwards, the force at the connection point left out */
         const real rrr_N_1_o_in_axes1_z = rrr_mu_1_o_in_axes1_z + rrr_mu_2_o_in_axes2_z;
-        /* (rrr-d_Gamma_1) coefficient of the acceleration in: moment about axis 1 of the distal links'
-           inertia and weight */
-        const real rrr_Jc_1_in_axes1_zz = m->rrr_Jc_1_in_axes1_zz[i];
-        const real rrr_d_Gamma_1_in_axes2_x = -rrr_h_2_in_spec2_y -
-            inv_rrr_r_1_in_axes2_y*(rrr_Jc_1_in_axes1_zz - rrr_d_Gamma_2_t_2);
         /* (rrr-G_o) remainder without the acceleration in: force at the connection point that balances
            the leg's inertia and weight along all degrees of freedom */
         const real rrr_G_o_in_axes2_y = rrr_mu_2_o_in_axes2_z*rrr_w_2_in_axes2_y;
-        /* (rrr-d_c) coefficient of the acceleration in: leg force on the platform without actuation and
-           without the mass at the connection point */
-        const real rrr_d_Gamma_2_in_axes2_y = m->rrr_d_Gamma_2_in_axes2_y[i];
-        const real rrr_d_phi_2_in_axes2_xy = m->rrr_d_phi_2_in_axes2_xy[i];
-        const real rrr_d_c_in_axes2_xy = inv_rrr_r_1_in_axes2_y*rrr_d_Gamma_2_in_axes2_y -
-            rrr_d_phi_2_in_axes2_xy - rrr_d_Gamma_2_in_axes2_y*rrr_w_2_in_axes2_x;
         /* (rrr-c_o) remainder without the acceleration in: leg force on the platform without actuation
            and without the mass at the connection point */
-        const real rrr_c_o_in_axes2_x = rrr_W_2_t*rrr_h_2_in_spec2_x +
+        const real rrr_c_o_in_axes2_x = v.rrr_W_2_t*rrr_h_2_in_spec2_x +
             rrr_alpha_2_o_in_axes2_z*rrr_h_2_in_spec2_y -
-            inv_rrr_r_1_in_axes2_y*(rrr_G_o_in_axes2_y*rrr_r_1_in_axes2_x - rrr_N_1_o_in_axes1_z);
-        const real rrr_c_o_in_axes2_y = rrr_W_2_t*rrr_h_2_in_spec2_y - rrr_G_o_in_axes2_y -
+            v.inv_rrr_r_1_in_axes2_y*(rrr_G_o_in_axes2_y*v.rrr_r_1_in_axes2_x -
+            rrr_N_1_o_in_axes1_z);
+        const real rrr_c_o_in_axes2_y = v.rrr_W_2_t*rrr_h_2_in_spec2_y - rrr_G_o_in_axes2_y -
             rrr_alpha_2_o_in_axes2_z*rrr_h_2_in_spec2_x;
         /* (rrr-Q) inertia of the leg at the connection point, without the mass gathered there */
         const real rrr_d_c_in_axes2_yy = m->rrr_d_c_in_axes2_yy[i];
-        const real rrr_Q_t = inv_rrr_r_1_in_axes2_y*rrr_d_Gamma_1_in_axes2_x +
-            rrr_h_2_in_spec2_y*(rrr_w_2_in_axes2_x - inv_rrr_r_1_in_axes2_y) - rrr_d_c_in_axes2_yy
-            - rrr_d_Gamma_2_in_axes2_x*rrr_w_2_in_axes2_x;
+        const real rrr_Q_t = v.inv_rrr_r_1_in_axes2_y*v.rrr_d_Gamma_1_in_axes2_x +
+            rrr_h_2_in_spec2_y*(v.rrr_w_2_in_axes2_x - v.inv_rrr_r_1_in_axes2_y) -
+            rrr_d_c_in_axes2_yy - v.rrr_d_Gamma_2_in_axes2_x*v.rrr_w_2_in_axes2_x;
         const real rrr_Q_t_2 = R(0.5)*rrr_Q_t;
-        const real rrr_Q_t_3 = axis_x_rrr_axes2_x*rrr_Q_t_2 +
-            axis_y_rrr_axes2_x*rrr_d_c_in_axes2_xy;
-        const real rrr_Q_t_4 = axis_y_rrr_axes2_x*rrr_Q_t_2 -
-            axis_x_rrr_axes2_x*rrr_d_c_in_axes2_xy;
-        const real rrr_Q_xx = -rrr_d_c_in_axes2_yy - 2*axis_x_rrr_axes2_x*rrr_Q_t_3;
-        const real rrr_Q_xy = axis_x_rrr_axes2_x*rrr_Q_t_4 + axis_y_rrr_axes2_x*rrr_Q_t_3;
-        const real rrr_Q_yy = -rrr_d_c_in_axes2_yy - 2*axis_y_rrr_axes2_x*rrr_Q_t_4;
+        const real rrr_Q_t_3 = v.axis_x_rrr_axes2_x*rrr_Q_t_2 +
+            v.axis_y_rrr_axes2_x*v.rrr_d_c_in_axes2_xy;
+        const real rrr_Q_t_4 = v.axis_y_rrr_axes2_x*rrr_Q_t_2 -
+            v.axis_x_rrr_axes2_x*v.rrr_d_c_in_axes2_xy;
+        const real rrr_Q_xx = -rrr_d_c_in_axes2_yy - 2*v.axis_x_rrr_axes2_x*rrr_Q_t_3;
+        const real rrr_Q_xy = v.axis_x_rrr_axes2_x*rrr_Q_t_4 + v.axis_y_rrr_axes2_x*rrr_Q_t_3;
+        const real rrr_Q_yy = -rrr_d_c_in_axes2_yy - 2*v.axis_y_rrr_axes2_x*rrr_Q_t_4;
         /* (rrr-U) velocity and gravity terms of the leg force */
-        const real rrr_U_x = -axis_x_rrr_axes2_x*rrr_c_o_in_axes2_x -
-            axis_y_rrr_axes2_x*rrr_c_o_in_axes2_y;
-        const real rrr_U_y = axis_y_rrr_axes2_x*rrr_c_o_in_axes2_x -
-            axis_x_rrr_axes2_x*rrr_c_o_in_axes2_y;
+        const real rrr_U_x = -v.axis_x_rrr_axes2_x*rrr_c_o_in_axes2_x -
+            v.axis_y_rrr_axes2_x*rrr_c_o_in_axes2_y;
+        const real rrr_U_y = v.axis_y_rrr_axes2_x*rrr_c_o_in_axes2_x -
+            v.axis_x_rrr_axes2_x*rrr_c_o_in_axes2_y;
         /* (M_tt) translational block of M */
         gather(&terms[0*count + k], add, rrr_Q_xx);  /* M_tt_xx_of_legs */
         gather(&terms[1*count + k], add, rrr_Q_xy);  /* M_tt_xy */
@@ -1240,14 +1395,14 @@ INLINE void dynamics_legs_rrr(const prepared *m, size_t w, size_t leg, size_t le
         gather(&terms[3*count + k], add, rrr_U_x);  /* Z_t_x_of_legs */
         gather(&terms[4*count + k], add, rrr_U_y);  /* Z_t_y_of_legs */
         /* (rrr-w_1) reciprocal vector 1 */
-        o[0*count + k] = rrr_w_1_x;
-        o[1*count + k] = rrr_w_1_y;
-        o[4*count + k] = rrr_w_1_x + rrr_w_1_y;
+        o[0*count + k] = v.rrr_w_1_x;
+        o[1*count + k] = v.rrr_w_1_y;
+        o[4*count + k] = v.rrr_w_1_x + v.rrr_w_1_y;
         const real rrr_rho2_1_t = m->rrr_rho2_1_t[i];
         const real rrr_size = m->rrr_size[i];
-        o[3*count + k] = UNLESS(magnitude(rrr_rho2_1) > TOLERANCE*TOLERANCE*rrr_rho2_1_t) +
-            UNLESS(magnitude(rrr_r_1_in_axes2_y) > TOLERANCE*rrr_size);
-        o[2*count + k] = UNLESS(rrr_disc_1 >= 0);
+        o[3*count + k] = UNLESS(magnitude(v.rrr_rho2_1) > TOLERANCE*TOLERANCE*rrr_rho2_1_t) +
+            UNLESS(magnitude(v.rrr_r_1_in_axes2_y) > TOLERANCE*rrr_size);
+        o[2*count + k] = UNLESS(v.rrr_disc_1 >= 0);
     }
 }
 
@@ -1255,7 +1410,7 @@ INLINE void dynamics_place_rrr(size_t w, size_t count, const real *o, size_t leg
     real *H, verdict *t)
 {
     for (size_t k = 0; k < w; ++k) {
-        H[(0*NU + leg)*w + k] = o[0*count + first + k];
+        H[leg*w + k] = o[0*count + first + k];
         H[(NU + leg)*w + k] = o[1*count + first + k];
         t->unreachable[k] += o[2*count + first + k];
         t->singular[k] += o[3*count + first + k];
@@ -1281,9 +1436,9 @@ INLINE void dynamics_after(const prepared *m, size_t w, const real *sums, real *
         const real Z_t_y_of_legs = sums[4*w + k];
         const real Z_t_y = Z_p_y + Z_t_y_of_legs;
         /* (M_tt) translational block of M */
-        M[0*NV*w + k] = M_tt_xx;
+        M[0*w + k] = M_tt_xx;
         const real M_tt_xy = sums[1*w + k];
-        M[(0*NV + 1)*w + k] = M_tt_xy;
+        M[1*w + k] = M_tt_xy;
         M[NV*w + k] = M_tt_xy;
         M[(NV + 1)*w + k] = M_tt_yy;
         /* (Z_t) translational part of Z */
@@ -1296,12 +1451,10 @@ INLINE void dynamics_after(const prepared *m, size_t w, const real *sums, real *
 INLINE void dynamics_run(const prepared *m, const real *X, const real *V, real *M, real *Z, real
     *H, verdict *t)
 {
-    real s[4] = {0};
     real sums[5] = {0};
-    real terms_rrr[5*LEGS(LEGS_OF_rrr)] = {0};
-    real o_rrr[5*LEGS(LEGS_OF_rrr)] = {0};
-    dynamics_before(1, X, V, s);
-    dynamics_legs_rrr(m, 1, 0, 1, s, 0, LEGS(LEGS_OF_rrr), 0, terms_rrr, o_rrr);
+    real terms_rrr[5*LEGS(LEGS_OF_rrr)] = {0}, o_rrr[5*LEGS(LEGS_OF_rrr)] = {0};
+    dynamics_before();
+    dynamics_legs_rrr(m, 1, 0, 1, 0, LEGS(LEGS_OF_rrr), 0, X, V, terms_rrr, o_rrr);
     for (size_t leg = 0; leg < LEGS_OF_rrr; ++leg) {
         dynamics_place_rrr(1, LEGS(LEGS_OF_rrr), o_rrr, leg, leg, H, t);
     }
@@ -1314,133 +1467,50 @@ INLINE void dynamics_run(const prepared *m, const real *X, const real *V, real *
 INLINE void dynamics_run_lanes(const prepared *m, const real *X, const real *V, real *M, real *Z,
     real *H, verdict *t)
 {
-    real s[4*LANES];
     real sums[5*LANES];
     real o_rrr[5*LANES];
-    dynamics_before(LANES, X, V, s);
+    dynamics_before();
     clear(sums, 5*LANES);
     for (size_t leg = 0; leg < LEGS_OF_rrr; ++leg) {
-        dynamics_legs_rrr(m, LANES, leg, 0, s, 1, LANES, 1, sums, o_rrr);
+        dynamics_legs_rrr(m, LANES, leg, 0, 1, LANES, 1, X, V, sums, o_rrr);
         dynamics_place_rrr(LANES, LANES, o_rrr, leg, 0, H, t);
     }
     dynamics_after(m, LANES, sums, M, Z, t);
 }
 
 /* ---- M ---- */
-INLINE void M_before(size_t w, const real *X, real *s)
+INLINE void M_before()
 {
-    for (size_t k = 0; k < w; ++k) {
-        /* X: named entries */
-        const real X_0 = X[0*w + k];
-        const real t_x = X_0;
-        const real X_1 = X[1*w + k];
-        const real t_y = X_1;
-        s[0*w + k] = t_x;
-        s[1*w + k] = t_y;
-    }
 }
 
-INLINE void M_legs_rrr(const prepared *m, size_t w, size_t leg, size_t legs, const real *s, size_t
-    states, size_t count, int add, real *terms, real *o)
+INLINE void M_legs_rrr(const prepared *m, size_t w, size_t leg, size_t legs, size_t states, size_t
+    count, int add, const real *X, real *terms, real *o)
 {
     for (size_t k = 0; k < count; ++k) {
         const size_t i = leg + legs*k;
         const size_t j = states*k;
-        /* (rrr-S) from the base point to the connection point */
-        const real rrr_base_point_x = m->rrr_base_point_x[i];
-        const real rrr_platform_point_x = m->rrr_platform_point_x[i];
-        const real t_x = s[0*w + j];
-        const real rrr_S_x = rrr_platform_point_x + t_x - rrr_base_point_x;
-        const real rrr_base_point_y = m->rrr_base_point_y[i];
-        const real rrr_platform_point_y = m->rrr_platform_point_y[i];
-        const real t_y = s[1*w + j];
-        const real rrr_S_y = rrr_platform_point_y + t_y - rrr_base_point_y;
-        /* (rrr-Kd_1) projection on the centre's direction, from the distance fixed by the joints beyond
-           joint 1 */
-        const real rrr_Kd_1_t_3 = rrr_S_x*rrr_S_x + rrr_S_y*rrr_S_y;
-        const real rrr_Kd_1_t = m->rrr_Kd_1_t[i];
-        const real rrr_Kd_1_t_2 = m->rrr_Kd_1_t_2[i];
-        const real rrr_Kd_1 = rrr_Kd_1_t + R(0.5)*rrr_Kd_1_t_3 - rrr_Kd_1_t_2;
-        /* (rrr-px_1) component along the reference direction */
-        const real rrr_base_frame_xx = m->rrr_base_frame_xx[i];
-        const real rrr_base_frame_yx = m->rrr_base_frame_yx[i];
-        const real rrr_px_1 = rrr_S_x*rrr_base_frame_xx + rrr_S_y*rrr_base_frame_yx;
-        /* (rrr-py_1) component across the reference direction */
-        const real rrr_base_frame_xy = m->rrr_base_frame_xy[i];
-        const real rrr_base_frame_yy = m->rrr_base_frame_yy[i];
-        const real rrr_py_1 = rrr_S_x*rrr_base_frame_xy + rrr_S_y*rrr_base_frame_yy;
-        /* (rrr-Kc_1) factor of the cosine in the equation of joint 1 */
-        const real rrr_joint2_offset_x = m->rrr_joint2_offset_x[i];
-        const real rrr_Kc_1 = rrr_joint2_offset_x*rrr_px_1;
-        /* (rrr-Ks_1) factor of the sine in the equation of joint 1 */
-        const real rrr_Ks_1 = rrr_joint2_offset_x*rrr_py_1;
-        /* (rrr-rho2_1) squared amplitude */
-        const real rrr_rho2_1 = rrr_Kc_1*rrr_Kc_1 + rrr_Ks_1*rrr_Ks_1;
-        /* (rrr-disc_1) discriminant */
-        const real rrr_disc_1 = rrr_rho2_1 - rrr_Kd_1*rrr_Kd_1;
-        /* (rrr-root_1) root, with the sign of the branch */
-        const real rrr_branch_1 = m->rrr_branch_1[i];
-        const real rrr_root_1 = rrr_branch_1*root(rrr_disc_1);
-        /* (rrr-c_1) cosine of the angle of joint 1 from its reference direction */
-        const real inv_rrr_rho2_1 = 1/rrr_rho2_1;
-        const real rrr_c_1 = inv_rrr_rho2_1*(rrr_Kc_1*rrr_Kd_1 - rrr_Ks_1*rrr_root_1);
-        /* (rrr-s_1) sine of the angle of joint 1 from its reference direction */
-        const real rrr_s_1 = inv_rrr_rho2_1*(rrr_Kc_1*rrr_root_1 + rrr_Kd_1*rrr_Ks_1);
-        /* (rrr-x_2) from the origin of joint 2 to the connection point */
-        const real inv_rrr_size_t = m->inv_rrr_size_t[i];
-        const real rrr_x_2_in_axes1_x = inv_rrr_size_t*rrr_Kd_1*rrr_joint2_offset_x -
-            rrr_joint2_offset_x;
-        /* (rrr-c_2) cosine of the angle of joint 2 from its reference direction */
-        const real inv_rrr_size_t_2 = m->inv_rrr_size_t_2[i];
-        const real rrr_platform_joint_offset_x = m->rrr_platform_joint_offset_x[i];
-        const real rrr_c_2 = inv_rrr_size_t_2*rrr_platform_joint_offset_x*rrr_x_2_in_axes1_x;
-        /* (rrr-s_2) sine of the angle of joint 2 from its reference direction */
-        const real rrr_s_2 =
-            -inv_rrr_size_t*inv_rrr_size_t_2*rrr_joint2_offset_x*rrr_platform_joint_offset_x*rrr_root_1;
-        /* (rrr-r_1) from joint 1 to the connection point, along the links */
-        const real rrr_r_1_in_axes1_y = rrr_platform_joint_offset_x*rrr_s_2;
-        const real rrr_r_1_in_axes1_x = rrr_joint2_offset_x + rrr_c_2*rrr_platform_joint_offset_x;
-        const real rrr_r_1_in_axes2_x = rrr_c_2*rrr_r_1_in_axes1_x + rrr_r_1_in_axes1_y*rrr_s_2;
-        const real rrr_r_1_in_axes2_y = rrr_c_2*rrr_r_1_in_axes1_y - rrr_r_1_in_axes1_x*rrr_s_2;
-        /* (rrr-w_1) reciprocal vector 1 */
-        const real inv_rrr_r_1_in_axes2_y = 1/rrr_r_1_in_axes2_y;
-        /* (rrr-w_2) reciprocal vector 2 */
-        const real rrr_w_2_in_axes2_y = m->rrr_w_2_in_axes2_y[i];
-        const real rrr_w_2_in_axes2_x =
-            inv_rrr_r_1_in_axes2_y*rrr_r_1_in_axes2_x*rrr_w_2_in_axes2_y;
-        /* (rrr-d_Gamma_2) coefficient of the acceleration in: moment about axis 2 of the distal links'
-           inertia and weight */
-        const real rrr_d_Gamma_2_t = m->rrr_d_Gamma_2_t[i];
-        const real rrr_d_Gamma_2_t_2 = rrr_d_Gamma_2_t*rrr_r_1_in_axes2_x;
-        const real rrr_J_2_in_spec2_zz = m->rrr_J_2_in_spec2_zz[i];
-        const real rrr_h_2_in_spec2_y = m->rrr_h_2_in_spec2_y[i];
-        const real rrr_d_Gamma_2_in_axes2_x = -rrr_h_2_in_spec2_y -
-            inv_rrr_r_1_in_axes2_y*(rrr_J_2_in_spec2_zz - rrr_d_Gamma_2_t_2);
-        /* (rrr-d_Gamma_1) coefficient of the acceleration in: moment about axis 1 of the distal links'
-           inertia and weight */
-        const real rrr_Jc_1_in_axes1_zz = m->rrr_Jc_1_in_axes1_zz[i];
-        const real rrr_d_Gamma_1_in_axes2_x = -rrr_h_2_in_spec2_y -
-            inv_rrr_r_1_in_axes2_y*(rrr_Jc_1_in_axes1_zz - rrr_d_Gamma_2_t_2);
-        /* (rrr-d_c) coefficient of the acceleration in: leg force on the platform without actuation and
-           without the mass at the connection point */
-        const real rrr_d_Gamma_2_in_axes2_y = m->rrr_d_Gamma_2_in_axes2_y[i];
-        const real rrr_d_phi_2_in_axes2_xy = m->rrr_d_phi_2_in_axes2_xy[i];
-        const real rrr_d_c_in_axes2_xy = inv_rrr_r_1_in_axes2_y*rrr_d_Gamma_2_in_axes2_y -
-            rrr_d_phi_2_in_axes2_xy - rrr_d_Gamma_2_in_axes2_y*rrr_w_2_in_axes2_x;
+        values_rrr v;
+        stage_rrr_X(m, w, i, j, X, &v);
+        stage_rrr_M_dynamics(m, i, &v);
         /* (rrr-Q) inertia of the leg at the connection point, without the mass gathered there */
-        const real rrr_Q_t = rrr_c_1*rrr_s_2 + rrr_c_2*rrr_s_1;
-        const real rrr_Q_t_2 = rrr_c_1*rrr_c_2 - rrr_s_1*rrr_s_2;
+        const real rrr_Q_t = v.rrr_c_1*v.rrr_s_2 + v.rrr_c_2*v.rrr_s_1;
+        const real rrr_Q_t_2 = v.rrr_c_1*v.rrr_c_2 - v.rrr_s_1*v.rrr_s_2;
+        const real rrr_base_frame_xx = m->rrr_base_frame_xx[i];
+        const real rrr_base_frame_xy = m->rrr_base_frame_xy[i];
         const real axis_y_rrr_axes2_x = rrr_Q_t_2*rrr_base_frame_xy - rrr_Q_t*rrr_base_frame_xx;
+        const real rrr_base_frame_yx = m->rrr_base_frame_yx[i];
+        const real rrr_base_frame_yy = m->rrr_base_frame_yy[i];
         const real axis_x_rrr_axes2_x = rrr_Q_t_2*rrr_base_frame_yy - rrr_Q_t*rrr_base_frame_yx;
         const real rrr_d_c_in_axes2_yy = m->rrr_d_c_in_axes2_yy[i];
-        const real rrr_Q_t_3 = inv_rrr_r_1_in_axes2_y*rrr_d_Gamma_1_in_axes2_x +
-            rrr_h_2_in_spec2_y*(rrr_w_2_in_axes2_x - inv_rrr_r_1_in_axes2_y) - rrr_d_c_in_axes2_yy
-            - rrr_d_Gamma_2_in_axes2_x*rrr_w_2_in_axes2_x;
+        const real rrr_h_2_in_spec2_y = m->rrr_h_2_in_spec2_y[i];
+        const real rrr_Q_t_3 = v.inv_rrr_r_1_in_axes2_y*v.rrr_d_Gamma_1_in_axes2_x +
+            rrr_h_2_in_spec2_y*(v.rrr_w_2_in_axes2_x - v.inv_rrr_r_1_in_axes2_y) -
+            rrr_d_c_in_axes2_yy - v.rrr_d_Gamma_2_in_axes2_x*v.rrr_w_2_in_axes2_x;
         const real rrr_Q_t_4 = R(0.5)*rrr_Q_t_3;
         const real rrr_Q_t_5 = axis_x_rrr_axes2_x*rrr_Q_t_4 +
-            axis_y_rrr_axes2_x*rrr_d_c_in_axes2_xy;
+            axis_y_rrr_axes2_x*v.rrr_d_c_in_axes2_xy;
         const real rrr_Q_t_6 = axis_y_rrr_axes2_x*rrr_Q_t_4 -
-            axis_x_rrr_axes2_x*rrr_d_c_in_axes2_xy;
+            axis_x_rrr_axes2_x*v.rrr_d_c_in_axes2_xy;
         const real rrr_Q_xx = -rrr_d_c_in_axes2_yy - 2*axis_x_rrr_axes2_x*rrr_Q_t_5;
         const real rrr_Q_xy = axis_x_rrr_axes2_x*rrr_Q_t_6 + axis_y_rrr_axes2_x*rrr_Q_t_5;
         const real rrr_Q_yy = -rrr_d_c_in_axes2_yy - 2*axis_y_rrr_axes2_x*rrr_Q_t_6;
@@ -1450,9 +1520,9 @@ INLINE void M_legs_rrr(const prepared *m, size_t w, size_t leg, size_t legs, con
         gather(&terms[2*count + k], add, rrr_Q_yy);  /* M_tt_yy_of_legs */
         const real rrr_rho2_1_t = m->rrr_rho2_1_t[i];
         const real rrr_size = m->rrr_size[i];
-        o[1*count + k] = UNLESS(magnitude(rrr_rho2_1) > TOLERANCE*TOLERANCE*rrr_rho2_1_t) +
-            UNLESS(magnitude(rrr_r_1_in_axes2_y) > TOLERANCE*rrr_size);
-        o[0*count + k] = UNLESS(rrr_disc_1 >= 0);
+        o[1*count + k] = UNLESS(magnitude(v.rrr_rho2_1) > TOLERANCE*TOLERANCE*rrr_rho2_1_t) +
+            UNLESS(magnitude(v.rrr_r_1_in_axes2_y) > TOLERANCE*rrr_size);
+        o[0*count + k] = UNLESS(v.rrr_disc_1 >= 0);
     }
 }
 
@@ -1474,9 +1544,9 @@ INLINE void M_after(const prepared *m, size_t w, const real *sums, real *M, verd
         const real M_tt_yy_of_legs = sums[2*w + k];
         const real M_tt_yy = M_tt_yy_of_legs + m_star;
         /* (M_tt) translational block of M */
-        M[0*NV*w + k] = M_tt_xx;
+        M[0*w + k] = M_tt_xx;
         const real M_tt_xy = sums[1*w + k];
-        M[(0*NV + 1)*w + k] = M_tt_xy;
+        M[1*w + k] = M_tt_xy;
         M[NV*w + k] = M_tt_xy;
         M[(NV + 1)*w + k] = M_tt_yy;
         t->total[k] += M_tt_xx + (M_tt_xy + M_tt_yy);
@@ -1485,12 +1555,10 @@ INLINE void M_after(const prepared *m, size_t w, const real *sums, real *M, verd
 
 INLINE void M_run(const prepared *m, const real *X, real *M, verdict *t)
 {
-    real s[2] = {0};
     real sums[3] = {0};
-    real terms_rrr[3*LEGS(LEGS_OF_rrr)] = {0};
-    real o_rrr[2*LEGS(LEGS_OF_rrr)] = {0};
-    M_before(1, X, s);
-    M_legs_rrr(m, 1, 0, 1, s, 0, LEGS(LEGS_OF_rrr), 0, terms_rrr, o_rrr);
+    real terms_rrr[3*LEGS(LEGS_OF_rrr)] = {0}, o_rrr[2*LEGS(LEGS_OF_rrr)] = {0};
+    M_before();
+    M_legs_rrr(m, 1, 0, 1, 0, LEGS(LEGS_OF_rrr), 0, X, terms_rrr, o_rrr);
     for (size_t leg = 0; leg < LEGS_OF_rrr; ++leg) {
         M_place_rrr(1, LEGS(LEGS_OF_rrr), o_rrr, leg, t);
     }
@@ -1502,131 +1570,63 @@ INLINE void M_run(const prepared *m, const real *X, real *M, verdict *t)
 
 INLINE void M_run_lanes(const prepared *m, const real *X, real *M, verdict *t)
 {
-    real s[2*LANES];
     real sums[3*LANES];
     real o_rrr[2*LANES];
-    M_before(LANES, X, s);
+    M_before();
     clear(sums, 3*LANES);
     for (size_t leg = 0; leg < LEGS_OF_rrr; ++leg) {
-        M_legs_rrr(m, LANES, leg, 0, s, 1, LANES, 1, sums, o_rrr);
+        M_legs_rrr(m, LANES, leg, 0, 1, LANES, 1, X, sums, o_rrr);
         M_place_rrr(LANES, LANES, o_rrr, 0, t);
     }
     M_after(m, LANES, sums, M, t);
 }
 
 /* ---- Z ---- */
-INLINE void Z_before(size_t w, const real *X, const real *V, real *s)
+INLINE void Z_before()
 {
-    for (size_t k = 0; k < w; ++k) {
-        /* X: named entries */
-        const real X_0 = X[0*w + k];
-        const real t_x = X_0;
-        const real X_1 = X[1*w + k];
-        const real t_y = X_1;
-        /* V: named entries */
-        const real V_0 = V[0*w + k];
-        const real t_dot_x = V_0;
-        const real V_1 = V[1*w + k];
-        const real t_dot_y = V_1;
-        s[0*w + k] = t_x;
-        s[1*w + k] = t_y;
-        s[2*w + k] = t_dot_x;
-        s[3*w + k] = t_dot_y;
-    }
 }
 
-INLINE void Z_legs_rrr(const prepared *m, size_t w, size_t leg, size_t legs, const real *s, size_t
-    states, size_t count, int add, real *terms, real *o)
+INLINE void Z_legs_rrr(const prepared *m, size_t w, size_t leg, size_t legs, size_t states, size_t
+    count, int add, const real *X, const real *V, real *terms, real *o)
 {
     for (size_t k = 0; k < count; ++k) {
         const size_t i = leg + legs*k;
         const size_t j = states*k;
-        /* (rrr-S) from the base point to the connection point */
-        const real rrr_base_point_x = m->rrr_base_point_x[i];
-        const real rrr_platform_point_x = m->rrr_platform_point_x[i];
-        const real t_x = s[0*w + j];
-        const real rrr_S_x = rrr_platform_point_x + t_x - rrr_base_point_x;
-        const real rrr_base_point_y = m->rrr_base_point_y[i];
-        const real rrr_platform_point_y = m->rrr_platform_point_y[i];
-        const real t_y = s[1*w + j];
-        const real rrr_S_y = rrr_platform_point_y + t_y - rrr_base_point_y;
-        /* (rrr-Kd_1) projection on the centre's direction, from the distance fixed by the joints beyond
-           joint 1 */
-        const real rrr_Kd_1_t_3 = rrr_S_x*rrr_S_x + rrr_S_y*rrr_S_y;
-        const real rrr_Kd_1_t = m->rrr_Kd_1_t[i];
-        const real rrr_Kd_1_t_2 = m->rrr_Kd_1_t_2[i];
-        const real rrr_Kd_1 = rrr_Kd_1_t + R(0.5)*rrr_Kd_1_t_3 - rrr_Kd_1_t_2;
-        /* (rrr-px_1) component along the reference direction */
-        const real rrr_base_frame_xx = m->rrr_base_frame_xx[i];
-        const real rrr_base_frame_yx = m->rrr_base_frame_yx[i];
-        const real rrr_px_1 = rrr_S_x*rrr_base_frame_xx + rrr_S_y*rrr_base_frame_yx;
-        /* (rrr-py_1) component across the reference direction */
-        const real rrr_base_frame_xy = m->rrr_base_frame_xy[i];
-        const real rrr_base_frame_yy = m->rrr_base_frame_yy[i];
-        const real rrr_py_1 = rrr_S_x*rrr_base_frame_xy + rrr_S_y*rrr_base_frame_yy;
-        /* (rrr-Kc_1) factor of the cosine in the equation of joint 1 */
-        const real rrr_joint2_offset_x = m->rrr_joint2_offset_x[i];
-        const real rrr_Kc_1 = rrr_joint2_offset_x*rrr_px_1;
-        /* (rrr-Ks_1) factor of the sine in the equation of joint 1 */
-        const real rrr_Ks_1 = rrr_joint2_offset_x*rrr_py_1;
-        /* (rrr-rho2_1) squared amplitude */
-        const real rrr_rho2_1 = rrr_Kc_1*rrr_Kc_1 + rrr_Ks_1*rrr_Ks_1;
-        /* (rrr-disc_1) discriminant */
-        const real rrr_disc_1 = rrr_rho2_1 - rrr_Kd_1*rrr_Kd_1;
-        /* (rrr-root_1) root, with the sign of the branch */
-        const real rrr_branch_1 = m->rrr_branch_1[i];
-        const real rrr_root_1 = rrr_branch_1*root(rrr_disc_1);
-        /* (rrr-c_1) cosine of the angle of joint 1 from its reference direction */
-        const real inv_rrr_rho2_1 = 1/rrr_rho2_1;
-        const real rrr_c_1 = inv_rrr_rho2_1*(rrr_Kc_1*rrr_Kd_1 - rrr_Ks_1*rrr_root_1);
-        /* (rrr-s_1) sine of the angle of joint 1 from its reference direction */
-        const real rrr_s_1 = inv_rrr_rho2_1*(rrr_Kc_1*rrr_root_1 + rrr_Kd_1*rrr_Ks_1);
-        /* (rrr-x_2) from the origin of joint 2 to the connection point */
-        const real inv_rrr_size_t = m->inv_rrr_size_t[i];
-        const real rrr_x_2_in_axes1_x = inv_rrr_size_t*rrr_Kd_1*rrr_joint2_offset_x -
-            rrr_joint2_offset_x;
-        /* (rrr-c_2) cosine of the angle of joint 2 from its reference direction */
-        const real inv_rrr_size_t_2 = m->inv_rrr_size_t_2[i];
-        const real rrr_platform_joint_offset_x = m->rrr_platform_joint_offset_x[i];
-        const real rrr_c_2 = inv_rrr_size_t_2*rrr_platform_joint_offset_x*rrr_x_2_in_axes1_x;
-        /* (rrr-s_2) sine of the angle of joint 2 from its reference direction */
-        const real rrr_s_2 =
-            -inv_rrr_size_t*inv_rrr_size_t_2*rrr_joint2_offset_x*rrr_platform_joint_offset_x*rrr_root_1;
-        /* (rrr-r_1) from joint 1 to the connection point, along the links */
-        const real rrr_r_1_in_axes1_y = rrr_platform_joint_offset_x*rrr_s_2;
-        const real rrr_r_1_in_axes1_x = rrr_joint2_offset_x + rrr_c_2*rrr_platform_joint_offset_x;
-        const real rrr_r_1_in_axes2_x = rrr_c_2*rrr_r_1_in_axes1_x + rrr_r_1_in_axes1_y*rrr_s_2;
-        const real rrr_r_1_in_axes2_y = rrr_c_2*rrr_r_1_in_axes1_y - rrr_r_1_in_axes1_x*rrr_s_2;
-        /* (rrr-w_1) reciprocal vector 1 */
-        const real inv_rrr_r_1_in_axes2_y = 1/rrr_r_1_in_axes2_y;
+        values_rrr v;
+        stage_rrr_X(m, w, i, j, X, &v);
         /* (rrr-qd_1) rate of joint 1 */
-        const real rrr_qd_1_t = rrr_c_1*rrr_s_2 + rrr_c_2*rrr_s_1;
-        const real rrr_qd_1_t_2 = rrr_c_1*rrr_c_2 - rrr_s_1*rrr_s_2;
-        const real axis_y_rrr_axes2_x = rrr_base_frame_xy*rrr_qd_1_t_2 -
+        const real rrr_qd_1_t = v.rrr_c_1*v.rrr_s_2 + v.rrr_c_2*v.rrr_s_1;
+        const real rrr_base_frame_xx = m->rrr_base_frame_xx[i];
+        const real rrr_base_frame_xy = m->rrr_base_frame_xy[i];
+        const real axis_y_rrr_axes2_x = rrr_base_frame_xy*v.rrr_qd_1_t_2 -
             rrr_base_frame_xx*rrr_qd_1_t;
-        const real axis_x_rrr_axes2_x = rrr_base_frame_yy*rrr_qd_1_t_2 -
+        const real rrr_base_frame_yx = m->rrr_base_frame_yx[i];
+        const real rrr_base_frame_yy = m->rrr_base_frame_yy[i];
+        const real axis_x_rrr_axes2_x = rrr_base_frame_yy*v.rrr_qd_1_t_2 -
             rrr_base_frame_yx*rrr_qd_1_t;
-        const real t_dot_x = s[2*w + j];
-        const real t_dot_y = s[3*w + j];
-        const real rrr_qd_1_t_3 = inv_rrr_r_1_in_axes2_y*(axis_x_rrr_axes2_x*t_dot_x -
+        const real t_dot_x = V[0*w + j];
+        const real t_dot_y = V[1*w + j];
+        const real rrr_qd_1_t_3 = v.inv_rrr_r_1_in_axes2_y*(axis_x_rrr_axes2_x*t_dot_x -
             axis_y_rrr_axes2_x*t_dot_y);
         /* (rrr-W_1) centripetal tensor of link 1 */
         const real rrr_W_1_in_axes1_xx = -rrr_qd_1_t_3*rrr_qd_1_t_3;
         /* (rrr-omega_2) angular velocity of link 2 */
         const real rrr_w_2_in_axes2_y = m->rrr_w_2_in_axes2_y[i];
         const real rrr_omega_2_in_axes2_z = rrr_w_2_in_axes2_y*(axis_x_rrr_axes2_x*t_dot_y +
-            axis_y_rrr_axes2_x*t_dot_x + rrr_qd_1_t_3*rrr_r_1_in_axes2_x) - rrr_qd_1_t_3;
+            axis_y_rrr_axes2_x*t_dot_x + rrr_qd_1_t_3*v.rrr_r_1_in_axes2_x) - rrr_qd_1_t_3;
         /* (rrr-W_2) centripetal tensor of link 2 */
         const real rrr_W_2_t = rrr_omega_2_in_axes2_z*rrr_omega_2_in_axes2_z;
         /* (rrr-bias) acceleration of the connection point at zero joint accelerations */
-        const real rrr_bias_in_axes2_x = rrr_W_1_in_axes1_xx*rrr_c_2*rrr_joint2_offset_x -
+        const real rrr_joint2_offset_x = m->rrr_joint2_offset_x[i];
+        const real rrr_platform_joint_offset_x = m->rrr_platform_joint_offset_x[i];
+        const real rrr_bias_in_axes2_x = rrr_W_1_in_axes1_xx*v.rrr_c_2*rrr_joint2_offset_x -
             rrr_W_2_t*rrr_platform_joint_offset_x;
         /* (rrr-qdd_1_o) remainder without the acceleration in: acceleration of joint 1 */
-        const real rrr_qdd_1_o = inv_rrr_r_1_in_axes2_y*rrr_bias_in_axes2_x;
+        const real rrr_qdd_1_o = v.inv_rrr_r_1_in_axes2_y*rrr_bias_in_axes2_x;
         /* (rrr-alpha_2_o) remainder without the acceleration in: angular acceleration of link 2 */
         const real rrr_alpha_2_o_in_axes2_z = rrr_qdd_1_o +
-            rrr_w_2_in_axes2_y*(rrr_W_1_in_axes1_xx*rrr_joint2_offset_x*rrr_s_2 -
-            rrr_qdd_1_o*rrr_r_1_in_axes2_x);
+            rrr_w_2_in_axes2_y*(rrr_W_1_in_axes1_xx*rrr_joint2_offset_x*v.rrr_s_2 -
+            rrr_qdd_1_o*v.rrr_r_1_in_axes2_x);
         /* (rrr-mu_2_o) remainder without the acceleration in: inertia moment of the links that turn with
            link 2, about their reference points */
         const real gravity_x = m->gravity_x;
@@ -1645,8 +1645,8 @@ INLINE void Z_legs_rrr(const prepared *m, size_t w, size_t leg, size_t legs, con
         const real rrr_mu_1_t = m->rrr_mu_1_t[i];
         const real rrr_mu_1_t_2 = m->rrr_mu_1_t_2[i];
         const real rrr_mu_1_o_in_axes1_z = rrr_J_1_in_spec1_zz*rrr_qdd_1_o +
-            rrr_h_1_in_spec1_y*(rrr_c_1*rrr_mu_1_t + rrr_mu_1_t_2*rrr_s_1) -
-            rrr_h_1_in_spec1_x*(rrr_c_1*rrr_mu_1_t_2 - rrr_mu_1_t*rrr_s_1);
+            rrr_h_1_in_spec1_y*(v.rrr_c_1*rrr_mu_1_t + rrr_mu_1_t_2*v.rrr_s_1) -
+            rrr_h_1_in_spec1_x*(v.rrr_c_1*rrr_mu_1_t_2 - rrr_mu_1_t*v.rrr_s_1);
         /* (rrr-N_1_o) remainder without the acceleration in: moment about joint 1 of the links from 1
            outwards, the force at the connection point left out */
         const real rrr_N_1_o_in_axes1_z = rrr_mu_1_o_in_axes1_z + rrr_mu_2_o_in_axes2_z;
@@ -1657,7 +1657,8 @@ INLINE void Z_legs_rrr(const prepared *m, size_t w, size_t leg, size_t legs, con
            and without the mass at the connection point */
         const real rrr_c_o_in_axes2_x = rrr_W_2_t*rrr_h_2_in_spec2_x +
             rrr_alpha_2_o_in_axes2_z*rrr_h_2_in_spec2_y -
-            inv_rrr_r_1_in_axes2_y*(rrr_G_o_in_axes2_y*rrr_r_1_in_axes2_x - rrr_N_1_o_in_axes1_z);
+            v.inv_rrr_r_1_in_axes2_y*(rrr_G_o_in_axes2_y*v.rrr_r_1_in_axes2_x -
+            rrr_N_1_o_in_axes1_z);
         const real rrr_c_o_in_axes2_y = rrr_W_2_t*rrr_h_2_in_spec2_y - rrr_G_o_in_axes2_y -
             rrr_alpha_2_o_in_axes2_z*rrr_h_2_in_spec2_x;
         /* (rrr-U) velocity and gravity terms of the leg force */
@@ -1670,9 +1671,9 @@ INLINE void Z_legs_rrr(const prepared *m, size_t w, size_t leg, size_t legs, con
         gather(&terms[1*count + k], add, rrr_U_y);  /* Z_t_y_of_legs */
         const real rrr_rho2_1_t = m->rrr_rho2_1_t[i];
         const real rrr_size = m->rrr_size[i];
-        o[1*count + k] = UNLESS(magnitude(rrr_rho2_1) > TOLERANCE*TOLERANCE*rrr_rho2_1_t) +
-            UNLESS(magnitude(rrr_r_1_in_axes2_y) > TOLERANCE*rrr_size);
-        o[0*count + k] = UNLESS(rrr_disc_1 >= 0);
+        o[1*count + k] = UNLESS(magnitude(v.rrr_rho2_1) > TOLERANCE*TOLERANCE*rrr_rho2_1_t) +
+            UNLESS(magnitude(v.rrr_r_1_in_axes2_y) > TOLERANCE*rrr_size);
+        o[0*count + k] = UNLESS(v.rrr_disc_1 >= 0);
     }
 }
 
@@ -1703,12 +1704,10 @@ INLINE void Z_after(const prepared *m, size_t w, const real *sums, real *Z, verd
 
 INLINE void Z_run(const prepared *m, const real *X, const real *V, real *Z, verdict *t)
 {
-    real s[4] = {0};
     real sums[2] = {0};
-    real terms_rrr[2*LEGS(LEGS_OF_rrr)] = {0};
-    real o_rrr[2*LEGS(LEGS_OF_rrr)] = {0};
-    Z_before(1, X, V, s);
-    Z_legs_rrr(m, 1, 0, 1, s, 0, LEGS(LEGS_OF_rrr), 0, terms_rrr, o_rrr);
+    real terms_rrr[2*LEGS(LEGS_OF_rrr)] = {0}, o_rrr[2*LEGS(LEGS_OF_rrr)] = {0};
+    Z_before();
+    Z_legs_rrr(m, 1, 0, 1, 0, LEGS(LEGS_OF_rrr), 0, X, V, terms_rrr, o_rrr);
     for (size_t leg = 0; leg < LEGS_OF_rrr; ++leg) {
         Z_place_rrr(1, LEGS(LEGS_OF_rrr), o_rrr, leg, t);
     }
@@ -1720,110 +1719,40 @@ INLINE void Z_run(const prepared *m, const real *X, const real *V, real *Z, verd
 
 INLINE void Z_run_lanes(const prepared *m, const real *X, const real *V, real *Z, verdict *t)
 {
-    real s[4*LANES];
     real sums[2*LANES];
     real o_rrr[2*LANES];
-    Z_before(LANES, X, V, s);
+    Z_before();
     clear(sums, 2*LANES);
     for (size_t leg = 0; leg < LEGS_OF_rrr; ++leg) {
-        Z_legs_rrr(m, LANES, leg, 0, s, 1, LANES, 1, sums, o_rrr);
+        Z_legs_rrr(m, LANES, leg, 0, 1, LANES, 1, X, V, sums, o_rrr);
         Z_place_rrr(LANES, LANES, o_rrr, 0, t);
     }
     Z_after(m, LANES, sums, Z, t);
 }
 
 /* ---- H ---- */
-INLINE void H_before(size_t w, const real *X, real *s)
+INLINE void H_before()
 {
-    for (size_t k = 0; k < w; ++k) {
-        /* X: named entries */
-        const real X_0 = X[0*w + k];
-        const real t_x = X_0;
-        const real X_1 = X[1*w + k];
-        const real t_y = X_1;
-        s[0*w + k] = t_x;
-        s[1*w + k] = t_y;
-    }
 }
 
-INLINE void H_legs_rrr(const prepared *m, size_t w, size_t leg, size_t legs, const real *s, size_t
-    states, size_t count, real *o)
+INLINE void H_legs_rrr(const prepared *m, size_t w, size_t leg, size_t legs, size_t states, size_t
+    count, const real *X, real *o)
 {
     for (size_t k = 0; k < count; ++k) {
         const size_t i = leg + legs*k;
         const size_t j = states*k;
-        /* (rrr-S) from the base point to the connection point */
-        const real rrr_base_point_x = m->rrr_base_point_x[i];
-        const real rrr_platform_point_x = m->rrr_platform_point_x[i];
-        const real t_x = s[0*w + j];
-        const real rrr_S_x = rrr_platform_point_x + t_x - rrr_base_point_x;
-        const real rrr_base_point_y = m->rrr_base_point_y[i];
-        const real rrr_platform_point_y = m->rrr_platform_point_y[i];
-        const real t_y = s[1*w + j];
-        const real rrr_S_y = rrr_platform_point_y + t_y - rrr_base_point_y;
-        /* (rrr-Kd_1) projection on the centre's direction, from the distance fixed by the joints beyond
-           joint 1 */
-        const real rrr_Kd_1_t_3 = rrr_S_x*rrr_S_x + rrr_S_y*rrr_S_y;
-        const real rrr_Kd_1_t = m->rrr_Kd_1_t[i];
-        const real rrr_Kd_1_t_2 = m->rrr_Kd_1_t_2[i];
-        const real rrr_Kd_1 = rrr_Kd_1_t + R(0.5)*rrr_Kd_1_t_3 - rrr_Kd_1_t_2;
-        /* (rrr-px_1) component along the reference direction */
-        const real rrr_base_frame_xx = m->rrr_base_frame_xx[i];
-        const real rrr_base_frame_yx = m->rrr_base_frame_yx[i];
-        const real rrr_px_1 = rrr_S_x*rrr_base_frame_xx + rrr_S_y*rrr_base_frame_yx;
-        /* (rrr-py_1) component across the reference direction */
-        const real rrr_base_frame_xy = m->rrr_base_frame_xy[i];
-        const real rrr_base_frame_yy = m->rrr_base_frame_yy[i];
-        const real rrr_py_1 = rrr_S_x*rrr_base_frame_xy + rrr_S_y*rrr_base_frame_yy;
-        /* (rrr-Kc_1) factor of the cosine in the equation of joint 1 */
-        const real rrr_joint2_offset_x = m->rrr_joint2_offset_x[i];
-        const real rrr_Kc_1 = rrr_joint2_offset_x*rrr_px_1;
-        /* (rrr-Ks_1) factor of the sine in the equation of joint 1 */
-        const real rrr_Ks_1 = rrr_joint2_offset_x*rrr_py_1;
-        /* (rrr-rho2_1) squared amplitude */
-        const real rrr_rho2_1 = rrr_Kc_1*rrr_Kc_1 + rrr_Ks_1*rrr_Ks_1;
-        /* (rrr-disc_1) discriminant */
-        const real rrr_disc_1 = rrr_rho2_1 - rrr_Kd_1*rrr_Kd_1;
-        /* (rrr-root_1) root, with the sign of the branch */
-        const real rrr_branch_1 = m->rrr_branch_1[i];
-        const real rrr_root_1 = rrr_branch_1*root(rrr_disc_1);
-        /* (rrr-c_1) cosine of the angle of joint 1 from its reference direction */
-        const real inv_rrr_rho2_1 = 1/rrr_rho2_1;
-        const real rrr_c_1 = inv_rrr_rho2_1*(rrr_Kc_1*rrr_Kd_1 - rrr_Ks_1*rrr_root_1);
-        /* (rrr-s_1) sine of the angle of joint 1 from its reference direction */
-        const real rrr_s_1 = inv_rrr_rho2_1*(rrr_Kc_1*rrr_root_1 + rrr_Kd_1*rrr_Ks_1);
-        /* (rrr-x_2) from the origin of joint 2 to the connection point */
-        const real inv_rrr_size_t = m->inv_rrr_size_t[i];
-        const real rrr_x_2_in_axes1_x = inv_rrr_size_t*rrr_Kd_1*rrr_joint2_offset_x -
-            rrr_joint2_offset_x;
-        /* (rrr-c_2) cosine of the angle of joint 2 from its reference direction */
-        const real inv_rrr_size_t_2 = m->inv_rrr_size_t_2[i];
-        const real rrr_platform_joint_offset_x = m->rrr_platform_joint_offset_x[i];
-        const real rrr_c_2 = inv_rrr_size_t_2*rrr_platform_joint_offset_x*rrr_x_2_in_axes1_x;
-        /* (rrr-s_2) sine of the angle of joint 2 from its reference direction */
-        const real rrr_s_2 =
-            -inv_rrr_size_t*inv_rrr_size_t_2*rrr_joint2_offset_x*rrr_platform_joint_offset_x*rrr_root_1;
-        /* (rrr-r_1) from joint 1 to the connection point, along the links */
-        const real rrr_r_1_in_axes1_x = rrr_joint2_offset_x + rrr_c_2*rrr_platform_joint_offset_x;
-        const real rrr_r_1_in_axes2_y = rrr_c_2*rrr_platform_joint_offset_x*rrr_s_2 -
-            rrr_r_1_in_axes1_x*rrr_s_2;
+        values_rrr v;
+        stage_rrr_X(m, w, i, j, X, &v);
+        stage_rrr_H_condition(m, i, &v);
         /* (rrr-w_1) reciprocal vector 1 */
-        const real rrr_w_1_t = rrr_c_1*rrr_s_2 + rrr_c_2*rrr_s_1;
-        const real rrr_w_1_t_2 = rrr_c_1*rrr_c_2 - rrr_s_1*rrr_s_2;
-        const real inv_rrr_r_1_in_axes2_y = 1/rrr_r_1_in_axes2_y;
-        const real rrr_w_1_x = -inv_rrr_r_1_in_axes2_y*(rrr_base_frame_yy*rrr_w_1_t_2 -
-            rrr_base_frame_yx*rrr_w_1_t);
-        const real rrr_w_1_y = inv_rrr_r_1_in_axes2_y*(rrr_base_frame_xy*rrr_w_1_t_2 -
-            rrr_base_frame_xx*rrr_w_1_t);
-        /* (rrr-w_1) reciprocal vector 1 */
-        o[0*count + k] = rrr_w_1_x;
-        o[1*count + k] = rrr_w_1_y;
-        o[4*count + k] = rrr_w_1_x + rrr_w_1_y;
+        o[0*count + k] = v.rrr_w_1_x;
+        o[1*count + k] = v.rrr_w_1_y;
+        o[4*count + k] = v.rrr_w_1_x + v.rrr_w_1_y;
         const real rrr_rho2_1_t = m->rrr_rho2_1_t[i];
         const real rrr_size = m->rrr_size[i];
-        o[3*count + k] = UNLESS(magnitude(rrr_rho2_1) > TOLERANCE*TOLERANCE*rrr_rho2_1_t) +
-            UNLESS(magnitude(rrr_r_1_in_axes2_y) > TOLERANCE*rrr_size);
-        o[2*count + k] = UNLESS(rrr_disc_1 >= 0);
+        o[3*count + k] = UNLESS(magnitude(v.rrr_rho2_1) > TOLERANCE*TOLERANCE*rrr_rho2_1_t) +
+            UNLESS(magnitude(v.rrr_r_1_in_axes2_y) > TOLERANCE*rrr_size);
+        o[2*count + k] = UNLESS(v.rrr_disc_1 >= 0);
     }
 }
 
@@ -1831,7 +1760,7 @@ INLINE void H_place_rrr(size_t w, size_t count, const real *o, size_t leg, size_
     verdict *t)
 {
     for (size_t k = 0; k < w; ++k) {
-        H[(0*NU + leg)*w + k] = o[0*count + first + k];
+        H[leg*w + k] = o[0*count + first + k];
         H[(NU + leg)*w + k] = o[1*count + first + k];
         t->unreachable[k] += o[2*count + first + k];
         t->singular[k] += o[3*count + first + k];
@@ -1841,10 +1770,9 @@ INLINE void H_place_rrr(size_t w, size_t count, const real *o, size_t leg, size_
 
 INLINE void H_run(const prepared *m, const real *X, real *H, verdict *t)
 {
-    real s[2] = {0};
     real o_rrr[5*LEGS(LEGS_OF_rrr)] = {0};
-    H_before(1, X, s);
-    H_legs_rrr(m, 1, 0, 1, s, 0, LEGS(LEGS_OF_rrr), o_rrr);
+    H_before();
+    H_legs_rrr(m, 1, 0, 1, 0, LEGS(LEGS_OF_rrr), X, o_rrr);
     for (size_t leg = 0; leg < LEGS_OF_rrr; ++leg) {
         H_place_rrr(1, LEGS(LEGS_OF_rrr), o_rrr, leg, leg, H, t);
     }
@@ -1852,209 +1780,61 @@ INLINE void H_run(const prepared *m, const real *X, real *H, verdict *t)
 
 INLINE void H_run_lanes(const prepared *m, const real *X, real *H, verdict *t)
 {
-    real s[2*LANES];
     real o_rrr[5*LANES];
-    H_before(LANES, X, s);
+    H_before();
     for (size_t leg = 0; leg < LEGS_OF_rrr; ++leg) {
-        H_legs_rrr(m, LANES, leg, 0, s, 1, LANES, o_rrr);
+        H_legs_rrr(m, LANES, leg, 0, 1, LANES, X, o_rrr);
         H_place_rrr(LANES, LANES, o_rrr, leg, 0, H, t);
     }
 }
 
 /* ---- required ---- */
-INLINE void required_before(const prepared *m, size_t w, const real *X, const real *V, const real
-    *A, real *s)
+INLINE void required_before(const prepared *m, size_t w, const real *A, real *s)
 {
     for (size_t k = 0; k < w; ++k) {
-        /* X: named entries */
-        const real X_0 = X[0*w + k];
-        const real t_x = X_0;
-        const real X_1 = X[1*w + k];
-        const real t_y = X_1;
-        /* V: named entries */
-        const real V_0 = V[0*w + k];
-        const real t_dot_x = V_0;
-        const real V_1 = V[1*w + k];
-        const real t_dot_y = V_1;
-        /* A: named entries */
-        const real A_0 = A[0*w + k];
-        const real t_ddot_x = A_0;
-        const real A_1 = A[1*w + k];
-        const real t_ddot_y = A_1;
         /* (a_t) acceleration of the platform origin, less gravity */
         const real gravity_x = m->gravity_x;
+        const real t_ddot_x = A[0*w + k];
         const real a_t_x = t_ddot_x - gravity_x;
         const real gravity_y = m->gravity_y;
+        const real t_ddot_y = A[1*w + k];
         const real a_t_y = t_ddot_y - gravity_y;
         /* (f_p) inertia force of the platform less its weight */
         const real m_star = m->m_star;
         const real f_p_x = a_t_x*m_star;
         const real f_p_y = a_t_y*m_star;
-        s[0*w + k] = t_x;
-        s[1*w + k] = t_y;
-        s[2*w + k] = t_dot_x;
-        s[3*w + k] = t_dot_y;
-        s[4*w + k] = t_ddot_x;
-        s[5*w + k] = t_ddot_y;
-        s[6*w + k] = f_p_x;
-        s[7*w + k] = f_p_y;
+        s[0*w + k] = f_p_x;
+        s[1*w + k] = f_p_y;
     }
 }
 
-INLINE void required_legs_rrr(const prepared *m, size_t w, size_t leg, size_t legs, const real *s,
-    size_t states, size_t count, int add, real *terms, real *o)
+INLINE void required_legs_rrr(const prepared *m, size_t w, size_t leg, size_t legs, size_t states,
+    size_t count, int add, const real *X, const real *V, const real *A, real *terms, real *o)
 {
     for (size_t k = 0; k < count; ++k) {
         const size_t i = leg + legs*k;
         const size_t j = states*k;
-        /* (rrr-S) from the base point to the connection point */
-        const real rrr_base_point_x = m->rrr_base_point_x[i];
-        const real rrr_platform_point_x = m->rrr_platform_point_x[i];
-        const real t_x = s[0*w + j];
-        const real rrr_S_x = rrr_platform_point_x + t_x - rrr_base_point_x;
-        const real rrr_base_point_y = m->rrr_base_point_y[i];
-        const real rrr_platform_point_y = m->rrr_platform_point_y[i];
-        const real t_y = s[1*w + j];
-        const real rrr_S_y = rrr_platform_point_y + t_y - rrr_base_point_y;
-        /* (rrr-Kd_1) projection on the centre's direction, from the distance fixed by the joints beyond
-           joint 1 */
-        const real rrr_Kd_1_t_3 = rrr_S_x*rrr_S_x + rrr_S_y*rrr_S_y;
-        const real rrr_Kd_1_t = m->rrr_Kd_1_t[i];
-        const real rrr_Kd_1_t_2 = m->rrr_Kd_1_t_2[i];
-        const real rrr_Kd_1 = rrr_Kd_1_t + R(0.5)*rrr_Kd_1_t_3 - rrr_Kd_1_t_2;
-        /* (rrr-px_1) component along the reference direction */
-        const real rrr_base_frame_xx = m->rrr_base_frame_xx[i];
-        const real rrr_base_frame_yx = m->rrr_base_frame_yx[i];
-        const real rrr_px_1 = rrr_S_x*rrr_base_frame_xx + rrr_S_y*rrr_base_frame_yx;
-        /* (rrr-py_1) component across the reference direction */
-        const real rrr_base_frame_xy = m->rrr_base_frame_xy[i];
-        const real rrr_base_frame_yy = m->rrr_base_frame_yy[i];
-        const real rrr_py_1 = rrr_S_x*rrr_base_frame_xy + rrr_S_y*rrr_base_frame_yy;
-        /* (rrr-Kc_1) factor of the cosine in the equation of joint 1 */
-        const real rrr_joint2_offset_x = m->rrr_joint2_offset_x[i];
-        const real rrr_Kc_1 = rrr_joint2_offset_x*rrr_px_1;
-        /* (rrr-Ks_1) factor of the sine in the equation of joint 1 */
-        const real rrr_Ks_1 = rrr_joint2_offset_x*rrr_py_1;
-        /* (rrr-rho2_1) squared amplitude */
-        const real rrr_rho2_1 = rrr_Kc_1*rrr_Kc_1 + rrr_Ks_1*rrr_Ks_1;
-        /* (rrr-disc_1) discriminant */
-        const real rrr_disc_1 = rrr_rho2_1 - rrr_Kd_1*rrr_Kd_1;
-        /* (rrr-root_1) root, with the sign of the branch */
-        const real rrr_branch_1 = m->rrr_branch_1[i];
-        const real rrr_root_1 = rrr_branch_1*root(rrr_disc_1);
-        /* (rrr-c_1) cosine of the angle of joint 1 from its reference direction */
-        const real inv_rrr_rho2_1 = 1/rrr_rho2_1;
-        const real rrr_c_1 = inv_rrr_rho2_1*(rrr_Kc_1*rrr_Kd_1 - rrr_Ks_1*rrr_root_1);
-        /* (rrr-s_1) sine of the angle of joint 1 from its reference direction */
-        const real rrr_s_1 = inv_rrr_rho2_1*(rrr_Kc_1*rrr_root_1 + rrr_Kd_1*rrr_Ks_1);
-        /* (rrr-x_2) from the origin of joint 2 to the connection point */
-        const real inv_rrr_size_t = m->inv_rrr_size_t[i];
-        const real rrr_x_2_in_axes1_x = inv_rrr_size_t*rrr_Kd_1*rrr_joint2_offset_x -
-            rrr_joint2_offset_x;
-        /* (rrr-c_2) cosine of the angle of joint 2 from its reference direction */
-        const real inv_rrr_size_t_2 = m->inv_rrr_size_t_2[i];
-        const real rrr_platform_joint_offset_x = m->rrr_platform_joint_offset_x[i];
-        const real rrr_c_2 = inv_rrr_size_t_2*rrr_platform_joint_offset_x*rrr_x_2_in_axes1_x;
-        /* (rrr-s_2) sine of the angle of joint 2 from its reference direction */
-        const real rrr_s_2 =
-            -inv_rrr_size_t*inv_rrr_size_t_2*rrr_joint2_offset_x*rrr_platform_joint_offset_x*rrr_root_1;
-        /* (rrr-r_1) from joint 1 to the connection point, along the links */
-        const real rrr_r_1_in_axes1_y = rrr_platform_joint_offset_x*rrr_s_2;
-        const real rrr_r_1_in_axes1_x = rrr_joint2_offset_x + rrr_c_2*rrr_platform_joint_offset_x;
-        const real rrr_r_1_in_axes2_x = rrr_c_2*rrr_r_1_in_axes1_x + rrr_r_1_in_axes1_y*rrr_s_2;
-        const real rrr_r_1_in_axes2_y = rrr_c_2*rrr_r_1_in_axes1_y - rrr_r_1_in_axes1_x*rrr_s_2;
-        /* (rrr-w_1) reciprocal vector 1 */
-        const real rrr_w_1_t = rrr_c_1*rrr_s_2 + rrr_c_2*rrr_s_1;
-        const real rrr_w_1_t_2 = rrr_c_1*rrr_c_2 - rrr_s_1*rrr_s_2;
-        const real axis_y_rrr_axes2_x = rrr_base_frame_xy*rrr_w_1_t_2 -
-            rrr_base_frame_xx*rrr_w_1_t;
-        const real axis_x_rrr_axes2_x = rrr_base_frame_yy*rrr_w_1_t_2 -
-            rrr_base_frame_yx*rrr_w_1_t;
-        const real inv_rrr_r_1_in_axes2_y = 1/rrr_r_1_in_axes2_y;
-        const real rrr_w_1_x = -axis_x_rrr_axes2_x*inv_rrr_r_1_in_axes2_y;
-        const real rrr_w_1_y = axis_y_rrr_axes2_x*inv_rrr_r_1_in_axes2_y;
-        /* (rrr-qd_1) rate of joint 1 */
-        const real t_dot_x = s[2*w + j];
-        const real t_dot_y = s[3*w + j];
-        const real rrr_qd_1_t = inv_rrr_r_1_in_axes2_y*(axis_x_rrr_axes2_x*t_dot_x -
-            axis_y_rrr_axes2_x*t_dot_y);
-        /* (rrr-W_1) centripetal tensor of link 1 */
-        const real rrr_W_1_in_axes1_xx = -rrr_qd_1_t*rrr_qd_1_t;
-        /* (rrr-omega_2) angular velocity of link 2 */
-        const real rrr_w_2_in_axes2_y = m->rrr_w_2_in_axes2_y[i];
-        const real rrr_omega_2_in_axes2_z = rrr_w_2_in_axes2_y*(axis_x_rrr_axes2_x*t_dot_y +
-            axis_y_rrr_axes2_x*t_dot_x + rrr_qd_1_t*rrr_r_1_in_axes2_x) - rrr_qd_1_t;
-        /* (rrr-W_2) centripetal tensor of link 2 */
-        const real rrr_W_2_t = rrr_omega_2_in_axes2_z*rrr_omega_2_in_axes2_z;
-        /* (rrr-S_ddot) acceleration of the connection point */
-        const real t_ddot_x = s[4*w + j];
-        const real t_ddot_y = s[5*w + j];
-        const real rrr_S_ddot_in_axes2_x = axis_x_rrr_axes2_x*t_ddot_x -
-            axis_y_rrr_axes2_x*t_ddot_y;
-        const real rrr_S_ddot_in_axes2_y = axis_x_rrr_axes2_x*t_ddot_y +
-            axis_y_rrr_axes2_x*t_ddot_x;
-        /* (rrr-bias) acceleration of the connection point at zero joint accelerations */
-        const real rrr_bias_in_axes2_x = rrr_W_1_in_axes1_xx*rrr_c_2*rrr_joint2_offset_x -
-            rrr_W_2_t*rrr_platform_joint_offset_x;
-        /* (rrr-rel) acceleration of the connection point left to the joint accelerations */
-        const real rrr_rel_in_axes2_x = rrr_S_ddot_in_axes2_x - rrr_bias_in_axes2_x;
-        const real rrr_rel_in_axes2_y = rrr_S_ddot_in_axes2_y +
-            rrr_W_1_in_axes1_xx*rrr_joint2_offset_x*rrr_s_2;
-        /* (rrr-B_1) acceleration tensor of link 1 */
-        const real rrr_B_1_in_axes1_xy = inv_rrr_r_1_in_axes2_y*rrr_rel_in_axes2_x;
-        /* (rrr-alpha_2) angular acceleration of link 2 */
-        const real rrr_alpha_2_in_axes2_z = rrr_w_2_in_axes2_y*(rrr_rel_in_axes2_y +
-            rrr_B_1_in_axes1_xy*rrr_r_1_in_axes2_x) - rrr_B_1_in_axes1_xy;
-        /* (rrr-acc_2) acceleration of the reference point of link 2, less gravity */
-        const real gravity_x = m->gravity_x;
-        const real gravity_y = m->gravity_y;
-        const real rrr_acc_2_in_axes2_x = rrr_S_ddot_in_axes2_x + axis_y_rrr_axes2_x*gravity_y -
-            axis_x_rrr_axes2_x*gravity_x;
-        const real rrr_acc_2_in_axes2_y = rrr_S_ddot_in_axes2_y - axis_x_rrr_axes2_x*gravity_y -
-            axis_y_rrr_axes2_x*gravity_x;
-        /* (rrr-mu_2) inertia moment of the links that turn with link 2, about their reference points */
-        const real rrr_J_2_in_spec2_zz = m->rrr_J_2_in_spec2_zz[i];
-        const real rrr_h_2_in_spec2_x = m->rrr_h_2_in_spec2_x[i];
-        const real rrr_h_2_in_spec2_y = m->rrr_h_2_in_spec2_y[i];
-        const real rrr_mu_2_in_axes2_z = rrr_J_2_in_spec2_zz*rrr_alpha_2_in_axes2_z +
-            rrr_acc_2_in_axes2_y*rrr_h_2_in_spec2_x - rrr_acc_2_in_axes2_x*rrr_h_2_in_spec2_y;
-        /* (rrr-mu_1) inertia moment of the links that turn with link 1, about their reference points */
-        const real rrr_J_1_in_spec1_zz = m->rrr_J_1_in_spec1_zz[i];
-        const real rrr_h_1_in_spec1_x = m->rrr_h_1_in_spec1_x[i];
-        const real rrr_h_1_in_spec1_y = m->rrr_h_1_in_spec1_y[i];
-        const real rrr_mu_1_t = m->rrr_mu_1_t[i];
-        const real rrr_mu_1_t_2 = m->rrr_mu_1_t_2[i];
-        const real rrr_mu_1_in_axes1_z = rrr_h_1_in_spec1_y*(rrr_c_1*rrr_mu_1_t +
-            rrr_mu_1_t_2*rrr_s_1) - rrr_B_1_in_axes1_xy*rrr_J_1_in_spec1_zz -
-            rrr_h_1_in_spec1_x*(rrr_c_1*rrr_mu_1_t_2 - rrr_mu_1_t*rrr_s_1);
-        /* (rrr-N_1) moment about joint 1 of the links from 1 outwards, the force at the connection point
-           left out */
-        const real rrr_N_1_in_axes1_z = rrr_mu_1_in_axes1_z + rrr_mu_2_in_axes2_z;
-        /* (rrr-G) force at the connection point that balances the leg's inertia and weight along all
-           degrees of freedom */
-        const real rrr_G_in_axes2_y = rrr_mu_2_in_axes2_z*rrr_w_2_in_axes2_y;
+        values_rrr v;
+        stage_rrr_X(m, w, i, j, X, &v);
+        stage_rrr_V_X(m, w, i, j, V, &v);
+        stage_rrr_legs_required(m, w, i, j, A, &v);
         /* (rrr-c) leg force on the platform without actuation and without the mass at the connection
            point */
-        const real rrr_c_in_axes2_x = rrr_W_2_t*rrr_h_2_in_spec2_x +
-            rrr_alpha_2_in_axes2_z*rrr_h_2_in_spec2_y -
-            inv_rrr_r_1_in_axes2_y*(rrr_G_in_axes2_y*rrr_r_1_in_axes2_x - rrr_N_1_in_axes1_z);
-        const real rrr_c_in_axes2_y = rrr_W_2_t*rrr_h_2_in_spec2_y - rrr_G_in_axes2_y -
-            rrr_alpha_2_in_axes2_z*rrr_h_2_in_spec2_x;
-        const real rrr_c_x = axis_x_rrr_axes2_x*rrr_c_in_axes2_x +
-            axis_y_rrr_axes2_x*rrr_c_in_axes2_y;
-        const real rrr_c_y = axis_x_rrr_axes2_x*rrr_c_in_axes2_y -
-            axis_y_rrr_axes2_x*rrr_c_in_axes2_x;
+        const real rrr_c_x = v.axis_x_rrr_axes2_x*v.rrr_c_in_axes2_x +
+            v.axis_y_rrr_axes2_x*v.rrr_c_in_axes2_y;
+        const real rrr_c_y = v.axis_x_rrr_axes2_x*v.rrr_c_in_axes2_y -
+            v.axis_y_rrr_axes2_x*v.rrr_c_in_axes2_x;
         /* (R_t) force that actuators and external wrench must give */
         gather(&terms[0*count + k], add, rrr_c_x);  /* R_t_x_of_legs */
         gather(&terms[1*count + k], add, rrr_c_y);  /* R_t_y_of_legs */
         /* (rrr-w_1) reciprocal vector 1 */
-        o[0*count + k] = rrr_w_1_x;
-        o[1*count + k] = rrr_w_1_y;
+        o[0*count + k] = v.rrr_w_1_x;
+        o[1*count + k] = v.rrr_w_1_y;
         const real rrr_rho2_1_t = m->rrr_rho2_1_t[i];
         const real rrr_size = m->rrr_size[i];
-        o[3*count + k] = UNLESS(magnitude(rrr_rho2_1) > TOLERANCE*TOLERANCE*rrr_rho2_1_t) +
-            UNLESS(magnitude(rrr_r_1_in_axes2_y) > TOLERANCE*rrr_size);
-        o[2*count + k] = UNLESS(rrr_disc_1 >= 0);
+        o[3*count + k] = UNLESS(magnitude(v.rrr_rho2_1) > TOLERANCE*TOLERANCE*rrr_rho2_1_t) +
+            UNLESS(magnitude(v.rrr_r_1_in_axes2_y) > TOLERANCE*rrr_size);
+        o[2*count + k] = UNLESS(v.rrr_disc_1 >= 0);
     }
 }
 
@@ -2062,7 +1842,7 @@ INLINE void required_place_rrr(size_t w, size_t count, const real *o, size_t leg
     real *H, verdict *t)
 {
     for (size_t k = 0; k < w; ++k) {
-        H[(0*NU + leg)*w + k] = o[0*count + first + k];
+        H[leg*w + k] = o[0*count + first + k];
         H[(NU + leg)*w + k] = o[1*count + first + k];
         t->unreachable[k] += o[2*count + first + k];
         t->singular[k] += o[3*count + first + k];
@@ -2074,10 +1854,10 @@ INLINE void required_after(size_t w, const real *s, const real *sums, real *requ
     for (size_t k = 0; k < w; ++k) {
         /* (R_t) force that actuators and external wrench must give */
         const real R_t_x_of_legs = sums[0*w + k];
-        const real f_p_x = s[6*w + k];
+        const real f_p_x = s[0*w + k];
         const real R_t_x = f_p_x - R_t_x_of_legs;
         const real R_t_y_of_legs = sums[1*w + k];
-        const real f_p_y = s[7*w + k];
+        const real f_p_y = s[1*w + k];
         const real R_t_y = f_p_y - R_t_y_of_legs;
         /* (R_t) force that actuators and external wrench must give */
         required[0*w + k] = R_t_x;
@@ -2088,12 +1868,10 @@ INLINE void required_after(size_t w, const real *s, const real *sums, real *requ
 INLINE void required_run(const prepared *m, const real *X, const real *V, const real *A, real
     *required, real *H, verdict *t)
 {
-    real s[8] = {0};
-    real sums[2] = {0};
-    real terms_rrr[2*LEGS(LEGS_OF_rrr)] = {0};
-    real o_rrr[4*LEGS(LEGS_OF_rrr)] = {0};
-    required_before(m, 1, X, V, A, s);
-    required_legs_rrr(m, 1, 0, 1, s, 0, LEGS(LEGS_OF_rrr), 0, terms_rrr, o_rrr);
+    real s[2] = {0}, sums[2] = {0};
+    real terms_rrr[2*LEGS(LEGS_OF_rrr)] = {0}, o_rrr[4*LEGS(LEGS_OF_rrr)] = {0};
+    required_before(m, 1, A, s);
+    required_legs_rrr(m, 1, 0, 1, 0, LEGS(LEGS_OF_rrr), 0, X, V, A, terms_rrr, o_rrr);
     for (size_t leg = 0; leg < LEGS_OF_rrr; ++leg) {
         required_place_rrr(1, LEGS(LEGS_OF_rrr), o_rrr, leg, leg, H, t);
     }
@@ -2106,95 +1884,50 @@ INLINE void required_run(const prepared *m, const real *X, const real *V, const 
 INLINE void required_run_lanes(const prepared *m, const real *X, const real *V, const real *A,
     real *required, real *H, verdict *t)
 {
-    real s[8*LANES];
-    real sums[2*LANES];
+    real s[2*LANES], sums[2*LANES];
     real o_rrr[4*LANES];
-    required_before(m, LANES, X, V, A, s);
+    required_before(m, LANES, A, s);
     clear(sums, 2*LANES);
     for (size_t leg = 0; leg < LEGS_OF_rrr; ++leg) {
-        required_legs_rrr(m, LANES, leg, 0, s, 1, LANES, 1, sums, o_rrr);
+        required_legs_rrr(m, LANES, leg, 0, 1, LANES, 1, X, V, A, sums, o_rrr);
         required_place_rrr(LANES, LANES, o_rrr, leg, 0, H, t);
     }
     required_after(LANES, s, sums, required);
 }
 
 /* ---- inverse_kinematics ---- */
-INLINE void inverse_kinematics_before(size_t w, const real *X, real *s)
+INLINE void inverse_kinematics_before()
 {
-    for (size_t k = 0; k < w; ++k) {
-        /* X: named entries */
-        const real X_0 = X[0*w + k];
-        const real t_x = X_0;
-        const real X_1 = X[1*w + k];
-        const real t_y = X_1;
-        s[0*w + k] = t_x;
-        s[1*w + k] = t_y;
-    }
 }
 
 INLINE void inverse_kinematics_legs_rrr(const prepared *m, size_t w, size_t leg, size_t legs,
-    const real *s, size_t states, size_t count, real *o)
+    size_t states, size_t count, const real *X, real *o)
 {
     for (size_t k = 0; k < count; ++k) {
         const size_t i = leg + legs*k;
         const size_t j = states*k;
-        /* (rrr-S) from the base point to the connection point */
-        const real rrr_base_point_x = m->rrr_base_point_x[i];
-        const real rrr_platform_point_x = m->rrr_platform_point_x[i];
-        const real t_x = s[0*w + j];
-        const real rrr_S_x = rrr_platform_point_x + t_x - rrr_base_point_x;
-        const real rrr_base_point_y = m->rrr_base_point_y[i];
-        const real rrr_platform_point_y = m->rrr_platform_point_y[i];
-        const real t_y = s[1*w + j];
-        const real rrr_S_y = rrr_platform_point_y + t_y - rrr_base_point_y;
-        /* (rrr-Kd_1) projection on the centre's direction, from the distance fixed by the joints beyond
-           joint 1 */
-        const real rrr_Kd_1_t_3 = rrr_S_x*rrr_S_x + rrr_S_y*rrr_S_y;
-        const real rrr_Kd_1_t = m->rrr_Kd_1_t[i];
-        const real rrr_Kd_1_t_2 = m->rrr_Kd_1_t_2[i];
-        const real rrr_Kd_1 = rrr_Kd_1_t + R(0.5)*rrr_Kd_1_t_3 - rrr_Kd_1_t_2;
-        /* (rrr-px_1) component along the reference direction */
-        const real rrr_base_frame_xx = m->rrr_base_frame_xx[i];
-        const real rrr_base_frame_yx = m->rrr_base_frame_yx[i];
-        const real rrr_px_1 = rrr_S_x*rrr_base_frame_xx + rrr_S_y*rrr_base_frame_yx;
-        /* (rrr-py_1) component across the reference direction */
-        const real rrr_base_frame_xy = m->rrr_base_frame_xy[i];
-        const real rrr_base_frame_yy = m->rrr_base_frame_yy[i];
-        const real rrr_py_1 = rrr_S_x*rrr_base_frame_xy + rrr_S_y*rrr_base_frame_yy;
-        /* (rrr-Kc_1) factor of the cosine in the equation of joint 1 */
-        const real rrr_joint2_offset_x = m->rrr_joint2_offset_x[i];
-        const real rrr_Kc_1 = rrr_joint2_offset_x*rrr_px_1;
-        /* (rrr-Ks_1) factor of the sine in the equation of joint 1 */
-        const real rrr_Ks_1 = rrr_joint2_offset_x*rrr_py_1;
-        /* (rrr-rho2_1) squared amplitude */
-        const real rrr_rho2_1 = rrr_Kc_1*rrr_Kc_1 + rrr_Ks_1*rrr_Ks_1;
-        /* (rrr-disc_1) discriminant */
-        const real rrr_disc_1 = rrr_rho2_1 - rrr_Kd_1*rrr_Kd_1;
-        /* (rrr-root_1) root, with the sign of the branch */
-        const real rrr_branch_1 = m->rrr_branch_1[i];
-        const real rrr_root_1 = rrr_branch_1*root(rrr_disc_1);
+        values_rrr v;
+        stage_rrr_X(m, w, i, j, X, &v);
         /* (rrr-q_1) displacement of joint 1 */
-        const real inv_rrr_rho2_1 = 1/rrr_rho2_1;
-        const real rrr_q_1 = angle(inv_rrr_rho2_1*(rrr_Kc_1*rrr_root_1 + rrr_Kd_1*rrr_Ks_1),
-            inv_rrr_rho2_1*(rrr_Kc_1*rrr_Kd_1 - rrr_Ks_1*rrr_root_1));
-        /* (rrr-x_2) from the origin of joint 2 to the connection point */
-        const real inv_rrr_size_t = m->inv_rrr_size_t[i];
-        const real rrr_x_2_in_axes1_x = inv_rrr_size_t*rrr_Kd_1*rrr_joint2_offset_x -
-            rrr_joint2_offset_x;
+        const real rrr_q_1 = angle(v.inv_rrr_rho2_1*(v.rrr_Kc_1*v.rrr_root_1 +
+            v.rrr_Kd_1*v.rrr_Ks_1), v.inv_rrr_rho2_1*(v.rrr_Kc_1*v.rrr_Kd_1 -
+            v.rrr_Ks_1*v.rrr_root_1));
         /* (rrr-q_2) displacement of joint 2 */
+        const real inv_rrr_size_t = m->inv_rrr_size_t[i];
         const real inv_rrr_size_t_2 = m->inv_rrr_size_t_2[i];
+        const real rrr_joint2_offset_x = m->rrr_joint2_offset_x[i];
         const real rrr_platform_joint_offset_x = m->rrr_platform_joint_offset_x[i];
         const real rrr_q_2 =
-            angle(-inv_rrr_size_t*inv_rrr_size_t_2*rrr_joint2_offset_x*rrr_platform_joint_offset_x*rrr_root_1,
-            inv_rrr_size_t_2*rrr_platform_joint_offset_x*rrr_x_2_in_axes1_x);
+            angle(-inv_rrr_size_t*inv_rrr_size_t_2*rrr_joint2_offset_x*rrr_platform_joint_offset_x*v.rrr_root_1,
+            inv_rrr_size_t_2*rrr_platform_joint_offset_x*v.rrr_x_2_in_axes1_x);
         /* (rrr-q_1) displacement of joint 1 */
         o[0*count + k] = rrr_q_1;
         /* (rrr-q_2) displacement of joint 2 */
         o[1*count + k] = rrr_q_2;
         o[4*count + k] = rrr_q_1 + rrr_q_2;
         const real rrr_rho2_1_t = m->rrr_rho2_1_t[i];
-        o[3*count + k] = UNLESS(magnitude(rrr_rho2_1) > TOLERANCE*TOLERANCE*rrr_rho2_1_t);
-        o[2*count + k] = UNLESS(rrr_disc_1 >= 0);
+        o[3*count + k] = UNLESS(magnitude(v.rrr_rho2_1) > TOLERANCE*TOLERANCE*rrr_rho2_1_t);
+        o[2*count + k] = UNLESS(v.rrr_disc_1 >= 0);
     }
 }
 
@@ -2212,10 +1945,9 @@ INLINE void inverse_kinematics_place_rrr(size_t w, size_t count, const real *o, 
 
 INLINE void inverse_kinematics_run(const prepared *m, const real *X, real *q, verdict *t)
 {
-    real s[2] = {0};
     real o_rrr[5*LEGS(LEGS_OF_rrr)] = {0};
-    inverse_kinematics_before(1, X, s);
-    inverse_kinematics_legs_rrr(m, 1, 0, 1, s, 0, LEGS(LEGS_OF_rrr), o_rrr);
+    inverse_kinematics_before();
+    inverse_kinematics_legs_rrr(m, 1, 0, 1, 0, LEGS(LEGS_OF_rrr), X, o_rrr);
     for (size_t leg = 0; leg < LEGS_OF_rrr; ++leg) {
         inverse_kinematics_place_rrr(1, LEGS(LEGS_OF_rrr), o_rrr, leg, leg, q, t);
     }
@@ -2223,113 +1955,46 @@ INLINE void inverse_kinematics_run(const prepared *m, const real *X, real *q, ve
 
 INLINE void inverse_kinematics_run_lanes(const prepared *m, const real *X, real *q, verdict *t)
 {
-    real s[2*LANES];
     real o_rrr[5*LANES];
-    inverse_kinematics_before(LANES, X, s);
+    inverse_kinematics_before();
     for (size_t leg = 0; leg < LEGS_OF_rrr; ++leg) {
-        inverse_kinematics_legs_rrr(m, LANES, leg, 0, s, 1, LANES, o_rrr);
+        inverse_kinematics_legs_rrr(m, LANES, leg, 0, 1, LANES, X, o_rrr);
         inverse_kinematics_place_rrr(LANES, LANES, o_rrr, leg, 0, q, t);
     }
 }
 
 /* ---- joint_rates ---- */
-INLINE void joint_rates_before(size_t w, const real *X, const real *V, real *s)
+INLINE void joint_rates_before()
 {
-    for (size_t k = 0; k < w; ++k) {
-        /* X: named entries */
-        const real X_0 = X[0*w + k];
-        const real t_x = X_0;
-        const real X_1 = X[1*w + k];
-        const real t_y = X_1;
-        /* V: named entries */
-        const real V_0 = V[0*w + k];
-        const real t_dot_x = V_0;
-        const real V_1 = V[1*w + k];
-        const real t_dot_y = V_1;
-        s[0*w + k] = t_x;
-        s[1*w + k] = t_y;
-        s[2*w + k] = t_dot_x;
-        s[3*w + k] = t_dot_y;
-    }
 }
 
-INLINE void joint_rates_legs_rrr(const prepared *m, size_t w, size_t leg, size_t legs, const real
-    *s, size_t states, size_t count, real *o)
+INLINE void joint_rates_legs_rrr(const prepared *m, size_t w, size_t leg, size_t legs, size_t
+    states, size_t count, const real *X, const real *V, real *o)
 {
     for (size_t k = 0; k < count; ++k) {
         const size_t i = leg + legs*k;
         const size_t j = states*k;
-        /* (rrr-S) from the base point to the connection point */
-        const real rrr_base_point_x = m->rrr_base_point_x[i];
-        const real rrr_platform_point_x = m->rrr_platform_point_x[i];
-        const real t_x = s[0*w + j];
-        const real rrr_S_x = rrr_platform_point_x + t_x - rrr_base_point_x;
-        const real rrr_base_point_y = m->rrr_base_point_y[i];
-        const real rrr_platform_point_y = m->rrr_platform_point_y[i];
-        const real t_y = s[1*w + j];
-        const real rrr_S_y = rrr_platform_point_y + t_y - rrr_base_point_y;
-        /* (rrr-Kd_1) projection on the centre's direction, from the distance fixed by the joints beyond
-           joint 1 */
-        const real rrr_Kd_1_t_3 = rrr_S_x*rrr_S_x + rrr_S_y*rrr_S_y;
-        const real rrr_Kd_1_t = m->rrr_Kd_1_t[i];
-        const real rrr_Kd_1_t_2 = m->rrr_Kd_1_t_2[i];
-        const real rrr_Kd_1 = rrr_Kd_1_t + R(0.5)*rrr_Kd_1_t_3 - rrr_Kd_1_t_2;
-        /* (rrr-px_1) component along the reference direction */
-        const real rrr_base_frame_xx = m->rrr_base_frame_xx[i];
-        const real rrr_base_frame_yx = m->rrr_base_frame_yx[i];
-        const real rrr_px_1 = rrr_S_x*rrr_base_frame_xx + rrr_S_y*rrr_base_frame_yx;
-        /* (rrr-py_1) component across the reference direction */
-        const real rrr_base_frame_xy = m->rrr_base_frame_xy[i];
-        const real rrr_base_frame_yy = m->rrr_base_frame_yy[i];
-        const real rrr_py_1 = rrr_S_x*rrr_base_frame_xy + rrr_S_y*rrr_base_frame_yy;
-        /* (rrr-Kc_1) factor of the cosine in the equation of joint 1 */
-        const real rrr_joint2_offset_x = m->rrr_joint2_offset_x[i];
-        const real rrr_Kc_1 = rrr_joint2_offset_x*rrr_px_1;
-        /* (rrr-Ks_1) factor of the sine in the equation of joint 1 */
-        const real rrr_Ks_1 = rrr_joint2_offset_x*rrr_py_1;
-        /* (rrr-rho2_1) squared amplitude */
-        const real rrr_rho2_1 = rrr_Kc_1*rrr_Kc_1 + rrr_Ks_1*rrr_Ks_1;
-        /* (rrr-disc_1) discriminant */
-        const real rrr_disc_1 = rrr_rho2_1 - rrr_Kd_1*rrr_Kd_1;
-        /* (rrr-root_1) root, with the sign of the branch */
-        const real rrr_branch_1 = m->rrr_branch_1[i];
-        const real rrr_root_1 = rrr_branch_1*root(rrr_disc_1);
-        /* (rrr-c_1) cosine of the angle of joint 1 from its reference direction */
-        const real inv_rrr_rho2_1 = 1/rrr_rho2_1;
-        const real rrr_c_1 = inv_rrr_rho2_1*(rrr_Kc_1*rrr_Kd_1 - rrr_Ks_1*rrr_root_1);
-        /* (rrr-s_1) sine of the angle of joint 1 from its reference direction */
-        const real rrr_s_1 = inv_rrr_rho2_1*(rrr_Kc_1*rrr_root_1 + rrr_Kd_1*rrr_Ks_1);
-        /* (rrr-x_2) from the origin of joint 2 to the connection point */
-        const real inv_rrr_size_t = m->inv_rrr_size_t[i];
-        const real rrr_x_2_in_axes1_x = inv_rrr_size_t*rrr_Kd_1*rrr_joint2_offset_x -
-            rrr_joint2_offset_x;
-        /* (rrr-c_2) cosine of the angle of joint 2 from its reference direction */
-        const real inv_rrr_size_t_2 = m->inv_rrr_size_t_2[i];
-        const real rrr_platform_joint_offset_x = m->rrr_platform_joint_offset_x[i];
-        const real rrr_c_2 = inv_rrr_size_t_2*rrr_platform_joint_offset_x*rrr_x_2_in_axes1_x;
-        /* (rrr-s_2) sine of the angle of joint 2 from its reference direction */
-        const real rrr_s_2 =
-            -inv_rrr_size_t*inv_rrr_size_t_2*rrr_joint2_offset_x*rrr_platform_joint_offset_x*rrr_root_1;
-        /* (rrr-r_1) from joint 1 to the connection point, along the links */
-        const real rrr_r_1_in_axes1_y = rrr_platform_joint_offset_x*rrr_s_2;
-        const real rrr_r_1_in_axes1_x = rrr_joint2_offset_x + rrr_c_2*rrr_platform_joint_offset_x;
-        const real rrr_r_1_in_axes2_y = rrr_c_2*rrr_r_1_in_axes1_y - rrr_r_1_in_axes1_x*rrr_s_2;
+        values_rrr v;
+        stage_rrr_X(m, w, i, j, X, &v);
         /* (rrr-qd_1) rate of joint 1 */
-        const real rrr_qd_1_t = rrr_c_1*rrr_s_2 + rrr_c_2*rrr_s_1;
-        const real rrr_qd_1_t_2 = rrr_c_1*rrr_c_2 - rrr_s_1*rrr_s_2;
-        const real axis_y_rrr_axes2_x = rrr_base_frame_xy*rrr_qd_1_t_2 -
+        const real rrr_qd_1_t = v.rrr_c_1*v.rrr_s_2 + v.rrr_c_2*v.rrr_s_1;
+        const real rrr_base_frame_xx = m->rrr_base_frame_xx[i];
+        const real rrr_base_frame_xy = m->rrr_base_frame_xy[i];
+        const real axis_y_rrr_axes2_x = rrr_base_frame_xy*v.rrr_qd_1_t_2 -
             rrr_base_frame_xx*rrr_qd_1_t;
-        const real axis_x_rrr_axes2_x = rrr_base_frame_yy*rrr_qd_1_t_2 -
+        const real rrr_base_frame_yx = m->rrr_base_frame_yx[i];
+        const real rrr_base_frame_yy = m->rrr_base_frame_yy[i];
+        const real axis_x_rrr_axes2_x = rrr_base_frame_yy*v.rrr_qd_1_t_2 -
             rrr_base_frame_yx*rrr_qd_1_t;
-        const real t_dot_x = s[2*w + j];
-        const real t_dot_y = s[3*w + j];
+        const real t_dot_x = V[0*w + j];
+        const real t_dot_y = V[1*w + j];
         const real rrr_qd_1_t_3 = (axis_x_rrr_axes2_x*t_dot_x -
-            axis_y_rrr_axes2_x*t_dot_y)/rrr_r_1_in_axes2_y;
+            axis_y_rrr_axes2_x*t_dot_y)/v.rrr_r_1_in_axes2_y;
         /* (rrr-qd_2) rate of joint 2 */
         const real rrr_w_2_in_axes2_y = m->rrr_w_2_in_axes2_y[i];
         const real rrr_qd_2 = rrr_w_2_in_axes2_y*(axis_x_rrr_axes2_x*t_dot_y +
-            axis_y_rrr_axes2_x*t_dot_x + rrr_qd_1_t_3*(rrr_c_2*rrr_r_1_in_axes1_x +
-            rrr_r_1_in_axes1_y*rrr_s_2));
+            axis_y_rrr_axes2_x*t_dot_x + rrr_qd_1_t_3*(v.rrr_c_2*v.rrr_r_1_in_axes1_x +
+            v.rrr_r_1_in_axes1_y*v.rrr_s_2));
         /* (rrr-qd_1) rate of joint 1 */
         o[0*count + k] = -rrr_qd_1_t_3;
         /* (rrr-qd_2) rate of joint 2 */
@@ -2337,9 +2002,9 @@ INLINE void joint_rates_legs_rrr(const prepared *m, size_t w, size_t leg, size_t
         o[4*count + k] = rrr_qd_1_t_3 + rrr_qd_2;
         const real rrr_rho2_1_t = m->rrr_rho2_1_t[i];
         const real rrr_size = m->rrr_size[i];
-        o[3*count + k] = UNLESS(magnitude(rrr_rho2_1) > TOLERANCE*TOLERANCE*rrr_rho2_1_t) +
-            UNLESS(magnitude(rrr_r_1_in_axes2_y) > TOLERANCE*rrr_size);
-        o[2*count + k] = UNLESS(rrr_disc_1 >= 0);
+        o[3*count + k] = UNLESS(magnitude(v.rrr_rho2_1) > TOLERANCE*TOLERANCE*rrr_rho2_1_t) +
+            UNLESS(magnitude(v.rrr_r_1_in_axes2_y) > TOLERANCE*rrr_size);
+        o[2*count + k] = UNLESS(v.rrr_disc_1 >= 0);
     }
 }
 
@@ -2357,10 +2022,9 @@ INLINE void joint_rates_place_rrr(size_t w, size_t count, const real *o, size_t 
 
 INLINE void joint_rates_run(const prepared *m, const real *X, const real *V, real *qd, verdict *t)
 {
-    real s[4] = {0};
     real o_rrr[5*LEGS(LEGS_OF_rrr)] = {0};
-    joint_rates_before(1, X, V, s);
-    joint_rates_legs_rrr(m, 1, 0, 1, s, 0, LEGS(LEGS_OF_rrr), o_rrr);
+    joint_rates_before();
+    joint_rates_legs_rrr(m, 1, 0, 1, 0, LEGS(LEGS_OF_rrr), X, V, o_rrr);
     for (size_t leg = 0; leg < LEGS_OF_rrr; ++leg) {
         joint_rates_place_rrr(1, LEGS(LEGS_OF_rrr), o_rrr, leg, leg, qd, t);
     }
@@ -2369,140 +2033,64 @@ INLINE void joint_rates_run(const prepared *m, const real *X, const real *V, rea
 INLINE void joint_rates_run_lanes(const prepared *m, const real *X, const real *V, real *qd,
     verdict *t)
 {
-    real s[4*LANES];
     real o_rrr[5*LANES];
-    joint_rates_before(LANES, X, V, s);
+    joint_rates_before();
     for (size_t leg = 0; leg < LEGS_OF_rrr; ++leg) {
-        joint_rates_legs_rrr(m, LANES, leg, 0, s, 1, LANES, o_rrr);
+        joint_rates_legs_rrr(m, LANES, leg, 0, 1, LANES, X, V, o_rrr);
         joint_rates_place_rrr(LANES, LANES, o_rrr, leg, 0, qd, t);
     }
 }
 
 /* ---- joint_accelerations ---- */
-INLINE void joint_accelerations_before(size_t w, const real *X, const real *V, const real *A, real
-    *s)
+INLINE void joint_accelerations_before()
 {
-    for (size_t k = 0; k < w; ++k) {
-        /* X: named entries */
-        const real X_0 = X[0*w + k];
-        const real t_x = X_0;
-        const real X_1 = X[1*w + k];
-        const real t_y = X_1;
-        /* V: named entries */
-        const real V_0 = V[0*w + k];
-        const real t_dot_x = V_0;
-        const real V_1 = V[1*w + k];
-        const real t_dot_y = V_1;
-        /* A: named entries */
-        const real A_0 = A[0*w + k];
-        const real t_ddot_x = A_0;
-        const real A_1 = A[1*w + k];
-        const real t_ddot_y = A_1;
-        s[0*w + k] = t_x;
-        s[1*w + k] = t_y;
-        s[2*w + k] = t_dot_x;
-        s[3*w + k] = t_dot_y;
-        s[4*w + k] = t_ddot_x;
-        s[5*w + k] = t_ddot_y;
-    }
 }
 
 INLINE void joint_accelerations_legs_rrr(const prepared *m, size_t w, size_t leg, size_t legs,
-    const real *s, size_t states, size_t count, real *o)
+    size_t states, size_t count, const real *X, const real *V, const real *A, real *o)
 {
     for (size_t k = 0; k < count; ++k) {
         const size_t i = leg + legs*k;
         const size_t j = states*k;
-        /* (rrr-S) from the base point to the connection point */
-        const real rrr_base_point_x = m->rrr_base_point_x[i];
-        const real rrr_platform_point_x = m->rrr_platform_point_x[i];
-        const real t_x = s[0*w + j];
-        const real rrr_S_x = rrr_platform_point_x + t_x - rrr_base_point_x;
-        const real rrr_base_point_y = m->rrr_base_point_y[i];
-        const real rrr_platform_point_y = m->rrr_platform_point_y[i];
-        const real t_y = s[1*w + j];
-        const real rrr_S_y = rrr_platform_point_y + t_y - rrr_base_point_y;
-        /* (rrr-Kd_1) projection on the centre's direction, from the distance fixed by the joints beyond
-           joint 1 */
-        const real rrr_Kd_1_t_3 = rrr_S_x*rrr_S_x + rrr_S_y*rrr_S_y;
-        const real rrr_Kd_1_t = m->rrr_Kd_1_t[i];
-        const real rrr_Kd_1_t_2 = m->rrr_Kd_1_t_2[i];
-        const real rrr_Kd_1 = rrr_Kd_1_t + R(0.5)*rrr_Kd_1_t_3 - rrr_Kd_1_t_2;
-        /* (rrr-px_1) component along the reference direction */
-        const real rrr_base_frame_xx = m->rrr_base_frame_xx[i];
-        const real rrr_base_frame_yx = m->rrr_base_frame_yx[i];
-        const real rrr_px_1 = rrr_S_x*rrr_base_frame_xx + rrr_S_y*rrr_base_frame_yx;
-        /* (rrr-py_1) component across the reference direction */
-        const real rrr_base_frame_xy = m->rrr_base_frame_xy[i];
-        const real rrr_base_frame_yy = m->rrr_base_frame_yy[i];
-        const real rrr_py_1 = rrr_S_x*rrr_base_frame_xy + rrr_S_y*rrr_base_frame_yy;
-        /* (rrr-Kc_1) factor of the cosine in the equation of joint 1 */
-        const real rrr_joint2_offset_x = m->rrr_joint2_offset_x[i];
-        const real rrr_Kc_1 = rrr_joint2_offset_x*rrr_px_1;
-        /* (rrr-Ks_1) factor of the sine in the equation of joint 1 */
-        const real rrr_Ks_1 = rrr_joint2_offset_x*rrr_py_1;
-        /* (rrr-rho2_1) squared amplitude */
-        const real rrr_rho2_1 = rrr_Kc_1*rrr_Kc_1 + rrr_Ks_1*rrr_Ks_1;
-        /* (rrr-disc_1) discriminant */
-        const real rrr_disc_1 = rrr_rho2_1 - rrr_Kd_1*rrr_Kd_1;
-        /* (rrr-root_1) root, with the sign of the branch */
-        const real rrr_branch_1 = m->rrr_branch_1[i];
-        const real rrr_root_1 = rrr_branch_1*root(rrr_disc_1);
-        /* (rrr-c_1) cosine of the angle of joint 1 from its reference direction */
-        const real inv_rrr_rho2_1 = 1/rrr_rho2_1;
-        const real rrr_c_1 = inv_rrr_rho2_1*(rrr_Kc_1*rrr_Kd_1 - rrr_Ks_1*rrr_root_1);
-        /* (rrr-s_1) sine of the angle of joint 1 from its reference direction */
-        const real rrr_s_1 = inv_rrr_rho2_1*(rrr_Kc_1*rrr_root_1 + rrr_Kd_1*rrr_Ks_1);
-        /* (rrr-x_2) from the origin of joint 2 to the connection point */
-        const real inv_rrr_size_t = m->inv_rrr_size_t[i];
-        const real rrr_x_2_in_axes1_x = inv_rrr_size_t*rrr_Kd_1*rrr_joint2_offset_x -
-            rrr_joint2_offset_x;
-        /* (rrr-c_2) cosine of the angle of joint 2 from its reference direction */
-        const real inv_rrr_size_t_2 = m->inv_rrr_size_t_2[i];
-        const real rrr_platform_joint_offset_x = m->rrr_platform_joint_offset_x[i];
-        const real rrr_c_2 = inv_rrr_size_t_2*rrr_platform_joint_offset_x*rrr_x_2_in_axes1_x;
-        /* (rrr-s_2) sine of the angle of joint 2 from its reference direction */
-        const real rrr_s_2 =
-            -inv_rrr_size_t*inv_rrr_size_t_2*rrr_joint2_offset_x*rrr_platform_joint_offset_x*rrr_root_1;
-        /* (rrr-r_1) from joint 1 to the connection point, along the links */
-        const real rrr_r_1_in_axes1_y = rrr_platform_joint_offset_x*rrr_s_2;
-        const real rrr_r_1_in_axes1_x = rrr_joint2_offset_x + rrr_c_2*rrr_platform_joint_offset_x;
-        const real rrr_r_1_in_axes2_x = rrr_c_2*rrr_r_1_in_axes1_x + rrr_r_1_in_axes1_y*rrr_s_2;
-        const real rrr_r_1_in_axes2_y = rrr_c_2*rrr_r_1_in_axes1_y - rrr_r_1_in_axes1_x*rrr_s_2;
-        /* (rrr-w_1) reciprocal vector 1 */
-        const real inv_rrr_r_1_in_axes2_y = 1/rrr_r_1_in_axes2_y;
+        values_rrr v;
+        stage_rrr_X(m, w, i, j, X, &v);
         /* (rrr-qd_1) rate of joint 1 */
-        const real rrr_qd_1_t = rrr_c_1*rrr_s_2 + rrr_c_2*rrr_s_1;
-        const real rrr_qd_1_t_2 = rrr_c_1*rrr_c_2 - rrr_s_1*rrr_s_2;
-        const real axis_y_rrr_axes2_x = rrr_base_frame_xy*rrr_qd_1_t_2 -
+        const real rrr_qd_1_t = v.rrr_c_1*v.rrr_s_2 + v.rrr_c_2*v.rrr_s_1;
+        const real rrr_base_frame_xx = m->rrr_base_frame_xx[i];
+        const real rrr_base_frame_xy = m->rrr_base_frame_xy[i];
+        const real axis_y_rrr_axes2_x = rrr_base_frame_xy*v.rrr_qd_1_t_2 -
             rrr_base_frame_xx*rrr_qd_1_t;
-        const real axis_x_rrr_axes2_x = rrr_base_frame_yy*rrr_qd_1_t_2 -
+        const real rrr_base_frame_yx = m->rrr_base_frame_yx[i];
+        const real rrr_base_frame_yy = m->rrr_base_frame_yy[i];
+        const real axis_x_rrr_axes2_x = rrr_base_frame_yy*v.rrr_qd_1_t_2 -
             rrr_base_frame_yx*rrr_qd_1_t;
-        const real t_dot_x = s[2*w + j];
-        const real t_dot_y = s[3*w + j];
-        const real rrr_qd_1_t_3 = inv_rrr_r_1_in_axes2_y*(axis_x_rrr_axes2_x*t_dot_x -
+        const real t_dot_x = V[0*w + j];
+        const real t_dot_y = V[1*w + j];
+        const real rrr_qd_1_t_3 = v.inv_rrr_r_1_in_axes2_y*(axis_x_rrr_axes2_x*t_dot_x -
             axis_y_rrr_axes2_x*t_dot_y);
         /* (rrr-W_1) centripetal tensor of link 1 */
         const real rrr_W_1_in_axes1_xx = -rrr_qd_1_t_3*rrr_qd_1_t_3;
         /* (rrr-omega_2) angular velocity of link 2 */
         const real rrr_w_2_in_axes2_y = m->rrr_w_2_in_axes2_y[i];
         const real rrr_omega_2_in_axes2_z = rrr_w_2_in_axes2_y*(axis_x_rrr_axes2_x*t_dot_y +
-            axis_y_rrr_axes2_x*t_dot_x + rrr_qd_1_t_3*rrr_r_1_in_axes2_x) - rrr_qd_1_t_3;
+            axis_y_rrr_axes2_x*t_dot_x + rrr_qd_1_t_3*v.rrr_r_1_in_axes2_x) - rrr_qd_1_t_3;
         /* (rrr-bias) acceleration of the connection point at zero joint accelerations */
-        const real rrr_bias_in_axes2_x = rrr_W_1_in_axes1_xx*rrr_c_2*rrr_joint2_offset_x -
+        const real rrr_joint2_offset_x = m->rrr_joint2_offset_x[i];
+        const real rrr_platform_joint_offset_x = m->rrr_platform_joint_offset_x[i];
+        const real rrr_bias_in_axes2_x = rrr_W_1_in_axes1_xx*v.rrr_c_2*rrr_joint2_offset_x -
             rrr_omega_2_in_axes2_z*rrr_omega_2_in_axes2_z*rrr_platform_joint_offset_x;
         /* (rrr-rel) acceleration of the connection point left to the joint accelerations */
-        const real t_ddot_x = s[4*w + j];
-        const real t_ddot_y = s[5*w + j];
+        const real t_ddot_x = A[0*w + j];
+        const real t_ddot_y = A[1*w + j];
         const real rrr_rel_in_axes2_x = axis_x_rrr_axes2_x*t_ddot_x - rrr_bias_in_axes2_x -
             axis_y_rrr_axes2_x*t_ddot_y;
         const real rrr_rel_in_axes2_y = axis_x_rrr_axes2_x*t_ddot_y + axis_y_rrr_axes2_x*t_ddot_x
-            + rrr_W_1_in_axes1_xx*rrr_joint2_offset_x*rrr_s_2;
+            + rrr_W_1_in_axes1_xx*rrr_joint2_offset_x*v.rrr_s_2;
         /* (rrr-qdd_1) acceleration of joint 1 */
-        const real rrr_qdd_1_t = inv_rrr_r_1_in_axes2_y*rrr_rel_in_axes2_x;
+        const real rrr_qdd_1_t = v.inv_rrr_r_1_in_axes2_y*rrr_rel_in_axes2_x;
         /* (rrr-qdd_2) acceleration of joint 2 */
         const real rrr_qdd_2 = rrr_w_2_in_axes2_y*(rrr_rel_in_axes2_y +
-            rrr_qdd_1_t*rrr_r_1_in_axes2_x);
+            rrr_qdd_1_t*v.rrr_r_1_in_axes2_x);
         /* (rrr-qdd_1) acceleration of joint 1 */
         o[0*count + k] = -rrr_qdd_1_t;
         /* (rrr-qdd_2) acceleration of joint 2 */
@@ -2510,9 +2098,9 @@ INLINE void joint_accelerations_legs_rrr(const prepared *m, size_t w, size_t leg
         o[4*count + k] = rrr_qdd_1_t + rrr_qdd_2;
         const real rrr_rho2_1_t = m->rrr_rho2_1_t[i];
         const real rrr_size = m->rrr_size[i];
-        o[3*count + k] = UNLESS(magnitude(rrr_rho2_1) > TOLERANCE*TOLERANCE*rrr_rho2_1_t) +
-            UNLESS(magnitude(rrr_r_1_in_axes2_y) > TOLERANCE*rrr_size);
-        o[2*count + k] = UNLESS(rrr_disc_1 >= 0);
+        o[3*count + k] = UNLESS(magnitude(v.rrr_rho2_1) > TOLERANCE*TOLERANCE*rrr_rho2_1_t) +
+            UNLESS(magnitude(v.rrr_r_1_in_axes2_y) > TOLERANCE*rrr_size);
+        o[2*count + k] = UNLESS(v.rrr_disc_1 >= 0);
     }
 }
 
@@ -2531,10 +2119,9 @@ INLINE void joint_accelerations_place_rrr(size_t w, size_t count, const real *o,
 INLINE void joint_accelerations_run(const prepared *m, const real *X, const real *V, const real
     *A, real *qdd, verdict *t)
 {
-    real s[6] = {0};
     real o_rrr[5*LEGS(LEGS_OF_rrr)] = {0};
-    joint_accelerations_before(1, X, V, A, s);
-    joint_accelerations_legs_rrr(m, 1, 0, 1, s, 0, LEGS(LEGS_OF_rrr), o_rrr);
+    joint_accelerations_before();
+    joint_accelerations_legs_rrr(m, 1, 0, 1, 0, LEGS(LEGS_OF_rrr), X, V, A, o_rrr);
     for (size_t leg = 0; leg < LEGS_OF_rrr; ++leg) {
         joint_accelerations_place_rrr(1, LEGS(LEGS_OF_rrr), o_rrr, leg, leg, qdd, t);
     }
@@ -2543,201 +2130,50 @@ INLINE void joint_accelerations_run(const prepared *m, const real *X, const real
 INLINE void joint_accelerations_run_lanes(const prepared *m, const real *X, const real *V, const
     real *A, real *qdd, verdict *t)
 {
-    real s[6*LANES];
     real o_rrr[5*LANES];
-    joint_accelerations_before(LANES, X, V, A, s);
+    joint_accelerations_before();
     for (size_t leg = 0; leg < LEGS_OF_rrr; ++leg) {
-        joint_accelerations_legs_rrr(m, LANES, leg, 0, s, 1, LANES, o_rrr);
+        joint_accelerations_legs_rrr(m, LANES, leg, 0, 1, LANES, X, V, A, o_rrr);
         joint_accelerations_place_rrr(LANES, LANES, o_rrr, leg, 0, qdd, t);
     }
 }
 
 /* ---- legs ---- */
-INLINE void legs_before(size_t w, const real *X, const real *V, const real *A, real *s)
+INLINE void legs_before()
 {
-    for (size_t k = 0; k < w; ++k) {
-        /* X: named entries */
-        const real X_0 = X[0*w + k];
-        const real t_x = X_0;
-        const real X_1 = X[1*w + k];
-        const real t_y = X_1;
-        /* V: named entries */
-        const real V_0 = V[0*w + k];
-        const real t_dot_x = V_0;
-        const real V_1 = V[1*w + k];
-        const real t_dot_y = V_1;
-        /* A: named entries */
-        const real A_0 = A[0*w + k];
-        const real t_ddot_x = A_0;
-        const real A_1 = A[1*w + k];
-        const real t_ddot_y = A_1;
-        s[0*w + k] = t_x;
-        s[1*w + k] = t_y;
-        s[2*w + k] = t_dot_x;
-        s[3*w + k] = t_dot_y;
-        s[4*w + k] = t_ddot_x;
-        s[5*w + k] = t_ddot_y;
-    }
 }
 
-INLINE void legs_legs_rrr(const prepared *m, size_t w, size_t leg, size_t legs, const real *s,
-    size_t states, size_t count, real *o)
+INLINE void legs_legs_rrr(const prepared *m, size_t w, size_t leg, size_t legs, size_t states,
+    size_t count, const real *X, const real *V, const real *A, real *o)
 {
     for (size_t k = 0; k < count; ++k) {
         const size_t i = leg + legs*k;
         const size_t j = states*k;
-        /* (rrr-S) from the base point to the connection point */
-        const real rrr_base_point_x = m->rrr_base_point_x[i];
-        const real rrr_platform_point_x = m->rrr_platform_point_x[i];
-        const real t_x = s[0*w + j];
-        const real rrr_S_x = rrr_platform_point_x + t_x - rrr_base_point_x;
-        const real rrr_base_point_y = m->rrr_base_point_y[i];
-        const real rrr_platform_point_y = m->rrr_platform_point_y[i];
-        const real t_y = s[1*w + j];
-        const real rrr_S_y = rrr_platform_point_y + t_y - rrr_base_point_y;
-        /* (rrr-Kd_1) projection on the centre's direction, from the distance fixed by the joints beyond
-           joint 1 */
-        const real rrr_Kd_1_t_3 = rrr_S_x*rrr_S_x + rrr_S_y*rrr_S_y;
-        const real rrr_Kd_1_t = m->rrr_Kd_1_t[i];
-        const real rrr_Kd_1_t_2 = m->rrr_Kd_1_t_2[i];
-        const real rrr_Kd_1 = rrr_Kd_1_t + R(0.5)*rrr_Kd_1_t_3 - rrr_Kd_1_t_2;
-        /* (rrr-px_1) component along the reference direction */
-        const real rrr_base_frame_xx = m->rrr_base_frame_xx[i];
-        const real rrr_base_frame_yx = m->rrr_base_frame_yx[i];
-        const real rrr_px_1 = rrr_S_x*rrr_base_frame_xx + rrr_S_y*rrr_base_frame_yx;
-        /* (rrr-py_1) component across the reference direction */
-        const real rrr_base_frame_xy = m->rrr_base_frame_xy[i];
-        const real rrr_base_frame_yy = m->rrr_base_frame_yy[i];
-        const real rrr_py_1 = rrr_S_x*rrr_base_frame_xy + rrr_S_y*rrr_base_frame_yy;
-        /* (rrr-Kc_1) factor of the cosine in the equation of joint 1 */
-        const real rrr_joint2_offset_x = m->rrr_joint2_offset_x[i];
-        const real rrr_Kc_1 = rrr_joint2_offset_x*rrr_px_1;
-        /* (rrr-Ks_1) factor of the sine in the equation of joint 1 */
-        const real rrr_Ks_1 = rrr_joint2_offset_x*rrr_py_1;
-        /* (rrr-rho2_1) squared amplitude */
-        const real rrr_rho2_1 = rrr_Kc_1*rrr_Kc_1 + rrr_Ks_1*rrr_Ks_1;
-        /* (rrr-disc_1) discriminant */
-        const real rrr_disc_1 = rrr_rho2_1 - rrr_Kd_1*rrr_Kd_1;
-        /* (rrr-root_1) root, with the sign of the branch */
-        const real rrr_branch_1 = m->rrr_branch_1[i];
-        const real rrr_root_1 = rrr_branch_1*root(rrr_disc_1);
-        /* (rrr-c_1) cosine of the angle of joint 1 from its reference direction */
-        const real inv_rrr_rho2_1 = 1/rrr_rho2_1;
-        const real rrr_c_1 = inv_rrr_rho2_1*(rrr_Kc_1*rrr_Kd_1 - rrr_Ks_1*rrr_root_1);
-        /* (rrr-s_1) sine of the angle of joint 1 from its reference direction */
-        const real rrr_s_1 = inv_rrr_rho2_1*(rrr_Kc_1*rrr_root_1 + rrr_Kd_1*rrr_Ks_1);
-        /* (rrr-x_2) from the origin of joint 2 to the connection point */
-        const real inv_rrr_size_t = m->inv_rrr_size_t[i];
-        const real rrr_x_2_in_axes1_x = inv_rrr_size_t*rrr_Kd_1*rrr_joint2_offset_x -
-            rrr_joint2_offset_x;
-        /* (rrr-c_2) cosine of the angle of joint 2 from its reference direction */
-        const real inv_rrr_size_t_2 = m->inv_rrr_size_t_2[i];
-        const real rrr_platform_joint_offset_x = m->rrr_platform_joint_offset_x[i];
-        const real rrr_c_2 = inv_rrr_size_t_2*rrr_platform_joint_offset_x*rrr_x_2_in_axes1_x;
-        /* (rrr-s_2) sine of the angle of joint 2 from its reference direction */
-        const real rrr_s_2 =
-            -inv_rrr_size_t*inv_rrr_size_t_2*rrr_joint2_offset_x*rrr_platform_joint_offset_x*rrr_root_1;
-        /* (rrr-r_1) from joint 1 to the connection point, along the links */
-        const real rrr_r_1_in_axes1_y = rrr_platform_joint_offset_x*rrr_s_2;
-        const real rrr_r_1_in_axes1_x = rrr_joint2_offset_x + rrr_c_2*rrr_platform_joint_offset_x;
-        const real rrr_r_1_in_axes2_x = rrr_c_2*rrr_r_1_in_axes1_x + rrr_r_1_in_axes1_y*rrr_s_2;
-        const real rrr_r_1_in_axes2_y = rrr_c_2*rrr_r_1_in_axes1_y - rrr_r_1_in_axes1_x*rrr_s_2;
-        /* (rrr-w_1) reciprocal vector 1 */
-        const real rrr_w_1_t = rrr_c_1*rrr_s_2 + rrr_c_2*rrr_s_1;
-        const real rrr_w_1_t_2 = rrr_c_1*rrr_c_2 - rrr_s_1*rrr_s_2;
-        const real axis_y_rrr_axes2_x = rrr_base_frame_xy*rrr_w_1_t_2 -
-            rrr_base_frame_xx*rrr_w_1_t;
-        const real axis_x_rrr_axes2_x = rrr_base_frame_yy*rrr_w_1_t_2 -
-            rrr_base_frame_yx*rrr_w_1_t;
-        const real inv_rrr_r_1_in_axes2_y = 1/rrr_r_1_in_axes2_y;
-        const real rrr_w_1_x = -axis_x_rrr_axes2_x*inv_rrr_r_1_in_axes2_y;
-        const real rrr_w_1_y = axis_y_rrr_axes2_x*inv_rrr_r_1_in_axes2_y;
-        /* (rrr-qd_1) rate of joint 1 */
-        const real t_dot_x = s[2*w + j];
-        const real t_dot_y = s[3*w + j];
-        const real rrr_qd_1_t = inv_rrr_r_1_in_axes2_y*(axis_x_rrr_axes2_x*t_dot_x -
-            axis_y_rrr_axes2_x*t_dot_y);
-        /* (rrr-W_1) centripetal tensor of link 1 */
-        const real rrr_W_1_in_axes1_xx = -rrr_qd_1_t*rrr_qd_1_t;
-        /* (rrr-omega_2) angular velocity of link 2 */
-        const real rrr_w_2_in_axes2_y = m->rrr_w_2_in_axes2_y[i];
-        const real rrr_omega_2_in_axes2_z = rrr_w_2_in_axes2_y*(axis_x_rrr_axes2_x*t_dot_y +
-            axis_y_rrr_axes2_x*t_dot_x + rrr_qd_1_t*rrr_r_1_in_axes2_x) - rrr_qd_1_t;
-        /* (rrr-W_2) centripetal tensor of link 2 */
-        const real rrr_W_2_t = rrr_omega_2_in_axes2_z*rrr_omega_2_in_axes2_z;
-        /* (rrr-S_ddot) acceleration of the connection point */
-        const real t_ddot_x = s[4*w + j];
-        const real t_ddot_y = s[5*w + j];
-        const real rrr_S_ddot_in_axes2_x = axis_x_rrr_axes2_x*t_ddot_x -
-            axis_y_rrr_axes2_x*t_ddot_y;
-        const real rrr_S_ddot_in_axes2_y = axis_x_rrr_axes2_x*t_ddot_y +
-            axis_y_rrr_axes2_x*t_ddot_x;
-        /* (rrr-bias) acceleration of the connection point at zero joint accelerations */
-        const real rrr_bias_in_axes2_x = rrr_W_1_in_axes1_xx*rrr_c_2*rrr_joint2_offset_x -
-            rrr_W_2_t*rrr_platform_joint_offset_x;
-        /* (rrr-rel) acceleration of the connection point left to the joint accelerations */
-        const real rrr_rel_in_axes2_x = rrr_S_ddot_in_axes2_x - rrr_bias_in_axes2_x;
-        const real rrr_rel_in_axes2_y = rrr_S_ddot_in_axes2_y +
-            rrr_W_1_in_axes1_xx*rrr_joint2_offset_x*rrr_s_2;
-        /* (rrr-B_1) acceleration tensor of link 1 */
-        const real rrr_B_1_in_axes1_xy = inv_rrr_r_1_in_axes2_y*rrr_rel_in_axes2_x;
-        /* (rrr-alpha_2) angular acceleration of link 2 */
-        const real rrr_alpha_2_in_axes2_z = rrr_w_2_in_axes2_y*(rrr_rel_in_axes2_y +
-            rrr_B_1_in_axes1_xy*rrr_r_1_in_axes2_x) - rrr_B_1_in_axes1_xy;
-        /* (rrr-acc_2) acceleration of the reference point of link 2, less gravity */
-        const real gravity_x = m->gravity_x;
-        const real gravity_y = m->gravity_y;
-        const real rrr_acc_2_in_axes2_x = rrr_S_ddot_in_axes2_x + axis_y_rrr_axes2_x*gravity_y -
-            axis_x_rrr_axes2_x*gravity_x;
-        const real rrr_acc_2_in_axes2_y = rrr_S_ddot_in_axes2_y - axis_x_rrr_axes2_x*gravity_y -
-            axis_y_rrr_axes2_x*gravity_x;
-        /* (rrr-mu_2) inertia moment of the links that turn with link 2, about their reference points */
-        const real rrr_J_2_in_spec2_zz = m->rrr_J_2_in_spec2_zz[i];
-        const real rrr_h_2_in_spec2_x = m->rrr_h_2_in_spec2_x[i];
-        const real rrr_h_2_in_spec2_y = m->rrr_h_2_in_spec2_y[i];
-        const real rrr_mu_2_in_axes2_z = rrr_J_2_in_spec2_zz*rrr_alpha_2_in_axes2_z +
-            rrr_acc_2_in_axes2_y*rrr_h_2_in_spec2_x - rrr_acc_2_in_axes2_x*rrr_h_2_in_spec2_y;
-        /* (rrr-mu_1) inertia moment of the links that turn with link 1, about their reference points */
-        const real rrr_J_1_in_spec1_zz = m->rrr_J_1_in_spec1_zz[i];
-        const real rrr_h_1_in_spec1_x = m->rrr_h_1_in_spec1_x[i];
-        const real rrr_h_1_in_spec1_y = m->rrr_h_1_in_spec1_y[i];
-        const real rrr_mu_1_t = m->rrr_mu_1_t[i];
-        const real rrr_mu_1_t_2 = m->rrr_mu_1_t_2[i];
-        const real rrr_mu_1_in_axes1_z = rrr_h_1_in_spec1_y*(rrr_c_1*rrr_mu_1_t +
-            rrr_mu_1_t_2*rrr_s_1) - rrr_B_1_in_axes1_xy*rrr_J_1_in_spec1_zz -
-            rrr_h_1_in_spec1_x*(rrr_c_1*rrr_mu_1_t_2 - rrr_mu_1_t*rrr_s_1);
-        /* (rrr-N_1) moment about joint 1 of the links from 1 outwards, the force at the connection point
-           left out */
-        const real rrr_N_1_in_axes1_z = rrr_mu_1_in_axes1_z + rrr_mu_2_in_axes2_z;
-        /* (rrr-G) force at the connection point that balances the leg's inertia and weight along all
-           degrees of freedom */
-        const real rrr_G_in_axes2_y = rrr_mu_2_in_axes2_z*rrr_w_2_in_axes2_y;
-        /* (rrr-c) leg force on the platform without actuation and without the mass at the connection
-           point */
-        const real rrr_c_in_axes2_x = rrr_W_2_t*rrr_h_2_in_spec2_x +
-            rrr_alpha_2_in_axes2_z*rrr_h_2_in_spec2_y -
-            inv_rrr_r_1_in_axes2_y*(rrr_G_in_axes2_y*rrr_r_1_in_axes2_x - rrr_N_1_in_axes1_z);
-        const real rrr_c_in_axes2_y = rrr_W_2_t*rrr_h_2_in_spec2_y - rrr_G_in_axes2_y -
-            rrr_alpha_2_in_axes2_z*rrr_h_2_in_spec2_x;
+        values_rrr v;
+        stage_rrr_X(m, w, i, j, X, &v);
+        stage_rrr_V_X(m, w, i, j, V, &v);
+        stage_rrr_legs_required(m, w, i, j, A, &v);
         /* (rrr-c_true) leg force on the platform without actuation, the last link's mass included */
         const real rrr_link2_mass = m->rrr_link2_mass[i];
-        const real rrr_c_true_in_axes2_x = rrr_c_in_axes2_x - rrr_acc_2_in_axes2_x*rrr_link2_mass;
-        const real rrr_c_true_in_axes2_y = rrr_c_in_axes2_y - rrr_acc_2_in_axes2_y*rrr_link2_mass;
-        const real rrr_c_true_x = axis_x_rrr_axes2_x*rrr_c_true_in_axes2_x +
-            axis_y_rrr_axes2_x*rrr_c_true_in_axes2_y;
-        const real rrr_c_true_y = axis_x_rrr_axes2_x*rrr_c_true_in_axes2_y -
-            axis_y_rrr_axes2_x*rrr_c_true_in_axes2_x;
+        const real rrr_c_true_in_axes2_x = v.rrr_c_in_axes2_x -
+            v.rrr_acc_2_in_axes2_x*rrr_link2_mass;
+        const real rrr_c_true_in_axes2_y = v.rrr_c_in_axes2_y -
+            v.rrr_acc_2_in_axes2_y*rrr_link2_mass;
+        const real rrr_c_true_x = v.axis_x_rrr_axes2_x*rrr_c_true_in_axes2_x +
+            v.axis_y_rrr_axes2_x*rrr_c_true_in_axes2_y;
+        const real rrr_c_true_y = v.axis_x_rrr_axes2_x*rrr_c_true_in_axes2_y -
+            v.axis_y_rrr_axes2_x*rrr_c_true_in_axes2_x;
         /* (rrr-c_true) leg force on the platform without actuation, the last link's mass included */
         o[0*count + k] = rrr_c_true_x;
         o[1*count + k] = rrr_c_true_y;
         /* (rrr-w_1) reciprocal vector 1 */
-        o[2*count + k] = rrr_w_1_x;
-        o[3*count + k] = rrr_w_1_y;
+        o[2*count + k] = v.rrr_w_1_x;
+        o[3*count + k] = v.rrr_w_1_y;
         const real rrr_rho2_1_t = m->rrr_rho2_1_t[i];
         const real rrr_size = m->rrr_size[i];
-        o[5*count + k] = UNLESS(magnitude(rrr_rho2_1) > TOLERANCE*TOLERANCE*rrr_rho2_1_t) +
-            UNLESS(magnitude(rrr_r_1_in_axes2_y) > TOLERANCE*rrr_size);
-        o[4*count + k] = UNLESS(rrr_disc_1 >= 0);
+        o[5*count + k] = UNLESS(magnitude(v.rrr_rho2_1) > TOLERANCE*TOLERANCE*rrr_rho2_1_t) +
+            UNLESS(magnitude(v.rrr_r_1_in_axes2_y) > TOLERANCE*rrr_size);
+        o[4*count + k] = UNLESS(v.rrr_disc_1 >= 0);
     }
 }
 
@@ -2757,12 +2193,11 @@ INLINE void legs_place_rrr(size_t w, size_t count, const real *o, size_t leg, si
 INLINE void legs_run(const prepared *m, const real *X, const real *V, const real *A, real
     *leg_force, real *actuator, verdict *t)
 {
-    real s[6] = {0};
     real o_rrr[6*LEGS(LEGS_OF_rrr)] = {0};
     clear(leg_force, 3*NL);
     clear(actuator, 6);
-    legs_before(1, X, V, A, s);
-    legs_legs_rrr(m, 1, 0, 1, s, 0, LEGS(LEGS_OF_rrr), o_rrr);
+    legs_before();
+    legs_legs_rrr(m, 1, 0, 1, 0, LEGS(LEGS_OF_rrr), X, V, A, o_rrr);
     for (size_t leg = 0; leg < LEGS_OF_rrr; ++leg) {
         legs_place_rrr(1, LEGS(LEGS_OF_rrr), o_rrr, leg, leg, leg_force, actuator, t);
     }
@@ -2772,82 +2207,28 @@ INLINE void legs_run(const prepared *m, const real *X, const real *V, const real
 INLINE void potential_before(const prepared *m, size_t w, const real *X, real *s)
 {
     for (size_t k = 0; k < w; ++k) {
-        /* X: named entries */
-        const real X_0 = X[0*w + k];
-        const real t_x = X_0;
-        const real X_1 = X[1*w + k];
-        const real t_y = X_1;
         /* (potential) potential energy */
         const real gravity_x = m->gravity_x;
         const real gravity_y = m->gravity_y;
         const real h_star_x = m->h_star_x;
         const real h_star_y = m->h_star_y;
         const real m_star = m->m_star;
+        const real t_x = X[0*w + k];
+        const real t_y = X[1*w + k];
         const real potential_t = gravity_x*(h_star_x + m_star*t_x) + gravity_y*(h_star_y +
             m_star*t_y);
-        s[0*w + k] = t_x;
-        s[1*w + k] = t_y;
-        s[2*w + k] = potential_t;
+        s[0*w + k] = potential_t;
     }
 }
 
-INLINE void potential_legs_rrr(const prepared *m, size_t w, size_t leg, size_t legs, const real
-    *s, size_t states, size_t count, int add, real *terms, real *o)
+INLINE void potential_legs_rrr(const prepared *m, size_t w, size_t leg, size_t legs, size_t
+    states, size_t count, int add, const real *X, real *terms, real *o)
 {
     for (size_t k = 0; k < count; ++k) {
         const size_t i = leg + legs*k;
         const size_t j = states*k;
-        /* (rrr-S) from the base point to the connection point */
-        const real rrr_base_point_x = m->rrr_base_point_x[i];
-        const real rrr_platform_point_x = m->rrr_platform_point_x[i];
-        const real t_x = s[0*w + j];
-        const real rrr_S_x = rrr_platform_point_x + t_x - rrr_base_point_x;
-        const real rrr_base_point_y = m->rrr_base_point_y[i];
-        const real rrr_platform_point_y = m->rrr_platform_point_y[i];
-        const real t_y = s[1*w + j];
-        const real rrr_S_y = rrr_platform_point_y + t_y - rrr_base_point_y;
-        /* (rrr-Kd_1) projection on the centre's direction, from the distance fixed by the joints beyond
-           joint 1 */
-        const real rrr_Kd_1_t_3 = rrr_S_x*rrr_S_x + rrr_S_y*rrr_S_y;
-        const real rrr_Kd_1_t = m->rrr_Kd_1_t[i];
-        const real rrr_Kd_1_t_2 = m->rrr_Kd_1_t_2[i];
-        const real rrr_Kd_1 = rrr_Kd_1_t + R(0.5)*rrr_Kd_1_t_3 - rrr_Kd_1_t_2;
-        /* (rrr-px_1) component along the reference direction */
-        const real rrr_base_frame_xx = m->rrr_base_frame_xx[i];
-        const real rrr_base_frame_yx = m->rrr_base_frame_yx[i];
-        const real rrr_px_1 = rrr_S_x*rrr_base_frame_xx + rrr_S_y*rrr_base_frame_yx;
-        /* (rrr-py_1) component across the reference direction */
-        const real rrr_base_frame_xy = m->rrr_base_frame_xy[i];
-        const real rrr_base_frame_yy = m->rrr_base_frame_yy[i];
-        const real rrr_py_1 = rrr_S_x*rrr_base_frame_xy + rrr_S_y*rrr_base_frame_yy;
-        /* (rrr-Kc_1) factor of the cosine in the equation of joint 1 */
-        const real rrr_joint2_offset_x = m->rrr_joint2_offset_x[i];
-        const real rrr_Kc_1 = rrr_joint2_offset_x*rrr_px_1;
-        /* (rrr-Ks_1) factor of the sine in the equation of joint 1 */
-        const real rrr_Ks_1 = rrr_joint2_offset_x*rrr_py_1;
-        /* (rrr-rho2_1) squared amplitude */
-        const real rrr_rho2_1 = rrr_Kc_1*rrr_Kc_1 + rrr_Ks_1*rrr_Ks_1;
-        /* (rrr-disc_1) discriminant */
-        const real rrr_disc_1 = rrr_rho2_1 - rrr_Kd_1*rrr_Kd_1;
-        /* (rrr-root_1) root, with the sign of the branch */
-        const real rrr_branch_1 = m->rrr_branch_1[i];
-        const real rrr_root_1 = rrr_branch_1*root(rrr_disc_1);
-        /* (rrr-c_1) cosine of the angle of joint 1 from its reference direction */
-        const real inv_rrr_rho2_1 = 1/rrr_rho2_1;
-        const real rrr_c_1 = inv_rrr_rho2_1*(rrr_Kc_1*rrr_Kd_1 - rrr_Ks_1*rrr_root_1);
-        /* (rrr-s_1) sine of the angle of joint 1 from its reference direction */
-        const real rrr_s_1 = inv_rrr_rho2_1*(rrr_Kc_1*rrr_root_1 + rrr_Kd_1*rrr_Ks_1);
-        /* (rrr-x_2) from the origin of joint 2 to the connection point */
-        const real inv_rrr_size_t = m->inv_rrr_size_t[i];
-        const real rrr_x_2_in_axes1_x = inv_rrr_size_t*rrr_Kd_1*rrr_joint2_offset_x -
-            rrr_joint2_offset_x;
-        /* (rrr-c_2) cosine of the angle of joint 2 from its reference direction */
-        const real inv_rrr_size_t_2 = m->inv_rrr_size_t_2[i];
-        const real rrr_platform_joint_offset_x = m->rrr_platform_joint_offset_x[i];
-        const real rrr_c_2 = inv_rrr_size_t_2*rrr_platform_joint_offset_x*rrr_x_2_in_axes1_x;
-        /* (rrr-s_2) sine of the angle of joint 2 from its reference direction */
-        const real rrr_s_2 =
-            -inv_rrr_size_t*inv_rrr_size_t_2*rrr_joint2_offset_x*rrr_platform_joint_offset_x*rrr_root_1;
+        values_rrr v;
+        stage_rrr_X(m, w, i, j, X, &v);
         /* (potential) potential energy */
         const real rrr_h_1_in_spec1_x = m->rrr_h_1_in_spec1_x[i];
         const real rrr_h_1_in_spec1_y = m->rrr_h_1_in_spec1_y[i];
@@ -2858,18 +2239,18 @@ INLINE void potential_legs_rrr(const prepared *m, size_t w, size_t leg, size_t l
         const real rrr_mu_1_t_2 = m->rrr_mu_1_t_2[i];
         const real rrr_potential_t = m->rrr_potential_t[i];
         const real rrr_potential_t_2 = m->rrr_potential_t_2[i];
-        const real rrr_potential_t_3 = (rrr_c_1*rrr_mu_1_t +
-            rrr_mu_1_t_2*rrr_s_1)*(rrr_h_1_in_spec1_x + rrr_c_2*rrr_h_2_in_spec2_x +
-            rrr_link1_mass*(rrr_c_1*rrr_potential_t + rrr_potential_t_2*rrr_s_1) -
-            rrr_h_2_in_spec2_y*rrr_s_2) + (rrr_c_1*rrr_mu_1_t_2 -
-            rrr_mu_1_t*rrr_s_1)*(rrr_h_1_in_spec1_y + rrr_c_2*rrr_h_2_in_spec2_y +
-            rrr_h_2_in_spec2_x*rrr_s_2 + rrr_link1_mass*(rrr_c_1*rrr_potential_t_2 -
-            rrr_potential_t*rrr_s_1));
+        const real rrr_potential_t_3 = (v.rrr_c_1*rrr_mu_1_t +
+            rrr_mu_1_t_2*v.rrr_s_1)*(rrr_h_1_in_spec1_x + v.rrr_c_2*rrr_h_2_in_spec2_x +
+            rrr_link1_mass*(v.rrr_c_1*rrr_potential_t + rrr_potential_t_2*v.rrr_s_1) -
+            rrr_h_2_in_spec2_y*v.rrr_s_2) + (v.rrr_c_1*rrr_mu_1_t_2 -
+            rrr_mu_1_t*v.rrr_s_1)*(rrr_h_1_in_spec1_y + v.rrr_c_2*rrr_h_2_in_spec2_y +
+            rrr_h_2_in_spec2_x*v.rrr_s_2 + rrr_link1_mass*(v.rrr_c_1*rrr_potential_t_2 -
+            rrr_potential_t*v.rrr_s_1));
         /* (potential) potential energy */
         gather(&terms[0*count + k], add, rrr_potential_t_3);  /* potential_of_legs */
         const real rrr_rho2_1_t = m->rrr_rho2_1_t[i];
-        o[1*count + k] = UNLESS(magnitude(rrr_rho2_1) > TOLERANCE*TOLERANCE*rrr_rho2_1_t);
-        o[0*count + k] = UNLESS(rrr_disc_1 >= 0);
+        o[1*count + k] = UNLESS(magnitude(v.rrr_rho2_1) > TOLERANCE*TOLERANCE*rrr_rho2_1_t);
+        o[0*count + k] = UNLESS(v.rrr_disc_1 >= 0);
     }
 }
 
@@ -2886,7 +2267,7 @@ INLINE void potential_after(size_t w, const real *s, const real *sums, real *pot
     for (size_t k = 0; k < w; ++k) {
         /* (potential) potential energy */
         const real potential_of_legs = sums[0*w + k];
-        const real potential_t = s[2*w + k];
+        const real potential_t = s[0*w + k];
         const real potential_ = -potential_of_legs - potential_t;
         /* (potential) potential energy */
         potential[0*w + k] = potential_;
@@ -2895,12 +2276,10 @@ INLINE void potential_after(size_t w, const real *s, const real *sums, real *pot
 
 INLINE void potential_run(const prepared *m, const real *X, real *potential, verdict *t)
 {
-    real s[3] = {0};
-    real sums[1] = {0};
-    real terms_rrr[LEGS(LEGS_OF_rrr)] = {0};
-    real o_rrr[2*LEGS(LEGS_OF_rrr)] = {0};
+    real s[1] = {0}, sums[1] = {0};
+    real terms_rrr[LEGS(LEGS_OF_rrr)] = {0}, o_rrr[2*LEGS(LEGS_OF_rrr)] = {0};
     potential_before(m, 1, X, s);
-    potential_legs_rrr(m, 1, 0, 1, s, 0, LEGS(LEGS_OF_rrr), 0, terms_rrr, o_rrr);
+    potential_legs_rrr(m, 1, 0, 1, 0, LEGS(LEGS_OF_rrr), 0, X, terms_rrr, o_rrr);
     for (size_t leg = 0; leg < LEGS_OF_rrr; ++leg) {
         potential_place_rrr(1, LEGS(LEGS_OF_rrr), o_rrr, leg, t);
     }
@@ -2911,17 +2290,9 @@ INLINE void potential_run(const prepared *m, const real *X, real *potential, ver
 }
 
 /* ---- condition ---- */
-INLINE void condition_before(const prepared *m, size_t w, const real *X, real *s, real *lengths,
-    verdict *t)
+INLINE void condition_before(const prepared *m, size_t w, real *lengths, verdict *t)
 {
     for (size_t k = 0; k < w; ++k) {
-        /* X: named entries */
-        const real X_0 = X[0*w + k];
-        const real t_x = X_0;
-        const real X_1 = X[1*w + k];
-        const real t_y = X_1;
-        s[0*w + k] = t_x;
-        s[1*w + k] = t_y;
         /* (legs_size) rms size of the legs, taken where the platform points coincide */
         const real legs_size = m->legs_size;
         lengths[1*w + k] = legs_size;
@@ -2929,104 +2300,46 @@ INLINE void condition_before(const prepared *m, size_t w, const real *X, real *s
     }
 }
 
-INLINE void condition_legs_rrr(const prepared *m, size_t w, size_t leg, size_t legs, const real
-    *s, size_t states, size_t count, int add, real *terms, real *o)
+INLINE void condition_legs_rrr(const prepared *m, size_t w, size_t leg, size_t legs, size_t
+    states, size_t count, int add, const real *X, real *terms, real *o)
 {
     for (size_t k = 0; k < count; ++k) {
         const size_t i = leg + legs*k;
         const size_t j = states*k;
-        /* (rrr-S) from the base point to the connection point */
-        const real rrr_base_point_x = m->rrr_base_point_x[i];
-        const real rrr_platform_point_x = m->rrr_platform_point_x[i];
-        const real t_x = s[0*w + j];
-        const real rrr_S_x = rrr_platform_point_x + t_x - rrr_base_point_x;
-        const real rrr_base_point_y = m->rrr_base_point_y[i];
-        const real rrr_platform_point_y = m->rrr_platform_point_y[i];
-        const real t_y = s[1*w + j];
-        const real rrr_S_y = rrr_platform_point_y + t_y - rrr_base_point_y;
-        /* (rrr-Kd_1) projection on the centre's direction, from the distance fixed by the joints beyond
-           joint 1 */
-        const real rrr_Kd_1_t_3 = rrr_S_x*rrr_S_x + rrr_S_y*rrr_S_y;
-        const real rrr_Kd_1_t = m->rrr_Kd_1_t[i];
-        const real rrr_Kd_1_t_2 = m->rrr_Kd_1_t_2[i];
-        const real rrr_Kd_1 = rrr_Kd_1_t + R(0.5)*rrr_Kd_1_t_3 - rrr_Kd_1_t_2;
-        /* (rrr-px_1) component along the reference direction */
-        const real rrr_base_frame_xx = m->rrr_base_frame_xx[i];
-        const real rrr_base_frame_yx = m->rrr_base_frame_yx[i];
-        const real rrr_px_1 = rrr_S_x*rrr_base_frame_xx + rrr_S_y*rrr_base_frame_yx;
-        /* (rrr-py_1) component across the reference direction */
-        const real rrr_base_frame_xy = m->rrr_base_frame_xy[i];
-        const real rrr_base_frame_yy = m->rrr_base_frame_yy[i];
-        const real rrr_py_1 = rrr_S_x*rrr_base_frame_xy + rrr_S_y*rrr_base_frame_yy;
-        /* (rrr-Kc_1) factor of the cosine in the equation of joint 1 */
-        const real rrr_joint2_offset_x = m->rrr_joint2_offset_x[i];
-        const real rrr_Kc_1 = rrr_joint2_offset_x*rrr_px_1;
-        /* (rrr-Ks_1) factor of the sine in the equation of joint 1 */
-        const real rrr_Ks_1 = rrr_joint2_offset_x*rrr_py_1;
-        /* (rrr-rho2_1) squared amplitude */
-        const real rrr_rho2_1 = rrr_Kc_1*rrr_Kc_1 + rrr_Ks_1*rrr_Ks_1;
-        /* (rrr-disc_1) discriminant */
-        const real rrr_disc_1 = rrr_rho2_1 - rrr_Kd_1*rrr_Kd_1;
-        /* (rrr-root_1) root, with the sign of the branch */
-        const real rrr_branch_1 = m->rrr_branch_1[i];
-        const real rrr_root_1 = rrr_branch_1*root(rrr_disc_1);
-        /* (rrr-c_1) cosine of the angle of joint 1 from its reference direction */
-        const real inv_rrr_rho2_1 = 1/rrr_rho2_1;
-        const real rrr_c_1 = inv_rrr_rho2_1*(rrr_Kc_1*rrr_Kd_1 - rrr_Ks_1*rrr_root_1);
-        /* (rrr-s_1) sine of the angle of joint 1 from its reference direction */
-        const real rrr_s_1 = inv_rrr_rho2_1*(rrr_Kc_1*rrr_root_1 + rrr_Kd_1*rrr_Ks_1);
-        /* (rrr-x_2) from the origin of joint 2 to the connection point */
-        const real inv_rrr_size_t = m->inv_rrr_size_t[i];
-        const real rrr_x_2_in_axes1_x = inv_rrr_size_t*rrr_Kd_1*rrr_joint2_offset_x -
-            rrr_joint2_offset_x;
-        /* (rrr-c_2) cosine of the angle of joint 2 from its reference direction */
-        const real inv_rrr_size_t_2 = m->inv_rrr_size_t_2[i];
-        const real rrr_platform_joint_offset_x = m->rrr_platform_joint_offset_x[i];
-        const real rrr_c_2 = inv_rrr_size_t_2*rrr_platform_joint_offset_x*rrr_x_2_in_axes1_x;
-        /* (rrr-s_2) sine of the angle of joint 2 from its reference direction */
-        const real rrr_s_2 =
-            -inv_rrr_size_t*inv_rrr_size_t_2*rrr_joint2_offset_x*rrr_platform_joint_offset_x*rrr_root_1;
-        /* (rrr-r_1) from joint 1 to the connection point, along the links */
-        const real rrr_r_1_in_axes1_x = rrr_joint2_offset_x + rrr_c_2*rrr_platform_joint_offset_x;
-        const real rrr_r_1_in_axes2_y = rrr_c_2*rrr_platform_joint_offset_x*rrr_s_2 -
-            rrr_r_1_in_axes1_x*rrr_s_2;
-        /* (rrr-w_1) reciprocal vector 1 */
-        const real rrr_w_1_t = rrr_c_1*rrr_s_2 + rrr_c_2*rrr_s_1;
-        const real rrr_w_1_t_2 = rrr_c_1*rrr_c_2 - rrr_s_1*rrr_s_2;
-        const real inv_rrr_r_1_in_axes2_y = 1/rrr_r_1_in_axes2_y;
-        const real rrr_w_1_x = -inv_rrr_r_1_in_axes2_y*(rrr_base_frame_yy*rrr_w_1_t_2 -
-            rrr_base_frame_yx*rrr_w_1_t);
-        const real rrr_w_1_y = inv_rrr_r_1_in_axes2_y*(rrr_base_frame_xy*rrr_w_1_t_2 -
-            rrr_base_frame_xx*rrr_w_1_t);
+        values_rrr v;
+        stage_rrr_X(m, w, i, j, X, &v);
+        stage_rrr_H_condition(m, i, &v);
         /* (rrr-G) force at the connection point that balances the leg's inertia and weight along all
            degrees of freedom */
-        const real rrr_pivot_size = magnitude(rrr_rho2_1);
-        const real rrr_pivot_size_2 = magnitude(rrr_r_1_in_axes2_y);
+        const real rrr_pivot_size = magnitude(v.rrr_rho2_1);
+        const real rrr_pivot_size_2 = magnitude(v.rrr_r_1_in_axes2_y);
         const real inv_rrr_rho2_1_t = m->inv_rrr_rho2_1_t[i];
         const real inv_rrr_size = m->inv_rrr_size[i];
         const real rrr_least_pivots = lesser(root(inv_rrr_rho2_1_t*rrr_pivot_size),
             inv_rrr_size*rrr_pivot_size_2);
         /* (spread) rms distance of the platform points from their centroid */
         const real b_c_in_platform_x = m->b_c_in_platform_x;
+        const real rrr_platform_point_x = m->rrr_platform_point_x[i];
         const real rrr_spread_t = b_c_in_platform_x - rrr_platform_point_x;
         const real b_c_in_platform_y = m->b_c_in_platform_y;
+        const real rrr_platform_point_y = m->rrr_platform_point_y[i];
         const real rrr_spread_t_2 = b_c_in_platform_y - rrr_platform_point_y;
         const real rrr_spread_t_3 = rrr_spread_t*rrr_spread_t + rrr_spread_t_2*rrr_spread_t_2;
         /* (spread) rms distance of the platform points from their centroid */
         gather(&terms[0*count + k], add, rrr_spread_t_3);  /* spread_rrr */
         /* (rrr-w_1) reciprocal vector 1 */
-        o[0*count + k] = rrr_w_1_x;
-        o[1*count + k] = rrr_w_1_y;
+        o[0*count + k] = v.rrr_w_1_x;
+        o[1*count + k] = v.rrr_w_1_y;
         /* (rrr-G) force at the connection point that balances the leg's inertia and weight along all
            degrees of freedom */
         o[2*count + k] = rrr_least_pivots;
-        o[3*count + k] = rrr_disc_1;
-        o[6*count + k] = (rrr_w_1_x + rrr_w_1_y) + (rrr_least_pivots + rrr_disc_1);
+        o[3*count + k] = v.rrr_disc_1;
+        o[6*count + k] = (v.rrr_w_1_x + v.rrr_w_1_y) + (rrr_least_pivots + v.rrr_disc_1);
         const real rrr_rho2_1_t = m->rrr_rho2_1_t[i];
         const real rrr_size = m->rrr_size[i];
-        o[5*count + k] = UNLESS(magnitude(rrr_rho2_1) > TOLERANCE*TOLERANCE*rrr_rho2_1_t) +
-            UNLESS(magnitude(rrr_r_1_in_axes2_y) > TOLERANCE*rrr_size);
-        o[4*count + k] = UNLESS(rrr_disc_1 >= 0);
+        o[5*count + k] = UNLESS(magnitude(v.rrr_rho2_1) > TOLERANCE*TOLERANCE*rrr_rho2_1_t) +
+            UNLESS(magnitude(v.rrr_r_1_in_axes2_y) > TOLERANCE*rrr_size);
+        o[4*count + k] = UNLESS(v.rrr_disc_1 >= 0);
     }
 }
 
@@ -3034,7 +2347,7 @@ INLINE void condition_place_rrr(size_t w, size_t count, const real *o, size_t le
     real *H, real *pivots, real *reach, verdict *t)
 {
     for (size_t k = 0; k < w; ++k) {
-        H[(0*NU + leg)*w + k] = o[0*count + first + k];
+        H[leg*w + k] = o[0*count + first + k];
         H[(NU + leg)*w + k] = o[1*count + first + k];
         pivots[leg*w + k] = o[2*count + first + k];
         reach[leg*w + k] = o[3*count + first + k];
@@ -3061,12 +2374,10 @@ INLINE void condition_after(const prepared *m, size_t w, const real *sums, real 
 INLINE void condition_run(const prepared *m, const real *X, real *H, real *lengths, real *pivots,
     real *reach, verdict *t)
 {
-    real s[2] = {0};
     real sums[1] = {0};
-    real terms_rrr[LEGS(LEGS_OF_rrr)] = {0};
-    real o_rrr[7*LEGS(LEGS_OF_rrr)] = {0};
-    condition_before(m, 1, X, s, lengths, t);
-    condition_legs_rrr(m, 1, 0, 1, s, 0, LEGS(LEGS_OF_rrr), 0, terms_rrr, o_rrr);
+    real terms_rrr[LEGS(LEGS_OF_rrr)] = {0}, o_rrr[7*LEGS(LEGS_OF_rrr)] = {0};
+    condition_before(m, 1, lengths, t);
+    condition_legs_rrr(m, 1, 0, 1, 0, LEGS(LEGS_OF_rrr), 0, X, terms_rrr, o_rrr);
     for (size_t leg = 0; leg < LEGS_OF_rrr; ++leg) {
         condition_place_rrr(1, LEGS(LEGS_OF_rrr), o_rrr, leg, leg, H, pivots, reach, t);
     }
@@ -3551,11 +2862,56 @@ INLINE void condition_one(const prepared *m, const real *X, real *sigma_out, rea
     }
 }
 
+INLINE void manipulability_one(const prepared *m, const real *X, real *measure_out, real
+    *isotropy_out, int *code)
+{
+    real H[NV*NU] = {0}, lengths[2] = {0}, pivots[NL] = {0}, reach[NL] = {0}, singular_values_1[NV] =
+        {0}, measure[1] = {0}, isotropy[1] = {0};
+    verdict why;
+    start(1, &why);
+    check(NQ, 1, X, why.invalid);
+    condition_run(m, X, H, lengths, pivots, reach, &why);
+    singular_values(NV, NU, H, singular_values_1);
+    spread(NV, singular_values_1, measure, isotropy);
+    check(1, 1, measure, why.overflow);
+    check(1, 1, isotropy, why.overflow);
+    judge(&why, code);
+    copy(1, measure, measure_out);
+    copy(1, isotropy, isotropy_out);
+    if (*code != OK) {
+        refuse(1, measure_out);
+        refuse(1, isotropy_out);
+    }
+}
+
+INLINE void singularity_distance_one(const prepared *m, const real *X, real *actuators_out, real
+    *legs_out, int *code)
+{
+    real H[NV*NU] = {0}, lengths[2] = {0}, pivots[NL] = {0}, reach[NL] = {0}, singular_values_1[NV] =
+        {0}, spread_1[1] = {0}, actuators[1] = {0}, legs[1] = {0};
+    verdict why;
+    start(1, &why);
+    check(NQ, 1, X, why.invalid);
+    condition_run(m, X, H, lengths, pivots, reach, &why);
+    singular_values(NV, NU, H, singular_values_1);
+    spread(NV, singular_values_1, spread_1, actuators);
+    least_entry(NL, pivots, legs);
+    check(1, 1, actuators, why.overflow);
+    check(1, 1, legs, why.overflow);
+    judge(&why, code);
+    copy(1, actuators, actuators_out);
+    copy(1, legs, legs_out);
+    if (*code != OK) {
+        refuse(1, actuators_out);
+        refuse(1, legs_out);
+    }
+}
+
 static void mismatch_one(const prepared *m, const real *X, const real *q_actuated, real *gap_out,
     int *code)
 {
     static const size_t places_gap[] = {0, 1};
-    real q[NJ] = {0}, take_1[2] = {0}, subtract_1[NU] = {0}, gap[NU] = {0};
+    real q[NJ] = {0}, q_of_inverse_kinematics_from_0[2] = {0}, subtract_1[NU] = {0}, gap[NU] = {0};
     verdict why;
     start(1, &why);
     const real total_in = total(X, NQ) + total(q_actuated, NU);
@@ -3564,9 +2920,9 @@ static void mismatch_one(const prepared *m, const real *X, const real *q_actuate
         check(NU, 1, q_actuated, why.invalid);
     }
     inverse_kinematics_run(m, X, q, &why);
-    take(2, 1, fivebar_revolute_ACTUATED, q, take_1);
+    take(2, 1, fivebar_revolute_ACTUATED, q, q_of_inverse_kinematics_from_0);
     for (size_t i = 0; i < NU; ++i) {
-        subtract_1[i] = q_actuated[i] - take_1[i];
+        subtract_1[i] = q_actuated[i] - q_of_inverse_kinematics_from_0[i];
     }
     for (size_t i = 0; i < NU; ++i) {
         gap[i] = subtract_1[i];
@@ -4001,291 +3357,262 @@ INLINE void interpolate_one(const real *X0, const real *X1, const real *s, real 
 
 /* ---- one state, and batches ---- */
 
-int fivebar_revolute_M(const fivebar_revolute_model *model, const fivebar_revolute_real *X,
-    fivebar_revolute_real *M)
+int fivebar_revolute_M(const prepared *model, const real *X, real *M)
 {
     int code;
     M_one(model, X, M, &code);
     return code;
 }
 
-size_t fivebar_revolute_M_batch(const fivebar_revolute_model *model, size_t n, const
-    fivebar_revolute_real *X, fivebar_revolute_real *M, int *status)
+size_t fivebar_revolute_M_batch(const prepared *model, size_t n, const real *X, real *M, int
+    *status)
 {
-    size_t failed = 0, i = 0;
-    for (; LANES > 1 && i + LANES <= n; i += LANES) {
-        int codes[LANES];
-        M_lanes(model, X + NQ*i, M + NV*NV*i, codes);
-        for (size_t k = 0; k < LANES; ++k) {
+    size_t failed = 0, w;
+    for (size_t i = 0; i < n; i += w) {
+        int codes[LANES] = {INVALID};
+        w = LANES > 1 && i + LANES <= n ? LANES : 1;
+        if (w > 1) {
+            M_lanes(model, X + NQ*i, M + NV*NV*i, codes);
+        }
+        for (size_t k = 0; k < w; ++k) {
             if (codes[k] != OK) {
                 codes[k] = fivebar_revolute_M(model, X + NQ*(i + k), M + NV*NV*(i + k));
             }
         }
-        failed += record(codes, LANES, status ? status + i : NULL);
-    }
-    for (; i < n; ++i) {
-        const int code = fivebar_revolute_M(model, X + NQ*i, M + NV*NV*i);
-        failed += record(&code, 1, status ? status + i : NULL);
+        failed += record(codes, w, status ? status + i : NULL);
     }
     return failed;
 }
 
-int fivebar_revolute_Z(const fivebar_revolute_model *model, const fivebar_revolute_real *X, const
-    fivebar_revolute_real *V, fivebar_revolute_real *Z)
+int fivebar_revolute_Z(const prepared *model, const real *X, const real *V, real *Z)
 {
     int code;
     Z_one(model, X, V, Z, &code);
     return code;
 }
 
-size_t fivebar_revolute_Z_batch(const fivebar_revolute_model *model, size_t n, const
-    fivebar_revolute_real *X, const fivebar_revolute_real *V, fivebar_revolute_real *Z, int
-    *status)
+size_t fivebar_revolute_Z_batch(const prepared *model, size_t n, const real *X, const real *V,
+    real *Z, int *status)
 {
-    size_t failed = 0, i = 0;
-    for (; LANES > 1 && i + LANES <= n; i += LANES) {
-        int codes[LANES];
-        Z_lanes(model, X + NQ*i, V + NV*i, Z + NV*i, codes);
-        for (size_t k = 0; k < LANES; ++k) {
+    size_t failed = 0, w;
+    for (size_t i = 0; i < n; i += w) {
+        int codes[LANES] = {INVALID};
+        w = LANES > 1 && i + LANES <= n ? LANES : 1;
+        if (w > 1) {
+            Z_lanes(model, X + NQ*i, V + NV*i, Z + NV*i, codes);
+        }
+        for (size_t k = 0; k < w; ++k) {
             if (codes[k] != OK) {
                 codes[k] = fivebar_revolute_Z(model, X + NQ*(i + k), V + NV*(i + k), Z + NV*(i + k));
             }
         }
-        failed += record(codes, LANES, status ? status + i : NULL);
-    }
-    for (; i < n; ++i) {
-        const int code = fivebar_revolute_Z(model, X + NQ*i, V + NV*i, Z + NV*i);
-        failed += record(&code, 1, status ? status + i : NULL);
+        failed += record(codes, w, status ? status + i : NULL);
     }
     return failed;
 }
 
-int fivebar_revolute_H(const fivebar_revolute_model *model, const fivebar_revolute_real *X,
-    fivebar_revolute_real *H)
+int fivebar_revolute_H(const prepared *model, const real *X, real *H)
 {
     int code;
     H_one(model, X, H, &code);
     return code;
 }
 
-size_t fivebar_revolute_H_batch(const fivebar_revolute_model *model, size_t n, const
-    fivebar_revolute_real *X, fivebar_revolute_real *H, int *status)
+size_t fivebar_revolute_H_batch(const prepared *model, size_t n, const real *X, real *H, int
+    *status)
 {
-    size_t failed = 0, i = 0;
-    for (; LANES > 1 && i + LANES <= n; i += LANES) {
-        int codes[LANES];
-        H_lanes(model, X + NQ*i, H + NV*NU*i, codes);
-        for (size_t k = 0; k < LANES; ++k) {
+    size_t failed = 0, w;
+    for (size_t i = 0; i < n; i += w) {
+        int codes[LANES] = {INVALID};
+        w = LANES > 1 && i + LANES <= n ? LANES : 1;
+        if (w > 1) {
+            H_lanes(model, X + NQ*i, H + NV*NU*i, codes);
+        }
+        for (size_t k = 0; k < w; ++k) {
             if (codes[k] != OK) {
                 codes[k] = fivebar_revolute_H(model, X + NQ*(i + k), H + NV*NU*(i + k));
             }
         }
-        failed += record(codes, LANES, status ? status + i : NULL);
-    }
-    for (; i < n; ++i) {
-        const int code = fivebar_revolute_H(model, X + NQ*i, H + NV*NU*i);
-        failed += record(&code, 1, status ? status + i : NULL);
+        failed += record(codes, w, status ? status + i : NULL);
     }
     return failed;
 }
 
-int fivebar_revolute_inverse_kinematics(const fivebar_revolute_model *model, const
-    fivebar_revolute_real *X, fivebar_revolute_real *q)
+int fivebar_revolute_inverse_kinematics(const prepared *model, const real *X, real *q)
 {
     int code;
     inverse_kinematics_one(model, X, q, &code);
     return code;
 }
 
-size_t fivebar_revolute_inverse_kinematics_batch(const fivebar_revolute_model *model, size_t n,
-    const fivebar_revolute_real *X, fivebar_revolute_real *q, int *status)
+size_t fivebar_revolute_inverse_kinematics_batch(const prepared *model, size_t n, const real *X,
+    real *q, int *status)
 {
-    size_t failed = 0, i = 0;
-    for (; LANES > 1 && i + LANES <= n; i += LANES) {
-        int codes[LANES];
-        inverse_kinematics_lanes(model, X + NQ*i, q + NJ*i, codes);
-        for (size_t k = 0; k < LANES; ++k) {
+    size_t failed = 0, w;
+    for (size_t i = 0; i < n; i += w) {
+        int codes[LANES] = {INVALID};
+        w = LANES > 1 && i + LANES <= n ? LANES : 1;
+        if (w > 1) {
+            inverse_kinematics_lanes(model, X + NQ*i, q + NJ*i, codes);
+        }
+        for (size_t k = 0; k < w; ++k) {
             if (codes[k] != OK) {
                 codes[k] = fivebar_revolute_inverse_kinematics(model, X + NQ*(i + k), q + NJ*(i + k));
             }
         }
-        failed += record(codes, LANES, status ? status + i : NULL);
-    }
-    for (; i < n; ++i) {
-        const int code = fivebar_revolute_inverse_kinematics(model, X + NQ*i, q + NJ*i);
-        failed += record(&code, 1, status ? status + i : NULL);
+        failed += record(codes, w, status ? status + i : NULL);
     }
     return failed;
 }
 
-int fivebar_revolute_joint_rates(const fivebar_revolute_model *model, const fivebar_revolute_real
-    *X, const fivebar_revolute_real *V, fivebar_revolute_real *rates)
+int fivebar_revolute_joint_rates(const prepared *model, const real *X, const real *V, real *rates)
 {
     int code;
     joint_rates_one(model, X, V, rates, &code);
     return code;
 }
 
-size_t fivebar_revolute_joint_rates_batch(const fivebar_revolute_model *model, size_t n, const
-    fivebar_revolute_real *X, const fivebar_revolute_real *V, fivebar_revolute_real *rates, int
-    *status)
+size_t fivebar_revolute_joint_rates_batch(const prepared *model, size_t n, const real *X, const
+    real *V, real *rates, int *status)
 {
-    size_t failed = 0, i = 0;
-    for (; LANES > 1 && i + LANES <= n; i += LANES) {
-        int codes[LANES];
-        joint_rates_lanes(model, X + NQ*i, V + NV*i, rates + NJ*i, codes);
-        for (size_t k = 0; k < LANES; ++k) {
+    size_t failed = 0, w;
+    for (size_t i = 0; i < n; i += w) {
+        int codes[LANES] = {INVALID};
+        w = LANES > 1 && i + LANES <= n ? LANES : 1;
+        if (w > 1) {
+            joint_rates_lanes(model, X + NQ*i, V + NV*i, rates + NJ*i, codes);
+        }
+        for (size_t k = 0; k < w; ++k) {
             if (codes[k] != OK) {
                 codes[k] = fivebar_revolute_joint_rates(model, X + NQ*(i + k), V + NV*(i + k), rates + NJ*(i +
                     k));
             }
         }
-        failed += record(codes, LANES, status ? status + i : NULL);
-    }
-    for (; i < n; ++i) {
-        const int code = fivebar_revolute_joint_rates(model, X + NQ*i, V + NV*i, rates + NJ*i);
-        failed += record(&code, 1, status ? status + i : NULL);
+        failed += record(codes, w, status ? status + i : NULL);
     }
     return failed;
 }
 
-int fivebar_revolute_joint_accelerations(const fivebar_revolute_model *model, const
-    fivebar_revolute_real *X, const fivebar_revolute_real *V, const fivebar_revolute_real *A,
-    fivebar_revolute_real *accelerations)
+int fivebar_revolute_joint_accelerations(const prepared *model, const real *X, const real *V,
+    const real *A, real *accelerations)
 {
     int code;
     joint_accelerations_one(model, X, V, A, accelerations, &code);
     return code;
 }
 
-size_t fivebar_revolute_joint_accelerations_batch(const fivebar_revolute_model *model, size_t n,
-    const fivebar_revolute_real *X, const fivebar_revolute_real *V, const fivebar_revolute_real
-    *A, fivebar_revolute_real *accelerations, int *status)
+size_t fivebar_revolute_joint_accelerations_batch(const prepared *model, size_t n, const real *X,
+    const real *V, const real *A, real *accelerations, int *status)
 {
-    size_t failed = 0, i = 0;
-    for (; LANES > 1 && i + LANES <= n; i += LANES) {
-        int codes[LANES];
-        joint_accelerations_lanes(model, X + NQ*i, V + NV*i, A + NV*i, accelerations + NJ*i, codes);
-        for (size_t k = 0; k < LANES; ++k) {
+    size_t failed = 0, w;
+    for (size_t i = 0; i < n; i += w) {
+        int codes[LANES] = {INVALID};
+        w = LANES > 1 && i + LANES <= n ? LANES : 1;
+        if (w > 1) {
+            joint_accelerations_lanes(model, X + NQ*i, V + NV*i, A + NV*i, accelerations + NJ*i, codes);
+        }
+        for (size_t k = 0; k < w; ++k) {
             if (codes[k] != OK) {
                 codes[k] = fivebar_revolute_joint_accelerations(model, X + NQ*(i + k), V + NV*(i + k), A + NV*(i +
                     k), accelerations + NJ*(i + k));
             }
         }
-        failed += record(codes, LANES, status ? status + i : NULL);
-    }
-    for (; i < n; ++i) {
-        const int code = fivebar_revolute_joint_accelerations(model, X + NQ*i, V + NV*i, A + NV*i,
-            accelerations + NJ*i);
-        failed += record(&code, 1, status ? status + i : NULL);
+        failed += record(codes, w, status ? status + i : NULL);
     }
     return failed;
 }
 
-int fivebar_revolute_dynamics(const fivebar_revolute_model *model, const fivebar_revolute_real *X,
-    const fivebar_revolute_real *V, fivebar_revolute_real *M, fivebar_revolute_real *Z,
-    fivebar_revolute_real *H)
+int fivebar_revolute_dynamics(const prepared *model, const real *X, const real *V, real *M, real
+    *Z, real *H)
 {
     int code;
     dynamics_one(model, X, V, M, Z, H, &code);
     return code;
 }
 
-size_t fivebar_revolute_dynamics_batch(const fivebar_revolute_model *model, size_t n, const
-    fivebar_revolute_real *X, const fivebar_revolute_real *V, fivebar_revolute_real *M,
-    fivebar_revolute_real *Z, fivebar_revolute_real *H, int *status)
+size_t fivebar_revolute_dynamics_batch(const prepared *model, size_t n, const real *X, const real
+    *V, real *M, real *Z, real *H, int *status)
 {
-    size_t failed = 0, i = 0;
-    for (; LANES > 1 && i + LANES <= n; i += LANES) {
-        int codes[LANES];
-        dynamics_lanes(model, X + NQ*i, V + NV*i, M + NV*NV*i, Z + NV*i, H + NV*NU*i, codes);
-        for (size_t k = 0; k < LANES; ++k) {
+    size_t failed = 0, w;
+    for (size_t i = 0; i < n; i += w) {
+        int codes[LANES] = {INVALID};
+        w = LANES > 1 && i + LANES <= n ? LANES : 1;
+        if (w > 1) {
+            dynamics_lanes(model, X + NQ*i, V + NV*i, M + NV*NV*i, Z + NV*i, H + NV*NU*i, codes);
+        }
+        for (size_t k = 0; k < w; ++k) {
             if (codes[k] != OK) {
                 codes[k] = fivebar_revolute_dynamics(model, X + NQ*(i + k), V + NV*(i + k), M + NV*NV*(i + k), Z +
                     NV*(i + k), H + NV*NU*(i + k));
             }
         }
-        failed += record(codes, LANES, status ? status + i : NULL);
-    }
-    for (; i < n; ++i) {
-        const int code = fivebar_revolute_dynamics(model, X + NQ*i, V + NV*i, M + NV*NV*i, Z + NV*i, H +
-            NV*NU*i);
-        failed += record(&code, 1, status ? status + i : NULL);
+        failed += record(codes, w, status ? status + i : NULL);
     }
     return failed;
 }
 
-int fivebar_revolute_inverse_dynamics(const fivebar_revolute_model *model, const
-    fivebar_revolute_real *X, const fivebar_revolute_real *V, const fivebar_revolute_real *A,
-    const fivebar_revolute_real *wrench, fivebar_revolute_real *tau)
+int fivebar_revolute_inverse_dynamics(const prepared *model, const real *X, const real *V, const
+    real *A, const real *wrench, real *tau)
 {
     int code;
     inverse_dynamics_one(model, X, V, A, wrench, tau, &code);
     return code;
 }
 
-size_t fivebar_revolute_inverse_dynamics_batch(const fivebar_revolute_model *model, size_t n,
-    const fivebar_revolute_real *X, const fivebar_revolute_real *V, const fivebar_revolute_real
-    *A, const fivebar_revolute_real *wrench, fivebar_revolute_real *tau, int *status)
+size_t fivebar_revolute_inverse_dynamics_batch(const prepared *model, size_t n, const real *X,
+    const real *V, const real *A, const real *wrench, real *tau, int *status)
 {
-    size_t failed = 0, i = 0;
-    for (; LANES > 1 && i + LANES <= n; i += LANES) {
-        int codes[LANES];
-        inverse_dynamics_lanes(model, X + NQ*i, V + NV*i, A + NV*i, wrench ? wrench + NW*i : NULL, tau +
-            NU*i, codes);
-        for (size_t k = 0; k < LANES; ++k) {
+    size_t failed = 0, w;
+    for (size_t i = 0; i < n; i += w) {
+        int codes[LANES] = {INVALID};
+        w = LANES > 1 && i + LANES <= n ? LANES : 1;
+        if (w > 1) {
+            inverse_dynamics_lanes(model, X + NQ*i, V + NV*i, A + NV*i, wrench ? wrench + NW*i : NULL, tau +
+                NU*i, codes);
+        }
+        for (size_t k = 0; k < w; ++k) {
             if (codes[k] != OK) {
                 codes[k] = fivebar_revolute_inverse_dynamics(model, X + NQ*(i + k), V + NV*(i + k), A + NV*(i +
                     k), wrench ? wrench + NW*(i + k) : NULL, tau + NU*(i + k));
             }
         }
-        failed += record(codes, LANES, status ? status + i : NULL);
-    }
-    for (; i < n; ++i) {
-        const int code = fivebar_revolute_inverse_dynamics(model, X + NQ*i, V + NV*i, A + NV*i, wrench ?
-            wrench + NW*i : NULL, tau + NU*i);
-        failed += record(&code, 1, status ? status + i : NULL);
+        failed += record(codes, w, status ? status + i : NULL);
     }
     return failed;
 }
 
-int fivebar_revolute_forward_dynamics(const fivebar_revolute_model *model, const
-    fivebar_revolute_real *X, const fivebar_revolute_real *V, const fivebar_revolute_real *tau,
-    const fivebar_revolute_real *wrench, fivebar_revolute_real *A)
+int fivebar_revolute_forward_dynamics(const prepared *model, const real *X, const real *V, const
+    real *tau, const real *wrench, real *A)
 {
     int code;
     forward_dynamics_one(model, X, V, tau, wrench, A, &code);
     return code;
 }
 
-size_t fivebar_revolute_forward_dynamics_batch(const fivebar_revolute_model *model, size_t n,
-    const fivebar_revolute_real *X, const fivebar_revolute_real *V, const fivebar_revolute_real
-    *tau, const fivebar_revolute_real *wrench, fivebar_revolute_real *A, int *status)
+size_t fivebar_revolute_forward_dynamics_batch(const prepared *model, size_t n, const real *X,
+    const real *V, const real *tau, const real *wrench, real *A, int *status)
 {
-    size_t failed = 0, i = 0;
-    for (; LANES > 1 && i + LANES <= n; i += LANES) {
-        int codes[LANES];
-        forward_dynamics_lanes(model, X + NQ*i, V + NV*i, tau + NU*i, wrench ? wrench + NW*i : NULL, A +
-            NV*i, codes);
-        for (size_t k = 0; k < LANES; ++k) {
+    size_t failed = 0, w;
+    for (size_t i = 0; i < n; i += w) {
+        int codes[LANES] = {INVALID};
+        w = LANES > 1 && i + LANES <= n ? LANES : 1;
+        if (w > 1) {
+            forward_dynamics_lanes(model, X + NQ*i, V + NV*i, tau + NU*i, wrench ? wrench + NW*i : NULL, A +
+                NV*i, codes);
+        }
+        for (size_t k = 0; k < w; ++k) {
             if (codes[k] != OK) {
                 codes[k] = fivebar_revolute_forward_dynamics(model, X + NQ*(i + k), V + NV*(i + k), tau + NU*(i +
                     k), wrench ? wrench + NW*(i + k) : NULL, A + NV*(i + k));
             }
         }
-        failed += record(codes, LANES, status ? status + i : NULL);
-    }
-    for (; i < n; ++i) {
-        const int code = fivebar_revolute_forward_dynamics(model, X + NQ*i, V + NV*i, tau + NU*i, wrench ?
-            wrench + NW*i : NULL, A + NV*i);
-        failed += record(&code, 1, status ? status + i : NULL);
+        failed += record(codes, w, status ? status + i : NULL);
     }
     return failed;
 }
 
-int fivebar_revolute_complete_acceleration(const fivebar_revolute_model *model, const
-    fivebar_revolute_real *X, const fivebar_revolute_real *V, const fivebar_revolute_real *A,
-    const fivebar_revolute_real *wrench, fivebar_revolute_real *completed)
+int fivebar_revolute_complete_acceleration(const prepared *model, const real *X, const real *V,
+    const real *A, const real *wrench, real *completed)
 {
     int code;
     (void)model;
@@ -4296,12 +3623,11 @@ int fivebar_revolute_complete_acceleration(const fivebar_revolute_model *model, 
     return code;
 }
 
-size_t fivebar_revolute_complete_acceleration_batch(const fivebar_revolute_model *model, size_t n,
-    const fivebar_revolute_real *X, const fivebar_revolute_real *V, const fivebar_revolute_real
-    *A, const fivebar_revolute_real *wrench, fivebar_revolute_real *completed, int *status)
+size_t fivebar_revolute_complete_acceleration_batch(const prepared *model, size_t n, const real
+    *X, const real *V, const real *A, const real *wrench, real *completed, int *status)
 {
-    size_t failed = 0, i = 0;
-    for (; i < n; ++i) {
+    size_t failed = 0;
+    for (size_t i = 0; i < n; ++i) {
         const int code = fivebar_revolute_complete_acceleration(model, X + NQ*i, V + NV*i, A + NV*i,
             wrench ? wrench + NW*i : NULL, completed + NV*i);
         failed += record(&code, 1, status ? status + i : NULL);
@@ -4309,21 +3635,19 @@ size_t fivebar_revolute_complete_acceleration_batch(const fivebar_revolute_model
     return failed;
 }
 
-int fivebar_revolute_leg_reactions(const fivebar_revolute_model *model, const
-    fivebar_revolute_real *X, const fivebar_revolute_real *V, const fivebar_revolute_real *A,
-    const fivebar_revolute_real *wrench, fivebar_revolute_real *forces)
+int fivebar_revolute_leg_reactions(const prepared *model, const real *X, const real *V, const real
+    *A, const real *wrench, real *forces)
 {
     int code;
     leg_reactions_one(model, X, V, A, wrench, forces, &code);
     return code;
 }
 
-size_t fivebar_revolute_leg_reactions_batch(const fivebar_revolute_model *model, size_t n, const
-    fivebar_revolute_real *X, const fivebar_revolute_real *V, const fivebar_revolute_real *A,
-    const fivebar_revolute_real *wrench, fivebar_revolute_real *forces, int *status)
+size_t fivebar_revolute_leg_reactions_batch(const prepared *model, size_t n, const real *X, const
+    real *V, const real *A, const real *wrench, real *forces, int *status)
 {
-    size_t failed = 0, i = 0;
-    for (; i < n; ++i) {
+    size_t failed = 0;
+    for (size_t i = 0; i < n; ++i) {
         const int code = fivebar_revolute_leg_reactions(model, X + NQ*i, V + NV*i, A + NV*i, wrench ?
             wrench + NW*i : NULL, forces + 6*i);
         failed += record(&code, 1, status ? status + i : NULL);
@@ -4331,61 +3655,94 @@ size_t fivebar_revolute_leg_reactions_batch(const fivebar_revolute_model *model,
     return failed;
 }
 
-int fivebar_revolute_energy(const fivebar_revolute_model *model, const fivebar_revolute_real *X,
-    const fivebar_revolute_real *V, fivebar_revolute_real *kinetic, fivebar_revolute_real
-    *potential)
+int fivebar_revolute_energy(const prepared *model, const real *X, const real *V, real *kinetic,
+    real *potential)
 {
     int code;
     energy_one(model, X, V, kinetic, potential, &code);
     return code;
 }
 
-size_t fivebar_revolute_energy_batch(const fivebar_revolute_model *model, size_t n, const
-    fivebar_revolute_real *X, const fivebar_revolute_real *V, fivebar_revolute_real *kinetic,
-    fivebar_revolute_real *potential, int *status)
+size_t fivebar_revolute_energy_batch(const prepared *model, size_t n, const real *X, const real
+    *V, real *kinetic, real *potential, int *status)
 {
-    size_t failed = 0, i = 0;
-    for (; i < n; ++i) {
+    size_t failed = 0;
+    for (size_t i = 0; i < n; ++i) {
         const int code = fivebar_revolute_energy(model, X + NQ*i, V + NV*i, kinetic + i, potential + i);
         failed += record(&code, 1, status ? status + i : NULL);
     }
     return failed;
 }
 
-int fivebar_revolute_condition(const fivebar_revolute_model *model, const fivebar_revolute_real
-    *X, fivebar_revolute_real *sigma, fivebar_revolute_real *legs)
+int fivebar_revolute_condition(const prepared *model, const real *X, real *sigma, real *legs)
 {
     int code;
     condition_one(model, X, sigma, legs, &code);
     return code;
 }
 
-size_t fivebar_revolute_condition_batch(const fivebar_revolute_model *model, size_t n, const
-    fivebar_revolute_real *X, fivebar_revolute_real *sigma, fivebar_revolute_real *legs, int
-    *status)
+size_t fivebar_revolute_condition_batch(const prepared *model, size_t n, const real *X, real
+    *sigma, real *legs, int *status)
 {
-    size_t failed = 0, i = 0;
-    for (; i < n; ++i) {
+    size_t failed = 0;
+    for (size_t i = 0; i < n; ++i) {
         const int code = fivebar_revolute_condition(model, X + NQ*i, sigma + 2*i, legs + 2*i);
         failed += record(&code, 1, status ? status + i : NULL);
     }
     return failed;
 }
 
-int fivebar_revolute_forward_kinematics(const fivebar_revolute_model *model, const
-    fivebar_revolute_real *q_actuated, const fivebar_revolute_real *X0, fivebar_revolute_real *X)
+int fivebar_revolute_manipulability(const prepared *model, const real *X, real *measure, real
+    *isotropy)
+{
+    int code;
+    manipulability_one(model, X, measure, isotropy, &code);
+    return code;
+}
+
+size_t fivebar_revolute_manipulability_batch(const prepared *model, size_t n, const real *X, real
+    *measure, real *isotropy, int *status)
+{
+    size_t failed = 0;
+    for (size_t i = 0; i < n; ++i) {
+        const int code = fivebar_revolute_manipulability(model, X + NQ*i, measure + i, isotropy + i);
+        failed += record(&code, 1, status ? status + i : NULL);
+    }
+    return failed;
+}
+
+int fivebar_revolute_singularity_distance(const prepared *model, const real *X, real *actuators,
+    real *legs)
+{
+    int code;
+    singularity_distance_one(model, X, actuators, legs, &code);
+    return code;
+}
+
+size_t fivebar_revolute_singularity_distance_batch(const prepared *model, size_t n, const real *X,
+    real *actuators, real *legs, int *status)
+{
+    size_t failed = 0;
+    for (size_t i = 0; i < n; ++i) {
+        const int code = fivebar_revolute_singularity_distance(model, X + NQ*i, actuators + i, legs + i);
+        failed += record(&code, 1, status ? status + i : NULL);
+    }
+    return failed;
+}
+
+int fivebar_revolute_forward_kinematics(const prepared *model, const real *q_actuated, const real
+    *X0, real *X)
 {
     int code;
     forward_kinematics_one(model, q_actuated, X0, X, &code);
     return code;
 }
 
-size_t fivebar_revolute_forward_kinematics_batch(const fivebar_revolute_model *model, size_t n,
-    const fivebar_revolute_real *q_actuated, const fivebar_revolute_real *X0,
-    fivebar_revolute_real *X, int *status)
+size_t fivebar_revolute_forward_kinematics_batch(const prepared *model, size_t n, const real
+    *q_actuated, const real *X0, real *X, int *status)
 {
-    size_t failed = 0, i = 0;
-    for (; i < n; ++i) {
+    size_t failed = 0;
+    for (size_t i = 0; i < n; ++i) {
         const int code = fivebar_revolute_forward_kinematics(model, q_actuated + NU*i, X0 + NQ*i, X +
             NQ*i);
         failed += record(&code, 1, status ? status + i : NULL);
@@ -4393,8 +3750,8 @@ size_t fivebar_revolute_forward_kinematics_batch(const fivebar_revolute_model *m
     return failed;
 }
 
-int fivebar_revolute_dissipation(const fivebar_revolute_model *model, const fivebar_revolute_real
-    *X, const fivebar_revolute_real *V, fivebar_revolute_real *dissipation)
+int fivebar_revolute_dissipation(const prepared *model, const real *X, const real *V, real
+    *dissipation)
 {
     int code;
     (void)model;
@@ -4403,284 +3760,261 @@ int fivebar_revolute_dissipation(const fivebar_revolute_model *model, const five
     return code;
 }
 
-size_t fivebar_revolute_dissipation_batch(const fivebar_revolute_model *model, size_t n, const
-    fivebar_revolute_real *X, const fivebar_revolute_real *V, fivebar_revolute_real *dissipation,
-    int *status)
+size_t fivebar_revolute_dissipation_batch(const prepared *model, size_t n, const real *X, const
+    real *V, real *dissipation, int *status)
 {
-    size_t failed = 0, i = 0;
-    for (; i < n; ++i) {
+    size_t failed = 0;
+    for (size_t i = 0; i < n; ++i) {
         const int code = fivebar_revolute_dissipation(model, X + NQ*i, V + NV*i, dissipation + i);
         failed += record(&code, 1, status ? status + i : NULL);
     }
     return failed;
 }
 
-int fivebar_revolute_momentum(const fivebar_revolute_model *model, const fivebar_revolute_real *X,
-    const fivebar_revolute_real *V, fivebar_revolute_real *momentum)
+int fivebar_revolute_momentum(const prepared *model, const real *X, const real *V, real *momentum)
 {
     int code;
     momentum_one(model, X, V, momentum, &code);
     return code;
 }
 
-size_t fivebar_revolute_momentum_batch(const fivebar_revolute_model *model, size_t n, const
-    fivebar_revolute_real *X, const fivebar_revolute_real *V, fivebar_revolute_real *momentum, int
-    *status)
+size_t fivebar_revolute_momentum_batch(const prepared *model, size_t n, const real *X, const real
+    *V, real *momentum, int *status)
 {
-    size_t failed = 0, i = 0;
-    for (; LANES > 1 && i + LANES <= n; i += LANES) {
-        int codes[LANES];
-        momentum_lanes(model, X + NQ*i, V + NV*i, momentum + NV*i, codes);
-        for (size_t k = 0; k < LANES; ++k) {
+    size_t failed = 0, w;
+    for (size_t i = 0; i < n; i += w) {
+        int codes[LANES] = {INVALID};
+        w = LANES > 1 && i + LANES <= n ? LANES : 1;
+        if (w > 1) {
+            momentum_lanes(model, X + NQ*i, V + NV*i, momentum + NV*i, codes);
+        }
+        for (size_t k = 0; k < w; ++k) {
             if (codes[k] != OK) {
                 codes[k] = fivebar_revolute_momentum(model, X + NQ*(i + k), V + NV*(i + k), momentum + NV*(i +
                     k));
             }
         }
-        failed += record(codes, LANES, status ? status + i : NULL);
-    }
-    for (; i < n; ++i) {
-        const int code = fivebar_revolute_momentum(model, X + NQ*i, V + NV*i, momentum + NV*i);
-        failed += record(&code, 1, status ? status + i : NULL);
+        failed += record(codes, w, status ? status + i : NULL);
     }
     return failed;
 }
 
-int fivebar_revolute_joint_margins(const fivebar_revolute_model *model, const
-    fivebar_revolute_real *X, fivebar_revolute_real *margins)
+int fivebar_revolute_joint_margins(const prepared *model, const real *X, real *margins)
 {
     int code;
     joint_margins_one(model, X, margins, &code);
     return code;
 }
 
-size_t fivebar_revolute_joint_margins_batch(const fivebar_revolute_model *model, size_t n, const
-    fivebar_revolute_real *X, fivebar_revolute_real *margins, int *status)
+size_t fivebar_revolute_joint_margins_batch(const prepared *model, size_t n, const real *X, real
+    *margins, int *status)
 {
-    size_t failed = 0, i = 0;
-    for (; LANES > 1 && i + LANES <= n; i += LANES) {
-        int codes[LANES];
-        joint_margins_lanes(model, X + NQ*i, margins + NJ*i, codes);
-        for (size_t k = 0; k < LANES; ++k) {
+    size_t failed = 0, w;
+    for (size_t i = 0; i < n; i += w) {
+        int codes[LANES] = {INVALID};
+        w = LANES > 1 && i + LANES <= n ? LANES : 1;
+        if (w > 1) {
+            joint_margins_lanes(model, X + NQ*i, margins + NJ*i, codes);
+        }
+        for (size_t k = 0; k < w; ++k) {
             if (codes[k] != OK) {
                 codes[k] = fivebar_revolute_joint_margins(model, X + NQ*(i + k), margins + NJ*(i + k));
             }
         }
-        failed += record(codes, LANES, status ? status + i : NULL);
-    }
-    for (; i < n; ++i) {
-        const int code = fivebar_revolute_joint_margins(model, X + NQ*i, margins + NJ*i);
-        failed += record(&code, 1, status ? status + i : NULL);
+        failed += record(codes, w, status ? status + i : NULL);
     }
     return failed;
 }
 
-int fivebar_revolute_within_limits(const fivebar_revolute_model *model, const
-    fivebar_revolute_real *X, fivebar_revolute_real *within)
+int fivebar_revolute_within_limits(const prepared *model, const real *X, real *within)
 {
     int code;
     within_limits_one(model, X, within, &code);
     return code;
 }
 
-size_t fivebar_revolute_within_limits_batch(const fivebar_revolute_model *model, size_t n, const
-    fivebar_revolute_real *X, fivebar_revolute_real *within, int *status)
+size_t fivebar_revolute_within_limits_batch(const prepared *model, size_t n, const real *X, real
+    *within, int *status)
 {
-    size_t failed = 0, i = 0;
-    for (; LANES > 1 && i + LANES <= n; i += LANES) {
-        int codes[LANES];
-        within_limits_lanes(model, X + NQ*i, within + i, codes);
-        for (size_t k = 0; k < LANES; ++k) {
+    size_t failed = 0, w;
+    for (size_t i = 0; i < n; i += w) {
+        int codes[LANES] = {INVALID};
+        w = LANES > 1 && i + LANES <= n ? LANES : 1;
+        if (w > 1) {
+            within_limits_lanes(model, X + NQ*i, within + i, codes);
+        }
+        for (size_t k = 0; k < w; ++k) {
             if (codes[k] != OK) {
                 codes[k] = fivebar_revolute_within_limits(model, X + NQ*(i + k), within + (i + k));
             }
         }
-        failed += record(codes, LANES, status ? status + i : NULL);
-    }
-    for (; i < n; ++i) {
-        const int code = fivebar_revolute_within_limits(model, X + NQ*i, within + i);
-        failed += record(&code, 1, status ? status + i : NULL);
+        failed += record(codes, w, status ? status + i : NULL);
     }
     return failed;
 }
 
-int fivebar_revolute_actuator_positions(const fivebar_revolute_model *model, const
-    fivebar_revolute_real *X, fivebar_revolute_real *q)
+int fivebar_revolute_actuator_positions(const prepared *model, const real *X, real *q)
 {
     int code;
     actuator_positions_one(model, X, q, &code);
     return code;
 }
 
-size_t fivebar_revolute_actuator_positions_batch(const fivebar_revolute_model *model, size_t n,
-    const fivebar_revolute_real *X, fivebar_revolute_real *q, int *status)
+size_t fivebar_revolute_actuator_positions_batch(const prepared *model, size_t n, const real *X,
+    real *q, int *status)
 {
-    size_t failed = 0, i = 0;
-    for (; LANES > 1 && i + LANES <= n; i += LANES) {
-        int codes[LANES];
-        actuator_positions_lanes(model, X + NQ*i, q + NU*i, codes);
-        for (size_t k = 0; k < LANES; ++k) {
+    size_t failed = 0, w;
+    for (size_t i = 0; i < n; i += w) {
+        int codes[LANES] = {INVALID};
+        w = LANES > 1 && i + LANES <= n ? LANES : 1;
+        if (w > 1) {
+            actuator_positions_lanes(model, X + NQ*i, q + NU*i, codes);
+        }
+        for (size_t k = 0; k < w; ++k) {
             if (codes[k] != OK) {
                 codes[k] = fivebar_revolute_actuator_positions(model, X + NQ*(i + k), q + NU*(i + k));
             }
         }
-        failed += record(codes, LANES, status ? status + i : NULL);
-    }
-    for (; i < n; ++i) {
-        const int code = fivebar_revolute_actuator_positions(model, X + NQ*i, q + NU*i);
-        failed += record(&code, 1, status ? status + i : NULL);
+        failed += record(codes, w, status ? status + i : NULL);
     }
     return failed;
 }
 
-int fivebar_revolute_actuator_rates(const fivebar_revolute_model *model, const
-    fivebar_revolute_real *X, const fivebar_revolute_real *V, fivebar_revolute_real *rates)
+int fivebar_revolute_actuator_rates(const prepared *model, const real *X, const real *V, real
+    *rates)
 {
     int code;
     actuator_rates_one(model, X, V, rates, &code);
     return code;
 }
 
-size_t fivebar_revolute_actuator_rates_batch(const fivebar_revolute_model *model, size_t n, const
-    fivebar_revolute_real *X, const fivebar_revolute_real *V, fivebar_revolute_real *rates, int
-    *status)
+size_t fivebar_revolute_actuator_rates_batch(const prepared *model, size_t n, const real *X, const
+    real *V, real *rates, int *status)
 {
-    size_t failed = 0, i = 0;
-    for (; LANES > 1 && i + LANES <= n; i += LANES) {
-        int codes[LANES];
-        actuator_rates_lanes(model, X + NQ*i, V + NV*i, rates + NU*i, codes);
-        for (size_t k = 0; k < LANES; ++k) {
+    size_t failed = 0, w;
+    for (size_t i = 0; i < n; i += w) {
+        int codes[LANES] = {INVALID};
+        w = LANES > 1 && i + LANES <= n ? LANES : 1;
+        if (w > 1) {
+            actuator_rates_lanes(model, X + NQ*i, V + NV*i, rates + NU*i, codes);
+        }
+        for (size_t k = 0; k < w; ++k) {
             if (codes[k] != OK) {
                 codes[k] = fivebar_revolute_actuator_rates(model, X + NQ*(i + k), V + NV*(i + k), rates + NU*(i +
                     k));
             }
         }
-        failed += record(codes, LANES, status ? status + i : NULL);
-    }
-    for (; i < n; ++i) {
-        const int code = fivebar_revolute_actuator_rates(model, X + NQ*i, V + NV*i, rates + NU*i);
-        failed += record(&code, 1, status ? status + i : NULL);
+        failed += record(codes, w, status ? status + i : NULL);
     }
     return failed;
 }
 
-int fivebar_revolute_actuator_accelerations(const fivebar_revolute_model *model, const
-    fivebar_revolute_real *X, const fivebar_revolute_real *V, const fivebar_revolute_real *A,
-    fivebar_revolute_real *accelerations)
+int fivebar_revolute_actuator_accelerations(const prepared *model, const real *X, const real *V,
+    const real *A, real *accelerations)
 {
     int code;
     actuator_accelerations_one(model, X, V, A, accelerations, &code);
     return code;
 }
 
-size_t fivebar_revolute_actuator_accelerations_batch(const fivebar_revolute_model *model, size_t
-    n, const fivebar_revolute_real *X, const fivebar_revolute_real *V, const fivebar_revolute_real
-    *A, fivebar_revolute_real *accelerations, int *status)
+size_t fivebar_revolute_actuator_accelerations_batch(const prepared *model, size_t n, const real
+    *X, const real *V, const real *A, real *accelerations, int *status)
 {
-    size_t failed = 0, i = 0;
-    for (; LANES > 1 && i + LANES <= n; i += LANES) {
-        int codes[LANES];
-        actuator_accelerations_lanes(model, X + NQ*i, V + NV*i, A + NV*i, accelerations + NU*i, codes);
-        for (size_t k = 0; k < LANES; ++k) {
+    size_t failed = 0, w;
+    for (size_t i = 0; i < n; i += w) {
+        int codes[LANES] = {INVALID};
+        w = LANES > 1 && i + LANES <= n ? LANES : 1;
+        if (w > 1) {
+            actuator_accelerations_lanes(model, X + NQ*i, V + NV*i, A + NV*i, accelerations + NU*i, codes);
+        }
+        for (size_t k = 0; k < w; ++k) {
             if (codes[k] != OK) {
                 codes[k] = fivebar_revolute_actuator_accelerations(model, X + NQ*(i + k), V + NV*(i + k), A +
                     NV*(i + k), accelerations + NU*(i + k));
             }
         }
-        failed += record(codes, LANES, status ? status + i : NULL);
-    }
-    for (; i < n; ++i) {
-        const int code = fivebar_revolute_actuator_accelerations(model, X + NQ*i, V + NV*i, A + NV*i,
-            accelerations + NU*i);
-        failed += record(&code, 1, status ? status + i : NULL);
+        failed += record(codes, w, status ? status + i : NULL);
     }
     return failed;
 }
 
-int fivebar_revolute_power(const fivebar_revolute_model *model, const fivebar_revolute_real *X,
-    const fivebar_revolute_real *V, const fivebar_revolute_real *tau, fivebar_revolute_real
-    *power)
+int fivebar_revolute_power(const prepared *model, const real *X, const real *V, const real *tau,
+    real *power)
 {
     int code;
     power_one(model, X, V, tau, power, &code);
     return code;
 }
 
-size_t fivebar_revolute_power_batch(const fivebar_revolute_model *model, size_t n, const
-    fivebar_revolute_real *X, const fivebar_revolute_real *V, const fivebar_revolute_real *tau,
-    fivebar_revolute_real *power, int *status)
+size_t fivebar_revolute_power_batch(const prepared *model, size_t n, const real *X, const real *V,
+    const real *tau, real *power, int *status)
 {
-    size_t failed = 0, i = 0;
-    for (; LANES > 1 && i + LANES <= n; i += LANES) {
-        int codes[LANES];
-        power_lanes(model, X + NQ*i, V + NV*i, tau + NU*i, power + i, codes);
-        for (size_t k = 0; k < LANES; ++k) {
+    size_t failed = 0, w;
+    for (size_t i = 0; i < n; i += w) {
+        int codes[LANES] = {INVALID};
+        w = LANES > 1 && i + LANES <= n ? LANES : 1;
+        if (w > 1) {
+            power_lanes(model, X + NQ*i, V + NV*i, tau + NU*i, power + i, codes);
+        }
+        for (size_t k = 0; k < w; ++k) {
             if (codes[k] != OK) {
                 codes[k] = fivebar_revolute_power(model, X + NQ*(i + k), V + NV*(i + k), tau + NU*(i + k), power +
                     (i + k));
             }
         }
-        failed += record(codes, LANES, status ? status + i : NULL);
-    }
-    for (; i < n; ++i) {
-        const int code = fivebar_revolute_power(model, X + NQ*i, V + NV*i, tau + NU*i, power + i);
-        failed += record(&code, 1, status ? status + i : NULL);
+        failed += record(codes, w, status ? status + i : NULL);
     }
     return failed;
 }
 
-int fivebar_revolute_retract(const fivebar_revolute_real *X, const fivebar_revolute_real *step,
-    fivebar_revolute_real *X_moved)
+int fivebar_revolute_retract(const real *X, const real *step, real *X_moved)
 {
     int code;
     retract_one(X, step, X_moved, &code);
     return code;
 }
 
-size_t fivebar_revolute_retract_batch(size_t n, const fivebar_revolute_real *X, const
-    fivebar_revolute_real *step, fivebar_revolute_real *X_moved, int *status)
+size_t fivebar_revolute_retract_batch(size_t n, const real *X, const real *step, real *X_moved,
+    int *status)
 {
-    size_t failed = 0, i = 0;
-    for (; i < n; ++i) {
+    size_t failed = 0;
+    for (size_t i = 0; i < n; ++i) {
         const int code = fivebar_revolute_retract(X + NQ*i, step + NV*i, X_moved + NQ*i);
         failed += record(&code, 1, status ? status + i : NULL);
     }
     return failed;
 }
 
-int fivebar_revolute_difference(const fivebar_revolute_real *X0, const fivebar_revolute_real *X1,
-    fivebar_revolute_real *step)
+int fivebar_revolute_difference(const real *X0, const real *X1, real *step)
 {
     int code;
     difference_one(X0, X1, step, &code);
     return code;
 }
 
-size_t fivebar_revolute_difference_batch(size_t n, const fivebar_revolute_real *X0, const
-    fivebar_revolute_real *X1, fivebar_revolute_real *step, int *status)
+size_t fivebar_revolute_difference_batch(size_t n, const real *X0, const real *X1, real *step, int
+    *status)
 {
-    size_t failed = 0, i = 0;
-    for (; i < n; ++i) {
+    size_t failed = 0;
+    for (size_t i = 0; i < n; ++i) {
         const int code = fivebar_revolute_difference(X0 + NQ*i, X1 + NQ*i, step + NV*i);
         failed += record(&code, 1, status ? status + i : NULL);
     }
     return failed;
 }
 
-int fivebar_revolute_interpolate(const fivebar_revolute_real *X0, const fivebar_revolute_real *X1,
-    const fivebar_revolute_real *s, fivebar_revolute_real *X)
+int fivebar_revolute_interpolate(const real *X0, const real *X1, const real *s, real *X)
 {
     int code;
     interpolate_one(X0, X1, s, X, &code);
     return code;
 }
 
-size_t fivebar_revolute_interpolate_batch(size_t n, const fivebar_revolute_real *X0, const
-    fivebar_revolute_real *X1, const fivebar_revolute_real *s, fivebar_revolute_real *X, int
-    *status)
+size_t fivebar_revolute_interpolate_batch(size_t n, const real *X0, const real *X1, const real *s,
+    real *X, int *status)
 {
-    size_t failed = 0, i = 0;
-    for (; i < n; ++i) {
+    size_t failed = 0;
+    for (size_t i = 0; i < n; ++i) {
         const int code = fivebar_revolute_interpolate(X0 + NQ*i, X1 + NQ*i, s + i, X + NQ*i);
         failed += record(&code, 1, status ? status + i : NULL);
     }

@@ -239,6 +239,24 @@ size_t fivebar_revolute_condition_batch(const fivebar_revolute_model *model, siz
     fivebar_revolute_real *X, fivebar_revolute_real *sigma, fivebar_revolute_real *legs, int
     *status);
 
+/* Manipulability of forces: the product of the singular values that condition has by default, and
+   the least over the largest of them. 91 mul, 50 add, 4 div, 5 sqrt, 0 trig; the singular values
+   apart. In: X (NQ). Out: measure (1), isotropy (1). */
+int fivebar_revolute_manipulability(const fivebar_revolute_model *model, const
+    fivebar_revolute_real *X, fivebar_revolute_real *measure, fivebar_revolute_real *isotropy);
+size_t fivebar_revolute_manipulability_batch(const fivebar_revolute_model *model, size_t n, const
+    fivebar_revolute_real *X, fivebar_revolute_real *measure, fivebar_revolute_real *isotropy, int
+    *status);
+
+/* How near actuators and legs are to being singular: relative distances, 0 where they are. 91
+   mul, 50 add, 4 div, 5 sqrt, 0 trig; the singular values apart. In: X (NQ). Out: actuators (1),
+   legs (1). */
+int fivebar_revolute_singularity_distance(const fivebar_revolute_model *model, const
+    fivebar_revolute_real *X, fivebar_revolute_real *actuators, fivebar_revolute_real *legs);
+size_t fivebar_revolute_singularity_distance_batch(const fivebar_revolute_model *model, size_t n,
+    const fivebar_revolute_real *X, fivebar_revolute_real *actuators, fivebar_revolute_real *legs,
+    int *status);
+
 /* X at which the actuated joints stand at q_actuated, by Gauss-Newton from X0. Extra coordinates
    that actuators do not determine stay. Impossible where no pose is found. In: q_actuated (NU),
    X0 (NQ). Out: X (NQ). */

@@ -650,13 +650,13 @@ int hexaglide_prepare(const hexaglide_params *params, hexaglide_model *model)
         /* (pus-d_phi_3) coefficient of the acceleration in: inertia force of link 3 from its turning
            about its reference point */
         const real pus_d_phi_3_in_axes3_xy = pus_h_3_in_spec3_z*pus_w_3_in_axes3_y;
-        /* (pus-trace_J_3) half the trace of that inertia tensor */
-        const real pus_trace_J_3 = R(0.5)*pus_J_3_in_spec3_xx + R(0.5)*pus_J_3_in_spec3_yy +
-            R(0.5)*pus_J_3_in_spec3_zz;
         /* (pus-Sigma_3) second moment of mass of the links that turn with link 3 */
-        const real pus_Sigma_3_in_axes3_xx = pus_trace_J_3 - pus_J_3_in_spec3_xx;
-        const real pus_Sigma_3_in_axes3_yy = pus_trace_J_3 - pus_J_3_in_spec3_zz;
-        const real pus_Sigma_3_in_axes3_zz = pus_trace_J_3 - pus_J_3_in_spec3_yy;
+        const real pus_Sigma_3_t = pus_J_3_in_spec3_xx + pus_J_3_in_spec3_yy +
+            pus_J_3_in_spec3_zz;
+        const real pus_Sigma_3_t_2 = R(0.5)*pus_Sigma_3_t;
+        const real pus_Sigma_3_in_axes3_xx = pus_Sigma_3_t_2 - pus_J_3_in_spec3_xx;
+        const real pus_Sigma_3_in_axes3_yy = pus_Sigma_3_t_2 - pus_J_3_in_spec3_zz;
+        const real pus_Sigma_3_in_axes3_zz = pus_Sigma_3_t_2 - pus_J_3_in_spec3_yy;
         /* (pus-d_Gamma_3) coefficient of the acceleration in: moment about axis 3 of the distal links'
            inertia and weight */
         const real pus_d_Gamma_3_t = pus_J_3_in_spec3_yy*pus_w_3_in_axes3_y;
@@ -1148,6 +1148,24 @@ INLINE void unlimited(size_t rows, size_t size, size_t w, const size_t *places, 
     }
 }
 
+INLINE void least_entry(size_t n, const real *a, real *x)
+{
+    *x = a[0];
+    for (size_t e = 1; e < n; ++e) {
+        *x = lesser(*x, a[e]);
+    }
+}
+
+/* Of the first n entries the product, and the last over the first, 0 where that is 0. */
+INLINE void spread(size_t n, const real *a, real *product_of, real *ratio)
+{
+    *product_of = 1;
+    for (size_t e = 0; e < n; ++e) {
+        *product_of *= a[e];
+    }
+    *ratio = magnitude(a[0]) > 0 ? a[n - 1]/a[0] : a[0];
+}
+
 /* 1 where no entry is negative, else 0. */
 INLINE void not_negative(size_t size, size_t w, const real *a, real *x, real *flags)
 {
@@ -1322,6 +1340,728 @@ static void moved(const real *X, const real *step, real part, real *to)
     turn_quaternion(X + Q, turn, to + Q);
 }
 
+/* ---- what functions of the state share; v: values for others ---- */
+
+typedef struct {
+    real quaternion_scale, R_xx, R_xy, R_xz, R_yx, R_yy, R_yz, R_zx, R_zy, R_zz, h_star_x, h_star_y,
+        h_star_z, omega_in_platform_x, omega_in_platform_y, omega_in_platform_z, J_star_xx, J_star_xy,
+        J_star_xz, J_star_yy, J_star_yz, J_star_zz, Z_p_x, Z_p_y, Z_p_z, Z_q_x, Z_q_y, Z_q_z;
+} values;
+
+INLINE void stage_X(const prepared *m, size_t w, size_t k, const real *X, values *v)
+{
+    /* X: named entries */
+    const real X_3 = X[3*w + k];
+    const real X_4 = X[4*w + k];
+    const real X_5 = X[5*w + k];
+    const real X_6 = X[6*w + k];
+    const real quaternion_norm2 = X_3*X_3 + X_4*X_4 + X_5*X_5 + X_6*X_6;
+    const real quaternion_scale = 2/quaternion_norm2;
+    const real quaternion_sx = X_3*quaternion_scale;
+    const real quaternion_sy = X_4*quaternion_scale;
+    const real quaternion_sz = X_5*quaternion_scale;
+    const real quaternion_wx = X_6*quaternion_sx;
+    const real quaternion_wy = X_6*quaternion_sy;
+    const real quaternion_wz = X_6*quaternion_sz;
+    const real quaternion_xx = X_3*quaternion_sx;
+    const real quaternion_xy = X_3*quaternion_sy;
+    const real quaternion_xz = X_3*quaternion_sz;
+    const real quaternion_yy = X_4*quaternion_sy;
+    const real quaternion_yz = X_4*quaternion_sz;
+    const real quaternion_zz = X_5*quaternion_sz;
+    const real R_xx = 1 - quaternion_yy - quaternion_zz;
+    const real R_xy = quaternion_xy - quaternion_wz;
+    const real R_xz = quaternion_wy + quaternion_xz;
+    const real R_yx = quaternion_wz + quaternion_xy;
+    const real R_yy = 1 - quaternion_xx - quaternion_zz;
+    const real R_yz = quaternion_yz - quaternion_wx;
+    const real R_zx = quaternion_xz - quaternion_wy;
+    const real R_zy = quaternion_wx + quaternion_yz;
+    const real R_zz = 1 - quaternion_xx - quaternion_yy;
+    /* (h_star) first moment about the platform origin */
+    const real h_star_in_platform_x = m->h_star_in_platform_x;
+    const real h_star_in_platform_y = m->h_star_in_platform_y;
+    const real h_star_in_platform_z = m->h_star_in_platform_z;
+    const real h_star_x = R_xx*h_star_in_platform_x + R_xy*h_star_in_platform_y +
+        R_xz*h_star_in_platform_z;
+    const real h_star_y = R_yx*h_star_in_platform_x + R_yy*h_star_in_platform_y +
+        R_yz*h_star_in_platform_z;
+    const real h_star_z = R_zx*h_star_in_platform_x + R_zy*h_star_in_platform_y +
+        R_zz*h_star_in_platform_z;
+    v->quaternion_scale = quaternion_scale;
+    v->R_xx = R_xx;
+    v->R_xy = R_xy;
+    v->R_xz = R_xz;
+    v->R_yx = R_yx;
+    v->R_yy = R_yy;
+    v->R_yz = R_yz;
+    v->R_zx = R_zx;
+    v->R_zy = R_zy;
+    v->R_zz = R_zz;
+    v->h_star_x = h_star_x;
+    v->h_star_y = h_star_y;
+    v->h_star_z = h_star_z;
+}
+
+INLINE void stage_V_X(size_t w, size_t k, const real *V, values *v)
+{
+    /* (Z_q) gyroscopic moment and moment of the weight of the platform */
+    const real omega_x = V[3*w + k];
+    const real omega_y = V[4*w + k];
+    const real omega_z = V[5*w + k];
+    const real omega_in_platform_x = v->R_xx*omega_x + v->R_yx*omega_y + v->R_zx*omega_z;
+    const real omega_in_platform_y = v->R_xy*omega_x + v->R_yy*omega_y + v->R_zy*omega_z;
+    const real omega_in_platform_z = v->R_xz*omega_x + v->R_yz*omega_y + v->R_zz*omega_z;
+    v->omega_in_platform_x = omega_in_platform_x;
+    v->omega_in_platform_y = omega_in_platform_y;
+    v->omega_in_platform_z = omega_in_platform_z;
+}
+
+INLINE void stage_M_dynamics(const prepared *m, values *v)
+{
+    /* (J_star) inertia tensor about the platform origin */
+    const real J_star_in_platform_xy = m->J_star_in_platform_xy;
+    const real J_star_in_platform_yz = m->J_star_in_platform_yz;
+    const real J_star_t_12 = m->J_star_t_12;
+    const real J_star_t = J_star_in_platform_xy*v->R_xx + J_star_in_platform_yz*v->R_xz -
+        J_star_t_12*v->R_xy;
+    const real J_star_t_2 = J_star_in_platform_xy*v->R_yx + J_star_in_platform_yz*v->R_yz -
+        J_star_t_12*v->R_yy;
+    const real J_star_t_3 = J_star_in_platform_xy*v->R_zx + J_star_in_platform_yz*v->R_zz -
+        J_star_t_12*v->R_zy;
+    const real J_star_in_platform_xz = m->J_star_in_platform_xz;
+    const real J_star_t_14 = m->J_star_t_14;
+    const real J_star_t_4 = J_star_t_14*v->R_xz - J_star_in_platform_xz*v->R_xx;
+    const real J_star_t_5 = J_star_t_14*v->R_yz - J_star_in_platform_xz*v->R_yx;
+    const real J_star_t_6 = J_star_t_14*v->R_zz - J_star_in_platform_xz*v->R_zx;
+    const real J_star_t_7 = J_star_t*v->R_xy - J_star_t_4*v->R_xz;
+    const real J_star_in_platform_xx = m->J_star_in_platform_xx;
+    const real J_star_xx = J_star_in_platform_xx + 2*J_star_t_7;
+    const real J_star_xy = J_star_t*v->R_yy + J_star_t_2*v->R_xy - J_star_t_4*v->R_yz -
+        J_star_t_5*v->R_xz;
+    const real J_star_xz = J_star_t*v->R_zy + J_star_t_3*v->R_xy - J_star_t_4*v->R_zz -
+        J_star_t_6*v->R_xz;
+    const real J_star_t_8 = J_star_t_2*v->R_yy - J_star_t_5*v->R_yz;
+    const real J_star_yy = J_star_in_platform_xx + 2*J_star_t_8;
+    const real J_star_yz = J_star_t_2*v->R_zy + J_star_t_3*v->R_yy - J_star_t_5*v->R_zz -
+        J_star_t_6*v->R_yz;
+    const real J_star_t_9 = J_star_t_3*v->R_zy - J_star_t_6*v->R_zz;
+    const real J_star_zz = J_star_in_platform_xx + 2*J_star_t_9;
+    v->J_star_xx = J_star_xx;
+    v->J_star_xy = J_star_xy;
+    v->J_star_xz = J_star_xz;
+    v->J_star_yy = J_star_yy;
+    v->J_star_yz = J_star_yz;
+    v->J_star_zz = J_star_zz;
+}
+
+INLINE void stage_Z_dynamics(const prepared *m, size_t w, size_t k, const real *V, values *v)
+{
+    /* (Z_p) centripetal force and weight of the platform */
+    const real omega_y = V[4*w + k];
+    const real omega_z = V[5*w + k];
+    const real Z_p_t_4 = v->h_star_z*omega_y - v->h_star_y*omega_z;
+    const real omega_x = V[3*w + k];
+    const real Z_p_t_5 = v->h_star_x*omega_z - v->h_star_z*omega_x;
+    const real Z_p_t_6 = v->h_star_y*omega_x - v->h_star_x*omega_y;
+    const real Z_p_t = m->Z_p_t;
+    const real Z_p_x = Z_p_t_6*omega_y - Z_p_t - Z_p_t_5*omega_z;
+    const real Z_p_t_2 = m->Z_p_t_2;
+    const real Z_p_y = Z_p_t_4*omega_z - Z_p_t_2 - Z_p_t_6*omega_x;
+    const real Z_p_t_3 = m->Z_p_t_3;
+    const real Z_p_z = Z_p_t_5*omega_x - Z_p_t_3 - Z_p_t_4*omega_y;
+    /* (Z_q) gyroscopic moment and moment of the weight of the platform */
+    const real gravity_x = m->gravity_x;
+    const real gravity_y = m->gravity_y;
+    const real gravity_z = m->gravity_z;
+    const real g_in_platform_x = v->R_xx*gravity_x + v->R_yx*gravity_y + v->R_zx*gravity_z;
+    const real g_in_platform_y = v->R_xy*gravity_x + v->R_yy*gravity_y + v->R_zy*gravity_z;
+    const real g_in_platform_z = v->R_xz*gravity_x + v->R_yz*gravity_y + v->R_zz*gravity_z;
+    const real J_star_in_platform_xx = m->J_star_in_platform_xx;
+    const real J_star_in_platform_xy = m->J_star_in_platform_xy;
+    const real J_star_in_platform_xz = m->J_star_in_platform_xz;
+    const real Z_q_t = J_star_in_platform_xx*v->omega_in_platform_x +
+        J_star_in_platform_xy*v->omega_in_platform_y +
+        J_star_in_platform_xz*v->omega_in_platform_z;
+    const real J_star_in_platform_yy = m->J_star_in_platform_yy;
+    const real J_star_in_platform_yz = m->J_star_in_platform_yz;
+    const real Z_q_t_2 = J_star_in_platform_xy*v->omega_in_platform_x +
+        J_star_in_platform_yy*v->omega_in_platform_y +
+        J_star_in_platform_yz*v->omega_in_platform_z;
+    const real J_star_in_platform_zz = m->J_star_in_platform_zz;
+    const real Z_q_t_3 = J_star_in_platform_xz*v->omega_in_platform_x +
+        J_star_in_platform_yz*v->omega_in_platform_y +
+        J_star_in_platform_zz*v->omega_in_platform_z;
+    const real h_star_in_platform_y = m->h_star_in_platform_y;
+    const real h_star_in_platform_z = m->h_star_in_platform_z;
+    const real Z_q_in_platform_x = Z_q_t_3*v->omega_in_platform_y +
+        g_in_platform_y*h_star_in_platform_z - Z_q_t_2*v->omega_in_platform_z -
+        g_in_platform_z*h_star_in_platform_y;
+    const real h_star_in_platform_x = m->h_star_in_platform_x;
+    const real Z_q_in_platform_y = Z_q_t*v->omega_in_platform_z +
+        g_in_platform_z*h_star_in_platform_x - Z_q_t_3*v->omega_in_platform_x -
+        g_in_platform_x*h_star_in_platform_z;
+    const real Z_q_in_platform_z = Z_q_t_2*v->omega_in_platform_x +
+        g_in_platform_x*h_star_in_platform_y - Z_q_t*v->omega_in_platform_y -
+        g_in_platform_y*h_star_in_platform_x;
+    const real Z_q_x = v->R_xx*Z_q_in_platform_x + v->R_xy*Z_q_in_platform_y +
+        v->R_xz*Z_q_in_platform_z;
+    const real Z_q_y = v->R_yx*Z_q_in_platform_x + v->R_yy*Z_q_in_platform_y +
+        v->R_yz*Z_q_in_platform_z;
+    const real Z_q_z = v->R_zx*Z_q_in_platform_x + v->R_zy*Z_q_in_platform_y +
+        v->R_zz*Z_q_in_platform_z;
+    v->Z_p_x = Z_p_x;
+    v->Z_p_y = Z_p_y;
+    v->Z_p_z = Z_p_z;
+    v->Z_q_x = Z_q_x;
+    v->Z_q_y = Z_q_y;
+    v->Z_q_z = Z_q_z;
+}
+
+typedef struct {
+    real pus_q_x, pus_q_y, pus_q_z, pus_disc_1, pus_rho2_2, pus_c_2, pus_s_2, pus_c_3,
+        pus_v_2_in_axes3_z, pus_e_1_in_axes3_x, pus_w_1_in_axes3_x, pus_w_2_in_axes3_z,
+        pus_e_2_in_axes3_x, axis_z_pus_axes3_x, axis_z_pus_axes3_y, axis_z_pus_axes3_z,
+        pus_e_1_in_axes3_y, pus_qd_1_t, axis_y_pus_axes3_x, axis_y_pus_axes3_y, axis_y_pus_axes3_z,
+        pus_a_p_x, pus_a_p_y, pus_a_p_z, pus_S_dot_t, pus_S_dot_t_2, pus_S_dot_t_3, pus_S_dot_x,
+        pus_S_dot_y, pus_S_dot_z, pus_S_ddot_x, pus_S_ddot_y, pus_S_ddot_z, pus_w_1_x, pus_w_1_y,
+        pus_w_1_z, pus_H_a_1_x, pus_H_a_1_y, pus_H_a_1_z, pus_J_3_t_7, pus_J_3_t_8, pus_J_3_t_10,
+        pus_d_alpha_3_in_axes3_xz, pus_d_alpha_3_t, pus_d_Gamma_2_in_axes3_z, pus_d_c_in_axes3_xx,
+        pus_d_c_in_axes3_xy, pus_d_c_in_axes3_xz, pus_d_c_in_axes3_yz, pus_S_x, pus_S_y, pus_S_z,
+        pus_S_in_axes0_y, pus_q_1_t, pus_q_1, pus_root_2, inv_pus_rho2_2, axis_x_pus_axes3_x,
+        axis_x_pus_axes3_y, axis_x_pus_axes3_z, pus_acc_3_in_axes3_x, pus_acc_3_in_axes3_y,
+        pus_acc_3_in_axes3_z, pus_c_in_axes3_x, pus_c_in_axes3_y, pus_c_in_axes3_z;
+} values_pus;
+
+INLINE void stage_pus_X(const prepared *m, size_t w, size_t i, size_t j, const real *s, const real
+    *X, values_pus *v)
+{
+    /* (pus-J_3) inertia tensor of link 3 about the connection point */
+    const real R_xx = s[0*w + j];
+    const real R_xy = s[1*w + j];
+    const real R_xz = s[2*w + j];
+    const real pus_platform_point_x = m->pus_platform_point_x[i];
+    const real pus_platform_point_y = m->pus_platform_point_y[i];
+    const real pus_platform_point_z = m->pus_platform_point_z[i];
+    const real pus_q_x = R_xx*pus_platform_point_x + R_xy*pus_platform_point_y +
+        R_xz*pus_platform_point_z;
+    const real R_yx = s[3*w + j];
+    const real R_yy = s[4*w + j];
+    const real R_yz = s[5*w + j];
+    const real pus_q_y = R_yx*pus_platform_point_x + R_yy*pus_platform_point_y +
+        R_yz*pus_platform_point_z;
+    const real R_zx = s[6*w + j];
+    const real R_zy = s[7*w + j];
+    const real R_zz = s[8*w + j];
+    const real pus_q_z = R_zx*pus_platform_point_x + R_zy*pus_platform_point_y +
+        R_zz*pus_platform_point_z;
+    /* (pus-S) from the base point to the connection point */
+    const real pus_base_point_x = m->pus_base_point_x[i];
+    const real t_x = X[0*w + j];
+    const real pus_S_x = pus_q_x + t_x - pus_base_point_x;
+    const real pus_base_point_y = m->pus_base_point_y[i];
+    const real t_y = X[1*w + j];
+    const real pus_S_y = pus_q_y + t_y - pus_base_point_y;
+    const real pus_base_point_z = m->pus_base_point_z[i];
+    const real t_z = X[2*w + j];
+    const real pus_S_z = pus_q_z + t_z - pus_base_point_z;
+    const real pus_base_frame_xx = m->pus_base_frame_xx[i];
+    const real pus_base_frame_yx = m->pus_base_frame_yx[i];
+    const real pus_base_frame_zx = m->pus_base_frame_zx[i];
+    const real pus_S_in_axes0_x = pus_S_x*pus_base_frame_xx + pus_S_y*pus_base_frame_yx +
+        pus_S_z*pus_base_frame_zx;
+    const real pus_base_frame_xy = m->pus_base_frame_xy[i];
+    const real pus_base_frame_yy = m->pus_base_frame_yy[i];
+    const real pus_base_frame_zy = m->pus_base_frame_zy[i];
+    const real pus_S_in_axes0_y = pus_S_x*pus_base_frame_xy + pus_S_y*pus_base_frame_yy +
+        pus_S_z*pus_base_frame_zy;
+    /* (pus-disc_1) discriminant of the distance equation */
+    const real pus_disc_1_t = pus_S_x*pus_S_x + pus_S_y*pus_S_y + pus_S_z*pus_S_z;
+    const real pus_size_t = m->pus_size_t[i];
+    const real pus_disc_1 = pus_S_in_axes0_x*pus_S_in_axes0_x + pus_size_t - pus_disc_1_t;
+    /* (pus-rho2_2) squared amplitude */
+    const real pus_rho2_2 = pus_S_in_axes0_y*pus_S_in_axes0_y + pus_disc_1;
+    /* (pus-root_2) root, with the sign of the branch */
+    const real pus_branch_2 = m->pus_branch_2[i];
+    const real pus_root_2 = pus_branch_2*root(pus_rho2_2);
+    /* (pus-c_2) cosine of the angle of joint 2 from its reference direction */
+    const real inv_pus_rho2_2 = 1/pus_rho2_2;
+    const real pus_branch_1 = m->pus_branch_1[i];
+    const real pus_c_2 = -inv_pus_rho2_2*pus_branch_1*root(pus_disc_1)*pus_root_2;
+    /* (pus-s_2) sine of the angle of joint 2 from its reference direction */
+    const real pus_s_2 = inv_pus_rho2_2*pus_S_in_axes0_y*pus_root_2;
+    /* (pus-c_3) cosine of the angle of joint 3 from its reference direction */
+    const real inv_pus_size_t = m->inv_pus_size_t[i];
+    const real pus_platform_joint_offset_x = m->pus_platform_joint_offset_x[i];
+    const real pus_c_3 = inv_pus_size_t*pus_platform_joint_offset_x*pus_root_2;
+    /* (pus-v_2) velocity of the connection point per rate of joint 2 */
+    const real pus_v_2_in_axes3_z = pus_c_3*pus_platform_joint_offset_x;
+    /* (pus-w_1) reciprocal vector 1 */
+    const real pus_e_1_in_axes3_x = pus_c_2*pus_c_3;
+    const real pus_w_1_in_axes3_x = 1/pus_e_1_in_axes3_x;
+    /* (pus-w_2) reciprocal vector 2 */
+    const real pus_w_2_in_axes3_z = 1/pus_v_2_in_axes3_z;
+    /* (pus-qd_1) rate of joint 1 */
+    const real pus_base_frame_xz = m->pus_base_frame_xz[i];
+    const real pus_base_frame_yz = m->pus_base_frame_yz[i];
+    const real pus_base_frame_zz = m->pus_base_frame_zz[i];
+    const real pus_e_2_in_axes3_x =
+        inv_pus_size_t*pus_platform_joint_offset_x*(pus_S_x*pus_base_frame_xz +
+        pus_S_y*pus_base_frame_yz + pus_S_z*pus_base_frame_zz);
+    const real axis_z_pus_axes3_x = pus_base_frame_xy*pus_c_2 - pus_base_frame_xx*pus_s_2;
+    const real axis_z_pus_axes3_y = pus_base_frame_yy*pus_c_2 - pus_base_frame_yx*pus_s_2;
+    const real axis_z_pus_axes3_z = pus_base_frame_zy*pus_c_2 - pus_base_frame_zx*pus_s_2;
+    const real pus_e_1_in_axes3_y = pus_c_2*pus_e_2_in_axes3_x;
+    const real pus_qd_1_t = pus_e_2_in_axes3_x*pus_s_2;
+    /* (pus-w_1) reciprocal vector 1 */
+    const real pus_w_1_t = pus_e_2_in_axes3_x*pus_s_2;
+    const real axis_y_pus_axes3_x = pus_base_frame_xx*pus_e_1_in_axes3_y +
+        pus_base_frame_xy*pus_w_1_t - pus_base_frame_xz*pus_c_3;
+    const real axis_y_pus_axes3_y = pus_base_frame_yx*pus_e_1_in_axes3_y +
+        pus_base_frame_yy*pus_w_1_t - pus_base_frame_yz*pus_c_3;
+    const real axis_y_pus_axes3_z = pus_base_frame_zx*pus_e_1_in_axes3_y +
+        pus_base_frame_zy*pus_w_1_t - pus_base_frame_zz*pus_c_3;
+    v->pus_q_x = pus_q_x;
+    v->pus_q_y = pus_q_y;
+    v->pus_q_z = pus_q_z;
+    v->pus_disc_1 = pus_disc_1;
+    v->pus_rho2_2 = pus_rho2_2;
+    v->pus_c_2 = pus_c_2;
+    v->pus_s_2 = pus_s_2;
+    v->pus_c_3 = pus_c_3;
+    v->pus_v_2_in_axes3_z = pus_v_2_in_axes3_z;
+    v->pus_e_1_in_axes3_x = pus_e_1_in_axes3_x;
+    v->pus_w_1_in_axes3_x = pus_w_1_in_axes3_x;
+    v->pus_w_2_in_axes3_z = pus_w_2_in_axes3_z;
+    v->pus_e_2_in_axes3_x = pus_e_2_in_axes3_x;
+    v->axis_z_pus_axes3_x = axis_z_pus_axes3_x;
+    v->axis_z_pus_axes3_y = axis_z_pus_axes3_y;
+    v->axis_z_pus_axes3_z = axis_z_pus_axes3_z;
+    v->pus_e_1_in_axes3_y = pus_e_1_in_axes3_y;
+    v->pus_qd_1_t = pus_qd_1_t;
+    v->axis_y_pus_axes3_x = axis_y_pus_axes3_x;
+    v->axis_y_pus_axes3_y = axis_y_pus_axes3_y;
+    v->axis_y_pus_axes3_z = axis_y_pus_axes3_z;
+}
+
+INLINE void stage_pus_A_X(size_t w, size_t j, const real *A, values_pus *v)
+{
+    /* (pus-a_p) acceleration of the connection point without its centripetal part */
+    const real alpha_y = A[4*w + j];
+    const real alpha_z = A[5*w + j];
+    const real t_ddot_x = A[0*w + j];
+    const real pus_a_p_x = t_ddot_x + alpha_y*v->pus_q_z - alpha_z*v->pus_q_y;
+    const real alpha_x = A[3*w + j];
+    const real t_ddot_y = A[1*w + j];
+    const real pus_a_p_y = t_ddot_y + alpha_z*v->pus_q_x - alpha_x*v->pus_q_z;
+    const real t_ddot_z = A[2*w + j];
+    const real pus_a_p_z = t_ddot_z + alpha_x*v->pus_q_y - alpha_y*v->pus_q_x;
+    v->pus_a_p_x = pus_a_p_x;
+    v->pus_a_p_y = pus_a_p_y;
+    v->pus_a_p_z = pus_a_p_z;
+}
+
+INLINE void stage_pus_V_X(size_t w, size_t j, const real *V, values_pus *v)
+{
+    /* (pus-S_dot) velocity of the connection point */
+    const real omega_y = V[4*w + j];
+    const real omega_z = V[5*w + j];
+    const real pus_S_dot_t = omega_y*v->pus_q_z - omega_z*v->pus_q_y;
+    const real omega_x = V[3*w + j];
+    const real pus_S_dot_t_2 = omega_z*v->pus_q_x - omega_x*v->pus_q_z;
+    const real pus_S_dot_t_3 = omega_x*v->pus_q_y - omega_y*v->pus_q_x;
+    const real t_dot_x = V[0*w + j];
+    const real pus_S_dot_x = pus_S_dot_t + t_dot_x;
+    const real t_dot_y = V[1*w + j];
+    const real pus_S_dot_y = pus_S_dot_t_2 + t_dot_y;
+    const real t_dot_z = V[2*w + j];
+    const real pus_S_dot_z = pus_S_dot_t_3 + t_dot_z;
+    v->pus_S_dot_t = pus_S_dot_t;
+    v->pus_S_dot_t_2 = pus_S_dot_t_2;
+    v->pus_S_dot_t_3 = pus_S_dot_t_3;
+    v->pus_S_dot_x = pus_S_dot_x;
+    v->pus_S_dot_y = pus_S_dot_y;
+    v->pus_S_dot_z = pus_S_dot_z;
+}
+
+INLINE void stage_pus_A_V_X(size_t w, size_t j, const real *V, values_pus *v)
+{
+    /* (pus-S_ddot) acceleration of the connection point */
+    const real omega_y = V[4*w + j];
+    const real omega_z = V[5*w + j];
+    const real pus_S_ddot_x = v->pus_a_p_x + omega_y*v->pus_S_dot_t_3 -
+        omega_z*v->pus_S_dot_t_2;
+    const real omega_x = V[3*w + j];
+    const real pus_S_ddot_y = v->pus_a_p_y + omega_z*v->pus_S_dot_t -
+        omega_x*v->pus_S_dot_t_3;
+    const real pus_S_ddot_z = v->pus_a_p_z + omega_x*v->pus_S_dot_t_2 -
+        omega_y*v->pus_S_dot_t;
+    v->pus_S_ddot_x = pus_S_ddot_x;
+    v->pus_S_ddot_y = pus_S_ddot_y;
+    v->pus_S_ddot_z = pus_S_ddot_z;
+}
+
+INLINE void stage_pus_H_condition(values_pus *v)
+{
+    /* (pus-w_1) reciprocal vector 1 */
+    const real pus_w_1_x = v->pus_w_1_in_axes3_x*(v->axis_y_pus_axes3_y*v->axis_z_pus_axes3_z
+        - v->axis_y_pus_axes3_z*v->axis_z_pus_axes3_y);
+    const real pus_w_1_y = v->pus_w_1_in_axes3_x*(v->axis_y_pus_axes3_z*v->axis_z_pus_axes3_x
+        - v->axis_y_pus_axes3_x*v->axis_z_pus_axes3_z);
+    const real pus_w_1_z = v->pus_w_1_in_axes3_x*(v->axis_y_pus_axes3_x*v->axis_z_pus_axes3_y
+        - v->axis_y_pus_axes3_y*v->axis_z_pus_axes3_x);
+    /* (pus-H_a_1) moment of the column's unit force about the platform origin */
+    const real pus_H_a_1_x = v->pus_q_y*pus_w_1_z - v->pus_q_z*pus_w_1_y;
+    const real pus_H_a_1_y = v->pus_q_z*pus_w_1_x - v->pus_q_x*pus_w_1_z;
+    const real pus_H_a_1_z = v->pus_q_x*pus_w_1_y - v->pus_q_y*pus_w_1_x;
+    v->pus_w_1_x = pus_w_1_x;
+    v->pus_w_1_y = pus_w_1_y;
+    v->pus_w_1_z = pus_w_1_z;
+    v->pus_H_a_1_x = pus_H_a_1_x;
+    v->pus_H_a_1_y = pus_H_a_1_y;
+    v->pus_H_a_1_z = pus_H_a_1_z;
+}
+
+INLINE void stage_pus_M_dynamics(const prepared *m, size_t w, size_t i, size_t j, const real *X,
+    values_pus *v)
+{
+    /* (pus-J_3) inertia tensor of link 3 about the connection point */
+    const real pus_base_point_x = m->pus_base_point_x[i];
+    const real t_x = X[0*w + j];
+    const real pus_J_3_t = v->pus_q_x + t_x - pus_base_point_x;
+    const real pus_base_point_y = m->pus_base_point_y[i];
+    const real t_y = X[1*w + j];
+    const real pus_J_3_t_2 = v->pus_q_y + t_y - pus_base_point_y;
+    const real pus_base_point_z = m->pus_base_point_z[i];
+    const real t_z = X[2*w + j];
+    const real pus_J_3_t_3 = v->pus_q_z + t_z - pus_base_point_z;
+    const real pus_base_frame_xx = m->pus_base_frame_xx[i];
+    const real pus_base_frame_yx = m->pus_base_frame_yx[i];
+    const real pus_base_frame_zx = m->pus_base_frame_zx[i];
+    const real pus_J_3_t_4 = pus_J_3_t*pus_base_frame_xx + pus_J_3_t_2*pus_base_frame_yx +
+        pus_J_3_t_3*pus_base_frame_zx;
+    const real pus_base_frame_xy = m->pus_base_frame_xy[i];
+    const real pus_base_frame_yy = m->pus_base_frame_yy[i];
+    const real pus_base_frame_zy = m->pus_base_frame_zy[i];
+    const real pus_J_3_t_5 = pus_J_3_t*pus_base_frame_xy + pus_J_3_t_2*pus_base_frame_yy +
+        pus_J_3_t_3*pus_base_frame_zy;
+    const real pus_J_3_t_6 = pus_J_3_t*pus_J_3_t + pus_J_3_t_2*pus_J_3_t_2 +
+        pus_J_3_t_3*pus_J_3_t_3;
+    const real pus_size_t = m->pus_size_t[i];
+    const real pus_J_3_t_7 = pus_J_3_t_4*pus_J_3_t_4 + pus_size_t - pus_J_3_t_6;
+    const real pus_J_3_t_8 = pus_J_3_t_5*pus_J_3_t_5 + pus_J_3_t_7;
+    const real pus_branch_2 = m->pus_branch_2[i];
+    const real pus_J_3_t_9 = root(pus_J_3_t_8)*pus_branch_2;
+    const real inv_pus_size_t = m->inv_pus_size_t[i];
+    const real pus_platform_joint_offset_x = m->pus_platform_joint_offset_x[i];
+    const real pus_J_3_t_10 = inv_pus_size_t*pus_J_3_t_9*pus_platform_joint_offset_x;
+    const real pus_base_frame_xz = m->pus_base_frame_xz[i];
+    const real pus_base_frame_yz = m->pus_base_frame_yz[i];
+    const real pus_base_frame_zz = m->pus_base_frame_zz[i];
+    const real pus_e_2_in_axes3_x =
+        inv_pus_size_t*pus_platform_joint_offset_x*(pus_J_3_t*pus_base_frame_xz +
+        pus_J_3_t_2*pus_base_frame_yz + pus_J_3_t_3*pus_base_frame_zz);
+    const real pus_J_3_in_spec3_xy = m->pus_J_3_in_spec3_xy[i];
+    const real pus_J_3_in_spec3_yz = m->pus_J_3_in_spec3_yz[i];
+    const real pus_J_3_in_axes2_yz = pus_J_3_in_spec3_xy*pus_e_2_in_axes3_x +
+        pus_J_3_in_spec3_yz*pus_J_3_t_10;
+    /* (pus-c_2) cosine of the angle of joint 2 from its reference direction */
+    const real inv_pus_J_3_t_8 = 1/pus_J_3_t_8;
+    const real pus_branch_1 = m->pus_branch_1[i];
+    const real pus_c_2 = -inv_pus_J_3_t_8*root(pus_J_3_t_7)*pus_J_3_t_9*pus_branch_1;
+    /* (pus-s_2) sine of the angle of joint 2 from its reference direction */
+    const real pus_s_2 = inv_pus_J_3_t_8*pus_J_3_t_5*pus_J_3_t_9;
+    /* (pus-v_2) velocity of the connection point per rate of joint 2 */
+    const real pus_v_2_in_axes3_z = pus_J_3_t_10*pus_platform_joint_offset_x;
+    /* (pus-w_1) reciprocal vector 1 */
+    const real axis_z_pus_axes3_x = pus_base_frame_xy*pus_c_2 - pus_base_frame_xx*pus_s_2;
+    const real axis_z_pus_axes3_y = pus_base_frame_yy*pus_c_2 - pus_base_frame_yx*pus_s_2;
+    const real axis_z_pus_axes3_z = pus_base_frame_zy*pus_c_2 - pus_base_frame_zx*pus_s_2;
+    const real pus_e_1_in_axes3_y = pus_c_2*pus_e_2_in_axes3_x;
+    const real pus_e_1_in_axes3_x = pus_J_3_t_10*pus_c_2;
+    const real pus_w_1_in_axes3_x = 1/pus_e_1_in_axes3_x;
+    /* (pus-w_2) reciprocal vector 2 */
+    const real pus_w_2_in_axes3_z = 1/pus_v_2_in_axes3_z;
+    const real pus_w_2_in_axes3_x = pus_s_2*pus_w_1_in_axes3_x*pus_w_2_in_axes3_z;
+    /* (pus-w_3) reciprocal vector 3 */
+    const real pus_w_3_in_axes3_y = m->pus_w_3_in_axes3_y[i];
+    const real pus_w_3_in_axes3_x = -pus_e_1_in_axes3_y*pus_w_1_in_axes3_x*pus_w_3_in_axes3_y;
+    /* (pus-d_alpha_3) coefficient of the acceleration in: angular acceleration of link 3 */
+    const real pus_d_alpha_3_in_axes3_xz = pus_e_2_in_axes3_x*pus_w_2_in_axes3_z;
+    const real pus_d_alpha_3_t = pus_J_3_t_10*pus_w_2_in_axes3_z;
+    /* (pus-d_Gamma_3) coefficient of the acceleration in: moment about axis 3 of the distal links'
+       inertia and weight */
+    const real pus_d_Gamma_3_in_axes3_z = pus_J_3_in_axes2_yz*pus_w_2_in_axes3_z;
+    const real pus_d_Gamma_3_t = m->pus_d_Gamma_3_t[i];
+    const real pus_h_3_in_spec3_z = m->pus_h_3_in_spec3_z[i];
+    const real pus_d_Gamma_3_in_axes3_x = pus_h_3_in_spec3_z -
+        pus_w_1_in_axes3_x*(pus_d_Gamma_3_t*pus_e_1_in_axes3_y -
+        pus_d_Gamma_3_in_axes3_z*pus_s_2);
+    /* (pus-d_Gamma_2) coefficient of the acceleration in: moment about axis 2 of the distal links'
+       inertia and weight */
+    const real pus_J_3_in_spec3_xx = m->pus_J_3_in_spec3_xx[i];
+    const real pus_J_3_in_spec3_xz = m->pus_J_3_in_spec3_xz[i];
+    const real pus_J_3_in_spec3_zz = m->pus_J_3_in_spec3_zz[i];
+    const real pus_d_Gamma_2_t =
+        pus_w_2_in_axes3_z*(pus_J_3_t_10*(pus_J_3_in_spec3_xz*pus_e_2_in_axes3_x +
+        pus_J_3_in_spec3_zz*pus_J_3_t_10) -
+        pus_e_2_in_axes3_x*(-pus_J_3_in_spec3_xx*pus_e_2_in_axes3_x -
+        pus_J_3_in_spec3_xz*pus_J_3_t_10));
+    const real pus_d_Gamma_2_t_2 = pus_J_3_in_axes2_yz*pus_w_3_in_axes3_y;
+    const real pus_h_3_in_spec3_y = m->pus_h_3_in_spec3_y[i];
+    const real pus_d_Gamma_2_in_axes3_x = pus_w_1_in_axes3_x*(pus_d_Gamma_2_t*pus_s_2 -
+        pus_d_Gamma_2_t_2*pus_e_1_in_axes3_y) - pus_J_3_t_10*pus_h_3_in_spec3_y;
+    const real pus_d_Gamma_2_in_axes3_y = pus_d_Gamma_2_t_2 -
+        pus_e_2_in_axes3_x*pus_h_3_in_spec3_y;
+    const real pus_h_3_in_spec3_x = m->pus_h_3_in_spec3_x[i];
+    const real pus_d_Gamma_2_in_axes3_z = pus_d_Gamma_2_t + pus_J_3_t_10*pus_h_3_in_spec3_x -
+        pus_e_2_in_axes3_x*pus_h_3_in_spec3_z;
+    /* (pus-d_c) coefficient of the acceleration in: leg force on the platform without actuation and
+       without the mass at the connection point */
+    const real pus_link1_mass = m->pus_link1_mass[i];
+    const real pus_d_c_in_axes3_xx = pus_J_3_t_10*pus_h_3_in_spec3_y*pus_w_2_in_axes3_x -
+        pus_d_Gamma_2_in_axes3_x*pus_w_2_in_axes3_x -
+        pus_d_Gamma_3_in_axes3_x*pus_w_3_in_axes3_x - pus_h_3_in_spec3_z*pus_w_3_in_axes3_x -
+        pus_link1_mass*pus_w_1_in_axes3_x*pus_w_1_in_axes3_x;
+    const real pus_d_Gamma_3_in_axes3_y = m->pus_d_Gamma_3_in_axes3_y[i];
+    const real pus_d_phi_3_in_axes3_xy = m->pus_d_phi_3_in_axes3_xy[i];
+    const real pus_d_c_in_axes3_xy = -pus_d_phi_3_in_axes3_xy -
+        pus_d_Gamma_2_in_axes3_y*pus_w_2_in_axes3_x -
+        pus_d_Gamma_3_in_axes3_y*pus_w_3_in_axes3_x;
+    const real pus_d_c_in_axes3_xz = pus_d_alpha_3_t*pus_h_3_in_spec3_y -
+        pus_d_Gamma_2_in_axes3_z*pus_w_2_in_axes3_x -
+        pus_d_Gamma_3_in_axes3_z*pus_w_3_in_axes3_x;
+    const real pus_d_c_in_axes3_yz = pus_d_alpha_3_in_axes3_xz*pus_h_3_in_spec3_y -
+        pus_d_Gamma_3_in_axes3_z*pus_w_3_in_axes3_y;
+    v->pus_J_3_t_7 = pus_J_3_t_7;
+    v->pus_J_3_t_8 = pus_J_3_t_8;
+    v->pus_J_3_t_10 = pus_J_3_t_10;
+    v->pus_e_2_in_axes3_x = pus_e_2_in_axes3_x;
+    v->pus_c_2 = pus_c_2;
+    v->pus_s_2 = pus_s_2;
+    v->pus_v_2_in_axes3_z = pus_v_2_in_axes3_z;
+    v->axis_z_pus_axes3_x = axis_z_pus_axes3_x;
+    v->axis_z_pus_axes3_y = axis_z_pus_axes3_y;
+    v->axis_z_pus_axes3_z = axis_z_pus_axes3_z;
+    v->pus_e_1_in_axes3_y = pus_e_1_in_axes3_y;
+    v->pus_e_1_in_axes3_x = pus_e_1_in_axes3_x;
+    v->pus_w_1_in_axes3_x = pus_w_1_in_axes3_x;
+    v->pus_w_2_in_axes3_z = pus_w_2_in_axes3_z;
+    v->pus_d_alpha_3_in_axes3_xz = pus_d_alpha_3_in_axes3_xz;
+    v->pus_d_alpha_3_t = pus_d_alpha_3_t;
+    v->pus_d_Gamma_2_in_axes3_z = pus_d_Gamma_2_in_axes3_z;
+    v->pus_d_c_in_axes3_xx = pus_d_c_in_axes3_xx;
+    v->pus_d_c_in_axes3_xy = pus_d_c_in_axes3_xy;
+    v->pus_d_c_in_axes3_xz = pus_d_c_in_axes3_xz;
+    v->pus_d_c_in_axes3_yz = pus_d_c_in_axes3_yz;
+}
+
+INLINE void stage_pus_inverse_kinematics_potential(const prepared *m, size_t w, size_t i, size_t
+    j, const real *s, const real *X, values_pus *v)
+{
+    /* (pus-S) from the base point to the connection point */
+    const real R_xx = s[0*w + j];
+    const real R_xy = s[1*w + j];
+    const real R_xz = s[2*w + j];
+    const real pus_base_point_x = m->pus_base_point_x[i];
+    const real pus_platform_point_x = m->pus_platform_point_x[i];
+    const real pus_platform_point_y = m->pus_platform_point_y[i];
+    const real pus_platform_point_z = m->pus_platform_point_z[i];
+    const real t_x = X[0*w + j];
+    const real pus_S_x = t_x + R_xx*pus_platform_point_x + R_xy*pus_platform_point_y +
+        R_xz*pus_platform_point_z - pus_base_point_x;
+    const real R_yx = s[3*w + j];
+    const real R_yy = s[4*w + j];
+    const real R_yz = s[5*w + j];
+    const real pus_base_point_y = m->pus_base_point_y[i];
+    const real t_y = X[1*w + j];
+    const real pus_S_y = t_y + R_yx*pus_platform_point_x + R_yy*pus_platform_point_y +
+        R_yz*pus_platform_point_z - pus_base_point_y;
+    const real R_zx = s[6*w + j];
+    const real R_zy = s[7*w + j];
+    const real R_zz = s[8*w + j];
+    const real pus_base_point_z = m->pus_base_point_z[i];
+    const real t_z = X[2*w + j];
+    const real pus_S_z = t_z + R_zx*pus_platform_point_x + R_zy*pus_platform_point_y +
+        R_zz*pus_platform_point_z - pus_base_point_z;
+    const real pus_base_frame_xx = m->pus_base_frame_xx[i];
+    const real pus_base_frame_yx = m->pus_base_frame_yx[i];
+    const real pus_base_frame_zx = m->pus_base_frame_zx[i];
+    const real pus_S_in_axes0_x = pus_S_x*pus_base_frame_xx + pus_S_y*pus_base_frame_yx +
+        pus_S_z*pus_base_frame_zx;
+    const real pus_base_frame_xy = m->pus_base_frame_xy[i];
+    const real pus_base_frame_yy = m->pus_base_frame_yy[i];
+    const real pus_base_frame_zy = m->pus_base_frame_zy[i];
+    const real pus_S_in_axes0_y = pus_S_x*pus_base_frame_xy + pus_S_y*pus_base_frame_yy +
+        pus_S_z*pus_base_frame_zy;
+    /* (pus-disc_1) discriminant of the distance equation */
+    const real pus_disc_1_t = pus_S_x*pus_S_x + pus_S_y*pus_S_y + pus_S_z*pus_S_z;
+    const real pus_size_t = m->pus_size_t[i];
+    const real pus_disc_1 = pus_S_in_axes0_x*pus_S_in_axes0_x + pus_size_t - pus_disc_1_t;
+    /* (pus-q_1) displacement of joint 1 */
+    const real pus_branch_1 = m->pus_branch_1[i];
+    const real pus_q_1_t = pus_branch_1*root(pus_disc_1);
+    const real pus_q_1 = pus_S_in_axes0_x + pus_q_1_t;
+    /* (pus-rho2_2) squared amplitude */
+    const real pus_rho2_2 = pus_S_in_axes0_y*pus_S_in_axes0_y + pus_disc_1;
+    /* (pus-root_2) root, with the sign of the branch */
+    const real pus_branch_2 = m->pus_branch_2[i];
+    const real pus_root_2 = pus_branch_2*root(pus_rho2_2);
+    /* (pus-q_2) displacement of joint 2 */
+    const real inv_pus_rho2_2 = 1/pus_rho2_2;
+    v->pus_S_x = pus_S_x;
+    v->pus_S_y = pus_S_y;
+    v->pus_S_z = pus_S_z;
+    v->pus_S_in_axes0_y = pus_S_in_axes0_y;
+    v->pus_disc_1 = pus_disc_1;
+    v->pus_q_1_t = pus_q_1_t;
+    v->pus_q_1 = pus_q_1;
+    v->pus_rho2_2 = pus_rho2_2;
+    v->pus_root_2 = pus_root_2;
+    v->inv_pus_rho2_2 = inv_pus_rho2_2;
+}
+
+INLINE void stage_pus_legs_required(const prepared *m, size_t i, values_pus *v)
+{
+    /* (pus-w_1) reciprocal vector 1 */
+    const real axis_x_pus_axes3_x = v->axis_y_pus_axes3_y*v->axis_z_pus_axes3_z -
+        v->axis_y_pus_axes3_z*v->axis_z_pus_axes3_y;
+    const real axis_x_pus_axes3_y = v->axis_y_pus_axes3_z*v->axis_z_pus_axes3_x -
+        v->axis_y_pus_axes3_x*v->axis_z_pus_axes3_z;
+    const real axis_x_pus_axes3_z = v->axis_y_pus_axes3_x*v->axis_z_pus_axes3_y -
+        v->axis_y_pus_axes3_y*v->axis_z_pus_axes3_x;
+    const real pus_w_1_x = axis_x_pus_axes3_x*v->pus_w_1_in_axes3_x;
+    const real pus_w_1_y = axis_x_pus_axes3_y*v->pus_w_1_in_axes3_x;
+    const real pus_w_1_z = axis_x_pus_axes3_z*v->pus_w_1_in_axes3_x;
+    /* (pus-qd_1) rate of joint 1 */
+    const real pus_qd_1 = v->pus_w_1_in_axes3_x*(axis_x_pus_axes3_x*v->pus_S_dot_x +
+        axis_x_pus_axes3_y*v->pus_S_dot_y + axis_x_pus_axes3_z*v->pus_S_dot_z);
+    /* (pus-qd_2) rate of joint 2 */
+    const real pus_qd_2 = v->pus_w_2_in_axes3_z*(v->axis_z_pus_axes3_x*v->pus_S_dot_x +
+        v->axis_z_pus_axes3_y*v->pus_S_dot_y + v->axis_z_pus_axes3_z*v->pus_S_dot_z +
+        pus_qd_1*v->pus_s_2);
+    /* (pus-qd_3) rate of joint 3 */
+    const real pus_qd_3_t = v->axis_y_pus_axes3_x*v->pus_S_dot_x +
+        v->axis_y_pus_axes3_y*v->pus_S_dot_y + v->axis_y_pus_axes3_z*v->pus_S_dot_z -
+        v->pus_e_1_in_axes3_y*pus_qd_1;
+    const real pus_w_3_in_axes3_y = m->pus_w_3_in_axes3_y[i];
+    const real pus_qd_3 = pus_qd_3_t*pus_w_3_in_axes3_y;
+    /* (pus-omega_2) angular velocity of link 2 */
+    const real pus_omega_2_in_axes3_x = v->pus_e_2_in_axes3_x*pus_qd_2;
+    const real pus_omega_2_in_axes3_y = -v->pus_c_3*pus_qd_2;
+    /* (pus-W_3) centripetal tensor of link 3 */
+    const real pus_W_3_in_axes3_yz = pus_omega_2_in_axes3_y*pus_qd_3;
+    const real pus_W_3_in_axes3_xz = pus_omega_2_in_axes3_x*pus_qd_3;
+    const real pus_W_3_in_axes3_xy = pus_omega_2_in_axes3_x*pus_omega_2_in_axes3_y;
+    /* (pus-S_ddot) acceleration of the connection point */
+    const real pus_S_ddot_in_axes3_x = axis_x_pus_axes3_x*v->pus_S_ddot_x +
+        axis_x_pus_axes3_y*v->pus_S_ddot_y + axis_x_pus_axes3_z*v->pus_S_ddot_z;
+    const real pus_S_ddot_in_axes3_y = v->axis_y_pus_axes3_x*v->pus_S_ddot_x +
+        v->axis_y_pus_axes3_y*v->pus_S_ddot_y + v->axis_y_pus_axes3_z*v->pus_S_ddot_z;
+    const real pus_S_ddot_in_axes3_z = v->axis_z_pus_axes3_x*v->pus_S_ddot_x +
+        v->axis_z_pus_axes3_y*v->pus_S_ddot_y + v->axis_z_pus_axes3_z*v->pus_S_ddot_z;
+    /* (pus-bias) acceleration of the connection point at zero joint accelerations */
+    const real pus_platform_joint_offset_x = m->pus_platform_joint_offset_x[i];
+    const real pus_bias_in_axes3_z = pus_W_3_in_axes3_xz*pus_platform_joint_offset_x +
+        pus_omega_2_in_axes3_x*pus_qd_3_t;
+    /* (pus-rel) acceleration of the connection point left to the joint accelerations */
+    const real pus_rel_t = pus_omega_2_in_axes3_y*pus_platform_joint_offset_x;
+    const real pus_rel_in_axes3_x = pus_S_ddot_in_axes3_x + pus_omega_2_in_axes3_y*pus_rel_t +
+        pus_qd_3*pus_qd_3_t;
+    const real pus_rel_in_axes3_y = pus_S_ddot_in_axes3_y - pus_omega_2_in_axes3_x*pus_rel_t;
+    const real pus_rel_in_axes3_z = pus_S_ddot_in_axes3_z - pus_bias_in_axes3_z;
+    /* (pus-qdd_1) acceleration of joint 1 */
+    const real pus_qdd_1 = pus_rel_in_axes3_x*v->pus_w_1_in_axes3_x;
+    /* (pus-qdd_2) acceleration of joint 2 */
+    const real pus_qdd_2_t = v->pus_w_2_in_axes3_z*(-pus_rel_in_axes3_z -
+        pus_qdd_1*v->pus_s_2);
+    /* (pus-qdd_3) acceleration of joint 3 */
+    const real pus_qdd_3_t = pus_w_3_in_axes3_y*(v->pus_e_1_in_axes3_y*pus_qdd_1 -
+        pus_rel_in_axes3_y);
+    /* (pus-alpha_2) angular acceleration of link 2 */
+    const real pus_alpha_2_t = v->pus_e_2_in_axes3_x*pus_qdd_2_t;
+    const real pus_alpha_2_in_axes3_y = v->pus_c_3*pus_qdd_2_t;
+    /* (pus-alpha_3) angular acceleration of link 3 */
+    const real pus_alpha_3_in_axes3_x = pus_W_3_in_axes3_yz - pus_alpha_2_t;
+    const real pus_alpha_3_in_axes3_y = pus_alpha_2_in_axes3_y - pus_W_3_in_axes3_xz;
+    /* (pus-B_3) acceleration tensor of link 3 */
+    const real pus_B_3_in_axes3_xy = pus_W_3_in_axes3_xy + pus_qdd_3_t;
+    const real pus_B_3_in_axes3_yx = pus_W_3_in_axes3_xy - pus_qdd_3_t;
+    const real pus_B_3_in_axes3_zx = pus_W_3_in_axes3_xz - pus_alpha_3_in_axes3_y;
+    const real pus_B_3_in_axes3_zy = pus_W_3_in_axes3_yz + pus_alpha_3_in_axes3_x;
+    /* (pus-acc_1) acceleration of the reference point of link 1, less gravity */
+    const real pus_g_in_axes0_x = m->pus_g_in_axes0_x[i];
+    const real pus_acc_1_in_axes0_x = pus_qdd_1 - pus_g_in_axes0_x;
+    /* (pus-acc_3) acceleration of the reference point of link 3, less gravity */
+    const real pus_g_in_axes0_y = m->pus_g_in_axes0_y[i];
+    const real pus_acc_3_t = v->pus_c_2*pus_g_in_axes0_x + pus_g_in_axes0_y*v->pus_s_2;
+    const real pus_g_in_axes0_z = m->pus_g_in_axes0_z[i];
+    const real pus_acc_3_in_axes3_x = pus_S_ddot_in_axes3_x - pus_acc_3_t*v->pus_c_3 -
+        v->pus_e_2_in_axes3_x*pus_g_in_axes0_z;
+    const real pus_acc_3_in_axes3_y = pus_S_ddot_in_axes3_y + v->pus_c_3*pus_g_in_axes0_z -
+        pus_acc_3_t*v->pus_e_2_in_axes3_x;
+    const real pus_acc_3_in_axes3_z = pus_S_ddot_in_axes3_z + pus_g_in_axes0_x*v->pus_s_2 -
+        v->pus_c_2*pus_g_in_axes0_y;
+    /* (pus-mu_3) inertia moment of the links that turn with link 3, about their reference points */
+    const real pus_mu_3_t = pus_omega_2_in_axes3_x*pus_omega_2_in_axes3_x;
+    const real pus_mu_3_t_2 = pus_omega_2_in_axes3_y*pus_omega_2_in_axes3_y;
+    const real pus_mu_3_t_3 = pus_qd_3*pus_qd_3;
+    const real pus_J_3_in_spec3_xy = m->pus_J_3_in_spec3_xy[i];
+    const real pus_J_3_in_spec3_xz = m->pus_J_3_in_spec3_xz[i];
+    const real pus_J_3_in_spec3_yz = m->pus_J_3_in_spec3_yz[i];
+    const real pus_Sigma_3_in_axes3_yy = m->pus_Sigma_3_in_axes3_yy[i];
+    const real pus_Sigma_3_in_axes3_zz = m->pus_Sigma_3_in_axes3_zz[i];
+    const real pus_h_3_in_spec3_y = m->pus_h_3_in_spec3_y[i];
+    const real pus_h_3_in_spec3_z = m->pus_h_3_in_spec3_z[i];
+    const real pus_mu_3_in_axes3_x = pus_B_3_in_axes3_yx*pus_J_3_in_spec3_xy +
+        pus_B_3_in_axes3_zx*pus_J_3_in_spec3_xz + pus_B_3_in_axes3_zy*pus_Sigma_3_in_axes3_yy
+        - pus_J_3_in_spec3_yz*(pus_mu_3_t_2 - pus_mu_3_t_3) -
+        pus_Sigma_3_in_axes3_zz*pus_alpha_2_t - pus_acc_3_in_axes3_y*pus_h_3_in_spec3_y -
+        pus_acc_3_in_axes3_z*pus_h_3_in_spec3_z;
+    const real pus_Sigma_3_in_axes3_xx = m->pus_Sigma_3_in_axes3_xx[i];
+    const real pus_h_3_in_spec3_x = m->pus_h_3_in_spec3_x[i];
+    const real pus_mu_3_in_axes3_y = pus_B_3_in_axes3_xy*pus_J_3_in_spec3_yz +
+        pus_Sigma_3_in_axes3_zz*pus_alpha_2_in_axes3_y +
+        pus_acc_3_in_axes3_x*pus_h_3_in_spec3_y - pus_B_3_in_axes3_zx*pus_Sigma_3_in_axes3_xx
+        - pus_B_3_in_axes3_zy*pus_J_3_in_spec3_xz - pus_J_3_in_spec3_xy*(pus_mu_3_t -
+        pus_mu_3_t_3) - pus_acc_3_in_axes3_z*pus_h_3_in_spec3_x;
+    const real pus_mu_3_in_axes3_z = pus_B_3_in_axes3_yx*pus_Sigma_3_in_axes3_xx +
+        pus_acc_3_in_axes3_x*pus_h_3_in_spec3_z + pus_acc_3_in_axes3_y*pus_h_3_in_spec3_x -
+        pus_B_3_in_axes3_xy*pus_Sigma_3_in_axes3_yy - pus_J_3_in_spec3_xy*pus_alpha_2_t -
+        pus_J_3_in_spec3_xz*(pus_mu_3_t - pus_mu_3_t_2) -
+        pus_J_3_in_spec3_yz*pus_alpha_2_in_axes3_y;
+    /* (pus-G) force at the connection point that balances the leg's inertia and weight along all
+       degrees of freedom */
+    const real pus_G_t = v->pus_w_2_in_axes3_z*(v->pus_c_3*pus_mu_3_in_axes3_y -
+        v->pus_e_2_in_axes3_x*pus_mu_3_in_axes3_x);
+    const real pus_G_in_axes3_y = pus_mu_3_in_axes3_z*pus_w_3_in_axes3_y;
+    /* (pus-c) leg force on the platform without actuation and without the mass at the connection
+       point */
+    const real pus_link1_mass = m->pus_link1_mass[i];
+    const real pus_c_in_axes3_x = pus_B_3_in_axes3_xy*pus_h_3_in_spec3_z +
+        pus_h_3_in_spec3_x*(pus_mu_3_t_2 + pus_mu_3_t_3) -
+        pus_alpha_2_in_axes3_y*pus_h_3_in_spec3_y -
+        v->pus_w_1_in_axes3_x*(pus_acc_1_in_axes0_x*pus_link1_mass -
+        pus_G_in_axes3_y*v->pus_e_1_in_axes3_y - pus_G_t*v->pus_s_2);
+    const real pus_c_in_axes3_y = -pus_G_in_axes3_y - pus_B_3_in_axes3_yx*pus_h_3_in_spec3_x -
+        pus_alpha_2_t*pus_h_3_in_spec3_y - pus_h_3_in_spec3_z*(pus_mu_3_t + pus_mu_3_t_3);
+    const real pus_c_in_axes3_z = pus_G_t + pus_B_3_in_axes3_zy*pus_h_3_in_spec3_z +
+        pus_h_3_in_spec3_y*(pus_mu_3_t + pus_mu_3_t_2) -
+        pus_B_3_in_axes3_zx*pus_h_3_in_spec3_x;
+    v->axis_x_pus_axes3_x = axis_x_pus_axes3_x;
+    v->axis_x_pus_axes3_y = axis_x_pus_axes3_y;
+    v->axis_x_pus_axes3_z = axis_x_pus_axes3_z;
+    v->pus_w_1_x = pus_w_1_x;
+    v->pus_w_1_y = pus_w_1_y;
+    v->pus_w_1_z = pus_w_1_z;
+    v->pus_acc_3_in_axes3_x = pus_acc_3_in_axes3_x;
+    v->pus_acc_3_in_axes3_y = pus_acc_3_in_axes3_y;
+    v->pus_acc_3_in_axes3_z = pus_acc_3_in_axes3_z;
+    v->pus_c_in_axes3_x = pus_c_in_axes3_x;
+    v->pus_c_in_axes3_y = pus_c_in_axes3_y;
+    v->pus_c_in_axes3_z = pus_c_in_axes3_z;
+}
+
 /* ---- functions of the state: M, Z, H and the like ---- */
 
 /* ---- dynamics ---- */
@@ -1329,314 +2069,110 @@ INLINE void dynamics_before(const prepared *m, size_t w, const real *X, const re
     verdict *t)
 {
     for (size_t k = 0; k < w; ++k) {
-        /* X: named entries */
-        const real X_0 = X[0*w + k];
-        const real t_x = X_0;
-        const real X_1 = X[1*w + k];
-        const real t_y = X_1;
-        const real X_2 = X[2*w + k];
-        const real t_z = X_2;
-        const real X_3 = X[3*w + k];
-        const real X_4 = X[4*w + k];
-        const real X_5 = X[5*w + k];
-        const real X_6 = X[6*w + k];
-        const real quaternion_norm2 = X_3*X_3 + X_4*X_4 + X_5*X_5 + X_6*X_6;
-        const real quaternion_scale = 2/quaternion_norm2;
-        const real quaternion_sx = X_3*quaternion_scale;
-        const real quaternion_sy = X_4*quaternion_scale;
-        const real quaternion_sz = X_5*quaternion_scale;
-        const real quaternion_wx = X_6*quaternion_sx;
-        const real quaternion_wy = X_6*quaternion_sy;
-        const real quaternion_wz = X_6*quaternion_sz;
-        const real quaternion_xx = X_3*quaternion_sx;
-        const real quaternion_xy = X_3*quaternion_sy;
-        const real quaternion_xz = X_3*quaternion_sz;
-        const real quaternion_yy = X_4*quaternion_sy;
-        const real quaternion_yz = X_4*quaternion_sz;
-        const real quaternion_zz = X_5*quaternion_sz;
-        const real R_xx = 1 - quaternion_yy - quaternion_zz;
-        const real R_xy = quaternion_xy - quaternion_wz;
-        const real R_xz = quaternion_wy + quaternion_xz;
-        const real R_yx = quaternion_wz + quaternion_xy;
-        const real R_yy = 1 - quaternion_xx - quaternion_zz;
-        const real R_yz = quaternion_yz - quaternion_wx;
-        const real R_zx = quaternion_xz - quaternion_wy;
-        const real R_zy = quaternion_wx + quaternion_yz;
-        const real R_zz = 1 - quaternion_xx - quaternion_yy;
-        /* V: named entries */
-        const real V_0 = V[0*w + k];
-        const real t_dot_x = V_0;
-        const real V_1 = V[1*w + k];
-        const real t_dot_y = V_1;
-        const real V_2 = V[2*w + k];
-        const real t_dot_z = V_2;
-        const real V_3 = V[3*w + k];
-        const real omega_x = V_3;
-        const real V_4 = V[4*w + k];
-        const real omega_y = V_4;
-        const real V_5 = V[5*w + k];
-        const real omega_z = V_5;
-        /* (h_star) first moment about the platform origin */
-        const real h_star_in_platform_x = m->h_star_in_platform_x;
-        const real h_star_in_platform_y = m->h_star_in_platform_y;
-        const real h_star_in_platform_z = m->h_star_in_platform_z;
-        const real h_star_x = R_xx*h_star_in_platform_x + R_xy*h_star_in_platform_y +
-            R_xz*h_star_in_platform_z;
-        const real h_star_y = R_yx*h_star_in_platform_x + R_yy*h_star_in_platform_y +
-            R_yz*h_star_in_platform_z;
-        const real h_star_z = R_zx*h_star_in_platform_x + R_zy*h_star_in_platform_y +
-            R_zz*h_star_in_platform_z;
-        /* (J_star) inertia tensor about the platform origin */
-        const real J_star_in_platform_xy = m->J_star_in_platform_xy;
-        const real J_star_in_platform_yz = m->J_star_in_platform_yz;
-        const real J_star_t_12 = m->J_star_t_12;
-        const real J_star_t = J_star_in_platform_xy*R_xx + J_star_in_platform_yz*R_xz -
-            J_star_t_12*R_xy;
-        const real J_star_t_2 = J_star_in_platform_xy*R_yx + J_star_in_platform_yz*R_yz -
-            J_star_t_12*R_yy;
-        const real J_star_t_3 = J_star_in_platform_xy*R_zx + J_star_in_platform_yz*R_zz -
-            J_star_t_12*R_zy;
-        const real J_star_in_platform_xz = m->J_star_in_platform_xz;
-        const real J_star_t_14 = m->J_star_t_14;
-        const real J_star_t_4 = J_star_t_14*R_xz - J_star_in_platform_xz*R_xx;
-        const real J_star_t_5 = J_star_t_14*R_yz - J_star_in_platform_xz*R_yx;
-        const real J_star_t_6 = J_star_t_14*R_zz - J_star_in_platform_xz*R_zx;
-        const real J_star_t_7 = J_star_t*R_xy - J_star_t_4*R_xz;
-        const real J_star_in_platform_xx = m->J_star_in_platform_xx;
-        const real J_star_xx = J_star_in_platform_xx + 2*J_star_t_7;
-        const real J_star_xy = J_star_t*R_yy + J_star_t_2*R_xy - J_star_t_4*R_yz -
-            J_star_t_5*R_xz;
-        const real J_star_xz = J_star_t*R_zy + J_star_t_3*R_xy - J_star_t_4*R_zz -
-            J_star_t_6*R_xz;
-        const real J_star_t_8 = J_star_t_2*R_yy - J_star_t_5*R_yz;
-        const real J_star_yy = J_star_in_platform_xx + 2*J_star_t_8;
-        const real J_star_yz = J_star_t_2*R_zy + J_star_t_3*R_yy - J_star_t_5*R_zz -
-            J_star_t_6*R_yz;
-        const real J_star_t_9 = J_star_t_3*R_zy - J_star_t_6*R_zz;
-        const real J_star_zz = J_star_in_platform_xx + 2*J_star_t_9;
-        /* (Z_p) centripetal force and weight of the platform */
-        const real Z_p_t_4 = h_star_z*omega_y - h_star_y*omega_z;
-        const real Z_p_t_5 = h_star_x*omega_z - h_star_z*omega_x;
-        const real Z_p_t_6 = h_star_y*omega_x - h_star_x*omega_y;
-        const real Z_p_t = m->Z_p_t;
-        const real Z_p_x = Z_p_t_6*omega_y - Z_p_t - Z_p_t_5*omega_z;
-        const real Z_p_t_2 = m->Z_p_t_2;
-        const real Z_p_y = Z_p_t_4*omega_z - Z_p_t_2 - Z_p_t_6*omega_x;
-        const real Z_p_t_3 = m->Z_p_t_3;
-        const real Z_p_z = Z_p_t_5*omega_x - Z_p_t_3 - Z_p_t_4*omega_y;
-        /* (Z_q) gyroscopic moment and moment of the weight of the platform */
-        const real gravity_x = m->gravity_x;
-        const real gravity_y = m->gravity_y;
-        const real gravity_z = m->gravity_z;
-        const real g_in_platform_x = R_xx*gravity_x + R_yx*gravity_y + R_zx*gravity_z;
-        const real g_in_platform_y = R_xy*gravity_x + R_yy*gravity_y + R_zy*gravity_z;
-        const real g_in_platform_z = R_xz*gravity_x + R_yz*gravity_y + R_zz*gravity_z;
-        const real omega_in_platform_x = R_xx*omega_x + R_yx*omega_y + R_zx*omega_z;
-        const real omega_in_platform_y = R_xy*omega_x + R_yy*omega_y + R_zy*omega_z;
-        const real omega_in_platform_z = R_xz*omega_x + R_yz*omega_y + R_zz*omega_z;
-        const real Z_q_t = J_star_in_platform_xx*omega_in_platform_x +
-            J_star_in_platform_xy*omega_in_platform_y + J_star_in_platform_xz*omega_in_platform_z;
-        const real J_star_in_platform_yy = m->J_star_in_platform_yy;
-        const real Z_q_t_2 = J_star_in_platform_xy*omega_in_platform_x +
-            J_star_in_platform_yy*omega_in_platform_y + J_star_in_platform_yz*omega_in_platform_z;
-        const real J_star_in_platform_zz = m->J_star_in_platform_zz;
-        const real Z_q_t_3 = J_star_in_platform_xz*omega_in_platform_x +
-            J_star_in_platform_yz*omega_in_platform_y + J_star_in_platform_zz*omega_in_platform_z;
-        const real Z_q_in_platform_x = Z_q_t_3*omega_in_platform_y +
-            g_in_platform_y*h_star_in_platform_z - Z_q_t_2*omega_in_platform_z -
-            g_in_platform_z*h_star_in_platform_y;
-        const real Z_q_in_platform_y = Z_q_t*omega_in_platform_z +
-            g_in_platform_z*h_star_in_platform_x - Z_q_t_3*omega_in_platform_x -
-            g_in_platform_x*h_star_in_platform_z;
-        const real Z_q_in_platform_z = Z_q_t_2*omega_in_platform_x +
-            g_in_platform_x*h_star_in_platform_y - Z_q_t*omega_in_platform_y -
-            g_in_platform_y*h_star_in_platform_x;
-        const real Z_q_x = R_xx*Z_q_in_platform_x + R_xy*Z_q_in_platform_y +
-            R_xz*Z_q_in_platform_z;
-        const real Z_q_y = R_yx*Z_q_in_platform_x + R_yy*Z_q_in_platform_y +
-            R_yz*Z_q_in_platform_z;
-        const real Z_q_z = R_zx*Z_q_in_platform_x + R_zy*Z_q_in_platform_y +
-            R_zz*Z_q_in_platform_z;
-        s[0*w + k] = t_x;
-        s[1*w + k] = t_y;
-        s[2*w + k] = t_z;
-        s[3*w + k] = R_xx;
-        s[4*w + k] = R_xy;
-        s[5*w + k] = R_xz;
-        s[6*w + k] = R_yx;
-        s[7*w + k] = R_yy;
-        s[8*w + k] = R_yz;
-        s[9*w + k] = R_zx;
-        s[10*w + k] = R_zy;
-        s[11*w + k] = R_zz;
-        s[12*w + k] = t_dot_x;
-        s[13*w + k] = t_dot_y;
-        s[14*w + k] = t_dot_z;
-        s[15*w + k] = omega_x;
-        s[16*w + k] = omega_y;
-        s[17*w + k] = omega_z;
-        s[18*w + k] = h_star_x;
-        s[19*w + k] = h_star_y;
-        s[20*w + k] = h_star_z;
-        s[21*w + k] = J_star_xx;
-        s[22*w + k] = J_star_xy;
-        s[23*w + k] = J_star_xz;
-        s[24*w + k] = J_star_yy;
-        s[25*w + k] = J_star_yz;
-        s[26*w + k] = J_star_zz;
-        s[27*w + k] = Z_p_x;
-        s[28*w + k] = Z_p_y;
-        s[29*w + k] = Z_p_z;
-        s[30*w + k] = Z_q_x;
-        s[31*w + k] = Z_q_y;
-        s[32*w + k] = Z_q_z;
-        t->invalid[k] += UNLESS(is_finite(quaternion_scale)) + UNLESS(quaternion_scale > 0);
+        values v;
+        stage_X(m, w, k, X, &v);
+        stage_V_X(w, k, V, &v);
+        stage_M_dynamics(m, &v);
+        stage_Z_dynamics(m, w, k, V, &v);
+        s[0*w + k] = v.R_xx;
+        s[1*w + k] = v.R_xy;
+        s[2*w + k] = v.R_xz;
+        s[3*w + k] = v.R_yx;
+        s[4*w + k] = v.R_yy;
+        s[5*w + k] = v.R_yz;
+        s[6*w + k] = v.R_zx;
+        s[7*w + k] = v.R_zy;
+        s[8*w + k] = v.R_zz;
+        s[9*w + k] = v.h_star_x;
+        s[10*w + k] = v.h_star_y;
+        s[11*w + k] = v.h_star_z;
+        s[12*w + k] = v.J_star_xx;
+        s[13*w + k] = v.J_star_xy;
+        s[14*w + k] = v.J_star_xz;
+        s[15*w + k] = v.J_star_yy;
+        s[16*w + k] = v.J_star_yz;
+        s[17*w + k] = v.J_star_zz;
+        s[18*w + k] = v.Z_p_x;
+        s[19*w + k] = v.Z_p_y;
+        s[20*w + k] = v.Z_p_z;
+        s[21*w + k] = v.Z_q_x;
+        s[22*w + k] = v.Z_q_y;
+        s[23*w + k] = v.Z_q_z;
+        t->invalid[k] += UNLESS(is_finite(v.quaternion_scale)) + UNLESS(v.quaternion_scale > 0);
     }
 }
 
 INLINE void dynamics_legs_pus(const prepared *m, size_t w, size_t leg, size_t legs, const real *s,
-    size_t states, size_t count, int add, real *terms, real *o)
+    size_t states, size_t count, int add, const real *X, const real *V, real *terms, real *o)
 {
     for (size_t k = 0; k < count; ++k) {
         const size_t i = leg + legs*k;
         const size_t j = states*k;
-        /* (pus-J_3) inertia tensor of link 3 about the connection point */
-        const real R_xx = s[3*w + j];
-        const real R_xy = s[4*w + j];
-        const real R_xz = s[5*w + j];
-        const real pus_platform_point_x = m->pus_platform_point_x[i];
-        const real pus_platform_point_y = m->pus_platform_point_y[i];
-        const real pus_platform_point_z = m->pus_platform_point_z[i];
-        const real pus_q_x = R_xx*pus_platform_point_x + R_xy*pus_platform_point_y +
-            R_xz*pus_platform_point_z;
-        const real R_yx = s[6*w + j];
-        const real R_yy = s[7*w + j];
-        const real R_yz = s[8*w + j];
-        const real pus_q_y = R_yx*pus_platform_point_x + R_yy*pus_platform_point_y +
-            R_yz*pus_platform_point_z;
-        const real R_zx = s[9*w + j];
-        const real R_zy = s[10*w + j];
-        const real R_zz = s[11*w + j];
-        const real pus_q_z = R_zx*pus_platform_point_x + R_zy*pus_platform_point_y +
-            R_zz*pus_platform_point_z;
-        const real pus_base_point_x = m->pus_base_point_x[i];
-        const real t_x = s[0*w + j];
-        const real pus_J_3_t = pus_q_x + t_x - pus_base_point_x;
-        const real pus_base_point_y = m->pus_base_point_y[i];
-        const real t_y = s[1*w + j];
-        const real pus_J_3_t_2 = pus_q_y + t_y - pus_base_point_y;
-        const real pus_base_point_z = m->pus_base_point_z[i];
-        const real t_z = s[2*w + j];
-        const real pus_J_3_t_3 = pus_q_z + t_z - pus_base_point_z;
-        const real pus_base_frame_xx = m->pus_base_frame_xx[i];
-        const real pus_base_frame_yx = m->pus_base_frame_yx[i];
-        const real pus_base_frame_zx = m->pus_base_frame_zx[i];
-        const real pus_J_3_t_4 = pus_J_3_t*pus_base_frame_xx + pus_J_3_t_2*pus_base_frame_yx +
-            pus_J_3_t_3*pus_base_frame_zx;
-        const real pus_J_3_t_5 = pus_J_3_t*pus_J_3_t + pus_J_3_t_2*pus_J_3_t_2 +
-            pus_J_3_t_3*pus_J_3_t_3;
-        const real pus_size_t = m->pus_size_t[i];
-        const real pus_J_3_t_6 = pus_J_3_t_4*pus_J_3_t_4 + pus_size_t - pus_J_3_t_5;
-        const real pus_branch_1 = m->pus_branch_1[i];
-        const real pus_J_3_t_7 = -root(pus_J_3_t_6)*pus_branch_1;
-        const real pus_base_frame_xy = m->pus_base_frame_xy[i];
-        const real pus_base_frame_yy = m->pus_base_frame_yy[i];
-        const real pus_base_frame_zy = m->pus_base_frame_zy[i];
-        const real pus_J_3_t_8 = pus_J_3_t*pus_base_frame_xy + pus_J_3_t_2*pus_base_frame_yy +
-            pus_J_3_t_3*pus_base_frame_zy;
-        const real pus_J_3_t_9 = pus_J_3_t_7*pus_J_3_t_7 + pus_J_3_t_8*pus_J_3_t_8;
-        const real pus_branch_2 = m->pus_branch_2[i];
-        const real pus_J_3_t_10 = root(pus_J_3_t_9)*pus_branch_2;
-        const real inv_pus_size_t = m->inv_pus_size_t[i];
-        const real pus_platform_joint_offset_x = m->pus_platform_joint_offset_x[i];
-        const real pus_J_3_t_11 = inv_pus_size_t*pus_J_3_t_10*pus_platform_joint_offset_x;
-        const real pus_base_frame_xz = m->pus_base_frame_xz[i];
-        const real pus_base_frame_yz = m->pus_base_frame_yz[i];
-        const real pus_base_frame_zz = m->pus_base_frame_zz[i];
-        const real pus_e_2_in_axes3_x =
-            inv_pus_size_t*pus_platform_joint_offset_x*(pus_J_3_t*pus_base_frame_xz +
-            pus_J_3_t_2*pus_base_frame_yz + pus_J_3_t_3*pus_base_frame_zz);
-        const real pus_J_3_in_spec3_xy = m->pus_J_3_in_spec3_xy[i];
-        const real pus_J_3_in_spec3_yz = m->pus_J_3_in_spec3_yz[i];
-        const real pus_J_3_in_axes2_xz = pus_J_3_in_spec3_xy*pus_e_2_in_axes3_x +
-            pus_J_3_in_spec3_yz*pus_J_3_t_11;
-        /* (pus-c_2) cosine of the angle of joint 2 from its reference direction */
-        const real inv_pus_J_3_t_9 = 1/pus_J_3_t_9;
-        const real pus_c_2_t = inv_pus_J_3_t_9*pus_J_3_t_10*pus_J_3_t_8;
-        /* (pus-s_2) sine of the angle of joint 2 from its reference direction */
-        const real pus_s_2 = inv_pus_J_3_t_9*pus_J_3_t_10*pus_J_3_t_7;
-        /* (pus-S_dot) velocity of the connection point */
-        const real omega_y = s[16*w + j];
-        const real omega_z = s[17*w + j];
-        const real pus_S_dot_t = omega_y*pus_q_z - omega_z*pus_q_y;
-        const real omega_x = s[15*w + j];
-        const real pus_S_dot_t_2 = omega_z*pus_q_x - omega_x*pus_q_z;
-        const real pus_S_dot_t_3 = omega_x*pus_q_y - omega_y*pus_q_x;
-        const real t_dot_x = s[12*w + j];
-        const real pus_S_dot_x = pus_S_dot_t + t_dot_x;
-        const real t_dot_y = s[13*w + j];
-        const real pus_S_dot_y = pus_S_dot_t_2 + t_dot_y;
-        const real t_dot_z = s[14*w + j];
-        const real pus_S_dot_z = pus_S_dot_t_3 + t_dot_z;
-        /* (pus-v_2) velocity of the connection point per rate of joint 2 */
-        const real pus_v_2_in_axes3_z = pus_J_3_t_11*pus_platform_joint_offset_x;
+        values_pus v;
+        stage_pus_X(m, w, i, j, s, X, &v);
+        stage_pus_V_X(w, j, V, &v);
+        stage_pus_M_dynamics(m, w, i, j, X, &v);
         /* (pus-w_1) reciprocal vector 1 */
-        const real axis_z_pus_axes3_x = pus_base_frame_xy*pus_s_2 - pus_base_frame_xx*pus_c_2_t;
-        const real axis_z_pus_axes3_y = pus_base_frame_yy*pus_s_2 - pus_base_frame_yx*pus_c_2_t;
-        const real axis_z_pus_axes3_z = pus_base_frame_zy*pus_s_2 - pus_base_frame_zx*pus_c_2_t;
-        const real pus_e_1_in_axes3_y = pus_e_2_in_axes3_x*pus_s_2;
-        const real pus_w_1_t = pus_c_2_t*pus_e_2_in_axes3_x;
-        const real axis_y_pus_axes3_x = pus_base_frame_xx*pus_e_1_in_axes3_y +
-            pus_base_frame_xy*pus_w_1_t - pus_J_3_t_11*pus_base_frame_xz;
-        const real axis_y_pus_axes3_y = pus_base_frame_yx*pus_e_1_in_axes3_y +
-            pus_base_frame_yy*pus_w_1_t - pus_J_3_t_11*pus_base_frame_yz;
-        const real axis_y_pus_axes3_z = pus_base_frame_zx*pus_e_1_in_axes3_y +
-            pus_base_frame_zy*pus_w_1_t - pus_J_3_t_11*pus_base_frame_zz;
-        const real axis_x_pus_axes3_x = axis_y_pus_axes3_y*axis_z_pus_axes3_z -
-            axis_y_pus_axes3_z*axis_z_pus_axes3_y;
-        const real axis_x_pus_axes3_y = axis_y_pus_axes3_z*axis_z_pus_axes3_x -
-            axis_y_pus_axes3_x*axis_z_pus_axes3_z;
-        const real axis_x_pus_axes3_z = axis_y_pus_axes3_x*axis_z_pus_axes3_y -
-            axis_y_pus_axes3_y*axis_z_pus_axes3_x;
-        const real pus_e_1_in_axes3_x = pus_J_3_t_11*pus_s_2;
-        const real pus_w_1_in_axes3_x = 1/pus_e_1_in_axes3_x;
-        const real pus_w_1_x = axis_x_pus_axes3_x*pus_w_1_in_axes3_x;
-        const real pus_w_1_y = axis_x_pus_axes3_y*pus_w_1_in_axes3_x;
-        const real pus_w_1_z = axis_x_pus_axes3_z*pus_w_1_in_axes3_x;
-        /* (pus-w_2) reciprocal vector 2 */
-        const real pus_w_2_in_axes3_z = 1/pus_v_2_in_axes3_z;
-        const real pus_w_2_in_axes3_x = pus_c_2_t*pus_w_1_in_axes3_x*pus_w_2_in_axes3_z;
-        /* (pus-w_3) reciprocal vector 3 */
-        const real pus_w_3_in_axes3_y = m->pus_w_3_in_axes3_y[i];
-        const real pus_w_3_in_axes3_x = -pus_e_1_in_axes3_y*pus_w_1_in_axes3_x*pus_w_3_in_axes3_y;
+        const real pus_w_1_t = v.pus_e_2_in_axes3_x*v.pus_s_2;
+        const real pus_base_frame_xx = m->pus_base_frame_xx[i];
+        const real pus_base_frame_xy = m->pus_base_frame_xy[i];
+        const real pus_base_frame_xz = m->pus_base_frame_xz[i];
+        const real axis_y_pus_axes3_x = pus_base_frame_xx*v.pus_e_1_in_axes3_y +
+            pus_base_frame_xy*pus_w_1_t - v.pus_J_3_t_10*pus_base_frame_xz;
+        const real pus_base_frame_yx = m->pus_base_frame_yx[i];
+        const real pus_base_frame_yy = m->pus_base_frame_yy[i];
+        const real pus_base_frame_yz = m->pus_base_frame_yz[i];
+        const real axis_y_pus_axes3_y = pus_base_frame_yx*v.pus_e_1_in_axes3_y +
+            pus_base_frame_yy*pus_w_1_t - v.pus_J_3_t_10*pus_base_frame_yz;
+        const real pus_base_frame_zx = m->pus_base_frame_zx[i];
+        const real pus_base_frame_zy = m->pus_base_frame_zy[i];
+        const real pus_base_frame_zz = m->pus_base_frame_zz[i];
+        const real axis_y_pus_axes3_z = pus_base_frame_zx*v.pus_e_1_in_axes3_y +
+            pus_base_frame_zy*pus_w_1_t - v.pus_J_3_t_10*pus_base_frame_zz;
+        const real axis_x_pus_axes3_x = axis_y_pus_axes3_y*v.axis_z_pus_axes3_z -
+            axis_y_pus_axes3_z*v.axis_z_pus_axes3_y;
+        const real axis_x_pus_axes3_y = axis_y_pus_axes3_z*v.axis_z_pus_axes3_x -
+            axis_y_pus_axes3_x*v.axis_z_pus_axes3_z;
+        const real axis_x_pus_axes3_z = axis_y_pus_axes3_x*v.axis_z_pus_axes3_y -
+            axis_y_pus_axes3_y*v.axis_z_pus_axes3_x;
+        const real pus_w_1_x = axis_x_pus_axes3_x*v.pus_w_1_in_axes3_x;
+        const real pus_w_1_y = axis_x_pus_axes3_y*v.pus_w_1_in_axes3_x;
+        const real pus_w_1_z = axis_x_pus_axes3_z*v.pus_w_1_in_axes3_x;
         /* (pus-qd_1) rate of joint 1 */
-        const real pus_qd_1 = pus_w_1_in_axes3_x*(axis_x_pus_axes3_x*pus_S_dot_x +
-            axis_x_pus_axes3_y*pus_S_dot_y + axis_x_pus_axes3_z*pus_S_dot_z);
+        const real pus_qd_1 = v.pus_w_1_in_axes3_x*(axis_x_pus_axes3_x*v.pus_S_dot_x +
+            axis_x_pus_axes3_y*v.pus_S_dot_y + axis_x_pus_axes3_z*v.pus_S_dot_z);
         /* (pus-qd_2) rate of joint 2 */
-        const real pus_qd_2 = pus_w_2_in_axes3_z*(axis_z_pus_axes3_x*pus_S_dot_x +
-            axis_z_pus_axes3_y*pus_S_dot_y + axis_z_pus_axes3_z*pus_S_dot_z + pus_c_2_t*pus_qd_1);
+        const real pus_qd_2 = v.pus_w_2_in_axes3_z*(v.axis_z_pus_axes3_x*v.pus_S_dot_x +
+            v.axis_z_pus_axes3_y*v.pus_S_dot_y + v.axis_z_pus_axes3_z*v.pus_S_dot_z +
+            pus_qd_1*v.pus_s_2);
         /* (pus-qd_3) rate of joint 3 */
-        const real pus_qd_3_t = axis_y_pus_axes3_x*pus_S_dot_x + axis_y_pus_axes3_y*pus_S_dot_y +
-            axis_y_pus_axes3_z*pus_S_dot_z - pus_e_1_in_axes3_y*pus_qd_1;
+        const real pus_qd_3_t = axis_y_pus_axes3_x*v.pus_S_dot_x +
+            axis_y_pus_axes3_y*v.pus_S_dot_y + axis_y_pus_axes3_z*v.pus_S_dot_z -
+            v.pus_e_1_in_axes3_y*pus_qd_1;
+        const real pus_w_3_in_axes3_y = m->pus_w_3_in_axes3_y[i];
         const real pus_qd_3 = pus_qd_3_t*pus_w_3_in_axes3_y;
         /* (pus-omega_2) angular velocity of link 2 */
-        const real pus_omega_2_in_axes3_x = pus_e_2_in_axes3_x*pus_qd_2;
-        const real pus_omega_2_in_axes3_y = -pus_J_3_t_11*pus_qd_2;
+        const real pus_omega_2_in_axes3_x = v.pus_e_2_in_axes3_x*pus_qd_2;
+        const real pus_omega_2_in_axes3_y = -v.pus_J_3_t_10*pus_qd_2;
         /* (pus-W_3) centripetal tensor of link 3 */
         const real pus_W_3_in_axes3_yz = pus_omega_2_in_axes3_y*pus_qd_3;
         const real pus_W_3_in_axes3_xz = pus_omega_2_in_axes3_x*pus_qd_3;
         const real pus_W_3_in_axes3_xy = pus_omega_2_in_axes3_x*pus_omega_2_in_axes3_y;
         /* (pus-u_1) centripetal acceleration of the connection point */
-        const real pus_u_1_x = omega_y*pus_S_dot_t_3 - omega_z*pus_S_dot_t_2;
-        const real pus_u_1_y = omega_z*pus_S_dot_t - omega_x*pus_S_dot_t_3;
-        const real pus_u_1_z = omega_x*pus_S_dot_t_2 - omega_y*pus_S_dot_t;
+        const real omega_y = V[4*w + j];
+        const real omega_z = V[5*w + j];
+        const real pus_u_1_x = omega_y*v.pus_S_dot_t_3 - omega_z*v.pus_S_dot_t_2;
+        const real omega_x = V[3*w + j];
+        const real pus_u_1_y = omega_z*v.pus_S_dot_t - omega_x*v.pus_S_dot_t_3;
+        const real pus_u_1_z = omega_x*v.pus_S_dot_t_2 - omega_y*v.pus_S_dot_t;
         const real pus_u_1_in_axes3_x = axis_x_pus_axes3_x*pus_u_1_x +
             axis_x_pus_axes3_y*pus_u_1_y + axis_x_pus_axes3_z*pus_u_1_z;
         const real pus_u_1_in_axes3_y = axis_y_pus_axes3_x*pus_u_1_x +
             axis_y_pus_axes3_y*pus_u_1_y + axis_y_pus_axes3_z*pus_u_1_z;
-        const real pus_u_1_in_axes3_z = axis_z_pus_axes3_x*pus_u_1_x +
-            axis_z_pus_axes3_y*pus_u_1_y + axis_z_pus_axes3_z*pus_u_1_z;
+        const real pus_u_1_in_axes3_z = v.axis_z_pus_axes3_x*pus_u_1_x +
+            v.axis_z_pus_axes3_y*pus_u_1_y + v.axis_z_pus_axes3_z*pus_u_1_z;
         /* (pus-bias) acceleration of the connection point at zero joint accelerations */
+        const real pus_platform_joint_offset_x = m->pus_platform_joint_offset_x[i];
         const real pus_bias_in_axes3_z = pus_W_3_in_axes3_xz*pus_platform_joint_offset_x +
             pus_omega_2_in_axes3_x*pus_qd_3_t;
         /* (pus-rel_o) remainder without the acceleration in: acceleration of the connection point left to
@@ -1647,19 +2183,16 @@ INLINE void dynamics_legs_pus(const prepared *m, size_t w, size_t leg, size_t le
         const real pus_rel_o_in_axes3_y = pus_u_1_in_axes3_y - pus_omega_2_in_axes3_x*pus_rel_o_t;
         const real pus_rel_o_in_axes3_z = pus_u_1_in_axes3_z - pus_bias_in_axes3_z;
         /* (pus-qdd_1_o) remainder without the acceleration in: acceleration of joint 1 */
-        const real pus_qdd_1_o = pus_rel_o_in_axes3_x*pus_w_1_in_axes3_x;
+        const real pus_qdd_1_o = pus_rel_o_in_axes3_x*v.pus_w_1_in_axes3_x;
         /* (pus-qdd_2_o) remainder without the acceleration in: acceleration of joint 2 */
-        const real pus_qdd_2_o_t = pus_w_2_in_axes3_z*(-pus_rel_o_in_axes3_z -
-            pus_c_2_t*pus_qdd_1_o);
+        const real pus_qdd_2_o_t = v.pus_w_2_in_axes3_z*(-pus_rel_o_in_axes3_z -
+            pus_qdd_1_o*v.pus_s_2);
         /* (pus-qdd_3_o) remainder without the acceleration in: acceleration of joint 3 */
-        const real pus_qdd_3_o = -pus_w_3_in_axes3_y*(pus_e_1_in_axes3_y*pus_qdd_1_o -
+        const real pus_qdd_3_o = -pus_w_3_in_axes3_y*(v.pus_e_1_in_axes3_y*pus_qdd_1_o -
             pus_rel_o_in_axes3_y);
         /* (pus-alpha_2_o) remainder without the acceleration in: angular acceleration of link 2 */
-        const real pus_alpha_2_o_t = pus_e_2_in_axes3_x*pus_qdd_2_o_t;
-        const real pus_alpha_2_o_in_axes3_y = pus_J_3_t_11*pus_qdd_2_o_t;
-        /* (pus-d_alpha_3) coefficient of the acceleration in: angular acceleration of link 3 */
-        const real pus_d_alpha_3_in_axes3_xz = pus_e_2_in_axes3_x*pus_w_2_in_axes3_z;
-        const real pus_d_alpha_3_t = pus_J_3_t_11*pus_w_2_in_axes3_z;
+        const real pus_alpha_2_o_t = v.pus_e_2_in_axes3_x*pus_qdd_2_o_t;
+        const real pus_alpha_2_o_in_axes3_y = v.pus_J_3_t_10*pus_qdd_2_o_t;
         /* (pus-alpha_3_o) remainder without the acceleration in: angular acceleration of link 3 */
         const real pus_alpha_3_o_in_axes3_x = pus_W_3_in_axes3_yz - pus_alpha_2_o_t;
         const real pus_alpha_3_o_in_axes3_y = pus_alpha_2_o_in_axes3_y - pus_W_3_in_axes3_xz;
@@ -1675,20 +2208,22 @@ INLINE void dynamics_legs_pus(const prepared *m, size_t w, size_t leg, size_t le
         /* (pus-acc_3_o) remainder without the acceleration in: acceleration of the reference point of
            link 3, less gravity */
         const real pus_g_in_axes0_y = m->pus_g_in_axes0_y[i];
-        const real pus_acc_3_o_t = -pus_c_2_t*pus_g_in_axes0_y - pus_g_in_axes0_x*pus_s_2;
+        const real pus_acc_3_o_t = v.pus_c_2*pus_g_in_axes0_x + pus_g_in_axes0_y*v.pus_s_2;
         const real pus_g_in_axes0_z = m->pus_g_in_axes0_z[i];
-        const real pus_acc_3_o_in_axes3_x = pus_u_1_in_axes3_x + pus_J_3_t_11*pus_acc_3_o_t -
-            pus_e_2_in_axes3_x*pus_g_in_axes0_z;
-        const real pus_acc_3_o_in_axes3_y = pus_u_1_in_axes3_y + pus_J_3_t_11*pus_g_in_axes0_z +
-            pus_acc_3_o_t*pus_e_2_in_axes3_x;
-        const real pus_acc_3_o_in_axes3_z = pus_u_1_in_axes3_z + pus_c_2_t*pus_g_in_axes0_x -
-            pus_g_in_axes0_y*pus_s_2;
+        const real pus_acc_3_o_in_axes3_x = pus_u_1_in_axes3_x - v.pus_J_3_t_10*pus_acc_3_o_t -
+            v.pus_e_2_in_axes3_x*pus_g_in_axes0_z;
+        const real pus_acc_3_o_in_axes3_y = pus_u_1_in_axes3_y + v.pus_J_3_t_10*pus_g_in_axes0_z -
+            pus_acc_3_o_t*v.pus_e_2_in_axes3_x;
+        const real pus_acc_3_o_in_axes3_z = pus_u_1_in_axes3_z + pus_g_in_axes0_x*v.pus_s_2 -
+            v.pus_c_2*pus_g_in_axes0_y;
         /* (pus-mu_3_o) remainder without the acceleration in: inertia moment of the links that turn with
            link 3, about their reference points */
         const real pus_mu_3_o_t = pus_omega_2_in_axes3_x*pus_omega_2_in_axes3_x;
         const real pus_mu_3_o_t_2 = pus_omega_2_in_axes3_y*pus_omega_2_in_axes3_y;
         const real pus_mu_3_o_t_3 = pus_qd_3*pus_qd_3;
+        const real pus_J_3_in_spec3_xy = m->pus_J_3_in_spec3_xy[i];
         const real pus_J_3_in_spec3_xz = m->pus_J_3_in_spec3_xz[i];
+        const real pus_J_3_in_spec3_yz = m->pus_J_3_in_spec3_yz[i];
         const real pus_Sigma_3_in_axes3_yy = m->pus_Sigma_3_in_axes3_yy[i];
         const real pus_Sigma_3_in_axes3_zz = m->pus_Sigma_3_in_axes3_zz[i];
         const real pus_h_3_in_spec3_y = m->pus_h_3_in_spec3_y[i];
@@ -1711,131 +2246,92 @@ INLINE void dynamics_legs_pus(const prepared *m, size_t w, size_t leg, size_t le
             - pus_B_3_o_in_axes3_xy*pus_Sigma_3_in_axes3_yy - pus_J_3_in_spec3_xy*pus_alpha_2_o_t
             - pus_J_3_in_spec3_xz*(pus_mu_3_o_t - pus_mu_3_o_t_2) -
             pus_J_3_in_spec3_yz*pus_alpha_2_o_in_axes3_y;
-        /* (pus-d_Gamma_3) coefficient of the acceleration in: moment about axis 3 of the distal links'
-           inertia and weight */
-        const real pus_d_Gamma_3_in_axes3_z = pus_J_3_in_axes2_xz*pus_w_2_in_axes3_z;
-        const real pus_d_Gamma_3_t = m->pus_d_Gamma_3_t[i];
-        const real pus_d_Gamma_3_in_axes3_x = pus_h_3_in_spec3_z +
-            pus_w_1_in_axes3_x*(pus_c_2_t*pus_d_Gamma_3_in_axes3_z -
-            pus_d_Gamma_3_t*pus_e_1_in_axes3_y);
-        /* (pus-d_Gamma_2) coefficient of the acceleration in: moment about axis 2 of the distal links'
-           inertia and weight */
-        const real pus_J_3_in_spec3_xx = m->pus_J_3_in_spec3_xx[i];
-        const real pus_J_3_in_spec3_zz = m->pus_J_3_in_spec3_zz[i];
-        const real pus_d_Gamma_2_t =
-            pus_w_2_in_axes3_z*(pus_e_2_in_axes3_x*(pus_J_3_in_spec3_xx*pus_e_2_in_axes3_x +
-            pus_J_3_in_spec3_xz*pus_J_3_t_11) -
-            pus_J_3_t_11*(-pus_J_3_in_spec3_xz*pus_e_2_in_axes3_x -
-            pus_J_3_in_spec3_zz*pus_J_3_t_11));
-        const real pus_d_Gamma_2_t_2 = pus_J_3_in_axes2_xz*pus_w_3_in_axes3_y;
-        const real pus_d_Gamma_2_in_axes3_x = pus_w_1_in_axes3_x*(pus_c_2_t*pus_d_Gamma_2_t -
-            pus_d_Gamma_2_t_2*pus_e_1_in_axes3_y) - pus_J_3_t_11*pus_h_3_in_spec3_y;
-        const real pus_d_Gamma_2_in_axes3_y = pus_d_Gamma_2_t_2 -
-            pus_e_2_in_axes3_x*pus_h_3_in_spec3_y;
-        const real pus_d_Gamma_2_in_axes3_z = pus_d_Gamma_2_t + pus_J_3_t_11*pus_h_3_in_spec3_x -
-            pus_e_2_in_axes3_x*pus_h_3_in_spec3_z;
         /* (pus-G_o) remainder without the acceleration in: force at the connection point that balances
            the leg's inertia and weight along all degrees of freedom */
-        const real pus_G_o_in_axes3_z =
-            pus_w_2_in_axes3_z*(pus_e_2_in_axes3_x*pus_mu_3_o_in_axes3_x -
-            pus_J_3_t_11*pus_mu_3_o_in_axes3_y);
+        const real pus_G_o_t = v.pus_w_2_in_axes3_z*(v.pus_J_3_t_10*pus_mu_3_o_in_axes3_y -
+            v.pus_e_2_in_axes3_x*pus_mu_3_o_in_axes3_x);
         const real pus_G_o_in_axes3_y = pus_mu_3_o_in_axes3_z*pus_w_3_in_axes3_y;
-        /* (pus-d_c) coefficient of the acceleration in: leg force on the platform without actuation and
-           without the mass at the connection point */
-        const real pus_link1_mass = m->pus_link1_mass[i];
-        const real pus_d_c_in_axes3_xx = pus_J_3_t_11*pus_h_3_in_spec3_y*pus_w_2_in_axes3_x -
-            pus_d_Gamma_2_in_axes3_x*pus_w_2_in_axes3_x -
-            pus_d_Gamma_3_in_axes3_x*pus_w_3_in_axes3_x - pus_h_3_in_spec3_z*pus_w_3_in_axes3_x -
-            pus_link1_mass*pus_w_1_in_axes3_x*pus_w_1_in_axes3_x;
-        const real pus_d_Gamma_3_in_axes3_y = m->pus_d_Gamma_3_in_axes3_y[i];
-        const real pus_d_phi_3_in_axes3_xy = m->pus_d_phi_3_in_axes3_xy[i];
-        const real pus_d_c_in_axes3_xy = -pus_d_phi_3_in_axes3_xy -
-            pus_d_Gamma_2_in_axes3_y*pus_w_2_in_axes3_x -
-            pus_d_Gamma_3_in_axes3_y*pus_w_3_in_axes3_x;
-        const real pus_d_c_in_axes3_xz = pus_d_alpha_3_t*pus_h_3_in_spec3_y -
-            pus_d_Gamma_2_in_axes3_z*pus_w_2_in_axes3_x -
-            pus_d_Gamma_3_in_axes3_z*pus_w_3_in_axes3_x;
-        const real pus_d_c_in_axes3_yz = pus_d_alpha_3_in_axes3_xz*pus_h_3_in_spec3_y -
-            pus_d_Gamma_3_in_axes3_z*pus_w_3_in_axes3_y;
         /* (pus-c_o) remainder without the acceleration in: leg force on the platform without actuation
            and without the mass at the connection point */
+        const real pus_link1_mass = m->pus_link1_mass[i];
         const real pus_c_o_in_axes3_x = pus_B_3_o_in_axes3_xy*pus_h_3_in_spec3_z +
             pus_h_3_in_spec3_x*(pus_mu_3_o_t_2 + pus_mu_3_o_t_3) -
             pus_alpha_2_o_in_axes3_y*pus_h_3_in_spec3_y -
-            pus_w_1_in_axes3_x*(pus_G_o_in_axes3_z*pus_c_2_t +
-            pus_acc_1_o_in_axes0_x*pus_link1_mass - pus_G_o_in_axes3_y*pus_e_1_in_axes3_y);
+            v.pus_w_1_in_axes3_x*(pus_acc_1_o_in_axes0_x*pus_link1_mass -
+            pus_G_o_in_axes3_y*v.pus_e_1_in_axes3_y - pus_G_o_t*v.pus_s_2);
         const real pus_c_o_in_axes3_y = -pus_G_o_in_axes3_y -
             pus_B_3_o_in_axes3_yx*pus_h_3_in_spec3_x - pus_alpha_2_o_t*pus_h_3_in_spec3_y -
             pus_h_3_in_spec3_z*(pus_mu_3_o_t + pus_mu_3_o_t_3);
-        const real pus_c_o_in_axes3_z = pus_B_3_o_in_axes3_zy*pus_h_3_in_spec3_z +
-            pus_h_3_in_spec3_y*(pus_mu_3_o_t + pus_mu_3_o_t_2) - pus_G_o_in_axes3_z -
+        const real pus_c_o_in_axes3_z = pus_G_o_t + pus_B_3_o_in_axes3_zy*pus_h_3_in_spec3_z +
+            pus_h_3_in_spec3_y*(pus_mu_3_o_t + pus_mu_3_o_t_2) -
             pus_B_3_o_in_axes3_zx*pus_h_3_in_spec3_x;
         /* (pus-Q) inertia of the leg at the connection point, without the mass gathered there */
         const real pus_d_c_in_axes3_yy = m->pus_d_c_in_axes3_yy[i];
-        const real pus_Q_t = pus_d_c_in_axes3_xx - pus_d_c_in_axes3_yy;
+        const real pus_Q_t = v.pus_d_c_in_axes3_xx - pus_d_c_in_axes3_yy;
         const real pus_Q_t_2 = R(0.5)*pus_Q_t;
-        const real pus_Q_t_3 = pus_d_c_in_axes3_xx + pus_d_Gamma_2_in_axes3_z*pus_w_2_in_axes3_z +
-            pus_d_alpha_3_t*pus_h_3_in_spec3_x - pus_d_alpha_3_in_axes3_xz*pus_h_3_in_spec3_z;
+        const real pus_Q_t_3 = v.pus_d_c_in_axes3_xx +
+            v.pus_d_Gamma_2_in_axes3_z*v.pus_w_2_in_axes3_z + v.pus_d_alpha_3_t*pus_h_3_in_spec3_x
+            - v.pus_d_alpha_3_in_axes3_xz*pus_h_3_in_spec3_z;
         const real pus_Q_t_4 = R(0.5)*pus_Q_t_3;
-        const real pus_Q_t_5 = axis_x_pus_axes3_x*pus_d_c_in_axes3_xy +
-            axis_z_pus_axes3_x*pus_d_c_in_axes3_yz - axis_y_pus_axes3_x*pus_Q_t_2;
-        const real pus_Q_t_6 = axis_x_pus_axes3_y*pus_d_c_in_axes3_xy +
-            axis_z_pus_axes3_y*pus_d_c_in_axes3_yz - axis_y_pus_axes3_y*pus_Q_t_2;
-        const real pus_Q_t_7 = axis_x_pus_axes3_z*pus_d_c_in_axes3_xy +
-            axis_z_pus_axes3_z*pus_d_c_in_axes3_yz - axis_y_pus_axes3_z*pus_Q_t_2;
-        const real pus_Q_t_8 = axis_z_pus_axes3_x*pus_Q_t_4 -
-            axis_x_pus_axes3_x*pus_d_c_in_axes3_xz;
-        const real pus_Q_t_9 = axis_z_pus_axes3_y*pus_Q_t_4 -
-            axis_x_pus_axes3_y*pus_d_c_in_axes3_xz;
-        const real pus_Q_t_10 = axis_z_pus_axes3_z*pus_Q_t_4 -
-            axis_x_pus_axes3_z*pus_d_c_in_axes3_xz;
-        const real pus_Q_t_11 = axis_y_pus_axes3_x*pus_Q_t_5 - axis_z_pus_axes3_x*pus_Q_t_8;
-        const real pus_Q_xx = -2*pus_Q_t_11 - pus_d_c_in_axes3_xx;
-        const real pus_Q_xy = axis_z_pus_axes3_x*pus_Q_t_9 + axis_z_pus_axes3_y*pus_Q_t_8 -
+        const real pus_Q_t_5 = axis_x_pus_axes3_x*v.pus_d_c_in_axes3_xy +
+            v.axis_z_pus_axes3_x*v.pus_d_c_in_axes3_yz - axis_y_pus_axes3_x*pus_Q_t_2;
+        const real pus_Q_t_6 = axis_x_pus_axes3_y*v.pus_d_c_in_axes3_xy +
+            v.axis_z_pus_axes3_y*v.pus_d_c_in_axes3_yz - axis_y_pus_axes3_y*pus_Q_t_2;
+        const real pus_Q_t_7 = axis_x_pus_axes3_z*v.pus_d_c_in_axes3_xy +
+            v.axis_z_pus_axes3_z*v.pus_d_c_in_axes3_yz - axis_y_pus_axes3_z*pus_Q_t_2;
+        const real pus_Q_t_8 = v.axis_z_pus_axes3_x*pus_Q_t_4 -
+            axis_x_pus_axes3_x*v.pus_d_c_in_axes3_xz;
+        const real pus_Q_t_9 = v.axis_z_pus_axes3_y*pus_Q_t_4 -
+            axis_x_pus_axes3_y*v.pus_d_c_in_axes3_xz;
+        const real pus_Q_t_10 = v.axis_z_pus_axes3_z*pus_Q_t_4 -
+            axis_x_pus_axes3_z*v.pus_d_c_in_axes3_xz;
+        const real pus_Q_t_11 = axis_y_pus_axes3_x*pus_Q_t_5 - v.axis_z_pus_axes3_x*pus_Q_t_8;
+        const real pus_Q_xx = -2*pus_Q_t_11 - v.pus_d_c_in_axes3_xx;
+        const real pus_Q_xy = v.axis_z_pus_axes3_x*pus_Q_t_9 + v.axis_z_pus_axes3_y*pus_Q_t_8 -
             axis_y_pus_axes3_x*pus_Q_t_6 - axis_y_pus_axes3_y*pus_Q_t_5;
-        const real pus_Q_xz = axis_z_pus_axes3_x*pus_Q_t_10 + axis_z_pus_axes3_z*pus_Q_t_8 -
+        const real pus_Q_xz = v.axis_z_pus_axes3_x*pus_Q_t_10 + v.axis_z_pus_axes3_z*pus_Q_t_8 -
             axis_y_pus_axes3_x*pus_Q_t_7 - axis_y_pus_axes3_z*pus_Q_t_5;
-        const real pus_Q_t_12 = axis_y_pus_axes3_y*pus_Q_t_6 - axis_z_pus_axes3_y*pus_Q_t_9;
-        const real pus_Q_yy = -2*pus_Q_t_12 - pus_d_c_in_axes3_xx;
-        const real pus_Q_yz = axis_z_pus_axes3_y*pus_Q_t_10 + axis_z_pus_axes3_z*pus_Q_t_9 -
+        const real pus_Q_t_12 = axis_y_pus_axes3_y*pus_Q_t_6 - v.axis_z_pus_axes3_y*pus_Q_t_9;
+        const real pus_Q_yy = -2*pus_Q_t_12 - v.pus_d_c_in_axes3_xx;
+        const real pus_Q_yz = v.axis_z_pus_axes3_y*pus_Q_t_10 + v.axis_z_pus_axes3_z*pus_Q_t_9 -
             axis_y_pus_axes3_y*pus_Q_t_7 - axis_y_pus_axes3_z*pus_Q_t_6;
-        const real pus_Q_t_13 = axis_y_pus_axes3_z*pus_Q_t_7 - axis_z_pus_axes3_z*pus_Q_t_10;
-        const real pus_Q_zz = -2*pus_Q_t_13 - pus_d_c_in_axes3_xx;
+        const real pus_Q_t_13 = axis_y_pus_axes3_z*pus_Q_t_7 - v.axis_z_pus_axes3_z*pus_Q_t_10;
+        const real pus_Q_zz = -2*pus_Q_t_13 - v.pus_d_c_in_axes3_xx;
         /* (pus-U) velocity and gravity terms of the leg force */
         const real pus_U_x = -axis_x_pus_axes3_x*pus_c_o_in_axes3_x -
-            axis_y_pus_axes3_x*pus_c_o_in_axes3_y - axis_z_pus_axes3_x*pus_c_o_in_axes3_z;
+            axis_y_pus_axes3_x*pus_c_o_in_axes3_y - v.axis_z_pus_axes3_x*pus_c_o_in_axes3_z;
         const real pus_U_y = -axis_x_pus_axes3_y*pus_c_o_in_axes3_x -
-            axis_y_pus_axes3_y*pus_c_o_in_axes3_y - axis_z_pus_axes3_y*pus_c_o_in_axes3_z;
+            axis_y_pus_axes3_y*pus_c_o_in_axes3_y - v.axis_z_pus_axes3_y*pus_c_o_in_axes3_z;
         const real pus_U_z = -axis_x_pus_axes3_z*pus_c_o_in_axes3_x -
-            axis_y_pus_axes3_z*pus_c_o_in_axes3_y - axis_z_pus_axes3_z*pus_c_o_in_axes3_z;
+            axis_y_pus_axes3_z*pus_c_o_in_axes3_y - v.axis_z_pus_axes3_z*pus_c_o_in_axes3_z;
         /* (M_ta) coupling block of M */
-        const real pus_M_ta_t = -pus_Q_xy*pus_q_z;
-        const real pus_M_ta_t_2 = pus_Q_xz*pus_q_y;
+        const real pus_M_ta_t = -pus_Q_xy*v.pus_q_z;
+        const real pus_M_ta_t_2 = pus_Q_xz*v.pus_q_y;
         const real pus_M_ta_t_3 = pus_M_ta_t + pus_M_ta_t_2;
-        const real pus_M_ta_t_4 = pus_Q_xx*pus_q_z - pus_Q_xz*pus_q_x;
-        const real pus_M_ta_t_5 = pus_Q_xy*pus_q_x - pus_Q_xx*pus_q_y;
-        const real pus_M_ta_t_6 = pus_Q_yz*pus_q_y - pus_Q_yy*pus_q_z;
-        const real pus_M_ta_t_7 = pus_Q_yz*pus_q_x;
+        const real pus_M_ta_t_4 = pus_Q_xx*v.pus_q_z - pus_Q_xz*v.pus_q_x;
+        const real pus_M_ta_t_5 = pus_Q_xy*v.pus_q_x - pus_Q_xx*v.pus_q_y;
+        const real pus_M_ta_t_6 = pus_Q_yz*v.pus_q_y - pus_Q_yy*v.pus_q_z;
+        const real pus_M_ta_t_7 = pus_Q_yz*v.pus_q_x;
         const real pus_M_ta_t_8 = pus_M_ta_t + pus_M_ta_t_7;
-        const real pus_M_ta_t_9 = pus_Q_yy*pus_q_x - pus_Q_xy*pus_q_y;
-        const real pus_M_ta_t_10 = pus_Q_zz*pus_q_y - pus_Q_yz*pus_q_z;
-        const real pus_M_ta_t_11 = pus_Q_xz*pus_q_z - pus_Q_zz*pus_q_x;
+        const real pus_M_ta_t_9 = pus_Q_yy*v.pus_q_x - pus_Q_xy*v.pus_q_y;
+        const real pus_M_ta_t_10 = pus_Q_zz*v.pus_q_y - pus_Q_yz*v.pus_q_z;
+        const real pus_M_ta_t_11 = pus_Q_xz*v.pus_q_z - pus_Q_zz*v.pus_q_x;
         const real pus_M_ta_t_12 = pus_M_ta_t_7 - pus_M_ta_t_2;
         /* (M_aa) rotational block of M */
-        const real pus_M_aa_t = pus_M_ta_t_10*pus_q_y - pus_M_ta_t_6*pus_q_z;
-        const real pus_M_aa_t_2 = pus_M_ta_t_11*pus_q_y + pus_M_ta_t_8*pus_q_z;
-        const real pus_M_aa_t_3 = pus_M_ta_t_12*pus_q_y - pus_M_ta_t_9*pus_q_z;
-        const real pus_M_aa_t_4 = pus_M_ta_t_4*pus_q_z - pus_M_ta_t_11*pus_q_x;
-        const real pus_M_aa_t_5 = pus_M_ta_t_5*pus_q_z - pus_M_ta_t_12*pus_q_x;
-        const real pus_M_aa_t_6 = pus_M_ta_t_9*pus_q_x - pus_M_ta_t_5*pus_q_y;
+        const real pus_M_aa_t = pus_M_ta_t_10*v.pus_q_y - pus_M_ta_t_6*v.pus_q_z;
+        const real pus_M_aa_t_2 = pus_M_ta_t_11*v.pus_q_y + pus_M_ta_t_8*v.pus_q_z;
+        const real pus_M_aa_t_3 = pus_M_ta_t_12*v.pus_q_y - pus_M_ta_t_9*v.pus_q_z;
+        const real pus_M_aa_t_4 = pus_M_ta_t_4*v.pus_q_z - pus_M_ta_t_11*v.pus_q_x;
+        const real pus_M_aa_t_5 = pus_M_ta_t_5*v.pus_q_z - pus_M_ta_t_12*v.pus_q_x;
+        const real pus_M_aa_t_6 = pus_M_ta_t_9*v.pus_q_x - pus_M_ta_t_5*v.pus_q_y;
         /* (Z_a) rotational part of Z */
-        const real pus_Z_a_t = pus_U_z*pus_q_y - pus_U_y*pus_q_z;
-        const real pus_Z_a_t_2 = pus_U_x*pus_q_z - pus_U_z*pus_q_x;
-        const real pus_Z_a_t_3 = pus_U_y*pus_q_x - pus_U_x*pus_q_y;
+        const real pus_Z_a_t = pus_U_z*v.pus_q_y - pus_U_y*v.pus_q_z;
+        const real pus_Z_a_t_2 = pus_U_x*v.pus_q_z - pus_U_z*v.pus_q_x;
+        const real pus_Z_a_t_3 = pus_U_y*v.pus_q_x - pus_U_x*v.pus_q_y;
         /* (pus-H_a_1) moment of the column's unit force about the platform origin */
-        const real pus_H_a_1_x = pus_q_y*pus_w_1_z - pus_q_z*pus_w_1_y;
-        const real pus_H_a_1_y = pus_q_z*pus_w_1_x - pus_q_x*pus_w_1_z;
-        const real pus_H_a_1_z = pus_q_x*pus_w_1_y - pus_q_y*pus_w_1_x;
+        const real pus_H_a_1_x = v.pus_q_y*pus_w_1_z - v.pus_q_z*pus_w_1_y;
+        const real pus_H_a_1_y = v.pus_q_z*pus_w_1_x - v.pus_q_x*pus_w_1_z;
+        const real pus_H_a_1_z = v.pus_q_x*pus_w_1_y - v.pus_q_y*pus_w_1_x;
         /* (M_tt) translational block of M */
         gather(&terms[0*count + k], add, pus_Q_xx);  /* M_tt_xx_of_legs */
         gather(&terms[1*count + k], add, pus_Q_xy);  /* M_tt_xy */
@@ -1880,10 +2376,10 @@ INLINE void dynamics_legs_pus(const prepared *m, size_t w, size_t leg, size_t le
             pus_H_a_1_z));
         const real pus_size_t_2 = m->pus_size_t_2[i];
         const real pus_size = m->pus_size[i];
-        o[6*count + k] = UNLESS(pus_J_3_t_6 >= 0);
-        o[7*count + k] = UNLESS(magnitude(pus_J_3_t_9) > TOLERANCE*TOLERANCE*pus_size_t_2) +
-            UNLESS(magnitude(pus_v_2_in_axes3_z) > TOLERANCE*pus_size) +
-            UNLESS(magnitude(pus_e_1_in_axes3_x) > LEAST_1);
+        o[6*count + k] = UNLESS(v.pus_J_3_t_7 >= 0);
+        o[7*count + k] = UNLESS(magnitude(v.pus_J_3_t_8) > TOLERANCE*TOLERANCE*pus_size_t_2) +
+            UNLESS(magnitude(v.pus_v_2_in_axes3_z) > TOLERANCE*pus_size) +
+            UNLESS(magnitude(v.pus_e_1_in_axes3_x) > LEAST_1);
     }
 }
 
@@ -1891,7 +2387,7 @@ INLINE void dynamics_place_pus(size_t w, size_t count, const real *o, size_t leg
     real *H, verdict *t)
 {
     for (size_t k = 0; k < w; ++k) {
-        H[(0*NU + leg)*w + k] = o[0*count + first + k];
+        H[leg*w + k] = o[0*count + first + k];
         H[(NU + leg)*w + k] = o[1*count + first + k];
         H[(2*NU + leg)*w + k] = o[2*count + first + k];
         H[(3*NU + leg)*w + k] = o[3*count + first + k];
@@ -1917,66 +2413,66 @@ INLINE void dynamics_after(const prepared *m, size_t w, const real *s, const rea
         const real M_tt_zz = M_tt_zz_of_legs + m_star;
         /* (M_ta) coupling block of M */
         const real M_ta_xy_of_legs = sums[7*w + k];
-        const real h_star_z = s[20*w + k];
+        const real h_star_z = s[11*w + k];
         const real M_ta_xy = M_ta_xy_of_legs + h_star_z;
         const real M_ta_xz_of_legs = sums[8*w + k];
-        const real h_star_y = s[19*w + k];
+        const real h_star_y = s[10*w + k];
         const real M_ta_xz = M_ta_xz_of_legs - h_star_y;
         const real M_ta_yx_of_legs = sums[9*w + k];
         const real M_ta_yx = M_ta_yx_of_legs - h_star_z;
         const real M_ta_yz_of_legs = sums[11*w + k];
-        const real h_star_x = s[18*w + k];
+        const real h_star_x = s[9*w + k];
         const real M_ta_yz = M_ta_yz_of_legs + h_star_x;
         const real M_ta_zx_of_legs = sums[12*w + k];
         const real M_ta_zx = M_ta_zx_of_legs + h_star_y;
         const real M_ta_zy_of_legs = sums[13*w + k];
         const real M_ta_zy = M_ta_zy_of_legs - h_star_x;
         /* (M_aa) rotational block of M */
-        const real J_star_xx = s[21*w + k];
+        const real J_star_xx = s[12*w + k];
         const real M_aa_xx_of_legs = sums[15*w + k];
         const real M_aa_xx = J_star_xx + M_aa_xx_of_legs;
-        const real J_star_xy = s[22*w + k];
+        const real J_star_xy = s[13*w + k];
         const real M_aa_xy_of_legs = sums[16*w + k];
         const real M_aa_xy = J_star_xy + M_aa_xy_of_legs;
-        const real J_star_xz = s[23*w + k];
+        const real J_star_xz = s[14*w + k];
         const real M_aa_xz_of_legs = sums[17*w + k];
         const real M_aa_xz = J_star_xz + M_aa_xz_of_legs;
-        const real J_star_yy = s[24*w + k];
+        const real J_star_yy = s[15*w + k];
         const real M_aa_yy_of_legs = sums[18*w + k];
         const real M_aa_yy = J_star_yy + M_aa_yy_of_legs;
-        const real J_star_yz = s[25*w + k];
+        const real J_star_yz = s[16*w + k];
         const real M_aa_yz_of_legs = sums[19*w + k];
         const real M_aa_yz = J_star_yz + M_aa_yz_of_legs;
-        const real J_star_zz = s[26*w + k];
+        const real J_star_zz = s[17*w + k];
         const real M_aa_zz_of_legs = sums[20*w + k];
         const real M_aa_zz = J_star_zz + M_aa_zz_of_legs;
         /* (Z_t) translational part of Z */
-        const real Z_p_x = s[27*w + k];
+        const real Z_p_x = s[18*w + k];
         const real Z_t_x_of_legs = sums[21*w + k];
         const real Z_t_x = Z_p_x + Z_t_x_of_legs;
-        const real Z_p_y = s[28*w + k];
+        const real Z_p_y = s[19*w + k];
         const real Z_t_y_of_legs = sums[22*w + k];
         const real Z_t_y = Z_p_y + Z_t_y_of_legs;
-        const real Z_p_z = s[29*w + k];
+        const real Z_p_z = s[20*w + k];
         const real Z_t_z_of_legs = sums[23*w + k];
         const real Z_t_z = Z_p_z + Z_t_z_of_legs;
         /* (Z_a) rotational part of Z */
         const real Z_a_x_of_legs = sums[24*w + k];
-        const real Z_q_x = s[30*w + k];
+        const real Z_q_x = s[21*w + k];
         const real Z_a_x = Z_a_x_of_legs + Z_q_x;
         const real Z_a_y_of_legs = sums[25*w + k];
-        const real Z_q_y = s[31*w + k];
+        const real Z_q_y = s[22*w + k];
         const real Z_a_y = Z_a_y_of_legs + Z_q_y;
         const real Z_a_z_of_legs = sums[26*w + k];
-        const real Z_q_z = s[32*w + k];
+        const real Z_q_z = s[23*w + k];
         const real Z_a_z = Z_a_z_of_legs + Z_q_z;
         /* (M_tt) translational block of M */
-        M[0*NV*w + k] = M_tt_xx;
+        M[0*w + k] = M_tt_xx;
         const real M_tt_xy = sums[1*w + k];
-        M[(0*NV + 1)*w + k] = M_tt_xy;
+        M[1*w + k] = M_tt_xy;
         M[NV*w + k] = M_tt_xy;
         const real M_tt_xz = sums[2*w + k];
-        M[(0*NV + 2)*w + k] = M_tt_xz;
+        M[2*w + k] = M_tt_xz;
         M[2*NV*w + k] = M_tt_xz;
         M[(NV + 1)*w + k] = M_tt_yy;
         const real M_tt_yz = sums[4*w + k];
@@ -1985,11 +2481,11 @@ INLINE void dynamics_after(const prepared *m, size_t w, const real *s, const rea
         M[(2*NV + 2)*w + k] = M_tt_zz;
         /* (M_ta) coupling block of M */
         const real M_ta_xx = sums[6*w + k];
-        M[(0*NV + 3)*w + k] = M_ta_xx;
+        M[3*w + k] = M_ta_xx;
         M[3*NV*w + k] = M_ta_xx;
-        M[(0*NV + 4)*w + k] = M_ta_xy;
+        M[4*w + k] = M_ta_xy;
         M[4*NV*w + k] = M_ta_xy;
-        M[(0*NV + 5)*w + k] = M_ta_xz;
+        M[5*w + k] = M_ta_xz;
         M[5*NV*w + k] = M_ta_xz;
         M[(NV + 3)*w + k] = M_ta_yx;
         M[(3*NV + 1)*w + k] = M_ta_yx;
@@ -2033,12 +2529,10 @@ INLINE void dynamics_after(const prepared *m, size_t w, const real *s, const rea
 INLINE void dynamics_run(const prepared *m, const real *X, const real *V, real *M, real *Z, real
     *H, verdict *t)
 {
-    real s[33] = {0};
-    real sums[27] = {0};
-    real terms_pus[27*LEGS(LEGS_OF_pus)] = {0};
-    real o_pus[9*LEGS(LEGS_OF_pus)] = {0};
+    real s[24] = {0}, sums[27] = {0};
+    real terms_pus[27*LEGS(LEGS_OF_pus)] = {0}, o_pus[9*LEGS(LEGS_OF_pus)] = {0};
     dynamics_before(m, 1, X, V, s, t);
-    dynamics_legs_pus(m, 1, 0, 1, s, 0, LEGS(LEGS_OF_pus), 0, terms_pus, o_pus);
+    dynamics_legs_pus(m, 1, 0, 1, s, 0, LEGS(LEGS_OF_pus), 0, X, V, terms_pus, o_pus);
     for (size_t leg = 0; leg < LEGS_OF_pus; ++leg) {
         dynamics_place_pus(1, LEGS(LEGS_OF_pus), o_pus, leg, leg, H, t);
     }
@@ -2051,13 +2545,12 @@ INLINE void dynamics_run(const prepared *m, const real *X, const real *V, real *
 INLINE void dynamics_run_lanes(const prepared *m, const real *X, const real *V, real *M, real *Z,
     real *H, verdict *t)
 {
-    real s[33*LANES];
-    real sums[27*LANES];
+    real s[24*LANES], sums[27*LANES];
     real o_pus[9*LANES];
     dynamics_before(m, LANES, X, V, s, t);
     clear(sums, 27*LANES);
     for (size_t leg = 0; leg < LEGS_OF_pus; ++leg) {
-        dynamics_legs_pus(m, LANES, leg, 0, s, 1, LANES, 1, sums, o_pus);
+        dynamics_legs_pus(m, LANES, leg, 0, s, 1, LANES, 1, X, V, sums, o_pus);
         dynamics_place_pus(LANES, LANES, o_pus, leg, 0, H, t);
     }
     dynamics_after(m, LANES, s, sums, M, Z, t);
@@ -2067,300 +2560,116 @@ INLINE void dynamics_run_lanes(const prepared *m, const real *X, const real *V, 
 INLINE void M_before(const prepared *m, size_t w, const real *X, real *s, verdict *t)
 {
     for (size_t k = 0; k < w; ++k) {
-        /* X: named entries */
-        const real X_0 = X[0*w + k];
-        const real t_x = X_0;
-        const real X_1 = X[1*w + k];
-        const real t_y = X_1;
-        const real X_2 = X[2*w + k];
-        const real t_z = X_2;
-        const real X_3 = X[3*w + k];
-        const real X_4 = X[4*w + k];
-        const real X_5 = X[5*w + k];
-        const real X_6 = X[6*w + k];
-        const real quaternion_norm2 = X_3*X_3 + X_4*X_4 + X_5*X_5 + X_6*X_6;
-        const real quaternion_scale = 2/quaternion_norm2;
-        const real quaternion_sx = X_3*quaternion_scale;
-        const real quaternion_sy = X_4*quaternion_scale;
-        const real quaternion_sz = X_5*quaternion_scale;
-        const real quaternion_wx = X_6*quaternion_sx;
-        const real quaternion_wy = X_6*quaternion_sy;
-        const real quaternion_wz = X_6*quaternion_sz;
-        const real quaternion_xx = X_3*quaternion_sx;
-        const real quaternion_xy = X_3*quaternion_sy;
-        const real quaternion_xz = X_3*quaternion_sz;
-        const real quaternion_yy = X_4*quaternion_sy;
-        const real quaternion_yz = X_4*quaternion_sz;
-        const real quaternion_zz = X_5*quaternion_sz;
-        const real R_xx = 1 - quaternion_yy - quaternion_zz;
-        const real R_xy = quaternion_xy - quaternion_wz;
-        const real R_xz = quaternion_wy + quaternion_xz;
-        const real R_yx = quaternion_wz + quaternion_xy;
-        const real R_yy = 1 - quaternion_xx - quaternion_zz;
-        const real R_yz = quaternion_yz - quaternion_wx;
-        const real R_zx = quaternion_xz - quaternion_wy;
-        const real R_zy = quaternion_wx + quaternion_yz;
-        const real R_zz = 1 - quaternion_xx - quaternion_yy;
-        /* (h_star) first moment about the platform origin */
-        const real h_star_in_platform_x = m->h_star_in_platform_x;
-        const real h_star_in_platform_y = m->h_star_in_platform_y;
-        const real h_star_in_platform_z = m->h_star_in_platform_z;
-        const real h_star_x = R_xx*h_star_in_platform_x + R_xy*h_star_in_platform_y +
-            R_xz*h_star_in_platform_z;
-        const real h_star_y = R_yx*h_star_in_platform_x + R_yy*h_star_in_platform_y +
-            R_yz*h_star_in_platform_z;
-        const real h_star_z = R_zx*h_star_in_platform_x + R_zy*h_star_in_platform_y +
-            R_zz*h_star_in_platform_z;
-        /* (J_star) inertia tensor about the platform origin */
-        const real J_star_in_platform_xy = m->J_star_in_platform_xy;
-        const real J_star_in_platform_yz = m->J_star_in_platform_yz;
-        const real J_star_t_12 = m->J_star_t_12;
-        const real J_star_t = J_star_in_platform_xy*R_xx + J_star_in_platform_yz*R_xz -
-            J_star_t_12*R_xy;
-        const real J_star_t_2 = J_star_in_platform_xy*R_yx + J_star_in_platform_yz*R_yz -
-            J_star_t_12*R_yy;
-        const real J_star_t_3 = J_star_in_platform_xy*R_zx + J_star_in_platform_yz*R_zz -
-            J_star_t_12*R_zy;
-        const real J_star_in_platform_xz = m->J_star_in_platform_xz;
-        const real J_star_t_14 = m->J_star_t_14;
-        const real J_star_t_4 = J_star_t_14*R_xz - J_star_in_platform_xz*R_xx;
-        const real J_star_t_5 = J_star_t_14*R_yz - J_star_in_platform_xz*R_yx;
-        const real J_star_t_6 = J_star_t_14*R_zz - J_star_in_platform_xz*R_zx;
-        const real J_star_t_7 = J_star_t*R_xy - J_star_t_4*R_xz;
-        const real J_star_in_platform_xx = m->J_star_in_platform_xx;
-        const real J_star_xx = J_star_in_platform_xx + 2*J_star_t_7;
-        const real J_star_xy = J_star_t*R_yy + J_star_t_2*R_xy - J_star_t_4*R_yz -
-            J_star_t_5*R_xz;
-        const real J_star_xz = J_star_t*R_zy + J_star_t_3*R_xy - J_star_t_4*R_zz -
-            J_star_t_6*R_xz;
-        const real J_star_t_8 = J_star_t_2*R_yy - J_star_t_5*R_yz;
-        const real J_star_yy = J_star_in_platform_xx + 2*J_star_t_8;
-        const real J_star_yz = J_star_t_2*R_zy + J_star_t_3*R_yy - J_star_t_5*R_zz -
-            J_star_t_6*R_yz;
-        const real J_star_t_9 = J_star_t_3*R_zy - J_star_t_6*R_zz;
-        const real J_star_zz = J_star_in_platform_xx + 2*J_star_t_9;
-        s[0*w + k] = t_x;
-        s[1*w + k] = t_y;
-        s[2*w + k] = t_z;
-        s[3*w + k] = R_xx;
-        s[4*w + k] = R_xy;
-        s[5*w + k] = R_xz;
-        s[6*w + k] = R_yx;
-        s[7*w + k] = R_yy;
-        s[8*w + k] = R_yz;
-        s[9*w + k] = R_zx;
-        s[10*w + k] = R_zy;
-        s[11*w + k] = R_zz;
-        s[12*w + k] = h_star_x;
-        s[13*w + k] = h_star_y;
-        s[14*w + k] = h_star_z;
-        s[15*w + k] = J_star_xx;
-        s[16*w + k] = J_star_xy;
-        s[17*w + k] = J_star_xz;
-        s[18*w + k] = J_star_yy;
-        s[19*w + k] = J_star_yz;
-        s[20*w + k] = J_star_zz;
-        t->invalid[k] += UNLESS(is_finite(quaternion_scale)) + UNLESS(quaternion_scale > 0);
+        values v;
+        stage_X(m, w, k, X, &v);
+        stage_M_dynamics(m, &v);
+        s[0*w + k] = v.R_xx;
+        s[1*w + k] = v.R_xy;
+        s[2*w + k] = v.R_xz;
+        s[3*w + k] = v.R_yx;
+        s[4*w + k] = v.R_yy;
+        s[5*w + k] = v.R_yz;
+        s[6*w + k] = v.R_zx;
+        s[7*w + k] = v.R_zy;
+        s[8*w + k] = v.R_zz;
+        s[9*w + k] = v.h_star_x;
+        s[10*w + k] = v.h_star_y;
+        s[11*w + k] = v.h_star_z;
+        s[12*w + k] = v.J_star_xx;
+        s[13*w + k] = v.J_star_xy;
+        s[14*w + k] = v.J_star_xz;
+        s[15*w + k] = v.J_star_yy;
+        s[16*w + k] = v.J_star_yz;
+        s[17*w + k] = v.J_star_zz;
+        t->invalid[k] += UNLESS(is_finite(v.quaternion_scale)) + UNLESS(v.quaternion_scale > 0);
     }
 }
 
 INLINE void M_legs_pus(const prepared *m, size_t w, size_t leg, size_t legs, const real *s, size_t
-    states, size_t count, int add, real *terms, real *o)
+    states, size_t count, int add, const real *X, real *terms, real *o)
 {
     for (size_t k = 0; k < count; ++k) {
         const size_t i = leg + legs*k;
         const size_t j = states*k;
-        /* (pus-J_3) inertia tensor of link 3 about the connection point */
-        const real R_xx = s[3*w + j];
-        const real R_xy = s[4*w + j];
-        const real R_xz = s[5*w + j];
-        const real pus_platform_point_x = m->pus_platform_point_x[i];
-        const real pus_platform_point_y = m->pus_platform_point_y[i];
-        const real pus_platform_point_z = m->pus_platform_point_z[i];
-        const real pus_q_x = R_xx*pus_platform_point_x + R_xy*pus_platform_point_y +
-            R_xz*pus_platform_point_z;
-        const real R_yx = s[6*w + j];
-        const real R_yy = s[7*w + j];
-        const real R_yz = s[8*w + j];
-        const real pus_q_y = R_yx*pus_platform_point_x + R_yy*pus_platform_point_y +
-            R_yz*pus_platform_point_z;
-        const real R_zx = s[9*w + j];
-        const real R_zy = s[10*w + j];
-        const real R_zz = s[11*w + j];
-        const real pus_q_z = R_zx*pus_platform_point_x + R_zy*pus_platform_point_y +
-            R_zz*pus_platform_point_z;
-        const real pus_base_point_x = m->pus_base_point_x[i];
-        const real t_x = s[0*w + j];
-        const real pus_J_3_t = pus_q_x + t_x - pus_base_point_x;
-        const real pus_base_point_y = m->pus_base_point_y[i];
-        const real t_y = s[1*w + j];
-        const real pus_J_3_t_2 = pus_q_y + t_y - pus_base_point_y;
-        const real pus_base_point_z = m->pus_base_point_z[i];
-        const real t_z = s[2*w + j];
-        const real pus_J_3_t_3 = pus_q_z + t_z - pus_base_point_z;
-        const real pus_base_frame_xx = m->pus_base_frame_xx[i];
-        const real pus_base_frame_yx = m->pus_base_frame_yx[i];
-        const real pus_base_frame_zx = m->pus_base_frame_zx[i];
-        const real pus_J_3_t_4 = pus_J_3_t*pus_base_frame_xx + pus_J_3_t_2*pus_base_frame_yx +
-            pus_J_3_t_3*pus_base_frame_zx;
-        const real pus_J_3_t_5 = pus_J_3_t*pus_J_3_t + pus_J_3_t_2*pus_J_3_t_2 +
-            pus_J_3_t_3*pus_J_3_t_3;
-        const real pus_size_t = m->pus_size_t[i];
-        const real pus_J_3_t_6 = pus_J_3_t_4*pus_J_3_t_4 + pus_size_t - pus_J_3_t_5;
-        const real pus_branch_1 = m->pus_branch_1[i];
-        const real pus_J_3_t_7 = -root(pus_J_3_t_6)*pus_branch_1;
-        const real pus_base_frame_xy = m->pus_base_frame_xy[i];
-        const real pus_base_frame_yy = m->pus_base_frame_yy[i];
-        const real pus_base_frame_zy = m->pus_base_frame_zy[i];
-        const real pus_J_3_t_8 = pus_J_3_t*pus_base_frame_xy + pus_J_3_t_2*pus_base_frame_yy +
-            pus_J_3_t_3*pus_base_frame_zy;
-        const real pus_J_3_t_9 = pus_J_3_t_7*pus_J_3_t_7 + pus_J_3_t_8*pus_J_3_t_8;
-        const real pus_branch_2 = m->pus_branch_2[i];
-        const real pus_J_3_t_10 = root(pus_J_3_t_9)*pus_branch_2;
-        const real inv_pus_size_t = m->inv_pus_size_t[i];
-        const real pus_platform_joint_offset_x = m->pus_platform_joint_offset_x[i];
-        const real pus_J_3_t_11 = inv_pus_size_t*pus_J_3_t_10*pus_platform_joint_offset_x;
-        const real pus_base_frame_xz = m->pus_base_frame_xz[i];
-        const real pus_base_frame_yz = m->pus_base_frame_yz[i];
-        const real pus_base_frame_zz = m->pus_base_frame_zz[i];
-        const real pus_e_2_in_axes3_x =
-            inv_pus_size_t*pus_platform_joint_offset_x*(pus_J_3_t*pus_base_frame_xz +
-            pus_J_3_t_2*pus_base_frame_yz + pus_J_3_t_3*pus_base_frame_zz);
-        const real pus_J_3_in_spec3_xy = m->pus_J_3_in_spec3_xy[i];
-        const real pus_J_3_in_spec3_yz = m->pus_J_3_in_spec3_yz[i];
-        const real pus_J_3_in_axes2_xz = pus_J_3_in_spec3_xy*pus_e_2_in_axes3_x +
-            pus_J_3_in_spec3_yz*pus_J_3_t_11;
-        /* (pus-c_2) cosine of the angle of joint 2 from its reference direction */
-        const real inv_pus_J_3_t_9 = 1/pus_J_3_t_9;
-        const real pus_c_2_t = inv_pus_J_3_t_9*pus_J_3_t_10*pus_J_3_t_8;
-        /* (pus-s_2) sine of the angle of joint 2 from its reference direction */
-        const real pus_s_2 = inv_pus_J_3_t_9*pus_J_3_t_10*pus_J_3_t_7;
-        /* (pus-v_2) velocity of the connection point per rate of joint 2 */
-        const real pus_v_2_in_axes3_z = pus_J_3_t_11*pus_platform_joint_offset_x;
-        /* (pus-w_1) reciprocal vector 1 */
-        const real pus_e_1_in_axes3_x = pus_J_3_t_11*pus_s_2;
-        const real pus_w_1_in_axes3_x = 1/pus_e_1_in_axes3_x;
-        /* (pus-w_2) reciprocal vector 2 */
-        const real pus_w_2_in_axes3_z = 1/pus_v_2_in_axes3_z;
-        const real pus_w_2_in_axes3_x = pus_c_2_t*pus_w_1_in_axes3_x*pus_w_2_in_axes3_z;
-        /* (pus-w_3) reciprocal vector 3 */
-        const real pus_e_1_in_axes3_y = pus_e_2_in_axes3_x*pus_s_2;
-        const real pus_w_3_in_axes3_y = m->pus_w_3_in_axes3_y[i];
-        const real pus_w_3_in_axes3_x = -pus_e_1_in_axes3_y*pus_w_1_in_axes3_x*pus_w_3_in_axes3_y;
-        /* (pus-d_alpha_3) coefficient of the acceleration in: angular acceleration of link 3 */
-        const real pus_d_alpha_3_in_axes3_xz = pus_e_2_in_axes3_x*pus_w_2_in_axes3_z;
-        const real pus_d_alpha_3_t = pus_J_3_t_11*pus_w_2_in_axes3_z;
-        /* (pus-d_Gamma_3) coefficient of the acceleration in: moment about axis 3 of the distal links'
-           inertia and weight */
-        const real pus_d_Gamma_3_in_axes3_z = pus_J_3_in_axes2_xz*pus_w_2_in_axes3_z;
-        const real pus_d_Gamma_3_t = m->pus_d_Gamma_3_t[i];
-        const real pus_h_3_in_spec3_z = m->pus_h_3_in_spec3_z[i];
-        const real pus_d_Gamma_3_in_axes3_x = pus_h_3_in_spec3_z +
-            pus_w_1_in_axes3_x*(pus_c_2_t*pus_d_Gamma_3_in_axes3_z -
-            pus_d_Gamma_3_t*pus_e_1_in_axes3_y);
-        /* (pus-d_Gamma_2) coefficient of the acceleration in: moment about axis 2 of the distal links'
-           inertia and weight */
-        const real pus_J_3_in_spec3_xx = m->pus_J_3_in_spec3_xx[i];
-        const real pus_J_3_in_spec3_xz = m->pus_J_3_in_spec3_xz[i];
-        const real pus_J_3_in_spec3_zz = m->pus_J_3_in_spec3_zz[i];
-        const real pus_d_Gamma_2_t =
-            pus_w_2_in_axes3_z*(pus_e_2_in_axes3_x*(pus_J_3_in_spec3_xx*pus_e_2_in_axes3_x +
-            pus_J_3_in_spec3_xz*pus_J_3_t_11) -
-            pus_J_3_t_11*(-pus_J_3_in_spec3_xz*pus_e_2_in_axes3_x -
-            pus_J_3_in_spec3_zz*pus_J_3_t_11));
-        const real pus_d_Gamma_2_t_2 = pus_J_3_in_axes2_xz*pus_w_3_in_axes3_y;
-        const real pus_h_3_in_spec3_y = m->pus_h_3_in_spec3_y[i];
-        const real pus_d_Gamma_2_in_axes3_x = pus_w_1_in_axes3_x*(pus_c_2_t*pus_d_Gamma_2_t -
-            pus_d_Gamma_2_t_2*pus_e_1_in_axes3_y) - pus_J_3_t_11*pus_h_3_in_spec3_y;
-        const real pus_d_Gamma_2_in_axes3_y = pus_d_Gamma_2_t_2 -
-            pus_e_2_in_axes3_x*pus_h_3_in_spec3_y;
-        const real pus_h_3_in_spec3_x = m->pus_h_3_in_spec3_x[i];
-        const real pus_d_Gamma_2_in_axes3_z = pus_d_Gamma_2_t + pus_J_3_t_11*pus_h_3_in_spec3_x -
-            pus_e_2_in_axes3_x*pus_h_3_in_spec3_z;
-        /* (pus-d_c) coefficient of the acceleration in: leg force on the platform without actuation and
-           without the mass at the connection point */
-        const real pus_link1_mass = m->pus_link1_mass[i];
-        const real pus_d_c_in_axes3_xx = pus_J_3_t_11*pus_h_3_in_spec3_y*pus_w_2_in_axes3_x -
-            pus_d_Gamma_2_in_axes3_x*pus_w_2_in_axes3_x -
-            pus_d_Gamma_3_in_axes3_x*pus_w_3_in_axes3_x - pus_h_3_in_spec3_z*pus_w_3_in_axes3_x -
-            pus_link1_mass*pus_w_1_in_axes3_x*pus_w_1_in_axes3_x;
-        const real pus_d_Gamma_3_in_axes3_y = m->pus_d_Gamma_3_in_axes3_y[i];
-        const real pus_d_phi_3_in_axes3_xy = m->pus_d_phi_3_in_axes3_xy[i];
-        const real pus_d_c_in_axes3_xy = -pus_d_phi_3_in_axes3_xy -
-            pus_d_Gamma_2_in_axes3_y*pus_w_2_in_axes3_x -
-            pus_d_Gamma_3_in_axes3_y*pus_w_3_in_axes3_x;
-        const real pus_d_c_in_axes3_xz = pus_d_alpha_3_t*pus_h_3_in_spec3_y -
-            pus_d_Gamma_2_in_axes3_z*pus_w_2_in_axes3_x -
-            pus_d_Gamma_3_in_axes3_z*pus_w_3_in_axes3_x;
-        const real pus_d_c_in_axes3_yz = pus_d_alpha_3_in_axes3_xz*pus_h_3_in_spec3_y -
-            pus_d_Gamma_3_in_axes3_z*pus_w_3_in_axes3_y;
+        values_pus v;
+        stage_pus_X(m, w, i, j, s, X, &v);
+        stage_pus_M_dynamics(m, w, i, j, X, &v);
         /* (pus-Q) inertia of the leg at the connection point, without the mass gathered there */
-        const real axis_z_pus_axes3_x = pus_base_frame_xy*pus_s_2 - pus_base_frame_xx*pus_c_2_t;
-        const real axis_z_pus_axes3_y = pus_base_frame_yy*pus_s_2 - pus_base_frame_yx*pus_c_2_t;
-        const real axis_z_pus_axes3_z = pus_base_frame_zy*pus_s_2 - pus_base_frame_zx*pus_c_2_t;
-        const real pus_Q_t = pus_c_2_t*pus_e_2_in_axes3_x;
+        const real pus_Q_t = v.pus_e_2_in_axes3_x*v.pus_s_2;
+        const real pus_base_frame_xx = m->pus_base_frame_xx[i];
+        const real pus_base_frame_xy = m->pus_base_frame_xy[i];
+        const real pus_base_frame_xz = m->pus_base_frame_xz[i];
         const real axis_y_pus_axes3_x = pus_Q_t*pus_base_frame_xy +
-            pus_base_frame_xx*pus_e_1_in_axes3_y - pus_J_3_t_11*pus_base_frame_xz;
+            pus_base_frame_xx*v.pus_e_1_in_axes3_y - v.pus_J_3_t_10*pus_base_frame_xz;
+        const real pus_base_frame_yx = m->pus_base_frame_yx[i];
+        const real pus_base_frame_yy = m->pus_base_frame_yy[i];
+        const real pus_base_frame_yz = m->pus_base_frame_yz[i];
         const real axis_y_pus_axes3_y = pus_Q_t*pus_base_frame_yy +
-            pus_base_frame_yx*pus_e_1_in_axes3_y - pus_J_3_t_11*pus_base_frame_yz;
+            pus_base_frame_yx*v.pus_e_1_in_axes3_y - v.pus_J_3_t_10*pus_base_frame_yz;
+        const real pus_base_frame_zx = m->pus_base_frame_zx[i];
+        const real pus_base_frame_zy = m->pus_base_frame_zy[i];
+        const real pus_base_frame_zz = m->pus_base_frame_zz[i];
         const real axis_y_pus_axes3_z = pus_Q_t*pus_base_frame_zy +
-            pus_base_frame_zx*pus_e_1_in_axes3_y - pus_J_3_t_11*pus_base_frame_zz;
-        const real axis_x_pus_axes3_x = axis_y_pus_axes3_y*axis_z_pus_axes3_z -
-            axis_y_pus_axes3_z*axis_z_pus_axes3_y;
-        const real axis_x_pus_axes3_y = axis_y_pus_axes3_z*axis_z_pus_axes3_x -
-            axis_y_pus_axes3_x*axis_z_pus_axes3_z;
-        const real axis_x_pus_axes3_z = axis_y_pus_axes3_x*axis_z_pus_axes3_y -
-            axis_y_pus_axes3_y*axis_z_pus_axes3_x;
+            pus_base_frame_zx*v.pus_e_1_in_axes3_y - v.pus_J_3_t_10*pus_base_frame_zz;
+        const real axis_x_pus_axes3_x = axis_y_pus_axes3_y*v.axis_z_pus_axes3_z -
+            axis_y_pus_axes3_z*v.axis_z_pus_axes3_y;
+        const real axis_x_pus_axes3_y = axis_y_pus_axes3_z*v.axis_z_pus_axes3_x -
+            axis_y_pus_axes3_x*v.axis_z_pus_axes3_z;
+        const real axis_x_pus_axes3_z = axis_y_pus_axes3_x*v.axis_z_pus_axes3_y -
+            axis_y_pus_axes3_y*v.axis_z_pus_axes3_x;
         const real pus_d_c_in_axes3_yy = m->pus_d_c_in_axes3_yy[i];
-        const real pus_Q_t_2 = pus_d_c_in_axes3_xx - pus_d_c_in_axes3_yy;
+        const real pus_Q_t_2 = v.pus_d_c_in_axes3_xx - pus_d_c_in_axes3_yy;
         const real pus_Q_t_3 = R(0.5)*pus_Q_t_2;
-        const real pus_Q_t_4 = pus_d_c_in_axes3_xx + pus_d_Gamma_2_in_axes3_z*pus_w_2_in_axes3_z +
-            pus_d_alpha_3_t*pus_h_3_in_spec3_x - pus_d_alpha_3_in_axes3_xz*pus_h_3_in_spec3_z;
+        const real pus_h_3_in_spec3_x = m->pus_h_3_in_spec3_x[i];
+        const real pus_h_3_in_spec3_z = m->pus_h_3_in_spec3_z[i];
+        const real pus_Q_t_4 = v.pus_d_c_in_axes3_xx +
+            v.pus_d_Gamma_2_in_axes3_z*v.pus_w_2_in_axes3_z + v.pus_d_alpha_3_t*pus_h_3_in_spec3_x
+            - v.pus_d_alpha_3_in_axes3_xz*pus_h_3_in_spec3_z;
         const real pus_Q_t_5 = R(0.5)*pus_Q_t_4;
-        const real pus_Q_t_6 = axis_x_pus_axes3_x*pus_d_c_in_axes3_xy +
-            axis_z_pus_axes3_x*pus_d_c_in_axes3_yz - axis_y_pus_axes3_x*pus_Q_t_3;
-        const real pus_Q_t_7 = axis_x_pus_axes3_y*pus_d_c_in_axes3_xy +
-            axis_z_pus_axes3_y*pus_d_c_in_axes3_yz - axis_y_pus_axes3_y*pus_Q_t_3;
-        const real pus_Q_t_8 = axis_x_pus_axes3_z*pus_d_c_in_axes3_xy +
-            axis_z_pus_axes3_z*pus_d_c_in_axes3_yz - axis_y_pus_axes3_z*pus_Q_t_3;
-        const real pus_Q_t_9 = axis_z_pus_axes3_x*pus_Q_t_5 -
-            axis_x_pus_axes3_x*pus_d_c_in_axes3_xz;
-        const real pus_Q_t_10 = axis_z_pus_axes3_y*pus_Q_t_5 -
-            axis_x_pus_axes3_y*pus_d_c_in_axes3_xz;
-        const real pus_Q_t_11 = axis_z_pus_axes3_z*pus_Q_t_5 -
-            axis_x_pus_axes3_z*pus_d_c_in_axes3_xz;
-        const real pus_Q_t_12 = axis_y_pus_axes3_x*pus_Q_t_6 - axis_z_pus_axes3_x*pus_Q_t_9;
-        const real pus_Q_xx = -2*pus_Q_t_12 - pus_d_c_in_axes3_xx;
-        const real pus_Q_xy = axis_z_pus_axes3_x*pus_Q_t_10 + axis_z_pus_axes3_y*pus_Q_t_9 -
+        const real pus_Q_t_6 = axis_x_pus_axes3_x*v.pus_d_c_in_axes3_xy +
+            v.axis_z_pus_axes3_x*v.pus_d_c_in_axes3_yz - axis_y_pus_axes3_x*pus_Q_t_3;
+        const real pus_Q_t_7 = axis_x_pus_axes3_y*v.pus_d_c_in_axes3_xy +
+            v.axis_z_pus_axes3_y*v.pus_d_c_in_axes3_yz - axis_y_pus_axes3_y*pus_Q_t_3;
+        const real pus_Q_t_8 = axis_x_pus_axes3_z*v.pus_d_c_in_axes3_xy +
+            v.axis_z_pus_axes3_z*v.pus_d_c_in_axes3_yz - axis_y_pus_axes3_z*pus_Q_t_3;
+        const real pus_Q_t_9 = v.axis_z_pus_axes3_x*pus_Q_t_5 -
+            axis_x_pus_axes3_x*v.pus_d_c_in_axes3_xz;
+        const real pus_Q_t_10 = v.axis_z_pus_axes3_y*pus_Q_t_5 -
+            axis_x_pus_axes3_y*v.pus_d_c_in_axes3_xz;
+        const real pus_Q_t_11 = v.axis_z_pus_axes3_z*pus_Q_t_5 -
+            axis_x_pus_axes3_z*v.pus_d_c_in_axes3_xz;
+        const real pus_Q_t_12 = axis_y_pus_axes3_x*pus_Q_t_6 - v.axis_z_pus_axes3_x*pus_Q_t_9;
+        const real pus_Q_xx = -2*pus_Q_t_12 - v.pus_d_c_in_axes3_xx;
+        const real pus_Q_xy = v.axis_z_pus_axes3_x*pus_Q_t_10 + v.axis_z_pus_axes3_y*pus_Q_t_9 -
             axis_y_pus_axes3_x*pus_Q_t_7 - axis_y_pus_axes3_y*pus_Q_t_6;
-        const real pus_Q_xz = axis_z_pus_axes3_x*pus_Q_t_11 + axis_z_pus_axes3_z*pus_Q_t_9 -
+        const real pus_Q_xz = v.axis_z_pus_axes3_x*pus_Q_t_11 + v.axis_z_pus_axes3_z*pus_Q_t_9 -
             axis_y_pus_axes3_x*pus_Q_t_8 - axis_y_pus_axes3_z*pus_Q_t_6;
-        const real pus_Q_t_13 = axis_y_pus_axes3_y*pus_Q_t_7 - axis_z_pus_axes3_y*pus_Q_t_10;
-        const real pus_Q_yy = -2*pus_Q_t_13 - pus_d_c_in_axes3_xx;
-        const real pus_Q_yz = axis_z_pus_axes3_y*pus_Q_t_11 + axis_z_pus_axes3_z*pus_Q_t_10 -
+        const real pus_Q_t_13 = axis_y_pus_axes3_y*pus_Q_t_7 - v.axis_z_pus_axes3_y*pus_Q_t_10;
+        const real pus_Q_yy = -2*pus_Q_t_13 - v.pus_d_c_in_axes3_xx;
+        const real pus_Q_yz = v.axis_z_pus_axes3_y*pus_Q_t_11 + v.axis_z_pus_axes3_z*pus_Q_t_10 -
             axis_y_pus_axes3_y*pus_Q_t_8 - axis_y_pus_axes3_z*pus_Q_t_7;
-        const real pus_Q_t_14 = axis_y_pus_axes3_z*pus_Q_t_8 - axis_z_pus_axes3_z*pus_Q_t_11;
-        const real pus_Q_zz = -2*pus_Q_t_14 - pus_d_c_in_axes3_xx;
+        const real pus_Q_t_14 = axis_y_pus_axes3_z*pus_Q_t_8 - v.axis_z_pus_axes3_z*pus_Q_t_11;
+        const real pus_Q_zz = -2*pus_Q_t_14 - v.pus_d_c_in_axes3_xx;
         /* (M_ta) coupling block of M */
-        const real pus_M_ta_t = -pus_Q_xy*pus_q_z;
-        const real pus_M_ta_t_2 = pus_Q_xz*pus_q_y;
+        const real pus_M_ta_t = -pus_Q_xy*v.pus_q_z;
+        const real pus_M_ta_t_2 = pus_Q_xz*v.pus_q_y;
         const real pus_M_ta_t_3 = pus_M_ta_t + pus_M_ta_t_2;
-        const real pus_M_ta_t_4 = pus_Q_xx*pus_q_z - pus_Q_xz*pus_q_x;
-        const real pus_M_ta_t_5 = pus_Q_xy*pus_q_x - pus_Q_xx*pus_q_y;
-        const real pus_M_ta_t_6 = pus_Q_yz*pus_q_y - pus_Q_yy*pus_q_z;
-        const real pus_M_ta_t_7 = pus_Q_yz*pus_q_x;
+        const real pus_M_ta_t_4 = pus_Q_xx*v.pus_q_z - pus_Q_xz*v.pus_q_x;
+        const real pus_M_ta_t_5 = pus_Q_xy*v.pus_q_x - pus_Q_xx*v.pus_q_y;
+        const real pus_M_ta_t_6 = pus_Q_yz*v.pus_q_y - pus_Q_yy*v.pus_q_z;
+        const real pus_M_ta_t_7 = pus_Q_yz*v.pus_q_x;
         const real pus_M_ta_t_8 = pus_M_ta_t + pus_M_ta_t_7;
-        const real pus_M_ta_t_9 = pus_Q_yy*pus_q_x - pus_Q_xy*pus_q_y;
-        const real pus_M_ta_t_10 = pus_Q_zz*pus_q_y - pus_Q_yz*pus_q_z;
-        const real pus_M_ta_t_11 = pus_Q_xz*pus_q_z - pus_Q_zz*pus_q_x;
+        const real pus_M_ta_t_9 = pus_Q_yy*v.pus_q_x - pus_Q_xy*v.pus_q_y;
+        const real pus_M_ta_t_10 = pus_Q_zz*v.pus_q_y - pus_Q_yz*v.pus_q_z;
+        const real pus_M_ta_t_11 = pus_Q_xz*v.pus_q_z - pus_Q_zz*v.pus_q_x;
         const real pus_M_ta_t_12 = pus_M_ta_t_7 - pus_M_ta_t_2;
         /* (M_aa) rotational block of M */
-        const real pus_M_aa_t = pus_M_ta_t_10*pus_q_y - pus_M_ta_t_6*pus_q_z;
-        const real pus_M_aa_t_2 = pus_M_ta_t_11*pus_q_y + pus_M_ta_t_8*pus_q_z;
-        const real pus_M_aa_t_3 = pus_M_ta_t_12*pus_q_y - pus_M_ta_t_9*pus_q_z;
-        const real pus_M_aa_t_4 = pus_M_ta_t_4*pus_q_z - pus_M_ta_t_11*pus_q_x;
-        const real pus_M_aa_t_5 = pus_M_ta_t_5*pus_q_z - pus_M_ta_t_12*pus_q_x;
-        const real pus_M_aa_t_6 = pus_M_ta_t_9*pus_q_x - pus_M_ta_t_5*pus_q_y;
+        const real pus_M_aa_t = pus_M_ta_t_10*v.pus_q_y - pus_M_ta_t_6*v.pus_q_z;
+        const real pus_M_aa_t_2 = pus_M_ta_t_11*v.pus_q_y + pus_M_ta_t_8*v.pus_q_z;
+        const real pus_M_aa_t_3 = pus_M_ta_t_12*v.pus_q_y - pus_M_ta_t_9*v.pus_q_z;
+        const real pus_M_aa_t_4 = pus_M_ta_t_4*v.pus_q_z - pus_M_ta_t_11*v.pus_q_x;
+        const real pus_M_aa_t_5 = pus_M_ta_t_5*v.pus_q_z - pus_M_ta_t_12*v.pus_q_x;
+        const real pus_M_aa_t_6 = pus_M_ta_t_9*v.pus_q_x - pus_M_ta_t_5*v.pus_q_y;
         /* (M_tt) translational block of M */
         gather(&terms[0*count + k], add, pus_Q_xx);  /* M_tt_xx_of_legs */
         gather(&terms[1*count + k], add, pus_Q_xy);  /* M_tt_xy */
@@ -2387,10 +2696,10 @@ INLINE void M_legs_pus(const prepared *m, size_t w, size_t leg, size_t legs, con
         gather(&terms[20*count + k], add, pus_M_aa_t_6);  /* M_aa_zz_of_legs */
         const real pus_size_t_2 = m->pus_size_t_2[i];
         const real pus_size = m->pus_size[i];
-        o[0*count + k] = UNLESS(pus_J_3_t_6 >= 0);
-        o[1*count + k] = UNLESS(magnitude(pus_J_3_t_9) > TOLERANCE*TOLERANCE*pus_size_t_2) +
-            UNLESS(magnitude(pus_v_2_in_axes3_z) > TOLERANCE*pus_size) +
-            UNLESS(magnitude(pus_e_1_in_axes3_x) > LEAST_1);
+        o[0*count + k] = UNLESS(v.pus_J_3_t_7 >= 0);
+        o[1*count + k] = UNLESS(magnitude(v.pus_J_3_t_8) > TOLERANCE*TOLERANCE*pus_size_t_2) +
+            UNLESS(magnitude(v.pus_v_2_in_axes3_z) > TOLERANCE*pus_size) +
+            UNLESS(magnitude(v.pus_e_1_in_axes3_x) > LEAST_1);
     }
 }
 
@@ -2416,46 +2725,46 @@ INLINE void M_after(const prepared *m, size_t w, const real *s, const real *sums
         const real M_tt_zz = M_tt_zz_of_legs + m_star;
         /* (M_ta) coupling block of M */
         const real M_ta_xy_of_legs = sums[7*w + k];
-        const real h_star_z = s[14*w + k];
+        const real h_star_z = s[11*w + k];
         const real M_ta_xy = M_ta_xy_of_legs + h_star_z;
         const real M_ta_xz_of_legs = sums[8*w + k];
-        const real h_star_y = s[13*w + k];
+        const real h_star_y = s[10*w + k];
         const real M_ta_xz = M_ta_xz_of_legs - h_star_y;
         const real M_ta_yx_of_legs = sums[9*w + k];
         const real M_ta_yx = M_ta_yx_of_legs - h_star_z;
         const real M_ta_yz_of_legs = sums[11*w + k];
-        const real h_star_x = s[12*w + k];
+        const real h_star_x = s[9*w + k];
         const real M_ta_yz = M_ta_yz_of_legs + h_star_x;
         const real M_ta_zx_of_legs = sums[12*w + k];
         const real M_ta_zx = M_ta_zx_of_legs + h_star_y;
         const real M_ta_zy_of_legs = sums[13*w + k];
         const real M_ta_zy = M_ta_zy_of_legs - h_star_x;
         /* (M_aa) rotational block of M */
-        const real J_star_xx = s[15*w + k];
+        const real J_star_xx = s[12*w + k];
         const real M_aa_xx_of_legs = sums[15*w + k];
         const real M_aa_xx = J_star_xx + M_aa_xx_of_legs;
-        const real J_star_xy = s[16*w + k];
+        const real J_star_xy = s[13*w + k];
         const real M_aa_xy_of_legs = sums[16*w + k];
         const real M_aa_xy = J_star_xy + M_aa_xy_of_legs;
-        const real J_star_xz = s[17*w + k];
+        const real J_star_xz = s[14*w + k];
         const real M_aa_xz_of_legs = sums[17*w + k];
         const real M_aa_xz = J_star_xz + M_aa_xz_of_legs;
-        const real J_star_yy = s[18*w + k];
+        const real J_star_yy = s[15*w + k];
         const real M_aa_yy_of_legs = sums[18*w + k];
         const real M_aa_yy = J_star_yy + M_aa_yy_of_legs;
-        const real J_star_yz = s[19*w + k];
+        const real J_star_yz = s[16*w + k];
         const real M_aa_yz_of_legs = sums[19*w + k];
         const real M_aa_yz = J_star_yz + M_aa_yz_of_legs;
-        const real J_star_zz = s[20*w + k];
+        const real J_star_zz = s[17*w + k];
         const real M_aa_zz_of_legs = sums[20*w + k];
         const real M_aa_zz = J_star_zz + M_aa_zz_of_legs;
         /* (M_tt) translational block of M */
-        M[0*NV*w + k] = M_tt_xx;
+        M[0*w + k] = M_tt_xx;
         const real M_tt_xy = sums[1*w + k];
-        M[(0*NV + 1)*w + k] = M_tt_xy;
+        M[1*w + k] = M_tt_xy;
         M[NV*w + k] = M_tt_xy;
         const real M_tt_xz = sums[2*w + k];
-        M[(0*NV + 2)*w + k] = M_tt_xz;
+        M[2*w + k] = M_tt_xz;
         M[2*NV*w + k] = M_tt_xz;
         M[(NV + 1)*w + k] = M_tt_yy;
         const real M_tt_yz = sums[4*w + k];
@@ -2464,11 +2773,11 @@ INLINE void M_after(const prepared *m, size_t w, const real *s, const real *sums
         M[(2*NV + 2)*w + k] = M_tt_zz;
         /* (M_ta) coupling block of M */
         const real M_ta_xx = sums[6*w + k];
-        M[(0*NV + 3)*w + k] = M_ta_xx;
+        M[3*w + k] = M_ta_xx;
         M[3*NV*w + k] = M_ta_xx;
-        M[(0*NV + 4)*w + k] = M_ta_xy;
+        M[4*w + k] = M_ta_xy;
         M[4*NV*w + k] = M_ta_xy;
-        M[(0*NV + 5)*w + k] = M_ta_xz;
+        M[5*w + k] = M_ta_xz;
         M[5*NV*w + k] = M_ta_xz;
         M[(NV + 3)*w + k] = M_ta_yx;
         M[(3*NV + 1)*w + k] = M_ta_yx;
@@ -2503,12 +2812,10 @@ INLINE void M_after(const prepared *m, size_t w, const real *s, const real *sums
 
 INLINE void M_run(const prepared *m, const real *X, real *M, verdict *t)
 {
-    real s[21] = {0};
-    real sums[21] = {0};
-    real terms_pus[21*LEGS(LEGS_OF_pus)] = {0};
-    real o_pus[2*LEGS(LEGS_OF_pus)] = {0};
+    real s[18] = {0}, sums[21] = {0};
+    real terms_pus[21*LEGS(LEGS_OF_pus)] = {0}, o_pus[2*LEGS(LEGS_OF_pus)] = {0};
     M_before(m, 1, X, s, t);
-    M_legs_pus(m, 1, 0, 1, s, 0, LEGS(LEGS_OF_pus), 0, terms_pus, o_pus);
+    M_legs_pus(m, 1, 0, 1, s, 0, LEGS(LEGS_OF_pus), 0, X, terms_pus, o_pus);
     for (size_t leg = 0; leg < LEGS_OF_pus; ++leg) {
         M_place_pus(1, LEGS(LEGS_OF_pus), o_pus, leg, t);
     }
@@ -2520,13 +2827,12 @@ INLINE void M_run(const prepared *m, const real *X, real *M, verdict *t)
 
 INLINE void M_run_lanes(const prepared *m, const real *X, real *M, verdict *t)
 {
-    real s[21*LANES];
-    real sums[21*LANES];
+    real s[18*LANES], sums[21*LANES];
     real o_pus[2*LANES];
     M_before(m, LANES, X, s, t);
     clear(sums, 21*LANES);
     for (size_t leg = 0; leg < LEGS_OF_pus; ++leg) {
-        M_legs_pus(m, LANES, leg, 0, s, 1, LANES, 1, sums, o_pus);
+        M_legs_pus(m, LANES, leg, 0, s, 1, LANES, 1, X, sums, o_pus);
         M_place_pus(LANES, LANES, o_pus, 0, t);
     }
     M_after(m, LANES, s, sums, M, t);
@@ -2537,276 +2843,94 @@ INLINE void Z_before(const prepared *m, size_t w, const real *X, const real *V, 
     *t)
 {
     for (size_t k = 0; k < w; ++k) {
-        /* X: named entries */
-        const real X_0 = X[0*w + k];
-        const real t_x = X_0;
-        const real X_1 = X[1*w + k];
-        const real t_y = X_1;
-        const real X_2 = X[2*w + k];
-        const real t_z = X_2;
-        const real X_3 = X[3*w + k];
-        const real X_4 = X[4*w + k];
-        const real X_5 = X[5*w + k];
-        const real X_6 = X[6*w + k];
-        const real quaternion_norm2 = X_3*X_3 + X_4*X_4 + X_5*X_5 + X_6*X_6;
-        const real quaternion_scale = 2/quaternion_norm2;
-        const real quaternion_sx = X_3*quaternion_scale;
-        const real quaternion_sy = X_4*quaternion_scale;
-        const real quaternion_sz = X_5*quaternion_scale;
-        const real quaternion_wx = X_6*quaternion_sx;
-        const real quaternion_wy = X_6*quaternion_sy;
-        const real quaternion_wz = X_6*quaternion_sz;
-        const real quaternion_xx = X_3*quaternion_sx;
-        const real quaternion_xy = X_3*quaternion_sy;
-        const real quaternion_xz = X_3*quaternion_sz;
-        const real quaternion_yy = X_4*quaternion_sy;
-        const real quaternion_yz = X_4*quaternion_sz;
-        const real quaternion_zz = X_5*quaternion_sz;
-        const real R_xx = 1 - quaternion_yy - quaternion_zz;
-        const real R_xy = quaternion_xy - quaternion_wz;
-        const real R_xz = quaternion_wy + quaternion_xz;
-        const real R_yx = quaternion_wz + quaternion_xy;
-        const real R_yy = 1 - quaternion_xx - quaternion_zz;
-        const real R_yz = quaternion_yz - quaternion_wx;
-        const real R_zx = quaternion_xz - quaternion_wy;
-        const real R_zy = quaternion_wx + quaternion_yz;
-        const real R_zz = 1 - quaternion_xx - quaternion_yy;
-        /* V: named entries */
-        const real V_0 = V[0*w + k];
-        const real t_dot_x = V_0;
-        const real V_1 = V[1*w + k];
-        const real t_dot_y = V_1;
-        const real V_2 = V[2*w + k];
-        const real t_dot_z = V_2;
-        const real V_3 = V[3*w + k];
-        const real omega_x = V_3;
-        const real V_4 = V[4*w + k];
-        const real omega_y = V_4;
-        const real V_5 = V[5*w + k];
-        const real omega_z = V_5;
-        /* (h_star) first moment about the platform origin */
-        const real h_star_in_platform_x = m->h_star_in_platform_x;
-        const real h_star_in_platform_y = m->h_star_in_platform_y;
-        const real h_star_in_platform_z = m->h_star_in_platform_z;
-        const real h_star_x = R_xx*h_star_in_platform_x + R_xy*h_star_in_platform_y +
-            R_xz*h_star_in_platform_z;
-        const real h_star_y = R_yx*h_star_in_platform_x + R_yy*h_star_in_platform_y +
-            R_yz*h_star_in_platform_z;
-        const real h_star_z = R_zx*h_star_in_platform_x + R_zy*h_star_in_platform_y +
-            R_zz*h_star_in_platform_z;
-        /* (Z_p) centripetal force and weight of the platform */
-        const real Z_p_t_4 = h_star_z*omega_y - h_star_y*omega_z;
-        const real Z_p_t_5 = h_star_x*omega_z - h_star_z*omega_x;
-        const real Z_p_t_6 = h_star_y*omega_x - h_star_x*omega_y;
-        const real Z_p_t = m->Z_p_t;
-        const real Z_p_x = Z_p_t_6*omega_y - Z_p_t - Z_p_t_5*omega_z;
-        const real Z_p_t_2 = m->Z_p_t_2;
-        const real Z_p_y = Z_p_t_4*omega_z - Z_p_t_2 - Z_p_t_6*omega_x;
-        const real Z_p_t_3 = m->Z_p_t_3;
-        const real Z_p_z = Z_p_t_5*omega_x - Z_p_t_3 - Z_p_t_4*omega_y;
-        /* (Z_q) gyroscopic moment and moment of the weight of the platform */
-        const real gravity_x = m->gravity_x;
-        const real gravity_y = m->gravity_y;
-        const real gravity_z = m->gravity_z;
-        const real g_in_platform_x = R_xx*gravity_x + R_yx*gravity_y + R_zx*gravity_z;
-        const real g_in_platform_y = R_xy*gravity_x + R_yy*gravity_y + R_zy*gravity_z;
-        const real g_in_platform_z = R_xz*gravity_x + R_yz*gravity_y + R_zz*gravity_z;
-        const real omega_in_platform_x = R_xx*omega_x + R_yx*omega_y + R_zx*omega_z;
-        const real omega_in_platform_y = R_xy*omega_x + R_yy*omega_y + R_zy*omega_z;
-        const real omega_in_platform_z = R_xz*omega_x + R_yz*omega_y + R_zz*omega_z;
-        const real J_star_in_platform_xx = m->J_star_in_platform_xx;
-        const real J_star_in_platform_xy = m->J_star_in_platform_xy;
-        const real J_star_in_platform_xz = m->J_star_in_platform_xz;
-        const real Z_q_t = J_star_in_platform_xx*omega_in_platform_x +
-            J_star_in_platform_xy*omega_in_platform_y + J_star_in_platform_xz*omega_in_platform_z;
-        const real J_star_in_platform_yy = m->J_star_in_platform_yy;
-        const real J_star_in_platform_yz = m->J_star_in_platform_yz;
-        const real Z_q_t_2 = J_star_in_platform_xy*omega_in_platform_x +
-            J_star_in_platform_yy*omega_in_platform_y + J_star_in_platform_yz*omega_in_platform_z;
-        const real J_star_in_platform_zz = m->J_star_in_platform_zz;
-        const real Z_q_t_3 = J_star_in_platform_xz*omega_in_platform_x +
-            J_star_in_platform_yz*omega_in_platform_y + J_star_in_platform_zz*omega_in_platform_z;
-        const real Z_q_in_platform_x = Z_q_t_3*omega_in_platform_y +
-            g_in_platform_y*h_star_in_platform_z - Z_q_t_2*omega_in_platform_z -
-            g_in_platform_z*h_star_in_platform_y;
-        const real Z_q_in_platform_y = Z_q_t*omega_in_platform_z +
-            g_in_platform_z*h_star_in_platform_x - Z_q_t_3*omega_in_platform_x -
-            g_in_platform_x*h_star_in_platform_z;
-        const real Z_q_in_platform_z = Z_q_t_2*omega_in_platform_x +
-            g_in_platform_x*h_star_in_platform_y - Z_q_t*omega_in_platform_y -
-            g_in_platform_y*h_star_in_platform_x;
-        const real Z_q_x = R_xx*Z_q_in_platform_x + R_xy*Z_q_in_platform_y +
-            R_xz*Z_q_in_platform_z;
-        const real Z_q_y = R_yx*Z_q_in_platform_x + R_yy*Z_q_in_platform_y +
-            R_yz*Z_q_in_platform_z;
-        const real Z_q_z = R_zx*Z_q_in_platform_x + R_zy*Z_q_in_platform_y +
-            R_zz*Z_q_in_platform_z;
-        s[0*w + k] = t_x;
-        s[1*w + k] = t_y;
-        s[2*w + k] = t_z;
-        s[3*w + k] = R_xx;
-        s[4*w + k] = R_xy;
-        s[5*w + k] = R_xz;
-        s[6*w + k] = R_yx;
-        s[7*w + k] = R_yy;
-        s[8*w + k] = R_yz;
-        s[9*w + k] = R_zx;
-        s[10*w + k] = R_zy;
-        s[11*w + k] = R_zz;
-        s[12*w + k] = t_dot_x;
-        s[13*w + k] = t_dot_y;
-        s[14*w + k] = t_dot_z;
-        s[15*w + k] = omega_x;
-        s[16*w + k] = omega_y;
-        s[17*w + k] = omega_z;
-        s[18*w + k] = Z_p_x;
-        s[19*w + k] = Z_p_y;
-        s[20*w + k] = Z_p_z;
-        s[21*w + k] = Z_q_x;
-        s[22*w + k] = Z_q_y;
-        s[23*w + k] = Z_q_z;
-        t->invalid[k] += UNLESS(is_finite(quaternion_scale)) + UNLESS(quaternion_scale > 0);
+        values v;
+        stage_X(m, w, k, X, &v);
+        stage_V_X(w, k, V, &v);
+        stage_Z_dynamics(m, w, k, V, &v);
+        s[0*w + k] = v.R_xx;
+        s[1*w + k] = v.R_xy;
+        s[2*w + k] = v.R_xz;
+        s[3*w + k] = v.R_yx;
+        s[4*w + k] = v.R_yy;
+        s[5*w + k] = v.R_yz;
+        s[6*w + k] = v.R_zx;
+        s[7*w + k] = v.R_zy;
+        s[8*w + k] = v.R_zz;
+        s[9*w + k] = v.Z_p_x;
+        s[10*w + k] = v.Z_p_y;
+        s[11*w + k] = v.Z_p_z;
+        s[12*w + k] = v.Z_q_x;
+        s[13*w + k] = v.Z_q_y;
+        s[14*w + k] = v.Z_q_z;
+        t->invalid[k] += UNLESS(is_finite(v.quaternion_scale)) + UNLESS(v.quaternion_scale > 0);
     }
 }
 
 INLINE void Z_legs_pus(const prepared *m, size_t w, size_t leg, size_t legs, const real *s, size_t
-    states, size_t count, int add, real *terms, real *o)
+    states, size_t count, int add, const real *X, const real *V, real *terms, real *o)
 {
     for (size_t k = 0; k < count; ++k) {
         const size_t i = leg + legs*k;
         const size_t j = states*k;
-        /* (pus-S) from the base point to the connection point */
-        const real R_xx = s[3*w + j];
-        const real R_xy = s[4*w + j];
-        const real R_xz = s[5*w + j];
-        const real pus_platform_point_x = m->pus_platform_point_x[i];
-        const real pus_platform_point_y = m->pus_platform_point_y[i];
-        const real pus_platform_point_z = m->pus_platform_point_z[i];
-        const real pus_q_x = R_xx*pus_platform_point_x + R_xy*pus_platform_point_y +
-            R_xz*pus_platform_point_z;
-        const real R_yx = s[6*w + j];
-        const real R_yy = s[7*w + j];
-        const real R_yz = s[8*w + j];
-        const real pus_q_y = R_yx*pus_platform_point_x + R_yy*pus_platform_point_y +
-            R_yz*pus_platform_point_z;
-        const real R_zx = s[9*w + j];
-        const real R_zy = s[10*w + j];
-        const real R_zz = s[11*w + j];
-        const real pus_q_z = R_zx*pus_platform_point_x + R_zy*pus_platform_point_y +
-            R_zz*pus_platform_point_z;
-        const real pus_base_point_x = m->pus_base_point_x[i];
-        const real t_x = s[0*w + j];
-        const real pus_S_x = pus_q_x + t_x - pus_base_point_x;
-        const real pus_base_point_y = m->pus_base_point_y[i];
-        const real t_y = s[1*w + j];
-        const real pus_S_y = pus_q_y + t_y - pus_base_point_y;
-        const real pus_base_point_z = m->pus_base_point_z[i];
-        const real t_z = s[2*w + j];
-        const real pus_S_z = pus_q_z + t_z - pus_base_point_z;
-        const real pus_base_frame_xx = m->pus_base_frame_xx[i];
-        const real pus_base_frame_yx = m->pus_base_frame_yx[i];
-        const real pus_base_frame_zx = m->pus_base_frame_zx[i];
-        const real pus_S_in_axes0_x = pus_S_x*pus_base_frame_xx + pus_S_y*pus_base_frame_yx +
-            pus_S_z*pus_base_frame_zx;
-        const real pus_base_frame_xy = m->pus_base_frame_xy[i];
-        const real pus_base_frame_yy = m->pus_base_frame_yy[i];
-        const real pus_base_frame_zy = m->pus_base_frame_zy[i];
-        const real pus_S_in_axes0_y = pus_S_x*pus_base_frame_xy + pus_S_y*pus_base_frame_yy +
-            pus_S_z*pus_base_frame_zy;
-        /* (pus-disc_1) discriminant of the distance equation */
-        const real pus_disc_1_t = pus_S_x*pus_S_x + pus_S_y*pus_S_y + pus_S_z*pus_S_z;
-        const real pus_size_t = m->pus_size_t[i];
-        const real pus_disc_1 = pus_S_in_axes0_x*pus_S_in_axes0_x + pus_size_t - pus_disc_1_t;
-        /* (pus-x_2) from the origin of joint 2 to the connection point */
-        const real pus_branch_1 = m->pus_branch_1[i];
-        const real pus_x_2_in_axes0_x = -pus_branch_1*root(pus_disc_1);
-        /* (pus-rho2_2) squared amplitude */
-        const real pus_rho2_2 = pus_S_in_axes0_y*pus_S_in_axes0_y +
-            pus_x_2_in_axes0_x*pus_x_2_in_axes0_x;
-        /* (pus-root_2) root, with the sign of the branch */
-        const real pus_branch_2 = m->pus_branch_2[i];
-        const real pus_root_2 = pus_branch_2*root(pus_rho2_2);
-        /* (pus-c_2) cosine of the angle of joint 2 from its reference direction */
-        const real inv_pus_rho2_2 = 1/pus_rho2_2;
-        const real pus_c_2_t = inv_pus_rho2_2*pus_S_in_axes0_y*pus_root_2;
-        /* (pus-s_2) sine of the angle of joint 2 from its reference direction */
-        const real pus_s_2 = inv_pus_rho2_2*pus_root_2*pus_x_2_in_axes0_x;
-        /* (pus-c_3) cosine of the angle of joint 3 from its reference direction */
-        const real inv_pus_size_t = m->inv_pus_size_t[i];
-        const real pus_platform_joint_offset_x = m->pus_platform_joint_offset_x[i];
-        const real pus_c_3_t = inv_pus_size_t*pus_platform_joint_offset_x*pus_root_2;
-        /* (pus-s_3) sine of the angle of joint 3 from its reference direction */
-        const real pus_base_frame_xz = m->pus_base_frame_xz[i];
-        const real pus_base_frame_yz = m->pus_base_frame_yz[i];
-        const real pus_base_frame_zz = m->pus_base_frame_zz[i];
-        const real pus_s_3 = inv_pus_size_t*pus_platform_joint_offset_x*(pus_S_x*pus_base_frame_xz
-            + pus_S_y*pus_base_frame_yz + pus_S_z*pus_base_frame_zz);
-        /* (pus-S_dot) velocity of the connection point */
-        const real omega_y = s[16*w + j];
-        const real omega_z = s[17*w + j];
-        const real pus_S_dot_t = omega_y*pus_q_z - omega_z*pus_q_y;
-        const real omega_x = s[15*w + j];
-        const real pus_S_dot_t_2 = omega_z*pus_q_x - omega_x*pus_q_z;
-        const real pus_S_dot_t_3 = omega_x*pus_q_y - omega_y*pus_q_x;
-        const real t_dot_x = s[12*w + j];
-        const real pus_S_dot_x = pus_S_dot_t + t_dot_x;
-        const real t_dot_y = s[13*w + j];
-        const real pus_S_dot_y = pus_S_dot_t_2 + t_dot_y;
-        const real t_dot_z = s[14*w + j];
-        const real pus_S_dot_z = pus_S_dot_t_3 + t_dot_z;
-        /* (pus-v_2) velocity of the connection point per rate of joint 2 */
-        const real pus_v_2_in_axes3_z = pus_c_3_t*pus_platform_joint_offset_x;
-        /* (pus-w_1) reciprocal vector 1 */
-        const real pus_e_1_in_axes3_x = pus_c_3_t*pus_s_2;
-        const real pus_w_1_in_axes3_x = 1/pus_e_1_in_axes3_x;
-        /* (pus-w_2) reciprocal vector 2 */
-        const real pus_w_2_in_axes3_z = 1/pus_v_2_in_axes3_z;
+        values_pus v;
+        stage_pus_X(m, w, i, j, s, X, &v);
+        stage_pus_V_X(w, j, V, &v);
         /* (pus-qd_1) rate of joint 1 */
-        const real axis_z_pus_axes3_x = pus_base_frame_xy*pus_s_2 - pus_base_frame_xx*pus_c_2_t;
-        const real axis_z_pus_axes3_y = pus_base_frame_yy*pus_s_2 - pus_base_frame_yx*pus_c_2_t;
-        const real axis_z_pus_axes3_z = pus_base_frame_zy*pus_s_2 - pus_base_frame_zx*pus_c_2_t;
-        const real pus_e_1_in_axes3_y = pus_s_2*pus_s_3;
-        const real pus_qd_1_t = pus_c_2_t*pus_s_3;
-        const real axis_y_pus_axes3_x = pus_base_frame_xx*pus_e_1_in_axes3_y +
-            pus_base_frame_xy*pus_qd_1_t - pus_base_frame_xz*pus_c_3_t;
-        const real axis_y_pus_axes3_y = pus_base_frame_yx*pus_e_1_in_axes3_y +
-            pus_base_frame_yy*pus_qd_1_t - pus_base_frame_yz*pus_c_3_t;
-        const real axis_y_pus_axes3_z = pus_base_frame_zx*pus_e_1_in_axes3_y +
-            pus_base_frame_zy*pus_qd_1_t - pus_base_frame_zz*pus_c_3_t;
-        const real axis_x_pus_axes3_x = axis_y_pus_axes3_y*axis_z_pus_axes3_z -
-            axis_y_pus_axes3_z*axis_z_pus_axes3_y;
-        const real axis_x_pus_axes3_y = axis_y_pus_axes3_z*axis_z_pus_axes3_x -
-            axis_y_pus_axes3_x*axis_z_pus_axes3_z;
-        const real axis_x_pus_axes3_z = axis_y_pus_axes3_x*axis_z_pus_axes3_y -
-            axis_y_pus_axes3_y*axis_z_pus_axes3_x;
-        const real pus_qd_1 = pus_w_1_in_axes3_x*(axis_x_pus_axes3_x*pus_S_dot_x +
-            axis_x_pus_axes3_y*pus_S_dot_y + axis_x_pus_axes3_z*pus_S_dot_z);
+        const real pus_base_frame_xx = m->pus_base_frame_xx[i];
+        const real pus_base_frame_xy = m->pus_base_frame_xy[i];
+        const real pus_base_frame_xz = m->pus_base_frame_xz[i];
+        const real axis_y_pus_axes3_x = pus_base_frame_xx*v.pus_e_1_in_axes3_y +
+            pus_base_frame_xy*v.pus_qd_1_t - pus_base_frame_xz*v.pus_c_3;
+        const real pus_base_frame_yx = m->pus_base_frame_yx[i];
+        const real pus_base_frame_yy = m->pus_base_frame_yy[i];
+        const real pus_base_frame_yz = m->pus_base_frame_yz[i];
+        const real axis_y_pus_axes3_y = pus_base_frame_yx*v.pus_e_1_in_axes3_y +
+            pus_base_frame_yy*v.pus_qd_1_t - pus_base_frame_yz*v.pus_c_3;
+        const real pus_base_frame_zx = m->pus_base_frame_zx[i];
+        const real pus_base_frame_zy = m->pus_base_frame_zy[i];
+        const real pus_base_frame_zz = m->pus_base_frame_zz[i];
+        const real axis_y_pus_axes3_z = pus_base_frame_zx*v.pus_e_1_in_axes3_y +
+            pus_base_frame_zy*v.pus_qd_1_t - pus_base_frame_zz*v.pus_c_3;
+        const real axis_x_pus_axes3_x = axis_y_pus_axes3_y*v.axis_z_pus_axes3_z -
+            axis_y_pus_axes3_z*v.axis_z_pus_axes3_y;
+        const real axis_x_pus_axes3_y = axis_y_pus_axes3_z*v.axis_z_pus_axes3_x -
+            axis_y_pus_axes3_x*v.axis_z_pus_axes3_z;
+        const real axis_x_pus_axes3_z = axis_y_pus_axes3_x*v.axis_z_pus_axes3_y -
+            axis_y_pus_axes3_y*v.axis_z_pus_axes3_x;
+        const real pus_qd_1 = v.pus_w_1_in_axes3_x*(axis_x_pus_axes3_x*v.pus_S_dot_x +
+            axis_x_pus_axes3_y*v.pus_S_dot_y + axis_x_pus_axes3_z*v.pus_S_dot_z);
         /* (pus-qd_2) rate of joint 2 */
-        const real pus_qd_2 = pus_w_2_in_axes3_z*(axis_z_pus_axes3_x*pus_S_dot_x +
-            axis_z_pus_axes3_y*pus_S_dot_y + axis_z_pus_axes3_z*pus_S_dot_z + pus_c_2_t*pus_qd_1);
+        const real pus_qd_2 = v.pus_w_2_in_axes3_z*(v.axis_z_pus_axes3_x*v.pus_S_dot_x +
+            v.axis_z_pus_axes3_y*v.pus_S_dot_y + v.axis_z_pus_axes3_z*v.pus_S_dot_z +
+            pus_qd_1*v.pus_s_2);
         /* (pus-qd_3) rate of joint 3 */
-        const real pus_qd_3_t = axis_y_pus_axes3_x*pus_S_dot_x + axis_y_pus_axes3_y*pus_S_dot_y +
-            axis_y_pus_axes3_z*pus_S_dot_z - pus_e_1_in_axes3_y*pus_qd_1;
+        const real pus_qd_3_t = axis_y_pus_axes3_x*v.pus_S_dot_x +
+            axis_y_pus_axes3_y*v.pus_S_dot_y + axis_y_pus_axes3_z*v.pus_S_dot_z -
+            v.pus_e_1_in_axes3_y*pus_qd_1;
         const real pus_w_3_in_axes3_y = m->pus_w_3_in_axes3_y[i];
         const real pus_qd_3 = pus_qd_3_t*pus_w_3_in_axes3_y;
         /* (pus-omega_2) angular velocity of link 2 */
-        const real pus_omega_2_in_axes3_x = pus_qd_2*pus_s_3;
-        const real pus_omega_2_in_axes3_y = -pus_c_3_t*pus_qd_2;
+        const real pus_omega_2_in_axes3_x = v.pus_e_2_in_axes3_x*pus_qd_2;
+        const real pus_omega_2_in_axes3_y = -v.pus_c_3*pus_qd_2;
         /* (pus-W_3) centripetal tensor of link 3 */
         const real pus_W_3_in_axes3_yz = pus_omega_2_in_axes3_y*pus_qd_3;
         const real pus_W_3_in_axes3_xz = pus_omega_2_in_axes3_x*pus_qd_3;
         const real pus_W_3_in_axes3_xy = pus_omega_2_in_axes3_x*pus_omega_2_in_axes3_y;
         /* (pus-u_1) centripetal acceleration of the connection point */
-        const real pus_u_1_x = omega_y*pus_S_dot_t_3 - omega_z*pus_S_dot_t_2;
-        const real pus_u_1_y = omega_z*pus_S_dot_t - omega_x*pus_S_dot_t_3;
-        const real pus_u_1_z = omega_x*pus_S_dot_t_2 - omega_y*pus_S_dot_t;
+        const real omega_y = V[4*w + j];
+        const real omega_z = V[5*w + j];
+        const real pus_u_1_x = omega_y*v.pus_S_dot_t_3 - omega_z*v.pus_S_dot_t_2;
+        const real omega_x = V[3*w + j];
+        const real pus_u_1_y = omega_z*v.pus_S_dot_t - omega_x*v.pus_S_dot_t_3;
+        const real pus_u_1_z = omega_x*v.pus_S_dot_t_2 - omega_y*v.pus_S_dot_t;
         const real pus_u_1_in_axes3_x = axis_x_pus_axes3_x*pus_u_1_x +
             axis_x_pus_axes3_y*pus_u_1_y + axis_x_pus_axes3_z*pus_u_1_z;
         const real pus_u_1_in_axes3_y = axis_y_pus_axes3_x*pus_u_1_x +
             axis_y_pus_axes3_y*pus_u_1_y + axis_y_pus_axes3_z*pus_u_1_z;
-        const real pus_u_1_in_axes3_z = axis_z_pus_axes3_x*pus_u_1_x +
-            axis_z_pus_axes3_y*pus_u_1_y + axis_z_pus_axes3_z*pus_u_1_z;
+        const real pus_u_1_in_axes3_z = v.axis_z_pus_axes3_x*pus_u_1_x +
+            v.axis_z_pus_axes3_y*pus_u_1_y + v.axis_z_pus_axes3_z*pus_u_1_z;
         /* (pus-bias) acceleration of the connection point at zero joint accelerations */
+        const real pus_platform_joint_offset_x = m->pus_platform_joint_offset_x[i];
         const real pus_bias_in_axes3_z = pus_W_3_in_axes3_xz*pus_platform_joint_offset_x +
             pus_omega_2_in_axes3_x*pus_qd_3_t;
         /* (pus-rel_o) remainder without the acceleration in: acceleration of the connection point left to
@@ -2817,16 +2941,16 @@ INLINE void Z_legs_pus(const prepared *m, size_t w, size_t leg, size_t legs, con
         const real pus_rel_o_in_axes3_y = pus_u_1_in_axes3_y - pus_omega_2_in_axes3_x*pus_rel_o_t;
         const real pus_rel_o_in_axes3_z = pus_u_1_in_axes3_z - pus_bias_in_axes3_z;
         /* (pus-qdd_1_o) remainder without the acceleration in: acceleration of joint 1 */
-        const real pus_qdd_1_o = pus_rel_o_in_axes3_x*pus_w_1_in_axes3_x;
+        const real pus_qdd_1_o = pus_rel_o_in_axes3_x*v.pus_w_1_in_axes3_x;
         /* (pus-qdd_2_o) remainder without the acceleration in: acceleration of joint 2 */
-        const real pus_qdd_2_o_t = pus_w_2_in_axes3_z*(-pus_rel_o_in_axes3_z -
-            pus_c_2_t*pus_qdd_1_o);
+        const real pus_qdd_2_o_t = v.pus_w_2_in_axes3_z*(-pus_rel_o_in_axes3_z -
+            pus_qdd_1_o*v.pus_s_2);
         /* (pus-qdd_3_o) remainder without the acceleration in: acceleration of joint 3 */
-        const real pus_qdd_3_o = -pus_w_3_in_axes3_y*(pus_e_1_in_axes3_y*pus_qdd_1_o -
+        const real pus_qdd_3_o = -pus_w_3_in_axes3_y*(v.pus_e_1_in_axes3_y*pus_qdd_1_o -
             pus_rel_o_in_axes3_y);
         /* (pus-alpha_2_o) remainder without the acceleration in: angular acceleration of link 2 */
-        const real pus_alpha_2_o_t = pus_qdd_2_o_t*pus_s_3;
-        const real pus_alpha_2_o_in_axes3_y = pus_c_3_t*pus_qdd_2_o_t;
+        const real pus_alpha_2_o_t = v.pus_e_2_in_axes3_x*pus_qdd_2_o_t;
+        const real pus_alpha_2_o_in_axes3_y = v.pus_c_3*pus_qdd_2_o_t;
         /* (pus-alpha_3_o) remainder without the acceleration in: angular acceleration of link 3 */
         const real pus_alpha_3_o_in_axes3_x = pus_W_3_in_axes3_yz - pus_alpha_2_o_t;
         const real pus_alpha_3_o_in_axes3_y = pus_alpha_2_o_in_axes3_y - pus_W_3_in_axes3_xz;
@@ -2842,14 +2966,14 @@ INLINE void Z_legs_pus(const prepared *m, size_t w, size_t leg, size_t legs, con
         /* (pus-acc_3_o) remainder without the acceleration in: acceleration of the reference point of
            link 3, less gravity */
         const real pus_g_in_axes0_y = m->pus_g_in_axes0_y[i];
-        const real pus_acc_3_o_t = -pus_c_2_t*pus_g_in_axes0_y - pus_g_in_axes0_x*pus_s_2;
+        const real pus_acc_3_o_t = v.pus_c_2*pus_g_in_axes0_x + pus_g_in_axes0_y*v.pus_s_2;
         const real pus_g_in_axes0_z = m->pus_g_in_axes0_z[i];
-        const real pus_acc_3_o_in_axes3_x = pus_u_1_in_axes3_x + pus_acc_3_o_t*pus_c_3_t -
-            pus_g_in_axes0_z*pus_s_3;
-        const real pus_acc_3_o_in_axes3_y = pus_u_1_in_axes3_y + pus_acc_3_o_t*pus_s_3 +
-            pus_c_3_t*pus_g_in_axes0_z;
-        const real pus_acc_3_o_in_axes3_z = pus_u_1_in_axes3_z + pus_c_2_t*pus_g_in_axes0_x -
-            pus_g_in_axes0_y*pus_s_2;
+        const real pus_acc_3_o_in_axes3_x = pus_u_1_in_axes3_x - pus_acc_3_o_t*v.pus_c_3 -
+            v.pus_e_2_in_axes3_x*pus_g_in_axes0_z;
+        const real pus_acc_3_o_in_axes3_y = pus_u_1_in_axes3_y + v.pus_c_3*pus_g_in_axes0_z -
+            pus_acc_3_o_t*v.pus_e_2_in_axes3_x;
+        const real pus_acc_3_o_in_axes3_z = pus_u_1_in_axes3_z + pus_g_in_axes0_x*v.pus_s_2 -
+            v.pus_c_2*pus_g_in_axes0_y;
         /* (pus-mu_3_o) remainder without the acceleration in: inertia moment of the links that turn with
            link 3, about their reference points */
         const real pus_mu_3_o_t = pus_omega_2_in_axes3_x*pus_omega_2_in_axes3_x;
@@ -2882,8 +3006,8 @@ INLINE void Z_legs_pus(const prepared *m, size_t w, size_t leg, size_t legs, con
             pus_J_3_in_spec3_yz*pus_alpha_2_o_in_axes3_y;
         /* (pus-G_o) remainder without the acceleration in: force at the connection point that balances
            the leg's inertia and weight along all degrees of freedom */
-        const real pus_G_o_in_axes3_z = pus_w_2_in_axes3_z*(pus_mu_3_o_in_axes3_x*pus_s_3 -
-            pus_c_3_t*pus_mu_3_o_in_axes3_y);
+        const real pus_G_o_t = v.pus_w_2_in_axes3_z*(v.pus_c_3*pus_mu_3_o_in_axes3_y -
+            v.pus_e_2_in_axes3_x*pus_mu_3_o_in_axes3_x);
         const real pus_G_o_in_axes3_y = pus_mu_3_o_in_axes3_z*pus_w_3_in_axes3_y;
         /* (pus-c_o) remainder without the acceleration in: leg force on the platform without actuation
            and without the mass at the connection point */
@@ -2891,25 +3015,25 @@ INLINE void Z_legs_pus(const prepared *m, size_t w, size_t leg, size_t legs, con
         const real pus_c_o_in_axes3_x = pus_B_3_o_in_axes3_xy*pus_h_3_in_spec3_z +
             pus_h_3_in_spec3_x*(pus_mu_3_o_t_2 + pus_mu_3_o_t_3) -
             pus_alpha_2_o_in_axes3_y*pus_h_3_in_spec3_y -
-            pus_w_1_in_axes3_x*(pus_G_o_in_axes3_z*pus_c_2_t +
-            pus_acc_1_o_in_axes0_x*pus_link1_mass - pus_G_o_in_axes3_y*pus_e_1_in_axes3_y);
+            v.pus_w_1_in_axes3_x*(pus_acc_1_o_in_axes0_x*pus_link1_mass -
+            pus_G_o_in_axes3_y*v.pus_e_1_in_axes3_y - pus_G_o_t*v.pus_s_2);
         const real pus_c_o_in_axes3_y = -pus_G_o_in_axes3_y -
             pus_B_3_o_in_axes3_yx*pus_h_3_in_spec3_x - pus_alpha_2_o_t*pus_h_3_in_spec3_y -
             pus_h_3_in_spec3_z*(pus_mu_3_o_t + pus_mu_3_o_t_3);
-        const real pus_c_o_in_axes3_z = pus_B_3_o_in_axes3_zy*pus_h_3_in_spec3_z +
-            pus_h_3_in_spec3_y*(pus_mu_3_o_t + pus_mu_3_o_t_2) - pus_G_o_in_axes3_z -
+        const real pus_c_o_in_axes3_z = pus_G_o_t + pus_B_3_o_in_axes3_zy*pus_h_3_in_spec3_z +
+            pus_h_3_in_spec3_y*(pus_mu_3_o_t + pus_mu_3_o_t_2) -
             pus_B_3_o_in_axes3_zx*pus_h_3_in_spec3_x;
         /* (pus-U) velocity and gravity terms of the leg force */
         const real pus_U_x = -axis_x_pus_axes3_x*pus_c_o_in_axes3_x -
-            axis_y_pus_axes3_x*pus_c_o_in_axes3_y - axis_z_pus_axes3_x*pus_c_o_in_axes3_z;
+            axis_y_pus_axes3_x*pus_c_o_in_axes3_y - v.axis_z_pus_axes3_x*pus_c_o_in_axes3_z;
         const real pus_U_y = -axis_x_pus_axes3_y*pus_c_o_in_axes3_x -
-            axis_y_pus_axes3_y*pus_c_o_in_axes3_y - axis_z_pus_axes3_y*pus_c_o_in_axes3_z;
+            axis_y_pus_axes3_y*pus_c_o_in_axes3_y - v.axis_z_pus_axes3_y*pus_c_o_in_axes3_z;
         const real pus_U_z = -axis_x_pus_axes3_z*pus_c_o_in_axes3_x -
-            axis_y_pus_axes3_z*pus_c_o_in_axes3_y - axis_z_pus_axes3_z*pus_c_o_in_axes3_z;
+            axis_y_pus_axes3_z*pus_c_o_in_axes3_y - v.axis_z_pus_axes3_z*pus_c_o_in_axes3_z;
         /* (Z_a) rotational part of Z */
-        const real pus_Z_a_t = pus_U_z*pus_q_y - pus_U_y*pus_q_z;
-        const real pus_Z_a_t_2 = pus_U_x*pus_q_z - pus_U_z*pus_q_x;
-        const real pus_Z_a_t_3 = pus_U_y*pus_q_x - pus_U_x*pus_q_y;
+        const real pus_Z_a_t = pus_U_z*v.pus_q_y - pus_U_y*v.pus_q_z;
+        const real pus_Z_a_t_2 = pus_U_x*v.pus_q_z - pus_U_z*v.pus_q_x;
+        const real pus_Z_a_t_3 = pus_U_y*v.pus_q_x - pus_U_x*v.pus_q_y;
         /* (Z_t) translational part of Z */
         gather(&terms[0*count + k], add, pus_U_x);  /* Z_t_x_of_legs */
         gather(&terms[1*count + k], add, pus_U_y);  /* Z_t_y_of_legs */
@@ -2920,10 +3044,10 @@ INLINE void Z_legs_pus(const prepared *m, size_t w, size_t leg, size_t legs, con
         gather(&terms[5*count + k], add, pus_Z_a_t_3);  /* Z_a_z_of_legs */
         const real pus_size_t_2 = m->pus_size_t_2[i];
         const real pus_size = m->pus_size[i];
-        o[0*count + k] = UNLESS(pus_disc_1 >= 0);
-        o[1*count + k] = UNLESS(magnitude(pus_rho2_2) > TOLERANCE*TOLERANCE*pus_size_t_2) +
-            UNLESS(magnitude(pus_v_2_in_axes3_z) > TOLERANCE*pus_size) +
-            UNLESS(magnitude(pus_e_1_in_axes3_x) > LEAST_1);
+        o[0*count + k] = UNLESS(v.pus_disc_1 >= 0);
+        o[1*count + k] = UNLESS(magnitude(v.pus_rho2_2) > TOLERANCE*TOLERANCE*pus_size_t_2) +
+            UNLESS(magnitude(v.pus_v_2_in_axes3_z) > TOLERANCE*pus_size) +
+            UNLESS(magnitude(v.pus_e_1_in_axes3_x) > LEAST_1);
     }
 }
 
@@ -2939,24 +3063,24 @@ INLINE void Z_after(size_t w, const real *s, const real *sums, real *Z, verdict 
 {
     for (size_t k = 0; k < w; ++k) {
         /* (Z_t) translational part of Z */
-        const real Z_p_x = s[18*w + k];
+        const real Z_p_x = s[9*w + k];
         const real Z_t_x_of_legs = sums[0*w + k];
         const real Z_t_x = Z_p_x + Z_t_x_of_legs;
-        const real Z_p_y = s[19*w + k];
+        const real Z_p_y = s[10*w + k];
         const real Z_t_y_of_legs = sums[1*w + k];
         const real Z_t_y = Z_p_y + Z_t_y_of_legs;
-        const real Z_p_z = s[20*w + k];
+        const real Z_p_z = s[11*w + k];
         const real Z_t_z_of_legs = sums[2*w + k];
         const real Z_t_z = Z_p_z + Z_t_z_of_legs;
         /* (Z_a) rotational part of Z */
         const real Z_a_x_of_legs = sums[3*w + k];
-        const real Z_q_x = s[21*w + k];
+        const real Z_q_x = s[12*w + k];
         const real Z_a_x = Z_a_x_of_legs + Z_q_x;
         const real Z_a_y_of_legs = sums[4*w + k];
-        const real Z_q_y = s[22*w + k];
+        const real Z_q_y = s[13*w + k];
         const real Z_a_y = Z_a_y_of_legs + Z_q_y;
         const real Z_a_z_of_legs = sums[5*w + k];
-        const real Z_q_z = s[23*w + k];
+        const real Z_q_z = s[14*w + k];
         const real Z_a_z = Z_a_z_of_legs + Z_q_z;
         /* (Z_t) translational part of Z */
         Z[0*w + k] = Z_t_x;
@@ -2972,12 +3096,10 @@ INLINE void Z_after(size_t w, const real *s, const real *sums, real *Z, verdict 
 
 INLINE void Z_run(const prepared *m, const real *X, const real *V, real *Z, verdict *t)
 {
-    real s[24] = {0};
-    real sums[6] = {0};
-    real terms_pus[6*LEGS(LEGS_OF_pus)] = {0};
-    real o_pus[2*LEGS(LEGS_OF_pus)] = {0};
+    real s[15] = {0}, sums[6] = {0};
+    real terms_pus[6*LEGS(LEGS_OF_pus)] = {0}, o_pus[2*LEGS(LEGS_OF_pus)] = {0};
     Z_before(m, 1, X, V, s, t);
-    Z_legs_pus(m, 1, 0, 1, s, 0, LEGS(LEGS_OF_pus), 0, terms_pus, o_pus);
+    Z_legs_pus(m, 1, 0, 1, s, 0, LEGS(LEGS_OF_pus), 0, X, V, terms_pus, o_pus);
     for (size_t leg = 0; leg < LEGS_OF_pus; ++leg) {
         Z_place_pus(1, LEGS(LEGS_OF_pus), o_pus, leg, t);
     }
@@ -2989,182 +3111,59 @@ INLINE void Z_run(const prepared *m, const real *X, const real *V, real *Z, verd
 
 INLINE void Z_run_lanes(const prepared *m, const real *X, const real *V, real *Z, verdict *t)
 {
-    real s[24*LANES];
-    real sums[6*LANES];
+    real s[15*LANES], sums[6*LANES];
     real o_pus[2*LANES];
     Z_before(m, LANES, X, V, s, t);
     clear(sums, 6*LANES);
     for (size_t leg = 0; leg < LEGS_OF_pus; ++leg) {
-        Z_legs_pus(m, LANES, leg, 0, s, 1, LANES, 1, sums, o_pus);
+        Z_legs_pus(m, LANES, leg, 0, s, 1, LANES, 1, X, V, sums, o_pus);
         Z_place_pus(LANES, LANES, o_pus, 0, t);
     }
     Z_after(LANES, s, sums, Z, t);
 }
 
 /* ---- H ---- */
-INLINE void H_before(size_t w, const real *X, real *s, verdict *t)
+INLINE void H_before(const prepared *m, size_t w, const real *X, real *s, verdict *t)
 {
     for (size_t k = 0; k < w; ++k) {
-        /* X: named entries */
-        const real X_0 = X[0*w + k];
-        const real t_x = X_0;
-        const real X_1 = X[1*w + k];
-        const real t_y = X_1;
-        const real X_2 = X[2*w + k];
-        const real t_z = X_2;
-        const real X_3 = X[3*w + k];
-        const real X_4 = X[4*w + k];
-        const real X_5 = X[5*w + k];
-        const real X_6 = X[6*w + k];
-        const real quaternion_norm2 = X_3*X_3 + X_4*X_4 + X_5*X_5 + X_6*X_6;
-        const real quaternion_scale = 2/quaternion_norm2;
-        const real quaternion_sx = X_3*quaternion_scale;
-        const real quaternion_sy = X_4*quaternion_scale;
-        const real quaternion_sz = X_5*quaternion_scale;
-        const real quaternion_wx = X_6*quaternion_sx;
-        const real quaternion_wy = X_6*quaternion_sy;
-        const real quaternion_wz = X_6*quaternion_sz;
-        const real quaternion_xx = X_3*quaternion_sx;
-        const real quaternion_xy = X_3*quaternion_sy;
-        const real quaternion_xz = X_3*quaternion_sz;
-        const real quaternion_yy = X_4*quaternion_sy;
-        const real quaternion_yz = X_4*quaternion_sz;
-        const real quaternion_zz = X_5*quaternion_sz;
-        const real R_xx = 1 - quaternion_yy - quaternion_zz;
-        const real R_xy = quaternion_xy - quaternion_wz;
-        const real R_xz = quaternion_wy + quaternion_xz;
-        const real R_yx = quaternion_wz + quaternion_xy;
-        const real R_yy = 1 - quaternion_xx - quaternion_zz;
-        const real R_yz = quaternion_yz - quaternion_wx;
-        const real R_zx = quaternion_xz - quaternion_wy;
-        const real R_zy = quaternion_wx + quaternion_yz;
-        const real R_zz = 1 - quaternion_xx - quaternion_yy;
-        s[0*w + k] = t_x;
-        s[1*w + k] = t_y;
-        s[2*w + k] = t_z;
-        s[3*w + k] = R_xx;
-        s[4*w + k] = R_xy;
-        s[5*w + k] = R_xz;
-        s[6*w + k] = R_yx;
-        s[7*w + k] = R_yy;
-        s[8*w + k] = R_yz;
-        s[9*w + k] = R_zx;
-        s[10*w + k] = R_zy;
-        s[11*w + k] = R_zz;
-        t->invalid[k] += UNLESS(is_finite(quaternion_scale)) + UNLESS(quaternion_scale > 0);
+        values v;
+        stage_X(m, w, k, X, &v);
+        s[0*w + k] = v.R_xx;
+        s[1*w + k] = v.R_xy;
+        s[2*w + k] = v.R_xz;
+        s[3*w + k] = v.R_yx;
+        s[4*w + k] = v.R_yy;
+        s[5*w + k] = v.R_yz;
+        s[6*w + k] = v.R_zx;
+        s[7*w + k] = v.R_zy;
+        s[8*w + k] = v.R_zz;
+        t->invalid[k] += UNLESS(is_finite(v.quaternion_scale)) + UNLESS(v.quaternion_scale > 0);
     }
 }
 
 INLINE void H_legs_pus(const prepared *m, size_t w, size_t leg, size_t legs, const real *s, size_t
-    states, size_t count, real *o)
+    states, size_t count, const real *X, real *o)
 {
     for (size_t k = 0; k < count; ++k) {
         const size_t i = leg + legs*k;
         const size_t j = states*k;
-        /* (pus-S) from the base point to the connection point */
-        const real R_xx = s[3*w + j];
-        const real R_xy = s[4*w + j];
-        const real R_xz = s[5*w + j];
-        const real pus_platform_point_x = m->pus_platform_point_x[i];
-        const real pus_platform_point_y = m->pus_platform_point_y[i];
-        const real pus_platform_point_z = m->pus_platform_point_z[i];
-        const real pus_q_x = R_xx*pus_platform_point_x + R_xy*pus_platform_point_y +
-            R_xz*pus_platform_point_z;
-        const real R_yx = s[6*w + j];
-        const real R_yy = s[7*w + j];
-        const real R_yz = s[8*w + j];
-        const real pus_q_y = R_yx*pus_platform_point_x + R_yy*pus_platform_point_y +
-            R_yz*pus_platform_point_z;
-        const real R_zx = s[9*w + j];
-        const real R_zy = s[10*w + j];
-        const real R_zz = s[11*w + j];
-        const real pus_q_z = R_zx*pus_platform_point_x + R_zy*pus_platform_point_y +
-            R_zz*pus_platform_point_z;
-        const real pus_base_point_x = m->pus_base_point_x[i];
-        const real t_x = s[0*w + j];
-        const real pus_S_x = pus_q_x + t_x - pus_base_point_x;
-        const real pus_base_point_y = m->pus_base_point_y[i];
-        const real t_y = s[1*w + j];
-        const real pus_S_y = pus_q_y + t_y - pus_base_point_y;
-        const real pus_base_point_z = m->pus_base_point_z[i];
-        const real t_z = s[2*w + j];
-        const real pus_S_z = pus_q_z + t_z - pus_base_point_z;
-        const real pus_base_frame_xx = m->pus_base_frame_xx[i];
-        const real pus_base_frame_yx = m->pus_base_frame_yx[i];
-        const real pus_base_frame_zx = m->pus_base_frame_zx[i];
-        const real pus_S_in_axes0_x = pus_S_x*pus_base_frame_xx + pus_S_y*pus_base_frame_yx +
-            pus_S_z*pus_base_frame_zx;
-        const real pus_base_frame_xy = m->pus_base_frame_xy[i];
-        const real pus_base_frame_yy = m->pus_base_frame_yy[i];
-        const real pus_base_frame_zy = m->pus_base_frame_zy[i];
-        const real pus_S_in_axes0_y = pus_S_x*pus_base_frame_xy + pus_S_y*pus_base_frame_yy +
-            pus_S_z*pus_base_frame_zy;
-        /* (pus-disc_1) discriminant of the distance equation */
-        const real pus_disc_1_t = pus_S_x*pus_S_x + pus_S_y*pus_S_y + pus_S_z*pus_S_z;
-        const real pus_size_t = m->pus_size_t[i];
-        const real pus_disc_1 = pus_S_in_axes0_x*pus_S_in_axes0_x + pus_size_t - pus_disc_1_t;
-        /* (pus-x_2) from the origin of joint 2 to the connection point */
-        const real pus_branch_1 = m->pus_branch_1[i];
-        const real pus_x_2_in_axes0_x = -pus_branch_1*root(pus_disc_1);
-        /* (pus-rho2_2) squared amplitude */
-        const real pus_rho2_2 = pus_S_in_axes0_y*pus_S_in_axes0_y +
-            pus_x_2_in_axes0_x*pus_x_2_in_axes0_x;
-        /* (pus-root_2) root, with the sign of the branch */
-        const real pus_branch_2 = m->pus_branch_2[i];
-        const real pus_root_2 = pus_branch_2*root(pus_rho2_2);
-        /* (pus-c_2) cosine of the angle of joint 2 from its reference direction */
-        const real inv_pus_rho2_2 = 1/pus_rho2_2;
-        const real pus_c_2_t = inv_pus_rho2_2*pus_S_in_axes0_y*pus_root_2;
-        /* (pus-s_2) sine of the angle of joint 2 from its reference direction */
-        const real pus_s_2 = inv_pus_rho2_2*pus_root_2*pus_x_2_in_axes0_x;
-        /* (pus-c_3) cosine of the angle of joint 3 from its reference direction */
-        const real inv_pus_size_t = m->inv_pus_size_t[i];
-        const real pus_platform_joint_offset_x = m->pus_platform_joint_offset_x[i];
-        const real pus_c_3_t = inv_pus_size_t*pus_platform_joint_offset_x*pus_root_2;
-        /* (pus-s_3) sine of the angle of joint 3 from its reference direction */
-        const real pus_base_frame_xz = m->pus_base_frame_xz[i];
-        const real pus_base_frame_yz = m->pus_base_frame_yz[i];
-        const real pus_base_frame_zz = m->pus_base_frame_zz[i];
-        const real pus_s_3 = inv_pus_size_t*pus_platform_joint_offset_x*(pus_S_x*pus_base_frame_xz
-            + pus_S_y*pus_base_frame_yz + pus_S_z*pus_base_frame_zz);
+        values_pus v;
+        stage_pus_X(m, w, i, j, s, X, &v);
+        stage_pus_H_condition(&v);
         /* (pus-w_1) reciprocal vector 1 */
-        const real axis_z_pus_axes3_x = pus_base_frame_xy*pus_s_2 - pus_base_frame_xx*pus_c_2_t;
-        const real axis_z_pus_axes3_y = pus_base_frame_yy*pus_s_2 - pus_base_frame_yx*pus_c_2_t;
-        const real axis_z_pus_axes3_z = pus_base_frame_zy*pus_s_2 - pus_base_frame_zx*pus_c_2_t;
-        const real pus_e_1_in_axes3_y = pus_s_2*pus_s_3;
-        const real pus_w_1_t = pus_c_2_t*pus_s_3;
-        const real axis_y_pus_axes3_x = pus_base_frame_xx*pus_e_1_in_axes3_y +
-            pus_base_frame_xy*pus_w_1_t - pus_base_frame_xz*pus_c_3_t;
-        const real axis_y_pus_axes3_y = pus_base_frame_yx*pus_e_1_in_axes3_y +
-            pus_base_frame_yy*pus_w_1_t - pus_base_frame_yz*pus_c_3_t;
-        const real axis_y_pus_axes3_z = pus_base_frame_zx*pus_e_1_in_axes3_y +
-            pus_base_frame_zy*pus_w_1_t - pus_base_frame_zz*pus_c_3_t;
-        const real pus_e_1_in_axes3_x = pus_c_3_t*pus_s_2;
-        const real pus_w_1_in_axes3_x = 1/pus_e_1_in_axes3_x;
-        const real pus_w_1_x = pus_w_1_in_axes3_x*(axis_y_pus_axes3_y*axis_z_pus_axes3_z -
-            axis_y_pus_axes3_z*axis_z_pus_axes3_y);
-        const real pus_w_1_y = pus_w_1_in_axes3_x*(axis_y_pus_axes3_z*axis_z_pus_axes3_x -
-            axis_y_pus_axes3_x*axis_z_pus_axes3_z);
-        const real pus_w_1_z = pus_w_1_in_axes3_x*(axis_y_pus_axes3_x*axis_z_pus_axes3_y -
-            axis_y_pus_axes3_y*axis_z_pus_axes3_x);
+        o[0*count + k] = v.pus_w_1_x;
+        o[1*count + k] = v.pus_w_1_y;
+        o[2*count + k] = v.pus_w_1_z;
         /* (pus-H_a_1) moment of the column's unit force about the platform origin */
-        const real pus_H_a_1_x = pus_q_y*pus_w_1_z - pus_q_z*pus_w_1_y;
-        const real pus_H_a_1_y = pus_q_z*pus_w_1_x - pus_q_x*pus_w_1_z;
-        const real pus_H_a_1_z = pus_q_x*pus_w_1_y - pus_q_y*pus_w_1_x;
-        /* (pus-w_1) reciprocal vector 1 */
-        o[0*count + k] = pus_w_1_x;
-        o[1*count + k] = pus_w_1_y;
-        o[2*count + k] = pus_w_1_z;
-        /* (pus-H_a_1) moment of the column's unit force about the platform origin */
-        o[3*count + k] = pus_H_a_1_x;
-        o[4*count + k] = pus_H_a_1_y;
-        o[5*count + k] = pus_H_a_1_z;
-        o[8*count + k] = (pus_w_1_x + (pus_w_1_y + pus_w_1_z)) + (pus_H_a_1_x + (pus_H_a_1_y +
-            pus_H_a_1_z));
+        o[3*count + k] = v.pus_H_a_1_x;
+        o[4*count + k] = v.pus_H_a_1_y;
+        o[5*count + k] = v.pus_H_a_1_z;
+        o[8*count + k] = (v.pus_w_1_x + (v.pus_w_1_y + v.pus_w_1_z)) + (v.pus_H_a_1_x +
+            (v.pus_H_a_1_y + v.pus_H_a_1_z));
         const real pus_size_t_2 = m->pus_size_t_2[i];
-        o[6*count + k] = UNLESS(pus_disc_1 >= 0);
-        o[7*count + k] = UNLESS(magnitude(pus_rho2_2) > TOLERANCE*TOLERANCE*pus_size_t_2) +
-            UNLESS(magnitude(pus_e_1_in_axes3_x) > LEAST_1);
+        o[6*count + k] = UNLESS(v.pus_disc_1 >= 0);
+        o[7*count + k] = UNLESS(magnitude(v.pus_rho2_2) > TOLERANCE*TOLERANCE*pus_size_t_2) +
+            UNLESS(magnitude(v.pus_e_1_in_axes3_x) > LEAST_1);
     }
 }
 
@@ -3172,7 +3171,7 @@ INLINE void H_place_pus(size_t w, size_t count, const real *o, size_t leg, size_
     verdict *t)
 {
     for (size_t k = 0; k < w; ++k) {
-        H[(0*NU + leg)*w + k] = o[0*count + first + k];
+        H[leg*w + k] = o[0*count + first + k];
         H[(NU + leg)*w + k] = o[1*count + first + k];
         H[(2*NU + leg)*w + k] = o[2*count + first + k];
         H[(3*NU + leg)*w + k] = o[3*count + first + k];
@@ -3186,10 +3185,10 @@ INLINE void H_place_pus(size_t w, size_t count, const real *o, size_t leg, size_
 
 INLINE void H_run(const prepared *m, const real *X, real *H, verdict *t)
 {
-    real s[12] = {0};
+    real s[9] = {0};
     real o_pus[9*LEGS(LEGS_OF_pus)] = {0};
-    H_before(1, X, s, t);
-    H_legs_pus(m, 1, 0, 1, s, 0, LEGS(LEGS_OF_pus), o_pus);
+    H_before(m, 1, X, s, t);
+    H_legs_pus(m, 1, 0, 1, s, 0, LEGS(LEGS_OF_pus), X, o_pus);
     for (size_t leg = 0; leg < LEGS_OF_pus; ++leg) {
         H_place_pus(1, LEGS(LEGS_OF_pus), o_pus, leg, leg, H, t);
     }
@@ -3197,11 +3196,11 @@ INLINE void H_run(const prepared *m, const real *X, real *H, verdict *t)
 
 INLINE void H_run_lanes(const prepared *m, const real *X, real *H, verdict *t)
 {
-    real s[12*LANES];
+    real s[9*LANES];
     real o_pus[9*LANES];
-    H_before(LANES, X, s, t);
+    H_before(m, LANES, X, s, t);
     for (size_t leg = 0; leg < LEGS_OF_pus; ++leg) {
-        H_legs_pus(m, LANES, leg, 0, s, 1, LANES, o_pus);
+        H_legs_pus(m, LANES, leg, 0, s, 1, LANES, X, o_pus);
         H_place_pus(LANES, LANES, o_pus, leg, 0, H, t);
     }
 }
@@ -3211,422 +3210,131 @@ INLINE void required_before(const prepared *m, size_t w, const real *X, const re
     *A, real *s, verdict *t)
 {
     for (size_t k = 0; k < w; ++k) {
-        /* X: named entries */
-        const real X_0 = X[0*w + k];
-        const real t_x = X_0;
-        const real X_1 = X[1*w + k];
-        const real t_y = X_1;
-        const real X_2 = X[2*w + k];
-        const real t_z = X_2;
-        const real X_3 = X[3*w + k];
-        const real X_4 = X[4*w + k];
-        const real X_5 = X[5*w + k];
-        const real X_6 = X[6*w + k];
-        const real quaternion_norm2 = X_3*X_3 + X_4*X_4 + X_5*X_5 + X_6*X_6;
-        const real quaternion_scale = 2/quaternion_norm2;
-        const real quaternion_sx = X_3*quaternion_scale;
-        const real quaternion_sy = X_4*quaternion_scale;
-        const real quaternion_sz = X_5*quaternion_scale;
-        const real quaternion_wx = X_6*quaternion_sx;
-        const real quaternion_wy = X_6*quaternion_sy;
-        const real quaternion_wz = X_6*quaternion_sz;
-        const real quaternion_xx = X_3*quaternion_sx;
-        const real quaternion_xy = X_3*quaternion_sy;
-        const real quaternion_xz = X_3*quaternion_sz;
-        const real quaternion_yy = X_4*quaternion_sy;
-        const real quaternion_yz = X_4*quaternion_sz;
-        const real quaternion_zz = X_5*quaternion_sz;
-        const real R_xx = 1 - quaternion_yy - quaternion_zz;
-        const real R_xy = quaternion_xy - quaternion_wz;
-        const real R_xz = quaternion_wy + quaternion_xz;
-        const real R_yx = quaternion_wz + quaternion_xy;
-        const real R_yy = 1 - quaternion_xx - quaternion_zz;
-        const real R_yz = quaternion_yz - quaternion_wx;
-        const real R_zx = quaternion_xz - quaternion_wy;
-        const real R_zy = quaternion_wx + quaternion_yz;
-        const real R_zz = 1 - quaternion_xx - quaternion_yy;
-        /* V: named entries */
-        const real V_0 = V[0*w + k];
-        const real t_dot_x = V_0;
-        const real V_1 = V[1*w + k];
-        const real t_dot_y = V_1;
-        const real V_2 = V[2*w + k];
-        const real t_dot_z = V_2;
-        const real V_3 = V[3*w + k];
-        const real omega_x = V_3;
-        const real V_4 = V[4*w + k];
-        const real omega_y = V_4;
-        const real V_5 = V[5*w + k];
-        const real omega_z = V_5;
-        /* A: named entries */
-        const real A_0 = A[0*w + k];
-        const real t_ddot_x = A_0;
-        const real A_1 = A[1*w + k];
-        const real t_ddot_y = A_1;
-        const real A_2 = A[2*w + k];
-        const real t_ddot_z = A_2;
-        const real A_3 = A[3*w + k];
-        const real alpha_x = A_3;
-        const real A_4 = A[4*w + k];
-        const real alpha_y = A_4;
-        const real A_5 = A[5*w + k];
-        const real alpha_z = A_5;
+        values v;
+        stage_X(m, w, k, X, &v);
+        stage_V_X(w, k, V, &v);
         /* (W_p) centripetal tensor of the platform */
+        const real omega_x = V[3*w + k];
+        const real omega_y = V[4*w + k];
         const real W_p_xy = omega_x*omega_y;
+        const real omega_z = V[5*w + k];
         const real W_p_xz = omega_x*omega_z;
         const real W_p_yz = omega_y*omega_z;
-        /* (h_star) first moment about the platform origin */
-        const real h_star_in_platform_x = m->h_star_in_platform_x;
-        const real h_star_in_platform_y = m->h_star_in_platform_y;
-        const real h_star_in_platform_z = m->h_star_in_platform_z;
-        const real h_star_x = R_xx*h_star_in_platform_x + R_xy*h_star_in_platform_y +
-            R_xz*h_star_in_platform_z;
-        const real h_star_y = R_yx*h_star_in_platform_x + R_yy*h_star_in_platform_y +
-            R_yz*h_star_in_platform_z;
-        const real h_star_z = R_zx*h_star_in_platform_x + R_zy*h_star_in_platform_y +
-            R_zz*h_star_in_platform_z;
         /* (a_t) acceleration of the platform origin, less gravity */
         const real gravity_x = m->gravity_x;
+        const real t_ddot_x = A[0*w + k];
         const real a_t_x = t_ddot_x - gravity_x;
         const real gravity_y = m->gravity_y;
+        const real t_ddot_y = A[1*w + k];
         const real a_t_y = t_ddot_y - gravity_y;
         const real gravity_z = m->gravity_z;
+        const real t_ddot_z = A[2*w + k];
         const real a_t_z = t_ddot_z - gravity_z;
-        const real a_t_in_platform_x = R_xx*a_t_x + R_yx*a_t_y + R_zx*a_t_z;
-        const real a_t_in_platform_y = R_xy*a_t_x + R_yy*a_t_y + R_zy*a_t_z;
-        const real a_t_in_platform_z = R_xz*a_t_x + R_yz*a_t_y + R_zz*a_t_z;
+        const real a_t_in_platform_x = v.R_xx*a_t_x + v.R_yx*a_t_y + v.R_zx*a_t_z;
+        const real a_t_in_platform_y = v.R_xy*a_t_x + v.R_yy*a_t_y + v.R_zy*a_t_z;
+        const real a_t_in_platform_z = v.R_xz*a_t_x + v.R_yz*a_t_y + v.R_zz*a_t_z;
         /* (f_p) inertia force of the platform less its weight */
         const real f_p_t = omega_x*omega_x;
         const real f_p_t_2 = omega_y*omega_y;
         const real f_p_t_3 = omega_z*omega_z;
+        const real alpha_y = A[4*w + k];
+        const real alpha_z = A[5*w + k];
         const real m_star = m->m_star;
-        const real f_p_x = a_t_x*m_star + h_star_y*(W_p_xy - alpha_z) + h_star_z*(W_p_xz +
-            alpha_y) - h_star_x*(f_p_t_2 + f_p_t_3);
-        const real f_p_y = a_t_y*m_star + h_star_x*(W_p_xy + alpha_z) + h_star_z*(W_p_yz -
-            alpha_x) - h_star_y*(f_p_t + f_p_t_3);
-        const real f_p_z = a_t_z*m_star + h_star_x*(W_p_xz - alpha_y) + h_star_y*(W_p_yz +
-            alpha_x) - h_star_z*(f_p_t + f_p_t_2);
+        const real f_p_x = a_t_x*m_star + v.h_star_y*(W_p_xy - alpha_z) + v.h_star_z*(W_p_xz +
+            alpha_y) - v.h_star_x*(f_p_t_2 + f_p_t_3);
+        const real alpha_x = A[3*w + k];
+        const real f_p_y = a_t_y*m_star + v.h_star_x*(W_p_xy + alpha_z) + v.h_star_z*(W_p_yz -
+            alpha_x) - v.h_star_y*(f_p_t + f_p_t_3);
+        const real f_p_z = a_t_z*m_star + v.h_star_x*(W_p_xz - alpha_y) + v.h_star_y*(W_p_yz +
+            alpha_x) - v.h_star_z*(f_p_t + f_p_t_2);
         /* (mu_p) inertia moment of the platform less that of its weight */
-        const real omega_in_platform_x = R_xx*omega_x + R_yx*omega_y + R_zx*omega_z;
-        const real omega_in_platform_y = R_xy*omega_x + R_yy*omega_y + R_zy*omega_z;
-        const real omega_in_platform_z = R_xz*omega_x + R_yz*omega_y + R_zz*omega_z;
         const real J_star_in_platform_xx = m->J_star_in_platform_xx;
         const real J_star_in_platform_xy = m->J_star_in_platform_xy;
         const real J_star_in_platform_xz = m->J_star_in_platform_xz;
-        const real mu_p_t = J_star_in_platform_xx*omega_in_platform_x +
-            J_star_in_platform_xy*omega_in_platform_y + J_star_in_platform_xz*omega_in_platform_z;
+        const real mu_p_t = J_star_in_platform_xx*v.omega_in_platform_x +
+            J_star_in_platform_xy*v.omega_in_platform_y +
+            J_star_in_platform_xz*v.omega_in_platform_z;
         const real J_star_in_platform_yy = m->J_star_in_platform_yy;
         const real J_star_in_platform_yz = m->J_star_in_platform_yz;
-        const real mu_p_t_2 = J_star_in_platform_xy*omega_in_platform_x +
-            J_star_in_platform_yy*omega_in_platform_y + J_star_in_platform_yz*omega_in_platform_z;
+        const real mu_p_t_2 = J_star_in_platform_xy*v.omega_in_platform_x +
+            J_star_in_platform_yy*v.omega_in_platform_y +
+            J_star_in_platform_yz*v.omega_in_platform_z;
         const real J_star_in_platform_zz = m->J_star_in_platform_zz;
-        const real mu_p_t_3 = J_star_in_platform_xz*omega_in_platform_x +
-            J_star_in_platform_yz*omega_in_platform_y + J_star_in_platform_zz*omega_in_platform_z;
-        const real alpha_in_platform_x = R_xx*alpha_x + R_yx*alpha_y + R_zx*alpha_z;
-        const real alpha_in_platform_y = R_xy*alpha_x + R_yy*alpha_y + R_zy*alpha_z;
-        const real alpha_in_platform_z = R_xz*alpha_x + R_yz*alpha_y + R_zz*alpha_z;
+        const real mu_p_t_3 = J_star_in_platform_xz*v.omega_in_platform_x +
+            J_star_in_platform_yz*v.omega_in_platform_y +
+            J_star_in_platform_zz*v.omega_in_platform_z;
+        const real alpha_in_platform_x = v.R_xx*alpha_x + v.R_yx*alpha_y + v.R_zx*alpha_z;
+        const real alpha_in_platform_y = v.R_xy*alpha_x + v.R_yy*alpha_y + v.R_zy*alpha_z;
+        const real alpha_in_platform_z = v.R_xz*alpha_x + v.R_yz*alpha_y + v.R_zz*alpha_z;
+        const real h_star_in_platform_y = m->h_star_in_platform_y;
+        const real h_star_in_platform_z = m->h_star_in_platform_z;
         const real mu_p_in_platform_x = J_star_in_platform_xx*alpha_in_platform_x +
             J_star_in_platform_xy*alpha_in_platform_y + J_star_in_platform_xz*alpha_in_platform_z
-            + a_t_in_platform_z*h_star_in_platform_y + mu_p_t_3*omega_in_platform_y -
-            a_t_in_platform_y*h_star_in_platform_z - mu_p_t_2*omega_in_platform_z;
+            + a_t_in_platform_z*h_star_in_platform_y + mu_p_t_3*v.omega_in_platform_y -
+            a_t_in_platform_y*h_star_in_platform_z - mu_p_t_2*v.omega_in_platform_z;
+        const real h_star_in_platform_x = m->h_star_in_platform_x;
         const real mu_p_in_platform_y = J_star_in_platform_xy*alpha_in_platform_x +
             J_star_in_platform_yy*alpha_in_platform_y + J_star_in_platform_yz*alpha_in_platform_z
-            + a_t_in_platform_x*h_star_in_platform_z + mu_p_t*omega_in_platform_z -
-            a_t_in_platform_z*h_star_in_platform_x - mu_p_t_3*omega_in_platform_x;
+            + a_t_in_platform_x*h_star_in_platform_z + mu_p_t*v.omega_in_platform_z -
+            a_t_in_platform_z*h_star_in_platform_x - mu_p_t_3*v.omega_in_platform_x;
         const real mu_p_in_platform_z = J_star_in_platform_xz*alpha_in_platform_x +
             J_star_in_platform_yz*alpha_in_platform_y + J_star_in_platform_zz*alpha_in_platform_z
-            + a_t_in_platform_y*h_star_in_platform_x + mu_p_t_2*omega_in_platform_x -
-            a_t_in_platform_x*h_star_in_platform_y - mu_p_t*omega_in_platform_y;
-        const real mu_p_x = R_xx*mu_p_in_platform_x + R_xy*mu_p_in_platform_y +
-            R_xz*mu_p_in_platform_z;
-        const real mu_p_y = R_yx*mu_p_in_platform_x + R_yy*mu_p_in_platform_y +
-            R_yz*mu_p_in_platform_z;
-        const real mu_p_z = R_zx*mu_p_in_platform_x + R_zy*mu_p_in_platform_y +
-            R_zz*mu_p_in_platform_z;
-        s[0*w + k] = t_x;
-        s[1*w + k] = t_y;
-        s[2*w + k] = t_z;
-        s[3*w + k] = R_xx;
-        s[4*w + k] = R_xy;
-        s[5*w + k] = R_xz;
-        s[6*w + k] = R_yx;
-        s[7*w + k] = R_yy;
-        s[8*w + k] = R_yz;
-        s[9*w + k] = R_zx;
-        s[10*w + k] = R_zy;
-        s[11*w + k] = R_zz;
-        s[12*w + k] = t_dot_x;
-        s[13*w + k] = t_dot_y;
-        s[14*w + k] = t_dot_z;
-        s[15*w + k] = omega_x;
-        s[16*w + k] = omega_y;
-        s[17*w + k] = omega_z;
-        s[18*w + k] = t_ddot_x;
-        s[19*w + k] = t_ddot_y;
-        s[20*w + k] = t_ddot_z;
-        s[21*w + k] = alpha_x;
-        s[22*w + k] = alpha_y;
-        s[23*w + k] = alpha_z;
-        s[24*w + k] = f_p_x;
-        s[25*w + k] = f_p_y;
-        s[26*w + k] = f_p_z;
-        s[27*w + k] = mu_p_x;
-        s[28*w + k] = mu_p_y;
-        s[29*w + k] = mu_p_z;
-        t->invalid[k] += UNLESS(is_finite(quaternion_scale)) + UNLESS(quaternion_scale > 0);
+            + a_t_in_platform_y*h_star_in_platform_x + mu_p_t_2*v.omega_in_platform_x -
+            a_t_in_platform_x*h_star_in_platform_y - mu_p_t*v.omega_in_platform_y;
+        const real mu_p_x = v.R_xx*mu_p_in_platform_x + v.R_xy*mu_p_in_platform_y +
+            v.R_xz*mu_p_in_platform_z;
+        const real mu_p_y = v.R_yx*mu_p_in_platform_x + v.R_yy*mu_p_in_platform_y +
+            v.R_yz*mu_p_in_platform_z;
+        const real mu_p_z = v.R_zx*mu_p_in_platform_x + v.R_zy*mu_p_in_platform_y +
+            v.R_zz*mu_p_in_platform_z;
+        s[0*w + k] = v.R_xx;
+        s[1*w + k] = v.R_xy;
+        s[2*w + k] = v.R_xz;
+        s[3*w + k] = v.R_yx;
+        s[4*w + k] = v.R_yy;
+        s[5*w + k] = v.R_yz;
+        s[6*w + k] = v.R_zx;
+        s[7*w + k] = v.R_zy;
+        s[8*w + k] = v.R_zz;
+        s[9*w + k] = f_p_x;
+        s[10*w + k] = f_p_y;
+        s[11*w + k] = f_p_z;
+        s[12*w + k] = mu_p_x;
+        s[13*w + k] = mu_p_y;
+        s[14*w + k] = mu_p_z;
+        t->invalid[k] += UNLESS(is_finite(v.quaternion_scale)) + UNLESS(v.quaternion_scale > 0);
     }
 }
 
 INLINE void required_legs_pus(const prepared *m, size_t w, size_t leg, size_t legs, const real *s,
-    size_t states, size_t count, int add, real *terms, real *o)
+    size_t states, size_t count, int add, const real *X, const real *V, const real *A, real
+    *terms, real *o)
 {
     for (size_t k = 0; k < count; ++k) {
         const size_t i = leg + legs*k;
         const size_t j = states*k;
-        /* (pus-S) from the base point to the connection point */
-        const real R_xx = s[3*w + j];
-        const real R_xy = s[4*w + j];
-        const real R_xz = s[5*w + j];
-        const real pus_platform_point_x = m->pus_platform_point_x[i];
-        const real pus_platform_point_y = m->pus_platform_point_y[i];
-        const real pus_platform_point_z = m->pus_platform_point_z[i];
-        const real pus_q_x = R_xx*pus_platform_point_x + R_xy*pus_platform_point_y +
-            R_xz*pus_platform_point_z;
-        const real R_yx = s[6*w + j];
-        const real R_yy = s[7*w + j];
-        const real R_yz = s[8*w + j];
-        const real pus_q_y = R_yx*pus_platform_point_x + R_yy*pus_platform_point_y +
-            R_yz*pus_platform_point_z;
-        const real R_zx = s[9*w + j];
-        const real R_zy = s[10*w + j];
-        const real R_zz = s[11*w + j];
-        const real pus_q_z = R_zx*pus_platform_point_x + R_zy*pus_platform_point_y +
-            R_zz*pus_platform_point_z;
-        const real pus_base_point_x = m->pus_base_point_x[i];
-        const real t_x = s[0*w + j];
-        const real pus_S_x = pus_q_x + t_x - pus_base_point_x;
-        const real pus_base_point_y = m->pus_base_point_y[i];
-        const real t_y = s[1*w + j];
-        const real pus_S_y = pus_q_y + t_y - pus_base_point_y;
-        const real pus_base_point_z = m->pus_base_point_z[i];
-        const real t_z = s[2*w + j];
-        const real pus_S_z = pus_q_z + t_z - pus_base_point_z;
-        const real pus_base_frame_xx = m->pus_base_frame_xx[i];
-        const real pus_base_frame_yx = m->pus_base_frame_yx[i];
-        const real pus_base_frame_zx = m->pus_base_frame_zx[i];
-        const real pus_S_in_axes0_x = pus_S_x*pus_base_frame_xx + pus_S_y*pus_base_frame_yx +
-            pus_S_z*pus_base_frame_zx;
-        const real pus_base_frame_xy = m->pus_base_frame_xy[i];
-        const real pus_base_frame_yy = m->pus_base_frame_yy[i];
-        const real pus_base_frame_zy = m->pus_base_frame_zy[i];
-        const real pus_S_in_axes0_y = pus_S_x*pus_base_frame_xy + pus_S_y*pus_base_frame_yy +
-            pus_S_z*pus_base_frame_zy;
-        /* (pus-disc_1) discriminant of the distance equation */
-        const real pus_disc_1_t = pus_S_x*pus_S_x + pus_S_y*pus_S_y + pus_S_z*pus_S_z;
-        const real pus_size_t = m->pus_size_t[i];
-        const real pus_disc_1 = pus_S_in_axes0_x*pus_S_in_axes0_x + pus_size_t - pus_disc_1_t;
-        /* (pus-x_2) from the origin of joint 2 to the connection point */
-        const real pus_branch_1 = m->pus_branch_1[i];
-        const real pus_x_2_in_axes0_x = -pus_branch_1*root(pus_disc_1);
-        /* (pus-rho2_2) squared amplitude */
-        const real pus_rho2_2 = pus_S_in_axes0_y*pus_S_in_axes0_y +
-            pus_x_2_in_axes0_x*pus_x_2_in_axes0_x;
-        /* (pus-root_2) root, with the sign of the branch */
-        const real pus_branch_2 = m->pus_branch_2[i];
-        const real pus_root_2 = pus_branch_2*root(pus_rho2_2);
-        /* (pus-c_2) cosine of the angle of joint 2 from its reference direction */
-        const real inv_pus_rho2_2 = 1/pus_rho2_2;
-        const real pus_c_2_t = inv_pus_rho2_2*pus_S_in_axes0_y*pus_root_2;
-        /* (pus-s_2) sine of the angle of joint 2 from its reference direction */
-        const real pus_s_2 = inv_pus_rho2_2*pus_root_2*pus_x_2_in_axes0_x;
-        /* (pus-c_3) cosine of the angle of joint 3 from its reference direction */
-        const real inv_pus_size_t = m->inv_pus_size_t[i];
-        const real pus_platform_joint_offset_x = m->pus_platform_joint_offset_x[i];
-        const real pus_c_3_t = inv_pus_size_t*pus_platform_joint_offset_x*pus_root_2;
-        /* (pus-s_3) sine of the angle of joint 3 from its reference direction */
-        const real pus_base_frame_xz = m->pus_base_frame_xz[i];
-        const real pus_base_frame_yz = m->pus_base_frame_yz[i];
-        const real pus_base_frame_zz = m->pus_base_frame_zz[i];
-        const real pus_s_3 = inv_pus_size_t*pus_platform_joint_offset_x*(pus_S_x*pus_base_frame_xz
-            + pus_S_y*pus_base_frame_yz + pus_S_z*pus_base_frame_zz);
-        /* (pus-S_dot) velocity of the connection point */
-        const real omega_y = s[16*w + j];
-        const real omega_z = s[17*w + j];
-        const real pus_S_dot_t = omega_y*pus_q_z - omega_z*pus_q_y;
-        const real omega_x = s[15*w + j];
-        const real pus_S_dot_t_2 = omega_z*pus_q_x - omega_x*pus_q_z;
-        const real pus_S_dot_t_3 = omega_x*pus_q_y - omega_y*pus_q_x;
-        const real t_dot_x = s[12*w + j];
-        const real pus_S_dot_x = pus_S_dot_t + t_dot_x;
-        const real t_dot_y = s[13*w + j];
-        const real pus_S_dot_y = pus_S_dot_t_2 + t_dot_y;
-        const real t_dot_z = s[14*w + j];
-        const real pus_S_dot_z = pus_S_dot_t_3 + t_dot_z;
-        /* (pus-v_2) velocity of the connection point per rate of joint 2 */
-        const real pus_v_2_in_axes3_z = pus_c_3_t*pus_platform_joint_offset_x;
-        /* (pus-w_1) reciprocal vector 1 */
-        const real axis_z_pus_axes3_x = pus_base_frame_xy*pus_s_2 - pus_base_frame_xx*pus_c_2_t;
-        const real axis_z_pus_axes3_y = pus_base_frame_yy*pus_s_2 - pus_base_frame_yx*pus_c_2_t;
-        const real axis_z_pus_axes3_z = pus_base_frame_zy*pus_s_2 - pus_base_frame_zx*pus_c_2_t;
-        const real pus_e_1_in_axes3_y = pus_s_2*pus_s_3;
-        const real pus_w_1_t = pus_c_2_t*pus_s_3;
-        const real axis_y_pus_axes3_x = pus_base_frame_xx*pus_e_1_in_axes3_y +
-            pus_base_frame_xy*pus_w_1_t - pus_base_frame_xz*pus_c_3_t;
-        const real axis_y_pus_axes3_y = pus_base_frame_yx*pus_e_1_in_axes3_y +
-            pus_base_frame_yy*pus_w_1_t - pus_base_frame_yz*pus_c_3_t;
-        const real axis_y_pus_axes3_z = pus_base_frame_zx*pus_e_1_in_axes3_y +
-            pus_base_frame_zy*pus_w_1_t - pus_base_frame_zz*pus_c_3_t;
-        const real axis_x_pus_axes3_x = axis_y_pus_axes3_y*axis_z_pus_axes3_z -
-            axis_y_pus_axes3_z*axis_z_pus_axes3_y;
-        const real axis_x_pus_axes3_y = axis_y_pus_axes3_z*axis_z_pus_axes3_x -
-            axis_y_pus_axes3_x*axis_z_pus_axes3_z;
-        const real axis_x_pus_axes3_z = axis_y_pus_axes3_x*axis_z_pus_axes3_y -
-            axis_y_pus_axes3_y*axis_z_pus_axes3_x;
-        const real pus_e_1_in_axes3_x = pus_c_3_t*pus_s_2;
-        const real pus_w_1_in_axes3_x = 1/pus_e_1_in_axes3_x;
-        const real pus_w_1_x = axis_x_pus_axes3_x*pus_w_1_in_axes3_x;
-        const real pus_w_1_y = axis_x_pus_axes3_y*pus_w_1_in_axes3_x;
-        const real pus_w_1_z = axis_x_pus_axes3_z*pus_w_1_in_axes3_x;
-        /* (pus-w_2) reciprocal vector 2 */
-        const real pus_w_2_in_axes3_z = 1/pus_v_2_in_axes3_z;
-        /* (pus-qd_1) rate of joint 1 */
-        const real pus_qd_1 = pus_w_1_in_axes3_x*(axis_x_pus_axes3_x*pus_S_dot_x +
-            axis_x_pus_axes3_y*pus_S_dot_y + axis_x_pus_axes3_z*pus_S_dot_z);
-        /* (pus-qd_2) rate of joint 2 */
-        const real pus_qd_2 = pus_w_2_in_axes3_z*(axis_z_pus_axes3_x*pus_S_dot_x +
-            axis_z_pus_axes3_y*pus_S_dot_y + axis_z_pus_axes3_z*pus_S_dot_z + pus_c_2_t*pus_qd_1);
-        /* (pus-qd_3) rate of joint 3 */
-        const real pus_qd_3_t = axis_y_pus_axes3_x*pus_S_dot_x + axis_y_pus_axes3_y*pus_S_dot_y +
-            axis_y_pus_axes3_z*pus_S_dot_z - pus_e_1_in_axes3_y*pus_qd_1;
-        const real pus_w_3_in_axes3_y = m->pus_w_3_in_axes3_y[i];
-        const real pus_qd_3 = pus_qd_3_t*pus_w_3_in_axes3_y;
-        /* (pus-omega_2) angular velocity of link 2 */
-        const real pus_omega_2_in_axes3_x = pus_qd_2*pus_s_3;
-        const real pus_omega_2_in_axes3_y = -pus_c_3_t*pus_qd_2;
-        /* (pus-W_3) centripetal tensor of link 3 */
-        const real pus_W_3_in_axes3_yz = pus_omega_2_in_axes3_y*pus_qd_3;
-        const real pus_W_3_in_axes3_xz = pus_omega_2_in_axes3_x*pus_qd_3;
-        const real pus_W_3_in_axes3_xy = pus_omega_2_in_axes3_x*pus_omega_2_in_axes3_y;
-        /* (pus-a_p) acceleration of the connection point without its centripetal part */
-        const real alpha_y = s[22*w + j];
-        const real alpha_z = s[23*w + j];
-        const real t_ddot_x = s[18*w + j];
-        const real pus_a_p_x = t_ddot_x + alpha_y*pus_q_z - alpha_z*pus_q_y;
-        const real alpha_x = s[21*w + j];
-        const real t_ddot_y = s[19*w + j];
-        const real pus_a_p_y = t_ddot_y + alpha_z*pus_q_x - alpha_x*pus_q_z;
-        const real t_ddot_z = s[20*w + j];
-        const real pus_a_p_z = t_ddot_z + alpha_x*pus_q_y - alpha_y*pus_q_x;
-        /* (pus-S_ddot) acceleration of the connection point */
-        const real pus_S_ddot_x = pus_a_p_x + omega_y*pus_S_dot_t_3 - omega_z*pus_S_dot_t_2;
-        const real pus_S_ddot_y = pus_a_p_y + omega_z*pus_S_dot_t - omega_x*pus_S_dot_t_3;
-        const real pus_S_ddot_z = pus_a_p_z + omega_x*pus_S_dot_t_2 - omega_y*pus_S_dot_t;
-        const real pus_S_ddot_in_axes3_x = axis_x_pus_axes3_x*pus_S_ddot_x +
-            axis_x_pus_axes3_y*pus_S_ddot_y + axis_x_pus_axes3_z*pus_S_ddot_z;
-        const real pus_S_ddot_in_axes3_y = axis_y_pus_axes3_x*pus_S_ddot_x +
-            axis_y_pus_axes3_y*pus_S_ddot_y + axis_y_pus_axes3_z*pus_S_ddot_z;
-        const real pus_S_ddot_in_axes3_z = axis_z_pus_axes3_x*pus_S_ddot_x +
-            axis_z_pus_axes3_y*pus_S_ddot_y + axis_z_pus_axes3_z*pus_S_ddot_z;
-        /* (pus-bias) acceleration of the connection point at zero joint accelerations */
-        const real pus_bias_in_axes3_z = pus_W_3_in_axes3_xz*pus_platform_joint_offset_x +
-            pus_omega_2_in_axes3_x*pus_qd_3_t;
-        /* (pus-rel) acceleration of the connection point left to the joint accelerations */
-        const real pus_rel_t = pus_omega_2_in_axes3_y*pus_platform_joint_offset_x;
-        const real pus_rel_in_axes3_x = pus_S_ddot_in_axes3_x + pus_omega_2_in_axes3_y*pus_rel_t +
-            pus_qd_3*pus_qd_3_t;
-        const real pus_rel_in_axes3_y = pus_S_ddot_in_axes3_y - pus_omega_2_in_axes3_x*pus_rel_t;
-        const real pus_rel_in_axes3_z = pus_S_ddot_in_axes3_z - pus_bias_in_axes3_z;
-        /* (pus-qdd_1) acceleration of joint 1 */
-        const real pus_qdd_1 = pus_rel_in_axes3_x*pus_w_1_in_axes3_x;
-        /* (pus-qdd_2) acceleration of joint 2 */
-        const real pus_qdd_2_t = pus_w_2_in_axes3_z*(-pus_rel_in_axes3_z - pus_c_2_t*pus_qdd_1);
-        /* (pus-qdd_3) acceleration of joint 3 */
-        const real pus_qdd_3_t = pus_w_3_in_axes3_y*(pus_e_1_in_axes3_y*pus_qdd_1 -
-            pus_rel_in_axes3_y);
-        /* (pus-alpha_2) angular acceleration of link 2 */
-        const real pus_alpha_2_t = pus_qdd_2_t*pus_s_3;
-        const real pus_alpha_2_in_axes3_y = pus_c_3_t*pus_qdd_2_t;
-        /* (pus-alpha_3) angular acceleration of link 3 */
-        const real pus_alpha_3_in_axes3_x = pus_W_3_in_axes3_yz - pus_alpha_2_t;
-        const real pus_alpha_3_in_axes3_y = pus_alpha_2_in_axes3_y - pus_W_3_in_axes3_xz;
-        /* (pus-B_3) acceleration tensor of link 3 */
-        const real pus_B_3_in_axes3_xy = pus_W_3_in_axes3_xy + pus_qdd_3_t;
-        const real pus_B_3_in_axes3_yx = pus_W_3_in_axes3_xy - pus_qdd_3_t;
-        const real pus_B_3_in_axes3_zx = pus_W_3_in_axes3_xz - pus_alpha_3_in_axes3_y;
-        const real pus_B_3_in_axes3_zy = pus_W_3_in_axes3_yz + pus_alpha_3_in_axes3_x;
-        /* (pus-acc_1) acceleration of the reference point of link 1, less gravity */
-        const real pus_g_in_axes0_x = m->pus_g_in_axes0_x[i];
-        const real pus_acc_1_in_axes0_x = pus_qdd_1 - pus_g_in_axes0_x;
-        /* (pus-acc_3) acceleration of the reference point of link 3, less gravity */
-        const real pus_g_in_axes0_y = m->pus_g_in_axes0_y[i];
-        const real pus_acc_3_t = -pus_c_2_t*pus_g_in_axes0_y - pus_g_in_axes0_x*pus_s_2;
-        const real pus_g_in_axes0_z = m->pus_g_in_axes0_z[i];
-        const real pus_acc_3_in_axes3_x = pus_S_ddot_in_axes3_x + pus_acc_3_t*pus_c_3_t -
-            pus_g_in_axes0_z*pus_s_3;
-        const real pus_acc_3_in_axes3_y = pus_S_ddot_in_axes3_y + pus_acc_3_t*pus_s_3 +
-            pus_c_3_t*pus_g_in_axes0_z;
-        const real pus_acc_3_in_axes3_z = pus_S_ddot_in_axes3_z + pus_c_2_t*pus_g_in_axes0_x -
-            pus_g_in_axes0_y*pus_s_2;
-        /* (pus-mu_3) inertia moment of the links that turn with link 3, about their reference points */
-        const real pus_mu_3_t = pus_omega_2_in_axes3_x*pus_omega_2_in_axes3_x;
-        const real pus_mu_3_t_2 = pus_omega_2_in_axes3_y*pus_omega_2_in_axes3_y;
-        const real pus_mu_3_t_3 = pus_qd_3*pus_qd_3;
-        const real pus_J_3_in_spec3_xy = m->pus_J_3_in_spec3_xy[i];
-        const real pus_J_3_in_spec3_xz = m->pus_J_3_in_spec3_xz[i];
-        const real pus_J_3_in_spec3_yz = m->pus_J_3_in_spec3_yz[i];
-        const real pus_Sigma_3_in_axes3_yy = m->pus_Sigma_3_in_axes3_yy[i];
-        const real pus_Sigma_3_in_axes3_zz = m->pus_Sigma_3_in_axes3_zz[i];
-        const real pus_h_3_in_spec3_y = m->pus_h_3_in_spec3_y[i];
-        const real pus_h_3_in_spec3_z = m->pus_h_3_in_spec3_z[i];
-        const real pus_mu_3_in_axes3_x = pus_B_3_in_axes3_yx*pus_J_3_in_spec3_xy +
-            pus_B_3_in_axes3_zx*pus_J_3_in_spec3_xz + pus_B_3_in_axes3_zy*pus_Sigma_3_in_axes3_yy
-            - pus_J_3_in_spec3_yz*(pus_mu_3_t_2 - pus_mu_3_t_3) -
-            pus_Sigma_3_in_axes3_zz*pus_alpha_2_t - pus_acc_3_in_axes3_y*pus_h_3_in_spec3_y -
-            pus_acc_3_in_axes3_z*pus_h_3_in_spec3_z;
-        const real pus_Sigma_3_in_axes3_xx = m->pus_Sigma_3_in_axes3_xx[i];
-        const real pus_h_3_in_spec3_x = m->pus_h_3_in_spec3_x[i];
-        const real pus_mu_3_in_axes3_y = pus_B_3_in_axes3_xy*pus_J_3_in_spec3_yz +
-            pus_Sigma_3_in_axes3_zz*pus_alpha_2_in_axes3_y +
-            pus_acc_3_in_axes3_x*pus_h_3_in_spec3_y - pus_B_3_in_axes3_zx*pus_Sigma_3_in_axes3_xx
-            - pus_B_3_in_axes3_zy*pus_J_3_in_spec3_xz - pus_J_3_in_spec3_xy*(pus_mu_3_t -
-            pus_mu_3_t_3) - pus_acc_3_in_axes3_z*pus_h_3_in_spec3_x;
-        const real pus_mu_3_in_axes3_z = pus_B_3_in_axes3_yx*pus_Sigma_3_in_axes3_xx +
-            pus_acc_3_in_axes3_x*pus_h_3_in_spec3_z + pus_acc_3_in_axes3_y*pus_h_3_in_spec3_x -
-            pus_B_3_in_axes3_xy*pus_Sigma_3_in_axes3_yy - pus_J_3_in_spec3_xy*pus_alpha_2_t -
-            pus_J_3_in_spec3_xz*(pus_mu_3_t - pus_mu_3_t_2) -
-            pus_J_3_in_spec3_yz*pus_alpha_2_in_axes3_y;
-        /* (pus-G) force at the connection point that balances the leg's inertia and weight along all
-           degrees of freedom */
-        const real pus_G_in_axes3_z = pus_w_2_in_axes3_z*(pus_mu_3_in_axes3_x*pus_s_3 -
-            pus_c_3_t*pus_mu_3_in_axes3_y);
-        const real pus_G_in_axes3_y = pus_mu_3_in_axes3_z*pus_w_3_in_axes3_y;
+        values_pus v;
+        stage_pus_X(m, w, i, j, s, X, &v);
+        stage_pus_A_X(w, j, A, &v);
+        stage_pus_V_X(w, j, V, &v);
+        stage_pus_A_V_X(w, j, V, &v);
+        stage_pus_legs_required(m, i, &v);
         /* (pus-c) leg force on the platform without actuation and without the mass at the connection
            point */
-        const real pus_link1_mass = m->pus_link1_mass[i];
-        const real pus_c_in_axes3_x = pus_B_3_in_axes3_xy*pus_h_3_in_spec3_z +
-            pus_h_3_in_spec3_x*(pus_mu_3_t_2 + pus_mu_3_t_3) -
-            pus_alpha_2_in_axes3_y*pus_h_3_in_spec3_y -
-            pus_w_1_in_axes3_x*(pus_G_in_axes3_z*pus_c_2_t + pus_acc_1_in_axes0_x*pus_link1_mass -
-            pus_G_in_axes3_y*pus_e_1_in_axes3_y);
-        const real pus_c_in_axes3_y = -pus_G_in_axes3_y - pus_B_3_in_axes3_yx*pus_h_3_in_spec3_x -
-            pus_alpha_2_t*pus_h_3_in_spec3_y - pus_h_3_in_spec3_z*(pus_mu_3_t + pus_mu_3_t_3);
-        const real pus_c_in_axes3_z = pus_B_3_in_axes3_zy*pus_h_3_in_spec3_z +
-            pus_h_3_in_spec3_y*(pus_mu_3_t + pus_mu_3_t_2) - pus_G_in_axes3_z -
-            pus_B_3_in_axes3_zx*pus_h_3_in_spec3_x;
-        const real pus_c_x = axis_x_pus_axes3_x*pus_c_in_axes3_x +
-            axis_y_pus_axes3_x*pus_c_in_axes3_y + axis_z_pus_axes3_x*pus_c_in_axes3_z;
-        const real pus_c_y = axis_x_pus_axes3_y*pus_c_in_axes3_x +
-            axis_y_pus_axes3_y*pus_c_in_axes3_y + axis_z_pus_axes3_y*pus_c_in_axes3_z;
-        const real pus_c_z = axis_x_pus_axes3_z*pus_c_in_axes3_x +
-            axis_y_pus_axes3_z*pus_c_in_axes3_y + axis_z_pus_axes3_z*pus_c_in_axes3_z;
+        const real pus_c_x = v.axis_x_pus_axes3_x*v.pus_c_in_axes3_x +
+            v.axis_y_pus_axes3_x*v.pus_c_in_axes3_y + v.axis_z_pus_axes3_x*v.pus_c_in_axes3_z;
+        const real pus_c_y = v.axis_x_pus_axes3_y*v.pus_c_in_axes3_x +
+            v.axis_y_pus_axes3_y*v.pus_c_in_axes3_y + v.axis_z_pus_axes3_y*v.pus_c_in_axes3_z;
+        const real pus_c_z = v.axis_x_pus_axes3_z*v.pus_c_in_axes3_x +
+            v.axis_y_pus_axes3_z*v.pus_c_in_axes3_y + v.axis_z_pus_axes3_z*v.pus_c_in_axes3_z;
         /* (R_a) moment that actuators and external wrench must give */
-        const real pus_R_a_t = pus_c_y*pus_q_z - pus_c_z*pus_q_y;
-        const real pus_R_a_t_2 = pus_c_z*pus_q_x - pus_c_x*pus_q_z;
-        const real pus_R_a_t_3 = pus_c_x*pus_q_y - pus_c_y*pus_q_x;
+        const real pus_R_a_t = pus_c_y*v.pus_q_z - pus_c_z*v.pus_q_y;
+        const real pus_R_a_t_2 = pus_c_z*v.pus_q_x - pus_c_x*v.pus_q_z;
+        const real pus_R_a_t_3 = pus_c_x*v.pus_q_y - pus_c_y*v.pus_q_x;
         /* (pus-H_a_1) moment of the column's unit force about the platform origin */
-        const real pus_H_a_1_x = pus_q_y*pus_w_1_z - pus_q_z*pus_w_1_y;
-        const real pus_H_a_1_y = pus_q_z*pus_w_1_x - pus_q_x*pus_w_1_z;
-        const real pus_H_a_1_z = pus_q_x*pus_w_1_y - pus_q_y*pus_w_1_x;
+        const real pus_H_a_1_x = v.pus_q_y*v.pus_w_1_z - v.pus_q_z*v.pus_w_1_y;
+        const real pus_H_a_1_y = v.pus_q_z*v.pus_w_1_x - v.pus_q_x*v.pus_w_1_z;
+        const real pus_H_a_1_z = v.pus_q_x*v.pus_w_1_y - v.pus_q_y*v.pus_w_1_x;
         /* (R_t) force that actuators and external wrench must give */
         gather(&terms[0*count + k], add, pus_c_x);  /* R_t_x_of_legs */
         gather(&terms[1*count + k], add, pus_c_y);  /* R_t_y_of_legs */
@@ -3636,19 +3344,19 @@ INLINE void required_legs_pus(const prepared *m, size_t w, size_t leg, size_t le
         gather(&terms[4*count + k], add, pus_R_a_t_2);  /* R_a_y_of_legs */
         gather(&terms[5*count + k], add, pus_R_a_t_3);  /* R_a_z_of_legs */
         /* (pus-w_1) reciprocal vector 1 */
-        o[0*count + k] = pus_w_1_x;
-        o[1*count + k] = pus_w_1_y;
-        o[2*count + k] = pus_w_1_z;
+        o[0*count + k] = v.pus_w_1_x;
+        o[1*count + k] = v.pus_w_1_y;
+        o[2*count + k] = v.pus_w_1_z;
         /* (pus-H_a_1) moment of the column's unit force about the platform origin */
         o[3*count + k] = pus_H_a_1_x;
         o[4*count + k] = pus_H_a_1_y;
         o[5*count + k] = pus_H_a_1_z;
         const real pus_size_t_2 = m->pus_size_t_2[i];
         const real pus_size = m->pus_size[i];
-        o[6*count + k] = UNLESS(pus_disc_1 >= 0);
-        o[7*count + k] = UNLESS(magnitude(pus_rho2_2) > TOLERANCE*TOLERANCE*pus_size_t_2) +
-            UNLESS(magnitude(pus_v_2_in_axes3_z) > TOLERANCE*pus_size) +
-            UNLESS(magnitude(pus_e_1_in_axes3_x) > LEAST_1);
+        o[6*count + k] = UNLESS(v.pus_disc_1 >= 0);
+        o[7*count + k] = UNLESS(magnitude(v.pus_rho2_2) > TOLERANCE*TOLERANCE*pus_size_t_2) +
+            UNLESS(magnitude(v.pus_v_2_in_axes3_z) > TOLERANCE*pus_size) +
+            UNLESS(magnitude(v.pus_e_1_in_axes3_x) > LEAST_1);
     }
 }
 
@@ -3656,7 +3364,7 @@ INLINE void required_place_pus(size_t w, size_t count, const real *o, size_t leg
     real *H, verdict *t)
 {
     for (size_t k = 0; k < w; ++k) {
-        H[(0*NU + leg)*w + k] = o[0*count + first + k];
+        H[leg*w + k] = o[0*count + first + k];
         H[(NU + leg)*w + k] = o[1*count + first + k];
         H[(2*NU + leg)*w + k] = o[2*count + first + k];
         H[(3*NU + leg)*w + k] = o[3*count + first + k];
@@ -3672,23 +3380,23 @@ INLINE void required_after(size_t w, const real *s, const real *sums, real *requ
     for (size_t k = 0; k < w; ++k) {
         /* (R_t) force that actuators and external wrench must give */
         const real R_t_x_of_legs = sums[0*w + k];
-        const real f_p_x = s[24*w + k];
+        const real f_p_x = s[9*w + k];
         const real R_t_x = f_p_x - R_t_x_of_legs;
         const real R_t_y_of_legs = sums[1*w + k];
-        const real f_p_y = s[25*w + k];
+        const real f_p_y = s[10*w + k];
         const real R_t_y = f_p_y - R_t_y_of_legs;
         const real R_t_z_of_legs = sums[2*w + k];
-        const real f_p_z = s[26*w + k];
+        const real f_p_z = s[11*w + k];
         const real R_t_z = f_p_z - R_t_z_of_legs;
         /* (R_a) moment that actuators and external wrench must give */
         const real R_a_x_of_legs = sums[3*w + k];
-        const real mu_p_x = s[27*w + k];
+        const real mu_p_x = s[12*w + k];
         const real R_a_x = R_a_x_of_legs + mu_p_x;
         const real R_a_y_of_legs = sums[4*w + k];
-        const real mu_p_y = s[28*w + k];
+        const real mu_p_y = s[13*w + k];
         const real R_a_y = R_a_y_of_legs + mu_p_y;
         const real R_a_z_of_legs = sums[5*w + k];
-        const real mu_p_z = s[29*w + k];
+        const real mu_p_z = s[14*w + k];
         const real R_a_z = R_a_z_of_legs + mu_p_z;
         /* (R_t) force that actuators and external wrench must give */
         required[0*w + k] = R_t_x;
@@ -3704,12 +3412,10 @@ INLINE void required_after(size_t w, const real *s, const real *sums, real *requ
 INLINE void required_run(const prepared *m, const real *X, const real *V, const real *A, real
     *required, real *H, verdict *t)
 {
-    real s[30] = {0};
-    real sums[6] = {0};
-    real terms_pus[6*LEGS(LEGS_OF_pus)] = {0};
-    real o_pus[8*LEGS(LEGS_OF_pus)] = {0};
+    real s[15] = {0}, sums[6] = {0};
+    real terms_pus[6*LEGS(LEGS_OF_pus)] = {0}, o_pus[8*LEGS(LEGS_OF_pus)] = {0};
     required_before(m, 1, X, V, A, s, t);
-    required_legs_pus(m, 1, 0, 1, s, 0, LEGS(LEGS_OF_pus), 0, terms_pus, o_pus);
+    required_legs_pus(m, 1, 0, 1, s, 0, LEGS(LEGS_OF_pus), 0, X, V, A, terms_pus, o_pus);
     for (size_t leg = 0; leg < LEGS_OF_pus; ++leg) {
         required_place_pus(1, LEGS(LEGS_OF_pus), o_pus, leg, leg, H, t);
     }
@@ -3722,130 +3428,48 @@ INLINE void required_run(const prepared *m, const real *X, const real *V, const 
 INLINE void required_run_lanes(const prepared *m, const real *X, const real *V, const real *A,
     real *required, real *H, verdict *t)
 {
-    real s[30*LANES];
-    real sums[6*LANES];
+    real s[15*LANES], sums[6*LANES];
     real o_pus[8*LANES];
     required_before(m, LANES, X, V, A, s, t);
     clear(sums, 6*LANES);
     for (size_t leg = 0; leg < LEGS_OF_pus; ++leg) {
-        required_legs_pus(m, LANES, leg, 0, s, 1, LANES, 1, sums, o_pus);
+        required_legs_pus(m, LANES, leg, 0, s, 1, LANES, 1, X, V, A, sums, o_pus);
         required_place_pus(LANES, LANES, o_pus, leg, 0, H, t);
     }
     required_after(LANES, s, sums, required);
 }
 
 /* ---- inverse_kinematics ---- */
-INLINE void inverse_kinematics_before(size_t w, const real *X, real *s, verdict *t)
+INLINE void inverse_kinematics_before(const prepared *m, size_t w, const real *X, real *s, verdict
+    *t)
 {
     for (size_t k = 0; k < w; ++k) {
-        /* X: named entries */
-        const real X_0 = X[0*w + k];
-        const real t_x = X_0;
-        const real X_1 = X[1*w + k];
-        const real t_y = X_1;
-        const real X_2 = X[2*w + k];
-        const real t_z = X_2;
-        const real X_3 = X[3*w + k];
-        const real X_4 = X[4*w + k];
-        const real X_5 = X[5*w + k];
-        const real X_6 = X[6*w + k];
-        const real quaternion_norm2 = X_3*X_3 + X_4*X_4 + X_5*X_5 + X_6*X_6;
-        const real quaternion_scale = 2/quaternion_norm2;
-        const real quaternion_sx = X_3*quaternion_scale;
-        const real quaternion_sy = X_4*quaternion_scale;
-        const real quaternion_sz = X_5*quaternion_scale;
-        const real quaternion_wx = X_6*quaternion_sx;
-        const real quaternion_wy = X_6*quaternion_sy;
-        const real quaternion_wz = X_6*quaternion_sz;
-        const real quaternion_xx = X_3*quaternion_sx;
-        const real quaternion_xy = X_3*quaternion_sy;
-        const real quaternion_xz = X_3*quaternion_sz;
-        const real quaternion_yy = X_4*quaternion_sy;
-        const real quaternion_yz = X_4*quaternion_sz;
-        const real quaternion_zz = X_5*quaternion_sz;
-        const real R_xx = 1 - quaternion_yy - quaternion_zz;
-        const real R_xy = quaternion_xy - quaternion_wz;
-        const real R_xz = quaternion_wy + quaternion_xz;
-        const real R_yx = quaternion_wz + quaternion_xy;
-        const real R_yy = 1 - quaternion_xx - quaternion_zz;
-        const real R_yz = quaternion_yz - quaternion_wx;
-        const real R_zx = quaternion_xz - quaternion_wy;
-        const real R_zy = quaternion_wx + quaternion_yz;
-        const real R_zz = 1 - quaternion_xx - quaternion_yy;
-        s[0*w + k] = t_x;
-        s[1*w + k] = t_y;
-        s[2*w + k] = t_z;
-        s[3*w + k] = R_xx;
-        s[4*w + k] = R_xy;
-        s[5*w + k] = R_xz;
-        s[6*w + k] = R_yx;
-        s[7*w + k] = R_yy;
-        s[8*w + k] = R_yz;
-        s[9*w + k] = R_zx;
-        s[10*w + k] = R_zy;
-        s[11*w + k] = R_zz;
-        t->invalid[k] += UNLESS(is_finite(quaternion_scale)) + UNLESS(quaternion_scale > 0);
+        values v;
+        stage_X(m, w, k, X, &v);
+        s[0*w + k] = v.R_xx;
+        s[1*w + k] = v.R_xy;
+        s[2*w + k] = v.R_xz;
+        s[3*w + k] = v.R_yx;
+        s[4*w + k] = v.R_yy;
+        s[5*w + k] = v.R_yz;
+        s[6*w + k] = v.R_zx;
+        s[7*w + k] = v.R_zy;
+        s[8*w + k] = v.R_zz;
+        t->invalid[k] += UNLESS(is_finite(v.quaternion_scale)) + UNLESS(v.quaternion_scale > 0);
     }
 }
 
 INLINE void inverse_kinematics_legs_pus(const prepared *m, size_t w, size_t leg, size_t legs,
-    const real *s, size_t states, size_t count, real *o)
+    const real *s, size_t states, size_t count, const real *X, real *o)
 {
     for (size_t k = 0; k < count; ++k) {
         const size_t i = leg + legs*k;
         const size_t j = states*k;
-        /* (pus-S) from the base point to the connection point */
-        const real R_xx = s[3*w + j];
-        const real R_xy = s[4*w + j];
-        const real R_xz = s[5*w + j];
-        const real pus_base_point_x = m->pus_base_point_x[i];
-        const real pus_platform_point_x = m->pus_platform_point_x[i];
-        const real pus_platform_point_y = m->pus_platform_point_y[i];
-        const real pus_platform_point_z = m->pus_platform_point_z[i];
-        const real t_x = s[0*w + j];
-        const real pus_S_x = t_x + R_xx*pus_platform_point_x + R_xy*pus_platform_point_y +
-            R_xz*pus_platform_point_z - pus_base_point_x;
-        const real R_yx = s[6*w + j];
-        const real R_yy = s[7*w + j];
-        const real R_yz = s[8*w + j];
-        const real pus_base_point_y = m->pus_base_point_y[i];
-        const real t_y = s[1*w + j];
-        const real pus_S_y = t_y + R_yx*pus_platform_point_x + R_yy*pus_platform_point_y +
-            R_yz*pus_platform_point_z - pus_base_point_y;
-        const real R_zx = s[9*w + j];
-        const real R_zy = s[10*w + j];
-        const real R_zz = s[11*w + j];
-        const real pus_base_point_z = m->pus_base_point_z[i];
-        const real t_z = s[2*w + j];
-        const real pus_S_z = t_z + R_zx*pus_platform_point_x + R_zy*pus_platform_point_y +
-            R_zz*pus_platform_point_z - pus_base_point_z;
-        const real pus_base_frame_xx = m->pus_base_frame_xx[i];
-        const real pus_base_frame_yx = m->pus_base_frame_yx[i];
-        const real pus_base_frame_zx = m->pus_base_frame_zx[i];
-        const real pus_S_in_axes0_x = pus_S_x*pus_base_frame_xx + pus_S_y*pus_base_frame_yx +
-            pus_S_z*pus_base_frame_zx;
-        const real pus_base_frame_xy = m->pus_base_frame_xy[i];
-        const real pus_base_frame_yy = m->pus_base_frame_yy[i];
-        const real pus_base_frame_zy = m->pus_base_frame_zy[i];
-        const real pus_S_in_axes0_y = pus_S_x*pus_base_frame_xy + pus_S_y*pus_base_frame_yy +
-            pus_S_z*pus_base_frame_zy;
-        /* (pus-disc_1) discriminant of the distance equation */
-        const real pus_disc_1_t = pus_S_x*pus_S_x + pus_S_y*pus_S_y + pus_S_z*pus_S_z;
-        const real pus_size_t = m->pus_size_t[i];
-        const real pus_disc_1 = pus_S_in_axes0_x*pus_S_in_axes0_x + pus_size_t - pus_disc_1_t;
-        /* (pus-q_1) displacement of joint 1 */
-        const real pus_branch_1 = m->pus_branch_1[i];
-        const real pus_q_1_t = -pus_branch_1*root(pus_disc_1);
-        const real pus_q_1 = pus_S_in_axes0_x - pus_q_1_t;
-        /* (pus-rho2_2) squared amplitude */
-        const real pus_rho2_2 = pus_S_in_axes0_y*pus_S_in_axes0_y + pus_q_1_t*pus_q_1_t;
-        /* (pus-root_2) root, with the sign of the branch */
-        const real pus_branch_2 = m->pus_branch_2[i];
-        const real pus_root_2 = pus_branch_2*root(pus_rho2_2);
+        values_pus v;
+        stage_pus_inverse_kinematics_potential(m, w, i, j, s, X, &v);
         /* (pus-q_2) displacement of joint 2 */
-        const real inv_pus_rho2_2 = 1/pus_rho2_2;
-        const real pus_q_2 = angle(inv_pus_rho2_2*pus_S_in_axes0_y*pus_root_2,
-            inv_pus_rho2_2*pus_q_1_t*pus_root_2);
+        const real pus_q_2 = angle(v.inv_pus_rho2_2*v.pus_S_in_axes0_y*v.pus_root_2,
+            -v.inv_pus_rho2_2*v.pus_q_1_t*v.pus_root_2);
         /* (pus-q_3) displacement of joint 3 */
         const real inv_pus_size_t = m->inv_pus_size_t[i];
         const real pus_base_frame_xz = m->pus_base_frame_xz[i];
@@ -3853,19 +3477,19 @@ INLINE void inverse_kinematics_legs_pus(const prepared *m, size_t w, size_t leg,
         const real pus_base_frame_zz = m->pus_base_frame_zz[i];
         const real pus_platform_joint_offset_x = m->pus_platform_joint_offset_x[i];
         const real pus_q_3 =
-            angle(-inv_pus_size_t*pus_platform_joint_offset_x*(pus_S_x*pus_base_frame_xz +
-            pus_S_y*pus_base_frame_yz + pus_S_z*pus_base_frame_zz),
-            inv_pus_size_t*pus_platform_joint_offset_x*pus_root_2);
+            angle(-inv_pus_size_t*pus_platform_joint_offset_x*(v.pus_S_x*pus_base_frame_xz +
+            v.pus_S_y*pus_base_frame_yz + v.pus_S_z*pus_base_frame_zz),
+            inv_pus_size_t*pus_platform_joint_offset_x*v.pus_root_2);
         /* (pus-q_1) displacement of joint 1 */
-        o[0*count + k] = pus_q_1;
+        o[0*count + k] = v.pus_q_1;
         /* (pus-q_2) displacement of joint 2 */
         o[1*count + k] = pus_q_2;
         /* (pus-q_3) displacement of joint 3 */
         o[2*count + k] = pus_q_3;
-        o[5*count + k] = pus_q_1 + (pus_q_2 + pus_q_3);
+        o[5*count + k] = v.pus_q_1 + (pus_q_2 + pus_q_3);
         const real pus_size_t_2 = m->pus_size_t_2[i];
-        o[3*count + k] = UNLESS(pus_disc_1 >= 0);
-        o[4*count + k] = UNLESS(magnitude(pus_rho2_2) > TOLERANCE*TOLERANCE*pus_size_t_2);
+        o[3*count + k] = UNLESS(v.pus_disc_1 >= 0);
+        o[4*count + k] = UNLESS(magnitude(v.pus_rho2_2) > TOLERANCE*TOLERANCE*pus_size_t_2);
     }
 }
 
@@ -3884,10 +3508,10 @@ INLINE void inverse_kinematics_place_pus(size_t w, size_t count, const real *o, 
 
 INLINE void inverse_kinematics_run(const prepared *m, const real *X, real *q, verdict *t)
 {
-    real s[12] = {0};
+    real s[9] = {0};
     real o_pus[6*LEGS(LEGS_OF_pus)] = {0};
-    inverse_kinematics_before(1, X, s, t);
-    inverse_kinematics_legs_pus(m, 1, 0, 1, s, 0, LEGS(LEGS_OF_pus), o_pus);
+    inverse_kinematics_before(m, 1, X, s, t);
+    inverse_kinematics_legs_pus(m, 1, 0, 1, s, 0, LEGS(LEGS_OF_pus), X, o_pus);
     for (size_t leg = 0; leg < LEGS_OF_pus; ++leg) {
         inverse_kinematics_place_pus(1, LEGS(LEGS_OF_pus), o_pus, leg, leg, q, t);
     }
@@ -3895,200 +3519,82 @@ INLINE void inverse_kinematics_run(const prepared *m, const real *X, real *q, ve
 
 INLINE void inverse_kinematics_run_lanes(const prepared *m, const real *X, real *q, verdict *t)
 {
-    real s[12*LANES];
+    real s[9*LANES];
     real o_pus[6*LANES];
-    inverse_kinematics_before(LANES, X, s, t);
+    inverse_kinematics_before(m, LANES, X, s, t);
     for (size_t leg = 0; leg < LEGS_OF_pus; ++leg) {
-        inverse_kinematics_legs_pus(m, LANES, leg, 0, s, 1, LANES, o_pus);
+        inverse_kinematics_legs_pus(m, LANES, leg, 0, s, 1, LANES, X, o_pus);
         inverse_kinematics_place_pus(LANES, LANES, o_pus, leg, 0, q, t);
     }
 }
 
 /* ---- joint_rates ---- */
-INLINE void joint_rates_before(size_t w, const real *X, const real *V, real *s, verdict *t)
+INLINE void joint_rates_before(const prepared *m, size_t w, const real *X, real *s, verdict *t)
 {
     for (size_t k = 0; k < w; ++k) {
-        /* X: named entries */
-        const real X_0 = X[0*w + k];
-        const real t_x = X_0;
-        const real X_1 = X[1*w + k];
-        const real t_y = X_1;
-        const real X_2 = X[2*w + k];
-        const real t_z = X_2;
-        const real X_3 = X[3*w + k];
-        const real X_4 = X[4*w + k];
-        const real X_5 = X[5*w + k];
-        const real X_6 = X[6*w + k];
-        const real quaternion_norm2 = X_3*X_3 + X_4*X_4 + X_5*X_5 + X_6*X_6;
-        const real quaternion_scale = 2/quaternion_norm2;
-        const real quaternion_sx = X_3*quaternion_scale;
-        const real quaternion_sy = X_4*quaternion_scale;
-        const real quaternion_sz = X_5*quaternion_scale;
-        const real quaternion_wx = X_6*quaternion_sx;
-        const real quaternion_wy = X_6*quaternion_sy;
-        const real quaternion_wz = X_6*quaternion_sz;
-        const real quaternion_xx = X_3*quaternion_sx;
-        const real quaternion_xy = X_3*quaternion_sy;
-        const real quaternion_xz = X_3*quaternion_sz;
-        const real quaternion_yy = X_4*quaternion_sy;
-        const real quaternion_yz = X_4*quaternion_sz;
-        const real quaternion_zz = X_5*quaternion_sz;
-        const real R_xx = 1 - quaternion_yy - quaternion_zz;
-        const real R_xy = quaternion_xy - quaternion_wz;
-        const real R_xz = quaternion_wy + quaternion_xz;
-        const real R_yx = quaternion_wz + quaternion_xy;
-        const real R_yy = 1 - quaternion_xx - quaternion_zz;
-        const real R_yz = quaternion_yz - quaternion_wx;
-        const real R_zx = quaternion_xz - quaternion_wy;
-        const real R_zy = quaternion_wx + quaternion_yz;
-        const real R_zz = 1 - quaternion_xx - quaternion_yy;
-        /* V: named entries */
-        const real V_0 = V[0*w + k];
-        const real t_dot_x = V_0;
-        const real V_1 = V[1*w + k];
-        const real t_dot_y = V_1;
-        const real V_2 = V[2*w + k];
-        const real t_dot_z = V_2;
-        const real V_3 = V[3*w + k];
-        const real omega_x = V_3;
-        const real V_4 = V[4*w + k];
-        const real omega_y = V_4;
-        const real V_5 = V[5*w + k];
-        const real omega_z = V_5;
-        s[0*w + k] = t_x;
-        s[1*w + k] = t_y;
-        s[2*w + k] = t_z;
-        s[3*w + k] = R_xx;
-        s[4*w + k] = R_xy;
-        s[5*w + k] = R_xz;
-        s[6*w + k] = R_yx;
-        s[7*w + k] = R_yy;
-        s[8*w + k] = R_yz;
-        s[9*w + k] = R_zx;
-        s[10*w + k] = R_zy;
-        s[11*w + k] = R_zz;
-        s[12*w + k] = t_dot_x;
-        s[13*w + k] = t_dot_y;
-        s[14*w + k] = t_dot_z;
-        s[15*w + k] = omega_x;
-        s[16*w + k] = omega_y;
-        s[17*w + k] = omega_z;
-        t->invalid[k] += UNLESS(is_finite(quaternion_scale)) + UNLESS(quaternion_scale > 0);
+        values v;
+        stage_X(m, w, k, X, &v);
+        s[0*w + k] = v.R_xx;
+        s[1*w + k] = v.R_xy;
+        s[2*w + k] = v.R_xz;
+        s[3*w + k] = v.R_yx;
+        s[4*w + k] = v.R_yy;
+        s[5*w + k] = v.R_yz;
+        s[6*w + k] = v.R_zx;
+        s[7*w + k] = v.R_zy;
+        s[8*w + k] = v.R_zz;
+        t->invalid[k] += UNLESS(is_finite(v.quaternion_scale)) + UNLESS(v.quaternion_scale > 0);
     }
 }
 
 INLINE void joint_rates_legs_pus(const prepared *m, size_t w, size_t leg, size_t legs, const real
-    *s, size_t states, size_t count, real *o)
+    *s, size_t states, size_t count, const real *X, const real *V, real *o)
 {
     for (size_t k = 0; k < count; ++k) {
         const size_t i = leg + legs*k;
         const size_t j = states*k;
-        /* (pus-S) from the base point to the connection point */
-        const real R_xx = s[3*w + j];
-        const real R_xy = s[4*w + j];
-        const real R_xz = s[5*w + j];
-        const real pus_platform_point_x = m->pus_platform_point_x[i];
-        const real pus_platform_point_y = m->pus_platform_point_y[i];
-        const real pus_platform_point_z = m->pus_platform_point_z[i];
-        const real pus_q_x = R_xx*pus_platform_point_x + R_xy*pus_platform_point_y +
-            R_xz*pus_platform_point_z;
-        const real R_yx = s[6*w + j];
-        const real R_yy = s[7*w + j];
-        const real R_yz = s[8*w + j];
-        const real pus_q_y = R_yx*pus_platform_point_x + R_yy*pus_platform_point_y +
-            R_yz*pus_platform_point_z;
-        const real R_zx = s[9*w + j];
-        const real R_zy = s[10*w + j];
-        const real R_zz = s[11*w + j];
-        const real pus_q_z = R_zx*pus_platform_point_x + R_zy*pus_platform_point_y +
-            R_zz*pus_platform_point_z;
-        const real pus_base_point_x = m->pus_base_point_x[i];
-        const real t_x = s[0*w + j];
-        const real pus_S_x = pus_q_x + t_x - pus_base_point_x;
-        const real pus_base_point_y = m->pus_base_point_y[i];
-        const real t_y = s[1*w + j];
-        const real pus_S_y = pus_q_y + t_y - pus_base_point_y;
-        const real pus_base_point_z = m->pus_base_point_z[i];
-        const real t_z = s[2*w + j];
-        const real pus_S_z = pus_q_z + t_z - pus_base_point_z;
-        const real pus_base_frame_xx = m->pus_base_frame_xx[i];
-        const real pus_base_frame_yx = m->pus_base_frame_yx[i];
-        const real pus_base_frame_zx = m->pus_base_frame_zx[i];
-        const real pus_S_in_axes0_x = pus_S_x*pus_base_frame_xx + pus_S_y*pus_base_frame_yx +
-            pus_S_z*pus_base_frame_zx;
-        const real pus_base_frame_xy = m->pus_base_frame_xy[i];
-        const real pus_base_frame_yy = m->pus_base_frame_yy[i];
-        const real pus_base_frame_zy = m->pus_base_frame_zy[i];
-        const real pus_S_in_axes0_y = pus_S_x*pus_base_frame_xy + pus_S_y*pus_base_frame_yy +
-            pus_S_z*pus_base_frame_zy;
-        /* (pus-disc_1) discriminant of the distance equation */
-        const real pus_disc_1_t = pus_S_x*pus_S_x + pus_S_y*pus_S_y + pus_S_z*pus_S_z;
-        const real pus_size_t = m->pus_size_t[i];
-        const real pus_disc_1 = pus_S_in_axes0_x*pus_S_in_axes0_x + pus_size_t - pus_disc_1_t;
-        /* (pus-x_2) from the origin of joint 2 to the connection point */
-        const real pus_branch_1 = m->pus_branch_1[i];
-        const real pus_x_2_in_axes0_x = -pus_branch_1*root(pus_disc_1);
-        /* (pus-rho2_2) squared amplitude */
-        const real pus_rho2_2 = pus_S_in_axes0_y*pus_S_in_axes0_y +
-            pus_x_2_in_axes0_x*pus_x_2_in_axes0_x;
-        /* (pus-root_2) root, with the sign of the branch */
-        const real pus_branch_2 = m->pus_branch_2[i];
-        const real pus_root_2 = pus_branch_2*root(pus_rho2_2);
-        /* (pus-c_2) cosine of the angle of joint 2 from its reference direction */
-        const real inv_pus_rho2_2 = 1/pus_rho2_2;
-        const real pus_c_2_t = inv_pus_rho2_2*pus_S_in_axes0_y*pus_root_2;
-        /* (pus-s_2) sine of the angle of joint 2 from its reference direction */
-        const real pus_s_2 = inv_pus_rho2_2*pus_root_2*pus_x_2_in_axes0_x;
-        /* (pus-c_3) cosine of the angle of joint 3 from its reference direction */
-        const real inv_pus_size_t = m->inv_pus_size_t[i];
-        const real pus_platform_joint_offset_x = m->pus_platform_joint_offset_x[i];
-        const real pus_c_3_t = inv_pus_size_t*pus_platform_joint_offset_x*pus_root_2;
-        /* (pus-s_3) sine of the angle of joint 3 from its reference direction */
-        const real pus_base_frame_xz = m->pus_base_frame_xz[i];
-        const real pus_base_frame_yz = m->pus_base_frame_yz[i];
-        const real pus_base_frame_zz = m->pus_base_frame_zz[i];
-        const real pus_s_3 = inv_pus_size_t*pus_platform_joint_offset_x*(pus_S_x*pus_base_frame_xz
-            + pus_S_y*pus_base_frame_yz + pus_S_z*pus_base_frame_zz);
+        values_pus v;
+        stage_pus_X(m, w, i, j, s, X, &v);
         /* (pus-S_dot) velocity of the connection point */
-        const real omega_y = s[16*w + j];
-        const real omega_z = s[17*w + j];
-        const real t_dot_x = s[12*w + j];
-        const real pus_S_dot_x = t_dot_x + omega_y*pus_q_z - omega_z*pus_q_y;
-        const real omega_x = s[15*w + j];
-        const real t_dot_y = s[13*w + j];
-        const real pus_S_dot_y = t_dot_y + omega_z*pus_q_x - omega_x*pus_q_z;
-        const real t_dot_z = s[14*w + j];
-        const real pus_S_dot_z = t_dot_z + omega_x*pus_q_y - omega_y*pus_q_x;
-        /* (pus-v_2) velocity of the connection point per rate of joint 2 */
-        const real pus_v_2_in_axes3_z = pus_c_3_t*pus_platform_joint_offset_x;
-        /* (pus-w_1) reciprocal vector 1 */
-        const real pus_e_1_in_axes3_x = pus_c_3_t*pus_s_2;
+        const real omega_y = V[4*w + j];
+        const real omega_z = V[5*w + j];
+        const real t_dot_x = V[0*w + j];
+        const real pus_S_dot_x = t_dot_x + omega_y*v.pus_q_z - omega_z*v.pus_q_y;
+        const real omega_x = V[3*w + j];
+        const real t_dot_y = V[1*w + j];
+        const real pus_S_dot_y = t_dot_y + omega_z*v.pus_q_x - omega_x*v.pus_q_z;
+        const real t_dot_z = V[2*w + j];
+        const real pus_S_dot_z = t_dot_z + omega_x*v.pus_q_y - omega_y*v.pus_q_x;
         /* (pus-qd_1) rate of joint 1 */
-        const real axis_z_pus_axes3_x = pus_base_frame_xy*pus_s_2 - pus_base_frame_xx*pus_c_2_t;
-        const real axis_z_pus_axes3_y = pus_base_frame_yy*pus_s_2 - pus_base_frame_yx*pus_c_2_t;
-        const real axis_z_pus_axes3_z = pus_base_frame_zy*pus_s_2 - pus_base_frame_zx*pus_c_2_t;
-        const real pus_e_1_in_axes3_y = pus_s_2*pus_s_3;
-        const real pus_qd_1_t = pus_c_2_t*pus_s_3;
-        const real axis_y_pus_axes3_x = pus_base_frame_xx*pus_e_1_in_axes3_y +
-            pus_base_frame_xy*pus_qd_1_t - pus_base_frame_xz*pus_c_3_t;
-        const real axis_y_pus_axes3_y = pus_base_frame_yx*pus_e_1_in_axes3_y +
-            pus_base_frame_yy*pus_qd_1_t - pus_base_frame_yz*pus_c_3_t;
-        const real axis_y_pus_axes3_z = pus_base_frame_zx*pus_e_1_in_axes3_y +
-            pus_base_frame_zy*pus_qd_1_t - pus_base_frame_zz*pus_c_3_t;
-        const real pus_qd_1 = (pus_S_dot_x*(axis_y_pus_axes3_y*axis_z_pus_axes3_z -
-            axis_y_pus_axes3_z*axis_z_pus_axes3_y) +
-            pus_S_dot_y*(axis_y_pus_axes3_z*axis_z_pus_axes3_x -
-            axis_y_pus_axes3_x*axis_z_pus_axes3_z) +
-            pus_S_dot_z*(axis_y_pus_axes3_x*axis_z_pus_axes3_y -
-            axis_y_pus_axes3_y*axis_z_pus_axes3_x))/pus_e_1_in_axes3_x;
+        const real pus_base_frame_xx = m->pus_base_frame_xx[i];
+        const real pus_base_frame_xy = m->pus_base_frame_xy[i];
+        const real pus_base_frame_xz = m->pus_base_frame_xz[i];
+        const real axis_y_pus_axes3_x = pus_base_frame_xx*v.pus_e_1_in_axes3_y +
+            pus_base_frame_xy*v.pus_qd_1_t - pus_base_frame_xz*v.pus_c_3;
+        const real pus_base_frame_yx = m->pus_base_frame_yx[i];
+        const real pus_base_frame_yy = m->pus_base_frame_yy[i];
+        const real pus_base_frame_yz = m->pus_base_frame_yz[i];
+        const real axis_y_pus_axes3_y = pus_base_frame_yx*v.pus_e_1_in_axes3_y +
+            pus_base_frame_yy*v.pus_qd_1_t - pus_base_frame_yz*v.pus_c_3;
+        const real pus_base_frame_zx = m->pus_base_frame_zx[i];
+        const real pus_base_frame_zy = m->pus_base_frame_zy[i];
+        const real pus_base_frame_zz = m->pus_base_frame_zz[i];
+        const real axis_y_pus_axes3_z = pus_base_frame_zx*v.pus_e_1_in_axes3_y +
+            pus_base_frame_zy*v.pus_qd_1_t - pus_base_frame_zz*v.pus_c_3;
+        const real pus_qd_1 = (pus_S_dot_x*(axis_y_pus_axes3_y*v.axis_z_pus_axes3_z -
+            axis_y_pus_axes3_z*v.axis_z_pus_axes3_y) +
+            pus_S_dot_y*(axis_y_pus_axes3_z*v.axis_z_pus_axes3_x -
+            axis_y_pus_axes3_x*v.axis_z_pus_axes3_z) +
+            pus_S_dot_z*(axis_y_pus_axes3_x*v.axis_z_pus_axes3_y -
+            axis_y_pus_axes3_y*v.axis_z_pus_axes3_x))/v.pus_e_1_in_axes3_x;
         /* (pus-qd_2) rate of joint 2 */
-        const real pus_qd_2 = (axis_z_pus_axes3_x*pus_S_dot_x + axis_z_pus_axes3_y*pus_S_dot_y +
-            axis_z_pus_axes3_z*pus_S_dot_z + pus_c_2_t*pus_qd_1)/pus_v_2_in_axes3_z;
+        const real pus_qd_2 = (v.axis_z_pus_axes3_x*pus_S_dot_x + v.axis_z_pus_axes3_y*pus_S_dot_y
+            + v.axis_z_pus_axes3_z*pus_S_dot_z + pus_qd_1*v.pus_s_2)/v.pus_v_2_in_axes3_z;
         /* (pus-qd_3) rate of joint 3 */
         const real pus_w_3_in_axes3_y = m->pus_w_3_in_axes3_y[i];
         const real pus_qd_3 = pus_w_3_in_axes3_y*(axis_y_pus_axes3_x*pus_S_dot_x +
             axis_y_pus_axes3_y*pus_S_dot_y + axis_y_pus_axes3_z*pus_S_dot_z -
-            pus_e_1_in_axes3_y*pus_qd_1);
+            v.pus_e_1_in_axes3_y*pus_qd_1);
         /* (pus-qd_1) rate of joint 1 */
         o[0*count + k] = pus_qd_1;
         /* (pus-qd_2) rate of joint 2 */
@@ -4098,10 +3604,10 @@ INLINE void joint_rates_legs_pus(const prepared *m, size_t w, size_t leg, size_t
         o[5*count + k] = pus_qd_1 + (pus_qd_2 + pus_qd_3);
         const real pus_size_t_2 = m->pus_size_t_2[i];
         const real pus_size = m->pus_size[i];
-        o[3*count + k] = UNLESS(pus_disc_1 >= 0);
-        o[4*count + k] = UNLESS(magnitude(pus_rho2_2) > TOLERANCE*TOLERANCE*pus_size_t_2) +
-            UNLESS(magnitude(pus_v_2_in_axes3_z) > TOLERANCE*pus_size) +
-            UNLESS(magnitude(pus_e_1_in_axes3_x) > LEAST_1);
+        o[3*count + k] = UNLESS(v.pus_disc_1 >= 0);
+        o[4*count + k] = UNLESS(magnitude(v.pus_rho2_2) > TOLERANCE*TOLERANCE*pus_size_t_2) +
+            UNLESS(magnitude(v.pus_v_2_in_axes3_z) > TOLERANCE*pus_size) +
+            UNLESS(magnitude(v.pus_e_1_in_axes3_x) > LEAST_1);
     }
 }
 
@@ -4120,10 +3626,10 @@ INLINE void joint_rates_place_pus(size_t w, size_t count, const real *o, size_t 
 
 INLINE void joint_rates_run(const prepared *m, const real *X, const real *V, real *qd, verdict *t)
 {
-    real s[18] = {0};
+    real s[9] = {0};
     real o_pus[6*LEGS(LEGS_OF_pus)] = {0};
-    joint_rates_before(1, X, V, s, t);
-    joint_rates_legs_pus(m, 1, 0, 1, s, 0, LEGS(LEGS_OF_pus), o_pus);
+    joint_rates_before(m, 1, X, s, t);
+    joint_rates_legs_pus(m, 1, 0, 1, s, 0, LEGS(LEGS_OF_pus), X, V, o_pus);
     for (size_t leg = 0; leg < LEGS_OF_pus; ++leg) {
         joint_rates_place_pus(1, LEGS(LEGS_OF_pus), o_pus, leg, leg, qd, t);
     }
@@ -4132,265 +3638,105 @@ INLINE void joint_rates_run(const prepared *m, const real *X, const real *V, rea
 INLINE void joint_rates_run_lanes(const prepared *m, const real *X, const real *V, real *qd,
     verdict *t)
 {
-    real s[18*LANES];
+    real s[9*LANES];
     real o_pus[6*LANES];
-    joint_rates_before(LANES, X, V, s, t);
+    joint_rates_before(m, LANES, X, s, t);
     for (size_t leg = 0; leg < LEGS_OF_pus; ++leg) {
-        joint_rates_legs_pus(m, LANES, leg, 0, s, 1, LANES, o_pus);
+        joint_rates_legs_pus(m, LANES, leg, 0, s, 1, LANES, X, V, o_pus);
         joint_rates_place_pus(LANES, LANES, o_pus, leg, 0, qd, t);
     }
 }
 
 /* ---- joint_accelerations ---- */
-INLINE void joint_accelerations_before(size_t w, const real *X, const real *V, const real *A, real
-    *s, verdict *t)
+INLINE void joint_accelerations_before(const prepared *m, size_t w, const real *X, real *s,
+    verdict *t)
 {
     for (size_t k = 0; k < w; ++k) {
-        /* X: named entries */
-        const real X_0 = X[0*w + k];
-        const real t_x = X_0;
-        const real X_1 = X[1*w + k];
-        const real t_y = X_1;
-        const real X_2 = X[2*w + k];
-        const real t_z = X_2;
-        const real X_3 = X[3*w + k];
-        const real X_4 = X[4*w + k];
-        const real X_5 = X[5*w + k];
-        const real X_6 = X[6*w + k];
-        const real quaternion_norm2 = X_3*X_3 + X_4*X_4 + X_5*X_5 + X_6*X_6;
-        const real quaternion_scale = 2/quaternion_norm2;
-        const real quaternion_sx = X_3*quaternion_scale;
-        const real quaternion_sy = X_4*quaternion_scale;
-        const real quaternion_sz = X_5*quaternion_scale;
-        const real quaternion_wx = X_6*quaternion_sx;
-        const real quaternion_wy = X_6*quaternion_sy;
-        const real quaternion_wz = X_6*quaternion_sz;
-        const real quaternion_xx = X_3*quaternion_sx;
-        const real quaternion_xy = X_3*quaternion_sy;
-        const real quaternion_xz = X_3*quaternion_sz;
-        const real quaternion_yy = X_4*quaternion_sy;
-        const real quaternion_yz = X_4*quaternion_sz;
-        const real quaternion_zz = X_5*quaternion_sz;
-        const real R_xx = 1 - quaternion_yy - quaternion_zz;
-        const real R_xy = quaternion_xy - quaternion_wz;
-        const real R_xz = quaternion_wy + quaternion_xz;
-        const real R_yx = quaternion_wz + quaternion_xy;
-        const real R_yy = 1 - quaternion_xx - quaternion_zz;
-        const real R_yz = quaternion_yz - quaternion_wx;
-        const real R_zx = quaternion_xz - quaternion_wy;
-        const real R_zy = quaternion_wx + quaternion_yz;
-        const real R_zz = 1 - quaternion_xx - quaternion_yy;
-        /* V: named entries */
-        const real V_0 = V[0*w + k];
-        const real t_dot_x = V_0;
-        const real V_1 = V[1*w + k];
-        const real t_dot_y = V_1;
-        const real V_2 = V[2*w + k];
-        const real t_dot_z = V_2;
-        const real V_3 = V[3*w + k];
-        const real omega_x = V_3;
-        const real V_4 = V[4*w + k];
-        const real omega_y = V_4;
-        const real V_5 = V[5*w + k];
-        const real omega_z = V_5;
-        /* A: named entries */
-        const real A_0 = A[0*w + k];
-        const real t_ddot_x = A_0;
-        const real A_1 = A[1*w + k];
-        const real t_ddot_y = A_1;
-        const real A_2 = A[2*w + k];
-        const real t_ddot_z = A_2;
-        const real A_3 = A[3*w + k];
-        const real alpha_x = A_3;
-        const real A_4 = A[4*w + k];
-        const real alpha_y = A_4;
-        const real A_5 = A[5*w + k];
-        const real alpha_z = A_5;
-        s[0*w + k] = t_x;
-        s[1*w + k] = t_y;
-        s[2*w + k] = t_z;
-        s[3*w + k] = R_xx;
-        s[4*w + k] = R_xy;
-        s[5*w + k] = R_xz;
-        s[6*w + k] = R_yx;
-        s[7*w + k] = R_yy;
-        s[8*w + k] = R_yz;
-        s[9*w + k] = R_zx;
-        s[10*w + k] = R_zy;
-        s[11*w + k] = R_zz;
-        s[12*w + k] = t_dot_x;
-        s[13*w + k] = t_dot_y;
-        s[14*w + k] = t_dot_z;
-        s[15*w + k] = omega_x;
-        s[16*w + k] = omega_y;
-        s[17*w + k] = omega_z;
-        s[18*w + k] = t_ddot_x;
-        s[19*w + k] = t_ddot_y;
-        s[20*w + k] = t_ddot_z;
-        s[21*w + k] = alpha_x;
-        s[22*w + k] = alpha_y;
-        s[23*w + k] = alpha_z;
-        t->invalid[k] += UNLESS(is_finite(quaternion_scale)) + UNLESS(quaternion_scale > 0);
+        values v;
+        stage_X(m, w, k, X, &v);
+        s[0*w + k] = v.R_xx;
+        s[1*w + k] = v.R_xy;
+        s[2*w + k] = v.R_xz;
+        s[3*w + k] = v.R_yx;
+        s[4*w + k] = v.R_yy;
+        s[5*w + k] = v.R_yz;
+        s[6*w + k] = v.R_zx;
+        s[7*w + k] = v.R_zy;
+        s[8*w + k] = v.R_zz;
+        t->invalid[k] += UNLESS(is_finite(v.quaternion_scale)) + UNLESS(v.quaternion_scale > 0);
     }
 }
 
 INLINE void joint_accelerations_legs_pus(const prepared *m, size_t w, size_t leg, size_t legs,
-    const real *s, size_t states, size_t count, real *o)
+    const real *s, size_t states, size_t count, const real *X, const real *V, const real *A, real
+    *o)
 {
     for (size_t k = 0; k < count; ++k) {
         const size_t i = leg + legs*k;
         const size_t j = states*k;
-        /* (pus-S) from the base point to the connection point */
-        const real R_xx = s[3*w + j];
-        const real R_xy = s[4*w + j];
-        const real R_xz = s[5*w + j];
-        const real pus_platform_point_x = m->pus_platform_point_x[i];
-        const real pus_platform_point_y = m->pus_platform_point_y[i];
-        const real pus_platform_point_z = m->pus_platform_point_z[i];
-        const real pus_q_x = R_xx*pus_platform_point_x + R_xy*pus_platform_point_y +
-            R_xz*pus_platform_point_z;
-        const real R_yx = s[6*w + j];
-        const real R_yy = s[7*w + j];
-        const real R_yz = s[8*w + j];
-        const real pus_q_y = R_yx*pus_platform_point_x + R_yy*pus_platform_point_y +
-            R_yz*pus_platform_point_z;
-        const real R_zx = s[9*w + j];
-        const real R_zy = s[10*w + j];
-        const real R_zz = s[11*w + j];
-        const real pus_q_z = R_zx*pus_platform_point_x + R_zy*pus_platform_point_y +
-            R_zz*pus_platform_point_z;
-        const real pus_base_point_x = m->pus_base_point_x[i];
-        const real t_x = s[0*w + j];
-        const real pus_S_x = pus_q_x + t_x - pus_base_point_x;
-        const real pus_base_point_y = m->pus_base_point_y[i];
-        const real t_y = s[1*w + j];
-        const real pus_S_y = pus_q_y + t_y - pus_base_point_y;
-        const real pus_base_point_z = m->pus_base_point_z[i];
-        const real t_z = s[2*w + j];
-        const real pus_S_z = pus_q_z + t_z - pus_base_point_z;
-        const real pus_base_frame_xx = m->pus_base_frame_xx[i];
-        const real pus_base_frame_yx = m->pus_base_frame_yx[i];
-        const real pus_base_frame_zx = m->pus_base_frame_zx[i];
-        const real pus_S_in_axes0_x = pus_S_x*pus_base_frame_xx + pus_S_y*pus_base_frame_yx +
-            pus_S_z*pus_base_frame_zx;
-        const real pus_base_frame_xy = m->pus_base_frame_xy[i];
-        const real pus_base_frame_yy = m->pus_base_frame_yy[i];
-        const real pus_base_frame_zy = m->pus_base_frame_zy[i];
-        const real pus_S_in_axes0_y = pus_S_x*pus_base_frame_xy + pus_S_y*pus_base_frame_yy +
-            pus_S_z*pus_base_frame_zy;
-        /* (pus-disc_1) discriminant of the distance equation */
-        const real pus_disc_1_t = pus_S_x*pus_S_x + pus_S_y*pus_S_y + pus_S_z*pus_S_z;
-        const real pus_size_t = m->pus_size_t[i];
-        const real pus_disc_1 = pus_S_in_axes0_x*pus_S_in_axes0_x + pus_size_t - pus_disc_1_t;
-        /* (pus-x_2) from the origin of joint 2 to the connection point */
-        const real pus_branch_1 = m->pus_branch_1[i];
-        const real pus_x_2_in_axes0_x = -pus_branch_1*root(pus_disc_1);
-        /* (pus-rho2_2) squared amplitude */
-        const real pus_rho2_2 = pus_S_in_axes0_y*pus_S_in_axes0_y +
-            pus_x_2_in_axes0_x*pus_x_2_in_axes0_x;
-        /* (pus-root_2) root, with the sign of the branch */
-        const real pus_branch_2 = m->pus_branch_2[i];
-        const real pus_root_2 = pus_branch_2*root(pus_rho2_2);
-        /* (pus-c_2) cosine of the angle of joint 2 from its reference direction */
-        const real inv_pus_rho2_2 = 1/pus_rho2_2;
-        const real pus_c_2_t = inv_pus_rho2_2*pus_S_in_axes0_y*pus_root_2;
-        /* (pus-s_2) sine of the angle of joint 2 from its reference direction */
-        const real pus_s_2 = inv_pus_rho2_2*pus_root_2*pus_x_2_in_axes0_x;
-        /* (pus-c_3) cosine of the angle of joint 3 from its reference direction */
-        const real inv_pus_size_t = m->inv_pus_size_t[i];
-        const real pus_platform_joint_offset_x = m->pus_platform_joint_offset_x[i];
-        const real pus_c_3_t = inv_pus_size_t*pus_platform_joint_offset_x*pus_root_2;
-        /* (pus-s_3) sine of the angle of joint 3 from its reference direction */
-        const real pus_base_frame_xz = m->pus_base_frame_xz[i];
-        const real pus_base_frame_yz = m->pus_base_frame_yz[i];
-        const real pus_base_frame_zz = m->pus_base_frame_zz[i];
-        const real pus_s_3 = inv_pus_size_t*pus_platform_joint_offset_x*(pus_S_x*pus_base_frame_xz
-            + pus_S_y*pus_base_frame_yz + pus_S_z*pus_base_frame_zz);
-        /* (pus-S_dot) velocity of the connection point */
-        const real omega_y = s[16*w + j];
-        const real omega_z = s[17*w + j];
-        const real pus_S_dot_t = omega_y*pus_q_z - omega_z*pus_q_y;
-        const real omega_x = s[15*w + j];
-        const real pus_S_dot_t_2 = omega_z*pus_q_x - omega_x*pus_q_z;
-        const real pus_S_dot_t_3 = omega_x*pus_q_y - omega_y*pus_q_x;
-        const real t_dot_x = s[12*w + j];
-        const real pus_S_dot_x = pus_S_dot_t + t_dot_x;
-        const real t_dot_y = s[13*w + j];
-        const real pus_S_dot_y = pus_S_dot_t_2 + t_dot_y;
-        const real t_dot_z = s[14*w + j];
-        const real pus_S_dot_z = pus_S_dot_t_3 + t_dot_z;
-        /* (pus-v_2) velocity of the connection point per rate of joint 2 */
-        const real pus_v_2_in_axes3_z = pus_c_3_t*pus_platform_joint_offset_x;
-        /* (pus-w_1) reciprocal vector 1 */
-        const real pus_e_1_in_axes3_x = pus_c_3_t*pus_s_2;
-        const real pus_w_1_in_axes3_x = 1/pus_e_1_in_axes3_x;
-        /* (pus-w_2) reciprocal vector 2 */
-        const real pus_w_2_in_axes3_z = 1/pus_v_2_in_axes3_z;
+        values_pus v;
+        stage_pus_X(m, w, i, j, s, X, &v);
+        stage_pus_A_X(w, j, A, &v);
+        stage_pus_V_X(w, j, V, &v);
+        stage_pus_A_V_X(w, j, V, &v);
         /* (pus-qd_1) rate of joint 1 */
-        const real axis_z_pus_axes3_x = pus_base_frame_xy*pus_s_2 - pus_base_frame_xx*pus_c_2_t;
-        const real axis_z_pus_axes3_y = pus_base_frame_yy*pus_s_2 - pus_base_frame_yx*pus_c_2_t;
-        const real axis_z_pus_axes3_z = pus_base_frame_zy*pus_s_2 - pus_base_frame_zx*pus_c_2_t;
-        const real pus_e_1_in_axes3_y = pus_s_2*pus_s_3;
-        const real pus_qd_1_t = pus_c_2_t*pus_s_3;
-        const real axis_y_pus_axes3_x = pus_base_frame_xx*pus_e_1_in_axes3_y +
-            pus_base_frame_xy*pus_qd_1_t - pus_base_frame_xz*pus_c_3_t;
-        const real axis_y_pus_axes3_y = pus_base_frame_yx*pus_e_1_in_axes3_y +
-            pus_base_frame_yy*pus_qd_1_t - pus_base_frame_yz*pus_c_3_t;
-        const real axis_y_pus_axes3_z = pus_base_frame_zx*pus_e_1_in_axes3_y +
-            pus_base_frame_zy*pus_qd_1_t - pus_base_frame_zz*pus_c_3_t;
-        const real axis_x_pus_axes3_x = axis_y_pus_axes3_y*axis_z_pus_axes3_z -
-            axis_y_pus_axes3_z*axis_z_pus_axes3_y;
-        const real axis_x_pus_axes3_y = axis_y_pus_axes3_z*axis_z_pus_axes3_x -
-            axis_y_pus_axes3_x*axis_z_pus_axes3_z;
-        const real axis_x_pus_axes3_z = axis_y_pus_axes3_x*axis_z_pus_axes3_y -
-            axis_y_pus_axes3_y*axis_z_pus_axes3_x;
-        const real pus_qd_1 = pus_w_1_in_axes3_x*(axis_x_pus_axes3_x*pus_S_dot_x +
-            axis_x_pus_axes3_y*pus_S_dot_y + axis_x_pus_axes3_z*pus_S_dot_z);
+        const real pus_base_frame_xx = m->pus_base_frame_xx[i];
+        const real pus_base_frame_xy = m->pus_base_frame_xy[i];
+        const real pus_base_frame_xz = m->pus_base_frame_xz[i];
+        const real axis_y_pus_axes3_x = pus_base_frame_xx*v.pus_e_1_in_axes3_y +
+            pus_base_frame_xy*v.pus_qd_1_t - pus_base_frame_xz*v.pus_c_3;
+        const real pus_base_frame_yx = m->pus_base_frame_yx[i];
+        const real pus_base_frame_yy = m->pus_base_frame_yy[i];
+        const real pus_base_frame_yz = m->pus_base_frame_yz[i];
+        const real axis_y_pus_axes3_y = pus_base_frame_yx*v.pus_e_1_in_axes3_y +
+            pus_base_frame_yy*v.pus_qd_1_t - pus_base_frame_yz*v.pus_c_3;
+        const real pus_base_frame_zx = m->pus_base_frame_zx[i];
+        const real pus_base_frame_zy = m->pus_base_frame_zy[i];
+        const real pus_base_frame_zz = m->pus_base_frame_zz[i];
+        const real axis_y_pus_axes3_z = pus_base_frame_zx*v.pus_e_1_in_axes3_y +
+            pus_base_frame_zy*v.pus_qd_1_t - pus_base_frame_zz*v.pus_c_3;
+        const real axis_x_pus_axes3_x = axis_y_pus_axes3_y*v.axis_z_pus_axes3_z -
+            axis_y_pus_axes3_z*v.axis_z_pus_axes3_y;
+        const real axis_x_pus_axes3_y = axis_y_pus_axes3_z*v.axis_z_pus_axes3_x -
+            axis_y_pus_axes3_x*v.axis_z_pus_axes3_z;
+        const real axis_x_pus_axes3_z = axis_y_pus_axes3_x*v.axis_z_pus_axes3_y -
+            axis_y_pus_axes3_y*v.axis_z_pus_axes3_x;
+        const real pus_qd_1 = v.pus_w_1_in_axes3_x*(axis_x_pus_axes3_x*v.pus_S_dot_x +
+            axis_x_pus_axes3_y*v.pus_S_dot_y + axis_x_pus_axes3_z*v.pus_S_dot_z);
         /* (pus-qd_2) rate of joint 2 */
-        const real pus_qd_2 = pus_w_2_in_axes3_z*(axis_z_pus_axes3_x*pus_S_dot_x +
-            axis_z_pus_axes3_y*pus_S_dot_y + axis_z_pus_axes3_z*pus_S_dot_z + pus_c_2_t*pus_qd_1);
+        const real pus_qd_2 = v.pus_w_2_in_axes3_z*(v.axis_z_pus_axes3_x*v.pus_S_dot_x +
+            v.axis_z_pus_axes3_y*v.pus_S_dot_y + v.axis_z_pus_axes3_z*v.pus_S_dot_z +
+            pus_qd_1*v.pus_s_2);
         /* (pus-qd_3) rate of joint 3 */
-        const real pus_qd_3_t = axis_y_pus_axes3_x*pus_S_dot_x + axis_y_pus_axes3_y*pus_S_dot_y +
-            axis_y_pus_axes3_z*pus_S_dot_z - pus_e_1_in_axes3_y*pus_qd_1;
+        const real pus_qd_3_t = axis_y_pus_axes3_x*v.pus_S_dot_x +
+            axis_y_pus_axes3_y*v.pus_S_dot_y + axis_y_pus_axes3_z*v.pus_S_dot_z -
+            v.pus_e_1_in_axes3_y*pus_qd_1;
         const real pus_w_3_in_axes3_y = m->pus_w_3_in_axes3_y[i];
         const real pus_qd_3 = pus_qd_3_t*pus_w_3_in_axes3_y;
         /* (pus-omega_2) angular velocity of link 2 */
-        const real pus_omega_2_in_axes3_x = pus_qd_2*pus_s_3;
-        const real pus_omega_2_in_axes3_y = -pus_c_3_t*pus_qd_2;
-        /* (pus-a_p) acceleration of the connection point without its centripetal part */
-        const real alpha_y = s[22*w + j];
-        const real alpha_z = s[23*w + j];
-        const real t_ddot_x = s[18*w + j];
-        const real pus_a_p_x = t_ddot_x + alpha_y*pus_q_z - alpha_z*pus_q_y;
-        const real alpha_x = s[21*w + j];
-        const real t_ddot_y = s[19*w + j];
-        const real pus_a_p_y = t_ddot_y + alpha_z*pus_q_x - alpha_x*pus_q_z;
-        const real t_ddot_z = s[20*w + j];
-        const real pus_a_p_z = t_ddot_z + alpha_x*pus_q_y - alpha_y*pus_q_x;
-        /* (pus-S_ddot) acceleration of the connection point */
-        const real pus_S_ddot_x = pus_a_p_x + omega_y*pus_S_dot_t_3 - omega_z*pus_S_dot_t_2;
-        const real pus_S_ddot_y = pus_a_p_y + omega_z*pus_S_dot_t - omega_x*pus_S_dot_t_3;
-        const real pus_S_ddot_z = pus_a_p_z + omega_x*pus_S_dot_t_2 - omega_y*pus_S_dot_t;
+        const real pus_omega_2_in_axes3_x = v.pus_e_2_in_axes3_x*pus_qd_2;
+        const real pus_omega_2_in_axes3_y = -v.pus_c_3*pus_qd_2;
         /* (pus-bias) acceleration of the connection point at zero joint accelerations */
+        const real pus_platform_joint_offset_x = m->pus_platform_joint_offset_x[i];
         const real pus_bias_in_axes3_z = pus_omega_2_in_axes3_x*pus_qd_3_t +
             pus_omega_2_in_axes3_x*pus_platform_joint_offset_x*pus_qd_3;
         /* (pus-rel) acceleration of the connection point left to the joint accelerations */
         const real pus_rel_t = pus_omega_2_in_axes3_y*pus_platform_joint_offset_x;
-        const real pus_rel_in_axes3_x = axis_x_pus_axes3_x*pus_S_ddot_x +
-            axis_x_pus_axes3_y*pus_S_ddot_y + axis_x_pus_axes3_z*pus_S_ddot_z +
+        const real pus_rel_in_axes3_x = axis_x_pus_axes3_x*v.pus_S_ddot_x +
+            axis_x_pus_axes3_y*v.pus_S_ddot_y + axis_x_pus_axes3_z*v.pus_S_ddot_z +
             pus_omega_2_in_axes3_y*pus_rel_t + pus_qd_3*pus_qd_3_t;
-        const real pus_rel_in_axes3_y = axis_y_pus_axes3_x*pus_S_ddot_x +
-            axis_y_pus_axes3_y*pus_S_ddot_y + axis_y_pus_axes3_z*pus_S_ddot_z -
+        const real pus_rel_in_axes3_y = axis_y_pus_axes3_x*v.pus_S_ddot_x +
+            axis_y_pus_axes3_y*v.pus_S_ddot_y + axis_y_pus_axes3_z*v.pus_S_ddot_z -
             pus_omega_2_in_axes3_x*pus_rel_t;
-        const real pus_rel_in_axes3_z = axis_z_pus_axes3_x*pus_S_ddot_x +
-            axis_z_pus_axes3_y*pus_S_ddot_y + axis_z_pus_axes3_z*pus_S_ddot_z -
+        const real pus_rel_in_axes3_z = v.axis_z_pus_axes3_x*v.pus_S_ddot_x +
+            v.axis_z_pus_axes3_y*v.pus_S_ddot_y + v.axis_z_pus_axes3_z*v.pus_S_ddot_z -
             pus_bias_in_axes3_z;
         /* (pus-qdd_1) acceleration of joint 1 */
-        const real pus_qdd_1 = pus_rel_in_axes3_x*pus_w_1_in_axes3_x;
+        const real pus_qdd_1 = pus_rel_in_axes3_x*v.pus_w_1_in_axes3_x;
         /* (pus-qdd_2) acceleration of joint 2 */
-        const real pus_qdd_2_t = pus_w_2_in_axes3_z*(-pus_rel_in_axes3_z - pus_c_2_t*pus_qdd_1);
+        const real pus_qdd_2_t = v.pus_w_2_in_axes3_z*(-pus_rel_in_axes3_z - pus_qdd_1*v.pus_s_2);
         /* (pus-qdd_3) acceleration of joint 3 */
-        const real pus_qdd_3_t = pus_w_3_in_axes3_y*(pus_e_1_in_axes3_y*pus_qdd_1 -
+        const real pus_qdd_3_t = pus_w_3_in_axes3_y*(v.pus_e_1_in_axes3_y*pus_qdd_1 -
             pus_rel_in_axes3_y);
         /* (pus-qdd_1) acceleration of joint 1 */
         o[0*count + k] = pus_qdd_1;
@@ -4401,10 +3747,10 @@ INLINE void joint_accelerations_legs_pus(const prepared *m, size_t w, size_t leg
         o[5*count + k] = pus_qdd_1 + (pus_qdd_2_t + pus_qdd_3_t);
         const real pus_size_t_2 = m->pus_size_t_2[i];
         const real pus_size = m->pus_size[i];
-        o[3*count + k] = UNLESS(pus_disc_1 >= 0);
-        o[4*count + k] = UNLESS(magnitude(pus_rho2_2) > TOLERANCE*TOLERANCE*pus_size_t_2) +
-            UNLESS(magnitude(pus_v_2_in_axes3_z) > TOLERANCE*pus_size) +
-            UNLESS(magnitude(pus_e_1_in_axes3_x) > LEAST_1);
+        o[3*count + k] = UNLESS(v.pus_disc_1 >= 0);
+        o[4*count + k] = UNLESS(magnitude(v.pus_rho2_2) > TOLERANCE*TOLERANCE*pus_size_t_2) +
+            UNLESS(magnitude(v.pus_v_2_in_axes3_z) > TOLERANCE*pus_size) +
+            UNLESS(magnitude(v.pus_e_1_in_axes3_x) > LEAST_1);
     }
 }
 
@@ -4424,10 +3770,10 @@ INLINE void joint_accelerations_place_pus(size_t w, size_t count, const real *o,
 INLINE void joint_accelerations_run(const prepared *m, const real *X, const real *V, const real
     *A, real *qdd, verdict *t)
 {
-    real s[24] = {0};
+    real s[9] = {0};
     real o_pus[6*LEGS(LEGS_OF_pus)] = {0};
-    joint_accelerations_before(1, X, V, A, s, t);
-    joint_accelerations_legs_pus(m, 1, 0, 1, s, 0, LEGS(LEGS_OF_pus), o_pus);
+    joint_accelerations_before(m, 1, X, s, t);
+    joint_accelerations_legs_pus(m, 1, 0, 1, s, 0, LEGS(LEGS_OF_pus), X, V, A, o_pus);
     for (size_t leg = 0; leg < LEGS_OF_pus; ++leg) {
         joint_accelerations_place_pus(1, LEGS(LEGS_OF_pus), o_pus, leg, leg, qdd, t);
     }
@@ -4436,369 +3782,77 @@ INLINE void joint_accelerations_run(const prepared *m, const real *X, const real
 INLINE void joint_accelerations_run_lanes(const prepared *m, const real *X, const real *V, const
     real *A, real *qdd, verdict *t)
 {
-    real s[24*LANES];
+    real s[9*LANES];
     real o_pus[6*LANES];
-    joint_accelerations_before(LANES, X, V, A, s, t);
+    joint_accelerations_before(m, LANES, X, s, t);
     for (size_t leg = 0; leg < LEGS_OF_pus; ++leg) {
-        joint_accelerations_legs_pus(m, LANES, leg, 0, s, 1, LANES, o_pus);
+        joint_accelerations_legs_pus(m, LANES, leg, 0, s, 1, LANES, X, V, A, o_pus);
         joint_accelerations_place_pus(LANES, LANES, o_pus, leg, 0, qdd, t);
     }
 }
 
 /* ---- legs ---- */
-INLINE void legs_before(size_t w, const real *X, const real *V, const real *A, real *s, verdict
-    *t)
+INLINE void legs_before(const prepared *m, size_t w, const real *X, real *s, verdict *t)
 {
     for (size_t k = 0; k < w; ++k) {
-        /* X: named entries */
-        const real X_0 = X[0*w + k];
-        const real t_x = X_0;
-        const real X_1 = X[1*w + k];
-        const real t_y = X_1;
-        const real X_2 = X[2*w + k];
-        const real t_z = X_2;
-        const real X_3 = X[3*w + k];
-        const real X_4 = X[4*w + k];
-        const real X_5 = X[5*w + k];
-        const real X_6 = X[6*w + k];
-        const real quaternion_norm2 = X_3*X_3 + X_4*X_4 + X_5*X_5 + X_6*X_6;
-        const real quaternion_scale = 2/quaternion_norm2;
-        const real quaternion_sx = X_3*quaternion_scale;
-        const real quaternion_sy = X_4*quaternion_scale;
-        const real quaternion_sz = X_5*quaternion_scale;
-        const real quaternion_wx = X_6*quaternion_sx;
-        const real quaternion_wy = X_6*quaternion_sy;
-        const real quaternion_wz = X_6*quaternion_sz;
-        const real quaternion_xx = X_3*quaternion_sx;
-        const real quaternion_xy = X_3*quaternion_sy;
-        const real quaternion_xz = X_3*quaternion_sz;
-        const real quaternion_yy = X_4*quaternion_sy;
-        const real quaternion_yz = X_4*quaternion_sz;
-        const real quaternion_zz = X_5*quaternion_sz;
-        const real R_xx = 1 - quaternion_yy - quaternion_zz;
-        const real R_xy = quaternion_xy - quaternion_wz;
-        const real R_xz = quaternion_wy + quaternion_xz;
-        const real R_yx = quaternion_wz + quaternion_xy;
-        const real R_yy = 1 - quaternion_xx - quaternion_zz;
-        const real R_yz = quaternion_yz - quaternion_wx;
-        const real R_zx = quaternion_xz - quaternion_wy;
-        const real R_zy = quaternion_wx + quaternion_yz;
-        const real R_zz = 1 - quaternion_xx - quaternion_yy;
-        /* V: named entries */
-        const real V_0 = V[0*w + k];
-        const real t_dot_x = V_0;
-        const real V_1 = V[1*w + k];
-        const real t_dot_y = V_1;
-        const real V_2 = V[2*w + k];
-        const real t_dot_z = V_2;
-        const real V_3 = V[3*w + k];
-        const real omega_x = V_3;
-        const real V_4 = V[4*w + k];
-        const real omega_y = V_4;
-        const real V_5 = V[5*w + k];
-        const real omega_z = V_5;
-        /* A: named entries */
-        const real A_0 = A[0*w + k];
-        const real t_ddot_x = A_0;
-        const real A_1 = A[1*w + k];
-        const real t_ddot_y = A_1;
-        const real A_2 = A[2*w + k];
-        const real t_ddot_z = A_2;
-        const real A_3 = A[3*w + k];
-        const real alpha_x = A_3;
-        const real A_4 = A[4*w + k];
-        const real alpha_y = A_4;
-        const real A_5 = A[5*w + k];
-        const real alpha_z = A_5;
-        s[0*w + k] = t_x;
-        s[1*w + k] = t_y;
-        s[2*w + k] = t_z;
-        s[3*w + k] = R_xx;
-        s[4*w + k] = R_xy;
-        s[5*w + k] = R_xz;
-        s[6*w + k] = R_yx;
-        s[7*w + k] = R_yy;
-        s[8*w + k] = R_yz;
-        s[9*w + k] = R_zx;
-        s[10*w + k] = R_zy;
-        s[11*w + k] = R_zz;
-        s[12*w + k] = t_dot_x;
-        s[13*w + k] = t_dot_y;
-        s[14*w + k] = t_dot_z;
-        s[15*w + k] = omega_x;
-        s[16*w + k] = omega_y;
-        s[17*w + k] = omega_z;
-        s[18*w + k] = t_ddot_x;
-        s[19*w + k] = t_ddot_y;
-        s[20*w + k] = t_ddot_z;
-        s[21*w + k] = alpha_x;
-        s[22*w + k] = alpha_y;
-        s[23*w + k] = alpha_z;
-        t->invalid[k] += UNLESS(is_finite(quaternion_scale)) + UNLESS(quaternion_scale > 0);
+        values v;
+        stage_X(m, w, k, X, &v);
+        s[0*w + k] = v.R_xx;
+        s[1*w + k] = v.R_xy;
+        s[2*w + k] = v.R_xz;
+        s[3*w + k] = v.R_yx;
+        s[4*w + k] = v.R_yy;
+        s[5*w + k] = v.R_yz;
+        s[6*w + k] = v.R_zx;
+        s[7*w + k] = v.R_zy;
+        s[8*w + k] = v.R_zz;
+        t->invalid[k] += UNLESS(is_finite(v.quaternion_scale)) + UNLESS(v.quaternion_scale > 0);
     }
 }
 
 INLINE void legs_legs_pus(const prepared *m, size_t w, size_t leg, size_t legs, const real *s,
-    size_t states, size_t count, real *o)
+    size_t states, size_t count, const real *X, const real *V, const real *A, real *o)
 {
     for (size_t k = 0; k < count; ++k) {
         const size_t i = leg + legs*k;
         const size_t j = states*k;
-        /* (pus-S) from the base point to the connection point */
-        const real R_xx = s[3*w + j];
-        const real R_xy = s[4*w + j];
-        const real R_xz = s[5*w + j];
-        const real pus_platform_point_x = m->pus_platform_point_x[i];
-        const real pus_platform_point_y = m->pus_platform_point_y[i];
-        const real pus_platform_point_z = m->pus_platform_point_z[i];
-        const real pus_q_x = R_xx*pus_platform_point_x + R_xy*pus_platform_point_y +
-            R_xz*pus_platform_point_z;
-        const real R_yx = s[6*w + j];
-        const real R_yy = s[7*w + j];
-        const real R_yz = s[8*w + j];
-        const real pus_q_y = R_yx*pus_platform_point_x + R_yy*pus_platform_point_y +
-            R_yz*pus_platform_point_z;
-        const real R_zx = s[9*w + j];
-        const real R_zy = s[10*w + j];
-        const real R_zz = s[11*w + j];
-        const real pus_q_z = R_zx*pus_platform_point_x + R_zy*pus_platform_point_y +
-            R_zz*pus_platform_point_z;
-        const real pus_base_point_x = m->pus_base_point_x[i];
-        const real t_x = s[0*w + j];
-        const real pus_S_x = pus_q_x + t_x - pus_base_point_x;
-        const real pus_base_point_y = m->pus_base_point_y[i];
-        const real t_y = s[1*w + j];
-        const real pus_S_y = pus_q_y + t_y - pus_base_point_y;
-        const real pus_base_point_z = m->pus_base_point_z[i];
-        const real t_z = s[2*w + j];
-        const real pus_S_z = pus_q_z + t_z - pus_base_point_z;
-        const real pus_base_frame_xx = m->pus_base_frame_xx[i];
-        const real pus_base_frame_yx = m->pus_base_frame_yx[i];
-        const real pus_base_frame_zx = m->pus_base_frame_zx[i];
-        const real pus_S_in_axes0_x = pus_S_x*pus_base_frame_xx + pus_S_y*pus_base_frame_yx +
-            pus_S_z*pus_base_frame_zx;
-        const real pus_base_frame_xy = m->pus_base_frame_xy[i];
-        const real pus_base_frame_yy = m->pus_base_frame_yy[i];
-        const real pus_base_frame_zy = m->pus_base_frame_zy[i];
-        const real pus_S_in_axes0_y = pus_S_x*pus_base_frame_xy + pus_S_y*pus_base_frame_yy +
-            pus_S_z*pus_base_frame_zy;
-        /* (pus-disc_1) discriminant of the distance equation */
-        const real pus_disc_1_t = pus_S_x*pus_S_x + pus_S_y*pus_S_y + pus_S_z*pus_S_z;
-        const real pus_size_t = m->pus_size_t[i];
-        const real pus_disc_1 = pus_S_in_axes0_x*pus_S_in_axes0_x + pus_size_t - pus_disc_1_t;
-        /* (pus-x_2) from the origin of joint 2 to the connection point */
-        const real pus_branch_1 = m->pus_branch_1[i];
-        const real pus_x_2_in_axes0_x = -pus_branch_1*root(pus_disc_1);
-        /* (pus-rho2_2) squared amplitude */
-        const real pus_rho2_2 = pus_S_in_axes0_y*pus_S_in_axes0_y +
-            pus_x_2_in_axes0_x*pus_x_2_in_axes0_x;
-        /* (pus-root_2) root, with the sign of the branch */
-        const real pus_branch_2 = m->pus_branch_2[i];
-        const real pus_root_2 = pus_branch_2*root(pus_rho2_2);
-        /* (pus-c_2) cosine of the angle of joint 2 from its reference direction */
-        const real inv_pus_rho2_2 = 1/pus_rho2_2;
-        const real pus_c_2_t = inv_pus_rho2_2*pus_S_in_axes0_y*pus_root_2;
-        /* (pus-s_2) sine of the angle of joint 2 from its reference direction */
-        const real pus_s_2 = inv_pus_rho2_2*pus_root_2*pus_x_2_in_axes0_x;
-        /* (pus-c_3) cosine of the angle of joint 3 from its reference direction */
-        const real inv_pus_size_t = m->inv_pus_size_t[i];
-        const real pus_platform_joint_offset_x = m->pus_platform_joint_offset_x[i];
-        const real pus_c_3_t = inv_pus_size_t*pus_platform_joint_offset_x*pus_root_2;
-        /* (pus-s_3) sine of the angle of joint 3 from its reference direction */
-        const real pus_base_frame_xz = m->pus_base_frame_xz[i];
-        const real pus_base_frame_yz = m->pus_base_frame_yz[i];
-        const real pus_base_frame_zz = m->pus_base_frame_zz[i];
-        const real pus_s_3 = inv_pus_size_t*pus_platform_joint_offset_x*(pus_S_x*pus_base_frame_xz
-            + pus_S_y*pus_base_frame_yz + pus_S_z*pus_base_frame_zz);
-        /* (pus-S_dot) velocity of the connection point */
-        const real omega_y = s[16*w + j];
-        const real omega_z = s[17*w + j];
-        const real pus_S_dot_t = omega_y*pus_q_z - omega_z*pus_q_y;
-        const real omega_x = s[15*w + j];
-        const real pus_S_dot_t_2 = omega_z*pus_q_x - omega_x*pus_q_z;
-        const real pus_S_dot_t_3 = omega_x*pus_q_y - omega_y*pus_q_x;
-        const real t_dot_x = s[12*w + j];
-        const real pus_S_dot_x = pus_S_dot_t + t_dot_x;
-        const real t_dot_y = s[13*w + j];
-        const real pus_S_dot_y = pus_S_dot_t_2 + t_dot_y;
-        const real t_dot_z = s[14*w + j];
-        const real pus_S_dot_z = pus_S_dot_t_3 + t_dot_z;
-        /* (pus-v_2) velocity of the connection point per rate of joint 2 */
-        const real pus_v_2_in_axes3_z = pus_c_3_t*pus_platform_joint_offset_x;
-        /* (pus-w_1) reciprocal vector 1 */
-        const real axis_z_pus_axes3_x = pus_base_frame_xy*pus_s_2 - pus_base_frame_xx*pus_c_2_t;
-        const real axis_z_pus_axes3_y = pus_base_frame_yy*pus_s_2 - pus_base_frame_yx*pus_c_2_t;
-        const real axis_z_pus_axes3_z = pus_base_frame_zy*pus_s_2 - pus_base_frame_zx*pus_c_2_t;
-        const real pus_e_1_in_axes3_y = pus_s_2*pus_s_3;
-        const real pus_w_1_t = pus_c_2_t*pus_s_3;
-        const real axis_y_pus_axes3_x = pus_base_frame_xx*pus_e_1_in_axes3_y +
-            pus_base_frame_xy*pus_w_1_t - pus_base_frame_xz*pus_c_3_t;
-        const real axis_y_pus_axes3_y = pus_base_frame_yx*pus_e_1_in_axes3_y +
-            pus_base_frame_yy*pus_w_1_t - pus_base_frame_yz*pus_c_3_t;
-        const real axis_y_pus_axes3_z = pus_base_frame_zx*pus_e_1_in_axes3_y +
-            pus_base_frame_zy*pus_w_1_t - pus_base_frame_zz*pus_c_3_t;
-        const real axis_x_pus_axes3_x = axis_y_pus_axes3_y*axis_z_pus_axes3_z -
-            axis_y_pus_axes3_z*axis_z_pus_axes3_y;
-        const real axis_x_pus_axes3_y = axis_y_pus_axes3_z*axis_z_pus_axes3_x -
-            axis_y_pus_axes3_x*axis_z_pus_axes3_z;
-        const real axis_x_pus_axes3_z = axis_y_pus_axes3_x*axis_z_pus_axes3_y -
-            axis_y_pus_axes3_y*axis_z_pus_axes3_x;
-        const real pus_e_1_in_axes3_x = pus_c_3_t*pus_s_2;
-        const real pus_w_1_in_axes3_x = 1/pus_e_1_in_axes3_x;
-        const real pus_w_1_x = axis_x_pus_axes3_x*pus_w_1_in_axes3_x;
-        const real pus_w_1_y = axis_x_pus_axes3_y*pus_w_1_in_axes3_x;
-        const real pus_w_1_z = axis_x_pus_axes3_z*pus_w_1_in_axes3_x;
-        /* (pus-w_2) reciprocal vector 2 */
-        const real pus_w_2_in_axes3_z = 1/pus_v_2_in_axes3_z;
-        /* (pus-qd_1) rate of joint 1 */
-        const real pus_qd_1 = pus_w_1_in_axes3_x*(axis_x_pus_axes3_x*pus_S_dot_x +
-            axis_x_pus_axes3_y*pus_S_dot_y + axis_x_pus_axes3_z*pus_S_dot_z);
-        /* (pus-qd_2) rate of joint 2 */
-        const real pus_qd_2 = pus_w_2_in_axes3_z*(axis_z_pus_axes3_x*pus_S_dot_x +
-            axis_z_pus_axes3_y*pus_S_dot_y + axis_z_pus_axes3_z*pus_S_dot_z + pus_c_2_t*pus_qd_1);
-        /* (pus-qd_3) rate of joint 3 */
-        const real pus_qd_3_t = axis_y_pus_axes3_x*pus_S_dot_x + axis_y_pus_axes3_y*pus_S_dot_y +
-            axis_y_pus_axes3_z*pus_S_dot_z - pus_e_1_in_axes3_y*pus_qd_1;
-        const real pus_w_3_in_axes3_y = m->pus_w_3_in_axes3_y[i];
-        const real pus_qd_3 = pus_qd_3_t*pus_w_3_in_axes3_y;
-        /* (pus-omega_2) angular velocity of link 2 */
-        const real pus_omega_2_in_axes3_x = pus_qd_2*pus_s_3;
-        const real pus_omega_2_in_axes3_y = -pus_c_3_t*pus_qd_2;
-        /* (pus-W_3) centripetal tensor of link 3 */
-        const real pus_W_3_in_axes3_yz = pus_omega_2_in_axes3_y*pus_qd_3;
-        const real pus_W_3_in_axes3_xz = pus_omega_2_in_axes3_x*pus_qd_3;
-        const real pus_W_3_in_axes3_xy = pus_omega_2_in_axes3_x*pus_omega_2_in_axes3_y;
-        /* (pus-a_p) acceleration of the connection point without its centripetal part */
-        const real alpha_y = s[22*w + j];
-        const real alpha_z = s[23*w + j];
-        const real t_ddot_x = s[18*w + j];
-        const real pus_a_p_x = t_ddot_x + alpha_y*pus_q_z - alpha_z*pus_q_y;
-        const real alpha_x = s[21*w + j];
-        const real t_ddot_y = s[19*w + j];
-        const real pus_a_p_y = t_ddot_y + alpha_z*pus_q_x - alpha_x*pus_q_z;
-        const real t_ddot_z = s[20*w + j];
-        const real pus_a_p_z = t_ddot_z + alpha_x*pus_q_y - alpha_y*pus_q_x;
-        /* (pus-S_ddot) acceleration of the connection point */
-        const real pus_S_ddot_x = pus_a_p_x + omega_y*pus_S_dot_t_3 - omega_z*pus_S_dot_t_2;
-        const real pus_S_ddot_y = pus_a_p_y + omega_z*pus_S_dot_t - omega_x*pus_S_dot_t_3;
-        const real pus_S_ddot_z = pus_a_p_z + omega_x*pus_S_dot_t_2 - omega_y*pus_S_dot_t;
-        const real pus_S_ddot_in_axes3_x = axis_x_pus_axes3_x*pus_S_ddot_x +
-            axis_x_pus_axes3_y*pus_S_ddot_y + axis_x_pus_axes3_z*pus_S_ddot_z;
-        const real pus_S_ddot_in_axes3_y = axis_y_pus_axes3_x*pus_S_ddot_x +
-            axis_y_pus_axes3_y*pus_S_ddot_y + axis_y_pus_axes3_z*pus_S_ddot_z;
-        const real pus_S_ddot_in_axes3_z = axis_z_pus_axes3_x*pus_S_ddot_x +
-            axis_z_pus_axes3_y*pus_S_ddot_y + axis_z_pus_axes3_z*pus_S_ddot_z;
-        /* (pus-bias) acceleration of the connection point at zero joint accelerations */
-        const real pus_bias_in_axes3_z = pus_W_3_in_axes3_xz*pus_platform_joint_offset_x +
-            pus_omega_2_in_axes3_x*pus_qd_3_t;
-        /* (pus-rel) acceleration of the connection point left to the joint accelerations */
-        const real pus_rel_t = pus_omega_2_in_axes3_y*pus_platform_joint_offset_x;
-        const real pus_rel_in_axes3_x = pus_S_ddot_in_axes3_x + pus_omega_2_in_axes3_y*pus_rel_t +
-            pus_qd_3*pus_qd_3_t;
-        const real pus_rel_in_axes3_y = pus_S_ddot_in_axes3_y - pus_omega_2_in_axes3_x*pus_rel_t;
-        const real pus_rel_in_axes3_z = pus_S_ddot_in_axes3_z - pus_bias_in_axes3_z;
-        /* (pus-qdd_1) acceleration of joint 1 */
-        const real pus_qdd_1 = pus_rel_in_axes3_x*pus_w_1_in_axes3_x;
-        /* (pus-qdd_2) acceleration of joint 2 */
-        const real pus_qdd_2_t = pus_w_2_in_axes3_z*(-pus_rel_in_axes3_z - pus_c_2_t*pus_qdd_1);
-        /* (pus-qdd_3) acceleration of joint 3 */
-        const real pus_qdd_3_t = pus_w_3_in_axes3_y*(pus_e_1_in_axes3_y*pus_qdd_1 -
-            pus_rel_in_axes3_y);
-        /* (pus-alpha_2) angular acceleration of link 2 */
-        const real pus_alpha_2_t = pus_qdd_2_t*pus_s_3;
-        const real pus_alpha_2_in_axes3_y = pus_c_3_t*pus_qdd_2_t;
-        /* (pus-alpha_3) angular acceleration of link 3 */
-        const real pus_alpha_3_in_axes3_x = pus_W_3_in_axes3_yz - pus_alpha_2_t;
-        const real pus_alpha_3_in_axes3_y = pus_alpha_2_in_axes3_y - pus_W_3_in_axes3_xz;
-        /* (pus-B_3) acceleration tensor of link 3 */
-        const real pus_B_3_in_axes3_xy = pus_W_3_in_axes3_xy + pus_qdd_3_t;
-        const real pus_B_3_in_axes3_yx = pus_W_3_in_axes3_xy - pus_qdd_3_t;
-        const real pus_B_3_in_axes3_zx = pus_W_3_in_axes3_xz - pus_alpha_3_in_axes3_y;
-        const real pus_B_3_in_axes3_zy = pus_W_3_in_axes3_yz + pus_alpha_3_in_axes3_x;
-        /* (pus-acc_1) acceleration of the reference point of link 1, less gravity */
-        const real pus_g_in_axes0_x = m->pus_g_in_axes0_x[i];
-        const real pus_acc_1_in_axes0_x = pus_qdd_1 - pus_g_in_axes0_x;
-        /* (pus-acc_3) acceleration of the reference point of link 3, less gravity */
-        const real pus_g_in_axes0_y = m->pus_g_in_axes0_y[i];
-        const real pus_acc_3_t = -pus_c_2_t*pus_g_in_axes0_y - pus_g_in_axes0_x*pus_s_2;
-        const real pus_g_in_axes0_z = m->pus_g_in_axes0_z[i];
-        const real pus_acc_3_in_axes3_x = pus_S_ddot_in_axes3_x + pus_acc_3_t*pus_c_3_t -
-            pus_g_in_axes0_z*pus_s_3;
-        const real pus_acc_3_in_axes3_y = pus_S_ddot_in_axes3_y + pus_acc_3_t*pus_s_3 +
-            pus_c_3_t*pus_g_in_axes0_z;
-        const real pus_acc_3_in_axes3_z = pus_S_ddot_in_axes3_z + pus_c_2_t*pus_g_in_axes0_x -
-            pus_g_in_axes0_y*pus_s_2;
-        /* (pus-mu_3) inertia moment of the links that turn with link 3, about their reference points */
-        const real pus_mu_3_t = pus_omega_2_in_axes3_x*pus_omega_2_in_axes3_x;
-        const real pus_mu_3_t_2 = pus_omega_2_in_axes3_y*pus_omega_2_in_axes3_y;
-        const real pus_mu_3_t_3 = pus_qd_3*pus_qd_3;
-        const real pus_J_3_in_spec3_xy = m->pus_J_3_in_spec3_xy[i];
-        const real pus_J_3_in_spec3_xz = m->pus_J_3_in_spec3_xz[i];
-        const real pus_J_3_in_spec3_yz = m->pus_J_3_in_spec3_yz[i];
-        const real pus_Sigma_3_in_axes3_yy = m->pus_Sigma_3_in_axes3_yy[i];
-        const real pus_Sigma_3_in_axes3_zz = m->pus_Sigma_3_in_axes3_zz[i];
-        const real pus_h_3_in_spec3_y = m->pus_h_3_in_spec3_y[i];
-        const real pus_h_3_in_spec3_z = m->pus_h_3_in_spec3_z[i];
-        const real pus_mu_3_in_axes3_x = pus_B_3_in_axes3_yx*pus_J_3_in_spec3_xy +
-            pus_B_3_in_axes3_zx*pus_J_3_in_spec3_xz + pus_B_3_in_axes3_zy*pus_Sigma_3_in_axes3_yy
-            - pus_J_3_in_spec3_yz*(pus_mu_3_t_2 - pus_mu_3_t_3) -
-            pus_Sigma_3_in_axes3_zz*pus_alpha_2_t - pus_acc_3_in_axes3_y*pus_h_3_in_spec3_y -
-            pus_acc_3_in_axes3_z*pus_h_3_in_spec3_z;
-        const real pus_Sigma_3_in_axes3_xx = m->pus_Sigma_3_in_axes3_xx[i];
-        const real pus_h_3_in_spec3_x = m->pus_h_3_in_spec3_x[i];
-        const real pus_mu_3_in_axes3_y = pus_B_3_in_axes3_xy*pus_J_3_in_spec3_yz +
-            pus_Sigma_3_in_axes3_zz*pus_alpha_2_in_axes3_y +
-            pus_acc_3_in_axes3_x*pus_h_3_in_spec3_y - pus_B_3_in_axes3_zx*pus_Sigma_3_in_axes3_xx
-            - pus_B_3_in_axes3_zy*pus_J_3_in_spec3_xz - pus_J_3_in_spec3_xy*(pus_mu_3_t -
-            pus_mu_3_t_3) - pus_acc_3_in_axes3_z*pus_h_3_in_spec3_x;
-        const real pus_mu_3_in_axes3_z = pus_B_3_in_axes3_yx*pus_Sigma_3_in_axes3_xx +
-            pus_acc_3_in_axes3_x*pus_h_3_in_spec3_z + pus_acc_3_in_axes3_y*pus_h_3_in_spec3_x -
-            pus_B_3_in_axes3_xy*pus_Sigma_3_in_axes3_yy - pus_J_3_in_spec3_xy*pus_alpha_2_t -
-            pus_J_3_in_spec3_xz*(pus_mu_3_t - pus_mu_3_t_2) -
-            pus_J_3_in_spec3_yz*pus_alpha_2_in_axes3_y;
-        /* (pus-G) force at the connection point that balances the leg's inertia and weight along all
-           degrees of freedom */
-        const real pus_G_in_axes3_z = pus_w_2_in_axes3_z*(pus_mu_3_in_axes3_x*pus_s_3 -
-            pus_c_3_t*pus_mu_3_in_axes3_y);
-        const real pus_G_in_axes3_y = pus_mu_3_in_axes3_z*pus_w_3_in_axes3_y;
-        /* (pus-c) leg force on the platform without actuation and without the mass at the connection
-           point */
-        const real pus_link1_mass = m->pus_link1_mass[i];
-        const real pus_c_in_axes3_x = pus_B_3_in_axes3_xy*pus_h_3_in_spec3_z +
-            pus_h_3_in_spec3_x*(pus_mu_3_t_2 + pus_mu_3_t_3) -
-            pus_alpha_2_in_axes3_y*pus_h_3_in_spec3_y -
-            pus_w_1_in_axes3_x*(pus_G_in_axes3_z*pus_c_2_t + pus_acc_1_in_axes0_x*pus_link1_mass -
-            pus_G_in_axes3_y*pus_e_1_in_axes3_y);
-        const real pus_c_in_axes3_y = -pus_G_in_axes3_y - pus_B_3_in_axes3_yx*pus_h_3_in_spec3_x -
-            pus_alpha_2_t*pus_h_3_in_spec3_y - pus_h_3_in_spec3_z*(pus_mu_3_t + pus_mu_3_t_3);
-        const real pus_c_in_axes3_z = pus_B_3_in_axes3_zy*pus_h_3_in_spec3_z +
-            pus_h_3_in_spec3_y*(pus_mu_3_t + pus_mu_3_t_2) - pus_G_in_axes3_z -
-            pus_B_3_in_axes3_zx*pus_h_3_in_spec3_x;
+        values_pus v;
+        stage_pus_X(m, w, i, j, s, X, &v);
+        stage_pus_A_X(w, j, A, &v);
+        stage_pus_V_X(w, j, V, &v);
+        stage_pus_A_V_X(w, j, V, &v);
+        stage_pus_legs_required(m, i, &v);
         /* (pus-c_true) leg force on the platform without actuation, the last link's mass included */
         const real pus_link3_mass = m->pus_link3_mass[i];
-        const real pus_c_true_in_axes3_x = pus_c_in_axes3_x - pus_acc_3_in_axes3_x*pus_link3_mass;
-        const real pus_c_true_in_axes3_y = pus_c_in_axes3_y - pus_acc_3_in_axes3_y*pus_link3_mass;
-        const real pus_c_true_in_axes3_z = pus_c_in_axes3_z - pus_acc_3_in_axes3_z*pus_link3_mass;
-        const real pus_c_true_x = axis_x_pus_axes3_x*pus_c_true_in_axes3_x +
-            axis_y_pus_axes3_x*pus_c_true_in_axes3_y + axis_z_pus_axes3_x*pus_c_true_in_axes3_z;
-        const real pus_c_true_y = axis_x_pus_axes3_y*pus_c_true_in_axes3_x +
-            axis_y_pus_axes3_y*pus_c_true_in_axes3_y + axis_z_pus_axes3_y*pus_c_true_in_axes3_z;
-        const real pus_c_true_z = axis_x_pus_axes3_z*pus_c_true_in_axes3_x +
-            axis_y_pus_axes3_z*pus_c_true_in_axes3_y + axis_z_pus_axes3_z*pus_c_true_in_axes3_z;
+        const real pus_c_true_in_axes3_x = v.pus_c_in_axes3_x -
+            v.pus_acc_3_in_axes3_x*pus_link3_mass;
+        const real pus_c_true_in_axes3_y = v.pus_c_in_axes3_y -
+            v.pus_acc_3_in_axes3_y*pus_link3_mass;
+        const real pus_c_true_in_axes3_z = v.pus_c_in_axes3_z -
+            v.pus_acc_3_in_axes3_z*pus_link3_mass;
+        const real pus_c_true_x = v.axis_x_pus_axes3_x*pus_c_true_in_axes3_x +
+            v.axis_y_pus_axes3_x*pus_c_true_in_axes3_y +
+            v.axis_z_pus_axes3_x*pus_c_true_in_axes3_z;
+        const real pus_c_true_y = v.axis_x_pus_axes3_y*pus_c_true_in_axes3_x +
+            v.axis_y_pus_axes3_y*pus_c_true_in_axes3_y +
+            v.axis_z_pus_axes3_y*pus_c_true_in_axes3_z;
+        const real pus_c_true_z = v.axis_x_pus_axes3_z*pus_c_true_in_axes3_x +
+            v.axis_y_pus_axes3_z*pus_c_true_in_axes3_y +
+            v.axis_z_pus_axes3_z*pus_c_true_in_axes3_z;
         /* (pus-c_true) leg force on the platform without actuation, the last link's mass included */
         o[0*count + k] = pus_c_true_x;
         o[1*count + k] = pus_c_true_y;
         o[2*count + k] = pus_c_true_z;
         /* (pus-w_1) reciprocal vector 1 */
-        o[3*count + k] = pus_w_1_x;
-        o[4*count + k] = pus_w_1_y;
-        o[5*count + k] = pus_w_1_z;
+        o[3*count + k] = v.pus_w_1_x;
+        o[4*count + k] = v.pus_w_1_y;
+        o[5*count + k] = v.pus_w_1_z;
         const real pus_size_t_2 = m->pus_size_t_2[i];
         const real pus_size = m->pus_size[i];
-        o[6*count + k] = UNLESS(pus_disc_1 >= 0);
-        o[7*count + k] = UNLESS(magnitude(pus_rho2_2) > TOLERANCE*TOLERANCE*pus_size_t_2) +
-            UNLESS(magnitude(pus_v_2_in_axes3_z) > TOLERANCE*pus_size) +
-            UNLESS(magnitude(pus_e_1_in_axes3_x) > LEAST_1);
+        o[6*count + k] = UNLESS(v.pus_disc_1 >= 0);
+        o[7*count + k] = UNLESS(magnitude(v.pus_rho2_2) > TOLERANCE*TOLERANCE*pus_size_t_2) +
+            UNLESS(magnitude(v.pus_v_2_in_axes3_z) > TOLERANCE*pus_size) +
+            UNLESS(magnitude(v.pus_e_1_in_axes3_x) > LEAST_1);
     }
 }
 
@@ -4820,10 +3874,10 @@ INLINE void legs_place_pus(size_t w, size_t count, const real *o, size_t leg, si
 INLINE void legs_run(const prepared *m, const real *X, const real *V, const real *A, real
     *leg_force, real *actuator, verdict *t)
 {
-    real s[24] = {0};
+    real s[9] = {0};
     real o_pus[8*LEGS(LEGS_OF_pus)] = {0};
-    legs_before(1, X, V, A, s, t);
-    legs_legs_pus(m, 1, 0, 1, s, 0, LEGS(LEGS_OF_pus), o_pus);
+    legs_before(m, 1, X, s, t);
+    legs_legs_pus(m, 1, 0, 1, s, 0, LEGS(LEGS_OF_pus), X, V, A, o_pus);
     for (size_t leg = 0; leg < LEGS_OF_pus; ++leg) {
         legs_place_pus(1, LEGS(LEGS_OF_pus), o_pus, leg, leg, leg_force, actuator, t);
     }
@@ -4833,40 +3887,8 @@ INLINE void legs_run(const prepared *m, const real *X, const real *V, const real
 INLINE void potential_before(const prepared *m, size_t w, const real *X, real *s, verdict *t)
 {
     for (size_t k = 0; k < w; ++k) {
-        /* X: named entries */
-        const real X_0 = X[0*w + k];
-        const real t_x = X_0;
-        const real X_1 = X[1*w + k];
-        const real t_y = X_1;
-        const real X_2 = X[2*w + k];
-        const real t_z = X_2;
-        const real X_3 = X[3*w + k];
-        const real X_4 = X[4*w + k];
-        const real X_5 = X[5*w + k];
-        const real X_6 = X[6*w + k];
-        const real quaternion_norm2 = X_3*X_3 + X_4*X_4 + X_5*X_5 + X_6*X_6;
-        const real quaternion_scale = 2/quaternion_norm2;
-        const real quaternion_sx = X_3*quaternion_scale;
-        const real quaternion_sy = X_4*quaternion_scale;
-        const real quaternion_sz = X_5*quaternion_scale;
-        const real quaternion_wx = X_6*quaternion_sx;
-        const real quaternion_wy = X_6*quaternion_sy;
-        const real quaternion_wz = X_6*quaternion_sz;
-        const real quaternion_xx = X_3*quaternion_sx;
-        const real quaternion_xy = X_3*quaternion_sy;
-        const real quaternion_xz = X_3*quaternion_sz;
-        const real quaternion_yy = X_4*quaternion_sy;
-        const real quaternion_yz = X_4*quaternion_sz;
-        const real quaternion_zz = X_5*quaternion_sz;
-        const real R_xx = 1 - quaternion_yy - quaternion_zz;
-        const real R_xy = quaternion_xy - quaternion_wz;
-        const real R_xz = quaternion_wy + quaternion_xz;
-        const real R_yx = quaternion_wz + quaternion_xy;
-        const real R_yy = 1 - quaternion_xx - quaternion_zz;
-        const real R_yz = quaternion_yz - quaternion_wx;
-        const real R_zx = quaternion_xz - quaternion_wy;
-        const real R_zy = quaternion_wx + quaternion_yz;
-        const real R_zz = 1 - quaternion_xx - quaternion_yy;
+        values v;
+        stage_X(m, w, k, X, &v);
         /* (potential) potential energy */
         const real gravity_x = m->gravity_x;
         const real gravity_y = m->gravity_y;
@@ -4875,101 +3897,55 @@ INLINE void potential_before(const prepared *m, size_t w, const real *X, real *s
         const real h_star_in_platform_y = m->h_star_in_platform_y;
         const real h_star_in_platform_z = m->h_star_in_platform_z;
         const real m_star = m->m_star;
-        const real potential_t = gravity_x*(R_xx*h_star_in_platform_x + R_xy*h_star_in_platform_y
-            + R_xz*h_star_in_platform_z + m_star*t_x) + gravity_y*(R_yx*h_star_in_platform_x +
-            R_yy*h_star_in_platform_y + R_yz*h_star_in_platform_z + m_star*t_y) +
-            gravity_z*(R_zx*h_star_in_platform_x + R_zy*h_star_in_platform_y +
-            R_zz*h_star_in_platform_z + m_star*t_z);
-        s[0*w + k] = t_x;
-        s[1*w + k] = t_y;
-        s[2*w + k] = t_z;
-        s[3*w + k] = R_xx;
-        s[4*w + k] = R_xy;
-        s[5*w + k] = R_xz;
-        s[6*w + k] = R_yx;
-        s[7*w + k] = R_yy;
-        s[8*w + k] = R_yz;
-        s[9*w + k] = R_zx;
-        s[10*w + k] = R_zy;
-        s[11*w + k] = R_zz;
-        s[12*w + k] = potential_t;
-        t->invalid[k] += UNLESS(is_finite(quaternion_scale)) + UNLESS(quaternion_scale > 0);
+        const real t_x = X[0*w + k];
+        const real t_y = X[1*w + k];
+        const real t_z = X[2*w + k];
+        const real potential_t = gravity_x*(v.R_xx*h_star_in_platform_x +
+            v.R_xy*h_star_in_platform_y + v.R_xz*h_star_in_platform_z + m_star*t_x) +
+            gravity_y*(v.R_yx*h_star_in_platform_x + v.R_yy*h_star_in_platform_y +
+            v.R_yz*h_star_in_platform_z + m_star*t_y) + gravity_z*(v.R_zx*h_star_in_platform_x +
+            v.R_zy*h_star_in_platform_y + v.R_zz*h_star_in_platform_z + m_star*t_z);
+        s[0*w + k] = v.R_xx;
+        s[1*w + k] = v.R_xy;
+        s[2*w + k] = v.R_xz;
+        s[3*w + k] = v.R_yx;
+        s[4*w + k] = v.R_yy;
+        s[5*w + k] = v.R_yz;
+        s[6*w + k] = v.R_zx;
+        s[7*w + k] = v.R_zy;
+        s[8*w + k] = v.R_zz;
+        s[9*w + k] = potential_t;
+        t->invalid[k] += UNLESS(is_finite(v.quaternion_scale)) + UNLESS(v.quaternion_scale > 0);
     }
 }
 
 INLINE void potential_legs_pus(const prepared *m, size_t w, size_t leg, size_t legs, const real
-    *s, size_t states, size_t count, int add, real *terms, real *o)
+    *s, size_t states, size_t count, int add, const real *X, real *terms, real *o)
 {
     for (size_t k = 0; k < count; ++k) {
         const size_t i = leg + legs*k;
         const size_t j = states*k;
-        /* (pus-S) from the base point to the connection point */
-        const real R_xx = s[3*w + j];
-        const real R_xy = s[4*w + j];
-        const real R_xz = s[5*w + j];
-        const real pus_base_point_x = m->pus_base_point_x[i];
-        const real pus_platform_point_x = m->pus_platform_point_x[i];
-        const real pus_platform_point_y = m->pus_platform_point_y[i];
-        const real pus_platform_point_z = m->pus_platform_point_z[i];
-        const real t_x = s[0*w + j];
-        const real pus_S_x = t_x + R_xx*pus_platform_point_x + R_xy*pus_platform_point_y +
-            R_xz*pus_platform_point_z - pus_base_point_x;
-        const real R_yx = s[6*w + j];
-        const real R_yy = s[7*w + j];
-        const real R_yz = s[8*w + j];
-        const real pus_base_point_y = m->pus_base_point_y[i];
-        const real t_y = s[1*w + j];
-        const real pus_S_y = t_y + R_yx*pus_platform_point_x + R_yy*pus_platform_point_y +
-            R_yz*pus_platform_point_z - pus_base_point_y;
-        const real R_zx = s[9*w + j];
-        const real R_zy = s[10*w + j];
-        const real R_zz = s[11*w + j];
-        const real pus_base_point_z = m->pus_base_point_z[i];
-        const real t_z = s[2*w + j];
-        const real pus_S_z = t_z + R_zx*pus_platform_point_x + R_zy*pus_platform_point_y +
-            R_zz*pus_platform_point_z - pus_base_point_z;
-        const real pus_base_frame_xx = m->pus_base_frame_xx[i];
-        const real pus_base_frame_yx = m->pus_base_frame_yx[i];
-        const real pus_base_frame_zx = m->pus_base_frame_zx[i];
-        const real pus_S_in_axes0_x = pus_S_x*pus_base_frame_xx + pus_S_y*pus_base_frame_yx +
-            pus_S_z*pus_base_frame_zx;
-        const real pus_base_frame_xy = m->pus_base_frame_xy[i];
-        const real pus_base_frame_yy = m->pus_base_frame_yy[i];
-        const real pus_base_frame_zy = m->pus_base_frame_zy[i];
-        const real pus_S_in_axes0_y = pus_S_x*pus_base_frame_xy + pus_S_y*pus_base_frame_yy +
-            pus_S_z*pus_base_frame_zy;
-        /* (pus-disc_1) discriminant of the distance equation */
-        const real pus_disc_1_t = pus_S_x*pus_S_x + pus_S_y*pus_S_y + pus_S_z*pus_S_z;
-        const real pus_size_t = m->pus_size_t[i];
-        const real pus_disc_1 = pus_S_in_axes0_x*pus_S_in_axes0_x + pus_size_t - pus_disc_1_t;
-        /* (pus-q_1) displacement of joint 1 */
-        const real pus_branch_1 = m->pus_branch_1[i];
-        const real pus_q_1_t = -pus_branch_1*root(pus_disc_1);
-        const real pus_q_1 = pus_S_in_axes0_x - pus_q_1_t;
-        /* (pus-rho2_2) squared amplitude */
-        const real pus_rho2_2 = pus_S_in_axes0_y*pus_S_in_axes0_y + pus_q_1_t*pus_q_1_t;
-        /* (pus-root_2) root, with the sign of the branch */
-        const real pus_branch_2 = m->pus_branch_2[i];
-        const real pus_root_2 = pus_branch_2*root(pus_rho2_2);
+        values_pus v;
+        stage_pus_inverse_kinematics_potential(m, w, i, j, s, X, &v);
         /* (pus-c_2) cosine of the angle of joint 2 from its reference direction */
-        const real inv_pus_rho2_2 = 1/pus_rho2_2;
-        const real pus_c_2_t = inv_pus_rho2_2*pus_S_in_axes0_y*pus_root_2;
+        const real pus_c_2 = -v.inv_pus_rho2_2*v.pus_q_1_t*v.pus_root_2;
         /* (pus-s_2) sine of the angle of joint 2 from its reference direction */
-        const real pus_s_2 = inv_pus_rho2_2*pus_q_1_t*pus_root_2;
+        const real pus_s_2 = v.inv_pus_rho2_2*v.pus_S_in_axes0_y*v.pus_root_2;
         /* (pus-c_3) cosine of the angle of joint 3 from its reference direction */
         const real inv_pus_size_t = m->inv_pus_size_t[i];
         const real pus_platform_joint_offset_x = m->pus_platform_joint_offset_x[i];
-        const real pus_c_3_t = inv_pus_size_t*pus_platform_joint_offset_x*pus_root_2;
-        /* (pus-s_3) sine of the angle of joint 3 from its reference direction */
+        const real pus_c_3 = inv_pus_size_t*pus_platform_joint_offset_x*v.pus_root_2;
+        /* (potential) potential energy */
         const real pus_base_frame_xz = m->pus_base_frame_xz[i];
         const real pus_base_frame_yz = m->pus_base_frame_yz[i];
         const real pus_base_frame_zz = m->pus_base_frame_zz[i];
-        const real pus_s_3 = inv_pus_size_t*pus_platform_joint_offset_x*(pus_S_x*pus_base_frame_xz
-            + pus_S_y*pus_base_frame_yz + pus_S_z*pus_base_frame_zz);
-        /* (potential) potential energy */
+        const real pus_e_2_in_axes3_x =
+            inv_pus_size_t*pus_platform_joint_offset_x*(v.pus_S_x*pus_base_frame_xz +
+            v.pus_S_y*pus_base_frame_yz + v.pus_S_z*pus_base_frame_zz);
         const real pus_h_3_in_spec3_x = m->pus_h_3_in_spec3_x[i];
         const real pus_h_3_in_spec3_z = m->pus_h_3_in_spec3_z[i];
-        const real pus_potential_t_3 = pus_h_3_in_spec3_z*pus_s_3 - pus_c_3_t*pus_h_3_in_spec3_x;
+        const real pus_potential_t_3 = pus_e_2_in_axes3_x*pus_h_3_in_spec3_z -
+            pus_c_3*pus_h_3_in_spec3_x;
         const real pus_b_in_axes0_x = m->pus_b_in_axes0_x[i];
         const real pus_g_in_axes0_x = m->pus_g_in_axes0_x[i];
         const real pus_g_in_axes0_y = m->pus_g_in_axes0_y[i];
@@ -4982,16 +3958,16 @@ INLINE void potential_legs_pus(const prepared *m, size_t w, size_t leg, size_t l
         const real pus_potential_t = m->pus_potential_t[i];
         const real pus_potential_t_2 = m->pus_potential_t_2[i];
         const real pus_potential_t_4 = pus_g_in_axes0_x*(pus_h_1_in_spec0_x +
-            pus_link1_mass*(pus_b_in_axes0_x + pus_q_1) - pus_c_2_t*pus_h_3_in_spec3_y -
-            pus_potential_t_3*pus_s_2) + pus_g_in_axes0_y*(pus_h_1_in_spec0_y + pus_potential_t +
-            pus_h_3_in_spec3_y*pus_s_2 - pus_c_2_t*pus_potential_t_3) +
-            pus_g_in_axes0_z*(pus_h_1_in_spec0_z + pus_potential_t_2 +
-            pus_c_3_t*pus_h_3_in_spec3_z + pus_h_3_in_spec3_x*pus_s_3);
+            pus_link1_mass*(pus_b_in_axes0_x + v.pus_q_1) - pus_c_2*pus_potential_t_3 -
+            pus_h_3_in_spec3_y*pus_s_2) + pus_g_in_axes0_y*(pus_h_1_in_spec0_y + pus_potential_t +
+            pus_c_2*pus_h_3_in_spec3_y - pus_potential_t_3*pus_s_2) +
+            pus_g_in_axes0_z*(pus_h_1_in_spec0_z + pus_potential_t_2 + pus_c_3*pus_h_3_in_spec3_z
+            + pus_e_2_in_axes3_x*pus_h_3_in_spec3_x);
         /* (potential) potential energy */
         gather(&terms[0*count + k], add, pus_potential_t_4);  /* potential_of_legs */
         const real pus_size_t_2 = m->pus_size_t_2[i];
-        o[0*count + k] = UNLESS(pus_disc_1 >= 0);
-        o[1*count + k] = UNLESS(magnitude(pus_rho2_2) > TOLERANCE*TOLERANCE*pus_size_t_2);
+        o[0*count + k] = UNLESS(v.pus_disc_1 >= 0);
+        o[1*count + k] = UNLESS(magnitude(v.pus_rho2_2) > TOLERANCE*TOLERANCE*pus_size_t_2);
     }
 }
 
@@ -5008,7 +3984,7 @@ INLINE void potential_after(size_t w, const real *s, const real *sums, real *pot
     for (size_t k = 0; k < w; ++k) {
         /* (potential) potential energy */
         const real potential_of_legs = sums[0*w + k];
-        const real potential_t = s[12*w + k];
+        const real potential_t = s[9*w + k];
         const real potential_ = -potential_of_legs - potential_t;
         /* (potential) potential energy */
         potential[0*w + k] = potential_;
@@ -5017,12 +3993,10 @@ INLINE void potential_after(size_t w, const real *s, const real *sums, real *pot
 
 INLINE void potential_run(const prepared *m, const real *X, real *potential, verdict *t)
 {
-    real s[13] = {0};
-    real sums[1] = {0};
-    real terms_pus[LEGS(LEGS_OF_pus)] = {0};
-    real o_pus[2*LEGS(LEGS_OF_pus)] = {0};
+    real s[10] = {0}, sums[1] = {0};
+    real terms_pus[LEGS(LEGS_OF_pus)] = {0}, o_pus[2*LEGS(LEGS_OF_pus)] = {0};
     potential_before(m, 1, X, s, t);
-    potential_legs_pus(m, 1, 0, 1, s, 0, LEGS(LEGS_OF_pus), 0, terms_pus, o_pus);
+    potential_legs_pus(m, 1, 0, 1, s, 0, LEGS(LEGS_OF_pus), 0, X, terms_pus, o_pus);
     for (size_t leg = 0; leg < LEGS_OF_pus; ++leg) {
         potential_place_pus(1, LEGS(LEGS_OF_pus), o_pus, leg, t);
     }
@@ -5037,198 +4011,77 @@ INLINE void condition_before(const prepared *m, size_t w, const real *X, real *s
     verdict *t)
 {
     for (size_t k = 0; k < w; ++k) {
-        /* X: named entries */
-        const real X_0 = X[0*w + k];
-        const real t_x = X_0;
-        const real X_1 = X[1*w + k];
-        const real t_y = X_1;
-        const real X_2 = X[2*w + k];
-        const real t_z = X_2;
-        const real X_3 = X[3*w + k];
-        const real X_4 = X[4*w + k];
-        const real X_5 = X[5*w + k];
-        const real X_6 = X[6*w + k];
-        const real quaternion_norm2 = X_3*X_3 + X_4*X_4 + X_5*X_5 + X_6*X_6;
-        const real quaternion_scale = 2/quaternion_norm2;
-        const real quaternion_sx = X_3*quaternion_scale;
-        const real quaternion_sy = X_4*quaternion_scale;
-        const real quaternion_sz = X_5*quaternion_scale;
-        const real quaternion_wx = X_6*quaternion_sx;
-        const real quaternion_wy = X_6*quaternion_sy;
-        const real quaternion_wz = X_6*quaternion_sz;
-        const real quaternion_xx = X_3*quaternion_sx;
-        const real quaternion_xy = X_3*quaternion_sy;
-        const real quaternion_xz = X_3*quaternion_sz;
-        const real quaternion_yy = X_4*quaternion_sy;
-        const real quaternion_yz = X_4*quaternion_sz;
-        const real quaternion_zz = X_5*quaternion_sz;
-        const real R_xx = 1 - quaternion_yy - quaternion_zz;
-        const real R_xy = quaternion_xy - quaternion_wz;
-        const real R_xz = quaternion_wy + quaternion_xz;
-        const real R_yx = quaternion_wz + quaternion_xy;
-        const real R_yy = 1 - quaternion_xx - quaternion_zz;
-        const real R_yz = quaternion_yz - quaternion_wx;
-        const real R_zx = quaternion_xz - quaternion_wy;
-        const real R_zy = quaternion_wx + quaternion_yz;
-        const real R_zz = 1 - quaternion_xx - quaternion_yy;
-        s[0*w + k] = t_x;
-        s[1*w + k] = t_y;
-        s[2*w + k] = t_z;
-        s[3*w + k] = R_xx;
-        s[4*w + k] = R_xy;
-        s[5*w + k] = R_xz;
-        s[6*w + k] = R_yx;
-        s[7*w + k] = R_yy;
-        s[8*w + k] = R_yz;
-        s[9*w + k] = R_zx;
-        s[10*w + k] = R_zy;
-        s[11*w + k] = R_zz;
+        values v;
+        stage_X(m, w, k, X, &v);
+        s[0*w + k] = v.R_xx;
+        s[1*w + k] = v.R_xy;
+        s[2*w + k] = v.R_xz;
+        s[3*w + k] = v.R_yx;
+        s[4*w + k] = v.R_yy;
+        s[5*w + k] = v.R_yz;
+        s[6*w + k] = v.R_zx;
+        s[7*w + k] = v.R_zy;
+        s[8*w + k] = v.R_zz;
         /* (legs_size) rms size of the legs, taken where the platform points coincide */
         const real legs_size = m->legs_size;
         lengths[1*w + k] = legs_size;
         t->total[k] += legs_size;
-        t->invalid[k] += UNLESS(is_finite(quaternion_scale)) + UNLESS(quaternion_scale > 0);
+        t->invalid[k] += UNLESS(is_finite(v.quaternion_scale)) + UNLESS(v.quaternion_scale > 0);
     }
 }
 
 INLINE void condition_legs_pus(const prepared *m, size_t w, size_t leg, size_t legs, const real
-    *s, size_t states, size_t count, int add, real *terms, real *o)
+    *s, size_t states, size_t count, int add, const real *X, real *terms, real *o)
 {
     for (size_t k = 0; k < count; ++k) {
         const size_t i = leg + legs*k;
         const size_t j = states*k;
-        /* (pus-S) from the base point to the connection point */
-        const real R_xx = s[3*w + j];
-        const real R_xy = s[4*w + j];
-        const real R_xz = s[5*w + j];
-        const real pus_platform_point_x = m->pus_platform_point_x[i];
-        const real pus_platform_point_y = m->pus_platform_point_y[i];
-        const real pus_platform_point_z = m->pus_platform_point_z[i];
-        const real pus_q_x = R_xx*pus_platform_point_x + R_xy*pus_platform_point_y +
-            R_xz*pus_platform_point_z;
-        const real R_yx = s[6*w + j];
-        const real R_yy = s[7*w + j];
-        const real R_yz = s[8*w + j];
-        const real pus_q_y = R_yx*pus_platform_point_x + R_yy*pus_platform_point_y +
-            R_yz*pus_platform_point_z;
-        const real R_zx = s[9*w + j];
-        const real R_zy = s[10*w + j];
-        const real R_zz = s[11*w + j];
-        const real pus_q_z = R_zx*pus_platform_point_x + R_zy*pus_platform_point_y +
-            R_zz*pus_platform_point_z;
-        const real pus_base_point_x = m->pus_base_point_x[i];
-        const real t_x = s[0*w + j];
-        const real pus_S_x = pus_q_x + t_x - pus_base_point_x;
-        const real pus_base_point_y = m->pus_base_point_y[i];
-        const real t_y = s[1*w + j];
-        const real pus_S_y = pus_q_y + t_y - pus_base_point_y;
-        const real pus_base_point_z = m->pus_base_point_z[i];
-        const real t_z = s[2*w + j];
-        const real pus_S_z = pus_q_z + t_z - pus_base_point_z;
-        const real pus_base_frame_xx = m->pus_base_frame_xx[i];
-        const real pus_base_frame_yx = m->pus_base_frame_yx[i];
-        const real pus_base_frame_zx = m->pus_base_frame_zx[i];
-        const real pus_S_in_axes0_x = pus_S_x*pus_base_frame_xx + pus_S_y*pus_base_frame_yx +
-            pus_S_z*pus_base_frame_zx;
-        const real pus_base_frame_xy = m->pus_base_frame_xy[i];
-        const real pus_base_frame_yy = m->pus_base_frame_yy[i];
-        const real pus_base_frame_zy = m->pus_base_frame_zy[i];
-        const real pus_S_in_axes0_y = pus_S_x*pus_base_frame_xy + pus_S_y*pus_base_frame_yy +
-            pus_S_z*pus_base_frame_zy;
-        /* (pus-disc_1) discriminant of the distance equation */
-        const real pus_disc_1_t = pus_S_x*pus_S_x + pus_S_y*pus_S_y + pus_S_z*pus_S_z;
-        const real pus_size_t = m->pus_size_t[i];
-        const real pus_disc_1 = pus_S_in_axes0_x*pus_S_in_axes0_x + pus_size_t - pus_disc_1_t;
-        /* (pus-x_2) from the origin of joint 2 to the connection point */
-        const real pus_branch_1 = m->pus_branch_1[i];
-        const real pus_x_2_in_axes0_x = -pus_branch_1*root(pus_disc_1);
-        /* (pus-rho2_2) squared amplitude */
-        const real pus_rho2_2 = pus_S_in_axes0_y*pus_S_in_axes0_y +
-            pus_x_2_in_axes0_x*pus_x_2_in_axes0_x;
-        /* (pus-root_2) root, with the sign of the branch */
-        const real pus_branch_2 = m->pus_branch_2[i];
-        const real pus_root_2 = pus_branch_2*root(pus_rho2_2);
-        /* (pus-c_2) cosine of the angle of joint 2 from its reference direction */
-        const real inv_pus_rho2_2 = 1/pus_rho2_2;
-        const real pus_c_2_t = inv_pus_rho2_2*pus_S_in_axes0_y*pus_root_2;
-        /* (pus-s_2) sine of the angle of joint 2 from its reference direction */
-        const real pus_s_2 = inv_pus_rho2_2*pus_root_2*pus_x_2_in_axes0_x;
-        /* (pus-c_3) cosine of the angle of joint 3 from its reference direction */
-        const real inv_pus_size_t = m->inv_pus_size_t[i];
-        const real pus_platform_joint_offset_x = m->pus_platform_joint_offset_x[i];
-        const real pus_c_3_t = inv_pus_size_t*pus_platform_joint_offset_x*pus_root_2;
-        /* (pus-s_3) sine of the angle of joint 3 from its reference direction */
-        const real pus_base_frame_xz = m->pus_base_frame_xz[i];
-        const real pus_base_frame_yz = m->pus_base_frame_yz[i];
-        const real pus_base_frame_zz = m->pus_base_frame_zz[i];
-        const real pus_s_3 = inv_pus_size_t*pus_platform_joint_offset_x*(pus_S_x*pus_base_frame_xz
-            + pus_S_y*pus_base_frame_yz + pus_S_z*pus_base_frame_zz);
-        /* (pus-v_2) velocity of the connection point per rate of joint 2 */
-        const real pus_v_2_in_axes3_z = pus_c_3_t*pus_platform_joint_offset_x;
-        /* (pus-w_1) reciprocal vector 1 */
-        const real axis_z_pus_axes3_x = pus_base_frame_xy*pus_s_2 - pus_base_frame_xx*pus_c_2_t;
-        const real axis_z_pus_axes3_y = pus_base_frame_yy*pus_s_2 - pus_base_frame_yx*pus_c_2_t;
-        const real axis_z_pus_axes3_z = pus_base_frame_zy*pus_s_2 - pus_base_frame_zx*pus_c_2_t;
-        const real pus_e_1_in_axes3_y = pus_s_2*pus_s_3;
-        const real pus_w_1_t = pus_c_2_t*pus_s_3;
-        const real axis_y_pus_axes3_x = pus_base_frame_xx*pus_e_1_in_axes3_y +
-            pus_base_frame_xy*pus_w_1_t - pus_base_frame_xz*pus_c_3_t;
-        const real axis_y_pus_axes3_y = pus_base_frame_yx*pus_e_1_in_axes3_y +
-            pus_base_frame_yy*pus_w_1_t - pus_base_frame_yz*pus_c_3_t;
-        const real axis_y_pus_axes3_z = pus_base_frame_zx*pus_e_1_in_axes3_y +
-            pus_base_frame_zy*pus_w_1_t - pus_base_frame_zz*pus_c_3_t;
-        const real pus_e_1_in_axes3_x = pus_c_3_t*pus_s_2;
-        const real pus_w_1_in_axes3_x = 1/pus_e_1_in_axes3_x;
-        const real pus_w_1_x = pus_w_1_in_axes3_x*(axis_y_pus_axes3_y*axis_z_pus_axes3_z -
-            axis_y_pus_axes3_z*axis_z_pus_axes3_y);
-        const real pus_w_1_y = pus_w_1_in_axes3_x*(axis_y_pus_axes3_z*axis_z_pus_axes3_x -
-            axis_y_pus_axes3_x*axis_z_pus_axes3_z);
-        const real pus_w_1_z = pus_w_1_in_axes3_x*(axis_y_pus_axes3_x*axis_z_pus_axes3_y -
-            axis_y_pus_axes3_y*axis_z_pus_axes3_x);
+        values_pus v;
+        stage_pus_X(m, w, i, j, s, X, &v);
+        stage_pus_H_condition(&v);
         /* (pus-G) force at the connection point that balances the leg's inertia and weight along all
            degrees of freedom */
-        const real pus_pivot_size = magnitude(pus_rho2_2);
-        const real pus_pivot_size_2 = magnitude(pus_v_2_in_axes3_z);
-        const real pus_pivot_size_3 = magnitude(pus_e_1_in_axes3_x);
+        const real pus_pivot_size = magnitude(v.pus_rho2_2);
+        const real pus_pivot_size_2 = magnitude(v.pus_v_2_in_axes3_z);
+        const real pus_pivot_size_3 = magnitude(v.pus_e_1_in_axes3_x);
         const real inv_pus_size = m->inv_pus_size[i];
         const real inv_pus_size_t_2 = m->inv_pus_size_t_2[i];
         const real pus_least_pivots = lesser(lesser(pus_pivot_size_3,
             inv_pus_size*pus_pivot_size_2), root(inv_pus_size_t_2*pus_pivot_size));
-        /* (pus-H_a_1) moment of the column's unit force about the platform origin */
-        const real pus_H_a_1_x = pus_q_y*pus_w_1_z - pus_q_z*pus_w_1_y;
-        const real pus_H_a_1_y = pus_q_z*pus_w_1_x - pus_q_x*pus_w_1_z;
-        const real pus_H_a_1_z = pus_q_x*pus_w_1_y - pus_q_y*pus_w_1_x;
         /* (spread) rms distance of the platform points from their centroid */
         const real b_c_in_platform_x = m->b_c_in_platform_x;
+        const real pus_platform_point_x = m->pus_platform_point_x[i];
         const real pus_spread_t = b_c_in_platform_x - pus_platform_point_x;
         const real b_c_in_platform_y = m->b_c_in_platform_y;
+        const real pus_platform_point_y = m->pus_platform_point_y[i];
         const real pus_spread_t_2 = b_c_in_platform_y - pus_platform_point_y;
         const real b_c_in_platform_z = m->b_c_in_platform_z;
+        const real pus_platform_point_z = m->pus_platform_point_z[i];
         const real pus_spread_t_3 = b_c_in_platform_z - pus_platform_point_z;
         const real pus_spread_t_4 = pus_spread_t*pus_spread_t + pus_spread_t_2*pus_spread_t_2 +
             pus_spread_t_3*pus_spread_t_3;
         /* (spread) rms distance of the platform points from their centroid */
         gather(&terms[0*count + k], add, pus_spread_t_4);  /* spread_pus */
         /* (pus-w_1) reciprocal vector 1 */
-        o[0*count + k] = pus_w_1_x;
-        o[1*count + k] = pus_w_1_y;
-        o[2*count + k] = pus_w_1_z;
+        o[0*count + k] = v.pus_w_1_x;
+        o[1*count + k] = v.pus_w_1_y;
+        o[2*count + k] = v.pus_w_1_z;
         /* (pus-H_a_1) moment of the column's unit force about the platform origin */
-        o[3*count + k] = pus_H_a_1_x;
-        o[4*count + k] = pus_H_a_1_y;
-        o[5*count + k] = pus_H_a_1_z;
+        o[3*count + k] = v.pus_H_a_1_x;
+        o[4*count + k] = v.pus_H_a_1_y;
+        o[5*count + k] = v.pus_H_a_1_z;
         /* (pus-G) force at the connection point that balances the leg's inertia and weight along all
            degrees of freedom */
         o[6*count + k] = pus_least_pivots;
-        o[7*count + k] = pus_disc_1;
-        o[10*count + k] = ((pus_w_1_x + pus_w_1_y) + (pus_w_1_z + pus_H_a_1_x)) + ((pus_H_a_1_y +
-            pus_H_a_1_z) + (pus_least_pivots + pus_disc_1));
+        o[7*count + k] = v.pus_disc_1;
+        o[10*count + k] = ((v.pus_w_1_x + v.pus_w_1_y) + (v.pus_w_1_z + v.pus_H_a_1_x)) +
+            ((v.pus_H_a_1_y + v.pus_H_a_1_z) + (pus_least_pivots + v.pus_disc_1));
         const real pus_size_t_2 = m->pus_size_t_2[i];
         const real pus_size = m->pus_size[i];
-        o[8*count + k] = UNLESS(pus_disc_1 >= 0);
-        o[9*count + k] = UNLESS(magnitude(pus_rho2_2) > TOLERANCE*TOLERANCE*pus_size_t_2) +
-            UNLESS(magnitude(pus_v_2_in_axes3_z) > TOLERANCE*pus_size) +
-            UNLESS(magnitude(pus_e_1_in_axes3_x) > LEAST_1);
+        o[8*count + k] = UNLESS(v.pus_disc_1 >= 0);
+        o[9*count + k] = UNLESS(magnitude(v.pus_rho2_2) > TOLERANCE*TOLERANCE*pus_size_t_2) +
+            UNLESS(magnitude(v.pus_v_2_in_axes3_z) > TOLERANCE*pus_size) +
+            UNLESS(magnitude(v.pus_e_1_in_axes3_x) > LEAST_1);
     }
 }
 
@@ -5236,7 +4089,7 @@ INLINE void condition_place_pus(size_t w, size_t count, const real *o, size_t le
     real *H, real *pivots, real *reach, verdict *t)
 {
     for (size_t k = 0; k < w; ++k) {
-        H[(0*NU + leg)*w + k] = o[0*count + first + k];
+        H[leg*w + k] = o[0*count + first + k];
         H[(NU + leg)*w + k] = o[1*count + first + k];
         H[(2*NU + leg)*w + k] = o[2*count + first + k];
         H[(3*NU + leg)*w + k] = o[3*count + first + k];
@@ -5267,12 +4120,10 @@ INLINE void condition_after(const prepared *m, size_t w, const real *sums, real 
 INLINE void condition_run(const prepared *m, const real *X, real *H, real *lengths, real *pivots,
     real *reach, verdict *t)
 {
-    real s[12] = {0};
-    real sums[1] = {0};
-    real terms_pus[LEGS(LEGS_OF_pus)] = {0};
-    real o_pus[11*LEGS(LEGS_OF_pus)] = {0};
+    real s[9] = {0}, sums[1] = {0};
+    real terms_pus[LEGS(LEGS_OF_pus)] = {0}, o_pus[11*LEGS(LEGS_OF_pus)] = {0};
     condition_before(m, 1, X, s, lengths, t);
-    condition_legs_pus(m, 1, 0, 1, s, 0, LEGS(LEGS_OF_pus), 0, terms_pus, o_pus);
+    condition_legs_pus(m, 1, 0, 1, s, 0, LEGS(LEGS_OF_pus), 0, X, terms_pus, o_pus);
     for (size_t leg = 0; leg < LEGS_OF_pus; ++leg) {
         condition_place_pus(1, LEGS(LEGS_OF_pus), o_pus, leg, leg, H, pivots, reach, t);
     }
@@ -5913,10 +4764,83 @@ INLINE void condition_one(const prepared *m, const real *X, const real *length, 
     }
 }
 
+INLINE void manipulability_one(const prepared *m, const real *X, real *measure_out, real
+    *isotropy_out, int *code)
+{
+    static const size_t places_divide_rows_1[] = {3, 4, 5};
+    real H[NV*NU] = {0}, lengths[2] = {0}, pivots[NL] = {0}, reach[NL] = {0}, subtract_1[1] = {0},
+        choose_length_1[1] = {0}, divide_rows_1[NV*NU] = {0}, singular_values_1[NV] = {0}, measure[1]
+        = {0}, isotropy[1] = {0};
+    verdict why;
+    start(1, &why);
+    check(NQ, 1, X, why.invalid);
+    condition_run(m, X, H, lengths, pivots, reach, &why);
+    const real *const entry_1 = lengths;
+    for (size_t i = 0; i < 1; ++i) {
+        subtract_1[i] = entry_1[i] - entry_1[i];
+    }
+    for (size_t i = 0; i < 1; ++i) {
+        choose_length_1[i] = subtract_1[i] > 0 ? subtract_1[i] : lengths[i] > TINY*lengths[1 + i]
+            ? lengths[i] : lengths[1 + i];
+    }
+    for (size_t i = 0; i < NV*NU; ++i) {
+        divide_rows_1[i] = H[i];
+    }
+    divide_rows(3, NU, 1, places_divide_rows_1, choose_length_1, divide_rows_1);
+    singular_values(NV, NU, divide_rows_1, singular_values_1);
+    spread(NV, singular_values_1, measure, isotropy);
+    check(1, 1, measure, why.overflow);
+    check(1, 1, isotropy, why.overflow);
+    judge(&why, code);
+    copy(1, measure, measure_out);
+    copy(1, isotropy, isotropy_out);
+    if (*code != OK) {
+        refuse(1, measure_out);
+        refuse(1, isotropy_out);
+    }
+}
+
+INLINE void singularity_distance_one(const prepared *m, const real *X, real *actuators_out, real
+    *legs_out, int *code)
+{
+    static const size_t places_divide_rows_1[] = {3, 4, 5};
+    real H[NV*NU] = {0}, lengths[2] = {0}, pivots[NL] = {0}, reach[NL] = {0}, subtract_1[1] = {0},
+        choose_length_1[1] = {0}, divide_rows_1[NV*NU] = {0}, singular_values_1[NV] = {0}, spread_1[1]
+        = {0}, actuators[1] = {0}, legs[1] = {0};
+    verdict why;
+    start(1, &why);
+    check(NQ, 1, X, why.invalid);
+    condition_run(m, X, H, lengths, pivots, reach, &why);
+    const real *const entry_1 = lengths;
+    for (size_t i = 0; i < 1; ++i) {
+        subtract_1[i] = entry_1[i] - entry_1[i];
+    }
+    for (size_t i = 0; i < 1; ++i) {
+        choose_length_1[i] = subtract_1[i] > 0 ? subtract_1[i] : lengths[i] > TINY*lengths[1 + i]
+            ? lengths[i] : lengths[1 + i];
+    }
+    for (size_t i = 0; i < NV*NU; ++i) {
+        divide_rows_1[i] = H[i];
+    }
+    divide_rows(3, NU, 1, places_divide_rows_1, choose_length_1, divide_rows_1);
+    singular_values(NV, NU, divide_rows_1, singular_values_1);
+    spread(NV, singular_values_1, spread_1, actuators);
+    least_entry(NL, pivots, legs);
+    check(1, 1, actuators, why.overflow);
+    check(1, 1, legs, why.overflow);
+    judge(&why, code);
+    copy(1, actuators, actuators_out);
+    copy(1, legs, legs_out);
+    if (*code != OK) {
+        refuse(1, actuators_out);
+        refuse(1, legs_out);
+    }
+}
+
 static void mismatch_one(const prepared *m, const real *X, const real *q_actuated, real *gap_out,
     int *code)
 {
-    real q[NJ] = {0}, take_1[6] = {0}, gap[NU] = {0};
+    real q[NJ] = {0}, q_of_inverse_kinematics_from_0[6] = {0}, gap[NU] = {0};
     verdict why;
     start(1, &why);
     const real total_in = total(X, NQ) + total(q_actuated, NU);
@@ -5925,9 +4849,9 @@ static void mismatch_one(const prepared *m, const real *X, const real *q_actuate
         check(NU, 1, q_actuated, why.invalid);
     }
     inverse_kinematics_run(m, X, q, &why);
-    take(6, 1, hexaglide_ACTUATED, q, take_1);
+    take(6, 1, hexaglide_ACTUATED, q, q_of_inverse_kinematics_from_0);
     for (size_t i = 0; i < NU; ++i) {
-        gap[i] = q_actuated[i] - take_1[i];
+        gap[i] = q_actuated[i] - q_of_inverse_kinematics_from_0[i];
     }
     check(NU, 1, gap, why.overflow);
     judge(&why, code);
@@ -6294,8 +5218,8 @@ INLINE void rotation_one(const real *X, real *R_out, int *code)
     verdict why;
     start(1, &why);
     check(NQ, 1, X, why.invalid);
-    const real *const take_1 = X + 3;
-    rotation_of_quaternion(take_1, R);
+    const real *const X_from_3 = X + 3;
+    rotation_of_quaternion(X_from_3, R);
     check(9, 1, R, why.overflow);
     judge(&why, code);
     copy(9, R, R_out);
@@ -6335,11 +5259,11 @@ INLINE void X_dot_one(const real *X, const real *V, real *X_dot_out, int *code)
         check(NQ, 1, X, why.invalid);
         check(NV, 1, V, why.invalid);
     }
-    const real *const take_1 = V + 3;
-    const real *const take_2 = X + 3;
-    quaternion_rate(take_2, take_1, quaternion_rate_1);
-    const real *const take_3 = V;
-    beside(1, 3, 4, take_3, quaternion_rate_1, X_dot);
+    const real *const V_from_3 = V + 3;
+    const real *const X_from_3 = X + 3;
+    quaternion_rate(X_from_3, V_from_3, quaternion_rate_1);
+    const real *const V_from_0 = V;
+    beside(1, 3, 4, V_from_0, quaternion_rate_1, X_dot);
     check(NQ, 1, X_dot, why.overflow);
     judge(&why, code);
     copy(NQ, X_dot, X_dot_out);
@@ -6379,13 +5303,13 @@ INLINE void retract_one(const real *X, const real *step, real *X_moved_out, int 
         check(NQ, 1, X, why.invalid);
         check(NV, 1, step, why.invalid);
     }
-    const real *const take_1 = X;
-    const real *const take_2 = X + 3;
-    const real *const take_3 = step;
-    const real *const take_4 = step + 3;
-    turn_quaternion(take_2, take_4, turn_quaternion_1);
+    const real *const X_from_0 = X;
+    const real *const X_from_3 = X + 3;
+    const real *const step_from_0 = step;
+    const real *const step_from_3 = step + 3;
+    turn_quaternion(X_from_3, step_from_3, turn_quaternion_1);
     for (size_t i = 0; i < 3; ++i) {
-        add_1[i] = take_1[i] + take_3[i];
+        add_1[i] = X_from_0[i] + step_from_0[i];
     }
     beside(1, 3, 4, add_1, turn_quaternion_1, X_moved);
     check(NQ, 1, X_moved, why.overflow);
@@ -6406,13 +5330,13 @@ INLINE void difference_one(const real *X0, const real *X1, real *step_out, int *
         check(NQ, 1, X0, why.invalid);
         check(NQ, 1, X1, why.invalid);
     }
-    const real *const take_1 = X0;
-    const real *const take_2 = X0 + 3;
-    const real *const take_3 = X1;
-    const real *const take_4 = X1 + 3;
-    turn_between(take_2, take_4, turn_between_1);
+    const real *const X0_from_0 = X0;
+    const real *const X0_from_3 = X0 + 3;
+    const real *const X1_from_0 = X1;
+    const real *const X1_from_3 = X1 + 3;
+    turn_between(X0_from_3, X1_from_3, turn_between_1);
     for (size_t i = 0; i < 3; ++i) {
-        subtract_1[i] = take_3[i] - take_1[i];
+        subtract_1[i] = X1_from_0[i] - X0_from_0[i];
     }
     beside(1, 3, 3, subtract_1, turn_between_1, step);
     check(NV, 1, step, why.overflow);
@@ -6435,25 +5359,25 @@ INLINE void interpolate_one(const real *X0, const real *X1, const real *s, real 
         check(NQ, 1, X1, why.invalid);
         check(1, 1, s, why.invalid);
     }
-    const real *const take_1 = X0;
-    const real *const take_2 = X0 + 3;
-    const real *const take_3 = X1;
-    const real *const take_4 = X1 + 3;
-    turn_between(take_2, take_4, turn_between_1);
+    const real *const X0_from_0 = X0;
+    const real *const X0_from_3 = X0 + 3;
+    const real *const X1_from_0 = X1;
+    const real *const X1_from_3 = X1 + 3;
+    turn_between(X0_from_3, X1_from_3, turn_between_1);
     for (size_t i = 0; i < 3; ++i) {
-        subtract_1[i] = take_3[i] - take_1[i];
+        subtract_1[i] = X1_from_0[i] - X0_from_0[i];
     }
     beside(1, 3, 3, subtract_1, turn_between_1, join_1);
     for (size_t i = 0; i < 6; ++i) {
         scale_1[i] = join_1[i]*s[i%(1)];
     }
-    const real *const take_5 = X0;
-    const real *const take_6 = X0 + 3;
-    const real *const take_7 = scale_1;
-    const real *const take_8 = scale_1 + 3;
-    turn_quaternion(take_6, take_8, turn_quaternion_1);
+    const real *const X0_from_0_2 = X0;
+    const real *const X0_from_3_2 = X0 + 3;
+    const real *const scale_1_from_0 = scale_1;
+    const real *const scale_1_from_3 = scale_1 + 3;
+    turn_quaternion(X0_from_3_2, scale_1_from_3, turn_quaternion_1);
     for (size_t i = 0; i < 3; ++i) {
-        add_1[i] = take_5[i] + take_7[i];
+        add_1[i] = X0_from_0_2[i] + scale_1_from_0[i];
     }
     beside(1, 3, 4, add_1, turn_quaternion_1, X);
     check(NQ, 1, X, why.overflow);
@@ -6466,281 +5390,259 @@ INLINE void interpolate_one(const real *X0, const real *X1, const real *s, real 
 
 /* ---- one state, and batches ---- */
 
-int hexaglide_M(const hexaglide_model *model, const hexaglide_real *X, hexaglide_real *M)
+int hexaglide_M(const prepared *model, const real *X, real *M)
 {
     int code;
     M_one(model, X, M, &code);
     return code;
 }
 
-size_t hexaglide_M_batch(const hexaglide_model *model, size_t n, const hexaglide_real *X,
-    hexaglide_real *M, int *status)
+size_t hexaglide_M_batch(const prepared *model, size_t n, const real *X, real *M, int *status)
 {
-    size_t failed = 0, i = 0;
-    for (; LANES > 1 && i + LANES <= n; i += LANES) {
-        int codes[LANES];
-        M_lanes(model, X + NQ*i, M + NV*NV*i, codes);
-        for (size_t k = 0; k < LANES; ++k) {
+    size_t failed = 0, w;
+    for (size_t i = 0; i < n; i += w) {
+        int codes[LANES] = {INVALID};
+        w = LANES > 1 && i + LANES <= n ? LANES : 1;
+        if (w > 1) {
+            M_lanes(model, X + NQ*i, M + NV*NV*i, codes);
+        }
+        for (size_t k = 0; k < w; ++k) {
             if (codes[k] != OK) {
                 codes[k] = hexaglide_M(model, X + NQ*(i + k), M + NV*NV*(i + k));
             }
         }
-        failed += record(codes, LANES, status ? status + i : NULL);
-    }
-    for (; i < n; ++i) {
-        const int code = hexaglide_M(model, X + NQ*i, M + NV*NV*i);
-        failed += record(&code, 1, status ? status + i : NULL);
+        failed += record(codes, w, status ? status + i : NULL);
     }
     return failed;
 }
 
-int hexaglide_Z(const hexaglide_model *model, const hexaglide_real *X, const hexaglide_real *V,
-    hexaglide_real *Z)
+int hexaglide_Z(const prepared *model, const real *X, const real *V, real *Z)
 {
     int code;
     Z_one(model, X, V, Z, &code);
     return code;
 }
 
-size_t hexaglide_Z_batch(const hexaglide_model *model, size_t n, const hexaglide_real *X, const
-    hexaglide_real *V, hexaglide_real *Z, int *status)
+size_t hexaglide_Z_batch(const prepared *model, size_t n, const real *X, const real *V, real *Z,
+    int *status)
 {
-    size_t failed = 0, i = 0;
-    for (; LANES > 1 && i + LANES <= n; i += LANES) {
-        int codes[LANES];
-        Z_lanes(model, X + NQ*i, V + NV*i, Z + NV*i, codes);
-        for (size_t k = 0; k < LANES; ++k) {
+    size_t failed = 0, w;
+    for (size_t i = 0; i < n; i += w) {
+        int codes[LANES] = {INVALID};
+        w = LANES > 1 && i + LANES <= n ? LANES : 1;
+        if (w > 1) {
+            Z_lanes(model, X + NQ*i, V + NV*i, Z + NV*i, codes);
+        }
+        for (size_t k = 0; k < w; ++k) {
             if (codes[k] != OK) {
                 codes[k] = hexaglide_Z(model, X + NQ*(i + k), V + NV*(i + k), Z + NV*(i + k));
             }
         }
-        failed += record(codes, LANES, status ? status + i : NULL);
-    }
-    for (; i < n; ++i) {
-        const int code = hexaglide_Z(model, X + NQ*i, V + NV*i, Z + NV*i);
-        failed += record(&code, 1, status ? status + i : NULL);
+        failed += record(codes, w, status ? status + i : NULL);
     }
     return failed;
 }
 
-int hexaglide_H(const hexaglide_model *model, const hexaglide_real *X, hexaglide_real *H)
+int hexaglide_H(const prepared *model, const real *X, real *H)
 {
     int code;
     H_one(model, X, H, &code);
     return code;
 }
 
-size_t hexaglide_H_batch(const hexaglide_model *model, size_t n, const hexaglide_real *X,
-    hexaglide_real *H, int *status)
+size_t hexaglide_H_batch(const prepared *model, size_t n, const real *X, real *H, int *status)
 {
-    size_t failed = 0, i = 0;
-    for (; LANES > 1 && i + LANES <= n; i += LANES) {
-        int codes[LANES];
-        H_lanes(model, X + NQ*i, H + NV*NU*i, codes);
-        for (size_t k = 0; k < LANES; ++k) {
+    size_t failed = 0, w;
+    for (size_t i = 0; i < n; i += w) {
+        int codes[LANES] = {INVALID};
+        w = LANES > 1 && i + LANES <= n ? LANES : 1;
+        if (w > 1) {
+            H_lanes(model, X + NQ*i, H + NV*NU*i, codes);
+        }
+        for (size_t k = 0; k < w; ++k) {
             if (codes[k] != OK) {
                 codes[k] = hexaglide_H(model, X + NQ*(i + k), H + NV*NU*(i + k));
             }
         }
-        failed += record(codes, LANES, status ? status + i : NULL);
-    }
-    for (; i < n; ++i) {
-        const int code = hexaglide_H(model, X + NQ*i, H + NV*NU*i);
-        failed += record(&code, 1, status ? status + i : NULL);
+        failed += record(codes, w, status ? status + i : NULL);
     }
     return failed;
 }
 
-int hexaglide_inverse_kinematics(const hexaglide_model *model, const hexaglide_real *X,
-    hexaglide_real *q)
+int hexaglide_inverse_kinematics(const prepared *model, const real *X, real *q)
 {
     int code;
     inverse_kinematics_one(model, X, q, &code);
     return code;
 }
 
-size_t hexaglide_inverse_kinematics_batch(const hexaglide_model *model, size_t n, const
-    hexaglide_real *X, hexaglide_real *q, int *status)
+size_t hexaglide_inverse_kinematics_batch(const prepared *model, size_t n, const real *X, real *q,
+    int *status)
 {
-    size_t failed = 0, i = 0;
-    for (; LANES > 1 && i + LANES <= n; i += LANES) {
-        int codes[LANES];
-        inverse_kinematics_lanes(model, X + NQ*i, q + NJ*i, codes);
-        for (size_t k = 0; k < LANES; ++k) {
+    size_t failed = 0, w;
+    for (size_t i = 0; i < n; i += w) {
+        int codes[LANES] = {INVALID};
+        w = LANES > 1 && i + LANES <= n ? LANES : 1;
+        if (w > 1) {
+            inverse_kinematics_lanes(model, X + NQ*i, q + NJ*i, codes);
+        }
+        for (size_t k = 0; k < w; ++k) {
             if (codes[k] != OK) {
                 codes[k] = hexaglide_inverse_kinematics(model, X + NQ*(i + k), q + NJ*(i + k));
             }
         }
-        failed += record(codes, LANES, status ? status + i : NULL);
-    }
-    for (; i < n; ++i) {
-        const int code = hexaglide_inverse_kinematics(model, X + NQ*i, q + NJ*i);
-        failed += record(&code, 1, status ? status + i : NULL);
+        failed += record(codes, w, status ? status + i : NULL);
     }
     return failed;
 }
 
-int hexaglide_joint_rates(const hexaglide_model *model, const hexaglide_real *X, const
-    hexaglide_real *V, hexaglide_real *rates)
+int hexaglide_joint_rates(const prepared *model, const real *X, const real *V, real *rates)
 {
     int code;
     joint_rates_one(model, X, V, rates, &code);
     return code;
 }
 
-size_t hexaglide_joint_rates_batch(const hexaglide_model *model, size_t n, const hexaglide_real
-    *X, const hexaglide_real *V, hexaglide_real *rates, int *status)
+size_t hexaglide_joint_rates_batch(const prepared *model, size_t n, const real *X, const real *V,
+    real *rates, int *status)
 {
-    size_t failed = 0, i = 0;
-    for (; LANES > 1 && i + LANES <= n; i += LANES) {
-        int codes[LANES];
-        joint_rates_lanes(model, X + NQ*i, V + NV*i, rates + NJ*i, codes);
-        for (size_t k = 0; k < LANES; ++k) {
+    size_t failed = 0, w;
+    for (size_t i = 0; i < n; i += w) {
+        int codes[LANES] = {INVALID};
+        w = LANES > 1 && i + LANES <= n ? LANES : 1;
+        if (w > 1) {
+            joint_rates_lanes(model, X + NQ*i, V + NV*i, rates + NJ*i, codes);
+        }
+        for (size_t k = 0; k < w; ++k) {
             if (codes[k] != OK) {
                 codes[k] = hexaglide_joint_rates(model, X + NQ*(i + k), V + NV*(i + k), rates + NJ*(i + k));
             }
         }
-        failed += record(codes, LANES, status ? status + i : NULL);
-    }
-    for (; i < n; ++i) {
-        const int code = hexaglide_joint_rates(model, X + NQ*i, V + NV*i, rates + NJ*i);
-        failed += record(&code, 1, status ? status + i : NULL);
+        failed += record(codes, w, status ? status + i : NULL);
     }
     return failed;
 }
 
-int hexaglide_joint_accelerations(const hexaglide_model *model, const hexaglide_real *X, const
-    hexaglide_real *V, const hexaglide_real *A, hexaglide_real *accelerations)
+int hexaglide_joint_accelerations(const prepared *model, const real *X, const real *V, const real
+    *A, real *accelerations)
 {
     int code;
     joint_accelerations_one(model, X, V, A, accelerations, &code);
     return code;
 }
 
-size_t hexaglide_joint_accelerations_batch(const hexaglide_model *model, size_t n, const
-    hexaglide_real *X, const hexaglide_real *V, const hexaglide_real *A, hexaglide_real
-    *accelerations, int *status)
+size_t hexaglide_joint_accelerations_batch(const prepared *model, size_t n, const real *X, const
+    real *V, const real *A, real *accelerations, int *status)
 {
-    size_t failed = 0, i = 0;
-    for (; LANES > 1 && i + LANES <= n; i += LANES) {
-        int codes[LANES];
-        joint_accelerations_lanes(model, X + NQ*i, V + NV*i, A + NV*i, accelerations + NJ*i, codes);
-        for (size_t k = 0; k < LANES; ++k) {
+    size_t failed = 0, w;
+    for (size_t i = 0; i < n; i += w) {
+        int codes[LANES] = {INVALID};
+        w = LANES > 1 && i + LANES <= n ? LANES : 1;
+        if (w > 1) {
+            joint_accelerations_lanes(model, X + NQ*i, V + NV*i, A + NV*i, accelerations + NJ*i, codes);
+        }
+        for (size_t k = 0; k < w; ++k) {
             if (codes[k] != OK) {
                 codes[k] = hexaglide_joint_accelerations(model, X + NQ*(i + k), V + NV*(i + k), A + NV*(i + k),
                     accelerations + NJ*(i + k));
             }
         }
-        failed += record(codes, LANES, status ? status + i : NULL);
-    }
-    for (; i < n; ++i) {
-        const int code = hexaglide_joint_accelerations(model, X + NQ*i, V + NV*i, A + NV*i, accelerations
-            + NJ*i);
-        failed += record(&code, 1, status ? status + i : NULL);
+        failed += record(codes, w, status ? status + i : NULL);
     }
     return failed;
 }
 
-int hexaglide_dynamics(const hexaglide_model *model, const hexaglide_real *X, const hexaglide_real
-    *V, hexaglide_real *M, hexaglide_real *Z, hexaglide_real *H)
+int hexaglide_dynamics(const prepared *model, const real *X, const real *V, real *M, real *Z, real
+    *H)
 {
     int code;
     dynamics_one(model, X, V, M, Z, H, &code);
     return code;
 }
 
-size_t hexaglide_dynamics_batch(const hexaglide_model *model, size_t n, const hexaglide_real *X,
-    const hexaglide_real *V, hexaglide_real *M, hexaglide_real *Z, hexaglide_real *H, int *status)
+size_t hexaglide_dynamics_batch(const prepared *model, size_t n, const real *X, const real *V,
+    real *M, real *Z, real *H, int *status)
 {
-    size_t failed = 0, i = 0;
-    for (; LANES > 1 && i + LANES <= n; i += LANES) {
-        int codes[LANES];
-        dynamics_lanes(model, X + NQ*i, V + NV*i, M + NV*NV*i, Z + NV*i, H + NV*NU*i, codes);
-        for (size_t k = 0; k < LANES; ++k) {
+    size_t failed = 0, w;
+    for (size_t i = 0; i < n; i += w) {
+        int codes[LANES] = {INVALID};
+        w = LANES > 1 && i + LANES <= n ? LANES : 1;
+        if (w > 1) {
+            dynamics_lanes(model, X + NQ*i, V + NV*i, M + NV*NV*i, Z + NV*i, H + NV*NU*i, codes);
+        }
+        for (size_t k = 0; k < w; ++k) {
             if (codes[k] != OK) {
                 codes[k] = hexaglide_dynamics(model, X + NQ*(i + k), V + NV*(i + k), M + NV*NV*(i + k), Z + NV*(i
                     + k), H + NV*NU*(i + k));
             }
         }
-        failed += record(codes, LANES, status ? status + i : NULL);
-    }
-    for (; i < n; ++i) {
-        const int code = hexaglide_dynamics(model, X + NQ*i, V + NV*i, M + NV*NV*i, Z + NV*i, H +
-            NV*NU*i);
-        failed += record(&code, 1, status ? status + i : NULL);
+        failed += record(codes, w, status ? status + i : NULL);
     }
     return failed;
 }
 
-int hexaglide_inverse_dynamics(const hexaglide_model *model, const hexaglide_real *X, const
-    hexaglide_real *V, const hexaglide_real *A, const hexaglide_real *wrench, hexaglide_real *tau)
+int hexaglide_inverse_dynamics(const prepared *model, const real *X, const real *V, const real *A,
+    const real *wrench, real *tau)
 {
     int code;
     inverse_dynamics_one(model, X, V, A, wrench, tau, &code);
     return code;
 }
 
-size_t hexaglide_inverse_dynamics_batch(const hexaglide_model *model, size_t n, const
-    hexaglide_real *X, const hexaglide_real *V, const hexaglide_real *A, const hexaglide_real
-    *wrench, hexaglide_real *tau, int *status)
+size_t hexaglide_inverse_dynamics_batch(const prepared *model, size_t n, const real *X, const real
+    *V, const real *A, const real *wrench, real *tau, int *status)
 {
-    size_t failed = 0, i = 0;
-    for (; LANES > 1 && i + LANES <= n; i += LANES) {
-        int codes[LANES];
-        inverse_dynamics_lanes(model, X + NQ*i, V + NV*i, A + NV*i, wrench ? wrench + NW*i : NULL, tau +
-            NU*i, codes);
-        for (size_t k = 0; k < LANES; ++k) {
+    size_t failed = 0, w;
+    for (size_t i = 0; i < n; i += w) {
+        int codes[LANES] = {INVALID};
+        w = LANES > 1 && i + LANES <= n ? LANES : 1;
+        if (w > 1) {
+            inverse_dynamics_lanes(model, X + NQ*i, V + NV*i, A + NV*i, wrench ? wrench + NW*i : NULL, tau +
+                NU*i, codes);
+        }
+        for (size_t k = 0; k < w; ++k) {
             if (codes[k] != OK) {
                 codes[k] = hexaglide_inverse_dynamics(model, X + NQ*(i + k), V + NV*(i + k), A + NV*(i + k),
                     wrench ? wrench + NW*(i + k) : NULL, tau + NU*(i + k));
             }
         }
-        failed += record(codes, LANES, status ? status + i : NULL);
-    }
-    for (; i < n; ++i) {
-        const int code = hexaglide_inverse_dynamics(model, X + NQ*i, V + NV*i, A + NV*i, wrench ? wrench +
-            NW*i : NULL, tau + NU*i);
-        failed += record(&code, 1, status ? status + i : NULL);
+        failed += record(codes, w, status ? status + i : NULL);
     }
     return failed;
 }
 
-int hexaglide_forward_dynamics(const hexaglide_model *model, const hexaglide_real *X, const
-    hexaglide_real *V, const hexaglide_real *tau, const hexaglide_real *wrench, hexaglide_real *A)
+int hexaglide_forward_dynamics(const prepared *model, const real *X, const real *V, const real
+    *tau, const real *wrench, real *A)
 {
     int code;
     forward_dynamics_one(model, X, V, tau, wrench, A, &code);
     return code;
 }
 
-size_t hexaglide_forward_dynamics_batch(const hexaglide_model *model, size_t n, const
-    hexaglide_real *X, const hexaglide_real *V, const hexaglide_real *tau, const hexaglide_real
-    *wrench, hexaglide_real *A, int *status)
+size_t hexaglide_forward_dynamics_batch(const prepared *model, size_t n, const real *X, const real
+    *V, const real *tau, const real *wrench, real *A, int *status)
 {
-    size_t failed = 0, i = 0;
-    for (; LANES > 1 && i + LANES <= n; i += LANES) {
-        int codes[LANES];
-        forward_dynamics_lanes(model, X + NQ*i, V + NV*i, tau + NU*i, wrench ? wrench + NW*i : NULL, A +
-            NV*i, codes);
-        for (size_t k = 0; k < LANES; ++k) {
+    size_t failed = 0, w;
+    for (size_t i = 0; i < n; i += w) {
+        int codes[LANES] = {INVALID};
+        w = LANES > 1 && i + LANES <= n ? LANES : 1;
+        if (w > 1) {
+            forward_dynamics_lanes(model, X + NQ*i, V + NV*i, tau + NU*i, wrench ? wrench + NW*i : NULL, A +
+                NV*i, codes);
+        }
+        for (size_t k = 0; k < w; ++k) {
             if (codes[k] != OK) {
                 codes[k] = hexaglide_forward_dynamics(model, X + NQ*(i + k), V + NV*(i + k), tau + NU*(i + k),
                     wrench ? wrench + NW*(i + k) : NULL, A + NV*(i + k));
             }
         }
-        failed += record(codes, LANES, status ? status + i : NULL);
-    }
-    for (; i < n; ++i) {
-        const int code = hexaglide_forward_dynamics(model, X + NQ*i, V + NV*i, tau + NU*i, wrench ? wrench
-            + NW*i : NULL, A + NV*i);
-        failed += record(&code, 1, status ? status + i : NULL);
+        failed += record(codes, w, status ? status + i : NULL);
     }
     return failed;
 }
 
-int hexaglide_complete_acceleration(const hexaglide_model *model, const hexaglide_real *X, const
-    hexaglide_real *V, const hexaglide_real *A, const hexaglide_real *wrench, hexaglide_real
-    *completed)
+int hexaglide_complete_acceleration(const prepared *model, const real *X, const real *V, const
+    real *A, const real *wrench, real *completed)
 {
     int code;
     (void)model;
@@ -6751,12 +5653,11 @@ int hexaglide_complete_acceleration(const hexaglide_model *model, const hexaglid
     return code;
 }
 
-size_t hexaglide_complete_acceleration_batch(const hexaglide_model *model, size_t n, const
-    hexaglide_real *X, const hexaglide_real *V, const hexaglide_real *A, const hexaglide_real
-    *wrench, hexaglide_real *completed, int *status)
+size_t hexaglide_complete_acceleration_batch(const prepared *model, size_t n, const real *X, const
+    real *V, const real *A, const real *wrench, real *completed, int *status)
 {
-    size_t failed = 0, i = 0;
-    for (; i < n; ++i) {
+    size_t failed = 0;
+    for (size_t i = 0; i < n; ++i) {
         const int code = hexaglide_complete_acceleration(model, X + NQ*i, V + NV*i, A + NV*i, wrench ?
             wrench + NW*i : NULL, completed + NV*i);
         failed += record(&code, 1, status ? status + i : NULL);
@@ -6764,21 +5665,19 @@ size_t hexaglide_complete_acceleration_batch(const hexaglide_model *model, size_
     return failed;
 }
 
-int hexaglide_leg_reactions(const hexaglide_model *model, const hexaglide_real *X, const
-    hexaglide_real *V, const hexaglide_real *A, const hexaglide_real *wrench, hexaglide_real
-    *forces)
+int hexaglide_leg_reactions(const prepared *model, const real *X, const real *V, const real *A,
+    const real *wrench, real *forces)
 {
     int code;
     leg_reactions_one(model, X, V, A, wrench, forces, &code);
     return code;
 }
 
-size_t hexaglide_leg_reactions_batch(const hexaglide_model *model, size_t n, const hexaglide_real
-    *X, const hexaglide_real *V, const hexaglide_real *A, const hexaglide_real *wrench,
-    hexaglide_real *forces, int *status)
+size_t hexaglide_leg_reactions_batch(const prepared *model, size_t n, const real *X, const real
+    *V, const real *A, const real *wrench, real *forces, int *status)
 {
-    size_t failed = 0, i = 0;
-    for (; i < n; ++i) {
+    size_t failed = 0;
+    for (size_t i = 0; i < n; ++i) {
         const int code = hexaglide_leg_reactions(model, X + NQ*i, V + NV*i, A + NV*i, wrench ? wrench +
             NW*i : NULL, forces + 18*i);
         failed += record(&code, 1, status ? status + i : NULL);
@@ -6786,65 +5685,100 @@ size_t hexaglide_leg_reactions_batch(const hexaglide_model *model, size_t n, con
     return failed;
 }
 
-int hexaglide_energy(const hexaglide_model *model, const hexaglide_real *X, const hexaglide_real
-    *V, hexaglide_real *kinetic, hexaglide_real *potential)
+int hexaglide_energy(const prepared *model, const real *X, const real *V, real *kinetic, real
+    *potential)
 {
     int code;
     energy_one(model, X, V, kinetic, potential, &code);
     return code;
 }
 
-size_t hexaglide_energy_batch(const hexaglide_model *model, size_t n, const hexaglide_real *X,
-    const hexaglide_real *V, hexaglide_real *kinetic, hexaglide_real *potential, int *status)
+size_t hexaglide_energy_batch(const prepared *model, size_t n, const real *X, const real *V, real
+    *kinetic, real *potential, int *status)
 {
-    size_t failed = 0, i = 0;
-    for (; i < n; ++i) {
+    size_t failed = 0;
+    for (size_t i = 0; i < n; ++i) {
         const int code = hexaglide_energy(model, X + NQ*i, V + NV*i, kinetic + i, potential + i);
         failed += record(&code, 1, status ? status + i : NULL);
     }
     return failed;
 }
 
-int hexaglide_condition(const hexaglide_model *model, const hexaglide_real *X, hexaglide_real
-    *sigma, hexaglide_real *legs)
+int hexaglide_condition(const prepared *model, const real *X, real *sigma, real *legs)
 {
     int code;
     condition_one(model, X, NULL, sigma, legs, &code);
     return code;
 }
 
-size_t hexaglide_condition_batch(const hexaglide_model *model, size_t n, const hexaglide_real *X,
-    hexaglide_real *sigma, hexaglide_real *legs, int *status)
+size_t hexaglide_condition_batch(const prepared *model, size_t n, const real *X, real *sigma, real
+    *legs, int *status)
 {
-    size_t failed = 0, i = 0;
-    for (; i < n; ++i) {
+    size_t failed = 0;
+    for (size_t i = 0; i < n; ++i) {
         const int code = hexaglide_condition(model, X + NQ*i, sigma + 6*i, legs + 6*i);
         failed += record(&code, 1, status ? status + i : NULL);
     }
     return failed;
 }
 
-int hexaglide_forward_kinematics(const hexaglide_model *model, const hexaglide_real *q_actuated,
-    const hexaglide_real *X0, hexaglide_real *X)
+int hexaglide_manipulability(const prepared *model, const real *X, real *measure, real *isotropy)
+{
+    int code;
+    manipulability_one(model, X, measure, isotropy, &code);
+    return code;
+}
+
+size_t hexaglide_manipulability_batch(const prepared *model, size_t n, const real *X, real
+    *measure, real *isotropy, int *status)
+{
+    size_t failed = 0;
+    for (size_t i = 0; i < n; ++i) {
+        const int code = hexaglide_manipulability(model, X + NQ*i, measure + i, isotropy + i);
+        failed += record(&code, 1, status ? status + i : NULL);
+    }
+    return failed;
+}
+
+int hexaglide_singularity_distance(const prepared *model, const real *X, real *actuators, real
+    *legs)
+{
+    int code;
+    singularity_distance_one(model, X, actuators, legs, &code);
+    return code;
+}
+
+size_t hexaglide_singularity_distance_batch(const prepared *model, size_t n, const real *X, real
+    *actuators, real *legs, int *status)
+{
+    size_t failed = 0;
+    for (size_t i = 0; i < n; ++i) {
+        const int code = hexaglide_singularity_distance(model, X + NQ*i, actuators + i, legs + i);
+        failed += record(&code, 1, status ? status + i : NULL);
+    }
+    return failed;
+}
+
+int hexaglide_forward_kinematics(const prepared *model, const real *q_actuated, const real *X0,
+    real *X)
 {
     int code;
     forward_kinematics_one(model, q_actuated, X0, X, &code);
     return code;
 }
 
-size_t hexaglide_forward_kinematics_batch(const hexaglide_model *model, size_t n, const
-    hexaglide_real *q_actuated, const hexaglide_real *X0, hexaglide_real *X, int *status)
+size_t hexaglide_forward_kinematics_batch(const prepared *model, size_t n, const real *q_actuated,
+    const real *X0, real *X, int *status)
 {
-    size_t failed = 0, i = 0;
-    for (; i < n; ++i) {
+    size_t failed = 0;
+    for (size_t i = 0; i < n; ++i) {
         const int code = hexaglide_forward_kinematics(model, q_actuated + NU*i, X0 + NQ*i, X + NQ*i);
         failed += record(&code, 1, status ? status + i : NULL);
     }
     return failed;
 }
 
-int hexaglide_dissipation(const hexaglide_model *model, const hexaglide_real *X, const
-    hexaglide_real *V, hexaglide_real *dissipation)
+int hexaglide_dissipation(const prepared *model, const real *X, const real *V, real *dissipation)
 {
     int code;
     (void)model;
@@ -6853,345 +5787,327 @@ int hexaglide_dissipation(const hexaglide_model *model, const hexaglide_real *X,
     return code;
 }
 
-size_t hexaglide_dissipation_batch(const hexaglide_model *model, size_t n, const hexaglide_real
-    *X, const hexaglide_real *V, hexaglide_real *dissipation, int *status)
+size_t hexaglide_dissipation_batch(const prepared *model, size_t n, const real *X, const real *V,
+    real *dissipation, int *status)
 {
-    size_t failed = 0, i = 0;
-    for (; i < n; ++i) {
+    size_t failed = 0;
+    for (size_t i = 0; i < n; ++i) {
         const int code = hexaglide_dissipation(model, X + NQ*i, V + NV*i, dissipation + i);
         failed += record(&code, 1, status ? status + i : NULL);
     }
     return failed;
 }
 
-int hexaglide_momentum(const hexaglide_model *model, const hexaglide_real *X, const hexaglide_real
-    *V, hexaglide_real *momentum)
+int hexaglide_momentum(const prepared *model, const real *X, const real *V, real *momentum)
 {
     int code;
     momentum_one(model, X, V, momentum, &code);
     return code;
 }
 
-size_t hexaglide_momentum_batch(const hexaglide_model *model, size_t n, const hexaglide_real *X,
-    const hexaglide_real *V, hexaglide_real *momentum, int *status)
+size_t hexaglide_momentum_batch(const prepared *model, size_t n, const real *X, const real *V,
+    real *momentum, int *status)
 {
-    size_t failed = 0, i = 0;
-    for (; LANES > 1 && i + LANES <= n; i += LANES) {
-        int codes[LANES];
-        momentum_lanes(model, X + NQ*i, V + NV*i, momentum + NV*i, codes);
-        for (size_t k = 0; k < LANES; ++k) {
+    size_t failed = 0, w;
+    for (size_t i = 0; i < n; i += w) {
+        int codes[LANES] = {INVALID};
+        w = LANES > 1 && i + LANES <= n ? LANES : 1;
+        if (w > 1) {
+            momentum_lanes(model, X + NQ*i, V + NV*i, momentum + NV*i, codes);
+        }
+        for (size_t k = 0; k < w; ++k) {
             if (codes[k] != OK) {
                 codes[k] = hexaglide_momentum(model, X + NQ*(i + k), V + NV*(i + k), momentum + NV*(i + k));
             }
         }
-        failed += record(codes, LANES, status ? status + i : NULL);
-    }
-    for (; i < n; ++i) {
-        const int code = hexaglide_momentum(model, X + NQ*i, V + NV*i, momentum + NV*i);
-        failed += record(&code, 1, status ? status + i : NULL);
+        failed += record(codes, w, status ? status + i : NULL);
     }
     return failed;
 }
 
-int hexaglide_joint_margins(const hexaglide_model *model, const hexaglide_real *X, hexaglide_real
-    *margins)
+int hexaglide_joint_margins(const prepared *model, const real *X, real *margins)
 {
     int code;
     joint_margins_one(model, X, margins, &code);
     return code;
 }
 
-size_t hexaglide_joint_margins_batch(const hexaglide_model *model, size_t n, const hexaglide_real
-    *X, hexaglide_real *margins, int *status)
+size_t hexaglide_joint_margins_batch(const prepared *model, size_t n, const real *X, real
+    *margins, int *status)
 {
-    size_t failed = 0, i = 0;
-    for (; LANES > 1 && i + LANES <= n; i += LANES) {
-        int codes[LANES];
-        joint_margins_lanes(model, X + NQ*i, margins + NJ*i, codes);
-        for (size_t k = 0; k < LANES; ++k) {
+    size_t failed = 0, w;
+    for (size_t i = 0; i < n; i += w) {
+        int codes[LANES] = {INVALID};
+        w = LANES > 1 && i + LANES <= n ? LANES : 1;
+        if (w > 1) {
+            joint_margins_lanes(model, X + NQ*i, margins + NJ*i, codes);
+        }
+        for (size_t k = 0; k < w; ++k) {
             if (codes[k] != OK) {
                 codes[k] = hexaglide_joint_margins(model, X + NQ*(i + k), margins + NJ*(i + k));
             }
         }
-        failed += record(codes, LANES, status ? status + i : NULL);
-    }
-    for (; i < n; ++i) {
-        const int code = hexaglide_joint_margins(model, X + NQ*i, margins + NJ*i);
-        failed += record(&code, 1, status ? status + i : NULL);
+        failed += record(codes, w, status ? status + i : NULL);
     }
     return failed;
 }
 
-int hexaglide_within_limits(const hexaglide_model *model, const hexaglide_real *X, hexaglide_real
-    *within)
+int hexaglide_within_limits(const prepared *model, const real *X, real *within)
 {
     int code;
     within_limits_one(model, X, within, &code);
     return code;
 }
 
-size_t hexaglide_within_limits_batch(const hexaglide_model *model, size_t n, const hexaglide_real
-    *X, hexaglide_real *within, int *status)
+size_t hexaglide_within_limits_batch(const prepared *model, size_t n, const real *X, real *within,
+    int *status)
 {
-    size_t failed = 0, i = 0;
-    for (; LANES > 1 && i + LANES <= n; i += LANES) {
-        int codes[LANES];
-        within_limits_lanes(model, X + NQ*i, within + i, codes);
-        for (size_t k = 0; k < LANES; ++k) {
+    size_t failed = 0, w;
+    for (size_t i = 0; i < n; i += w) {
+        int codes[LANES] = {INVALID};
+        w = LANES > 1 && i + LANES <= n ? LANES : 1;
+        if (w > 1) {
+            within_limits_lanes(model, X + NQ*i, within + i, codes);
+        }
+        for (size_t k = 0; k < w; ++k) {
             if (codes[k] != OK) {
                 codes[k] = hexaglide_within_limits(model, X + NQ*(i + k), within + (i + k));
             }
         }
-        failed += record(codes, LANES, status ? status + i : NULL);
-    }
-    for (; i < n; ++i) {
-        const int code = hexaglide_within_limits(model, X + NQ*i, within + i);
-        failed += record(&code, 1, status ? status + i : NULL);
+        failed += record(codes, w, status ? status + i : NULL);
     }
     return failed;
 }
 
-int hexaglide_actuator_positions(const hexaglide_model *model, const hexaglide_real *X,
-    hexaglide_real *q)
+int hexaglide_actuator_positions(const prepared *model, const real *X, real *q)
 {
     int code;
     actuator_positions_one(model, X, q, &code);
     return code;
 }
 
-size_t hexaglide_actuator_positions_batch(const hexaglide_model *model, size_t n, const
-    hexaglide_real *X, hexaglide_real *q, int *status)
+size_t hexaglide_actuator_positions_batch(const prepared *model, size_t n, const real *X, real *q,
+    int *status)
 {
-    size_t failed = 0, i = 0;
-    for (; LANES > 1 && i + LANES <= n; i += LANES) {
-        int codes[LANES];
-        actuator_positions_lanes(model, X + NQ*i, q + NU*i, codes);
-        for (size_t k = 0; k < LANES; ++k) {
+    size_t failed = 0, w;
+    for (size_t i = 0; i < n; i += w) {
+        int codes[LANES] = {INVALID};
+        w = LANES > 1 && i + LANES <= n ? LANES : 1;
+        if (w > 1) {
+            actuator_positions_lanes(model, X + NQ*i, q + NU*i, codes);
+        }
+        for (size_t k = 0; k < w; ++k) {
             if (codes[k] != OK) {
                 codes[k] = hexaglide_actuator_positions(model, X + NQ*(i + k), q + NU*(i + k));
             }
         }
-        failed += record(codes, LANES, status ? status + i : NULL);
-    }
-    for (; i < n; ++i) {
-        const int code = hexaglide_actuator_positions(model, X + NQ*i, q + NU*i);
-        failed += record(&code, 1, status ? status + i : NULL);
+        failed += record(codes, w, status ? status + i : NULL);
     }
     return failed;
 }
 
-int hexaglide_actuator_rates(const hexaglide_model *model, const hexaglide_real *X, const
-    hexaglide_real *V, hexaglide_real *rates)
+int hexaglide_actuator_rates(const prepared *model, const real *X, const real *V, real *rates)
 {
     int code;
     actuator_rates_one(model, X, V, rates, &code);
     return code;
 }
 
-size_t hexaglide_actuator_rates_batch(const hexaglide_model *model, size_t n, const hexaglide_real
-    *X, const hexaglide_real *V, hexaglide_real *rates, int *status)
+size_t hexaglide_actuator_rates_batch(const prepared *model, size_t n, const real *X, const real
+    *V, real *rates, int *status)
 {
-    size_t failed = 0, i = 0;
-    for (; LANES > 1 && i + LANES <= n; i += LANES) {
-        int codes[LANES];
-        actuator_rates_lanes(model, X + NQ*i, V + NV*i, rates + NU*i, codes);
-        for (size_t k = 0; k < LANES; ++k) {
+    size_t failed = 0, w;
+    for (size_t i = 0; i < n; i += w) {
+        int codes[LANES] = {INVALID};
+        w = LANES > 1 && i + LANES <= n ? LANES : 1;
+        if (w > 1) {
+            actuator_rates_lanes(model, X + NQ*i, V + NV*i, rates + NU*i, codes);
+        }
+        for (size_t k = 0; k < w; ++k) {
             if (codes[k] != OK) {
                 codes[k] = hexaglide_actuator_rates(model, X + NQ*(i + k), V + NV*(i + k), rates + NU*(i + k));
             }
         }
-        failed += record(codes, LANES, status ? status + i : NULL);
-    }
-    for (; i < n; ++i) {
-        const int code = hexaglide_actuator_rates(model, X + NQ*i, V + NV*i, rates + NU*i);
-        failed += record(&code, 1, status ? status + i : NULL);
+        failed += record(codes, w, status ? status + i : NULL);
     }
     return failed;
 }
 
-int hexaglide_actuator_accelerations(const hexaglide_model *model, const hexaglide_real *X, const
-    hexaglide_real *V, const hexaglide_real *A, hexaglide_real *accelerations)
+int hexaglide_actuator_accelerations(const prepared *model, const real *X, const real *V, const
+    real *A, real *accelerations)
 {
     int code;
     actuator_accelerations_one(model, X, V, A, accelerations, &code);
     return code;
 }
 
-size_t hexaglide_actuator_accelerations_batch(const hexaglide_model *model, size_t n, const
-    hexaglide_real *X, const hexaglide_real *V, const hexaglide_real *A, hexaglide_real
-    *accelerations, int *status)
+size_t hexaglide_actuator_accelerations_batch(const prepared *model, size_t n, const real *X,
+    const real *V, const real *A, real *accelerations, int *status)
 {
-    size_t failed = 0, i = 0;
-    for (; LANES > 1 && i + LANES <= n; i += LANES) {
-        int codes[LANES];
-        actuator_accelerations_lanes(model, X + NQ*i, V + NV*i, A + NV*i, accelerations + NU*i, codes);
-        for (size_t k = 0; k < LANES; ++k) {
+    size_t failed = 0, w;
+    for (size_t i = 0; i < n; i += w) {
+        int codes[LANES] = {INVALID};
+        w = LANES > 1 && i + LANES <= n ? LANES : 1;
+        if (w > 1) {
+            actuator_accelerations_lanes(model, X + NQ*i, V + NV*i, A + NV*i, accelerations + NU*i, codes);
+        }
+        for (size_t k = 0; k < w; ++k) {
             if (codes[k] != OK) {
                 codes[k] = hexaglide_actuator_accelerations(model, X + NQ*(i + k), V + NV*(i + k), A + NV*(i + k),
                     accelerations + NU*(i + k));
             }
         }
-        failed += record(codes, LANES, status ? status + i : NULL);
-    }
-    for (; i < n; ++i) {
-        const int code = hexaglide_actuator_accelerations(model, X + NQ*i, V + NV*i, A + NV*i,
-            accelerations + NU*i);
-        failed += record(&code, 1, status ? status + i : NULL);
+        failed += record(codes, w, status ? status + i : NULL);
     }
     return failed;
 }
 
-int hexaglide_power(const hexaglide_model *model, const hexaglide_real *X, const hexaglide_real
-    *V, const hexaglide_real *tau, hexaglide_real *power)
+int hexaglide_power(const prepared *model, const real *X, const real *V, const real *tau, real
+    *power)
 {
     int code;
     power_one(model, X, V, tau, power, &code);
     return code;
 }
 
-size_t hexaglide_power_batch(const hexaglide_model *model, size_t n, const hexaglide_real *X,
-    const hexaglide_real *V, const hexaglide_real *tau, hexaglide_real *power, int *status)
+size_t hexaglide_power_batch(const prepared *model, size_t n, const real *X, const real *V, const
+    real *tau, real *power, int *status)
 {
-    size_t failed = 0, i = 0;
-    for (; LANES > 1 && i + LANES <= n; i += LANES) {
-        int codes[LANES];
-        power_lanes(model, X + NQ*i, V + NV*i, tau + NU*i, power + i, codes);
-        for (size_t k = 0; k < LANES; ++k) {
+    size_t failed = 0, w;
+    for (size_t i = 0; i < n; i += w) {
+        int codes[LANES] = {INVALID};
+        w = LANES > 1 && i + LANES <= n ? LANES : 1;
+        if (w > 1) {
+            power_lanes(model, X + NQ*i, V + NV*i, tau + NU*i, power + i, codes);
+        }
+        for (size_t k = 0; k < w; ++k) {
             if (codes[k] != OK) {
                 codes[k] = hexaglide_power(model, X + NQ*(i + k), V + NV*(i + k), tau + NU*(i + k), power + (i +
                     k));
             }
         }
-        failed += record(codes, LANES, status ? status + i : NULL);
-    }
-    for (; i < n; ++i) {
-        const int code = hexaglide_power(model, X + NQ*i, V + NV*i, tau + NU*i, power + i);
-        failed += record(&code, 1, status ? status + i : NULL);
+        failed += record(codes, w, status ? status + i : NULL);
     }
     return failed;
 }
 
-int hexaglide_rotation(const hexaglide_real *X, hexaglide_real *R)
+int hexaglide_rotation(const real *X, real *R)
 {
     int code;
     rotation_one(X, R, &code);
     return code;
 }
 
-size_t hexaglide_rotation_batch(size_t n, const hexaglide_real *X, hexaglide_real *R, int *status)
+size_t hexaglide_rotation_batch(size_t n, const real *X, real *R, int *status)
 {
-    size_t failed = 0, i = 0;
-    for (; i < n; ++i) {
+    size_t failed = 0;
+    for (size_t i = 0; i < n; ++i) {
         const int code = hexaglide_rotation(X + NQ*i, R + 9*i);
         failed += record(&code, 1, status ? status + i : NULL);
     }
     return failed;
 }
 
-int hexaglide_pose(const hexaglide_real *t, const hexaglide_real *R, hexaglide_real *X)
+int hexaglide_pose(const real *t, const real *R, real *X)
 {
     int code;
     pose_one(t, R, X, &code);
     return code;
 }
 
-size_t hexaglide_pose_batch(size_t n, const hexaglide_real *t, const hexaglide_real *R,
-    hexaglide_real *X, int *status)
+size_t hexaglide_pose_batch(size_t n, const real *t, const real *R, real *X, int *status)
 {
-    size_t failed = 0, i = 0;
-    for (; i < n; ++i) {
+    size_t failed = 0;
+    for (size_t i = 0; i < n; ++i) {
         const int code = hexaglide_pose(t + 3*i, R + 9*i, X + NQ*i);
         failed += record(&code, 1, status ? status + i : NULL);
     }
     return failed;
 }
 
-int hexaglide_X_dot(const hexaglide_real *X, const hexaglide_real *V, hexaglide_real *X_dot)
+int hexaglide_X_dot(const real *X, const real *V, real *X_dot)
 {
     int code;
     X_dot_one(X, V, X_dot, &code);
     return code;
 }
 
-size_t hexaglide_X_dot_batch(size_t n, const hexaglide_real *X, const hexaglide_real *V,
-    hexaglide_real *X_dot, int *status)
+size_t hexaglide_X_dot_batch(size_t n, const real *X, const real *V, real *X_dot, int *status)
 {
-    size_t failed = 0, i = 0;
-    for (; i < n; ++i) {
+    size_t failed = 0;
+    for (size_t i = 0; i < n; ++i) {
         const int code = hexaglide_X_dot(X + NQ*i, V + NV*i, X_dot + NQ*i);
         failed += record(&code, 1, status ? status + i : NULL);
     }
     return failed;
 }
 
-int hexaglide_pose_from_rpy(const hexaglide_real *t, const hexaglide_real *rpy, hexaglide_real *X)
+int hexaglide_pose_from_rpy(const real *t, const real *rpy, real *X)
 {
     int code;
     pose_from_rpy_one(t, rpy, X, &code);
     return code;
 }
 
-size_t hexaglide_pose_from_rpy_batch(size_t n, const hexaglide_real *t, const hexaglide_real *rpy,
-    hexaglide_real *X, int *status)
+size_t hexaglide_pose_from_rpy_batch(size_t n, const real *t, const real *rpy, real *X, int
+    *status)
 {
-    size_t failed = 0, i = 0;
-    for (; i < n; ++i) {
+    size_t failed = 0;
+    for (size_t i = 0; i < n; ++i) {
         const int code = hexaglide_pose_from_rpy(t + 3*i, rpy + 3*i, X + NQ*i);
         failed += record(&code, 1, status ? status + i : NULL);
     }
     return failed;
 }
 
-int hexaglide_retract(const hexaglide_real *X, const hexaglide_real *step, hexaglide_real
-    *X_moved)
+int hexaglide_retract(const real *X, const real *step, real *X_moved)
 {
     int code;
     retract_one(X, step, X_moved, &code);
     return code;
 }
 
-size_t hexaglide_retract_batch(size_t n, const hexaglide_real *X, const hexaglide_real *step,
-    hexaglide_real *X_moved, int *status)
+size_t hexaglide_retract_batch(size_t n, const real *X, const real *step, real *X_moved, int
+    *status)
 {
-    size_t failed = 0, i = 0;
-    for (; i < n; ++i) {
+    size_t failed = 0;
+    for (size_t i = 0; i < n; ++i) {
         const int code = hexaglide_retract(X + NQ*i, step + NV*i, X_moved + NQ*i);
         failed += record(&code, 1, status ? status + i : NULL);
     }
     return failed;
 }
 
-int hexaglide_difference(const hexaglide_real *X0, const hexaglide_real *X1, hexaglide_real *step)
+int hexaglide_difference(const real *X0, const real *X1, real *step)
 {
     int code;
     difference_one(X0, X1, step, &code);
     return code;
 }
 
-size_t hexaglide_difference_batch(size_t n, const hexaglide_real *X0, const hexaglide_real *X1,
-    hexaglide_real *step, int *status)
+size_t hexaglide_difference_batch(size_t n, const real *X0, const real *X1, real *step, int
+    *status)
 {
-    size_t failed = 0, i = 0;
-    for (; i < n; ++i) {
+    size_t failed = 0;
+    for (size_t i = 0; i < n; ++i) {
         const int code = hexaglide_difference(X0 + NQ*i, X1 + NQ*i, step + NV*i);
         failed += record(&code, 1, status ? status + i : NULL);
     }
     return failed;
 }
 
-int hexaglide_interpolate(const hexaglide_real *X0, const hexaglide_real *X1, const hexaglide_real
-    *s, hexaglide_real *X)
+int hexaglide_interpolate(const real *X0, const real *X1, const real *s, real *X)
 {
     int code;
     interpolate_one(X0, X1, s, X, &code);
     return code;
 }
 
-size_t hexaglide_interpolate_batch(size_t n, const hexaglide_real *X0, const hexaglide_real *X1,
-    const hexaglide_real *s, hexaglide_real *X, int *status)
+size_t hexaglide_interpolate_batch(size_t n, const real *X0, const real *X1, const real *s, real
+    *X, int *status)
 {
-    size_t failed = 0, i = 0;
-    for (; i < n; ++i) {
+    size_t failed = 0;
+    for (size_t i = 0; i < n; ++i) {
         const int code = hexaglide_interpolate(X0 + NQ*i, X1 + NQ*i, s + i, X + NQ*i);
         failed += record(&code, 1, status ? status + i : NULL);
     }

@@ -132,39 +132,39 @@ extern const char *const hexaglide_ACTUATOR_NAMES[HEXAGLIDE_NU];
    perpendicular, that are so by structure, to 1e-09 (float: 1e-6). */
 int hexaglide_prepare(const hexaglide_params *params, hexaglide_model *model);
 
-/* Inertia matrix M. 1053 mul, 759 add, 18 div, 12 sqrt, 0 trig. In: X (NQ). Out: M (NV x NV). */
+/* Inertia matrix M. 1047 mul, 759 add, 18 div, 12 sqrt, 0 trig. In: X (NQ). Out: M (NV x NV). */
 int hexaglide_M(const hexaglide_model *model, const hexaglide_real *X, hexaglide_real *M);
 size_t hexaglide_M_batch(const hexaglide_model *model, size_t n, const hexaglide_real *X,
     hexaglide_real *M, int *status);
 
-/* Velocity and gravity terms Z. 1125 mul, 834 add, 18 div, 12 sqrt, 0 trig. In: X (NQ), V (NV).
+/* Velocity and gravity terms Z. 1119 mul, 834 add, 18 div, 12 sqrt, 0 trig. In: X (NQ), V (NV).
    Out: Z (NV). */
 int hexaglide_Z(const hexaglide_model *model, const hexaglide_real *X, const hexaglide_real *V,
     hexaglide_real *Z);
 size_t hexaglide_Z_batch(const hexaglide_model *model, size_t n, const hexaglide_real *X, const
     hexaglide_real *V, hexaglide_real *Z, int *status);
 
-/* Force transformation H: actuators to task space. 402 mul, 228 add, 12 div, 12 sqrt, 0 trig. In:
+/* Force transformation H: actuators to task space. 396 mul, 228 add, 12 div, 12 sqrt, 0 trig. In:
    X (NQ). Out: H (NV x NU). */
 int hexaglide_H(const hexaglide_model *model, const hexaglide_real *X, hexaglide_real *H);
 size_t hexaglide_H_batch(const hexaglide_model *model, size_t n, const hexaglide_real *X,
     hexaglide_real *H, int *status);
 
-/* Displacements q of all joints. They are those of the assembly branch of home. 204 mul, 144 add,
+/* Displacements q of all joints. They are those of the assembly branch of home. 198 mul, 144 add,
    6 div, 12 sqrt, 12 trig. In: X (NQ). Out: q (NJ). */
 int hexaglide_inverse_kinematics(const hexaglide_model *model, const hexaglide_real *X,
     hexaglide_real *q);
 size_t hexaglide_inverse_kinematics_batch(const hexaglide_model *model, size_t n, const
     hexaglide_real *X, hexaglide_real *q, int *status);
 
-/* Rates of all joints. 462 mul, 294 add, 18 div, 12 sqrt, 0 trig. In: X (NQ), V (NV). Out: rates
+/* Rates of all joints. 456 mul, 294 add, 18 div, 12 sqrt, 0 trig. In: X (NQ), V (NV). Out: rates
    (NJ). */
 int hexaglide_joint_rates(const hexaglide_model *model, const hexaglide_real *X, const
     hexaglide_real *V, hexaglide_real *rates);
 size_t hexaglide_joint_rates_batch(const hexaglide_model *model, size_t n, const hexaglide_real
     *X, const hexaglide_real *V, hexaglide_real *rates, int *status);
 
-/* Accelerations of all joints. 684 mul, 444 add, 18 div, 12 sqrt, 0 trig. In: X (NQ), V (NV), A
+/* Accelerations of all joints. 678 mul, 444 add, 18 div, 12 sqrt, 0 trig. In: X (NQ), V (NV), A
    (NV). Out: accelerations (NJ). */
 int hexaglide_joint_accelerations(const hexaglide_model *model, const hexaglide_real *X, const
     hexaglide_real *V, const hexaglide_real *A, hexaglide_real *accelerations);
@@ -172,14 +172,14 @@ size_t hexaglide_joint_accelerations_batch(const hexaglide_model *model, size_t 
     hexaglide_real *X, const hexaglide_real *V, const hexaglide_real *A, hexaglide_real
     *accelerations, int *status);
 
-/* M, Z and H together, sharing the work. 1869 mul, 1395 add, 18 div, 12 sqrt, 0 trig. In: X (NQ),
+/* M, Z and H together, sharing the work. 1863 mul, 1395 add, 18 div, 12 sqrt, 0 trig. In: X (NQ),
    V (NV). Out: M (NV x NV), Z (NV), H (NV x NU). */
 int hexaglide_dynamics(const hexaglide_model *model, const hexaglide_real *X, const hexaglide_real
     *V, hexaglide_real *M, hexaglide_real *Z, hexaglide_real *H);
 size_t hexaglide_dynamics_batch(const hexaglide_model *model, size_t n, const hexaglide_real *X,
     const hexaglide_real *V, hexaglide_real *M, hexaglide_real *Z, hexaglide_real *H, int *status);
 
-/* Actuator forces tau for the acceleration A, by Eq. 3. 1239 mul, 933 add, 18 div, 12 sqrt, 0
+/* Actuator forces tau for the acceleration A, by Eq. 3. 1233 mul, 933 add, 18 div, 12 sqrt, 0
    trig; the solution of the linear equations apart. In: X (NQ), V (NV), A (NV), wrench (NW, or
    NULL). Out: tau (NU). */
 int hexaglide_inverse_dynamics(const hexaglide_model *model, const hexaglide_real *X, const
@@ -188,7 +188,7 @@ size_t hexaglide_inverse_dynamics_batch(const hexaglide_model *model, size_t n, 
     hexaglide_real *X, const hexaglide_real *V, const hexaglide_real *A, const hexaglide_real
     *wrench, hexaglide_real *tau, int *status);
 
-/* Acceleration A under the actuator forces tau and the wrench. 1869 mul, 1395 add, 18 div, 12
+/* Acceleration A under the actuator forces tau and the wrench. 1863 mul, 1395 add, 18 div, 12
    sqrt, 0 trig; the solution of the linear equations apart. In: X (NQ), V (NV), tau (NU), wrench
    (NW, or NULL). Out: A (NV). */
 int hexaglide_forward_dynamics(const hexaglide_model *model, const hexaglide_real *X, const
@@ -208,7 +208,7 @@ size_t hexaglide_complete_acceleration_batch(const hexaglide_model *model, size_
     *wrench, hexaglide_real *completed, int *status);
 
 /* Force of each leg on the platform at its platform joint, base axes. The actuators give the
-   forces of inverse_dynamics. 1092 mul, 798 add, 18 div, 12 sqrt, 0 trig; inverse dynamics apart.
+   forces of inverse_dynamics. 1086 mul, 798 add, 18 div, 12 sqrt, 0 trig; inverse dynamics apart.
    In: X (NQ), V (NV), A (NV), wrench (NW, or NULL). Out: forces (6 x 3). */
 int hexaglide_leg_reactions(const hexaglide_model *model, const hexaglide_real *X, const
     hexaglide_real *V, const hexaglide_real *A, const hexaglide_real *wrench, hexaglide_real
@@ -227,12 +227,28 @@ size_t hexaglide_energy_batch(const hexaglide_model *model, size_t n, const hexa
 /* How far a pose is from singularities: singular values of H, rows of moments divided by a
    length; for every leg the least tested pivot as a fraction of its scale. The length is the rms
    distance of the platform points from their centroid, or where they coincide the rms size of the
-   legs. 439 mul, 276 add, 12 div, 19 sqrt, 0 trig; the singular values apart. In: X (NQ). Out:
+   legs. 433 mul, 276 add, 12 div, 19 sqrt, 0 trig; the singular values apart. In: X (NQ). Out:
    sigma (6), legs (6). */
 int hexaglide_condition(const hexaglide_model *model, const hexaglide_real *X, hexaglide_real
     *sigma, hexaglide_real *legs);
 size_t hexaglide_condition_batch(const hexaglide_model *model, size_t n, const hexaglide_real *X,
     hexaglide_real *sigma, hexaglide_real *legs, int *status);
+
+/* Manipulability of forces: the product of the singular values that condition has by default, and
+   the least over the largest of them. 433 mul, 276 add, 12 div, 19 sqrt, 0 trig; the singular
+   values apart. In: X (NQ). Out: measure (1), isotropy (1). */
+int hexaglide_manipulability(const hexaglide_model *model, const hexaglide_real *X, hexaglide_real
+    *measure, hexaglide_real *isotropy);
+size_t hexaglide_manipulability_batch(const hexaglide_model *model, size_t n, const hexaglide_real
+    *X, hexaglide_real *measure, hexaglide_real *isotropy, int *status);
+
+/* How near actuators and legs are to being singular: relative distances, 0 where they are. 433
+   mul, 276 add, 12 div, 19 sqrt, 0 trig; the singular values apart. In: X (NQ). Out: actuators
+   (1), legs (1). */
+int hexaglide_singularity_distance(const hexaglide_model *model, const hexaglide_real *X,
+    hexaglide_real *actuators, hexaglide_real *legs);
+size_t hexaglide_singularity_distance_batch(const hexaglide_model *model, size_t n, const
+    hexaglide_real *X, hexaglide_real *actuators, hexaglide_real *legs, int *status);
 
 /* X at which the actuated joints stand at q_actuated, by Gauss-Newton from X0. Extra coordinates
    that actuators do not determine stay. Impossible where no pose is found. In: q_actuated (NU),
@@ -249,7 +265,7 @@ int hexaglide_dissipation(const hexaglide_model *model, const hexaglide_real *X,
 size_t hexaglide_dissipation_batch(const hexaglide_model *model, size_t n, const hexaglide_real
     *X, const hexaglide_real *V, hexaglide_real *dissipation, int *status);
 
-/* Generalised momentum M V. 1053 mul, 759 add, 18 div, 12 sqrt, 0 trig. In: X (NQ), V (NV). Out:
+/* Generalised momentum M V. 1047 mul, 759 add, 18 div, 12 sqrt, 0 trig. In: X (NQ), V (NV). Out:
    momentum (NV). */
 int hexaglide_momentum(const hexaglide_model *model, const hexaglide_real *X, const hexaglide_real
     *V, hexaglide_real *momentum);
@@ -257,35 +273,35 @@ size_t hexaglide_momentum_batch(const hexaglide_model *model, size_t n, const he
     const hexaglide_real *V, hexaglide_real *momentum, int *status);
 
 /* How far the joints are from the nearer limit of displacement, negative beyond it; infinite
-   where there is none. 204 mul, 144 add, 6 div, 12 sqrt, 12 trig. In: X (NQ). Out: margins (NJ).
+   where there is none. 198 mul, 144 add, 6 div, 12 sqrt, 12 trig. In: X (NQ). Out: margins (NJ).
    */
 int hexaglide_joint_margins(const hexaglide_model *model, const hexaglide_real *X, hexaglide_real
     *margins);
 size_t hexaglide_joint_margins_batch(const hexaglide_model *model, size_t n, const hexaglide_real
     *X, hexaglide_real *margins, int *status);
 
-/* Whether all joints are within their limits of displacement. 204 mul, 144 add, 6 div, 12 sqrt,
+/* Whether all joints are within their limits of displacement. 198 mul, 144 add, 6 div, 12 sqrt,
    12 trig. In: X (NQ). Out: within (1). */
 int hexaglide_within_limits(const hexaglide_model *model, const hexaglide_real *X, hexaglide_real
     *within);
 size_t hexaglide_within_limits_batch(const hexaglide_model *model, size_t n, const hexaglide_real
     *X, hexaglide_real *within, int *status);
 
-/* Displacements of the actuated joints, in the order of tau. 204 mul, 144 add, 6 div, 12 sqrt, 12
+/* Displacements of the actuated joints, in the order of tau. 198 mul, 144 add, 6 div, 12 sqrt, 12
    trig. In: X (NQ). Out: q (NU). */
 int hexaglide_actuator_positions(const hexaglide_model *model, const hexaglide_real *X,
     hexaglide_real *q);
 size_t hexaglide_actuator_positions_batch(const hexaglide_model *model, size_t n, const
     hexaglide_real *X, hexaglide_real *q, int *status);
 
-/* Rates of the actuated joints, in the order of tau. 462 mul, 294 add, 18 div, 12 sqrt, 0 trig.
+/* Rates of the actuated joints, in the order of tau. 456 mul, 294 add, 18 div, 12 sqrt, 0 trig.
    In: X (NQ), V (NV). Out: rates (NU). */
 int hexaglide_actuator_rates(const hexaglide_model *model, const hexaglide_real *X, const
     hexaglide_real *V, hexaglide_real *rates);
 size_t hexaglide_actuator_rates_batch(const hexaglide_model *model, size_t n, const hexaglide_real
     *X, const hexaglide_real *V, hexaglide_real *rates, int *status);
 
-/* Accelerations of the actuated joints, in the order of tau. 684 mul, 444 add, 18 div, 12 sqrt, 0
+/* Accelerations of the actuated joints, in the order of tau. 678 mul, 444 add, 18 div, 12 sqrt, 0
    trig. In: X (NQ), V (NV), A (NV). Out: accelerations (NU). */
 int hexaglide_actuator_accelerations(const hexaglide_model *model, const hexaglide_real *X, const
     hexaglide_real *V, const hexaglide_real *A, hexaglide_real *accelerations);

@@ -61,6 +61,7 @@ __all__ = [
     "joint_margins",
     "joint_rates",
     "leg_reactions",
+    "manipulability",
     "momentum",
     "null_space",
     "pose",
@@ -68,6 +69,7 @@ __all__ = [
     "power",
     "retract",
     "rotation",
+    "singularity_distance",
     "within_limits",
 ]
 
@@ -600,12 +602,12 @@ def _prepare(p):
     )
     # (pus-d_phi_3) coefficient of the acceleration in: inertia force of link 3 from its turning about its reference point
     pus_d_phi_3_in_axes3_xy = pus_h_3_in_spec3_z*pus_w_3_in_axes3_y
-    # (pus-trace_J_3) half the trace of that inertia tensor
-    pus_trace_J_3 = 0.5*pus_J_3_in_spec3_xx + 0.5*pus_J_3_in_spec3_yy + 0.5*pus_J_3_in_spec3_zz
     # (pus-Sigma_3) second moment of mass of the links that turn with link 3
-    pus_Sigma_3_in_axes3_xx = pus_trace_J_3 - pus_J_3_in_spec3_xx
-    pus_Sigma_3_in_axes3_yy = pus_trace_J_3 - pus_J_3_in_spec3_zz
-    pus_Sigma_3_in_axes3_zz = pus_trace_J_3 - pus_J_3_in_spec3_yy
+    pus_Sigma_3_t = pus_J_3_in_spec3_xx + pus_J_3_in_spec3_yy + pus_J_3_in_spec3_zz
+    pus_Sigma_3_t_2 = 0.5*pus_Sigma_3_t
+    pus_Sigma_3_in_axes3_xx = pus_Sigma_3_t_2 - pus_J_3_in_spec3_xx
+    pus_Sigma_3_in_axes3_yy = pus_Sigma_3_t_2 - pus_J_3_in_spec3_zz
+    pus_Sigma_3_in_axes3_zz = pus_Sigma_3_t_2 - pus_J_3_in_spec3_yy
     # (pus-d_Gamma_3) coefficient of the acceleration in: moment about axis 3 of the distal links' inertia and weight
     pus_d_Gamma_3_t = pus_J_3_in_spec3_yy*pus_w_3_in_axes3_y
     pus_d_Gamma_3_in_axes3_y = pus_d_Gamma_3_t + pus_h_3_in_spec3_x
@@ -887,6 +889,24 @@ def _constants(p, name):
     return p._cache[name]
 
 
+class _Vector(list):
+    """A vector, or a matrix row by row, of a single state."""
+
+    def __add__(self, other):
+        return _Vector([a + b for a, b in zip(self, other)])
+
+    def __sub__(self, other):
+        return _Vector([a - b for a, b in zip(self, other)])
+
+    def __neg__(self):
+        return _Vector([-a for a in self])
+
+
+def _are_finite(rows):
+    """Whether lists of floats have finite entries alone."""
+    return math.isfinite(sum(map(sum, rows))) or all(all(map(math.isfinite, row)) for row in rows)
+
+
 class _Floats:
     """Functions of a state after another, in Python floats: the way for few states."""
 
@@ -916,11 +936,32 @@ class _Floats:
         """Lists that a function gives at a state."""
         try:
             ok, arrays = function(self, *given)
-        except (ZeroDivisionError, OverflowError, ValueError):
+        except (ArithmeticError, ValueError):
             ok = False
-        if ok and all(all(map(math.isfinite, array)) for array in arrays):
+        if ok and _are_finite(arrays):
             return arrays
         return [[np.nan] * math.prod(_SHAPES[n]) for n in names]
+
+    def solved(self, order, a, b):
+        """Solutions, straight through; and which are beyond doubt."""
+        sure, x = np.zeros(self.states, dtype=bool), np.full(b.shape, np.nan)
+        for k, given in enumerate(zip(a.T.tolist(), b.T.tolist())):
+            try:
+                sure[k], (x[:, k],) = order(self, *given)
+            except ZeroDivisionError:
+                pass
+        return sure, x
+
+
+class _Single(_Floats):
+    """A single state in lists of floats throughout."""
+
+    def run(self, function, names, *vectors):
+        """Arrays of a function, row by row; ArithmeticError or ValueError where the state is impossible."""
+        ok, arrays = function(self, *vectors)
+        if not (ok and _are_finite(arrays)):
+            raise ArithmeticError
+        return [_Vector(a) for a in arrays]
 
 
 class _Arrays:
@@ -950,20 +991,27 @@ class _Arrays:
     def zeros(self, name):
         return np.zeros((math.prod(_SHAPES[name]), self.states))
 
-    def computed(self, function, names, vectors):
-        """Flags and arrays (*shape, states) of a function."""
+    def computed(self, function, *vectors):
+        """Flags and arrays (entries, states) of a function."""
         if self.kept is None:
-            flags, arrays = function(self, *vectors)
-        else:
-            if self.done not in self.kept:
-                self.kept[self.done] = _Replay(self.p, function, [len(v) for v in vectors], self.states)
-            flags, arrays = self.kept[self.done].run(vectors)
-            self.done += 1
-        return flags, [a.reshape(*_SHAPES[n], self.states) for a, n in zip(arrays, names)]
+            return function(self, *vectors)
+        if self.done not in self.kept:
+            self.kept[self.done] = _Replay(self.p, function, [len(v) for v in vectors], self.states)
+        self.done += 1
+        return self.kept[self.done - 1].run(vectors)
+
+    def shaped(self, names, arrays):
+        return [a.reshape(*_SHAPES[n], self.states) for a, n in zip(arrays, names)]
+
+    def solved(self, order, a, b):
+        """Solutions, straight through; and which are beyond doubt."""
+        sure, (x,) = self.computed(order, a, b)
+        return sure, np.array(x)
 
     def run(self, function, names, *vectors):
         """Arrays (*shape, states) of a function; NaN where the state is impossible."""
-        ok, arrays = self.computed(function, names, vectors)
+        ok, arrays = self.computed(function, *vectors)
+        arrays = self.shaped(names, arrays)
         ok = np.logical_and(ok, _finite(arrays, self.states))
         if not np.all(ok):
             for a in arrays:
@@ -980,10 +1028,10 @@ class _Judged(_Arrays):
 
     def run(self, function, names, *vectors):
         """Arrays (*shape, states) of a function, also where they are nonsense."""
-        (valid, reached, clear), arrays = self.computed(function, names, vectors)
+        (valid, reached, clear), arrays = self.computed(function, *vectors)
         for code, good in ((3, valid), (1, reached), (2, clear)):
             self.failed[code] |= np.logical_not(good)
-        return arrays
+        return self.shaped(names, arrays)
 
     def closed(self, q):
         """q, noting where the iteration has not converged."""
@@ -995,26 +1043,90 @@ class _Judged(_Arrays):
         return np.select(list(self.failed.values()), list(self.failed), np.where(possible, 0, 3))
 
 
+_IN_ONE = {}  # by function
+
+
+def _in_one(function):
+    """A function that tells whether a state is possible, of one that tells why not."""
+
+    def run(m, *vectors):
+        (valid, reached, clear), arrays = function(m, *vectors)
+        return valid & reached & clear, arrays
+
+    return _IN_ONE.setdefault(function, run)
+
+
 def _mode(p, states, kept=None):
     """The faster way for so many states."""
     return (_Floats if 0 < states <= _FEW else _Arrays)(p, states, kept)
 
 
-def _call(function, steps, p, *arguments, mode=_mode, unbounded=False):
+def _call(function, steps, p, *arguments, mode=_mode, unbounded=False, plain=()):
     """What the steps give at arguments (name, value, shape of a state, default, rule).
 
-    Where that may be infinite only NaN makes a state impossible.
+    Where that may be infinite only NaN makes a state impossible.  `plain` has the shapes of results
+    where a single state needs no arrays.
     """
+    p, read = _given(p), [a[-1] != "unused" for a in arguments]
+    lists = plain and _lists(arguments)
+    if lists:
+        found = _state(_Single(p, 1), steps, lists, read)
+        results = [_result(a, shape) for a, shape in zip(found or plain, plain)]
+        return results[0] if len(results) == 1 else tuple(results)
     given = [_argument(function, *a) for a in arguments]
     shapes = [a[2] for a in arguments]
     leads = {a[0]: v.shape[: v.ndim - len(a[2])] for a, v in zip(arguments, given)}
-    lead, p = _lead(leads), _given(p)
-    read = [a[4:] != ("unused",) for a in arguments]
-    if lead or mode is _Judged:
+    lead = _lead(leads)
+    if plain and 0 < math.prod(lead) <= _FEW:
+        results = _few(steps, p, lead, given, shapes, read, plain)
+    elif lead or mode is _Judged:
         results = _many(steps, p, lead, given, shapes, read, mode, unbounded)
     else:
         results = _one(steps, p, given, shapes, read, unbounded)
     return results[0] if len(results) == 1 else tuple(results)
+
+
+def _lists(arguments):
+    """Arguments of a single state as lists, where they are such arrays as they mostly are."""
+    found = []
+    for row in arguments:
+        value, shape = row[1:3]
+        if type(value) is np.ndarray:
+            if value.shape != shape or value.dtype is not _REAL or row[-1] == "positive":
+                return None
+            found.append(_Vector(value.tolist()))
+        elif value is None and len(row) > 3 and row[3] is not None:
+            found.append(_Vector(row[3] if isinstance(row[3], tuple) else [row[3]] * shape[0]))
+        else:
+            return None
+    return found
+
+
+def _state(m, steps, given, read):
+    """Lists that the steps give at a state; None where it is impossible."""
+    try:
+        found = steps(m, *given)
+    except (ArithmeticError, ValueError):
+        return None
+    return found if _are_finite(list(compress(given, read))) and _are_finite(found) else None
+
+
+def _result(found, shape):
+    """The array of a list; of an impossible state, for which its shape is given, NaN."""
+    if found is shape:
+        return np.full(shape, np.nan)
+    return np.array(found) if len(shape) == 1 else np.array(found).reshape(shape)
+
+
+def _few(steps, p, lead, given, shapes, read, plain):
+    """Results at a few states, one after another."""
+    m, rows = _Single(p, 1), []
+    for v, shape in zip(given, shapes):
+        flat = np.broadcast_to(v, lead + shape).reshape(math.prod(lead), -1)
+        rows.append(map(_Vector, flat.tolist()))
+    impossible = [[np.nan] * math.prod(shape) for shape in plain]
+    found = [_state(m, steps, state, read) or impossible for state in zip(*rows)]
+    return [np.array(a).reshape(lead + shape) for a, shape in zip(zip(*found), plain)]
 
 
 def _one(steps, p, given, shapes, read, unbounded):
@@ -1033,7 +1145,11 @@ def _many(steps, p, lead, given, shapes, read, mode, unbounded):
     """Results at many states, block by block; the last block begins where it is as long as the others."""
     count = math.prod(lead)
     size, kept = min(count, _BLOCK), {} if count >= _MANY else None
-    flat = [np.broadcast_to(v, lead + s).reshape(count, *s) for v, s in zip(given, shapes)]
+    # one value for all states stands for itself
+    flat = [
+        np.broadcast_to(v, lead + s).reshape(count, *s) if v.ndim > len(s) else v
+        for v, s in zip(given, shapes)
+    ]
     possible, status, outputs = np.ones(count, dtype=bool), np.zeros(count, dtype=int), []
     if count > size:
         # Never touched, freed at once: the C library, which learns from it, then keeps the memory
@@ -1042,7 +1158,7 @@ def _many(steps, p, lead, given, shapes, read, mode, unbounded):
     with np.errstate(all="ignore"):
         for stop in (*range(size, count, max(size, 1)), count):
             block = slice(stop - size, stop)
-            states = [_states_last(v[block]) for v in flat]
+            states = [_states_last(v, s, block) for v, s in zip(flat, shapes)]
             m, good = mode(p, size, kept), possible[block]
             found = steps(m, *states)
             if not outputs:
@@ -1062,15 +1178,17 @@ def _many(steps, p, lead, given, shapes, read, mode, unbounded):
     return [a.reshape(lead + a.shape[1:])[()] for a in outputs]
 
 
-def _states_last(a):
-    """A contiguous array (*shape, states) of one (states, *shape)."""
-    return np.ascontiguousarray(a.transpose(*range(1, a.ndim), 0))
+def _states_last(a, shape, block):
+    """An array (*shape, states) of a block of one (states, *shape), or of a value for all."""
+    if a.ndim == len(shape):
+        return np.broadcast_to(a[..., None], (*shape, block.stop - block.start))
+    return np.ascontiguousarray(a[block].transpose(*range(1, a.ndim), 0))
 
 
 def _finite(arrays, states):
     """In which states all entries of arrays (*shape, states) are finite."""
     flat = [a.reshape(math.prod(a.shape[:-1]), states) for a in arrays]
-    good = np.isfinite(sum(np.add.reduce(a, axis=0) for a in flat))
+    good = np.isfinite(sum(np.einsum("es->s", a) for a in flat))
     if not np.all(good):  # or the sum is too large
         good = np.logical_and.reduce([np.isfinite(a).all(axis=0) for a in flat])
     return good
@@ -1179,6 +1297,8 @@ class _Record:
 
     def made(self, operation, *operands):
         """The result of an operation."""
+        if operation in _WITHOUT and operands[0] is _WITHOUT[operation]:
+            return operands[1]
         numbers = [self.number(operand) for operand in operands]
         if all(self.kinds[n] == "one" for n in numbers):
             kind = "one"
@@ -1215,6 +1335,7 @@ class _Record:
         return counts
 
 
+_WITHOUT = {np.logical_and: True}  # first operands that change nothing
 _OF_FLAGS = {np.logical_and, np.greater, np.greater_equal}
 _RECORDS = {}  # by function
 
@@ -1226,11 +1347,12 @@ class _Replay:
         if function not in _RECORDS:
             _RECORDS[function] = _Record(p, function, sizes)
         r = _RECORDS[function]
-        made = {kind: _rows(n, states, bool if kind == "flag" else float) for kind, n in r.counts.items()}
-        made["one"] = [np.empty(()) for _ in range(r.counts["one"])]
-        made["out"] = _rows(sum(r.sizes), states)
-        self.inputs = [_rows(size, states) for size in sizes]
-        self.arrays = np.split(made["out"], np.cumsum(r.sizes)[:-1])
+        rows = _rows(r.counts["state"] + sum(r.sizes) + sum(sizes), states)
+        given, out, state = np.split(rows, np.cumsum((sum(sizes), sum(r.sizes))))
+        made = {"state": state, "out": out, "one": [np.empty(()) for _ in range(r.counts["one"])]}
+        made["flag"] = np.empty((r.counts["flag"], states), dtype=bool)
+        self.inputs = np.split(given, np.cumsum(sizes)[:-1])
+        self.arrays = np.split(out, np.cumsum(r.sizes)[:-1])
         at = {number: np.array(value) for value, number in r.literals.items()}
         for values, given in zip(r.inputs, self.inputs):
             at |= {v.number: row for v, row in zip(values, given)}
@@ -1252,9 +1374,26 @@ class _Replay:
         return self.flags, self.arrays
 
 
-def _rows(count, states, kind=float):
-    """Rows of so many states, a cache line apart from each other."""
-    return np.empty((count, states + 8), dtype=kind)[:, :states]
+def _rows(count, states):
+    """Rows of so many states in one piece, which the system keeps in a few large pages if it is told.
+
+    NumPy tells it of pieces from 4 MB on.  It makes operations a third faster.
+    """
+    row = states + 8  # a cache line further: rows do not compete for the same places of the cache
+    piece = np.empty(max(count * row, 2 * _PAGE) + _PAGE)
+    start = -(piece.ctypes.data // piece.itemsize) % _PAGE
+    return piece[start : start + count * row].reshape(count, row)[:, :states]
+
+
+_PAGE = (2 << 20) // 8  # numbers in a large page
+
+
+def _times(a, b):
+    """Products of matrices (m, n, states) with vectors (n, states)."""
+    if isinstance(b, _Vector):
+        rows = (a[k : k + len(b)] for k in range(0, len(a), len(b)))
+        return _Vector([sum([x * y for x, y in zip(row, b)]) for row in rows])
+    return np.einsum("ijs,js->is", a, b)
 
 
 def _with_forces(a, amounts, directions, legs):
@@ -1375,8 +1514,10 @@ _CLEARLY = 2.0  # rows change places only for a pivot that is larger by this fac
 
 def _solve(a, b):
     """x with a x = b, a (n, n, states), b (n, states): rows scaled, partial pivoting; NaN if singular."""
+    if isinstance(b, _Vector):
+        return _Vector(_solve_one([a[k : k + len(b)] for k in range(0, len(a), len(b))], b))
     n, states = b.shape
-    if 0 < states <= _FEW:
+    if 0 < states <= 8:
         systems = zip(a.transpose(2, 0, 1).tolist(), b.T.tolist())
         return np.array([_solve_one(*each) for each in systems]).T.reshape(n, states)
     size = np.max(np.abs(a), axis=1, initial=0.0)
@@ -1401,6 +1542,38 @@ def _solve(a, b):
         known = np.einsum("js,js->s", rows[k, k + 1 : n], x[k + 1 :])
         x[k] = (rows[k, n] - known) / rows[k, k]
     x[:, ~(good & np.isfinite(x).all(axis=0))] = np.nan
+    return x
+
+
+class _Order:
+    """How a system is solved near home.
+
+    Args:
+        solve: the function for so many equations.
+        rows: in the order of their pivots.
+        limits: of multiples, column by column, and of 1/pivot.
+    """
+
+    def __init__(self, solve, rows, limits):
+        self.solve, self.rows, self.limits = solve, rows, limits
+
+    def __call__(self, m, a, b):
+        """Solutions of a x = b, and whether these are beyond doubt."""
+        return self.solve(a, b, self.rows, self.limits)
+
+
+def _straight(m, a, b, order):
+    """The same, in the order of rows at home; with a choice of rows only where that is in doubt."""
+    if isinstance(b, _Vector):
+        try:
+            sure, (x,) = order(m, a, b)
+        except ZeroDivisionError:
+            sure = False
+        return _Vector(x) if sure else _solve(a, b)
+    sure, x = m.solved(order, a.reshape(-1, m.states), b)
+    at = np.flatnonzero(np.logical_not(sure))
+    if at.size:
+        x[:, at] = _solve(a[..., at], b[:, at])
     return x
 
 
@@ -1457,6 +1630,16 @@ def _singular_values(a):
     values = np.linalg.svd(a, compute_uv=False).T.copy()
     values[:, bad] = np.nan
     return values
+
+
+def _least_entry(a):
+    """The least entry."""
+    return np.min(a, axis=0)
+
+
+def _spread(a, n):
+    """Of the first n entries the product, and the last over the first, 0 where that is 0."""
+    return np.prod(a[:n], axis=0), np.where(a[0] == 0.0, 0.0, a[n - 1] / a[0])
 
 
 def _least_squares(a, b, least):
@@ -1541,7 +1724,7 @@ def _nearest(R):
     return u @ vt
 
 
-# dynamics: 1869 mul, 1395 add, 18 div, 12 sqrt, 0 trig
+# dynamics: 1863 mul, 1395 add, 18 div, 12 sqrt, 0 trig
 def _run_dynamics(m, X, V):
     sqrt = m.sqrt
     shared, legs = m.constants("dynamics")
@@ -1701,28 +1884,27 @@ def _run_dynamics(m, X, V):
         pus_J_3_t*pus_base_frame_xx + pus_J_3_t_2*pus_base_frame_yx +
             pus_J_3_t_3*pus_base_frame_zx
         )
-        pus_J_3_t_5 = pus_J_3_t*pus_J_3_t + pus_J_3_t_2*pus_J_3_t_2 + pus_J_3_t_3*pus_J_3_t_3
-        pus_J_3_t_6 = pus_J_3_t_4*pus_J_3_t_4 + pus_size_t - pus_J_3_t_5
-        pus_J_3_t_7 = -sqrt(pus_J_3_t_6)*pus_branch_1
-        pus_J_3_t_8 = (
+        pus_J_3_t_5 = (
         pus_J_3_t*pus_base_frame_xy + pus_J_3_t_2*pus_base_frame_yy +
             pus_J_3_t_3*pus_base_frame_zy
         )
-        pus_J_3_t_9 = pus_J_3_t_7*pus_J_3_t_7 + pus_J_3_t_8*pus_J_3_t_8
-        pus_J_3_t_10 = sqrt(pus_J_3_t_9)*pus_branch_2
-        pus_J_3_t_11 = inv_pus_size_t*pus_J_3_t_10*pus_platform_joint_offset_x
+        pus_J_3_t_6 = pus_J_3_t*pus_J_3_t + pus_J_3_t_2*pus_J_3_t_2 + pus_J_3_t_3*pus_J_3_t_3
+        pus_J_3_t_7 = pus_J_3_t_4*pus_J_3_t_4 + pus_size_t - pus_J_3_t_6
+        pus_J_3_t_8 = pus_J_3_t_5*pus_J_3_t_5 + pus_J_3_t_7
+        pus_J_3_t_9 = sqrt(pus_J_3_t_8)*pus_branch_2
+        pus_J_3_t_10 = inv_pus_size_t*pus_J_3_t_9*pus_platform_joint_offset_x
         pus_e_2_in_axes3_x = (
         inv_pus_size_t*pus_platform_joint_offset_x*(pus_J_3_t*pus_base_frame_xz +
             pus_J_3_t_2*pus_base_frame_yz + pus_J_3_t_3*pus_base_frame_zz)
         )
-        pus_J_3_in_axes2_xz = (
-        pus_J_3_in_spec3_xy*pus_e_2_in_axes3_x + pus_J_3_in_spec3_yz*pus_J_3_t_11
+        pus_J_3_in_axes2_yz = (
+        pus_J_3_in_spec3_xy*pus_e_2_in_axes3_x + pus_J_3_in_spec3_yz*pus_J_3_t_10
         )
         # (pus-c_2) cosine of the angle of joint 2 from its reference direction
-        inv_pus_J_3_t_9 = 1.0/pus_J_3_t_9
-        pus_c_2_t = inv_pus_J_3_t_9*pus_J_3_t_10*pus_J_3_t_8
+        inv_pus_J_3_t_8 = 1.0/pus_J_3_t_8
+        pus_c_2 = -inv_pus_J_3_t_8*sqrt(pus_J_3_t_7)*pus_J_3_t_9*pus_branch_1
         # (pus-s_2) sine of the angle of joint 2 from its reference direction
-        pus_s_2 = inv_pus_J_3_t_9*pus_J_3_t_10*pus_J_3_t_7
+        pus_s_2 = inv_pus_J_3_t_8*pus_J_3_t_5*pus_J_3_t_9
         # (pus-S_dot) velocity of the connection point
         pus_S_dot_t = omega_y*pus_q_z - omega_z*pus_q_y
         pus_S_dot_t_2 = omega_z*pus_q_x - omega_x*pus_q_z
@@ -1731,24 +1913,24 @@ def _run_dynamics(m, X, V):
         pus_S_dot_y = pus_S_dot_t_2 + t_dot_y
         pus_S_dot_z = pus_S_dot_t_3 + t_dot_z
         # (pus-v_2) velocity of the connection point per rate of joint 2
-        pus_v_2_in_axes3_z = pus_J_3_t_11*pus_platform_joint_offset_x
+        pus_v_2_in_axes3_z = pus_J_3_t_10*pus_platform_joint_offset_x
         # (pus-w_1) reciprocal vector 1
-        axis_z_pus_axes3_x = pus_base_frame_xy*pus_s_2 - pus_base_frame_xx*pus_c_2_t
-        axis_z_pus_axes3_y = pus_base_frame_yy*pus_s_2 - pus_base_frame_yx*pus_c_2_t
-        axis_z_pus_axes3_z = pus_base_frame_zy*pus_s_2 - pus_base_frame_zx*pus_c_2_t
-        pus_e_1_in_axes3_y = pus_e_2_in_axes3_x*pus_s_2
-        pus_w_1_t = pus_c_2_t*pus_e_2_in_axes3_x
+        axis_z_pus_axes3_x = pus_base_frame_xy*pus_c_2 - pus_base_frame_xx*pus_s_2
+        axis_z_pus_axes3_y = pus_base_frame_yy*pus_c_2 - pus_base_frame_yx*pus_s_2
+        axis_z_pus_axes3_z = pus_base_frame_zy*pus_c_2 - pus_base_frame_zx*pus_s_2
+        pus_e_1_in_axes3_y = pus_c_2*pus_e_2_in_axes3_x
+        pus_w_1_t = pus_e_2_in_axes3_x*pus_s_2
         axis_y_pus_axes3_x = (
         pus_base_frame_xx*pus_e_1_in_axes3_y + pus_base_frame_xy*pus_w_1_t -
-            pus_J_3_t_11*pus_base_frame_xz
+            pus_J_3_t_10*pus_base_frame_xz
         )
         axis_y_pus_axes3_y = (
         pus_base_frame_yx*pus_e_1_in_axes3_y + pus_base_frame_yy*pus_w_1_t -
-            pus_J_3_t_11*pus_base_frame_yz
+            pus_J_3_t_10*pus_base_frame_yz
         )
         axis_y_pus_axes3_z = (
         pus_base_frame_zx*pus_e_1_in_axes3_y + pus_base_frame_zy*pus_w_1_t -
-            pus_J_3_t_11*pus_base_frame_zz
+            pus_J_3_t_10*pus_base_frame_zz
         )
         axis_x_pus_axes3_x = (
         axis_y_pus_axes3_y*axis_z_pus_axes3_z - axis_y_pus_axes3_z*axis_z_pus_axes3_y
@@ -1759,14 +1941,14 @@ def _run_dynamics(m, X, V):
         axis_x_pus_axes3_z = (
         axis_y_pus_axes3_x*axis_z_pus_axes3_y - axis_y_pus_axes3_y*axis_z_pus_axes3_x
         )
-        pus_e_1_in_axes3_x = pus_J_3_t_11*pus_s_2
+        pus_e_1_in_axes3_x = pus_J_3_t_10*pus_c_2
         pus_w_1_in_axes3_x = 1.0/pus_e_1_in_axes3_x
         pus_w_1_x = axis_x_pus_axes3_x*pus_w_1_in_axes3_x
         pus_w_1_y = axis_x_pus_axes3_y*pus_w_1_in_axes3_x
         pus_w_1_z = axis_x_pus_axes3_z*pus_w_1_in_axes3_x
         # (pus-w_2) reciprocal vector 2
         pus_w_2_in_axes3_z = 1.0/pus_v_2_in_axes3_z
-        pus_w_2_in_axes3_x = pus_c_2_t*pus_w_1_in_axes3_x*pus_w_2_in_axes3_z
+        pus_w_2_in_axes3_x = pus_s_2*pus_w_1_in_axes3_x*pus_w_2_in_axes3_z
         # (pus-w_3) reciprocal vector 3
         pus_w_3_in_axes3_x = -pus_e_1_in_axes3_y*pus_w_1_in_axes3_x*pus_w_3_in_axes3_y
         # (pus-qd_1) rate of joint 1
@@ -1777,7 +1959,7 @@ def _run_dynamics(m, X, V):
         # (pus-qd_2) rate of joint 2
         pus_qd_2 = (
         pus_w_2_in_axes3_z*(axis_z_pus_axes3_x*pus_S_dot_x + axis_z_pus_axes3_y*pus_S_dot_y +
-            axis_z_pus_axes3_z*pus_S_dot_z + pus_c_2_t*pus_qd_1)
+            axis_z_pus_axes3_z*pus_S_dot_z + pus_qd_1*pus_s_2)
         )
         # (pus-qd_3) rate of joint 3
         pus_qd_3_t = (
@@ -1787,7 +1969,7 @@ def _run_dynamics(m, X, V):
         pus_qd_3 = pus_qd_3_t*pus_w_3_in_axes3_y
         # (pus-omega_2) angular velocity of link 2
         pus_omega_2_in_axes3_x = pus_e_2_in_axes3_x*pus_qd_2
-        pus_omega_2_in_axes3_y = -pus_J_3_t_11*pus_qd_2
+        pus_omega_2_in_axes3_y = -pus_J_3_t_10*pus_qd_2
         # (pus-W_3) centripetal tensor of link 3
         pus_W_3_in_axes3_yz = pus_omega_2_in_axes3_y*pus_qd_3
         pus_W_3_in_axes3_xz = pus_omega_2_in_axes3_x*pus_qd_3
@@ -1819,15 +2001,15 @@ def _run_dynamics(m, X, V):
         # (pus-qdd_1_o) remainder without the acceleration in: acceleration of joint 1
         pus_qdd_1_o = pus_rel_o_in_axes3_x*pus_w_1_in_axes3_x
         # (pus-qdd_2_o) remainder without the acceleration in: acceleration of joint 2
-        pus_qdd_2_o_t = pus_w_2_in_axes3_z*(-pus_rel_o_in_axes3_z - pus_c_2_t*pus_qdd_1_o)
+        pus_qdd_2_o_t = pus_w_2_in_axes3_z*(-pus_rel_o_in_axes3_z - pus_qdd_1_o*pus_s_2)
         # (pus-qdd_3_o) remainder without the acceleration in: acceleration of joint 3
         pus_qdd_3_o = -pus_w_3_in_axes3_y*(pus_e_1_in_axes3_y*pus_qdd_1_o - pus_rel_o_in_axes3_y)
         # (pus-alpha_2_o) remainder without the acceleration in: angular acceleration of link 2
         pus_alpha_2_o_t = pus_e_2_in_axes3_x*pus_qdd_2_o_t
-        pus_alpha_2_o_in_axes3_y = pus_J_3_t_11*pus_qdd_2_o_t
+        pus_alpha_2_o_in_axes3_y = pus_J_3_t_10*pus_qdd_2_o_t
         # (pus-d_alpha_3) coefficient of the acceleration in: angular acceleration of link 3
         pus_d_alpha_3_in_axes3_xz = pus_e_2_in_axes3_x*pus_w_2_in_axes3_z
-        pus_d_alpha_3_t = pus_J_3_t_11*pus_w_2_in_axes3_z
+        pus_d_alpha_3_t = pus_J_3_t_10*pus_w_2_in_axes3_z
         # (pus-alpha_3_o) remainder without the acceleration in: angular acceleration of link 3
         pus_alpha_3_o_in_axes3_x = pus_W_3_in_axes3_yz - pus_alpha_2_o_t
         pus_alpha_3_o_in_axes3_y = pus_alpha_2_o_in_axes3_y - pus_W_3_in_axes3_xz
@@ -1839,15 +2021,15 @@ def _run_dynamics(m, X, V):
         # (pus-acc_1_o) remainder without the acceleration in: acceleration of the reference point of link 1, less gravity
         pus_acc_1_o_in_axes0_x = pus_qdd_1_o - pus_g_in_axes0_x
         # (pus-acc_3_o) remainder without the acceleration in: acceleration of the reference point of link 3, less gravity
-        pus_acc_3_o_t = -pus_c_2_t*pus_g_in_axes0_y - pus_g_in_axes0_x*pus_s_2
+        pus_acc_3_o_t = pus_c_2*pus_g_in_axes0_x + pus_g_in_axes0_y*pus_s_2
         pus_acc_3_o_in_axes3_x = (
-        pus_u_1_in_axes3_x + pus_J_3_t_11*pus_acc_3_o_t - pus_e_2_in_axes3_x*pus_g_in_axes0_z
+        pus_u_1_in_axes3_x - pus_J_3_t_10*pus_acc_3_o_t - pus_e_2_in_axes3_x*pus_g_in_axes0_z
         )
         pus_acc_3_o_in_axes3_y = (
-        pus_u_1_in_axes3_y + pus_J_3_t_11*pus_g_in_axes0_z + pus_acc_3_o_t*pus_e_2_in_axes3_x
+        pus_u_1_in_axes3_y + pus_J_3_t_10*pus_g_in_axes0_z - pus_acc_3_o_t*pus_e_2_in_axes3_x
         )
         pus_acc_3_o_in_axes3_z = (
-        pus_u_1_in_axes3_z + pus_c_2_t*pus_g_in_axes0_x - pus_g_in_axes0_y*pus_s_2
+        pus_u_1_in_axes3_z + pus_g_in_axes0_x*pus_s_2 - pus_c_2*pus_g_in_axes0_y
         )
         # (pus-mu_3_o) remainder without the acceleration in: inertia moment of the links that turn with link 3, about their reference points
         pus_mu_3_o_t = pus_omega_2_in_axes3_x*pus_omega_2_in_axes3_x
@@ -1875,36 +2057,36 @@ def _run_dynamics(m, X, V):
             pus_J_3_in_spec3_yz*pus_alpha_2_o_in_axes3_y
         )
         # (pus-d_Gamma_3) coefficient of the acceleration in: moment about axis 3 of the distal links' inertia and weight
-        pus_d_Gamma_3_in_axes3_z = pus_J_3_in_axes2_xz*pus_w_2_in_axes3_z
+        pus_d_Gamma_3_in_axes3_z = pus_J_3_in_axes2_yz*pus_w_2_in_axes3_z
         pus_d_Gamma_3_in_axes3_x = (
-        pus_h_3_in_spec3_z + pus_w_1_in_axes3_x*(pus_c_2_t*pus_d_Gamma_3_in_axes3_z -
-            pus_d_Gamma_3_t*pus_e_1_in_axes3_y)
+        pus_h_3_in_spec3_z - pus_w_1_in_axes3_x*(pus_d_Gamma_3_t*pus_e_1_in_axes3_y -
+            pus_d_Gamma_3_in_axes3_z*pus_s_2)
         )
         # (pus-d_Gamma_2) coefficient of the acceleration in: moment about axis 2 of the distal links' inertia and weight
         pus_d_Gamma_2_t = (
-        pus_w_2_in_axes3_z*(pus_e_2_in_axes3_x*(pus_J_3_in_spec3_xx*pus_e_2_in_axes3_x +
-            pus_J_3_in_spec3_xz*pus_J_3_t_11) -
-            pus_J_3_t_11*(-pus_J_3_in_spec3_xz*pus_e_2_in_axes3_x -
-            pus_J_3_in_spec3_zz*pus_J_3_t_11))
+        pus_w_2_in_axes3_z*(pus_J_3_t_10*(pus_J_3_in_spec3_xz*pus_e_2_in_axes3_x +
+            pus_J_3_in_spec3_zz*pus_J_3_t_10) -
+            pus_e_2_in_axes3_x*(-pus_J_3_in_spec3_xx*pus_e_2_in_axes3_x -
+            pus_J_3_in_spec3_xz*pus_J_3_t_10))
         )
-        pus_d_Gamma_2_t_2 = pus_J_3_in_axes2_xz*pus_w_3_in_axes3_y
+        pus_d_Gamma_2_t_2 = pus_J_3_in_axes2_yz*pus_w_3_in_axes3_y
         pus_d_Gamma_2_in_axes3_x = (
-        pus_w_1_in_axes3_x*(pus_c_2_t*pus_d_Gamma_2_t - pus_d_Gamma_2_t_2*pus_e_1_in_axes3_y) -
-            pus_J_3_t_11*pus_h_3_in_spec3_y
+        pus_w_1_in_axes3_x*(pus_d_Gamma_2_t*pus_s_2 - pus_d_Gamma_2_t_2*pus_e_1_in_axes3_y) -
+            pus_J_3_t_10*pus_h_3_in_spec3_y
         )
         pus_d_Gamma_2_in_axes3_y = pus_d_Gamma_2_t_2 - pus_e_2_in_axes3_x*pus_h_3_in_spec3_y
         pus_d_Gamma_2_in_axes3_z = (
-        pus_d_Gamma_2_t + pus_J_3_t_11*pus_h_3_in_spec3_x - pus_e_2_in_axes3_x*pus_h_3_in_spec3_z
+        pus_d_Gamma_2_t + pus_J_3_t_10*pus_h_3_in_spec3_x - pus_e_2_in_axes3_x*pus_h_3_in_spec3_z
         )
         # (pus-G_o) remainder without the acceleration in: force at the connection point that balances the leg's inertia and weight along all degrees of freedom
-        pus_G_o_in_axes3_z = (
-        pus_w_2_in_axes3_z*(pus_e_2_in_axes3_x*pus_mu_3_o_in_axes3_x -
-            pus_J_3_t_11*pus_mu_3_o_in_axes3_y)
+        pus_G_o_t = (
+        pus_w_2_in_axes3_z*(pus_J_3_t_10*pus_mu_3_o_in_axes3_y -
+            pus_e_2_in_axes3_x*pus_mu_3_o_in_axes3_x)
         )
         pus_G_o_in_axes3_y = pus_mu_3_o_in_axes3_z*pus_w_3_in_axes3_y
         # (pus-d_c) coefficient of the acceleration in: leg force on the platform without actuation and without the mass at the connection point
         pus_d_c_in_axes3_xx = (
-        pus_J_3_t_11*pus_h_3_in_spec3_y*pus_w_2_in_axes3_x -
+        pus_J_3_t_10*pus_h_3_in_spec3_y*pus_w_2_in_axes3_x -
             pus_d_Gamma_2_in_axes3_x*pus_w_2_in_axes3_x -
             pus_d_Gamma_3_in_axes3_x*pus_w_3_in_axes3_x - pus_h_3_in_spec3_z*pus_w_3_in_axes3_x -
             pus_link1_mass*pus_w_1_in_axes3_x*pus_w_1_in_axes3_x
@@ -1924,8 +2106,8 @@ def _run_dynamics(m, X, V):
         pus_c_o_in_axes3_x = (
         pus_B_3_o_in_axes3_xy*pus_h_3_in_spec3_z + pus_h_3_in_spec3_x*(pus_mu_3_o_t_2 +
             pus_mu_3_o_t_3) - pus_alpha_2_o_in_axes3_y*pus_h_3_in_spec3_y -
-            pus_w_1_in_axes3_x*(pus_G_o_in_axes3_z*pus_c_2_t +
-            pus_acc_1_o_in_axes0_x*pus_link1_mass - pus_G_o_in_axes3_y*pus_e_1_in_axes3_y)
+            pus_w_1_in_axes3_x*(pus_acc_1_o_in_axes0_x*pus_link1_mass -
+            pus_G_o_in_axes3_y*pus_e_1_in_axes3_y - pus_G_o_t*pus_s_2)
         )
         pus_c_o_in_axes3_y = (
         -pus_G_o_in_axes3_y - pus_B_3_o_in_axes3_yx*pus_h_3_in_spec3_x -
@@ -1933,8 +2115,8 @@ def _run_dynamics(m, X, V):
             pus_mu_3_o_t_3)
         )
         pus_c_o_in_axes3_z = (
-        pus_B_3_o_in_axes3_zy*pus_h_3_in_spec3_z + pus_h_3_in_spec3_y*(pus_mu_3_o_t +
-            pus_mu_3_o_t_2) - pus_G_o_in_axes3_z - pus_B_3_o_in_axes3_zx*pus_h_3_in_spec3_x
+        pus_G_o_t + pus_B_3_o_in_axes3_zy*pus_h_3_in_spec3_z + pus_h_3_in_spec3_y*(pus_mu_3_o_t +
+            pus_mu_3_o_t_2) - pus_B_3_o_in_axes3_zx*pus_h_3_in_spec3_x
         )
         # (pus-Q) inertia of the leg at the connection point, without the mass gathered there
         pus_Q_t = pus_d_c_in_axes3_xx - pus_d_c_in_axes3_yy
@@ -2019,7 +2201,7 @@ def _run_dynamics(m, X, V):
         pus_H_a_1_y = pus_q_z*pus_w_1_x - pus_q_x*pus_w_1_z
         pus_H_a_1_z = pus_q_x*pus_w_1_y - pus_q_y*pus_w_1_x
         ok = (
-        ok & (pus_J_3_t_6 >= 0.0) & (abs(pus_J_3_t_9) > _TOLERANCE * _TOLERANCE * pus_size_t_2) &
+        ok & (pus_J_3_t_7 >= 0.0) & (abs(pus_J_3_t_8) > _TOLERANCE * _TOLERANCE * pus_size_t_2) &
             (abs(pus_v_2_in_axes3_z) > _TOLERANCE * pus_size) & (abs(pus_e_1_in_axes3_x) >
             _TOLERANCE * 1.0)
         )
@@ -2139,7 +2321,7 @@ def _run_dynamics(m, X, V):
     return ok, (out_M, out_Z, out_H,)
 
 
-# M: 1053 mul, 759 add, 18 div, 12 sqrt, 0 trig
+# M: 1047 mul, 759 add, 18 div, 12 sqrt, 0 trig
 def _run_M(m, X):
     sqrt = m.sqrt
     shared, legs = m.constants("M")
@@ -2240,67 +2422,66 @@ def _run_M(m, X):
         pus_J_3_t*pus_base_frame_xx + pus_J_3_t_2*pus_base_frame_yx +
             pus_J_3_t_3*pus_base_frame_zx
         )
-        pus_J_3_t_5 = pus_J_3_t*pus_J_3_t + pus_J_3_t_2*pus_J_3_t_2 + pus_J_3_t_3*pus_J_3_t_3
-        pus_J_3_t_6 = pus_J_3_t_4*pus_J_3_t_4 + pus_size_t - pus_J_3_t_5
-        pus_J_3_t_7 = -sqrt(pus_J_3_t_6)*pus_branch_1
-        pus_J_3_t_8 = (
+        pus_J_3_t_5 = (
         pus_J_3_t*pus_base_frame_xy + pus_J_3_t_2*pus_base_frame_yy +
             pus_J_3_t_3*pus_base_frame_zy
         )
-        pus_J_3_t_9 = pus_J_3_t_7*pus_J_3_t_7 + pus_J_3_t_8*pus_J_3_t_8
-        pus_J_3_t_10 = sqrt(pus_J_3_t_9)*pus_branch_2
-        pus_J_3_t_11 = inv_pus_size_t*pus_J_3_t_10*pus_platform_joint_offset_x
+        pus_J_3_t_6 = pus_J_3_t*pus_J_3_t + pus_J_3_t_2*pus_J_3_t_2 + pus_J_3_t_3*pus_J_3_t_3
+        pus_J_3_t_7 = pus_J_3_t_4*pus_J_3_t_4 + pus_size_t - pus_J_3_t_6
+        pus_J_3_t_8 = pus_J_3_t_5*pus_J_3_t_5 + pus_J_3_t_7
+        pus_J_3_t_9 = sqrt(pus_J_3_t_8)*pus_branch_2
+        pus_J_3_t_10 = inv_pus_size_t*pus_J_3_t_9*pus_platform_joint_offset_x
         pus_e_2_in_axes3_x = (
         inv_pus_size_t*pus_platform_joint_offset_x*(pus_J_3_t*pus_base_frame_xz +
             pus_J_3_t_2*pus_base_frame_yz + pus_J_3_t_3*pus_base_frame_zz)
         )
-        pus_J_3_in_axes2_xz = (
-        pus_J_3_in_spec3_xy*pus_e_2_in_axes3_x + pus_J_3_in_spec3_yz*pus_J_3_t_11
+        pus_J_3_in_axes2_yz = (
+        pus_J_3_in_spec3_xy*pus_e_2_in_axes3_x + pus_J_3_in_spec3_yz*pus_J_3_t_10
         )
         # (pus-c_2) cosine of the angle of joint 2 from its reference direction
-        inv_pus_J_3_t_9 = 1.0/pus_J_3_t_9
-        pus_c_2_t = inv_pus_J_3_t_9*pus_J_3_t_10*pus_J_3_t_8
+        inv_pus_J_3_t_8 = 1.0/pus_J_3_t_8
+        pus_c_2 = -inv_pus_J_3_t_8*sqrt(pus_J_3_t_7)*pus_J_3_t_9*pus_branch_1
         # (pus-s_2) sine of the angle of joint 2 from its reference direction
-        pus_s_2 = inv_pus_J_3_t_9*pus_J_3_t_10*pus_J_3_t_7
+        pus_s_2 = inv_pus_J_3_t_8*pus_J_3_t_5*pus_J_3_t_9
         # (pus-v_2) velocity of the connection point per rate of joint 2
-        pus_v_2_in_axes3_z = pus_J_3_t_11*pus_platform_joint_offset_x
+        pus_v_2_in_axes3_z = pus_J_3_t_10*pus_platform_joint_offset_x
         # (pus-w_1) reciprocal vector 1
-        pus_e_1_in_axes3_x = pus_J_3_t_11*pus_s_2
+        pus_e_1_in_axes3_x = pus_J_3_t_10*pus_c_2
         pus_w_1_in_axes3_x = 1.0/pus_e_1_in_axes3_x
         # (pus-w_2) reciprocal vector 2
         pus_w_2_in_axes3_z = 1.0/pus_v_2_in_axes3_z
-        pus_w_2_in_axes3_x = pus_c_2_t*pus_w_1_in_axes3_x*pus_w_2_in_axes3_z
+        pus_w_2_in_axes3_x = pus_s_2*pus_w_1_in_axes3_x*pus_w_2_in_axes3_z
         # (pus-w_3) reciprocal vector 3
-        pus_e_1_in_axes3_y = pus_e_2_in_axes3_x*pus_s_2
+        pus_e_1_in_axes3_y = pus_c_2*pus_e_2_in_axes3_x
         pus_w_3_in_axes3_x = -pus_e_1_in_axes3_y*pus_w_1_in_axes3_x*pus_w_3_in_axes3_y
         # (pus-d_alpha_3) coefficient of the acceleration in: angular acceleration of link 3
         pus_d_alpha_3_in_axes3_xz = pus_e_2_in_axes3_x*pus_w_2_in_axes3_z
-        pus_d_alpha_3_t = pus_J_3_t_11*pus_w_2_in_axes3_z
+        pus_d_alpha_3_t = pus_J_3_t_10*pus_w_2_in_axes3_z
         # (pus-d_Gamma_3) coefficient of the acceleration in: moment about axis 3 of the distal links' inertia and weight
-        pus_d_Gamma_3_in_axes3_z = pus_J_3_in_axes2_xz*pus_w_2_in_axes3_z
+        pus_d_Gamma_3_in_axes3_z = pus_J_3_in_axes2_yz*pus_w_2_in_axes3_z
         pus_d_Gamma_3_in_axes3_x = (
-        pus_h_3_in_spec3_z + pus_w_1_in_axes3_x*(pus_c_2_t*pus_d_Gamma_3_in_axes3_z -
-            pus_d_Gamma_3_t*pus_e_1_in_axes3_y)
+        pus_h_3_in_spec3_z - pus_w_1_in_axes3_x*(pus_d_Gamma_3_t*pus_e_1_in_axes3_y -
+            pus_d_Gamma_3_in_axes3_z*pus_s_2)
         )
         # (pus-d_Gamma_2) coefficient of the acceleration in: moment about axis 2 of the distal links' inertia and weight
         pus_d_Gamma_2_t = (
-        pus_w_2_in_axes3_z*(pus_e_2_in_axes3_x*(pus_J_3_in_spec3_xx*pus_e_2_in_axes3_x +
-            pus_J_3_in_spec3_xz*pus_J_3_t_11) -
-            pus_J_3_t_11*(-pus_J_3_in_spec3_xz*pus_e_2_in_axes3_x -
-            pus_J_3_in_spec3_zz*pus_J_3_t_11))
+        pus_w_2_in_axes3_z*(pus_J_3_t_10*(pus_J_3_in_spec3_xz*pus_e_2_in_axes3_x +
+            pus_J_3_in_spec3_zz*pus_J_3_t_10) -
+            pus_e_2_in_axes3_x*(-pus_J_3_in_spec3_xx*pus_e_2_in_axes3_x -
+            pus_J_3_in_spec3_xz*pus_J_3_t_10))
         )
-        pus_d_Gamma_2_t_2 = pus_J_3_in_axes2_xz*pus_w_3_in_axes3_y
+        pus_d_Gamma_2_t_2 = pus_J_3_in_axes2_yz*pus_w_3_in_axes3_y
         pus_d_Gamma_2_in_axes3_x = (
-        pus_w_1_in_axes3_x*(pus_c_2_t*pus_d_Gamma_2_t - pus_d_Gamma_2_t_2*pus_e_1_in_axes3_y) -
-            pus_J_3_t_11*pus_h_3_in_spec3_y
+        pus_w_1_in_axes3_x*(pus_d_Gamma_2_t*pus_s_2 - pus_d_Gamma_2_t_2*pus_e_1_in_axes3_y) -
+            pus_J_3_t_10*pus_h_3_in_spec3_y
         )
         pus_d_Gamma_2_in_axes3_y = pus_d_Gamma_2_t_2 - pus_e_2_in_axes3_x*pus_h_3_in_spec3_y
         pus_d_Gamma_2_in_axes3_z = (
-        pus_d_Gamma_2_t + pus_J_3_t_11*pus_h_3_in_spec3_x - pus_e_2_in_axes3_x*pus_h_3_in_spec3_z
+        pus_d_Gamma_2_t + pus_J_3_t_10*pus_h_3_in_spec3_x - pus_e_2_in_axes3_x*pus_h_3_in_spec3_z
         )
         # (pus-d_c) coefficient of the acceleration in: leg force on the platform without actuation and without the mass at the connection point
         pus_d_c_in_axes3_xx = (
-        pus_J_3_t_11*pus_h_3_in_spec3_y*pus_w_2_in_axes3_x -
+        pus_J_3_t_10*pus_h_3_in_spec3_y*pus_w_2_in_axes3_x -
             pus_d_Gamma_2_in_axes3_x*pus_w_2_in_axes3_x -
             pus_d_Gamma_3_in_axes3_x*pus_w_3_in_axes3_x - pus_h_3_in_spec3_z*pus_w_3_in_axes3_x -
             pus_link1_mass*pus_w_1_in_axes3_x*pus_w_1_in_axes3_x
@@ -2317,21 +2498,21 @@ def _run_M(m, X):
         pus_d_alpha_3_in_axes3_xz*pus_h_3_in_spec3_y - pus_d_Gamma_3_in_axes3_z*pus_w_3_in_axes3_y
         )
         # (pus-Q) inertia of the leg at the connection point, without the mass gathered there
-        axis_z_pus_axes3_x = pus_base_frame_xy*pus_s_2 - pus_base_frame_xx*pus_c_2_t
-        axis_z_pus_axes3_y = pus_base_frame_yy*pus_s_2 - pus_base_frame_yx*pus_c_2_t
-        axis_z_pus_axes3_z = pus_base_frame_zy*pus_s_2 - pus_base_frame_zx*pus_c_2_t
-        pus_Q_t = pus_c_2_t*pus_e_2_in_axes3_x
+        axis_z_pus_axes3_x = pus_base_frame_xy*pus_c_2 - pus_base_frame_xx*pus_s_2
+        axis_z_pus_axes3_y = pus_base_frame_yy*pus_c_2 - pus_base_frame_yx*pus_s_2
+        axis_z_pus_axes3_z = pus_base_frame_zy*pus_c_2 - pus_base_frame_zx*pus_s_2
+        pus_Q_t = pus_e_2_in_axes3_x*pus_s_2
         axis_y_pus_axes3_x = (
         pus_Q_t*pus_base_frame_xy + pus_base_frame_xx*pus_e_1_in_axes3_y -
-            pus_J_3_t_11*pus_base_frame_xz
+            pus_J_3_t_10*pus_base_frame_xz
         )
         axis_y_pus_axes3_y = (
         pus_Q_t*pus_base_frame_yy + pus_base_frame_yx*pus_e_1_in_axes3_y -
-            pus_J_3_t_11*pus_base_frame_yz
+            pus_J_3_t_10*pus_base_frame_yz
         )
         axis_y_pus_axes3_z = (
         pus_Q_t*pus_base_frame_zy + pus_base_frame_zx*pus_e_1_in_axes3_y -
-            pus_J_3_t_11*pus_base_frame_zz
+            pus_J_3_t_10*pus_base_frame_zz
         )
         axis_x_pus_axes3_x = (
         axis_y_pus_axes3_y*axis_z_pus_axes3_z - axis_y_pus_axes3_z*axis_z_pus_axes3_y
@@ -2403,7 +2584,7 @@ def _run_M(m, X):
         pus_M_aa_t_5 = pus_M_ta_t_5*pus_q_z - pus_M_ta_t_12*pus_q_x
         pus_M_aa_t_6 = pus_M_ta_t_9*pus_q_x - pus_M_ta_t_5*pus_q_y
         ok = (
-        ok & (pus_J_3_t_6 >= 0.0) & (abs(pus_J_3_t_9) > _TOLERANCE * _TOLERANCE * pus_size_t_2) &
+        ok & (pus_J_3_t_7 >= 0.0) & (abs(pus_J_3_t_8) > _TOLERANCE * _TOLERANCE * pus_size_t_2) &
             (abs(pus_v_2_in_axes3_z) > _TOLERANCE * pus_size) & (abs(pus_e_1_in_axes3_x) >
             _TOLERANCE * 1.0)
         )
@@ -2491,7 +2672,7 @@ def _run_M(m, X):
     return ok, (out_M,)
 
 
-# Z: 1125 mul, 834 add, 18 div, 12 sqrt, 0 trig
+# Z: 1119 mul, 834 add, 18 div, 12 sqrt, 0 trig
 def _run_Z(m, X, V):
     sqrt = m.sqrt
     shared, legs = m.constants("Z")
@@ -2630,24 +2811,17 @@ def _run_Z(m, X, V):
         # (pus-disc_1) discriminant of the distance equation
         pus_disc_1_t = pus_S_x*pus_S_x + pus_S_y*pus_S_y + pus_S_z*pus_S_z
         pus_disc_1 = pus_S_in_axes0_x*pus_S_in_axes0_x + pus_size_t - pus_disc_1_t
-        # (pus-x_2) from the origin of joint 2 to the connection point
-        pus_x_2_in_axes0_x = -pus_branch_1*sqrt(pus_disc_1)
         # (pus-rho2_2) squared amplitude
-        pus_rho2_2 = pus_S_in_axes0_y*pus_S_in_axes0_y + pus_x_2_in_axes0_x*pus_x_2_in_axes0_x
+        pus_rho2_2 = pus_S_in_axes0_y*pus_S_in_axes0_y + pus_disc_1
         # (pus-root_2) root, with the sign of the branch
         pus_root_2 = pus_branch_2*sqrt(pus_rho2_2)
         # (pus-c_2) cosine of the angle of joint 2 from its reference direction
         inv_pus_rho2_2 = 1.0/pus_rho2_2
-        pus_c_2_t = inv_pus_rho2_2*pus_S_in_axes0_y*pus_root_2
+        pus_c_2 = -inv_pus_rho2_2*pus_branch_1*sqrt(pus_disc_1)*pus_root_2
         # (pus-s_2) sine of the angle of joint 2 from its reference direction
-        pus_s_2 = inv_pus_rho2_2*pus_root_2*pus_x_2_in_axes0_x
+        pus_s_2 = inv_pus_rho2_2*pus_S_in_axes0_y*pus_root_2
         # (pus-c_3) cosine of the angle of joint 3 from its reference direction
-        pus_c_3_t = inv_pus_size_t*pus_platform_joint_offset_x*pus_root_2
-        # (pus-s_3) sine of the angle of joint 3 from its reference direction
-        pus_s_3 = (
-        inv_pus_size_t*pus_platform_joint_offset_x*(pus_S_x*pus_base_frame_xz +
-            pus_S_y*pus_base_frame_yz + pus_S_z*pus_base_frame_zz)
-        )
+        pus_c_3 = inv_pus_size_t*pus_platform_joint_offset_x*pus_root_2
         # (pus-S_dot) velocity of the connection point
         pus_S_dot_t = omega_y*pus_q_z - omega_z*pus_q_y
         pus_S_dot_t_2 = omega_z*pus_q_x - omega_x*pus_q_z
@@ -2656,29 +2830,33 @@ def _run_Z(m, X, V):
         pus_S_dot_y = pus_S_dot_t_2 + t_dot_y
         pus_S_dot_z = pus_S_dot_t_3 + t_dot_z
         # (pus-v_2) velocity of the connection point per rate of joint 2
-        pus_v_2_in_axes3_z = pus_c_3_t*pus_platform_joint_offset_x
+        pus_v_2_in_axes3_z = pus_c_3*pus_platform_joint_offset_x
         # (pus-w_1) reciprocal vector 1
-        pus_e_1_in_axes3_x = pus_c_3_t*pus_s_2
+        pus_e_1_in_axes3_x = pus_c_2*pus_c_3
         pus_w_1_in_axes3_x = 1.0/pus_e_1_in_axes3_x
         # (pus-w_2) reciprocal vector 2
         pus_w_2_in_axes3_z = 1.0/pus_v_2_in_axes3_z
         # (pus-qd_1) rate of joint 1
-        axis_z_pus_axes3_x = pus_base_frame_xy*pus_s_2 - pus_base_frame_xx*pus_c_2_t
-        axis_z_pus_axes3_y = pus_base_frame_yy*pus_s_2 - pus_base_frame_yx*pus_c_2_t
-        axis_z_pus_axes3_z = pus_base_frame_zy*pus_s_2 - pus_base_frame_zx*pus_c_2_t
-        pus_e_1_in_axes3_y = pus_s_2*pus_s_3
-        pus_qd_1_t = pus_c_2_t*pus_s_3
+        pus_e_2_in_axes3_x = (
+        inv_pus_size_t*pus_platform_joint_offset_x*(pus_S_x*pus_base_frame_xz +
+            pus_S_y*pus_base_frame_yz + pus_S_z*pus_base_frame_zz)
+        )
+        axis_z_pus_axes3_x = pus_base_frame_xy*pus_c_2 - pus_base_frame_xx*pus_s_2
+        axis_z_pus_axes3_y = pus_base_frame_yy*pus_c_2 - pus_base_frame_yx*pus_s_2
+        axis_z_pus_axes3_z = pus_base_frame_zy*pus_c_2 - pus_base_frame_zx*pus_s_2
+        pus_e_1_in_axes3_y = pus_c_2*pus_e_2_in_axes3_x
+        pus_qd_1_t = pus_e_2_in_axes3_x*pus_s_2
         axis_y_pus_axes3_x = (
         pus_base_frame_xx*pus_e_1_in_axes3_y + pus_base_frame_xy*pus_qd_1_t -
-            pus_base_frame_xz*pus_c_3_t
+            pus_base_frame_xz*pus_c_3
         )
         axis_y_pus_axes3_y = (
         pus_base_frame_yx*pus_e_1_in_axes3_y + pus_base_frame_yy*pus_qd_1_t -
-            pus_base_frame_yz*pus_c_3_t
+            pus_base_frame_yz*pus_c_3
         )
         axis_y_pus_axes3_z = (
         pus_base_frame_zx*pus_e_1_in_axes3_y + pus_base_frame_zy*pus_qd_1_t -
-            pus_base_frame_zz*pus_c_3_t
+            pus_base_frame_zz*pus_c_3
         )
         axis_x_pus_axes3_x = (
         axis_y_pus_axes3_y*axis_z_pus_axes3_z - axis_y_pus_axes3_z*axis_z_pus_axes3_y
@@ -2696,7 +2874,7 @@ def _run_Z(m, X, V):
         # (pus-qd_2) rate of joint 2
         pus_qd_2 = (
         pus_w_2_in_axes3_z*(axis_z_pus_axes3_x*pus_S_dot_x + axis_z_pus_axes3_y*pus_S_dot_y +
-            axis_z_pus_axes3_z*pus_S_dot_z + pus_c_2_t*pus_qd_1)
+            axis_z_pus_axes3_z*pus_S_dot_z + pus_qd_1*pus_s_2)
         )
         # (pus-qd_3) rate of joint 3
         pus_qd_3_t = (
@@ -2705,8 +2883,8 @@ def _run_Z(m, X, V):
         )
         pus_qd_3 = pus_qd_3_t*pus_w_3_in_axes3_y
         # (pus-omega_2) angular velocity of link 2
-        pus_omega_2_in_axes3_x = pus_qd_2*pus_s_3
-        pus_omega_2_in_axes3_y = -pus_c_3_t*pus_qd_2
+        pus_omega_2_in_axes3_x = pus_e_2_in_axes3_x*pus_qd_2
+        pus_omega_2_in_axes3_y = -pus_c_3*pus_qd_2
         # (pus-W_3) centripetal tensor of link 3
         pus_W_3_in_axes3_yz = pus_omega_2_in_axes3_y*pus_qd_3
         pus_W_3_in_axes3_xz = pus_omega_2_in_axes3_x*pus_qd_3
@@ -2738,12 +2916,12 @@ def _run_Z(m, X, V):
         # (pus-qdd_1_o) remainder without the acceleration in: acceleration of joint 1
         pus_qdd_1_o = pus_rel_o_in_axes3_x*pus_w_1_in_axes3_x
         # (pus-qdd_2_o) remainder without the acceleration in: acceleration of joint 2
-        pus_qdd_2_o_t = pus_w_2_in_axes3_z*(-pus_rel_o_in_axes3_z - pus_c_2_t*pus_qdd_1_o)
+        pus_qdd_2_o_t = pus_w_2_in_axes3_z*(-pus_rel_o_in_axes3_z - pus_qdd_1_o*pus_s_2)
         # (pus-qdd_3_o) remainder without the acceleration in: acceleration of joint 3
         pus_qdd_3_o = -pus_w_3_in_axes3_y*(pus_e_1_in_axes3_y*pus_qdd_1_o - pus_rel_o_in_axes3_y)
         # (pus-alpha_2_o) remainder without the acceleration in: angular acceleration of link 2
-        pus_alpha_2_o_t = pus_qdd_2_o_t*pus_s_3
-        pus_alpha_2_o_in_axes3_y = pus_c_3_t*pus_qdd_2_o_t
+        pus_alpha_2_o_t = pus_e_2_in_axes3_x*pus_qdd_2_o_t
+        pus_alpha_2_o_in_axes3_y = pus_c_3*pus_qdd_2_o_t
         # (pus-alpha_3_o) remainder without the acceleration in: angular acceleration of link 3
         pus_alpha_3_o_in_axes3_x = pus_W_3_in_axes3_yz - pus_alpha_2_o_t
         pus_alpha_3_o_in_axes3_y = pus_alpha_2_o_in_axes3_y - pus_W_3_in_axes3_xz
@@ -2755,15 +2933,15 @@ def _run_Z(m, X, V):
         # (pus-acc_1_o) remainder without the acceleration in: acceleration of the reference point of link 1, less gravity
         pus_acc_1_o_in_axes0_x = pus_qdd_1_o - pus_g_in_axes0_x
         # (pus-acc_3_o) remainder without the acceleration in: acceleration of the reference point of link 3, less gravity
-        pus_acc_3_o_t = -pus_c_2_t*pus_g_in_axes0_y - pus_g_in_axes0_x*pus_s_2
+        pus_acc_3_o_t = pus_c_2*pus_g_in_axes0_x + pus_g_in_axes0_y*pus_s_2
         pus_acc_3_o_in_axes3_x = (
-        pus_u_1_in_axes3_x + pus_acc_3_o_t*pus_c_3_t - pus_g_in_axes0_z*pus_s_3
+        pus_u_1_in_axes3_x - pus_acc_3_o_t*pus_c_3 - pus_e_2_in_axes3_x*pus_g_in_axes0_z
         )
         pus_acc_3_o_in_axes3_y = (
-        pus_u_1_in_axes3_y + pus_acc_3_o_t*pus_s_3 + pus_c_3_t*pus_g_in_axes0_z
+        pus_u_1_in_axes3_y + pus_c_3*pus_g_in_axes0_z - pus_acc_3_o_t*pus_e_2_in_axes3_x
         )
         pus_acc_3_o_in_axes3_z = (
-        pus_u_1_in_axes3_z + pus_c_2_t*pus_g_in_axes0_x - pus_g_in_axes0_y*pus_s_2
+        pus_u_1_in_axes3_z + pus_g_in_axes0_x*pus_s_2 - pus_c_2*pus_g_in_axes0_y
         )
         # (pus-mu_3_o) remainder without the acceleration in: inertia moment of the links that turn with link 3, about their reference points
         pus_mu_3_o_t = pus_omega_2_in_axes3_x*pus_omega_2_in_axes3_x
@@ -2791,16 +2969,17 @@ def _run_Z(m, X, V):
             pus_J_3_in_spec3_yz*pus_alpha_2_o_in_axes3_y
         )
         # (pus-G_o) remainder without the acceleration in: force at the connection point that balances the leg's inertia and weight along all degrees of freedom
-        pus_G_o_in_axes3_z = (
-        pus_w_2_in_axes3_z*(pus_mu_3_o_in_axes3_x*pus_s_3 - pus_c_3_t*pus_mu_3_o_in_axes3_y)
+        pus_G_o_t = (
+        pus_w_2_in_axes3_z*(pus_c_3*pus_mu_3_o_in_axes3_y -
+            pus_e_2_in_axes3_x*pus_mu_3_o_in_axes3_x)
         )
         pus_G_o_in_axes3_y = pus_mu_3_o_in_axes3_z*pus_w_3_in_axes3_y
         # (pus-c_o) remainder without the acceleration in: leg force on the platform without actuation and without the mass at the connection point
         pus_c_o_in_axes3_x = (
         pus_B_3_o_in_axes3_xy*pus_h_3_in_spec3_z + pus_h_3_in_spec3_x*(pus_mu_3_o_t_2 +
             pus_mu_3_o_t_3) - pus_alpha_2_o_in_axes3_y*pus_h_3_in_spec3_y -
-            pus_w_1_in_axes3_x*(pus_G_o_in_axes3_z*pus_c_2_t +
-            pus_acc_1_o_in_axes0_x*pus_link1_mass - pus_G_o_in_axes3_y*pus_e_1_in_axes3_y)
+            pus_w_1_in_axes3_x*(pus_acc_1_o_in_axes0_x*pus_link1_mass -
+            pus_G_o_in_axes3_y*pus_e_1_in_axes3_y - pus_G_o_t*pus_s_2)
         )
         pus_c_o_in_axes3_y = (
         -pus_G_o_in_axes3_y - pus_B_3_o_in_axes3_yx*pus_h_3_in_spec3_x -
@@ -2808,8 +2987,8 @@ def _run_Z(m, X, V):
             pus_mu_3_o_t_3)
         )
         pus_c_o_in_axes3_z = (
-        pus_B_3_o_in_axes3_zy*pus_h_3_in_spec3_z + pus_h_3_in_spec3_y*(pus_mu_3_o_t +
-            pus_mu_3_o_t_2) - pus_G_o_in_axes3_z - pus_B_3_o_in_axes3_zx*pus_h_3_in_spec3_x
+        pus_G_o_t + pus_B_3_o_in_axes3_zy*pus_h_3_in_spec3_z + pus_h_3_in_spec3_y*(pus_mu_3_o_t +
+            pus_mu_3_o_t_2) - pus_B_3_o_in_axes3_zx*pus_h_3_in_spec3_x
         )
         # (pus-U) velocity and gravity terms of the leg force
         pus_U_x = (
@@ -2860,7 +3039,7 @@ def _run_Z(m, X, V):
     return ok, (out_Z,)
 
 
-# H: 402 mul, 228 add, 12 div, 12 sqrt, 0 trig
+# H: 396 mul, 228 add, 12 div, 12 sqrt, 0 trig
 def _run_H(m, X):
     sqrt = m.sqrt
     shared, legs = m.constants("H")
@@ -2932,43 +3111,40 @@ def _run_H(m, X):
         # (pus-disc_1) discriminant of the distance equation
         pus_disc_1_t = pus_S_x*pus_S_x + pus_S_y*pus_S_y + pus_S_z*pus_S_z
         pus_disc_1 = pus_S_in_axes0_x*pus_S_in_axes0_x + pus_size_t - pus_disc_1_t
-        # (pus-x_2) from the origin of joint 2 to the connection point
-        pus_x_2_in_axes0_x = -pus_branch_1*sqrt(pus_disc_1)
         # (pus-rho2_2) squared amplitude
-        pus_rho2_2 = pus_S_in_axes0_y*pus_S_in_axes0_y + pus_x_2_in_axes0_x*pus_x_2_in_axes0_x
+        pus_rho2_2 = pus_S_in_axes0_y*pus_S_in_axes0_y + pus_disc_1
         # (pus-root_2) root, with the sign of the branch
         pus_root_2 = pus_branch_2*sqrt(pus_rho2_2)
         # (pus-c_2) cosine of the angle of joint 2 from its reference direction
         inv_pus_rho2_2 = 1.0/pus_rho2_2
-        pus_c_2_t = inv_pus_rho2_2*pus_S_in_axes0_y*pus_root_2
+        pus_c_2 = -inv_pus_rho2_2*pus_branch_1*sqrt(pus_disc_1)*pus_root_2
         # (pus-s_2) sine of the angle of joint 2 from its reference direction
-        pus_s_2 = inv_pus_rho2_2*pus_root_2*pus_x_2_in_axes0_x
+        pus_s_2 = inv_pus_rho2_2*pus_S_in_axes0_y*pus_root_2
         # (pus-c_3) cosine of the angle of joint 3 from its reference direction
-        pus_c_3_t = inv_pus_size_t*pus_platform_joint_offset_x*pus_root_2
-        # (pus-s_3) sine of the angle of joint 3 from its reference direction
-        pus_s_3 = (
+        pus_c_3 = inv_pus_size_t*pus_platform_joint_offset_x*pus_root_2
+        # (pus-w_1) reciprocal vector 1
+        pus_e_2_in_axes3_x = (
         inv_pus_size_t*pus_platform_joint_offset_x*(pus_S_x*pus_base_frame_xz +
             pus_S_y*pus_base_frame_yz + pus_S_z*pus_base_frame_zz)
         )
-        # (pus-w_1) reciprocal vector 1
-        axis_z_pus_axes3_x = pus_base_frame_xy*pus_s_2 - pus_base_frame_xx*pus_c_2_t
-        axis_z_pus_axes3_y = pus_base_frame_yy*pus_s_2 - pus_base_frame_yx*pus_c_2_t
-        axis_z_pus_axes3_z = pus_base_frame_zy*pus_s_2 - pus_base_frame_zx*pus_c_2_t
-        pus_e_1_in_axes3_y = pus_s_2*pus_s_3
-        pus_w_1_t = pus_c_2_t*pus_s_3
+        axis_z_pus_axes3_x = pus_base_frame_xy*pus_c_2 - pus_base_frame_xx*pus_s_2
+        axis_z_pus_axes3_y = pus_base_frame_yy*pus_c_2 - pus_base_frame_yx*pus_s_2
+        axis_z_pus_axes3_z = pus_base_frame_zy*pus_c_2 - pus_base_frame_zx*pus_s_2
+        pus_e_1_in_axes3_y = pus_c_2*pus_e_2_in_axes3_x
+        pus_w_1_t = pus_e_2_in_axes3_x*pus_s_2
         axis_y_pus_axes3_x = (
         pus_base_frame_xx*pus_e_1_in_axes3_y + pus_base_frame_xy*pus_w_1_t -
-            pus_base_frame_xz*pus_c_3_t
+            pus_base_frame_xz*pus_c_3
         )
         axis_y_pus_axes3_y = (
         pus_base_frame_yx*pus_e_1_in_axes3_y + pus_base_frame_yy*pus_w_1_t -
-            pus_base_frame_yz*pus_c_3_t
+            pus_base_frame_yz*pus_c_3
         )
         axis_y_pus_axes3_z = (
         pus_base_frame_zx*pus_e_1_in_axes3_y + pus_base_frame_zy*pus_w_1_t -
-            pus_base_frame_zz*pus_c_3_t
+            pus_base_frame_zz*pus_c_3
         )
-        pus_e_1_in_axes3_x = pus_c_3_t*pus_s_2
+        pus_e_1_in_axes3_x = pus_c_2*pus_c_3
         pus_w_1_in_axes3_x = 1.0/pus_e_1_in_axes3_x
         pus_w_1_x = (
         pus_w_1_in_axes3_x*(axis_y_pus_axes3_y*axis_z_pus_axes3_z -
@@ -3001,7 +3177,7 @@ def _run_H(m, X):
     return ok, (out_H,)
 
 
-# required: 1239 mul, 933 add, 18 div, 12 sqrt, 0 trig
+# required: 1233 mul, 933 add, 18 div, 12 sqrt, 0 trig
 def _run_required(m, X, V, A):
     sqrt = m.sqrt
     shared, legs = m.constants("required")
@@ -3180,24 +3356,17 @@ def _run_required(m, X, V, A):
         # (pus-disc_1) discriminant of the distance equation
         pus_disc_1_t = pus_S_x*pus_S_x + pus_S_y*pus_S_y + pus_S_z*pus_S_z
         pus_disc_1 = pus_S_in_axes0_x*pus_S_in_axes0_x + pus_size_t - pus_disc_1_t
-        # (pus-x_2) from the origin of joint 2 to the connection point
-        pus_x_2_in_axes0_x = -pus_branch_1*sqrt(pus_disc_1)
         # (pus-rho2_2) squared amplitude
-        pus_rho2_2 = pus_S_in_axes0_y*pus_S_in_axes0_y + pus_x_2_in_axes0_x*pus_x_2_in_axes0_x
+        pus_rho2_2 = pus_S_in_axes0_y*pus_S_in_axes0_y + pus_disc_1
         # (pus-root_2) root, with the sign of the branch
         pus_root_2 = pus_branch_2*sqrt(pus_rho2_2)
         # (pus-c_2) cosine of the angle of joint 2 from its reference direction
         inv_pus_rho2_2 = 1.0/pus_rho2_2
-        pus_c_2_t = inv_pus_rho2_2*pus_S_in_axes0_y*pus_root_2
+        pus_c_2 = -inv_pus_rho2_2*pus_branch_1*sqrt(pus_disc_1)*pus_root_2
         # (pus-s_2) sine of the angle of joint 2 from its reference direction
-        pus_s_2 = inv_pus_rho2_2*pus_root_2*pus_x_2_in_axes0_x
+        pus_s_2 = inv_pus_rho2_2*pus_S_in_axes0_y*pus_root_2
         # (pus-c_3) cosine of the angle of joint 3 from its reference direction
-        pus_c_3_t = inv_pus_size_t*pus_platform_joint_offset_x*pus_root_2
-        # (pus-s_3) sine of the angle of joint 3 from its reference direction
-        pus_s_3 = (
-        inv_pus_size_t*pus_platform_joint_offset_x*(pus_S_x*pus_base_frame_xz +
-            pus_S_y*pus_base_frame_yz + pus_S_z*pus_base_frame_zz)
-        )
+        pus_c_3 = inv_pus_size_t*pus_platform_joint_offset_x*pus_root_2
         # (pus-S_dot) velocity of the connection point
         pus_S_dot_t = omega_y*pus_q_z - omega_z*pus_q_y
         pus_S_dot_t_2 = omega_z*pus_q_x - omega_x*pus_q_z
@@ -3206,24 +3375,28 @@ def _run_required(m, X, V, A):
         pus_S_dot_y = pus_S_dot_t_2 + t_dot_y
         pus_S_dot_z = pus_S_dot_t_3 + t_dot_z
         # (pus-v_2) velocity of the connection point per rate of joint 2
-        pus_v_2_in_axes3_z = pus_c_3_t*pus_platform_joint_offset_x
+        pus_v_2_in_axes3_z = pus_c_3*pus_platform_joint_offset_x
         # (pus-w_1) reciprocal vector 1
-        axis_z_pus_axes3_x = pus_base_frame_xy*pus_s_2 - pus_base_frame_xx*pus_c_2_t
-        axis_z_pus_axes3_y = pus_base_frame_yy*pus_s_2 - pus_base_frame_yx*pus_c_2_t
-        axis_z_pus_axes3_z = pus_base_frame_zy*pus_s_2 - pus_base_frame_zx*pus_c_2_t
-        pus_e_1_in_axes3_y = pus_s_2*pus_s_3
-        pus_w_1_t = pus_c_2_t*pus_s_3
+        pus_e_2_in_axes3_x = (
+        inv_pus_size_t*pus_platform_joint_offset_x*(pus_S_x*pus_base_frame_xz +
+            pus_S_y*pus_base_frame_yz + pus_S_z*pus_base_frame_zz)
+        )
+        axis_z_pus_axes3_x = pus_base_frame_xy*pus_c_2 - pus_base_frame_xx*pus_s_2
+        axis_z_pus_axes3_y = pus_base_frame_yy*pus_c_2 - pus_base_frame_yx*pus_s_2
+        axis_z_pus_axes3_z = pus_base_frame_zy*pus_c_2 - pus_base_frame_zx*pus_s_2
+        pus_e_1_in_axes3_y = pus_c_2*pus_e_2_in_axes3_x
+        pus_w_1_t = pus_e_2_in_axes3_x*pus_s_2
         axis_y_pus_axes3_x = (
         pus_base_frame_xx*pus_e_1_in_axes3_y + pus_base_frame_xy*pus_w_1_t -
-            pus_base_frame_xz*pus_c_3_t
+            pus_base_frame_xz*pus_c_3
         )
         axis_y_pus_axes3_y = (
         pus_base_frame_yx*pus_e_1_in_axes3_y + pus_base_frame_yy*pus_w_1_t -
-            pus_base_frame_yz*pus_c_3_t
+            pus_base_frame_yz*pus_c_3
         )
         axis_y_pus_axes3_z = (
         pus_base_frame_zx*pus_e_1_in_axes3_y + pus_base_frame_zy*pus_w_1_t -
-            pus_base_frame_zz*pus_c_3_t
+            pus_base_frame_zz*pus_c_3
         )
         axis_x_pus_axes3_x = (
         axis_y_pus_axes3_y*axis_z_pus_axes3_z - axis_y_pus_axes3_z*axis_z_pus_axes3_y
@@ -3234,7 +3407,7 @@ def _run_required(m, X, V, A):
         axis_x_pus_axes3_z = (
         axis_y_pus_axes3_x*axis_z_pus_axes3_y - axis_y_pus_axes3_y*axis_z_pus_axes3_x
         )
-        pus_e_1_in_axes3_x = pus_c_3_t*pus_s_2
+        pus_e_1_in_axes3_x = pus_c_2*pus_c_3
         pus_w_1_in_axes3_x = 1.0/pus_e_1_in_axes3_x
         pus_w_1_x = axis_x_pus_axes3_x*pus_w_1_in_axes3_x
         pus_w_1_y = axis_x_pus_axes3_y*pus_w_1_in_axes3_x
@@ -3249,7 +3422,7 @@ def _run_required(m, X, V, A):
         # (pus-qd_2) rate of joint 2
         pus_qd_2 = (
         pus_w_2_in_axes3_z*(axis_z_pus_axes3_x*pus_S_dot_x + axis_z_pus_axes3_y*pus_S_dot_y +
-            axis_z_pus_axes3_z*pus_S_dot_z + pus_c_2_t*pus_qd_1)
+            axis_z_pus_axes3_z*pus_S_dot_z + pus_qd_1*pus_s_2)
         )
         # (pus-qd_3) rate of joint 3
         pus_qd_3_t = (
@@ -3258,8 +3431,8 @@ def _run_required(m, X, V, A):
         )
         pus_qd_3 = pus_qd_3_t*pus_w_3_in_axes3_y
         # (pus-omega_2) angular velocity of link 2
-        pus_omega_2_in_axes3_x = pus_qd_2*pus_s_3
-        pus_omega_2_in_axes3_y = -pus_c_3_t*pus_qd_2
+        pus_omega_2_in_axes3_x = pus_e_2_in_axes3_x*pus_qd_2
+        pus_omega_2_in_axes3_y = -pus_c_3*pus_qd_2
         # (pus-W_3) centripetal tensor of link 3
         pus_W_3_in_axes3_yz = pus_omega_2_in_axes3_y*pus_qd_3
         pus_W_3_in_axes3_xz = pus_omega_2_in_axes3_x*pus_qd_3
@@ -3298,12 +3471,12 @@ def _run_required(m, X, V, A):
         # (pus-qdd_1) acceleration of joint 1
         pus_qdd_1 = pus_rel_in_axes3_x*pus_w_1_in_axes3_x
         # (pus-qdd_2) acceleration of joint 2
-        pus_qdd_2_t = pus_w_2_in_axes3_z*(-pus_rel_in_axes3_z - pus_c_2_t*pus_qdd_1)
+        pus_qdd_2_t = pus_w_2_in_axes3_z*(-pus_rel_in_axes3_z - pus_qdd_1*pus_s_2)
         # (pus-qdd_3) acceleration of joint 3
         pus_qdd_3_t = pus_w_3_in_axes3_y*(pus_e_1_in_axes3_y*pus_qdd_1 - pus_rel_in_axes3_y)
         # (pus-alpha_2) angular acceleration of link 2
-        pus_alpha_2_t = pus_qdd_2_t*pus_s_3
-        pus_alpha_2_in_axes3_y = pus_c_3_t*pus_qdd_2_t
+        pus_alpha_2_t = pus_e_2_in_axes3_x*pus_qdd_2_t
+        pus_alpha_2_in_axes3_y = pus_c_3*pus_qdd_2_t
         # (pus-alpha_3) angular acceleration of link 3
         pus_alpha_3_in_axes3_x = pus_W_3_in_axes3_yz - pus_alpha_2_t
         pus_alpha_3_in_axes3_y = pus_alpha_2_in_axes3_y - pus_W_3_in_axes3_xz
@@ -3315,15 +3488,15 @@ def _run_required(m, X, V, A):
         # (pus-acc_1) acceleration of the reference point of link 1, less gravity
         pus_acc_1_in_axes0_x = pus_qdd_1 - pus_g_in_axes0_x
         # (pus-acc_3) acceleration of the reference point of link 3, less gravity
-        pus_acc_3_t = -pus_c_2_t*pus_g_in_axes0_y - pus_g_in_axes0_x*pus_s_2
+        pus_acc_3_t = pus_c_2*pus_g_in_axes0_x + pus_g_in_axes0_y*pus_s_2
         pus_acc_3_in_axes3_x = (
-        pus_S_ddot_in_axes3_x + pus_acc_3_t*pus_c_3_t - pus_g_in_axes0_z*pus_s_3
+        pus_S_ddot_in_axes3_x - pus_acc_3_t*pus_c_3 - pus_e_2_in_axes3_x*pus_g_in_axes0_z
         )
         pus_acc_3_in_axes3_y = (
-        pus_S_ddot_in_axes3_y + pus_acc_3_t*pus_s_3 + pus_c_3_t*pus_g_in_axes0_z
+        pus_S_ddot_in_axes3_y + pus_c_3*pus_g_in_axes0_z - pus_acc_3_t*pus_e_2_in_axes3_x
         )
         pus_acc_3_in_axes3_z = (
-        pus_S_ddot_in_axes3_z + pus_c_2_t*pus_g_in_axes0_x - pus_g_in_axes0_y*pus_s_2
+        pus_S_ddot_in_axes3_z + pus_g_in_axes0_x*pus_s_2 - pus_c_2*pus_g_in_axes0_y
         )
         # (pus-mu_3) inertia moment of the links that turn with link 3, about their reference points
         pus_mu_3_t = pus_omega_2_in_axes3_x*pus_omega_2_in_axes3_x
@@ -3348,24 +3521,24 @@ def _run_required(m, X, V, A):
             - pus_J_3_in_spec3_yz*pus_alpha_2_in_axes3_y
         )
         # (pus-G) force at the connection point that balances the leg's inertia and weight along all degrees of freedom
-        pus_G_in_axes3_z = (
-        pus_w_2_in_axes3_z*(pus_mu_3_in_axes3_x*pus_s_3 - pus_c_3_t*pus_mu_3_in_axes3_y)
+        pus_G_t = (
+        pus_w_2_in_axes3_z*(pus_c_3*pus_mu_3_in_axes3_y - pus_e_2_in_axes3_x*pus_mu_3_in_axes3_x)
         )
         pus_G_in_axes3_y = pus_mu_3_in_axes3_z*pus_w_3_in_axes3_y
         # (pus-c) leg force on the platform without actuation and without the mass at the connection point
         pus_c_in_axes3_x = (
         pus_B_3_in_axes3_xy*pus_h_3_in_spec3_z + pus_h_3_in_spec3_x*(pus_mu_3_t_2 + pus_mu_3_t_3)
             - pus_alpha_2_in_axes3_y*pus_h_3_in_spec3_y -
-            pus_w_1_in_axes3_x*(pus_G_in_axes3_z*pus_c_2_t + pus_acc_1_in_axes0_x*pus_link1_mass -
-            pus_G_in_axes3_y*pus_e_1_in_axes3_y)
+            pus_w_1_in_axes3_x*(pus_acc_1_in_axes0_x*pus_link1_mass -
+            pus_G_in_axes3_y*pus_e_1_in_axes3_y - pus_G_t*pus_s_2)
         )
         pus_c_in_axes3_y = (
         -pus_G_in_axes3_y - pus_B_3_in_axes3_yx*pus_h_3_in_spec3_x -
             pus_alpha_2_t*pus_h_3_in_spec3_y - pus_h_3_in_spec3_z*(pus_mu_3_t + pus_mu_3_t_3)
         )
         pus_c_in_axes3_z = (
-        pus_B_3_in_axes3_zy*pus_h_3_in_spec3_z + pus_h_3_in_spec3_y*(pus_mu_3_t + pus_mu_3_t_2) -
-            pus_G_in_axes3_z - pus_B_3_in_axes3_zx*pus_h_3_in_spec3_x
+        pus_G_t + pus_B_3_in_axes3_zy*pus_h_3_in_spec3_z + pus_h_3_in_spec3_y*(pus_mu_3_t +
+            pus_mu_3_t_2) - pus_B_3_in_axes3_zx*pus_h_3_in_spec3_x
         )
         pus_c_x = (
         axis_x_pus_axes3_x*pus_c_in_axes3_x + axis_y_pus_axes3_x*pus_c_in_axes3_y +
@@ -3427,7 +3600,7 @@ def _run_required(m, X, V, A):
     return ok, (out_required, out_H,)
 
 
-# inverse_kinematics: 204 mul, 144 add, 6 div, 12 sqrt, 12 trig
+# inverse_kinematics: 198 mul, 144 add, 6 div, 12 sqrt, 12 trig
 def _run_inverse_kinematics(m, X):
     sqrt = m.sqrt
     atan2 = m.atan2
@@ -3501,16 +3674,16 @@ def _run_inverse_kinematics(m, X):
         pus_disc_1_t = pus_S_x*pus_S_x + pus_S_y*pus_S_y + pus_S_z*pus_S_z
         pus_disc_1 = pus_S_in_axes0_x*pus_S_in_axes0_x + pus_size_t - pus_disc_1_t
         # (pus-q_1) displacement of joint 1
-        pus_q_1_t = -pus_branch_1*sqrt(pus_disc_1)
-        pus_q_1 = pus_S_in_axes0_x - pus_q_1_t
+        pus_q_1_t = pus_branch_1*sqrt(pus_disc_1)
+        pus_q_1 = pus_S_in_axes0_x + pus_q_1_t
         # (pus-rho2_2) squared amplitude
-        pus_rho2_2 = pus_S_in_axes0_y*pus_S_in_axes0_y + pus_q_1_t*pus_q_1_t
+        pus_rho2_2 = pus_S_in_axes0_y*pus_S_in_axes0_y + pus_disc_1
         # (pus-root_2) root, with the sign of the branch
         pus_root_2 = pus_branch_2*sqrt(pus_rho2_2)
         # (pus-q_2) displacement of joint 2
         inv_pus_rho2_2 = 1.0/pus_rho2_2
         pus_q_2 = (
-        atan2(inv_pus_rho2_2*pus_S_in_axes0_y*pus_root_2, inv_pus_rho2_2*pus_q_1_t*pus_root_2)
+        atan2(inv_pus_rho2_2*pus_S_in_axes0_y*pus_root_2, -inv_pus_rho2_2*pus_q_1_t*pus_root_2)
         )
         # (pus-q_3) displacement of joint 3
         pus_q_3 = (
@@ -3528,7 +3701,7 @@ def _run_inverse_kinematics(m, X):
     return ok, (out_q,)
 
 
-# joint_rates: 462 mul, 294 add, 18 div, 12 sqrt, 0 trig
+# joint_rates: 456 mul, 294 add, 18 div, 12 sqrt, 0 trig
 def _run_joint_rates(m, X, V):
     sqrt = m.sqrt
     shared, legs = m.constants("joint_rates")
@@ -3613,49 +3786,46 @@ def _run_joint_rates(m, X, V):
         # (pus-disc_1) discriminant of the distance equation
         pus_disc_1_t = pus_S_x*pus_S_x + pus_S_y*pus_S_y + pus_S_z*pus_S_z
         pus_disc_1 = pus_S_in_axes0_x*pus_S_in_axes0_x + pus_size_t - pus_disc_1_t
-        # (pus-x_2) from the origin of joint 2 to the connection point
-        pus_x_2_in_axes0_x = -pus_branch_1*sqrt(pus_disc_1)
         # (pus-rho2_2) squared amplitude
-        pus_rho2_2 = pus_S_in_axes0_y*pus_S_in_axes0_y + pus_x_2_in_axes0_x*pus_x_2_in_axes0_x
+        pus_rho2_2 = pus_S_in_axes0_y*pus_S_in_axes0_y + pus_disc_1
         # (pus-root_2) root, with the sign of the branch
         pus_root_2 = pus_branch_2*sqrt(pus_rho2_2)
         # (pus-c_2) cosine of the angle of joint 2 from its reference direction
         inv_pus_rho2_2 = 1.0/pus_rho2_2
-        pus_c_2_t = inv_pus_rho2_2*pus_S_in_axes0_y*pus_root_2
+        pus_c_2 = -inv_pus_rho2_2*pus_branch_1*sqrt(pus_disc_1)*pus_root_2
         # (pus-s_2) sine of the angle of joint 2 from its reference direction
-        pus_s_2 = inv_pus_rho2_2*pus_root_2*pus_x_2_in_axes0_x
+        pus_s_2 = inv_pus_rho2_2*pus_S_in_axes0_y*pus_root_2
         # (pus-c_3) cosine of the angle of joint 3 from its reference direction
-        pus_c_3_t = inv_pus_size_t*pus_platform_joint_offset_x*pus_root_2
-        # (pus-s_3) sine of the angle of joint 3 from its reference direction
-        pus_s_3 = (
-        inv_pus_size_t*pus_platform_joint_offset_x*(pus_S_x*pus_base_frame_xz +
-            pus_S_y*pus_base_frame_yz + pus_S_z*pus_base_frame_zz)
-        )
+        pus_c_3 = inv_pus_size_t*pus_platform_joint_offset_x*pus_root_2
         # (pus-S_dot) velocity of the connection point
         pus_S_dot_x = t_dot_x + omega_y*pus_q_z - omega_z*pus_q_y
         pus_S_dot_y = t_dot_y + omega_z*pus_q_x - omega_x*pus_q_z
         pus_S_dot_z = t_dot_z + omega_x*pus_q_y - omega_y*pus_q_x
         # (pus-v_2) velocity of the connection point per rate of joint 2
-        pus_v_2_in_axes3_z = pus_c_3_t*pus_platform_joint_offset_x
+        pus_v_2_in_axes3_z = pus_c_3*pus_platform_joint_offset_x
         # (pus-w_1) reciprocal vector 1
-        pus_e_1_in_axes3_x = pus_c_3_t*pus_s_2
+        pus_e_1_in_axes3_x = pus_c_2*pus_c_3
         # (pus-qd_1) rate of joint 1
-        axis_z_pus_axes3_x = pus_base_frame_xy*pus_s_2 - pus_base_frame_xx*pus_c_2_t
-        axis_z_pus_axes3_y = pus_base_frame_yy*pus_s_2 - pus_base_frame_yx*pus_c_2_t
-        axis_z_pus_axes3_z = pus_base_frame_zy*pus_s_2 - pus_base_frame_zx*pus_c_2_t
-        pus_e_1_in_axes3_y = pus_s_2*pus_s_3
-        pus_qd_1_t = pus_c_2_t*pus_s_3
+        pus_e_2_in_axes3_x = (
+        inv_pus_size_t*pus_platform_joint_offset_x*(pus_S_x*pus_base_frame_xz +
+            pus_S_y*pus_base_frame_yz + pus_S_z*pus_base_frame_zz)
+        )
+        axis_z_pus_axes3_x = pus_base_frame_xy*pus_c_2 - pus_base_frame_xx*pus_s_2
+        axis_z_pus_axes3_y = pus_base_frame_yy*pus_c_2 - pus_base_frame_yx*pus_s_2
+        axis_z_pus_axes3_z = pus_base_frame_zy*pus_c_2 - pus_base_frame_zx*pus_s_2
+        pus_e_1_in_axes3_y = pus_c_2*pus_e_2_in_axes3_x
+        pus_qd_1_t = pus_e_2_in_axes3_x*pus_s_2
         axis_y_pus_axes3_x = (
         pus_base_frame_xx*pus_e_1_in_axes3_y + pus_base_frame_xy*pus_qd_1_t -
-            pus_base_frame_xz*pus_c_3_t
+            pus_base_frame_xz*pus_c_3
         )
         axis_y_pus_axes3_y = (
         pus_base_frame_yx*pus_e_1_in_axes3_y + pus_base_frame_yy*pus_qd_1_t -
-            pus_base_frame_yz*pus_c_3_t
+            pus_base_frame_yz*pus_c_3
         )
         axis_y_pus_axes3_z = (
         pus_base_frame_zx*pus_e_1_in_axes3_y + pus_base_frame_zy*pus_qd_1_t -
-            pus_base_frame_zz*pus_c_3_t
+            pus_base_frame_zz*pus_c_3
         )
         pus_qd_1 = (
         (pus_S_dot_x*(axis_y_pus_axes3_y*axis_z_pus_axes3_z -
@@ -3668,7 +3838,7 @@ def _run_joint_rates(m, X, V):
         # (pus-qd_2) rate of joint 2
         pus_qd_2 = (
         (axis_z_pus_axes3_x*pus_S_dot_x + axis_z_pus_axes3_y*pus_S_dot_y +
-            axis_z_pus_axes3_z*pus_S_dot_z + pus_c_2_t*pus_qd_1)/pus_v_2_in_axes3_z
+            axis_z_pus_axes3_z*pus_S_dot_z + pus_qd_1*pus_s_2)/pus_v_2_in_axes3_z
         )
         # (pus-qd_3) rate of joint 3
         pus_qd_3 = (
@@ -3689,7 +3859,7 @@ def _run_joint_rates(m, X, V):
     return ok, (out_qd,)
 
 
-# joint_accelerations: 684 mul, 444 add, 18 div, 12 sqrt, 0 trig
+# joint_accelerations: 678 mul, 444 add, 18 div, 12 sqrt, 0 trig
 def _run_joint_accelerations(m, X, V, A):
     sqrt = m.sqrt
     shared, legs = m.constants("joint_accelerations")
@@ -3787,24 +3957,17 @@ def _run_joint_accelerations(m, X, V, A):
         # (pus-disc_1) discriminant of the distance equation
         pus_disc_1_t = pus_S_x*pus_S_x + pus_S_y*pus_S_y + pus_S_z*pus_S_z
         pus_disc_1 = pus_S_in_axes0_x*pus_S_in_axes0_x + pus_size_t - pus_disc_1_t
-        # (pus-x_2) from the origin of joint 2 to the connection point
-        pus_x_2_in_axes0_x = -pus_branch_1*sqrt(pus_disc_1)
         # (pus-rho2_2) squared amplitude
-        pus_rho2_2 = pus_S_in_axes0_y*pus_S_in_axes0_y + pus_x_2_in_axes0_x*pus_x_2_in_axes0_x
+        pus_rho2_2 = pus_S_in_axes0_y*pus_S_in_axes0_y + pus_disc_1
         # (pus-root_2) root, with the sign of the branch
         pus_root_2 = pus_branch_2*sqrt(pus_rho2_2)
         # (pus-c_2) cosine of the angle of joint 2 from its reference direction
         inv_pus_rho2_2 = 1.0/pus_rho2_2
-        pus_c_2_t = inv_pus_rho2_2*pus_S_in_axes0_y*pus_root_2
+        pus_c_2 = -inv_pus_rho2_2*pus_branch_1*sqrt(pus_disc_1)*pus_root_2
         # (pus-s_2) sine of the angle of joint 2 from its reference direction
-        pus_s_2 = inv_pus_rho2_2*pus_root_2*pus_x_2_in_axes0_x
+        pus_s_2 = inv_pus_rho2_2*pus_S_in_axes0_y*pus_root_2
         # (pus-c_3) cosine of the angle of joint 3 from its reference direction
-        pus_c_3_t = inv_pus_size_t*pus_platform_joint_offset_x*pus_root_2
-        # (pus-s_3) sine of the angle of joint 3 from its reference direction
-        pus_s_3 = (
-        inv_pus_size_t*pus_platform_joint_offset_x*(pus_S_x*pus_base_frame_xz +
-            pus_S_y*pus_base_frame_yz + pus_S_z*pus_base_frame_zz)
-        )
+        pus_c_3 = inv_pus_size_t*pus_platform_joint_offset_x*pus_root_2
         # (pus-S_dot) velocity of the connection point
         pus_S_dot_t = omega_y*pus_q_z - omega_z*pus_q_y
         pus_S_dot_t_2 = omega_z*pus_q_x - omega_x*pus_q_z
@@ -3813,29 +3976,33 @@ def _run_joint_accelerations(m, X, V, A):
         pus_S_dot_y = pus_S_dot_t_2 + t_dot_y
         pus_S_dot_z = pus_S_dot_t_3 + t_dot_z
         # (pus-v_2) velocity of the connection point per rate of joint 2
-        pus_v_2_in_axes3_z = pus_c_3_t*pus_platform_joint_offset_x
+        pus_v_2_in_axes3_z = pus_c_3*pus_platform_joint_offset_x
         # (pus-w_1) reciprocal vector 1
-        pus_e_1_in_axes3_x = pus_c_3_t*pus_s_2
+        pus_e_1_in_axes3_x = pus_c_2*pus_c_3
         pus_w_1_in_axes3_x = 1.0/pus_e_1_in_axes3_x
         # (pus-w_2) reciprocal vector 2
         pus_w_2_in_axes3_z = 1.0/pus_v_2_in_axes3_z
         # (pus-qd_1) rate of joint 1
-        axis_z_pus_axes3_x = pus_base_frame_xy*pus_s_2 - pus_base_frame_xx*pus_c_2_t
-        axis_z_pus_axes3_y = pus_base_frame_yy*pus_s_2 - pus_base_frame_yx*pus_c_2_t
-        axis_z_pus_axes3_z = pus_base_frame_zy*pus_s_2 - pus_base_frame_zx*pus_c_2_t
-        pus_e_1_in_axes3_y = pus_s_2*pus_s_3
-        pus_qd_1_t = pus_c_2_t*pus_s_3
+        pus_e_2_in_axes3_x = (
+        inv_pus_size_t*pus_platform_joint_offset_x*(pus_S_x*pus_base_frame_xz +
+            pus_S_y*pus_base_frame_yz + pus_S_z*pus_base_frame_zz)
+        )
+        axis_z_pus_axes3_x = pus_base_frame_xy*pus_c_2 - pus_base_frame_xx*pus_s_2
+        axis_z_pus_axes3_y = pus_base_frame_yy*pus_c_2 - pus_base_frame_yx*pus_s_2
+        axis_z_pus_axes3_z = pus_base_frame_zy*pus_c_2 - pus_base_frame_zx*pus_s_2
+        pus_e_1_in_axes3_y = pus_c_2*pus_e_2_in_axes3_x
+        pus_qd_1_t = pus_e_2_in_axes3_x*pus_s_2
         axis_y_pus_axes3_x = (
         pus_base_frame_xx*pus_e_1_in_axes3_y + pus_base_frame_xy*pus_qd_1_t -
-            pus_base_frame_xz*pus_c_3_t
+            pus_base_frame_xz*pus_c_3
         )
         axis_y_pus_axes3_y = (
         pus_base_frame_yx*pus_e_1_in_axes3_y + pus_base_frame_yy*pus_qd_1_t -
-            pus_base_frame_yz*pus_c_3_t
+            pus_base_frame_yz*pus_c_3
         )
         axis_y_pus_axes3_z = (
         pus_base_frame_zx*pus_e_1_in_axes3_y + pus_base_frame_zy*pus_qd_1_t -
-            pus_base_frame_zz*pus_c_3_t
+            pus_base_frame_zz*pus_c_3
         )
         axis_x_pus_axes3_x = (
         axis_y_pus_axes3_y*axis_z_pus_axes3_z - axis_y_pus_axes3_z*axis_z_pus_axes3_y
@@ -3853,7 +4020,7 @@ def _run_joint_accelerations(m, X, V, A):
         # (pus-qd_2) rate of joint 2
         pus_qd_2 = (
         pus_w_2_in_axes3_z*(axis_z_pus_axes3_x*pus_S_dot_x + axis_z_pus_axes3_y*pus_S_dot_y +
-            axis_z_pus_axes3_z*pus_S_dot_z + pus_c_2_t*pus_qd_1)
+            axis_z_pus_axes3_z*pus_S_dot_z + pus_qd_1*pus_s_2)
         )
         # (pus-qd_3) rate of joint 3
         pus_qd_3_t = (
@@ -3862,8 +4029,8 @@ def _run_joint_accelerations(m, X, V, A):
         )
         pus_qd_3 = pus_qd_3_t*pus_w_3_in_axes3_y
         # (pus-omega_2) angular velocity of link 2
-        pus_omega_2_in_axes3_x = pus_qd_2*pus_s_3
-        pus_omega_2_in_axes3_y = -pus_c_3_t*pus_qd_2
+        pus_omega_2_in_axes3_x = pus_e_2_in_axes3_x*pus_qd_2
+        pus_omega_2_in_axes3_y = -pus_c_3*pus_qd_2
         # (pus-a_p) acceleration of the connection point without its centripetal part
         pus_a_p_x = t_ddot_x + alpha_y*pus_q_z - alpha_z*pus_q_y
         pus_a_p_y = t_ddot_y + alpha_z*pus_q_x - alpha_x*pus_q_z
@@ -3895,7 +4062,7 @@ def _run_joint_accelerations(m, X, V, A):
         # (pus-qdd_1) acceleration of joint 1
         pus_qdd_1 = pus_rel_in_axes3_x*pus_w_1_in_axes3_x
         # (pus-qdd_2) acceleration of joint 2
-        pus_qdd_2_t = pus_w_2_in_axes3_z*(-pus_rel_in_axes3_z - pus_c_2_t*pus_qdd_1)
+        pus_qdd_2_t = pus_w_2_in_axes3_z*(-pus_rel_in_axes3_z - pus_qdd_1*pus_s_2)
         # (pus-qdd_3) acceleration of joint 3
         pus_qdd_3_t = pus_w_3_in_axes3_y*(pus_e_1_in_axes3_y*pus_qdd_1 - pus_rel_in_axes3_y)
         ok = (
@@ -3912,7 +4079,7 @@ def _run_joint_accelerations(m, X, V, A):
     return ok, (out_qdd,)
 
 
-# legs: 1092 mul, 798 add, 18 div, 12 sqrt, 0 trig
+# legs: 1086 mul, 798 add, 18 div, 12 sqrt, 0 trig
 def _run_legs(m, X, V, A):
     sqrt = m.sqrt
     shared, legs = m.constants("legs")
@@ -4015,24 +4182,17 @@ def _run_legs(m, X, V, A):
         # (pus-disc_1) discriminant of the distance equation
         pus_disc_1_t = pus_S_x*pus_S_x + pus_S_y*pus_S_y + pus_S_z*pus_S_z
         pus_disc_1 = pus_S_in_axes0_x*pus_S_in_axes0_x + pus_size_t - pus_disc_1_t
-        # (pus-x_2) from the origin of joint 2 to the connection point
-        pus_x_2_in_axes0_x = -pus_branch_1*sqrt(pus_disc_1)
         # (pus-rho2_2) squared amplitude
-        pus_rho2_2 = pus_S_in_axes0_y*pus_S_in_axes0_y + pus_x_2_in_axes0_x*pus_x_2_in_axes0_x
+        pus_rho2_2 = pus_S_in_axes0_y*pus_S_in_axes0_y + pus_disc_1
         # (pus-root_2) root, with the sign of the branch
         pus_root_2 = pus_branch_2*sqrt(pus_rho2_2)
         # (pus-c_2) cosine of the angle of joint 2 from its reference direction
         inv_pus_rho2_2 = 1.0/pus_rho2_2
-        pus_c_2_t = inv_pus_rho2_2*pus_S_in_axes0_y*pus_root_2
+        pus_c_2 = -inv_pus_rho2_2*pus_branch_1*sqrt(pus_disc_1)*pus_root_2
         # (pus-s_2) sine of the angle of joint 2 from its reference direction
-        pus_s_2 = inv_pus_rho2_2*pus_root_2*pus_x_2_in_axes0_x
+        pus_s_2 = inv_pus_rho2_2*pus_S_in_axes0_y*pus_root_2
         # (pus-c_3) cosine of the angle of joint 3 from its reference direction
-        pus_c_3_t = inv_pus_size_t*pus_platform_joint_offset_x*pus_root_2
-        # (pus-s_3) sine of the angle of joint 3 from its reference direction
-        pus_s_3 = (
-        inv_pus_size_t*pus_platform_joint_offset_x*(pus_S_x*pus_base_frame_xz +
-            pus_S_y*pus_base_frame_yz + pus_S_z*pus_base_frame_zz)
-        )
+        pus_c_3 = inv_pus_size_t*pus_platform_joint_offset_x*pus_root_2
         # (pus-S_dot) velocity of the connection point
         pus_S_dot_t = omega_y*pus_q_z - omega_z*pus_q_y
         pus_S_dot_t_2 = omega_z*pus_q_x - omega_x*pus_q_z
@@ -4041,24 +4201,28 @@ def _run_legs(m, X, V, A):
         pus_S_dot_y = pus_S_dot_t_2 + t_dot_y
         pus_S_dot_z = pus_S_dot_t_3 + t_dot_z
         # (pus-v_2) velocity of the connection point per rate of joint 2
-        pus_v_2_in_axes3_z = pus_c_3_t*pus_platform_joint_offset_x
+        pus_v_2_in_axes3_z = pus_c_3*pus_platform_joint_offset_x
         # (pus-w_1) reciprocal vector 1
-        axis_z_pus_axes3_x = pus_base_frame_xy*pus_s_2 - pus_base_frame_xx*pus_c_2_t
-        axis_z_pus_axes3_y = pus_base_frame_yy*pus_s_2 - pus_base_frame_yx*pus_c_2_t
-        axis_z_pus_axes3_z = pus_base_frame_zy*pus_s_2 - pus_base_frame_zx*pus_c_2_t
-        pus_e_1_in_axes3_y = pus_s_2*pus_s_3
-        pus_w_1_t = pus_c_2_t*pus_s_3
+        pus_e_2_in_axes3_x = (
+        inv_pus_size_t*pus_platform_joint_offset_x*(pus_S_x*pus_base_frame_xz +
+            pus_S_y*pus_base_frame_yz + pus_S_z*pus_base_frame_zz)
+        )
+        axis_z_pus_axes3_x = pus_base_frame_xy*pus_c_2 - pus_base_frame_xx*pus_s_2
+        axis_z_pus_axes3_y = pus_base_frame_yy*pus_c_2 - pus_base_frame_yx*pus_s_2
+        axis_z_pus_axes3_z = pus_base_frame_zy*pus_c_2 - pus_base_frame_zx*pus_s_2
+        pus_e_1_in_axes3_y = pus_c_2*pus_e_2_in_axes3_x
+        pus_w_1_t = pus_e_2_in_axes3_x*pus_s_2
         axis_y_pus_axes3_x = (
         pus_base_frame_xx*pus_e_1_in_axes3_y + pus_base_frame_xy*pus_w_1_t -
-            pus_base_frame_xz*pus_c_3_t
+            pus_base_frame_xz*pus_c_3
         )
         axis_y_pus_axes3_y = (
         pus_base_frame_yx*pus_e_1_in_axes3_y + pus_base_frame_yy*pus_w_1_t -
-            pus_base_frame_yz*pus_c_3_t
+            pus_base_frame_yz*pus_c_3
         )
         axis_y_pus_axes3_z = (
         pus_base_frame_zx*pus_e_1_in_axes3_y + pus_base_frame_zy*pus_w_1_t -
-            pus_base_frame_zz*pus_c_3_t
+            pus_base_frame_zz*pus_c_3
         )
         axis_x_pus_axes3_x = (
         axis_y_pus_axes3_y*axis_z_pus_axes3_z - axis_y_pus_axes3_z*axis_z_pus_axes3_y
@@ -4069,7 +4233,7 @@ def _run_legs(m, X, V, A):
         axis_x_pus_axes3_z = (
         axis_y_pus_axes3_x*axis_z_pus_axes3_y - axis_y_pus_axes3_y*axis_z_pus_axes3_x
         )
-        pus_e_1_in_axes3_x = pus_c_3_t*pus_s_2
+        pus_e_1_in_axes3_x = pus_c_2*pus_c_3
         pus_w_1_in_axes3_x = 1.0/pus_e_1_in_axes3_x
         pus_w_1_x = axis_x_pus_axes3_x*pus_w_1_in_axes3_x
         pus_w_1_y = axis_x_pus_axes3_y*pus_w_1_in_axes3_x
@@ -4084,7 +4248,7 @@ def _run_legs(m, X, V, A):
         # (pus-qd_2) rate of joint 2
         pus_qd_2 = (
         pus_w_2_in_axes3_z*(axis_z_pus_axes3_x*pus_S_dot_x + axis_z_pus_axes3_y*pus_S_dot_y +
-            axis_z_pus_axes3_z*pus_S_dot_z + pus_c_2_t*pus_qd_1)
+            axis_z_pus_axes3_z*pus_S_dot_z + pus_qd_1*pus_s_2)
         )
         # (pus-qd_3) rate of joint 3
         pus_qd_3_t = (
@@ -4093,8 +4257,8 @@ def _run_legs(m, X, V, A):
         )
         pus_qd_3 = pus_qd_3_t*pus_w_3_in_axes3_y
         # (pus-omega_2) angular velocity of link 2
-        pus_omega_2_in_axes3_x = pus_qd_2*pus_s_3
-        pus_omega_2_in_axes3_y = -pus_c_3_t*pus_qd_2
+        pus_omega_2_in_axes3_x = pus_e_2_in_axes3_x*pus_qd_2
+        pus_omega_2_in_axes3_y = -pus_c_3*pus_qd_2
         # (pus-W_3) centripetal tensor of link 3
         pus_W_3_in_axes3_yz = pus_omega_2_in_axes3_y*pus_qd_3
         pus_W_3_in_axes3_xz = pus_omega_2_in_axes3_x*pus_qd_3
@@ -4133,12 +4297,12 @@ def _run_legs(m, X, V, A):
         # (pus-qdd_1) acceleration of joint 1
         pus_qdd_1 = pus_rel_in_axes3_x*pus_w_1_in_axes3_x
         # (pus-qdd_2) acceleration of joint 2
-        pus_qdd_2_t = pus_w_2_in_axes3_z*(-pus_rel_in_axes3_z - pus_c_2_t*pus_qdd_1)
+        pus_qdd_2_t = pus_w_2_in_axes3_z*(-pus_rel_in_axes3_z - pus_qdd_1*pus_s_2)
         # (pus-qdd_3) acceleration of joint 3
         pus_qdd_3_t = pus_w_3_in_axes3_y*(pus_e_1_in_axes3_y*pus_qdd_1 - pus_rel_in_axes3_y)
         # (pus-alpha_2) angular acceleration of link 2
-        pus_alpha_2_t = pus_qdd_2_t*pus_s_3
-        pus_alpha_2_in_axes3_y = pus_c_3_t*pus_qdd_2_t
+        pus_alpha_2_t = pus_e_2_in_axes3_x*pus_qdd_2_t
+        pus_alpha_2_in_axes3_y = pus_c_3*pus_qdd_2_t
         # (pus-alpha_3) angular acceleration of link 3
         pus_alpha_3_in_axes3_x = pus_W_3_in_axes3_yz - pus_alpha_2_t
         pus_alpha_3_in_axes3_y = pus_alpha_2_in_axes3_y - pus_W_3_in_axes3_xz
@@ -4150,15 +4314,15 @@ def _run_legs(m, X, V, A):
         # (pus-acc_1) acceleration of the reference point of link 1, less gravity
         pus_acc_1_in_axes0_x = pus_qdd_1 - pus_g_in_axes0_x
         # (pus-acc_3) acceleration of the reference point of link 3, less gravity
-        pus_acc_3_t = -pus_c_2_t*pus_g_in_axes0_y - pus_g_in_axes0_x*pus_s_2
+        pus_acc_3_t = pus_c_2*pus_g_in_axes0_x + pus_g_in_axes0_y*pus_s_2
         pus_acc_3_in_axes3_x = (
-        pus_S_ddot_in_axes3_x + pus_acc_3_t*pus_c_3_t - pus_g_in_axes0_z*pus_s_3
+        pus_S_ddot_in_axes3_x - pus_acc_3_t*pus_c_3 - pus_e_2_in_axes3_x*pus_g_in_axes0_z
         )
         pus_acc_3_in_axes3_y = (
-        pus_S_ddot_in_axes3_y + pus_acc_3_t*pus_s_3 + pus_c_3_t*pus_g_in_axes0_z
+        pus_S_ddot_in_axes3_y + pus_c_3*pus_g_in_axes0_z - pus_acc_3_t*pus_e_2_in_axes3_x
         )
         pus_acc_3_in_axes3_z = (
-        pus_S_ddot_in_axes3_z + pus_c_2_t*pus_g_in_axes0_x - pus_g_in_axes0_y*pus_s_2
+        pus_S_ddot_in_axes3_z + pus_g_in_axes0_x*pus_s_2 - pus_c_2*pus_g_in_axes0_y
         )
         # (pus-mu_3) inertia moment of the links that turn with link 3, about their reference points
         pus_mu_3_t = pus_omega_2_in_axes3_x*pus_omega_2_in_axes3_x
@@ -4183,24 +4347,24 @@ def _run_legs(m, X, V, A):
             - pus_J_3_in_spec3_yz*pus_alpha_2_in_axes3_y
         )
         # (pus-G) force at the connection point that balances the leg's inertia and weight along all degrees of freedom
-        pus_G_in_axes3_z = (
-        pus_w_2_in_axes3_z*(pus_mu_3_in_axes3_x*pus_s_3 - pus_c_3_t*pus_mu_3_in_axes3_y)
+        pus_G_t = (
+        pus_w_2_in_axes3_z*(pus_c_3*pus_mu_3_in_axes3_y - pus_e_2_in_axes3_x*pus_mu_3_in_axes3_x)
         )
         pus_G_in_axes3_y = pus_mu_3_in_axes3_z*pus_w_3_in_axes3_y
         # (pus-c) leg force on the platform without actuation and without the mass at the connection point
         pus_c_in_axes3_x = (
         pus_B_3_in_axes3_xy*pus_h_3_in_spec3_z + pus_h_3_in_spec3_x*(pus_mu_3_t_2 + pus_mu_3_t_3)
             - pus_alpha_2_in_axes3_y*pus_h_3_in_spec3_y -
-            pus_w_1_in_axes3_x*(pus_G_in_axes3_z*pus_c_2_t + pus_acc_1_in_axes0_x*pus_link1_mass -
-            pus_G_in_axes3_y*pus_e_1_in_axes3_y)
+            pus_w_1_in_axes3_x*(pus_acc_1_in_axes0_x*pus_link1_mass -
+            pus_G_in_axes3_y*pus_e_1_in_axes3_y - pus_G_t*pus_s_2)
         )
         pus_c_in_axes3_y = (
         -pus_G_in_axes3_y - pus_B_3_in_axes3_yx*pus_h_3_in_spec3_x -
             pus_alpha_2_t*pus_h_3_in_spec3_y - pus_h_3_in_spec3_z*(pus_mu_3_t + pus_mu_3_t_3)
         )
         pus_c_in_axes3_z = (
-        pus_B_3_in_axes3_zy*pus_h_3_in_spec3_z + pus_h_3_in_spec3_y*(pus_mu_3_t + pus_mu_3_t_2) -
-            pus_G_in_axes3_z - pus_B_3_in_axes3_zx*pus_h_3_in_spec3_x
+        pus_G_t + pus_B_3_in_axes3_zy*pus_h_3_in_spec3_z + pus_h_3_in_spec3_y*(pus_mu_3_t +
+            pus_mu_3_t_2) - pus_B_3_in_axes3_zx*pus_h_3_in_spec3_x
         )
         # (pus-c_true) leg force on the platform without actuation, the last link's mass included
         pus_c_true_in_axes3_x = pus_c_in_axes3_x - pus_acc_3_in_axes3_x*pus_link3_mass
@@ -4234,7 +4398,7 @@ def _run_legs(m, X, V, A):
     return ok, (out_leg_force, out_actuator,)
 
 
-# potential: 291 mul, 240 add, 6 div, 12 sqrt, 0 trig
+# potential: 285 mul, 240 add, 6 div, 12 sqrt, 0 trig
 def _run_potential(m, X):
     sqrt = m.sqrt
     shared, legs = m.constants("potential")
@@ -4321,32 +4485,31 @@ def _run_potential(m, X):
         pus_disc_1_t = pus_S_x*pus_S_x + pus_S_y*pus_S_y + pus_S_z*pus_S_z
         pus_disc_1 = pus_S_in_axes0_x*pus_S_in_axes0_x + pus_size_t - pus_disc_1_t
         # (pus-q_1) displacement of joint 1
-        pus_q_1_t = -pus_branch_1*sqrt(pus_disc_1)
-        pus_q_1 = pus_S_in_axes0_x - pus_q_1_t
+        pus_q_1_t = pus_branch_1*sqrt(pus_disc_1)
+        pus_q_1 = pus_S_in_axes0_x + pus_q_1_t
         # (pus-rho2_2) squared amplitude
-        pus_rho2_2 = pus_S_in_axes0_y*pus_S_in_axes0_y + pus_q_1_t*pus_q_1_t
+        pus_rho2_2 = pus_S_in_axes0_y*pus_S_in_axes0_y + pus_disc_1
         # (pus-root_2) root, with the sign of the branch
         pus_root_2 = pus_branch_2*sqrt(pus_rho2_2)
         # (pus-c_2) cosine of the angle of joint 2 from its reference direction
         inv_pus_rho2_2 = 1.0/pus_rho2_2
-        pus_c_2_t = inv_pus_rho2_2*pus_S_in_axes0_y*pus_root_2
+        pus_c_2 = -inv_pus_rho2_2*pus_q_1_t*pus_root_2
         # (pus-s_2) sine of the angle of joint 2 from its reference direction
-        pus_s_2 = inv_pus_rho2_2*pus_q_1_t*pus_root_2
+        pus_s_2 = inv_pus_rho2_2*pus_S_in_axes0_y*pus_root_2
         # (pus-c_3) cosine of the angle of joint 3 from its reference direction
-        pus_c_3_t = inv_pus_size_t*pus_platform_joint_offset_x*pus_root_2
-        # (pus-s_3) sine of the angle of joint 3 from its reference direction
-        pus_s_3 = (
+        pus_c_3 = inv_pus_size_t*pus_platform_joint_offset_x*pus_root_2
+        # (potential) potential energy
+        pus_e_2_in_axes3_x = (
         inv_pus_size_t*pus_platform_joint_offset_x*(pus_S_x*pus_base_frame_xz +
             pus_S_y*pus_base_frame_yz + pus_S_z*pus_base_frame_zz)
         )
-        # (potential) potential energy
-        pus_potential_t_3 = pus_h_3_in_spec3_z*pus_s_3 - pus_c_3_t*pus_h_3_in_spec3_x
+        pus_potential_t_3 = pus_e_2_in_axes3_x*pus_h_3_in_spec3_z - pus_c_3*pus_h_3_in_spec3_x
         pus_potential_t_4 = (
         pus_g_in_axes0_x*(pus_h_1_in_spec0_x + pus_link1_mass*(pus_b_in_axes0_x + pus_q_1) -
-            pus_c_2_t*pus_h_3_in_spec3_y - pus_potential_t_3*pus_s_2) +
-            pus_g_in_axes0_y*(pus_h_1_in_spec0_y + pus_potential_t + pus_h_3_in_spec3_y*pus_s_2 -
-            pus_c_2_t*pus_potential_t_3) + pus_g_in_axes0_z*(pus_h_1_in_spec0_z +
-            pus_potential_t_2 + pus_c_3_t*pus_h_3_in_spec3_z + pus_h_3_in_spec3_x*pus_s_3)
+            pus_c_2*pus_potential_t_3 - pus_h_3_in_spec3_y*pus_s_2) +
+            pus_g_in_axes0_y*(pus_h_1_in_spec0_y + pus_potential_t + pus_c_2*pus_h_3_in_spec3_y -
+            pus_potential_t_3*pus_s_2) + pus_g_in_axes0_z*(pus_h_1_in_spec0_z + pus_potential_t_2
+            + pus_c_3*pus_h_3_in_spec3_z + pus_e_2_in_axes3_x*pus_h_3_in_spec3_x)
         )
         ok = ok & (pus_disc_1 >= 0.0) & (abs(pus_rho2_2) > _TOLERANCE * _TOLERANCE * pus_size_t_2)
         # (potential) potential energy
@@ -4358,7 +4521,7 @@ def _run_potential(m, X):
     return ok, (out_potential,)
 
 
-# condition: 439 mul, 276 add, 12 div, 19 sqrt, 0 trig
+# condition: 433 mul, 276 add, 12 div, 19 sqrt, 0 trig
 def _run_condition(m, X):
     sqrt = m.sqrt
     least = m.least
@@ -4440,45 +4603,42 @@ def _run_condition(m, X):
         # (pus-disc_1) discriminant of the distance equation
         pus_disc_1_t = pus_S_x*pus_S_x + pus_S_y*pus_S_y + pus_S_z*pus_S_z
         pus_disc_1 = pus_S_in_axes0_x*pus_S_in_axes0_x + pus_size_t - pus_disc_1_t
-        # (pus-x_2) from the origin of joint 2 to the connection point
-        pus_x_2_in_axes0_x = -pus_branch_1*sqrt(pus_disc_1)
         # (pus-rho2_2) squared amplitude
-        pus_rho2_2 = pus_S_in_axes0_y*pus_S_in_axes0_y + pus_x_2_in_axes0_x*pus_x_2_in_axes0_x
+        pus_rho2_2 = pus_S_in_axes0_y*pus_S_in_axes0_y + pus_disc_1
         # (pus-root_2) root, with the sign of the branch
         pus_root_2 = pus_branch_2*sqrt(pus_rho2_2)
         # (pus-c_2) cosine of the angle of joint 2 from its reference direction
         inv_pus_rho2_2 = 1.0/pus_rho2_2
-        pus_c_2_t = inv_pus_rho2_2*pus_S_in_axes0_y*pus_root_2
+        pus_c_2 = -inv_pus_rho2_2*pus_branch_1*sqrt(pus_disc_1)*pus_root_2
         # (pus-s_2) sine of the angle of joint 2 from its reference direction
-        pus_s_2 = inv_pus_rho2_2*pus_root_2*pus_x_2_in_axes0_x
+        pus_s_2 = inv_pus_rho2_2*pus_S_in_axes0_y*pus_root_2
         # (pus-c_3) cosine of the angle of joint 3 from its reference direction
-        pus_c_3_t = inv_pus_size_t*pus_platform_joint_offset_x*pus_root_2
-        # (pus-s_3) sine of the angle of joint 3 from its reference direction
-        pus_s_3 = (
+        pus_c_3 = inv_pus_size_t*pus_platform_joint_offset_x*pus_root_2
+        # (pus-v_2) velocity of the connection point per rate of joint 2
+        pus_v_2_in_axes3_z = pus_c_3*pus_platform_joint_offset_x
+        # (pus-w_1) reciprocal vector 1
+        pus_e_2_in_axes3_x = (
         inv_pus_size_t*pus_platform_joint_offset_x*(pus_S_x*pus_base_frame_xz +
             pus_S_y*pus_base_frame_yz + pus_S_z*pus_base_frame_zz)
         )
-        # (pus-v_2) velocity of the connection point per rate of joint 2
-        pus_v_2_in_axes3_z = pus_c_3_t*pus_platform_joint_offset_x
-        # (pus-w_1) reciprocal vector 1
-        axis_z_pus_axes3_x = pus_base_frame_xy*pus_s_2 - pus_base_frame_xx*pus_c_2_t
-        axis_z_pus_axes3_y = pus_base_frame_yy*pus_s_2 - pus_base_frame_yx*pus_c_2_t
-        axis_z_pus_axes3_z = pus_base_frame_zy*pus_s_2 - pus_base_frame_zx*pus_c_2_t
-        pus_e_1_in_axes3_y = pus_s_2*pus_s_3
-        pus_w_1_t = pus_c_2_t*pus_s_3
+        axis_z_pus_axes3_x = pus_base_frame_xy*pus_c_2 - pus_base_frame_xx*pus_s_2
+        axis_z_pus_axes3_y = pus_base_frame_yy*pus_c_2 - pus_base_frame_yx*pus_s_2
+        axis_z_pus_axes3_z = pus_base_frame_zy*pus_c_2 - pus_base_frame_zx*pus_s_2
+        pus_e_1_in_axes3_y = pus_c_2*pus_e_2_in_axes3_x
+        pus_w_1_t = pus_e_2_in_axes3_x*pus_s_2
         axis_y_pus_axes3_x = (
         pus_base_frame_xx*pus_e_1_in_axes3_y + pus_base_frame_xy*pus_w_1_t -
-            pus_base_frame_xz*pus_c_3_t
+            pus_base_frame_xz*pus_c_3
         )
         axis_y_pus_axes3_y = (
         pus_base_frame_yx*pus_e_1_in_axes3_y + pus_base_frame_yy*pus_w_1_t -
-            pus_base_frame_yz*pus_c_3_t
+            pus_base_frame_yz*pus_c_3
         )
         axis_y_pus_axes3_z = (
         pus_base_frame_zx*pus_e_1_in_axes3_y + pus_base_frame_zy*pus_w_1_t -
-            pus_base_frame_zz*pus_c_3_t
+            pus_base_frame_zz*pus_c_3
         )
-        pus_e_1_in_axes3_x = pus_c_3_t*pus_s_2
+        pus_e_1_in_axes3_x = pus_c_2*pus_c_3
         pus_w_1_in_axes3_x = 1.0/pus_e_1_in_axes3_x
         pus_w_1_x = (
         pus_w_1_in_axes3_x*(axis_y_pus_axes3_y*axis_z_pus_axes3_z -
@@ -4537,6 +4697,130 @@ def _run_condition(m, X):
     return (valid, reached, clear), (out_H, out_lengths, out_pivots, out_reach,)
 
 
+def _straight_6(a, b, rows, limits):
+    """Solve 6 equations a x = b straight through; and whether that is beyond doubt."""
+    (
+    (a00, a01, a02, a03, a04, a05,), (a10, a11, a12, a13, a14, a15,), (a20, a21, a22, a23, a24,
+        a25,), (a30, a31, a32, a33, a34, a35,), (a40, a41, a42, a43, a44, a45,), (a50, a51, a52,
+        a53, a54, a55,),
+    ) = [a[6 * k : 6 * k + 6] for k in rows]
+    b0, b1, b2, b3, b4, b5, = [b[k] for k in rows]
+    (
+    l10, l20, l30, l40, l50, l21, l31, l41, l51, l32, l42, l52, l43, l53, l54, l0, l1, l2, l3, l4,
+        l5,
+    ) = limits
+    f0 = 1.0/a00
+    g10 = a10*f0
+    a11 = a11 - g10*a01
+    a12 = a12 - g10*a02
+    a13 = a13 - g10*a03
+    a14 = a14 - g10*a04
+    a15 = a15 - g10*a05
+    b1 = b1 - g10*b0
+    g20 = a20*f0
+    a21 = a21 - g20*a01
+    a22 = a22 - g20*a02
+    a23 = a23 - g20*a03
+    a24 = a24 - g20*a04
+    a25 = a25 - g20*a05
+    b2 = b2 - g20*b0
+    g30 = a30*f0
+    a31 = a31 - g30*a01
+    a32 = a32 - g30*a02
+    a33 = a33 - g30*a03
+    a34 = a34 - g30*a04
+    a35 = a35 - g30*a05
+    b3 = b3 - g30*b0
+    g40 = a40*f0
+    a41 = a41 - g40*a01
+    a42 = a42 - g40*a02
+    a43 = a43 - g40*a03
+    a44 = a44 - g40*a04
+    a45 = a45 - g40*a05
+    b4 = b4 - g40*b0
+    g50 = a50*f0
+    a51 = a51 - g50*a01
+    a52 = a52 - g50*a02
+    a53 = a53 - g50*a03
+    a54 = a54 - g50*a04
+    a55 = a55 - g50*a05
+    b5 = b5 - g50*b0
+    f1 = 1.0/a11
+    g21 = a21*f1
+    a22 = a22 - g21*a12
+    a23 = a23 - g21*a13
+    a24 = a24 - g21*a14
+    a25 = a25 - g21*a15
+    b2 = b2 - g21*b1
+    g31 = a31*f1
+    a32 = a32 - g31*a12
+    a33 = a33 - g31*a13
+    a34 = a34 - g31*a14
+    a35 = a35 - g31*a15
+    b3 = b3 - g31*b1
+    g41 = a41*f1
+    a42 = a42 - g41*a12
+    a43 = a43 - g41*a13
+    a44 = a44 - g41*a14
+    a45 = a45 - g41*a15
+    b4 = b4 - g41*b1
+    g51 = a51*f1
+    a52 = a52 - g51*a12
+    a53 = a53 - g51*a13
+    a54 = a54 - g51*a14
+    a55 = a55 - g51*a15
+    b5 = b5 - g51*b1
+    f2 = 1.0/a22
+    g32 = a32*f2
+    a33 = a33 - g32*a23
+    a34 = a34 - g32*a24
+    a35 = a35 - g32*a25
+    b3 = b3 - g32*b2
+    g42 = a42*f2
+    a43 = a43 - g42*a23
+    a44 = a44 - g42*a24
+    a45 = a45 - g42*a25
+    b4 = b4 - g42*b2
+    g52 = a52*f2
+    a53 = a53 - g52*a23
+    a54 = a54 - g52*a24
+    a55 = a55 - g52*a25
+    b5 = b5 - g52*b2
+    f3 = 1.0/a33
+    g43 = a43*f3
+    a44 = a44 - g43*a34
+    a45 = a45 - g43*a35
+    b4 = b4 - g43*b3
+    g53 = a53*f3
+    a54 = a54 - g53*a34
+    a55 = a55 - g53*a35
+    b5 = b5 - g53*b3
+    f4 = 1.0/a44
+    g54 = a54*f4
+    a55 = a55 - g54*a45
+    b5 = b5 - g54*b4
+    f5 = 1.0/a55
+    x5 = b5*f5
+    x4 = (b4 - a45*x5)*f4
+    x3 = (b3 - a35*x5 - a34*x4)*f3
+    x2 = (b2 - a25*x5 - a24*x4 - a23*x3)*f2
+    x1 = (b1 - a15*x5 - a14*x4 - a13*x3 - a12*x2)*f1
+    x0 = (b0 - a05*x5 - a04*x4 - a03*x3 - a02*x2 - a01*x1)*f0
+    sure = (
+    (abs(g10) <= l10) & (abs(g20) <= l20) & (abs(g30) <= l30) & (abs(g40) <= l40) & (abs(g50) <=
+        l50) & (abs(g21) <= l21) & (abs(g31) <= l31) & (abs(g41) <= l41) & (abs(g51) <= l51) &
+        (abs(g32) <= l32) & (abs(g42) <= l42) & (abs(g52) <= l52) & (abs(g43) <= l43) & (abs(g53)
+        <= l53) & (abs(g54) <= l54) & (abs(f0) <= l0) & (abs(f1) <= l1) & (abs(f2) <= l2) &
+        (abs(f3) <= l3) & (abs(f4) <= l4) & (abs(f5) <= l5) & (abs(x0 + x1 + x2 + x3 + x4 + x5 +
+        a00 + a11 + a22 + a33 + a44 + a55) < math.inf)
+    )
+    return sure, ([x0, x1, x2, x3, x4, x5],)
+
+
+_ORDERS = (  # how systems are solved near home
+    _Order(_straight_6, (0, 1, 5, 2, 4, 3), (10, 2.5, 10, 2.5, 2.5, 2.5, 10, 2.5, 2.5, 40, 10, 10, 2.5, 2.5, 10, 1000, 1000, 4000, 1000, 4000, 4000,)),
+    _Order(_straight_6, (0, 1, 2, 3, 4, 5), (10, 10, 0.625, 0.625, 0.625, 10, 0.625, 0.625, 0.625, 0.625, 0.625, 0.625, 10, 10, 10, 62.5, 62.5, 62.5, 1000, 1000, 1000,)),
+)
 _Q = 3  # where a quaternion begins in X
 _DEFAULT = Parameters()
 
@@ -4580,17 +4864,17 @@ def _steps_inverse_dynamics(m, X, V, A, wrench, weights):
     required, H = m.run(_run_required, ("required", "H"), X, V, A)
     extend_1 = wrench
     subtract_1 = required - extend_1
-    tau = _solve(H, subtract_1)
+    tau = _straight(m, H, subtract_1, _ORDERS[0])
     return (tau,)
 
 
 def _steps_forward_dynamics(m, X, V, tau, wrench):
     M, Z, H = m.run(_run_dynamics, ("M", "Z", "H"), X, V)
-    times_1 = np.einsum("ijs,js->is", H, tau)
+    times_1 = _times(H, tau)
     extend_1 = wrench
     add_1 = times_1 + extend_1
     subtract_1 = add_1 - Z
-    A = _solve(M, subtract_1)
+    A = _straight(m, M, subtract_1, _ORDERS[1])
     return (A,)
 
 
@@ -4603,7 +4887,7 @@ def _steps_leg_reactions(m, X, V, A, wrench):
     required, H = m.run(_run_required, ("required", "H"), X, V, A)
     extend_1 = wrench
     subtract_1 = required - extend_1
-    solve_1 = _solve(H, subtract_1)
+    solve_1 = _straight(m, H, subtract_1, _ORDERS[0])
     leg_force, actuator = m.run(_run_legs, ("leg_force", "actuator"), X, V, A)
     forces = _with_forces(leg_force, solve_1, actuator, [0, 1, 2, 3, 4, 5])
     return (forces,)
@@ -4631,10 +4915,37 @@ def _steps_condition(m, X, length):
     return (sigma, legs,)
 
 
+def _steps_manipulability(m, X):
+    (
+    H, lengths, pivots, reach,
+    ) = m.run(_in_one(_run_condition), ("H", "lengths", "pivots", "reach"), X)
+    entry_1 = lengths[0]
+    subtract_1 = entry_1 - entry_1
+    choose_length_1 = _chosen_length(lengths, subtract_1)
+    divide_rows_1 = _rows_divided(H, choose_length_1, [3, 4, 5])
+    singular_values_1 = _singular_values(divide_rows_1)
+    measure, isotropy = _spread(singular_values_1, 6)
+    return (measure, isotropy,)
+
+
+def _steps_singularity_distance(m, X):
+    (
+    H, lengths, pivots, reach,
+    ) = m.run(_in_one(_run_condition), ("H", "lengths", "pivots", "reach"), X)
+    entry_1 = lengths[0]
+    subtract_1 = entry_1 - entry_1
+    choose_length_1 = _chosen_length(lengths, subtract_1)
+    divide_rows_1 = _rows_divided(H, choose_length_1, [3, 4, 5])
+    singular_values_1 = _singular_values(divide_rows_1)
+    spread_1, actuators = _spread(singular_values_1, 6)
+    legs = _least_entry(pivots)
+    return (actuators, legs,)
+
+
 def _steps_mismatch(m, X, q_actuated):
     q, = m.run(_run_inverse_kinematics, ("q",), X)
-    take_1 = q[[0, 3, 6, 9, 12, 15]]
-    gap = q_actuated - take_1
+    q_of_inverse_kinematics_from_0 = q[[0, 3, 6, 9, 12, 15]]
+    gap = q_actuated - q_of_inverse_kinematics_from_0
     return (gap,)
 
 
@@ -4656,7 +4967,7 @@ def _steps_dissipation(m, X, V):
 
 def _steps_momentum(m, X, V):
     M, = m.run(_run_M, ("M",), X)
-    momentum = np.einsum("ijs,js->is", M, V)
+    momentum = _times(M, V)
     return (momentum,)
 
 
@@ -4693,14 +5004,14 @@ def _steps_actuator_accelerations(m, X, V, A):
 
 def _steps_power(m, X, V, tau):
     H, = m.run(_run_H, ("H",), X)
-    times_1 = np.einsum("ijs,js->is", H, tau)
+    times_1 = _times(H, tau)
     power = np.sum(times_1 * V, axis=0)
     return (power,)
 
 
 def _steps_rotation(m, X):
-    take_1 = X[3:7]
-    R = _rotation_of_quaternion(take_1)
+    X_from_3 = X[3:7]
+    R = _rotation_of_quaternion(X_from_3)
     return (R,)
 
 
@@ -4712,11 +5023,11 @@ def _steps_pose(m, t, R):
 
 
 def _steps_X_dot(m, X, V):
-    take_1 = V[3:6]
-    take_2 = X[3:7]
-    quaternion_rate_1 = _quaternion_rate(take_2, take_1)
-    take_3 = V[0:3]
-    X_dot = np.concatenate((take_3, quaternion_rate_1))
+    V_from_3 = V[3:6]
+    X_from_3 = X[3:7]
+    quaternion_rate_1 = _quaternion_rate(X_from_3, V_from_3)
+    V_from_0 = V[0:3]
+    X_dot = np.concatenate((V_from_0, quaternion_rate_1))
     return (X_dot,)
 
 
@@ -4728,42 +5039,42 @@ def _steps_pose_from_rpy(m, t, rpy):
 
 
 def _steps_retract(m, X, step):
-    take_1 = X[0:3]
-    take_2 = X[3:7]
-    take_3 = step[0:3]
-    take_4 = step[3:6]
-    turn_quaternion_1 = _turned(take_2, take_4)
-    add_1 = take_1 + take_3
+    X_from_0 = X[0:3]
+    X_from_3 = X[3:7]
+    step_from_0 = step[0:3]
+    step_from_3 = step[3:6]
+    turn_quaternion_1 = _turned(X_from_3, step_from_3)
+    add_1 = X_from_0 + step_from_0
     X_moved = np.concatenate((add_1, turn_quaternion_1))
     return (X_moved,)
 
 
 def _steps_difference(m, X0, X1):
-    take_1 = X0[0:3]
-    take_2 = X0[3:7]
-    take_3 = X1[0:3]
-    take_4 = X1[3:7]
-    turn_between_1 = _turn_between(take_2, take_4)
-    subtract_1 = take_3 - take_1
+    X0_from_0 = X0[0:3]
+    X0_from_3 = X0[3:7]
+    X1_from_0 = X1[0:3]
+    X1_from_3 = X1[3:7]
+    turn_between_1 = _turn_between(X0_from_3, X1_from_3)
+    subtract_1 = X1_from_0 - X0_from_0
     step = np.concatenate((subtract_1, turn_between_1))
     return (step,)
 
 
 def _steps_interpolate(m, X0, X1, s):
-    take_1 = X0[0:3]
-    take_2 = X0[3:7]
-    take_3 = X1[0:3]
-    take_4 = X1[3:7]
-    turn_between_1 = _turn_between(take_2, take_4)
-    subtract_1 = take_3 - take_1
+    X0_from_0 = X0[0:3]
+    X0_from_3 = X0[3:7]
+    X1_from_0 = X1[0:3]
+    X1_from_3 = X1[3:7]
+    turn_between_1 = _turn_between(X0_from_3, X1_from_3)
+    subtract_1 = X1_from_0 - X0_from_0
     join_1 = np.concatenate((subtract_1, turn_between_1))
     scale_1 = join_1 * s
-    take_5 = X0[0:3]
-    take_6 = X0[3:7]
-    take_7 = scale_1[0:3]
-    take_8 = scale_1[3:6]
-    turn_quaternion_1 = _turned(take_6, take_8)
-    add_1 = take_5 + take_7
+    X0_from_0_2 = X0[0:3]
+    X0_from_3_2 = X0[3:7]
+    scale_1_from_0 = scale_1[0:3]
+    scale_1_from_3 = scale_1[3:6]
+    turn_quaternion_1 = _turned(X0_from_3_2, scale_1_from_3)
+    add_1 = X0_from_0_2 + scale_1_from_0
     X = np.concatenate((add_1, turn_quaternion_1))
     return (X,)
 
@@ -4781,6 +5092,7 @@ def M(X, p=None):
     return _call(
         "M", _steps_M, p,
         ("X", X, (NQ,)),
+        plain=((NV, NV,),),
     )
 
 
@@ -4799,6 +5111,7 @@ def Z(X, V, p=None):
         "Z", _steps_Z, p,
         ("X", X, (NQ,)),
         ("V", V, (NV,)),
+        plain=((NV,),),
     )
 
 
@@ -4815,6 +5128,7 @@ def H(X, p=None):
     return _call(
         "H", _steps_H, p,
         ("X", X, (NQ,)),
+        plain=((NV, NU,),),
     )
 
 
@@ -4833,6 +5147,7 @@ def inverse_kinematics(X, p=None):
     return _call(
         "inverse_kinematics", _steps_inverse_kinematics, p,
         ("X", X, (NQ,)),
+        plain=((NJ,),),
     )
 
 
@@ -4851,6 +5166,7 @@ def joint_rates(X, V, p=None):
         "joint_rates", _steps_joint_rates, p,
         ("X", X, (NQ,)),
         ("V", V, (NV,)),
+        plain=((NJ,),),
     )
 
 
@@ -4871,6 +5187,7 @@ def joint_accelerations(X, V, A, p=None):
         ("X", X, (NQ,)),
         ("V", V, (NV,)),
         ("A", A, (NV,)),
+        plain=((NJ,),),
     )
 
 
@@ -4891,6 +5208,7 @@ def dynamics(X, V, p=None):
         "dynamics", _steps_dynamics, p,
         ("X", X, (NQ,)),
         ("V", V, (NV,)),
+        plain=((NV, NV,), (NV,), (NV, NU,),),
     )
 
 
@@ -4918,6 +5236,7 @@ def inverse_dynamics(X, V, A, p=None, *, wrench=None, weights=None):
         ("A", A, (NV,)),
         ("wrench", wrench, (NW,), 0.0),
         ("weights", weights, (NU,), 1.0, "positive"),
+        plain=((NU,),),
     )
 
 
@@ -4940,6 +5259,7 @@ def forward_dynamics(X, V, tau, p=None, *, wrench=None):
         ("V", V, (NV,)),
         ("tau", tau, (NU,)),
         ("wrench", wrench, (NW,), 0.0),
+        plain=((NV,),),
     )
 
 
@@ -4964,6 +5284,7 @@ def complete_acceleration(X, V, A, p=None, *, wrench=None):
         ("V", V, (NV,), None, "unused"),
         ("A", A, (NV,)),
         ("wrench", wrench, (NW,), 0.0, "unused"),
+        plain=((NV,),),
     )
 
 
@@ -5052,6 +5373,41 @@ def condition(X, p=None, *, length=None):
     )
 
 
+def manipulability(X, p=None):
+    """Manipulability of forces: the product of the singular values that `condition` has by
+    default, and the least over the largest of them.
+
+    Args:
+        X: pose, and extra coordinates (..., NQ).
+        p: parameters, by default those of the specification.
+
+    Returns:
+        measure: product of the singular values (...,).
+        isotropy: least over largest value, 1 where H is isotropic (...,).
+    """
+    return _call(
+        "manipulability", _steps_manipulability, p,
+        ("X", X, (NQ,)),
+    )
+
+
+def singularity_distance(X, p=None):
+    """How near actuators and legs are to being singular: relative distances, 0 where they are.
+
+    Args:
+        X: pose, and extra coordinates (..., NQ).
+        p: parameters, by default those of the specification.
+
+    Returns:
+        actuators: of H from matrices of lower rank, over its norm (...,).
+        legs: least pivot of all legs (...,).
+    """
+    return _call(
+        "singularity_distance", _steps_singularity_distance, p,
+        ("X", X, (NQ,)),
+    )
+
+
 def forward_kinematics(q_actuated, X0, p=None):
     """X at which the actuated joints stand at q_actuated, by Gauss-Newton from X0.
 
@@ -5107,6 +5463,7 @@ def momentum(X, V, p=None):
         "momentum", _steps_momentum, p,
         ("X", X, (NQ,)),
         ("V", V, (NV,)),
+        plain=((NV,),),
     )
 
 

@@ -665,13 +665,13 @@ int hexapod_6rus_prepare(const hexapod_6rus_params *params, hexapod_6rus_model *
         /* (rus-d_phi_3) coefficient of the acceleration in: inertia force of link 3 from its turning
            about its reference point */
         const real rus_d_phi_3_in_axes3_xy = rus_h_3_in_spec3_z*rus_w_3_in_axes3_y;
-        /* (rus-trace_J_3) half the trace of that inertia tensor */
-        const real rus_trace_J_3 = R(0.5)*rus_J_3_in_spec3_xx + R(0.5)*rus_J_3_in_spec3_yy +
-            R(0.5)*rus_J_3_in_spec3_zz;
         /* (rus-Sigma_3) second moment of mass of the links that turn with link 3 */
-        const real rus_Sigma_3_in_axes3_xx = rus_trace_J_3 - rus_J_3_in_spec3_xx;
-        const real rus_Sigma_3_in_axes3_yy = rus_trace_J_3 - rus_J_3_in_spec3_zz;
-        const real rus_Sigma_3_in_axes3_zz = rus_trace_J_3 - rus_J_3_in_spec3_yy;
+        const real rus_Sigma_3_t = rus_J_3_in_spec3_xx + rus_J_3_in_spec3_yy +
+            rus_J_3_in_spec3_zz;
+        const real rus_Sigma_3_t_2 = R(0.5)*rus_Sigma_3_t;
+        const real rus_Sigma_3_in_axes3_xx = rus_Sigma_3_t_2 - rus_J_3_in_spec3_xx;
+        const real rus_Sigma_3_in_axes3_yy = rus_Sigma_3_t_2 - rus_J_3_in_spec3_zz;
+        const real rus_Sigma_3_in_axes3_zz = rus_Sigma_3_t_2 - rus_J_3_in_spec3_yy;
         /* (rus-d_Gamma_3) coefficient of the acceleration in: moment about axis 3 of the distal links'
            inertia and weight */
         const real rus_d_Gamma_3_t = rus_J_3_in_spec3_yy*rus_w_3_in_axes3_y;
@@ -1177,6 +1177,24 @@ INLINE void unlimited(size_t rows, size_t size, size_t w, const size_t *places, 
     }
 }
 
+INLINE void least_entry(size_t n, const real *a, real *x)
+{
+    *x = a[0];
+    for (size_t e = 1; e < n; ++e) {
+        *x = lesser(*x, a[e]);
+    }
+}
+
+/* Of the first n entries the product, and the last over the first, 0 where that is 0. */
+INLINE void spread(size_t n, const real *a, real *product_of, real *ratio)
+{
+    *product_of = 1;
+    for (size_t e = 0; e < n; ++e) {
+        *product_of *= a[e];
+    }
+    *ratio = magnitude(a[0]) > 0 ? a[n - 1]/a[0] : a[0];
+}
+
 /* 1 where no entry is negative, else 0. */
 INLINE void not_negative(size_t size, size_t w, const real *a, real *x, real *flags)
 {
@@ -1364,6 +1382,865 @@ static void moved(const real *X, const real *step, real part, real *to)
     turn_quaternion(X + Q, turn, to + Q);
 }
 
+/* ---- what functions of the state share; v: values for others ---- */
+
+typedef struct {
+    real quaternion_scale, R_xx, R_xy, R_xz, R_yx, R_yy, R_yz, R_zx, R_zy, R_zz, h_star_x, h_star_y,
+        h_star_z, omega_in_platform_x, omega_in_platform_y, omega_in_platform_z, J_star_xx, J_star_xy,
+        J_star_xz, J_star_yy, J_star_yz, J_star_zz, Z_p_x, Z_p_y, Z_p_z, Z_q_x, Z_q_y, Z_q_z;
+} values;
+
+INLINE void stage_X(const prepared *m, size_t w, size_t k, const real *X, values *v)
+{
+    /* X: named entries */
+    const real X_3 = X[3*w + k];
+    const real X_4 = X[4*w + k];
+    const real X_5 = X[5*w + k];
+    const real X_6 = X[6*w + k];
+    const real quaternion_norm2 = X_3*X_3 + X_4*X_4 + X_5*X_5 + X_6*X_6;
+    const real quaternion_scale = 2/quaternion_norm2;
+    const real quaternion_sx = X_3*quaternion_scale;
+    const real quaternion_sy = X_4*quaternion_scale;
+    const real quaternion_sz = X_5*quaternion_scale;
+    const real quaternion_wx = X_6*quaternion_sx;
+    const real quaternion_wy = X_6*quaternion_sy;
+    const real quaternion_wz = X_6*quaternion_sz;
+    const real quaternion_xx = X_3*quaternion_sx;
+    const real quaternion_xy = X_3*quaternion_sy;
+    const real quaternion_xz = X_3*quaternion_sz;
+    const real quaternion_yy = X_4*quaternion_sy;
+    const real quaternion_yz = X_4*quaternion_sz;
+    const real quaternion_zz = X_5*quaternion_sz;
+    const real R_xx = 1 - quaternion_yy - quaternion_zz;
+    const real R_xy = quaternion_xy - quaternion_wz;
+    const real R_xz = quaternion_wy + quaternion_xz;
+    const real R_yx = quaternion_wz + quaternion_xy;
+    const real R_yy = 1 - quaternion_xx - quaternion_zz;
+    const real R_yz = quaternion_yz - quaternion_wx;
+    const real R_zx = quaternion_xz - quaternion_wy;
+    const real R_zy = quaternion_wx + quaternion_yz;
+    const real R_zz = 1 - quaternion_xx - quaternion_yy;
+    /* (h_star) first moment about the platform origin */
+    const real h_star_in_platform_x = m->h_star_in_platform_x;
+    const real h_star_in_platform_y = m->h_star_in_platform_y;
+    const real h_star_in_platform_z = m->h_star_in_platform_z;
+    const real h_star_x = R_xx*h_star_in_platform_x + R_xy*h_star_in_platform_y +
+        R_xz*h_star_in_platform_z;
+    const real h_star_y = R_yx*h_star_in_platform_x + R_yy*h_star_in_platform_y +
+        R_yz*h_star_in_platform_z;
+    const real h_star_z = R_zx*h_star_in_platform_x + R_zy*h_star_in_platform_y +
+        R_zz*h_star_in_platform_z;
+    v->quaternion_scale = quaternion_scale;
+    v->R_xx = R_xx;
+    v->R_xy = R_xy;
+    v->R_xz = R_xz;
+    v->R_yx = R_yx;
+    v->R_yy = R_yy;
+    v->R_yz = R_yz;
+    v->R_zx = R_zx;
+    v->R_zy = R_zy;
+    v->R_zz = R_zz;
+    v->h_star_x = h_star_x;
+    v->h_star_y = h_star_y;
+    v->h_star_z = h_star_z;
+}
+
+INLINE void stage_V_X(size_t w, size_t k, const real *V, values *v)
+{
+    /* (Z_q) gyroscopic moment and moment of the weight of the platform */
+    const real omega_x = V[3*w + k];
+    const real omega_y = V[4*w + k];
+    const real omega_z = V[5*w + k];
+    const real omega_in_platform_x = v->R_xx*omega_x + v->R_yx*omega_y + v->R_zx*omega_z;
+    const real omega_in_platform_y = v->R_xy*omega_x + v->R_yy*omega_y + v->R_zy*omega_z;
+    const real omega_in_platform_z = v->R_xz*omega_x + v->R_yz*omega_y + v->R_zz*omega_z;
+    v->omega_in_platform_x = omega_in_platform_x;
+    v->omega_in_platform_y = omega_in_platform_y;
+    v->omega_in_platform_z = omega_in_platform_z;
+}
+
+INLINE void stage_M_dynamics(const prepared *m, values *v)
+{
+    /* (J_star) inertia tensor about the platform origin */
+    const real J_star_in_platform_xy = m->J_star_in_platform_xy;
+    const real J_star_in_platform_yz = m->J_star_in_platform_yz;
+    const real J_star_t_12 = m->J_star_t_12;
+    const real J_star_t = J_star_in_platform_xy*v->R_xx + J_star_in_platform_yz*v->R_xz -
+        J_star_t_12*v->R_xy;
+    const real J_star_t_2 = J_star_in_platform_xy*v->R_yx + J_star_in_platform_yz*v->R_yz -
+        J_star_t_12*v->R_yy;
+    const real J_star_t_3 = J_star_in_platform_xy*v->R_zx + J_star_in_platform_yz*v->R_zz -
+        J_star_t_12*v->R_zy;
+    const real J_star_in_platform_xz = m->J_star_in_platform_xz;
+    const real J_star_t_14 = m->J_star_t_14;
+    const real J_star_t_4 = J_star_t_14*v->R_xz - J_star_in_platform_xz*v->R_xx;
+    const real J_star_t_5 = J_star_t_14*v->R_yz - J_star_in_platform_xz*v->R_yx;
+    const real J_star_t_6 = J_star_t_14*v->R_zz - J_star_in_platform_xz*v->R_zx;
+    const real J_star_t_7 = J_star_t*v->R_xy - J_star_t_4*v->R_xz;
+    const real J_star_in_platform_xx = m->J_star_in_platform_xx;
+    const real J_star_xx = J_star_in_platform_xx + 2*J_star_t_7;
+    const real J_star_xy = J_star_t*v->R_yy + J_star_t_2*v->R_xy - J_star_t_4*v->R_yz -
+        J_star_t_5*v->R_xz;
+    const real J_star_xz = J_star_t*v->R_zy + J_star_t_3*v->R_xy - J_star_t_4*v->R_zz -
+        J_star_t_6*v->R_xz;
+    const real J_star_t_8 = J_star_t_2*v->R_yy - J_star_t_5*v->R_yz;
+    const real J_star_yy = J_star_in_platform_xx + 2*J_star_t_8;
+    const real J_star_yz = J_star_t_2*v->R_zy + J_star_t_3*v->R_yy - J_star_t_5*v->R_zz -
+        J_star_t_6*v->R_yz;
+    const real J_star_t_9 = J_star_t_3*v->R_zy - J_star_t_6*v->R_zz;
+    const real J_star_zz = J_star_in_platform_xx + 2*J_star_t_9;
+    v->J_star_xx = J_star_xx;
+    v->J_star_xy = J_star_xy;
+    v->J_star_xz = J_star_xz;
+    v->J_star_yy = J_star_yy;
+    v->J_star_yz = J_star_yz;
+    v->J_star_zz = J_star_zz;
+}
+
+INLINE void stage_Z_dynamics(const prepared *m, size_t w, size_t k, const real *V, values *v)
+{
+    /* (Z_p) centripetal force and weight of the platform */
+    const real omega_y = V[4*w + k];
+    const real omega_z = V[5*w + k];
+    const real Z_p_t_4 = v->h_star_z*omega_y - v->h_star_y*omega_z;
+    const real omega_x = V[3*w + k];
+    const real Z_p_t_5 = v->h_star_x*omega_z - v->h_star_z*omega_x;
+    const real Z_p_t_6 = v->h_star_y*omega_x - v->h_star_x*omega_y;
+    const real Z_p_t = m->Z_p_t;
+    const real Z_p_x = Z_p_t_6*omega_y - Z_p_t - Z_p_t_5*omega_z;
+    const real Z_p_t_2 = m->Z_p_t_2;
+    const real Z_p_y = Z_p_t_4*omega_z - Z_p_t_2 - Z_p_t_6*omega_x;
+    const real Z_p_t_3 = m->Z_p_t_3;
+    const real Z_p_z = Z_p_t_5*omega_x - Z_p_t_3 - Z_p_t_4*omega_y;
+    /* (Z_q) gyroscopic moment and moment of the weight of the platform */
+    const real gravity_x = m->gravity_x;
+    const real gravity_y = m->gravity_y;
+    const real gravity_z = m->gravity_z;
+    const real g_in_platform_x = v->R_xx*gravity_x + v->R_yx*gravity_y + v->R_zx*gravity_z;
+    const real g_in_platform_y = v->R_xy*gravity_x + v->R_yy*gravity_y + v->R_zy*gravity_z;
+    const real g_in_platform_z = v->R_xz*gravity_x + v->R_yz*gravity_y + v->R_zz*gravity_z;
+    const real J_star_in_platform_xx = m->J_star_in_platform_xx;
+    const real J_star_in_platform_xy = m->J_star_in_platform_xy;
+    const real J_star_in_platform_xz = m->J_star_in_platform_xz;
+    const real Z_q_t = J_star_in_platform_xx*v->omega_in_platform_x +
+        J_star_in_platform_xy*v->omega_in_platform_y +
+        J_star_in_platform_xz*v->omega_in_platform_z;
+    const real J_star_in_platform_yy = m->J_star_in_platform_yy;
+    const real J_star_in_platform_yz = m->J_star_in_platform_yz;
+    const real Z_q_t_2 = J_star_in_platform_xy*v->omega_in_platform_x +
+        J_star_in_platform_yy*v->omega_in_platform_y +
+        J_star_in_platform_yz*v->omega_in_platform_z;
+    const real J_star_in_platform_zz = m->J_star_in_platform_zz;
+    const real Z_q_t_3 = J_star_in_platform_xz*v->omega_in_platform_x +
+        J_star_in_platform_yz*v->omega_in_platform_y +
+        J_star_in_platform_zz*v->omega_in_platform_z;
+    const real h_star_in_platform_y = m->h_star_in_platform_y;
+    const real h_star_in_platform_z = m->h_star_in_platform_z;
+    const real Z_q_in_platform_x = Z_q_t_3*v->omega_in_platform_y +
+        g_in_platform_y*h_star_in_platform_z - Z_q_t_2*v->omega_in_platform_z -
+        g_in_platform_z*h_star_in_platform_y;
+    const real h_star_in_platform_x = m->h_star_in_platform_x;
+    const real Z_q_in_platform_y = Z_q_t*v->omega_in_platform_z +
+        g_in_platform_z*h_star_in_platform_x - Z_q_t_3*v->omega_in_platform_x -
+        g_in_platform_x*h_star_in_platform_z;
+    const real Z_q_in_platform_z = Z_q_t_2*v->omega_in_platform_x +
+        g_in_platform_x*h_star_in_platform_y - Z_q_t*v->omega_in_platform_y -
+        g_in_platform_y*h_star_in_platform_x;
+    const real Z_q_x = v->R_xx*Z_q_in_platform_x + v->R_xy*Z_q_in_platform_y +
+        v->R_xz*Z_q_in_platform_z;
+    const real Z_q_y = v->R_yx*Z_q_in_platform_x + v->R_yy*Z_q_in_platform_y +
+        v->R_yz*Z_q_in_platform_z;
+    const real Z_q_z = v->R_zx*Z_q_in_platform_x + v->R_zy*Z_q_in_platform_y +
+        v->R_zz*Z_q_in_platform_z;
+    v->Z_p_x = Z_p_x;
+    v->Z_p_y = Z_p_y;
+    v->Z_p_z = Z_p_z;
+    v->Z_q_x = Z_q_x;
+    v->Z_q_y = Z_q_y;
+    v->Z_q_z = Z_q_z;
+}
+
+typedef struct {
+    real rus_q_x, rus_q_y, rus_q_z, rus_rho2_1, rus_disc_1, rus_c_1, rus_s_1, rus_rho2_2, rus_c_2,
+        rus_s_2_t, rus_c_3, rus_e_1_in_axes3_x, rus_r_1_t, rus_r_1_in_axes1_z, rus_r_1_t_2,
+        rus_r_1_in_axes1_x, rus_r_1_in_axes3_z, rus_v_1_t_2, rus_v_1_t_3, rus_v_1_in_axes3_z,
+        inv_rus_v_1_t_2, rus_w_2_in_axes3_z, rus_qd_1_t, rus_qd_1_t_2, rus_qd_1_t_5, rus_qd_1_t_6,
+        rus_bias_t, rus_d_2_in_axes3_z, axis_z_rus_axes3_x, axis_z_rus_axes3_y, axis_z_rus_axes3_z,
+        axis_y_rus_axes3_x, axis_y_rus_axes3_y, axis_y_rus_axes3_z, rus_a_p_x, rus_a_p_y, rus_a_p_z,
+        rus_S_dot_t, rus_S_dot_t_2, rus_S_dot_t_3, rus_S_dot_x, rus_S_dot_y, rus_S_dot_z,
+        rus_S_ddot_x, rus_S_ddot_y, rus_S_ddot_z, rus_v_1_t, rus_w_1_t_7, rus_w_1_t_8, rus_w_1_t_9,
+        rus_H_a_1_x, rus_H_a_1_y, rus_H_a_1_z, rus_J_3_t_10, rus_J_3_t_11, rus_J_3_t_15, rus_J_3_t_17,
+        rus_d_alpha_3_in_axes3_xz, rus_d_alpha_3_t, rus_d_Gamma_2_in_axes3_z, rus_d_c_in_axes3_xx,
+        rus_d_c_in_axes3_xy, rus_d_c_in_axes3_xz, rus_d_c_in_axes3_yz, rus_S_x, rus_S_y, rus_S_z,
+        rus_Kd_1, rus_Kc_1, rus_Ks_1, rus_root_1, inv_rus_rho2_1, rus_xi_1_t, rus_x_2_in_axes1_x,
+        rus_root_2, inv_rus_rho2_2, axis_x_rus_axes3_x, axis_x_rus_axes3_y, axis_x_rus_axes3_z,
+        rus_acc_3_in_axes3_x, rus_acc_3_in_axes3_y, rus_acc_3_in_axes3_z, rus_c_in_axes3_x,
+        rus_c_in_axes3_y, rus_c_in_axes3_z;
+} values_rus;
+
+INLINE void stage_rus_X(const prepared *m, size_t w, size_t i, size_t j, const real *s, const real
+    *X, values_rus *v)
+{
+    /* (rus-J_3) inertia tensor of link 3 about the connection point */
+    const real R_xx = s[0*w + j];
+    const real R_xy = s[1*w + j];
+    const real R_xz = s[2*w + j];
+    const real rus_platform_point_x = m->rus_platform_point_x[i];
+    const real rus_platform_point_y = m->rus_platform_point_y[i];
+    const real rus_platform_point_z = m->rus_platform_point_z[i];
+    const real rus_q_x = R_xx*rus_platform_point_x + R_xy*rus_platform_point_y +
+        R_xz*rus_platform_point_z;
+    const real R_yx = s[3*w + j];
+    const real R_yy = s[4*w + j];
+    const real R_yz = s[5*w + j];
+    const real rus_q_y = R_yx*rus_platform_point_x + R_yy*rus_platform_point_y +
+        R_yz*rus_platform_point_z;
+    const real R_zx = s[6*w + j];
+    const real R_zy = s[7*w + j];
+    const real R_zz = s[8*w + j];
+    const real rus_q_z = R_zx*rus_platform_point_x + R_zy*rus_platform_point_y +
+        R_zz*rus_platform_point_z;
+    /* (rus-S) from the base point to the connection point */
+    const real rus_base_point_x = m->rus_base_point_x[i];
+    const real t_x = X[0*w + j];
+    const real rus_S_x = rus_q_x + t_x - rus_base_point_x;
+    const real rus_base_point_y = m->rus_base_point_y[i];
+    const real t_y = X[1*w + j];
+    const real rus_S_y = rus_q_y + t_y - rus_base_point_y;
+    const real rus_base_point_z = m->rus_base_point_z[i];
+    const real t_z = X[2*w + j];
+    const real rus_S_z = rus_q_z + t_z - rus_base_point_z;
+    /* (rus-Kd_1) projection on the centre's direction, from the distance fixed by the joints beyond
+       joint 1 */
+    const real rus_Kd_1_t = rus_S_x*rus_S_x + rus_S_y*rus_S_y + rus_S_z*rus_S_z;
+    const real rus_J_3_t = m->rus_J_3_t[i];
+    const real rus_J_3_t_2 = m->rus_J_3_t_2[i];
+    const real rus_Kd_1 = rus_J_3_t + R(0.5)*rus_Kd_1_t - rus_J_3_t_2;
+    /* (rus-Kc_1) factor of the cosine in the equation of joint 1 */
+    const real rus_base_frame_xx = m->rus_base_frame_xx[i];
+    const real rus_base_frame_yx = m->rus_base_frame_yx[i];
+    const real rus_base_frame_zx = m->rus_base_frame_zx[i];
+    const real rus_joint2_offset_x = m->rus_joint2_offset_x[i];
+    const real rus_Kc_1 = rus_joint2_offset_x*(rus_S_x*rus_base_frame_xx +
+        rus_S_y*rus_base_frame_yx + rus_S_z*rus_base_frame_zx);
+    /* (rus-Ks_1) factor of the sine in the equation of joint 1 */
+    const real rus_base_frame_xy = m->rus_base_frame_xy[i];
+    const real rus_base_frame_yy = m->rus_base_frame_yy[i];
+    const real rus_base_frame_zy = m->rus_base_frame_zy[i];
+    const real rus_Ks_1 = rus_joint2_offset_x*(rus_S_x*rus_base_frame_xy +
+        rus_S_y*rus_base_frame_yy + rus_S_z*rus_base_frame_zy);
+    /* (rus-rho2_1) squared amplitude */
+    const real rus_rho2_1 = rus_Kc_1*rus_Kc_1 + rus_Ks_1*rus_Ks_1;
+    /* (rus-disc_1) discriminant */
+    const real rus_disc_1 = rus_rho2_1 - rus_Kd_1*rus_Kd_1;
+    /* (rus-root_1) root, with the sign of the branch */
+    const real rus_branch_1 = m->rus_branch_1[i];
+    const real rus_root_1 = rus_branch_1*root(rus_disc_1);
+    /* (rus-c_1) cosine of the angle of joint 1 from its reference direction */
+    const real inv_rus_rho2_1 = 1/rus_rho2_1;
+    const real rus_c_1 = inv_rus_rho2_1*(rus_Kc_1*rus_Kd_1 - rus_Ks_1*rus_root_1);
+    /* (rus-s_1) sine of the angle of joint 1 from its reference direction */
+    const real rus_s_1 = inv_rus_rho2_1*(rus_Kc_1*rus_root_1 + rus_Kd_1*rus_Ks_1);
+    /* (rus-xi_1) the vector from joint 1 to the connection point, resolved along link 1 */
+    const real inv_rus_size_t = m->inv_rus_size_t[i];
+    const real rus_xi_1_t = inv_rus_size_t*rus_joint2_offset_x*rus_root_1;
+    /* (rus-x_2) from the origin of joint 2 to the connection point */
+    const real rus_x_2_in_axes1_x = inv_rus_size_t*rus_Kd_1*rus_joint2_offset_x -
+        rus_joint2_offset_x;
+    /* (rus-rho2_2) squared amplitude */
+    const real rus_rho2_2 = rus_x_2_in_axes1_x*rus_x_2_in_axes1_x + rus_xi_1_t*rus_xi_1_t;
+    /* (rus-root_2) root, with the sign of the branch */
+    const real rus_branch_2 = m->rus_branch_2[i];
+    const real rus_root_2 = rus_branch_2*root(rus_rho2_2);
+    /* (rus-c_2) cosine of the angle of joint 2 from its reference direction */
+    const real inv_rus_rho2_2 = 1/rus_rho2_2;
+    const real rus_c_2 = inv_rus_rho2_2*rus_root_2*rus_x_2_in_axes1_x;
+    /* (rus-s_2) sine of the angle of joint 2 from its reference direction */
+    const real rus_s_2_t = inv_rus_rho2_2*rus_root_2*rus_xi_1_t;
+    /* (rus-c_3) cosine of the angle of joint 3 from its reference direction */
+    const real inv_rus_size_t_2 = m->inv_rus_size_t_2[i];
+    const real rus_platform_joint_offset_x = m->rus_platform_joint_offset_x[i];
+    const real rus_c_3 = inv_rus_size_t_2*rus_platform_joint_offset_x*rus_root_2;
+    /* (rus-r_1) from joint 1 to the connection point, along the links */
+    const real rus_base_frame_xz = m->rus_base_frame_xz[i];
+    const real rus_base_frame_yz = m->rus_base_frame_yz[i];
+    const real rus_base_frame_zz = m->rus_base_frame_zz[i];
+    const real rus_e_1_in_axes3_x =
+        inv_rus_size_t_2*rus_platform_joint_offset_x*(rus_S_x*rus_base_frame_xz +
+        rus_S_y*rus_base_frame_yz + rus_S_z*rus_base_frame_zz);
+    const real rus_r_1_t = rus_c_3*rus_platform_joint_offset_x;
+    const real rus_r_1_in_axes1_z = rus_e_1_in_axes3_x*rus_platform_joint_offset_x;
+    const real rus_r_1_t_2 = rus_r_1_t*rus_s_2_t;
+    const real rus_r_1_in_axes1_x = rus_joint2_offset_x + rus_c_2*rus_r_1_t;
+    const real rus_r_1_in_axes3_z = rus_r_1_in_axes1_x*rus_s_2_t - rus_c_2*rus_r_1_t_2;
+    /* (rus-v_1) velocity of the connection point per rate of joint 1 */
+    const real rus_v_1_t = rus_c_2*rus_r_1_in_axes1_x + rus_r_1_t_2*rus_s_2_t;
+    const real rus_v_1_t_2 = rus_c_3*rus_r_1_in_axes3_z;
+    const real rus_v_1_t_3 = rus_e_1_in_axes3_x*rus_r_1_in_axes3_z;
+    const real rus_v_1_in_axes3_z = rus_c_3*(rus_c_3*rus_v_1_t +
+        rus_e_1_in_axes3_x*rus_r_1_in_axes1_z) +
+        rus_e_1_in_axes3_x*(rus_e_1_in_axes3_x*rus_v_1_t - rus_c_3*rus_r_1_in_axes1_z);
+    /* (rus-w_1) reciprocal vector 1 */
+    const real inv_rus_v_1_t_2 = 1/rus_v_1_t_2;
+    /* (rus-w_2) reciprocal vector 2 */
+    const real rus_w_2_in_axes3_z = 1/rus_r_1_t;
+    /* (rus-qd_1) rate of joint 1 */
+    const real rus_qd_1_t = rus_c_1*rus_s_2_t - rus_c_2*rus_s_1;
+    const real rus_qd_1_t_2 = rus_c_1*rus_c_2 + rus_s_1*rus_s_2_t;
+    const real rus_qd_1_t_3 = rus_c_2*rus_e_1_in_axes3_x;
+    const real rus_qd_1_t_4 = rus_e_1_in_axes3_x*rus_s_2_t;
+    const real rus_qd_1_t_5 = rus_c_1*rus_qd_1_t_3 + rus_qd_1_t_4*rus_s_1;
+    const real rus_qd_1_t_6 = rus_qd_1_t_3*rus_s_1 - rus_c_1*rus_qd_1_t_4;
+    /* (rus-bias) acceleration of the connection point at zero joint accelerations */
+    const real rus_bias_t = rus_c_2*rus_joint2_offset_x;
+    const real rus_d_2_in_axes3_z = rus_joint2_offset_x*rus_s_2_t;
+    /* (rus-w_1) reciprocal vector 1 */
+    const real rus_w_1_t = rus_c_1*rus_s_2_t - rus_c_2*rus_s_1;
+    const real rus_w_1_t_2 = rus_c_1*rus_c_2 + rus_s_1*rus_s_2_t;
+    const real axis_z_rus_axes3_x = rus_base_frame_xx*rus_w_1_t +
+        rus_base_frame_xy*rus_w_1_t_2;
+    const real axis_z_rus_axes3_y = rus_base_frame_yx*rus_w_1_t +
+        rus_base_frame_yy*rus_w_1_t_2;
+    const real axis_z_rus_axes3_z = rus_base_frame_zx*rus_w_1_t +
+        rus_base_frame_zy*rus_w_1_t_2;
+    const real rus_w_1_t_3 = rus_c_2*rus_e_1_in_axes3_x;
+    const real rus_w_1_t_4 = rus_e_1_in_axes3_x*rus_s_2_t;
+    const real rus_w_1_t_5 = rus_c_1*rus_w_1_t_3 + rus_s_1*rus_w_1_t_4;
+    const real rus_w_1_t_6 = rus_s_1*rus_w_1_t_3 - rus_c_1*rus_w_1_t_4;
+    const real axis_y_rus_axes3_x = rus_base_frame_xx*rus_w_1_t_5 +
+        rus_base_frame_xy*rus_w_1_t_6 - rus_base_frame_xz*rus_c_3;
+    const real axis_y_rus_axes3_y = rus_base_frame_yx*rus_w_1_t_5 +
+        rus_base_frame_yy*rus_w_1_t_6 - rus_base_frame_yz*rus_c_3;
+    const real axis_y_rus_axes3_z = rus_base_frame_zx*rus_w_1_t_5 +
+        rus_base_frame_zy*rus_w_1_t_6 - rus_base_frame_zz*rus_c_3;
+    v->rus_q_x = rus_q_x;
+    v->rus_q_y = rus_q_y;
+    v->rus_q_z = rus_q_z;
+    v->rus_rho2_1 = rus_rho2_1;
+    v->rus_disc_1 = rus_disc_1;
+    v->rus_c_1 = rus_c_1;
+    v->rus_s_1 = rus_s_1;
+    v->rus_rho2_2 = rus_rho2_2;
+    v->rus_c_2 = rus_c_2;
+    v->rus_s_2_t = rus_s_2_t;
+    v->rus_c_3 = rus_c_3;
+    v->rus_e_1_in_axes3_x = rus_e_1_in_axes3_x;
+    v->rus_r_1_t = rus_r_1_t;
+    v->rus_r_1_in_axes1_z = rus_r_1_in_axes1_z;
+    v->rus_r_1_t_2 = rus_r_1_t_2;
+    v->rus_r_1_in_axes1_x = rus_r_1_in_axes1_x;
+    v->rus_r_1_in_axes3_z = rus_r_1_in_axes3_z;
+    v->rus_v_1_t_2 = rus_v_1_t_2;
+    v->rus_v_1_t_3 = rus_v_1_t_3;
+    v->rus_v_1_in_axes3_z = rus_v_1_in_axes3_z;
+    v->inv_rus_v_1_t_2 = inv_rus_v_1_t_2;
+    v->rus_w_2_in_axes3_z = rus_w_2_in_axes3_z;
+    v->rus_qd_1_t = rus_qd_1_t;
+    v->rus_qd_1_t_2 = rus_qd_1_t_2;
+    v->rus_qd_1_t_5 = rus_qd_1_t_5;
+    v->rus_qd_1_t_6 = rus_qd_1_t_6;
+    v->rus_bias_t = rus_bias_t;
+    v->rus_d_2_in_axes3_z = rus_d_2_in_axes3_z;
+    v->axis_z_rus_axes3_x = axis_z_rus_axes3_x;
+    v->axis_z_rus_axes3_y = axis_z_rus_axes3_y;
+    v->axis_z_rus_axes3_z = axis_z_rus_axes3_z;
+    v->axis_y_rus_axes3_x = axis_y_rus_axes3_x;
+    v->axis_y_rus_axes3_y = axis_y_rus_axes3_y;
+    v->axis_y_rus_axes3_z = axis_y_rus_axes3_z;
+}
+
+INLINE void stage_rus_A_X(size_t w, size_t j, const real *A, values_rus *v)
+{
+    /* (rus-a_p) acceleration of the connection point without its centripetal part */
+    const real alpha_y = A[4*w + j];
+    const real alpha_z = A[5*w + j];
+    const real t_ddot_x = A[0*w + j];
+    const real rus_a_p_x = t_ddot_x + alpha_y*v->rus_q_z - alpha_z*v->rus_q_y;
+    const real alpha_x = A[3*w + j];
+    const real t_ddot_y = A[1*w + j];
+    const real rus_a_p_y = t_ddot_y + alpha_z*v->rus_q_x - alpha_x*v->rus_q_z;
+    const real t_ddot_z = A[2*w + j];
+    const real rus_a_p_z = t_ddot_z + alpha_x*v->rus_q_y - alpha_y*v->rus_q_x;
+    v->rus_a_p_x = rus_a_p_x;
+    v->rus_a_p_y = rus_a_p_y;
+    v->rus_a_p_z = rus_a_p_z;
+}
+
+INLINE void stage_rus_V_X(size_t w, size_t j, const real *V, values_rus *v)
+{
+    /* (rus-S_dot) velocity of the connection point */
+    const real omega_y = V[4*w + j];
+    const real omega_z = V[5*w + j];
+    const real rus_S_dot_t = omega_y*v->rus_q_z - omega_z*v->rus_q_y;
+    const real omega_x = V[3*w + j];
+    const real rus_S_dot_t_2 = omega_z*v->rus_q_x - omega_x*v->rus_q_z;
+    const real rus_S_dot_t_3 = omega_x*v->rus_q_y - omega_y*v->rus_q_x;
+    const real t_dot_x = V[0*w + j];
+    const real rus_S_dot_x = rus_S_dot_t + t_dot_x;
+    const real t_dot_y = V[1*w + j];
+    const real rus_S_dot_y = rus_S_dot_t_2 + t_dot_y;
+    const real t_dot_z = V[2*w + j];
+    const real rus_S_dot_z = rus_S_dot_t_3 + t_dot_z;
+    v->rus_S_dot_t = rus_S_dot_t;
+    v->rus_S_dot_t_2 = rus_S_dot_t_2;
+    v->rus_S_dot_t_3 = rus_S_dot_t_3;
+    v->rus_S_dot_x = rus_S_dot_x;
+    v->rus_S_dot_y = rus_S_dot_y;
+    v->rus_S_dot_z = rus_S_dot_z;
+}
+
+INLINE void stage_rus_A_V_X(size_t w, size_t j, const real *V, values_rus *v)
+{
+    /* (rus-S_ddot) acceleration of the connection point */
+    const real omega_y = V[4*w + j];
+    const real omega_z = V[5*w + j];
+    const real rus_S_ddot_x = v->rus_a_p_x + omega_y*v->rus_S_dot_t_3 -
+        omega_z*v->rus_S_dot_t_2;
+    const real omega_x = V[3*w + j];
+    const real rus_S_ddot_y = v->rus_a_p_y + omega_z*v->rus_S_dot_t -
+        omega_x*v->rus_S_dot_t_3;
+    const real rus_S_ddot_z = v->rus_a_p_z + omega_x*v->rus_S_dot_t_2 -
+        omega_y*v->rus_S_dot_t;
+    v->rus_S_ddot_x = rus_S_ddot_x;
+    v->rus_S_ddot_y = rus_S_ddot_y;
+    v->rus_S_ddot_z = rus_S_ddot_z;
+}
+
+INLINE void stage_rus_H_condition(values_rus *v)
+{
+    /* (rus-v_1) velocity of the connection point per rate of joint 1 */
+    const real rus_v_1_t = v->rus_c_3*(v->rus_r_1_in_axes1_x*v->rus_s_2_t -
+        v->rus_c_2*v->rus_r_1_t*v->rus_s_2_t);
+    /* (rus-w_1) reciprocal vector 1 */
+    const real inv_rus_v_1_t = 1/rus_v_1_t;
+    const real rus_w_1_t_7 = inv_rus_v_1_t*(v->axis_y_rus_axes3_y*v->axis_z_rus_axes3_z -
+        v->axis_y_rus_axes3_z*v->axis_z_rus_axes3_y);
+    const real rus_w_1_t_8 = inv_rus_v_1_t*(v->axis_y_rus_axes3_z*v->axis_z_rus_axes3_x -
+        v->axis_y_rus_axes3_x*v->axis_z_rus_axes3_z);
+    const real rus_w_1_t_9 = inv_rus_v_1_t*(v->axis_y_rus_axes3_x*v->axis_z_rus_axes3_y -
+        v->axis_y_rus_axes3_y*v->axis_z_rus_axes3_x);
+    /* (rus-H_a_1) moment of the column's unit force about the platform origin */
+    const real rus_H_a_1_x = v->rus_q_z*rus_w_1_t_8 - v->rus_q_y*rus_w_1_t_9;
+    const real rus_H_a_1_y = v->rus_q_x*rus_w_1_t_9 - v->rus_q_z*rus_w_1_t_7;
+    const real rus_H_a_1_z = v->rus_q_y*rus_w_1_t_7 - v->rus_q_x*rus_w_1_t_8;
+    v->rus_v_1_t = rus_v_1_t;
+    v->rus_w_1_t_7 = rus_w_1_t_7;
+    v->rus_w_1_t_8 = rus_w_1_t_8;
+    v->rus_w_1_t_9 = rus_w_1_t_9;
+    v->rus_H_a_1_x = rus_H_a_1_x;
+    v->rus_H_a_1_y = rus_H_a_1_y;
+    v->rus_H_a_1_z = rus_H_a_1_z;
+}
+
+INLINE void stage_rus_M_dynamics(const prepared *m, size_t w, size_t i, size_t j, const real *X,
+    values_rus *v)
+{
+    /* (rus-J_3) inertia tensor of link 3 about the connection point */
+    const real rus_base_point_x = m->rus_base_point_x[i];
+    const real t_x = X[0*w + j];
+    const real rus_J_3_t_3 = v->rus_q_x + t_x - rus_base_point_x;
+    const real rus_base_point_y = m->rus_base_point_y[i];
+    const real t_y = X[1*w + j];
+    const real rus_J_3_t_4 = v->rus_q_y + t_y - rus_base_point_y;
+    const real rus_base_point_z = m->rus_base_point_z[i];
+    const real t_z = X[2*w + j];
+    const real rus_J_3_t_5 = v->rus_q_z + t_z - rus_base_point_z;
+    const real rus_J_3_t_6 = rus_J_3_t_3*rus_J_3_t_3 + rus_J_3_t_4*rus_J_3_t_4 +
+        rus_J_3_t_5*rus_J_3_t_5;
+    const real rus_J_3_t = m->rus_J_3_t[i];
+    const real rus_J_3_t_2 = m->rus_J_3_t_2[i];
+    const real rus_J_3_t_7 = rus_J_3_t + R(0.5)*rus_J_3_t_6 - rus_J_3_t_2;
+    const real rus_base_frame_xx = m->rus_base_frame_xx[i];
+    const real rus_base_frame_yx = m->rus_base_frame_yx[i];
+    const real rus_base_frame_zx = m->rus_base_frame_zx[i];
+    const real rus_joint2_offset_x = m->rus_joint2_offset_x[i];
+    const real rus_J_3_t_8 = rus_joint2_offset_x*(rus_J_3_t_3*rus_base_frame_xx +
+        rus_J_3_t_4*rus_base_frame_yx + rus_J_3_t_5*rus_base_frame_zx);
+    const real rus_base_frame_xy = m->rus_base_frame_xy[i];
+    const real rus_base_frame_yy = m->rus_base_frame_yy[i];
+    const real rus_base_frame_zy = m->rus_base_frame_zy[i];
+    const real rus_J_3_t_9 = rus_joint2_offset_x*(rus_J_3_t_3*rus_base_frame_xy +
+        rus_J_3_t_4*rus_base_frame_yy + rus_J_3_t_5*rus_base_frame_zy);
+    const real rus_J_3_t_10 = rus_J_3_t_8*rus_J_3_t_8 + rus_J_3_t_9*rus_J_3_t_9;
+    const real rus_J_3_t_11 = rus_J_3_t_10 - rus_J_3_t_7*rus_J_3_t_7;
+    const real rus_branch_1 = m->rus_branch_1[i];
+    const real rus_J_3_t_12 = root(rus_J_3_t_11)*rus_branch_1;
+    const real inv_rus_size_t = m->inv_rus_size_t[i];
+    const real rus_J_3_t_13 = inv_rus_size_t*rus_J_3_t_12*rus_joint2_offset_x;
+    const real rus_J_3_t_14 = inv_rus_size_t*rus_J_3_t_7*rus_joint2_offset_x -
+        rus_joint2_offset_x;
+    const real rus_J_3_t_15 = rus_J_3_t_13*rus_J_3_t_13 + rus_J_3_t_14*rus_J_3_t_14;
+    const real rus_branch_2 = m->rus_branch_2[i];
+    const real rus_J_3_t_16 = root(rus_J_3_t_15)*rus_branch_2;
+    const real inv_rus_size_t_2 = m->inv_rus_size_t_2[i];
+    const real rus_platform_joint_offset_x = m->rus_platform_joint_offset_x[i];
+    const real rus_J_3_t_17 = inv_rus_size_t_2*rus_J_3_t_16*rus_platform_joint_offset_x;
+    const real rus_base_frame_xz = m->rus_base_frame_xz[i];
+    const real rus_base_frame_yz = m->rus_base_frame_yz[i];
+    const real rus_base_frame_zz = m->rus_base_frame_zz[i];
+    const real rus_e_1_in_axes3_x =
+        inv_rus_size_t_2*rus_platform_joint_offset_x*(rus_J_3_t_3*rus_base_frame_xz +
+        rus_J_3_t_4*rus_base_frame_yz + rus_J_3_t_5*rus_base_frame_zz);
+    const real rus_J_3_in_spec3_xy = m->rus_J_3_in_spec3_xy[i];
+    const real rus_J_3_in_spec3_yz = m->rus_J_3_in_spec3_yz[i];
+    const real rus_J_3_in_axes2_yz = rus_J_3_in_spec3_xy*rus_e_1_in_axes3_x +
+        rus_J_3_in_spec3_yz*rus_J_3_t_17;
+    const real rus_J_3_in_spec3_xx = m->rus_J_3_in_spec3_xx[i];
+    const real rus_J_3_in_spec3_xz = m->rus_J_3_in_spec3_xz[i];
+    const real rus_J_3_in_spec3_zz = m->rus_J_3_in_spec3_zz[i];
+    const real rus_J_3_in_axes1_zz = rus_J_3_t_17*(rus_J_3_in_spec3_xz*rus_e_1_in_axes3_x +
+        rus_J_3_in_spec3_zz*rus_J_3_t_17) -
+        rus_e_1_in_axes3_x*(-rus_J_3_in_spec3_xx*rus_e_1_in_axes3_x -
+        rus_J_3_in_spec3_xz*rus_J_3_t_17);
+    /* (rus-c_1) cosine of the angle of joint 1 from its reference direction */
+    const real inv_rus_J_3_t_10 = 1/rus_J_3_t_10;
+    const real rus_c_1 = inv_rus_J_3_t_10*(rus_J_3_t_7*rus_J_3_t_8 -
+        rus_J_3_t_12*rus_J_3_t_9);
+    /* (rus-s_1) sine of the angle of joint 1 from its reference direction */
+    const real rus_s_1 = inv_rus_J_3_t_10*(rus_J_3_t_12*rus_J_3_t_8 +
+        rus_J_3_t_7*rus_J_3_t_9);
+    /* (rus-c_2) cosine of the angle of joint 2 from its reference direction */
+    const real inv_rus_J_3_t_15 = 1/rus_J_3_t_15;
+    const real rus_c_2 = inv_rus_J_3_t_15*rus_J_3_t_14*rus_J_3_t_16;
+    /* (rus-s_2) sine of the angle of joint 2 from its reference direction */
+    const real rus_s_2_t = inv_rus_J_3_t_15*rus_J_3_t_13*rus_J_3_t_16;
+    /* (rus-r_1) from joint 1 to the connection point, along the links */
+    const real rus_r_1_t = rus_J_3_t_17*rus_platform_joint_offset_x;
+    const real rus_r_1_in_axes1_z = rus_e_1_in_axes3_x*rus_platform_joint_offset_x;
+    const real rus_r_1_t_2 = rus_r_1_t*rus_s_2_t;
+    const real rus_r_1_in_axes1_x = rus_joint2_offset_x + rus_c_2*rus_r_1_t;
+    const real rus_r_1_in_axes3_z = rus_r_1_in_axes1_x*rus_s_2_t - rus_c_2*rus_r_1_t_2;
+    /* (rus-v_1) velocity of the connection point per rate of joint 1 */
+    const real rus_v_1_t = rus_c_2*rus_r_1_in_axes1_x + rus_r_1_t_2*rus_s_2_t;
+    const real rus_v_1_t_2 = rus_J_3_t_17*rus_r_1_in_axes3_z;
+    const real rus_v_1_t_3 = rus_e_1_in_axes3_x*rus_r_1_in_axes3_z;
+    const real rus_v_1_in_axes3_z = rus_J_3_t_17*(rus_J_3_t_17*rus_v_1_t +
+        rus_e_1_in_axes3_x*rus_r_1_in_axes1_z) +
+        rus_e_1_in_axes3_x*(rus_e_1_in_axes3_x*rus_v_1_t - rus_J_3_t_17*rus_r_1_in_axes1_z);
+    /* (rus-w_1) reciprocal vector 1 */
+    const real inv_rus_v_1_t_2 = 1/rus_v_1_t_2;
+    /* (rus-w_2) reciprocal vector 2 */
+    const real rus_w_2_in_axes3_z = 1/rus_r_1_t;
+    const real rus_w_2_in_axes3_x = inv_rus_v_1_t_2*rus_v_1_in_axes3_z*rus_w_2_in_axes3_z;
+    /* (rus-w_3) reciprocal vector 3 */
+    const real rus_w_3_in_axes3_y = m->rus_w_3_in_axes3_y[i];
+    const real rus_w_3_t = inv_rus_v_1_t_2*rus_v_1_t_3*rus_w_3_in_axes3_y;
+    /* (rus-d_alpha_3) coefficient of the acceleration in: angular acceleration of link 3 */
+    const real rus_d_alpha_3_in_axes3_xz = rus_e_1_in_axes3_x*rus_w_2_in_axes3_z;
+    const real rus_d_alpha_3_t = rus_J_3_t_17*rus_w_2_in_axes3_z;
+    /* (rus-d_Gamma_3) coefficient of the acceleration in: moment about axis 3 of the distal links'
+       inertia and weight */
+    const real rus_d_Gamma_3_in_axes3_z = rus_J_3_in_axes2_yz*rus_w_2_in_axes3_z;
+    const real rus_d_Gamma_3_t = m->rus_d_Gamma_3_t[i];
+    const real rus_h_3_in_spec3_z = m->rus_h_3_in_spec3_z[i];
+    const real rus_d_Gamma_3_in_axes3_x = rus_h_3_in_spec3_z -
+        inv_rus_v_1_t_2*(rus_J_3_in_axes2_yz + rus_d_Gamma_3_t*rus_v_1_t_3 -
+        rus_d_Gamma_3_in_axes3_z*rus_v_1_in_axes3_z);
+    /* (rus-d_Gamma_2) coefficient of the acceleration in: moment about axis 2 of the distal links'
+       inertia and weight */
+    const real rus_h_3_in_spec3_y = m->rus_h_3_in_spec3_y[i];
+    const real rus_d_Gamma_2_t = rus_J_3_t_17*rus_h_3_in_spec3_y;
+    const real rus_d_Gamma_2_t_2 = rus_J_3_in_axes1_zz*rus_w_2_in_axes3_z;
+    const real rus_d_Gamma_2_t_3 = -rus_J_3_in_axes2_yz*rus_w_3_in_axes3_y;
+    const real rus_d_Gamma_2_t_4 = rus_d_Gamma_2_t_2*rus_v_1_in_axes3_z;
+    const real rus_d_Gamma_2_t_5 = rus_d_Gamma_2_t_3*rus_v_1_t_3;
+    const real rus_d_Gamma_2_in_axes3_x = inv_rus_v_1_t_2*(rus_d_Gamma_2_t_4 +
+        rus_d_Gamma_2_t_5 - rus_J_3_in_axes1_zz) - rus_d_Gamma_2_t;
+    const real rus_d_Gamma_2_in_axes3_y = -rus_d_Gamma_2_t_3 -
+        rus_e_1_in_axes3_x*rus_h_3_in_spec3_y;
+    const real rus_h_3_in_spec3_x = m->rus_h_3_in_spec3_x[i];
+    const real rus_d_Gamma_2_in_axes3_z = rus_d_Gamma_2_t_2 + rus_J_3_t_17*rus_h_3_in_spec3_x
+        - rus_e_1_in_axes3_x*rus_h_3_in_spec3_z;
+    /* (rus-d_Gamma_1) coefficient of the acceleration in: moment about axis 1 of the distal links'
+       inertia and weight */
+    const real rus_J_1_in_spec1_zz = m->rus_J_1_in_spec1_zz[i];
+    const real rus_d_Gamma_1_in_axes3_x = inv_rus_v_1_t_2*(rus_d_Gamma_2_t_4 +
+        rus_d_Gamma_2_t_5 - rus_J_1_in_spec1_zz - rus_J_3_in_axes1_zz) - rus_d_Gamma_2_t;
+    /* (rus-d_c) coefficient of the acceleration in: leg force on the platform without actuation and
+       without the mass at the connection point */
+    const real rus_d_c_in_axes3_xx = inv_rus_v_1_t_2*rus_d_Gamma_1_in_axes3_x +
+        rus_d_Gamma_3_in_axes3_x*rus_w_3_t + rus_h_3_in_spec3_z*rus_w_3_t -
+        rus_d_Gamma_2_in_axes3_x*rus_w_2_in_axes3_x -
+        rus_h_3_in_spec3_y*(inv_rus_v_1_t_2*rus_J_3_t_17 - rus_J_3_t_17*rus_w_2_in_axes3_x);
+    const real rus_d_Gamma_3_in_axes3_y = m->rus_d_Gamma_3_in_axes3_y[i];
+    const real rus_d_phi_3_in_axes3_xy = m->rus_d_phi_3_in_axes3_xy[i];
+    const real rus_d_c_in_axes3_xy = inv_rus_v_1_t_2*rus_d_Gamma_2_in_axes3_y +
+        rus_d_Gamma_3_in_axes3_y*rus_w_3_t - rus_d_phi_3_in_axes3_xy -
+        rus_d_Gamma_2_in_axes3_y*rus_w_2_in_axes3_x;
+    const real rus_d_c_in_axes3_xz = inv_rus_v_1_t_2*rus_d_Gamma_2_in_axes3_z +
+        rus_d_Gamma_3_in_axes3_z*rus_w_3_t + rus_d_alpha_3_t*rus_h_3_in_spec3_y -
+        rus_d_Gamma_2_in_axes3_z*rus_w_2_in_axes3_x;
+    const real rus_d_c_in_axes3_yz = rus_d_alpha_3_in_axes3_xz*rus_h_3_in_spec3_y -
+        rus_d_Gamma_3_in_axes3_z*rus_w_3_in_axes3_y;
+    v->rus_J_3_t_10 = rus_J_3_t_10;
+    v->rus_J_3_t_11 = rus_J_3_t_11;
+    v->rus_J_3_t_15 = rus_J_3_t_15;
+    v->rus_J_3_t_17 = rus_J_3_t_17;
+    v->rus_e_1_in_axes3_x = rus_e_1_in_axes3_x;
+    v->rus_c_1 = rus_c_1;
+    v->rus_s_1 = rus_s_1;
+    v->rus_c_2 = rus_c_2;
+    v->rus_s_2_t = rus_s_2_t;
+    v->rus_r_1_t = rus_r_1_t;
+    v->rus_v_1_t_2 = rus_v_1_t_2;
+    v->rus_v_1_t_3 = rus_v_1_t_3;
+    v->rus_v_1_in_axes3_z = rus_v_1_in_axes3_z;
+    v->inv_rus_v_1_t_2 = inv_rus_v_1_t_2;
+    v->rus_w_2_in_axes3_z = rus_w_2_in_axes3_z;
+    v->rus_d_alpha_3_in_axes3_xz = rus_d_alpha_3_in_axes3_xz;
+    v->rus_d_alpha_3_t = rus_d_alpha_3_t;
+    v->rus_d_Gamma_2_in_axes3_z = rus_d_Gamma_2_in_axes3_z;
+    v->rus_d_c_in_axes3_xx = rus_d_c_in_axes3_xx;
+    v->rus_d_c_in_axes3_xy = rus_d_c_in_axes3_xy;
+    v->rus_d_c_in_axes3_xz = rus_d_c_in_axes3_xz;
+    v->rus_d_c_in_axes3_yz = rus_d_c_in_axes3_yz;
+}
+
+INLINE void stage_rus_inverse_kinematics_potential(const prepared *m, size_t w, size_t i, size_t
+    j, const real *s, const real *X, values_rus *v)
+{
+    /* (rus-S) from the base point to the connection point */
+    const real R_xx = s[0*w + j];
+    const real R_xy = s[1*w + j];
+    const real R_xz = s[2*w + j];
+    const real rus_base_point_x = m->rus_base_point_x[i];
+    const real rus_platform_point_x = m->rus_platform_point_x[i];
+    const real rus_platform_point_y = m->rus_platform_point_y[i];
+    const real rus_platform_point_z = m->rus_platform_point_z[i];
+    const real t_x = X[0*w + j];
+    const real rus_S_x = t_x + R_xx*rus_platform_point_x + R_xy*rus_platform_point_y +
+        R_xz*rus_platform_point_z - rus_base_point_x;
+    const real R_yx = s[3*w + j];
+    const real R_yy = s[4*w + j];
+    const real R_yz = s[5*w + j];
+    const real rus_base_point_y = m->rus_base_point_y[i];
+    const real t_y = X[1*w + j];
+    const real rus_S_y = t_y + R_yx*rus_platform_point_x + R_yy*rus_platform_point_y +
+        R_yz*rus_platform_point_z - rus_base_point_y;
+    const real R_zx = s[6*w + j];
+    const real R_zy = s[7*w + j];
+    const real R_zz = s[8*w + j];
+    const real rus_base_point_z = m->rus_base_point_z[i];
+    const real t_z = X[2*w + j];
+    const real rus_S_z = t_z + R_zx*rus_platform_point_x + R_zy*rus_platform_point_y +
+        R_zz*rus_platform_point_z - rus_base_point_z;
+    /* (rus-Kd_1) projection on the centre's direction, from the distance fixed by the joints beyond
+       joint 1 */
+    const real rus_Kd_1_t = rus_S_x*rus_S_x + rus_S_y*rus_S_y + rus_S_z*rus_S_z;
+    const real rus_J_3_t = m->rus_J_3_t[i];
+    const real rus_J_3_t_2 = m->rus_J_3_t_2[i];
+    const real rus_Kd_1 = rus_J_3_t + R(0.5)*rus_Kd_1_t - rus_J_3_t_2;
+    /* (rus-Kc_1) factor of the cosine in the equation of joint 1 */
+    const real rus_base_frame_xx = m->rus_base_frame_xx[i];
+    const real rus_base_frame_yx = m->rus_base_frame_yx[i];
+    const real rus_base_frame_zx = m->rus_base_frame_zx[i];
+    const real rus_joint2_offset_x = m->rus_joint2_offset_x[i];
+    const real rus_Kc_1 = rus_joint2_offset_x*(rus_S_x*rus_base_frame_xx +
+        rus_S_y*rus_base_frame_yx + rus_S_z*rus_base_frame_zx);
+    /* (rus-Ks_1) factor of the sine in the equation of joint 1 */
+    const real rus_base_frame_xy = m->rus_base_frame_xy[i];
+    const real rus_base_frame_yy = m->rus_base_frame_yy[i];
+    const real rus_base_frame_zy = m->rus_base_frame_zy[i];
+    const real rus_Ks_1 = rus_joint2_offset_x*(rus_S_x*rus_base_frame_xy +
+        rus_S_y*rus_base_frame_yy + rus_S_z*rus_base_frame_zy);
+    /* (rus-rho2_1) squared amplitude */
+    const real rus_rho2_1 = rus_Kc_1*rus_Kc_1 + rus_Ks_1*rus_Ks_1;
+    /* (rus-disc_1) discriminant */
+    const real rus_disc_1 = rus_rho2_1 - rus_Kd_1*rus_Kd_1;
+    /* (rus-root_1) root, with the sign of the branch */
+    const real rus_branch_1 = m->rus_branch_1[i];
+    const real rus_root_1 = rus_branch_1*root(rus_disc_1);
+    /* (rus-q_1) displacement of joint 1 */
+    const real inv_rus_rho2_1 = 1/rus_rho2_1;
+    /* (rus-xi_1) the vector from joint 1 to the connection point, resolved along link 1 */
+    const real inv_rus_size_t = m->inv_rus_size_t[i];
+    const real rus_xi_1_t = inv_rus_size_t*rus_joint2_offset_x*rus_root_1;
+    /* (rus-x_2) from the origin of joint 2 to the connection point */
+    const real rus_x_2_in_axes1_x = inv_rus_size_t*rus_Kd_1*rus_joint2_offset_x -
+        rus_joint2_offset_x;
+    /* (rus-rho2_2) squared amplitude */
+    const real rus_rho2_2 = rus_x_2_in_axes1_x*rus_x_2_in_axes1_x + rus_xi_1_t*rus_xi_1_t;
+    /* (rus-root_2) root, with the sign of the branch */
+    const real rus_branch_2 = m->rus_branch_2[i];
+    const real rus_root_2 = rus_branch_2*root(rus_rho2_2);
+    /* (rus-q_2) displacement of joint 2 */
+    const real inv_rus_rho2_2 = 1/rus_rho2_2;
+    v->rus_S_x = rus_S_x;
+    v->rus_S_y = rus_S_y;
+    v->rus_S_z = rus_S_z;
+    v->rus_Kd_1 = rus_Kd_1;
+    v->rus_Kc_1 = rus_Kc_1;
+    v->rus_Ks_1 = rus_Ks_1;
+    v->rus_rho2_1 = rus_rho2_1;
+    v->rus_disc_1 = rus_disc_1;
+    v->rus_root_1 = rus_root_1;
+    v->inv_rus_rho2_1 = inv_rus_rho2_1;
+    v->rus_xi_1_t = rus_xi_1_t;
+    v->rus_x_2_in_axes1_x = rus_x_2_in_axes1_x;
+    v->rus_rho2_2 = rus_rho2_2;
+    v->rus_root_2 = rus_root_2;
+    v->inv_rus_rho2_2 = inv_rus_rho2_2;
+}
+
+INLINE void stage_rus_legs_required(const prepared *m, size_t i, values_rus *v)
+{
+    /* (rus-w_1) reciprocal vector 1 */
+    const real axis_x_rus_axes3_x = v->axis_y_rus_axes3_y*v->axis_z_rus_axes3_z -
+        v->axis_y_rus_axes3_z*v->axis_z_rus_axes3_y;
+    const real axis_x_rus_axes3_y = v->axis_y_rus_axes3_z*v->axis_z_rus_axes3_x -
+        v->axis_y_rus_axes3_x*v->axis_z_rus_axes3_z;
+    const real axis_x_rus_axes3_z = v->axis_y_rus_axes3_x*v->axis_z_rus_axes3_y -
+        v->axis_y_rus_axes3_y*v->axis_z_rus_axes3_x;
+    const real rus_w_1_t_7 = axis_x_rus_axes3_x*v->inv_rus_v_1_t_2;
+    const real rus_w_1_t_8 = axis_x_rus_axes3_y*v->inv_rus_v_1_t_2;
+    const real rus_w_1_t_9 = axis_x_rus_axes3_z*v->inv_rus_v_1_t_2;
+    /* (rus-qd_1) rate of joint 1 */
+    const real rus_qd_1_t = v->inv_rus_v_1_t_2*(axis_x_rus_axes3_x*v->rus_S_dot_x +
+        axis_x_rus_axes3_y*v->rus_S_dot_y + axis_x_rus_axes3_z*v->rus_S_dot_z);
+    /* (rus-qd_3) rate of joint 3 */
+    const real rus_qd_3_t = v->axis_y_rus_axes3_x*v->rus_S_dot_x +
+        v->axis_y_rus_axes3_y*v->rus_S_dot_y + v->axis_y_rus_axes3_z*v->rus_S_dot_z -
+        rus_qd_1_t*v->rus_v_1_t_3;
+    const real rus_w_3_in_axes3_y = m->rus_w_3_in_axes3_y[i];
+    const real rus_qd_3 = rus_qd_3_t*rus_w_3_in_axes3_y;
+    /* (rus-omega_1) angular velocity of link 1 */
+    const real rus_omega_1_in_axes3_x = -v->rus_e_1_in_axes3_x*rus_qd_1_t;
+    const real rus_omega_1_in_axes3_y = v->rus_c_3*rus_qd_1_t;
+    /* (rus-omega_2) angular velocity of link 2 */
+    const real rus_omega_2_in_axes2_z =
+        v->rus_w_2_in_axes3_z*(v->axis_z_rus_axes3_x*v->rus_S_dot_x +
+        v->axis_z_rus_axes3_y*v->rus_S_dot_y + v->axis_z_rus_axes3_z*v->rus_S_dot_z +
+        rus_qd_1_t*v->rus_v_1_in_axes3_z) - rus_qd_1_t;
+    const real rus_omega_2_in_axes3_x = v->rus_e_1_in_axes3_x*rus_omega_2_in_axes2_z;
+    const real rus_omega_2_in_axes3_y = -v->rus_c_3*rus_omega_2_in_axes2_z;
+    /* (rus-W_3) centripetal tensor of link 3 */
+    const real rus_W_3_in_axes3_yz = rus_omega_2_in_axes3_y*rus_qd_3;
+    const real rus_W_3_in_axes3_xz = rus_omega_2_in_axes3_x*rus_qd_3;
+    const real rus_W_3_in_axes3_xy = rus_omega_2_in_axes3_x*rus_omega_2_in_axes3_y;
+    /* (rus-S_ddot) acceleration of the connection point */
+    const real rus_S_ddot_in_axes3_x = axis_x_rus_axes3_x*v->rus_S_ddot_x +
+        axis_x_rus_axes3_y*v->rus_S_ddot_y + axis_x_rus_axes3_z*v->rus_S_ddot_z;
+    const real rus_S_ddot_in_axes3_y = v->axis_y_rus_axes3_x*v->rus_S_ddot_x +
+        v->axis_y_rus_axes3_y*v->rus_S_ddot_y + v->axis_y_rus_axes3_z*v->rus_S_ddot_z;
+    const real rus_S_ddot_in_axes3_z = v->axis_z_rus_axes3_x*v->rus_S_ddot_x +
+        v->axis_z_rus_axes3_y*v->rus_S_ddot_y + v->axis_z_rus_axes3_z*v->rus_S_ddot_z;
+    /* (rus-bias) acceleration of the connection point at zero joint accelerations */
+    const real rus_bias_t_2 = v->rus_bias_t*v->rus_c_3*rus_omega_1_in_axes3_y -
+        v->rus_bias_t*v->rus_e_1_in_axes3_x*rus_omega_1_in_axes3_x;
+    const real rus_platform_joint_offset_x = m->rus_platform_joint_offset_x[i];
+    const real rus_bias_t_3 = -rus_omega_2_in_axes3_y*rus_platform_joint_offset_x;
+    const real rus_bias_in_axes3_x = rus_bias_t_3*rus_omega_2_in_axes3_y -
+        rus_bias_t_2*rus_omega_1_in_axes3_y - rus_qd_3*rus_qd_3_t;
+    const real rus_bias_in_axes3_y = rus_bias_t_2*rus_omega_1_in_axes3_x -
+        rus_bias_t_3*rus_omega_2_in_axes3_x;
+    const real rus_bias_in_axes3_z = rus_W_3_in_axes3_xz*rus_platform_joint_offset_x +
+        rus_omega_2_in_axes3_x*rus_qd_3_t -
+        v->rus_d_2_in_axes3_z*rus_omega_1_in_axes3_x*rus_omega_1_in_axes3_x -
+        v->rus_d_2_in_axes3_z*rus_omega_1_in_axes3_y*rus_omega_1_in_axes3_y;
+    /* (rus-rel) acceleration of the connection point left to the joint accelerations */
+    const real rus_rel_in_axes3_x = rus_S_ddot_in_axes3_x - rus_bias_in_axes3_x;
+    const real rus_rel_in_axes3_y = rus_S_ddot_in_axes3_y - rus_bias_in_axes3_y;
+    const real rus_rel_in_axes3_z = rus_S_ddot_in_axes3_z - rus_bias_in_axes3_z;
+    /* (rus-qdd_1) acceleration of joint 1 */
+    const real rus_qdd_1_t = v->inv_rus_v_1_t_2*rus_rel_in_axes3_x;
+    /* (rus-qdd_3) acceleration of joint 3 */
+    const real rus_qdd_3_t = rus_w_3_in_axes3_y*(rus_qdd_1_t*v->rus_v_1_t_3 -
+        rus_rel_in_axes3_y);
+    /* (rus-alpha_2) angular acceleration of link 2 */
+    const real rus_alpha_2_in_axes2_z = v->rus_w_2_in_axes3_z*(rus_rel_in_axes3_z +
+        rus_qdd_1_t*v->rus_v_1_in_axes3_z) - rus_qdd_1_t;
+    const real rus_alpha_2_in_axes3_x = rus_alpha_2_in_axes2_z*v->rus_e_1_in_axes3_x;
+    const real rus_alpha_2_in_axes3_y = -rus_alpha_2_in_axes2_z*v->rus_c_3;
+    /* (rus-alpha_3) angular acceleration of link 3 */
+    const real rus_alpha_3_in_axes3_x = rus_W_3_in_axes3_yz + rus_alpha_2_in_axes3_x;
+    const real rus_alpha_3_in_axes3_y = rus_alpha_2_in_axes3_y - rus_W_3_in_axes3_xz;
+    /* (rus-B_3) acceleration tensor of link 3 */
+    const real rus_B_3_in_axes3_xy = rus_W_3_in_axes3_xy + rus_qdd_3_t;
+    const real rus_B_3_in_axes3_yx = rus_W_3_in_axes3_xy - rus_qdd_3_t;
+    const real rus_B_3_in_axes3_zx = rus_W_3_in_axes3_xz - rus_alpha_3_in_axes3_y;
+    const real rus_B_3_in_axes3_zy = rus_W_3_in_axes3_yz + rus_alpha_3_in_axes3_x;
+    /* (rus-acc_3) acceleration of the reference point of link 3, less gravity */
+    const real gravity_x = m->gravity_x;
+    const real gravity_y = m->gravity_y;
+    const real gravity_z = m->gravity_z;
+    const real rus_acc_3_in_axes3_x = rus_S_ddot_in_axes3_x - axis_x_rus_axes3_x*gravity_x -
+        axis_x_rus_axes3_y*gravity_y - axis_x_rus_axes3_z*gravity_z;
+    const real rus_acc_3_in_axes3_y = rus_S_ddot_in_axes3_y - v->axis_y_rus_axes3_x*gravity_x
+        - v->axis_y_rus_axes3_y*gravity_y - v->axis_y_rus_axes3_z*gravity_z;
+    const real rus_acc_3_in_axes3_z = rus_S_ddot_in_axes3_z - v->axis_z_rus_axes3_x*gravity_x
+        - v->axis_z_rus_axes3_y*gravity_y - v->axis_z_rus_axes3_z*gravity_z;
+    /* (rus-mu_3) inertia moment of the links that turn with link 3, about their reference points */
+    const real rus_mu_3_t = rus_omega_2_in_axes3_x*rus_omega_2_in_axes3_x;
+    const real rus_mu_3_t_2 = rus_omega_2_in_axes3_y*rus_omega_2_in_axes3_y;
+    const real rus_mu_3_t_3 = rus_qd_3*rus_qd_3;
+    const real rus_J_3_in_spec3_xy = m->rus_J_3_in_spec3_xy[i];
+    const real rus_J_3_in_spec3_xz = m->rus_J_3_in_spec3_xz[i];
+    const real rus_J_3_in_spec3_yz = m->rus_J_3_in_spec3_yz[i];
+    const real rus_Sigma_3_in_axes3_yy = m->rus_Sigma_3_in_axes3_yy[i];
+    const real rus_Sigma_3_in_axes3_zz = m->rus_Sigma_3_in_axes3_zz[i];
+    const real rus_h_3_in_spec3_y = m->rus_h_3_in_spec3_y[i];
+    const real rus_h_3_in_spec3_z = m->rus_h_3_in_spec3_z[i];
+    const real rus_mu_3_in_axes3_x = rus_B_3_in_axes3_yx*rus_J_3_in_spec3_xy +
+        rus_B_3_in_axes3_zx*rus_J_3_in_spec3_xz + rus_B_3_in_axes3_zy*rus_Sigma_3_in_axes3_yy
+        + rus_Sigma_3_in_axes3_zz*rus_alpha_2_in_axes3_x - rus_J_3_in_spec3_yz*(rus_mu_3_t_2 -
+        rus_mu_3_t_3) - rus_acc_3_in_axes3_y*rus_h_3_in_spec3_y -
+        rus_acc_3_in_axes3_z*rus_h_3_in_spec3_z;
+    const real rus_Sigma_3_in_axes3_xx = m->rus_Sigma_3_in_axes3_xx[i];
+    const real rus_h_3_in_spec3_x = m->rus_h_3_in_spec3_x[i];
+    const real rus_mu_3_in_axes3_y = rus_B_3_in_axes3_xy*rus_J_3_in_spec3_yz +
+        rus_Sigma_3_in_axes3_zz*rus_alpha_2_in_axes3_y +
+        rus_acc_3_in_axes3_x*rus_h_3_in_spec3_y - rus_B_3_in_axes3_zx*rus_Sigma_3_in_axes3_xx
+        - rus_B_3_in_axes3_zy*rus_J_3_in_spec3_xz - rus_J_3_in_spec3_xy*(rus_mu_3_t -
+        rus_mu_3_t_3) - rus_acc_3_in_axes3_z*rus_h_3_in_spec3_x;
+    const real rus_mu_3_in_axes3_z = rus_B_3_in_axes3_yx*rus_Sigma_3_in_axes3_xx +
+        rus_J_3_in_spec3_xy*rus_alpha_2_in_axes3_x + rus_acc_3_in_axes3_x*rus_h_3_in_spec3_z +
+        rus_acc_3_in_axes3_y*rus_h_3_in_spec3_x - rus_B_3_in_axes3_xy*rus_Sigma_3_in_axes3_yy
+        - rus_J_3_in_spec3_xz*(rus_mu_3_t - rus_mu_3_t_2) -
+        rus_J_3_in_spec3_yz*rus_alpha_2_in_axes3_y;
+    const real rus_mu_3_in_axes1_z = v->rus_e_1_in_axes3_x*rus_mu_3_in_axes3_x -
+        v->rus_c_3*rus_mu_3_in_axes3_y;
+    /* (rus-mu_1) inertia moment of the links that turn with link 1, about their reference points */
+    const real rus_J_1_in_spec1_zz = m->rus_J_1_in_spec1_zz[i];
+    const real rus_h_1_in_spec1_x = m->rus_h_1_in_spec1_x[i];
+    const real rus_h_1_in_spec1_y = m->rus_h_1_in_spec1_y[i];
+    const real rus_mu_1_t = m->rus_mu_1_t[i];
+    const real rus_mu_1_t_2 = m->rus_mu_1_t_2[i];
+    const real rus_mu_1_in_axes1_z = rus_h_1_in_spec1_y*(v->rus_c_1*rus_mu_1_t +
+        rus_mu_1_t_2*v->rus_s_1) - rus_J_1_in_spec1_zz*rus_qdd_1_t -
+        rus_h_1_in_spec1_x*(v->rus_c_1*rus_mu_1_t_2 - rus_mu_1_t*v->rus_s_1);
+    /* (rus-N_1) moment about joint 1 of the links from 1 outwards, the force at the connection point
+       left out */
+    const real rus_N_1_in_axes1_z = rus_mu_1_in_axes1_z + rus_mu_3_in_axes1_z;
+    /* (rus-G) force at the connection point that balances the leg's inertia and weight along all
+       degrees of freedom */
+    const real rus_G_in_axes3_z = rus_mu_3_in_axes1_z*v->rus_w_2_in_axes3_z;
+    const real rus_G_in_axes3_y = rus_mu_3_in_axes3_z*rus_w_3_in_axes3_y;
+    /* (rus-c) leg force on the platform without actuation and without the mass at the connection
+       point */
+    const real rus_c_in_axes3_x = v->inv_rus_v_1_t_2*(rus_N_1_in_axes1_z +
+        rus_G_in_axes3_y*v->rus_v_1_t_3 - rus_G_in_axes3_z*v->rus_v_1_in_axes3_z) +
+        rus_B_3_in_axes3_xy*rus_h_3_in_spec3_z + rus_h_3_in_spec3_x*(rus_mu_3_t_2 +
+        rus_mu_3_t_3) - rus_alpha_2_in_axes3_y*rus_h_3_in_spec3_y;
+    const real rus_c_in_axes3_y = rus_alpha_2_in_axes3_x*rus_h_3_in_spec3_y - rus_G_in_axes3_y
+        - rus_B_3_in_axes3_yx*rus_h_3_in_spec3_x - rus_h_3_in_spec3_z*(rus_mu_3_t +
+        rus_mu_3_t_3);
+    const real rus_c_in_axes3_z = rus_B_3_in_axes3_zy*rus_h_3_in_spec3_z +
+        rus_h_3_in_spec3_y*(rus_mu_3_t + rus_mu_3_t_2) - rus_G_in_axes3_z -
+        rus_B_3_in_axes3_zx*rus_h_3_in_spec3_x;
+    v->axis_x_rus_axes3_x = axis_x_rus_axes3_x;
+    v->axis_x_rus_axes3_y = axis_x_rus_axes3_y;
+    v->axis_x_rus_axes3_z = axis_x_rus_axes3_z;
+    v->rus_w_1_t_7 = rus_w_1_t_7;
+    v->rus_w_1_t_8 = rus_w_1_t_8;
+    v->rus_w_1_t_9 = rus_w_1_t_9;
+    v->rus_acc_3_in_axes3_x = rus_acc_3_in_axes3_x;
+    v->rus_acc_3_in_axes3_y = rus_acc_3_in_axes3_y;
+    v->rus_acc_3_in_axes3_z = rus_acc_3_in_axes3_z;
+    v->rus_c_in_axes3_x = rus_c_in_axes3_x;
+    v->rus_c_in_axes3_y = rus_c_in_axes3_y;
+    v->rus_c_in_axes3_z = rus_c_in_axes3_z;
+}
+
 /* ---- functions of the state: M, Z, H and the like ---- */
 
 /* ---- dynamics ---- */
@@ -1371,354 +2248,115 @@ INLINE void dynamics_before(const prepared *m, size_t w, const real *X, const re
     verdict *t)
 {
     for (size_t k = 0; k < w; ++k) {
-        /* X: named entries */
-        const real X_0 = X[0*w + k];
-        const real t_x = X_0;
-        const real X_1 = X[1*w + k];
-        const real t_y = X_1;
-        const real X_2 = X[2*w + k];
-        const real t_z = X_2;
-        const real X_3 = X[3*w + k];
-        const real X_4 = X[4*w + k];
-        const real X_5 = X[5*w + k];
-        const real X_6 = X[6*w + k];
-        const real quaternion_norm2 = X_3*X_3 + X_4*X_4 + X_5*X_5 + X_6*X_6;
-        const real quaternion_scale = 2/quaternion_norm2;
-        const real quaternion_sx = X_3*quaternion_scale;
-        const real quaternion_sy = X_4*quaternion_scale;
-        const real quaternion_sz = X_5*quaternion_scale;
-        const real quaternion_wx = X_6*quaternion_sx;
-        const real quaternion_wy = X_6*quaternion_sy;
-        const real quaternion_wz = X_6*quaternion_sz;
-        const real quaternion_xx = X_3*quaternion_sx;
-        const real quaternion_xy = X_3*quaternion_sy;
-        const real quaternion_xz = X_3*quaternion_sz;
-        const real quaternion_yy = X_4*quaternion_sy;
-        const real quaternion_yz = X_4*quaternion_sz;
-        const real quaternion_zz = X_5*quaternion_sz;
-        const real R_xx = 1 - quaternion_yy - quaternion_zz;
-        const real R_xy = quaternion_xy - quaternion_wz;
-        const real R_xz = quaternion_wy + quaternion_xz;
-        const real R_yx = quaternion_wz + quaternion_xy;
-        const real R_yy = 1 - quaternion_xx - quaternion_zz;
-        const real R_yz = quaternion_yz - quaternion_wx;
-        const real R_zx = quaternion_xz - quaternion_wy;
-        const real R_zy = quaternion_wx + quaternion_yz;
-        const real R_zz = 1 - quaternion_xx - quaternion_yy;
-        /* V: named entries */
-        const real V_0 = V[0*w + k];
-        const real t_dot_x = V_0;
-        const real V_1 = V[1*w + k];
-        const real t_dot_y = V_1;
-        const real V_2 = V[2*w + k];
-        const real t_dot_z = V_2;
-        const real V_3 = V[3*w + k];
-        const real omega_x = V_3;
-        const real V_4 = V[4*w + k];
-        const real omega_y = V_4;
-        const real V_5 = V[5*w + k];
-        const real omega_z = V_5;
-        /* (h_star) first moment about the platform origin */
-        const real h_star_in_platform_x = m->h_star_in_platform_x;
-        const real h_star_in_platform_y = m->h_star_in_platform_y;
-        const real h_star_in_platform_z = m->h_star_in_platform_z;
-        const real h_star_x = R_xx*h_star_in_platform_x + R_xy*h_star_in_platform_y +
-            R_xz*h_star_in_platform_z;
-        const real h_star_y = R_yx*h_star_in_platform_x + R_yy*h_star_in_platform_y +
-            R_yz*h_star_in_platform_z;
-        const real h_star_z = R_zx*h_star_in_platform_x + R_zy*h_star_in_platform_y +
-            R_zz*h_star_in_platform_z;
-        /* (J_star) inertia tensor about the platform origin */
-        const real J_star_in_platform_xy = m->J_star_in_platform_xy;
-        const real J_star_in_platform_yz = m->J_star_in_platform_yz;
-        const real J_star_t_12 = m->J_star_t_12;
-        const real J_star_t = J_star_in_platform_xy*R_xx + J_star_in_platform_yz*R_xz -
-            J_star_t_12*R_xy;
-        const real J_star_t_2 = J_star_in_platform_xy*R_yx + J_star_in_platform_yz*R_yz -
-            J_star_t_12*R_yy;
-        const real J_star_t_3 = J_star_in_platform_xy*R_zx + J_star_in_platform_yz*R_zz -
-            J_star_t_12*R_zy;
-        const real J_star_in_platform_xz = m->J_star_in_platform_xz;
-        const real J_star_t_14 = m->J_star_t_14;
-        const real J_star_t_4 = J_star_t_14*R_xz - J_star_in_platform_xz*R_xx;
-        const real J_star_t_5 = J_star_t_14*R_yz - J_star_in_platform_xz*R_yx;
-        const real J_star_t_6 = J_star_t_14*R_zz - J_star_in_platform_xz*R_zx;
-        const real J_star_t_7 = J_star_t*R_xy - J_star_t_4*R_xz;
-        const real J_star_in_platform_xx = m->J_star_in_platform_xx;
-        const real J_star_xx = J_star_in_platform_xx + 2*J_star_t_7;
-        const real J_star_xy = J_star_t*R_yy + J_star_t_2*R_xy - J_star_t_4*R_yz -
-            J_star_t_5*R_xz;
-        const real J_star_xz = J_star_t*R_zy + J_star_t_3*R_xy - J_star_t_4*R_zz -
-            J_star_t_6*R_xz;
-        const real J_star_t_8 = J_star_t_2*R_yy - J_star_t_5*R_yz;
-        const real J_star_yy = J_star_in_platform_xx + 2*J_star_t_8;
-        const real J_star_yz = J_star_t_2*R_zy + J_star_t_3*R_yy - J_star_t_5*R_zz -
-            J_star_t_6*R_yz;
-        const real J_star_t_9 = J_star_t_3*R_zy - J_star_t_6*R_zz;
-        const real J_star_zz = J_star_in_platform_xx + 2*J_star_t_9;
-        /* (Z_p) centripetal force and weight of the platform */
-        const real Z_p_t_4 = h_star_z*omega_y - h_star_y*omega_z;
-        const real Z_p_t_5 = h_star_x*omega_z - h_star_z*omega_x;
-        const real Z_p_t_6 = h_star_y*omega_x - h_star_x*omega_y;
-        const real Z_p_t = m->Z_p_t;
-        const real Z_p_x = Z_p_t_6*omega_y - Z_p_t - Z_p_t_5*omega_z;
-        const real Z_p_t_2 = m->Z_p_t_2;
-        const real Z_p_y = Z_p_t_4*omega_z - Z_p_t_2 - Z_p_t_6*omega_x;
-        const real Z_p_t_3 = m->Z_p_t_3;
-        const real Z_p_z = Z_p_t_5*omega_x - Z_p_t_3 - Z_p_t_4*omega_y;
-        /* (Z_q) gyroscopic moment and moment of the weight of the platform */
-        const real gravity_x = m->gravity_x;
-        const real gravity_y = m->gravity_y;
-        const real gravity_z = m->gravity_z;
-        const real g_in_platform_x = R_xx*gravity_x + R_yx*gravity_y + R_zx*gravity_z;
-        const real g_in_platform_y = R_xy*gravity_x + R_yy*gravity_y + R_zy*gravity_z;
-        const real g_in_platform_z = R_xz*gravity_x + R_yz*gravity_y + R_zz*gravity_z;
-        const real omega_in_platform_x = R_xx*omega_x + R_yx*omega_y + R_zx*omega_z;
-        const real omega_in_platform_y = R_xy*omega_x + R_yy*omega_y + R_zy*omega_z;
-        const real omega_in_platform_z = R_xz*omega_x + R_yz*omega_y + R_zz*omega_z;
-        const real Z_q_t = J_star_in_platform_xx*omega_in_platform_x +
-            J_star_in_platform_xy*omega_in_platform_y + J_star_in_platform_xz*omega_in_platform_z;
-        const real J_star_in_platform_yy = m->J_star_in_platform_yy;
-        const real Z_q_t_2 = J_star_in_platform_xy*omega_in_platform_x +
-            J_star_in_platform_yy*omega_in_platform_y + J_star_in_platform_yz*omega_in_platform_z;
-        const real J_star_in_platform_zz = m->J_star_in_platform_zz;
-        const real Z_q_t_3 = J_star_in_platform_xz*omega_in_platform_x +
-            J_star_in_platform_yz*omega_in_platform_y + J_star_in_platform_zz*omega_in_platform_z;
-        const real Z_q_in_platform_x = Z_q_t_3*omega_in_platform_y +
-            g_in_platform_y*h_star_in_platform_z - Z_q_t_2*omega_in_platform_z -
-            g_in_platform_z*h_star_in_platform_y;
-        const real Z_q_in_platform_y = Z_q_t*omega_in_platform_z +
-            g_in_platform_z*h_star_in_platform_x - Z_q_t_3*omega_in_platform_x -
-            g_in_platform_x*h_star_in_platform_z;
-        const real Z_q_in_platform_z = Z_q_t_2*omega_in_platform_x +
-            g_in_platform_x*h_star_in_platform_y - Z_q_t*omega_in_platform_y -
-            g_in_platform_y*h_star_in_platform_x;
-        const real Z_q_x = R_xx*Z_q_in_platform_x + R_xy*Z_q_in_platform_y +
-            R_xz*Z_q_in_platform_z;
-        const real Z_q_y = R_yx*Z_q_in_platform_x + R_yy*Z_q_in_platform_y +
-            R_yz*Z_q_in_platform_z;
-        const real Z_q_z = R_zx*Z_q_in_platform_x + R_zy*Z_q_in_platform_y +
-            R_zz*Z_q_in_platform_z;
-        s[0*w + k] = t_x;
-        s[1*w + k] = t_y;
-        s[2*w + k] = t_z;
-        s[3*w + k] = R_xx;
-        s[4*w + k] = R_xy;
-        s[5*w + k] = R_xz;
-        s[6*w + k] = R_yx;
-        s[7*w + k] = R_yy;
-        s[8*w + k] = R_yz;
-        s[9*w + k] = R_zx;
-        s[10*w + k] = R_zy;
-        s[11*w + k] = R_zz;
-        s[12*w + k] = t_dot_x;
-        s[13*w + k] = t_dot_y;
-        s[14*w + k] = t_dot_z;
-        s[15*w + k] = omega_x;
-        s[16*w + k] = omega_y;
-        s[17*w + k] = omega_z;
-        s[18*w + k] = h_star_x;
-        s[19*w + k] = h_star_y;
-        s[20*w + k] = h_star_z;
-        s[21*w + k] = J_star_xx;
-        s[22*w + k] = J_star_xy;
-        s[23*w + k] = J_star_xz;
-        s[24*w + k] = J_star_yy;
-        s[25*w + k] = J_star_yz;
-        s[26*w + k] = J_star_zz;
-        s[27*w + k] = Z_p_x;
-        s[28*w + k] = Z_p_y;
-        s[29*w + k] = Z_p_z;
-        s[30*w + k] = Z_q_x;
-        s[31*w + k] = Z_q_y;
-        s[32*w + k] = Z_q_z;
-        t->invalid[k] += UNLESS(is_finite(quaternion_scale)) + UNLESS(quaternion_scale > 0);
+        values v;
+        stage_X(m, w, k, X, &v);
+        stage_V_X(w, k, V, &v);
+        stage_M_dynamics(m, &v);
+        stage_Z_dynamics(m, w, k, V, &v);
+        s[0*w + k] = v.R_xx;
+        s[1*w + k] = v.R_xy;
+        s[2*w + k] = v.R_xz;
+        s[3*w + k] = v.R_yx;
+        s[4*w + k] = v.R_yy;
+        s[5*w + k] = v.R_yz;
+        s[6*w + k] = v.R_zx;
+        s[7*w + k] = v.R_zy;
+        s[8*w + k] = v.R_zz;
+        s[9*w + k] = v.h_star_x;
+        s[10*w + k] = v.h_star_y;
+        s[11*w + k] = v.h_star_z;
+        s[12*w + k] = v.J_star_xx;
+        s[13*w + k] = v.J_star_xy;
+        s[14*w + k] = v.J_star_xz;
+        s[15*w + k] = v.J_star_yy;
+        s[16*w + k] = v.J_star_yz;
+        s[17*w + k] = v.J_star_zz;
+        s[18*w + k] = v.Z_p_x;
+        s[19*w + k] = v.Z_p_y;
+        s[20*w + k] = v.Z_p_z;
+        s[21*w + k] = v.Z_q_x;
+        s[22*w + k] = v.Z_q_y;
+        s[23*w + k] = v.Z_q_z;
+        t->invalid[k] += UNLESS(is_finite(v.quaternion_scale)) + UNLESS(v.quaternion_scale > 0);
     }
 }
 
 INLINE void dynamics_legs_rus(const prepared *m, size_t w, size_t leg, size_t legs, const real *s,
-    size_t states, size_t count, int add, real *terms, real *o)
+    size_t states, size_t count, int add, const real *X, const real *V, real *terms, real *o)
 {
     for (size_t k = 0; k < count; ++k) {
         const size_t i = leg + legs*k;
         const size_t j = states*k;
-        /* (rus-J_3) inertia tensor of link 3 about the connection point */
-        const real R_xx = s[3*w + j];
-        const real R_xy = s[4*w + j];
-        const real R_xz = s[5*w + j];
-        const real rus_platform_point_x = m->rus_platform_point_x[i];
-        const real rus_platform_point_y = m->rus_platform_point_y[i];
-        const real rus_platform_point_z = m->rus_platform_point_z[i];
-        const real rus_q_x = R_xx*rus_platform_point_x + R_xy*rus_platform_point_y +
-            R_xz*rus_platform_point_z;
-        const real R_yx = s[6*w + j];
-        const real R_yy = s[7*w + j];
-        const real R_yz = s[8*w + j];
-        const real rus_q_y = R_yx*rus_platform_point_x + R_yy*rus_platform_point_y +
-            R_yz*rus_platform_point_z;
-        const real R_zx = s[9*w + j];
-        const real R_zy = s[10*w + j];
-        const real R_zz = s[11*w + j];
-        const real rus_q_z = R_zx*rus_platform_point_x + R_zy*rus_platform_point_y +
-            R_zz*rus_platform_point_z;
-        const real rus_base_point_x = m->rus_base_point_x[i];
-        const real t_x = s[0*w + j];
-        const real rus_J_3_t_3 = rus_q_x + t_x - rus_base_point_x;
-        const real rus_base_point_y = m->rus_base_point_y[i];
-        const real t_y = s[1*w + j];
-        const real rus_J_3_t_4 = rus_q_y + t_y - rus_base_point_y;
-        const real rus_base_point_z = m->rus_base_point_z[i];
-        const real t_z = s[2*w + j];
-        const real rus_J_3_t_5 = rus_q_z + t_z - rus_base_point_z;
-        const real rus_J_3_t_6 = rus_J_3_t_3*rus_J_3_t_3 + rus_J_3_t_4*rus_J_3_t_4 +
-            rus_J_3_t_5*rus_J_3_t_5;
-        const real rus_J_3_t = m->rus_J_3_t[i];
-        const real rus_J_3_t_2 = m->rus_J_3_t_2[i];
-        const real rus_J_3_t_7 = rus_J_3_t + R(0.5)*rus_J_3_t_6 - rus_J_3_t_2;
-        const real rus_base_frame_xx = m->rus_base_frame_xx[i];
-        const real rus_base_frame_yx = m->rus_base_frame_yx[i];
-        const real rus_base_frame_zx = m->rus_base_frame_zx[i];
-        const real rus_J_3_t_8 = rus_J_3_t_3*rus_base_frame_xx + rus_J_3_t_4*rus_base_frame_yx +
-            rus_J_3_t_5*rus_base_frame_zx;
-        const real rus_joint2_offset_x = m->rus_joint2_offset_x[i];
-        const real rus_J_3_t_9 = rus_J_3_t_8*rus_joint2_offset_x;
-        const real rus_base_frame_xy = m->rus_base_frame_xy[i];
-        const real rus_base_frame_yy = m->rus_base_frame_yy[i];
-        const real rus_base_frame_zy = m->rus_base_frame_zy[i];
-        const real rus_J_3_t_10 = rus_J_3_t_3*rus_base_frame_xy + rus_J_3_t_4*rus_base_frame_yy +
-            rus_J_3_t_5*rus_base_frame_zy;
-        const real rus_J_3_t_11 = rus_J_3_t_10*rus_joint2_offset_x;
-        const real rus_J_3_t_12 = rus_J_3_t_11*rus_J_3_t_11 + rus_J_3_t_9*rus_J_3_t_9;
-        const real rus_J_3_t_13 = rus_J_3_t_12 - rus_J_3_t_7*rus_J_3_t_7;
-        const real rus_branch_1 = m->rus_branch_1[i];
-        const real rus_J_3_t_14 = root(rus_J_3_t_13)*rus_branch_1;
-        const real inv_rus_size_t = m->inv_rus_size_t[i];
-        const real rus_J_3_t_15 = inv_rus_size_t*rus_J_3_t_14*rus_joint2_offset_x;
-        const real rus_base_frame_xz = m->rus_base_frame_xz[i];
-        const real rus_base_frame_yz = m->rus_base_frame_yz[i];
-        const real rus_base_frame_zz = m->rus_base_frame_zz[i];
-        const real rus_J_3_t_16 = rus_J_3_t_3*rus_base_frame_xz + rus_J_3_t_4*rus_base_frame_yz +
-            rus_J_3_t_5*rus_base_frame_zz;
-        const real rus_J_3_t_17 = inv_rus_size_t*rus_J_3_t_7*rus_joint2_offset_x -
-            rus_joint2_offset_x;
-        const real rus_J_3_t_18 = rus_J_3_t_15*rus_J_3_t_15 + rus_J_3_t_17*rus_J_3_t_17;
-        const real rus_branch_2 = m->rus_branch_2[i];
-        const real rus_J_3_t_19 = root(rus_J_3_t_18)*rus_branch_2;
-        const real inv_rus_size_t_2 = m->inv_rus_size_t_2[i];
-        const real rus_platform_joint_offset_x = m->rus_platform_joint_offset_x[i];
-        const real rus_e_1_in_axes3_y =
-            -inv_rus_size_t_2*rus_J_3_t_19*rus_platform_joint_offset_x;
-        const real rus_e_1_in_axes3_x = inv_rus_size_t_2*rus_J_3_t_16*rus_platform_joint_offset_x;
-        const real rus_J_3_in_spec3_xy = m->rus_J_3_in_spec3_xy[i];
-        const real rus_J_3_in_spec3_yz = m->rus_J_3_in_spec3_yz[i];
-        const real rus_J_3_in_axes2_xz = rus_J_3_in_spec3_xy*rus_e_1_in_axes3_x -
-            rus_J_3_in_spec3_yz*rus_e_1_in_axes3_y;
-        const real rus_J_3_in_spec3_xx = m->rus_J_3_in_spec3_xx[i];
-        const real rus_J_3_in_spec3_xz = m->rus_J_3_in_spec3_xz[i];
-        const real rus_J_3_in_spec3_zz = m->rus_J_3_in_spec3_zz[i];
-        const real rus_J_3_in_axes1_zz =
-            rus_e_1_in_axes3_x*(rus_J_3_in_spec3_xx*rus_e_1_in_axes3_x -
-            rus_J_3_in_spec3_xz*rus_e_1_in_axes3_y) +
-            rus_e_1_in_axes3_y*(rus_J_3_in_spec3_zz*rus_e_1_in_axes3_y -
-            rus_J_3_in_spec3_xz*rus_e_1_in_axes3_x);
-        /* (rus-c_1) cosine of the angle of joint 1 from its reference direction */
-        const real inv_rus_J_3_t_12 = 1/rus_J_3_t_12;
-        const real rus_c_1 = inv_rus_J_3_t_12*(rus_J_3_t_7*rus_J_3_t_9 -
-            rus_J_3_t_11*rus_J_3_t_14);
-        /* (rus-s_1) sine of the angle of joint 1 from its reference direction */
-        const real rus_s_1 = inv_rus_J_3_t_12*(rus_J_3_t_11*rus_J_3_t_7 +
-            rus_J_3_t_14*rus_J_3_t_9);
-        /* (rus-c_2) cosine of the angle of joint 2 from its reference direction */
-        const real inv_rus_J_3_t_18 = 1/rus_J_3_t_18;
-        const real rus_c_2 = inv_rus_J_3_t_18*rus_J_3_t_15*rus_J_3_t_19;
-        /* (rus-s_2) sine of the angle of joint 2 from its reference direction */
-        const real rus_s_2 = inv_rus_J_3_t_18*rus_J_3_t_17*rus_J_3_t_19;
-        /* (rus-S_dot) velocity of the connection point */
-        const real omega_y = s[16*w + j];
-        const real omega_z = s[17*w + j];
-        const real rus_S_dot_t = omega_y*rus_q_z - omega_z*rus_q_y;
-        const real omega_x = s[15*w + j];
-        const real rus_S_dot_t_2 = omega_z*rus_q_x - omega_x*rus_q_z;
-        const real rus_S_dot_t_3 = omega_x*rus_q_y - omega_y*rus_q_x;
-        const real t_dot_x = s[12*w + j];
-        const real rus_S_dot_x = rus_S_dot_t + t_dot_x;
-        const real t_dot_y = s[13*w + j];
-        const real rus_S_dot_y = rus_S_dot_t_2 + t_dot_y;
-        const real t_dot_z = s[14*w + j];
-        const real rus_S_dot_z = rus_S_dot_t_3 + t_dot_z;
-        /* (rus-r_1) from joint 1 to the connection point, along the links */
-        const real rus_r_1_t = -rus_e_1_in_axes3_y*rus_platform_joint_offset_x;
-        const real rus_r_1_in_axes1_z = rus_e_1_in_axes3_x*rus_platform_joint_offset_x;
-        const real rus_r_1_t_2 = rus_c_2*rus_r_1_t;
-        const real rus_r_1_in_axes1_x = rus_joint2_offset_x + rus_r_1_t*rus_s_2;
-        const real rus_r_1_in_axes3_z = rus_c_2*rus_r_1_in_axes1_x - rus_r_1_t_2*rus_s_2;
-        /* (rus-v_1) velocity of the connection point per rate of joint 1 */
-        const real rus_v_1_t = rus_c_2*rus_r_1_t_2 + rus_r_1_in_axes1_x*rus_s_2;
-        const real rus_v_1_t_2 = -rus_e_1_in_axes3_y*rus_r_1_in_axes3_z;
-        const real rus_v_1_t_3 = rus_e_1_in_axes3_x*rus_r_1_in_axes3_z;
-        const real rus_v_1_in_axes3_z = rus_e_1_in_axes3_x*(rus_e_1_in_axes3_x*rus_v_1_t +
-            rus_e_1_in_axes3_y*rus_r_1_in_axes1_z) -
-            rus_e_1_in_axes3_y*(rus_e_1_in_axes3_x*rus_r_1_in_axes1_z -
-            rus_e_1_in_axes3_y*rus_v_1_t);
+        values_rus v;
+        stage_rus_X(m, w, i, j, s, X, &v);
+        stage_rus_V_X(w, j, V, &v);
+        stage_rus_M_dynamics(m, w, i, j, X, &v);
         /* (rus-w_1) reciprocal vector 1 */
-        const real rus_w_1_t = rus_c_1*rus_c_2 - rus_s_1*rus_s_2;
-        const real rus_w_1_t_2 = rus_c_1*rus_s_2 + rus_c_2*rus_s_1;
+        const real rus_w_1_t = v.rus_c_1*v.rus_s_2_t - v.rus_c_2*v.rus_s_1;
+        const real rus_w_1_t_2 = v.rus_c_1*v.rus_c_2 + v.rus_s_1*v.rus_s_2_t;
+        const real rus_base_frame_xx = m->rus_base_frame_xx[i];
+        const real rus_base_frame_xy = m->rus_base_frame_xy[i];
         const real axis_z_rus_axes3_x = rus_base_frame_xx*rus_w_1_t +
             rus_base_frame_xy*rus_w_1_t_2;
+        const real rus_base_frame_yx = m->rus_base_frame_yx[i];
+        const real rus_base_frame_yy = m->rus_base_frame_yy[i];
         const real axis_z_rus_axes3_y = rus_base_frame_yx*rus_w_1_t +
             rus_base_frame_yy*rus_w_1_t_2;
+        const real rus_base_frame_zx = m->rus_base_frame_zx[i];
+        const real rus_base_frame_zy = m->rus_base_frame_zy[i];
         const real axis_z_rus_axes3_z = rus_base_frame_zx*rus_w_1_t +
             rus_base_frame_zy*rus_w_1_t_2;
-        const real rus_w_1_t_3 = rus_e_1_in_axes3_x*rus_s_2;
-        const real rus_w_1_t_4 = rus_c_2*rus_e_1_in_axes3_x;
-        const real rus_w_1_t_5 = rus_c_1*rus_w_1_t_3 + rus_s_1*rus_w_1_t_4;
-        const real rus_w_1_t_6 = rus_s_1*rus_w_1_t_3 - rus_c_1*rus_w_1_t_4;
+        const real rus_w_1_t_3 = v.rus_c_2*v.rus_e_1_in_axes3_x;
+        const real rus_w_1_t_4 = v.rus_e_1_in_axes3_x*v.rus_s_2_t;
+        const real rus_w_1_t_5 = v.rus_c_1*rus_w_1_t_3 + v.rus_s_1*rus_w_1_t_4;
+        const real rus_w_1_t_6 = v.rus_s_1*rus_w_1_t_3 - v.rus_c_1*rus_w_1_t_4;
+        const real rus_base_frame_xz = m->rus_base_frame_xz[i];
         const real axis_y_rus_axes3_x = rus_base_frame_xx*rus_w_1_t_5 +
-            rus_base_frame_xy*rus_w_1_t_6 + rus_base_frame_xz*rus_e_1_in_axes3_y;
+            rus_base_frame_xy*rus_w_1_t_6 - v.rus_J_3_t_17*rus_base_frame_xz;
+        const real rus_base_frame_yz = m->rus_base_frame_yz[i];
         const real axis_y_rus_axes3_y = rus_base_frame_yx*rus_w_1_t_5 +
-            rus_base_frame_yy*rus_w_1_t_6 + rus_base_frame_yz*rus_e_1_in_axes3_y;
+            rus_base_frame_yy*rus_w_1_t_6 - v.rus_J_3_t_17*rus_base_frame_yz;
+        const real rus_base_frame_zz = m->rus_base_frame_zz[i];
         const real axis_y_rus_axes3_z = rus_base_frame_zx*rus_w_1_t_5 +
-            rus_base_frame_zy*rus_w_1_t_6 + rus_base_frame_zz*rus_e_1_in_axes3_y;
+            rus_base_frame_zy*rus_w_1_t_6 - v.rus_J_3_t_17*rus_base_frame_zz;
         const real axis_x_rus_axes3_x = axis_y_rus_axes3_y*axis_z_rus_axes3_z -
             axis_y_rus_axes3_z*axis_z_rus_axes3_y;
         const real axis_x_rus_axes3_y = axis_y_rus_axes3_z*axis_z_rus_axes3_x -
             axis_y_rus_axes3_x*axis_z_rus_axes3_z;
         const real axis_x_rus_axes3_z = axis_y_rus_axes3_x*axis_z_rus_axes3_y -
             axis_y_rus_axes3_y*axis_z_rus_axes3_x;
-        const real inv_rus_v_1_t_2 = 1/rus_v_1_t_2;
-        const real rus_w_1_t_7 = axis_x_rus_axes3_x*inv_rus_v_1_t_2;
-        const real rus_w_1_t_8 = axis_x_rus_axes3_y*inv_rus_v_1_t_2;
-        const real rus_w_1_t_9 = axis_x_rus_axes3_z*inv_rus_v_1_t_2;
-        /* (rus-w_2) reciprocal vector 2 */
-        const real rus_w_2_in_axes3_z = 1/rus_r_1_t;
-        const real rus_w_2_in_axes3_x = inv_rus_v_1_t_2*rus_v_1_in_axes3_z*rus_w_2_in_axes3_z;
-        /* (rus-w_3) reciprocal vector 3 */
-        const real rus_w_3_in_axes3_y = m->rus_w_3_in_axes3_y[i];
-        const real rus_w_3_t = inv_rus_v_1_t_2*rus_v_1_t_3*rus_w_3_in_axes3_y;
+        const real rus_w_1_t_7 = axis_x_rus_axes3_x*v.inv_rus_v_1_t_2;
+        const real rus_w_1_t_8 = axis_x_rus_axes3_y*v.inv_rus_v_1_t_2;
+        const real rus_w_1_t_9 = axis_x_rus_axes3_z*v.inv_rus_v_1_t_2;
         /* (rus-qd_1) rate of joint 1 */
-        const real rus_qd_1 = -inv_rus_v_1_t_2*(axis_x_rus_axes3_x*rus_S_dot_x +
-            axis_x_rus_axes3_y*rus_S_dot_y + axis_x_rus_axes3_z*rus_S_dot_z);
+        const real rus_qd_1_t = v.inv_rus_v_1_t_2*(axis_x_rus_axes3_x*v.rus_S_dot_x +
+            axis_x_rus_axes3_y*v.rus_S_dot_y + axis_x_rus_axes3_z*v.rus_S_dot_z);
         /* (rus-qd_3) rate of joint 3 */
-        const real rus_qd_3_t = axis_y_rus_axes3_x*rus_S_dot_x + axis_y_rus_axes3_y*rus_S_dot_y +
-            axis_y_rus_axes3_z*rus_S_dot_z + rus_qd_1*rus_v_1_t_3;
+        const real rus_qd_3_t = axis_y_rus_axes3_x*v.rus_S_dot_x +
+            axis_y_rus_axes3_y*v.rus_S_dot_y + axis_y_rus_axes3_z*v.rus_S_dot_z -
+            rus_qd_1_t*v.rus_v_1_t_3;
+        const real rus_w_3_in_axes3_y = m->rus_w_3_in_axes3_y[i];
         const real rus_qd_3 = rus_qd_3_t*rus_w_3_in_axes3_y;
         /* (rus-omega_1) angular velocity of link 1 */
-        const real rus_omega_1_in_axes3_x = rus_e_1_in_axes3_x*rus_qd_1;
-        const real rus_omega_1_in_axes3_y = rus_e_1_in_axes3_y*rus_qd_1;
+        const real rus_omega_1_in_axes3_x = -v.rus_e_1_in_axes3_x*rus_qd_1_t;
+        const real rus_omega_1_in_axes3_y = v.rus_J_3_t_17*rus_qd_1_t;
         /* (rus-omega_2) angular velocity of link 2 */
-        const real rus_omega_2_in_axes2_z = rus_qd_1 +
-            rus_w_2_in_axes3_z*(axis_z_rus_axes3_x*rus_S_dot_x + axis_z_rus_axes3_y*rus_S_dot_y +
-            axis_z_rus_axes3_z*rus_S_dot_z - rus_qd_1*rus_v_1_in_axes3_z);
-        const real rus_omega_2_in_axes3_x = rus_e_1_in_axes3_x*rus_omega_2_in_axes2_z;
-        const real rus_omega_2_in_axes3_y = rus_e_1_in_axes3_y*rus_omega_2_in_axes2_z;
+        const real rus_omega_2_in_axes2_z = v.rus_w_2_in_axes3_z*(axis_z_rus_axes3_x*v.rus_S_dot_x
+            + axis_z_rus_axes3_y*v.rus_S_dot_y + axis_z_rus_axes3_z*v.rus_S_dot_z +
+            rus_qd_1_t*v.rus_v_1_in_axes3_z) - rus_qd_1_t;
+        const real rus_omega_2_in_axes3_x = v.rus_e_1_in_axes3_x*rus_omega_2_in_axes2_z;
+        const real rus_omega_2_in_axes3_y = -v.rus_J_3_t_17*rus_omega_2_in_axes2_z;
         /* (rus-W_3) centripetal tensor of link 3 */
         const real rus_W_3_in_axes3_yz = rus_omega_2_in_axes3_y*rus_qd_3;
         const real rus_W_3_in_axes3_xz = rus_omega_2_in_axes3_x*rus_qd_3;
         const real rus_W_3_in_axes3_xy = rus_omega_2_in_axes3_x*rus_omega_2_in_axes3_y;
         /* (rus-u_1) centripetal acceleration of the connection point */
-        const real rus_u_1_x = omega_y*rus_S_dot_t_3 - omega_z*rus_S_dot_t_2;
-        const real rus_u_1_y = omega_z*rus_S_dot_t - omega_x*rus_S_dot_t_3;
-        const real rus_u_1_z = omega_x*rus_S_dot_t_2 - omega_y*rus_S_dot_t;
+        const real omega_y = V[4*w + j];
+        const real omega_z = V[5*w + j];
+        const real rus_u_1_x = omega_y*v.rus_S_dot_t_3 - omega_z*v.rus_S_dot_t_2;
+        const real omega_x = V[3*w + j];
+        const real rus_u_1_y = omega_z*v.rus_S_dot_t - omega_x*v.rus_S_dot_t_3;
+        const real rus_u_1_z = omega_x*v.rus_S_dot_t_2 - omega_y*v.rus_S_dot_t;
         const real rus_u_1_in_axes3_x = axis_x_rus_axes3_x*rus_u_1_x +
             axis_x_rus_axes3_y*rus_u_1_y + axis_x_rus_axes3_z*rus_u_1_z;
         const real rus_u_1_in_axes3_y = axis_y_rus_axes3_x*rus_u_1_x +
@@ -1726,15 +2364,17 @@ INLINE void dynamics_legs_rus(const prepared *m, size_t w, size_t leg, size_t le
         const real rus_u_1_in_axes3_z = axis_z_rus_axes3_x*rus_u_1_x +
             axis_z_rus_axes3_y*rus_u_1_y + axis_z_rus_axes3_z*rus_u_1_z;
         /* (rus-bias) acceleration of the connection point at zero joint accelerations */
-        const real rus_d_2_in_axes3_z = rus_c_2*rus_joint2_offset_x;
-        const real rus_bias_t = rus_joint2_offset_x*rus_s_2;
-        const real rus_bias_t_2 = rus_bias_t*rus_e_1_in_axes3_x*rus_omega_1_in_axes3_x +
-            rus_bias_t*rus_e_1_in_axes3_y*rus_omega_1_in_axes3_y;
-        const real rus_bias_t_3 = rus_omega_2_in_axes3_y*rus_platform_joint_offset_x;
-        const real rus_bias_in_axes3_x = rus_bias_t_2*rus_omega_1_in_axes3_y -
-            rus_bias_t_3*rus_omega_2_in_axes3_y - rus_qd_3*rus_qd_3_t;
-        const real rus_bias_in_axes3_y = rus_bias_t_3*rus_omega_2_in_axes3_x -
-            rus_bias_t_2*rus_omega_1_in_axes3_x;
+        const real rus_joint2_offset_x = m->rus_joint2_offset_x[i];
+        const real rus_bias_t = v.rus_c_2*rus_joint2_offset_x;
+        const real rus_d_2_in_axes3_z = rus_joint2_offset_x*v.rus_s_2_t;
+        const real rus_bias_t_2 = v.rus_J_3_t_17*rus_bias_t*rus_omega_1_in_axes3_y -
+            rus_bias_t*v.rus_e_1_in_axes3_x*rus_omega_1_in_axes3_x;
+        const real rus_platform_joint_offset_x = m->rus_platform_joint_offset_x[i];
+        const real rus_bias_t_3 = -rus_omega_2_in_axes3_y*rus_platform_joint_offset_x;
+        const real rus_bias_in_axes3_x = rus_bias_t_3*rus_omega_2_in_axes3_y -
+            rus_bias_t_2*rus_omega_1_in_axes3_y - rus_qd_3*rus_qd_3_t;
+        const real rus_bias_in_axes3_y = rus_bias_t_2*rus_omega_1_in_axes3_x -
+            rus_bias_t_3*rus_omega_2_in_axes3_x;
         const real rus_bias_in_axes3_z = rus_W_3_in_axes3_xz*rus_platform_joint_offset_x +
             rus_omega_2_in_axes3_x*rus_qd_3_t -
             rus_d_2_in_axes3_z*rus_omega_1_in_axes3_x*rus_omega_1_in_axes3_x -
@@ -1745,18 +2385,15 @@ INLINE void dynamics_legs_rus(const prepared *m, size_t w, size_t leg, size_t le
         const real rus_rel_o_in_axes3_y = rus_u_1_in_axes3_y - rus_bias_in_axes3_y;
         const real rus_rel_o_in_axes3_z = rus_u_1_in_axes3_z - rus_bias_in_axes3_z;
         /* (rus-qdd_1_o) remainder without the acceleration in: acceleration of joint 1 */
-        const real rus_qdd_1_o_t = inv_rus_v_1_t_2*rus_rel_o_in_axes3_x;
+        const real rus_qdd_1_o_t = v.inv_rus_v_1_t_2*rus_rel_o_in_axes3_x;
         /* (rus-qdd_3_o) remainder without the acceleration in: acceleration of joint 3 */
-        const real rus_qdd_3_o = -rus_w_3_in_axes3_y*(rus_qdd_1_o_t*rus_v_1_t_3 -
+        const real rus_qdd_3_o = -rus_w_3_in_axes3_y*(rus_qdd_1_o_t*v.rus_v_1_t_3 -
             rus_rel_o_in_axes3_y);
         /* (rus-alpha_2_o) remainder without the acceleration in: angular acceleration of link 2 */
-        const real rus_alpha_2_o_in_axes2_z = rus_w_2_in_axes3_z*(rus_rel_o_in_axes3_z +
-            rus_qdd_1_o_t*rus_v_1_in_axes3_z) - rus_qdd_1_o_t;
-        const real rus_alpha_2_o_in_axes3_x = rus_alpha_2_o_in_axes2_z*rus_e_1_in_axes3_x;
-        const real rus_alpha_2_o_in_axes3_y = rus_alpha_2_o_in_axes2_z*rus_e_1_in_axes3_y;
-        /* (rus-d_alpha_3) coefficient of the acceleration in: angular acceleration of link 3 */
-        const real rus_d_alpha_3_in_axes3_xz = rus_e_1_in_axes3_x*rus_w_2_in_axes3_z;
-        const real rus_d_alpha_3_in_axes3_yz = rus_e_1_in_axes3_y*rus_w_2_in_axes3_z;
+        const real rus_alpha_2_o_in_axes2_z = v.rus_w_2_in_axes3_z*(rus_rel_o_in_axes3_z +
+            rus_qdd_1_o_t*v.rus_v_1_in_axes3_z) - rus_qdd_1_o_t;
+        const real rus_alpha_2_o_in_axes3_x = rus_alpha_2_o_in_axes2_z*v.rus_e_1_in_axes3_x;
+        const real rus_alpha_2_o_in_axes3_y = -v.rus_J_3_t_17*rus_alpha_2_o_in_axes2_z;
         /* (rus-alpha_3_o) remainder without the acceleration in: angular acceleration of link 3 */
         const real rus_alpha_3_o_in_axes3_x = rus_W_3_in_axes3_yz + rus_alpha_2_o_in_axes3_x;
         const real rus_alpha_3_o_in_axes3_y = rus_alpha_2_o_in_axes3_y - rus_W_3_in_axes3_xz;
@@ -1781,6 +2418,9 @@ INLINE void dynamics_legs_rus(const prepared *m, size_t w, size_t leg, size_t le
         const real rus_mu_3_o_t = rus_omega_2_in_axes3_x*rus_omega_2_in_axes3_x;
         const real rus_mu_3_o_t_2 = rus_omega_2_in_axes3_y*rus_omega_2_in_axes3_y;
         const real rus_mu_3_o_t_3 = rus_qd_3*rus_qd_3;
+        const real rus_J_3_in_spec3_xy = m->rus_J_3_in_spec3_xy[i];
+        const real rus_J_3_in_spec3_xz = m->rus_J_3_in_spec3_xz[i];
+        const real rus_J_3_in_spec3_yz = m->rus_J_3_in_spec3_yz[i];
         const real rus_Sigma_3_in_axes3_yy = m->rus_Sigma_3_in_axes3_yy[i];
         const real rus_Sigma_3_in_axes3_zz = m->rus_Sigma_3_in_axes3_zz[i];
         const real rus_h_3_in_spec3_y = m->rus_h_3_in_spec3_y[i];
@@ -1804,28 +2444,8 @@ INLINE void dynamics_legs_rus(const prepared *m, size_t w, size_t leg, size_t le
             rus_acc_3_o_in_axes3_x*rus_h_3_in_spec3_z + rus_acc_3_o_in_axes3_y*rus_h_3_in_spec3_x
             - rus_B_3_o_in_axes3_xy*rus_Sigma_3_in_axes3_yy - rus_J_3_in_spec3_xz*(rus_mu_3_o_t -
             rus_mu_3_o_t_2) - rus_J_3_in_spec3_yz*rus_alpha_2_o_in_axes3_y;
-        const real rus_mu_3_o_in_axes1_z = rus_e_1_in_axes3_x*rus_mu_3_o_in_axes3_x +
-            rus_e_1_in_axes3_y*rus_mu_3_o_in_axes3_y;
-        /* (rus-d_Gamma_3) coefficient of the acceleration in: moment about axis 3 of the distal links'
-           inertia and weight */
-        const real rus_d_Gamma_3_in_axes3_z = rus_J_3_in_axes2_xz*rus_w_2_in_axes3_z;
-        const real rus_d_Gamma_3_t = m->rus_d_Gamma_3_t[i];
-        const real rus_d_Gamma_3_in_axes3_x = rus_h_3_in_spec3_z -
-            inv_rus_v_1_t_2*(rus_J_3_in_axes2_xz + rus_d_Gamma_3_t*rus_v_1_t_3 -
-            rus_d_Gamma_3_in_axes3_z*rus_v_1_in_axes3_z);
-        /* (rus-d_Gamma_2) coefficient of the acceleration in: moment about axis 2 of the distal links'
-           inertia and weight */
-        const real rus_d_Gamma_2_t = rus_e_1_in_axes3_y*rus_h_3_in_spec3_y;
-        const real rus_d_Gamma_2_t_2 = rus_J_3_in_axes1_zz*rus_w_2_in_axes3_z;
-        const real rus_d_Gamma_2_t_3 = rus_J_3_in_axes2_xz*rus_w_3_in_axes3_y;
-        const real rus_d_Gamma_2_t_4 = rus_d_Gamma_2_t_2*rus_v_1_in_axes3_z;
-        const real rus_d_Gamma_2_t_5 = rus_d_Gamma_2_t_3*rus_v_1_t_3;
-        const real rus_d_Gamma_2_in_axes3_x = rus_d_Gamma_2_t -
-            inv_rus_v_1_t_2*(rus_J_3_in_axes1_zz + rus_d_Gamma_2_t_5 - rus_d_Gamma_2_t_4);
-        const real rus_d_Gamma_2_in_axes3_y = rus_d_Gamma_2_t_3 -
-            rus_e_1_in_axes3_x*rus_h_3_in_spec3_y;
-        const real rus_d_Gamma_2_in_axes3_z = rus_d_Gamma_2_t_2 -
-            rus_e_1_in_axes3_x*rus_h_3_in_spec3_z - rus_e_1_in_axes3_y*rus_h_3_in_spec3_x;
+        const real rus_mu_3_o_in_axes1_z = v.rus_e_1_in_axes3_x*rus_mu_3_o_in_axes3_x -
+            v.rus_J_3_t_17*rus_mu_3_o_in_axes3_y;
         /* (rus-mu_1_o) remainder without the acceleration in: inertia moment of the links that turn with
            link 1, about their reference points */
         const real rus_J_1_in_spec1_zz = m->rus_J_1_in_spec1_zz[i];
@@ -1833,42 +2453,20 @@ INLINE void dynamics_legs_rus(const prepared *m, size_t w, size_t leg, size_t le
         const real rus_h_1_in_spec1_y = m->rus_h_1_in_spec1_y[i];
         const real rus_mu_1_t = m->rus_mu_1_t[i];
         const real rus_mu_1_t_2 = m->rus_mu_1_t_2[i];
-        const real rus_mu_1_o_in_axes1_z = rus_h_1_in_spec1_y*(rus_c_1*rus_mu_1_t +
-            rus_mu_1_t_2*rus_s_1) - rus_J_1_in_spec1_zz*rus_qdd_1_o_t -
-            rus_h_1_in_spec1_x*(rus_c_1*rus_mu_1_t_2 - rus_mu_1_t*rus_s_1);
+        const real rus_mu_1_o_in_axes1_z = rus_h_1_in_spec1_y*(v.rus_c_1*rus_mu_1_t +
+            rus_mu_1_t_2*v.rus_s_1) - rus_J_1_in_spec1_zz*rus_qdd_1_o_t -
+            rus_h_1_in_spec1_x*(v.rus_c_1*rus_mu_1_t_2 - rus_mu_1_t*v.rus_s_1);
         /* (rus-N_1_o) remainder without the acceleration in: moment about joint 1 of the links from 1
            outwards, the force at the connection point left out */
         const real rus_N_1_o_in_axes1_z = rus_mu_1_o_in_axes1_z + rus_mu_3_o_in_axes1_z;
-        /* (rus-d_Gamma_1) coefficient of the acceleration in: moment about axis 1 of the distal links'
-           inertia and weight */
-        const real rus_d_Gamma_1_in_axes3_x = rus_d_Gamma_2_t -
-            inv_rus_v_1_t_2*(rus_J_1_in_spec1_zz + rus_J_3_in_axes1_zz + rus_d_Gamma_2_t_5 -
-            rus_d_Gamma_2_t_4);
         /* (rus-G_o) remainder without the acceleration in: force at the connection point that balances
            the leg's inertia and weight along all degrees of freedom */
-        const real rus_G_o_in_axes3_z = rus_mu_3_o_in_axes1_z*rus_w_2_in_axes3_z;
+        const real rus_G_o_in_axes3_z = rus_mu_3_o_in_axes1_z*v.rus_w_2_in_axes3_z;
         const real rus_G_o_in_axes3_y = rus_mu_3_o_in_axes3_z*rus_w_3_in_axes3_y;
-        /* (rus-d_c) coefficient of the acceleration in: leg force on the platform without actuation and
-           without the mass at the connection point */
-        const real rus_d_c_in_axes3_xx = inv_rus_v_1_t_2*rus_d_Gamma_1_in_axes3_x +
-            rus_d_Gamma_3_in_axes3_x*rus_w_3_t + rus_h_3_in_spec3_z*rus_w_3_t -
-            rus_d_Gamma_2_in_axes3_x*rus_w_2_in_axes3_x -
-            rus_h_3_in_spec3_y*(rus_e_1_in_axes3_y*rus_w_2_in_axes3_x -
-            inv_rus_v_1_t_2*rus_e_1_in_axes3_y);
-        const real rus_d_Gamma_3_in_axes3_y = m->rus_d_Gamma_3_in_axes3_y[i];
-        const real rus_d_phi_3_in_axes3_xy = m->rus_d_phi_3_in_axes3_xy[i];
-        const real rus_d_c_in_axes3_xy = inv_rus_v_1_t_2*rus_d_Gamma_2_in_axes3_y +
-            rus_d_Gamma_3_in_axes3_y*rus_w_3_t - rus_d_phi_3_in_axes3_xy -
-            rus_d_Gamma_2_in_axes3_y*rus_w_2_in_axes3_x;
-        const real rus_d_c_in_axes3_xz = inv_rus_v_1_t_2*rus_d_Gamma_2_in_axes3_z +
-            rus_d_Gamma_3_in_axes3_z*rus_w_3_t - rus_d_Gamma_2_in_axes3_z*rus_w_2_in_axes3_x -
-            rus_d_alpha_3_in_axes3_yz*rus_h_3_in_spec3_y;
-        const real rus_d_c_in_axes3_yz = rus_d_alpha_3_in_axes3_xz*rus_h_3_in_spec3_y -
-            rus_d_Gamma_3_in_axes3_z*rus_w_3_in_axes3_y;
         /* (rus-c_o) remainder without the acceleration in: leg force on the platform without actuation
            and without the mass at the connection point */
-        const real rus_c_o_in_axes3_x = inv_rus_v_1_t_2*(rus_N_1_o_in_axes1_z +
-            rus_G_o_in_axes3_y*rus_v_1_t_3 - rus_G_o_in_axes3_z*rus_v_1_in_axes3_z) +
+        const real rus_c_o_in_axes3_x = v.inv_rus_v_1_t_2*(rus_N_1_o_in_axes1_z +
+            rus_G_o_in_axes3_y*v.rus_v_1_t_3 - rus_G_o_in_axes3_z*v.rus_v_1_in_axes3_z) +
             rus_B_3_o_in_axes3_xy*rus_h_3_in_spec3_z + rus_h_3_in_spec3_x*(rus_mu_3_o_t_2 +
             rus_mu_3_o_t_3) - rus_alpha_2_o_in_axes3_y*rus_h_3_in_spec3_y;
         const real rus_c_o_in_axes3_y = rus_alpha_2_o_in_axes3_x*rus_h_3_in_spec3_y -
@@ -1879,36 +2477,36 @@ INLINE void dynamics_legs_rus(const prepared *m, size_t w, size_t leg, size_t le
             rus_B_3_o_in_axes3_zx*rus_h_3_in_spec3_x;
         /* (rus-Q) inertia of the leg at the connection point, without the mass gathered there */
         const real rus_d_c_in_axes3_yy = m->rus_d_c_in_axes3_yy[i];
-        const real rus_Q_t = rus_d_c_in_axes3_xx - rus_d_c_in_axes3_yy;
+        const real rus_Q_t = v.rus_d_c_in_axes3_xx - rus_d_c_in_axes3_yy;
         const real rus_Q_t_2 = R(0.5)*rus_Q_t;
-        const real rus_Q_t_3 = rus_d_c_in_axes3_xx + rus_d_Gamma_2_in_axes3_z*rus_w_2_in_axes3_z -
-            rus_d_alpha_3_in_axes3_xz*rus_h_3_in_spec3_z -
-            rus_d_alpha_3_in_axes3_yz*rus_h_3_in_spec3_x;
+        const real rus_Q_t_3 = v.rus_d_c_in_axes3_xx +
+            v.rus_d_Gamma_2_in_axes3_z*v.rus_w_2_in_axes3_z + v.rus_d_alpha_3_t*rus_h_3_in_spec3_x
+            - v.rus_d_alpha_3_in_axes3_xz*rus_h_3_in_spec3_z;
         const real rus_Q_t_4 = R(0.5)*rus_Q_t_3;
-        const real rus_Q_t_5 = axis_x_rus_axes3_x*rus_d_c_in_axes3_xy +
-            axis_z_rus_axes3_x*rus_d_c_in_axes3_yz - axis_y_rus_axes3_x*rus_Q_t_2;
-        const real rus_Q_t_6 = axis_x_rus_axes3_y*rus_d_c_in_axes3_xy +
-            axis_z_rus_axes3_y*rus_d_c_in_axes3_yz - axis_y_rus_axes3_y*rus_Q_t_2;
-        const real rus_Q_t_7 = axis_x_rus_axes3_z*rus_d_c_in_axes3_xy +
-            axis_z_rus_axes3_z*rus_d_c_in_axes3_yz - axis_y_rus_axes3_z*rus_Q_t_2;
+        const real rus_Q_t_5 = axis_x_rus_axes3_x*v.rus_d_c_in_axes3_xy +
+            axis_z_rus_axes3_x*v.rus_d_c_in_axes3_yz - axis_y_rus_axes3_x*rus_Q_t_2;
+        const real rus_Q_t_6 = axis_x_rus_axes3_y*v.rus_d_c_in_axes3_xy +
+            axis_z_rus_axes3_y*v.rus_d_c_in_axes3_yz - axis_y_rus_axes3_y*rus_Q_t_2;
+        const real rus_Q_t_7 = axis_x_rus_axes3_z*v.rus_d_c_in_axes3_xy +
+            axis_z_rus_axes3_z*v.rus_d_c_in_axes3_yz - axis_y_rus_axes3_z*rus_Q_t_2;
         const real rus_Q_t_8 = axis_z_rus_axes3_x*rus_Q_t_4 -
-            axis_x_rus_axes3_x*rus_d_c_in_axes3_xz;
+            axis_x_rus_axes3_x*v.rus_d_c_in_axes3_xz;
         const real rus_Q_t_9 = axis_z_rus_axes3_y*rus_Q_t_4 -
-            axis_x_rus_axes3_y*rus_d_c_in_axes3_xz;
+            axis_x_rus_axes3_y*v.rus_d_c_in_axes3_xz;
         const real rus_Q_t_10 = axis_z_rus_axes3_z*rus_Q_t_4 -
-            axis_x_rus_axes3_z*rus_d_c_in_axes3_xz;
+            axis_x_rus_axes3_z*v.rus_d_c_in_axes3_xz;
         const real rus_Q_t_11 = axis_y_rus_axes3_x*rus_Q_t_5 - axis_z_rus_axes3_x*rus_Q_t_8;
-        const real rus_Q_xx = -2*rus_Q_t_11 - rus_d_c_in_axes3_xx;
+        const real rus_Q_xx = -2*rus_Q_t_11 - v.rus_d_c_in_axes3_xx;
         const real rus_Q_xy = axis_z_rus_axes3_x*rus_Q_t_9 + axis_z_rus_axes3_y*rus_Q_t_8 -
             axis_y_rus_axes3_x*rus_Q_t_6 - axis_y_rus_axes3_y*rus_Q_t_5;
         const real rus_Q_xz = axis_z_rus_axes3_x*rus_Q_t_10 + axis_z_rus_axes3_z*rus_Q_t_8 -
             axis_y_rus_axes3_x*rus_Q_t_7 - axis_y_rus_axes3_z*rus_Q_t_5;
         const real rus_Q_t_12 = axis_y_rus_axes3_y*rus_Q_t_6 - axis_z_rus_axes3_y*rus_Q_t_9;
-        const real rus_Q_yy = -2*rus_Q_t_12 - rus_d_c_in_axes3_xx;
+        const real rus_Q_yy = -2*rus_Q_t_12 - v.rus_d_c_in_axes3_xx;
         const real rus_Q_yz = axis_z_rus_axes3_y*rus_Q_t_10 + axis_z_rus_axes3_z*rus_Q_t_9 -
             axis_y_rus_axes3_y*rus_Q_t_7 - axis_y_rus_axes3_z*rus_Q_t_6;
         const real rus_Q_t_13 = axis_y_rus_axes3_z*rus_Q_t_7 - axis_z_rus_axes3_z*rus_Q_t_10;
-        const real rus_Q_zz = -2*rus_Q_t_13 - rus_d_c_in_axes3_xx;
+        const real rus_Q_zz = -2*rus_Q_t_13 - v.rus_d_c_in_axes3_xx;
         /* (rus-U) velocity and gravity terms of the leg force */
         const real rus_U_x = -axis_x_rus_axes3_x*rus_c_o_in_axes3_x -
             axis_y_rus_axes3_x*rus_c_o_in_axes3_y - axis_z_rus_axes3_x*rus_c_o_in_axes3_z;
@@ -1917,33 +2515,33 @@ INLINE void dynamics_legs_rus(const prepared *m, size_t w, size_t leg, size_t le
         const real rus_U_z = -axis_x_rus_axes3_z*rus_c_o_in_axes3_x -
             axis_y_rus_axes3_z*rus_c_o_in_axes3_y - axis_z_rus_axes3_z*rus_c_o_in_axes3_z;
         /* (M_ta) coupling block of M */
-        const real rus_M_ta_t = -rus_Q_xy*rus_q_z;
-        const real rus_M_ta_t_2 = rus_Q_xz*rus_q_y;
+        const real rus_M_ta_t = -rus_Q_xy*v.rus_q_z;
+        const real rus_M_ta_t_2 = rus_Q_xz*v.rus_q_y;
         const real rus_M_ta_t_3 = rus_M_ta_t + rus_M_ta_t_2;
-        const real rus_M_ta_t_4 = rus_Q_xx*rus_q_z - rus_Q_xz*rus_q_x;
-        const real rus_M_ta_t_5 = rus_Q_xy*rus_q_x - rus_Q_xx*rus_q_y;
-        const real rus_M_ta_t_6 = rus_Q_yz*rus_q_y - rus_Q_yy*rus_q_z;
-        const real rus_M_ta_t_7 = rus_Q_yz*rus_q_x;
+        const real rus_M_ta_t_4 = rus_Q_xx*v.rus_q_z - rus_Q_xz*v.rus_q_x;
+        const real rus_M_ta_t_5 = rus_Q_xy*v.rus_q_x - rus_Q_xx*v.rus_q_y;
+        const real rus_M_ta_t_6 = rus_Q_yz*v.rus_q_y - rus_Q_yy*v.rus_q_z;
+        const real rus_M_ta_t_7 = rus_Q_yz*v.rus_q_x;
         const real rus_M_ta_t_8 = rus_M_ta_t + rus_M_ta_t_7;
-        const real rus_M_ta_t_9 = rus_Q_yy*rus_q_x - rus_Q_xy*rus_q_y;
-        const real rus_M_ta_t_10 = rus_Q_zz*rus_q_y - rus_Q_yz*rus_q_z;
-        const real rus_M_ta_t_11 = rus_Q_xz*rus_q_z - rus_Q_zz*rus_q_x;
+        const real rus_M_ta_t_9 = rus_Q_yy*v.rus_q_x - rus_Q_xy*v.rus_q_y;
+        const real rus_M_ta_t_10 = rus_Q_zz*v.rus_q_y - rus_Q_yz*v.rus_q_z;
+        const real rus_M_ta_t_11 = rus_Q_xz*v.rus_q_z - rus_Q_zz*v.rus_q_x;
         const real rus_M_ta_t_12 = rus_M_ta_t_7 - rus_M_ta_t_2;
         /* (M_aa) rotational block of M */
-        const real rus_M_aa_t = rus_M_ta_t_10*rus_q_y - rus_M_ta_t_6*rus_q_z;
-        const real rus_M_aa_t_2 = rus_M_ta_t_11*rus_q_y + rus_M_ta_t_8*rus_q_z;
-        const real rus_M_aa_t_3 = rus_M_ta_t_12*rus_q_y - rus_M_ta_t_9*rus_q_z;
-        const real rus_M_aa_t_4 = rus_M_ta_t_4*rus_q_z - rus_M_ta_t_11*rus_q_x;
-        const real rus_M_aa_t_5 = rus_M_ta_t_5*rus_q_z - rus_M_ta_t_12*rus_q_x;
-        const real rus_M_aa_t_6 = rus_M_ta_t_9*rus_q_x - rus_M_ta_t_5*rus_q_y;
+        const real rus_M_aa_t = rus_M_ta_t_10*v.rus_q_y - rus_M_ta_t_6*v.rus_q_z;
+        const real rus_M_aa_t_2 = rus_M_ta_t_11*v.rus_q_y + rus_M_ta_t_8*v.rus_q_z;
+        const real rus_M_aa_t_3 = rus_M_ta_t_12*v.rus_q_y - rus_M_ta_t_9*v.rus_q_z;
+        const real rus_M_aa_t_4 = rus_M_ta_t_4*v.rus_q_z - rus_M_ta_t_11*v.rus_q_x;
+        const real rus_M_aa_t_5 = rus_M_ta_t_5*v.rus_q_z - rus_M_ta_t_12*v.rus_q_x;
+        const real rus_M_aa_t_6 = rus_M_ta_t_9*v.rus_q_x - rus_M_ta_t_5*v.rus_q_y;
         /* (Z_a) rotational part of Z */
-        const real rus_Z_a_t = rus_U_z*rus_q_y - rus_U_y*rus_q_z;
-        const real rus_Z_a_t_2 = rus_U_x*rus_q_z - rus_U_z*rus_q_x;
-        const real rus_Z_a_t_3 = rus_U_y*rus_q_x - rus_U_x*rus_q_y;
+        const real rus_Z_a_t = rus_U_z*v.rus_q_y - rus_U_y*v.rus_q_z;
+        const real rus_Z_a_t_2 = rus_U_x*v.rus_q_z - rus_U_z*v.rus_q_x;
+        const real rus_Z_a_t_3 = rus_U_y*v.rus_q_x - rus_U_x*v.rus_q_y;
         /* (rus-H_a_1) moment of the column's unit force about the platform origin */
-        const real rus_H_a_1_x = rus_q_z*rus_w_1_t_8 - rus_q_y*rus_w_1_t_9;
-        const real rus_H_a_1_y = rus_q_x*rus_w_1_t_9 - rus_q_z*rus_w_1_t_7;
-        const real rus_H_a_1_z = rus_q_y*rus_w_1_t_7 - rus_q_x*rus_w_1_t_8;
+        const real rus_H_a_1_x = v.rus_q_z*rus_w_1_t_8 - v.rus_q_y*rus_w_1_t_9;
+        const real rus_H_a_1_y = v.rus_q_x*rus_w_1_t_9 - v.rus_q_z*rus_w_1_t_7;
+        const real rus_H_a_1_z = v.rus_q_y*rus_w_1_t_7 - v.rus_q_x*rus_w_1_t_8;
         /* (M_tt) translational block of M */
         gather(&terms[0*count + k], add, rus_Q_xx);  /* M_tt_xx_of_legs */
         gather(&terms[1*count + k], add, rus_Q_xy);  /* M_tt_xy */
@@ -1989,11 +2587,11 @@ INLINE void dynamics_legs_rus(const prepared *m, size_t w, size_t leg, size_t le
         const real rus_rho2_1_t = m->rus_rho2_1_t[i];
         const real rus_size_t_3 = m->rus_size_t_3[i];
         const real rus_size = m->rus_size[i];
-        o[7*count + k] = UNLESS(magnitude(rus_J_3_t_12) > TOLERANCE*TOLERANCE*rus_rho2_1_t) +
-            UNLESS(magnitude(rus_J_3_t_18) > TOLERANCE*TOLERANCE*rus_size_t_3) +
-            UNLESS(magnitude(rus_r_1_t) > TOLERANCE*rus_size) + UNLESS(magnitude(rus_v_1_t_2) >
-            TOLERANCE*rus_size);
-        o[6*count + k] = UNLESS(rus_J_3_t_13 >= 0);
+        o[7*count + k] = UNLESS(magnitude(v.rus_J_3_t_10) > TOLERANCE*TOLERANCE*rus_rho2_1_t) +
+            UNLESS(magnitude(v.rus_J_3_t_15) > TOLERANCE*TOLERANCE*rus_size_t_3) +
+            UNLESS(magnitude(v.rus_r_1_t) > TOLERANCE*rus_size) + UNLESS(magnitude(v.rus_v_1_t_2)
+            > TOLERANCE*rus_size);
+        o[6*count + k] = UNLESS(v.rus_J_3_t_11 >= 0);
     }
 }
 
@@ -2001,7 +2599,7 @@ INLINE void dynamics_place_rus(size_t w, size_t count, const real *o, size_t leg
     real *H, verdict *t)
 {
     for (size_t k = 0; k < w; ++k) {
-        H[(0*NU + leg)*w + k] = o[0*count + first + k];
+        H[leg*w + k] = o[0*count + first + k];
         H[(NU + leg)*w + k] = o[1*count + first + k];
         H[(2*NU + leg)*w + k] = o[2*count + first + k];
         H[(3*NU + leg)*w + k] = o[3*count + first + k];
@@ -2027,66 +2625,66 @@ INLINE void dynamics_after(const prepared *m, size_t w, const real *s, const rea
         const real M_tt_zz = M_tt_zz_of_legs + m_star;
         /* (M_ta) coupling block of M */
         const real M_ta_xy_of_legs = sums[7*w + k];
-        const real h_star_z = s[20*w + k];
+        const real h_star_z = s[11*w + k];
         const real M_ta_xy = M_ta_xy_of_legs + h_star_z;
         const real M_ta_xz_of_legs = sums[8*w + k];
-        const real h_star_y = s[19*w + k];
+        const real h_star_y = s[10*w + k];
         const real M_ta_xz = M_ta_xz_of_legs - h_star_y;
         const real M_ta_yx_of_legs = sums[9*w + k];
         const real M_ta_yx = M_ta_yx_of_legs - h_star_z;
         const real M_ta_yz_of_legs = sums[11*w + k];
-        const real h_star_x = s[18*w + k];
+        const real h_star_x = s[9*w + k];
         const real M_ta_yz = M_ta_yz_of_legs + h_star_x;
         const real M_ta_zx_of_legs = sums[12*w + k];
         const real M_ta_zx = M_ta_zx_of_legs + h_star_y;
         const real M_ta_zy_of_legs = sums[13*w + k];
         const real M_ta_zy = M_ta_zy_of_legs - h_star_x;
         /* (M_aa) rotational block of M */
-        const real J_star_xx = s[21*w + k];
+        const real J_star_xx = s[12*w + k];
         const real M_aa_xx_of_legs = sums[15*w + k];
         const real M_aa_xx = J_star_xx + M_aa_xx_of_legs;
-        const real J_star_xy = s[22*w + k];
+        const real J_star_xy = s[13*w + k];
         const real M_aa_xy_of_legs = sums[16*w + k];
         const real M_aa_xy = J_star_xy + M_aa_xy_of_legs;
-        const real J_star_xz = s[23*w + k];
+        const real J_star_xz = s[14*w + k];
         const real M_aa_xz_of_legs = sums[17*w + k];
         const real M_aa_xz = J_star_xz + M_aa_xz_of_legs;
-        const real J_star_yy = s[24*w + k];
+        const real J_star_yy = s[15*w + k];
         const real M_aa_yy_of_legs = sums[18*w + k];
         const real M_aa_yy = J_star_yy + M_aa_yy_of_legs;
-        const real J_star_yz = s[25*w + k];
+        const real J_star_yz = s[16*w + k];
         const real M_aa_yz_of_legs = sums[19*w + k];
         const real M_aa_yz = J_star_yz + M_aa_yz_of_legs;
-        const real J_star_zz = s[26*w + k];
+        const real J_star_zz = s[17*w + k];
         const real M_aa_zz_of_legs = sums[20*w + k];
         const real M_aa_zz = J_star_zz + M_aa_zz_of_legs;
         /* (Z_t) translational part of Z */
-        const real Z_p_x = s[27*w + k];
+        const real Z_p_x = s[18*w + k];
         const real Z_t_x_of_legs = sums[21*w + k];
         const real Z_t_x = Z_p_x + Z_t_x_of_legs;
-        const real Z_p_y = s[28*w + k];
+        const real Z_p_y = s[19*w + k];
         const real Z_t_y_of_legs = sums[22*w + k];
         const real Z_t_y = Z_p_y + Z_t_y_of_legs;
-        const real Z_p_z = s[29*w + k];
+        const real Z_p_z = s[20*w + k];
         const real Z_t_z_of_legs = sums[23*w + k];
         const real Z_t_z = Z_p_z + Z_t_z_of_legs;
         /* (Z_a) rotational part of Z */
         const real Z_a_x_of_legs = sums[24*w + k];
-        const real Z_q_x = s[30*w + k];
+        const real Z_q_x = s[21*w + k];
         const real Z_a_x = Z_a_x_of_legs + Z_q_x;
         const real Z_a_y_of_legs = sums[25*w + k];
-        const real Z_q_y = s[31*w + k];
+        const real Z_q_y = s[22*w + k];
         const real Z_a_y = Z_a_y_of_legs + Z_q_y;
         const real Z_a_z_of_legs = sums[26*w + k];
-        const real Z_q_z = s[32*w + k];
+        const real Z_q_z = s[23*w + k];
         const real Z_a_z = Z_a_z_of_legs + Z_q_z;
         /* (M_tt) translational block of M */
-        M[0*NV*w + k] = M_tt_xx;
+        M[0*w + k] = M_tt_xx;
         const real M_tt_xy = sums[1*w + k];
-        M[(0*NV + 1)*w + k] = M_tt_xy;
+        M[1*w + k] = M_tt_xy;
         M[NV*w + k] = M_tt_xy;
         const real M_tt_xz = sums[2*w + k];
-        M[(0*NV + 2)*w + k] = M_tt_xz;
+        M[2*w + k] = M_tt_xz;
         M[2*NV*w + k] = M_tt_xz;
         M[(NV + 1)*w + k] = M_tt_yy;
         const real M_tt_yz = sums[4*w + k];
@@ -2095,11 +2693,11 @@ INLINE void dynamics_after(const prepared *m, size_t w, const real *s, const rea
         M[(2*NV + 2)*w + k] = M_tt_zz;
         /* (M_ta) coupling block of M */
         const real M_ta_xx = sums[6*w + k];
-        M[(0*NV + 3)*w + k] = M_ta_xx;
+        M[3*w + k] = M_ta_xx;
         M[3*NV*w + k] = M_ta_xx;
-        M[(0*NV + 4)*w + k] = M_ta_xy;
+        M[4*w + k] = M_ta_xy;
         M[4*NV*w + k] = M_ta_xy;
-        M[(0*NV + 5)*w + k] = M_ta_xz;
+        M[5*w + k] = M_ta_xz;
         M[5*NV*w + k] = M_ta_xz;
         M[(NV + 3)*w + k] = M_ta_yx;
         M[(3*NV + 1)*w + k] = M_ta_yx;
@@ -2143,12 +2741,10 @@ INLINE void dynamics_after(const prepared *m, size_t w, const real *s, const rea
 INLINE void dynamics_run(const prepared *m, const real *X, const real *V, real *M, real *Z, real
     *H, verdict *t)
 {
-    real s[33] = {0};
-    real sums[27] = {0};
-    real terms_rus[27*LEGS(LEGS_OF_rus)] = {0};
-    real o_rus[9*LEGS(LEGS_OF_rus)] = {0};
+    real s[24] = {0}, sums[27] = {0};
+    real terms_rus[27*LEGS(LEGS_OF_rus)] = {0}, o_rus[9*LEGS(LEGS_OF_rus)] = {0};
     dynamics_before(m, 1, X, V, s, t);
-    dynamics_legs_rus(m, 1, 0, 1, s, 0, LEGS(LEGS_OF_rus), 0, terms_rus, o_rus);
+    dynamics_legs_rus(m, 1, 0, 1, s, 0, LEGS(LEGS_OF_rus), 0, X, V, terms_rus, o_rus);
     for (size_t leg = 0; leg < LEGS_OF_rus; ++leg) {
         dynamics_place_rus(1, LEGS(LEGS_OF_rus), o_rus, leg, leg, H, t);
     }
@@ -2161,13 +2757,12 @@ INLINE void dynamics_run(const prepared *m, const real *X, const real *V, real *
 INLINE void dynamics_run_lanes(const prepared *m, const real *X, const real *V, real *M, real *Z,
     real *H, verdict *t)
 {
-    real s[33*LANES];
-    real sums[27*LANES];
+    real s[24*LANES], sums[27*LANES];
     real o_rus[9*LANES];
     dynamics_before(m, LANES, X, V, s, t);
     clear(sums, 27*LANES);
     for (size_t leg = 0; leg < LEGS_OF_rus; ++leg) {
-        dynamics_legs_rus(m, LANES, leg, 0, s, 1, LANES, 1, sums, o_rus);
+        dynamics_legs_rus(m, LANES, leg, 0, s, 1, LANES, 1, X, V, sums, o_rus);
         dynamics_place_rus(LANES, LANES, o_rus, leg, 0, H, t);
     }
     dynamics_after(m, LANES, s, sums, M, Z, t);
@@ -2177,287 +2772,65 @@ INLINE void dynamics_run_lanes(const prepared *m, const real *X, const real *V, 
 INLINE void M_before(const prepared *m, size_t w, const real *X, real *s, verdict *t)
 {
     for (size_t k = 0; k < w; ++k) {
-        /* X: named entries */
-        const real X_0 = X[0*w + k];
-        const real t_x = X_0;
-        const real X_1 = X[1*w + k];
-        const real t_y = X_1;
-        const real X_2 = X[2*w + k];
-        const real t_z = X_2;
-        const real X_3 = X[3*w + k];
-        const real X_4 = X[4*w + k];
-        const real X_5 = X[5*w + k];
-        const real X_6 = X[6*w + k];
-        const real quaternion_norm2 = X_3*X_3 + X_4*X_4 + X_5*X_5 + X_6*X_6;
-        const real quaternion_scale = 2/quaternion_norm2;
-        const real quaternion_sx = X_3*quaternion_scale;
-        const real quaternion_sy = X_4*quaternion_scale;
-        const real quaternion_sz = X_5*quaternion_scale;
-        const real quaternion_wx = X_6*quaternion_sx;
-        const real quaternion_wy = X_6*quaternion_sy;
-        const real quaternion_wz = X_6*quaternion_sz;
-        const real quaternion_xx = X_3*quaternion_sx;
-        const real quaternion_xy = X_3*quaternion_sy;
-        const real quaternion_xz = X_3*quaternion_sz;
-        const real quaternion_yy = X_4*quaternion_sy;
-        const real quaternion_yz = X_4*quaternion_sz;
-        const real quaternion_zz = X_5*quaternion_sz;
-        const real R_xx = 1 - quaternion_yy - quaternion_zz;
-        const real R_xy = quaternion_xy - quaternion_wz;
-        const real R_xz = quaternion_wy + quaternion_xz;
-        const real R_yx = quaternion_wz + quaternion_xy;
-        const real R_yy = 1 - quaternion_xx - quaternion_zz;
-        const real R_yz = quaternion_yz - quaternion_wx;
-        const real R_zx = quaternion_xz - quaternion_wy;
-        const real R_zy = quaternion_wx + quaternion_yz;
-        const real R_zz = 1 - quaternion_xx - quaternion_yy;
-        /* (h_star) first moment about the platform origin */
-        const real h_star_in_platform_x = m->h_star_in_platform_x;
-        const real h_star_in_platform_y = m->h_star_in_platform_y;
-        const real h_star_in_platform_z = m->h_star_in_platform_z;
-        const real h_star_x = R_xx*h_star_in_platform_x + R_xy*h_star_in_platform_y +
-            R_xz*h_star_in_platform_z;
-        const real h_star_y = R_yx*h_star_in_platform_x + R_yy*h_star_in_platform_y +
-            R_yz*h_star_in_platform_z;
-        const real h_star_z = R_zx*h_star_in_platform_x + R_zy*h_star_in_platform_y +
-            R_zz*h_star_in_platform_z;
-        /* (J_star) inertia tensor about the platform origin */
-        const real J_star_in_platform_xy = m->J_star_in_platform_xy;
-        const real J_star_in_platform_yz = m->J_star_in_platform_yz;
-        const real J_star_t_12 = m->J_star_t_12;
-        const real J_star_t = J_star_in_platform_xy*R_xx + J_star_in_platform_yz*R_xz -
-            J_star_t_12*R_xy;
-        const real J_star_t_2 = J_star_in_platform_xy*R_yx + J_star_in_platform_yz*R_yz -
-            J_star_t_12*R_yy;
-        const real J_star_t_3 = J_star_in_platform_xy*R_zx + J_star_in_platform_yz*R_zz -
-            J_star_t_12*R_zy;
-        const real J_star_in_platform_xz = m->J_star_in_platform_xz;
-        const real J_star_t_14 = m->J_star_t_14;
-        const real J_star_t_4 = J_star_t_14*R_xz - J_star_in_platform_xz*R_xx;
-        const real J_star_t_5 = J_star_t_14*R_yz - J_star_in_platform_xz*R_yx;
-        const real J_star_t_6 = J_star_t_14*R_zz - J_star_in_platform_xz*R_zx;
-        const real J_star_t_7 = J_star_t*R_xy - J_star_t_4*R_xz;
-        const real J_star_in_platform_xx = m->J_star_in_platform_xx;
-        const real J_star_xx = J_star_in_platform_xx + 2*J_star_t_7;
-        const real J_star_xy = J_star_t*R_yy + J_star_t_2*R_xy - J_star_t_4*R_yz -
-            J_star_t_5*R_xz;
-        const real J_star_xz = J_star_t*R_zy + J_star_t_3*R_xy - J_star_t_4*R_zz -
-            J_star_t_6*R_xz;
-        const real J_star_t_8 = J_star_t_2*R_yy - J_star_t_5*R_yz;
-        const real J_star_yy = J_star_in_platform_xx + 2*J_star_t_8;
-        const real J_star_yz = J_star_t_2*R_zy + J_star_t_3*R_yy - J_star_t_5*R_zz -
-            J_star_t_6*R_yz;
-        const real J_star_t_9 = J_star_t_3*R_zy - J_star_t_6*R_zz;
-        const real J_star_zz = J_star_in_platform_xx + 2*J_star_t_9;
-        s[0*w + k] = t_x;
-        s[1*w + k] = t_y;
-        s[2*w + k] = t_z;
-        s[3*w + k] = R_xx;
-        s[4*w + k] = R_xy;
-        s[5*w + k] = R_xz;
-        s[6*w + k] = R_yx;
-        s[7*w + k] = R_yy;
-        s[8*w + k] = R_yz;
-        s[9*w + k] = R_zx;
-        s[10*w + k] = R_zy;
-        s[11*w + k] = R_zz;
-        s[12*w + k] = h_star_x;
-        s[13*w + k] = h_star_y;
-        s[14*w + k] = h_star_z;
-        s[15*w + k] = J_star_xx;
-        s[16*w + k] = J_star_xy;
-        s[17*w + k] = J_star_xz;
-        s[18*w + k] = J_star_yy;
-        s[19*w + k] = J_star_yz;
-        s[20*w + k] = J_star_zz;
-        t->invalid[k] += UNLESS(is_finite(quaternion_scale)) + UNLESS(quaternion_scale > 0);
+        values v;
+        stage_X(m, w, k, X, &v);
+        stage_M_dynamics(m, &v);
+        s[0*w + k] = v.R_xx;
+        s[1*w + k] = v.R_xy;
+        s[2*w + k] = v.R_xz;
+        s[3*w + k] = v.R_yx;
+        s[4*w + k] = v.R_yy;
+        s[5*w + k] = v.R_yz;
+        s[6*w + k] = v.R_zx;
+        s[7*w + k] = v.R_zy;
+        s[8*w + k] = v.R_zz;
+        s[9*w + k] = v.h_star_x;
+        s[10*w + k] = v.h_star_y;
+        s[11*w + k] = v.h_star_z;
+        s[12*w + k] = v.J_star_xx;
+        s[13*w + k] = v.J_star_xy;
+        s[14*w + k] = v.J_star_xz;
+        s[15*w + k] = v.J_star_yy;
+        s[16*w + k] = v.J_star_yz;
+        s[17*w + k] = v.J_star_zz;
+        t->invalid[k] += UNLESS(is_finite(v.quaternion_scale)) + UNLESS(v.quaternion_scale > 0);
     }
 }
 
 INLINE void M_legs_rus(const prepared *m, size_t w, size_t leg, size_t legs, const real *s, size_t
-    states, size_t count, int add, real *terms, real *o)
+    states, size_t count, int add, const real *X, real *terms, real *o)
 {
     for (size_t k = 0; k < count; ++k) {
         const size_t i = leg + legs*k;
         const size_t j = states*k;
-        /* (rus-J_3) inertia tensor of link 3 about the connection point */
-        const real R_xx = s[3*w + j];
-        const real R_xy = s[4*w + j];
-        const real R_xz = s[5*w + j];
-        const real rus_platform_point_x = m->rus_platform_point_x[i];
-        const real rus_platform_point_y = m->rus_platform_point_y[i];
-        const real rus_platform_point_z = m->rus_platform_point_z[i];
-        const real rus_q_x = R_xx*rus_platform_point_x + R_xy*rus_platform_point_y +
-            R_xz*rus_platform_point_z;
-        const real R_yx = s[6*w + j];
-        const real R_yy = s[7*w + j];
-        const real R_yz = s[8*w + j];
-        const real rus_q_y = R_yx*rus_platform_point_x + R_yy*rus_platform_point_y +
-            R_yz*rus_platform_point_z;
-        const real R_zx = s[9*w + j];
-        const real R_zy = s[10*w + j];
-        const real R_zz = s[11*w + j];
-        const real rus_q_z = R_zx*rus_platform_point_x + R_zy*rus_platform_point_y +
-            R_zz*rus_platform_point_z;
-        const real rus_base_point_x = m->rus_base_point_x[i];
-        const real t_x = s[0*w + j];
-        const real rus_J_3_t_3 = rus_q_x + t_x - rus_base_point_x;
-        const real rus_base_point_y = m->rus_base_point_y[i];
-        const real t_y = s[1*w + j];
-        const real rus_J_3_t_4 = rus_q_y + t_y - rus_base_point_y;
-        const real rus_base_point_z = m->rus_base_point_z[i];
-        const real t_z = s[2*w + j];
-        const real rus_J_3_t_5 = rus_q_z + t_z - rus_base_point_z;
-        const real rus_J_3_t_6 = rus_J_3_t_3*rus_J_3_t_3 + rus_J_3_t_4*rus_J_3_t_4 +
-            rus_J_3_t_5*rus_J_3_t_5;
-        const real rus_J_3_t = m->rus_J_3_t[i];
-        const real rus_J_3_t_2 = m->rus_J_3_t_2[i];
-        const real rus_J_3_t_7 = rus_J_3_t + R(0.5)*rus_J_3_t_6 - rus_J_3_t_2;
-        const real rus_base_frame_xx = m->rus_base_frame_xx[i];
-        const real rus_base_frame_yx = m->rus_base_frame_yx[i];
-        const real rus_base_frame_zx = m->rus_base_frame_zx[i];
-        const real rus_J_3_t_8 = rus_J_3_t_3*rus_base_frame_xx + rus_J_3_t_4*rus_base_frame_yx +
-            rus_J_3_t_5*rus_base_frame_zx;
-        const real rus_joint2_offset_x = m->rus_joint2_offset_x[i];
-        const real rus_J_3_t_9 = rus_J_3_t_8*rus_joint2_offset_x;
-        const real rus_base_frame_xy = m->rus_base_frame_xy[i];
-        const real rus_base_frame_yy = m->rus_base_frame_yy[i];
-        const real rus_base_frame_zy = m->rus_base_frame_zy[i];
-        const real rus_J_3_t_10 = rus_J_3_t_3*rus_base_frame_xy + rus_J_3_t_4*rus_base_frame_yy +
-            rus_J_3_t_5*rus_base_frame_zy;
-        const real rus_J_3_t_11 = rus_J_3_t_10*rus_joint2_offset_x;
-        const real rus_J_3_t_12 = rus_J_3_t_11*rus_J_3_t_11 + rus_J_3_t_9*rus_J_3_t_9;
-        const real rus_J_3_t_13 = rus_J_3_t_12 - rus_J_3_t_7*rus_J_3_t_7;
-        const real rus_branch_1 = m->rus_branch_1[i];
-        const real rus_J_3_t_14 = root(rus_J_3_t_13)*rus_branch_1;
-        const real inv_rus_size_t = m->inv_rus_size_t[i];
-        const real rus_J_3_t_15 = inv_rus_size_t*rus_J_3_t_14*rus_joint2_offset_x;
-        const real rus_base_frame_xz = m->rus_base_frame_xz[i];
-        const real rus_base_frame_yz = m->rus_base_frame_yz[i];
-        const real rus_base_frame_zz = m->rus_base_frame_zz[i];
-        const real rus_J_3_t_16 = rus_J_3_t_3*rus_base_frame_xz + rus_J_3_t_4*rus_base_frame_yz +
-            rus_J_3_t_5*rus_base_frame_zz;
-        const real rus_J_3_t_17 = inv_rus_size_t*rus_J_3_t_7*rus_joint2_offset_x -
-            rus_joint2_offset_x;
-        const real rus_J_3_t_18 = rus_J_3_t_15*rus_J_3_t_15 + rus_J_3_t_17*rus_J_3_t_17;
-        const real rus_branch_2 = m->rus_branch_2[i];
-        const real rus_J_3_t_19 = root(rus_J_3_t_18)*rus_branch_2;
-        const real inv_rus_size_t_2 = m->inv_rus_size_t_2[i];
-        const real rus_platform_joint_offset_x = m->rus_platform_joint_offset_x[i];
-        const real rus_e_1_in_axes3_y =
-            -inv_rus_size_t_2*rus_J_3_t_19*rus_platform_joint_offset_x;
-        const real rus_e_1_in_axes3_x = inv_rus_size_t_2*rus_J_3_t_16*rus_platform_joint_offset_x;
-        const real rus_J_3_in_spec3_xy = m->rus_J_3_in_spec3_xy[i];
-        const real rus_J_3_in_spec3_yz = m->rus_J_3_in_spec3_yz[i];
-        const real rus_J_3_in_axes2_xz = rus_J_3_in_spec3_xy*rus_e_1_in_axes3_x -
-            rus_J_3_in_spec3_yz*rus_e_1_in_axes3_y;
-        const real rus_J_3_in_spec3_xx = m->rus_J_3_in_spec3_xx[i];
-        const real rus_J_3_in_spec3_xz = m->rus_J_3_in_spec3_xz[i];
-        const real rus_J_3_in_spec3_zz = m->rus_J_3_in_spec3_zz[i];
-        const real rus_J_3_in_axes1_zz =
-            rus_e_1_in_axes3_x*(rus_J_3_in_spec3_xx*rus_e_1_in_axes3_x -
-            rus_J_3_in_spec3_xz*rus_e_1_in_axes3_y) +
-            rus_e_1_in_axes3_y*(rus_J_3_in_spec3_zz*rus_e_1_in_axes3_y -
-            rus_J_3_in_spec3_xz*rus_e_1_in_axes3_x);
-        /* (rus-c_1) cosine of the angle of joint 1 from its reference direction */
-        const real inv_rus_J_3_t_12 = 1/rus_J_3_t_12;
-        const real rus_c_1 = inv_rus_J_3_t_12*(rus_J_3_t_7*rus_J_3_t_9 -
-            rus_J_3_t_11*rus_J_3_t_14);
-        /* (rus-s_1) sine of the angle of joint 1 from its reference direction */
-        const real rus_s_1 = inv_rus_J_3_t_12*(rus_J_3_t_11*rus_J_3_t_7 +
-            rus_J_3_t_14*rus_J_3_t_9);
-        /* (rus-c_2) cosine of the angle of joint 2 from its reference direction */
-        const real inv_rus_J_3_t_18 = 1/rus_J_3_t_18;
-        const real rus_c_2 = inv_rus_J_3_t_18*rus_J_3_t_15*rus_J_3_t_19;
-        /* (rus-s_2) sine of the angle of joint 2 from its reference direction */
-        const real rus_s_2 = inv_rus_J_3_t_18*rus_J_3_t_17*rus_J_3_t_19;
-        /* (rus-r_1) from joint 1 to the connection point, along the links */
-        const real rus_r_1_t = -rus_e_1_in_axes3_y*rus_platform_joint_offset_x;
-        const real rus_r_1_in_axes1_z = rus_e_1_in_axes3_x*rus_platform_joint_offset_x;
-        const real rus_r_1_t_2 = rus_c_2*rus_r_1_t;
-        const real rus_r_1_in_axes1_x = rus_joint2_offset_x + rus_r_1_t*rus_s_2;
-        const real rus_r_1_in_axes3_z = rus_c_2*rus_r_1_in_axes1_x - rus_r_1_t_2*rus_s_2;
-        /* (rus-v_1) velocity of the connection point per rate of joint 1 */
-        const real rus_v_1_t = rus_c_2*rus_r_1_t_2 + rus_r_1_in_axes1_x*rus_s_2;
-        const real rus_v_1_t_2 = -rus_e_1_in_axes3_y*rus_r_1_in_axes3_z;
-        const real rus_v_1_t_3 = rus_e_1_in_axes3_x*rus_r_1_in_axes3_z;
-        const real rus_v_1_in_axes3_z = rus_e_1_in_axes3_x*(rus_e_1_in_axes3_x*rus_v_1_t +
-            rus_e_1_in_axes3_y*rus_r_1_in_axes1_z) -
-            rus_e_1_in_axes3_y*(rus_e_1_in_axes3_x*rus_r_1_in_axes1_z -
-            rus_e_1_in_axes3_y*rus_v_1_t);
-        /* (rus-w_1) reciprocal vector 1 */
-        const real inv_rus_v_1_t_2 = 1/rus_v_1_t_2;
-        /* (rus-w_2) reciprocal vector 2 */
-        const real rus_w_2_in_axes3_z = 1/rus_r_1_t;
-        const real rus_w_2_in_axes3_x = inv_rus_v_1_t_2*rus_v_1_in_axes3_z*rus_w_2_in_axes3_z;
-        /* (rus-w_3) reciprocal vector 3 */
-        const real rus_w_3_in_axes3_y = m->rus_w_3_in_axes3_y[i];
-        const real rus_w_3_t = inv_rus_v_1_t_2*rus_v_1_t_3*rus_w_3_in_axes3_y;
-        /* (rus-d_alpha_3) coefficient of the acceleration in: angular acceleration of link 3 */
-        const real rus_d_alpha_3_in_axes3_xz = rus_e_1_in_axes3_x*rus_w_2_in_axes3_z;
-        const real rus_d_alpha_3_in_axes3_yz = rus_e_1_in_axes3_y*rus_w_2_in_axes3_z;
-        /* (rus-d_Gamma_3) coefficient of the acceleration in: moment about axis 3 of the distal links'
-           inertia and weight */
-        const real rus_d_Gamma_3_in_axes3_z = rus_J_3_in_axes2_xz*rus_w_2_in_axes3_z;
-        const real rus_d_Gamma_3_t = m->rus_d_Gamma_3_t[i];
-        const real rus_h_3_in_spec3_z = m->rus_h_3_in_spec3_z[i];
-        const real rus_d_Gamma_3_in_axes3_x = rus_h_3_in_spec3_z -
-            inv_rus_v_1_t_2*(rus_J_3_in_axes2_xz + rus_d_Gamma_3_t*rus_v_1_t_3 -
-            rus_d_Gamma_3_in_axes3_z*rus_v_1_in_axes3_z);
-        /* (rus-d_Gamma_2) coefficient of the acceleration in: moment about axis 2 of the distal links'
-           inertia and weight */
-        const real rus_h_3_in_spec3_y = m->rus_h_3_in_spec3_y[i];
-        const real rus_d_Gamma_2_t = rus_e_1_in_axes3_y*rus_h_3_in_spec3_y;
-        const real rus_d_Gamma_2_t_2 = rus_J_3_in_axes1_zz*rus_w_2_in_axes3_z;
-        const real rus_d_Gamma_2_t_3 = rus_J_3_in_axes2_xz*rus_w_3_in_axes3_y;
-        const real rus_d_Gamma_2_t_4 = rus_d_Gamma_2_t_2*rus_v_1_in_axes3_z;
-        const real rus_d_Gamma_2_t_5 = rus_d_Gamma_2_t_3*rus_v_1_t_3;
-        const real rus_d_Gamma_2_in_axes3_x = rus_d_Gamma_2_t -
-            inv_rus_v_1_t_2*(rus_J_3_in_axes1_zz + rus_d_Gamma_2_t_5 - rus_d_Gamma_2_t_4);
-        const real rus_d_Gamma_2_in_axes3_y = rus_d_Gamma_2_t_3 -
-            rus_e_1_in_axes3_x*rus_h_3_in_spec3_y;
-        const real rus_h_3_in_spec3_x = m->rus_h_3_in_spec3_x[i];
-        const real rus_d_Gamma_2_in_axes3_z = rus_d_Gamma_2_t_2 -
-            rus_e_1_in_axes3_x*rus_h_3_in_spec3_z - rus_e_1_in_axes3_y*rus_h_3_in_spec3_x;
-        /* (rus-d_Gamma_1) coefficient of the acceleration in: moment about axis 1 of the distal links'
-           inertia and weight */
-        const real rus_J_1_in_spec1_zz = m->rus_J_1_in_spec1_zz[i];
-        const real rus_d_Gamma_1_in_axes3_x = rus_d_Gamma_2_t -
-            inv_rus_v_1_t_2*(rus_J_1_in_spec1_zz + rus_J_3_in_axes1_zz + rus_d_Gamma_2_t_5 -
-            rus_d_Gamma_2_t_4);
-        /* (rus-d_c) coefficient of the acceleration in: leg force on the platform without actuation and
-           without the mass at the connection point */
-        const real rus_d_c_in_axes3_xx = inv_rus_v_1_t_2*rus_d_Gamma_1_in_axes3_x +
-            rus_d_Gamma_3_in_axes3_x*rus_w_3_t + rus_h_3_in_spec3_z*rus_w_3_t -
-            rus_d_Gamma_2_in_axes3_x*rus_w_2_in_axes3_x -
-            rus_h_3_in_spec3_y*(rus_e_1_in_axes3_y*rus_w_2_in_axes3_x -
-            inv_rus_v_1_t_2*rus_e_1_in_axes3_y);
-        const real rus_d_Gamma_3_in_axes3_y = m->rus_d_Gamma_3_in_axes3_y[i];
-        const real rus_d_phi_3_in_axes3_xy = m->rus_d_phi_3_in_axes3_xy[i];
-        const real rus_d_c_in_axes3_xy = inv_rus_v_1_t_2*rus_d_Gamma_2_in_axes3_y +
-            rus_d_Gamma_3_in_axes3_y*rus_w_3_t - rus_d_phi_3_in_axes3_xy -
-            rus_d_Gamma_2_in_axes3_y*rus_w_2_in_axes3_x;
-        const real rus_d_c_in_axes3_xz = inv_rus_v_1_t_2*rus_d_Gamma_2_in_axes3_z +
-            rus_d_Gamma_3_in_axes3_z*rus_w_3_t - rus_d_Gamma_2_in_axes3_z*rus_w_2_in_axes3_x -
-            rus_d_alpha_3_in_axes3_yz*rus_h_3_in_spec3_y;
-        const real rus_d_c_in_axes3_yz = rus_d_alpha_3_in_axes3_xz*rus_h_3_in_spec3_y -
-            rus_d_Gamma_3_in_axes3_z*rus_w_3_in_axes3_y;
+        values_rus v;
+        stage_rus_X(m, w, i, j, s, X, &v);
+        stage_rus_M_dynamics(m, w, i, j, X, &v);
         /* (rus-Q) inertia of the leg at the connection point, without the mass gathered there */
-        const real rus_Q_t = rus_c_1*rus_c_2 - rus_s_1*rus_s_2;
-        const real rus_Q_t_2 = rus_c_1*rus_s_2 + rus_c_2*rus_s_1;
+        const real rus_Q_t = v.rus_c_1*v.rus_s_2_t - v.rus_c_2*v.rus_s_1;
+        const real rus_Q_t_2 = v.rus_c_1*v.rus_c_2 + v.rus_s_1*v.rus_s_2_t;
+        const real rus_base_frame_xx = m->rus_base_frame_xx[i];
+        const real rus_base_frame_xy = m->rus_base_frame_xy[i];
         const real axis_z_rus_axes3_x = rus_Q_t*rus_base_frame_xx + rus_Q_t_2*rus_base_frame_xy;
+        const real rus_base_frame_yx = m->rus_base_frame_yx[i];
+        const real rus_base_frame_yy = m->rus_base_frame_yy[i];
         const real axis_z_rus_axes3_y = rus_Q_t*rus_base_frame_yx + rus_Q_t_2*rus_base_frame_yy;
+        const real rus_base_frame_zx = m->rus_base_frame_zx[i];
+        const real rus_base_frame_zy = m->rus_base_frame_zy[i];
         const real axis_z_rus_axes3_z = rus_Q_t*rus_base_frame_zx + rus_Q_t_2*rus_base_frame_zy;
-        const real rus_Q_t_3 = rus_e_1_in_axes3_x*rus_s_2;
-        const real rus_Q_t_4 = rus_c_2*rus_e_1_in_axes3_x;
-        const real rus_Q_t_5 = rus_Q_t_3*rus_c_1 + rus_Q_t_4*rus_s_1;
-        const real rus_Q_t_6 = rus_Q_t_3*rus_s_1 - rus_Q_t_4*rus_c_1;
+        const real rus_Q_t_3 = v.rus_c_2*v.rus_e_1_in_axes3_x;
+        const real rus_Q_t_4 = v.rus_e_1_in_axes3_x*v.rus_s_2_t;
+        const real rus_Q_t_5 = rus_Q_t_3*v.rus_c_1 + rus_Q_t_4*v.rus_s_1;
+        const real rus_Q_t_6 = rus_Q_t_3*v.rus_s_1 - rus_Q_t_4*v.rus_c_1;
+        const real rus_base_frame_xz = m->rus_base_frame_xz[i];
         const real axis_y_rus_axes3_x = rus_Q_t_5*rus_base_frame_xx + rus_Q_t_6*rus_base_frame_xy
-            + rus_base_frame_xz*rus_e_1_in_axes3_y;
+            - v.rus_J_3_t_17*rus_base_frame_xz;
+        const real rus_base_frame_yz = m->rus_base_frame_yz[i];
         const real axis_y_rus_axes3_y = rus_Q_t_5*rus_base_frame_yx + rus_Q_t_6*rus_base_frame_yy
-            + rus_base_frame_yz*rus_e_1_in_axes3_y;
+            - v.rus_J_3_t_17*rus_base_frame_yz;
+        const real rus_base_frame_zz = m->rus_base_frame_zz[i];
         const real axis_y_rus_axes3_z = rus_Q_t_5*rus_base_frame_zx + rus_Q_t_6*rus_base_frame_zy
-            + rus_base_frame_zz*rus_e_1_in_axes3_y;
+            - v.rus_J_3_t_17*rus_base_frame_zz;
         const real axis_x_rus_axes3_x = axis_y_rus_axes3_y*axis_z_rus_axes3_z -
             axis_y_rus_axes3_z*axis_z_rus_axes3_y;
         const real axis_x_rus_axes3_y = axis_y_rus_axes3_z*axis_z_rus_axes3_x -
@@ -2465,56 +2838,58 @@ INLINE void M_legs_rus(const prepared *m, size_t w, size_t leg, size_t legs, con
         const real axis_x_rus_axes3_z = axis_y_rus_axes3_x*axis_z_rus_axes3_y -
             axis_y_rus_axes3_y*axis_z_rus_axes3_x;
         const real rus_d_c_in_axes3_yy = m->rus_d_c_in_axes3_yy[i];
-        const real rus_Q_t_7 = rus_d_c_in_axes3_xx - rus_d_c_in_axes3_yy;
+        const real rus_Q_t_7 = v.rus_d_c_in_axes3_xx - rus_d_c_in_axes3_yy;
         const real rus_Q_t_8 = R(0.5)*rus_Q_t_7;
-        const real rus_Q_t_9 = rus_d_c_in_axes3_xx + rus_d_Gamma_2_in_axes3_z*rus_w_2_in_axes3_z -
-            rus_d_alpha_3_in_axes3_xz*rus_h_3_in_spec3_z -
-            rus_d_alpha_3_in_axes3_yz*rus_h_3_in_spec3_x;
+        const real rus_h_3_in_spec3_x = m->rus_h_3_in_spec3_x[i];
+        const real rus_h_3_in_spec3_z = m->rus_h_3_in_spec3_z[i];
+        const real rus_Q_t_9 = v.rus_d_c_in_axes3_xx +
+            v.rus_d_Gamma_2_in_axes3_z*v.rus_w_2_in_axes3_z + v.rus_d_alpha_3_t*rus_h_3_in_spec3_x
+            - v.rus_d_alpha_3_in_axes3_xz*rus_h_3_in_spec3_z;
         const real rus_Q_t_10 = R(0.5)*rus_Q_t_9;
-        const real rus_Q_t_11 = axis_x_rus_axes3_x*rus_d_c_in_axes3_xy +
-            axis_z_rus_axes3_x*rus_d_c_in_axes3_yz - axis_y_rus_axes3_x*rus_Q_t_8;
-        const real rus_Q_t_12 = axis_x_rus_axes3_y*rus_d_c_in_axes3_xy +
-            axis_z_rus_axes3_y*rus_d_c_in_axes3_yz - axis_y_rus_axes3_y*rus_Q_t_8;
-        const real rus_Q_t_13 = axis_x_rus_axes3_z*rus_d_c_in_axes3_xy +
-            axis_z_rus_axes3_z*rus_d_c_in_axes3_yz - axis_y_rus_axes3_z*rus_Q_t_8;
+        const real rus_Q_t_11 = axis_x_rus_axes3_x*v.rus_d_c_in_axes3_xy +
+            axis_z_rus_axes3_x*v.rus_d_c_in_axes3_yz - axis_y_rus_axes3_x*rus_Q_t_8;
+        const real rus_Q_t_12 = axis_x_rus_axes3_y*v.rus_d_c_in_axes3_xy +
+            axis_z_rus_axes3_y*v.rus_d_c_in_axes3_yz - axis_y_rus_axes3_y*rus_Q_t_8;
+        const real rus_Q_t_13 = axis_x_rus_axes3_z*v.rus_d_c_in_axes3_xy +
+            axis_z_rus_axes3_z*v.rus_d_c_in_axes3_yz - axis_y_rus_axes3_z*rus_Q_t_8;
         const real rus_Q_t_14 = axis_z_rus_axes3_x*rus_Q_t_10 -
-            axis_x_rus_axes3_x*rus_d_c_in_axes3_xz;
+            axis_x_rus_axes3_x*v.rus_d_c_in_axes3_xz;
         const real rus_Q_t_15 = axis_z_rus_axes3_y*rus_Q_t_10 -
-            axis_x_rus_axes3_y*rus_d_c_in_axes3_xz;
+            axis_x_rus_axes3_y*v.rus_d_c_in_axes3_xz;
         const real rus_Q_t_16 = axis_z_rus_axes3_z*rus_Q_t_10 -
-            axis_x_rus_axes3_z*rus_d_c_in_axes3_xz;
+            axis_x_rus_axes3_z*v.rus_d_c_in_axes3_xz;
         const real rus_Q_t_17 = axis_y_rus_axes3_x*rus_Q_t_11 - axis_z_rus_axes3_x*rus_Q_t_14;
-        const real rus_Q_xx = -2*rus_Q_t_17 - rus_d_c_in_axes3_xx;
+        const real rus_Q_xx = -2*rus_Q_t_17 - v.rus_d_c_in_axes3_xx;
         const real rus_Q_xy = axis_z_rus_axes3_x*rus_Q_t_15 + axis_z_rus_axes3_y*rus_Q_t_14 -
             axis_y_rus_axes3_x*rus_Q_t_12 - axis_y_rus_axes3_y*rus_Q_t_11;
         const real rus_Q_xz = axis_z_rus_axes3_x*rus_Q_t_16 + axis_z_rus_axes3_z*rus_Q_t_14 -
             axis_y_rus_axes3_x*rus_Q_t_13 - axis_y_rus_axes3_z*rus_Q_t_11;
         const real rus_Q_t_18 = axis_y_rus_axes3_y*rus_Q_t_12 - axis_z_rus_axes3_y*rus_Q_t_15;
-        const real rus_Q_yy = -2*rus_Q_t_18 - rus_d_c_in_axes3_xx;
+        const real rus_Q_yy = -2*rus_Q_t_18 - v.rus_d_c_in_axes3_xx;
         const real rus_Q_yz = axis_z_rus_axes3_y*rus_Q_t_16 + axis_z_rus_axes3_z*rus_Q_t_15 -
             axis_y_rus_axes3_y*rus_Q_t_13 - axis_y_rus_axes3_z*rus_Q_t_12;
         const real rus_Q_t_19 = axis_y_rus_axes3_z*rus_Q_t_13 - axis_z_rus_axes3_z*rus_Q_t_16;
-        const real rus_Q_zz = -2*rus_Q_t_19 - rus_d_c_in_axes3_xx;
+        const real rus_Q_zz = -2*rus_Q_t_19 - v.rus_d_c_in_axes3_xx;
         /* (M_ta) coupling block of M */
-        const real rus_M_ta_t = -rus_Q_xy*rus_q_z;
-        const real rus_M_ta_t_2 = rus_Q_xz*rus_q_y;
+        const real rus_M_ta_t = -rus_Q_xy*v.rus_q_z;
+        const real rus_M_ta_t_2 = rus_Q_xz*v.rus_q_y;
         const real rus_M_ta_t_3 = rus_M_ta_t + rus_M_ta_t_2;
-        const real rus_M_ta_t_4 = rus_Q_xx*rus_q_z - rus_Q_xz*rus_q_x;
-        const real rus_M_ta_t_5 = rus_Q_xy*rus_q_x - rus_Q_xx*rus_q_y;
-        const real rus_M_ta_t_6 = rus_Q_yz*rus_q_y - rus_Q_yy*rus_q_z;
-        const real rus_M_ta_t_7 = rus_Q_yz*rus_q_x;
+        const real rus_M_ta_t_4 = rus_Q_xx*v.rus_q_z - rus_Q_xz*v.rus_q_x;
+        const real rus_M_ta_t_5 = rus_Q_xy*v.rus_q_x - rus_Q_xx*v.rus_q_y;
+        const real rus_M_ta_t_6 = rus_Q_yz*v.rus_q_y - rus_Q_yy*v.rus_q_z;
+        const real rus_M_ta_t_7 = rus_Q_yz*v.rus_q_x;
         const real rus_M_ta_t_8 = rus_M_ta_t + rus_M_ta_t_7;
-        const real rus_M_ta_t_9 = rus_Q_yy*rus_q_x - rus_Q_xy*rus_q_y;
-        const real rus_M_ta_t_10 = rus_Q_zz*rus_q_y - rus_Q_yz*rus_q_z;
-        const real rus_M_ta_t_11 = rus_Q_xz*rus_q_z - rus_Q_zz*rus_q_x;
+        const real rus_M_ta_t_9 = rus_Q_yy*v.rus_q_x - rus_Q_xy*v.rus_q_y;
+        const real rus_M_ta_t_10 = rus_Q_zz*v.rus_q_y - rus_Q_yz*v.rus_q_z;
+        const real rus_M_ta_t_11 = rus_Q_xz*v.rus_q_z - rus_Q_zz*v.rus_q_x;
         const real rus_M_ta_t_12 = rus_M_ta_t_7 - rus_M_ta_t_2;
         /* (M_aa) rotational block of M */
-        const real rus_M_aa_t = rus_M_ta_t_10*rus_q_y - rus_M_ta_t_6*rus_q_z;
-        const real rus_M_aa_t_2 = rus_M_ta_t_11*rus_q_y + rus_M_ta_t_8*rus_q_z;
-        const real rus_M_aa_t_3 = rus_M_ta_t_12*rus_q_y - rus_M_ta_t_9*rus_q_z;
-        const real rus_M_aa_t_4 = rus_M_ta_t_4*rus_q_z - rus_M_ta_t_11*rus_q_x;
-        const real rus_M_aa_t_5 = rus_M_ta_t_5*rus_q_z - rus_M_ta_t_12*rus_q_x;
-        const real rus_M_aa_t_6 = rus_M_ta_t_9*rus_q_x - rus_M_ta_t_5*rus_q_y;
+        const real rus_M_aa_t = rus_M_ta_t_10*v.rus_q_y - rus_M_ta_t_6*v.rus_q_z;
+        const real rus_M_aa_t_2 = rus_M_ta_t_11*v.rus_q_y + rus_M_ta_t_8*v.rus_q_z;
+        const real rus_M_aa_t_3 = rus_M_ta_t_12*v.rus_q_y - rus_M_ta_t_9*v.rus_q_z;
+        const real rus_M_aa_t_4 = rus_M_ta_t_4*v.rus_q_z - rus_M_ta_t_11*v.rus_q_x;
+        const real rus_M_aa_t_5 = rus_M_ta_t_5*v.rus_q_z - rus_M_ta_t_12*v.rus_q_x;
+        const real rus_M_aa_t_6 = rus_M_ta_t_9*v.rus_q_x - rus_M_ta_t_5*v.rus_q_y;
         /* (M_tt) translational block of M */
         gather(&terms[0*count + k], add, rus_Q_xx);  /* M_tt_xx_of_legs */
         gather(&terms[1*count + k], add, rus_Q_xy);  /* M_tt_xy */
@@ -2542,11 +2917,11 @@ INLINE void M_legs_rus(const prepared *m, size_t w, size_t leg, size_t legs, con
         const real rus_rho2_1_t = m->rus_rho2_1_t[i];
         const real rus_size_t_3 = m->rus_size_t_3[i];
         const real rus_size = m->rus_size[i];
-        o[1*count + k] = UNLESS(magnitude(rus_J_3_t_12) > TOLERANCE*TOLERANCE*rus_rho2_1_t) +
-            UNLESS(magnitude(rus_J_3_t_18) > TOLERANCE*TOLERANCE*rus_size_t_3) +
-            UNLESS(magnitude(rus_r_1_t) > TOLERANCE*rus_size) + UNLESS(magnitude(rus_v_1_t_2) >
-            TOLERANCE*rus_size);
-        o[0*count + k] = UNLESS(rus_J_3_t_13 >= 0);
+        o[1*count + k] = UNLESS(magnitude(v.rus_J_3_t_10) > TOLERANCE*TOLERANCE*rus_rho2_1_t) +
+            UNLESS(magnitude(v.rus_J_3_t_15) > TOLERANCE*TOLERANCE*rus_size_t_3) +
+            UNLESS(magnitude(v.rus_r_1_t) > TOLERANCE*rus_size) + UNLESS(magnitude(v.rus_v_1_t_2)
+            > TOLERANCE*rus_size);
+        o[0*count + k] = UNLESS(v.rus_J_3_t_11 >= 0);
     }
 }
 
@@ -2572,46 +2947,46 @@ INLINE void M_after(const prepared *m, size_t w, const real *s, const real *sums
         const real M_tt_zz = M_tt_zz_of_legs + m_star;
         /* (M_ta) coupling block of M */
         const real M_ta_xy_of_legs = sums[7*w + k];
-        const real h_star_z = s[14*w + k];
+        const real h_star_z = s[11*w + k];
         const real M_ta_xy = M_ta_xy_of_legs + h_star_z;
         const real M_ta_xz_of_legs = sums[8*w + k];
-        const real h_star_y = s[13*w + k];
+        const real h_star_y = s[10*w + k];
         const real M_ta_xz = M_ta_xz_of_legs - h_star_y;
         const real M_ta_yx_of_legs = sums[9*w + k];
         const real M_ta_yx = M_ta_yx_of_legs - h_star_z;
         const real M_ta_yz_of_legs = sums[11*w + k];
-        const real h_star_x = s[12*w + k];
+        const real h_star_x = s[9*w + k];
         const real M_ta_yz = M_ta_yz_of_legs + h_star_x;
         const real M_ta_zx_of_legs = sums[12*w + k];
         const real M_ta_zx = M_ta_zx_of_legs + h_star_y;
         const real M_ta_zy_of_legs = sums[13*w + k];
         const real M_ta_zy = M_ta_zy_of_legs - h_star_x;
         /* (M_aa) rotational block of M */
-        const real J_star_xx = s[15*w + k];
+        const real J_star_xx = s[12*w + k];
         const real M_aa_xx_of_legs = sums[15*w + k];
         const real M_aa_xx = J_star_xx + M_aa_xx_of_legs;
-        const real J_star_xy = s[16*w + k];
+        const real J_star_xy = s[13*w + k];
         const real M_aa_xy_of_legs = sums[16*w + k];
         const real M_aa_xy = J_star_xy + M_aa_xy_of_legs;
-        const real J_star_xz = s[17*w + k];
+        const real J_star_xz = s[14*w + k];
         const real M_aa_xz_of_legs = sums[17*w + k];
         const real M_aa_xz = J_star_xz + M_aa_xz_of_legs;
-        const real J_star_yy = s[18*w + k];
+        const real J_star_yy = s[15*w + k];
         const real M_aa_yy_of_legs = sums[18*w + k];
         const real M_aa_yy = J_star_yy + M_aa_yy_of_legs;
-        const real J_star_yz = s[19*w + k];
+        const real J_star_yz = s[16*w + k];
         const real M_aa_yz_of_legs = sums[19*w + k];
         const real M_aa_yz = J_star_yz + M_aa_yz_of_legs;
-        const real J_star_zz = s[20*w + k];
+        const real J_star_zz = s[17*w + k];
         const real M_aa_zz_of_legs = sums[20*w + k];
         const real M_aa_zz = J_star_zz + M_aa_zz_of_legs;
         /* (M_tt) translational block of M */
-        M[0*NV*w + k] = M_tt_xx;
+        M[0*w + k] = M_tt_xx;
         const real M_tt_xy = sums[1*w + k];
-        M[(0*NV + 1)*w + k] = M_tt_xy;
+        M[1*w + k] = M_tt_xy;
         M[NV*w + k] = M_tt_xy;
         const real M_tt_xz = sums[2*w + k];
-        M[(0*NV + 2)*w + k] = M_tt_xz;
+        M[2*w + k] = M_tt_xz;
         M[2*NV*w + k] = M_tt_xz;
         M[(NV + 1)*w + k] = M_tt_yy;
         const real M_tt_yz = sums[4*w + k];
@@ -2620,11 +2995,11 @@ INLINE void M_after(const prepared *m, size_t w, const real *s, const real *sums
         M[(2*NV + 2)*w + k] = M_tt_zz;
         /* (M_ta) coupling block of M */
         const real M_ta_xx = sums[6*w + k];
-        M[(0*NV + 3)*w + k] = M_ta_xx;
+        M[3*w + k] = M_ta_xx;
         M[3*NV*w + k] = M_ta_xx;
-        M[(0*NV + 4)*w + k] = M_ta_xy;
+        M[4*w + k] = M_ta_xy;
         M[4*NV*w + k] = M_ta_xy;
-        M[(0*NV + 5)*w + k] = M_ta_xz;
+        M[5*w + k] = M_ta_xz;
         M[5*NV*w + k] = M_ta_xz;
         M[(NV + 3)*w + k] = M_ta_yx;
         M[(3*NV + 1)*w + k] = M_ta_yx;
@@ -2659,12 +3034,10 @@ INLINE void M_after(const prepared *m, size_t w, const real *s, const real *sums
 
 INLINE void M_run(const prepared *m, const real *X, real *M, verdict *t)
 {
-    real s[21] = {0};
-    real sums[21] = {0};
-    real terms_rus[21*LEGS(LEGS_OF_rus)] = {0};
-    real o_rus[2*LEGS(LEGS_OF_rus)] = {0};
+    real s[18] = {0}, sums[21] = {0};
+    real terms_rus[21*LEGS(LEGS_OF_rus)] = {0}, o_rus[2*LEGS(LEGS_OF_rus)] = {0};
     M_before(m, 1, X, s, t);
-    M_legs_rus(m, 1, 0, 1, s, 0, LEGS(LEGS_OF_rus), 0, terms_rus, o_rus);
+    M_legs_rus(m, 1, 0, 1, s, 0, LEGS(LEGS_OF_rus), 0, X, terms_rus, o_rus);
     for (size_t leg = 0; leg < LEGS_OF_rus; ++leg) {
         M_place_rus(1, LEGS(LEGS_OF_rus), o_rus, leg, t);
     }
@@ -2676,13 +3049,12 @@ INLINE void M_run(const prepared *m, const real *X, real *M, verdict *t)
 
 INLINE void M_run_lanes(const prepared *m, const real *X, real *M, verdict *t)
 {
-    real s[21*LANES];
-    real sums[21*LANES];
+    real s[18*LANES], sums[21*LANES];
     real o_rus[2*LANES];
     M_before(m, LANES, X, s, t);
     clear(sums, 21*LANES);
     for (size_t leg = 0; leg < LEGS_OF_rus; ++leg) {
-        M_legs_rus(m, LANES, leg, 0, s, 1, LANES, 1, sums, o_rus);
+        M_legs_rus(m, LANES, leg, 0, s, 1, LANES, 1, X, sums, o_rus);
         M_place_rus(LANES, LANES, o_rus, 0, t);
     }
     M_after(m, LANES, s, sums, M, t);
@@ -2693,312 +3065,94 @@ INLINE void Z_before(const prepared *m, size_t w, const real *X, const real *V, 
     *t)
 {
     for (size_t k = 0; k < w; ++k) {
-        /* X: named entries */
-        const real X_0 = X[0*w + k];
-        const real t_x = X_0;
-        const real X_1 = X[1*w + k];
-        const real t_y = X_1;
-        const real X_2 = X[2*w + k];
-        const real t_z = X_2;
-        const real X_3 = X[3*w + k];
-        const real X_4 = X[4*w + k];
-        const real X_5 = X[5*w + k];
-        const real X_6 = X[6*w + k];
-        const real quaternion_norm2 = X_3*X_3 + X_4*X_4 + X_5*X_5 + X_6*X_6;
-        const real quaternion_scale = 2/quaternion_norm2;
-        const real quaternion_sx = X_3*quaternion_scale;
-        const real quaternion_sy = X_4*quaternion_scale;
-        const real quaternion_sz = X_5*quaternion_scale;
-        const real quaternion_wx = X_6*quaternion_sx;
-        const real quaternion_wy = X_6*quaternion_sy;
-        const real quaternion_wz = X_6*quaternion_sz;
-        const real quaternion_xx = X_3*quaternion_sx;
-        const real quaternion_xy = X_3*quaternion_sy;
-        const real quaternion_xz = X_3*quaternion_sz;
-        const real quaternion_yy = X_4*quaternion_sy;
-        const real quaternion_yz = X_4*quaternion_sz;
-        const real quaternion_zz = X_5*quaternion_sz;
-        const real R_xx = 1 - quaternion_yy - quaternion_zz;
-        const real R_xy = quaternion_xy - quaternion_wz;
-        const real R_xz = quaternion_wy + quaternion_xz;
-        const real R_yx = quaternion_wz + quaternion_xy;
-        const real R_yy = 1 - quaternion_xx - quaternion_zz;
-        const real R_yz = quaternion_yz - quaternion_wx;
-        const real R_zx = quaternion_xz - quaternion_wy;
-        const real R_zy = quaternion_wx + quaternion_yz;
-        const real R_zz = 1 - quaternion_xx - quaternion_yy;
-        /* V: named entries */
-        const real V_0 = V[0*w + k];
-        const real t_dot_x = V_0;
-        const real V_1 = V[1*w + k];
-        const real t_dot_y = V_1;
-        const real V_2 = V[2*w + k];
-        const real t_dot_z = V_2;
-        const real V_3 = V[3*w + k];
-        const real omega_x = V_3;
-        const real V_4 = V[4*w + k];
-        const real omega_y = V_4;
-        const real V_5 = V[5*w + k];
-        const real omega_z = V_5;
-        /* (h_star) first moment about the platform origin */
-        const real h_star_in_platform_x = m->h_star_in_platform_x;
-        const real h_star_in_platform_y = m->h_star_in_platform_y;
-        const real h_star_in_platform_z = m->h_star_in_platform_z;
-        const real h_star_x = R_xx*h_star_in_platform_x + R_xy*h_star_in_platform_y +
-            R_xz*h_star_in_platform_z;
-        const real h_star_y = R_yx*h_star_in_platform_x + R_yy*h_star_in_platform_y +
-            R_yz*h_star_in_platform_z;
-        const real h_star_z = R_zx*h_star_in_platform_x + R_zy*h_star_in_platform_y +
-            R_zz*h_star_in_platform_z;
-        /* (Z_p) centripetal force and weight of the platform */
-        const real Z_p_t_4 = h_star_z*omega_y - h_star_y*omega_z;
-        const real Z_p_t_5 = h_star_x*omega_z - h_star_z*omega_x;
-        const real Z_p_t_6 = h_star_y*omega_x - h_star_x*omega_y;
-        const real Z_p_t = m->Z_p_t;
-        const real Z_p_x = Z_p_t_6*omega_y - Z_p_t - Z_p_t_5*omega_z;
-        const real Z_p_t_2 = m->Z_p_t_2;
-        const real Z_p_y = Z_p_t_4*omega_z - Z_p_t_2 - Z_p_t_6*omega_x;
-        const real Z_p_t_3 = m->Z_p_t_3;
-        const real Z_p_z = Z_p_t_5*omega_x - Z_p_t_3 - Z_p_t_4*omega_y;
-        /* (Z_q) gyroscopic moment and moment of the weight of the platform */
-        const real gravity_x = m->gravity_x;
-        const real gravity_y = m->gravity_y;
-        const real gravity_z = m->gravity_z;
-        const real g_in_platform_x = R_xx*gravity_x + R_yx*gravity_y + R_zx*gravity_z;
-        const real g_in_platform_y = R_xy*gravity_x + R_yy*gravity_y + R_zy*gravity_z;
-        const real g_in_platform_z = R_xz*gravity_x + R_yz*gravity_y + R_zz*gravity_z;
-        const real omega_in_platform_x = R_xx*omega_x + R_yx*omega_y + R_zx*omega_z;
-        const real omega_in_platform_y = R_xy*omega_x + R_yy*omega_y + R_zy*omega_z;
-        const real omega_in_platform_z = R_xz*omega_x + R_yz*omega_y + R_zz*omega_z;
-        const real J_star_in_platform_xx = m->J_star_in_platform_xx;
-        const real J_star_in_platform_xy = m->J_star_in_platform_xy;
-        const real J_star_in_platform_xz = m->J_star_in_platform_xz;
-        const real Z_q_t = J_star_in_platform_xx*omega_in_platform_x +
-            J_star_in_platform_xy*omega_in_platform_y + J_star_in_platform_xz*omega_in_platform_z;
-        const real J_star_in_platform_yy = m->J_star_in_platform_yy;
-        const real J_star_in_platform_yz = m->J_star_in_platform_yz;
-        const real Z_q_t_2 = J_star_in_platform_xy*omega_in_platform_x +
-            J_star_in_platform_yy*omega_in_platform_y + J_star_in_platform_yz*omega_in_platform_z;
-        const real J_star_in_platform_zz = m->J_star_in_platform_zz;
-        const real Z_q_t_3 = J_star_in_platform_xz*omega_in_platform_x +
-            J_star_in_platform_yz*omega_in_platform_y + J_star_in_platform_zz*omega_in_platform_z;
-        const real Z_q_in_platform_x = Z_q_t_3*omega_in_platform_y +
-            g_in_platform_y*h_star_in_platform_z - Z_q_t_2*omega_in_platform_z -
-            g_in_platform_z*h_star_in_platform_y;
-        const real Z_q_in_platform_y = Z_q_t*omega_in_platform_z +
-            g_in_platform_z*h_star_in_platform_x - Z_q_t_3*omega_in_platform_x -
-            g_in_platform_x*h_star_in_platform_z;
-        const real Z_q_in_platform_z = Z_q_t_2*omega_in_platform_x +
-            g_in_platform_x*h_star_in_platform_y - Z_q_t*omega_in_platform_y -
-            g_in_platform_y*h_star_in_platform_x;
-        const real Z_q_x = R_xx*Z_q_in_platform_x + R_xy*Z_q_in_platform_y +
-            R_xz*Z_q_in_platform_z;
-        const real Z_q_y = R_yx*Z_q_in_platform_x + R_yy*Z_q_in_platform_y +
-            R_yz*Z_q_in_platform_z;
-        const real Z_q_z = R_zx*Z_q_in_platform_x + R_zy*Z_q_in_platform_y +
-            R_zz*Z_q_in_platform_z;
-        s[0*w + k] = t_x;
-        s[1*w + k] = t_y;
-        s[2*w + k] = t_z;
-        s[3*w + k] = R_xx;
-        s[4*w + k] = R_xy;
-        s[5*w + k] = R_xz;
-        s[6*w + k] = R_yx;
-        s[7*w + k] = R_yy;
-        s[8*w + k] = R_yz;
-        s[9*w + k] = R_zx;
-        s[10*w + k] = R_zy;
-        s[11*w + k] = R_zz;
-        s[12*w + k] = t_dot_x;
-        s[13*w + k] = t_dot_y;
-        s[14*w + k] = t_dot_z;
-        s[15*w + k] = omega_x;
-        s[16*w + k] = omega_y;
-        s[17*w + k] = omega_z;
-        s[18*w + k] = Z_p_x;
-        s[19*w + k] = Z_p_y;
-        s[20*w + k] = Z_p_z;
-        s[21*w + k] = Z_q_x;
-        s[22*w + k] = Z_q_y;
-        s[23*w + k] = Z_q_z;
-        t->invalid[k] += UNLESS(is_finite(quaternion_scale)) + UNLESS(quaternion_scale > 0);
+        values v;
+        stage_X(m, w, k, X, &v);
+        stage_V_X(w, k, V, &v);
+        stage_Z_dynamics(m, w, k, V, &v);
+        s[0*w + k] = v.R_xx;
+        s[1*w + k] = v.R_xy;
+        s[2*w + k] = v.R_xz;
+        s[3*w + k] = v.R_yx;
+        s[4*w + k] = v.R_yy;
+        s[5*w + k] = v.R_yz;
+        s[6*w + k] = v.R_zx;
+        s[7*w + k] = v.R_zy;
+        s[8*w + k] = v.R_zz;
+        s[9*w + k] = v.Z_p_x;
+        s[10*w + k] = v.Z_p_y;
+        s[11*w + k] = v.Z_p_z;
+        s[12*w + k] = v.Z_q_x;
+        s[13*w + k] = v.Z_q_y;
+        s[14*w + k] = v.Z_q_z;
+        t->invalid[k] += UNLESS(is_finite(v.quaternion_scale)) + UNLESS(v.quaternion_scale > 0);
     }
 }
 
 INLINE void Z_legs_rus(const prepared *m, size_t w, size_t leg, size_t legs, const real *s, size_t
-    states, size_t count, int add, real *terms, real *o)
+    states, size_t count, int add, const real *X, const real *V, real *terms, real *o)
 {
     for (size_t k = 0; k < count; ++k) {
         const size_t i = leg + legs*k;
         const size_t j = states*k;
-        /* (rus-S) from the base point to the connection point */
-        const real R_xx = s[3*w + j];
-        const real R_xy = s[4*w + j];
-        const real R_xz = s[5*w + j];
-        const real rus_platform_point_x = m->rus_platform_point_x[i];
-        const real rus_platform_point_y = m->rus_platform_point_y[i];
-        const real rus_platform_point_z = m->rus_platform_point_z[i];
-        const real rus_q_x = R_xx*rus_platform_point_x + R_xy*rus_platform_point_y +
-            R_xz*rus_platform_point_z;
-        const real R_yx = s[6*w + j];
-        const real R_yy = s[7*w + j];
-        const real R_yz = s[8*w + j];
-        const real rus_q_y = R_yx*rus_platform_point_x + R_yy*rus_platform_point_y +
-            R_yz*rus_platform_point_z;
-        const real R_zx = s[9*w + j];
-        const real R_zy = s[10*w + j];
-        const real R_zz = s[11*w + j];
-        const real rus_q_z = R_zx*rus_platform_point_x + R_zy*rus_platform_point_y +
-            R_zz*rus_platform_point_z;
-        const real rus_base_point_x = m->rus_base_point_x[i];
-        const real t_x = s[0*w + j];
-        const real rus_S_x = rus_q_x + t_x - rus_base_point_x;
-        const real rus_base_point_y = m->rus_base_point_y[i];
-        const real t_y = s[1*w + j];
-        const real rus_S_y = rus_q_y + t_y - rus_base_point_y;
-        const real rus_base_point_z = m->rus_base_point_z[i];
-        const real t_z = s[2*w + j];
-        const real rus_S_z = rus_q_z + t_z - rus_base_point_z;
-        /* (rus-Kd_1) projection on the centre's direction, from the distance fixed by the joints beyond
-           joint 1 */
-        const real rus_Kd_1_t = rus_S_x*rus_S_x + rus_S_y*rus_S_y + rus_S_z*rus_S_z;
-        const real rus_J_3_t = m->rus_J_3_t[i];
-        const real rus_J_3_t_2 = m->rus_J_3_t_2[i];
-        const real rus_Kd_1 = rus_J_3_t + R(0.5)*rus_Kd_1_t - rus_J_3_t_2;
-        /* (rus-px_1) component along the reference direction */
-        const real rus_base_frame_xx = m->rus_base_frame_xx[i];
-        const real rus_base_frame_yx = m->rus_base_frame_yx[i];
-        const real rus_base_frame_zx = m->rus_base_frame_zx[i];
-        const real rus_px_1 = rus_S_x*rus_base_frame_xx + rus_S_y*rus_base_frame_yx +
-            rus_S_z*rus_base_frame_zx;
-        /* (rus-py_1) component across the reference direction */
-        const real rus_base_frame_xy = m->rus_base_frame_xy[i];
-        const real rus_base_frame_yy = m->rus_base_frame_yy[i];
-        const real rus_base_frame_zy = m->rus_base_frame_zy[i];
-        const real rus_py_1 = rus_S_x*rus_base_frame_xy + rus_S_y*rus_base_frame_yy +
-            rus_S_z*rus_base_frame_zy;
-        /* (rus-Kc_1) factor of the cosine in the equation of joint 1 */
-        const real rus_joint2_offset_x = m->rus_joint2_offset_x[i];
-        const real rus_Kc_1 = rus_joint2_offset_x*rus_px_1;
-        /* (rus-Ks_1) factor of the sine in the equation of joint 1 */
-        const real rus_Ks_1 = rus_joint2_offset_x*rus_py_1;
-        /* (rus-rho2_1) squared amplitude */
-        const real rus_rho2_1 = rus_Kc_1*rus_Kc_1 + rus_Ks_1*rus_Ks_1;
-        /* (rus-disc_1) discriminant */
-        const real rus_disc_1 = rus_rho2_1 - rus_Kd_1*rus_Kd_1;
-        /* (rus-root_1) root, with the sign of the branch */
-        const real rus_branch_1 = m->rus_branch_1[i];
-        const real rus_root_1 = rus_branch_1*root(rus_disc_1);
-        /* (rus-c_1) cosine of the angle of joint 1 from its reference direction */
-        const real inv_rus_rho2_1 = 1/rus_rho2_1;
-        const real rus_c_1 = inv_rus_rho2_1*(rus_Kc_1*rus_Kd_1 - rus_Ks_1*rus_root_1);
-        /* (rus-s_1) sine of the angle of joint 1 from its reference direction */
-        const real rus_s_1 = inv_rus_rho2_1*(rus_Kc_1*rus_root_1 + rus_Kd_1*rus_Ks_1);
-        /* (rus-xi_1) the vector from joint 1 to the connection point, resolved along link 1 */
-        const real inv_rus_size_t = m->inv_rus_size_t[i];
-        const real rus_xi_1_t = inv_rus_size_t*rus_joint2_offset_x*rus_root_1;
-        const real rus_base_frame_xz = m->rus_base_frame_xz[i];
-        const real rus_base_frame_yz = m->rus_base_frame_yz[i];
-        const real rus_base_frame_zz = m->rus_base_frame_zz[i];
-        const real rus_xi_1_in_axes1_z = rus_S_x*rus_base_frame_xz + rus_S_y*rus_base_frame_yz +
-            rus_S_z*rus_base_frame_zz;
-        /* (rus-x_2) from the origin of joint 2 to the connection point */
-        const real rus_x_2_in_axes1_x = inv_rus_size_t*rus_Kd_1*rus_joint2_offset_x -
-            rus_joint2_offset_x;
-        /* (rus-rho2_2) squared amplitude */
-        const real rus_rho2_2 = rus_x_2_in_axes1_x*rus_x_2_in_axes1_x + rus_xi_1_t*rus_xi_1_t;
-        /* (rus-root_2) root, with the sign of the branch */
-        const real rus_branch_2 = m->rus_branch_2[i];
-        const real rus_root_2 = rus_branch_2*root(rus_rho2_2);
-        /* (rus-c_2) cosine of the angle of joint 2 from its reference direction */
-        const real inv_rus_rho2_2 = 1/rus_rho2_2;
-        const real rus_c_2 = inv_rus_rho2_2*rus_root_2*rus_xi_1_t;
-        /* (rus-s_2) sine of the angle of joint 2 from its reference direction */
-        const real rus_s_2 = inv_rus_rho2_2*rus_root_2*rus_x_2_in_axes1_x;
-        /* (rus-c_3) cosine of the angle of joint 3 from its reference direction */
-        const real inv_rus_size_t_2 = m->inv_rus_size_t_2[i];
-        const real rus_platform_joint_offset_x = m->rus_platform_joint_offset_x[i];
-        const real rus_c_3 = -inv_rus_size_t_2*rus_platform_joint_offset_x*rus_root_2;
-        /* (rus-s_3) sine of the angle of joint 3 from its reference direction */
-        const real rus_s_3 = inv_rus_size_t_2*rus_platform_joint_offset_x*rus_xi_1_in_axes1_z;
-        /* (rus-S_dot) velocity of the connection point */
-        const real omega_y = s[16*w + j];
-        const real omega_z = s[17*w + j];
-        const real rus_S_dot_t = omega_y*rus_q_z - omega_z*rus_q_y;
-        const real omega_x = s[15*w + j];
-        const real rus_S_dot_t_2 = omega_z*rus_q_x - omega_x*rus_q_z;
-        const real rus_S_dot_t_3 = omega_x*rus_q_y - omega_y*rus_q_x;
-        const real t_dot_x = s[12*w + j];
-        const real rus_S_dot_x = rus_S_dot_t + t_dot_x;
-        const real t_dot_y = s[13*w + j];
-        const real rus_S_dot_y = rus_S_dot_t_2 + t_dot_y;
-        const real t_dot_z = s[14*w + j];
-        const real rus_S_dot_z = rus_S_dot_t_3 + t_dot_z;
-        /* (rus-r_1) from joint 1 to the connection point, along the links */
-        const real rus_r_1_t = -rus_c_3*rus_platform_joint_offset_x;
-        const real rus_r_1_in_axes1_z = rus_platform_joint_offset_x*rus_s_3;
-        const real rus_r_1_t_2 = rus_c_2*rus_r_1_t;
-        const real rus_r_1_in_axes1_x = rus_joint2_offset_x + rus_r_1_t*rus_s_2;
-        const real rus_r_1_in_axes3_z = rus_c_2*rus_r_1_in_axes1_x - rus_r_1_t_2*rus_s_2;
-        /* (rus-v_1) velocity of the connection point per rate of joint 1 */
-        const real rus_v_1_t = rus_c_2*rus_r_1_t_2 + rus_r_1_in_axes1_x*rus_s_2;
-        const real rus_v_1_t_2 = -rus_c_3*rus_r_1_in_axes3_z;
-        const real rus_v_1_t_3 = rus_r_1_in_axes3_z*rus_s_3;
-        const real rus_v_1_in_axes3_z = rus_s_3*(rus_c_3*rus_r_1_in_axes1_z + rus_s_3*rus_v_1_t) -
-            rus_c_3*(rus_r_1_in_axes1_z*rus_s_3 - rus_c_3*rus_v_1_t);
-        /* (rus-w_1) reciprocal vector 1 */
-        const real inv_rus_v_1_t_2 = 1/rus_v_1_t_2;
-        /* (rus-w_2) reciprocal vector 2 */
-        const real rus_w_2_in_axes3_z = 1/rus_r_1_t;
+        values_rus v;
+        stage_rus_X(m, w, i, j, s, X, &v);
+        stage_rus_V_X(w, j, V, &v);
         /* (rus-qd_1) rate of joint 1 */
-        const real rus_qd_1_t = rus_c_1*rus_c_2 - rus_s_1*rus_s_2;
-        const real rus_qd_1_t_2 = rus_c_1*rus_s_2 + rus_c_2*rus_s_1;
-        const real axis_z_rus_axes3_x = rus_base_frame_xx*rus_qd_1_t +
-            rus_base_frame_xy*rus_qd_1_t_2;
-        const real axis_z_rus_axes3_y = rus_base_frame_yx*rus_qd_1_t +
-            rus_base_frame_yy*rus_qd_1_t_2;
-        const real axis_z_rus_axes3_z = rus_base_frame_zx*rus_qd_1_t +
-            rus_base_frame_zy*rus_qd_1_t_2;
-        const real rus_qd_1_t_3 = rus_s_2*rus_s_3;
-        const real rus_qd_1_t_4 = rus_c_2*rus_s_3;
-        const real rus_qd_1_t_5 = rus_c_1*rus_qd_1_t_3 + rus_qd_1_t_4*rus_s_1;
-        const real rus_qd_1_t_6 = rus_qd_1_t_3*rus_s_1 - rus_c_1*rus_qd_1_t_4;
-        const real axis_y_rus_axes3_x = rus_base_frame_xx*rus_qd_1_t_5 +
-            rus_base_frame_xy*rus_qd_1_t_6 + rus_base_frame_xz*rus_c_3;
-        const real axis_y_rus_axes3_y = rus_base_frame_yx*rus_qd_1_t_5 +
-            rus_base_frame_yy*rus_qd_1_t_6 + rus_base_frame_yz*rus_c_3;
-        const real axis_y_rus_axes3_z = rus_base_frame_zx*rus_qd_1_t_5 +
-            rus_base_frame_zy*rus_qd_1_t_6 + rus_base_frame_zz*rus_c_3;
+        const real rus_base_frame_xx = m->rus_base_frame_xx[i];
+        const real rus_base_frame_xy = m->rus_base_frame_xy[i];
+        const real axis_z_rus_axes3_x = rus_base_frame_xx*v.rus_qd_1_t +
+            rus_base_frame_xy*v.rus_qd_1_t_2;
+        const real rus_base_frame_yx = m->rus_base_frame_yx[i];
+        const real rus_base_frame_yy = m->rus_base_frame_yy[i];
+        const real axis_z_rus_axes3_y = rus_base_frame_yx*v.rus_qd_1_t +
+            rus_base_frame_yy*v.rus_qd_1_t_2;
+        const real rus_base_frame_zx = m->rus_base_frame_zx[i];
+        const real rus_base_frame_zy = m->rus_base_frame_zy[i];
+        const real axis_z_rus_axes3_z = rus_base_frame_zx*v.rus_qd_1_t +
+            rus_base_frame_zy*v.rus_qd_1_t_2;
+        const real rus_base_frame_xz = m->rus_base_frame_xz[i];
+        const real axis_y_rus_axes3_x = rus_base_frame_xx*v.rus_qd_1_t_5 +
+            rus_base_frame_xy*v.rus_qd_1_t_6 - rus_base_frame_xz*v.rus_c_3;
+        const real rus_base_frame_yz = m->rus_base_frame_yz[i];
+        const real axis_y_rus_axes3_y = rus_base_frame_yx*v.rus_qd_1_t_5 +
+            rus_base_frame_yy*v.rus_qd_1_t_6 - rus_base_frame_yz*v.rus_c_3;
+        const real rus_base_frame_zz = m->rus_base_frame_zz[i];
+        const real axis_y_rus_axes3_z = rus_base_frame_zx*v.rus_qd_1_t_5 +
+            rus_base_frame_zy*v.rus_qd_1_t_6 - rus_base_frame_zz*v.rus_c_3;
         const real axis_x_rus_axes3_x = axis_y_rus_axes3_y*axis_z_rus_axes3_z -
             axis_y_rus_axes3_z*axis_z_rus_axes3_y;
         const real axis_x_rus_axes3_y = axis_y_rus_axes3_z*axis_z_rus_axes3_x -
             axis_y_rus_axes3_x*axis_z_rus_axes3_z;
         const real axis_x_rus_axes3_z = axis_y_rus_axes3_x*axis_z_rus_axes3_y -
             axis_y_rus_axes3_y*axis_z_rus_axes3_x;
-        const real rus_qd_1 = -inv_rus_v_1_t_2*(axis_x_rus_axes3_x*rus_S_dot_x +
-            axis_x_rus_axes3_y*rus_S_dot_y + axis_x_rus_axes3_z*rus_S_dot_z);
+        const real rus_qd_1_t_7 = v.inv_rus_v_1_t_2*(axis_x_rus_axes3_x*v.rus_S_dot_x +
+            axis_x_rus_axes3_y*v.rus_S_dot_y + axis_x_rus_axes3_z*v.rus_S_dot_z);
         /* (rus-qd_3) rate of joint 3 */
-        const real rus_qd_3_t = axis_y_rus_axes3_x*rus_S_dot_x + axis_y_rus_axes3_y*rus_S_dot_y +
-            axis_y_rus_axes3_z*rus_S_dot_z + rus_qd_1*rus_v_1_t_3;
+        const real rus_qd_3_t = axis_y_rus_axes3_x*v.rus_S_dot_x +
+            axis_y_rus_axes3_y*v.rus_S_dot_y + axis_y_rus_axes3_z*v.rus_S_dot_z -
+            rus_qd_1_t_7*v.rus_v_1_t_3;
         const real rus_w_3_in_axes3_y = m->rus_w_3_in_axes3_y[i];
         const real rus_qd_3 = rus_qd_3_t*rus_w_3_in_axes3_y;
         /* (rus-omega_1) angular velocity of link 1 */
-        const real rus_omega_1_in_axes3_x = rus_qd_1*rus_s_3;
-        const real rus_omega_1_in_axes3_y = rus_c_3*rus_qd_1;
+        const real rus_omega_1_in_axes3_x = -v.rus_e_1_in_axes3_x*rus_qd_1_t_7;
+        const real rus_omega_1_in_axes3_y = v.rus_c_3*rus_qd_1_t_7;
         /* (rus-omega_2) angular velocity of link 2 */
-        const real rus_omega_2_in_axes2_z = rus_qd_1 +
-            rus_w_2_in_axes3_z*(axis_z_rus_axes3_x*rus_S_dot_x + axis_z_rus_axes3_y*rus_S_dot_y +
-            axis_z_rus_axes3_z*rus_S_dot_z - rus_qd_1*rus_v_1_in_axes3_z);
-        const real rus_omega_2_in_axes3_x = rus_omega_2_in_axes2_z*rus_s_3;
-        const real rus_omega_2_in_axes3_y = rus_c_3*rus_omega_2_in_axes2_z;
+        const real rus_omega_2_in_axes2_z = v.rus_w_2_in_axes3_z*(axis_z_rus_axes3_x*v.rus_S_dot_x
+            + axis_z_rus_axes3_y*v.rus_S_dot_y + axis_z_rus_axes3_z*v.rus_S_dot_z +
+            rus_qd_1_t_7*v.rus_v_1_in_axes3_z) - rus_qd_1_t_7;
+        const real rus_omega_2_in_axes3_x = v.rus_e_1_in_axes3_x*rus_omega_2_in_axes2_z;
+        const real rus_omega_2_in_axes3_y = -v.rus_c_3*rus_omega_2_in_axes2_z;
         /* (rus-W_3) centripetal tensor of link 3 */
         const real rus_W_3_in_axes3_yz = rus_omega_2_in_axes3_y*rus_qd_3;
         const real rus_W_3_in_axes3_xz = rus_omega_2_in_axes3_x*rus_qd_3;
         const real rus_W_3_in_axes3_xy = rus_omega_2_in_axes3_x*rus_omega_2_in_axes3_y;
         /* (rus-u_1) centripetal acceleration of the connection point */
-        const real rus_u_1_x = omega_y*rus_S_dot_t_3 - omega_z*rus_S_dot_t_2;
-        const real rus_u_1_y = omega_z*rus_S_dot_t - omega_x*rus_S_dot_t_3;
-        const real rus_u_1_z = omega_x*rus_S_dot_t_2 - omega_y*rus_S_dot_t;
+        const real omega_y = V[4*w + j];
+        const real omega_z = V[5*w + j];
+        const real rus_u_1_x = omega_y*v.rus_S_dot_t_3 - omega_z*v.rus_S_dot_t_2;
+        const real omega_x = V[3*w + j];
+        const real rus_u_1_y = omega_z*v.rus_S_dot_t - omega_x*v.rus_S_dot_t_3;
+        const real rus_u_1_z = omega_x*v.rus_S_dot_t_2 - omega_y*v.rus_S_dot_t;
         const real rus_u_1_in_axes3_x = axis_x_rus_axes3_x*rus_u_1_x +
             axis_x_rus_axes3_y*rus_u_1_y + axis_x_rus_axes3_z*rus_u_1_z;
         const real rus_u_1_in_axes3_y = axis_y_rus_axes3_x*rus_u_1_x +
@@ -3006,34 +3160,33 @@ INLINE void Z_legs_rus(const prepared *m, size_t w, size_t leg, size_t legs, con
         const real rus_u_1_in_axes3_z = axis_z_rus_axes3_x*rus_u_1_x +
             axis_z_rus_axes3_y*rus_u_1_y + axis_z_rus_axes3_z*rus_u_1_z;
         /* (rus-bias) acceleration of the connection point at zero joint accelerations */
-        const real rus_d_2_in_axes3_z = rus_c_2*rus_joint2_offset_x;
-        const real rus_bias_t = rus_joint2_offset_x*rus_s_2;
-        const real rus_bias_t_2 = rus_bias_t*rus_c_3*rus_omega_1_in_axes3_y +
-            rus_bias_t*rus_omega_1_in_axes3_x*rus_s_3;
-        const real rus_bias_t_3 = rus_omega_2_in_axes3_y*rus_platform_joint_offset_x;
-        const real rus_bias_in_axes3_x = rus_bias_t_2*rus_omega_1_in_axes3_y -
-            rus_bias_t_3*rus_omega_2_in_axes3_y - rus_qd_3*rus_qd_3_t;
-        const real rus_bias_in_axes3_y = rus_bias_t_3*rus_omega_2_in_axes3_x -
-            rus_bias_t_2*rus_omega_1_in_axes3_x;
+        const real rus_bias_t_2 = v.rus_bias_t*v.rus_c_3*rus_omega_1_in_axes3_y -
+            v.rus_bias_t*v.rus_e_1_in_axes3_x*rus_omega_1_in_axes3_x;
+        const real rus_platform_joint_offset_x = m->rus_platform_joint_offset_x[i];
+        const real rus_bias_t_3 = -rus_omega_2_in_axes3_y*rus_platform_joint_offset_x;
+        const real rus_bias_in_axes3_x = rus_bias_t_3*rus_omega_2_in_axes3_y -
+            rus_bias_t_2*rus_omega_1_in_axes3_y - rus_qd_3*rus_qd_3_t;
+        const real rus_bias_in_axes3_y = rus_bias_t_2*rus_omega_1_in_axes3_x -
+            rus_bias_t_3*rus_omega_2_in_axes3_x;
         const real rus_bias_in_axes3_z = rus_W_3_in_axes3_xz*rus_platform_joint_offset_x +
             rus_omega_2_in_axes3_x*rus_qd_3_t -
-            rus_d_2_in_axes3_z*rus_omega_1_in_axes3_x*rus_omega_1_in_axes3_x -
-            rus_d_2_in_axes3_z*rus_omega_1_in_axes3_y*rus_omega_1_in_axes3_y;
+            v.rus_d_2_in_axes3_z*rus_omega_1_in_axes3_x*rus_omega_1_in_axes3_x -
+            v.rus_d_2_in_axes3_z*rus_omega_1_in_axes3_y*rus_omega_1_in_axes3_y;
         /* (rus-rel_o) remainder without the acceleration in: acceleration of the connection point left to
            the joint accelerations */
         const real rus_rel_o_in_axes3_x = rus_u_1_in_axes3_x - rus_bias_in_axes3_x;
         const real rus_rel_o_in_axes3_y = rus_u_1_in_axes3_y - rus_bias_in_axes3_y;
         const real rus_rel_o_in_axes3_z = rus_u_1_in_axes3_z - rus_bias_in_axes3_z;
         /* (rus-qdd_1_o) remainder without the acceleration in: acceleration of joint 1 */
-        const real rus_qdd_1_o_t = inv_rus_v_1_t_2*rus_rel_o_in_axes3_x;
+        const real rus_qdd_1_o_t = v.inv_rus_v_1_t_2*rus_rel_o_in_axes3_x;
         /* (rus-qdd_3_o) remainder without the acceleration in: acceleration of joint 3 */
-        const real rus_qdd_3_o = -rus_w_3_in_axes3_y*(rus_qdd_1_o_t*rus_v_1_t_3 -
+        const real rus_qdd_3_o = -rus_w_3_in_axes3_y*(rus_qdd_1_o_t*v.rus_v_1_t_3 -
             rus_rel_o_in_axes3_y);
         /* (rus-alpha_2_o) remainder without the acceleration in: angular acceleration of link 2 */
-        const real rus_alpha_2_o_in_axes2_z = rus_w_2_in_axes3_z*(rus_rel_o_in_axes3_z +
-            rus_qdd_1_o_t*rus_v_1_in_axes3_z) - rus_qdd_1_o_t;
-        const real rus_alpha_2_o_in_axes3_x = rus_alpha_2_o_in_axes2_z*rus_s_3;
-        const real rus_alpha_2_o_in_axes3_y = rus_alpha_2_o_in_axes2_z*rus_c_3;
+        const real rus_alpha_2_o_in_axes2_z = v.rus_w_2_in_axes3_z*(rus_rel_o_in_axes3_z +
+            rus_qdd_1_o_t*v.rus_v_1_in_axes3_z) - rus_qdd_1_o_t;
+        const real rus_alpha_2_o_in_axes3_x = rus_alpha_2_o_in_axes2_z*v.rus_e_1_in_axes3_x;
+        const real rus_alpha_2_o_in_axes3_y = -rus_alpha_2_o_in_axes2_z*v.rus_c_3;
         /* (rus-alpha_3_o) remainder without the acceleration in: angular acceleration of link 3 */
         const real rus_alpha_3_o_in_axes3_x = rus_W_3_in_axes3_yz + rus_alpha_2_o_in_axes3_x;
         const real rus_alpha_3_o_in_axes3_y = rus_alpha_2_o_in_axes3_y - rus_W_3_in_axes3_xz;
@@ -3084,8 +3237,8 @@ INLINE void Z_legs_rus(const prepared *m, size_t w, size_t leg, size_t legs, con
             rus_acc_3_o_in_axes3_x*rus_h_3_in_spec3_z + rus_acc_3_o_in_axes3_y*rus_h_3_in_spec3_x
             - rus_B_3_o_in_axes3_xy*rus_Sigma_3_in_axes3_yy - rus_J_3_in_spec3_xz*(rus_mu_3_o_t -
             rus_mu_3_o_t_2) - rus_J_3_in_spec3_yz*rus_alpha_2_o_in_axes3_y;
-        const real rus_mu_3_o_in_axes1_z = rus_c_3*rus_mu_3_o_in_axes3_y +
-            rus_mu_3_o_in_axes3_x*rus_s_3;
+        const real rus_mu_3_o_in_axes1_z = v.rus_e_1_in_axes3_x*rus_mu_3_o_in_axes3_x -
+            v.rus_c_3*rus_mu_3_o_in_axes3_y;
         /* (rus-mu_1_o) remainder without the acceleration in: inertia moment of the links that turn with
            link 1, about their reference points */
         const real rus_J_1_in_spec1_zz = m->rus_J_1_in_spec1_zz[i];
@@ -3093,20 +3246,20 @@ INLINE void Z_legs_rus(const prepared *m, size_t w, size_t leg, size_t legs, con
         const real rus_h_1_in_spec1_y = m->rus_h_1_in_spec1_y[i];
         const real rus_mu_1_t = m->rus_mu_1_t[i];
         const real rus_mu_1_t_2 = m->rus_mu_1_t_2[i];
-        const real rus_mu_1_o_in_axes1_z = rus_h_1_in_spec1_y*(rus_c_1*rus_mu_1_t +
-            rus_mu_1_t_2*rus_s_1) - rus_J_1_in_spec1_zz*rus_qdd_1_o_t -
-            rus_h_1_in_spec1_x*(rus_c_1*rus_mu_1_t_2 - rus_mu_1_t*rus_s_1);
+        const real rus_mu_1_o_in_axes1_z = rus_h_1_in_spec1_y*(v.rus_c_1*rus_mu_1_t +
+            rus_mu_1_t_2*v.rus_s_1) - rus_J_1_in_spec1_zz*rus_qdd_1_o_t -
+            rus_h_1_in_spec1_x*(v.rus_c_1*rus_mu_1_t_2 - rus_mu_1_t*v.rus_s_1);
         /* (rus-N_1_o) remainder without the acceleration in: moment about joint 1 of the links from 1
            outwards, the force at the connection point left out */
         const real rus_N_1_o_in_axes1_z = rus_mu_1_o_in_axes1_z + rus_mu_3_o_in_axes1_z;
         /* (rus-G_o) remainder without the acceleration in: force at the connection point that balances
            the leg's inertia and weight along all degrees of freedom */
-        const real rus_G_o_in_axes3_z = rus_mu_3_o_in_axes1_z*rus_w_2_in_axes3_z;
+        const real rus_G_o_in_axes3_z = rus_mu_3_o_in_axes1_z*v.rus_w_2_in_axes3_z;
         const real rus_G_o_in_axes3_y = rus_mu_3_o_in_axes3_z*rus_w_3_in_axes3_y;
         /* (rus-c_o) remainder without the acceleration in: leg force on the platform without actuation
            and without the mass at the connection point */
-        const real rus_c_o_in_axes3_x = inv_rus_v_1_t_2*(rus_N_1_o_in_axes1_z +
-            rus_G_o_in_axes3_y*rus_v_1_t_3 - rus_G_o_in_axes3_z*rus_v_1_in_axes3_z) +
+        const real rus_c_o_in_axes3_x = v.inv_rus_v_1_t_2*(rus_N_1_o_in_axes1_z +
+            rus_G_o_in_axes3_y*v.rus_v_1_t_3 - rus_G_o_in_axes3_z*v.rus_v_1_in_axes3_z) +
             rus_B_3_o_in_axes3_xy*rus_h_3_in_spec3_z + rus_h_3_in_spec3_x*(rus_mu_3_o_t_2 +
             rus_mu_3_o_t_3) - rus_alpha_2_o_in_axes3_y*rus_h_3_in_spec3_y;
         const real rus_c_o_in_axes3_y = rus_alpha_2_o_in_axes3_x*rus_h_3_in_spec3_y -
@@ -3123,9 +3276,9 @@ INLINE void Z_legs_rus(const prepared *m, size_t w, size_t leg, size_t legs, con
         const real rus_U_z = -axis_x_rus_axes3_z*rus_c_o_in_axes3_x -
             axis_y_rus_axes3_z*rus_c_o_in_axes3_y - axis_z_rus_axes3_z*rus_c_o_in_axes3_z;
         /* (Z_a) rotational part of Z */
-        const real rus_Z_a_t = rus_U_z*rus_q_y - rus_U_y*rus_q_z;
-        const real rus_Z_a_t_2 = rus_U_x*rus_q_z - rus_U_z*rus_q_x;
-        const real rus_Z_a_t_3 = rus_U_y*rus_q_x - rus_U_x*rus_q_y;
+        const real rus_Z_a_t = rus_U_z*v.rus_q_y - rus_U_y*v.rus_q_z;
+        const real rus_Z_a_t_2 = rus_U_x*v.rus_q_z - rus_U_z*v.rus_q_x;
+        const real rus_Z_a_t_3 = rus_U_y*v.rus_q_x - rus_U_x*v.rus_q_y;
         /* (Z_t) translational part of Z */
         gather(&terms[0*count + k], add, rus_U_x);  /* Z_t_x_of_legs */
         gather(&terms[1*count + k], add, rus_U_y);  /* Z_t_y_of_legs */
@@ -3137,11 +3290,11 @@ INLINE void Z_legs_rus(const prepared *m, size_t w, size_t leg, size_t legs, con
         const real rus_rho2_1_t = m->rus_rho2_1_t[i];
         const real rus_size_t_3 = m->rus_size_t_3[i];
         const real rus_size = m->rus_size[i];
-        o[1*count + k] = UNLESS(magnitude(rus_rho2_1) > TOLERANCE*TOLERANCE*rus_rho2_1_t) +
-            UNLESS(magnitude(rus_rho2_2) > TOLERANCE*TOLERANCE*rus_size_t_3) +
-            UNLESS(magnitude(rus_r_1_t) > TOLERANCE*rus_size) + UNLESS(magnitude(rus_v_1_t_2) >
-            TOLERANCE*rus_size);
-        o[0*count + k] = UNLESS(rus_disc_1 >= 0);
+        o[1*count + k] = UNLESS(magnitude(v.rus_rho2_1) > TOLERANCE*TOLERANCE*rus_rho2_1_t) +
+            UNLESS(magnitude(v.rus_rho2_2) > TOLERANCE*TOLERANCE*rus_size_t_3) +
+            UNLESS(magnitude(v.rus_r_1_t) > TOLERANCE*rus_size) + UNLESS(magnitude(v.rus_v_1_t_2)
+            > TOLERANCE*rus_size);
+        o[0*count + k] = UNLESS(v.rus_disc_1 >= 0);
     }
 }
 
@@ -3157,24 +3310,24 @@ INLINE void Z_after(size_t w, const real *s, const real *sums, real *Z, verdict 
 {
     for (size_t k = 0; k < w; ++k) {
         /* (Z_t) translational part of Z */
-        const real Z_p_x = s[18*w + k];
+        const real Z_p_x = s[9*w + k];
         const real Z_t_x_of_legs = sums[0*w + k];
         const real Z_t_x = Z_p_x + Z_t_x_of_legs;
-        const real Z_p_y = s[19*w + k];
+        const real Z_p_y = s[10*w + k];
         const real Z_t_y_of_legs = sums[1*w + k];
         const real Z_t_y = Z_p_y + Z_t_y_of_legs;
-        const real Z_p_z = s[20*w + k];
+        const real Z_p_z = s[11*w + k];
         const real Z_t_z_of_legs = sums[2*w + k];
         const real Z_t_z = Z_p_z + Z_t_z_of_legs;
         /* (Z_a) rotational part of Z */
         const real Z_a_x_of_legs = sums[3*w + k];
-        const real Z_q_x = s[21*w + k];
+        const real Z_q_x = s[12*w + k];
         const real Z_a_x = Z_a_x_of_legs + Z_q_x;
         const real Z_a_y_of_legs = sums[4*w + k];
-        const real Z_q_y = s[22*w + k];
+        const real Z_q_y = s[13*w + k];
         const real Z_a_y = Z_a_y_of_legs + Z_q_y;
         const real Z_a_z_of_legs = sums[5*w + k];
-        const real Z_q_z = s[23*w + k];
+        const real Z_q_z = s[14*w + k];
         const real Z_a_z = Z_a_z_of_legs + Z_q_z;
         /* (Z_t) translational part of Z */
         Z[0*w + k] = Z_t_x;
@@ -3190,12 +3343,10 @@ INLINE void Z_after(size_t w, const real *s, const real *sums, real *Z, verdict 
 
 INLINE void Z_run(const prepared *m, const real *X, const real *V, real *Z, verdict *t)
 {
-    real s[24] = {0};
-    real sums[6] = {0};
-    real terms_rus[6*LEGS(LEGS_OF_rus)] = {0};
-    real o_rus[2*LEGS(LEGS_OF_rus)] = {0};
+    real s[15] = {0}, sums[6] = {0};
+    real terms_rus[6*LEGS(LEGS_OF_rus)] = {0}, o_rus[2*LEGS(LEGS_OF_rus)] = {0};
     Z_before(m, 1, X, V, s, t);
-    Z_legs_rus(m, 1, 0, 1, s, 0, LEGS(LEGS_OF_rus), 0, terms_rus, o_rus);
+    Z_legs_rus(m, 1, 0, 1, s, 0, LEGS(LEGS_OF_rus), 0, X, V, terms_rus, o_rus);
     for (size_t leg = 0; leg < LEGS_OF_rus; ++leg) {
         Z_place_rus(1, LEGS(LEGS_OF_rus), o_rus, leg, t);
     }
@@ -3207,221 +3358,63 @@ INLINE void Z_run(const prepared *m, const real *X, const real *V, real *Z, verd
 
 INLINE void Z_run_lanes(const prepared *m, const real *X, const real *V, real *Z, verdict *t)
 {
-    real s[24*LANES];
-    real sums[6*LANES];
+    real s[15*LANES], sums[6*LANES];
     real o_rus[2*LANES];
     Z_before(m, LANES, X, V, s, t);
     clear(sums, 6*LANES);
     for (size_t leg = 0; leg < LEGS_OF_rus; ++leg) {
-        Z_legs_rus(m, LANES, leg, 0, s, 1, LANES, 1, sums, o_rus);
+        Z_legs_rus(m, LANES, leg, 0, s, 1, LANES, 1, X, V, sums, o_rus);
         Z_place_rus(LANES, LANES, o_rus, 0, t);
     }
     Z_after(LANES, s, sums, Z, t);
 }
 
 /* ---- H ---- */
-INLINE void H_before(size_t w, const real *X, real *s, verdict *t)
+INLINE void H_before(const prepared *m, size_t w, const real *X, real *s, verdict *t)
 {
     for (size_t k = 0; k < w; ++k) {
-        /* X: named entries */
-        const real X_0 = X[0*w + k];
-        const real t_x = X_0;
-        const real X_1 = X[1*w + k];
-        const real t_y = X_1;
-        const real X_2 = X[2*w + k];
-        const real t_z = X_2;
-        const real X_3 = X[3*w + k];
-        const real X_4 = X[4*w + k];
-        const real X_5 = X[5*w + k];
-        const real X_6 = X[6*w + k];
-        const real quaternion_norm2 = X_3*X_3 + X_4*X_4 + X_5*X_5 + X_6*X_6;
-        const real quaternion_scale = 2/quaternion_norm2;
-        const real quaternion_sx = X_3*quaternion_scale;
-        const real quaternion_sy = X_4*quaternion_scale;
-        const real quaternion_sz = X_5*quaternion_scale;
-        const real quaternion_wx = X_6*quaternion_sx;
-        const real quaternion_wy = X_6*quaternion_sy;
-        const real quaternion_wz = X_6*quaternion_sz;
-        const real quaternion_xx = X_3*quaternion_sx;
-        const real quaternion_xy = X_3*quaternion_sy;
-        const real quaternion_xz = X_3*quaternion_sz;
-        const real quaternion_yy = X_4*quaternion_sy;
-        const real quaternion_yz = X_4*quaternion_sz;
-        const real quaternion_zz = X_5*quaternion_sz;
-        const real R_xx = 1 - quaternion_yy - quaternion_zz;
-        const real R_xy = quaternion_xy - quaternion_wz;
-        const real R_xz = quaternion_wy + quaternion_xz;
-        const real R_yx = quaternion_wz + quaternion_xy;
-        const real R_yy = 1 - quaternion_xx - quaternion_zz;
-        const real R_yz = quaternion_yz - quaternion_wx;
-        const real R_zx = quaternion_xz - quaternion_wy;
-        const real R_zy = quaternion_wx + quaternion_yz;
-        const real R_zz = 1 - quaternion_xx - quaternion_yy;
-        s[0*w + k] = t_x;
-        s[1*w + k] = t_y;
-        s[2*w + k] = t_z;
-        s[3*w + k] = R_xx;
-        s[4*w + k] = R_xy;
-        s[5*w + k] = R_xz;
-        s[6*w + k] = R_yx;
-        s[7*w + k] = R_yy;
-        s[8*w + k] = R_yz;
-        s[9*w + k] = R_zx;
-        s[10*w + k] = R_zy;
-        s[11*w + k] = R_zz;
-        t->invalid[k] += UNLESS(is_finite(quaternion_scale)) + UNLESS(quaternion_scale > 0);
+        values v;
+        stage_X(m, w, k, X, &v);
+        s[0*w + k] = v.R_xx;
+        s[1*w + k] = v.R_xy;
+        s[2*w + k] = v.R_xz;
+        s[3*w + k] = v.R_yx;
+        s[4*w + k] = v.R_yy;
+        s[5*w + k] = v.R_yz;
+        s[6*w + k] = v.R_zx;
+        s[7*w + k] = v.R_zy;
+        s[8*w + k] = v.R_zz;
+        t->invalid[k] += UNLESS(is_finite(v.quaternion_scale)) + UNLESS(v.quaternion_scale > 0);
     }
 }
 
 INLINE void H_legs_rus(const prepared *m, size_t w, size_t leg, size_t legs, const real *s, size_t
-    states, size_t count, real *o)
+    states, size_t count, const real *X, real *o)
 {
     for (size_t k = 0; k < count; ++k) {
         const size_t i = leg + legs*k;
         const size_t j = states*k;
-        /* (rus-S) from the base point to the connection point */
-        const real R_xx = s[3*w + j];
-        const real R_xy = s[4*w + j];
-        const real R_xz = s[5*w + j];
-        const real rus_platform_point_x = m->rus_platform_point_x[i];
-        const real rus_platform_point_y = m->rus_platform_point_y[i];
-        const real rus_platform_point_z = m->rus_platform_point_z[i];
-        const real rus_q_x = R_xx*rus_platform_point_x + R_xy*rus_platform_point_y +
-            R_xz*rus_platform_point_z;
-        const real R_yx = s[6*w + j];
-        const real R_yy = s[7*w + j];
-        const real R_yz = s[8*w + j];
-        const real rus_q_y = R_yx*rus_platform_point_x + R_yy*rus_platform_point_y +
-            R_yz*rus_platform_point_z;
-        const real R_zx = s[9*w + j];
-        const real R_zy = s[10*w + j];
-        const real R_zz = s[11*w + j];
-        const real rus_q_z = R_zx*rus_platform_point_x + R_zy*rus_platform_point_y +
-            R_zz*rus_platform_point_z;
-        const real rus_base_point_x = m->rus_base_point_x[i];
-        const real t_x = s[0*w + j];
-        const real rus_S_x = rus_q_x + t_x - rus_base_point_x;
-        const real rus_base_point_y = m->rus_base_point_y[i];
-        const real t_y = s[1*w + j];
-        const real rus_S_y = rus_q_y + t_y - rus_base_point_y;
-        const real rus_base_point_z = m->rus_base_point_z[i];
-        const real t_z = s[2*w + j];
-        const real rus_S_z = rus_q_z + t_z - rus_base_point_z;
-        /* (rus-Kd_1) projection on the centre's direction, from the distance fixed by the joints beyond
-           joint 1 */
-        const real rus_Kd_1_t = rus_S_x*rus_S_x + rus_S_y*rus_S_y + rus_S_z*rus_S_z;
-        const real rus_J_3_t = m->rus_J_3_t[i];
-        const real rus_J_3_t_2 = m->rus_J_3_t_2[i];
-        const real rus_Kd_1 = rus_J_3_t + R(0.5)*rus_Kd_1_t - rus_J_3_t_2;
-        /* (rus-px_1) component along the reference direction */
-        const real rus_base_frame_xx = m->rus_base_frame_xx[i];
-        const real rus_base_frame_yx = m->rus_base_frame_yx[i];
-        const real rus_base_frame_zx = m->rus_base_frame_zx[i];
-        const real rus_px_1 = rus_S_x*rus_base_frame_xx + rus_S_y*rus_base_frame_yx +
-            rus_S_z*rus_base_frame_zx;
-        /* (rus-py_1) component across the reference direction */
-        const real rus_base_frame_xy = m->rus_base_frame_xy[i];
-        const real rus_base_frame_yy = m->rus_base_frame_yy[i];
-        const real rus_base_frame_zy = m->rus_base_frame_zy[i];
-        const real rus_py_1 = rus_S_x*rus_base_frame_xy + rus_S_y*rus_base_frame_yy +
-            rus_S_z*rus_base_frame_zy;
-        /* (rus-Kc_1) factor of the cosine in the equation of joint 1 */
-        const real rus_joint2_offset_x = m->rus_joint2_offset_x[i];
-        const real rus_Kc_1 = rus_joint2_offset_x*rus_px_1;
-        /* (rus-Ks_1) factor of the sine in the equation of joint 1 */
-        const real rus_Ks_1 = rus_joint2_offset_x*rus_py_1;
-        /* (rus-rho2_1) squared amplitude */
-        const real rus_rho2_1 = rus_Kc_1*rus_Kc_1 + rus_Ks_1*rus_Ks_1;
-        /* (rus-disc_1) discriminant */
-        const real rus_disc_1 = rus_rho2_1 - rus_Kd_1*rus_Kd_1;
-        /* (rus-root_1) root, with the sign of the branch */
-        const real rus_branch_1 = m->rus_branch_1[i];
-        const real rus_root_1 = rus_branch_1*root(rus_disc_1);
-        /* (rus-c_1) cosine of the angle of joint 1 from its reference direction */
-        const real inv_rus_rho2_1 = 1/rus_rho2_1;
-        const real rus_c_1 = inv_rus_rho2_1*(rus_Kc_1*rus_Kd_1 - rus_Ks_1*rus_root_1);
-        /* (rus-s_1) sine of the angle of joint 1 from its reference direction */
-        const real rus_s_1 = inv_rus_rho2_1*(rus_Kc_1*rus_root_1 + rus_Kd_1*rus_Ks_1);
-        /* (rus-xi_1) the vector from joint 1 to the connection point, resolved along link 1 */
-        const real inv_rus_size_t = m->inv_rus_size_t[i];
-        const real rus_xi_1_t = inv_rus_size_t*rus_joint2_offset_x*rus_root_1;
-        const real rus_base_frame_xz = m->rus_base_frame_xz[i];
-        const real rus_base_frame_yz = m->rus_base_frame_yz[i];
-        const real rus_base_frame_zz = m->rus_base_frame_zz[i];
-        const real rus_xi_1_in_axes1_z = rus_S_x*rus_base_frame_xz + rus_S_y*rus_base_frame_yz +
-            rus_S_z*rus_base_frame_zz;
-        /* (rus-x_2) from the origin of joint 2 to the connection point */
-        const real rus_x_2_in_axes1_x = inv_rus_size_t*rus_Kd_1*rus_joint2_offset_x -
-            rus_joint2_offset_x;
-        /* (rus-rho2_2) squared amplitude */
-        const real rus_rho2_2 = rus_x_2_in_axes1_x*rus_x_2_in_axes1_x + rus_xi_1_t*rus_xi_1_t;
-        /* (rus-root_2) root, with the sign of the branch */
-        const real rus_branch_2 = m->rus_branch_2[i];
-        const real rus_root_2 = rus_branch_2*root(rus_rho2_2);
-        /* (rus-c_2) cosine of the angle of joint 2 from its reference direction */
-        const real inv_rus_rho2_2 = 1/rus_rho2_2;
-        const real rus_c_2 = inv_rus_rho2_2*rus_root_2*rus_xi_1_t;
-        /* (rus-s_2) sine of the angle of joint 2 from its reference direction */
-        const real rus_s_2 = inv_rus_rho2_2*rus_root_2*rus_x_2_in_axes1_x;
-        /* (rus-c_3) cosine of the angle of joint 3 from its reference direction */
-        const real inv_rus_size_t_2 = m->inv_rus_size_t_2[i];
-        const real rus_platform_joint_offset_x = m->rus_platform_joint_offset_x[i];
-        const real rus_c_3 = -inv_rus_size_t_2*rus_platform_joint_offset_x*rus_root_2;
-        /* (rus-s_3) sine of the angle of joint 3 from its reference direction */
-        const real rus_s_3 = inv_rus_size_t_2*rus_platform_joint_offset_x*rus_xi_1_in_axes1_z;
-        /* (rus-r_1) from joint 1 to the connection point, along the links */
-        const real rus_r_1_t = -rus_c_3*rus_platform_joint_offset_x;
-        const real rus_r_1_in_axes1_x = rus_joint2_offset_x + rus_r_1_t*rus_s_2;
-        /* (rus-v_1) velocity of the connection point per rate of joint 1 */
-        const real rus_v_1_t = -rus_c_3*(rus_c_2*rus_r_1_in_axes1_x - rus_c_2*rus_r_1_t*rus_s_2);
+        values_rus v;
+        stage_rus_X(m, w, i, j, s, X, &v);
+        stage_rus_H_condition(&v);
         /* (rus-w_1) reciprocal vector 1 */
-        const real rus_w_1_t = rus_c_1*rus_c_2 - rus_s_1*rus_s_2;
-        const real rus_w_1_t_2 = rus_c_1*rus_s_2 + rus_c_2*rus_s_1;
-        const real axis_z_rus_axes3_x = rus_base_frame_xx*rus_w_1_t +
-            rus_base_frame_xy*rus_w_1_t_2;
-        const real axis_z_rus_axes3_y = rus_base_frame_yx*rus_w_1_t +
-            rus_base_frame_yy*rus_w_1_t_2;
-        const real axis_z_rus_axes3_z = rus_base_frame_zx*rus_w_1_t +
-            rus_base_frame_zy*rus_w_1_t_2;
-        const real rus_w_1_t_3 = rus_s_2*rus_s_3;
-        const real rus_w_1_t_4 = rus_c_2*rus_s_3;
-        const real rus_w_1_t_5 = rus_c_1*rus_w_1_t_3 + rus_s_1*rus_w_1_t_4;
-        const real rus_w_1_t_6 = rus_s_1*rus_w_1_t_3 - rus_c_1*rus_w_1_t_4;
-        const real axis_y_rus_axes3_x = rus_base_frame_xx*rus_w_1_t_5 +
-            rus_base_frame_xy*rus_w_1_t_6 + rus_base_frame_xz*rus_c_3;
-        const real axis_y_rus_axes3_y = rus_base_frame_yx*rus_w_1_t_5 +
-            rus_base_frame_yy*rus_w_1_t_6 + rus_base_frame_yz*rus_c_3;
-        const real axis_y_rus_axes3_z = rus_base_frame_zx*rus_w_1_t_5 +
-            rus_base_frame_zy*rus_w_1_t_6 + rus_base_frame_zz*rus_c_3;
-        const real inv_rus_v_1_t = 1/rus_v_1_t;
-        const real rus_w_1_t_7 = inv_rus_v_1_t*(axis_y_rus_axes3_y*axis_z_rus_axes3_z -
-            axis_y_rus_axes3_z*axis_z_rus_axes3_y);
-        const real rus_w_1_t_8 = inv_rus_v_1_t*(axis_y_rus_axes3_z*axis_z_rus_axes3_x -
-            axis_y_rus_axes3_x*axis_z_rus_axes3_z);
-        const real rus_w_1_t_9 = inv_rus_v_1_t*(axis_y_rus_axes3_x*axis_z_rus_axes3_y -
-            axis_y_rus_axes3_y*axis_z_rus_axes3_x);
+        o[0*count + k] = -v.rus_w_1_t_7;
+        o[1*count + k] = -v.rus_w_1_t_8;
+        o[2*count + k] = -v.rus_w_1_t_9;
         /* (rus-H_a_1) moment of the column's unit force about the platform origin */
-        const real rus_H_a_1_x = rus_q_z*rus_w_1_t_8 - rus_q_y*rus_w_1_t_9;
-        const real rus_H_a_1_y = rus_q_x*rus_w_1_t_9 - rus_q_z*rus_w_1_t_7;
-        const real rus_H_a_1_z = rus_q_y*rus_w_1_t_7 - rus_q_x*rus_w_1_t_8;
-        /* (rus-w_1) reciprocal vector 1 */
-        o[0*count + k] = -rus_w_1_t_7;
-        o[1*count + k] = -rus_w_1_t_8;
-        o[2*count + k] = -rus_w_1_t_9;
-        /* (rus-H_a_1) moment of the column's unit force about the platform origin */
-        o[3*count + k] = rus_H_a_1_x;
-        o[4*count + k] = rus_H_a_1_y;
-        o[5*count + k] = rus_H_a_1_z;
-        o[8*count + k] = (rus_w_1_t_7 + (rus_w_1_t_8 + rus_w_1_t_9)) + (rus_H_a_1_x + (rus_H_a_1_y
-            + rus_H_a_1_z));
+        o[3*count + k] = v.rus_H_a_1_x;
+        o[4*count + k] = v.rus_H_a_1_y;
+        o[5*count + k] = v.rus_H_a_1_z;
+        o[8*count + k] = (v.rus_w_1_t_7 + (v.rus_w_1_t_8 + v.rus_w_1_t_9)) + (v.rus_H_a_1_x +
+            (v.rus_H_a_1_y + v.rus_H_a_1_z));
         const real rus_rho2_1_t = m->rus_rho2_1_t[i];
         const real rus_size_t_3 = m->rus_size_t_3[i];
         const real rus_size = m->rus_size[i];
-        o[7*count + k] = UNLESS(magnitude(rus_rho2_1) > TOLERANCE*TOLERANCE*rus_rho2_1_t) +
-            UNLESS(magnitude(rus_rho2_2) > TOLERANCE*TOLERANCE*rus_size_t_3) +
-            UNLESS(magnitude(rus_r_1_t) > TOLERANCE*rus_size) + UNLESS(magnitude(rus_v_1_t) >
+        o[7*count + k] = UNLESS(magnitude(v.rus_rho2_1) > TOLERANCE*TOLERANCE*rus_rho2_1_t) +
+            UNLESS(magnitude(v.rus_rho2_2) > TOLERANCE*TOLERANCE*rus_size_t_3) +
+            UNLESS(magnitude(v.rus_r_1_t) > TOLERANCE*rus_size) + UNLESS(magnitude(v.rus_v_1_t) >
             TOLERANCE*rus_size);
-        o[6*count + k] = UNLESS(rus_disc_1 >= 0);
+        o[6*count + k] = UNLESS(v.rus_disc_1 >= 0);
     }
 }
 
@@ -3429,7 +3422,7 @@ INLINE void H_place_rus(size_t w, size_t count, const real *o, size_t leg, size_
     verdict *t)
 {
     for (size_t k = 0; k < w; ++k) {
-        H[(0*NU + leg)*w + k] = o[0*count + first + k];
+        H[leg*w + k] = o[0*count + first + k];
         H[(NU + leg)*w + k] = o[1*count + first + k];
         H[(2*NU + leg)*w + k] = o[2*count + first + k];
         H[(3*NU + leg)*w + k] = o[3*count + first + k];
@@ -3443,10 +3436,10 @@ INLINE void H_place_rus(size_t w, size_t count, const real *o, size_t leg, size_
 
 INLINE void H_run(const prepared *m, const real *X, real *H, verdict *t)
 {
-    real s[12] = {0};
+    real s[9] = {0};
     real o_rus[9*LEGS(LEGS_OF_rus)] = {0};
-    H_before(1, X, s, t);
-    H_legs_rus(m, 1, 0, 1, s, 0, LEGS(LEGS_OF_rus), o_rus);
+    H_before(m, 1, X, s, t);
+    H_legs_rus(m, 1, 0, 1, s, 0, LEGS(LEGS_OF_rus), X, o_rus);
     for (size_t leg = 0; leg < LEGS_OF_rus; ++leg) {
         H_place_rus(1, LEGS(LEGS_OF_rus), o_rus, leg, leg, H, t);
     }
@@ -3454,11 +3447,11 @@ INLINE void H_run(const prepared *m, const real *X, real *H, verdict *t)
 
 INLINE void H_run_lanes(const prepared *m, const real *X, real *H, verdict *t)
 {
-    real s[12*LANES];
+    real s[9*LANES];
     real o_rus[9*LANES];
-    H_before(LANES, X, s, t);
+    H_before(m, LANES, X, s, t);
     for (size_t leg = 0; leg < LEGS_OF_rus; ++leg) {
-        H_legs_rus(m, LANES, leg, 0, s, 1, LANES, o_rus);
+        H_legs_rus(m, LANES, leg, 0, s, 1, LANES, X, o_rus);
         H_place_rus(LANES, LANES, o_rus, leg, 0, H, t);
     }
 }
@@ -3468,483 +3461,131 @@ INLINE void required_before(const prepared *m, size_t w, const real *X, const re
     *A, real *s, verdict *t)
 {
     for (size_t k = 0; k < w; ++k) {
-        /* X: named entries */
-        const real X_0 = X[0*w + k];
-        const real t_x = X_0;
-        const real X_1 = X[1*w + k];
-        const real t_y = X_1;
-        const real X_2 = X[2*w + k];
-        const real t_z = X_2;
-        const real X_3 = X[3*w + k];
-        const real X_4 = X[4*w + k];
-        const real X_5 = X[5*w + k];
-        const real X_6 = X[6*w + k];
-        const real quaternion_norm2 = X_3*X_3 + X_4*X_4 + X_5*X_5 + X_6*X_6;
-        const real quaternion_scale = 2/quaternion_norm2;
-        const real quaternion_sx = X_3*quaternion_scale;
-        const real quaternion_sy = X_4*quaternion_scale;
-        const real quaternion_sz = X_5*quaternion_scale;
-        const real quaternion_wx = X_6*quaternion_sx;
-        const real quaternion_wy = X_6*quaternion_sy;
-        const real quaternion_wz = X_6*quaternion_sz;
-        const real quaternion_xx = X_3*quaternion_sx;
-        const real quaternion_xy = X_3*quaternion_sy;
-        const real quaternion_xz = X_3*quaternion_sz;
-        const real quaternion_yy = X_4*quaternion_sy;
-        const real quaternion_yz = X_4*quaternion_sz;
-        const real quaternion_zz = X_5*quaternion_sz;
-        const real R_xx = 1 - quaternion_yy - quaternion_zz;
-        const real R_xy = quaternion_xy - quaternion_wz;
-        const real R_xz = quaternion_wy + quaternion_xz;
-        const real R_yx = quaternion_wz + quaternion_xy;
-        const real R_yy = 1 - quaternion_xx - quaternion_zz;
-        const real R_yz = quaternion_yz - quaternion_wx;
-        const real R_zx = quaternion_xz - quaternion_wy;
-        const real R_zy = quaternion_wx + quaternion_yz;
-        const real R_zz = 1 - quaternion_xx - quaternion_yy;
-        /* V: named entries */
-        const real V_0 = V[0*w + k];
-        const real t_dot_x = V_0;
-        const real V_1 = V[1*w + k];
-        const real t_dot_y = V_1;
-        const real V_2 = V[2*w + k];
-        const real t_dot_z = V_2;
-        const real V_3 = V[3*w + k];
-        const real omega_x = V_3;
-        const real V_4 = V[4*w + k];
-        const real omega_y = V_4;
-        const real V_5 = V[5*w + k];
-        const real omega_z = V_5;
-        /* A: named entries */
-        const real A_0 = A[0*w + k];
-        const real t_ddot_x = A_0;
-        const real A_1 = A[1*w + k];
-        const real t_ddot_y = A_1;
-        const real A_2 = A[2*w + k];
-        const real t_ddot_z = A_2;
-        const real A_3 = A[3*w + k];
-        const real alpha_x = A_3;
-        const real A_4 = A[4*w + k];
-        const real alpha_y = A_4;
-        const real A_5 = A[5*w + k];
-        const real alpha_z = A_5;
+        values v;
+        stage_X(m, w, k, X, &v);
+        stage_V_X(w, k, V, &v);
         /* (W_p) centripetal tensor of the platform */
+        const real omega_x = V[3*w + k];
+        const real omega_y = V[4*w + k];
         const real W_p_xy = omega_x*omega_y;
+        const real omega_z = V[5*w + k];
         const real W_p_xz = omega_x*omega_z;
         const real W_p_yz = omega_y*omega_z;
-        /* (h_star) first moment about the platform origin */
-        const real h_star_in_platform_x = m->h_star_in_platform_x;
-        const real h_star_in_platform_y = m->h_star_in_platform_y;
-        const real h_star_in_platform_z = m->h_star_in_platform_z;
-        const real h_star_x = R_xx*h_star_in_platform_x + R_xy*h_star_in_platform_y +
-            R_xz*h_star_in_platform_z;
-        const real h_star_y = R_yx*h_star_in_platform_x + R_yy*h_star_in_platform_y +
-            R_yz*h_star_in_platform_z;
-        const real h_star_z = R_zx*h_star_in_platform_x + R_zy*h_star_in_platform_y +
-            R_zz*h_star_in_platform_z;
         /* (a_t) acceleration of the platform origin, less gravity */
         const real gravity_x = m->gravity_x;
+        const real t_ddot_x = A[0*w + k];
         const real a_t_x = t_ddot_x - gravity_x;
         const real gravity_y = m->gravity_y;
+        const real t_ddot_y = A[1*w + k];
         const real a_t_y = t_ddot_y - gravity_y;
         const real gravity_z = m->gravity_z;
+        const real t_ddot_z = A[2*w + k];
         const real a_t_z = t_ddot_z - gravity_z;
-        const real a_t_in_platform_x = R_xx*a_t_x + R_yx*a_t_y + R_zx*a_t_z;
-        const real a_t_in_platform_y = R_xy*a_t_x + R_yy*a_t_y + R_zy*a_t_z;
-        const real a_t_in_platform_z = R_xz*a_t_x + R_yz*a_t_y + R_zz*a_t_z;
+        const real a_t_in_platform_x = v.R_xx*a_t_x + v.R_yx*a_t_y + v.R_zx*a_t_z;
+        const real a_t_in_platform_y = v.R_xy*a_t_x + v.R_yy*a_t_y + v.R_zy*a_t_z;
+        const real a_t_in_platform_z = v.R_xz*a_t_x + v.R_yz*a_t_y + v.R_zz*a_t_z;
         /* (f_p) inertia force of the platform less its weight */
         const real f_p_t = omega_x*omega_x;
         const real f_p_t_2 = omega_y*omega_y;
         const real f_p_t_3 = omega_z*omega_z;
+        const real alpha_y = A[4*w + k];
+        const real alpha_z = A[5*w + k];
         const real m_star = m->m_star;
-        const real f_p_x = a_t_x*m_star + h_star_y*(W_p_xy - alpha_z) + h_star_z*(W_p_xz +
-            alpha_y) - h_star_x*(f_p_t_2 + f_p_t_3);
-        const real f_p_y = a_t_y*m_star + h_star_x*(W_p_xy + alpha_z) + h_star_z*(W_p_yz -
-            alpha_x) - h_star_y*(f_p_t + f_p_t_3);
-        const real f_p_z = a_t_z*m_star + h_star_x*(W_p_xz - alpha_y) + h_star_y*(W_p_yz +
-            alpha_x) - h_star_z*(f_p_t + f_p_t_2);
+        const real f_p_x = a_t_x*m_star + v.h_star_y*(W_p_xy - alpha_z) + v.h_star_z*(W_p_xz +
+            alpha_y) - v.h_star_x*(f_p_t_2 + f_p_t_3);
+        const real alpha_x = A[3*w + k];
+        const real f_p_y = a_t_y*m_star + v.h_star_x*(W_p_xy + alpha_z) + v.h_star_z*(W_p_yz -
+            alpha_x) - v.h_star_y*(f_p_t + f_p_t_3);
+        const real f_p_z = a_t_z*m_star + v.h_star_x*(W_p_xz - alpha_y) + v.h_star_y*(W_p_yz +
+            alpha_x) - v.h_star_z*(f_p_t + f_p_t_2);
         /* (mu_p) inertia moment of the platform less that of its weight */
-        const real omega_in_platform_x = R_xx*omega_x + R_yx*omega_y + R_zx*omega_z;
-        const real omega_in_platform_y = R_xy*omega_x + R_yy*omega_y + R_zy*omega_z;
-        const real omega_in_platform_z = R_xz*omega_x + R_yz*omega_y + R_zz*omega_z;
         const real J_star_in_platform_xx = m->J_star_in_platform_xx;
         const real J_star_in_platform_xy = m->J_star_in_platform_xy;
         const real J_star_in_platform_xz = m->J_star_in_platform_xz;
-        const real mu_p_t = J_star_in_platform_xx*omega_in_platform_x +
-            J_star_in_platform_xy*omega_in_platform_y + J_star_in_platform_xz*omega_in_platform_z;
+        const real mu_p_t = J_star_in_platform_xx*v.omega_in_platform_x +
+            J_star_in_platform_xy*v.omega_in_platform_y +
+            J_star_in_platform_xz*v.omega_in_platform_z;
         const real J_star_in_platform_yy = m->J_star_in_platform_yy;
         const real J_star_in_platform_yz = m->J_star_in_platform_yz;
-        const real mu_p_t_2 = J_star_in_platform_xy*omega_in_platform_x +
-            J_star_in_platform_yy*omega_in_platform_y + J_star_in_platform_yz*omega_in_platform_z;
+        const real mu_p_t_2 = J_star_in_platform_xy*v.omega_in_platform_x +
+            J_star_in_platform_yy*v.omega_in_platform_y +
+            J_star_in_platform_yz*v.omega_in_platform_z;
         const real J_star_in_platform_zz = m->J_star_in_platform_zz;
-        const real mu_p_t_3 = J_star_in_platform_xz*omega_in_platform_x +
-            J_star_in_platform_yz*omega_in_platform_y + J_star_in_platform_zz*omega_in_platform_z;
-        const real alpha_in_platform_x = R_xx*alpha_x + R_yx*alpha_y + R_zx*alpha_z;
-        const real alpha_in_platform_y = R_xy*alpha_x + R_yy*alpha_y + R_zy*alpha_z;
-        const real alpha_in_platform_z = R_xz*alpha_x + R_yz*alpha_y + R_zz*alpha_z;
+        const real mu_p_t_3 = J_star_in_platform_xz*v.omega_in_platform_x +
+            J_star_in_platform_yz*v.omega_in_platform_y +
+            J_star_in_platform_zz*v.omega_in_platform_z;
+        const real alpha_in_platform_x = v.R_xx*alpha_x + v.R_yx*alpha_y + v.R_zx*alpha_z;
+        const real alpha_in_platform_y = v.R_xy*alpha_x + v.R_yy*alpha_y + v.R_zy*alpha_z;
+        const real alpha_in_platform_z = v.R_xz*alpha_x + v.R_yz*alpha_y + v.R_zz*alpha_z;
+        const real h_star_in_platform_y = m->h_star_in_platform_y;
+        const real h_star_in_platform_z = m->h_star_in_platform_z;
         const real mu_p_in_platform_x = J_star_in_platform_xx*alpha_in_platform_x +
             J_star_in_platform_xy*alpha_in_platform_y + J_star_in_platform_xz*alpha_in_platform_z
-            + a_t_in_platform_z*h_star_in_platform_y + mu_p_t_3*omega_in_platform_y -
-            a_t_in_platform_y*h_star_in_platform_z - mu_p_t_2*omega_in_platform_z;
+            + a_t_in_platform_z*h_star_in_platform_y + mu_p_t_3*v.omega_in_platform_y -
+            a_t_in_platform_y*h_star_in_platform_z - mu_p_t_2*v.omega_in_platform_z;
+        const real h_star_in_platform_x = m->h_star_in_platform_x;
         const real mu_p_in_platform_y = J_star_in_platform_xy*alpha_in_platform_x +
             J_star_in_platform_yy*alpha_in_platform_y + J_star_in_platform_yz*alpha_in_platform_z
-            + a_t_in_platform_x*h_star_in_platform_z + mu_p_t*omega_in_platform_z -
-            a_t_in_platform_z*h_star_in_platform_x - mu_p_t_3*omega_in_platform_x;
+            + a_t_in_platform_x*h_star_in_platform_z + mu_p_t*v.omega_in_platform_z -
+            a_t_in_platform_z*h_star_in_platform_x - mu_p_t_3*v.omega_in_platform_x;
         const real mu_p_in_platform_z = J_star_in_platform_xz*alpha_in_platform_x +
             J_star_in_platform_yz*alpha_in_platform_y + J_star_in_platform_zz*alpha_in_platform_z
-            + a_t_in_platform_y*h_star_in_platform_x + mu_p_t_2*omega_in_platform_x -
-            a_t_in_platform_x*h_star_in_platform_y - mu_p_t*omega_in_platform_y;
-        const real mu_p_x = R_xx*mu_p_in_platform_x + R_xy*mu_p_in_platform_y +
-            R_xz*mu_p_in_platform_z;
-        const real mu_p_y = R_yx*mu_p_in_platform_x + R_yy*mu_p_in_platform_y +
-            R_yz*mu_p_in_platform_z;
-        const real mu_p_z = R_zx*mu_p_in_platform_x + R_zy*mu_p_in_platform_y +
-            R_zz*mu_p_in_platform_z;
-        s[0*w + k] = t_x;
-        s[1*w + k] = t_y;
-        s[2*w + k] = t_z;
-        s[3*w + k] = R_xx;
-        s[4*w + k] = R_xy;
-        s[5*w + k] = R_xz;
-        s[6*w + k] = R_yx;
-        s[7*w + k] = R_yy;
-        s[8*w + k] = R_yz;
-        s[9*w + k] = R_zx;
-        s[10*w + k] = R_zy;
-        s[11*w + k] = R_zz;
-        s[12*w + k] = t_dot_x;
-        s[13*w + k] = t_dot_y;
-        s[14*w + k] = t_dot_z;
-        s[15*w + k] = omega_x;
-        s[16*w + k] = omega_y;
-        s[17*w + k] = omega_z;
-        s[18*w + k] = t_ddot_x;
-        s[19*w + k] = t_ddot_y;
-        s[20*w + k] = t_ddot_z;
-        s[21*w + k] = alpha_x;
-        s[22*w + k] = alpha_y;
-        s[23*w + k] = alpha_z;
-        s[24*w + k] = f_p_x;
-        s[25*w + k] = f_p_y;
-        s[26*w + k] = f_p_z;
-        s[27*w + k] = mu_p_x;
-        s[28*w + k] = mu_p_y;
-        s[29*w + k] = mu_p_z;
-        t->invalid[k] += UNLESS(is_finite(quaternion_scale)) + UNLESS(quaternion_scale > 0);
+            + a_t_in_platform_y*h_star_in_platform_x + mu_p_t_2*v.omega_in_platform_x -
+            a_t_in_platform_x*h_star_in_platform_y - mu_p_t*v.omega_in_platform_y;
+        const real mu_p_x = v.R_xx*mu_p_in_platform_x + v.R_xy*mu_p_in_platform_y +
+            v.R_xz*mu_p_in_platform_z;
+        const real mu_p_y = v.R_yx*mu_p_in_platform_x + v.R_yy*mu_p_in_platform_y +
+            v.R_yz*mu_p_in_platform_z;
+        const real mu_p_z = v.R_zx*mu_p_in_platform_x + v.R_zy*mu_p_in_platform_y +
+            v.R_zz*mu_p_in_platform_z;
+        s[0*w + k] = v.R_xx;
+        s[1*w + k] = v.R_xy;
+        s[2*w + k] = v.R_xz;
+        s[3*w + k] = v.R_yx;
+        s[4*w + k] = v.R_yy;
+        s[5*w + k] = v.R_yz;
+        s[6*w + k] = v.R_zx;
+        s[7*w + k] = v.R_zy;
+        s[8*w + k] = v.R_zz;
+        s[9*w + k] = f_p_x;
+        s[10*w + k] = f_p_y;
+        s[11*w + k] = f_p_z;
+        s[12*w + k] = mu_p_x;
+        s[13*w + k] = mu_p_y;
+        s[14*w + k] = mu_p_z;
+        t->invalid[k] += UNLESS(is_finite(v.quaternion_scale)) + UNLESS(v.quaternion_scale > 0);
     }
 }
 
 INLINE void required_legs_rus(const prepared *m, size_t w, size_t leg, size_t legs, const real *s,
-    size_t states, size_t count, int add, real *terms, real *o)
+    size_t states, size_t count, int add, const real *X, const real *V, const real *A, real
+    *terms, real *o)
 {
     for (size_t k = 0; k < count; ++k) {
         const size_t i = leg + legs*k;
         const size_t j = states*k;
-        /* (rus-S) from the base point to the connection point */
-        const real R_xx = s[3*w + j];
-        const real R_xy = s[4*w + j];
-        const real R_xz = s[5*w + j];
-        const real rus_platform_point_x = m->rus_platform_point_x[i];
-        const real rus_platform_point_y = m->rus_platform_point_y[i];
-        const real rus_platform_point_z = m->rus_platform_point_z[i];
-        const real rus_q_x = R_xx*rus_platform_point_x + R_xy*rus_platform_point_y +
-            R_xz*rus_platform_point_z;
-        const real R_yx = s[6*w + j];
-        const real R_yy = s[7*w + j];
-        const real R_yz = s[8*w + j];
-        const real rus_q_y = R_yx*rus_platform_point_x + R_yy*rus_platform_point_y +
-            R_yz*rus_platform_point_z;
-        const real R_zx = s[9*w + j];
-        const real R_zy = s[10*w + j];
-        const real R_zz = s[11*w + j];
-        const real rus_q_z = R_zx*rus_platform_point_x + R_zy*rus_platform_point_y +
-            R_zz*rus_platform_point_z;
-        const real rus_base_point_x = m->rus_base_point_x[i];
-        const real t_x = s[0*w + j];
-        const real rus_S_x = rus_q_x + t_x - rus_base_point_x;
-        const real rus_base_point_y = m->rus_base_point_y[i];
-        const real t_y = s[1*w + j];
-        const real rus_S_y = rus_q_y + t_y - rus_base_point_y;
-        const real rus_base_point_z = m->rus_base_point_z[i];
-        const real t_z = s[2*w + j];
-        const real rus_S_z = rus_q_z + t_z - rus_base_point_z;
-        /* (rus-Kd_1) projection on the centre's direction, from the distance fixed by the joints beyond
-           joint 1 */
-        const real rus_Kd_1_t = rus_S_x*rus_S_x + rus_S_y*rus_S_y + rus_S_z*rus_S_z;
-        const real rus_J_3_t = m->rus_J_3_t[i];
-        const real rus_J_3_t_2 = m->rus_J_3_t_2[i];
-        const real rus_Kd_1 = rus_J_3_t + R(0.5)*rus_Kd_1_t - rus_J_3_t_2;
-        /* (rus-px_1) component along the reference direction */
-        const real rus_base_frame_xx = m->rus_base_frame_xx[i];
-        const real rus_base_frame_yx = m->rus_base_frame_yx[i];
-        const real rus_base_frame_zx = m->rus_base_frame_zx[i];
-        const real rus_px_1 = rus_S_x*rus_base_frame_xx + rus_S_y*rus_base_frame_yx +
-            rus_S_z*rus_base_frame_zx;
-        /* (rus-py_1) component across the reference direction */
-        const real rus_base_frame_xy = m->rus_base_frame_xy[i];
-        const real rus_base_frame_yy = m->rus_base_frame_yy[i];
-        const real rus_base_frame_zy = m->rus_base_frame_zy[i];
-        const real rus_py_1 = rus_S_x*rus_base_frame_xy + rus_S_y*rus_base_frame_yy +
-            rus_S_z*rus_base_frame_zy;
-        /* (rus-Kc_1) factor of the cosine in the equation of joint 1 */
-        const real rus_joint2_offset_x = m->rus_joint2_offset_x[i];
-        const real rus_Kc_1 = rus_joint2_offset_x*rus_px_1;
-        /* (rus-Ks_1) factor of the sine in the equation of joint 1 */
-        const real rus_Ks_1 = rus_joint2_offset_x*rus_py_1;
-        /* (rus-rho2_1) squared amplitude */
-        const real rus_rho2_1 = rus_Kc_1*rus_Kc_1 + rus_Ks_1*rus_Ks_1;
-        /* (rus-disc_1) discriminant */
-        const real rus_disc_1 = rus_rho2_1 - rus_Kd_1*rus_Kd_1;
-        /* (rus-root_1) root, with the sign of the branch */
-        const real rus_branch_1 = m->rus_branch_1[i];
-        const real rus_root_1 = rus_branch_1*root(rus_disc_1);
-        /* (rus-c_1) cosine of the angle of joint 1 from its reference direction */
-        const real inv_rus_rho2_1 = 1/rus_rho2_1;
-        const real rus_c_1 = inv_rus_rho2_1*(rus_Kc_1*rus_Kd_1 - rus_Ks_1*rus_root_1);
-        /* (rus-s_1) sine of the angle of joint 1 from its reference direction */
-        const real rus_s_1 = inv_rus_rho2_1*(rus_Kc_1*rus_root_1 + rus_Kd_1*rus_Ks_1);
-        /* (rus-xi_1) the vector from joint 1 to the connection point, resolved along link 1 */
-        const real inv_rus_size_t = m->inv_rus_size_t[i];
-        const real rus_xi_1_t = inv_rus_size_t*rus_joint2_offset_x*rus_root_1;
-        const real rus_base_frame_xz = m->rus_base_frame_xz[i];
-        const real rus_base_frame_yz = m->rus_base_frame_yz[i];
-        const real rus_base_frame_zz = m->rus_base_frame_zz[i];
-        const real rus_xi_1_in_axes1_z = rus_S_x*rus_base_frame_xz + rus_S_y*rus_base_frame_yz +
-            rus_S_z*rus_base_frame_zz;
-        /* (rus-x_2) from the origin of joint 2 to the connection point */
-        const real rus_x_2_in_axes1_x = inv_rus_size_t*rus_Kd_1*rus_joint2_offset_x -
-            rus_joint2_offset_x;
-        /* (rus-rho2_2) squared amplitude */
-        const real rus_rho2_2 = rus_x_2_in_axes1_x*rus_x_2_in_axes1_x + rus_xi_1_t*rus_xi_1_t;
-        /* (rus-root_2) root, with the sign of the branch */
-        const real rus_branch_2 = m->rus_branch_2[i];
-        const real rus_root_2 = rus_branch_2*root(rus_rho2_2);
-        /* (rus-c_2) cosine of the angle of joint 2 from its reference direction */
-        const real inv_rus_rho2_2 = 1/rus_rho2_2;
-        const real rus_c_2 = inv_rus_rho2_2*rus_root_2*rus_xi_1_t;
-        /* (rus-s_2) sine of the angle of joint 2 from its reference direction */
-        const real rus_s_2 = inv_rus_rho2_2*rus_root_2*rus_x_2_in_axes1_x;
-        /* (rus-c_3) cosine of the angle of joint 3 from its reference direction */
-        const real inv_rus_size_t_2 = m->inv_rus_size_t_2[i];
-        const real rus_platform_joint_offset_x = m->rus_platform_joint_offset_x[i];
-        const real rus_c_3 = -inv_rus_size_t_2*rus_platform_joint_offset_x*rus_root_2;
-        /* (rus-s_3) sine of the angle of joint 3 from its reference direction */
-        const real rus_s_3 = inv_rus_size_t_2*rus_platform_joint_offset_x*rus_xi_1_in_axes1_z;
-        /* (rus-S_dot) velocity of the connection point */
-        const real omega_y = s[16*w + j];
-        const real omega_z = s[17*w + j];
-        const real rus_S_dot_t = omega_y*rus_q_z - omega_z*rus_q_y;
-        const real omega_x = s[15*w + j];
-        const real rus_S_dot_t_2 = omega_z*rus_q_x - omega_x*rus_q_z;
-        const real rus_S_dot_t_3 = omega_x*rus_q_y - omega_y*rus_q_x;
-        const real t_dot_x = s[12*w + j];
-        const real rus_S_dot_x = rus_S_dot_t + t_dot_x;
-        const real t_dot_y = s[13*w + j];
-        const real rus_S_dot_y = rus_S_dot_t_2 + t_dot_y;
-        const real t_dot_z = s[14*w + j];
-        const real rus_S_dot_z = rus_S_dot_t_3 + t_dot_z;
-        /* (rus-r_1) from joint 1 to the connection point, along the links */
-        const real rus_r_1_t = -rus_c_3*rus_platform_joint_offset_x;
-        const real rus_r_1_in_axes1_z = rus_platform_joint_offset_x*rus_s_3;
-        const real rus_r_1_t_2 = rus_c_2*rus_r_1_t;
-        const real rus_r_1_in_axes1_x = rus_joint2_offset_x + rus_r_1_t*rus_s_2;
-        const real rus_r_1_in_axes3_z = rus_c_2*rus_r_1_in_axes1_x - rus_r_1_t_2*rus_s_2;
-        /* (rus-v_1) velocity of the connection point per rate of joint 1 */
-        const real rus_v_1_t = rus_c_2*rus_r_1_t_2 + rus_r_1_in_axes1_x*rus_s_2;
-        const real rus_v_1_t_2 = -rus_c_3*rus_r_1_in_axes3_z;
-        const real rus_v_1_t_3 = rus_r_1_in_axes3_z*rus_s_3;
-        const real rus_v_1_in_axes3_z = rus_s_3*(rus_c_3*rus_r_1_in_axes1_z + rus_s_3*rus_v_1_t) -
-            rus_c_3*(rus_r_1_in_axes1_z*rus_s_3 - rus_c_3*rus_v_1_t);
-        /* (rus-w_1) reciprocal vector 1 */
-        const real rus_w_1_t = rus_c_1*rus_c_2 - rus_s_1*rus_s_2;
-        const real rus_w_1_t_2 = rus_c_1*rus_s_2 + rus_c_2*rus_s_1;
-        const real axis_z_rus_axes3_x = rus_base_frame_xx*rus_w_1_t +
-            rus_base_frame_xy*rus_w_1_t_2;
-        const real axis_z_rus_axes3_y = rus_base_frame_yx*rus_w_1_t +
-            rus_base_frame_yy*rus_w_1_t_2;
-        const real axis_z_rus_axes3_z = rus_base_frame_zx*rus_w_1_t +
-            rus_base_frame_zy*rus_w_1_t_2;
-        const real rus_w_1_t_3 = rus_s_2*rus_s_3;
-        const real rus_w_1_t_4 = rus_c_2*rus_s_3;
-        const real rus_w_1_t_5 = rus_c_1*rus_w_1_t_3 + rus_s_1*rus_w_1_t_4;
-        const real rus_w_1_t_6 = rus_s_1*rus_w_1_t_3 - rus_c_1*rus_w_1_t_4;
-        const real axis_y_rus_axes3_x = rus_base_frame_xx*rus_w_1_t_5 +
-            rus_base_frame_xy*rus_w_1_t_6 + rus_base_frame_xz*rus_c_3;
-        const real axis_y_rus_axes3_y = rus_base_frame_yx*rus_w_1_t_5 +
-            rus_base_frame_yy*rus_w_1_t_6 + rus_base_frame_yz*rus_c_3;
-        const real axis_y_rus_axes3_z = rus_base_frame_zx*rus_w_1_t_5 +
-            rus_base_frame_zy*rus_w_1_t_6 + rus_base_frame_zz*rus_c_3;
-        const real axis_x_rus_axes3_x = axis_y_rus_axes3_y*axis_z_rus_axes3_z -
-            axis_y_rus_axes3_z*axis_z_rus_axes3_y;
-        const real axis_x_rus_axes3_y = axis_y_rus_axes3_z*axis_z_rus_axes3_x -
-            axis_y_rus_axes3_x*axis_z_rus_axes3_z;
-        const real axis_x_rus_axes3_z = axis_y_rus_axes3_x*axis_z_rus_axes3_y -
-            axis_y_rus_axes3_y*axis_z_rus_axes3_x;
-        const real inv_rus_v_1_t_2 = 1/rus_v_1_t_2;
-        const real rus_w_1_t_7 = axis_x_rus_axes3_x*inv_rus_v_1_t_2;
-        const real rus_w_1_t_8 = axis_x_rus_axes3_y*inv_rus_v_1_t_2;
-        const real rus_w_1_t_9 = axis_x_rus_axes3_z*inv_rus_v_1_t_2;
-        /* (rus-w_2) reciprocal vector 2 */
-        const real rus_w_2_in_axes3_z = 1/rus_r_1_t;
-        /* (rus-qd_1) rate of joint 1 */
-        const real rus_qd_1 = -inv_rus_v_1_t_2*(axis_x_rus_axes3_x*rus_S_dot_x +
-            axis_x_rus_axes3_y*rus_S_dot_y + axis_x_rus_axes3_z*rus_S_dot_z);
-        /* (rus-qd_3) rate of joint 3 */
-        const real rus_qd_3_t = axis_y_rus_axes3_x*rus_S_dot_x + axis_y_rus_axes3_y*rus_S_dot_y +
-            axis_y_rus_axes3_z*rus_S_dot_z + rus_qd_1*rus_v_1_t_3;
-        const real rus_w_3_in_axes3_y = m->rus_w_3_in_axes3_y[i];
-        const real rus_qd_3 = rus_qd_3_t*rus_w_3_in_axes3_y;
-        /* (rus-omega_1) angular velocity of link 1 */
-        const real rus_omega_1_in_axes3_x = rus_qd_1*rus_s_3;
-        const real rus_omega_1_in_axes3_y = rus_c_3*rus_qd_1;
-        /* (rus-omega_2) angular velocity of link 2 */
-        const real rus_omega_2_in_axes2_z = rus_qd_1 +
-            rus_w_2_in_axes3_z*(axis_z_rus_axes3_x*rus_S_dot_x + axis_z_rus_axes3_y*rus_S_dot_y +
-            axis_z_rus_axes3_z*rus_S_dot_z - rus_qd_1*rus_v_1_in_axes3_z);
-        const real rus_omega_2_in_axes3_x = rus_omega_2_in_axes2_z*rus_s_3;
-        const real rus_omega_2_in_axes3_y = rus_c_3*rus_omega_2_in_axes2_z;
-        /* (rus-W_3) centripetal tensor of link 3 */
-        const real rus_W_3_in_axes3_yz = rus_omega_2_in_axes3_y*rus_qd_3;
-        const real rus_W_3_in_axes3_xz = rus_omega_2_in_axes3_x*rus_qd_3;
-        const real rus_W_3_in_axes3_xy = rus_omega_2_in_axes3_x*rus_omega_2_in_axes3_y;
-        /* (rus-a_p) acceleration of the connection point without its centripetal part */
-        const real alpha_y = s[22*w + j];
-        const real alpha_z = s[23*w + j];
-        const real t_ddot_x = s[18*w + j];
-        const real rus_a_p_x = t_ddot_x + alpha_y*rus_q_z - alpha_z*rus_q_y;
-        const real alpha_x = s[21*w + j];
-        const real t_ddot_y = s[19*w + j];
-        const real rus_a_p_y = t_ddot_y + alpha_z*rus_q_x - alpha_x*rus_q_z;
-        const real t_ddot_z = s[20*w + j];
-        const real rus_a_p_z = t_ddot_z + alpha_x*rus_q_y - alpha_y*rus_q_x;
-        /* (rus-S_ddot) acceleration of the connection point */
-        const real rus_S_ddot_x = rus_a_p_x + omega_y*rus_S_dot_t_3 - omega_z*rus_S_dot_t_2;
-        const real rus_S_ddot_y = rus_a_p_y + omega_z*rus_S_dot_t - omega_x*rus_S_dot_t_3;
-        const real rus_S_ddot_z = rus_a_p_z + omega_x*rus_S_dot_t_2 - omega_y*rus_S_dot_t;
-        const real rus_S_ddot_in_axes3_x = axis_x_rus_axes3_x*rus_S_ddot_x +
-            axis_x_rus_axes3_y*rus_S_ddot_y + axis_x_rus_axes3_z*rus_S_ddot_z;
-        const real rus_S_ddot_in_axes3_y = axis_y_rus_axes3_x*rus_S_ddot_x +
-            axis_y_rus_axes3_y*rus_S_ddot_y + axis_y_rus_axes3_z*rus_S_ddot_z;
-        const real rus_S_ddot_in_axes3_z = axis_z_rus_axes3_x*rus_S_ddot_x +
-            axis_z_rus_axes3_y*rus_S_ddot_y + axis_z_rus_axes3_z*rus_S_ddot_z;
-        /* (rus-bias) acceleration of the connection point at zero joint accelerations */
-        const real rus_d_2_in_axes3_z = rus_c_2*rus_joint2_offset_x;
-        const real rus_bias_t = rus_joint2_offset_x*rus_s_2;
-        const real rus_bias_t_2 = rus_bias_t*rus_c_3*rus_omega_1_in_axes3_y +
-            rus_bias_t*rus_omega_1_in_axes3_x*rus_s_3;
-        const real rus_bias_t_3 = rus_omega_2_in_axes3_y*rus_platform_joint_offset_x;
-        const real rus_bias_in_axes3_x = rus_bias_t_2*rus_omega_1_in_axes3_y -
-            rus_bias_t_3*rus_omega_2_in_axes3_y - rus_qd_3*rus_qd_3_t;
-        const real rus_bias_in_axes3_y = rus_bias_t_3*rus_omega_2_in_axes3_x -
-            rus_bias_t_2*rus_omega_1_in_axes3_x;
-        const real rus_bias_in_axes3_z = rus_W_3_in_axes3_xz*rus_platform_joint_offset_x +
-            rus_omega_2_in_axes3_x*rus_qd_3_t -
-            rus_d_2_in_axes3_z*rus_omega_1_in_axes3_x*rus_omega_1_in_axes3_x -
-            rus_d_2_in_axes3_z*rus_omega_1_in_axes3_y*rus_omega_1_in_axes3_y;
-        /* (rus-rel) acceleration of the connection point left to the joint accelerations */
-        const real rus_rel_in_axes3_x = rus_S_ddot_in_axes3_x - rus_bias_in_axes3_x;
-        const real rus_rel_in_axes3_y = rus_S_ddot_in_axes3_y - rus_bias_in_axes3_y;
-        const real rus_rel_in_axes3_z = rus_S_ddot_in_axes3_z - rus_bias_in_axes3_z;
-        /* (rus-qdd_1) acceleration of joint 1 */
-        const real rus_qdd_1_t = inv_rus_v_1_t_2*rus_rel_in_axes3_x;
-        /* (rus-qdd_3) acceleration of joint 3 */
-        const real rus_qdd_3_t = rus_w_3_in_axes3_y*(rus_qdd_1_t*rus_v_1_t_3 -
-            rus_rel_in_axes3_y);
-        /* (rus-alpha_2) angular acceleration of link 2 */
-        const real rus_alpha_2_in_axes2_z = rus_w_2_in_axes3_z*(rus_rel_in_axes3_z +
-            rus_qdd_1_t*rus_v_1_in_axes3_z) - rus_qdd_1_t;
-        const real rus_alpha_2_in_axes3_x = rus_alpha_2_in_axes2_z*rus_s_3;
-        const real rus_alpha_2_in_axes3_y = rus_alpha_2_in_axes2_z*rus_c_3;
-        /* (rus-alpha_3) angular acceleration of link 3 */
-        const real rus_alpha_3_in_axes3_x = rus_W_3_in_axes3_yz + rus_alpha_2_in_axes3_x;
-        const real rus_alpha_3_in_axes3_y = rus_alpha_2_in_axes3_y - rus_W_3_in_axes3_xz;
-        /* (rus-B_3) acceleration tensor of link 3 */
-        const real rus_B_3_in_axes3_xy = rus_W_3_in_axes3_xy + rus_qdd_3_t;
-        const real rus_B_3_in_axes3_yx = rus_W_3_in_axes3_xy - rus_qdd_3_t;
-        const real rus_B_3_in_axes3_zx = rus_W_3_in_axes3_xz - rus_alpha_3_in_axes3_y;
-        const real rus_B_3_in_axes3_zy = rus_W_3_in_axes3_yz + rus_alpha_3_in_axes3_x;
-        /* (rus-acc_3) acceleration of the reference point of link 3, less gravity */
-        const real gravity_x = m->gravity_x;
-        const real gravity_y = m->gravity_y;
-        const real gravity_z = m->gravity_z;
-        const real rus_acc_3_in_axes3_x = rus_S_ddot_in_axes3_x - axis_x_rus_axes3_x*gravity_x -
-            axis_x_rus_axes3_y*gravity_y - axis_x_rus_axes3_z*gravity_z;
-        const real rus_acc_3_in_axes3_y = rus_S_ddot_in_axes3_y - axis_y_rus_axes3_x*gravity_x -
-            axis_y_rus_axes3_y*gravity_y - axis_y_rus_axes3_z*gravity_z;
-        const real rus_acc_3_in_axes3_z = rus_S_ddot_in_axes3_z - axis_z_rus_axes3_x*gravity_x -
-            axis_z_rus_axes3_y*gravity_y - axis_z_rus_axes3_z*gravity_z;
-        /* (rus-mu_3) inertia moment of the links that turn with link 3, about their reference points */
-        const real rus_mu_3_t = rus_omega_2_in_axes3_x*rus_omega_2_in_axes3_x;
-        const real rus_mu_3_t_2 = rus_omega_2_in_axes3_y*rus_omega_2_in_axes3_y;
-        const real rus_mu_3_t_3 = rus_qd_3*rus_qd_3;
-        const real rus_J_3_in_spec3_xy = m->rus_J_3_in_spec3_xy[i];
-        const real rus_J_3_in_spec3_xz = m->rus_J_3_in_spec3_xz[i];
-        const real rus_J_3_in_spec3_yz = m->rus_J_3_in_spec3_yz[i];
-        const real rus_Sigma_3_in_axes3_yy = m->rus_Sigma_3_in_axes3_yy[i];
-        const real rus_Sigma_3_in_axes3_zz = m->rus_Sigma_3_in_axes3_zz[i];
-        const real rus_h_3_in_spec3_y = m->rus_h_3_in_spec3_y[i];
-        const real rus_h_3_in_spec3_z = m->rus_h_3_in_spec3_z[i];
-        const real rus_mu_3_in_axes3_x = rus_B_3_in_axes3_yx*rus_J_3_in_spec3_xy +
-            rus_B_3_in_axes3_zx*rus_J_3_in_spec3_xz + rus_B_3_in_axes3_zy*rus_Sigma_3_in_axes3_yy
-            + rus_Sigma_3_in_axes3_zz*rus_alpha_2_in_axes3_x - rus_J_3_in_spec3_yz*(rus_mu_3_t_2 -
-            rus_mu_3_t_3) - rus_acc_3_in_axes3_y*rus_h_3_in_spec3_y -
-            rus_acc_3_in_axes3_z*rus_h_3_in_spec3_z;
-        const real rus_Sigma_3_in_axes3_xx = m->rus_Sigma_3_in_axes3_xx[i];
-        const real rus_h_3_in_spec3_x = m->rus_h_3_in_spec3_x[i];
-        const real rus_mu_3_in_axes3_y = rus_B_3_in_axes3_xy*rus_J_3_in_spec3_yz +
-            rus_Sigma_3_in_axes3_zz*rus_alpha_2_in_axes3_y +
-            rus_acc_3_in_axes3_x*rus_h_3_in_spec3_y - rus_B_3_in_axes3_zx*rus_Sigma_3_in_axes3_xx
-            - rus_B_3_in_axes3_zy*rus_J_3_in_spec3_xz - rus_J_3_in_spec3_xy*(rus_mu_3_t -
-            rus_mu_3_t_3) - rus_acc_3_in_axes3_z*rus_h_3_in_spec3_x;
-        const real rus_mu_3_in_axes3_z = rus_B_3_in_axes3_yx*rus_Sigma_3_in_axes3_xx +
-            rus_J_3_in_spec3_xy*rus_alpha_2_in_axes3_x + rus_acc_3_in_axes3_x*rus_h_3_in_spec3_z +
-            rus_acc_3_in_axes3_y*rus_h_3_in_spec3_x - rus_B_3_in_axes3_xy*rus_Sigma_3_in_axes3_yy
-            - rus_J_3_in_spec3_xz*(rus_mu_3_t - rus_mu_3_t_2) -
-            rus_J_3_in_spec3_yz*rus_alpha_2_in_axes3_y;
-        const real rus_mu_3_in_axes1_z = rus_c_3*rus_mu_3_in_axes3_y +
-            rus_mu_3_in_axes3_x*rus_s_3;
-        /* (rus-mu_1) inertia moment of the links that turn with link 1, about their reference points */
-        const real rus_J_1_in_spec1_zz = m->rus_J_1_in_spec1_zz[i];
-        const real rus_h_1_in_spec1_x = m->rus_h_1_in_spec1_x[i];
-        const real rus_h_1_in_spec1_y = m->rus_h_1_in_spec1_y[i];
-        const real rus_mu_1_t = m->rus_mu_1_t[i];
-        const real rus_mu_1_t_2 = m->rus_mu_1_t_2[i];
-        const real rus_mu_1_in_axes1_z = rus_h_1_in_spec1_y*(rus_c_1*rus_mu_1_t +
-            rus_mu_1_t_2*rus_s_1) - rus_J_1_in_spec1_zz*rus_qdd_1_t -
-            rus_h_1_in_spec1_x*(rus_c_1*rus_mu_1_t_2 - rus_mu_1_t*rus_s_1);
-        /* (rus-N_1) moment about joint 1 of the links from 1 outwards, the force at the connection point
-           left out */
-        const real rus_N_1_in_axes1_z = rus_mu_1_in_axes1_z + rus_mu_3_in_axes1_z;
-        /* (rus-G) force at the connection point that balances the leg's inertia and weight along all
-           degrees of freedom */
-        const real rus_G_in_axes3_z = rus_mu_3_in_axes1_z*rus_w_2_in_axes3_z;
-        const real rus_G_in_axes3_y = rus_mu_3_in_axes3_z*rus_w_3_in_axes3_y;
+        values_rus v;
+        stage_rus_X(m, w, i, j, s, X, &v);
+        stage_rus_A_X(w, j, A, &v);
+        stage_rus_V_X(w, j, V, &v);
+        stage_rus_A_V_X(w, j, V, &v);
+        stage_rus_legs_required(m, i, &v);
         /* (rus-c) leg force on the platform without actuation and without the mass at the connection
            point */
-        const real rus_c_in_axes3_x = inv_rus_v_1_t_2*(rus_N_1_in_axes1_z +
-            rus_G_in_axes3_y*rus_v_1_t_3 - rus_G_in_axes3_z*rus_v_1_in_axes3_z) +
-            rus_B_3_in_axes3_xy*rus_h_3_in_spec3_z + rus_h_3_in_spec3_x*(rus_mu_3_t_2 +
-            rus_mu_3_t_3) - rus_alpha_2_in_axes3_y*rus_h_3_in_spec3_y;
-        const real rus_c_in_axes3_y = rus_alpha_2_in_axes3_x*rus_h_3_in_spec3_y - rus_G_in_axes3_y
-            - rus_B_3_in_axes3_yx*rus_h_3_in_spec3_x - rus_h_3_in_spec3_z*(rus_mu_3_t +
-            rus_mu_3_t_3);
-        const real rus_c_in_axes3_z = rus_B_3_in_axes3_zy*rus_h_3_in_spec3_z +
-            rus_h_3_in_spec3_y*(rus_mu_3_t + rus_mu_3_t_2) - rus_G_in_axes3_z -
-            rus_B_3_in_axes3_zx*rus_h_3_in_spec3_x;
-        const real rus_c_x = axis_x_rus_axes3_x*rus_c_in_axes3_x +
-            axis_y_rus_axes3_x*rus_c_in_axes3_y + axis_z_rus_axes3_x*rus_c_in_axes3_z;
-        const real rus_c_y = axis_x_rus_axes3_y*rus_c_in_axes3_x +
-            axis_y_rus_axes3_y*rus_c_in_axes3_y + axis_z_rus_axes3_y*rus_c_in_axes3_z;
-        const real rus_c_z = axis_x_rus_axes3_z*rus_c_in_axes3_x +
-            axis_y_rus_axes3_z*rus_c_in_axes3_y + axis_z_rus_axes3_z*rus_c_in_axes3_z;
+        const real rus_c_x = v.axis_x_rus_axes3_x*v.rus_c_in_axes3_x +
+            v.axis_y_rus_axes3_x*v.rus_c_in_axes3_y + v.axis_z_rus_axes3_x*v.rus_c_in_axes3_z;
+        const real rus_c_y = v.axis_x_rus_axes3_y*v.rus_c_in_axes3_x +
+            v.axis_y_rus_axes3_y*v.rus_c_in_axes3_y + v.axis_z_rus_axes3_y*v.rus_c_in_axes3_z;
+        const real rus_c_z = v.axis_x_rus_axes3_z*v.rus_c_in_axes3_x +
+            v.axis_y_rus_axes3_z*v.rus_c_in_axes3_y + v.axis_z_rus_axes3_z*v.rus_c_in_axes3_z;
         /* (R_a) moment that actuators and external wrench must give */
-        const real rus_R_a_t = rus_c_y*rus_q_z - rus_c_z*rus_q_y;
-        const real rus_R_a_t_2 = rus_c_z*rus_q_x - rus_c_x*rus_q_z;
-        const real rus_R_a_t_3 = rus_c_x*rus_q_y - rus_c_y*rus_q_x;
+        const real rus_R_a_t = rus_c_y*v.rus_q_z - rus_c_z*v.rus_q_y;
+        const real rus_R_a_t_2 = rus_c_z*v.rus_q_x - rus_c_x*v.rus_q_z;
+        const real rus_R_a_t_3 = rus_c_x*v.rus_q_y - rus_c_y*v.rus_q_x;
         /* (rus-H_a_1) moment of the column's unit force about the platform origin */
-        const real rus_H_a_1_x = rus_q_z*rus_w_1_t_8 - rus_q_y*rus_w_1_t_9;
-        const real rus_H_a_1_y = rus_q_x*rus_w_1_t_9 - rus_q_z*rus_w_1_t_7;
-        const real rus_H_a_1_z = rus_q_y*rus_w_1_t_7 - rus_q_x*rus_w_1_t_8;
+        const real rus_H_a_1_x = v.rus_q_z*v.rus_w_1_t_8 - v.rus_q_y*v.rus_w_1_t_9;
+        const real rus_H_a_1_y = v.rus_q_x*v.rus_w_1_t_9 - v.rus_q_z*v.rus_w_1_t_7;
+        const real rus_H_a_1_z = v.rus_q_y*v.rus_w_1_t_7 - v.rus_q_x*v.rus_w_1_t_8;
         /* (R_t) force that actuators and external wrench must give */
         gather(&terms[0*count + k], add, rus_c_x);  /* R_t_x_of_legs */
         gather(&terms[1*count + k], add, rus_c_y);  /* R_t_y_of_legs */
@@ -3954,9 +3595,9 @@ INLINE void required_legs_rus(const prepared *m, size_t w, size_t leg, size_t le
         gather(&terms[4*count + k], add, rus_R_a_t_2);  /* R_a_y_of_legs */
         gather(&terms[5*count + k], add, rus_R_a_t_3);  /* R_a_z_of_legs */
         /* (rus-w_1) reciprocal vector 1 */
-        o[0*count + k] = -rus_w_1_t_7;
-        o[1*count + k] = -rus_w_1_t_8;
-        o[2*count + k] = -rus_w_1_t_9;
+        o[0*count + k] = -v.rus_w_1_t_7;
+        o[1*count + k] = -v.rus_w_1_t_8;
+        o[2*count + k] = -v.rus_w_1_t_9;
         /* (rus-H_a_1) moment of the column's unit force about the platform origin */
         o[3*count + k] = rus_H_a_1_x;
         o[4*count + k] = rus_H_a_1_y;
@@ -3964,11 +3605,11 @@ INLINE void required_legs_rus(const prepared *m, size_t w, size_t leg, size_t le
         const real rus_rho2_1_t = m->rus_rho2_1_t[i];
         const real rus_size_t_3 = m->rus_size_t_3[i];
         const real rus_size = m->rus_size[i];
-        o[7*count + k] = UNLESS(magnitude(rus_rho2_1) > TOLERANCE*TOLERANCE*rus_rho2_1_t) +
-            UNLESS(magnitude(rus_rho2_2) > TOLERANCE*TOLERANCE*rus_size_t_3) +
-            UNLESS(magnitude(rus_r_1_t) > TOLERANCE*rus_size) + UNLESS(magnitude(rus_v_1_t_2) >
-            TOLERANCE*rus_size);
-        o[6*count + k] = UNLESS(rus_disc_1 >= 0);
+        o[7*count + k] = UNLESS(magnitude(v.rus_rho2_1) > TOLERANCE*TOLERANCE*rus_rho2_1_t) +
+            UNLESS(magnitude(v.rus_rho2_2) > TOLERANCE*TOLERANCE*rus_size_t_3) +
+            UNLESS(magnitude(v.rus_r_1_t) > TOLERANCE*rus_size) + UNLESS(magnitude(v.rus_v_1_t_2)
+            > TOLERANCE*rus_size);
+        o[6*count + k] = UNLESS(v.rus_disc_1 >= 0);
     }
 }
 
@@ -3976,7 +3617,7 @@ INLINE void required_place_rus(size_t w, size_t count, const real *o, size_t leg
     real *H, verdict *t)
 {
     for (size_t k = 0; k < w; ++k) {
-        H[(0*NU + leg)*w + k] = o[0*count + first + k];
+        H[leg*w + k] = o[0*count + first + k];
         H[(NU + leg)*w + k] = o[1*count + first + k];
         H[(2*NU + leg)*w + k] = o[2*count + first + k];
         H[(3*NU + leg)*w + k] = o[3*count + first + k];
@@ -3992,23 +3633,23 @@ INLINE void required_after(size_t w, const real *s, const real *sums, real *requ
     for (size_t k = 0; k < w; ++k) {
         /* (R_t) force that actuators and external wrench must give */
         const real R_t_x_of_legs = sums[0*w + k];
-        const real f_p_x = s[24*w + k];
+        const real f_p_x = s[9*w + k];
         const real R_t_x = f_p_x - R_t_x_of_legs;
         const real R_t_y_of_legs = sums[1*w + k];
-        const real f_p_y = s[25*w + k];
+        const real f_p_y = s[10*w + k];
         const real R_t_y = f_p_y - R_t_y_of_legs;
         const real R_t_z_of_legs = sums[2*w + k];
-        const real f_p_z = s[26*w + k];
+        const real f_p_z = s[11*w + k];
         const real R_t_z = f_p_z - R_t_z_of_legs;
         /* (R_a) moment that actuators and external wrench must give */
         const real R_a_x_of_legs = sums[3*w + k];
-        const real mu_p_x = s[27*w + k];
+        const real mu_p_x = s[12*w + k];
         const real R_a_x = R_a_x_of_legs + mu_p_x;
         const real R_a_y_of_legs = sums[4*w + k];
-        const real mu_p_y = s[28*w + k];
+        const real mu_p_y = s[13*w + k];
         const real R_a_y = R_a_y_of_legs + mu_p_y;
         const real R_a_z_of_legs = sums[5*w + k];
-        const real mu_p_z = s[29*w + k];
+        const real mu_p_z = s[14*w + k];
         const real R_a_z = R_a_z_of_legs + mu_p_z;
         /* (R_t) force that actuators and external wrench must give */
         required[0*w + k] = R_t_x;
@@ -4024,12 +3665,10 @@ INLINE void required_after(size_t w, const real *s, const real *sums, real *requ
 INLINE void required_run(const prepared *m, const real *X, const real *V, const real *A, real
     *required, real *H, verdict *t)
 {
-    real s[30] = {0};
-    real sums[6] = {0};
-    real terms_rus[6*LEGS(LEGS_OF_rus)] = {0};
-    real o_rus[8*LEGS(LEGS_OF_rus)] = {0};
+    real s[15] = {0}, sums[6] = {0};
+    real terms_rus[6*LEGS(LEGS_OF_rus)] = {0}, o_rus[8*LEGS(LEGS_OF_rus)] = {0};
     required_before(m, 1, X, V, A, s, t);
-    required_legs_rus(m, 1, 0, 1, s, 0, LEGS(LEGS_OF_rus), 0, terms_rus, o_rus);
+    required_legs_rus(m, 1, 0, 1, s, 0, LEGS(LEGS_OF_rus), 0, X, V, A, terms_rus, o_rus);
     for (size_t leg = 0; leg < LEGS_OF_rus; ++leg) {
         required_place_rus(1, LEGS(LEGS_OF_rus), o_rus, leg, leg, H, t);
     }
@@ -4042,163 +3681,62 @@ INLINE void required_run(const prepared *m, const real *X, const real *V, const 
 INLINE void required_run_lanes(const prepared *m, const real *X, const real *V, const real *A,
     real *required, real *H, verdict *t)
 {
-    real s[30*LANES];
-    real sums[6*LANES];
+    real s[15*LANES], sums[6*LANES];
     real o_rus[8*LANES];
     required_before(m, LANES, X, V, A, s, t);
     clear(sums, 6*LANES);
     for (size_t leg = 0; leg < LEGS_OF_rus; ++leg) {
-        required_legs_rus(m, LANES, leg, 0, s, 1, LANES, 1, sums, o_rus);
+        required_legs_rus(m, LANES, leg, 0, s, 1, LANES, 1, X, V, A, sums, o_rus);
         required_place_rus(LANES, LANES, o_rus, leg, 0, H, t);
     }
     required_after(LANES, s, sums, required);
 }
 
 /* ---- inverse_kinematics ---- */
-INLINE void inverse_kinematics_before(size_t w, const real *X, real *s, verdict *t)
+INLINE void inverse_kinematics_before(const prepared *m, size_t w, const real *X, real *s, verdict
+    *t)
 {
     for (size_t k = 0; k < w; ++k) {
-        /* X: named entries */
-        const real X_0 = X[0*w + k];
-        const real t_x = X_0;
-        const real X_1 = X[1*w + k];
-        const real t_y = X_1;
-        const real X_2 = X[2*w + k];
-        const real t_z = X_2;
-        const real X_3 = X[3*w + k];
-        const real X_4 = X[4*w + k];
-        const real X_5 = X[5*w + k];
-        const real X_6 = X[6*w + k];
-        const real quaternion_norm2 = X_3*X_3 + X_4*X_4 + X_5*X_5 + X_6*X_6;
-        const real quaternion_scale = 2/quaternion_norm2;
-        const real quaternion_sx = X_3*quaternion_scale;
-        const real quaternion_sy = X_4*quaternion_scale;
-        const real quaternion_sz = X_5*quaternion_scale;
-        const real quaternion_wx = X_6*quaternion_sx;
-        const real quaternion_wy = X_6*quaternion_sy;
-        const real quaternion_wz = X_6*quaternion_sz;
-        const real quaternion_xx = X_3*quaternion_sx;
-        const real quaternion_xy = X_3*quaternion_sy;
-        const real quaternion_xz = X_3*quaternion_sz;
-        const real quaternion_yy = X_4*quaternion_sy;
-        const real quaternion_yz = X_4*quaternion_sz;
-        const real quaternion_zz = X_5*quaternion_sz;
-        const real R_xx = 1 - quaternion_yy - quaternion_zz;
-        const real R_xy = quaternion_xy - quaternion_wz;
-        const real R_xz = quaternion_wy + quaternion_xz;
-        const real R_yx = quaternion_wz + quaternion_xy;
-        const real R_yy = 1 - quaternion_xx - quaternion_zz;
-        const real R_yz = quaternion_yz - quaternion_wx;
-        const real R_zx = quaternion_xz - quaternion_wy;
-        const real R_zy = quaternion_wx + quaternion_yz;
-        const real R_zz = 1 - quaternion_xx - quaternion_yy;
-        s[0*w + k] = t_x;
-        s[1*w + k] = t_y;
-        s[2*w + k] = t_z;
-        s[3*w + k] = R_xx;
-        s[4*w + k] = R_xy;
-        s[5*w + k] = R_xz;
-        s[6*w + k] = R_yx;
-        s[7*w + k] = R_yy;
-        s[8*w + k] = R_yz;
-        s[9*w + k] = R_zx;
-        s[10*w + k] = R_zy;
-        s[11*w + k] = R_zz;
-        t->invalid[k] += UNLESS(is_finite(quaternion_scale)) + UNLESS(quaternion_scale > 0);
+        values v;
+        stage_X(m, w, k, X, &v);
+        s[0*w + k] = v.R_xx;
+        s[1*w + k] = v.R_xy;
+        s[2*w + k] = v.R_xz;
+        s[3*w + k] = v.R_yx;
+        s[4*w + k] = v.R_yy;
+        s[5*w + k] = v.R_yz;
+        s[6*w + k] = v.R_zx;
+        s[7*w + k] = v.R_zy;
+        s[8*w + k] = v.R_zz;
+        t->invalid[k] += UNLESS(is_finite(v.quaternion_scale)) + UNLESS(v.quaternion_scale > 0);
     }
 }
 
 INLINE void inverse_kinematics_legs_rus(const prepared *m, size_t w, size_t leg, size_t legs,
-    const real *s, size_t states, size_t count, real *o)
+    const real *s, size_t states, size_t count, const real *X, real *o)
 {
     for (size_t k = 0; k < count; ++k) {
         const size_t i = leg + legs*k;
         const size_t j = states*k;
-        /* (rus-S) from the base point to the connection point */
-        const real R_xx = s[3*w + j];
-        const real R_xy = s[4*w + j];
-        const real R_xz = s[5*w + j];
-        const real rus_base_point_x = m->rus_base_point_x[i];
-        const real rus_platform_point_x = m->rus_platform_point_x[i];
-        const real rus_platform_point_y = m->rus_platform_point_y[i];
-        const real rus_platform_point_z = m->rus_platform_point_z[i];
-        const real t_x = s[0*w + j];
-        const real rus_S_x = t_x + R_xx*rus_platform_point_x + R_xy*rus_platform_point_y +
-            R_xz*rus_platform_point_z - rus_base_point_x;
-        const real R_yx = s[6*w + j];
-        const real R_yy = s[7*w + j];
-        const real R_yz = s[8*w + j];
-        const real rus_base_point_y = m->rus_base_point_y[i];
-        const real t_y = s[1*w + j];
-        const real rus_S_y = t_y + R_yx*rus_platform_point_x + R_yy*rus_platform_point_y +
-            R_yz*rus_platform_point_z - rus_base_point_y;
-        const real R_zx = s[9*w + j];
-        const real R_zy = s[10*w + j];
-        const real R_zz = s[11*w + j];
-        const real rus_base_point_z = m->rus_base_point_z[i];
-        const real t_z = s[2*w + j];
-        const real rus_S_z = t_z + R_zx*rus_platform_point_x + R_zy*rus_platform_point_y +
-            R_zz*rus_platform_point_z - rus_base_point_z;
-        /* (rus-Kd_1) projection on the centre's direction, from the distance fixed by the joints beyond
-           joint 1 */
-        const real rus_Kd_1_t = rus_S_x*rus_S_x + rus_S_y*rus_S_y + rus_S_z*rus_S_z;
-        const real rus_J_3_t = m->rus_J_3_t[i];
-        const real rus_J_3_t_2 = m->rus_J_3_t_2[i];
-        const real rus_Kd_1 = rus_J_3_t + R(0.5)*rus_Kd_1_t - rus_J_3_t_2;
-        /* (rus-px_1) component along the reference direction */
-        const real rus_base_frame_xx = m->rus_base_frame_xx[i];
-        const real rus_base_frame_yx = m->rus_base_frame_yx[i];
-        const real rus_base_frame_zx = m->rus_base_frame_zx[i];
-        const real rus_px_1 = rus_S_x*rus_base_frame_xx + rus_S_y*rus_base_frame_yx +
-            rus_S_z*rus_base_frame_zx;
-        /* (rus-py_1) component across the reference direction */
-        const real rus_base_frame_xy = m->rus_base_frame_xy[i];
-        const real rus_base_frame_yy = m->rus_base_frame_yy[i];
-        const real rus_base_frame_zy = m->rus_base_frame_zy[i];
-        const real rus_py_1 = rus_S_x*rus_base_frame_xy + rus_S_y*rus_base_frame_yy +
-            rus_S_z*rus_base_frame_zy;
-        /* (rus-Kc_1) factor of the cosine in the equation of joint 1 */
-        const real rus_joint2_offset_x = m->rus_joint2_offset_x[i];
-        const real rus_Kc_1 = rus_joint2_offset_x*rus_px_1;
-        /* (rus-Ks_1) factor of the sine in the equation of joint 1 */
-        const real rus_Ks_1 = rus_joint2_offset_x*rus_py_1;
-        /* (rus-rho2_1) squared amplitude */
-        const real rus_rho2_1 = rus_Kc_1*rus_Kc_1 + rus_Ks_1*rus_Ks_1;
-        /* (rus-disc_1) discriminant */
-        const real rus_disc_1 = rus_rho2_1 - rus_Kd_1*rus_Kd_1;
-        /* (rus-root_1) root, with the sign of the branch */
-        const real rus_branch_1 = m->rus_branch_1[i];
-        const real rus_root_1 = rus_branch_1*root(rus_disc_1);
+        values_rus v;
+        stage_rus_inverse_kinematics_potential(m, w, i, j, s, X, &v);
         /* (rus-q_1) displacement of joint 1 */
-        const real inv_rus_rho2_1 = 1/rus_rho2_1;
-        const real rus_q_1 = angle(inv_rus_rho2_1*(rus_Kc_1*rus_root_1 + rus_Kd_1*rus_Ks_1),
-            inv_rus_rho2_1*(rus_Kc_1*rus_Kd_1 - rus_Ks_1*rus_root_1));
-        /* (rus-xi_1) the vector from joint 1 to the connection point, resolved along link 1 */
-        const real inv_rus_size_t = m->inv_rus_size_t[i];
-        const real rus_xi_1_t = inv_rus_size_t*rus_joint2_offset_x*rus_root_1;
+        const real rus_q_1 = angle(v.inv_rus_rho2_1*(v.rus_Kc_1*v.rus_root_1 +
+            v.rus_Kd_1*v.rus_Ks_1), v.inv_rus_rho2_1*(v.rus_Kc_1*v.rus_Kd_1 -
+            v.rus_Ks_1*v.rus_root_1));
+        /* (rus-q_2) displacement of joint 2 */
+        const real rus_q_2 = angle(-v.inv_rus_rho2_2*v.rus_root_2*v.rus_xi_1_t,
+            v.inv_rus_rho2_2*v.rus_root_2*v.rus_x_2_in_axes1_x);
+        /* (rus-q_3) displacement of joint 3 */
+        const real inv_rus_size_t_2 = m->inv_rus_size_t_2[i];
         const real rus_base_frame_xz = m->rus_base_frame_xz[i];
         const real rus_base_frame_yz = m->rus_base_frame_yz[i];
         const real rus_base_frame_zz = m->rus_base_frame_zz[i];
-        const real rus_xi_1_in_axes1_z = rus_S_x*rus_base_frame_xz + rus_S_y*rus_base_frame_yz +
-            rus_S_z*rus_base_frame_zz;
-        /* (rus-x_2) from the origin of joint 2 to the connection point */
-        const real rus_x_2_in_axes1_x = inv_rus_size_t*rus_Kd_1*rus_joint2_offset_x -
-            rus_joint2_offset_x;
-        /* (rus-rho2_2) squared amplitude */
-        const real rus_rho2_2 = rus_x_2_in_axes1_x*rus_x_2_in_axes1_x + rus_xi_1_t*rus_xi_1_t;
-        /* (rus-root_2) root, with the sign of the branch */
-        const real rus_branch_2 = m->rus_branch_2[i];
-        const real rus_root_2 = rus_branch_2*root(rus_rho2_2);
-        /* (rus-q_2) displacement of joint 2 */
-        const real inv_rus_rho2_2 = 1/rus_rho2_2;
-        const real rus_q_2 = angle(-inv_rus_rho2_2*rus_root_2*rus_xi_1_t,
-            inv_rus_rho2_2*rus_root_2*rus_x_2_in_axes1_x);
-        /* (rus-q_3) displacement of joint 3 */
-        const real inv_rus_size_t_2 = m->inv_rus_size_t_2[i];
         const real rus_platform_joint_offset_x = m->rus_platform_joint_offset_x[i];
         const real rus_q_3 =
-            angle(-inv_rus_size_t_2*rus_platform_joint_offset_x*rus_xi_1_in_axes1_z,
-            inv_rus_size_t_2*rus_platform_joint_offset_x*rus_root_2);
+            angle(-inv_rus_size_t_2*rus_platform_joint_offset_x*(v.rus_S_x*rus_base_frame_xz +
+            v.rus_S_y*rus_base_frame_yz + v.rus_S_z*rus_base_frame_zz),
+            inv_rus_size_t_2*rus_platform_joint_offset_x*v.rus_root_2);
         /* (rus-q_1) displacement of joint 1 */
         o[0*count + k] = rus_q_1;
         /* (rus-q_2) displacement of joint 2 */
@@ -4208,9 +3746,9 @@ INLINE void inverse_kinematics_legs_rus(const prepared *m, size_t w, size_t leg,
         o[5*count + k] = rus_q_1 + (rus_q_2 + rus_q_3);
         const real rus_rho2_1_t = m->rus_rho2_1_t[i];
         const real rus_size_t_3 = m->rus_size_t_3[i];
-        o[4*count + k] = UNLESS(magnitude(rus_rho2_1) > TOLERANCE*TOLERANCE*rus_rho2_1_t) +
-            UNLESS(magnitude(rus_rho2_2) > TOLERANCE*TOLERANCE*rus_size_t_3);
-        o[3*count + k] = UNLESS(rus_disc_1 >= 0);
+        o[4*count + k] = UNLESS(magnitude(v.rus_rho2_1) > TOLERANCE*TOLERANCE*rus_rho2_1_t) +
+            UNLESS(magnitude(v.rus_rho2_2) > TOLERANCE*TOLERANCE*rus_size_t_3);
+        o[3*count + k] = UNLESS(v.rus_disc_1 >= 0);
     }
 }
 
@@ -4229,10 +3767,10 @@ INLINE void inverse_kinematics_place_rus(size_t w, size_t count, const real *o, 
 
 INLINE void inverse_kinematics_run(const prepared *m, const real *X, real *q, verdict *t)
 {
-    real s[12] = {0};
+    real s[9] = {0};
     real o_rus[6*LEGS(LEGS_OF_rus)] = {0};
-    inverse_kinematics_before(1, X, s, t);
-    inverse_kinematics_legs_rus(m, 1, 0, 1, s, 0, LEGS(LEGS_OF_rus), o_rus);
+    inverse_kinematics_before(m, 1, X, s, t);
+    inverse_kinematics_legs_rus(m, 1, 0, 1, s, 0, LEGS(LEGS_OF_rus), X, o_rus);
     for (size_t leg = 0; leg < LEGS_OF_rus; ++leg) {
         inverse_kinematics_place_rus(1, LEGS(LEGS_OF_rus), o_rus, leg, leg, q, t);
     }
@@ -4240,253 +3778,110 @@ INLINE void inverse_kinematics_run(const prepared *m, const real *X, real *q, ve
 
 INLINE void inverse_kinematics_run_lanes(const prepared *m, const real *X, real *q, verdict *t)
 {
-    real s[12*LANES];
+    real s[9*LANES];
     real o_rus[6*LANES];
-    inverse_kinematics_before(LANES, X, s, t);
+    inverse_kinematics_before(m, LANES, X, s, t);
     for (size_t leg = 0; leg < LEGS_OF_rus; ++leg) {
-        inverse_kinematics_legs_rus(m, LANES, leg, 0, s, 1, LANES, o_rus);
+        inverse_kinematics_legs_rus(m, LANES, leg, 0, s, 1, LANES, X, o_rus);
         inverse_kinematics_place_rus(LANES, LANES, o_rus, leg, 0, q, t);
     }
 }
 
 /* ---- joint_rates ---- */
-INLINE void joint_rates_before(size_t w, const real *X, const real *V, real *s, verdict *t)
+INLINE void joint_rates_before(const prepared *m, size_t w, const real *X, real *s, verdict *t)
 {
     for (size_t k = 0; k < w; ++k) {
-        /* X: named entries */
-        const real X_0 = X[0*w + k];
-        const real t_x = X_0;
-        const real X_1 = X[1*w + k];
-        const real t_y = X_1;
-        const real X_2 = X[2*w + k];
-        const real t_z = X_2;
-        const real X_3 = X[3*w + k];
-        const real X_4 = X[4*w + k];
-        const real X_5 = X[5*w + k];
-        const real X_6 = X[6*w + k];
-        const real quaternion_norm2 = X_3*X_3 + X_4*X_4 + X_5*X_5 + X_6*X_6;
-        const real quaternion_scale = 2/quaternion_norm2;
-        const real quaternion_sx = X_3*quaternion_scale;
-        const real quaternion_sy = X_4*quaternion_scale;
-        const real quaternion_sz = X_5*quaternion_scale;
-        const real quaternion_wx = X_6*quaternion_sx;
-        const real quaternion_wy = X_6*quaternion_sy;
-        const real quaternion_wz = X_6*quaternion_sz;
-        const real quaternion_xx = X_3*quaternion_sx;
-        const real quaternion_xy = X_3*quaternion_sy;
-        const real quaternion_xz = X_3*quaternion_sz;
-        const real quaternion_yy = X_4*quaternion_sy;
-        const real quaternion_yz = X_4*quaternion_sz;
-        const real quaternion_zz = X_5*quaternion_sz;
-        const real R_xx = 1 - quaternion_yy - quaternion_zz;
-        const real R_xy = quaternion_xy - quaternion_wz;
-        const real R_xz = quaternion_wy + quaternion_xz;
-        const real R_yx = quaternion_wz + quaternion_xy;
-        const real R_yy = 1 - quaternion_xx - quaternion_zz;
-        const real R_yz = quaternion_yz - quaternion_wx;
-        const real R_zx = quaternion_xz - quaternion_wy;
-        const real R_zy = quaternion_wx + quaternion_yz;
-        const real R_zz = 1 - quaternion_xx - quaternion_yy;
-        /* V: named entries */
-        const real V_0 = V[0*w + k];
-        const real t_dot_x = V_0;
-        const real V_1 = V[1*w + k];
-        const real t_dot_y = V_1;
-        const real V_2 = V[2*w + k];
-        const real t_dot_z = V_2;
-        const real V_3 = V[3*w + k];
-        const real omega_x = V_3;
-        const real V_4 = V[4*w + k];
-        const real omega_y = V_4;
-        const real V_5 = V[5*w + k];
-        const real omega_z = V_5;
-        s[0*w + k] = t_x;
-        s[1*w + k] = t_y;
-        s[2*w + k] = t_z;
-        s[3*w + k] = R_xx;
-        s[4*w + k] = R_xy;
-        s[5*w + k] = R_xz;
-        s[6*w + k] = R_yx;
-        s[7*w + k] = R_yy;
-        s[8*w + k] = R_yz;
-        s[9*w + k] = R_zx;
-        s[10*w + k] = R_zy;
-        s[11*w + k] = R_zz;
-        s[12*w + k] = t_dot_x;
-        s[13*w + k] = t_dot_y;
-        s[14*w + k] = t_dot_z;
-        s[15*w + k] = omega_x;
-        s[16*w + k] = omega_y;
-        s[17*w + k] = omega_z;
-        t->invalid[k] += UNLESS(is_finite(quaternion_scale)) + UNLESS(quaternion_scale > 0);
+        values v;
+        stage_X(m, w, k, X, &v);
+        s[0*w + k] = v.R_xx;
+        s[1*w + k] = v.R_xy;
+        s[2*w + k] = v.R_xz;
+        s[3*w + k] = v.R_yx;
+        s[4*w + k] = v.R_yy;
+        s[5*w + k] = v.R_yz;
+        s[6*w + k] = v.R_zx;
+        s[7*w + k] = v.R_zy;
+        s[8*w + k] = v.R_zz;
+        t->invalid[k] += UNLESS(is_finite(v.quaternion_scale)) + UNLESS(v.quaternion_scale > 0);
     }
 }
 
 INLINE void joint_rates_legs_rus(const prepared *m, size_t w, size_t leg, size_t legs, const real
-    *s, size_t states, size_t count, real *o)
+    *s, size_t states, size_t count, const real *X, const real *V, real *o)
 {
     for (size_t k = 0; k < count; ++k) {
         const size_t i = leg + legs*k;
         const size_t j = states*k;
-        /* (rus-S) from the base point to the connection point */
-        const real R_xx = s[3*w + j];
-        const real R_xy = s[4*w + j];
-        const real R_xz = s[5*w + j];
-        const real rus_platform_point_x = m->rus_platform_point_x[i];
-        const real rus_platform_point_y = m->rus_platform_point_y[i];
-        const real rus_platform_point_z = m->rus_platform_point_z[i];
-        const real rus_q_x = R_xx*rus_platform_point_x + R_xy*rus_platform_point_y +
-            R_xz*rus_platform_point_z;
-        const real R_yx = s[6*w + j];
-        const real R_yy = s[7*w + j];
-        const real R_yz = s[8*w + j];
-        const real rus_q_y = R_yx*rus_platform_point_x + R_yy*rus_platform_point_y +
-            R_yz*rus_platform_point_z;
-        const real R_zx = s[9*w + j];
-        const real R_zy = s[10*w + j];
-        const real R_zz = s[11*w + j];
-        const real rus_q_z = R_zx*rus_platform_point_x + R_zy*rus_platform_point_y +
-            R_zz*rus_platform_point_z;
-        const real rus_base_point_x = m->rus_base_point_x[i];
-        const real t_x = s[0*w + j];
-        const real rus_S_x = rus_q_x + t_x - rus_base_point_x;
-        const real rus_base_point_y = m->rus_base_point_y[i];
-        const real t_y = s[1*w + j];
-        const real rus_S_y = rus_q_y + t_y - rus_base_point_y;
-        const real rus_base_point_z = m->rus_base_point_z[i];
-        const real t_z = s[2*w + j];
-        const real rus_S_z = rus_q_z + t_z - rus_base_point_z;
-        /* (rus-Kd_1) projection on the centre's direction, from the distance fixed by the joints beyond
-           joint 1 */
-        const real rus_Kd_1_t = rus_S_x*rus_S_x + rus_S_y*rus_S_y + rus_S_z*rus_S_z;
-        const real rus_J_3_t = m->rus_J_3_t[i];
-        const real rus_J_3_t_2 = m->rus_J_3_t_2[i];
-        const real rus_Kd_1 = rus_J_3_t + R(0.5)*rus_Kd_1_t - rus_J_3_t_2;
-        /* (rus-px_1) component along the reference direction */
-        const real rus_base_frame_xx = m->rus_base_frame_xx[i];
-        const real rus_base_frame_yx = m->rus_base_frame_yx[i];
-        const real rus_base_frame_zx = m->rus_base_frame_zx[i];
-        const real rus_px_1 = rus_S_x*rus_base_frame_xx + rus_S_y*rus_base_frame_yx +
-            rus_S_z*rus_base_frame_zx;
-        /* (rus-py_1) component across the reference direction */
-        const real rus_base_frame_xy = m->rus_base_frame_xy[i];
-        const real rus_base_frame_yy = m->rus_base_frame_yy[i];
-        const real rus_base_frame_zy = m->rus_base_frame_zy[i];
-        const real rus_py_1 = rus_S_x*rus_base_frame_xy + rus_S_y*rus_base_frame_yy +
-            rus_S_z*rus_base_frame_zy;
-        /* (rus-Kc_1) factor of the cosine in the equation of joint 1 */
-        const real rus_joint2_offset_x = m->rus_joint2_offset_x[i];
-        const real rus_Kc_1 = rus_joint2_offset_x*rus_px_1;
-        /* (rus-Ks_1) factor of the sine in the equation of joint 1 */
-        const real rus_Ks_1 = rus_joint2_offset_x*rus_py_1;
-        /* (rus-rho2_1) squared amplitude */
-        const real rus_rho2_1 = rus_Kc_1*rus_Kc_1 + rus_Ks_1*rus_Ks_1;
-        /* (rus-disc_1) discriminant */
-        const real rus_disc_1 = rus_rho2_1 - rus_Kd_1*rus_Kd_1;
-        /* (rus-root_1) root, with the sign of the branch */
-        const real rus_branch_1 = m->rus_branch_1[i];
-        const real rus_root_1 = rus_branch_1*root(rus_disc_1);
-        /* (rus-c_1) cosine of the angle of joint 1 from its reference direction */
-        const real inv_rus_rho2_1 = 1/rus_rho2_1;
-        const real rus_c_1 = inv_rus_rho2_1*(rus_Kc_1*rus_Kd_1 - rus_Ks_1*rus_root_1);
-        /* (rus-s_1) sine of the angle of joint 1 from its reference direction */
-        const real rus_s_1 = inv_rus_rho2_1*(rus_Kc_1*rus_root_1 + rus_Kd_1*rus_Ks_1);
-        /* (rus-xi_1) the vector from joint 1 to the connection point, resolved along link 1 */
-        const real inv_rus_size_t = m->inv_rus_size_t[i];
-        const real rus_xi_1_t = inv_rus_size_t*rus_joint2_offset_x*rus_root_1;
-        const real rus_base_frame_xz = m->rus_base_frame_xz[i];
-        const real rus_base_frame_yz = m->rus_base_frame_yz[i];
-        const real rus_base_frame_zz = m->rus_base_frame_zz[i];
-        const real rus_xi_1_in_axes1_z = rus_S_x*rus_base_frame_xz + rus_S_y*rus_base_frame_yz +
-            rus_S_z*rus_base_frame_zz;
-        /* (rus-x_2) from the origin of joint 2 to the connection point */
-        const real rus_x_2_in_axes1_x = inv_rus_size_t*rus_Kd_1*rus_joint2_offset_x -
-            rus_joint2_offset_x;
-        /* (rus-rho2_2) squared amplitude */
-        const real rus_rho2_2 = rus_x_2_in_axes1_x*rus_x_2_in_axes1_x + rus_xi_1_t*rus_xi_1_t;
-        /* (rus-root_2) root, with the sign of the branch */
-        const real rus_branch_2 = m->rus_branch_2[i];
-        const real rus_root_2 = rus_branch_2*root(rus_rho2_2);
-        /* (rus-c_2) cosine of the angle of joint 2 from its reference direction */
-        const real inv_rus_rho2_2 = 1/rus_rho2_2;
-        const real rus_c_2 = inv_rus_rho2_2*rus_root_2*rus_xi_1_t;
-        /* (rus-s_2) sine of the angle of joint 2 from its reference direction */
-        const real rus_s_2 = inv_rus_rho2_2*rus_root_2*rus_x_2_in_axes1_x;
-        /* (rus-c_3) cosine of the angle of joint 3 from its reference direction */
-        const real inv_rus_size_t_2 = m->inv_rus_size_t_2[i];
-        const real rus_platform_joint_offset_x = m->rus_platform_joint_offset_x[i];
-        const real rus_c_3 = -inv_rus_size_t_2*rus_platform_joint_offset_x*rus_root_2;
-        /* (rus-s_3) sine of the angle of joint 3 from its reference direction */
-        const real rus_s_3 = inv_rus_size_t_2*rus_platform_joint_offset_x*rus_xi_1_in_axes1_z;
+        values_rus v;
+        stage_rus_X(m, w, i, j, s, X, &v);
         /* (rus-S_dot) velocity of the connection point */
-        const real omega_y = s[16*w + j];
-        const real omega_z = s[17*w + j];
-        const real t_dot_x = s[12*w + j];
-        const real rus_S_dot_x = t_dot_x + omega_y*rus_q_z - omega_z*rus_q_y;
-        const real omega_x = s[15*w + j];
-        const real t_dot_y = s[13*w + j];
-        const real rus_S_dot_y = t_dot_y + omega_z*rus_q_x - omega_x*rus_q_z;
-        const real t_dot_z = s[14*w + j];
-        const real rus_S_dot_z = t_dot_z + omega_x*rus_q_y - omega_y*rus_q_x;
-        /* (rus-r_1) from joint 1 to the connection point, along the links */
-        const real rus_r_1_t = -rus_c_3*rus_platform_joint_offset_x;
-        const real rus_r_1_in_axes1_z = rus_platform_joint_offset_x*rus_s_3;
-        const real rus_r_1_t_2 = rus_c_2*rus_r_1_t;
-        const real rus_r_1_in_axes1_x = rus_joint2_offset_x + rus_r_1_t*rus_s_2;
-        const real rus_r_1_in_axes3_z = rus_c_2*rus_r_1_in_axes1_x - rus_r_1_t_2*rus_s_2;
+        const real omega_y = V[4*w + j];
+        const real omega_z = V[5*w + j];
+        const real t_dot_x = V[0*w + j];
+        const real rus_S_dot_x = t_dot_x + omega_y*v.rus_q_z - omega_z*v.rus_q_y;
+        const real omega_x = V[3*w + j];
+        const real t_dot_y = V[1*w + j];
+        const real rus_S_dot_y = t_dot_y + omega_z*v.rus_q_x - omega_x*v.rus_q_z;
+        const real t_dot_z = V[2*w + j];
+        const real rus_S_dot_z = t_dot_z + omega_x*v.rus_q_y - omega_y*v.rus_q_x;
         /* (rus-v_1) velocity of the connection point per rate of joint 1 */
-        const real rus_v_1_t = -rus_c_3*rus_r_1_in_axes3_z;
+        const real rus_v_1_t = v.rus_c_3*v.rus_r_1_in_axes3_z;
         /* (rus-qd_1) rate of joint 1 */
-        const real rus_qd_1_t = rus_c_1*rus_c_2 - rus_s_1*rus_s_2;
-        const real rus_qd_1_t_2 = rus_c_1*rus_s_2 + rus_c_2*rus_s_1;
-        const real axis_z_rus_axes3_x = rus_base_frame_xx*rus_qd_1_t +
-            rus_base_frame_xy*rus_qd_1_t_2;
-        const real axis_z_rus_axes3_y = rus_base_frame_yx*rus_qd_1_t +
-            rus_base_frame_yy*rus_qd_1_t_2;
-        const real axis_z_rus_axes3_z = rus_base_frame_zx*rus_qd_1_t +
-            rus_base_frame_zy*rus_qd_1_t_2;
-        const real rus_qd_1_t_3 = rus_s_2*rus_s_3;
-        const real rus_qd_1_t_4 = rus_c_2*rus_s_3;
-        const real rus_qd_1_t_5 = rus_c_1*rus_qd_1_t_3 + rus_qd_1_t_4*rus_s_1;
-        const real rus_qd_1_t_6 = rus_qd_1_t_3*rus_s_1 - rus_c_1*rus_qd_1_t_4;
-        const real axis_y_rus_axes3_x = rus_base_frame_xx*rus_qd_1_t_5 +
-            rus_base_frame_xy*rus_qd_1_t_6 + rus_base_frame_xz*rus_c_3;
-        const real axis_y_rus_axes3_y = rus_base_frame_yx*rus_qd_1_t_5 +
-            rus_base_frame_yy*rus_qd_1_t_6 + rus_base_frame_yz*rus_c_3;
-        const real axis_y_rus_axes3_z = rus_base_frame_zx*rus_qd_1_t_5 +
-            rus_base_frame_zy*rus_qd_1_t_6 + rus_base_frame_zz*rus_c_3;
-        const real rus_qd_1 = -(rus_S_dot_x*(axis_y_rus_axes3_y*axis_z_rus_axes3_z -
+        const real rus_base_frame_xx = m->rus_base_frame_xx[i];
+        const real rus_base_frame_xy = m->rus_base_frame_xy[i];
+        const real axis_z_rus_axes3_x = rus_base_frame_xx*v.rus_qd_1_t +
+            rus_base_frame_xy*v.rus_qd_1_t_2;
+        const real rus_base_frame_yx = m->rus_base_frame_yx[i];
+        const real rus_base_frame_yy = m->rus_base_frame_yy[i];
+        const real axis_z_rus_axes3_y = rus_base_frame_yx*v.rus_qd_1_t +
+            rus_base_frame_yy*v.rus_qd_1_t_2;
+        const real rus_base_frame_zx = m->rus_base_frame_zx[i];
+        const real rus_base_frame_zy = m->rus_base_frame_zy[i];
+        const real axis_z_rus_axes3_z = rus_base_frame_zx*v.rus_qd_1_t +
+            rus_base_frame_zy*v.rus_qd_1_t_2;
+        const real rus_base_frame_xz = m->rus_base_frame_xz[i];
+        const real axis_y_rus_axes3_x = rus_base_frame_xx*v.rus_qd_1_t_5 +
+            rus_base_frame_xy*v.rus_qd_1_t_6 - rus_base_frame_xz*v.rus_c_3;
+        const real rus_base_frame_yz = m->rus_base_frame_yz[i];
+        const real axis_y_rus_axes3_y = rus_base_frame_yx*v.rus_qd_1_t_5 +
+            rus_base_frame_yy*v.rus_qd_1_t_6 - rus_base_frame_yz*v.rus_c_3;
+        const real rus_base_frame_zz = m->rus_base_frame_zz[i];
+        const real axis_y_rus_axes3_z = rus_base_frame_zx*v.rus_qd_1_t_5 +
+            rus_base_frame_zy*v.rus_qd_1_t_6 - rus_base_frame_zz*v.rus_c_3;
+        const real rus_qd_1_t_7 = (rus_S_dot_x*(axis_y_rus_axes3_y*axis_z_rus_axes3_z -
             axis_y_rus_axes3_z*axis_z_rus_axes3_y) +
             rus_S_dot_y*(axis_y_rus_axes3_z*axis_z_rus_axes3_x -
             axis_y_rus_axes3_x*axis_z_rus_axes3_z) +
             rus_S_dot_z*(axis_y_rus_axes3_x*axis_z_rus_axes3_y -
             axis_y_rus_axes3_y*axis_z_rus_axes3_x))/rus_v_1_t;
         /* (rus-qd_2) rate of joint 2 */
-        const real rus_qd_2_t = rus_c_2*rus_r_1_t_2 + rus_r_1_in_axes1_x*rus_s_2;
+        const real rus_qd_2_t = v.rus_c_2*v.rus_r_1_in_axes1_x + v.rus_r_1_t_2*v.rus_s_2_t;
         const real rus_qd_2_t_2 = axis_z_rus_axes3_x*rus_S_dot_x + axis_z_rus_axes3_y*rus_S_dot_y
-            + axis_z_rus_axes3_z*rus_S_dot_z - rus_qd_1*(rus_s_3*(rus_c_3*rus_r_1_in_axes1_z +
-            rus_qd_2_t*rus_s_3) - rus_c_3*(rus_r_1_in_axes1_z*rus_s_3 - rus_c_3*rus_qd_2_t));
-        const real rus_qd_2 = rus_qd_2_t_2/rus_r_1_t;
+            + axis_z_rus_axes3_z*rus_S_dot_z + rus_qd_1_t_7*(v.rus_c_3*(v.rus_c_3*rus_qd_2_t +
+            v.rus_e_1_in_axes3_x*v.rus_r_1_in_axes1_z) +
+            v.rus_e_1_in_axes3_x*(v.rus_e_1_in_axes3_x*rus_qd_2_t -
+            v.rus_c_3*v.rus_r_1_in_axes1_z));
+        const real rus_qd_2 = rus_qd_2_t_2/v.rus_r_1_t;
         /* (rus-qd_3) rate of joint 3 */
         const real rus_w_3_in_axes3_y = m->rus_w_3_in_axes3_y[i];
         const real rus_qd_3 = rus_w_3_in_axes3_y*(axis_y_rus_axes3_x*rus_S_dot_x +
-            axis_y_rus_axes3_y*rus_S_dot_y + axis_y_rus_axes3_z*rus_S_dot_z +
-            rus_qd_1*rus_r_1_in_axes3_z*rus_s_3);
+            axis_y_rus_axes3_y*rus_S_dot_y + axis_y_rus_axes3_z*rus_S_dot_z -
+            v.rus_e_1_in_axes3_x*rus_qd_1_t_7*v.rus_r_1_in_axes3_z);
         /* (rus-qd_1) rate of joint 1 */
-        o[0*count + k] = rus_qd_1;
+        o[0*count + k] = -rus_qd_1_t_7;
         /* (rus-qd_2) rate of joint 2 */
         o[1*count + k] = rus_qd_2;
         /* (rus-qd_3) rate of joint 3 */
         o[2*count + k] = rus_qd_3;
-        o[5*count + k] = rus_qd_1 + (rus_qd_2 + rus_qd_3);
+        o[5*count + k] = rus_qd_1_t_7 + (rus_qd_2 + rus_qd_3);
         const real rus_rho2_1_t = m->rus_rho2_1_t[i];
         const real rus_size_t_3 = m->rus_size_t_3[i];
         const real rus_size = m->rus_size[i];
-        o[4*count + k] = UNLESS(magnitude(rus_rho2_1) > TOLERANCE*TOLERANCE*rus_rho2_1_t) +
-            UNLESS(magnitude(rus_rho2_2) > TOLERANCE*TOLERANCE*rus_size_t_3) +
-            UNLESS(magnitude(rus_r_1_t) > TOLERANCE*rus_size) + UNLESS(magnitude(rus_v_1_t) >
+        o[4*count + k] = UNLESS(magnitude(v.rus_rho2_1) > TOLERANCE*TOLERANCE*rus_rho2_1_t) +
+            UNLESS(magnitude(v.rus_rho2_2) > TOLERANCE*TOLERANCE*rus_size_t_3) +
+            UNLESS(magnitude(v.rus_r_1_t) > TOLERANCE*rus_size) + UNLESS(magnitude(rus_v_1_t) >
             TOLERANCE*rus_size);
-        o[3*count + k] = UNLESS(rus_disc_1 >= 0);
+        o[3*count + k] = UNLESS(v.rus_disc_1 >= 0);
     }
 }
 
@@ -4505,10 +3900,10 @@ INLINE void joint_rates_place_rus(size_t w, size_t count, const real *o, size_t 
 
 INLINE void joint_rates_run(const prepared *m, const real *X, const real *V, real *qd, verdict *t)
 {
-    real s[18] = {0};
+    real s[9] = {0};
     real o_rus[6*LEGS(LEGS_OF_rus)] = {0};
-    joint_rates_before(1, X, V, s, t);
-    joint_rates_legs_rus(m, 1, 0, 1, s, 0, LEGS(LEGS_OF_rus), o_rus);
+    joint_rates_before(m, 1, X, s, t);
+    joint_rates_legs_rus(m, 1, 0, 1, s, 0, LEGS(LEGS_OF_rus), X, V, o_rus);
     for (size_t leg = 0; leg < LEGS_OF_rus; ++leg) {
         joint_rates_place_rus(1, LEGS(LEGS_OF_rus), o_rus, leg, leg, qd, t);
     }
@@ -4517,319 +3912,122 @@ INLINE void joint_rates_run(const prepared *m, const real *X, const real *V, rea
 INLINE void joint_rates_run_lanes(const prepared *m, const real *X, const real *V, real *qd,
     verdict *t)
 {
-    real s[18*LANES];
+    real s[9*LANES];
     real o_rus[6*LANES];
-    joint_rates_before(LANES, X, V, s, t);
+    joint_rates_before(m, LANES, X, s, t);
     for (size_t leg = 0; leg < LEGS_OF_rus; ++leg) {
-        joint_rates_legs_rus(m, LANES, leg, 0, s, 1, LANES, o_rus);
+        joint_rates_legs_rus(m, LANES, leg, 0, s, 1, LANES, X, V, o_rus);
         joint_rates_place_rus(LANES, LANES, o_rus, leg, 0, qd, t);
     }
 }
 
 /* ---- joint_accelerations ---- */
-INLINE void joint_accelerations_before(size_t w, const real *X, const real *V, const real *A, real
-    *s, verdict *t)
+INLINE void joint_accelerations_before(const prepared *m, size_t w, const real *X, real *s,
+    verdict *t)
 {
     for (size_t k = 0; k < w; ++k) {
-        /* X: named entries */
-        const real X_0 = X[0*w + k];
-        const real t_x = X_0;
-        const real X_1 = X[1*w + k];
-        const real t_y = X_1;
-        const real X_2 = X[2*w + k];
-        const real t_z = X_2;
-        const real X_3 = X[3*w + k];
-        const real X_4 = X[4*w + k];
-        const real X_5 = X[5*w + k];
-        const real X_6 = X[6*w + k];
-        const real quaternion_norm2 = X_3*X_3 + X_4*X_4 + X_5*X_5 + X_6*X_6;
-        const real quaternion_scale = 2/quaternion_norm2;
-        const real quaternion_sx = X_3*quaternion_scale;
-        const real quaternion_sy = X_4*quaternion_scale;
-        const real quaternion_sz = X_5*quaternion_scale;
-        const real quaternion_wx = X_6*quaternion_sx;
-        const real quaternion_wy = X_6*quaternion_sy;
-        const real quaternion_wz = X_6*quaternion_sz;
-        const real quaternion_xx = X_3*quaternion_sx;
-        const real quaternion_xy = X_3*quaternion_sy;
-        const real quaternion_xz = X_3*quaternion_sz;
-        const real quaternion_yy = X_4*quaternion_sy;
-        const real quaternion_yz = X_4*quaternion_sz;
-        const real quaternion_zz = X_5*quaternion_sz;
-        const real R_xx = 1 - quaternion_yy - quaternion_zz;
-        const real R_xy = quaternion_xy - quaternion_wz;
-        const real R_xz = quaternion_wy + quaternion_xz;
-        const real R_yx = quaternion_wz + quaternion_xy;
-        const real R_yy = 1 - quaternion_xx - quaternion_zz;
-        const real R_yz = quaternion_yz - quaternion_wx;
-        const real R_zx = quaternion_xz - quaternion_wy;
-        const real R_zy = quaternion_wx + quaternion_yz;
-        const real R_zz = 1 - quaternion_xx - quaternion_yy;
-        /* V: named entries */
-        const real V_0 = V[0*w + k];
-        const real t_dot_x = V_0;
-        const real V_1 = V[1*w + k];
-        const real t_dot_y = V_1;
-        const real V_2 = V[2*w + k];
-        const real t_dot_z = V_2;
-        const real V_3 = V[3*w + k];
-        const real omega_x = V_3;
-        const real V_4 = V[4*w + k];
-        const real omega_y = V_4;
-        const real V_5 = V[5*w + k];
-        const real omega_z = V_5;
-        /* A: named entries */
-        const real A_0 = A[0*w + k];
-        const real t_ddot_x = A_0;
-        const real A_1 = A[1*w + k];
-        const real t_ddot_y = A_1;
-        const real A_2 = A[2*w + k];
-        const real t_ddot_z = A_2;
-        const real A_3 = A[3*w + k];
-        const real alpha_x = A_3;
-        const real A_4 = A[4*w + k];
-        const real alpha_y = A_4;
-        const real A_5 = A[5*w + k];
-        const real alpha_z = A_5;
-        s[0*w + k] = t_x;
-        s[1*w + k] = t_y;
-        s[2*w + k] = t_z;
-        s[3*w + k] = R_xx;
-        s[4*w + k] = R_xy;
-        s[5*w + k] = R_xz;
-        s[6*w + k] = R_yx;
-        s[7*w + k] = R_yy;
-        s[8*w + k] = R_yz;
-        s[9*w + k] = R_zx;
-        s[10*w + k] = R_zy;
-        s[11*w + k] = R_zz;
-        s[12*w + k] = t_dot_x;
-        s[13*w + k] = t_dot_y;
-        s[14*w + k] = t_dot_z;
-        s[15*w + k] = omega_x;
-        s[16*w + k] = omega_y;
-        s[17*w + k] = omega_z;
-        s[18*w + k] = t_ddot_x;
-        s[19*w + k] = t_ddot_y;
-        s[20*w + k] = t_ddot_z;
-        s[21*w + k] = alpha_x;
-        s[22*w + k] = alpha_y;
-        s[23*w + k] = alpha_z;
-        t->invalid[k] += UNLESS(is_finite(quaternion_scale)) + UNLESS(quaternion_scale > 0);
+        values v;
+        stage_X(m, w, k, X, &v);
+        s[0*w + k] = v.R_xx;
+        s[1*w + k] = v.R_xy;
+        s[2*w + k] = v.R_xz;
+        s[3*w + k] = v.R_yx;
+        s[4*w + k] = v.R_yy;
+        s[5*w + k] = v.R_yz;
+        s[6*w + k] = v.R_zx;
+        s[7*w + k] = v.R_zy;
+        s[8*w + k] = v.R_zz;
+        t->invalid[k] += UNLESS(is_finite(v.quaternion_scale)) + UNLESS(v.quaternion_scale > 0);
     }
 }
 
 INLINE void joint_accelerations_legs_rus(const prepared *m, size_t w, size_t leg, size_t legs,
-    const real *s, size_t states, size_t count, real *o)
+    const real *s, size_t states, size_t count, const real *X, const real *V, const real *A, real
+    *o)
 {
     for (size_t k = 0; k < count; ++k) {
         const size_t i = leg + legs*k;
         const size_t j = states*k;
-        /* (rus-S) from the base point to the connection point */
-        const real R_xx = s[3*w + j];
-        const real R_xy = s[4*w + j];
-        const real R_xz = s[5*w + j];
-        const real rus_platform_point_x = m->rus_platform_point_x[i];
-        const real rus_platform_point_y = m->rus_platform_point_y[i];
-        const real rus_platform_point_z = m->rus_platform_point_z[i];
-        const real rus_q_x = R_xx*rus_platform_point_x + R_xy*rus_platform_point_y +
-            R_xz*rus_platform_point_z;
-        const real R_yx = s[6*w + j];
-        const real R_yy = s[7*w + j];
-        const real R_yz = s[8*w + j];
-        const real rus_q_y = R_yx*rus_platform_point_x + R_yy*rus_platform_point_y +
-            R_yz*rus_platform_point_z;
-        const real R_zx = s[9*w + j];
-        const real R_zy = s[10*w + j];
-        const real R_zz = s[11*w + j];
-        const real rus_q_z = R_zx*rus_platform_point_x + R_zy*rus_platform_point_y +
-            R_zz*rus_platform_point_z;
-        const real rus_base_point_x = m->rus_base_point_x[i];
-        const real t_x = s[0*w + j];
-        const real rus_S_x = rus_q_x + t_x - rus_base_point_x;
-        const real rus_base_point_y = m->rus_base_point_y[i];
-        const real t_y = s[1*w + j];
-        const real rus_S_y = rus_q_y + t_y - rus_base_point_y;
-        const real rus_base_point_z = m->rus_base_point_z[i];
-        const real t_z = s[2*w + j];
-        const real rus_S_z = rus_q_z + t_z - rus_base_point_z;
-        /* (rus-Kd_1) projection on the centre's direction, from the distance fixed by the joints beyond
-           joint 1 */
-        const real rus_Kd_1_t = rus_S_x*rus_S_x + rus_S_y*rus_S_y + rus_S_z*rus_S_z;
-        const real rus_J_3_t = m->rus_J_3_t[i];
-        const real rus_J_3_t_2 = m->rus_J_3_t_2[i];
-        const real rus_Kd_1 = rus_J_3_t + R(0.5)*rus_Kd_1_t - rus_J_3_t_2;
-        /* (rus-px_1) component along the reference direction */
-        const real rus_base_frame_xx = m->rus_base_frame_xx[i];
-        const real rus_base_frame_yx = m->rus_base_frame_yx[i];
-        const real rus_base_frame_zx = m->rus_base_frame_zx[i];
-        const real rus_px_1 = rus_S_x*rus_base_frame_xx + rus_S_y*rus_base_frame_yx +
-            rus_S_z*rus_base_frame_zx;
-        /* (rus-py_1) component across the reference direction */
-        const real rus_base_frame_xy = m->rus_base_frame_xy[i];
-        const real rus_base_frame_yy = m->rus_base_frame_yy[i];
-        const real rus_base_frame_zy = m->rus_base_frame_zy[i];
-        const real rus_py_1 = rus_S_x*rus_base_frame_xy + rus_S_y*rus_base_frame_yy +
-            rus_S_z*rus_base_frame_zy;
-        /* (rus-Kc_1) factor of the cosine in the equation of joint 1 */
-        const real rus_joint2_offset_x = m->rus_joint2_offset_x[i];
-        const real rus_Kc_1 = rus_joint2_offset_x*rus_px_1;
-        /* (rus-Ks_1) factor of the sine in the equation of joint 1 */
-        const real rus_Ks_1 = rus_joint2_offset_x*rus_py_1;
-        /* (rus-rho2_1) squared amplitude */
-        const real rus_rho2_1 = rus_Kc_1*rus_Kc_1 + rus_Ks_1*rus_Ks_1;
-        /* (rus-disc_1) discriminant */
-        const real rus_disc_1 = rus_rho2_1 - rus_Kd_1*rus_Kd_1;
-        /* (rus-root_1) root, with the sign of the branch */
-        const real rus_branch_1 = m->rus_branch_1[i];
-        const real rus_root_1 = rus_branch_1*root(rus_disc_1);
-        /* (rus-c_1) cosine of the angle of joint 1 from its reference direction */
-        const real inv_rus_rho2_1 = 1/rus_rho2_1;
-        const real rus_c_1 = inv_rus_rho2_1*(rus_Kc_1*rus_Kd_1 - rus_Ks_1*rus_root_1);
-        /* (rus-s_1) sine of the angle of joint 1 from its reference direction */
-        const real rus_s_1 = inv_rus_rho2_1*(rus_Kc_1*rus_root_1 + rus_Kd_1*rus_Ks_1);
-        /* (rus-xi_1) the vector from joint 1 to the connection point, resolved along link 1 */
-        const real inv_rus_size_t = m->inv_rus_size_t[i];
-        const real rus_xi_1_t = inv_rus_size_t*rus_joint2_offset_x*rus_root_1;
-        const real rus_base_frame_xz = m->rus_base_frame_xz[i];
-        const real rus_base_frame_yz = m->rus_base_frame_yz[i];
-        const real rus_base_frame_zz = m->rus_base_frame_zz[i];
-        const real rus_xi_1_in_axes1_z = rus_S_x*rus_base_frame_xz + rus_S_y*rus_base_frame_yz +
-            rus_S_z*rus_base_frame_zz;
-        /* (rus-x_2) from the origin of joint 2 to the connection point */
-        const real rus_x_2_in_axes1_x = inv_rus_size_t*rus_Kd_1*rus_joint2_offset_x -
-            rus_joint2_offset_x;
-        /* (rus-rho2_2) squared amplitude */
-        const real rus_rho2_2 = rus_x_2_in_axes1_x*rus_x_2_in_axes1_x + rus_xi_1_t*rus_xi_1_t;
-        /* (rus-root_2) root, with the sign of the branch */
-        const real rus_branch_2 = m->rus_branch_2[i];
-        const real rus_root_2 = rus_branch_2*root(rus_rho2_2);
-        /* (rus-c_2) cosine of the angle of joint 2 from its reference direction */
-        const real inv_rus_rho2_2 = 1/rus_rho2_2;
-        const real rus_c_2 = inv_rus_rho2_2*rus_root_2*rus_xi_1_t;
-        /* (rus-s_2) sine of the angle of joint 2 from its reference direction */
-        const real rus_s_2 = inv_rus_rho2_2*rus_root_2*rus_x_2_in_axes1_x;
-        /* (rus-c_3) cosine of the angle of joint 3 from its reference direction */
-        const real inv_rus_size_t_2 = m->inv_rus_size_t_2[i];
-        const real rus_platform_joint_offset_x = m->rus_platform_joint_offset_x[i];
-        const real rus_c_3 = -inv_rus_size_t_2*rus_platform_joint_offset_x*rus_root_2;
-        /* (rus-s_3) sine of the angle of joint 3 from its reference direction */
-        const real rus_s_3 = inv_rus_size_t_2*rus_platform_joint_offset_x*rus_xi_1_in_axes1_z;
-        /* (rus-S_dot) velocity of the connection point */
-        const real omega_y = s[16*w + j];
-        const real omega_z = s[17*w + j];
-        const real rus_S_dot_t = omega_y*rus_q_z - omega_z*rus_q_y;
-        const real omega_x = s[15*w + j];
-        const real rus_S_dot_t_2 = omega_z*rus_q_x - omega_x*rus_q_z;
-        const real rus_S_dot_t_3 = omega_x*rus_q_y - omega_y*rus_q_x;
-        const real t_dot_x = s[12*w + j];
-        const real rus_S_dot_x = rus_S_dot_t + t_dot_x;
-        const real t_dot_y = s[13*w + j];
-        const real rus_S_dot_y = rus_S_dot_t_2 + t_dot_y;
-        const real t_dot_z = s[14*w + j];
-        const real rus_S_dot_z = rus_S_dot_t_3 + t_dot_z;
-        /* (rus-r_1) from joint 1 to the connection point, along the links */
-        const real rus_r_1_t = -rus_c_3*rus_platform_joint_offset_x;
-        const real rus_r_1_in_axes1_z = rus_platform_joint_offset_x*rus_s_3;
-        const real rus_r_1_t_2 = rus_c_2*rus_r_1_t;
-        const real rus_r_1_in_axes1_x = rus_joint2_offset_x + rus_r_1_t*rus_s_2;
-        const real rus_r_1_in_axes3_z = rus_c_2*rus_r_1_in_axes1_x - rus_r_1_t_2*rus_s_2;
-        /* (rus-v_1) velocity of the connection point per rate of joint 1 */
-        const real rus_v_1_t = rus_c_2*rus_r_1_t_2 + rus_r_1_in_axes1_x*rus_s_2;
-        const real rus_v_1_t_2 = -rus_c_3*rus_r_1_in_axes3_z;
-        const real rus_v_1_t_3 = rus_r_1_in_axes3_z*rus_s_3;
-        const real rus_v_1_in_axes3_z = rus_s_3*(rus_c_3*rus_r_1_in_axes1_z + rus_s_3*rus_v_1_t) -
-            rus_c_3*(rus_r_1_in_axes1_z*rus_s_3 - rus_c_3*rus_v_1_t);
-        /* (rus-w_1) reciprocal vector 1 */
-        const real inv_rus_v_1_t_2 = 1/rus_v_1_t_2;
-        /* (rus-w_2) reciprocal vector 2 */
-        const real rus_w_2_in_axes3_z = 1/rus_r_1_t;
+        values_rus v;
+        stage_rus_X(m, w, i, j, s, X, &v);
+        stage_rus_A_X(w, j, A, &v);
+        stage_rus_V_X(w, j, V, &v);
+        stage_rus_A_V_X(w, j, V, &v);
         /* (rus-qd_1) rate of joint 1 */
-        const real rus_qd_1_t = rus_c_1*rus_c_2 - rus_s_1*rus_s_2;
-        const real rus_qd_1_t_2 = rus_c_1*rus_s_2 + rus_c_2*rus_s_1;
-        const real axis_z_rus_axes3_x = rus_base_frame_xx*rus_qd_1_t +
-            rus_base_frame_xy*rus_qd_1_t_2;
-        const real axis_z_rus_axes3_y = rus_base_frame_yx*rus_qd_1_t +
-            rus_base_frame_yy*rus_qd_1_t_2;
-        const real axis_z_rus_axes3_z = rus_base_frame_zx*rus_qd_1_t +
-            rus_base_frame_zy*rus_qd_1_t_2;
-        const real rus_qd_1_t_3 = rus_s_2*rus_s_3;
-        const real rus_qd_1_t_4 = rus_c_2*rus_s_3;
-        const real rus_qd_1_t_5 = rus_c_1*rus_qd_1_t_3 + rus_qd_1_t_4*rus_s_1;
-        const real rus_qd_1_t_6 = rus_qd_1_t_3*rus_s_1 - rus_c_1*rus_qd_1_t_4;
-        const real axis_y_rus_axes3_x = rus_base_frame_xx*rus_qd_1_t_5 +
-            rus_base_frame_xy*rus_qd_1_t_6 + rus_base_frame_xz*rus_c_3;
-        const real axis_y_rus_axes3_y = rus_base_frame_yx*rus_qd_1_t_5 +
-            rus_base_frame_yy*rus_qd_1_t_6 + rus_base_frame_yz*rus_c_3;
-        const real axis_y_rus_axes3_z = rus_base_frame_zx*rus_qd_1_t_5 +
-            rus_base_frame_zy*rus_qd_1_t_6 + rus_base_frame_zz*rus_c_3;
+        const real rus_base_frame_xx = m->rus_base_frame_xx[i];
+        const real rus_base_frame_xy = m->rus_base_frame_xy[i];
+        const real axis_z_rus_axes3_x = rus_base_frame_xx*v.rus_qd_1_t +
+            rus_base_frame_xy*v.rus_qd_1_t_2;
+        const real rus_base_frame_yx = m->rus_base_frame_yx[i];
+        const real rus_base_frame_yy = m->rus_base_frame_yy[i];
+        const real axis_z_rus_axes3_y = rus_base_frame_yx*v.rus_qd_1_t +
+            rus_base_frame_yy*v.rus_qd_1_t_2;
+        const real rus_base_frame_zx = m->rus_base_frame_zx[i];
+        const real rus_base_frame_zy = m->rus_base_frame_zy[i];
+        const real axis_z_rus_axes3_z = rus_base_frame_zx*v.rus_qd_1_t +
+            rus_base_frame_zy*v.rus_qd_1_t_2;
+        const real rus_base_frame_xz = m->rus_base_frame_xz[i];
+        const real axis_y_rus_axes3_x = rus_base_frame_xx*v.rus_qd_1_t_5 +
+            rus_base_frame_xy*v.rus_qd_1_t_6 - rus_base_frame_xz*v.rus_c_3;
+        const real rus_base_frame_yz = m->rus_base_frame_yz[i];
+        const real axis_y_rus_axes3_y = rus_base_frame_yx*v.rus_qd_1_t_5 +
+            rus_base_frame_yy*v.rus_qd_1_t_6 - rus_base_frame_yz*v.rus_c_3;
+        const real rus_base_frame_zz = m->rus_base_frame_zz[i];
+        const real axis_y_rus_axes3_z = rus_base_frame_zx*v.rus_qd_1_t_5 +
+            rus_base_frame_zy*v.rus_qd_1_t_6 - rus_base_frame_zz*v.rus_c_3;
         const real axis_x_rus_axes3_x = axis_y_rus_axes3_y*axis_z_rus_axes3_z -
             axis_y_rus_axes3_z*axis_z_rus_axes3_y;
         const real axis_x_rus_axes3_y = axis_y_rus_axes3_z*axis_z_rus_axes3_x -
             axis_y_rus_axes3_x*axis_z_rus_axes3_z;
         const real axis_x_rus_axes3_z = axis_y_rus_axes3_x*axis_z_rus_axes3_y -
             axis_y_rus_axes3_y*axis_z_rus_axes3_x;
-        const real rus_qd_1 = -inv_rus_v_1_t_2*(axis_x_rus_axes3_x*rus_S_dot_x +
-            axis_x_rus_axes3_y*rus_S_dot_y + axis_x_rus_axes3_z*rus_S_dot_z);
+        const real rus_qd_1_t_7 = v.inv_rus_v_1_t_2*(axis_x_rus_axes3_x*v.rus_S_dot_x +
+            axis_x_rus_axes3_y*v.rus_S_dot_y + axis_x_rus_axes3_z*v.rus_S_dot_z);
         /* (rus-qd_3) rate of joint 3 */
-        const real rus_qd_3_t = axis_y_rus_axes3_x*rus_S_dot_x + axis_y_rus_axes3_y*rus_S_dot_y +
-            axis_y_rus_axes3_z*rus_S_dot_z + rus_qd_1*rus_v_1_t_3;
+        const real rus_qd_3_t = axis_y_rus_axes3_x*v.rus_S_dot_x +
+            axis_y_rus_axes3_y*v.rus_S_dot_y + axis_y_rus_axes3_z*v.rus_S_dot_z -
+            rus_qd_1_t_7*v.rus_v_1_t_3;
         const real rus_w_3_in_axes3_y = m->rus_w_3_in_axes3_y[i];
         const real rus_qd_3 = rus_qd_3_t*rus_w_3_in_axes3_y;
         /* (rus-omega_1) angular velocity of link 1 */
-        const real rus_omega_1_in_axes3_x = rus_qd_1*rus_s_3;
-        const real rus_omega_1_in_axes3_y = rus_c_3*rus_qd_1;
+        const real rus_omega_1_in_axes3_x = -v.rus_e_1_in_axes3_x*rus_qd_1_t_7;
+        const real rus_omega_1_in_axes3_y = v.rus_c_3*rus_qd_1_t_7;
         /* (rus-omega_2) angular velocity of link 2 */
-        const real rus_omega_2_in_axes2_z = rus_qd_1 +
-            rus_w_2_in_axes3_z*(axis_z_rus_axes3_x*rus_S_dot_x + axis_z_rus_axes3_y*rus_S_dot_y +
-            axis_z_rus_axes3_z*rus_S_dot_z - rus_qd_1*rus_v_1_in_axes3_z);
-        const real rus_omega_2_in_axes3_x = rus_omega_2_in_axes2_z*rus_s_3;
-        const real rus_omega_2_in_axes3_y = rus_c_3*rus_omega_2_in_axes2_z;
-        /* (rus-a_p) acceleration of the connection point without its centripetal part */
-        const real alpha_y = s[22*w + j];
-        const real alpha_z = s[23*w + j];
-        const real t_ddot_x = s[18*w + j];
-        const real rus_a_p_x = t_ddot_x + alpha_y*rus_q_z - alpha_z*rus_q_y;
-        const real alpha_x = s[21*w + j];
-        const real t_ddot_y = s[19*w + j];
-        const real rus_a_p_y = t_ddot_y + alpha_z*rus_q_x - alpha_x*rus_q_z;
-        const real t_ddot_z = s[20*w + j];
-        const real rus_a_p_z = t_ddot_z + alpha_x*rus_q_y - alpha_y*rus_q_x;
-        /* (rus-S_ddot) acceleration of the connection point */
-        const real rus_S_ddot_x = rus_a_p_x + omega_y*rus_S_dot_t_3 - omega_z*rus_S_dot_t_2;
-        const real rus_S_ddot_y = rus_a_p_y + omega_z*rus_S_dot_t - omega_x*rus_S_dot_t_3;
-        const real rus_S_ddot_z = rus_a_p_z + omega_x*rus_S_dot_t_2 - omega_y*rus_S_dot_t;
+        const real rus_omega_2_in_axes2_z = v.rus_w_2_in_axes3_z*(axis_z_rus_axes3_x*v.rus_S_dot_x
+            + axis_z_rus_axes3_y*v.rus_S_dot_y + axis_z_rus_axes3_z*v.rus_S_dot_z +
+            rus_qd_1_t_7*v.rus_v_1_in_axes3_z) - rus_qd_1_t_7;
+        const real rus_omega_2_in_axes3_x = v.rus_e_1_in_axes3_x*rus_omega_2_in_axes2_z;
+        const real rus_omega_2_in_axes3_y = -v.rus_c_3*rus_omega_2_in_axes2_z;
         /* (rus-bias) acceleration of the connection point at zero joint accelerations */
-        const real rus_d_2_in_axes3_z = rus_c_2*rus_joint2_offset_x;
-        const real rus_bias_t = rus_joint2_offset_x*rus_s_2;
-        const real rus_bias_t_2 = rus_bias_t*rus_c_3*rus_omega_1_in_axes3_y +
-            rus_bias_t*rus_omega_1_in_axes3_x*rus_s_3;
-        const real rus_bias_t_3 = rus_omega_2_in_axes3_y*rus_platform_joint_offset_x;
-        const real rus_bias_in_axes3_x = rus_bias_t_2*rus_omega_1_in_axes3_y -
-            rus_bias_t_3*rus_omega_2_in_axes3_y - rus_qd_3*rus_qd_3_t;
-        const real rus_bias_in_axes3_y = rus_bias_t_3*rus_omega_2_in_axes3_x -
-            rus_bias_t_2*rus_omega_1_in_axes3_x;
+        const real rus_bias_t_2 = v.rus_bias_t*v.rus_c_3*rus_omega_1_in_axes3_y -
+            v.rus_bias_t*v.rus_e_1_in_axes3_x*rus_omega_1_in_axes3_x;
+        const real rus_platform_joint_offset_x = m->rus_platform_joint_offset_x[i];
+        const real rus_bias_t_3 = -rus_omega_2_in_axes3_y*rus_platform_joint_offset_x;
+        const real rus_bias_in_axes3_x = rus_bias_t_3*rus_omega_2_in_axes3_y -
+            rus_bias_t_2*rus_omega_1_in_axes3_y - rus_qd_3*rus_qd_3_t;
+        const real rus_bias_in_axes3_y = rus_bias_t_2*rus_omega_1_in_axes3_x -
+            rus_bias_t_3*rus_omega_2_in_axes3_x;
         const real rus_bias_in_axes3_z = rus_omega_2_in_axes3_x*rus_qd_3_t +
             rus_omega_2_in_axes3_x*rus_platform_joint_offset_x*rus_qd_3 -
-            rus_d_2_in_axes3_z*rus_omega_1_in_axes3_x*rus_omega_1_in_axes3_x -
-            rus_d_2_in_axes3_z*rus_omega_1_in_axes3_y*rus_omega_1_in_axes3_y;
+            v.rus_d_2_in_axes3_z*rus_omega_1_in_axes3_x*rus_omega_1_in_axes3_x -
+            v.rus_d_2_in_axes3_z*rus_omega_1_in_axes3_y*rus_omega_1_in_axes3_y;
         /* (rus-rel) acceleration of the connection point left to the joint accelerations */
-        const real rus_rel_in_axes3_x = axis_x_rus_axes3_x*rus_S_ddot_x +
-            axis_x_rus_axes3_y*rus_S_ddot_y + axis_x_rus_axes3_z*rus_S_ddot_z -
+        const real rus_rel_in_axes3_x = axis_x_rus_axes3_x*v.rus_S_ddot_x +
+            axis_x_rus_axes3_y*v.rus_S_ddot_y + axis_x_rus_axes3_z*v.rus_S_ddot_z -
             rus_bias_in_axes3_x;
-        const real rus_rel_in_axes3_y = axis_y_rus_axes3_x*rus_S_ddot_x +
-            axis_y_rus_axes3_y*rus_S_ddot_y + axis_y_rus_axes3_z*rus_S_ddot_z -
+        const real rus_rel_in_axes3_y = axis_y_rus_axes3_x*v.rus_S_ddot_x +
+            axis_y_rus_axes3_y*v.rus_S_ddot_y + axis_y_rus_axes3_z*v.rus_S_ddot_z -
             rus_bias_in_axes3_y;
-        const real rus_rel_in_axes3_z = axis_z_rus_axes3_x*rus_S_ddot_x +
-            axis_z_rus_axes3_y*rus_S_ddot_y + axis_z_rus_axes3_z*rus_S_ddot_z -
+        const real rus_rel_in_axes3_z = axis_z_rus_axes3_x*v.rus_S_ddot_x +
+            axis_z_rus_axes3_y*v.rus_S_ddot_y + axis_z_rus_axes3_z*v.rus_S_ddot_z -
             rus_bias_in_axes3_z;
         /* (rus-qdd_1) acceleration of joint 1 */
-        const real rus_qdd_1_t = inv_rus_v_1_t_2*rus_rel_in_axes3_x;
+        const real rus_qdd_1_t = v.inv_rus_v_1_t_2*rus_rel_in_axes3_x;
         /* (rus-qdd_2) acceleration of joint 2 */
-        const real rus_qdd_2 = rus_w_2_in_axes3_z*(rus_rel_in_axes3_z +
-            rus_qdd_1_t*rus_v_1_in_axes3_z);
+        const real rus_qdd_2 = v.rus_w_2_in_axes3_z*(rus_rel_in_axes3_z +
+            rus_qdd_1_t*v.rus_v_1_in_axes3_z);
         /* (rus-qdd_3) acceleration of joint 3 */
-        const real rus_qdd_3_t = rus_w_3_in_axes3_y*(rus_qdd_1_t*rus_v_1_t_3 -
+        const real rus_qdd_3_t = rus_w_3_in_axes3_y*(rus_qdd_1_t*v.rus_v_1_t_3 -
             rus_rel_in_axes3_y);
         /* (rus-qdd_1) acceleration of joint 1 */
         o[0*count + k] = -rus_qdd_1_t;
@@ -4841,11 +4039,11 @@ INLINE void joint_accelerations_legs_rus(const prepared *m, size_t w, size_t leg
         const real rus_rho2_1_t = m->rus_rho2_1_t[i];
         const real rus_size_t_3 = m->rus_size_t_3[i];
         const real rus_size = m->rus_size[i];
-        o[4*count + k] = UNLESS(magnitude(rus_rho2_1) > TOLERANCE*TOLERANCE*rus_rho2_1_t) +
-            UNLESS(magnitude(rus_rho2_2) > TOLERANCE*TOLERANCE*rus_size_t_3) +
-            UNLESS(magnitude(rus_r_1_t) > TOLERANCE*rus_size) + UNLESS(magnitude(rus_v_1_t_2) >
-            TOLERANCE*rus_size);
-        o[3*count + k] = UNLESS(rus_disc_1 >= 0);
+        o[4*count + k] = UNLESS(magnitude(v.rus_rho2_1) > TOLERANCE*TOLERANCE*rus_rho2_1_t) +
+            UNLESS(magnitude(v.rus_rho2_2) > TOLERANCE*TOLERANCE*rus_size_t_3) +
+            UNLESS(magnitude(v.rus_r_1_t) > TOLERANCE*rus_size) + UNLESS(magnitude(v.rus_v_1_t_2)
+            > TOLERANCE*rus_size);
+        o[3*count + k] = UNLESS(v.rus_disc_1 >= 0);
     }
 }
 
@@ -4865,10 +4063,10 @@ INLINE void joint_accelerations_place_rus(size_t w, size_t count, const real *o,
 INLINE void joint_accelerations_run(const prepared *m, const real *X, const real *V, const real
     *A, real *qdd, verdict *t)
 {
-    real s[24] = {0};
+    real s[9] = {0};
     real o_rus[6*LEGS(LEGS_OF_rus)] = {0};
-    joint_accelerations_before(1, X, V, A, s, t);
-    joint_accelerations_legs_rus(m, 1, 0, 1, s, 0, LEGS(LEGS_OF_rus), o_rus);
+    joint_accelerations_before(m, 1, X, s, t);
+    joint_accelerations_legs_rus(m, 1, 0, 1, s, 0, LEGS(LEGS_OF_rus), X, V, A, o_rus);
     for (size_t leg = 0; leg < LEGS_OF_rus; ++leg) {
         joint_accelerations_place_rus(1, LEGS(LEGS_OF_rus), o_rus, leg, leg, qdd, t);
     }
@@ -4877,432 +4075,79 @@ INLINE void joint_accelerations_run(const prepared *m, const real *X, const real
 INLINE void joint_accelerations_run_lanes(const prepared *m, const real *X, const real *V, const
     real *A, real *qdd, verdict *t)
 {
-    real s[24*LANES];
+    real s[9*LANES];
     real o_rus[6*LANES];
-    joint_accelerations_before(LANES, X, V, A, s, t);
+    joint_accelerations_before(m, LANES, X, s, t);
     for (size_t leg = 0; leg < LEGS_OF_rus; ++leg) {
-        joint_accelerations_legs_rus(m, LANES, leg, 0, s, 1, LANES, o_rus);
+        joint_accelerations_legs_rus(m, LANES, leg, 0, s, 1, LANES, X, V, A, o_rus);
         joint_accelerations_place_rus(LANES, LANES, o_rus, leg, 0, qdd, t);
     }
 }
 
 /* ---- legs ---- */
-INLINE void legs_before(size_t w, const real *X, const real *V, const real *A, real *s, verdict
-    *t)
+INLINE void legs_before(const prepared *m, size_t w, const real *X, real *s, verdict *t)
 {
     for (size_t k = 0; k < w; ++k) {
-        /* X: named entries */
-        const real X_0 = X[0*w + k];
-        const real t_x = X_0;
-        const real X_1 = X[1*w + k];
-        const real t_y = X_1;
-        const real X_2 = X[2*w + k];
-        const real t_z = X_2;
-        const real X_3 = X[3*w + k];
-        const real X_4 = X[4*w + k];
-        const real X_5 = X[5*w + k];
-        const real X_6 = X[6*w + k];
-        const real quaternion_norm2 = X_3*X_3 + X_4*X_4 + X_5*X_5 + X_6*X_6;
-        const real quaternion_scale = 2/quaternion_norm2;
-        const real quaternion_sx = X_3*quaternion_scale;
-        const real quaternion_sy = X_4*quaternion_scale;
-        const real quaternion_sz = X_5*quaternion_scale;
-        const real quaternion_wx = X_6*quaternion_sx;
-        const real quaternion_wy = X_6*quaternion_sy;
-        const real quaternion_wz = X_6*quaternion_sz;
-        const real quaternion_xx = X_3*quaternion_sx;
-        const real quaternion_xy = X_3*quaternion_sy;
-        const real quaternion_xz = X_3*quaternion_sz;
-        const real quaternion_yy = X_4*quaternion_sy;
-        const real quaternion_yz = X_4*quaternion_sz;
-        const real quaternion_zz = X_5*quaternion_sz;
-        const real R_xx = 1 - quaternion_yy - quaternion_zz;
-        const real R_xy = quaternion_xy - quaternion_wz;
-        const real R_xz = quaternion_wy + quaternion_xz;
-        const real R_yx = quaternion_wz + quaternion_xy;
-        const real R_yy = 1 - quaternion_xx - quaternion_zz;
-        const real R_yz = quaternion_yz - quaternion_wx;
-        const real R_zx = quaternion_xz - quaternion_wy;
-        const real R_zy = quaternion_wx + quaternion_yz;
-        const real R_zz = 1 - quaternion_xx - quaternion_yy;
-        /* V: named entries */
-        const real V_0 = V[0*w + k];
-        const real t_dot_x = V_0;
-        const real V_1 = V[1*w + k];
-        const real t_dot_y = V_1;
-        const real V_2 = V[2*w + k];
-        const real t_dot_z = V_2;
-        const real V_3 = V[3*w + k];
-        const real omega_x = V_3;
-        const real V_4 = V[4*w + k];
-        const real omega_y = V_4;
-        const real V_5 = V[5*w + k];
-        const real omega_z = V_5;
-        /* A: named entries */
-        const real A_0 = A[0*w + k];
-        const real t_ddot_x = A_0;
-        const real A_1 = A[1*w + k];
-        const real t_ddot_y = A_1;
-        const real A_2 = A[2*w + k];
-        const real t_ddot_z = A_2;
-        const real A_3 = A[3*w + k];
-        const real alpha_x = A_3;
-        const real A_4 = A[4*w + k];
-        const real alpha_y = A_4;
-        const real A_5 = A[5*w + k];
-        const real alpha_z = A_5;
-        s[0*w + k] = t_x;
-        s[1*w + k] = t_y;
-        s[2*w + k] = t_z;
-        s[3*w + k] = R_xx;
-        s[4*w + k] = R_xy;
-        s[5*w + k] = R_xz;
-        s[6*w + k] = R_yx;
-        s[7*w + k] = R_yy;
-        s[8*w + k] = R_yz;
-        s[9*w + k] = R_zx;
-        s[10*w + k] = R_zy;
-        s[11*w + k] = R_zz;
-        s[12*w + k] = t_dot_x;
-        s[13*w + k] = t_dot_y;
-        s[14*w + k] = t_dot_z;
-        s[15*w + k] = omega_x;
-        s[16*w + k] = omega_y;
-        s[17*w + k] = omega_z;
-        s[18*w + k] = t_ddot_x;
-        s[19*w + k] = t_ddot_y;
-        s[20*w + k] = t_ddot_z;
-        s[21*w + k] = alpha_x;
-        s[22*w + k] = alpha_y;
-        s[23*w + k] = alpha_z;
-        t->invalid[k] += UNLESS(is_finite(quaternion_scale)) + UNLESS(quaternion_scale > 0);
+        values v;
+        stage_X(m, w, k, X, &v);
+        s[0*w + k] = v.R_xx;
+        s[1*w + k] = v.R_xy;
+        s[2*w + k] = v.R_xz;
+        s[3*w + k] = v.R_yx;
+        s[4*w + k] = v.R_yy;
+        s[5*w + k] = v.R_yz;
+        s[6*w + k] = v.R_zx;
+        s[7*w + k] = v.R_zy;
+        s[8*w + k] = v.R_zz;
+        t->invalid[k] += UNLESS(is_finite(v.quaternion_scale)) + UNLESS(v.quaternion_scale > 0);
     }
 }
 
 INLINE void legs_legs_rus(const prepared *m, size_t w, size_t leg, size_t legs, const real *s,
-    size_t states, size_t count, real *o)
+    size_t states, size_t count, const real *X, const real *V, const real *A, real *o)
 {
     for (size_t k = 0; k < count; ++k) {
         const size_t i = leg + legs*k;
         const size_t j = states*k;
-        /* (rus-S) from the base point to the connection point */
-        const real R_xx = s[3*w + j];
-        const real R_xy = s[4*w + j];
-        const real R_xz = s[5*w + j];
-        const real rus_platform_point_x = m->rus_platform_point_x[i];
-        const real rus_platform_point_y = m->rus_platform_point_y[i];
-        const real rus_platform_point_z = m->rus_platform_point_z[i];
-        const real rus_q_x = R_xx*rus_platform_point_x + R_xy*rus_platform_point_y +
-            R_xz*rus_platform_point_z;
-        const real R_yx = s[6*w + j];
-        const real R_yy = s[7*w + j];
-        const real R_yz = s[8*w + j];
-        const real rus_q_y = R_yx*rus_platform_point_x + R_yy*rus_platform_point_y +
-            R_yz*rus_platform_point_z;
-        const real R_zx = s[9*w + j];
-        const real R_zy = s[10*w + j];
-        const real R_zz = s[11*w + j];
-        const real rus_q_z = R_zx*rus_platform_point_x + R_zy*rus_platform_point_y +
-            R_zz*rus_platform_point_z;
-        const real rus_base_point_x = m->rus_base_point_x[i];
-        const real t_x = s[0*w + j];
-        const real rus_S_x = rus_q_x + t_x - rus_base_point_x;
-        const real rus_base_point_y = m->rus_base_point_y[i];
-        const real t_y = s[1*w + j];
-        const real rus_S_y = rus_q_y + t_y - rus_base_point_y;
-        const real rus_base_point_z = m->rus_base_point_z[i];
-        const real t_z = s[2*w + j];
-        const real rus_S_z = rus_q_z + t_z - rus_base_point_z;
-        /* (rus-Kd_1) projection on the centre's direction, from the distance fixed by the joints beyond
-           joint 1 */
-        const real rus_Kd_1_t = rus_S_x*rus_S_x + rus_S_y*rus_S_y + rus_S_z*rus_S_z;
-        const real rus_J_3_t = m->rus_J_3_t[i];
-        const real rus_J_3_t_2 = m->rus_J_3_t_2[i];
-        const real rus_Kd_1 = rus_J_3_t + R(0.5)*rus_Kd_1_t - rus_J_3_t_2;
-        /* (rus-px_1) component along the reference direction */
-        const real rus_base_frame_xx = m->rus_base_frame_xx[i];
-        const real rus_base_frame_yx = m->rus_base_frame_yx[i];
-        const real rus_base_frame_zx = m->rus_base_frame_zx[i];
-        const real rus_px_1 = rus_S_x*rus_base_frame_xx + rus_S_y*rus_base_frame_yx +
-            rus_S_z*rus_base_frame_zx;
-        /* (rus-py_1) component across the reference direction */
-        const real rus_base_frame_xy = m->rus_base_frame_xy[i];
-        const real rus_base_frame_yy = m->rus_base_frame_yy[i];
-        const real rus_base_frame_zy = m->rus_base_frame_zy[i];
-        const real rus_py_1 = rus_S_x*rus_base_frame_xy + rus_S_y*rus_base_frame_yy +
-            rus_S_z*rus_base_frame_zy;
-        /* (rus-Kc_1) factor of the cosine in the equation of joint 1 */
-        const real rus_joint2_offset_x = m->rus_joint2_offset_x[i];
-        const real rus_Kc_1 = rus_joint2_offset_x*rus_px_1;
-        /* (rus-Ks_1) factor of the sine in the equation of joint 1 */
-        const real rus_Ks_1 = rus_joint2_offset_x*rus_py_1;
-        /* (rus-rho2_1) squared amplitude */
-        const real rus_rho2_1 = rus_Kc_1*rus_Kc_1 + rus_Ks_1*rus_Ks_1;
-        /* (rus-disc_1) discriminant */
-        const real rus_disc_1 = rus_rho2_1 - rus_Kd_1*rus_Kd_1;
-        /* (rus-root_1) root, with the sign of the branch */
-        const real rus_branch_1 = m->rus_branch_1[i];
-        const real rus_root_1 = rus_branch_1*root(rus_disc_1);
-        /* (rus-c_1) cosine of the angle of joint 1 from its reference direction */
-        const real inv_rus_rho2_1 = 1/rus_rho2_1;
-        const real rus_c_1 = inv_rus_rho2_1*(rus_Kc_1*rus_Kd_1 - rus_Ks_1*rus_root_1);
-        /* (rus-s_1) sine of the angle of joint 1 from its reference direction */
-        const real rus_s_1 = inv_rus_rho2_1*(rus_Kc_1*rus_root_1 + rus_Kd_1*rus_Ks_1);
-        /* (rus-xi_1) the vector from joint 1 to the connection point, resolved along link 1 */
-        const real inv_rus_size_t = m->inv_rus_size_t[i];
-        const real rus_xi_1_t = inv_rus_size_t*rus_joint2_offset_x*rus_root_1;
-        const real rus_base_frame_xz = m->rus_base_frame_xz[i];
-        const real rus_base_frame_yz = m->rus_base_frame_yz[i];
-        const real rus_base_frame_zz = m->rus_base_frame_zz[i];
-        const real rus_xi_1_in_axes1_z = rus_S_x*rus_base_frame_xz + rus_S_y*rus_base_frame_yz +
-            rus_S_z*rus_base_frame_zz;
-        /* (rus-x_2) from the origin of joint 2 to the connection point */
-        const real rus_x_2_in_axes1_x = inv_rus_size_t*rus_Kd_1*rus_joint2_offset_x -
-            rus_joint2_offset_x;
-        /* (rus-rho2_2) squared amplitude */
-        const real rus_rho2_2 = rus_x_2_in_axes1_x*rus_x_2_in_axes1_x + rus_xi_1_t*rus_xi_1_t;
-        /* (rus-root_2) root, with the sign of the branch */
-        const real rus_branch_2 = m->rus_branch_2[i];
-        const real rus_root_2 = rus_branch_2*root(rus_rho2_2);
-        /* (rus-c_2) cosine of the angle of joint 2 from its reference direction */
-        const real inv_rus_rho2_2 = 1/rus_rho2_2;
-        const real rus_c_2 = inv_rus_rho2_2*rus_root_2*rus_xi_1_t;
-        /* (rus-s_2) sine of the angle of joint 2 from its reference direction */
-        const real rus_s_2 = inv_rus_rho2_2*rus_root_2*rus_x_2_in_axes1_x;
-        /* (rus-c_3) cosine of the angle of joint 3 from its reference direction */
-        const real inv_rus_size_t_2 = m->inv_rus_size_t_2[i];
-        const real rus_platform_joint_offset_x = m->rus_platform_joint_offset_x[i];
-        const real rus_c_3 = -inv_rus_size_t_2*rus_platform_joint_offset_x*rus_root_2;
-        /* (rus-s_3) sine of the angle of joint 3 from its reference direction */
-        const real rus_s_3 = inv_rus_size_t_2*rus_platform_joint_offset_x*rus_xi_1_in_axes1_z;
-        /* (rus-S_dot) velocity of the connection point */
-        const real omega_y = s[16*w + j];
-        const real omega_z = s[17*w + j];
-        const real rus_S_dot_t = omega_y*rus_q_z - omega_z*rus_q_y;
-        const real omega_x = s[15*w + j];
-        const real rus_S_dot_t_2 = omega_z*rus_q_x - omega_x*rus_q_z;
-        const real rus_S_dot_t_3 = omega_x*rus_q_y - omega_y*rus_q_x;
-        const real t_dot_x = s[12*w + j];
-        const real rus_S_dot_x = rus_S_dot_t + t_dot_x;
-        const real t_dot_y = s[13*w + j];
-        const real rus_S_dot_y = rus_S_dot_t_2 + t_dot_y;
-        const real t_dot_z = s[14*w + j];
-        const real rus_S_dot_z = rus_S_dot_t_3 + t_dot_z;
-        /* (rus-r_1) from joint 1 to the connection point, along the links */
-        const real rus_r_1_t = -rus_c_3*rus_platform_joint_offset_x;
-        const real rus_r_1_in_axes1_z = rus_platform_joint_offset_x*rus_s_3;
-        const real rus_r_1_t_2 = rus_c_2*rus_r_1_t;
-        const real rus_r_1_in_axes1_x = rus_joint2_offset_x + rus_r_1_t*rus_s_2;
-        const real rus_r_1_in_axes3_z = rus_c_2*rus_r_1_in_axes1_x - rus_r_1_t_2*rus_s_2;
-        /* (rus-v_1) velocity of the connection point per rate of joint 1 */
-        const real rus_v_1_t = rus_c_2*rus_r_1_t_2 + rus_r_1_in_axes1_x*rus_s_2;
-        const real rus_v_1_t_2 = -rus_c_3*rus_r_1_in_axes3_z;
-        const real rus_v_1_t_3 = rus_r_1_in_axes3_z*rus_s_3;
-        const real rus_v_1_in_axes3_z = rus_s_3*(rus_c_3*rus_r_1_in_axes1_z + rus_s_3*rus_v_1_t) -
-            rus_c_3*(rus_r_1_in_axes1_z*rus_s_3 - rus_c_3*rus_v_1_t);
-        /* (rus-w_1) reciprocal vector 1 */
-        const real rus_w_1_t = rus_c_1*rus_c_2 - rus_s_1*rus_s_2;
-        const real rus_w_1_t_2 = rus_c_1*rus_s_2 + rus_c_2*rus_s_1;
-        const real axis_z_rus_axes3_x = rus_base_frame_xx*rus_w_1_t +
-            rus_base_frame_xy*rus_w_1_t_2;
-        const real axis_z_rus_axes3_y = rus_base_frame_yx*rus_w_1_t +
-            rus_base_frame_yy*rus_w_1_t_2;
-        const real axis_z_rus_axes3_z = rus_base_frame_zx*rus_w_1_t +
-            rus_base_frame_zy*rus_w_1_t_2;
-        const real rus_w_1_t_3 = rus_s_2*rus_s_3;
-        const real rus_w_1_t_4 = rus_c_2*rus_s_3;
-        const real rus_w_1_t_5 = rus_c_1*rus_w_1_t_3 + rus_s_1*rus_w_1_t_4;
-        const real rus_w_1_t_6 = rus_s_1*rus_w_1_t_3 - rus_c_1*rus_w_1_t_4;
-        const real axis_y_rus_axes3_x = rus_base_frame_xx*rus_w_1_t_5 +
-            rus_base_frame_xy*rus_w_1_t_6 + rus_base_frame_xz*rus_c_3;
-        const real axis_y_rus_axes3_y = rus_base_frame_yx*rus_w_1_t_5 +
-            rus_base_frame_yy*rus_w_1_t_6 + rus_base_frame_yz*rus_c_3;
-        const real axis_y_rus_axes3_z = rus_base_frame_zx*rus_w_1_t_5 +
-            rus_base_frame_zy*rus_w_1_t_6 + rus_base_frame_zz*rus_c_3;
-        const real axis_x_rus_axes3_x = axis_y_rus_axes3_y*axis_z_rus_axes3_z -
-            axis_y_rus_axes3_z*axis_z_rus_axes3_y;
-        const real axis_x_rus_axes3_y = axis_y_rus_axes3_z*axis_z_rus_axes3_x -
-            axis_y_rus_axes3_x*axis_z_rus_axes3_z;
-        const real axis_x_rus_axes3_z = axis_y_rus_axes3_x*axis_z_rus_axes3_y -
-            axis_y_rus_axes3_y*axis_z_rus_axes3_x;
-        const real inv_rus_v_1_t_2 = 1/rus_v_1_t_2;
-        const real rus_w_1_t_7 = axis_x_rus_axes3_x*inv_rus_v_1_t_2;
-        const real rus_w_1_t_8 = axis_x_rus_axes3_y*inv_rus_v_1_t_2;
-        const real rus_w_1_t_9 = axis_x_rus_axes3_z*inv_rus_v_1_t_2;
-        /* (rus-w_2) reciprocal vector 2 */
-        const real rus_w_2_in_axes3_z = 1/rus_r_1_t;
-        /* (rus-qd_1) rate of joint 1 */
-        const real rus_qd_1 = -inv_rus_v_1_t_2*(axis_x_rus_axes3_x*rus_S_dot_x +
-            axis_x_rus_axes3_y*rus_S_dot_y + axis_x_rus_axes3_z*rus_S_dot_z);
-        /* (rus-qd_3) rate of joint 3 */
-        const real rus_qd_3_t = axis_y_rus_axes3_x*rus_S_dot_x + axis_y_rus_axes3_y*rus_S_dot_y +
-            axis_y_rus_axes3_z*rus_S_dot_z + rus_qd_1*rus_v_1_t_3;
-        const real rus_w_3_in_axes3_y = m->rus_w_3_in_axes3_y[i];
-        const real rus_qd_3 = rus_qd_3_t*rus_w_3_in_axes3_y;
-        /* (rus-omega_1) angular velocity of link 1 */
-        const real rus_omega_1_in_axes3_x = rus_qd_1*rus_s_3;
-        const real rus_omega_1_in_axes3_y = rus_c_3*rus_qd_1;
-        /* (rus-omega_2) angular velocity of link 2 */
-        const real rus_omega_2_in_axes2_z = rus_qd_1 +
-            rus_w_2_in_axes3_z*(axis_z_rus_axes3_x*rus_S_dot_x + axis_z_rus_axes3_y*rus_S_dot_y +
-            axis_z_rus_axes3_z*rus_S_dot_z - rus_qd_1*rus_v_1_in_axes3_z);
-        const real rus_omega_2_in_axes3_x = rus_omega_2_in_axes2_z*rus_s_3;
-        const real rus_omega_2_in_axes3_y = rus_c_3*rus_omega_2_in_axes2_z;
-        /* (rus-W_3) centripetal tensor of link 3 */
-        const real rus_W_3_in_axes3_yz = rus_omega_2_in_axes3_y*rus_qd_3;
-        const real rus_W_3_in_axes3_xz = rus_omega_2_in_axes3_x*rus_qd_3;
-        const real rus_W_3_in_axes3_xy = rus_omega_2_in_axes3_x*rus_omega_2_in_axes3_y;
-        /* (rus-a_p) acceleration of the connection point without its centripetal part */
-        const real alpha_y = s[22*w + j];
-        const real alpha_z = s[23*w + j];
-        const real t_ddot_x = s[18*w + j];
-        const real rus_a_p_x = t_ddot_x + alpha_y*rus_q_z - alpha_z*rus_q_y;
-        const real alpha_x = s[21*w + j];
-        const real t_ddot_y = s[19*w + j];
-        const real rus_a_p_y = t_ddot_y + alpha_z*rus_q_x - alpha_x*rus_q_z;
-        const real t_ddot_z = s[20*w + j];
-        const real rus_a_p_z = t_ddot_z + alpha_x*rus_q_y - alpha_y*rus_q_x;
-        /* (rus-S_ddot) acceleration of the connection point */
-        const real rus_S_ddot_x = rus_a_p_x + omega_y*rus_S_dot_t_3 - omega_z*rus_S_dot_t_2;
-        const real rus_S_ddot_y = rus_a_p_y + omega_z*rus_S_dot_t - omega_x*rus_S_dot_t_3;
-        const real rus_S_ddot_z = rus_a_p_z + omega_x*rus_S_dot_t_2 - omega_y*rus_S_dot_t;
-        const real rus_S_ddot_in_axes3_x = axis_x_rus_axes3_x*rus_S_ddot_x +
-            axis_x_rus_axes3_y*rus_S_ddot_y + axis_x_rus_axes3_z*rus_S_ddot_z;
-        const real rus_S_ddot_in_axes3_y = axis_y_rus_axes3_x*rus_S_ddot_x +
-            axis_y_rus_axes3_y*rus_S_ddot_y + axis_y_rus_axes3_z*rus_S_ddot_z;
-        const real rus_S_ddot_in_axes3_z = axis_z_rus_axes3_x*rus_S_ddot_x +
-            axis_z_rus_axes3_y*rus_S_ddot_y + axis_z_rus_axes3_z*rus_S_ddot_z;
-        /* (rus-bias) acceleration of the connection point at zero joint accelerations */
-        const real rus_d_2_in_axes3_z = rus_c_2*rus_joint2_offset_x;
-        const real rus_bias_t = rus_joint2_offset_x*rus_s_2;
-        const real rus_bias_t_2 = rus_bias_t*rus_c_3*rus_omega_1_in_axes3_y +
-            rus_bias_t*rus_omega_1_in_axes3_x*rus_s_3;
-        const real rus_bias_t_3 = rus_omega_2_in_axes3_y*rus_platform_joint_offset_x;
-        const real rus_bias_in_axes3_x = rus_bias_t_2*rus_omega_1_in_axes3_y -
-            rus_bias_t_3*rus_omega_2_in_axes3_y - rus_qd_3*rus_qd_3_t;
-        const real rus_bias_in_axes3_y = rus_bias_t_3*rus_omega_2_in_axes3_x -
-            rus_bias_t_2*rus_omega_1_in_axes3_x;
-        const real rus_bias_in_axes3_z = rus_W_3_in_axes3_xz*rus_platform_joint_offset_x +
-            rus_omega_2_in_axes3_x*rus_qd_3_t -
-            rus_d_2_in_axes3_z*rus_omega_1_in_axes3_x*rus_omega_1_in_axes3_x -
-            rus_d_2_in_axes3_z*rus_omega_1_in_axes3_y*rus_omega_1_in_axes3_y;
-        /* (rus-rel) acceleration of the connection point left to the joint accelerations */
-        const real rus_rel_in_axes3_x = rus_S_ddot_in_axes3_x - rus_bias_in_axes3_x;
-        const real rus_rel_in_axes3_y = rus_S_ddot_in_axes3_y - rus_bias_in_axes3_y;
-        const real rus_rel_in_axes3_z = rus_S_ddot_in_axes3_z - rus_bias_in_axes3_z;
-        /* (rus-qdd_1) acceleration of joint 1 */
-        const real rus_qdd_1_t = inv_rus_v_1_t_2*rus_rel_in_axes3_x;
-        /* (rus-qdd_3) acceleration of joint 3 */
-        const real rus_qdd_3_t = rus_w_3_in_axes3_y*(rus_qdd_1_t*rus_v_1_t_3 -
-            rus_rel_in_axes3_y);
-        /* (rus-alpha_2) angular acceleration of link 2 */
-        const real rus_alpha_2_in_axes2_z = rus_w_2_in_axes3_z*(rus_rel_in_axes3_z +
-            rus_qdd_1_t*rus_v_1_in_axes3_z) - rus_qdd_1_t;
-        const real rus_alpha_2_in_axes3_x = rus_alpha_2_in_axes2_z*rus_s_3;
-        const real rus_alpha_2_in_axes3_y = rus_alpha_2_in_axes2_z*rus_c_3;
-        /* (rus-alpha_3) angular acceleration of link 3 */
-        const real rus_alpha_3_in_axes3_x = rus_W_3_in_axes3_yz + rus_alpha_2_in_axes3_x;
-        const real rus_alpha_3_in_axes3_y = rus_alpha_2_in_axes3_y - rus_W_3_in_axes3_xz;
-        /* (rus-B_3) acceleration tensor of link 3 */
-        const real rus_B_3_in_axes3_xy = rus_W_3_in_axes3_xy + rus_qdd_3_t;
-        const real rus_B_3_in_axes3_yx = rus_W_3_in_axes3_xy - rus_qdd_3_t;
-        const real rus_B_3_in_axes3_zx = rus_W_3_in_axes3_xz - rus_alpha_3_in_axes3_y;
-        const real rus_B_3_in_axes3_zy = rus_W_3_in_axes3_yz + rus_alpha_3_in_axes3_x;
-        /* (rus-acc_3) acceleration of the reference point of link 3, less gravity */
-        const real gravity_x = m->gravity_x;
-        const real gravity_y = m->gravity_y;
-        const real gravity_z = m->gravity_z;
-        const real rus_acc_3_in_axes3_x = rus_S_ddot_in_axes3_x - axis_x_rus_axes3_x*gravity_x -
-            axis_x_rus_axes3_y*gravity_y - axis_x_rus_axes3_z*gravity_z;
-        const real rus_acc_3_in_axes3_y = rus_S_ddot_in_axes3_y - axis_y_rus_axes3_x*gravity_x -
-            axis_y_rus_axes3_y*gravity_y - axis_y_rus_axes3_z*gravity_z;
-        const real rus_acc_3_in_axes3_z = rus_S_ddot_in_axes3_z - axis_z_rus_axes3_x*gravity_x -
-            axis_z_rus_axes3_y*gravity_y - axis_z_rus_axes3_z*gravity_z;
-        /* (rus-mu_3) inertia moment of the links that turn with link 3, about their reference points */
-        const real rus_mu_3_t = rus_omega_2_in_axes3_x*rus_omega_2_in_axes3_x;
-        const real rus_mu_3_t_2 = rus_omega_2_in_axes3_y*rus_omega_2_in_axes3_y;
-        const real rus_mu_3_t_3 = rus_qd_3*rus_qd_3;
-        const real rus_J_3_in_spec3_xy = m->rus_J_3_in_spec3_xy[i];
-        const real rus_J_3_in_spec3_xz = m->rus_J_3_in_spec3_xz[i];
-        const real rus_J_3_in_spec3_yz = m->rus_J_3_in_spec3_yz[i];
-        const real rus_Sigma_3_in_axes3_yy = m->rus_Sigma_3_in_axes3_yy[i];
-        const real rus_Sigma_3_in_axes3_zz = m->rus_Sigma_3_in_axes3_zz[i];
-        const real rus_h_3_in_spec3_y = m->rus_h_3_in_spec3_y[i];
-        const real rus_h_3_in_spec3_z = m->rus_h_3_in_spec3_z[i];
-        const real rus_mu_3_in_axes3_x = rus_B_3_in_axes3_yx*rus_J_3_in_spec3_xy +
-            rus_B_3_in_axes3_zx*rus_J_3_in_spec3_xz + rus_B_3_in_axes3_zy*rus_Sigma_3_in_axes3_yy
-            + rus_Sigma_3_in_axes3_zz*rus_alpha_2_in_axes3_x - rus_J_3_in_spec3_yz*(rus_mu_3_t_2 -
-            rus_mu_3_t_3) - rus_acc_3_in_axes3_y*rus_h_3_in_spec3_y -
-            rus_acc_3_in_axes3_z*rus_h_3_in_spec3_z;
-        const real rus_Sigma_3_in_axes3_xx = m->rus_Sigma_3_in_axes3_xx[i];
-        const real rus_h_3_in_spec3_x = m->rus_h_3_in_spec3_x[i];
-        const real rus_mu_3_in_axes3_y = rus_B_3_in_axes3_xy*rus_J_3_in_spec3_yz +
-            rus_Sigma_3_in_axes3_zz*rus_alpha_2_in_axes3_y +
-            rus_acc_3_in_axes3_x*rus_h_3_in_spec3_y - rus_B_3_in_axes3_zx*rus_Sigma_3_in_axes3_xx
-            - rus_B_3_in_axes3_zy*rus_J_3_in_spec3_xz - rus_J_3_in_spec3_xy*(rus_mu_3_t -
-            rus_mu_3_t_3) - rus_acc_3_in_axes3_z*rus_h_3_in_spec3_x;
-        const real rus_mu_3_in_axes3_z = rus_B_3_in_axes3_yx*rus_Sigma_3_in_axes3_xx +
-            rus_J_3_in_spec3_xy*rus_alpha_2_in_axes3_x + rus_acc_3_in_axes3_x*rus_h_3_in_spec3_z +
-            rus_acc_3_in_axes3_y*rus_h_3_in_spec3_x - rus_B_3_in_axes3_xy*rus_Sigma_3_in_axes3_yy
-            - rus_J_3_in_spec3_xz*(rus_mu_3_t - rus_mu_3_t_2) -
-            rus_J_3_in_spec3_yz*rus_alpha_2_in_axes3_y;
-        const real rus_mu_3_in_axes1_z = rus_c_3*rus_mu_3_in_axes3_y +
-            rus_mu_3_in_axes3_x*rus_s_3;
-        /* (rus-mu_1) inertia moment of the links that turn with link 1, about their reference points */
-        const real rus_J_1_in_spec1_zz = m->rus_J_1_in_spec1_zz[i];
-        const real rus_h_1_in_spec1_x = m->rus_h_1_in_spec1_x[i];
-        const real rus_h_1_in_spec1_y = m->rus_h_1_in_spec1_y[i];
-        const real rus_mu_1_t = m->rus_mu_1_t[i];
-        const real rus_mu_1_t_2 = m->rus_mu_1_t_2[i];
-        const real rus_mu_1_in_axes1_z = rus_h_1_in_spec1_y*(rus_c_1*rus_mu_1_t +
-            rus_mu_1_t_2*rus_s_1) - rus_J_1_in_spec1_zz*rus_qdd_1_t -
-            rus_h_1_in_spec1_x*(rus_c_1*rus_mu_1_t_2 - rus_mu_1_t*rus_s_1);
-        /* (rus-N_1) moment about joint 1 of the links from 1 outwards, the force at the connection point
-           left out */
-        const real rus_N_1_in_axes1_z = rus_mu_1_in_axes1_z + rus_mu_3_in_axes1_z;
-        /* (rus-G) force at the connection point that balances the leg's inertia and weight along all
-           degrees of freedom */
-        const real rus_G_in_axes3_z = rus_mu_3_in_axes1_z*rus_w_2_in_axes3_z;
-        const real rus_G_in_axes3_y = rus_mu_3_in_axes3_z*rus_w_3_in_axes3_y;
-        /* (rus-c) leg force on the platform without actuation and without the mass at the connection
-           point */
-        const real rus_c_in_axes3_x = inv_rus_v_1_t_2*(rus_N_1_in_axes1_z +
-            rus_G_in_axes3_y*rus_v_1_t_3 - rus_G_in_axes3_z*rus_v_1_in_axes3_z) +
-            rus_B_3_in_axes3_xy*rus_h_3_in_spec3_z + rus_h_3_in_spec3_x*(rus_mu_3_t_2 +
-            rus_mu_3_t_3) - rus_alpha_2_in_axes3_y*rus_h_3_in_spec3_y;
-        const real rus_c_in_axes3_y = rus_alpha_2_in_axes3_x*rus_h_3_in_spec3_y - rus_G_in_axes3_y
-            - rus_B_3_in_axes3_yx*rus_h_3_in_spec3_x - rus_h_3_in_spec3_z*(rus_mu_3_t +
-            rus_mu_3_t_3);
-        const real rus_c_in_axes3_z = rus_B_3_in_axes3_zy*rus_h_3_in_spec3_z +
-            rus_h_3_in_spec3_y*(rus_mu_3_t + rus_mu_3_t_2) - rus_G_in_axes3_z -
-            rus_B_3_in_axes3_zx*rus_h_3_in_spec3_x;
+        values_rus v;
+        stage_rus_X(m, w, i, j, s, X, &v);
+        stage_rus_A_X(w, j, A, &v);
+        stage_rus_V_X(w, j, V, &v);
+        stage_rus_A_V_X(w, j, V, &v);
+        stage_rus_legs_required(m, i, &v);
         /* (rus-c_true) leg force on the platform without actuation, the last link's mass included */
         const real rus_link3_mass = m->rus_link3_mass[i];
-        const real rus_c_true_in_axes3_x = rus_c_in_axes3_x - rus_acc_3_in_axes3_x*rus_link3_mass;
-        const real rus_c_true_in_axes3_y = rus_c_in_axes3_y - rus_acc_3_in_axes3_y*rus_link3_mass;
-        const real rus_c_true_in_axes3_z = rus_c_in_axes3_z - rus_acc_3_in_axes3_z*rus_link3_mass;
-        const real rus_c_true_x = axis_x_rus_axes3_x*rus_c_true_in_axes3_x +
-            axis_y_rus_axes3_x*rus_c_true_in_axes3_y + axis_z_rus_axes3_x*rus_c_true_in_axes3_z;
-        const real rus_c_true_y = axis_x_rus_axes3_y*rus_c_true_in_axes3_x +
-            axis_y_rus_axes3_y*rus_c_true_in_axes3_y + axis_z_rus_axes3_y*rus_c_true_in_axes3_z;
-        const real rus_c_true_z = axis_x_rus_axes3_z*rus_c_true_in_axes3_x +
-            axis_y_rus_axes3_z*rus_c_true_in_axes3_y + axis_z_rus_axes3_z*rus_c_true_in_axes3_z;
+        const real rus_c_true_in_axes3_x = v.rus_c_in_axes3_x -
+            v.rus_acc_3_in_axes3_x*rus_link3_mass;
+        const real rus_c_true_in_axes3_y = v.rus_c_in_axes3_y -
+            v.rus_acc_3_in_axes3_y*rus_link3_mass;
+        const real rus_c_true_in_axes3_z = v.rus_c_in_axes3_z -
+            v.rus_acc_3_in_axes3_z*rus_link3_mass;
+        const real rus_c_true_x = v.axis_x_rus_axes3_x*rus_c_true_in_axes3_x +
+            v.axis_y_rus_axes3_x*rus_c_true_in_axes3_y +
+            v.axis_z_rus_axes3_x*rus_c_true_in_axes3_z;
+        const real rus_c_true_y = v.axis_x_rus_axes3_y*rus_c_true_in_axes3_x +
+            v.axis_y_rus_axes3_y*rus_c_true_in_axes3_y +
+            v.axis_z_rus_axes3_y*rus_c_true_in_axes3_z;
+        const real rus_c_true_z = v.axis_x_rus_axes3_z*rus_c_true_in_axes3_x +
+            v.axis_y_rus_axes3_z*rus_c_true_in_axes3_y +
+            v.axis_z_rus_axes3_z*rus_c_true_in_axes3_z;
         /* (rus-c_true) leg force on the platform without actuation, the last link's mass included */
         o[0*count + k] = rus_c_true_x;
         o[1*count + k] = rus_c_true_y;
         o[2*count + k] = rus_c_true_z;
         /* (rus-w_1) reciprocal vector 1 */
-        o[3*count + k] = -rus_w_1_t_7;
-        o[4*count + k] = -rus_w_1_t_8;
-        o[5*count + k] = -rus_w_1_t_9;
+        o[3*count + k] = -v.rus_w_1_t_7;
+        o[4*count + k] = -v.rus_w_1_t_8;
+        o[5*count + k] = -v.rus_w_1_t_9;
         const real rus_rho2_1_t = m->rus_rho2_1_t[i];
         const real rus_size_t_3 = m->rus_size_t_3[i];
         const real rus_size = m->rus_size[i];
-        o[7*count + k] = UNLESS(magnitude(rus_rho2_1) > TOLERANCE*TOLERANCE*rus_rho2_1_t) +
-            UNLESS(magnitude(rus_rho2_2) > TOLERANCE*TOLERANCE*rus_size_t_3) +
-            UNLESS(magnitude(rus_r_1_t) > TOLERANCE*rus_size) + UNLESS(magnitude(rus_v_1_t_2) >
-            TOLERANCE*rus_size);
-        o[6*count + k] = UNLESS(rus_disc_1 >= 0);
+        o[7*count + k] = UNLESS(magnitude(v.rus_rho2_1) > TOLERANCE*TOLERANCE*rus_rho2_1_t) +
+            UNLESS(magnitude(v.rus_rho2_2) > TOLERANCE*TOLERANCE*rus_size_t_3) +
+            UNLESS(magnitude(v.rus_r_1_t) > TOLERANCE*rus_size) + UNLESS(magnitude(v.rus_v_1_t_2)
+            > TOLERANCE*rus_size);
+        o[6*count + k] = UNLESS(v.rus_disc_1 >= 0);
     }
 }
 
@@ -5324,10 +4169,10 @@ INLINE void legs_place_rus(size_t w, size_t count, const real *o, size_t leg, si
 INLINE void legs_run(const prepared *m, const real *X, const real *V, const real *A, real
     *leg_force, real *actuator, verdict *t)
 {
-    real s[24] = {0};
+    real s[9] = {0};
     real o_rus[8*LEGS(LEGS_OF_rus)] = {0};
-    legs_before(1, X, V, A, s, t);
-    legs_legs_rus(m, 1, 0, 1, s, 0, LEGS(LEGS_OF_rus), o_rus);
+    legs_before(m, 1, X, s, t);
+    legs_legs_rus(m, 1, 0, 1, s, 0, LEGS(LEGS_OF_rus), X, V, A, o_rus);
     for (size_t leg = 0; leg < LEGS_OF_rus; ++leg) {
         legs_place_rus(1, LEGS(LEGS_OF_rus), o_rus, leg, leg, leg_force, actuator, t);
     }
@@ -5337,40 +4182,8 @@ INLINE void legs_run(const prepared *m, const real *X, const real *V, const real
 INLINE void potential_before(const prepared *m, size_t w, const real *X, real *s, verdict *t)
 {
     for (size_t k = 0; k < w; ++k) {
-        /* X: named entries */
-        const real X_0 = X[0*w + k];
-        const real t_x = X_0;
-        const real X_1 = X[1*w + k];
-        const real t_y = X_1;
-        const real X_2 = X[2*w + k];
-        const real t_z = X_2;
-        const real X_3 = X[3*w + k];
-        const real X_4 = X[4*w + k];
-        const real X_5 = X[5*w + k];
-        const real X_6 = X[6*w + k];
-        const real quaternion_norm2 = X_3*X_3 + X_4*X_4 + X_5*X_5 + X_6*X_6;
-        const real quaternion_scale = 2/quaternion_norm2;
-        const real quaternion_sx = X_3*quaternion_scale;
-        const real quaternion_sy = X_4*quaternion_scale;
-        const real quaternion_sz = X_5*quaternion_scale;
-        const real quaternion_wx = X_6*quaternion_sx;
-        const real quaternion_wy = X_6*quaternion_sy;
-        const real quaternion_wz = X_6*quaternion_sz;
-        const real quaternion_xx = X_3*quaternion_sx;
-        const real quaternion_xy = X_3*quaternion_sy;
-        const real quaternion_xz = X_3*quaternion_sz;
-        const real quaternion_yy = X_4*quaternion_sy;
-        const real quaternion_yz = X_4*quaternion_sz;
-        const real quaternion_zz = X_5*quaternion_sz;
-        const real R_xx = 1 - quaternion_yy - quaternion_zz;
-        const real R_xy = quaternion_xy - quaternion_wz;
-        const real R_xz = quaternion_wy + quaternion_xz;
-        const real R_yx = quaternion_wz + quaternion_xy;
-        const real R_yy = 1 - quaternion_xx - quaternion_zz;
-        const real R_yz = quaternion_yz - quaternion_wx;
-        const real R_zx = quaternion_xz - quaternion_wy;
-        const real R_zy = quaternion_wx + quaternion_yz;
-        const real R_zz = 1 - quaternion_xx - quaternion_yy;
+        values v;
+        stage_X(m, w, k, X, &v);
         /* (potential) potential energy */
         const real gravity_x = m->gravity_x;
         const real gravity_y = m->gravity_y;
@@ -5379,125 +4192,59 @@ INLINE void potential_before(const prepared *m, size_t w, const real *X, real *s
         const real h_star_in_platform_y = m->h_star_in_platform_y;
         const real h_star_in_platform_z = m->h_star_in_platform_z;
         const real m_star = m->m_star;
-        const real potential_t = gravity_x*(R_xx*h_star_in_platform_x + R_xy*h_star_in_platform_y
-            + R_xz*h_star_in_platform_z + m_star*t_x) + gravity_y*(R_yx*h_star_in_platform_x +
-            R_yy*h_star_in_platform_y + R_yz*h_star_in_platform_z + m_star*t_y) +
-            gravity_z*(R_zx*h_star_in_platform_x + R_zy*h_star_in_platform_y +
-            R_zz*h_star_in_platform_z + m_star*t_z);
-        s[0*w + k] = t_x;
-        s[1*w + k] = t_y;
-        s[2*w + k] = t_z;
-        s[3*w + k] = R_xx;
-        s[4*w + k] = R_xy;
-        s[5*w + k] = R_xz;
-        s[6*w + k] = R_yx;
-        s[7*w + k] = R_yy;
-        s[8*w + k] = R_yz;
-        s[9*w + k] = R_zx;
-        s[10*w + k] = R_zy;
-        s[11*w + k] = R_zz;
-        s[12*w + k] = potential_t;
-        t->invalid[k] += UNLESS(is_finite(quaternion_scale)) + UNLESS(quaternion_scale > 0);
+        const real t_x = X[0*w + k];
+        const real t_y = X[1*w + k];
+        const real t_z = X[2*w + k];
+        const real potential_t = gravity_x*(v.R_xx*h_star_in_platform_x +
+            v.R_xy*h_star_in_platform_y + v.R_xz*h_star_in_platform_z + m_star*t_x) +
+            gravity_y*(v.R_yx*h_star_in_platform_x + v.R_yy*h_star_in_platform_y +
+            v.R_yz*h_star_in_platform_z + m_star*t_y) + gravity_z*(v.R_zx*h_star_in_platform_x +
+            v.R_zy*h_star_in_platform_y + v.R_zz*h_star_in_platform_z + m_star*t_z);
+        s[0*w + k] = v.R_xx;
+        s[1*w + k] = v.R_xy;
+        s[2*w + k] = v.R_xz;
+        s[3*w + k] = v.R_yx;
+        s[4*w + k] = v.R_yy;
+        s[5*w + k] = v.R_yz;
+        s[6*w + k] = v.R_zx;
+        s[7*w + k] = v.R_zy;
+        s[8*w + k] = v.R_zz;
+        s[9*w + k] = potential_t;
+        t->invalid[k] += UNLESS(is_finite(v.quaternion_scale)) + UNLESS(v.quaternion_scale > 0);
     }
 }
 
 INLINE void potential_legs_rus(const prepared *m, size_t w, size_t leg, size_t legs, const real
-    *s, size_t states, size_t count, int add, real *terms, real *o)
+    *s, size_t states, size_t count, int add, const real *X, real *terms, real *o)
 {
     for (size_t k = 0; k < count; ++k) {
         const size_t i = leg + legs*k;
         const size_t j = states*k;
-        /* (rus-S) from the base point to the connection point */
-        const real R_xx = s[3*w + j];
-        const real R_xy = s[4*w + j];
-        const real R_xz = s[5*w + j];
-        const real rus_base_point_x = m->rus_base_point_x[i];
-        const real rus_platform_point_x = m->rus_platform_point_x[i];
-        const real rus_platform_point_y = m->rus_platform_point_y[i];
-        const real rus_platform_point_z = m->rus_platform_point_z[i];
-        const real t_x = s[0*w + j];
-        const real rus_S_x = t_x + R_xx*rus_platform_point_x + R_xy*rus_platform_point_y +
-            R_xz*rus_platform_point_z - rus_base_point_x;
-        const real R_yx = s[6*w + j];
-        const real R_yy = s[7*w + j];
-        const real R_yz = s[8*w + j];
-        const real rus_base_point_y = m->rus_base_point_y[i];
-        const real t_y = s[1*w + j];
-        const real rus_S_y = t_y + R_yx*rus_platform_point_x + R_yy*rus_platform_point_y +
-            R_yz*rus_platform_point_z - rus_base_point_y;
-        const real R_zx = s[9*w + j];
-        const real R_zy = s[10*w + j];
-        const real R_zz = s[11*w + j];
-        const real rus_base_point_z = m->rus_base_point_z[i];
-        const real t_z = s[2*w + j];
-        const real rus_S_z = t_z + R_zx*rus_platform_point_x + R_zy*rus_platform_point_y +
-            R_zz*rus_platform_point_z - rus_base_point_z;
-        /* (rus-Kd_1) projection on the centre's direction, from the distance fixed by the joints beyond
-           joint 1 */
-        const real rus_Kd_1_t = rus_S_x*rus_S_x + rus_S_y*rus_S_y + rus_S_z*rus_S_z;
-        const real rus_J_3_t = m->rus_J_3_t[i];
-        const real rus_J_3_t_2 = m->rus_J_3_t_2[i];
-        const real rus_Kd_1 = rus_J_3_t + R(0.5)*rus_Kd_1_t - rus_J_3_t_2;
-        /* (rus-px_1) component along the reference direction */
-        const real rus_base_frame_xx = m->rus_base_frame_xx[i];
-        const real rus_base_frame_yx = m->rus_base_frame_yx[i];
-        const real rus_base_frame_zx = m->rus_base_frame_zx[i];
-        const real rus_px_1 = rus_S_x*rus_base_frame_xx + rus_S_y*rus_base_frame_yx +
-            rus_S_z*rus_base_frame_zx;
-        /* (rus-py_1) component across the reference direction */
-        const real rus_base_frame_xy = m->rus_base_frame_xy[i];
-        const real rus_base_frame_yy = m->rus_base_frame_yy[i];
-        const real rus_base_frame_zy = m->rus_base_frame_zy[i];
-        const real rus_py_1 = rus_S_x*rus_base_frame_xy + rus_S_y*rus_base_frame_yy +
-            rus_S_z*rus_base_frame_zy;
-        /* (rus-Kc_1) factor of the cosine in the equation of joint 1 */
-        const real rus_joint2_offset_x = m->rus_joint2_offset_x[i];
-        const real rus_Kc_1 = rus_joint2_offset_x*rus_px_1;
-        /* (rus-Ks_1) factor of the sine in the equation of joint 1 */
-        const real rus_Ks_1 = rus_joint2_offset_x*rus_py_1;
-        /* (rus-rho2_1) squared amplitude */
-        const real rus_rho2_1 = rus_Kc_1*rus_Kc_1 + rus_Ks_1*rus_Ks_1;
-        /* (rus-disc_1) discriminant */
-        const real rus_disc_1 = rus_rho2_1 - rus_Kd_1*rus_Kd_1;
-        /* (rus-root_1) root, with the sign of the branch */
-        const real rus_branch_1 = m->rus_branch_1[i];
-        const real rus_root_1 = rus_branch_1*root(rus_disc_1);
+        values_rus v;
+        stage_rus_inverse_kinematics_potential(m, w, i, j, s, X, &v);
         /* (rus-c_1) cosine of the angle of joint 1 from its reference direction */
-        const real inv_rus_rho2_1 = 1/rus_rho2_1;
-        const real rus_c_1 = inv_rus_rho2_1*(rus_Kc_1*rus_Kd_1 - rus_Ks_1*rus_root_1);
+        const real rus_c_1 = v.inv_rus_rho2_1*(v.rus_Kc_1*v.rus_Kd_1 - v.rus_Ks_1*v.rus_root_1);
         /* (rus-s_1) sine of the angle of joint 1 from its reference direction */
-        const real rus_s_1 = inv_rus_rho2_1*(rus_Kc_1*rus_root_1 + rus_Kd_1*rus_Ks_1);
-        /* (rus-xi_1) the vector from joint 1 to the connection point, resolved along link 1 */
-        const real inv_rus_size_t = m->inv_rus_size_t[i];
-        const real rus_xi_1_t = inv_rus_size_t*rus_joint2_offset_x*rus_root_1;
-        const real rus_base_frame_xz = m->rus_base_frame_xz[i];
-        const real rus_base_frame_yz = m->rus_base_frame_yz[i];
-        const real rus_base_frame_zz = m->rus_base_frame_zz[i];
-        const real rus_xi_1_in_axes1_z = rus_S_x*rus_base_frame_xz + rus_S_y*rus_base_frame_yz +
-            rus_S_z*rus_base_frame_zz;
-        /* (rus-x_2) from the origin of joint 2 to the connection point */
-        const real rus_x_2_in_axes1_x = inv_rus_size_t*rus_Kd_1*rus_joint2_offset_x -
-            rus_joint2_offset_x;
-        /* (rus-rho2_2) squared amplitude */
-        const real rus_rho2_2 = rus_x_2_in_axes1_x*rus_x_2_in_axes1_x + rus_xi_1_t*rus_xi_1_t;
-        /* (rus-root_2) root, with the sign of the branch */
-        const real rus_branch_2 = m->rus_branch_2[i];
-        const real rus_root_2 = rus_branch_2*root(rus_rho2_2);
+        const real rus_s_1 = v.inv_rus_rho2_1*(v.rus_Kc_1*v.rus_root_1 + v.rus_Kd_1*v.rus_Ks_1);
         /* (rus-c_2) cosine of the angle of joint 2 from its reference direction */
-        const real inv_rus_rho2_2 = 1/rus_rho2_2;
-        const real rus_c_2 = inv_rus_rho2_2*rus_root_2*rus_xi_1_t;
+        const real rus_c_2 = v.inv_rus_rho2_2*v.rus_root_2*v.rus_x_2_in_axes1_x;
         /* (rus-s_2) sine of the angle of joint 2 from its reference direction */
-        const real rus_s_2 = inv_rus_rho2_2*rus_root_2*rus_x_2_in_axes1_x;
+        const real rus_s_2_t = v.inv_rus_rho2_2*v.rus_root_2*v.rus_xi_1_t;
         /* (rus-c_3) cosine of the angle of joint 3 from its reference direction */
         const real inv_rus_size_t_2 = m->inv_rus_size_t_2[i];
         const real rus_platform_joint_offset_x = m->rus_platform_joint_offset_x[i];
-        const real rus_c_3 = -inv_rus_size_t_2*rus_platform_joint_offset_x*rus_root_2;
-        /* (rus-s_3) sine of the angle of joint 3 from its reference direction */
-        const real rus_s_3 = inv_rus_size_t_2*rus_platform_joint_offset_x*rus_xi_1_in_axes1_z;
+        const real rus_c_3 = inv_rus_size_t_2*rus_platform_joint_offset_x*v.rus_root_2;
         /* (potential) potential energy */
+        const real rus_base_frame_xz = m->rus_base_frame_xz[i];
+        const real rus_base_frame_yz = m->rus_base_frame_yz[i];
+        const real rus_base_frame_zz = m->rus_base_frame_zz[i];
+        const real rus_e_1_in_axes3_x =
+            inv_rus_size_t_2*rus_platform_joint_offset_x*(v.rus_S_x*rus_base_frame_xz +
+            v.rus_S_y*rus_base_frame_yz + v.rus_S_z*rus_base_frame_zz);
         const real rus_h_3_in_spec3_x = m->rus_h_3_in_spec3_x[i];
         const real rus_h_3_in_spec3_z = m->rus_h_3_in_spec3_z[i];
-        const real rus_potential_t_4 = rus_c_3*rus_h_3_in_spec3_x + rus_h_3_in_spec3_z*rus_s_3;
+        const real rus_potential_t_4 = rus_e_1_in_axes3_x*rus_h_3_in_spec3_z -
+            rus_c_3*rus_h_3_in_spec3_x;
         const real rus_g_in_axes1_z = m->rus_g_in_axes1_z[i];
         const real rus_h_1_in_spec1_x = m->rus_h_1_in_spec1_x[i];
         const real rus_h_1_in_spec1_y = m->rus_h_1_in_spec1_y[i];
@@ -5510,20 +4257,20 @@ INLINE void potential_legs_rus(const prepared *m, size_t w, size_t leg, size_t l
         const real rus_potential_t_2 = m->rus_potential_t_2[i];
         const real rus_potential_t_3 = m->rus_potential_t_3[i];
         const real rus_potential_t_5 = rus_g_in_axes1_z*(rus_h_1_in_spec1_z + rus_potential_t_3 +
-            rus_h_3_in_spec3_x*rus_s_3 - rus_c_3*rus_h_3_in_spec3_z) + (rus_c_1*rus_mu_1_t +
-            rus_mu_1_t_2*rus_s_1)*(rus_h_1_in_spec1_x + rus_c_2*rus_h_3_in_spec3_y +
-            rus_link1_mass*(rus_c_1*rus_potential_t + rus_potential_t_2*rus_s_1) -
-            rus_potential_t_4*rus_s_2) + (rus_c_1*rus_mu_1_t_2 -
-            rus_mu_1_t*rus_s_1)*(rus_h_1_in_spec1_y + rus_c_2*rus_potential_t_4 +
-            rus_h_3_in_spec3_y*rus_s_2 + rus_link1_mass*(rus_c_1*rus_potential_t_2 -
-            rus_potential_t*rus_s_1));
+            rus_c_3*rus_h_3_in_spec3_z + rus_e_1_in_axes3_x*rus_h_3_in_spec3_x) +
+            (rus_c_1*rus_mu_1_t + rus_mu_1_t_2*rus_s_1)*(rus_h_1_in_spec1_x +
+            rus_h_3_in_spec3_y*rus_s_2_t + rus_link1_mass*(rus_c_1*rus_potential_t +
+            rus_potential_t_2*rus_s_1) - rus_c_2*rus_potential_t_4) + (rus_c_1*rus_mu_1_t_2 -
+            rus_mu_1_t*rus_s_1)*(rus_h_1_in_spec1_y + rus_c_2*rus_h_3_in_spec3_y +
+            rus_link1_mass*(rus_c_1*rus_potential_t_2 - rus_potential_t*rus_s_1) +
+            rus_potential_t_4*rus_s_2_t);
         /* (potential) potential energy */
         gather(&terms[0*count + k], add, rus_potential_t_5);  /* potential_of_legs */
         const real rus_rho2_1_t = m->rus_rho2_1_t[i];
         const real rus_size_t_3 = m->rus_size_t_3[i];
-        o[1*count + k] = UNLESS(magnitude(rus_rho2_1) > TOLERANCE*TOLERANCE*rus_rho2_1_t) +
-            UNLESS(magnitude(rus_rho2_2) > TOLERANCE*TOLERANCE*rus_size_t_3);
-        o[0*count + k] = UNLESS(rus_disc_1 >= 0);
+        o[1*count + k] = UNLESS(magnitude(v.rus_rho2_1) > TOLERANCE*TOLERANCE*rus_rho2_1_t) +
+            UNLESS(magnitude(v.rus_rho2_2) > TOLERANCE*TOLERANCE*rus_size_t_3);
+        o[0*count + k] = UNLESS(v.rus_disc_1 >= 0);
     }
 }
 
@@ -5540,7 +4287,7 @@ INLINE void potential_after(size_t w, const real *s, const real *sums, real *pot
     for (size_t k = 0; k < w; ++k) {
         /* (potential) potential energy */
         const real potential_of_legs = sums[0*w + k];
-        const real potential_t = s[12*w + k];
+        const real potential_t = s[9*w + k];
         const real potential_ = -potential_of_legs - potential_t;
         /* (potential) potential energy */
         potential[0*w + k] = potential_;
@@ -5549,12 +4296,10 @@ INLINE void potential_after(size_t w, const real *s, const real *sums, real *pot
 
 INLINE void potential_run(const prepared *m, const real *X, real *potential, verdict *t)
 {
-    real s[13] = {0};
-    real sums[1] = {0};
-    real terms_rus[LEGS(LEGS_OF_rus)] = {0};
-    real o_rus[2*LEGS(LEGS_OF_rus)] = {0};
+    real s[10] = {0}, sums[1] = {0};
+    real terms_rus[LEGS(LEGS_OF_rus)] = {0}, o_rus[2*LEGS(LEGS_OF_rus)] = {0};
     potential_before(m, 1, X, s, t);
-    potential_legs_rus(m, 1, 0, 1, s, 0, LEGS(LEGS_OF_rus), 0, terms_rus, o_rus);
+    potential_legs_rus(m, 1, 0, 1, s, 0, LEGS(LEGS_OF_rus), 0, X, terms_rus, o_rus);
     for (size_t leg = 0; leg < LEGS_OF_rus; ++leg) {
         potential_place_rus(1, LEGS(LEGS_OF_rus), o_rus, leg, t);
     }
@@ -5569,236 +4314,82 @@ INLINE void condition_before(const prepared *m, size_t w, const real *X, real *s
     verdict *t)
 {
     for (size_t k = 0; k < w; ++k) {
-        /* X: named entries */
-        const real X_0 = X[0*w + k];
-        const real t_x = X_0;
-        const real X_1 = X[1*w + k];
-        const real t_y = X_1;
-        const real X_2 = X[2*w + k];
-        const real t_z = X_2;
-        const real X_3 = X[3*w + k];
-        const real X_4 = X[4*w + k];
-        const real X_5 = X[5*w + k];
-        const real X_6 = X[6*w + k];
-        const real quaternion_norm2 = X_3*X_3 + X_4*X_4 + X_5*X_5 + X_6*X_6;
-        const real quaternion_scale = 2/quaternion_norm2;
-        const real quaternion_sx = X_3*quaternion_scale;
-        const real quaternion_sy = X_4*quaternion_scale;
-        const real quaternion_sz = X_5*quaternion_scale;
-        const real quaternion_wx = X_6*quaternion_sx;
-        const real quaternion_wy = X_6*quaternion_sy;
-        const real quaternion_wz = X_6*quaternion_sz;
-        const real quaternion_xx = X_3*quaternion_sx;
-        const real quaternion_xy = X_3*quaternion_sy;
-        const real quaternion_xz = X_3*quaternion_sz;
-        const real quaternion_yy = X_4*quaternion_sy;
-        const real quaternion_yz = X_4*quaternion_sz;
-        const real quaternion_zz = X_5*quaternion_sz;
-        const real R_xx = 1 - quaternion_yy - quaternion_zz;
-        const real R_xy = quaternion_xy - quaternion_wz;
-        const real R_xz = quaternion_wy + quaternion_xz;
-        const real R_yx = quaternion_wz + quaternion_xy;
-        const real R_yy = 1 - quaternion_xx - quaternion_zz;
-        const real R_yz = quaternion_yz - quaternion_wx;
-        const real R_zx = quaternion_xz - quaternion_wy;
-        const real R_zy = quaternion_wx + quaternion_yz;
-        const real R_zz = 1 - quaternion_xx - quaternion_yy;
-        s[0*w + k] = t_x;
-        s[1*w + k] = t_y;
-        s[2*w + k] = t_z;
-        s[3*w + k] = R_xx;
-        s[4*w + k] = R_xy;
-        s[5*w + k] = R_xz;
-        s[6*w + k] = R_yx;
-        s[7*w + k] = R_yy;
-        s[8*w + k] = R_yz;
-        s[9*w + k] = R_zx;
-        s[10*w + k] = R_zy;
-        s[11*w + k] = R_zz;
+        values v;
+        stage_X(m, w, k, X, &v);
+        s[0*w + k] = v.R_xx;
+        s[1*w + k] = v.R_xy;
+        s[2*w + k] = v.R_xz;
+        s[3*w + k] = v.R_yx;
+        s[4*w + k] = v.R_yy;
+        s[5*w + k] = v.R_yz;
+        s[6*w + k] = v.R_zx;
+        s[7*w + k] = v.R_zy;
+        s[8*w + k] = v.R_zz;
         /* (legs_size) rms size of the legs, taken where the platform points coincide */
         const real legs_size = m->legs_size;
         lengths[1*w + k] = legs_size;
         t->total[k] += legs_size;
-        t->invalid[k] += UNLESS(is_finite(quaternion_scale)) + UNLESS(quaternion_scale > 0);
+        t->invalid[k] += UNLESS(is_finite(v.quaternion_scale)) + UNLESS(v.quaternion_scale > 0);
     }
 }
 
 INLINE void condition_legs_rus(const prepared *m, size_t w, size_t leg, size_t legs, const real
-    *s, size_t states, size_t count, int add, real *terms, real *o)
+    *s, size_t states, size_t count, int add, const real *X, real *terms, real *o)
 {
     for (size_t k = 0; k < count; ++k) {
         const size_t i = leg + legs*k;
         const size_t j = states*k;
-        /* (rus-S) from the base point to the connection point */
-        const real R_xx = s[3*w + j];
-        const real R_xy = s[4*w + j];
-        const real R_xz = s[5*w + j];
-        const real rus_platform_point_x = m->rus_platform_point_x[i];
-        const real rus_platform_point_y = m->rus_platform_point_y[i];
-        const real rus_platform_point_z = m->rus_platform_point_z[i];
-        const real rus_q_x = R_xx*rus_platform_point_x + R_xy*rus_platform_point_y +
-            R_xz*rus_platform_point_z;
-        const real R_yx = s[6*w + j];
-        const real R_yy = s[7*w + j];
-        const real R_yz = s[8*w + j];
-        const real rus_q_y = R_yx*rus_platform_point_x + R_yy*rus_platform_point_y +
-            R_yz*rus_platform_point_z;
-        const real R_zx = s[9*w + j];
-        const real R_zy = s[10*w + j];
-        const real R_zz = s[11*w + j];
-        const real rus_q_z = R_zx*rus_platform_point_x + R_zy*rus_platform_point_y +
-            R_zz*rus_platform_point_z;
-        const real rus_base_point_x = m->rus_base_point_x[i];
-        const real t_x = s[0*w + j];
-        const real rus_S_x = rus_q_x + t_x - rus_base_point_x;
-        const real rus_base_point_y = m->rus_base_point_y[i];
-        const real t_y = s[1*w + j];
-        const real rus_S_y = rus_q_y + t_y - rus_base_point_y;
-        const real rus_base_point_z = m->rus_base_point_z[i];
-        const real t_z = s[2*w + j];
-        const real rus_S_z = rus_q_z + t_z - rus_base_point_z;
-        /* (rus-Kd_1) projection on the centre's direction, from the distance fixed by the joints beyond
-           joint 1 */
-        const real rus_Kd_1_t = rus_S_x*rus_S_x + rus_S_y*rus_S_y + rus_S_z*rus_S_z;
-        const real rus_J_3_t = m->rus_J_3_t[i];
-        const real rus_J_3_t_2 = m->rus_J_3_t_2[i];
-        const real rus_Kd_1 = rus_J_3_t + R(0.5)*rus_Kd_1_t - rus_J_3_t_2;
-        /* (rus-px_1) component along the reference direction */
-        const real rus_base_frame_xx = m->rus_base_frame_xx[i];
-        const real rus_base_frame_yx = m->rus_base_frame_yx[i];
-        const real rus_base_frame_zx = m->rus_base_frame_zx[i];
-        const real rus_px_1 = rus_S_x*rus_base_frame_xx + rus_S_y*rus_base_frame_yx +
-            rus_S_z*rus_base_frame_zx;
-        /* (rus-py_1) component across the reference direction */
-        const real rus_base_frame_xy = m->rus_base_frame_xy[i];
-        const real rus_base_frame_yy = m->rus_base_frame_yy[i];
-        const real rus_base_frame_zy = m->rus_base_frame_zy[i];
-        const real rus_py_1 = rus_S_x*rus_base_frame_xy + rus_S_y*rus_base_frame_yy +
-            rus_S_z*rus_base_frame_zy;
-        /* (rus-Kc_1) factor of the cosine in the equation of joint 1 */
-        const real rus_joint2_offset_x = m->rus_joint2_offset_x[i];
-        const real rus_Kc_1 = rus_joint2_offset_x*rus_px_1;
-        /* (rus-Ks_1) factor of the sine in the equation of joint 1 */
-        const real rus_Ks_1 = rus_joint2_offset_x*rus_py_1;
-        /* (rus-rho2_1) squared amplitude */
-        const real rus_rho2_1 = rus_Kc_1*rus_Kc_1 + rus_Ks_1*rus_Ks_1;
-        /* (rus-disc_1) discriminant */
-        const real rus_disc_1 = rus_rho2_1 - rus_Kd_1*rus_Kd_1;
-        /* (rus-root_1) root, with the sign of the branch */
-        const real rus_branch_1 = m->rus_branch_1[i];
-        const real rus_root_1 = rus_branch_1*root(rus_disc_1);
-        /* (rus-c_1) cosine of the angle of joint 1 from its reference direction */
-        const real inv_rus_rho2_1 = 1/rus_rho2_1;
-        const real rus_c_1 = inv_rus_rho2_1*(rus_Kc_1*rus_Kd_1 - rus_Ks_1*rus_root_1);
-        /* (rus-s_1) sine of the angle of joint 1 from its reference direction */
-        const real rus_s_1 = inv_rus_rho2_1*(rus_Kc_1*rus_root_1 + rus_Kd_1*rus_Ks_1);
-        /* (rus-xi_1) the vector from joint 1 to the connection point, resolved along link 1 */
-        const real inv_rus_size_t = m->inv_rus_size_t[i];
-        const real rus_xi_1_t = inv_rus_size_t*rus_joint2_offset_x*rus_root_1;
-        const real rus_base_frame_xz = m->rus_base_frame_xz[i];
-        const real rus_base_frame_yz = m->rus_base_frame_yz[i];
-        const real rus_base_frame_zz = m->rus_base_frame_zz[i];
-        const real rus_xi_1_in_axes1_z = rus_S_x*rus_base_frame_xz + rus_S_y*rus_base_frame_yz +
-            rus_S_z*rus_base_frame_zz;
-        /* (rus-x_2) from the origin of joint 2 to the connection point */
-        const real rus_x_2_in_axes1_x = inv_rus_size_t*rus_Kd_1*rus_joint2_offset_x -
-            rus_joint2_offset_x;
-        /* (rus-rho2_2) squared amplitude */
-        const real rus_rho2_2 = rus_x_2_in_axes1_x*rus_x_2_in_axes1_x + rus_xi_1_t*rus_xi_1_t;
-        /* (rus-root_2) root, with the sign of the branch */
-        const real rus_branch_2 = m->rus_branch_2[i];
-        const real rus_root_2 = rus_branch_2*root(rus_rho2_2);
-        /* (rus-c_2) cosine of the angle of joint 2 from its reference direction */
-        const real inv_rus_rho2_2 = 1/rus_rho2_2;
-        const real rus_c_2 = inv_rus_rho2_2*rus_root_2*rus_xi_1_t;
-        /* (rus-s_2) sine of the angle of joint 2 from its reference direction */
-        const real rus_s_2 = inv_rus_rho2_2*rus_root_2*rus_x_2_in_axes1_x;
-        /* (rus-c_3) cosine of the angle of joint 3 from its reference direction */
-        const real inv_rus_size_t_2 = m->inv_rus_size_t_2[i];
-        const real rus_platform_joint_offset_x = m->rus_platform_joint_offset_x[i];
-        const real rus_c_3 = -inv_rus_size_t_2*rus_platform_joint_offset_x*rus_root_2;
-        /* (rus-s_3) sine of the angle of joint 3 from its reference direction */
-        const real rus_s_3 = inv_rus_size_t_2*rus_platform_joint_offset_x*rus_xi_1_in_axes1_z;
-        /* (rus-r_1) from joint 1 to the connection point, along the links */
-        const real rus_r_1_t = -rus_c_3*rus_platform_joint_offset_x;
-        const real rus_r_1_in_axes1_x = rus_joint2_offset_x + rus_r_1_t*rus_s_2;
-        /* (rus-v_1) velocity of the connection point per rate of joint 1 */
-        const real rus_v_1_t = -rus_c_3*(rus_c_2*rus_r_1_in_axes1_x - rus_c_2*rus_r_1_t*rus_s_2);
-        /* (rus-w_1) reciprocal vector 1 */
-        const real rus_w_1_t = rus_c_1*rus_c_2 - rus_s_1*rus_s_2;
-        const real rus_w_1_t_2 = rus_c_1*rus_s_2 + rus_c_2*rus_s_1;
-        const real axis_z_rus_axes3_x = rus_base_frame_xx*rus_w_1_t +
-            rus_base_frame_xy*rus_w_1_t_2;
-        const real axis_z_rus_axes3_y = rus_base_frame_yx*rus_w_1_t +
-            rus_base_frame_yy*rus_w_1_t_2;
-        const real axis_z_rus_axes3_z = rus_base_frame_zx*rus_w_1_t +
-            rus_base_frame_zy*rus_w_1_t_2;
-        const real rus_w_1_t_3 = rus_s_2*rus_s_3;
-        const real rus_w_1_t_4 = rus_c_2*rus_s_3;
-        const real rus_w_1_t_5 = rus_c_1*rus_w_1_t_3 + rus_s_1*rus_w_1_t_4;
-        const real rus_w_1_t_6 = rus_s_1*rus_w_1_t_3 - rus_c_1*rus_w_1_t_4;
-        const real axis_y_rus_axes3_x = rus_base_frame_xx*rus_w_1_t_5 +
-            rus_base_frame_xy*rus_w_1_t_6 + rus_base_frame_xz*rus_c_3;
-        const real axis_y_rus_axes3_y = rus_base_frame_yx*rus_w_1_t_5 +
-            rus_base_frame_yy*rus_w_1_t_6 + rus_base_frame_yz*rus_c_3;
-        const real axis_y_rus_axes3_z = rus_base_frame_zx*rus_w_1_t_5 +
-            rus_base_frame_zy*rus_w_1_t_6 + rus_base_frame_zz*rus_c_3;
-        const real inv_rus_v_1_t = 1/rus_v_1_t;
-        const real rus_w_1_t_7 = inv_rus_v_1_t*(axis_y_rus_axes3_y*axis_z_rus_axes3_z -
-            axis_y_rus_axes3_z*axis_z_rus_axes3_y);
-        const real rus_w_1_t_8 = inv_rus_v_1_t*(axis_y_rus_axes3_z*axis_z_rus_axes3_x -
-            axis_y_rus_axes3_x*axis_z_rus_axes3_z);
-        const real rus_w_1_t_9 = inv_rus_v_1_t*(axis_y_rus_axes3_x*axis_z_rus_axes3_y -
-            axis_y_rus_axes3_y*axis_z_rus_axes3_x);
+        values_rus v;
+        stage_rus_X(m, w, i, j, s, X, &v);
+        stage_rus_H_condition(&v);
         /* (rus-G) force at the connection point that balances the leg's inertia and weight along all
            degrees of freedom */
-        const real rus_pivot_size = magnitude(rus_rho2_1);
-        const real rus_pivot_size_2 = magnitude(rus_rho2_2);
-        const real rus_pivot_size_3 = magnitude(rus_r_1_t);
-        const real rus_pivot_size_4 = magnitude(rus_v_1_t);
+        const real rus_pivot_size = magnitude(v.rus_rho2_1);
+        const real rus_pivot_size_2 = magnitude(v.rus_rho2_2);
+        const real rus_pivot_size_3 = magnitude(v.rus_r_1_t);
+        const real rus_pivot_size_4 = magnitude(v.rus_v_1_t);
         const real inv_rus_rho2_1_t = m->inv_rus_rho2_1_t[i];
         const real inv_rus_size = m->inv_rus_size[i];
         const real inv_rus_size_t_3 = m->inv_rus_size_t_3[i];
         const real rus_least_pivots = lesser(lesser(lesser(root(inv_rus_rho2_1_t*rus_pivot_size),
             inv_rus_size*rus_pivot_size_3), inv_rus_size*rus_pivot_size_4),
             root(inv_rus_size_t_3*rus_pivot_size_2));
-        /* (rus-H_a_1) moment of the column's unit force about the platform origin */
-        const real rus_H_a_1_x = rus_q_z*rus_w_1_t_8 - rus_q_y*rus_w_1_t_9;
-        const real rus_H_a_1_y = rus_q_x*rus_w_1_t_9 - rus_q_z*rus_w_1_t_7;
-        const real rus_H_a_1_z = rus_q_y*rus_w_1_t_7 - rus_q_x*rus_w_1_t_8;
         /* (spread) rms distance of the platform points from their centroid */
         const real b_c_in_platform_x = m->b_c_in_platform_x;
+        const real rus_platform_point_x = m->rus_platform_point_x[i];
         const real rus_spread_t = b_c_in_platform_x - rus_platform_point_x;
         const real b_c_in_platform_y = m->b_c_in_platform_y;
+        const real rus_platform_point_y = m->rus_platform_point_y[i];
         const real rus_spread_t_2 = b_c_in_platform_y - rus_platform_point_y;
         const real b_c_in_platform_z = m->b_c_in_platform_z;
+        const real rus_platform_point_z = m->rus_platform_point_z[i];
         const real rus_spread_t_3 = b_c_in_platform_z - rus_platform_point_z;
         const real rus_spread_t_4 = rus_spread_t*rus_spread_t + rus_spread_t_2*rus_spread_t_2 +
             rus_spread_t_3*rus_spread_t_3;
         /* (spread) rms distance of the platform points from their centroid */
         gather(&terms[0*count + k], add, rus_spread_t_4);  /* spread_rus */
         /* (rus-w_1) reciprocal vector 1 */
-        o[0*count + k] = -rus_w_1_t_7;
-        o[1*count + k] = -rus_w_1_t_8;
-        o[2*count + k] = -rus_w_1_t_9;
+        o[0*count + k] = -v.rus_w_1_t_7;
+        o[1*count + k] = -v.rus_w_1_t_8;
+        o[2*count + k] = -v.rus_w_1_t_9;
         /* (rus-H_a_1) moment of the column's unit force about the platform origin */
-        o[3*count + k] = rus_H_a_1_x;
-        o[4*count + k] = rus_H_a_1_y;
-        o[5*count + k] = rus_H_a_1_z;
+        o[3*count + k] = v.rus_H_a_1_x;
+        o[4*count + k] = v.rus_H_a_1_y;
+        o[5*count + k] = v.rus_H_a_1_z;
         /* (rus-G) force at the connection point that balances the leg's inertia and weight along all
            degrees of freedom */
         o[6*count + k] = rus_least_pivots;
-        o[7*count + k] = rus_disc_1;
-        o[10*count + k] = ((rus_w_1_t_7 + rus_w_1_t_8) + (rus_w_1_t_9 + rus_H_a_1_x)) +
-            ((rus_H_a_1_y + rus_H_a_1_z) + (rus_least_pivots + rus_disc_1));
+        o[7*count + k] = v.rus_disc_1;
+        o[10*count + k] = ((v.rus_w_1_t_7 + v.rus_w_1_t_8) + (v.rus_w_1_t_9 + v.rus_H_a_1_x)) +
+            ((v.rus_H_a_1_y + v.rus_H_a_1_z) + (rus_least_pivots + v.rus_disc_1));
         const real rus_rho2_1_t = m->rus_rho2_1_t[i];
         const real rus_size_t_3 = m->rus_size_t_3[i];
         const real rus_size = m->rus_size[i];
-        o[9*count + k] = UNLESS(magnitude(rus_rho2_1) > TOLERANCE*TOLERANCE*rus_rho2_1_t) +
-            UNLESS(magnitude(rus_rho2_2) > TOLERANCE*TOLERANCE*rus_size_t_3) +
-            UNLESS(magnitude(rus_r_1_t) > TOLERANCE*rus_size) + UNLESS(magnitude(rus_v_1_t) >
+        o[9*count + k] = UNLESS(magnitude(v.rus_rho2_1) > TOLERANCE*TOLERANCE*rus_rho2_1_t) +
+            UNLESS(magnitude(v.rus_rho2_2) > TOLERANCE*TOLERANCE*rus_size_t_3) +
+            UNLESS(magnitude(v.rus_r_1_t) > TOLERANCE*rus_size) + UNLESS(magnitude(v.rus_v_1_t) >
             TOLERANCE*rus_size);
-        o[8*count + k] = UNLESS(rus_disc_1 >= 0);
+        o[8*count + k] = UNLESS(v.rus_disc_1 >= 0);
     }
 }
 
@@ -5806,7 +4397,7 @@ INLINE void condition_place_rus(size_t w, size_t count, const real *o, size_t le
     real *H, real *pivots, real *reach, verdict *t)
 {
     for (size_t k = 0; k < w; ++k) {
-        H[(0*NU + leg)*w + k] = o[0*count + first + k];
+        H[leg*w + k] = o[0*count + first + k];
         H[(NU + leg)*w + k] = o[1*count + first + k];
         H[(2*NU + leg)*w + k] = o[2*count + first + k];
         H[(3*NU + leg)*w + k] = o[3*count + first + k];
@@ -5837,12 +4428,10 @@ INLINE void condition_after(const prepared *m, size_t w, const real *sums, real 
 INLINE void condition_run(const prepared *m, const real *X, real *H, real *lengths, real *pivots,
     real *reach, verdict *t)
 {
-    real s[12] = {0};
-    real sums[1] = {0};
-    real terms_rus[LEGS(LEGS_OF_rus)] = {0};
-    real o_rus[11*LEGS(LEGS_OF_rus)] = {0};
+    real s[9] = {0}, sums[1] = {0};
+    real terms_rus[LEGS(LEGS_OF_rus)] = {0}, o_rus[11*LEGS(LEGS_OF_rus)] = {0};
     condition_before(m, 1, X, s, lengths, t);
-    condition_legs_rus(m, 1, 0, 1, s, 0, LEGS(LEGS_OF_rus), 0, terms_rus, o_rus);
+    condition_legs_rus(m, 1, 0, 1, s, 0, LEGS(LEGS_OF_rus), 0, X, terms_rus, o_rus);
     for (size_t leg = 0; leg < LEGS_OF_rus; ++leg) {
         condition_place_rus(1, LEGS(LEGS_OF_rus), o_rus, leg, leg, H, pivots, reach, t);
     }
@@ -6483,11 +5072,84 @@ INLINE void condition_one(const prepared *m, const real *X, const real *length, 
     }
 }
 
+INLINE void manipulability_one(const prepared *m, const real *X, real *measure_out, real
+    *isotropy_out, int *code)
+{
+    static const size_t places_divide_rows_1[] = {3, 4, 5};
+    real H[NV*NU] = {0}, lengths[2] = {0}, pivots[NL] = {0}, reach[NL] = {0}, subtract_1[1] = {0},
+        choose_length_1[1] = {0}, divide_rows_1[NV*NU] = {0}, singular_values_1[NV] = {0}, measure[1]
+        = {0}, isotropy[1] = {0};
+    verdict why;
+    start(1, &why);
+    check(NQ, 1, X, why.invalid);
+    condition_run(m, X, H, lengths, pivots, reach, &why);
+    const real *const entry_1 = lengths;
+    for (size_t i = 0; i < 1; ++i) {
+        subtract_1[i] = entry_1[i] - entry_1[i];
+    }
+    for (size_t i = 0; i < 1; ++i) {
+        choose_length_1[i] = subtract_1[i] > 0 ? subtract_1[i] : lengths[i] > TINY*lengths[1 + i]
+            ? lengths[i] : lengths[1 + i];
+    }
+    for (size_t i = 0; i < NV*NU; ++i) {
+        divide_rows_1[i] = H[i];
+    }
+    divide_rows(3, NU, 1, places_divide_rows_1, choose_length_1, divide_rows_1);
+    singular_values(NV, NU, divide_rows_1, singular_values_1);
+    spread(NV, singular_values_1, measure, isotropy);
+    check(1, 1, measure, why.overflow);
+    check(1, 1, isotropy, why.overflow);
+    judge(&why, code);
+    copy(1, measure, measure_out);
+    copy(1, isotropy, isotropy_out);
+    if (*code != OK) {
+        refuse(1, measure_out);
+        refuse(1, isotropy_out);
+    }
+}
+
+INLINE void singularity_distance_one(const prepared *m, const real *X, real *actuators_out, real
+    *legs_out, int *code)
+{
+    static const size_t places_divide_rows_1[] = {3, 4, 5};
+    real H[NV*NU] = {0}, lengths[2] = {0}, pivots[NL] = {0}, reach[NL] = {0}, subtract_1[1] = {0},
+        choose_length_1[1] = {0}, divide_rows_1[NV*NU] = {0}, singular_values_1[NV] = {0}, spread_1[1]
+        = {0}, actuators[1] = {0}, legs[1] = {0};
+    verdict why;
+    start(1, &why);
+    check(NQ, 1, X, why.invalid);
+    condition_run(m, X, H, lengths, pivots, reach, &why);
+    const real *const entry_1 = lengths;
+    for (size_t i = 0; i < 1; ++i) {
+        subtract_1[i] = entry_1[i] - entry_1[i];
+    }
+    for (size_t i = 0; i < 1; ++i) {
+        choose_length_1[i] = subtract_1[i] > 0 ? subtract_1[i] : lengths[i] > TINY*lengths[1 + i]
+            ? lengths[i] : lengths[1 + i];
+    }
+    for (size_t i = 0; i < NV*NU; ++i) {
+        divide_rows_1[i] = H[i];
+    }
+    divide_rows(3, NU, 1, places_divide_rows_1, choose_length_1, divide_rows_1);
+    singular_values(NV, NU, divide_rows_1, singular_values_1);
+    spread(NV, singular_values_1, spread_1, actuators);
+    least_entry(NL, pivots, legs);
+    check(1, 1, actuators, why.overflow);
+    check(1, 1, legs, why.overflow);
+    judge(&why, code);
+    copy(1, actuators, actuators_out);
+    copy(1, legs, legs_out);
+    if (*code != OK) {
+        refuse(1, actuators_out);
+        refuse(1, legs_out);
+    }
+}
+
 static void mismatch_one(const prepared *m, const real *X, const real *q_actuated, real *gap_out,
     int *code)
 {
     static const size_t places_gap[] = {0, 1, 2, 3, 4, 5};
-    real q[NJ] = {0}, take_1[6] = {0}, subtract_1[NU] = {0}, gap[NU] = {0};
+    real q[NJ] = {0}, q_of_inverse_kinematics_from_0[6] = {0}, subtract_1[NU] = {0}, gap[NU] = {0};
     verdict why;
     start(1, &why);
     const real total_in = total(X, NQ) + total(q_actuated, NU);
@@ -6496,9 +5158,9 @@ static void mismatch_one(const prepared *m, const real *X, const real *q_actuate
         check(NU, 1, q_actuated, why.invalid);
     }
     inverse_kinematics_run(m, X, q, &why);
-    take(6, 1, hexapod_6rus_ACTUATED, q, take_1);
+    take(6, 1, hexapod_6rus_ACTUATED, q, q_of_inverse_kinematics_from_0);
     for (size_t i = 0; i < NU; ++i) {
-        subtract_1[i] = q_actuated[i] - take_1[i];
+        subtract_1[i] = q_actuated[i] - q_of_inverse_kinematics_from_0[i];
     }
     for (size_t i = 0; i < NU; ++i) {
         gap[i] = subtract_1[i];
@@ -6869,8 +5531,8 @@ INLINE void rotation_one(const real *X, real *R_out, int *code)
     verdict why;
     start(1, &why);
     check(NQ, 1, X, why.invalid);
-    const real *const take_1 = X + 3;
-    rotation_of_quaternion(take_1, R);
+    const real *const X_from_3 = X + 3;
+    rotation_of_quaternion(X_from_3, R);
     check(9, 1, R, why.overflow);
     judge(&why, code);
     copy(9, R, R_out);
@@ -6910,11 +5572,11 @@ INLINE void X_dot_one(const real *X, const real *V, real *X_dot_out, int *code)
         check(NQ, 1, X, why.invalid);
         check(NV, 1, V, why.invalid);
     }
-    const real *const take_1 = V + 3;
-    const real *const take_2 = X + 3;
-    quaternion_rate(take_2, take_1, quaternion_rate_1);
-    const real *const take_3 = V;
-    beside(1, 3, 4, take_3, quaternion_rate_1, X_dot);
+    const real *const V_from_3 = V + 3;
+    const real *const X_from_3 = X + 3;
+    quaternion_rate(X_from_3, V_from_3, quaternion_rate_1);
+    const real *const V_from_0 = V;
+    beside(1, 3, 4, V_from_0, quaternion_rate_1, X_dot);
     check(NQ, 1, X_dot, why.overflow);
     judge(&why, code);
     copy(NQ, X_dot, X_dot_out);
@@ -6954,13 +5616,13 @@ INLINE void retract_one(const real *X, const real *step, real *X_moved_out, int 
         check(NQ, 1, X, why.invalid);
         check(NV, 1, step, why.invalid);
     }
-    const real *const take_1 = X;
-    const real *const take_2 = X + 3;
-    const real *const take_3 = step;
-    const real *const take_4 = step + 3;
-    turn_quaternion(take_2, take_4, turn_quaternion_1);
+    const real *const X_from_0 = X;
+    const real *const X_from_3 = X + 3;
+    const real *const step_from_0 = step;
+    const real *const step_from_3 = step + 3;
+    turn_quaternion(X_from_3, step_from_3, turn_quaternion_1);
     for (size_t i = 0; i < 3; ++i) {
-        add_1[i] = take_1[i] + take_3[i];
+        add_1[i] = X_from_0[i] + step_from_0[i];
     }
     beside(1, 3, 4, add_1, turn_quaternion_1, X_moved);
     check(NQ, 1, X_moved, why.overflow);
@@ -6981,13 +5643,13 @@ INLINE void difference_one(const real *X0, const real *X1, real *step_out, int *
         check(NQ, 1, X0, why.invalid);
         check(NQ, 1, X1, why.invalid);
     }
-    const real *const take_1 = X0;
-    const real *const take_2 = X0 + 3;
-    const real *const take_3 = X1;
-    const real *const take_4 = X1 + 3;
-    turn_between(take_2, take_4, turn_between_1);
+    const real *const X0_from_0 = X0;
+    const real *const X0_from_3 = X0 + 3;
+    const real *const X1_from_0 = X1;
+    const real *const X1_from_3 = X1 + 3;
+    turn_between(X0_from_3, X1_from_3, turn_between_1);
     for (size_t i = 0; i < 3; ++i) {
-        subtract_1[i] = take_3[i] - take_1[i];
+        subtract_1[i] = X1_from_0[i] - X0_from_0[i];
     }
     beside(1, 3, 3, subtract_1, turn_between_1, step);
     check(NV, 1, step, why.overflow);
@@ -7010,25 +5672,25 @@ INLINE void interpolate_one(const real *X0, const real *X1, const real *s, real 
         check(NQ, 1, X1, why.invalid);
         check(1, 1, s, why.invalid);
     }
-    const real *const take_1 = X0;
-    const real *const take_2 = X0 + 3;
-    const real *const take_3 = X1;
-    const real *const take_4 = X1 + 3;
-    turn_between(take_2, take_4, turn_between_1);
+    const real *const X0_from_0 = X0;
+    const real *const X0_from_3 = X0 + 3;
+    const real *const X1_from_0 = X1;
+    const real *const X1_from_3 = X1 + 3;
+    turn_between(X0_from_3, X1_from_3, turn_between_1);
     for (size_t i = 0; i < 3; ++i) {
-        subtract_1[i] = take_3[i] - take_1[i];
+        subtract_1[i] = X1_from_0[i] - X0_from_0[i];
     }
     beside(1, 3, 3, subtract_1, turn_between_1, join_1);
     for (size_t i = 0; i < 6; ++i) {
         scale_1[i] = join_1[i]*s[i%(1)];
     }
-    const real *const take_5 = X0;
-    const real *const take_6 = X0 + 3;
-    const real *const take_7 = scale_1;
-    const real *const take_8 = scale_1 + 3;
-    turn_quaternion(take_6, take_8, turn_quaternion_1);
+    const real *const X0_from_0_2 = X0;
+    const real *const X0_from_3_2 = X0 + 3;
+    const real *const scale_1_from_0 = scale_1;
+    const real *const scale_1_from_3 = scale_1 + 3;
+    turn_quaternion(X0_from_3_2, scale_1_from_3, turn_quaternion_1);
     for (size_t i = 0; i < 3; ++i) {
-        add_1[i] = take_5[i] + take_7[i];
+        add_1[i] = X0_from_0_2[i] + scale_1_from_0[i];
     }
     beside(1, 3, 4, add_1, turn_quaternion_1, X);
     check(NQ, 1, X, why.overflow);
@@ -7041,286 +5703,259 @@ INLINE void interpolate_one(const real *X0, const real *X1, const real *s, real 
 
 /* ---- one state, and batches ---- */
 
-int hexapod_6rus_M(const hexapod_6rus_model *model, const hexapod_6rus_real *X, hexapod_6rus_real
-    *M)
+int hexapod_6rus_M(const prepared *model, const real *X, real *M)
 {
     int code;
     M_one(model, X, M, &code);
     return code;
 }
 
-size_t hexapod_6rus_M_batch(const hexapod_6rus_model *model, size_t n, const hexapod_6rus_real *X,
-    hexapod_6rus_real *M, int *status)
+size_t hexapod_6rus_M_batch(const prepared *model, size_t n, const real *X, real *M, int *status)
 {
-    size_t failed = 0, i = 0;
-    for (; LANES > 1 && i + LANES <= n; i += LANES) {
-        int codes[LANES];
-        M_lanes(model, X + NQ*i, M + NV*NV*i, codes);
-        for (size_t k = 0; k < LANES; ++k) {
+    size_t failed = 0, w;
+    for (size_t i = 0; i < n; i += w) {
+        int codes[LANES] = {INVALID};
+        w = LANES > 1 && i + LANES <= n ? LANES : 1;
+        if (w > 1) {
+            M_lanes(model, X + NQ*i, M + NV*NV*i, codes);
+        }
+        for (size_t k = 0; k < w; ++k) {
             if (codes[k] != OK) {
                 codes[k] = hexapod_6rus_M(model, X + NQ*(i + k), M + NV*NV*(i + k));
             }
         }
-        failed += record(codes, LANES, status ? status + i : NULL);
-    }
-    for (; i < n; ++i) {
-        const int code = hexapod_6rus_M(model, X + NQ*i, M + NV*NV*i);
-        failed += record(&code, 1, status ? status + i : NULL);
+        failed += record(codes, w, status ? status + i : NULL);
     }
     return failed;
 }
 
-int hexapod_6rus_Z(const hexapod_6rus_model *model, const hexapod_6rus_real *X, const
-    hexapod_6rus_real *V, hexapod_6rus_real *Z)
+int hexapod_6rus_Z(const prepared *model, const real *X, const real *V, real *Z)
 {
     int code;
     Z_one(model, X, V, Z, &code);
     return code;
 }
 
-size_t hexapod_6rus_Z_batch(const hexapod_6rus_model *model, size_t n, const hexapod_6rus_real *X,
-    const hexapod_6rus_real *V, hexapod_6rus_real *Z, int *status)
+size_t hexapod_6rus_Z_batch(const prepared *model, size_t n, const real *X, const real *V, real
+    *Z, int *status)
 {
-    size_t failed = 0, i = 0;
-    for (; LANES > 1 && i + LANES <= n; i += LANES) {
-        int codes[LANES];
-        Z_lanes(model, X + NQ*i, V + NV*i, Z + NV*i, codes);
-        for (size_t k = 0; k < LANES; ++k) {
+    size_t failed = 0, w;
+    for (size_t i = 0; i < n; i += w) {
+        int codes[LANES] = {INVALID};
+        w = LANES > 1 && i + LANES <= n ? LANES : 1;
+        if (w > 1) {
+            Z_lanes(model, X + NQ*i, V + NV*i, Z + NV*i, codes);
+        }
+        for (size_t k = 0; k < w; ++k) {
             if (codes[k] != OK) {
                 codes[k] = hexapod_6rus_Z(model, X + NQ*(i + k), V + NV*(i + k), Z + NV*(i + k));
             }
         }
-        failed += record(codes, LANES, status ? status + i : NULL);
-    }
-    for (; i < n; ++i) {
-        const int code = hexapod_6rus_Z(model, X + NQ*i, V + NV*i, Z + NV*i);
-        failed += record(&code, 1, status ? status + i : NULL);
+        failed += record(codes, w, status ? status + i : NULL);
     }
     return failed;
 }
 
-int hexapod_6rus_H(const hexapod_6rus_model *model, const hexapod_6rus_real *X, hexapod_6rus_real
-    *H)
+int hexapod_6rus_H(const prepared *model, const real *X, real *H)
 {
     int code;
     H_one(model, X, H, &code);
     return code;
 }
 
-size_t hexapod_6rus_H_batch(const hexapod_6rus_model *model, size_t n, const hexapod_6rus_real *X,
-    hexapod_6rus_real *H, int *status)
+size_t hexapod_6rus_H_batch(const prepared *model, size_t n, const real *X, real *H, int *status)
 {
-    size_t failed = 0, i = 0;
-    for (; LANES > 1 && i + LANES <= n; i += LANES) {
-        int codes[LANES];
-        H_lanes(model, X + NQ*i, H + NV*NU*i, codes);
-        for (size_t k = 0; k < LANES; ++k) {
+    size_t failed = 0, w;
+    for (size_t i = 0; i < n; i += w) {
+        int codes[LANES] = {INVALID};
+        w = LANES > 1 && i + LANES <= n ? LANES : 1;
+        if (w > 1) {
+            H_lanes(model, X + NQ*i, H + NV*NU*i, codes);
+        }
+        for (size_t k = 0; k < w; ++k) {
             if (codes[k] != OK) {
                 codes[k] = hexapod_6rus_H(model, X + NQ*(i + k), H + NV*NU*(i + k));
             }
         }
-        failed += record(codes, LANES, status ? status + i : NULL);
-    }
-    for (; i < n; ++i) {
-        const int code = hexapod_6rus_H(model, X + NQ*i, H + NV*NU*i);
-        failed += record(&code, 1, status ? status + i : NULL);
+        failed += record(codes, w, status ? status + i : NULL);
     }
     return failed;
 }
 
-int hexapod_6rus_inverse_kinematics(const hexapod_6rus_model *model, const hexapod_6rus_real *X,
-    hexapod_6rus_real *q)
+int hexapod_6rus_inverse_kinematics(const prepared *model, const real *X, real *q)
 {
     int code;
     inverse_kinematics_one(model, X, q, &code);
     return code;
 }
 
-size_t hexapod_6rus_inverse_kinematics_batch(const hexapod_6rus_model *model, size_t n, const
-    hexapod_6rus_real *X, hexapod_6rus_real *q, int *status)
+size_t hexapod_6rus_inverse_kinematics_batch(const prepared *model, size_t n, const real *X, real
+    *q, int *status)
 {
-    size_t failed = 0, i = 0;
-    for (; LANES > 1 && i + LANES <= n; i += LANES) {
-        int codes[LANES];
-        inverse_kinematics_lanes(model, X + NQ*i, q + NJ*i, codes);
-        for (size_t k = 0; k < LANES; ++k) {
+    size_t failed = 0, w;
+    for (size_t i = 0; i < n; i += w) {
+        int codes[LANES] = {INVALID};
+        w = LANES > 1 && i + LANES <= n ? LANES : 1;
+        if (w > 1) {
+            inverse_kinematics_lanes(model, X + NQ*i, q + NJ*i, codes);
+        }
+        for (size_t k = 0; k < w; ++k) {
             if (codes[k] != OK) {
                 codes[k] = hexapod_6rus_inverse_kinematics(model, X + NQ*(i + k), q + NJ*(i + k));
             }
         }
-        failed += record(codes, LANES, status ? status + i : NULL);
-    }
-    for (; i < n; ++i) {
-        const int code = hexapod_6rus_inverse_kinematics(model, X + NQ*i, q + NJ*i);
-        failed += record(&code, 1, status ? status + i : NULL);
+        failed += record(codes, w, status ? status + i : NULL);
     }
     return failed;
 }
 
-int hexapod_6rus_joint_rates(const hexapod_6rus_model *model, const hexapod_6rus_real *X, const
-    hexapod_6rus_real *V, hexapod_6rus_real *rates)
+int hexapod_6rus_joint_rates(const prepared *model, const real *X, const real *V, real *rates)
 {
     int code;
     joint_rates_one(model, X, V, rates, &code);
     return code;
 }
 
-size_t hexapod_6rus_joint_rates_batch(const hexapod_6rus_model *model, size_t n, const
-    hexapod_6rus_real *X, const hexapod_6rus_real *V, hexapod_6rus_real *rates, int *status)
+size_t hexapod_6rus_joint_rates_batch(const prepared *model, size_t n, const real *X, const real
+    *V, real *rates, int *status)
 {
-    size_t failed = 0, i = 0;
-    for (; LANES > 1 && i + LANES <= n; i += LANES) {
-        int codes[LANES];
-        joint_rates_lanes(model, X + NQ*i, V + NV*i, rates + NJ*i, codes);
-        for (size_t k = 0; k < LANES; ++k) {
+    size_t failed = 0, w;
+    for (size_t i = 0; i < n; i += w) {
+        int codes[LANES] = {INVALID};
+        w = LANES > 1 && i + LANES <= n ? LANES : 1;
+        if (w > 1) {
+            joint_rates_lanes(model, X + NQ*i, V + NV*i, rates + NJ*i, codes);
+        }
+        for (size_t k = 0; k < w; ++k) {
             if (codes[k] != OK) {
                 codes[k] = hexapod_6rus_joint_rates(model, X + NQ*(i + k), V + NV*(i + k), rates + NJ*(i + k));
             }
         }
-        failed += record(codes, LANES, status ? status + i : NULL);
-    }
-    for (; i < n; ++i) {
-        const int code = hexapod_6rus_joint_rates(model, X + NQ*i, V + NV*i, rates + NJ*i);
-        failed += record(&code, 1, status ? status + i : NULL);
+        failed += record(codes, w, status ? status + i : NULL);
     }
     return failed;
 }
 
-int hexapod_6rus_joint_accelerations(const hexapod_6rus_model *model, const hexapod_6rus_real *X,
-    const hexapod_6rus_real *V, const hexapod_6rus_real *A, hexapod_6rus_real *accelerations)
+int hexapod_6rus_joint_accelerations(const prepared *model, const real *X, const real *V, const
+    real *A, real *accelerations)
 {
     int code;
     joint_accelerations_one(model, X, V, A, accelerations, &code);
     return code;
 }
 
-size_t hexapod_6rus_joint_accelerations_batch(const hexapod_6rus_model *model, size_t n, const
-    hexapod_6rus_real *X, const hexapod_6rus_real *V, const hexapod_6rus_real *A,
-    hexapod_6rus_real *accelerations, int *status)
+size_t hexapod_6rus_joint_accelerations_batch(const prepared *model, size_t n, const real *X,
+    const real *V, const real *A, real *accelerations, int *status)
 {
-    size_t failed = 0, i = 0;
-    for (; LANES > 1 && i + LANES <= n; i += LANES) {
-        int codes[LANES];
-        joint_accelerations_lanes(model, X + NQ*i, V + NV*i, A + NV*i, accelerations + NJ*i, codes);
-        for (size_t k = 0; k < LANES; ++k) {
+    size_t failed = 0, w;
+    for (size_t i = 0; i < n; i += w) {
+        int codes[LANES] = {INVALID};
+        w = LANES > 1 && i + LANES <= n ? LANES : 1;
+        if (w > 1) {
+            joint_accelerations_lanes(model, X + NQ*i, V + NV*i, A + NV*i, accelerations + NJ*i, codes);
+        }
+        for (size_t k = 0; k < w; ++k) {
             if (codes[k] != OK) {
                 codes[k] = hexapod_6rus_joint_accelerations(model, X + NQ*(i + k), V + NV*(i + k), A + NV*(i + k),
                     accelerations + NJ*(i + k));
             }
         }
-        failed += record(codes, LANES, status ? status + i : NULL);
-    }
-    for (; i < n; ++i) {
-        const int code = hexapod_6rus_joint_accelerations(model, X + NQ*i, V + NV*i, A + NV*i,
-            accelerations + NJ*i);
-        failed += record(&code, 1, status ? status + i : NULL);
+        failed += record(codes, w, status ? status + i : NULL);
     }
     return failed;
 }
 
-int hexapod_6rus_dynamics(const hexapod_6rus_model *model, const hexapod_6rus_real *X, const
-    hexapod_6rus_real *V, hexapod_6rus_real *M, hexapod_6rus_real *Z, hexapod_6rus_real *H)
+int hexapod_6rus_dynamics(const prepared *model, const real *X, const real *V, real *M, real *Z,
+    real *H)
 {
     int code;
     dynamics_one(model, X, V, M, Z, H, &code);
     return code;
 }
 
-size_t hexapod_6rus_dynamics_batch(const hexapod_6rus_model *model, size_t n, const
-    hexapod_6rus_real *X, const hexapod_6rus_real *V, hexapod_6rus_real *M, hexapod_6rus_real *Z,
-    hexapod_6rus_real *H, int *status)
+size_t hexapod_6rus_dynamics_batch(const prepared *model, size_t n, const real *X, const real *V,
+    real *M, real *Z, real *H, int *status)
 {
-    size_t failed = 0, i = 0;
-    for (; LANES > 1 && i + LANES <= n; i += LANES) {
-        int codes[LANES];
-        dynamics_lanes(model, X + NQ*i, V + NV*i, M + NV*NV*i, Z + NV*i, H + NV*NU*i, codes);
-        for (size_t k = 0; k < LANES; ++k) {
+    size_t failed = 0, w;
+    for (size_t i = 0; i < n; i += w) {
+        int codes[LANES] = {INVALID};
+        w = LANES > 1 && i + LANES <= n ? LANES : 1;
+        if (w > 1) {
+            dynamics_lanes(model, X + NQ*i, V + NV*i, M + NV*NV*i, Z + NV*i, H + NV*NU*i, codes);
+        }
+        for (size_t k = 0; k < w; ++k) {
             if (codes[k] != OK) {
                 codes[k] = hexapod_6rus_dynamics(model, X + NQ*(i + k), V + NV*(i + k), M + NV*NV*(i + k), Z +
                     NV*(i + k), H + NV*NU*(i + k));
             }
         }
-        failed += record(codes, LANES, status ? status + i : NULL);
-    }
-    for (; i < n; ++i) {
-        const int code = hexapod_6rus_dynamics(model, X + NQ*i, V + NV*i, M + NV*NV*i, Z + NV*i, H +
-            NV*NU*i);
-        failed += record(&code, 1, status ? status + i : NULL);
+        failed += record(codes, w, status ? status + i : NULL);
     }
     return failed;
 }
 
-int hexapod_6rus_inverse_dynamics(const hexapod_6rus_model *model, const hexapod_6rus_real *X,
-    const hexapod_6rus_real *V, const hexapod_6rus_real *A, const hexapod_6rus_real *wrench,
-    hexapod_6rus_real *tau)
+int hexapod_6rus_inverse_dynamics(const prepared *model, const real *X, const real *V, const real
+    *A, const real *wrench, real *tau)
 {
     int code;
     inverse_dynamics_one(model, X, V, A, wrench, tau, &code);
     return code;
 }
 
-size_t hexapod_6rus_inverse_dynamics_batch(const hexapod_6rus_model *model, size_t n, const
-    hexapod_6rus_real *X, const hexapod_6rus_real *V, const hexapod_6rus_real *A, const
-    hexapod_6rus_real *wrench, hexapod_6rus_real *tau, int *status)
+size_t hexapod_6rus_inverse_dynamics_batch(const prepared *model, size_t n, const real *X, const
+    real *V, const real *A, const real *wrench, real *tau, int *status)
 {
-    size_t failed = 0, i = 0;
-    for (; LANES > 1 && i + LANES <= n; i += LANES) {
-        int codes[LANES];
-        inverse_dynamics_lanes(model, X + NQ*i, V + NV*i, A + NV*i, wrench ? wrench + NW*i : NULL, tau +
-            NU*i, codes);
-        for (size_t k = 0; k < LANES; ++k) {
+    size_t failed = 0, w;
+    for (size_t i = 0; i < n; i += w) {
+        int codes[LANES] = {INVALID};
+        w = LANES > 1 && i + LANES <= n ? LANES : 1;
+        if (w > 1) {
+            inverse_dynamics_lanes(model, X + NQ*i, V + NV*i, A + NV*i, wrench ? wrench + NW*i : NULL, tau +
+                NU*i, codes);
+        }
+        for (size_t k = 0; k < w; ++k) {
             if (codes[k] != OK) {
                 codes[k] = hexapod_6rus_inverse_dynamics(model, X + NQ*(i + k), V + NV*(i + k), A + NV*(i + k),
                     wrench ? wrench + NW*(i + k) : NULL, tau + NU*(i + k));
             }
         }
-        failed += record(codes, LANES, status ? status + i : NULL);
-    }
-    for (; i < n; ++i) {
-        const int code = hexapod_6rus_inverse_dynamics(model, X + NQ*i, V + NV*i, A + NV*i, wrench ?
-            wrench + NW*i : NULL, tau + NU*i);
-        failed += record(&code, 1, status ? status + i : NULL);
+        failed += record(codes, w, status ? status + i : NULL);
     }
     return failed;
 }
 
-int hexapod_6rus_forward_dynamics(const hexapod_6rus_model *model, const hexapod_6rus_real *X,
-    const hexapod_6rus_real *V, const hexapod_6rus_real *tau, const hexapod_6rus_real *wrench,
-    hexapod_6rus_real *A)
+int hexapod_6rus_forward_dynamics(const prepared *model, const real *X, const real *V, const real
+    *tau, const real *wrench, real *A)
 {
     int code;
     forward_dynamics_one(model, X, V, tau, wrench, A, &code);
     return code;
 }
 
-size_t hexapod_6rus_forward_dynamics_batch(const hexapod_6rus_model *model, size_t n, const
-    hexapod_6rus_real *X, const hexapod_6rus_real *V, const hexapod_6rus_real *tau, const
-    hexapod_6rus_real *wrench, hexapod_6rus_real *A, int *status)
+size_t hexapod_6rus_forward_dynamics_batch(const prepared *model, size_t n, const real *X, const
+    real *V, const real *tau, const real *wrench, real *A, int *status)
 {
-    size_t failed = 0, i = 0;
-    for (; LANES > 1 && i + LANES <= n; i += LANES) {
-        int codes[LANES];
-        forward_dynamics_lanes(model, X + NQ*i, V + NV*i, tau + NU*i, wrench ? wrench + NW*i : NULL, A +
-            NV*i, codes);
-        for (size_t k = 0; k < LANES; ++k) {
+    size_t failed = 0, w;
+    for (size_t i = 0; i < n; i += w) {
+        int codes[LANES] = {INVALID};
+        w = LANES > 1 && i + LANES <= n ? LANES : 1;
+        if (w > 1) {
+            forward_dynamics_lanes(model, X + NQ*i, V + NV*i, tau + NU*i, wrench ? wrench + NW*i : NULL, A +
+                NV*i, codes);
+        }
+        for (size_t k = 0; k < w; ++k) {
             if (codes[k] != OK) {
                 codes[k] = hexapod_6rus_forward_dynamics(model, X + NQ*(i + k), V + NV*(i + k), tau + NU*(i + k),
                     wrench ? wrench + NW*(i + k) : NULL, A + NV*(i + k));
             }
         }
-        failed += record(codes, LANES, status ? status + i : NULL);
-    }
-    for (; i < n; ++i) {
-        const int code = hexapod_6rus_forward_dynamics(model, X + NQ*i, V + NV*i, tau + NU*i, wrench ?
-            wrench + NW*i : NULL, A + NV*i);
-        failed += record(&code, 1, status ? status + i : NULL);
+        failed += record(codes, w, status ? status + i : NULL);
     }
     return failed;
 }
 
-int hexapod_6rus_complete_acceleration(const hexapod_6rus_model *model, const hexapod_6rus_real
-    *X, const hexapod_6rus_real *V, const hexapod_6rus_real *A, const hexapod_6rus_real *wrench,
-    hexapod_6rus_real *completed)
+int hexapod_6rus_complete_acceleration(const prepared *model, const real *X, const real *V, const
+    real *A, const real *wrench, real *completed)
 {
     int code;
     (void)model;
@@ -7331,12 +5966,11 @@ int hexapod_6rus_complete_acceleration(const hexapod_6rus_model *model, const he
     return code;
 }
 
-size_t hexapod_6rus_complete_acceleration_batch(const hexapod_6rus_model *model, size_t n, const
-    hexapod_6rus_real *X, const hexapod_6rus_real *V, const hexapod_6rus_real *A, const
-    hexapod_6rus_real *wrench, hexapod_6rus_real *completed, int *status)
+size_t hexapod_6rus_complete_acceleration_batch(const prepared *model, size_t n, const real *X,
+    const real *V, const real *A, const real *wrench, real *completed, int *status)
 {
-    size_t failed = 0, i = 0;
-    for (; i < n; ++i) {
+    size_t failed = 0;
+    for (size_t i = 0; i < n; ++i) {
         const int code = hexapod_6rus_complete_acceleration(model, X + NQ*i, V + NV*i, A + NV*i, wrench ?
             wrench + NW*i : NULL, completed + NV*i);
         failed += record(&code, 1, status ? status + i : NULL);
@@ -7344,21 +5978,19 @@ size_t hexapod_6rus_complete_acceleration_batch(const hexapod_6rus_model *model,
     return failed;
 }
 
-int hexapod_6rus_leg_reactions(const hexapod_6rus_model *model, const hexapod_6rus_real *X, const
-    hexapod_6rus_real *V, const hexapod_6rus_real *A, const hexapod_6rus_real *wrench,
-    hexapod_6rus_real *forces)
+int hexapod_6rus_leg_reactions(const prepared *model, const real *X, const real *V, const real *A,
+    const real *wrench, real *forces)
 {
     int code;
     leg_reactions_one(model, X, V, A, wrench, forces, &code);
     return code;
 }
 
-size_t hexapod_6rus_leg_reactions_batch(const hexapod_6rus_model *model, size_t n, const
-    hexapod_6rus_real *X, const hexapod_6rus_real *V, const hexapod_6rus_real *A, const
-    hexapod_6rus_real *wrench, hexapod_6rus_real *forces, int *status)
+size_t hexapod_6rus_leg_reactions_batch(const prepared *model, size_t n, const real *X, const real
+    *V, const real *A, const real *wrench, real *forces, int *status)
 {
-    size_t failed = 0, i = 0;
-    for (; i < n; ++i) {
+    size_t failed = 0;
+    for (size_t i = 0; i < n; ++i) {
         const int code = hexapod_6rus_leg_reactions(model, X + NQ*i, V + NV*i, A + NV*i, wrench ? wrench +
             NW*i : NULL, forces + 18*i);
         failed += record(&code, 1, status ? status + i : NULL);
@@ -7366,66 +5998,102 @@ size_t hexapod_6rus_leg_reactions_batch(const hexapod_6rus_model *model, size_t 
     return failed;
 }
 
-int hexapod_6rus_energy(const hexapod_6rus_model *model, const hexapod_6rus_real *X, const
-    hexapod_6rus_real *V, hexapod_6rus_real *kinetic, hexapod_6rus_real *potential)
+int hexapod_6rus_energy(const prepared *model, const real *X, const real *V, real *kinetic, real
+    *potential)
 {
     int code;
     energy_one(model, X, V, kinetic, potential, &code);
     return code;
 }
 
-size_t hexapod_6rus_energy_batch(const hexapod_6rus_model *model, size_t n, const
-    hexapod_6rus_real *X, const hexapod_6rus_real *V, hexapod_6rus_real *kinetic,
-    hexapod_6rus_real *potential, int *status)
+size_t hexapod_6rus_energy_batch(const prepared *model, size_t n, const real *X, const real *V,
+    real *kinetic, real *potential, int *status)
 {
-    size_t failed = 0, i = 0;
-    for (; i < n; ++i) {
+    size_t failed = 0;
+    for (size_t i = 0; i < n; ++i) {
         const int code = hexapod_6rus_energy(model, X + NQ*i, V + NV*i, kinetic + i, potential + i);
         failed += record(&code, 1, status ? status + i : NULL);
     }
     return failed;
 }
 
-int hexapod_6rus_condition(const hexapod_6rus_model *model, const hexapod_6rus_real *X,
-    hexapod_6rus_real *sigma, hexapod_6rus_real *legs)
+int hexapod_6rus_condition(const prepared *model, const real *X, real *sigma, real *legs)
 {
     int code;
     condition_one(model, X, NULL, sigma, legs, &code);
     return code;
 }
 
-size_t hexapod_6rus_condition_batch(const hexapod_6rus_model *model, size_t n, const
-    hexapod_6rus_real *X, hexapod_6rus_real *sigma, hexapod_6rus_real *legs, int *status)
+size_t hexapod_6rus_condition_batch(const prepared *model, size_t n, const real *X, real *sigma,
+    real *legs, int *status)
 {
-    size_t failed = 0, i = 0;
-    for (; i < n; ++i) {
+    size_t failed = 0;
+    for (size_t i = 0; i < n; ++i) {
         const int code = hexapod_6rus_condition(model, X + NQ*i, sigma + 6*i, legs + 6*i);
         failed += record(&code, 1, status ? status + i : NULL);
     }
     return failed;
 }
 
-int hexapod_6rus_forward_kinematics(const hexapod_6rus_model *model, const hexapod_6rus_real
-    *q_actuated, const hexapod_6rus_real *X0, hexapod_6rus_real *X)
+int hexapod_6rus_manipulability(const prepared *model, const real *X, real *measure, real
+    *isotropy)
+{
+    int code;
+    manipulability_one(model, X, measure, isotropy, &code);
+    return code;
+}
+
+size_t hexapod_6rus_manipulability_batch(const prepared *model, size_t n, const real *X, real
+    *measure, real *isotropy, int *status)
+{
+    size_t failed = 0;
+    for (size_t i = 0; i < n; ++i) {
+        const int code = hexapod_6rus_manipulability(model, X + NQ*i, measure + i, isotropy + i);
+        failed += record(&code, 1, status ? status + i : NULL);
+    }
+    return failed;
+}
+
+int hexapod_6rus_singularity_distance(const prepared *model, const real *X, real *actuators, real
+    *legs)
+{
+    int code;
+    singularity_distance_one(model, X, actuators, legs, &code);
+    return code;
+}
+
+size_t hexapod_6rus_singularity_distance_batch(const prepared *model, size_t n, const real *X,
+    real *actuators, real *legs, int *status)
+{
+    size_t failed = 0;
+    for (size_t i = 0; i < n; ++i) {
+        const int code = hexapod_6rus_singularity_distance(model, X + NQ*i, actuators + i, legs + i);
+        failed += record(&code, 1, status ? status + i : NULL);
+    }
+    return failed;
+}
+
+int hexapod_6rus_forward_kinematics(const prepared *model, const real *q_actuated, const real *X0,
+    real *X)
 {
     int code;
     forward_kinematics_one(model, q_actuated, X0, X, &code);
     return code;
 }
 
-size_t hexapod_6rus_forward_kinematics_batch(const hexapod_6rus_model *model, size_t n, const
-    hexapod_6rus_real *q_actuated, const hexapod_6rus_real *X0, hexapod_6rus_real *X, int *status)
+size_t hexapod_6rus_forward_kinematics_batch(const prepared *model, size_t n, const real
+    *q_actuated, const real *X0, real *X, int *status)
 {
-    size_t failed = 0, i = 0;
-    for (; i < n; ++i) {
+    size_t failed = 0;
+    for (size_t i = 0; i < n; ++i) {
         const int code = hexapod_6rus_forward_kinematics(model, q_actuated + NU*i, X0 + NQ*i, X + NQ*i);
         failed += record(&code, 1, status ? status + i : NULL);
     }
     return failed;
 }
 
-int hexapod_6rus_dissipation(const hexapod_6rus_model *model, const hexapod_6rus_real *X, const
-    hexapod_6rus_real *V, hexapod_6rus_real *dissipation)
+int hexapod_6rus_dissipation(const prepared *model, const real *X, const real *V, real
+    *dissipation)
 {
     int code;
     (void)model;
@@ -7434,351 +6102,327 @@ int hexapod_6rus_dissipation(const hexapod_6rus_model *model, const hexapod_6rus
     return code;
 }
 
-size_t hexapod_6rus_dissipation_batch(const hexapod_6rus_model *model, size_t n, const
-    hexapod_6rus_real *X, const hexapod_6rus_real *V, hexapod_6rus_real *dissipation, int *status)
+size_t hexapod_6rus_dissipation_batch(const prepared *model, size_t n, const real *X, const real
+    *V, real *dissipation, int *status)
 {
-    size_t failed = 0, i = 0;
-    for (; i < n; ++i) {
+    size_t failed = 0;
+    for (size_t i = 0; i < n; ++i) {
         const int code = hexapod_6rus_dissipation(model, X + NQ*i, V + NV*i, dissipation + i);
         failed += record(&code, 1, status ? status + i : NULL);
     }
     return failed;
 }
 
-int hexapod_6rus_momentum(const hexapod_6rus_model *model, const hexapod_6rus_real *X, const
-    hexapod_6rus_real *V, hexapod_6rus_real *momentum)
+int hexapod_6rus_momentum(const prepared *model, const real *X, const real *V, real *momentum)
 {
     int code;
     momentum_one(model, X, V, momentum, &code);
     return code;
 }
 
-size_t hexapod_6rus_momentum_batch(const hexapod_6rus_model *model, size_t n, const
-    hexapod_6rus_real *X, const hexapod_6rus_real *V, hexapod_6rus_real *momentum, int *status)
+size_t hexapod_6rus_momentum_batch(const prepared *model, size_t n, const real *X, const real *V,
+    real *momentum, int *status)
 {
-    size_t failed = 0, i = 0;
-    for (; LANES > 1 && i + LANES <= n; i += LANES) {
-        int codes[LANES];
-        momentum_lanes(model, X + NQ*i, V + NV*i, momentum + NV*i, codes);
-        for (size_t k = 0; k < LANES; ++k) {
+    size_t failed = 0, w;
+    for (size_t i = 0; i < n; i += w) {
+        int codes[LANES] = {INVALID};
+        w = LANES > 1 && i + LANES <= n ? LANES : 1;
+        if (w > 1) {
+            momentum_lanes(model, X + NQ*i, V + NV*i, momentum + NV*i, codes);
+        }
+        for (size_t k = 0; k < w; ++k) {
             if (codes[k] != OK) {
                 codes[k] = hexapod_6rus_momentum(model, X + NQ*(i + k), V + NV*(i + k), momentum + NV*(i + k));
             }
         }
-        failed += record(codes, LANES, status ? status + i : NULL);
-    }
-    for (; i < n; ++i) {
-        const int code = hexapod_6rus_momentum(model, X + NQ*i, V + NV*i, momentum + NV*i);
-        failed += record(&code, 1, status ? status + i : NULL);
+        failed += record(codes, w, status ? status + i : NULL);
     }
     return failed;
 }
 
-int hexapod_6rus_joint_margins(const hexapod_6rus_model *model, const hexapod_6rus_real *X,
-    hexapod_6rus_real *margins)
+int hexapod_6rus_joint_margins(const prepared *model, const real *X, real *margins)
 {
     int code;
     joint_margins_one(model, X, margins, &code);
     return code;
 }
 
-size_t hexapod_6rus_joint_margins_batch(const hexapod_6rus_model *model, size_t n, const
-    hexapod_6rus_real *X, hexapod_6rus_real *margins, int *status)
+size_t hexapod_6rus_joint_margins_batch(const prepared *model, size_t n, const real *X, real
+    *margins, int *status)
 {
-    size_t failed = 0, i = 0;
-    for (; LANES > 1 && i + LANES <= n; i += LANES) {
-        int codes[LANES];
-        joint_margins_lanes(model, X + NQ*i, margins + NJ*i, codes);
-        for (size_t k = 0; k < LANES; ++k) {
+    size_t failed = 0, w;
+    for (size_t i = 0; i < n; i += w) {
+        int codes[LANES] = {INVALID};
+        w = LANES > 1 && i + LANES <= n ? LANES : 1;
+        if (w > 1) {
+            joint_margins_lanes(model, X + NQ*i, margins + NJ*i, codes);
+        }
+        for (size_t k = 0; k < w; ++k) {
             if (codes[k] != OK) {
                 codes[k] = hexapod_6rus_joint_margins(model, X + NQ*(i + k), margins + NJ*(i + k));
             }
         }
-        failed += record(codes, LANES, status ? status + i : NULL);
-    }
-    for (; i < n; ++i) {
-        const int code = hexapod_6rus_joint_margins(model, X + NQ*i, margins + NJ*i);
-        failed += record(&code, 1, status ? status + i : NULL);
+        failed += record(codes, w, status ? status + i : NULL);
     }
     return failed;
 }
 
-int hexapod_6rus_within_limits(const hexapod_6rus_model *model, const hexapod_6rus_real *X,
-    hexapod_6rus_real *within)
+int hexapod_6rus_within_limits(const prepared *model, const real *X, real *within)
 {
     int code;
     within_limits_one(model, X, within, &code);
     return code;
 }
 
-size_t hexapod_6rus_within_limits_batch(const hexapod_6rus_model *model, size_t n, const
-    hexapod_6rus_real *X, hexapod_6rus_real *within, int *status)
+size_t hexapod_6rus_within_limits_batch(const prepared *model, size_t n, const real *X, real
+    *within, int *status)
 {
-    size_t failed = 0, i = 0;
-    for (; LANES > 1 && i + LANES <= n; i += LANES) {
-        int codes[LANES];
-        within_limits_lanes(model, X + NQ*i, within + i, codes);
-        for (size_t k = 0; k < LANES; ++k) {
+    size_t failed = 0, w;
+    for (size_t i = 0; i < n; i += w) {
+        int codes[LANES] = {INVALID};
+        w = LANES > 1 && i + LANES <= n ? LANES : 1;
+        if (w > 1) {
+            within_limits_lanes(model, X + NQ*i, within + i, codes);
+        }
+        for (size_t k = 0; k < w; ++k) {
             if (codes[k] != OK) {
                 codes[k] = hexapod_6rus_within_limits(model, X + NQ*(i + k), within + (i + k));
             }
         }
-        failed += record(codes, LANES, status ? status + i : NULL);
-    }
-    for (; i < n; ++i) {
-        const int code = hexapod_6rus_within_limits(model, X + NQ*i, within + i);
-        failed += record(&code, 1, status ? status + i : NULL);
+        failed += record(codes, w, status ? status + i : NULL);
     }
     return failed;
 }
 
-int hexapod_6rus_actuator_positions(const hexapod_6rus_model *model, const hexapod_6rus_real *X,
-    hexapod_6rus_real *q)
+int hexapod_6rus_actuator_positions(const prepared *model, const real *X, real *q)
 {
     int code;
     actuator_positions_one(model, X, q, &code);
     return code;
 }
 
-size_t hexapod_6rus_actuator_positions_batch(const hexapod_6rus_model *model, size_t n, const
-    hexapod_6rus_real *X, hexapod_6rus_real *q, int *status)
+size_t hexapod_6rus_actuator_positions_batch(const prepared *model, size_t n, const real *X, real
+    *q, int *status)
 {
-    size_t failed = 0, i = 0;
-    for (; LANES > 1 && i + LANES <= n; i += LANES) {
-        int codes[LANES];
-        actuator_positions_lanes(model, X + NQ*i, q + NU*i, codes);
-        for (size_t k = 0; k < LANES; ++k) {
+    size_t failed = 0, w;
+    for (size_t i = 0; i < n; i += w) {
+        int codes[LANES] = {INVALID};
+        w = LANES > 1 && i + LANES <= n ? LANES : 1;
+        if (w > 1) {
+            actuator_positions_lanes(model, X + NQ*i, q + NU*i, codes);
+        }
+        for (size_t k = 0; k < w; ++k) {
             if (codes[k] != OK) {
                 codes[k] = hexapod_6rus_actuator_positions(model, X + NQ*(i + k), q + NU*(i + k));
             }
         }
-        failed += record(codes, LANES, status ? status + i : NULL);
-    }
-    for (; i < n; ++i) {
-        const int code = hexapod_6rus_actuator_positions(model, X + NQ*i, q + NU*i);
-        failed += record(&code, 1, status ? status + i : NULL);
+        failed += record(codes, w, status ? status + i : NULL);
     }
     return failed;
 }
 
-int hexapod_6rus_actuator_rates(const hexapod_6rus_model *model, const hexapod_6rus_real *X, const
-    hexapod_6rus_real *V, hexapod_6rus_real *rates)
+int hexapod_6rus_actuator_rates(const prepared *model, const real *X, const real *V, real *rates)
 {
     int code;
     actuator_rates_one(model, X, V, rates, &code);
     return code;
 }
 
-size_t hexapod_6rus_actuator_rates_batch(const hexapod_6rus_model *model, size_t n, const
-    hexapod_6rus_real *X, const hexapod_6rus_real *V, hexapod_6rus_real *rates, int *status)
+size_t hexapod_6rus_actuator_rates_batch(const prepared *model, size_t n, const real *X, const
+    real *V, real *rates, int *status)
 {
-    size_t failed = 0, i = 0;
-    for (; LANES > 1 && i + LANES <= n; i += LANES) {
-        int codes[LANES];
-        actuator_rates_lanes(model, X + NQ*i, V + NV*i, rates + NU*i, codes);
-        for (size_t k = 0; k < LANES; ++k) {
+    size_t failed = 0, w;
+    for (size_t i = 0; i < n; i += w) {
+        int codes[LANES] = {INVALID};
+        w = LANES > 1 && i + LANES <= n ? LANES : 1;
+        if (w > 1) {
+            actuator_rates_lanes(model, X + NQ*i, V + NV*i, rates + NU*i, codes);
+        }
+        for (size_t k = 0; k < w; ++k) {
             if (codes[k] != OK) {
                 codes[k] = hexapod_6rus_actuator_rates(model, X + NQ*(i + k), V + NV*(i + k), rates + NU*(i + k));
             }
         }
-        failed += record(codes, LANES, status ? status + i : NULL);
-    }
-    for (; i < n; ++i) {
-        const int code = hexapod_6rus_actuator_rates(model, X + NQ*i, V + NV*i, rates + NU*i);
-        failed += record(&code, 1, status ? status + i : NULL);
+        failed += record(codes, w, status ? status + i : NULL);
     }
     return failed;
 }
 
-int hexapod_6rus_actuator_accelerations(const hexapod_6rus_model *model, const hexapod_6rus_real
-    *X, const hexapod_6rus_real *V, const hexapod_6rus_real *A, hexapod_6rus_real *accelerations)
+int hexapod_6rus_actuator_accelerations(const prepared *model, const real *X, const real *V, const
+    real *A, real *accelerations)
 {
     int code;
     actuator_accelerations_one(model, X, V, A, accelerations, &code);
     return code;
 }
 
-size_t hexapod_6rus_actuator_accelerations_batch(const hexapod_6rus_model *model, size_t n, const
-    hexapod_6rus_real *X, const hexapod_6rus_real *V, const hexapod_6rus_real *A,
-    hexapod_6rus_real *accelerations, int *status)
+size_t hexapod_6rus_actuator_accelerations_batch(const prepared *model, size_t n, const real *X,
+    const real *V, const real *A, real *accelerations, int *status)
 {
-    size_t failed = 0, i = 0;
-    for (; LANES > 1 && i + LANES <= n; i += LANES) {
-        int codes[LANES];
-        actuator_accelerations_lanes(model, X + NQ*i, V + NV*i, A + NV*i, accelerations + NU*i, codes);
-        for (size_t k = 0; k < LANES; ++k) {
+    size_t failed = 0, w;
+    for (size_t i = 0; i < n; i += w) {
+        int codes[LANES] = {INVALID};
+        w = LANES > 1 && i + LANES <= n ? LANES : 1;
+        if (w > 1) {
+            actuator_accelerations_lanes(model, X + NQ*i, V + NV*i, A + NV*i, accelerations + NU*i, codes);
+        }
+        for (size_t k = 0; k < w; ++k) {
             if (codes[k] != OK) {
                 codes[k] = hexapod_6rus_actuator_accelerations(model, X + NQ*(i + k), V + NV*(i + k), A + NV*(i +
                     k), accelerations + NU*(i + k));
             }
         }
-        failed += record(codes, LANES, status ? status + i : NULL);
-    }
-    for (; i < n; ++i) {
-        const int code = hexapod_6rus_actuator_accelerations(model, X + NQ*i, V + NV*i, A + NV*i,
-            accelerations + NU*i);
-        failed += record(&code, 1, status ? status + i : NULL);
+        failed += record(codes, w, status ? status + i : NULL);
     }
     return failed;
 }
 
-int hexapod_6rus_power(const hexapod_6rus_model *model, const hexapod_6rus_real *X, const
-    hexapod_6rus_real *V, const hexapod_6rus_real *tau, hexapod_6rus_real *power)
+int hexapod_6rus_power(const prepared *model, const real *X, const real *V, const real *tau, real
+    *power)
 {
     int code;
     power_one(model, X, V, tau, power, &code);
     return code;
 }
 
-size_t hexapod_6rus_power_batch(const hexapod_6rus_model *model, size_t n, const hexapod_6rus_real
-    *X, const hexapod_6rus_real *V, const hexapod_6rus_real *tau, hexapod_6rus_real *power, int
-    *status)
+size_t hexapod_6rus_power_batch(const prepared *model, size_t n, const real *X, const real *V,
+    const real *tau, real *power, int *status)
 {
-    size_t failed = 0, i = 0;
-    for (; LANES > 1 && i + LANES <= n; i += LANES) {
-        int codes[LANES];
-        power_lanes(model, X + NQ*i, V + NV*i, tau + NU*i, power + i, codes);
-        for (size_t k = 0; k < LANES; ++k) {
+    size_t failed = 0, w;
+    for (size_t i = 0; i < n; i += w) {
+        int codes[LANES] = {INVALID};
+        w = LANES > 1 && i + LANES <= n ? LANES : 1;
+        if (w > 1) {
+            power_lanes(model, X + NQ*i, V + NV*i, tau + NU*i, power + i, codes);
+        }
+        for (size_t k = 0; k < w; ++k) {
             if (codes[k] != OK) {
                 codes[k] = hexapod_6rus_power(model, X + NQ*(i + k), V + NV*(i + k), tau + NU*(i + k), power + (i
                     + k));
             }
         }
-        failed += record(codes, LANES, status ? status + i : NULL);
-    }
-    for (; i < n; ++i) {
-        const int code = hexapod_6rus_power(model, X + NQ*i, V + NV*i, tau + NU*i, power + i);
-        failed += record(&code, 1, status ? status + i : NULL);
+        failed += record(codes, w, status ? status + i : NULL);
     }
     return failed;
 }
 
-int hexapod_6rus_rotation(const hexapod_6rus_real *X, hexapod_6rus_real *R)
+int hexapod_6rus_rotation(const real *X, real *R)
 {
     int code;
     rotation_one(X, R, &code);
     return code;
 }
 
-size_t hexapod_6rus_rotation_batch(size_t n, const hexapod_6rus_real *X, hexapod_6rus_real *R, int
-    *status)
+size_t hexapod_6rus_rotation_batch(size_t n, const real *X, real *R, int *status)
 {
-    size_t failed = 0, i = 0;
-    for (; i < n; ++i) {
+    size_t failed = 0;
+    for (size_t i = 0; i < n; ++i) {
         const int code = hexapod_6rus_rotation(X + NQ*i, R + 9*i);
         failed += record(&code, 1, status ? status + i : NULL);
     }
     return failed;
 }
 
-int hexapod_6rus_pose(const hexapod_6rus_real *t, const hexapod_6rus_real *R, hexapod_6rus_real
-    *X)
+int hexapod_6rus_pose(const real *t, const real *R, real *X)
 {
     int code;
     pose_one(t, R, X, &code);
     return code;
 }
 
-size_t hexapod_6rus_pose_batch(size_t n, const hexapod_6rus_real *t, const hexapod_6rus_real *R,
-    hexapod_6rus_real *X, int *status)
+size_t hexapod_6rus_pose_batch(size_t n, const real *t, const real *R, real *X, int *status)
 {
-    size_t failed = 0, i = 0;
-    for (; i < n; ++i) {
+    size_t failed = 0;
+    for (size_t i = 0; i < n; ++i) {
         const int code = hexapod_6rus_pose(t + 3*i, R + 9*i, X + NQ*i);
         failed += record(&code, 1, status ? status + i : NULL);
     }
     return failed;
 }
 
-int hexapod_6rus_X_dot(const hexapod_6rus_real *X, const hexapod_6rus_real *V, hexapod_6rus_real
-    *X_dot)
+int hexapod_6rus_X_dot(const real *X, const real *V, real *X_dot)
 {
     int code;
     X_dot_one(X, V, X_dot, &code);
     return code;
 }
 
-size_t hexapod_6rus_X_dot_batch(size_t n, const hexapod_6rus_real *X, const hexapod_6rus_real *V,
-    hexapod_6rus_real *X_dot, int *status)
+size_t hexapod_6rus_X_dot_batch(size_t n, const real *X, const real *V, real *X_dot, int *status)
 {
-    size_t failed = 0, i = 0;
-    for (; i < n; ++i) {
+    size_t failed = 0;
+    for (size_t i = 0; i < n; ++i) {
         const int code = hexapod_6rus_X_dot(X + NQ*i, V + NV*i, X_dot + NQ*i);
         failed += record(&code, 1, status ? status + i : NULL);
     }
     return failed;
 }
 
-int hexapod_6rus_pose_from_rpy(const hexapod_6rus_real *t, const hexapod_6rus_real *rpy,
-    hexapod_6rus_real *X)
+int hexapod_6rus_pose_from_rpy(const real *t, const real *rpy, real *X)
 {
     int code;
     pose_from_rpy_one(t, rpy, X, &code);
     return code;
 }
 
-size_t hexapod_6rus_pose_from_rpy_batch(size_t n, const hexapod_6rus_real *t, const
-    hexapod_6rus_real *rpy, hexapod_6rus_real *X, int *status)
+size_t hexapod_6rus_pose_from_rpy_batch(size_t n, const real *t, const real *rpy, real *X, int
+    *status)
 {
-    size_t failed = 0, i = 0;
-    for (; i < n; ++i) {
+    size_t failed = 0;
+    for (size_t i = 0; i < n; ++i) {
         const int code = hexapod_6rus_pose_from_rpy(t + 3*i, rpy + 3*i, X + NQ*i);
         failed += record(&code, 1, status ? status + i : NULL);
     }
     return failed;
 }
 
-int hexapod_6rus_retract(const hexapod_6rus_real *X, const hexapod_6rus_real *step,
-    hexapod_6rus_real *X_moved)
+int hexapod_6rus_retract(const real *X, const real *step, real *X_moved)
 {
     int code;
     retract_one(X, step, X_moved, &code);
     return code;
 }
 
-size_t hexapod_6rus_retract_batch(size_t n, const hexapod_6rus_real *X, const hexapod_6rus_real
-    *step, hexapod_6rus_real *X_moved, int *status)
+size_t hexapod_6rus_retract_batch(size_t n, const real *X, const real *step, real *X_moved, int
+    *status)
 {
-    size_t failed = 0, i = 0;
-    for (; i < n; ++i) {
+    size_t failed = 0;
+    for (size_t i = 0; i < n; ++i) {
         const int code = hexapod_6rus_retract(X + NQ*i, step + NV*i, X_moved + NQ*i);
         failed += record(&code, 1, status ? status + i : NULL);
     }
     return failed;
 }
 
-int hexapod_6rus_difference(const hexapod_6rus_real *X0, const hexapod_6rus_real *X1,
-    hexapod_6rus_real *step)
+int hexapod_6rus_difference(const real *X0, const real *X1, real *step)
 {
     int code;
     difference_one(X0, X1, step, &code);
     return code;
 }
 
-size_t hexapod_6rus_difference_batch(size_t n, const hexapod_6rus_real *X0, const
-    hexapod_6rus_real *X1, hexapod_6rus_real *step, int *status)
+size_t hexapod_6rus_difference_batch(size_t n, const real *X0, const real *X1, real *step, int
+    *status)
 {
-    size_t failed = 0, i = 0;
-    for (; i < n; ++i) {
+    size_t failed = 0;
+    for (size_t i = 0; i < n; ++i) {
         const int code = hexapod_6rus_difference(X0 + NQ*i, X1 + NQ*i, step + NV*i);
         failed += record(&code, 1, status ? status + i : NULL);
     }
     return failed;
 }
 
-int hexapod_6rus_interpolate(const hexapod_6rus_real *X0, const hexapod_6rus_real *X1, const
-    hexapod_6rus_real *s, hexapod_6rus_real *X)
+int hexapod_6rus_interpolate(const real *X0, const real *X1, const real *s, real *X)
 {
     int code;
     interpolate_one(X0, X1, s, X, &code);
     return code;
 }
 
-size_t hexapod_6rus_interpolate_batch(size_t n, const hexapod_6rus_real *X0, const
-    hexapod_6rus_real *X1, const hexapod_6rus_real *s, hexapod_6rus_real *X, int *status)
+size_t hexapod_6rus_interpolate_batch(size_t n, const real *X0, const real *X1, const real *s,
+    real *X, int *status)
 {
-    size_t failed = 0, i = 0;
-    for (; i < n; ++i) {
+    size_t failed = 0;
+    for (size_t i = 0; i < n; ++i) {
         const int code = hexapod_6rus_interpolate(X0 + NQ*i, X1 + NQ*i, s + i, X + NQ*i);
         failed += record(&code, 1, status ? status + i : NULL);
     }

@@ -244,6 +244,22 @@ int hexapod_6rus_condition(const hexapod_6rus_model *model, const hexapod_6rus_r
 size_t hexapod_6rus_condition_batch(const hexapod_6rus_model *model, size_t n, const
     hexapod_6rus_real *X, hexapod_6rus_real *sigma, hexapod_6rus_real *legs, int *status);
 
+/* Manipulability of forces: the product of the singular values that condition has by default, and
+   the least over the largest of them. 613 mul, 348 add, 18 div, 25 sqrt, 0 trig; the singular
+   values apart. In: X (NQ). Out: measure (1), isotropy (1). */
+int hexapod_6rus_manipulability(const hexapod_6rus_model *model, const hexapod_6rus_real *X,
+    hexapod_6rus_real *measure, hexapod_6rus_real *isotropy);
+size_t hexapod_6rus_manipulability_batch(const hexapod_6rus_model *model, size_t n, const
+    hexapod_6rus_real *X, hexapod_6rus_real *measure, hexapod_6rus_real *isotropy, int *status);
+
+/* How near actuators and legs are to being singular: relative distances, 0 where they are. 613
+   mul, 348 add, 18 div, 25 sqrt, 0 trig; the singular values apart. In: X (NQ). Out: actuators
+   (1), legs (1). */
+int hexapod_6rus_singularity_distance(const hexapod_6rus_model *model, const hexapod_6rus_real *X,
+    hexapod_6rus_real *actuators, hexapod_6rus_real *legs);
+size_t hexapod_6rus_singularity_distance_batch(const hexapod_6rus_model *model, size_t n, const
+    hexapod_6rus_real *X, hexapod_6rus_real *actuators, hexapod_6rus_real *legs, int *status);
+
 /* X at which the actuated joints stand at q_actuated, by Gauss-Newton from X0. Extra coordinates
    that actuators do not determine stay. Impossible where no pose is found. In: q_actuated (NU),
    X0 (NQ). Out: X (NQ). */

@@ -663,20 +663,20 @@ int hexapod_6ucu_prepare(const hexapod_6ucu_params *params, hexapod_6ucu_model *
         /* (ucu-Jc_2) inertia tensor of the links from 2 outwards about joint 2, that of the last link
            about the connection point */
         const real ucu_Jc_2_in_axes2_xx = ucu_J_2_in_spec2_xx + ucu_J_4_in_spec4_xx;
-        /* (ucu-trace_J_4) half the trace of that inertia tensor */
-        const real ucu_trace_J_4 = R(0.5)*ucu_J_4_in_spec4_xx + R(0.5)*ucu_J_4_in_spec4_yy +
-            R(0.5)*ucu_J_4_in_spec4_zz;
         /* (ucu-Sigma_4) second moment of mass of the links that turn with link 4 */
-        const real ucu_Sigma_4_in_axes4_xx = ucu_trace_J_4 - ucu_J_4_in_spec4_yy;
-        const real ucu_Sigma_4_in_axes4_yy = ucu_trace_J_4 - ucu_J_4_in_spec4_zz;
-        const real ucu_Sigma_4_in_axes4_zz = ucu_trace_J_4 - ucu_J_4_in_spec4_xx;
-        /* (ucu-trace_J_2) half the trace of that inertia tensor */
-        const real ucu_trace_J_2 = R(0.5)*ucu_J_2_in_spec2_xx + R(0.5)*ucu_J_2_in_spec2_yy +
-            R(0.5)*ucu_J_2_in_spec2_zz;
+        const real ucu_Sigma_4_t = ucu_J_4_in_spec4_xx + ucu_J_4_in_spec4_yy +
+            ucu_J_4_in_spec4_zz;
+        const real ucu_Sigma_4_t_2 = R(0.5)*ucu_Sigma_4_t;
+        const real ucu_Sigma_4_in_axes4_xx = ucu_Sigma_4_t_2 - ucu_J_4_in_spec4_yy;
+        const real ucu_Sigma_4_in_axes4_yy = ucu_Sigma_4_t_2 - ucu_J_4_in_spec4_zz;
+        const real ucu_Sigma_4_in_axes4_zz = ucu_Sigma_4_t_2 - ucu_J_4_in_spec4_xx;
         /* (ucu-Sigma_2) second moment of mass of the links that turn with link 2 */
-        const real ucu_Sigma_2_in_axes2_xx = ucu_trace_J_2 - ucu_J_2_in_spec2_xx;
-        const real ucu_Sigma_2_in_axes2_yy = ucu_trace_J_2 - ucu_J_2_in_spec2_zz;
-        const real ucu_Sigma_2_in_axes2_zz = ucu_trace_J_2 - ucu_J_2_in_spec2_yy;
+        const real ucu_Sigma_2_t = ucu_J_2_in_spec2_xx + ucu_J_2_in_spec2_yy +
+            ucu_J_2_in_spec2_zz;
+        const real ucu_Sigma_2_t_2 = R(0.5)*ucu_Sigma_2_t;
+        const real ucu_Sigma_2_in_axes2_xx = ucu_Sigma_2_t_2 - ucu_J_2_in_spec2_xx;
+        const real ucu_Sigma_2_in_axes2_yy = ucu_Sigma_2_t_2 - ucu_J_2_in_spec2_zz;
+        const real ucu_Sigma_2_in_axes2_zz = ucu_Sigma_2_t_2 - ucu_J_2_in_spec2_yy;
         /* (ucu-mu_2) inertia moment of the links that turn with link 2, about their reference points */
         const real ucu_mu_2_t = gravity_x*ucu_base_frame_xx + gravity_y*ucu_base_frame_yx +
             gravity_z*ucu_base_frame_zx;
@@ -1161,6 +1161,24 @@ INLINE void unlimited(size_t rows, size_t size, size_t w, const size_t *places, 
     }
 }
 
+INLINE void least_entry(size_t n, const real *a, real *x)
+{
+    *x = a[0];
+    for (size_t e = 1; e < n; ++e) {
+        *x = lesser(*x, a[e]);
+    }
+}
+
+/* Of the first n entries the product, and the last over the first, 0 where that is 0. */
+INLINE void spread(size_t n, const real *a, real *product_of, real *ratio)
+{
+    *product_of = 1;
+    for (size_t e = 0; e < n; ++e) {
+        *product_of *= a[e];
+    }
+    *ratio = magnitude(a[0]) > 0 ? a[n - 1]/a[0] : a[0];
+}
+
 /* 1 where no entry is negative, else 0. */
 INLINE void not_negative(size_t size, size_t w, const real *a, real *x, real *flags)
 {
@@ -1335,6 +1353,1187 @@ static void moved(const real *X, const real *step, real part, real *to)
     turn_quaternion(X + Q, turn, to + Q);
 }
 
+/* ---- what functions of the state share; v: values for others ---- */
+
+typedef struct {
+    real quaternion_scale, R_xx, R_xy, R_xz, R_yx, R_yy, R_yz, R_zx, R_zy, R_zz, h_star_x, h_star_y,
+        h_star_z, omega_in_platform_x, omega_in_platform_y, omega_in_platform_z, J_star_xx, J_star_xy,
+        J_star_xz, J_star_yy, J_star_yz, J_star_zz, Z_p_x, Z_p_y, Z_p_z, Z_q_x, Z_q_y, Z_q_z;
+} values;
+
+INLINE void stage_X(const prepared *m, size_t w, size_t k, const real *X, values *v)
+{
+    /* X: named entries */
+    const real X_3 = X[3*w + k];
+    const real X_4 = X[4*w + k];
+    const real X_5 = X[5*w + k];
+    const real X_6 = X[6*w + k];
+    const real quaternion_norm2 = X_3*X_3 + X_4*X_4 + X_5*X_5 + X_6*X_6;
+    const real quaternion_scale = 2/quaternion_norm2;
+    const real quaternion_sx = X_3*quaternion_scale;
+    const real quaternion_sy = X_4*quaternion_scale;
+    const real quaternion_sz = X_5*quaternion_scale;
+    const real quaternion_wx = X_6*quaternion_sx;
+    const real quaternion_wy = X_6*quaternion_sy;
+    const real quaternion_wz = X_6*quaternion_sz;
+    const real quaternion_xx = X_3*quaternion_sx;
+    const real quaternion_xy = X_3*quaternion_sy;
+    const real quaternion_xz = X_3*quaternion_sz;
+    const real quaternion_yy = X_4*quaternion_sy;
+    const real quaternion_yz = X_4*quaternion_sz;
+    const real quaternion_zz = X_5*quaternion_sz;
+    const real R_xx = 1 - quaternion_yy - quaternion_zz;
+    const real R_xy = quaternion_xy - quaternion_wz;
+    const real R_xz = quaternion_wy + quaternion_xz;
+    const real R_yx = quaternion_wz + quaternion_xy;
+    const real R_yy = 1 - quaternion_xx - quaternion_zz;
+    const real R_yz = quaternion_yz - quaternion_wx;
+    const real R_zx = quaternion_xz - quaternion_wy;
+    const real R_zy = quaternion_wx + quaternion_yz;
+    const real R_zz = 1 - quaternion_xx - quaternion_yy;
+    /* (h_star) first moment about the platform origin */
+    const real h_star_in_platform_x = m->h_star_in_platform_x;
+    const real h_star_in_platform_y = m->h_star_in_platform_y;
+    const real h_star_in_platform_z = m->h_star_in_platform_z;
+    const real h_star_x = R_xx*h_star_in_platform_x + R_xy*h_star_in_platform_y +
+        R_xz*h_star_in_platform_z;
+    const real h_star_y = R_yx*h_star_in_platform_x + R_yy*h_star_in_platform_y +
+        R_yz*h_star_in_platform_z;
+    const real h_star_z = R_zx*h_star_in_platform_x + R_zy*h_star_in_platform_y +
+        R_zz*h_star_in_platform_z;
+    v->quaternion_scale = quaternion_scale;
+    v->R_xx = R_xx;
+    v->R_xy = R_xy;
+    v->R_xz = R_xz;
+    v->R_yx = R_yx;
+    v->R_yy = R_yy;
+    v->R_yz = R_yz;
+    v->R_zx = R_zx;
+    v->R_zy = R_zy;
+    v->R_zz = R_zz;
+    v->h_star_x = h_star_x;
+    v->h_star_y = h_star_y;
+    v->h_star_z = h_star_z;
+}
+
+INLINE void stage_V_X(size_t w, size_t k, const real *V, values *v)
+{
+    /* (Z_q) gyroscopic moment and moment of the weight of the platform */
+    const real omega_x = V[3*w + k];
+    const real omega_y = V[4*w + k];
+    const real omega_z = V[5*w + k];
+    const real omega_in_platform_x = v->R_xx*omega_x + v->R_yx*omega_y + v->R_zx*omega_z;
+    const real omega_in_platform_y = v->R_xy*omega_x + v->R_yy*omega_y + v->R_zy*omega_z;
+    const real omega_in_platform_z = v->R_xz*omega_x + v->R_yz*omega_y + v->R_zz*omega_z;
+    v->omega_in_platform_x = omega_in_platform_x;
+    v->omega_in_platform_y = omega_in_platform_y;
+    v->omega_in_platform_z = omega_in_platform_z;
+}
+
+INLINE void stage_M_dynamics(const prepared *m, values *v)
+{
+    /* (J_star) inertia tensor about the platform origin */
+    const real J_star_in_platform_xy = m->J_star_in_platform_xy;
+    const real J_star_in_platform_yz = m->J_star_in_platform_yz;
+    const real J_star_t_12 = m->J_star_t_12;
+    const real J_star_t = J_star_in_platform_xy*v->R_xx + J_star_in_platform_yz*v->R_xz -
+        J_star_t_12*v->R_xy;
+    const real J_star_t_2 = J_star_in_platform_xy*v->R_yx + J_star_in_platform_yz*v->R_yz -
+        J_star_t_12*v->R_yy;
+    const real J_star_t_3 = J_star_in_platform_xy*v->R_zx + J_star_in_platform_yz*v->R_zz -
+        J_star_t_12*v->R_zy;
+    const real J_star_in_platform_xz = m->J_star_in_platform_xz;
+    const real J_star_t_14 = m->J_star_t_14;
+    const real J_star_t_4 = J_star_t_14*v->R_xz - J_star_in_platform_xz*v->R_xx;
+    const real J_star_t_5 = J_star_t_14*v->R_yz - J_star_in_platform_xz*v->R_yx;
+    const real J_star_t_6 = J_star_t_14*v->R_zz - J_star_in_platform_xz*v->R_zx;
+    const real J_star_t_7 = J_star_t*v->R_xy - J_star_t_4*v->R_xz;
+    const real J_star_in_platform_xx = m->J_star_in_platform_xx;
+    const real J_star_xx = J_star_in_platform_xx + 2*J_star_t_7;
+    const real J_star_xy = J_star_t*v->R_yy + J_star_t_2*v->R_xy - J_star_t_4*v->R_yz -
+        J_star_t_5*v->R_xz;
+    const real J_star_xz = J_star_t*v->R_zy + J_star_t_3*v->R_xy - J_star_t_4*v->R_zz -
+        J_star_t_6*v->R_xz;
+    const real J_star_t_8 = J_star_t_2*v->R_yy - J_star_t_5*v->R_yz;
+    const real J_star_yy = J_star_in_platform_xx + 2*J_star_t_8;
+    const real J_star_yz = J_star_t_2*v->R_zy + J_star_t_3*v->R_yy - J_star_t_5*v->R_zz -
+        J_star_t_6*v->R_yz;
+    const real J_star_t_9 = J_star_t_3*v->R_zy - J_star_t_6*v->R_zz;
+    const real J_star_zz = J_star_in_platform_xx + 2*J_star_t_9;
+    v->J_star_xx = J_star_xx;
+    v->J_star_xy = J_star_xy;
+    v->J_star_xz = J_star_xz;
+    v->J_star_yy = J_star_yy;
+    v->J_star_yz = J_star_yz;
+    v->J_star_zz = J_star_zz;
+}
+
+INLINE void stage_Z_dynamics(const prepared *m, size_t w, size_t k, const real *V, values *v)
+{
+    /* (Z_p) centripetal force and weight of the platform */
+    const real omega_y = V[4*w + k];
+    const real omega_z = V[5*w + k];
+    const real Z_p_t_4 = v->h_star_z*omega_y - v->h_star_y*omega_z;
+    const real omega_x = V[3*w + k];
+    const real Z_p_t_5 = v->h_star_x*omega_z - v->h_star_z*omega_x;
+    const real Z_p_t_6 = v->h_star_y*omega_x - v->h_star_x*omega_y;
+    const real Z_p_t = m->Z_p_t;
+    const real Z_p_x = Z_p_t_6*omega_y - Z_p_t - Z_p_t_5*omega_z;
+    const real Z_p_t_2 = m->Z_p_t_2;
+    const real Z_p_y = Z_p_t_4*omega_z - Z_p_t_2 - Z_p_t_6*omega_x;
+    const real Z_p_t_3 = m->Z_p_t_3;
+    const real Z_p_z = Z_p_t_5*omega_x - Z_p_t_3 - Z_p_t_4*omega_y;
+    /* (Z_q) gyroscopic moment and moment of the weight of the platform */
+    const real gravity_x = m->gravity_x;
+    const real gravity_y = m->gravity_y;
+    const real gravity_z = m->gravity_z;
+    const real g_in_platform_x = v->R_xx*gravity_x + v->R_yx*gravity_y + v->R_zx*gravity_z;
+    const real g_in_platform_y = v->R_xy*gravity_x + v->R_yy*gravity_y + v->R_zy*gravity_z;
+    const real g_in_platform_z = v->R_xz*gravity_x + v->R_yz*gravity_y + v->R_zz*gravity_z;
+    const real J_star_in_platform_xx = m->J_star_in_platform_xx;
+    const real J_star_in_platform_xy = m->J_star_in_platform_xy;
+    const real J_star_in_platform_xz = m->J_star_in_platform_xz;
+    const real Z_q_t = J_star_in_platform_xx*v->omega_in_platform_x +
+        J_star_in_platform_xy*v->omega_in_platform_y +
+        J_star_in_platform_xz*v->omega_in_platform_z;
+    const real J_star_in_platform_yy = m->J_star_in_platform_yy;
+    const real J_star_in_platform_yz = m->J_star_in_platform_yz;
+    const real Z_q_t_2 = J_star_in_platform_xy*v->omega_in_platform_x +
+        J_star_in_platform_yy*v->omega_in_platform_y +
+        J_star_in_platform_yz*v->omega_in_platform_z;
+    const real J_star_in_platform_zz = m->J_star_in_platform_zz;
+    const real Z_q_t_3 = J_star_in_platform_xz*v->omega_in_platform_x +
+        J_star_in_platform_yz*v->omega_in_platform_y +
+        J_star_in_platform_zz*v->omega_in_platform_z;
+    const real h_star_in_platform_y = m->h_star_in_platform_y;
+    const real h_star_in_platform_z = m->h_star_in_platform_z;
+    const real Z_q_in_platform_x = Z_q_t_3*v->omega_in_platform_y +
+        g_in_platform_y*h_star_in_platform_z - Z_q_t_2*v->omega_in_platform_z -
+        g_in_platform_z*h_star_in_platform_y;
+    const real h_star_in_platform_x = m->h_star_in_platform_x;
+    const real Z_q_in_platform_y = Z_q_t*v->omega_in_platform_z +
+        g_in_platform_z*h_star_in_platform_x - Z_q_t_3*v->omega_in_platform_x -
+        g_in_platform_x*h_star_in_platform_z;
+    const real Z_q_in_platform_z = Z_q_t_2*v->omega_in_platform_x +
+        g_in_platform_x*h_star_in_platform_y - Z_q_t*v->omega_in_platform_y -
+        g_in_platform_y*h_star_in_platform_x;
+    const real Z_q_x = v->R_xx*Z_q_in_platform_x + v->R_xy*Z_q_in_platform_y +
+        v->R_xz*Z_q_in_platform_z;
+    const real Z_q_y = v->R_yx*Z_q_in_platform_x + v->R_yy*Z_q_in_platform_y +
+        v->R_yz*Z_q_in_platform_z;
+    const real Z_q_z = v->R_zx*Z_q_in_platform_x + v->R_zy*Z_q_in_platform_y +
+        v->R_zz*Z_q_in_platform_z;
+    v->Z_p_x = Z_p_x;
+    v->Z_p_y = Z_p_y;
+    v->Z_p_z = Z_p_z;
+    v->Z_q_x = Z_q_x;
+    v->Z_q_y = Z_q_y;
+    v->Z_q_z = Z_q_z;
+}
+
+typedef struct {
+    real ucu_q_x, ucu_q_y, ucu_q_z, ucu_S_in_turn1_z, ucu_root_1_t, ucu_c_1, ucu_s_1, ucu_root_2_t,
+        ucu_root_2, inv_ucu_root_2, ucu_c_2, ucu_e_1_in_axes4_z, ucu_root_4_t, ucu_root_4_t_2,
+        ucu_root_4_t_3, ucu_end_p1_in_turn4_x, ucu_root_4_t_6, ucu_c_4, ucu_e_2_in_axes4_y, ucu_v_1_t,
+        ucu_e_1_in_axes4_y, ucu_v_1_in_axes4_x, ucu_v_1_in_axes4_y, ucu_v_1_in_axes2_z, ucu_v_1_t_2,
+        ucu_n_m1_in_axes4_x, ucu_n_m1_in_axes2_z, ucu_end_p1_in_axes4_x, ucu_w_3_x, ucu_w_3_y,
+        ucu_w_3_z, inv_ucu_end_p1_in_axes4_x, inv_ucu_v_1_in_axes2_z, ucu_end_p1_in_axes4_y,
+        ucu_g_in_axes2_z, ucu_H_a_3_x, ucu_H_a_3_y, ucu_H_a_3_z, axis_y_ucu_axes4_x,
+        axis_y_ucu_axes4_y, axis_y_ucu_axes4_z, axis_x_ucu_axes4_x, axis_x_ucu_axes4_y,
+        axis_x_ucu_axes4_z, ucu_qd_4_t_4, ucu_a_p_x, ucu_a_p_y, ucu_a_p_z, ucu_etad_1_t, ucu_S_dot_t,
+        ucu_S_dot_t_2, ucu_S_dot_t_3, ucu_S_dot_t_4, ucu_S_dot_t_5, ucu_S_dot_t_6, ucu_qd_1, ucu_qd_2,
+        ucu_omega_1_in_axes2_x, ucu_omega_1_in_axes2_y, ucu_omega_2_in_axes4_x,
+        ucu_omega_2_in_axes4_y, ucu_W_2_in_axes2_yz, ucu_W_2_in_axes2_xz, ucu_W_2_in_axes2_xy,
+        ucu_W_2_in_axes4_xy, ucu_zeta_2_t, ucu_bias_in_axes4_x, ucu_bias_in_axes4_y,
+        ucu_omega_in_axes4_z, ucu_qd_4, ucu_omega_4_in_axes4_z, ucu_nu_1_t_2, ucu_S_ddot_x,
+        ucu_S_ddot_y, ucu_S_ddot_z, ucu_h_4_t_7, ucu_h_4_t_9, ucu_h_4_t_10, ucu_h_4_t_11,
+        ucu_h_4_t_12, inv_ucu_h_4_t_12, ucu_h_4_t_13, ucu_h_4_t_18, ucu_h_4_t_19, ucu_e_2_in_axes4_x,
+        axis_z_ucu_axes4_x, axis_z_ucu_axes4_y, axis_z_ucu_axes4_z, ucu_n_m1_x, ucu_n_m1_y,
+        ucu_n_m1_z, ucu_w_4_t, ucu_Q_xx, ucu_Q_xy, ucu_Q_xz, ucu_Q_yy, ucu_Q_yz, ucu_Q_zz,
+        ucu_M_ta_t_10, ucu_M_ta_t_11, ucu_M_ta_t_12, ucu_M_ta_t_13, ucu_M_ta_t_14, ucu_M_ta_t_15,
+        ucu_M_ta_t_16, ucu_M_ta_t_17, ucu_M_ta_t_18, ucu_M_aa_t, ucu_M_aa_t_2, ucu_M_aa_t_3,
+        ucu_M_aa_t_4, ucu_M_aa_t_5, ucu_M_aa_t_6, ucu_root_4_t_4, ucu_root_4_t_5, inv_ucu_root_4,
+        ucu_B_4_in_axes4_xy, ucu_B_4_in_axes4_xz, ucu_B_4_in_axes4_yx, ucu_B_4_in_axes4_yz,
+        ucu_B_4_in_axes4_zx, ucu_B_4_in_axes4_zy, ucu_acc_4_in_axes4_x, ucu_acc_4_in_axes4_y,
+        ucu_acc_4_in_axes4_z, ucu_mu_2_in_axes2_x, ucu_mu_2_in_axes2_y, ucu_mu_2_in_axes2_z;
+} values_ucu;
+
+INLINE void stage_ucu_X(const prepared *m, size_t w, size_t i, size_t j, const real *s, const real
+    *X, values_ucu *v)
+{
+    /* (ucu-h_4) first moment of link 4 about the connection point */
+    const real R_xx = s[0*w + j];
+    const real R_xy = s[1*w + j];
+    const real R_xz = s[2*w + j];
+    const real ucu_platform_point_x = m->ucu_platform_point_x[i];
+    const real ucu_platform_point_y = m->ucu_platform_point_y[i];
+    const real ucu_platform_point_z = m->ucu_platform_point_z[i];
+    const real ucu_q_x = R_xx*ucu_platform_point_x + R_xy*ucu_platform_point_y +
+        R_xz*ucu_platform_point_z;
+    const real R_yx = s[3*w + j];
+    const real R_yy = s[4*w + j];
+    const real R_yz = s[5*w + j];
+    const real ucu_q_y = R_yx*ucu_platform_point_x + R_yy*ucu_platform_point_y +
+        R_yz*ucu_platform_point_z;
+    const real R_zx = s[6*w + j];
+    const real R_zy = s[7*w + j];
+    const real R_zz = s[8*w + j];
+    const real ucu_q_z = R_zx*ucu_platform_point_x + R_zy*ucu_platform_point_y +
+        R_zz*ucu_platform_point_z;
+    /* (ucu-S) from the base point to the connection point */
+    const real t_x = X[0*w + j];
+    const real ucu_base_point_x = m->ucu_base_point_x[i];
+    const real ucu_S_x = t_x + ucu_q_x - ucu_base_point_x;
+    const real t_y = X[1*w + j];
+    const real ucu_base_point_y = m->ucu_base_point_y[i];
+    const real ucu_S_y = t_y + ucu_q_y - ucu_base_point_y;
+    const real t_z = X[2*w + j];
+    const real ucu_base_point_z = m->ucu_base_point_z[i];
+    const real ucu_S_z = t_z + ucu_q_z - ucu_base_point_z;
+    const real ucu_base_frame_xx = m->ucu_base_frame_xx[i];
+    const real ucu_base_frame_yx = m->ucu_base_frame_yx[i];
+    const real ucu_base_frame_zx = m->ucu_base_frame_zx[i];
+    const real ucu_S_in_turn1_x = ucu_S_x*ucu_base_frame_xx + ucu_S_y*ucu_base_frame_yx +
+        ucu_S_z*ucu_base_frame_zx;
+    const real ucu_base_frame_xy = m->ucu_base_frame_xy[i];
+    const real ucu_base_frame_yy = m->ucu_base_frame_yy[i];
+    const real ucu_base_frame_zy = m->ucu_base_frame_zy[i];
+    const real ucu_S_in_turn1_y = ucu_S_x*ucu_base_frame_xy + ucu_S_y*ucu_base_frame_yy +
+        ucu_S_z*ucu_base_frame_zy;
+    const real ucu_base_frame_xz = m->ucu_base_frame_xz[i];
+    const real ucu_base_frame_yz = m->ucu_base_frame_yz[i];
+    const real ucu_base_frame_zz = m->ucu_base_frame_zz[i];
+    const real ucu_S_in_turn1_z = ucu_S_x*ucu_base_frame_xz + ucu_S_y*ucu_base_frame_yz +
+        ucu_S_z*ucu_base_frame_zz;
+    /* (ucu-root_1) amplitude, the length across axis 1, with the sign of the branch */
+    const real ucu_root_1_t = ucu_S_in_turn1_x*ucu_S_in_turn1_x +
+        ucu_S_in_turn1_y*ucu_S_in_turn1_y;
+    const real ucu_branch_1 = m->ucu_branch_1[i];
+    const real ucu_root_1 = ucu_branch_1*root(ucu_root_1_t);
+    /* (ucu-c_1) cosine of the angle of joint 1 from its reference direction */
+    const real inv_ucu_root_1 = 1/ucu_root_1;
+    const real ucu_c_1 = inv_ucu_root_1*ucu_S_in_turn1_x;
+    /* (ucu-s_1) sine of the angle of joint 1 from its reference direction */
+    const real ucu_s_1 = inv_ucu_root_1*ucu_S_in_turn1_y;
+    /* (ucu-root_2) amplitude, the length across axis 2, with the sign of the branch */
+    const real ucu_root_2_t = ucu_S_in_turn1_z*ucu_S_in_turn1_z + ucu_root_1_t;
+    const real ucu_branch_2 = m->ucu_branch_2[i];
+    const real ucu_root_2 = ucu_branch_2*root(ucu_root_2_t);
+    /* (ucu-c_2) cosine of the angle of joint 2 from its reference direction */
+    const real inv_ucu_root_2 = 1/ucu_root_2;
+    const real ucu_c_2 = inv_ucu_root_2*ucu_root_1;
+    /* (ucu-root_4) amplitude, the length across axis 4, with the sign of the branch */
+    const real ucu_e_1_in_axes4_z = inv_ucu_root_2*ucu_S_in_turn1_z;
+    const real ucu_platform_joint_axis_platform_x = m->ucu_platform_joint_axis_platform_x[i];
+    const real ucu_platform_joint_axis_platform_y = m->ucu_platform_joint_axis_platform_y[i];
+    const real ucu_platform_joint_axis_platform_z = m->ucu_platform_joint_axis_platform_z[i];
+    const real ucu_root_4_t = ucu_platform_joint_axis_platform_x*(R_xx*ucu_base_frame_xx +
+        R_yx*ucu_base_frame_yx + R_zx*ucu_base_frame_zx) +
+        ucu_platform_joint_axis_platform_y*(R_xy*ucu_base_frame_xx + R_yy*ucu_base_frame_yx +
+        R_zy*ucu_base_frame_zx) + ucu_platform_joint_axis_platform_z*(R_xz*ucu_base_frame_xx +
+        R_yz*ucu_base_frame_yx + R_zz*ucu_base_frame_zx);
+    const real ucu_root_4_t_2 = ucu_platform_joint_axis_platform_x*(R_xx*ucu_base_frame_xy +
+        R_yx*ucu_base_frame_yy + R_zx*ucu_base_frame_zy) +
+        ucu_platform_joint_axis_platform_y*(R_xy*ucu_base_frame_xy + R_yy*ucu_base_frame_yy +
+        R_zy*ucu_base_frame_zy) + ucu_platform_joint_axis_platform_z*(R_xz*ucu_base_frame_xy +
+        R_yz*ucu_base_frame_yy + R_zz*ucu_base_frame_zy);
+    const real ucu_root_4_t_3 = ucu_platform_joint_axis_platform_x*(R_xx*ucu_base_frame_xz +
+        R_yx*ucu_base_frame_yz + R_zx*ucu_base_frame_zz) +
+        ucu_platform_joint_axis_platform_y*(R_xy*ucu_base_frame_xz + R_yy*ucu_base_frame_yz +
+        R_zy*ucu_base_frame_zz) + ucu_platform_joint_axis_platform_z*(R_xz*ucu_base_frame_xz +
+        R_yz*ucu_base_frame_yz + R_zz*ucu_base_frame_zz);
+    const real ucu_root_4_t_4 = ucu_c_1*ucu_root_4_t + ucu_root_4_t_2*ucu_s_1;
+    const real ucu_end_p1_in_turn4_x = ucu_c_1*ucu_root_4_t_2 - ucu_root_4_t*ucu_s_1;
+    const real ucu_root_4_t_5 = ucu_e_1_in_axes4_z*ucu_root_4_t_4 - ucu_c_2*ucu_root_4_t_3;
+    const real ucu_root_4_t_6 = ucu_end_p1_in_turn4_x*ucu_end_p1_in_turn4_x +
+        ucu_root_4_t_5*ucu_root_4_t_5;
+    const real ucu_branch_4 = m->ucu_branch_4[i];
+    const real ucu_root_4 = ucu_branch_4*root(ucu_root_4_t_6);
+    /* (ucu-c_4) cosine of the angle of joint 4 from its reference direction */
+    const real inv_ucu_root_4 = 1/ucu_root_4;
+    const real ucu_c_4 = inv_ucu_root_4*ucu_end_p1_in_turn4_x;
+    /* (ucu-v_1) velocity of the connection point per rate of joint 1 */
+    const real ucu_e_2_in_axes4_y = inv_ucu_root_4*ucu_root_4_t_5;
+    const real ucu_v_1_t = ucu_c_2*ucu_e_2_in_axes4_y;
+    const real ucu_e_1_in_axes4_y = ucu_c_2*ucu_c_4;
+    const real ucu_v_1_in_axes4_x = ucu_e_1_in_axes4_y*ucu_root_2;
+    const real ucu_v_1_in_axes4_y = ucu_root_2*ucu_v_1_t;
+    const real ucu_v_1_in_axes2_z = ucu_c_4*ucu_v_1_in_axes4_x +
+        ucu_e_2_in_axes4_y*ucu_v_1_in_axes4_y;
+    const real ucu_v_1_t_2 = ucu_c_4*ucu_v_1_in_axes4_y -
+        ucu_e_2_in_axes4_y*ucu_v_1_in_axes4_x;
+    /* (ucu-n_m1) direction 1 of the moment that the platform joint transmits */
+    const real ucu_n_m1_in_axes4_x = ucu_c_2*ucu_root_4_t_4 +
+        ucu_e_1_in_axes4_z*ucu_root_4_t_3;
+    const real ucu_n_m1_in_axes2_z = ucu_c_4*ucu_n_m1_in_axes4_x;
+    /* (ucu-w_1) force part of reciprocal wrench 1 */
+    const real ucu_end_p1_in_axes4_x = ucu_c_4*ucu_end_p1_in_turn4_x +
+        ucu_e_2_in_axes4_y*ucu_root_4_t_5;
+    /* (ucu-w_3) force part of reciprocal wrench 3 */
+    const real ucu_w_3_x = inv_ucu_root_2*ucu_S_x;
+    const real ucu_w_3_y = inv_ucu_root_2*ucu_S_y;
+    const real ucu_w_3_z = inv_ucu_root_2*ucu_S_z;
+    /* (ucu-m1_w_4) moment part 1 of reciprocal wrench 4 */
+    const real inv_ucu_end_p1_in_axes4_x = 1/ucu_end_p1_in_axes4_x;
+    /* (ucu-qd_1) rate of joint 1 */
+    const real inv_ucu_v_1_in_axes2_z = 1/ucu_v_1_in_axes2_z;
+    /* (ucu-nd_m1) rate of moment direction 1 */
+    const real ucu_end_p1_in_axes4_y = ucu_e_2_in_axes4_y*ucu_end_p1_in_turn4_x -
+        ucu_c_4*ucu_root_4_t_5;
+    /* (ucu-mu_2_o) remainder without the acceleration in: inertia moment of the links that turn with
+       link 2, about their reference points */
+    const real ucu_mu_2_t = m->ucu_mu_2_t[i];
+    const real ucu_mu_2_t_2 = m->ucu_mu_2_t_2[i];
+    const real ucu_g_in_axes2_z = ucu_c_1*ucu_mu_2_t_2 - ucu_mu_2_t*ucu_s_1;
+    /* (ucu-H_a_3) moment of the column's unit force about the platform origin */
+    const real ucu_H_a_3_x = ucu_q_y*ucu_w_3_z - ucu_q_z*ucu_w_3_y;
+    const real ucu_H_a_3_y = ucu_q_z*ucu_w_3_x - ucu_q_x*ucu_w_3_z;
+    const real ucu_H_a_3_z = ucu_q_x*ucu_w_3_y - ucu_q_y*ucu_w_3_x;
+    /* (ucu-qd_4) rate of joint 4 */
+    const real ucu_qd_4_t = ucu_c_4*ucu_e_1_in_axes4_z;
+    const real ucu_qd_4_t_2 = -ucu_c_1*ucu_qd_4_t - ucu_e_2_in_axes4_y*ucu_s_1;
+    const real ucu_qd_4_t_3 = ucu_c_1*ucu_e_2_in_axes4_y - ucu_qd_4_t*ucu_s_1;
+    const real axis_y_ucu_axes4_x = ucu_base_frame_xx*ucu_qd_4_t_2 +
+        ucu_base_frame_xy*ucu_qd_4_t_3 + ucu_base_frame_xz*ucu_e_1_in_axes4_y;
+    const real axis_y_ucu_axes4_y = ucu_base_frame_yx*ucu_qd_4_t_2 +
+        ucu_base_frame_yy*ucu_qd_4_t_3 + ucu_base_frame_yz*ucu_e_1_in_axes4_y;
+    const real axis_y_ucu_axes4_z = ucu_base_frame_zx*ucu_qd_4_t_2 +
+        ucu_base_frame_zy*ucu_qd_4_t_3 + ucu_base_frame_zz*ucu_e_1_in_axes4_y;
+    const real axis_x_ucu_axes4_x = axis_y_ucu_axes4_y*ucu_w_3_z -
+        axis_y_ucu_axes4_z*ucu_w_3_y;
+    const real axis_x_ucu_axes4_y = axis_y_ucu_axes4_z*ucu_w_3_x -
+        axis_y_ucu_axes4_x*ucu_w_3_z;
+    const real axis_x_ucu_axes4_z = axis_y_ucu_axes4_x*ucu_w_3_y -
+        axis_y_ucu_axes4_y*ucu_w_3_x;
+    const real ucu_qd_4_t_4 = ucu_e_1_in_axes4_z*ucu_end_p1_in_axes4_x +
+        ucu_n_m1_in_axes4_x*ucu_v_1_t;
+    v->ucu_q_x = ucu_q_x;
+    v->ucu_q_y = ucu_q_y;
+    v->ucu_q_z = ucu_q_z;
+    v->ucu_S_in_turn1_z = ucu_S_in_turn1_z;
+    v->ucu_root_1_t = ucu_root_1_t;
+    v->ucu_c_1 = ucu_c_1;
+    v->ucu_s_1 = ucu_s_1;
+    v->ucu_root_2_t = ucu_root_2_t;
+    v->ucu_root_2 = ucu_root_2;
+    v->inv_ucu_root_2 = inv_ucu_root_2;
+    v->ucu_c_2 = ucu_c_2;
+    v->ucu_e_1_in_axes4_z = ucu_e_1_in_axes4_z;
+    v->ucu_root_4_t = ucu_root_4_t;
+    v->ucu_root_4_t_2 = ucu_root_4_t_2;
+    v->ucu_root_4_t_3 = ucu_root_4_t_3;
+    v->ucu_end_p1_in_turn4_x = ucu_end_p1_in_turn4_x;
+    v->ucu_root_4_t_6 = ucu_root_4_t_6;
+    v->ucu_c_4 = ucu_c_4;
+    v->ucu_e_2_in_axes4_y = ucu_e_2_in_axes4_y;
+    v->ucu_v_1_t = ucu_v_1_t;
+    v->ucu_e_1_in_axes4_y = ucu_e_1_in_axes4_y;
+    v->ucu_v_1_in_axes4_x = ucu_v_1_in_axes4_x;
+    v->ucu_v_1_in_axes4_y = ucu_v_1_in_axes4_y;
+    v->ucu_v_1_in_axes2_z = ucu_v_1_in_axes2_z;
+    v->ucu_v_1_t_2 = ucu_v_1_t_2;
+    v->ucu_n_m1_in_axes4_x = ucu_n_m1_in_axes4_x;
+    v->ucu_n_m1_in_axes2_z = ucu_n_m1_in_axes2_z;
+    v->ucu_end_p1_in_axes4_x = ucu_end_p1_in_axes4_x;
+    v->ucu_w_3_x = ucu_w_3_x;
+    v->ucu_w_3_y = ucu_w_3_y;
+    v->ucu_w_3_z = ucu_w_3_z;
+    v->inv_ucu_end_p1_in_axes4_x = inv_ucu_end_p1_in_axes4_x;
+    v->inv_ucu_v_1_in_axes2_z = inv_ucu_v_1_in_axes2_z;
+    v->ucu_end_p1_in_axes4_y = ucu_end_p1_in_axes4_y;
+    v->ucu_g_in_axes2_z = ucu_g_in_axes2_z;
+    v->ucu_H_a_3_x = ucu_H_a_3_x;
+    v->ucu_H_a_3_y = ucu_H_a_3_y;
+    v->ucu_H_a_3_z = ucu_H_a_3_z;
+    v->axis_y_ucu_axes4_x = axis_y_ucu_axes4_x;
+    v->axis_y_ucu_axes4_y = axis_y_ucu_axes4_y;
+    v->axis_y_ucu_axes4_z = axis_y_ucu_axes4_z;
+    v->axis_x_ucu_axes4_x = axis_x_ucu_axes4_x;
+    v->axis_x_ucu_axes4_y = axis_x_ucu_axes4_y;
+    v->axis_x_ucu_axes4_z = axis_x_ucu_axes4_z;
+    v->ucu_qd_4_t_4 = ucu_qd_4_t_4;
+}
+
+INLINE void stage_ucu_A_X(size_t w, size_t j, const real *A, values_ucu *v)
+{
+    /* (ucu-a_p) acceleration of the connection point without its centripetal part */
+    const real alpha_y = A[4*w + j];
+    const real alpha_z = A[5*w + j];
+    const real t_ddot_x = A[0*w + j];
+    const real ucu_a_p_x = t_ddot_x + alpha_y*v->ucu_q_z - alpha_z*v->ucu_q_y;
+    const real alpha_x = A[3*w + j];
+    const real t_ddot_y = A[1*w + j];
+    const real ucu_a_p_y = t_ddot_y + alpha_z*v->ucu_q_x - alpha_x*v->ucu_q_z;
+    const real t_ddot_z = A[2*w + j];
+    const real ucu_a_p_z = t_ddot_z + alpha_x*v->ucu_q_y - alpha_y*v->ucu_q_x;
+    /* (ucu-etad_1) acceleration with which the joints turn along moment direction 1 */
+    const real ucu_etad_1_t = v->ucu_n_m1_in_axes4_x*(alpha_x*v->axis_x_ucu_axes4_x +
+        alpha_y*v->axis_x_ucu_axes4_y + alpha_z*v->axis_x_ucu_axes4_z) -
+        v->ucu_end_p1_in_axes4_x*(alpha_x*v->ucu_w_3_x + alpha_y*v->ucu_w_3_y +
+        alpha_z*v->ucu_w_3_z);
+    v->ucu_a_p_x = ucu_a_p_x;
+    v->ucu_a_p_y = ucu_a_p_y;
+    v->ucu_a_p_z = ucu_a_p_z;
+    v->ucu_etad_1_t = ucu_etad_1_t;
+}
+
+INLINE void stage_ucu_V_X(const prepared *m, size_t w, size_t i, size_t j, const real *V,
+    values_ucu *v)
+{
+    /* (ucu-S_dot) velocity of the connection point */
+    const real omega_y = V[4*w + j];
+    const real omega_z = V[5*w + j];
+    const real ucu_S_dot_t = omega_y*v->ucu_q_z - omega_z*v->ucu_q_y;
+    const real omega_x = V[3*w + j];
+    const real ucu_S_dot_t_2 = omega_z*v->ucu_q_x - omega_x*v->ucu_q_z;
+    const real ucu_S_dot_t_3 = omega_x*v->ucu_q_y - omega_y*v->ucu_q_x;
+    const real t_dot_x = V[0*w + j];
+    const real ucu_S_dot_x = t_dot_x + ucu_S_dot_t;
+    const real t_dot_y = V[1*w + j];
+    const real ucu_S_dot_y = t_dot_y + ucu_S_dot_t_2;
+    const real t_dot_z = V[2*w + j];
+    const real ucu_S_dot_z = t_dot_z + ucu_S_dot_t_3;
+    const real ucu_base_frame_xx = m->ucu_base_frame_xx[i];
+    const real ucu_base_frame_yx = m->ucu_base_frame_yx[i];
+    const real ucu_base_frame_zx = m->ucu_base_frame_zx[i];
+    const real ucu_S_dot_t_4 = ucu_S_dot_x*ucu_base_frame_xx + ucu_S_dot_y*ucu_base_frame_yx +
+        ucu_S_dot_z*ucu_base_frame_zx;
+    const real ucu_base_frame_xy = m->ucu_base_frame_xy[i];
+    const real ucu_base_frame_yy = m->ucu_base_frame_yy[i];
+    const real ucu_base_frame_zy = m->ucu_base_frame_zy[i];
+    const real ucu_S_dot_t_5 = ucu_S_dot_x*ucu_base_frame_xy + ucu_S_dot_y*ucu_base_frame_yy +
+        ucu_S_dot_z*ucu_base_frame_zy;
+    const real ucu_base_frame_xz = m->ucu_base_frame_xz[i];
+    const real ucu_base_frame_yz = m->ucu_base_frame_yz[i];
+    const real ucu_base_frame_zz = m->ucu_base_frame_zz[i];
+    const real ucu_S_dot_t_6 = ucu_S_dot_x*ucu_base_frame_xz + ucu_S_dot_y*ucu_base_frame_yz +
+        ucu_S_dot_z*ucu_base_frame_zz;
+    const real ucu_S_dot_t_7 = ucu_S_dot_t_4*v->ucu_c_1 + ucu_S_dot_t_5*v->ucu_s_1;
+    const real ucu_S_dot_in_axes2_x = ucu_S_dot_t_6*v->ucu_e_1_in_axes4_z +
+        ucu_S_dot_t_7*v->ucu_c_2;
+    /* (ucu-qd_1) rate of joint 1 */
+    const real ucu_qd_1 = v->inv_ucu_v_1_in_axes2_z*(ucu_S_dot_t_5*v->ucu_c_1 -
+        ucu_S_dot_t_4*v->ucu_s_1);
+    /* (ucu-qd_2) rate of joint 2 */
+    const real ucu_qd_2 = v->inv_ucu_root_2*(ucu_S_dot_t_7*v->ucu_e_1_in_axes4_z +
+        ucu_qd_1*v->ucu_v_1_t_2 - ucu_S_dot_t_6*v->ucu_c_2);
+    /* (ucu-omega_1) angular velocity of link 1 */
+    const real ucu_omega_1_in_axes2_x = v->ucu_e_1_in_axes4_z*ucu_qd_1;
+    const real ucu_omega_1_in_axes2_y = -v->ucu_c_2*ucu_qd_1;
+    /* (ucu-omega_2) angular velocity of link 2 */
+    const real ucu_omega_2_in_axes4_x = v->ucu_c_4*ucu_qd_2 +
+        v->ucu_e_2_in_axes4_y*ucu_omega_1_in_axes2_y;
+    const real ucu_omega_2_in_axes4_y = v->ucu_e_2_in_axes4_y*ucu_qd_2 -
+        v->ucu_c_4*ucu_omega_1_in_axes2_y;
+    /* (ucu-W_2) centripetal tensor of link 2 */
+    const real ucu_W_2_in_axes2_yz = ucu_omega_1_in_axes2_y*ucu_qd_2;
+    const real ucu_W_2_in_axes2_xz = ucu_omega_1_in_axes2_x*ucu_qd_2;
+    const real ucu_W_2_in_axes2_xy = ucu_omega_1_in_axes2_x*ucu_omega_1_in_axes2_y;
+    const real ucu_W_2_in_axes4_xy = ucu_omega_2_in_axes4_x*ucu_omega_2_in_axes4_y;
+    /* (ucu-zeta_2) angular acceleration of link 2 from the turning of axis 2 */
+    const real ucu_zeta_2_t = ucu_W_2_in_axes2_xz*v->ucu_e_2_in_axes4_y;
+    /* (ucu-bias) acceleration of the connection point at zero joint accelerations */
+    const real ucu_bias_t = 2*ucu_S_dot_in_axes2_x;
+    const real ucu_bias_in_axes4_x = ucu_bias_t*ucu_omega_2_in_axes4_y +
+        v->ucu_root_2*(ucu_W_2_in_axes2_xz*v->ucu_c_4 +
+        ucu_omega_1_in_axes2_x*ucu_omega_2_in_axes4_x);
+    const real ucu_bias_in_axes4_y = v->ucu_root_2*(ucu_zeta_2_t +
+        ucu_omega_1_in_axes2_x*ucu_omega_2_in_axes4_y) - ucu_bias_t*ucu_omega_2_in_axes4_x;
+    /* (ucu-nd_m1) rate of moment direction 1 */
+    const real ucu_omega_in_axes4_z = omega_x*v->ucu_w_3_x + omega_y*v->ucu_w_3_y +
+        omega_z*v->ucu_w_3_z;
+    /* (ucu-qd_4) rate of joint 4 */
+    const real ucu_omega_in_axes4_x = v->axis_x_ucu_axes4_x*omega_x +
+        v->axis_x_ucu_axes4_y*omega_y + v->axis_x_ucu_axes4_z*omega_z;
+    const real ucu_qd_4 = ucu_omega_in_axes4_z -
+        v->inv_ucu_end_p1_in_axes4_x*(v->ucu_n_m1_in_axes4_x*ucu_omega_in_axes4_x +
+        ucu_qd_1*v->ucu_qd_4_t_4 - v->ucu_n_m1_in_axes2_z*ucu_qd_2);
+    /* (ucu-omega_4) angular velocity of link 4 */
+    const real ucu_omega_4_in_axes4_z = ucu_omega_1_in_axes2_x + ucu_qd_4;
+    /* (ucu-nd_m1) rate of moment direction 1 */
+    const real ucu_omega_in_axes4_y = v->axis_y_ucu_axes4_x*omega_x +
+        v->axis_y_ucu_axes4_y*omega_y + v->axis_y_ucu_axes4_z*omega_z;
+    const real ucu_nd_m1_in_axes4_x = v->ucu_end_p1_in_axes4_y*ucu_omega_in_axes4_x -
+        v->ucu_end_p1_in_axes4_x*ucu_omega_in_axes4_y -
+        v->ucu_end_p1_in_axes4_y*ucu_omega_2_in_axes4_x;
+    const real ucu_nd_m1_in_axes4_z = v->ucu_end_p1_in_axes4_y*ucu_omega_in_axes4_z -
+        v->ucu_end_p1_in_axes4_y*ucu_omega_4_in_axes4_z -
+        v->ucu_n_m1_in_axes4_x*ucu_omega_in_axes4_y;
+    /* (ucu-nu_1) bias of the angular acceleration along moment direction 1 */
+    const real ucu_nu_1_t_2 = ucu_nd_m1_in_axes4_x*(ucu_omega_2_in_axes4_x -
+        ucu_omega_in_axes4_x) + ucu_nd_m1_in_axes4_z*(ucu_omega_4_in_axes4_z -
+        ucu_omega_in_axes4_z) + (ucu_omega_2_in_axes4_y -
+        ucu_omega_in_axes4_y)*(v->ucu_end_p1_in_axes4_x*ucu_omega_2_in_axes4_x +
+        v->ucu_n_m1_in_axes4_x*ucu_omega_4_in_axes4_z);
+    v->ucu_S_dot_t = ucu_S_dot_t;
+    v->ucu_S_dot_t_2 = ucu_S_dot_t_2;
+    v->ucu_S_dot_t_3 = ucu_S_dot_t_3;
+    v->ucu_S_dot_t_4 = ucu_S_dot_t_4;
+    v->ucu_S_dot_t_5 = ucu_S_dot_t_5;
+    v->ucu_S_dot_t_6 = ucu_S_dot_t_6;
+    v->ucu_qd_1 = ucu_qd_1;
+    v->ucu_qd_2 = ucu_qd_2;
+    v->ucu_omega_1_in_axes2_x = ucu_omega_1_in_axes2_x;
+    v->ucu_omega_1_in_axes2_y = ucu_omega_1_in_axes2_y;
+    v->ucu_omega_2_in_axes4_x = ucu_omega_2_in_axes4_x;
+    v->ucu_omega_2_in_axes4_y = ucu_omega_2_in_axes4_y;
+    v->ucu_W_2_in_axes2_yz = ucu_W_2_in_axes2_yz;
+    v->ucu_W_2_in_axes2_xz = ucu_W_2_in_axes2_xz;
+    v->ucu_W_2_in_axes2_xy = ucu_W_2_in_axes2_xy;
+    v->ucu_W_2_in_axes4_xy = ucu_W_2_in_axes4_xy;
+    v->ucu_zeta_2_t = ucu_zeta_2_t;
+    v->ucu_bias_in_axes4_x = ucu_bias_in_axes4_x;
+    v->ucu_bias_in_axes4_y = ucu_bias_in_axes4_y;
+    v->ucu_omega_in_axes4_z = ucu_omega_in_axes4_z;
+    v->ucu_qd_4 = ucu_qd_4;
+    v->ucu_omega_4_in_axes4_z = ucu_omega_4_in_axes4_z;
+    v->ucu_nu_1_t_2 = ucu_nu_1_t_2;
+}
+
+INLINE void stage_ucu_A_V_X(size_t w, size_t j, const real *V, values_ucu *v)
+{
+    /* (ucu-S_ddot) acceleration of the connection point */
+    const real omega_y = V[4*w + j];
+    const real omega_z = V[5*w + j];
+    const real ucu_S_ddot_x = v->ucu_a_p_x + omega_y*v->ucu_S_dot_t_3 -
+        omega_z*v->ucu_S_dot_t_2;
+    const real omega_x = V[3*w + j];
+    const real ucu_S_ddot_y = v->ucu_a_p_y + omega_z*v->ucu_S_dot_t -
+        omega_x*v->ucu_S_dot_t_3;
+    const real ucu_S_ddot_z = v->ucu_a_p_z + omega_x*v->ucu_S_dot_t_2 -
+        omega_y*v->ucu_S_dot_t;
+    v->ucu_S_ddot_x = ucu_S_ddot_x;
+    v->ucu_S_ddot_y = ucu_S_ddot_y;
+    v->ucu_S_ddot_z = ucu_S_ddot_z;
+}
+
+INLINE void stage_ucu_M_dynamics(const prepared *m, size_t w, size_t i, size_t j, const real *s,
+    const real *X, values_ucu *v)
+{
+    /* (ucu-h_4) first moment of link 4 about the connection point */
+    const real t_x = X[0*w + j];
+    const real ucu_base_point_x = m->ucu_base_point_x[i];
+    const real ucu_h_4_t = t_x + v->ucu_q_x - ucu_base_point_x;
+    const real t_y = X[1*w + j];
+    const real ucu_base_point_y = m->ucu_base_point_y[i];
+    const real ucu_h_4_t_2 = t_y + v->ucu_q_y - ucu_base_point_y;
+    const real t_z = X[2*w + j];
+    const real ucu_base_point_z = m->ucu_base_point_z[i];
+    const real ucu_h_4_t_3 = t_z + v->ucu_q_z - ucu_base_point_z;
+    const real ucu_base_frame_xx = m->ucu_base_frame_xx[i];
+    const real ucu_base_frame_yx = m->ucu_base_frame_yx[i];
+    const real ucu_base_frame_zx = m->ucu_base_frame_zx[i];
+    const real ucu_h_4_t_4 = ucu_base_frame_xx*ucu_h_4_t + ucu_base_frame_yx*ucu_h_4_t_2 +
+        ucu_base_frame_zx*ucu_h_4_t_3;
+    const real ucu_base_frame_xy = m->ucu_base_frame_xy[i];
+    const real ucu_base_frame_yy = m->ucu_base_frame_yy[i];
+    const real ucu_base_frame_zy = m->ucu_base_frame_zy[i];
+    const real ucu_h_4_t_5 = ucu_base_frame_xy*ucu_h_4_t + ucu_base_frame_yy*ucu_h_4_t_2 +
+        ucu_base_frame_zy*ucu_h_4_t_3;
+    const real ucu_base_frame_xz = m->ucu_base_frame_xz[i];
+    const real ucu_base_frame_yz = m->ucu_base_frame_yz[i];
+    const real ucu_base_frame_zz = m->ucu_base_frame_zz[i];
+    const real ucu_h_4_t_6 = ucu_base_frame_xz*ucu_h_4_t + ucu_base_frame_yz*ucu_h_4_t_2 +
+        ucu_base_frame_zz*ucu_h_4_t_3;
+    const real ucu_h_4_t_7 = ucu_h_4_t_4*ucu_h_4_t_4 + ucu_h_4_t_5*ucu_h_4_t_5;
+    const real ucu_branch_1 = m->ucu_branch_1[i];
+    const real ucu_h_4_t_8 = ucu_branch_1*root(ucu_h_4_t_7);
+    const real inv_ucu_h_4_t_8 = 1/ucu_h_4_t_8;
+    const real ucu_h_4_t_9 = inv_ucu_h_4_t_8*ucu_h_4_t_4;
+    const real ucu_h_4_t_10 = inv_ucu_h_4_t_8*ucu_h_4_t_5;
+    const real ucu_h_4_t_11 = ucu_h_4_t_6*ucu_h_4_t_6 + ucu_h_4_t_7;
+    const real ucu_branch_2 = m->ucu_branch_2[i];
+    const real ucu_h_4_t_12 = ucu_branch_2*root(ucu_h_4_t_11);
+    const real inv_ucu_h_4_t_12 = 1/ucu_h_4_t_12;
+    const real ucu_h_4_t_13 = inv_ucu_h_4_t_12*ucu_h_4_t_8;
+    const real ucu_e_1_in_axes4_z = inv_ucu_h_4_t_12*ucu_h_4_t_6;
+    const real R_xx = s[0*w + j];
+    const real R_xy = s[1*w + j];
+    const real R_xz = s[2*w + j];
+    const real R_yx = s[3*w + j];
+    const real R_yy = s[4*w + j];
+    const real R_yz = s[5*w + j];
+    const real R_zx = s[6*w + j];
+    const real R_zy = s[7*w + j];
+    const real R_zz = s[8*w + j];
+    const real ucu_platform_joint_axis_platform_x = m->ucu_platform_joint_axis_platform_x[i];
+    const real ucu_platform_joint_axis_platform_y = m->ucu_platform_joint_axis_platform_y[i];
+    const real ucu_platform_joint_axis_platform_z = m->ucu_platform_joint_axis_platform_z[i];
+    const real ucu_h_4_t_14 = ucu_platform_joint_axis_platform_x*(R_xx*ucu_base_frame_xx +
+        R_yx*ucu_base_frame_yx + R_zx*ucu_base_frame_zx) +
+        ucu_platform_joint_axis_platform_y*(R_xy*ucu_base_frame_xx + R_yy*ucu_base_frame_yx +
+        R_zy*ucu_base_frame_zx) + ucu_platform_joint_axis_platform_z*(R_xz*ucu_base_frame_xx +
+        R_yz*ucu_base_frame_yx + R_zz*ucu_base_frame_zx);
+    const real ucu_h_4_t_15 = ucu_platform_joint_axis_platform_x*(R_xx*ucu_base_frame_xy +
+        R_yx*ucu_base_frame_yy + R_zx*ucu_base_frame_zy) +
+        ucu_platform_joint_axis_platform_y*(R_xy*ucu_base_frame_xy + R_yy*ucu_base_frame_yy +
+        R_zy*ucu_base_frame_zy) + ucu_platform_joint_axis_platform_z*(R_xz*ucu_base_frame_xy +
+        R_yz*ucu_base_frame_yy + R_zz*ucu_base_frame_zy);
+    const real ucu_h_4_t_16 = ucu_platform_joint_axis_platform_x*(R_xx*ucu_base_frame_xz +
+        R_yx*ucu_base_frame_yz + R_zx*ucu_base_frame_zz) +
+        ucu_platform_joint_axis_platform_y*(R_xy*ucu_base_frame_xz + R_yy*ucu_base_frame_yz +
+        R_zy*ucu_base_frame_zz) + ucu_platform_joint_axis_platform_z*(R_xz*ucu_base_frame_xz +
+        R_yz*ucu_base_frame_yz + R_zz*ucu_base_frame_zz);
+    const real ucu_h_4_t_17 = ucu_h_4_t_10*ucu_h_4_t_15 + ucu_h_4_t_14*ucu_h_4_t_9;
+    const real ucu_end_p1_in_turn4_x = ucu_h_4_t_15*ucu_h_4_t_9 - ucu_h_4_t_10*ucu_h_4_t_14;
+    const real ucu_h_4_t_18 = ucu_e_1_in_axes4_z*ucu_h_4_t_17 - ucu_h_4_t_13*ucu_h_4_t_16;
+    const real ucu_h_4_t_19 = ucu_end_p1_in_turn4_x*ucu_end_p1_in_turn4_x +
+        ucu_h_4_t_18*ucu_h_4_t_18;
+    const real ucu_branch_4 = m->ucu_branch_4[i];
+    const real ucu_h_4_t_20 = ucu_branch_4*root(ucu_h_4_t_19);
+    const real inv_ucu_h_4_t_20 = 1/ucu_h_4_t_20;
+    const real ucu_e_2_in_axes4_x = inv_ucu_h_4_t_20*ucu_end_p1_in_turn4_x;
+    const real ucu_e_2_in_axes4_y = inv_ucu_h_4_t_20*ucu_h_4_t_18;
+    const real ucu_h_4_in_spec4_y = m->ucu_h_4_in_spec4_y[i];
+    const real ucu_h_4_in_spec4_z = m->ucu_h_4_in_spec4_z[i];
+    const real ucu_h_4_in_spec2_z = ucu_e_2_in_axes4_x*ucu_h_4_in_spec4_z -
+        ucu_e_2_in_axes4_y*ucu_h_4_in_spec4_y;
+    /* (ucu-J_4) inertia tensor of link 4 about the connection point */
+    const real ucu_J_4_in_spec4_xy = m->ucu_J_4_in_spec4_xy[i];
+    const real ucu_J_4_in_spec4_xz = m->ucu_J_4_in_spec4_xz[i];
+    const real ucu_J_4_in_axes2_xz = ucu_J_4_in_spec4_xy*ucu_e_2_in_axes4_x +
+        ucu_J_4_in_spec4_xz*ucu_e_2_in_axes4_y;
+    /* (ucu-v_1) velocity of the connection point per rate of joint 1 */
+    const real ucu_v_1_t = ucu_e_2_in_axes4_y*ucu_h_4_t_13;
+    const real ucu_e_1_in_axes4_y = ucu_e_2_in_axes4_x*ucu_h_4_t_13;
+    const real ucu_v_1_in_axes4_x = ucu_e_1_in_axes4_y*ucu_h_4_t_12;
+    const real ucu_v_1_in_axes4_y = ucu_h_4_t_12*ucu_v_1_t;
+    const real ucu_v_1_in_axes2_z = ucu_e_2_in_axes4_x*ucu_v_1_in_axes4_x +
+        ucu_e_2_in_axes4_y*ucu_v_1_in_axes4_y;
+    const real ucu_v_1_t_2 = ucu_e_2_in_axes4_x*ucu_v_1_in_axes4_y -
+        ucu_e_2_in_axes4_y*ucu_v_1_in_axes4_x;
+    /* (ucu-n_m1) direction 1 of the moment that the platform joint transmits */
+    const real ucu_n_m1_in_axes4_x = ucu_e_1_in_axes4_z*ucu_h_4_t_16 +
+        ucu_h_4_t_13*ucu_h_4_t_17;
+    const real axis_z_ucu_axes4_x = inv_ucu_h_4_t_12*ucu_h_4_t;
+    const real axis_z_ucu_axes4_y = inv_ucu_h_4_t_12*ucu_h_4_t_2;
+    const real axis_z_ucu_axes4_z = inv_ucu_h_4_t_12*ucu_h_4_t_3;
+    const real ucu_n_m1_t = ucu_e_1_in_axes4_z*ucu_e_2_in_axes4_x;
+    const real ucu_n_m1_t_2 = -ucu_e_2_in_axes4_y*ucu_h_4_t_10 - ucu_h_4_t_9*ucu_n_m1_t;
+    const real ucu_n_m1_t_3 = ucu_e_2_in_axes4_y*ucu_h_4_t_9 - ucu_h_4_t_10*ucu_n_m1_t;
+    const real axis_y_ucu_axes4_x = ucu_base_frame_xx*ucu_n_m1_t_2 +
+        ucu_base_frame_xy*ucu_n_m1_t_3 + ucu_base_frame_xz*ucu_e_1_in_axes4_y;
+    const real axis_y_ucu_axes4_y = ucu_base_frame_yx*ucu_n_m1_t_2 +
+        ucu_base_frame_yy*ucu_n_m1_t_3 + ucu_base_frame_yz*ucu_e_1_in_axes4_y;
+    const real axis_y_ucu_axes4_z = ucu_base_frame_zx*ucu_n_m1_t_2 +
+        ucu_base_frame_zy*ucu_n_m1_t_3 + ucu_base_frame_zz*ucu_e_1_in_axes4_y;
+    const real axis_x_ucu_axes4_x = axis_y_ucu_axes4_y*axis_z_ucu_axes4_z -
+        axis_y_ucu_axes4_z*axis_z_ucu_axes4_y;
+    const real axis_x_ucu_axes4_y = axis_y_ucu_axes4_z*axis_z_ucu_axes4_x -
+        axis_y_ucu_axes4_x*axis_z_ucu_axes4_z;
+    const real axis_x_ucu_axes4_z = axis_y_ucu_axes4_x*axis_z_ucu_axes4_y -
+        axis_y_ucu_axes4_y*axis_z_ucu_axes4_x;
+    const real ucu_end_p1_in_axes4_x = ucu_e_2_in_axes4_x*ucu_end_p1_in_turn4_x +
+        ucu_e_2_in_axes4_y*ucu_h_4_t_18;
+    const real ucu_n_m1_in_axes2_z = ucu_e_2_in_axes4_x*ucu_n_m1_in_axes4_x;
+    const real ucu_n_m1_x = axis_x_ucu_axes4_x*ucu_n_m1_in_axes4_x -
+        axis_z_ucu_axes4_x*ucu_end_p1_in_axes4_x;
+    const real ucu_n_m1_y = axis_x_ucu_axes4_y*ucu_n_m1_in_axes4_x -
+        axis_z_ucu_axes4_y*ucu_end_p1_in_axes4_x;
+    const real ucu_n_m1_z = axis_x_ucu_axes4_z*ucu_n_m1_in_axes4_x -
+        axis_z_ucu_axes4_z*ucu_end_p1_in_axes4_x;
+    /* (ucu-w_1) force part of reciprocal wrench 1 */
+    const real inv_ucu_v_1_in_axes2_z = 1/ucu_v_1_in_axes2_z;
+    const real ucu_w_1_in_axes4_x = inv_ucu_v_1_in_axes2_z*ucu_e_2_in_axes4_x;
+    const real ucu_w_1_in_axes4_y = inv_ucu_v_1_in_axes2_z*ucu_e_2_in_axes4_y;
+    /* (ucu-w_2) force part of reciprocal wrench 2 */
+    const real ucu_w_2_t = inv_ucu_h_4_t_12*inv_ucu_v_1_in_axes2_z*ucu_v_1_t_2;
+    const real ucu_w_2_in_axes4_x = inv_ucu_h_4_t_12*ucu_e_2_in_axes4_y +
+        ucu_e_2_in_axes4_x*ucu_w_2_t;
+    const real ucu_w_2_in_axes4_y = ucu_e_2_in_axes4_y*ucu_w_2_t -
+        inv_ucu_h_4_t_12*ucu_e_2_in_axes4_x;
+    /* (ucu-w_4) force part of reciprocal wrench 4 */
+    const real ucu_w_4_t = ucu_e_1_in_axes4_z*ucu_end_p1_in_axes4_x +
+        ucu_n_m1_in_axes4_x*ucu_v_1_t;
+    const real inv_ucu_end_p1_in_axes4_x = 1/ucu_end_p1_in_axes4_x;
+    const real ucu_w_4_t_2 = inv_ucu_end_p1_in_axes4_x*inv_ucu_h_4_t_12*ucu_n_m1_in_axes2_z;
+    const real ucu_w_4_t_3 = inv_ucu_v_1_in_axes2_z*(inv_ucu_end_p1_in_axes4_x*ucu_w_4_t -
+        ucu_v_1_t_2*ucu_w_4_t_2);
+    const real ucu_w_4_in_axes4_x = ucu_e_2_in_axes4_y*ucu_w_4_t_2 -
+        ucu_e_2_in_axes4_x*ucu_w_4_t_3;
+    const real ucu_w_4_in_axes4_y = -ucu_e_2_in_axes4_x*ucu_w_4_t_2 -
+        ucu_e_2_in_axes4_y*ucu_w_4_t_3;
+    /* (ucu-o_4) moment part of reciprocal wrench 4 */
+    const real ucu_o_4_t = inv_ucu_end_p1_in_axes4_x*ucu_n_m1_in_axes4_x;
+    /* (ucu-d_alpha_4) coefficient of the acceleration in: angular acceleration of link 4 */
+    const real ucu_d_alpha_4_in_axes4_zy = ucu_w_4_in_axes4_y +
+        ucu_e_1_in_axes4_z*ucu_w_1_in_axes4_y;
+    /* (ucu-D_1_4) inertia of joint 4 along joint 1 */
+    const real ucu_J_4_in_spec4_xx = m->ucu_J_4_in_spec4_xx[i];
+    const real ucu_D_1_4 = ucu_J_4_in_spec4_xx*ucu_e_1_in_axes4_z +
+        ucu_J_4_in_spec4_xz*ucu_e_1_in_axes4_y - ucu_J_4_in_spec4_xy*ucu_v_1_t;
+    /* (ucu-Jc_2) inertia tensor of the links from 2 outwards about joint 2, that of the last link
+       about the connection point */
+    const real ucu_J_4_in_spec4_yz = m->ucu_J_4_in_spec4_yz[i];
+    const real ucu_Jc_2_t = ucu_J_4_in_spec4_yz*ucu_e_2_in_axes4_y;
+    const real ucu_Jc_2_t_2 = ucu_J_4_in_spec4_yz*ucu_e_2_in_axes4_x;
+    const real ucu_J_4_in_spec4_yy = m->ucu_J_4_in_spec4_yy[i];
+    const real ucu_Jc_2_t_3 = ucu_J_4_in_spec4_yy*ucu_e_2_in_axes4_y - ucu_Jc_2_t_2;
+    const real ucu_J_4_in_spec4_zz = m->ucu_J_4_in_spec4_zz[i];
+    const real ucu_Jc_2_t_4 = ucu_J_4_in_spec4_zz*ucu_e_2_in_axes4_x - ucu_Jc_2_t;
+    const real ucu_J_2_in_spec2_xz = m->ucu_J_2_in_spec2_xz[i];
+    const real ucu_Jc_2_in_axes2_xy = ucu_J_4_in_spec4_xy*ucu_e_2_in_axes4_y -
+        ucu_J_2_in_spec2_xz - ucu_J_4_in_spec4_xz*ucu_e_2_in_axes4_x;
+    const real ucu_J_2_in_spec2_xy = m->ucu_J_2_in_spec2_xy[i];
+    const real ucu_J_2_in_spec2_yz = m->ucu_J_2_in_spec2_yz[i];
+    const real ucu_Jc_2_in_axes1_yz = ucu_e_1_in_axes4_z*(ucu_J_2_in_spec2_xy +
+        ucu_J_4_in_axes2_xz) - ucu_h_4_t_13*(ucu_Jc_2_t_3*ucu_e_2_in_axes4_x -
+        ucu_J_2_in_spec2_yz - ucu_Jc_2_t_4*ucu_e_2_in_axes4_y);
+    /* (ucu-dalpha_Gamma_4) coefficient of the acceleration in: moment about axis 4 of the distal
+       links' inertia and weight */
+    const real ucu_dalpha_Gamma_4_t = ucu_J_4_in_spec4_xx*ucu_o_4_t;
+    /* (ucu-d_Gamma_4) coefficient of the acceleration in: moment about axis 4 of the distal links'
+       inertia and weight */
+    const real ucu_d_Gamma_4_t = inv_ucu_end_p1_in_axes4_x*ucu_J_4_in_spec4_xx;
+    const real ucu_d_Gamma_4_t_2 = inv_ucu_h_4_t_12*(ucu_J_4_in_axes2_xz +
+        ucu_d_Gamma_4_t*ucu_n_m1_in_axes2_z);
+    const real ucu_d_Gamma_4_t_3 = inv_ucu_v_1_in_axes2_z*(ucu_D_1_4 +
+        ucu_d_Gamma_4_t_2*ucu_v_1_t_2 - ucu_d_Gamma_4_t*ucu_w_4_t);
+    const real ucu_d_Gamma_4_in_axes4_x = ucu_d_Gamma_4_t_2*ucu_e_2_in_axes4_y +
+        ucu_d_Gamma_4_t_3*ucu_e_2_in_axes4_x - ucu_h_4_in_spec4_z;
+    const real ucu_d_Gamma_4_in_axes4_y = ucu_h_4_in_spec4_y +
+        ucu_d_Gamma_4_t_3*ucu_e_2_in_axes4_y - ucu_d_Gamma_4_t_2*ucu_e_2_in_axes4_x;
+    /* (ucu-dalpha_Gamma_2) coefficient of the acceleration in: moment about axis 2 of the distal
+       links' inertia and weight */
+    const real ucu_dalpha_Gamma_2_t = ucu_J_4_in_axes2_xz*ucu_o_4_t;
+    /* (ucu-d_Gamma_2) coefficient of the acceleration in: moment about axis 2 of the distal links'
+       inertia and weight */
+    const real ucu_d_Gamma_2_t = inv_ucu_end_p1_in_axes4_x*ucu_J_4_in_axes2_xz;
+    const real ucu_J_2_in_spec2_yy = m->ucu_J_2_in_spec2_yy[i];
+    const real ucu_d_Gamma_2_t_2 = inv_ucu_h_4_t_12*(ucu_J_2_in_spec2_yy +
+        ucu_d_Gamma_2_t*ucu_n_m1_in_axes2_z + ucu_e_2_in_axes4_x*(ucu_Jc_2_t +
+        ucu_J_4_in_spec4_yy*ucu_e_2_in_axes4_x) + ucu_e_2_in_axes4_y*(ucu_Jc_2_t_2 +
+        ucu_J_4_in_spec4_zz*ucu_e_2_in_axes4_y));
+    const real ucu_d_Gamma_2_in_axes2_z = -inv_ucu_v_1_in_axes2_z*(ucu_d_Gamma_2_t*ucu_w_4_t -
+        ucu_Jc_2_in_axes1_yz - ucu_d_Gamma_2_t_2*ucu_v_1_t_2);
+    const real ucu_h_4_in_spec4_x = m->ucu_h_4_in_spec4_x[i];
+    const real ucu_d_Gamma_2_in_axes2_y = ucu_d_Gamma_2_t_2 + ucu_h_4_in_spec4_x;
+    const real ucu_d_Gamma_2_in_axes4_y = ucu_d_Gamma_2_in_axes2_z*ucu_e_2_in_axes4_y -
+        ucu_d_Gamma_2_in_axes2_y*ucu_e_2_in_axes4_x;
+    /* (ucu-dalpha_Gamma_1) coefficient of the acceleration in: moment about axis 1 of the distal
+       links' inertia and weight */
+    const real ucu_dalpha_Gamma_1_t = ucu_D_1_4*ucu_o_4_t;
+    /* (ucu-d_Gamma_1) coefficient of the acceleration in: moment about axis 1 of the distal links'
+       inertia and weight */
+    const real ucu_d_Gamma_1_t = inv_ucu_end_p1_in_axes4_x*ucu_D_1_4;
+    const real ucu_d_Gamma_1_t_2 = inv_ucu_h_4_t_12*(-ucu_Jc_2_in_axes1_yz -
+        ucu_d_Gamma_1_t*ucu_n_m1_in_axes2_z);
+    const real ucu_J_2_in_spec2_zz = m->ucu_J_2_in_spec2_zz[i];
+    const real ucu_Jc_2_in_axes2_xx = m->ucu_Jc_2_in_axes2_xx[i];
+    const real ucu_d_Gamma_1_t_3 = ucu_d_Gamma_1_t*ucu_w_4_t + ucu_d_Gamma_1_t_2*ucu_v_1_t_2 +
+        ucu_e_1_in_axes4_z*(ucu_Jc_2_in_axes2_xy*ucu_h_4_t_13 -
+        ucu_Jc_2_in_axes2_xx*ucu_e_1_in_axes4_z) -
+        ucu_h_4_t_13*(ucu_h_4_t_13*(ucu_J_2_in_spec2_zz + ucu_Jc_2_t_3*ucu_e_2_in_axes4_y +
+        ucu_Jc_2_t_4*ucu_e_2_in_axes4_x) - ucu_Jc_2_in_axes2_xy*ucu_e_1_in_axes4_z);
+    const real ucu_d_Gamma_1_in_axes1_z = ucu_d_Gamma_1_t_2*ucu_h_4_t_13;
+    const real ucu_d_Gamma_1_in_axes1_x = -ucu_d_Gamma_1_t_2*ucu_e_1_in_axes4_z -
+        ucu_e_2_in_axes4_x*ucu_h_4_in_spec4_y - ucu_e_2_in_axes4_y*ucu_h_4_in_spec4_z;
+    const real ucu_d_Gamma_1_in_axes1_y = ucu_h_4_in_spec4_x*ucu_h_4_t_13 -
+        inv_ucu_v_1_in_axes2_z*ucu_d_Gamma_1_t_3 - ucu_e_1_in_axes4_z*ucu_h_4_in_spec2_z;
+    const real ucu_d_Gamma_1_in_axes4_z = ucu_d_Gamma_1_in_axes1_x*ucu_h_4_t_13 +
+        ucu_d_Gamma_1_in_axes1_z*ucu_e_1_in_axes4_z;
+    const real ucu_d_Gamma_1_t_4 = ucu_d_Gamma_1_in_axes1_x*ucu_e_1_in_axes4_z -
+        ucu_d_Gamma_1_in_axes1_z*ucu_h_4_t_13;
+    const real ucu_d_Gamma_1_in_axes4_y = ucu_d_Gamma_1_in_axes1_y*ucu_e_2_in_axes4_y -
+        ucu_d_Gamma_1_t_4*ucu_e_2_in_axes4_x;
+    /* (ucu-d_G) coefficient of the acceleration in: force at the connection point that balances the
+       leg's inertia and weight along all degrees of freedom */
+    const real ucu_d_G_in_axes4_xz = ucu_d_Gamma_1_in_axes4_z*ucu_w_1_in_axes4_x +
+        ucu_h_4_in_spec2_z*ucu_w_2_in_axes4_x;
+    const real ucu_d_G_in_axes4_yz = ucu_d_Gamma_1_in_axes4_z*ucu_w_1_in_axes4_y +
+        ucu_h_4_in_spec2_z*ucu_w_2_in_axes4_y;
+    /* (ucu-dalpha_G_m1) coefficient of the acceleration in: moment along moment direction 1 that
+       balances the leg's inertia and weight along all degrees of freedom */
+    const real ucu_dalpha_G_m1_in_axes4_x = inv_ucu_end_p1_in_axes4_x*ucu_dalpha_Gamma_4_t;
+    const real ucu_dalpha_G_m1_y = axis_x_ucu_axes4_y*ucu_dalpha_G_m1_in_axes4_x -
+        axis_z_ucu_axes4_y*ucu_d_Gamma_4_t;
+    const real ucu_dalpha_G_m1_z = axis_x_ucu_axes4_z*ucu_dalpha_G_m1_in_axes4_x -
+        axis_z_ucu_axes4_z*ucu_d_Gamma_4_t;
+    /* (ucu-d_G_m1) coefficient of the acceleration in: moment along moment direction 1 that balances
+       the leg's inertia and weight along all degrees of freedom */
+    const real ucu_d_G_m1_in_axes4_x = -inv_ucu_end_p1_in_axes4_x*ucu_d_Gamma_4_in_axes4_x;
+    const real ucu_d_G_m1_in_axes4_y = -inv_ucu_end_p1_in_axes4_x*ucu_d_Gamma_4_in_axes4_y;
+    const real ucu_d_G_m1_x = axis_x_ucu_axes4_x*ucu_d_G_m1_in_axes4_x +
+        axis_y_ucu_axes4_x*ucu_d_G_m1_in_axes4_y;
+    const real ucu_d_G_m1_y = axis_x_ucu_axes4_y*ucu_d_G_m1_in_axes4_x +
+        axis_y_ucu_axes4_y*ucu_d_G_m1_in_axes4_y;
+    const real ucu_d_G_m1_z = axis_x_ucu_axes4_z*ucu_d_G_m1_in_axes4_x +
+        axis_y_ucu_axes4_z*ucu_d_G_m1_in_axes4_y;
+    /* (ucu-d_G_m) coefficient of the acceleration in: moment at the connection point that balances
+       the leg's inertia and weight along all degrees of freedom */
+    const real ucu_d_G_m_xx = ucu_d_G_m1_x*ucu_n_m1_x;
+    const real ucu_d_G_m_xy = ucu_d_G_m1_y*ucu_n_m1_x;
+    const real ucu_d_G_m_xz = ucu_d_G_m1_z*ucu_n_m1_x;
+    const real ucu_d_G_m_yx = ucu_d_G_m1_x*ucu_n_m1_y;
+    /* (ucu-dalpha_c) coefficient of the acceleration in: leg force on the platform without actuation
+       and without the mass at the connection point */
+    const real ucu_dalpha_c_in_axes4_xx = ucu_dalpha_Gamma_1_t*ucu_w_1_in_axes4_x +
+        ucu_dalpha_Gamma_2_t*ucu_w_2_in_axes4_x + ucu_dalpha_Gamma_4_t*ucu_w_4_in_axes4_x -
+        ucu_h_4_in_spec4_z*ucu_o_4_t;
+    const real ucu_dalpha_c_in_axes4_xz = ucu_h_4_in_spec4_z - ucu_D_1_4*ucu_w_1_in_axes4_x -
+        ucu_J_4_in_axes2_xz*ucu_w_2_in_axes4_x - ucu_J_4_in_spec4_xx*ucu_w_4_in_axes4_x;
+    const real ucu_dalpha_c_in_axes4_yx = ucu_dalpha_Gamma_1_t*ucu_w_1_in_axes4_y +
+        ucu_dalpha_Gamma_2_t*ucu_w_2_in_axes4_y + ucu_dalpha_Gamma_4_t*ucu_w_4_in_axes4_y +
+        ucu_h_4_in_spec4_y*ucu_o_4_t;
+    const real ucu_dalpha_c_in_axes4_yz = -ucu_h_4_in_spec4_y - ucu_D_1_4*ucu_w_1_in_axes4_y -
+        ucu_J_4_in_axes2_xz*ucu_w_2_in_axes4_y - ucu_J_4_in_spec4_xx*ucu_w_4_in_axes4_y;
+    /* (ucu-d_c) coefficient of the acceleration in: leg force on the platform without actuation and
+       without the mass at the connection point */
+    const real ucu_d_c_in_axes4_xx = ucu_h_4_in_spec4_z*(ucu_w_4_in_axes4_x +
+        ucu_e_1_in_axes4_z*ucu_w_1_in_axes4_x) - ucu_d_Gamma_4_in_axes4_x*ucu_w_4_in_axes4_x -
+        ucu_h_4_in_spec4_x*(ucu_e_1_in_axes4_y*ucu_w_1_in_axes4_x +
+        ucu_e_2_in_axes4_y*ucu_w_2_in_axes4_x) -
+        ucu_w_1_in_axes4_x*(ucu_d_Gamma_1_in_axes1_y*ucu_e_2_in_axes4_x +
+        ucu_d_Gamma_1_t_4*ucu_e_2_in_axes4_y) -
+        ucu_w_2_in_axes4_x*(ucu_d_Gamma_2_in_axes2_y*ucu_e_2_in_axes4_y +
+        ucu_d_Gamma_2_in_axes2_z*ucu_e_2_in_axes4_x);
+    const real ucu_d_c_in_axes4_xy = ucu_d_alpha_4_in_axes4_zy*ucu_h_4_in_spec4_z -
+        ucu_d_Gamma_1_in_axes4_y*ucu_w_1_in_axes4_x -
+        ucu_d_Gamma_2_in_axes4_y*ucu_w_2_in_axes4_x -
+        ucu_d_Gamma_4_in_axes4_y*ucu_w_4_in_axes4_x -
+        ucu_h_4_in_spec4_x*(ucu_e_1_in_axes4_y*ucu_w_1_in_axes4_y +
+        ucu_e_2_in_axes4_y*ucu_w_2_in_axes4_y);
+    const real ucu_d_c_in_axes4_yy = ucu_h_4_in_spec4_x*(ucu_e_2_in_axes4_x*ucu_w_2_in_axes4_y
+        - ucu_v_1_t*ucu_w_1_in_axes4_y) - ucu_d_Gamma_1_in_axes4_y*ucu_w_1_in_axes4_y -
+        ucu_d_Gamma_2_in_axes4_y*ucu_w_2_in_axes4_y -
+        ucu_d_Gamma_4_in_axes4_y*ucu_w_4_in_axes4_y -
+        ucu_d_alpha_4_in_axes4_zy*ucu_h_4_in_spec4_y;
+    /* (ucu-Q) inertia of the leg at the connection point, without the mass gathered there */
+    const real ucu_Q_t = R(0.5)*ucu_d_c_in_axes4_xx;
+    const real ucu_Q_t_2 = R(0.5)*ucu_d_c_in_axes4_yy;
+    const real ucu_Q_t_3 = axis_x_ucu_axes4_x*ucu_Q_t + axis_y_ucu_axes4_x*ucu_d_c_in_axes4_xy
+        - axis_z_ucu_axes4_x*ucu_d_G_in_axes4_xz;
+    const real ucu_Q_t_4 = axis_z_ucu_axes4_y*ucu_d_G_in_axes4_xz - axis_x_ucu_axes4_y*ucu_Q_t
+        - axis_y_ucu_axes4_y*ucu_d_c_in_axes4_xy;
+    const real ucu_Q_t_5 = axis_x_ucu_axes4_z*ucu_Q_t + axis_y_ucu_axes4_z*ucu_d_c_in_axes4_xy
+        - axis_z_ucu_axes4_z*ucu_d_G_in_axes4_xz;
+    const real ucu_Q_t_6 = axis_z_ucu_axes4_x*ucu_d_G_in_axes4_yz -
+        axis_y_ucu_axes4_x*ucu_Q_t_2;
+    const real ucu_Q_t_7 = axis_y_ucu_axes4_y*ucu_Q_t_2 -
+        axis_z_ucu_axes4_y*ucu_d_G_in_axes4_yz;
+    const real ucu_Q_t_8 = axis_y_ucu_axes4_z*ucu_Q_t_2 -
+        axis_z_ucu_axes4_z*ucu_d_G_in_axes4_yz;
+    const real ucu_Q_t_9 = axis_x_ucu_axes4_x*ucu_Q_t_3 - axis_y_ucu_axes4_x*ucu_Q_t_6;
+    const real ucu_Q_xx = -2*ucu_Q_t_9;
+    const real ucu_Q_xy = axis_x_ucu_axes4_x*ucu_Q_t_4 + axis_y_ucu_axes4_y*ucu_Q_t_6 -
+        axis_x_ucu_axes4_y*ucu_Q_t_3 - axis_y_ucu_axes4_x*ucu_Q_t_7;
+    const real ucu_Q_xz = axis_y_ucu_axes4_z*ucu_Q_t_6 - axis_x_ucu_axes4_x*ucu_Q_t_5 -
+        axis_x_ucu_axes4_z*ucu_Q_t_3 - axis_y_ucu_axes4_x*ucu_Q_t_8;
+    const real ucu_Q_t_10 = axis_y_ucu_axes4_y*ucu_Q_t_7 - axis_x_ucu_axes4_y*ucu_Q_t_4;
+    const real ucu_Q_yy = -2*ucu_Q_t_10;
+    const real ucu_Q_yz = axis_x_ucu_axes4_z*ucu_Q_t_4 - axis_x_ucu_axes4_y*ucu_Q_t_5 -
+        axis_y_ucu_axes4_y*ucu_Q_t_8 - axis_y_ucu_axes4_z*ucu_Q_t_7;
+    const real ucu_Q_t_11 = axis_x_ucu_axes4_z*ucu_Q_t_5 + axis_y_ucu_axes4_z*ucu_Q_t_8;
+    const real ucu_Q_zz = -2*ucu_Q_t_11;
+    /* (M_ta) coupling block of M */
+    const real ucu_M_ta_t = axis_x_ucu_axes4_x*ucu_dalpha_c_in_axes4_xx +
+        axis_y_ucu_axes4_x*ucu_dalpha_c_in_axes4_yx;
+    const real ucu_M_ta_t_2 = axis_x_ucu_axes4_y*ucu_dalpha_c_in_axes4_xx +
+        axis_y_ucu_axes4_y*ucu_dalpha_c_in_axes4_yx;
+    const real ucu_M_ta_t_3 = axis_x_ucu_axes4_z*ucu_dalpha_c_in_axes4_xx +
+        axis_y_ucu_axes4_z*ucu_dalpha_c_in_axes4_yx;
+    const real ucu_M_ta_t_4 = axis_x_ucu_axes4_x*ucu_dalpha_c_in_axes4_xz +
+        axis_y_ucu_axes4_x*ucu_dalpha_c_in_axes4_yz;
+    const real ucu_M_ta_t_5 = axis_x_ucu_axes4_y*ucu_dalpha_c_in_axes4_xz +
+        axis_y_ucu_axes4_y*ucu_dalpha_c_in_axes4_yz;
+    const real ucu_M_ta_t_6 = axis_x_ucu_axes4_z*ucu_dalpha_c_in_axes4_xz +
+        axis_y_ucu_axes4_z*ucu_dalpha_c_in_axes4_yz;
+    const real ucu_M_ta_t_7 = -ucu_Q_xy*v->ucu_q_z;
+    const real ucu_M_ta_t_8 = ucu_Q_xz*v->ucu_q_y;
+    const real ucu_M_ta_t_9 = ucu_Q_yz*v->ucu_q_x;
+    const real ucu_M_ta_t_10 = ucu_M_ta_t_7 + ucu_M_ta_t_8 - axis_x_ucu_axes4_x*ucu_M_ta_t -
+        axis_z_ucu_axes4_x*ucu_M_ta_t_4;
+    const real ucu_M_ta_t_11 = ucu_Q_xx*v->ucu_q_z - axis_x_ucu_axes4_y*ucu_M_ta_t -
+        axis_z_ucu_axes4_y*ucu_M_ta_t_4 - ucu_Q_xz*v->ucu_q_x;
+    const real ucu_M_ta_t_12 = ucu_Q_xy*v->ucu_q_x - axis_x_ucu_axes4_z*ucu_M_ta_t -
+        axis_z_ucu_axes4_z*ucu_M_ta_t_4 - ucu_Q_xx*v->ucu_q_y;
+    const real ucu_M_ta_t_13 = ucu_Q_yz*v->ucu_q_y - axis_x_ucu_axes4_x*ucu_M_ta_t_2 -
+        axis_z_ucu_axes4_x*ucu_M_ta_t_5 - ucu_Q_yy*v->ucu_q_z;
+    const real ucu_M_ta_t_14 = ucu_M_ta_t_7 + ucu_M_ta_t_9 + axis_x_ucu_axes4_y*ucu_M_ta_t_2 +
+        axis_z_ucu_axes4_y*ucu_M_ta_t_5;
+    const real ucu_M_ta_t_15 = ucu_Q_yy*v->ucu_q_x - axis_x_ucu_axes4_z*ucu_M_ta_t_2 -
+        axis_z_ucu_axes4_z*ucu_M_ta_t_5 - ucu_Q_xy*v->ucu_q_y;
+    const real ucu_M_ta_t_16 = ucu_Q_zz*v->ucu_q_y - axis_x_ucu_axes4_x*ucu_M_ta_t_3 -
+        axis_z_ucu_axes4_x*ucu_M_ta_t_6 - ucu_Q_yz*v->ucu_q_z;
+    const real ucu_M_ta_t_17 = ucu_Q_xz*v->ucu_q_z - axis_x_ucu_axes4_y*ucu_M_ta_t_3 -
+        axis_z_ucu_axes4_y*ucu_M_ta_t_6 - ucu_Q_zz*v->ucu_q_x;
+    const real ucu_M_ta_t_18 = ucu_M_ta_t_9 - ucu_M_ta_t_8 - axis_x_ucu_axes4_z*ucu_M_ta_t_3 -
+        axis_z_ucu_axes4_z*ucu_M_ta_t_6;
+    /* (M_aa) rotational block of M */
+    const real ucu_M_aa_t = ucu_M_ta_t_16*v->ucu_q_y + ucu_d_G_m_xz*v->ucu_q_y +
+        ucu_n_m1_x*(axis_x_ucu_axes4_x*ucu_dalpha_G_m1_in_axes4_x -
+        axis_z_ucu_axes4_x*ucu_d_Gamma_4_t) - ucu_M_ta_t_13*v->ucu_q_z -
+        ucu_d_G_m_xy*v->ucu_q_z;
+    const real ucu_M_aa_t_2 = ucu_M_ta_t_14*v->ucu_q_z + ucu_M_ta_t_17*v->ucu_q_y +
+        ucu_d_G_m_xx*v->ucu_q_z + ucu_dalpha_G_m1_y*ucu_n_m1_x - ucu_d_G_m_xz*v->ucu_q_x;
+    const real ucu_M_aa_t_3 = ucu_M_ta_t_18*v->ucu_q_y + ucu_d_G_m_xy*v->ucu_q_x +
+        ucu_dalpha_G_m1_z*ucu_n_m1_x - ucu_M_ta_t_15*v->ucu_q_z - ucu_d_G_m_xx*v->ucu_q_y;
+    const real ucu_M_aa_t_4 = ucu_M_ta_t_11*v->ucu_q_z + ucu_d_G_m_yx*v->ucu_q_z +
+        ucu_dalpha_G_m1_y*ucu_n_m1_y - ucu_M_ta_t_17*v->ucu_q_x -
+        ucu_d_G_m1_z*ucu_n_m1_y*v->ucu_q_x;
+    const real ucu_M_aa_t_5 = ucu_M_ta_t_12*v->ucu_q_z + ucu_dalpha_G_m1_z*ucu_n_m1_y +
+        ucu_d_G_m1_y*ucu_n_m1_y*v->ucu_q_x - ucu_M_ta_t_18*v->ucu_q_x -
+        ucu_d_G_m_yx*v->ucu_q_y;
+    const real ucu_M_aa_t_6 = ucu_M_ta_t_15*v->ucu_q_x + ucu_dalpha_G_m1_z*ucu_n_m1_z +
+        ucu_d_G_m1_y*ucu_n_m1_z*v->ucu_q_x - ucu_M_ta_t_12*v->ucu_q_y -
+        ucu_d_G_m1_x*ucu_n_m1_z*v->ucu_q_y;
+    v->ucu_h_4_t_7 = ucu_h_4_t_7;
+    v->ucu_h_4_t_9 = ucu_h_4_t_9;
+    v->ucu_h_4_t_10 = ucu_h_4_t_10;
+    v->ucu_h_4_t_11 = ucu_h_4_t_11;
+    v->ucu_h_4_t_12 = ucu_h_4_t_12;
+    v->inv_ucu_h_4_t_12 = inv_ucu_h_4_t_12;
+    v->ucu_h_4_t_13 = ucu_h_4_t_13;
+    v->ucu_e_1_in_axes4_z = ucu_e_1_in_axes4_z;
+    v->ucu_end_p1_in_turn4_x = ucu_end_p1_in_turn4_x;
+    v->ucu_h_4_t_18 = ucu_h_4_t_18;
+    v->ucu_h_4_t_19 = ucu_h_4_t_19;
+    v->ucu_e_2_in_axes4_x = ucu_e_2_in_axes4_x;
+    v->ucu_e_2_in_axes4_y = ucu_e_2_in_axes4_y;
+    v->ucu_v_1_in_axes2_z = ucu_v_1_in_axes2_z;
+    v->ucu_v_1_t_2 = ucu_v_1_t_2;
+    v->ucu_n_m1_in_axes4_x = ucu_n_m1_in_axes4_x;
+    v->axis_z_ucu_axes4_x = axis_z_ucu_axes4_x;
+    v->axis_z_ucu_axes4_y = axis_z_ucu_axes4_y;
+    v->axis_z_ucu_axes4_z = axis_z_ucu_axes4_z;
+    v->axis_y_ucu_axes4_x = axis_y_ucu_axes4_x;
+    v->axis_y_ucu_axes4_y = axis_y_ucu_axes4_y;
+    v->axis_y_ucu_axes4_z = axis_y_ucu_axes4_z;
+    v->axis_x_ucu_axes4_x = axis_x_ucu_axes4_x;
+    v->axis_x_ucu_axes4_y = axis_x_ucu_axes4_y;
+    v->axis_x_ucu_axes4_z = axis_x_ucu_axes4_z;
+    v->ucu_end_p1_in_axes4_x = ucu_end_p1_in_axes4_x;
+    v->ucu_n_m1_in_axes2_z = ucu_n_m1_in_axes2_z;
+    v->ucu_n_m1_x = ucu_n_m1_x;
+    v->ucu_n_m1_y = ucu_n_m1_y;
+    v->ucu_n_m1_z = ucu_n_m1_z;
+    v->inv_ucu_v_1_in_axes2_z = inv_ucu_v_1_in_axes2_z;
+    v->ucu_w_4_t = ucu_w_4_t;
+    v->inv_ucu_end_p1_in_axes4_x = inv_ucu_end_p1_in_axes4_x;
+    v->ucu_Q_xx = ucu_Q_xx;
+    v->ucu_Q_xy = ucu_Q_xy;
+    v->ucu_Q_xz = ucu_Q_xz;
+    v->ucu_Q_yy = ucu_Q_yy;
+    v->ucu_Q_yz = ucu_Q_yz;
+    v->ucu_Q_zz = ucu_Q_zz;
+    v->ucu_M_ta_t_10 = ucu_M_ta_t_10;
+    v->ucu_M_ta_t_11 = ucu_M_ta_t_11;
+    v->ucu_M_ta_t_12 = ucu_M_ta_t_12;
+    v->ucu_M_ta_t_13 = ucu_M_ta_t_13;
+    v->ucu_M_ta_t_14 = ucu_M_ta_t_14;
+    v->ucu_M_ta_t_15 = ucu_M_ta_t_15;
+    v->ucu_M_ta_t_16 = ucu_M_ta_t_16;
+    v->ucu_M_ta_t_17 = ucu_M_ta_t_17;
+    v->ucu_M_ta_t_18 = ucu_M_ta_t_18;
+    v->ucu_M_aa_t = ucu_M_aa_t;
+    v->ucu_M_aa_t_2 = ucu_M_aa_t_2;
+    v->ucu_M_aa_t_3 = ucu_M_aa_t_3;
+    v->ucu_M_aa_t_4 = ucu_M_aa_t_4;
+    v->ucu_M_aa_t_5 = ucu_M_aa_t_5;
+    v->ucu_M_aa_t_6 = ucu_M_aa_t_6;
+}
+
+INLINE void stage_ucu_inverse_kinematics_potential(const prepared *m, size_t w, size_t i, size_t
+    j, const real *s, const real *X, values_ucu *v)
+{
+    /* (ucu-S) from the base point to the connection point */
+    const real R_xx = s[0*w + j];
+    const real R_xy = s[1*w + j];
+    const real R_xz = s[2*w + j];
+    const real t_x = X[0*w + j];
+    const real ucu_base_point_x = m->ucu_base_point_x[i];
+    const real ucu_platform_point_x = m->ucu_platform_point_x[i];
+    const real ucu_platform_point_y = m->ucu_platform_point_y[i];
+    const real ucu_platform_point_z = m->ucu_platform_point_z[i];
+    const real ucu_S_x = t_x + R_xx*ucu_platform_point_x + R_xy*ucu_platform_point_y +
+        R_xz*ucu_platform_point_z - ucu_base_point_x;
+    const real R_yx = s[3*w + j];
+    const real R_yy = s[4*w + j];
+    const real R_yz = s[5*w + j];
+    const real t_y = X[1*w + j];
+    const real ucu_base_point_y = m->ucu_base_point_y[i];
+    const real ucu_S_y = t_y + R_yx*ucu_platform_point_x + R_yy*ucu_platform_point_y +
+        R_yz*ucu_platform_point_z - ucu_base_point_y;
+    const real R_zx = s[6*w + j];
+    const real R_zy = s[7*w + j];
+    const real R_zz = s[8*w + j];
+    const real t_z = X[2*w + j];
+    const real ucu_base_point_z = m->ucu_base_point_z[i];
+    const real ucu_S_z = t_z + R_zx*ucu_platform_point_x + R_zy*ucu_platform_point_y +
+        R_zz*ucu_platform_point_z - ucu_base_point_z;
+    const real ucu_base_frame_xx = m->ucu_base_frame_xx[i];
+    const real ucu_base_frame_yx = m->ucu_base_frame_yx[i];
+    const real ucu_base_frame_zx = m->ucu_base_frame_zx[i];
+    const real ucu_S_in_turn1_x = ucu_S_x*ucu_base_frame_xx + ucu_S_y*ucu_base_frame_yx +
+        ucu_S_z*ucu_base_frame_zx;
+    const real ucu_base_frame_xy = m->ucu_base_frame_xy[i];
+    const real ucu_base_frame_yy = m->ucu_base_frame_yy[i];
+    const real ucu_base_frame_zy = m->ucu_base_frame_zy[i];
+    const real ucu_S_in_turn1_y = ucu_S_x*ucu_base_frame_xy + ucu_S_y*ucu_base_frame_yy +
+        ucu_S_z*ucu_base_frame_zy;
+    const real ucu_base_frame_xz = m->ucu_base_frame_xz[i];
+    const real ucu_base_frame_yz = m->ucu_base_frame_yz[i];
+    const real ucu_base_frame_zz = m->ucu_base_frame_zz[i];
+    const real ucu_S_in_turn1_z = ucu_S_x*ucu_base_frame_xz + ucu_S_y*ucu_base_frame_yz +
+        ucu_S_z*ucu_base_frame_zz;
+    /* (ucu-root_1) amplitude, the length across axis 1, with the sign of the branch */
+    const real ucu_root_1_t = ucu_S_in_turn1_x*ucu_S_in_turn1_x +
+        ucu_S_in_turn1_y*ucu_S_in_turn1_y;
+    const real ucu_branch_1 = m->ucu_branch_1[i];
+    const real ucu_root_1 = ucu_branch_1*root(ucu_root_1_t);
+    /* (ucu-c_1) cosine of the angle of joint 1 from its reference direction */
+    const real inv_ucu_root_1 = 1/ucu_root_1;
+    const real ucu_c_1 = inv_ucu_root_1*ucu_S_in_turn1_x;
+    /* (ucu-s_1) sine of the angle of joint 1 from its reference direction */
+    const real ucu_s_1 = inv_ucu_root_1*ucu_S_in_turn1_y;
+    /* (ucu-root_2) amplitude, the length across axis 2, with the sign of the branch */
+    const real ucu_root_2_t = ucu_S_in_turn1_z*ucu_S_in_turn1_z + ucu_root_1_t;
+    const real ucu_branch_2 = m->ucu_branch_2[i];
+    const real ucu_root_2 = ucu_branch_2*root(ucu_root_2_t);
+    /* (ucu-c_2) cosine of the angle of joint 2 from its reference direction */
+    const real inv_ucu_root_2 = 1/ucu_root_2;
+    const real ucu_c_2 = inv_ucu_root_2*ucu_root_1;
+    /* (ucu-q_2) displacement of joint 2 */
+    const real ucu_e_1_in_axes4_z = inv_ucu_root_2*ucu_S_in_turn1_z;
+    /* (ucu-root_4) amplitude, the length across axis 4, with the sign of the branch */
+    const real ucu_end_p1_in_turn4_x = ucu_c_1*v->ucu_root_4_t_2 - v->ucu_root_4_t*ucu_s_1;
+    const real ucu_root_4_t_4 = ucu_e_1_in_axes4_z*(ucu_c_1*v->ucu_root_4_t +
+        v->ucu_root_4_t_2*ucu_s_1) - ucu_c_2*v->ucu_root_4_t_3;
+    const real ucu_root_4_t_5 = ucu_end_p1_in_turn4_x*ucu_end_p1_in_turn4_x +
+        ucu_root_4_t_4*ucu_root_4_t_4;
+    const real ucu_branch_4 = m->ucu_branch_4[i];
+    const real ucu_root_4 = ucu_branch_4*root(ucu_root_4_t_5);
+    /* (ucu-q_4) displacement of joint 4 */
+    const real inv_ucu_root_4 = 1/ucu_root_4;
+    v->ucu_root_1_t = ucu_root_1_t;
+    v->ucu_c_1 = ucu_c_1;
+    v->ucu_s_1 = ucu_s_1;
+    v->ucu_root_2_t = ucu_root_2_t;
+    v->ucu_root_2 = ucu_root_2;
+    v->ucu_c_2 = ucu_c_2;
+    v->ucu_e_1_in_axes4_z = ucu_e_1_in_axes4_z;
+    v->ucu_end_p1_in_turn4_x = ucu_end_p1_in_turn4_x;
+    v->ucu_root_4_t_4 = ucu_root_4_t_4;
+    v->ucu_root_4_t_5 = ucu_root_4_t_5;
+    v->inv_ucu_root_4 = inv_ucu_root_4;
+}
+
+INLINE void stage_ucu_legs_required(const prepared *m, size_t i, values_ucu *v)
+{
+    /* (ucu-W_4) centripetal tensor of link 4 */
+    const real ucu_W_4_in_axes4_xz = v->ucu_omega_2_in_axes4_x*v->ucu_omega_4_in_axes4_z;
+    const real ucu_W_4_in_axes4_yz = v->ucu_omega_2_in_axes4_y*v->ucu_omega_4_in_axes4_z;
+    /* (ucu-S_ddot) acceleration of the connection point */
+    const real ucu_S_ddot_in_axes4_x = v->axis_x_ucu_axes4_x*v->ucu_S_ddot_x +
+        v->axis_x_ucu_axes4_y*v->ucu_S_ddot_y + v->axis_x_ucu_axes4_z*v->ucu_S_ddot_z;
+    const real ucu_S_ddot_in_axes4_y = v->axis_y_ucu_axes4_x*v->ucu_S_ddot_x +
+        v->axis_y_ucu_axes4_y*v->ucu_S_ddot_y + v->axis_y_ucu_axes4_z*v->ucu_S_ddot_z;
+    /* (ucu-zeta_4) angular acceleration of link 4 from the turning of axis 4 */
+    const real ucu_zeta_4_in_axes4_x = v->ucu_omega_2_in_axes4_y*v->ucu_qd_4;
+    /* (ucu-beta_4) angular acceleration of link 4 at zero joint accelerations */
+    const real ucu_beta_4_in_axes4_x = ucu_zeta_4_in_axes4_x - v->ucu_zeta_2_t;
+    /* (ucu-rel) acceleration of the connection point left to the joint accelerations */
+    const real ucu_rel_in_axes4_x = ucu_S_ddot_in_axes4_x - v->ucu_bias_in_axes4_x;
+    const real ucu_rel_in_axes4_y = ucu_S_ddot_in_axes4_y - v->ucu_bias_in_axes4_y;
+    /* (ucu-nu_1) bias of the angular acceleration along moment direction 1 */
+    const real ucu_nu_1_t = ucu_beta_4_in_axes4_x*v->ucu_n_m1_in_axes4_x -
+        v->ucu_W_2_in_axes2_yz*v->ucu_end_p1_in_axes4_x;
+    const real ucu_nu_1 = -ucu_nu_1_t - v->ucu_nu_1_t_2;
+    /* (ucu-etad_1) acceleration with which the joints turn along moment direction 1 */
+    const real ucu_etad_1 = v->ucu_etad_1_t + ucu_nu_1;
+    /* (ucu-qdd_1) acceleration of joint 1 */
+    const real ucu_qdd_1 = v->inv_ucu_v_1_in_axes2_z*(v->ucu_c_4*ucu_rel_in_axes4_x +
+        v->ucu_e_2_in_axes4_y*ucu_rel_in_axes4_y);
+    /* (ucu-qdd_2) acceleration of joint 2 */
+    const real ucu_qdd_2 = v->inv_ucu_root_2*(v->ucu_e_2_in_axes4_y*ucu_rel_in_axes4_x +
+        ucu_qdd_1*v->ucu_v_1_t_2 - v->ucu_c_4*ucu_rel_in_axes4_y);
+    /* (ucu-alpha_1) angular acceleration of link 1 */
+    const real ucu_alpha_1_in_axes2_x = v->ucu_e_1_in_axes4_z*ucu_qdd_1;
+    const real ucu_alpha_1_in_axes2_y = -v->ucu_c_2*ucu_qdd_1;
+    /* (ucu-alpha_2) angular acceleration of link 2 */
+    const real ucu_alpha_2_in_axes2_x = v->ucu_W_2_in_axes2_yz + ucu_alpha_1_in_axes2_x;
+    const real ucu_alpha_2_in_axes2_y = ucu_alpha_1_in_axes2_y - v->ucu_W_2_in_axes2_xz;
+    /* (ucu-B_2) acceleration tensor of link 2 */
+    const real ucu_B_2_in_axes2_xy = v->ucu_W_2_in_axes2_xy - ucu_qdd_2;
+    const real ucu_B_2_in_axes2_yx = v->ucu_W_2_in_axes2_xy + ucu_qdd_2;
+    const real ucu_B_2_in_axes2_zx = v->ucu_W_2_in_axes2_xz - ucu_alpha_2_in_axes2_y;
+    const real ucu_B_2_in_axes2_zy = v->ucu_W_2_in_axes2_yz + ucu_alpha_2_in_axes2_x;
+    /* (ucu-alpha_4) angular acceleration of link 4 */
+    const real ucu_alpha_4_in_axes4_x = ucu_zeta_4_in_axes4_x +
+        ucu_alpha_2_in_axes2_y*v->ucu_e_2_in_axes4_y + v->ucu_c_4*ucu_qdd_2;
+    const real ucu_alpha_4_in_axes4_y = v->ucu_e_2_in_axes4_y*ucu_qdd_2 -
+        ucu_alpha_2_in_axes2_y*v->ucu_c_4 - v->ucu_omega_2_in_axes4_x*v->ucu_qd_4;
+    const real ucu_alpha_4_in_axes4_z = ucu_alpha_2_in_axes2_x -
+        v->inv_ucu_end_p1_in_axes4_x*(ucu_etad_1 + v->ucu_qd_4_t_4*ucu_qdd_1 -
+        v->ucu_n_m1_in_axes2_z*ucu_qdd_2);
+    /* (ucu-B_4) acceleration tensor of link 4 */
+    const real ucu_B_4_in_axes4_xy = v->ucu_W_2_in_axes4_xy - ucu_alpha_4_in_axes4_z;
+    const real ucu_B_4_in_axes4_xz = ucu_W_4_in_axes4_xz + ucu_alpha_4_in_axes4_y;
+    const real ucu_B_4_in_axes4_yx = v->ucu_W_2_in_axes4_xy + ucu_alpha_4_in_axes4_z;
+    const real ucu_B_4_in_axes4_yz = ucu_W_4_in_axes4_yz - ucu_alpha_4_in_axes4_x;
+    const real ucu_B_4_in_axes4_zx = ucu_W_4_in_axes4_xz - ucu_alpha_4_in_axes4_y;
+    const real ucu_B_4_in_axes4_zy = ucu_W_4_in_axes4_yz + ucu_alpha_4_in_axes4_x;
+    /* (ucu-acc_4) acceleration of the reference point of link 4, less gravity */
+    const real gravity_x = m->gravity_x;
+    const real gravity_y = m->gravity_y;
+    const real gravity_z = m->gravity_z;
+    const real ucu_acc_4_in_axes4_x = ucu_S_ddot_in_axes4_x - v->axis_x_ucu_axes4_x*gravity_x
+        - v->axis_x_ucu_axes4_y*gravity_y - v->axis_x_ucu_axes4_z*gravity_z;
+    const real ucu_acc_4_in_axes4_y = ucu_S_ddot_in_axes4_y - v->axis_y_ucu_axes4_x*gravity_x
+        - v->axis_y_ucu_axes4_y*gravity_y - v->axis_y_ucu_axes4_z*gravity_z;
+    const real ucu_acc_4_in_axes4_z = v->ucu_S_ddot_x*v->ucu_w_3_x +
+        v->ucu_S_ddot_y*v->ucu_w_3_y + v->ucu_S_ddot_z*v->ucu_w_3_z - gravity_x*v->ucu_w_3_x -
+        gravity_y*v->ucu_w_3_y - gravity_z*v->ucu_w_3_z;
+    /* (ucu-mu_2) inertia moment of the links that turn with link 2, about their reference points */
+    const real ucu_mu_2_t_4 = v->ucu_omega_1_in_axes2_x*v->ucu_omega_1_in_axes2_x;
+    const real ucu_mu_2_t_5 = v->ucu_omega_1_in_axes2_y*v->ucu_omega_1_in_axes2_y;
+    const real ucu_mu_2_t_6 = v->ucu_qd_2*v->ucu_qd_2;
+    const real ucu_mu_2_t = m->ucu_mu_2_t[i];
+    const real ucu_mu_2_t_2 = m->ucu_mu_2_t_2[i];
+    const real ucu_mu_2_t_7 = v->ucu_c_1*ucu_mu_2_t + ucu_mu_2_t_2*v->ucu_s_1;
+    const real ucu_mu_2_t_3 = m->ucu_mu_2_t_3[i];
+    const real ucu_g_in_axes2_x = v->ucu_c_2*ucu_mu_2_t_7 +
+        v->ucu_e_1_in_axes4_z*ucu_mu_2_t_3;
+    const real ucu_g_in_axes2_y = v->ucu_e_1_in_axes4_z*ucu_mu_2_t_7 -
+        v->ucu_c_2*ucu_mu_2_t_3;
+    const real ucu_J_2_in_spec2_xy = m->ucu_J_2_in_spec2_xy[i];
+    const real ucu_J_2_in_spec2_xz = m->ucu_J_2_in_spec2_xz[i];
+    const real ucu_J_2_in_spec2_yz = m->ucu_J_2_in_spec2_yz[i];
+    const real ucu_Sigma_2_in_axes2_yy = m->ucu_Sigma_2_in_axes2_yy[i];
+    const real ucu_Sigma_2_in_axes2_zz = m->ucu_Sigma_2_in_axes2_zz[i];
+    const real ucu_h_2_in_spec2_y = m->ucu_h_2_in_spec2_y[i];
+    const real ucu_h_2_in_spec2_z = m->ucu_h_2_in_spec2_z[i];
+    const real ucu_mu_2_in_axes2_x = ucu_B_2_in_axes2_yx*ucu_J_2_in_spec2_xy +
+        ucu_B_2_in_axes2_zx*ucu_J_2_in_spec2_xz + ucu_B_2_in_axes2_zy*ucu_Sigma_2_in_axes2_yy
+        + ucu_Sigma_2_in_axes2_zz*ucu_alpha_1_in_axes2_x + ucu_g_in_axes2_y*ucu_h_2_in_spec2_y
+        + v->ucu_g_in_axes2_z*ucu_h_2_in_spec2_z - ucu_J_2_in_spec2_yz*(ucu_mu_2_t_5 -
+        ucu_mu_2_t_6);
+    const real ucu_Sigma_2_in_axes2_xx = m->ucu_Sigma_2_in_axes2_xx[i];
+    const real ucu_h_2_in_spec2_x = m->ucu_h_2_in_spec2_x[i];
+    const real ucu_mu_2_in_axes2_y = ucu_B_2_in_axes2_xy*ucu_J_2_in_spec2_yz +
+        ucu_Sigma_2_in_axes2_zz*ucu_alpha_1_in_axes2_y +
+        v->ucu_g_in_axes2_z*ucu_h_2_in_spec2_x - ucu_B_2_in_axes2_zx*ucu_Sigma_2_in_axes2_xx -
+        ucu_B_2_in_axes2_zy*ucu_J_2_in_spec2_xz - ucu_J_2_in_spec2_xy*(ucu_mu_2_t_4 -
+        ucu_mu_2_t_6) - ucu_g_in_axes2_x*ucu_h_2_in_spec2_y;
+    const real ucu_mu_2_in_axes2_z = ucu_B_2_in_axes2_yx*ucu_Sigma_2_in_axes2_xx +
+        ucu_J_2_in_spec2_xy*ucu_alpha_1_in_axes2_x -
+        ucu_B_2_in_axes2_xy*ucu_Sigma_2_in_axes2_yy - ucu_J_2_in_spec2_xz*(ucu_mu_2_t_4 -
+        ucu_mu_2_t_5) - ucu_J_2_in_spec2_yz*ucu_alpha_1_in_axes2_y -
+        ucu_g_in_axes2_x*ucu_h_2_in_spec2_z - ucu_g_in_axes2_y*ucu_h_2_in_spec2_x;
+    v->ucu_B_4_in_axes4_xy = ucu_B_4_in_axes4_xy;
+    v->ucu_B_4_in_axes4_xz = ucu_B_4_in_axes4_xz;
+    v->ucu_B_4_in_axes4_yx = ucu_B_4_in_axes4_yx;
+    v->ucu_B_4_in_axes4_yz = ucu_B_4_in_axes4_yz;
+    v->ucu_B_4_in_axes4_zx = ucu_B_4_in_axes4_zx;
+    v->ucu_B_4_in_axes4_zy = ucu_B_4_in_axes4_zy;
+    v->ucu_acc_4_in_axes4_x = ucu_acc_4_in_axes4_x;
+    v->ucu_acc_4_in_axes4_y = ucu_acc_4_in_axes4_y;
+    v->ucu_acc_4_in_axes4_z = ucu_acc_4_in_axes4_z;
+    v->ucu_mu_2_in_axes2_x = ucu_mu_2_in_axes2_x;
+    v->ucu_mu_2_in_axes2_y = ucu_mu_2_in_axes2_y;
+    v->ucu_mu_2_in_axes2_z = ucu_mu_2_in_axes2_z;
+}
+
 /* ---- functions of the state: M, Z, H and the like ---- */
 
 /* ---- dynamics ---- */
@@ -1342,373 +2541,75 @@ INLINE void dynamics_before(const prepared *m, size_t w, const real *X, const re
     verdict *t)
 {
     for (size_t k = 0; k < w; ++k) {
-        /* X: named entries */
-        const real X_0 = X[0*w + k];
-        const real t_x = X_0;
-        const real X_1 = X[1*w + k];
-        const real t_y = X_1;
-        const real X_2 = X[2*w + k];
-        const real t_z = X_2;
-        const real X_3 = X[3*w + k];
-        const real X_4 = X[4*w + k];
-        const real X_5 = X[5*w + k];
-        const real X_6 = X[6*w + k];
-        const real quaternion_norm2 = X_3*X_3 + X_4*X_4 + X_5*X_5 + X_6*X_6;
-        const real quaternion_scale = 2/quaternion_norm2;
-        const real quaternion_sx = X_3*quaternion_scale;
-        const real quaternion_sy = X_4*quaternion_scale;
-        const real quaternion_sz = X_5*quaternion_scale;
-        const real quaternion_wx = X_6*quaternion_sx;
-        const real quaternion_wy = X_6*quaternion_sy;
-        const real quaternion_wz = X_6*quaternion_sz;
-        const real quaternion_xx = X_3*quaternion_sx;
-        const real quaternion_xy = X_3*quaternion_sy;
-        const real quaternion_xz = X_3*quaternion_sz;
-        const real quaternion_yy = X_4*quaternion_sy;
-        const real quaternion_yz = X_4*quaternion_sz;
-        const real quaternion_zz = X_5*quaternion_sz;
-        const real R_xx = 1 - quaternion_yy - quaternion_zz;
-        const real R_xy = quaternion_xy - quaternion_wz;
-        const real R_xz = quaternion_wy + quaternion_xz;
-        const real R_yx = quaternion_wz + quaternion_xy;
-        const real R_yy = 1 - quaternion_xx - quaternion_zz;
-        const real R_yz = quaternion_yz - quaternion_wx;
-        const real R_zx = quaternion_xz - quaternion_wy;
-        const real R_zy = quaternion_wx + quaternion_yz;
-        const real R_zz = 1 - quaternion_xx - quaternion_yy;
-        /* V: named entries */
-        const real V_0 = V[0*w + k];
-        const real t_dot_x = V_0;
-        const real V_1 = V[1*w + k];
-        const real t_dot_y = V_1;
-        const real V_2 = V[2*w + k];
-        const real t_dot_z = V_2;
-        const real V_3 = V[3*w + k];
-        const real omega_x = V_3;
-        const real V_4 = V[4*w + k];
-        const real omega_y = V_4;
-        const real V_5 = V[5*w + k];
-        const real omega_z = V_5;
-        /* (h_star) first moment about the platform origin */
-        const real h_star_in_platform_x = m->h_star_in_platform_x;
-        const real h_star_in_platform_y = m->h_star_in_platform_y;
-        const real h_star_in_platform_z = m->h_star_in_platform_z;
-        const real h_star_x = R_xx*h_star_in_platform_x + R_xy*h_star_in_platform_y +
-            R_xz*h_star_in_platform_z;
-        const real h_star_y = R_yx*h_star_in_platform_x + R_yy*h_star_in_platform_y +
-            R_yz*h_star_in_platform_z;
-        const real h_star_z = R_zx*h_star_in_platform_x + R_zy*h_star_in_platform_y +
-            R_zz*h_star_in_platform_z;
-        /* (J_star) inertia tensor about the platform origin */
-        const real J_star_in_platform_xy = m->J_star_in_platform_xy;
-        const real J_star_in_platform_yz = m->J_star_in_platform_yz;
-        const real J_star_t_12 = m->J_star_t_12;
-        const real J_star_t = J_star_in_platform_xy*R_xx + J_star_in_platform_yz*R_xz -
-            J_star_t_12*R_xy;
-        const real J_star_t_2 = J_star_in_platform_xy*R_yx + J_star_in_platform_yz*R_yz -
-            J_star_t_12*R_yy;
-        const real J_star_t_3 = J_star_in_platform_xy*R_zx + J_star_in_platform_yz*R_zz -
-            J_star_t_12*R_zy;
-        const real J_star_in_platform_xz = m->J_star_in_platform_xz;
-        const real J_star_t_14 = m->J_star_t_14;
-        const real J_star_t_4 = J_star_t_14*R_xz - J_star_in_platform_xz*R_xx;
-        const real J_star_t_5 = J_star_t_14*R_yz - J_star_in_platform_xz*R_yx;
-        const real J_star_t_6 = J_star_t_14*R_zz - J_star_in_platform_xz*R_zx;
-        const real J_star_t_7 = J_star_t*R_xy - J_star_t_4*R_xz;
-        const real J_star_in_platform_xx = m->J_star_in_platform_xx;
-        const real J_star_xx = J_star_in_platform_xx + 2*J_star_t_7;
-        const real J_star_xy = J_star_t*R_yy + J_star_t_2*R_xy - J_star_t_4*R_yz -
-            J_star_t_5*R_xz;
-        const real J_star_xz = J_star_t*R_zy + J_star_t_3*R_xy - J_star_t_4*R_zz -
-            J_star_t_6*R_xz;
-        const real J_star_t_8 = J_star_t_2*R_yy - J_star_t_5*R_yz;
-        const real J_star_yy = J_star_in_platform_xx + 2*J_star_t_8;
-        const real J_star_yz = J_star_t_2*R_zy + J_star_t_3*R_yy - J_star_t_5*R_zz -
-            J_star_t_6*R_yz;
-        const real J_star_t_9 = J_star_t_3*R_zy - J_star_t_6*R_zz;
-        const real J_star_zz = J_star_in_platform_xx + 2*J_star_t_9;
-        /* (Z_p) centripetal force and weight of the platform */
-        const real Z_p_t_4 = h_star_z*omega_y - h_star_y*omega_z;
-        const real Z_p_t_5 = h_star_x*omega_z - h_star_z*omega_x;
-        const real Z_p_t_6 = h_star_y*omega_x - h_star_x*omega_y;
-        const real Z_p_t = m->Z_p_t;
-        const real Z_p_x = Z_p_t_6*omega_y - Z_p_t - Z_p_t_5*omega_z;
-        const real Z_p_t_2 = m->Z_p_t_2;
-        const real Z_p_y = Z_p_t_4*omega_z - Z_p_t_2 - Z_p_t_6*omega_x;
-        const real Z_p_t_3 = m->Z_p_t_3;
-        const real Z_p_z = Z_p_t_5*omega_x - Z_p_t_3 - Z_p_t_4*omega_y;
-        /* (Z_q) gyroscopic moment and moment of the weight of the platform */
-        const real gravity_x = m->gravity_x;
-        const real gravity_y = m->gravity_y;
-        const real gravity_z = m->gravity_z;
-        const real g_in_platform_x = R_xx*gravity_x + R_yx*gravity_y + R_zx*gravity_z;
-        const real g_in_platform_y = R_xy*gravity_x + R_yy*gravity_y + R_zy*gravity_z;
-        const real g_in_platform_z = R_xz*gravity_x + R_yz*gravity_y + R_zz*gravity_z;
-        const real omega_in_platform_x = R_xx*omega_x + R_yx*omega_y + R_zx*omega_z;
-        const real omega_in_platform_y = R_xy*omega_x + R_yy*omega_y + R_zy*omega_z;
-        const real omega_in_platform_z = R_xz*omega_x + R_yz*omega_y + R_zz*omega_z;
-        const real Z_q_t = J_star_in_platform_xx*omega_in_platform_x +
-            J_star_in_platform_xy*omega_in_platform_y + J_star_in_platform_xz*omega_in_platform_z;
-        const real J_star_in_platform_yy = m->J_star_in_platform_yy;
-        const real Z_q_t_2 = J_star_in_platform_xy*omega_in_platform_x +
-            J_star_in_platform_yy*omega_in_platform_y + J_star_in_platform_yz*omega_in_platform_z;
-        const real J_star_in_platform_zz = m->J_star_in_platform_zz;
-        const real Z_q_t_3 = J_star_in_platform_xz*omega_in_platform_x +
-            J_star_in_platform_yz*omega_in_platform_y + J_star_in_platform_zz*omega_in_platform_z;
-        const real Z_q_in_platform_x = Z_q_t_3*omega_in_platform_y +
-            g_in_platform_y*h_star_in_platform_z - Z_q_t_2*omega_in_platform_z -
-            g_in_platform_z*h_star_in_platform_y;
-        const real Z_q_in_platform_y = Z_q_t*omega_in_platform_z +
-            g_in_platform_z*h_star_in_platform_x - Z_q_t_3*omega_in_platform_x -
-            g_in_platform_x*h_star_in_platform_z;
-        const real Z_q_in_platform_z = Z_q_t_2*omega_in_platform_x +
-            g_in_platform_x*h_star_in_platform_y - Z_q_t*omega_in_platform_y -
-            g_in_platform_y*h_star_in_platform_x;
-        const real Z_q_x = R_xx*Z_q_in_platform_x + R_xy*Z_q_in_platform_y +
-            R_xz*Z_q_in_platform_z;
-        const real Z_q_y = R_yx*Z_q_in_platform_x + R_yy*Z_q_in_platform_y +
-            R_yz*Z_q_in_platform_z;
-        const real Z_q_z = R_zx*Z_q_in_platform_x + R_zy*Z_q_in_platform_y +
-            R_zz*Z_q_in_platform_z;
-        s[0*w + k] = t_x;
-        s[1*w + k] = t_y;
-        s[2*w + k] = t_z;
-        s[3*w + k] = R_xx;
-        s[4*w + k] = R_xy;
-        s[5*w + k] = R_xz;
-        s[6*w + k] = R_yx;
-        s[7*w + k] = R_yy;
-        s[8*w + k] = R_yz;
-        s[9*w + k] = R_zx;
-        s[10*w + k] = R_zy;
-        s[11*w + k] = R_zz;
-        s[12*w + k] = t_dot_x;
-        s[13*w + k] = t_dot_y;
-        s[14*w + k] = t_dot_z;
-        s[15*w + k] = omega_x;
-        s[16*w + k] = omega_y;
-        s[17*w + k] = omega_z;
-        s[18*w + k] = h_star_x;
-        s[19*w + k] = h_star_y;
-        s[20*w + k] = h_star_z;
-        s[21*w + k] = J_star_xx;
-        s[22*w + k] = J_star_xy;
-        s[23*w + k] = J_star_xz;
-        s[24*w + k] = J_star_yy;
-        s[25*w + k] = J_star_yz;
-        s[26*w + k] = J_star_zz;
-        s[27*w + k] = Z_p_x;
-        s[28*w + k] = Z_p_y;
-        s[29*w + k] = Z_p_z;
-        s[30*w + k] = Z_q_x;
-        s[31*w + k] = Z_q_y;
-        s[32*w + k] = Z_q_z;
-        t->invalid[k] += UNLESS(is_finite(quaternion_scale)) + UNLESS(quaternion_scale > 0);
+        values v;
+        stage_X(m, w, k, X, &v);
+        stage_V_X(w, k, V, &v);
+        stage_M_dynamics(m, &v);
+        stage_Z_dynamics(m, w, k, V, &v);
+        s[0*w + k] = v.R_xx;
+        s[1*w + k] = v.R_xy;
+        s[2*w + k] = v.R_xz;
+        s[3*w + k] = v.R_yx;
+        s[4*w + k] = v.R_yy;
+        s[5*w + k] = v.R_yz;
+        s[6*w + k] = v.R_zx;
+        s[7*w + k] = v.R_zy;
+        s[8*w + k] = v.R_zz;
+        s[9*w + k] = v.h_star_x;
+        s[10*w + k] = v.h_star_y;
+        s[11*w + k] = v.h_star_z;
+        s[12*w + k] = v.J_star_xx;
+        s[13*w + k] = v.J_star_xy;
+        s[14*w + k] = v.J_star_xz;
+        s[15*w + k] = v.J_star_yy;
+        s[16*w + k] = v.J_star_yz;
+        s[17*w + k] = v.J_star_zz;
+        s[18*w + k] = v.Z_p_x;
+        s[19*w + k] = v.Z_p_y;
+        s[20*w + k] = v.Z_p_z;
+        s[21*w + k] = v.Z_q_x;
+        s[22*w + k] = v.Z_q_y;
+        s[23*w + k] = v.Z_q_z;
+        t->invalid[k] += UNLESS(is_finite(v.quaternion_scale)) + UNLESS(v.quaternion_scale > 0);
     }
 }
 
 INLINE void dynamics_legs_ucu(const prepared *m, size_t w, size_t leg, size_t legs, const real *s,
-    size_t states, size_t count, int add, real *terms, real *o)
+    size_t states, size_t count, int add, const real *X, const real *V, real *terms, real *o)
 {
     for (size_t k = 0; k < count; ++k) {
         const size_t i = leg + legs*k;
         const size_t j = states*k;
-        /* (ucu-h_4) first moment of link 4 about the connection point */
-        const real R_xx = s[3*w + j];
-        const real R_xy = s[4*w + j];
-        const real R_xz = s[5*w + j];
-        const real ucu_platform_point_x = m->ucu_platform_point_x[i];
-        const real ucu_platform_point_y = m->ucu_platform_point_y[i];
-        const real ucu_platform_point_z = m->ucu_platform_point_z[i];
-        const real ucu_q_x = R_xx*ucu_platform_point_x + R_xy*ucu_platform_point_y +
-            R_xz*ucu_platform_point_z;
-        const real R_yx = s[6*w + j];
-        const real R_yy = s[7*w + j];
-        const real R_yz = s[8*w + j];
-        const real ucu_q_y = R_yx*ucu_platform_point_x + R_yy*ucu_platform_point_y +
-            R_yz*ucu_platform_point_z;
-        const real R_zx = s[9*w + j];
-        const real R_zy = s[10*w + j];
-        const real R_zz = s[11*w + j];
-        const real ucu_q_z = R_zx*ucu_platform_point_x + R_zy*ucu_platform_point_y +
-            R_zz*ucu_platform_point_z;
-        const real t_x = s[0*w + j];
-        const real ucu_base_point_x = m->ucu_base_point_x[i];
-        const real ucu_h_4_t = t_x + ucu_q_x - ucu_base_point_x;
-        const real t_y = s[1*w + j];
-        const real ucu_base_point_y = m->ucu_base_point_y[i];
-        const real ucu_h_4_t_2 = t_y + ucu_q_y - ucu_base_point_y;
-        const real t_z = s[2*w + j];
-        const real ucu_base_point_z = m->ucu_base_point_z[i];
-        const real ucu_h_4_t_3 = t_z + ucu_q_z - ucu_base_point_z;
-        const real ucu_base_frame_xx = m->ucu_base_frame_xx[i];
-        const real ucu_base_frame_yx = m->ucu_base_frame_yx[i];
-        const real ucu_base_frame_zx = m->ucu_base_frame_zx[i];
-        const real ucu_h_4_t_4 = ucu_base_frame_xx*ucu_h_4_t + ucu_base_frame_yx*ucu_h_4_t_2 +
-            ucu_base_frame_zx*ucu_h_4_t_3;
-        const real ucu_base_frame_xy = m->ucu_base_frame_xy[i];
-        const real ucu_base_frame_yy = m->ucu_base_frame_yy[i];
-        const real ucu_base_frame_zy = m->ucu_base_frame_zy[i];
-        const real ucu_h_4_t_5 = ucu_base_frame_xy*ucu_h_4_t + ucu_base_frame_yy*ucu_h_4_t_2 +
-            ucu_base_frame_zy*ucu_h_4_t_3;
-        const real ucu_h_4_t_6 = ucu_h_4_t_4*ucu_h_4_t_4 + ucu_h_4_t_5*ucu_h_4_t_5;
-        const real ucu_branch_1 = m->ucu_branch_1[i];
-        const real ucu_h_4_t_7 = ucu_branch_1*root(ucu_h_4_t_6);
-        const real ucu_base_frame_xz = m->ucu_base_frame_xz[i];
-        const real ucu_base_frame_yz = m->ucu_base_frame_yz[i];
-        const real ucu_base_frame_zz = m->ucu_base_frame_zz[i];
-        const real ucu_h_4_t_8 = ucu_base_frame_xz*ucu_h_4_t + ucu_base_frame_yz*ucu_h_4_t_2 +
-            ucu_base_frame_zz*ucu_h_4_t_3;
-        const real ucu_h_4_t_9 = ucu_h_4_t_6 + ucu_h_4_t_8*ucu_h_4_t_8;
-        const real ucu_branch_2 = m->ucu_branch_2[i];
-        const real ucu_h_4_t_10 = ucu_branch_2*root(ucu_h_4_t_9);
-        const real inv_ucu_h_4_t_10 = 1/ucu_h_4_t_10;
-        const real ucu_h_4_t_11 = -inv_ucu_h_4_t_10*ucu_h_4_t_7;
-        const real ucu_e_1_in_axes4_z = inv_ucu_h_4_t_10*ucu_h_4_t_8;
-        const real ucu_platform_joint_axis_platform_x = m->ucu_platform_joint_axis_platform_x[i];
-        const real ucu_platform_joint_axis_platform_y = m->ucu_platform_joint_axis_platform_y[i];
-        const real ucu_platform_joint_axis_platform_z = m->ucu_platform_joint_axis_platform_z[i];
-        const real ucu_h_4_t_12 = ucu_platform_joint_axis_platform_x*(R_xx*ucu_base_frame_xx +
-            R_yx*ucu_base_frame_yx + R_zx*ucu_base_frame_zx) +
-            ucu_platform_joint_axis_platform_y*(R_xy*ucu_base_frame_xx + R_yy*ucu_base_frame_yx +
-            R_zy*ucu_base_frame_zx) + ucu_platform_joint_axis_platform_z*(R_xz*ucu_base_frame_xx +
-            R_yz*ucu_base_frame_yx + R_zz*ucu_base_frame_zx);
-        const real ucu_h_4_t_13 = ucu_platform_joint_axis_platform_x*(R_xx*ucu_base_frame_xy +
-            R_yx*ucu_base_frame_yy + R_zx*ucu_base_frame_zy) +
-            ucu_platform_joint_axis_platform_y*(R_xy*ucu_base_frame_xy + R_yy*ucu_base_frame_yy +
-            R_zy*ucu_base_frame_zy) + ucu_platform_joint_axis_platform_z*(R_xz*ucu_base_frame_xy +
-            R_yz*ucu_base_frame_yy + R_zz*ucu_base_frame_zy);
-        const real ucu_h_4_t_14 = ucu_platform_joint_axis_platform_x*(R_xx*ucu_base_frame_xz +
-            R_yx*ucu_base_frame_yz + R_zx*ucu_base_frame_zz) +
-            ucu_platform_joint_axis_platform_y*(R_xy*ucu_base_frame_xz + R_yy*ucu_base_frame_yz +
-            R_zy*ucu_base_frame_zz) + ucu_platform_joint_axis_platform_z*(R_xz*ucu_base_frame_xz +
-            R_yz*ucu_base_frame_yz + R_zz*ucu_base_frame_zz);
-        const real inv_ucu_h_4_t_7 = 1/ucu_h_4_t_7;
-        const real ucu_h_4_t_15 = -inv_ucu_h_4_t_7*ucu_h_4_t_5;
-        const real ucu_h_4_t_16 = inv_ucu_h_4_t_7*ucu_h_4_t_4;
-        const real ucu_end_p1_in_turn4_y = ucu_h_4_t_12*ucu_h_4_t_15 + ucu_h_4_t_13*ucu_h_4_t_16;
-        const real ucu_h_4_t_17 = ucu_h_4_t_12*ucu_h_4_t_16 - ucu_h_4_t_13*ucu_h_4_t_15;
-        const real ucu_end_p1_in_turn4_x = ucu_e_1_in_axes4_z*ucu_h_4_t_17 +
-            ucu_h_4_t_11*ucu_h_4_t_14;
-        const real ucu_h_4_t_18 = ucu_end_p1_in_turn4_x*ucu_end_p1_in_turn4_x +
-            ucu_end_p1_in_turn4_y*ucu_end_p1_in_turn4_y;
-        const real ucu_branch_4 = m->ucu_branch_4[i];
-        const real ucu_h_4_t_19 = ucu_branch_4*root(ucu_h_4_t_18);
-        const real inv_ucu_h_4_t_19 = 1/ucu_h_4_t_19;
-        const real ucu_e_2_in_axes4_y = inv_ucu_h_4_t_19*ucu_end_p1_in_turn4_x;
-        const real ucu_e_2_in_axes4_x = inv_ucu_h_4_t_19*ucu_end_p1_in_turn4_y;
-        const real ucu_h_4_in_spec4_y = m->ucu_h_4_in_spec4_y[i];
-        const real ucu_h_4_in_spec4_z = m->ucu_h_4_in_spec4_z[i];
-        const real ucu_h_4_in_axes2_y = ucu_e_2_in_axes4_y*ucu_h_4_in_spec4_y -
-            ucu_e_2_in_axes4_x*ucu_h_4_in_spec4_z;
-        /* (ucu-J_4) inertia tensor of link 4 about the connection point */
-        const real ucu_J_4_in_spec4_xy = m->ucu_J_4_in_spec4_xy[i];
-        const real ucu_J_4_in_spec4_xz = m->ucu_J_4_in_spec4_xz[i];
-        const real ucu_J_4_in_axes2_xz = ucu_J_4_in_spec4_xy*ucu_e_2_in_axes4_x +
-            ucu_J_4_in_spec4_xz*ucu_e_2_in_axes4_y;
+        values_ucu v;
+        stage_ucu_X(m, w, i, j, s, X, &v);
+        stage_ucu_V_X(m, w, i, j, V, &v);
+        stage_ucu_M_dynamics(m, w, i, j, s, X, &v);
         /* (ucu-S_dot) velocity of the connection point */
-        const real omega_y = s[16*w + j];
-        const real omega_z = s[17*w + j];
-        const real ucu_S_dot_t = omega_y*ucu_q_z - omega_z*ucu_q_y;
-        const real omega_x = s[15*w + j];
-        const real ucu_S_dot_t_2 = omega_z*ucu_q_x - omega_x*ucu_q_z;
-        const real ucu_S_dot_t_3 = omega_x*ucu_q_y - omega_y*ucu_q_x;
-        const real t_dot_x = s[12*w + j];
-        const real ucu_S_dot_x = t_dot_x + ucu_S_dot_t;
-        const real t_dot_y = s[13*w + j];
-        const real ucu_S_dot_y = t_dot_y + ucu_S_dot_t_2;
-        const real t_dot_z = s[14*w + j];
-        const real ucu_S_dot_z = t_dot_z + ucu_S_dot_t_3;
-        const real ucu_S_dot_t_4 = ucu_S_dot_x*ucu_base_frame_xx + ucu_S_dot_y*ucu_base_frame_yx +
-            ucu_S_dot_z*ucu_base_frame_zx;
-        const real ucu_S_dot_t_5 = ucu_S_dot_x*ucu_base_frame_xy + ucu_S_dot_y*ucu_base_frame_yy +
-            ucu_S_dot_z*ucu_base_frame_zy;
-        const real ucu_S_dot_t_6 = ucu_S_dot_x*ucu_base_frame_xz + ucu_S_dot_y*ucu_base_frame_yz +
-            ucu_S_dot_z*ucu_base_frame_zz;
-        const real ucu_S_dot_t_7 = ucu_S_dot_t_4*ucu_h_4_t_16 - ucu_S_dot_t_5*ucu_h_4_t_15;
-        const real ucu_S_dot_in_axes2_x = ucu_S_dot_t_6*ucu_e_1_in_axes4_z -
-            ucu_S_dot_t_7*ucu_h_4_t_11;
-        /* (ucu-v_1) velocity of the connection point per rate of joint 1 */
-        const real ucu_e_1_in_axes4_x = ucu_e_2_in_axes4_y*ucu_h_4_t_11;
-        const real ucu_e_1_in_axes4_y = -ucu_e_2_in_axes4_x*ucu_h_4_t_11;
-        const real ucu_v_1_in_axes4_x = ucu_e_1_in_axes4_y*ucu_h_4_t_10;
-        const real ucu_v_1_in_axes4_y = -ucu_e_1_in_axes4_x*ucu_h_4_t_10;
-        const real ucu_v_1_in_axes2_y = ucu_e_2_in_axes4_y*ucu_v_1_in_axes4_x -
-            ucu_e_2_in_axes4_x*ucu_v_1_in_axes4_y;
-        const real ucu_v_1_in_axes2_z = ucu_e_2_in_axes4_x*ucu_v_1_in_axes4_x +
-            ucu_e_2_in_axes4_y*ucu_v_1_in_axes4_y;
-        /* (ucu-n_m1) direction 1 of the moment that the platform joint transmits */
-        const real ucu_n_m1_in_axes4_x = ucu_e_1_in_axes4_z*ucu_h_4_t_14 -
-            ucu_h_4_t_11*ucu_h_4_t_17;
-        const real axis_z_ucu_axes4_x = inv_ucu_h_4_t_10*ucu_h_4_t;
-        const real axis_z_ucu_axes4_y = inv_ucu_h_4_t_10*ucu_h_4_t_2;
-        const real axis_z_ucu_axes4_z = inv_ucu_h_4_t_10*ucu_h_4_t_3;
-        const real ucu_n_m1_t = ucu_e_1_in_axes4_z*ucu_e_2_in_axes4_x;
-        const real ucu_n_m1_t_2 = ucu_e_2_in_axes4_y*ucu_h_4_t_15 - ucu_h_4_t_16*ucu_n_m1_t;
-        const real ucu_n_m1_t_3 = ucu_e_2_in_axes4_y*ucu_h_4_t_16 + ucu_h_4_t_15*ucu_n_m1_t;
-        const real axis_y_ucu_axes4_x = ucu_base_frame_xx*ucu_n_m1_t_2 +
-            ucu_base_frame_xy*ucu_n_m1_t_3 + ucu_base_frame_xz*ucu_e_1_in_axes4_y;
-        const real axis_y_ucu_axes4_y = ucu_base_frame_yx*ucu_n_m1_t_2 +
-            ucu_base_frame_yy*ucu_n_m1_t_3 + ucu_base_frame_yz*ucu_e_1_in_axes4_y;
-        const real axis_y_ucu_axes4_z = ucu_base_frame_zx*ucu_n_m1_t_2 +
-            ucu_base_frame_zy*ucu_n_m1_t_3 + ucu_base_frame_zz*ucu_e_1_in_axes4_y;
-        const real axis_x_ucu_axes4_x = axis_y_ucu_axes4_y*axis_z_ucu_axes4_z -
-            axis_y_ucu_axes4_z*axis_z_ucu_axes4_y;
-        const real axis_x_ucu_axes4_y = axis_y_ucu_axes4_z*axis_z_ucu_axes4_x -
-            axis_y_ucu_axes4_x*axis_z_ucu_axes4_z;
-        const real axis_x_ucu_axes4_z = axis_y_ucu_axes4_x*axis_z_ucu_axes4_y -
-            axis_y_ucu_axes4_y*axis_z_ucu_axes4_x;
-        const real ucu_end_p1_in_axes4_x = ucu_e_2_in_axes4_x*ucu_end_p1_in_turn4_y +
-            ucu_e_2_in_axes4_y*ucu_end_p1_in_turn4_x;
-        const real ucu_n_m1_in_axes2_z = ucu_e_2_in_axes4_x*ucu_n_m1_in_axes4_x;
-        const real ucu_n_m1_x = axis_x_ucu_axes4_x*ucu_n_m1_in_axes4_x -
-            axis_z_ucu_axes4_x*ucu_end_p1_in_axes4_x;
-        const real ucu_n_m1_y = axis_x_ucu_axes4_y*ucu_n_m1_in_axes4_x -
-            axis_z_ucu_axes4_y*ucu_end_p1_in_axes4_x;
-        const real ucu_n_m1_z = axis_x_ucu_axes4_z*ucu_n_m1_in_axes4_x -
-            axis_z_ucu_axes4_z*ucu_end_p1_in_axes4_x;
-        /* (ucu-w_1) force part of reciprocal wrench 1 */
-        const real inv_ucu_v_1_in_axes2_z = 1/ucu_v_1_in_axes2_z;
-        const real ucu_w_1_in_axes4_x = inv_ucu_v_1_in_axes2_z*ucu_e_2_in_axes4_x;
-        const real ucu_w_1_in_axes4_y = inv_ucu_v_1_in_axes2_z*ucu_e_2_in_axes4_y;
-        /* (ucu-w_2) force part of reciprocal wrench 2 */
-        const real ucu_w_2_t = inv_ucu_h_4_t_10*inv_ucu_v_1_in_axes2_z*ucu_v_1_in_axes2_y;
-        const real ucu_w_2_in_axes4_x = inv_ucu_h_4_t_10*ucu_e_2_in_axes4_y -
-            ucu_e_2_in_axes4_x*ucu_w_2_t;
-        const real ucu_w_2_in_axes4_y = -inv_ucu_h_4_t_10*ucu_e_2_in_axes4_x -
-            ucu_e_2_in_axes4_y*ucu_w_2_t;
-        /* (ucu-w_4) force part of reciprocal wrench 4 */
-        const real ucu_w_4_t = ucu_e_1_in_axes4_z*ucu_end_p1_in_axes4_x -
-            ucu_e_1_in_axes4_x*ucu_n_m1_in_axes4_x;
-        const real ucu_w_4_t_2 = -1/ucu_end_p1_in_axes4_x;
-        const real ucu_w_4_t_3 = -inv_ucu_h_4_t_10*ucu_n_m1_in_axes2_z*ucu_w_4_t_2;
-        const real ucu_w_4_t_4 = inv_ucu_v_1_in_axes2_z*(ucu_v_1_in_axes2_y*ucu_w_4_t_3 -
-            ucu_w_4_t*ucu_w_4_t_2);
-        const real ucu_w_4_in_axes4_x = ucu_e_2_in_axes4_y*ucu_w_4_t_3 -
-            ucu_e_2_in_axes4_x*ucu_w_4_t_4;
-        const real ucu_w_4_in_axes4_y = -ucu_e_2_in_axes4_x*ucu_w_4_t_3 -
-            ucu_e_2_in_axes4_y*ucu_w_4_t_4;
-        /* (ucu-o_4) moment part of reciprocal wrench 4 */
-        const real ucu_o_4_in_axes4_x = ucu_n_m1_in_axes4_x*ucu_w_4_t_2;
+        const real ucu_S_dot_t_7 = v.ucu_S_dot_t_4*v.ucu_h_4_t_9 + v.ucu_S_dot_t_5*v.ucu_h_4_t_10;
+        const real ucu_S_dot_in_axes2_x = v.ucu_S_dot_t_6*v.ucu_e_1_in_axes4_z +
+            ucu_S_dot_t_7*v.ucu_h_4_t_13;
         /* (ucu-eta_1) rate at which the joints turn along moment direction 1 */
-        const real ucu_eta_1 = omega_x*ucu_n_m1_x + omega_y*ucu_n_m1_y + omega_z*ucu_n_m1_z;
+        const real omega_x = V[3*w + j];
+        const real omega_y = V[4*w + j];
+        const real omega_z = V[5*w + j];
+        const real ucu_eta_1 = omega_x*v.ucu_n_m1_x + omega_y*v.ucu_n_m1_y + omega_z*v.ucu_n_m1_z;
         /* (ucu-qd_1) rate of joint 1 */
-        const real ucu_qd_1 = inv_ucu_v_1_in_axes2_z*(ucu_S_dot_t_4*ucu_h_4_t_15 +
-            ucu_S_dot_t_5*ucu_h_4_t_16);
+        const real ucu_qd_1 = v.inv_ucu_v_1_in_axes2_z*(v.ucu_S_dot_t_5*v.ucu_h_4_t_9 -
+            v.ucu_S_dot_t_4*v.ucu_h_4_t_10);
         /* (ucu-qd_2) rate of joint 2 */
-        const real ucu_qd_2 = inv_ucu_h_4_t_10*(ucu_S_dot_t_6*ucu_h_4_t_11 +
-            ucu_S_dot_t_7*ucu_e_1_in_axes4_z - ucu_qd_1*ucu_v_1_in_axes2_y);
+        const real ucu_qd_2 = v.inv_ucu_h_4_t_12*(ucu_S_dot_t_7*v.ucu_e_1_in_axes4_z +
+            ucu_qd_1*v.ucu_v_1_t_2 - v.ucu_S_dot_t_6*v.ucu_h_4_t_13);
         /* (ucu-qd_4) rate of joint 4 */
-        const real ucu_qd_4 = ucu_w_4_t_2*(ucu_eta_1 + ucu_qd_1*ucu_w_4_t -
-            ucu_n_m1_in_axes2_z*ucu_qd_2);
+        const real ucu_qd_4 = -v.inv_ucu_end_p1_in_axes4_x*(ucu_eta_1 + ucu_qd_1*v.ucu_w_4_t -
+            v.ucu_n_m1_in_axes2_z*ucu_qd_2);
         /* (ucu-omega_1) angular velocity of link 1 */
-        const real ucu_omega_1_in_axes2_x = ucu_e_1_in_axes4_z*ucu_qd_1;
-        const real ucu_omega_1_in_axes2_y = ucu_h_4_t_11*ucu_qd_1;
+        const real ucu_omega_1_in_axes2_x = v.ucu_e_1_in_axes4_z*ucu_qd_1;
+        const real ucu_omega_1_in_axes2_y = -v.ucu_h_4_t_13*ucu_qd_1;
         /* (ucu-omega_2) angular velocity of link 2 */
-        const real ucu_omega_2_in_axes4_x = ucu_e_2_in_axes4_x*ucu_qd_2 +
-            ucu_e_2_in_axes4_y*ucu_omega_1_in_axes2_y;
-        const real ucu_omega_2_in_axes4_y = ucu_e_2_in_axes4_y*ucu_qd_2 -
-            ucu_e_2_in_axes4_x*ucu_omega_1_in_axes2_y;
+        const real ucu_omega_2_in_axes4_x = v.ucu_e_2_in_axes4_x*ucu_qd_2 +
+            v.ucu_e_2_in_axes4_y*ucu_omega_1_in_axes2_y;
+        const real ucu_omega_2_in_axes4_y = v.ucu_e_2_in_axes4_y*ucu_qd_2 -
+            v.ucu_e_2_in_axes4_x*ucu_omega_1_in_axes2_y;
         /* (ucu-W_2) centripetal tensor of link 2 */
         const real ucu_W_2_in_axes2_yz = ucu_omega_1_in_axes2_y*ucu_qd_2;
         const real ucu_W_2_in_axes2_xz = ucu_omega_1_in_axes2_x*ucu_qd_2;
@@ -1720,15 +2621,15 @@ INLINE void dynamics_legs_ucu(const prepared *m, size_t w, size_t leg, size_t le
         const real ucu_W_4_in_axes4_xz = ucu_omega_2_in_axes4_x*ucu_omega_4_in_axes4_z;
         const real ucu_W_4_in_axes4_yz = ucu_omega_2_in_axes4_y*ucu_omega_4_in_axes4_z;
         /* (ucu-u_1) centripetal acceleration of the connection point */
-        const real ucu_u_1_x = omega_y*ucu_S_dot_t_3 - omega_z*ucu_S_dot_t_2;
-        const real ucu_u_1_y = omega_z*ucu_S_dot_t - omega_x*ucu_S_dot_t_3;
-        const real ucu_u_1_z = omega_x*ucu_S_dot_t_2 - omega_y*ucu_S_dot_t;
-        const real ucu_u_1_in_axes4_x = axis_x_ucu_axes4_x*ucu_u_1_x +
-            axis_x_ucu_axes4_y*ucu_u_1_y + axis_x_ucu_axes4_z*ucu_u_1_z;
-        const real ucu_u_1_in_axes4_y = axis_y_ucu_axes4_x*ucu_u_1_x +
-            axis_y_ucu_axes4_y*ucu_u_1_y + axis_y_ucu_axes4_z*ucu_u_1_z;
+        const real ucu_u_1_x = omega_y*v.ucu_S_dot_t_3 - omega_z*v.ucu_S_dot_t_2;
+        const real ucu_u_1_y = omega_z*v.ucu_S_dot_t - omega_x*v.ucu_S_dot_t_3;
+        const real ucu_u_1_z = omega_x*v.ucu_S_dot_t_2 - omega_y*v.ucu_S_dot_t;
+        const real ucu_u_1_in_axes4_x = v.axis_x_ucu_axes4_x*ucu_u_1_x +
+            v.axis_x_ucu_axes4_y*ucu_u_1_y + v.axis_x_ucu_axes4_z*ucu_u_1_z;
+        const real ucu_u_1_in_axes4_y = v.axis_y_ucu_axes4_x*ucu_u_1_x +
+            v.axis_y_ucu_axes4_y*ucu_u_1_y + v.axis_y_ucu_axes4_z*ucu_u_1_z;
         /* (ucu-zeta_2) angular acceleration of link 2 from the turning of axis 2 */
-        const real ucu_zeta_2_t = ucu_W_2_in_axes2_xz*ucu_e_2_in_axes4_y;
+        const real ucu_zeta_2_t = ucu_W_2_in_axes2_xz*v.ucu_e_2_in_axes4_y;
         /* (ucu-zeta_4) angular acceleration of link 4 from the turning of axis 4 */
         const real ucu_zeta_4_in_axes4_x = ucu_omega_2_in_axes4_y*ucu_qd_4;
         /* (ucu-beta_4) angular acceleration of link 4 at zero joint accelerations */
@@ -1736,47 +2637,48 @@ INLINE void dynamics_legs_ucu(const prepared *m, size_t w, size_t leg, size_t le
         /* (ucu-bias) acceleration of the connection point at zero joint accelerations */
         const real ucu_bias_t = 2*ucu_S_dot_in_axes2_x;
         const real ucu_bias_in_axes4_x = ucu_bias_t*ucu_omega_2_in_axes4_y +
-            ucu_h_4_t_10*(ucu_W_2_in_axes2_xz*ucu_e_2_in_axes4_x +
+            v.ucu_h_4_t_12*(ucu_W_2_in_axes2_xz*v.ucu_e_2_in_axes4_x +
             ucu_omega_1_in_axes2_x*ucu_omega_2_in_axes4_x);
-        const real ucu_bias_in_axes4_y = ucu_h_4_t_10*(ucu_zeta_2_t +
+        const real ucu_bias_in_axes4_y = v.ucu_h_4_t_12*(ucu_zeta_2_t +
             ucu_omega_1_in_axes2_x*ucu_omega_2_in_axes4_y) - ucu_bias_t*ucu_omega_2_in_axes4_x;
         /* (ucu-rel_o) remainder without the acceleration in: acceleration of the connection point left to
            the joint accelerations */
         const real ucu_rel_o_in_axes4_x = ucu_u_1_in_axes4_x - ucu_bias_in_axes4_x;
         const real ucu_rel_o_in_axes4_y = ucu_u_1_in_axes4_y - ucu_bias_in_axes4_y;
         /* (ucu-nd_m1) rate of moment direction 1 */
-        const real ucu_end_p1_in_axes4_y = ucu_e_2_in_axes4_y*ucu_end_p1_in_turn4_y -
-            ucu_e_2_in_axes4_x*ucu_end_p1_in_turn4_x;
-        const real ucu_omega_in_axes4_x = axis_x_ucu_axes4_x*omega_x + axis_x_ucu_axes4_y*omega_y
-            + axis_x_ucu_axes4_z*omega_z;
-        const real ucu_omega_in_axes4_y = axis_y_ucu_axes4_x*omega_x + axis_y_ucu_axes4_y*omega_y
-            + axis_y_ucu_axes4_z*omega_z;
-        const real ucu_omega_in_axes4_z = axis_z_ucu_axes4_x*omega_x + axis_z_ucu_axes4_y*omega_y
-            + axis_z_ucu_axes4_z*omega_z;
+        const real ucu_end_p1_in_axes4_y = v.ucu_e_2_in_axes4_y*v.ucu_end_p1_in_turn4_x -
+            v.ucu_e_2_in_axes4_x*v.ucu_h_4_t_18;
+        const real ucu_omega_in_axes4_x = v.axis_x_ucu_axes4_x*omega_x +
+            v.axis_x_ucu_axes4_y*omega_y + v.axis_x_ucu_axes4_z*omega_z;
+        const real ucu_omega_in_axes4_y = v.axis_y_ucu_axes4_x*omega_x +
+            v.axis_y_ucu_axes4_y*omega_y + v.axis_y_ucu_axes4_z*omega_z;
+        const real ucu_omega_in_axes4_z = v.axis_z_ucu_axes4_x*omega_x +
+            v.axis_z_ucu_axes4_y*omega_y + v.axis_z_ucu_axes4_z*omega_z;
         const real ucu_nd_m1_in_axes4_x = ucu_end_p1_in_axes4_y*ucu_omega_in_axes4_x -
-            ucu_end_p1_in_axes4_x*ucu_omega_in_axes4_y -
+            v.ucu_end_p1_in_axes4_x*ucu_omega_in_axes4_y -
             ucu_end_p1_in_axes4_y*ucu_omega_2_in_axes4_x;
         const real ucu_nd_m1_in_axes4_z = ucu_end_p1_in_axes4_y*ucu_omega_in_axes4_z -
             ucu_end_p1_in_axes4_y*ucu_omega_4_in_axes4_z -
-            ucu_n_m1_in_axes4_x*ucu_omega_in_axes4_y;
+            v.ucu_n_m1_in_axes4_x*ucu_omega_in_axes4_y;
         /* (ucu-nu_1) bias of the angular acceleration along moment direction 1 */
-        const real ucu_nu_1_t = ucu_W_2_in_axes2_yz*ucu_end_p1_in_axes4_x -
-            ucu_beta_4_in_axes4_x*ucu_n_m1_in_axes4_x;
+        const real ucu_nu_1_t = ucu_beta_4_in_axes4_x*v.ucu_n_m1_in_axes4_x -
+            ucu_W_2_in_axes2_yz*v.ucu_end_p1_in_axes4_x;
         const real ucu_nu_1_t_2 = ucu_nd_m1_in_axes4_x*(ucu_omega_2_in_axes4_x -
             ucu_omega_in_axes4_x) + ucu_nd_m1_in_axes4_z*(ucu_omega_4_in_axes4_z -
             ucu_omega_in_axes4_z) + (ucu_omega_2_in_axes4_y -
-            ucu_omega_in_axes4_y)*(ucu_end_p1_in_axes4_x*ucu_omega_2_in_axes4_x +
-            ucu_n_m1_in_axes4_x*ucu_omega_4_in_axes4_z);
-        const real ucu_nu_1 = ucu_nu_1_t - ucu_nu_1_t_2;
+            ucu_omega_in_axes4_y)*(v.ucu_end_p1_in_axes4_x*ucu_omega_2_in_axes4_x +
+            v.ucu_n_m1_in_axes4_x*ucu_omega_4_in_axes4_z);
+        const real ucu_nu_1 = -ucu_nu_1_t - ucu_nu_1_t_2;
         /* (ucu-qdd_1_o) remainder without the acceleration in: acceleration of joint 1 */
-        const real ucu_qdd_1_o = inv_ucu_v_1_in_axes2_z*(ucu_e_2_in_axes4_x*ucu_rel_o_in_axes4_x +
-            ucu_e_2_in_axes4_y*ucu_rel_o_in_axes4_y);
+        const real ucu_qdd_1_o =
+            v.inv_ucu_v_1_in_axes2_z*(v.ucu_e_2_in_axes4_x*ucu_rel_o_in_axes4_x +
+            v.ucu_e_2_in_axes4_y*ucu_rel_o_in_axes4_y);
         /* (ucu-qdd_2_o) remainder without the acceleration in: acceleration of joint 2 */
-        const real ucu_qdd_2_o = -inv_ucu_h_4_t_10*(ucu_e_2_in_axes4_x*ucu_rel_o_in_axes4_y +
-            ucu_qdd_1_o*ucu_v_1_in_axes2_y - ucu_e_2_in_axes4_y*ucu_rel_o_in_axes4_x);
+        const real ucu_qdd_2_o = v.inv_ucu_h_4_t_12*(v.ucu_e_2_in_axes4_y*ucu_rel_o_in_axes4_x +
+            ucu_qdd_1_o*v.ucu_v_1_t_2 - v.ucu_e_2_in_axes4_x*ucu_rel_o_in_axes4_y);
         /* (ucu-alpha_1_o) remainder without the acceleration in: angular acceleration of link 1 */
-        const real ucu_alpha_1_o_in_axes2_x = ucu_e_1_in_axes4_z*ucu_qdd_1_o;
-        const real ucu_alpha_1_o_in_axes2_y = ucu_h_4_t_11*ucu_qdd_1_o;
+        const real ucu_alpha_1_o_in_axes2_x = v.ucu_e_1_in_axes4_z*ucu_qdd_1_o;
+        const real ucu_alpha_1_o_in_axes2_y = -v.ucu_h_4_t_13*ucu_qdd_1_o;
         /* (ucu-alpha_2_o) remainder without the acceleration in: angular acceleration of link 2 */
         const real ucu_alpha_2_o_in_axes2_x = ucu_W_2_in_axes2_yz + ucu_alpha_1_o_in_axes2_x;
         const real ucu_alpha_2_o_in_axes2_y = ucu_alpha_1_o_in_axes2_y - ucu_W_2_in_axes2_xz;
@@ -1785,16 +2687,14 @@ INLINE void dynamics_legs_ucu(const prepared *m, size_t w, size_t leg, size_t le
         const real ucu_B_2_o_in_axes2_yx = ucu_W_2_in_axes2_xy + ucu_qdd_2_o;
         const real ucu_B_2_o_in_axes2_zx = ucu_W_2_in_axes2_xz - ucu_alpha_2_o_in_axes2_y;
         const real ucu_B_2_o_in_axes2_zy = ucu_W_2_in_axes2_yz + ucu_alpha_2_o_in_axes2_x;
-        /* (ucu-d_alpha_4) coefficient of the acceleration in: angular acceleration of link 4 */
-        const real ucu_d_alpha_4_in_axes4_zy = ucu_w_4_in_axes4_y +
-            ucu_e_1_in_axes4_z*ucu_w_1_in_axes4_y;
         /* (ucu-alpha_4_o) remainder without the acceleration in: angular acceleration of link 4 */
         const real ucu_alpha_4_o_in_axes4_x = ucu_zeta_4_in_axes4_x +
-            ucu_alpha_2_o_in_axes2_y*ucu_e_2_in_axes4_y + ucu_e_2_in_axes4_x*ucu_qdd_2_o;
-        const real ucu_alpha_4_o_in_axes4_y = ucu_e_2_in_axes4_y*ucu_qdd_2_o -
-            ucu_alpha_2_o_in_axes2_y*ucu_e_2_in_axes4_x - ucu_omega_2_in_axes4_x*ucu_qd_4;
-        const real ucu_alpha_4_o_in_axes4_z = ucu_alpha_2_o_in_axes2_x + ucu_w_4_t_2*(ucu_nu_1 +
-            ucu_qdd_1_o*ucu_w_4_t - ucu_n_m1_in_axes2_z*ucu_qdd_2_o);
+            ucu_alpha_2_o_in_axes2_y*v.ucu_e_2_in_axes4_y + v.ucu_e_2_in_axes4_x*ucu_qdd_2_o;
+        const real ucu_alpha_4_o_in_axes4_y = v.ucu_e_2_in_axes4_y*ucu_qdd_2_o -
+            ucu_alpha_2_o_in_axes2_y*v.ucu_e_2_in_axes4_x - ucu_omega_2_in_axes4_x*ucu_qd_4;
+        const real ucu_alpha_4_o_in_axes4_z = ucu_alpha_2_o_in_axes2_x -
+            v.inv_ucu_end_p1_in_axes4_x*(ucu_nu_1 + ucu_qdd_1_o*v.ucu_w_4_t -
+            v.ucu_n_m1_in_axes2_z*ucu_qdd_2_o);
         /* (ucu-B_4_o) remainder of the acceleration tensor of link 4 */
         const real ucu_B_4_o_in_axes4_xy = ucu_W_2_in_axes4_xy - ucu_alpha_4_o_in_axes4_z;
         const real ucu_B_4_o_in_axes4_xz = ucu_W_4_in_axes4_xz + ucu_alpha_4_o_in_axes4_y;
@@ -1807,46 +2707,30 @@ INLINE void dynamics_legs_ucu(const prepared *m, size_t w, size_t leg, size_t le
         const real gravity_x = m->gravity_x;
         const real gravity_y = m->gravity_y;
         const real gravity_z = m->gravity_z;
-        const real ucu_acc_4_o_in_axes4_x = ucu_u_1_in_axes4_x - axis_x_ucu_axes4_x*gravity_x -
-            axis_x_ucu_axes4_y*gravity_y - axis_x_ucu_axes4_z*gravity_z;
-        const real ucu_acc_4_o_in_axes4_y = ucu_u_1_in_axes4_y - axis_y_ucu_axes4_x*gravity_x -
-            axis_y_ucu_axes4_y*gravity_y - axis_y_ucu_axes4_z*gravity_z;
-        const real ucu_acc_4_o_in_axes4_z = axis_z_ucu_axes4_x*ucu_u_1_x +
-            axis_z_ucu_axes4_y*ucu_u_1_y + axis_z_ucu_axes4_z*ucu_u_1_z -
-            axis_z_ucu_axes4_x*gravity_x - axis_z_ucu_axes4_y*gravity_y -
-            axis_z_ucu_axes4_z*gravity_z;
+        const real ucu_acc_4_o_in_axes4_x = ucu_u_1_in_axes4_x - v.axis_x_ucu_axes4_x*gravity_x -
+            v.axis_x_ucu_axes4_y*gravity_y - v.axis_x_ucu_axes4_z*gravity_z;
+        const real ucu_acc_4_o_in_axes4_y = ucu_u_1_in_axes4_y - v.axis_y_ucu_axes4_x*gravity_x -
+            v.axis_y_ucu_axes4_y*gravity_y - v.axis_y_ucu_axes4_z*gravity_z;
+        const real ucu_acc_4_o_in_axes4_z = v.axis_z_ucu_axes4_x*ucu_u_1_x +
+            v.axis_z_ucu_axes4_y*ucu_u_1_y + v.axis_z_ucu_axes4_z*ucu_u_1_z -
+            v.axis_z_ucu_axes4_x*gravity_x - v.axis_z_ucu_axes4_y*gravity_y -
+            v.axis_z_ucu_axes4_z*gravity_z;
         /* (ucu-phi_4_o) remainder without the acceleration in: inertia force of link 4 from its turning
            about its reference point */
         const real ucu_phi_4_o_t = ucu_omega_2_in_axes4_x*ucu_omega_2_in_axes4_x;
         const real ucu_phi_4_o_t_2 = ucu_omega_2_in_axes4_y*ucu_omega_2_in_axes4_y;
         const real ucu_h_4_in_spec4_x = m->ucu_h_4_in_spec4_x[i];
+        const real ucu_h_4_in_spec4_y = m->ucu_h_4_in_spec4_y[i];
+        const real ucu_h_4_in_spec4_z = m->ucu_h_4_in_spec4_z[i];
         const real ucu_phi_4_o_in_axes4_z = ucu_B_4_o_in_axes4_zx*ucu_h_4_in_spec4_y +
             ucu_B_4_o_in_axes4_zy*ucu_h_4_in_spec4_z - ucu_h_4_in_spec4_x*(ucu_phi_4_o_t +
             ucu_phi_4_o_t_2);
-        /* (ucu-D_1_4) inertia of joint 4 along joint 1 */
-        const real ucu_J_4_in_spec4_xx = m->ucu_J_4_in_spec4_xx[i];
-        const real ucu_D_1_4 = ucu_J_4_in_spec4_xx*ucu_e_1_in_axes4_z +
-            ucu_J_4_in_spec4_xy*ucu_e_1_in_axes4_x + ucu_J_4_in_spec4_xz*ucu_e_1_in_axes4_y;
-        /* (ucu-Jc_2) inertia tensor of the links from 2 outwards about joint 2, that of the last link
-           about the connection point */
-        const real ucu_J_4_in_spec4_yz = m->ucu_J_4_in_spec4_yz[i];
-        const real ucu_Jc_2_t = ucu_J_4_in_spec4_yz*ucu_e_2_in_axes4_x;
-        const real ucu_J_4_in_spec4_yy = m->ucu_J_4_in_spec4_yy[i];
-        const real ucu_Jc_2_t_2 = ucu_J_4_in_spec4_yy*ucu_e_2_in_axes4_y - ucu_Jc_2_t;
-        const real ucu_Jc_2_t_3 = ucu_J_4_in_spec4_yz*ucu_e_2_in_axes4_y;
-        const real ucu_J_4_in_spec4_zz = m->ucu_J_4_in_spec4_zz[i];
-        const real ucu_Jc_2_t_4 = ucu_Jc_2_t_3 - ucu_J_4_in_spec4_zz*ucu_e_2_in_axes4_x;
-        const real ucu_J_2_in_spec2_xz = m->ucu_J_2_in_spec2_xz[i];
-        const real ucu_Jc_2_in_axes2_xy = ucu_J_4_in_spec4_xy*ucu_e_2_in_axes4_y -
-            ucu_J_2_in_spec2_xz - ucu_J_4_in_spec4_xz*ucu_e_2_in_axes4_x;
-        const real ucu_J_2_in_spec2_xy = m->ucu_J_2_in_spec2_xy[i];
-        const real ucu_J_2_in_spec2_yz = m->ucu_J_2_in_spec2_yz[i];
-        const real ucu_Jc_2_in_axes1_xz = ucu_e_1_in_axes4_z*(ucu_J_2_in_spec2_xy +
-            ucu_J_4_in_axes2_xz) + ucu_h_4_t_11*(ucu_Jc_2_t_2*ucu_e_2_in_axes4_x +
-            ucu_Jc_2_t_4*ucu_e_2_in_axes4_y - ucu_J_2_in_spec2_yz);
         /* (ucu-mu_4_o) remainder without the acceleration in: inertia moment of the links that turn with
            link 4, about their reference points */
         const real ucu_mu_4_o_t = ucu_omega_4_in_axes4_z*ucu_omega_4_in_axes4_z;
+        const real ucu_J_4_in_spec4_xy = m->ucu_J_4_in_spec4_xy[i];
+        const real ucu_J_4_in_spec4_xz = m->ucu_J_4_in_spec4_xz[i];
+        const real ucu_J_4_in_spec4_yz = m->ucu_J_4_in_spec4_yz[i];
         const real ucu_Sigma_4_in_axes4_yy = m->ucu_Sigma_4_in_axes4_yy[i];
         const real ucu_Sigma_4_in_axes4_zz = m->ucu_Sigma_4_in_axes4_zz[i];
         const real ucu_mu_4_o_in_axes4_x = ucu_B_4_o_in_axes4_yx*ucu_J_4_in_spec4_xy +
@@ -1865,21 +2749,6 @@ INLINE void dynamics_legs_ucu(const prepared *m, size_t w, size_t leg, size_t le
             ucu_phi_4_o_t_2) + ucu_acc_4_o_in_axes4_y*ucu_h_4_in_spec4_y -
             ucu_B_4_o_in_axes4_xy*ucu_Sigma_4_in_axes4_yy -
             ucu_B_4_o_in_axes4_yz*ucu_J_4_in_spec4_xy - ucu_acc_4_o_in_axes4_x*ucu_h_4_in_spec4_z;
-        /* (ucu-dalpha_Gamma_4) coefficient of the acceleration in: moment about axis 4 of the distal
-           links' inertia and weight */
-        const real ucu_dalpha_Gamma_4_t = -ucu_J_4_in_spec4_xx*ucu_o_4_in_axes4_x;
-        /* (ucu-d_Gamma_4) coefficient of the acceleration in: moment about axis 4 of the distal links'
-           inertia and weight */
-        const real ucu_d_Gamma_4_t = ucu_J_4_in_spec4_xx*ucu_w_4_t_2;
-        const real ucu_d_Gamma_4_t_2 = inv_ucu_h_4_t_10*(ucu_J_4_in_axes2_xz -
-            ucu_d_Gamma_4_t*ucu_n_m1_in_axes2_z);
-        const real ucu_d_Gamma_4_t_3 =
-            inv_ucu_v_1_in_axes2_z*(ucu_d_Gamma_4_t_2*ucu_v_1_in_axes2_y - ucu_D_1_4 -
-            ucu_d_Gamma_4_t*ucu_w_4_t);
-        const real ucu_d_Gamma_4_in_axes4_x = ucu_d_Gamma_4_t_2*ucu_e_2_in_axes4_y -
-            ucu_h_4_in_spec4_z - ucu_d_Gamma_4_t_3*ucu_e_2_in_axes4_x;
-        const real ucu_d_Gamma_4_in_axes4_y = ucu_h_4_in_spec4_y -
-            ucu_d_Gamma_4_t_2*ucu_e_2_in_axes4_x - ucu_d_Gamma_4_t_3*ucu_e_2_in_axes4_y;
         /* (ucu-mu_2_o) remainder without the acceleration in: inertia moment of the links that turn with
            link 2, about their reference points */
         const real ucu_mu_2_o_t = ucu_omega_1_in_axes2_x*ucu_omega_1_in_axes2_x;
@@ -1887,13 +2756,16 @@ INLINE void dynamics_legs_ucu(const prepared *m, size_t w, size_t leg, size_t le
         const real ucu_mu_2_o_t_3 = ucu_qd_2*ucu_qd_2;
         const real ucu_mu_2_t = m->ucu_mu_2_t[i];
         const real ucu_mu_2_t_2 = m->ucu_mu_2_t_2[i];
-        const real ucu_g_in_axes2_z = ucu_h_4_t_15*ucu_mu_2_t + ucu_h_4_t_16*ucu_mu_2_t_2;
-        const real ucu_mu_2_o_t_4 = ucu_h_4_t_15*ucu_mu_2_t_2 - ucu_h_4_t_16*ucu_mu_2_t;
+        const real ucu_mu_2_o_t_4 = v.ucu_h_4_t_10*ucu_mu_2_t_2 + v.ucu_h_4_t_9*ucu_mu_2_t;
+        const real ucu_g_in_axes2_z = v.ucu_h_4_t_9*ucu_mu_2_t_2 - v.ucu_h_4_t_10*ucu_mu_2_t;
         const real ucu_mu_2_t_3 = m->ucu_mu_2_t_3[i];
-        const real ucu_g_in_axes2_x = ucu_e_1_in_axes4_z*ucu_mu_2_t_3 +
-            ucu_h_4_t_11*ucu_mu_2_o_t_4;
-        const real ucu_g_in_axes2_y = ucu_h_4_t_11*ucu_mu_2_t_3 -
-            ucu_e_1_in_axes4_z*ucu_mu_2_o_t_4;
+        const real ucu_g_in_axes2_x = v.ucu_e_1_in_axes4_z*ucu_mu_2_t_3 +
+            v.ucu_h_4_t_13*ucu_mu_2_o_t_4;
+        const real ucu_g_in_axes2_y = v.ucu_e_1_in_axes4_z*ucu_mu_2_o_t_4 -
+            v.ucu_h_4_t_13*ucu_mu_2_t_3;
+        const real ucu_J_2_in_spec2_xy = m->ucu_J_2_in_spec2_xy[i];
+        const real ucu_J_2_in_spec2_xz = m->ucu_J_2_in_spec2_xz[i];
+        const real ucu_J_2_in_spec2_yz = m->ucu_J_2_in_spec2_yz[i];
         const real ucu_Sigma_2_in_axes2_yy = m->ucu_Sigma_2_in_axes2_yy[i];
         const real ucu_Sigma_2_in_axes2_zz = m->ucu_Sigma_2_in_axes2_zz[i];
         const real ucu_h_2_in_spec2_y = m->ucu_h_2_in_spec2_y[i];
@@ -1920,257 +2792,73 @@ INLINE void dynamics_legs_ucu(const prepared *m, size_t w, size_t leg, size_t le
            outwards, the force at the connection point left out */
         const real ucu_N_2_o_in_axes2_x = ucu_mu_2_o_in_axes2_x + ucu_mu_4_o_in_axes4_z;
         const real ucu_N_2_o_in_axes2_y = ucu_mu_2_o_in_axes2_y +
-            ucu_e_2_in_axes4_y*ucu_mu_4_o_in_axes4_x - ucu_e_2_in_axes4_x*ucu_mu_4_o_in_axes4_y;
+            v.ucu_e_2_in_axes4_y*ucu_mu_4_o_in_axes4_x -
+            v.ucu_e_2_in_axes4_x*ucu_mu_4_o_in_axes4_y;
         const real ucu_N_2_o_in_axes2_z = ucu_mu_2_o_in_axes2_z +
-            ucu_e_2_in_axes4_x*ucu_mu_4_o_in_axes4_x + ucu_e_2_in_axes4_y*ucu_mu_4_o_in_axes4_y;
-        /* (ucu-dalpha_Gamma_2) coefficient of the acceleration in: moment about axis 2 of the distal
-           links' inertia and weight */
-        const real ucu_dalpha_Gamma_2_in_axes4_x = ucu_J_4_in_axes2_xz*ucu_o_4_in_axes4_x;
-        /* (ucu-d_Gamma_2) coefficient of the acceleration in: moment about axis 2 of the distal links'
-           inertia and weight */
-        const real ucu_d_Gamma_2_t = ucu_J_4_in_axes2_xz*ucu_w_4_t_2;
-        const real ucu_J_2_in_spec2_yy = m->ucu_J_2_in_spec2_yy[i];
-        const real ucu_d_Gamma_2_t_2 = inv_ucu_h_4_t_10*(ucu_J_2_in_spec2_yy +
-            ucu_e_2_in_axes4_x*(ucu_Jc_2_t_3 + ucu_J_4_in_spec4_yy*ucu_e_2_in_axes4_x) +
-            ucu_e_2_in_axes4_y*(ucu_Jc_2_t + ucu_J_4_in_spec4_zz*ucu_e_2_in_axes4_y) -
-            ucu_d_Gamma_2_t*ucu_n_m1_in_axes2_z);
-        const real ucu_d_Gamma_2_in_axes2_z =
-            -inv_ucu_v_1_in_axes2_z*(ucu_d_Gamma_2_t_2*ucu_v_1_in_axes2_y - ucu_Jc_2_in_axes1_xz -
-            ucu_d_Gamma_2_t*ucu_w_4_t);
-        const real ucu_d_Gamma_2_in_axes2_y = ucu_d_Gamma_2_t_2 + ucu_h_4_in_spec4_x;
-        const real ucu_d_Gamma_2_in_axes4_y = ucu_d_Gamma_2_in_axes2_z*ucu_e_2_in_axes4_y -
-            ucu_d_Gamma_2_in_axes2_y*ucu_e_2_in_axes4_x;
-        /* (ucu-dalpha_Gamma_1) coefficient of the acceleration in: moment about axis 1 of the distal
-           links' inertia and weight */
-        const real ucu_dalpha_Gamma_1_in_axes4_x = ucu_D_1_4*ucu_o_4_in_axes4_x;
-        /* (ucu-d_Gamma_1) coefficient of the acceleration in: moment about axis 1 of the distal links'
-           inertia and weight */
-        const real ucu_d_Gamma_1_t = ucu_D_1_4*ucu_w_4_t_2;
-        const real ucu_d_Gamma_1_t_2 = inv_ucu_h_4_t_10*(ucu_Jc_2_in_axes1_xz -
-            ucu_d_Gamma_1_t*ucu_n_m1_in_axes2_z);
-        const real ucu_J_2_in_spec2_zz = m->ucu_J_2_in_spec2_zz[i];
-        const real ucu_Jc_2_in_axes2_xx = m->ucu_Jc_2_in_axes2_xx[i];
-        const real ucu_d_Gamma_1_t_3 = ucu_d_Gamma_1_t_2*ucu_v_1_in_axes2_y -
-            ucu_d_Gamma_1_t*ucu_w_4_t -
-            ucu_e_1_in_axes4_z*(ucu_Jc_2_in_axes2_xx*ucu_e_1_in_axes4_z +
-            ucu_Jc_2_in_axes2_xy*ucu_h_4_t_11) -
-            ucu_h_4_t_11*(ucu_Jc_2_in_axes2_xy*ucu_e_1_in_axes4_z +
-            ucu_h_4_t_11*(ucu_J_2_in_spec2_zz + ucu_Jc_2_t_2*ucu_e_2_in_axes4_y -
-            ucu_Jc_2_t_4*ucu_e_2_in_axes4_x));
-        const real ucu_d_Gamma_1_in_axes1_z = ucu_d_Gamma_1_t_2*ucu_h_4_t_11;
-        const real ucu_d_Gamma_1_in_axes1_x = ucu_e_1_in_axes4_z*ucu_h_4_in_axes2_y -
-            inv_ucu_v_1_in_axes2_z*ucu_d_Gamma_1_t_3 - ucu_h_4_in_spec4_x*ucu_h_4_t_11;
-        const real ucu_d_Gamma_1_in_axes1_y = ucu_e_2_in_axes4_x*ucu_h_4_in_spec4_y +
-            ucu_e_2_in_axes4_y*ucu_h_4_in_spec4_z - ucu_d_Gamma_1_t_2*ucu_e_1_in_axes4_z;
-        const real ucu_d_Gamma_1_in_axes4_z = ucu_d_Gamma_1_in_axes1_y*ucu_h_4_t_11 +
-            ucu_d_Gamma_1_in_axes1_z*ucu_e_1_in_axes4_z;
-        const real ucu_d_Gamma_1_t_4 = ucu_d_Gamma_1_in_axes1_z*ucu_h_4_t_11 -
-            ucu_d_Gamma_1_in_axes1_y*ucu_e_1_in_axes4_z;
-        const real ucu_d_Gamma_1_in_axes4_y = ucu_d_Gamma_1_in_axes1_x*ucu_e_2_in_axes4_y -
-            ucu_d_Gamma_1_t_4*ucu_e_2_in_axes4_x;
-        /* (ucu-d_G) coefficient of the acceleration in: force at the connection point that balances the
-           leg's inertia and weight along all degrees of freedom */
-        const real ucu_d_G_in_axes4_xz = ucu_d_Gamma_1_in_axes4_z*ucu_w_1_in_axes4_x -
-            ucu_h_4_in_axes2_y*ucu_w_2_in_axes4_x;
-        const real ucu_d_G_in_axes4_yz = ucu_d_Gamma_1_in_axes4_z*ucu_w_1_in_axes4_y -
-            ucu_h_4_in_axes2_y*ucu_w_2_in_axes4_y;
-        /* (ucu-dalpha_G_m1) coefficient of the acceleration in: moment along moment direction 1 that
-           balances the leg's inertia and weight along all degrees of freedom */
-        const real ucu_dalpha_G_m1_in_axes4_x = -ucu_dalpha_Gamma_4_t*ucu_w_4_t_2;
-        const real ucu_dalpha_G_m1_y = axis_x_ucu_axes4_y*ucu_dalpha_G_m1_in_axes4_x +
-            axis_z_ucu_axes4_y*ucu_d_Gamma_4_t;
-        const real ucu_dalpha_G_m1_z = axis_x_ucu_axes4_z*ucu_dalpha_G_m1_in_axes4_x +
-            axis_z_ucu_axes4_z*ucu_d_Gamma_4_t;
-        /* (ucu-d_G_m1) coefficient of the acceleration in: moment along moment direction 1 that balances
-           the leg's inertia and weight along all degrees of freedom */
-        const real ucu_d_G_m1_in_axes4_x = ucu_d_Gamma_4_in_axes4_x*ucu_w_4_t_2;
-        const real ucu_d_G_m1_in_axes4_y = ucu_d_Gamma_4_in_axes4_y*ucu_w_4_t_2;
-        const real ucu_d_G_m1_x = axis_x_ucu_axes4_x*ucu_d_G_m1_in_axes4_x +
-            axis_y_ucu_axes4_x*ucu_d_G_m1_in_axes4_y;
-        const real ucu_d_G_m1_y = axis_x_ucu_axes4_y*ucu_d_G_m1_in_axes4_x +
-            axis_y_ucu_axes4_y*ucu_d_G_m1_in_axes4_y;
-        const real ucu_d_G_m1_z = axis_x_ucu_axes4_z*ucu_d_G_m1_in_axes4_x +
-            axis_y_ucu_axes4_z*ucu_d_G_m1_in_axes4_y;
+            v.ucu_e_2_in_axes4_x*ucu_mu_4_o_in_axes4_x +
+            v.ucu_e_2_in_axes4_y*ucu_mu_4_o_in_axes4_y;
         /* (ucu-G_m1_o) remainder without the acceleration in: moment along moment direction 1 that
            balances the leg's inertia and weight along all degrees of freedom */
-        const real ucu_G_m1_o = ucu_mu_4_o_in_axes4_z*ucu_w_4_t_2;
-        /* (ucu-d_G_m) coefficient of the acceleration in: moment at the connection point that balances
-           the leg's inertia and weight along all degrees of freedom */
-        const real ucu_d_G_m_xx = ucu_d_G_m1_x*ucu_n_m1_x;
-        const real ucu_d_G_m_xy = ucu_d_G_m1_y*ucu_n_m1_x;
-        const real ucu_d_G_m_xz = ucu_d_G_m1_z*ucu_n_m1_x;
-        const real ucu_d_G_m_yx = ucu_d_G_m1_x*ucu_n_m1_y;
-        /* (ucu-dalpha_c) coefficient of the acceleration in: leg force on the platform without actuation
-           and without the mass at the connection point */
-        const real ucu_dalpha_c_in_axes4_xx = ucu_dalpha_Gamma_4_t*ucu_w_4_in_axes4_x +
-            ucu_h_4_in_spec4_z*ucu_o_4_in_axes4_x -
-            ucu_dalpha_Gamma_1_in_axes4_x*ucu_w_1_in_axes4_x -
-            ucu_dalpha_Gamma_2_in_axes4_x*ucu_w_2_in_axes4_x;
-        const real ucu_dalpha_c_in_axes4_xz = ucu_h_4_in_spec4_z - ucu_D_1_4*ucu_w_1_in_axes4_x -
-            ucu_J_4_in_axes2_xz*ucu_w_2_in_axes4_x - ucu_J_4_in_spec4_xx*ucu_w_4_in_axes4_x;
-        const real ucu_dalpha_c_in_axes4_yx = ucu_dalpha_Gamma_4_t*ucu_w_4_in_axes4_y -
-            ucu_dalpha_Gamma_1_in_axes4_x*ucu_w_1_in_axes4_y -
-            ucu_dalpha_Gamma_2_in_axes4_x*ucu_w_2_in_axes4_y -
-            ucu_h_4_in_spec4_y*ucu_o_4_in_axes4_x;
-        const real ucu_dalpha_c_in_axes4_yz = -ucu_h_4_in_spec4_y - ucu_D_1_4*ucu_w_1_in_axes4_y -
-            ucu_J_4_in_axes2_xz*ucu_w_2_in_axes4_y - ucu_J_4_in_spec4_xx*ucu_w_4_in_axes4_y;
-        /* (ucu-d_c) coefficient of the acceleration in: leg force on the platform without actuation and
-           without the mass at the connection point */
-        const real ucu_d_c_in_axes4_xx = ucu_h_4_in_spec4_z*(ucu_w_4_in_axes4_x +
-            ucu_e_1_in_axes4_z*ucu_w_1_in_axes4_x) - ucu_d_Gamma_4_in_axes4_x*ucu_w_4_in_axes4_x -
-            ucu_h_4_in_spec4_x*(ucu_e_1_in_axes4_y*ucu_w_1_in_axes4_x +
-            ucu_e_2_in_axes4_y*ucu_w_2_in_axes4_x) -
-            ucu_w_1_in_axes4_x*(ucu_d_Gamma_1_in_axes1_x*ucu_e_2_in_axes4_x +
-            ucu_d_Gamma_1_t_4*ucu_e_2_in_axes4_y) -
-            ucu_w_2_in_axes4_x*(ucu_d_Gamma_2_in_axes2_y*ucu_e_2_in_axes4_y +
-            ucu_d_Gamma_2_in_axes2_z*ucu_e_2_in_axes4_x);
-        const real ucu_d_c_in_axes4_xy = ucu_d_alpha_4_in_axes4_zy*ucu_h_4_in_spec4_z -
-            ucu_d_Gamma_1_in_axes4_y*ucu_w_1_in_axes4_x -
-            ucu_d_Gamma_2_in_axes4_y*ucu_w_2_in_axes4_x -
-            ucu_d_Gamma_4_in_axes4_y*ucu_w_4_in_axes4_x -
-            ucu_h_4_in_spec4_x*(ucu_e_1_in_axes4_y*ucu_w_1_in_axes4_y +
-            ucu_e_2_in_axes4_y*ucu_w_2_in_axes4_y);
-        const real ucu_d_c_in_axes4_yy = ucu_h_4_in_spec4_x*(ucu_e_1_in_axes4_x*ucu_w_1_in_axes4_y
-            + ucu_e_2_in_axes4_x*ucu_w_2_in_axes4_y) - ucu_d_Gamma_1_in_axes4_y*ucu_w_1_in_axes4_y
-            - ucu_d_Gamma_2_in_axes4_y*ucu_w_2_in_axes4_y -
-            ucu_d_Gamma_4_in_axes4_y*ucu_w_4_in_axes4_y -
-            ucu_d_alpha_4_in_axes4_zy*ucu_h_4_in_spec4_y;
+        const real ucu_G_m1_o_t = v.inv_ucu_end_p1_in_axes4_x*ucu_mu_4_o_in_axes4_z;
         /* (ucu-c_o) remainder without the acceleration in: leg force on the platform without actuation
            and without the mass at the connection point */
-        const real ucu_c_o_t = inv_ucu_h_4_t_10*(ucu_N_2_o_in_axes2_z -
-            ucu_G_m1_o*ucu_n_m1_in_axes2_z);
-        const real ucu_c_o_t_2 = inv_ucu_v_1_in_axes2_z*(ucu_c_o_t*ucu_v_1_in_axes2_y -
-            ucu_G_m1_o*ucu_w_4_t - ucu_N_2_o_in_axes2_x*ucu_e_1_in_axes4_z -
-            ucu_N_2_o_in_axes2_y*ucu_h_4_t_11);
-        const real ucu_c_o_in_axes4_x = ucu_c_o_t_2*ucu_e_2_in_axes4_x +
+        const real ucu_c_o_t = v.inv_ucu_h_4_t_12*(ucu_N_2_o_in_axes2_z +
+            ucu_G_m1_o_t*v.ucu_n_m1_in_axes2_z);
+        const real ucu_c_o_t_2 = v.inv_ucu_v_1_in_axes2_z*(ucu_G_m1_o_t*v.ucu_w_4_t +
+            ucu_N_2_o_in_axes2_y*v.ucu_h_4_t_13 - ucu_N_2_o_in_axes2_x*v.ucu_e_1_in_axes4_z -
+            ucu_c_o_t*v.ucu_v_1_t_2);
+        const real ucu_c_o_in_axes4_x = ucu_c_o_t_2*v.ucu_e_2_in_axes4_x +
             ucu_h_4_in_spec4_y*(ucu_mu_4_o_t + ucu_phi_4_o_t_2) -
             ucu_B_4_o_in_axes4_xy*ucu_h_4_in_spec4_z - ucu_B_4_o_in_axes4_xz*ucu_h_4_in_spec4_x -
-            ucu_c_o_t*ucu_e_2_in_axes4_y;
-        const real ucu_c_o_in_axes4_y = ucu_c_o_t*ucu_e_2_in_axes4_x +
-            ucu_c_o_t_2*ucu_e_2_in_axes4_y + ucu_h_4_in_spec4_z*(ucu_mu_4_o_t + ucu_phi_4_o_t) -
+            ucu_c_o_t*v.ucu_e_2_in_axes4_y;
+        const real ucu_c_o_in_axes4_y = ucu_c_o_t*v.ucu_e_2_in_axes4_x +
+            ucu_c_o_t_2*v.ucu_e_2_in_axes4_y + ucu_h_4_in_spec4_z*(ucu_mu_4_o_t + ucu_phi_4_o_t) -
             ucu_B_4_o_in_axes4_yx*ucu_h_4_in_spec4_y - ucu_B_4_o_in_axes4_yz*ucu_h_4_in_spec4_x;
-        /* (ucu-Q) inertia of the leg at the connection point, without the mass gathered there */
-        const real ucu_Q_t = R(0.5)*ucu_d_c_in_axes4_xx;
-        const real ucu_Q_t_2 = R(0.5)*ucu_d_c_in_axes4_yy;
-        const real ucu_Q_t_3 = axis_x_ucu_axes4_x*ucu_Q_t + axis_y_ucu_axes4_x*ucu_d_c_in_axes4_xy
-            - axis_z_ucu_axes4_x*ucu_d_G_in_axes4_xz;
-        const real ucu_Q_t_4 = axis_z_ucu_axes4_y*ucu_d_G_in_axes4_xz - axis_x_ucu_axes4_y*ucu_Q_t
-            - axis_y_ucu_axes4_y*ucu_d_c_in_axes4_xy;
-        const real ucu_Q_t_5 = axis_x_ucu_axes4_z*ucu_Q_t + axis_y_ucu_axes4_z*ucu_d_c_in_axes4_xy
-            - axis_z_ucu_axes4_z*ucu_d_G_in_axes4_xz;
-        const real ucu_Q_t_6 = axis_z_ucu_axes4_x*ucu_d_G_in_axes4_yz -
-            axis_y_ucu_axes4_x*ucu_Q_t_2;
-        const real ucu_Q_t_7 = axis_y_ucu_axes4_y*ucu_Q_t_2 -
-            axis_z_ucu_axes4_y*ucu_d_G_in_axes4_yz;
-        const real ucu_Q_t_8 = axis_y_ucu_axes4_z*ucu_Q_t_2 -
-            axis_z_ucu_axes4_z*ucu_d_G_in_axes4_yz;
-        const real ucu_Q_t_9 = axis_x_ucu_axes4_x*ucu_Q_t_3 - axis_y_ucu_axes4_x*ucu_Q_t_6;
-        const real ucu_Q_xx = -2*ucu_Q_t_9;
-        const real ucu_Q_xy = axis_x_ucu_axes4_x*ucu_Q_t_4 + axis_y_ucu_axes4_y*ucu_Q_t_6 -
-            axis_x_ucu_axes4_y*ucu_Q_t_3 - axis_y_ucu_axes4_x*ucu_Q_t_7;
-        const real ucu_Q_xz = axis_y_ucu_axes4_z*ucu_Q_t_6 - axis_x_ucu_axes4_x*ucu_Q_t_5 -
-            axis_x_ucu_axes4_z*ucu_Q_t_3 - axis_y_ucu_axes4_x*ucu_Q_t_8;
-        const real ucu_Q_t_10 = axis_y_ucu_axes4_y*ucu_Q_t_7 - axis_x_ucu_axes4_y*ucu_Q_t_4;
-        const real ucu_Q_yy = -2*ucu_Q_t_10;
-        const real ucu_Q_yz = axis_x_ucu_axes4_z*ucu_Q_t_4 - axis_x_ucu_axes4_y*ucu_Q_t_5 -
-            axis_y_ucu_axes4_y*ucu_Q_t_8 - axis_y_ucu_axes4_z*ucu_Q_t_7;
-        const real ucu_Q_t_11 = axis_x_ucu_axes4_z*ucu_Q_t_5 + axis_y_ucu_axes4_z*ucu_Q_t_8;
-        const real ucu_Q_zz = -2*ucu_Q_t_11;
         /* (ucu-c_m_o) remainder without the acceleration in: moment of the leg on the platform without
            actuation */
-        const real ucu_c_m_o_in_axes4_x = -ucu_G_m1_o*ucu_n_m1_in_axes4_x;
+        const real ucu_c_m_o_in_axes4_x = ucu_G_m1_o_t*v.ucu_n_m1_in_axes4_x;
         /* (ucu-U) velocity and gravity terms of the leg force */
-        const real ucu_U_x = axis_z_ucu_axes4_x*ucu_phi_4_o_in_axes4_z -
-            axis_x_ucu_axes4_x*ucu_c_o_in_axes4_x - axis_y_ucu_axes4_x*ucu_c_o_in_axes4_y;
-        const real ucu_U_y = axis_z_ucu_axes4_y*ucu_phi_4_o_in_axes4_z -
-            axis_x_ucu_axes4_y*ucu_c_o_in_axes4_x - axis_y_ucu_axes4_y*ucu_c_o_in_axes4_y;
-        const real ucu_U_z = axis_z_ucu_axes4_z*ucu_phi_4_o_in_axes4_z -
-            axis_x_ucu_axes4_z*ucu_c_o_in_axes4_x - axis_y_ucu_axes4_z*ucu_c_o_in_axes4_y;
-        /* (M_ta) coupling block of M */
-        const real ucu_M_ta_t = axis_x_ucu_axes4_x*ucu_dalpha_c_in_axes4_xx +
-            axis_y_ucu_axes4_x*ucu_dalpha_c_in_axes4_yx;
-        const real ucu_M_ta_t_2 = axis_x_ucu_axes4_y*ucu_dalpha_c_in_axes4_xx +
-            axis_y_ucu_axes4_y*ucu_dalpha_c_in_axes4_yx;
-        const real ucu_M_ta_t_3 = axis_x_ucu_axes4_z*ucu_dalpha_c_in_axes4_xx +
-            axis_y_ucu_axes4_z*ucu_dalpha_c_in_axes4_yx;
-        const real ucu_M_ta_t_4 = axis_x_ucu_axes4_x*ucu_dalpha_c_in_axes4_xz +
-            axis_y_ucu_axes4_x*ucu_dalpha_c_in_axes4_yz;
-        const real ucu_M_ta_t_5 = axis_x_ucu_axes4_y*ucu_dalpha_c_in_axes4_xz +
-            axis_y_ucu_axes4_y*ucu_dalpha_c_in_axes4_yz;
-        const real ucu_M_ta_t_6 = axis_x_ucu_axes4_z*ucu_dalpha_c_in_axes4_xz +
-            axis_y_ucu_axes4_z*ucu_dalpha_c_in_axes4_yz;
-        const real ucu_M_ta_t_7 = -ucu_Q_xy*ucu_q_z;
-        const real ucu_M_ta_t_8 = ucu_Q_xz*ucu_q_y;
-        const real ucu_M_ta_t_9 = ucu_Q_yz*ucu_q_x;
-        const real ucu_M_ta_t_10 = ucu_M_ta_t_7 + ucu_M_ta_t_8 - axis_x_ucu_axes4_x*ucu_M_ta_t -
-            axis_z_ucu_axes4_x*ucu_M_ta_t_4;
-        const real ucu_M_ta_t_11 = ucu_Q_xx*ucu_q_z - axis_x_ucu_axes4_y*ucu_M_ta_t -
-            axis_z_ucu_axes4_y*ucu_M_ta_t_4 - ucu_Q_xz*ucu_q_x;
-        const real ucu_M_ta_t_12 = ucu_Q_xy*ucu_q_x - axis_x_ucu_axes4_z*ucu_M_ta_t -
-            axis_z_ucu_axes4_z*ucu_M_ta_t_4 - ucu_Q_xx*ucu_q_y;
-        const real ucu_M_ta_t_13 = ucu_Q_yz*ucu_q_y - axis_x_ucu_axes4_x*ucu_M_ta_t_2 -
-            axis_z_ucu_axes4_x*ucu_M_ta_t_5 - ucu_Q_yy*ucu_q_z;
-        const real ucu_M_ta_t_14 = ucu_M_ta_t_7 + ucu_M_ta_t_9 + axis_x_ucu_axes4_y*ucu_M_ta_t_2 +
-            axis_z_ucu_axes4_y*ucu_M_ta_t_5;
-        const real ucu_M_ta_t_15 = ucu_Q_yy*ucu_q_x - axis_x_ucu_axes4_z*ucu_M_ta_t_2 -
-            axis_z_ucu_axes4_z*ucu_M_ta_t_5 - ucu_Q_xy*ucu_q_y;
-        const real ucu_M_ta_t_16 = ucu_Q_zz*ucu_q_y - axis_x_ucu_axes4_x*ucu_M_ta_t_3 -
-            axis_z_ucu_axes4_x*ucu_M_ta_t_6 - ucu_Q_yz*ucu_q_z;
-        const real ucu_M_ta_t_17 = ucu_Q_xz*ucu_q_z - axis_x_ucu_axes4_y*ucu_M_ta_t_3 -
-            axis_z_ucu_axes4_y*ucu_M_ta_t_6 - ucu_Q_zz*ucu_q_x;
-        const real ucu_M_ta_t_18 = ucu_M_ta_t_9 - ucu_M_ta_t_8 - axis_x_ucu_axes4_z*ucu_M_ta_t_3 -
-            axis_z_ucu_axes4_z*ucu_M_ta_t_6;
-        /* (M_aa) rotational block of M */
-        const real ucu_M_aa_t = ucu_M_ta_t_16*ucu_q_y + ucu_d_G_m_xz*ucu_q_y +
-            ucu_n_m1_x*(axis_x_ucu_axes4_x*ucu_dalpha_G_m1_in_axes4_x +
-            axis_z_ucu_axes4_x*ucu_d_Gamma_4_t) - ucu_M_ta_t_13*ucu_q_z - ucu_d_G_m_xy*ucu_q_z;
-        const real ucu_M_aa_t_2 = ucu_M_ta_t_14*ucu_q_z + ucu_M_ta_t_17*ucu_q_y +
-            ucu_d_G_m_xx*ucu_q_z + ucu_dalpha_G_m1_y*ucu_n_m1_x - ucu_d_G_m_xz*ucu_q_x;
-        const real ucu_M_aa_t_3 = ucu_M_ta_t_18*ucu_q_y + ucu_d_G_m_xy*ucu_q_x +
-            ucu_dalpha_G_m1_z*ucu_n_m1_x - ucu_M_ta_t_15*ucu_q_z - ucu_d_G_m_xx*ucu_q_y;
-        const real ucu_M_aa_t_4 = ucu_M_ta_t_11*ucu_q_z + ucu_d_G_m_yx*ucu_q_z +
-            ucu_dalpha_G_m1_y*ucu_n_m1_y - ucu_M_ta_t_17*ucu_q_x -
-            ucu_d_G_m1_z*ucu_n_m1_y*ucu_q_x;
-        const real ucu_M_aa_t_5 = ucu_M_ta_t_12*ucu_q_z + ucu_dalpha_G_m1_z*ucu_n_m1_y +
-            ucu_d_G_m1_y*ucu_n_m1_y*ucu_q_x - ucu_M_ta_t_18*ucu_q_x - ucu_d_G_m_yx*ucu_q_y;
-        const real ucu_M_aa_t_6 = ucu_M_ta_t_15*ucu_q_x + ucu_dalpha_G_m1_z*ucu_n_m1_z +
-            ucu_d_G_m1_y*ucu_n_m1_z*ucu_q_x - ucu_M_ta_t_12*ucu_q_y -
-            ucu_d_G_m1_x*ucu_n_m1_z*ucu_q_y;
+        const real ucu_U_x = v.axis_z_ucu_axes4_x*ucu_phi_4_o_in_axes4_z -
+            v.axis_x_ucu_axes4_x*ucu_c_o_in_axes4_x - v.axis_y_ucu_axes4_x*ucu_c_o_in_axes4_y;
+        const real ucu_U_y = v.axis_z_ucu_axes4_y*ucu_phi_4_o_in_axes4_z -
+            v.axis_x_ucu_axes4_y*ucu_c_o_in_axes4_x - v.axis_y_ucu_axes4_y*ucu_c_o_in_axes4_y;
+        const real ucu_U_z = v.axis_z_ucu_axes4_z*ucu_phi_4_o_in_axes4_z -
+            v.axis_x_ucu_axes4_z*ucu_c_o_in_axes4_x - v.axis_y_ucu_axes4_z*ucu_c_o_in_axes4_y;
         /* (Z_a) rotational part of Z */
-        const real ucu_Z_a_t = axis_z_ucu_axes4_x*ucu_mu_4_o_in_axes4_z + ucu_U_z*ucu_q_y -
-            axis_x_ucu_axes4_x*ucu_c_m_o_in_axes4_x - ucu_U_y*ucu_q_z;
-        const real ucu_Z_a_t_2 = axis_z_ucu_axes4_y*ucu_mu_4_o_in_axes4_z + ucu_U_x*ucu_q_z -
-            axis_x_ucu_axes4_y*ucu_c_m_o_in_axes4_x - ucu_U_z*ucu_q_x;
-        const real ucu_Z_a_t_3 = axis_z_ucu_axes4_z*ucu_mu_4_o_in_axes4_z + ucu_U_y*ucu_q_x -
-            axis_x_ucu_axes4_z*ucu_c_m_o_in_axes4_x - ucu_U_x*ucu_q_y;
+        const real ucu_Z_a_t = v.axis_z_ucu_axes4_x*ucu_mu_4_o_in_axes4_z + ucu_U_z*v.ucu_q_y -
+            v.axis_x_ucu_axes4_x*ucu_c_m_o_in_axes4_x - ucu_U_y*v.ucu_q_z;
+        const real ucu_Z_a_t_2 = v.axis_z_ucu_axes4_y*ucu_mu_4_o_in_axes4_z + ucu_U_x*v.ucu_q_z -
+            v.axis_x_ucu_axes4_y*ucu_c_m_o_in_axes4_x - ucu_U_z*v.ucu_q_x;
+        const real ucu_Z_a_t_3 = v.axis_z_ucu_axes4_z*ucu_mu_4_o_in_axes4_z + ucu_U_y*v.ucu_q_x -
+            v.axis_x_ucu_axes4_z*ucu_c_m_o_in_axes4_x - ucu_U_x*v.ucu_q_y;
         /* (ucu-H_a_3) moment of the column's unit force about the platform origin */
-        const real ucu_H_a_3_x = axis_z_ucu_axes4_z*ucu_q_y - axis_z_ucu_axes4_y*ucu_q_z;
-        const real ucu_H_a_3_y = axis_z_ucu_axes4_x*ucu_q_z - axis_z_ucu_axes4_z*ucu_q_x;
-        const real ucu_H_a_3_z = axis_z_ucu_axes4_y*ucu_q_x - axis_z_ucu_axes4_x*ucu_q_y;
+        const real ucu_H_a_3_x = v.axis_z_ucu_axes4_z*v.ucu_q_y - v.axis_z_ucu_axes4_y*v.ucu_q_z;
+        const real ucu_H_a_3_y = v.axis_z_ucu_axes4_x*v.ucu_q_z - v.axis_z_ucu_axes4_z*v.ucu_q_x;
+        const real ucu_H_a_3_z = v.axis_z_ucu_axes4_y*v.ucu_q_x - v.axis_z_ucu_axes4_x*v.ucu_q_y;
         /* (M_tt) translational block of M */
-        gather(&terms[0*count + k], add, ucu_Q_xx);  /* M_tt_xx_of_legs */
-        gather(&terms[1*count + k], add, ucu_Q_xy);  /* M_tt_xy */
-        gather(&terms[2*count + k], add, ucu_Q_xz);  /* M_tt_xz */
-        gather(&terms[3*count + k], add, ucu_Q_yy);  /* M_tt_yy_of_legs */
-        gather(&terms[4*count + k], add, ucu_Q_yz);  /* M_tt_yz */
-        gather(&terms[5*count + k], add, ucu_Q_zz);  /* M_tt_zz_of_legs */
+        gather(&terms[0*count + k], add, v.ucu_Q_xx);  /* M_tt_xx_of_legs */
+        gather(&terms[1*count + k], add, v.ucu_Q_xy);  /* M_tt_xy */
+        gather(&terms[2*count + k], add, v.ucu_Q_xz);  /* M_tt_xz */
+        gather(&terms[3*count + k], add, v.ucu_Q_yy);  /* M_tt_yy_of_legs */
+        gather(&terms[4*count + k], add, v.ucu_Q_yz);  /* M_tt_yz */
+        gather(&terms[5*count + k], add, v.ucu_Q_zz);  /* M_tt_zz_of_legs */
         /* (M_ta) coupling block of M */
-        gather(&terms[6*count + k], add, ucu_M_ta_t_10);  /* M_ta_xx */
-        gather(&terms[7*count + k], add, ucu_M_ta_t_11);  /* M_ta_xy_of_legs */
-        gather(&terms[8*count + k], add, ucu_M_ta_t_12);  /* M_ta_xz_of_legs */
-        gather(&terms[9*count + k], add, ucu_M_ta_t_13);  /* M_ta_yx_of_legs */
-        gather(&terms[10*count + k], add, ucu_M_ta_t_14);  /* M_ta_t */
-        gather(&terms[11*count + k], add, ucu_M_ta_t_15);  /* M_ta_yz_of_legs */
-        gather(&terms[12*count + k], add, ucu_M_ta_t_16);  /* M_ta_zx_of_legs */
-        gather(&terms[13*count + k], add, ucu_M_ta_t_17);  /* M_ta_zy_of_legs */
-        gather(&terms[14*count + k], add, ucu_M_ta_t_18);  /* M_ta_zz */
+        gather(&terms[6*count + k], add, v.ucu_M_ta_t_10);  /* M_ta_xx */
+        gather(&terms[7*count + k], add, v.ucu_M_ta_t_11);  /* M_ta_xy_of_legs */
+        gather(&terms[8*count + k], add, v.ucu_M_ta_t_12);  /* M_ta_xz_of_legs */
+        gather(&terms[9*count + k], add, v.ucu_M_ta_t_13);  /* M_ta_yx_of_legs */
+        gather(&terms[10*count + k], add, v.ucu_M_ta_t_14);  /* M_ta_t */
+        gather(&terms[11*count + k], add, v.ucu_M_ta_t_15);  /* M_ta_yz_of_legs */
+        gather(&terms[12*count + k], add, v.ucu_M_ta_t_16);  /* M_ta_zx_of_legs */
+        gather(&terms[13*count + k], add, v.ucu_M_ta_t_17);  /* M_ta_zy_of_legs */
+        gather(&terms[14*count + k], add, v.ucu_M_ta_t_18);  /* M_ta_zz */
         /* (M_aa) rotational block of M */
-        gather(&terms[15*count + k], add, ucu_M_aa_t);  /* M_aa_xx_of_legs */
-        gather(&terms[16*count + k], add, ucu_M_aa_t_2);  /* M_aa_xy_of_legs */
-        gather(&terms[17*count + k], add, ucu_M_aa_t_3);  /* M_aa_xz_of_legs */
-        gather(&terms[18*count + k], add, ucu_M_aa_t_4);  /* M_aa_yy_of_legs */
-        gather(&terms[19*count + k], add, ucu_M_aa_t_5);  /* M_aa_yz_of_legs */
-        gather(&terms[20*count + k], add, ucu_M_aa_t_6);  /* M_aa_zz_of_legs */
+        gather(&terms[15*count + k], add, v.ucu_M_aa_t);  /* M_aa_xx_of_legs */
+        gather(&terms[16*count + k], add, v.ucu_M_aa_t_2);  /* M_aa_xy_of_legs */
+        gather(&terms[17*count + k], add, v.ucu_M_aa_t_3);  /* M_aa_xz_of_legs */
+        gather(&terms[18*count + k], add, v.ucu_M_aa_t_4);  /* M_aa_yy_of_legs */
+        gather(&terms[19*count + k], add, v.ucu_M_aa_t_5);  /* M_aa_yz_of_legs */
+        gather(&terms[20*count + k], add, v.ucu_M_aa_t_6);  /* M_aa_zz_of_legs */
         /* (Z_t) translational part of Z */
         gather(&terms[21*count + k], add, ucu_U_x);  /* Z_t_x_of_legs */
         gather(&terms[22*count + k], add, ucu_U_y);  /* Z_t_y_of_legs */
@@ -2180,19 +2868,20 @@ INLINE void dynamics_legs_ucu(const prepared *m, size_t w, size_t leg, size_t le
         gather(&terms[25*count + k], add, ucu_Z_a_t_2);  /* Z_a_y_of_legs */
         gather(&terms[26*count + k], add, ucu_Z_a_t_3);  /* Z_a_z_of_legs */
         /* (ucu-w_3) force part of reciprocal wrench 3 */
-        o[0*count + k] = axis_z_ucu_axes4_x;
-        o[1*count + k] = axis_z_ucu_axes4_y;
-        o[2*count + k] = axis_z_ucu_axes4_z;
+        o[0*count + k] = v.axis_z_ucu_axes4_x;
+        o[1*count + k] = v.axis_z_ucu_axes4_y;
+        o[2*count + k] = v.axis_z_ucu_axes4_z;
         /* (ucu-H_a_3) moment of the column's unit force about the platform origin */
         o[3*count + k] = ucu_H_a_3_x;
         o[4*count + k] = ucu_H_a_3_y;
         o[5*count + k] = ucu_H_a_3_z;
-        o[7*count + k] = (axis_z_ucu_axes4_x + (axis_z_ucu_axes4_y + axis_z_ucu_axes4_z)) +
+        o[7*count + k] = (v.axis_z_ucu_axes4_x + (v.axis_z_ucu_axes4_y + v.axis_z_ucu_axes4_z)) +
             (ucu_H_a_3_x + (ucu_H_a_3_y + ucu_H_a_3_z));
-        o[6*count + k] = UNLESS(magnitude(ucu_h_4_t_6) > LEAST_1) + UNLESS(magnitude(ucu_h_4_t_9)
-            > LEAST_1) + UNLESS(magnitude(ucu_h_4_t_18) > LEAST_2) +
-            UNLESS(magnitude(ucu_end_p1_in_axes4_x) > LEAST_3) + UNLESS(magnitude(ucu_h_4_t_10) >
-            LEAST_4) + UNLESS(magnitude(ucu_v_1_in_axes2_z) > LEAST_4);
+        o[6*count + k] = UNLESS(magnitude(v.ucu_h_4_t_7) > LEAST_1) +
+            UNLESS(magnitude(v.ucu_h_4_t_11) > LEAST_1) + UNLESS(magnitude(v.ucu_h_4_t_19) >
+            LEAST_2) + UNLESS(magnitude(v.ucu_end_p1_in_axes4_x) > LEAST_3) +
+            UNLESS(magnitude(v.ucu_h_4_t_12) > LEAST_4) + UNLESS(magnitude(v.ucu_v_1_in_axes2_z) >
+            LEAST_4);
     }
 }
 
@@ -2200,7 +2889,7 @@ INLINE void dynamics_place_ucu(size_t w, size_t count, const real *o, size_t leg
     real *H, verdict *t)
 {
     for (size_t k = 0; k < w; ++k) {
-        H[(0*NU + leg)*w + k] = o[0*count + first + k];
+        H[leg*w + k] = o[0*count + first + k];
         H[(NU + leg)*w + k] = o[1*count + first + k];
         H[(2*NU + leg)*w + k] = o[2*count + first + k];
         H[(3*NU + leg)*w + k] = o[3*count + first + k];
@@ -2225,66 +2914,66 @@ INLINE void dynamics_after(const prepared *m, size_t w, const real *s, const rea
         const real M_tt_zz = M_tt_zz_of_legs + m_star;
         /* (M_ta) coupling block of M */
         const real M_ta_xy_of_legs = sums[7*w + k];
-        const real h_star_z = s[20*w + k];
+        const real h_star_z = s[11*w + k];
         const real M_ta_xy = M_ta_xy_of_legs + h_star_z;
         const real M_ta_xz_of_legs = sums[8*w + k];
-        const real h_star_y = s[19*w + k];
+        const real h_star_y = s[10*w + k];
         const real M_ta_xz = M_ta_xz_of_legs - h_star_y;
         const real M_ta_yx_of_legs = sums[9*w + k];
         const real M_ta_yx = M_ta_yx_of_legs - h_star_z;
         const real M_ta_yz_of_legs = sums[11*w + k];
-        const real h_star_x = s[18*w + k];
+        const real h_star_x = s[9*w + k];
         const real M_ta_yz = M_ta_yz_of_legs + h_star_x;
         const real M_ta_zx_of_legs = sums[12*w + k];
         const real M_ta_zx = M_ta_zx_of_legs + h_star_y;
         const real M_ta_zy_of_legs = sums[13*w + k];
         const real M_ta_zy = M_ta_zy_of_legs - h_star_x;
         /* (M_aa) rotational block of M */
-        const real J_star_xx = s[21*w + k];
+        const real J_star_xx = s[12*w + k];
         const real M_aa_xx_of_legs = sums[15*w + k];
         const real M_aa_xx = J_star_xx + M_aa_xx_of_legs;
-        const real J_star_xy = s[22*w + k];
+        const real J_star_xy = s[13*w + k];
         const real M_aa_xy_of_legs = sums[16*w + k];
         const real M_aa_xy = J_star_xy + M_aa_xy_of_legs;
-        const real J_star_xz = s[23*w + k];
+        const real J_star_xz = s[14*w + k];
         const real M_aa_xz_of_legs = sums[17*w + k];
         const real M_aa_xz = J_star_xz + M_aa_xz_of_legs;
-        const real J_star_yy = s[24*w + k];
+        const real J_star_yy = s[15*w + k];
         const real M_aa_yy_of_legs = sums[18*w + k];
         const real M_aa_yy = J_star_yy + M_aa_yy_of_legs;
-        const real J_star_yz = s[25*w + k];
+        const real J_star_yz = s[16*w + k];
         const real M_aa_yz_of_legs = sums[19*w + k];
         const real M_aa_yz = J_star_yz + M_aa_yz_of_legs;
-        const real J_star_zz = s[26*w + k];
+        const real J_star_zz = s[17*w + k];
         const real M_aa_zz_of_legs = sums[20*w + k];
         const real M_aa_zz = J_star_zz + M_aa_zz_of_legs;
         /* (Z_t) translational part of Z */
-        const real Z_p_x = s[27*w + k];
+        const real Z_p_x = s[18*w + k];
         const real Z_t_x_of_legs = sums[21*w + k];
         const real Z_t_x = Z_p_x + Z_t_x_of_legs;
-        const real Z_p_y = s[28*w + k];
+        const real Z_p_y = s[19*w + k];
         const real Z_t_y_of_legs = sums[22*w + k];
         const real Z_t_y = Z_p_y + Z_t_y_of_legs;
-        const real Z_p_z = s[29*w + k];
+        const real Z_p_z = s[20*w + k];
         const real Z_t_z_of_legs = sums[23*w + k];
         const real Z_t_z = Z_p_z + Z_t_z_of_legs;
         /* (Z_a) rotational part of Z */
         const real Z_a_x_of_legs = sums[24*w + k];
-        const real Z_q_x = s[30*w + k];
+        const real Z_q_x = s[21*w + k];
         const real Z_a_x = Z_a_x_of_legs + Z_q_x;
         const real Z_a_y_of_legs = sums[25*w + k];
-        const real Z_q_y = s[31*w + k];
+        const real Z_q_y = s[22*w + k];
         const real Z_a_y = Z_a_y_of_legs + Z_q_y;
         const real Z_a_z_of_legs = sums[26*w + k];
-        const real Z_q_z = s[32*w + k];
+        const real Z_q_z = s[23*w + k];
         const real Z_a_z = Z_a_z_of_legs + Z_q_z;
         /* (M_tt) translational block of M */
-        M[0*NV*w + k] = M_tt_xx;
+        M[0*w + k] = M_tt_xx;
         const real M_tt_xy = sums[1*w + k];
-        M[(0*NV + 1)*w + k] = M_tt_xy;
+        M[1*w + k] = M_tt_xy;
         M[NV*w + k] = M_tt_xy;
         const real M_tt_xz = sums[2*w + k];
-        M[(0*NV + 2)*w + k] = M_tt_xz;
+        M[2*w + k] = M_tt_xz;
         M[2*NV*w + k] = M_tt_xz;
         M[(NV + 1)*w + k] = M_tt_yy;
         const real M_tt_yz = sums[4*w + k];
@@ -2293,11 +2982,11 @@ INLINE void dynamics_after(const prepared *m, size_t w, const real *s, const rea
         M[(2*NV + 2)*w + k] = M_tt_zz;
         /* (M_ta) coupling block of M */
         const real M_ta_xx = sums[6*w + k];
-        M[(0*NV + 3)*w + k] = M_ta_xx;
+        M[3*w + k] = M_ta_xx;
         M[3*NV*w + k] = M_ta_xx;
-        M[(0*NV + 4)*w + k] = M_ta_xy;
+        M[4*w + k] = M_ta_xy;
         M[4*NV*w + k] = M_ta_xy;
-        M[(0*NV + 5)*w + k] = M_ta_xz;
+        M[5*w + k] = M_ta_xz;
         M[5*NV*w + k] = M_ta_xz;
         M[(NV + 3)*w + k] = M_ta_yx;
         M[(3*NV + 1)*w + k] = M_ta_yx;
@@ -2341,12 +3030,10 @@ INLINE void dynamics_after(const prepared *m, size_t w, const real *s, const rea
 INLINE void dynamics_run(const prepared *m, const real *X, const real *V, real *M, real *Z, real
     *H, verdict *t)
 {
-    real s[33] = {0};
-    real sums[27] = {0};
-    real terms_ucu[27*LEGS(LEGS_OF_ucu)] = {0};
-    real o_ucu[8*LEGS(LEGS_OF_ucu)] = {0};
+    real s[24] = {0}, sums[27] = {0};
+    real terms_ucu[27*LEGS(LEGS_OF_ucu)] = {0}, o_ucu[8*LEGS(LEGS_OF_ucu)] = {0};
     dynamics_before(m, 1, X, V, s, t);
-    dynamics_legs_ucu(m, 1, 0, 1, s, 0, LEGS(LEGS_OF_ucu), 0, terms_ucu, o_ucu);
+    dynamics_legs_ucu(m, 1, 0, 1, s, 0, LEGS(LEGS_OF_ucu), 0, X, V, terms_ucu, o_ucu);
     for (size_t leg = 0; leg < LEGS_OF_ucu; ++leg) {
         dynamics_place_ucu(1, LEGS(LEGS_OF_ucu), o_ucu, leg, leg, H, t);
     }
@@ -2359,13 +3046,12 @@ INLINE void dynamics_run(const prepared *m, const real *X, const real *V, real *
 INLINE void dynamics_run_lanes(const prepared *m, const real *X, const real *V, real *M, real *Z,
     real *H, verdict *t)
 {
-    real s[33*LANES];
-    real sums[27*LANES];
+    real s[24*LANES], sums[27*LANES];
     real o_ucu[8*LANES];
     dynamics_before(m, LANES, X, V, s, t);
     clear(sums, 27*LANES);
     for (size_t leg = 0; leg < LEGS_OF_ucu; ++leg) {
-        dynamics_legs_ucu(m, LANES, leg, 0, s, 1, LANES, 1, sums, o_ucu);
+        dynamics_legs_ucu(m, LANES, leg, 0, s, 1, LANES, 1, X, V, sums, o_ucu);
         dynamics_place_ucu(LANES, LANES, o_ucu, leg, 0, H, t);
     }
     dynamics_after(m, LANES, s, sums, M, Z, t);
@@ -2375,518 +3061,69 @@ INLINE void dynamics_run_lanes(const prepared *m, const real *X, const real *V, 
 INLINE void M_before(const prepared *m, size_t w, const real *X, real *s, verdict *t)
 {
     for (size_t k = 0; k < w; ++k) {
-        /* X: named entries */
-        const real X_0 = X[0*w + k];
-        const real t_x = X_0;
-        const real X_1 = X[1*w + k];
-        const real t_y = X_1;
-        const real X_2 = X[2*w + k];
-        const real t_z = X_2;
-        const real X_3 = X[3*w + k];
-        const real X_4 = X[4*w + k];
-        const real X_5 = X[5*w + k];
-        const real X_6 = X[6*w + k];
-        const real quaternion_norm2 = X_3*X_3 + X_4*X_4 + X_5*X_5 + X_6*X_6;
-        const real quaternion_scale = 2/quaternion_norm2;
-        const real quaternion_sx = X_3*quaternion_scale;
-        const real quaternion_sy = X_4*quaternion_scale;
-        const real quaternion_sz = X_5*quaternion_scale;
-        const real quaternion_wx = X_6*quaternion_sx;
-        const real quaternion_wy = X_6*quaternion_sy;
-        const real quaternion_wz = X_6*quaternion_sz;
-        const real quaternion_xx = X_3*quaternion_sx;
-        const real quaternion_xy = X_3*quaternion_sy;
-        const real quaternion_xz = X_3*quaternion_sz;
-        const real quaternion_yy = X_4*quaternion_sy;
-        const real quaternion_yz = X_4*quaternion_sz;
-        const real quaternion_zz = X_5*quaternion_sz;
-        const real R_xx = 1 - quaternion_yy - quaternion_zz;
-        const real R_xy = quaternion_xy - quaternion_wz;
-        const real R_xz = quaternion_wy + quaternion_xz;
-        const real R_yx = quaternion_wz + quaternion_xy;
-        const real R_yy = 1 - quaternion_xx - quaternion_zz;
-        const real R_yz = quaternion_yz - quaternion_wx;
-        const real R_zx = quaternion_xz - quaternion_wy;
-        const real R_zy = quaternion_wx + quaternion_yz;
-        const real R_zz = 1 - quaternion_xx - quaternion_yy;
-        /* (h_star) first moment about the platform origin */
-        const real h_star_in_platform_x = m->h_star_in_platform_x;
-        const real h_star_in_platform_y = m->h_star_in_platform_y;
-        const real h_star_in_platform_z = m->h_star_in_platform_z;
-        const real h_star_x = R_xx*h_star_in_platform_x + R_xy*h_star_in_platform_y +
-            R_xz*h_star_in_platform_z;
-        const real h_star_y = R_yx*h_star_in_platform_x + R_yy*h_star_in_platform_y +
-            R_yz*h_star_in_platform_z;
-        const real h_star_z = R_zx*h_star_in_platform_x + R_zy*h_star_in_platform_y +
-            R_zz*h_star_in_platform_z;
-        /* (J_star) inertia tensor about the platform origin */
-        const real J_star_in_platform_xy = m->J_star_in_platform_xy;
-        const real J_star_in_platform_yz = m->J_star_in_platform_yz;
-        const real J_star_t_12 = m->J_star_t_12;
-        const real J_star_t = J_star_in_platform_xy*R_xx + J_star_in_platform_yz*R_xz -
-            J_star_t_12*R_xy;
-        const real J_star_t_2 = J_star_in_platform_xy*R_yx + J_star_in_platform_yz*R_yz -
-            J_star_t_12*R_yy;
-        const real J_star_t_3 = J_star_in_platform_xy*R_zx + J_star_in_platform_yz*R_zz -
-            J_star_t_12*R_zy;
-        const real J_star_in_platform_xz = m->J_star_in_platform_xz;
-        const real J_star_t_14 = m->J_star_t_14;
-        const real J_star_t_4 = J_star_t_14*R_xz - J_star_in_platform_xz*R_xx;
-        const real J_star_t_5 = J_star_t_14*R_yz - J_star_in_platform_xz*R_yx;
-        const real J_star_t_6 = J_star_t_14*R_zz - J_star_in_platform_xz*R_zx;
-        const real J_star_t_7 = J_star_t*R_xy - J_star_t_4*R_xz;
-        const real J_star_in_platform_xx = m->J_star_in_platform_xx;
-        const real J_star_xx = J_star_in_platform_xx + 2*J_star_t_7;
-        const real J_star_xy = J_star_t*R_yy + J_star_t_2*R_xy - J_star_t_4*R_yz -
-            J_star_t_5*R_xz;
-        const real J_star_xz = J_star_t*R_zy + J_star_t_3*R_xy - J_star_t_4*R_zz -
-            J_star_t_6*R_xz;
-        const real J_star_t_8 = J_star_t_2*R_yy - J_star_t_5*R_yz;
-        const real J_star_yy = J_star_in_platform_xx + 2*J_star_t_8;
-        const real J_star_yz = J_star_t_2*R_zy + J_star_t_3*R_yy - J_star_t_5*R_zz -
-            J_star_t_6*R_yz;
-        const real J_star_t_9 = J_star_t_3*R_zy - J_star_t_6*R_zz;
-        const real J_star_zz = J_star_in_platform_xx + 2*J_star_t_9;
-        s[0*w + k] = t_x;
-        s[1*w + k] = t_y;
-        s[2*w + k] = t_z;
-        s[3*w + k] = R_xx;
-        s[4*w + k] = R_xy;
-        s[5*w + k] = R_xz;
-        s[6*w + k] = R_yx;
-        s[7*w + k] = R_yy;
-        s[8*w + k] = R_yz;
-        s[9*w + k] = R_zx;
-        s[10*w + k] = R_zy;
-        s[11*w + k] = R_zz;
-        s[12*w + k] = h_star_x;
-        s[13*w + k] = h_star_y;
-        s[14*w + k] = h_star_z;
-        s[15*w + k] = J_star_xx;
-        s[16*w + k] = J_star_xy;
-        s[17*w + k] = J_star_xz;
-        s[18*w + k] = J_star_yy;
-        s[19*w + k] = J_star_yz;
-        s[20*w + k] = J_star_zz;
-        t->invalid[k] += UNLESS(is_finite(quaternion_scale)) + UNLESS(quaternion_scale > 0);
+        values v;
+        stage_X(m, w, k, X, &v);
+        stage_M_dynamics(m, &v);
+        s[0*w + k] = v.R_xx;
+        s[1*w + k] = v.R_xy;
+        s[2*w + k] = v.R_xz;
+        s[3*w + k] = v.R_yx;
+        s[4*w + k] = v.R_yy;
+        s[5*w + k] = v.R_yz;
+        s[6*w + k] = v.R_zx;
+        s[7*w + k] = v.R_zy;
+        s[8*w + k] = v.R_zz;
+        s[9*w + k] = v.h_star_x;
+        s[10*w + k] = v.h_star_y;
+        s[11*w + k] = v.h_star_z;
+        s[12*w + k] = v.J_star_xx;
+        s[13*w + k] = v.J_star_xy;
+        s[14*w + k] = v.J_star_xz;
+        s[15*w + k] = v.J_star_yy;
+        s[16*w + k] = v.J_star_yz;
+        s[17*w + k] = v.J_star_zz;
+        t->invalid[k] += UNLESS(is_finite(v.quaternion_scale)) + UNLESS(v.quaternion_scale > 0);
     }
 }
 
 INLINE void M_legs_ucu(const prepared *m, size_t w, size_t leg, size_t legs, const real *s, size_t
-    states, size_t count, int add, real *terms, real *o)
+    states, size_t count, int add, const real *X, real *terms, real *o)
 {
     for (size_t k = 0; k < count; ++k) {
         const size_t i = leg + legs*k;
         const size_t j = states*k;
-        /* (ucu-h_4) first moment of link 4 about the connection point */
-        const real R_xx = s[3*w + j];
-        const real R_xy = s[4*w + j];
-        const real R_xz = s[5*w + j];
-        const real ucu_platform_point_x = m->ucu_platform_point_x[i];
-        const real ucu_platform_point_y = m->ucu_platform_point_y[i];
-        const real ucu_platform_point_z = m->ucu_platform_point_z[i];
-        const real ucu_q_x = R_xx*ucu_platform_point_x + R_xy*ucu_platform_point_y +
-            R_xz*ucu_platform_point_z;
-        const real R_yx = s[6*w + j];
-        const real R_yy = s[7*w + j];
-        const real R_yz = s[8*w + j];
-        const real ucu_q_y = R_yx*ucu_platform_point_x + R_yy*ucu_platform_point_y +
-            R_yz*ucu_platform_point_z;
-        const real R_zx = s[9*w + j];
-        const real R_zy = s[10*w + j];
-        const real R_zz = s[11*w + j];
-        const real ucu_q_z = R_zx*ucu_platform_point_x + R_zy*ucu_platform_point_y +
-            R_zz*ucu_platform_point_z;
-        const real t_x = s[0*w + j];
-        const real ucu_base_point_x = m->ucu_base_point_x[i];
-        const real ucu_h_4_t = t_x + ucu_q_x - ucu_base_point_x;
-        const real t_y = s[1*w + j];
-        const real ucu_base_point_y = m->ucu_base_point_y[i];
-        const real ucu_h_4_t_2 = t_y + ucu_q_y - ucu_base_point_y;
-        const real t_z = s[2*w + j];
-        const real ucu_base_point_z = m->ucu_base_point_z[i];
-        const real ucu_h_4_t_3 = t_z + ucu_q_z - ucu_base_point_z;
-        const real ucu_base_frame_xx = m->ucu_base_frame_xx[i];
-        const real ucu_base_frame_yx = m->ucu_base_frame_yx[i];
-        const real ucu_base_frame_zx = m->ucu_base_frame_zx[i];
-        const real ucu_h_4_t_4 = ucu_base_frame_xx*ucu_h_4_t + ucu_base_frame_yx*ucu_h_4_t_2 +
-            ucu_base_frame_zx*ucu_h_4_t_3;
-        const real ucu_base_frame_xy = m->ucu_base_frame_xy[i];
-        const real ucu_base_frame_yy = m->ucu_base_frame_yy[i];
-        const real ucu_base_frame_zy = m->ucu_base_frame_zy[i];
-        const real ucu_h_4_t_5 = ucu_base_frame_xy*ucu_h_4_t + ucu_base_frame_yy*ucu_h_4_t_2 +
-            ucu_base_frame_zy*ucu_h_4_t_3;
-        const real ucu_h_4_t_6 = ucu_h_4_t_4*ucu_h_4_t_4 + ucu_h_4_t_5*ucu_h_4_t_5;
-        const real ucu_branch_1 = m->ucu_branch_1[i];
-        const real ucu_h_4_t_7 = ucu_branch_1*root(ucu_h_4_t_6);
-        const real ucu_base_frame_xz = m->ucu_base_frame_xz[i];
-        const real ucu_base_frame_yz = m->ucu_base_frame_yz[i];
-        const real ucu_base_frame_zz = m->ucu_base_frame_zz[i];
-        const real ucu_h_4_t_8 = ucu_base_frame_xz*ucu_h_4_t + ucu_base_frame_yz*ucu_h_4_t_2 +
-            ucu_base_frame_zz*ucu_h_4_t_3;
-        const real ucu_h_4_t_9 = ucu_h_4_t_6 + ucu_h_4_t_8*ucu_h_4_t_8;
-        const real ucu_branch_2 = m->ucu_branch_2[i];
-        const real ucu_h_4_t_10 = ucu_branch_2*root(ucu_h_4_t_9);
-        const real inv_ucu_h_4_t_10 = 1/ucu_h_4_t_10;
-        const real ucu_h_4_t_11 = -inv_ucu_h_4_t_10*ucu_h_4_t_7;
-        const real ucu_e_1_in_axes4_z = inv_ucu_h_4_t_10*ucu_h_4_t_8;
-        const real ucu_platform_joint_axis_platform_x = m->ucu_platform_joint_axis_platform_x[i];
-        const real ucu_platform_joint_axis_platform_y = m->ucu_platform_joint_axis_platform_y[i];
-        const real ucu_platform_joint_axis_platform_z = m->ucu_platform_joint_axis_platform_z[i];
-        const real ucu_h_4_t_12 = ucu_platform_joint_axis_platform_x*(R_xx*ucu_base_frame_xx +
-            R_yx*ucu_base_frame_yx + R_zx*ucu_base_frame_zx) +
-            ucu_platform_joint_axis_platform_y*(R_xy*ucu_base_frame_xx + R_yy*ucu_base_frame_yx +
-            R_zy*ucu_base_frame_zx) + ucu_platform_joint_axis_platform_z*(R_xz*ucu_base_frame_xx +
-            R_yz*ucu_base_frame_yx + R_zz*ucu_base_frame_zx);
-        const real ucu_h_4_t_13 = ucu_platform_joint_axis_platform_x*(R_xx*ucu_base_frame_xy +
-            R_yx*ucu_base_frame_yy + R_zx*ucu_base_frame_zy) +
-            ucu_platform_joint_axis_platform_y*(R_xy*ucu_base_frame_xy + R_yy*ucu_base_frame_yy +
-            R_zy*ucu_base_frame_zy) + ucu_platform_joint_axis_platform_z*(R_xz*ucu_base_frame_xy +
-            R_yz*ucu_base_frame_yy + R_zz*ucu_base_frame_zy);
-        const real ucu_h_4_t_14 = ucu_platform_joint_axis_platform_x*(R_xx*ucu_base_frame_xz +
-            R_yx*ucu_base_frame_yz + R_zx*ucu_base_frame_zz) +
-            ucu_platform_joint_axis_platform_y*(R_xy*ucu_base_frame_xz + R_yy*ucu_base_frame_yz +
-            R_zy*ucu_base_frame_zz) + ucu_platform_joint_axis_platform_z*(R_xz*ucu_base_frame_xz +
-            R_yz*ucu_base_frame_yz + R_zz*ucu_base_frame_zz);
-        const real inv_ucu_h_4_t_7 = 1/ucu_h_4_t_7;
-        const real ucu_h_4_t_15 = -inv_ucu_h_4_t_7*ucu_h_4_t_5;
-        const real ucu_h_4_t_16 = inv_ucu_h_4_t_7*ucu_h_4_t_4;
-        const real ucu_end_p1_in_turn4_y = ucu_h_4_t_12*ucu_h_4_t_15 + ucu_h_4_t_13*ucu_h_4_t_16;
-        const real ucu_h_4_t_17 = ucu_h_4_t_12*ucu_h_4_t_16 - ucu_h_4_t_13*ucu_h_4_t_15;
-        const real ucu_end_p1_in_turn4_x = ucu_e_1_in_axes4_z*ucu_h_4_t_17 +
-            ucu_h_4_t_11*ucu_h_4_t_14;
-        const real ucu_h_4_t_18 = ucu_end_p1_in_turn4_x*ucu_end_p1_in_turn4_x +
-            ucu_end_p1_in_turn4_y*ucu_end_p1_in_turn4_y;
-        const real ucu_branch_4 = m->ucu_branch_4[i];
-        const real ucu_h_4_t_19 = ucu_branch_4*root(ucu_h_4_t_18);
-        const real inv_ucu_h_4_t_19 = 1/ucu_h_4_t_19;
-        const real ucu_e_2_in_axes4_y = inv_ucu_h_4_t_19*ucu_end_p1_in_turn4_x;
-        const real ucu_e_2_in_axes4_x = inv_ucu_h_4_t_19*ucu_end_p1_in_turn4_y;
-        const real ucu_h_4_in_spec4_y = m->ucu_h_4_in_spec4_y[i];
-        const real ucu_h_4_in_spec4_z = m->ucu_h_4_in_spec4_z[i];
-        const real ucu_h_4_in_axes2_y = ucu_e_2_in_axes4_y*ucu_h_4_in_spec4_y -
-            ucu_e_2_in_axes4_x*ucu_h_4_in_spec4_z;
-        /* (ucu-J_4) inertia tensor of link 4 about the connection point */
-        const real ucu_J_4_in_spec4_xy = m->ucu_J_4_in_spec4_xy[i];
-        const real ucu_J_4_in_spec4_xz = m->ucu_J_4_in_spec4_xz[i];
-        const real ucu_J_4_in_axes2_xz = ucu_J_4_in_spec4_xy*ucu_e_2_in_axes4_x +
-            ucu_J_4_in_spec4_xz*ucu_e_2_in_axes4_y;
-        /* (ucu-v_1) velocity of the connection point per rate of joint 1 */
-        const real ucu_e_1_in_axes4_x = ucu_e_2_in_axes4_y*ucu_h_4_t_11;
-        const real ucu_e_1_in_axes4_y = -ucu_e_2_in_axes4_x*ucu_h_4_t_11;
-        const real ucu_v_1_in_axes4_x = ucu_e_1_in_axes4_y*ucu_h_4_t_10;
-        const real ucu_v_1_in_axes4_y = -ucu_e_1_in_axes4_x*ucu_h_4_t_10;
-        const real ucu_v_1_in_axes2_y = ucu_e_2_in_axes4_y*ucu_v_1_in_axes4_x -
-            ucu_e_2_in_axes4_x*ucu_v_1_in_axes4_y;
-        const real ucu_v_1_in_axes2_z = ucu_e_2_in_axes4_x*ucu_v_1_in_axes4_x +
-            ucu_e_2_in_axes4_y*ucu_v_1_in_axes4_y;
-        /* (ucu-n_m1) direction 1 of the moment that the platform joint transmits */
-        const real ucu_n_m1_in_axes4_x = ucu_e_1_in_axes4_z*ucu_h_4_t_14 -
-            ucu_h_4_t_11*ucu_h_4_t_17;
-        const real axis_z_ucu_axes4_x = inv_ucu_h_4_t_10*ucu_h_4_t;
-        const real axis_z_ucu_axes4_y = inv_ucu_h_4_t_10*ucu_h_4_t_2;
-        const real axis_z_ucu_axes4_z = inv_ucu_h_4_t_10*ucu_h_4_t_3;
-        const real ucu_n_m1_t = ucu_e_1_in_axes4_z*ucu_e_2_in_axes4_x;
-        const real ucu_n_m1_t_2 = ucu_e_2_in_axes4_y*ucu_h_4_t_15 - ucu_h_4_t_16*ucu_n_m1_t;
-        const real ucu_n_m1_t_3 = ucu_e_2_in_axes4_y*ucu_h_4_t_16 + ucu_h_4_t_15*ucu_n_m1_t;
-        const real axis_y_ucu_axes4_x = ucu_base_frame_xx*ucu_n_m1_t_2 +
-            ucu_base_frame_xy*ucu_n_m1_t_3 + ucu_base_frame_xz*ucu_e_1_in_axes4_y;
-        const real axis_y_ucu_axes4_y = ucu_base_frame_yx*ucu_n_m1_t_2 +
-            ucu_base_frame_yy*ucu_n_m1_t_3 + ucu_base_frame_yz*ucu_e_1_in_axes4_y;
-        const real axis_y_ucu_axes4_z = ucu_base_frame_zx*ucu_n_m1_t_2 +
-            ucu_base_frame_zy*ucu_n_m1_t_3 + ucu_base_frame_zz*ucu_e_1_in_axes4_y;
-        const real axis_x_ucu_axes4_x = axis_y_ucu_axes4_y*axis_z_ucu_axes4_z -
-            axis_y_ucu_axes4_z*axis_z_ucu_axes4_y;
-        const real axis_x_ucu_axes4_y = axis_y_ucu_axes4_z*axis_z_ucu_axes4_x -
-            axis_y_ucu_axes4_x*axis_z_ucu_axes4_z;
-        const real axis_x_ucu_axes4_z = axis_y_ucu_axes4_x*axis_z_ucu_axes4_y -
-            axis_y_ucu_axes4_y*axis_z_ucu_axes4_x;
-        const real ucu_end_p1_in_axes4_x = ucu_e_2_in_axes4_x*ucu_end_p1_in_turn4_y +
-            ucu_e_2_in_axes4_y*ucu_end_p1_in_turn4_x;
-        const real ucu_n_m1_in_axes2_z = ucu_e_2_in_axes4_x*ucu_n_m1_in_axes4_x;
-        const real ucu_n_m1_x = axis_x_ucu_axes4_x*ucu_n_m1_in_axes4_x -
-            axis_z_ucu_axes4_x*ucu_end_p1_in_axes4_x;
-        const real ucu_n_m1_y = axis_x_ucu_axes4_y*ucu_n_m1_in_axes4_x -
-            axis_z_ucu_axes4_y*ucu_end_p1_in_axes4_x;
-        const real ucu_n_m1_z = axis_x_ucu_axes4_z*ucu_n_m1_in_axes4_x -
-            axis_z_ucu_axes4_z*ucu_end_p1_in_axes4_x;
-        /* (ucu-w_1) force part of reciprocal wrench 1 */
-        const real inv_ucu_v_1_in_axes2_z = 1/ucu_v_1_in_axes2_z;
-        const real ucu_w_1_in_axes4_x = inv_ucu_v_1_in_axes2_z*ucu_e_2_in_axes4_x;
-        const real ucu_w_1_in_axes4_y = inv_ucu_v_1_in_axes2_z*ucu_e_2_in_axes4_y;
-        /* (ucu-w_2) force part of reciprocal wrench 2 */
-        const real ucu_w_2_t = inv_ucu_h_4_t_10*inv_ucu_v_1_in_axes2_z*ucu_v_1_in_axes2_y;
-        const real ucu_w_2_in_axes4_x = inv_ucu_h_4_t_10*ucu_e_2_in_axes4_y -
-            ucu_e_2_in_axes4_x*ucu_w_2_t;
-        const real ucu_w_2_in_axes4_y = -inv_ucu_h_4_t_10*ucu_e_2_in_axes4_x -
-            ucu_e_2_in_axes4_y*ucu_w_2_t;
-        /* (ucu-w_4) force part of reciprocal wrench 4 */
-        const real ucu_w_4_t = ucu_e_1_in_axes4_z*ucu_end_p1_in_axes4_x -
-            ucu_e_1_in_axes4_x*ucu_n_m1_in_axes4_x;
-        const real ucu_w_4_t_2 = -1/ucu_end_p1_in_axes4_x;
-        const real ucu_w_4_t_3 = -inv_ucu_h_4_t_10*ucu_n_m1_in_axes2_z*ucu_w_4_t_2;
-        const real ucu_w_4_t_4 = inv_ucu_v_1_in_axes2_z*(ucu_v_1_in_axes2_y*ucu_w_4_t_3 -
-            ucu_w_4_t*ucu_w_4_t_2);
-        const real ucu_w_4_in_axes4_x = ucu_e_2_in_axes4_y*ucu_w_4_t_3 -
-            ucu_e_2_in_axes4_x*ucu_w_4_t_4;
-        const real ucu_w_4_in_axes4_y = -ucu_e_2_in_axes4_x*ucu_w_4_t_3 -
-            ucu_e_2_in_axes4_y*ucu_w_4_t_4;
-        /* (ucu-o_4) moment part of reciprocal wrench 4 */
-        const real ucu_o_4_in_axes4_x = ucu_n_m1_in_axes4_x*ucu_w_4_t_2;
-        /* (ucu-d_alpha_4) coefficient of the acceleration in: angular acceleration of link 4 */
-        const real ucu_d_alpha_4_in_axes4_zy = ucu_w_4_in_axes4_y +
-            ucu_e_1_in_axes4_z*ucu_w_1_in_axes4_y;
-        /* (ucu-D_1_4) inertia of joint 4 along joint 1 */
-        const real ucu_J_4_in_spec4_xx = m->ucu_J_4_in_spec4_xx[i];
-        const real ucu_D_1_4 = ucu_J_4_in_spec4_xx*ucu_e_1_in_axes4_z +
-            ucu_J_4_in_spec4_xy*ucu_e_1_in_axes4_x + ucu_J_4_in_spec4_xz*ucu_e_1_in_axes4_y;
-        /* (ucu-Jc_2) inertia tensor of the links from 2 outwards about joint 2, that of the last link
-           about the connection point */
-        const real ucu_J_4_in_spec4_yz = m->ucu_J_4_in_spec4_yz[i];
-        const real ucu_Jc_2_t = ucu_J_4_in_spec4_yz*ucu_e_2_in_axes4_x;
-        const real ucu_J_4_in_spec4_yy = m->ucu_J_4_in_spec4_yy[i];
-        const real ucu_Jc_2_t_2 = ucu_J_4_in_spec4_yy*ucu_e_2_in_axes4_y - ucu_Jc_2_t;
-        const real ucu_Jc_2_t_3 = ucu_J_4_in_spec4_yz*ucu_e_2_in_axes4_y;
-        const real ucu_J_4_in_spec4_zz = m->ucu_J_4_in_spec4_zz[i];
-        const real ucu_Jc_2_t_4 = ucu_Jc_2_t_3 - ucu_J_4_in_spec4_zz*ucu_e_2_in_axes4_x;
-        const real ucu_J_2_in_spec2_xz = m->ucu_J_2_in_spec2_xz[i];
-        const real ucu_Jc_2_in_axes2_xy = ucu_J_4_in_spec4_xy*ucu_e_2_in_axes4_y -
-            ucu_J_2_in_spec2_xz - ucu_J_4_in_spec4_xz*ucu_e_2_in_axes4_x;
-        const real ucu_J_2_in_spec2_xy = m->ucu_J_2_in_spec2_xy[i];
-        const real ucu_J_2_in_spec2_yz = m->ucu_J_2_in_spec2_yz[i];
-        const real ucu_Jc_2_in_axes1_xz = ucu_e_1_in_axes4_z*(ucu_J_2_in_spec2_xy +
-            ucu_J_4_in_axes2_xz) + ucu_h_4_t_11*(ucu_Jc_2_t_2*ucu_e_2_in_axes4_x +
-            ucu_Jc_2_t_4*ucu_e_2_in_axes4_y - ucu_J_2_in_spec2_yz);
-        /* (ucu-dalpha_Gamma_4) coefficient of the acceleration in: moment about axis 4 of the distal
-           links' inertia and weight */
-        const real ucu_dalpha_Gamma_4_t = -ucu_J_4_in_spec4_xx*ucu_o_4_in_axes4_x;
-        /* (ucu-d_Gamma_4) coefficient of the acceleration in: moment about axis 4 of the distal links'
-           inertia and weight */
-        const real ucu_d_Gamma_4_t = ucu_J_4_in_spec4_xx*ucu_w_4_t_2;
-        const real ucu_d_Gamma_4_t_2 = inv_ucu_h_4_t_10*(ucu_J_4_in_axes2_xz -
-            ucu_d_Gamma_4_t*ucu_n_m1_in_axes2_z);
-        const real ucu_d_Gamma_4_t_3 =
-            inv_ucu_v_1_in_axes2_z*(ucu_d_Gamma_4_t_2*ucu_v_1_in_axes2_y - ucu_D_1_4 -
-            ucu_d_Gamma_4_t*ucu_w_4_t);
-        const real ucu_d_Gamma_4_in_axes4_x = ucu_d_Gamma_4_t_2*ucu_e_2_in_axes4_y -
-            ucu_h_4_in_spec4_z - ucu_d_Gamma_4_t_3*ucu_e_2_in_axes4_x;
-        const real ucu_d_Gamma_4_in_axes4_y = ucu_h_4_in_spec4_y -
-            ucu_d_Gamma_4_t_2*ucu_e_2_in_axes4_x - ucu_d_Gamma_4_t_3*ucu_e_2_in_axes4_y;
-        /* (ucu-dalpha_Gamma_2) coefficient of the acceleration in: moment about axis 2 of the distal
-           links' inertia and weight */
-        const real ucu_dalpha_Gamma_2_in_axes4_x = ucu_J_4_in_axes2_xz*ucu_o_4_in_axes4_x;
-        /* (ucu-d_Gamma_2) coefficient of the acceleration in: moment about axis 2 of the distal links'
-           inertia and weight */
-        const real ucu_d_Gamma_2_t = ucu_J_4_in_axes2_xz*ucu_w_4_t_2;
-        const real ucu_J_2_in_spec2_yy = m->ucu_J_2_in_spec2_yy[i];
-        const real ucu_d_Gamma_2_t_2 = inv_ucu_h_4_t_10*(ucu_J_2_in_spec2_yy +
-            ucu_e_2_in_axes4_x*(ucu_Jc_2_t_3 + ucu_J_4_in_spec4_yy*ucu_e_2_in_axes4_x) +
-            ucu_e_2_in_axes4_y*(ucu_Jc_2_t + ucu_J_4_in_spec4_zz*ucu_e_2_in_axes4_y) -
-            ucu_d_Gamma_2_t*ucu_n_m1_in_axes2_z);
-        const real ucu_d_Gamma_2_in_axes2_z =
-            -inv_ucu_v_1_in_axes2_z*(ucu_d_Gamma_2_t_2*ucu_v_1_in_axes2_y - ucu_Jc_2_in_axes1_xz -
-            ucu_d_Gamma_2_t*ucu_w_4_t);
-        const real ucu_h_4_in_spec4_x = m->ucu_h_4_in_spec4_x[i];
-        const real ucu_d_Gamma_2_in_axes2_y = ucu_d_Gamma_2_t_2 + ucu_h_4_in_spec4_x;
-        const real ucu_d_Gamma_2_in_axes4_y = ucu_d_Gamma_2_in_axes2_z*ucu_e_2_in_axes4_y -
-            ucu_d_Gamma_2_in_axes2_y*ucu_e_2_in_axes4_x;
-        /* (ucu-dalpha_Gamma_1) coefficient of the acceleration in: moment about axis 1 of the distal
-           links' inertia and weight */
-        const real ucu_dalpha_Gamma_1_in_axes4_x = ucu_D_1_4*ucu_o_4_in_axes4_x;
-        /* (ucu-d_Gamma_1) coefficient of the acceleration in: moment about axis 1 of the distal links'
-           inertia and weight */
-        const real ucu_d_Gamma_1_t = ucu_D_1_4*ucu_w_4_t_2;
-        const real ucu_d_Gamma_1_t_2 = inv_ucu_h_4_t_10*(ucu_Jc_2_in_axes1_xz -
-            ucu_d_Gamma_1_t*ucu_n_m1_in_axes2_z);
-        const real ucu_J_2_in_spec2_zz = m->ucu_J_2_in_spec2_zz[i];
-        const real ucu_Jc_2_in_axes2_xx = m->ucu_Jc_2_in_axes2_xx[i];
-        const real ucu_d_Gamma_1_t_3 = ucu_d_Gamma_1_t_2*ucu_v_1_in_axes2_y -
-            ucu_d_Gamma_1_t*ucu_w_4_t -
-            ucu_e_1_in_axes4_z*(ucu_Jc_2_in_axes2_xx*ucu_e_1_in_axes4_z +
-            ucu_Jc_2_in_axes2_xy*ucu_h_4_t_11) -
-            ucu_h_4_t_11*(ucu_Jc_2_in_axes2_xy*ucu_e_1_in_axes4_z +
-            ucu_h_4_t_11*(ucu_J_2_in_spec2_zz + ucu_Jc_2_t_2*ucu_e_2_in_axes4_y -
-            ucu_Jc_2_t_4*ucu_e_2_in_axes4_x));
-        const real ucu_d_Gamma_1_in_axes1_z = ucu_d_Gamma_1_t_2*ucu_h_4_t_11;
-        const real ucu_d_Gamma_1_in_axes1_x = ucu_e_1_in_axes4_z*ucu_h_4_in_axes2_y -
-            inv_ucu_v_1_in_axes2_z*ucu_d_Gamma_1_t_3 - ucu_h_4_in_spec4_x*ucu_h_4_t_11;
-        const real ucu_d_Gamma_1_in_axes1_y = ucu_e_2_in_axes4_x*ucu_h_4_in_spec4_y +
-            ucu_e_2_in_axes4_y*ucu_h_4_in_spec4_z - ucu_d_Gamma_1_t_2*ucu_e_1_in_axes4_z;
-        const real ucu_d_Gamma_1_in_axes4_z = ucu_d_Gamma_1_in_axes1_y*ucu_h_4_t_11 +
-            ucu_d_Gamma_1_in_axes1_z*ucu_e_1_in_axes4_z;
-        const real ucu_d_Gamma_1_t_4 = ucu_d_Gamma_1_in_axes1_z*ucu_h_4_t_11 -
-            ucu_d_Gamma_1_in_axes1_y*ucu_e_1_in_axes4_z;
-        const real ucu_d_Gamma_1_in_axes4_y = ucu_d_Gamma_1_in_axes1_x*ucu_e_2_in_axes4_y -
-            ucu_d_Gamma_1_t_4*ucu_e_2_in_axes4_x;
-        /* (ucu-d_G) coefficient of the acceleration in: force at the connection point that balances the
-           leg's inertia and weight along all degrees of freedom */
-        const real ucu_d_G_in_axes4_xz = ucu_d_Gamma_1_in_axes4_z*ucu_w_1_in_axes4_x -
-            ucu_h_4_in_axes2_y*ucu_w_2_in_axes4_x;
-        const real ucu_d_G_in_axes4_yz = ucu_d_Gamma_1_in_axes4_z*ucu_w_1_in_axes4_y -
-            ucu_h_4_in_axes2_y*ucu_w_2_in_axes4_y;
-        /* (ucu-dalpha_G_m1) coefficient of the acceleration in: moment along moment direction 1 that
-           balances the leg's inertia and weight along all degrees of freedom */
-        const real ucu_dalpha_G_m1_in_axes4_x = -ucu_dalpha_Gamma_4_t*ucu_w_4_t_2;
-        const real ucu_dalpha_G_m1_y = axis_x_ucu_axes4_y*ucu_dalpha_G_m1_in_axes4_x +
-            axis_z_ucu_axes4_y*ucu_d_Gamma_4_t;
-        const real ucu_dalpha_G_m1_z = axis_x_ucu_axes4_z*ucu_dalpha_G_m1_in_axes4_x +
-            axis_z_ucu_axes4_z*ucu_d_Gamma_4_t;
-        /* (ucu-d_G_m1) coefficient of the acceleration in: moment along moment direction 1 that balances
-           the leg's inertia and weight along all degrees of freedom */
-        const real ucu_d_G_m1_in_axes4_x = ucu_d_Gamma_4_in_axes4_x*ucu_w_4_t_2;
-        const real ucu_d_G_m1_in_axes4_y = ucu_d_Gamma_4_in_axes4_y*ucu_w_4_t_2;
-        const real ucu_d_G_m1_x = axis_x_ucu_axes4_x*ucu_d_G_m1_in_axes4_x +
-            axis_y_ucu_axes4_x*ucu_d_G_m1_in_axes4_y;
-        const real ucu_d_G_m1_y = axis_x_ucu_axes4_y*ucu_d_G_m1_in_axes4_x +
-            axis_y_ucu_axes4_y*ucu_d_G_m1_in_axes4_y;
-        const real ucu_d_G_m1_z = axis_x_ucu_axes4_z*ucu_d_G_m1_in_axes4_x +
-            axis_y_ucu_axes4_z*ucu_d_G_m1_in_axes4_y;
-        /* (ucu-d_G_m) coefficient of the acceleration in: moment at the connection point that balances
-           the leg's inertia and weight along all degrees of freedom */
-        const real ucu_d_G_m_xx = ucu_d_G_m1_x*ucu_n_m1_x;
-        const real ucu_d_G_m_xy = ucu_d_G_m1_y*ucu_n_m1_x;
-        const real ucu_d_G_m_xz = ucu_d_G_m1_z*ucu_n_m1_x;
-        const real ucu_d_G_m_yx = ucu_d_G_m1_x*ucu_n_m1_y;
-        /* (ucu-dalpha_c) coefficient of the acceleration in: leg force on the platform without actuation
-           and without the mass at the connection point */
-        const real ucu_dalpha_c_in_axes4_xx = ucu_dalpha_Gamma_4_t*ucu_w_4_in_axes4_x +
-            ucu_h_4_in_spec4_z*ucu_o_4_in_axes4_x -
-            ucu_dalpha_Gamma_1_in_axes4_x*ucu_w_1_in_axes4_x -
-            ucu_dalpha_Gamma_2_in_axes4_x*ucu_w_2_in_axes4_x;
-        const real ucu_dalpha_c_in_axes4_xz = ucu_h_4_in_spec4_z - ucu_D_1_4*ucu_w_1_in_axes4_x -
-            ucu_J_4_in_axes2_xz*ucu_w_2_in_axes4_x - ucu_J_4_in_spec4_xx*ucu_w_4_in_axes4_x;
-        const real ucu_dalpha_c_in_axes4_yx = ucu_dalpha_Gamma_4_t*ucu_w_4_in_axes4_y -
-            ucu_dalpha_Gamma_1_in_axes4_x*ucu_w_1_in_axes4_y -
-            ucu_dalpha_Gamma_2_in_axes4_x*ucu_w_2_in_axes4_y -
-            ucu_h_4_in_spec4_y*ucu_o_4_in_axes4_x;
-        const real ucu_dalpha_c_in_axes4_yz = -ucu_h_4_in_spec4_y - ucu_D_1_4*ucu_w_1_in_axes4_y -
-            ucu_J_4_in_axes2_xz*ucu_w_2_in_axes4_y - ucu_J_4_in_spec4_xx*ucu_w_4_in_axes4_y;
-        /* (ucu-d_c) coefficient of the acceleration in: leg force on the platform without actuation and
-           without the mass at the connection point */
-        const real ucu_d_c_in_axes4_xx = ucu_h_4_in_spec4_z*(ucu_w_4_in_axes4_x +
-            ucu_e_1_in_axes4_z*ucu_w_1_in_axes4_x) - ucu_d_Gamma_4_in_axes4_x*ucu_w_4_in_axes4_x -
-            ucu_h_4_in_spec4_x*(ucu_e_1_in_axes4_y*ucu_w_1_in_axes4_x +
-            ucu_e_2_in_axes4_y*ucu_w_2_in_axes4_x) -
-            ucu_w_1_in_axes4_x*(ucu_d_Gamma_1_in_axes1_x*ucu_e_2_in_axes4_x +
-            ucu_d_Gamma_1_t_4*ucu_e_2_in_axes4_y) -
-            ucu_w_2_in_axes4_x*(ucu_d_Gamma_2_in_axes2_y*ucu_e_2_in_axes4_y +
-            ucu_d_Gamma_2_in_axes2_z*ucu_e_2_in_axes4_x);
-        const real ucu_d_c_in_axes4_xy = ucu_d_alpha_4_in_axes4_zy*ucu_h_4_in_spec4_z -
-            ucu_d_Gamma_1_in_axes4_y*ucu_w_1_in_axes4_x -
-            ucu_d_Gamma_2_in_axes4_y*ucu_w_2_in_axes4_x -
-            ucu_d_Gamma_4_in_axes4_y*ucu_w_4_in_axes4_x -
-            ucu_h_4_in_spec4_x*(ucu_e_1_in_axes4_y*ucu_w_1_in_axes4_y +
-            ucu_e_2_in_axes4_y*ucu_w_2_in_axes4_y);
-        const real ucu_d_c_in_axes4_yy = ucu_h_4_in_spec4_x*(ucu_e_1_in_axes4_x*ucu_w_1_in_axes4_y
-            + ucu_e_2_in_axes4_x*ucu_w_2_in_axes4_y) - ucu_d_Gamma_1_in_axes4_y*ucu_w_1_in_axes4_y
-            - ucu_d_Gamma_2_in_axes4_y*ucu_w_2_in_axes4_y -
-            ucu_d_Gamma_4_in_axes4_y*ucu_w_4_in_axes4_y -
-            ucu_d_alpha_4_in_axes4_zy*ucu_h_4_in_spec4_y;
-        /* (ucu-Q) inertia of the leg at the connection point, without the mass gathered there */
-        const real ucu_Q_t = R(0.5)*ucu_d_c_in_axes4_xx;
-        const real ucu_Q_t_2 = R(0.5)*ucu_d_c_in_axes4_yy;
-        const real ucu_Q_t_3 = axis_x_ucu_axes4_x*ucu_Q_t + axis_y_ucu_axes4_x*ucu_d_c_in_axes4_xy
-            - axis_z_ucu_axes4_x*ucu_d_G_in_axes4_xz;
-        const real ucu_Q_t_4 = axis_z_ucu_axes4_y*ucu_d_G_in_axes4_xz - axis_x_ucu_axes4_y*ucu_Q_t
-            - axis_y_ucu_axes4_y*ucu_d_c_in_axes4_xy;
-        const real ucu_Q_t_5 = axis_x_ucu_axes4_z*ucu_Q_t + axis_y_ucu_axes4_z*ucu_d_c_in_axes4_xy
-            - axis_z_ucu_axes4_z*ucu_d_G_in_axes4_xz;
-        const real ucu_Q_t_6 = axis_z_ucu_axes4_x*ucu_d_G_in_axes4_yz -
-            axis_y_ucu_axes4_x*ucu_Q_t_2;
-        const real ucu_Q_t_7 = axis_y_ucu_axes4_y*ucu_Q_t_2 -
-            axis_z_ucu_axes4_y*ucu_d_G_in_axes4_yz;
-        const real ucu_Q_t_8 = axis_y_ucu_axes4_z*ucu_Q_t_2 -
-            axis_z_ucu_axes4_z*ucu_d_G_in_axes4_yz;
-        const real ucu_Q_t_9 = axis_x_ucu_axes4_x*ucu_Q_t_3 - axis_y_ucu_axes4_x*ucu_Q_t_6;
-        const real ucu_Q_xx = -2*ucu_Q_t_9;
-        const real ucu_Q_xy = axis_x_ucu_axes4_x*ucu_Q_t_4 + axis_y_ucu_axes4_y*ucu_Q_t_6 -
-            axis_x_ucu_axes4_y*ucu_Q_t_3 - axis_y_ucu_axes4_x*ucu_Q_t_7;
-        const real ucu_Q_xz = axis_y_ucu_axes4_z*ucu_Q_t_6 - axis_x_ucu_axes4_x*ucu_Q_t_5 -
-            axis_x_ucu_axes4_z*ucu_Q_t_3 - axis_y_ucu_axes4_x*ucu_Q_t_8;
-        const real ucu_Q_t_10 = axis_y_ucu_axes4_y*ucu_Q_t_7 - axis_x_ucu_axes4_y*ucu_Q_t_4;
-        const real ucu_Q_yy = -2*ucu_Q_t_10;
-        const real ucu_Q_yz = axis_x_ucu_axes4_z*ucu_Q_t_4 - axis_x_ucu_axes4_y*ucu_Q_t_5 -
-            axis_y_ucu_axes4_y*ucu_Q_t_8 - axis_y_ucu_axes4_z*ucu_Q_t_7;
-        const real ucu_Q_t_11 = axis_x_ucu_axes4_z*ucu_Q_t_5 + axis_y_ucu_axes4_z*ucu_Q_t_8;
-        const real ucu_Q_zz = -2*ucu_Q_t_11;
-        /* (M_ta) coupling block of M */
-        const real ucu_M_ta_t = axis_x_ucu_axes4_x*ucu_dalpha_c_in_axes4_xx +
-            axis_y_ucu_axes4_x*ucu_dalpha_c_in_axes4_yx;
-        const real ucu_M_ta_t_2 = axis_x_ucu_axes4_y*ucu_dalpha_c_in_axes4_xx +
-            axis_y_ucu_axes4_y*ucu_dalpha_c_in_axes4_yx;
-        const real ucu_M_ta_t_3 = axis_x_ucu_axes4_z*ucu_dalpha_c_in_axes4_xx +
-            axis_y_ucu_axes4_z*ucu_dalpha_c_in_axes4_yx;
-        const real ucu_M_ta_t_4 = axis_x_ucu_axes4_x*ucu_dalpha_c_in_axes4_xz +
-            axis_y_ucu_axes4_x*ucu_dalpha_c_in_axes4_yz;
-        const real ucu_M_ta_t_5 = axis_x_ucu_axes4_y*ucu_dalpha_c_in_axes4_xz +
-            axis_y_ucu_axes4_y*ucu_dalpha_c_in_axes4_yz;
-        const real ucu_M_ta_t_6 = axis_x_ucu_axes4_z*ucu_dalpha_c_in_axes4_xz +
-            axis_y_ucu_axes4_z*ucu_dalpha_c_in_axes4_yz;
-        const real ucu_M_ta_t_7 = -ucu_Q_xy*ucu_q_z;
-        const real ucu_M_ta_t_8 = ucu_Q_xz*ucu_q_y;
-        const real ucu_M_ta_t_9 = ucu_Q_yz*ucu_q_x;
-        const real ucu_M_ta_t_10 = ucu_M_ta_t_7 + ucu_M_ta_t_8 - axis_x_ucu_axes4_x*ucu_M_ta_t -
-            axis_z_ucu_axes4_x*ucu_M_ta_t_4;
-        const real ucu_M_ta_t_11 = ucu_Q_xx*ucu_q_z - axis_x_ucu_axes4_y*ucu_M_ta_t -
-            axis_z_ucu_axes4_y*ucu_M_ta_t_4 - ucu_Q_xz*ucu_q_x;
-        const real ucu_M_ta_t_12 = ucu_Q_xy*ucu_q_x - axis_x_ucu_axes4_z*ucu_M_ta_t -
-            axis_z_ucu_axes4_z*ucu_M_ta_t_4 - ucu_Q_xx*ucu_q_y;
-        const real ucu_M_ta_t_13 = ucu_Q_yz*ucu_q_y - axis_x_ucu_axes4_x*ucu_M_ta_t_2 -
-            axis_z_ucu_axes4_x*ucu_M_ta_t_5 - ucu_Q_yy*ucu_q_z;
-        const real ucu_M_ta_t_14 = ucu_M_ta_t_7 + ucu_M_ta_t_9 + axis_x_ucu_axes4_y*ucu_M_ta_t_2 +
-            axis_z_ucu_axes4_y*ucu_M_ta_t_5;
-        const real ucu_M_ta_t_15 = ucu_Q_yy*ucu_q_x - axis_x_ucu_axes4_z*ucu_M_ta_t_2 -
-            axis_z_ucu_axes4_z*ucu_M_ta_t_5 - ucu_Q_xy*ucu_q_y;
-        const real ucu_M_ta_t_16 = ucu_Q_zz*ucu_q_y - axis_x_ucu_axes4_x*ucu_M_ta_t_3 -
-            axis_z_ucu_axes4_x*ucu_M_ta_t_6 - ucu_Q_yz*ucu_q_z;
-        const real ucu_M_ta_t_17 = ucu_Q_xz*ucu_q_z - axis_x_ucu_axes4_y*ucu_M_ta_t_3 -
-            axis_z_ucu_axes4_y*ucu_M_ta_t_6 - ucu_Q_zz*ucu_q_x;
-        const real ucu_M_ta_t_18 = ucu_M_ta_t_9 - ucu_M_ta_t_8 - axis_x_ucu_axes4_z*ucu_M_ta_t_3 -
-            axis_z_ucu_axes4_z*ucu_M_ta_t_6;
-        /* (M_aa) rotational block of M */
-        const real ucu_M_aa_t = ucu_M_ta_t_16*ucu_q_y + ucu_d_G_m_xz*ucu_q_y +
-            ucu_n_m1_x*(axis_x_ucu_axes4_x*ucu_dalpha_G_m1_in_axes4_x +
-            axis_z_ucu_axes4_x*ucu_d_Gamma_4_t) - ucu_M_ta_t_13*ucu_q_z - ucu_d_G_m_xy*ucu_q_z;
-        const real ucu_M_aa_t_2 = ucu_M_ta_t_14*ucu_q_z + ucu_M_ta_t_17*ucu_q_y +
-            ucu_d_G_m_xx*ucu_q_z + ucu_dalpha_G_m1_y*ucu_n_m1_x - ucu_d_G_m_xz*ucu_q_x;
-        const real ucu_M_aa_t_3 = ucu_M_ta_t_18*ucu_q_y + ucu_d_G_m_xy*ucu_q_x +
-            ucu_dalpha_G_m1_z*ucu_n_m1_x - ucu_M_ta_t_15*ucu_q_z - ucu_d_G_m_xx*ucu_q_y;
-        const real ucu_M_aa_t_4 = ucu_M_ta_t_11*ucu_q_z + ucu_d_G_m_yx*ucu_q_z +
-            ucu_dalpha_G_m1_y*ucu_n_m1_y - ucu_M_ta_t_17*ucu_q_x -
-            ucu_d_G_m1_z*ucu_n_m1_y*ucu_q_x;
-        const real ucu_M_aa_t_5 = ucu_M_ta_t_12*ucu_q_z + ucu_dalpha_G_m1_z*ucu_n_m1_y +
-            ucu_d_G_m1_y*ucu_n_m1_y*ucu_q_x - ucu_M_ta_t_18*ucu_q_x - ucu_d_G_m_yx*ucu_q_y;
-        const real ucu_M_aa_t_6 = ucu_M_ta_t_15*ucu_q_x + ucu_dalpha_G_m1_z*ucu_n_m1_z +
-            ucu_d_G_m1_y*ucu_n_m1_z*ucu_q_x - ucu_M_ta_t_12*ucu_q_y -
-            ucu_d_G_m1_x*ucu_n_m1_z*ucu_q_y;
+        values_ucu v;
+        stage_ucu_X(m, w, i, j, s, X, &v);
+        stage_ucu_M_dynamics(m, w, i, j, s, X, &v);
         /* (M_tt) translational block of M */
-        gather(&terms[0*count + k], add, ucu_Q_xx);  /* M_tt_xx_of_legs */
-        gather(&terms[1*count + k], add, ucu_Q_xy);  /* M_tt_xy */
-        gather(&terms[2*count + k], add, ucu_Q_xz);  /* M_tt_xz */
-        gather(&terms[3*count + k], add, ucu_Q_yy);  /* M_tt_yy_of_legs */
-        gather(&terms[4*count + k], add, ucu_Q_yz);  /* M_tt_yz */
-        gather(&terms[5*count + k], add, ucu_Q_zz);  /* M_tt_zz_of_legs */
+        gather(&terms[0*count + k], add, v.ucu_Q_xx);  /* M_tt_xx_of_legs */
+        gather(&terms[1*count + k], add, v.ucu_Q_xy);  /* M_tt_xy */
+        gather(&terms[2*count + k], add, v.ucu_Q_xz);  /* M_tt_xz */
+        gather(&terms[3*count + k], add, v.ucu_Q_yy);  /* M_tt_yy_of_legs */
+        gather(&terms[4*count + k], add, v.ucu_Q_yz);  /* M_tt_yz */
+        gather(&terms[5*count + k], add, v.ucu_Q_zz);  /* M_tt_zz_of_legs */
         /* (M_ta) coupling block of M */
-        gather(&terms[6*count + k], add, ucu_M_ta_t_10);  /* M_ta_xx */
-        gather(&terms[7*count + k], add, ucu_M_ta_t_11);  /* M_ta_xy_of_legs */
-        gather(&terms[8*count + k], add, ucu_M_ta_t_12);  /* M_ta_xz_of_legs */
-        gather(&terms[9*count + k], add, ucu_M_ta_t_13);  /* M_ta_yx_of_legs */
-        gather(&terms[10*count + k], add, ucu_M_ta_t_14);  /* M_ta_t */
-        gather(&terms[11*count + k], add, ucu_M_ta_t_15);  /* M_ta_yz_of_legs */
-        gather(&terms[12*count + k], add, ucu_M_ta_t_16);  /* M_ta_zx_of_legs */
-        gather(&terms[13*count + k], add, ucu_M_ta_t_17);  /* M_ta_zy_of_legs */
-        gather(&terms[14*count + k], add, ucu_M_ta_t_18);  /* M_ta_zz */
+        gather(&terms[6*count + k], add, v.ucu_M_ta_t_10);  /* M_ta_xx */
+        gather(&terms[7*count + k], add, v.ucu_M_ta_t_11);  /* M_ta_xy_of_legs */
+        gather(&terms[8*count + k], add, v.ucu_M_ta_t_12);  /* M_ta_xz_of_legs */
+        gather(&terms[9*count + k], add, v.ucu_M_ta_t_13);  /* M_ta_yx_of_legs */
+        gather(&terms[10*count + k], add, v.ucu_M_ta_t_14);  /* M_ta_t */
+        gather(&terms[11*count + k], add, v.ucu_M_ta_t_15);  /* M_ta_yz_of_legs */
+        gather(&terms[12*count + k], add, v.ucu_M_ta_t_16);  /* M_ta_zx_of_legs */
+        gather(&terms[13*count + k], add, v.ucu_M_ta_t_17);  /* M_ta_zy_of_legs */
+        gather(&terms[14*count + k], add, v.ucu_M_ta_t_18);  /* M_ta_zz */
         /* (M_aa) rotational block of M */
-        gather(&terms[15*count + k], add, ucu_M_aa_t);  /* M_aa_xx_of_legs */
-        gather(&terms[16*count + k], add, ucu_M_aa_t_2);  /* M_aa_xy_of_legs */
-        gather(&terms[17*count + k], add, ucu_M_aa_t_3);  /* M_aa_xz_of_legs */
-        gather(&terms[18*count + k], add, ucu_M_aa_t_4);  /* M_aa_yy_of_legs */
-        gather(&terms[19*count + k], add, ucu_M_aa_t_5);  /* M_aa_yz_of_legs */
-        gather(&terms[20*count + k], add, ucu_M_aa_t_6);  /* M_aa_zz_of_legs */
-        o[0*count + k] = UNLESS(magnitude(ucu_h_4_t_6) > LEAST_1) + UNLESS(magnitude(ucu_h_4_t_9)
-            > LEAST_1) + UNLESS(magnitude(ucu_h_4_t_18) > LEAST_2) +
-            UNLESS(magnitude(ucu_end_p1_in_axes4_x) > LEAST_3) + UNLESS(magnitude(ucu_h_4_t_10) >
-            LEAST_4) + UNLESS(magnitude(ucu_v_1_in_axes2_z) > LEAST_4);
+        gather(&terms[15*count + k], add, v.ucu_M_aa_t);  /* M_aa_xx_of_legs */
+        gather(&terms[16*count + k], add, v.ucu_M_aa_t_2);  /* M_aa_xy_of_legs */
+        gather(&terms[17*count + k], add, v.ucu_M_aa_t_3);  /* M_aa_xz_of_legs */
+        gather(&terms[18*count + k], add, v.ucu_M_aa_t_4);  /* M_aa_yy_of_legs */
+        gather(&terms[19*count + k], add, v.ucu_M_aa_t_5);  /* M_aa_yz_of_legs */
+        gather(&terms[20*count + k], add, v.ucu_M_aa_t_6);  /* M_aa_zz_of_legs */
+        o[0*count + k] = UNLESS(magnitude(v.ucu_h_4_t_7) > LEAST_1) +
+            UNLESS(magnitude(v.ucu_h_4_t_11) > LEAST_1) + UNLESS(magnitude(v.ucu_h_4_t_19) >
+            LEAST_2) + UNLESS(magnitude(v.ucu_end_p1_in_axes4_x) > LEAST_3) +
+            UNLESS(magnitude(v.ucu_h_4_t_12) > LEAST_4) + UNLESS(magnitude(v.ucu_v_1_in_axes2_z) >
+            LEAST_4);
     }
 }
 
@@ -2911,46 +3148,46 @@ INLINE void M_after(const prepared *m, size_t w, const real *s, const real *sums
         const real M_tt_zz = M_tt_zz_of_legs + m_star;
         /* (M_ta) coupling block of M */
         const real M_ta_xy_of_legs = sums[7*w + k];
-        const real h_star_z = s[14*w + k];
+        const real h_star_z = s[11*w + k];
         const real M_ta_xy = M_ta_xy_of_legs + h_star_z;
         const real M_ta_xz_of_legs = sums[8*w + k];
-        const real h_star_y = s[13*w + k];
+        const real h_star_y = s[10*w + k];
         const real M_ta_xz = M_ta_xz_of_legs - h_star_y;
         const real M_ta_yx_of_legs = sums[9*w + k];
         const real M_ta_yx = M_ta_yx_of_legs - h_star_z;
         const real M_ta_yz_of_legs = sums[11*w + k];
-        const real h_star_x = s[12*w + k];
+        const real h_star_x = s[9*w + k];
         const real M_ta_yz = M_ta_yz_of_legs + h_star_x;
         const real M_ta_zx_of_legs = sums[12*w + k];
         const real M_ta_zx = M_ta_zx_of_legs + h_star_y;
         const real M_ta_zy_of_legs = sums[13*w + k];
         const real M_ta_zy = M_ta_zy_of_legs - h_star_x;
         /* (M_aa) rotational block of M */
-        const real J_star_xx = s[15*w + k];
+        const real J_star_xx = s[12*w + k];
         const real M_aa_xx_of_legs = sums[15*w + k];
         const real M_aa_xx = J_star_xx + M_aa_xx_of_legs;
-        const real J_star_xy = s[16*w + k];
+        const real J_star_xy = s[13*w + k];
         const real M_aa_xy_of_legs = sums[16*w + k];
         const real M_aa_xy = J_star_xy + M_aa_xy_of_legs;
-        const real J_star_xz = s[17*w + k];
+        const real J_star_xz = s[14*w + k];
         const real M_aa_xz_of_legs = sums[17*w + k];
         const real M_aa_xz = J_star_xz + M_aa_xz_of_legs;
-        const real J_star_yy = s[18*w + k];
+        const real J_star_yy = s[15*w + k];
         const real M_aa_yy_of_legs = sums[18*w + k];
         const real M_aa_yy = J_star_yy + M_aa_yy_of_legs;
-        const real J_star_yz = s[19*w + k];
+        const real J_star_yz = s[16*w + k];
         const real M_aa_yz_of_legs = sums[19*w + k];
         const real M_aa_yz = J_star_yz + M_aa_yz_of_legs;
-        const real J_star_zz = s[20*w + k];
+        const real J_star_zz = s[17*w + k];
         const real M_aa_zz_of_legs = sums[20*w + k];
         const real M_aa_zz = J_star_zz + M_aa_zz_of_legs;
         /* (M_tt) translational block of M */
-        M[0*NV*w + k] = M_tt_xx;
+        M[0*w + k] = M_tt_xx;
         const real M_tt_xy = sums[1*w + k];
-        M[(0*NV + 1)*w + k] = M_tt_xy;
+        M[1*w + k] = M_tt_xy;
         M[NV*w + k] = M_tt_xy;
         const real M_tt_xz = sums[2*w + k];
-        M[(0*NV + 2)*w + k] = M_tt_xz;
+        M[2*w + k] = M_tt_xz;
         M[2*NV*w + k] = M_tt_xz;
         M[(NV + 1)*w + k] = M_tt_yy;
         const real M_tt_yz = sums[4*w + k];
@@ -2959,11 +3196,11 @@ INLINE void M_after(const prepared *m, size_t w, const real *s, const real *sums
         M[(2*NV + 2)*w + k] = M_tt_zz;
         /* (M_ta) coupling block of M */
         const real M_ta_xx = sums[6*w + k];
-        M[(0*NV + 3)*w + k] = M_ta_xx;
+        M[3*w + k] = M_ta_xx;
         M[3*NV*w + k] = M_ta_xx;
-        M[(0*NV + 4)*w + k] = M_ta_xy;
+        M[4*w + k] = M_ta_xy;
         M[4*NV*w + k] = M_ta_xy;
-        M[(0*NV + 5)*w + k] = M_ta_xz;
+        M[5*w + k] = M_ta_xz;
         M[5*NV*w + k] = M_ta_xz;
         M[(NV + 3)*w + k] = M_ta_yx;
         M[(3*NV + 1)*w + k] = M_ta_yx;
@@ -2998,12 +3235,10 @@ INLINE void M_after(const prepared *m, size_t w, const real *s, const real *sums
 
 INLINE void M_run(const prepared *m, const real *X, real *M, verdict *t)
 {
-    real s[21] = {0};
-    real sums[21] = {0};
-    real terms_ucu[21*LEGS(LEGS_OF_ucu)] = {0};
-    real o_ucu[LEGS(LEGS_OF_ucu)] = {0};
+    real s[18] = {0}, sums[21] = {0};
+    real terms_ucu[21*LEGS(LEGS_OF_ucu)] = {0}, o_ucu[LEGS(LEGS_OF_ucu)] = {0};
     M_before(m, 1, X, s, t);
-    M_legs_ucu(m, 1, 0, 1, s, 0, LEGS(LEGS_OF_ucu), 0, terms_ucu, o_ucu);
+    M_legs_ucu(m, 1, 0, 1, s, 0, LEGS(LEGS_OF_ucu), 0, X, terms_ucu, o_ucu);
     for (size_t leg = 0; leg < LEGS_OF_ucu; ++leg) {
         M_place_ucu(1, LEGS(LEGS_OF_ucu), o_ucu, leg, t);
     }
@@ -3015,13 +3250,12 @@ INLINE void M_run(const prepared *m, const real *X, real *M, verdict *t)
 
 INLINE void M_run_lanes(const prepared *m, const real *X, real *M, verdict *t)
 {
-    real s[21*LANES];
-    real sums[21*LANES];
+    real s[18*LANES], sums[21*LANES];
     real o_ucu[LANES];
     M_before(m, LANES, X, s, t);
     clear(sums, 21*LANES);
     for (size_t leg = 0; leg < LEGS_OF_ucu; ++leg) {
-        M_legs_ucu(m, LANES, leg, 0, s, 1, LANES, 1, sums, o_ucu);
+        M_legs_ucu(m, LANES, leg, 0, s, 1, LANES, 1, X, sums, o_ucu);
         M_place_ucu(LANES, LANES, o_ucu, 0, t);
     }
     M_after(m, LANES, s, sums, M, t);
@@ -3032,406 +3266,147 @@ INLINE void Z_before(const prepared *m, size_t w, const real *X, const real *V, 
     *t)
 {
     for (size_t k = 0; k < w; ++k) {
-        /* X: named entries */
-        const real X_0 = X[0*w + k];
-        const real t_x = X_0;
-        const real X_1 = X[1*w + k];
-        const real t_y = X_1;
-        const real X_2 = X[2*w + k];
-        const real t_z = X_2;
-        const real X_3 = X[3*w + k];
-        const real X_4 = X[4*w + k];
-        const real X_5 = X[5*w + k];
-        const real X_6 = X[6*w + k];
-        const real quaternion_norm2 = X_3*X_3 + X_4*X_4 + X_5*X_5 + X_6*X_6;
-        const real quaternion_scale = 2/quaternion_norm2;
-        const real quaternion_sx = X_3*quaternion_scale;
-        const real quaternion_sy = X_4*quaternion_scale;
-        const real quaternion_sz = X_5*quaternion_scale;
-        const real quaternion_wx = X_6*quaternion_sx;
-        const real quaternion_wy = X_6*quaternion_sy;
-        const real quaternion_wz = X_6*quaternion_sz;
-        const real quaternion_xx = X_3*quaternion_sx;
-        const real quaternion_xy = X_3*quaternion_sy;
-        const real quaternion_xz = X_3*quaternion_sz;
-        const real quaternion_yy = X_4*quaternion_sy;
-        const real quaternion_yz = X_4*quaternion_sz;
-        const real quaternion_zz = X_5*quaternion_sz;
-        const real R_xx = 1 - quaternion_yy - quaternion_zz;
-        const real R_xy = quaternion_xy - quaternion_wz;
-        const real R_xz = quaternion_wy + quaternion_xz;
-        const real R_yx = quaternion_wz + quaternion_xy;
-        const real R_yy = 1 - quaternion_xx - quaternion_zz;
-        const real R_yz = quaternion_yz - quaternion_wx;
-        const real R_zx = quaternion_xz - quaternion_wy;
-        const real R_zy = quaternion_wx + quaternion_yz;
-        const real R_zz = 1 - quaternion_xx - quaternion_yy;
-        /* V: named entries */
-        const real V_0 = V[0*w + k];
-        const real t_dot_x = V_0;
-        const real V_1 = V[1*w + k];
-        const real t_dot_y = V_1;
-        const real V_2 = V[2*w + k];
-        const real t_dot_z = V_2;
-        const real V_3 = V[3*w + k];
-        const real omega_x = V_3;
-        const real V_4 = V[4*w + k];
-        const real omega_y = V_4;
-        const real V_5 = V[5*w + k];
-        const real omega_z = V_5;
-        /* (h_star) first moment about the platform origin */
-        const real h_star_in_platform_x = m->h_star_in_platform_x;
-        const real h_star_in_platform_y = m->h_star_in_platform_y;
-        const real h_star_in_platform_z = m->h_star_in_platform_z;
-        const real h_star_x = R_xx*h_star_in_platform_x + R_xy*h_star_in_platform_y +
-            R_xz*h_star_in_platform_z;
-        const real h_star_y = R_yx*h_star_in_platform_x + R_yy*h_star_in_platform_y +
-            R_yz*h_star_in_platform_z;
-        const real h_star_z = R_zx*h_star_in_platform_x + R_zy*h_star_in_platform_y +
-            R_zz*h_star_in_platform_z;
-        /* (Z_p) centripetal force and weight of the platform */
-        const real Z_p_t_4 = h_star_z*omega_y - h_star_y*omega_z;
-        const real Z_p_t_5 = h_star_x*omega_z - h_star_z*omega_x;
-        const real Z_p_t_6 = h_star_y*omega_x - h_star_x*omega_y;
-        const real Z_p_t = m->Z_p_t;
-        const real Z_p_x = Z_p_t_6*omega_y - Z_p_t - Z_p_t_5*omega_z;
-        const real Z_p_t_2 = m->Z_p_t_2;
-        const real Z_p_y = Z_p_t_4*omega_z - Z_p_t_2 - Z_p_t_6*omega_x;
-        const real Z_p_t_3 = m->Z_p_t_3;
-        const real Z_p_z = Z_p_t_5*omega_x - Z_p_t_3 - Z_p_t_4*omega_y;
-        /* (Z_q) gyroscopic moment and moment of the weight of the platform */
-        const real gravity_x = m->gravity_x;
-        const real gravity_y = m->gravity_y;
-        const real gravity_z = m->gravity_z;
-        const real g_in_platform_x = R_xx*gravity_x + R_yx*gravity_y + R_zx*gravity_z;
-        const real g_in_platform_y = R_xy*gravity_x + R_yy*gravity_y + R_zy*gravity_z;
-        const real g_in_platform_z = R_xz*gravity_x + R_yz*gravity_y + R_zz*gravity_z;
-        const real omega_in_platform_x = R_xx*omega_x + R_yx*omega_y + R_zx*omega_z;
-        const real omega_in_platform_y = R_xy*omega_x + R_yy*omega_y + R_zy*omega_z;
-        const real omega_in_platform_z = R_xz*omega_x + R_yz*omega_y + R_zz*omega_z;
-        const real J_star_in_platform_xx = m->J_star_in_platform_xx;
-        const real J_star_in_platform_xy = m->J_star_in_platform_xy;
-        const real J_star_in_platform_xz = m->J_star_in_platform_xz;
-        const real Z_q_t = J_star_in_platform_xx*omega_in_platform_x +
-            J_star_in_platform_xy*omega_in_platform_y + J_star_in_platform_xz*omega_in_platform_z;
-        const real J_star_in_platform_yy = m->J_star_in_platform_yy;
-        const real J_star_in_platform_yz = m->J_star_in_platform_yz;
-        const real Z_q_t_2 = J_star_in_platform_xy*omega_in_platform_x +
-            J_star_in_platform_yy*omega_in_platform_y + J_star_in_platform_yz*omega_in_platform_z;
-        const real J_star_in_platform_zz = m->J_star_in_platform_zz;
-        const real Z_q_t_3 = J_star_in_platform_xz*omega_in_platform_x +
-            J_star_in_platform_yz*omega_in_platform_y + J_star_in_platform_zz*omega_in_platform_z;
-        const real Z_q_in_platform_x = Z_q_t_3*omega_in_platform_y +
-            g_in_platform_y*h_star_in_platform_z - Z_q_t_2*omega_in_platform_z -
-            g_in_platform_z*h_star_in_platform_y;
-        const real Z_q_in_platform_y = Z_q_t*omega_in_platform_z +
-            g_in_platform_z*h_star_in_platform_x - Z_q_t_3*omega_in_platform_x -
-            g_in_platform_x*h_star_in_platform_z;
-        const real Z_q_in_platform_z = Z_q_t_2*omega_in_platform_x +
-            g_in_platform_x*h_star_in_platform_y - Z_q_t*omega_in_platform_y -
-            g_in_platform_y*h_star_in_platform_x;
-        const real Z_q_x = R_xx*Z_q_in_platform_x + R_xy*Z_q_in_platform_y +
-            R_xz*Z_q_in_platform_z;
-        const real Z_q_y = R_yx*Z_q_in_platform_x + R_yy*Z_q_in_platform_y +
-            R_yz*Z_q_in_platform_z;
-        const real Z_q_z = R_zx*Z_q_in_platform_x + R_zy*Z_q_in_platform_y +
-            R_zz*Z_q_in_platform_z;
-        s[0*w + k] = t_x;
-        s[1*w + k] = t_y;
-        s[2*w + k] = t_z;
-        s[3*w + k] = R_xx;
-        s[4*w + k] = R_xy;
-        s[5*w + k] = R_xz;
-        s[6*w + k] = R_yx;
-        s[7*w + k] = R_yy;
-        s[8*w + k] = R_yz;
-        s[9*w + k] = R_zx;
-        s[10*w + k] = R_zy;
-        s[11*w + k] = R_zz;
-        s[12*w + k] = t_dot_x;
-        s[13*w + k] = t_dot_y;
-        s[14*w + k] = t_dot_z;
-        s[15*w + k] = omega_x;
-        s[16*w + k] = omega_y;
-        s[17*w + k] = omega_z;
-        s[18*w + k] = Z_p_x;
-        s[19*w + k] = Z_p_y;
-        s[20*w + k] = Z_p_z;
-        s[21*w + k] = Z_q_x;
-        s[22*w + k] = Z_q_y;
-        s[23*w + k] = Z_q_z;
-        t->invalid[k] += UNLESS(is_finite(quaternion_scale)) + UNLESS(quaternion_scale > 0);
+        values v;
+        stage_X(m, w, k, X, &v);
+        stage_V_X(w, k, V, &v);
+        stage_Z_dynamics(m, w, k, V, &v);
+        s[0*w + k] = v.R_xx;
+        s[1*w + k] = v.R_xy;
+        s[2*w + k] = v.R_xz;
+        s[3*w + k] = v.R_yx;
+        s[4*w + k] = v.R_yy;
+        s[5*w + k] = v.R_yz;
+        s[6*w + k] = v.R_zx;
+        s[7*w + k] = v.R_zy;
+        s[8*w + k] = v.R_zz;
+        s[9*w + k] = v.Z_p_x;
+        s[10*w + k] = v.Z_p_y;
+        s[11*w + k] = v.Z_p_z;
+        s[12*w + k] = v.Z_q_x;
+        s[13*w + k] = v.Z_q_y;
+        s[14*w + k] = v.Z_q_z;
+        t->invalid[k] += UNLESS(is_finite(v.quaternion_scale)) + UNLESS(v.quaternion_scale > 0);
     }
 }
 
 INLINE void Z_legs_ucu(const prepared *m, size_t w, size_t leg, size_t legs, const real *s, size_t
-    states, size_t count, int add, real *terms, real *o)
+    states, size_t count, int add, const real *X, const real *V, real *terms, real *o)
 {
     for (size_t k = 0; k < count; ++k) {
         const size_t i = leg + legs*k;
         const size_t j = states*k;
-        /* (ucu-S) from the base point to the connection point */
-        const real R_xx = s[3*w + j];
-        const real R_xy = s[4*w + j];
-        const real R_xz = s[5*w + j];
-        const real ucu_platform_point_x = m->ucu_platform_point_x[i];
-        const real ucu_platform_point_y = m->ucu_platform_point_y[i];
-        const real ucu_platform_point_z = m->ucu_platform_point_z[i];
-        const real ucu_q_x = R_xx*ucu_platform_point_x + R_xy*ucu_platform_point_y +
-            R_xz*ucu_platform_point_z;
-        const real R_yx = s[6*w + j];
-        const real R_yy = s[7*w + j];
-        const real R_yz = s[8*w + j];
-        const real ucu_q_y = R_yx*ucu_platform_point_x + R_yy*ucu_platform_point_y +
-            R_yz*ucu_platform_point_z;
-        const real R_zx = s[9*w + j];
-        const real R_zy = s[10*w + j];
-        const real R_zz = s[11*w + j];
-        const real ucu_q_z = R_zx*ucu_platform_point_x + R_zy*ucu_platform_point_y +
-            R_zz*ucu_platform_point_z;
-        const real t_x = s[0*w + j];
-        const real ucu_base_point_x = m->ucu_base_point_x[i];
-        const real ucu_S_x = t_x + ucu_q_x - ucu_base_point_x;
-        const real t_y = s[1*w + j];
-        const real ucu_base_point_y = m->ucu_base_point_y[i];
-        const real ucu_S_y = t_y + ucu_q_y - ucu_base_point_y;
-        const real t_z = s[2*w + j];
-        const real ucu_base_point_z = m->ucu_base_point_z[i];
-        const real ucu_S_z = t_z + ucu_q_z - ucu_base_point_z;
-        /* (ucu-px_1) component along the reference direction */
-        const real ucu_base_frame_xx = m->ucu_base_frame_xx[i];
-        const real ucu_base_frame_yx = m->ucu_base_frame_yx[i];
-        const real ucu_base_frame_zx = m->ucu_base_frame_zx[i];
-        const real ucu_px_1 = ucu_S_x*ucu_base_frame_xx + ucu_S_y*ucu_base_frame_yx +
-            ucu_S_z*ucu_base_frame_zx;
-        /* (ucu-py_1) component across the reference direction */
-        const real ucu_base_frame_xy = m->ucu_base_frame_xy[i];
-        const real ucu_base_frame_yy = m->ucu_base_frame_yy[i];
-        const real ucu_base_frame_zy = m->ucu_base_frame_zy[i];
-        const real ucu_py_1 = ucu_S_x*ucu_base_frame_xy + ucu_S_y*ucu_base_frame_yy +
-            ucu_S_z*ucu_base_frame_zy;
-        /* (ucu-rho2_1) squared amplitude */
-        const real ucu_rho2_1 = ucu_px_1*ucu_px_1 + ucu_py_1*ucu_py_1;
-        /* (ucu-root_1) amplitude, with the sign of the branch */
-        const real ucu_branch_1 = m->ucu_branch_1[i];
-        const real ucu_root_1 = ucu_branch_1*root(ucu_rho2_1);
-        /* (ucu-c_1) cosine of the angle of joint 1 from its reference direction */
-        const real inv_ucu_root_1 = 1/ucu_root_1;
-        const real ucu_c_1 = -inv_ucu_root_1*ucu_py_1;
-        /* (ucu-s_1) sine of the angle of joint 1 from its reference direction */
-        const real ucu_s_1 = inv_ucu_root_1*ucu_px_1;
-        /* (ucu-xi_1) the vector from joint 1 to the connection point, resolved along link 1 */
-        const real ucu_base_frame_xz = m->ucu_base_frame_xz[i];
-        const real ucu_base_frame_yz = m->ucu_base_frame_yz[i];
-        const real ucu_base_frame_zz = m->ucu_base_frame_zz[i];
-        const real ucu_xi_1_in_axes1_z = ucu_S_x*ucu_base_frame_xz + ucu_S_y*ucu_base_frame_yz +
-            ucu_S_z*ucu_base_frame_zz;
-        /* (ucu-rho2_2) squared amplitude */
-        const real ucu_rho2_2 = ucu_rho2_1 + ucu_xi_1_in_axes1_z*ucu_xi_1_in_axes1_z;
-        /* (ucu-root_2) amplitude, with the sign of the branch */
-        const real ucu_branch_2 = m->ucu_branch_2[i];
-        const real ucu_root_2 = ucu_branch_2*root(ucu_rho2_2);
-        /* (ucu-c_2) cosine of the angle of joint 2 from its reference direction */
-        const real inv_ucu_root_2 = 1/ucu_root_2;
-        const real ucu_c_2 = -inv_ucu_root_2*ucu_root_1;
-        /* (ucu-s_2) sine of the angle of joint 2 from its reference direction */
-        const real ucu_s_2 = inv_ucu_root_2*ucu_xi_1_in_axes1_z;
-        /* (ucu-px_4) component along the reference direction */
-        const real ucu_platform_joint_axis_platform_x = m->ucu_platform_joint_axis_platform_x[i];
-        const real ucu_platform_joint_axis_platform_y = m->ucu_platform_joint_axis_platform_y[i];
-        const real ucu_platform_joint_axis_platform_z = m->ucu_platform_joint_axis_platform_z[i];
-        const real ucu_px_4_t = ucu_platform_joint_axis_platform_x*(R_xx*ucu_base_frame_xx +
-            R_yx*ucu_base_frame_yx + R_zx*ucu_base_frame_zx) +
-            ucu_platform_joint_axis_platform_y*(R_xy*ucu_base_frame_xx + R_yy*ucu_base_frame_yx +
-            R_zy*ucu_base_frame_zx) + ucu_platform_joint_axis_platform_z*(R_xz*ucu_base_frame_xx +
-            R_yz*ucu_base_frame_yx + R_zz*ucu_base_frame_zx);
-        const real ucu_px_4_t_2 = ucu_platform_joint_axis_platform_x*(R_xx*ucu_base_frame_xy +
-            R_yx*ucu_base_frame_yy + R_zx*ucu_base_frame_zy) +
-            ucu_platform_joint_axis_platform_y*(R_xy*ucu_base_frame_xy + R_yy*ucu_base_frame_yy +
-            R_zy*ucu_base_frame_zy) + ucu_platform_joint_axis_platform_z*(R_xz*ucu_base_frame_xy +
-            R_yz*ucu_base_frame_yy + R_zz*ucu_base_frame_zy);
-        const real ucu_px_4_t_3 = ucu_platform_joint_axis_platform_x*(R_xx*ucu_base_frame_xz +
-            R_yx*ucu_base_frame_yz + R_zx*ucu_base_frame_zz) +
-            ucu_platform_joint_axis_platform_y*(R_xy*ucu_base_frame_xz + R_yy*ucu_base_frame_yz +
-            R_zy*ucu_base_frame_zz) + ucu_platform_joint_axis_platform_z*(R_xz*ucu_base_frame_xz +
-            R_yz*ucu_base_frame_yz + R_zz*ucu_base_frame_zz);
-        const real ucu_px_4_t_4 = ucu_px_4_t*ucu_s_1 - ucu_c_1*ucu_px_4_t_2;
-        const real ucu_px_4 = ucu_c_2*ucu_px_4_t_3 + ucu_px_4_t_4*ucu_s_2;
-        /* (ucu-py_4) component across the reference direction */
-        const real ucu_py_4 = ucu_c_1*ucu_px_4_t + ucu_px_4_t_2*ucu_s_1;
-        /* (ucu-rho2_4) squared amplitude */
-        const real ucu_rho2_4 = ucu_px_4*ucu_px_4 + ucu_py_4*ucu_py_4;
-        /* (ucu-root_4) amplitude, with the sign of the branch */
-        const real ucu_branch_4 = m->ucu_branch_4[i];
-        const real ucu_root_4 = ucu_branch_4*root(ucu_rho2_4);
-        /* (ucu-c_4) cosine of the angle of joint 4 from its reference direction */
-        const real inv_ucu_root_4 = 1/ucu_root_4;
-        const real ucu_c_4 = inv_ucu_root_4*ucu_px_4;
-        /* (ucu-s_4) sine of the angle of joint 4 from its reference direction */
-        const real ucu_s_4 = inv_ucu_root_4*ucu_py_4;
-        /* (ucu-S_dot) velocity of the connection point */
-        const real omega_y = s[16*w + j];
-        const real omega_z = s[17*w + j];
-        const real ucu_S_dot_t = omega_y*ucu_q_z - omega_z*ucu_q_y;
-        const real omega_x = s[15*w + j];
-        const real ucu_S_dot_t_2 = omega_z*ucu_q_x - omega_x*ucu_q_z;
-        const real ucu_S_dot_t_3 = omega_x*ucu_q_y - omega_y*ucu_q_x;
-        const real t_dot_x = s[12*w + j];
-        const real ucu_S_dot_x = t_dot_x + ucu_S_dot_t;
-        const real t_dot_y = s[13*w + j];
-        const real ucu_S_dot_y = t_dot_y + ucu_S_dot_t_2;
-        const real t_dot_z = s[14*w + j];
-        const real ucu_S_dot_z = t_dot_z + ucu_S_dot_t_3;
-        const real ucu_S_dot_t_4 = ucu_S_dot_x*ucu_base_frame_xx + ucu_S_dot_y*ucu_base_frame_yx +
-            ucu_S_dot_z*ucu_base_frame_zx;
-        const real ucu_S_dot_t_5 = ucu_S_dot_x*ucu_base_frame_xy + ucu_S_dot_y*ucu_base_frame_yy +
-            ucu_S_dot_z*ucu_base_frame_zy;
-        const real ucu_S_dot_t_6 = ucu_S_dot_x*ucu_base_frame_xz + ucu_S_dot_y*ucu_base_frame_yz +
-            ucu_S_dot_z*ucu_base_frame_zz;
-        const real ucu_S_dot_t_7 = ucu_S_dot_t_4*ucu_s_1 - ucu_S_dot_t_5*ucu_c_1;
-        const real ucu_S_dot_in_axes2_x = ucu_S_dot_t_6*ucu_s_2 - ucu_S_dot_t_7*ucu_c_2;
-        /* (ucu-v_1) velocity of the connection point per rate of joint 1 */
-        const real ucu_e_1_in_axes4_x = ucu_c_2*ucu_c_4;
-        const real ucu_e_1_in_axes4_y = -ucu_c_2*ucu_s_4;
-        const real ucu_v_1_in_axes4_x = ucu_e_1_in_axes4_y*ucu_root_2;
-        const real ucu_v_1_in_axes4_y = -ucu_e_1_in_axes4_x*ucu_root_2;
-        const real ucu_v_1_in_axes2_y = ucu_c_4*ucu_v_1_in_axes4_x - ucu_s_4*ucu_v_1_in_axes4_y;
-        const real ucu_v_1_in_axes2_z = ucu_c_4*ucu_v_1_in_axes4_y + ucu_s_4*ucu_v_1_in_axes4_x;
-        /* (ucu-n_m1) direction 1 of the moment that the platform joint transmits */
-        const real ucu_n_m1_in_axes4_x = ucu_px_4_t_3*ucu_s_2 - ucu_c_2*ucu_px_4_t_4;
-        const real ucu_n_m1_in_axes2_z = ucu_n_m1_in_axes4_x*ucu_s_4;
-        /* (ucu-w_1) force part of reciprocal wrench 1 */
-        const real ucu_end_p1_in_axes4_x = ucu_c_4*ucu_px_4 + ucu_py_4*ucu_s_4;
-        /* (ucu-w_3) force part of reciprocal wrench 3 */
-        const real ucu_w_3_x = inv_ucu_root_2*ucu_S_x;
-        const real ucu_w_3_y = inv_ucu_root_2*ucu_S_y;
-        const real ucu_w_3_z = inv_ucu_root_2*ucu_S_z;
-        /* (ucu-m1_w_4) moment part 1 of reciprocal wrench 4 */
-        const real ucu_m1_w_4 = -1/ucu_end_p1_in_axes4_x;
+        values_ucu v;
+        stage_ucu_X(m, w, i, j, s, X, &v);
+        stage_ucu_V_X(m, w, i, j, V, &v);
         /* (ucu-eta_1) rate at which the joints turn along moment direction 1 */
-        const real ucu_eta_1_t = ucu_s_2*ucu_s_4;
-        const real ucu_eta_1_t_2 = ucu_c_1*ucu_c_4 - ucu_eta_1_t*ucu_s_1;
-        const real ucu_eta_1_t_3 = ucu_c_1*ucu_eta_1_t + ucu_c_4*ucu_s_1;
+        const real ucu_eta_1_t = v.ucu_c_4*v.ucu_e_1_in_axes4_z;
+        const real ucu_eta_1_t_2 = -v.ucu_c_1*ucu_eta_1_t - v.ucu_e_2_in_axes4_y*v.ucu_s_1;
+        const real ucu_eta_1_t_3 = v.ucu_c_1*v.ucu_e_2_in_axes4_y - ucu_eta_1_t*v.ucu_s_1;
+        const real ucu_base_frame_xx = m->ucu_base_frame_xx[i];
+        const real ucu_base_frame_xy = m->ucu_base_frame_xy[i];
+        const real ucu_base_frame_xz = m->ucu_base_frame_xz[i];
         const real axis_y_ucu_axes4_x = ucu_base_frame_xx*ucu_eta_1_t_2 +
-            ucu_base_frame_xy*ucu_eta_1_t_3 + ucu_base_frame_xz*ucu_e_1_in_axes4_y;
+            ucu_base_frame_xy*ucu_eta_1_t_3 + ucu_base_frame_xz*v.ucu_e_1_in_axes4_y;
+        const real ucu_base_frame_yx = m->ucu_base_frame_yx[i];
+        const real ucu_base_frame_yy = m->ucu_base_frame_yy[i];
+        const real ucu_base_frame_yz = m->ucu_base_frame_yz[i];
         const real axis_y_ucu_axes4_y = ucu_base_frame_yx*ucu_eta_1_t_2 +
-            ucu_base_frame_yy*ucu_eta_1_t_3 + ucu_base_frame_yz*ucu_e_1_in_axes4_y;
+            ucu_base_frame_yy*ucu_eta_1_t_3 + ucu_base_frame_yz*v.ucu_e_1_in_axes4_y;
+        const real ucu_base_frame_zx = m->ucu_base_frame_zx[i];
+        const real ucu_base_frame_zy = m->ucu_base_frame_zy[i];
+        const real ucu_base_frame_zz = m->ucu_base_frame_zz[i];
         const real axis_y_ucu_axes4_z = ucu_base_frame_zx*ucu_eta_1_t_2 +
-            ucu_base_frame_zy*ucu_eta_1_t_3 + ucu_base_frame_zz*ucu_e_1_in_axes4_y;
-        const real axis_x_ucu_axes4_x = axis_y_ucu_axes4_y*ucu_w_3_z -
-            axis_y_ucu_axes4_z*ucu_w_3_y;
-        const real axis_x_ucu_axes4_y = axis_y_ucu_axes4_z*ucu_w_3_x -
-            axis_y_ucu_axes4_x*ucu_w_3_z;
-        const real axis_x_ucu_axes4_z = axis_y_ucu_axes4_x*ucu_w_3_y -
-            axis_y_ucu_axes4_y*ucu_w_3_x;
-        const real ucu_eta_1 = omega_x*(axis_x_ucu_axes4_x*ucu_n_m1_in_axes4_x -
-            ucu_end_p1_in_axes4_x*ucu_w_3_x) + omega_y*(axis_x_ucu_axes4_y*ucu_n_m1_in_axes4_x -
-            ucu_end_p1_in_axes4_x*ucu_w_3_y) + omega_z*(axis_x_ucu_axes4_z*ucu_n_m1_in_axes4_x -
-            ucu_end_p1_in_axes4_x*ucu_w_3_z);
-        /* (ucu-qd_1) rate of joint 1 */
-        const real inv_ucu_v_1_in_axes2_z = 1/ucu_v_1_in_axes2_z;
-        const real ucu_qd_1 = inv_ucu_v_1_in_axes2_z*(ucu_S_dot_t_4*ucu_c_1 +
-            ucu_S_dot_t_5*ucu_s_1);
-        /* (ucu-qd_2) rate of joint 2 */
-        const real ucu_qd_2 = inv_ucu_root_2*(ucu_S_dot_t_6*ucu_c_2 + ucu_S_dot_t_7*ucu_s_2 -
-            ucu_qd_1*ucu_v_1_in_axes2_y);
+            ucu_base_frame_zy*ucu_eta_1_t_3 + ucu_base_frame_zz*v.ucu_e_1_in_axes4_y;
+        const real axis_x_ucu_axes4_x = axis_y_ucu_axes4_y*v.ucu_w_3_z -
+            axis_y_ucu_axes4_z*v.ucu_w_3_y;
+        const real axis_x_ucu_axes4_y = axis_y_ucu_axes4_z*v.ucu_w_3_x -
+            axis_y_ucu_axes4_x*v.ucu_w_3_z;
+        const real axis_x_ucu_axes4_z = axis_y_ucu_axes4_x*v.ucu_w_3_y -
+            axis_y_ucu_axes4_y*v.ucu_w_3_x;
+        const real omega_x = V[3*w + j];
+        const real omega_y = V[4*w + j];
+        const real omega_z = V[5*w + j];
+        const real ucu_eta_1 = omega_x*(axis_x_ucu_axes4_x*v.ucu_n_m1_in_axes4_x -
+            v.ucu_end_p1_in_axes4_x*v.ucu_w_3_x) +
+            omega_y*(axis_x_ucu_axes4_y*v.ucu_n_m1_in_axes4_x -
+            v.ucu_end_p1_in_axes4_x*v.ucu_w_3_y) +
+            omega_z*(axis_x_ucu_axes4_z*v.ucu_n_m1_in_axes4_x -
+            v.ucu_end_p1_in_axes4_x*v.ucu_w_3_z);
         /* (ucu-qd_4) rate of joint 4 */
-        const real ucu_qd_4_t = ucu_end_p1_in_axes4_x*ucu_s_2 -
-            ucu_e_1_in_axes4_x*ucu_n_m1_in_axes4_x;
-        const real ucu_qd_4 = ucu_m1_w_4*(ucu_eta_1 + ucu_qd_1*ucu_qd_4_t -
-            ucu_n_m1_in_axes2_z*ucu_qd_2);
-        /* (ucu-omega_1) angular velocity of link 1 */
-        const real ucu_omega_1_in_axes2_x = ucu_qd_1*ucu_s_2;
-        const real ucu_omega_1_in_axes2_y = ucu_c_2*ucu_qd_1;
-        /* (ucu-omega_2) angular velocity of link 2 */
-        const real ucu_omega_2_in_axes4_x = ucu_c_4*ucu_omega_1_in_axes2_y + ucu_qd_2*ucu_s_4;
-        const real ucu_omega_2_in_axes4_y = ucu_c_4*ucu_qd_2 - ucu_omega_1_in_axes2_y*ucu_s_4;
-        /* (ucu-W_2) centripetal tensor of link 2 */
-        const real ucu_W_2_in_axes2_yz = ucu_omega_1_in_axes2_y*ucu_qd_2;
-        const real ucu_W_2_in_axes2_xz = ucu_omega_1_in_axes2_x*ucu_qd_2;
-        const real ucu_W_2_in_axes2_xy = ucu_omega_1_in_axes2_x*ucu_omega_1_in_axes2_y;
-        const real ucu_W_2_in_axes4_xy = ucu_omega_2_in_axes4_x*ucu_omega_2_in_axes4_y;
+        const real ucu_qd_4_t = v.ucu_e_1_in_axes4_z*v.ucu_end_p1_in_axes4_x +
+            v.ucu_n_m1_in_axes4_x*v.ucu_v_1_t;
+        const real ucu_qd_4 = -v.inv_ucu_end_p1_in_axes4_x*(ucu_eta_1 + v.ucu_qd_1*ucu_qd_4_t -
+            v.ucu_n_m1_in_axes2_z*v.ucu_qd_2);
         /* (ucu-omega_4) angular velocity of link 4 */
-        const real ucu_omega_4_in_axes4_z = ucu_omega_1_in_axes2_x + ucu_qd_4;
+        const real ucu_omega_4_in_axes4_z = v.ucu_omega_1_in_axes2_x + ucu_qd_4;
         /* (ucu-W_4) centripetal tensor of link 4 */
-        const real ucu_W_4_in_axes4_xz = ucu_omega_2_in_axes4_x*ucu_omega_4_in_axes4_z;
-        const real ucu_W_4_in_axes4_yz = ucu_omega_2_in_axes4_y*ucu_omega_4_in_axes4_z;
+        const real ucu_W_4_in_axes4_xz = v.ucu_omega_2_in_axes4_x*ucu_omega_4_in_axes4_z;
+        const real ucu_W_4_in_axes4_yz = v.ucu_omega_2_in_axes4_y*ucu_omega_4_in_axes4_z;
         /* (ucu-u_1) centripetal acceleration of the connection point */
-        const real ucu_u_1_x = omega_y*ucu_S_dot_t_3 - omega_z*ucu_S_dot_t_2;
-        const real ucu_u_1_y = omega_z*ucu_S_dot_t - omega_x*ucu_S_dot_t_3;
-        const real ucu_u_1_z = omega_x*ucu_S_dot_t_2 - omega_y*ucu_S_dot_t;
+        const real ucu_u_1_x = omega_y*v.ucu_S_dot_t_3 - omega_z*v.ucu_S_dot_t_2;
+        const real ucu_u_1_y = omega_z*v.ucu_S_dot_t - omega_x*v.ucu_S_dot_t_3;
+        const real ucu_u_1_z = omega_x*v.ucu_S_dot_t_2 - omega_y*v.ucu_S_dot_t;
         const real ucu_u_1_in_axes4_x = axis_x_ucu_axes4_x*ucu_u_1_x +
             axis_x_ucu_axes4_y*ucu_u_1_y + axis_x_ucu_axes4_z*ucu_u_1_z;
         const real ucu_u_1_in_axes4_y = axis_y_ucu_axes4_x*ucu_u_1_x +
             axis_y_ucu_axes4_y*ucu_u_1_y + axis_y_ucu_axes4_z*ucu_u_1_z;
-        /* (ucu-zeta_2) angular acceleration of link 2 from the turning of axis 2 */
-        const real ucu_zeta_2_t = ucu_W_2_in_axes2_xz*ucu_c_4;
         /* (ucu-zeta_4) angular acceleration of link 4 from the turning of axis 4 */
-        const real ucu_zeta_4_in_axes4_x = ucu_omega_2_in_axes4_y*ucu_qd_4;
+        const real ucu_zeta_4_in_axes4_x = v.ucu_omega_2_in_axes4_y*ucu_qd_4;
         /* (ucu-beta_4) angular acceleration of link 4 at zero joint accelerations */
-        const real ucu_beta_4_in_axes4_x = ucu_zeta_4_in_axes4_x - ucu_zeta_2_t;
-        /* (ucu-bias) acceleration of the connection point at zero joint accelerations */
-        const real ucu_bias_t = 2*ucu_S_dot_in_axes2_x;
-        const real ucu_bias_in_axes4_x = ucu_bias_t*ucu_omega_2_in_axes4_y +
-            ucu_root_2*(ucu_W_2_in_axes2_xz*ucu_s_4 +
-            ucu_omega_1_in_axes2_x*ucu_omega_2_in_axes4_x);
-        const real ucu_bias_in_axes4_y = ucu_root_2*(ucu_zeta_2_t +
-            ucu_omega_1_in_axes2_x*ucu_omega_2_in_axes4_y) - ucu_bias_t*ucu_omega_2_in_axes4_x;
+        const real ucu_beta_4_in_axes4_x = ucu_zeta_4_in_axes4_x - v.ucu_zeta_2_t;
         /* (ucu-rel_o) remainder without the acceleration in: acceleration of the connection point left to
            the joint accelerations */
-        const real ucu_rel_o_in_axes4_x = ucu_u_1_in_axes4_x - ucu_bias_in_axes4_x;
-        const real ucu_rel_o_in_axes4_y = ucu_u_1_in_axes4_y - ucu_bias_in_axes4_y;
+        const real ucu_rel_o_in_axes4_x = ucu_u_1_in_axes4_x - v.ucu_bias_in_axes4_x;
+        const real ucu_rel_o_in_axes4_y = ucu_u_1_in_axes4_y - v.ucu_bias_in_axes4_y;
         /* (ucu-nd_m1) rate of moment direction 1 */
-        const real ucu_end_p1_in_axes4_y = ucu_c_4*ucu_py_4 - ucu_px_4*ucu_s_4;
         const real ucu_omega_in_axes4_x = axis_x_ucu_axes4_x*omega_x + axis_x_ucu_axes4_y*omega_y
             + axis_x_ucu_axes4_z*omega_z;
         const real ucu_omega_in_axes4_y = axis_y_ucu_axes4_x*omega_x + axis_y_ucu_axes4_y*omega_y
             + axis_y_ucu_axes4_z*omega_z;
-        const real ucu_omega_in_axes4_z = omega_x*ucu_w_3_x + omega_y*ucu_w_3_y +
-            omega_z*ucu_w_3_z;
-        const real ucu_nd_m1_in_axes4_x = ucu_end_p1_in_axes4_y*ucu_omega_in_axes4_x -
-            ucu_end_p1_in_axes4_x*ucu_omega_in_axes4_y -
-            ucu_end_p1_in_axes4_y*ucu_omega_2_in_axes4_x;
-        const real ucu_nd_m1_in_axes4_z = ucu_end_p1_in_axes4_y*ucu_omega_in_axes4_z -
-            ucu_end_p1_in_axes4_y*ucu_omega_4_in_axes4_z -
-            ucu_n_m1_in_axes4_x*ucu_omega_in_axes4_y;
+        const real ucu_nd_m1_in_axes4_x = v.ucu_end_p1_in_axes4_y*ucu_omega_in_axes4_x -
+            v.ucu_end_p1_in_axes4_x*ucu_omega_in_axes4_y -
+            v.ucu_end_p1_in_axes4_y*v.ucu_omega_2_in_axes4_x;
+        const real ucu_nd_m1_in_axes4_z = v.ucu_end_p1_in_axes4_y*v.ucu_omega_in_axes4_z -
+            v.ucu_end_p1_in_axes4_y*ucu_omega_4_in_axes4_z -
+            v.ucu_n_m1_in_axes4_x*ucu_omega_in_axes4_y;
         /* (ucu-nu_1) bias of the angular acceleration along moment direction 1 */
-        const real ucu_nu_1_t = ucu_W_2_in_axes2_yz*ucu_end_p1_in_axes4_x -
-            ucu_beta_4_in_axes4_x*ucu_n_m1_in_axes4_x;
-        const real ucu_nu_1_t_2 = ucu_nd_m1_in_axes4_x*(ucu_omega_2_in_axes4_x -
+        const real ucu_nu_1_t = ucu_beta_4_in_axes4_x*v.ucu_n_m1_in_axes4_x -
+            v.ucu_W_2_in_axes2_yz*v.ucu_end_p1_in_axes4_x;
+        const real ucu_nu_1_t_2 = ucu_nd_m1_in_axes4_x*(v.ucu_omega_2_in_axes4_x -
             ucu_omega_in_axes4_x) + ucu_nd_m1_in_axes4_z*(ucu_omega_4_in_axes4_z -
-            ucu_omega_in_axes4_z) + (ucu_omega_2_in_axes4_y -
-            ucu_omega_in_axes4_y)*(ucu_end_p1_in_axes4_x*ucu_omega_2_in_axes4_x +
-            ucu_n_m1_in_axes4_x*ucu_omega_4_in_axes4_z);
-        const real ucu_nu_1 = ucu_nu_1_t - ucu_nu_1_t_2;
+            v.ucu_omega_in_axes4_z) + (v.ucu_omega_2_in_axes4_y -
+            ucu_omega_in_axes4_y)*(v.ucu_end_p1_in_axes4_x*v.ucu_omega_2_in_axes4_x +
+            v.ucu_n_m1_in_axes4_x*ucu_omega_4_in_axes4_z);
+        const real ucu_nu_1 = -ucu_nu_1_t - ucu_nu_1_t_2;
         /* (ucu-qdd_1_o) remainder without the acceleration in: acceleration of joint 1 */
-        const real ucu_qdd_1_o = inv_ucu_v_1_in_axes2_z*(ucu_c_4*ucu_rel_o_in_axes4_y +
-            ucu_rel_o_in_axes4_x*ucu_s_4);
+        const real ucu_qdd_1_o = v.inv_ucu_v_1_in_axes2_z*(v.ucu_c_4*ucu_rel_o_in_axes4_x +
+            v.ucu_e_2_in_axes4_y*ucu_rel_o_in_axes4_y);
         /* (ucu-qdd_2_o) remainder without the acceleration in: acceleration of joint 2 */
-        const real ucu_qdd_2_o = -inv_ucu_root_2*(ucu_qdd_1_o*ucu_v_1_in_axes2_y +
-            ucu_rel_o_in_axes4_y*ucu_s_4 - ucu_c_4*ucu_rel_o_in_axes4_x);
+        const real ucu_qdd_2_o = v.inv_ucu_root_2*(v.ucu_e_2_in_axes4_y*ucu_rel_o_in_axes4_x +
+            ucu_qdd_1_o*v.ucu_v_1_t_2 - v.ucu_c_4*ucu_rel_o_in_axes4_y);
         /* (ucu-alpha_1_o) remainder without the acceleration in: angular acceleration of link 1 */
-        const real ucu_alpha_1_o_in_axes2_x = ucu_qdd_1_o*ucu_s_2;
-        const real ucu_alpha_1_o_in_axes2_y = ucu_c_2*ucu_qdd_1_o;
+        const real ucu_alpha_1_o_in_axes2_x = v.ucu_e_1_in_axes4_z*ucu_qdd_1_o;
+        const real ucu_alpha_1_o_in_axes2_y = -v.ucu_c_2*ucu_qdd_1_o;
         /* (ucu-alpha_2_o) remainder without the acceleration in: angular acceleration of link 2 */
-        const real ucu_alpha_2_o_in_axes2_x = ucu_W_2_in_axes2_yz + ucu_alpha_1_o_in_axes2_x;
-        const real ucu_alpha_2_o_in_axes2_y = ucu_alpha_1_o_in_axes2_y - ucu_W_2_in_axes2_xz;
+        const real ucu_alpha_2_o_in_axes2_x = v.ucu_W_2_in_axes2_yz + ucu_alpha_1_o_in_axes2_x;
+        const real ucu_alpha_2_o_in_axes2_y = ucu_alpha_1_o_in_axes2_y - v.ucu_W_2_in_axes2_xz;
         /* (ucu-B_2_o) remainder of the acceleration tensor of link 2 */
-        const real ucu_B_2_o_in_axes2_xy = ucu_W_2_in_axes2_xy - ucu_qdd_2_o;
-        const real ucu_B_2_o_in_axes2_yx = ucu_W_2_in_axes2_xy + ucu_qdd_2_o;
-        const real ucu_B_2_o_in_axes2_zx = ucu_W_2_in_axes2_xz - ucu_alpha_2_o_in_axes2_y;
-        const real ucu_B_2_o_in_axes2_zy = ucu_W_2_in_axes2_yz + ucu_alpha_2_o_in_axes2_x;
+        const real ucu_B_2_o_in_axes2_xy = v.ucu_W_2_in_axes2_xy - ucu_qdd_2_o;
+        const real ucu_B_2_o_in_axes2_yx = v.ucu_W_2_in_axes2_xy + ucu_qdd_2_o;
+        const real ucu_B_2_o_in_axes2_zx = v.ucu_W_2_in_axes2_xz - ucu_alpha_2_o_in_axes2_y;
+        const real ucu_B_2_o_in_axes2_zy = v.ucu_W_2_in_axes2_yz + ucu_alpha_2_o_in_axes2_x;
         /* (ucu-alpha_4_o) remainder without the acceleration in: angular acceleration of link 4 */
         const real ucu_alpha_4_o_in_axes4_x = ucu_zeta_4_in_axes4_x +
-            ucu_alpha_2_o_in_axes2_y*ucu_c_4 + ucu_qdd_2_o*ucu_s_4;
-        const real ucu_alpha_4_o_in_axes4_y = ucu_c_4*ucu_qdd_2_o -
-            ucu_alpha_2_o_in_axes2_y*ucu_s_4 - ucu_omega_2_in_axes4_x*ucu_qd_4;
-        const real ucu_alpha_4_o_in_axes4_z = ucu_alpha_2_o_in_axes2_x + ucu_m1_w_4*(ucu_nu_1 +
-            ucu_qd_4_t*ucu_qdd_1_o - ucu_n_m1_in_axes2_z*ucu_qdd_2_o);
+            ucu_alpha_2_o_in_axes2_y*v.ucu_e_2_in_axes4_y + v.ucu_c_4*ucu_qdd_2_o;
+        const real ucu_alpha_4_o_in_axes4_y = v.ucu_e_2_in_axes4_y*ucu_qdd_2_o -
+            ucu_alpha_2_o_in_axes2_y*v.ucu_c_4 - v.ucu_omega_2_in_axes4_x*ucu_qd_4;
+        const real ucu_alpha_4_o_in_axes4_z = ucu_alpha_2_o_in_axes2_x -
+            v.inv_ucu_end_p1_in_axes4_x*(ucu_nu_1 + ucu_qd_4_t*ucu_qdd_1_o -
+            v.ucu_n_m1_in_axes2_z*ucu_qdd_2_o);
         /* (ucu-B_4_o) remainder of the acceleration tensor of link 4 */
-        const real ucu_B_4_o_in_axes4_xy = ucu_W_2_in_axes4_xy - ucu_alpha_4_o_in_axes4_z;
+        const real ucu_B_4_o_in_axes4_xy = v.ucu_W_2_in_axes4_xy - ucu_alpha_4_o_in_axes4_z;
         const real ucu_B_4_o_in_axes4_xz = ucu_W_4_in_axes4_xz + ucu_alpha_4_o_in_axes4_y;
-        const real ucu_B_4_o_in_axes4_yx = ucu_W_2_in_axes4_xy + ucu_alpha_4_o_in_axes4_z;
+        const real ucu_B_4_o_in_axes4_yx = v.ucu_W_2_in_axes4_xy + ucu_alpha_4_o_in_axes4_z;
         const real ucu_B_4_o_in_axes4_yz = ucu_W_4_in_axes4_yz - ucu_alpha_4_o_in_axes4_x;
         const real ucu_B_4_o_in_axes4_zx = ucu_W_4_in_axes4_xz - ucu_alpha_4_o_in_axes4_y;
         const real ucu_B_4_o_in_axes4_zy = ucu_W_4_in_axes4_yz + ucu_alpha_4_o_in_axes4_x;
@@ -3444,12 +3419,13 @@ INLINE void Z_legs_ucu(const prepared *m, size_t w, size_t leg, size_t legs, con
             axis_x_ucu_axes4_y*gravity_y - axis_x_ucu_axes4_z*gravity_z;
         const real ucu_acc_4_o_in_axes4_y = ucu_u_1_in_axes4_y - axis_y_ucu_axes4_x*gravity_x -
             axis_y_ucu_axes4_y*gravity_y - axis_y_ucu_axes4_z*gravity_z;
-        const real ucu_acc_4_o_in_axes4_z = ucu_u_1_x*ucu_w_3_x + ucu_u_1_y*ucu_w_3_y +
-            ucu_u_1_z*ucu_w_3_z - gravity_x*ucu_w_3_x - gravity_y*ucu_w_3_y - gravity_z*ucu_w_3_z;
+        const real ucu_acc_4_o_in_axes4_z = ucu_u_1_x*v.ucu_w_3_x + ucu_u_1_y*v.ucu_w_3_y +
+            ucu_u_1_z*v.ucu_w_3_z - gravity_x*v.ucu_w_3_x - gravity_y*v.ucu_w_3_y -
+            gravity_z*v.ucu_w_3_z;
         /* (ucu-phi_4_o) remainder without the acceleration in: inertia force of link 4 from its turning
            about its reference point */
-        const real ucu_phi_4_o_t = ucu_omega_2_in_axes4_x*ucu_omega_2_in_axes4_x;
-        const real ucu_phi_4_o_t_2 = ucu_omega_2_in_axes4_y*ucu_omega_2_in_axes4_y;
+        const real ucu_phi_4_o_t = v.ucu_omega_2_in_axes4_x*v.ucu_omega_2_in_axes4_x;
+        const real ucu_phi_4_o_t_2 = v.ucu_omega_2_in_axes4_y*v.ucu_omega_2_in_axes4_y;
         const real ucu_h_4_in_spec4_x = m->ucu_h_4_in_spec4_x[i];
         const real ucu_h_4_in_spec4_y = m->ucu_h_4_in_spec4_y[i];
         const real ucu_h_4_in_spec4_z = m->ucu_h_4_in_spec4_z[i];
@@ -3482,16 +3458,17 @@ INLINE void Z_legs_ucu(const prepared *m, size_t w, size_t leg, size_t legs, con
             ucu_B_4_o_in_axes4_yz*ucu_J_4_in_spec4_xy - ucu_acc_4_o_in_axes4_x*ucu_h_4_in_spec4_z;
         /* (ucu-mu_2_o) remainder without the acceleration in: inertia moment of the links that turn with
            link 2, about their reference points */
-        const real ucu_mu_2_o_t = ucu_omega_1_in_axes2_x*ucu_omega_1_in_axes2_x;
-        const real ucu_mu_2_o_t_2 = ucu_omega_1_in_axes2_y*ucu_omega_1_in_axes2_y;
-        const real ucu_mu_2_o_t_3 = ucu_qd_2*ucu_qd_2;
+        const real ucu_mu_2_o_t = v.ucu_omega_1_in_axes2_x*v.ucu_omega_1_in_axes2_x;
+        const real ucu_mu_2_o_t_2 = v.ucu_omega_1_in_axes2_y*v.ucu_omega_1_in_axes2_y;
+        const real ucu_mu_2_o_t_3 = v.ucu_qd_2*v.ucu_qd_2;
         const real ucu_mu_2_t = m->ucu_mu_2_t[i];
         const real ucu_mu_2_t_2 = m->ucu_mu_2_t_2[i];
-        const real ucu_g_in_axes2_z = ucu_c_1*ucu_mu_2_t + ucu_mu_2_t_2*ucu_s_1;
-        const real ucu_mu_2_o_t_4 = ucu_c_1*ucu_mu_2_t_2 - ucu_mu_2_t*ucu_s_1;
+        const real ucu_mu_2_o_t_4 = v.ucu_c_1*ucu_mu_2_t + ucu_mu_2_t_2*v.ucu_s_1;
         const real ucu_mu_2_t_3 = m->ucu_mu_2_t_3[i];
-        const real ucu_g_in_axes2_x = ucu_c_2*ucu_mu_2_o_t_4 + ucu_mu_2_t_3*ucu_s_2;
-        const real ucu_g_in_axes2_y = ucu_c_2*ucu_mu_2_t_3 - ucu_mu_2_o_t_4*ucu_s_2;
+        const real ucu_g_in_axes2_x = v.ucu_c_2*ucu_mu_2_o_t_4 +
+            v.ucu_e_1_in_axes4_z*ucu_mu_2_t_3;
+        const real ucu_g_in_axes2_y = v.ucu_e_1_in_axes4_z*ucu_mu_2_o_t_4 -
+            v.ucu_c_2*ucu_mu_2_t_3;
         const real ucu_J_2_in_spec2_xy = m->ucu_J_2_in_spec2_xy[i];
         const real ucu_J_2_in_spec2_xz = m->ucu_J_2_in_spec2_xz[i];
         const real ucu_J_2_in_spec2_yz = m->ucu_J_2_in_spec2_yz[i];
@@ -3503,14 +3480,14 @@ INLINE void Z_legs_ucu(const prepared *m, size_t w, size_t leg, size_t legs, con
             ucu_B_2_o_in_axes2_zx*ucu_J_2_in_spec2_xz +
             ucu_B_2_o_in_axes2_zy*ucu_Sigma_2_in_axes2_yy +
             ucu_Sigma_2_in_axes2_zz*ucu_alpha_1_o_in_axes2_x + ucu_g_in_axes2_y*ucu_h_2_in_spec2_y
-            + ucu_g_in_axes2_z*ucu_h_2_in_spec2_z - ucu_J_2_in_spec2_yz*(ucu_mu_2_o_t_2 -
+            + v.ucu_g_in_axes2_z*ucu_h_2_in_spec2_z - ucu_J_2_in_spec2_yz*(ucu_mu_2_o_t_2 -
             ucu_mu_2_o_t_3);
         const real ucu_Sigma_2_in_axes2_xx = m->ucu_Sigma_2_in_axes2_xx[i];
         const real ucu_h_2_in_spec2_x = m->ucu_h_2_in_spec2_x[i];
         const real ucu_mu_2_o_in_axes2_y = ucu_B_2_o_in_axes2_xy*ucu_J_2_in_spec2_yz +
-            ucu_Sigma_2_in_axes2_zz*ucu_alpha_1_o_in_axes2_y + ucu_g_in_axes2_z*ucu_h_2_in_spec2_x
-            - ucu_B_2_o_in_axes2_zx*ucu_Sigma_2_in_axes2_xx -
-            ucu_B_2_o_in_axes2_zy*ucu_J_2_in_spec2_xz - ucu_J_2_in_spec2_xy*(ucu_mu_2_o_t -
+            ucu_Sigma_2_in_axes2_zz*ucu_alpha_1_o_in_axes2_y +
+            v.ucu_g_in_axes2_z*ucu_h_2_in_spec2_x - ucu_B_2_o_in_axes2_zx*ucu_Sigma_2_in_axes2_xx
+            - ucu_B_2_o_in_axes2_zy*ucu_J_2_in_spec2_xz - ucu_J_2_in_spec2_xy*(ucu_mu_2_o_t -
             ucu_mu_2_o_t_3) - ucu_g_in_axes2_x*ucu_h_2_in_spec2_y;
         const real ucu_mu_2_o_in_axes2_z = ucu_B_2_o_in_axes2_yx*ucu_Sigma_2_in_axes2_xx +
             ucu_J_2_in_spec2_xy*ucu_alpha_1_o_in_axes2_x -
@@ -3520,42 +3497,43 @@ INLINE void Z_legs_ucu(const prepared *m, size_t w, size_t leg, size_t legs, con
         /* (ucu-N_2_o) remainder without the acceleration in: moment about joint 2 of the links from 2
            outwards, the force at the connection point left out */
         const real ucu_N_2_o_in_axes2_x = ucu_mu_2_o_in_axes2_x + ucu_mu_4_o_in_axes4_z;
-        const real ucu_N_2_o_in_axes2_y = ucu_mu_2_o_in_axes2_y + ucu_c_4*ucu_mu_4_o_in_axes4_x -
-            ucu_mu_4_o_in_axes4_y*ucu_s_4;
-        const real ucu_N_2_o_in_axes2_z = ucu_mu_2_o_in_axes2_z + ucu_c_4*ucu_mu_4_o_in_axes4_y +
-            ucu_mu_4_o_in_axes4_x*ucu_s_4;
+        const real ucu_N_2_o_in_axes2_y = ucu_mu_2_o_in_axes2_y +
+            v.ucu_e_2_in_axes4_y*ucu_mu_4_o_in_axes4_x - v.ucu_c_4*ucu_mu_4_o_in_axes4_y;
+        const real ucu_N_2_o_in_axes2_z = ucu_mu_2_o_in_axes2_z + v.ucu_c_4*ucu_mu_4_o_in_axes4_x
+            + v.ucu_e_2_in_axes4_y*ucu_mu_4_o_in_axes4_y;
         /* (ucu-G_m1_o) remainder without the acceleration in: moment along moment direction 1 that
            balances the leg's inertia and weight along all degrees of freedom */
-        const real ucu_G_m1_o = ucu_m1_w_4*ucu_mu_4_o_in_axes4_z;
+        const real ucu_G_m1_o_t = v.inv_ucu_end_p1_in_axes4_x*ucu_mu_4_o_in_axes4_z;
         /* (ucu-c_o) remainder without the acceleration in: leg force on the platform without actuation
            and without the mass at the connection point */
-        const real ucu_c_o_t = inv_ucu_root_2*(ucu_N_2_o_in_axes2_z -
-            ucu_G_m1_o*ucu_n_m1_in_axes2_z);
-        const real ucu_c_o_t_2 = inv_ucu_v_1_in_axes2_z*(ucu_c_o_t*ucu_v_1_in_axes2_y -
-            ucu_G_m1_o*ucu_qd_4_t - ucu_N_2_o_in_axes2_x*ucu_s_2 - ucu_N_2_o_in_axes2_y*ucu_c_2);
-        const real ucu_c_o_in_axes4_x = ucu_c_o_t_2*ucu_s_4 + ucu_h_4_in_spec4_y*(ucu_mu_4_o_t +
+        const real ucu_c_o_t = v.inv_ucu_root_2*(ucu_N_2_o_in_axes2_z +
+            ucu_G_m1_o_t*v.ucu_n_m1_in_axes2_z);
+        const real ucu_c_o_t_2 = v.inv_ucu_v_1_in_axes2_z*(ucu_G_m1_o_t*ucu_qd_4_t +
+            ucu_N_2_o_in_axes2_y*v.ucu_c_2 - ucu_N_2_o_in_axes2_x*v.ucu_e_1_in_axes4_z -
+            ucu_c_o_t*v.ucu_v_1_t_2);
+        const real ucu_c_o_in_axes4_x = v.ucu_c_4*ucu_c_o_t_2 + ucu_h_4_in_spec4_y*(ucu_mu_4_o_t +
             ucu_phi_4_o_t_2) - ucu_B_4_o_in_axes4_xy*ucu_h_4_in_spec4_z -
-            ucu_B_4_o_in_axes4_xz*ucu_h_4_in_spec4_x - ucu_c_4*ucu_c_o_t;
-        const real ucu_c_o_in_axes4_y = ucu_c_4*ucu_c_o_t_2 + ucu_c_o_t*ucu_s_4 +
+            ucu_B_4_o_in_axes4_xz*ucu_h_4_in_spec4_x - ucu_c_o_t*v.ucu_e_2_in_axes4_y;
+        const real ucu_c_o_in_axes4_y = v.ucu_c_4*ucu_c_o_t + ucu_c_o_t_2*v.ucu_e_2_in_axes4_y +
             ucu_h_4_in_spec4_z*(ucu_mu_4_o_t + ucu_phi_4_o_t) -
             ucu_B_4_o_in_axes4_yx*ucu_h_4_in_spec4_y - ucu_B_4_o_in_axes4_yz*ucu_h_4_in_spec4_x;
         /* (ucu-c_m_o) remainder without the acceleration in: moment of the leg on the platform without
            actuation */
-        const real ucu_c_m_o_in_axes4_x = -ucu_G_m1_o*ucu_n_m1_in_axes4_x;
+        const real ucu_c_m_o_in_axes4_x = ucu_G_m1_o_t*v.ucu_n_m1_in_axes4_x;
         /* (ucu-U) velocity and gravity terms of the leg force */
-        const real ucu_U_x = ucu_phi_4_o_in_axes4_z*ucu_w_3_x -
+        const real ucu_U_x = ucu_phi_4_o_in_axes4_z*v.ucu_w_3_x -
             axis_x_ucu_axes4_x*ucu_c_o_in_axes4_x - axis_y_ucu_axes4_x*ucu_c_o_in_axes4_y;
-        const real ucu_U_y = ucu_phi_4_o_in_axes4_z*ucu_w_3_y -
+        const real ucu_U_y = ucu_phi_4_o_in_axes4_z*v.ucu_w_3_y -
             axis_x_ucu_axes4_y*ucu_c_o_in_axes4_x - axis_y_ucu_axes4_y*ucu_c_o_in_axes4_y;
-        const real ucu_U_z = ucu_phi_4_o_in_axes4_z*ucu_w_3_z -
+        const real ucu_U_z = ucu_phi_4_o_in_axes4_z*v.ucu_w_3_z -
             axis_x_ucu_axes4_z*ucu_c_o_in_axes4_x - axis_y_ucu_axes4_z*ucu_c_o_in_axes4_y;
         /* (Z_a) rotational part of Z */
-        const real ucu_Z_a_t = ucu_U_z*ucu_q_y + ucu_mu_4_o_in_axes4_z*ucu_w_3_x -
-            axis_x_ucu_axes4_x*ucu_c_m_o_in_axes4_x - ucu_U_y*ucu_q_z;
-        const real ucu_Z_a_t_2 = ucu_U_x*ucu_q_z + ucu_mu_4_o_in_axes4_z*ucu_w_3_y -
-            axis_x_ucu_axes4_y*ucu_c_m_o_in_axes4_x - ucu_U_z*ucu_q_x;
-        const real ucu_Z_a_t_3 = ucu_U_y*ucu_q_x + ucu_mu_4_o_in_axes4_z*ucu_w_3_z -
-            axis_x_ucu_axes4_z*ucu_c_m_o_in_axes4_x - ucu_U_x*ucu_q_y;
+        const real ucu_Z_a_t = ucu_U_z*v.ucu_q_y + ucu_mu_4_o_in_axes4_z*v.ucu_w_3_x -
+            axis_x_ucu_axes4_x*ucu_c_m_o_in_axes4_x - ucu_U_y*v.ucu_q_z;
+        const real ucu_Z_a_t_2 = ucu_U_x*v.ucu_q_z + ucu_mu_4_o_in_axes4_z*v.ucu_w_3_y -
+            axis_x_ucu_axes4_y*ucu_c_m_o_in_axes4_x - ucu_U_z*v.ucu_q_x;
+        const real ucu_Z_a_t_3 = ucu_U_y*v.ucu_q_x + ucu_mu_4_o_in_axes4_z*v.ucu_w_3_z -
+            axis_x_ucu_axes4_z*ucu_c_m_o_in_axes4_x - ucu_U_x*v.ucu_q_y;
         /* (Z_t) translational part of Z */
         gather(&terms[0*count + k], add, ucu_U_x);  /* Z_t_x_of_legs */
         gather(&terms[1*count + k], add, ucu_U_y);  /* Z_t_y_of_legs */
@@ -3564,10 +3542,11 @@ INLINE void Z_legs_ucu(const prepared *m, size_t w, size_t leg, size_t legs, con
         gather(&terms[3*count + k], add, ucu_Z_a_t);  /* Z_a_x_of_legs */
         gather(&terms[4*count + k], add, ucu_Z_a_t_2);  /* Z_a_y_of_legs */
         gather(&terms[5*count + k], add, ucu_Z_a_t_3);  /* Z_a_z_of_legs */
-        o[0*count + k] = UNLESS(magnitude(ucu_rho2_1) > LEAST_1) + UNLESS(magnitude(ucu_rho2_2) >
-            LEAST_1) + UNLESS(magnitude(ucu_rho2_4) > LEAST_2) +
-            UNLESS(magnitude(ucu_end_p1_in_axes4_x) > LEAST_3) + UNLESS(magnitude(ucu_root_2) >
-            LEAST_4) + UNLESS(magnitude(ucu_v_1_in_axes2_z) > LEAST_4);
+        o[0*count + k] = UNLESS(magnitude(v.ucu_root_1_t) > LEAST_1) +
+            UNLESS(magnitude(v.ucu_root_2_t) > LEAST_1) + UNLESS(magnitude(v.ucu_root_4_t_6) >
+            LEAST_2) + UNLESS(magnitude(v.ucu_end_p1_in_axes4_x) > LEAST_3) +
+            UNLESS(magnitude(v.ucu_root_2) > LEAST_4) + UNLESS(magnitude(v.ucu_v_1_in_axes2_z) >
+            LEAST_4);
     }
 }
 
@@ -3582,24 +3561,24 @@ INLINE void Z_after(size_t w, const real *s, const real *sums, real *Z, verdict 
 {
     for (size_t k = 0; k < w; ++k) {
         /* (Z_t) translational part of Z */
-        const real Z_p_x = s[18*w + k];
+        const real Z_p_x = s[9*w + k];
         const real Z_t_x_of_legs = sums[0*w + k];
         const real Z_t_x = Z_p_x + Z_t_x_of_legs;
-        const real Z_p_y = s[19*w + k];
+        const real Z_p_y = s[10*w + k];
         const real Z_t_y_of_legs = sums[1*w + k];
         const real Z_t_y = Z_p_y + Z_t_y_of_legs;
-        const real Z_p_z = s[20*w + k];
+        const real Z_p_z = s[11*w + k];
         const real Z_t_z_of_legs = sums[2*w + k];
         const real Z_t_z = Z_p_z + Z_t_z_of_legs;
         /* (Z_a) rotational part of Z */
         const real Z_a_x_of_legs = sums[3*w + k];
-        const real Z_q_x = s[21*w + k];
+        const real Z_q_x = s[12*w + k];
         const real Z_a_x = Z_a_x_of_legs + Z_q_x;
         const real Z_a_y_of_legs = sums[4*w + k];
-        const real Z_q_y = s[22*w + k];
+        const real Z_q_y = s[13*w + k];
         const real Z_a_y = Z_a_y_of_legs + Z_q_y;
         const real Z_a_z_of_legs = sums[5*w + k];
-        const real Z_q_z = s[23*w + k];
+        const real Z_q_z = s[14*w + k];
         const real Z_a_z = Z_a_z_of_legs + Z_q_z;
         /* (Z_t) translational part of Z */
         Z[0*w + k] = Z_t_x;
@@ -3615,12 +3594,10 @@ INLINE void Z_after(size_t w, const real *s, const real *sums, real *Z, verdict 
 
 INLINE void Z_run(const prepared *m, const real *X, const real *V, real *Z, verdict *t)
 {
-    real s[24] = {0};
-    real sums[6] = {0};
-    real terms_ucu[6*LEGS(LEGS_OF_ucu)] = {0};
-    real o_ucu[LEGS(LEGS_OF_ucu)] = {0};
+    real s[15] = {0}, sums[6] = {0};
+    real terms_ucu[6*LEGS(LEGS_OF_ucu)] = {0}, o_ucu[LEGS(LEGS_OF_ucu)] = {0};
     Z_before(m, 1, X, V, s, t);
-    Z_legs_ucu(m, 1, 0, 1, s, 0, LEGS(LEGS_OF_ucu), 0, terms_ucu, o_ucu);
+    Z_legs_ucu(m, 1, 0, 1, s, 0, LEGS(LEGS_OF_ucu), 0, X, V, terms_ucu, o_ucu);
     for (size_t leg = 0; leg < LEGS_OF_ucu; ++leg) {
         Z_place_ucu(1, LEGS(LEGS_OF_ucu), o_ucu, leg, t);
     }
@@ -3632,152 +3609,57 @@ INLINE void Z_run(const prepared *m, const real *X, const real *V, real *Z, verd
 
 INLINE void Z_run_lanes(const prepared *m, const real *X, const real *V, real *Z, verdict *t)
 {
-    real s[24*LANES];
-    real sums[6*LANES];
+    real s[15*LANES], sums[6*LANES];
     real o_ucu[LANES];
     Z_before(m, LANES, X, V, s, t);
     clear(sums, 6*LANES);
     for (size_t leg = 0; leg < LEGS_OF_ucu; ++leg) {
-        Z_legs_ucu(m, LANES, leg, 0, s, 1, LANES, 1, sums, o_ucu);
+        Z_legs_ucu(m, LANES, leg, 0, s, 1, LANES, 1, X, V, sums, o_ucu);
         Z_place_ucu(LANES, LANES, o_ucu, 0, t);
     }
     Z_after(LANES, s, sums, Z, t);
 }
 
 /* ---- H ---- */
-INLINE void H_before(size_t w, const real *X, real *s, verdict *t)
+INLINE void H_before(const prepared *m, size_t w, const real *X, real *s, verdict *t)
 {
     for (size_t k = 0; k < w; ++k) {
-        /* X: named entries */
-        const real X_0 = X[0*w + k];
-        const real t_x = X_0;
-        const real X_1 = X[1*w + k];
-        const real t_y = X_1;
-        const real X_2 = X[2*w + k];
-        const real t_z = X_2;
-        const real X_3 = X[3*w + k];
-        const real X_4 = X[4*w + k];
-        const real X_5 = X[5*w + k];
-        const real X_6 = X[6*w + k];
-        const real quaternion_norm2 = X_3*X_3 + X_4*X_4 + X_5*X_5 + X_6*X_6;
-        const real quaternion_scale = 2/quaternion_norm2;
-        const real quaternion_sx = X_3*quaternion_scale;
-        const real quaternion_sy = X_4*quaternion_scale;
-        const real quaternion_sz = X_5*quaternion_scale;
-        const real quaternion_wx = X_6*quaternion_sx;
-        const real quaternion_wy = X_6*quaternion_sy;
-        const real quaternion_wz = X_6*quaternion_sz;
-        const real quaternion_xx = X_3*quaternion_sx;
-        const real quaternion_xy = X_3*quaternion_sy;
-        const real quaternion_xz = X_3*quaternion_sz;
-        const real quaternion_yy = X_4*quaternion_sy;
-        const real quaternion_yz = X_4*quaternion_sz;
-        const real quaternion_zz = X_5*quaternion_sz;
-        const real R_xx = 1 - quaternion_yy - quaternion_zz;
-        const real R_xy = quaternion_xy - quaternion_wz;
-        const real R_xz = quaternion_wy + quaternion_xz;
-        const real R_yx = quaternion_wz + quaternion_xy;
-        const real R_yy = 1 - quaternion_xx - quaternion_zz;
-        const real R_yz = quaternion_yz - quaternion_wx;
-        const real R_zx = quaternion_xz - quaternion_wy;
-        const real R_zy = quaternion_wx + quaternion_yz;
-        const real R_zz = 1 - quaternion_xx - quaternion_yy;
-        s[0*w + k] = t_x;
-        s[1*w + k] = t_y;
-        s[2*w + k] = t_z;
-        s[3*w + k] = R_xx;
-        s[4*w + k] = R_xy;
-        s[5*w + k] = R_xz;
-        s[6*w + k] = R_yx;
-        s[7*w + k] = R_yy;
-        s[8*w + k] = R_yz;
-        s[9*w + k] = R_zx;
-        s[10*w + k] = R_zy;
-        s[11*w + k] = R_zz;
-        t->invalid[k] += UNLESS(is_finite(quaternion_scale)) + UNLESS(quaternion_scale > 0);
+        values v;
+        stage_X(m, w, k, X, &v);
+        s[0*w + k] = v.R_xx;
+        s[1*w + k] = v.R_xy;
+        s[2*w + k] = v.R_xz;
+        s[3*w + k] = v.R_yx;
+        s[4*w + k] = v.R_yy;
+        s[5*w + k] = v.R_yz;
+        s[6*w + k] = v.R_zx;
+        s[7*w + k] = v.R_zy;
+        s[8*w + k] = v.R_zz;
+        t->invalid[k] += UNLESS(is_finite(v.quaternion_scale)) + UNLESS(v.quaternion_scale > 0);
     }
 }
 
 INLINE void H_legs_ucu(const prepared *m, size_t w, size_t leg, size_t legs, const real *s, size_t
-    states, size_t count, real *o)
+    states, size_t count, const real *X, real *o)
 {
     for (size_t k = 0; k < count; ++k) {
         const size_t i = leg + legs*k;
         const size_t j = states*k;
-        /* (ucu-S) from the base point to the connection point */
-        const real R_xx = s[3*w + j];
-        const real R_xy = s[4*w + j];
-        const real R_xz = s[5*w + j];
-        const real ucu_platform_point_x = m->ucu_platform_point_x[i];
-        const real ucu_platform_point_y = m->ucu_platform_point_y[i];
-        const real ucu_platform_point_z = m->ucu_platform_point_z[i];
-        const real ucu_q_x = R_xx*ucu_platform_point_x + R_xy*ucu_platform_point_y +
-            R_xz*ucu_platform_point_z;
-        const real R_yx = s[6*w + j];
-        const real R_yy = s[7*w + j];
-        const real R_yz = s[8*w + j];
-        const real ucu_q_y = R_yx*ucu_platform_point_x + R_yy*ucu_platform_point_y +
-            R_yz*ucu_platform_point_z;
-        const real R_zx = s[9*w + j];
-        const real R_zy = s[10*w + j];
-        const real R_zz = s[11*w + j];
-        const real ucu_q_z = R_zx*ucu_platform_point_x + R_zy*ucu_platform_point_y +
-            R_zz*ucu_platform_point_z;
-        const real t_x = s[0*w + j];
-        const real ucu_base_point_x = m->ucu_base_point_x[i];
-        const real ucu_S_x = t_x + ucu_q_x - ucu_base_point_x;
-        const real t_y = s[1*w + j];
-        const real ucu_base_point_y = m->ucu_base_point_y[i];
-        const real ucu_S_y = t_y + ucu_q_y - ucu_base_point_y;
-        const real t_z = s[2*w + j];
-        const real ucu_base_point_z = m->ucu_base_point_z[i];
-        const real ucu_S_z = t_z + ucu_q_z - ucu_base_point_z;
-        /* (ucu-px_1) component along the reference direction */
-        const real ucu_base_frame_xx = m->ucu_base_frame_xx[i];
-        const real ucu_base_frame_yx = m->ucu_base_frame_yx[i];
-        const real ucu_base_frame_zx = m->ucu_base_frame_zx[i];
-        const real ucu_px_1 = ucu_S_x*ucu_base_frame_xx + ucu_S_y*ucu_base_frame_yx +
-            ucu_S_z*ucu_base_frame_zx;
-        /* (ucu-py_1) component across the reference direction */
-        const real ucu_base_frame_xy = m->ucu_base_frame_xy[i];
-        const real ucu_base_frame_yy = m->ucu_base_frame_yy[i];
-        const real ucu_base_frame_zy = m->ucu_base_frame_zy[i];
-        const real ucu_py_1 = ucu_S_x*ucu_base_frame_xy + ucu_S_y*ucu_base_frame_yy +
-            ucu_S_z*ucu_base_frame_zy;
-        /* (ucu-rho2_1) squared amplitude */
-        const real ucu_rho2_1 = ucu_px_1*ucu_px_1 + ucu_py_1*ucu_py_1;
-        /* (ucu-xi_1) the vector from joint 1 to the connection point, resolved along link 1 */
-        const real ucu_base_frame_xz = m->ucu_base_frame_xz[i];
-        const real ucu_base_frame_yz = m->ucu_base_frame_yz[i];
-        const real ucu_base_frame_zz = m->ucu_base_frame_zz[i];
-        const real ucu_xi_1_in_axes1_z = ucu_S_x*ucu_base_frame_xz + ucu_S_y*ucu_base_frame_yz +
-            ucu_S_z*ucu_base_frame_zz;
-        /* (ucu-rho2_2) squared amplitude */
-        const real ucu_rho2_2 = ucu_rho2_1 + ucu_xi_1_in_axes1_z*ucu_xi_1_in_axes1_z;
-        /* (ucu-root_2) amplitude, with the sign of the branch */
-        const real ucu_branch_2 = m->ucu_branch_2[i];
-        const real ucu_root_2 = ucu_branch_2*root(ucu_rho2_2);
+        values_ucu v;
+        stage_ucu_X(m, w, i, j, s, X, &v);
         /* (ucu-w_3) force part of reciprocal wrench 3 */
-        const real inv_ucu_root_2 = 1/ucu_root_2;
-        const real ucu_w_3_x = inv_ucu_root_2*ucu_S_x;
-        const real ucu_w_3_y = inv_ucu_root_2*ucu_S_y;
-        const real ucu_w_3_z = inv_ucu_root_2*ucu_S_z;
+        o[0*count + k] = v.ucu_w_3_x;
+        o[1*count + k] = v.ucu_w_3_y;
+        o[2*count + k] = v.ucu_w_3_z;
         /* (ucu-H_a_3) moment of the column's unit force about the platform origin */
-        const real ucu_H_a_3_x = ucu_q_y*ucu_w_3_z - ucu_q_z*ucu_w_3_y;
-        const real ucu_H_a_3_y = ucu_q_z*ucu_w_3_x - ucu_q_x*ucu_w_3_z;
-        const real ucu_H_a_3_z = ucu_q_x*ucu_w_3_y - ucu_q_y*ucu_w_3_x;
-        /* (ucu-w_3) force part of reciprocal wrench 3 */
-        o[0*count + k] = ucu_w_3_x;
-        o[1*count + k] = ucu_w_3_y;
-        o[2*count + k] = ucu_w_3_z;
-        /* (ucu-H_a_3) moment of the column's unit force about the platform origin */
-        o[3*count + k] = ucu_H_a_3_x;
-        o[4*count + k] = ucu_H_a_3_y;
-        o[5*count + k] = ucu_H_a_3_z;
-        o[7*count + k] = (ucu_w_3_x + (ucu_w_3_y + ucu_w_3_z)) + (ucu_H_a_3_x + (ucu_H_a_3_y +
-            ucu_H_a_3_z));
-        o[6*count + k] = UNLESS(magnitude(ucu_rho2_1) > LEAST_1) + UNLESS(magnitude(ucu_rho2_2) >
-            LEAST_1) + UNLESS(magnitude(ucu_root_2) > LEAST_4);
+        o[3*count + k] = v.ucu_H_a_3_x;
+        o[4*count + k] = v.ucu_H_a_3_y;
+        o[5*count + k] = v.ucu_H_a_3_z;
+        o[7*count + k] = (v.ucu_w_3_x + (v.ucu_w_3_y + v.ucu_w_3_z)) + (v.ucu_H_a_3_x +
+            (v.ucu_H_a_3_y + v.ucu_H_a_3_z));
+        o[6*count + k] = UNLESS(magnitude(v.ucu_root_1_t) > LEAST_1) +
+            UNLESS(magnitude(v.ucu_root_2_t) > LEAST_1) + UNLESS(magnitude(v.ucu_root_2) >
+            LEAST_4);
     }
 }
 
@@ -3785,7 +3667,7 @@ INLINE void H_place_ucu(size_t w, size_t count, const real *o, size_t leg, size_
     verdict *t)
 {
     for (size_t k = 0; k < w; ++k) {
-        H[(0*NU + leg)*w + k] = o[0*count + first + k];
+        H[leg*w + k] = o[0*count + first + k];
         H[(NU + leg)*w + k] = o[1*count + first + k];
         H[(2*NU + leg)*w + k] = o[2*count + first + k];
         H[(3*NU + leg)*w + k] = o[3*count + first + k];
@@ -3798,10 +3680,10 @@ INLINE void H_place_ucu(size_t w, size_t count, const real *o, size_t leg, size_
 
 INLINE void H_run(const prepared *m, const real *X, real *H, verdict *t)
 {
-    real s[12] = {0};
+    real s[9] = {0};
     real o_ucu[8*LEGS(LEGS_OF_ucu)] = {0};
-    H_before(1, X, s, t);
-    H_legs_ucu(m, 1, 0, 1, s, 0, LEGS(LEGS_OF_ucu), o_ucu);
+    H_before(m, 1, X, s, t);
+    H_legs_ucu(m, 1, 0, 1, s, 0, LEGS(LEGS_OF_ucu), X, o_ucu);
     for (size_t leg = 0; leg < LEGS_OF_ucu; ++leg) {
         H_place_ucu(1, LEGS(LEGS_OF_ucu), o_ucu, leg, leg, H, t);
     }
@@ -3809,11 +3691,11 @@ INLINE void H_run(const prepared *m, const real *X, real *H, verdict *t)
 
 INLINE void H_run_lanes(const prepared *m, const real *X, real *H, verdict *t)
 {
-    real s[12*LANES];
+    real s[9*LANES];
     real o_ucu[8*LANES];
-    H_before(LANES, X, s, t);
+    H_before(m, LANES, X, s, t);
     for (size_t leg = 0; leg < LEGS_OF_ucu; ++leg) {
-        H_legs_ucu(m, LANES, leg, 0, s, 1, LANES, o_ucu);
+        H_legs_ucu(m, LANES, leg, 0, s, 1, LANES, X, o_ucu);
         H_place_ucu(LANES, LANES, o_ucu, leg, 0, H, t);
     }
 }
@@ -3823,571 +3705,185 @@ INLINE void required_before(const prepared *m, size_t w, const real *X, const re
     *A, real *s, verdict *t)
 {
     for (size_t k = 0; k < w; ++k) {
-        /* X: named entries */
-        const real X_0 = X[0*w + k];
-        const real t_x = X_0;
-        const real X_1 = X[1*w + k];
-        const real t_y = X_1;
-        const real X_2 = X[2*w + k];
-        const real t_z = X_2;
-        const real X_3 = X[3*w + k];
-        const real X_4 = X[4*w + k];
-        const real X_5 = X[5*w + k];
-        const real X_6 = X[6*w + k];
-        const real quaternion_norm2 = X_3*X_3 + X_4*X_4 + X_5*X_5 + X_6*X_6;
-        const real quaternion_scale = 2/quaternion_norm2;
-        const real quaternion_sx = X_3*quaternion_scale;
-        const real quaternion_sy = X_4*quaternion_scale;
-        const real quaternion_sz = X_5*quaternion_scale;
-        const real quaternion_wx = X_6*quaternion_sx;
-        const real quaternion_wy = X_6*quaternion_sy;
-        const real quaternion_wz = X_6*quaternion_sz;
-        const real quaternion_xx = X_3*quaternion_sx;
-        const real quaternion_xy = X_3*quaternion_sy;
-        const real quaternion_xz = X_3*quaternion_sz;
-        const real quaternion_yy = X_4*quaternion_sy;
-        const real quaternion_yz = X_4*quaternion_sz;
-        const real quaternion_zz = X_5*quaternion_sz;
-        const real R_xx = 1 - quaternion_yy - quaternion_zz;
-        const real R_xy = quaternion_xy - quaternion_wz;
-        const real R_xz = quaternion_wy + quaternion_xz;
-        const real R_yx = quaternion_wz + quaternion_xy;
-        const real R_yy = 1 - quaternion_xx - quaternion_zz;
-        const real R_yz = quaternion_yz - quaternion_wx;
-        const real R_zx = quaternion_xz - quaternion_wy;
-        const real R_zy = quaternion_wx + quaternion_yz;
-        const real R_zz = 1 - quaternion_xx - quaternion_yy;
-        /* V: named entries */
-        const real V_0 = V[0*w + k];
-        const real t_dot_x = V_0;
-        const real V_1 = V[1*w + k];
-        const real t_dot_y = V_1;
-        const real V_2 = V[2*w + k];
-        const real t_dot_z = V_2;
-        const real V_3 = V[3*w + k];
-        const real omega_x = V_3;
-        const real V_4 = V[4*w + k];
-        const real omega_y = V_4;
-        const real V_5 = V[5*w + k];
-        const real omega_z = V_5;
-        /* A: named entries */
-        const real A_0 = A[0*w + k];
-        const real t_ddot_x = A_0;
-        const real A_1 = A[1*w + k];
-        const real t_ddot_y = A_1;
-        const real A_2 = A[2*w + k];
-        const real t_ddot_z = A_2;
-        const real A_3 = A[3*w + k];
-        const real alpha_x = A_3;
-        const real A_4 = A[4*w + k];
-        const real alpha_y = A_4;
-        const real A_5 = A[5*w + k];
-        const real alpha_z = A_5;
+        values v;
+        stage_X(m, w, k, X, &v);
+        stage_V_X(w, k, V, &v);
         /* (W_p) centripetal tensor of the platform */
+        const real omega_x = V[3*w + k];
+        const real omega_y = V[4*w + k];
         const real W_p_xy = omega_x*omega_y;
+        const real omega_z = V[5*w + k];
         const real W_p_xz = omega_x*omega_z;
         const real W_p_yz = omega_y*omega_z;
-        /* (h_star) first moment about the platform origin */
-        const real h_star_in_platform_x = m->h_star_in_platform_x;
-        const real h_star_in_platform_y = m->h_star_in_platform_y;
-        const real h_star_in_platform_z = m->h_star_in_platform_z;
-        const real h_star_x = R_xx*h_star_in_platform_x + R_xy*h_star_in_platform_y +
-            R_xz*h_star_in_platform_z;
-        const real h_star_y = R_yx*h_star_in_platform_x + R_yy*h_star_in_platform_y +
-            R_yz*h_star_in_platform_z;
-        const real h_star_z = R_zx*h_star_in_platform_x + R_zy*h_star_in_platform_y +
-            R_zz*h_star_in_platform_z;
         /* (a_t) acceleration of the platform origin, less gravity */
         const real gravity_x = m->gravity_x;
+        const real t_ddot_x = A[0*w + k];
         const real a_t_x = t_ddot_x - gravity_x;
         const real gravity_y = m->gravity_y;
+        const real t_ddot_y = A[1*w + k];
         const real a_t_y = t_ddot_y - gravity_y;
         const real gravity_z = m->gravity_z;
+        const real t_ddot_z = A[2*w + k];
         const real a_t_z = t_ddot_z - gravity_z;
-        const real a_t_in_platform_x = R_xx*a_t_x + R_yx*a_t_y + R_zx*a_t_z;
-        const real a_t_in_platform_y = R_xy*a_t_x + R_yy*a_t_y + R_zy*a_t_z;
-        const real a_t_in_platform_z = R_xz*a_t_x + R_yz*a_t_y + R_zz*a_t_z;
+        const real a_t_in_platform_x = v.R_xx*a_t_x + v.R_yx*a_t_y + v.R_zx*a_t_z;
+        const real a_t_in_platform_y = v.R_xy*a_t_x + v.R_yy*a_t_y + v.R_zy*a_t_z;
+        const real a_t_in_platform_z = v.R_xz*a_t_x + v.R_yz*a_t_y + v.R_zz*a_t_z;
         /* (f_p) inertia force of the platform less its weight */
         const real f_p_t = omega_x*omega_x;
         const real f_p_t_2 = omega_y*omega_y;
         const real f_p_t_3 = omega_z*omega_z;
+        const real alpha_y = A[4*w + k];
+        const real alpha_z = A[5*w + k];
         const real m_star = m->m_star;
-        const real f_p_x = a_t_x*m_star + h_star_y*(W_p_xy - alpha_z) + h_star_z*(W_p_xz +
-            alpha_y) - h_star_x*(f_p_t_2 + f_p_t_3);
-        const real f_p_y = a_t_y*m_star + h_star_x*(W_p_xy + alpha_z) + h_star_z*(W_p_yz -
-            alpha_x) - h_star_y*(f_p_t + f_p_t_3);
-        const real f_p_z = a_t_z*m_star + h_star_x*(W_p_xz - alpha_y) + h_star_y*(W_p_yz +
-            alpha_x) - h_star_z*(f_p_t + f_p_t_2);
+        const real f_p_x = a_t_x*m_star + v.h_star_y*(W_p_xy - alpha_z) + v.h_star_z*(W_p_xz +
+            alpha_y) - v.h_star_x*(f_p_t_2 + f_p_t_3);
+        const real alpha_x = A[3*w + k];
+        const real f_p_y = a_t_y*m_star + v.h_star_x*(W_p_xy + alpha_z) + v.h_star_z*(W_p_yz -
+            alpha_x) - v.h_star_y*(f_p_t + f_p_t_3);
+        const real f_p_z = a_t_z*m_star + v.h_star_x*(W_p_xz - alpha_y) + v.h_star_y*(W_p_yz +
+            alpha_x) - v.h_star_z*(f_p_t + f_p_t_2);
         /* (mu_p) inertia moment of the platform less that of its weight */
-        const real omega_in_platform_x = R_xx*omega_x + R_yx*omega_y + R_zx*omega_z;
-        const real omega_in_platform_y = R_xy*omega_x + R_yy*omega_y + R_zy*omega_z;
-        const real omega_in_platform_z = R_xz*omega_x + R_yz*omega_y + R_zz*omega_z;
         const real J_star_in_platform_xx = m->J_star_in_platform_xx;
         const real J_star_in_platform_xy = m->J_star_in_platform_xy;
         const real J_star_in_platform_xz = m->J_star_in_platform_xz;
-        const real mu_p_t = J_star_in_platform_xx*omega_in_platform_x +
-            J_star_in_platform_xy*omega_in_platform_y + J_star_in_platform_xz*omega_in_platform_z;
+        const real mu_p_t = J_star_in_platform_xx*v.omega_in_platform_x +
+            J_star_in_platform_xy*v.omega_in_platform_y +
+            J_star_in_platform_xz*v.omega_in_platform_z;
         const real J_star_in_platform_yy = m->J_star_in_platform_yy;
         const real J_star_in_platform_yz = m->J_star_in_platform_yz;
-        const real mu_p_t_2 = J_star_in_platform_xy*omega_in_platform_x +
-            J_star_in_platform_yy*omega_in_platform_y + J_star_in_platform_yz*omega_in_platform_z;
+        const real mu_p_t_2 = J_star_in_platform_xy*v.omega_in_platform_x +
+            J_star_in_platform_yy*v.omega_in_platform_y +
+            J_star_in_platform_yz*v.omega_in_platform_z;
         const real J_star_in_platform_zz = m->J_star_in_platform_zz;
-        const real mu_p_t_3 = J_star_in_platform_xz*omega_in_platform_x +
-            J_star_in_platform_yz*omega_in_platform_y + J_star_in_platform_zz*omega_in_platform_z;
-        const real alpha_in_platform_x = R_xx*alpha_x + R_yx*alpha_y + R_zx*alpha_z;
-        const real alpha_in_platform_y = R_xy*alpha_x + R_yy*alpha_y + R_zy*alpha_z;
-        const real alpha_in_platform_z = R_xz*alpha_x + R_yz*alpha_y + R_zz*alpha_z;
+        const real mu_p_t_3 = J_star_in_platform_xz*v.omega_in_platform_x +
+            J_star_in_platform_yz*v.omega_in_platform_y +
+            J_star_in_platform_zz*v.omega_in_platform_z;
+        const real alpha_in_platform_x = v.R_xx*alpha_x + v.R_yx*alpha_y + v.R_zx*alpha_z;
+        const real alpha_in_platform_y = v.R_xy*alpha_x + v.R_yy*alpha_y + v.R_zy*alpha_z;
+        const real alpha_in_platform_z = v.R_xz*alpha_x + v.R_yz*alpha_y + v.R_zz*alpha_z;
+        const real h_star_in_platform_y = m->h_star_in_platform_y;
+        const real h_star_in_platform_z = m->h_star_in_platform_z;
         const real mu_p_in_platform_x = J_star_in_platform_xx*alpha_in_platform_x +
             J_star_in_platform_xy*alpha_in_platform_y + J_star_in_platform_xz*alpha_in_platform_z
-            + a_t_in_platform_z*h_star_in_platform_y + mu_p_t_3*omega_in_platform_y -
-            a_t_in_platform_y*h_star_in_platform_z - mu_p_t_2*omega_in_platform_z;
+            + a_t_in_platform_z*h_star_in_platform_y + mu_p_t_3*v.omega_in_platform_y -
+            a_t_in_platform_y*h_star_in_platform_z - mu_p_t_2*v.omega_in_platform_z;
+        const real h_star_in_platform_x = m->h_star_in_platform_x;
         const real mu_p_in_platform_y = J_star_in_platform_xy*alpha_in_platform_x +
             J_star_in_platform_yy*alpha_in_platform_y + J_star_in_platform_yz*alpha_in_platform_z
-            + a_t_in_platform_x*h_star_in_platform_z + mu_p_t*omega_in_platform_z -
-            a_t_in_platform_z*h_star_in_platform_x - mu_p_t_3*omega_in_platform_x;
+            + a_t_in_platform_x*h_star_in_platform_z + mu_p_t*v.omega_in_platform_z -
+            a_t_in_platform_z*h_star_in_platform_x - mu_p_t_3*v.omega_in_platform_x;
         const real mu_p_in_platform_z = J_star_in_platform_xz*alpha_in_platform_x +
             J_star_in_platform_yz*alpha_in_platform_y + J_star_in_platform_zz*alpha_in_platform_z
-            + a_t_in_platform_y*h_star_in_platform_x + mu_p_t_2*omega_in_platform_x -
-            a_t_in_platform_x*h_star_in_platform_y - mu_p_t*omega_in_platform_y;
-        const real mu_p_x = R_xx*mu_p_in_platform_x + R_xy*mu_p_in_platform_y +
-            R_xz*mu_p_in_platform_z;
-        const real mu_p_y = R_yx*mu_p_in_platform_x + R_yy*mu_p_in_platform_y +
-            R_yz*mu_p_in_platform_z;
-        const real mu_p_z = R_zx*mu_p_in_platform_x + R_zy*mu_p_in_platform_y +
-            R_zz*mu_p_in_platform_z;
-        s[0*w + k] = t_x;
-        s[1*w + k] = t_y;
-        s[2*w + k] = t_z;
-        s[3*w + k] = R_xx;
-        s[4*w + k] = R_xy;
-        s[5*w + k] = R_xz;
-        s[6*w + k] = R_yx;
-        s[7*w + k] = R_yy;
-        s[8*w + k] = R_yz;
-        s[9*w + k] = R_zx;
-        s[10*w + k] = R_zy;
-        s[11*w + k] = R_zz;
-        s[12*w + k] = t_dot_x;
-        s[13*w + k] = t_dot_y;
-        s[14*w + k] = t_dot_z;
-        s[15*w + k] = omega_x;
-        s[16*w + k] = omega_y;
-        s[17*w + k] = omega_z;
-        s[18*w + k] = t_ddot_x;
-        s[19*w + k] = t_ddot_y;
-        s[20*w + k] = t_ddot_z;
-        s[21*w + k] = alpha_x;
-        s[22*w + k] = alpha_y;
-        s[23*w + k] = alpha_z;
-        s[24*w + k] = f_p_x;
-        s[25*w + k] = f_p_y;
-        s[26*w + k] = f_p_z;
-        s[27*w + k] = mu_p_x;
-        s[28*w + k] = mu_p_y;
-        s[29*w + k] = mu_p_z;
-        t->invalid[k] += UNLESS(is_finite(quaternion_scale)) + UNLESS(quaternion_scale > 0);
+            + a_t_in_platform_y*h_star_in_platform_x + mu_p_t_2*v.omega_in_platform_x -
+            a_t_in_platform_x*h_star_in_platform_y - mu_p_t*v.omega_in_platform_y;
+        const real mu_p_x = v.R_xx*mu_p_in_platform_x + v.R_xy*mu_p_in_platform_y +
+            v.R_xz*mu_p_in_platform_z;
+        const real mu_p_y = v.R_yx*mu_p_in_platform_x + v.R_yy*mu_p_in_platform_y +
+            v.R_yz*mu_p_in_platform_z;
+        const real mu_p_z = v.R_zx*mu_p_in_platform_x + v.R_zy*mu_p_in_platform_y +
+            v.R_zz*mu_p_in_platform_z;
+        s[0*w + k] = v.R_xx;
+        s[1*w + k] = v.R_xy;
+        s[2*w + k] = v.R_xz;
+        s[3*w + k] = v.R_yx;
+        s[4*w + k] = v.R_yy;
+        s[5*w + k] = v.R_yz;
+        s[6*w + k] = v.R_zx;
+        s[7*w + k] = v.R_zy;
+        s[8*w + k] = v.R_zz;
+        s[9*w + k] = f_p_x;
+        s[10*w + k] = f_p_y;
+        s[11*w + k] = f_p_z;
+        s[12*w + k] = mu_p_x;
+        s[13*w + k] = mu_p_y;
+        s[14*w + k] = mu_p_z;
+        t->invalid[k] += UNLESS(is_finite(v.quaternion_scale)) + UNLESS(v.quaternion_scale > 0);
     }
 }
 
 INLINE void required_legs_ucu(const prepared *m, size_t w, size_t leg, size_t legs, const real *s,
-    size_t states, size_t count, int add, real *terms, real *o)
+    size_t states, size_t count, int add, const real *X, const real *V, const real *A, real
+    *terms, real *o)
 {
     for (size_t k = 0; k < count; ++k) {
         const size_t i = leg + legs*k;
         const size_t j = states*k;
-        /* (ucu-S) from the base point to the connection point */
-        const real R_xx = s[3*w + j];
-        const real R_xy = s[4*w + j];
-        const real R_xz = s[5*w + j];
-        const real ucu_platform_point_x = m->ucu_platform_point_x[i];
-        const real ucu_platform_point_y = m->ucu_platform_point_y[i];
-        const real ucu_platform_point_z = m->ucu_platform_point_z[i];
-        const real ucu_q_x = R_xx*ucu_platform_point_x + R_xy*ucu_platform_point_y +
-            R_xz*ucu_platform_point_z;
-        const real R_yx = s[6*w + j];
-        const real R_yy = s[7*w + j];
-        const real R_yz = s[8*w + j];
-        const real ucu_q_y = R_yx*ucu_platform_point_x + R_yy*ucu_platform_point_y +
-            R_yz*ucu_platform_point_z;
-        const real R_zx = s[9*w + j];
-        const real R_zy = s[10*w + j];
-        const real R_zz = s[11*w + j];
-        const real ucu_q_z = R_zx*ucu_platform_point_x + R_zy*ucu_platform_point_y +
-            R_zz*ucu_platform_point_z;
-        const real t_x = s[0*w + j];
-        const real ucu_base_point_x = m->ucu_base_point_x[i];
-        const real ucu_S_x = t_x + ucu_q_x - ucu_base_point_x;
-        const real t_y = s[1*w + j];
-        const real ucu_base_point_y = m->ucu_base_point_y[i];
-        const real ucu_S_y = t_y + ucu_q_y - ucu_base_point_y;
-        const real t_z = s[2*w + j];
-        const real ucu_base_point_z = m->ucu_base_point_z[i];
-        const real ucu_S_z = t_z + ucu_q_z - ucu_base_point_z;
-        /* (ucu-px_1) component along the reference direction */
-        const real ucu_base_frame_xx = m->ucu_base_frame_xx[i];
-        const real ucu_base_frame_yx = m->ucu_base_frame_yx[i];
-        const real ucu_base_frame_zx = m->ucu_base_frame_zx[i];
-        const real ucu_px_1 = ucu_S_x*ucu_base_frame_xx + ucu_S_y*ucu_base_frame_yx +
-            ucu_S_z*ucu_base_frame_zx;
-        /* (ucu-py_1) component across the reference direction */
-        const real ucu_base_frame_xy = m->ucu_base_frame_xy[i];
-        const real ucu_base_frame_yy = m->ucu_base_frame_yy[i];
-        const real ucu_base_frame_zy = m->ucu_base_frame_zy[i];
-        const real ucu_py_1 = ucu_S_x*ucu_base_frame_xy + ucu_S_y*ucu_base_frame_yy +
-            ucu_S_z*ucu_base_frame_zy;
-        /* (ucu-rho2_1) squared amplitude */
-        const real ucu_rho2_1 = ucu_px_1*ucu_px_1 + ucu_py_1*ucu_py_1;
-        /* (ucu-root_1) amplitude, with the sign of the branch */
-        const real ucu_branch_1 = m->ucu_branch_1[i];
-        const real ucu_root_1 = ucu_branch_1*root(ucu_rho2_1);
-        /* (ucu-c_1) cosine of the angle of joint 1 from its reference direction */
-        const real inv_ucu_root_1 = 1/ucu_root_1;
-        const real ucu_c_1 = -inv_ucu_root_1*ucu_py_1;
-        /* (ucu-s_1) sine of the angle of joint 1 from its reference direction */
-        const real ucu_s_1 = inv_ucu_root_1*ucu_px_1;
-        /* (ucu-xi_1) the vector from joint 1 to the connection point, resolved along link 1 */
-        const real ucu_base_frame_xz = m->ucu_base_frame_xz[i];
-        const real ucu_base_frame_yz = m->ucu_base_frame_yz[i];
-        const real ucu_base_frame_zz = m->ucu_base_frame_zz[i];
-        const real ucu_xi_1_in_axes1_z = ucu_S_x*ucu_base_frame_xz + ucu_S_y*ucu_base_frame_yz +
-            ucu_S_z*ucu_base_frame_zz;
-        /* (ucu-rho2_2) squared amplitude */
-        const real ucu_rho2_2 = ucu_rho2_1 + ucu_xi_1_in_axes1_z*ucu_xi_1_in_axes1_z;
-        /* (ucu-root_2) amplitude, with the sign of the branch */
-        const real ucu_branch_2 = m->ucu_branch_2[i];
-        const real ucu_root_2 = ucu_branch_2*root(ucu_rho2_2);
-        /* (ucu-c_2) cosine of the angle of joint 2 from its reference direction */
-        const real inv_ucu_root_2 = 1/ucu_root_2;
-        const real ucu_c_2 = -inv_ucu_root_2*ucu_root_1;
-        /* (ucu-s_2) sine of the angle of joint 2 from its reference direction */
-        const real ucu_s_2 = inv_ucu_root_2*ucu_xi_1_in_axes1_z;
-        /* (ucu-px_4) component along the reference direction */
-        const real ucu_platform_joint_axis_platform_x = m->ucu_platform_joint_axis_platform_x[i];
-        const real ucu_platform_joint_axis_platform_y = m->ucu_platform_joint_axis_platform_y[i];
-        const real ucu_platform_joint_axis_platform_z = m->ucu_platform_joint_axis_platform_z[i];
-        const real ucu_px_4_t = ucu_platform_joint_axis_platform_x*(R_xx*ucu_base_frame_xx +
-            R_yx*ucu_base_frame_yx + R_zx*ucu_base_frame_zx) +
-            ucu_platform_joint_axis_platform_y*(R_xy*ucu_base_frame_xx + R_yy*ucu_base_frame_yx +
-            R_zy*ucu_base_frame_zx) + ucu_platform_joint_axis_platform_z*(R_xz*ucu_base_frame_xx +
-            R_yz*ucu_base_frame_yx + R_zz*ucu_base_frame_zx);
-        const real ucu_px_4_t_2 = ucu_platform_joint_axis_platform_x*(R_xx*ucu_base_frame_xy +
-            R_yx*ucu_base_frame_yy + R_zx*ucu_base_frame_zy) +
-            ucu_platform_joint_axis_platform_y*(R_xy*ucu_base_frame_xy + R_yy*ucu_base_frame_yy +
-            R_zy*ucu_base_frame_zy) + ucu_platform_joint_axis_platform_z*(R_xz*ucu_base_frame_xy +
-            R_yz*ucu_base_frame_yy + R_zz*ucu_base_frame_zy);
-        const real ucu_px_4_t_3 = ucu_platform_joint_axis_platform_x*(R_xx*ucu_base_frame_xz +
-            R_yx*ucu_base_frame_yz + R_zx*ucu_base_frame_zz) +
-            ucu_platform_joint_axis_platform_y*(R_xy*ucu_base_frame_xz + R_yy*ucu_base_frame_yz +
-            R_zy*ucu_base_frame_zz) + ucu_platform_joint_axis_platform_z*(R_xz*ucu_base_frame_xz +
-            R_yz*ucu_base_frame_yz + R_zz*ucu_base_frame_zz);
-        const real ucu_px_4_t_4 = ucu_px_4_t*ucu_s_1 - ucu_c_1*ucu_px_4_t_2;
-        const real ucu_px_4 = ucu_c_2*ucu_px_4_t_3 + ucu_px_4_t_4*ucu_s_2;
-        /* (ucu-py_4) component across the reference direction */
-        const real ucu_py_4 = ucu_c_1*ucu_px_4_t + ucu_px_4_t_2*ucu_s_1;
-        /* (ucu-rho2_4) squared amplitude */
-        const real ucu_rho2_4 = ucu_px_4*ucu_px_4 + ucu_py_4*ucu_py_4;
-        /* (ucu-root_4) amplitude, with the sign of the branch */
-        const real ucu_branch_4 = m->ucu_branch_4[i];
-        const real ucu_root_4 = ucu_branch_4*root(ucu_rho2_4);
-        /* (ucu-c_4) cosine of the angle of joint 4 from its reference direction */
-        const real inv_ucu_root_4 = 1/ucu_root_4;
-        const real ucu_c_4 = inv_ucu_root_4*ucu_px_4;
-        /* (ucu-s_4) sine of the angle of joint 4 from its reference direction */
-        const real ucu_s_4 = inv_ucu_root_4*ucu_py_4;
-        /* (ucu-S_dot) velocity of the connection point */
-        const real omega_y = s[16*w + j];
-        const real omega_z = s[17*w + j];
-        const real ucu_S_dot_t = omega_y*ucu_q_z - omega_z*ucu_q_y;
-        const real omega_x = s[15*w + j];
-        const real ucu_S_dot_t_2 = omega_z*ucu_q_x - omega_x*ucu_q_z;
-        const real ucu_S_dot_t_3 = omega_x*ucu_q_y - omega_y*ucu_q_x;
-        const real t_dot_x = s[12*w + j];
-        const real ucu_S_dot_x = t_dot_x + ucu_S_dot_t;
-        const real t_dot_y = s[13*w + j];
-        const real ucu_S_dot_y = t_dot_y + ucu_S_dot_t_2;
-        const real t_dot_z = s[14*w + j];
-        const real ucu_S_dot_z = t_dot_z + ucu_S_dot_t_3;
-        const real ucu_S_dot_t_4 = ucu_S_dot_x*ucu_base_frame_xx + ucu_S_dot_y*ucu_base_frame_yx +
-            ucu_S_dot_z*ucu_base_frame_zx;
-        const real ucu_S_dot_t_5 = ucu_S_dot_x*ucu_base_frame_xy + ucu_S_dot_y*ucu_base_frame_yy +
-            ucu_S_dot_z*ucu_base_frame_zy;
-        const real ucu_S_dot_t_6 = ucu_S_dot_x*ucu_base_frame_xz + ucu_S_dot_y*ucu_base_frame_yz +
-            ucu_S_dot_z*ucu_base_frame_zz;
-        const real ucu_S_dot_t_7 = ucu_S_dot_t_4*ucu_s_1 - ucu_S_dot_t_5*ucu_c_1;
-        const real ucu_S_dot_in_axes2_x = ucu_S_dot_t_6*ucu_s_2 - ucu_S_dot_t_7*ucu_c_2;
-        /* (ucu-v_1) velocity of the connection point per rate of joint 1 */
-        const real ucu_e_1_in_axes4_x = ucu_c_2*ucu_c_4;
-        const real ucu_e_1_in_axes4_y = -ucu_c_2*ucu_s_4;
-        const real ucu_v_1_in_axes4_x = ucu_e_1_in_axes4_y*ucu_root_2;
-        const real ucu_v_1_in_axes4_y = -ucu_e_1_in_axes4_x*ucu_root_2;
-        const real ucu_v_1_in_axes2_y = ucu_c_4*ucu_v_1_in_axes4_x - ucu_s_4*ucu_v_1_in_axes4_y;
-        const real ucu_v_1_in_axes2_z = ucu_c_4*ucu_v_1_in_axes4_y + ucu_s_4*ucu_v_1_in_axes4_x;
-        /* (ucu-n_m1) direction 1 of the moment that the platform joint transmits */
-        const real ucu_n_m1_in_axes4_x = ucu_px_4_t_3*ucu_s_2 - ucu_c_2*ucu_px_4_t_4;
-        const real ucu_n_m1_in_axes2_z = ucu_n_m1_in_axes4_x*ucu_s_4;
-        /* (ucu-w_1) force part of reciprocal wrench 1 */
-        const real ucu_end_p1_in_axes4_x = ucu_c_4*ucu_px_4 + ucu_py_4*ucu_s_4;
-        /* (ucu-w_3) force part of reciprocal wrench 3 */
-        const real ucu_w_3_x = inv_ucu_root_2*ucu_S_x;
-        const real ucu_w_3_y = inv_ucu_root_2*ucu_S_y;
-        const real ucu_w_3_z = inv_ucu_root_2*ucu_S_z;
-        /* (ucu-m1_w_4) moment part 1 of reciprocal wrench 4 */
-        const real ucu_m1_w_4 = -1/ucu_end_p1_in_axes4_x;
-        /* (ucu-qd_1) rate of joint 1 */
-        const real inv_ucu_v_1_in_axes2_z = 1/ucu_v_1_in_axes2_z;
-        const real ucu_qd_1 = inv_ucu_v_1_in_axes2_z*(ucu_S_dot_t_4*ucu_c_1 +
-            ucu_S_dot_t_5*ucu_s_1);
-        /* (ucu-qd_2) rate of joint 2 */
-        const real ucu_qd_2 = inv_ucu_root_2*(ucu_S_dot_t_6*ucu_c_2 + ucu_S_dot_t_7*ucu_s_2 -
-            ucu_qd_1*ucu_v_1_in_axes2_y);
-        /* (ucu-qd_4) rate of joint 4 */
-        const real ucu_qd_4_t = ucu_s_2*ucu_s_4;
-        const real ucu_qd_4_t_2 = ucu_c_1*ucu_c_4 - ucu_qd_4_t*ucu_s_1;
-        const real ucu_qd_4_t_3 = ucu_c_1*ucu_qd_4_t + ucu_c_4*ucu_s_1;
-        const real axis_y_ucu_axes4_x = ucu_base_frame_xx*ucu_qd_4_t_2 +
-            ucu_base_frame_xy*ucu_qd_4_t_3 + ucu_base_frame_xz*ucu_e_1_in_axes4_y;
-        const real axis_y_ucu_axes4_y = ucu_base_frame_yx*ucu_qd_4_t_2 +
-            ucu_base_frame_yy*ucu_qd_4_t_3 + ucu_base_frame_yz*ucu_e_1_in_axes4_y;
-        const real axis_y_ucu_axes4_z = ucu_base_frame_zx*ucu_qd_4_t_2 +
-            ucu_base_frame_zy*ucu_qd_4_t_3 + ucu_base_frame_zz*ucu_e_1_in_axes4_y;
-        const real axis_x_ucu_axes4_x = axis_y_ucu_axes4_y*ucu_w_3_z -
-            axis_y_ucu_axes4_z*ucu_w_3_y;
-        const real axis_x_ucu_axes4_y = axis_y_ucu_axes4_z*ucu_w_3_x -
-            axis_y_ucu_axes4_x*ucu_w_3_z;
-        const real axis_x_ucu_axes4_z = axis_y_ucu_axes4_x*ucu_w_3_y -
-            axis_y_ucu_axes4_y*ucu_w_3_x;
-        const real ucu_qd_4_t_4 = ucu_end_p1_in_axes4_x*ucu_s_2 -
-            ucu_e_1_in_axes4_x*ucu_n_m1_in_axes4_x;
-        const real ucu_omega_in_axes4_x = axis_x_ucu_axes4_x*omega_x + axis_x_ucu_axes4_y*omega_y
-            + axis_x_ucu_axes4_z*omega_z;
-        const real ucu_omega_in_axes4_z = omega_x*ucu_w_3_x + omega_y*ucu_w_3_y +
-            omega_z*ucu_w_3_z;
-        const real ucu_qd_4 = ucu_omega_in_axes4_z +
-            ucu_m1_w_4*(ucu_n_m1_in_axes4_x*ucu_omega_in_axes4_x + ucu_qd_1*ucu_qd_4_t_4 -
-            ucu_n_m1_in_axes2_z*ucu_qd_2);
-        /* (ucu-omega_1) angular velocity of link 1 */
-        const real ucu_omega_1_in_axes2_x = ucu_qd_1*ucu_s_2;
-        const real ucu_omega_1_in_axes2_y = ucu_c_2*ucu_qd_1;
-        /* (ucu-omega_2) angular velocity of link 2 */
-        const real ucu_omega_2_in_axes4_x = ucu_c_4*ucu_omega_1_in_axes2_y + ucu_qd_2*ucu_s_4;
-        const real ucu_omega_2_in_axes4_y = ucu_c_4*ucu_qd_2 - ucu_omega_1_in_axes2_y*ucu_s_4;
-        /* (ucu-W_2) centripetal tensor of link 2 */
-        const real ucu_W_2_in_axes2_yz = ucu_omega_1_in_axes2_y*ucu_qd_2;
-        const real ucu_W_2_in_axes2_xz = ucu_omega_1_in_axes2_x*ucu_qd_2;
-        const real ucu_W_2_in_axes2_xy = ucu_omega_1_in_axes2_x*ucu_omega_1_in_axes2_y;
-        const real ucu_W_2_in_axes4_xy = ucu_omega_2_in_axes4_x*ucu_omega_2_in_axes4_y;
-        /* (ucu-omega_4) angular velocity of link 4 */
-        const real ucu_omega_4_in_axes4_z = ucu_omega_1_in_axes2_x + ucu_qd_4;
-        /* (ucu-W_4) centripetal tensor of link 4 */
-        const real ucu_W_4_in_axes4_xz = ucu_omega_2_in_axes4_x*ucu_omega_4_in_axes4_z;
-        const real ucu_W_4_in_axes4_yz = ucu_omega_2_in_axes4_y*ucu_omega_4_in_axes4_z;
-        /* (ucu-a_p) acceleration of the connection point without its centripetal part */
-        const real alpha_y = s[22*w + j];
-        const real alpha_z = s[23*w + j];
-        const real t_ddot_x = s[18*w + j];
-        const real ucu_a_p_x = t_ddot_x + alpha_y*ucu_q_z - alpha_z*ucu_q_y;
-        const real alpha_x = s[21*w + j];
-        const real t_ddot_y = s[19*w + j];
-        const real ucu_a_p_y = t_ddot_y + alpha_z*ucu_q_x - alpha_x*ucu_q_z;
-        const real t_ddot_z = s[20*w + j];
-        const real ucu_a_p_z = t_ddot_z + alpha_x*ucu_q_y - alpha_y*ucu_q_x;
-        /* (ucu-S_ddot) acceleration of the connection point */
-        const real ucu_S_ddot_x = ucu_a_p_x + omega_y*ucu_S_dot_t_3 - omega_z*ucu_S_dot_t_2;
-        const real ucu_S_ddot_y = ucu_a_p_y + omega_z*ucu_S_dot_t - omega_x*ucu_S_dot_t_3;
-        const real ucu_S_ddot_z = ucu_a_p_z + omega_x*ucu_S_dot_t_2 - omega_y*ucu_S_dot_t;
-        const real ucu_S_ddot_in_axes4_x = axis_x_ucu_axes4_x*ucu_S_ddot_x +
-            axis_x_ucu_axes4_y*ucu_S_ddot_y + axis_x_ucu_axes4_z*ucu_S_ddot_z;
-        const real ucu_S_ddot_in_axes4_y = axis_y_ucu_axes4_x*ucu_S_ddot_x +
-            axis_y_ucu_axes4_y*ucu_S_ddot_y + axis_y_ucu_axes4_z*ucu_S_ddot_z;
-        /* (ucu-zeta_2) angular acceleration of link 2 from the turning of axis 2 */
-        const real ucu_zeta_2_t = ucu_W_2_in_axes2_xz*ucu_c_4;
-        /* (ucu-zeta_4) angular acceleration of link 4 from the turning of axis 4 */
-        const real ucu_zeta_4_in_axes4_x = ucu_omega_2_in_axes4_y*ucu_qd_4;
-        /* (ucu-beta_4) angular acceleration of link 4 at zero joint accelerations */
-        const real ucu_beta_4_in_axes4_x = ucu_zeta_4_in_axes4_x - ucu_zeta_2_t;
-        /* (ucu-bias) acceleration of the connection point at zero joint accelerations */
-        const real ucu_bias_t = 2*ucu_S_dot_in_axes2_x;
-        const real ucu_bias_in_axes4_x = ucu_bias_t*ucu_omega_2_in_axes4_y +
-            ucu_root_2*(ucu_W_2_in_axes2_xz*ucu_s_4 +
-            ucu_omega_1_in_axes2_x*ucu_omega_2_in_axes4_x);
-        const real ucu_bias_in_axes4_y = ucu_root_2*(ucu_zeta_2_t +
-            ucu_omega_1_in_axes2_x*ucu_omega_2_in_axes4_y) - ucu_bias_t*ucu_omega_2_in_axes4_x;
-        /* (ucu-rel) acceleration of the connection point left to the joint accelerations */
-        const real ucu_rel_in_axes4_x = ucu_S_ddot_in_axes4_x - ucu_bias_in_axes4_x;
-        const real ucu_rel_in_axes4_y = ucu_S_ddot_in_axes4_y - ucu_bias_in_axes4_y;
-        /* (ucu-nd_m1) rate of moment direction 1 */
-        const real ucu_end_p1_in_axes4_y = ucu_c_4*ucu_py_4 - ucu_px_4*ucu_s_4;
-        const real ucu_omega_in_axes4_y = axis_y_ucu_axes4_x*omega_x + axis_y_ucu_axes4_y*omega_y
-            + axis_y_ucu_axes4_z*omega_z;
-        const real ucu_nd_m1_in_axes4_x = ucu_end_p1_in_axes4_y*ucu_omega_in_axes4_x -
-            ucu_end_p1_in_axes4_x*ucu_omega_in_axes4_y -
-            ucu_end_p1_in_axes4_y*ucu_omega_2_in_axes4_x;
-        const real ucu_nd_m1_in_axes4_z = ucu_end_p1_in_axes4_y*ucu_omega_in_axes4_z -
-            ucu_end_p1_in_axes4_y*ucu_omega_4_in_axes4_z -
-            ucu_n_m1_in_axes4_x*ucu_omega_in_axes4_y;
-        /* (ucu-nu_1) bias of the angular acceleration along moment direction 1 */
-        const real ucu_nu_1_t = ucu_beta_4_in_axes4_x*ucu_n_m1_in_axes4_x -
-            ucu_W_2_in_axes2_yz*ucu_end_p1_in_axes4_x;
-        const real ucu_nu_1_t_2 = ucu_nd_m1_in_axes4_x*(ucu_omega_2_in_axes4_x -
-            ucu_omega_in_axes4_x) + ucu_nd_m1_in_axes4_z*(ucu_omega_4_in_axes4_z -
-            ucu_omega_in_axes4_z) + (ucu_omega_2_in_axes4_y -
-            ucu_omega_in_axes4_y)*(ucu_end_p1_in_axes4_x*ucu_omega_2_in_axes4_x +
-            ucu_n_m1_in_axes4_x*ucu_omega_4_in_axes4_z);
-        const real ucu_nu_1 = -ucu_nu_1_t - ucu_nu_1_t_2;
-        /* (ucu-etad_1) acceleration with which the joints turn along moment direction 1 */
-        const real ucu_etad_1_t = ucu_n_m1_in_axes4_x*(alpha_x*axis_x_ucu_axes4_x +
-            alpha_y*axis_x_ucu_axes4_y + alpha_z*axis_x_ucu_axes4_z) -
-            ucu_end_p1_in_axes4_x*(alpha_x*ucu_w_3_x + alpha_y*ucu_w_3_y + alpha_z*ucu_w_3_z);
-        const real ucu_etad_1 = ucu_etad_1_t + ucu_nu_1;
-        /* (ucu-qdd_1) acceleration of joint 1 */
-        const real ucu_qdd_1 = inv_ucu_v_1_in_axes2_z*(ucu_c_4*ucu_rel_in_axes4_y +
-            ucu_rel_in_axes4_x*ucu_s_4);
-        /* (ucu-qdd_2) acceleration of joint 2 */
-        const real ucu_qdd_2 = -inv_ucu_root_2*(ucu_qdd_1*ucu_v_1_in_axes2_y +
-            ucu_rel_in_axes4_y*ucu_s_4 - ucu_c_4*ucu_rel_in_axes4_x);
-        /* (ucu-alpha_1) angular acceleration of link 1 */
-        const real ucu_alpha_1_in_axes2_x = ucu_qdd_1*ucu_s_2;
-        const real ucu_alpha_1_in_axes2_y = ucu_c_2*ucu_qdd_1;
-        /* (ucu-alpha_2) angular acceleration of link 2 */
-        const real ucu_alpha_2_in_axes2_x = ucu_W_2_in_axes2_yz + ucu_alpha_1_in_axes2_x;
-        const real ucu_alpha_2_in_axes2_y = ucu_alpha_1_in_axes2_y - ucu_W_2_in_axes2_xz;
-        /* (ucu-B_2) acceleration tensor of link 2 */
-        const real ucu_B_2_in_axes2_xy = ucu_W_2_in_axes2_xy - ucu_qdd_2;
-        const real ucu_B_2_in_axes2_yx = ucu_W_2_in_axes2_xy + ucu_qdd_2;
-        const real ucu_B_2_in_axes2_zx = ucu_W_2_in_axes2_xz - ucu_alpha_2_in_axes2_y;
-        const real ucu_B_2_in_axes2_zy = ucu_W_2_in_axes2_yz + ucu_alpha_2_in_axes2_x;
-        /* (ucu-alpha_4) angular acceleration of link 4 */
-        const real ucu_alpha_4_in_axes4_x = ucu_zeta_4_in_axes4_x + ucu_alpha_2_in_axes2_y*ucu_c_4
-            + ucu_qdd_2*ucu_s_4;
-        const real ucu_alpha_4_in_axes4_y = ucu_c_4*ucu_qdd_2 - ucu_alpha_2_in_axes2_y*ucu_s_4 -
-            ucu_omega_2_in_axes4_x*ucu_qd_4;
-        const real ucu_alpha_4_in_axes4_z = ucu_alpha_2_in_axes2_x + ucu_m1_w_4*(ucu_etad_1 +
-            ucu_qd_4_t_4*ucu_qdd_1 - ucu_n_m1_in_axes2_z*ucu_qdd_2);
-        /* (ucu-B_4) acceleration tensor of link 4 */
-        const real ucu_B_4_in_axes4_xy = ucu_W_2_in_axes4_xy - ucu_alpha_4_in_axes4_z;
-        const real ucu_B_4_in_axes4_xz = ucu_W_4_in_axes4_xz + ucu_alpha_4_in_axes4_y;
-        const real ucu_B_4_in_axes4_yx = ucu_W_2_in_axes4_xy + ucu_alpha_4_in_axes4_z;
-        const real ucu_B_4_in_axes4_yz = ucu_W_4_in_axes4_yz - ucu_alpha_4_in_axes4_x;
-        const real ucu_B_4_in_axes4_zx = ucu_W_4_in_axes4_xz - ucu_alpha_4_in_axes4_y;
-        const real ucu_B_4_in_axes4_zy = ucu_W_4_in_axes4_yz + ucu_alpha_4_in_axes4_x;
-        /* (ucu-acc_4) acceleration of the reference point of link 4, less gravity */
-        const real gravity_x = m->gravity_x;
-        const real gravity_y = m->gravity_y;
-        const real gravity_z = m->gravity_z;
-        const real ucu_acc_4_in_axes4_x = ucu_S_ddot_in_axes4_x - axis_x_ucu_axes4_x*gravity_x -
-            axis_x_ucu_axes4_y*gravity_y - axis_x_ucu_axes4_z*gravity_z;
-        const real ucu_acc_4_in_axes4_y = ucu_S_ddot_in_axes4_y - axis_y_ucu_axes4_x*gravity_x -
-            axis_y_ucu_axes4_y*gravity_y - axis_y_ucu_axes4_z*gravity_z;
-        const real ucu_acc_4_in_axes4_z = ucu_S_ddot_x*ucu_w_3_x + ucu_S_ddot_y*ucu_w_3_y +
-            ucu_S_ddot_z*ucu_w_3_z - gravity_x*ucu_w_3_x - gravity_y*ucu_w_3_y -
-            gravity_z*ucu_w_3_z;
+        values_ucu v;
+        stage_ucu_X(m, w, i, j, s, X, &v);
+        stage_ucu_A_X(w, j, A, &v);
+        stage_ucu_V_X(m, w, i, j, V, &v);
+        stage_ucu_A_V_X(w, j, V, &v);
+        stage_ucu_legs_required(m, i, &v);
         /* (ucu-phi_4) inertia force of link 4 from its turning about its reference point */
-        const real ucu_phi_4_t = ucu_omega_2_in_axes4_x*ucu_omega_2_in_axes4_x;
-        const real ucu_phi_4_t_2 = ucu_omega_2_in_axes4_y*ucu_omega_2_in_axes4_y;
+        const real ucu_phi_4_t = v.ucu_omega_2_in_axes4_x*v.ucu_omega_2_in_axes4_x;
+        const real ucu_phi_4_t_2 = v.ucu_omega_2_in_axes4_y*v.ucu_omega_2_in_axes4_y;
         const real ucu_h_4_in_spec4_x = m->ucu_h_4_in_spec4_x[i];
         const real ucu_h_4_in_spec4_y = m->ucu_h_4_in_spec4_y[i];
         const real ucu_h_4_in_spec4_z = m->ucu_h_4_in_spec4_z[i];
-        const real ucu_phi_4_in_axes4_z = ucu_B_4_in_axes4_zx*ucu_h_4_in_spec4_y +
-            ucu_B_4_in_axes4_zy*ucu_h_4_in_spec4_z - ucu_h_4_in_spec4_x*(ucu_phi_4_t +
+        const real ucu_phi_4_in_axes4_z = v.ucu_B_4_in_axes4_zx*ucu_h_4_in_spec4_y +
+            v.ucu_B_4_in_axes4_zy*ucu_h_4_in_spec4_z - ucu_h_4_in_spec4_x*(ucu_phi_4_t +
             ucu_phi_4_t_2);
         /* (ucu-mu_4) inertia moment of the links that turn with link 4, about their reference points */
-        const real ucu_mu_4_t = ucu_omega_4_in_axes4_z*ucu_omega_4_in_axes4_z;
+        const real ucu_mu_4_t = v.ucu_omega_4_in_axes4_z*v.ucu_omega_4_in_axes4_z;
         const real ucu_J_4_in_spec4_xy = m->ucu_J_4_in_spec4_xy[i];
         const real ucu_J_4_in_spec4_xz = m->ucu_J_4_in_spec4_xz[i];
         const real ucu_J_4_in_spec4_yz = m->ucu_J_4_in_spec4_yz[i];
         const real ucu_Sigma_4_in_axes4_yy = m->ucu_Sigma_4_in_axes4_yy[i];
         const real ucu_Sigma_4_in_axes4_zz = m->ucu_Sigma_4_in_axes4_zz[i];
-        const real ucu_mu_4_in_axes4_x = ucu_B_4_in_axes4_yx*ucu_J_4_in_spec4_xy +
-            ucu_B_4_in_axes4_zy*ucu_Sigma_4_in_axes4_yy + ucu_J_4_in_spec4_xz*(ucu_phi_4_t_2 -
-            ucu_mu_4_t) + ucu_acc_4_in_axes4_z*ucu_h_4_in_spec4_z -
-            ucu_B_4_in_axes4_yz*ucu_Sigma_4_in_axes4_zz - ucu_B_4_in_axes4_zx*ucu_J_4_in_spec4_yz
-            - ucu_acc_4_in_axes4_y*ucu_h_4_in_spec4_x;
+        const real ucu_mu_4_in_axes4_x = v.ucu_B_4_in_axes4_yx*ucu_J_4_in_spec4_xy +
+            v.ucu_B_4_in_axes4_zy*ucu_Sigma_4_in_axes4_yy + ucu_J_4_in_spec4_xz*(ucu_phi_4_t_2 -
+            ucu_mu_4_t) + v.ucu_acc_4_in_axes4_z*ucu_h_4_in_spec4_z -
+            v.ucu_B_4_in_axes4_yz*ucu_Sigma_4_in_axes4_zz -
+            v.ucu_B_4_in_axes4_zx*ucu_J_4_in_spec4_yz - v.ucu_acc_4_in_axes4_y*ucu_h_4_in_spec4_x;
         const real ucu_Sigma_4_in_axes4_xx = m->ucu_Sigma_4_in_axes4_xx[i];
-        const real ucu_mu_4_in_axes4_y = ucu_B_4_in_axes4_xz*ucu_Sigma_4_in_axes4_zz +
-            ucu_B_4_in_axes4_zy*ucu_J_4_in_spec4_yz + ucu_acc_4_in_axes4_x*ucu_h_4_in_spec4_x -
-            ucu_B_4_in_axes4_xy*ucu_J_4_in_spec4_xz - ucu_B_4_in_axes4_zx*ucu_Sigma_4_in_axes4_xx
-            - ucu_J_4_in_spec4_xy*(ucu_phi_4_t - ucu_mu_4_t) -
-            ucu_acc_4_in_axes4_z*ucu_h_4_in_spec4_y;
-        const real ucu_mu_4_in_axes4_z = ucu_B_4_in_axes4_xz*ucu_J_4_in_spec4_xz +
-            ucu_B_4_in_axes4_yx*ucu_Sigma_4_in_axes4_xx + ucu_J_4_in_spec4_yz*(ucu_phi_4_t -
-            ucu_phi_4_t_2) + ucu_acc_4_in_axes4_y*ucu_h_4_in_spec4_y -
-            ucu_B_4_in_axes4_xy*ucu_Sigma_4_in_axes4_yy - ucu_B_4_in_axes4_yz*ucu_J_4_in_spec4_xy
-            - ucu_acc_4_in_axes4_x*ucu_h_4_in_spec4_z;
-        /* (ucu-mu_2) inertia moment of the links that turn with link 2, about their reference points */
-        const real ucu_mu_2_t_4 = ucu_omega_1_in_axes2_x*ucu_omega_1_in_axes2_x;
-        const real ucu_mu_2_t_5 = ucu_omega_1_in_axes2_y*ucu_omega_1_in_axes2_y;
-        const real ucu_mu_2_t_6 = ucu_qd_2*ucu_qd_2;
-        const real ucu_mu_2_t = m->ucu_mu_2_t[i];
-        const real ucu_mu_2_t_2 = m->ucu_mu_2_t_2[i];
-        const real ucu_g_in_axes2_z = ucu_c_1*ucu_mu_2_t + ucu_mu_2_t_2*ucu_s_1;
-        const real ucu_mu_2_t_7 = ucu_c_1*ucu_mu_2_t_2 - ucu_mu_2_t*ucu_s_1;
-        const real ucu_mu_2_t_3 = m->ucu_mu_2_t_3[i];
-        const real ucu_g_in_axes2_x = ucu_c_2*ucu_mu_2_t_7 + ucu_mu_2_t_3*ucu_s_2;
-        const real ucu_g_in_axes2_y = ucu_c_2*ucu_mu_2_t_3 - ucu_mu_2_t_7*ucu_s_2;
-        const real ucu_J_2_in_spec2_xy = m->ucu_J_2_in_spec2_xy[i];
-        const real ucu_J_2_in_spec2_xz = m->ucu_J_2_in_spec2_xz[i];
-        const real ucu_J_2_in_spec2_yz = m->ucu_J_2_in_spec2_yz[i];
-        const real ucu_Sigma_2_in_axes2_yy = m->ucu_Sigma_2_in_axes2_yy[i];
-        const real ucu_Sigma_2_in_axes2_zz = m->ucu_Sigma_2_in_axes2_zz[i];
-        const real ucu_h_2_in_spec2_y = m->ucu_h_2_in_spec2_y[i];
-        const real ucu_h_2_in_spec2_z = m->ucu_h_2_in_spec2_z[i];
-        const real ucu_mu_2_in_axes2_x = ucu_B_2_in_axes2_yx*ucu_J_2_in_spec2_xy +
-            ucu_B_2_in_axes2_zx*ucu_J_2_in_spec2_xz + ucu_B_2_in_axes2_zy*ucu_Sigma_2_in_axes2_yy
-            + ucu_Sigma_2_in_axes2_zz*ucu_alpha_1_in_axes2_x + ucu_g_in_axes2_y*ucu_h_2_in_spec2_y
-            + ucu_g_in_axes2_z*ucu_h_2_in_spec2_z - ucu_J_2_in_spec2_yz*(ucu_mu_2_t_5 -
-            ucu_mu_2_t_6);
-        const real ucu_Sigma_2_in_axes2_xx = m->ucu_Sigma_2_in_axes2_xx[i];
-        const real ucu_h_2_in_spec2_x = m->ucu_h_2_in_spec2_x[i];
-        const real ucu_mu_2_in_axes2_y = ucu_B_2_in_axes2_xy*ucu_J_2_in_spec2_yz +
-            ucu_Sigma_2_in_axes2_zz*ucu_alpha_1_in_axes2_y + ucu_g_in_axes2_z*ucu_h_2_in_spec2_x -
-            ucu_B_2_in_axes2_zx*ucu_Sigma_2_in_axes2_xx - ucu_B_2_in_axes2_zy*ucu_J_2_in_spec2_xz
-            - ucu_J_2_in_spec2_xy*(ucu_mu_2_t_4 - ucu_mu_2_t_6) -
-            ucu_g_in_axes2_x*ucu_h_2_in_spec2_y;
-        const real ucu_mu_2_in_axes2_z = ucu_B_2_in_axes2_yx*ucu_Sigma_2_in_axes2_xx +
-            ucu_J_2_in_spec2_xy*ucu_alpha_1_in_axes2_x -
-            ucu_B_2_in_axes2_xy*ucu_Sigma_2_in_axes2_yy - ucu_J_2_in_spec2_xz*(ucu_mu_2_t_4 -
-            ucu_mu_2_t_5) - ucu_J_2_in_spec2_yz*ucu_alpha_1_in_axes2_y -
-            ucu_g_in_axes2_x*ucu_h_2_in_spec2_z - ucu_g_in_axes2_y*ucu_h_2_in_spec2_x;
+        const real ucu_mu_4_in_axes4_y = v.ucu_B_4_in_axes4_xz*ucu_Sigma_4_in_axes4_zz +
+            v.ucu_B_4_in_axes4_zy*ucu_J_4_in_spec4_yz + v.ucu_acc_4_in_axes4_x*ucu_h_4_in_spec4_x
+            - v.ucu_B_4_in_axes4_xy*ucu_J_4_in_spec4_xz -
+            v.ucu_B_4_in_axes4_zx*ucu_Sigma_4_in_axes4_xx - ucu_J_4_in_spec4_xy*(ucu_phi_4_t -
+            ucu_mu_4_t) - v.ucu_acc_4_in_axes4_z*ucu_h_4_in_spec4_y;
+        const real ucu_mu_4_in_axes4_z = v.ucu_B_4_in_axes4_xz*ucu_J_4_in_spec4_xz +
+            v.ucu_B_4_in_axes4_yx*ucu_Sigma_4_in_axes4_xx + ucu_J_4_in_spec4_yz*(ucu_phi_4_t -
+            ucu_phi_4_t_2) + v.ucu_acc_4_in_axes4_y*ucu_h_4_in_spec4_y -
+            v.ucu_B_4_in_axes4_xy*ucu_Sigma_4_in_axes4_yy -
+            v.ucu_B_4_in_axes4_yz*ucu_J_4_in_spec4_xy - v.ucu_acc_4_in_axes4_x*ucu_h_4_in_spec4_z;
         /* (ucu-N_2) moment about joint 2 of the links from 2 outwards, the force at the connection point
            left out */
-        const real ucu_N_2_in_axes2_x = ucu_mu_2_in_axes2_x + ucu_mu_4_in_axes4_z;
-        const real ucu_N_2_in_axes2_y = ucu_mu_2_in_axes2_y + ucu_c_4*ucu_mu_4_in_axes4_x -
-            ucu_mu_4_in_axes4_y*ucu_s_4;
-        const real ucu_N_2_in_axes2_z = ucu_mu_2_in_axes2_z + ucu_c_4*ucu_mu_4_in_axes4_y +
-            ucu_mu_4_in_axes4_x*ucu_s_4;
+        const real ucu_N_2_in_axes2_x = v.ucu_mu_2_in_axes2_x + ucu_mu_4_in_axes4_z;
+        const real ucu_N_2_in_axes2_y = v.ucu_mu_2_in_axes2_y +
+            v.ucu_e_2_in_axes4_y*ucu_mu_4_in_axes4_x - v.ucu_c_4*ucu_mu_4_in_axes4_y;
+        const real ucu_N_2_in_axes2_z = v.ucu_mu_2_in_axes2_z + v.ucu_c_4*ucu_mu_4_in_axes4_x +
+            v.ucu_e_2_in_axes4_y*ucu_mu_4_in_axes4_y;
         /* (ucu-G_m1) moment along moment direction 1 that balances the leg's inertia and weight along all
            degrees of freedom */
-        const real ucu_G_m1 = ucu_m1_w_4*ucu_mu_4_in_axes4_z;
+        const real ucu_G_m1_t = v.inv_ucu_end_p1_in_axes4_x*ucu_mu_4_in_axes4_z;
         /* (ucu-c) leg force on the platform without actuation and without the mass at the connection
            point */
-        const real ucu_c_t = inv_ucu_root_2*(ucu_N_2_in_axes2_z - ucu_G_m1*ucu_n_m1_in_axes2_z);
-        const real ucu_c_t_2 = inv_ucu_v_1_in_axes2_z*(ucu_c_t*ucu_v_1_in_axes2_y -
-            ucu_G_m1*ucu_qd_4_t_4 - ucu_N_2_in_axes2_x*ucu_s_2 - ucu_N_2_in_axes2_y*ucu_c_2);
-        const real ucu_c_in_axes4_x = ucu_c_t_2*ucu_s_4 + ucu_h_4_in_spec4_y*(ucu_mu_4_t +
-            ucu_phi_4_t_2) - ucu_B_4_in_axes4_xy*ucu_h_4_in_spec4_z -
-            ucu_B_4_in_axes4_xz*ucu_h_4_in_spec4_x - ucu_c_4*ucu_c_t;
-        const real ucu_c_in_axes4_y = ucu_c_4*ucu_c_t_2 + ucu_c_t*ucu_s_4 +
-            ucu_h_4_in_spec4_z*(ucu_mu_4_t + ucu_phi_4_t) - ucu_B_4_in_axes4_yx*ucu_h_4_in_spec4_y
-            - ucu_B_4_in_axes4_yz*ucu_h_4_in_spec4_x;
-        const real ucu_c_x = axis_x_ucu_axes4_x*ucu_c_in_axes4_x +
-            axis_y_ucu_axes4_x*ucu_c_in_axes4_y - ucu_phi_4_in_axes4_z*ucu_w_3_x;
-        const real ucu_c_y = axis_x_ucu_axes4_y*ucu_c_in_axes4_x +
-            axis_y_ucu_axes4_y*ucu_c_in_axes4_y - ucu_phi_4_in_axes4_z*ucu_w_3_y;
-        const real ucu_c_z = axis_x_ucu_axes4_z*ucu_c_in_axes4_x +
-            axis_y_ucu_axes4_z*ucu_c_in_axes4_y - ucu_phi_4_in_axes4_z*ucu_w_3_z;
+        const real ucu_c_t = v.inv_ucu_root_2*(ucu_N_2_in_axes2_z +
+            ucu_G_m1_t*v.ucu_n_m1_in_axes2_z);
+        const real ucu_c_t_2 = v.inv_ucu_v_1_in_axes2_z*(ucu_G_m1_t*v.ucu_qd_4_t_4 +
+            ucu_N_2_in_axes2_y*v.ucu_c_2 - ucu_N_2_in_axes2_x*v.ucu_e_1_in_axes4_z -
+            ucu_c_t*v.ucu_v_1_t_2);
+        const real ucu_c_in_axes4_x = v.ucu_c_4*ucu_c_t_2 + ucu_h_4_in_spec4_y*(ucu_mu_4_t +
+            ucu_phi_4_t_2) - v.ucu_B_4_in_axes4_xy*ucu_h_4_in_spec4_z -
+            v.ucu_B_4_in_axes4_xz*ucu_h_4_in_spec4_x - ucu_c_t*v.ucu_e_2_in_axes4_y;
+        const real ucu_c_in_axes4_y = v.ucu_c_4*ucu_c_t + ucu_c_t_2*v.ucu_e_2_in_axes4_y +
+            ucu_h_4_in_spec4_z*(ucu_mu_4_t + ucu_phi_4_t) -
+            v.ucu_B_4_in_axes4_yx*ucu_h_4_in_spec4_y - v.ucu_B_4_in_axes4_yz*ucu_h_4_in_spec4_x;
+        const real ucu_c_x = v.axis_x_ucu_axes4_x*ucu_c_in_axes4_x +
+            v.axis_y_ucu_axes4_x*ucu_c_in_axes4_y - ucu_phi_4_in_axes4_z*v.ucu_w_3_x;
+        const real ucu_c_y = v.axis_x_ucu_axes4_y*ucu_c_in_axes4_x +
+            v.axis_y_ucu_axes4_y*ucu_c_in_axes4_y - ucu_phi_4_in_axes4_z*v.ucu_w_3_y;
+        const real ucu_c_z = v.axis_x_ucu_axes4_z*ucu_c_in_axes4_x +
+            v.axis_y_ucu_axes4_z*ucu_c_in_axes4_y - ucu_phi_4_in_axes4_z*v.ucu_w_3_z;
         /* (ucu-c_m) moment of the leg on the platform without actuation */
-        const real ucu_c_m_in_axes4_x = -ucu_G_m1*ucu_n_m1_in_axes4_x;
+        const real ucu_c_m_in_axes4_x = ucu_G_m1_t*v.ucu_n_m1_in_axes4_x;
         /* (R_a) moment that actuators and external wrench must give */
-        const real ucu_R_a_t = ucu_c_y*ucu_q_z + ucu_mu_4_in_axes4_z*ucu_w_3_x -
-            axis_x_ucu_axes4_x*ucu_c_m_in_axes4_x - ucu_c_z*ucu_q_y;
-        const real ucu_R_a_t_2 = ucu_c_z*ucu_q_x + ucu_mu_4_in_axes4_z*ucu_w_3_y -
-            axis_x_ucu_axes4_y*ucu_c_m_in_axes4_x - ucu_c_x*ucu_q_z;
-        const real ucu_R_a_t_3 = ucu_c_x*ucu_q_y + ucu_mu_4_in_axes4_z*ucu_w_3_z -
-            axis_x_ucu_axes4_z*ucu_c_m_in_axes4_x - ucu_c_y*ucu_q_x;
-        /* (ucu-H_a_3) moment of the column's unit force about the platform origin */
-        const real ucu_H_a_3_x = ucu_q_y*ucu_w_3_z - ucu_q_z*ucu_w_3_y;
-        const real ucu_H_a_3_y = ucu_q_z*ucu_w_3_x - ucu_q_x*ucu_w_3_z;
-        const real ucu_H_a_3_z = ucu_q_x*ucu_w_3_y - ucu_q_y*ucu_w_3_x;
+        const real ucu_R_a_t = ucu_c_y*v.ucu_q_z + ucu_mu_4_in_axes4_z*v.ucu_w_3_x -
+            v.axis_x_ucu_axes4_x*ucu_c_m_in_axes4_x - ucu_c_z*v.ucu_q_y;
+        const real ucu_R_a_t_2 = ucu_c_z*v.ucu_q_x + ucu_mu_4_in_axes4_z*v.ucu_w_3_y -
+            v.axis_x_ucu_axes4_y*ucu_c_m_in_axes4_x - ucu_c_x*v.ucu_q_z;
+        const real ucu_R_a_t_3 = ucu_c_x*v.ucu_q_y + ucu_mu_4_in_axes4_z*v.ucu_w_3_z -
+            v.axis_x_ucu_axes4_z*ucu_c_m_in_axes4_x - ucu_c_y*v.ucu_q_x;
         /* (R_t) force that actuators and external wrench must give */
         gather(&terms[0*count + k], add, ucu_c_x);  /* R_t_x_of_legs */
         gather(&terms[1*count + k], add, ucu_c_y);  /* R_t_y_of_legs */
@@ -4397,17 +3893,18 @@ INLINE void required_legs_ucu(const prepared *m, size_t w, size_t leg, size_t le
         gather(&terms[4*count + k], add, ucu_R_a_t_2);  /* R_a_y_of_legs */
         gather(&terms[5*count + k], add, ucu_R_a_t_3);  /* R_a_z_of_legs */
         /* (ucu-w_3) force part of reciprocal wrench 3 */
-        o[0*count + k] = ucu_w_3_x;
-        o[1*count + k] = ucu_w_3_y;
-        o[2*count + k] = ucu_w_3_z;
+        o[0*count + k] = v.ucu_w_3_x;
+        o[1*count + k] = v.ucu_w_3_y;
+        o[2*count + k] = v.ucu_w_3_z;
         /* (ucu-H_a_3) moment of the column's unit force about the platform origin */
-        o[3*count + k] = ucu_H_a_3_x;
-        o[4*count + k] = ucu_H_a_3_y;
-        o[5*count + k] = ucu_H_a_3_z;
-        o[6*count + k] = UNLESS(magnitude(ucu_rho2_1) > LEAST_1) + UNLESS(magnitude(ucu_rho2_2) >
-            LEAST_1) + UNLESS(magnitude(ucu_rho2_4) > LEAST_2) +
-            UNLESS(magnitude(ucu_end_p1_in_axes4_x) > LEAST_3) + UNLESS(magnitude(ucu_root_2) >
-            LEAST_4) + UNLESS(magnitude(ucu_v_1_in_axes2_z) > LEAST_4);
+        o[3*count + k] = v.ucu_H_a_3_x;
+        o[4*count + k] = v.ucu_H_a_3_y;
+        o[5*count + k] = v.ucu_H_a_3_z;
+        o[6*count + k] = UNLESS(magnitude(v.ucu_root_1_t) > LEAST_1) +
+            UNLESS(magnitude(v.ucu_root_2_t) > LEAST_1) + UNLESS(magnitude(v.ucu_root_4_t_6) >
+            LEAST_2) + UNLESS(magnitude(v.ucu_end_p1_in_axes4_x) > LEAST_3) +
+            UNLESS(magnitude(v.ucu_root_2) > LEAST_4) + UNLESS(magnitude(v.ucu_v_1_in_axes2_z) >
+            LEAST_4);
     }
 }
 
@@ -4415,7 +3912,7 @@ INLINE void required_place_ucu(size_t w, size_t count, const real *o, size_t leg
     real *H, verdict *t)
 {
     for (size_t k = 0; k < w; ++k) {
-        H[(0*NU + leg)*w + k] = o[0*count + first + k];
+        H[leg*w + k] = o[0*count + first + k];
         H[(NU + leg)*w + k] = o[1*count + first + k];
         H[(2*NU + leg)*w + k] = o[2*count + first + k];
         H[(3*NU + leg)*w + k] = o[3*count + first + k];
@@ -4430,23 +3927,23 @@ INLINE void required_after(size_t w, const real *s, const real *sums, real *requ
     for (size_t k = 0; k < w; ++k) {
         /* (R_t) force that actuators and external wrench must give */
         const real R_t_x_of_legs = sums[0*w + k];
-        const real f_p_x = s[24*w + k];
+        const real f_p_x = s[9*w + k];
         const real R_t_x = f_p_x - R_t_x_of_legs;
         const real R_t_y_of_legs = sums[1*w + k];
-        const real f_p_y = s[25*w + k];
+        const real f_p_y = s[10*w + k];
         const real R_t_y = f_p_y - R_t_y_of_legs;
         const real R_t_z_of_legs = sums[2*w + k];
-        const real f_p_z = s[26*w + k];
+        const real f_p_z = s[11*w + k];
         const real R_t_z = f_p_z - R_t_z_of_legs;
         /* (R_a) moment that actuators and external wrench must give */
         const real R_a_x_of_legs = sums[3*w + k];
-        const real mu_p_x = s[27*w + k];
+        const real mu_p_x = s[12*w + k];
         const real R_a_x = R_a_x_of_legs + mu_p_x;
         const real R_a_y_of_legs = sums[4*w + k];
-        const real mu_p_y = s[28*w + k];
+        const real mu_p_y = s[13*w + k];
         const real R_a_y = R_a_y_of_legs + mu_p_y;
         const real R_a_z_of_legs = sums[5*w + k];
-        const real mu_p_z = s[29*w + k];
+        const real mu_p_z = s[14*w + k];
         const real R_a_z = R_a_z_of_legs + mu_p_z;
         /* (R_t) force that actuators and external wrench must give */
         required[0*w + k] = R_t_x;
@@ -4462,12 +3959,10 @@ INLINE void required_after(size_t w, const real *s, const real *sums, real *requ
 INLINE void required_run(const prepared *m, const real *X, const real *V, const real *A, real
     *required, real *H, verdict *t)
 {
-    real s[30] = {0};
-    real sums[6] = {0};
-    real terms_ucu[6*LEGS(LEGS_OF_ucu)] = {0};
-    real o_ucu[7*LEGS(LEGS_OF_ucu)] = {0};
+    real s[15] = {0}, sums[6] = {0};
+    real terms_ucu[6*LEGS(LEGS_OF_ucu)] = {0}, o_ucu[7*LEGS(LEGS_OF_ucu)] = {0};
     required_before(m, 1, X, V, A, s, t);
-    required_legs_ucu(m, 1, 0, 1, s, 0, LEGS(LEGS_OF_ucu), 0, terms_ucu, o_ucu);
+    required_legs_ucu(m, 1, 0, 1, s, 0, LEGS(LEGS_OF_ucu), 0, X, V, A, terms_ucu, o_ucu);
     for (size_t leg = 0; leg < LEGS_OF_ucu; ++leg) {
         required_place_ucu(1, LEGS(LEGS_OF_ucu), o_ucu, leg, leg, H, t);
     }
@@ -4480,187 +3975,65 @@ INLINE void required_run(const prepared *m, const real *X, const real *V, const 
 INLINE void required_run_lanes(const prepared *m, const real *X, const real *V, const real *A,
     real *required, real *H, verdict *t)
 {
-    real s[30*LANES];
-    real sums[6*LANES];
+    real s[15*LANES], sums[6*LANES];
     real o_ucu[7*LANES];
     required_before(m, LANES, X, V, A, s, t);
     clear(sums, 6*LANES);
     for (size_t leg = 0; leg < LEGS_OF_ucu; ++leg) {
-        required_legs_ucu(m, LANES, leg, 0, s, 1, LANES, 1, sums, o_ucu);
+        required_legs_ucu(m, LANES, leg, 0, s, 1, LANES, 1, X, V, A, sums, o_ucu);
         required_place_ucu(LANES, LANES, o_ucu, leg, 0, H, t);
     }
     required_after(LANES, s, sums, required);
 }
 
 /* ---- inverse_kinematics ---- */
-INLINE void inverse_kinematics_before(size_t w, const real *X, real *s, verdict *t)
+INLINE void inverse_kinematics_before(const prepared *m, size_t w, const real *X, real *s, verdict
+    *t)
 {
     for (size_t k = 0; k < w; ++k) {
-        /* X: named entries */
-        const real X_0 = X[0*w + k];
-        const real t_x = X_0;
-        const real X_1 = X[1*w + k];
-        const real t_y = X_1;
-        const real X_2 = X[2*w + k];
-        const real t_z = X_2;
-        const real X_3 = X[3*w + k];
-        const real X_4 = X[4*w + k];
-        const real X_5 = X[5*w + k];
-        const real X_6 = X[6*w + k];
-        const real quaternion_norm2 = X_3*X_3 + X_4*X_4 + X_5*X_5 + X_6*X_6;
-        const real quaternion_scale = 2/quaternion_norm2;
-        const real quaternion_sx = X_3*quaternion_scale;
-        const real quaternion_sy = X_4*quaternion_scale;
-        const real quaternion_sz = X_5*quaternion_scale;
-        const real quaternion_wx = X_6*quaternion_sx;
-        const real quaternion_wy = X_6*quaternion_sy;
-        const real quaternion_wz = X_6*quaternion_sz;
-        const real quaternion_xx = X_3*quaternion_sx;
-        const real quaternion_xy = X_3*quaternion_sy;
-        const real quaternion_xz = X_3*quaternion_sz;
-        const real quaternion_yy = X_4*quaternion_sy;
-        const real quaternion_yz = X_4*quaternion_sz;
-        const real quaternion_zz = X_5*quaternion_sz;
-        const real R_xx = 1 - quaternion_yy - quaternion_zz;
-        const real R_xy = quaternion_xy - quaternion_wz;
-        const real R_xz = quaternion_wy + quaternion_xz;
-        const real R_yx = quaternion_wz + quaternion_xy;
-        const real R_yy = 1 - quaternion_xx - quaternion_zz;
-        const real R_yz = quaternion_yz - quaternion_wx;
-        const real R_zx = quaternion_xz - quaternion_wy;
-        const real R_zy = quaternion_wx + quaternion_yz;
-        const real R_zz = 1 - quaternion_xx - quaternion_yy;
-        s[0*w + k] = t_x;
-        s[1*w + k] = t_y;
-        s[2*w + k] = t_z;
-        s[3*w + k] = R_xx;
-        s[4*w + k] = R_xy;
-        s[5*w + k] = R_xz;
-        s[6*w + k] = R_yx;
-        s[7*w + k] = R_yy;
-        s[8*w + k] = R_yz;
-        s[9*w + k] = R_zx;
-        s[10*w + k] = R_zy;
-        s[11*w + k] = R_zz;
-        t->invalid[k] += UNLESS(is_finite(quaternion_scale)) + UNLESS(quaternion_scale > 0);
+        values v;
+        stage_X(m, w, k, X, &v);
+        s[0*w + k] = v.R_xx;
+        s[1*w + k] = v.R_xy;
+        s[2*w + k] = v.R_xz;
+        s[3*w + k] = v.R_yx;
+        s[4*w + k] = v.R_yy;
+        s[5*w + k] = v.R_yz;
+        s[6*w + k] = v.R_zx;
+        s[7*w + k] = v.R_zy;
+        s[8*w + k] = v.R_zz;
+        t->invalid[k] += UNLESS(is_finite(v.quaternion_scale)) + UNLESS(v.quaternion_scale > 0);
     }
 }
 
 INLINE void inverse_kinematics_legs_ucu(const prepared *m, size_t w, size_t leg, size_t legs,
-    const real *s, size_t states, size_t count, real *o)
+    const real *s, size_t states, size_t count, const real *X, real *o)
 {
     for (size_t k = 0; k < count; ++k) {
         const size_t i = leg + legs*k;
         const size_t j = states*k;
-        /* (ucu-S) from the base point to the connection point */
-        const real R_xx = s[3*w + j];
-        const real R_xy = s[4*w + j];
-        const real R_xz = s[5*w + j];
-        const real t_x = s[0*w + j];
-        const real ucu_base_point_x = m->ucu_base_point_x[i];
-        const real ucu_platform_point_x = m->ucu_platform_point_x[i];
-        const real ucu_platform_point_y = m->ucu_platform_point_y[i];
-        const real ucu_platform_point_z = m->ucu_platform_point_z[i];
-        const real ucu_S_x = t_x + R_xx*ucu_platform_point_x + R_xy*ucu_platform_point_y +
-            R_xz*ucu_platform_point_z - ucu_base_point_x;
-        const real R_yx = s[6*w + j];
-        const real R_yy = s[7*w + j];
-        const real R_yz = s[8*w + j];
-        const real t_y = s[1*w + j];
-        const real ucu_base_point_y = m->ucu_base_point_y[i];
-        const real ucu_S_y = t_y + R_yx*ucu_platform_point_x + R_yy*ucu_platform_point_y +
-            R_yz*ucu_platform_point_z - ucu_base_point_y;
-        const real R_zx = s[9*w + j];
-        const real R_zy = s[10*w + j];
-        const real R_zz = s[11*w + j];
-        const real t_z = s[2*w + j];
-        const real ucu_base_point_z = m->ucu_base_point_z[i];
-        const real ucu_S_z = t_z + R_zx*ucu_platform_point_x + R_zy*ucu_platform_point_y +
-            R_zz*ucu_platform_point_z - ucu_base_point_z;
-        /* (ucu-px_1) component along the reference direction */
-        const real ucu_base_frame_xx = m->ucu_base_frame_xx[i];
-        const real ucu_base_frame_yx = m->ucu_base_frame_yx[i];
-        const real ucu_base_frame_zx = m->ucu_base_frame_zx[i];
-        const real ucu_px_1 = ucu_S_x*ucu_base_frame_xx + ucu_S_y*ucu_base_frame_yx +
-            ucu_S_z*ucu_base_frame_zx;
-        /* (ucu-py_1) component across the reference direction */
-        const real ucu_base_frame_xy = m->ucu_base_frame_xy[i];
-        const real ucu_base_frame_yy = m->ucu_base_frame_yy[i];
-        const real ucu_base_frame_zy = m->ucu_base_frame_zy[i];
-        const real ucu_py_1 = ucu_S_x*ucu_base_frame_xy + ucu_S_y*ucu_base_frame_yy +
-            ucu_S_z*ucu_base_frame_zy;
-        /* (ucu-rho2_1) squared amplitude */
-        const real ucu_rho2_1 = ucu_px_1*ucu_px_1 + ucu_py_1*ucu_py_1;
-        /* (ucu-root_1) amplitude, with the sign of the branch */
-        const real ucu_branch_1 = m->ucu_branch_1[i];
-        const real ucu_root_1 = ucu_branch_1*root(ucu_rho2_1);
-        /* (ucu-c_1) cosine of the angle of joint 1 from its reference direction */
-        const real inv_ucu_root_1 = 1/ucu_root_1;
-        const real ucu_c_1 = -inv_ucu_root_1*ucu_py_1;
-        /* (ucu-s_1) sine of the angle of joint 1 from its reference direction */
-        const real ucu_s_1 = inv_ucu_root_1*ucu_px_1;
+        values_ucu v;
+        stage_ucu_X(m, w, i, j, s, X, &v);
+        stage_ucu_inverse_kinematics_potential(m, w, i, j, s, X, &v);
         /* (ucu-q_1) displacement of joint 1 */
-        const real ucu_q_1 = angle(-ucu_c_1, ucu_s_1);
-        /* (ucu-xi_1) the vector from joint 1 to the connection point, resolved along link 1 */
-        const real ucu_base_frame_xz = m->ucu_base_frame_xz[i];
-        const real ucu_base_frame_yz = m->ucu_base_frame_yz[i];
-        const real ucu_base_frame_zz = m->ucu_base_frame_zz[i];
-        const real ucu_xi_1_in_axes1_z = ucu_S_x*ucu_base_frame_xz + ucu_S_y*ucu_base_frame_yz +
-            ucu_S_z*ucu_base_frame_zz;
-        /* (ucu-rho2_2) squared amplitude */
-        const real ucu_rho2_2 = ucu_rho2_1 + ucu_xi_1_in_axes1_z*ucu_xi_1_in_axes1_z;
-        /* (ucu-root_2) amplitude, with the sign of the branch */
-        const real ucu_branch_2 = m->ucu_branch_2[i];
-        const real ucu_root_2 = ucu_branch_2*root(ucu_rho2_2);
-        /* (ucu-c_2) cosine of the angle of joint 2 from its reference direction */
-        const real inv_ucu_root_2 = 1/ucu_root_2;
-        const real ucu_c_2 = -inv_ucu_root_2*ucu_root_1;
-        /* (ucu-s_2) sine of the angle of joint 2 from its reference direction */
-        const real ucu_s_2 = inv_ucu_root_2*ucu_xi_1_in_axes1_z;
+        const real ucu_q_1 = angle(v.ucu_s_1, v.ucu_c_1);
         /* (ucu-q_2) displacement of joint 2 */
-        const real ucu_q_2 = angle(-ucu_s_2, -ucu_c_2);
-        /* (ucu-px_4) component along the reference direction */
-        const real ucu_platform_joint_axis_platform_x = m->ucu_platform_joint_axis_platform_x[i];
-        const real ucu_platform_joint_axis_platform_y = m->ucu_platform_joint_axis_platform_y[i];
-        const real ucu_platform_joint_axis_platform_z = m->ucu_platform_joint_axis_platform_z[i];
-        const real ucu_px_4_t = ucu_platform_joint_axis_platform_x*(R_xx*ucu_base_frame_xx +
-            R_yx*ucu_base_frame_yx + R_zx*ucu_base_frame_zx) +
-            ucu_platform_joint_axis_platform_y*(R_xy*ucu_base_frame_xx + R_yy*ucu_base_frame_yx +
-            R_zy*ucu_base_frame_zx) + ucu_platform_joint_axis_platform_z*(R_xz*ucu_base_frame_xx +
-            R_yz*ucu_base_frame_yx + R_zz*ucu_base_frame_zx);
-        const real ucu_px_4_t_2 = ucu_platform_joint_axis_platform_x*(R_xx*ucu_base_frame_xy +
-            R_yx*ucu_base_frame_yy + R_zx*ucu_base_frame_zy) +
-            ucu_platform_joint_axis_platform_y*(R_xy*ucu_base_frame_xy + R_yy*ucu_base_frame_yy +
-            R_zy*ucu_base_frame_zy) + ucu_platform_joint_axis_platform_z*(R_xz*ucu_base_frame_xy +
-            R_yz*ucu_base_frame_yy + R_zz*ucu_base_frame_zy);
-        const real ucu_px_4_t_3 = ucu_platform_joint_axis_platform_x*(R_xx*ucu_base_frame_xz +
-            R_yx*ucu_base_frame_yz + R_zx*ucu_base_frame_zz) +
-            ucu_platform_joint_axis_platform_y*(R_xy*ucu_base_frame_xz + R_yy*ucu_base_frame_yz +
-            R_zy*ucu_base_frame_zz) + ucu_platform_joint_axis_platform_z*(R_xz*ucu_base_frame_xz +
-            R_yz*ucu_base_frame_yz + R_zz*ucu_base_frame_zz);
-        const real ucu_px_4 = ucu_c_2*ucu_px_4_t_3 + ucu_s_2*(ucu_px_4_t*ucu_s_1 -
-            ucu_c_1*ucu_px_4_t_2);
-        /* (ucu-py_4) component across the reference direction */
-        const real ucu_py_4 = ucu_c_1*ucu_px_4_t + ucu_px_4_t_2*ucu_s_1;
-        /* (ucu-rho2_4) squared amplitude */
-        const real ucu_rho2_4 = ucu_px_4*ucu_px_4 + ucu_py_4*ucu_py_4;
-        /* (ucu-root_4) amplitude, with the sign of the branch */
-        const real ucu_branch_4 = m->ucu_branch_4[i];
-        const real ucu_root_4 = ucu_branch_4*root(ucu_rho2_4);
+        const real ucu_q_2 = angle(-v.ucu_e_1_in_axes4_z, v.ucu_c_2);
         /* (ucu-q_4) displacement of joint 4 */
-        const real inv_ucu_root_4 = 1/ucu_root_4;
-        const real ucu_q_4 = angle(-inv_ucu_root_4*ucu_px_4, inv_ucu_root_4*ucu_py_4);
+        const real ucu_q_4 = angle(-v.inv_ucu_root_4*v.ucu_root_4_t_4,
+            v.inv_ucu_root_4*v.ucu_end_p1_in_turn4_x);
         /* (ucu-q_1) displacement of joint 1 */
         o[0*count + k] = ucu_q_1;
         /* (ucu-q_2) displacement of joint 2 */
         o[1*count + k] = ucu_q_2;
         /* (ucu-q_3) displacement of joint 3 */
-        o[2*count + k] = ucu_root_2;
+        o[2*count + k] = v.ucu_root_2;
         /* (ucu-q_4) displacement of joint 4 */
         o[3*count + k] = ucu_q_4;
-        o[5*count + k] = (ucu_q_1 + ucu_q_2) + (ucu_root_2 + ucu_q_4);
-        o[4*count + k] = UNLESS(magnitude(ucu_rho2_1) > LEAST_1) + UNLESS(magnitude(ucu_rho2_2) >
-            LEAST_1) + UNLESS(magnitude(ucu_rho2_4) > LEAST_2);
+        o[5*count + k] = (ucu_q_1 + ucu_q_2) + (v.ucu_root_2 + ucu_q_4);
+        o[4*count + k] = UNLESS(magnitude(v.ucu_root_1_t) > LEAST_1) +
+            UNLESS(magnitude(v.ucu_root_2_t) > LEAST_1) + UNLESS(magnitude(v.ucu_root_4_t_5) >
+            LEAST_2);
     }
 }
 
@@ -4679,10 +4052,10 @@ INLINE void inverse_kinematics_place_ucu(size_t w, size_t count, const real *o, 
 
 INLINE void inverse_kinematics_run(const prepared *m, const real *X, real *q, verdict *t)
 {
-    real s[12] = {0};
+    real s[9] = {0};
     real o_ucu[6*LEGS(LEGS_OF_ucu)] = {0};
-    inverse_kinematics_before(1, X, s, t);
-    inverse_kinematics_legs_ucu(m, 1, 0, 1, s, 0, LEGS(LEGS_OF_ucu), o_ucu);
+    inverse_kinematics_before(m, 1, X, s, t);
+    inverse_kinematics_legs_ucu(m, 1, 0, 1, s, 0, LEGS(LEGS_OF_ucu), X, o_ucu);
     for (size_t leg = 0; leg < LEGS_OF_ucu; ++leg) {
         inverse_kinematics_place_ucu(1, LEGS(LEGS_OF_ucu), o_ucu, leg, leg, q, t);
     }
@@ -4690,249 +4063,85 @@ INLINE void inverse_kinematics_run(const prepared *m, const real *X, real *q, ve
 
 INLINE void inverse_kinematics_run_lanes(const prepared *m, const real *X, real *q, verdict *t)
 {
-    real s[12*LANES];
+    real s[9*LANES];
     real o_ucu[6*LANES];
-    inverse_kinematics_before(LANES, X, s, t);
+    inverse_kinematics_before(m, LANES, X, s, t);
     for (size_t leg = 0; leg < LEGS_OF_ucu; ++leg) {
-        inverse_kinematics_legs_ucu(m, LANES, leg, 0, s, 1, LANES, o_ucu);
+        inverse_kinematics_legs_ucu(m, LANES, leg, 0, s, 1, LANES, X, o_ucu);
         inverse_kinematics_place_ucu(LANES, LANES, o_ucu, leg, 0, q, t);
     }
 }
 
 /* ---- joint_rates ---- */
-INLINE void joint_rates_before(size_t w, const real *X, const real *V, real *s, verdict *t)
+INLINE void joint_rates_before(const prepared *m, size_t w, const real *X, real *s, verdict *t)
 {
     for (size_t k = 0; k < w; ++k) {
-        /* X: named entries */
-        const real X_0 = X[0*w + k];
-        const real t_x = X_0;
-        const real X_1 = X[1*w + k];
-        const real t_y = X_1;
-        const real X_2 = X[2*w + k];
-        const real t_z = X_2;
-        const real X_3 = X[3*w + k];
-        const real X_4 = X[4*w + k];
-        const real X_5 = X[5*w + k];
-        const real X_6 = X[6*w + k];
-        const real quaternion_norm2 = X_3*X_3 + X_4*X_4 + X_5*X_5 + X_6*X_6;
-        const real quaternion_scale = 2/quaternion_norm2;
-        const real quaternion_sx = X_3*quaternion_scale;
-        const real quaternion_sy = X_4*quaternion_scale;
-        const real quaternion_sz = X_5*quaternion_scale;
-        const real quaternion_wx = X_6*quaternion_sx;
-        const real quaternion_wy = X_6*quaternion_sy;
-        const real quaternion_wz = X_6*quaternion_sz;
-        const real quaternion_xx = X_3*quaternion_sx;
-        const real quaternion_xy = X_3*quaternion_sy;
-        const real quaternion_xz = X_3*quaternion_sz;
-        const real quaternion_yy = X_4*quaternion_sy;
-        const real quaternion_yz = X_4*quaternion_sz;
-        const real quaternion_zz = X_5*quaternion_sz;
-        const real R_xx = 1 - quaternion_yy - quaternion_zz;
-        const real R_xy = quaternion_xy - quaternion_wz;
-        const real R_xz = quaternion_wy + quaternion_xz;
-        const real R_yx = quaternion_wz + quaternion_xy;
-        const real R_yy = 1 - quaternion_xx - quaternion_zz;
-        const real R_yz = quaternion_yz - quaternion_wx;
-        const real R_zx = quaternion_xz - quaternion_wy;
-        const real R_zy = quaternion_wx + quaternion_yz;
-        const real R_zz = 1 - quaternion_xx - quaternion_yy;
-        /* V: named entries */
-        const real V_0 = V[0*w + k];
-        const real t_dot_x = V_0;
-        const real V_1 = V[1*w + k];
-        const real t_dot_y = V_1;
-        const real V_2 = V[2*w + k];
-        const real t_dot_z = V_2;
-        const real V_3 = V[3*w + k];
-        const real omega_x = V_3;
-        const real V_4 = V[4*w + k];
-        const real omega_y = V_4;
-        const real V_5 = V[5*w + k];
-        const real omega_z = V_5;
-        s[0*w + k] = t_x;
-        s[1*w + k] = t_y;
-        s[2*w + k] = t_z;
-        s[3*w + k] = R_xx;
-        s[4*w + k] = R_xy;
-        s[5*w + k] = R_xz;
-        s[6*w + k] = R_yx;
-        s[7*w + k] = R_yy;
-        s[8*w + k] = R_yz;
-        s[9*w + k] = R_zx;
-        s[10*w + k] = R_zy;
-        s[11*w + k] = R_zz;
-        s[12*w + k] = t_dot_x;
-        s[13*w + k] = t_dot_y;
-        s[14*w + k] = t_dot_z;
-        s[15*w + k] = omega_x;
-        s[16*w + k] = omega_y;
-        s[17*w + k] = omega_z;
-        t->invalid[k] += UNLESS(is_finite(quaternion_scale)) + UNLESS(quaternion_scale > 0);
+        values v;
+        stage_X(m, w, k, X, &v);
+        s[0*w + k] = v.R_xx;
+        s[1*w + k] = v.R_xy;
+        s[2*w + k] = v.R_xz;
+        s[3*w + k] = v.R_yx;
+        s[4*w + k] = v.R_yy;
+        s[5*w + k] = v.R_yz;
+        s[6*w + k] = v.R_zx;
+        s[7*w + k] = v.R_zy;
+        s[8*w + k] = v.R_zz;
+        t->invalid[k] += UNLESS(is_finite(v.quaternion_scale)) + UNLESS(v.quaternion_scale > 0);
     }
 }
 
 INLINE void joint_rates_legs_ucu(const prepared *m, size_t w, size_t leg, size_t legs, const real
-    *s, size_t states, size_t count, real *o)
+    *s, size_t states, size_t count, const real *X, const real *V, real *o)
 {
     for (size_t k = 0; k < count; ++k) {
         const size_t i = leg + legs*k;
         const size_t j = states*k;
-        /* (ucu-S) from the base point to the connection point */
-        const real R_xx = s[3*w + j];
-        const real R_xy = s[4*w + j];
-        const real R_xz = s[5*w + j];
-        const real ucu_platform_point_x = m->ucu_platform_point_x[i];
-        const real ucu_platform_point_y = m->ucu_platform_point_y[i];
-        const real ucu_platform_point_z = m->ucu_platform_point_z[i];
-        const real ucu_q_x = R_xx*ucu_platform_point_x + R_xy*ucu_platform_point_y +
-            R_xz*ucu_platform_point_z;
-        const real R_yx = s[6*w + j];
-        const real R_yy = s[7*w + j];
-        const real R_yz = s[8*w + j];
-        const real ucu_q_y = R_yx*ucu_platform_point_x + R_yy*ucu_platform_point_y +
-            R_yz*ucu_platform_point_z;
-        const real R_zx = s[9*w + j];
-        const real R_zy = s[10*w + j];
-        const real R_zz = s[11*w + j];
-        const real ucu_q_z = R_zx*ucu_platform_point_x + R_zy*ucu_platform_point_y +
-            R_zz*ucu_platform_point_z;
-        const real t_x = s[0*w + j];
-        const real ucu_base_point_x = m->ucu_base_point_x[i];
-        const real ucu_S_x = t_x + ucu_q_x - ucu_base_point_x;
-        const real t_y = s[1*w + j];
-        const real ucu_base_point_y = m->ucu_base_point_y[i];
-        const real ucu_S_y = t_y + ucu_q_y - ucu_base_point_y;
-        const real t_z = s[2*w + j];
-        const real ucu_base_point_z = m->ucu_base_point_z[i];
-        const real ucu_S_z = t_z + ucu_q_z - ucu_base_point_z;
-        /* (ucu-px_1) component along the reference direction */
+        values_ucu v;
+        stage_ucu_X(m, w, i, j, s, X, &v);
+        /* (ucu-S_dot) velocity of the connection point */
+        const real omega_y = V[4*w + j];
+        const real omega_z = V[5*w + j];
+        const real t_dot_x = V[0*w + j];
+        const real ucu_S_dot_x = t_dot_x + omega_y*v.ucu_q_z - omega_z*v.ucu_q_y;
+        const real omega_x = V[3*w + j];
+        const real t_dot_y = V[1*w + j];
+        const real ucu_S_dot_y = t_dot_y + omega_z*v.ucu_q_x - omega_x*v.ucu_q_z;
+        const real t_dot_z = V[2*w + j];
+        const real ucu_S_dot_z = t_dot_z + omega_x*v.ucu_q_y - omega_y*v.ucu_q_x;
         const real ucu_base_frame_xx = m->ucu_base_frame_xx[i];
         const real ucu_base_frame_yx = m->ucu_base_frame_yx[i];
         const real ucu_base_frame_zx = m->ucu_base_frame_zx[i];
-        const real ucu_px_1 = ucu_S_x*ucu_base_frame_xx + ucu_S_y*ucu_base_frame_yx +
-            ucu_S_z*ucu_base_frame_zx;
-        /* (ucu-py_1) component across the reference direction */
+        const real ucu_S_dot_t = ucu_S_dot_x*ucu_base_frame_xx + ucu_S_dot_y*ucu_base_frame_yx +
+            ucu_S_dot_z*ucu_base_frame_zx;
         const real ucu_base_frame_xy = m->ucu_base_frame_xy[i];
         const real ucu_base_frame_yy = m->ucu_base_frame_yy[i];
         const real ucu_base_frame_zy = m->ucu_base_frame_zy[i];
-        const real ucu_py_1 = ucu_S_x*ucu_base_frame_xy + ucu_S_y*ucu_base_frame_yy +
-            ucu_S_z*ucu_base_frame_zy;
-        /* (ucu-rho2_1) squared amplitude */
-        const real ucu_rho2_1 = ucu_px_1*ucu_px_1 + ucu_py_1*ucu_py_1;
-        /* (ucu-root_1) amplitude, with the sign of the branch */
-        const real ucu_branch_1 = m->ucu_branch_1[i];
-        const real ucu_root_1 = ucu_branch_1*root(ucu_rho2_1);
-        /* (ucu-c_1) cosine of the angle of joint 1 from its reference direction */
-        const real inv_ucu_root_1 = 1/ucu_root_1;
-        const real ucu_c_1 = -inv_ucu_root_1*ucu_py_1;
-        /* (ucu-s_1) sine of the angle of joint 1 from its reference direction */
-        const real ucu_s_1 = inv_ucu_root_1*ucu_px_1;
-        /* (ucu-xi_1) the vector from joint 1 to the connection point, resolved along link 1 */
+        const real ucu_S_dot_t_2 = ucu_S_dot_x*ucu_base_frame_xy + ucu_S_dot_y*ucu_base_frame_yy +
+            ucu_S_dot_z*ucu_base_frame_zy;
         const real ucu_base_frame_xz = m->ucu_base_frame_xz[i];
         const real ucu_base_frame_yz = m->ucu_base_frame_yz[i];
         const real ucu_base_frame_zz = m->ucu_base_frame_zz[i];
-        const real ucu_xi_1_in_axes1_z = ucu_S_x*ucu_base_frame_xz + ucu_S_y*ucu_base_frame_yz +
-            ucu_S_z*ucu_base_frame_zz;
-        /* (ucu-rho2_2) squared amplitude */
-        const real ucu_rho2_2 = ucu_rho2_1 + ucu_xi_1_in_axes1_z*ucu_xi_1_in_axes1_z;
-        /* (ucu-root_2) amplitude, with the sign of the branch */
-        const real ucu_branch_2 = m->ucu_branch_2[i];
-        const real ucu_root_2 = ucu_branch_2*root(ucu_rho2_2);
-        /* (ucu-c_2) cosine of the angle of joint 2 from its reference direction */
-        const real inv_ucu_root_2 = 1/ucu_root_2;
-        const real ucu_c_2 = -inv_ucu_root_2*ucu_root_1;
-        /* (ucu-s_2) sine of the angle of joint 2 from its reference direction */
-        const real ucu_s_2 = inv_ucu_root_2*ucu_xi_1_in_axes1_z;
-        /* (ucu-px_4) component along the reference direction */
-        const real ucu_platform_joint_axis_platform_x = m->ucu_platform_joint_axis_platform_x[i];
-        const real ucu_platform_joint_axis_platform_y = m->ucu_platform_joint_axis_platform_y[i];
-        const real ucu_platform_joint_axis_platform_z = m->ucu_platform_joint_axis_platform_z[i];
-        const real ucu_px_4_t = ucu_platform_joint_axis_platform_x*(R_xx*ucu_base_frame_xx +
-            R_yx*ucu_base_frame_yx + R_zx*ucu_base_frame_zx) +
-            ucu_platform_joint_axis_platform_y*(R_xy*ucu_base_frame_xx + R_yy*ucu_base_frame_yx +
-            R_zy*ucu_base_frame_zx) + ucu_platform_joint_axis_platform_z*(R_xz*ucu_base_frame_xx +
-            R_yz*ucu_base_frame_yx + R_zz*ucu_base_frame_zx);
-        const real ucu_px_4_t_2 = ucu_platform_joint_axis_platform_x*(R_xx*ucu_base_frame_xy +
-            R_yx*ucu_base_frame_yy + R_zx*ucu_base_frame_zy) +
-            ucu_platform_joint_axis_platform_y*(R_xy*ucu_base_frame_xy + R_yy*ucu_base_frame_yy +
-            R_zy*ucu_base_frame_zy) + ucu_platform_joint_axis_platform_z*(R_xz*ucu_base_frame_xy +
-            R_yz*ucu_base_frame_yy + R_zz*ucu_base_frame_zy);
-        const real ucu_px_4_t_3 = ucu_platform_joint_axis_platform_x*(R_xx*ucu_base_frame_xz +
-            R_yx*ucu_base_frame_yz + R_zx*ucu_base_frame_zz) +
-            ucu_platform_joint_axis_platform_y*(R_xy*ucu_base_frame_xz + R_yy*ucu_base_frame_yz +
-            R_zy*ucu_base_frame_zz) + ucu_platform_joint_axis_platform_z*(R_xz*ucu_base_frame_xz +
-            R_yz*ucu_base_frame_yz + R_zz*ucu_base_frame_zz);
-        const real ucu_px_4_t_4 = ucu_px_4_t*ucu_s_1 - ucu_c_1*ucu_px_4_t_2;
-        const real ucu_px_4 = ucu_c_2*ucu_px_4_t_3 + ucu_px_4_t_4*ucu_s_2;
-        /* (ucu-py_4) component across the reference direction */
-        const real ucu_py_4 = ucu_c_1*ucu_px_4_t + ucu_px_4_t_2*ucu_s_1;
-        /* (ucu-rho2_4) squared amplitude */
-        const real ucu_rho2_4 = ucu_px_4*ucu_px_4 + ucu_py_4*ucu_py_4;
-        /* (ucu-root_4) amplitude, with the sign of the branch */
-        const real ucu_branch_4 = m->ucu_branch_4[i];
-        const real ucu_root_4 = ucu_branch_4*root(ucu_rho2_4);
-        /* (ucu-c_4) cosine of the angle of joint 4 from its reference direction */
-        const real inv_ucu_root_4 = 1/ucu_root_4;
-        const real ucu_c_4 = inv_ucu_root_4*ucu_px_4;
-        /* (ucu-s_4) sine of the angle of joint 4 from its reference direction */
-        const real ucu_s_4 = inv_ucu_root_4*ucu_py_4;
-        /* (ucu-S_dot) velocity of the connection point */
-        const real omega_y = s[16*w + j];
-        const real omega_z = s[17*w + j];
-        const real t_dot_x = s[12*w + j];
-        const real ucu_S_dot_x = t_dot_x + omega_y*ucu_q_z - omega_z*ucu_q_y;
-        const real omega_x = s[15*w + j];
-        const real t_dot_y = s[13*w + j];
-        const real ucu_S_dot_y = t_dot_y + omega_z*ucu_q_x - omega_x*ucu_q_z;
-        const real t_dot_z = s[14*w + j];
-        const real ucu_S_dot_z = t_dot_z + omega_x*ucu_q_y - omega_y*ucu_q_x;
-        const real ucu_S_dot_t = ucu_S_dot_x*ucu_base_frame_xx + ucu_S_dot_y*ucu_base_frame_yx +
-            ucu_S_dot_z*ucu_base_frame_zx;
-        const real ucu_S_dot_t_2 = ucu_S_dot_x*ucu_base_frame_xy + ucu_S_dot_y*ucu_base_frame_yy +
-            ucu_S_dot_z*ucu_base_frame_zy;
         const real ucu_S_dot_t_3 = ucu_S_dot_x*ucu_base_frame_xz + ucu_S_dot_y*ucu_base_frame_yz +
             ucu_S_dot_z*ucu_base_frame_zz;
-        const real ucu_S_dot_t_4 = ucu_S_dot_t*ucu_s_1 - ucu_S_dot_t_2*ucu_c_1;
-        const real ucu_S_dot_in_axes2_x = ucu_S_dot_t_3*ucu_s_2 - ucu_S_dot_t_4*ucu_c_2;
-        /* (ucu-v_1) velocity of the connection point per rate of joint 1 */
-        const real ucu_e_1_in_axes4_x = ucu_c_2*ucu_c_4;
-        const real ucu_e_1_in_axes4_y = -ucu_c_2*ucu_s_4;
-        const real ucu_v_1_in_axes4_x = ucu_e_1_in_axes4_y*ucu_root_2;
-        const real ucu_v_1_in_axes4_y = -ucu_e_1_in_axes4_x*ucu_root_2;
-        const real ucu_v_1_in_axes2_z = ucu_c_4*ucu_v_1_in_axes4_y + ucu_s_4*ucu_v_1_in_axes4_x;
-        /* (ucu-n_m1) direction 1 of the moment that the platform joint transmits */
-        const real ucu_n_m1_in_axes4_x = ucu_px_4_t_3*ucu_s_2 - ucu_c_2*ucu_px_4_t_4;
-        /* (ucu-w_1) force part of reciprocal wrench 1 */
-        const real ucu_end_p1_in_axes4_x = ucu_c_4*ucu_px_4 + ucu_py_4*ucu_s_4;
-        /* (ucu-w_3) force part of reciprocal wrench 3 */
-        const real ucu_w_3_x = inv_ucu_root_2*ucu_S_x;
-        const real ucu_w_3_y = inv_ucu_root_2*ucu_S_y;
-        const real ucu_w_3_z = inv_ucu_root_2*ucu_S_z;
+        const real ucu_S_dot_t_4 = ucu_S_dot_t*v.ucu_c_1 + ucu_S_dot_t_2*v.ucu_s_1;
+        const real ucu_S_dot_in_axes2_x = ucu_S_dot_t_3*v.ucu_e_1_in_axes4_z +
+            ucu_S_dot_t_4*v.ucu_c_2;
         /* (ucu-qd_1) rate of joint 1 */
-        const real ucu_qd_1 = (ucu_S_dot_t*ucu_c_1 + ucu_S_dot_t_2*ucu_s_1)/ucu_v_1_in_axes2_z;
+        const real ucu_qd_1 = (ucu_S_dot_t_2*v.ucu_c_1 -
+            ucu_S_dot_t*v.ucu_s_1)/v.ucu_v_1_in_axes2_z;
         /* (ucu-qd_2) rate of joint 2 */
-        const real ucu_qd_2 = inv_ucu_root_2*(ucu_S_dot_t_3*ucu_c_2 + ucu_S_dot_t_4*ucu_s_2 -
-            ucu_qd_1*(ucu_c_4*ucu_v_1_in_axes4_x - ucu_s_4*ucu_v_1_in_axes4_y));
+        const real ucu_qd_2 = v.inv_ucu_root_2*(ucu_S_dot_t_4*v.ucu_e_1_in_axes4_z +
+            ucu_qd_1*(v.ucu_c_4*v.ucu_v_1_in_axes4_y - v.ucu_e_2_in_axes4_y*v.ucu_v_1_in_axes4_x)
+            - ucu_S_dot_t_3*v.ucu_c_2);
         /* (ucu-qd_4) rate of joint 4 */
-        const real ucu_qd_4_t = ucu_s_2*ucu_s_4;
-        const real ucu_qd_4_t_2 = ucu_c_1*ucu_c_4 - ucu_qd_4_t*ucu_s_1;
-        const real ucu_qd_4_t_3 = ucu_c_1*ucu_qd_4_t + ucu_c_4*ucu_s_1;
-        const real axis_y_ucu_axes4_x = ucu_base_frame_xx*ucu_qd_4_t_2 +
-            ucu_base_frame_xy*ucu_qd_4_t_3 + ucu_base_frame_xz*ucu_e_1_in_axes4_y;
-        const real axis_y_ucu_axes4_y = ucu_base_frame_yx*ucu_qd_4_t_2 +
-            ucu_base_frame_yy*ucu_qd_4_t_3 + ucu_base_frame_yz*ucu_e_1_in_axes4_y;
-        const real axis_y_ucu_axes4_z = ucu_base_frame_zx*ucu_qd_4_t_2 +
-            ucu_base_frame_zy*ucu_qd_4_t_3 + ucu_base_frame_zz*ucu_e_1_in_axes4_y;
-        const real ucu_qd_4_t_4 = ucu_end_p1_in_axes4_x*ucu_s_2 -
-            ucu_e_1_in_axes4_x*ucu_n_m1_in_axes4_x;
-        const real ucu_qd_4_t_5 = ucu_n_m1_in_axes4_x*(omega_x*(axis_y_ucu_axes4_y*ucu_w_3_z -
-            axis_y_ucu_axes4_z*ucu_w_3_y) + omega_y*(axis_y_ucu_axes4_z*ucu_w_3_x -
-            axis_y_ucu_axes4_x*ucu_w_3_z) + omega_z*(axis_y_ucu_axes4_x*ucu_w_3_y -
-            axis_y_ucu_axes4_y*ucu_w_3_x));
-        const real ucu_qd_4 = omega_x*ucu_w_3_x + omega_y*ucu_w_3_y + omega_z*ucu_w_3_z -
-            (ucu_qd_4_t_5 + ucu_qd_1*ucu_qd_4_t_4 -
-            ucu_n_m1_in_axes4_x*ucu_qd_2*ucu_s_4)/ucu_end_p1_in_axes4_x;
+        const real ucu_qd_4_t_5 = v.ucu_n_m1_in_axes4_x*(omega_x*(v.axis_y_ucu_axes4_y*v.ucu_w_3_z
+            - v.axis_y_ucu_axes4_z*v.ucu_w_3_y) + omega_y*(v.axis_y_ucu_axes4_z*v.ucu_w_3_x -
+            v.axis_y_ucu_axes4_x*v.ucu_w_3_z) + omega_z*(v.axis_y_ucu_axes4_x*v.ucu_w_3_y -
+            v.axis_y_ucu_axes4_y*v.ucu_w_3_x));
+        const real ucu_qd_4 = omega_x*v.ucu_w_3_x + omega_y*v.ucu_w_3_y + omega_z*v.ucu_w_3_z -
+            (ucu_qd_4_t_5 + ucu_qd_1*v.ucu_qd_4_t_4 -
+            v.ucu_c_4*v.ucu_n_m1_in_axes4_x*ucu_qd_2)/v.ucu_end_p1_in_axes4_x;
         /* (ucu-qd_1) rate of joint 1 */
         o[0*count + k] = ucu_qd_1;
         /* (ucu-qd_2) rate of joint 2 */
@@ -4942,10 +4151,11 @@ INLINE void joint_rates_legs_ucu(const prepared *m, size_t w, size_t leg, size_t
         /* (ucu-qd_4) rate of joint 4 */
         o[3*count + k] = ucu_qd_4;
         o[5*count + k] = (ucu_qd_1 + ucu_qd_2) + (ucu_S_dot_in_axes2_x + ucu_qd_4);
-        o[4*count + k] = UNLESS(magnitude(ucu_rho2_1) > LEAST_1) + UNLESS(magnitude(ucu_rho2_2) >
-            LEAST_1) + UNLESS(magnitude(ucu_rho2_4) > LEAST_2) +
-            UNLESS(magnitude(ucu_end_p1_in_axes4_x) > LEAST_3) + UNLESS(magnitude(ucu_root_2) >
-            LEAST_4) + UNLESS(magnitude(ucu_v_1_in_axes2_z) > LEAST_4);
+        o[4*count + k] = UNLESS(magnitude(v.ucu_root_1_t) > LEAST_1) +
+            UNLESS(magnitude(v.ucu_root_2_t) > LEAST_1) + UNLESS(magnitude(v.ucu_root_4_t_6) >
+            LEAST_2) + UNLESS(magnitude(v.ucu_end_p1_in_axes4_x) > LEAST_3) +
+            UNLESS(magnitude(v.ucu_root_2) > LEAST_4) + UNLESS(magnitude(v.ucu_v_1_in_axes2_z) >
+            LEAST_4);
     }
 }
 
@@ -4964,10 +4174,10 @@ INLINE void joint_rates_place_ucu(size_t w, size_t count, const real *o, size_t 
 
 INLINE void joint_rates_run(const prepared *m, const real *X, const real *V, real *qd, verdict *t)
 {
-    real s[18] = {0};
+    real s[9] = {0};
     real o_ucu[6*LEGS(LEGS_OF_ucu)] = {0};
-    joint_rates_before(1, X, V, s, t);
-    joint_rates_legs_ucu(m, 1, 0, 1, s, 0, LEGS(LEGS_OF_ucu), o_ucu);
+    joint_rates_before(m, 1, X, s, t);
+    joint_rates_legs_ucu(m, 1, 0, 1, s, 0, LEGS(LEGS_OF_ucu), X, V, o_ucu);
     for (size_t leg = 0; leg < LEGS_OF_ucu; ++leg) {
         joint_rates_place_ucu(1, LEGS(LEGS_OF_ucu), o_ucu, leg, leg, qd, t);
     }
@@ -4976,362 +4186,75 @@ INLINE void joint_rates_run(const prepared *m, const real *X, const real *V, rea
 INLINE void joint_rates_run_lanes(const prepared *m, const real *X, const real *V, real *qd,
     verdict *t)
 {
-    real s[18*LANES];
+    real s[9*LANES];
     real o_ucu[6*LANES];
-    joint_rates_before(LANES, X, V, s, t);
+    joint_rates_before(m, LANES, X, s, t);
     for (size_t leg = 0; leg < LEGS_OF_ucu; ++leg) {
-        joint_rates_legs_ucu(m, LANES, leg, 0, s, 1, LANES, o_ucu);
+        joint_rates_legs_ucu(m, LANES, leg, 0, s, 1, LANES, X, V, o_ucu);
         joint_rates_place_ucu(LANES, LANES, o_ucu, leg, 0, qd, t);
     }
 }
 
 /* ---- joint_accelerations ---- */
-INLINE void joint_accelerations_before(size_t w, const real *X, const real *V, const real *A, real
-    *s, verdict *t)
+INLINE void joint_accelerations_before(const prepared *m, size_t w, const real *X, real *s,
+    verdict *t)
 {
     for (size_t k = 0; k < w; ++k) {
-        /* X: named entries */
-        const real X_0 = X[0*w + k];
-        const real t_x = X_0;
-        const real X_1 = X[1*w + k];
-        const real t_y = X_1;
-        const real X_2 = X[2*w + k];
-        const real t_z = X_2;
-        const real X_3 = X[3*w + k];
-        const real X_4 = X[4*w + k];
-        const real X_5 = X[5*w + k];
-        const real X_6 = X[6*w + k];
-        const real quaternion_norm2 = X_3*X_3 + X_4*X_4 + X_5*X_5 + X_6*X_6;
-        const real quaternion_scale = 2/quaternion_norm2;
-        const real quaternion_sx = X_3*quaternion_scale;
-        const real quaternion_sy = X_4*quaternion_scale;
-        const real quaternion_sz = X_5*quaternion_scale;
-        const real quaternion_wx = X_6*quaternion_sx;
-        const real quaternion_wy = X_6*quaternion_sy;
-        const real quaternion_wz = X_6*quaternion_sz;
-        const real quaternion_xx = X_3*quaternion_sx;
-        const real quaternion_xy = X_3*quaternion_sy;
-        const real quaternion_xz = X_3*quaternion_sz;
-        const real quaternion_yy = X_4*quaternion_sy;
-        const real quaternion_yz = X_4*quaternion_sz;
-        const real quaternion_zz = X_5*quaternion_sz;
-        const real R_xx = 1 - quaternion_yy - quaternion_zz;
-        const real R_xy = quaternion_xy - quaternion_wz;
-        const real R_xz = quaternion_wy + quaternion_xz;
-        const real R_yx = quaternion_wz + quaternion_xy;
-        const real R_yy = 1 - quaternion_xx - quaternion_zz;
-        const real R_yz = quaternion_yz - quaternion_wx;
-        const real R_zx = quaternion_xz - quaternion_wy;
-        const real R_zy = quaternion_wx + quaternion_yz;
-        const real R_zz = 1 - quaternion_xx - quaternion_yy;
-        /* V: named entries */
-        const real V_0 = V[0*w + k];
-        const real t_dot_x = V_0;
-        const real V_1 = V[1*w + k];
-        const real t_dot_y = V_1;
-        const real V_2 = V[2*w + k];
-        const real t_dot_z = V_2;
-        const real V_3 = V[3*w + k];
-        const real omega_x = V_3;
-        const real V_4 = V[4*w + k];
-        const real omega_y = V_4;
-        const real V_5 = V[5*w + k];
-        const real omega_z = V_5;
-        /* A: named entries */
-        const real A_0 = A[0*w + k];
-        const real t_ddot_x = A_0;
-        const real A_1 = A[1*w + k];
-        const real t_ddot_y = A_1;
-        const real A_2 = A[2*w + k];
-        const real t_ddot_z = A_2;
-        const real A_3 = A[3*w + k];
-        const real alpha_x = A_3;
-        const real A_4 = A[4*w + k];
-        const real alpha_y = A_4;
-        const real A_5 = A[5*w + k];
-        const real alpha_z = A_5;
-        s[0*w + k] = t_x;
-        s[1*w + k] = t_y;
-        s[2*w + k] = t_z;
-        s[3*w + k] = R_xx;
-        s[4*w + k] = R_xy;
-        s[5*w + k] = R_xz;
-        s[6*w + k] = R_yx;
-        s[7*w + k] = R_yy;
-        s[8*w + k] = R_yz;
-        s[9*w + k] = R_zx;
-        s[10*w + k] = R_zy;
-        s[11*w + k] = R_zz;
-        s[12*w + k] = t_dot_x;
-        s[13*w + k] = t_dot_y;
-        s[14*w + k] = t_dot_z;
-        s[15*w + k] = omega_x;
-        s[16*w + k] = omega_y;
-        s[17*w + k] = omega_z;
-        s[18*w + k] = t_ddot_x;
-        s[19*w + k] = t_ddot_y;
-        s[20*w + k] = t_ddot_z;
-        s[21*w + k] = alpha_x;
-        s[22*w + k] = alpha_y;
-        s[23*w + k] = alpha_z;
-        t->invalid[k] += UNLESS(is_finite(quaternion_scale)) + UNLESS(quaternion_scale > 0);
+        values v;
+        stage_X(m, w, k, X, &v);
+        s[0*w + k] = v.R_xx;
+        s[1*w + k] = v.R_xy;
+        s[2*w + k] = v.R_xz;
+        s[3*w + k] = v.R_yx;
+        s[4*w + k] = v.R_yy;
+        s[5*w + k] = v.R_yz;
+        s[6*w + k] = v.R_zx;
+        s[7*w + k] = v.R_zy;
+        s[8*w + k] = v.R_zz;
+        t->invalid[k] += UNLESS(is_finite(v.quaternion_scale)) + UNLESS(v.quaternion_scale > 0);
     }
 }
 
 INLINE void joint_accelerations_legs_ucu(const prepared *m, size_t w, size_t leg, size_t legs,
-    const real *s, size_t states, size_t count, real *o)
+    const real *s, size_t states, size_t count, const real *X, const real *V, const real *A, real
+    *o)
 {
     for (size_t k = 0; k < count; ++k) {
         const size_t i = leg + legs*k;
         const size_t j = states*k;
-        /* (ucu-S) from the base point to the connection point */
-        const real R_xx = s[3*w + j];
-        const real R_xy = s[4*w + j];
-        const real R_xz = s[5*w + j];
-        const real ucu_platform_point_x = m->ucu_platform_point_x[i];
-        const real ucu_platform_point_y = m->ucu_platform_point_y[i];
-        const real ucu_platform_point_z = m->ucu_platform_point_z[i];
-        const real ucu_q_x = R_xx*ucu_platform_point_x + R_xy*ucu_platform_point_y +
-            R_xz*ucu_platform_point_z;
-        const real R_yx = s[6*w + j];
-        const real R_yy = s[7*w + j];
-        const real R_yz = s[8*w + j];
-        const real ucu_q_y = R_yx*ucu_platform_point_x + R_yy*ucu_platform_point_y +
-            R_yz*ucu_platform_point_z;
-        const real R_zx = s[9*w + j];
-        const real R_zy = s[10*w + j];
-        const real R_zz = s[11*w + j];
-        const real ucu_q_z = R_zx*ucu_platform_point_x + R_zy*ucu_platform_point_y +
-            R_zz*ucu_platform_point_z;
-        const real t_x = s[0*w + j];
-        const real ucu_base_point_x = m->ucu_base_point_x[i];
-        const real ucu_S_x = t_x + ucu_q_x - ucu_base_point_x;
-        const real t_y = s[1*w + j];
-        const real ucu_base_point_y = m->ucu_base_point_y[i];
-        const real ucu_S_y = t_y + ucu_q_y - ucu_base_point_y;
-        const real t_z = s[2*w + j];
-        const real ucu_base_point_z = m->ucu_base_point_z[i];
-        const real ucu_S_z = t_z + ucu_q_z - ucu_base_point_z;
-        /* (ucu-px_1) component along the reference direction */
-        const real ucu_base_frame_xx = m->ucu_base_frame_xx[i];
-        const real ucu_base_frame_yx = m->ucu_base_frame_yx[i];
-        const real ucu_base_frame_zx = m->ucu_base_frame_zx[i];
-        const real ucu_px_1 = ucu_S_x*ucu_base_frame_xx + ucu_S_y*ucu_base_frame_yx +
-            ucu_S_z*ucu_base_frame_zx;
-        /* (ucu-py_1) component across the reference direction */
-        const real ucu_base_frame_xy = m->ucu_base_frame_xy[i];
-        const real ucu_base_frame_yy = m->ucu_base_frame_yy[i];
-        const real ucu_base_frame_zy = m->ucu_base_frame_zy[i];
-        const real ucu_py_1 = ucu_S_x*ucu_base_frame_xy + ucu_S_y*ucu_base_frame_yy +
-            ucu_S_z*ucu_base_frame_zy;
-        /* (ucu-rho2_1) squared amplitude */
-        const real ucu_rho2_1 = ucu_px_1*ucu_px_1 + ucu_py_1*ucu_py_1;
-        /* (ucu-root_1) amplitude, with the sign of the branch */
-        const real ucu_branch_1 = m->ucu_branch_1[i];
-        const real ucu_root_1 = ucu_branch_1*root(ucu_rho2_1);
-        /* (ucu-c_1) cosine of the angle of joint 1 from its reference direction */
-        const real inv_ucu_root_1 = 1/ucu_root_1;
-        const real ucu_c_1 = -inv_ucu_root_1*ucu_py_1;
-        /* (ucu-s_1) sine of the angle of joint 1 from its reference direction */
-        const real ucu_s_1 = inv_ucu_root_1*ucu_px_1;
-        /* (ucu-xi_1) the vector from joint 1 to the connection point, resolved along link 1 */
-        const real ucu_base_frame_xz = m->ucu_base_frame_xz[i];
-        const real ucu_base_frame_yz = m->ucu_base_frame_yz[i];
-        const real ucu_base_frame_zz = m->ucu_base_frame_zz[i];
-        const real ucu_xi_1_in_axes1_z = ucu_S_x*ucu_base_frame_xz + ucu_S_y*ucu_base_frame_yz +
-            ucu_S_z*ucu_base_frame_zz;
-        /* (ucu-rho2_2) squared amplitude */
-        const real ucu_rho2_2 = ucu_rho2_1 + ucu_xi_1_in_axes1_z*ucu_xi_1_in_axes1_z;
-        /* (ucu-root_2) amplitude, with the sign of the branch */
-        const real ucu_branch_2 = m->ucu_branch_2[i];
-        const real ucu_root_2 = ucu_branch_2*root(ucu_rho2_2);
-        /* (ucu-c_2) cosine of the angle of joint 2 from its reference direction */
-        const real inv_ucu_root_2 = 1/ucu_root_2;
-        const real ucu_c_2 = -inv_ucu_root_2*ucu_root_1;
-        /* (ucu-s_2) sine of the angle of joint 2 from its reference direction */
-        const real ucu_s_2 = inv_ucu_root_2*ucu_xi_1_in_axes1_z;
-        /* (ucu-px_4) component along the reference direction */
-        const real ucu_platform_joint_axis_platform_x = m->ucu_platform_joint_axis_platform_x[i];
-        const real ucu_platform_joint_axis_platform_y = m->ucu_platform_joint_axis_platform_y[i];
-        const real ucu_platform_joint_axis_platform_z = m->ucu_platform_joint_axis_platform_z[i];
-        const real ucu_px_4_t = ucu_platform_joint_axis_platform_x*(R_xx*ucu_base_frame_xx +
-            R_yx*ucu_base_frame_yx + R_zx*ucu_base_frame_zx) +
-            ucu_platform_joint_axis_platform_y*(R_xy*ucu_base_frame_xx + R_yy*ucu_base_frame_yx +
-            R_zy*ucu_base_frame_zx) + ucu_platform_joint_axis_platform_z*(R_xz*ucu_base_frame_xx +
-            R_yz*ucu_base_frame_yx + R_zz*ucu_base_frame_zx);
-        const real ucu_px_4_t_2 = ucu_platform_joint_axis_platform_x*(R_xx*ucu_base_frame_xy +
-            R_yx*ucu_base_frame_yy + R_zx*ucu_base_frame_zy) +
-            ucu_platform_joint_axis_platform_y*(R_xy*ucu_base_frame_xy + R_yy*ucu_base_frame_yy +
-            R_zy*ucu_base_frame_zy) + ucu_platform_joint_axis_platform_z*(R_xz*ucu_base_frame_xy +
-            R_yz*ucu_base_frame_yy + R_zz*ucu_base_frame_zy);
-        const real ucu_px_4_t_3 = ucu_platform_joint_axis_platform_x*(R_xx*ucu_base_frame_xz +
-            R_yx*ucu_base_frame_yz + R_zx*ucu_base_frame_zz) +
-            ucu_platform_joint_axis_platform_y*(R_xy*ucu_base_frame_xz + R_yy*ucu_base_frame_yz +
-            R_zy*ucu_base_frame_zz) + ucu_platform_joint_axis_platform_z*(R_xz*ucu_base_frame_xz +
-            R_yz*ucu_base_frame_yz + R_zz*ucu_base_frame_zz);
-        const real ucu_px_4_t_4 = ucu_px_4_t*ucu_s_1 - ucu_c_1*ucu_px_4_t_2;
-        const real ucu_px_4 = ucu_c_2*ucu_px_4_t_3 + ucu_px_4_t_4*ucu_s_2;
-        /* (ucu-py_4) component across the reference direction */
-        const real ucu_py_4 = ucu_c_1*ucu_px_4_t + ucu_px_4_t_2*ucu_s_1;
-        /* (ucu-rho2_4) squared amplitude */
-        const real ucu_rho2_4 = ucu_px_4*ucu_px_4 + ucu_py_4*ucu_py_4;
-        /* (ucu-root_4) amplitude, with the sign of the branch */
-        const real ucu_branch_4 = m->ucu_branch_4[i];
-        const real ucu_root_4 = ucu_branch_4*root(ucu_rho2_4);
-        /* (ucu-c_4) cosine of the angle of joint 4 from its reference direction */
-        const real inv_ucu_root_4 = 1/ucu_root_4;
-        const real ucu_c_4 = inv_ucu_root_4*ucu_px_4;
-        /* (ucu-s_4) sine of the angle of joint 4 from its reference direction */
-        const real ucu_s_4 = inv_ucu_root_4*ucu_py_4;
-        /* (ucu-S_dot) velocity of the connection point */
-        const real omega_y = s[16*w + j];
-        const real omega_z = s[17*w + j];
-        const real ucu_S_dot_t = omega_y*ucu_q_z - omega_z*ucu_q_y;
-        const real omega_x = s[15*w + j];
-        const real ucu_S_dot_t_2 = omega_z*ucu_q_x - omega_x*ucu_q_z;
-        const real ucu_S_dot_t_3 = omega_x*ucu_q_y - omega_y*ucu_q_x;
-        const real t_dot_x = s[12*w + j];
-        const real ucu_S_dot_x = t_dot_x + ucu_S_dot_t;
-        const real t_dot_y = s[13*w + j];
-        const real ucu_S_dot_y = t_dot_y + ucu_S_dot_t_2;
-        const real t_dot_z = s[14*w + j];
-        const real ucu_S_dot_z = t_dot_z + ucu_S_dot_t_3;
-        const real ucu_S_dot_t_4 = ucu_S_dot_x*ucu_base_frame_xx + ucu_S_dot_y*ucu_base_frame_yx +
-            ucu_S_dot_z*ucu_base_frame_zx;
-        const real ucu_S_dot_t_5 = ucu_S_dot_x*ucu_base_frame_xy + ucu_S_dot_y*ucu_base_frame_yy +
-            ucu_S_dot_z*ucu_base_frame_zy;
-        const real ucu_S_dot_t_6 = ucu_S_dot_x*ucu_base_frame_xz + ucu_S_dot_y*ucu_base_frame_yz +
-            ucu_S_dot_z*ucu_base_frame_zz;
-        const real ucu_S_dot_t_7 = ucu_S_dot_t_4*ucu_s_1 - ucu_S_dot_t_5*ucu_c_1;
-        const real ucu_S_dot_in_axes2_x = ucu_S_dot_t_6*ucu_s_2 - ucu_S_dot_t_7*ucu_c_2;
-        /* (ucu-v_1) velocity of the connection point per rate of joint 1 */
-        const real ucu_e_1_in_axes4_x = ucu_c_2*ucu_c_4;
-        const real ucu_e_1_in_axes4_y = -ucu_c_2*ucu_s_4;
-        const real ucu_v_1_in_axes4_x = ucu_e_1_in_axes4_y*ucu_root_2;
-        const real ucu_v_1_in_axes4_y = -ucu_e_1_in_axes4_x*ucu_root_2;
-        const real ucu_v_1_in_axes2_y = ucu_c_4*ucu_v_1_in_axes4_x - ucu_s_4*ucu_v_1_in_axes4_y;
-        const real ucu_v_1_in_axes2_z = ucu_c_4*ucu_v_1_in_axes4_y + ucu_s_4*ucu_v_1_in_axes4_x;
-        /* (ucu-n_m1) direction 1 of the moment that the platform joint transmits */
-        const real ucu_n_m1_in_axes4_x = ucu_px_4_t_3*ucu_s_2 - ucu_c_2*ucu_px_4_t_4;
-        const real ucu_n_m1_in_axes2_z = ucu_n_m1_in_axes4_x*ucu_s_4;
-        /* (ucu-w_1) force part of reciprocal wrench 1 */
-        const real ucu_end_p1_in_axes4_x = ucu_c_4*ucu_px_4 + ucu_py_4*ucu_s_4;
-        /* (ucu-w_3) force part of reciprocal wrench 3 */
-        const real ucu_w_3_x = inv_ucu_root_2*ucu_S_x;
-        const real ucu_w_3_y = inv_ucu_root_2*ucu_S_y;
-        const real ucu_w_3_z = inv_ucu_root_2*ucu_S_z;
-        /* (ucu-m1_w_4) moment part 1 of reciprocal wrench 4 */
-        const real ucu_m1_w_4 = -1/ucu_end_p1_in_axes4_x;
-        /* (ucu-qd_1) rate of joint 1 */
-        const real inv_ucu_v_1_in_axes2_z = 1/ucu_v_1_in_axes2_z;
-        const real ucu_qd_1 = inv_ucu_v_1_in_axes2_z*(ucu_S_dot_t_4*ucu_c_1 +
-            ucu_S_dot_t_5*ucu_s_1);
-        /* (ucu-qd_2) rate of joint 2 */
-        const real ucu_qd_2 = inv_ucu_root_2*(ucu_S_dot_t_6*ucu_c_2 + ucu_S_dot_t_7*ucu_s_2 -
-            ucu_qd_1*ucu_v_1_in_axes2_y);
-        /* (ucu-qd_4) rate of joint 4 */
-        const real ucu_qd_4_t = ucu_s_2*ucu_s_4;
-        const real ucu_qd_4_t_2 = ucu_c_1*ucu_c_4 - ucu_qd_4_t*ucu_s_1;
-        const real ucu_qd_4_t_3 = ucu_c_1*ucu_qd_4_t + ucu_c_4*ucu_s_1;
-        const real axis_y_ucu_axes4_x = ucu_base_frame_xx*ucu_qd_4_t_2 +
-            ucu_base_frame_xy*ucu_qd_4_t_3 + ucu_base_frame_xz*ucu_e_1_in_axes4_y;
-        const real axis_y_ucu_axes4_y = ucu_base_frame_yx*ucu_qd_4_t_2 +
-            ucu_base_frame_yy*ucu_qd_4_t_3 + ucu_base_frame_yz*ucu_e_1_in_axes4_y;
-        const real axis_y_ucu_axes4_z = ucu_base_frame_zx*ucu_qd_4_t_2 +
-            ucu_base_frame_zy*ucu_qd_4_t_3 + ucu_base_frame_zz*ucu_e_1_in_axes4_y;
-        const real axis_x_ucu_axes4_x = axis_y_ucu_axes4_y*ucu_w_3_z -
-            axis_y_ucu_axes4_z*ucu_w_3_y;
-        const real axis_x_ucu_axes4_y = axis_y_ucu_axes4_z*ucu_w_3_x -
-            axis_y_ucu_axes4_x*ucu_w_3_z;
-        const real axis_x_ucu_axes4_z = axis_y_ucu_axes4_x*ucu_w_3_y -
-            axis_y_ucu_axes4_y*ucu_w_3_x;
-        const real ucu_qd_4_t_4 = ucu_end_p1_in_axes4_x*ucu_s_2 -
-            ucu_e_1_in_axes4_x*ucu_n_m1_in_axes4_x;
-        const real ucu_omega_in_axes4_x = axis_x_ucu_axes4_x*omega_x + axis_x_ucu_axes4_y*omega_y
-            + axis_x_ucu_axes4_z*omega_z;
-        const real ucu_omega_in_axes4_z = omega_x*ucu_w_3_x + omega_y*ucu_w_3_y +
-            omega_z*ucu_w_3_z;
-        const real ucu_qd_4 = ucu_omega_in_axes4_z +
-            ucu_m1_w_4*(ucu_n_m1_in_axes4_x*ucu_omega_in_axes4_x + ucu_qd_1*ucu_qd_4_t_4 -
-            ucu_n_m1_in_axes2_z*ucu_qd_2);
-        /* (ucu-omega_1) angular velocity of link 1 */
-        const real ucu_omega_1_in_axes2_x = ucu_qd_1*ucu_s_2;
-        const real ucu_omega_1_in_axes2_y = ucu_c_2*ucu_qd_1;
-        /* (ucu-omega_2) angular velocity of link 2 */
-        const real ucu_omega_2_in_axes4_x = ucu_c_4*ucu_omega_1_in_axes2_y + ucu_qd_2*ucu_s_4;
-        const real ucu_omega_2_in_axes4_y = ucu_c_4*ucu_qd_2 - ucu_omega_1_in_axes2_y*ucu_s_4;
-        /* (ucu-W_2) centripetal tensor of link 2 */
-        const real ucu_W_2_in_axes2_xz = ucu_omega_1_in_axes2_x*ucu_qd_2;
-        /* (ucu-omega_4) angular velocity of link 4 */
-        const real ucu_omega_4_in_axes4_z = ucu_omega_1_in_axes2_x + ucu_qd_4;
-        /* (ucu-a_p) acceleration of the connection point without its centripetal part */
-        const real alpha_y = s[22*w + j];
-        const real alpha_z = s[23*w + j];
-        const real t_ddot_x = s[18*w + j];
-        const real ucu_a_p_x = t_ddot_x + alpha_y*ucu_q_z - alpha_z*ucu_q_y;
-        const real alpha_x = s[21*w + j];
-        const real t_ddot_y = s[19*w + j];
-        const real ucu_a_p_y = t_ddot_y + alpha_z*ucu_q_x - alpha_x*ucu_q_z;
-        const real t_ddot_z = s[20*w + j];
-        const real ucu_a_p_z = t_ddot_z + alpha_x*ucu_q_y - alpha_y*ucu_q_x;
-        /* (ucu-S_ddot) acceleration of the connection point */
-        const real ucu_S_ddot_x = ucu_a_p_x + omega_y*ucu_S_dot_t_3 - omega_z*ucu_S_dot_t_2;
-        const real ucu_S_ddot_y = ucu_a_p_y + omega_z*ucu_S_dot_t - omega_x*ucu_S_dot_t_3;
-        const real ucu_S_ddot_z = ucu_a_p_z + omega_x*ucu_S_dot_t_2 - omega_y*ucu_S_dot_t;
-        /* (ucu-zeta_2) angular acceleration of link 2 from the turning of axis 2 */
-        const real ucu_zeta_2_t = ucu_W_2_in_axes2_xz*ucu_c_4;
+        values_ucu v;
+        stage_ucu_X(m, w, i, j, s, X, &v);
+        stage_ucu_A_X(w, j, A, &v);
+        stage_ucu_V_X(m, w, i, j, V, &v);
+        stage_ucu_A_V_X(w, j, V, &v);
         /* (ucu-beta_4) angular acceleration of link 4 at zero joint accelerations */
-        const real ucu_beta_4_in_axes4_x = ucu_omega_2_in_axes4_y*ucu_qd_4 - ucu_zeta_2_t;
-        /* (ucu-bias) acceleration of the connection point at zero joint accelerations */
-        const real ucu_bias_t = 2*ucu_S_dot_in_axes2_x;
-        const real ucu_bias_in_axes4_x = ucu_bias_t*ucu_omega_2_in_axes4_y +
-            ucu_root_2*(ucu_W_2_in_axes2_xz*ucu_s_4 +
-            ucu_omega_1_in_axes2_x*ucu_omega_2_in_axes4_x);
-        const real ucu_bias_in_axes4_y = ucu_root_2*(ucu_zeta_2_t +
-            ucu_omega_1_in_axes2_x*ucu_omega_2_in_axes4_y) - ucu_bias_t*ucu_omega_2_in_axes4_x;
+        const real ucu_beta_4_in_axes4_x = v.ucu_omega_2_in_axes4_y*v.ucu_qd_4 - v.ucu_zeta_2_t;
         /* (ucu-rel) acceleration of the connection point left to the joint accelerations */
-        const real ucu_rel_in_axes4_x = axis_x_ucu_axes4_x*ucu_S_ddot_x +
-            axis_x_ucu_axes4_y*ucu_S_ddot_y + axis_x_ucu_axes4_z*ucu_S_ddot_z -
-            ucu_bias_in_axes4_x;
-        const real ucu_rel_in_axes4_y = axis_y_ucu_axes4_x*ucu_S_ddot_x +
-            axis_y_ucu_axes4_y*ucu_S_ddot_y + axis_y_ucu_axes4_z*ucu_S_ddot_z -
-            ucu_bias_in_axes4_y;
-        const real ucu_rel_in_axes4_z = ucu_S_ddot_x*ucu_w_3_x + ucu_S_ddot_y*ucu_w_3_y +
-            ucu_S_ddot_z*ucu_w_3_z + ucu_root_2*(ucu_omega_2_in_axes4_x*ucu_omega_2_in_axes4_x +
-            ucu_omega_2_in_axes4_y*ucu_omega_2_in_axes4_y);
-        /* (ucu-nd_m1) rate of moment direction 1 */
-        const real ucu_end_p1_in_axes4_y = ucu_c_4*ucu_py_4 - ucu_px_4*ucu_s_4;
-        const real ucu_omega_in_axes4_y = axis_y_ucu_axes4_x*omega_x + axis_y_ucu_axes4_y*omega_y
-            + axis_y_ucu_axes4_z*omega_z;
-        const real ucu_nd_m1_in_axes4_x = ucu_end_p1_in_axes4_y*ucu_omega_in_axes4_x -
-            ucu_end_p1_in_axes4_x*ucu_omega_in_axes4_y -
-            ucu_end_p1_in_axes4_y*ucu_omega_2_in_axes4_x;
-        const real ucu_nd_m1_in_axes4_z = ucu_end_p1_in_axes4_y*ucu_omega_in_axes4_z -
-            ucu_end_p1_in_axes4_y*ucu_omega_4_in_axes4_z -
-            ucu_n_m1_in_axes4_x*ucu_omega_in_axes4_y;
+        const real ucu_rel_in_axes4_x = v.axis_x_ucu_axes4_x*v.ucu_S_ddot_x +
+            v.axis_x_ucu_axes4_y*v.ucu_S_ddot_y + v.axis_x_ucu_axes4_z*v.ucu_S_ddot_z -
+            v.ucu_bias_in_axes4_x;
+        const real ucu_rel_in_axes4_y = v.axis_y_ucu_axes4_x*v.ucu_S_ddot_x +
+            v.axis_y_ucu_axes4_y*v.ucu_S_ddot_y + v.axis_y_ucu_axes4_z*v.ucu_S_ddot_z -
+            v.ucu_bias_in_axes4_y;
+        const real ucu_rel_in_axes4_z = v.ucu_S_ddot_x*v.ucu_w_3_x + v.ucu_S_ddot_y*v.ucu_w_3_y +
+            v.ucu_S_ddot_z*v.ucu_w_3_z +
+            v.ucu_root_2*(v.ucu_omega_2_in_axes4_x*v.ucu_omega_2_in_axes4_x +
+            v.ucu_omega_2_in_axes4_y*v.ucu_omega_2_in_axes4_y);
         /* (ucu-nu_1) bias of the angular acceleration along moment direction 1 */
-        const real ucu_nu_1_t = ucu_beta_4_in_axes4_x*ucu_n_m1_in_axes4_x -
-            ucu_end_p1_in_axes4_x*ucu_omega_1_in_axes2_y*ucu_qd_2;
-        const real ucu_nu_1_t_2 = ucu_nd_m1_in_axes4_x*(ucu_omega_2_in_axes4_x -
-            ucu_omega_in_axes4_x) + ucu_nd_m1_in_axes4_z*(ucu_omega_4_in_axes4_z -
-            ucu_omega_in_axes4_z) + (ucu_omega_2_in_axes4_y -
-            ucu_omega_in_axes4_y)*(ucu_end_p1_in_axes4_x*ucu_omega_2_in_axes4_x +
-            ucu_n_m1_in_axes4_x*ucu_omega_4_in_axes4_z);
-        const real ucu_nu_1 = -ucu_nu_1_t - ucu_nu_1_t_2;
+        const real ucu_nu_1_t = ucu_beta_4_in_axes4_x*v.ucu_n_m1_in_axes4_x -
+            v.ucu_end_p1_in_axes4_x*v.ucu_omega_1_in_axes2_y*v.ucu_qd_2;
+        const real ucu_nu_1 = -ucu_nu_1_t - v.ucu_nu_1_t_2;
         /* (ucu-etad_1) acceleration with which the joints turn along moment direction 1 */
-        const real ucu_etad_1_t = ucu_n_m1_in_axes4_x*(alpha_x*axis_x_ucu_axes4_x +
-            alpha_y*axis_x_ucu_axes4_y + alpha_z*axis_x_ucu_axes4_z) -
-            ucu_end_p1_in_axes4_x*(alpha_x*ucu_w_3_x + alpha_y*ucu_w_3_y + alpha_z*ucu_w_3_z);
-        const real ucu_etad_1 = ucu_etad_1_t + ucu_nu_1;
+        const real ucu_etad_1 = v.ucu_etad_1_t + ucu_nu_1;
         /* (ucu-qdd_1) acceleration of joint 1 */
-        const real ucu_qdd_1 = inv_ucu_v_1_in_axes2_z*(ucu_c_4*ucu_rel_in_axes4_y +
-            ucu_rel_in_axes4_x*ucu_s_4);
+        const real ucu_qdd_1 = v.inv_ucu_v_1_in_axes2_z*(v.ucu_c_4*ucu_rel_in_axes4_x +
+            v.ucu_e_2_in_axes4_y*ucu_rel_in_axes4_y);
         /* (ucu-qdd_2) acceleration of joint 2 */
-        const real ucu_qdd_2 = -inv_ucu_root_2*(ucu_qdd_1*ucu_v_1_in_axes2_y +
-            ucu_rel_in_axes4_y*ucu_s_4 - ucu_c_4*ucu_rel_in_axes4_x);
+        const real ucu_qdd_2 = v.inv_ucu_root_2*(v.ucu_e_2_in_axes4_y*ucu_rel_in_axes4_x +
+            ucu_qdd_1*v.ucu_v_1_t_2 - v.ucu_c_4*ucu_rel_in_axes4_y);
         /* (ucu-qdd_4) acceleration of joint 4 */
-        const real ucu_qdd_4 = ucu_m1_w_4*(ucu_etad_1 + ucu_qd_4_t_4*ucu_qdd_1 -
-            ucu_n_m1_in_axes2_z*ucu_qdd_2);
+        const real ucu_qdd_4_t = v.inv_ucu_end_p1_in_axes4_x*(ucu_etad_1 +
+            v.ucu_qd_4_t_4*ucu_qdd_1 - v.ucu_n_m1_in_axes2_z*ucu_qdd_2);
         /* (ucu-qdd_1) acceleration of joint 1 */
         o[0*count + k] = ucu_qdd_1;
         /* (ucu-qdd_2) acceleration of joint 2 */
@@ -5339,12 +4262,13 @@ INLINE void joint_accelerations_legs_ucu(const prepared *m, size_t w, size_t leg
         /* (ucu-qdd_3) acceleration of joint 3 */
         o[2*count + k] = ucu_rel_in_axes4_z;
         /* (ucu-qdd_4) acceleration of joint 4 */
-        o[3*count + k] = ucu_qdd_4;
-        o[5*count + k] = (ucu_qdd_1 + ucu_qdd_2) + (ucu_rel_in_axes4_z + ucu_qdd_4);
-        o[4*count + k] = UNLESS(magnitude(ucu_rho2_1) > LEAST_1) + UNLESS(magnitude(ucu_rho2_2) >
-            LEAST_1) + UNLESS(magnitude(ucu_rho2_4) > LEAST_2) +
-            UNLESS(magnitude(ucu_end_p1_in_axes4_x) > LEAST_3) + UNLESS(magnitude(ucu_root_2) >
-            LEAST_4) + UNLESS(magnitude(ucu_v_1_in_axes2_z) > LEAST_4);
+        o[3*count + k] = -ucu_qdd_4_t;
+        o[5*count + k] = (ucu_qdd_1 + ucu_qdd_2) + (ucu_rel_in_axes4_z + ucu_qdd_4_t);
+        o[4*count + k] = UNLESS(magnitude(v.ucu_root_1_t) > LEAST_1) +
+            UNLESS(magnitude(v.ucu_root_2_t) > LEAST_1) + UNLESS(magnitude(v.ucu_root_4_t_6) >
+            LEAST_2) + UNLESS(magnitude(v.ucu_end_p1_in_axes4_x) > LEAST_3) +
+            UNLESS(magnitude(v.ucu_root_2) > LEAST_4) + UNLESS(magnitude(v.ucu_v_1_in_axes2_z) >
+            LEAST_4);
     }
 }
 
@@ -5364,10 +4288,10 @@ INLINE void joint_accelerations_place_ucu(size_t w, size_t count, const real *o,
 INLINE void joint_accelerations_run(const prepared *m, const real *X, const real *V, const real
     *A, real *qdd, verdict *t)
 {
-    real s[24] = {0};
+    real s[9] = {0};
     real o_ucu[6*LEGS(LEGS_OF_ucu)] = {0};
-    joint_accelerations_before(1, X, V, A, s, t);
-    joint_accelerations_legs_ucu(m, 1, 0, 1, s, 0, LEGS(LEGS_OF_ucu), o_ucu);
+    joint_accelerations_before(m, 1, X, s, t);
+    joint_accelerations_legs_ucu(m, 1, 0, 1, s, 0, LEGS(LEGS_OF_ucu), X, V, A, o_ucu);
     for (size_t leg = 0; leg < LEGS_OF_ucu; ++leg) {
         joint_accelerations_place_ucu(1, LEGS(LEGS_OF_ucu), o_ucu, leg, leg, qdd, t);
     }
@@ -5376,404 +4300,50 @@ INLINE void joint_accelerations_run(const prepared *m, const real *X, const real
 INLINE void joint_accelerations_run_lanes(const prepared *m, const real *X, const real *V, const
     real *A, real *qdd, verdict *t)
 {
-    real s[24*LANES];
+    real s[9*LANES];
     real o_ucu[6*LANES];
-    joint_accelerations_before(LANES, X, V, A, s, t);
+    joint_accelerations_before(m, LANES, X, s, t);
     for (size_t leg = 0; leg < LEGS_OF_ucu; ++leg) {
-        joint_accelerations_legs_ucu(m, LANES, leg, 0, s, 1, LANES, o_ucu);
+        joint_accelerations_legs_ucu(m, LANES, leg, 0, s, 1, LANES, X, V, A, o_ucu);
         joint_accelerations_place_ucu(LANES, LANES, o_ucu, leg, 0, qdd, t);
     }
 }
 
 /* ---- legs ---- */
-INLINE void legs_before(size_t w, const real *X, const real *V, const real *A, real *s, verdict
-    *t)
+INLINE void legs_before(const prepared *m, size_t w, const real *X, real *s, verdict *t)
 {
     for (size_t k = 0; k < w; ++k) {
-        /* X: named entries */
-        const real X_0 = X[0*w + k];
-        const real t_x = X_0;
-        const real X_1 = X[1*w + k];
-        const real t_y = X_1;
-        const real X_2 = X[2*w + k];
-        const real t_z = X_2;
-        const real X_3 = X[3*w + k];
-        const real X_4 = X[4*w + k];
-        const real X_5 = X[5*w + k];
-        const real X_6 = X[6*w + k];
-        const real quaternion_norm2 = X_3*X_3 + X_4*X_4 + X_5*X_5 + X_6*X_6;
-        const real quaternion_scale = 2/quaternion_norm2;
-        const real quaternion_sx = X_3*quaternion_scale;
-        const real quaternion_sy = X_4*quaternion_scale;
-        const real quaternion_sz = X_5*quaternion_scale;
-        const real quaternion_wx = X_6*quaternion_sx;
-        const real quaternion_wy = X_6*quaternion_sy;
-        const real quaternion_wz = X_6*quaternion_sz;
-        const real quaternion_xx = X_3*quaternion_sx;
-        const real quaternion_xy = X_3*quaternion_sy;
-        const real quaternion_xz = X_3*quaternion_sz;
-        const real quaternion_yy = X_4*quaternion_sy;
-        const real quaternion_yz = X_4*quaternion_sz;
-        const real quaternion_zz = X_5*quaternion_sz;
-        const real R_xx = 1 - quaternion_yy - quaternion_zz;
-        const real R_xy = quaternion_xy - quaternion_wz;
-        const real R_xz = quaternion_wy + quaternion_xz;
-        const real R_yx = quaternion_wz + quaternion_xy;
-        const real R_yy = 1 - quaternion_xx - quaternion_zz;
-        const real R_yz = quaternion_yz - quaternion_wx;
-        const real R_zx = quaternion_xz - quaternion_wy;
-        const real R_zy = quaternion_wx + quaternion_yz;
-        const real R_zz = 1 - quaternion_xx - quaternion_yy;
-        /* V: named entries */
-        const real V_0 = V[0*w + k];
-        const real t_dot_x = V_0;
-        const real V_1 = V[1*w + k];
-        const real t_dot_y = V_1;
-        const real V_2 = V[2*w + k];
-        const real t_dot_z = V_2;
-        const real V_3 = V[3*w + k];
-        const real omega_x = V_3;
-        const real V_4 = V[4*w + k];
-        const real omega_y = V_4;
-        const real V_5 = V[5*w + k];
-        const real omega_z = V_5;
-        /* A: named entries */
-        const real A_0 = A[0*w + k];
-        const real t_ddot_x = A_0;
-        const real A_1 = A[1*w + k];
-        const real t_ddot_y = A_1;
-        const real A_2 = A[2*w + k];
-        const real t_ddot_z = A_2;
-        const real A_3 = A[3*w + k];
-        const real alpha_x = A_3;
-        const real A_4 = A[4*w + k];
-        const real alpha_y = A_4;
-        const real A_5 = A[5*w + k];
-        const real alpha_z = A_5;
-        s[0*w + k] = t_x;
-        s[1*w + k] = t_y;
-        s[2*w + k] = t_z;
-        s[3*w + k] = R_xx;
-        s[4*w + k] = R_xy;
-        s[5*w + k] = R_xz;
-        s[6*w + k] = R_yx;
-        s[7*w + k] = R_yy;
-        s[8*w + k] = R_yz;
-        s[9*w + k] = R_zx;
-        s[10*w + k] = R_zy;
-        s[11*w + k] = R_zz;
-        s[12*w + k] = t_dot_x;
-        s[13*w + k] = t_dot_y;
-        s[14*w + k] = t_dot_z;
-        s[15*w + k] = omega_x;
-        s[16*w + k] = omega_y;
-        s[17*w + k] = omega_z;
-        s[18*w + k] = t_ddot_x;
-        s[19*w + k] = t_ddot_y;
-        s[20*w + k] = t_ddot_z;
-        s[21*w + k] = alpha_x;
-        s[22*w + k] = alpha_y;
-        s[23*w + k] = alpha_z;
-        t->invalid[k] += UNLESS(is_finite(quaternion_scale)) + UNLESS(quaternion_scale > 0);
+        values v;
+        stage_X(m, w, k, X, &v);
+        s[0*w + k] = v.R_xx;
+        s[1*w + k] = v.R_xy;
+        s[2*w + k] = v.R_xz;
+        s[3*w + k] = v.R_yx;
+        s[4*w + k] = v.R_yy;
+        s[5*w + k] = v.R_yz;
+        s[6*w + k] = v.R_zx;
+        s[7*w + k] = v.R_zy;
+        s[8*w + k] = v.R_zz;
+        t->invalid[k] += UNLESS(is_finite(v.quaternion_scale)) + UNLESS(v.quaternion_scale > 0);
     }
 }
 
 INLINE void legs_legs_ucu(const prepared *m, size_t w, size_t leg, size_t legs, const real *s,
-    size_t states, size_t count, real *o)
+    size_t states, size_t count, const real *X, const real *V, const real *A, real *o)
 {
     for (size_t k = 0; k < count; ++k) {
         const size_t i = leg + legs*k;
         const size_t j = states*k;
-        /* (ucu-S) from the base point to the connection point */
-        const real R_xx = s[3*w + j];
-        const real R_xy = s[4*w + j];
-        const real R_xz = s[5*w + j];
-        const real ucu_platform_point_x = m->ucu_platform_point_x[i];
-        const real ucu_platform_point_y = m->ucu_platform_point_y[i];
-        const real ucu_platform_point_z = m->ucu_platform_point_z[i];
-        const real ucu_q_x = R_xx*ucu_platform_point_x + R_xy*ucu_platform_point_y +
-            R_xz*ucu_platform_point_z;
-        const real R_yx = s[6*w + j];
-        const real R_yy = s[7*w + j];
-        const real R_yz = s[8*w + j];
-        const real ucu_q_y = R_yx*ucu_platform_point_x + R_yy*ucu_platform_point_y +
-            R_yz*ucu_platform_point_z;
-        const real R_zx = s[9*w + j];
-        const real R_zy = s[10*w + j];
-        const real R_zz = s[11*w + j];
-        const real ucu_q_z = R_zx*ucu_platform_point_x + R_zy*ucu_platform_point_y +
-            R_zz*ucu_platform_point_z;
-        const real t_x = s[0*w + j];
-        const real ucu_base_point_x = m->ucu_base_point_x[i];
-        const real ucu_S_x = t_x + ucu_q_x - ucu_base_point_x;
-        const real t_y = s[1*w + j];
-        const real ucu_base_point_y = m->ucu_base_point_y[i];
-        const real ucu_S_y = t_y + ucu_q_y - ucu_base_point_y;
-        const real t_z = s[2*w + j];
-        const real ucu_base_point_z = m->ucu_base_point_z[i];
-        const real ucu_S_z = t_z + ucu_q_z - ucu_base_point_z;
-        /* (ucu-px_1) component along the reference direction */
-        const real ucu_base_frame_xx = m->ucu_base_frame_xx[i];
-        const real ucu_base_frame_yx = m->ucu_base_frame_yx[i];
-        const real ucu_base_frame_zx = m->ucu_base_frame_zx[i];
-        const real ucu_px_1 = ucu_S_x*ucu_base_frame_xx + ucu_S_y*ucu_base_frame_yx +
-            ucu_S_z*ucu_base_frame_zx;
-        /* (ucu-py_1) component across the reference direction */
-        const real ucu_base_frame_xy = m->ucu_base_frame_xy[i];
-        const real ucu_base_frame_yy = m->ucu_base_frame_yy[i];
-        const real ucu_base_frame_zy = m->ucu_base_frame_zy[i];
-        const real ucu_py_1 = ucu_S_x*ucu_base_frame_xy + ucu_S_y*ucu_base_frame_yy +
-            ucu_S_z*ucu_base_frame_zy;
-        /* (ucu-rho2_1) squared amplitude */
-        const real ucu_rho2_1 = ucu_px_1*ucu_px_1 + ucu_py_1*ucu_py_1;
-        /* (ucu-root_1) amplitude, with the sign of the branch */
-        const real ucu_branch_1 = m->ucu_branch_1[i];
-        const real ucu_root_1 = ucu_branch_1*root(ucu_rho2_1);
-        /* (ucu-c_1) cosine of the angle of joint 1 from its reference direction */
-        const real inv_ucu_root_1 = 1/ucu_root_1;
-        const real ucu_c_1 = -inv_ucu_root_1*ucu_py_1;
-        /* (ucu-s_1) sine of the angle of joint 1 from its reference direction */
-        const real ucu_s_1 = inv_ucu_root_1*ucu_px_1;
-        /* (ucu-xi_1) the vector from joint 1 to the connection point, resolved along link 1 */
-        const real ucu_base_frame_xz = m->ucu_base_frame_xz[i];
-        const real ucu_base_frame_yz = m->ucu_base_frame_yz[i];
-        const real ucu_base_frame_zz = m->ucu_base_frame_zz[i];
-        const real ucu_xi_1_in_axes1_z = ucu_S_x*ucu_base_frame_xz + ucu_S_y*ucu_base_frame_yz +
-            ucu_S_z*ucu_base_frame_zz;
-        /* (ucu-rho2_2) squared amplitude */
-        const real ucu_rho2_2 = ucu_rho2_1 + ucu_xi_1_in_axes1_z*ucu_xi_1_in_axes1_z;
-        /* (ucu-root_2) amplitude, with the sign of the branch */
-        const real ucu_branch_2 = m->ucu_branch_2[i];
-        const real ucu_root_2 = ucu_branch_2*root(ucu_rho2_2);
-        /* (ucu-c_2) cosine of the angle of joint 2 from its reference direction */
-        const real inv_ucu_root_2 = 1/ucu_root_2;
-        const real ucu_c_2 = -inv_ucu_root_2*ucu_root_1;
-        /* (ucu-s_2) sine of the angle of joint 2 from its reference direction */
-        const real ucu_s_2 = inv_ucu_root_2*ucu_xi_1_in_axes1_z;
-        /* (ucu-px_4) component along the reference direction */
-        const real ucu_platform_joint_axis_platform_x = m->ucu_platform_joint_axis_platform_x[i];
-        const real ucu_platform_joint_axis_platform_y = m->ucu_platform_joint_axis_platform_y[i];
-        const real ucu_platform_joint_axis_platform_z = m->ucu_platform_joint_axis_platform_z[i];
-        const real ucu_px_4_t = ucu_platform_joint_axis_platform_x*(R_xx*ucu_base_frame_xx +
-            R_yx*ucu_base_frame_yx + R_zx*ucu_base_frame_zx) +
-            ucu_platform_joint_axis_platform_y*(R_xy*ucu_base_frame_xx + R_yy*ucu_base_frame_yx +
-            R_zy*ucu_base_frame_zx) + ucu_platform_joint_axis_platform_z*(R_xz*ucu_base_frame_xx +
-            R_yz*ucu_base_frame_yx + R_zz*ucu_base_frame_zx);
-        const real ucu_px_4_t_2 = ucu_platform_joint_axis_platform_x*(R_xx*ucu_base_frame_xy +
-            R_yx*ucu_base_frame_yy + R_zx*ucu_base_frame_zy) +
-            ucu_platform_joint_axis_platform_y*(R_xy*ucu_base_frame_xy + R_yy*ucu_base_frame_yy +
-            R_zy*ucu_base_frame_zy) + ucu_platform_joint_axis_platform_z*(R_xz*ucu_base_frame_xy +
-            R_yz*ucu_base_frame_yy + R_zz*ucu_base_frame_zy);
-        const real ucu_px_4_t_3 = ucu_platform_joint_axis_platform_x*(R_xx*ucu_base_frame_xz +
-            R_yx*ucu_base_frame_yz + R_zx*ucu_base_frame_zz) +
-            ucu_platform_joint_axis_platform_y*(R_xy*ucu_base_frame_xz + R_yy*ucu_base_frame_yz +
-            R_zy*ucu_base_frame_zz) + ucu_platform_joint_axis_platform_z*(R_xz*ucu_base_frame_xz +
-            R_yz*ucu_base_frame_yz + R_zz*ucu_base_frame_zz);
-        const real ucu_px_4_t_4 = ucu_px_4_t*ucu_s_1 - ucu_c_1*ucu_px_4_t_2;
-        const real ucu_px_4 = ucu_c_2*ucu_px_4_t_3 + ucu_px_4_t_4*ucu_s_2;
-        /* (ucu-py_4) component across the reference direction */
-        const real ucu_py_4 = ucu_c_1*ucu_px_4_t + ucu_px_4_t_2*ucu_s_1;
-        /* (ucu-rho2_4) squared amplitude */
-        const real ucu_rho2_4 = ucu_px_4*ucu_px_4 + ucu_py_4*ucu_py_4;
-        /* (ucu-root_4) amplitude, with the sign of the branch */
-        const real ucu_branch_4 = m->ucu_branch_4[i];
-        const real ucu_root_4 = ucu_branch_4*root(ucu_rho2_4);
-        /* (ucu-c_4) cosine of the angle of joint 4 from its reference direction */
-        const real inv_ucu_root_4 = 1/ucu_root_4;
-        const real ucu_c_4 = inv_ucu_root_4*ucu_px_4;
-        /* (ucu-s_4) sine of the angle of joint 4 from its reference direction */
-        const real ucu_s_4 = inv_ucu_root_4*ucu_py_4;
-        /* (ucu-S_dot) velocity of the connection point */
-        const real omega_y = s[16*w + j];
-        const real omega_z = s[17*w + j];
-        const real ucu_S_dot_t = omega_y*ucu_q_z - omega_z*ucu_q_y;
-        const real omega_x = s[15*w + j];
-        const real ucu_S_dot_t_2 = omega_z*ucu_q_x - omega_x*ucu_q_z;
-        const real ucu_S_dot_t_3 = omega_x*ucu_q_y - omega_y*ucu_q_x;
-        const real t_dot_x = s[12*w + j];
-        const real ucu_S_dot_x = t_dot_x + ucu_S_dot_t;
-        const real t_dot_y = s[13*w + j];
-        const real ucu_S_dot_y = t_dot_y + ucu_S_dot_t_2;
-        const real t_dot_z = s[14*w + j];
-        const real ucu_S_dot_z = t_dot_z + ucu_S_dot_t_3;
-        const real ucu_S_dot_t_4 = ucu_S_dot_x*ucu_base_frame_xx + ucu_S_dot_y*ucu_base_frame_yx +
-            ucu_S_dot_z*ucu_base_frame_zx;
-        const real ucu_S_dot_t_5 = ucu_S_dot_x*ucu_base_frame_xy + ucu_S_dot_y*ucu_base_frame_yy +
-            ucu_S_dot_z*ucu_base_frame_zy;
-        const real ucu_S_dot_t_6 = ucu_S_dot_x*ucu_base_frame_xz + ucu_S_dot_y*ucu_base_frame_yz +
-            ucu_S_dot_z*ucu_base_frame_zz;
-        const real ucu_S_dot_t_7 = ucu_S_dot_t_4*ucu_s_1 - ucu_S_dot_t_5*ucu_c_1;
-        const real ucu_S_dot_in_axes2_x = ucu_S_dot_t_6*ucu_s_2 - ucu_S_dot_t_7*ucu_c_2;
-        /* (ucu-v_1) velocity of the connection point per rate of joint 1 */
-        const real ucu_e_1_in_axes4_x = ucu_c_2*ucu_c_4;
-        const real ucu_e_1_in_axes4_y = -ucu_c_2*ucu_s_4;
-        const real ucu_v_1_in_axes4_x = ucu_e_1_in_axes4_y*ucu_root_2;
-        const real ucu_v_1_in_axes4_y = -ucu_e_1_in_axes4_x*ucu_root_2;
-        const real ucu_v_1_in_axes2_y = ucu_c_4*ucu_v_1_in_axes4_x - ucu_s_4*ucu_v_1_in_axes4_y;
-        const real ucu_v_1_in_axes2_z = ucu_c_4*ucu_v_1_in_axes4_y + ucu_s_4*ucu_v_1_in_axes4_x;
-        /* (ucu-n_m1) direction 1 of the moment that the platform joint transmits */
-        const real ucu_n_m1_in_axes4_x = ucu_px_4_t_3*ucu_s_2 - ucu_c_2*ucu_px_4_t_4;
-        const real ucu_n_m1_in_axes2_z = ucu_n_m1_in_axes4_x*ucu_s_4;
-        /* (ucu-w_1) force part of reciprocal wrench 1 */
-        const real ucu_end_p1_in_axes4_x = ucu_c_4*ucu_px_4 + ucu_py_4*ucu_s_4;
-        /* (ucu-w_3) force part of reciprocal wrench 3 */
-        const real ucu_w_3_x = inv_ucu_root_2*ucu_S_x;
-        const real ucu_w_3_y = inv_ucu_root_2*ucu_S_y;
-        const real ucu_w_3_z = inv_ucu_root_2*ucu_S_z;
-        /* (ucu-m1_w_4) moment part 1 of reciprocal wrench 4 */
-        const real ucu_m1_w_4 = -1/ucu_end_p1_in_axes4_x;
-        /* (ucu-qd_1) rate of joint 1 */
-        const real inv_ucu_v_1_in_axes2_z = 1/ucu_v_1_in_axes2_z;
-        const real ucu_qd_1 = inv_ucu_v_1_in_axes2_z*(ucu_S_dot_t_4*ucu_c_1 +
-            ucu_S_dot_t_5*ucu_s_1);
-        /* (ucu-qd_2) rate of joint 2 */
-        const real ucu_qd_2 = inv_ucu_root_2*(ucu_S_dot_t_6*ucu_c_2 + ucu_S_dot_t_7*ucu_s_2 -
-            ucu_qd_1*ucu_v_1_in_axes2_y);
-        /* (ucu-qd_4) rate of joint 4 */
-        const real ucu_qd_4_t = ucu_s_2*ucu_s_4;
-        const real ucu_qd_4_t_2 = ucu_c_1*ucu_c_4 - ucu_qd_4_t*ucu_s_1;
-        const real ucu_qd_4_t_3 = ucu_c_1*ucu_qd_4_t + ucu_c_4*ucu_s_1;
-        const real axis_y_ucu_axes4_x = ucu_base_frame_xx*ucu_qd_4_t_2 +
-            ucu_base_frame_xy*ucu_qd_4_t_3 + ucu_base_frame_xz*ucu_e_1_in_axes4_y;
-        const real axis_y_ucu_axes4_y = ucu_base_frame_yx*ucu_qd_4_t_2 +
-            ucu_base_frame_yy*ucu_qd_4_t_3 + ucu_base_frame_yz*ucu_e_1_in_axes4_y;
-        const real axis_y_ucu_axes4_z = ucu_base_frame_zx*ucu_qd_4_t_2 +
-            ucu_base_frame_zy*ucu_qd_4_t_3 + ucu_base_frame_zz*ucu_e_1_in_axes4_y;
-        const real axis_x_ucu_axes4_x = axis_y_ucu_axes4_y*ucu_w_3_z -
-            axis_y_ucu_axes4_z*ucu_w_3_y;
-        const real axis_x_ucu_axes4_y = axis_y_ucu_axes4_z*ucu_w_3_x -
-            axis_y_ucu_axes4_x*ucu_w_3_z;
-        const real axis_x_ucu_axes4_z = axis_y_ucu_axes4_x*ucu_w_3_y -
-            axis_y_ucu_axes4_y*ucu_w_3_x;
-        const real ucu_qd_4_t_4 = ucu_end_p1_in_axes4_x*ucu_s_2 -
-            ucu_e_1_in_axes4_x*ucu_n_m1_in_axes4_x;
-        const real ucu_omega_in_axes4_x = axis_x_ucu_axes4_x*omega_x + axis_x_ucu_axes4_y*omega_y
-            + axis_x_ucu_axes4_z*omega_z;
-        const real ucu_omega_in_axes4_z = omega_x*ucu_w_3_x + omega_y*ucu_w_3_y +
-            omega_z*ucu_w_3_z;
-        const real ucu_qd_4 = ucu_omega_in_axes4_z +
-            ucu_m1_w_4*(ucu_n_m1_in_axes4_x*ucu_omega_in_axes4_x + ucu_qd_1*ucu_qd_4_t_4 -
-            ucu_n_m1_in_axes2_z*ucu_qd_2);
-        /* (ucu-omega_1) angular velocity of link 1 */
-        const real ucu_omega_1_in_axes2_x = ucu_qd_1*ucu_s_2;
-        const real ucu_omega_1_in_axes2_y = ucu_c_2*ucu_qd_1;
-        /* (ucu-omega_2) angular velocity of link 2 */
-        const real ucu_omega_2_in_axes4_x = ucu_c_4*ucu_omega_1_in_axes2_y + ucu_qd_2*ucu_s_4;
-        const real ucu_omega_2_in_axes4_y = ucu_c_4*ucu_qd_2 - ucu_omega_1_in_axes2_y*ucu_s_4;
-        /* (ucu-W_2) centripetal tensor of link 2 */
-        const real ucu_W_2_in_axes2_yz = ucu_omega_1_in_axes2_y*ucu_qd_2;
-        const real ucu_W_2_in_axes2_xz = ucu_omega_1_in_axes2_x*ucu_qd_2;
-        const real ucu_W_2_in_axes2_xy = ucu_omega_1_in_axes2_x*ucu_omega_1_in_axes2_y;
-        const real ucu_W_2_in_axes4_xy = ucu_omega_2_in_axes4_x*ucu_omega_2_in_axes4_y;
-        /* (ucu-omega_4) angular velocity of link 4 */
-        const real ucu_omega_4_in_axes4_z = ucu_omega_1_in_axes2_x + ucu_qd_4;
-        /* (ucu-W_4) centripetal tensor of link 4 */
-        const real ucu_W_4_in_axes4_xz = ucu_omega_2_in_axes4_x*ucu_omega_4_in_axes4_z;
-        const real ucu_W_4_in_axes4_yz = ucu_omega_2_in_axes4_y*ucu_omega_4_in_axes4_z;
-        /* (ucu-a_p) acceleration of the connection point without its centripetal part */
-        const real alpha_y = s[22*w + j];
-        const real alpha_z = s[23*w + j];
-        const real t_ddot_x = s[18*w + j];
-        const real ucu_a_p_x = t_ddot_x + alpha_y*ucu_q_z - alpha_z*ucu_q_y;
-        const real alpha_x = s[21*w + j];
-        const real t_ddot_y = s[19*w + j];
-        const real ucu_a_p_y = t_ddot_y + alpha_z*ucu_q_x - alpha_x*ucu_q_z;
-        const real t_ddot_z = s[20*w + j];
-        const real ucu_a_p_z = t_ddot_z + alpha_x*ucu_q_y - alpha_y*ucu_q_x;
-        /* (ucu-S_ddot) acceleration of the connection point */
-        const real ucu_S_ddot_x = ucu_a_p_x + omega_y*ucu_S_dot_t_3 - omega_z*ucu_S_dot_t_2;
-        const real ucu_S_ddot_y = ucu_a_p_y + omega_z*ucu_S_dot_t - omega_x*ucu_S_dot_t_3;
-        const real ucu_S_ddot_z = ucu_a_p_z + omega_x*ucu_S_dot_t_2 - omega_y*ucu_S_dot_t;
-        const real ucu_S_ddot_in_axes4_x = axis_x_ucu_axes4_x*ucu_S_ddot_x +
-            axis_x_ucu_axes4_y*ucu_S_ddot_y + axis_x_ucu_axes4_z*ucu_S_ddot_z;
-        const real ucu_S_ddot_in_axes4_y = axis_y_ucu_axes4_x*ucu_S_ddot_x +
-            axis_y_ucu_axes4_y*ucu_S_ddot_y + axis_y_ucu_axes4_z*ucu_S_ddot_z;
-        /* (ucu-zeta_2) angular acceleration of link 2 from the turning of axis 2 */
-        const real ucu_zeta_2_t = ucu_W_2_in_axes2_xz*ucu_c_4;
-        /* (ucu-zeta_4) angular acceleration of link 4 from the turning of axis 4 */
-        const real ucu_zeta_4_in_axes4_x = ucu_omega_2_in_axes4_y*ucu_qd_4;
-        /* (ucu-beta_4) angular acceleration of link 4 at zero joint accelerations */
-        const real ucu_beta_4_in_axes4_x = ucu_zeta_4_in_axes4_x - ucu_zeta_2_t;
-        /* (ucu-bias) acceleration of the connection point at zero joint accelerations */
-        const real ucu_bias_t = 2*ucu_S_dot_in_axes2_x;
-        const real ucu_bias_in_axes4_x = ucu_bias_t*ucu_omega_2_in_axes4_y +
-            ucu_root_2*(ucu_W_2_in_axes2_xz*ucu_s_4 +
-            ucu_omega_1_in_axes2_x*ucu_omega_2_in_axes4_x);
-        const real ucu_bias_in_axes4_y = ucu_root_2*(ucu_zeta_2_t +
-            ucu_omega_1_in_axes2_x*ucu_omega_2_in_axes4_y) - ucu_bias_t*ucu_omega_2_in_axes4_x;
-        /* (ucu-rel) acceleration of the connection point left to the joint accelerations */
-        const real ucu_rel_in_axes4_x = ucu_S_ddot_in_axes4_x - ucu_bias_in_axes4_x;
-        const real ucu_rel_in_axes4_y = ucu_S_ddot_in_axes4_y - ucu_bias_in_axes4_y;
-        /* (ucu-nd_m1) rate of moment direction 1 */
-        const real ucu_end_p1_in_axes4_y = ucu_c_4*ucu_py_4 - ucu_px_4*ucu_s_4;
-        const real ucu_omega_in_axes4_y = axis_y_ucu_axes4_x*omega_x + axis_y_ucu_axes4_y*omega_y
-            + axis_y_ucu_axes4_z*omega_z;
-        const real ucu_nd_m1_in_axes4_x = ucu_end_p1_in_axes4_y*ucu_omega_in_axes4_x -
-            ucu_end_p1_in_axes4_x*ucu_omega_in_axes4_y -
-            ucu_end_p1_in_axes4_y*ucu_omega_2_in_axes4_x;
-        const real ucu_nd_m1_in_axes4_z = ucu_end_p1_in_axes4_y*ucu_omega_in_axes4_z -
-            ucu_end_p1_in_axes4_y*ucu_omega_4_in_axes4_z -
-            ucu_n_m1_in_axes4_x*ucu_omega_in_axes4_y;
-        /* (ucu-nu_1) bias of the angular acceleration along moment direction 1 */
-        const real ucu_nu_1_t = ucu_beta_4_in_axes4_x*ucu_n_m1_in_axes4_x -
-            ucu_W_2_in_axes2_yz*ucu_end_p1_in_axes4_x;
-        const real ucu_nu_1_t_2 = ucu_nd_m1_in_axes4_x*(ucu_omega_2_in_axes4_x -
-            ucu_omega_in_axes4_x) + ucu_nd_m1_in_axes4_z*(ucu_omega_4_in_axes4_z -
-            ucu_omega_in_axes4_z) + (ucu_omega_2_in_axes4_y -
-            ucu_omega_in_axes4_y)*(ucu_end_p1_in_axes4_x*ucu_omega_2_in_axes4_x +
-            ucu_n_m1_in_axes4_x*ucu_omega_4_in_axes4_z);
-        const real ucu_nu_1 = -ucu_nu_1_t - ucu_nu_1_t_2;
-        /* (ucu-etad_1) acceleration with which the joints turn along moment direction 1 */
-        const real ucu_etad_1_t = ucu_n_m1_in_axes4_x*(alpha_x*axis_x_ucu_axes4_x +
-            alpha_y*axis_x_ucu_axes4_y + alpha_z*axis_x_ucu_axes4_z) -
-            ucu_end_p1_in_axes4_x*(alpha_x*ucu_w_3_x + alpha_y*ucu_w_3_y + alpha_z*ucu_w_3_z);
-        const real ucu_etad_1 = ucu_etad_1_t + ucu_nu_1;
-        /* (ucu-qdd_1) acceleration of joint 1 */
-        const real ucu_qdd_1 = inv_ucu_v_1_in_axes2_z*(ucu_c_4*ucu_rel_in_axes4_y +
-            ucu_rel_in_axes4_x*ucu_s_4);
-        /* (ucu-qdd_2) acceleration of joint 2 */
-        const real ucu_qdd_2 = -inv_ucu_root_2*(ucu_qdd_1*ucu_v_1_in_axes2_y +
-            ucu_rel_in_axes4_y*ucu_s_4 - ucu_c_4*ucu_rel_in_axes4_x);
-        /* (ucu-alpha_1) angular acceleration of link 1 */
-        const real ucu_alpha_1_in_axes2_x = ucu_qdd_1*ucu_s_2;
-        const real ucu_alpha_1_in_axes2_y = ucu_c_2*ucu_qdd_1;
-        /* (ucu-alpha_2) angular acceleration of link 2 */
-        const real ucu_alpha_2_in_axes2_x = ucu_W_2_in_axes2_yz + ucu_alpha_1_in_axes2_x;
-        const real ucu_alpha_2_in_axes2_y = ucu_alpha_1_in_axes2_y - ucu_W_2_in_axes2_xz;
-        /* (ucu-B_2) acceleration tensor of link 2 */
-        const real ucu_B_2_in_axes2_xy = ucu_W_2_in_axes2_xy - ucu_qdd_2;
-        const real ucu_B_2_in_axes2_yx = ucu_W_2_in_axes2_xy + ucu_qdd_2;
-        const real ucu_B_2_in_axes2_zx = ucu_W_2_in_axes2_xz - ucu_alpha_2_in_axes2_y;
-        const real ucu_B_2_in_axes2_zy = ucu_W_2_in_axes2_yz + ucu_alpha_2_in_axes2_x;
-        /* (ucu-alpha_4) angular acceleration of link 4 */
-        const real ucu_alpha_4_in_axes4_x = ucu_zeta_4_in_axes4_x + ucu_alpha_2_in_axes2_y*ucu_c_4
-            + ucu_qdd_2*ucu_s_4;
-        const real ucu_alpha_4_in_axes4_y = ucu_c_4*ucu_qdd_2 - ucu_alpha_2_in_axes2_y*ucu_s_4 -
-            ucu_omega_2_in_axes4_x*ucu_qd_4;
-        const real ucu_alpha_4_in_axes4_z = ucu_alpha_2_in_axes2_x + ucu_m1_w_4*(ucu_etad_1 +
-            ucu_qd_4_t_4*ucu_qdd_1 - ucu_n_m1_in_axes2_z*ucu_qdd_2);
-        /* (ucu-B_4) acceleration tensor of link 4 */
-        const real ucu_B_4_in_axes4_xy = ucu_W_2_in_axes4_xy - ucu_alpha_4_in_axes4_z;
-        const real ucu_B_4_in_axes4_xz = ucu_W_4_in_axes4_xz + ucu_alpha_4_in_axes4_y;
-        const real ucu_B_4_in_axes4_yx = ucu_W_2_in_axes4_xy + ucu_alpha_4_in_axes4_z;
-        const real ucu_B_4_in_axes4_yz = ucu_W_4_in_axes4_yz - ucu_alpha_4_in_axes4_x;
-        const real ucu_B_4_in_axes4_zx = ucu_W_4_in_axes4_xz - ucu_alpha_4_in_axes4_y;
-        const real ucu_B_4_in_axes4_zy = ucu_W_4_in_axes4_yz + ucu_alpha_4_in_axes4_x;
-        /* (ucu-acc_4) acceleration of the reference point of link 4, less gravity */
-        const real gravity_x = m->gravity_x;
-        const real gravity_y = m->gravity_y;
-        const real gravity_z = m->gravity_z;
-        const real ucu_acc_4_in_axes4_x = ucu_S_ddot_in_axes4_x - axis_x_ucu_axes4_x*gravity_x -
-            axis_x_ucu_axes4_y*gravity_y - axis_x_ucu_axes4_z*gravity_z;
-        const real ucu_acc_4_in_axes4_y = ucu_S_ddot_in_axes4_y - axis_y_ucu_axes4_x*gravity_x -
-            axis_y_ucu_axes4_y*gravity_y - axis_y_ucu_axes4_z*gravity_z;
-        const real ucu_acc_4_in_axes4_z = ucu_S_ddot_x*ucu_w_3_x + ucu_S_ddot_y*ucu_w_3_y +
-            ucu_S_ddot_z*ucu_w_3_z - gravity_x*ucu_w_3_x - gravity_y*ucu_w_3_y -
-            gravity_z*ucu_w_3_z;
+        values_ucu v;
+        stage_ucu_X(m, w, i, j, s, X, &v);
+        stage_ucu_A_X(w, j, A, &v);
+        stage_ucu_V_X(m, w, i, j, V, &v);
+        stage_ucu_A_V_X(w, j, V, &v);
+        stage_ucu_legs_required(m, i, &v);
         /* (ucu-mu_4) inertia moment of the links that turn with link 4, about their reference points */
-        const real ucu_mu_4_t = ucu_omega_2_in_axes4_x*ucu_omega_2_in_axes4_x;
-        const real ucu_mu_4_t_2 = ucu_omega_2_in_axes4_y*ucu_omega_2_in_axes4_y;
-        const real ucu_mu_4_t_3 = ucu_omega_4_in_axes4_z*ucu_omega_4_in_axes4_z;
+        const real ucu_mu_4_t = v.ucu_omega_2_in_axes4_x*v.ucu_omega_2_in_axes4_x;
+        const real ucu_mu_4_t_2 = v.ucu_omega_2_in_axes4_y*v.ucu_omega_2_in_axes4_y;
+        const real ucu_mu_4_t_3 = v.ucu_omega_4_in_axes4_z*v.ucu_omega_4_in_axes4_z;
         const real ucu_J_4_in_spec4_xy = m->ucu_J_4_in_spec4_xy[i];
         const real ucu_J_4_in_spec4_xz = m->ucu_J_4_in_spec4_xz[i];
         const real ucu_J_4_in_spec4_yz = m->ucu_J_4_in_spec4_yz[i];
@@ -5781,100 +4351,69 @@ INLINE void legs_legs_ucu(const prepared *m, size_t w, size_t leg, size_t legs, 
         const real ucu_Sigma_4_in_axes4_zz = m->ucu_Sigma_4_in_axes4_zz[i];
         const real ucu_h_4_in_spec4_x = m->ucu_h_4_in_spec4_x[i];
         const real ucu_h_4_in_spec4_z = m->ucu_h_4_in_spec4_z[i];
-        const real ucu_mu_4_in_axes4_x = ucu_B_4_in_axes4_yx*ucu_J_4_in_spec4_xy +
-            ucu_B_4_in_axes4_zy*ucu_Sigma_4_in_axes4_yy + ucu_J_4_in_spec4_xz*(ucu_mu_4_t_2 -
-            ucu_mu_4_t_3) + ucu_acc_4_in_axes4_z*ucu_h_4_in_spec4_z -
-            ucu_B_4_in_axes4_yz*ucu_Sigma_4_in_axes4_zz - ucu_B_4_in_axes4_zx*ucu_J_4_in_spec4_yz
-            - ucu_acc_4_in_axes4_y*ucu_h_4_in_spec4_x;
+        const real ucu_mu_4_in_axes4_x = v.ucu_B_4_in_axes4_yx*ucu_J_4_in_spec4_xy +
+            v.ucu_B_4_in_axes4_zy*ucu_Sigma_4_in_axes4_yy + ucu_J_4_in_spec4_xz*(ucu_mu_4_t_2 -
+            ucu_mu_4_t_3) + v.ucu_acc_4_in_axes4_z*ucu_h_4_in_spec4_z -
+            v.ucu_B_4_in_axes4_yz*ucu_Sigma_4_in_axes4_zz -
+            v.ucu_B_4_in_axes4_zx*ucu_J_4_in_spec4_yz - v.ucu_acc_4_in_axes4_y*ucu_h_4_in_spec4_x;
         const real ucu_Sigma_4_in_axes4_xx = m->ucu_Sigma_4_in_axes4_xx[i];
         const real ucu_h_4_in_spec4_y = m->ucu_h_4_in_spec4_y[i];
-        const real ucu_mu_4_in_axes4_y = ucu_B_4_in_axes4_xz*ucu_Sigma_4_in_axes4_zz +
-            ucu_B_4_in_axes4_zy*ucu_J_4_in_spec4_yz + ucu_acc_4_in_axes4_x*ucu_h_4_in_spec4_x -
-            ucu_B_4_in_axes4_xy*ucu_J_4_in_spec4_xz - ucu_B_4_in_axes4_zx*ucu_Sigma_4_in_axes4_xx
-            - ucu_J_4_in_spec4_xy*(ucu_mu_4_t - ucu_mu_4_t_3) -
-            ucu_acc_4_in_axes4_z*ucu_h_4_in_spec4_y;
-        const real ucu_mu_4_in_axes4_z = ucu_B_4_in_axes4_xz*ucu_J_4_in_spec4_xz +
-            ucu_B_4_in_axes4_yx*ucu_Sigma_4_in_axes4_xx + ucu_J_4_in_spec4_yz*(ucu_mu_4_t -
-            ucu_mu_4_t_2) + ucu_acc_4_in_axes4_y*ucu_h_4_in_spec4_y -
-            ucu_B_4_in_axes4_xy*ucu_Sigma_4_in_axes4_yy - ucu_B_4_in_axes4_yz*ucu_J_4_in_spec4_xy
-            - ucu_acc_4_in_axes4_x*ucu_h_4_in_spec4_z;
-        /* (ucu-mu_2) inertia moment of the links that turn with link 2, about their reference points */
-        const real ucu_mu_2_t_4 = ucu_omega_1_in_axes2_x*ucu_omega_1_in_axes2_x;
-        const real ucu_mu_2_t_5 = ucu_omega_1_in_axes2_y*ucu_omega_1_in_axes2_y;
-        const real ucu_mu_2_t_6 = ucu_qd_2*ucu_qd_2;
-        const real ucu_mu_2_t = m->ucu_mu_2_t[i];
-        const real ucu_mu_2_t_2 = m->ucu_mu_2_t_2[i];
-        const real ucu_g_in_axes2_z = ucu_c_1*ucu_mu_2_t + ucu_mu_2_t_2*ucu_s_1;
-        const real ucu_mu_2_t_7 = ucu_c_1*ucu_mu_2_t_2 - ucu_mu_2_t*ucu_s_1;
-        const real ucu_mu_2_t_3 = m->ucu_mu_2_t_3[i];
-        const real ucu_g_in_axes2_x = ucu_c_2*ucu_mu_2_t_7 + ucu_mu_2_t_3*ucu_s_2;
-        const real ucu_g_in_axes2_y = ucu_c_2*ucu_mu_2_t_3 - ucu_mu_2_t_7*ucu_s_2;
-        const real ucu_J_2_in_spec2_xy = m->ucu_J_2_in_spec2_xy[i];
-        const real ucu_J_2_in_spec2_xz = m->ucu_J_2_in_spec2_xz[i];
-        const real ucu_J_2_in_spec2_yz = m->ucu_J_2_in_spec2_yz[i];
-        const real ucu_Sigma_2_in_axes2_yy = m->ucu_Sigma_2_in_axes2_yy[i];
-        const real ucu_Sigma_2_in_axes2_zz = m->ucu_Sigma_2_in_axes2_zz[i];
-        const real ucu_h_2_in_spec2_y = m->ucu_h_2_in_spec2_y[i];
-        const real ucu_h_2_in_spec2_z = m->ucu_h_2_in_spec2_z[i];
-        const real ucu_mu_2_in_axes2_x = ucu_B_2_in_axes2_yx*ucu_J_2_in_spec2_xy +
-            ucu_B_2_in_axes2_zx*ucu_J_2_in_spec2_xz + ucu_B_2_in_axes2_zy*ucu_Sigma_2_in_axes2_yy
-            + ucu_Sigma_2_in_axes2_zz*ucu_alpha_1_in_axes2_x + ucu_g_in_axes2_y*ucu_h_2_in_spec2_y
-            + ucu_g_in_axes2_z*ucu_h_2_in_spec2_z - ucu_J_2_in_spec2_yz*(ucu_mu_2_t_5 -
-            ucu_mu_2_t_6);
-        const real ucu_Sigma_2_in_axes2_xx = m->ucu_Sigma_2_in_axes2_xx[i];
-        const real ucu_h_2_in_spec2_x = m->ucu_h_2_in_spec2_x[i];
-        const real ucu_mu_2_in_axes2_y = ucu_B_2_in_axes2_xy*ucu_J_2_in_spec2_yz +
-            ucu_Sigma_2_in_axes2_zz*ucu_alpha_1_in_axes2_y + ucu_g_in_axes2_z*ucu_h_2_in_spec2_x -
-            ucu_B_2_in_axes2_zx*ucu_Sigma_2_in_axes2_xx - ucu_B_2_in_axes2_zy*ucu_J_2_in_spec2_xz
-            - ucu_J_2_in_spec2_xy*(ucu_mu_2_t_4 - ucu_mu_2_t_6) -
-            ucu_g_in_axes2_x*ucu_h_2_in_spec2_y;
-        const real ucu_mu_2_in_axes2_z = ucu_B_2_in_axes2_yx*ucu_Sigma_2_in_axes2_xx +
-            ucu_J_2_in_spec2_xy*ucu_alpha_1_in_axes2_x -
-            ucu_B_2_in_axes2_xy*ucu_Sigma_2_in_axes2_yy - ucu_J_2_in_spec2_xz*(ucu_mu_2_t_4 -
-            ucu_mu_2_t_5) - ucu_J_2_in_spec2_yz*ucu_alpha_1_in_axes2_y -
-            ucu_g_in_axes2_x*ucu_h_2_in_spec2_z - ucu_g_in_axes2_y*ucu_h_2_in_spec2_x;
+        const real ucu_mu_4_in_axes4_y = v.ucu_B_4_in_axes4_xz*ucu_Sigma_4_in_axes4_zz +
+            v.ucu_B_4_in_axes4_zy*ucu_J_4_in_spec4_yz + v.ucu_acc_4_in_axes4_x*ucu_h_4_in_spec4_x
+            - v.ucu_B_4_in_axes4_xy*ucu_J_4_in_spec4_xz -
+            v.ucu_B_4_in_axes4_zx*ucu_Sigma_4_in_axes4_xx - ucu_J_4_in_spec4_xy*(ucu_mu_4_t -
+            ucu_mu_4_t_3) - v.ucu_acc_4_in_axes4_z*ucu_h_4_in_spec4_y;
+        const real ucu_mu_4_in_axes4_z = v.ucu_B_4_in_axes4_xz*ucu_J_4_in_spec4_xz +
+            v.ucu_B_4_in_axes4_yx*ucu_Sigma_4_in_axes4_xx + ucu_J_4_in_spec4_yz*(ucu_mu_4_t -
+            ucu_mu_4_t_2) + v.ucu_acc_4_in_axes4_y*ucu_h_4_in_spec4_y -
+            v.ucu_B_4_in_axes4_xy*ucu_Sigma_4_in_axes4_yy -
+            v.ucu_B_4_in_axes4_yz*ucu_J_4_in_spec4_xy - v.ucu_acc_4_in_axes4_x*ucu_h_4_in_spec4_z;
         /* (ucu-N_2) moment about joint 2 of the links from 2 outwards, the force at the connection point
            left out */
-        const real ucu_N_2_in_axes2_x = ucu_mu_2_in_axes2_x + ucu_mu_4_in_axes4_z;
-        const real ucu_N_2_in_axes2_y = ucu_mu_2_in_axes2_y + ucu_c_4*ucu_mu_4_in_axes4_x -
-            ucu_mu_4_in_axes4_y*ucu_s_4;
-        const real ucu_N_2_in_axes2_z = ucu_mu_2_in_axes2_z + ucu_c_4*ucu_mu_4_in_axes4_y +
-            ucu_mu_4_in_axes4_x*ucu_s_4;
+        const real ucu_N_2_in_axes2_x = v.ucu_mu_2_in_axes2_x + ucu_mu_4_in_axes4_z;
+        const real ucu_N_2_in_axes2_y = v.ucu_mu_2_in_axes2_y +
+            v.ucu_e_2_in_axes4_y*ucu_mu_4_in_axes4_x - v.ucu_c_4*ucu_mu_4_in_axes4_y;
+        const real ucu_N_2_in_axes2_z = v.ucu_mu_2_in_axes2_z + v.ucu_c_4*ucu_mu_4_in_axes4_x +
+            v.ucu_e_2_in_axes4_y*ucu_mu_4_in_axes4_y;
         /* (ucu-G_m1) moment along moment direction 1 that balances the leg's inertia and weight along all
            degrees of freedom */
-        const real ucu_G_m1 = ucu_m1_w_4*ucu_mu_4_in_axes4_z;
+        const real ucu_G_m1_t = v.inv_ucu_end_p1_in_axes4_x*ucu_mu_4_in_axes4_z;
         /* (ucu-c) leg force on the platform without actuation and without the mass at the connection
            point */
-        const real ucu_c_t = inv_ucu_root_2*(ucu_N_2_in_axes2_z - ucu_G_m1*ucu_n_m1_in_axes2_z);
-        const real ucu_c_t_2 = inv_ucu_v_1_in_axes2_z*(ucu_c_t*ucu_v_1_in_axes2_y -
-            ucu_G_m1*ucu_qd_4_t_4 - ucu_N_2_in_axes2_x*ucu_s_2 - ucu_N_2_in_axes2_y*ucu_c_2);
-        const real ucu_c_in_axes4_x = ucu_c_t_2*ucu_s_4 + ucu_h_4_in_spec4_y*(ucu_mu_4_t_2 +
-            ucu_mu_4_t_3) - ucu_B_4_in_axes4_xy*ucu_h_4_in_spec4_z -
-            ucu_B_4_in_axes4_xz*ucu_h_4_in_spec4_x - ucu_c_4*ucu_c_t;
-        const real ucu_c_in_axes4_y = ucu_c_4*ucu_c_t_2 + ucu_c_t*ucu_s_4 +
+        const real ucu_c_t = v.inv_ucu_root_2*(ucu_N_2_in_axes2_z +
+            ucu_G_m1_t*v.ucu_n_m1_in_axes2_z);
+        const real ucu_c_t_2 = v.inv_ucu_v_1_in_axes2_z*(ucu_G_m1_t*v.ucu_qd_4_t_4 +
+            ucu_N_2_in_axes2_y*v.ucu_c_2 - ucu_N_2_in_axes2_x*v.ucu_e_1_in_axes4_z -
+            ucu_c_t*v.ucu_v_1_t_2);
+        const real ucu_c_in_axes4_x = v.ucu_c_4*ucu_c_t_2 + ucu_h_4_in_spec4_y*(ucu_mu_4_t_2 +
+            ucu_mu_4_t_3) - v.ucu_B_4_in_axes4_xy*ucu_h_4_in_spec4_z -
+            v.ucu_B_4_in_axes4_xz*ucu_h_4_in_spec4_x - ucu_c_t*v.ucu_e_2_in_axes4_y;
+        const real ucu_c_in_axes4_y = v.ucu_c_4*ucu_c_t + ucu_c_t_2*v.ucu_e_2_in_axes4_y +
             ucu_h_4_in_spec4_z*(ucu_mu_4_t + ucu_mu_4_t_3) -
-            ucu_B_4_in_axes4_yx*ucu_h_4_in_spec4_y - ucu_B_4_in_axes4_yz*ucu_h_4_in_spec4_x;
+            v.ucu_B_4_in_axes4_yx*ucu_h_4_in_spec4_y - v.ucu_B_4_in_axes4_yz*ucu_h_4_in_spec4_x;
         /* (ucu-c_m) moment of the leg on the platform without actuation */
-        const real ucu_c_m_in_axes4_x = -ucu_G_m1*ucu_n_m1_in_axes4_x;
-        const real ucu_c_m_x = axis_x_ucu_axes4_x*ucu_c_m_in_axes4_x -
-            ucu_mu_4_in_axes4_z*ucu_w_3_x;
-        const real ucu_c_m_y = axis_x_ucu_axes4_y*ucu_c_m_in_axes4_x -
-            ucu_mu_4_in_axes4_z*ucu_w_3_y;
-        const real ucu_c_m_z = axis_x_ucu_axes4_z*ucu_c_m_in_axes4_x -
-            ucu_mu_4_in_axes4_z*ucu_w_3_z;
+        const real ucu_c_m_in_axes4_x = ucu_G_m1_t*v.ucu_n_m1_in_axes4_x;
+        const real ucu_c_m_x = v.axis_x_ucu_axes4_x*ucu_c_m_in_axes4_x -
+            ucu_mu_4_in_axes4_z*v.ucu_w_3_x;
+        const real ucu_c_m_y = v.axis_x_ucu_axes4_y*ucu_c_m_in_axes4_x -
+            ucu_mu_4_in_axes4_z*v.ucu_w_3_y;
+        const real ucu_c_m_z = v.axis_x_ucu_axes4_z*ucu_c_m_in_axes4_x -
+            ucu_mu_4_in_axes4_z*v.ucu_w_3_z;
         /* (ucu-c_true) leg force on the platform without actuation, the last link's mass included */
         const real ucu_link4_mass = m->ucu_link4_mass[i];
-        const real ucu_c_true_in_axes4_x = ucu_c_in_axes4_x - ucu_acc_4_in_axes4_x*ucu_link4_mass;
-        const real ucu_c_true_in_axes4_y = ucu_c_in_axes4_y - ucu_acc_4_in_axes4_y*ucu_link4_mass;
+        const real ucu_c_true_in_axes4_x = ucu_c_in_axes4_x -
+            v.ucu_acc_4_in_axes4_x*ucu_link4_mass;
+        const real ucu_c_true_in_axes4_y = ucu_c_in_axes4_y -
+            v.ucu_acc_4_in_axes4_y*ucu_link4_mass;
         const real ucu_c_true_in_axes4_z = ucu_h_4_in_spec4_x*(ucu_mu_4_t + ucu_mu_4_t_2) -
-            ucu_B_4_in_axes4_zx*ucu_h_4_in_spec4_y - ucu_B_4_in_axes4_zy*ucu_h_4_in_spec4_z -
-            ucu_acc_4_in_axes4_z*ucu_link4_mass;
-        const real ucu_c_true_x = axis_x_ucu_axes4_x*ucu_c_true_in_axes4_x +
-            axis_y_ucu_axes4_x*ucu_c_true_in_axes4_y + ucu_c_true_in_axes4_z*ucu_w_3_x;
-        const real ucu_c_true_y = axis_x_ucu_axes4_y*ucu_c_true_in_axes4_x +
-            axis_y_ucu_axes4_y*ucu_c_true_in_axes4_y + ucu_c_true_in_axes4_z*ucu_w_3_y;
-        const real ucu_c_true_z = axis_x_ucu_axes4_z*ucu_c_true_in_axes4_x +
-            axis_y_ucu_axes4_z*ucu_c_true_in_axes4_y + ucu_c_true_in_axes4_z*ucu_w_3_z;
+            v.ucu_B_4_in_axes4_zx*ucu_h_4_in_spec4_y - v.ucu_B_4_in_axes4_zy*ucu_h_4_in_spec4_z -
+            v.ucu_acc_4_in_axes4_z*ucu_link4_mass;
+        const real ucu_c_true_x = v.axis_x_ucu_axes4_x*ucu_c_true_in_axes4_x +
+            v.axis_y_ucu_axes4_x*ucu_c_true_in_axes4_y + ucu_c_true_in_axes4_z*v.ucu_w_3_x;
+        const real ucu_c_true_y = v.axis_x_ucu_axes4_y*ucu_c_true_in_axes4_x +
+            v.axis_y_ucu_axes4_y*ucu_c_true_in_axes4_y + ucu_c_true_in_axes4_z*v.ucu_w_3_y;
+        const real ucu_c_true_z = v.axis_x_ucu_axes4_z*ucu_c_true_in_axes4_x +
+            v.axis_y_ucu_axes4_z*ucu_c_true_in_axes4_y + ucu_c_true_in_axes4_z*v.ucu_w_3_z;
         /* (ucu-c_true) leg force on the platform without actuation, the last link's mass included */
         o[0*count + k] = ucu_c_true_x;
         o[1*count + k] = ucu_c_true_y;
@@ -5884,13 +4423,14 @@ INLINE void legs_legs_ucu(const prepared *m, size_t w, size_t leg, size_t legs, 
         o[4*count + k] = ucu_c_m_y;
         o[5*count + k] = ucu_c_m_z;
         /* (ucu-w_3) force part of reciprocal wrench 3 */
-        o[6*count + k] = ucu_w_3_x;
-        o[7*count + k] = ucu_w_3_y;
-        o[8*count + k] = ucu_w_3_z;
-        o[9*count + k] = UNLESS(magnitude(ucu_rho2_1) > LEAST_1) + UNLESS(magnitude(ucu_rho2_2) >
-            LEAST_1) + UNLESS(magnitude(ucu_rho2_4) > LEAST_2) +
-            UNLESS(magnitude(ucu_end_p1_in_axes4_x) > LEAST_3) + UNLESS(magnitude(ucu_root_2) >
-            LEAST_4) + UNLESS(magnitude(ucu_v_1_in_axes2_z) > LEAST_4);
+        o[6*count + k] = v.ucu_w_3_x;
+        o[7*count + k] = v.ucu_w_3_y;
+        o[8*count + k] = v.ucu_w_3_z;
+        o[9*count + k] = UNLESS(magnitude(v.ucu_root_1_t) > LEAST_1) +
+            UNLESS(magnitude(v.ucu_root_2_t) > LEAST_1) + UNLESS(magnitude(v.ucu_root_4_t_6) >
+            LEAST_2) + UNLESS(magnitude(v.ucu_end_p1_in_axes4_x) > LEAST_3) +
+            UNLESS(magnitude(v.ucu_root_2) > LEAST_4) + UNLESS(magnitude(v.ucu_v_1_in_axes2_z) >
+            LEAST_4);
     }
 }
 
@@ -5914,11 +4454,11 @@ INLINE void legs_place_ucu(size_t w, size_t count, const real *o, size_t leg, si
 INLINE void legs_run(const prepared *m, const real *X, const real *V, const real *A, real
     *leg_force, real *actuator, verdict *t)
 {
-    real s[24] = {0};
+    real s[9] = {0};
     real o_ucu[10*LEGS(LEGS_OF_ucu)] = {0};
     clear(actuator, 36);
-    legs_before(1, X, V, A, s, t);
-    legs_legs_ucu(m, 1, 0, 1, s, 0, LEGS(LEGS_OF_ucu), o_ucu);
+    legs_before(m, 1, X, s, t);
+    legs_legs_ucu(m, 1, 0, 1, s, 0, LEGS(LEGS_OF_ucu), X, V, A, o_ucu);
     for (size_t leg = 0; leg < LEGS_OF_ucu; ++leg) {
         legs_place_ucu(1, LEGS(LEGS_OF_ucu), o_ucu, leg, leg, leg_force, actuator, t);
     }
@@ -5928,40 +4468,8 @@ INLINE void legs_run(const prepared *m, const real *X, const real *V, const real
 INLINE void potential_before(const prepared *m, size_t w, const real *X, real *s, verdict *t)
 {
     for (size_t k = 0; k < w; ++k) {
-        /* X: named entries */
-        const real X_0 = X[0*w + k];
-        const real t_x = X_0;
-        const real X_1 = X[1*w + k];
-        const real t_y = X_1;
-        const real X_2 = X[2*w + k];
-        const real t_z = X_2;
-        const real X_3 = X[3*w + k];
-        const real X_4 = X[4*w + k];
-        const real X_5 = X[5*w + k];
-        const real X_6 = X[6*w + k];
-        const real quaternion_norm2 = X_3*X_3 + X_4*X_4 + X_5*X_5 + X_6*X_6;
-        const real quaternion_scale = 2/quaternion_norm2;
-        const real quaternion_sx = X_3*quaternion_scale;
-        const real quaternion_sy = X_4*quaternion_scale;
-        const real quaternion_sz = X_5*quaternion_scale;
-        const real quaternion_wx = X_6*quaternion_sx;
-        const real quaternion_wy = X_6*quaternion_sy;
-        const real quaternion_wz = X_6*quaternion_sz;
-        const real quaternion_xx = X_3*quaternion_sx;
-        const real quaternion_xy = X_3*quaternion_sy;
-        const real quaternion_xz = X_3*quaternion_sz;
-        const real quaternion_yy = X_4*quaternion_sy;
-        const real quaternion_yz = X_4*quaternion_sz;
-        const real quaternion_zz = X_5*quaternion_sz;
-        const real R_xx = 1 - quaternion_yy - quaternion_zz;
-        const real R_xy = quaternion_xy - quaternion_wz;
-        const real R_xz = quaternion_wy + quaternion_xz;
-        const real R_yx = quaternion_wz + quaternion_xy;
-        const real R_yy = 1 - quaternion_xx - quaternion_zz;
-        const real R_yz = quaternion_yz - quaternion_wx;
-        const real R_zx = quaternion_xz - quaternion_wy;
-        const real R_zy = quaternion_wx + quaternion_yz;
-        const real R_zz = 1 - quaternion_xx - quaternion_yy;
+        values v;
+        stage_X(m, w, k, X, &v);
         /* (potential) potential energy */
         const real gravity_x = m->gravity_x;
         const real gravity_y = m->gravity_y;
@@ -5970,137 +4478,47 @@ INLINE void potential_before(const prepared *m, size_t w, const real *X, real *s
         const real h_star_in_platform_y = m->h_star_in_platform_y;
         const real h_star_in_platform_z = m->h_star_in_platform_z;
         const real m_star = m->m_star;
-        const real potential_t = gravity_x*(R_xx*h_star_in_platform_x + R_xy*h_star_in_platform_y
-            + R_xz*h_star_in_platform_z + m_star*t_x) + gravity_y*(R_yx*h_star_in_platform_x +
-            R_yy*h_star_in_platform_y + R_yz*h_star_in_platform_z + m_star*t_y) +
-            gravity_z*(R_zx*h_star_in_platform_x + R_zy*h_star_in_platform_y +
-            R_zz*h_star_in_platform_z + m_star*t_z);
-        s[0*w + k] = t_x;
-        s[1*w + k] = t_y;
-        s[2*w + k] = t_z;
-        s[3*w + k] = R_xx;
-        s[4*w + k] = R_xy;
-        s[5*w + k] = R_xz;
-        s[6*w + k] = R_yx;
-        s[7*w + k] = R_yy;
-        s[8*w + k] = R_yz;
-        s[9*w + k] = R_zx;
-        s[10*w + k] = R_zy;
-        s[11*w + k] = R_zz;
-        s[12*w + k] = potential_t;
-        t->invalid[k] += UNLESS(is_finite(quaternion_scale)) + UNLESS(quaternion_scale > 0);
+        const real t_x = X[0*w + k];
+        const real t_y = X[1*w + k];
+        const real t_z = X[2*w + k];
+        const real potential_t = gravity_x*(v.R_xx*h_star_in_platform_x +
+            v.R_xy*h_star_in_platform_y + v.R_xz*h_star_in_platform_z + m_star*t_x) +
+            gravity_y*(v.R_yx*h_star_in_platform_x + v.R_yy*h_star_in_platform_y +
+            v.R_yz*h_star_in_platform_z + m_star*t_y) + gravity_z*(v.R_zx*h_star_in_platform_x +
+            v.R_zy*h_star_in_platform_y + v.R_zz*h_star_in_platform_z + m_star*t_z);
+        s[0*w + k] = v.R_xx;
+        s[1*w + k] = v.R_xy;
+        s[2*w + k] = v.R_xz;
+        s[3*w + k] = v.R_yx;
+        s[4*w + k] = v.R_yy;
+        s[5*w + k] = v.R_yz;
+        s[6*w + k] = v.R_zx;
+        s[7*w + k] = v.R_zy;
+        s[8*w + k] = v.R_zz;
+        s[9*w + k] = potential_t;
+        t->invalid[k] += UNLESS(is_finite(v.quaternion_scale)) + UNLESS(v.quaternion_scale > 0);
     }
 }
 
 INLINE void potential_legs_ucu(const prepared *m, size_t w, size_t leg, size_t legs, const real
-    *s, size_t states, size_t count, int add, real *terms, real *o)
+    *s, size_t states, size_t count, int add, const real *X, real *terms, real *o)
 {
     for (size_t k = 0; k < count; ++k) {
         const size_t i = leg + legs*k;
         const size_t j = states*k;
-        /* (ucu-S) from the base point to the connection point */
-        const real R_xx = s[3*w + j];
-        const real R_xy = s[4*w + j];
-        const real R_xz = s[5*w + j];
-        const real t_x = s[0*w + j];
-        const real ucu_base_point_x = m->ucu_base_point_x[i];
-        const real ucu_platform_point_x = m->ucu_platform_point_x[i];
-        const real ucu_platform_point_y = m->ucu_platform_point_y[i];
-        const real ucu_platform_point_z = m->ucu_platform_point_z[i];
-        const real ucu_S_x = t_x + R_xx*ucu_platform_point_x + R_xy*ucu_platform_point_y +
-            R_xz*ucu_platform_point_z - ucu_base_point_x;
-        const real R_yx = s[6*w + j];
-        const real R_yy = s[7*w + j];
-        const real R_yz = s[8*w + j];
-        const real t_y = s[1*w + j];
-        const real ucu_base_point_y = m->ucu_base_point_y[i];
-        const real ucu_S_y = t_y + R_yx*ucu_platform_point_x + R_yy*ucu_platform_point_y +
-            R_yz*ucu_platform_point_z - ucu_base_point_y;
-        const real R_zx = s[9*w + j];
-        const real R_zy = s[10*w + j];
-        const real R_zz = s[11*w + j];
-        const real t_z = s[2*w + j];
-        const real ucu_base_point_z = m->ucu_base_point_z[i];
-        const real ucu_S_z = t_z + R_zx*ucu_platform_point_x + R_zy*ucu_platform_point_y +
-            R_zz*ucu_platform_point_z - ucu_base_point_z;
-        /* (ucu-px_1) component along the reference direction */
-        const real ucu_base_frame_xx = m->ucu_base_frame_xx[i];
-        const real ucu_base_frame_yx = m->ucu_base_frame_yx[i];
-        const real ucu_base_frame_zx = m->ucu_base_frame_zx[i];
-        const real ucu_px_1 = ucu_S_x*ucu_base_frame_xx + ucu_S_y*ucu_base_frame_yx +
-            ucu_S_z*ucu_base_frame_zx;
-        /* (ucu-py_1) component across the reference direction */
-        const real ucu_base_frame_xy = m->ucu_base_frame_xy[i];
-        const real ucu_base_frame_yy = m->ucu_base_frame_yy[i];
-        const real ucu_base_frame_zy = m->ucu_base_frame_zy[i];
-        const real ucu_py_1 = ucu_S_x*ucu_base_frame_xy + ucu_S_y*ucu_base_frame_yy +
-            ucu_S_z*ucu_base_frame_zy;
-        /* (ucu-rho2_1) squared amplitude */
-        const real ucu_rho2_1 = ucu_px_1*ucu_px_1 + ucu_py_1*ucu_py_1;
-        /* (ucu-root_1) amplitude, with the sign of the branch */
-        const real ucu_branch_1 = m->ucu_branch_1[i];
-        const real ucu_root_1 = ucu_branch_1*root(ucu_rho2_1);
-        /* (ucu-c_1) cosine of the angle of joint 1 from its reference direction */
-        const real inv_ucu_root_1 = 1/ucu_root_1;
-        const real ucu_c_1 = -inv_ucu_root_1*ucu_py_1;
-        /* (ucu-s_1) sine of the angle of joint 1 from its reference direction */
-        const real ucu_s_1 = inv_ucu_root_1*ucu_px_1;
-        /* (ucu-xi_1) the vector from joint 1 to the connection point, resolved along link 1 */
-        const real ucu_base_frame_xz = m->ucu_base_frame_xz[i];
-        const real ucu_base_frame_yz = m->ucu_base_frame_yz[i];
-        const real ucu_base_frame_zz = m->ucu_base_frame_zz[i];
-        const real ucu_xi_1_in_axes1_z = ucu_S_x*ucu_base_frame_xz + ucu_S_y*ucu_base_frame_yz +
-            ucu_S_z*ucu_base_frame_zz;
-        /* (ucu-rho2_2) squared amplitude */
-        const real ucu_rho2_2 = ucu_rho2_1 + ucu_xi_1_in_axes1_z*ucu_xi_1_in_axes1_z;
-        /* (ucu-root_2) amplitude, with the sign of the branch */
-        const real ucu_branch_2 = m->ucu_branch_2[i];
-        const real ucu_root_2 = ucu_branch_2*root(ucu_rho2_2);
-        /* (ucu-c_2) cosine of the angle of joint 2 from its reference direction */
-        const real inv_ucu_root_2 = 1/ucu_root_2;
-        const real ucu_c_2 = -inv_ucu_root_2*ucu_root_1;
-        /* (ucu-s_2) sine of the angle of joint 2 from its reference direction */
-        const real ucu_s_2 = inv_ucu_root_2*ucu_xi_1_in_axes1_z;
-        /* (ucu-px_4) component along the reference direction */
-        const real ucu_platform_joint_axis_platform_x = m->ucu_platform_joint_axis_platform_x[i];
-        const real ucu_platform_joint_axis_platform_y = m->ucu_platform_joint_axis_platform_y[i];
-        const real ucu_platform_joint_axis_platform_z = m->ucu_platform_joint_axis_platform_z[i];
-        const real ucu_px_4_t = ucu_platform_joint_axis_platform_x*(R_xx*ucu_base_frame_xx +
-            R_yx*ucu_base_frame_yx + R_zx*ucu_base_frame_zx) +
-            ucu_platform_joint_axis_platform_y*(R_xy*ucu_base_frame_xx + R_yy*ucu_base_frame_yx +
-            R_zy*ucu_base_frame_zx) + ucu_platform_joint_axis_platform_z*(R_xz*ucu_base_frame_xx +
-            R_yz*ucu_base_frame_yx + R_zz*ucu_base_frame_zx);
-        const real ucu_px_4_t_2 = ucu_platform_joint_axis_platform_x*(R_xx*ucu_base_frame_xy +
-            R_yx*ucu_base_frame_yy + R_zx*ucu_base_frame_zy) +
-            ucu_platform_joint_axis_platform_y*(R_xy*ucu_base_frame_xy + R_yy*ucu_base_frame_yy +
-            R_zy*ucu_base_frame_zy) + ucu_platform_joint_axis_platform_z*(R_xz*ucu_base_frame_xy +
-            R_yz*ucu_base_frame_yy + R_zz*ucu_base_frame_zy);
-        const real ucu_px_4_t_3 = ucu_platform_joint_axis_platform_x*(R_xx*ucu_base_frame_xz +
-            R_yx*ucu_base_frame_yz + R_zx*ucu_base_frame_zz) +
-            ucu_platform_joint_axis_platform_y*(R_xy*ucu_base_frame_xz + R_yy*ucu_base_frame_yz +
-            R_zy*ucu_base_frame_zz) + ucu_platform_joint_axis_platform_z*(R_xz*ucu_base_frame_xz +
-            R_yz*ucu_base_frame_yz + R_zz*ucu_base_frame_zz);
-        const real ucu_px_4 = ucu_c_2*ucu_px_4_t_3 + ucu_s_2*(ucu_px_4_t*ucu_s_1 -
-            ucu_c_1*ucu_px_4_t_2);
-        /* (ucu-py_4) component across the reference direction */
-        const real ucu_py_4 = ucu_c_1*ucu_px_4_t + ucu_px_4_t_2*ucu_s_1;
-        /* (ucu-rho2_4) squared amplitude */
-        const real ucu_rho2_4 = ucu_px_4*ucu_px_4 + ucu_py_4*ucu_py_4;
-        /* (ucu-root_4) amplitude, with the sign of the branch */
-        const real ucu_branch_4 = m->ucu_branch_4[i];
-        const real ucu_root_4 = ucu_branch_4*root(ucu_rho2_4);
+        values_ucu v;
+        stage_ucu_X(m, w, i, j, s, X, &v);
+        stage_ucu_inverse_kinematics_potential(m, w, i, j, s, X, &v);
         /* (ucu-c_4) cosine of the angle of joint 4 from its reference direction */
-        const real inv_ucu_root_4 = 1/ucu_root_4;
-        const real ucu_c_4 = inv_ucu_root_4*ucu_px_4;
-        /* (ucu-s_4) sine of the angle of joint 4 from its reference direction */
-        const real ucu_s_4 = inv_ucu_root_4*ucu_py_4;
+        const real ucu_c_4 = v.inv_ucu_root_4*v.ucu_end_p1_in_turn4_x;
         /* (potential) potential energy */
+        const real ucu_e_2_in_axes4_y = v.inv_ucu_root_4*v.ucu_root_4_t_4;
         const real ucu_mu_2_t = m->ucu_mu_2_t[i];
         const real ucu_mu_2_t_2 = m->ucu_mu_2_t_2[i];
-        const real ucu_potential_t_4 = ucu_c_1*ucu_mu_2_t_2 - ucu_mu_2_t*ucu_s_1;
+        const real ucu_potential_t_4 = v.ucu_c_1*ucu_mu_2_t + ucu_mu_2_t_2*v.ucu_s_1;
         const real ucu_potential_t = m->ucu_potential_t[i];
         const real ucu_potential_t_2 = m->ucu_potential_t_2[i];
-        const real ucu_potential_t_5 = ucu_c_1*ucu_potential_t_2 - ucu_potential_t*ucu_s_1;
+        const real ucu_potential_t_5 = v.ucu_c_1*ucu_potential_t + ucu_potential_t_2*v.ucu_s_1;
         const real ucu_h_2_in_spec2_x = m->ucu_h_2_in_spec2_x[i];
         const real ucu_h_2_in_spec2_y = m->ucu_h_2_in_spec2_y[i];
         const real ucu_h_2_in_spec2_z = m->ucu_h_2_in_spec2_z[i];
@@ -6110,19 +4528,21 @@ INLINE void potential_legs_ucu(const prepared *m, size_t w, size_t leg, size_t l
         const real ucu_link2_mass = m->ucu_link2_mass[i];
         const real ucu_mu_2_t_3 = m->ucu_mu_2_t_3[i];
         const real ucu_potential_t_3 = m->ucu_potential_t_3[i];
-        const real ucu_potential_t_6 = (ucu_c_1*ucu_mu_2_t +
-            ucu_mu_2_t_2*ucu_s_1)*(ucu_h_2_in_spec2_y + ucu_c_4*ucu_h_4_in_spec4_z +
-            ucu_h_4_in_spec4_y*ucu_s_4 + ucu_link2_mass*(ucu_c_1*ucu_potential_t +
-            ucu_potential_t_2*ucu_s_1)) + (ucu_c_2*ucu_mu_2_t_3 -
-            ucu_potential_t_4*ucu_s_2)*(ucu_c_4*ucu_h_4_in_spec4_y +
-            ucu_link2_mass*(ucu_c_2*ucu_potential_t_3 - ucu_potential_t_5*ucu_s_2) -
-            ucu_h_2_in_spec2_z - ucu_h_4_in_spec4_z*ucu_s_4) + (ucu_c_2*ucu_potential_t_4 +
-            ucu_mu_2_t_3*ucu_s_2)*(ucu_h_2_in_spec2_x + ucu_h_4_in_spec4_x +
-            ucu_link2_mass*(ucu_c_2*ucu_potential_t_5 + ucu_potential_t_3*ucu_s_2));
+        const real ucu_potential_t_6 = (v.ucu_e_1_in_axes4_z*ucu_potential_t_4 -
+            v.ucu_c_2*ucu_mu_2_t_3)*(ucu_h_2_in_spec2_z + ucu_c_4*ucu_h_4_in_spec4_z -
+            ucu_e_2_in_axes4_y*ucu_h_4_in_spec4_y -
+            ucu_link2_mass*(v.ucu_e_1_in_axes4_z*ucu_potential_t_5 - v.ucu_c_2*ucu_potential_t_3))
+            - (v.ucu_c_1*ucu_mu_2_t_2 - ucu_mu_2_t*v.ucu_s_1)*(ucu_h_2_in_spec2_y +
+            ucu_c_4*ucu_h_4_in_spec4_y + ucu_e_2_in_axes4_y*ucu_h_4_in_spec4_z +
+            ucu_link2_mass*(v.ucu_c_1*ucu_potential_t_2 - ucu_potential_t*v.ucu_s_1)) -
+            (v.ucu_c_2*ucu_potential_t_4 + v.ucu_e_1_in_axes4_z*ucu_mu_2_t_3)*(ucu_h_2_in_spec2_x
+            + ucu_h_4_in_spec4_x + ucu_link2_mass*(v.ucu_c_2*ucu_potential_t_5 +
+            v.ucu_e_1_in_axes4_z*ucu_potential_t_3));
         /* (potential) potential energy */
         gather(&terms[0*count + k], add, ucu_potential_t_6);  /* potential_of_legs */
-        o[0*count + k] = UNLESS(magnitude(ucu_rho2_1) > LEAST_1) + UNLESS(magnitude(ucu_rho2_2) >
-            LEAST_1) + UNLESS(magnitude(ucu_rho2_4) > LEAST_2);
+        o[0*count + k] = UNLESS(magnitude(v.ucu_root_1_t) > LEAST_1) +
+            UNLESS(magnitude(v.ucu_root_2_t) > LEAST_1) + UNLESS(magnitude(v.ucu_root_4_t_5) >
+            LEAST_2);
     }
 }
 
@@ -6138,8 +4558,8 @@ INLINE void potential_after(size_t w, const real *s, const real *sums, real *pot
     for (size_t k = 0; k < w; ++k) {
         /* (potential) potential energy */
         const real potential_of_legs = sums[0*w + k];
-        const real potential_t = s[12*w + k];
-        const real potential_ = -potential_of_legs - potential_t;
+        const real potential_t = s[9*w + k];
+        const real potential_ = potential_of_legs - potential_t;
         /* (potential) potential energy */
         potential[0*w + k] = potential_;
     }
@@ -6147,12 +4567,10 @@ INLINE void potential_after(size_t w, const real *s, const real *sums, real *pot
 
 INLINE void potential_run(const prepared *m, const real *X, real *potential, verdict *t)
 {
-    real s[13] = {0};
-    real sums[1] = {0};
-    real terms_ucu[LEGS(LEGS_OF_ucu)] = {0};
-    real o_ucu[LEGS(LEGS_OF_ucu)] = {0};
+    real s[10] = {0}, sums[1] = {0};
+    real terms_ucu[LEGS(LEGS_OF_ucu)] = {0}, o_ucu[LEGS(LEGS_OF_ucu)] = {0};
     potential_before(m, 1, X, s, t);
-    potential_legs_ucu(m, 1, 0, 1, s, 0, LEGS(LEGS_OF_ucu), 0, terms_ucu, o_ucu);
+    potential_legs_ucu(m, 1, 0, 1, s, 0, LEGS(LEGS_OF_ucu), 0, X, terms_ucu, o_ucu);
     for (size_t leg = 0; leg < LEGS_OF_ucu; ++leg) {
         potential_place_ucu(1, LEGS(LEGS_OF_ucu), o_ucu, leg, t);
     }
@@ -6167,216 +4585,94 @@ INLINE void condition_before(const prepared *m, size_t w, const real *X, real *s
     verdict *t)
 {
     for (size_t k = 0; k < w; ++k) {
-        /* X: named entries */
-        const real X_0 = X[0*w + k];
-        const real t_x = X_0;
-        const real X_1 = X[1*w + k];
-        const real t_y = X_1;
-        const real X_2 = X[2*w + k];
-        const real t_z = X_2;
-        const real X_3 = X[3*w + k];
-        const real X_4 = X[4*w + k];
-        const real X_5 = X[5*w + k];
-        const real X_6 = X[6*w + k];
-        const real quaternion_norm2 = X_3*X_3 + X_4*X_4 + X_5*X_5 + X_6*X_6;
-        const real quaternion_scale = 2/quaternion_norm2;
-        const real quaternion_sx = X_3*quaternion_scale;
-        const real quaternion_sy = X_4*quaternion_scale;
-        const real quaternion_sz = X_5*quaternion_scale;
-        const real quaternion_wx = X_6*quaternion_sx;
-        const real quaternion_wy = X_6*quaternion_sy;
-        const real quaternion_wz = X_6*quaternion_sz;
-        const real quaternion_xx = X_3*quaternion_sx;
-        const real quaternion_xy = X_3*quaternion_sy;
-        const real quaternion_xz = X_3*quaternion_sz;
-        const real quaternion_yy = X_4*quaternion_sy;
-        const real quaternion_yz = X_4*quaternion_sz;
-        const real quaternion_zz = X_5*quaternion_sz;
-        const real R_xx = 1 - quaternion_yy - quaternion_zz;
-        const real R_xy = quaternion_xy - quaternion_wz;
-        const real R_xz = quaternion_wy + quaternion_xz;
-        const real R_yx = quaternion_wz + quaternion_xy;
-        const real R_yy = 1 - quaternion_xx - quaternion_zz;
-        const real R_yz = quaternion_yz - quaternion_wx;
-        const real R_zx = quaternion_xz - quaternion_wy;
-        const real R_zy = quaternion_wx + quaternion_yz;
-        const real R_zz = 1 - quaternion_xx - quaternion_yy;
-        s[0*w + k] = t_x;
-        s[1*w + k] = t_y;
-        s[2*w + k] = t_z;
-        s[3*w + k] = R_xx;
-        s[4*w + k] = R_xy;
-        s[5*w + k] = R_xz;
-        s[6*w + k] = R_yx;
-        s[7*w + k] = R_yy;
-        s[8*w + k] = R_yz;
-        s[9*w + k] = R_zx;
-        s[10*w + k] = R_zy;
-        s[11*w + k] = R_zz;
+        values v;
+        stage_X(m, w, k, X, &v);
+        s[0*w + k] = v.R_xx;
+        s[1*w + k] = v.R_xy;
+        s[2*w + k] = v.R_xz;
+        s[3*w + k] = v.R_yx;
+        s[4*w + k] = v.R_yy;
+        s[5*w + k] = v.R_yz;
+        s[6*w + k] = v.R_zx;
+        s[7*w + k] = v.R_zy;
+        s[8*w + k] = v.R_zz;
         /* (legs_size) rms size of the legs, taken where the platform points coincide */
         const real legs_size = m->legs_size;
         lengths[1*w + k] = legs_size;
         t->total[k] += legs_size;
-        t->invalid[k] += UNLESS(is_finite(quaternion_scale)) + UNLESS(quaternion_scale > 0);
+        t->invalid[k] += UNLESS(is_finite(v.quaternion_scale)) + UNLESS(v.quaternion_scale > 0);
     }
 }
 
 INLINE void condition_legs_ucu(const prepared *m, size_t w, size_t leg, size_t legs, const real
-    *s, size_t states, size_t count, int add, real *terms, real *o)
+    *s, size_t states, size_t count, int add, const real *X, real *terms, real *o)
 {
     for (size_t k = 0; k < count; ++k) {
         const size_t i = leg + legs*k;
         const size_t j = states*k;
-        /* (ucu-S) from the base point to the connection point */
-        const real R_xx = s[3*w + j];
-        const real R_xy = s[4*w + j];
-        const real R_xz = s[5*w + j];
-        const real ucu_platform_point_x = m->ucu_platform_point_x[i];
-        const real ucu_platform_point_y = m->ucu_platform_point_y[i];
-        const real ucu_platform_point_z = m->ucu_platform_point_z[i];
-        const real ucu_q_x = R_xx*ucu_platform_point_x + R_xy*ucu_platform_point_y +
-            R_xz*ucu_platform_point_z;
-        const real R_yx = s[6*w + j];
-        const real R_yy = s[7*w + j];
-        const real R_yz = s[8*w + j];
-        const real ucu_q_y = R_yx*ucu_platform_point_x + R_yy*ucu_platform_point_y +
-            R_yz*ucu_platform_point_z;
-        const real R_zx = s[9*w + j];
-        const real R_zy = s[10*w + j];
-        const real R_zz = s[11*w + j];
-        const real ucu_q_z = R_zx*ucu_platform_point_x + R_zy*ucu_platform_point_y +
-            R_zz*ucu_platform_point_z;
-        const real t_x = s[0*w + j];
-        const real ucu_base_point_x = m->ucu_base_point_x[i];
-        const real ucu_S_x = t_x + ucu_q_x - ucu_base_point_x;
-        const real t_y = s[1*w + j];
-        const real ucu_base_point_y = m->ucu_base_point_y[i];
-        const real ucu_S_y = t_y + ucu_q_y - ucu_base_point_y;
-        const real t_z = s[2*w + j];
-        const real ucu_base_point_z = m->ucu_base_point_z[i];
-        const real ucu_S_z = t_z + ucu_q_z - ucu_base_point_z;
-        /* (ucu-px_1) component along the reference direction */
-        const real ucu_base_frame_xx = m->ucu_base_frame_xx[i];
-        const real ucu_base_frame_yx = m->ucu_base_frame_yx[i];
-        const real ucu_base_frame_zx = m->ucu_base_frame_zx[i];
-        const real ucu_px_1 = ucu_S_x*ucu_base_frame_xx + ucu_S_y*ucu_base_frame_yx +
-            ucu_S_z*ucu_base_frame_zx;
-        /* (ucu-py_1) component across the reference direction */
-        const real ucu_base_frame_xy = m->ucu_base_frame_xy[i];
-        const real ucu_base_frame_yy = m->ucu_base_frame_yy[i];
-        const real ucu_base_frame_zy = m->ucu_base_frame_zy[i];
-        const real ucu_py_1 = ucu_S_x*ucu_base_frame_xy + ucu_S_y*ucu_base_frame_yy +
-            ucu_S_z*ucu_base_frame_zy;
-        /* (ucu-rho2_1) squared amplitude */
-        const real ucu_rho2_1 = ucu_px_1*ucu_px_1 + ucu_py_1*ucu_py_1;
-        /* (ucu-root_1) amplitude, with the sign of the branch */
-        const real ucu_branch_1 = m->ucu_branch_1[i];
-        const real ucu_root_1 = ucu_branch_1*root(ucu_rho2_1);
-        /* (ucu-c_1) cosine of the angle of joint 1 from its reference direction */
-        const real inv_ucu_root_1 = 1/ucu_root_1;
-        const real ucu_c_1 = -inv_ucu_root_1*ucu_py_1;
-        /* (ucu-s_1) sine of the angle of joint 1 from its reference direction */
-        const real ucu_s_1 = inv_ucu_root_1*ucu_px_1;
-        /* (ucu-xi_1) the vector from joint 1 to the connection point, resolved along link 1 */
-        const real ucu_base_frame_xz = m->ucu_base_frame_xz[i];
-        const real ucu_base_frame_yz = m->ucu_base_frame_yz[i];
-        const real ucu_base_frame_zz = m->ucu_base_frame_zz[i];
-        const real ucu_xi_1_in_axes1_z = ucu_S_x*ucu_base_frame_xz + ucu_S_y*ucu_base_frame_yz +
-            ucu_S_z*ucu_base_frame_zz;
-        /* (ucu-rho2_2) squared amplitude */
-        const real ucu_rho2_2 = ucu_rho2_1 + ucu_xi_1_in_axes1_z*ucu_xi_1_in_axes1_z;
-        /* (ucu-root_2) amplitude, with the sign of the branch */
-        const real ucu_branch_2 = m->ucu_branch_2[i];
-        const real ucu_root_2 = ucu_branch_2*root(ucu_rho2_2);
-        /* (ucu-c_2) cosine of the angle of joint 2 from its reference direction */
-        const real inv_ucu_root_2 = 1/ucu_root_2;
-        const real ucu_c_2 = -inv_ucu_root_2*ucu_root_1;
-        /* (ucu-px_4) component along the reference direction */
-        const real ucu_platform_joint_axis_platform_x = m->ucu_platform_joint_axis_platform_x[i];
-        const real ucu_platform_joint_axis_platform_y = m->ucu_platform_joint_axis_platform_y[i];
-        const real ucu_platform_joint_axis_platform_z = m->ucu_platform_joint_axis_platform_z[i];
-        const real ucu_px_4_t = ucu_platform_joint_axis_platform_x*(R_xx*ucu_base_frame_xx +
-            R_yx*ucu_base_frame_yx + R_zx*ucu_base_frame_zx) +
-            ucu_platform_joint_axis_platform_y*(R_xy*ucu_base_frame_xx + R_yy*ucu_base_frame_yx +
-            R_zy*ucu_base_frame_zx) + ucu_platform_joint_axis_platform_z*(R_xz*ucu_base_frame_xx +
-            R_yz*ucu_base_frame_yx + R_zz*ucu_base_frame_zx);
-        const real ucu_px_4_t_2 = ucu_platform_joint_axis_platform_x*(R_xx*ucu_base_frame_xy +
-            R_yx*ucu_base_frame_yy + R_zx*ucu_base_frame_zy) +
-            ucu_platform_joint_axis_platform_y*(R_xy*ucu_base_frame_xy + R_yy*ucu_base_frame_yy +
-            R_zy*ucu_base_frame_zy) + ucu_platform_joint_axis_platform_z*(R_xz*ucu_base_frame_xy +
-            R_yz*ucu_base_frame_yy + R_zz*ucu_base_frame_zy);
-        const real ucu_px_4_t_3 = ucu_platform_joint_axis_platform_x*(R_xx*ucu_base_frame_xz +
-            R_yx*ucu_base_frame_yz + R_zx*ucu_base_frame_zz) +
-            ucu_platform_joint_axis_platform_y*(R_xy*ucu_base_frame_xz + R_yy*ucu_base_frame_yz +
-            R_zy*ucu_base_frame_zz) + ucu_platform_joint_axis_platform_z*(R_xz*ucu_base_frame_xz +
-            R_yz*ucu_base_frame_yz + R_zz*ucu_base_frame_zz);
-        const real ucu_px_4 = ucu_c_2*ucu_px_4_t_3 +
-            inv_ucu_root_2*ucu_xi_1_in_axes1_z*(ucu_px_4_t*ucu_s_1 - ucu_c_1*ucu_px_4_t_2);
-        /* (ucu-py_4) component across the reference direction */
-        const real ucu_py_4 = ucu_c_1*ucu_px_4_t + ucu_px_4_t_2*ucu_s_1;
-        /* (ucu-rho2_4) squared amplitude */
-        const real ucu_rho2_4 = ucu_px_4*ucu_px_4 + ucu_py_4*ucu_py_4;
-        /* (ucu-root_4) amplitude, with the sign of the branch */
+        values_ucu v;
+        stage_ucu_X(m, w, i, j, s, X, &v);
+        /* (ucu-root_4) amplitude, the length across axis 4, with the sign of the branch */
+        const real ucu_root_4_t_4 = v.inv_ucu_root_2*v.ucu_S_in_turn1_z*(v.ucu_c_1*v.ucu_root_4_t
+            + v.ucu_root_4_t_2*v.ucu_s_1) - v.ucu_c_2*v.ucu_root_4_t_3;
+        const real ucu_root_4_t_5 = v.ucu_end_p1_in_turn4_x*v.ucu_end_p1_in_turn4_x +
+            ucu_root_4_t_4*ucu_root_4_t_4;
         const real ucu_branch_4 = m->ucu_branch_4[i];
-        const real ucu_root_4 = ucu_branch_4*root(ucu_rho2_4);
+        const real ucu_root_4 = ucu_branch_4*root(ucu_root_4_t_5);
         /* (ucu-c_4) cosine of the angle of joint 4 from its reference direction */
         const real inv_ucu_root_4 = 1/ucu_root_4;
-        const real ucu_c_4 = inv_ucu_root_4*ucu_px_4;
-        /* (ucu-s_4) sine of the angle of joint 4 from its reference direction */
-        const real ucu_s_4 = inv_ucu_root_4*ucu_py_4;
+        const real ucu_c_4 = inv_ucu_root_4*v.ucu_end_p1_in_turn4_x;
         /* (ucu-v_1) velocity of the connection point per rate of joint 1 */
-        const real ucu_v_1_in_axes2_z = -ucu_c_2*ucu_c_4*ucu_c_4*ucu_root_2 -
-            ucu_c_2*ucu_root_2*ucu_s_4*ucu_s_4;
+        const real ucu_e_2_in_axes4_y = inv_ucu_root_4*ucu_root_4_t_4;
+        const real ucu_v_1_in_axes2_z = v.ucu_c_2*ucu_c_4*ucu_c_4*v.ucu_root_2 +
+            v.ucu_c_2*ucu_e_2_in_axes4_y*ucu_e_2_in_axes4_y*v.ucu_root_2;
         /* (ucu-w_1) force part of reciprocal wrench 1 */
-        const real ucu_end_p1_in_axes4_x = ucu_c_4*ucu_px_4 + ucu_py_4*ucu_s_4;
-        /* (ucu-w_3) force part of reciprocal wrench 3 */
-        const real ucu_w_3_x = inv_ucu_root_2*ucu_S_x;
-        const real ucu_w_3_y = inv_ucu_root_2*ucu_S_y;
-        const real ucu_w_3_z = inv_ucu_root_2*ucu_S_z;
+        const real ucu_end_p1_in_axes4_x = ucu_c_4*v.ucu_end_p1_in_turn4_x +
+            ucu_e_2_in_axes4_y*ucu_root_4_t_4;
         /* (ucu-G) force at the connection point that balances the leg's inertia and weight along all
            degrees of freedom */
-        const real ucu_pivot_size = magnitude(ucu_rho2_1);
-        const real ucu_pivot_size_2 = magnitude(ucu_rho2_2);
-        const real ucu_pivot_size_3 = magnitude(ucu_rho2_4);
+        const real ucu_pivot_size = magnitude(v.ucu_root_1_t);
+        const real ucu_pivot_size_2 = magnitude(v.ucu_root_2_t);
+        const real ucu_pivot_size_3 = magnitude(ucu_root_4_t_5);
         const real ucu_pivot_size_4 = magnitude(ucu_end_p1_in_axes4_x);
-        const real ucu_pivot_size_5 = magnitude(ucu_root_2);
+        const real ucu_pivot_size_5 = magnitude(v.ucu_root_2);
         const real ucu_pivot_size_6 = magnitude(ucu_v_1_in_axes2_z);
         const real ucu_least_pivots =
             lesser(lesser(lesser(lesser(lesser(R(1.25)*root(ucu_pivot_size),
             R(1.25)*root(ucu_pivot_size_2)), root(ucu_pivot_size_3)), ucu_pivot_size_4),
             R(1.25)*ucu_pivot_size_5), R(1.25)*ucu_pivot_size_6);
-        /* (ucu-H_a_3) moment of the column's unit force about the platform origin */
-        const real ucu_H_a_3_x = ucu_q_y*ucu_w_3_z - ucu_q_z*ucu_w_3_y;
-        const real ucu_H_a_3_y = ucu_q_z*ucu_w_3_x - ucu_q_x*ucu_w_3_z;
-        const real ucu_H_a_3_z = ucu_q_x*ucu_w_3_y - ucu_q_y*ucu_w_3_x;
         /* (spread) rms distance of the platform points from their centroid */
         const real b_c_in_platform_x = m->b_c_in_platform_x;
+        const real ucu_platform_point_x = m->ucu_platform_point_x[i];
         const real ucu_spread_t = b_c_in_platform_x - ucu_platform_point_x;
         const real b_c_in_platform_y = m->b_c_in_platform_y;
+        const real ucu_platform_point_y = m->ucu_platform_point_y[i];
         const real ucu_spread_t_2 = b_c_in_platform_y - ucu_platform_point_y;
         const real b_c_in_platform_z = m->b_c_in_platform_z;
+        const real ucu_platform_point_z = m->ucu_platform_point_z[i];
         const real ucu_spread_t_3 = b_c_in_platform_z - ucu_platform_point_z;
         const real ucu_spread_t_4 = ucu_spread_t*ucu_spread_t + ucu_spread_t_2*ucu_spread_t_2 +
             ucu_spread_t_3*ucu_spread_t_3;
         /* (spread) rms distance of the platform points from their centroid */
         gather(&terms[0*count + k], add, ucu_spread_t_4);  /* spread_ucu */
         /* (ucu-w_3) force part of reciprocal wrench 3 */
-        o[0*count + k] = ucu_w_3_x;
-        o[1*count + k] = ucu_w_3_y;
-        o[2*count + k] = ucu_w_3_z;
+        o[0*count + k] = v.ucu_w_3_x;
+        o[1*count + k] = v.ucu_w_3_y;
+        o[2*count + k] = v.ucu_w_3_z;
         /* (ucu-H_a_3) moment of the column's unit force about the platform origin */
-        o[3*count + k] = ucu_H_a_3_x;
-        o[4*count + k] = ucu_H_a_3_y;
-        o[5*count + k] = ucu_H_a_3_z;
+        o[3*count + k] = v.ucu_H_a_3_x;
+        o[4*count + k] = v.ucu_H_a_3_y;
+        o[5*count + k] = v.ucu_H_a_3_z;
         /* (ucu-G) force at the connection point that balances the leg's inertia and weight along all
            degrees of freedom */
         o[6*count + k] = ucu_least_pivots;
-        o[8*count + k] = (ucu_w_3_x + (ucu_w_3_y + ucu_w_3_z)) + ((ucu_H_a_3_x + ucu_H_a_3_y) +
-            (ucu_H_a_3_z + ucu_least_pivots));
-        o[7*count + k] = UNLESS(magnitude(ucu_rho2_1) > LEAST_1) + UNLESS(magnitude(ucu_rho2_2) >
-            LEAST_1) + UNLESS(magnitude(ucu_rho2_4) > LEAST_2) +
-            UNLESS(magnitude(ucu_end_p1_in_axes4_x) > LEAST_3) + UNLESS(magnitude(ucu_root_2) >
-            LEAST_4) + UNLESS(magnitude(ucu_v_1_in_axes2_z) > LEAST_4);
+        o[8*count + k] = (v.ucu_w_3_x + (v.ucu_w_3_y + v.ucu_w_3_z)) + ((v.ucu_H_a_3_x +
+            v.ucu_H_a_3_y) + (v.ucu_H_a_3_z + ucu_least_pivots));
+        o[7*count + k] = UNLESS(magnitude(v.ucu_root_1_t) > LEAST_1) +
+            UNLESS(magnitude(v.ucu_root_2_t) > LEAST_1) + UNLESS(magnitude(ucu_root_4_t_5) >
+            LEAST_2) + UNLESS(magnitude(ucu_end_p1_in_axes4_x) > LEAST_3) +
+            UNLESS(magnitude(v.ucu_root_2) > LEAST_4) + UNLESS(magnitude(ucu_v_1_in_axes2_z) >
+            LEAST_4);
     }
 }
 
@@ -6384,7 +4680,7 @@ INLINE void condition_place_ucu(size_t w, size_t count, const real *o, size_t le
     real *H, real *pivots, verdict *t)
 {
     for (size_t k = 0; k < w; ++k) {
-        H[(0*NU + leg)*w + k] = o[0*count + first + k];
+        H[leg*w + k] = o[0*count + first + k];
         H[(NU + leg)*w + k] = o[1*count + first + k];
         H[(2*NU + leg)*w + k] = o[2*count + first + k];
         H[(3*NU + leg)*w + k] = o[3*count + first + k];
@@ -6413,13 +4709,11 @@ INLINE void condition_after(const prepared *m, size_t w, const real *sums, real 
 INLINE void condition_run(const prepared *m, const real *X, real *H, real *lengths, real *pivots,
     real *reach, verdict *t)
 {
-    real s[12] = {0};
-    real sums[1] = {0};
-    real terms_ucu[LEGS(LEGS_OF_ucu)] = {0};
-    real o_ucu[9*LEGS(LEGS_OF_ucu)] = {0};
+    real s[9] = {0}, sums[1] = {0};
+    real terms_ucu[LEGS(LEGS_OF_ucu)] = {0}, o_ucu[9*LEGS(LEGS_OF_ucu)] = {0};
     clear(reach, NL);
     condition_before(m, 1, X, s, lengths, t);
-    condition_legs_ucu(m, 1, 0, 1, s, 0, LEGS(LEGS_OF_ucu), 0, terms_ucu, o_ucu);
+    condition_legs_ucu(m, 1, 0, 1, s, 0, LEGS(LEGS_OF_ucu), 0, X, terms_ucu, o_ucu);
     for (size_t leg = 0; leg < LEGS_OF_ucu; ++leg) {
         condition_place_ucu(1, LEGS(LEGS_OF_ucu), o_ucu, leg, leg, H, pivots, t);
     }
@@ -7060,10 +5354,83 @@ INLINE void condition_one(const prepared *m, const real *X, const real *length, 
     }
 }
 
+INLINE void manipulability_one(const prepared *m, const real *X, real *measure_out, real
+    *isotropy_out, int *code)
+{
+    static const size_t places_divide_rows_1[] = {3, 4, 5};
+    real H[NV*NU] = {0}, lengths[2] = {0}, pivots[NL] = {0}, reach[NL] = {0}, subtract_1[1] = {0},
+        choose_length_1[1] = {0}, divide_rows_1[NV*NU] = {0}, singular_values_1[NV] = {0}, measure[1]
+        = {0}, isotropy[1] = {0};
+    verdict why;
+    start(1, &why);
+    check(NQ, 1, X, why.invalid);
+    condition_run(m, X, H, lengths, pivots, reach, &why);
+    const real *const entry_1 = lengths;
+    for (size_t i = 0; i < 1; ++i) {
+        subtract_1[i] = entry_1[i] - entry_1[i];
+    }
+    for (size_t i = 0; i < 1; ++i) {
+        choose_length_1[i] = subtract_1[i] > 0 ? subtract_1[i] : lengths[i] > TINY*lengths[1 + i]
+            ? lengths[i] : lengths[1 + i];
+    }
+    for (size_t i = 0; i < NV*NU; ++i) {
+        divide_rows_1[i] = H[i];
+    }
+    divide_rows(3, NU, 1, places_divide_rows_1, choose_length_1, divide_rows_1);
+    singular_values(NV, NU, divide_rows_1, singular_values_1);
+    spread(NV, singular_values_1, measure, isotropy);
+    check(1, 1, measure, why.overflow);
+    check(1, 1, isotropy, why.overflow);
+    judge(&why, code);
+    copy(1, measure, measure_out);
+    copy(1, isotropy, isotropy_out);
+    if (*code != OK) {
+        refuse(1, measure_out);
+        refuse(1, isotropy_out);
+    }
+}
+
+INLINE void singularity_distance_one(const prepared *m, const real *X, real *actuators_out, real
+    *legs_out, int *code)
+{
+    static const size_t places_divide_rows_1[] = {3, 4, 5};
+    real H[NV*NU] = {0}, lengths[2] = {0}, pivots[NL] = {0}, reach[NL] = {0}, subtract_1[1] = {0},
+        choose_length_1[1] = {0}, divide_rows_1[NV*NU] = {0}, singular_values_1[NV] = {0}, spread_1[1]
+        = {0}, actuators[1] = {0}, legs[1] = {0};
+    verdict why;
+    start(1, &why);
+    check(NQ, 1, X, why.invalid);
+    condition_run(m, X, H, lengths, pivots, reach, &why);
+    const real *const entry_1 = lengths;
+    for (size_t i = 0; i < 1; ++i) {
+        subtract_1[i] = entry_1[i] - entry_1[i];
+    }
+    for (size_t i = 0; i < 1; ++i) {
+        choose_length_1[i] = subtract_1[i] > 0 ? subtract_1[i] : lengths[i] > TINY*lengths[1 + i]
+            ? lengths[i] : lengths[1 + i];
+    }
+    for (size_t i = 0; i < NV*NU; ++i) {
+        divide_rows_1[i] = H[i];
+    }
+    divide_rows(3, NU, 1, places_divide_rows_1, choose_length_1, divide_rows_1);
+    singular_values(NV, NU, divide_rows_1, singular_values_1);
+    spread(NV, singular_values_1, spread_1, actuators);
+    least_entry(NL, pivots, legs);
+    check(1, 1, actuators, why.overflow);
+    check(1, 1, legs, why.overflow);
+    judge(&why, code);
+    copy(1, actuators, actuators_out);
+    copy(1, legs, legs_out);
+    if (*code != OK) {
+        refuse(1, actuators_out);
+        refuse(1, legs_out);
+    }
+}
+
 static void mismatch_one(const prepared *m, const real *X, const real *q_actuated, real *gap_out,
     int *code)
 {
-    real q[NJ] = {0}, take_1[6] = {0}, gap[NU] = {0};
+    real q[NJ] = {0}, q_of_inverse_kinematics_from_2[6] = {0}, gap[NU] = {0};
     verdict why;
     start(1, &why);
     const real total_in = total(X, NQ) + total(q_actuated, NU);
@@ -7072,9 +5439,9 @@ static void mismatch_one(const prepared *m, const real *X, const real *q_actuate
         check(NU, 1, q_actuated, why.invalid);
     }
     inverse_kinematics_run(m, X, q, &why);
-    take(6, 1, hexapod_6ucu_ACTUATED, q, take_1);
+    take(6, 1, hexapod_6ucu_ACTUATED, q, q_of_inverse_kinematics_from_2);
     for (size_t i = 0; i < NU; ++i) {
-        gap[i] = q_actuated[i] - take_1[i];
+        gap[i] = q_actuated[i] - q_of_inverse_kinematics_from_2[i];
     }
     check(NU, 1, gap, why.overflow);
     judge(&why, code);
@@ -7441,8 +5808,8 @@ INLINE void rotation_one(const real *X, real *R_out, int *code)
     verdict why;
     start(1, &why);
     check(NQ, 1, X, why.invalid);
-    const real *const take_1 = X + 3;
-    rotation_of_quaternion(take_1, R);
+    const real *const X_from_3 = X + 3;
+    rotation_of_quaternion(X_from_3, R);
     check(9, 1, R, why.overflow);
     judge(&why, code);
     copy(9, R, R_out);
@@ -7482,11 +5849,11 @@ INLINE void X_dot_one(const real *X, const real *V, real *X_dot_out, int *code)
         check(NQ, 1, X, why.invalid);
         check(NV, 1, V, why.invalid);
     }
-    const real *const take_1 = V + 3;
-    const real *const take_2 = X + 3;
-    quaternion_rate(take_2, take_1, quaternion_rate_1);
-    const real *const take_3 = V;
-    beside(1, 3, 4, take_3, quaternion_rate_1, X_dot);
+    const real *const V_from_3 = V + 3;
+    const real *const X_from_3 = X + 3;
+    quaternion_rate(X_from_3, V_from_3, quaternion_rate_1);
+    const real *const V_from_0 = V;
+    beside(1, 3, 4, V_from_0, quaternion_rate_1, X_dot);
     check(NQ, 1, X_dot, why.overflow);
     judge(&why, code);
     copy(NQ, X_dot, X_dot_out);
@@ -7526,13 +5893,13 @@ INLINE void retract_one(const real *X, const real *step, real *X_moved_out, int 
         check(NQ, 1, X, why.invalid);
         check(NV, 1, step, why.invalid);
     }
-    const real *const take_1 = X;
-    const real *const take_2 = X + 3;
-    const real *const take_3 = step;
-    const real *const take_4 = step + 3;
-    turn_quaternion(take_2, take_4, turn_quaternion_1);
+    const real *const X_from_0 = X;
+    const real *const X_from_3 = X + 3;
+    const real *const step_from_0 = step;
+    const real *const step_from_3 = step + 3;
+    turn_quaternion(X_from_3, step_from_3, turn_quaternion_1);
     for (size_t i = 0; i < 3; ++i) {
-        add_1[i] = take_1[i] + take_3[i];
+        add_1[i] = X_from_0[i] + step_from_0[i];
     }
     beside(1, 3, 4, add_1, turn_quaternion_1, X_moved);
     check(NQ, 1, X_moved, why.overflow);
@@ -7553,13 +5920,13 @@ INLINE void difference_one(const real *X0, const real *X1, real *step_out, int *
         check(NQ, 1, X0, why.invalid);
         check(NQ, 1, X1, why.invalid);
     }
-    const real *const take_1 = X0;
-    const real *const take_2 = X0 + 3;
-    const real *const take_3 = X1;
-    const real *const take_4 = X1 + 3;
-    turn_between(take_2, take_4, turn_between_1);
+    const real *const X0_from_0 = X0;
+    const real *const X0_from_3 = X0 + 3;
+    const real *const X1_from_0 = X1;
+    const real *const X1_from_3 = X1 + 3;
+    turn_between(X0_from_3, X1_from_3, turn_between_1);
     for (size_t i = 0; i < 3; ++i) {
-        subtract_1[i] = take_3[i] - take_1[i];
+        subtract_1[i] = X1_from_0[i] - X0_from_0[i];
     }
     beside(1, 3, 3, subtract_1, turn_between_1, step);
     check(NV, 1, step, why.overflow);
@@ -7582,25 +5949,25 @@ INLINE void interpolate_one(const real *X0, const real *X1, const real *s, real 
         check(NQ, 1, X1, why.invalid);
         check(1, 1, s, why.invalid);
     }
-    const real *const take_1 = X0;
-    const real *const take_2 = X0 + 3;
-    const real *const take_3 = X1;
-    const real *const take_4 = X1 + 3;
-    turn_between(take_2, take_4, turn_between_1);
+    const real *const X0_from_0 = X0;
+    const real *const X0_from_3 = X0 + 3;
+    const real *const X1_from_0 = X1;
+    const real *const X1_from_3 = X1 + 3;
+    turn_between(X0_from_3, X1_from_3, turn_between_1);
     for (size_t i = 0; i < 3; ++i) {
-        subtract_1[i] = take_3[i] - take_1[i];
+        subtract_1[i] = X1_from_0[i] - X0_from_0[i];
     }
     beside(1, 3, 3, subtract_1, turn_between_1, join_1);
     for (size_t i = 0; i < 6; ++i) {
         scale_1[i] = join_1[i]*s[i%(1)];
     }
-    const real *const take_5 = X0;
-    const real *const take_6 = X0 + 3;
-    const real *const take_7 = scale_1;
-    const real *const take_8 = scale_1 + 3;
-    turn_quaternion(take_6, take_8, turn_quaternion_1);
+    const real *const X0_from_0_2 = X0;
+    const real *const X0_from_3_2 = X0 + 3;
+    const real *const scale_1_from_0 = scale_1;
+    const real *const scale_1_from_3 = scale_1 + 3;
+    turn_quaternion(X0_from_3_2, scale_1_from_3, turn_quaternion_1);
     for (size_t i = 0; i < 3; ++i) {
-        add_1[i] = take_5[i] + take_7[i];
+        add_1[i] = X0_from_0_2[i] + scale_1_from_0[i];
     }
     beside(1, 3, 4, add_1, turn_quaternion_1, X);
     check(NQ, 1, X, why.overflow);
@@ -7613,286 +5980,259 @@ INLINE void interpolate_one(const real *X0, const real *X1, const real *s, real 
 
 /* ---- one state, and batches ---- */
 
-int hexapod_6ucu_M(const hexapod_6ucu_model *model, const hexapod_6ucu_real *X, hexapod_6ucu_real
-    *M)
+int hexapod_6ucu_M(const prepared *model, const real *X, real *M)
 {
     int code;
     M_one(model, X, M, &code);
     return code;
 }
 
-size_t hexapod_6ucu_M_batch(const hexapod_6ucu_model *model, size_t n, const hexapod_6ucu_real *X,
-    hexapod_6ucu_real *M, int *status)
+size_t hexapod_6ucu_M_batch(const prepared *model, size_t n, const real *X, real *M, int *status)
 {
-    size_t failed = 0, i = 0;
-    for (; LANES > 1 && i + LANES <= n; i += LANES) {
-        int codes[LANES];
-        M_lanes(model, X + NQ*i, M + NV*NV*i, codes);
-        for (size_t k = 0; k < LANES; ++k) {
+    size_t failed = 0, w;
+    for (size_t i = 0; i < n; i += w) {
+        int codes[LANES] = {INVALID};
+        w = LANES > 1 && i + LANES <= n ? LANES : 1;
+        if (w > 1) {
+            M_lanes(model, X + NQ*i, M + NV*NV*i, codes);
+        }
+        for (size_t k = 0; k < w; ++k) {
             if (codes[k] != OK) {
                 codes[k] = hexapod_6ucu_M(model, X + NQ*(i + k), M + NV*NV*(i + k));
             }
         }
-        failed += record(codes, LANES, status ? status + i : NULL);
-    }
-    for (; i < n; ++i) {
-        const int code = hexapod_6ucu_M(model, X + NQ*i, M + NV*NV*i);
-        failed += record(&code, 1, status ? status + i : NULL);
+        failed += record(codes, w, status ? status + i : NULL);
     }
     return failed;
 }
 
-int hexapod_6ucu_Z(const hexapod_6ucu_model *model, const hexapod_6ucu_real *X, const
-    hexapod_6ucu_real *V, hexapod_6ucu_real *Z)
+int hexapod_6ucu_Z(const prepared *model, const real *X, const real *V, real *Z)
 {
     int code;
     Z_one(model, X, V, Z, &code);
     return code;
 }
 
-size_t hexapod_6ucu_Z_batch(const hexapod_6ucu_model *model, size_t n, const hexapod_6ucu_real *X,
-    const hexapod_6ucu_real *V, hexapod_6ucu_real *Z, int *status)
+size_t hexapod_6ucu_Z_batch(const prepared *model, size_t n, const real *X, const real *V, real
+    *Z, int *status)
 {
-    size_t failed = 0, i = 0;
-    for (; LANES > 1 && i + LANES <= n; i += LANES) {
-        int codes[LANES];
-        Z_lanes(model, X + NQ*i, V + NV*i, Z + NV*i, codes);
-        for (size_t k = 0; k < LANES; ++k) {
+    size_t failed = 0, w;
+    for (size_t i = 0; i < n; i += w) {
+        int codes[LANES] = {INVALID};
+        w = LANES > 1 && i + LANES <= n ? LANES : 1;
+        if (w > 1) {
+            Z_lanes(model, X + NQ*i, V + NV*i, Z + NV*i, codes);
+        }
+        for (size_t k = 0; k < w; ++k) {
             if (codes[k] != OK) {
                 codes[k] = hexapod_6ucu_Z(model, X + NQ*(i + k), V + NV*(i + k), Z + NV*(i + k));
             }
         }
-        failed += record(codes, LANES, status ? status + i : NULL);
-    }
-    for (; i < n; ++i) {
-        const int code = hexapod_6ucu_Z(model, X + NQ*i, V + NV*i, Z + NV*i);
-        failed += record(&code, 1, status ? status + i : NULL);
+        failed += record(codes, w, status ? status + i : NULL);
     }
     return failed;
 }
 
-int hexapod_6ucu_H(const hexapod_6ucu_model *model, const hexapod_6ucu_real *X, hexapod_6ucu_real
-    *H)
+int hexapod_6ucu_H(const prepared *model, const real *X, real *H)
 {
     int code;
     H_one(model, X, H, &code);
     return code;
 }
 
-size_t hexapod_6ucu_H_batch(const hexapod_6ucu_model *model, size_t n, const hexapod_6ucu_real *X,
-    hexapod_6ucu_real *H, int *status)
+size_t hexapod_6ucu_H_batch(const prepared *model, size_t n, const real *X, real *H, int *status)
 {
-    size_t failed = 0, i = 0;
-    for (; LANES > 1 && i + LANES <= n; i += LANES) {
-        int codes[LANES];
-        H_lanes(model, X + NQ*i, H + NV*NU*i, codes);
-        for (size_t k = 0; k < LANES; ++k) {
+    size_t failed = 0, w;
+    for (size_t i = 0; i < n; i += w) {
+        int codes[LANES] = {INVALID};
+        w = LANES > 1 && i + LANES <= n ? LANES : 1;
+        if (w > 1) {
+            H_lanes(model, X + NQ*i, H + NV*NU*i, codes);
+        }
+        for (size_t k = 0; k < w; ++k) {
             if (codes[k] != OK) {
                 codes[k] = hexapod_6ucu_H(model, X + NQ*(i + k), H + NV*NU*(i + k));
             }
         }
-        failed += record(codes, LANES, status ? status + i : NULL);
-    }
-    for (; i < n; ++i) {
-        const int code = hexapod_6ucu_H(model, X + NQ*i, H + NV*NU*i);
-        failed += record(&code, 1, status ? status + i : NULL);
+        failed += record(codes, w, status ? status + i : NULL);
     }
     return failed;
 }
 
-int hexapod_6ucu_inverse_kinematics(const hexapod_6ucu_model *model, const hexapod_6ucu_real *X,
-    hexapod_6ucu_real *q)
+int hexapod_6ucu_inverse_kinematics(const prepared *model, const real *X, real *q)
 {
     int code;
     inverse_kinematics_one(model, X, q, &code);
     return code;
 }
 
-size_t hexapod_6ucu_inverse_kinematics_batch(const hexapod_6ucu_model *model, size_t n, const
-    hexapod_6ucu_real *X, hexapod_6ucu_real *q, int *status)
+size_t hexapod_6ucu_inverse_kinematics_batch(const prepared *model, size_t n, const real *X, real
+    *q, int *status)
 {
-    size_t failed = 0, i = 0;
-    for (; LANES > 1 && i + LANES <= n; i += LANES) {
-        int codes[LANES];
-        inverse_kinematics_lanes(model, X + NQ*i, q + NJ*i, codes);
-        for (size_t k = 0; k < LANES; ++k) {
+    size_t failed = 0, w;
+    for (size_t i = 0; i < n; i += w) {
+        int codes[LANES] = {INVALID};
+        w = LANES > 1 && i + LANES <= n ? LANES : 1;
+        if (w > 1) {
+            inverse_kinematics_lanes(model, X + NQ*i, q + NJ*i, codes);
+        }
+        for (size_t k = 0; k < w; ++k) {
             if (codes[k] != OK) {
                 codes[k] = hexapod_6ucu_inverse_kinematics(model, X + NQ*(i + k), q + NJ*(i + k));
             }
         }
-        failed += record(codes, LANES, status ? status + i : NULL);
-    }
-    for (; i < n; ++i) {
-        const int code = hexapod_6ucu_inverse_kinematics(model, X + NQ*i, q + NJ*i);
-        failed += record(&code, 1, status ? status + i : NULL);
+        failed += record(codes, w, status ? status + i : NULL);
     }
     return failed;
 }
 
-int hexapod_6ucu_joint_rates(const hexapod_6ucu_model *model, const hexapod_6ucu_real *X, const
-    hexapod_6ucu_real *V, hexapod_6ucu_real *rates)
+int hexapod_6ucu_joint_rates(const prepared *model, const real *X, const real *V, real *rates)
 {
     int code;
     joint_rates_one(model, X, V, rates, &code);
     return code;
 }
 
-size_t hexapod_6ucu_joint_rates_batch(const hexapod_6ucu_model *model, size_t n, const
-    hexapod_6ucu_real *X, const hexapod_6ucu_real *V, hexapod_6ucu_real *rates, int *status)
+size_t hexapod_6ucu_joint_rates_batch(const prepared *model, size_t n, const real *X, const real
+    *V, real *rates, int *status)
 {
-    size_t failed = 0, i = 0;
-    for (; LANES > 1 && i + LANES <= n; i += LANES) {
-        int codes[LANES];
-        joint_rates_lanes(model, X + NQ*i, V + NV*i, rates + NJ*i, codes);
-        for (size_t k = 0; k < LANES; ++k) {
+    size_t failed = 0, w;
+    for (size_t i = 0; i < n; i += w) {
+        int codes[LANES] = {INVALID};
+        w = LANES > 1 && i + LANES <= n ? LANES : 1;
+        if (w > 1) {
+            joint_rates_lanes(model, X + NQ*i, V + NV*i, rates + NJ*i, codes);
+        }
+        for (size_t k = 0; k < w; ++k) {
             if (codes[k] != OK) {
                 codes[k] = hexapod_6ucu_joint_rates(model, X + NQ*(i + k), V + NV*(i + k), rates + NJ*(i + k));
             }
         }
-        failed += record(codes, LANES, status ? status + i : NULL);
-    }
-    for (; i < n; ++i) {
-        const int code = hexapod_6ucu_joint_rates(model, X + NQ*i, V + NV*i, rates + NJ*i);
-        failed += record(&code, 1, status ? status + i : NULL);
+        failed += record(codes, w, status ? status + i : NULL);
     }
     return failed;
 }
 
-int hexapod_6ucu_joint_accelerations(const hexapod_6ucu_model *model, const hexapod_6ucu_real *X,
-    const hexapod_6ucu_real *V, const hexapod_6ucu_real *A, hexapod_6ucu_real *accelerations)
+int hexapod_6ucu_joint_accelerations(const prepared *model, const real *X, const real *V, const
+    real *A, real *accelerations)
 {
     int code;
     joint_accelerations_one(model, X, V, A, accelerations, &code);
     return code;
 }
 
-size_t hexapod_6ucu_joint_accelerations_batch(const hexapod_6ucu_model *model, size_t n, const
-    hexapod_6ucu_real *X, const hexapod_6ucu_real *V, const hexapod_6ucu_real *A,
-    hexapod_6ucu_real *accelerations, int *status)
+size_t hexapod_6ucu_joint_accelerations_batch(const prepared *model, size_t n, const real *X,
+    const real *V, const real *A, real *accelerations, int *status)
 {
-    size_t failed = 0, i = 0;
-    for (; LANES > 1 && i + LANES <= n; i += LANES) {
-        int codes[LANES];
-        joint_accelerations_lanes(model, X + NQ*i, V + NV*i, A + NV*i, accelerations + NJ*i, codes);
-        for (size_t k = 0; k < LANES; ++k) {
+    size_t failed = 0, w;
+    for (size_t i = 0; i < n; i += w) {
+        int codes[LANES] = {INVALID};
+        w = LANES > 1 && i + LANES <= n ? LANES : 1;
+        if (w > 1) {
+            joint_accelerations_lanes(model, X + NQ*i, V + NV*i, A + NV*i, accelerations + NJ*i, codes);
+        }
+        for (size_t k = 0; k < w; ++k) {
             if (codes[k] != OK) {
                 codes[k] = hexapod_6ucu_joint_accelerations(model, X + NQ*(i + k), V + NV*(i + k), A + NV*(i + k),
                     accelerations + NJ*(i + k));
             }
         }
-        failed += record(codes, LANES, status ? status + i : NULL);
-    }
-    for (; i < n; ++i) {
-        const int code = hexapod_6ucu_joint_accelerations(model, X + NQ*i, V + NV*i, A + NV*i,
-            accelerations + NJ*i);
-        failed += record(&code, 1, status ? status + i : NULL);
+        failed += record(codes, w, status ? status + i : NULL);
     }
     return failed;
 }
 
-int hexapod_6ucu_dynamics(const hexapod_6ucu_model *model, const hexapod_6ucu_real *X, const
-    hexapod_6ucu_real *V, hexapod_6ucu_real *M, hexapod_6ucu_real *Z, hexapod_6ucu_real *H)
+int hexapod_6ucu_dynamics(const prepared *model, const real *X, const real *V, real *M, real *Z,
+    real *H)
 {
     int code;
     dynamics_one(model, X, V, M, Z, H, &code);
     return code;
 }
 
-size_t hexapod_6ucu_dynamics_batch(const hexapod_6ucu_model *model, size_t n, const
-    hexapod_6ucu_real *X, const hexapod_6ucu_real *V, hexapod_6ucu_real *M, hexapod_6ucu_real *Z,
-    hexapod_6ucu_real *H, int *status)
+size_t hexapod_6ucu_dynamics_batch(const prepared *model, size_t n, const real *X, const real *V,
+    real *M, real *Z, real *H, int *status)
 {
-    size_t failed = 0, i = 0;
-    for (; LANES > 1 && i + LANES <= n; i += LANES) {
-        int codes[LANES];
-        dynamics_lanes(model, X + NQ*i, V + NV*i, M + NV*NV*i, Z + NV*i, H + NV*NU*i, codes);
-        for (size_t k = 0; k < LANES; ++k) {
+    size_t failed = 0, w;
+    for (size_t i = 0; i < n; i += w) {
+        int codes[LANES] = {INVALID};
+        w = LANES > 1 && i + LANES <= n ? LANES : 1;
+        if (w > 1) {
+            dynamics_lanes(model, X + NQ*i, V + NV*i, M + NV*NV*i, Z + NV*i, H + NV*NU*i, codes);
+        }
+        for (size_t k = 0; k < w; ++k) {
             if (codes[k] != OK) {
                 codes[k] = hexapod_6ucu_dynamics(model, X + NQ*(i + k), V + NV*(i + k), M + NV*NV*(i + k), Z +
                     NV*(i + k), H + NV*NU*(i + k));
             }
         }
-        failed += record(codes, LANES, status ? status + i : NULL);
-    }
-    for (; i < n; ++i) {
-        const int code = hexapod_6ucu_dynamics(model, X + NQ*i, V + NV*i, M + NV*NV*i, Z + NV*i, H +
-            NV*NU*i);
-        failed += record(&code, 1, status ? status + i : NULL);
+        failed += record(codes, w, status ? status + i : NULL);
     }
     return failed;
 }
 
-int hexapod_6ucu_inverse_dynamics(const hexapod_6ucu_model *model, const hexapod_6ucu_real *X,
-    const hexapod_6ucu_real *V, const hexapod_6ucu_real *A, const hexapod_6ucu_real *wrench,
-    hexapod_6ucu_real *tau)
+int hexapod_6ucu_inverse_dynamics(const prepared *model, const real *X, const real *V, const real
+    *A, const real *wrench, real *tau)
 {
     int code;
     inverse_dynamics_one(model, X, V, A, wrench, tau, &code);
     return code;
 }
 
-size_t hexapod_6ucu_inverse_dynamics_batch(const hexapod_6ucu_model *model, size_t n, const
-    hexapod_6ucu_real *X, const hexapod_6ucu_real *V, const hexapod_6ucu_real *A, const
-    hexapod_6ucu_real *wrench, hexapod_6ucu_real *tau, int *status)
+size_t hexapod_6ucu_inverse_dynamics_batch(const prepared *model, size_t n, const real *X, const
+    real *V, const real *A, const real *wrench, real *tau, int *status)
 {
-    size_t failed = 0, i = 0;
-    for (; LANES > 1 && i + LANES <= n; i += LANES) {
-        int codes[LANES];
-        inverse_dynamics_lanes(model, X + NQ*i, V + NV*i, A + NV*i, wrench ? wrench + NW*i : NULL, tau +
-            NU*i, codes);
-        for (size_t k = 0; k < LANES; ++k) {
+    size_t failed = 0, w;
+    for (size_t i = 0; i < n; i += w) {
+        int codes[LANES] = {INVALID};
+        w = LANES > 1 && i + LANES <= n ? LANES : 1;
+        if (w > 1) {
+            inverse_dynamics_lanes(model, X + NQ*i, V + NV*i, A + NV*i, wrench ? wrench + NW*i : NULL, tau +
+                NU*i, codes);
+        }
+        for (size_t k = 0; k < w; ++k) {
             if (codes[k] != OK) {
                 codes[k] = hexapod_6ucu_inverse_dynamics(model, X + NQ*(i + k), V + NV*(i + k), A + NV*(i + k),
                     wrench ? wrench + NW*(i + k) : NULL, tau + NU*(i + k));
             }
         }
-        failed += record(codes, LANES, status ? status + i : NULL);
-    }
-    for (; i < n; ++i) {
-        const int code = hexapod_6ucu_inverse_dynamics(model, X + NQ*i, V + NV*i, A + NV*i, wrench ?
-            wrench + NW*i : NULL, tau + NU*i);
-        failed += record(&code, 1, status ? status + i : NULL);
+        failed += record(codes, w, status ? status + i : NULL);
     }
     return failed;
 }
 
-int hexapod_6ucu_forward_dynamics(const hexapod_6ucu_model *model, const hexapod_6ucu_real *X,
-    const hexapod_6ucu_real *V, const hexapod_6ucu_real *tau, const hexapod_6ucu_real *wrench,
-    hexapod_6ucu_real *A)
+int hexapod_6ucu_forward_dynamics(const prepared *model, const real *X, const real *V, const real
+    *tau, const real *wrench, real *A)
 {
     int code;
     forward_dynamics_one(model, X, V, tau, wrench, A, &code);
     return code;
 }
 
-size_t hexapod_6ucu_forward_dynamics_batch(const hexapod_6ucu_model *model, size_t n, const
-    hexapod_6ucu_real *X, const hexapod_6ucu_real *V, const hexapod_6ucu_real *tau, const
-    hexapod_6ucu_real *wrench, hexapod_6ucu_real *A, int *status)
+size_t hexapod_6ucu_forward_dynamics_batch(const prepared *model, size_t n, const real *X, const
+    real *V, const real *tau, const real *wrench, real *A, int *status)
 {
-    size_t failed = 0, i = 0;
-    for (; LANES > 1 && i + LANES <= n; i += LANES) {
-        int codes[LANES];
-        forward_dynamics_lanes(model, X + NQ*i, V + NV*i, tau + NU*i, wrench ? wrench + NW*i : NULL, A +
-            NV*i, codes);
-        for (size_t k = 0; k < LANES; ++k) {
+    size_t failed = 0, w;
+    for (size_t i = 0; i < n; i += w) {
+        int codes[LANES] = {INVALID};
+        w = LANES > 1 && i + LANES <= n ? LANES : 1;
+        if (w > 1) {
+            forward_dynamics_lanes(model, X + NQ*i, V + NV*i, tau + NU*i, wrench ? wrench + NW*i : NULL, A +
+                NV*i, codes);
+        }
+        for (size_t k = 0; k < w; ++k) {
             if (codes[k] != OK) {
                 codes[k] = hexapod_6ucu_forward_dynamics(model, X + NQ*(i + k), V + NV*(i + k), tau + NU*(i + k),
                     wrench ? wrench + NW*(i + k) : NULL, A + NV*(i + k));
             }
         }
-        failed += record(codes, LANES, status ? status + i : NULL);
-    }
-    for (; i < n; ++i) {
-        const int code = hexapod_6ucu_forward_dynamics(model, X + NQ*i, V + NV*i, tau + NU*i, wrench ?
-            wrench + NW*i : NULL, A + NV*i);
-        failed += record(&code, 1, status ? status + i : NULL);
+        failed += record(codes, w, status ? status + i : NULL);
     }
     return failed;
 }
 
-int hexapod_6ucu_complete_acceleration(const hexapod_6ucu_model *model, const hexapod_6ucu_real
-    *X, const hexapod_6ucu_real *V, const hexapod_6ucu_real *A, const hexapod_6ucu_real *wrench,
-    hexapod_6ucu_real *completed)
+int hexapod_6ucu_complete_acceleration(const prepared *model, const real *X, const real *V, const
+    real *A, const real *wrench, real *completed)
 {
     int code;
     (void)model;
@@ -7903,12 +6243,11 @@ int hexapod_6ucu_complete_acceleration(const hexapod_6ucu_model *model, const he
     return code;
 }
 
-size_t hexapod_6ucu_complete_acceleration_batch(const hexapod_6ucu_model *model, size_t n, const
-    hexapod_6ucu_real *X, const hexapod_6ucu_real *V, const hexapod_6ucu_real *A, const
-    hexapod_6ucu_real *wrench, hexapod_6ucu_real *completed, int *status)
+size_t hexapod_6ucu_complete_acceleration_batch(const prepared *model, size_t n, const real *X,
+    const real *V, const real *A, const real *wrench, real *completed, int *status)
 {
-    size_t failed = 0, i = 0;
-    for (; i < n; ++i) {
+    size_t failed = 0;
+    for (size_t i = 0; i < n; ++i) {
         const int code = hexapod_6ucu_complete_acceleration(model, X + NQ*i, V + NV*i, A + NV*i, wrench ?
             wrench + NW*i : NULL, completed + NV*i);
         failed += record(&code, 1, status ? status + i : NULL);
@@ -7916,21 +6255,19 @@ size_t hexapod_6ucu_complete_acceleration_batch(const hexapod_6ucu_model *model,
     return failed;
 }
 
-int hexapod_6ucu_leg_reactions(const hexapod_6ucu_model *model, const hexapod_6ucu_real *X, const
-    hexapod_6ucu_real *V, const hexapod_6ucu_real *A, const hexapod_6ucu_real *wrench,
-    hexapod_6ucu_real *forces)
+int hexapod_6ucu_leg_reactions(const prepared *model, const real *X, const real *V, const real *A,
+    const real *wrench, real *forces)
 {
     int code;
     leg_reactions_one(model, X, V, A, wrench, forces, &code);
     return code;
 }
 
-size_t hexapod_6ucu_leg_reactions_batch(const hexapod_6ucu_model *model, size_t n, const
-    hexapod_6ucu_real *X, const hexapod_6ucu_real *V, const hexapod_6ucu_real *A, const
-    hexapod_6ucu_real *wrench, hexapod_6ucu_real *forces, int *status)
+size_t hexapod_6ucu_leg_reactions_batch(const prepared *model, size_t n, const real *X, const real
+    *V, const real *A, const real *wrench, real *forces, int *status)
 {
-    size_t failed = 0, i = 0;
-    for (; i < n; ++i) {
+    size_t failed = 0;
+    for (size_t i = 0; i < n; ++i) {
         const int code = hexapod_6ucu_leg_reactions(model, X + NQ*i, V + NV*i, A + NV*i, wrench ? wrench +
             NW*i : NULL, forces + 36*i);
         failed += record(&code, 1, status ? status + i : NULL);
@@ -7938,66 +6275,102 @@ size_t hexapod_6ucu_leg_reactions_batch(const hexapod_6ucu_model *model, size_t 
     return failed;
 }
 
-int hexapod_6ucu_energy(const hexapod_6ucu_model *model, const hexapod_6ucu_real *X, const
-    hexapod_6ucu_real *V, hexapod_6ucu_real *kinetic, hexapod_6ucu_real *potential)
+int hexapod_6ucu_energy(const prepared *model, const real *X, const real *V, real *kinetic, real
+    *potential)
 {
     int code;
     energy_one(model, X, V, kinetic, potential, &code);
     return code;
 }
 
-size_t hexapod_6ucu_energy_batch(const hexapod_6ucu_model *model, size_t n, const
-    hexapod_6ucu_real *X, const hexapod_6ucu_real *V, hexapod_6ucu_real *kinetic,
-    hexapod_6ucu_real *potential, int *status)
+size_t hexapod_6ucu_energy_batch(const prepared *model, size_t n, const real *X, const real *V,
+    real *kinetic, real *potential, int *status)
 {
-    size_t failed = 0, i = 0;
-    for (; i < n; ++i) {
+    size_t failed = 0;
+    for (size_t i = 0; i < n; ++i) {
         const int code = hexapod_6ucu_energy(model, X + NQ*i, V + NV*i, kinetic + i, potential + i);
         failed += record(&code, 1, status ? status + i : NULL);
     }
     return failed;
 }
 
-int hexapod_6ucu_condition(const hexapod_6ucu_model *model, const hexapod_6ucu_real *X,
-    hexapod_6ucu_real *sigma, hexapod_6ucu_real *legs)
+int hexapod_6ucu_condition(const prepared *model, const real *X, real *sigma, real *legs)
 {
     int code;
     condition_one(model, X, NULL, sigma, legs, &code);
     return code;
 }
 
-size_t hexapod_6ucu_condition_batch(const hexapod_6ucu_model *model, size_t n, const
-    hexapod_6ucu_real *X, hexapod_6ucu_real *sigma, hexapod_6ucu_real *legs, int *status)
+size_t hexapod_6ucu_condition_batch(const prepared *model, size_t n, const real *X, real *sigma,
+    real *legs, int *status)
 {
-    size_t failed = 0, i = 0;
-    for (; i < n; ++i) {
+    size_t failed = 0;
+    for (size_t i = 0; i < n; ++i) {
         const int code = hexapod_6ucu_condition(model, X + NQ*i, sigma + 6*i, legs + 6*i);
         failed += record(&code, 1, status ? status + i : NULL);
     }
     return failed;
 }
 
-int hexapod_6ucu_forward_kinematics(const hexapod_6ucu_model *model, const hexapod_6ucu_real
-    *q_actuated, const hexapod_6ucu_real *X0, hexapod_6ucu_real *X)
+int hexapod_6ucu_manipulability(const prepared *model, const real *X, real *measure, real
+    *isotropy)
+{
+    int code;
+    manipulability_one(model, X, measure, isotropy, &code);
+    return code;
+}
+
+size_t hexapod_6ucu_manipulability_batch(const prepared *model, size_t n, const real *X, real
+    *measure, real *isotropy, int *status)
+{
+    size_t failed = 0;
+    for (size_t i = 0; i < n; ++i) {
+        const int code = hexapod_6ucu_manipulability(model, X + NQ*i, measure + i, isotropy + i);
+        failed += record(&code, 1, status ? status + i : NULL);
+    }
+    return failed;
+}
+
+int hexapod_6ucu_singularity_distance(const prepared *model, const real *X, real *actuators, real
+    *legs)
+{
+    int code;
+    singularity_distance_one(model, X, actuators, legs, &code);
+    return code;
+}
+
+size_t hexapod_6ucu_singularity_distance_batch(const prepared *model, size_t n, const real *X,
+    real *actuators, real *legs, int *status)
+{
+    size_t failed = 0;
+    for (size_t i = 0; i < n; ++i) {
+        const int code = hexapod_6ucu_singularity_distance(model, X + NQ*i, actuators + i, legs + i);
+        failed += record(&code, 1, status ? status + i : NULL);
+    }
+    return failed;
+}
+
+int hexapod_6ucu_forward_kinematics(const prepared *model, const real *q_actuated, const real *X0,
+    real *X)
 {
     int code;
     forward_kinematics_one(model, q_actuated, X0, X, &code);
     return code;
 }
 
-size_t hexapod_6ucu_forward_kinematics_batch(const hexapod_6ucu_model *model, size_t n, const
-    hexapod_6ucu_real *q_actuated, const hexapod_6ucu_real *X0, hexapod_6ucu_real *X, int *status)
+size_t hexapod_6ucu_forward_kinematics_batch(const prepared *model, size_t n, const real
+    *q_actuated, const real *X0, real *X, int *status)
 {
-    size_t failed = 0, i = 0;
-    for (; i < n; ++i) {
+    size_t failed = 0;
+    for (size_t i = 0; i < n; ++i) {
         const int code = hexapod_6ucu_forward_kinematics(model, q_actuated + NU*i, X0 + NQ*i, X + NQ*i);
         failed += record(&code, 1, status ? status + i : NULL);
     }
     return failed;
 }
 
-int hexapod_6ucu_dissipation(const hexapod_6ucu_model *model, const hexapod_6ucu_real *X, const
-    hexapod_6ucu_real *V, hexapod_6ucu_real *dissipation)
+int hexapod_6ucu_dissipation(const prepared *model, const real *X, const real *V, real
+    *dissipation)
 {
     int code;
     (void)model;
@@ -8006,351 +6379,327 @@ int hexapod_6ucu_dissipation(const hexapod_6ucu_model *model, const hexapod_6ucu
     return code;
 }
 
-size_t hexapod_6ucu_dissipation_batch(const hexapod_6ucu_model *model, size_t n, const
-    hexapod_6ucu_real *X, const hexapod_6ucu_real *V, hexapod_6ucu_real *dissipation, int *status)
+size_t hexapod_6ucu_dissipation_batch(const prepared *model, size_t n, const real *X, const real
+    *V, real *dissipation, int *status)
 {
-    size_t failed = 0, i = 0;
-    for (; i < n; ++i) {
+    size_t failed = 0;
+    for (size_t i = 0; i < n; ++i) {
         const int code = hexapod_6ucu_dissipation(model, X + NQ*i, V + NV*i, dissipation + i);
         failed += record(&code, 1, status ? status + i : NULL);
     }
     return failed;
 }
 
-int hexapod_6ucu_momentum(const hexapod_6ucu_model *model, const hexapod_6ucu_real *X, const
-    hexapod_6ucu_real *V, hexapod_6ucu_real *momentum)
+int hexapod_6ucu_momentum(const prepared *model, const real *X, const real *V, real *momentum)
 {
     int code;
     momentum_one(model, X, V, momentum, &code);
     return code;
 }
 
-size_t hexapod_6ucu_momentum_batch(const hexapod_6ucu_model *model, size_t n, const
-    hexapod_6ucu_real *X, const hexapod_6ucu_real *V, hexapod_6ucu_real *momentum, int *status)
+size_t hexapod_6ucu_momentum_batch(const prepared *model, size_t n, const real *X, const real *V,
+    real *momentum, int *status)
 {
-    size_t failed = 0, i = 0;
-    for (; LANES > 1 && i + LANES <= n; i += LANES) {
-        int codes[LANES];
-        momentum_lanes(model, X + NQ*i, V + NV*i, momentum + NV*i, codes);
-        for (size_t k = 0; k < LANES; ++k) {
+    size_t failed = 0, w;
+    for (size_t i = 0; i < n; i += w) {
+        int codes[LANES] = {INVALID};
+        w = LANES > 1 && i + LANES <= n ? LANES : 1;
+        if (w > 1) {
+            momentum_lanes(model, X + NQ*i, V + NV*i, momentum + NV*i, codes);
+        }
+        for (size_t k = 0; k < w; ++k) {
             if (codes[k] != OK) {
                 codes[k] = hexapod_6ucu_momentum(model, X + NQ*(i + k), V + NV*(i + k), momentum + NV*(i + k));
             }
         }
-        failed += record(codes, LANES, status ? status + i : NULL);
-    }
-    for (; i < n; ++i) {
-        const int code = hexapod_6ucu_momentum(model, X + NQ*i, V + NV*i, momentum + NV*i);
-        failed += record(&code, 1, status ? status + i : NULL);
+        failed += record(codes, w, status ? status + i : NULL);
     }
     return failed;
 }
 
-int hexapod_6ucu_joint_margins(const hexapod_6ucu_model *model, const hexapod_6ucu_real *X,
-    hexapod_6ucu_real *margins)
+int hexapod_6ucu_joint_margins(const prepared *model, const real *X, real *margins)
 {
     int code;
     joint_margins_one(model, X, margins, &code);
     return code;
 }
 
-size_t hexapod_6ucu_joint_margins_batch(const hexapod_6ucu_model *model, size_t n, const
-    hexapod_6ucu_real *X, hexapod_6ucu_real *margins, int *status)
+size_t hexapod_6ucu_joint_margins_batch(const prepared *model, size_t n, const real *X, real
+    *margins, int *status)
 {
-    size_t failed = 0, i = 0;
-    for (; LANES > 1 && i + LANES <= n; i += LANES) {
-        int codes[LANES];
-        joint_margins_lanes(model, X + NQ*i, margins + NJ*i, codes);
-        for (size_t k = 0; k < LANES; ++k) {
+    size_t failed = 0, w;
+    for (size_t i = 0; i < n; i += w) {
+        int codes[LANES] = {INVALID};
+        w = LANES > 1 && i + LANES <= n ? LANES : 1;
+        if (w > 1) {
+            joint_margins_lanes(model, X + NQ*i, margins + NJ*i, codes);
+        }
+        for (size_t k = 0; k < w; ++k) {
             if (codes[k] != OK) {
                 codes[k] = hexapod_6ucu_joint_margins(model, X + NQ*(i + k), margins + NJ*(i + k));
             }
         }
-        failed += record(codes, LANES, status ? status + i : NULL);
-    }
-    for (; i < n; ++i) {
-        const int code = hexapod_6ucu_joint_margins(model, X + NQ*i, margins + NJ*i);
-        failed += record(&code, 1, status ? status + i : NULL);
+        failed += record(codes, w, status ? status + i : NULL);
     }
     return failed;
 }
 
-int hexapod_6ucu_within_limits(const hexapod_6ucu_model *model, const hexapod_6ucu_real *X,
-    hexapod_6ucu_real *within)
+int hexapod_6ucu_within_limits(const prepared *model, const real *X, real *within)
 {
     int code;
     within_limits_one(model, X, within, &code);
     return code;
 }
 
-size_t hexapod_6ucu_within_limits_batch(const hexapod_6ucu_model *model, size_t n, const
-    hexapod_6ucu_real *X, hexapod_6ucu_real *within, int *status)
+size_t hexapod_6ucu_within_limits_batch(const prepared *model, size_t n, const real *X, real
+    *within, int *status)
 {
-    size_t failed = 0, i = 0;
-    for (; LANES > 1 && i + LANES <= n; i += LANES) {
-        int codes[LANES];
-        within_limits_lanes(model, X + NQ*i, within + i, codes);
-        for (size_t k = 0; k < LANES; ++k) {
+    size_t failed = 0, w;
+    for (size_t i = 0; i < n; i += w) {
+        int codes[LANES] = {INVALID};
+        w = LANES > 1 && i + LANES <= n ? LANES : 1;
+        if (w > 1) {
+            within_limits_lanes(model, X + NQ*i, within + i, codes);
+        }
+        for (size_t k = 0; k < w; ++k) {
             if (codes[k] != OK) {
                 codes[k] = hexapod_6ucu_within_limits(model, X + NQ*(i + k), within + (i + k));
             }
         }
-        failed += record(codes, LANES, status ? status + i : NULL);
-    }
-    for (; i < n; ++i) {
-        const int code = hexapod_6ucu_within_limits(model, X + NQ*i, within + i);
-        failed += record(&code, 1, status ? status + i : NULL);
+        failed += record(codes, w, status ? status + i : NULL);
     }
     return failed;
 }
 
-int hexapod_6ucu_actuator_positions(const hexapod_6ucu_model *model, const hexapod_6ucu_real *X,
-    hexapod_6ucu_real *q)
+int hexapod_6ucu_actuator_positions(const prepared *model, const real *X, real *q)
 {
     int code;
     actuator_positions_one(model, X, q, &code);
     return code;
 }
 
-size_t hexapod_6ucu_actuator_positions_batch(const hexapod_6ucu_model *model, size_t n, const
-    hexapod_6ucu_real *X, hexapod_6ucu_real *q, int *status)
+size_t hexapod_6ucu_actuator_positions_batch(const prepared *model, size_t n, const real *X, real
+    *q, int *status)
 {
-    size_t failed = 0, i = 0;
-    for (; LANES > 1 && i + LANES <= n; i += LANES) {
-        int codes[LANES];
-        actuator_positions_lanes(model, X + NQ*i, q + NU*i, codes);
-        for (size_t k = 0; k < LANES; ++k) {
+    size_t failed = 0, w;
+    for (size_t i = 0; i < n; i += w) {
+        int codes[LANES] = {INVALID};
+        w = LANES > 1 && i + LANES <= n ? LANES : 1;
+        if (w > 1) {
+            actuator_positions_lanes(model, X + NQ*i, q + NU*i, codes);
+        }
+        for (size_t k = 0; k < w; ++k) {
             if (codes[k] != OK) {
                 codes[k] = hexapod_6ucu_actuator_positions(model, X + NQ*(i + k), q + NU*(i + k));
             }
         }
-        failed += record(codes, LANES, status ? status + i : NULL);
-    }
-    for (; i < n; ++i) {
-        const int code = hexapod_6ucu_actuator_positions(model, X + NQ*i, q + NU*i);
-        failed += record(&code, 1, status ? status + i : NULL);
+        failed += record(codes, w, status ? status + i : NULL);
     }
     return failed;
 }
 
-int hexapod_6ucu_actuator_rates(const hexapod_6ucu_model *model, const hexapod_6ucu_real *X, const
-    hexapod_6ucu_real *V, hexapod_6ucu_real *rates)
+int hexapod_6ucu_actuator_rates(const prepared *model, const real *X, const real *V, real *rates)
 {
     int code;
     actuator_rates_one(model, X, V, rates, &code);
     return code;
 }
 
-size_t hexapod_6ucu_actuator_rates_batch(const hexapod_6ucu_model *model, size_t n, const
-    hexapod_6ucu_real *X, const hexapod_6ucu_real *V, hexapod_6ucu_real *rates, int *status)
+size_t hexapod_6ucu_actuator_rates_batch(const prepared *model, size_t n, const real *X, const
+    real *V, real *rates, int *status)
 {
-    size_t failed = 0, i = 0;
-    for (; LANES > 1 && i + LANES <= n; i += LANES) {
-        int codes[LANES];
-        actuator_rates_lanes(model, X + NQ*i, V + NV*i, rates + NU*i, codes);
-        for (size_t k = 0; k < LANES; ++k) {
+    size_t failed = 0, w;
+    for (size_t i = 0; i < n; i += w) {
+        int codes[LANES] = {INVALID};
+        w = LANES > 1 && i + LANES <= n ? LANES : 1;
+        if (w > 1) {
+            actuator_rates_lanes(model, X + NQ*i, V + NV*i, rates + NU*i, codes);
+        }
+        for (size_t k = 0; k < w; ++k) {
             if (codes[k] != OK) {
                 codes[k] = hexapod_6ucu_actuator_rates(model, X + NQ*(i + k), V + NV*(i + k), rates + NU*(i + k));
             }
         }
-        failed += record(codes, LANES, status ? status + i : NULL);
-    }
-    for (; i < n; ++i) {
-        const int code = hexapod_6ucu_actuator_rates(model, X + NQ*i, V + NV*i, rates + NU*i);
-        failed += record(&code, 1, status ? status + i : NULL);
+        failed += record(codes, w, status ? status + i : NULL);
     }
     return failed;
 }
 
-int hexapod_6ucu_actuator_accelerations(const hexapod_6ucu_model *model, const hexapod_6ucu_real
-    *X, const hexapod_6ucu_real *V, const hexapod_6ucu_real *A, hexapod_6ucu_real *accelerations)
+int hexapod_6ucu_actuator_accelerations(const prepared *model, const real *X, const real *V, const
+    real *A, real *accelerations)
 {
     int code;
     actuator_accelerations_one(model, X, V, A, accelerations, &code);
     return code;
 }
 
-size_t hexapod_6ucu_actuator_accelerations_batch(const hexapod_6ucu_model *model, size_t n, const
-    hexapod_6ucu_real *X, const hexapod_6ucu_real *V, const hexapod_6ucu_real *A,
-    hexapod_6ucu_real *accelerations, int *status)
+size_t hexapod_6ucu_actuator_accelerations_batch(const prepared *model, size_t n, const real *X,
+    const real *V, const real *A, real *accelerations, int *status)
 {
-    size_t failed = 0, i = 0;
-    for (; LANES > 1 && i + LANES <= n; i += LANES) {
-        int codes[LANES];
-        actuator_accelerations_lanes(model, X + NQ*i, V + NV*i, A + NV*i, accelerations + NU*i, codes);
-        for (size_t k = 0; k < LANES; ++k) {
+    size_t failed = 0, w;
+    for (size_t i = 0; i < n; i += w) {
+        int codes[LANES] = {INVALID};
+        w = LANES > 1 && i + LANES <= n ? LANES : 1;
+        if (w > 1) {
+            actuator_accelerations_lanes(model, X + NQ*i, V + NV*i, A + NV*i, accelerations + NU*i, codes);
+        }
+        for (size_t k = 0; k < w; ++k) {
             if (codes[k] != OK) {
                 codes[k] = hexapod_6ucu_actuator_accelerations(model, X + NQ*(i + k), V + NV*(i + k), A + NV*(i +
                     k), accelerations + NU*(i + k));
             }
         }
-        failed += record(codes, LANES, status ? status + i : NULL);
-    }
-    for (; i < n; ++i) {
-        const int code = hexapod_6ucu_actuator_accelerations(model, X + NQ*i, V + NV*i, A + NV*i,
-            accelerations + NU*i);
-        failed += record(&code, 1, status ? status + i : NULL);
+        failed += record(codes, w, status ? status + i : NULL);
     }
     return failed;
 }
 
-int hexapod_6ucu_power(const hexapod_6ucu_model *model, const hexapod_6ucu_real *X, const
-    hexapod_6ucu_real *V, const hexapod_6ucu_real *tau, hexapod_6ucu_real *power)
+int hexapod_6ucu_power(const prepared *model, const real *X, const real *V, const real *tau, real
+    *power)
 {
     int code;
     power_one(model, X, V, tau, power, &code);
     return code;
 }
 
-size_t hexapod_6ucu_power_batch(const hexapod_6ucu_model *model, size_t n, const hexapod_6ucu_real
-    *X, const hexapod_6ucu_real *V, const hexapod_6ucu_real *tau, hexapod_6ucu_real *power, int
-    *status)
+size_t hexapod_6ucu_power_batch(const prepared *model, size_t n, const real *X, const real *V,
+    const real *tau, real *power, int *status)
 {
-    size_t failed = 0, i = 0;
-    for (; LANES > 1 && i + LANES <= n; i += LANES) {
-        int codes[LANES];
-        power_lanes(model, X + NQ*i, V + NV*i, tau + NU*i, power + i, codes);
-        for (size_t k = 0; k < LANES; ++k) {
+    size_t failed = 0, w;
+    for (size_t i = 0; i < n; i += w) {
+        int codes[LANES] = {INVALID};
+        w = LANES > 1 && i + LANES <= n ? LANES : 1;
+        if (w > 1) {
+            power_lanes(model, X + NQ*i, V + NV*i, tau + NU*i, power + i, codes);
+        }
+        for (size_t k = 0; k < w; ++k) {
             if (codes[k] != OK) {
                 codes[k] = hexapod_6ucu_power(model, X + NQ*(i + k), V + NV*(i + k), tau + NU*(i + k), power + (i
                     + k));
             }
         }
-        failed += record(codes, LANES, status ? status + i : NULL);
-    }
-    for (; i < n; ++i) {
-        const int code = hexapod_6ucu_power(model, X + NQ*i, V + NV*i, tau + NU*i, power + i);
-        failed += record(&code, 1, status ? status + i : NULL);
+        failed += record(codes, w, status ? status + i : NULL);
     }
     return failed;
 }
 
-int hexapod_6ucu_rotation(const hexapod_6ucu_real *X, hexapod_6ucu_real *R)
+int hexapod_6ucu_rotation(const real *X, real *R)
 {
     int code;
     rotation_one(X, R, &code);
     return code;
 }
 
-size_t hexapod_6ucu_rotation_batch(size_t n, const hexapod_6ucu_real *X, hexapod_6ucu_real *R, int
-    *status)
+size_t hexapod_6ucu_rotation_batch(size_t n, const real *X, real *R, int *status)
 {
-    size_t failed = 0, i = 0;
-    for (; i < n; ++i) {
+    size_t failed = 0;
+    for (size_t i = 0; i < n; ++i) {
         const int code = hexapod_6ucu_rotation(X + NQ*i, R + 9*i);
         failed += record(&code, 1, status ? status + i : NULL);
     }
     return failed;
 }
 
-int hexapod_6ucu_pose(const hexapod_6ucu_real *t, const hexapod_6ucu_real *R, hexapod_6ucu_real
-    *X)
+int hexapod_6ucu_pose(const real *t, const real *R, real *X)
 {
     int code;
     pose_one(t, R, X, &code);
     return code;
 }
 
-size_t hexapod_6ucu_pose_batch(size_t n, const hexapod_6ucu_real *t, const hexapod_6ucu_real *R,
-    hexapod_6ucu_real *X, int *status)
+size_t hexapod_6ucu_pose_batch(size_t n, const real *t, const real *R, real *X, int *status)
 {
-    size_t failed = 0, i = 0;
-    for (; i < n; ++i) {
+    size_t failed = 0;
+    for (size_t i = 0; i < n; ++i) {
         const int code = hexapod_6ucu_pose(t + 3*i, R + 9*i, X + NQ*i);
         failed += record(&code, 1, status ? status + i : NULL);
     }
     return failed;
 }
 
-int hexapod_6ucu_X_dot(const hexapod_6ucu_real *X, const hexapod_6ucu_real *V, hexapod_6ucu_real
-    *X_dot)
+int hexapod_6ucu_X_dot(const real *X, const real *V, real *X_dot)
 {
     int code;
     X_dot_one(X, V, X_dot, &code);
     return code;
 }
 
-size_t hexapod_6ucu_X_dot_batch(size_t n, const hexapod_6ucu_real *X, const hexapod_6ucu_real *V,
-    hexapod_6ucu_real *X_dot, int *status)
+size_t hexapod_6ucu_X_dot_batch(size_t n, const real *X, const real *V, real *X_dot, int *status)
 {
-    size_t failed = 0, i = 0;
-    for (; i < n; ++i) {
+    size_t failed = 0;
+    for (size_t i = 0; i < n; ++i) {
         const int code = hexapod_6ucu_X_dot(X + NQ*i, V + NV*i, X_dot + NQ*i);
         failed += record(&code, 1, status ? status + i : NULL);
     }
     return failed;
 }
 
-int hexapod_6ucu_pose_from_rpy(const hexapod_6ucu_real *t, const hexapod_6ucu_real *rpy,
-    hexapod_6ucu_real *X)
+int hexapod_6ucu_pose_from_rpy(const real *t, const real *rpy, real *X)
 {
     int code;
     pose_from_rpy_one(t, rpy, X, &code);
     return code;
 }
 
-size_t hexapod_6ucu_pose_from_rpy_batch(size_t n, const hexapod_6ucu_real *t, const
-    hexapod_6ucu_real *rpy, hexapod_6ucu_real *X, int *status)
+size_t hexapod_6ucu_pose_from_rpy_batch(size_t n, const real *t, const real *rpy, real *X, int
+    *status)
 {
-    size_t failed = 0, i = 0;
-    for (; i < n; ++i) {
+    size_t failed = 0;
+    for (size_t i = 0; i < n; ++i) {
         const int code = hexapod_6ucu_pose_from_rpy(t + 3*i, rpy + 3*i, X + NQ*i);
         failed += record(&code, 1, status ? status + i : NULL);
     }
     return failed;
 }
 
-int hexapod_6ucu_retract(const hexapod_6ucu_real *X, const hexapod_6ucu_real *step,
-    hexapod_6ucu_real *X_moved)
+int hexapod_6ucu_retract(const real *X, const real *step, real *X_moved)
 {
     int code;
     retract_one(X, step, X_moved, &code);
     return code;
 }
 
-size_t hexapod_6ucu_retract_batch(size_t n, const hexapod_6ucu_real *X, const hexapod_6ucu_real
-    *step, hexapod_6ucu_real *X_moved, int *status)
+size_t hexapod_6ucu_retract_batch(size_t n, const real *X, const real *step, real *X_moved, int
+    *status)
 {
-    size_t failed = 0, i = 0;
-    for (; i < n; ++i) {
+    size_t failed = 0;
+    for (size_t i = 0; i < n; ++i) {
         const int code = hexapod_6ucu_retract(X + NQ*i, step + NV*i, X_moved + NQ*i);
         failed += record(&code, 1, status ? status + i : NULL);
     }
     return failed;
 }
 
-int hexapod_6ucu_difference(const hexapod_6ucu_real *X0, const hexapod_6ucu_real *X1,
-    hexapod_6ucu_real *step)
+int hexapod_6ucu_difference(const real *X0, const real *X1, real *step)
 {
     int code;
     difference_one(X0, X1, step, &code);
     return code;
 }
 
-size_t hexapod_6ucu_difference_batch(size_t n, const hexapod_6ucu_real *X0, const
-    hexapod_6ucu_real *X1, hexapod_6ucu_real *step, int *status)
+size_t hexapod_6ucu_difference_batch(size_t n, const real *X0, const real *X1, real *step, int
+    *status)
 {
-    size_t failed = 0, i = 0;
-    for (; i < n; ++i) {
+    size_t failed = 0;
+    for (size_t i = 0; i < n; ++i) {
         const int code = hexapod_6ucu_difference(X0 + NQ*i, X1 + NQ*i, step + NV*i);
         failed += record(&code, 1, status ? status + i : NULL);
     }
     return failed;
 }
 
-int hexapod_6ucu_interpolate(const hexapod_6ucu_real *X0, const hexapod_6ucu_real *X1, const
-    hexapod_6ucu_real *s, hexapod_6ucu_real *X)
+int hexapod_6ucu_interpolate(const real *X0, const real *X1, const real *s, real *X)
 {
     int code;
     interpolate_one(X0, X1, s, X, &code);
     return code;
 }
 
-size_t hexapod_6ucu_interpolate_batch(size_t n, const hexapod_6ucu_real *X0, const
-    hexapod_6ucu_real *X1, const hexapod_6ucu_real *s, hexapod_6ucu_real *X, int *status)
+size_t hexapod_6ucu_interpolate_batch(size_t n, const real *X0, const real *X1, const real *s,
+    real *X, int *status)
 {
-    size_t failed = 0, i = 0;
-    for (; i < n; ++i) {
+    size_t failed = 0;
+    for (size_t i = 0; i < n; ++i) {
         const int code = hexapod_6ucu_interpolate(X0 + NQ*i, X1 + NQ*i, s + i, X + NQ*i);
         failed += record(&code, 1, status ? status + i : NULL);
     }

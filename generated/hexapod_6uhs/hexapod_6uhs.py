@@ -61,6 +61,7 @@ __all__ = [
     "joint_margins",
     "joint_rates",
     "leg_reactions",
+    "manipulability",
     "momentum",
     "null_space",
     "pose",
@@ -68,6 +69,7 @@ __all__ = [
     "power",
     "retract",
     "rotation",
+    "singularity_distance",
     "within_limits",
 ]
 
@@ -636,18 +638,18 @@ def _prepare(p):
     uhs_d_phi_3_in_axes3_yz = inv_uhs_joint3_pitch*uhs_h_3_in_spec3_y
     # (uhs-Jc_2) inertia tensor of the links from 2 outwards about joint 2, that of the last link about the connection point
     uhs_Jc_2_in_axes2_xx = uhs_J_2_in_spec2_xx + uhs_J_3_in_spec3_xx
-    # (uhs-trace_J_3) half the trace of that inertia tensor
-    uhs_trace_J_3 = 0.5*uhs_J_3_in_spec3_xx + 0.5*uhs_J_3_in_spec3_yy + 0.5*uhs_J_3_in_spec3_zz
     # (uhs-Sigma_3) second moment of mass of the links that turn with link 3
-    uhs_Sigma_3_in_axes3_xx = uhs_trace_J_3 - uhs_J_3_in_spec3_yy
-    uhs_Sigma_3_in_axes3_yy = uhs_trace_J_3 - uhs_J_3_in_spec3_zz
-    uhs_Sigma_3_in_axes3_zz = uhs_trace_J_3 - uhs_J_3_in_spec3_xx
-    # (uhs-trace_J_2) half the trace of that inertia tensor
-    uhs_trace_J_2 = 0.5*uhs_J_2_in_spec2_xx + 0.5*uhs_J_2_in_spec2_yy + 0.5*uhs_J_2_in_spec2_zz
+    uhs_Sigma_3_t = uhs_J_3_in_spec3_xx + uhs_J_3_in_spec3_yy + uhs_J_3_in_spec3_zz
+    uhs_Sigma_3_t_2 = 0.5*uhs_Sigma_3_t
+    uhs_Sigma_3_in_axes3_xx = uhs_Sigma_3_t_2 - uhs_J_3_in_spec3_yy
+    uhs_Sigma_3_in_axes3_yy = uhs_Sigma_3_t_2 - uhs_J_3_in_spec3_zz
+    uhs_Sigma_3_in_axes3_zz = uhs_Sigma_3_t_2 - uhs_J_3_in_spec3_xx
     # (uhs-Sigma_2) second moment of mass of the links that turn with link 2
-    uhs_Sigma_2_in_axes2_xx = uhs_trace_J_2 - uhs_J_2_in_spec2_xx
-    uhs_Sigma_2_in_axes2_yy = uhs_trace_J_2 - uhs_J_2_in_spec2_zz
-    uhs_Sigma_2_in_axes2_zz = uhs_trace_J_2 - uhs_J_2_in_spec2_yy
+    uhs_Sigma_2_t = uhs_J_2_in_spec2_xx + uhs_J_2_in_spec2_yy + uhs_J_2_in_spec2_zz
+    uhs_Sigma_2_t_2 = 0.5*uhs_Sigma_2_t
+    uhs_Sigma_2_in_axes2_xx = uhs_Sigma_2_t_2 - uhs_J_2_in_spec2_xx
+    uhs_Sigma_2_in_axes2_yy = uhs_Sigma_2_t_2 - uhs_J_2_in_spec2_zz
+    uhs_Sigma_2_in_axes2_zz = uhs_Sigma_2_t_2 - uhs_J_2_in_spec2_yy
     # (uhs-mu_2) inertia moment of the links that turn with link 2, about their reference points
     uhs_mu_2_t = (
     gravity_x*uhs_base_frame_xx + gravity_y*uhs_base_frame_yx + gravity_z*uhs_base_frame_zx
@@ -943,6 +945,24 @@ def _constants(p, name):
     return p._cache[name]
 
 
+class _Vector(list):
+    """A vector, or a matrix row by row, of a single state."""
+
+    def __add__(self, other):
+        return _Vector([a + b for a, b in zip(self, other)])
+
+    def __sub__(self, other):
+        return _Vector([a - b for a, b in zip(self, other)])
+
+    def __neg__(self):
+        return _Vector([-a for a in self])
+
+
+def _are_finite(rows):
+    """Whether lists of floats have finite entries alone."""
+    return math.isfinite(sum(map(sum, rows))) or all(all(map(math.isfinite, row)) for row in rows)
+
+
 class _Floats:
     """Functions of a state after another, in Python floats: the way for few states."""
 
@@ -972,11 +992,32 @@ class _Floats:
         """Lists that a function gives at a state."""
         try:
             ok, arrays = function(self, *given)
-        except (ZeroDivisionError, OverflowError, ValueError):
+        except (ArithmeticError, ValueError):
             ok = False
-        if ok and all(all(map(math.isfinite, array)) for array in arrays):
+        if ok and _are_finite(arrays):
             return arrays
         return [[np.nan] * math.prod(_SHAPES[n]) for n in names]
+
+    def solved(self, order, a, b):
+        """Solutions, straight through; and which are beyond doubt."""
+        sure, x = np.zeros(self.states, dtype=bool), np.full(b.shape, np.nan)
+        for k, given in enumerate(zip(a.T.tolist(), b.T.tolist())):
+            try:
+                sure[k], (x[:, k],) = order(self, *given)
+            except ZeroDivisionError:
+                pass
+        return sure, x
+
+
+class _Single(_Floats):
+    """A single state in lists of floats throughout."""
+
+    def run(self, function, names, *vectors):
+        """Arrays of a function, row by row; ArithmeticError or ValueError where the state is impossible."""
+        ok, arrays = function(self, *vectors)
+        if not (ok and _are_finite(arrays)):
+            raise ArithmeticError
+        return [_Vector(a) for a in arrays]
 
 
 class _Arrays:
@@ -1006,20 +1047,27 @@ class _Arrays:
     def zeros(self, name):
         return np.zeros((math.prod(_SHAPES[name]), self.states))
 
-    def computed(self, function, names, vectors):
-        """Flags and arrays (*shape, states) of a function."""
+    def computed(self, function, *vectors):
+        """Flags and arrays (entries, states) of a function."""
         if self.kept is None:
-            flags, arrays = function(self, *vectors)
-        else:
-            if self.done not in self.kept:
-                self.kept[self.done] = _Replay(self.p, function, [len(v) for v in vectors], self.states)
-            flags, arrays = self.kept[self.done].run(vectors)
-            self.done += 1
-        return flags, [a.reshape(*_SHAPES[n], self.states) for a, n in zip(arrays, names)]
+            return function(self, *vectors)
+        if self.done not in self.kept:
+            self.kept[self.done] = _Replay(self.p, function, [len(v) for v in vectors], self.states)
+        self.done += 1
+        return self.kept[self.done - 1].run(vectors)
+
+    def shaped(self, names, arrays):
+        return [a.reshape(*_SHAPES[n], self.states) for a, n in zip(arrays, names)]
+
+    def solved(self, order, a, b):
+        """Solutions, straight through; and which are beyond doubt."""
+        sure, (x,) = self.computed(order, a, b)
+        return sure, np.array(x)
 
     def run(self, function, names, *vectors):
         """Arrays (*shape, states) of a function; NaN where the state is impossible."""
-        ok, arrays = self.computed(function, names, vectors)
+        ok, arrays = self.computed(function, *vectors)
+        arrays = self.shaped(names, arrays)
         ok = np.logical_and(ok, _finite(arrays, self.states))
         if not np.all(ok):
             for a in arrays:
@@ -1036,10 +1084,10 @@ class _Judged(_Arrays):
 
     def run(self, function, names, *vectors):
         """Arrays (*shape, states) of a function, also where they are nonsense."""
-        (valid, reached, clear), arrays = self.computed(function, names, vectors)
+        (valid, reached, clear), arrays = self.computed(function, *vectors)
         for code, good in ((3, valid), (1, reached), (2, clear)):
             self.failed[code] |= np.logical_not(good)
-        return arrays
+        return self.shaped(names, arrays)
 
     def closed(self, q):
         """q, noting where the iteration has not converged."""
@@ -1051,26 +1099,90 @@ class _Judged(_Arrays):
         return np.select(list(self.failed.values()), list(self.failed), np.where(possible, 0, 3))
 
 
+_IN_ONE = {}  # by function
+
+
+def _in_one(function):
+    """A function that tells whether a state is possible, of one that tells why not."""
+
+    def run(m, *vectors):
+        (valid, reached, clear), arrays = function(m, *vectors)
+        return valid & reached & clear, arrays
+
+    return _IN_ONE.setdefault(function, run)
+
+
 def _mode(p, states, kept=None):
     """The faster way for so many states."""
     return (_Floats if 0 < states <= _FEW else _Arrays)(p, states, kept)
 
 
-def _call(function, steps, p, *arguments, mode=_mode, unbounded=False):
+def _call(function, steps, p, *arguments, mode=_mode, unbounded=False, plain=()):
     """What the steps give at arguments (name, value, shape of a state, default, rule).
 
-    Where that may be infinite only NaN makes a state impossible.
+    Where that may be infinite only NaN makes a state impossible.  `plain` has the shapes of results
+    where a single state needs no arrays.
     """
+    p, read = _given(p), [a[-1] != "unused" for a in arguments]
+    lists = plain and _lists(arguments)
+    if lists:
+        found = _state(_Single(p, 1), steps, lists, read)
+        results = [_result(a, shape) for a, shape in zip(found or plain, plain)]
+        return results[0] if len(results) == 1 else tuple(results)
     given = [_argument(function, *a) for a in arguments]
     shapes = [a[2] for a in arguments]
     leads = {a[0]: v.shape[: v.ndim - len(a[2])] for a, v in zip(arguments, given)}
-    lead, p = _lead(leads), _given(p)
-    read = [a[4:] != ("unused",) for a in arguments]
-    if lead or mode is _Judged:
+    lead = _lead(leads)
+    if plain and 0 < math.prod(lead) <= _FEW:
+        results = _few(steps, p, lead, given, shapes, read, plain)
+    elif lead or mode is _Judged:
         results = _many(steps, p, lead, given, shapes, read, mode, unbounded)
     else:
         results = _one(steps, p, given, shapes, read, unbounded)
     return results[0] if len(results) == 1 else tuple(results)
+
+
+def _lists(arguments):
+    """Arguments of a single state as lists, where they are such arrays as they mostly are."""
+    found = []
+    for row in arguments:
+        value, shape = row[1:3]
+        if type(value) is np.ndarray:
+            if value.shape != shape or value.dtype is not _REAL or row[-1] == "positive":
+                return None
+            found.append(_Vector(value.tolist()))
+        elif value is None and len(row) > 3 and row[3] is not None:
+            found.append(_Vector(row[3] if isinstance(row[3], tuple) else [row[3]] * shape[0]))
+        else:
+            return None
+    return found
+
+
+def _state(m, steps, given, read):
+    """Lists that the steps give at a state; None where it is impossible."""
+    try:
+        found = steps(m, *given)
+    except (ArithmeticError, ValueError):
+        return None
+    return found if _are_finite(list(compress(given, read))) and _are_finite(found) else None
+
+
+def _result(found, shape):
+    """The array of a list; of an impossible state, for which its shape is given, NaN."""
+    if found is shape:
+        return np.full(shape, np.nan)
+    return np.array(found) if len(shape) == 1 else np.array(found).reshape(shape)
+
+
+def _few(steps, p, lead, given, shapes, read, plain):
+    """Results at a few states, one after another."""
+    m, rows = _Single(p, 1), []
+    for v, shape in zip(given, shapes):
+        flat = np.broadcast_to(v, lead + shape).reshape(math.prod(lead), -1)
+        rows.append(map(_Vector, flat.tolist()))
+    impossible = [[np.nan] * math.prod(shape) for shape in plain]
+    found = [_state(m, steps, state, read) or impossible for state in zip(*rows)]
+    return [np.array(a).reshape(lead + shape) for a, shape in zip(zip(*found), plain)]
 
 
 def _one(steps, p, given, shapes, read, unbounded):
@@ -1089,7 +1201,11 @@ def _many(steps, p, lead, given, shapes, read, mode, unbounded):
     """Results at many states, block by block; the last block begins where it is as long as the others."""
     count = math.prod(lead)
     size, kept = min(count, _BLOCK), {} if count >= _MANY else None
-    flat = [np.broadcast_to(v, lead + s).reshape(count, *s) for v, s in zip(given, shapes)]
+    # one value for all states stands for itself
+    flat = [
+        np.broadcast_to(v, lead + s).reshape(count, *s) if v.ndim > len(s) else v
+        for v, s in zip(given, shapes)
+    ]
     possible, status, outputs = np.ones(count, dtype=bool), np.zeros(count, dtype=int), []
     if count > size:
         # Never touched, freed at once: the C library, which learns from it, then keeps the memory
@@ -1098,7 +1214,7 @@ def _many(steps, p, lead, given, shapes, read, mode, unbounded):
     with np.errstate(all="ignore"):
         for stop in (*range(size, count, max(size, 1)), count):
             block = slice(stop - size, stop)
-            states = [_states_last(v[block]) for v in flat]
+            states = [_states_last(v, s, block) for v, s in zip(flat, shapes)]
             m, good = mode(p, size, kept), possible[block]
             found = steps(m, *states)
             if not outputs:
@@ -1118,15 +1234,17 @@ def _many(steps, p, lead, given, shapes, read, mode, unbounded):
     return [a.reshape(lead + a.shape[1:])[()] for a in outputs]
 
 
-def _states_last(a):
-    """A contiguous array (*shape, states) of one (states, *shape)."""
-    return np.ascontiguousarray(a.transpose(*range(1, a.ndim), 0))
+def _states_last(a, shape, block):
+    """An array (*shape, states) of a block of one (states, *shape), or of a value for all."""
+    if a.ndim == len(shape):
+        return np.broadcast_to(a[..., None], (*shape, block.stop - block.start))
+    return np.ascontiguousarray(a[block].transpose(*range(1, a.ndim), 0))
 
 
 def _finite(arrays, states):
     """In which states all entries of arrays (*shape, states) are finite."""
     flat = [a.reshape(math.prod(a.shape[:-1]), states) for a in arrays]
-    good = np.isfinite(sum(np.add.reduce(a, axis=0) for a in flat))
+    good = np.isfinite(sum(np.einsum("es->s", a) for a in flat))
     if not np.all(good):  # or the sum is too large
         good = np.logical_and.reduce([np.isfinite(a).all(axis=0) for a in flat])
     return good
@@ -1235,6 +1353,8 @@ class _Record:
 
     def made(self, operation, *operands):
         """The result of an operation."""
+        if operation in _WITHOUT and operands[0] is _WITHOUT[operation]:
+            return operands[1]
         numbers = [self.number(operand) for operand in operands]
         if all(self.kinds[n] == "one" for n in numbers):
             kind = "one"
@@ -1271,6 +1391,7 @@ class _Record:
         return counts
 
 
+_WITHOUT = {np.logical_and: True}  # first operands that change nothing
 _OF_FLAGS = {np.logical_and, np.greater, np.greater_equal}
 _RECORDS = {}  # by function
 
@@ -1282,11 +1403,12 @@ class _Replay:
         if function not in _RECORDS:
             _RECORDS[function] = _Record(p, function, sizes)
         r = _RECORDS[function]
-        made = {kind: _rows(n, states, bool if kind == "flag" else float) for kind, n in r.counts.items()}
-        made["one"] = [np.empty(()) for _ in range(r.counts["one"])]
-        made["out"] = _rows(sum(r.sizes), states)
-        self.inputs = [_rows(size, states) for size in sizes]
-        self.arrays = np.split(made["out"], np.cumsum(r.sizes)[:-1])
+        rows = _rows(r.counts["state"] + sum(r.sizes) + sum(sizes), states)
+        given, out, state = np.split(rows, np.cumsum((sum(sizes), sum(r.sizes))))
+        made = {"state": state, "out": out, "one": [np.empty(()) for _ in range(r.counts["one"])]}
+        made["flag"] = np.empty((r.counts["flag"], states), dtype=bool)
+        self.inputs = np.split(given, np.cumsum(sizes)[:-1])
+        self.arrays = np.split(out, np.cumsum(r.sizes)[:-1])
         at = {number: np.array(value) for value, number in r.literals.items()}
         for values, given in zip(r.inputs, self.inputs):
             at |= {v.number: row for v, row in zip(values, given)}
@@ -1308,9 +1430,26 @@ class _Replay:
         return self.flags, self.arrays
 
 
-def _rows(count, states, kind=float):
-    """Rows of so many states, a cache line apart from each other."""
-    return np.empty((count, states + 8), dtype=kind)[:, :states]
+def _rows(count, states):
+    """Rows of so many states in one piece, which the system keeps in a few large pages if it is told.
+
+    NumPy tells it of pieces from 4 MB on.  It makes operations a third faster.
+    """
+    row = states + 8  # a cache line further: rows do not compete for the same places of the cache
+    piece = np.empty(max(count * row, 2 * _PAGE) + _PAGE)
+    start = -(piece.ctypes.data // piece.itemsize) % _PAGE
+    return piece[start : start + count * row].reshape(count, row)[:, :states]
+
+
+_PAGE = (2 << 20) // 8  # numbers in a large page
+
+
+def _times(a, b):
+    """Products of matrices (m, n, states) with vectors (n, states)."""
+    if isinstance(b, _Vector):
+        rows = (a[k : k + len(b)] for k in range(0, len(a), len(b)))
+        return _Vector([sum([x * y for x, y in zip(row, b)]) for row in rows])
+    return np.einsum("ijs,js->is", a, b)
 
 
 def _with_forces(a, amounts, directions, legs):
@@ -1431,8 +1570,10 @@ _CLEARLY = 2.0  # rows change places only for a pivot that is larger by this fac
 
 def _solve(a, b):
     """x with a x = b, a (n, n, states), b (n, states): rows scaled, partial pivoting; NaN if singular."""
+    if isinstance(b, _Vector):
+        return _Vector(_solve_one([a[k : k + len(b)] for k in range(0, len(a), len(b))], b))
     n, states = b.shape
-    if 0 < states <= _FEW:
+    if 0 < states <= 8:
         systems = zip(a.transpose(2, 0, 1).tolist(), b.T.tolist())
         return np.array([_solve_one(*each) for each in systems]).T.reshape(n, states)
     size = np.max(np.abs(a), axis=1, initial=0.0)
@@ -1457,6 +1598,38 @@ def _solve(a, b):
         known = np.einsum("js,js->s", rows[k, k + 1 : n], x[k + 1 :])
         x[k] = (rows[k, n] - known) / rows[k, k]
     x[:, ~(good & np.isfinite(x).all(axis=0))] = np.nan
+    return x
+
+
+class _Order:
+    """How a system is solved near home.
+
+    Args:
+        solve: the function for so many equations.
+        rows: in the order of their pivots.
+        limits: of multiples, column by column, and of 1/pivot.
+    """
+
+    def __init__(self, solve, rows, limits):
+        self.solve, self.rows, self.limits = solve, rows, limits
+
+    def __call__(self, m, a, b):
+        """Solutions of a x = b, and whether these are beyond doubt."""
+        return self.solve(a, b, self.rows, self.limits)
+
+
+def _straight(m, a, b, order):
+    """The same, in the order of rows at home; with a choice of rows only where that is in doubt."""
+    if isinstance(b, _Vector):
+        try:
+            sure, (x,) = order(m, a, b)
+        except ZeroDivisionError:
+            sure = False
+        return _Vector(x) if sure else _solve(a, b)
+    sure, x = m.solved(order, a.reshape(-1, m.states), b)
+    at = np.flatnonzero(np.logical_not(sure))
+    if at.size:
+        x[:, at] = _solve(a[..., at], b[:, at])
     return x
 
 
@@ -1513,6 +1686,16 @@ def _singular_values(a):
     values = np.linalg.svd(a, compute_uv=False).T.copy()
     values[:, bad] = np.nan
     return values
+
+
+def _least_entry(a):
+    """The least entry."""
+    return np.min(a, axis=0)
+
+
+def _spread(a, n):
+    """Of the first n entries the product, and the last over the first, 0 where that is 0."""
+    return np.prod(a[:n], axis=0), np.where(a[0] == 0.0, 0.0, a[n - 1] / a[0])
 
 
 def _least_squares(a, b, least):
@@ -1766,36 +1949,34 @@ def _run_dynamics(m, X, V):
         uhs_base_frame_xy*uhs_h_3_t + uhs_base_frame_yy*uhs_h_3_t_2 +
             uhs_base_frame_zy*uhs_h_3_t_3
         )
-        uhs_h_3_t_6 = uhs_h_3_t_4*uhs_h_3_t_4 + uhs_h_3_t_5*uhs_h_3_t_5
-        uhs_h_3_t_7 = (
+        uhs_h_3_t_6 = (
         uhs_base_frame_xz*uhs_h_3_t + uhs_base_frame_yz*uhs_h_3_t_2 +
             uhs_base_frame_zz*uhs_h_3_t_3
         )
-        uhs_h_3_t_8 = uhs_h_3_t_6 + uhs_h_3_t_7*uhs_h_3_t_7
+        uhs_h_3_t_7 = uhs_h_3_t_4*uhs_h_3_t_4 + uhs_h_3_t_5*uhs_h_3_t_5
+        uhs_h_3_t_8 = uhs_h_3_t_6*uhs_h_3_t_6 + uhs_h_3_t_7
         uhs_h_3_t_9 = uhs_branch_2*sqrt(uhs_h_3_t_8)
         uhs_h_3_t_10 = uhs_h_3_t_9 - uhs_joint3_offset_x
         uhs_h_3_t_11 = inv_uhs_joint3_pitch*(uhs_platform_joint_offset_x - uhs_h_3_t_10)
-        uhs_e_2_in_axes3_y = sin(uhs_h_3_t_11)
         uhs_e_2_in_axes3_x = cos(uhs_h_3_t_11)
-        uhs_h_3_in_axes2_y = (
-        uhs_e_2_in_axes3_y*uhs_h_3_in_spec3_y - uhs_e_2_in_axes3_x*uhs_h_3_in_spec3_z
+        uhs_h_3_t_12 = -sin(uhs_h_3_t_11)
+        uhs_h_3_in_spec2_z = (
+        uhs_e_2_in_axes3_x*uhs_h_3_in_spec3_z + uhs_h_3_in_spec3_y*uhs_h_3_t_12
         )
         # (uhs-J_3) inertia tensor of link 3 about the connection point
         uhs_J_3_in_axes2_xz = (
-        uhs_J_3_in_spec3_xy*uhs_e_2_in_axes3_x + uhs_J_3_in_spec3_xz*uhs_e_2_in_axes3_y
+        uhs_J_3_in_spec3_xy*uhs_e_2_in_axes3_x - uhs_J_3_in_spec3_xz*uhs_h_3_t_12
         )
         # (uhs-root_1) root, with the sign of the branch
-        uhs_root_1 = uhs_branch_1*sqrt(uhs_h_3_t_6)
+        uhs_root_1 = uhs_branch_1*sqrt(uhs_h_3_t_7)
         # (uhs-c_1) cosine of the angle of joint 1 from its reference direction
-        inv_uhs_h_3_t_6 = 1.0/uhs_h_3_t_6
-        uhs_c_1 = -inv_uhs_h_3_t_6*uhs_h_3_t_5*uhs_root_1
+        inv_uhs_h_3_t_7 = 1.0/uhs_h_3_t_7
+        uhs_c_1 = inv_uhs_h_3_t_7*uhs_h_3_t_4*uhs_root_1
         # (uhs-s_1) sine of the angle of joint 1 from its reference direction
-        uhs_s_1 = inv_uhs_h_3_t_6*uhs_h_3_t_4*uhs_root_1
+        uhs_s_1 = inv_uhs_h_3_t_7*uhs_h_3_t_5*uhs_root_1
         # (uhs-c_2) cosine of the angle of joint 2 from its reference direction
         inv_uhs_h_3_t_8 = 1.0/uhs_h_3_t_8
-        uhs_c_2 = -inv_uhs_h_3_t_8*uhs_h_3_t_9*uhs_root_1
-        # (uhs-s_2) sine of the angle of joint 2 from its reference direction
-        uhs_s_2 = inv_uhs_h_3_t_8*uhs_h_3_t_7*uhs_h_3_t_9
+        uhs_c_2 = inv_uhs_h_3_t_8*uhs_h_3_t_9*uhs_root_1
         # (uhs-S_dot) velocity of the connection point
         uhs_S_dot_t = omega_y*uhs_q_z - omega_z*uhs_q_y
         uhs_S_dot_t_2 = omega_z*uhs_q_x - omega_x*uhs_q_z
@@ -1804,25 +1985,21 @@ def _run_dynamics(m, X, V):
         uhs_S_dot_y = t_dot_y + uhs_S_dot_t_2
         uhs_S_dot_z = t_dot_z + uhs_S_dot_t_3
         # (uhs-v_1) velocity of the connection point per rate of joint 1
-        uhs_e_1_in_axes3_x = uhs_c_2*uhs_e_2_in_axes3_y
-        uhs_e_1_in_axes3_y = -uhs_c_2*uhs_e_2_in_axes3_x
+        uhs_e_1_in_axes3_x = uhs_c_2*uhs_h_3_t_12
+        uhs_e_1_in_axes3_y = uhs_c_2*uhs_e_2_in_axes3_x
         uhs_v_1_in_axes3_x = uhs_e_1_in_axes3_y*uhs_h_3_t_9
-        uhs_v_1_in_axes3_y = -uhs_e_1_in_axes3_x*uhs_h_3_t_9
-        uhs_v_1_in_axes2_y = (
-        uhs_e_2_in_axes3_y*uhs_v_1_in_axes3_x - uhs_e_2_in_axes3_x*uhs_v_1_in_axes3_y
-        )
-        uhs_v_1_in_axes2_z = (
-        uhs_e_2_in_axes3_x*uhs_v_1_in_axes3_x + uhs_e_2_in_axes3_y*uhs_v_1_in_axes3_y
-        )
+        uhs_v_1_t = uhs_e_1_in_axes3_x*uhs_h_3_t_9
+        uhs_v_1_in_axes2_z = uhs_e_2_in_axes3_x*uhs_v_1_in_axes3_x + uhs_h_3_t_12*uhs_v_1_t
+        uhs_v_1_t_2 = uhs_h_3_t_12*uhs_v_1_in_axes3_x - uhs_e_2_in_axes3_x*uhs_v_1_t
         # (uhs-w_1) reciprocal vector 1
         inv_uhs_v_1_in_axes2_z = 1.0/uhs_v_1_in_axes2_z
         uhs_w_1_in_axes3_x = inv_uhs_v_1_in_axes2_z*uhs_e_2_in_axes3_x
-        uhs_w_1_in_axes3_y = inv_uhs_v_1_in_axes2_z*uhs_e_2_in_axes3_y
+        uhs_w_1_in_axes3_y = -inv_uhs_v_1_in_axes2_z*uhs_h_3_t_12
         # (uhs-w_2) reciprocal vector 2
         inv_uhs_h_3_t_9 = 1.0/uhs_h_3_t_9
-        uhs_w_2_t = inv_uhs_h_3_t_9*inv_uhs_v_1_in_axes2_z*uhs_v_1_in_axes2_y
-        uhs_w_2_in_axes3_x = inv_uhs_h_3_t_9*uhs_e_2_in_axes3_y - uhs_e_2_in_axes3_x*uhs_w_2_t
-        uhs_w_2_in_axes3_y = -inv_uhs_h_3_t_9*uhs_e_2_in_axes3_x - uhs_e_2_in_axes3_y*uhs_w_2_t
+        uhs_w_2_t = inv_uhs_h_3_t_9*inv_uhs_v_1_in_axes2_z*uhs_v_1_t_2
+        uhs_w_2_in_axes3_x = uhs_e_2_in_axes3_x*uhs_w_2_t - inv_uhs_h_3_t_9*uhs_h_3_t_12
+        uhs_w_2_in_axes3_y = -inv_uhs_h_3_t_9*uhs_e_2_in_axes3_x - uhs_h_3_t_12*uhs_w_2_t
         # (uhs-w_3) reciprocal vector 3
         axis_z_uhs_axes3_x = inv_uhs_h_3_t_9*uhs_h_3_t
         axis_z_uhs_axes3_y = inv_uhs_h_3_t_9*uhs_h_3_t_2
@@ -1839,27 +2016,27 @@ def _run_dynamics(m, X, V):
         uhs_S_dot_x*uhs_base_frame_xy + uhs_S_dot_y*uhs_base_frame_yy +
             uhs_S_dot_z*uhs_base_frame_zy
         )
-        uhs_qd_1 = inv_uhs_v_1_in_axes2_z*(uhs_c_1*uhs_qd_1_t + uhs_qd_1_t_2*uhs_s_1)
+        uhs_qd_1 = inv_uhs_v_1_in_axes2_z*(uhs_c_1*uhs_qd_1_t_2 - uhs_qd_1_t*uhs_s_1)
         # (uhs-qd_2) rate of joint 2
+        uhs_e_1_in_axes3_z = inv_uhs_h_3_t_8*uhs_h_3_t_6*uhs_h_3_t_9
         uhs_qd_2_t = (
         uhs_S_dot_x*uhs_base_frame_xz + uhs_S_dot_y*uhs_base_frame_yz +
             uhs_S_dot_z*uhs_base_frame_zz
         )
-        uhs_qd_2_t_2 = uhs_qd_1_t*uhs_s_1 - uhs_c_1*uhs_qd_1_t_2
+        uhs_qd_2_t_2 = uhs_c_1*uhs_qd_1_t + uhs_qd_1_t_2*uhs_s_1
         uhs_qd_2 = (
-        inv_uhs_h_3_t_9*(uhs_c_2*uhs_qd_2_t + uhs_qd_2_t_2*uhs_s_2 - uhs_qd_1*uhs_v_1_in_axes2_y)
+        inv_uhs_h_3_t_9*(uhs_e_1_in_axes3_z*uhs_qd_2_t_2 + uhs_qd_1*uhs_v_1_t_2 -
+            uhs_c_2*uhs_qd_2_t)
         )
         # (uhs-qd_3) rate of joint 3
-        uhs_qd_3 = inv_uhs_joint3_pitch*(uhs_qd_2_t*uhs_s_2 - uhs_c_2*uhs_qd_2_t_2)
+        uhs_qd_3 = inv_uhs_joint3_pitch*(uhs_c_2*uhs_qd_2_t_2 + uhs_e_1_in_axes3_z*uhs_qd_2_t)
         # (uhs-omega_1) angular velocity of link 1
-        uhs_omega_1_in_axes2_x = uhs_qd_1*uhs_s_2
-        uhs_omega_1_in_axes2_y = uhs_c_2*uhs_qd_1
+        uhs_omega_1_in_axes2_x = uhs_e_1_in_axes3_z*uhs_qd_1
+        uhs_omega_1_in_axes2_y = -uhs_c_2*uhs_qd_1
         # (uhs-omega_2) angular velocity of link 2
-        uhs_omega_2_in_axes3_x = (
-        uhs_e_2_in_axes3_x*uhs_qd_2 + uhs_e_2_in_axes3_y*uhs_omega_1_in_axes2_y
-        )
+        uhs_omega_2_in_axes3_x = uhs_e_2_in_axes3_x*uhs_qd_2 - uhs_h_3_t_12*uhs_omega_1_in_axes2_y
         uhs_omega_2_in_axes3_y = (
-        uhs_e_2_in_axes3_y*uhs_qd_2 - uhs_e_2_in_axes3_x*uhs_omega_1_in_axes2_y
+        -uhs_e_2_in_axes3_x*uhs_omega_1_in_axes2_y - uhs_h_3_t_12*uhs_qd_2
         )
         # (uhs-W_2) centripetal tensor of link 2
         uhs_W_2_in_axes2_yz = uhs_omega_1_in_axes2_y*uhs_qd_2
@@ -1875,9 +2052,9 @@ def _run_dynamics(m, X, V):
         uhs_W_3_in_axes3_xz = uhs_omega_2_in_axes3_x*uhs_omega_3_in_axes3_z
         uhs_W_3_in_axes3_yz = uhs_omega_2_in_axes3_y*uhs_omega_3_in_axes3_z
         # (uhs-u_1) centripetal acceleration of the connection point
-        uhs_u_1_t = uhs_e_2_in_axes3_x*uhs_s_2
-        uhs_u_1_t_2 = uhs_c_1*uhs_e_2_in_axes3_y - uhs_s_1*uhs_u_1_t
-        uhs_u_1_t_3 = uhs_c_1*uhs_u_1_t + uhs_e_2_in_axes3_y*uhs_s_1
+        uhs_u_1_t = uhs_e_1_in_axes3_z*uhs_e_2_in_axes3_x
+        uhs_u_1_t_2 = uhs_h_3_t_12*uhs_s_1 - uhs_c_1*uhs_u_1_t
+        uhs_u_1_t_3 = -uhs_c_1*uhs_h_3_t_12 - uhs_s_1*uhs_u_1_t
         axis_y_uhs_axes3_x = (
         uhs_base_frame_xx*uhs_u_1_t_2 + uhs_base_frame_xy*uhs_u_1_t_3 +
             uhs_base_frame_xz*uhs_e_1_in_axes3_y
@@ -1912,13 +2089,13 @@ def _run_dynamics(m, X, V):
         axis_z_uhs_axes3_x*uhs_u_1_x + axis_z_uhs_axes3_y*uhs_u_1_y + axis_z_uhs_axes3_z*uhs_u_1_z
         )
         # (uhs-zeta_2) angular acceleration of link 2 from the turning of axis 2
-        uhs_zeta_2_t = uhs_W_2_in_axes2_xz*uhs_e_2_in_axes3_y
+        uhs_zeta_2_in_axes3_x = uhs_W_2_in_axes2_xz*uhs_h_3_t_12
         uhs_zeta_2_in_axes3_y = uhs_W_2_in_axes2_xz*uhs_e_2_in_axes3_x
         # (uhs-zeta_3) angular acceleration of link 3 from the turning of axis 3
         uhs_zeta_3_in_axes3_x = uhs_omega_2_in_axes3_y*uhs_qd_3
         uhs_zeta_3_in_axes3_y = -uhs_omega_2_in_axes3_x*uhs_qd_3
         # (uhs-beta_3) angular acceleration of link 3 at zero joint accelerations
-        uhs_beta_3_in_axes3_x = uhs_zeta_3_in_axes3_x - uhs_zeta_2_t
+        uhs_beta_3_in_axes3_x = uhs_zeta_2_in_axes3_x + uhs_zeta_3_in_axes3_x
         uhs_beta_3_in_axes3_y = uhs_zeta_2_in_axes3_y + uhs_zeta_3_in_axes3_y
         # (uhs-bias) acceleration of the connection point at zero joint accelerations
         uhs_bias_t_2 = uhs_bias_t*uhs_qd_3
@@ -1929,8 +2106,8 @@ def _run_dynamics(m, X, V):
         )
         uhs_bias_in_axes3_y = (
         uhs_h_3_t_10*(uhs_W_3_in_axes3_yz - uhs_beta_3_in_axes3_x) +
-            uhs_joint3_offset_x*(uhs_zeta_2_t + uhs_omega_1_in_axes2_x*uhs_omega_2_in_axes3_y) -
-            uhs_bias_t_2*uhs_omega_2_in_axes3_x
+            uhs_joint3_offset_x*(uhs_omega_1_in_axes2_x*uhs_omega_2_in_axes3_y -
+            uhs_zeta_2_in_axes3_x) - uhs_bias_t_2*uhs_omega_2_in_axes3_x
         )
         uhs_bias_in_axes3_z = -uhs_W_2_t_3*uhs_h_3_t_10 - uhs_W_2_t_3*uhs_joint3_offset_x
         # (uhs-rel_o) remainder without the acceleration in: acceleration of the connection point left to the joint accelerations
@@ -1939,17 +2116,17 @@ def _run_dynamics(m, X, V):
         uhs_rel_o_in_axes3_z = uhs_u_1_in_axes3_z - uhs_bias_in_axes3_z
         # (uhs-qdd_1_o) remainder without the acceleration in: acceleration of joint 1
         uhs_qdd_1_o = (
-        inv_uhs_v_1_in_axes2_z*(uhs_e_2_in_axes3_x*uhs_rel_o_in_axes3_x +
-            uhs_e_2_in_axes3_y*uhs_rel_o_in_axes3_y)
+        inv_uhs_v_1_in_axes2_z*(uhs_e_2_in_axes3_x*uhs_rel_o_in_axes3_x -
+            uhs_h_3_t_12*uhs_rel_o_in_axes3_y)
         )
         # (uhs-qdd_2_o) remainder without the acceleration in: acceleration of joint 2
         uhs_qdd_2_o = (
-        -inv_uhs_h_3_t_9*(uhs_e_2_in_axes3_x*uhs_rel_o_in_axes3_y + uhs_qdd_1_o*uhs_v_1_in_axes2_y
-            - uhs_e_2_in_axes3_y*uhs_rel_o_in_axes3_x)
+        inv_uhs_h_3_t_9*(uhs_qdd_1_o*uhs_v_1_t_2 - uhs_e_2_in_axes3_x*uhs_rel_o_in_axes3_y -
+            uhs_h_3_t_12*uhs_rel_o_in_axes3_x)
         )
         # (uhs-alpha_1_o) remainder without the acceleration in: angular acceleration of link 1
-        uhs_alpha_1_o_in_axes2_x = uhs_qdd_1_o*uhs_s_2
-        uhs_alpha_1_o_in_axes2_y = uhs_c_2*uhs_qdd_1_o
+        uhs_alpha_1_o_in_axes2_x = uhs_e_1_in_axes3_z*uhs_qdd_1_o
+        uhs_alpha_1_o_in_axes2_y = -uhs_c_2*uhs_qdd_1_o
         # (uhs-alpha_2_o) remainder without the acceleration in: angular acceleration of link 2
         uhs_alpha_2_o_in_axes2_x = uhs_W_2_in_axes2_yz + uhs_alpha_1_o_in_axes2_x
         uhs_alpha_2_o_in_axes2_y = uhs_alpha_1_o_in_axes2_y - uhs_W_2_in_axes2_xz
@@ -1959,15 +2136,15 @@ def _run_dynamics(m, X, V):
         uhs_B_2_o_in_axes2_zx = uhs_W_2_in_axes2_xz - uhs_alpha_2_o_in_axes2_y
         uhs_B_2_o_in_axes2_zy = uhs_W_2_in_axes2_yz + uhs_alpha_2_o_in_axes2_x
         # (uhs-d_alpha_3) coefficient of the acceleration in: angular acceleration of link 3
-        uhs_d_alpha_3_in_axes3_zy = uhs_s_2*uhs_w_1_in_axes3_y
+        uhs_d_alpha_3_in_axes3_zy = uhs_e_1_in_axes3_z*uhs_w_1_in_axes3_y
         # (uhs-alpha_3_o) remainder without the acceleration in: angular acceleration of link 3
         uhs_alpha_3_o_in_axes3_x = (
-        uhs_zeta_3_in_axes3_x + uhs_alpha_2_o_in_axes2_y*uhs_e_2_in_axes3_y +
-            uhs_e_2_in_axes3_x*uhs_qdd_2_o
+        uhs_zeta_3_in_axes3_x + uhs_e_2_in_axes3_x*uhs_qdd_2_o -
+            uhs_alpha_2_o_in_axes2_y*uhs_h_3_t_12
         )
         uhs_alpha_3_o_in_axes3_y = (
-        uhs_zeta_3_in_axes3_y + uhs_e_2_in_axes3_y*uhs_qdd_2_o -
-            uhs_alpha_2_o_in_axes2_y*uhs_e_2_in_axes3_x
+        uhs_zeta_3_in_axes3_y - uhs_alpha_2_o_in_axes2_y*uhs_e_2_in_axes3_x -
+            uhs_h_3_t_12*uhs_qdd_2_o
         )
         uhs_alpha_3_o_in_axes3_z = (
         uhs_alpha_2_o_in_axes2_x + inv_uhs_joint3_pitch*uhs_rel_o_in_axes3_z
@@ -1994,21 +2171,22 @@ def _run_dynamics(m, X, V):
         )
         # (uhs-D_1_3) inertia of joint 3 along joint 1
         uhs_D_1_3 = (
-        uhs_J_3_in_spec3_xx*uhs_s_2 + uhs_J_3_in_spec3_xy*uhs_e_1_in_axes3_x +
+        uhs_J_3_in_spec3_xx*uhs_e_1_in_axes3_z + uhs_J_3_in_spec3_xy*uhs_e_1_in_axes3_x +
             uhs_J_3_in_spec3_xz*uhs_e_1_in_axes3_y
         )
         # (uhs-Jc_2) inertia tensor of the links from 2 outwards about joint 2, that of the last link about the connection point
-        uhs_Jc_2_t = uhs_J_3_in_spec3_yz*uhs_e_2_in_axes3_x
-        uhs_Jc_2_t_2 = uhs_J_3_in_spec3_yy*uhs_e_2_in_axes3_y - uhs_Jc_2_t
-        uhs_Jc_2_t_3 = uhs_J_3_in_spec3_yz*uhs_e_2_in_axes3_y
-        uhs_Jc_2_t_4 = uhs_Jc_2_t_3 - uhs_J_3_in_spec3_zz*uhs_e_2_in_axes3_x
+        uhs_Jc_2_t = uhs_J_3_in_spec3_yz*uhs_h_3_t_12
+        uhs_Jc_2_t_2 = uhs_J_3_in_spec3_yz*uhs_e_2_in_axes3_x
+        uhs_Jc_2_t_3 = uhs_Jc_2_t_2 + uhs_J_3_in_spec3_yy*uhs_h_3_t_12
+        uhs_Jc_2_t_4 = uhs_Jc_2_t + uhs_J_3_in_spec3_zz*uhs_e_2_in_axes3_x
         uhs_Jc_2_in_axes2_xy = (
-        uhs_J_3_in_spec3_xy*uhs_e_2_in_axes3_y - uhs_J_2_in_spec2_xz -
+        -uhs_J_2_in_spec2_xz - uhs_J_3_in_spec3_xy*uhs_h_3_t_12 -
             uhs_J_3_in_spec3_xz*uhs_e_2_in_axes3_x
         )
-        uhs_Jc_2_in_axes1_xz = (
-        uhs_c_2*(uhs_Jc_2_t_2*uhs_e_2_in_axes3_x + uhs_Jc_2_t_4*uhs_e_2_in_axes3_y -
-            uhs_J_2_in_spec2_yz) + uhs_s_2*(uhs_J_2_in_spec2_xy + uhs_J_3_in_axes2_xz)
+        uhs_Jc_2_in_axes1_yz = (
+        uhs_e_1_in_axes3_z*(uhs_J_2_in_spec2_xy + uhs_J_3_in_axes2_xz) -
+            uhs_c_2*(uhs_Jc_2_t_4*uhs_h_3_t_12 - uhs_J_2_in_spec2_yz -
+            uhs_Jc_2_t_3*uhs_e_2_in_axes3_x)
         )
         # (uhs-mu_3_o) remainder without the acceleration in: inertia moment of the links that turn with link 3, about their reference points
         uhs_mu_3_o_t = uhs_omega_3_in_axes3_z*uhs_omega_3_in_axes3_z
@@ -2037,10 +2215,10 @@ def _run_dynamics(m, X, V):
         uhs_mu_2_o_t = uhs_omega_1_in_axes2_x*uhs_omega_1_in_axes2_x
         uhs_mu_2_o_t_2 = uhs_omega_1_in_axes2_y*uhs_omega_1_in_axes2_y
         uhs_mu_2_o_t_3 = uhs_qd_2*uhs_qd_2
-        uhs_g_in_axes2_z = uhs_c_1*uhs_mu_2_t + uhs_mu_2_t_2*uhs_s_1
-        uhs_mu_2_o_t_4 = uhs_c_1*uhs_mu_2_t_2 - uhs_mu_2_t*uhs_s_1
-        uhs_g_in_axes2_x = uhs_c_2*uhs_mu_2_o_t_4 + uhs_mu_2_t_3*uhs_s_2
-        uhs_g_in_axes2_y = uhs_c_2*uhs_mu_2_t_3 - uhs_mu_2_o_t_4*uhs_s_2
+        uhs_mu_2_o_t_4 = uhs_c_1*uhs_mu_2_t + uhs_mu_2_t_2*uhs_s_1
+        uhs_g_in_axes2_z = uhs_c_1*uhs_mu_2_t_2 - uhs_mu_2_t*uhs_s_1
+        uhs_g_in_axes2_x = uhs_c_2*uhs_mu_2_o_t_4 + uhs_e_1_in_axes3_z*uhs_mu_2_t_3
+        uhs_g_in_axes2_y = uhs_e_1_in_axes3_z*uhs_mu_2_o_t_4 - uhs_c_2*uhs_mu_2_t_3
         uhs_mu_2_o_in_axes2_x = (
         uhs_B_2_o_in_axes2_yx*uhs_J_2_in_spec2_xy + uhs_B_2_o_in_axes2_zx*uhs_J_2_in_spec2_xz +
             uhs_B_2_o_in_axes2_zy*uhs_Sigma_2_in_axes2_yy +
@@ -2065,67 +2243,69 @@ def _run_dynamics(m, X, V):
         # (uhs-N_2_o) remainder without the acceleration in: moment about joint 2 of the links from 2 outwards, the force at the connection point left out
         uhs_N_2_o_in_axes2_x = uhs_mu_2_o_in_axes2_x + uhs_mu_3_o_in_axes3_z
         uhs_N_2_o_in_axes2_y = (
-        uhs_mu_2_o_in_axes2_y + uhs_e_2_in_axes3_y*uhs_mu_3_o_in_axes3_x -
-            uhs_e_2_in_axes3_x*uhs_mu_3_o_in_axes3_y
+        uhs_mu_2_o_in_axes2_y - uhs_e_2_in_axes3_x*uhs_mu_3_o_in_axes3_y -
+            uhs_h_3_t_12*uhs_mu_3_o_in_axes3_x
         )
         uhs_N_2_o_in_axes2_z = (
-        uhs_mu_2_o_in_axes2_z + uhs_e_2_in_axes3_x*uhs_mu_3_o_in_axes3_x +
-            uhs_e_2_in_axes3_y*uhs_mu_3_o_in_axes3_y
+        uhs_mu_2_o_in_axes2_z + uhs_e_2_in_axes3_x*uhs_mu_3_o_in_axes3_x -
+            uhs_h_3_t_12*uhs_mu_3_o_in_axes3_y
         )
         # (uhs-d_Gamma_2) coefficient of the acceleration in: moment about axis 2 of the distal links' inertia and weight
         uhs_d_Gamma_2_t = (
-        inv_uhs_h_3_t_9*(uhs_J_2_in_spec2_yy + uhs_e_2_in_axes3_x*(uhs_Jc_2_t_3 +
-            uhs_J_3_in_spec3_yy*uhs_e_2_in_axes3_x) + uhs_e_2_in_axes3_y*(uhs_Jc_2_t +
-            uhs_J_3_in_spec3_zz*uhs_e_2_in_axes3_y))
+        inv_uhs_h_3_t_9*(uhs_J_2_in_spec2_yy +
+            uhs_e_2_in_axes3_x*(uhs_J_3_in_spec3_yy*uhs_e_2_in_axes3_x - uhs_Jc_2_t) -
+            uhs_h_3_t_12*(uhs_Jc_2_t_2 - uhs_J_3_in_spec3_zz*uhs_h_3_t_12))
         )
-        uhs_d_Gamma_2_in_axes2_z = (
-        inv_uhs_v_1_in_axes2_z*(uhs_Jc_2_in_axes1_xz - uhs_d_Gamma_2_t*uhs_v_1_in_axes2_y)
+        uhs_d_Gamma_2_t_2 = (
+        inv_uhs_v_1_in_axes2_z*(-uhs_Jc_2_in_axes1_yz - uhs_d_Gamma_2_t*uhs_v_1_t_2)
         )
-        uhs_d_Gamma_2_in_axes2_x = inv_uhs_joint3_pitch*uhs_J_3_in_axes2_xz - uhs_h_3_in_axes2_y
+        uhs_d_Gamma_2_in_axes2_x = uhs_h_3_in_spec2_z + inv_uhs_joint3_pitch*uhs_J_3_in_axes2_xz
         uhs_d_Gamma_2_in_axes2_y = uhs_d_Gamma_2_t + uhs_h_3_in_spec3_x
         uhs_d_Gamma_2_in_axes3_y = (
-        uhs_d_Gamma_2_in_axes2_z*uhs_e_2_in_axes3_y - uhs_d_Gamma_2_in_axes2_y*uhs_e_2_in_axes3_x
+        uhs_d_Gamma_2_t_2*uhs_h_3_t_12 - uhs_d_Gamma_2_in_axes2_y*uhs_e_2_in_axes3_x
         )
         # (uhs-d_Gamma_1) coefficient of the acceleration in: moment about axis 1 of the distal links' inertia and weight
-        uhs_d_Gamma_1_t = inv_uhs_h_3_t_9*uhs_Jc_2_in_axes1_xz
+        uhs_d_Gamma_1_t = inv_uhs_h_3_t_9*uhs_Jc_2_in_axes1_yz
         uhs_d_Gamma_1_t_2 = (
-        uhs_c_2*(uhs_Jc_2_in_axes2_xy*uhs_s_2 + uhs_c_2*(uhs_J_2_in_spec2_zz +
-            uhs_Jc_2_t_2*uhs_e_2_in_axes3_y - uhs_Jc_2_t_4*uhs_e_2_in_axes3_x)) +
-            uhs_s_2*(uhs_Jc_2_in_axes2_xx*uhs_s_2 + uhs_Jc_2_in_axes2_xy*uhs_c_2) -
-            uhs_d_Gamma_1_t*uhs_v_1_in_axes2_y
+        uhs_c_2*(uhs_c_2*(uhs_J_2_in_spec2_zz + uhs_Jc_2_t_3*uhs_h_3_t_12 +
+            uhs_Jc_2_t_4*uhs_e_2_in_axes3_x) - uhs_Jc_2_in_axes2_xy*uhs_e_1_in_axes3_z) +
+            uhs_d_Gamma_1_t*uhs_v_1_t_2 - uhs_e_1_in_axes3_z*(uhs_Jc_2_in_axes2_xy*uhs_c_2 -
+            uhs_Jc_2_in_axes2_xx*uhs_e_1_in_axes3_z)
         )
         uhs_d_Gamma_1_t_3 = inv_uhs_joint3_pitch*uhs_D_1_3
-        uhs_d_Gamma_1_in_axes1_z = uhs_c_2*uhs_d_Gamma_1_t + uhs_d_Gamma_1_t_3*uhs_s_2
+        uhs_d_Gamma_1_in_axes1_z = uhs_d_Gamma_1_t_3*uhs_e_1_in_axes3_z - uhs_c_2*uhs_d_Gamma_1_t
         uhs_d_Gamma_1_in_axes1_x = (
-        inv_uhs_v_1_in_axes2_z*uhs_d_Gamma_1_t_2 + uhs_h_3_in_axes2_y*uhs_s_2 -
-            uhs_c_2*uhs_h_3_in_spec3_x
+        uhs_c_2*uhs_d_Gamma_1_t_3 + uhs_d_Gamma_1_t*uhs_e_1_in_axes3_z +
+            uhs_h_3_in_spec3_z*uhs_h_3_t_12 - uhs_e_2_in_axes3_x*uhs_h_3_in_spec3_y
         )
         uhs_d_Gamma_1_in_axes1_y = (
-        uhs_c_2*uhs_d_Gamma_1_t_3 + uhs_e_2_in_axes3_x*uhs_h_3_in_spec3_y +
-            uhs_e_2_in_axes3_y*uhs_h_3_in_spec3_z - uhs_d_Gamma_1_t*uhs_s_2
+        inv_uhs_v_1_in_axes2_z*uhs_d_Gamma_1_t_2 + uhs_c_2*uhs_h_3_in_spec3_x -
+            uhs_e_1_in_axes3_z*uhs_h_3_in_spec2_z
         )
         uhs_d_Gamma_1_in_axes3_z = (
-        uhs_c_2*uhs_d_Gamma_1_in_axes1_y + uhs_d_Gamma_1_in_axes1_z*uhs_s_2
+        uhs_c_2*uhs_d_Gamma_1_in_axes1_x + uhs_d_Gamma_1_in_axes1_z*uhs_e_1_in_axes3_z
         )
-        uhs_d_Gamma_1_t_4 = uhs_c_2*uhs_d_Gamma_1_in_axes1_z - uhs_d_Gamma_1_in_axes1_y*uhs_s_2
+        uhs_d_Gamma_1_t_4 = (
+        uhs_d_Gamma_1_in_axes1_x*uhs_e_1_in_axes3_z - uhs_c_2*uhs_d_Gamma_1_in_axes1_z
+        )
         uhs_d_Gamma_1_in_axes3_y = (
-        uhs_d_Gamma_1_in_axes1_x*uhs_e_2_in_axes3_y - uhs_d_Gamma_1_t_4*uhs_e_2_in_axes3_x
+        -uhs_d_Gamma_1_in_axes1_y*uhs_h_3_t_12 - uhs_d_Gamma_1_t_4*uhs_e_2_in_axes3_x
         )
         # (uhs-d_c) coefficient of the acceleration in: leg force on the platform without actuation and without the mass at the connection point
         uhs_d_c_in_axes3_xx = (
-        uhs_h_3_in_spec3_z*uhs_s_2*uhs_w_1_in_axes3_x -
-            uhs_h_3_in_spec3_x*(uhs_e_1_in_axes3_y*uhs_w_1_in_axes3_x +
-            uhs_e_2_in_axes3_y*uhs_w_2_in_axes3_x) -
-            uhs_w_1_in_axes3_x*(uhs_d_Gamma_1_in_axes1_x*uhs_e_2_in_axes3_x +
-            uhs_d_Gamma_1_t_4*uhs_e_2_in_axes3_y) -
-            uhs_w_2_in_axes3_x*(uhs_d_Gamma_2_in_axes2_y*uhs_e_2_in_axes3_y +
-            uhs_d_Gamma_2_in_axes2_z*uhs_e_2_in_axes3_x)
+        uhs_e_1_in_axes3_z*uhs_h_3_in_spec3_z*uhs_w_1_in_axes3_x -
+            uhs_h_3_in_spec3_x*(uhs_e_1_in_axes3_y*uhs_w_1_in_axes3_x -
+            uhs_h_3_t_12*uhs_w_2_in_axes3_x) -
+            uhs_w_1_in_axes3_x*(uhs_d_Gamma_1_in_axes1_y*uhs_e_2_in_axes3_x -
+            uhs_d_Gamma_1_t_4*uhs_h_3_t_12) -
+            uhs_w_2_in_axes3_x*(-uhs_d_Gamma_2_in_axes2_y*uhs_h_3_t_12 -
+            uhs_d_Gamma_2_t_2*uhs_e_2_in_axes3_x)
         )
         uhs_d_c_in_axes3_xy = (
         uhs_d_alpha_3_in_axes3_zy*uhs_h_3_in_spec3_z - uhs_d_Gamma_1_in_axes3_y*uhs_w_1_in_axes3_x
             - uhs_d_Gamma_2_in_axes3_y*uhs_w_2_in_axes3_x -
-            uhs_h_3_in_spec3_x*(uhs_e_1_in_axes3_y*uhs_w_1_in_axes3_y +
-            uhs_e_2_in_axes3_y*uhs_w_2_in_axes3_y)
+            uhs_h_3_in_spec3_x*(uhs_e_1_in_axes3_y*uhs_w_1_in_axes3_y -
+            uhs_h_3_t_12*uhs_w_2_in_axes3_y)
         )
         uhs_d_c_in_axes3_xz = (
         uhs_d_phi_3_t - uhs_d_Gamma_1_in_axes3_z*uhs_w_1_in_axes3_x -
@@ -2138,18 +2318,18 @@ def _run_dynamics(m, X, V):
         # (uhs-c_o) remainder without the acceleration in: leg force on the platform without actuation and without the mass at the connection point
         uhs_c_o_t = inv_uhs_h_3_t_9*uhs_N_2_o_in_axes2_z
         uhs_c_o_t_2 = (
-        inv_uhs_v_1_in_axes2_z*(uhs_c_o_t*uhs_v_1_in_axes2_y - uhs_N_2_o_in_axes2_x*uhs_s_2 -
+        inv_uhs_v_1_in_axes2_z*(uhs_N_2_o_in_axes2_x*uhs_e_1_in_axes3_z + uhs_c_o_t*uhs_v_1_t_2 -
             uhs_N_2_o_in_axes2_y*uhs_c_2)
         )
         uhs_c_o_in_axes3_x = (
-        uhs_c_o_t_2*uhs_e_2_in_axes3_x + uhs_h_3_in_spec3_y*(uhs_W_2_t_2 + uhs_mu_3_o_t) -
+        uhs_c_o_t*uhs_h_3_t_12 + uhs_h_3_in_spec3_y*(uhs_W_2_t_2 + uhs_mu_3_o_t) -
             uhs_B_3_o_in_axes3_xy*uhs_h_3_in_spec3_z - uhs_B_3_o_in_axes3_xz*uhs_h_3_in_spec3_x -
-            uhs_c_o_t*uhs_e_2_in_axes3_y
+            uhs_c_o_t_2*uhs_e_2_in_axes3_x
         )
         uhs_c_o_in_axes3_y = (
-        uhs_c_o_t*uhs_e_2_in_axes3_x + uhs_c_o_t_2*uhs_e_2_in_axes3_y +
-            uhs_h_3_in_spec3_z*(uhs_W_2_t + uhs_mu_3_o_t) -
-            uhs_B_3_o_in_axes3_yx*uhs_h_3_in_spec3_y - uhs_B_3_o_in_axes3_yz*uhs_h_3_in_spec3_x
+        uhs_c_o_t*uhs_e_2_in_axes3_x + uhs_c_o_t_2*uhs_h_3_t_12 + uhs_h_3_in_spec3_z*(uhs_W_2_t +
+            uhs_mu_3_o_t) - uhs_B_3_o_in_axes3_yx*uhs_h_3_in_spec3_y -
+            uhs_B_3_o_in_axes3_yz*uhs_h_3_in_spec3_x
         )
         uhs_c_o_in_axes3_z = (
         uhs_W_2_t_3*uhs_h_3_in_spec3_x - inv_uhs_joint3_pitch*uhs_mu_3_o_in_axes3_z -
@@ -2241,7 +2421,7 @@ def _run_dynamics(m, X, V):
         uhs_H_a_3_y = uhs_q_z*uhs_w_3_x - uhs_q_x*uhs_w_3_z
         uhs_H_a_3_z = uhs_q_x*uhs_w_3_y - uhs_q_y*uhs_w_3_x
         ok = (
-        ok & (abs(uhs_h_3_t_6) > _TOLERANCE * _TOLERANCE * uhs_size_t) & (abs(uhs_h_3_t_8) >
+        ok & (abs(uhs_h_3_t_7) > _TOLERANCE * _TOLERANCE * uhs_size_t) & (abs(uhs_h_3_t_8) >
             _TOLERANCE * _TOLERANCE * uhs_size_t) & (abs(uhs_h_3_t_9) > _TOLERANCE * uhs_size) &
             (abs(uhs_v_1_in_axes2_z) > _TOLERANCE * uhs_size)
         )
@@ -2469,130 +2649,128 @@ def _run_M(m, X):
         uhs_base_frame_xy*uhs_h_3_t + uhs_base_frame_yy*uhs_h_3_t_2 +
             uhs_base_frame_zy*uhs_h_3_t_3
         )
-        uhs_h_3_t_6 = uhs_h_3_t_4*uhs_h_3_t_4 + uhs_h_3_t_5*uhs_h_3_t_5
-        uhs_h_3_t_7 = (
+        uhs_h_3_t_6 = (
         uhs_base_frame_xz*uhs_h_3_t + uhs_base_frame_yz*uhs_h_3_t_2 +
             uhs_base_frame_zz*uhs_h_3_t_3
         )
-        uhs_h_3_t_8 = uhs_h_3_t_6 + uhs_h_3_t_7*uhs_h_3_t_7
+        uhs_h_3_t_7 = uhs_h_3_t_4*uhs_h_3_t_4 + uhs_h_3_t_5*uhs_h_3_t_5
+        uhs_h_3_t_8 = uhs_h_3_t_6*uhs_h_3_t_6 + uhs_h_3_t_7
         uhs_h_3_t_9 = uhs_branch_2*sqrt(uhs_h_3_t_8)
         uhs_h_3_t_10 = uhs_h_3_t_9 - uhs_joint3_offset_x
         uhs_h_3_t_11 = inv_uhs_joint3_pitch*(uhs_platform_joint_offset_x - uhs_h_3_t_10)
-        uhs_e_2_in_axes3_y = sin(uhs_h_3_t_11)
         uhs_e_2_in_axes3_x = cos(uhs_h_3_t_11)
-        uhs_h_3_in_axes2_y = (
-        uhs_e_2_in_axes3_y*uhs_h_3_in_spec3_y - uhs_e_2_in_axes3_x*uhs_h_3_in_spec3_z
+        uhs_h_3_t_12 = -sin(uhs_h_3_t_11)
+        uhs_h_3_in_spec2_z = (
+        uhs_e_2_in_axes3_x*uhs_h_3_in_spec3_z + uhs_h_3_in_spec3_y*uhs_h_3_t_12
         )
         # (uhs-J_3) inertia tensor of link 3 about the connection point
         uhs_J_3_in_axes2_xz = (
-        uhs_J_3_in_spec3_xy*uhs_e_2_in_axes3_x + uhs_J_3_in_spec3_xz*uhs_e_2_in_axes3_y
+        uhs_J_3_in_spec3_xy*uhs_e_2_in_axes3_x - uhs_J_3_in_spec3_xz*uhs_h_3_t_12
         )
         # (uhs-root_1) root, with the sign of the branch
-        uhs_root_1 = uhs_branch_1*sqrt(uhs_h_3_t_6)
+        uhs_root_1 = uhs_branch_1*sqrt(uhs_h_3_t_7)
         # (uhs-c_1) cosine of the angle of joint 1 from its reference direction
-        inv_uhs_h_3_t_6 = 1.0/uhs_h_3_t_6
-        uhs_c_1 = -inv_uhs_h_3_t_6*uhs_h_3_t_5*uhs_root_1
+        inv_uhs_h_3_t_7 = 1.0/uhs_h_3_t_7
+        uhs_c_1 = inv_uhs_h_3_t_7*uhs_h_3_t_4*uhs_root_1
         # (uhs-s_1) sine of the angle of joint 1 from its reference direction
-        uhs_s_1 = inv_uhs_h_3_t_6*uhs_h_3_t_4*uhs_root_1
+        uhs_s_1 = inv_uhs_h_3_t_7*uhs_h_3_t_5*uhs_root_1
         # (uhs-c_2) cosine of the angle of joint 2 from its reference direction
         inv_uhs_h_3_t_8 = 1.0/uhs_h_3_t_8
-        uhs_c_2 = -inv_uhs_h_3_t_8*uhs_h_3_t_9*uhs_root_1
-        # (uhs-s_2) sine of the angle of joint 2 from its reference direction
-        uhs_s_2 = inv_uhs_h_3_t_8*uhs_h_3_t_7*uhs_h_3_t_9
+        uhs_c_2 = inv_uhs_h_3_t_8*uhs_h_3_t_9*uhs_root_1
         # (uhs-v_1) velocity of the connection point per rate of joint 1
-        uhs_e_1_in_axes3_x = uhs_c_2*uhs_e_2_in_axes3_y
-        uhs_e_1_in_axes3_y = -uhs_c_2*uhs_e_2_in_axes3_x
+        uhs_e_1_in_axes3_x = uhs_c_2*uhs_h_3_t_12
+        uhs_e_1_in_axes3_y = uhs_c_2*uhs_e_2_in_axes3_x
         uhs_v_1_in_axes3_x = uhs_e_1_in_axes3_y*uhs_h_3_t_9
-        uhs_v_1_in_axes3_y = -uhs_e_1_in_axes3_x*uhs_h_3_t_9
-        uhs_v_1_in_axes2_y = (
-        uhs_e_2_in_axes3_y*uhs_v_1_in_axes3_x - uhs_e_2_in_axes3_x*uhs_v_1_in_axes3_y
-        )
-        uhs_v_1_in_axes2_z = (
-        uhs_e_2_in_axes3_x*uhs_v_1_in_axes3_x + uhs_e_2_in_axes3_y*uhs_v_1_in_axes3_y
-        )
+        uhs_v_1_t = uhs_e_1_in_axes3_x*uhs_h_3_t_9
+        uhs_v_1_in_axes2_z = uhs_e_2_in_axes3_x*uhs_v_1_in_axes3_x + uhs_h_3_t_12*uhs_v_1_t
+        uhs_v_1_t_2 = uhs_h_3_t_12*uhs_v_1_in_axes3_x - uhs_e_2_in_axes3_x*uhs_v_1_t
         # (uhs-w_1) reciprocal vector 1
         inv_uhs_v_1_in_axes2_z = 1.0/uhs_v_1_in_axes2_z
         uhs_w_1_in_axes3_x = inv_uhs_v_1_in_axes2_z*uhs_e_2_in_axes3_x
-        uhs_w_1_in_axes3_y = inv_uhs_v_1_in_axes2_z*uhs_e_2_in_axes3_y
+        uhs_w_1_in_axes3_y = -inv_uhs_v_1_in_axes2_z*uhs_h_3_t_12
         # (uhs-w_2) reciprocal vector 2
         inv_uhs_h_3_t_9 = 1.0/uhs_h_3_t_9
-        uhs_w_2_t = inv_uhs_h_3_t_9*inv_uhs_v_1_in_axes2_z*uhs_v_1_in_axes2_y
-        uhs_w_2_in_axes3_x = inv_uhs_h_3_t_9*uhs_e_2_in_axes3_y - uhs_e_2_in_axes3_x*uhs_w_2_t
-        uhs_w_2_in_axes3_y = -inv_uhs_h_3_t_9*uhs_e_2_in_axes3_x - uhs_e_2_in_axes3_y*uhs_w_2_t
+        uhs_w_2_t = inv_uhs_h_3_t_9*inv_uhs_v_1_in_axes2_z*uhs_v_1_t_2
+        uhs_w_2_in_axes3_x = uhs_e_2_in_axes3_x*uhs_w_2_t - inv_uhs_h_3_t_9*uhs_h_3_t_12
+        uhs_w_2_in_axes3_y = -inv_uhs_h_3_t_9*uhs_e_2_in_axes3_x - uhs_h_3_t_12*uhs_w_2_t
         # (uhs-d_alpha_3) coefficient of the acceleration in: angular acceleration of link 3
-        uhs_d_alpha_3_in_axes3_zy = uhs_s_2*uhs_w_1_in_axes3_y
+        uhs_e_1_in_axes3_z = inv_uhs_h_3_t_8*uhs_h_3_t_6*uhs_h_3_t_9
+        uhs_d_alpha_3_in_axes3_zy = uhs_e_1_in_axes3_z*uhs_w_1_in_axes3_y
         # (uhs-D_1_3) inertia of joint 3 along joint 1
         uhs_D_1_3 = (
-        uhs_J_3_in_spec3_xx*uhs_s_2 + uhs_J_3_in_spec3_xy*uhs_e_1_in_axes3_x +
+        uhs_J_3_in_spec3_xx*uhs_e_1_in_axes3_z + uhs_J_3_in_spec3_xy*uhs_e_1_in_axes3_x +
             uhs_J_3_in_spec3_xz*uhs_e_1_in_axes3_y
         )
         # (uhs-Jc_2) inertia tensor of the links from 2 outwards about joint 2, that of the last link about the connection point
-        uhs_Jc_2_t = uhs_J_3_in_spec3_yz*uhs_e_2_in_axes3_x
-        uhs_Jc_2_t_2 = uhs_J_3_in_spec3_yy*uhs_e_2_in_axes3_y - uhs_Jc_2_t
-        uhs_Jc_2_t_3 = uhs_J_3_in_spec3_yz*uhs_e_2_in_axes3_y
-        uhs_Jc_2_t_4 = uhs_Jc_2_t_3 - uhs_J_3_in_spec3_zz*uhs_e_2_in_axes3_x
+        uhs_Jc_2_t = uhs_J_3_in_spec3_yz*uhs_h_3_t_12
+        uhs_Jc_2_t_2 = uhs_J_3_in_spec3_yz*uhs_e_2_in_axes3_x
+        uhs_Jc_2_t_3 = uhs_Jc_2_t_2 + uhs_J_3_in_spec3_yy*uhs_h_3_t_12
+        uhs_Jc_2_t_4 = uhs_Jc_2_t + uhs_J_3_in_spec3_zz*uhs_e_2_in_axes3_x
         uhs_Jc_2_in_axes2_xy = (
-        uhs_J_3_in_spec3_xy*uhs_e_2_in_axes3_y - uhs_J_2_in_spec2_xz -
+        -uhs_J_2_in_spec2_xz - uhs_J_3_in_spec3_xy*uhs_h_3_t_12 -
             uhs_J_3_in_spec3_xz*uhs_e_2_in_axes3_x
         )
-        uhs_Jc_2_in_axes1_xz = (
-        uhs_c_2*(uhs_Jc_2_t_2*uhs_e_2_in_axes3_x + uhs_Jc_2_t_4*uhs_e_2_in_axes3_y -
-            uhs_J_2_in_spec2_yz) + uhs_s_2*(uhs_J_2_in_spec2_xy + uhs_J_3_in_axes2_xz)
+        uhs_Jc_2_in_axes1_yz = (
+        uhs_e_1_in_axes3_z*(uhs_J_2_in_spec2_xy + uhs_J_3_in_axes2_xz) -
+            uhs_c_2*(uhs_Jc_2_t_4*uhs_h_3_t_12 - uhs_J_2_in_spec2_yz -
+            uhs_Jc_2_t_3*uhs_e_2_in_axes3_x)
         )
         # (uhs-d_Gamma_2) coefficient of the acceleration in: moment about axis 2 of the distal links' inertia and weight
         uhs_d_Gamma_2_t = (
-        inv_uhs_h_3_t_9*(uhs_J_2_in_spec2_yy + uhs_e_2_in_axes3_x*(uhs_Jc_2_t_3 +
-            uhs_J_3_in_spec3_yy*uhs_e_2_in_axes3_x) + uhs_e_2_in_axes3_y*(uhs_Jc_2_t +
-            uhs_J_3_in_spec3_zz*uhs_e_2_in_axes3_y))
+        inv_uhs_h_3_t_9*(uhs_J_2_in_spec2_yy +
+            uhs_e_2_in_axes3_x*(uhs_J_3_in_spec3_yy*uhs_e_2_in_axes3_x - uhs_Jc_2_t) -
+            uhs_h_3_t_12*(uhs_Jc_2_t_2 - uhs_J_3_in_spec3_zz*uhs_h_3_t_12))
         )
-        uhs_d_Gamma_2_in_axes2_z = (
-        inv_uhs_v_1_in_axes2_z*(uhs_Jc_2_in_axes1_xz - uhs_d_Gamma_2_t*uhs_v_1_in_axes2_y)
+        uhs_d_Gamma_2_t_2 = (
+        inv_uhs_v_1_in_axes2_z*(-uhs_Jc_2_in_axes1_yz - uhs_d_Gamma_2_t*uhs_v_1_t_2)
         )
-        uhs_d_Gamma_2_in_axes2_x = inv_uhs_joint3_pitch*uhs_J_3_in_axes2_xz - uhs_h_3_in_axes2_y
+        uhs_d_Gamma_2_in_axes2_x = uhs_h_3_in_spec2_z + inv_uhs_joint3_pitch*uhs_J_3_in_axes2_xz
         uhs_d_Gamma_2_in_axes2_y = uhs_d_Gamma_2_t + uhs_h_3_in_spec3_x
         uhs_d_Gamma_2_in_axes3_y = (
-        uhs_d_Gamma_2_in_axes2_z*uhs_e_2_in_axes3_y - uhs_d_Gamma_2_in_axes2_y*uhs_e_2_in_axes3_x
+        uhs_d_Gamma_2_t_2*uhs_h_3_t_12 - uhs_d_Gamma_2_in_axes2_y*uhs_e_2_in_axes3_x
         )
         # (uhs-d_Gamma_1) coefficient of the acceleration in: moment about axis 1 of the distal links' inertia and weight
-        uhs_d_Gamma_1_t = inv_uhs_h_3_t_9*uhs_Jc_2_in_axes1_xz
+        uhs_d_Gamma_1_t = inv_uhs_h_3_t_9*uhs_Jc_2_in_axes1_yz
         uhs_d_Gamma_1_t_2 = (
-        uhs_c_2*(uhs_Jc_2_in_axes2_xy*uhs_s_2 + uhs_c_2*(uhs_J_2_in_spec2_zz +
-            uhs_Jc_2_t_2*uhs_e_2_in_axes3_y - uhs_Jc_2_t_4*uhs_e_2_in_axes3_x)) +
-            uhs_s_2*(uhs_Jc_2_in_axes2_xx*uhs_s_2 + uhs_Jc_2_in_axes2_xy*uhs_c_2) -
-            uhs_d_Gamma_1_t*uhs_v_1_in_axes2_y
+        uhs_c_2*(uhs_c_2*(uhs_J_2_in_spec2_zz + uhs_Jc_2_t_3*uhs_h_3_t_12 +
+            uhs_Jc_2_t_4*uhs_e_2_in_axes3_x) - uhs_Jc_2_in_axes2_xy*uhs_e_1_in_axes3_z) +
+            uhs_d_Gamma_1_t*uhs_v_1_t_2 - uhs_e_1_in_axes3_z*(uhs_Jc_2_in_axes2_xy*uhs_c_2 -
+            uhs_Jc_2_in_axes2_xx*uhs_e_1_in_axes3_z)
         )
         uhs_d_Gamma_1_t_3 = inv_uhs_joint3_pitch*uhs_D_1_3
-        uhs_d_Gamma_1_in_axes1_z = uhs_c_2*uhs_d_Gamma_1_t + uhs_d_Gamma_1_t_3*uhs_s_2
+        uhs_d_Gamma_1_in_axes1_z = uhs_d_Gamma_1_t_3*uhs_e_1_in_axes3_z - uhs_c_2*uhs_d_Gamma_1_t
         uhs_d_Gamma_1_in_axes1_x = (
-        inv_uhs_v_1_in_axes2_z*uhs_d_Gamma_1_t_2 + uhs_h_3_in_axes2_y*uhs_s_2 -
-            uhs_c_2*uhs_h_3_in_spec3_x
+        uhs_c_2*uhs_d_Gamma_1_t_3 + uhs_d_Gamma_1_t*uhs_e_1_in_axes3_z +
+            uhs_h_3_in_spec3_z*uhs_h_3_t_12 - uhs_e_2_in_axes3_x*uhs_h_3_in_spec3_y
         )
         uhs_d_Gamma_1_in_axes1_y = (
-        uhs_c_2*uhs_d_Gamma_1_t_3 + uhs_e_2_in_axes3_x*uhs_h_3_in_spec3_y +
-            uhs_e_2_in_axes3_y*uhs_h_3_in_spec3_z - uhs_d_Gamma_1_t*uhs_s_2
+        inv_uhs_v_1_in_axes2_z*uhs_d_Gamma_1_t_2 + uhs_c_2*uhs_h_3_in_spec3_x -
+            uhs_e_1_in_axes3_z*uhs_h_3_in_spec2_z
         )
         uhs_d_Gamma_1_in_axes3_z = (
-        uhs_c_2*uhs_d_Gamma_1_in_axes1_y + uhs_d_Gamma_1_in_axes1_z*uhs_s_2
+        uhs_c_2*uhs_d_Gamma_1_in_axes1_x + uhs_d_Gamma_1_in_axes1_z*uhs_e_1_in_axes3_z
         )
-        uhs_d_Gamma_1_t_4 = uhs_c_2*uhs_d_Gamma_1_in_axes1_z - uhs_d_Gamma_1_in_axes1_y*uhs_s_2
+        uhs_d_Gamma_1_t_4 = (
+        uhs_d_Gamma_1_in_axes1_x*uhs_e_1_in_axes3_z - uhs_c_2*uhs_d_Gamma_1_in_axes1_z
+        )
         uhs_d_Gamma_1_in_axes3_y = (
-        uhs_d_Gamma_1_in_axes1_x*uhs_e_2_in_axes3_y - uhs_d_Gamma_1_t_4*uhs_e_2_in_axes3_x
+        -uhs_d_Gamma_1_in_axes1_y*uhs_h_3_t_12 - uhs_d_Gamma_1_t_4*uhs_e_2_in_axes3_x
         )
         # (uhs-d_c) coefficient of the acceleration in: leg force on the platform without actuation and without the mass at the connection point
         uhs_d_c_in_axes3_xx = (
-        uhs_h_3_in_spec3_z*uhs_s_2*uhs_w_1_in_axes3_x -
-            uhs_h_3_in_spec3_x*(uhs_e_1_in_axes3_y*uhs_w_1_in_axes3_x +
-            uhs_e_2_in_axes3_y*uhs_w_2_in_axes3_x) -
-            uhs_w_1_in_axes3_x*(uhs_d_Gamma_1_in_axes1_x*uhs_e_2_in_axes3_x +
-            uhs_d_Gamma_1_t_4*uhs_e_2_in_axes3_y) -
-            uhs_w_2_in_axes3_x*(uhs_d_Gamma_2_in_axes2_y*uhs_e_2_in_axes3_y +
-            uhs_d_Gamma_2_in_axes2_z*uhs_e_2_in_axes3_x)
+        uhs_e_1_in_axes3_z*uhs_h_3_in_spec3_z*uhs_w_1_in_axes3_x -
+            uhs_h_3_in_spec3_x*(uhs_e_1_in_axes3_y*uhs_w_1_in_axes3_x -
+            uhs_h_3_t_12*uhs_w_2_in_axes3_x) -
+            uhs_w_1_in_axes3_x*(uhs_d_Gamma_1_in_axes1_y*uhs_e_2_in_axes3_x -
+            uhs_d_Gamma_1_t_4*uhs_h_3_t_12) -
+            uhs_w_2_in_axes3_x*(-uhs_d_Gamma_2_in_axes2_y*uhs_h_3_t_12 -
+            uhs_d_Gamma_2_t_2*uhs_e_2_in_axes3_x)
         )
         uhs_d_c_in_axes3_xy = (
         uhs_d_alpha_3_in_axes3_zy*uhs_h_3_in_spec3_z - uhs_d_Gamma_1_in_axes3_y*uhs_w_1_in_axes3_x
             - uhs_d_Gamma_2_in_axes3_y*uhs_w_2_in_axes3_x -
-            uhs_h_3_in_spec3_x*(uhs_e_1_in_axes3_y*uhs_w_1_in_axes3_y +
-            uhs_e_2_in_axes3_y*uhs_w_2_in_axes3_y)
+            uhs_h_3_in_spec3_x*(uhs_e_1_in_axes3_y*uhs_w_1_in_axes3_y -
+            uhs_h_3_t_12*uhs_w_2_in_axes3_y)
         )
         uhs_d_c_in_axes3_xz = (
         uhs_d_phi_3_t - uhs_d_Gamma_1_in_axes3_z*uhs_w_1_in_axes3_x -
@@ -2606,9 +2784,9 @@ def _run_M(m, X):
         axis_z_uhs_axes3_x = inv_uhs_h_3_t_9*uhs_h_3_t
         axis_z_uhs_axes3_y = inv_uhs_h_3_t_9*uhs_h_3_t_2
         axis_z_uhs_axes3_z = inv_uhs_h_3_t_9*uhs_h_3_t_3
-        uhs_Q_t = uhs_e_2_in_axes3_x*uhs_s_2
-        uhs_Q_t_2 = uhs_c_1*uhs_e_2_in_axes3_y - uhs_Q_t*uhs_s_1
-        uhs_Q_t_3 = uhs_Q_t*uhs_c_1 + uhs_e_2_in_axes3_y*uhs_s_1
+        uhs_Q_t = uhs_e_1_in_axes3_z*uhs_e_2_in_axes3_x
+        uhs_Q_t_2 = uhs_h_3_t_12*uhs_s_1 - uhs_Q_t*uhs_c_1
+        uhs_Q_t_3 = -uhs_Q_t*uhs_s_1 - uhs_c_1*uhs_h_3_t_12
         axis_y_uhs_axes3_x = (
         uhs_Q_t_2*uhs_base_frame_xx + uhs_Q_t_3*uhs_base_frame_xy +
             uhs_base_frame_xz*uhs_e_1_in_axes3_y
@@ -2694,7 +2872,7 @@ def _run_M(m, X):
         uhs_M_aa_t_5 = uhs_M_ta_t_5*uhs_q_z - uhs_M_ta_t_12*uhs_q_x
         uhs_M_aa_t_6 = uhs_M_ta_t_9*uhs_q_x - uhs_M_ta_t_5*uhs_q_y
         ok = (
-        ok & (abs(uhs_h_3_t_6) > _TOLERANCE * _TOLERANCE * uhs_size_t) & (abs(uhs_h_3_t_8) >
+        ok & (abs(uhs_h_3_t_7) > _TOLERANCE * _TOLERANCE * uhs_size_t) & (abs(uhs_h_3_t_8) >
             _TOLERANCE * _TOLERANCE * uhs_size_t) & (abs(uhs_h_3_t_9) > _TOLERANCE * uhs_size) &
             (abs(uhs_v_1_in_axes2_z) > _TOLERANCE * uhs_size)
         )
@@ -2917,44 +3095,39 @@ def _run_Z(m, X, V):
         uhs_S_x = t_x + uhs_q_x - uhs_base_point_x
         uhs_S_y = t_y + uhs_q_y - uhs_base_point_y
         uhs_S_z = t_z + uhs_q_z - uhs_base_point_z
-        # (uhs-px_1) component along the reference direction
-        uhs_px_1 = (
+        uhs_S_in_turn1_x = (
         uhs_S_x*uhs_base_frame_xx + uhs_S_y*uhs_base_frame_yx + uhs_S_z*uhs_base_frame_zx
         )
-        # (uhs-py_1) component across the reference direction
-        uhs_py_1 = (
+        uhs_S_in_turn1_y = (
         uhs_S_x*uhs_base_frame_xy + uhs_S_y*uhs_base_frame_yy + uhs_S_z*uhs_base_frame_zy
         )
+        uhs_S_in_turn1_z = (
+        uhs_S_x*uhs_base_frame_xz + uhs_S_y*uhs_base_frame_yz + uhs_S_z*uhs_base_frame_zz
+        )
         # (uhs-rho2_1) squared amplitude
-        uhs_rho2_1 = uhs_px_1*uhs_px_1 + uhs_py_1*uhs_py_1
+        uhs_rho2_1 = uhs_S_in_turn1_x*uhs_S_in_turn1_x + uhs_S_in_turn1_y*uhs_S_in_turn1_y
         # (uhs-root_1) root, with the sign of the branch
         uhs_root_1 = uhs_branch_1*sqrt(uhs_rho2_1)
         # (uhs-c_1) cosine of the angle of joint 1 from its reference direction
         inv_uhs_rho2_1 = 1.0/uhs_rho2_1
-        uhs_c_1 = -inv_uhs_rho2_1*uhs_py_1*uhs_root_1
+        uhs_c_1 = inv_uhs_rho2_1*uhs_S_in_turn1_x*uhs_root_1
         # (uhs-s_1) sine of the angle of joint 1 from its reference direction
-        uhs_s_1 = inv_uhs_rho2_1*uhs_px_1*uhs_root_1
-        # (uhs-xi_1) the vector from joint 1 to the connection point, resolved along link 1
-        uhs_xi_1_in_axes1_z = (
-        uhs_S_x*uhs_base_frame_xz + uhs_S_y*uhs_base_frame_yz + uhs_S_z*uhs_base_frame_zz
-        )
+        uhs_s_1 = inv_uhs_rho2_1*uhs_S_in_turn1_y*uhs_root_1
         # (uhs-rho2_2) squared amplitude
-        uhs_rho2_2 = uhs_rho2_1 + uhs_xi_1_in_axes1_z*uhs_xi_1_in_axes1_z
+        uhs_rho2_2 = uhs_S_in_turn1_z*uhs_S_in_turn1_z + uhs_rho2_1
         # (uhs-root_2) root, with the sign of the branch
         uhs_root_2 = uhs_branch_2*sqrt(uhs_rho2_2)
         # (uhs-c_2) cosine of the angle of joint 2 from its reference direction
         inv_uhs_rho2_2 = 1.0/uhs_rho2_2
-        uhs_c_2 = -inv_uhs_rho2_2*uhs_root_1*uhs_root_2
-        # (uhs-s_2) sine of the angle of joint 2 from its reference direction
-        uhs_s_2 = inv_uhs_rho2_2*uhs_root_2*uhs_xi_1_in_axes1_z
+        uhs_c_2 = inv_uhs_rho2_2*uhs_root_1*uhs_root_2
         # (uhs-x_3) from the origin of joint 3 to the connection point
         uhs_x_3_in_axes2_x = uhs_root_2 - uhs_joint3_offset_x
         # (uhs-q_3) displacement of joint 3
         uhs_q_3_t = inv_uhs_joint3_pitch*(uhs_platform_joint_offset_x - uhs_x_3_in_axes2_x)
         # (uhs-c_3) cosine of the angle of joint 3 from its reference direction
-        uhs_c_3 = sin(uhs_q_3_t)
+        uhs_c_3 = cos(uhs_q_3_t)
         # (uhs-s_3) sine of the angle of joint 3 from its reference direction
-        uhs_s_3 = cos(uhs_q_3_t)
+        uhs_s_3 = -sin(uhs_q_3_t)
         # (uhs-S_dot) velocity of the connection point
         uhs_S_dot_t = omega_y*uhs_q_z - omega_z*uhs_q_y
         uhs_S_dot_t_2 = omega_z*uhs_q_x - omega_x*uhs_q_z
@@ -2963,11 +3136,11 @@ def _run_Z(m, X, V):
         uhs_S_dot_y = t_dot_y + uhs_S_dot_t_2
         uhs_S_dot_z = t_dot_z + uhs_S_dot_t_3
         # (uhs-v_1) velocity of the connection point per rate of joint 1
-        uhs_e_1_in_axes3_y = -uhs_c_2*uhs_s_3
+        uhs_e_1_in_axes3_y = uhs_c_2*uhs_c_3
         uhs_v_1_in_axes3_x = uhs_e_1_in_axes3_y*uhs_root_2
-        uhs_v_1_in_axes3_y = -uhs_c_2*uhs_c_3*uhs_root_2
-        uhs_v_1_in_axes2_y = uhs_c_3*uhs_v_1_in_axes3_x - uhs_s_3*uhs_v_1_in_axes3_y
-        uhs_v_1_in_axes2_z = uhs_c_3*uhs_v_1_in_axes3_y + uhs_s_3*uhs_v_1_in_axes3_x
+        uhs_v_1_t = uhs_c_2*uhs_root_2*uhs_s_3
+        uhs_v_1_in_axes2_z = uhs_c_3*uhs_v_1_in_axes3_x + uhs_s_3*uhs_v_1_t
+        uhs_v_1_t_2 = uhs_s_3*uhs_v_1_in_axes3_x - uhs_c_3*uhs_v_1_t
         # (uhs-qd_1) rate of joint 1
         inv_uhs_v_1_in_axes2_z = 1.0/uhs_v_1_in_axes2_z
         uhs_qd_1_t = (
@@ -2978,25 +3151,27 @@ def _run_Z(m, X, V):
         uhs_S_dot_x*uhs_base_frame_xy + uhs_S_dot_y*uhs_base_frame_yy +
             uhs_S_dot_z*uhs_base_frame_zy
         )
-        uhs_qd_1 = inv_uhs_v_1_in_axes2_z*(uhs_c_1*uhs_qd_1_t + uhs_qd_1_t_2*uhs_s_1)
+        uhs_qd_1 = inv_uhs_v_1_in_axes2_z*(uhs_c_1*uhs_qd_1_t_2 - uhs_qd_1_t*uhs_s_1)
         # (uhs-qd_2) rate of joint 2
+        uhs_e_1_in_axes3_z = inv_uhs_rho2_2*uhs_S_in_turn1_z*uhs_root_2
         inv_uhs_root_2 = 1.0/uhs_root_2
         uhs_qd_2_t = (
         uhs_S_dot_x*uhs_base_frame_xz + uhs_S_dot_y*uhs_base_frame_yz +
             uhs_S_dot_z*uhs_base_frame_zz
         )
-        uhs_qd_2_t_2 = uhs_qd_1_t*uhs_s_1 - uhs_c_1*uhs_qd_1_t_2
+        uhs_qd_2_t_2 = uhs_c_1*uhs_qd_1_t + uhs_qd_1_t_2*uhs_s_1
         uhs_qd_2 = (
-        inv_uhs_root_2*(uhs_c_2*uhs_qd_2_t + uhs_qd_2_t_2*uhs_s_2 - uhs_qd_1*uhs_v_1_in_axes2_y)
+        inv_uhs_root_2*(uhs_e_1_in_axes3_z*uhs_qd_2_t_2 + uhs_qd_1*uhs_v_1_t_2 -
+            uhs_c_2*uhs_qd_2_t)
         )
         # (uhs-qd_3) rate of joint 3
-        uhs_qd_3 = inv_uhs_joint3_pitch*(uhs_qd_2_t*uhs_s_2 - uhs_c_2*uhs_qd_2_t_2)
+        uhs_qd_3 = inv_uhs_joint3_pitch*(uhs_c_2*uhs_qd_2_t_2 + uhs_e_1_in_axes3_z*uhs_qd_2_t)
         # (uhs-omega_1) angular velocity of link 1
-        uhs_omega_1_in_axes2_x = uhs_qd_1*uhs_s_2
-        uhs_omega_1_in_axes2_y = uhs_c_2*uhs_qd_1
+        uhs_omega_1_in_axes2_x = uhs_e_1_in_axes3_z*uhs_qd_1
+        uhs_omega_1_in_axes2_y = -uhs_c_2*uhs_qd_1
         # (uhs-omega_2) angular velocity of link 2
-        uhs_omega_2_in_axes3_x = uhs_c_3*uhs_omega_1_in_axes2_y + uhs_qd_2*uhs_s_3
-        uhs_omega_2_in_axes3_y = uhs_c_3*uhs_qd_2 - uhs_omega_1_in_axes2_y*uhs_s_3
+        uhs_omega_2_in_axes3_x = uhs_c_3*uhs_qd_2 - uhs_omega_1_in_axes2_y*uhs_s_3
+        uhs_omega_2_in_axes3_y = -uhs_c_3*uhs_omega_1_in_axes2_y - uhs_qd_2*uhs_s_3
         # (uhs-W_2) centripetal tensor of link 2
         uhs_W_2_in_axes2_yz = uhs_omega_1_in_axes2_y*uhs_qd_2
         uhs_W_2_in_axes2_xz = uhs_omega_1_in_axes2_x*uhs_qd_2
@@ -3014,9 +3189,9 @@ def _run_Z(m, X, V):
         axis_z_uhs_axes3_x = inv_uhs_root_2*uhs_S_x
         axis_z_uhs_axes3_y = inv_uhs_root_2*uhs_S_y
         axis_z_uhs_axes3_z = inv_uhs_root_2*uhs_S_z
-        uhs_u_1_t = uhs_s_2*uhs_s_3
-        uhs_u_1_t_2 = uhs_c_1*uhs_c_3 - uhs_s_1*uhs_u_1_t
-        uhs_u_1_t_3 = uhs_c_1*uhs_u_1_t + uhs_c_3*uhs_s_1
+        uhs_u_1_t = uhs_c_3*uhs_e_1_in_axes3_z
+        uhs_u_1_t_2 = uhs_s_1*uhs_s_3 - uhs_c_1*uhs_u_1_t
+        uhs_u_1_t_3 = -uhs_c_1*uhs_s_3 - uhs_s_1*uhs_u_1_t
         axis_y_uhs_axes3_x = (
         uhs_base_frame_xx*uhs_u_1_t_2 + uhs_base_frame_xy*uhs_u_1_t_3 +
             uhs_base_frame_xz*uhs_e_1_in_axes3_y
@@ -3051,13 +3226,13 @@ def _run_Z(m, X, V):
         axis_z_uhs_axes3_x*uhs_u_1_x + axis_z_uhs_axes3_y*uhs_u_1_y + axis_z_uhs_axes3_z*uhs_u_1_z
         )
         # (uhs-zeta_2) angular acceleration of link 2 from the turning of axis 2
-        uhs_zeta_2_t = uhs_W_2_in_axes2_xz*uhs_c_3
-        uhs_zeta_2_in_axes3_y = uhs_W_2_in_axes2_xz*uhs_s_3
+        uhs_zeta_2_in_axes3_x = uhs_W_2_in_axes2_xz*uhs_s_3
+        uhs_zeta_2_in_axes3_y = uhs_W_2_in_axes2_xz*uhs_c_3
         # (uhs-zeta_3) angular acceleration of link 3 from the turning of axis 3
         uhs_zeta_3_in_axes3_x = uhs_omega_2_in_axes3_y*uhs_qd_3
         uhs_zeta_3_in_axes3_y = -uhs_omega_2_in_axes3_x*uhs_qd_3
         # (uhs-beta_3) angular acceleration of link 3 at zero joint accelerations
-        uhs_beta_3_in_axes3_x = uhs_zeta_3_in_axes3_x - uhs_zeta_2_t
+        uhs_beta_3_in_axes3_x = uhs_zeta_2_in_axes3_x + uhs_zeta_3_in_axes3_x
         uhs_beta_3_in_axes3_y = uhs_zeta_2_in_axes3_y + uhs_zeta_3_in_axes3_y
         # (uhs-bias) acceleration of the connection point at zero joint accelerations
         uhs_bias_t_2 = uhs_bias_t*uhs_qd_3
@@ -3067,9 +3242,9 @@ def _run_Z(m, X, V):
             uhs_x_3_in_axes2_x*(uhs_W_3_in_axes3_xz + uhs_beta_3_in_axes3_y)
         )
         uhs_bias_in_axes3_y = (
-        uhs_joint3_offset_x*(uhs_zeta_2_t + uhs_omega_1_in_axes2_x*uhs_omega_2_in_axes3_y) +
-            uhs_x_3_in_axes2_x*(uhs_W_3_in_axes3_yz - uhs_beta_3_in_axes3_x) -
-            uhs_bias_t_2*uhs_omega_2_in_axes3_x
+        uhs_joint3_offset_x*(uhs_omega_1_in_axes2_x*uhs_omega_2_in_axes3_y -
+            uhs_zeta_2_in_axes3_x) + uhs_x_3_in_axes2_x*(uhs_W_3_in_axes3_yz -
+            uhs_beta_3_in_axes3_x) - uhs_bias_t_2*uhs_omega_2_in_axes3_x
         )
         uhs_bias_in_axes3_z = -uhs_W_2_t_3*uhs_joint3_offset_x - uhs_W_2_t_3*uhs_x_3_in_axes2_x
         # (uhs-rel_o) remainder without the acceleration in: acceleration of the connection point left to the joint accelerations
@@ -3078,16 +3253,16 @@ def _run_Z(m, X, V):
         uhs_rel_o_in_axes3_z = uhs_u_1_in_axes3_z - uhs_bias_in_axes3_z
         # (uhs-qdd_1_o) remainder without the acceleration in: acceleration of joint 1
         uhs_qdd_1_o = (
-        inv_uhs_v_1_in_axes2_z*(uhs_c_3*uhs_rel_o_in_axes3_y + uhs_rel_o_in_axes3_x*uhs_s_3)
+        inv_uhs_v_1_in_axes2_z*(uhs_c_3*uhs_rel_o_in_axes3_x - uhs_rel_o_in_axes3_y*uhs_s_3)
         )
         # (uhs-qdd_2_o) remainder without the acceleration in: acceleration of joint 2
         uhs_qdd_2_o = (
-        -inv_uhs_root_2*(uhs_qdd_1_o*uhs_v_1_in_axes2_y + uhs_rel_o_in_axes3_y*uhs_s_3 -
-            uhs_c_3*uhs_rel_o_in_axes3_x)
+        inv_uhs_root_2*(uhs_qdd_1_o*uhs_v_1_t_2 - uhs_c_3*uhs_rel_o_in_axes3_y -
+            uhs_rel_o_in_axes3_x*uhs_s_3)
         )
         # (uhs-alpha_1_o) remainder without the acceleration in: angular acceleration of link 1
-        uhs_alpha_1_o_in_axes2_x = uhs_qdd_1_o*uhs_s_2
-        uhs_alpha_1_o_in_axes2_y = uhs_c_2*uhs_qdd_1_o
+        uhs_alpha_1_o_in_axes2_x = uhs_e_1_in_axes3_z*uhs_qdd_1_o
+        uhs_alpha_1_o_in_axes2_y = -uhs_c_2*uhs_qdd_1_o
         # (uhs-alpha_2_o) remainder without the acceleration in: angular acceleration of link 2
         uhs_alpha_2_o_in_axes2_x = uhs_W_2_in_axes2_yz + uhs_alpha_1_o_in_axes2_x
         uhs_alpha_2_o_in_axes2_y = uhs_alpha_1_o_in_axes2_y - uhs_W_2_in_axes2_xz
@@ -3098,10 +3273,10 @@ def _run_Z(m, X, V):
         uhs_B_2_o_in_axes2_zy = uhs_W_2_in_axes2_yz + uhs_alpha_2_o_in_axes2_x
         # (uhs-alpha_3_o) remainder without the acceleration in: angular acceleration of link 3
         uhs_alpha_3_o_in_axes3_x = (
-        uhs_zeta_3_in_axes3_x + uhs_alpha_2_o_in_axes2_y*uhs_c_3 + uhs_qdd_2_o*uhs_s_3
+        uhs_zeta_3_in_axes3_x + uhs_c_3*uhs_qdd_2_o - uhs_alpha_2_o_in_axes2_y*uhs_s_3
         )
         uhs_alpha_3_o_in_axes3_y = (
-        uhs_zeta_3_in_axes3_y + uhs_c_3*uhs_qdd_2_o - uhs_alpha_2_o_in_axes2_y*uhs_s_3
+        uhs_zeta_3_in_axes3_y - uhs_alpha_2_o_in_axes2_y*uhs_c_3 - uhs_qdd_2_o*uhs_s_3
         )
         uhs_alpha_3_o_in_axes3_z = (
         uhs_alpha_2_o_in_axes2_x + inv_uhs_joint3_pitch*uhs_rel_o_in_axes3_z
@@ -3153,10 +3328,10 @@ def _run_Z(m, X, V):
         uhs_mu_2_o_t = uhs_omega_1_in_axes2_x*uhs_omega_1_in_axes2_x
         uhs_mu_2_o_t_2 = uhs_omega_1_in_axes2_y*uhs_omega_1_in_axes2_y
         uhs_mu_2_o_t_3 = uhs_qd_2*uhs_qd_2
-        uhs_g_in_axes2_z = uhs_c_1*uhs_mu_2_t + uhs_mu_2_t_2*uhs_s_1
-        uhs_mu_2_o_t_4 = uhs_c_1*uhs_mu_2_t_2 - uhs_mu_2_t*uhs_s_1
-        uhs_g_in_axes2_x = uhs_c_2*uhs_mu_2_o_t_4 + uhs_mu_2_t_3*uhs_s_2
-        uhs_g_in_axes2_y = uhs_c_2*uhs_mu_2_t_3 - uhs_mu_2_o_t_4*uhs_s_2
+        uhs_mu_2_o_t_4 = uhs_c_1*uhs_mu_2_t + uhs_mu_2_t_2*uhs_s_1
+        uhs_g_in_axes2_z = uhs_c_1*uhs_mu_2_t_2 - uhs_mu_2_t*uhs_s_1
+        uhs_g_in_axes2_x = uhs_c_2*uhs_mu_2_o_t_4 + uhs_e_1_in_axes3_z*uhs_mu_2_t_3
+        uhs_g_in_axes2_y = uhs_e_1_in_axes3_z*uhs_mu_2_o_t_4 - uhs_c_2*uhs_mu_2_t_3
         uhs_mu_2_o_in_axes2_x = (
         uhs_B_2_o_in_axes2_yx*uhs_J_2_in_spec2_xy + uhs_B_2_o_in_axes2_zx*uhs_J_2_in_spec2_xz +
             uhs_B_2_o_in_axes2_zy*uhs_Sigma_2_in_axes2_yy +
@@ -3181,24 +3356,24 @@ def _run_Z(m, X, V):
         # (uhs-N_2_o) remainder without the acceleration in: moment about joint 2 of the links from 2 outwards, the force at the connection point left out
         uhs_N_2_o_in_axes2_x = uhs_mu_2_o_in_axes2_x + uhs_mu_3_o_in_axes3_z
         uhs_N_2_o_in_axes2_y = (
-        uhs_mu_2_o_in_axes2_y + uhs_c_3*uhs_mu_3_o_in_axes3_x - uhs_mu_3_o_in_axes3_y*uhs_s_3
+        uhs_mu_2_o_in_axes2_y - uhs_c_3*uhs_mu_3_o_in_axes3_y - uhs_mu_3_o_in_axes3_x*uhs_s_3
         )
         uhs_N_2_o_in_axes2_z = (
-        uhs_mu_2_o_in_axes2_z + uhs_c_3*uhs_mu_3_o_in_axes3_y + uhs_mu_3_o_in_axes3_x*uhs_s_3
+        uhs_mu_2_o_in_axes2_z + uhs_c_3*uhs_mu_3_o_in_axes3_x - uhs_mu_3_o_in_axes3_y*uhs_s_3
         )
         # (uhs-c_o) remainder without the acceleration in: leg force on the platform without actuation and without the mass at the connection point
         uhs_c_o_t = inv_uhs_root_2*uhs_N_2_o_in_axes2_z
         uhs_c_o_t_2 = (
-        inv_uhs_v_1_in_axes2_z*(uhs_c_o_t*uhs_v_1_in_axes2_y - uhs_N_2_o_in_axes2_x*uhs_s_2 -
+        inv_uhs_v_1_in_axes2_z*(uhs_N_2_o_in_axes2_x*uhs_e_1_in_axes3_z + uhs_c_o_t*uhs_v_1_t_2 -
             uhs_N_2_o_in_axes2_y*uhs_c_2)
         )
         uhs_c_o_in_axes3_x = (
-        uhs_c_o_t_2*uhs_s_3 + uhs_h_3_in_spec3_y*(uhs_W_2_t_2 + uhs_mu_3_o_t) -
+        uhs_c_o_t*uhs_s_3 + uhs_h_3_in_spec3_y*(uhs_W_2_t_2 + uhs_mu_3_o_t) -
             uhs_B_3_o_in_axes3_xy*uhs_h_3_in_spec3_z - uhs_B_3_o_in_axes3_xz*uhs_h_3_in_spec3_x -
-            uhs_c_3*uhs_c_o_t
+            uhs_c_3*uhs_c_o_t_2
         )
         uhs_c_o_in_axes3_y = (
-        uhs_c_3*uhs_c_o_t_2 + uhs_c_o_t*uhs_s_3 + uhs_h_3_in_spec3_z*(uhs_W_2_t + uhs_mu_3_o_t) -
+        uhs_c_3*uhs_c_o_t + uhs_c_o_t_2*uhs_s_3 + uhs_h_3_in_spec3_z*(uhs_W_2_t + uhs_mu_3_o_t) -
             uhs_B_3_o_in_axes3_yx*uhs_h_3_in_spec3_y - uhs_B_3_o_in_axes3_yz*uhs_h_3_in_spec3_x
         )
         uhs_c_o_in_axes3_z = (
@@ -3316,22 +3491,19 @@ def _run_H(m, X):
         uhs_S_x = t_x + uhs_q_x - uhs_base_point_x
         uhs_S_y = t_y + uhs_q_y - uhs_base_point_y
         uhs_S_z = t_z + uhs_q_z - uhs_base_point_z
-        # (uhs-px_1) component along the reference direction
-        uhs_px_1 = (
+        uhs_S_in_turn1_x = (
         uhs_S_x*uhs_base_frame_xx + uhs_S_y*uhs_base_frame_yx + uhs_S_z*uhs_base_frame_zx
         )
-        # (uhs-py_1) component across the reference direction
-        uhs_py_1 = (
+        uhs_S_in_turn1_y = (
         uhs_S_x*uhs_base_frame_xy + uhs_S_y*uhs_base_frame_yy + uhs_S_z*uhs_base_frame_zy
         )
-        # (uhs-rho2_1) squared amplitude
-        uhs_rho2_1 = uhs_px_1*uhs_px_1 + uhs_py_1*uhs_py_1
-        # (uhs-xi_1) the vector from joint 1 to the connection point, resolved along link 1
-        uhs_xi_1_in_axes1_z = (
+        uhs_S_in_turn1_z = (
         uhs_S_x*uhs_base_frame_xz + uhs_S_y*uhs_base_frame_yz + uhs_S_z*uhs_base_frame_zz
         )
+        # (uhs-rho2_1) squared amplitude
+        uhs_rho2_1 = uhs_S_in_turn1_x*uhs_S_in_turn1_x + uhs_S_in_turn1_y*uhs_S_in_turn1_y
         # (uhs-rho2_2) squared amplitude
-        uhs_rho2_2 = uhs_rho2_1 + uhs_xi_1_in_axes1_z*uhs_xi_1_in_axes1_z
+        uhs_rho2_2 = uhs_S_in_turn1_z*uhs_S_in_turn1_z + uhs_rho2_1
         # (uhs-root_2) root, with the sign of the branch
         uhs_root_2 = uhs_branch_2*sqrt(uhs_rho2_2)
         # (uhs-w_3) reciprocal vector 3
@@ -3533,44 +3705,39 @@ def _run_required(m, X, V, A):
         uhs_S_x = t_x + uhs_q_x - uhs_base_point_x
         uhs_S_y = t_y + uhs_q_y - uhs_base_point_y
         uhs_S_z = t_z + uhs_q_z - uhs_base_point_z
-        # (uhs-px_1) component along the reference direction
-        uhs_px_1 = (
+        uhs_S_in_turn1_x = (
         uhs_S_x*uhs_base_frame_xx + uhs_S_y*uhs_base_frame_yx + uhs_S_z*uhs_base_frame_zx
         )
-        # (uhs-py_1) component across the reference direction
-        uhs_py_1 = (
+        uhs_S_in_turn1_y = (
         uhs_S_x*uhs_base_frame_xy + uhs_S_y*uhs_base_frame_yy + uhs_S_z*uhs_base_frame_zy
         )
+        uhs_S_in_turn1_z = (
+        uhs_S_x*uhs_base_frame_xz + uhs_S_y*uhs_base_frame_yz + uhs_S_z*uhs_base_frame_zz
+        )
         # (uhs-rho2_1) squared amplitude
-        uhs_rho2_1 = uhs_px_1*uhs_px_1 + uhs_py_1*uhs_py_1
+        uhs_rho2_1 = uhs_S_in_turn1_x*uhs_S_in_turn1_x + uhs_S_in_turn1_y*uhs_S_in_turn1_y
         # (uhs-root_1) root, with the sign of the branch
         uhs_root_1 = uhs_branch_1*sqrt(uhs_rho2_1)
         # (uhs-c_1) cosine of the angle of joint 1 from its reference direction
         inv_uhs_rho2_1 = 1.0/uhs_rho2_1
-        uhs_c_1 = -inv_uhs_rho2_1*uhs_py_1*uhs_root_1
+        uhs_c_1 = inv_uhs_rho2_1*uhs_S_in_turn1_x*uhs_root_1
         # (uhs-s_1) sine of the angle of joint 1 from its reference direction
-        uhs_s_1 = inv_uhs_rho2_1*uhs_px_1*uhs_root_1
-        # (uhs-xi_1) the vector from joint 1 to the connection point, resolved along link 1
-        uhs_xi_1_in_axes1_z = (
-        uhs_S_x*uhs_base_frame_xz + uhs_S_y*uhs_base_frame_yz + uhs_S_z*uhs_base_frame_zz
-        )
+        uhs_s_1 = inv_uhs_rho2_1*uhs_S_in_turn1_y*uhs_root_1
         # (uhs-rho2_2) squared amplitude
-        uhs_rho2_2 = uhs_rho2_1 + uhs_xi_1_in_axes1_z*uhs_xi_1_in_axes1_z
+        uhs_rho2_2 = uhs_S_in_turn1_z*uhs_S_in_turn1_z + uhs_rho2_1
         # (uhs-root_2) root, with the sign of the branch
         uhs_root_2 = uhs_branch_2*sqrt(uhs_rho2_2)
         # (uhs-c_2) cosine of the angle of joint 2 from its reference direction
         inv_uhs_rho2_2 = 1.0/uhs_rho2_2
-        uhs_c_2 = -inv_uhs_rho2_2*uhs_root_1*uhs_root_2
-        # (uhs-s_2) sine of the angle of joint 2 from its reference direction
-        uhs_s_2 = inv_uhs_rho2_2*uhs_root_2*uhs_xi_1_in_axes1_z
+        uhs_c_2 = inv_uhs_rho2_2*uhs_root_1*uhs_root_2
         # (uhs-x_3) from the origin of joint 3 to the connection point
         uhs_x_3_in_axes2_x = uhs_root_2 - uhs_joint3_offset_x
         # (uhs-q_3) displacement of joint 3
         uhs_q_3_t = inv_uhs_joint3_pitch*(uhs_platform_joint_offset_x - uhs_x_3_in_axes2_x)
         # (uhs-c_3) cosine of the angle of joint 3 from its reference direction
-        uhs_c_3 = sin(uhs_q_3_t)
+        uhs_c_3 = cos(uhs_q_3_t)
         # (uhs-s_3) sine of the angle of joint 3 from its reference direction
-        uhs_s_3 = cos(uhs_q_3_t)
+        uhs_s_3 = -sin(uhs_q_3_t)
         # (uhs-S_dot) velocity of the connection point
         uhs_S_dot_t = omega_y*uhs_q_z - omega_z*uhs_q_y
         uhs_S_dot_t_2 = omega_z*uhs_q_x - omega_x*uhs_q_z
@@ -3579,11 +3746,11 @@ def _run_required(m, X, V, A):
         uhs_S_dot_y = t_dot_y + uhs_S_dot_t_2
         uhs_S_dot_z = t_dot_z + uhs_S_dot_t_3
         # (uhs-v_1) velocity of the connection point per rate of joint 1
-        uhs_e_1_in_axes3_y = -uhs_c_2*uhs_s_3
+        uhs_e_1_in_axes3_y = uhs_c_2*uhs_c_3
         uhs_v_1_in_axes3_x = uhs_e_1_in_axes3_y*uhs_root_2
-        uhs_v_1_in_axes3_y = -uhs_c_2*uhs_c_3*uhs_root_2
-        uhs_v_1_in_axes2_y = uhs_c_3*uhs_v_1_in_axes3_x - uhs_s_3*uhs_v_1_in_axes3_y
-        uhs_v_1_in_axes2_z = uhs_c_3*uhs_v_1_in_axes3_y + uhs_s_3*uhs_v_1_in_axes3_x
+        uhs_v_1_t = uhs_c_2*uhs_root_2*uhs_s_3
+        uhs_v_1_in_axes2_z = uhs_c_3*uhs_v_1_in_axes3_x + uhs_s_3*uhs_v_1_t
+        uhs_v_1_t_2 = uhs_s_3*uhs_v_1_in_axes3_x - uhs_c_3*uhs_v_1_t
         # (uhs-w_3) reciprocal vector 3
         inv_uhs_root_2 = 1.0/uhs_root_2
         axis_z_uhs_axes3_x = inv_uhs_root_2*uhs_S_x
@@ -3602,24 +3769,26 @@ def _run_required(m, X, V, A):
         uhs_S_dot_x*uhs_base_frame_xy + uhs_S_dot_y*uhs_base_frame_yy +
             uhs_S_dot_z*uhs_base_frame_zy
         )
-        uhs_qd_1 = inv_uhs_v_1_in_axes2_z*(uhs_c_1*uhs_qd_1_t + uhs_qd_1_t_2*uhs_s_1)
+        uhs_qd_1 = inv_uhs_v_1_in_axes2_z*(uhs_c_1*uhs_qd_1_t_2 - uhs_qd_1_t*uhs_s_1)
         # (uhs-qd_2) rate of joint 2
+        uhs_e_1_in_axes3_z = inv_uhs_rho2_2*uhs_S_in_turn1_z*uhs_root_2
         uhs_qd_2_t = (
         uhs_S_dot_x*uhs_base_frame_xz + uhs_S_dot_y*uhs_base_frame_yz +
             uhs_S_dot_z*uhs_base_frame_zz
         )
-        uhs_qd_2_t_2 = uhs_qd_1_t*uhs_s_1 - uhs_c_1*uhs_qd_1_t_2
+        uhs_qd_2_t_2 = uhs_c_1*uhs_qd_1_t + uhs_qd_1_t_2*uhs_s_1
         uhs_qd_2 = (
-        inv_uhs_root_2*(uhs_c_2*uhs_qd_2_t + uhs_qd_2_t_2*uhs_s_2 - uhs_qd_1*uhs_v_1_in_axes2_y)
+        inv_uhs_root_2*(uhs_e_1_in_axes3_z*uhs_qd_2_t_2 + uhs_qd_1*uhs_v_1_t_2 -
+            uhs_c_2*uhs_qd_2_t)
         )
         # (uhs-qd_3) rate of joint 3
-        uhs_qd_3 = inv_uhs_joint3_pitch*(uhs_qd_2_t*uhs_s_2 - uhs_c_2*uhs_qd_2_t_2)
+        uhs_qd_3 = inv_uhs_joint3_pitch*(uhs_c_2*uhs_qd_2_t_2 + uhs_e_1_in_axes3_z*uhs_qd_2_t)
         # (uhs-omega_1) angular velocity of link 1
-        uhs_omega_1_in_axes2_x = uhs_qd_1*uhs_s_2
-        uhs_omega_1_in_axes2_y = uhs_c_2*uhs_qd_1
+        uhs_omega_1_in_axes2_x = uhs_e_1_in_axes3_z*uhs_qd_1
+        uhs_omega_1_in_axes2_y = -uhs_c_2*uhs_qd_1
         # (uhs-omega_2) angular velocity of link 2
-        uhs_omega_2_in_axes3_x = uhs_c_3*uhs_omega_1_in_axes2_y + uhs_qd_2*uhs_s_3
-        uhs_omega_2_in_axes3_y = uhs_c_3*uhs_qd_2 - uhs_omega_1_in_axes2_y*uhs_s_3
+        uhs_omega_2_in_axes3_x = uhs_c_3*uhs_qd_2 - uhs_omega_1_in_axes2_y*uhs_s_3
+        uhs_omega_2_in_axes3_y = -uhs_c_3*uhs_omega_1_in_axes2_y - uhs_qd_2*uhs_s_3
         # (uhs-W_2) centripetal tensor of link 2
         uhs_W_2_in_axes2_yz = uhs_omega_1_in_axes2_y*uhs_qd_2
         uhs_W_2_in_axes2_xz = uhs_omega_1_in_axes2_x*uhs_qd_2
@@ -3638,9 +3807,9 @@ def _run_required(m, X, V, A):
         uhs_a_p_y = t_ddot_y + alpha_z*uhs_q_x - alpha_x*uhs_q_z
         uhs_a_p_z = t_ddot_z + alpha_x*uhs_q_y - alpha_y*uhs_q_x
         # (uhs-S_ddot) acceleration of the connection point
-        uhs_S_ddot_t = uhs_s_2*uhs_s_3
-        uhs_S_ddot_t_2 = uhs_c_1*uhs_c_3 - uhs_S_ddot_t*uhs_s_1
-        uhs_S_ddot_t_3 = uhs_S_ddot_t*uhs_c_1 + uhs_c_3*uhs_s_1
+        uhs_S_ddot_t = uhs_c_3*uhs_e_1_in_axes3_z
+        uhs_S_ddot_t_2 = uhs_s_1*uhs_s_3 - uhs_S_ddot_t*uhs_c_1
+        uhs_S_ddot_t_3 = -uhs_S_ddot_t*uhs_s_1 - uhs_c_1*uhs_s_3
         axis_y_uhs_axes3_x = (
         uhs_S_ddot_t_2*uhs_base_frame_xx + uhs_S_ddot_t_3*uhs_base_frame_xy +
             uhs_base_frame_xz*uhs_e_1_in_axes3_y
@@ -3678,13 +3847,13 @@ def _run_required(m, X, V, A):
             axis_z_uhs_axes3_z*uhs_S_ddot_z
         )
         # (uhs-zeta_2) angular acceleration of link 2 from the turning of axis 2
-        uhs_zeta_2_t = uhs_W_2_in_axes2_xz*uhs_c_3
-        uhs_zeta_2_in_axes3_y = uhs_W_2_in_axes2_xz*uhs_s_3
+        uhs_zeta_2_in_axes3_x = uhs_W_2_in_axes2_xz*uhs_s_3
+        uhs_zeta_2_in_axes3_y = uhs_W_2_in_axes2_xz*uhs_c_3
         # (uhs-zeta_3) angular acceleration of link 3 from the turning of axis 3
         uhs_zeta_3_in_axes3_x = uhs_omega_2_in_axes3_y*uhs_qd_3
         uhs_zeta_3_in_axes3_y = -uhs_omega_2_in_axes3_x*uhs_qd_3
         # (uhs-beta_3) angular acceleration of link 3 at zero joint accelerations
-        uhs_beta_3_in_axes3_x = uhs_zeta_3_in_axes3_x - uhs_zeta_2_t
+        uhs_beta_3_in_axes3_x = uhs_zeta_2_in_axes3_x + uhs_zeta_3_in_axes3_x
         uhs_beta_3_in_axes3_y = uhs_zeta_2_in_axes3_y + uhs_zeta_3_in_axes3_y
         # (uhs-bias) acceleration of the connection point at zero joint accelerations
         uhs_bias_t_2 = uhs_bias_t*uhs_qd_3
@@ -3694,9 +3863,9 @@ def _run_required(m, X, V, A):
             uhs_x_3_in_axes2_x*(uhs_W_3_in_axes3_xz + uhs_beta_3_in_axes3_y)
         )
         uhs_bias_in_axes3_y = (
-        uhs_joint3_offset_x*(uhs_zeta_2_t + uhs_omega_1_in_axes2_x*uhs_omega_2_in_axes3_y) +
-            uhs_x_3_in_axes2_x*(uhs_W_3_in_axes3_yz - uhs_beta_3_in_axes3_x) -
-            uhs_bias_t_2*uhs_omega_2_in_axes3_x
+        uhs_joint3_offset_x*(uhs_omega_1_in_axes2_x*uhs_omega_2_in_axes3_y -
+            uhs_zeta_2_in_axes3_x) + uhs_x_3_in_axes2_x*(uhs_W_3_in_axes3_yz -
+            uhs_beta_3_in_axes3_x) - uhs_bias_t_2*uhs_omega_2_in_axes3_x
         )
         uhs_bias_in_axes3_z = -uhs_W_2_t_3*uhs_joint3_offset_x - uhs_W_2_t_3*uhs_x_3_in_axes2_x
         # (uhs-rel) acceleration of the connection point left to the joint accelerations
@@ -3705,30 +3874,30 @@ def _run_required(m, X, V, A):
         uhs_rel_in_axes3_z = uhs_S_ddot_in_axes3_z - uhs_bias_in_axes3_z
         # (uhs-qdd_1) acceleration of joint 1
         uhs_qdd_1 = (
-        inv_uhs_v_1_in_axes2_z*(uhs_c_3*uhs_rel_in_axes3_y + uhs_rel_in_axes3_x*uhs_s_3)
+        inv_uhs_v_1_in_axes2_z*(uhs_c_3*uhs_rel_in_axes3_x - uhs_rel_in_axes3_y*uhs_s_3)
         )
         # (uhs-qdd_2) acceleration of joint 2
-        uhs_qdd_2_t = (
-        inv_uhs_root_2*(uhs_qdd_1*uhs_v_1_in_axes2_y + uhs_rel_in_axes3_y*uhs_s_3 -
-            uhs_c_3*uhs_rel_in_axes3_x)
+        uhs_qdd_2 = (
+        inv_uhs_root_2*(uhs_qdd_1*uhs_v_1_t_2 - uhs_c_3*uhs_rel_in_axes3_y -
+            uhs_rel_in_axes3_x*uhs_s_3)
         )
         # (uhs-alpha_1) angular acceleration of link 1
-        uhs_alpha_1_in_axes2_x = uhs_qdd_1*uhs_s_2
-        uhs_alpha_1_in_axes2_y = uhs_c_2*uhs_qdd_1
+        uhs_alpha_1_in_axes2_x = uhs_e_1_in_axes3_z*uhs_qdd_1
+        uhs_alpha_1_in_axes2_y = -uhs_c_2*uhs_qdd_1
         # (uhs-alpha_2) angular acceleration of link 2
         uhs_alpha_2_in_axes2_x = uhs_W_2_in_axes2_yz + uhs_alpha_1_in_axes2_x
         uhs_alpha_2_in_axes2_y = uhs_alpha_1_in_axes2_y - uhs_W_2_in_axes2_xz
         # (uhs-B_2) acceleration tensor of link 2
-        uhs_B_2_in_axes2_xy = uhs_W_2_in_axes2_xy + uhs_qdd_2_t
-        uhs_B_2_in_axes2_yx = uhs_W_2_in_axes2_xy - uhs_qdd_2_t
+        uhs_B_2_in_axes2_xy = uhs_W_2_in_axes2_xy - uhs_qdd_2
+        uhs_B_2_in_axes2_yx = uhs_W_2_in_axes2_xy + uhs_qdd_2
         uhs_B_2_in_axes2_zx = uhs_W_2_in_axes2_xz - uhs_alpha_2_in_axes2_y
         uhs_B_2_in_axes2_zy = uhs_W_2_in_axes2_yz + uhs_alpha_2_in_axes2_x
         # (uhs-alpha_3) angular acceleration of link 3
         uhs_alpha_3_in_axes3_x = (
-        uhs_zeta_3_in_axes3_x + uhs_alpha_2_in_axes2_y*uhs_c_3 - uhs_qdd_2_t*uhs_s_3
+        uhs_zeta_3_in_axes3_x + uhs_c_3*uhs_qdd_2 - uhs_alpha_2_in_axes2_y*uhs_s_3
         )
         uhs_alpha_3_in_axes3_y = (
-        uhs_zeta_3_in_axes3_y - uhs_alpha_2_in_axes2_y*uhs_s_3 - uhs_c_3*uhs_qdd_2_t
+        uhs_zeta_3_in_axes3_y - uhs_alpha_2_in_axes2_y*uhs_c_3 - uhs_qdd_2*uhs_s_3
         )
         uhs_alpha_3_in_axes3_z = uhs_alpha_2_in_axes2_x + inv_uhs_joint3_pitch*uhs_rel_in_axes3_z
         # (uhs-B_3) acceleration tensor of link 3
@@ -3775,10 +3944,10 @@ def _run_required(m, X, V, A):
         uhs_mu_2_t_4 = uhs_omega_1_in_axes2_x*uhs_omega_1_in_axes2_x
         uhs_mu_2_t_5 = uhs_omega_1_in_axes2_y*uhs_omega_1_in_axes2_y
         uhs_mu_2_t_6 = uhs_qd_2*uhs_qd_2
-        uhs_g_in_axes2_z = uhs_c_1*uhs_mu_2_t + uhs_mu_2_t_2*uhs_s_1
-        uhs_mu_2_t_7 = uhs_c_1*uhs_mu_2_t_2 - uhs_mu_2_t*uhs_s_1
-        uhs_g_in_axes2_x = uhs_c_2*uhs_mu_2_t_7 + uhs_mu_2_t_3*uhs_s_2
-        uhs_g_in_axes2_y = uhs_c_2*uhs_mu_2_t_3 - uhs_mu_2_t_7*uhs_s_2
+        uhs_mu_2_t_7 = uhs_c_1*uhs_mu_2_t + uhs_mu_2_t_2*uhs_s_1
+        uhs_g_in_axes2_z = uhs_c_1*uhs_mu_2_t_2 - uhs_mu_2_t*uhs_s_1
+        uhs_g_in_axes2_x = uhs_c_2*uhs_mu_2_t_7 + uhs_e_1_in_axes3_z*uhs_mu_2_t_3
+        uhs_g_in_axes2_y = uhs_e_1_in_axes3_z*uhs_mu_2_t_7 - uhs_c_2*uhs_mu_2_t_3
         uhs_mu_2_in_axes2_x = (
         uhs_B_2_in_axes2_yx*uhs_J_2_in_spec2_xy + uhs_B_2_in_axes2_zx*uhs_J_2_in_spec2_xz +
             uhs_B_2_in_axes2_zy*uhs_Sigma_2_in_axes2_yy +
@@ -3801,24 +3970,24 @@ def _run_required(m, X, V, A):
         # (uhs-N_2) moment about joint 2 of the links from 2 outwards, the force at the connection point left out
         uhs_N_2_in_axes2_x = uhs_mu_2_in_axes2_x + uhs_mu_3_in_axes3_z
         uhs_N_2_in_axes2_y = (
-        uhs_mu_2_in_axes2_y + uhs_c_3*uhs_mu_3_in_axes3_x - uhs_mu_3_in_axes3_y*uhs_s_3
+        uhs_mu_2_in_axes2_y - uhs_c_3*uhs_mu_3_in_axes3_y - uhs_mu_3_in_axes3_x*uhs_s_3
         )
         uhs_N_2_in_axes2_z = (
-        uhs_mu_2_in_axes2_z + uhs_c_3*uhs_mu_3_in_axes3_y + uhs_mu_3_in_axes3_x*uhs_s_3
+        uhs_mu_2_in_axes2_z + uhs_c_3*uhs_mu_3_in_axes3_x - uhs_mu_3_in_axes3_y*uhs_s_3
         )
         # (uhs-c) leg force on the platform without actuation and without the mass at the connection point
         uhs_c_t = inv_uhs_root_2*uhs_N_2_in_axes2_z
         uhs_c_t_2 = (
-        inv_uhs_v_1_in_axes2_z*(uhs_c_t*uhs_v_1_in_axes2_y - uhs_N_2_in_axes2_x*uhs_s_2 -
+        inv_uhs_v_1_in_axes2_z*(uhs_N_2_in_axes2_x*uhs_e_1_in_axes3_z + uhs_c_t*uhs_v_1_t_2 -
             uhs_N_2_in_axes2_y*uhs_c_2)
         )
         uhs_c_in_axes3_x = (
-        uhs_c_t_2*uhs_s_3 + uhs_h_3_in_spec3_y*(uhs_W_2_t_2 + uhs_mu_3_t) -
+        uhs_c_t*uhs_s_3 + uhs_h_3_in_spec3_y*(uhs_W_2_t_2 + uhs_mu_3_t) -
             uhs_B_3_in_axes3_xy*uhs_h_3_in_spec3_z - uhs_B_3_in_axes3_xz*uhs_h_3_in_spec3_x -
-            uhs_c_3*uhs_c_t
+            uhs_c_3*uhs_c_t_2
         )
         uhs_c_in_axes3_y = (
-        uhs_c_3*uhs_c_t_2 + uhs_c_t*uhs_s_3 + uhs_h_3_in_spec3_z*(uhs_W_2_t + uhs_mu_3_t) -
+        uhs_c_3*uhs_c_t + uhs_c_t_2*uhs_s_3 + uhs_h_3_in_spec3_z*(uhs_W_2_t + uhs_mu_3_t) -
             uhs_B_3_in_axes3_yx*uhs_h_3_in_spec3_y - uhs_B_3_in_axes3_yz*uhs_h_3_in_spec3_x
         )
         uhs_c_in_axes3_z = (
@@ -3949,34 +4118,33 @@ def _run_inverse_kinematics(m, X):
         t_z + R_zx*uhs_platform_point_x + R_zy*uhs_platform_point_y + R_zz*uhs_platform_point_z -
             uhs_base_point_z
         )
-        # (uhs-px_1) component along the reference direction
-        uhs_px_1 = (
+        uhs_S_in_turn1_x = (
         uhs_S_x*uhs_base_frame_xx + uhs_S_y*uhs_base_frame_yx + uhs_S_z*uhs_base_frame_zx
         )
-        # (uhs-py_1) component across the reference direction
-        uhs_py_1 = (
+        uhs_S_in_turn1_y = (
         uhs_S_x*uhs_base_frame_xy + uhs_S_y*uhs_base_frame_yy + uhs_S_z*uhs_base_frame_zy
         )
+        uhs_S_in_turn1_z = (
+        uhs_S_x*uhs_base_frame_xz + uhs_S_y*uhs_base_frame_yz + uhs_S_z*uhs_base_frame_zz
+        )
         # (uhs-rho2_1) squared amplitude
-        uhs_rho2_1 = uhs_px_1*uhs_px_1 + uhs_py_1*uhs_py_1
+        uhs_rho2_1 = uhs_S_in_turn1_x*uhs_S_in_turn1_x + uhs_S_in_turn1_y*uhs_S_in_turn1_y
         # (uhs-root_1) root, with the sign of the branch
         uhs_root_1 = uhs_branch_1*sqrt(uhs_rho2_1)
         # (uhs-q_1) displacement of joint 1
         inv_uhs_rho2_1 = 1.0/uhs_rho2_1
-        uhs_q_1 = atan2(inv_uhs_rho2_1*uhs_py_1*uhs_root_1, inv_uhs_rho2_1*uhs_px_1*uhs_root_1)
-        # (uhs-xi_1) the vector from joint 1 to the connection point, resolved along link 1
-        uhs_xi_1_in_axes1_z = (
-        uhs_S_x*uhs_base_frame_xz + uhs_S_y*uhs_base_frame_yz + uhs_S_z*uhs_base_frame_zz
+        uhs_q_1 = (
+        atan2(inv_uhs_rho2_1*uhs_S_in_turn1_y*uhs_root_1,
+            inv_uhs_rho2_1*uhs_S_in_turn1_x*uhs_root_1)
         )
         # (uhs-rho2_2) squared amplitude
-        uhs_rho2_2 = uhs_rho2_1 + uhs_xi_1_in_axes1_z*uhs_xi_1_in_axes1_z
+        uhs_rho2_2 = uhs_S_in_turn1_z*uhs_S_in_turn1_z + uhs_rho2_1
         # (uhs-root_2) root, with the sign of the branch
         uhs_root_2 = uhs_branch_2*sqrt(uhs_rho2_2)
         # (uhs-q_2) displacement of joint 2
         inv_uhs_rho2_2 = 1.0/uhs_rho2_2
         uhs_q_2 = (
-        atan2(-inv_uhs_rho2_2*uhs_root_2*uhs_xi_1_in_axes1_z,
-            inv_uhs_rho2_2*uhs_root_1*uhs_root_2)
+        atan2(-inv_uhs_rho2_2*uhs_S_in_turn1_z*uhs_root_2, inv_uhs_rho2_2*uhs_root_1*uhs_root_2)
         )
         # (uhs-x_3) from the origin of joint 3 to the connection point
         uhs_x_3_in_axes2_x = uhs_root_2 - uhs_joint3_offset_x
@@ -4073,52 +4241,47 @@ def _run_joint_rates(m, X, V):
         uhs_S_x = t_x + uhs_q_x - uhs_base_point_x
         uhs_S_y = t_y + uhs_q_y - uhs_base_point_y
         uhs_S_z = t_z + uhs_q_z - uhs_base_point_z
-        # (uhs-px_1) component along the reference direction
-        uhs_px_1 = (
+        uhs_S_in_turn1_x = (
         uhs_S_x*uhs_base_frame_xx + uhs_S_y*uhs_base_frame_yx + uhs_S_z*uhs_base_frame_zx
         )
-        # (uhs-py_1) component across the reference direction
-        uhs_py_1 = (
+        uhs_S_in_turn1_y = (
         uhs_S_x*uhs_base_frame_xy + uhs_S_y*uhs_base_frame_yy + uhs_S_z*uhs_base_frame_zy
         )
+        uhs_S_in_turn1_z = (
+        uhs_S_x*uhs_base_frame_xz + uhs_S_y*uhs_base_frame_yz + uhs_S_z*uhs_base_frame_zz
+        )
         # (uhs-rho2_1) squared amplitude
-        uhs_rho2_1 = uhs_px_1*uhs_px_1 + uhs_py_1*uhs_py_1
+        uhs_rho2_1 = uhs_S_in_turn1_x*uhs_S_in_turn1_x + uhs_S_in_turn1_y*uhs_S_in_turn1_y
         # (uhs-root_1) root, with the sign of the branch
         uhs_root_1 = uhs_branch_1*sqrt(uhs_rho2_1)
         # (uhs-c_1) cosine of the angle of joint 1 from its reference direction
         inv_uhs_rho2_1 = 1.0/uhs_rho2_1
-        uhs_c_1 = -inv_uhs_rho2_1*uhs_py_1*uhs_root_1
+        uhs_c_1 = inv_uhs_rho2_1*uhs_S_in_turn1_x*uhs_root_1
         # (uhs-s_1) sine of the angle of joint 1 from its reference direction
-        uhs_s_1 = inv_uhs_rho2_1*uhs_px_1*uhs_root_1
-        # (uhs-xi_1) the vector from joint 1 to the connection point, resolved along link 1
-        uhs_xi_1_in_axes1_z = (
-        uhs_S_x*uhs_base_frame_xz + uhs_S_y*uhs_base_frame_yz + uhs_S_z*uhs_base_frame_zz
-        )
+        uhs_s_1 = inv_uhs_rho2_1*uhs_S_in_turn1_y*uhs_root_1
         # (uhs-rho2_2) squared amplitude
-        uhs_rho2_2 = uhs_rho2_1 + uhs_xi_1_in_axes1_z*uhs_xi_1_in_axes1_z
+        uhs_rho2_2 = uhs_S_in_turn1_z*uhs_S_in_turn1_z + uhs_rho2_1
         # (uhs-root_2) root, with the sign of the branch
         uhs_root_2 = uhs_branch_2*sqrt(uhs_rho2_2)
         # (uhs-c_2) cosine of the angle of joint 2 from its reference direction
         inv_uhs_rho2_2 = 1.0/uhs_rho2_2
-        uhs_c_2 = -inv_uhs_rho2_2*uhs_root_1*uhs_root_2
-        # (uhs-s_2) sine of the angle of joint 2 from its reference direction
-        uhs_s_2 = inv_uhs_rho2_2*uhs_root_2*uhs_xi_1_in_axes1_z
+        uhs_c_2 = inv_uhs_rho2_2*uhs_root_1*uhs_root_2
         # (uhs-x_3) from the origin of joint 3 to the connection point
         uhs_x_3_in_axes2_x = uhs_root_2 - uhs_joint3_offset_x
         # (uhs-q_3) displacement of joint 3
         uhs_q_3_t = inv_uhs_joint3_pitch*(uhs_platform_joint_offset_x - uhs_x_3_in_axes2_x)
         # (uhs-c_3) cosine of the angle of joint 3 from its reference direction
-        uhs_c_3 = sin(uhs_q_3_t)
+        uhs_c_3 = cos(uhs_q_3_t)
         # (uhs-s_3) sine of the angle of joint 3 from its reference direction
-        uhs_s_3 = cos(uhs_q_3_t)
+        uhs_s_3 = -sin(uhs_q_3_t)
         # (uhs-S_dot) velocity of the connection point
         uhs_S_dot_x = t_dot_x + omega_y*uhs_q_z - omega_z*uhs_q_y
         uhs_S_dot_y = t_dot_y + omega_z*uhs_q_x - omega_x*uhs_q_z
         uhs_S_dot_z = t_dot_z + omega_x*uhs_q_y - omega_y*uhs_q_x
         # (uhs-v_1) velocity of the connection point per rate of joint 1
-        uhs_v_1_in_axes3_x = -uhs_c_2*uhs_root_2*uhs_s_3
-        uhs_v_1_in_axes3_y = -uhs_c_2*uhs_c_3*uhs_root_2
-        uhs_v_1_in_axes2_z = uhs_c_3*uhs_v_1_in_axes3_y + uhs_s_3*uhs_v_1_in_axes3_x
+        uhs_v_1_in_axes3_x = uhs_c_2*uhs_c_3*uhs_root_2
+        uhs_v_1_t = uhs_c_2*uhs_root_2*uhs_s_3
+        uhs_v_1_in_axes2_z = uhs_c_3*uhs_v_1_in_axes3_x + uhs_s_3*uhs_v_1_t
         # (uhs-qd_1) rate of joint 1
         uhs_qd_1_t = (
         uhs_S_dot_x*uhs_base_frame_xx + uhs_S_dot_y*uhs_base_frame_yx +
@@ -4128,19 +4291,20 @@ def _run_joint_rates(m, X, V):
         uhs_S_dot_x*uhs_base_frame_xy + uhs_S_dot_y*uhs_base_frame_yy +
             uhs_S_dot_z*uhs_base_frame_zy
         )
-        uhs_qd_1 = (uhs_c_1*uhs_qd_1_t + uhs_qd_1_t_2*uhs_s_1)/uhs_v_1_in_axes2_z
+        uhs_qd_1 = (uhs_c_1*uhs_qd_1_t_2 - uhs_qd_1_t*uhs_s_1)/uhs_v_1_in_axes2_z
         # (uhs-qd_2) rate of joint 2
+        uhs_e_1_in_axes3_z = inv_uhs_rho2_2*uhs_S_in_turn1_z*uhs_root_2
         uhs_qd_2_t = (
         uhs_S_dot_x*uhs_base_frame_xz + uhs_S_dot_y*uhs_base_frame_yz +
             uhs_S_dot_z*uhs_base_frame_zz
         )
-        uhs_qd_2_t_2 = uhs_qd_1_t*uhs_s_1 - uhs_c_1*uhs_qd_1_t_2
+        uhs_qd_2_t_2 = uhs_c_1*uhs_qd_1_t + uhs_qd_1_t_2*uhs_s_1
         uhs_qd_2 = (
-        (uhs_c_2*uhs_qd_2_t + uhs_qd_2_t_2*uhs_s_2 - uhs_qd_1*(uhs_c_3*uhs_v_1_in_axes3_x -
-            uhs_s_3*uhs_v_1_in_axes3_y))/uhs_root_2
+        (uhs_e_1_in_axes3_z*uhs_qd_2_t_2 + uhs_qd_1*(uhs_s_3*uhs_v_1_in_axes3_x -
+            uhs_c_3*uhs_v_1_t) - uhs_c_2*uhs_qd_2_t)/uhs_root_2
         )
         # (uhs-qd_3) rate of joint 3
-        uhs_qd_3 = inv_uhs_joint3_pitch*(uhs_qd_2_t*uhs_s_2 - uhs_c_2*uhs_qd_2_t_2)
+        uhs_qd_3 = inv_uhs_joint3_pitch*(uhs_c_2*uhs_qd_2_t_2 + uhs_e_1_in_axes3_z*uhs_qd_2_t)
         ok = (
         ok & (abs(uhs_rho2_1) > _TOLERANCE * _TOLERANCE * uhs_size_t) & (abs(uhs_rho2_2) >
             _TOLERANCE * _TOLERANCE * uhs_size_t) & (abs(uhs_root_2) > _TOLERANCE * uhs_size) &
@@ -4246,44 +4410,39 @@ def _run_joint_accelerations(m, X, V, A):
         uhs_S_x = t_x + uhs_q_x - uhs_base_point_x
         uhs_S_y = t_y + uhs_q_y - uhs_base_point_y
         uhs_S_z = t_z + uhs_q_z - uhs_base_point_z
-        # (uhs-px_1) component along the reference direction
-        uhs_px_1 = (
+        uhs_S_in_turn1_x = (
         uhs_S_x*uhs_base_frame_xx + uhs_S_y*uhs_base_frame_yx + uhs_S_z*uhs_base_frame_zx
         )
-        # (uhs-py_1) component across the reference direction
-        uhs_py_1 = (
+        uhs_S_in_turn1_y = (
         uhs_S_x*uhs_base_frame_xy + uhs_S_y*uhs_base_frame_yy + uhs_S_z*uhs_base_frame_zy
         )
+        uhs_S_in_turn1_z = (
+        uhs_S_x*uhs_base_frame_xz + uhs_S_y*uhs_base_frame_yz + uhs_S_z*uhs_base_frame_zz
+        )
         # (uhs-rho2_1) squared amplitude
-        uhs_rho2_1 = uhs_px_1*uhs_px_1 + uhs_py_1*uhs_py_1
+        uhs_rho2_1 = uhs_S_in_turn1_x*uhs_S_in_turn1_x + uhs_S_in_turn1_y*uhs_S_in_turn1_y
         # (uhs-root_1) root, with the sign of the branch
         uhs_root_1 = uhs_branch_1*sqrt(uhs_rho2_1)
         # (uhs-c_1) cosine of the angle of joint 1 from its reference direction
         inv_uhs_rho2_1 = 1.0/uhs_rho2_1
-        uhs_c_1 = -inv_uhs_rho2_1*uhs_py_1*uhs_root_1
+        uhs_c_1 = inv_uhs_rho2_1*uhs_S_in_turn1_x*uhs_root_1
         # (uhs-s_1) sine of the angle of joint 1 from its reference direction
-        uhs_s_1 = inv_uhs_rho2_1*uhs_px_1*uhs_root_1
-        # (uhs-xi_1) the vector from joint 1 to the connection point, resolved along link 1
-        uhs_xi_1_in_axes1_z = (
-        uhs_S_x*uhs_base_frame_xz + uhs_S_y*uhs_base_frame_yz + uhs_S_z*uhs_base_frame_zz
-        )
+        uhs_s_1 = inv_uhs_rho2_1*uhs_S_in_turn1_y*uhs_root_1
         # (uhs-rho2_2) squared amplitude
-        uhs_rho2_2 = uhs_rho2_1 + uhs_xi_1_in_axes1_z*uhs_xi_1_in_axes1_z
+        uhs_rho2_2 = uhs_S_in_turn1_z*uhs_S_in_turn1_z + uhs_rho2_1
         # (uhs-root_2) root, with the sign of the branch
         uhs_root_2 = uhs_branch_2*sqrt(uhs_rho2_2)
         # (uhs-c_2) cosine of the angle of joint 2 from its reference direction
         inv_uhs_rho2_2 = 1.0/uhs_rho2_2
-        uhs_c_2 = -inv_uhs_rho2_2*uhs_root_1*uhs_root_2
-        # (uhs-s_2) sine of the angle of joint 2 from its reference direction
-        uhs_s_2 = inv_uhs_rho2_2*uhs_root_2*uhs_xi_1_in_axes1_z
+        uhs_c_2 = inv_uhs_rho2_2*uhs_root_1*uhs_root_2
         # (uhs-x_3) from the origin of joint 3 to the connection point
         uhs_x_3_in_axes2_x = uhs_root_2 - uhs_joint3_offset_x
         # (uhs-q_3) displacement of joint 3
         uhs_q_3_t = inv_uhs_joint3_pitch*(uhs_platform_joint_offset_x - uhs_x_3_in_axes2_x)
         # (uhs-c_3) cosine of the angle of joint 3 from its reference direction
-        uhs_c_3 = sin(uhs_q_3_t)
+        uhs_c_3 = cos(uhs_q_3_t)
         # (uhs-s_3) sine of the angle of joint 3 from its reference direction
-        uhs_s_3 = cos(uhs_q_3_t)
+        uhs_s_3 = -sin(uhs_q_3_t)
         # (uhs-S_dot) velocity of the connection point
         uhs_S_dot_t = omega_y*uhs_q_z - omega_z*uhs_q_y
         uhs_S_dot_t_2 = omega_z*uhs_q_x - omega_x*uhs_q_z
@@ -4292,11 +4451,11 @@ def _run_joint_accelerations(m, X, V, A):
         uhs_S_dot_y = t_dot_y + uhs_S_dot_t_2
         uhs_S_dot_z = t_dot_z + uhs_S_dot_t_3
         # (uhs-v_1) velocity of the connection point per rate of joint 1
-        uhs_e_1_in_axes3_y = -uhs_c_2*uhs_s_3
+        uhs_e_1_in_axes3_y = uhs_c_2*uhs_c_3
         uhs_v_1_in_axes3_x = uhs_e_1_in_axes3_y*uhs_root_2
-        uhs_v_1_in_axes3_y = -uhs_c_2*uhs_c_3*uhs_root_2
-        uhs_v_1_in_axes2_y = uhs_c_3*uhs_v_1_in_axes3_x - uhs_s_3*uhs_v_1_in_axes3_y
-        uhs_v_1_in_axes2_z = uhs_c_3*uhs_v_1_in_axes3_y + uhs_s_3*uhs_v_1_in_axes3_x
+        uhs_v_1_t = uhs_c_2*uhs_root_2*uhs_s_3
+        uhs_v_1_in_axes2_z = uhs_c_3*uhs_v_1_in_axes3_x + uhs_s_3*uhs_v_1_t
+        uhs_v_1_t_2 = uhs_s_3*uhs_v_1_in_axes3_x - uhs_c_3*uhs_v_1_t
         # (uhs-qd_1) rate of joint 1
         inv_uhs_v_1_in_axes2_z = 1.0/uhs_v_1_in_axes2_z
         uhs_qd_1_t = (
@@ -4307,25 +4466,27 @@ def _run_joint_accelerations(m, X, V, A):
         uhs_S_dot_x*uhs_base_frame_xy + uhs_S_dot_y*uhs_base_frame_yy +
             uhs_S_dot_z*uhs_base_frame_zy
         )
-        uhs_qd_1 = inv_uhs_v_1_in_axes2_z*(uhs_c_1*uhs_qd_1_t + uhs_qd_1_t_2*uhs_s_1)
+        uhs_qd_1 = inv_uhs_v_1_in_axes2_z*(uhs_c_1*uhs_qd_1_t_2 - uhs_qd_1_t*uhs_s_1)
         # (uhs-qd_2) rate of joint 2
+        uhs_e_1_in_axes3_z = inv_uhs_rho2_2*uhs_S_in_turn1_z*uhs_root_2
         inv_uhs_root_2 = 1.0/uhs_root_2
         uhs_qd_2_t = (
         uhs_S_dot_x*uhs_base_frame_xz + uhs_S_dot_y*uhs_base_frame_yz +
             uhs_S_dot_z*uhs_base_frame_zz
         )
-        uhs_qd_2_t_2 = uhs_qd_1_t*uhs_s_1 - uhs_c_1*uhs_qd_1_t_2
+        uhs_qd_2_t_2 = uhs_c_1*uhs_qd_1_t + uhs_qd_1_t_2*uhs_s_1
         uhs_qd_2 = (
-        inv_uhs_root_2*(uhs_c_2*uhs_qd_2_t + uhs_qd_2_t_2*uhs_s_2 - uhs_qd_1*uhs_v_1_in_axes2_y)
+        inv_uhs_root_2*(uhs_e_1_in_axes3_z*uhs_qd_2_t_2 + uhs_qd_1*uhs_v_1_t_2 -
+            uhs_c_2*uhs_qd_2_t)
         )
         # (uhs-qd_3) rate of joint 3
-        uhs_qd_3 = inv_uhs_joint3_pitch*(uhs_qd_2_t*uhs_s_2 - uhs_c_2*uhs_qd_2_t_2)
+        uhs_qd_3 = inv_uhs_joint3_pitch*(uhs_c_2*uhs_qd_2_t_2 + uhs_e_1_in_axes3_z*uhs_qd_2_t)
         # (uhs-omega_1) angular velocity of link 1
-        uhs_omega_1_in_axes2_x = uhs_qd_1*uhs_s_2
-        uhs_omega_1_in_axes2_y = uhs_c_2*uhs_qd_1
+        uhs_omega_1_in_axes2_x = uhs_e_1_in_axes3_z*uhs_qd_1
+        uhs_omega_1_in_axes2_y = -uhs_c_2*uhs_qd_1
         # (uhs-omega_2) angular velocity of link 2
-        uhs_omega_2_in_axes3_x = uhs_c_3*uhs_omega_1_in_axes2_y + uhs_qd_2*uhs_s_3
-        uhs_omega_2_in_axes3_y = uhs_c_3*uhs_qd_2 - uhs_omega_1_in_axes2_y*uhs_s_3
+        uhs_omega_2_in_axes3_x = uhs_c_3*uhs_qd_2 - uhs_omega_1_in_axes2_y*uhs_s_3
+        uhs_omega_2_in_axes3_y = -uhs_c_3*uhs_omega_1_in_axes2_y - uhs_qd_2*uhs_s_3
         # (uhs-W_2) centripetal tensor of link 2
         uhs_W_2_in_axes2_xz = uhs_omega_1_in_axes2_x*uhs_qd_2
         uhs_W_2_t = (
@@ -4343,10 +4504,10 @@ def _run_joint_accelerations(m, X, V, A):
         uhs_S_ddot_y = uhs_a_p_y + omega_z*uhs_S_dot_t - omega_x*uhs_S_dot_t_3
         uhs_S_ddot_z = uhs_a_p_z + omega_x*uhs_S_dot_t_2 - omega_y*uhs_S_dot_t
         # (uhs-zeta_2) angular acceleration of link 2 from the turning of axis 2
-        uhs_zeta_2_t = uhs_W_2_in_axes2_xz*uhs_c_3
-        uhs_zeta_2_in_axes3_y = uhs_W_2_in_axes2_xz*uhs_s_3
+        uhs_zeta_2_in_axes3_x = uhs_W_2_in_axes2_xz*uhs_s_3
+        uhs_zeta_2_in_axes3_y = uhs_W_2_in_axes2_xz*uhs_c_3
         # (uhs-beta_3) angular acceleration of link 3 at zero joint accelerations
-        uhs_beta_3_in_axes3_x = uhs_omega_2_in_axes3_y*uhs_qd_3 - uhs_zeta_2_t
+        uhs_beta_3_in_axes3_x = uhs_zeta_2_in_axes3_x + uhs_omega_2_in_axes3_y*uhs_qd_3
         uhs_beta_3_in_axes3_y = uhs_zeta_2_in_axes3_y - uhs_omega_2_in_axes3_x*uhs_qd_3
         # (uhs-bias) acceleration of the connection point at zero joint accelerations
         uhs_bias_t_2 = uhs_bias_t*uhs_qd_3
@@ -4357,7 +4518,8 @@ def _run_joint_accelerations(m, X, V, A):
             uhs_omega_2_in_axes3_x*uhs_omega_3_in_axes3_z)
         )
         uhs_bias_in_axes3_y = (
-        uhs_joint3_offset_x*(uhs_zeta_2_t + uhs_omega_1_in_axes2_x*uhs_omega_2_in_axes3_y) +
+        uhs_joint3_offset_x*(uhs_omega_1_in_axes2_x*uhs_omega_2_in_axes3_y -
+            uhs_zeta_2_in_axes3_x) +
             uhs_x_3_in_axes2_x*(uhs_omega_2_in_axes3_y*uhs_omega_3_in_axes3_z -
             uhs_beta_3_in_axes3_x) - uhs_bias_t_2*uhs_omega_2_in_axes3_x
         )
@@ -4366,9 +4528,9 @@ def _run_joint_accelerations(m, X, V, A):
         axis_z_uhs_axes3_x = inv_uhs_root_2*uhs_S_x
         axis_z_uhs_axes3_y = inv_uhs_root_2*uhs_S_y
         axis_z_uhs_axes3_z = inv_uhs_root_2*uhs_S_z
-        uhs_rel_t = uhs_s_2*uhs_s_3
-        uhs_rel_t_2 = uhs_c_1*uhs_c_3 - uhs_rel_t*uhs_s_1
-        uhs_rel_t_3 = uhs_c_1*uhs_rel_t + uhs_c_3*uhs_s_1
+        uhs_rel_t = uhs_c_3*uhs_e_1_in_axes3_z
+        uhs_rel_t_2 = uhs_s_1*uhs_s_3 - uhs_c_1*uhs_rel_t
+        uhs_rel_t_3 = -uhs_c_1*uhs_s_3 - uhs_rel_t*uhs_s_1
         axis_y_uhs_axes3_x = (
         uhs_base_frame_xx*uhs_rel_t_2 + uhs_base_frame_xy*uhs_rel_t_3 +
             uhs_base_frame_xz*uhs_e_1_in_axes3_y
@@ -4399,12 +4561,12 @@ def _run_joint_accelerations(m, X, V, A):
         )
         # (uhs-qdd_1) acceleration of joint 1
         uhs_qdd_1 = (
-        inv_uhs_v_1_in_axes2_z*(uhs_c_3*uhs_rel_in_axes3_y + uhs_rel_in_axes3_x*uhs_s_3)
+        inv_uhs_v_1_in_axes2_z*(uhs_c_3*uhs_rel_in_axes3_x - uhs_rel_in_axes3_y*uhs_s_3)
         )
         # (uhs-qdd_2) acceleration of joint 2
-        uhs_qdd_2_t = (
-        inv_uhs_root_2*(uhs_qdd_1*uhs_v_1_in_axes2_y + uhs_rel_in_axes3_y*uhs_s_3 -
-            uhs_c_3*uhs_rel_in_axes3_x)
+        uhs_qdd_2 = (
+        inv_uhs_root_2*(uhs_qdd_1*uhs_v_1_t_2 - uhs_c_3*uhs_rel_in_axes3_y -
+            uhs_rel_in_axes3_x*uhs_s_3)
         )
         # (uhs-qdd_3) acceleration of joint 3
         uhs_qdd_3 = inv_uhs_joint3_pitch*uhs_rel_in_axes3_z
@@ -4416,7 +4578,7 @@ def _run_joint_accelerations(m, X, V, A):
         # (uhs-qdd_1) acceleration of joint 1
         out_qdd[_qdd_uhs[0][leg]] = uhs_qdd_1
         # (uhs-qdd_2) acceleration of joint 2
-        out_qdd[_qdd_uhs[1][leg]] = -uhs_qdd_2_t
+        out_qdd[_qdd_uhs[1][leg]] = uhs_qdd_2
         # (uhs-qdd_3) acceleration of joint 3
         out_qdd[_qdd_uhs[2][leg]] = uhs_qdd_3
     return ok, (out_qdd,)
@@ -4521,44 +4683,39 @@ def _run_legs(m, X, V, A):
         uhs_S_x = t_x + uhs_q_x - uhs_base_point_x
         uhs_S_y = t_y + uhs_q_y - uhs_base_point_y
         uhs_S_z = t_z + uhs_q_z - uhs_base_point_z
-        # (uhs-px_1) component along the reference direction
-        uhs_px_1 = (
+        uhs_S_in_turn1_x = (
         uhs_S_x*uhs_base_frame_xx + uhs_S_y*uhs_base_frame_yx + uhs_S_z*uhs_base_frame_zx
         )
-        # (uhs-py_1) component across the reference direction
-        uhs_py_1 = (
+        uhs_S_in_turn1_y = (
         uhs_S_x*uhs_base_frame_xy + uhs_S_y*uhs_base_frame_yy + uhs_S_z*uhs_base_frame_zy
         )
+        uhs_S_in_turn1_z = (
+        uhs_S_x*uhs_base_frame_xz + uhs_S_y*uhs_base_frame_yz + uhs_S_z*uhs_base_frame_zz
+        )
         # (uhs-rho2_1) squared amplitude
-        uhs_rho2_1 = uhs_px_1*uhs_px_1 + uhs_py_1*uhs_py_1
+        uhs_rho2_1 = uhs_S_in_turn1_x*uhs_S_in_turn1_x + uhs_S_in_turn1_y*uhs_S_in_turn1_y
         # (uhs-root_1) root, with the sign of the branch
         uhs_root_1 = uhs_branch_1*sqrt(uhs_rho2_1)
         # (uhs-c_1) cosine of the angle of joint 1 from its reference direction
         inv_uhs_rho2_1 = 1.0/uhs_rho2_1
-        uhs_c_1 = -inv_uhs_rho2_1*uhs_py_1*uhs_root_1
+        uhs_c_1 = inv_uhs_rho2_1*uhs_S_in_turn1_x*uhs_root_1
         # (uhs-s_1) sine of the angle of joint 1 from its reference direction
-        uhs_s_1 = inv_uhs_rho2_1*uhs_px_1*uhs_root_1
-        # (uhs-xi_1) the vector from joint 1 to the connection point, resolved along link 1
-        uhs_xi_1_in_axes1_z = (
-        uhs_S_x*uhs_base_frame_xz + uhs_S_y*uhs_base_frame_yz + uhs_S_z*uhs_base_frame_zz
-        )
+        uhs_s_1 = inv_uhs_rho2_1*uhs_S_in_turn1_y*uhs_root_1
         # (uhs-rho2_2) squared amplitude
-        uhs_rho2_2 = uhs_rho2_1 + uhs_xi_1_in_axes1_z*uhs_xi_1_in_axes1_z
+        uhs_rho2_2 = uhs_S_in_turn1_z*uhs_S_in_turn1_z + uhs_rho2_1
         # (uhs-root_2) root, with the sign of the branch
         uhs_root_2 = uhs_branch_2*sqrt(uhs_rho2_2)
         # (uhs-c_2) cosine of the angle of joint 2 from its reference direction
         inv_uhs_rho2_2 = 1.0/uhs_rho2_2
-        uhs_c_2 = -inv_uhs_rho2_2*uhs_root_1*uhs_root_2
-        # (uhs-s_2) sine of the angle of joint 2 from its reference direction
-        uhs_s_2 = inv_uhs_rho2_2*uhs_root_2*uhs_xi_1_in_axes1_z
+        uhs_c_2 = inv_uhs_rho2_2*uhs_root_1*uhs_root_2
         # (uhs-x_3) from the origin of joint 3 to the connection point
         uhs_x_3_in_axes2_x = uhs_root_2 - uhs_joint3_offset_x
         # (uhs-q_3) displacement of joint 3
         uhs_q_3_t = inv_uhs_joint3_pitch*(uhs_platform_joint_offset_x - uhs_x_3_in_axes2_x)
         # (uhs-c_3) cosine of the angle of joint 3 from its reference direction
-        uhs_c_3 = sin(uhs_q_3_t)
+        uhs_c_3 = cos(uhs_q_3_t)
         # (uhs-s_3) sine of the angle of joint 3 from its reference direction
-        uhs_s_3 = cos(uhs_q_3_t)
+        uhs_s_3 = -sin(uhs_q_3_t)
         # (uhs-S_dot) velocity of the connection point
         uhs_S_dot_t = omega_y*uhs_q_z - omega_z*uhs_q_y
         uhs_S_dot_t_2 = omega_z*uhs_q_x - omega_x*uhs_q_z
@@ -4567,11 +4724,11 @@ def _run_legs(m, X, V, A):
         uhs_S_dot_y = t_dot_y + uhs_S_dot_t_2
         uhs_S_dot_z = t_dot_z + uhs_S_dot_t_3
         # (uhs-v_1) velocity of the connection point per rate of joint 1
-        uhs_e_1_in_axes3_y = -uhs_c_2*uhs_s_3
+        uhs_e_1_in_axes3_y = uhs_c_2*uhs_c_3
         uhs_v_1_in_axes3_x = uhs_e_1_in_axes3_y*uhs_root_2
-        uhs_v_1_in_axes3_y = -uhs_c_2*uhs_c_3*uhs_root_2
-        uhs_v_1_in_axes2_y = uhs_c_3*uhs_v_1_in_axes3_x - uhs_s_3*uhs_v_1_in_axes3_y
-        uhs_v_1_in_axes2_z = uhs_c_3*uhs_v_1_in_axes3_y + uhs_s_3*uhs_v_1_in_axes3_x
+        uhs_v_1_t = uhs_c_2*uhs_root_2*uhs_s_3
+        uhs_v_1_in_axes2_z = uhs_c_3*uhs_v_1_in_axes3_x + uhs_s_3*uhs_v_1_t
+        uhs_v_1_t_2 = uhs_s_3*uhs_v_1_in_axes3_x - uhs_c_3*uhs_v_1_t
         # (uhs-w_3) reciprocal vector 3
         inv_uhs_root_2 = 1.0/uhs_root_2
         axis_z_uhs_axes3_x = inv_uhs_root_2*uhs_S_x
@@ -4590,24 +4747,26 @@ def _run_legs(m, X, V, A):
         uhs_S_dot_x*uhs_base_frame_xy + uhs_S_dot_y*uhs_base_frame_yy +
             uhs_S_dot_z*uhs_base_frame_zy
         )
-        uhs_qd_1 = inv_uhs_v_1_in_axes2_z*(uhs_c_1*uhs_qd_1_t + uhs_qd_1_t_2*uhs_s_1)
+        uhs_qd_1 = inv_uhs_v_1_in_axes2_z*(uhs_c_1*uhs_qd_1_t_2 - uhs_qd_1_t*uhs_s_1)
         # (uhs-qd_2) rate of joint 2
+        uhs_e_1_in_axes3_z = inv_uhs_rho2_2*uhs_S_in_turn1_z*uhs_root_2
         uhs_qd_2_t = (
         uhs_S_dot_x*uhs_base_frame_xz + uhs_S_dot_y*uhs_base_frame_yz +
             uhs_S_dot_z*uhs_base_frame_zz
         )
-        uhs_qd_2_t_2 = uhs_qd_1_t*uhs_s_1 - uhs_c_1*uhs_qd_1_t_2
+        uhs_qd_2_t_2 = uhs_c_1*uhs_qd_1_t + uhs_qd_1_t_2*uhs_s_1
         uhs_qd_2 = (
-        inv_uhs_root_2*(uhs_c_2*uhs_qd_2_t + uhs_qd_2_t_2*uhs_s_2 - uhs_qd_1*uhs_v_1_in_axes2_y)
+        inv_uhs_root_2*(uhs_e_1_in_axes3_z*uhs_qd_2_t_2 + uhs_qd_1*uhs_v_1_t_2 -
+            uhs_c_2*uhs_qd_2_t)
         )
         # (uhs-qd_3) rate of joint 3
-        uhs_qd_3 = inv_uhs_joint3_pitch*(uhs_qd_2_t*uhs_s_2 - uhs_c_2*uhs_qd_2_t_2)
+        uhs_qd_3 = inv_uhs_joint3_pitch*(uhs_c_2*uhs_qd_2_t_2 + uhs_e_1_in_axes3_z*uhs_qd_2_t)
         # (uhs-omega_1) angular velocity of link 1
-        uhs_omega_1_in_axes2_x = uhs_qd_1*uhs_s_2
-        uhs_omega_1_in_axes2_y = uhs_c_2*uhs_qd_1
+        uhs_omega_1_in_axes2_x = uhs_e_1_in_axes3_z*uhs_qd_1
+        uhs_omega_1_in_axes2_y = -uhs_c_2*uhs_qd_1
         # (uhs-omega_2) angular velocity of link 2
-        uhs_omega_2_in_axes3_x = uhs_c_3*uhs_omega_1_in_axes2_y + uhs_qd_2*uhs_s_3
-        uhs_omega_2_in_axes3_y = uhs_c_3*uhs_qd_2 - uhs_omega_1_in_axes2_y*uhs_s_3
+        uhs_omega_2_in_axes3_x = uhs_c_3*uhs_qd_2 - uhs_omega_1_in_axes2_y*uhs_s_3
+        uhs_omega_2_in_axes3_y = -uhs_c_3*uhs_omega_1_in_axes2_y - uhs_qd_2*uhs_s_3
         # (uhs-W_2) centripetal tensor of link 2
         uhs_W_2_in_axes2_yz = uhs_omega_1_in_axes2_y*uhs_qd_2
         uhs_W_2_in_axes2_xz = uhs_omega_1_in_axes2_x*uhs_qd_2
@@ -4626,9 +4785,9 @@ def _run_legs(m, X, V, A):
         uhs_a_p_y = t_ddot_y + alpha_z*uhs_q_x - alpha_x*uhs_q_z
         uhs_a_p_z = t_ddot_z + alpha_x*uhs_q_y - alpha_y*uhs_q_x
         # (uhs-S_ddot) acceleration of the connection point
-        uhs_S_ddot_t = uhs_s_2*uhs_s_3
-        uhs_S_ddot_t_2 = uhs_c_1*uhs_c_3 - uhs_S_ddot_t*uhs_s_1
-        uhs_S_ddot_t_3 = uhs_S_ddot_t*uhs_c_1 + uhs_c_3*uhs_s_1
+        uhs_S_ddot_t = uhs_c_3*uhs_e_1_in_axes3_z
+        uhs_S_ddot_t_2 = uhs_s_1*uhs_s_3 - uhs_S_ddot_t*uhs_c_1
+        uhs_S_ddot_t_3 = -uhs_S_ddot_t*uhs_s_1 - uhs_c_1*uhs_s_3
         axis_y_uhs_axes3_x = (
         uhs_S_ddot_t_2*uhs_base_frame_xx + uhs_S_ddot_t_3*uhs_base_frame_xy +
             uhs_base_frame_xz*uhs_e_1_in_axes3_y
@@ -4666,13 +4825,13 @@ def _run_legs(m, X, V, A):
             axis_z_uhs_axes3_z*uhs_S_ddot_z
         )
         # (uhs-zeta_2) angular acceleration of link 2 from the turning of axis 2
-        uhs_zeta_2_t = uhs_W_2_in_axes2_xz*uhs_c_3
-        uhs_zeta_2_in_axes3_y = uhs_W_2_in_axes2_xz*uhs_s_3
+        uhs_zeta_2_in_axes3_x = uhs_W_2_in_axes2_xz*uhs_s_3
+        uhs_zeta_2_in_axes3_y = uhs_W_2_in_axes2_xz*uhs_c_3
         # (uhs-zeta_3) angular acceleration of link 3 from the turning of axis 3
         uhs_zeta_3_in_axes3_x = uhs_omega_2_in_axes3_y*uhs_qd_3
         uhs_zeta_3_in_axes3_y = -uhs_omega_2_in_axes3_x*uhs_qd_3
         # (uhs-beta_3) angular acceleration of link 3 at zero joint accelerations
-        uhs_beta_3_in_axes3_x = uhs_zeta_3_in_axes3_x - uhs_zeta_2_t
+        uhs_beta_3_in_axes3_x = uhs_zeta_2_in_axes3_x + uhs_zeta_3_in_axes3_x
         uhs_beta_3_in_axes3_y = uhs_zeta_2_in_axes3_y + uhs_zeta_3_in_axes3_y
         # (uhs-bias) acceleration of the connection point at zero joint accelerations
         uhs_bias_t_2 = uhs_bias_t*uhs_qd_3
@@ -4682,9 +4841,9 @@ def _run_legs(m, X, V, A):
             uhs_x_3_in_axes2_x*(uhs_W_3_in_axes3_xz + uhs_beta_3_in_axes3_y)
         )
         uhs_bias_in_axes3_y = (
-        uhs_joint3_offset_x*(uhs_zeta_2_t + uhs_omega_1_in_axes2_x*uhs_omega_2_in_axes3_y) +
-            uhs_x_3_in_axes2_x*(uhs_W_3_in_axes3_yz - uhs_beta_3_in_axes3_x) -
-            uhs_bias_t_2*uhs_omega_2_in_axes3_x
+        uhs_joint3_offset_x*(uhs_omega_1_in_axes2_x*uhs_omega_2_in_axes3_y -
+            uhs_zeta_2_in_axes3_x) + uhs_x_3_in_axes2_x*(uhs_W_3_in_axes3_yz -
+            uhs_beta_3_in_axes3_x) - uhs_bias_t_2*uhs_omega_2_in_axes3_x
         )
         uhs_bias_in_axes3_z = -uhs_W_2_t_3*uhs_joint3_offset_x - uhs_W_2_t_3*uhs_x_3_in_axes2_x
         # (uhs-rel) acceleration of the connection point left to the joint accelerations
@@ -4693,30 +4852,30 @@ def _run_legs(m, X, V, A):
         uhs_rel_in_axes3_z = uhs_S_ddot_in_axes3_z - uhs_bias_in_axes3_z
         # (uhs-qdd_1) acceleration of joint 1
         uhs_qdd_1 = (
-        inv_uhs_v_1_in_axes2_z*(uhs_c_3*uhs_rel_in_axes3_y + uhs_rel_in_axes3_x*uhs_s_3)
+        inv_uhs_v_1_in_axes2_z*(uhs_c_3*uhs_rel_in_axes3_x - uhs_rel_in_axes3_y*uhs_s_3)
         )
         # (uhs-qdd_2) acceleration of joint 2
-        uhs_qdd_2_t = (
-        inv_uhs_root_2*(uhs_qdd_1*uhs_v_1_in_axes2_y + uhs_rel_in_axes3_y*uhs_s_3 -
-            uhs_c_3*uhs_rel_in_axes3_x)
+        uhs_qdd_2 = (
+        inv_uhs_root_2*(uhs_qdd_1*uhs_v_1_t_2 - uhs_c_3*uhs_rel_in_axes3_y -
+            uhs_rel_in_axes3_x*uhs_s_3)
         )
         # (uhs-alpha_1) angular acceleration of link 1
-        uhs_alpha_1_in_axes2_x = uhs_qdd_1*uhs_s_2
-        uhs_alpha_1_in_axes2_y = uhs_c_2*uhs_qdd_1
+        uhs_alpha_1_in_axes2_x = uhs_e_1_in_axes3_z*uhs_qdd_1
+        uhs_alpha_1_in_axes2_y = -uhs_c_2*uhs_qdd_1
         # (uhs-alpha_2) angular acceleration of link 2
         uhs_alpha_2_in_axes2_x = uhs_W_2_in_axes2_yz + uhs_alpha_1_in_axes2_x
         uhs_alpha_2_in_axes2_y = uhs_alpha_1_in_axes2_y - uhs_W_2_in_axes2_xz
         # (uhs-B_2) acceleration tensor of link 2
-        uhs_B_2_in_axes2_xy = uhs_W_2_in_axes2_xy + uhs_qdd_2_t
-        uhs_B_2_in_axes2_yx = uhs_W_2_in_axes2_xy - uhs_qdd_2_t
+        uhs_B_2_in_axes2_xy = uhs_W_2_in_axes2_xy - uhs_qdd_2
+        uhs_B_2_in_axes2_yx = uhs_W_2_in_axes2_xy + uhs_qdd_2
         uhs_B_2_in_axes2_zx = uhs_W_2_in_axes2_xz - uhs_alpha_2_in_axes2_y
         uhs_B_2_in_axes2_zy = uhs_W_2_in_axes2_yz + uhs_alpha_2_in_axes2_x
         # (uhs-alpha_3) angular acceleration of link 3
         uhs_alpha_3_in_axes3_x = (
-        uhs_zeta_3_in_axes3_x + uhs_alpha_2_in_axes2_y*uhs_c_3 - uhs_qdd_2_t*uhs_s_3
+        uhs_zeta_3_in_axes3_x + uhs_c_3*uhs_qdd_2 - uhs_alpha_2_in_axes2_y*uhs_s_3
         )
         uhs_alpha_3_in_axes3_y = (
-        uhs_zeta_3_in_axes3_y - uhs_alpha_2_in_axes2_y*uhs_s_3 - uhs_c_3*uhs_qdd_2_t
+        uhs_zeta_3_in_axes3_y - uhs_alpha_2_in_axes2_y*uhs_c_3 - uhs_qdd_2*uhs_s_3
         )
         uhs_alpha_3_in_axes3_z = uhs_alpha_2_in_axes2_x + inv_uhs_joint3_pitch*uhs_rel_in_axes3_z
         # (uhs-B_3) acceleration tensor of link 3
@@ -4763,10 +4922,10 @@ def _run_legs(m, X, V, A):
         uhs_mu_2_t_4 = uhs_omega_1_in_axes2_x*uhs_omega_1_in_axes2_x
         uhs_mu_2_t_5 = uhs_omega_1_in_axes2_y*uhs_omega_1_in_axes2_y
         uhs_mu_2_t_6 = uhs_qd_2*uhs_qd_2
-        uhs_g_in_axes2_z = uhs_c_1*uhs_mu_2_t + uhs_mu_2_t_2*uhs_s_1
-        uhs_mu_2_t_7 = uhs_c_1*uhs_mu_2_t_2 - uhs_mu_2_t*uhs_s_1
-        uhs_g_in_axes2_x = uhs_c_2*uhs_mu_2_t_7 + uhs_mu_2_t_3*uhs_s_2
-        uhs_g_in_axes2_y = uhs_c_2*uhs_mu_2_t_3 - uhs_mu_2_t_7*uhs_s_2
+        uhs_mu_2_t_7 = uhs_c_1*uhs_mu_2_t + uhs_mu_2_t_2*uhs_s_1
+        uhs_g_in_axes2_z = uhs_c_1*uhs_mu_2_t_2 - uhs_mu_2_t*uhs_s_1
+        uhs_g_in_axes2_x = uhs_c_2*uhs_mu_2_t_7 + uhs_e_1_in_axes3_z*uhs_mu_2_t_3
+        uhs_g_in_axes2_y = uhs_e_1_in_axes3_z*uhs_mu_2_t_7 - uhs_c_2*uhs_mu_2_t_3
         uhs_mu_2_in_axes2_x = (
         uhs_B_2_in_axes2_yx*uhs_J_2_in_spec2_xy + uhs_B_2_in_axes2_zx*uhs_J_2_in_spec2_xz +
             uhs_B_2_in_axes2_zy*uhs_Sigma_2_in_axes2_yy +
@@ -4789,24 +4948,24 @@ def _run_legs(m, X, V, A):
         # (uhs-N_2) moment about joint 2 of the links from 2 outwards, the force at the connection point left out
         uhs_N_2_in_axes2_x = uhs_mu_2_in_axes2_x + uhs_mu_3_in_axes3_z
         uhs_N_2_in_axes2_y = (
-        uhs_mu_2_in_axes2_y + uhs_c_3*uhs_mu_3_in_axes3_x - uhs_mu_3_in_axes3_y*uhs_s_3
+        uhs_mu_2_in_axes2_y - uhs_c_3*uhs_mu_3_in_axes3_y - uhs_mu_3_in_axes3_x*uhs_s_3
         )
         uhs_N_2_in_axes2_z = (
-        uhs_mu_2_in_axes2_z + uhs_c_3*uhs_mu_3_in_axes3_y + uhs_mu_3_in_axes3_x*uhs_s_3
+        uhs_mu_2_in_axes2_z + uhs_c_3*uhs_mu_3_in_axes3_x - uhs_mu_3_in_axes3_y*uhs_s_3
         )
         # (uhs-c) leg force on the platform without actuation and without the mass at the connection point
         uhs_c_t = inv_uhs_root_2*uhs_N_2_in_axes2_z
         uhs_c_t_2 = (
-        inv_uhs_v_1_in_axes2_z*(uhs_c_t*uhs_v_1_in_axes2_y - uhs_N_2_in_axes2_x*uhs_s_2 -
+        inv_uhs_v_1_in_axes2_z*(uhs_N_2_in_axes2_x*uhs_e_1_in_axes3_z + uhs_c_t*uhs_v_1_t_2 -
             uhs_N_2_in_axes2_y*uhs_c_2)
         )
         uhs_c_in_axes3_x = (
-        uhs_c_t_2*uhs_s_3 + uhs_h_3_in_spec3_y*(uhs_W_2_t_2 + uhs_mu_3_t) -
+        uhs_c_t*uhs_s_3 + uhs_h_3_in_spec3_y*(uhs_W_2_t_2 + uhs_mu_3_t) -
             uhs_B_3_in_axes3_xy*uhs_h_3_in_spec3_z - uhs_B_3_in_axes3_xz*uhs_h_3_in_spec3_x -
-            uhs_c_3*uhs_c_t
+            uhs_c_3*uhs_c_t_2
         )
         uhs_c_in_axes3_y = (
-        uhs_c_3*uhs_c_t_2 + uhs_c_t*uhs_s_3 + uhs_h_3_in_spec3_z*(uhs_W_2_t + uhs_mu_3_t) -
+        uhs_c_3*uhs_c_t + uhs_c_t_2*uhs_s_3 + uhs_h_3_in_spec3_z*(uhs_W_2_t + uhs_mu_3_t) -
             uhs_B_3_in_axes3_yx*uhs_h_3_in_spec3_y - uhs_B_3_in_axes3_yz*uhs_h_3_in_spec3_x
         )
         uhs_c_in_axes3_z = (
@@ -4899,7 +5058,7 @@ def _run_potential(m, X):
         R_yz*h_star_in_platform_z + m_star*t_y) + gravity_z*(R_zx*h_star_in_platform_x +
         R_zy*h_star_in_platform_y + R_zz*h_star_in_platform_z + m_star*t_z)
     )
-    potential_t_2, = [0.0] * 1
+    potential_uhs, = [0.0] * 1
     for leg, k in legs[0]:
         (
         inv_uhs_joint3_pitch, uhs_base_frame_xx, uhs_base_frame_xy, uhs_base_frame_xz,
@@ -4925,65 +5084,61 @@ def _run_potential(m, X):
         t_z + R_zx*uhs_platform_point_x + R_zy*uhs_platform_point_y + R_zz*uhs_platform_point_z -
             uhs_base_point_z
         )
-        # (uhs-px_1) component along the reference direction
-        uhs_px_1 = (
+        uhs_S_in_turn1_x = (
         uhs_S_x*uhs_base_frame_xx + uhs_S_y*uhs_base_frame_yx + uhs_S_z*uhs_base_frame_zx
         )
-        # (uhs-py_1) component across the reference direction
-        uhs_py_1 = (
+        uhs_S_in_turn1_y = (
         uhs_S_x*uhs_base_frame_xy + uhs_S_y*uhs_base_frame_yy + uhs_S_z*uhs_base_frame_zy
         )
+        uhs_S_in_turn1_z = (
+        uhs_S_x*uhs_base_frame_xz + uhs_S_y*uhs_base_frame_yz + uhs_S_z*uhs_base_frame_zz
+        )
         # (uhs-rho2_1) squared amplitude
-        uhs_rho2_1 = uhs_px_1*uhs_px_1 + uhs_py_1*uhs_py_1
+        uhs_rho2_1 = uhs_S_in_turn1_x*uhs_S_in_turn1_x + uhs_S_in_turn1_y*uhs_S_in_turn1_y
         # (uhs-root_1) root, with the sign of the branch
         uhs_root_1 = uhs_branch_1*sqrt(uhs_rho2_1)
         # (uhs-c_1) cosine of the angle of joint 1 from its reference direction
         inv_uhs_rho2_1 = 1.0/uhs_rho2_1
-        uhs_c_1 = -inv_uhs_rho2_1*uhs_py_1*uhs_root_1
+        uhs_c_1 = inv_uhs_rho2_1*uhs_S_in_turn1_x*uhs_root_1
         # (uhs-s_1) sine of the angle of joint 1 from its reference direction
-        uhs_s_1 = inv_uhs_rho2_1*uhs_px_1*uhs_root_1
-        # (uhs-xi_1) the vector from joint 1 to the connection point, resolved along link 1
-        uhs_xi_1_in_axes1_z = (
-        uhs_S_x*uhs_base_frame_xz + uhs_S_y*uhs_base_frame_yz + uhs_S_z*uhs_base_frame_zz
-        )
+        uhs_s_1 = inv_uhs_rho2_1*uhs_S_in_turn1_y*uhs_root_1
         # (uhs-rho2_2) squared amplitude
-        uhs_rho2_2 = uhs_rho2_1 + uhs_xi_1_in_axes1_z*uhs_xi_1_in_axes1_z
+        uhs_rho2_2 = uhs_S_in_turn1_z*uhs_S_in_turn1_z + uhs_rho2_1
         # (uhs-root_2) root, with the sign of the branch
         uhs_root_2 = uhs_branch_2*sqrt(uhs_rho2_2)
         # (uhs-c_2) cosine of the angle of joint 2 from its reference direction
         inv_uhs_rho2_2 = 1.0/uhs_rho2_2
-        uhs_c_2 = -inv_uhs_rho2_2*uhs_root_1*uhs_root_2
-        # (uhs-s_2) sine of the angle of joint 2 from its reference direction
-        uhs_s_2 = inv_uhs_rho2_2*uhs_root_2*uhs_xi_1_in_axes1_z
+        uhs_c_2 = inv_uhs_rho2_2*uhs_root_1*uhs_root_2
         # (uhs-x_3) from the origin of joint 3 to the connection point
         uhs_x_3_in_axes2_x = uhs_root_2 - uhs_joint3_offset_x
         # (uhs-q_3) displacement of joint 3
         uhs_q_3_t = inv_uhs_joint3_pitch*(uhs_platform_joint_offset_x - uhs_x_3_in_axes2_x)
         # (uhs-c_3) cosine of the angle of joint 3 from its reference direction
-        uhs_c_3 = sin(uhs_q_3_t)
+        uhs_c_3 = cos(uhs_q_3_t)
         # (uhs-s_3) sine of the angle of joint 3 from its reference direction
-        uhs_s_3 = cos(uhs_q_3_t)
+        uhs_s_3 = -sin(uhs_q_3_t)
         # (potential) potential energy
-        uhs_potential_t_4 = uhs_c_1*uhs_mu_2_t_2 - uhs_mu_2_t*uhs_s_1
-        uhs_potential_t_5 = uhs_c_1*uhs_potential_t_2 - uhs_potential_t*uhs_s_1
+        uhs_e_1_in_axes3_z = inv_uhs_rho2_2*uhs_S_in_turn1_z*uhs_root_2
+        uhs_potential_t_4 = uhs_c_1*uhs_mu_2_t + uhs_mu_2_t_2*uhs_s_1
+        uhs_potential_t_5 = uhs_c_1*uhs_potential_t + uhs_potential_t_2*uhs_s_1
         uhs_potential_t_6 = (
-        (uhs_c_1*uhs_mu_2_t + uhs_mu_2_t_2*uhs_s_1)*(uhs_h_2_in_spec2_y +
-            uhs_c_3*uhs_h_3_in_spec3_z + uhs_h_3_in_spec3_y*uhs_s_3 +
-            uhs_link2_mass*(uhs_c_1*uhs_potential_t + uhs_potential_t_2*uhs_s_1)) +
-            (uhs_c_2*uhs_mu_2_t_3 - uhs_potential_t_4*uhs_s_2)*(uhs_c_3*uhs_h_3_in_spec3_y +
-            uhs_link2_mass*(uhs_c_2*uhs_potential_t_3 - uhs_potential_t_5*uhs_s_2) -
-            uhs_h_2_in_spec2_z - uhs_h_3_in_spec3_z*uhs_s_3) + (uhs_c_2*uhs_potential_t_4 +
-            uhs_mu_2_t_3*uhs_s_2)*(uhs_h_2_in_spec2_x + uhs_h_3_in_spec3_x +
-            uhs_link2_mass*(uhs_c_2*uhs_potential_t_5 + uhs_potential_t_3*uhs_s_2))
+        (uhs_e_1_in_axes3_z*uhs_potential_t_4 - uhs_c_2*uhs_mu_2_t_3)*(uhs_h_2_in_spec2_z +
+            uhs_c_3*uhs_h_3_in_spec3_z + uhs_h_3_in_spec3_y*uhs_s_3 -
+            uhs_link2_mass*(uhs_e_1_in_axes3_z*uhs_potential_t_5 - uhs_c_2*uhs_potential_t_3)) -
+            (uhs_c_1*uhs_mu_2_t_2 - uhs_mu_2_t*uhs_s_1)*(uhs_h_2_in_spec2_y +
+            uhs_c_3*uhs_h_3_in_spec3_y + uhs_link2_mass*(uhs_c_1*uhs_potential_t_2 -
+            uhs_potential_t*uhs_s_1) - uhs_h_3_in_spec3_z*uhs_s_3) - (uhs_c_2*uhs_potential_t_4 +
+            uhs_e_1_in_axes3_z*uhs_mu_2_t_3)*(uhs_h_2_in_spec2_x + uhs_h_3_in_spec3_x +
+            uhs_link2_mass*(uhs_c_2*uhs_potential_t_5 + uhs_e_1_in_axes3_z*uhs_potential_t_3))
         )
         ok = (
         ok & (abs(uhs_rho2_1) > _TOLERANCE * _TOLERANCE * uhs_size_t) & (abs(uhs_rho2_2) >
             _TOLERANCE * _TOLERANCE * uhs_size_t)
         )
         # (potential) potential energy
-        potential_t_2 += uhs_potential_t_6
+        potential_uhs += uhs_potential_t_6
     # (potential) potential energy
-    potential = -potential_t - potential_t_2
+    potential = potential_uhs - potential_t
     # (potential) potential energy
     out_potential[0] = potential
     return ok, (out_potential,)
@@ -5064,37 +5219,34 @@ def _run_condition(m, X):
         uhs_S_x = t_x + uhs_q_x - uhs_base_point_x
         uhs_S_y = t_y + uhs_q_y - uhs_base_point_y
         uhs_S_z = t_z + uhs_q_z - uhs_base_point_z
-        # (uhs-px_1) component along the reference direction
-        uhs_px_1 = (
+        uhs_S_in_turn1_x = (
         uhs_S_x*uhs_base_frame_xx + uhs_S_y*uhs_base_frame_yx + uhs_S_z*uhs_base_frame_zx
         )
-        # (uhs-py_1) component across the reference direction
-        uhs_py_1 = (
+        uhs_S_in_turn1_y = (
         uhs_S_x*uhs_base_frame_xy + uhs_S_y*uhs_base_frame_yy + uhs_S_z*uhs_base_frame_zy
         )
-        # (uhs-rho2_1) squared amplitude
-        uhs_rho2_1 = uhs_px_1*uhs_px_1 + uhs_py_1*uhs_py_1
-        # (uhs-xi_1) the vector from joint 1 to the connection point, resolved along link 1
-        uhs_xi_1_in_axes1_z = (
+        uhs_S_in_turn1_z = (
         uhs_S_x*uhs_base_frame_xz + uhs_S_y*uhs_base_frame_yz + uhs_S_z*uhs_base_frame_zz
         )
+        # (uhs-rho2_1) squared amplitude
+        uhs_rho2_1 = uhs_S_in_turn1_x*uhs_S_in_turn1_x + uhs_S_in_turn1_y*uhs_S_in_turn1_y
         # (uhs-rho2_2) squared amplitude
-        uhs_rho2_2 = uhs_rho2_1 + uhs_xi_1_in_axes1_z*uhs_xi_1_in_axes1_z
+        uhs_rho2_2 = uhs_S_in_turn1_z*uhs_S_in_turn1_z + uhs_rho2_1
         # (uhs-root_2) root, with the sign of the branch
         uhs_root_2 = uhs_branch_2*sqrt(uhs_rho2_2)
         # (uhs-c_2) cosine of the angle of joint 2 from its reference direction
-        uhs_c_2 = -uhs_branch_1*sqrt(uhs_rho2_1)*uhs_root_2/uhs_rho2_2
+        uhs_c_2 = uhs_branch_1*sqrt(uhs_rho2_1)*uhs_root_2/uhs_rho2_2
         # (uhs-x_3) from the origin of joint 3 to the connection point
         uhs_x_3_in_axes2_x = uhs_root_2 - uhs_joint3_offset_x
         # (uhs-q_3) displacement of joint 3
         uhs_q_3_t = inv_uhs_joint3_pitch*(uhs_platform_joint_offset_x - uhs_x_3_in_axes2_x)
         # (uhs-c_3) cosine of the angle of joint 3 from its reference direction
-        uhs_c_3 = sin(uhs_q_3_t)
+        uhs_c_3 = cos(uhs_q_3_t)
         # (uhs-s_3) sine of the angle of joint 3 from its reference direction
-        uhs_s_3 = cos(uhs_q_3_t)
+        uhs_s_3 = -sin(uhs_q_3_t)
         # (uhs-v_1) velocity of the connection point per rate of joint 1
         uhs_v_1_in_axes2_z = (
-        -uhs_c_2*uhs_c_3*uhs_c_3*uhs_root_2 - uhs_c_2*uhs_root_2*uhs_s_3*uhs_s_3
+        uhs_c_2*uhs_c_3*uhs_c_3*uhs_root_2 + uhs_c_2*uhs_root_2*uhs_s_3*uhs_s_3
         )
         # (uhs-w_3) reciprocal vector 3
         inv_uhs_root_2 = 1.0/uhs_root_2
@@ -5145,6 +5297,130 @@ def _run_condition(m, X):
     return (valid, reached, clear), (out_H, out_lengths, out_pivots, out_reach,)
 
 
+def _straight_6(a, b, rows, limits):
+    """Solve 6 equations a x = b straight through; and whether that is beyond doubt."""
+    (
+    (a00, a01, a02, a03, a04, a05,), (a10, a11, a12, a13, a14, a15,), (a20, a21, a22, a23, a24,
+        a25,), (a30, a31, a32, a33, a34, a35,), (a40, a41, a42, a43, a44, a45,), (a50, a51, a52,
+        a53, a54, a55,),
+    ) = [a[6 * k : 6 * k + 6] for k in rows]
+    b0, b1, b2, b3, b4, b5, = [b[k] for k in rows]
+    (
+    l10, l20, l30, l40, l50, l21, l31, l41, l51, l32, l42, l52, l43, l53, l54, l0, l1, l2, l3, l4,
+        l5,
+    ) = limits
+    f0 = 1.0/a00
+    g10 = a10*f0
+    a11 = a11 - g10*a01
+    a12 = a12 - g10*a02
+    a13 = a13 - g10*a03
+    a14 = a14 - g10*a04
+    a15 = a15 - g10*a05
+    b1 = b1 - g10*b0
+    g20 = a20*f0
+    a21 = a21 - g20*a01
+    a22 = a22 - g20*a02
+    a23 = a23 - g20*a03
+    a24 = a24 - g20*a04
+    a25 = a25 - g20*a05
+    b2 = b2 - g20*b0
+    g30 = a30*f0
+    a31 = a31 - g30*a01
+    a32 = a32 - g30*a02
+    a33 = a33 - g30*a03
+    a34 = a34 - g30*a04
+    a35 = a35 - g30*a05
+    b3 = b3 - g30*b0
+    g40 = a40*f0
+    a41 = a41 - g40*a01
+    a42 = a42 - g40*a02
+    a43 = a43 - g40*a03
+    a44 = a44 - g40*a04
+    a45 = a45 - g40*a05
+    b4 = b4 - g40*b0
+    g50 = a50*f0
+    a51 = a51 - g50*a01
+    a52 = a52 - g50*a02
+    a53 = a53 - g50*a03
+    a54 = a54 - g50*a04
+    a55 = a55 - g50*a05
+    b5 = b5 - g50*b0
+    f1 = 1.0/a11
+    g21 = a21*f1
+    a22 = a22 - g21*a12
+    a23 = a23 - g21*a13
+    a24 = a24 - g21*a14
+    a25 = a25 - g21*a15
+    b2 = b2 - g21*b1
+    g31 = a31*f1
+    a32 = a32 - g31*a12
+    a33 = a33 - g31*a13
+    a34 = a34 - g31*a14
+    a35 = a35 - g31*a15
+    b3 = b3 - g31*b1
+    g41 = a41*f1
+    a42 = a42 - g41*a12
+    a43 = a43 - g41*a13
+    a44 = a44 - g41*a14
+    a45 = a45 - g41*a15
+    b4 = b4 - g41*b1
+    g51 = a51*f1
+    a52 = a52 - g51*a12
+    a53 = a53 - g51*a13
+    a54 = a54 - g51*a14
+    a55 = a55 - g51*a15
+    b5 = b5 - g51*b1
+    f2 = 1.0/a22
+    g32 = a32*f2
+    a33 = a33 - g32*a23
+    a34 = a34 - g32*a24
+    a35 = a35 - g32*a25
+    b3 = b3 - g32*b2
+    g42 = a42*f2
+    a43 = a43 - g42*a23
+    a44 = a44 - g42*a24
+    a45 = a45 - g42*a25
+    b4 = b4 - g42*b2
+    g52 = a52*f2
+    a53 = a53 - g52*a23
+    a54 = a54 - g52*a24
+    a55 = a55 - g52*a25
+    b5 = b5 - g52*b2
+    f3 = 1.0/a33
+    g43 = a43*f3
+    a44 = a44 - g43*a34
+    a45 = a45 - g43*a35
+    b4 = b4 - g43*b3
+    g53 = a53*f3
+    a54 = a54 - g53*a34
+    a55 = a55 - g53*a35
+    b5 = b5 - g53*b3
+    f4 = 1.0/a44
+    g54 = a54*f4
+    a55 = a55 - g54*a45
+    b5 = b5 - g54*b4
+    f5 = 1.0/a55
+    x5 = b5*f5
+    x4 = (b4 - a45*x5)*f4
+    x3 = (b3 - a35*x5 - a34*x4)*f3
+    x2 = (b2 - a25*x5 - a24*x4 - a23*x3)*f2
+    x1 = (b1 - a15*x5 - a14*x4 - a13*x3 - a12*x2)*f1
+    x0 = (b0 - a05*x5 - a04*x4 - a03*x3 - a02*x2 - a01*x1)*f0
+    sure = (
+    (abs(g10) <= l10) & (abs(g20) <= l20) & (abs(g30) <= l30) & (abs(g40) <= l40) & (abs(g50) <=
+        l50) & (abs(g21) <= l21) & (abs(g31) <= l31) & (abs(g41) <= l41) & (abs(g51) <= l51) &
+        (abs(g32) <= l32) & (abs(g42) <= l42) & (abs(g52) <= l52) & (abs(g43) <= l43) & (abs(g53)
+        <= l53) & (abs(g54) <= l54) & (abs(f0) <= l0) & (abs(f1) <= l1) & (abs(f2) <= l2) &
+        (abs(f3) <= l3) & (abs(f4) <= l4) & (abs(f5) <= l5) & (abs(x0 + x1 + x2 + x3 + x4 + x5 +
+        a00 + a11 + a22 + a33 + a44 + a55) < math.inf)
+    )
+    return sure, ([x0, x1, x2, x3, x4, x5],)
+
+
+_ORDERS = (  # how systems are solved near home
+    _Order(_straight_6, (0, 2, 1, 3, 4, 5), (10, 10, 2.5, 2.5, 2.5, 10, 2.5, 2.5, 2.5, 2.5, 2.5, 2.5, 10, 10, 10, 62.5, 62.5, 62.5, 250, 250, 250,)),
+    _Order(_straight_6, (0, 1, 2, 3, 4, 5), (10, 10, 0.625, 0.625, 0.625, 10, 0.625, 0.625, 0.625, 0.625, 0.625, 0.625, 10, 10, 10, 62.5, 62.5, 62.5, 1000, 1000, 1000,)),
+)
 _Q = 3  # where a quaternion begins in X
 _DEFAULT = Parameters()
 
@@ -5188,17 +5464,17 @@ def _steps_inverse_dynamics(m, X, V, A, wrench, weights):
     required, H = m.run(_run_required, ("required", "H"), X, V, A)
     extend_1 = wrench
     subtract_1 = required - extend_1
-    tau = _solve(H, subtract_1)
+    tau = _straight(m, H, subtract_1, _ORDERS[0])
     return (tau,)
 
 
 def _steps_forward_dynamics(m, X, V, tau, wrench):
     M, Z, H = m.run(_run_dynamics, ("M", "Z", "H"), X, V)
-    times_1 = np.einsum("ijs,js->is", H, tau)
+    times_1 = _times(H, tau)
     extend_1 = wrench
     add_1 = times_1 + extend_1
     subtract_1 = add_1 - Z
-    A = _solve(M, subtract_1)
+    A = _straight(m, M, subtract_1, _ORDERS[1])
     return (A,)
 
 
@@ -5211,7 +5487,7 @@ def _steps_leg_reactions(m, X, V, A, wrench):
     required, H = m.run(_run_required, ("required", "H"), X, V, A)
     extend_1 = wrench
     subtract_1 = required - extend_1
-    solve_1 = _solve(H, subtract_1)
+    solve_1 = _straight(m, H, subtract_1, _ORDERS[0])
     leg_force, actuator = m.run(_run_legs, ("leg_force", "actuator"), X, V, A)
     forces = _with_forces(leg_force, solve_1, actuator, [0, 1, 2, 3, 4, 5])
     return (forces,)
@@ -5239,10 +5515,37 @@ def _steps_condition(m, X, length):
     return (sigma, legs,)
 
 
+def _steps_manipulability(m, X):
+    (
+    H, lengths, pivots, reach,
+    ) = m.run(_in_one(_run_condition), ("H", "lengths", "pivots", "reach"), X)
+    entry_1 = lengths[0]
+    subtract_1 = entry_1 - entry_1
+    choose_length_1 = _chosen_length(lengths, subtract_1)
+    divide_rows_1 = _rows_divided(H, choose_length_1, [3, 4, 5])
+    singular_values_1 = _singular_values(divide_rows_1)
+    measure, isotropy = _spread(singular_values_1, 6)
+    return (measure, isotropy,)
+
+
+def _steps_singularity_distance(m, X):
+    (
+    H, lengths, pivots, reach,
+    ) = m.run(_in_one(_run_condition), ("H", "lengths", "pivots", "reach"), X)
+    entry_1 = lengths[0]
+    subtract_1 = entry_1 - entry_1
+    choose_length_1 = _chosen_length(lengths, subtract_1)
+    divide_rows_1 = _rows_divided(H, choose_length_1, [3, 4, 5])
+    singular_values_1 = _singular_values(divide_rows_1)
+    spread_1, actuators = _spread(singular_values_1, 6)
+    legs = _least_entry(pivots)
+    return (actuators, legs,)
+
+
 def _steps_mismatch(m, X, q_actuated):
     q, = m.run(_run_inverse_kinematics, ("q",), X)
-    take_1 = q[[2, 5, 8, 11, 14, 17]]
-    gap = q_actuated - take_1
+    q_of_inverse_kinematics_from_2 = q[[2, 5, 8, 11, 14, 17]]
+    gap = q_actuated - q_of_inverse_kinematics_from_2
     return (gap,)
 
 
@@ -5264,7 +5567,7 @@ def _steps_dissipation(m, X, V):
 
 def _steps_momentum(m, X, V):
     M, = m.run(_run_M, ("M",), X)
-    momentum = np.einsum("ijs,js->is", M, V)
+    momentum = _times(M, V)
     return (momentum,)
 
 
@@ -5301,14 +5604,14 @@ def _steps_actuator_accelerations(m, X, V, A):
 
 def _steps_power(m, X, V, tau):
     H, = m.run(_run_H, ("H",), X)
-    times_1 = np.einsum("ijs,js->is", H, tau)
+    times_1 = _times(H, tau)
     power = np.sum(times_1 * V, axis=0)
     return (power,)
 
 
 def _steps_rotation(m, X):
-    take_1 = X[3:7]
-    R = _rotation_of_quaternion(take_1)
+    X_from_3 = X[3:7]
+    R = _rotation_of_quaternion(X_from_3)
     return (R,)
 
 
@@ -5320,11 +5623,11 @@ def _steps_pose(m, t, R):
 
 
 def _steps_X_dot(m, X, V):
-    take_1 = V[3:6]
-    take_2 = X[3:7]
-    quaternion_rate_1 = _quaternion_rate(take_2, take_1)
-    take_3 = V[0:3]
-    X_dot = np.concatenate((take_3, quaternion_rate_1))
+    V_from_3 = V[3:6]
+    X_from_3 = X[3:7]
+    quaternion_rate_1 = _quaternion_rate(X_from_3, V_from_3)
+    V_from_0 = V[0:3]
+    X_dot = np.concatenate((V_from_0, quaternion_rate_1))
     return (X_dot,)
 
 
@@ -5336,42 +5639,42 @@ def _steps_pose_from_rpy(m, t, rpy):
 
 
 def _steps_retract(m, X, step):
-    take_1 = X[0:3]
-    take_2 = X[3:7]
-    take_3 = step[0:3]
-    take_4 = step[3:6]
-    turn_quaternion_1 = _turned(take_2, take_4)
-    add_1 = take_1 + take_3
+    X_from_0 = X[0:3]
+    X_from_3 = X[3:7]
+    step_from_0 = step[0:3]
+    step_from_3 = step[3:6]
+    turn_quaternion_1 = _turned(X_from_3, step_from_3)
+    add_1 = X_from_0 + step_from_0
     X_moved = np.concatenate((add_1, turn_quaternion_1))
     return (X_moved,)
 
 
 def _steps_difference(m, X0, X1):
-    take_1 = X0[0:3]
-    take_2 = X0[3:7]
-    take_3 = X1[0:3]
-    take_4 = X1[3:7]
-    turn_between_1 = _turn_between(take_2, take_4)
-    subtract_1 = take_3 - take_1
+    X0_from_0 = X0[0:3]
+    X0_from_3 = X0[3:7]
+    X1_from_0 = X1[0:3]
+    X1_from_3 = X1[3:7]
+    turn_between_1 = _turn_between(X0_from_3, X1_from_3)
+    subtract_1 = X1_from_0 - X0_from_0
     step = np.concatenate((subtract_1, turn_between_1))
     return (step,)
 
 
 def _steps_interpolate(m, X0, X1, s):
-    take_1 = X0[0:3]
-    take_2 = X0[3:7]
-    take_3 = X1[0:3]
-    take_4 = X1[3:7]
-    turn_between_1 = _turn_between(take_2, take_4)
-    subtract_1 = take_3 - take_1
+    X0_from_0 = X0[0:3]
+    X0_from_3 = X0[3:7]
+    X1_from_0 = X1[0:3]
+    X1_from_3 = X1[3:7]
+    turn_between_1 = _turn_between(X0_from_3, X1_from_3)
+    subtract_1 = X1_from_0 - X0_from_0
     join_1 = np.concatenate((subtract_1, turn_between_1))
     scale_1 = join_1 * s
-    take_5 = X0[0:3]
-    take_6 = X0[3:7]
-    take_7 = scale_1[0:3]
-    take_8 = scale_1[3:6]
-    turn_quaternion_1 = _turned(take_6, take_8)
-    add_1 = take_5 + take_7
+    X0_from_0_2 = X0[0:3]
+    X0_from_3_2 = X0[3:7]
+    scale_1_from_0 = scale_1[0:3]
+    scale_1_from_3 = scale_1[3:6]
+    turn_quaternion_1 = _turned(X0_from_3_2, scale_1_from_3)
+    add_1 = X0_from_0_2 + scale_1_from_0
     X = np.concatenate((add_1, turn_quaternion_1))
     return (X,)
 
@@ -5389,6 +5692,7 @@ def M(X, p=None):
     return _call(
         "M", _steps_M, p,
         ("X", X, (NQ,)),
+        plain=((NV, NV,),),
     )
 
 
@@ -5407,6 +5711,7 @@ def Z(X, V, p=None):
         "Z", _steps_Z, p,
         ("X", X, (NQ,)),
         ("V", V, (NV,)),
+        plain=((NV,),),
     )
 
 
@@ -5423,6 +5728,7 @@ def H(X, p=None):
     return _call(
         "H", _steps_H, p,
         ("X", X, (NQ,)),
+        plain=((NV, NU,),),
     )
 
 
@@ -5441,6 +5747,7 @@ def inverse_kinematics(X, p=None):
     return _call(
         "inverse_kinematics", _steps_inverse_kinematics, p,
         ("X", X, (NQ,)),
+        plain=((NJ,),),
     )
 
 
@@ -5459,6 +5766,7 @@ def joint_rates(X, V, p=None):
         "joint_rates", _steps_joint_rates, p,
         ("X", X, (NQ,)),
         ("V", V, (NV,)),
+        plain=((NJ,),),
     )
 
 
@@ -5479,6 +5787,7 @@ def joint_accelerations(X, V, A, p=None):
         ("X", X, (NQ,)),
         ("V", V, (NV,)),
         ("A", A, (NV,)),
+        plain=((NJ,),),
     )
 
 
@@ -5499,6 +5808,7 @@ def dynamics(X, V, p=None):
         "dynamics", _steps_dynamics, p,
         ("X", X, (NQ,)),
         ("V", V, (NV,)),
+        plain=((NV, NV,), (NV,), (NV, NU,),),
     )
 
 
@@ -5526,6 +5836,7 @@ def inverse_dynamics(X, V, A, p=None, *, wrench=None, weights=None):
         ("A", A, (NV,)),
         ("wrench", wrench, (NW,), 0.0),
         ("weights", weights, (NU,), 1.0, "positive"),
+        plain=((NU,),),
     )
 
 
@@ -5548,6 +5859,7 @@ def forward_dynamics(X, V, tau, p=None, *, wrench=None):
         ("V", V, (NV,)),
         ("tau", tau, (NU,)),
         ("wrench", wrench, (NW,), 0.0),
+        plain=((NV,),),
     )
 
 
@@ -5572,6 +5884,7 @@ def complete_acceleration(X, V, A, p=None, *, wrench=None):
         ("V", V, (NV,), None, "unused"),
         ("A", A, (NV,)),
         ("wrench", wrench, (NW,), 0.0, "unused"),
+        plain=((NV,),),
     )
 
 
@@ -5660,6 +5973,41 @@ def condition(X, p=None, *, length=None):
     )
 
 
+def manipulability(X, p=None):
+    """Manipulability of forces: the product of the singular values that `condition` has by
+    default, and the least over the largest of them.
+
+    Args:
+        X: pose, and extra coordinates (..., NQ).
+        p: parameters, by default those of the specification.
+
+    Returns:
+        measure: product of the singular values (...,).
+        isotropy: least over largest value, 1 where H is isotropic (...,).
+    """
+    return _call(
+        "manipulability", _steps_manipulability, p,
+        ("X", X, (NQ,)),
+    )
+
+
+def singularity_distance(X, p=None):
+    """How near actuators and legs are to being singular: relative distances, 0 where they are.
+
+    Args:
+        X: pose, and extra coordinates (..., NQ).
+        p: parameters, by default those of the specification.
+
+    Returns:
+        actuators: of H from matrices of lower rank, over its norm (...,).
+        legs: least pivot of all legs (...,).
+    """
+    return _call(
+        "singularity_distance", _steps_singularity_distance, p,
+        ("X", X, (NQ,)),
+    )
+
+
 def forward_kinematics(q_actuated, X0, p=None):
     """X at which the actuated joints stand at q_actuated, by Gauss-Newton from X0.
 
@@ -5715,6 +6063,7 @@ def momentum(X, V, p=None):
         "momentum", _steps_momentum, p,
         ("X", X, (NQ,)),
         ("V", V, (NV,)),
+        plain=((NV,),),
     )
 
 

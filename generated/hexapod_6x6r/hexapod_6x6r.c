@@ -902,9 +902,9 @@ int hexapod_6x6r_prepare(const hexapod_6x6r_params *params, hexapod_6x6r_model *
             gravity_y*six_r_base_frame_yx + gravity_z*six_r_base_frame_zx;
         /* (six_r-Jc_4) inertia tensor of the links from 4 outwards about joint 4, that of the last link
            about the connection point */
-        const real six_r_Jc_4_in_axes4_xx = six_r_J_4_in_spec4_zz + six_r_J_5_in_spec5_zz;
+        const real six_r_Jc_4_in_axes4_yy = six_r_J_4_in_spec4_zz + six_r_J_5_in_spec5_zz;
         /* (six_r-hc_3) first moment of the links from 3 outwards */
-        const real six_r_hc_3_in_axes3_x = six_r_h_3_in_spec3_x + six_r_h_4_in_spec4_x +
+        const real six_r_hc_3_in_axes3_y = six_r_h_3_in_spec3_x + six_r_h_4_in_spec4_x +
             six_r_joint4_offset_x*six_r_link4_mass;
         /* (six_r-Jc_3) inertia tensor of the links from 3 outwards about joint 3, that of the last link
            about the connection point */
@@ -915,34 +915,34 @@ int hexapod_6x6r_prepare(const hexapod_6x6r_params *params, hexapod_6x6r_model *
         /* (six_r-Jc_2) inertia tensor of the links from 2 outwards about joint 2, that of the last link
            about the connection point */
         const real six_r_Jc_2_t = six_r_joint3_offset_x*(six_r_Jc_3_t + R(0.5)*six_r_link3_mass);
-        /* (six_r-trace_J_5) half the trace of that inertia tensor */
-        const real six_r_trace_J_5 = R(0.5)*six_r_J_5_in_spec5_xx + R(0.5)*six_r_J_5_in_spec5_yy +
-            R(0.5)*six_r_J_5_in_spec5_zz;
         /* (six_r-Sigma_5) second moment of mass of the links that turn with link 5 */
-        const real six_r_Sigma_5_in_axes5_xx = six_r_trace_J_5 - six_r_J_5_in_spec5_xx;
-        const real six_r_Sigma_5_in_axes5_yy = six_r_trace_J_5 - six_r_J_5_in_spec5_yy;
-        const real six_r_Sigma_5_in_axes5_zz = six_r_trace_J_5 - six_r_J_5_in_spec5_zz;
-        /* (six_r-trace_J_4) half the trace of that inertia tensor */
-        const real six_r_trace_J_4 = R(0.5)*six_r_J_4_in_spec4_xx + R(0.5)*six_r_J_4_in_spec4_yy +
-            R(0.5)*six_r_J_4_in_spec4_zz;
+        const real six_r_Sigma_5_t = six_r_J_5_in_spec5_xx + six_r_J_5_in_spec5_yy +
+            six_r_J_5_in_spec5_zz;
+        const real six_r_Sigma_5_t_2 = R(0.5)*six_r_Sigma_5_t;
+        const real six_r_Sigma_5_in_axes5_xx = six_r_Sigma_5_t_2 - six_r_J_5_in_spec5_xx;
+        const real six_r_Sigma_5_in_axes5_yy = six_r_Sigma_5_t_2 - six_r_J_5_in_spec5_yy;
+        const real six_r_Sigma_5_in_axes5_zz = six_r_Sigma_5_t_2 - six_r_J_5_in_spec5_zz;
         /* (six_r-Sigma_4) second moment of mass of the links that turn with link 4 */
-        const real six_r_Sigma_4_in_axes4_xx = six_r_trace_J_4 - six_r_J_4_in_spec4_zz;
-        const real six_r_Sigma_4_in_axes4_yy = six_r_trace_J_4 - six_r_J_4_in_spec4_yy;
-        const real six_r_Sigma_4_in_axes4_zz = six_r_trace_J_4 - six_r_J_4_in_spec4_xx;
-        /* (six_r-trace_J_3) half the trace of that inertia tensor */
-        const real six_r_trace_J_3 = R(0.5)*six_r_J_3_in_spec3_xx + R(0.5)*six_r_J_3_in_spec3_yy +
-            R(0.5)*six_r_J_3_in_spec3_zz;
+        const real six_r_Sigma_4_t = six_r_J_4_in_spec4_xx + six_r_J_4_in_spec4_yy +
+            six_r_J_4_in_spec4_zz;
+        const real six_r_Sigma_4_t_2 = R(0.5)*six_r_Sigma_4_t;
+        const real six_r_Sigma_4_in_axes4_xx = six_r_Sigma_4_t_2 - six_r_J_4_in_spec4_yy;
+        const real six_r_Sigma_4_in_axes4_yy = six_r_Sigma_4_t_2 - six_r_J_4_in_spec4_zz;
+        const real six_r_Sigma_4_in_axes4_zz = six_r_Sigma_4_t_2 - six_r_J_4_in_spec4_xx;
         /* (six_r-Sigma_3) second moment of mass of the links that turn with link 3 */
-        const real six_r_Sigma_3_in_axes3_xx = six_r_trace_J_3 - six_r_J_3_in_spec3_xx;
-        const real six_r_Sigma_3_in_axes3_yy = six_r_trace_J_3 - six_r_J_3_in_spec3_yy;
-        const real six_r_Sigma_3_in_axes3_zz = six_r_trace_J_3 - six_r_J_3_in_spec3_zz;
-        /* (six_r-trace_J_2) half the trace of that inertia tensor */
-        const real six_r_trace_J_2 = R(0.5)*six_r_J_2_in_spec2_xx + R(0.5)*six_r_J_2_in_spec2_yy +
-            R(0.5)*six_r_J_2_in_spec2_zz;
+        const real six_r_Sigma_3_t = six_r_J_3_in_spec3_xx + six_r_J_3_in_spec3_yy +
+            six_r_J_3_in_spec3_zz;
+        const real six_r_Sigma_3_t_2 = R(0.5)*six_r_Sigma_3_t;
+        const real six_r_Sigma_3_in_axes3_xx = six_r_Sigma_3_t_2 - six_r_J_3_in_spec3_yy;
+        const real six_r_Sigma_3_in_axes3_yy = six_r_Sigma_3_t_2 - six_r_J_3_in_spec3_xx;
+        const real six_r_Sigma_3_in_axes3_zz = six_r_Sigma_3_t_2 - six_r_J_3_in_spec3_zz;
         /* (six_r-Sigma_2) second moment of mass of the links that turn with link 2 */
-        const real six_r_Sigma_2_in_axes2_xx = six_r_trace_J_2 - six_r_J_2_in_spec2_xx;
-        const real six_r_Sigma_2_in_axes2_yy = six_r_trace_J_2 - six_r_J_2_in_spec2_yy;
-        const real six_r_Sigma_2_in_axes2_zz = six_r_trace_J_2 - six_r_J_2_in_spec2_zz;
+        const real six_r_Sigma_2_t = six_r_J_2_in_spec2_xx + six_r_J_2_in_spec2_yy +
+            six_r_J_2_in_spec2_zz;
+        const real six_r_Sigma_2_t_2 = R(0.5)*six_r_Sigma_2_t;
+        const real six_r_Sigma_2_in_axes2_xx = six_r_Sigma_2_t_2 - six_r_J_2_in_spec2_xx;
+        const real six_r_Sigma_2_in_axes2_yy = six_r_Sigma_2_t_2 - six_r_J_2_in_spec2_yy;
+        const real six_r_Sigma_2_in_axes2_zz = six_r_Sigma_2_t_2 - six_r_J_2_in_spec2_zz;
         /* (h_star) first moment about the platform origin */
         const real six_r_h_star_t = six_r_link5_mass*six_r_platform_point_x;
         const real six_r_h_star_t_2 = six_r_link5_mass*six_r_platform_point_y;
@@ -996,7 +996,7 @@ int hexapod_6x6r_prepare(const hexapod_6x6r_params *params, hexapod_6x6r_model *
         model->six_r_Jc_2_t[leg] = six_r_Jc_2_t;
         model->six_r_Jc_3_t_2[leg] = six_r_Jc_3_t_2;
         model->six_r_Jc_3_t_3[leg] = six_r_Jc_3_t_3;
-        model->six_r_Jc_4_in_axes4_xx[leg] = six_r_Jc_4_in_axes4_xx;
+        model->six_r_Jc_4_in_axes4_yy[leg] = six_r_Jc_4_in_axes4_yy;
         model->six_r_Sigma_2_in_axes2_xx[leg] = six_r_Sigma_2_in_axes2_xx;
         model->six_r_Sigma_2_in_axes2_yy[leg] = six_r_Sigma_2_in_axes2_yy;
         model->six_r_Sigma_2_in_axes2_zz[leg] = six_r_Sigma_2_in_axes2_zz;
@@ -1039,7 +1039,7 @@ int hexapod_6x6r_prepare(const hexapod_6x6r_params *params, hexapod_6x6r_model *
         model->six_r_h_5_in_spec5_x[leg] = six_r_h_5_in_spec5_x;
         model->six_r_h_5_in_spec5_y[leg] = six_r_h_5_in_spec5_y;
         model->six_r_h_5_in_spec5_z[leg] = six_r_h_5_in_spec5_z;
-        model->six_r_hc_3_in_axes3_x[leg] = six_r_hc_3_in_axes3_x;
+        model->six_r_hc_3_in_axes3_y[leg] = six_r_hc_3_in_axes3_y;
         model->six_r_joint2_offset_x[leg] = six_r_joint2_offset_x;
         model->six_r_joint3_offset_x[leg] = six_r_joint3_offset_x;
         model->six_r_joint4_offset_x[leg] = six_r_joint4_offset_x;
@@ -1467,6 +1467,24 @@ INLINE void unlimited(size_t rows, size_t size, size_t w, const size_t *places, 
     }
 }
 
+INLINE void least_entry(size_t n, const real *a, real *x)
+{
+    *x = a[0];
+    for (size_t e = 1; e < n; ++e) {
+        *x = lesser(*x, a[e]);
+    }
+}
+
+/* Of the first n entries the product, and the last over the first, 0 where that is 0. */
+INLINE void spread(size_t n, const real *a, real *product_of, real *ratio)
+{
+    *product_of = 1;
+    for (size_t e = 0; e < n; ++e) {
+        *product_of *= a[e];
+    }
+    *ratio = magnitude(a[0]) > 0 ? a[n - 1]/a[0] : a[0];
+}
+
 /* 1 where no entry is negative, else 0. */
 INLINE void not_negative(size_t size, size_t w, const real *a, real *x, real *flags)
 {
@@ -1709,303 +1727,2022 @@ static void moved(const real *X, const real *step, real part, real *to)
     turn_quaternion(X + Q, turn, to + Q);
 }
 
-/* ---- closure_six_r ---- */
-INLINE void closure_six_r_before(size_t w, const real *X, real *s, verdict *t)
+/* ---- what functions of the state share; v: values for others ---- */
+
+typedef struct {
+    real quaternion_scale, R_xx, R_xy, R_xz, R_yx, R_yy, R_yz, R_zx, R_zy, R_zz, h_star_x, h_star_y,
+        h_star_z, omega_in_platform_x, omega_in_platform_y, omega_in_platform_z, J_star_xx, J_star_xy,
+        J_star_xz, J_star_yy, J_star_yz, J_star_zz, Z_p_x, Z_p_y, Z_p_z, Z_q_x, Z_q_y, Z_q_z;
+} values;
+
+INLINE void stage_X(const prepared *m, size_t w, size_t k, const real *X, values *v)
 {
-    for (size_t k = 0; k < w; ++k) {
-        /* X: named entries */
-        const real X_0 = X[0*w + k];
-        const real t_x = X_0;
-        const real X_1 = X[1*w + k];
-        const real t_y = X_1;
-        const real X_2 = X[2*w + k];
-        const real t_z = X_2;
-        const real X_3 = X[3*w + k];
-        const real X_4 = X[4*w + k];
-        const real X_5 = X[5*w + k];
-        const real X_6 = X[6*w + k];
-        const real quaternion_norm2 = X_3*X_3 + X_4*X_4 + X_5*X_5 + X_6*X_6;
-        const real quaternion_scale = 2/quaternion_norm2;
-        const real quaternion_sx = X_3*quaternion_scale;
-        const real quaternion_sy = X_4*quaternion_scale;
-        const real quaternion_sz = X_5*quaternion_scale;
-        const real quaternion_wx = X_6*quaternion_sx;
-        const real quaternion_wy = X_6*quaternion_sy;
-        const real quaternion_wz = X_6*quaternion_sz;
-        const real quaternion_xx = X_3*quaternion_sx;
-        const real quaternion_xy = X_3*quaternion_sy;
-        const real quaternion_xz = X_3*quaternion_sz;
-        const real quaternion_yy = X_4*quaternion_sy;
-        const real quaternion_yz = X_4*quaternion_sz;
-        const real quaternion_zz = X_5*quaternion_sz;
-        const real R_xx = 1 - quaternion_yy - quaternion_zz;
-        const real R_xy = quaternion_xy - quaternion_wz;
-        const real R_xz = quaternion_wy + quaternion_xz;
-        const real R_yx = quaternion_wz + quaternion_xy;
-        const real R_yy = 1 - quaternion_xx - quaternion_zz;
-        const real R_yz = quaternion_yz - quaternion_wx;
-        const real R_zx = quaternion_xz - quaternion_wy;
-        const real R_zy = quaternion_wx + quaternion_yz;
-        const real R_zz = 1 - quaternion_xx - quaternion_yy;
-        s[0*w + k] = t_x;
-        s[1*w + k] = t_y;
-        s[2*w + k] = t_z;
-        s[3*w + k] = R_xx;
-        s[4*w + k] = R_xy;
-        s[5*w + k] = R_xz;
-        s[6*w + k] = R_yx;
-        s[7*w + k] = R_yy;
-        s[8*w + k] = R_yz;
-        s[9*w + k] = R_zx;
-        s[10*w + k] = R_zy;
-        s[11*w + k] = R_zz;
-        t->invalid[k] += UNLESS(is_finite(quaternion_scale)) + UNLESS(quaternion_scale > 0);
-    }
+    /* X: named entries */
+    const real X_3 = X[3*w + k];
+    const real X_4 = X[4*w + k];
+    const real X_5 = X[5*w + k];
+    const real X_6 = X[6*w + k];
+    const real quaternion_norm2 = X_3*X_3 + X_4*X_4 + X_5*X_5 + X_6*X_6;
+    const real quaternion_scale = 2/quaternion_norm2;
+    const real quaternion_sx = X_3*quaternion_scale;
+    const real quaternion_sy = X_4*quaternion_scale;
+    const real quaternion_sz = X_5*quaternion_scale;
+    const real quaternion_wx = X_6*quaternion_sx;
+    const real quaternion_wy = X_6*quaternion_sy;
+    const real quaternion_wz = X_6*quaternion_sz;
+    const real quaternion_xx = X_3*quaternion_sx;
+    const real quaternion_xy = X_3*quaternion_sy;
+    const real quaternion_xz = X_3*quaternion_sz;
+    const real quaternion_yy = X_4*quaternion_sy;
+    const real quaternion_yz = X_4*quaternion_sz;
+    const real quaternion_zz = X_5*quaternion_sz;
+    const real R_xx = 1 - quaternion_yy - quaternion_zz;
+    const real R_xy = quaternion_xy - quaternion_wz;
+    const real R_xz = quaternion_wy + quaternion_xz;
+    const real R_yx = quaternion_wz + quaternion_xy;
+    const real R_yy = 1 - quaternion_xx - quaternion_zz;
+    const real R_yz = quaternion_yz - quaternion_wx;
+    const real R_zx = quaternion_xz - quaternion_wy;
+    const real R_zy = quaternion_wx + quaternion_yz;
+    const real R_zz = 1 - quaternion_xx - quaternion_yy;
+    /* (h_star) first moment about the platform origin */
+    const real h_star_in_platform_x = m->h_star_in_platform_x;
+    const real h_star_in_platform_y = m->h_star_in_platform_y;
+    const real h_star_in_platform_z = m->h_star_in_platform_z;
+    const real h_star_x = R_xx*h_star_in_platform_x + R_xy*h_star_in_platform_y +
+        R_xz*h_star_in_platform_z;
+    const real h_star_y = R_yx*h_star_in_platform_x + R_yy*h_star_in_platform_y +
+        R_yz*h_star_in_platform_z;
+    const real h_star_z = R_zx*h_star_in_platform_x + R_zy*h_star_in_platform_y +
+        R_zz*h_star_in_platform_z;
+    v->quaternion_scale = quaternion_scale;
+    v->R_xx = R_xx;
+    v->R_xy = R_xy;
+    v->R_xz = R_xz;
+    v->R_yx = R_yx;
+    v->R_yy = R_yy;
+    v->R_yz = R_yz;
+    v->R_zx = R_zx;
+    v->R_zy = R_zy;
+    v->R_zz = R_zz;
+    v->h_star_x = h_star_x;
+    v->h_star_y = h_star_y;
+    v->h_star_z = h_star_z;
 }
 
-INLINE void closure_six_r_legs_six_r(const prepared *m, size_t w, size_t leg, size_t legs, const
-    real *s, size_t states, size_t count, const real *joints, real *o)
+INLINE void stage_V_X(size_t w, size_t k, const real *V, values *v)
+{
+    /* (Z_q) gyroscopic moment and moment of the weight of the platform */
+    const real omega_x = V[3*w + k];
+    const real omega_y = V[4*w + k];
+    const real omega_z = V[5*w + k];
+    const real omega_in_platform_x = v->R_xx*omega_x + v->R_yx*omega_y + v->R_zx*omega_z;
+    const real omega_in_platform_y = v->R_xy*omega_x + v->R_yy*omega_y + v->R_zy*omega_z;
+    const real omega_in_platform_z = v->R_xz*omega_x + v->R_yz*omega_y + v->R_zz*omega_z;
+    v->omega_in_platform_x = omega_in_platform_x;
+    v->omega_in_platform_y = omega_in_platform_y;
+    v->omega_in_platform_z = omega_in_platform_z;
+}
+
+INLINE void stage_M_dynamics(const prepared *m, values *v)
+{
+    /* (J_star) inertia tensor about the platform origin */
+    const real J_star_in_platform_xy = m->J_star_in_platform_xy;
+    const real J_star_in_platform_yz = m->J_star_in_platform_yz;
+    const real J_star_t_12 = m->J_star_t_12;
+    const real J_star_t = J_star_in_platform_xy*v->R_xx + J_star_in_platform_yz*v->R_xz -
+        J_star_t_12*v->R_xy;
+    const real J_star_t_2 = J_star_in_platform_xy*v->R_yx + J_star_in_platform_yz*v->R_yz -
+        J_star_t_12*v->R_yy;
+    const real J_star_t_3 = J_star_in_platform_xy*v->R_zx + J_star_in_platform_yz*v->R_zz -
+        J_star_t_12*v->R_zy;
+    const real J_star_in_platform_xz = m->J_star_in_platform_xz;
+    const real J_star_t_14 = m->J_star_t_14;
+    const real J_star_t_4 = J_star_t_14*v->R_xz - J_star_in_platform_xz*v->R_xx;
+    const real J_star_t_5 = J_star_t_14*v->R_yz - J_star_in_platform_xz*v->R_yx;
+    const real J_star_t_6 = J_star_t_14*v->R_zz - J_star_in_platform_xz*v->R_zx;
+    const real J_star_t_7 = J_star_t*v->R_xy - J_star_t_4*v->R_xz;
+    const real J_star_in_platform_xx = m->J_star_in_platform_xx;
+    const real J_star_xx = J_star_in_platform_xx + 2*J_star_t_7;
+    const real J_star_xy = J_star_t*v->R_yy + J_star_t_2*v->R_xy - J_star_t_4*v->R_yz -
+        J_star_t_5*v->R_xz;
+    const real J_star_xz = J_star_t*v->R_zy + J_star_t_3*v->R_xy - J_star_t_4*v->R_zz -
+        J_star_t_6*v->R_xz;
+    const real J_star_t_8 = J_star_t_2*v->R_yy - J_star_t_5*v->R_yz;
+    const real J_star_yy = J_star_in_platform_xx + 2*J_star_t_8;
+    const real J_star_yz = J_star_t_2*v->R_zy + J_star_t_3*v->R_yy - J_star_t_5*v->R_zz -
+        J_star_t_6*v->R_yz;
+    const real J_star_t_9 = J_star_t_3*v->R_zy - J_star_t_6*v->R_zz;
+    const real J_star_zz = J_star_in_platform_xx + 2*J_star_t_9;
+    v->J_star_xx = J_star_xx;
+    v->J_star_xy = J_star_xy;
+    v->J_star_xz = J_star_xz;
+    v->J_star_yy = J_star_yy;
+    v->J_star_yz = J_star_yz;
+    v->J_star_zz = J_star_zz;
+}
+
+INLINE void stage_Z_dynamics(const prepared *m, size_t w, size_t k, const real *V, values *v)
+{
+    /* (Z_p) centripetal force and weight of the platform */
+    const real omega_y = V[4*w + k];
+    const real omega_z = V[5*w + k];
+    const real Z_p_t_4 = v->h_star_z*omega_y - v->h_star_y*omega_z;
+    const real omega_x = V[3*w + k];
+    const real Z_p_t_5 = v->h_star_x*omega_z - v->h_star_z*omega_x;
+    const real Z_p_t_6 = v->h_star_y*omega_x - v->h_star_x*omega_y;
+    const real Z_p_t = m->Z_p_t;
+    const real Z_p_x = Z_p_t_6*omega_y - Z_p_t - Z_p_t_5*omega_z;
+    const real Z_p_t_2 = m->Z_p_t_2;
+    const real Z_p_y = Z_p_t_4*omega_z - Z_p_t_2 - Z_p_t_6*omega_x;
+    const real Z_p_t_3 = m->Z_p_t_3;
+    const real Z_p_z = Z_p_t_5*omega_x - Z_p_t_3 - Z_p_t_4*omega_y;
+    /* (Z_q) gyroscopic moment and moment of the weight of the platform */
+    const real gravity_x = m->gravity_x;
+    const real gravity_y = m->gravity_y;
+    const real gravity_z = m->gravity_z;
+    const real g_in_platform_x = v->R_xx*gravity_x + v->R_yx*gravity_y + v->R_zx*gravity_z;
+    const real g_in_platform_y = v->R_xy*gravity_x + v->R_yy*gravity_y + v->R_zy*gravity_z;
+    const real g_in_platform_z = v->R_xz*gravity_x + v->R_yz*gravity_y + v->R_zz*gravity_z;
+    const real J_star_in_platform_xx = m->J_star_in_platform_xx;
+    const real J_star_in_platform_xy = m->J_star_in_platform_xy;
+    const real J_star_in_platform_xz = m->J_star_in_platform_xz;
+    const real Z_q_t = J_star_in_platform_xx*v->omega_in_platform_x +
+        J_star_in_platform_xy*v->omega_in_platform_y +
+        J_star_in_platform_xz*v->omega_in_platform_z;
+    const real J_star_in_platform_yy = m->J_star_in_platform_yy;
+    const real J_star_in_platform_yz = m->J_star_in_platform_yz;
+    const real Z_q_t_2 = J_star_in_platform_xy*v->omega_in_platform_x +
+        J_star_in_platform_yy*v->omega_in_platform_y +
+        J_star_in_platform_yz*v->omega_in_platform_z;
+    const real J_star_in_platform_zz = m->J_star_in_platform_zz;
+    const real Z_q_t_3 = J_star_in_platform_xz*v->omega_in_platform_x +
+        J_star_in_platform_yz*v->omega_in_platform_y +
+        J_star_in_platform_zz*v->omega_in_platform_z;
+    const real h_star_in_platform_y = m->h_star_in_platform_y;
+    const real h_star_in_platform_z = m->h_star_in_platform_z;
+    const real Z_q_in_platform_x = Z_q_t_3*v->omega_in_platform_y +
+        g_in_platform_y*h_star_in_platform_z - Z_q_t_2*v->omega_in_platform_z -
+        g_in_platform_z*h_star_in_platform_y;
+    const real h_star_in_platform_x = m->h_star_in_platform_x;
+    const real Z_q_in_platform_y = Z_q_t*v->omega_in_platform_z +
+        g_in_platform_z*h_star_in_platform_x - Z_q_t_3*v->omega_in_platform_x -
+        g_in_platform_x*h_star_in_platform_z;
+    const real Z_q_in_platform_z = Z_q_t_2*v->omega_in_platform_x +
+        g_in_platform_x*h_star_in_platform_y - Z_q_t*v->omega_in_platform_y -
+        g_in_platform_y*h_star_in_platform_x;
+    const real Z_q_x = v->R_xx*Z_q_in_platform_x + v->R_xy*Z_q_in_platform_y +
+        v->R_xz*Z_q_in_platform_z;
+    const real Z_q_y = v->R_yx*Z_q_in_platform_x + v->R_yy*Z_q_in_platform_y +
+        v->R_yz*Z_q_in_platform_z;
+    const real Z_q_z = v->R_zx*Z_q_in_platform_x + v->R_zy*Z_q_in_platform_y +
+        v->R_zz*Z_q_in_platform_z;
+    v->Z_p_x = Z_p_x;
+    v->Z_p_y = Z_p_y;
+    v->Z_p_z = Z_p_z;
+    v->Z_q_x = Z_q_x;
+    v->Z_q_y = Z_q_y;
+    v->Z_q_z = Z_q_z;
+}
+
+typedef struct {
+    real six_r_q_x, six_r_q_y, six_r_q_z, six_r_n_m1_t, six_r_n_m1_t_2, six_r_n_m1_t_3,
+        six_r_e_2_in_axes5_z, six_r_h_4_t, six_r_h_4_in_spec3_y, six_r_c_1, six_r_s_1, six_r_c_2,
+        six_r_s_2, six_r_c_3, six_r_s_3, six_r_v_1_t, six_r_v_1_t_2, six_r_d_2_in_spec2_x,
+        six_r_g_in_axes1_x, six_r_g_in_axes1_y, six_r_g_in_axes2_x, six_r_g_in_axes2_y,
+        six_r_g_in_axes3_x, six_r_g_in_axes3_y, six_r_c_4, six_r_s_4, six_r_c_5, six_r_s_5,
+        six_r_e_2_in_axes5_y, axis_z_six_r_axes5_x, axis_z_six_r_axes5_y, axis_z_six_r_axes5_z,
+        axis_y_six_r_axes5_x, axis_y_six_r_axes5_y, axis_y_six_r_axes5_z, axis_x_six_r_axes5_x,
+        axis_x_six_r_axes5_y, axis_x_six_r_axes5_z, six_r_r_1_in_axes5_z, six_r_r_1_in_axes5_x,
+        six_r_r_1_in_axes5_y, six_r_e_1_in_axes5_z, six_r_e_1_in_axes5_x, six_r_e_1_in_axes5_y,
+        six_r_v_1_in_axes5_x, six_r_v_1_in_axes5_y, six_r_v_1_in_axes5_z, six_r_e_2_in_axes5_x,
+        six_r_v_2_in_axes5_x, six_r_v_2_in_axes5_y, six_r_v_2_in_axes5_z, six_r_v_3_in_axes5_x,
+        six_r_v_3_in_axes5_y, six_r_v_3_in_axes5_z, six_r_v_4_in_axes5_z, six_r_d_4_in_axes5_x,
+        six_r_d_5_in_axes5_x, six_r_d_2_in_axes5_z, six_r_d_2_in_axes5_x, six_r_d_2_in_axes5_y,
+        six_r_d_3_in_axes5_z, six_r_d_3_in_axes5_x, six_r_d_3_in_axes5_y, six_r_bias_t_8,
+        six_r_bias_t_9, six_r_a_p_x, six_r_a_p_y, six_r_a_p_z, six_r_alpha_in_axes5_y,
+        six_r_S_dot_t_14, six_r_S_dot_t_15, six_r_S_dot_t_16, six_r_S_dot_x, six_r_S_dot_y,
+        six_r_S_dot_z, six_r_omega_in_axes5_x, six_r_omega_in_axes5_y, six_r_omega_in_axes5_z,
+        six_r_n_m1_t_5, six_r_n_m1_t_8, six_r_n_m1_t_9, six_r_n_m1_t_10, six_r_n_m1_in_axes5_y,
+        six_r_n_m2_in_axes5_z, six_r_end_p1_in_axes5_z, six_r_w_1_t_12, inv_six_r_w_1_t_12,
+        six_r_w_1_t_13, six_r_w_1_t_14, six_r_w_1_t_15, six_r_w_1_t_18, six_r_w_1_t_22,
+        six_r_w_1_t_25, six_r_w_1_t_28, inv_six_r_w_1_t_28, six_r_w_1_t_29, six_r_w_1_t_30,
+        six_r_w_1_t_31, six_r_w_1_t_32, six_r_w_1_t_33, six_r_w_1_t_39, six_r_w_1_t_44,
+        six_r_w_1_t_49, inv_six_r_w_1_t_49, six_r_w_1_t_50, six_r_w_1_t_51, six_r_w_1_t_52,
+        six_r_w_1_t_53, six_r_w_1_t_54, six_r_w_1_t_55, six_r_w_1_t_61, six_r_w_1_t_67,
+        inv_six_r_w_1_t_67, six_r_w_1_t_68, six_r_w_1_t_69, six_r_w_1_t_70, six_r_w_1_t_71,
+        six_r_w_1_t_72, six_r_w_1_t_73, six_r_w_1_t_74, six_r_w_1_t_75, six_r_w_1_t_76,
+        six_r_w_1_t_77, six_r_w_1_t_78, six_r_w_1_t_79, inv_six_r_w_1_t_79, six_r_S_ddot_x,
+        six_r_S_ddot_y, six_r_S_ddot_z, six_r_etad_1_t, six_r_etad_2_t, six_r_S_dot_in_axes5_x,
+        six_r_S_dot_in_axes5_y, six_r_S_dot_in_axes5_z, six_r_nd_m1_t, six_r_eta_1, six_r_eta_2_t,
+        six_r_w_2_x, six_r_w_2_y, six_r_w_2_z, six_r_H_a_2_x, six_r_H_a_2_y, six_r_H_a_2_z,
+        six_r_e_4_in_axes5_x, six_r_J_5_t, six_r_J_5_in_axes4_yz, six_r_D_3_5, six_r_D_1_5,
+        six_r_Jc_4_in_axes4_zz, six_r_L_c_4_3_in_axes3_z, six_r_L_c_4_2_in_axes2_z,
+        six_r_L_c_4_2_in_axes1_z, six_r_Jc_3_in_axes3_zz, six_r_L_c_3_2_in_axes2_z,
+        six_r_L_c_3_2_in_axes1_z, six_r_Jc_2_in_axes2_zz, six_r_Jc_2_in_axes1_yz,
+        six_r_Jc_1_in_axes1_zz, six_r_d_Gamma_3_t, six_r_d_Gamma_3_t_2, six_r_d_Gamma_3_t_3,
+        six_r_u_1_x, six_r_u_1_y, six_r_u_1_z, six_r_bias_t_4, six_r_bias_t_5, six_r_bias_t_10,
+        six_r_bias_t_11, six_r_qd_1_t, six_r_qd_1_t_2, six_r_qd_1_t_3, six_r_qd_1_t_4, six_r_qd_1_t_5,
+        six_r_o_2_t, six_r_o_2_in_axes5_z, six_r_o_2_in_axes5_y, six_r_acc_5_in_axes5_x,
+        six_r_acc_5_in_axes5_y, six_r_acc_5_in_axes5_z, six_r_G_m_in_axes5_x, six_r_G_m_in_axes5_y,
+        six_r_c_in_axes5_x, six_r_c_in_axes5_y, six_r_c_in_axes5_z, six_r_c_m_in_axes5_z;
+} values_six_r;
+
+INLINE void stage_six_r_X(const prepared *m, size_t w, size_t i, size_t j, const real *s,
+    values_six_r *v)
+{
+    /* (six_r-S_dot) velocity of the connection point */
+    const real R_xx = s[0*w + j];
+    const real R_xy = s[1*w + j];
+    const real R_xz = s[2*w + j];
+    const real six_r_platform_point_x = m->six_r_platform_point_x[i];
+    const real six_r_platform_point_y = m->six_r_platform_point_y[i];
+    const real six_r_platform_point_z = m->six_r_platform_point_z[i];
+    const real six_r_q_x = R_xx*six_r_platform_point_x + R_xy*six_r_platform_point_y +
+        R_xz*six_r_platform_point_z;
+    const real R_yx = s[3*w + j];
+    const real R_yy = s[4*w + j];
+    const real R_yz = s[5*w + j];
+    const real six_r_q_y = R_yx*six_r_platform_point_x + R_yy*six_r_platform_point_y +
+        R_yz*six_r_platform_point_z;
+    const real R_zx = s[6*w + j];
+    const real R_zy = s[7*w + j];
+    const real R_zz = s[8*w + j];
+    const real six_r_q_z = R_zx*six_r_platform_point_x + R_zy*six_r_platform_point_y +
+        R_zz*six_r_platform_point_z;
+    /* (six_r-n_m1) direction 1 of the moment that the platform joint transmits */
+    const real six_r_base_frame_xy = m->six_r_base_frame_xy[i];
+    const real six_r_base_frame_yy = m->six_r_base_frame_yy[i];
+    const real six_r_base_frame_zy = m->six_r_base_frame_zy[i];
+    const real six_r_platform_joint_axis_platform_x = m->six_r_platform_joint_axis_platform_x[i];
+    const real six_r_platform_joint_axis_platform_y = m->six_r_platform_joint_axis_platform_y[i];
+    const real six_r_platform_joint_axis_platform_z = m->six_r_platform_joint_axis_platform_z[i];
+    const real six_r_n_m1_t = six_r_platform_joint_axis_platform_x*(R_xx*six_r_base_frame_xy +
+        R_yx*six_r_base_frame_yy + R_zx*six_r_base_frame_zy) +
+        six_r_platform_joint_axis_platform_y*(R_xy*six_r_base_frame_xy +
+        R_yy*six_r_base_frame_yy + R_zy*six_r_base_frame_zy) +
+        six_r_platform_joint_axis_platform_z*(R_xz*six_r_base_frame_xy +
+        R_yz*six_r_base_frame_yy + R_zz*six_r_base_frame_zy);
+    const real six_r_base_frame_xz = m->six_r_base_frame_xz[i];
+    const real six_r_base_frame_yz = m->six_r_base_frame_yz[i];
+    const real six_r_base_frame_zz = m->six_r_base_frame_zz[i];
+    const real six_r_n_m1_t_2 = six_r_platform_joint_axis_platform_x*(R_xx*six_r_base_frame_xz
+        + R_yx*six_r_base_frame_yz + R_zx*six_r_base_frame_zz) +
+        six_r_platform_joint_axis_platform_y*(R_xy*six_r_base_frame_xz +
+        R_yy*six_r_base_frame_yz + R_zy*six_r_base_frame_zz) +
+        six_r_platform_joint_axis_platform_z*(R_xz*six_r_base_frame_xz +
+        R_yz*six_r_base_frame_yz + R_zz*six_r_base_frame_zz);
+    const real six_r_base_frame_xx = m->six_r_base_frame_xx[i];
+    const real six_r_base_frame_yx = m->six_r_base_frame_yx[i];
+    const real six_r_base_frame_zx = m->six_r_base_frame_zx[i];
+    const real six_r_n_m1_t_3 = six_r_platform_joint_axis_platform_x*(R_xx*six_r_base_frame_xx
+        + R_yx*six_r_base_frame_yx + R_zx*six_r_base_frame_zx) +
+        six_r_platform_joint_axis_platform_y*(R_xy*six_r_base_frame_xx +
+        R_yy*six_r_base_frame_yx + R_zy*six_r_base_frame_zx) +
+        six_r_platform_joint_axis_platform_z*(R_xz*six_r_base_frame_xx +
+        R_yz*six_r_base_frame_yx + R_zz*six_r_base_frame_zx);
+    v->six_r_q_x = six_r_q_x;
+    v->six_r_q_y = six_r_q_y;
+    v->six_r_q_z = six_r_q_z;
+    v->six_r_n_m1_t = six_r_n_m1_t;
+    v->six_r_n_m1_t_2 = six_r_n_m1_t_2;
+    v->six_r_n_m1_t_3 = six_r_n_m1_t_3;
+}
+
+INLINE void stage_six_r_q(const prepared *m, size_t w, size_t i, size_t j, const real *joints,
+    values_six_r *v)
 {
     static const size_t place_six_r_q_1[] = {0, 5, 10, 15, 20, 25, 0, 0};
     static const size_t place_six_r_q_2[] = {1, 6, 11, 16, 21, 26, 1, 1};
     static const size_t place_six_r_q_3[] = {2, 7, 12, 17, 22, 27, 2, 2};
     static const size_t place_six_r_q_4[] = {3, 8, 13, 18, 23, 28, 3, 3};
     static const size_t place_six_r_q_5[] = {4, 9, 14, 19, 24, 29, 4, 4};
+    /* (six_r-h_4) first moment of link 4 about the origin of link 4 */
+    const real six_r_q_4 = joints[place_six_r_q_4[i]*w + j];
+    const real six_r_e_2_in_axes5_z = cosine(six_r_q_4);
+    const real six_r_h_4_t = sine(six_r_q_4);
+    const real six_r_h_4_in_spec4_y = m->six_r_h_4_in_spec4_y[i];
+    const real six_r_h_4_in_spec4_z = m->six_r_h_4_in_spec4_z[i];
+    const real six_r_h_4_in_spec3_y = six_r_e_2_in_axes5_z*six_r_h_4_in_spec4_y -
+        six_r_h_4_in_spec4_z*six_r_h_4_t;
+    /* (six_r-c_1) cosine of the angle of joint 1 from its reference direction */
+    const real six_r_q_1 = joints[place_six_r_q_1[i]*w + j];
+    const real six_r_c_1 = cosine(six_r_q_1);
+    /* (six_r-s_1) sine of the angle of joint 1 from its reference direction */
+    const real six_r_s_1 = sine(six_r_q_1);
+    /* (six_r-c_2) cosine of the angle of joint 2 from its reference direction */
+    const real six_r_q_2 = joints[place_six_r_q_2[i]*w + j];
+    const real six_r_c_2 = cosine(six_r_q_2);
+    /* (six_r-s_2) sine of the angle of joint 2 from its reference direction */
+    const real six_r_s_2 = sine(six_r_q_2);
+    /* (six_r-c_3) cosine of the angle of joint 3 from its reference direction */
+    const real six_r_q_3 = joints[place_six_r_q_3[i]*w + j];
+    const real six_r_c_3 = cosine(six_r_q_3);
+    /* (six_r-s_3) sine of the angle of joint 3 from its reference direction */
+    const real six_r_s_3 = sine(six_r_q_3);
+    /* (six_r-v_1) velocity of the connection point per rate of joint 1 */
+    const real six_r_v_1_t = six_r_c_2*six_r_s_3 + six_r_c_3*six_r_s_2;
+    const real six_r_v_1_t_2 = six_r_c_2*six_r_c_3 - six_r_s_2*six_r_s_3;
+    /* (six_r-bias) acceleration of the connection point at zero joint accelerations */
+    const real six_r_joint2_offset_x = m->six_r_joint2_offset_x[i];
+    const real six_r_d_2_in_spec2_x = six_r_c_2*six_r_joint2_offset_x;
+    /* (six_r-acc_3_o) remainder without the acceleration in: acceleration of the reference point of
+       link 3, less gravity */
+    const real six_r_acc_3_t = m->six_r_acc_3_t[i];
+    const real six_r_acc_3_t_2 = m->six_r_acc_3_t_2[i];
+    const real six_r_g_in_axes1_x = six_r_acc_3_t*six_r_c_1 + six_r_acc_3_t_2*six_r_s_1;
+    const real six_r_g_in_axes1_y = six_r_acc_3_t_2*six_r_c_1 - six_r_acc_3_t*six_r_s_1;
+    const real six_r_g_in_axes1_z = m->six_r_g_in_axes1_z[i];
+    const real six_r_g_in_axes2_x = six_r_c_2*six_r_g_in_axes1_z +
+        six_r_g_in_axes1_x*six_r_s_2;
+    const real six_r_g_in_axes2_y = six_r_c_2*six_r_g_in_axes1_x -
+        six_r_g_in_axes1_z*six_r_s_2;
+    const real six_r_g_in_axes3_x = six_r_g_in_axes2_x*six_r_s_3 -
+        six_r_c_3*six_r_g_in_axes2_y;
+    const real six_r_g_in_axes3_y = six_r_c_3*six_r_g_in_axes2_x +
+        six_r_g_in_axes2_y*six_r_s_3;
+    /* (six_r-c_4) cosine of the angle of joint 4 from its reference direction */
+    const real six_r_c_4 = cosine(six_r_q_4);
+    /* (six_r-s_4) sine of the angle of joint 4 from its reference direction */
+    const real six_r_s_4 = sine(six_r_q_4);
+    /* (six_r-c_5) cosine of the angle of joint 5 from its reference direction */
+    const real six_r_q_5 = joints[place_six_r_q_5[i]*w + j];
+    const real six_r_c_5 = cosine(six_r_q_5);
+    /* (six_r-s_5) sine of the angle of joint 5 from its reference direction */
+    const real six_r_s_5 = sine(six_r_q_5);
+    /* (six_r-S_dot) velocity of the connection point */
+    const real six_r_e_2_in_axes5_y = six_r_c_5*six_r_s_4;
+    const real six_r_S_dot_t = six_r_c_3*six_r_s_4;
+    const real six_r_S_dot_t_2 = six_r_s_3*six_r_s_4;
+    const real six_r_S_dot_t_3 = six_r_S_dot_t*six_r_s_2 + six_r_S_dot_t_2*six_r_c_2;
+    const real six_r_S_dot_t_4 = six_r_S_dot_t_2*six_r_s_2 - six_r_S_dot_t*six_r_c_2;
+    const real six_r_S_dot_t_5 = six_r_S_dot_t_4*six_r_c_1 - six_r_c_4*six_r_s_1;
+    const real six_r_S_dot_t_6 = six_r_S_dot_t_4*six_r_s_1 + six_r_c_1*six_r_c_4;
+    const real six_r_base_frame_xx = m->six_r_base_frame_xx[i];
+    const real six_r_base_frame_xy = m->six_r_base_frame_xy[i];
+    const real six_r_base_frame_xz = m->six_r_base_frame_xz[i];
+    const real axis_z_six_r_axes5_x = six_r_S_dot_t_3*six_r_base_frame_xx +
+        six_r_S_dot_t_5*six_r_base_frame_xy + six_r_S_dot_t_6*six_r_base_frame_xz;
+    const real six_r_base_frame_yx = m->six_r_base_frame_yx[i];
+    const real six_r_base_frame_yy = m->six_r_base_frame_yy[i];
+    const real six_r_base_frame_yz = m->six_r_base_frame_yz[i];
+    const real axis_z_six_r_axes5_y = six_r_S_dot_t_3*six_r_base_frame_yx +
+        six_r_S_dot_t_5*six_r_base_frame_yy + six_r_S_dot_t_6*six_r_base_frame_yz;
+    const real six_r_base_frame_zx = m->six_r_base_frame_zx[i];
+    const real six_r_base_frame_zy = m->six_r_base_frame_zy[i];
+    const real six_r_base_frame_zz = m->six_r_base_frame_zz[i];
+    const real axis_z_six_r_axes5_z = six_r_S_dot_t_3*six_r_base_frame_zx +
+        six_r_S_dot_t_5*six_r_base_frame_zy + six_r_S_dot_t_6*six_r_base_frame_zz;
+    const real six_r_S_dot_t_7 = six_r_c_4*six_r_c_5;
+    const real six_r_S_dot_t_8 = six_r_s_3*six_r_s_5 - six_r_S_dot_t_7*six_r_c_3;
+    const real six_r_S_dot_t_9 = -six_r_S_dot_t_7*six_r_s_3 - six_r_c_3*six_r_s_5;
+    const real six_r_S_dot_t_10 = six_r_S_dot_t_8*six_r_s_2 + six_r_S_dot_t_9*six_r_c_2;
+    const real six_r_S_dot_t_11 = six_r_S_dot_t_9*six_r_s_2 - six_r_S_dot_t_8*six_r_c_2;
+    const real six_r_S_dot_t_12 = six_r_S_dot_t_11*six_r_c_1 - six_r_e_2_in_axes5_y*six_r_s_1;
+    const real six_r_S_dot_t_13 = six_r_S_dot_t_11*six_r_s_1 + six_r_c_1*six_r_e_2_in_axes5_y;
+    const real axis_y_six_r_axes5_x = six_r_S_dot_t_10*six_r_base_frame_xx +
+        six_r_S_dot_t_12*six_r_base_frame_xy + six_r_S_dot_t_13*six_r_base_frame_xz;
+    const real axis_y_six_r_axes5_y = six_r_S_dot_t_10*six_r_base_frame_yx +
+        six_r_S_dot_t_12*six_r_base_frame_yy + six_r_S_dot_t_13*six_r_base_frame_yz;
+    const real axis_y_six_r_axes5_z = six_r_S_dot_t_10*six_r_base_frame_zx +
+        six_r_S_dot_t_12*six_r_base_frame_zy + six_r_S_dot_t_13*six_r_base_frame_zz;
+    const real axis_x_six_r_axes5_x = axis_y_six_r_axes5_y*axis_z_six_r_axes5_z -
+        axis_y_six_r_axes5_z*axis_z_six_r_axes5_y;
+    const real axis_x_six_r_axes5_y = axis_y_six_r_axes5_z*axis_z_six_r_axes5_x -
+        axis_y_six_r_axes5_x*axis_z_six_r_axes5_z;
+    const real axis_x_six_r_axes5_z = axis_y_six_r_axes5_x*axis_z_six_r_axes5_y -
+        axis_y_six_r_axes5_y*axis_z_six_r_axes5_x;
+    /* (six_r-r_4) from joint 4 to the connection point, along the links */
+    const real six_r_platform_joint_offset_x = m->six_r_platform_joint_offset_x[i];
+    const real six_r_r_4_in_axes4_x = six_r_platform_joint_offset_x*six_r_s_5;
+    const real six_r_joint5_offset_x = m->six_r_joint5_offset_x[i];
+    const real six_r_r_4_in_axes4_z = six_r_joint5_offset_x +
+        six_r_c_5*six_r_platform_joint_offset_x;
+    const real six_r_r_4_in_axes3_x = -six_r_c_4*six_r_r_4_in_axes4_x;
+    const real six_r_r_4_in_axes3_z = six_r_r_4_in_axes4_x*six_r_s_4;
+    /* (six_r-r_3) from joint 3 to the connection point, along the links */
+    const real six_r_joint4_offset_x = m->six_r_joint4_offset_x[i];
+    const real six_r_r_3_in_axes3_y = six_r_joint4_offset_x + six_r_r_4_in_axes4_z;
+    const real six_r_r_3_in_axes2_y = six_r_r_3_in_axes3_y*six_r_s_3 -
+        six_r_c_3*six_r_r_4_in_axes3_x;
+    const real six_r_r_3_t = six_r_r_4_in_axes3_z*six_r_s_4;
+    const real six_r_r_3_t_2 = six_r_c_4*six_r_r_4_in_axes3_z;
+    const real six_r_r_3_t_3 = six_r_r_3_t - six_r_c_4*six_r_r_4_in_axes3_x;
+    const real six_r_r_3_in_axes5_z = six_r_r_3_t_2 + six_r_r_4_in_axes3_x*six_r_s_4;
+    const real six_r_r_3_in_axes5_x = six_r_c_5*six_r_r_3_in_axes3_y +
+        six_r_r_3_t_3*six_r_s_5;
+    const real six_r_r_3_in_axes5_y = six_r_c_5*six_r_r_3_t_3 -
+        six_r_r_3_in_axes3_y*six_r_s_5;
+    /* (six_r-r_2) from joint 2 to the connection point, along the links */
+    const real six_r_joint3_offset_x = m->six_r_joint3_offset_x[i];
+    const real six_r_r_2_in_axes2_x = six_r_joint3_offset_x + six_r_c_3*six_r_r_3_in_axes3_y +
+        six_r_r_4_in_axes3_x*six_r_s_3;
+    const real six_r_r_2_in_axes1_x = six_r_c_2*six_r_r_3_in_axes2_y +
+        six_r_r_2_in_axes2_x*six_r_s_2;
+    const real six_r_r_2_t = six_r_r_2_in_axes2_x*six_r_s_3 - six_r_c_3*six_r_r_3_in_axes2_y;
+    const real six_r_r_2_t_2 = six_r_c_3*six_r_r_2_in_axes2_x +
+        six_r_r_3_in_axes2_y*six_r_s_3;
+    const real six_r_r_2_t_3 = six_r_r_3_t - six_r_c_4*six_r_r_2_t;
+    const real six_r_r_2_in_axes5_z = six_r_r_3_t_2 + six_r_r_2_t*six_r_s_4;
+    const real six_r_r_2_in_axes5_x = six_r_c_5*six_r_r_2_t_2 + six_r_r_2_t_3*six_r_s_5;
+    const real six_r_r_2_in_axes5_y = six_r_c_5*six_r_r_2_t_3 - six_r_r_2_t_2*six_r_s_5;
+    /* (six_r-r_1) from joint 1 to the connection point, along the links */
+    const real six_r_r_1_in_axes1_z = six_r_joint2_offset_x + six_r_c_2*six_r_r_2_in_axes2_x -
+        six_r_r_3_in_axes2_y*six_r_s_2;
+    const real six_r_r_1_t = six_r_c_2*six_r_r_1_in_axes1_z + six_r_r_2_in_axes1_x*six_r_s_2;
+    const real six_r_r_1_t_2 = six_r_c_2*six_r_r_2_in_axes1_x -
+        six_r_r_1_in_axes1_z*six_r_s_2;
+    const real six_r_r_1_t_3 = six_r_r_1_t*six_r_s_3 - six_r_c_3*six_r_r_1_t_2;
+    const real six_r_r_1_t_4 = six_r_c_3*six_r_r_1_t + six_r_r_1_t_2*six_r_s_3;
+    const real six_r_r_1_t_5 = six_r_r_3_t - six_r_c_4*six_r_r_1_t_3;
+    const real six_r_r_1_in_axes5_z = six_r_r_3_t_2 + six_r_r_1_t_3*six_r_s_4;
+    const real six_r_r_1_in_axes5_x = six_r_c_5*six_r_r_1_t_4 + six_r_r_1_t_5*six_r_s_5;
+    const real six_r_r_1_in_axes5_y = six_r_c_5*six_r_r_1_t_5 - six_r_r_1_t_4*six_r_s_5;
+    /* (six_r-v_1) velocity of the connection point per rate of joint 1 */
+    const real six_r_v_1_t_3 = six_r_c_4*six_r_v_1_t;
+    const real six_r_e_1_in_axes5_z = six_r_s_4*six_r_v_1_t;
+    const real six_r_e_1_in_axes5_x = six_r_c_5*six_r_v_1_t_2 - six_r_s_5*six_r_v_1_t_3;
+    const real six_r_e_1_in_axes5_y = -six_r_c_5*six_r_v_1_t_3 - six_r_s_5*six_r_v_1_t_2;
+    const real six_r_v_1_in_axes5_x = six_r_e_1_in_axes5_y*six_r_r_1_in_axes5_z -
+        six_r_e_1_in_axes5_z*six_r_r_1_in_axes5_y;
+    const real six_r_v_1_in_axes5_y = six_r_e_1_in_axes5_z*six_r_r_1_in_axes5_x -
+        six_r_e_1_in_axes5_x*six_r_r_1_in_axes5_z;
+    const real six_r_v_1_in_axes5_z = six_r_e_1_in_axes5_x*six_r_r_1_in_axes5_y -
+        six_r_e_1_in_axes5_y*six_r_r_1_in_axes5_x;
+    /* (six_r-v_2) velocity of the connection point per rate of joint 2 */
+    const real six_r_e_2_in_axes5_x = six_r_s_4*six_r_s_5;
+    const real six_r_v_2_in_axes5_x = six_r_e_2_in_axes5_y*six_r_r_2_in_axes5_z -
+        six_r_c_4*six_r_r_2_in_axes5_y;
+    const real six_r_v_2_in_axes5_y = six_r_c_4*six_r_r_2_in_axes5_x -
+        six_r_e_2_in_axes5_x*six_r_r_2_in_axes5_z;
+    const real six_r_v_2_in_axes5_z = six_r_e_2_in_axes5_x*six_r_r_2_in_axes5_y -
+        six_r_e_2_in_axes5_y*six_r_r_2_in_axes5_x;
+    /* (six_r-v_3) velocity of the connection point per rate of joint 3 */
+    const real six_r_v_3_in_axes5_x = six_r_e_2_in_axes5_y*six_r_r_3_in_axes5_z -
+        six_r_c_4*six_r_r_3_in_axes5_y;
+    const real six_r_v_3_in_axes5_y = six_r_c_4*six_r_r_3_in_axes5_x -
+        six_r_e_2_in_axes5_x*six_r_r_3_in_axes5_z;
+    const real six_r_v_3_in_axes5_z = six_r_e_2_in_axes5_x*six_r_r_3_in_axes5_y -
+        six_r_e_2_in_axes5_y*six_r_r_3_in_axes5_x;
+    /* (six_r-v_4) velocity of the connection point per rate of joint 4 */
+    const real six_r_v_4_in_axes5_z = six_r_c_5*(six_r_c_5*six_r_r_4_in_axes4_x -
+        six_r_r_4_in_axes4_z*six_r_s_5) + six_r_s_5*(six_r_c_5*six_r_r_4_in_axes4_z +
+        six_r_r_4_in_axes4_x*six_r_s_5);
+    /* (six_r-bias) acceleration of the connection point at zero joint accelerations */
+    const real six_r_d_4_in_axes5_x = six_r_c_5*six_r_joint4_offset_x;
+    const real six_r_d_5_in_axes5_x = six_r_c_5*six_r_joint5_offset_x;
+    const real six_r_bias_t = six_r_joint2_offset_x*six_r_s_2;
+    const real six_r_bias_t_2 = six_r_bias_t*six_r_c_3 + six_r_d_2_in_spec2_x*six_r_s_3;
+    const real six_r_bias_t_3 = six_r_c_3*six_r_d_2_in_spec2_x - six_r_bias_t*six_r_s_3;
+    const real six_r_bias_t_4 = six_r_bias_t_2*six_r_c_4;
+    const real six_r_d_2_in_axes5_z = six_r_bias_t_2*six_r_s_4;
+    const real six_r_d_2_in_axes5_x = six_r_bias_t_3*six_r_c_5 - six_r_bias_t_4*six_r_s_5;
+    const real six_r_d_2_in_axes5_y = -six_r_bias_t_3*six_r_s_5 - six_r_bias_t_4*six_r_c_5;
+    const real six_r_bias_t_5 = six_r_joint3_offset_x*six_r_s_3;
+    const real six_r_bias_t_6 = six_r_c_3*six_r_joint3_offset_x;
+    const real six_r_bias_t_7 = six_r_bias_t_5*six_r_c_4;
+    const real six_r_d_3_in_axes5_z = six_r_bias_t_5*six_r_s_4;
+    const real six_r_d_3_in_axes5_x = six_r_bias_t_6*six_r_c_5 - six_r_bias_t_7*six_r_s_5;
+    const real six_r_d_3_in_axes5_y = -six_r_bias_t_6*six_r_s_5 - six_r_bias_t_7*six_r_c_5;
+    const real six_r_bias_t_8 = six_r_joint4_offset_x*six_r_s_5;
+    const real six_r_bias_t_9 = six_r_joint5_offset_x*six_r_s_5;
+    v->six_r_e_2_in_axes5_z = six_r_e_2_in_axes5_z;
+    v->six_r_h_4_t = six_r_h_4_t;
+    v->six_r_h_4_in_spec3_y = six_r_h_4_in_spec3_y;
+    v->six_r_c_1 = six_r_c_1;
+    v->six_r_s_1 = six_r_s_1;
+    v->six_r_c_2 = six_r_c_2;
+    v->six_r_s_2 = six_r_s_2;
+    v->six_r_c_3 = six_r_c_3;
+    v->six_r_s_3 = six_r_s_3;
+    v->six_r_v_1_t = six_r_v_1_t;
+    v->six_r_v_1_t_2 = six_r_v_1_t_2;
+    v->six_r_d_2_in_spec2_x = six_r_d_2_in_spec2_x;
+    v->six_r_g_in_axes1_x = six_r_g_in_axes1_x;
+    v->six_r_g_in_axes1_y = six_r_g_in_axes1_y;
+    v->six_r_g_in_axes2_x = six_r_g_in_axes2_x;
+    v->six_r_g_in_axes2_y = six_r_g_in_axes2_y;
+    v->six_r_g_in_axes3_x = six_r_g_in_axes3_x;
+    v->six_r_g_in_axes3_y = six_r_g_in_axes3_y;
+    v->six_r_c_4 = six_r_c_4;
+    v->six_r_s_4 = six_r_s_4;
+    v->six_r_c_5 = six_r_c_5;
+    v->six_r_s_5 = six_r_s_5;
+    v->six_r_e_2_in_axes5_y = six_r_e_2_in_axes5_y;
+    v->axis_z_six_r_axes5_x = axis_z_six_r_axes5_x;
+    v->axis_z_six_r_axes5_y = axis_z_six_r_axes5_y;
+    v->axis_z_six_r_axes5_z = axis_z_six_r_axes5_z;
+    v->axis_y_six_r_axes5_x = axis_y_six_r_axes5_x;
+    v->axis_y_six_r_axes5_y = axis_y_six_r_axes5_y;
+    v->axis_y_six_r_axes5_z = axis_y_six_r_axes5_z;
+    v->axis_x_six_r_axes5_x = axis_x_six_r_axes5_x;
+    v->axis_x_six_r_axes5_y = axis_x_six_r_axes5_y;
+    v->axis_x_six_r_axes5_z = axis_x_six_r_axes5_z;
+    v->six_r_r_1_in_axes5_z = six_r_r_1_in_axes5_z;
+    v->six_r_r_1_in_axes5_x = six_r_r_1_in_axes5_x;
+    v->six_r_r_1_in_axes5_y = six_r_r_1_in_axes5_y;
+    v->six_r_e_1_in_axes5_z = six_r_e_1_in_axes5_z;
+    v->six_r_e_1_in_axes5_x = six_r_e_1_in_axes5_x;
+    v->six_r_e_1_in_axes5_y = six_r_e_1_in_axes5_y;
+    v->six_r_v_1_in_axes5_x = six_r_v_1_in_axes5_x;
+    v->six_r_v_1_in_axes5_y = six_r_v_1_in_axes5_y;
+    v->six_r_v_1_in_axes5_z = six_r_v_1_in_axes5_z;
+    v->six_r_e_2_in_axes5_x = six_r_e_2_in_axes5_x;
+    v->six_r_v_2_in_axes5_x = six_r_v_2_in_axes5_x;
+    v->six_r_v_2_in_axes5_y = six_r_v_2_in_axes5_y;
+    v->six_r_v_2_in_axes5_z = six_r_v_2_in_axes5_z;
+    v->six_r_v_3_in_axes5_x = six_r_v_3_in_axes5_x;
+    v->six_r_v_3_in_axes5_y = six_r_v_3_in_axes5_y;
+    v->six_r_v_3_in_axes5_z = six_r_v_3_in_axes5_z;
+    v->six_r_v_4_in_axes5_z = six_r_v_4_in_axes5_z;
+    v->six_r_d_4_in_axes5_x = six_r_d_4_in_axes5_x;
+    v->six_r_d_5_in_axes5_x = six_r_d_5_in_axes5_x;
+    v->six_r_d_2_in_axes5_z = six_r_d_2_in_axes5_z;
+    v->six_r_d_2_in_axes5_x = six_r_d_2_in_axes5_x;
+    v->six_r_d_2_in_axes5_y = six_r_d_2_in_axes5_y;
+    v->six_r_d_3_in_axes5_z = six_r_d_3_in_axes5_z;
+    v->six_r_d_3_in_axes5_x = six_r_d_3_in_axes5_x;
+    v->six_r_d_3_in_axes5_y = six_r_d_3_in_axes5_y;
+    v->six_r_bias_t_8 = six_r_bias_t_8;
+    v->six_r_bias_t_9 = six_r_bias_t_9;
+}
+
+INLINE void stage_six_r_A_X(size_t w, size_t j, const real *A, values_six_r *v)
+{
+    /* (six_r-a_p) acceleration of the connection point without its centripetal part */
+    const real alpha_y = A[4*w + j];
+    const real alpha_z = A[5*w + j];
+    const real t_ddot_x = A[0*w + j];
+    const real six_r_a_p_x = t_ddot_x + alpha_y*v->six_r_q_z - alpha_z*v->six_r_q_y;
+    const real alpha_x = A[3*w + j];
+    const real t_ddot_y = A[1*w + j];
+    const real six_r_a_p_y = t_ddot_y + alpha_z*v->six_r_q_x - alpha_x*v->six_r_q_z;
+    const real t_ddot_z = A[2*w + j];
+    const real six_r_a_p_z = t_ddot_z + alpha_x*v->six_r_q_y - alpha_y*v->six_r_q_x;
+    v->six_r_a_p_x = six_r_a_p_x;
+    v->six_r_a_p_y = six_r_a_p_y;
+    v->six_r_a_p_z = six_r_a_p_z;
+}
+
+INLINE void stage_six_r_A_q(size_t w, size_t j, const real *A, values_six_r *v)
+{
+    /* (six_r-etad_1) acceleration with which the joints turn along moment direction 1 */
+    const real alpha_x = A[3*w + j];
+    const real alpha_y = A[4*w + j];
+    const real alpha_z = A[5*w + j];
+    const real six_r_alpha_in_axes5_y = alpha_x*v->axis_y_six_r_axes5_x +
+        alpha_y*v->axis_y_six_r_axes5_y + alpha_z*v->axis_y_six_r_axes5_z;
+    v->six_r_alpha_in_axes5_y = six_r_alpha_in_axes5_y;
+}
+
+INLINE void stage_six_r_V_X(size_t w, size_t j, const real *V, values_six_r *v)
+{
+    /* (six_r-S_dot) velocity of the connection point */
+    const real omega_y = V[4*w + j];
+    const real omega_z = V[5*w + j];
+    const real six_r_S_dot_t_14 = omega_y*v->six_r_q_z - omega_z*v->six_r_q_y;
+    const real omega_x = V[3*w + j];
+    const real six_r_S_dot_t_15 = omega_z*v->six_r_q_x - omega_x*v->six_r_q_z;
+    const real six_r_S_dot_t_16 = omega_x*v->six_r_q_y - omega_y*v->six_r_q_x;
+    const real t_dot_x = V[0*w + j];
+    const real six_r_S_dot_x = six_r_S_dot_t_14 + t_dot_x;
+    const real t_dot_y = V[1*w + j];
+    const real six_r_S_dot_y = six_r_S_dot_t_15 + t_dot_y;
+    const real t_dot_z = V[2*w + j];
+    const real six_r_S_dot_z = six_r_S_dot_t_16 + t_dot_z;
+    v->six_r_S_dot_t_14 = six_r_S_dot_t_14;
+    v->six_r_S_dot_t_15 = six_r_S_dot_t_15;
+    v->six_r_S_dot_t_16 = six_r_S_dot_t_16;
+    v->six_r_S_dot_x = six_r_S_dot_x;
+    v->six_r_S_dot_y = six_r_S_dot_y;
+    v->six_r_S_dot_z = six_r_S_dot_z;
+}
+
+INLINE void stage_six_r_V_q(size_t w, size_t j, const real *V, values_six_r *v)
+{
+    /* (six_r-nd_m1) rate of moment direction 1 */
+    const real omega_x = V[3*w + j];
+    const real omega_y = V[4*w + j];
+    const real omega_z = V[5*w + j];
+    const real six_r_omega_in_axes5_x = v->axis_x_six_r_axes5_x*omega_x +
+        v->axis_x_six_r_axes5_y*omega_y + v->axis_x_six_r_axes5_z*omega_z;
+    const real six_r_omega_in_axes5_y = v->axis_y_six_r_axes5_x*omega_x +
+        v->axis_y_six_r_axes5_y*omega_y + v->axis_y_six_r_axes5_z*omega_z;
+    const real six_r_omega_in_axes5_z = v->axis_z_six_r_axes5_x*omega_x +
+        v->axis_z_six_r_axes5_y*omega_y + v->axis_z_six_r_axes5_z*omega_z;
+    v->six_r_omega_in_axes5_x = six_r_omega_in_axes5_x;
+    v->six_r_omega_in_axes5_y = six_r_omega_in_axes5_y;
+    v->six_r_omega_in_axes5_z = six_r_omega_in_axes5_z;
+}
+
+INLINE void stage_six_r_X_q(const prepared *m, size_t i, values_six_r *v)
+{
+    /* (six_r-n_m1) direction 1 of the moment that the platform joint transmits */
+    const real six_r_n_m1_t_4 = v->six_r_c_1*v->six_r_n_m1_t + v->six_r_n_m1_t_2*v->six_r_s_1;
+    const real six_r_n_m1_t_5 = v->six_r_c_1*v->six_r_n_m1_t_2 - v->six_r_n_m1_t*v->six_r_s_1;
+    const real six_r_n_m1_t_6 = v->six_r_c_2*v->six_r_n_m1_t_3 + six_r_n_m1_t_4*v->six_r_s_2;
+    const real six_r_n_m1_t_7 = v->six_r_c_2*six_r_n_m1_t_4 - v->six_r_n_m1_t_3*v->six_r_s_2;
+    const real six_r_n_m1_t_8 = six_r_n_m1_t_6*v->six_r_s_3 - v->six_r_c_3*six_r_n_m1_t_7;
+    const real six_r_n_m1_t_9 = v->six_r_c_3*six_r_n_m1_t_6 + six_r_n_m1_t_7*v->six_r_s_3;
+    const real six_r_n_m1_t_10 = six_r_n_m1_t_5*v->six_r_s_4 - v->six_r_c_4*six_r_n_m1_t_8;
+    const real six_r_n_m1_in_axes5_y = v->six_r_c_5*six_r_n_m1_t_9 +
+        six_r_n_m1_t_10*v->six_r_s_5;
+    /* (six_r-n_m2) direction 2 of the moment that the platform joint transmits */
+    const real six_r_n_m2_in_axes5_z = v->six_r_c_5*six_r_n_m1_t_10 -
+        six_r_n_m1_t_9*v->six_r_s_5;
+    /* (six_r-w_1) force part of reciprocal wrench 1 */
+    const real six_r_end_p1_in_axes5_z = v->six_r_c_4*six_r_n_m1_t_5 +
+        six_r_n_m1_t_8*v->six_r_s_4;
+    const real six_r_w_1_t = v->six_r_e_1_in_axes5_x*six_r_n_m2_in_axes5_z -
+        v->six_r_e_1_in_axes5_y*six_r_n_m1_in_axes5_y;
+    const real six_r_w_1_t_2 = v->six_r_e_2_in_axes5_x*six_r_n_m2_in_axes5_z -
+        v->six_r_e_2_in_axes5_y*six_r_n_m1_in_axes5_y;
+    const real six_r_w_1_t_3 = v->six_r_e_1_in_axes5_y*six_r_end_p1_in_axes5_z -
+        v->six_r_e_1_in_axes5_z*six_r_n_m2_in_axes5_z;
+    const real six_r_w_1_t_4 = v->six_r_e_2_in_axes5_y*six_r_end_p1_in_axes5_z -
+        v->six_r_c_4*six_r_n_m2_in_axes5_z;
+    const real six_r_size = m->six_r_size[i];
+    const real six_r_w_1_t_5 = six_r_size*six_r_w_1_t;
+    const real six_r_w_1_t_6 = six_r_size*six_r_w_1_t_3;
+    const real six_r_w_1_t_7 = six_r_size*six_r_w_1_t_2;
+    const real six_r_w_1_t_8 = six_r_size*six_r_w_1_t_4;
+    const real six_r_w_1_t_9 = six_r_size*(-v->six_r_c_5*six_r_n_m2_in_axes5_z -
+        six_r_n_m1_in_axes5_y*v->six_r_s_5);
+    const real six_r_w_1_t_10 = six_r_end_p1_in_axes5_z*v->six_r_s_5*six_r_size;
+    const real six_r_w_1_t_11 = six_r_n_m2_in_axes5_z*six_r_size;
+    const real six_r_size_t = m->six_r_size_t[i];
+    const real six_r_w_1_t_12 = root(six_r_size_t + six_r_w_1_t_11*six_r_w_1_t_11);
+    const real inv_six_r_w_1_t_12 = 1/six_r_w_1_t_12;
+    const real six_r_platform_joint_offset_x = m->six_r_platform_joint_offset_x[i];
+    const real six_r_w_1_t_13 = inv_six_r_w_1_t_12*six_r_platform_joint_offset_x;
+    const real six_r_w_1_t_14 = inv_six_r_w_1_t_12*six_r_w_1_t_11;
+    const real six_r_w_1_t_15 = six_r_w_1_t_10*six_r_w_1_t_14;
+    const real six_r_w_1_t_16 = six_r_w_1_t_13*six_r_w_1_t_15;
+    const real six_r_w_1_t_17 = six_r_w_1_t_10 - six_r_w_1_t_14*six_r_w_1_t_15;
+    const real six_r_w_1_t_18 = v->six_r_v_1_in_axes5_y*six_r_w_1_t_13 -
+        six_r_w_1_t_14*six_r_w_1_t_6;
+    const real six_r_w_1_t_19 = v->six_r_v_1_in_axes5_y - six_r_w_1_t_13*six_r_w_1_t_18;
+    const real six_r_w_1_t_20 = six_r_w_1_t_6 + six_r_w_1_t_14*six_r_w_1_t_18;
+    const real six_r_w_1_t_21 = six_r_w_1_t_14*six_r_w_1_t_8;
+    const real six_r_w_1_t_22 = v->six_r_v_2_in_axes5_y*six_r_w_1_t_13 - six_r_w_1_t_21;
+    const real six_r_w_1_t_23 = v->six_r_v_2_in_axes5_y - six_r_w_1_t_13*six_r_w_1_t_22;
+    const real six_r_w_1_t_24 = six_r_w_1_t_8 + six_r_w_1_t_14*six_r_w_1_t_22;
+    const real six_r_w_1_t_25 = six_r_w_1_t_21 - v->six_r_v_3_in_axes5_y*six_r_w_1_t_13;
+    const real six_r_w_1_t_26 = v->six_r_v_3_in_axes5_y + six_r_w_1_t_13*six_r_w_1_t_25;
+    const real six_r_w_1_t_27 = six_r_w_1_t_8 - six_r_w_1_t_14*six_r_w_1_t_25;
+    const real six_r_w_1_t_28 = root(v->six_r_v_4_in_axes5_z*v->six_r_v_4_in_axes5_z +
+        six_r_w_1_t_16*six_r_w_1_t_16 + six_r_w_1_t_17*six_r_w_1_t_17 +
+        six_r_w_1_t_9*six_r_w_1_t_9);
+    const real inv_six_r_w_1_t_28 = 1/six_r_w_1_t_28;
+    const real six_r_w_1_t_29 = inv_six_r_w_1_t_28*six_r_w_1_t_16;
+    const real six_r_w_1_t_30 = inv_six_r_w_1_t_28*v->six_r_v_4_in_axes5_z;
+    const real six_r_w_1_t_31 = inv_six_r_w_1_t_28*six_r_w_1_t_9;
+    const real six_r_w_1_t_32 = inv_six_r_w_1_t_28*six_r_w_1_t_17;
+    const real six_r_w_1_t_33 = six_r_w_1_t_19*six_r_w_1_t_29 + six_r_w_1_t_20*six_r_w_1_t_32
+        + six_r_w_1_t_31*six_r_w_1_t_5 - v->six_r_v_1_in_axes5_z*six_r_w_1_t_30;
+    const real six_r_w_1_t_34 = six_r_w_1_t_29*six_r_w_1_t_33 - six_r_w_1_t_19;
+    const real six_r_w_1_t_35 = v->six_r_v_1_in_axes5_z + six_r_w_1_t_30*six_r_w_1_t_33;
+    const real six_r_w_1_t_36 = six_r_w_1_t_31*six_r_w_1_t_33 - six_r_w_1_t_5;
+    const real six_r_w_1_t_37 = six_r_w_1_t_32*six_r_w_1_t_33 - six_r_w_1_t_20;
+    const real six_r_w_1_t_38 = six_r_w_1_t_31*six_r_w_1_t_7;
+    const real six_r_w_1_t_39 = six_r_w_1_t_38 + six_r_w_1_t_23*six_r_w_1_t_29 +
+        six_r_w_1_t_24*six_r_w_1_t_32 - v->six_r_v_2_in_axes5_z*six_r_w_1_t_30;
+    const real six_r_w_1_t_40 = six_r_w_1_t_29*six_r_w_1_t_39 - six_r_w_1_t_23;
+    const real six_r_w_1_t_41 = v->six_r_v_2_in_axes5_z + six_r_w_1_t_30*six_r_w_1_t_39;
+    const real six_r_w_1_t_42 = six_r_w_1_t_31*six_r_w_1_t_39 - six_r_w_1_t_7;
+    const real six_r_w_1_t_43 = six_r_w_1_t_32*six_r_w_1_t_39 - six_r_w_1_t_24;
+    const real six_r_w_1_t_44 = six_r_w_1_t_38 + six_r_w_1_t_26*six_r_w_1_t_29 +
+        six_r_w_1_t_27*six_r_w_1_t_32 - v->six_r_v_3_in_axes5_z*six_r_w_1_t_30;
+    const real six_r_w_1_t_45 = six_r_w_1_t_29*six_r_w_1_t_44 - six_r_w_1_t_26;
+    const real six_r_w_1_t_46 = v->six_r_v_3_in_axes5_z + six_r_w_1_t_30*six_r_w_1_t_44;
+    const real six_r_w_1_t_47 = six_r_w_1_t_31*six_r_w_1_t_44 - six_r_w_1_t_7;
+    const real six_r_w_1_t_48 = six_r_w_1_t_32*six_r_w_1_t_44 - six_r_w_1_t_27;
+    const real six_r_w_1_t_49 = root(v->six_r_v_1_in_axes5_x*v->six_r_v_1_in_axes5_x +
+        six_r_w_1_t_34*six_r_w_1_t_34 + six_r_w_1_t_35*six_r_w_1_t_35 +
+        six_r_w_1_t_36*six_r_w_1_t_36 + six_r_w_1_t_37*six_r_w_1_t_37);
+    const real inv_six_r_w_1_t_49 = 1/six_r_w_1_t_49;
+    const real six_r_w_1_t_50 = inv_six_r_w_1_t_49*v->six_r_v_1_in_axes5_x;
+    const real six_r_w_1_t_51 = inv_six_r_w_1_t_49*six_r_w_1_t_34;
+    const real six_r_w_1_t_52 = inv_six_r_w_1_t_49*six_r_w_1_t_35;
+    const real six_r_w_1_t_53 = inv_six_r_w_1_t_49*six_r_w_1_t_36;
+    const real six_r_w_1_t_54 = inv_six_r_w_1_t_49*six_r_w_1_t_37;
+    const real six_r_w_1_t_55 = v->six_r_v_2_in_axes5_x*six_r_w_1_t_50 +
+        six_r_w_1_t_40*six_r_w_1_t_51 + six_r_w_1_t_41*six_r_w_1_t_52 +
+        six_r_w_1_t_42*six_r_w_1_t_53 + six_r_w_1_t_43*six_r_w_1_t_54;
+    const real six_r_w_1_t_56 = v->six_r_v_2_in_axes5_x - six_r_w_1_t_50*six_r_w_1_t_55;
+    const real six_r_w_1_t_57 = six_r_w_1_t_40 - six_r_w_1_t_51*six_r_w_1_t_55;
+    const real six_r_w_1_t_58 = six_r_w_1_t_41 - six_r_w_1_t_52*six_r_w_1_t_55;
+    const real six_r_w_1_t_59 = six_r_w_1_t_42 - six_r_w_1_t_53*six_r_w_1_t_55;
+    const real six_r_w_1_t_60 = six_r_w_1_t_43 - six_r_w_1_t_54*six_r_w_1_t_55;
+    const real six_r_w_1_t_61 = v->six_r_v_3_in_axes5_x*six_r_w_1_t_50 +
+        six_r_w_1_t_45*six_r_w_1_t_51 + six_r_w_1_t_46*six_r_w_1_t_52 +
+        six_r_w_1_t_47*six_r_w_1_t_53 + six_r_w_1_t_48*six_r_w_1_t_54;
+    const real six_r_w_1_t_62 = v->six_r_v_3_in_axes5_x - six_r_w_1_t_50*six_r_w_1_t_61;
+    const real six_r_w_1_t_63 = six_r_w_1_t_45 - six_r_w_1_t_51*six_r_w_1_t_61;
+    const real six_r_w_1_t_64 = six_r_w_1_t_46 - six_r_w_1_t_52*six_r_w_1_t_61;
+    const real six_r_w_1_t_65 = six_r_w_1_t_47 - six_r_w_1_t_53*six_r_w_1_t_61;
+    const real six_r_w_1_t_66 = six_r_w_1_t_48 - six_r_w_1_t_54*six_r_w_1_t_61;
+    const real six_r_w_1_t_67 = root(six_r_w_1_t_56*six_r_w_1_t_56 +
+        six_r_w_1_t_57*six_r_w_1_t_57 + six_r_w_1_t_58*six_r_w_1_t_58 +
+        six_r_w_1_t_59*six_r_w_1_t_59 + six_r_w_1_t_60*six_r_w_1_t_60);
+    const real inv_six_r_w_1_t_67 = 1/six_r_w_1_t_67;
+    const real six_r_w_1_t_68 = inv_six_r_w_1_t_67*six_r_w_1_t_56;
+    const real six_r_w_1_t_69 = inv_six_r_w_1_t_67*six_r_w_1_t_57;
+    const real six_r_w_1_t_70 = inv_six_r_w_1_t_67*six_r_w_1_t_58;
+    const real six_r_w_1_t_71 = inv_six_r_w_1_t_67*six_r_w_1_t_59;
+    const real six_r_w_1_t_72 = inv_six_r_w_1_t_67*six_r_w_1_t_60;
+    const real six_r_w_1_t_73 = six_r_w_1_t_62*six_r_w_1_t_68 + six_r_w_1_t_63*six_r_w_1_t_69
+        + six_r_w_1_t_64*six_r_w_1_t_70 + six_r_w_1_t_65*six_r_w_1_t_71 +
+        six_r_w_1_t_66*six_r_w_1_t_72;
+    const real six_r_w_1_t_74 = six_r_w_1_t_62 - six_r_w_1_t_68*six_r_w_1_t_73;
+    const real six_r_w_1_t_75 = six_r_w_1_t_63 - six_r_w_1_t_69*six_r_w_1_t_73;
+    const real six_r_w_1_t_76 = six_r_w_1_t_64 - six_r_w_1_t_70*six_r_w_1_t_73;
+    const real six_r_w_1_t_77 = six_r_w_1_t_65 - six_r_w_1_t_71*six_r_w_1_t_73;
+    const real six_r_w_1_t_78 = six_r_w_1_t_66 - six_r_w_1_t_72*six_r_w_1_t_73;
+    const real six_r_w_1_t_79 = root(six_r_w_1_t_74*six_r_w_1_t_74 +
+        six_r_w_1_t_75*six_r_w_1_t_75 + six_r_w_1_t_76*six_r_w_1_t_76 +
+        six_r_w_1_t_77*six_r_w_1_t_77 + six_r_w_1_t_78*six_r_w_1_t_78);
+    /* (six_r-qd_1) rate of joint 1 */
+    const real inv_six_r_w_1_t_79 = 1/six_r_w_1_t_79;
+    v->six_r_n_m1_t_5 = six_r_n_m1_t_5;
+    v->six_r_n_m1_t_8 = six_r_n_m1_t_8;
+    v->six_r_n_m1_t_9 = six_r_n_m1_t_9;
+    v->six_r_n_m1_t_10 = six_r_n_m1_t_10;
+    v->six_r_n_m1_in_axes5_y = six_r_n_m1_in_axes5_y;
+    v->six_r_n_m2_in_axes5_z = six_r_n_m2_in_axes5_z;
+    v->six_r_end_p1_in_axes5_z = six_r_end_p1_in_axes5_z;
+    v->six_r_w_1_t_12 = six_r_w_1_t_12;
+    v->inv_six_r_w_1_t_12 = inv_six_r_w_1_t_12;
+    v->six_r_w_1_t_13 = six_r_w_1_t_13;
+    v->six_r_w_1_t_14 = six_r_w_1_t_14;
+    v->six_r_w_1_t_15 = six_r_w_1_t_15;
+    v->six_r_w_1_t_18 = six_r_w_1_t_18;
+    v->six_r_w_1_t_22 = six_r_w_1_t_22;
+    v->six_r_w_1_t_25 = six_r_w_1_t_25;
+    v->six_r_w_1_t_28 = six_r_w_1_t_28;
+    v->inv_six_r_w_1_t_28 = inv_six_r_w_1_t_28;
+    v->six_r_w_1_t_29 = six_r_w_1_t_29;
+    v->six_r_w_1_t_30 = six_r_w_1_t_30;
+    v->six_r_w_1_t_31 = six_r_w_1_t_31;
+    v->six_r_w_1_t_32 = six_r_w_1_t_32;
+    v->six_r_w_1_t_33 = six_r_w_1_t_33;
+    v->six_r_w_1_t_39 = six_r_w_1_t_39;
+    v->six_r_w_1_t_44 = six_r_w_1_t_44;
+    v->six_r_w_1_t_49 = six_r_w_1_t_49;
+    v->inv_six_r_w_1_t_49 = inv_six_r_w_1_t_49;
+    v->six_r_w_1_t_50 = six_r_w_1_t_50;
+    v->six_r_w_1_t_51 = six_r_w_1_t_51;
+    v->six_r_w_1_t_52 = six_r_w_1_t_52;
+    v->six_r_w_1_t_53 = six_r_w_1_t_53;
+    v->six_r_w_1_t_54 = six_r_w_1_t_54;
+    v->six_r_w_1_t_55 = six_r_w_1_t_55;
+    v->six_r_w_1_t_61 = six_r_w_1_t_61;
+    v->six_r_w_1_t_67 = six_r_w_1_t_67;
+    v->inv_six_r_w_1_t_67 = inv_six_r_w_1_t_67;
+    v->six_r_w_1_t_68 = six_r_w_1_t_68;
+    v->six_r_w_1_t_69 = six_r_w_1_t_69;
+    v->six_r_w_1_t_70 = six_r_w_1_t_70;
+    v->six_r_w_1_t_71 = six_r_w_1_t_71;
+    v->six_r_w_1_t_72 = six_r_w_1_t_72;
+    v->six_r_w_1_t_73 = six_r_w_1_t_73;
+    v->six_r_w_1_t_74 = six_r_w_1_t_74;
+    v->six_r_w_1_t_75 = six_r_w_1_t_75;
+    v->six_r_w_1_t_76 = six_r_w_1_t_76;
+    v->six_r_w_1_t_77 = six_r_w_1_t_77;
+    v->six_r_w_1_t_78 = six_r_w_1_t_78;
+    v->six_r_w_1_t_79 = six_r_w_1_t_79;
+    v->inv_six_r_w_1_t_79 = inv_six_r_w_1_t_79;
+}
+
+INLINE void stage_six_r_A_V_X(size_t w, size_t j, const real *V, values_six_r *v)
+{
+    /* (six_r-S_ddot) acceleration of the connection point */
+    const real omega_y = V[4*w + j];
+    const real omega_z = V[5*w + j];
+    const real six_r_S_ddot_x = v->six_r_a_p_x + omega_y*v->six_r_S_dot_t_16 -
+        omega_z*v->six_r_S_dot_t_15;
+    const real omega_x = V[3*w + j];
+    const real six_r_S_ddot_y = v->six_r_a_p_y + omega_z*v->six_r_S_dot_t_14 -
+        omega_x*v->six_r_S_dot_t_16;
+    const real six_r_S_ddot_z = v->six_r_a_p_z + omega_x*v->six_r_S_dot_t_15 -
+        omega_y*v->six_r_S_dot_t_14;
+    v->six_r_S_ddot_x = six_r_S_ddot_x;
+    v->six_r_S_ddot_y = six_r_S_ddot_y;
+    v->six_r_S_ddot_z = six_r_S_ddot_z;
+}
+
+INLINE void stage_six_r_A_X_q(size_t w, size_t j, const real *A, values_six_r *v)
+{
+    /* (six_r-etad_1) acceleration with which the joints turn along moment direction 1 */
+    const real alpha_x = A[3*w + j];
+    const real alpha_y = A[4*w + j];
+    const real alpha_z = A[5*w + j];
+    const real six_r_etad_1_t = v->six_r_n_m2_in_axes5_z*(alpha_x*v->axis_x_six_r_axes5_x +
+        alpha_y*v->axis_x_six_r_axes5_y + alpha_z*v->axis_x_six_r_axes5_z) -
+        v->six_r_alpha_in_axes5_y*v->six_r_n_m1_in_axes5_y;
+    /* (six_r-etad_2) acceleration with which the joints turn along moment direction 2 */
+    const real six_r_etad_2_t = v->six_r_alpha_in_axes5_y*v->six_r_end_p1_in_axes5_z -
+        v->six_r_n_m2_in_axes5_z*(alpha_x*v->axis_z_six_r_axes5_x +
+        alpha_y*v->axis_z_six_r_axes5_y + alpha_z*v->axis_z_six_r_axes5_z);
+    v->six_r_etad_1_t = six_r_etad_1_t;
+    v->six_r_etad_2_t = six_r_etad_2_t;
+}
+
+INLINE void stage_six_r_V_X_q(values_six_r *v)
+{
+    /* (six_r-S_dot) velocity of the connection point */
+    const real six_r_S_dot_in_axes5_x = v->axis_x_six_r_axes5_x*v->six_r_S_dot_x +
+        v->axis_x_six_r_axes5_y*v->six_r_S_dot_y + v->axis_x_six_r_axes5_z*v->six_r_S_dot_z;
+    const real six_r_S_dot_in_axes5_y = v->axis_y_six_r_axes5_x*v->six_r_S_dot_x +
+        v->axis_y_six_r_axes5_y*v->six_r_S_dot_y + v->axis_y_six_r_axes5_z*v->six_r_S_dot_z;
+    const real six_r_S_dot_in_axes5_z = v->axis_z_six_r_axes5_x*v->six_r_S_dot_x +
+        v->axis_z_six_r_axes5_y*v->six_r_S_dot_y + v->axis_z_six_r_axes5_z*v->six_r_S_dot_z;
+    /* (six_r-nd_m1) rate of moment direction 1 */
+    const real six_r_nd_m1_t = v->six_r_n_m1_in_axes5_y*v->six_r_omega_in_axes5_z -
+        v->six_r_end_p1_in_axes5_z*v->six_r_omega_in_axes5_x;
+    /* (six_r-eta_1) rate at which the joints turn along moment direction 1 */
+    const real six_r_eta_1 = v->six_r_n_m1_in_axes5_y*v->six_r_omega_in_axes5_y -
+        v->six_r_n_m2_in_axes5_z*v->six_r_omega_in_axes5_x;
+    /* (six_r-eta_2) rate at which the joints turn along moment direction 2 */
+    const real six_r_eta_2_t = v->six_r_end_p1_in_axes5_z*v->six_r_omega_in_axes5_y -
+        v->six_r_n_m2_in_axes5_z*v->six_r_omega_in_axes5_z;
+    v->six_r_S_dot_in_axes5_x = six_r_S_dot_in_axes5_x;
+    v->six_r_S_dot_in_axes5_y = six_r_S_dot_in_axes5_y;
+    v->six_r_S_dot_in_axes5_z = six_r_S_dot_in_axes5_z;
+    v->six_r_nd_m1_t = six_r_nd_m1_t;
+    v->six_r_eta_1 = six_r_eta_1;
+    v->six_r_eta_2_t = six_r_eta_2_t;
+}
+
+INLINE void stage_six_r_H_condition(const prepared *m, size_t i, values_six_r *v)
+{
+    /* (six_r-w_2) force part of reciprocal wrench 2 */
+    const real six_r_w_2_t = v->six_r_c_3*v->six_r_s_4;
+    const real six_r_w_2_t_2 = v->six_r_s_3*v->six_r_s_4;
+    const real six_r_w_2_t_3 = v->six_r_c_2*six_r_w_2_t_2 + v->six_r_s_2*six_r_w_2_t;
+    const real six_r_w_2_t_4 = v->six_r_s_2*six_r_w_2_t_2 - v->six_r_c_2*six_r_w_2_t;
+    const real six_r_w_2_t_5 = v->six_r_c_1*six_r_w_2_t_4 - v->six_r_c_4*v->six_r_s_1;
+    const real six_r_w_2_t_6 = v->six_r_c_1*v->six_r_c_4 + v->six_r_s_1*six_r_w_2_t_4;
+    const real six_r_base_frame_xx = m->six_r_base_frame_xx[i];
+    const real six_r_base_frame_xy = m->six_r_base_frame_xy[i];
+    const real six_r_base_frame_xz = m->six_r_base_frame_xz[i];
+    const real axis_z_six_r_axes5_x = six_r_base_frame_xx*six_r_w_2_t_3 +
+        six_r_base_frame_xy*six_r_w_2_t_5 + six_r_base_frame_xz*six_r_w_2_t_6;
+    const real six_r_base_frame_yx = m->six_r_base_frame_yx[i];
+    const real six_r_base_frame_yy = m->six_r_base_frame_yy[i];
+    const real six_r_base_frame_yz = m->six_r_base_frame_yz[i];
+    const real axis_z_six_r_axes5_y = six_r_base_frame_yx*six_r_w_2_t_3 +
+        six_r_base_frame_yy*six_r_w_2_t_5 + six_r_base_frame_yz*six_r_w_2_t_6;
+    const real six_r_base_frame_zx = m->six_r_base_frame_zx[i];
+    const real six_r_base_frame_zy = m->six_r_base_frame_zy[i];
+    const real six_r_base_frame_zz = m->six_r_base_frame_zz[i];
+    const real axis_z_six_r_axes5_z = six_r_base_frame_zx*six_r_w_2_t_3 +
+        six_r_base_frame_zy*six_r_w_2_t_5 + six_r_base_frame_zz*six_r_w_2_t_6;
+    const real six_r_w_2_t_7 = v->six_r_c_4*v->six_r_c_5;
+    const real six_r_w_2_t_8 = v->six_r_s_3*v->six_r_s_5 - v->six_r_c_3*six_r_w_2_t_7;
+    const real six_r_w_2_t_9 = -v->six_r_c_3*v->six_r_s_5 - v->six_r_s_3*six_r_w_2_t_7;
+    const real six_r_w_2_t_10 = v->six_r_c_2*six_r_w_2_t_9 + v->six_r_s_2*six_r_w_2_t_8;
+    const real six_r_w_2_t_11 = v->six_r_s_2*six_r_w_2_t_9 - v->six_r_c_2*six_r_w_2_t_8;
+    const real six_r_w_2_t_12 = v->six_r_c_1*six_r_w_2_t_11 -
+        v->six_r_e_2_in_axes5_y*v->six_r_s_1;
+    const real six_r_w_2_t_13 = v->six_r_c_1*v->six_r_e_2_in_axes5_y +
+        v->six_r_s_1*six_r_w_2_t_11;
+    const real axis_y_six_r_axes5_x = six_r_base_frame_xx*six_r_w_2_t_10 +
+        six_r_base_frame_xy*six_r_w_2_t_12 + six_r_base_frame_xz*six_r_w_2_t_13;
+    const real axis_y_six_r_axes5_y = six_r_base_frame_yx*six_r_w_2_t_10 +
+        six_r_base_frame_yy*six_r_w_2_t_12 + six_r_base_frame_yz*six_r_w_2_t_13;
+    const real axis_y_six_r_axes5_z = six_r_base_frame_zx*six_r_w_2_t_10 +
+        six_r_base_frame_zy*six_r_w_2_t_12 + six_r_base_frame_zz*six_r_w_2_t_13;
+    const real axis_x_six_r_axes5_x = axis_y_six_r_axes5_y*axis_z_six_r_axes5_z -
+        axis_y_six_r_axes5_z*axis_z_six_r_axes5_y;
+    const real axis_x_six_r_axes5_y = axis_y_six_r_axes5_z*axis_z_six_r_axes5_x -
+        axis_y_six_r_axes5_x*axis_z_six_r_axes5_z;
+    const real axis_x_six_r_axes5_z = axis_y_six_r_axes5_x*axis_z_six_r_axes5_y -
+        axis_y_six_r_axes5_y*axis_z_six_r_axes5_x;
+    const real six_r_w_2_t_14 = v->inv_six_r_w_1_t_67*v->inv_six_r_w_1_t_79*v->six_r_w_1_t_73;
+    const real six_r_w_2_in_axes5_x = v->inv_six_r_w_1_t_67*v->six_r_w_1_t_68 -
+        v->inv_six_r_w_1_t_79*v->six_r_w_1_t_74*six_r_w_2_t_14;
+    const real six_r_w_2_in_axes5_y = v->inv_six_r_w_1_t_79*v->six_r_w_1_t_75*six_r_w_2_t_14 -
+        v->inv_six_r_w_1_t_67*v->six_r_w_1_t_69;
+    const real six_r_w_2_in_axes5_z = v->inv_six_r_w_1_t_67*v->six_r_w_1_t_70 -
+        v->inv_six_r_w_1_t_79*v->six_r_w_1_t_76*six_r_w_2_t_14;
+    const real six_r_w_2_x = axis_x_six_r_axes5_x*six_r_w_2_in_axes5_x +
+        axis_y_six_r_axes5_x*six_r_w_2_in_axes5_y + axis_z_six_r_axes5_x*six_r_w_2_in_axes5_z;
+    const real six_r_w_2_y = axis_x_six_r_axes5_y*six_r_w_2_in_axes5_x +
+        axis_y_six_r_axes5_y*six_r_w_2_in_axes5_y + axis_z_six_r_axes5_y*six_r_w_2_in_axes5_z;
+    const real six_r_w_2_z = axis_x_six_r_axes5_z*six_r_w_2_in_axes5_x +
+        axis_y_six_r_axes5_z*six_r_w_2_in_axes5_y + axis_z_six_r_axes5_z*six_r_w_2_in_axes5_z;
+    /* (six_r-m1_w_2) moment part 1 of reciprocal wrench 2 */
+    const real six_r_size = m->six_r_size[i];
+    const real six_r_m1_w_2 = six_r_size*(v->inv_six_r_w_1_t_67*v->six_r_w_1_t_71 -
+        v->inv_six_r_w_1_t_79*v->six_r_w_1_t_77*six_r_w_2_t_14);
+    /* (six_r-m2_w_2) moment part 2 of reciprocal wrench 2 */
+    const real six_r_m2_w_2 = six_r_size*(v->inv_six_r_w_1_t_67*v->six_r_w_1_t_72 -
+        v->inv_six_r_w_1_t_79*v->six_r_w_1_t_78*six_r_w_2_t_14);
+    /* (six_r-o_2) moment part of reciprocal wrench 2 */
+    const real six_r_o_2_x = six_r_m1_w_2*(axis_y_six_r_axes5_x*v->six_r_n_m1_in_axes5_y -
+        axis_x_six_r_axes5_x*v->six_r_n_m2_in_axes5_z) +
+        six_r_m2_w_2*(axis_z_six_r_axes5_x*v->six_r_n_m2_in_axes5_z -
+        axis_y_six_r_axes5_x*v->six_r_end_p1_in_axes5_z);
+    const real six_r_o_2_y = six_r_m1_w_2*(axis_y_six_r_axes5_y*v->six_r_n_m1_in_axes5_y -
+        axis_x_six_r_axes5_y*v->six_r_n_m2_in_axes5_z) +
+        six_r_m2_w_2*(axis_z_six_r_axes5_y*v->six_r_n_m2_in_axes5_z -
+        axis_y_six_r_axes5_y*v->six_r_end_p1_in_axes5_z);
+    const real six_r_o_2_z = six_r_m1_w_2*(axis_y_six_r_axes5_z*v->six_r_n_m1_in_axes5_y -
+        axis_x_six_r_axes5_z*v->six_r_n_m2_in_axes5_z) +
+        six_r_m2_w_2*(axis_z_six_r_axes5_z*v->six_r_n_m2_in_axes5_z -
+        axis_y_six_r_axes5_z*v->six_r_end_p1_in_axes5_z);
+    /* (six_r-H_a_2) moment of the column's unit force about the platform origin */
+    const real six_r_H_a_2_x = six_r_o_2_x + v->six_r_q_y*six_r_w_2_z -
+        v->six_r_q_z*six_r_w_2_y;
+    const real six_r_H_a_2_y = six_r_o_2_y + v->six_r_q_z*six_r_w_2_x -
+        v->six_r_q_x*six_r_w_2_z;
+    const real six_r_H_a_2_z = six_r_o_2_z + v->six_r_q_x*six_r_w_2_y -
+        v->six_r_q_y*six_r_w_2_x;
+    v->six_r_w_2_x = six_r_w_2_x;
+    v->six_r_w_2_y = six_r_w_2_y;
+    v->six_r_w_2_z = six_r_w_2_z;
+    v->six_r_H_a_2_x = six_r_H_a_2_x;
+    v->six_r_H_a_2_y = six_r_H_a_2_y;
+    v->six_r_H_a_2_z = six_r_H_a_2_z;
+}
+
+INLINE void stage_six_r_M_dynamics(const prepared *m, size_t w, size_t i, size_t j, const real
+    *joints, values_six_r *v)
+{
+    static const size_t place_six_r_q_5[] = {4, 9, 14, 19, 24, 29, 4, 4};
+    /* (six_r-h_4) first moment of link 4 about the origin of link 4 */
+    const real six_r_h_4_in_spec4_y = m->six_r_h_4_in_spec4_y[i];
+    const real six_r_h_4_in_spec4_z = m->six_r_h_4_in_spec4_z[i];
+    const real six_r_h_4_in_spec2_z = v->six_r_e_2_in_axes5_z*six_r_h_4_in_spec4_z +
+        six_r_h_4_in_spec4_y*v->six_r_h_4_t;
+    /* (six_r-J_5) inertia tensor of link 5 about the connection point */
+    const real six_r_q_5 = joints[place_six_r_q_5[i]*w + j];
+    const real six_r_e_4_in_axes5_x = cosine(six_r_q_5);
+    const real six_r_J_5_t = sine(six_r_q_5);
+    const real six_r_J_5_in_spec5_xz = m->six_r_J_5_in_spec5_xz[i];
+    const real six_r_J_5_in_spec5_yz = m->six_r_J_5_in_spec5_yz[i];
+    const real six_r_J_5_in_axes4_yz = six_r_J_5_in_spec5_xz*six_r_e_4_in_axes5_x -
+        six_r_J_5_in_spec5_yz*six_r_J_5_t;
+    /* (six_r-S_dot) velocity of the connection point */
+    const real six_r_e_2_in_axes5_y = six_r_e_4_in_axes5_x*v->six_r_h_4_t;
+    /* (six_r-r_4) from joint 4 to the connection point, along the links */
+    const real six_r_platform_joint_offset_x = m->six_r_platform_joint_offset_x[i];
+    const real six_r_r_4_in_axes4_x = six_r_J_5_t*six_r_platform_joint_offset_x;
+    const real six_r_joint5_offset_x = m->six_r_joint5_offset_x[i];
+    const real six_r_r_4_in_axes4_z = six_r_joint5_offset_x +
+        six_r_e_4_in_axes5_x*six_r_platform_joint_offset_x;
+    const real six_r_r_4_in_axes3_x = -v->six_r_e_2_in_axes5_z*six_r_r_4_in_axes4_x;
+    const real six_r_r_4_in_axes3_z = v->six_r_h_4_t*six_r_r_4_in_axes4_x;
+    /* (six_r-r_3) from joint 3 to the connection point, along the links */
+    const real six_r_joint4_offset_x = m->six_r_joint4_offset_x[i];
+    const real six_r_r_3_in_axes3_y = six_r_joint4_offset_x + six_r_r_4_in_axes4_z;
+    const real six_r_r_3_in_axes2_y = six_r_r_3_in_axes3_y*v->six_r_s_3 -
+        v->six_r_c_3*six_r_r_4_in_axes3_x;
+    const real six_r_r_3_t = v->six_r_h_4_t*six_r_r_4_in_axes3_z;
+    const real six_r_r_3_t_2 = v->six_r_e_2_in_axes5_z*six_r_r_4_in_axes3_z;
+    const real six_r_r_3_t_3 = six_r_r_3_t - v->six_r_e_2_in_axes5_z*six_r_r_4_in_axes3_x;
+    const real six_r_r_3_in_axes5_z = six_r_r_3_t_2 + v->six_r_h_4_t*six_r_r_4_in_axes3_x;
+    const real six_r_r_3_in_axes5_x = six_r_J_5_t*six_r_r_3_t_3 +
+        six_r_e_4_in_axes5_x*six_r_r_3_in_axes3_y;
+    const real six_r_r_3_in_axes5_y = six_r_e_4_in_axes5_x*six_r_r_3_t_3 -
+        six_r_J_5_t*six_r_r_3_in_axes3_y;
+    /* (six_r-r_2) from joint 2 to the connection point, along the links */
+    const real six_r_joint3_offset_x = m->six_r_joint3_offset_x[i];
+    const real six_r_r_2_in_axes2_x = six_r_joint3_offset_x +
+        v->six_r_c_3*six_r_r_3_in_axes3_y + six_r_r_4_in_axes3_x*v->six_r_s_3;
+    const real six_r_r_2_in_axes1_x = v->six_r_c_2*six_r_r_3_in_axes2_y +
+        six_r_r_2_in_axes2_x*v->six_r_s_2;
+    const real six_r_r_2_t = six_r_r_2_in_axes2_x*v->six_r_s_3 -
+        v->six_r_c_3*six_r_r_3_in_axes2_y;
+    const real six_r_r_2_t_2 = v->six_r_c_3*six_r_r_2_in_axes2_x +
+        six_r_r_3_in_axes2_y*v->six_r_s_3;
+    const real six_r_r_2_t_3 = six_r_r_3_t - v->six_r_e_2_in_axes5_z*six_r_r_2_t;
+    const real six_r_r_2_in_axes5_z = six_r_r_3_t_2 + v->six_r_h_4_t*six_r_r_2_t;
+    const real six_r_r_2_in_axes5_x = six_r_J_5_t*six_r_r_2_t_3 +
+        six_r_e_4_in_axes5_x*six_r_r_2_t_2;
+    const real six_r_r_2_in_axes5_y = six_r_e_4_in_axes5_x*six_r_r_2_t_3 -
+        six_r_J_5_t*six_r_r_2_t_2;
+    /* (six_r-r_1) from joint 1 to the connection point, along the links */
+    const real six_r_joint2_offset_x = m->six_r_joint2_offset_x[i];
+    const real six_r_r_1_in_axes1_z = six_r_joint2_offset_x +
+        v->six_r_c_2*six_r_r_2_in_axes2_x - six_r_r_3_in_axes2_y*v->six_r_s_2;
+    const real six_r_r_1_t = v->six_r_c_2*six_r_r_1_in_axes1_z +
+        six_r_r_2_in_axes1_x*v->six_r_s_2;
+    const real six_r_r_1_t_2 = v->six_r_c_2*six_r_r_2_in_axes1_x -
+        six_r_r_1_in_axes1_z*v->six_r_s_2;
+    const real six_r_r_1_t_3 = six_r_r_1_t*v->six_r_s_3 - v->six_r_c_3*six_r_r_1_t_2;
+    const real six_r_r_1_t_4 = v->six_r_c_3*six_r_r_1_t + six_r_r_1_t_2*v->six_r_s_3;
+    const real six_r_r_1_t_5 = six_r_r_3_t - v->six_r_e_2_in_axes5_z*six_r_r_1_t_3;
+    const real six_r_r_1_in_axes5_z = six_r_r_3_t_2 + v->six_r_h_4_t*six_r_r_1_t_3;
+    const real six_r_r_1_in_axes5_x = six_r_J_5_t*six_r_r_1_t_5 +
+        six_r_e_4_in_axes5_x*six_r_r_1_t_4;
+    const real six_r_r_1_in_axes5_y = six_r_e_4_in_axes5_x*six_r_r_1_t_5 -
+        six_r_J_5_t*six_r_r_1_t_4;
+    /* (six_r-v_1) velocity of the connection point per rate of joint 1 */
+    const real six_r_v_1_t_3 = v->six_r_e_2_in_axes5_z*v->six_r_v_1_t;
+    const real six_r_e_1_in_axes5_z = v->six_r_h_4_t*v->six_r_v_1_t;
+    const real six_r_e_1_in_axes5_x = six_r_e_4_in_axes5_x*v->six_r_v_1_t_2 -
+        six_r_J_5_t*six_r_v_1_t_3;
+    const real six_r_e_1_in_axes5_y = -six_r_J_5_t*v->six_r_v_1_t_2 -
+        six_r_e_4_in_axes5_x*six_r_v_1_t_3;
+    const real six_r_v_1_in_axes5_x = six_r_e_1_in_axes5_y*six_r_r_1_in_axes5_z -
+        six_r_e_1_in_axes5_z*six_r_r_1_in_axes5_y;
+    const real six_r_v_1_in_axes5_y = six_r_e_1_in_axes5_z*six_r_r_1_in_axes5_x -
+        six_r_e_1_in_axes5_x*six_r_r_1_in_axes5_z;
+    const real six_r_v_1_in_axes5_z = six_r_e_1_in_axes5_x*six_r_r_1_in_axes5_y -
+        six_r_e_1_in_axes5_y*six_r_r_1_in_axes5_x;
+    /* (six_r-v_2) velocity of the connection point per rate of joint 2 */
+    const real six_r_e_2_in_axes5_x = six_r_J_5_t*v->six_r_h_4_t;
+    const real six_r_v_2_in_axes5_x = six_r_e_2_in_axes5_y*six_r_r_2_in_axes5_z -
+        v->six_r_e_2_in_axes5_z*six_r_r_2_in_axes5_y;
+    const real six_r_v_2_in_axes5_y = v->six_r_e_2_in_axes5_z*six_r_r_2_in_axes5_x -
+        six_r_e_2_in_axes5_x*six_r_r_2_in_axes5_z;
+    const real six_r_v_2_in_axes5_z = six_r_e_2_in_axes5_x*six_r_r_2_in_axes5_y -
+        six_r_e_2_in_axes5_y*six_r_r_2_in_axes5_x;
+    /* (six_r-v_3) velocity of the connection point per rate of joint 3 */
+    const real six_r_v_3_in_axes5_x = six_r_e_2_in_axes5_y*six_r_r_3_in_axes5_z -
+        v->six_r_e_2_in_axes5_z*six_r_r_3_in_axes5_y;
+    const real six_r_v_3_in_axes5_y = v->six_r_e_2_in_axes5_z*six_r_r_3_in_axes5_x -
+        six_r_e_2_in_axes5_x*six_r_r_3_in_axes5_z;
+    const real six_r_v_3_in_axes5_z = six_r_e_2_in_axes5_x*six_r_r_3_in_axes5_y -
+        six_r_e_2_in_axes5_y*six_r_r_3_in_axes5_x;
+    /* (six_r-v_4) velocity of the connection point per rate of joint 4 */
+    const real six_r_v_4_in_axes5_z = six_r_J_5_t*(six_r_J_5_t*six_r_r_4_in_axes4_x +
+        six_r_e_4_in_axes5_x*six_r_r_4_in_axes4_z) +
+        six_r_e_4_in_axes5_x*(six_r_e_4_in_axes5_x*six_r_r_4_in_axes4_x -
+        six_r_J_5_t*six_r_r_4_in_axes4_z);
+    /* (six_r-D_3_5) inertia of joint 5 along joint 3 */
+    const real six_r_J_5_in_spec5_zz = m->six_r_J_5_in_spec5_zz[i];
+    const real six_r_D_3_5 = six_r_J_5_in_spec5_xz*six_r_e_2_in_axes5_x +
+        six_r_J_5_in_spec5_yz*six_r_e_2_in_axes5_y +
+        six_r_J_5_in_spec5_zz*v->six_r_e_2_in_axes5_z;
+    /* (six_r-D_1_5) inertia of joint 5 along joint 1 */
+    const real six_r_D_1_5 = six_r_J_5_in_spec5_xz*six_r_e_1_in_axes5_x +
+        six_r_J_5_in_spec5_yz*six_r_e_1_in_axes5_y +
+        six_r_J_5_in_spec5_zz*six_r_e_1_in_axes5_z;
+    /* (six_r-Jc_4) inertia tensor of the links from 4 outwards about joint 4, that of the last link
+       about the connection point */
+    const real six_r_J_5_in_spec5_xy = m->six_r_J_5_in_spec5_xy[i];
+    const real six_r_Jc_4_t = six_r_J_5_in_spec5_xy*six_r_J_5_t;
+    const real six_r_Jc_4_t_2 = six_r_J_5_in_spec5_xy*six_r_e_4_in_axes5_x;
+    const real six_r_J_5_in_spec5_xx = m->six_r_J_5_in_spec5_xx[i];
+    const real six_r_Jc_4_t_3 = six_r_Jc_4_t_2 + six_r_J_5_in_spec5_xx*six_r_J_5_t;
+    const real six_r_J_5_in_spec5_yy = m->six_r_J_5_in_spec5_yy[i];
+    const real six_r_Jc_4_t_4 = six_r_Jc_4_t + six_r_J_5_in_spec5_yy*six_r_e_4_in_axes5_x;
+    const real six_r_J_4_in_spec4_yy = m->six_r_J_4_in_spec4_yy[i];
+    const real six_r_Jc_4_in_axes4_xx = six_r_J_4_in_spec4_yy + six_r_J_5_t*six_r_Jc_4_t_3 +
+        six_r_Jc_4_t_4*six_r_e_4_in_axes5_x;
+    const real six_r_J_4_in_spec4_yz = m->six_r_J_4_in_spec4_yz[i];
+    const real six_r_Jc_4_in_axes4_xy = six_r_J_4_in_spec4_yz +
+        six_r_J_5_in_spec5_xz*six_r_J_5_t + six_r_J_5_in_spec5_yz*six_r_e_4_in_axes5_x;
+    const real six_r_J_4_in_spec4_xy = m->six_r_J_4_in_spec4_xy[i];
+    const real six_r_Jc_4_in_axes4_xz = six_r_J_4_in_spec4_xy +
+        six_r_Jc_4_t_3*six_r_e_4_in_axes5_x - six_r_J_5_t*six_r_Jc_4_t_4;
+    const real six_r_J_4_in_spec4_xz = m->six_r_J_4_in_spec4_xz[i];
+    const real six_r_Jc_4_in_axes4_yz = six_r_J_4_in_spec4_xz + six_r_J_5_in_axes4_yz;
+    const real six_r_J_4_in_spec4_xx = m->six_r_J_4_in_spec4_xx[i];
+    const real six_r_Jc_4_in_axes4_zz = six_r_J_4_in_spec4_xx +
+        six_r_e_4_in_axes5_x*(six_r_J_5_in_spec5_xx*six_r_e_4_in_axes5_x - six_r_Jc_4_t) -
+        six_r_J_5_t*(six_r_Jc_4_t_2 - six_r_J_5_in_spec5_yy*six_r_J_5_t);
+    const real six_r_Jc_4_in_axes3_xy = six_r_Jc_4_in_axes4_yz*v->six_r_h_4_t -
+        six_r_Jc_4_in_axes4_xz*v->six_r_e_2_in_axes5_z;
+    const real six_r_Jc_4_in_axes3_yz = six_r_Jc_4_in_axes4_xz*v->six_r_h_4_t +
+        six_r_Jc_4_in_axes4_yz*v->six_r_e_2_in_axes5_z;
+    /* (six_r-L_c_4_3) moment about joint 3 that accelerates joint 4, per unit */
+    const real six_r_L_c_4_3_t = v->six_r_h_4_in_spec3_y*six_r_joint4_offset_x;
+    const real six_r_L_c_4_3_t_2 = -six_r_h_4_in_spec2_z*six_r_joint4_offset_x;
+    const real six_r_L_c_4_3_in_axes3_x = six_r_Jc_4_in_axes3_xy + six_r_L_c_4_3_t;
+    const real six_r_L_c_4_3_in_axes3_z = six_r_Jc_4_in_axes3_yz + six_r_L_c_4_3_t_2;
+    /* (six_r-L_c_4_2) moment about joint 2 that accelerates joint 4, per unit */
+    const real six_r_L_c_4_2_in_axes2_y = six_r_Jc_4_in_axes4_zz*v->six_r_s_3 -
+        six_r_L_c_4_3_in_axes3_x*v->six_r_c_3 - v->six_r_h_4_in_spec3_y*six_r_joint3_offset_x;
+    const real six_r_L_c_4_2_in_axes2_z = six_r_L_c_4_3_in_axes3_z -
+        v->six_r_c_3*six_r_h_4_in_spec2_z*six_r_joint3_offset_x;
+    const real six_r_L_c_4_2_in_axes1_z = v->six_r_c_2*(six_r_Jc_4_in_axes4_zz*v->six_r_c_3 +
+        six_r_L_c_4_3_in_axes3_x*v->six_r_s_3) - six_r_L_c_4_2_in_axes2_y*v->six_r_s_2;
+    /* (six_r-hc_3) first moment of the links from 3 outwards */
+    const real six_r_h_3_in_spec3_y = m->six_r_h_3_in_spec3_y[i];
+    const real six_r_hc_3_in_axes3_x = -six_r_h_3_in_spec3_y - v->six_r_h_4_in_spec3_y;
+    const real six_r_h_3_in_spec3_z = m->six_r_h_3_in_spec3_z[i];
+    const real six_r_hc_3_in_axes3_z = six_r_h_3_in_spec3_z + six_r_h_4_in_spec2_z;
+    const real six_r_hc_3_in_axes3_y = m->six_r_hc_3_in_axes3_y[i];
+    const real six_r_hc_3_in_axes2_x = v->six_r_c_3*six_r_hc_3_in_axes3_y +
+        six_r_hc_3_in_axes3_x*v->six_r_s_3;
+    /* (six_r-Jc_3) inertia tensor of the links from 3 outwards about joint 3, that of the last link
+       about the connection point */
+    const real six_r_Jc_3_t = six_r_Jc_4_in_axes4_xy*v->six_r_h_4_t;
+    const real six_r_Jc_3_t_4 = six_r_Jc_4_in_axes4_xx*v->six_r_e_2_in_axes5_z - six_r_Jc_3_t;
+    const real six_r_Jc_3_t_5 = six_r_Jc_4_in_axes4_xy*v->six_r_e_2_in_axes5_z;
+    const real six_r_Jc_4_in_axes4_yy = m->six_r_Jc_4_in_axes4_yy[i];
+    const real six_r_Jc_3_t_6 = six_r_Jc_3_t_5 - six_r_Jc_4_in_axes4_yy*v->six_r_h_4_t;
+    const real six_r_J_3_in_spec3_yy = m->six_r_J_3_in_spec3_yy[i];
+    const real six_r_Jc_3_t_3 = m->six_r_Jc_3_t_3[i];
+    const real six_r_Jc_3_in_axes3_xx = six_r_J_3_in_spec3_yy + six_r_Jc_3_t_3 +
+        six_r_Jc_3_t_4*v->six_r_e_2_in_axes5_z - six_r_Jc_3_t_6*v->six_r_h_4_t;
+    const real six_r_J_3_in_spec3_xy = m->six_r_J_3_in_spec3_xy[i];
+    const real six_r_Jc_3_in_axes3_xy = six_r_Jc_4_in_axes3_xy + six_r_L_c_4_3_t -
+        six_r_J_3_in_spec3_xy;
+    const real six_r_J_3_in_spec3_yz = m->six_r_J_3_in_spec3_yz[i];
+    const real six_r_Jc_3_in_axes3_xz = -six_r_J_3_in_spec3_yz - six_r_Jc_3_t_4*v->six_r_h_4_t
+        - six_r_Jc_3_t_6*v->six_r_e_2_in_axes5_z;
+    const real six_r_J_3_in_spec3_xx = m->six_r_J_3_in_spec3_xx[i];
+    const real six_r_Jc_3_t_2 = m->six_r_Jc_3_t_2[i];
+    const real six_r_Jc_3_in_axes3_yy = six_r_J_3_in_spec3_xx + six_r_Jc_3_t_3 +
+        six_r_Jc_4_in_axes4_zz - 2*six_r_Jc_3_t_2;
+    const real six_r_J_3_in_spec3_xz = m->six_r_J_3_in_spec3_xz[i];
+    const real six_r_Jc_3_in_axes3_yz = six_r_J_3_in_spec3_xz + six_r_Jc_4_in_axes3_yz +
+        six_r_L_c_4_3_t_2;
+    const real six_r_J_3_in_spec3_zz = m->six_r_J_3_in_spec3_zz[i];
+    const real six_r_Jc_3_in_axes3_zz = six_r_J_3_in_spec3_zz + six_r_Jc_3_t_3 +
+        v->six_r_e_2_in_axes5_z*(six_r_Jc_3_t +
+        six_r_Jc_4_in_axes4_yy*v->six_r_e_2_in_axes5_z) + v->six_r_h_4_t*(six_r_Jc_3_t_5 +
+        six_r_Jc_4_in_axes4_xx*v->six_r_h_4_t);
+    const real six_r_Jc_3_in_axes2_yz = six_r_Jc_3_in_axes3_yz*v->six_r_s_3 -
+        six_r_Jc_3_in_axes3_xz*v->six_r_c_3;
+    const real six_r_Jc_3_in_axes2_xz = six_r_Jc_3_in_axes3_xz*v->six_r_s_3 +
+        six_r_Jc_3_in_axes3_yz*v->six_r_c_3;
+    /* (six_r-P_c_3) force that accelerates joint 3, per unit */
+    const real six_r_P_c_3_in_axes2_x = v->six_r_c_3*six_r_hc_3_in_axes3_x -
+        six_r_hc_3_in_axes3_y*v->six_r_s_3;
+    /* (six_r-L_c_3_2) moment about joint 2 that accelerates joint 3, per unit */
+    const real six_r_L_c_3_2_in_axes2_z = six_r_Jc_3_in_axes3_zz +
+        six_r_hc_3_in_axes2_x*six_r_joint3_offset_x;
+    const real six_r_L_c_3_2_in_axes1_z = six_r_Jc_3_in_axes2_xz*v->six_r_c_2 -
+        six_r_Jc_3_in_axes2_yz*v->six_r_s_2;
+    /* (six_r-Jc_2) inertia tensor of the links from 2 outwards about joint 2, that of the last link
+       about the connection point */
+    const real six_r_Jc_2_t_2 = six_r_Jc_3_in_axes3_xy*v->six_r_s_3;
+    const real six_r_Jc_2_t_3 = six_r_Jc_3_in_axes3_xy*v->six_r_c_3;
+    const real six_r_Jc_2_t_4 = six_r_Jc_2_t_3 + six_r_Jc_3_in_axes3_xx*v->six_r_s_3;
+    const real six_r_Jc_2_t_5 = six_r_Jc_2_t_2 + six_r_Jc_3_in_axes3_yy*v->six_r_c_3;
+    const real six_r_Jc_2_t = m->six_r_Jc_2_t[i];
+    const real six_r_Jc_2_t_6 = six_r_joint3_offset_x*(six_r_Jc_2_t + six_r_hc_3_in_axes2_x);
+    const real six_r_Jc_2_t_7 = 2*six_r_Jc_2_t_6;
+    const real six_r_J_2_in_spec2_xy = m->six_r_J_2_in_spec2_xy[i];
+    const real six_r_Jc_2_in_axes2_xy = six_r_J_2_in_spec2_xy + six_r_Jc_2_t_5*v->six_r_s_3 +
+        six_r_P_c_3_in_axes2_x*six_r_joint3_offset_x - six_r_Jc_2_t_4*v->six_r_c_3;
+    const real six_r_J_2_in_spec2_zz = m->six_r_J_2_in_spec2_zz[i];
+    const real six_r_Jc_2_in_axes2_zz = six_r_J_2_in_spec2_zz + six_r_Jc_2_t_7 +
+        six_r_Jc_3_in_axes3_zz;
+    const real six_r_J_2_in_spec2_xz = m->six_r_J_2_in_spec2_xz[i];
+    const real six_r_J_2_in_spec2_yz = m->six_r_J_2_in_spec2_yz[i];
+    const real six_r_Jc_2_in_axes1_yz = v->six_r_c_2*(six_r_J_2_in_spec2_xz +
+        six_r_Jc_3_in_axes2_xz - six_r_hc_3_in_axes3_z*six_r_joint3_offset_x) -
+        v->six_r_s_2*(six_r_J_2_in_spec2_yz + six_r_Jc_3_in_axes2_yz);
+    const real six_r_J_2_in_spec2_xx = m->six_r_J_2_in_spec2_xx[i];
+    const real six_r_J_2_in_spec2_yy = m->six_r_J_2_in_spec2_yy[i];
+    const real six_r_Jc_2_in_axes1_zz = v->six_r_c_2*(v->six_r_c_2*(six_r_J_2_in_spec2_xx +
+        six_r_Jc_2_t_7 + six_r_Jc_2_t_4*v->six_r_s_3 + six_r_Jc_2_t_5*v->six_r_c_3 -
+        2*six_r_Jc_2_t_6) - six_r_Jc_2_in_axes2_xy*v->six_r_s_2) -
+        v->six_r_s_2*(six_r_Jc_2_in_axes2_xy*v->six_r_c_2 -
+        v->six_r_s_2*(six_r_J_2_in_spec2_yy + six_r_Jc_2_t_7 +
+        v->six_r_c_3*(six_r_Jc_3_in_axes3_xx*v->six_r_c_3 - six_r_Jc_2_t_2) -
+        v->six_r_s_3*(six_r_Jc_2_t_3 - six_r_Jc_3_in_axes3_yy*v->six_r_s_3)));
+    /* (six_r-Jc_1) inertia tensor of the links from 1 outwards about joint 1, that of the last link
+       about the connection point */
+    const real six_r_J_1_in_spec1_xx = m->six_r_J_1_in_spec1_xx[i];
+    const real six_r_Jc_1_in_axes1_zz = six_r_J_1_in_spec1_xx + six_r_Jc_2_in_axes1_zz;
+    /* (six_r-d_Gamma_3) coefficient of the acceleration in: moment about axis 3 of the distal links'
+       inertia and weight */
+    const real six_r_h_5_in_spec5_y = m->six_r_h_5_in_spec5_y[i];
+    const real six_r_h_5_in_spec5_z = m->six_r_h_5_in_spec5_z[i];
+    const real six_r_d_Gamma_3_t = six_r_e_2_in_axes5_y*six_r_h_5_in_spec5_z -
+        v->six_r_e_2_in_axes5_z*six_r_h_5_in_spec5_y;
+    const real six_r_h_5_in_spec5_x = m->six_r_h_5_in_spec5_x[i];
+    const real six_r_d_Gamma_3_t_2 = six_r_e_2_in_axes5_x*six_r_h_5_in_spec5_z -
+        v->six_r_e_2_in_axes5_z*six_r_h_5_in_spec5_x;
+    const real six_r_d_Gamma_3_t_3 = six_r_e_2_in_axes5_x*six_r_h_5_in_spec5_y -
+        six_r_e_2_in_axes5_y*six_r_h_5_in_spec5_x;
+    v->six_r_e_4_in_axes5_x = six_r_e_4_in_axes5_x;
+    v->six_r_J_5_t = six_r_J_5_t;
+    v->six_r_J_5_in_axes4_yz = six_r_J_5_in_axes4_yz;
+    v->six_r_e_2_in_axes5_y = six_r_e_2_in_axes5_y;
+    v->six_r_e_1_in_axes5_z = six_r_e_1_in_axes5_z;
+    v->six_r_e_1_in_axes5_x = six_r_e_1_in_axes5_x;
+    v->six_r_e_1_in_axes5_y = six_r_e_1_in_axes5_y;
+    v->six_r_v_1_in_axes5_x = six_r_v_1_in_axes5_x;
+    v->six_r_v_1_in_axes5_y = six_r_v_1_in_axes5_y;
+    v->six_r_v_1_in_axes5_z = six_r_v_1_in_axes5_z;
+    v->six_r_e_2_in_axes5_x = six_r_e_2_in_axes5_x;
+    v->six_r_v_2_in_axes5_x = six_r_v_2_in_axes5_x;
+    v->six_r_v_2_in_axes5_y = six_r_v_2_in_axes5_y;
+    v->six_r_v_2_in_axes5_z = six_r_v_2_in_axes5_z;
+    v->six_r_v_3_in_axes5_x = six_r_v_3_in_axes5_x;
+    v->six_r_v_3_in_axes5_y = six_r_v_3_in_axes5_y;
+    v->six_r_v_3_in_axes5_z = six_r_v_3_in_axes5_z;
+    v->six_r_v_4_in_axes5_z = six_r_v_4_in_axes5_z;
+    v->six_r_D_3_5 = six_r_D_3_5;
+    v->six_r_D_1_5 = six_r_D_1_5;
+    v->six_r_Jc_4_in_axes4_zz = six_r_Jc_4_in_axes4_zz;
+    v->six_r_L_c_4_3_in_axes3_z = six_r_L_c_4_3_in_axes3_z;
+    v->six_r_L_c_4_2_in_axes2_z = six_r_L_c_4_2_in_axes2_z;
+    v->six_r_L_c_4_2_in_axes1_z = six_r_L_c_4_2_in_axes1_z;
+    v->six_r_Jc_3_in_axes3_zz = six_r_Jc_3_in_axes3_zz;
+    v->six_r_L_c_3_2_in_axes2_z = six_r_L_c_3_2_in_axes2_z;
+    v->six_r_L_c_3_2_in_axes1_z = six_r_L_c_3_2_in_axes1_z;
+    v->six_r_Jc_2_in_axes2_zz = six_r_Jc_2_in_axes2_zz;
+    v->six_r_Jc_2_in_axes1_yz = six_r_Jc_2_in_axes1_yz;
+    v->six_r_Jc_1_in_axes1_zz = six_r_Jc_1_in_axes1_zz;
+    v->six_r_d_Gamma_3_t = six_r_d_Gamma_3_t;
+    v->six_r_d_Gamma_3_t_2 = six_r_d_Gamma_3_t_2;
+    v->six_r_d_Gamma_3_t_3 = six_r_d_Gamma_3_t_3;
+}
+
+INLINE void stage_six_r_Z_dynamics(const prepared *m, size_t w, size_t i, size_t j, const real *V,
+    values_six_r *v)
+{
+    /* (six_r-u_1) centripetal acceleration of the connection point */
+    const real omega_y = V[4*w + j];
+    const real omega_z = V[5*w + j];
+    const real six_r_u_1_x = omega_y*v->six_r_S_dot_t_16 - omega_z*v->six_r_S_dot_t_15;
+    const real omega_x = V[3*w + j];
+    const real six_r_u_1_y = omega_z*v->six_r_S_dot_t_14 - omega_x*v->six_r_S_dot_t_16;
+    const real six_r_u_1_z = omega_x*v->six_r_S_dot_t_15 - omega_y*v->six_r_S_dot_t_14;
+    /* (six_r-bias) acceleration of the connection point at zero joint accelerations */
+    const real six_r_joint2_offset_x = m->six_r_joint2_offset_x[i];
+    const real six_r_bias_t_3 = six_r_joint2_offset_x*v->six_r_s_2;
+    const real six_r_bias_t_4 = six_r_bias_t_3*v->six_r_c_3 +
+        v->six_r_d_2_in_spec2_x*v->six_r_s_3;
+    const real six_r_bias_t_5 = v->six_r_c_3*v->six_r_d_2_in_spec2_x -
+        six_r_bias_t_3*v->six_r_s_3;
+    const real six_r_joint3_offset_x = m->six_r_joint3_offset_x[i];
+    const real six_r_bias_t_10 = six_r_joint3_offset_x*v->six_r_s_3;
+    const real six_r_bias_t_11 = v->six_r_c_3*six_r_joint3_offset_x;
+    v->six_r_u_1_x = six_r_u_1_x;
+    v->six_r_u_1_y = six_r_u_1_y;
+    v->six_r_u_1_z = six_r_u_1_z;
+    v->six_r_bias_t_4 = six_r_bias_t_4;
+    v->six_r_bias_t_5 = six_r_bias_t_5;
+    v->six_r_bias_t_10 = six_r_bias_t_10;
+    v->six_r_bias_t_11 = six_r_bias_t_11;
+}
+
+INLINE void stage_six_r_Z_joint_accelerations(values_six_r *v)
+{
+    /* (six_r-qd_1) rate of joint 1 */
+    const real six_r_qd_1_t = v->inv_six_r_w_1_t_79*v->six_r_w_1_t_74;
+    const real six_r_qd_1_t_2 = v->inv_six_r_w_1_t_79*v->six_r_w_1_t_75;
+    const real six_r_qd_1_t_3 = v->inv_six_r_w_1_t_79*v->six_r_w_1_t_76;
+    const real six_r_qd_1_t_4 = v->inv_six_r_w_1_t_79*v->six_r_w_1_t_77;
+    const real six_r_qd_1_t_5 = v->inv_six_r_w_1_t_79*v->six_r_w_1_t_78;
+    v->six_r_qd_1_t = six_r_qd_1_t;
+    v->six_r_qd_1_t_2 = six_r_qd_1_t_2;
+    v->six_r_qd_1_t_3 = six_r_qd_1_t_3;
+    v->six_r_qd_1_t_4 = six_r_qd_1_t_4;
+    v->six_r_qd_1_t_5 = six_r_qd_1_t_5;
+}
+
+INLINE void stage_six_r_legs_required(const prepared *m, size_t i, values_six_r *v)
+{
+    /* (six_r-w_2) force part of reciprocal wrench 2 */
+    const real six_r_w_2_t = v->inv_six_r_w_1_t_79*v->six_r_w_1_t_74;
+    const real six_r_w_2_t_2 = v->inv_six_r_w_1_t_79*v->six_r_w_1_t_75;
+    const real six_r_w_2_t_3 = v->inv_six_r_w_1_t_79*v->six_r_w_1_t_76;
+    const real six_r_w_2_t_4 = v->inv_six_r_w_1_t_67*v->inv_six_r_w_1_t_79*v->six_r_w_1_t_73;
+    const real six_r_w_2_in_axes5_x = v->inv_six_r_w_1_t_67*v->six_r_w_1_t_68 -
+        six_r_w_2_t*six_r_w_2_t_4;
+    const real six_r_w_2_in_axes5_y = six_r_w_2_t_2*six_r_w_2_t_4 -
+        v->inv_six_r_w_1_t_67*v->six_r_w_1_t_69;
+    const real six_r_w_2_in_axes5_z = v->inv_six_r_w_1_t_67*v->six_r_w_1_t_70 -
+        six_r_w_2_t_3*six_r_w_2_t_4;
+    const real six_r_w_2_x = v->axis_x_six_r_axes5_x*six_r_w_2_in_axes5_x +
+        v->axis_y_six_r_axes5_x*six_r_w_2_in_axes5_y +
+        v->axis_z_six_r_axes5_x*six_r_w_2_in_axes5_z;
+    const real six_r_w_2_y = v->axis_x_six_r_axes5_y*six_r_w_2_in_axes5_x +
+        v->axis_y_six_r_axes5_y*six_r_w_2_in_axes5_y +
+        v->axis_z_six_r_axes5_y*six_r_w_2_in_axes5_z;
+    const real six_r_w_2_z = v->axis_x_six_r_axes5_z*six_r_w_2_in_axes5_x +
+        v->axis_y_six_r_axes5_z*six_r_w_2_in_axes5_y +
+        v->axis_z_six_r_axes5_z*six_r_w_2_in_axes5_z;
+    /* (six_r-m1_w_2) moment part 1 of reciprocal wrench 2 */
+    const real six_r_m1_w_2_t = v->inv_six_r_w_1_t_79*v->six_r_w_1_t_77;
+    const real six_r_size = m->six_r_size[i];
+    const real six_r_m1_w_2 = six_r_size*(v->inv_six_r_w_1_t_67*v->six_r_w_1_t_71 -
+        six_r_m1_w_2_t*six_r_w_2_t_4);
+    /* (six_r-m2_w_2) moment part 2 of reciprocal wrench 2 */
+    const real six_r_m2_w_2_t = v->inv_six_r_w_1_t_79*v->six_r_w_1_t_78;
+    const real six_r_m2_w_2 = six_r_size*(v->inv_six_r_w_1_t_67*v->six_r_w_1_t_72 -
+        six_r_m2_w_2_t*six_r_w_2_t_4);
+    /* (six_r-o_2) moment part of reciprocal wrench 2 */
+    const real six_r_o_2_t = six_r_m1_w_2*v->six_r_n_m2_in_axes5_z;
+    const real six_r_o_2_in_axes5_z = six_r_m2_w_2*v->six_r_n_m2_in_axes5_z;
+    const real six_r_o_2_in_axes5_y = six_r_m1_w_2*v->six_r_n_m1_in_axes5_y -
+        v->six_r_end_p1_in_axes5_z*six_r_m2_w_2;
+    /* (six_r-qd_1) rate of joint 1 */
+    const real six_r_qd_1_t = v->six_r_eta_1*six_r_size;
+    const real six_r_qd_1_t_2 = v->six_r_eta_2_t*six_r_size;
+    const real six_r_qd_1_t_3 = v->inv_six_r_w_1_t_79*(v->six_r_S_dot_in_axes5_y*six_r_w_2_t_2
+        + six_r_m2_w_2_t*six_r_qd_1_t_2 - v->six_r_S_dot_in_axes5_x*six_r_w_2_t -
+        v->six_r_S_dot_in_axes5_z*six_r_w_2_t_3 - six_r_m1_w_2_t*six_r_qd_1_t);
+    const real six_r_qd_1_t_4 =
+        -v->inv_six_r_w_1_t_67*(v->six_r_S_dot_in_axes5_y*v->six_r_w_1_t_69 +
+        six_r_qd_1_t_2*v->six_r_w_1_t_72 - v->six_r_S_dot_in_axes5_x*v->six_r_w_1_t_68 -
+        v->six_r_S_dot_in_axes5_z*v->six_r_w_1_t_70 - six_r_qd_1_t*v->six_r_w_1_t_71 -
+        six_r_qd_1_t_3*v->six_r_w_1_t_73);
+    const real six_r_qd_1 = v->inv_six_r_w_1_t_49*(v->six_r_S_dot_in_axes5_x*v->six_r_w_1_t_50
+        + v->six_r_S_dot_in_axes5_z*v->six_r_w_1_t_52 + six_r_qd_1_t*v->six_r_w_1_t_53 +
+        six_r_qd_1_t_3*v->six_r_w_1_t_61 - v->six_r_S_dot_in_axes5_y*v->six_r_w_1_t_51 -
+        six_r_qd_1_t_2*v->six_r_w_1_t_54 - six_r_qd_1_t_4*v->six_r_w_1_t_55);
+    /* (six_r-qd_4) rate of joint 4 */
+    const real six_r_qd_4_t =
+        v->inv_six_r_w_1_t_28*(v->six_r_S_dot_in_axes5_y*v->six_r_w_1_t_29 +
+        six_r_qd_1_t_2*v->six_r_w_1_t_32 + six_r_qd_1_t_3*v->six_r_w_1_t_44 -
+        v->six_r_S_dot_in_axes5_z*v->six_r_w_1_t_30 - six_r_qd_1*v->six_r_w_1_t_33 -
+        six_r_qd_1_t*v->six_r_w_1_t_31 - six_r_qd_1_t_4*v->six_r_w_1_t_39);
+    /* (six_r-qd_5) rate of joint 5 */
+    const real six_r_qd_5_t = v->inv_six_r_w_1_t_12*(six_r_qd_1*v->six_r_w_1_t_18 +
+        six_r_qd_1_t_2*v->six_r_w_1_t_14 + six_r_qd_1_t_3*v->six_r_w_1_t_25 +
+        six_r_qd_1_t_4*v->six_r_w_1_t_22 - v->six_r_S_dot_in_axes5_y*v->six_r_w_1_t_13 -
+        six_r_qd_4_t*v->six_r_w_1_t_15);
+    /* (six_r-omega_1) angular velocity of link 1 */
+    const real six_r_omega_1_in_axes2_x = v->six_r_c_2*six_r_qd_1;
+    const real six_r_omega_1_in_axes2_y = -six_r_qd_1*v->six_r_s_2;
+    const real six_r_omega_1_in_axes5_x = v->six_r_e_1_in_axes5_x*six_r_qd_1;
+    const real six_r_omega_1_in_axes5_y = v->six_r_e_1_in_axes5_y*six_r_qd_1;
+    const real six_r_omega_1_in_axes5_z = v->six_r_e_1_in_axes5_z*six_r_qd_1;
+    /* (six_r-W_1) centripetal tensor of link 1 */
+    const real six_r_W_1_in_axes5_xy = six_r_omega_1_in_axes5_x*six_r_omega_1_in_axes5_y;
+    const real six_r_W_1_in_axes5_xz = six_r_omega_1_in_axes5_x*six_r_omega_1_in_axes5_z;
+    const real six_r_W_1_in_axes5_yz = six_r_omega_1_in_axes5_y*six_r_omega_1_in_axes5_z;
+    /* (six_r-omega_2) angular velocity of link 2 */
+    const real six_r_omega_2_in_axes3_x = six_r_omega_1_in_axes2_x*v->six_r_s_3 -
+        v->six_r_c_3*six_r_omega_1_in_axes2_y;
+    const real six_r_omega_2_in_axes3_y = v->six_r_c_3*six_r_omega_1_in_axes2_x +
+        six_r_omega_1_in_axes2_y*v->six_r_s_3;
+    const real six_r_omega_2_in_axes5_x = six_r_omega_1_in_axes5_x +
+        v->six_r_e_2_in_axes5_x*six_r_qd_1_t_4;
+    const real six_r_omega_2_in_axes5_y = six_r_omega_1_in_axes5_y +
+        v->six_r_e_2_in_axes5_y*six_r_qd_1_t_4;
+    const real six_r_omega_2_in_axes5_z = six_r_omega_1_in_axes5_z +
+        v->six_r_c_4*six_r_qd_1_t_4;
+    /* (six_r-W_2) centripetal tensor of link 2 */
+    const real six_r_W_2_in_axes2_yz = six_r_omega_1_in_axes2_y*six_r_qd_1_t_4;
+    const real six_r_W_2_in_axes2_xy = six_r_omega_1_in_axes2_x*six_r_omega_1_in_axes2_y;
+    const real six_r_W_2_in_axes5_xy = six_r_omega_2_in_axes5_x*six_r_omega_2_in_axes5_y;
+    const real six_r_W_2_in_axes5_xz = six_r_omega_2_in_axes5_x*six_r_omega_2_in_axes5_z;
+    const real six_r_W_2_in_axes5_yz = six_r_omega_2_in_axes5_y*six_r_omega_2_in_axes5_z;
+    /* (six_r-omega_3) angular velocity of link 3 */
+    const real six_r_omega_3_in_axes3_z = six_r_qd_1_t_4 - six_r_qd_1_t_3;
+    const real six_r_omega_3_in_axes4_x = six_r_omega_3_in_axes3_z*v->six_r_s_4 -
+        v->six_r_c_4*six_r_omega_2_in_axes3_x;
+    const real six_r_omega_3_in_axes4_y = v->six_r_c_4*six_r_omega_3_in_axes3_z +
+        six_r_omega_2_in_axes3_x*v->six_r_s_4;
+    const real six_r_omega_3_t = six_r_omega_3_in_axes4_x*v->six_r_s_5;
+    const real six_r_omega_3_t_2 = v->six_r_c_5*six_r_omega_3_in_axes4_x;
+    const real six_r_omega_3_in_axes5_x = six_r_omega_3_t +
+        v->six_r_c_5*six_r_omega_2_in_axes3_y;
+    const real six_r_omega_3_in_axes5_y = six_r_omega_3_t_2 -
+        six_r_omega_2_in_axes3_y*v->six_r_s_5;
+    /* (six_r-W_3) centripetal tensor of link 3 */
+    const real six_r_W_3_t = six_r_omega_2_in_axes3_x*six_r_omega_2_in_axes3_x;
+    const real six_r_W_3_t_2 = six_r_omega_3_in_axes3_z*six_r_omega_3_in_axes3_z;
+    const real six_r_W_3_in_axes3_xy = six_r_omega_2_in_axes3_x*six_r_omega_2_in_axes3_y;
+    const real six_r_W_3_in_axes3_xz = six_r_omega_2_in_axes3_x*six_r_omega_3_in_axes3_z;
+    const real six_r_W_3_t_3 = six_r_W_3_t + six_r_W_3_t_2;
+    const real six_r_W_3_in_axes3_yz = six_r_omega_2_in_axes3_y*six_r_omega_3_in_axes3_z;
+    const real six_r_W_3_in_axes5_xy = six_r_omega_3_in_axes5_x*six_r_omega_3_in_axes5_y;
+    /* (six_r-omega_4) angular velocity of link 4 */
+    const real six_r_omega_4_in_axes4_z = six_r_omega_2_in_axes3_y - six_r_qd_4_t;
+    const real six_r_omega_4_in_axes5_x = six_r_omega_3_t +
+        v->six_r_c_5*six_r_omega_4_in_axes4_z;
+    const real six_r_omega_4_in_axes5_y = six_r_omega_3_t_2 -
+        six_r_omega_4_in_axes4_z*v->six_r_s_5;
+    /* (six_r-W_4) centripetal tensor of link 4 */
+    const real six_r_W_4_in_axes4_xy = six_r_omega_3_in_axes4_x*six_r_omega_3_in_axes4_y;
+    const real six_r_W_4_in_axes4_xz = six_r_omega_3_in_axes4_x*six_r_omega_4_in_axes4_z;
+    const real six_r_W_4_in_axes4_yz = six_r_omega_3_in_axes4_y*six_r_omega_4_in_axes4_z;
+    const real six_r_W_4_in_axes5_xy = six_r_omega_4_in_axes5_x*six_r_omega_4_in_axes5_y;
+    /* (six_r-omega_5) angular velocity of link 5 */
+    const real six_r_omega_5_in_axes5_z = six_r_omega_3_in_axes4_y - six_r_qd_5_t;
+    /* (six_r-W_5) centripetal tensor of link 5 */
+    const real six_r_W_5_t = six_r_omega_4_in_axes5_y*six_r_omega_4_in_axes5_y;
+    const real six_r_W_5_t_2 = six_r_omega_5_in_axes5_z*six_r_omega_5_in_axes5_z;
+    const real six_r_W_5_t_3 = six_r_W_5_t + six_r_W_5_t_2;
+    const real six_r_W_5_in_axes5_xz = six_r_omega_4_in_axes5_x*six_r_omega_5_in_axes5_z;
+    const real six_r_W_5_in_axes5_yz = six_r_omega_4_in_axes5_y*six_r_omega_5_in_axes5_z;
+    /* (six_r-S_ddot) acceleration of the connection point */
+    const real six_r_S_ddot_in_axes5_x = v->axis_x_six_r_axes5_x*v->six_r_S_ddot_x +
+        v->axis_x_six_r_axes5_y*v->six_r_S_ddot_y + v->axis_x_six_r_axes5_z*v->six_r_S_ddot_z;
+    const real six_r_S_ddot_in_axes5_y = v->axis_y_six_r_axes5_x*v->six_r_S_ddot_x +
+        v->axis_y_six_r_axes5_y*v->six_r_S_ddot_y + v->axis_y_six_r_axes5_z*v->six_r_S_ddot_z;
+    const real six_r_S_ddot_in_axes5_z = v->axis_z_six_r_axes5_x*v->six_r_S_ddot_x +
+        v->axis_z_six_r_axes5_y*v->six_r_S_ddot_y + v->axis_z_six_r_axes5_z*v->six_r_S_ddot_z;
+    /* (six_r-zeta_2) angular acceleration of link 2 from the turning of axis 2 */
+    const real six_r_zeta_2_in_axes2_y = -six_r_omega_1_in_axes2_x*six_r_qd_1_t_4;
+    const real six_r_zeta_2_in_axes3_x = six_r_W_2_in_axes2_yz*v->six_r_s_3 -
+        v->six_r_c_3*six_r_zeta_2_in_axes2_y;
+    const real six_r_zeta_2_in_axes3_y = six_r_W_2_in_axes2_yz*v->six_r_c_3 +
+        v->six_r_s_3*six_r_zeta_2_in_axes2_y;
+    const real six_r_zeta_2_t = v->six_r_c_4*six_r_zeta_2_in_axes3_x;
+    const real six_r_zeta_2_in_axes5_z = v->six_r_s_4*six_r_zeta_2_in_axes3_x;
+    const real six_r_zeta_2_in_axes5_x = v->six_r_c_5*six_r_zeta_2_in_axes3_y -
+        v->six_r_s_5*six_r_zeta_2_t;
+    const real six_r_zeta_2_in_axes5_y = -v->six_r_c_5*six_r_zeta_2_t -
+        v->six_r_s_5*six_r_zeta_2_in_axes3_y;
+    /* (six_r-zeta_3) angular acceleration of link 3 from the turning of axis 3 */
+    const real six_r_zeta_3_t = six_r_omega_2_in_axes3_y*six_r_qd_1_t_3;
+    const real six_r_zeta_3_in_axes3_y = six_r_omega_2_in_axes3_x*six_r_qd_1_t_3;
+    /* (six_r-beta_3) angular acceleration of link 3 at zero joint accelerations */
+    const real six_r_beta_3_in_axes3_x = six_r_zeta_2_in_axes3_x - six_r_zeta_3_t;
+    const real six_r_beta_3_in_axes3_y = six_r_zeta_2_in_axes3_y + six_r_zeta_3_in_axes3_y;
+    const real six_r_beta_3_t = six_r_beta_3_in_axes3_x*v->six_r_c_4;
+    const real six_r_beta_3_in_axes4_y = six_r_beta_3_in_axes3_x*v->six_r_s_4;
+    /* (six_r-zeta_4) angular acceleration of link 4 from the turning of axis 4 */
+    const real six_r_zeta_4_in_axes4_x = -six_r_omega_3_in_axes4_y*six_r_qd_4_t;
+    const real six_r_zeta_4_in_axes4_y = six_r_omega_3_in_axes4_x*six_r_qd_4_t;
+    /* (six_r-beta_4) angular acceleration of link 4 at zero joint accelerations */
+    const real six_r_beta_4_in_axes4_x = six_r_zeta_4_in_axes4_x - six_r_beta_3_t;
+    const real six_r_beta_4_in_axes4_y = six_r_beta_3_in_axes4_y + six_r_zeta_4_in_axes4_y;
+    const real six_r_beta_4_t = six_r_beta_3_in_axes3_y*v->six_r_c_5;
+    const real six_r_beta_4_in_axes5_x = six_r_beta_4_t +
+        six_r_beta_4_in_axes4_x*v->six_r_s_5;
+    const real six_r_beta_4_t_2 = six_r_beta_3_in_axes3_y*v->six_r_s_5;
+    const real six_r_beta_4_in_axes5_y = six_r_beta_4_in_axes4_x*v->six_r_c_5 -
+        six_r_beta_4_t_2;
+    /* (six_r-zeta_5) angular acceleration of link 5 from the turning of axis 5 */
+    const real six_r_zeta_5_t = six_r_omega_4_in_axes5_y*six_r_qd_5_t;
+    const real six_r_zeta_5_in_axes5_y = six_r_omega_4_in_axes5_x*six_r_qd_5_t;
+    /* (six_r-beta_5) angular acceleration of link 5 at zero joint accelerations */
+    const real six_r_beta_5_in_axes5_x = six_r_beta_4_in_axes5_x - six_r_zeta_5_t;
+    const real six_r_beta_5_in_axes5_y = six_r_beta_4_in_axes5_y + six_r_zeta_5_in_axes5_y;
+    /* (six_r-bias) acceleration of the connection point at zero joint accelerations */
+    const real six_r_bias_t_10 = six_r_omega_3_in_axes4_y*six_r_omega_3_in_axes4_y;
+    const real six_r_bias_t_11 = six_r_omega_4_in_axes5_x*six_r_omega_4_in_axes5_x;
+    const real six_r_bias_t_12 = six_r_omega_1_in_axes5_x*six_r_omega_1_in_axes5_x;
+    const real six_r_bias_t_13 = six_r_omega_1_in_axes5_y*six_r_omega_1_in_axes5_y;
+    const real six_r_bias_t_14 = six_r_omega_1_in_axes5_z*six_r_omega_1_in_axes5_z;
+    const real six_r_bias_t_15 = six_r_omega_2_in_axes5_x*six_r_omega_2_in_axes5_x;
+    const real six_r_bias_t_16 = six_r_omega_2_in_axes5_y*six_r_omega_2_in_axes5_y;
+    const real six_r_bias_t_17 = six_r_omega_2_in_axes5_z*six_r_omega_2_in_axes5_z;
+    const real six_r_bias_t_18 = six_r_W_4_in_axes5_xy + six_r_beta_4_in_axes4_y;
+    const real six_r_platform_joint_offset_x = m->six_r_platform_joint_offset_x[i];
+    const real six_r_bias_in_axes5_x = six_r_W_1_in_axes5_xy*v->six_r_d_2_in_axes5_y +
+        six_r_W_1_in_axes5_xz*v->six_r_d_2_in_axes5_z +
+        v->six_r_d_3_in_axes5_y*(six_r_W_2_in_axes5_xy - six_r_zeta_2_in_axes5_z) +
+        v->six_r_d_3_in_axes5_z*(six_r_W_2_in_axes5_xz + six_r_zeta_2_in_axes5_y) -
+        six_r_W_5_t_3*six_r_platform_joint_offset_x - v->six_r_bias_t_8*(six_r_W_3_in_axes5_xy
+        - six_r_beta_3_in_axes4_y) - v->six_r_bias_t_9*(six_r_W_4_in_axes5_xy -
+        six_r_beta_4_in_axes4_y) - v->six_r_d_2_in_axes5_x*(six_r_bias_t_13 + six_r_bias_t_14)
+        - v->six_r_d_3_in_axes5_x*(six_r_bias_t_16 + six_r_bias_t_17) -
+        v->six_r_d_4_in_axes5_x*(six_r_bias_t_10 +
+        six_r_omega_3_in_axes5_y*six_r_omega_3_in_axes5_y) -
+        v->six_r_d_5_in_axes5_x*(six_r_W_5_t + six_r_bias_t_10);
+    const real six_r_bias_in_axes5_y = six_r_W_1_in_axes5_xy*v->six_r_d_2_in_axes5_x +
+        six_r_W_1_in_axes5_yz*v->six_r_d_2_in_axes5_z +
+        six_r_bias_t_18*v->six_r_d_5_in_axes5_x +
+        six_r_bias_t_18*six_r_platform_joint_offset_x + v->six_r_bias_t_8*(six_r_bias_t_10 +
+        six_r_omega_3_in_axes5_x*six_r_omega_3_in_axes5_x) +
+        v->six_r_bias_t_9*(six_r_bias_t_10 + six_r_bias_t_11) +
+        v->six_r_d_3_in_axes5_x*(six_r_W_2_in_axes5_xy + six_r_zeta_2_in_axes5_z) +
+        v->six_r_d_3_in_axes5_z*(six_r_W_2_in_axes5_yz - six_r_zeta_2_in_axes5_x) +
+        v->six_r_d_4_in_axes5_x*(six_r_W_3_in_axes5_xy + six_r_beta_3_in_axes4_y) -
+        v->six_r_d_2_in_axes5_y*(six_r_bias_t_12 + six_r_bias_t_14) -
+        v->six_r_d_3_in_axes5_y*(six_r_bias_t_15 + six_r_bias_t_17);
+    const real six_r_bias_in_axes5_z = six_r_W_1_in_axes5_xz*v->six_r_d_2_in_axes5_x +
+        six_r_W_1_in_axes5_yz*v->six_r_d_2_in_axes5_y +
+        v->six_r_d_3_in_axes5_x*(six_r_W_2_in_axes5_xz - six_r_zeta_2_in_axes5_y) +
+        v->six_r_d_3_in_axes5_y*(six_r_W_2_in_axes5_yz + six_r_zeta_2_in_axes5_x) +
+        v->six_r_d_4_in_axes5_x*(six_r_beta_4_t_2 + six_r_beta_3_t*v->six_r_c_5 +
+        six_r_omega_3_in_axes4_y*six_r_omega_3_in_axes5_x) +
+        v->six_r_d_5_in_axes5_x*(six_r_omega_3_in_axes4_y*six_r_omega_4_in_axes5_x -
+        six_r_beta_4_in_axes5_y) + six_r_platform_joint_offset_x*(six_r_W_5_in_axes5_xz -
+        six_r_beta_5_in_axes5_y) - v->six_r_bias_t_8*(six_r_beta_4_t +
+        six_r_omega_3_in_axes4_y*six_r_omega_3_in_axes5_y - six_r_beta_3_t*v->six_r_s_5) -
+        v->six_r_bias_t_9*(six_r_beta_4_in_axes5_x +
+        six_r_omega_3_in_axes4_y*six_r_omega_4_in_axes5_y) -
+        v->six_r_d_2_in_axes5_z*(six_r_bias_t_12 + six_r_bias_t_13) -
+        v->six_r_d_3_in_axes5_z*(six_r_bias_t_15 + six_r_bias_t_16);
+    /* (six_r-rel) acceleration of the connection point left to the joint accelerations */
+    const real six_r_rel_in_axes5_x = six_r_S_ddot_in_axes5_x - six_r_bias_in_axes5_x;
+    const real six_r_rel_in_axes5_y = six_r_S_ddot_in_axes5_y - six_r_bias_in_axes5_y;
+    const real six_r_rel_in_axes5_z = six_r_S_ddot_in_axes5_z - six_r_bias_in_axes5_z;
+    /* (six_r-nd_m1) rate of moment direction 1 */
+    const real six_r_nd_m1_in_axes5_x = -v->six_r_nd_m1_t -
+        v->six_r_end_p1_in_axes5_z*six_r_omega_4_in_axes5_x;
+    const real six_r_nd_m1_in_axes5_y = v->six_r_eta_2_t -
+        v->six_r_end_p1_in_axes5_z*six_r_omega_4_in_axes5_y;
+    /* (six_r-nu_1) bias of the angular acceleration along moment direction 1 */
+    const real six_r_nu_1_t = v->six_r_n_m2_in_axes5_z*six_r_omega_4_in_axes5_y;
+    const real six_r_nu_1_t_2 = six_r_beta_5_in_axes5_x*v->six_r_n_m2_in_axes5_z -
+        six_r_beta_5_in_axes5_y*v->six_r_n_m1_in_axes5_y;
+    const real six_r_nu_1_t_3 = six_r_omega_4_in_axes5_x - v->six_r_omega_in_axes5_x;
+    const real six_r_nu_1_t_4 = six_r_omega_4_in_axes5_y - v->six_r_omega_in_axes5_y;
+    const real six_r_nu_1_t_5 = six_r_omega_5_in_axes5_z - v->six_r_omega_in_axes5_z;
+    const real six_r_nu_1_t_6 = six_r_nd_m1_in_axes5_x*six_r_nu_1_t_3 +
+        six_r_nd_m1_in_axes5_y*six_r_nu_1_t_4 + six_r_nu_1_t_5*(six_r_nu_1_t +
+        v->six_r_n_m1_in_axes5_y*six_r_omega_4_in_axes5_x);
+    const real six_r_nu_1 = six_r_nu_1_t_2 - six_r_nu_1_t_6;
+    /* (six_r-nd_m2) rate of moment direction 2 */
+    const real six_r_nd_m2_in_axes5_y = v->six_r_eta_1 -
+        v->six_r_n_m1_in_axes5_y*six_r_omega_4_in_axes5_y;
+    const real six_r_nd_m2_in_axes5_z = v->six_r_nd_m1_t -
+        v->six_r_n_m1_in_axes5_y*six_r_omega_5_in_axes5_z;
+    /* (six_r-nu_2) bias of the angular acceleration along moment direction 2 */
+    const real six_r_nu_2_t = six_r_beta_5_in_axes5_y*v->six_r_end_p1_in_axes5_z -
+        six_r_beta_4_in_axes4_y*v->six_r_n_m2_in_axes5_z;
+    const real six_r_nu_2_t_2 = six_r_nd_m2_in_axes5_y*six_r_nu_1_t_4 +
+        six_r_nd_m2_in_axes5_z*six_r_nu_1_t_5 + six_r_nu_1_t_3*(six_r_nu_1_t +
+        v->six_r_end_p1_in_axes5_z*six_r_omega_5_in_axes5_z);
+    const real six_r_nu_2 = six_r_nu_2_t - six_r_nu_2_t_2;
+    /* (six_r-etad_1) acceleration with which the joints turn along moment direction 1 */
+    const real six_r_etad_1 = six_r_nu_1 - v->six_r_etad_1_t;
+    /* (six_r-etad_2) acceleration with which the joints turn along moment direction 2 */
+    const real six_r_etad_2 = six_r_nu_2 - v->six_r_etad_2_t;
+    /* (six_r-qdd_1) acceleration of joint 1 */
+    const real six_r_qdd_1_t = six_r_etad_1*six_r_size;
+    const real six_r_qdd_1_t_2 = six_r_etad_2*six_r_size;
+    const real six_r_qdd_1_t_3 = v->inv_six_r_w_1_t_79*(six_r_m1_w_2_t*six_r_qdd_1_t +
+        six_r_m2_w_2_t*six_r_qdd_1_t_2 + six_r_rel_in_axes5_x*six_r_w_2_t +
+        six_r_rel_in_axes5_z*six_r_w_2_t_3 - six_r_rel_in_axes5_y*six_r_w_2_t_2);
+    const real six_r_qdd_1_t_4 = v->inv_six_r_w_1_t_67*(six_r_qdd_1_t*v->six_r_w_1_t_71 +
+        six_r_qdd_1_t_2*v->six_r_w_1_t_72 + six_r_rel_in_axes5_x*v->six_r_w_1_t_68 +
+        six_r_rel_in_axes5_z*v->six_r_w_1_t_70 - six_r_qdd_1_t_3*v->six_r_w_1_t_73 -
+        six_r_rel_in_axes5_y*v->six_r_w_1_t_69);
+    const real six_r_qdd_1_t_5 = v->inv_six_r_w_1_t_49*(six_r_qdd_1_t_3*v->six_r_w_1_t_61 +
+        six_r_qdd_1_t_4*v->six_r_w_1_t_55 + six_r_rel_in_axes5_y*v->six_r_w_1_t_51 -
+        six_r_qdd_1_t*v->six_r_w_1_t_53 - six_r_qdd_1_t_2*v->six_r_w_1_t_54 -
+        six_r_rel_in_axes5_x*v->six_r_w_1_t_50 - six_r_rel_in_axes5_z*v->six_r_w_1_t_52);
+    /* (six_r-qdd_4) acceleration of joint 4 */
+    const real six_r_qdd_4 = v->inv_six_r_w_1_t_28*(six_r_qdd_1_t*v->six_r_w_1_t_31 +
+        six_r_qdd_1_t_2*v->six_r_w_1_t_32 + six_r_qdd_1_t_3*v->six_r_w_1_t_44 +
+        six_r_qdd_1_t_4*v->six_r_w_1_t_39 + six_r_rel_in_axes5_z*v->six_r_w_1_t_30 -
+        six_r_qdd_1_t_5*v->six_r_w_1_t_33 - six_r_rel_in_axes5_y*v->six_r_w_1_t_29);
+    /* (six_r-alpha_1) angular acceleration of link 1 */
+    const real six_r_alpha_1_t = v->six_r_c_2*six_r_qdd_1_t_5;
+    const real six_r_alpha_1_in_axes2_y = six_r_qdd_1_t_5*v->six_r_s_2;
+    /* (six_r-alpha_2) angular acceleration of link 2 */
+    const real six_r_alpha_2_in_axes2_x = six_r_W_2_in_axes2_yz - six_r_alpha_1_t;
+    const real six_r_alpha_2_in_axes2_y = six_r_alpha_1_in_axes2_y + six_r_zeta_2_in_axes2_y;
+    /* (six_r-B_2) acceleration tensor of link 2 */
+    const real six_r_B_2_in_axes2_xy = six_r_W_2_in_axes2_xy - six_r_qdd_1_t_4;
+    const real six_r_B_2_in_axes2_yx = six_r_W_2_in_axes2_xy + six_r_qdd_1_t_4;
+    const real six_r_B_2_in_axes2_zx = -six_r_alpha_2_in_axes2_y - six_r_zeta_2_in_axes2_y;
+    const real six_r_B_2_in_axes2_zy = six_r_W_2_in_axes2_yz + six_r_alpha_2_in_axes2_x;
+    /* (six_r-alpha_3) angular acceleration of link 3 */
+    const real six_r_alpha_3_in_axes3_x = six_r_alpha_2_in_axes2_x*v->six_r_s_3 -
+        six_r_zeta_3_t - six_r_alpha_2_in_axes2_y*v->six_r_c_3;
+    const real six_r_alpha_3_in_axes3_y = six_r_zeta_3_in_axes3_y +
+        six_r_alpha_2_in_axes2_x*v->six_r_c_3 + six_r_alpha_2_in_axes2_y*v->six_r_s_3;
+    const real six_r_alpha_3_in_axes3_z = six_r_qdd_1_t_3 + six_r_qdd_1_t_4;
+    /* (six_r-B_3) acceleration tensor of link 3 */
+    const real six_r_B_3_in_axes3_xy = six_r_W_3_in_axes3_xy - six_r_alpha_3_in_axes3_z;
+    const real six_r_B_3_in_axes3_xz = six_r_W_3_in_axes3_xz + six_r_alpha_3_in_axes3_y;
+    const real six_r_B_3_in_axes3_yx = six_r_W_3_in_axes3_xy + six_r_alpha_3_in_axes3_z;
+    const real six_r_B_3_in_axes3_yz = six_r_W_3_in_axes3_yz - six_r_alpha_3_in_axes3_x;
+    const real six_r_B_3_in_axes3_zx = six_r_W_3_in_axes3_xz - six_r_alpha_3_in_axes3_y;
+    const real six_r_B_3_in_axes3_zy = six_r_W_3_in_axes3_yz + six_r_alpha_3_in_axes3_x;
+    /* (six_r-alpha_4) angular acceleration of link 4 */
+    const real six_r_alpha_4_in_axes4_x = six_r_zeta_4_in_axes4_x +
+        six_r_alpha_3_in_axes3_z*v->six_r_s_4 - six_r_alpha_3_in_axes3_x*v->six_r_c_4;
+    const real six_r_alpha_4_in_axes4_y = six_r_zeta_4_in_axes4_y +
+        six_r_alpha_3_in_axes3_x*v->six_r_s_4 + six_r_alpha_3_in_axes3_z*v->six_r_c_4;
+    const real six_r_alpha_4_in_axes4_z = six_r_alpha_3_in_axes3_y + six_r_qdd_4;
+    /* (six_r-B_4) acceleration tensor of link 4 */
+    const real six_r_B_4_in_axes4_xy = six_r_W_4_in_axes4_xy - six_r_alpha_4_in_axes4_z;
+    const real six_r_B_4_in_axes4_xz = six_r_W_4_in_axes4_xz + six_r_alpha_4_in_axes4_y;
+    const real six_r_B_4_in_axes4_yx = six_r_W_4_in_axes4_xy + six_r_alpha_4_in_axes4_z;
+    const real six_r_B_4_in_axes4_yz = six_r_W_4_in_axes4_yz - six_r_alpha_4_in_axes4_x;
+    const real six_r_B_4_in_axes4_zx = six_r_W_4_in_axes4_xz - six_r_alpha_4_in_axes4_y;
+    const real six_r_B_4_in_axes4_zy = six_r_W_4_in_axes4_yz + six_r_alpha_4_in_axes4_x;
+    /* (six_r-alpha_5) angular acceleration of link 5 */
+    const real six_r_alpha_5_in_axes5_x = six_r_alpha_4_in_axes4_x*v->six_r_s_5 +
+        six_r_alpha_4_in_axes4_z*v->six_r_c_5 - six_r_zeta_5_t;
+    const real six_r_alpha_5_in_axes5_y = six_r_zeta_5_in_axes5_y +
+        six_r_alpha_4_in_axes4_x*v->six_r_c_5 - six_r_alpha_4_in_axes4_z*v->six_r_s_5;
+    const real six_r_alpha_5_in_axes5_z = six_r_alpha_4_in_axes4_y +
+        v->inv_six_r_w_1_t_12*(six_r_qdd_1_t_2*v->six_r_w_1_t_14 +
+        six_r_qdd_1_t_3*v->six_r_w_1_t_25 + six_r_qdd_1_t_5*v->six_r_w_1_t_18 +
+        six_r_rel_in_axes5_y*v->six_r_w_1_t_13 - six_r_qdd_1_t_4*v->six_r_w_1_t_22 -
+        six_r_qdd_4*v->six_r_w_1_t_15);
+    /* (six_r-B_5) acceleration tensor of link 5 */
+    const real six_r_B_5_in_axes5_xy = six_r_W_4_in_axes5_xy - six_r_alpha_5_in_axes5_z;
+    const real six_r_B_5_in_axes5_xz = six_r_W_5_in_axes5_xz + six_r_alpha_5_in_axes5_y;
+    const real six_r_B_5_in_axes5_yx = six_r_W_4_in_axes5_xy + six_r_alpha_5_in_axes5_z;
+    const real six_r_B_5_in_axes5_yz = six_r_W_5_in_axes5_yz - six_r_alpha_5_in_axes5_x;
+    const real six_r_B_5_in_axes5_zx = six_r_W_5_in_axes5_xz - six_r_alpha_5_in_axes5_y;
+    const real six_r_B_5_in_axes5_zy = six_r_W_5_in_axes5_yz + six_r_alpha_5_in_axes5_x;
+    /* (six_r-a_o_3) acceleration of the origin of joint 3 */
+    const real six_r_a_o_3_t = six_r_omega_1_in_axes2_y*six_r_omega_1_in_axes2_y;
+    const real six_r_a_o_3_t_2 = six_r_qd_1_t_4*six_r_qd_1_t_4;
+    const real six_r_joint3_offset_x = m->six_r_joint3_offset_x[i];
+    const real six_r_a_o_3_in_axes2_x = -six_r_joint3_offset_x*(six_r_a_o_3_t +
+        six_r_a_o_3_t_2);
+    const real six_r_a_o_3_in_axes2_y = six_r_B_2_in_axes2_yx*six_r_joint3_offset_x;
+    const real six_r_a_o_3_in_axes2_z = six_r_B_2_in_axes2_zx*six_r_joint3_offset_x;
+    const real six_r_a_o_3_in_axes3_x = six_r_a_o_3_in_axes2_x*v->six_r_s_3 -
+        six_r_a_o_3_in_axes2_y*v->six_r_c_3;
+    const real six_r_a_o_3_in_axes3_y = six_r_a_o_3_in_axes2_x*v->six_r_c_3 +
+        six_r_a_o_3_in_axes2_y*v->six_r_s_3;
+    /* (six_r-a_o_4) acceleration of the origin of joint 4 */
+    const real six_r_joint4_offset_x = m->six_r_joint4_offset_x[i];
+    const real six_r_a_o_4_in_axes3_x = six_r_a_o_3_in_axes3_x +
+        six_r_B_3_in_axes3_xy*six_r_joint4_offset_x;
+    const real six_r_a_o_4_in_axes3_y = six_r_a_o_3_in_axes3_y -
+        six_r_W_3_t_3*six_r_joint4_offset_x;
+    const real six_r_a_o_4_in_axes3_z = six_r_a_o_3_in_axes2_z +
+        six_r_B_3_in_axes3_zy*six_r_joint4_offset_x;
+    /* (six_r-acc_3) acceleration of the reference point of link 3, less gravity */
+    const real six_r_acc_3_in_axes3_x = six_r_a_o_3_in_axes3_x - v->six_r_g_in_axes3_x;
+    const real six_r_acc_3_in_axes3_y = six_r_a_o_3_in_axes3_y - v->six_r_g_in_axes3_y;
+    const real six_r_acc_3_in_axes3_z = six_r_a_o_3_in_axes2_z - v->six_r_g_in_axes1_y;
+    /* (six_r-f_3) inertia force of link 3 less its weight */
+    const real six_r_f_3_t = six_r_omega_2_in_axes3_y*six_r_omega_2_in_axes3_y;
+    const real six_r_h_3_in_spec3_x = m->six_r_h_3_in_spec3_x[i];
+    const real six_r_h_3_in_spec3_y = m->six_r_h_3_in_spec3_y[i];
+    const real six_r_h_3_in_spec3_z = m->six_r_h_3_in_spec3_z[i];
+    const real six_r_link3_mass = m->six_r_link3_mass[i];
+    const real six_r_f_3_in_axes3_x = six_r_B_3_in_axes3_xy*six_r_h_3_in_spec3_x +
+        six_r_B_3_in_axes3_xz*six_r_h_3_in_spec3_z + six_r_acc_3_in_axes3_x*six_r_link3_mass +
+        six_r_h_3_in_spec3_y*(six_r_W_3_t_2 + six_r_f_3_t);
+    const real six_r_f_3_in_axes3_y = six_r_B_3_in_axes3_yz*six_r_h_3_in_spec3_z +
+        six_r_acc_3_in_axes3_y*six_r_link3_mass - six_r_B_3_in_axes3_yx*six_r_h_3_in_spec3_y -
+        six_r_W_3_t_3*six_r_h_3_in_spec3_x;
+    const real six_r_f_3_in_axes3_z = six_r_B_3_in_axes3_zy*six_r_h_3_in_spec3_x +
+        six_r_acc_3_in_axes3_z*six_r_link3_mass - six_r_B_3_in_axes3_zx*six_r_h_3_in_spec3_y -
+        six_r_h_3_in_spec3_z*(six_r_W_3_t + six_r_f_3_t);
+    /* (six_r-acc_4) acceleration of the reference point of link 4, less gravity */
+    const real six_r_acc_4_in_axes4_x = six_r_a_o_4_in_axes3_z*v->six_r_s_4 +
+        v->six_r_c_4*v->six_r_g_in_axes3_x - six_r_a_o_4_in_axes3_x*v->six_r_c_4 -
+        v->six_r_g_in_axes1_y*v->six_r_s_4;
+    const real six_r_acc_4_in_axes4_y = six_r_a_o_4_in_axes3_x*v->six_r_s_4 +
+        six_r_a_o_4_in_axes3_z*v->six_r_c_4 - v->six_r_c_4*v->six_r_g_in_axes1_y -
+        v->six_r_g_in_axes3_x*v->six_r_s_4;
+    const real six_r_acc_4_in_axes4_z = six_r_a_o_4_in_axes3_y - v->six_r_g_in_axes3_y;
+    /* (six_r-f_4) inertia force of link 4 less its weight */
+    const real six_r_f_4_t = six_r_omega_3_in_axes4_x*six_r_omega_3_in_axes4_x;
+    const real six_r_f_4_t_2 = six_r_omega_4_in_axes4_z*six_r_omega_4_in_axes4_z;
+    const real six_r_h_4_in_spec4_x = m->six_r_h_4_in_spec4_x[i];
+    const real six_r_h_4_in_spec4_y = m->six_r_h_4_in_spec4_y[i];
+    const real six_r_h_4_in_spec4_z = m->six_r_h_4_in_spec4_z[i];
+    const real six_r_link4_mass = m->six_r_link4_mass[i];
+    const real six_r_f_4_in_axes4_x = six_r_B_4_in_axes4_xy*six_r_h_4_in_spec4_z +
+        six_r_B_4_in_axes4_xz*six_r_h_4_in_spec4_x + six_r_acc_4_in_axes4_x*six_r_link4_mass -
+        six_r_h_4_in_spec4_y*(six_r_bias_t_10 + six_r_f_4_t_2);
+    const real six_r_f_4_in_axes4_y = six_r_B_4_in_axes4_yx*six_r_h_4_in_spec4_y +
+        six_r_B_4_in_axes4_yz*six_r_h_4_in_spec4_x + six_r_acc_4_in_axes4_y*six_r_link4_mass -
+        six_r_h_4_in_spec4_z*(six_r_f_4_t + six_r_f_4_t_2);
+    const real six_r_f_4_in_axes4_z = six_r_B_4_in_axes4_zx*six_r_h_4_in_spec4_y +
+        six_r_B_4_in_axes4_zy*six_r_h_4_in_spec4_z + six_r_acc_4_in_axes4_z*six_r_link4_mass -
+        six_r_h_4_in_spec4_x*(six_r_bias_t_10 + six_r_f_4_t);
+    const real six_r_f_4_in_axes3_x = six_r_f_4_in_axes4_y*v->six_r_s_4 -
+        v->six_r_c_4*six_r_f_4_in_axes4_x;
+    const real six_r_f_4_in_axes3_z = v->six_r_c_4*six_r_f_4_in_axes4_y +
+        six_r_f_4_in_axes4_x*v->six_r_s_4;
+    /* (six_r-acc_5) acceleration of the reference point of link 5, less gravity */
+    const real gravity_x = m->gravity_x;
+    const real gravity_y = m->gravity_y;
+    const real gravity_z = m->gravity_z;
+    const real six_r_acc_5_in_axes5_x = six_r_S_ddot_in_axes5_x -
+        v->axis_x_six_r_axes5_x*gravity_x - v->axis_x_six_r_axes5_y*gravity_y -
+        v->axis_x_six_r_axes5_z*gravity_z;
+    const real six_r_acc_5_in_axes5_y = six_r_S_ddot_in_axes5_y -
+        v->axis_y_six_r_axes5_x*gravity_x - v->axis_y_six_r_axes5_y*gravity_y -
+        v->axis_y_six_r_axes5_z*gravity_z;
+    const real six_r_acc_5_in_axes5_z = six_r_S_ddot_in_axes5_z -
+        v->axis_z_six_r_axes5_x*gravity_x - v->axis_z_six_r_axes5_y*gravity_y -
+        v->axis_z_six_r_axes5_z*gravity_z;
+    /* (six_r-mu_5) inertia moment of the links that turn with link 5, about their reference points */
+    const real six_r_J_5_in_spec5_xy = m->six_r_J_5_in_spec5_xy[i];
+    const real six_r_J_5_in_spec5_xz = m->six_r_J_5_in_spec5_xz[i];
+    const real six_r_J_5_in_spec5_yz = m->six_r_J_5_in_spec5_yz[i];
+    const real six_r_Sigma_5_in_axes5_yy = m->six_r_Sigma_5_in_axes5_yy[i];
+    const real six_r_Sigma_5_in_axes5_zz = m->six_r_Sigma_5_in_axes5_zz[i];
+    const real six_r_h_5_in_spec5_y = m->six_r_h_5_in_spec5_y[i];
+    const real six_r_h_5_in_spec5_z = m->six_r_h_5_in_spec5_z[i];
+    const real six_r_mu_5_in_axes5_x = six_r_B_5_in_axes5_yx*six_r_J_5_in_spec5_xz +
+        six_r_B_5_in_axes5_zy*six_r_Sigma_5_in_axes5_yy + six_r_J_5_in_spec5_yz*(six_r_W_5_t -
+        six_r_W_5_t_2) + six_r_acc_5_in_axes5_z*six_r_h_5_in_spec5_y -
+        six_r_B_5_in_axes5_yz*six_r_Sigma_5_in_axes5_zz -
+        six_r_B_5_in_axes5_zx*six_r_J_5_in_spec5_xy -
+        six_r_acc_5_in_axes5_y*six_r_h_5_in_spec5_z;
+    const real six_r_Sigma_5_in_axes5_xx = m->six_r_Sigma_5_in_axes5_xx[i];
+    const real six_r_h_5_in_spec5_x = m->six_r_h_5_in_spec5_x[i];
+    const real six_r_mu_5_in_axes5_y = six_r_B_5_in_axes5_xz*six_r_Sigma_5_in_axes5_zz +
+        six_r_B_5_in_axes5_zy*six_r_J_5_in_spec5_xy +
+        six_r_acc_5_in_axes5_x*six_r_h_5_in_spec5_z -
+        six_r_B_5_in_axes5_xy*six_r_J_5_in_spec5_yz -
+        six_r_B_5_in_axes5_zx*six_r_Sigma_5_in_axes5_xx -
+        six_r_J_5_in_spec5_xz*(six_r_bias_t_11 - six_r_W_5_t_2) -
+        six_r_acc_5_in_axes5_z*six_r_h_5_in_spec5_x;
+    const real six_r_mu_5_in_axes5_z = six_r_B_5_in_axes5_xz*six_r_J_5_in_spec5_yz +
+        six_r_B_5_in_axes5_yx*six_r_Sigma_5_in_axes5_xx +
+        six_r_J_5_in_spec5_xy*(six_r_bias_t_11 - six_r_W_5_t) +
+        six_r_acc_5_in_axes5_y*six_r_h_5_in_spec5_x -
+        six_r_B_5_in_axes5_xy*six_r_Sigma_5_in_axes5_yy -
+        six_r_B_5_in_axes5_yz*six_r_J_5_in_spec5_xz -
+        six_r_acc_5_in_axes5_x*six_r_h_5_in_spec5_y;
+    /* (six_r-mu_4) inertia moment of the links that turn with link 4, about their reference points */
+    const real six_r_J_4_in_spec4_xy = m->six_r_J_4_in_spec4_xy[i];
+    const real six_r_J_4_in_spec4_xz = m->six_r_J_4_in_spec4_xz[i];
+    const real six_r_J_4_in_spec4_yz = m->six_r_J_4_in_spec4_yz[i];
+    const real six_r_Sigma_4_in_axes4_yy = m->six_r_Sigma_4_in_axes4_yy[i];
+    const real six_r_Sigma_4_in_axes4_zz = m->six_r_Sigma_4_in_axes4_zz[i];
+    const real six_r_mu_4_in_axes4_x = six_r_B_4_in_axes4_yx*six_r_J_4_in_spec4_xy +
+        six_r_B_4_in_axes4_zy*six_r_Sigma_4_in_axes4_yy +
+        six_r_J_4_in_spec4_xz*(six_r_bias_t_10 - six_r_f_4_t_2) +
+        six_r_acc_4_in_axes4_z*six_r_h_4_in_spec4_z -
+        six_r_B_4_in_axes4_yz*six_r_Sigma_4_in_axes4_zz -
+        six_r_B_4_in_axes4_zx*six_r_J_4_in_spec4_yz -
+        six_r_acc_4_in_axes4_y*six_r_h_4_in_spec4_x;
+    const real six_r_Sigma_4_in_axes4_xx = m->six_r_Sigma_4_in_axes4_xx[i];
+    const real six_r_mu_4_in_axes4_y = six_r_B_4_in_axes4_xz*six_r_Sigma_4_in_axes4_zz +
+        six_r_B_4_in_axes4_zy*six_r_J_4_in_spec4_yz +
+        six_r_acc_4_in_axes4_x*six_r_h_4_in_spec4_x -
+        six_r_B_4_in_axes4_xy*six_r_J_4_in_spec4_xz -
+        six_r_B_4_in_axes4_zx*six_r_Sigma_4_in_axes4_xx - six_r_J_4_in_spec4_xy*(six_r_f_4_t -
+        six_r_f_4_t_2) - six_r_acc_4_in_axes4_z*six_r_h_4_in_spec4_y;
+    const real six_r_mu_4_in_axes4_z = six_r_B_4_in_axes4_xz*six_r_J_4_in_spec4_xz +
+        six_r_B_4_in_axes4_yx*six_r_Sigma_4_in_axes4_xx + six_r_J_4_in_spec4_yz*(six_r_f_4_t -
+        six_r_bias_t_10) + six_r_acc_4_in_axes4_y*six_r_h_4_in_spec4_y -
+        six_r_B_4_in_axes4_xy*six_r_Sigma_4_in_axes4_yy -
+        six_r_B_4_in_axes4_yz*six_r_J_4_in_spec4_xy -
+        six_r_acc_4_in_axes4_x*six_r_h_4_in_spec4_z;
+    /* (six_r-N_4) moment about joint 4 of the links from 4 outwards, the force at the connection
+       point left out */
+    const real six_r_N_4_in_axes4_x = six_r_mu_4_in_axes4_x +
+        v->six_r_c_5*six_r_mu_5_in_axes5_y + six_r_mu_5_in_axes5_x*v->six_r_s_5;
+    const real six_r_N_4_in_axes4_y = six_r_mu_4_in_axes4_y + six_r_mu_5_in_axes5_z;
+    const real six_r_N_4_in_axes4_z = six_r_mu_4_in_axes4_z +
+        v->six_r_c_5*six_r_mu_5_in_axes5_x - six_r_mu_5_in_axes5_y*v->six_r_s_5;
+    /* (six_r-mu_3) inertia moment of the links that turn with link 3, about their reference points */
+    const real six_r_J_3_in_spec3_xy = m->six_r_J_3_in_spec3_xy[i];
+    const real six_r_J_3_in_spec3_xz = m->six_r_J_3_in_spec3_xz[i];
+    const real six_r_J_3_in_spec3_yz = m->six_r_J_3_in_spec3_yz[i];
+    const real six_r_Sigma_3_in_axes3_yy = m->six_r_Sigma_3_in_axes3_yy[i];
+    const real six_r_Sigma_3_in_axes3_zz = m->six_r_Sigma_3_in_axes3_zz[i];
+    const real six_r_mu_3_in_axes3_x = six_r_B_3_in_axes3_zx*six_r_J_3_in_spec3_xy +
+        six_r_B_3_in_axes3_zy*six_r_Sigma_3_in_axes3_yy + six_r_J_3_in_spec3_xz*(six_r_f_3_t -
+        six_r_W_3_t_2) + six_r_acc_3_in_axes3_z*six_r_h_3_in_spec3_x -
+        six_r_B_3_in_axes3_yx*six_r_J_3_in_spec3_yz -
+        six_r_B_3_in_axes3_yz*six_r_Sigma_3_in_axes3_zz -
+        six_r_acc_3_in_axes3_y*six_r_h_3_in_spec3_z;
+    const real six_r_Sigma_3_in_axes3_xx = m->six_r_Sigma_3_in_axes3_xx[i];
+    const real six_r_mu_3_in_axes3_y = six_r_B_3_in_axes3_xz*six_r_Sigma_3_in_axes3_zz +
+        six_r_J_3_in_spec3_yz*(six_r_W_3_t - six_r_W_3_t_2) +
+        six_r_acc_3_in_axes3_x*six_r_h_3_in_spec3_z +
+        six_r_acc_3_in_axes3_z*six_r_h_3_in_spec3_y -
+        six_r_B_3_in_axes3_xy*six_r_J_3_in_spec3_xz -
+        six_r_B_3_in_axes3_zx*six_r_Sigma_3_in_axes3_xx -
+        six_r_B_3_in_axes3_zy*six_r_J_3_in_spec3_xy;
+    const real six_r_mu_3_in_axes3_z = six_r_B_3_in_axes3_xz*six_r_J_3_in_spec3_xz +
+        six_r_B_3_in_axes3_yx*six_r_Sigma_3_in_axes3_xx +
+        six_r_B_3_in_axes3_yz*six_r_J_3_in_spec3_yz -
+        six_r_B_3_in_axes3_xy*six_r_Sigma_3_in_axes3_yy - six_r_J_3_in_spec3_xy*(six_r_W_3_t -
+        six_r_f_3_t) - six_r_acc_3_in_axes3_x*six_r_h_3_in_spec3_x -
+        six_r_acc_3_in_axes3_y*six_r_h_3_in_spec3_y;
+    /* (six_r-N_3) moment about joint 3 of the links from 3 outwards, the force at the connection
+       point left out */
+    const real six_r_N_3_in_axes3_x = six_r_mu_3_in_axes3_x +
+        six_r_N_4_in_axes4_y*v->six_r_s_4 + six_r_f_4_in_axes3_z*six_r_joint4_offset_x -
+        six_r_N_4_in_axes4_x*v->six_r_c_4;
+    const real six_r_N_3_in_axes3_y = six_r_N_4_in_axes4_z + six_r_mu_3_in_axes3_y;
+    const real six_r_N_3_in_axes3_z = six_r_mu_3_in_axes3_z +
+        six_r_N_4_in_axes4_x*v->six_r_s_4 + six_r_N_4_in_axes4_y*v->six_r_c_4 -
+        six_r_f_4_in_axes3_x*six_r_joint4_offset_x;
+    /* (six_r-T_3) inertia force of the links from 3 outwards, the last link left out */
+    const real six_r_T_3_in_axes3_x = six_r_f_3_in_axes3_x + six_r_f_4_in_axes3_x;
+    const real six_r_T_3_in_axes3_y = six_r_f_3_in_axes3_y + six_r_f_4_in_axes4_z;
+    const real six_r_T_3_in_axes3_z = six_r_f_3_in_axes3_z + six_r_f_4_in_axes3_z;
+    /* (six_r-mu_2) inertia moment of the links that turn with link 2, about their reference points */
+    const real six_r_mu_2_t = six_r_omega_1_in_axes2_x*six_r_omega_1_in_axes2_x;
+    const real six_r_J_2_in_spec2_xy = m->six_r_J_2_in_spec2_xy[i];
+    const real six_r_J_2_in_spec2_xz = m->six_r_J_2_in_spec2_xz[i];
+    const real six_r_J_2_in_spec2_yz = m->six_r_J_2_in_spec2_yz[i];
+    const real six_r_Sigma_2_in_axes2_yy = m->six_r_Sigma_2_in_axes2_yy[i];
+    const real six_r_Sigma_2_in_axes2_zz = m->six_r_Sigma_2_in_axes2_zz[i];
+    const real six_r_h_2_in_spec2_y = m->six_r_h_2_in_spec2_y[i];
+    const real six_r_h_2_in_spec2_z = m->six_r_h_2_in_spec2_z[i];
+    const real six_r_mu_2_in_axes2_x = six_r_B_2_in_axes2_yx*six_r_J_2_in_spec2_xz +
+        six_r_B_2_in_axes2_zy*six_r_Sigma_2_in_axes2_yy + six_r_J_2_in_spec2_yz*(six_r_a_o_3_t
+        - six_r_a_o_3_t_2) + v->six_r_g_in_axes2_y*six_r_h_2_in_spec2_z -
+        six_r_B_2_in_axes2_zx*six_r_J_2_in_spec2_xy -
+        six_r_Sigma_2_in_axes2_zz*six_r_alpha_1_t -
+        v->six_r_g_in_axes1_y*six_r_h_2_in_spec2_y;
+    const real six_r_Sigma_2_in_axes2_xx = m->six_r_Sigma_2_in_axes2_xx[i];
+    const real six_r_h_2_in_spec2_x = m->six_r_h_2_in_spec2_x[i];
+    const real six_r_mu_2_in_axes2_y = six_r_B_2_in_axes2_zy*six_r_J_2_in_spec2_xy +
+        six_r_Sigma_2_in_axes2_zz*six_r_alpha_1_in_axes2_y +
+        v->six_r_g_in_axes1_y*six_r_h_2_in_spec2_x -
+        six_r_B_2_in_axes2_xy*six_r_J_2_in_spec2_yz -
+        six_r_B_2_in_axes2_zx*six_r_Sigma_2_in_axes2_xx - six_r_J_2_in_spec2_xz*(six_r_mu_2_t
+        - six_r_a_o_3_t_2) - v->six_r_g_in_axes2_x*six_r_h_2_in_spec2_z;
+    const real six_r_mu_2_in_axes2_z = six_r_B_2_in_axes2_yx*six_r_Sigma_2_in_axes2_xx +
+        six_r_J_2_in_spec2_xy*(six_r_mu_2_t - six_r_a_o_3_t) +
+        six_r_J_2_in_spec2_yz*six_r_alpha_1_in_axes2_y +
+        v->six_r_g_in_axes2_x*six_r_h_2_in_spec2_y -
+        six_r_B_2_in_axes2_xy*six_r_Sigma_2_in_axes2_yy -
+        six_r_J_2_in_spec2_xz*six_r_alpha_1_t - v->six_r_g_in_axes2_y*six_r_h_2_in_spec2_x;
+    /* (six_r-N_2) moment about joint 2 of the links from 2 outwards, the force at the connection
+       point left out */
+    const real six_r_N_2_in_axes2_x = six_r_mu_2_in_axes2_x +
+        six_r_N_3_in_axes3_x*v->six_r_s_3 + six_r_N_3_in_axes3_y*v->six_r_c_3;
+    const real six_r_N_2_in_axes2_y = six_r_mu_2_in_axes2_y +
+        six_r_N_3_in_axes3_y*v->six_r_s_3 - six_r_N_3_in_axes3_x*v->six_r_c_3 -
+        six_r_T_3_in_axes3_z*six_r_joint3_offset_x;
+    const real six_r_N_2_in_axes2_z = six_r_N_3_in_axes3_z + six_r_mu_2_in_axes2_z -
+        six_r_joint3_offset_x*(six_r_T_3_in_axes3_x*v->six_r_c_3 -
+        six_r_T_3_in_axes3_y*v->six_r_s_3);
+    /* (six_r-mu_1) inertia moment of the links that turn with link 1, about their reference points */
+    const real six_r_J_1_in_spec1_xx = m->six_r_J_1_in_spec1_xx[i];
+    const real six_r_h_1_in_spec1_y = m->six_r_h_1_in_spec1_y[i];
+    const real six_r_h_1_in_spec1_z = m->six_r_h_1_in_spec1_z[i];
+    const real six_r_mu_1_in_axes1_z = v->six_r_g_in_axes1_x*six_r_h_1_in_spec1_z -
+        six_r_J_1_in_spec1_xx*six_r_qdd_1_t_5 - v->six_r_g_in_axes1_y*six_r_h_1_in_spec1_y;
+    /* (six_r-N_1) moment about joint 1 of the links from 1 outwards, the force at the connection
+       point left out */
+    const real six_r_N_1_in_axes1_z = six_r_mu_1_in_axes1_z +
+        six_r_N_2_in_axes2_x*v->six_r_c_2 - six_r_N_2_in_axes2_y*v->six_r_s_2;
+    /* (six_r-G_m1) moment along moment direction 1 that balances the leg's inertia and weight along
+       all degrees of freedom */
+    const real six_r_G_m1_t = v->inv_six_r_w_1_t_12*six_r_mu_5_in_axes5_z;
+    const real six_r_G_m1_t_2 = v->inv_six_r_w_1_t_28*(six_r_G_m1_t*v->six_r_w_1_t_15 -
+        six_r_N_4_in_axes4_z);
+    const real six_r_G_m1_t_3 = v->inv_six_r_w_1_t_49*(six_r_G_m1_t*v->six_r_w_1_t_18 +
+        six_r_G_m1_t_2*v->six_r_w_1_t_33 - six_r_N_1_in_axes1_z);
+    const real six_r_G_m1_t_4 = v->inv_six_r_w_1_t_67*(six_r_G_m1_t*v->six_r_w_1_t_22 +
+        six_r_G_m1_t_2*v->six_r_w_1_t_39 - six_r_N_2_in_axes2_z -
+        six_r_G_m1_t_3*v->six_r_w_1_t_55);
+    const real six_r_G_m1_t_5 = v->inv_six_r_w_1_t_79*(six_r_N_3_in_axes3_z +
+        six_r_G_m1_t*v->six_r_w_1_t_25 + six_r_G_m1_t_3*v->six_r_w_1_t_61 +
+        six_r_G_m1_t_4*v->six_r_w_1_t_73 - six_r_G_m1_t_2*v->six_r_w_1_t_44);
+    const real six_r_G_m1_t_6 = six_r_size*(six_r_G_m1_t_2*v->six_r_w_1_t_31 +
+        six_r_G_m1_t_3*v->six_r_w_1_t_53 + six_r_G_m1_t_4*v->six_r_w_1_t_71 -
+        six_r_G_m1_t_5*six_r_m1_w_2_t);
+    /* (six_r-G_m2) moment along moment direction 2 that balances the leg's inertia and weight along
+       all degrees of freedom */
+    const real six_r_G_m2_t = six_r_size*(six_r_G_m1_t_2*v->six_r_w_1_t_32 +
+        six_r_G_m1_t_3*v->six_r_w_1_t_54 + six_r_G_m1_t_4*v->six_r_w_1_t_72 -
+        six_r_G_m1_t*v->six_r_w_1_t_14 - six_r_G_m1_t_5*six_r_m2_w_2_t);
+    /* (six_r-G_m) moment at the connection point that balances the leg's inertia and weight along all
+       degrees of freedom */
+    const real six_r_G_m_in_axes5_x = six_r_G_m1_t_6*v->six_r_n_m2_in_axes5_z;
+    const real six_r_G_m_in_axes5_y = six_r_G_m2_t*v->six_r_end_p1_in_axes5_z -
+        six_r_G_m1_t_6*v->six_r_n_m1_in_axes5_y;
+    /* (six_r-c) leg force on the platform without actuation and without the mass at the connection
+       point */
+    const real six_r_c_in_axes5_x = six_r_G_m1_t_3*v->six_r_w_1_t_50 +
+        six_r_G_m1_t_4*v->six_r_w_1_t_68 + six_r_W_5_t_3*six_r_h_5_in_spec5_x -
+        six_r_B_5_in_axes5_xy*six_r_h_5_in_spec5_y -
+        six_r_B_5_in_axes5_xz*six_r_h_5_in_spec5_z - six_r_G_m1_t_5*six_r_w_2_t;
+    const real six_r_c_in_axes5_y = six_r_G_m1_t_5*six_r_w_2_t_2 +
+        six_r_h_5_in_spec5_y*(six_r_W_5_t_2 + six_r_bias_t_11) -
+        six_r_B_5_in_axes5_yx*six_r_h_5_in_spec5_x -
+        six_r_B_5_in_axes5_yz*six_r_h_5_in_spec5_z - six_r_G_m1_t*v->six_r_w_1_t_13 -
+        six_r_G_m1_t_2*v->six_r_w_1_t_29 - six_r_G_m1_t_3*v->six_r_w_1_t_51 -
+        six_r_G_m1_t_4*v->six_r_w_1_t_69;
+    const real six_r_c_in_axes5_z = six_r_G_m1_t_2*v->six_r_w_1_t_30 +
+        six_r_G_m1_t_3*v->six_r_w_1_t_52 + six_r_G_m1_t_4*v->six_r_w_1_t_70 +
+        six_r_h_5_in_spec5_z*(six_r_W_5_t + six_r_bias_t_11) -
+        six_r_B_5_in_axes5_zx*six_r_h_5_in_spec5_x -
+        six_r_B_5_in_axes5_zy*six_r_h_5_in_spec5_y - six_r_G_m1_t_5*six_r_w_2_t_3;
+    /* (six_r-c_m) moment of the leg on the platform without actuation */
+    const real six_r_c_m_in_axes5_z = six_r_G_m2_t*v->six_r_n_m2_in_axes5_z;
+    v->six_r_w_2_x = six_r_w_2_x;
+    v->six_r_w_2_y = six_r_w_2_y;
+    v->six_r_w_2_z = six_r_w_2_z;
+    v->six_r_o_2_t = six_r_o_2_t;
+    v->six_r_o_2_in_axes5_z = six_r_o_2_in_axes5_z;
+    v->six_r_o_2_in_axes5_y = six_r_o_2_in_axes5_y;
+    v->six_r_acc_5_in_axes5_x = six_r_acc_5_in_axes5_x;
+    v->six_r_acc_5_in_axes5_y = six_r_acc_5_in_axes5_y;
+    v->six_r_acc_5_in_axes5_z = six_r_acc_5_in_axes5_z;
+    v->six_r_G_m_in_axes5_x = six_r_G_m_in_axes5_x;
+    v->six_r_G_m_in_axes5_y = six_r_G_m_in_axes5_y;
+    v->six_r_c_in_axes5_x = six_r_c_in_axes5_x;
+    v->six_r_c_in_axes5_y = six_r_c_in_axes5_y;
+    v->six_r_c_in_axes5_z = six_r_c_in_axes5_z;
+    v->six_r_c_m_in_axes5_z = six_r_c_m_in_axes5_z;
+}
+
+/* ---- closure_six_r ---- */
+INLINE void closure_six_r_before(const prepared *m, size_t w, const real *X, real *s, verdict *t)
+{
+    for (size_t k = 0; k < w; ++k) {
+        values v;
+        stage_X(m, w, k, X, &v);
+        s[0*w + k] = v.R_xx;
+        s[1*w + k] = v.R_xy;
+        s[2*w + k] = v.R_xz;
+        s[3*w + k] = v.R_yx;
+        s[4*w + k] = v.R_yy;
+        s[5*w + k] = v.R_yz;
+        s[6*w + k] = v.R_zx;
+        s[7*w + k] = v.R_zy;
+        s[8*w + k] = v.R_zz;
+        t->invalid[k] += UNLESS(is_finite(v.quaternion_scale)) + UNLESS(v.quaternion_scale > 0);
+    }
+}
+
+INLINE void closure_six_r_legs_six_r(const prepared *m, size_t w, size_t leg, size_t legs, const
+    real *s, size_t states, size_t count, const real *X, const real *joints, real *o)
+{
     for (size_t k = 0; k < count; ++k) {
         const size_t i = leg + legs*k;
         const size_t j = states*k;
+        values_six_r v;
+        stage_six_r_X(m, w, i, j, s, &v);
+        stage_six_r_q(m, w, i, j, joints, &v);
+        stage_six_r_X_q(m, i, &v);
         /* (six_r-S) from the base point to the connection point */
-        const real R_xx = s[3*w + j];
-        const real R_xy = s[4*w + j];
-        const real R_xz = s[5*w + j];
+        const real R_xx = s[0*w + j];
+        const real R_xy = s[1*w + j];
+        const real R_xz = s[2*w + j];
         const real six_r_base_point_x = m->six_r_base_point_x[i];
         const real six_r_platform_point_x = m->six_r_platform_point_x[i];
         const real six_r_platform_point_y = m->six_r_platform_point_y[i];
         const real six_r_platform_point_z = m->six_r_platform_point_z[i];
-        const real t_x = s[0*w + j];
+        const real t_x = X[0*w + j];
         const real six_r_S_x = t_x + R_xx*six_r_platform_point_x + R_xy*six_r_platform_point_y +
             R_xz*six_r_platform_point_z - six_r_base_point_x;
-        const real R_yx = s[6*w + j];
-        const real R_yy = s[7*w + j];
-        const real R_yz = s[8*w + j];
+        const real R_yx = s[3*w + j];
+        const real R_yy = s[4*w + j];
+        const real R_yz = s[5*w + j];
         const real six_r_base_point_y = m->six_r_base_point_y[i];
-        const real t_y = s[1*w + j];
+        const real t_y = X[1*w + j];
         const real six_r_S_y = t_y + R_yx*six_r_platform_point_x + R_yy*six_r_platform_point_y +
             R_yz*six_r_platform_point_z - six_r_base_point_y;
-        const real R_zx = s[9*w + j];
-        const real R_zy = s[10*w + j];
-        const real R_zz = s[11*w + j];
+        const real R_zx = s[6*w + j];
+        const real R_zy = s[7*w + j];
+        const real R_zz = s[8*w + j];
         const real six_r_base_point_z = m->six_r_base_point_z[i];
-        const real t_z = s[2*w + j];
+        const real t_z = X[2*w + j];
         const real six_r_S_z = t_z + R_zx*six_r_platform_point_x + R_zy*six_r_platform_point_y +
             R_zz*six_r_platform_point_z - six_r_base_point_z;
-        /* (six_r-c_1) cosine of the angle of joint 1 from its reference direction */
-        const real six_r_q_1 = joints[place_six_r_q_1[i]*w + j];
-        const real six_r_c_1 = -sine(six_r_q_1);
-        /* (six_r-s_1) sine of the angle of joint 1 from its reference direction */
-        const real six_r_s_1 = cosine(six_r_q_1);
-        /* (six_r-c_2) cosine of the angle of joint 2 from its reference direction */
-        const real six_r_q_2 = joints[place_six_r_q_2[i]*w + j];
-        const real six_r_c_2 = -sine(six_r_q_2);
-        /* (six_r-s_2) sine of the angle of joint 2 from its reference direction */
-        const real six_r_s_2 = cosine(six_r_q_2);
-        /* (six_r-c_3) cosine of the angle of joint 3 from its reference direction */
-        const real six_r_q_3 = joints[place_six_r_q_3[i]*w + j];
-        const real six_r_c_3 = cosine(six_r_q_3);
-        /* (six_r-s_3) sine of the angle of joint 3 from its reference direction */
-        const real six_r_s_3 = sine(six_r_q_3);
-        /* (six_r-c_4) cosine of the angle of joint 4 from its reference direction */
-        const real six_r_q_4 = joints[place_six_r_q_4[i]*w + j];
-        const real six_r_c_4 = -sine(six_r_q_4);
-        /* (six_r-s_4) sine of the angle of joint 4 from its reference direction */
-        const real six_r_s_4 = cosine(six_r_q_4);
-        /* (six_r-c_5) cosine of the angle of joint 5 from its reference direction */
-        const real six_r_q_5 = joints[place_six_r_q_5[i]*w + j];
-        const real six_r_c_5 = -sine(six_r_q_5);
-        /* (six_r-s_5) sine of the angle of joint 5 from its reference direction */
-        const real six_r_s_5 = cosine(six_r_q_5);
-        /* (six_r-r_4) from joint 4 to the connection point, along the links */
-        const real six_r_platform_joint_offset_x = m->six_r_platform_joint_offset_x[i];
-        const real six_r_r_4_in_axes4_y = six_r_c_5*six_r_platform_joint_offset_x;
-        const real six_r_joint5_offset_x = m->six_r_joint5_offset_x[i];
-        const real six_r_r_4_in_axes4_z = six_r_joint5_offset_x +
-            six_r_platform_joint_offset_x*six_r_s_5;
-        const real six_r_r_4_in_axes3_y = -six_r_r_4_in_axes4_y*six_r_s_4;
-        const real six_r_r_4_in_axes3_z = six_r_c_4*six_r_r_4_in_axes4_y;
-        /* (six_r-r_3) from joint 3 to the connection point, along the links */
-        const real six_r_joint4_offset_x = m->six_r_joint4_offset_x[i];
-        const real six_r_r_3_in_axes3_x = six_r_joint4_offset_x + six_r_r_4_in_axes4_z;
-        const real six_r_r_3_in_axes2_y = six_r_c_3*six_r_r_4_in_axes3_y +
-            six_r_r_3_in_axes3_x*six_r_s_3;
-        const real six_r_r_3_t = six_r_r_4_in_axes3_z*six_r_s_4;
-        const real six_r_r_3_t_2 = -six_r_c_4*six_r_r_4_in_axes3_z;
-        const real six_r_r_3_in_axes5_z = six_r_r_3_t + six_r_c_4*six_r_r_4_in_axes3_y;
-        const real six_r_r_3_t_3 = -six_r_r_3_t_2 - six_r_r_4_in_axes3_y*six_r_s_4;
-        const real six_r_r_3_in_axes5_x = six_r_c_5*six_r_r_3_t_3 +
-            six_r_r_3_in_axes3_x*six_r_s_5;
-        const real six_r_r_3_in_axes5_y = six_r_c_5*six_r_r_3_in_axes3_x -
-            six_r_r_3_t_3*six_r_s_5;
-        /* (six_r-r_2) from joint 2 to the connection point, along the links */
-        const real six_r_joint3_offset_x = m->six_r_joint3_offset_x[i];
-        const real six_r_r_2_in_axes2_x = six_r_joint3_offset_x + six_r_c_3*six_r_r_3_in_axes3_x -
-            six_r_r_4_in_axes3_y*six_r_s_3;
-        const real six_r_r_2_in_axes1_y = six_r_c_2*six_r_r_2_in_axes2_x -
-            six_r_r_3_in_axes2_y*six_r_s_2;
-        const real six_r_r_2_t = six_r_c_3*six_r_r_2_in_axes2_x + six_r_r_3_in_axes2_y*six_r_s_3;
-        const real six_r_r_2_t_2 = six_r_c_3*six_r_r_3_in_axes2_y -
-            six_r_r_2_in_axes2_x*six_r_s_3;
-        const real six_r_r_2_in_axes5_z = six_r_r_3_t + six_r_c_4*six_r_r_2_t_2;
-        const real six_r_r_2_t_3 = -six_r_r_3_t_2 - six_r_r_2_t_2*six_r_s_4;
-        const real six_r_r_2_in_axes5_x = six_r_c_5*six_r_r_2_t_3 + six_r_r_2_t*six_r_s_5;
-        const real six_r_r_2_in_axes5_y = six_r_c_5*six_r_r_2_t - six_r_r_2_t_3*six_r_s_5;
-        /* (six_r-r_1) from joint 1 to the connection point, along the links */
-        const real six_r_joint2_offset_x = m->six_r_joint2_offset_x[i];
-        const real six_r_r_1_in_axes1_z = six_r_joint2_offset_x + six_r_c_2*six_r_r_3_in_axes2_y +
-            six_r_r_2_in_axes2_x*six_r_s_2;
-        const real six_r_r_1_t = six_r_c_2*six_r_r_2_in_axes1_y + six_r_r_1_in_axes1_z*six_r_s_2;
-        const real six_r_r_1_t_2 = six_r_c_2*six_r_r_1_in_axes1_z -
-            six_r_r_2_in_axes1_y*six_r_s_2;
-        const real six_r_r_1_t_3 = six_r_c_3*six_r_r_1_t + six_r_r_1_t_2*six_r_s_3;
-        const real six_r_r_1_t_4 = six_r_c_3*six_r_r_1_t_2 - six_r_r_1_t*six_r_s_3;
-        const real six_r_r_1_in_axes5_z = six_r_r_3_t + six_r_c_4*six_r_r_1_t_4;
-        const real six_r_r_1_t_5 = -six_r_r_3_t_2 - six_r_r_1_t_4*six_r_s_4;
-        const real six_r_r_1_in_axes5_x = six_r_c_5*six_r_r_1_t_5 + six_r_r_1_t_3*six_r_s_5;
-        const real six_r_r_1_in_axes5_y = six_r_c_5*six_r_r_1_t_3 - six_r_r_1_t_5*six_r_s_5;
-        /* (six_r-v_1) velocity of the connection point per rate of joint 1 */
-        const real six_r_v_1_t = six_r_c_2*six_r_s_3 + six_r_c_3*six_r_s_2;
-        const real six_r_v_1_t_2 = six_r_c_2*six_r_c_3 - six_r_s_2*six_r_s_3;
-        const real six_r_e_1_in_axes5_z = six_r_c_4*six_r_v_1_t_2;
-        const real six_r_v_1_t_3 = six_r_s_4*six_r_v_1_t_2;
-        const real six_r_e_1_in_axes5_x = six_r_s_5*six_r_v_1_t - six_r_c_5*six_r_v_1_t_3;
-        const real six_r_e_1_in_axes5_y = six_r_c_5*six_r_v_1_t + six_r_s_5*six_r_v_1_t_3;
-        const real six_r_v_1_in_axes5_x = six_r_e_1_in_axes5_y*six_r_r_1_in_axes5_z -
-            six_r_e_1_in_axes5_z*six_r_r_1_in_axes5_y;
-        const real six_r_v_1_in_axes5_y = six_r_e_1_in_axes5_z*six_r_r_1_in_axes5_x -
-            six_r_e_1_in_axes5_x*six_r_r_1_in_axes5_z;
-        const real six_r_v_1_in_axes5_z = six_r_e_1_in_axes5_x*six_r_r_1_in_axes5_y -
-            six_r_e_1_in_axes5_y*six_r_r_1_in_axes5_x;
-        /* (six_r-v_2) velocity of the connection point per rate of joint 2 */
-        const real six_r_e_2_in_axes5_x = six_r_c_4*six_r_c_5;
-        const real six_r_e_2_in_axes5_y = -six_r_c_4*six_r_s_5;
-        const real six_r_v_2_in_axes5_x = six_r_e_2_in_axes5_y*six_r_r_2_in_axes5_z -
-            six_r_r_2_in_axes5_y*six_r_s_4;
-        const real six_r_v_2_in_axes5_y = six_r_r_2_in_axes5_x*six_r_s_4 -
-            six_r_e_2_in_axes5_x*six_r_r_2_in_axes5_z;
-        const real six_r_v_2_in_axes5_z = six_r_e_2_in_axes5_x*six_r_r_2_in_axes5_y -
-            six_r_e_2_in_axes5_y*six_r_r_2_in_axes5_x;
-        /* (six_r-v_3) velocity of the connection point per rate of joint 3 */
-        const real six_r_v_3_in_axes5_x = six_r_e_2_in_axes5_y*six_r_r_3_in_axes5_z -
-            six_r_r_3_in_axes5_y*six_r_s_4;
-        const real six_r_v_3_in_axes5_y = six_r_r_3_in_axes5_x*six_r_s_4 -
-            six_r_e_2_in_axes5_x*six_r_r_3_in_axes5_z;
-        const real six_r_v_3_in_axes5_z = six_r_e_2_in_axes5_x*six_r_r_3_in_axes5_y -
-            six_r_e_2_in_axes5_y*six_r_r_3_in_axes5_x;
-        /* (six_r-v_4) velocity of the connection point per rate of joint 4 */
-        const real six_r_v_4_in_axes5_z = six_r_s_5*(six_r_c_5*six_r_r_4_in_axes4_z -
-            six_r_r_4_in_axes4_y*six_r_s_5) - six_r_c_5*(six_r_c_5*six_r_r_4_in_axes4_y +
-            six_r_r_4_in_axes4_z*six_r_s_5);
         /* (six_r-n_m1) direction 1 of the moment that the platform joint transmits */
+        const real six_r_end_p1_in_axes5_y = v.six_r_c_5*v.six_r_n_m1_t_10 -
+            v.six_r_n_m1_t_9*v.six_r_s_5;
+        const real six_r_n_m1_t_11 = v.six_r_e_1_in_axes5_x*six_r_end_p1_in_axes5_y -
+            v.six_r_e_1_in_axes5_y*v.six_r_n_m1_in_axes5_y;
+        const real six_r_n_m1_t_12 = v.six_r_e_2_in_axes5_x*six_r_end_p1_in_axes5_y -
+            v.six_r_e_2_in_axes5_y*v.six_r_n_m1_in_axes5_y;
+        const real six_r_n_m1_in_axes4_z = -v.six_r_c_5*six_r_end_p1_in_axes5_y -
+            v.six_r_n_m1_in_axes5_y*v.six_r_s_5;
+        /* (six_r-n_m2) direction 2 of the moment that the platform joint transmits */
+        const real six_r_n_m2_t = v.six_r_e_1_in_axes5_y*v.six_r_end_p1_in_axes5_z -
+            v.six_r_e_1_in_axes5_z*six_r_end_p1_in_axes5_y;
+        const real six_r_n_m2_t_2 = v.six_r_e_2_in_axes5_y*v.six_r_end_p1_in_axes5_z -
+            v.six_r_c_4*six_r_end_p1_in_axes5_y;
+        const real six_r_n_m2_in_axes4_z = v.six_r_end_p1_in_axes5_z*v.six_r_s_5;
+        /* (six_r-gap) from the connection point as the links reach it to the platform's */
         const real six_r_base_frame_xy = m->six_r_base_frame_xy[i];
         const real six_r_base_frame_yy = m->six_r_base_frame_yy[i];
         const real six_r_base_frame_zy = m->six_r_base_frame_zy[i];
-        const real six_r_platform_joint_axis_platform_x = m->six_r_platform_joint_axis_platform_x[i];
-        const real six_r_platform_joint_axis_platform_y = m->six_r_platform_joint_axis_platform_y[i];
-        const real six_r_platform_joint_axis_platform_z = m->six_r_platform_joint_axis_platform_z[i];
-        const real six_r_n_m1_t = six_r_platform_joint_axis_platform_x*(R_xx*six_r_base_frame_xy +
-            R_yx*six_r_base_frame_yy + R_zx*six_r_base_frame_zy) +
-            six_r_platform_joint_axis_platform_y*(R_xy*six_r_base_frame_xy +
-            R_yy*six_r_base_frame_yy + R_zy*six_r_base_frame_zy) +
-            six_r_platform_joint_axis_platform_z*(R_xz*six_r_base_frame_xy +
-            R_yz*six_r_base_frame_yy + R_zz*six_r_base_frame_zy);
+        const real six_r_gap_t = six_r_S_x*six_r_base_frame_xy + six_r_S_y*six_r_base_frame_yy +
+            six_r_S_z*six_r_base_frame_zy;
         const real six_r_base_frame_xz = m->six_r_base_frame_xz[i];
         const real six_r_base_frame_yz = m->six_r_base_frame_yz[i];
         const real six_r_base_frame_zz = m->six_r_base_frame_zz[i];
-        const real six_r_n_m1_t_2 = six_r_platform_joint_axis_platform_x*(R_xx*six_r_base_frame_xz
-            + R_yx*six_r_base_frame_yz + R_zx*six_r_base_frame_zz) +
-            six_r_platform_joint_axis_platform_y*(R_xy*six_r_base_frame_xz +
-            R_yy*six_r_base_frame_yz + R_zy*six_r_base_frame_zz) +
-            six_r_platform_joint_axis_platform_z*(R_xz*six_r_base_frame_xz +
-            R_yz*six_r_base_frame_yz + R_zz*six_r_base_frame_zz);
+        const real six_r_gap_t_2 = six_r_S_x*six_r_base_frame_xz + six_r_S_y*six_r_base_frame_yz +
+            six_r_S_z*six_r_base_frame_zz;
         const real six_r_base_frame_xx = m->six_r_base_frame_xx[i];
         const real six_r_base_frame_yx = m->six_r_base_frame_yx[i];
         const real six_r_base_frame_zx = m->six_r_base_frame_zx[i];
-        const real six_r_n_m1_t_3 = six_r_platform_joint_axis_platform_x*(R_xx*six_r_base_frame_xx
-            + R_yx*six_r_base_frame_yx + R_zx*six_r_base_frame_zx) +
-            six_r_platform_joint_axis_platform_y*(R_xy*six_r_base_frame_xx +
-            R_yy*six_r_base_frame_yx + R_zy*six_r_base_frame_zx) +
-            six_r_platform_joint_axis_platform_z*(R_xz*six_r_base_frame_xx +
-            R_yz*six_r_base_frame_yx + R_zz*six_r_base_frame_zx);
-        const real six_r_n_m1_t_4 = six_r_c_1*six_r_n_m1_t + six_r_n_m1_t_2*six_r_s_1;
-        const real six_r_n_m1_t_5 = six_r_c_1*six_r_n_m1_t_2 - six_r_n_m1_t*six_r_s_1;
-        const real six_r_n_m1_t_6 = six_r_c_2*six_r_n_m1_t_5 + six_r_n_m1_t_3*six_r_s_2;
-        const real six_r_n_m1_t_7 = six_r_c_2*six_r_n_m1_t_3 - six_r_n_m1_t_5*six_r_s_2;
-        const real six_r_n_m1_t_8 = six_r_c_3*six_r_n_m1_t_6 + six_r_n_m1_t_7*six_r_s_3;
-        const real six_r_n_m1_t_9 = six_r_c_3*six_r_n_m1_t_7 - six_r_n_m1_t_6*six_r_s_3;
-        const real six_r_n_m1_t_10 = six_r_c_4*six_r_n_m1_t_4 - six_r_n_m1_t_9*six_r_s_4;
-        const real six_r_n_m1_in_axes5_y = six_r_c_5*six_r_n_m1_t_10 + six_r_n_m1_t_8*six_r_s_5;
-        const real six_r_end_p1_in_axes5_y = six_r_c_5*six_r_n_m1_t_8 - six_r_n_m1_t_10*six_r_s_5;
-        const real six_r_n_m1_t_11 = six_r_e_1_in_axes5_x*six_r_end_p1_in_axes5_y -
-            six_r_e_1_in_axes5_y*six_r_n_m1_in_axes5_y;
-        const real six_r_n_m1_t_12 = six_r_e_2_in_axes5_x*six_r_end_p1_in_axes5_y -
-            six_r_e_2_in_axes5_y*six_r_n_m1_in_axes5_y;
-        const real six_r_n_m1_in_axes4_z = six_r_c_5*six_r_n_m1_in_axes5_y -
-            six_r_end_p1_in_axes5_y*six_r_s_5;
-        /* (six_r-n_m2) direction 2 of the moment that the platform joint transmits */
-        const real six_r_end_p1_in_axes5_z = six_r_c_4*six_r_n_m1_t_9 + six_r_n_m1_t_4*six_r_s_4;
-        const real six_r_n_m2_t = six_r_e_1_in_axes5_y*six_r_end_p1_in_axes5_z -
-            six_r_e_1_in_axes5_z*six_r_end_p1_in_axes5_y;
-        const real six_r_n_m2_t_2 = six_r_e_2_in_axes5_y*six_r_end_p1_in_axes5_z -
-            six_r_end_p1_in_axes5_y*six_r_s_4;
-        const real six_r_n_m2_in_axes4_z = -six_r_c_5*six_r_end_p1_in_axes5_z;
-        /* (six_r-gap) from the connection point as the links reach it to the platform's */
-        const real six_r_gap_t = six_r_S_x*six_r_base_frame_xy + six_r_S_y*six_r_base_frame_yy +
-            six_r_S_z*six_r_base_frame_zy;
-        const real six_r_gap_t_2 = six_r_S_x*six_r_base_frame_xz + six_r_S_y*six_r_base_frame_yz +
-            six_r_S_z*six_r_base_frame_zz;
         const real six_r_gap_t_3 = six_r_S_x*six_r_base_frame_xx + six_r_S_y*six_r_base_frame_yx +
             six_r_S_z*six_r_base_frame_zx;
-        const real six_r_gap_t_4 = six_r_c_1*six_r_gap_t + six_r_gap_t_2*six_r_s_1;
-        const real six_r_gap_t_5 = six_r_c_1*six_r_gap_t_2 - six_r_gap_t*six_r_s_1;
-        const real six_r_gap_t_6 = six_r_c_2*six_r_gap_t_5 + six_r_gap_t_3*six_r_s_2;
-        const real six_r_gap_t_7 = six_r_c_2*six_r_gap_t_3 - six_r_gap_t_5*six_r_s_2;
-        const real six_r_gap_t_8 = six_r_c_3*six_r_gap_t_6 + six_r_gap_t_7*six_r_s_3;
-        const real six_r_gap_t_9 = six_r_c_3*six_r_gap_t_7 - six_r_gap_t_6*six_r_s_3;
-        const real six_r_gap_t_10 = six_r_c_4*six_r_gap_t_4 - six_r_gap_t_9*six_r_s_4;
-        const real six_r_gap_in_axes5_x = six_r_c_5*six_r_gap_t_10 + six_r_gap_t_8*six_r_s_5 -
-            six_r_r_1_in_axes5_x;
-        const real six_r_gap_in_axes5_y = six_r_c_5*six_r_gap_t_8 - six_r_r_1_in_axes5_y -
-            six_r_gap_t_10*six_r_s_5;
-        const real six_r_gap_in_axes5_z = six_r_c_4*six_r_gap_t_9 + six_r_gap_t_4*six_r_s_4 -
-            six_r_r_1_in_axes5_z;
+        const real six_r_gap_t_4 = v.six_r_c_1*six_r_gap_t + six_r_gap_t_2*v.six_r_s_1;
+        const real six_r_gap_t_5 = v.six_r_c_1*six_r_gap_t_2 - six_r_gap_t*v.six_r_s_1;
+        const real six_r_gap_t_6 = v.six_r_c_2*six_r_gap_t_3 + six_r_gap_t_4*v.six_r_s_2;
+        const real six_r_gap_t_7 = v.six_r_c_2*six_r_gap_t_4 - six_r_gap_t_3*v.six_r_s_2;
+        const real six_r_gap_t_8 = six_r_gap_t_6*v.six_r_s_3 - v.six_r_c_3*six_r_gap_t_7;
+        const real six_r_gap_t_9 = v.six_r_c_3*six_r_gap_t_6 + six_r_gap_t_7*v.six_r_s_3;
+        const real six_r_gap_t_10 = six_r_gap_t_5*v.six_r_s_4 - v.six_r_c_4*six_r_gap_t_8;
+        const real six_r_gap_in_axes5_x = v.six_r_c_5*six_r_gap_t_9 + six_r_gap_t_10*v.six_r_s_5 -
+            v.six_r_r_1_in_axes5_x;
+        const real six_r_gap_in_axes5_y = v.six_r_c_5*six_r_gap_t_10 - v.six_r_r_1_in_axes5_y -
+            six_r_gap_t_9*v.six_r_s_5;
+        const real six_r_gap_in_axes5_z = v.six_r_c_4*six_r_gap_t_5 + six_r_gap_t_8*v.six_r_s_4 -
+            v.six_r_r_1_in_axes5_z;
         /* (six_r-gap) from the connection point as the links reach it to the platform's */
         o[0*count + k] = six_r_gap_in_axes5_x;
         o[1*count + k] = six_r_gap_in_axes5_y;
         o[2*count + k] = six_r_gap_in_axes5_z;
         /* (six_r-v_1) velocity of the connection point per rate of joint 1 */
-        o[3*count + k] = six_r_v_1_in_axes5_x;
-        o[4*count + k] = six_r_v_1_in_axes5_y;
-        o[5*count + k] = six_r_v_1_in_axes5_z;
+        o[3*count + k] = v.six_r_v_1_in_axes5_x;
+        o[4*count + k] = v.six_r_v_1_in_axes5_y;
+        o[5*count + k] = v.six_r_v_1_in_axes5_z;
         /* (six_r-v_2) velocity of the connection point per rate of joint 2 */
-        o[6*count + k] = six_r_v_2_in_axes5_x;
-        o[7*count + k] = six_r_v_2_in_axes5_y;
-        o[8*count + k] = six_r_v_2_in_axes5_z;
+        o[6*count + k] = v.six_r_v_2_in_axes5_x;
+        o[7*count + k] = v.six_r_v_2_in_axes5_y;
+        o[8*count + k] = v.six_r_v_2_in_axes5_z;
         /* (six_r-v_3) velocity of the connection point per rate of joint 3 */
-        o[9*count + k] = six_r_v_3_in_axes5_x;
-        o[10*count + k] = six_r_v_3_in_axes5_y;
-        o[11*count + k] = six_r_v_3_in_axes5_z;
+        o[9*count + k] = v.six_r_v_3_in_axes5_x;
+        o[10*count + k] = v.six_r_v_3_in_axes5_y;
+        o[11*count + k] = v.six_r_v_3_in_axes5_z;
         /* (six_r-v_4) velocity of the connection point per rate of joint 4 */
-        o[12*count + k] = six_r_v_4_in_axes5_z;
+        o[12*count + k] = v.six_r_v_4_in_axes5_z;
         /* (six_r-v_5) velocity of the connection point per rate of joint 5 */
+        const real six_r_platform_joint_offset_x = m->six_r_platform_joint_offset_x[i];
         o[13*count + k] = six_r_platform_joint_offset_x;
         /* (legs_size) rms size of the legs, taken where the platform points coincide */
-        o[14*count + k] = -six_r_end_p1_in_axes5_z;
+        o[14*count + k] = -v.six_r_end_p1_in_axes5_z;
         /* (six_r-n_m1) direction 1 of the moment that the platform joint transmits */
         o[15*count + k] = -six_r_n_m1_t_11;
         o[16*count + k] = -six_r_n_m1_t_12;
         o[17*count + k] = -six_r_n_m1_t_12;
         o[18*count + k] = six_r_n_m1_in_axes4_z;
         /* (legs_size) rms size of the legs, taken where the platform points coincide */
-        o[19*count + k] = -six_r_n_m1_in_axes5_y;
+        o[19*count + k] = -v.six_r_n_m1_in_axes5_y;
         /* (six_r-n_m2) direction 2 of the moment that the platform joint transmits */
         o[20*count + k] = -six_r_n_m2_t;
         o[21*count + k] = -six_r_n_m2_t_2;
@@ -2050,11 +3787,11 @@ INLINE void closure_six_r_place_six_r(size_t w, size_t count, const real *o, siz
 INLINE void closure_six_r_run(const prepared *m, const real *X, const real *joints, real
     *gap_six_r, real *jacobian_six_r, verdict *t)
 {
-    real s[12] = {0};
+    real s[9] = {0};
     real o_six_r[25*LEGS(LEGS_OF_six_r)] = {0};
     clear(jacobian_six_r, 150);
-    closure_six_r_before(1, X, s, t);
-    closure_six_r_legs_six_r(m, 1, 0, 1, s, 0, LEGS(LEGS_OF_six_r), joints, o_six_r);
+    closure_six_r_before(m, 1, X, s, t);
+    closure_six_r_legs_six_r(m, 1, 0, 1, s, 0, LEGS(LEGS_OF_six_r), X, joints, o_six_r);
     for (size_t leg = 0; leg < LEGS_OF_six_r; ++leg) {
         closure_six_r_place_six_r(1, LEGS(LEGS_OF_six_r), o_six_r, leg, leg, gap_six_r, jacobian_six_r);
     }
@@ -2125,239 +3862,91 @@ INLINE void dynamics_before(const prepared *m, size_t w, const real *X, const re
     verdict *t)
 {
     for (size_t k = 0; k < w; ++k) {
-        /* X: named entries */
-        const real X_3 = X[3*w + k];
-        const real X_4 = X[4*w + k];
-        const real X_5 = X[5*w + k];
-        const real X_6 = X[6*w + k];
-        const real quaternion_norm2 = X_3*X_3 + X_4*X_4 + X_5*X_5 + X_6*X_6;
-        const real quaternion_scale = 2/quaternion_norm2;
-        const real quaternion_sx = X_3*quaternion_scale;
-        const real quaternion_sy = X_4*quaternion_scale;
-        const real quaternion_sz = X_5*quaternion_scale;
-        const real quaternion_wx = X_6*quaternion_sx;
-        const real quaternion_wy = X_6*quaternion_sy;
-        const real quaternion_wz = X_6*quaternion_sz;
-        const real quaternion_xx = X_3*quaternion_sx;
-        const real quaternion_xy = X_3*quaternion_sy;
-        const real quaternion_xz = X_3*quaternion_sz;
-        const real quaternion_yy = X_4*quaternion_sy;
-        const real quaternion_yz = X_4*quaternion_sz;
-        const real quaternion_zz = X_5*quaternion_sz;
-        const real R_xx = 1 - quaternion_yy - quaternion_zz;
-        const real R_xy = quaternion_xy - quaternion_wz;
-        const real R_xz = quaternion_wy + quaternion_xz;
-        const real R_yx = quaternion_wz + quaternion_xy;
-        const real R_yy = 1 - quaternion_xx - quaternion_zz;
-        const real R_yz = quaternion_yz - quaternion_wx;
-        const real R_zx = quaternion_xz - quaternion_wy;
-        const real R_zy = quaternion_wx + quaternion_yz;
-        const real R_zz = 1 - quaternion_xx - quaternion_yy;
-        /* V: named entries */
-        const real V_0 = V[0*w + k];
-        const real t_dot_x = V_0;
-        const real V_1 = V[1*w + k];
-        const real t_dot_y = V_1;
-        const real V_2 = V[2*w + k];
-        const real t_dot_z = V_2;
-        const real V_3 = V[3*w + k];
-        const real omega_x = V_3;
-        const real V_4 = V[4*w + k];
-        const real omega_y = V_4;
-        const real V_5 = V[5*w + k];
-        const real omega_z = V_5;
-        /* (h_star) first moment about the platform origin */
-        const real h_star_in_platform_x = m->h_star_in_platform_x;
-        const real h_star_in_platform_y = m->h_star_in_platform_y;
-        const real h_star_in_platform_z = m->h_star_in_platform_z;
-        const real h_star_x = R_xx*h_star_in_platform_x + R_xy*h_star_in_platform_y +
-            R_xz*h_star_in_platform_z;
-        const real h_star_y = R_yx*h_star_in_platform_x + R_yy*h_star_in_platform_y +
-            R_yz*h_star_in_platform_z;
-        const real h_star_z = R_zx*h_star_in_platform_x + R_zy*h_star_in_platform_y +
-            R_zz*h_star_in_platform_z;
-        /* (J_star) inertia tensor about the platform origin */
-        const real J_star_in_platform_xy = m->J_star_in_platform_xy;
-        const real J_star_in_platform_yz = m->J_star_in_platform_yz;
-        const real J_star_t_12 = m->J_star_t_12;
-        const real J_star_t = J_star_in_platform_xy*R_xx + J_star_in_platform_yz*R_xz -
-            J_star_t_12*R_xy;
-        const real J_star_t_2 = J_star_in_platform_xy*R_yx + J_star_in_platform_yz*R_yz -
-            J_star_t_12*R_yy;
-        const real J_star_t_3 = J_star_in_platform_xy*R_zx + J_star_in_platform_yz*R_zz -
-            J_star_t_12*R_zy;
-        const real J_star_in_platform_xz = m->J_star_in_platform_xz;
-        const real J_star_t_14 = m->J_star_t_14;
-        const real J_star_t_4 = J_star_t_14*R_xz - J_star_in_platform_xz*R_xx;
-        const real J_star_t_5 = J_star_t_14*R_yz - J_star_in_platform_xz*R_yx;
-        const real J_star_t_6 = J_star_t_14*R_zz - J_star_in_platform_xz*R_zx;
-        const real J_star_t_7 = J_star_t*R_xy - J_star_t_4*R_xz;
-        const real J_star_in_platform_xx = m->J_star_in_platform_xx;
-        const real J_star_xx = J_star_in_platform_xx + 2*J_star_t_7;
-        const real J_star_xy = J_star_t*R_yy + J_star_t_2*R_xy - J_star_t_4*R_yz -
-            J_star_t_5*R_xz;
-        const real J_star_xz = J_star_t*R_zy + J_star_t_3*R_xy - J_star_t_4*R_zz -
-            J_star_t_6*R_xz;
-        const real J_star_t_8 = J_star_t_2*R_yy - J_star_t_5*R_yz;
-        const real J_star_yy = J_star_in_platform_xx + 2*J_star_t_8;
-        const real J_star_yz = J_star_t_2*R_zy + J_star_t_3*R_yy - J_star_t_5*R_zz -
-            J_star_t_6*R_yz;
-        const real J_star_t_9 = J_star_t_3*R_zy - J_star_t_6*R_zz;
-        const real J_star_zz = J_star_in_platform_xx + 2*J_star_t_9;
-        /* (Z_p) centripetal force and weight of the platform */
-        const real Z_p_t_4 = h_star_z*omega_y - h_star_y*omega_z;
-        const real Z_p_t_5 = h_star_x*omega_z - h_star_z*omega_x;
-        const real Z_p_t_6 = h_star_y*omega_x - h_star_x*omega_y;
-        const real Z_p_t = m->Z_p_t;
-        const real Z_p_x = Z_p_t_6*omega_y - Z_p_t - Z_p_t_5*omega_z;
-        const real Z_p_t_2 = m->Z_p_t_2;
-        const real Z_p_y = Z_p_t_4*omega_z - Z_p_t_2 - Z_p_t_6*omega_x;
-        const real Z_p_t_3 = m->Z_p_t_3;
-        const real Z_p_z = Z_p_t_5*omega_x - Z_p_t_3 - Z_p_t_4*omega_y;
-        /* (Z_q) gyroscopic moment and moment of the weight of the platform */
-        const real gravity_x = m->gravity_x;
-        const real gravity_y = m->gravity_y;
-        const real gravity_z = m->gravity_z;
-        const real g_in_platform_x = R_xx*gravity_x + R_yx*gravity_y + R_zx*gravity_z;
-        const real g_in_platform_y = R_xy*gravity_x + R_yy*gravity_y + R_zy*gravity_z;
-        const real g_in_platform_z = R_xz*gravity_x + R_yz*gravity_y + R_zz*gravity_z;
-        const real omega_in_platform_x = R_xx*omega_x + R_yx*omega_y + R_zx*omega_z;
-        const real omega_in_platform_y = R_xy*omega_x + R_yy*omega_y + R_zy*omega_z;
-        const real omega_in_platform_z = R_xz*omega_x + R_yz*omega_y + R_zz*omega_z;
-        const real Z_q_t = J_star_in_platform_xx*omega_in_platform_x +
-            J_star_in_platform_xy*omega_in_platform_y + J_star_in_platform_xz*omega_in_platform_z;
-        const real J_star_in_platform_yy = m->J_star_in_platform_yy;
-        const real Z_q_t_2 = J_star_in_platform_xy*omega_in_platform_x +
-            J_star_in_platform_yy*omega_in_platform_y + J_star_in_platform_yz*omega_in_platform_z;
-        const real J_star_in_platform_zz = m->J_star_in_platform_zz;
-        const real Z_q_t_3 = J_star_in_platform_xz*omega_in_platform_x +
-            J_star_in_platform_yz*omega_in_platform_y + J_star_in_platform_zz*omega_in_platform_z;
-        const real Z_q_in_platform_x = Z_q_t_3*omega_in_platform_y +
-            g_in_platform_y*h_star_in_platform_z - Z_q_t_2*omega_in_platform_z -
-            g_in_platform_z*h_star_in_platform_y;
-        const real Z_q_in_platform_y = Z_q_t*omega_in_platform_z +
-            g_in_platform_z*h_star_in_platform_x - Z_q_t_3*omega_in_platform_x -
-            g_in_platform_x*h_star_in_platform_z;
-        const real Z_q_in_platform_z = Z_q_t_2*omega_in_platform_x +
-            g_in_platform_x*h_star_in_platform_y - Z_q_t*omega_in_platform_y -
-            g_in_platform_y*h_star_in_platform_x;
-        const real Z_q_x = R_xx*Z_q_in_platform_x + R_xy*Z_q_in_platform_y +
-            R_xz*Z_q_in_platform_z;
-        const real Z_q_y = R_yx*Z_q_in_platform_x + R_yy*Z_q_in_platform_y +
-            R_yz*Z_q_in_platform_z;
-        const real Z_q_z = R_zx*Z_q_in_platform_x + R_zy*Z_q_in_platform_y +
-            R_zz*Z_q_in_platform_z;
-        s[0*w + k] = R_xx;
-        s[1*w + k] = R_xy;
-        s[2*w + k] = R_xz;
-        s[3*w + k] = R_yx;
-        s[4*w + k] = R_yy;
-        s[5*w + k] = R_yz;
-        s[6*w + k] = R_zx;
-        s[7*w + k] = R_zy;
-        s[8*w + k] = R_zz;
-        s[9*w + k] = t_dot_x;
-        s[10*w + k] = t_dot_y;
-        s[11*w + k] = t_dot_z;
-        s[12*w + k] = omega_x;
-        s[13*w + k] = omega_y;
-        s[14*w + k] = omega_z;
-        s[15*w + k] = h_star_x;
-        s[16*w + k] = h_star_y;
-        s[17*w + k] = h_star_z;
-        s[18*w + k] = J_star_xx;
-        s[19*w + k] = J_star_xy;
-        s[20*w + k] = J_star_xz;
-        s[21*w + k] = J_star_yy;
-        s[22*w + k] = J_star_yz;
-        s[23*w + k] = J_star_zz;
-        s[24*w + k] = Z_p_x;
-        s[25*w + k] = Z_p_y;
-        s[26*w + k] = Z_p_z;
-        s[27*w + k] = Z_q_x;
-        s[28*w + k] = Z_q_y;
-        s[29*w + k] = Z_q_z;
-        t->invalid[k] += UNLESS(is_finite(quaternion_scale)) + UNLESS(quaternion_scale > 0);
+        values v;
+        stage_X(m, w, k, X, &v);
+        stage_V_X(w, k, V, &v);
+        stage_M_dynamics(m, &v);
+        stage_Z_dynamics(m, w, k, V, &v);
+        s[0*w + k] = v.R_xx;
+        s[1*w + k] = v.R_xy;
+        s[2*w + k] = v.R_xz;
+        s[3*w + k] = v.R_yx;
+        s[4*w + k] = v.R_yy;
+        s[5*w + k] = v.R_yz;
+        s[6*w + k] = v.R_zx;
+        s[7*w + k] = v.R_zy;
+        s[8*w + k] = v.R_zz;
+        s[9*w + k] = v.h_star_x;
+        s[10*w + k] = v.h_star_y;
+        s[11*w + k] = v.h_star_z;
+        s[12*w + k] = v.J_star_xx;
+        s[13*w + k] = v.J_star_xy;
+        s[14*w + k] = v.J_star_xz;
+        s[15*w + k] = v.J_star_yy;
+        s[16*w + k] = v.J_star_yz;
+        s[17*w + k] = v.J_star_zz;
+        s[18*w + k] = v.Z_p_x;
+        s[19*w + k] = v.Z_p_y;
+        s[20*w + k] = v.Z_p_z;
+        s[21*w + k] = v.Z_q_x;
+        s[22*w + k] = v.Z_q_y;
+        s[23*w + k] = v.Z_q_z;
+        t->invalid[k] += UNLESS(is_finite(v.quaternion_scale)) + UNLESS(v.quaternion_scale > 0);
     }
 }
 
 INLINE void dynamics_legs_six_r(const prepared *m, size_t w, size_t leg, size_t legs, const real
-    *s, size_t states, size_t count, int add, const real *joints, real *terms, real *o)
+    *s, size_t states, size_t count, int add, const real *V, const real *joints, real *terms, real
+    *o)
 {
-    static const size_t place_six_r_q_1[] = {0, 5, 10, 15, 20, 25, 0, 0};
-    static const size_t place_six_r_q_2[] = {1, 6, 11, 16, 21, 26, 1, 1};
-    static const size_t place_six_r_q_3[] = {2, 7, 12, 17, 22, 27, 2, 2};
-    static const size_t place_six_r_q_4[] = {3, 8, 13, 18, 23, 28, 3, 3};
-    static const size_t place_six_r_q_5[] = {4, 9, 14, 19, 24, 29, 4, 4};
     for (size_t k = 0; k < count; ++k) {
         const size_t i = leg + legs*k;
         const size_t j = states*k;
-        /* (six_r-h_4) first moment of link 4 about the origin of link 4 */
-        const real six_r_q_4 = joints[place_six_r_q_4[i]*w + j];
-        const real six_r_h_4_t = -sine(six_r_q_4);
-        const real six_r_e_2_in_axes5_z = cosine(six_r_q_4);
-        const real six_r_h_4_in_spec4_y = m->six_r_h_4_in_spec4_y[i];
-        const real six_r_h_4_in_spec4_z = m->six_r_h_4_in_spec4_z[i];
-        const real six_r_h_4_in_axes3_y = six_r_e_2_in_axes5_z*six_r_h_4_in_spec4_y +
-            six_r_h_4_in_spec4_z*six_r_h_4_t;
-        /* (six_r-J_5) inertia tensor of link 5 about the connection point */
-        const real six_r_q_5 = joints[place_six_r_q_5[i]*w + j];
-        const real six_r_e_4_in_axes5_y = -sine(six_r_q_5);
-        const real six_r_e_4_in_axes5_x = cosine(six_r_q_5);
-        const real six_r_J_5_in_spec5_xz = m->six_r_J_5_in_spec5_xz[i];
-        const real six_r_J_5_in_spec5_yz = m->six_r_J_5_in_spec5_yz[i];
-        const real six_r_J_5_in_axes4_xz = six_r_J_5_in_spec5_xz*six_r_e_4_in_axes5_x +
-            six_r_J_5_in_spec5_yz*six_r_e_4_in_axes5_y;
-        /* (six_r-c_1) cosine of the angle of joint 1 from its reference direction */
-        const real six_r_q_1 = joints[place_six_r_q_1[i]*w + j];
-        const real six_r_c_1 = -sine(six_r_q_1);
-        /* (six_r-s_1) sine of the angle of joint 1 from its reference direction */
-        const real six_r_s_1 = cosine(six_r_q_1);
-        /* (six_r-c_2) cosine of the angle of joint 2 from its reference direction */
-        const real six_r_q_2 = joints[place_six_r_q_2[i]*w + j];
-        const real six_r_c_2 = -sine(six_r_q_2);
-        /* (six_r-s_2) sine of the angle of joint 2 from its reference direction */
-        const real six_r_s_2 = cosine(six_r_q_2);
-        /* (six_r-c_3) cosine of the angle of joint 3 from its reference direction */
-        const real six_r_q_3 = joints[place_six_r_q_3[i]*w + j];
-        const real six_r_c_3 = cosine(six_r_q_3);
-        /* (six_r-s_3) sine of the angle of joint 3 from its reference direction */
-        const real six_r_s_3 = sine(six_r_q_3);
+        values_six_r v;
+        stage_six_r_X(m, w, i, j, s, &v);
+        stage_six_r_q(m, w, i, j, joints, &v);
+        stage_six_r_V_X(w, j, V, &v);
+        stage_six_r_X_q(m, i, &v);
+        stage_six_r_M_dynamics(m, w, i, j, joints, &v);
+        stage_six_r_Z_dynamics(m, w, i, j, V, &v);
         /* (six_r-S_dot) velocity of the connection point */
-        const real six_r_e_2_in_axes5_y = -six_r_e_4_in_axes5_x*six_r_h_4_t;
-        const real six_r_S_dot_t = -six_r_h_4_t*six_r_s_3;
-        const real six_r_S_dot_t_2 = -six_r_c_3*six_r_h_4_t;
-        const real six_r_S_dot_t_3 = six_r_S_dot_t*six_r_c_2 + six_r_S_dot_t_2*six_r_s_2;
-        const real six_r_S_dot_t_4 = six_r_S_dot_t*six_r_s_2 - six_r_S_dot_t_2*six_r_c_2;
-        const real six_r_S_dot_t_5 = six_r_c_1*six_r_e_2_in_axes5_z - six_r_S_dot_t_3*six_r_s_1;
-        const real six_r_S_dot_t_6 = six_r_S_dot_t_3*six_r_c_1 + six_r_e_2_in_axes5_z*six_r_s_1;
+        const real six_r_S_dot_t = v.six_r_c_3*v.six_r_h_4_t;
+        const real six_r_S_dot_t_2 = v.six_r_h_4_t*v.six_r_s_3;
+        const real six_r_S_dot_t_3 = six_r_S_dot_t*v.six_r_s_2 + six_r_S_dot_t_2*v.six_r_c_2;
+        const real six_r_S_dot_t_4 = six_r_S_dot_t_2*v.six_r_s_2 - six_r_S_dot_t*v.six_r_c_2;
+        const real six_r_S_dot_t_5 = six_r_S_dot_t_4*v.six_r_c_1 -
+            v.six_r_e_2_in_axes5_z*v.six_r_s_1;
+        const real six_r_S_dot_t_6 = six_r_S_dot_t_4*v.six_r_s_1 +
+            v.six_r_c_1*v.six_r_e_2_in_axes5_z;
         const real six_r_base_frame_xx = m->six_r_base_frame_xx[i];
         const real six_r_base_frame_xy = m->six_r_base_frame_xy[i];
         const real six_r_base_frame_xz = m->six_r_base_frame_xz[i];
-        const real axis_z_six_r_axes5_x = six_r_S_dot_t_4*six_r_base_frame_xx +
+        const real axis_z_six_r_axes5_x = six_r_S_dot_t_3*six_r_base_frame_xx +
             six_r_S_dot_t_5*six_r_base_frame_xy + six_r_S_dot_t_6*six_r_base_frame_xz;
         const real six_r_base_frame_yx = m->six_r_base_frame_yx[i];
         const real six_r_base_frame_yy = m->six_r_base_frame_yy[i];
         const real six_r_base_frame_yz = m->six_r_base_frame_yz[i];
-        const real axis_z_six_r_axes5_y = six_r_S_dot_t_4*six_r_base_frame_yx +
+        const real axis_z_six_r_axes5_y = six_r_S_dot_t_3*six_r_base_frame_yx +
             six_r_S_dot_t_5*six_r_base_frame_yy + six_r_S_dot_t_6*six_r_base_frame_yz;
         const real six_r_base_frame_zx = m->six_r_base_frame_zx[i];
         const real six_r_base_frame_zy = m->six_r_base_frame_zy[i];
         const real six_r_base_frame_zz = m->six_r_base_frame_zz[i];
-        const real axis_z_six_r_axes5_z = six_r_S_dot_t_4*six_r_base_frame_zx +
+        const real axis_z_six_r_axes5_z = six_r_S_dot_t_3*six_r_base_frame_zx +
             six_r_S_dot_t_5*six_r_base_frame_zy + six_r_S_dot_t_6*six_r_base_frame_zz;
-        const real six_r_S_dot_t_7 = six_r_e_2_in_axes5_z*six_r_e_4_in_axes5_x;
-        const real six_r_S_dot_t_8 = six_r_c_3*six_r_e_4_in_axes5_y - six_r_S_dot_t_7*six_r_s_3;
-        const real six_r_S_dot_t_9 = six_r_S_dot_t_7*six_r_c_3 + six_r_e_4_in_axes5_y*six_r_s_3;
-        const real six_r_S_dot_t_10 = six_r_S_dot_t_8*six_r_c_2 - six_r_S_dot_t_9*six_r_s_2;
-        const real six_r_S_dot_t_11 = six_r_S_dot_t_8*six_r_s_2 + six_r_S_dot_t_9*six_r_c_2;
-        const real six_r_S_dot_t_12 = six_r_c_1*six_r_e_2_in_axes5_y - six_r_S_dot_t_10*six_r_s_1;
-        const real six_r_S_dot_t_13 = six_r_S_dot_t_10*six_r_c_1 + six_r_e_2_in_axes5_y*six_r_s_1;
-        const real axis_y_six_r_axes5_x = six_r_S_dot_t_11*six_r_base_frame_xx +
+        const real six_r_S_dot_t_7 = v.six_r_e_2_in_axes5_z*v.six_r_e_4_in_axes5_x;
+        const real six_r_S_dot_t_8 = v.six_r_J_5_t*v.six_r_s_3 - six_r_S_dot_t_7*v.six_r_c_3;
+        const real six_r_S_dot_t_9 = -v.six_r_J_5_t*v.six_r_c_3 - six_r_S_dot_t_7*v.six_r_s_3;
+        const real six_r_S_dot_t_10 = six_r_S_dot_t_8*v.six_r_s_2 + six_r_S_dot_t_9*v.six_r_c_2;
+        const real six_r_S_dot_t_11 = six_r_S_dot_t_9*v.six_r_s_2 - six_r_S_dot_t_8*v.six_r_c_2;
+        const real six_r_S_dot_t_12 = six_r_S_dot_t_11*v.six_r_c_1 -
+            v.six_r_e_2_in_axes5_y*v.six_r_s_1;
+        const real six_r_S_dot_t_13 = six_r_S_dot_t_11*v.six_r_s_1 +
+            v.six_r_c_1*v.six_r_e_2_in_axes5_y;
+        const real axis_y_six_r_axes5_x = six_r_S_dot_t_10*six_r_base_frame_xx +
             six_r_S_dot_t_12*six_r_base_frame_xy + six_r_S_dot_t_13*six_r_base_frame_xz;
-        const real axis_y_six_r_axes5_y = six_r_S_dot_t_11*six_r_base_frame_yx +
+        const real axis_y_six_r_axes5_y = six_r_S_dot_t_10*six_r_base_frame_yx +
             six_r_S_dot_t_12*six_r_base_frame_yy + six_r_S_dot_t_13*six_r_base_frame_yz;
-        const real axis_y_six_r_axes5_z = six_r_S_dot_t_11*six_r_base_frame_zx +
+        const real axis_y_six_r_axes5_z = six_r_S_dot_t_10*six_r_base_frame_zx +
             six_r_S_dot_t_12*six_r_base_frame_zy + six_r_S_dot_t_13*six_r_base_frame_zz;
         const real axis_x_six_r_axes5_x = axis_y_six_r_axes5_y*axis_z_six_r_axes5_z -
             axis_y_six_r_axes5_z*axis_z_six_r_axes5_y;
@@ -2365,163 +3954,19 @@ INLINE void dynamics_legs_six_r(const prepared *m, size_t w, size_t leg, size_t 
             axis_y_six_r_axes5_x*axis_z_six_r_axes5_z;
         const real axis_x_six_r_axes5_z = axis_y_six_r_axes5_x*axis_z_six_r_axes5_y -
             axis_y_six_r_axes5_y*axis_z_six_r_axes5_x;
-        const real R_xx = s[0*w + j];
-        const real R_xy = s[1*w + j];
-        const real R_xz = s[2*w + j];
-        const real six_r_platform_point_x = m->six_r_platform_point_x[i];
-        const real six_r_platform_point_y = m->six_r_platform_point_y[i];
-        const real six_r_platform_point_z = m->six_r_platform_point_z[i];
-        const real six_r_q_x = R_xx*six_r_platform_point_x + R_xy*six_r_platform_point_y +
-            R_xz*six_r_platform_point_z;
-        const real R_yx = s[3*w + j];
-        const real R_yy = s[4*w + j];
-        const real R_yz = s[5*w + j];
-        const real six_r_q_y = R_yx*six_r_platform_point_x + R_yy*six_r_platform_point_y +
-            R_yz*six_r_platform_point_z;
-        const real R_zx = s[6*w + j];
-        const real R_zy = s[7*w + j];
-        const real R_zz = s[8*w + j];
-        const real six_r_q_z = R_zx*six_r_platform_point_x + R_zy*six_r_platform_point_y +
-            R_zz*six_r_platform_point_z;
-        const real omega_y = s[13*w + j];
-        const real omega_z = s[14*w + j];
-        const real six_r_S_dot_t_14 = omega_y*six_r_q_z - omega_z*six_r_q_y;
-        const real omega_x = s[12*w + j];
-        const real six_r_S_dot_t_15 = omega_z*six_r_q_x - omega_x*six_r_q_z;
-        const real six_r_S_dot_t_16 = omega_x*six_r_q_y - omega_y*six_r_q_x;
-        const real t_dot_x = s[9*w + j];
-        const real six_r_S_dot_x = six_r_S_dot_t_14 + t_dot_x;
-        const real t_dot_y = s[10*w + j];
-        const real six_r_S_dot_y = six_r_S_dot_t_15 + t_dot_y;
-        const real t_dot_z = s[11*w + j];
-        const real six_r_S_dot_z = six_r_S_dot_t_16 + t_dot_z;
-        const real six_r_S_dot_in_axes5_x = axis_x_six_r_axes5_x*six_r_S_dot_x +
-            axis_x_six_r_axes5_y*six_r_S_dot_y + axis_x_six_r_axes5_z*six_r_S_dot_z;
-        const real six_r_S_dot_in_axes5_y = axis_y_six_r_axes5_x*six_r_S_dot_x +
-            axis_y_six_r_axes5_y*six_r_S_dot_y + axis_y_six_r_axes5_z*six_r_S_dot_z;
-        const real six_r_S_dot_in_axes5_z = axis_z_six_r_axes5_x*six_r_S_dot_x +
-            axis_z_six_r_axes5_y*six_r_S_dot_y + axis_z_six_r_axes5_z*six_r_S_dot_z;
-        /* (six_r-r_4) from joint 4 to the connection point, along the links */
-        const real six_r_platform_joint_offset_x = m->six_r_platform_joint_offset_x[i];
-        const real six_r_r_4_in_axes4_y = six_r_e_4_in_axes5_y*six_r_platform_joint_offset_x;
-        const real six_r_joint5_offset_x = m->six_r_joint5_offset_x[i];
-        const real six_r_r_4_in_axes4_z = six_r_joint5_offset_x +
-            six_r_e_4_in_axes5_x*six_r_platform_joint_offset_x;
-        const real six_r_r_4_in_axes3_y = -six_r_e_2_in_axes5_z*six_r_r_4_in_axes4_y;
-        const real six_r_r_4_in_axes3_z = six_r_h_4_t*six_r_r_4_in_axes4_y;
-        /* (six_r-r_3) from joint 3 to the connection point, along the links */
-        const real six_r_joint4_offset_x = m->six_r_joint4_offset_x[i];
-        const real six_r_r_3_in_axes3_x = six_r_joint4_offset_x + six_r_r_4_in_axes4_z;
-        const real six_r_r_3_in_axes2_y = six_r_c_3*six_r_r_4_in_axes3_y +
-            six_r_r_3_in_axes3_x*six_r_s_3;
-        const real six_r_r_3_t = six_r_e_2_in_axes5_z*six_r_r_4_in_axes3_z;
-        const real six_r_r_3_t_2 = -six_r_h_4_t*six_r_r_4_in_axes3_z;
-        const real six_r_r_3_in_axes5_z = six_r_r_3_t + six_r_h_4_t*six_r_r_4_in_axes3_y;
-        const real six_r_r_3_t_3 = -six_r_r_3_t_2 - six_r_e_2_in_axes5_z*six_r_r_4_in_axes3_y;
-        const real six_r_r_3_in_axes5_x = six_r_e_4_in_axes5_x*six_r_r_3_in_axes3_x +
-            six_r_e_4_in_axes5_y*six_r_r_3_t_3;
-        const real six_r_r_3_in_axes5_y = six_r_e_4_in_axes5_y*six_r_r_3_in_axes3_x -
-            six_r_e_4_in_axes5_x*six_r_r_3_t_3;
-        /* (six_r-r_2) from joint 2 to the connection point, along the links */
-        const real six_r_joint3_offset_x = m->six_r_joint3_offset_x[i];
-        const real six_r_r_2_in_axes2_x = six_r_joint3_offset_x + six_r_c_3*six_r_r_3_in_axes3_x -
-            six_r_r_4_in_axes3_y*six_r_s_3;
-        const real six_r_r_2_in_axes1_y = six_r_c_2*six_r_r_2_in_axes2_x -
-            six_r_r_3_in_axes2_y*six_r_s_2;
-        const real six_r_r_2_t = six_r_c_3*six_r_r_2_in_axes2_x + six_r_r_3_in_axes2_y*six_r_s_3;
-        const real six_r_r_2_t_2 = six_r_c_3*six_r_r_3_in_axes2_y -
-            six_r_r_2_in_axes2_x*six_r_s_3;
-        const real six_r_r_2_in_axes5_z = six_r_r_3_t + six_r_h_4_t*six_r_r_2_t_2;
-        const real six_r_r_2_t_3 = -six_r_r_3_t_2 - six_r_e_2_in_axes5_z*six_r_r_2_t_2;
-        const real six_r_r_2_in_axes5_x = six_r_e_4_in_axes5_x*six_r_r_2_t +
-            six_r_e_4_in_axes5_y*six_r_r_2_t_3;
-        const real six_r_r_2_in_axes5_y = six_r_e_4_in_axes5_y*six_r_r_2_t -
-            six_r_e_4_in_axes5_x*six_r_r_2_t_3;
-        /* (six_r-r_1) from joint 1 to the connection point, along the links */
-        const real six_r_joint2_offset_x = m->six_r_joint2_offset_x[i];
-        const real six_r_r_1_in_axes1_z = six_r_joint2_offset_x + six_r_c_2*six_r_r_3_in_axes2_y +
-            six_r_r_2_in_axes2_x*six_r_s_2;
-        const real six_r_r_1_t = six_r_c_2*six_r_r_2_in_axes1_y + six_r_r_1_in_axes1_z*six_r_s_2;
-        const real six_r_r_1_t_2 = six_r_c_2*six_r_r_1_in_axes1_z -
-            six_r_r_2_in_axes1_y*six_r_s_2;
-        const real six_r_r_1_t_3 = six_r_c_3*six_r_r_1_t + six_r_r_1_t_2*six_r_s_3;
-        const real six_r_r_1_t_4 = six_r_c_3*six_r_r_1_t_2 - six_r_r_1_t*six_r_s_3;
-        const real six_r_r_1_in_axes5_z = six_r_r_3_t + six_r_h_4_t*six_r_r_1_t_4;
-        const real six_r_r_1_t_5 = -six_r_r_3_t_2 - six_r_e_2_in_axes5_z*six_r_r_1_t_4;
-        const real six_r_r_1_in_axes5_x = six_r_e_4_in_axes5_x*six_r_r_1_t_3 +
-            six_r_e_4_in_axes5_y*six_r_r_1_t_5;
-        const real six_r_r_1_in_axes5_y = six_r_e_4_in_axes5_y*six_r_r_1_t_3 -
-            six_r_e_4_in_axes5_x*six_r_r_1_t_5;
-        /* (six_r-v_1) velocity of the connection point per rate of joint 1 */
-        const real six_r_v_1_t = six_r_c_2*six_r_s_3 + six_r_c_3*six_r_s_2;
-        const real six_r_v_1_t_2 = six_r_c_2*six_r_c_3 - six_r_s_2*six_r_s_3;
-        const real six_r_e_1_in_axes5_z = six_r_h_4_t*six_r_v_1_t_2;
-        const real six_r_v_1_t_3 = six_r_e_2_in_axes5_z*six_r_v_1_t_2;
-        const real six_r_e_1_in_axes5_x = six_r_e_4_in_axes5_x*six_r_v_1_t -
-            six_r_e_4_in_axes5_y*six_r_v_1_t_3;
-        const real six_r_e_1_in_axes5_y = six_r_e_4_in_axes5_x*six_r_v_1_t_3 +
-            six_r_e_4_in_axes5_y*six_r_v_1_t;
-        const real six_r_v_1_in_axes5_x = six_r_e_1_in_axes5_y*six_r_r_1_in_axes5_z -
-            six_r_e_1_in_axes5_z*six_r_r_1_in_axes5_y;
-        const real six_r_v_1_in_axes5_y = six_r_e_1_in_axes5_z*six_r_r_1_in_axes5_x -
-            six_r_e_1_in_axes5_x*six_r_r_1_in_axes5_z;
-        const real six_r_v_1_in_axes5_z = six_r_e_1_in_axes5_x*six_r_r_1_in_axes5_y -
-            six_r_e_1_in_axes5_y*six_r_r_1_in_axes5_x;
-        /* (six_r-v_2) velocity of the connection point per rate of joint 2 */
-        const real six_r_e_2_in_axes5_x = six_r_e_4_in_axes5_y*six_r_h_4_t;
-        const real six_r_v_2_in_axes5_x = six_r_e_2_in_axes5_y*six_r_r_2_in_axes5_z -
-            six_r_e_2_in_axes5_z*six_r_r_2_in_axes5_y;
-        const real six_r_v_2_in_axes5_y = six_r_e_2_in_axes5_z*six_r_r_2_in_axes5_x -
-            six_r_e_2_in_axes5_x*six_r_r_2_in_axes5_z;
-        const real six_r_v_2_in_axes5_z = six_r_e_2_in_axes5_x*six_r_r_2_in_axes5_y -
-            six_r_e_2_in_axes5_y*six_r_r_2_in_axes5_x;
-        /* (six_r-v_3) velocity of the connection point per rate of joint 3 */
-        const real six_r_v_3_in_axes5_x = six_r_e_2_in_axes5_y*six_r_r_3_in_axes5_z -
-            six_r_e_2_in_axes5_z*six_r_r_3_in_axes5_y;
-        const real six_r_v_3_in_axes5_y = six_r_e_2_in_axes5_z*six_r_r_3_in_axes5_x -
-            six_r_e_2_in_axes5_x*six_r_r_3_in_axes5_z;
-        const real six_r_v_3_in_axes5_z = six_r_e_2_in_axes5_x*six_r_r_3_in_axes5_y -
-            six_r_e_2_in_axes5_y*six_r_r_3_in_axes5_x;
-        /* (six_r-v_4) velocity of the connection point per rate of joint 4 */
-        const real six_r_v_4_in_axes5_z =
-            six_r_e_4_in_axes5_x*(six_r_e_4_in_axes5_y*six_r_r_4_in_axes4_z -
-            six_r_e_4_in_axes5_x*six_r_r_4_in_axes4_y) -
-            six_r_e_4_in_axes5_y*(six_r_e_4_in_axes5_x*six_r_r_4_in_axes4_z +
-            six_r_e_4_in_axes5_y*six_r_r_4_in_axes4_y);
+        const real six_r_S_dot_in_axes5_x = axis_x_six_r_axes5_x*v.six_r_S_dot_x +
+            axis_x_six_r_axes5_y*v.six_r_S_dot_y + axis_x_six_r_axes5_z*v.six_r_S_dot_z;
+        const real six_r_S_dot_in_axes5_y = axis_y_six_r_axes5_x*v.six_r_S_dot_x +
+            axis_y_six_r_axes5_y*v.six_r_S_dot_y + axis_y_six_r_axes5_z*v.six_r_S_dot_z;
+        const real six_r_S_dot_in_axes5_z = axis_z_six_r_axes5_x*v.six_r_S_dot_x +
+            axis_z_six_r_axes5_y*v.six_r_S_dot_y + axis_z_six_r_axes5_z*v.six_r_S_dot_z;
         /* (six_r-n_m1) direction 1 of the moment that the platform joint transmits */
-        const real six_r_platform_joint_axis_platform_x = m->six_r_platform_joint_axis_platform_x[i];
-        const real six_r_platform_joint_axis_platform_y = m->six_r_platform_joint_axis_platform_y[i];
-        const real six_r_platform_joint_axis_platform_z = m->six_r_platform_joint_axis_platform_z[i];
-        const real six_r_n_m1_t = six_r_platform_joint_axis_platform_x*(R_xx*six_r_base_frame_xy +
-            R_yx*six_r_base_frame_yy + R_zx*six_r_base_frame_zy) +
-            six_r_platform_joint_axis_platform_y*(R_xy*six_r_base_frame_xy +
-            R_yy*six_r_base_frame_yy + R_zy*six_r_base_frame_zy) +
-            six_r_platform_joint_axis_platform_z*(R_xz*six_r_base_frame_xy +
-            R_yz*six_r_base_frame_yy + R_zz*six_r_base_frame_zy);
-        const real six_r_n_m1_t_2 = six_r_platform_joint_axis_platform_x*(R_xx*six_r_base_frame_xz
-            + R_yx*six_r_base_frame_yz + R_zx*six_r_base_frame_zz) +
-            six_r_platform_joint_axis_platform_y*(R_xy*six_r_base_frame_xz +
-            R_yy*six_r_base_frame_yz + R_zy*six_r_base_frame_zz) +
-            six_r_platform_joint_axis_platform_z*(R_xz*six_r_base_frame_xz +
-            R_yz*six_r_base_frame_yz + R_zz*six_r_base_frame_zz);
-        const real six_r_n_m1_t_3 = six_r_platform_joint_axis_platform_x*(R_xx*six_r_base_frame_xx
-            + R_yx*six_r_base_frame_yx + R_zx*six_r_base_frame_zx) +
-            six_r_platform_joint_axis_platform_y*(R_xy*six_r_base_frame_xx +
-            R_yy*six_r_base_frame_yx + R_zy*six_r_base_frame_zx) +
-            six_r_platform_joint_axis_platform_z*(R_xz*six_r_base_frame_xx +
-            R_yz*six_r_base_frame_yx + R_zz*six_r_base_frame_zx);
-        const real six_r_n_m1_t_4 = six_r_c_1*six_r_n_m1_t + six_r_n_m1_t_2*six_r_s_1;
-        const real six_r_n_m1_t_5 = six_r_c_1*six_r_n_m1_t_2 - six_r_n_m1_t*six_r_s_1;
-        const real six_r_n_m1_t_6 = six_r_c_2*six_r_n_m1_t_5 + six_r_n_m1_t_3*six_r_s_2;
-        const real six_r_n_m1_t_7 = six_r_c_2*six_r_n_m1_t_3 - six_r_n_m1_t_5*six_r_s_2;
-        const real six_r_n_m1_t_8 = six_r_c_3*six_r_n_m1_t_6 + six_r_n_m1_t_7*six_r_s_3;
-        const real six_r_n_m1_t_9 = six_r_c_3*six_r_n_m1_t_7 - six_r_n_m1_t_6*six_r_s_3;
-        const real six_r_n_m1_t_10 = six_r_h_4_t*six_r_n_m1_t_4 -
-            six_r_e_2_in_axes5_z*six_r_n_m1_t_9;
-        const real six_r_n_m1_in_axes5_y = six_r_e_4_in_axes5_x*six_r_n_m1_t_8 +
-            six_r_e_4_in_axes5_y*six_r_n_m1_t_10;
-        const real six_r_end_p1_in_axes5_y = six_r_e_4_in_axes5_y*six_r_n_m1_t_8 -
-            six_r_e_4_in_axes5_x*six_r_n_m1_t_10;
+        const real six_r_n_m1_t_10 = v.six_r_h_4_t*v.six_r_n_m1_t_5 -
+            v.six_r_e_2_in_axes5_z*v.six_r_n_m1_t_8;
+        const real six_r_n_m1_in_axes5_y = v.six_r_J_5_t*six_r_n_m1_t_10 +
+            v.six_r_e_4_in_axes5_x*v.six_r_n_m1_t_9;
+        const real six_r_end_p1_in_axes5_y = v.six_r_e_4_in_axes5_x*six_r_n_m1_t_10 -
+            v.six_r_J_5_t*v.six_r_n_m1_t_9;
         const real six_r_n_m1_x = axis_y_six_r_axes5_x*six_r_n_m1_in_axes5_y -
             axis_x_six_r_axes5_x*six_r_end_p1_in_axes5_y;
         const real six_r_n_m1_y = axis_y_six_r_axes5_y*six_r_n_m1_in_axes5_y -
@@ -2529,8 +3974,8 @@ INLINE void dynamics_legs_six_r(const prepared *m, size_t w, size_t leg, size_t 
         const real six_r_n_m1_z = axis_y_six_r_axes5_z*six_r_n_m1_in_axes5_y -
             axis_x_six_r_axes5_z*six_r_end_p1_in_axes5_y;
         /* (six_r-n_m2) direction 2 of the moment that the platform joint transmits */
-        const real six_r_end_p1_in_axes5_z = six_r_e_2_in_axes5_z*six_r_n_m1_t_4 +
-            six_r_h_4_t*six_r_n_m1_t_9;
+        const real six_r_end_p1_in_axes5_z = v.six_r_e_2_in_axes5_z*v.six_r_n_m1_t_5 +
+            v.six_r_h_4_t*v.six_r_n_m1_t_8;
         const real six_r_n_m2_x = axis_z_six_r_axes5_x*six_r_end_p1_in_axes5_y -
             axis_y_six_r_axes5_x*six_r_end_p1_in_axes5_z;
         const real six_r_n_m2_y = axis_z_six_r_axes5_y*six_r_end_p1_in_axes5_y -
@@ -2538,90 +3983,91 @@ INLINE void dynamics_legs_six_r(const prepared *m, size_t w, size_t leg, size_t 
         const real six_r_n_m2_z = axis_z_six_r_axes5_z*six_r_end_p1_in_axes5_y -
             axis_y_six_r_axes5_z*six_r_end_p1_in_axes5_z;
         /* (six_r-w_1) force part of reciprocal wrench 1 */
-        const real six_r_w_1_t = six_r_e_1_in_axes5_x*six_r_end_p1_in_axes5_y -
-            six_r_e_1_in_axes5_y*six_r_n_m1_in_axes5_y;
-        const real six_r_w_1_t_2 = six_r_e_2_in_axes5_x*six_r_end_p1_in_axes5_y -
-            six_r_e_2_in_axes5_y*six_r_n_m1_in_axes5_y;
-        const real six_r_w_1_t_3 = six_r_e_1_in_axes5_y*six_r_end_p1_in_axes5_z -
-            six_r_e_1_in_axes5_z*six_r_end_p1_in_axes5_y;
-        const real six_r_w_1_t_4 = six_r_e_2_in_axes5_y*six_r_end_p1_in_axes5_z -
-            six_r_e_2_in_axes5_z*six_r_end_p1_in_axes5_y;
+        const real six_r_w_1_t = v.six_r_e_1_in_axes5_x*six_r_end_p1_in_axes5_y -
+            v.six_r_e_1_in_axes5_y*six_r_n_m1_in_axes5_y;
+        const real six_r_w_1_t_2 = v.six_r_e_2_in_axes5_x*six_r_end_p1_in_axes5_y -
+            v.six_r_e_2_in_axes5_y*six_r_n_m1_in_axes5_y;
+        const real six_r_w_1_t_3 = v.six_r_e_1_in_axes5_y*six_r_end_p1_in_axes5_z -
+            v.six_r_e_1_in_axes5_z*six_r_end_p1_in_axes5_y;
+        const real six_r_w_1_t_4 = v.six_r_e_2_in_axes5_y*six_r_end_p1_in_axes5_z -
+            v.six_r_e_2_in_axes5_z*six_r_end_p1_in_axes5_y;
         const real six_r_size = m->six_r_size[i];
         const real six_r_w_1_t_5 = six_r_size*six_r_w_1_t;
         const real six_r_w_1_t_6 = six_r_size*six_r_w_1_t_3;
         const real six_r_w_1_t_7 = six_r_size*six_r_w_1_t_2;
         const real six_r_w_1_t_8 = six_r_size*six_r_w_1_t_4;
-        const real six_r_w_1_t_9 = six_r_size*(six_r_e_4_in_axes5_y*six_r_n_m1_in_axes5_y -
-            six_r_e_4_in_axes5_x*six_r_end_p1_in_axes5_y);
-        const real six_r_w_1_t_10 = -six_r_e_4_in_axes5_y*six_r_end_p1_in_axes5_z*six_r_size;
+        const real six_r_w_1_t_9 = six_r_size*(-v.six_r_J_5_t*six_r_n_m1_in_axes5_y -
+            v.six_r_e_4_in_axes5_x*six_r_end_p1_in_axes5_y);
+        const real six_r_w_1_t_10 = v.six_r_J_5_t*six_r_end_p1_in_axes5_z*six_r_size;
         const real six_r_w_1_t_11 = six_r_end_p1_in_axes5_y*six_r_size;
         const real six_r_size_t = m->six_r_size_t[i];
         const real six_r_w_1_t_12 = root(six_r_size_t + six_r_w_1_t_11*six_r_w_1_t_11);
         const real inv_six_r_w_1_t_12 = 1/six_r_w_1_t_12;
+        const real six_r_platform_joint_offset_x = m->six_r_platform_joint_offset_x[i];
         const real six_r_w_1_t_13 = inv_six_r_w_1_t_12*six_r_platform_joint_offset_x;
         const real six_r_w_1_t_14 = inv_six_r_w_1_t_12*six_r_w_1_t_11;
         const real six_r_w_1_t_15 = six_r_w_1_t_10*six_r_w_1_t_14;
         const real six_r_w_1_t_16 = six_r_w_1_t_13*six_r_w_1_t_15;
         const real six_r_w_1_t_17 = six_r_w_1_t_10 - six_r_w_1_t_14*six_r_w_1_t_15;
-        const real six_r_w_1_t_18 = six_r_v_1_in_axes5_y*six_r_w_1_t_13 -
+        const real six_r_w_1_t_18 = v.six_r_v_1_in_axes5_y*six_r_w_1_t_13 -
             six_r_w_1_t_14*six_r_w_1_t_6;
-        const real six_r_w_1_t_19 = six_r_v_1_in_axes5_y - six_r_w_1_t_13*six_r_w_1_t_18;
+        const real six_r_w_1_t_19 = v.six_r_v_1_in_axes5_y - six_r_w_1_t_13*six_r_w_1_t_18;
         const real six_r_w_1_t_20 = six_r_w_1_t_6 + six_r_w_1_t_14*six_r_w_1_t_18;
         const real six_r_w_1_t_21 = six_r_w_1_t_14*six_r_w_1_t_8;
-        const real six_r_w_1_t_22 = six_r_v_2_in_axes5_y*six_r_w_1_t_13 - six_r_w_1_t_21;
-        const real six_r_w_1_t_23 = six_r_v_2_in_axes5_y - six_r_w_1_t_13*six_r_w_1_t_22;
+        const real six_r_w_1_t_22 = v.six_r_v_2_in_axes5_y*six_r_w_1_t_13 - six_r_w_1_t_21;
+        const real six_r_w_1_t_23 = v.six_r_v_2_in_axes5_y - six_r_w_1_t_13*six_r_w_1_t_22;
         const real six_r_w_1_t_24 = six_r_w_1_t_8 + six_r_w_1_t_14*six_r_w_1_t_22;
-        const real six_r_w_1_t_25 = six_r_w_1_t_21 - six_r_v_3_in_axes5_y*six_r_w_1_t_13;
-        const real six_r_w_1_t_26 = six_r_v_3_in_axes5_y + six_r_w_1_t_13*six_r_w_1_t_25;
+        const real six_r_w_1_t_25 = six_r_w_1_t_21 - v.six_r_v_3_in_axes5_y*six_r_w_1_t_13;
+        const real six_r_w_1_t_26 = v.six_r_v_3_in_axes5_y + six_r_w_1_t_13*six_r_w_1_t_25;
         const real six_r_w_1_t_27 = six_r_w_1_t_8 - six_r_w_1_t_14*six_r_w_1_t_25;
-        const real six_r_w_1_t_28 = root(six_r_v_4_in_axes5_z*six_r_v_4_in_axes5_z +
+        const real six_r_w_1_t_28 = root(v.six_r_v_4_in_axes5_z*v.six_r_v_4_in_axes5_z +
             six_r_w_1_t_16*six_r_w_1_t_16 + six_r_w_1_t_17*six_r_w_1_t_17 +
             six_r_w_1_t_9*six_r_w_1_t_9);
         const real inv_six_r_w_1_t_28 = 1/six_r_w_1_t_28;
         const real six_r_w_1_t_29 = inv_six_r_w_1_t_28*six_r_w_1_t_16;
-        const real six_r_w_1_t_30 = inv_six_r_w_1_t_28*six_r_v_4_in_axes5_z;
+        const real six_r_w_1_t_30 = inv_six_r_w_1_t_28*v.six_r_v_4_in_axes5_z;
         const real six_r_w_1_t_31 = inv_six_r_w_1_t_28*six_r_w_1_t_9;
         const real six_r_w_1_t_32 = inv_six_r_w_1_t_28*six_r_w_1_t_17;
         const real six_r_w_1_t_33 = six_r_w_1_t_19*six_r_w_1_t_29 + six_r_w_1_t_20*six_r_w_1_t_32
-            + six_r_w_1_t_31*six_r_w_1_t_5 - six_r_v_1_in_axes5_z*six_r_w_1_t_30;
+            + six_r_w_1_t_31*six_r_w_1_t_5 - v.six_r_v_1_in_axes5_z*six_r_w_1_t_30;
         const real six_r_w_1_t_34 = six_r_w_1_t_29*six_r_w_1_t_33 - six_r_w_1_t_19;
-        const real six_r_w_1_t_35 = six_r_v_1_in_axes5_z + six_r_w_1_t_30*six_r_w_1_t_33;
+        const real six_r_w_1_t_35 = v.six_r_v_1_in_axes5_z + six_r_w_1_t_30*six_r_w_1_t_33;
         const real six_r_w_1_t_36 = six_r_w_1_t_31*six_r_w_1_t_33 - six_r_w_1_t_5;
         const real six_r_w_1_t_37 = six_r_w_1_t_32*six_r_w_1_t_33 - six_r_w_1_t_20;
         const real six_r_w_1_t_38 = six_r_w_1_t_31*six_r_w_1_t_7;
         const real six_r_w_1_t_39 = six_r_w_1_t_38 + six_r_w_1_t_23*six_r_w_1_t_29 +
-            six_r_w_1_t_24*six_r_w_1_t_32 - six_r_v_2_in_axes5_z*six_r_w_1_t_30;
+            six_r_w_1_t_24*six_r_w_1_t_32 - v.six_r_v_2_in_axes5_z*six_r_w_1_t_30;
         const real six_r_w_1_t_40 = six_r_w_1_t_29*six_r_w_1_t_39 - six_r_w_1_t_23;
-        const real six_r_w_1_t_41 = six_r_v_2_in_axes5_z + six_r_w_1_t_30*six_r_w_1_t_39;
+        const real six_r_w_1_t_41 = v.six_r_v_2_in_axes5_z + six_r_w_1_t_30*six_r_w_1_t_39;
         const real six_r_w_1_t_42 = six_r_w_1_t_31*six_r_w_1_t_39 - six_r_w_1_t_7;
         const real six_r_w_1_t_43 = six_r_w_1_t_32*six_r_w_1_t_39 - six_r_w_1_t_24;
         const real six_r_w_1_t_44 = six_r_w_1_t_38 + six_r_w_1_t_26*six_r_w_1_t_29 +
-            six_r_w_1_t_27*six_r_w_1_t_32 - six_r_v_3_in_axes5_z*six_r_w_1_t_30;
+            six_r_w_1_t_27*six_r_w_1_t_32 - v.six_r_v_3_in_axes5_z*six_r_w_1_t_30;
         const real six_r_w_1_t_45 = six_r_w_1_t_29*six_r_w_1_t_44 - six_r_w_1_t_26;
-        const real six_r_w_1_t_46 = six_r_v_3_in_axes5_z + six_r_w_1_t_30*six_r_w_1_t_44;
+        const real six_r_w_1_t_46 = v.six_r_v_3_in_axes5_z + six_r_w_1_t_30*six_r_w_1_t_44;
         const real six_r_w_1_t_47 = six_r_w_1_t_31*six_r_w_1_t_44 - six_r_w_1_t_7;
         const real six_r_w_1_t_48 = six_r_w_1_t_32*six_r_w_1_t_44 - six_r_w_1_t_27;
-        const real six_r_w_1_t_49 = root(six_r_v_1_in_axes5_x*six_r_v_1_in_axes5_x +
+        const real six_r_w_1_t_49 = root(v.six_r_v_1_in_axes5_x*v.six_r_v_1_in_axes5_x +
             six_r_w_1_t_34*six_r_w_1_t_34 + six_r_w_1_t_35*six_r_w_1_t_35 +
             six_r_w_1_t_36*six_r_w_1_t_36 + six_r_w_1_t_37*six_r_w_1_t_37);
         const real inv_six_r_w_1_t_49 = 1/six_r_w_1_t_49;
-        const real six_r_w_1_t_50 = inv_six_r_w_1_t_49*six_r_v_1_in_axes5_x;
+        const real six_r_w_1_t_50 = inv_six_r_w_1_t_49*v.six_r_v_1_in_axes5_x;
         const real six_r_w_1_t_51 = inv_six_r_w_1_t_49*six_r_w_1_t_34;
         const real six_r_w_1_t_52 = inv_six_r_w_1_t_49*six_r_w_1_t_35;
         const real six_r_w_1_t_53 = inv_six_r_w_1_t_49*six_r_w_1_t_36;
         const real six_r_w_1_t_54 = inv_six_r_w_1_t_49*six_r_w_1_t_37;
-        const real six_r_w_1_t_55 = six_r_v_2_in_axes5_x*six_r_w_1_t_50 +
+        const real six_r_w_1_t_55 = v.six_r_v_2_in_axes5_x*six_r_w_1_t_50 +
             six_r_w_1_t_40*six_r_w_1_t_51 + six_r_w_1_t_41*six_r_w_1_t_52 +
             six_r_w_1_t_42*six_r_w_1_t_53 + six_r_w_1_t_43*six_r_w_1_t_54;
-        const real six_r_w_1_t_56 = six_r_v_2_in_axes5_x - six_r_w_1_t_50*six_r_w_1_t_55;
+        const real six_r_w_1_t_56 = v.six_r_v_2_in_axes5_x - six_r_w_1_t_50*six_r_w_1_t_55;
         const real six_r_w_1_t_57 = six_r_w_1_t_40 - six_r_w_1_t_51*six_r_w_1_t_55;
         const real six_r_w_1_t_58 = six_r_w_1_t_41 - six_r_w_1_t_52*six_r_w_1_t_55;
         const real six_r_w_1_t_59 = six_r_w_1_t_42 - six_r_w_1_t_53*six_r_w_1_t_55;
         const real six_r_w_1_t_60 = six_r_w_1_t_43 - six_r_w_1_t_54*six_r_w_1_t_55;
-        const real six_r_w_1_t_61 = six_r_v_3_in_axes5_x*six_r_w_1_t_50 +
+        const real six_r_w_1_t_61 = v.six_r_v_3_in_axes5_x*six_r_w_1_t_50 +
             six_r_w_1_t_45*six_r_w_1_t_51 + six_r_w_1_t_46*six_r_w_1_t_52 +
             six_r_w_1_t_47*six_r_w_1_t_53 + six_r_w_1_t_48*six_r_w_1_t_54;
-        const real six_r_w_1_t_62 = six_r_v_3_in_axes5_x - six_r_w_1_t_50*six_r_w_1_t_61;
+        const real six_r_w_1_t_62 = v.six_r_v_3_in_axes5_x - six_r_w_1_t_50*six_r_w_1_t_61;
         const real six_r_w_1_t_63 = six_r_w_1_t_45 - six_r_w_1_t_51*six_r_w_1_t_61;
         const real six_r_w_1_t_64 = six_r_w_1_t_46 - six_r_w_1_t_52*six_r_w_1_t_61;
         const real six_r_w_1_t_65 = six_r_w_1_t_47 - six_r_w_1_t_53*six_r_w_1_t_61;
@@ -2665,7 +4111,7 @@ INLINE void dynamics_legs_six_r(const prepared *m, size_t w, size_t leg, size_t 
             six_r_w_1_t_71*six_r_w_1_t_83 - inv_six_r_w_1_t_49*six_r_w_1_t_53);
         /* (six_r-m2_w_1) moment part 2 of reciprocal wrench 1 */
         const real six_r_m2_w_1_t = inv_six_r_w_1_t_79*six_r_w_1_t_78;
-        const real six_r_m2_w_1 = -six_r_size*(six_r_m2_w_1_t*six_r_w_1_t_84 +
+        const real six_r_m2_w_1_t_2 = six_r_size*(six_r_m2_w_1_t*six_r_w_1_t_84 +
             six_r_w_1_t_72*six_r_w_1_t_83 - inv_six_r_w_1_t_49*six_r_w_1_t_54);
         /* (six_r-w_2) force part of reciprocal wrench 2 */
         const real six_r_w_2_t = inv_six_r_w_1_t_67*inv_six_r_w_1_t_79*six_r_w_1_t_73;
@@ -2744,8 +4190,8 @@ INLINE void dynamics_legs_six_r(const prepared *m, size_t w, size_t leg, size_t 
             inv_six_r_w_1_t_12*six_r_w_1_t_14 - six_r_m2_w_1_t*six_r_w_5_t_4);
         /* (six_r-o_1) moment part of reciprocal wrench 1 */
         const real six_r_o_1_in_axes5_x = six_r_end_p1_in_axes5_y*six_r_m1_w_1_t_2;
-        const real six_r_o_1_in_axes5_z = six_r_end_p1_in_axes5_y*six_r_m2_w_1;
-        const real six_r_o_1_in_axes5_y = -six_r_end_p1_in_axes5_z*six_r_m2_w_1 -
+        const real six_r_o_1_t = six_r_end_p1_in_axes5_y*six_r_m2_w_1_t_2;
+        const real six_r_o_1_in_axes5_y = six_r_end_p1_in_axes5_z*six_r_m2_w_1_t_2 -
             six_r_m1_w_1_t_2*six_r_n_m1_in_axes5_y;
         /* (six_r-o_2) moment part of reciprocal wrench 2 */
         const real six_r_o_2_t = six_r_end_p1_in_axes5_y*six_r_m1_w_2;
@@ -2771,6 +4217,9 @@ INLINE void dynamics_legs_six_r(const prepared *m, size_t w, size_t leg, size_t 
         const real six_r_o_5_in_axes5_y = six_r_end_p1_in_axes5_z*six_r_m2_w_5_t -
             six_r_m1_w_5_t*six_r_n_m1_in_axes5_y;
         /* (six_r-eta_1) rate at which the joints turn along moment direction 1 */
+        const real omega_x = V[3*w + j];
+        const real omega_y = V[4*w + j];
+        const real omega_z = V[5*w + j];
         const real six_r_eta_1 = omega_x*six_r_n_m1_x + omega_y*six_r_n_m1_y +
             omega_z*six_r_n_m1_z;
         /* (six_r-eta_2) rate at which the joints turn along moment direction 2 */
@@ -2786,41 +4235,41 @@ INLINE void dynamics_legs_six_r(const prepared *m, size_t w, size_t leg, size_t 
             six_r_S_dot_in_axes5_z*six_r_w_1_t_70 + six_r_qd_1_t*six_r_w_1_t_71 +
             six_r_qd_1_t_2*six_r_w_1_t_72 - six_r_S_dot_in_axes5_y*six_r_w_1_t_69 -
             six_r_qd_1_t_3*six_r_w_1_t_73);
-        const real six_r_qd_1 = -inv_six_r_w_1_t_49*(six_r_S_dot_in_axes5_y*six_r_w_1_t_51 +
+        const real six_r_qd_1_t_5 = inv_six_r_w_1_t_49*(six_r_S_dot_in_axes5_y*six_r_w_1_t_51 +
             six_r_qd_1_t_3*six_r_w_1_t_61 + six_r_qd_1_t_4*six_r_w_1_t_55 -
             six_r_S_dot_in_axes5_x*six_r_w_1_t_50 - six_r_S_dot_in_axes5_z*six_r_w_1_t_52 -
             six_r_qd_1_t*six_r_w_1_t_53 - six_r_qd_1_t_2*six_r_w_1_t_54);
         /* (six_r-qd_4) rate of joint 4 */
         const real six_r_qd_4 = inv_six_r_w_1_t_28*(six_r_S_dot_in_axes5_z*six_r_w_1_t_30 +
-            six_r_qd_1*six_r_w_1_t_33 + six_r_qd_1_t*six_r_w_1_t_31 +
-            six_r_qd_1_t_2*six_r_w_1_t_32 + six_r_qd_1_t_3*six_r_w_1_t_44 +
-            six_r_qd_1_t_4*six_r_w_1_t_39 - six_r_S_dot_in_axes5_y*six_r_w_1_t_29);
+            six_r_qd_1_t*six_r_w_1_t_31 + six_r_qd_1_t_2*six_r_w_1_t_32 +
+            six_r_qd_1_t_3*six_r_w_1_t_44 + six_r_qd_1_t_4*six_r_w_1_t_39 -
+            six_r_S_dot_in_axes5_y*six_r_w_1_t_29 - six_r_qd_1_t_5*six_r_w_1_t_33);
         /* (six_r-qd_5) rate of joint 5 */
         const real six_r_qd_5 = inv_six_r_w_1_t_12*(six_r_S_dot_in_axes5_y*six_r_w_1_t_13 +
-            six_r_qd_1_t_2*six_r_w_1_t_14 + six_r_qd_1_t_3*six_r_w_1_t_25 -
-            six_r_qd_1*six_r_w_1_t_18 - six_r_qd_1_t_4*six_r_w_1_t_22 -
+            six_r_qd_1_t_2*six_r_w_1_t_14 + six_r_qd_1_t_3*six_r_w_1_t_25 +
+            six_r_qd_1_t_5*six_r_w_1_t_18 - six_r_qd_1_t_4*six_r_w_1_t_22 -
             six_r_qd_4*six_r_w_1_t_15);
         /* (six_r-omega_1) angular velocity of link 1 */
-        const real six_r_omega_1_in_axes2_x = six_r_qd_1*six_r_s_2;
-        const real six_r_omega_1_in_axes2_y = six_r_c_2*six_r_qd_1;
-        const real six_r_omega_1_in_axes5_x = six_r_e_1_in_axes5_x*six_r_qd_1;
-        const real six_r_omega_1_in_axes5_y = six_r_e_1_in_axes5_y*six_r_qd_1;
-        const real six_r_omega_1_in_axes5_z = six_r_e_1_in_axes5_z*six_r_qd_1;
+        const real six_r_omega_1_in_axes2_x = -v.six_r_c_2*six_r_qd_1_t_5;
+        const real six_r_omega_1_in_axes2_y = six_r_qd_1_t_5*v.six_r_s_2;
+        const real six_r_omega_1_t = v.six_r_e_1_in_axes5_x*six_r_qd_1_t_5;
+        const real six_r_omega_1_t_2 = v.six_r_e_1_in_axes5_y*six_r_qd_1_t_5;
+        const real six_r_omega_1_t_3 = v.six_r_e_1_in_axes5_z*six_r_qd_1_t_5;
         /* (six_r-W_1) centripetal tensor of link 1 */
-        const real six_r_W_1_in_axes5_xy = six_r_omega_1_in_axes5_x*six_r_omega_1_in_axes5_y;
-        const real six_r_W_1_in_axes5_xz = six_r_omega_1_in_axes5_x*six_r_omega_1_in_axes5_z;
-        const real six_r_W_1_in_axes5_yz = six_r_omega_1_in_axes5_y*six_r_omega_1_in_axes5_z;
+        const real six_r_W_1_in_axes5_xy = six_r_omega_1_t*six_r_omega_1_t_2;
+        const real six_r_W_1_in_axes5_xz = six_r_omega_1_t*six_r_omega_1_t_3;
+        const real six_r_W_1_in_axes5_yz = six_r_omega_1_t_2*six_r_omega_1_t_3;
         /* (six_r-omega_2) angular velocity of link 2 */
-        const real six_r_omega_2_in_axes3_x = six_r_c_3*six_r_omega_1_in_axes2_x +
-            six_r_omega_1_in_axes2_y*six_r_s_3;
-        const real six_r_omega_2_in_axes3_y = six_r_c_3*six_r_omega_1_in_axes2_y -
-            six_r_omega_1_in_axes2_x*six_r_s_3;
-        const real six_r_omega_2_in_axes5_x = six_r_omega_1_in_axes5_x +
-            six_r_e_2_in_axes5_x*six_r_qd_1_t_4;
-        const real six_r_omega_2_in_axes5_y = six_r_omega_1_in_axes5_y +
-            six_r_e_2_in_axes5_y*six_r_qd_1_t_4;
-        const real six_r_omega_2_in_axes5_z = six_r_omega_1_in_axes5_z +
-            six_r_e_2_in_axes5_z*six_r_qd_1_t_4;
+        const real six_r_omega_2_in_axes3_x = six_r_omega_1_in_axes2_x*v.six_r_s_3 -
+            v.six_r_c_3*six_r_omega_1_in_axes2_y;
+        const real six_r_omega_2_in_axes3_y = v.six_r_c_3*six_r_omega_1_in_axes2_x +
+            six_r_omega_1_in_axes2_y*v.six_r_s_3;
+        const real six_r_omega_2_in_axes5_x = v.six_r_e_2_in_axes5_x*six_r_qd_1_t_4 -
+            six_r_omega_1_t;
+        const real six_r_omega_2_in_axes5_y = v.six_r_e_2_in_axes5_y*six_r_qd_1_t_4 -
+            six_r_omega_1_t_2;
+        const real six_r_omega_2_in_axes5_z = v.six_r_e_2_in_axes5_z*six_r_qd_1_t_4 -
+            six_r_omega_1_t_3;
         /* (six_r-W_2) centripetal tensor of link 2 */
         const real six_r_W_2_in_axes2_yz = six_r_omega_1_in_axes2_y*six_r_qd_1_t_4;
         const real six_r_W_2_in_axes2_xy = six_r_omega_1_in_axes2_x*six_r_omega_1_in_axes2_y;
@@ -2829,85 +4278,82 @@ INLINE void dynamics_legs_six_r(const prepared *m, size_t w, size_t leg, size_t 
         const real six_r_W_2_in_axes5_yz = six_r_omega_2_in_axes5_y*six_r_omega_2_in_axes5_z;
         /* (six_r-omega_3) angular velocity of link 3 */
         const real six_r_omega_3_in_axes3_z = six_r_qd_1_t_3 + six_r_qd_1_t_4;
-        const real six_r_omega_3_in_axes4_x = six_r_e_2_in_axes5_z*six_r_omega_3_in_axes3_z +
-            six_r_h_4_t*six_r_omega_2_in_axes3_y;
-        const real six_r_omega_3_in_axes4_y = six_r_h_4_t*six_r_omega_3_in_axes3_z -
-            six_r_e_2_in_axes5_z*six_r_omega_2_in_axes3_y;
-        const real six_r_omega_3_t = -six_r_e_4_in_axes5_y*six_r_omega_3_in_axes4_y;
-        const real six_r_omega_3_t_2 = six_r_e_4_in_axes5_x*six_r_omega_3_in_axes4_y;
-        const real six_r_omega_3_in_axes5_x = six_r_e_4_in_axes5_x*six_r_omega_2_in_axes3_x -
-            six_r_omega_3_t;
-        const real six_r_omega_3_in_axes5_y = six_r_e_4_in_axes5_y*six_r_omega_2_in_axes3_x -
-            six_r_omega_3_t_2;
+        const real six_r_omega_3_in_axes4_x = v.six_r_h_4_t*six_r_omega_3_in_axes3_z -
+            v.six_r_e_2_in_axes5_z*six_r_omega_2_in_axes3_x;
+        const real six_r_omega_3_in_axes4_y = v.six_r_e_2_in_axes5_z*six_r_omega_3_in_axes3_z +
+            v.six_r_h_4_t*six_r_omega_2_in_axes3_x;
+        const real six_r_omega_3_t = v.six_r_J_5_t*six_r_omega_3_in_axes4_x;
+        const real six_r_omega_3_t_2 = v.six_r_e_4_in_axes5_x*six_r_omega_3_in_axes4_x;
+        const real six_r_omega_3_in_axes5_x = six_r_omega_3_t +
+            v.six_r_e_4_in_axes5_x*six_r_omega_2_in_axes3_y;
+        const real six_r_omega_3_in_axes5_y = six_r_omega_3_t_2 -
+            v.six_r_J_5_t*six_r_omega_2_in_axes3_y;
         /* (six_r-W_3) centripetal tensor of link 3 */
-        const real six_r_W_3_t = six_r_omega_2_in_axes3_y*six_r_omega_2_in_axes3_y;
+        const real six_r_W_3_t = six_r_omega_2_in_axes3_x*six_r_omega_2_in_axes3_x;
         const real six_r_W_3_t_2 = six_r_omega_3_in_axes3_z*six_r_omega_3_in_axes3_z;
-        const real six_r_W_3_t_3 = six_r_W_3_t + six_r_W_3_t_2;
         const real six_r_W_3_in_axes3_xy = six_r_omega_2_in_axes3_x*six_r_omega_2_in_axes3_y;
         const real six_r_W_3_in_axes3_xz = six_r_omega_2_in_axes3_x*six_r_omega_3_in_axes3_z;
+        const real six_r_W_3_t_3 = six_r_W_3_t + six_r_W_3_t_2;
         const real six_r_W_3_in_axes3_yz = six_r_omega_2_in_axes3_y*six_r_omega_3_in_axes3_z;
         const real six_r_W_3_in_axes5_xy = six_r_omega_3_in_axes5_x*six_r_omega_3_in_axes5_y;
         /* (six_r-omega_4) angular velocity of link 4 */
-        const real six_r_omega_4_in_axes4_z = six_r_omega_2_in_axes3_x + six_r_qd_4;
-        const real six_r_omega_4_in_axes5_x = six_r_e_4_in_axes5_x*six_r_omega_4_in_axes4_z -
-            six_r_omega_3_t;
-        const real six_r_omega_4_in_axes5_y = six_r_e_4_in_axes5_y*six_r_omega_4_in_axes4_z -
-            six_r_omega_3_t_2;
+        const real six_r_omega_4_in_axes4_z = six_r_omega_2_in_axes3_y + six_r_qd_4;
+        const real six_r_omega_4_in_axes5_x = six_r_omega_3_t +
+            v.six_r_e_4_in_axes5_x*six_r_omega_4_in_axes4_z;
+        const real six_r_omega_4_in_axes5_y = six_r_omega_3_t_2 -
+            v.six_r_J_5_t*six_r_omega_4_in_axes4_z;
         /* (six_r-W_4) centripetal tensor of link 4 */
         const real six_r_W_4_in_axes4_xy = six_r_omega_3_in_axes4_x*six_r_omega_3_in_axes4_y;
         const real six_r_W_4_in_axes4_xz = six_r_omega_3_in_axes4_x*six_r_omega_4_in_axes4_z;
         const real six_r_W_4_in_axes4_yz = six_r_omega_3_in_axes4_y*six_r_omega_4_in_axes4_z;
         const real six_r_W_4_in_axes5_xy = six_r_omega_4_in_axes5_x*six_r_omega_4_in_axes5_y;
         /* (six_r-omega_5) angular velocity of link 5 */
-        const real six_r_omega_5_in_axes5_z = six_r_omega_3_in_axes4_x + six_r_qd_5;
+        const real six_r_omega_5_in_axes5_z = six_r_omega_3_in_axes4_y + six_r_qd_5;
         /* (six_r-W_5) centripetal tensor of link 5 */
         const real six_r_W_5_t = six_r_omega_4_in_axes5_y*six_r_omega_4_in_axes5_y;
         const real six_r_W_5_t_2 = six_r_omega_5_in_axes5_z*six_r_omega_5_in_axes5_z;
-        const real six_r_W_5_in_axes5_xx = -six_r_W_5_t - six_r_W_5_t_2;
+        const real six_r_W_5_t_3 = six_r_W_5_t + six_r_W_5_t_2;
         const real six_r_W_5_in_axes5_xz = six_r_omega_4_in_axes5_x*six_r_omega_5_in_axes5_z;
         const real six_r_W_5_in_axes5_yz = six_r_omega_4_in_axes5_y*six_r_omega_5_in_axes5_z;
         /* (six_r-u_1) centripetal acceleration of the connection point */
-        const real six_r_u_1_x = omega_y*six_r_S_dot_t_16 - omega_z*six_r_S_dot_t_15;
-        const real six_r_u_1_y = omega_z*six_r_S_dot_t_14 - omega_x*six_r_S_dot_t_16;
-        const real six_r_u_1_z = omega_x*six_r_S_dot_t_15 - omega_y*six_r_S_dot_t_14;
-        const real six_r_u_1_in_axes5_x = axis_x_six_r_axes5_x*six_r_u_1_x +
-            axis_x_six_r_axes5_y*six_r_u_1_y + axis_x_six_r_axes5_z*six_r_u_1_z;
-        const real six_r_u_1_in_axes5_y = axis_y_six_r_axes5_x*six_r_u_1_x +
-            axis_y_six_r_axes5_y*six_r_u_1_y + axis_y_six_r_axes5_z*six_r_u_1_z;
-        const real six_r_u_1_in_axes5_z = axis_z_six_r_axes5_x*six_r_u_1_x +
-            axis_z_six_r_axes5_y*six_r_u_1_y + axis_z_six_r_axes5_z*six_r_u_1_z;
+        const real six_r_u_1_in_axes5_x = axis_x_six_r_axes5_x*v.six_r_u_1_x +
+            axis_x_six_r_axes5_y*v.six_r_u_1_y + axis_x_six_r_axes5_z*v.six_r_u_1_z;
+        const real six_r_u_1_in_axes5_y = axis_y_six_r_axes5_x*v.six_r_u_1_x +
+            axis_y_six_r_axes5_y*v.six_r_u_1_y + axis_y_six_r_axes5_z*v.six_r_u_1_z;
+        const real six_r_u_1_in_axes5_z = axis_z_six_r_axes5_x*v.six_r_u_1_x +
+            axis_z_six_r_axes5_y*v.six_r_u_1_y + axis_z_six_r_axes5_z*v.six_r_u_1_z;
         /* (six_r-zeta_2) angular acceleration of link 2 from the turning of axis 2 */
         const real six_r_zeta_2_in_axes2_y = -six_r_omega_1_in_axes2_x*six_r_qd_1_t_4;
-        const real six_r_zeta_2_in_axes3_x = six_r_W_2_in_axes2_yz*six_r_c_3 +
-            six_r_s_3*six_r_zeta_2_in_axes2_y;
-        const real six_r_zeta_2_in_axes3_y = six_r_c_3*six_r_zeta_2_in_axes2_y -
-            six_r_W_2_in_axes2_yz*six_r_s_3;
-        const real six_r_zeta_2_in_axes5_z = six_r_h_4_t*six_r_zeta_2_in_axes3_y;
-        const real six_r_zeta_2_t = six_r_e_2_in_axes5_z*six_r_zeta_2_in_axes3_y;
-        const real six_r_zeta_2_in_axes5_x = six_r_e_4_in_axes5_x*six_r_zeta_2_in_axes3_x -
-            six_r_e_4_in_axes5_y*six_r_zeta_2_t;
-        const real six_r_zeta_2_in_axes5_y = six_r_e_4_in_axes5_x*six_r_zeta_2_t +
-            six_r_e_4_in_axes5_y*six_r_zeta_2_in_axes3_x;
+        const real six_r_zeta_2_in_axes3_x = six_r_W_2_in_axes2_yz*v.six_r_s_3 -
+            v.six_r_c_3*six_r_zeta_2_in_axes2_y;
+        const real six_r_zeta_2_in_axes3_y = six_r_W_2_in_axes2_yz*v.six_r_c_3 +
+            v.six_r_s_3*six_r_zeta_2_in_axes2_y;
+        const real six_r_zeta_2_t = v.six_r_e_2_in_axes5_z*six_r_zeta_2_in_axes3_x;
+        const real six_r_zeta_2_in_axes5_z = v.six_r_h_4_t*six_r_zeta_2_in_axes3_x;
+        const real six_r_zeta_2_in_axes5_x = v.six_r_e_4_in_axes5_x*six_r_zeta_2_in_axes3_y -
+            v.six_r_J_5_t*six_r_zeta_2_t;
+        const real six_r_zeta_2_in_axes5_y = -v.six_r_J_5_t*six_r_zeta_2_in_axes3_y -
+            v.six_r_e_4_in_axes5_x*six_r_zeta_2_t;
         /* (six_r-zeta_3) angular acceleration of link 3 from the turning of axis 3 */
         const real six_r_zeta_3_in_axes3_x = six_r_omega_2_in_axes3_y*six_r_qd_1_t_3;
         const real six_r_zeta_3_t = six_r_omega_2_in_axes3_x*six_r_qd_1_t_3;
         /* (six_r-beta_3) angular acceleration of link 3 at zero joint accelerations */
         const real six_r_beta_3_in_axes3_x = six_r_zeta_2_in_axes3_x + six_r_zeta_3_in_axes3_x;
         const real six_r_beta_3_in_axes3_y = six_r_zeta_2_in_axes3_y - six_r_zeta_3_t;
-        const real six_r_beta_3_in_axes4_x = six_r_beta_3_in_axes3_y*six_r_h_4_t;
-        const real six_r_beta_3_in_axes4_y = -six_r_beta_3_in_axes3_y*six_r_e_2_in_axes5_z;
+        const real six_r_beta_3_t = six_r_beta_3_in_axes3_x*v.six_r_e_2_in_axes5_z;
+        const real six_r_beta_3_in_axes4_y = six_r_beta_3_in_axes3_x*v.six_r_h_4_t;
         /* (six_r-zeta_4) angular acceleration of link 4 from the turning of axis 4 */
         const real six_r_zeta_4_in_axes4_x = six_r_omega_3_in_axes4_y*six_r_qd_4;
-        const real six_r_zeta_4_in_axes4_y = -six_r_omega_3_in_axes4_x*six_r_qd_4;
+        const real six_r_zeta_4_t = six_r_omega_3_in_axes4_x*six_r_qd_4;
         /* (six_r-beta_4) angular acceleration of link 4 at zero joint accelerations */
-        const real six_r_beta_4_in_axes4_x = six_r_beta_3_in_axes4_x + six_r_zeta_4_in_axes4_x;
-        const real six_r_beta_4_in_axes4_y = six_r_beta_3_in_axes4_y + six_r_zeta_4_in_axes4_y;
-        const real six_r_beta_4_t = six_r_beta_3_in_axes3_x*six_r_e_4_in_axes5_x;
+        const real six_r_beta_4_in_axes4_x = six_r_zeta_4_in_axes4_x - six_r_beta_3_t;
+        const real six_r_beta_4_in_axes4_y = six_r_beta_3_in_axes4_y - six_r_zeta_4_t;
+        const real six_r_beta_4_t = six_r_beta_3_in_axes3_y*v.six_r_e_4_in_axes5_x;
         const real six_r_beta_4_in_axes5_x = six_r_beta_4_t +
-            six_r_beta_4_in_axes4_y*six_r_e_4_in_axes5_y;
-        const real six_r_beta_4_t_2 = -six_r_beta_3_in_axes3_x*six_r_e_4_in_axes5_y;
-        const real six_r_beta_4_in_axes5_y = -six_r_beta_4_t_2 -
-            six_r_beta_4_in_axes4_y*six_r_e_4_in_axes5_x;
+            v.six_r_J_5_t*six_r_beta_4_in_axes4_x;
+        const real six_r_beta_4_t_2 = v.six_r_J_5_t*six_r_beta_3_in_axes3_y;
+        const real six_r_beta_4_in_axes5_y = six_r_beta_4_in_axes4_x*v.six_r_e_4_in_axes5_x -
+            six_r_beta_4_t_2;
         /* (six_r-zeta_5) angular acceleration of link 5 from the turning of axis 5 */
         const real six_r_zeta_5_in_axes5_x = six_r_omega_4_in_axes5_y*six_r_qd_5;
         const real six_r_zeta_5_t = six_r_omega_4_in_axes5_x*six_r_qd_5;
@@ -2915,76 +4361,68 @@ INLINE void dynamics_legs_six_r(const prepared *m, size_t w, size_t leg, size_t 
         const real six_r_beta_5_in_axes5_x = six_r_beta_4_in_axes5_x + six_r_zeta_5_in_axes5_x;
         const real six_r_beta_5_in_axes5_y = six_r_beta_4_in_axes5_y - six_r_zeta_5_t;
         /* (six_r-bias) acceleration of the connection point at zero joint accelerations */
-        const real six_r_bias_t = six_r_omega_3_in_axes4_x*six_r_omega_3_in_axes4_x;
+        const real six_r_bias_t = six_r_omega_3_in_axes4_y*six_r_omega_3_in_axes4_y;
         const real six_r_bias_t_2 = six_r_omega_4_in_axes5_x*six_r_omega_4_in_axes5_x;
-        const real six_r_d_2_in_spec2_x = six_r_joint2_offset_x*six_r_s_2;
-        const real six_r_d_2_in_spec2_y = six_r_c_2*six_r_joint2_offset_x;
-        const real six_r_bias_t_3 = six_r_c_3*six_r_d_2_in_spec2_x +
-            six_r_d_2_in_spec2_y*six_r_s_3;
-        const real six_r_bias_t_4 = six_r_c_3*six_r_d_2_in_spec2_y -
-            six_r_d_2_in_spec2_x*six_r_s_3;
-        const real six_r_d_2_in_axes5_z = six_r_bias_t_4*six_r_h_4_t;
-        const real six_r_bias_t_5 = six_r_bias_t_4*six_r_e_2_in_axes5_z;
-        const real six_r_d_2_in_axes5_x = six_r_bias_t_3*six_r_e_4_in_axes5_x -
-            six_r_bias_t_5*six_r_e_4_in_axes5_y;
-        const real six_r_d_2_in_axes5_y = six_r_bias_t_3*six_r_e_4_in_axes5_y +
-            six_r_bias_t_5*six_r_e_4_in_axes5_x;
-        const real six_r_bias_t_6 = six_r_omega_1_in_axes5_x*six_r_omega_1_in_axes5_x;
-        const real six_r_bias_t_7 = six_r_omega_1_in_axes5_y*six_r_omega_1_in_axes5_y;
-        const real six_r_bias_t_8 = six_r_omega_1_in_axes5_z*six_r_omega_1_in_axes5_z;
-        const real six_r_bias_t_9 = six_r_c_3*six_r_joint3_offset_x;
-        const real six_r_bias_t_10 = six_r_joint3_offset_x*six_r_s_3;
-        const real six_r_d_3_in_axes5_z = -six_r_bias_t_10*six_r_h_4_t;
-        const real six_r_bias_t_11 = six_r_bias_t_10*six_r_e_2_in_axes5_z;
-        const real six_r_d_3_in_axes5_x = six_r_bias_t_11*six_r_e_4_in_axes5_y +
-            six_r_bias_t_9*six_r_e_4_in_axes5_x;
-        const real six_r_d_3_in_axes5_y = six_r_bias_t_9*six_r_e_4_in_axes5_y -
-            six_r_bias_t_11*six_r_e_4_in_axes5_x;
-        const real six_r_bias_t_12 = six_r_omega_2_in_axes5_x*six_r_omega_2_in_axes5_x;
-        const real six_r_bias_t_13 = six_r_omega_2_in_axes5_y*six_r_omega_2_in_axes5_y;
-        const real six_r_bias_t_14 = six_r_omega_2_in_axes5_z*six_r_omega_2_in_axes5_z;
-        const real six_r_d_4_in_axes5_x = six_r_e_4_in_axes5_x*six_r_joint4_offset_x;
-        const real six_r_d_4_in_axes5_y = six_r_e_4_in_axes5_y*six_r_joint4_offset_x;
-        const real six_r_d_5_in_axes5_x = six_r_e_4_in_axes5_x*six_r_joint5_offset_x;
-        const real six_r_d_5_in_axes5_y = six_r_e_4_in_axes5_y*six_r_joint5_offset_x;
-        const real six_r_bias_t_15 = six_r_W_4_in_axes5_xy + six_r_beta_4_in_axes4_x;
+        const real six_r_bias_t_6 = v.six_r_bias_t_4*v.six_r_e_2_in_axes5_z;
+        const real six_r_d_2_in_axes5_z = v.six_r_bias_t_4*v.six_r_h_4_t;
+        const real six_r_d_2_in_axes5_x = v.six_r_bias_t_5*v.six_r_e_4_in_axes5_x -
+            v.six_r_J_5_t*six_r_bias_t_6;
+        const real six_r_d_2_in_axes5_y = -v.six_r_J_5_t*v.six_r_bias_t_5 -
+            six_r_bias_t_6*v.six_r_e_4_in_axes5_x;
+        const real six_r_bias_t_7 = six_r_omega_1_t*six_r_omega_1_t;
+        const real six_r_bias_t_8 = six_r_omega_1_t_2*six_r_omega_1_t_2;
+        const real six_r_bias_t_9 = six_r_omega_1_t_3*six_r_omega_1_t_3;
+        const real six_r_bias_t_12 = v.six_r_bias_t_10*v.six_r_e_2_in_axes5_z;
+        const real six_r_d_3_in_axes5_z = v.six_r_bias_t_10*v.six_r_h_4_t;
+        const real six_r_d_3_in_axes5_x = v.six_r_bias_t_11*v.six_r_e_4_in_axes5_x -
+            v.six_r_J_5_t*six_r_bias_t_12;
+        const real six_r_d_3_in_axes5_y = -v.six_r_J_5_t*v.six_r_bias_t_11 -
+            six_r_bias_t_12*v.six_r_e_4_in_axes5_x;
+        const real six_r_bias_t_13 = six_r_omega_2_in_axes5_x*six_r_omega_2_in_axes5_x;
+        const real six_r_bias_t_14 = six_r_omega_2_in_axes5_y*six_r_omega_2_in_axes5_y;
+        const real six_r_bias_t_15 = six_r_omega_2_in_axes5_z*six_r_omega_2_in_axes5_z;
+        const real six_r_joint4_offset_x = m->six_r_joint4_offset_x[i];
+        const real six_r_d_4_in_axes5_x = v.six_r_e_4_in_axes5_x*six_r_joint4_offset_x;
+        const real six_r_bias_t_16 = v.six_r_J_5_t*six_r_joint4_offset_x;
+        const real six_r_joint5_offset_x = m->six_r_joint5_offset_x[i];
+        const real six_r_d_5_in_axes5_x = v.six_r_e_4_in_axes5_x*six_r_joint5_offset_x;
+        const real six_r_bias_t_17 = v.six_r_J_5_t*six_r_joint5_offset_x;
+        const real six_r_bias_t_18 = six_r_W_4_in_axes5_xy + six_r_beta_4_in_axes4_y;
         const real six_r_bias_in_axes5_x = six_r_W_1_in_axes5_xy*six_r_d_2_in_axes5_y +
             six_r_W_1_in_axes5_xz*six_r_d_2_in_axes5_z +
-            six_r_W_5_in_axes5_xx*six_r_platform_joint_offset_x +
             six_r_d_3_in_axes5_y*(six_r_W_2_in_axes5_xy - six_r_zeta_2_in_axes5_z) +
-            six_r_d_3_in_axes5_z*(six_r_W_2_in_axes5_xz + six_r_zeta_2_in_axes5_y) +
-            six_r_d_4_in_axes5_y*(six_r_W_3_in_axes5_xy - six_r_beta_3_in_axes4_x) +
-            six_r_d_5_in_axes5_y*(six_r_W_4_in_axes5_xy - six_r_beta_4_in_axes4_x) -
-            six_r_d_2_in_axes5_x*(six_r_bias_t_7 + six_r_bias_t_8) -
-            six_r_d_3_in_axes5_x*(six_r_bias_t_13 + six_r_bias_t_14) -
+            six_r_d_3_in_axes5_z*(six_r_W_2_in_axes5_xz + six_r_zeta_2_in_axes5_y) -
+            six_r_W_5_t_3*six_r_platform_joint_offset_x - six_r_bias_t_16*(six_r_W_3_in_axes5_xy -
+            six_r_beta_3_in_axes4_y) - six_r_bias_t_17*(six_r_W_4_in_axes5_xy -
+            six_r_beta_4_in_axes4_y) - six_r_d_2_in_axes5_x*(six_r_bias_t_8 + six_r_bias_t_9) -
+            six_r_d_3_in_axes5_x*(six_r_bias_t_14 + six_r_bias_t_15) -
             six_r_d_4_in_axes5_x*(six_r_bias_t +
             six_r_omega_3_in_axes5_y*six_r_omega_3_in_axes5_y) - six_r_d_5_in_axes5_x*(six_r_W_5_t
             + six_r_bias_t);
         const real six_r_bias_in_axes5_y = six_r_W_1_in_axes5_xy*six_r_d_2_in_axes5_x +
-            six_r_W_1_in_axes5_yz*six_r_d_2_in_axes5_z + six_r_bias_t_15*six_r_d_5_in_axes5_x +
-            six_r_bias_t_15*six_r_platform_joint_offset_x +
+            six_r_W_1_in_axes5_yz*six_r_d_2_in_axes5_z + six_r_bias_t_16*(six_r_bias_t +
+            six_r_omega_3_in_axes5_x*six_r_omega_3_in_axes5_x) + six_r_bias_t_17*(six_r_bias_t +
+            six_r_bias_t_2) + six_r_bias_t_18*six_r_d_5_in_axes5_x +
+            six_r_bias_t_18*six_r_platform_joint_offset_x +
             six_r_d_3_in_axes5_x*(six_r_W_2_in_axes5_xy + six_r_zeta_2_in_axes5_z) +
             six_r_d_3_in_axes5_z*(six_r_W_2_in_axes5_yz - six_r_zeta_2_in_axes5_x) +
-            six_r_d_4_in_axes5_x*(six_r_W_3_in_axes5_xy + six_r_beta_3_in_axes4_x) -
-            six_r_d_2_in_axes5_y*(six_r_bias_t_6 + six_r_bias_t_8) -
-            six_r_d_3_in_axes5_y*(six_r_bias_t_12 + six_r_bias_t_14) -
-            six_r_d_4_in_axes5_y*(six_r_bias_t +
-            six_r_omega_3_in_axes5_x*six_r_omega_3_in_axes5_x) -
-            six_r_d_5_in_axes5_y*(six_r_bias_t + six_r_bias_t_2);
+            six_r_d_4_in_axes5_x*(six_r_W_3_in_axes5_xy + six_r_beta_3_in_axes4_y) -
+            six_r_d_2_in_axes5_y*(six_r_bias_t_7 + six_r_bias_t_9) -
+            six_r_d_3_in_axes5_y*(six_r_bias_t_13 + six_r_bias_t_15);
         const real six_r_bias_in_axes5_z = six_r_W_1_in_axes5_xz*six_r_d_2_in_axes5_x +
             six_r_W_1_in_axes5_yz*six_r_d_2_in_axes5_y +
             six_r_d_3_in_axes5_x*(six_r_W_2_in_axes5_xz - six_r_zeta_2_in_axes5_y) +
             six_r_d_3_in_axes5_y*(six_r_W_2_in_axes5_yz + six_r_zeta_2_in_axes5_x) +
-            six_r_d_4_in_axes5_x*(six_r_beta_4_t_2 + six_r_beta_3_in_axes4_y*six_r_e_4_in_axes5_x
-            + six_r_omega_3_in_axes4_x*six_r_omega_3_in_axes5_x) +
-            six_r_d_4_in_axes5_y*(six_r_beta_4_t + six_r_beta_3_in_axes4_y*six_r_e_4_in_axes5_y +
-            six_r_omega_3_in_axes4_x*six_r_omega_3_in_axes5_y) +
-            six_r_d_5_in_axes5_x*(six_r_omega_3_in_axes4_x*six_r_omega_4_in_axes5_x -
-            six_r_beta_4_in_axes5_y) + six_r_d_5_in_axes5_y*(six_r_beta_4_in_axes5_x +
-            six_r_omega_3_in_axes4_x*six_r_omega_4_in_axes5_y) +
-            six_r_platform_joint_offset_x*(six_r_W_5_in_axes5_xz - six_r_beta_5_in_axes5_y) -
-            six_r_d_2_in_axes5_z*(six_r_bias_t_6 + six_r_bias_t_7) -
-            six_r_d_3_in_axes5_z*(six_r_bias_t_12 + six_r_bias_t_13);
+            six_r_d_4_in_axes5_x*(six_r_beta_4_t_2 + six_r_beta_3_t*v.six_r_e_4_in_axes5_x +
+            six_r_omega_3_in_axes4_y*six_r_omega_3_in_axes5_x) +
+            six_r_d_5_in_axes5_x*(six_r_omega_3_in_axes4_y*six_r_omega_4_in_axes5_x -
+            six_r_beta_4_in_axes5_y) + six_r_platform_joint_offset_x*(six_r_W_5_in_axes5_xz -
+            six_r_beta_5_in_axes5_y) - six_r_bias_t_16*(six_r_beta_4_t +
+            six_r_omega_3_in_axes4_y*six_r_omega_3_in_axes5_y - v.six_r_J_5_t*six_r_beta_3_t) -
+            six_r_bias_t_17*(six_r_beta_4_in_axes5_x +
+            six_r_omega_3_in_axes4_y*six_r_omega_4_in_axes5_y) -
+            six_r_d_2_in_axes5_z*(six_r_bias_t_7 + six_r_bias_t_8) -
+            six_r_d_3_in_axes5_z*(six_r_bias_t_13 + six_r_bias_t_14);
         /* (six_r-rel_o) remainder without the acceleration in: acceleration of the connection point left
            to the joint accelerations */
         const real six_r_rel_o_in_axes5_x = six_r_u_1_in_axes5_x - six_r_bias_in_axes5_x;
@@ -3023,7 +4461,7 @@ INLINE void dynamics_legs_six_r(const prepared *m, size_t w, size_t leg, size_t 
             six_r_n_m1_in_axes5_y*six_r_omega_5_in_axes5_z;
         /* (six_r-nu_2) bias of the angular acceleration along moment direction 2 */
         const real six_r_nu_2_t = six_r_beta_5_in_axes5_y*six_r_end_p1_in_axes5_z -
-            six_r_beta_4_in_axes4_x*six_r_end_p1_in_axes5_y;
+            six_r_beta_4_in_axes4_y*six_r_end_p1_in_axes5_y;
         const real six_r_nu_2_t_2 = six_r_nd_m2_in_axes5_y*six_r_nu_1_t_4 +
             six_r_nd_m2_in_axes5_z*six_r_nu_1_t_5 + six_r_nu_1_t_3*(six_r_nu_1_t +
             six_r_end_p1_in_axes5_z*six_r_omega_5_in_axes5_z);
@@ -3048,8 +4486,8 @@ INLINE void dynamics_legs_six_r(const prepared *m, size_t w, size_t leg, size_t 
             six_r_qdd_1_o_t_4*six_r_w_1_t_39 + six_r_rel_o_in_axes5_z*six_r_w_1_t_30 -
             six_r_qdd_1_o_t_5*six_r_w_1_t_33 - six_r_rel_o_in_axes5_y*six_r_w_1_t_29);
         /* (six_r-alpha_1_o) remainder without the acceleration in: angular acceleration of link 1 */
-        const real six_r_alpha_1_o_t = six_r_qdd_1_o_t_5*six_r_s_2;
-        const real six_r_alpha_1_o_in_axes2_y = -six_r_c_2*six_r_qdd_1_o_t_5;
+        const real six_r_alpha_1_o_t = v.six_r_c_2*six_r_qdd_1_o_t_5;
+        const real six_r_alpha_1_o_in_axes2_y = six_r_qdd_1_o_t_5*v.six_r_s_2;
         /* (six_r-alpha_2_o) remainder without the acceleration in: angular acceleration of link 2 */
         const real six_r_alpha_2_o_in_axes2_x = six_r_W_2_in_axes2_yz - six_r_alpha_1_o_t;
         const real six_r_alpha_2_o_in_axes2_y = six_r_alpha_1_o_in_axes2_y +
@@ -3062,9 +4500,9 @@ INLINE void dynamics_legs_six_r(const prepared *m, size_t w, size_t leg, size_t 
         const real six_r_B_2_o_in_axes2_zy = six_r_W_2_in_axes2_yz + six_r_alpha_2_o_in_axes2_x;
         /* (six_r-alpha_3_o) remainder without the acceleration in: angular acceleration of link 3 */
         const real six_r_alpha_3_o_in_axes3_x = six_r_zeta_3_in_axes3_x +
-            six_r_alpha_2_o_in_axes2_x*six_r_c_3 + six_r_alpha_2_o_in_axes2_y*six_r_s_3;
-        const real six_r_alpha_3_o_in_axes3_y = six_r_alpha_2_o_in_axes2_y*six_r_c_3 -
-            six_r_zeta_3_t - six_r_alpha_2_o_in_axes2_x*six_r_s_3;
+            six_r_alpha_2_o_in_axes2_x*v.six_r_s_3 - six_r_alpha_2_o_in_axes2_y*v.six_r_c_3;
+        const real six_r_alpha_3_o_in_axes3_y = six_r_alpha_2_o_in_axes2_x*v.six_r_c_3 +
+            six_r_alpha_2_o_in_axes2_y*v.six_r_s_3 - six_r_zeta_3_t;
         const real six_r_alpha_3_o_in_axes3_z = six_r_qdd_1_o_t_3 + six_r_qdd_1_o_t_4;
         /* (six_r-B_3_o) remainder of the acceleration tensor of link 3 */
         const real six_r_B_3_o_in_axes3_xy = six_r_W_3_in_axes3_xy - six_r_alpha_3_o_in_axes3_z;
@@ -3075,12 +4513,11 @@ INLINE void dynamics_legs_six_r(const prepared *m, size_t w, size_t leg, size_t 
         const real six_r_B_3_o_in_axes3_zy = six_r_W_3_in_axes3_yz + six_r_alpha_3_o_in_axes3_x;
         /* (six_r-alpha_4_o) remainder without the acceleration in: angular acceleration of link 4 */
         const real six_r_alpha_4_o_in_axes4_x = six_r_zeta_4_in_axes4_x +
-            six_r_alpha_3_o_in_axes3_y*six_r_h_4_t +
-            six_r_alpha_3_o_in_axes3_z*six_r_e_2_in_axes5_z;
-        const real six_r_alpha_4_o_in_axes4_y = six_r_zeta_4_in_axes4_y +
-            six_r_alpha_3_o_in_axes3_z*six_r_h_4_t -
-            six_r_alpha_3_o_in_axes3_y*six_r_e_2_in_axes5_z;
-        const real six_r_alpha_4_o_in_axes4_z = six_r_alpha_3_o_in_axes3_x + six_r_qdd_4_o;
+            six_r_alpha_3_o_in_axes3_z*v.six_r_h_4_t -
+            six_r_alpha_3_o_in_axes3_x*v.six_r_e_2_in_axes5_z;
+        const real six_r_alpha_4_o_in_axes4_y = six_r_alpha_3_o_in_axes3_x*v.six_r_h_4_t +
+            six_r_alpha_3_o_in_axes3_z*v.six_r_e_2_in_axes5_z - six_r_zeta_4_t;
+        const real six_r_alpha_4_o_in_axes4_z = six_r_alpha_3_o_in_axes3_y + six_r_qdd_4_o;
         /* (six_r-B_4_o) remainder of the acceleration tensor of link 4 */
         const real six_r_B_4_o_in_axes4_xy = six_r_W_4_in_axes4_xy - six_r_alpha_4_o_in_axes4_z;
         const real six_r_B_4_o_in_axes4_xz = six_r_W_4_in_axes4_xz + six_r_alpha_4_o_in_axes4_y;
@@ -3089,53 +4526,57 @@ INLINE void dynamics_legs_six_r(const prepared *m, size_t w, size_t leg, size_t 
         const real six_r_B_4_o_in_axes4_zx = six_r_W_4_in_axes4_xz - six_r_alpha_4_o_in_axes4_y;
         const real six_r_B_4_o_in_axes4_zy = six_r_W_4_in_axes4_yz + six_r_alpha_4_o_in_axes4_x;
         /* (six_r-dalpha_alpha_5) coefficient of the acceleration in: angular acceleration of link 5 */
-        const real six_r_dalpha_alpha_5_in_axes5_xx = six_r_e_1_in_axes5_x*six_r_o_1_in_axes5_x -
-            six_r_e_2_in_axes5_x*six_r_o_2_t - six_r_e_2_in_axes5_x*six_r_o_3_t -
-            six_r_e_4_in_axes5_x*six_r_o_4_t;
-        const real six_r_dalpha_alpha_5_in_axes5_xy = six_r_e_1_in_axes5_x*six_r_o_1_in_axes5_y +
-            six_r_e_2_in_axes5_x*six_r_o_2_in_axes5_y + six_r_e_2_in_axes5_x*six_r_o_3_in_axes5_y
-            + six_r_e_4_in_axes5_x*six_r_o_4_in_axes5_y;
-        const real six_r_dalpha_alpha_5_in_axes5_xz = six_r_e_1_in_axes5_x*six_r_o_1_in_axes5_z +
-            six_r_e_2_in_axes5_x*six_r_o_2_in_axes5_z + six_r_e_2_in_axes5_x*six_r_o_3_in_axes5_z
-            + six_r_e_4_in_axes5_x*six_r_o_4_in_axes5_z;
-        const real six_r_dalpha_alpha_5_in_axes5_yx = six_r_e_1_in_axes5_y*six_r_o_1_in_axes5_x -
-            six_r_e_2_in_axes5_y*six_r_o_2_t - six_r_e_2_in_axes5_y*six_r_o_3_t -
-            six_r_e_4_in_axes5_y*six_r_o_4_t;
-        const real six_r_dalpha_alpha_5_in_axes5_yy = six_r_e_1_in_axes5_y*six_r_o_1_in_axes5_y +
-            six_r_e_2_in_axes5_y*six_r_o_2_in_axes5_y + six_r_e_2_in_axes5_y*six_r_o_3_in_axes5_y
-            + six_r_e_4_in_axes5_y*six_r_o_4_in_axes5_y;
-        const real six_r_dalpha_alpha_5_in_axes5_yz = six_r_e_1_in_axes5_y*six_r_o_1_in_axes5_z +
-            six_r_e_2_in_axes5_y*six_r_o_2_in_axes5_z + six_r_e_2_in_axes5_y*six_r_o_3_in_axes5_z
-            + six_r_e_4_in_axes5_y*six_r_o_4_in_axes5_z;
+        const real six_r_dalpha_alpha_5_in_axes5_xx = v.six_r_e_1_in_axes5_x*six_r_o_1_in_axes5_x
+            - v.six_r_e_2_in_axes5_x*six_r_o_2_t - v.six_r_e_2_in_axes5_x*six_r_o_3_t -
+            v.six_r_e_4_in_axes5_x*six_r_o_4_t;
+        const real six_r_dalpha_alpha_5_in_axes5_xy = v.six_r_e_1_in_axes5_x*six_r_o_1_in_axes5_y
+            + v.six_r_e_2_in_axes5_x*six_r_o_2_in_axes5_y +
+            v.six_r_e_2_in_axes5_x*six_r_o_3_in_axes5_y +
+            v.six_r_e_4_in_axes5_x*six_r_o_4_in_axes5_y;
+        const real six_r_dalpha_alpha_5_in_axes5_xz = v.six_r_e_2_in_axes5_x*six_r_o_2_in_axes5_z
+            + v.six_r_e_2_in_axes5_x*six_r_o_3_in_axes5_z +
+            v.six_r_e_4_in_axes5_x*six_r_o_4_in_axes5_z - v.six_r_e_1_in_axes5_x*six_r_o_1_t;
+        const real six_r_dalpha_alpha_5_in_axes5_yx = v.six_r_J_5_t*six_r_o_4_t +
+            v.six_r_e_1_in_axes5_y*six_r_o_1_in_axes5_x - v.six_r_e_2_in_axes5_y*six_r_o_2_t -
+            v.six_r_e_2_in_axes5_y*six_r_o_3_t;
+        const real six_r_dalpha_alpha_5_in_axes5_yy = v.six_r_e_1_in_axes5_y*six_r_o_1_in_axes5_y
+            + v.six_r_e_2_in_axes5_y*six_r_o_2_in_axes5_y +
+            v.six_r_e_2_in_axes5_y*six_r_o_3_in_axes5_y - v.six_r_J_5_t*six_r_o_4_in_axes5_y;
+        const real six_r_dalpha_alpha_5_in_axes5_yz = v.six_r_e_2_in_axes5_y*six_r_o_2_in_axes5_z
+            + v.six_r_e_2_in_axes5_y*six_r_o_3_in_axes5_z - v.six_r_J_5_t*six_r_o_4_in_axes5_z -
+            v.six_r_e_1_in_axes5_y*six_r_o_1_t;
         const real six_r_dalpha_alpha_5_in_axes5_zx = six_r_o_5_in_axes5_x +
-            six_r_e_1_in_axes5_z*six_r_o_1_in_axes5_x - six_r_e_2_in_axes5_z*six_r_o_2_t -
-            six_r_e_2_in_axes5_z*six_r_o_3_t;
+            v.six_r_e_1_in_axes5_z*six_r_o_1_in_axes5_x - v.six_r_e_2_in_axes5_z*six_r_o_2_t -
+            v.six_r_e_2_in_axes5_z*six_r_o_3_t;
         const real six_r_dalpha_alpha_5_in_axes5_zy = six_r_o_5_in_axes5_y +
-            six_r_e_1_in_axes5_z*six_r_o_1_in_axes5_y + six_r_e_2_in_axes5_z*six_r_o_2_in_axes5_y
-            + six_r_e_2_in_axes5_z*six_r_o_3_in_axes5_y;
-        const real six_r_dalpha_alpha_5_in_axes5_zz = six_r_e_1_in_axes5_z*six_r_o_1_in_axes5_z +
-            six_r_e_2_in_axes5_z*six_r_o_2_in_axes5_z + six_r_e_2_in_axes5_z*six_r_o_3_in_axes5_z
-            - six_r_o_5_t;
+            v.six_r_e_1_in_axes5_z*six_r_o_1_in_axes5_y +
+            v.six_r_e_2_in_axes5_z*six_r_o_2_in_axes5_y +
+            v.six_r_e_2_in_axes5_z*six_r_o_3_in_axes5_y;
+        const real six_r_dalpha_alpha_5_in_axes5_zz = v.six_r_e_2_in_axes5_z*six_r_o_2_in_axes5_z
+            + v.six_r_e_2_in_axes5_z*six_r_o_3_in_axes5_z - six_r_o_5_t -
+            v.six_r_e_1_in_axes5_z*six_r_o_1_t;
         /* (six_r-d_alpha_5) coefficient of the acceleration in: angular acceleration of link 5 */
-        const real six_r_d_alpha_5_in_axes5_xz = six_r_e_1_in_axes5_x*six_r_w_1_in_axes5_z +
-            six_r_e_2_in_axes5_x*six_r_w_2_in_axes5_z + six_r_e_2_in_axes5_x*six_r_w_3_in_axes5_z
-            + six_r_e_4_in_axes5_x*six_r_w_4_in_axes5_z;
-        const real six_r_d_alpha_5_in_axes5_yz = six_r_e_1_in_axes5_y*six_r_w_1_in_axes5_z +
-            six_r_e_2_in_axes5_y*six_r_w_2_in_axes5_z + six_r_e_2_in_axes5_y*six_r_w_3_in_axes5_z
-            + six_r_e_4_in_axes5_y*six_r_w_4_in_axes5_z;
+        const real six_r_d_alpha_5_in_axes5_xz = v.six_r_e_1_in_axes5_x*six_r_w_1_in_axes5_z +
+            v.six_r_e_2_in_axes5_x*six_r_w_2_in_axes5_z +
+            v.six_r_e_2_in_axes5_x*six_r_w_3_in_axes5_z +
+            v.six_r_e_4_in_axes5_x*six_r_w_4_in_axes5_z;
+        const real six_r_d_alpha_5_in_axes5_yz = v.six_r_e_1_in_axes5_y*six_r_w_1_in_axes5_z +
+            v.six_r_e_2_in_axes5_y*six_r_w_2_in_axes5_z +
+            v.six_r_e_2_in_axes5_y*six_r_w_3_in_axes5_z - v.six_r_J_5_t*six_r_w_4_in_axes5_z;
         const real six_r_d_alpha_5_in_axes5_zy = six_r_w_5_in_axes5_y +
-            six_r_e_1_in_axes5_z*six_r_w_1_in_axes5_y + six_r_e_2_in_axes5_z*six_r_w_2_in_axes5_y
-            - six_r_e_2_in_axes5_z*six_r_w_3_t;
+            v.six_r_e_1_in_axes5_z*six_r_w_1_in_axes5_y +
+            v.six_r_e_2_in_axes5_z*six_r_w_2_in_axes5_y - v.six_r_e_2_in_axes5_z*six_r_w_3_t;
         const real six_r_d_alpha_5_in_axes5_zz = six_r_w_5_in_axes5_z +
-            six_r_e_1_in_axes5_z*six_r_w_1_in_axes5_z + six_r_e_2_in_axes5_z*six_r_w_2_in_axes5_z
-            + six_r_e_2_in_axes5_z*six_r_w_3_in_axes5_z;
+            v.six_r_e_1_in_axes5_z*six_r_w_1_in_axes5_z +
+            v.six_r_e_2_in_axes5_z*six_r_w_2_in_axes5_z +
+            v.six_r_e_2_in_axes5_z*six_r_w_3_in_axes5_z;
         /* (six_r-alpha_5_o) remainder without the acceleration in: angular acceleration of link 5 */
         const real six_r_alpha_5_o_in_axes5_x = six_r_zeta_5_in_axes5_x +
-            six_r_alpha_4_o_in_axes4_y*six_r_e_4_in_axes5_y +
-            six_r_alpha_4_o_in_axes4_z*six_r_e_4_in_axes5_x;
-        const real six_r_alpha_5_o_in_axes5_y = six_r_alpha_4_o_in_axes4_z*six_r_e_4_in_axes5_y -
-            six_r_zeta_5_t - six_r_alpha_4_o_in_axes4_y*six_r_e_4_in_axes5_x;
-        const real six_r_alpha_5_o_in_axes5_z = six_r_alpha_4_o_in_axes4_x +
+            v.six_r_J_5_t*six_r_alpha_4_o_in_axes4_x +
+            six_r_alpha_4_o_in_axes4_z*v.six_r_e_4_in_axes5_x;
+        const real six_r_alpha_5_o_in_axes5_y = six_r_alpha_4_o_in_axes4_x*v.six_r_e_4_in_axes5_x
+            - six_r_zeta_5_t - v.six_r_J_5_t*six_r_alpha_4_o_in_axes4_z;
+        const real six_r_alpha_5_o_in_axes5_z = six_r_alpha_4_o_in_axes4_y +
             inv_six_r_w_1_t_12*(six_r_qdd_1_o_t_2*six_r_w_1_t_14 +
             six_r_qdd_1_o_t_3*six_r_w_1_t_25 + six_r_qdd_1_o_t_5*six_r_w_1_t_18 +
             six_r_rel_o_in_axes5_y*six_r_w_1_t_13 - six_r_qdd_1_o_t_4*six_r_w_1_t_22 -
@@ -3150,86 +4591,76 @@ INLINE void dynamics_legs_six_r(const prepared *m, size_t w, size_t leg, size_t 
         /* (six_r-a_o_3_o) remainder without the acceleration in: acceleration of the origin of joint 3 */
         const real six_r_a_o_3_o_t = six_r_omega_1_in_axes2_y*six_r_omega_1_in_axes2_y;
         const real six_r_a_o_3_o_t_2 = six_r_qd_1_t_4*six_r_qd_1_t_4;
-        const real six_r_a_o_3_o_t_3 = six_r_joint3_offset_x*(six_r_a_o_3_o_t +
+        const real six_r_joint3_offset_x = m->six_r_joint3_offset_x[i];
+        const real six_r_a_o_3_o_in_axes2_x = -six_r_joint3_offset_x*(six_r_a_o_3_o_t +
             six_r_a_o_3_o_t_2);
         const real six_r_a_o_3_o_in_axes2_y = six_r_B_2_o_in_axes2_yx*six_r_joint3_offset_x;
         const real six_r_a_o_3_o_in_axes2_z = six_r_B_2_o_in_axes2_zx*six_r_joint3_offset_x;
-        const real six_r_a_o_3_o_in_axes3_x = six_r_a_o_3_o_in_axes2_y*six_r_s_3 -
-            six_r_a_o_3_o_t_3*six_r_c_3;
-        const real six_r_a_o_3_o_in_axes3_y = six_r_a_o_3_o_in_axes2_y*six_r_c_3 +
-            six_r_a_o_3_o_t_3*six_r_s_3;
+        const real six_r_a_o_3_o_in_axes3_x = six_r_a_o_3_o_in_axes2_x*v.six_r_s_3 -
+            six_r_a_o_3_o_in_axes2_y*v.six_r_c_3;
+        const real six_r_a_o_3_o_in_axes3_y = six_r_a_o_3_o_in_axes2_x*v.six_r_c_3 +
+            six_r_a_o_3_o_in_axes2_y*v.six_r_s_3;
         /* (six_r-a_o_4_o) remainder without the acceleration in: acceleration of the origin of joint 4 */
-        const real six_r_a_o_4_o_in_axes3_x = six_r_a_o_3_o_in_axes3_x -
+        const real six_r_a_o_4_o_in_axes3_x = six_r_a_o_3_o_in_axes3_x +
+            six_r_B_3_o_in_axes3_xy*six_r_joint4_offset_x;
+        const real six_r_a_o_4_o_in_axes3_y = six_r_a_o_3_o_in_axes3_y -
             six_r_W_3_t_3*six_r_joint4_offset_x;
-        const real six_r_a_o_4_o_in_axes3_y = six_r_a_o_3_o_in_axes3_y +
-            six_r_B_3_o_in_axes3_yx*six_r_joint4_offset_x;
         const real six_r_a_o_4_o_in_axes3_z = six_r_a_o_3_o_in_axes2_z +
-            six_r_B_3_o_in_axes3_zx*six_r_joint4_offset_x;
+            six_r_B_3_o_in_axes3_zy*six_r_joint4_offset_x;
         /* (six_r-acc_3_o) remainder without the acceleration in: acceleration of the reference point of
            link 3, less gravity */
-        const real six_r_acc_3_t = m->six_r_acc_3_t[i];
-        const real six_r_acc_3_t_2 = m->six_r_acc_3_t_2[i];
-        const real six_r_g_in_axes1_x = six_r_acc_3_t*six_r_c_1 + six_r_acc_3_t_2*six_r_s_1;
-        const real six_r_g_in_axes1_y = six_r_acc_3_t_2*six_r_c_1 - six_r_acc_3_t*six_r_s_1;
-        const real six_r_g_in_axes1_z = m->six_r_g_in_axes1_z[i];
-        const real six_r_g_in_axes2_x = six_r_c_2*six_r_g_in_axes1_y +
-            six_r_g_in_axes1_z*six_r_s_2;
-        const real six_r_g_in_axes2_y = six_r_c_2*six_r_g_in_axes1_z -
-            six_r_g_in_axes1_y*six_r_s_2;
-        const real six_r_g_in_axes3_x = six_r_c_3*six_r_g_in_axes2_x +
-            six_r_g_in_axes2_y*six_r_s_3;
-        const real six_r_g_in_axes3_y = six_r_c_3*six_r_g_in_axes2_y -
-            six_r_g_in_axes2_x*six_r_s_3;
-        const real six_r_acc_3_o_in_axes3_x = six_r_a_o_3_o_in_axes3_x - six_r_g_in_axes3_x;
-        const real six_r_acc_3_o_in_axes3_y = six_r_a_o_3_o_in_axes3_y - six_r_g_in_axes3_y;
-        const real six_r_acc_3_o_in_axes3_z = six_r_a_o_3_o_in_axes2_z - six_r_g_in_axes1_x;
+        const real six_r_acc_3_o_in_axes3_x = six_r_a_o_3_o_in_axes3_x - v.six_r_g_in_axes3_x;
+        const real six_r_acc_3_o_in_axes3_y = six_r_a_o_3_o_in_axes3_y - v.six_r_g_in_axes3_y;
+        const real six_r_acc_3_o_in_axes3_z = six_r_a_o_3_o_in_axes2_z - v.six_r_g_in_axes1_y;
         /* (six_r-f_3_o) remainder without the acceleration in: inertia force of link 3 less its weight */
-        const real six_r_f_3_o_t = six_r_omega_2_in_axes3_x*six_r_omega_2_in_axes3_x;
+        const real six_r_f_3_o_t = six_r_omega_2_in_axes3_y*six_r_omega_2_in_axes3_y;
         const real six_r_h_3_in_spec3_x = m->six_r_h_3_in_spec3_x[i];
         const real six_r_h_3_in_spec3_y = m->six_r_h_3_in_spec3_y[i];
         const real six_r_h_3_in_spec3_z = m->six_r_h_3_in_spec3_z[i];
         const real six_r_link3_mass = m->six_r_link3_mass[i];
-        const real six_r_f_3_o_in_axes3_x = six_r_B_3_o_in_axes3_xy*six_r_h_3_in_spec3_y +
+        const real six_r_f_3_o_in_axes3_x = six_r_B_3_o_in_axes3_xy*six_r_h_3_in_spec3_x +
             six_r_B_3_o_in_axes3_xz*six_r_h_3_in_spec3_z +
-            six_r_acc_3_o_in_axes3_x*six_r_link3_mass - six_r_W_3_t_3*six_r_h_3_in_spec3_x;
-        const real six_r_f_3_o_in_axes3_y = six_r_B_3_o_in_axes3_yx*six_r_h_3_in_spec3_x +
-            six_r_B_3_o_in_axes3_yz*six_r_h_3_in_spec3_z +
-            six_r_acc_3_o_in_axes3_y*six_r_link3_mass - six_r_h_3_in_spec3_y*(six_r_W_3_t_2 +
+            six_r_acc_3_o_in_axes3_x*six_r_link3_mass + six_r_h_3_in_spec3_y*(six_r_W_3_t_2 +
             six_r_f_3_o_t);
-        const real six_r_f_3_o_in_axes3_z = six_r_B_3_o_in_axes3_zx*six_r_h_3_in_spec3_x +
-            six_r_B_3_o_in_axes3_zy*six_r_h_3_in_spec3_y +
-            six_r_acc_3_o_in_axes3_z*six_r_link3_mass - six_r_h_3_in_spec3_z*(six_r_W_3_t +
+        const real six_r_f_3_o_in_axes3_y = six_r_B_3_o_in_axes3_yz*six_r_h_3_in_spec3_z +
+            six_r_acc_3_o_in_axes3_y*six_r_link3_mass -
+            six_r_B_3_o_in_axes3_yx*six_r_h_3_in_spec3_y - six_r_W_3_t_3*six_r_h_3_in_spec3_x;
+        const real six_r_f_3_o_in_axes3_z = six_r_B_3_o_in_axes3_zy*six_r_h_3_in_spec3_x +
+            six_r_acc_3_o_in_axes3_z*six_r_link3_mass -
+            six_r_B_3_o_in_axes3_zx*six_r_h_3_in_spec3_y - six_r_h_3_in_spec3_z*(six_r_W_3_t +
             six_r_f_3_o_t);
         /* (six_r-acc_4_o) remainder without the acceleration in: acceleration of the reference point of
            link 4, less gravity */
-        const real six_r_acc_4_o_in_axes4_x = six_r_a_o_4_o_in_axes3_y*six_r_h_4_t +
-            six_r_a_o_4_o_in_axes3_z*six_r_e_2_in_axes5_z -
-            six_r_e_2_in_axes5_z*six_r_g_in_axes1_x - six_r_g_in_axes3_y*six_r_h_4_t;
-        const real six_r_acc_4_o_in_axes4_y = six_r_a_o_4_o_in_axes3_z*six_r_h_4_t +
-            six_r_e_2_in_axes5_z*six_r_g_in_axes3_y -
-            six_r_a_o_4_o_in_axes3_y*six_r_e_2_in_axes5_z - six_r_g_in_axes1_x*six_r_h_4_t;
-        const real six_r_acc_4_o_in_axes4_z = six_r_a_o_4_o_in_axes3_x - six_r_g_in_axes3_x;
+        const real six_r_acc_4_o_in_axes4_x = six_r_a_o_4_o_in_axes3_z*v.six_r_h_4_t +
+            v.six_r_e_2_in_axes5_z*v.six_r_g_in_axes3_x -
+            six_r_a_o_4_o_in_axes3_x*v.six_r_e_2_in_axes5_z - v.six_r_g_in_axes1_y*v.six_r_h_4_t;
+        const real six_r_acc_4_o_in_axes4_y = six_r_a_o_4_o_in_axes3_x*v.six_r_h_4_t +
+            six_r_a_o_4_o_in_axes3_z*v.six_r_e_2_in_axes5_z -
+            v.six_r_e_2_in_axes5_z*v.six_r_g_in_axes1_y - v.six_r_g_in_axes3_x*v.six_r_h_4_t;
+        const real six_r_acc_4_o_in_axes4_z = six_r_a_o_4_o_in_axes3_y - v.six_r_g_in_axes3_y;
         /* (six_r-f_4_o) remainder without the acceleration in: inertia force of link 4 less its weight */
-        const real six_r_f_4_o_t = six_r_omega_3_in_axes4_y*six_r_omega_3_in_axes4_y;
+        const real six_r_f_4_o_t = six_r_omega_3_in_axes4_x*six_r_omega_3_in_axes4_x;
         const real six_r_f_4_o_t_2 = six_r_omega_4_in_axes4_z*six_r_omega_4_in_axes4_z;
         const real six_r_h_4_in_spec4_x = m->six_r_h_4_in_spec4_x[i];
+        const real six_r_h_4_in_spec4_y = m->six_r_h_4_in_spec4_y[i];
+        const real six_r_h_4_in_spec4_z = m->six_r_h_4_in_spec4_z[i];
         const real six_r_link4_mass = m->six_r_link4_mass[i];
-        const real six_r_f_4_o_in_axes4_x = six_r_B_4_o_in_axes4_xz*six_r_h_4_in_spec4_x +
-            six_r_acc_4_o_in_axes4_x*six_r_link4_mass -
-            six_r_B_4_o_in_axes4_xy*six_r_h_4_in_spec4_y - six_r_h_4_in_spec4_z*(six_r_f_4_o_t +
+        const real six_r_f_4_o_in_axes4_x = six_r_B_4_o_in_axes4_xy*six_r_h_4_in_spec4_z +
+            six_r_B_4_o_in_axes4_xz*six_r_h_4_in_spec4_x +
+            six_r_acc_4_o_in_axes4_x*six_r_link4_mass - six_r_h_4_in_spec4_y*(six_r_bias_t +
             six_r_f_4_o_t_2);
-        const real six_r_f_4_o_in_axes4_y = six_r_B_4_o_in_axes4_yx*six_r_h_4_in_spec4_z +
+        const real six_r_f_4_o_in_axes4_y = six_r_B_4_o_in_axes4_yx*six_r_h_4_in_spec4_y +
             six_r_B_4_o_in_axes4_yz*six_r_h_4_in_spec4_x +
-            six_r_acc_4_o_in_axes4_y*six_r_link4_mass + six_r_h_4_in_spec4_y*(six_r_bias_t +
+            six_r_acc_4_o_in_axes4_y*six_r_link4_mass - six_r_h_4_in_spec4_z*(six_r_f_4_o_t +
             six_r_f_4_o_t_2);
-        const real six_r_f_4_o_in_axes4_z = six_r_B_4_o_in_axes4_zx*six_r_h_4_in_spec4_z +
-            six_r_acc_4_o_in_axes4_z*six_r_link4_mass -
-            six_r_B_4_o_in_axes4_zy*six_r_h_4_in_spec4_y - six_r_h_4_in_spec4_x*(six_r_bias_t +
+        const real six_r_f_4_o_in_axes4_z = six_r_B_4_o_in_axes4_zx*six_r_h_4_in_spec4_y +
+            six_r_B_4_o_in_axes4_zy*six_r_h_4_in_spec4_z +
+            six_r_acc_4_o_in_axes4_z*six_r_link4_mass - six_r_h_4_in_spec4_x*(six_r_bias_t +
             six_r_f_4_o_t);
-        const real six_r_f_4_o_in_axes3_y = six_r_f_4_o_in_axes4_x*six_r_h_4_t -
-            six_r_e_2_in_axes5_z*six_r_f_4_o_in_axes4_y;
-        const real six_r_f_4_o_in_axes3_z = six_r_e_2_in_axes5_z*six_r_f_4_o_in_axes4_x +
-            six_r_f_4_o_in_axes4_y*six_r_h_4_t;
+        const real six_r_f_4_o_in_axes3_x = six_r_f_4_o_in_axes4_y*v.six_r_h_4_t -
+            v.six_r_e_2_in_axes5_z*six_r_f_4_o_in_axes4_x;
+        const real six_r_f_4_o_in_axes3_z = v.six_r_e_2_in_axes5_z*six_r_f_4_o_in_axes4_y +
+            six_r_f_4_o_in_axes4_x*v.six_r_h_4_t;
         /* (six_r-acc_5_o) remainder without the acceleration in: acceleration of the reference point of
            link 5, less gravity */
         const real gravity_x = m->gravity_x;
@@ -3249,144 +4680,17 @@ INLINE void dynamics_legs_six_r(const prepared *m, size_t w, size_t leg, size_t 
         const real six_r_h_5_in_spec5_y = m->six_r_h_5_in_spec5_y[i];
         const real six_r_h_5_in_spec5_z = m->six_r_h_5_in_spec5_z[i];
         const real six_r_d_phi_5_in_axes5_xx =
-            six_r_h_5_in_spec5_z*(six_r_e_1_in_axes5_y*six_r_w_1_in_axes5_x +
-            six_r_e_2_in_axes5_y*six_r_w_2_in_axes5_x + six_r_e_2_in_axes5_y*six_r_w_3_in_axes5_x
-            + six_r_e_4_in_axes5_y*six_r_w_4_in_axes5_x) -
-            six_r_h_5_in_spec5_y*(six_r_e_1_in_axes5_z*six_r_w_1_in_axes5_x +
-            six_r_e_2_in_axes5_z*six_r_w_2_in_axes5_x + six_r_e_2_in_axes5_z*six_r_w_3_in_axes5_x
-            - six_r_w_5_t_5);
-        /* (six_r-D_3_5) inertia of joint 5 along joint 3 */
-        const real six_r_J_5_in_spec5_zz = m->six_r_J_5_in_spec5_zz[i];
-        const real six_r_D_3_5 = six_r_J_5_in_spec5_xz*six_r_e_2_in_axes5_x +
-            six_r_J_5_in_spec5_yz*six_r_e_2_in_axes5_y +
-            six_r_J_5_in_spec5_zz*six_r_e_2_in_axes5_z;
-        /* (six_r-D_1_5) inertia of joint 5 along joint 1 */
-        const real six_r_D_1_5 = six_r_J_5_in_spec5_xz*six_r_e_1_in_axes5_x +
-            six_r_J_5_in_spec5_yz*six_r_e_1_in_axes5_y +
-            six_r_J_5_in_spec5_zz*six_r_e_1_in_axes5_z;
-        /* (six_r-Jc_4) inertia tensor of the links from 4 outwards about joint 4, that of the last link
-           about the connection point */
-        const real six_r_J_5_in_spec5_xy = m->six_r_J_5_in_spec5_xy[i];
-        const real six_r_Jc_4_t = six_r_J_5_in_spec5_xy*six_r_e_4_in_axes5_x;
-        const real six_r_J_5_in_spec5_xx = m->six_r_J_5_in_spec5_xx[i];
-        const real six_r_Jc_4_t_2 = six_r_J_5_in_spec5_xx*six_r_e_4_in_axes5_y - six_r_Jc_4_t;
-        const real six_r_Jc_4_t_3 = -six_r_J_5_in_spec5_xy*six_r_e_4_in_axes5_y;
-        const real six_r_J_5_in_spec5_yy = m->six_r_J_5_in_spec5_yy[i];
-        const real six_r_Jc_4_t_4 = -six_r_Jc_4_t_3 - six_r_J_5_in_spec5_yy*six_r_e_4_in_axes5_x;
-        const real six_r_J_4_in_spec4_yz = m->six_r_J_4_in_spec4_yz[i];
-        const real six_r_Jc_4_in_axes4_xy = six_r_J_5_in_spec5_xz*six_r_e_4_in_axes5_y -
-            six_r_J_4_in_spec4_yz - six_r_J_5_in_spec5_yz*six_r_e_4_in_axes5_x;
-        const real six_r_J_4_in_spec4_xz = m->six_r_J_4_in_spec4_xz[i];
-        const real six_r_Jc_4_in_axes4_xz = six_r_J_4_in_spec4_xz + six_r_J_5_in_axes4_xz;
-        const real six_r_J_4_in_spec4_yy = m->six_r_J_4_in_spec4_yy[i];
-        const real six_r_Jc_4_in_axes4_yy = six_r_J_4_in_spec4_yy +
-            six_r_Jc_4_t_2*six_r_e_4_in_axes5_y - six_r_Jc_4_t_4*six_r_e_4_in_axes5_x;
-        const real six_r_J_4_in_spec4_xy = m->six_r_J_4_in_spec4_xy[i];
-        const real six_r_Jc_4_in_axes4_yz = six_r_Jc_4_t_2*six_r_e_4_in_axes5_x +
-            six_r_Jc_4_t_4*six_r_e_4_in_axes5_y - six_r_J_4_in_spec4_xy;
-        const real six_r_J_4_in_spec4_xx = m->six_r_J_4_in_spec4_xx[i];
-        const real six_r_Jc_4_in_axes4_zz = six_r_J_4_in_spec4_xx +
-            six_r_e_4_in_axes5_x*(six_r_J_5_in_spec5_xx*six_r_e_4_in_axes5_x - six_r_Jc_4_t_3) +
-            six_r_e_4_in_axes5_y*(six_r_Jc_4_t + six_r_J_5_in_spec5_yy*six_r_e_4_in_axes5_y);
-        const real six_r_Jc_4_in_axes3_xy = six_r_Jc_4_in_axes4_xz*six_r_h_4_t -
-            six_r_Jc_4_in_axes4_yz*six_r_e_2_in_axes5_z;
-        const real six_r_Jc_4_in_axes3_xz = six_r_Jc_4_in_axes4_xz*six_r_e_2_in_axes5_z +
-            six_r_Jc_4_in_axes4_yz*six_r_h_4_t;
-        /* (six_r-P_c_4) force that accelerates joint 4, per unit */
-        const real six_r_P_c_4_in_axes3_y = six_r_h_4_in_spec4_y*six_r_h_4_t -
-            six_r_e_2_in_axes5_z*six_r_h_4_in_spec4_z;
-        /* (six_r-L_c_4_3) moment about joint 3 that accelerates joint 4, per unit */
-        const real six_r_L_c_4_3_t = six_r_h_4_in_axes3_y*six_r_joint4_offset_x;
-        const real six_r_L_c_4_3_t_2 = six_r_P_c_4_in_axes3_y*six_r_joint4_offset_x;
-        const real six_r_L_c_4_3_in_axes3_y = six_r_Jc_4_in_axes3_xy - six_r_L_c_4_3_t;
-        const real six_r_L_c_4_3_in_axes3_z = six_r_Jc_4_in_axes3_xz + six_r_L_c_4_3_t_2;
-        /* (six_r-L_c_4_2) moment about joint 2 that accelerates joint 4, per unit */
-        const real six_r_L_c_4_2_in_axes2_y = six_r_Jc_4_in_axes4_zz*six_r_s_3 +
-            six_r_L_c_4_3_in_axes3_y*six_r_c_3 - six_r_h_4_in_axes3_y*six_r_joint3_offset_x;
-        const real six_r_L_c_4_2_in_axes2_z = six_r_L_c_4_3_in_axes3_z +
-            six_r_P_c_4_in_axes3_y*six_r_c_3*six_r_joint3_offset_x;
-        const real six_r_L_c_4_2_in_axes1_z = six_r_L_c_4_2_in_axes2_y*six_r_c_2 +
-            six_r_s_2*(six_r_Jc_4_in_axes4_zz*six_r_c_3 - six_r_L_c_4_3_in_axes3_y*six_r_s_3);
-        /* (six_r-hc_3) first moment of the links from 3 outwards */
-        const real six_r_hc_3_in_axes3_y = six_r_h_3_in_spec3_y + six_r_h_4_in_axes3_y;
-        const real six_r_hc_3_in_axes3_z = six_r_h_3_in_spec3_z - six_r_P_c_4_in_axes3_y;
-        const real six_r_hc_3_in_axes3_x = m->six_r_hc_3_in_axes3_x[i];
-        const real six_r_hc_3_in_axes2_x = six_r_c_3*six_r_hc_3_in_axes3_x -
-            six_r_hc_3_in_axes3_y*six_r_s_3;
-        /* (six_r-Jc_3) inertia tensor of the links from 3 outwards about joint 3, that of the last link
-           about the connection point */
-        const real six_r_Jc_3_t = six_r_Jc_4_in_axes4_xy*six_r_e_2_in_axes5_z;
-        const real six_r_Jc_4_in_axes4_xx = m->six_r_Jc_4_in_axes4_xx[i];
-        const real six_r_Jc_3_t_4 = six_r_Jc_4_in_axes4_xx*six_r_h_4_t - six_r_Jc_3_t;
-        const real six_r_Jc_3_t_5 = -six_r_Jc_4_in_axes4_xy*six_r_h_4_t;
-        const real six_r_Jc_3_t_6 = -six_r_Jc_3_t_5 - six_r_Jc_4_in_axes4_yy*six_r_e_2_in_axes5_z;
-        const real six_r_J_3_in_spec3_xx = m->six_r_J_3_in_spec3_xx[i];
-        const real six_r_Jc_3_t_2 = m->six_r_Jc_3_t_2[i];
-        const real six_r_Jc_3_t_3 = m->six_r_Jc_3_t_3[i];
-        const real six_r_Jc_3_in_axes3_xx = six_r_J_3_in_spec3_xx + six_r_Jc_3_t_3 +
-            six_r_Jc_4_in_axes4_zz - 2*six_r_Jc_3_t_2;
-        const real six_r_J_3_in_spec3_xy = m->six_r_J_3_in_spec3_xy[i];
-        const real six_r_Jc_3_in_axes3_xy = six_r_J_3_in_spec3_xy + six_r_Jc_4_in_axes3_xy -
-            six_r_L_c_4_3_t;
-        const real six_r_J_3_in_spec3_xz = m->six_r_J_3_in_spec3_xz[i];
-        const real six_r_Jc_3_in_axes3_xz = six_r_J_3_in_spec3_xz + six_r_Jc_4_in_axes3_xz +
-            six_r_L_c_4_3_t_2;
-        const real six_r_J_3_in_spec3_yy = m->six_r_J_3_in_spec3_yy[i];
-        const real six_r_Jc_3_in_axes3_yy = six_r_J_3_in_spec3_yy + six_r_Jc_3_t_3 +
-            six_r_Jc_3_t_4*six_r_h_4_t - six_r_Jc_3_t_6*six_r_e_2_in_axes5_z;
-        const real six_r_J_3_in_spec3_yz = m->six_r_J_3_in_spec3_yz[i];
-        const real six_r_Jc_3_in_axes3_yz = six_r_J_3_in_spec3_yz +
-            six_r_Jc_3_t_4*six_r_e_2_in_axes5_z + six_r_Jc_3_t_6*six_r_h_4_t;
-        const real six_r_J_3_in_spec3_zz = m->six_r_J_3_in_spec3_zz[i];
-        const real six_r_Jc_3_in_axes3_zz = six_r_J_3_in_spec3_zz + six_r_Jc_3_t_3 +
-            six_r_e_2_in_axes5_z*(six_r_Jc_4_in_axes4_xx*six_r_e_2_in_axes5_z - six_r_Jc_3_t_5) +
-            six_r_h_4_t*(six_r_Jc_3_t + six_r_Jc_4_in_axes4_yy*six_r_h_4_t);
-        const real six_r_Jc_3_in_axes2_xz = six_r_Jc_3_in_axes3_xz*six_r_c_3 -
-            six_r_Jc_3_in_axes3_yz*six_r_s_3;
-        const real six_r_Jc_3_in_axes2_yz = six_r_Jc_3_in_axes3_xz*six_r_s_3 +
-            six_r_Jc_3_in_axes3_yz*six_r_c_3;
-        /* (six_r-P_c_3) force that accelerates joint 3, per unit */
-        const real six_r_P_c_3_in_axes2_x = -six_r_c_3*six_r_hc_3_in_axes3_y -
-            six_r_hc_3_in_axes3_x*six_r_s_3;
-        /* (six_r-L_c_3_2) moment about joint 2 that accelerates joint 3, per unit */
-        const real six_r_L_c_3_2_in_axes2_z = six_r_Jc_3_in_axes3_zz +
-            six_r_hc_3_in_axes2_x*six_r_joint3_offset_x;
-        const real six_r_L_c_3_2_in_axes1_z = six_r_Jc_3_in_axes2_xz*six_r_s_2 +
-            six_r_Jc_3_in_axes2_yz*six_r_c_2;
-        /* (six_r-Jc_2) inertia tensor of the links from 2 outwards about joint 2, that of the last link
-           about the connection point */
-        const real six_r_Jc_2_t_2 = six_r_Jc_3_in_axes3_xy*six_r_s_3;
-        const real six_r_Jc_2_t_3 = six_r_Jc_3_in_axes3_xx*six_r_c_3 - six_r_Jc_2_t_2;
-        const real six_r_Jc_2_t_4 = six_r_Jc_3_in_axes3_xy*six_r_c_3;
-        const real six_r_Jc_2_t_5 = six_r_Jc_2_t_4 - six_r_Jc_3_in_axes3_yy*six_r_s_3;
-        const real six_r_Jc_2_t = m->six_r_Jc_2_t[i];
-        const real six_r_Jc_2_t_6 = six_r_joint3_offset_x*(six_r_Jc_2_t + six_r_hc_3_in_axes2_x);
-        const real six_r_Jc_2_t_7 = 2*six_r_Jc_2_t_6;
-        const real six_r_J_2_in_spec2_xy = m->six_r_J_2_in_spec2_xy[i];
-        const real six_r_Jc_2_in_axes2_xy = six_r_J_2_in_spec2_xy + six_r_Jc_2_t_3*six_r_s_3 +
-            six_r_Jc_2_t_5*six_r_c_3 + six_r_P_c_3_in_axes2_x*six_r_joint3_offset_x;
-        const real six_r_J_2_in_spec2_zz = m->six_r_J_2_in_spec2_zz[i];
-        const real six_r_Jc_2_in_axes2_zz = six_r_J_2_in_spec2_zz + six_r_Jc_2_t_7 +
-            six_r_Jc_3_in_axes3_zz;
-        const real six_r_J_2_in_spec2_xz = m->six_r_J_2_in_spec2_xz[i];
-        const real six_r_J_2_in_spec2_yz = m->six_r_J_2_in_spec2_yz[i];
-        const real six_r_Jc_2_in_axes1_xz = six_r_c_2*(six_r_J_2_in_spec2_yz +
-            six_r_Jc_3_in_axes2_yz) + six_r_s_2*(six_r_J_2_in_spec2_xz + six_r_Jc_3_in_axes2_xz -
-            six_r_hc_3_in_axes3_z*six_r_joint3_offset_x);
-        const real six_r_J_2_in_spec2_xx = m->six_r_J_2_in_spec2_xx[i];
-        const real six_r_J_2_in_spec2_yy = m->six_r_J_2_in_spec2_yy[i];
-        const real six_r_Jc_2_in_axes1_zz = six_r_c_2*(six_r_Jc_2_in_axes2_xy*six_r_s_2 +
-            six_r_c_2*(six_r_J_2_in_spec2_yy + six_r_Jc_2_t_7 + six_r_c_3*(six_r_Jc_2_t_2 +
-            six_r_Jc_3_in_axes3_yy*six_r_c_3) + six_r_s_3*(six_r_Jc_2_t_4 +
-            six_r_Jc_3_in_axes3_xx*six_r_s_3))) + six_r_s_2*(six_r_Jc_2_in_axes2_xy*six_r_c_2 +
-            six_r_s_2*(six_r_J_2_in_spec2_xx + six_r_Jc_2_t_7 + six_r_Jc_2_t_3*six_r_c_3 -
-            2*six_r_Jc_2_t_6 - six_r_Jc_2_t_5*six_r_s_3));
-        /* (six_r-Jc_1) inertia tensor of the links from 1 outwards about joint 1, that of the last link
-           about the connection point */
-        const real six_r_J_1_in_spec1_xx = m->six_r_J_1_in_spec1_xx[i];
-        const real six_r_Jc_1_in_axes1_zz = six_r_J_1_in_spec1_xx + six_r_Jc_2_in_axes1_zz;
+            six_r_h_5_in_spec5_z*(v.six_r_e_1_in_axes5_y*six_r_w_1_in_axes5_x +
+            v.six_r_e_2_in_axes5_y*six_r_w_2_in_axes5_x +
+            v.six_r_e_2_in_axes5_y*six_r_w_3_in_axes5_x - v.six_r_J_5_t*six_r_w_4_in_axes5_x) -
+            six_r_h_5_in_spec5_y*(v.six_r_e_1_in_axes5_z*six_r_w_1_in_axes5_x +
+            v.six_r_e_2_in_axes5_z*six_r_w_2_in_axes5_x +
+            v.six_r_e_2_in_axes5_z*six_r_w_3_in_axes5_x - six_r_w_5_t_5);
         /* (six_r-mu_5_o) remainder without the acceleration in: inertia moment of the links that turn
            with link 5, about their reference points */
+        const real six_r_J_5_in_spec5_xy = m->six_r_J_5_in_spec5_xy[i];
+        const real six_r_J_5_in_spec5_xz = m->six_r_J_5_in_spec5_xz[i];
+        const real six_r_J_5_in_spec5_yz = m->six_r_J_5_in_spec5_yz[i];
         const real six_r_Sigma_5_in_axes5_yy = m->six_r_Sigma_5_in_axes5_yy[i];
         const real six_r_Sigma_5_in_axes5_zz = m->six_r_Sigma_5_in_axes5_zz[i];
         const real six_r_mu_5_o_in_axes5_x = six_r_B_5_o_in_axes5_yx*six_r_J_5_in_spec5_xz +
@@ -3413,27 +4717,28 @@ INLINE void dynamics_legs_six_r(const prepared *m, size_t w, size_t leg, size_t 
             six_r_acc_5_o_in_axes5_x*six_r_h_5_in_spec5_y;
         /* (six_r-dalpha_Gamma_5) coefficient of the acceleration in: moment about axis 5 of the distal
            links' inertia and weight */
-        const real six_r_dalpha_Gamma_5_in_axes5_x = six_r_D_1_5*six_r_o_1_in_axes5_x +
-            six_r_J_5_in_spec5_zz*six_r_o_5_in_axes5_x - six_r_D_3_5*six_r_o_2_t -
-            six_r_D_3_5*six_r_o_3_t - six_r_J_5_in_axes4_xz*six_r_o_4_t;
-        const real six_r_dalpha_Gamma_5_in_axes5_y = six_r_D_1_5*six_r_o_1_in_axes5_y +
-            six_r_D_3_5*six_r_o_2_in_axes5_y + six_r_D_3_5*six_r_o_3_in_axes5_y +
-            six_r_J_5_in_axes4_xz*six_r_o_4_in_axes5_y +
+        const real six_r_J_5_in_spec5_zz = m->six_r_J_5_in_spec5_zz[i];
+        const real six_r_dalpha_Gamma_5_in_axes5_x = v.six_r_D_1_5*six_r_o_1_in_axes5_x +
+            six_r_J_5_in_spec5_zz*six_r_o_5_in_axes5_x - v.six_r_D_3_5*six_r_o_2_t -
+            v.six_r_D_3_5*six_r_o_3_t - v.six_r_J_5_in_axes4_yz*six_r_o_4_t;
+        const real six_r_dalpha_Gamma_5_in_axes5_y = v.six_r_D_1_5*six_r_o_1_in_axes5_y +
+            v.six_r_D_3_5*six_r_o_2_in_axes5_y + v.six_r_D_3_5*six_r_o_3_in_axes5_y +
+            v.six_r_J_5_in_axes4_yz*six_r_o_4_in_axes5_y +
             six_r_J_5_in_spec5_zz*six_r_o_5_in_axes5_y;
-        const real six_r_dalpha_Gamma_5_in_axes5_z = six_r_D_1_5*six_r_o_1_in_axes5_z +
-            six_r_D_3_5*six_r_o_2_in_axes5_z + six_r_D_3_5*six_r_o_3_in_axes5_z +
-            six_r_J_5_in_axes4_xz*six_r_o_4_in_axes5_z - six_r_J_5_in_spec5_zz*six_r_o_5_t;
+        const real six_r_dalpha_Gamma_5_in_axes5_z = v.six_r_D_3_5*six_r_o_2_in_axes5_z +
+            v.six_r_D_3_5*six_r_o_3_in_axes5_z + v.six_r_J_5_in_axes4_yz*six_r_o_4_in_axes5_z -
+            v.six_r_D_1_5*six_r_o_1_t - six_r_J_5_in_spec5_zz*six_r_o_5_t;
         /* (six_r-d_Gamma_5) coefficient of the acceleration in: moment about axis 5 of the distal links'
            inertia and weight */
         const real six_r_d_Gamma_5_t = inv_six_r_w_1_t_12*six_r_J_5_in_spec5_zz;
-        const real six_r_d_Gamma_5_t_2 = inv_six_r_w_1_t_28*(six_r_J_5_in_axes4_xz -
+        const real six_r_d_Gamma_5_t_2 = inv_six_r_w_1_t_28*(v.six_r_J_5_in_axes4_yz -
             six_r_d_Gamma_5_t*six_r_w_1_t_15);
-        const real six_r_d_Gamma_5_t_3 = inv_six_r_w_1_t_49*(six_r_D_1_5 +
+        const real six_r_d_Gamma_5_t_3 = inv_six_r_w_1_t_49*(v.six_r_D_1_5 +
             six_r_d_Gamma_5_t_2*six_r_w_1_t_33 - six_r_d_Gamma_5_t*six_r_w_1_t_18);
-        const real six_r_d_Gamma_5_t_4 = inv_six_r_w_1_t_67*(six_r_D_3_5 +
+        const real six_r_d_Gamma_5_t_4 = inv_six_r_w_1_t_67*(v.six_r_D_3_5 +
             six_r_d_Gamma_5_t_2*six_r_w_1_t_39 - six_r_d_Gamma_5_t*six_r_w_1_t_22 -
             six_r_d_Gamma_5_t_3*six_r_w_1_t_55);
-        const real six_r_d_Gamma_5_t_5 = inv_six_r_w_1_t_79*(six_r_D_3_5 +
+        const real six_r_d_Gamma_5_t_5 = inv_six_r_w_1_t_79*(v.six_r_D_3_5 +
             six_r_d_Gamma_5_t*six_r_w_1_t_25 + six_r_d_Gamma_5_t_2*six_r_w_1_t_44 -
             six_r_d_Gamma_5_t_3*six_r_w_1_t_61 - six_r_d_Gamma_5_t_4*six_r_w_1_t_73);
         const real six_r_d_Gamma_5_in_axes5_z = six_r_d_Gamma_5_t_2*six_r_w_1_t_30 +
@@ -3448,168 +4753,173 @@ INLINE void dynamics_legs_six_r(const prepared *m, size_t w, size_t leg, size_t 
             six_r_d_Gamma_5_t_5*six_r_w_1_t_81;
         /* (six_r-mu_4_o) remainder without the acceleration in: inertia moment of the links that turn
            with link 4, about their reference points */
+        const real six_r_J_4_in_spec4_xy = m->six_r_J_4_in_spec4_xy[i];
+        const real six_r_J_4_in_spec4_xz = m->six_r_J_4_in_spec4_xz[i];
+        const real six_r_J_4_in_spec4_yz = m->six_r_J_4_in_spec4_yz[i];
         const real six_r_Sigma_4_in_axes4_yy = m->six_r_Sigma_4_in_axes4_yy[i];
         const real six_r_Sigma_4_in_axes4_zz = m->six_r_Sigma_4_in_axes4_zz[i];
-        const real six_r_mu_4_o_in_axes4_x = six_r_B_4_o_in_axes4_yx*six_r_J_4_in_spec4_xz +
-            six_r_B_4_o_in_axes4_zx*six_r_J_4_in_spec4_yz +
-            six_r_B_4_o_in_axes4_zy*six_r_Sigma_4_in_axes4_yy -
+        const real six_r_mu_4_o_in_axes4_x = six_r_B_4_o_in_axes4_yx*six_r_J_4_in_spec4_xy +
+            six_r_B_4_o_in_axes4_zy*six_r_Sigma_4_in_axes4_yy +
+            six_r_J_4_in_spec4_xz*(six_r_bias_t - six_r_f_4_o_t_2) +
+            six_r_acc_4_o_in_axes4_z*six_r_h_4_in_spec4_z -
             six_r_B_4_o_in_axes4_yz*six_r_Sigma_4_in_axes4_zz -
-            six_r_J_4_in_spec4_xy*(six_r_f_4_o_t - six_r_f_4_o_t_2) -
-            six_r_acc_4_o_in_axes4_y*six_r_h_4_in_spec4_x -
-            six_r_acc_4_o_in_axes4_z*six_r_h_4_in_spec4_y;
+            six_r_B_4_o_in_axes4_zx*six_r_J_4_in_spec4_yz -
+            six_r_acc_4_o_in_axes4_y*six_r_h_4_in_spec4_x;
         const real six_r_Sigma_4_in_axes4_xx = m->six_r_Sigma_4_in_axes4_xx[i];
-        const real six_r_mu_4_o_in_axes4_y = six_r_B_4_o_in_axes4_xy*six_r_J_4_in_spec4_xy +
-            six_r_B_4_o_in_axes4_xz*six_r_Sigma_4_in_axes4_zz +
+        const real six_r_mu_4_o_in_axes4_y = six_r_B_4_o_in_axes4_xz*six_r_Sigma_4_in_axes4_zz +
+            six_r_B_4_o_in_axes4_zy*six_r_J_4_in_spec4_yz +
             six_r_acc_4_o_in_axes4_x*six_r_h_4_in_spec4_x -
+            six_r_B_4_o_in_axes4_xy*six_r_J_4_in_spec4_xz -
             six_r_B_4_o_in_axes4_zx*six_r_Sigma_4_in_axes4_xx -
-            six_r_B_4_o_in_axes4_zy*six_r_J_4_in_spec4_yz - six_r_J_4_in_spec4_xz*(six_r_bias_t -
-            six_r_f_4_o_t_2) - six_r_acc_4_o_in_axes4_z*six_r_h_4_in_spec4_z;
-        const real six_r_mu_4_o_in_axes4_z = six_r_B_4_o_in_axes4_yx*six_r_Sigma_4_in_axes4_xx +
-            six_r_acc_4_o_in_axes4_x*six_r_h_4_in_spec4_y +
-            six_r_acc_4_o_in_axes4_y*six_r_h_4_in_spec4_z -
+            six_r_J_4_in_spec4_xy*(six_r_f_4_o_t - six_r_f_4_o_t_2) -
+            six_r_acc_4_o_in_axes4_z*six_r_h_4_in_spec4_y;
+        const real six_r_mu_4_o_in_axes4_z = six_r_B_4_o_in_axes4_xz*six_r_J_4_in_spec4_xz +
+            six_r_B_4_o_in_axes4_yx*six_r_Sigma_4_in_axes4_xx +
+            six_r_J_4_in_spec4_yz*(six_r_f_4_o_t - six_r_bias_t) +
+            six_r_acc_4_o_in_axes4_y*six_r_h_4_in_spec4_y -
             six_r_B_4_o_in_axes4_xy*six_r_Sigma_4_in_axes4_yy -
-            six_r_B_4_o_in_axes4_xz*six_r_J_4_in_spec4_xy -
-            six_r_B_4_o_in_axes4_yz*six_r_J_4_in_spec4_xz - six_r_J_4_in_spec4_yz*(six_r_bias_t -
-            six_r_f_4_o_t);
+            six_r_B_4_o_in_axes4_yz*six_r_J_4_in_spec4_xy -
+            six_r_acc_4_o_in_axes4_x*six_r_h_4_in_spec4_z;
         /* (six_r-N_4_o) remainder without the acceleration in: moment about joint 4 of the links from 4
            outwards, the force at the connection point left out */
-        const real six_r_N_4_o_in_axes4_x = six_r_mu_4_o_in_axes4_x + six_r_mu_5_o_in_axes5_z;
-        const real six_r_N_4_o_in_axes4_y = six_r_mu_4_o_in_axes4_y +
-            six_r_e_4_in_axes5_y*six_r_mu_5_o_in_axes5_x -
-            six_r_e_4_in_axes5_x*six_r_mu_5_o_in_axes5_y;
+        const real six_r_N_4_o_in_axes4_x = six_r_mu_4_o_in_axes4_x +
+            v.six_r_J_5_t*six_r_mu_5_o_in_axes5_x +
+            v.six_r_e_4_in_axes5_x*six_r_mu_5_o_in_axes5_y;
+        const real six_r_N_4_o_in_axes4_y = six_r_mu_4_o_in_axes4_y + six_r_mu_5_o_in_axes5_z;
         const real six_r_N_4_o_in_axes4_z = six_r_mu_4_o_in_axes4_z +
-            six_r_e_4_in_axes5_x*six_r_mu_5_o_in_axes5_x +
-            six_r_e_4_in_axes5_y*six_r_mu_5_o_in_axes5_y;
+            v.six_r_e_4_in_axes5_x*six_r_mu_5_o_in_axes5_x -
+            v.six_r_J_5_t*six_r_mu_5_o_in_axes5_y;
         /* (six_r-dalpha_Gamma_4) coefficient of the acceleration in: moment about axis 4 of the distal
            links' inertia and weight */
-        const real six_r_dalpha_Gamma_4_in_axes5_x = six_r_J_5_in_axes4_xz*six_r_o_5_in_axes5_x +
-            six_r_L_c_4_2_in_axes1_z*six_r_o_1_in_axes5_x - six_r_Jc_4_in_axes4_zz*six_r_o_4_t -
-            six_r_L_c_4_2_in_axes2_z*six_r_o_2_t - six_r_L_c_4_3_in_axes3_z*six_r_o_3_t;
-        const real six_r_dalpha_Gamma_4_in_axes5_y = six_r_J_5_in_axes4_xz*six_r_o_5_in_axes5_y +
-            six_r_Jc_4_in_axes4_zz*six_r_o_4_in_axes5_y +
-            six_r_L_c_4_2_in_axes1_z*six_r_o_1_in_axes5_y +
-            six_r_L_c_4_2_in_axes2_z*six_r_o_2_in_axes5_y +
-            six_r_L_c_4_3_in_axes3_z*six_r_o_3_in_axes5_y;
-        const real six_r_dalpha_Gamma_4_in_axes5_z = six_r_Jc_4_in_axes4_zz*six_r_o_4_in_axes5_z +
-            six_r_L_c_4_2_in_axes1_z*six_r_o_1_in_axes5_z +
-            six_r_L_c_4_2_in_axes2_z*six_r_o_2_in_axes5_z +
-            six_r_L_c_4_3_in_axes3_z*six_r_o_3_in_axes5_z - six_r_J_5_in_axes4_xz*six_r_o_5_t;
+        const real six_r_dalpha_Gamma_4_in_axes5_x = v.six_r_J_5_in_axes4_yz*six_r_o_5_in_axes5_x
+            + v.six_r_L_c_4_2_in_axes1_z*six_r_o_1_in_axes5_x -
+            v.six_r_Jc_4_in_axes4_zz*six_r_o_4_t - v.six_r_L_c_4_2_in_axes2_z*six_r_o_2_t -
+            v.six_r_L_c_4_3_in_axes3_z*six_r_o_3_t;
+        const real six_r_dalpha_Gamma_4_in_axes5_y = v.six_r_J_5_in_axes4_yz*six_r_o_5_in_axes5_y
+            + v.six_r_Jc_4_in_axes4_zz*six_r_o_4_in_axes5_y +
+            v.six_r_L_c_4_2_in_axes1_z*six_r_o_1_in_axes5_y +
+            v.six_r_L_c_4_2_in_axes2_z*six_r_o_2_in_axes5_y +
+            v.six_r_L_c_4_3_in_axes3_z*six_r_o_3_in_axes5_y;
+        const real six_r_dalpha_Gamma_4_in_axes5_z = v.six_r_Jc_4_in_axes4_zz*six_r_o_4_in_axes5_z
+            + v.six_r_L_c_4_2_in_axes2_z*six_r_o_2_in_axes5_z +
+            v.six_r_L_c_4_3_in_axes3_z*six_r_o_3_in_axes5_z - v.six_r_J_5_in_axes4_yz*six_r_o_5_t
+            - v.six_r_L_c_4_2_in_axes1_z*six_r_o_1_t;
         /* (six_r-d_Gamma_4) coefficient of the acceleration in: moment about axis 4 of the distal links'
            inertia and weight */
-        const real six_r_d_Gamma_4_t = inv_six_r_w_1_t_12*six_r_J_5_in_axes4_xz;
-        const real six_r_d_Gamma_4_t_2 = inv_six_r_w_1_t_28*(six_r_Jc_4_in_axes4_zz -
+        const real six_r_d_Gamma_4_t = inv_six_r_w_1_t_12*v.six_r_J_5_in_axes4_yz;
+        const real six_r_d_Gamma_4_t_2 = inv_six_r_w_1_t_28*(v.six_r_Jc_4_in_axes4_zz -
             six_r_d_Gamma_4_t*six_r_w_1_t_15);
-        const real six_r_d_Gamma_4_t_3 = inv_six_r_w_1_t_49*(six_r_L_c_4_2_in_axes1_z +
+        const real six_r_d_Gamma_4_t_3 = inv_six_r_w_1_t_49*(v.six_r_L_c_4_2_in_axes1_z +
             six_r_d_Gamma_4_t_2*six_r_w_1_t_33 - six_r_d_Gamma_4_t*six_r_w_1_t_18);
-        const real six_r_d_Gamma_4_t_4 = inv_six_r_w_1_t_67*(six_r_L_c_4_2_in_axes2_z +
+        const real six_r_d_Gamma_4_t_4 = inv_six_r_w_1_t_67*(v.six_r_L_c_4_2_in_axes2_z +
             six_r_d_Gamma_4_t_2*six_r_w_1_t_39 - six_r_d_Gamma_4_t*six_r_w_1_t_22 -
             six_r_d_Gamma_4_t_3*six_r_w_1_t_55);
-        const real six_r_d_Gamma_4_t_5 = inv_six_r_w_1_t_79*(six_r_L_c_4_3_in_axes3_z +
+        const real six_r_d_Gamma_4_t_5 = inv_six_r_w_1_t_79*(v.six_r_L_c_4_3_in_axes3_z +
             six_r_d_Gamma_4_t*six_r_w_1_t_25 + six_r_d_Gamma_4_t_2*six_r_w_1_t_44 -
             six_r_d_Gamma_4_t_3*six_r_w_1_t_61 - six_r_d_Gamma_4_t_4*six_r_w_1_t_73);
         const real six_r_d_Gamma_4_in_axes5_x = six_r_d_Gamma_4_t_3*six_r_w_1_t_50 +
-            six_r_d_Gamma_4_t_4*six_r_w_1_t_68 + six_r_d_Gamma_4_t_5*six_r_w_1_t_80 +
-            six_r_e_4_in_axes5_y*six_r_h_5_in_spec5_z;
+            six_r_d_Gamma_4_t_4*six_r_w_1_t_68 + six_r_d_Gamma_4_t_5*six_r_w_1_t_80 -
+            v.six_r_J_5_t*six_r_h_5_in_spec5_z;
         const real six_r_d_Gamma_4_in_axes5_y = six_r_d_Gamma_4_t*six_r_w_1_t_13 -
             six_r_d_Gamma_4_t_2*six_r_w_1_t_29 - six_r_d_Gamma_4_t_3*six_r_w_1_t_51 -
             six_r_d_Gamma_4_t_4*six_r_w_1_t_69 - six_r_d_Gamma_4_t_5*six_r_w_1_t_81 -
-            six_r_e_4_in_axes5_x*six_r_h_5_in_spec5_z;
-        const real six_r_d_Gamma_4_in_axes5_z = six_r_d_Gamma_4_t_2*six_r_w_1_t_30 +
-            six_r_d_Gamma_4_t_3*six_r_w_1_t_52 + six_r_d_Gamma_4_t_4*six_r_w_1_t_70 +
-            six_r_d_Gamma_4_t_5*six_r_w_1_t_82 + six_r_e_4_in_axes5_x*six_r_h_5_in_spec5_y -
-            six_r_e_4_in_axes5_y*six_r_h_5_in_spec5_x;
+            v.six_r_e_4_in_axes5_x*six_r_h_5_in_spec5_z;
+        const real six_r_d_Gamma_4_in_axes5_z = v.six_r_J_5_t*six_r_h_5_in_spec5_x +
+            six_r_d_Gamma_4_t_2*six_r_w_1_t_30 + six_r_d_Gamma_4_t_3*six_r_w_1_t_52 +
+            six_r_d_Gamma_4_t_4*six_r_w_1_t_70 + six_r_d_Gamma_4_t_5*six_r_w_1_t_82 +
+            v.six_r_e_4_in_axes5_x*six_r_h_5_in_spec5_y;
         /* (six_r-mu_3_o) remainder without the acceleration in: inertia moment of the links that turn
            with link 3, about their reference points */
+        const real six_r_J_3_in_spec3_xy = m->six_r_J_3_in_spec3_xy[i];
+        const real six_r_J_3_in_spec3_xz = m->six_r_J_3_in_spec3_xz[i];
+        const real six_r_J_3_in_spec3_yz = m->six_r_J_3_in_spec3_yz[i];
         const real six_r_Sigma_3_in_axes3_yy = m->six_r_Sigma_3_in_axes3_yy[i];
         const real six_r_Sigma_3_in_axes3_zz = m->six_r_Sigma_3_in_axes3_zz[i];
-        const real six_r_mu_3_o_in_axes3_x = six_r_B_3_o_in_axes3_yx*six_r_J_3_in_spec3_xz +
-            six_r_B_3_o_in_axes3_zy*six_r_Sigma_3_in_axes3_yy + six_r_J_3_in_spec3_yz*(six_r_W_3_t
-            - six_r_W_3_t_2) + six_r_acc_3_o_in_axes3_z*six_r_h_3_in_spec3_y -
+        const real six_r_mu_3_o_in_axes3_x = six_r_B_3_o_in_axes3_zx*six_r_J_3_in_spec3_xy +
+            six_r_B_3_o_in_axes3_zy*six_r_Sigma_3_in_axes3_yy +
+            six_r_J_3_in_spec3_xz*(six_r_f_3_o_t - six_r_W_3_t_2) +
+            six_r_acc_3_o_in_axes3_z*six_r_h_3_in_spec3_x -
+            six_r_B_3_o_in_axes3_yx*six_r_J_3_in_spec3_yz -
             six_r_B_3_o_in_axes3_yz*six_r_Sigma_3_in_axes3_zz -
-            six_r_B_3_o_in_axes3_zx*six_r_J_3_in_spec3_xy -
             six_r_acc_3_o_in_axes3_y*six_r_h_3_in_spec3_z;
         const real six_r_Sigma_3_in_axes3_xx = m->six_r_Sigma_3_in_axes3_xx[i];
         const real six_r_mu_3_o_in_axes3_y = six_r_B_3_o_in_axes3_xz*six_r_Sigma_3_in_axes3_zz +
-            six_r_B_3_o_in_axes3_zy*six_r_J_3_in_spec3_xy +
-            six_r_acc_3_o_in_axes3_x*six_r_h_3_in_spec3_z -
-            six_r_B_3_o_in_axes3_xy*six_r_J_3_in_spec3_yz -
+            six_r_J_3_in_spec3_yz*(six_r_W_3_t - six_r_W_3_t_2) +
+            six_r_acc_3_o_in_axes3_x*six_r_h_3_in_spec3_z +
+            six_r_acc_3_o_in_axes3_z*six_r_h_3_in_spec3_y -
+            six_r_B_3_o_in_axes3_xy*six_r_J_3_in_spec3_xz -
             six_r_B_3_o_in_axes3_zx*six_r_Sigma_3_in_axes3_xx -
-            six_r_J_3_in_spec3_xz*(six_r_f_3_o_t - six_r_W_3_t_2) -
-            six_r_acc_3_o_in_axes3_z*six_r_h_3_in_spec3_x;
-        const real six_r_mu_3_o_in_axes3_z = six_r_B_3_o_in_axes3_xz*six_r_J_3_in_spec3_yz +
+            six_r_B_3_o_in_axes3_zy*six_r_J_3_in_spec3_xy;
+        const real six_r_mu_3_o_in_axes3_z = six_r_B_3_o_in_axes3_xz*six_r_J_3_in_spec3_xz +
             six_r_B_3_o_in_axes3_yx*six_r_Sigma_3_in_axes3_xx +
-            six_r_J_3_in_spec3_xy*(six_r_f_3_o_t - six_r_W_3_t) +
-            six_r_acc_3_o_in_axes3_y*six_r_h_3_in_spec3_x -
-            six_r_B_3_o_in_axes3_xy*six_r_Sigma_3_in_axes3_yy -
-            six_r_B_3_o_in_axes3_yz*six_r_J_3_in_spec3_xz -
-            six_r_acc_3_o_in_axes3_x*six_r_h_3_in_spec3_y;
+            six_r_B_3_o_in_axes3_yz*six_r_J_3_in_spec3_yz -
+            six_r_B_3_o_in_axes3_xy*six_r_Sigma_3_in_axes3_yy - six_r_J_3_in_spec3_xy*(six_r_W_3_t
+            - six_r_f_3_o_t) - six_r_acc_3_o_in_axes3_x*six_r_h_3_in_spec3_x -
+            six_r_acc_3_o_in_axes3_y*six_r_h_3_in_spec3_y;
         /* (six_r-N_3_o) remainder without the acceleration in: moment about joint 3 of the links from 3
            outwards, the force at the connection point left out */
-        const real six_r_N_3_o_in_axes3_x = six_r_N_4_o_in_axes4_z + six_r_mu_3_o_in_axes3_x;
-        const real six_r_N_3_o_in_axes3_y = six_r_mu_3_o_in_axes3_y +
-            six_r_N_4_o_in_axes4_x*six_r_h_4_t - six_r_N_4_o_in_axes4_y*six_r_e_2_in_axes5_z -
-            six_r_f_4_o_in_axes3_z*six_r_joint4_offset_x;
+        const real six_r_N_3_o_in_axes3_x = six_r_mu_3_o_in_axes3_x +
+            six_r_N_4_o_in_axes4_y*v.six_r_h_4_t + six_r_f_4_o_in_axes3_z*six_r_joint4_offset_x -
+            six_r_N_4_o_in_axes4_x*v.six_r_e_2_in_axes5_z;
+        const real six_r_N_3_o_in_axes3_y = six_r_N_4_o_in_axes4_z + six_r_mu_3_o_in_axes3_y;
         const real six_r_N_3_o_in_axes3_z = six_r_mu_3_o_in_axes3_z +
-            six_r_N_4_o_in_axes4_x*six_r_e_2_in_axes5_z + six_r_N_4_o_in_axes4_y*six_r_h_4_t +
-            six_r_f_4_o_in_axes3_y*six_r_joint4_offset_x;
+            six_r_N_4_o_in_axes4_x*v.six_r_h_4_t + six_r_N_4_o_in_axes4_y*v.six_r_e_2_in_axes5_z -
+            six_r_f_4_o_in_axes3_x*six_r_joint4_offset_x;
         /* (six_r-T_3_o) remainder without the acceleration in: inertia force of the links from 3
            outwards, the last link left out */
-        const real six_r_T_3_o_in_axes3_x = six_r_f_3_o_in_axes3_x + six_r_f_4_o_in_axes4_z;
-        const real six_r_T_3_o_in_axes3_y = six_r_f_3_o_in_axes3_y + six_r_f_4_o_in_axes3_y;
+        const real six_r_T_3_o_in_axes3_x = six_r_f_3_o_in_axes3_x + six_r_f_4_o_in_axes3_x;
+        const real six_r_T_3_o_in_axes3_y = six_r_f_3_o_in_axes3_y + six_r_f_4_o_in_axes4_z;
         const real six_r_T_3_o_in_axes3_z = six_r_f_3_o_in_axes3_z + six_r_f_4_o_in_axes3_z;
         /* (six_r-dalpha_Gamma_3) coefficient of the acceleration in: moment about axis 3 of the distal
            links' inertia and weight */
-        const real six_r_dalpha_Gamma_3_t = six_r_D_3_5*six_r_o_5_in_axes5_x;
-        const real six_r_dalpha_Gamma_3_t_2 = six_r_D_3_5*six_r_o_5_in_axes5_y;
-        const real six_r_dalpha_Gamma_3_t_3 = six_r_D_3_5*six_r_o_5_t;
+        const real six_r_dalpha_Gamma_3_t = v.six_r_D_3_5*six_r_o_5_in_axes5_x;
+        const real six_r_dalpha_Gamma_3_t_2 = v.six_r_D_3_5*six_r_o_5_in_axes5_y;
+        const real six_r_dalpha_Gamma_3_t_3 = v.six_r_D_3_5*six_r_o_5_t;
         const real six_r_dalpha_Gamma_3_in_axes5_x = six_r_dalpha_Gamma_3_t +
-            six_r_L_c_3_2_in_axes1_z*six_r_o_1_in_axes5_x - six_r_Jc_3_in_axes3_zz*six_r_o_3_t -
-            six_r_L_c_3_2_in_axes2_z*six_r_o_2_t - six_r_L_c_4_3_in_axes3_z*six_r_o_4_t;
+            v.six_r_L_c_3_2_in_axes1_z*six_r_o_1_in_axes5_x - v.six_r_Jc_3_in_axes3_zz*six_r_o_3_t
+            - v.six_r_L_c_3_2_in_axes2_z*six_r_o_2_t - v.six_r_L_c_4_3_in_axes3_z*six_r_o_4_t;
         const real six_r_dalpha_Gamma_3_in_axes5_y = six_r_dalpha_Gamma_3_t_2 +
-            six_r_Jc_3_in_axes3_zz*six_r_o_3_in_axes5_y +
-            six_r_L_c_3_2_in_axes1_z*six_r_o_1_in_axes5_y +
-            six_r_L_c_3_2_in_axes2_z*six_r_o_2_in_axes5_y +
-            six_r_L_c_4_3_in_axes3_z*six_r_o_4_in_axes5_y;
-        const real six_r_dalpha_Gamma_3_in_axes5_z = six_r_Jc_3_in_axes3_zz*six_r_o_3_in_axes5_z +
-            six_r_L_c_3_2_in_axes1_z*six_r_o_1_in_axes5_z +
-            six_r_L_c_3_2_in_axes2_z*six_r_o_2_in_axes5_z +
-            six_r_L_c_4_3_in_axes3_z*six_r_o_4_in_axes5_z - six_r_dalpha_Gamma_3_t_3;
+            v.six_r_Jc_3_in_axes3_zz*six_r_o_3_in_axes5_y +
+            v.six_r_L_c_3_2_in_axes1_z*six_r_o_1_in_axes5_y +
+            v.six_r_L_c_3_2_in_axes2_z*six_r_o_2_in_axes5_y +
+            v.six_r_L_c_4_3_in_axes3_z*six_r_o_4_in_axes5_y;
+        const real six_r_dalpha_Gamma_3_in_axes5_z = v.six_r_Jc_3_in_axes3_zz*six_r_o_3_in_axes5_z
+            + v.six_r_L_c_3_2_in_axes2_z*six_r_o_2_in_axes5_z +
+            v.six_r_L_c_4_3_in_axes3_z*six_r_o_4_in_axes5_z - six_r_dalpha_Gamma_3_t_3 -
+            v.six_r_L_c_3_2_in_axes1_z*six_r_o_1_t;
         /* (six_r-d_Gamma_3) coefficient of the acceleration in: moment about axis 3 of the distal links'
            inertia and weight */
-        const real six_r_d_Gamma_3_t = six_r_e_2_in_axes5_y*six_r_h_5_in_spec5_z -
-            six_r_e_2_in_axes5_z*six_r_h_5_in_spec5_y;
-        const real six_r_d_Gamma_3_t_2 = six_r_e_2_in_axes5_x*six_r_h_5_in_spec5_z -
-            six_r_e_2_in_axes5_z*six_r_h_5_in_spec5_x;
-        const real six_r_d_Gamma_3_t_3 = six_r_e_2_in_axes5_x*six_r_h_5_in_spec5_y -
-            six_r_e_2_in_axes5_y*six_r_h_5_in_spec5_x;
-        const real six_r_d_Gamma_3_t_4 = inv_six_r_w_1_t_12*six_r_D_3_5;
+        const real six_r_d_Gamma_3_t_4 = inv_six_r_w_1_t_12*v.six_r_D_3_5;
         const real six_r_d_Gamma_3_t_5 = six_r_d_Gamma_3_t_4*six_r_w_1_t_15;
-        const real six_r_d_Gamma_3_t_6 = inv_six_r_w_1_t_28*(six_r_L_c_4_3_in_axes3_z -
+        const real six_r_d_Gamma_3_t_6 = inv_six_r_w_1_t_28*(v.six_r_L_c_4_3_in_axes3_z -
             six_r_d_Gamma_3_t_5);
         const real six_r_d_Gamma_3_t_7 = six_r_d_Gamma_3_t_4*six_r_w_1_t_18;
-        const real six_r_d_Gamma_3_t_8 = inv_six_r_w_1_t_49*(six_r_L_c_3_2_in_axes1_z +
+        const real six_r_d_Gamma_3_t_8 = inv_six_r_w_1_t_49*(v.six_r_L_c_3_2_in_axes1_z +
             six_r_d_Gamma_3_t_6*six_r_w_1_t_33 - six_r_d_Gamma_3_t_7);
         const real six_r_d_Gamma_3_t_9 = six_r_d_Gamma_3_t_4*six_r_w_1_t_22;
-        const real six_r_d_Gamma_3_t_10 = inv_six_r_w_1_t_67*(six_r_L_c_3_2_in_axes2_z +
+        const real six_r_d_Gamma_3_t_10 = inv_six_r_w_1_t_67*(v.six_r_L_c_3_2_in_axes2_z +
             six_r_d_Gamma_3_t_6*six_r_w_1_t_39 - six_r_d_Gamma_3_t_9 -
             six_r_d_Gamma_3_t_8*six_r_w_1_t_55);
         const real six_r_d_Gamma_3_t_11 = six_r_d_Gamma_3_t_4*six_r_w_1_t_25;
-        const real six_r_d_Gamma_3_t_12 = inv_six_r_w_1_t_79*(six_r_Jc_3_in_axes3_zz +
+        const real six_r_d_Gamma_3_t_12 = inv_six_r_w_1_t_79*(v.six_r_Jc_3_in_axes3_zz +
             six_r_d_Gamma_3_t_11 + six_r_d_Gamma_3_t_6*six_r_w_1_t_44 -
             six_r_d_Gamma_3_t_10*six_r_w_1_t_73 - six_r_d_Gamma_3_t_8*six_r_w_1_t_61);
         const real six_r_d_Gamma_3_t_13 = six_r_d_Gamma_3_t_4*six_r_w_1_t_13;
-        const real six_r_d_Gamma_3_in_axes5_x = six_r_d_Gamma_3_t +
+        const real six_r_d_Gamma_3_in_axes5_x = v.six_r_d_Gamma_3_t +
             six_r_d_Gamma_3_t_10*six_r_w_1_t_68 + six_r_d_Gamma_3_t_12*six_r_w_1_t_80 +
             six_r_d_Gamma_3_t_8*six_r_w_1_t_50;
-        const real six_r_d_Gamma_3_in_axes5_y = six_r_d_Gamma_3_t_13 - six_r_d_Gamma_3_t_2 -
+        const real six_r_d_Gamma_3_in_axes5_y = six_r_d_Gamma_3_t_13 - v.six_r_d_Gamma_3_t_2 -
             six_r_d_Gamma_3_t_10*six_r_w_1_t_69 - six_r_d_Gamma_3_t_12*six_r_w_1_t_81 -
             six_r_d_Gamma_3_t_6*six_r_w_1_t_29 - six_r_d_Gamma_3_t_8*six_r_w_1_t_51;
-        const real six_r_d_Gamma_3_in_axes5_z = six_r_d_Gamma_3_t_3 +
+        const real six_r_d_Gamma_3_in_axes5_z = v.six_r_d_Gamma_3_t_3 +
             six_r_d_Gamma_3_t_10*six_r_w_1_t_70 + six_r_d_Gamma_3_t_12*six_r_w_1_t_82 +
             six_r_d_Gamma_3_t_6*six_r_w_1_t_30 + six_r_d_Gamma_3_t_8*six_r_w_1_t_52;
         /* (six_r-mu_2_o) remainder without the acceleration in: inertia moment of the links that turn
            with link 2, about their reference points */
         const real six_r_mu_2_o_t = six_r_omega_1_in_axes2_x*six_r_omega_1_in_axes2_x;
+        const real six_r_J_2_in_spec2_xy = m->six_r_J_2_in_spec2_xy[i];
+        const real six_r_J_2_in_spec2_xz = m->six_r_J_2_in_spec2_xz[i];
+        const real six_r_J_2_in_spec2_yz = m->six_r_J_2_in_spec2_yz[i];
         const real six_r_Sigma_2_in_axes2_yy = m->six_r_Sigma_2_in_axes2_yy[i];
         const real six_r_Sigma_2_in_axes2_zz = m->six_r_Sigma_2_in_axes2_zz[i];
         const real six_r_h_2_in_spec2_y = m->six_r_h_2_in_spec2_y[i];
@@ -3617,117 +4927,120 @@ INLINE void dynamics_legs_six_r(const prepared *m, size_t w, size_t leg, size_t 
         const real six_r_mu_2_o_in_axes2_x = six_r_B_2_o_in_axes2_yx*six_r_J_2_in_spec2_xz +
             six_r_B_2_o_in_axes2_zy*six_r_Sigma_2_in_axes2_yy +
             six_r_J_2_in_spec2_yz*(six_r_a_o_3_o_t - six_r_a_o_3_o_t_2) +
-            six_r_g_in_axes2_y*six_r_h_2_in_spec2_z -
+            v.six_r_g_in_axes2_y*six_r_h_2_in_spec2_z -
             six_r_B_2_o_in_axes2_zx*six_r_J_2_in_spec2_xy -
-            six_r_Sigma_2_in_axes2_zz*six_r_alpha_1_o_t - six_r_g_in_axes1_x*six_r_h_2_in_spec2_y;
+            six_r_Sigma_2_in_axes2_zz*six_r_alpha_1_o_t -
+            v.six_r_g_in_axes1_y*six_r_h_2_in_spec2_y;
         const real six_r_Sigma_2_in_axes2_xx = m->six_r_Sigma_2_in_axes2_xx[i];
         const real six_r_h_2_in_spec2_x = m->six_r_h_2_in_spec2_x[i];
         const real six_r_mu_2_o_in_axes2_y = six_r_B_2_o_in_axes2_zy*six_r_J_2_in_spec2_xy +
             six_r_Sigma_2_in_axes2_zz*six_r_alpha_1_o_in_axes2_y +
-            six_r_g_in_axes1_x*six_r_h_2_in_spec2_x -
+            v.six_r_g_in_axes1_y*six_r_h_2_in_spec2_x -
             six_r_B_2_o_in_axes2_xy*six_r_J_2_in_spec2_yz -
             six_r_B_2_o_in_axes2_zx*six_r_Sigma_2_in_axes2_xx -
             six_r_J_2_in_spec2_xz*(six_r_mu_2_o_t - six_r_a_o_3_o_t_2) -
-            six_r_g_in_axes2_x*six_r_h_2_in_spec2_z;
+            v.six_r_g_in_axes2_x*six_r_h_2_in_spec2_z;
         const real six_r_mu_2_o_in_axes2_z = six_r_B_2_o_in_axes2_yx*six_r_Sigma_2_in_axes2_xx +
             six_r_J_2_in_spec2_xy*(six_r_mu_2_o_t - six_r_a_o_3_o_t) +
             six_r_J_2_in_spec2_yz*six_r_alpha_1_o_in_axes2_y +
-            six_r_g_in_axes2_x*six_r_h_2_in_spec2_y -
+            v.six_r_g_in_axes2_x*six_r_h_2_in_spec2_y -
             six_r_B_2_o_in_axes2_xy*six_r_Sigma_2_in_axes2_yy -
-            six_r_J_2_in_spec2_xz*six_r_alpha_1_o_t - six_r_g_in_axes2_y*six_r_h_2_in_spec2_x;
+            six_r_J_2_in_spec2_xz*six_r_alpha_1_o_t - v.six_r_g_in_axes2_y*six_r_h_2_in_spec2_x;
         /* (six_r-N_2_o) remainder without the acceleration in: moment about joint 2 of the links from 2
            outwards, the force at the connection point left out */
         const real six_r_N_2_o_in_axes2_x = six_r_mu_2_o_in_axes2_x +
-            six_r_N_3_o_in_axes3_x*six_r_c_3 - six_r_N_3_o_in_axes3_y*six_r_s_3;
+            six_r_N_3_o_in_axes3_x*v.six_r_s_3 + six_r_N_3_o_in_axes3_y*v.six_r_c_3;
         const real six_r_N_2_o_in_axes2_y = six_r_mu_2_o_in_axes2_y +
-            six_r_N_3_o_in_axes3_x*six_r_s_3 + six_r_N_3_o_in_axes3_y*six_r_c_3 -
+            six_r_N_3_o_in_axes3_y*v.six_r_s_3 - six_r_N_3_o_in_axes3_x*v.six_r_c_3 -
             six_r_T_3_o_in_axes3_z*six_r_joint3_offset_x;
-        const real six_r_N_2_o_in_axes2_z = six_r_N_3_o_in_axes3_z + six_r_mu_2_o_in_axes2_z +
-            six_r_joint3_offset_x*(six_r_T_3_o_in_axes3_x*six_r_s_3 +
-            six_r_T_3_o_in_axes3_y*six_r_c_3);
+        const real six_r_N_2_o_in_axes2_z = six_r_N_3_o_in_axes3_z + six_r_mu_2_o_in_axes2_z -
+            six_r_joint3_offset_x*(six_r_T_3_o_in_axes3_x*v.six_r_c_3 -
+            six_r_T_3_o_in_axes3_y*v.six_r_s_3);
         /* (six_r-dalpha_Gamma_2) coefficient of the acceleration in: moment about axis 2 of the distal
            links' inertia and weight */
         const real six_r_dalpha_Gamma_2_in_axes5_x = six_r_dalpha_Gamma_3_t +
-            six_r_Jc_2_in_axes1_xz*six_r_o_1_in_axes5_x - six_r_Jc_2_in_axes2_zz*six_r_o_2_t -
-            six_r_L_c_3_2_in_axes2_z*six_r_o_3_t - six_r_L_c_4_2_in_axes2_z*six_r_o_4_t;
+            v.six_r_Jc_2_in_axes1_yz*six_r_o_1_in_axes5_x - v.six_r_Jc_2_in_axes2_zz*six_r_o_2_t -
+            v.six_r_L_c_3_2_in_axes2_z*six_r_o_3_t - v.six_r_L_c_4_2_in_axes2_z*six_r_o_4_t;
         const real six_r_dalpha_Gamma_2_in_axes5_y = six_r_dalpha_Gamma_3_t_2 +
-            six_r_Jc_2_in_axes1_xz*six_r_o_1_in_axes5_y +
-            six_r_Jc_2_in_axes2_zz*six_r_o_2_in_axes5_y +
-            six_r_L_c_3_2_in_axes2_z*six_r_o_3_in_axes5_y +
-            six_r_L_c_4_2_in_axes2_z*six_r_o_4_in_axes5_y;
-        const real six_r_dalpha_Gamma_2_in_axes5_z = six_r_Jc_2_in_axes1_xz*six_r_o_1_in_axes5_z +
-            six_r_Jc_2_in_axes2_zz*six_r_o_2_in_axes5_z +
-            six_r_L_c_3_2_in_axes2_z*six_r_o_3_in_axes5_z +
-            six_r_L_c_4_2_in_axes2_z*six_r_o_4_in_axes5_z - six_r_dalpha_Gamma_3_t_3;
+            v.six_r_Jc_2_in_axes1_yz*six_r_o_1_in_axes5_y +
+            v.six_r_Jc_2_in_axes2_zz*six_r_o_2_in_axes5_y +
+            v.six_r_L_c_3_2_in_axes2_z*six_r_o_3_in_axes5_y +
+            v.six_r_L_c_4_2_in_axes2_z*six_r_o_4_in_axes5_y;
+        const real six_r_dalpha_Gamma_2_in_axes5_z = v.six_r_Jc_2_in_axes2_zz*six_r_o_2_in_axes5_z
+            + v.six_r_L_c_3_2_in_axes2_z*six_r_o_3_in_axes5_z +
+            v.six_r_L_c_4_2_in_axes2_z*six_r_o_4_in_axes5_z - six_r_dalpha_Gamma_3_t_3 -
+            v.six_r_Jc_2_in_axes1_yz*six_r_o_1_t;
         /* (six_r-d_Gamma_2) coefficient of the acceleration in: moment about axis 2 of the distal links'
            inertia and weight */
-        const real six_r_d_Gamma_2_t = inv_six_r_w_1_t_28*(six_r_L_c_4_2_in_axes2_z -
+        const real six_r_d_Gamma_2_t = inv_six_r_w_1_t_28*(v.six_r_L_c_4_2_in_axes2_z -
             six_r_d_Gamma_3_t_5);
-        const real six_r_d_Gamma_2_t_2 = inv_six_r_w_1_t_49*(six_r_Jc_2_in_axes1_xz +
+        const real six_r_d_Gamma_2_t_2 = inv_six_r_w_1_t_49*(v.six_r_Jc_2_in_axes1_yz +
             six_r_d_Gamma_2_t*six_r_w_1_t_33 - six_r_d_Gamma_3_t_7);
-        const real six_r_d_Gamma_2_t_3 = inv_six_r_w_1_t_67*(six_r_Jc_2_in_axes2_zz +
+        const real six_r_d_Gamma_2_t_3 = inv_six_r_w_1_t_67*(v.six_r_Jc_2_in_axes2_zz +
             six_r_d_Gamma_2_t*six_r_w_1_t_39 - six_r_d_Gamma_3_t_9 -
             six_r_d_Gamma_2_t_2*six_r_w_1_t_55);
-        const real six_r_d_Gamma_2_t_4 = inv_six_r_w_1_t_79*(six_r_L_c_3_2_in_axes2_z +
+        const real six_r_d_Gamma_2_t_4 = inv_six_r_w_1_t_79*(v.six_r_L_c_3_2_in_axes2_z +
             six_r_d_Gamma_3_t_11 + six_r_d_Gamma_2_t*six_r_w_1_t_44 -
             six_r_d_Gamma_2_t_2*six_r_w_1_t_61 - six_r_d_Gamma_2_t_3*six_r_w_1_t_73);
-        const real six_r_d_Gamma_2_in_axes5_x = six_r_d_Gamma_3_t +
+        const real six_r_d_Gamma_2_in_axes5_x = v.six_r_d_Gamma_3_t +
             six_r_d_Gamma_2_t_2*six_r_w_1_t_50 + six_r_d_Gamma_2_t_3*six_r_w_1_t_68 +
             six_r_d_Gamma_2_t_4*six_r_w_1_t_80;
-        const real six_r_d_Gamma_2_in_axes5_y = six_r_d_Gamma_3_t_13 - six_r_d_Gamma_3_t_2 -
+        const real six_r_d_Gamma_2_in_axes5_y = six_r_d_Gamma_3_t_13 - v.six_r_d_Gamma_3_t_2 -
             six_r_d_Gamma_2_t*six_r_w_1_t_29 - six_r_d_Gamma_2_t_2*six_r_w_1_t_51 -
             six_r_d_Gamma_2_t_3*six_r_w_1_t_69 - six_r_d_Gamma_2_t_4*six_r_w_1_t_81;
-        const real six_r_d_Gamma_2_in_axes5_z = six_r_d_Gamma_3_t_3 +
+        const real six_r_d_Gamma_2_in_axes5_z = v.six_r_d_Gamma_3_t_3 +
             six_r_d_Gamma_2_t*six_r_w_1_t_30 + six_r_d_Gamma_2_t_2*six_r_w_1_t_52 +
             six_r_d_Gamma_2_t_3*six_r_w_1_t_70 + six_r_d_Gamma_2_t_4*six_r_w_1_t_82;
         /* (six_r-mu_1_o) remainder without the acceleration in: inertia moment of the links that turn
            with link 1, about their reference points */
+        const real six_r_J_1_in_spec1_xx = m->six_r_J_1_in_spec1_xx[i];
         const real six_r_h_1_in_spec1_y = m->six_r_h_1_in_spec1_y[i];
         const real six_r_h_1_in_spec1_z = m->six_r_h_1_in_spec1_z[i];
-        const real six_r_mu_1_o_in_axes1_z = -six_r_J_1_in_spec1_xx*six_r_qdd_1_o_t_5 -
-            six_r_g_in_axes1_x*six_r_h_1_in_spec1_y - six_r_g_in_axes1_y*six_r_h_1_in_spec1_z;
+        const real six_r_mu_1_o_in_axes1_z = v.six_r_g_in_axes1_x*six_r_h_1_in_spec1_z -
+            six_r_J_1_in_spec1_xx*six_r_qdd_1_o_t_5 - v.six_r_g_in_axes1_y*six_r_h_1_in_spec1_y;
         /* (six_r-N_1_o) remainder without the acceleration in: moment about joint 1 of the links from 1
            outwards, the force at the connection point left out */
         const real six_r_N_1_o_in_axes1_z = six_r_mu_1_o_in_axes1_z +
-            six_r_N_2_o_in_axes2_x*six_r_s_2 + six_r_N_2_o_in_axes2_y*six_r_c_2;
+            six_r_N_2_o_in_axes2_x*v.six_r_c_2 - six_r_N_2_o_in_axes2_y*v.six_r_s_2;
         /* (six_r-dalpha_Gamma_1) coefficient of the acceleration in: moment about axis 1 of the distal
            links' inertia and weight */
-        const real six_r_dalpha_Gamma_1_in_axes5_x = six_r_D_1_5*six_r_o_5_in_axes5_x +
-            six_r_Jc_1_in_axes1_zz*six_r_o_1_in_axes5_x - six_r_Jc_2_in_axes1_xz*six_r_o_2_t -
-            six_r_L_c_3_2_in_axes1_z*six_r_o_3_t - six_r_L_c_4_2_in_axes1_z*six_r_o_4_t;
-        const real six_r_dalpha_Gamma_1_in_axes5_y = six_r_D_1_5*six_r_o_5_in_axes5_y +
-            six_r_Jc_1_in_axes1_zz*six_r_o_1_in_axes5_y +
-            six_r_Jc_2_in_axes1_xz*six_r_o_2_in_axes5_y +
-            six_r_L_c_3_2_in_axes1_z*six_r_o_3_in_axes5_y +
-            six_r_L_c_4_2_in_axes1_z*six_r_o_4_in_axes5_y;
-        const real six_r_dalpha_Gamma_1_in_axes5_z = six_r_Jc_1_in_axes1_zz*six_r_o_1_in_axes5_z +
-            six_r_Jc_2_in_axes1_xz*six_r_o_2_in_axes5_z +
-            six_r_L_c_3_2_in_axes1_z*six_r_o_3_in_axes5_z +
-            six_r_L_c_4_2_in_axes1_z*six_r_o_4_in_axes5_z - six_r_D_1_5*six_r_o_5_t;
+        const real six_r_dalpha_Gamma_1_in_axes5_x = v.six_r_D_1_5*six_r_o_5_in_axes5_x +
+            v.six_r_Jc_1_in_axes1_zz*six_r_o_1_in_axes5_x - v.six_r_Jc_2_in_axes1_yz*six_r_o_2_t -
+            v.six_r_L_c_3_2_in_axes1_z*six_r_o_3_t - v.six_r_L_c_4_2_in_axes1_z*six_r_o_4_t;
+        const real six_r_dalpha_Gamma_1_in_axes5_y = v.six_r_D_1_5*six_r_o_5_in_axes5_y +
+            v.six_r_Jc_1_in_axes1_zz*six_r_o_1_in_axes5_y +
+            v.six_r_Jc_2_in_axes1_yz*six_r_o_2_in_axes5_y +
+            v.six_r_L_c_3_2_in_axes1_z*six_r_o_3_in_axes5_y +
+            v.six_r_L_c_4_2_in_axes1_z*six_r_o_4_in_axes5_y;
+        const real six_r_dalpha_Gamma_1_in_axes5_z = v.six_r_Jc_2_in_axes1_yz*six_r_o_2_in_axes5_z
+            + v.six_r_L_c_3_2_in_axes1_z*six_r_o_3_in_axes5_z +
+            v.six_r_L_c_4_2_in_axes1_z*six_r_o_4_in_axes5_z - v.six_r_D_1_5*six_r_o_5_t -
+            v.six_r_Jc_1_in_axes1_zz*six_r_o_1_t;
         /* (six_r-d_Gamma_1) coefficient of the acceleration in: moment about axis 1 of the distal links'
            inertia and weight */
-        const real six_r_d_Gamma_1_t = inv_six_r_w_1_t_12*six_r_D_1_5;
-        const real six_r_d_Gamma_1_t_2 = inv_six_r_w_1_t_28*(six_r_L_c_4_2_in_axes1_z -
+        const real six_r_d_Gamma_1_t = inv_six_r_w_1_t_12*v.six_r_D_1_5;
+        const real six_r_d_Gamma_1_t_2 = inv_six_r_w_1_t_28*(v.six_r_L_c_4_2_in_axes1_z -
             six_r_d_Gamma_1_t*six_r_w_1_t_15);
-        const real six_r_d_Gamma_1_t_3 = inv_six_r_w_1_t_49*(six_r_Jc_1_in_axes1_zz +
+        const real six_r_d_Gamma_1_t_3 = inv_six_r_w_1_t_49*(v.six_r_Jc_1_in_axes1_zz +
             six_r_d_Gamma_1_t_2*six_r_w_1_t_33 - six_r_d_Gamma_1_t*six_r_w_1_t_18);
-        const real six_r_d_Gamma_1_t_4 = inv_six_r_w_1_t_67*(six_r_Jc_2_in_axes1_xz +
+        const real six_r_d_Gamma_1_t_4 = inv_six_r_w_1_t_67*(v.six_r_Jc_2_in_axes1_yz +
             six_r_d_Gamma_1_t_2*six_r_w_1_t_39 - six_r_d_Gamma_1_t*six_r_w_1_t_22 -
             six_r_d_Gamma_1_t_3*six_r_w_1_t_55);
-        const real six_r_d_Gamma_1_t_5 = inv_six_r_w_1_t_79*(six_r_L_c_3_2_in_axes1_z +
+        const real six_r_d_Gamma_1_t_5 = inv_six_r_w_1_t_79*(v.six_r_L_c_3_2_in_axes1_z +
             six_r_d_Gamma_1_t*six_r_w_1_t_25 + six_r_d_Gamma_1_t_2*six_r_w_1_t_44 -
             six_r_d_Gamma_1_t_3*six_r_w_1_t_61 - six_r_d_Gamma_1_t_4*six_r_w_1_t_73);
         const real six_r_d_Gamma_1_in_axes5_x = six_r_d_Gamma_1_t_3*six_r_w_1_t_50 +
             six_r_d_Gamma_1_t_4*six_r_w_1_t_68 + six_r_d_Gamma_1_t_5*six_r_w_1_t_80 +
-            six_r_e_1_in_axes5_y*six_r_h_5_in_spec5_z - six_r_e_1_in_axes5_z*six_r_h_5_in_spec5_y;
+            v.six_r_e_1_in_axes5_y*six_r_h_5_in_spec5_z -
+            v.six_r_e_1_in_axes5_z*six_r_h_5_in_spec5_y;
         const real six_r_d_Gamma_1_in_axes5_y = six_r_d_Gamma_1_t*six_r_w_1_t_13 +
-            six_r_e_1_in_axes5_z*six_r_h_5_in_spec5_x - six_r_d_Gamma_1_t_2*six_r_w_1_t_29 -
+            v.six_r_e_1_in_axes5_z*six_r_h_5_in_spec5_x - six_r_d_Gamma_1_t_2*six_r_w_1_t_29 -
             six_r_d_Gamma_1_t_3*six_r_w_1_t_51 - six_r_d_Gamma_1_t_4*six_r_w_1_t_69 -
-            six_r_d_Gamma_1_t_5*six_r_w_1_t_81 - six_r_e_1_in_axes5_x*six_r_h_5_in_spec5_z;
+            six_r_d_Gamma_1_t_5*six_r_w_1_t_81 - v.six_r_e_1_in_axes5_x*six_r_h_5_in_spec5_z;
         const real six_r_d_Gamma_1_in_axes5_z = six_r_d_Gamma_1_t_2*six_r_w_1_t_30 +
             six_r_d_Gamma_1_t_3*six_r_w_1_t_52 + six_r_d_Gamma_1_t_4*six_r_w_1_t_70 +
-            six_r_d_Gamma_1_t_5*six_r_w_1_t_82 + six_r_e_1_in_axes5_x*six_r_h_5_in_spec5_y -
-            six_r_e_1_in_axes5_y*six_r_h_5_in_spec5_x;
+            six_r_d_Gamma_1_t_5*six_r_w_1_t_82 + v.six_r_e_1_in_axes5_x*six_r_h_5_in_spec5_y -
+            v.six_r_e_1_in_axes5_y*six_r_h_5_in_spec5_x;
         /* (six_r-dalpha_G_m1) coefficient of the acceleration in: moment along moment direction 1 that
            balances the leg's inertia and weight along all degrees of freedom */
         const real six_r_dalpha_G_m1_in_axes5_x = six_r_dalpha_Gamma_2_in_axes5_x*six_r_m1_w_2 +
@@ -3792,20 +5105,20 @@ INLINE void dynamics_legs_six_r(const prepared *m, size_t w, size_t leg, size_t 
             six_r_G_m1_o_t_5*six_r_m1_w_1_t);
         /* (six_r-dalpha_G_m2) coefficient of the acceleration in: moment along moment direction 2 that
            balances the leg's inertia and weight along all degrees of freedom */
-        const real six_r_dalpha_G_m2_in_axes5_x = six_r_dalpha_Gamma_1_in_axes5_x*six_r_m2_w_1 +
-            six_r_dalpha_Gamma_2_in_axes5_x*six_r_m2_w_2 +
+        const real six_r_dalpha_G_m2_in_axes5_x = six_r_dalpha_Gamma_2_in_axes5_x*six_r_m2_w_2 +
             six_r_dalpha_Gamma_3_in_axes5_x*six_r_m2_w_3 +
             six_r_dalpha_Gamma_4_in_axes5_x*six_r_m2_w_4 -
+            six_r_dalpha_Gamma_1_in_axes5_x*six_r_m2_w_1_t_2 -
             six_r_dalpha_Gamma_5_in_axes5_x*six_r_m2_w_5_t;
-        const real six_r_dalpha_G_m2_in_axes5_y = six_r_dalpha_Gamma_1_in_axes5_y*six_r_m2_w_1 +
-            six_r_dalpha_Gamma_2_in_axes5_y*six_r_m2_w_2 +
+        const real six_r_dalpha_G_m2_in_axes5_y = six_r_dalpha_Gamma_2_in_axes5_y*six_r_m2_w_2 +
             six_r_dalpha_Gamma_3_in_axes5_y*six_r_m2_w_3 +
             six_r_dalpha_Gamma_4_in_axes5_y*six_r_m2_w_4 -
+            six_r_dalpha_Gamma_1_in_axes5_y*six_r_m2_w_1_t_2 -
             six_r_dalpha_Gamma_5_in_axes5_y*six_r_m2_w_5_t;
-        const real six_r_dalpha_G_m2_in_axes5_z = six_r_dalpha_Gamma_1_in_axes5_z*six_r_m2_w_1 +
-            six_r_dalpha_Gamma_2_in_axes5_z*six_r_m2_w_2 +
+        const real six_r_dalpha_G_m2_in_axes5_z = six_r_dalpha_Gamma_2_in_axes5_z*six_r_m2_w_2 +
             six_r_dalpha_Gamma_3_in_axes5_z*six_r_m2_w_3 +
             six_r_dalpha_Gamma_4_in_axes5_z*six_r_m2_w_4 -
+            six_r_dalpha_Gamma_1_in_axes5_z*six_r_m2_w_1_t_2 -
             six_r_dalpha_Gamma_5_in_axes5_z*six_r_m2_w_5_t;
         const real six_r_dalpha_G_m2_y = axis_x_six_r_axes5_y*six_r_dalpha_G_m2_in_axes5_x +
             axis_y_six_r_axes5_y*six_r_dalpha_G_m2_in_axes5_y +
@@ -3815,15 +5128,18 @@ INLINE void dynamics_legs_six_r(const prepared *m, size_t w, size_t leg, size_t 
             axis_z_six_r_axes5_z*six_r_dalpha_G_m2_in_axes5_z;
         /* (six_r-d_G_m2) coefficient of the acceleration in: moment along moment direction 2 that
            balances the leg's inertia and weight along all degrees of freedom */
-        const real six_r_d_G_m2_in_axes5_x = six_r_d_Gamma_1_in_axes5_x*six_r_m2_w_1 +
-            six_r_d_Gamma_2_in_axes5_x*six_r_m2_w_2 + six_r_d_Gamma_3_in_axes5_x*six_r_m2_w_3 +
-            six_r_d_Gamma_4_in_axes5_x*six_r_m2_w_4 - six_r_d_Gamma_5_in_axes5_x*six_r_m2_w_5_t;
-        const real six_r_d_G_m2_in_axes5_y = six_r_d_Gamma_1_in_axes5_y*six_r_m2_w_1 +
-            six_r_d_Gamma_2_in_axes5_y*six_r_m2_w_2 + six_r_d_Gamma_3_in_axes5_y*six_r_m2_w_3 +
-            six_r_d_Gamma_4_in_axes5_y*six_r_m2_w_4 - six_r_d_Gamma_5_in_axes5_y*six_r_m2_w_5_t;
-        const real six_r_d_G_m2_in_axes5_z = six_r_d_Gamma_1_in_axes5_z*six_r_m2_w_1 +
-            six_r_d_Gamma_2_in_axes5_z*six_r_m2_w_2 + six_r_d_Gamma_3_in_axes5_z*six_r_m2_w_3 +
-            six_r_d_Gamma_4_in_axes5_z*six_r_m2_w_4 - six_r_d_Gamma_5_in_axes5_z*six_r_m2_w_5_t;
+        const real six_r_d_G_m2_in_axes5_x = six_r_d_Gamma_2_in_axes5_x*six_r_m2_w_2 +
+            six_r_d_Gamma_3_in_axes5_x*six_r_m2_w_3 + six_r_d_Gamma_4_in_axes5_x*six_r_m2_w_4 -
+            six_r_d_Gamma_1_in_axes5_x*six_r_m2_w_1_t_2 -
+            six_r_d_Gamma_5_in_axes5_x*six_r_m2_w_5_t;
+        const real six_r_d_G_m2_in_axes5_y = six_r_d_Gamma_2_in_axes5_y*six_r_m2_w_2 +
+            six_r_d_Gamma_3_in_axes5_y*six_r_m2_w_3 + six_r_d_Gamma_4_in_axes5_y*six_r_m2_w_4 -
+            six_r_d_Gamma_1_in_axes5_y*six_r_m2_w_1_t_2 -
+            six_r_d_Gamma_5_in_axes5_y*six_r_m2_w_5_t;
+        const real six_r_d_G_m2_in_axes5_z = six_r_d_Gamma_2_in_axes5_z*six_r_m2_w_2 +
+            six_r_d_Gamma_3_in_axes5_z*six_r_m2_w_3 + six_r_d_Gamma_4_in_axes5_z*six_r_m2_w_4 -
+            six_r_d_Gamma_1_in_axes5_z*six_r_m2_w_1_t_2 -
+            six_r_d_Gamma_5_in_axes5_z*six_r_m2_w_5_t;
         const real six_r_d_G_m2_x = axis_x_six_r_axes5_x*six_r_d_G_m2_in_axes5_x +
             axis_y_six_r_axes5_x*six_r_d_G_m2_in_axes5_y +
             axis_z_six_r_axes5_x*six_r_d_G_m2_in_axes5_z;
@@ -3930,9 +5246,9 @@ INLINE void dynamics_legs_six_r(const prepared *m, size_t w, size_t leg, size_t 
             six_r_d_Gamma_2_in_axes5_y*six_r_w_2_in_axes5_x -
             six_r_d_Gamma_3_in_axes5_y*six_r_w_3_in_axes5_x -
             six_r_d_Gamma_4_in_axes5_y*six_r_w_4_in_axes5_x -
-            six_r_h_5_in_spec5_z*(six_r_e_1_in_axes5_y*six_r_w_1_in_axes5_y +
-            six_r_e_2_in_axes5_y*six_r_w_2_in_axes5_y + six_r_e_4_in_axes5_y*six_r_w_4_in_axes5_y
-            - six_r_e_2_in_axes5_y*six_r_w_3_t);
+            six_r_h_5_in_spec5_z*(v.six_r_e_1_in_axes5_y*six_r_w_1_in_axes5_y +
+            v.six_r_e_2_in_axes5_y*six_r_w_2_in_axes5_y - v.six_r_J_5_t*six_r_w_4_in_axes5_y -
+            v.six_r_e_2_in_axes5_y*six_r_w_3_t);
         const real six_r_d_c_in_axes5_xz = six_r_d_Gamma_5_in_axes5_z*six_r_w_5_t_5 +
             six_r_d_alpha_5_in_axes5_zz*six_r_h_5_in_spec5_y -
             six_r_d_Gamma_1_in_axes5_z*six_r_w_1_in_axes5_x -
@@ -3941,10 +5257,11 @@ INLINE void dynamics_legs_six_r(const prepared *m, size_t w, size_t leg, size_t 
             six_r_d_Gamma_4_in_axes5_z*six_r_w_4_in_axes5_x -
             six_r_d_alpha_5_in_axes5_yz*six_r_h_5_in_spec5_z;
         const real six_r_d_c_in_axes5_yy = six_r_d_Gamma_3_in_axes5_y*six_r_w_3_t +
-            six_r_h_5_in_spec5_z*(six_r_e_1_in_axes5_x*six_r_w_1_in_axes5_y +
-            six_r_e_2_in_axes5_x*six_r_w_2_in_axes5_y + six_r_e_4_in_axes5_x*six_r_w_4_in_axes5_y
-            - six_r_e_2_in_axes5_x*six_r_w_3_t) - six_r_d_Gamma_1_in_axes5_y*six_r_w_1_in_axes5_y
-            - six_r_d_Gamma_2_in_axes5_y*six_r_w_2_in_axes5_y -
+            six_r_h_5_in_spec5_z*(v.six_r_e_1_in_axes5_x*six_r_w_1_in_axes5_y +
+            v.six_r_e_2_in_axes5_x*six_r_w_2_in_axes5_y +
+            v.six_r_e_4_in_axes5_x*six_r_w_4_in_axes5_y - v.six_r_e_2_in_axes5_x*six_r_w_3_t) -
+            six_r_d_Gamma_1_in_axes5_y*six_r_w_1_in_axes5_y -
+            six_r_d_Gamma_2_in_axes5_y*six_r_w_2_in_axes5_y -
             six_r_d_Gamma_4_in_axes5_y*six_r_w_4_in_axes5_y -
             six_r_d_Gamma_5_in_axes5_y*six_r_w_5_in_axes5_y -
             six_r_d_alpha_5_in_axes5_zy*six_r_h_5_in_spec5_x;
@@ -3958,9 +5275,9 @@ INLINE void dynamics_legs_six_r(const prepared *m, size_t w, size_t leg, size_t 
         /* (six_r-c_o) remainder without the acceleration in: leg force on the platform without actuation
            and without the mass at the connection point */
         const real six_r_c_o_in_axes5_x = six_r_G_m1_o_t_3*six_r_w_1_t_50 +
-            six_r_G_m1_o_t_4*six_r_w_1_t_68 - six_r_B_5_o_in_axes5_xy*six_r_h_5_in_spec5_y -
-            six_r_B_5_o_in_axes5_xz*six_r_h_5_in_spec5_z - six_r_G_m1_o_t_5*six_r_w_1_t_80 -
-            six_r_W_5_in_axes5_xx*six_r_h_5_in_spec5_x;
+            six_r_G_m1_o_t_4*six_r_w_1_t_68 + six_r_W_5_t_3*six_r_h_5_in_spec5_x -
+            six_r_B_5_o_in_axes5_xy*six_r_h_5_in_spec5_y -
+            six_r_B_5_o_in_axes5_xz*six_r_h_5_in_spec5_z - six_r_G_m1_o_t_5*six_r_w_1_t_80;
         const real six_r_c_o_in_axes5_y = six_r_G_m1_o_t_5*six_r_w_1_t_81 +
             six_r_h_5_in_spec5_y*(six_r_W_5_t_2 + six_r_bias_t_2) -
             six_r_B_5_o_in_axes5_yx*six_r_h_5_in_spec5_x -
@@ -4052,76 +5369,80 @@ INLINE void dynamics_legs_six_r(const prepared *m, size_t w, size_t leg, size_t 
         const real six_r_M_ta_t_9 = axis_x_six_r_axes5_z*six_r_dalpha_c_in_axes5_xz +
             axis_y_six_r_axes5_z*six_r_dalpha_c_in_axes5_yz +
             axis_z_six_r_axes5_z*six_r_dalpha_c_in_axes5_zz;
-        const real six_r_M_ta_t_10 = -six_r_Q_xy*six_r_q_z;
-        const real six_r_M_ta_t_11 = six_r_Q_xz*six_r_q_y;
-        const real six_r_M_ta_t_12 = six_r_Q_yz*six_r_q_x;
+        const real six_r_M_ta_t_10 = -six_r_Q_xy*v.six_r_q_z;
+        const real six_r_M_ta_t_11 = six_r_Q_xz*v.six_r_q_y;
+        const real six_r_M_ta_t_12 = six_r_Q_yz*v.six_r_q_x;
         const real six_r_M_ta_t_13 = six_r_M_ta_t_10 + six_r_M_ta_t_11 -
             axis_x_six_r_axes5_x*six_r_M_ta_t - axis_y_six_r_axes5_x*six_r_M_ta_t_4 -
             axis_z_six_r_axes5_x*six_r_M_ta_t_7;
-        const real six_r_M_ta_t_14 = six_r_Q_xx*six_r_q_z - axis_x_six_r_axes5_y*six_r_M_ta_t -
+        const real six_r_M_ta_t_14 = six_r_Q_xx*v.six_r_q_z - axis_x_six_r_axes5_y*six_r_M_ta_t -
             axis_y_six_r_axes5_y*six_r_M_ta_t_4 - axis_z_six_r_axes5_y*six_r_M_ta_t_7 -
-            six_r_Q_xz*six_r_q_x;
-        const real six_r_M_ta_t_15 = six_r_Q_xy*six_r_q_x - axis_x_six_r_axes5_z*six_r_M_ta_t -
+            six_r_Q_xz*v.six_r_q_x;
+        const real six_r_M_ta_t_15 = six_r_Q_xy*v.six_r_q_x - axis_x_six_r_axes5_z*six_r_M_ta_t -
             axis_y_six_r_axes5_z*six_r_M_ta_t_4 - axis_z_six_r_axes5_z*six_r_M_ta_t_7 -
-            six_r_Q_xx*six_r_q_y;
-        const real six_r_M_ta_t_16 = six_r_Q_yz*six_r_q_y - axis_x_six_r_axes5_x*six_r_M_ta_t_2 -
-            axis_y_six_r_axes5_x*six_r_M_ta_t_5 - axis_z_six_r_axes5_x*six_r_M_ta_t_8 -
-            six_r_Q_yy*six_r_q_z;
+            six_r_Q_xx*v.six_r_q_y;
+        const real six_r_M_ta_t_16 = six_r_Q_yz*v.six_r_q_y - axis_x_six_r_axes5_x*six_r_M_ta_t_2
+            - axis_y_six_r_axes5_x*six_r_M_ta_t_5 - axis_z_six_r_axes5_x*six_r_M_ta_t_8 -
+            six_r_Q_yy*v.six_r_q_z;
         const real six_r_M_ta_t_17 = six_r_M_ta_t_10 + six_r_M_ta_t_12 +
             axis_x_six_r_axes5_y*six_r_M_ta_t_2 + axis_y_six_r_axes5_y*six_r_M_ta_t_5 +
             axis_z_six_r_axes5_y*six_r_M_ta_t_8;
-        const real six_r_M_ta_t_18 = six_r_Q_yy*six_r_q_x - axis_x_six_r_axes5_z*six_r_M_ta_t_2 -
-            axis_y_six_r_axes5_z*six_r_M_ta_t_5 - axis_z_six_r_axes5_z*six_r_M_ta_t_8 -
-            six_r_Q_xy*six_r_q_y;
-        const real six_r_M_ta_t_19 = six_r_Q_zz*six_r_q_y - axis_x_six_r_axes5_x*six_r_M_ta_t_3 -
-            axis_y_six_r_axes5_x*six_r_M_ta_t_6 - axis_z_six_r_axes5_x*six_r_M_ta_t_9 -
-            six_r_Q_yz*six_r_q_z;
-        const real six_r_M_ta_t_20 = six_r_Q_xz*six_r_q_z - axis_x_six_r_axes5_y*six_r_M_ta_t_3 -
-            axis_y_six_r_axes5_y*six_r_M_ta_t_6 - axis_z_six_r_axes5_y*six_r_M_ta_t_9 -
-            six_r_Q_zz*six_r_q_x;
+        const real six_r_M_ta_t_18 = six_r_Q_yy*v.six_r_q_x - axis_x_six_r_axes5_z*six_r_M_ta_t_2
+            - axis_y_six_r_axes5_z*six_r_M_ta_t_5 - axis_z_six_r_axes5_z*six_r_M_ta_t_8 -
+            six_r_Q_xy*v.six_r_q_y;
+        const real six_r_M_ta_t_19 = six_r_Q_zz*v.six_r_q_y - axis_x_six_r_axes5_x*six_r_M_ta_t_3
+            - axis_y_six_r_axes5_x*six_r_M_ta_t_6 - axis_z_six_r_axes5_x*six_r_M_ta_t_9 -
+            six_r_Q_yz*v.six_r_q_z;
+        const real six_r_M_ta_t_20 = six_r_Q_xz*v.six_r_q_z - axis_x_six_r_axes5_y*six_r_M_ta_t_3
+            - axis_y_six_r_axes5_y*six_r_M_ta_t_6 - axis_z_six_r_axes5_y*six_r_M_ta_t_9 -
+            six_r_Q_zz*v.six_r_q_x;
         const real six_r_M_ta_t_21 = six_r_M_ta_t_12 - six_r_M_ta_t_11 -
             axis_x_six_r_axes5_z*six_r_M_ta_t_3 - axis_y_six_r_axes5_z*six_r_M_ta_t_6 -
             axis_z_six_r_axes5_z*six_r_M_ta_t_9;
         /* (M_aa) rotational block of M */
-        const real six_r_M_aa_t = six_r_M_ta_t_19*six_r_q_y + six_r_d_G_m_xz*six_r_q_y +
+        const real six_r_M_aa_t = six_r_M_ta_t_19*v.six_r_q_y + six_r_d_G_m_xz*v.six_r_q_y +
             six_r_n_m1_x*(axis_x_six_r_axes5_x*six_r_dalpha_G_m1_in_axes5_x +
             axis_y_six_r_axes5_x*six_r_dalpha_G_m1_in_axes5_y +
             axis_z_six_r_axes5_x*six_r_dalpha_G_m1_in_axes5_z) +
             six_r_n_m2_x*(axis_x_six_r_axes5_x*six_r_dalpha_G_m2_in_axes5_x +
             axis_y_six_r_axes5_x*six_r_dalpha_G_m2_in_axes5_y +
-            axis_z_six_r_axes5_x*six_r_dalpha_G_m2_in_axes5_z) - six_r_M_ta_t_16*six_r_q_z -
-            six_r_d_G_m_xy*six_r_q_z;
-        const real six_r_M_aa_t_2 = six_r_M_ta_t_17*six_r_q_z + six_r_M_ta_t_20*six_r_q_y +
-            six_r_d_G_m_xx*six_r_q_z + six_r_dalpha_G_m1_y*six_r_n_m1_x +
-            six_r_dalpha_G_m2_y*six_r_n_m2_x - six_r_d_G_m_xz*six_r_q_x;
-        const real six_r_M_aa_t_3 = six_r_M_ta_t_21*six_r_q_y + six_r_d_G_m_xy*six_r_q_x +
+            axis_z_six_r_axes5_x*six_r_dalpha_G_m2_in_axes5_z) - six_r_M_ta_t_16*v.six_r_q_z -
+            six_r_d_G_m_xy*v.six_r_q_z;
+        const real six_r_M_aa_t_2 = six_r_M_ta_t_17*v.six_r_q_z + six_r_M_ta_t_20*v.six_r_q_y +
+            six_r_d_G_m_xx*v.six_r_q_z + six_r_dalpha_G_m1_y*six_r_n_m1_x +
+            six_r_dalpha_G_m2_y*six_r_n_m2_x - six_r_d_G_m_xz*v.six_r_q_x;
+        const real six_r_M_aa_t_3 = six_r_M_ta_t_21*v.six_r_q_y + six_r_d_G_m_xy*v.six_r_q_x +
             six_r_dalpha_G_m1_z*six_r_n_m1_x + six_r_dalpha_G_m2_z*six_r_n_m2_x -
-            six_r_M_ta_t_18*six_r_q_z - six_r_d_G_m_xx*six_r_q_y;
-        const real six_r_M_aa_t_4 = six_r_M_ta_t_14*six_r_q_z + six_r_d_G_m_yx*six_r_q_z +
+            six_r_M_ta_t_18*v.six_r_q_z - six_r_d_G_m_xx*v.six_r_q_y;
+        const real six_r_M_aa_t_4 = six_r_M_ta_t_14*v.six_r_q_z + six_r_d_G_m_yx*v.six_r_q_z +
             six_r_dalpha_G_m1_y*six_r_n_m1_y + six_r_dalpha_G_m2_y*six_r_n_m2_y -
-            six_r_M_ta_t_20*six_r_q_x - six_r_q_x*(six_r_d_G_m1_z*six_r_n_m1_y +
+            six_r_M_ta_t_20*v.six_r_q_x - v.six_r_q_x*(six_r_d_G_m1_z*six_r_n_m1_y +
             six_r_d_G_m2_z*six_r_n_m2_y);
-        const real six_r_M_aa_t_5 = six_r_M_ta_t_15*six_r_q_z + six_r_dalpha_G_m1_z*six_r_n_m1_y +
-            six_r_dalpha_G_m2_z*six_r_n_m2_y + six_r_q_x*(six_r_d_G_m1_y*six_r_n_m1_y +
-            six_r_d_G_m2_y*six_r_n_m2_y) - six_r_M_ta_t_21*six_r_q_x - six_r_d_G_m_yx*six_r_q_y;
-        const real six_r_M_aa_t_6 = six_r_M_ta_t_18*six_r_q_x + six_r_dalpha_G_m1_z*six_r_n_m1_z +
-            six_r_dalpha_G_m2_z*six_r_n_m2_z + six_r_q_x*(six_r_d_G_m1_y*six_r_n_m1_z +
-            six_r_d_G_m2_y*six_r_n_m2_z) - six_r_M_ta_t_15*six_r_q_y -
-            six_r_q_y*(six_r_d_G_m1_x*six_r_n_m1_z + six_r_d_G_m2_x*six_r_n_m2_z);
+        const real six_r_M_aa_t_5 = six_r_M_ta_t_15*v.six_r_q_z + six_r_dalpha_G_m1_z*six_r_n_m1_y
+            + six_r_dalpha_G_m2_z*six_r_n_m2_y + v.six_r_q_x*(six_r_d_G_m1_y*six_r_n_m1_y +
+            six_r_d_G_m2_y*six_r_n_m2_y) - six_r_M_ta_t_21*v.six_r_q_x -
+            six_r_d_G_m_yx*v.six_r_q_y;
+        const real six_r_M_aa_t_6 = six_r_M_ta_t_18*v.six_r_q_x + six_r_dalpha_G_m1_z*six_r_n_m1_z
+            + six_r_dalpha_G_m2_z*six_r_n_m2_z + v.six_r_q_x*(six_r_d_G_m1_y*six_r_n_m1_z +
+            six_r_d_G_m2_y*six_r_n_m2_z) - six_r_M_ta_t_15*v.six_r_q_y -
+            v.six_r_q_y*(six_r_d_G_m1_x*six_r_n_m1_z + six_r_d_G_m2_x*six_r_n_m2_z);
         /* (Z_a) rotational part of Z */
         const real six_r_Z_a_t = axis_x_six_r_axes5_x*six_r_G_m_o_in_axes5_x +
-            axis_y_six_r_axes5_x*six_r_G_m_o_in_axes5_y + six_r_U_z*six_r_q_y -
-            axis_z_six_r_axes5_x*six_r_c_m_o_in_axes5_z - six_r_U_y*six_r_q_z;
+            axis_y_six_r_axes5_x*six_r_G_m_o_in_axes5_y + six_r_U_z*v.six_r_q_y -
+            axis_z_six_r_axes5_x*six_r_c_m_o_in_axes5_z - six_r_U_y*v.six_r_q_z;
         const real six_r_Z_a_t_2 = axis_x_six_r_axes5_y*six_r_G_m_o_in_axes5_x +
-            axis_y_six_r_axes5_y*six_r_G_m_o_in_axes5_y + six_r_U_x*six_r_q_z -
-            axis_z_six_r_axes5_y*six_r_c_m_o_in_axes5_z - six_r_U_z*six_r_q_x;
+            axis_y_six_r_axes5_y*six_r_G_m_o_in_axes5_y + six_r_U_x*v.six_r_q_z -
+            axis_z_six_r_axes5_y*six_r_c_m_o_in_axes5_z - six_r_U_z*v.six_r_q_x;
         const real six_r_Z_a_t_3 = axis_x_six_r_axes5_z*six_r_G_m_o_in_axes5_x +
-            axis_y_six_r_axes5_z*six_r_G_m_o_in_axes5_y + six_r_U_y*six_r_q_x -
-            axis_z_six_r_axes5_z*six_r_c_m_o_in_axes5_z - six_r_U_x*six_r_q_y;
+            axis_y_six_r_axes5_z*six_r_G_m_o_in_axes5_y + six_r_U_y*v.six_r_q_x -
+            axis_z_six_r_axes5_z*six_r_c_m_o_in_axes5_z - six_r_U_x*v.six_r_q_y;
         /* (six_r-H_a_2) moment of the column's unit force about the platform origin */
-        const real six_r_H_a_2_x = six_r_o_2_x + six_r_q_y*six_r_w_2_z - six_r_q_z*six_r_w_2_y;
-        const real six_r_H_a_2_y = six_r_o_2_y + six_r_q_z*six_r_w_2_x - six_r_q_x*six_r_w_2_z;
-        const real six_r_H_a_2_z = six_r_o_2_z + six_r_q_x*six_r_w_2_y - six_r_q_y*six_r_w_2_x;
+        const real six_r_H_a_2_x = six_r_o_2_x + v.six_r_q_y*six_r_w_2_z -
+            v.six_r_q_z*six_r_w_2_y;
+        const real six_r_H_a_2_y = six_r_o_2_y + v.six_r_q_z*six_r_w_2_x -
+            v.six_r_q_x*six_r_w_2_z;
+        const real six_r_H_a_2_z = six_r_o_2_z + v.six_r_q_x*six_r_w_2_y -
+            v.six_r_q_y*six_r_w_2_x;
         /* (M_tt) translational block of M */
         gather(&terms[0*count + k], add, six_r_Q_xx);  /* M_tt_xx_of_legs */
         gather(&terms[1*count + k], add, six_r_Q_xy);  /* M_tt_xy */
@@ -4176,7 +5497,7 @@ INLINE void dynamics_place_six_r(size_t w, size_t count, const real *o, size_t l
     real *H, verdict *t)
 {
     for (size_t k = 0; k < w; ++k) {
-        H[(0*NU + leg)*w + k] = o[0*count + first + k];
+        H[leg*w + k] = o[0*count + first + k];
         H[(NU + leg)*w + k] = o[1*count + first + k];
         H[(2*NU + leg)*w + k] = o[2*count + first + k];
         H[(3*NU + leg)*w + k] = o[3*count + first + k];
@@ -4201,66 +5522,66 @@ INLINE void dynamics_after(const prepared *m, size_t w, const real *s, const rea
         const real M_tt_zz = M_tt_zz_of_legs + m_star;
         /* (M_ta) coupling block of M */
         const real M_ta_xy_of_legs = sums[7*w + k];
-        const real h_star_z = s[17*w + k];
+        const real h_star_z = s[11*w + k];
         const real M_ta_xy = M_ta_xy_of_legs + h_star_z;
         const real M_ta_xz_of_legs = sums[8*w + k];
-        const real h_star_y = s[16*w + k];
+        const real h_star_y = s[10*w + k];
         const real M_ta_xz = M_ta_xz_of_legs - h_star_y;
         const real M_ta_yx_of_legs = sums[9*w + k];
         const real M_ta_yx = M_ta_yx_of_legs - h_star_z;
         const real M_ta_yz_of_legs = sums[11*w + k];
-        const real h_star_x = s[15*w + k];
+        const real h_star_x = s[9*w + k];
         const real M_ta_yz = M_ta_yz_of_legs + h_star_x;
         const real M_ta_zx_of_legs = sums[12*w + k];
         const real M_ta_zx = M_ta_zx_of_legs + h_star_y;
         const real M_ta_zy_of_legs = sums[13*w + k];
         const real M_ta_zy = M_ta_zy_of_legs - h_star_x;
         /* (M_aa) rotational block of M */
-        const real J_star_xx = s[18*w + k];
+        const real J_star_xx = s[12*w + k];
         const real M_aa_xx_of_legs = sums[15*w + k];
         const real M_aa_xx = J_star_xx + M_aa_xx_of_legs;
-        const real J_star_xy = s[19*w + k];
+        const real J_star_xy = s[13*w + k];
         const real M_aa_xy_of_legs = sums[16*w + k];
         const real M_aa_xy = J_star_xy + M_aa_xy_of_legs;
-        const real J_star_xz = s[20*w + k];
+        const real J_star_xz = s[14*w + k];
         const real M_aa_xz_of_legs = sums[17*w + k];
         const real M_aa_xz = J_star_xz + M_aa_xz_of_legs;
-        const real J_star_yy = s[21*w + k];
+        const real J_star_yy = s[15*w + k];
         const real M_aa_yy_of_legs = sums[18*w + k];
         const real M_aa_yy = J_star_yy + M_aa_yy_of_legs;
-        const real J_star_yz = s[22*w + k];
+        const real J_star_yz = s[16*w + k];
         const real M_aa_yz_of_legs = sums[19*w + k];
         const real M_aa_yz = J_star_yz + M_aa_yz_of_legs;
-        const real J_star_zz = s[23*w + k];
+        const real J_star_zz = s[17*w + k];
         const real M_aa_zz_of_legs = sums[20*w + k];
         const real M_aa_zz = J_star_zz + M_aa_zz_of_legs;
         /* (Z_t) translational part of Z */
-        const real Z_p_x = s[24*w + k];
+        const real Z_p_x = s[18*w + k];
         const real Z_t_x_of_legs = sums[21*w + k];
         const real Z_t_x = Z_p_x + Z_t_x_of_legs;
-        const real Z_p_y = s[25*w + k];
+        const real Z_p_y = s[19*w + k];
         const real Z_t_y_of_legs = sums[22*w + k];
         const real Z_t_y = Z_p_y + Z_t_y_of_legs;
-        const real Z_p_z = s[26*w + k];
+        const real Z_p_z = s[20*w + k];
         const real Z_t_z_of_legs = sums[23*w + k];
         const real Z_t_z = Z_p_z + Z_t_z_of_legs;
         /* (Z_a) rotational part of Z */
         const real Z_a_x_of_legs = sums[24*w + k];
-        const real Z_q_x = s[27*w + k];
+        const real Z_q_x = s[21*w + k];
         const real Z_a_x = Z_a_x_of_legs + Z_q_x;
         const real Z_a_y_of_legs = sums[25*w + k];
-        const real Z_q_y = s[28*w + k];
+        const real Z_q_y = s[22*w + k];
         const real Z_a_y = Z_a_y_of_legs + Z_q_y;
         const real Z_a_z_of_legs = sums[26*w + k];
-        const real Z_q_z = s[29*w + k];
+        const real Z_q_z = s[23*w + k];
         const real Z_a_z = Z_a_z_of_legs + Z_q_z;
         /* (M_tt) translational block of M */
-        M[0*NV*w + k] = M_tt_xx;
+        M[0*w + k] = M_tt_xx;
         const real M_tt_xy = sums[1*w + k];
-        M[(0*NV + 1)*w + k] = M_tt_xy;
+        M[1*w + k] = M_tt_xy;
         M[NV*w + k] = M_tt_xy;
         const real M_tt_xz = sums[2*w + k];
-        M[(0*NV + 2)*w + k] = M_tt_xz;
+        M[2*w + k] = M_tt_xz;
         M[2*NV*w + k] = M_tt_xz;
         M[(NV + 1)*w + k] = M_tt_yy;
         const real M_tt_yz = sums[4*w + k];
@@ -4269,11 +5590,11 @@ INLINE void dynamics_after(const prepared *m, size_t w, const real *s, const rea
         M[(2*NV + 2)*w + k] = M_tt_zz;
         /* (M_ta) coupling block of M */
         const real M_ta_xx = sums[6*w + k];
-        M[(0*NV + 3)*w + k] = M_ta_xx;
+        M[3*w + k] = M_ta_xx;
         M[3*NV*w + k] = M_ta_xx;
-        M[(0*NV + 4)*w + k] = M_ta_xy;
+        M[4*w + k] = M_ta_xy;
         M[4*NV*w + k] = M_ta_xy;
-        M[(0*NV + 5)*w + k] = M_ta_xz;
+        M[5*w + k] = M_ta_xz;
         M[5*NV*w + k] = M_ta_xz;
         M[(NV + 3)*w + k] = M_ta_yx;
         M[(3*NV + 1)*w + k] = M_ta_yx;
@@ -4317,12 +5638,10 @@ INLINE void dynamics_after(const prepared *m, size_t w, const real *s, const rea
 INLINE void dynamics_run(const prepared *m, const real *X, const real *V, const real *joints, real
     *M, real *Z, real *H, verdict *t)
 {
-    real s[30] = {0};
-    real sums[27] = {0};
-    real terms_six_r[27*LEGS(LEGS_OF_six_r)] = {0};
-    real o_six_r[8*LEGS(LEGS_OF_six_r)] = {0};
+    real s[24] = {0}, sums[27] = {0};
+    real terms_six_r[27*LEGS(LEGS_OF_six_r)] = {0}, o_six_r[8*LEGS(LEGS_OF_six_r)] = {0};
     dynamics_before(m, 1, X, V, s, t);
-    dynamics_legs_six_r(m, 1, 0, 1, s, 0, LEGS(LEGS_OF_six_r), 0, joints, terms_six_r, o_six_r);
+    dynamics_legs_six_r(m, 1, 0, 1, s, 0, LEGS(LEGS_OF_six_r), 0, V, joints, terms_six_r, o_six_r);
     for (size_t leg = 0; leg < LEGS_OF_six_r; ++leg) {
         dynamics_place_six_r(1, LEGS(LEGS_OF_six_r), o_six_r, leg, leg, H, t);
     }
@@ -4335,13 +5654,12 @@ INLINE void dynamics_run(const prepared *m, const real *X, const real *V, const 
 INLINE void dynamics_run_lanes(const prepared *m, const real *X, const real *V, const real
     *joints, real *M, real *Z, real *H, verdict *t)
 {
-    real s[30*LANES];
-    real sums[27*LANES];
+    real s[24*LANES], sums[27*LANES];
     real o_six_r[8*LANES];
     dynamics_before(m, LANES, X, V, s, t);
     clear(sums, 27*LANES);
     for (size_t leg = 0; leg < LEGS_OF_six_r; ++leg) {
-        dynamics_legs_six_r(m, LANES, leg, 0, s, 1, LANES, 1, joints, sums, o_six_r);
+        dynamics_legs_six_r(m, LANES, leg, 0, s, 1, LANES, 1, V, joints, sums, o_six_r);
         dynamics_place_six_r(LANES, LANES, o_six_r, leg, 0, H, t);
     }
     dynamics_after(m, LANES, s, sums, M, Z, t);
@@ -4351,258 +5669,79 @@ INLINE void dynamics_run_lanes(const prepared *m, const real *X, const real *V, 
 INLINE void M_before(const prepared *m, size_t w, const real *X, real *s, verdict *t)
 {
     for (size_t k = 0; k < w; ++k) {
-        /* X: named entries */
-        const real X_3 = X[3*w + k];
-        const real X_4 = X[4*w + k];
-        const real X_5 = X[5*w + k];
-        const real X_6 = X[6*w + k];
-        const real quaternion_norm2 = X_3*X_3 + X_4*X_4 + X_5*X_5 + X_6*X_6;
-        const real quaternion_scale = 2/quaternion_norm2;
-        const real quaternion_sx = X_3*quaternion_scale;
-        const real quaternion_sy = X_4*quaternion_scale;
-        const real quaternion_sz = X_5*quaternion_scale;
-        const real quaternion_wx = X_6*quaternion_sx;
-        const real quaternion_wy = X_6*quaternion_sy;
-        const real quaternion_wz = X_6*quaternion_sz;
-        const real quaternion_xx = X_3*quaternion_sx;
-        const real quaternion_xy = X_3*quaternion_sy;
-        const real quaternion_xz = X_3*quaternion_sz;
-        const real quaternion_yy = X_4*quaternion_sy;
-        const real quaternion_yz = X_4*quaternion_sz;
-        const real quaternion_zz = X_5*quaternion_sz;
-        const real R_xx = 1 - quaternion_yy - quaternion_zz;
-        const real R_xy = quaternion_xy - quaternion_wz;
-        const real R_xz = quaternion_wy + quaternion_xz;
-        const real R_yx = quaternion_wz + quaternion_xy;
-        const real R_yy = 1 - quaternion_xx - quaternion_zz;
-        const real R_yz = quaternion_yz - quaternion_wx;
-        const real R_zx = quaternion_xz - quaternion_wy;
-        const real R_zy = quaternion_wx + quaternion_yz;
-        const real R_zz = 1 - quaternion_xx - quaternion_yy;
-        /* (h_star) first moment about the platform origin */
-        const real h_star_in_platform_x = m->h_star_in_platform_x;
-        const real h_star_in_platform_y = m->h_star_in_platform_y;
-        const real h_star_in_platform_z = m->h_star_in_platform_z;
-        const real h_star_x = R_xx*h_star_in_platform_x + R_xy*h_star_in_platform_y +
-            R_xz*h_star_in_platform_z;
-        const real h_star_y = R_yx*h_star_in_platform_x + R_yy*h_star_in_platform_y +
-            R_yz*h_star_in_platform_z;
-        const real h_star_z = R_zx*h_star_in_platform_x + R_zy*h_star_in_platform_y +
-            R_zz*h_star_in_platform_z;
-        /* (J_star) inertia tensor about the platform origin */
-        const real J_star_in_platform_xy = m->J_star_in_platform_xy;
-        const real J_star_in_platform_yz = m->J_star_in_platform_yz;
-        const real J_star_t_12 = m->J_star_t_12;
-        const real J_star_t = J_star_in_platform_xy*R_xx + J_star_in_platform_yz*R_xz -
-            J_star_t_12*R_xy;
-        const real J_star_t_2 = J_star_in_platform_xy*R_yx + J_star_in_platform_yz*R_yz -
-            J_star_t_12*R_yy;
-        const real J_star_t_3 = J_star_in_platform_xy*R_zx + J_star_in_platform_yz*R_zz -
-            J_star_t_12*R_zy;
-        const real J_star_in_platform_xz = m->J_star_in_platform_xz;
-        const real J_star_t_14 = m->J_star_t_14;
-        const real J_star_t_4 = J_star_t_14*R_xz - J_star_in_platform_xz*R_xx;
-        const real J_star_t_5 = J_star_t_14*R_yz - J_star_in_platform_xz*R_yx;
-        const real J_star_t_6 = J_star_t_14*R_zz - J_star_in_platform_xz*R_zx;
-        const real J_star_t_7 = J_star_t*R_xy - J_star_t_4*R_xz;
-        const real J_star_in_platform_xx = m->J_star_in_platform_xx;
-        const real J_star_xx = J_star_in_platform_xx + 2*J_star_t_7;
-        const real J_star_xy = J_star_t*R_yy + J_star_t_2*R_xy - J_star_t_4*R_yz -
-            J_star_t_5*R_xz;
-        const real J_star_xz = J_star_t*R_zy + J_star_t_3*R_xy - J_star_t_4*R_zz -
-            J_star_t_6*R_xz;
-        const real J_star_t_8 = J_star_t_2*R_yy - J_star_t_5*R_yz;
-        const real J_star_yy = J_star_in_platform_xx + 2*J_star_t_8;
-        const real J_star_yz = J_star_t_2*R_zy + J_star_t_3*R_yy - J_star_t_5*R_zz -
-            J_star_t_6*R_yz;
-        const real J_star_t_9 = J_star_t_3*R_zy - J_star_t_6*R_zz;
-        const real J_star_zz = J_star_in_platform_xx + 2*J_star_t_9;
-        s[0*w + k] = R_xx;
-        s[1*w + k] = R_xy;
-        s[2*w + k] = R_xz;
-        s[3*w + k] = R_yx;
-        s[4*w + k] = R_yy;
-        s[5*w + k] = R_yz;
-        s[6*w + k] = R_zx;
-        s[7*w + k] = R_zy;
-        s[8*w + k] = R_zz;
-        s[9*w + k] = h_star_x;
-        s[10*w + k] = h_star_y;
-        s[11*w + k] = h_star_z;
-        s[12*w + k] = J_star_xx;
-        s[13*w + k] = J_star_xy;
-        s[14*w + k] = J_star_xz;
-        s[15*w + k] = J_star_yy;
-        s[16*w + k] = J_star_yz;
-        s[17*w + k] = J_star_zz;
-        t->invalid[k] += UNLESS(is_finite(quaternion_scale)) + UNLESS(quaternion_scale > 0);
+        values v;
+        stage_X(m, w, k, X, &v);
+        stage_M_dynamics(m, &v);
+        s[0*w + k] = v.R_xx;
+        s[1*w + k] = v.R_xy;
+        s[2*w + k] = v.R_xz;
+        s[3*w + k] = v.R_yx;
+        s[4*w + k] = v.R_yy;
+        s[5*w + k] = v.R_yz;
+        s[6*w + k] = v.R_zx;
+        s[7*w + k] = v.R_zy;
+        s[8*w + k] = v.R_zz;
+        s[9*w + k] = v.h_star_x;
+        s[10*w + k] = v.h_star_y;
+        s[11*w + k] = v.h_star_z;
+        s[12*w + k] = v.J_star_xx;
+        s[13*w + k] = v.J_star_xy;
+        s[14*w + k] = v.J_star_xz;
+        s[15*w + k] = v.J_star_yy;
+        s[16*w + k] = v.J_star_yz;
+        s[17*w + k] = v.J_star_zz;
+        t->invalid[k] += UNLESS(is_finite(v.quaternion_scale)) + UNLESS(v.quaternion_scale > 0);
     }
 }
 
 INLINE void M_legs_six_r(const prepared *m, size_t w, size_t leg, size_t legs, const real *s,
     size_t states, size_t count, int add, const real *joints, real *terms, real *o)
 {
-    static const size_t place_six_r_q_1[] = {0, 5, 10, 15, 20, 25, 0, 0};
-    static const size_t place_six_r_q_2[] = {1, 6, 11, 16, 21, 26, 1, 1};
-    static const size_t place_six_r_q_3[] = {2, 7, 12, 17, 22, 27, 2, 2};
-    static const size_t place_six_r_q_4[] = {3, 8, 13, 18, 23, 28, 3, 3};
-    static const size_t place_six_r_q_5[] = {4, 9, 14, 19, 24, 29, 4, 4};
     for (size_t k = 0; k < count; ++k) {
         const size_t i = leg + legs*k;
         const size_t j = states*k;
-        /* (six_r-h_4) first moment of link 4 about the origin of link 4 */
-        const real six_r_q_4 = joints[place_six_r_q_4[i]*w + j];
-        const real six_r_h_4_t = -sine(six_r_q_4);
-        const real six_r_e_2_in_axes5_z = cosine(six_r_q_4);
-        const real six_r_h_4_in_spec4_y = m->six_r_h_4_in_spec4_y[i];
-        const real six_r_h_4_in_spec4_z = m->six_r_h_4_in_spec4_z[i];
-        const real six_r_h_4_in_axes3_y = six_r_e_2_in_axes5_z*six_r_h_4_in_spec4_y +
-            six_r_h_4_in_spec4_z*six_r_h_4_t;
-        /* (six_r-J_5) inertia tensor of link 5 about the connection point */
-        const real six_r_q_5 = joints[place_six_r_q_5[i]*w + j];
-        const real six_r_e_4_in_axes5_y = -sine(six_r_q_5);
-        const real six_r_e_4_in_axes5_x = cosine(six_r_q_5);
-        const real six_r_J_5_in_spec5_xz = m->six_r_J_5_in_spec5_xz[i];
-        const real six_r_J_5_in_spec5_yz = m->six_r_J_5_in_spec5_yz[i];
-        const real six_r_J_5_in_axes4_xz = six_r_J_5_in_spec5_xz*six_r_e_4_in_axes5_x +
-            six_r_J_5_in_spec5_yz*six_r_e_4_in_axes5_y;
-        /* (six_r-c_1) cosine of the angle of joint 1 from its reference direction */
-        const real six_r_q_1 = joints[place_six_r_q_1[i]*w + j];
-        const real six_r_c_1 = -sine(six_r_q_1);
-        /* (six_r-s_1) sine of the angle of joint 1 from its reference direction */
-        const real six_r_s_1 = cosine(six_r_q_1);
-        /* (six_r-c_2) cosine of the angle of joint 2 from its reference direction */
-        const real six_r_q_2 = joints[place_six_r_q_2[i]*w + j];
-        const real six_r_c_2 = -sine(six_r_q_2);
-        /* (six_r-s_2) sine of the angle of joint 2 from its reference direction */
-        const real six_r_s_2 = cosine(six_r_q_2);
-        /* (six_r-c_3) cosine of the angle of joint 3 from its reference direction */
-        const real six_r_q_3 = joints[place_six_r_q_3[i]*w + j];
-        const real six_r_c_3 = cosine(six_r_q_3);
-        /* (six_r-s_3) sine of the angle of joint 3 from its reference direction */
-        const real six_r_s_3 = sine(six_r_q_3);
-        /* (six_r-r_4) from joint 4 to the connection point, along the links */
-        const real six_r_platform_joint_offset_x = m->six_r_platform_joint_offset_x[i];
-        const real six_r_r_4_in_axes4_y = six_r_e_4_in_axes5_y*six_r_platform_joint_offset_x;
-        const real six_r_joint5_offset_x = m->six_r_joint5_offset_x[i];
-        const real six_r_r_4_in_axes4_z = six_r_joint5_offset_x +
-            six_r_e_4_in_axes5_x*six_r_platform_joint_offset_x;
-        const real six_r_r_4_in_axes3_y = -six_r_e_2_in_axes5_z*six_r_r_4_in_axes4_y;
-        const real six_r_r_4_in_axes3_z = six_r_h_4_t*six_r_r_4_in_axes4_y;
-        /* (six_r-r_3) from joint 3 to the connection point, along the links */
-        const real six_r_joint4_offset_x = m->six_r_joint4_offset_x[i];
-        const real six_r_r_3_in_axes3_x = six_r_joint4_offset_x + six_r_r_4_in_axes4_z;
-        const real six_r_r_3_in_axes2_y = six_r_c_3*six_r_r_4_in_axes3_y +
-            six_r_r_3_in_axes3_x*six_r_s_3;
-        const real six_r_r_3_t = six_r_e_2_in_axes5_z*six_r_r_4_in_axes3_z;
-        const real six_r_r_3_t_2 = -six_r_h_4_t*six_r_r_4_in_axes3_z;
-        const real six_r_r_3_in_axes5_z = six_r_r_3_t + six_r_h_4_t*six_r_r_4_in_axes3_y;
-        const real six_r_r_3_t_3 = -six_r_r_3_t_2 - six_r_e_2_in_axes5_z*six_r_r_4_in_axes3_y;
-        const real six_r_r_3_in_axes5_x = six_r_e_4_in_axes5_x*six_r_r_3_in_axes3_x +
-            six_r_e_4_in_axes5_y*six_r_r_3_t_3;
-        const real six_r_r_3_in_axes5_y = six_r_e_4_in_axes5_y*six_r_r_3_in_axes3_x -
-            six_r_e_4_in_axes5_x*six_r_r_3_t_3;
-        /* (six_r-r_2) from joint 2 to the connection point, along the links */
-        const real six_r_joint3_offset_x = m->six_r_joint3_offset_x[i];
-        const real six_r_r_2_in_axes2_x = six_r_joint3_offset_x + six_r_c_3*six_r_r_3_in_axes3_x -
-            six_r_r_4_in_axes3_y*six_r_s_3;
-        const real six_r_r_2_in_axes1_y = six_r_c_2*six_r_r_2_in_axes2_x -
-            six_r_r_3_in_axes2_y*six_r_s_2;
-        const real six_r_r_2_t = six_r_c_3*six_r_r_2_in_axes2_x + six_r_r_3_in_axes2_y*six_r_s_3;
-        const real six_r_r_2_t_2 = six_r_c_3*six_r_r_3_in_axes2_y -
-            six_r_r_2_in_axes2_x*six_r_s_3;
-        const real six_r_r_2_in_axes5_z = six_r_r_3_t + six_r_h_4_t*six_r_r_2_t_2;
-        const real six_r_r_2_t_3 = -six_r_r_3_t_2 - six_r_e_2_in_axes5_z*six_r_r_2_t_2;
-        const real six_r_r_2_in_axes5_x = six_r_e_4_in_axes5_x*six_r_r_2_t +
-            six_r_e_4_in_axes5_y*six_r_r_2_t_3;
-        const real six_r_r_2_in_axes5_y = six_r_e_4_in_axes5_y*six_r_r_2_t -
-            six_r_e_4_in_axes5_x*six_r_r_2_t_3;
-        /* (six_r-r_1) from joint 1 to the connection point, along the links */
-        const real six_r_joint2_offset_x = m->six_r_joint2_offset_x[i];
-        const real six_r_r_1_in_axes1_z = six_r_joint2_offset_x + six_r_c_2*six_r_r_3_in_axes2_y +
-            six_r_r_2_in_axes2_x*six_r_s_2;
-        const real six_r_r_1_t = six_r_c_2*six_r_r_2_in_axes1_y + six_r_r_1_in_axes1_z*six_r_s_2;
-        const real six_r_r_1_t_2 = six_r_c_2*six_r_r_1_in_axes1_z -
-            six_r_r_2_in_axes1_y*six_r_s_2;
-        const real six_r_r_1_t_3 = six_r_c_3*six_r_r_1_t + six_r_r_1_t_2*six_r_s_3;
-        const real six_r_r_1_t_4 = six_r_c_3*six_r_r_1_t_2 - six_r_r_1_t*six_r_s_3;
-        const real six_r_r_1_in_axes5_z = six_r_r_3_t + six_r_h_4_t*six_r_r_1_t_4;
-        const real six_r_r_1_t_5 = -six_r_r_3_t_2 - six_r_e_2_in_axes5_z*six_r_r_1_t_4;
-        const real six_r_r_1_in_axes5_x = six_r_e_4_in_axes5_x*six_r_r_1_t_3 +
-            six_r_e_4_in_axes5_y*six_r_r_1_t_5;
-        const real six_r_r_1_in_axes5_y = six_r_e_4_in_axes5_y*six_r_r_1_t_3 -
-            six_r_e_4_in_axes5_x*six_r_r_1_t_5;
-        /* (six_r-v_1) velocity of the connection point per rate of joint 1 */
-        const real six_r_v_1_t = six_r_c_2*six_r_s_3 + six_r_c_3*six_r_s_2;
-        const real six_r_v_1_t_2 = six_r_c_2*six_r_c_3 - six_r_s_2*six_r_s_3;
-        const real six_r_e_1_in_axes5_z = six_r_h_4_t*six_r_v_1_t_2;
-        const real six_r_v_1_t_3 = six_r_e_2_in_axes5_z*six_r_v_1_t_2;
-        const real six_r_e_1_in_axes5_x = six_r_e_4_in_axes5_x*six_r_v_1_t -
-            six_r_e_4_in_axes5_y*six_r_v_1_t_3;
-        const real six_r_e_1_in_axes5_y = six_r_e_4_in_axes5_x*six_r_v_1_t_3 +
-            six_r_e_4_in_axes5_y*six_r_v_1_t;
-        const real six_r_v_1_in_axes5_x = six_r_e_1_in_axes5_y*six_r_r_1_in_axes5_z -
-            six_r_e_1_in_axes5_z*six_r_r_1_in_axes5_y;
-        const real six_r_v_1_in_axes5_y = six_r_e_1_in_axes5_z*six_r_r_1_in_axes5_x -
-            six_r_e_1_in_axes5_x*six_r_r_1_in_axes5_z;
-        const real six_r_v_1_in_axes5_z = six_r_e_1_in_axes5_x*six_r_r_1_in_axes5_y -
-            six_r_e_1_in_axes5_y*six_r_r_1_in_axes5_x;
-        /* (six_r-v_2) velocity of the connection point per rate of joint 2 */
-        const real six_r_e_2_in_axes5_x = six_r_e_4_in_axes5_y*six_r_h_4_t;
-        const real six_r_e_2_in_axes5_y = -six_r_e_4_in_axes5_x*six_r_h_4_t;
-        const real six_r_v_2_in_axes5_x = six_r_e_2_in_axes5_y*six_r_r_2_in_axes5_z -
-            six_r_e_2_in_axes5_z*six_r_r_2_in_axes5_y;
-        const real six_r_v_2_in_axes5_y = six_r_e_2_in_axes5_z*six_r_r_2_in_axes5_x -
-            six_r_e_2_in_axes5_x*six_r_r_2_in_axes5_z;
-        const real six_r_v_2_in_axes5_z = six_r_e_2_in_axes5_x*six_r_r_2_in_axes5_y -
-            six_r_e_2_in_axes5_y*six_r_r_2_in_axes5_x;
-        /* (six_r-v_3) velocity of the connection point per rate of joint 3 */
-        const real six_r_v_3_in_axes5_x = six_r_e_2_in_axes5_y*six_r_r_3_in_axes5_z -
-            six_r_e_2_in_axes5_z*six_r_r_3_in_axes5_y;
-        const real six_r_v_3_in_axes5_y = six_r_e_2_in_axes5_z*six_r_r_3_in_axes5_x -
-            six_r_e_2_in_axes5_x*six_r_r_3_in_axes5_z;
-        const real six_r_v_3_in_axes5_z = six_r_e_2_in_axes5_x*six_r_r_3_in_axes5_y -
-            six_r_e_2_in_axes5_y*six_r_r_3_in_axes5_x;
-        /* (six_r-v_4) velocity of the connection point per rate of joint 4 */
-        const real six_r_v_4_in_axes5_z =
-            six_r_e_4_in_axes5_x*(six_r_e_4_in_axes5_y*six_r_r_4_in_axes4_z -
-            six_r_e_4_in_axes5_x*six_r_r_4_in_axes4_y) -
-            six_r_e_4_in_axes5_y*(six_r_e_4_in_axes5_x*six_r_r_4_in_axes4_z +
-            six_r_e_4_in_axes5_y*six_r_r_4_in_axes4_y);
+        values_six_r v;
+        stage_six_r_X(m, w, i, j, s, &v);
+        stage_six_r_q(m, w, i, j, joints, &v);
+        stage_six_r_M_dynamics(m, w, i, j, joints, &v);
         /* (six_r-n_m1) direction 1 of the moment that the platform joint transmits */
-        const real six_r_n_m1_t = -six_r_h_4_t*six_r_s_3;
-        const real six_r_n_m1_t_2 = -six_r_c_3*six_r_h_4_t;
-        const real six_r_n_m1_t_3 = six_r_c_2*six_r_n_m1_t + six_r_n_m1_t_2*six_r_s_2;
-        const real six_r_n_m1_t_4 = six_r_n_m1_t*six_r_s_2 - six_r_c_2*six_r_n_m1_t_2;
-        const real six_r_n_m1_t_5 = six_r_c_1*six_r_e_2_in_axes5_z - six_r_n_m1_t_3*six_r_s_1;
-        const real six_r_n_m1_t_6 = six_r_c_1*six_r_n_m1_t_3 + six_r_e_2_in_axes5_z*six_r_s_1;
+        const real six_r_n_m1_t = v.six_r_c_3*v.six_r_h_4_t;
+        const real six_r_n_m1_t_2 = v.six_r_h_4_t*v.six_r_s_3;
+        const real six_r_n_m1_t_3 = v.six_r_c_2*six_r_n_m1_t_2 + six_r_n_m1_t*v.six_r_s_2;
+        const real six_r_n_m1_t_4 = six_r_n_m1_t_2*v.six_r_s_2 - v.six_r_c_2*six_r_n_m1_t;
+        const real six_r_n_m1_t_5 = v.six_r_c_1*six_r_n_m1_t_4 -
+            v.six_r_e_2_in_axes5_z*v.six_r_s_1;
+        const real six_r_n_m1_t_6 = v.six_r_c_1*v.six_r_e_2_in_axes5_z +
+            six_r_n_m1_t_4*v.six_r_s_1;
         const real six_r_base_frame_xx = m->six_r_base_frame_xx[i];
         const real six_r_base_frame_xy = m->six_r_base_frame_xy[i];
         const real six_r_base_frame_xz = m->six_r_base_frame_xz[i];
-        const real axis_z_six_r_axes5_x = six_r_base_frame_xx*six_r_n_m1_t_4 +
+        const real axis_z_six_r_axes5_x = six_r_base_frame_xx*six_r_n_m1_t_3 +
             six_r_base_frame_xy*six_r_n_m1_t_5 + six_r_base_frame_xz*six_r_n_m1_t_6;
         const real six_r_base_frame_yx = m->six_r_base_frame_yx[i];
         const real six_r_base_frame_yy = m->six_r_base_frame_yy[i];
         const real six_r_base_frame_yz = m->six_r_base_frame_yz[i];
-        const real axis_z_six_r_axes5_y = six_r_base_frame_yx*six_r_n_m1_t_4 +
+        const real axis_z_six_r_axes5_y = six_r_base_frame_yx*six_r_n_m1_t_3 +
             six_r_base_frame_yy*six_r_n_m1_t_5 + six_r_base_frame_yz*six_r_n_m1_t_6;
         const real six_r_base_frame_zx = m->six_r_base_frame_zx[i];
         const real six_r_base_frame_zy = m->six_r_base_frame_zy[i];
         const real six_r_base_frame_zz = m->six_r_base_frame_zz[i];
-        const real axis_z_six_r_axes5_z = six_r_base_frame_zx*six_r_n_m1_t_4 +
+        const real axis_z_six_r_axes5_z = six_r_base_frame_zx*six_r_n_m1_t_3 +
             six_r_base_frame_zy*six_r_n_m1_t_5 + six_r_base_frame_zz*six_r_n_m1_t_6;
-        const real six_r_n_m1_t_7 = six_r_e_2_in_axes5_z*six_r_e_4_in_axes5_x;
-        const real six_r_n_m1_t_8 = six_r_c_3*six_r_e_4_in_axes5_y - six_r_n_m1_t_7*six_r_s_3;
-        const real six_r_n_m1_t_9 = six_r_c_3*six_r_n_m1_t_7 + six_r_e_4_in_axes5_y*six_r_s_3;
-        const real six_r_n_m1_t_10 = six_r_c_2*six_r_n_m1_t_8 - six_r_n_m1_t_9*six_r_s_2;
-        const real six_r_n_m1_t_11 = six_r_c_2*six_r_n_m1_t_9 + six_r_n_m1_t_8*six_r_s_2;
-        const real six_r_n_m1_t_12 = six_r_c_1*six_r_e_2_in_axes5_y - six_r_n_m1_t_10*six_r_s_1;
-        const real six_r_n_m1_t_13 = six_r_c_1*six_r_n_m1_t_10 + six_r_e_2_in_axes5_y*six_r_s_1;
-        const real axis_y_six_r_axes5_x = six_r_base_frame_xx*six_r_n_m1_t_11 +
+        const real six_r_n_m1_t_7 = v.six_r_e_2_in_axes5_z*v.six_r_e_4_in_axes5_x;
+        const real six_r_n_m1_t_8 = v.six_r_J_5_t*v.six_r_s_3 - v.six_r_c_3*six_r_n_m1_t_7;
+        const real six_r_n_m1_t_9 = -v.six_r_J_5_t*v.six_r_c_3 - six_r_n_m1_t_7*v.six_r_s_3;
+        const real six_r_n_m1_t_10 = v.six_r_c_2*six_r_n_m1_t_9 + six_r_n_m1_t_8*v.six_r_s_2;
+        const real six_r_n_m1_t_11 = six_r_n_m1_t_9*v.six_r_s_2 - v.six_r_c_2*six_r_n_m1_t_8;
+        const real six_r_n_m1_t_12 = v.six_r_c_1*six_r_n_m1_t_11 -
+            v.six_r_e_2_in_axes5_y*v.six_r_s_1;
+        const real six_r_n_m1_t_13 = v.six_r_c_1*v.six_r_e_2_in_axes5_y +
+            six_r_n_m1_t_11*v.six_r_s_1;
+        const real axis_y_six_r_axes5_x = six_r_base_frame_xx*six_r_n_m1_t_10 +
             six_r_base_frame_xy*six_r_n_m1_t_12 + six_r_base_frame_xz*six_r_n_m1_t_13;
-        const real axis_y_six_r_axes5_y = six_r_base_frame_yx*six_r_n_m1_t_11 +
+        const real axis_y_six_r_axes5_y = six_r_base_frame_yx*six_r_n_m1_t_10 +
             six_r_base_frame_yy*six_r_n_m1_t_12 + six_r_base_frame_yz*six_r_n_m1_t_13;
-        const real axis_y_six_r_axes5_z = six_r_base_frame_zx*six_r_n_m1_t_11 +
+        const real axis_y_six_r_axes5_z = six_r_base_frame_zx*six_r_n_m1_t_10 +
             six_r_base_frame_zy*six_r_n_m1_t_12 + six_r_base_frame_zz*six_r_n_m1_t_13;
         const real axis_x_six_r_axes5_x = axis_y_six_r_axes5_y*axis_z_six_r_axes5_z -
             axis_y_six_r_axes5_z*axis_z_six_r_axes5_y;
@@ -4643,18 +5782,18 @@ INLINE void M_legs_six_r(const prepared *m, size_t w, size_t leg, size_t legs, c
             R_yy*six_r_base_frame_yx + R_zy*six_r_base_frame_zx) +
             six_r_platform_joint_axis_platform_z*(R_xz*six_r_base_frame_xx +
             R_yz*six_r_base_frame_yx + R_zz*six_r_base_frame_zx);
-        const real six_r_n_m1_t_17 = six_r_c_1*six_r_n_m1_t_14 + six_r_n_m1_t_15*six_r_s_1;
-        const real six_r_n_m1_t_18 = six_r_c_1*six_r_n_m1_t_15 - six_r_n_m1_t_14*six_r_s_1;
-        const real six_r_n_m1_t_19 = six_r_c_2*six_r_n_m1_t_18 + six_r_n_m1_t_16*six_r_s_2;
-        const real six_r_n_m1_t_20 = six_r_c_2*six_r_n_m1_t_16 - six_r_n_m1_t_18*six_r_s_2;
-        const real six_r_n_m1_t_21 = six_r_c_3*six_r_n_m1_t_19 + six_r_n_m1_t_20*six_r_s_3;
-        const real six_r_n_m1_t_22 = six_r_c_3*six_r_n_m1_t_20 - six_r_n_m1_t_19*six_r_s_3;
-        const real six_r_n_m1_t_23 = six_r_h_4_t*six_r_n_m1_t_17 -
-            six_r_e_2_in_axes5_z*six_r_n_m1_t_22;
-        const real six_r_n_m1_in_axes5_y = six_r_e_4_in_axes5_x*six_r_n_m1_t_21 +
-            six_r_e_4_in_axes5_y*six_r_n_m1_t_23;
-        const real six_r_end_p1_in_axes5_y = six_r_e_4_in_axes5_y*six_r_n_m1_t_21 -
-            six_r_e_4_in_axes5_x*six_r_n_m1_t_23;
+        const real six_r_n_m1_t_17 = v.six_r_c_1*six_r_n_m1_t_14 + six_r_n_m1_t_15*v.six_r_s_1;
+        const real six_r_n_m1_t_18 = v.six_r_c_1*six_r_n_m1_t_15 - six_r_n_m1_t_14*v.six_r_s_1;
+        const real six_r_n_m1_t_19 = v.six_r_c_2*six_r_n_m1_t_16 + six_r_n_m1_t_17*v.six_r_s_2;
+        const real six_r_n_m1_t_20 = v.six_r_c_2*six_r_n_m1_t_17 - six_r_n_m1_t_16*v.six_r_s_2;
+        const real six_r_n_m1_t_21 = six_r_n_m1_t_19*v.six_r_s_3 - v.six_r_c_3*six_r_n_m1_t_20;
+        const real six_r_n_m1_t_22 = v.six_r_c_3*six_r_n_m1_t_19 + six_r_n_m1_t_20*v.six_r_s_3;
+        const real six_r_n_m1_t_23 = v.six_r_h_4_t*six_r_n_m1_t_18 -
+            v.six_r_e_2_in_axes5_z*six_r_n_m1_t_21;
+        const real six_r_n_m1_in_axes5_y = v.six_r_J_5_t*six_r_n_m1_t_23 +
+            v.six_r_e_4_in_axes5_x*six_r_n_m1_t_22;
+        const real six_r_end_p1_in_axes5_y = v.six_r_e_4_in_axes5_x*six_r_n_m1_t_23 -
+            v.six_r_J_5_t*six_r_n_m1_t_22;
         const real six_r_n_m1_x = axis_y_six_r_axes5_x*six_r_n_m1_in_axes5_y -
             axis_x_six_r_axes5_x*six_r_end_p1_in_axes5_y;
         const real six_r_n_m1_y = axis_y_six_r_axes5_y*six_r_n_m1_in_axes5_y -
@@ -4662,8 +5801,8 @@ INLINE void M_legs_six_r(const prepared *m, size_t w, size_t leg, size_t legs, c
         const real six_r_n_m1_z = axis_y_six_r_axes5_z*six_r_n_m1_in_axes5_y -
             axis_x_six_r_axes5_z*six_r_end_p1_in_axes5_y;
         /* (six_r-n_m2) direction 2 of the moment that the platform joint transmits */
-        const real six_r_end_p1_in_axes5_z = six_r_e_2_in_axes5_z*six_r_n_m1_t_17 +
-            six_r_h_4_t*six_r_n_m1_t_22;
+        const real six_r_end_p1_in_axes5_z = v.six_r_e_2_in_axes5_z*six_r_n_m1_t_18 +
+            v.six_r_h_4_t*six_r_n_m1_t_21;
         const real six_r_n_m2_x = axis_z_six_r_axes5_x*six_r_end_p1_in_axes5_y -
             axis_y_six_r_axes5_x*six_r_end_p1_in_axes5_z;
         const real six_r_n_m2_y = axis_z_six_r_axes5_y*six_r_end_p1_in_axes5_y -
@@ -4671,90 +5810,91 @@ INLINE void M_legs_six_r(const prepared *m, size_t w, size_t leg, size_t legs, c
         const real six_r_n_m2_z = axis_z_six_r_axes5_z*six_r_end_p1_in_axes5_y -
             axis_y_six_r_axes5_z*six_r_end_p1_in_axes5_z;
         /* (six_r-w_1) force part of reciprocal wrench 1 */
-        const real six_r_w_1_t = six_r_e_1_in_axes5_x*six_r_end_p1_in_axes5_y -
-            six_r_e_1_in_axes5_y*six_r_n_m1_in_axes5_y;
-        const real six_r_w_1_t_2 = six_r_e_2_in_axes5_x*six_r_end_p1_in_axes5_y -
-            six_r_e_2_in_axes5_y*six_r_n_m1_in_axes5_y;
-        const real six_r_w_1_t_3 = six_r_e_1_in_axes5_y*six_r_end_p1_in_axes5_z -
-            six_r_e_1_in_axes5_z*six_r_end_p1_in_axes5_y;
-        const real six_r_w_1_t_4 = six_r_e_2_in_axes5_y*six_r_end_p1_in_axes5_z -
-            six_r_e_2_in_axes5_z*six_r_end_p1_in_axes5_y;
+        const real six_r_w_1_t = v.six_r_e_1_in_axes5_x*six_r_end_p1_in_axes5_y -
+            v.six_r_e_1_in_axes5_y*six_r_n_m1_in_axes5_y;
+        const real six_r_w_1_t_2 = v.six_r_e_2_in_axes5_x*six_r_end_p1_in_axes5_y -
+            v.six_r_e_2_in_axes5_y*six_r_n_m1_in_axes5_y;
+        const real six_r_w_1_t_3 = v.six_r_e_1_in_axes5_y*six_r_end_p1_in_axes5_z -
+            v.six_r_e_1_in_axes5_z*six_r_end_p1_in_axes5_y;
+        const real six_r_w_1_t_4 = v.six_r_e_2_in_axes5_y*six_r_end_p1_in_axes5_z -
+            v.six_r_e_2_in_axes5_z*six_r_end_p1_in_axes5_y;
         const real six_r_size = m->six_r_size[i];
         const real six_r_w_1_t_5 = six_r_size*six_r_w_1_t;
         const real six_r_w_1_t_6 = six_r_size*six_r_w_1_t_3;
         const real six_r_w_1_t_7 = six_r_size*six_r_w_1_t_2;
         const real six_r_w_1_t_8 = six_r_size*six_r_w_1_t_4;
-        const real six_r_w_1_t_9 = six_r_size*(six_r_e_4_in_axes5_y*six_r_n_m1_in_axes5_y -
-            six_r_e_4_in_axes5_x*six_r_end_p1_in_axes5_y);
-        const real six_r_w_1_t_10 = -six_r_e_4_in_axes5_y*six_r_end_p1_in_axes5_z*six_r_size;
+        const real six_r_w_1_t_9 = six_r_size*(-v.six_r_J_5_t*six_r_n_m1_in_axes5_y -
+            v.six_r_e_4_in_axes5_x*six_r_end_p1_in_axes5_y);
+        const real six_r_w_1_t_10 = v.six_r_J_5_t*six_r_end_p1_in_axes5_z*six_r_size;
         const real six_r_w_1_t_11 = six_r_end_p1_in_axes5_y*six_r_size;
         const real six_r_size_t = m->six_r_size_t[i];
         const real six_r_w_1_t_12 = root(six_r_size_t + six_r_w_1_t_11*six_r_w_1_t_11);
         const real inv_six_r_w_1_t_12 = 1/six_r_w_1_t_12;
+        const real six_r_platform_joint_offset_x = m->six_r_platform_joint_offset_x[i];
         const real six_r_w_1_t_13 = inv_six_r_w_1_t_12*six_r_platform_joint_offset_x;
         const real six_r_w_1_t_14 = inv_six_r_w_1_t_12*six_r_w_1_t_11;
         const real six_r_w_1_t_15 = six_r_w_1_t_10*six_r_w_1_t_14;
         const real six_r_w_1_t_16 = six_r_w_1_t_13*six_r_w_1_t_15;
         const real six_r_w_1_t_17 = six_r_w_1_t_10 - six_r_w_1_t_14*six_r_w_1_t_15;
-        const real six_r_w_1_t_18 = six_r_v_1_in_axes5_y*six_r_w_1_t_13 -
+        const real six_r_w_1_t_18 = v.six_r_v_1_in_axes5_y*six_r_w_1_t_13 -
             six_r_w_1_t_14*six_r_w_1_t_6;
-        const real six_r_w_1_t_19 = six_r_v_1_in_axes5_y - six_r_w_1_t_13*six_r_w_1_t_18;
+        const real six_r_w_1_t_19 = v.six_r_v_1_in_axes5_y - six_r_w_1_t_13*six_r_w_1_t_18;
         const real six_r_w_1_t_20 = six_r_w_1_t_6 + six_r_w_1_t_14*six_r_w_1_t_18;
         const real six_r_w_1_t_21 = six_r_w_1_t_14*six_r_w_1_t_8;
-        const real six_r_w_1_t_22 = six_r_v_2_in_axes5_y*six_r_w_1_t_13 - six_r_w_1_t_21;
-        const real six_r_w_1_t_23 = six_r_v_2_in_axes5_y - six_r_w_1_t_13*six_r_w_1_t_22;
+        const real six_r_w_1_t_22 = v.six_r_v_2_in_axes5_y*six_r_w_1_t_13 - six_r_w_1_t_21;
+        const real six_r_w_1_t_23 = v.six_r_v_2_in_axes5_y - six_r_w_1_t_13*six_r_w_1_t_22;
         const real six_r_w_1_t_24 = six_r_w_1_t_8 + six_r_w_1_t_14*six_r_w_1_t_22;
-        const real six_r_w_1_t_25 = six_r_w_1_t_21 - six_r_v_3_in_axes5_y*six_r_w_1_t_13;
-        const real six_r_w_1_t_26 = six_r_v_3_in_axes5_y + six_r_w_1_t_13*six_r_w_1_t_25;
+        const real six_r_w_1_t_25 = six_r_w_1_t_21 - v.six_r_v_3_in_axes5_y*six_r_w_1_t_13;
+        const real six_r_w_1_t_26 = v.six_r_v_3_in_axes5_y + six_r_w_1_t_13*six_r_w_1_t_25;
         const real six_r_w_1_t_27 = six_r_w_1_t_8 - six_r_w_1_t_14*six_r_w_1_t_25;
-        const real six_r_w_1_t_28 = root(six_r_v_4_in_axes5_z*six_r_v_4_in_axes5_z +
+        const real six_r_w_1_t_28 = root(v.six_r_v_4_in_axes5_z*v.six_r_v_4_in_axes5_z +
             six_r_w_1_t_16*six_r_w_1_t_16 + six_r_w_1_t_17*six_r_w_1_t_17 +
             six_r_w_1_t_9*six_r_w_1_t_9);
         const real inv_six_r_w_1_t_28 = 1/six_r_w_1_t_28;
         const real six_r_w_1_t_29 = inv_six_r_w_1_t_28*six_r_w_1_t_16;
-        const real six_r_w_1_t_30 = inv_six_r_w_1_t_28*six_r_v_4_in_axes5_z;
+        const real six_r_w_1_t_30 = inv_six_r_w_1_t_28*v.six_r_v_4_in_axes5_z;
         const real six_r_w_1_t_31 = inv_six_r_w_1_t_28*six_r_w_1_t_9;
         const real six_r_w_1_t_32 = inv_six_r_w_1_t_28*six_r_w_1_t_17;
         const real six_r_w_1_t_33 = six_r_w_1_t_19*six_r_w_1_t_29 + six_r_w_1_t_20*six_r_w_1_t_32
-            + six_r_w_1_t_31*six_r_w_1_t_5 - six_r_v_1_in_axes5_z*six_r_w_1_t_30;
+            + six_r_w_1_t_31*six_r_w_1_t_5 - v.six_r_v_1_in_axes5_z*six_r_w_1_t_30;
         const real six_r_w_1_t_34 = six_r_w_1_t_29*six_r_w_1_t_33 - six_r_w_1_t_19;
-        const real six_r_w_1_t_35 = six_r_v_1_in_axes5_z + six_r_w_1_t_30*six_r_w_1_t_33;
+        const real six_r_w_1_t_35 = v.six_r_v_1_in_axes5_z + six_r_w_1_t_30*six_r_w_1_t_33;
         const real six_r_w_1_t_36 = six_r_w_1_t_31*six_r_w_1_t_33 - six_r_w_1_t_5;
         const real six_r_w_1_t_37 = six_r_w_1_t_32*six_r_w_1_t_33 - six_r_w_1_t_20;
         const real six_r_w_1_t_38 = six_r_w_1_t_31*six_r_w_1_t_7;
         const real six_r_w_1_t_39 = six_r_w_1_t_38 + six_r_w_1_t_23*six_r_w_1_t_29 +
-            six_r_w_1_t_24*six_r_w_1_t_32 - six_r_v_2_in_axes5_z*six_r_w_1_t_30;
+            six_r_w_1_t_24*six_r_w_1_t_32 - v.six_r_v_2_in_axes5_z*six_r_w_1_t_30;
         const real six_r_w_1_t_40 = six_r_w_1_t_29*six_r_w_1_t_39 - six_r_w_1_t_23;
-        const real six_r_w_1_t_41 = six_r_v_2_in_axes5_z + six_r_w_1_t_30*six_r_w_1_t_39;
+        const real six_r_w_1_t_41 = v.six_r_v_2_in_axes5_z + six_r_w_1_t_30*six_r_w_1_t_39;
         const real six_r_w_1_t_42 = six_r_w_1_t_31*six_r_w_1_t_39 - six_r_w_1_t_7;
         const real six_r_w_1_t_43 = six_r_w_1_t_32*six_r_w_1_t_39 - six_r_w_1_t_24;
         const real six_r_w_1_t_44 = six_r_w_1_t_38 + six_r_w_1_t_26*six_r_w_1_t_29 +
-            six_r_w_1_t_27*six_r_w_1_t_32 - six_r_v_3_in_axes5_z*six_r_w_1_t_30;
+            six_r_w_1_t_27*six_r_w_1_t_32 - v.six_r_v_3_in_axes5_z*six_r_w_1_t_30;
         const real six_r_w_1_t_45 = six_r_w_1_t_29*six_r_w_1_t_44 - six_r_w_1_t_26;
-        const real six_r_w_1_t_46 = six_r_v_3_in_axes5_z + six_r_w_1_t_30*six_r_w_1_t_44;
+        const real six_r_w_1_t_46 = v.six_r_v_3_in_axes5_z + six_r_w_1_t_30*six_r_w_1_t_44;
         const real six_r_w_1_t_47 = six_r_w_1_t_31*six_r_w_1_t_44 - six_r_w_1_t_7;
         const real six_r_w_1_t_48 = six_r_w_1_t_32*six_r_w_1_t_44 - six_r_w_1_t_27;
-        const real six_r_w_1_t_49 = root(six_r_v_1_in_axes5_x*six_r_v_1_in_axes5_x +
+        const real six_r_w_1_t_49 = root(v.six_r_v_1_in_axes5_x*v.six_r_v_1_in_axes5_x +
             six_r_w_1_t_34*six_r_w_1_t_34 + six_r_w_1_t_35*six_r_w_1_t_35 +
             six_r_w_1_t_36*six_r_w_1_t_36 + six_r_w_1_t_37*six_r_w_1_t_37);
         const real inv_six_r_w_1_t_49 = 1/six_r_w_1_t_49;
-        const real six_r_w_1_t_50 = inv_six_r_w_1_t_49*six_r_v_1_in_axes5_x;
+        const real six_r_w_1_t_50 = inv_six_r_w_1_t_49*v.six_r_v_1_in_axes5_x;
         const real six_r_w_1_t_51 = inv_six_r_w_1_t_49*six_r_w_1_t_34;
         const real six_r_w_1_t_52 = inv_six_r_w_1_t_49*six_r_w_1_t_35;
         const real six_r_w_1_t_53 = inv_six_r_w_1_t_49*six_r_w_1_t_36;
         const real six_r_w_1_t_54 = inv_six_r_w_1_t_49*six_r_w_1_t_37;
-        const real six_r_w_1_t_55 = six_r_v_2_in_axes5_x*six_r_w_1_t_50 +
+        const real six_r_w_1_t_55 = v.six_r_v_2_in_axes5_x*six_r_w_1_t_50 +
             six_r_w_1_t_40*six_r_w_1_t_51 + six_r_w_1_t_41*six_r_w_1_t_52 +
             six_r_w_1_t_42*six_r_w_1_t_53 + six_r_w_1_t_43*six_r_w_1_t_54;
-        const real six_r_w_1_t_56 = six_r_v_2_in_axes5_x - six_r_w_1_t_50*six_r_w_1_t_55;
+        const real six_r_w_1_t_56 = v.six_r_v_2_in_axes5_x - six_r_w_1_t_50*six_r_w_1_t_55;
         const real six_r_w_1_t_57 = six_r_w_1_t_40 - six_r_w_1_t_51*six_r_w_1_t_55;
         const real six_r_w_1_t_58 = six_r_w_1_t_41 - six_r_w_1_t_52*six_r_w_1_t_55;
         const real six_r_w_1_t_59 = six_r_w_1_t_42 - six_r_w_1_t_53*six_r_w_1_t_55;
         const real six_r_w_1_t_60 = six_r_w_1_t_43 - six_r_w_1_t_54*six_r_w_1_t_55;
-        const real six_r_w_1_t_61 = six_r_v_3_in_axes5_x*six_r_w_1_t_50 +
+        const real six_r_w_1_t_61 = v.six_r_v_3_in_axes5_x*six_r_w_1_t_50 +
             six_r_w_1_t_45*six_r_w_1_t_51 + six_r_w_1_t_46*six_r_w_1_t_52 +
             six_r_w_1_t_47*six_r_w_1_t_53 + six_r_w_1_t_48*six_r_w_1_t_54;
-        const real six_r_w_1_t_62 = six_r_v_3_in_axes5_x - six_r_w_1_t_50*six_r_w_1_t_61;
+        const real six_r_w_1_t_62 = v.six_r_v_3_in_axes5_x - six_r_w_1_t_50*six_r_w_1_t_61;
         const real six_r_w_1_t_63 = six_r_w_1_t_45 - six_r_w_1_t_51*six_r_w_1_t_61;
         const real six_r_w_1_t_64 = six_r_w_1_t_46 - six_r_w_1_t_52*six_r_w_1_t_61;
         const real six_r_w_1_t_65 = six_r_w_1_t_47 - six_r_w_1_t_53*six_r_w_1_t_61;
@@ -4798,7 +5938,7 @@ INLINE void M_legs_six_r(const prepared *m, size_t w, size_t leg, size_t legs, c
             six_r_w_1_t_71*six_r_w_1_t_83 - inv_six_r_w_1_t_49*six_r_w_1_t_53);
         /* (six_r-m2_w_1) moment part 2 of reciprocal wrench 1 */
         const real six_r_m2_w_1_t = inv_six_r_w_1_t_79*six_r_w_1_t_78;
-        const real six_r_m2_w_1 = -six_r_size*(six_r_m2_w_1_t*six_r_w_1_t_84 +
+        const real six_r_m2_w_1_t_2 = six_r_size*(six_r_m2_w_1_t*six_r_w_1_t_84 +
             six_r_w_1_t_72*six_r_w_1_t_83 - inv_six_r_w_1_t_49*six_r_w_1_t_54);
         /* (six_r-w_2) force part of reciprocal wrench 2 */
         const real six_r_w_2_t = inv_six_r_w_1_t_67*inv_six_r_w_1_t_79*six_r_w_1_t_73;
@@ -4871,8 +6011,8 @@ INLINE void M_legs_six_r(const prepared *m, size_t w, size_t leg, size_t legs, c
             inv_six_r_w_1_t_12*six_r_w_1_t_14 - six_r_m2_w_1_t*six_r_w_5_t_4);
         /* (six_r-o_1) moment part of reciprocal wrench 1 */
         const real six_r_o_1_in_axes5_x = six_r_end_p1_in_axes5_y*six_r_m1_w_1_t_2;
-        const real six_r_o_1_in_axes5_z = six_r_end_p1_in_axes5_y*six_r_m2_w_1;
-        const real six_r_o_1_in_axes5_y = -six_r_end_p1_in_axes5_z*six_r_m2_w_1 -
+        const real six_r_o_1_t = six_r_end_p1_in_axes5_y*six_r_m2_w_1_t_2;
+        const real six_r_o_1_in_axes5_y = six_r_end_p1_in_axes5_z*six_r_m2_w_1_t_2 -
             six_r_m1_w_1_t_2*six_r_n_m1_in_axes5_y;
         /* (six_r-o_2) moment part of reciprocal wrench 2 */
         const real six_r_o_2_t = six_r_end_p1_in_axes5_y*six_r_m1_w_2;
@@ -4895,212 +6035,85 @@ INLINE void M_legs_six_r(const prepared *m, size_t w, size_t leg, size_t legs, c
         const real six_r_o_5_in_axes5_y = six_r_end_p1_in_axes5_z*six_r_m2_w_5_t -
             six_r_m1_w_5_t*six_r_n_m1_in_axes5_y;
         /* (six_r-dalpha_alpha_5) coefficient of the acceleration in: angular acceleration of link 5 */
-        const real six_r_dalpha_alpha_5_in_axes5_xx = six_r_e_1_in_axes5_x*six_r_o_1_in_axes5_x -
-            six_r_e_2_in_axes5_x*six_r_o_2_t - six_r_e_2_in_axes5_x*six_r_o_3_t -
-            six_r_e_4_in_axes5_x*six_r_o_4_t;
-        const real six_r_dalpha_alpha_5_in_axes5_xy = six_r_e_1_in_axes5_x*six_r_o_1_in_axes5_y +
-            six_r_e_2_in_axes5_x*six_r_o_2_in_axes5_y + six_r_e_2_in_axes5_x*six_r_o_3_in_axes5_y
-            + six_r_e_4_in_axes5_x*six_r_o_4_in_axes5_y;
-        const real six_r_dalpha_alpha_5_in_axes5_xz = six_r_e_1_in_axes5_x*six_r_o_1_in_axes5_z +
-            six_r_e_2_in_axes5_x*six_r_o_2_in_axes5_z + six_r_e_2_in_axes5_x*six_r_o_3_in_axes5_z
-            + six_r_e_4_in_axes5_x*six_r_o_4_in_axes5_z;
-        const real six_r_dalpha_alpha_5_in_axes5_yx = six_r_e_1_in_axes5_y*six_r_o_1_in_axes5_x -
-            six_r_e_2_in_axes5_y*six_r_o_2_t - six_r_e_2_in_axes5_y*six_r_o_3_t -
-            six_r_e_4_in_axes5_y*six_r_o_4_t;
-        const real six_r_dalpha_alpha_5_in_axes5_yy = six_r_e_1_in_axes5_y*six_r_o_1_in_axes5_y +
-            six_r_e_2_in_axes5_y*six_r_o_2_in_axes5_y + six_r_e_2_in_axes5_y*six_r_o_3_in_axes5_y
-            + six_r_e_4_in_axes5_y*six_r_o_4_in_axes5_y;
-        const real six_r_dalpha_alpha_5_in_axes5_yz = six_r_e_1_in_axes5_y*six_r_o_1_in_axes5_z +
-            six_r_e_2_in_axes5_y*six_r_o_2_in_axes5_z + six_r_e_2_in_axes5_y*six_r_o_3_in_axes5_z
-            + six_r_e_4_in_axes5_y*six_r_o_4_in_axes5_z;
+        const real six_r_dalpha_alpha_5_in_axes5_xx = v.six_r_e_1_in_axes5_x*six_r_o_1_in_axes5_x
+            - v.six_r_e_2_in_axes5_x*six_r_o_2_t - v.six_r_e_2_in_axes5_x*six_r_o_3_t -
+            v.six_r_e_4_in_axes5_x*six_r_o_4_t;
+        const real six_r_dalpha_alpha_5_in_axes5_xy = v.six_r_e_1_in_axes5_x*six_r_o_1_in_axes5_y
+            + v.six_r_e_2_in_axes5_x*six_r_o_2_in_axes5_y +
+            v.six_r_e_2_in_axes5_x*six_r_o_3_in_axes5_y +
+            v.six_r_e_4_in_axes5_x*six_r_o_4_in_axes5_y;
+        const real six_r_dalpha_alpha_5_in_axes5_xz = v.six_r_e_2_in_axes5_x*six_r_o_2_in_axes5_z
+            + v.six_r_e_2_in_axes5_x*six_r_o_3_in_axes5_z +
+            v.six_r_e_4_in_axes5_x*six_r_o_4_in_axes5_z - v.six_r_e_1_in_axes5_x*six_r_o_1_t;
+        const real six_r_dalpha_alpha_5_in_axes5_yx = v.six_r_J_5_t*six_r_o_4_t +
+            v.six_r_e_1_in_axes5_y*six_r_o_1_in_axes5_x - v.six_r_e_2_in_axes5_y*six_r_o_2_t -
+            v.six_r_e_2_in_axes5_y*six_r_o_3_t;
+        const real six_r_dalpha_alpha_5_in_axes5_yy = v.six_r_e_1_in_axes5_y*six_r_o_1_in_axes5_y
+            + v.six_r_e_2_in_axes5_y*six_r_o_2_in_axes5_y +
+            v.six_r_e_2_in_axes5_y*six_r_o_3_in_axes5_y - v.six_r_J_5_t*six_r_o_4_in_axes5_y;
+        const real six_r_dalpha_alpha_5_in_axes5_yz = v.six_r_e_2_in_axes5_y*six_r_o_2_in_axes5_z
+            + v.six_r_e_2_in_axes5_y*six_r_o_3_in_axes5_z - v.six_r_J_5_t*six_r_o_4_in_axes5_z -
+            v.six_r_e_1_in_axes5_y*six_r_o_1_t;
         const real six_r_dalpha_alpha_5_in_axes5_zx = six_r_o_5_in_axes5_x +
-            six_r_e_1_in_axes5_z*six_r_o_1_in_axes5_x - six_r_e_2_in_axes5_z*six_r_o_2_t -
-            six_r_e_2_in_axes5_z*six_r_o_3_t;
+            v.six_r_e_1_in_axes5_z*six_r_o_1_in_axes5_x - v.six_r_e_2_in_axes5_z*six_r_o_2_t -
+            v.six_r_e_2_in_axes5_z*six_r_o_3_t;
         const real six_r_dalpha_alpha_5_in_axes5_zy = six_r_o_5_in_axes5_y +
-            six_r_e_1_in_axes5_z*six_r_o_1_in_axes5_y + six_r_e_2_in_axes5_z*six_r_o_2_in_axes5_y
-            + six_r_e_2_in_axes5_z*six_r_o_3_in_axes5_y;
-        const real six_r_dalpha_alpha_5_in_axes5_zz = six_r_e_1_in_axes5_z*six_r_o_1_in_axes5_z +
-            six_r_e_2_in_axes5_z*six_r_o_2_in_axes5_z + six_r_e_2_in_axes5_z*six_r_o_3_in_axes5_z
-            - six_r_o_5_t;
+            v.six_r_e_1_in_axes5_z*six_r_o_1_in_axes5_y +
+            v.six_r_e_2_in_axes5_z*six_r_o_2_in_axes5_y +
+            v.six_r_e_2_in_axes5_z*six_r_o_3_in_axes5_y;
+        const real six_r_dalpha_alpha_5_in_axes5_zz = v.six_r_e_2_in_axes5_z*six_r_o_2_in_axes5_z
+            + v.six_r_e_2_in_axes5_z*six_r_o_3_in_axes5_z - six_r_o_5_t -
+            v.six_r_e_1_in_axes5_z*six_r_o_1_t;
         /* (six_r-d_alpha_5) coefficient of the acceleration in: angular acceleration of link 5 */
-        const real six_r_d_alpha_5_in_axes5_xz = six_r_e_1_in_axes5_x*six_r_w_1_in_axes5_z +
-            six_r_e_2_in_axes5_x*six_r_w_2_in_axes5_z + six_r_e_2_in_axes5_x*six_r_w_3_in_axes5_z
-            + six_r_e_4_in_axes5_x*six_r_w_4_in_axes5_z;
-        const real six_r_d_alpha_5_in_axes5_yz = six_r_e_1_in_axes5_y*six_r_w_1_in_axes5_z +
-            six_r_e_2_in_axes5_y*six_r_w_2_in_axes5_z + six_r_e_2_in_axes5_y*six_r_w_3_in_axes5_z
-            + six_r_e_4_in_axes5_y*six_r_w_4_in_axes5_z;
+        const real six_r_d_alpha_5_in_axes5_xz = v.six_r_e_1_in_axes5_x*six_r_w_1_in_axes5_z +
+            v.six_r_e_2_in_axes5_x*six_r_w_2_in_axes5_z +
+            v.six_r_e_2_in_axes5_x*six_r_w_3_in_axes5_z +
+            v.six_r_e_4_in_axes5_x*six_r_w_4_in_axes5_z;
+        const real six_r_d_alpha_5_in_axes5_yz = v.six_r_e_1_in_axes5_y*six_r_w_1_in_axes5_z +
+            v.six_r_e_2_in_axes5_y*six_r_w_2_in_axes5_z +
+            v.six_r_e_2_in_axes5_y*six_r_w_3_in_axes5_z - v.six_r_J_5_t*six_r_w_4_in_axes5_z;
         const real six_r_d_alpha_5_in_axes5_zy = six_r_w_5_in_axes5_y +
-            six_r_e_1_in_axes5_z*six_r_w_1_in_axes5_y + six_r_e_2_in_axes5_z*six_r_w_2_in_axes5_y
-            - six_r_e_2_in_axes5_z*six_r_w_3_t;
+            v.six_r_e_1_in_axes5_z*six_r_w_1_in_axes5_y +
+            v.six_r_e_2_in_axes5_z*six_r_w_2_in_axes5_y - v.six_r_e_2_in_axes5_z*six_r_w_3_t;
         const real six_r_d_alpha_5_in_axes5_zz = six_r_w_5_in_axes5_z +
-            six_r_e_1_in_axes5_z*six_r_w_1_in_axes5_z + six_r_e_2_in_axes5_z*six_r_w_2_in_axes5_z
-            + six_r_e_2_in_axes5_z*six_r_w_3_in_axes5_z;
+            v.six_r_e_1_in_axes5_z*six_r_w_1_in_axes5_z +
+            v.six_r_e_2_in_axes5_z*six_r_w_2_in_axes5_z +
+            v.six_r_e_2_in_axes5_z*six_r_w_3_in_axes5_z;
         /* (six_r-d_phi_5) coefficient of the acceleration in: inertia force of link 5 from its turning
            about its reference point */
         const real six_r_h_5_in_spec5_y = m->six_r_h_5_in_spec5_y[i];
         const real six_r_h_5_in_spec5_z = m->six_r_h_5_in_spec5_z[i];
         const real six_r_d_phi_5_in_axes5_xx =
-            six_r_h_5_in_spec5_z*(six_r_e_1_in_axes5_y*six_r_w_1_in_axes5_x +
-            six_r_e_2_in_axes5_y*six_r_w_2_in_axes5_x + six_r_e_2_in_axes5_y*six_r_w_3_in_axes5_x
-            + six_r_e_4_in_axes5_y*six_r_w_4_in_axes5_x) -
-            six_r_h_5_in_spec5_y*(six_r_e_1_in_axes5_z*six_r_w_1_in_axes5_x +
-            six_r_e_2_in_axes5_z*six_r_w_2_in_axes5_x + six_r_e_2_in_axes5_z*six_r_w_3_in_axes5_x
-            - six_r_w_5_t_5);
-        /* (six_r-D_3_5) inertia of joint 5 along joint 3 */
-        const real six_r_J_5_in_spec5_zz = m->six_r_J_5_in_spec5_zz[i];
-        const real six_r_D_3_5 = six_r_J_5_in_spec5_xz*six_r_e_2_in_axes5_x +
-            six_r_J_5_in_spec5_yz*six_r_e_2_in_axes5_y +
-            six_r_J_5_in_spec5_zz*six_r_e_2_in_axes5_z;
-        /* (six_r-D_1_5) inertia of joint 5 along joint 1 */
-        const real six_r_D_1_5 = six_r_J_5_in_spec5_xz*six_r_e_1_in_axes5_x +
-            six_r_J_5_in_spec5_yz*six_r_e_1_in_axes5_y +
-            six_r_J_5_in_spec5_zz*six_r_e_1_in_axes5_z;
-        /* (six_r-Jc_4) inertia tensor of the links from 4 outwards about joint 4, that of the last link
-           about the connection point */
-        const real six_r_J_5_in_spec5_xy = m->six_r_J_5_in_spec5_xy[i];
-        const real six_r_Jc_4_t = six_r_J_5_in_spec5_xy*six_r_e_4_in_axes5_x;
-        const real six_r_J_5_in_spec5_xx = m->six_r_J_5_in_spec5_xx[i];
-        const real six_r_Jc_4_t_2 = six_r_J_5_in_spec5_xx*six_r_e_4_in_axes5_y - six_r_Jc_4_t;
-        const real six_r_Jc_4_t_3 = -six_r_J_5_in_spec5_xy*six_r_e_4_in_axes5_y;
-        const real six_r_J_5_in_spec5_yy = m->six_r_J_5_in_spec5_yy[i];
-        const real six_r_Jc_4_t_4 = -six_r_Jc_4_t_3 - six_r_J_5_in_spec5_yy*six_r_e_4_in_axes5_x;
-        const real six_r_J_4_in_spec4_yz = m->six_r_J_4_in_spec4_yz[i];
-        const real six_r_Jc_4_in_axes4_xy = six_r_J_5_in_spec5_xz*six_r_e_4_in_axes5_y -
-            six_r_J_4_in_spec4_yz - six_r_J_5_in_spec5_yz*six_r_e_4_in_axes5_x;
-        const real six_r_J_4_in_spec4_xz = m->six_r_J_4_in_spec4_xz[i];
-        const real six_r_Jc_4_in_axes4_xz = six_r_J_4_in_spec4_xz + six_r_J_5_in_axes4_xz;
-        const real six_r_J_4_in_spec4_yy = m->six_r_J_4_in_spec4_yy[i];
-        const real six_r_Jc_4_in_axes4_yy = six_r_J_4_in_spec4_yy +
-            six_r_Jc_4_t_2*six_r_e_4_in_axes5_y - six_r_Jc_4_t_4*six_r_e_4_in_axes5_x;
-        const real six_r_J_4_in_spec4_xy = m->six_r_J_4_in_spec4_xy[i];
-        const real six_r_Jc_4_in_axes4_yz = six_r_Jc_4_t_2*six_r_e_4_in_axes5_x +
-            six_r_Jc_4_t_4*six_r_e_4_in_axes5_y - six_r_J_4_in_spec4_xy;
-        const real six_r_J_4_in_spec4_xx = m->six_r_J_4_in_spec4_xx[i];
-        const real six_r_Jc_4_in_axes4_zz = six_r_J_4_in_spec4_xx +
-            six_r_e_4_in_axes5_x*(six_r_J_5_in_spec5_xx*six_r_e_4_in_axes5_x - six_r_Jc_4_t_3) +
-            six_r_e_4_in_axes5_y*(six_r_Jc_4_t + six_r_J_5_in_spec5_yy*six_r_e_4_in_axes5_y);
-        const real six_r_Jc_4_in_axes3_xy = six_r_Jc_4_in_axes4_xz*six_r_h_4_t -
-            six_r_Jc_4_in_axes4_yz*six_r_e_2_in_axes5_z;
-        const real six_r_Jc_4_in_axes3_xz = six_r_Jc_4_in_axes4_xz*six_r_e_2_in_axes5_z +
-            six_r_Jc_4_in_axes4_yz*six_r_h_4_t;
-        /* (six_r-P_c_4) force that accelerates joint 4, per unit */
-        const real six_r_P_c_4_in_axes3_y = six_r_h_4_in_spec4_y*six_r_h_4_t -
-            six_r_e_2_in_axes5_z*six_r_h_4_in_spec4_z;
-        /* (six_r-L_c_4_3) moment about joint 3 that accelerates joint 4, per unit */
-        const real six_r_L_c_4_3_t = six_r_h_4_in_axes3_y*six_r_joint4_offset_x;
-        const real six_r_L_c_4_3_t_2 = six_r_P_c_4_in_axes3_y*six_r_joint4_offset_x;
-        const real six_r_L_c_4_3_in_axes3_y = six_r_Jc_4_in_axes3_xy - six_r_L_c_4_3_t;
-        const real six_r_L_c_4_3_in_axes3_z = six_r_Jc_4_in_axes3_xz + six_r_L_c_4_3_t_2;
-        /* (six_r-L_c_4_2) moment about joint 2 that accelerates joint 4, per unit */
-        const real six_r_L_c_4_2_in_axes2_y = six_r_Jc_4_in_axes4_zz*six_r_s_3 +
-            six_r_L_c_4_3_in_axes3_y*six_r_c_3 - six_r_h_4_in_axes3_y*six_r_joint3_offset_x;
-        const real six_r_L_c_4_2_in_axes2_z = six_r_L_c_4_3_in_axes3_z +
-            six_r_P_c_4_in_axes3_y*six_r_c_3*six_r_joint3_offset_x;
-        const real six_r_L_c_4_2_in_axes1_z = six_r_L_c_4_2_in_axes2_y*six_r_c_2 +
-            six_r_s_2*(six_r_Jc_4_in_axes4_zz*six_r_c_3 - six_r_L_c_4_3_in_axes3_y*six_r_s_3);
-        /* (six_r-hc_3) first moment of the links from 3 outwards */
-        const real six_r_h_3_in_spec3_y = m->six_r_h_3_in_spec3_y[i];
-        const real six_r_hc_3_in_axes3_y = six_r_h_3_in_spec3_y + six_r_h_4_in_axes3_y;
-        const real six_r_h_3_in_spec3_z = m->six_r_h_3_in_spec3_z[i];
-        const real six_r_hc_3_in_axes3_z = six_r_h_3_in_spec3_z - six_r_P_c_4_in_axes3_y;
-        const real six_r_hc_3_in_axes3_x = m->six_r_hc_3_in_axes3_x[i];
-        const real six_r_hc_3_in_axes2_x = six_r_c_3*six_r_hc_3_in_axes3_x -
-            six_r_hc_3_in_axes3_y*six_r_s_3;
-        /* (six_r-Jc_3) inertia tensor of the links from 3 outwards about joint 3, that of the last link
-           about the connection point */
-        const real six_r_Jc_3_t = six_r_Jc_4_in_axes4_xy*six_r_e_2_in_axes5_z;
-        const real six_r_Jc_4_in_axes4_xx = m->six_r_Jc_4_in_axes4_xx[i];
-        const real six_r_Jc_3_t_4 = six_r_Jc_4_in_axes4_xx*six_r_h_4_t - six_r_Jc_3_t;
-        const real six_r_Jc_3_t_5 = -six_r_Jc_4_in_axes4_xy*six_r_h_4_t;
-        const real six_r_Jc_3_t_6 = -six_r_Jc_3_t_5 - six_r_Jc_4_in_axes4_yy*six_r_e_2_in_axes5_z;
-        const real six_r_J_3_in_spec3_xx = m->six_r_J_3_in_spec3_xx[i];
-        const real six_r_Jc_3_t_2 = m->six_r_Jc_3_t_2[i];
-        const real six_r_Jc_3_t_3 = m->six_r_Jc_3_t_3[i];
-        const real six_r_Jc_3_in_axes3_xx = six_r_J_3_in_spec3_xx + six_r_Jc_3_t_3 +
-            six_r_Jc_4_in_axes4_zz - 2*six_r_Jc_3_t_2;
-        const real six_r_J_3_in_spec3_xy = m->six_r_J_3_in_spec3_xy[i];
-        const real six_r_Jc_3_in_axes3_xy = six_r_J_3_in_spec3_xy + six_r_Jc_4_in_axes3_xy -
-            six_r_L_c_4_3_t;
-        const real six_r_J_3_in_spec3_xz = m->six_r_J_3_in_spec3_xz[i];
-        const real six_r_Jc_3_in_axes3_xz = six_r_J_3_in_spec3_xz + six_r_Jc_4_in_axes3_xz +
-            six_r_L_c_4_3_t_2;
-        const real six_r_J_3_in_spec3_yy = m->six_r_J_3_in_spec3_yy[i];
-        const real six_r_Jc_3_in_axes3_yy = six_r_J_3_in_spec3_yy + six_r_Jc_3_t_3 +
-            six_r_Jc_3_t_4*six_r_h_4_t - six_r_Jc_3_t_6*six_r_e_2_in_axes5_z;
-        const real six_r_J_3_in_spec3_yz = m->six_r_J_3_in_spec3_yz[i];
-        const real six_r_Jc_3_in_axes3_yz = six_r_J_3_in_spec3_yz +
-            six_r_Jc_3_t_4*six_r_e_2_in_axes5_z + six_r_Jc_3_t_6*six_r_h_4_t;
-        const real six_r_J_3_in_spec3_zz = m->six_r_J_3_in_spec3_zz[i];
-        const real six_r_Jc_3_in_axes3_zz = six_r_J_3_in_spec3_zz + six_r_Jc_3_t_3 +
-            six_r_e_2_in_axes5_z*(six_r_Jc_4_in_axes4_xx*six_r_e_2_in_axes5_z - six_r_Jc_3_t_5) +
-            six_r_h_4_t*(six_r_Jc_3_t + six_r_Jc_4_in_axes4_yy*six_r_h_4_t);
-        const real six_r_Jc_3_in_axes2_xz = six_r_Jc_3_in_axes3_xz*six_r_c_3 -
-            six_r_Jc_3_in_axes3_yz*six_r_s_3;
-        const real six_r_Jc_3_in_axes2_yz = six_r_Jc_3_in_axes3_xz*six_r_s_3 +
-            six_r_Jc_3_in_axes3_yz*six_r_c_3;
-        /* (six_r-P_c_3) force that accelerates joint 3, per unit */
-        const real six_r_P_c_3_in_axes2_x = -six_r_c_3*six_r_hc_3_in_axes3_y -
-            six_r_hc_3_in_axes3_x*six_r_s_3;
-        /* (six_r-L_c_3_2) moment about joint 2 that accelerates joint 3, per unit */
-        const real six_r_L_c_3_2_in_axes2_z = six_r_Jc_3_in_axes3_zz +
-            six_r_hc_3_in_axes2_x*six_r_joint3_offset_x;
-        const real six_r_L_c_3_2_in_axes1_z = six_r_Jc_3_in_axes2_xz*six_r_s_2 +
-            six_r_Jc_3_in_axes2_yz*six_r_c_2;
-        /* (six_r-Jc_2) inertia tensor of the links from 2 outwards about joint 2, that of the last link
-           about the connection point */
-        const real six_r_Jc_2_t_2 = six_r_Jc_3_in_axes3_xy*six_r_s_3;
-        const real six_r_Jc_2_t_3 = six_r_Jc_3_in_axes3_xx*six_r_c_3 - six_r_Jc_2_t_2;
-        const real six_r_Jc_2_t_4 = six_r_Jc_3_in_axes3_xy*six_r_c_3;
-        const real six_r_Jc_2_t_5 = six_r_Jc_2_t_4 - six_r_Jc_3_in_axes3_yy*six_r_s_3;
-        const real six_r_Jc_2_t = m->six_r_Jc_2_t[i];
-        const real six_r_Jc_2_t_6 = six_r_joint3_offset_x*(six_r_Jc_2_t + six_r_hc_3_in_axes2_x);
-        const real six_r_Jc_2_t_7 = 2*six_r_Jc_2_t_6;
-        const real six_r_J_2_in_spec2_xy = m->six_r_J_2_in_spec2_xy[i];
-        const real six_r_Jc_2_in_axes2_xy = six_r_J_2_in_spec2_xy + six_r_Jc_2_t_3*six_r_s_3 +
-            six_r_Jc_2_t_5*six_r_c_3 + six_r_P_c_3_in_axes2_x*six_r_joint3_offset_x;
-        const real six_r_J_2_in_spec2_zz = m->six_r_J_2_in_spec2_zz[i];
-        const real six_r_Jc_2_in_axes2_zz = six_r_J_2_in_spec2_zz + six_r_Jc_2_t_7 +
-            six_r_Jc_3_in_axes3_zz;
-        const real six_r_J_2_in_spec2_xz = m->six_r_J_2_in_spec2_xz[i];
-        const real six_r_J_2_in_spec2_yz = m->six_r_J_2_in_spec2_yz[i];
-        const real six_r_Jc_2_in_axes1_xz = six_r_c_2*(six_r_J_2_in_spec2_yz +
-            six_r_Jc_3_in_axes2_yz) + six_r_s_2*(six_r_J_2_in_spec2_xz + six_r_Jc_3_in_axes2_xz -
-            six_r_hc_3_in_axes3_z*six_r_joint3_offset_x);
-        const real six_r_J_2_in_spec2_xx = m->six_r_J_2_in_spec2_xx[i];
-        const real six_r_J_2_in_spec2_yy = m->six_r_J_2_in_spec2_yy[i];
-        const real six_r_Jc_2_in_axes1_zz = six_r_c_2*(six_r_Jc_2_in_axes2_xy*six_r_s_2 +
-            six_r_c_2*(six_r_J_2_in_spec2_yy + six_r_Jc_2_t_7 + six_r_c_3*(six_r_Jc_2_t_2 +
-            six_r_Jc_3_in_axes3_yy*six_r_c_3) + six_r_s_3*(six_r_Jc_2_t_4 +
-            six_r_Jc_3_in_axes3_xx*six_r_s_3))) + six_r_s_2*(six_r_Jc_2_in_axes2_xy*six_r_c_2 +
-            six_r_s_2*(six_r_J_2_in_spec2_xx + six_r_Jc_2_t_7 + six_r_Jc_2_t_3*six_r_c_3 -
-            2*six_r_Jc_2_t_6 - six_r_Jc_2_t_5*six_r_s_3));
-        /* (six_r-Jc_1) inertia tensor of the links from 1 outwards about joint 1, that of the last link
-           about the connection point */
-        const real six_r_J_1_in_spec1_xx = m->six_r_J_1_in_spec1_xx[i];
-        const real six_r_Jc_1_in_axes1_zz = six_r_J_1_in_spec1_xx + six_r_Jc_2_in_axes1_zz;
+            six_r_h_5_in_spec5_z*(v.six_r_e_1_in_axes5_y*six_r_w_1_in_axes5_x +
+            v.six_r_e_2_in_axes5_y*six_r_w_2_in_axes5_x +
+            v.six_r_e_2_in_axes5_y*six_r_w_3_in_axes5_x - v.six_r_J_5_t*six_r_w_4_in_axes5_x) -
+            six_r_h_5_in_spec5_y*(v.six_r_e_1_in_axes5_z*six_r_w_1_in_axes5_x +
+            v.six_r_e_2_in_axes5_z*six_r_w_2_in_axes5_x +
+            v.six_r_e_2_in_axes5_z*six_r_w_3_in_axes5_x - six_r_w_5_t_5);
         /* (six_r-dalpha_Gamma_5) coefficient of the acceleration in: moment about axis 5 of the distal
            links' inertia and weight */
-        const real six_r_dalpha_Gamma_5_in_axes5_x = six_r_D_1_5*six_r_o_1_in_axes5_x +
-            six_r_J_5_in_spec5_zz*six_r_o_5_in_axes5_x - six_r_D_3_5*six_r_o_2_t -
-            six_r_D_3_5*six_r_o_3_t - six_r_J_5_in_axes4_xz*six_r_o_4_t;
-        const real six_r_dalpha_Gamma_5_in_axes5_y = six_r_D_1_5*six_r_o_1_in_axes5_y +
-            six_r_D_3_5*six_r_o_2_in_axes5_y + six_r_D_3_5*six_r_o_3_in_axes5_y +
-            six_r_J_5_in_axes4_xz*six_r_o_4_in_axes5_y +
+        const real six_r_J_5_in_spec5_zz = m->six_r_J_5_in_spec5_zz[i];
+        const real six_r_dalpha_Gamma_5_in_axes5_x = v.six_r_D_1_5*six_r_o_1_in_axes5_x +
+            six_r_J_5_in_spec5_zz*six_r_o_5_in_axes5_x - v.six_r_D_3_5*six_r_o_2_t -
+            v.six_r_D_3_5*six_r_o_3_t - v.six_r_J_5_in_axes4_yz*six_r_o_4_t;
+        const real six_r_dalpha_Gamma_5_in_axes5_y = v.six_r_D_1_5*six_r_o_1_in_axes5_y +
+            v.six_r_D_3_5*six_r_o_2_in_axes5_y + v.six_r_D_3_5*six_r_o_3_in_axes5_y +
+            v.six_r_J_5_in_axes4_yz*six_r_o_4_in_axes5_y +
             six_r_J_5_in_spec5_zz*six_r_o_5_in_axes5_y;
-        const real six_r_dalpha_Gamma_5_in_axes5_z = six_r_D_1_5*six_r_o_1_in_axes5_z +
-            six_r_D_3_5*six_r_o_2_in_axes5_z + six_r_D_3_5*six_r_o_3_in_axes5_z +
-            six_r_J_5_in_axes4_xz*six_r_o_4_in_axes5_z - six_r_J_5_in_spec5_zz*six_r_o_5_t;
+        const real six_r_dalpha_Gamma_5_in_axes5_z = v.six_r_D_3_5*six_r_o_2_in_axes5_z +
+            v.six_r_D_3_5*six_r_o_3_in_axes5_z + v.six_r_J_5_in_axes4_yz*six_r_o_4_in_axes5_z -
+            v.six_r_D_1_5*six_r_o_1_t - six_r_J_5_in_spec5_zz*six_r_o_5_t;
         /* (six_r-d_Gamma_5) coefficient of the acceleration in: moment about axis 5 of the distal links'
            inertia and weight */
         const real six_r_d_Gamma_5_t = inv_six_r_w_1_t_12*six_r_J_5_in_spec5_zz;
-        const real six_r_d_Gamma_5_t_2 = inv_six_r_w_1_t_28*(six_r_J_5_in_axes4_xz -
+        const real six_r_d_Gamma_5_t_2 = inv_six_r_w_1_t_28*(v.six_r_J_5_in_axes4_yz -
             six_r_d_Gamma_5_t*six_r_w_1_t_15);
-        const real six_r_d_Gamma_5_t_3 = inv_six_r_w_1_t_49*(six_r_D_1_5 +
+        const real six_r_d_Gamma_5_t_3 = inv_six_r_w_1_t_49*(v.six_r_D_1_5 +
             six_r_d_Gamma_5_t_2*six_r_w_1_t_33 - six_r_d_Gamma_5_t*six_r_w_1_t_18);
-        const real six_r_d_Gamma_5_t_4 = inv_six_r_w_1_t_67*(six_r_D_3_5 +
+        const real six_r_d_Gamma_5_t_4 = inv_six_r_w_1_t_67*(v.six_r_D_3_5 +
             six_r_d_Gamma_5_t_2*six_r_w_1_t_39 - six_r_d_Gamma_5_t*six_r_w_1_t_22 -
             six_r_d_Gamma_5_t_3*six_r_w_1_t_55);
-        const real six_r_d_Gamma_5_t_5 = inv_six_r_w_1_t_79*(six_r_D_3_5 +
+        const real six_r_d_Gamma_5_t_5 = inv_six_r_w_1_t_79*(v.six_r_D_3_5 +
             six_r_d_Gamma_5_t*six_r_w_1_t_25 + six_r_d_Gamma_5_t_2*six_r_w_1_t_44 -
             six_r_d_Gamma_5_t_3*six_r_w_1_t_61 - six_r_d_Gamma_5_t_4*six_r_w_1_t_73);
         const real six_r_d_Gamma_5_in_axes5_z = six_r_d_Gamma_5_t_2*six_r_w_1_t_30 +
@@ -5116,165 +6129,161 @@ INLINE void M_legs_six_r(const prepared *m, size_t w, size_t leg, size_t legs, c
             six_r_d_Gamma_5_t_5*six_r_w_1_t_81;
         /* (six_r-dalpha_Gamma_4) coefficient of the acceleration in: moment about axis 4 of the distal
            links' inertia and weight */
-        const real six_r_dalpha_Gamma_4_in_axes5_x = six_r_J_5_in_axes4_xz*six_r_o_5_in_axes5_x +
-            six_r_L_c_4_2_in_axes1_z*six_r_o_1_in_axes5_x - six_r_Jc_4_in_axes4_zz*six_r_o_4_t -
-            six_r_L_c_4_2_in_axes2_z*six_r_o_2_t - six_r_L_c_4_3_in_axes3_z*six_r_o_3_t;
-        const real six_r_dalpha_Gamma_4_in_axes5_y = six_r_J_5_in_axes4_xz*six_r_o_5_in_axes5_y +
-            six_r_Jc_4_in_axes4_zz*six_r_o_4_in_axes5_y +
-            six_r_L_c_4_2_in_axes1_z*six_r_o_1_in_axes5_y +
-            six_r_L_c_4_2_in_axes2_z*six_r_o_2_in_axes5_y +
-            six_r_L_c_4_3_in_axes3_z*six_r_o_3_in_axes5_y;
-        const real six_r_dalpha_Gamma_4_in_axes5_z = six_r_Jc_4_in_axes4_zz*six_r_o_4_in_axes5_z +
-            six_r_L_c_4_2_in_axes1_z*six_r_o_1_in_axes5_z +
-            six_r_L_c_4_2_in_axes2_z*six_r_o_2_in_axes5_z +
-            six_r_L_c_4_3_in_axes3_z*six_r_o_3_in_axes5_z - six_r_J_5_in_axes4_xz*six_r_o_5_t;
+        const real six_r_dalpha_Gamma_4_in_axes5_x = v.six_r_J_5_in_axes4_yz*six_r_o_5_in_axes5_x
+            + v.six_r_L_c_4_2_in_axes1_z*six_r_o_1_in_axes5_x -
+            v.six_r_Jc_4_in_axes4_zz*six_r_o_4_t - v.six_r_L_c_4_2_in_axes2_z*six_r_o_2_t -
+            v.six_r_L_c_4_3_in_axes3_z*six_r_o_3_t;
+        const real six_r_dalpha_Gamma_4_in_axes5_y = v.six_r_J_5_in_axes4_yz*six_r_o_5_in_axes5_y
+            + v.six_r_Jc_4_in_axes4_zz*six_r_o_4_in_axes5_y +
+            v.six_r_L_c_4_2_in_axes1_z*six_r_o_1_in_axes5_y +
+            v.six_r_L_c_4_2_in_axes2_z*six_r_o_2_in_axes5_y +
+            v.six_r_L_c_4_3_in_axes3_z*six_r_o_3_in_axes5_y;
+        const real six_r_dalpha_Gamma_4_in_axes5_z = v.six_r_Jc_4_in_axes4_zz*six_r_o_4_in_axes5_z
+            + v.six_r_L_c_4_2_in_axes2_z*six_r_o_2_in_axes5_z +
+            v.six_r_L_c_4_3_in_axes3_z*six_r_o_3_in_axes5_z - v.six_r_J_5_in_axes4_yz*six_r_o_5_t
+            - v.six_r_L_c_4_2_in_axes1_z*six_r_o_1_t;
         /* (six_r-d_Gamma_4) coefficient of the acceleration in: moment about axis 4 of the distal links'
            inertia and weight */
-        const real six_r_d_Gamma_4_t = inv_six_r_w_1_t_12*six_r_J_5_in_axes4_xz;
-        const real six_r_d_Gamma_4_t_2 = inv_six_r_w_1_t_28*(six_r_Jc_4_in_axes4_zz -
+        const real six_r_d_Gamma_4_t = inv_six_r_w_1_t_12*v.six_r_J_5_in_axes4_yz;
+        const real six_r_d_Gamma_4_t_2 = inv_six_r_w_1_t_28*(v.six_r_Jc_4_in_axes4_zz -
             six_r_d_Gamma_4_t*six_r_w_1_t_15);
-        const real six_r_d_Gamma_4_t_3 = inv_six_r_w_1_t_49*(six_r_L_c_4_2_in_axes1_z +
+        const real six_r_d_Gamma_4_t_3 = inv_six_r_w_1_t_49*(v.six_r_L_c_4_2_in_axes1_z +
             six_r_d_Gamma_4_t_2*six_r_w_1_t_33 - six_r_d_Gamma_4_t*six_r_w_1_t_18);
-        const real six_r_d_Gamma_4_t_4 = inv_six_r_w_1_t_67*(six_r_L_c_4_2_in_axes2_z +
+        const real six_r_d_Gamma_4_t_4 = inv_six_r_w_1_t_67*(v.six_r_L_c_4_2_in_axes2_z +
             six_r_d_Gamma_4_t_2*six_r_w_1_t_39 - six_r_d_Gamma_4_t*six_r_w_1_t_22 -
             six_r_d_Gamma_4_t_3*six_r_w_1_t_55);
-        const real six_r_d_Gamma_4_t_5 = inv_six_r_w_1_t_79*(six_r_L_c_4_3_in_axes3_z +
+        const real six_r_d_Gamma_4_t_5 = inv_six_r_w_1_t_79*(v.six_r_L_c_4_3_in_axes3_z +
             six_r_d_Gamma_4_t*six_r_w_1_t_25 + six_r_d_Gamma_4_t_2*six_r_w_1_t_44 -
             six_r_d_Gamma_4_t_3*six_r_w_1_t_61 - six_r_d_Gamma_4_t_4*six_r_w_1_t_73);
         const real six_r_d_Gamma_4_in_axes5_x = six_r_d_Gamma_4_t_3*six_r_w_1_t_50 +
-            six_r_d_Gamma_4_t_4*six_r_w_1_t_68 + six_r_d_Gamma_4_t_5*six_r_w_1_t_80 +
-            six_r_e_4_in_axes5_y*six_r_h_5_in_spec5_z;
+            six_r_d_Gamma_4_t_4*six_r_w_1_t_68 + six_r_d_Gamma_4_t_5*six_r_w_1_t_80 -
+            v.six_r_J_5_t*six_r_h_5_in_spec5_z;
         const real six_r_d_Gamma_4_in_axes5_y = six_r_d_Gamma_4_t*six_r_w_1_t_13 -
             six_r_d_Gamma_4_t_2*six_r_w_1_t_29 - six_r_d_Gamma_4_t_3*six_r_w_1_t_51 -
             six_r_d_Gamma_4_t_4*six_r_w_1_t_69 - six_r_d_Gamma_4_t_5*six_r_w_1_t_81 -
-            six_r_e_4_in_axes5_x*six_r_h_5_in_spec5_z;
-        const real six_r_d_Gamma_4_in_axes5_z = six_r_d_Gamma_4_t_2*six_r_w_1_t_30 +
-            six_r_d_Gamma_4_t_3*six_r_w_1_t_52 + six_r_d_Gamma_4_t_4*six_r_w_1_t_70 +
-            six_r_d_Gamma_4_t_5*six_r_w_1_t_82 + six_r_e_4_in_axes5_x*six_r_h_5_in_spec5_y -
-            six_r_e_4_in_axes5_y*six_r_h_5_in_spec5_x;
+            v.six_r_e_4_in_axes5_x*six_r_h_5_in_spec5_z;
+        const real six_r_d_Gamma_4_in_axes5_z = v.six_r_J_5_t*six_r_h_5_in_spec5_x +
+            six_r_d_Gamma_4_t_2*six_r_w_1_t_30 + six_r_d_Gamma_4_t_3*six_r_w_1_t_52 +
+            six_r_d_Gamma_4_t_4*six_r_w_1_t_70 + six_r_d_Gamma_4_t_5*six_r_w_1_t_82 +
+            v.six_r_e_4_in_axes5_x*six_r_h_5_in_spec5_y;
         /* (six_r-dalpha_Gamma_3) coefficient of the acceleration in: moment about axis 3 of the distal
            links' inertia and weight */
-        const real six_r_dalpha_Gamma_3_t = six_r_D_3_5*six_r_o_5_in_axes5_x;
-        const real six_r_dalpha_Gamma_3_t_2 = six_r_D_3_5*six_r_o_5_in_axes5_y;
-        const real six_r_dalpha_Gamma_3_t_3 = six_r_D_3_5*six_r_o_5_t;
+        const real six_r_dalpha_Gamma_3_t = v.six_r_D_3_5*six_r_o_5_in_axes5_x;
+        const real six_r_dalpha_Gamma_3_t_2 = v.six_r_D_3_5*six_r_o_5_in_axes5_y;
+        const real six_r_dalpha_Gamma_3_t_3 = v.six_r_D_3_5*six_r_o_5_t;
         const real six_r_dalpha_Gamma_3_in_axes5_x = six_r_dalpha_Gamma_3_t +
-            six_r_L_c_3_2_in_axes1_z*six_r_o_1_in_axes5_x - six_r_Jc_3_in_axes3_zz*six_r_o_3_t -
-            six_r_L_c_3_2_in_axes2_z*six_r_o_2_t - six_r_L_c_4_3_in_axes3_z*six_r_o_4_t;
+            v.six_r_L_c_3_2_in_axes1_z*six_r_o_1_in_axes5_x - v.six_r_Jc_3_in_axes3_zz*six_r_o_3_t
+            - v.six_r_L_c_3_2_in_axes2_z*six_r_o_2_t - v.six_r_L_c_4_3_in_axes3_z*six_r_o_4_t;
         const real six_r_dalpha_Gamma_3_in_axes5_y = six_r_dalpha_Gamma_3_t_2 +
-            six_r_Jc_3_in_axes3_zz*six_r_o_3_in_axes5_y +
-            six_r_L_c_3_2_in_axes1_z*six_r_o_1_in_axes5_y +
-            six_r_L_c_3_2_in_axes2_z*six_r_o_2_in_axes5_y +
-            six_r_L_c_4_3_in_axes3_z*six_r_o_4_in_axes5_y;
-        const real six_r_dalpha_Gamma_3_in_axes5_z = six_r_Jc_3_in_axes3_zz*six_r_o_3_in_axes5_z +
-            six_r_L_c_3_2_in_axes1_z*six_r_o_1_in_axes5_z +
-            six_r_L_c_3_2_in_axes2_z*six_r_o_2_in_axes5_z +
-            six_r_L_c_4_3_in_axes3_z*six_r_o_4_in_axes5_z - six_r_dalpha_Gamma_3_t_3;
+            v.six_r_Jc_3_in_axes3_zz*six_r_o_3_in_axes5_y +
+            v.six_r_L_c_3_2_in_axes1_z*six_r_o_1_in_axes5_y +
+            v.six_r_L_c_3_2_in_axes2_z*six_r_o_2_in_axes5_y +
+            v.six_r_L_c_4_3_in_axes3_z*six_r_o_4_in_axes5_y;
+        const real six_r_dalpha_Gamma_3_in_axes5_z = v.six_r_Jc_3_in_axes3_zz*six_r_o_3_in_axes5_z
+            + v.six_r_L_c_3_2_in_axes2_z*six_r_o_2_in_axes5_z +
+            v.six_r_L_c_4_3_in_axes3_z*six_r_o_4_in_axes5_z - six_r_dalpha_Gamma_3_t_3 -
+            v.six_r_L_c_3_2_in_axes1_z*six_r_o_1_t;
         /* (six_r-d_Gamma_3) coefficient of the acceleration in: moment about axis 3 of the distal links'
            inertia and weight */
-        const real six_r_d_Gamma_3_t = six_r_e_2_in_axes5_y*six_r_h_5_in_spec5_z -
-            six_r_e_2_in_axes5_z*six_r_h_5_in_spec5_y;
-        const real six_r_d_Gamma_3_t_2 = six_r_e_2_in_axes5_x*six_r_h_5_in_spec5_z -
-            six_r_e_2_in_axes5_z*six_r_h_5_in_spec5_x;
-        const real six_r_d_Gamma_3_t_3 = six_r_e_2_in_axes5_x*six_r_h_5_in_spec5_y -
-            six_r_e_2_in_axes5_y*six_r_h_5_in_spec5_x;
-        const real six_r_d_Gamma_3_t_4 = inv_six_r_w_1_t_12*six_r_D_3_5;
+        const real six_r_d_Gamma_3_t_4 = inv_six_r_w_1_t_12*v.six_r_D_3_5;
         const real six_r_d_Gamma_3_t_5 = six_r_d_Gamma_3_t_4*six_r_w_1_t_15;
-        const real six_r_d_Gamma_3_t_6 = inv_six_r_w_1_t_28*(six_r_L_c_4_3_in_axes3_z -
+        const real six_r_d_Gamma_3_t_6 = inv_six_r_w_1_t_28*(v.six_r_L_c_4_3_in_axes3_z -
             six_r_d_Gamma_3_t_5);
         const real six_r_d_Gamma_3_t_7 = six_r_d_Gamma_3_t_4*six_r_w_1_t_18;
-        const real six_r_d_Gamma_3_t_8 = inv_six_r_w_1_t_49*(six_r_L_c_3_2_in_axes1_z +
+        const real six_r_d_Gamma_3_t_8 = inv_six_r_w_1_t_49*(v.six_r_L_c_3_2_in_axes1_z +
             six_r_d_Gamma_3_t_6*six_r_w_1_t_33 - six_r_d_Gamma_3_t_7);
         const real six_r_d_Gamma_3_t_9 = six_r_d_Gamma_3_t_4*six_r_w_1_t_22;
-        const real six_r_d_Gamma_3_t_10 = inv_six_r_w_1_t_67*(six_r_L_c_3_2_in_axes2_z +
+        const real six_r_d_Gamma_3_t_10 = inv_six_r_w_1_t_67*(v.six_r_L_c_3_2_in_axes2_z +
             six_r_d_Gamma_3_t_6*six_r_w_1_t_39 - six_r_d_Gamma_3_t_9 -
             six_r_d_Gamma_3_t_8*six_r_w_1_t_55);
         const real six_r_d_Gamma_3_t_11 = six_r_d_Gamma_3_t_4*six_r_w_1_t_25;
-        const real six_r_d_Gamma_3_t_12 = inv_six_r_w_1_t_79*(six_r_Jc_3_in_axes3_zz +
+        const real six_r_d_Gamma_3_t_12 = inv_six_r_w_1_t_79*(v.six_r_Jc_3_in_axes3_zz +
             six_r_d_Gamma_3_t_11 + six_r_d_Gamma_3_t_6*six_r_w_1_t_44 -
             six_r_d_Gamma_3_t_10*six_r_w_1_t_73 - six_r_d_Gamma_3_t_8*six_r_w_1_t_61);
         const real six_r_d_Gamma_3_t_13 = six_r_d_Gamma_3_t_4*six_r_w_1_t_13;
-        const real six_r_d_Gamma_3_in_axes5_x = six_r_d_Gamma_3_t +
+        const real six_r_d_Gamma_3_in_axes5_x = v.six_r_d_Gamma_3_t +
             six_r_d_Gamma_3_t_10*six_r_w_1_t_68 + six_r_d_Gamma_3_t_12*six_r_w_1_t_80 +
             six_r_d_Gamma_3_t_8*six_r_w_1_t_50;
-        const real six_r_d_Gamma_3_in_axes5_y = six_r_d_Gamma_3_t_13 - six_r_d_Gamma_3_t_2 -
+        const real six_r_d_Gamma_3_in_axes5_y = six_r_d_Gamma_3_t_13 - v.six_r_d_Gamma_3_t_2 -
             six_r_d_Gamma_3_t_10*six_r_w_1_t_69 - six_r_d_Gamma_3_t_12*six_r_w_1_t_81 -
             six_r_d_Gamma_3_t_6*six_r_w_1_t_29 - six_r_d_Gamma_3_t_8*six_r_w_1_t_51;
-        const real six_r_d_Gamma_3_in_axes5_z = six_r_d_Gamma_3_t_3 +
+        const real six_r_d_Gamma_3_in_axes5_z = v.six_r_d_Gamma_3_t_3 +
             six_r_d_Gamma_3_t_10*six_r_w_1_t_70 + six_r_d_Gamma_3_t_12*six_r_w_1_t_82 +
             six_r_d_Gamma_3_t_6*six_r_w_1_t_30 + six_r_d_Gamma_3_t_8*six_r_w_1_t_52;
         /* (six_r-dalpha_Gamma_2) coefficient of the acceleration in: moment about axis 2 of the distal
            links' inertia and weight */
         const real six_r_dalpha_Gamma_2_in_axes5_x = six_r_dalpha_Gamma_3_t +
-            six_r_Jc_2_in_axes1_xz*six_r_o_1_in_axes5_x - six_r_Jc_2_in_axes2_zz*six_r_o_2_t -
-            six_r_L_c_3_2_in_axes2_z*six_r_o_3_t - six_r_L_c_4_2_in_axes2_z*six_r_o_4_t;
+            v.six_r_Jc_2_in_axes1_yz*six_r_o_1_in_axes5_x - v.six_r_Jc_2_in_axes2_zz*six_r_o_2_t -
+            v.six_r_L_c_3_2_in_axes2_z*six_r_o_3_t - v.six_r_L_c_4_2_in_axes2_z*six_r_o_4_t;
         const real six_r_dalpha_Gamma_2_in_axes5_y = six_r_dalpha_Gamma_3_t_2 +
-            six_r_Jc_2_in_axes1_xz*six_r_o_1_in_axes5_y +
-            six_r_Jc_2_in_axes2_zz*six_r_o_2_in_axes5_y +
-            six_r_L_c_3_2_in_axes2_z*six_r_o_3_in_axes5_y +
-            six_r_L_c_4_2_in_axes2_z*six_r_o_4_in_axes5_y;
-        const real six_r_dalpha_Gamma_2_in_axes5_z = six_r_Jc_2_in_axes1_xz*six_r_o_1_in_axes5_z +
-            six_r_Jc_2_in_axes2_zz*six_r_o_2_in_axes5_z +
-            six_r_L_c_3_2_in_axes2_z*six_r_o_3_in_axes5_z +
-            six_r_L_c_4_2_in_axes2_z*six_r_o_4_in_axes5_z - six_r_dalpha_Gamma_3_t_3;
+            v.six_r_Jc_2_in_axes1_yz*six_r_o_1_in_axes5_y +
+            v.six_r_Jc_2_in_axes2_zz*six_r_o_2_in_axes5_y +
+            v.six_r_L_c_3_2_in_axes2_z*six_r_o_3_in_axes5_y +
+            v.six_r_L_c_4_2_in_axes2_z*six_r_o_4_in_axes5_y;
+        const real six_r_dalpha_Gamma_2_in_axes5_z = v.six_r_Jc_2_in_axes2_zz*six_r_o_2_in_axes5_z
+            + v.six_r_L_c_3_2_in_axes2_z*six_r_o_3_in_axes5_z +
+            v.six_r_L_c_4_2_in_axes2_z*six_r_o_4_in_axes5_z - six_r_dalpha_Gamma_3_t_3 -
+            v.six_r_Jc_2_in_axes1_yz*six_r_o_1_t;
         /* (six_r-d_Gamma_2) coefficient of the acceleration in: moment about axis 2 of the distal links'
            inertia and weight */
-        const real six_r_d_Gamma_2_t = inv_six_r_w_1_t_28*(six_r_L_c_4_2_in_axes2_z -
+        const real six_r_d_Gamma_2_t = inv_six_r_w_1_t_28*(v.six_r_L_c_4_2_in_axes2_z -
             six_r_d_Gamma_3_t_5);
-        const real six_r_d_Gamma_2_t_2 = inv_six_r_w_1_t_49*(six_r_Jc_2_in_axes1_xz +
+        const real six_r_d_Gamma_2_t_2 = inv_six_r_w_1_t_49*(v.six_r_Jc_2_in_axes1_yz +
             six_r_d_Gamma_2_t*six_r_w_1_t_33 - six_r_d_Gamma_3_t_7);
-        const real six_r_d_Gamma_2_t_3 = inv_six_r_w_1_t_67*(six_r_Jc_2_in_axes2_zz +
+        const real six_r_d_Gamma_2_t_3 = inv_six_r_w_1_t_67*(v.six_r_Jc_2_in_axes2_zz +
             six_r_d_Gamma_2_t*six_r_w_1_t_39 - six_r_d_Gamma_3_t_9 -
             six_r_d_Gamma_2_t_2*six_r_w_1_t_55);
-        const real six_r_d_Gamma_2_t_4 = inv_six_r_w_1_t_79*(six_r_L_c_3_2_in_axes2_z +
+        const real six_r_d_Gamma_2_t_4 = inv_six_r_w_1_t_79*(v.six_r_L_c_3_2_in_axes2_z +
             six_r_d_Gamma_3_t_11 + six_r_d_Gamma_2_t*six_r_w_1_t_44 -
             six_r_d_Gamma_2_t_2*six_r_w_1_t_61 - six_r_d_Gamma_2_t_3*six_r_w_1_t_73);
-        const real six_r_d_Gamma_2_in_axes5_x = six_r_d_Gamma_3_t +
+        const real six_r_d_Gamma_2_in_axes5_x = v.six_r_d_Gamma_3_t +
             six_r_d_Gamma_2_t_2*six_r_w_1_t_50 + six_r_d_Gamma_2_t_3*six_r_w_1_t_68 +
             six_r_d_Gamma_2_t_4*six_r_w_1_t_80;
-        const real six_r_d_Gamma_2_in_axes5_y = six_r_d_Gamma_3_t_13 - six_r_d_Gamma_3_t_2 -
+        const real six_r_d_Gamma_2_in_axes5_y = six_r_d_Gamma_3_t_13 - v.six_r_d_Gamma_3_t_2 -
             six_r_d_Gamma_2_t*six_r_w_1_t_29 - six_r_d_Gamma_2_t_2*six_r_w_1_t_51 -
             six_r_d_Gamma_2_t_3*six_r_w_1_t_69 - six_r_d_Gamma_2_t_4*six_r_w_1_t_81;
-        const real six_r_d_Gamma_2_in_axes5_z = six_r_d_Gamma_3_t_3 +
+        const real six_r_d_Gamma_2_in_axes5_z = v.six_r_d_Gamma_3_t_3 +
             six_r_d_Gamma_2_t*six_r_w_1_t_30 + six_r_d_Gamma_2_t_2*six_r_w_1_t_52 +
             six_r_d_Gamma_2_t_3*six_r_w_1_t_70 + six_r_d_Gamma_2_t_4*six_r_w_1_t_82;
         /* (six_r-dalpha_Gamma_1) coefficient of the acceleration in: moment about axis 1 of the distal
            links' inertia and weight */
-        const real six_r_dalpha_Gamma_1_in_axes5_x = six_r_D_1_5*six_r_o_5_in_axes5_x +
-            six_r_Jc_1_in_axes1_zz*six_r_o_1_in_axes5_x - six_r_Jc_2_in_axes1_xz*six_r_o_2_t -
-            six_r_L_c_3_2_in_axes1_z*six_r_o_3_t - six_r_L_c_4_2_in_axes1_z*six_r_o_4_t;
-        const real six_r_dalpha_Gamma_1_in_axes5_y = six_r_D_1_5*six_r_o_5_in_axes5_y +
-            six_r_Jc_1_in_axes1_zz*six_r_o_1_in_axes5_y +
-            six_r_Jc_2_in_axes1_xz*six_r_o_2_in_axes5_y +
-            six_r_L_c_3_2_in_axes1_z*six_r_o_3_in_axes5_y +
-            six_r_L_c_4_2_in_axes1_z*six_r_o_4_in_axes5_y;
-        const real six_r_dalpha_Gamma_1_in_axes5_z = six_r_Jc_1_in_axes1_zz*six_r_o_1_in_axes5_z +
-            six_r_Jc_2_in_axes1_xz*six_r_o_2_in_axes5_z +
-            six_r_L_c_3_2_in_axes1_z*six_r_o_3_in_axes5_z +
-            six_r_L_c_4_2_in_axes1_z*six_r_o_4_in_axes5_z - six_r_D_1_5*six_r_o_5_t;
+        const real six_r_dalpha_Gamma_1_in_axes5_x = v.six_r_D_1_5*six_r_o_5_in_axes5_x +
+            v.six_r_Jc_1_in_axes1_zz*six_r_o_1_in_axes5_x - v.six_r_Jc_2_in_axes1_yz*six_r_o_2_t -
+            v.six_r_L_c_3_2_in_axes1_z*six_r_o_3_t - v.six_r_L_c_4_2_in_axes1_z*six_r_o_4_t;
+        const real six_r_dalpha_Gamma_1_in_axes5_y = v.six_r_D_1_5*six_r_o_5_in_axes5_y +
+            v.six_r_Jc_1_in_axes1_zz*six_r_o_1_in_axes5_y +
+            v.six_r_Jc_2_in_axes1_yz*six_r_o_2_in_axes5_y +
+            v.six_r_L_c_3_2_in_axes1_z*six_r_o_3_in_axes5_y +
+            v.six_r_L_c_4_2_in_axes1_z*six_r_o_4_in_axes5_y;
+        const real six_r_dalpha_Gamma_1_in_axes5_z = v.six_r_Jc_2_in_axes1_yz*six_r_o_2_in_axes5_z
+            + v.six_r_L_c_3_2_in_axes1_z*six_r_o_3_in_axes5_z +
+            v.six_r_L_c_4_2_in_axes1_z*six_r_o_4_in_axes5_z - v.six_r_D_1_5*six_r_o_5_t -
+            v.six_r_Jc_1_in_axes1_zz*six_r_o_1_t;
         /* (six_r-d_Gamma_1) coefficient of the acceleration in: moment about axis 1 of the distal links'
            inertia and weight */
-        const real six_r_d_Gamma_1_t = inv_six_r_w_1_t_12*six_r_D_1_5;
-        const real six_r_d_Gamma_1_t_2 = inv_six_r_w_1_t_28*(six_r_L_c_4_2_in_axes1_z -
+        const real six_r_d_Gamma_1_t = inv_six_r_w_1_t_12*v.six_r_D_1_5;
+        const real six_r_d_Gamma_1_t_2 = inv_six_r_w_1_t_28*(v.six_r_L_c_4_2_in_axes1_z -
             six_r_d_Gamma_1_t*six_r_w_1_t_15);
-        const real six_r_d_Gamma_1_t_3 = inv_six_r_w_1_t_49*(six_r_Jc_1_in_axes1_zz +
+        const real six_r_d_Gamma_1_t_3 = inv_six_r_w_1_t_49*(v.six_r_Jc_1_in_axes1_zz +
             six_r_d_Gamma_1_t_2*six_r_w_1_t_33 - six_r_d_Gamma_1_t*six_r_w_1_t_18);
-        const real six_r_d_Gamma_1_t_4 = inv_six_r_w_1_t_67*(six_r_Jc_2_in_axes1_xz +
+        const real six_r_d_Gamma_1_t_4 = inv_six_r_w_1_t_67*(v.six_r_Jc_2_in_axes1_yz +
             six_r_d_Gamma_1_t_2*six_r_w_1_t_39 - six_r_d_Gamma_1_t*six_r_w_1_t_22 -
             six_r_d_Gamma_1_t_3*six_r_w_1_t_55);
-        const real six_r_d_Gamma_1_t_5 = inv_six_r_w_1_t_79*(six_r_L_c_3_2_in_axes1_z +
+        const real six_r_d_Gamma_1_t_5 = inv_six_r_w_1_t_79*(v.six_r_L_c_3_2_in_axes1_z +
             six_r_d_Gamma_1_t*six_r_w_1_t_25 + six_r_d_Gamma_1_t_2*six_r_w_1_t_44 -
             six_r_d_Gamma_1_t_3*six_r_w_1_t_61 - six_r_d_Gamma_1_t_4*six_r_w_1_t_73);
         const real six_r_d_Gamma_1_in_axes5_x = six_r_d_Gamma_1_t_3*six_r_w_1_t_50 +
             six_r_d_Gamma_1_t_4*six_r_w_1_t_68 + six_r_d_Gamma_1_t_5*six_r_w_1_t_80 +
-            six_r_e_1_in_axes5_y*six_r_h_5_in_spec5_z - six_r_e_1_in_axes5_z*six_r_h_5_in_spec5_y;
+            v.six_r_e_1_in_axes5_y*six_r_h_5_in_spec5_z -
+            v.six_r_e_1_in_axes5_z*six_r_h_5_in_spec5_y;
         const real six_r_d_Gamma_1_in_axes5_y = six_r_d_Gamma_1_t*six_r_w_1_t_13 +
-            six_r_e_1_in_axes5_z*six_r_h_5_in_spec5_x - six_r_d_Gamma_1_t_2*six_r_w_1_t_29 -
+            v.six_r_e_1_in_axes5_z*six_r_h_5_in_spec5_x - six_r_d_Gamma_1_t_2*six_r_w_1_t_29 -
             six_r_d_Gamma_1_t_3*six_r_w_1_t_51 - six_r_d_Gamma_1_t_4*six_r_w_1_t_69 -
-            six_r_d_Gamma_1_t_5*six_r_w_1_t_81 - six_r_e_1_in_axes5_x*six_r_h_5_in_spec5_z;
+            six_r_d_Gamma_1_t_5*six_r_w_1_t_81 - v.six_r_e_1_in_axes5_x*six_r_h_5_in_spec5_z;
         const real six_r_d_Gamma_1_in_axes5_z = six_r_d_Gamma_1_t_2*six_r_w_1_t_30 +
             six_r_d_Gamma_1_t_3*six_r_w_1_t_52 + six_r_d_Gamma_1_t_4*six_r_w_1_t_70 +
-            six_r_d_Gamma_1_t_5*six_r_w_1_t_82 + six_r_e_1_in_axes5_x*six_r_h_5_in_spec5_y -
-            six_r_e_1_in_axes5_y*six_r_h_5_in_spec5_x;
+            six_r_d_Gamma_1_t_5*six_r_w_1_t_82 + v.six_r_e_1_in_axes5_x*six_r_h_5_in_spec5_y -
+            v.six_r_e_1_in_axes5_y*six_r_h_5_in_spec5_x;
         /* (six_r-dalpha_G_m1) coefficient of the acceleration in: moment along moment direction 1 that
            balances the leg's inertia and weight along all degrees of freedom */
         const real six_r_dalpha_G_m1_in_axes5_x = six_r_dalpha_Gamma_2_in_axes5_x*six_r_m1_w_2 +
@@ -5323,20 +6332,20 @@ INLINE void M_legs_six_r(const prepared *m, size_t w, size_t leg, size_t legs, c
             axis_z_six_r_axes5_z*six_r_d_G_m1_in_axes5_z;
         /* (six_r-dalpha_G_m2) coefficient of the acceleration in: moment along moment direction 2 that
            balances the leg's inertia and weight along all degrees of freedom */
-        const real six_r_dalpha_G_m2_in_axes5_x = six_r_dalpha_Gamma_1_in_axes5_x*six_r_m2_w_1 +
-            six_r_dalpha_Gamma_2_in_axes5_x*six_r_m2_w_2 +
+        const real six_r_dalpha_G_m2_in_axes5_x = six_r_dalpha_Gamma_2_in_axes5_x*six_r_m2_w_2 +
             six_r_dalpha_Gamma_3_in_axes5_x*six_r_m2_w_3 +
             six_r_dalpha_Gamma_4_in_axes5_x*six_r_m2_w_4 -
+            six_r_dalpha_Gamma_1_in_axes5_x*six_r_m2_w_1_t_2 -
             six_r_dalpha_Gamma_5_in_axes5_x*six_r_m2_w_5_t;
-        const real six_r_dalpha_G_m2_in_axes5_y = six_r_dalpha_Gamma_1_in_axes5_y*six_r_m2_w_1 +
-            six_r_dalpha_Gamma_2_in_axes5_y*six_r_m2_w_2 +
+        const real six_r_dalpha_G_m2_in_axes5_y = six_r_dalpha_Gamma_2_in_axes5_y*six_r_m2_w_2 +
             six_r_dalpha_Gamma_3_in_axes5_y*six_r_m2_w_3 +
             six_r_dalpha_Gamma_4_in_axes5_y*six_r_m2_w_4 -
+            six_r_dalpha_Gamma_1_in_axes5_y*six_r_m2_w_1_t_2 -
             six_r_dalpha_Gamma_5_in_axes5_y*six_r_m2_w_5_t;
-        const real six_r_dalpha_G_m2_in_axes5_z = six_r_dalpha_Gamma_1_in_axes5_z*six_r_m2_w_1 +
-            six_r_dalpha_Gamma_2_in_axes5_z*six_r_m2_w_2 +
+        const real six_r_dalpha_G_m2_in_axes5_z = six_r_dalpha_Gamma_2_in_axes5_z*six_r_m2_w_2 +
             six_r_dalpha_Gamma_3_in_axes5_z*six_r_m2_w_3 +
             six_r_dalpha_Gamma_4_in_axes5_z*six_r_m2_w_4 -
+            six_r_dalpha_Gamma_1_in_axes5_z*six_r_m2_w_1_t_2 -
             six_r_dalpha_Gamma_5_in_axes5_z*six_r_m2_w_5_t;
         const real six_r_dalpha_G_m2_y = axis_x_six_r_axes5_y*six_r_dalpha_G_m2_in_axes5_x +
             axis_y_six_r_axes5_y*six_r_dalpha_G_m2_in_axes5_y +
@@ -5346,15 +6355,18 @@ INLINE void M_legs_six_r(const prepared *m, size_t w, size_t leg, size_t legs, c
             axis_z_six_r_axes5_z*six_r_dalpha_G_m2_in_axes5_z;
         /* (six_r-d_G_m2) coefficient of the acceleration in: moment along moment direction 2 that
            balances the leg's inertia and weight along all degrees of freedom */
-        const real six_r_d_G_m2_in_axes5_x = six_r_d_Gamma_1_in_axes5_x*six_r_m2_w_1 +
-            six_r_d_Gamma_2_in_axes5_x*six_r_m2_w_2 + six_r_d_Gamma_3_in_axes5_x*six_r_m2_w_3 +
-            six_r_d_Gamma_4_in_axes5_x*six_r_m2_w_4 - six_r_d_Gamma_5_in_axes5_x*six_r_m2_w_5_t;
-        const real six_r_d_G_m2_in_axes5_y = six_r_d_Gamma_1_in_axes5_y*six_r_m2_w_1 +
-            six_r_d_Gamma_2_in_axes5_y*six_r_m2_w_2 + six_r_d_Gamma_3_in_axes5_y*six_r_m2_w_3 +
-            six_r_d_Gamma_4_in_axes5_y*six_r_m2_w_4 - six_r_d_Gamma_5_in_axes5_y*six_r_m2_w_5_t;
-        const real six_r_d_G_m2_in_axes5_z = six_r_d_Gamma_1_in_axes5_z*six_r_m2_w_1 +
-            six_r_d_Gamma_2_in_axes5_z*six_r_m2_w_2 + six_r_d_Gamma_3_in_axes5_z*six_r_m2_w_3 +
-            six_r_d_Gamma_4_in_axes5_z*six_r_m2_w_4 - six_r_d_Gamma_5_in_axes5_z*six_r_m2_w_5_t;
+        const real six_r_d_G_m2_in_axes5_x = six_r_d_Gamma_2_in_axes5_x*six_r_m2_w_2 +
+            six_r_d_Gamma_3_in_axes5_x*six_r_m2_w_3 + six_r_d_Gamma_4_in_axes5_x*six_r_m2_w_4 -
+            six_r_d_Gamma_1_in_axes5_x*six_r_m2_w_1_t_2 -
+            six_r_d_Gamma_5_in_axes5_x*six_r_m2_w_5_t;
+        const real six_r_d_G_m2_in_axes5_y = six_r_d_Gamma_2_in_axes5_y*six_r_m2_w_2 +
+            six_r_d_Gamma_3_in_axes5_y*six_r_m2_w_3 + six_r_d_Gamma_4_in_axes5_y*six_r_m2_w_4 -
+            six_r_d_Gamma_1_in_axes5_y*six_r_m2_w_1_t_2 -
+            six_r_d_Gamma_5_in_axes5_y*six_r_m2_w_5_t;
+        const real six_r_d_G_m2_in_axes5_z = six_r_d_Gamma_2_in_axes5_z*six_r_m2_w_2 +
+            six_r_d_Gamma_3_in_axes5_z*six_r_m2_w_3 + six_r_d_Gamma_4_in_axes5_z*six_r_m2_w_4 -
+            six_r_d_Gamma_1_in_axes5_z*six_r_m2_w_1_t_2 -
+            six_r_d_Gamma_5_in_axes5_z*six_r_m2_w_5_t;
         const real six_r_d_G_m2_x = axis_x_six_r_axes5_x*six_r_d_G_m2_in_axes5_x +
             axis_y_six_r_axes5_x*six_r_d_G_m2_in_axes5_y +
             axis_z_six_r_axes5_x*six_r_d_G_m2_in_axes5_z;
@@ -5451,9 +6463,9 @@ INLINE void M_legs_six_r(const prepared *m, size_t w, size_t leg, size_t legs, c
             six_r_d_Gamma_2_in_axes5_y*six_r_w_2_in_axes5_x -
             six_r_d_Gamma_3_in_axes5_y*six_r_w_3_in_axes5_x -
             six_r_d_Gamma_4_in_axes5_y*six_r_w_4_in_axes5_x -
-            six_r_h_5_in_spec5_z*(six_r_e_1_in_axes5_y*six_r_w_1_in_axes5_y +
-            six_r_e_2_in_axes5_y*six_r_w_2_in_axes5_y + six_r_e_4_in_axes5_y*six_r_w_4_in_axes5_y
-            - six_r_e_2_in_axes5_y*six_r_w_3_t);
+            six_r_h_5_in_spec5_z*(v.six_r_e_1_in_axes5_y*six_r_w_1_in_axes5_y +
+            v.six_r_e_2_in_axes5_y*six_r_w_2_in_axes5_y - v.six_r_J_5_t*six_r_w_4_in_axes5_y -
+            v.six_r_e_2_in_axes5_y*six_r_w_3_t);
         const real six_r_d_c_in_axes5_xz = six_r_d_Gamma_5_in_axes5_z*six_r_w_5_t_5 +
             six_r_d_alpha_5_in_axes5_zz*six_r_h_5_in_spec5_y -
             six_r_d_Gamma_1_in_axes5_z*six_r_w_1_in_axes5_x -
@@ -5462,10 +6474,11 @@ INLINE void M_legs_six_r(const prepared *m, size_t w, size_t leg, size_t legs, c
             six_r_d_Gamma_4_in_axes5_z*six_r_w_4_in_axes5_x -
             six_r_d_alpha_5_in_axes5_yz*six_r_h_5_in_spec5_z;
         const real six_r_d_c_in_axes5_yy = six_r_d_Gamma_3_in_axes5_y*six_r_w_3_t +
-            six_r_h_5_in_spec5_z*(six_r_e_1_in_axes5_x*six_r_w_1_in_axes5_y +
-            six_r_e_2_in_axes5_x*six_r_w_2_in_axes5_y + six_r_e_4_in_axes5_x*six_r_w_4_in_axes5_y
-            - six_r_e_2_in_axes5_x*six_r_w_3_t) - six_r_d_Gamma_1_in_axes5_y*six_r_w_1_in_axes5_y
-            - six_r_d_Gamma_2_in_axes5_y*six_r_w_2_in_axes5_y -
+            six_r_h_5_in_spec5_z*(v.six_r_e_1_in_axes5_x*six_r_w_1_in_axes5_y +
+            v.six_r_e_2_in_axes5_x*six_r_w_2_in_axes5_y +
+            v.six_r_e_4_in_axes5_x*six_r_w_4_in_axes5_y - v.six_r_e_2_in_axes5_x*six_r_w_3_t) -
+            six_r_d_Gamma_1_in_axes5_y*six_r_w_1_in_axes5_y -
+            six_r_d_Gamma_2_in_axes5_y*six_r_w_2_in_axes5_y -
             six_r_d_Gamma_4_in_axes5_y*six_r_w_4_in_axes5_y -
             six_r_d_Gamma_5_in_axes5_y*six_r_w_5_in_axes5_y -
             six_r_d_alpha_5_in_axes5_zy*six_r_h_5_in_spec5_x;
@@ -5546,71 +6559,63 @@ INLINE void M_legs_six_r(const prepared *m, size_t w, size_t leg, size_t legs, c
         const real six_r_M_ta_t_9 = axis_x_six_r_axes5_z*six_r_dalpha_c_in_axes5_xz +
             axis_y_six_r_axes5_z*six_r_dalpha_c_in_axes5_yz +
             axis_z_six_r_axes5_z*six_r_dalpha_c_in_axes5_zz;
-        const real six_r_platform_point_x = m->six_r_platform_point_x[i];
-        const real six_r_platform_point_y = m->six_r_platform_point_y[i];
-        const real six_r_platform_point_z = m->six_r_platform_point_z[i];
-        const real six_r_q_x = R_xx*six_r_platform_point_x + R_xy*six_r_platform_point_y +
-            R_xz*six_r_platform_point_z;
-        const real six_r_q_y = R_yx*six_r_platform_point_x + R_yy*six_r_platform_point_y +
-            R_yz*six_r_platform_point_z;
-        const real six_r_q_z = R_zx*six_r_platform_point_x + R_zy*six_r_platform_point_y +
-            R_zz*six_r_platform_point_z;
-        const real six_r_M_ta_t_10 = -six_r_Q_xy*six_r_q_z;
-        const real six_r_M_ta_t_11 = six_r_Q_xz*six_r_q_y;
-        const real six_r_M_ta_t_12 = six_r_Q_yz*six_r_q_x;
+        const real six_r_M_ta_t_10 = -six_r_Q_xy*v.six_r_q_z;
+        const real six_r_M_ta_t_11 = six_r_Q_xz*v.six_r_q_y;
+        const real six_r_M_ta_t_12 = six_r_Q_yz*v.six_r_q_x;
         const real six_r_M_ta_t_13 = six_r_M_ta_t_10 + six_r_M_ta_t_11 -
             axis_x_six_r_axes5_x*six_r_M_ta_t - axis_y_six_r_axes5_x*six_r_M_ta_t_4 -
             axis_z_six_r_axes5_x*six_r_M_ta_t_7;
-        const real six_r_M_ta_t_14 = six_r_Q_xx*six_r_q_z - axis_x_six_r_axes5_y*six_r_M_ta_t -
+        const real six_r_M_ta_t_14 = six_r_Q_xx*v.six_r_q_z - axis_x_six_r_axes5_y*six_r_M_ta_t -
             axis_y_six_r_axes5_y*six_r_M_ta_t_4 - axis_z_six_r_axes5_y*six_r_M_ta_t_7 -
-            six_r_Q_xz*six_r_q_x;
-        const real six_r_M_ta_t_15 = six_r_Q_xy*six_r_q_x - axis_x_six_r_axes5_z*six_r_M_ta_t -
+            six_r_Q_xz*v.six_r_q_x;
+        const real six_r_M_ta_t_15 = six_r_Q_xy*v.six_r_q_x - axis_x_six_r_axes5_z*six_r_M_ta_t -
             axis_y_six_r_axes5_z*six_r_M_ta_t_4 - axis_z_six_r_axes5_z*six_r_M_ta_t_7 -
-            six_r_Q_xx*six_r_q_y;
-        const real six_r_M_ta_t_16 = six_r_Q_yz*six_r_q_y - axis_x_six_r_axes5_x*six_r_M_ta_t_2 -
-            axis_y_six_r_axes5_x*six_r_M_ta_t_5 - axis_z_six_r_axes5_x*six_r_M_ta_t_8 -
-            six_r_Q_yy*six_r_q_z;
+            six_r_Q_xx*v.six_r_q_y;
+        const real six_r_M_ta_t_16 = six_r_Q_yz*v.six_r_q_y - axis_x_six_r_axes5_x*six_r_M_ta_t_2
+            - axis_y_six_r_axes5_x*six_r_M_ta_t_5 - axis_z_six_r_axes5_x*six_r_M_ta_t_8 -
+            six_r_Q_yy*v.six_r_q_z;
         const real six_r_M_ta_t_17 = six_r_M_ta_t_10 + six_r_M_ta_t_12 +
             axis_x_six_r_axes5_y*six_r_M_ta_t_2 + axis_y_six_r_axes5_y*six_r_M_ta_t_5 +
             axis_z_six_r_axes5_y*six_r_M_ta_t_8;
-        const real six_r_M_ta_t_18 = six_r_Q_yy*six_r_q_x - axis_x_six_r_axes5_z*six_r_M_ta_t_2 -
-            axis_y_six_r_axes5_z*six_r_M_ta_t_5 - axis_z_six_r_axes5_z*six_r_M_ta_t_8 -
-            six_r_Q_xy*six_r_q_y;
-        const real six_r_M_ta_t_19 = six_r_Q_zz*six_r_q_y - axis_x_six_r_axes5_x*six_r_M_ta_t_3 -
-            axis_y_six_r_axes5_x*six_r_M_ta_t_6 - axis_z_six_r_axes5_x*six_r_M_ta_t_9 -
-            six_r_Q_yz*six_r_q_z;
-        const real six_r_M_ta_t_20 = six_r_Q_xz*six_r_q_z - axis_x_six_r_axes5_y*six_r_M_ta_t_3 -
-            axis_y_six_r_axes5_y*six_r_M_ta_t_6 - axis_z_six_r_axes5_y*six_r_M_ta_t_9 -
-            six_r_Q_zz*six_r_q_x;
+        const real six_r_M_ta_t_18 = six_r_Q_yy*v.six_r_q_x - axis_x_six_r_axes5_z*six_r_M_ta_t_2
+            - axis_y_six_r_axes5_z*six_r_M_ta_t_5 - axis_z_six_r_axes5_z*six_r_M_ta_t_8 -
+            six_r_Q_xy*v.six_r_q_y;
+        const real six_r_M_ta_t_19 = six_r_Q_zz*v.six_r_q_y - axis_x_six_r_axes5_x*six_r_M_ta_t_3
+            - axis_y_six_r_axes5_x*six_r_M_ta_t_6 - axis_z_six_r_axes5_x*six_r_M_ta_t_9 -
+            six_r_Q_yz*v.six_r_q_z;
+        const real six_r_M_ta_t_20 = six_r_Q_xz*v.six_r_q_z - axis_x_six_r_axes5_y*six_r_M_ta_t_3
+            - axis_y_six_r_axes5_y*six_r_M_ta_t_6 - axis_z_six_r_axes5_y*six_r_M_ta_t_9 -
+            six_r_Q_zz*v.six_r_q_x;
         const real six_r_M_ta_t_21 = six_r_M_ta_t_12 - six_r_M_ta_t_11 -
             axis_x_six_r_axes5_z*six_r_M_ta_t_3 - axis_y_six_r_axes5_z*six_r_M_ta_t_6 -
             axis_z_six_r_axes5_z*six_r_M_ta_t_9;
         /* (M_aa) rotational block of M */
-        const real six_r_M_aa_t = six_r_M_ta_t_19*six_r_q_y + six_r_d_G_m_xz*six_r_q_y +
+        const real six_r_M_aa_t = six_r_M_ta_t_19*v.six_r_q_y + six_r_d_G_m_xz*v.six_r_q_y +
             six_r_n_m1_x*(axis_x_six_r_axes5_x*six_r_dalpha_G_m1_in_axes5_x +
             axis_y_six_r_axes5_x*six_r_dalpha_G_m1_in_axes5_y +
             axis_z_six_r_axes5_x*six_r_dalpha_G_m1_in_axes5_z) +
             six_r_n_m2_x*(axis_x_six_r_axes5_x*six_r_dalpha_G_m2_in_axes5_x +
             axis_y_six_r_axes5_x*six_r_dalpha_G_m2_in_axes5_y +
-            axis_z_six_r_axes5_x*six_r_dalpha_G_m2_in_axes5_z) - six_r_M_ta_t_16*six_r_q_z -
-            six_r_d_G_m_xy*six_r_q_z;
-        const real six_r_M_aa_t_2 = six_r_M_ta_t_17*six_r_q_z + six_r_M_ta_t_20*six_r_q_y +
-            six_r_d_G_m_xx*six_r_q_z + six_r_dalpha_G_m1_y*six_r_n_m1_x +
-            six_r_dalpha_G_m2_y*six_r_n_m2_x - six_r_d_G_m_xz*six_r_q_x;
-        const real six_r_M_aa_t_3 = six_r_M_ta_t_21*six_r_q_y + six_r_d_G_m_xy*six_r_q_x +
+            axis_z_six_r_axes5_x*six_r_dalpha_G_m2_in_axes5_z) - six_r_M_ta_t_16*v.six_r_q_z -
+            six_r_d_G_m_xy*v.six_r_q_z;
+        const real six_r_M_aa_t_2 = six_r_M_ta_t_17*v.six_r_q_z + six_r_M_ta_t_20*v.six_r_q_y +
+            six_r_d_G_m_xx*v.six_r_q_z + six_r_dalpha_G_m1_y*six_r_n_m1_x +
+            six_r_dalpha_G_m2_y*six_r_n_m2_x - six_r_d_G_m_xz*v.six_r_q_x;
+        const real six_r_M_aa_t_3 = six_r_M_ta_t_21*v.six_r_q_y + six_r_d_G_m_xy*v.six_r_q_x +
             six_r_dalpha_G_m1_z*six_r_n_m1_x + six_r_dalpha_G_m2_z*six_r_n_m2_x -
-            six_r_M_ta_t_18*six_r_q_z - six_r_d_G_m_xx*six_r_q_y;
-        const real six_r_M_aa_t_4 = six_r_M_ta_t_14*six_r_q_z + six_r_d_G_m_yx*six_r_q_z +
+            six_r_M_ta_t_18*v.six_r_q_z - six_r_d_G_m_xx*v.six_r_q_y;
+        const real six_r_M_aa_t_4 = six_r_M_ta_t_14*v.six_r_q_z + six_r_d_G_m_yx*v.six_r_q_z +
             six_r_dalpha_G_m1_y*six_r_n_m1_y + six_r_dalpha_G_m2_y*six_r_n_m2_y -
-            six_r_M_ta_t_20*six_r_q_x - six_r_q_x*(six_r_d_G_m1_z*six_r_n_m1_y +
+            six_r_M_ta_t_20*v.six_r_q_x - v.six_r_q_x*(six_r_d_G_m1_z*six_r_n_m1_y +
             six_r_d_G_m2_z*six_r_n_m2_y);
-        const real six_r_M_aa_t_5 = six_r_M_ta_t_15*six_r_q_z + six_r_dalpha_G_m1_z*six_r_n_m1_y +
-            six_r_dalpha_G_m2_z*six_r_n_m2_y + six_r_q_x*(six_r_d_G_m1_y*six_r_n_m1_y +
-            six_r_d_G_m2_y*six_r_n_m2_y) - six_r_M_ta_t_21*six_r_q_x - six_r_d_G_m_yx*six_r_q_y;
-        const real six_r_M_aa_t_6 = six_r_M_ta_t_18*six_r_q_x + six_r_dalpha_G_m1_z*six_r_n_m1_z +
-            six_r_dalpha_G_m2_z*six_r_n_m2_z + six_r_q_x*(six_r_d_G_m1_y*six_r_n_m1_z +
-            six_r_d_G_m2_y*six_r_n_m2_z) - six_r_M_ta_t_15*six_r_q_y -
-            six_r_q_y*(six_r_d_G_m1_x*six_r_n_m1_z + six_r_d_G_m2_x*six_r_n_m2_z);
+        const real six_r_M_aa_t_5 = six_r_M_ta_t_15*v.six_r_q_z + six_r_dalpha_G_m1_z*six_r_n_m1_y
+            + six_r_dalpha_G_m2_z*six_r_n_m2_y + v.six_r_q_x*(six_r_d_G_m1_y*six_r_n_m1_y +
+            six_r_d_G_m2_y*six_r_n_m2_y) - six_r_M_ta_t_21*v.six_r_q_x -
+            six_r_d_G_m_yx*v.six_r_q_y;
+        const real six_r_M_aa_t_6 = six_r_M_ta_t_18*v.six_r_q_x + six_r_dalpha_G_m1_z*six_r_n_m1_z
+            + six_r_dalpha_G_m2_z*six_r_n_m2_z + v.six_r_q_x*(six_r_d_G_m1_y*six_r_n_m1_z +
+            six_r_d_G_m2_y*six_r_n_m2_z) - six_r_M_ta_t_15*v.six_r_q_y -
+            v.six_r_q_y*(six_r_d_G_m1_x*six_r_n_m1_z + six_r_d_G_m2_x*six_r_n_m2_z);
         /* (M_tt) translational block of M */
         gather(&terms[0*count + k], add, six_r_Q_xx);  /* M_tt_xx_of_legs */
         gather(&terms[1*count + k], add, six_r_Q_xy);  /* M_tt_xy */
@@ -5698,12 +6703,12 @@ INLINE void M_after(const prepared *m, size_t w, const real *s, const real *sums
         const real M_aa_zz_of_legs = sums[20*w + k];
         const real M_aa_zz = J_star_zz + M_aa_zz_of_legs;
         /* (M_tt) translational block of M */
-        M[0*NV*w + k] = M_tt_xx;
+        M[0*w + k] = M_tt_xx;
         const real M_tt_xy = sums[1*w + k];
-        M[(0*NV + 1)*w + k] = M_tt_xy;
+        M[1*w + k] = M_tt_xy;
         M[NV*w + k] = M_tt_xy;
         const real M_tt_xz = sums[2*w + k];
-        M[(0*NV + 2)*w + k] = M_tt_xz;
+        M[2*w + k] = M_tt_xz;
         M[2*NV*w + k] = M_tt_xz;
         M[(NV + 1)*w + k] = M_tt_yy;
         const real M_tt_yz = sums[4*w + k];
@@ -5712,11 +6717,11 @@ INLINE void M_after(const prepared *m, size_t w, const real *s, const real *sums
         M[(2*NV + 2)*w + k] = M_tt_zz;
         /* (M_ta) coupling block of M */
         const real M_ta_xx = sums[6*w + k];
-        M[(0*NV + 3)*w + k] = M_ta_xx;
+        M[3*w + k] = M_ta_xx;
         M[3*NV*w + k] = M_ta_xx;
-        M[(0*NV + 4)*w + k] = M_ta_xy;
+        M[4*w + k] = M_ta_xy;
         M[4*NV*w + k] = M_ta_xy;
-        M[(0*NV + 5)*w + k] = M_ta_xz;
+        M[5*w + k] = M_ta_xz;
         M[5*NV*w + k] = M_ta_xz;
         M[(NV + 3)*w + k] = M_ta_yx;
         M[(3*NV + 1)*w + k] = M_ta_yx;
@@ -5751,10 +6756,8 @@ INLINE void M_after(const prepared *m, size_t w, const real *s, const real *sums
 
 INLINE void M_run(const prepared *m, const real *X, const real *joints, real *M, verdict *t)
 {
-    real s[18] = {0};
-    real sums[21] = {0};
-    real terms_six_r[21*LEGS(LEGS_OF_six_r)] = {0};
-    real o_six_r[LEGS(LEGS_OF_six_r)] = {0};
+    real s[18] = {0}, sums[21] = {0};
+    real terms_six_r[21*LEGS(LEGS_OF_six_r)] = {0}, o_six_r[LEGS(LEGS_OF_six_r)] = {0};
     M_before(m, 1, X, s, t);
     M_legs_six_r(m, 1, 0, 1, s, 0, LEGS(LEGS_OF_six_r), 0, joints, terms_six_r, o_six_r);
     for (size_t leg = 0; leg < LEGS_OF_six_r; ++leg) {
@@ -5768,8 +6771,7 @@ INLINE void M_run(const prepared *m, const real *X, const real *joints, real *M,
 
 INLINE void M_run_lanes(const prepared *m, const real *X, const real *joints, real *M, verdict *t)
 {
-    real s[18*LANES];
-    real sums[21*LANES];
+    real s[18*LANES], sums[21*LANES];
     real o_six_r[LANES];
     M_before(m, LANES, X, s, t);
     clear(sums, 21*LANES);
@@ -5785,528 +6787,108 @@ INLINE void Z_before(const prepared *m, size_t w, const real *X, const real *V, 
     *t)
 {
     for (size_t k = 0; k < w; ++k) {
-        /* X: named entries */
-        const real X_3 = X[3*w + k];
-        const real X_4 = X[4*w + k];
-        const real X_5 = X[5*w + k];
-        const real X_6 = X[6*w + k];
-        const real quaternion_norm2 = X_3*X_3 + X_4*X_4 + X_5*X_5 + X_6*X_6;
-        const real quaternion_scale = 2/quaternion_norm2;
-        const real quaternion_sx = X_3*quaternion_scale;
-        const real quaternion_sy = X_4*quaternion_scale;
-        const real quaternion_sz = X_5*quaternion_scale;
-        const real quaternion_wx = X_6*quaternion_sx;
-        const real quaternion_wy = X_6*quaternion_sy;
-        const real quaternion_wz = X_6*quaternion_sz;
-        const real quaternion_xx = X_3*quaternion_sx;
-        const real quaternion_xy = X_3*quaternion_sy;
-        const real quaternion_xz = X_3*quaternion_sz;
-        const real quaternion_yy = X_4*quaternion_sy;
-        const real quaternion_yz = X_4*quaternion_sz;
-        const real quaternion_zz = X_5*quaternion_sz;
-        const real R_xx = 1 - quaternion_yy - quaternion_zz;
-        const real R_xy = quaternion_xy - quaternion_wz;
-        const real R_xz = quaternion_wy + quaternion_xz;
-        const real R_yx = quaternion_wz + quaternion_xy;
-        const real R_yy = 1 - quaternion_xx - quaternion_zz;
-        const real R_yz = quaternion_yz - quaternion_wx;
-        const real R_zx = quaternion_xz - quaternion_wy;
-        const real R_zy = quaternion_wx + quaternion_yz;
-        const real R_zz = 1 - quaternion_xx - quaternion_yy;
-        /* V: named entries */
-        const real V_0 = V[0*w + k];
-        const real t_dot_x = V_0;
-        const real V_1 = V[1*w + k];
-        const real t_dot_y = V_1;
-        const real V_2 = V[2*w + k];
-        const real t_dot_z = V_2;
-        const real V_3 = V[3*w + k];
-        const real omega_x = V_3;
-        const real V_4 = V[4*w + k];
-        const real omega_y = V_4;
-        const real V_5 = V[5*w + k];
-        const real omega_z = V_5;
-        /* (h_star) first moment about the platform origin */
-        const real h_star_in_platform_x = m->h_star_in_platform_x;
-        const real h_star_in_platform_y = m->h_star_in_platform_y;
-        const real h_star_in_platform_z = m->h_star_in_platform_z;
-        const real h_star_x = R_xx*h_star_in_platform_x + R_xy*h_star_in_platform_y +
-            R_xz*h_star_in_platform_z;
-        const real h_star_y = R_yx*h_star_in_platform_x + R_yy*h_star_in_platform_y +
-            R_yz*h_star_in_platform_z;
-        const real h_star_z = R_zx*h_star_in_platform_x + R_zy*h_star_in_platform_y +
-            R_zz*h_star_in_platform_z;
-        /* (Z_p) centripetal force and weight of the platform */
-        const real Z_p_t_4 = h_star_z*omega_y - h_star_y*omega_z;
-        const real Z_p_t_5 = h_star_x*omega_z - h_star_z*omega_x;
-        const real Z_p_t_6 = h_star_y*omega_x - h_star_x*omega_y;
-        const real Z_p_t = m->Z_p_t;
-        const real Z_p_x = Z_p_t_6*omega_y - Z_p_t - Z_p_t_5*omega_z;
-        const real Z_p_t_2 = m->Z_p_t_2;
-        const real Z_p_y = Z_p_t_4*omega_z - Z_p_t_2 - Z_p_t_6*omega_x;
-        const real Z_p_t_3 = m->Z_p_t_3;
-        const real Z_p_z = Z_p_t_5*omega_x - Z_p_t_3 - Z_p_t_4*omega_y;
-        /* (Z_q) gyroscopic moment and moment of the weight of the platform */
-        const real gravity_x = m->gravity_x;
-        const real gravity_y = m->gravity_y;
-        const real gravity_z = m->gravity_z;
-        const real g_in_platform_x = R_xx*gravity_x + R_yx*gravity_y + R_zx*gravity_z;
-        const real g_in_platform_y = R_xy*gravity_x + R_yy*gravity_y + R_zy*gravity_z;
-        const real g_in_platform_z = R_xz*gravity_x + R_yz*gravity_y + R_zz*gravity_z;
-        const real omega_in_platform_x = R_xx*omega_x + R_yx*omega_y + R_zx*omega_z;
-        const real omega_in_platform_y = R_xy*omega_x + R_yy*omega_y + R_zy*omega_z;
-        const real omega_in_platform_z = R_xz*omega_x + R_yz*omega_y + R_zz*omega_z;
-        const real J_star_in_platform_xx = m->J_star_in_platform_xx;
-        const real J_star_in_platform_xy = m->J_star_in_platform_xy;
-        const real J_star_in_platform_xz = m->J_star_in_platform_xz;
-        const real Z_q_t = J_star_in_platform_xx*omega_in_platform_x +
-            J_star_in_platform_xy*omega_in_platform_y + J_star_in_platform_xz*omega_in_platform_z;
-        const real J_star_in_platform_yy = m->J_star_in_platform_yy;
-        const real J_star_in_platform_yz = m->J_star_in_platform_yz;
-        const real Z_q_t_2 = J_star_in_platform_xy*omega_in_platform_x +
-            J_star_in_platform_yy*omega_in_platform_y + J_star_in_platform_yz*omega_in_platform_z;
-        const real J_star_in_platform_zz = m->J_star_in_platform_zz;
-        const real Z_q_t_3 = J_star_in_platform_xz*omega_in_platform_x +
-            J_star_in_platform_yz*omega_in_platform_y + J_star_in_platform_zz*omega_in_platform_z;
-        const real Z_q_in_platform_x = Z_q_t_3*omega_in_platform_y +
-            g_in_platform_y*h_star_in_platform_z - Z_q_t_2*omega_in_platform_z -
-            g_in_platform_z*h_star_in_platform_y;
-        const real Z_q_in_platform_y = Z_q_t*omega_in_platform_z +
-            g_in_platform_z*h_star_in_platform_x - Z_q_t_3*omega_in_platform_x -
-            g_in_platform_x*h_star_in_platform_z;
-        const real Z_q_in_platform_z = Z_q_t_2*omega_in_platform_x +
-            g_in_platform_x*h_star_in_platform_y - Z_q_t*omega_in_platform_y -
-            g_in_platform_y*h_star_in_platform_x;
-        const real Z_q_x = R_xx*Z_q_in_platform_x + R_xy*Z_q_in_platform_y +
-            R_xz*Z_q_in_platform_z;
-        const real Z_q_y = R_yx*Z_q_in_platform_x + R_yy*Z_q_in_platform_y +
-            R_yz*Z_q_in_platform_z;
-        const real Z_q_z = R_zx*Z_q_in_platform_x + R_zy*Z_q_in_platform_y +
-            R_zz*Z_q_in_platform_z;
-        s[0*w + k] = R_xx;
-        s[1*w + k] = R_xy;
-        s[2*w + k] = R_xz;
-        s[3*w + k] = R_yx;
-        s[4*w + k] = R_yy;
-        s[5*w + k] = R_yz;
-        s[6*w + k] = R_zx;
-        s[7*w + k] = R_zy;
-        s[8*w + k] = R_zz;
-        s[9*w + k] = t_dot_x;
-        s[10*w + k] = t_dot_y;
-        s[11*w + k] = t_dot_z;
-        s[12*w + k] = omega_x;
-        s[13*w + k] = omega_y;
-        s[14*w + k] = omega_z;
-        s[15*w + k] = Z_p_x;
-        s[16*w + k] = Z_p_y;
-        s[17*w + k] = Z_p_z;
-        s[18*w + k] = Z_q_x;
-        s[19*w + k] = Z_q_y;
-        s[20*w + k] = Z_q_z;
-        t->invalid[k] += UNLESS(is_finite(quaternion_scale)) + UNLESS(quaternion_scale > 0);
+        values v;
+        stage_X(m, w, k, X, &v);
+        stage_V_X(w, k, V, &v);
+        stage_Z_dynamics(m, w, k, V, &v);
+        s[0*w + k] = v.R_xx;
+        s[1*w + k] = v.R_xy;
+        s[2*w + k] = v.R_xz;
+        s[3*w + k] = v.R_yx;
+        s[4*w + k] = v.R_yy;
+        s[5*w + k] = v.R_yz;
+        s[6*w + k] = v.R_zx;
+        s[7*w + k] = v.R_zy;
+        s[8*w + k] = v.R_zz;
+        s[9*w + k] = v.Z_p_x;
+        s[10*w + k] = v.Z_p_y;
+        s[11*w + k] = v.Z_p_z;
+        s[12*w + k] = v.Z_q_x;
+        s[13*w + k] = v.Z_q_y;
+        s[14*w + k] = v.Z_q_z;
+        t->invalid[k] += UNLESS(is_finite(v.quaternion_scale)) + UNLESS(v.quaternion_scale > 0);
     }
 }
 
 INLINE void Z_legs_six_r(const prepared *m, size_t w, size_t leg, size_t legs, const real *s,
-    size_t states, size_t count, int add, const real *joints, real *terms, real *o)
+    size_t states, size_t count, int add, const real *V, const real *joints, real *terms, real *o)
 {
-    static const size_t place_six_r_q_1[] = {0, 5, 10, 15, 20, 25, 0, 0};
-    static const size_t place_six_r_q_2[] = {1, 6, 11, 16, 21, 26, 1, 1};
-    static const size_t place_six_r_q_3[] = {2, 7, 12, 17, 22, 27, 2, 2};
-    static const size_t place_six_r_q_4[] = {3, 8, 13, 18, 23, 28, 3, 3};
-    static const size_t place_six_r_q_5[] = {4, 9, 14, 19, 24, 29, 4, 4};
     for (size_t k = 0; k < count; ++k) {
         const size_t i = leg + legs*k;
         const size_t j = states*k;
-        /* (six_r-c_1) cosine of the angle of joint 1 from its reference direction */
-        const real six_r_q_1 = joints[place_six_r_q_1[i]*w + j];
-        const real six_r_c_1 = -sine(six_r_q_1);
-        /* (six_r-s_1) sine of the angle of joint 1 from its reference direction */
-        const real six_r_s_1 = cosine(six_r_q_1);
-        /* (six_r-c_2) cosine of the angle of joint 2 from its reference direction */
-        const real six_r_q_2 = joints[place_six_r_q_2[i]*w + j];
-        const real six_r_c_2 = -sine(six_r_q_2);
-        /* (six_r-s_2) sine of the angle of joint 2 from its reference direction */
-        const real six_r_s_2 = cosine(six_r_q_2);
-        /* (six_r-c_3) cosine of the angle of joint 3 from its reference direction */
-        const real six_r_q_3 = joints[place_six_r_q_3[i]*w + j];
-        const real six_r_c_3 = cosine(six_r_q_3);
-        /* (six_r-s_3) sine of the angle of joint 3 from its reference direction */
-        const real six_r_s_3 = sine(six_r_q_3);
-        /* (six_r-c_4) cosine of the angle of joint 4 from its reference direction */
-        const real six_r_q_4 = joints[place_six_r_q_4[i]*w + j];
-        const real six_r_c_4 = -sine(six_r_q_4);
-        /* (six_r-s_4) sine of the angle of joint 4 from its reference direction */
-        const real six_r_s_4 = cosine(six_r_q_4);
-        /* (six_r-c_5) cosine of the angle of joint 5 from its reference direction */
-        const real six_r_q_5 = joints[place_six_r_q_5[i]*w + j];
-        const real six_r_c_5 = -sine(six_r_q_5);
-        /* (six_r-s_5) sine of the angle of joint 5 from its reference direction */
-        const real six_r_s_5 = cosine(six_r_q_5);
-        /* (six_r-S_dot) velocity of the connection point */
-        const real six_r_e_2_in_axes5_y = -six_r_c_4*six_r_s_5;
-        const real six_r_S_dot_t = -six_r_c_4*six_r_s_3;
-        const real six_r_S_dot_t_2 = -six_r_c_3*six_r_c_4;
-        const real six_r_S_dot_t_3 = six_r_S_dot_t*six_r_c_2 + six_r_S_dot_t_2*six_r_s_2;
-        const real six_r_S_dot_t_4 = six_r_S_dot_t*six_r_s_2 - six_r_S_dot_t_2*six_r_c_2;
-        const real six_r_S_dot_t_5 = six_r_c_1*six_r_s_4 - six_r_S_dot_t_3*six_r_s_1;
-        const real six_r_S_dot_t_6 = six_r_S_dot_t_3*six_r_c_1 + six_r_s_1*six_r_s_4;
-        const real six_r_base_frame_xx = m->six_r_base_frame_xx[i];
-        const real six_r_base_frame_xy = m->six_r_base_frame_xy[i];
-        const real six_r_base_frame_xz = m->six_r_base_frame_xz[i];
-        const real axis_z_six_r_axes5_x = six_r_S_dot_t_4*six_r_base_frame_xx +
-            six_r_S_dot_t_5*six_r_base_frame_xy + six_r_S_dot_t_6*six_r_base_frame_xz;
-        const real six_r_base_frame_yx = m->six_r_base_frame_yx[i];
-        const real six_r_base_frame_yy = m->six_r_base_frame_yy[i];
-        const real six_r_base_frame_yz = m->six_r_base_frame_yz[i];
-        const real axis_z_six_r_axes5_y = six_r_S_dot_t_4*six_r_base_frame_yx +
-            six_r_S_dot_t_5*six_r_base_frame_yy + six_r_S_dot_t_6*six_r_base_frame_yz;
-        const real six_r_base_frame_zx = m->six_r_base_frame_zx[i];
-        const real six_r_base_frame_zy = m->six_r_base_frame_zy[i];
-        const real six_r_base_frame_zz = m->six_r_base_frame_zz[i];
-        const real axis_z_six_r_axes5_z = six_r_S_dot_t_4*six_r_base_frame_zx +
-            six_r_S_dot_t_5*six_r_base_frame_zy + six_r_S_dot_t_6*six_r_base_frame_zz;
-        const real six_r_S_dot_t_7 = six_r_s_4*six_r_s_5;
-        const real six_r_S_dot_t_8 = six_r_c_3*six_r_c_5 - six_r_S_dot_t_7*six_r_s_3;
-        const real six_r_S_dot_t_9 = six_r_S_dot_t_7*six_r_c_3 + six_r_c_5*six_r_s_3;
-        const real six_r_S_dot_t_10 = six_r_S_dot_t_8*six_r_c_2 - six_r_S_dot_t_9*six_r_s_2;
-        const real six_r_S_dot_t_11 = six_r_S_dot_t_8*six_r_s_2 + six_r_S_dot_t_9*six_r_c_2;
-        const real six_r_S_dot_t_12 = six_r_c_1*six_r_e_2_in_axes5_y - six_r_S_dot_t_10*six_r_s_1;
-        const real six_r_S_dot_t_13 = six_r_S_dot_t_10*six_r_c_1 + six_r_e_2_in_axes5_y*six_r_s_1;
-        const real axis_y_six_r_axes5_x = six_r_S_dot_t_11*six_r_base_frame_xx +
-            six_r_S_dot_t_12*six_r_base_frame_xy + six_r_S_dot_t_13*six_r_base_frame_xz;
-        const real axis_y_six_r_axes5_y = six_r_S_dot_t_11*six_r_base_frame_yx +
-            six_r_S_dot_t_12*six_r_base_frame_yy + six_r_S_dot_t_13*six_r_base_frame_yz;
-        const real axis_y_six_r_axes5_z = six_r_S_dot_t_11*six_r_base_frame_zx +
-            six_r_S_dot_t_12*six_r_base_frame_zy + six_r_S_dot_t_13*six_r_base_frame_zz;
-        const real axis_x_six_r_axes5_x = axis_y_six_r_axes5_y*axis_z_six_r_axes5_z -
-            axis_y_six_r_axes5_z*axis_z_six_r_axes5_y;
-        const real axis_x_six_r_axes5_y = axis_y_six_r_axes5_z*axis_z_six_r_axes5_x -
-            axis_y_six_r_axes5_x*axis_z_six_r_axes5_z;
-        const real axis_x_six_r_axes5_z = axis_y_six_r_axes5_x*axis_z_six_r_axes5_y -
-            axis_y_six_r_axes5_y*axis_z_six_r_axes5_x;
-        const real R_xx = s[0*w + j];
-        const real R_xy = s[1*w + j];
-        const real R_xz = s[2*w + j];
-        const real six_r_platform_point_x = m->six_r_platform_point_x[i];
-        const real six_r_platform_point_y = m->six_r_platform_point_y[i];
-        const real six_r_platform_point_z = m->six_r_platform_point_z[i];
-        const real six_r_q_x = R_xx*six_r_platform_point_x + R_xy*six_r_platform_point_y +
-            R_xz*six_r_platform_point_z;
-        const real R_yx = s[3*w + j];
-        const real R_yy = s[4*w + j];
-        const real R_yz = s[5*w + j];
-        const real six_r_q_y = R_yx*six_r_platform_point_x + R_yy*six_r_platform_point_y +
-            R_yz*six_r_platform_point_z;
-        const real R_zx = s[6*w + j];
-        const real R_zy = s[7*w + j];
-        const real R_zz = s[8*w + j];
-        const real six_r_q_z = R_zx*six_r_platform_point_x + R_zy*six_r_platform_point_y +
-            R_zz*six_r_platform_point_z;
-        const real omega_y = s[13*w + j];
-        const real omega_z = s[14*w + j];
-        const real six_r_S_dot_t_14 = omega_y*six_r_q_z - omega_z*six_r_q_y;
-        const real omega_x = s[12*w + j];
-        const real six_r_S_dot_t_15 = omega_z*six_r_q_x - omega_x*six_r_q_z;
-        const real six_r_S_dot_t_16 = omega_x*six_r_q_y - omega_y*six_r_q_x;
-        const real t_dot_x = s[9*w + j];
-        const real six_r_S_dot_x = six_r_S_dot_t_14 + t_dot_x;
-        const real t_dot_y = s[10*w + j];
-        const real six_r_S_dot_y = six_r_S_dot_t_15 + t_dot_y;
-        const real t_dot_z = s[11*w + j];
-        const real six_r_S_dot_z = six_r_S_dot_t_16 + t_dot_z;
-        const real six_r_S_dot_in_axes5_x = axis_x_six_r_axes5_x*six_r_S_dot_x +
-            axis_x_six_r_axes5_y*six_r_S_dot_y + axis_x_six_r_axes5_z*six_r_S_dot_z;
-        const real six_r_S_dot_in_axes5_y = axis_y_six_r_axes5_x*six_r_S_dot_x +
-            axis_y_six_r_axes5_y*six_r_S_dot_y + axis_y_six_r_axes5_z*six_r_S_dot_z;
-        const real six_r_S_dot_in_axes5_z = axis_z_six_r_axes5_x*six_r_S_dot_x +
-            axis_z_six_r_axes5_y*six_r_S_dot_y + axis_z_six_r_axes5_z*six_r_S_dot_z;
-        /* (six_r-r_4) from joint 4 to the connection point, along the links */
-        const real six_r_platform_joint_offset_x = m->six_r_platform_joint_offset_x[i];
-        const real six_r_r_4_in_axes4_y = six_r_c_5*six_r_platform_joint_offset_x;
-        const real six_r_joint5_offset_x = m->six_r_joint5_offset_x[i];
-        const real six_r_r_4_in_axes4_z = six_r_joint5_offset_x +
-            six_r_platform_joint_offset_x*six_r_s_5;
-        const real six_r_r_4_in_axes3_y = -six_r_r_4_in_axes4_y*six_r_s_4;
-        const real six_r_r_4_in_axes3_z = six_r_c_4*six_r_r_4_in_axes4_y;
-        /* (six_r-r_3) from joint 3 to the connection point, along the links */
-        const real six_r_joint4_offset_x = m->six_r_joint4_offset_x[i];
-        const real six_r_r_3_in_axes3_x = six_r_joint4_offset_x + six_r_r_4_in_axes4_z;
-        const real six_r_r_3_in_axes2_y = six_r_c_3*six_r_r_4_in_axes3_y +
-            six_r_r_3_in_axes3_x*six_r_s_3;
-        const real six_r_r_3_t = six_r_r_4_in_axes3_z*six_r_s_4;
-        const real six_r_r_3_t_2 = -six_r_c_4*six_r_r_4_in_axes3_z;
-        const real six_r_r_3_in_axes5_z = six_r_r_3_t + six_r_c_4*six_r_r_4_in_axes3_y;
-        const real six_r_r_3_t_3 = -six_r_r_3_t_2 - six_r_r_4_in_axes3_y*six_r_s_4;
-        const real six_r_r_3_in_axes5_x = six_r_c_5*six_r_r_3_t_3 +
-            six_r_r_3_in_axes3_x*six_r_s_5;
-        const real six_r_r_3_in_axes5_y = six_r_c_5*six_r_r_3_in_axes3_x -
-            six_r_r_3_t_3*six_r_s_5;
-        /* (six_r-r_2) from joint 2 to the connection point, along the links */
-        const real six_r_joint3_offset_x = m->six_r_joint3_offset_x[i];
-        const real six_r_r_2_in_axes2_x = six_r_joint3_offset_x + six_r_c_3*six_r_r_3_in_axes3_x -
-            six_r_r_4_in_axes3_y*six_r_s_3;
-        const real six_r_r_2_in_axes1_y = six_r_c_2*six_r_r_2_in_axes2_x -
-            six_r_r_3_in_axes2_y*six_r_s_2;
-        const real six_r_r_2_t = six_r_c_3*six_r_r_2_in_axes2_x + six_r_r_3_in_axes2_y*six_r_s_3;
-        const real six_r_r_2_t_2 = six_r_c_3*six_r_r_3_in_axes2_y -
-            six_r_r_2_in_axes2_x*six_r_s_3;
-        const real six_r_r_2_in_axes5_z = six_r_r_3_t + six_r_c_4*six_r_r_2_t_2;
-        const real six_r_r_2_t_3 = -six_r_r_3_t_2 - six_r_r_2_t_2*six_r_s_4;
-        const real six_r_r_2_in_axes5_x = six_r_c_5*six_r_r_2_t_3 + six_r_r_2_t*six_r_s_5;
-        const real six_r_r_2_in_axes5_y = six_r_c_5*six_r_r_2_t - six_r_r_2_t_3*six_r_s_5;
-        /* (six_r-r_1) from joint 1 to the connection point, along the links */
-        const real six_r_joint2_offset_x = m->six_r_joint2_offset_x[i];
-        const real six_r_r_1_in_axes1_z = six_r_joint2_offset_x + six_r_c_2*six_r_r_3_in_axes2_y +
-            six_r_r_2_in_axes2_x*six_r_s_2;
-        const real six_r_r_1_t = six_r_c_2*six_r_r_2_in_axes1_y + six_r_r_1_in_axes1_z*six_r_s_2;
-        const real six_r_r_1_t_2 = six_r_c_2*six_r_r_1_in_axes1_z -
-            six_r_r_2_in_axes1_y*six_r_s_2;
-        const real six_r_r_1_t_3 = six_r_c_3*six_r_r_1_t + six_r_r_1_t_2*six_r_s_3;
-        const real six_r_r_1_t_4 = six_r_c_3*six_r_r_1_t_2 - six_r_r_1_t*six_r_s_3;
-        const real six_r_r_1_in_axes5_z = six_r_r_3_t + six_r_c_4*six_r_r_1_t_4;
-        const real six_r_r_1_t_5 = -six_r_r_3_t_2 - six_r_r_1_t_4*six_r_s_4;
-        const real six_r_r_1_in_axes5_x = six_r_c_5*six_r_r_1_t_5 + six_r_r_1_t_3*six_r_s_5;
-        const real six_r_r_1_in_axes5_y = six_r_c_5*six_r_r_1_t_3 - six_r_r_1_t_5*six_r_s_5;
-        /* (six_r-v_1) velocity of the connection point per rate of joint 1 */
-        const real six_r_v_1_t = six_r_c_2*six_r_s_3 + six_r_c_3*six_r_s_2;
-        const real six_r_v_1_t_2 = six_r_c_2*six_r_c_3 - six_r_s_2*six_r_s_3;
-        const real six_r_e_1_in_axes5_z = six_r_c_4*six_r_v_1_t_2;
-        const real six_r_v_1_t_3 = six_r_s_4*six_r_v_1_t_2;
-        const real six_r_e_1_in_axes5_x = six_r_s_5*six_r_v_1_t - six_r_c_5*six_r_v_1_t_3;
-        const real six_r_e_1_in_axes5_y = six_r_c_5*six_r_v_1_t + six_r_s_5*six_r_v_1_t_3;
-        const real six_r_v_1_in_axes5_x = six_r_e_1_in_axes5_y*six_r_r_1_in_axes5_z -
-            six_r_e_1_in_axes5_z*six_r_r_1_in_axes5_y;
-        const real six_r_v_1_in_axes5_y = six_r_e_1_in_axes5_z*six_r_r_1_in_axes5_x -
-            six_r_e_1_in_axes5_x*six_r_r_1_in_axes5_z;
-        const real six_r_v_1_in_axes5_z = six_r_e_1_in_axes5_x*six_r_r_1_in_axes5_y -
-            six_r_e_1_in_axes5_y*six_r_r_1_in_axes5_x;
-        /* (six_r-v_2) velocity of the connection point per rate of joint 2 */
-        const real six_r_e_2_in_axes5_x = six_r_c_4*six_r_c_5;
-        const real six_r_v_2_in_axes5_x = six_r_e_2_in_axes5_y*six_r_r_2_in_axes5_z -
-            six_r_r_2_in_axes5_y*six_r_s_4;
-        const real six_r_v_2_in_axes5_y = six_r_r_2_in_axes5_x*six_r_s_4 -
-            six_r_e_2_in_axes5_x*six_r_r_2_in_axes5_z;
-        const real six_r_v_2_in_axes5_z = six_r_e_2_in_axes5_x*six_r_r_2_in_axes5_y -
-            six_r_e_2_in_axes5_y*six_r_r_2_in_axes5_x;
-        /* (six_r-v_3) velocity of the connection point per rate of joint 3 */
-        const real six_r_v_3_in_axes5_x = six_r_e_2_in_axes5_y*six_r_r_3_in_axes5_z -
-            six_r_r_3_in_axes5_y*six_r_s_4;
-        const real six_r_v_3_in_axes5_y = six_r_r_3_in_axes5_x*six_r_s_4 -
-            six_r_e_2_in_axes5_x*six_r_r_3_in_axes5_z;
-        const real six_r_v_3_in_axes5_z = six_r_e_2_in_axes5_x*six_r_r_3_in_axes5_y -
-            six_r_e_2_in_axes5_y*six_r_r_3_in_axes5_x;
-        /* (six_r-v_4) velocity of the connection point per rate of joint 4 */
-        const real six_r_v_4_in_axes5_z = six_r_s_5*(six_r_c_5*six_r_r_4_in_axes4_z -
-            six_r_r_4_in_axes4_y*six_r_s_5) - six_r_c_5*(six_r_c_5*six_r_r_4_in_axes4_y +
-            six_r_r_4_in_axes4_z*six_r_s_5);
-        /* (six_r-n_m1) direction 1 of the moment that the platform joint transmits */
-        const real six_r_platform_joint_axis_platform_x = m->six_r_platform_joint_axis_platform_x[i];
-        const real six_r_platform_joint_axis_platform_y = m->six_r_platform_joint_axis_platform_y[i];
-        const real six_r_platform_joint_axis_platform_z = m->six_r_platform_joint_axis_platform_z[i];
-        const real six_r_n_m1_t = six_r_platform_joint_axis_platform_x*(R_xx*six_r_base_frame_xy +
-            R_yx*six_r_base_frame_yy + R_zx*six_r_base_frame_zy) +
-            six_r_platform_joint_axis_platform_y*(R_xy*six_r_base_frame_xy +
-            R_yy*six_r_base_frame_yy + R_zy*six_r_base_frame_zy) +
-            six_r_platform_joint_axis_platform_z*(R_xz*six_r_base_frame_xy +
-            R_yz*six_r_base_frame_yy + R_zz*six_r_base_frame_zy);
-        const real six_r_n_m1_t_2 = six_r_platform_joint_axis_platform_x*(R_xx*six_r_base_frame_xz
-            + R_yx*six_r_base_frame_yz + R_zx*six_r_base_frame_zz) +
-            six_r_platform_joint_axis_platform_y*(R_xy*six_r_base_frame_xz +
-            R_yy*six_r_base_frame_yz + R_zy*six_r_base_frame_zz) +
-            six_r_platform_joint_axis_platform_z*(R_xz*six_r_base_frame_xz +
-            R_yz*six_r_base_frame_yz + R_zz*six_r_base_frame_zz);
-        const real six_r_n_m1_t_3 = six_r_platform_joint_axis_platform_x*(R_xx*six_r_base_frame_xx
-            + R_yx*six_r_base_frame_yx + R_zx*six_r_base_frame_zx) +
-            six_r_platform_joint_axis_platform_y*(R_xy*six_r_base_frame_xx +
-            R_yy*six_r_base_frame_yx + R_zy*six_r_base_frame_zx) +
-            six_r_platform_joint_axis_platform_z*(R_xz*six_r_base_frame_xx +
-            R_yz*six_r_base_frame_yx + R_zz*six_r_base_frame_zx);
-        const real six_r_n_m1_t_4 = six_r_c_1*six_r_n_m1_t + six_r_n_m1_t_2*six_r_s_1;
-        const real six_r_n_m1_t_5 = six_r_c_1*six_r_n_m1_t_2 - six_r_n_m1_t*six_r_s_1;
-        const real six_r_n_m1_t_6 = six_r_c_2*six_r_n_m1_t_5 + six_r_n_m1_t_3*six_r_s_2;
-        const real six_r_n_m1_t_7 = six_r_c_2*six_r_n_m1_t_3 - six_r_n_m1_t_5*six_r_s_2;
-        const real six_r_n_m1_t_8 = six_r_c_3*six_r_n_m1_t_6 + six_r_n_m1_t_7*six_r_s_3;
-        const real six_r_n_m1_t_9 = six_r_c_3*six_r_n_m1_t_7 - six_r_n_m1_t_6*six_r_s_3;
-        const real six_r_n_m1_t_10 = six_r_c_4*six_r_n_m1_t_4 - six_r_n_m1_t_9*six_r_s_4;
-        const real six_r_n_m1_in_axes5_y = six_r_c_5*six_r_n_m1_t_10 + six_r_n_m1_t_8*six_r_s_5;
-        /* (six_r-n_m2) direction 2 of the moment that the platform joint transmits */
-        const real six_r_n_m2_in_axes5_z = six_r_c_5*six_r_n_m1_t_8 - six_r_n_m1_t_10*six_r_s_5;
-        /* (six_r-w_1) force part of reciprocal wrench 1 */
-        const real six_r_end_p1_in_axes5_z = six_r_c_4*six_r_n_m1_t_9 + six_r_n_m1_t_4*six_r_s_4;
-        const real six_r_w_1_t = six_r_e_1_in_axes5_x*six_r_n_m2_in_axes5_z -
-            six_r_e_1_in_axes5_y*six_r_n_m1_in_axes5_y;
-        const real six_r_w_1_t_2 = six_r_e_2_in_axes5_x*six_r_n_m2_in_axes5_z -
-            six_r_e_2_in_axes5_y*six_r_n_m1_in_axes5_y;
-        const real six_r_w_1_t_3 = six_r_e_1_in_axes5_y*six_r_end_p1_in_axes5_z -
-            six_r_e_1_in_axes5_z*six_r_n_m2_in_axes5_z;
-        const real six_r_w_1_t_4 = six_r_e_2_in_axes5_y*six_r_end_p1_in_axes5_z -
-            six_r_n_m2_in_axes5_z*six_r_s_4;
-        const real six_r_size = m->six_r_size[i];
-        const real six_r_w_1_t_5 = six_r_size*six_r_w_1_t;
-        const real six_r_w_1_t_6 = six_r_size*six_r_w_1_t_3;
-        const real six_r_w_1_t_7 = six_r_size*six_r_w_1_t_2;
-        const real six_r_w_1_t_8 = six_r_size*six_r_w_1_t_4;
-        const real six_r_w_1_t_9 = six_r_size*(six_r_c_5*six_r_n_m1_in_axes5_y -
-            six_r_n_m2_in_axes5_z*six_r_s_5);
-        const real six_r_w_1_t_10 = -six_r_c_5*six_r_end_p1_in_axes5_z*six_r_size;
-        const real six_r_w_1_t_11 = six_r_n_m2_in_axes5_z*six_r_size;
-        const real six_r_size_t = m->six_r_size_t[i];
-        const real six_r_w_1_t_12 = root(six_r_size_t + six_r_w_1_t_11*six_r_w_1_t_11);
-        const real inv_six_r_w_1_t_12 = 1/six_r_w_1_t_12;
-        const real six_r_w_1_t_13 = inv_six_r_w_1_t_12*six_r_platform_joint_offset_x;
-        const real six_r_w_1_t_14 = inv_six_r_w_1_t_12*six_r_w_1_t_11;
-        const real six_r_w_1_t_15 = six_r_w_1_t_10*six_r_w_1_t_14;
-        const real six_r_w_1_t_16 = six_r_w_1_t_13*six_r_w_1_t_15;
-        const real six_r_w_1_t_17 = six_r_w_1_t_10 - six_r_w_1_t_14*six_r_w_1_t_15;
-        const real six_r_w_1_t_18 = six_r_v_1_in_axes5_y*six_r_w_1_t_13 -
-            six_r_w_1_t_14*six_r_w_1_t_6;
-        const real six_r_w_1_t_19 = six_r_v_1_in_axes5_y - six_r_w_1_t_13*six_r_w_1_t_18;
-        const real six_r_w_1_t_20 = six_r_w_1_t_6 + six_r_w_1_t_14*six_r_w_1_t_18;
-        const real six_r_w_1_t_21 = six_r_w_1_t_14*six_r_w_1_t_8;
-        const real six_r_w_1_t_22 = six_r_v_2_in_axes5_y*six_r_w_1_t_13 - six_r_w_1_t_21;
-        const real six_r_w_1_t_23 = six_r_v_2_in_axes5_y - six_r_w_1_t_13*six_r_w_1_t_22;
-        const real six_r_w_1_t_24 = six_r_w_1_t_8 + six_r_w_1_t_14*six_r_w_1_t_22;
-        const real six_r_w_1_t_25 = six_r_w_1_t_21 - six_r_v_3_in_axes5_y*six_r_w_1_t_13;
-        const real six_r_w_1_t_26 = six_r_v_3_in_axes5_y + six_r_w_1_t_13*six_r_w_1_t_25;
-        const real six_r_w_1_t_27 = six_r_w_1_t_8 - six_r_w_1_t_14*six_r_w_1_t_25;
-        const real six_r_w_1_t_28 = root(six_r_v_4_in_axes5_z*six_r_v_4_in_axes5_z +
-            six_r_w_1_t_16*six_r_w_1_t_16 + six_r_w_1_t_17*six_r_w_1_t_17 +
-            six_r_w_1_t_9*six_r_w_1_t_9);
-        const real inv_six_r_w_1_t_28 = 1/six_r_w_1_t_28;
-        const real six_r_w_1_t_29 = inv_six_r_w_1_t_28*six_r_w_1_t_16;
-        const real six_r_w_1_t_30 = inv_six_r_w_1_t_28*six_r_v_4_in_axes5_z;
-        const real six_r_w_1_t_31 = inv_six_r_w_1_t_28*six_r_w_1_t_9;
-        const real six_r_w_1_t_32 = inv_six_r_w_1_t_28*six_r_w_1_t_17;
-        const real six_r_w_1_t_33 = six_r_w_1_t_19*six_r_w_1_t_29 + six_r_w_1_t_20*six_r_w_1_t_32
-            + six_r_w_1_t_31*six_r_w_1_t_5 - six_r_v_1_in_axes5_z*six_r_w_1_t_30;
-        const real six_r_w_1_t_34 = six_r_w_1_t_29*six_r_w_1_t_33 - six_r_w_1_t_19;
-        const real six_r_w_1_t_35 = six_r_v_1_in_axes5_z + six_r_w_1_t_30*six_r_w_1_t_33;
-        const real six_r_w_1_t_36 = six_r_w_1_t_31*six_r_w_1_t_33 - six_r_w_1_t_5;
-        const real six_r_w_1_t_37 = six_r_w_1_t_32*six_r_w_1_t_33 - six_r_w_1_t_20;
-        const real six_r_w_1_t_38 = six_r_w_1_t_31*six_r_w_1_t_7;
-        const real six_r_w_1_t_39 = six_r_w_1_t_38 + six_r_w_1_t_23*six_r_w_1_t_29 +
-            six_r_w_1_t_24*six_r_w_1_t_32 - six_r_v_2_in_axes5_z*six_r_w_1_t_30;
-        const real six_r_w_1_t_40 = six_r_w_1_t_29*six_r_w_1_t_39 - six_r_w_1_t_23;
-        const real six_r_w_1_t_41 = six_r_v_2_in_axes5_z + six_r_w_1_t_30*six_r_w_1_t_39;
-        const real six_r_w_1_t_42 = six_r_w_1_t_31*six_r_w_1_t_39 - six_r_w_1_t_7;
-        const real six_r_w_1_t_43 = six_r_w_1_t_32*six_r_w_1_t_39 - six_r_w_1_t_24;
-        const real six_r_w_1_t_44 = six_r_w_1_t_38 + six_r_w_1_t_26*six_r_w_1_t_29 +
-            six_r_w_1_t_27*six_r_w_1_t_32 - six_r_v_3_in_axes5_z*six_r_w_1_t_30;
-        const real six_r_w_1_t_45 = six_r_w_1_t_29*six_r_w_1_t_44 - six_r_w_1_t_26;
-        const real six_r_w_1_t_46 = six_r_v_3_in_axes5_z + six_r_w_1_t_30*six_r_w_1_t_44;
-        const real six_r_w_1_t_47 = six_r_w_1_t_31*six_r_w_1_t_44 - six_r_w_1_t_7;
-        const real six_r_w_1_t_48 = six_r_w_1_t_32*six_r_w_1_t_44 - six_r_w_1_t_27;
-        const real six_r_w_1_t_49 = root(six_r_v_1_in_axes5_x*six_r_v_1_in_axes5_x +
-            six_r_w_1_t_34*six_r_w_1_t_34 + six_r_w_1_t_35*six_r_w_1_t_35 +
-            six_r_w_1_t_36*six_r_w_1_t_36 + six_r_w_1_t_37*six_r_w_1_t_37);
-        const real inv_six_r_w_1_t_49 = 1/six_r_w_1_t_49;
-        const real six_r_w_1_t_50 = inv_six_r_w_1_t_49*six_r_v_1_in_axes5_x;
-        const real six_r_w_1_t_51 = inv_six_r_w_1_t_49*six_r_w_1_t_34;
-        const real six_r_w_1_t_52 = inv_six_r_w_1_t_49*six_r_w_1_t_35;
-        const real six_r_w_1_t_53 = inv_six_r_w_1_t_49*six_r_w_1_t_36;
-        const real six_r_w_1_t_54 = inv_six_r_w_1_t_49*six_r_w_1_t_37;
-        const real six_r_w_1_t_55 = six_r_v_2_in_axes5_x*six_r_w_1_t_50 +
-            six_r_w_1_t_40*six_r_w_1_t_51 + six_r_w_1_t_41*six_r_w_1_t_52 +
-            six_r_w_1_t_42*six_r_w_1_t_53 + six_r_w_1_t_43*six_r_w_1_t_54;
-        const real six_r_w_1_t_56 = six_r_v_2_in_axes5_x - six_r_w_1_t_50*six_r_w_1_t_55;
-        const real six_r_w_1_t_57 = six_r_w_1_t_40 - six_r_w_1_t_51*six_r_w_1_t_55;
-        const real six_r_w_1_t_58 = six_r_w_1_t_41 - six_r_w_1_t_52*six_r_w_1_t_55;
-        const real six_r_w_1_t_59 = six_r_w_1_t_42 - six_r_w_1_t_53*six_r_w_1_t_55;
-        const real six_r_w_1_t_60 = six_r_w_1_t_43 - six_r_w_1_t_54*six_r_w_1_t_55;
-        const real six_r_w_1_t_61 = six_r_v_3_in_axes5_x*six_r_w_1_t_50 +
-            six_r_w_1_t_45*six_r_w_1_t_51 + six_r_w_1_t_46*six_r_w_1_t_52 +
-            six_r_w_1_t_47*six_r_w_1_t_53 + six_r_w_1_t_48*six_r_w_1_t_54;
-        const real six_r_w_1_t_62 = six_r_v_3_in_axes5_x - six_r_w_1_t_50*six_r_w_1_t_61;
-        const real six_r_w_1_t_63 = six_r_w_1_t_45 - six_r_w_1_t_51*six_r_w_1_t_61;
-        const real six_r_w_1_t_64 = six_r_w_1_t_46 - six_r_w_1_t_52*six_r_w_1_t_61;
-        const real six_r_w_1_t_65 = six_r_w_1_t_47 - six_r_w_1_t_53*six_r_w_1_t_61;
-        const real six_r_w_1_t_66 = six_r_w_1_t_48 - six_r_w_1_t_54*six_r_w_1_t_61;
-        const real six_r_w_1_t_67 = root(six_r_w_1_t_56*six_r_w_1_t_56 +
-            six_r_w_1_t_57*six_r_w_1_t_57 + six_r_w_1_t_58*six_r_w_1_t_58 +
-            six_r_w_1_t_59*six_r_w_1_t_59 + six_r_w_1_t_60*six_r_w_1_t_60);
-        const real inv_six_r_w_1_t_67 = 1/six_r_w_1_t_67;
-        const real six_r_w_1_t_68 = inv_six_r_w_1_t_67*six_r_w_1_t_56;
-        const real six_r_w_1_t_69 = inv_six_r_w_1_t_67*six_r_w_1_t_57;
-        const real six_r_w_1_t_70 = inv_six_r_w_1_t_67*six_r_w_1_t_58;
-        const real six_r_w_1_t_71 = inv_six_r_w_1_t_67*six_r_w_1_t_59;
-        const real six_r_w_1_t_72 = inv_six_r_w_1_t_67*six_r_w_1_t_60;
-        const real six_r_w_1_t_73 = six_r_w_1_t_62*six_r_w_1_t_68 + six_r_w_1_t_63*six_r_w_1_t_69
-            + six_r_w_1_t_64*six_r_w_1_t_70 + six_r_w_1_t_65*six_r_w_1_t_71 +
-            six_r_w_1_t_66*six_r_w_1_t_72;
-        const real six_r_w_1_t_74 = six_r_w_1_t_62 - six_r_w_1_t_68*six_r_w_1_t_73;
-        const real six_r_w_1_t_75 = six_r_w_1_t_63 - six_r_w_1_t_69*six_r_w_1_t_73;
-        const real six_r_w_1_t_76 = six_r_w_1_t_64 - six_r_w_1_t_70*six_r_w_1_t_73;
-        const real six_r_w_1_t_77 = six_r_w_1_t_65 - six_r_w_1_t_71*six_r_w_1_t_73;
-        const real six_r_w_1_t_78 = six_r_w_1_t_66 - six_r_w_1_t_72*six_r_w_1_t_73;
-        const real six_r_w_1_t_79 = root(six_r_w_1_t_74*six_r_w_1_t_74 +
-            six_r_w_1_t_75*six_r_w_1_t_75 + six_r_w_1_t_76*six_r_w_1_t_76 +
-            six_r_w_1_t_77*six_r_w_1_t_77 + six_r_w_1_t_78*six_r_w_1_t_78);
+        values_six_r v;
+        stage_six_r_X(m, w, i, j, s, &v);
+        stage_six_r_q(m, w, i, j, joints, &v);
+        stage_six_r_V_X(w, j, V, &v);
+        stage_six_r_V_q(w, j, V, &v);
+        stage_six_r_X_q(m, i, &v);
+        stage_six_r_V_X_q(&v);
+        stage_six_r_Z_dynamics(m, w, i, j, V, &v);
+        stage_six_r_Z_joint_accelerations(&v);
         /* (six_r-eta_1) rate at which the joints turn along moment direction 1 */
-        const real six_r_eta_1 = omega_x*(axis_y_six_r_axes5_x*six_r_n_m1_in_axes5_y -
-            axis_x_six_r_axes5_x*six_r_n_m2_in_axes5_z) +
-            omega_y*(axis_y_six_r_axes5_y*six_r_n_m1_in_axes5_y -
-            axis_x_six_r_axes5_y*six_r_n_m2_in_axes5_z) +
-            omega_z*(axis_y_six_r_axes5_z*six_r_n_m1_in_axes5_y -
-            axis_x_six_r_axes5_z*six_r_n_m2_in_axes5_z);
+        const real omega_x = V[3*w + j];
+        const real omega_y = V[4*w + j];
+        const real omega_z = V[5*w + j];
+        const real six_r_eta_1 = omega_x*(v.axis_y_six_r_axes5_x*v.six_r_n_m1_in_axes5_y -
+            v.axis_x_six_r_axes5_x*v.six_r_n_m2_in_axes5_z) +
+            omega_y*(v.axis_y_six_r_axes5_y*v.six_r_n_m1_in_axes5_y -
+            v.axis_x_six_r_axes5_y*v.six_r_n_m2_in_axes5_z) +
+            omega_z*(v.axis_y_six_r_axes5_z*v.six_r_n_m1_in_axes5_y -
+            v.axis_x_six_r_axes5_z*v.six_r_n_m2_in_axes5_z);
         /* (six_r-eta_2) rate at which the joints turn along moment direction 2 */
-        const real six_r_eta_2 = omega_x*(axis_z_six_r_axes5_x*six_r_n_m2_in_axes5_z -
-            axis_y_six_r_axes5_x*six_r_end_p1_in_axes5_z) +
-            omega_y*(axis_z_six_r_axes5_y*six_r_n_m2_in_axes5_z -
-            axis_y_six_r_axes5_y*six_r_end_p1_in_axes5_z) +
-            omega_z*(axis_z_six_r_axes5_z*six_r_n_m2_in_axes5_z -
-            axis_y_six_r_axes5_z*six_r_end_p1_in_axes5_z);
+        const real six_r_eta_2 = omega_x*(v.axis_z_six_r_axes5_x*v.six_r_n_m2_in_axes5_z -
+            v.axis_y_six_r_axes5_x*v.six_r_end_p1_in_axes5_z) +
+            omega_y*(v.axis_z_six_r_axes5_y*v.six_r_n_m2_in_axes5_z -
+            v.axis_y_six_r_axes5_y*v.six_r_end_p1_in_axes5_z) +
+            omega_z*(v.axis_z_six_r_axes5_z*v.six_r_n_m2_in_axes5_z -
+            v.axis_y_six_r_axes5_z*v.six_r_end_p1_in_axes5_z);
         /* (six_r-qd_1) rate of joint 1 */
-        const real inv_six_r_w_1_t_79 = 1/six_r_w_1_t_79;
-        const real six_r_qd_1_t = inv_six_r_w_1_t_79*six_r_w_1_t_74;
-        const real six_r_qd_1_t_2 = inv_six_r_w_1_t_79*six_r_w_1_t_75;
-        const real six_r_qd_1_t_3 = inv_six_r_w_1_t_79*six_r_w_1_t_76;
-        const real six_r_qd_1_t_4 = inv_six_r_w_1_t_79*six_r_w_1_t_77;
-        const real six_r_qd_1_t_5 = inv_six_r_w_1_t_79*six_r_w_1_t_78;
+        const real six_r_size = m->six_r_size[i];
         const real six_r_qd_1_t_6 = six_r_eta_1*six_r_size;
         const real six_r_qd_1_t_7 = six_r_eta_2*six_r_size;
-        const real six_r_qd_1_t_8 = inv_six_r_w_1_t_79*(six_r_S_dot_in_axes5_x*six_r_qd_1_t +
-            six_r_S_dot_in_axes5_z*six_r_qd_1_t_3 + six_r_qd_1_t_4*six_r_qd_1_t_6 +
-            six_r_qd_1_t_5*six_r_qd_1_t_7 - six_r_S_dot_in_axes5_y*six_r_qd_1_t_2);
-        const real six_r_qd_1_t_9 = inv_six_r_w_1_t_67*(six_r_S_dot_in_axes5_x*six_r_w_1_t_68 +
-            six_r_S_dot_in_axes5_z*six_r_w_1_t_70 + six_r_qd_1_t_6*six_r_w_1_t_71 +
-            six_r_qd_1_t_7*six_r_w_1_t_72 - six_r_S_dot_in_axes5_y*six_r_w_1_t_69 -
-            six_r_qd_1_t_8*six_r_w_1_t_73);
-        const real six_r_qd_1 = -inv_six_r_w_1_t_49*(six_r_S_dot_in_axes5_y*six_r_w_1_t_51 +
-            six_r_qd_1_t_8*six_r_w_1_t_61 + six_r_qd_1_t_9*six_r_w_1_t_55 -
-            six_r_S_dot_in_axes5_x*six_r_w_1_t_50 - six_r_S_dot_in_axes5_z*six_r_w_1_t_52 -
-            six_r_qd_1_t_6*six_r_w_1_t_53 - six_r_qd_1_t_7*six_r_w_1_t_54);
+        const real six_r_qd_1_t_8 = v.inv_six_r_w_1_t_79*(v.six_r_S_dot_in_axes5_x*v.six_r_qd_1_t
+            + v.six_r_S_dot_in_axes5_z*v.six_r_qd_1_t_3 + v.six_r_qd_1_t_4*six_r_qd_1_t_6 +
+            v.six_r_qd_1_t_5*six_r_qd_1_t_7 - v.six_r_S_dot_in_axes5_y*v.six_r_qd_1_t_2);
+        const real six_r_qd_1_t_9 =
+            v.inv_six_r_w_1_t_67*(v.six_r_S_dot_in_axes5_x*v.six_r_w_1_t_68 +
+            v.six_r_S_dot_in_axes5_z*v.six_r_w_1_t_70 + six_r_qd_1_t_6*v.six_r_w_1_t_71 +
+            six_r_qd_1_t_7*v.six_r_w_1_t_72 - v.six_r_S_dot_in_axes5_y*v.six_r_w_1_t_69 -
+            six_r_qd_1_t_8*v.six_r_w_1_t_73);
+        const real six_r_qd_1_t_10 =
+            v.inv_six_r_w_1_t_49*(v.six_r_S_dot_in_axes5_y*v.six_r_w_1_t_51 +
+            six_r_qd_1_t_8*v.six_r_w_1_t_61 + six_r_qd_1_t_9*v.six_r_w_1_t_55 -
+            v.six_r_S_dot_in_axes5_x*v.six_r_w_1_t_50 - v.six_r_S_dot_in_axes5_z*v.six_r_w_1_t_52
+            - six_r_qd_1_t_6*v.six_r_w_1_t_53 - six_r_qd_1_t_7*v.six_r_w_1_t_54);
         /* (six_r-qd_4) rate of joint 4 */
-        const real six_r_qd_4 = inv_six_r_w_1_t_28*(six_r_S_dot_in_axes5_z*six_r_w_1_t_30 +
-            six_r_qd_1*six_r_w_1_t_33 + six_r_qd_1_t_6*six_r_w_1_t_31 +
-            six_r_qd_1_t_7*six_r_w_1_t_32 + six_r_qd_1_t_8*six_r_w_1_t_44 +
-            six_r_qd_1_t_9*six_r_w_1_t_39 - six_r_S_dot_in_axes5_y*six_r_w_1_t_29);
+        const real six_r_qd_4 = v.inv_six_r_w_1_t_28*(v.six_r_S_dot_in_axes5_z*v.six_r_w_1_t_30 +
+            six_r_qd_1_t_6*v.six_r_w_1_t_31 + six_r_qd_1_t_7*v.six_r_w_1_t_32 +
+            six_r_qd_1_t_8*v.six_r_w_1_t_44 + six_r_qd_1_t_9*v.six_r_w_1_t_39 -
+            v.six_r_S_dot_in_axes5_y*v.six_r_w_1_t_29 - six_r_qd_1_t_10*v.six_r_w_1_t_33);
         /* (six_r-qd_5) rate of joint 5 */
-        const real six_r_qd_5 = inv_six_r_w_1_t_12*(six_r_S_dot_in_axes5_y*six_r_w_1_t_13 +
-            six_r_qd_1_t_7*six_r_w_1_t_14 + six_r_qd_1_t_8*six_r_w_1_t_25 -
-            six_r_qd_1*six_r_w_1_t_18 - six_r_qd_1_t_9*six_r_w_1_t_22 -
-            six_r_qd_4*six_r_w_1_t_15);
+        const real six_r_qd_5 = v.inv_six_r_w_1_t_12*(v.six_r_S_dot_in_axes5_y*v.six_r_w_1_t_13 +
+            six_r_qd_1_t_10*v.six_r_w_1_t_18 + six_r_qd_1_t_7*v.six_r_w_1_t_14 +
+            six_r_qd_1_t_8*v.six_r_w_1_t_25 - six_r_qd_1_t_9*v.six_r_w_1_t_22 -
+            six_r_qd_4*v.six_r_w_1_t_15);
         /* (six_r-omega_1) angular velocity of link 1 */
-        const real six_r_omega_1_in_axes2_x = six_r_qd_1*six_r_s_2;
-        const real six_r_omega_1_in_axes2_y = six_r_c_2*six_r_qd_1;
-        const real six_r_omega_1_in_axes5_x = six_r_e_1_in_axes5_x*six_r_qd_1;
-        const real six_r_omega_1_in_axes5_y = six_r_e_1_in_axes5_y*six_r_qd_1;
-        const real six_r_omega_1_in_axes5_z = six_r_e_1_in_axes5_z*six_r_qd_1;
+        const real six_r_omega_1_in_axes2_x = -v.six_r_c_2*six_r_qd_1_t_10;
+        const real six_r_omega_1_in_axes2_y = six_r_qd_1_t_10*v.six_r_s_2;
+        const real six_r_omega_1_t = v.six_r_e_1_in_axes5_x*six_r_qd_1_t_10;
+        const real six_r_omega_1_t_2 = v.six_r_e_1_in_axes5_y*six_r_qd_1_t_10;
+        const real six_r_omega_1_t_3 = v.six_r_e_1_in_axes5_z*six_r_qd_1_t_10;
         /* (six_r-W_1) centripetal tensor of link 1 */
-        const real six_r_W_1_in_axes5_xy = six_r_omega_1_in_axes5_x*six_r_omega_1_in_axes5_y;
-        const real six_r_W_1_in_axes5_xz = six_r_omega_1_in_axes5_x*six_r_omega_1_in_axes5_z;
-        const real six_r_W_1_in_axes5_yz = six_r_omega_1_in_axes5_y*six_r_omega_1_in_axes5_z;
+        const real six_r_W_1_in_axes5_xy = six_r_omega_1_t*six_r_omega_1_t_2;
+        const real six_r_W_1_in_axes5_xz = six_r_omega_1_t*six_r_omega_1_t_3;
+        const real six_r_W_1_in_axes5_yz = six_r_omega_1_t_2*six_r_omega_1_t_3;
         /* (six_r-omega_2) angular velocity of link 2 */
-        const real six_r_omega_2_in_axes3_x = six_r_c_3*six_r_omega_1_in_axes2_x +
-            six_r_omega_1_in_axes2_y*six_r_s_3;
-        const real six_r_omega_2_in_axes3_y = six_r_c_3*six_r_omega_1_in_axes2_y -
-            six_r_omega_1_in_axes2_x*six_r_s_3;
-        const real six_r_omega_2_in_axes5_x = six_r_omega_1_in_axes5_x +
-            six_r_e_2_in_axes5_x*six_r_qd_1_t_9;
-        const real six_r_omega_2_in_axes5_y = six_r_omega_1_in_axes5_y +
-            six_r_e_2_in_axes5_y*six_r_qd_1_t_9;
-        const real six_r_omega_2_in_axes5_z = six_r_omega_1_in_axes5_z + six_r_qd_1_t_9*six_r_s_4;
+        const real six_r_omega_2_in_axes3_x = six_r_omega_1_in_axes2_x*v.six_r_s_3 -
+            v.six_r_c_3*six_r_omega_1_in_axes2_y;
+        const real six_r_omega_2_in_axes3_y = v.six_r_c_3*six_r_omega_1_in_axes2_x +
+            six_r_omega_1_in_axes2_y*v.six_r_s_3;
+        const real six_r_omega_2_in_axes5_x = v.six_r_e_2_in_axes5_x*six_r_qd_1_t_9 -
+            six_r_omega_1_t;
+        const real six_r_omega_2_in_axes5_y = v.six_r_e_2_in_axes5_y*six_r_qd_1_t_9 -
+            six_r_omega_1_t_2;
+        const real six_r_omega_2_in_axes5_z = v.six_r_c_4*six_r_qd_1_t_9 - six_r_omega_1_t_3;
         /* (six_r-W_2) centripetal tensor of link 2 */
         const real six_r_W_2_in_axes2_yz = six_r_omega_1_in_axes2_y*six_r_qd_1_t_9;
         const real six_r_W_2_in_axes2_xy = six_r_omega_1_in_axes2_x*six_r_omega_1_in_axes2_y;
@@ -6315,84 +6897,81 @@ INLINE void Z_legs_six_r(const prepared *m, size_t w, size_t leg, size_t legs, c
         const real six_r_W_2_in_axes5_yz = six_r_omega_2_in_axes5_y*six_r_omega_2_in_axes5_z;
         /* (six_r-omega_3) angular velocity of link 3 */
         const real six_r_omega_3_in_axes3_z = six_r_qd_1_t_8 + six_r_qd_1_t_9;
-        const real six_r_omega_3_in_axes4_x = six_r_c_4*six_r_omega_2_in_axes3_y +
-            six_r_omega_3_in_axes3_z*six_r_s_4;
-        const real six_r_omega_3_in_axes4_y = six_r_c_4*six_r_omega_3_in_axes3_z -
-            six_r_omega_2_in_axes3_y*six_r_s_4;
-        const real six_r_omega_3_t = -six_r_c_5*six_r_omega_3_in_axes4_y;
-        const real six_r_omega_3_t_2 = six_r_omega_3_in_axes4_y*six_r_s_5;
-        const real six_r_omega_3_in_axes5_x = six_r_omega_2_in_axes3_x*six_r_s_5 -
-            six_r_omega_3_t;
-        const real six_r_omega_3_in_axes5_y = six_r_c_5*six_r_omega_2_in_axes3_x -
-            six_r_omega_3_t_2;
+        const real six_r_omega_3_in_axes4_x = six_r_omega_3_in_axes3_z*v.six_r_s_4 -
+            v.six_r_c_4*six_r_omega_2_in_axes3_x;
+        const real six_r_omega_3_in_axes4_y = v.six_r_c_4*six_r_omega_3_in_axes3_z +
+            six_r_omega_2_in_axes3_x*v.six_r_s_4;
+        const real six_r_omega_3_t = six_r_omega_3_in_axes4_x*v.six_r_s_5;
+        const real six_r_omega_3_t_2 = v.six_r_c_5*six_r_omega_3_in_axes4_x;
+        const real six_r_omega_3_in_axes5_x = six_r_omega_3_t +
+            v.six_r_c_5*six_r_omega_2_in_axes3_y;
+        const real six_r_omega_3_in_axes5_y = six_r_omega_3_t_2 -
+            six_r_omega_2_in_axes3_y*v.six_r_s_5;
         /* (six_r-W_3) centripetal tensor of link 3 */
-        const real six_r_W_3_t = six_r_omega_2_in_axes3_y*six_r_omega_2_in_axes3_y;
+        const real six_r_W_3_t = six_r_omega_2_in_axes3_x*six_r_omega_2_in_axes3_x;
         const real six_r_W_3_t_2 = six_r_omega_3_in_axes3_z*six_r_omega_3_in_axes3_z;
-        const real six_r_W_3_t_3 = six_r_W_3_t + six_r_W_3_t_2;
         const real six_r_W_3_in_axes3_xy = six_r_omega_2_in_axes3_x*six_r_omega_2_in_axes3_y;
         const real six_r_W_3_in_axes3_xz = six_r_omega_2_in_axes3_x*six_r_omega_3_in_axes3_z;
+        const real six_r_W_3_t_3 = six_r_W_3_t + six_r_W_3_t_2;
         const real six_r_W_3_in_axes3_yz = six_r_omega_2_in_axes3_y*six_r_omega_3_in_axes3_z;
         const real six_r_W_3_in_axes5_xy = six_r_omega_3_in_axes5_x*six_r_omega_3_in_axes5_y;
         /* (six_r-omega_4) angular velocity of link 4 */
-        const real six_r_omega_4_in_axes4_z = six_r_omega_2_in_axes3_x + six_r_qd_4;
-        const real six_r_omega_4_in_axes5_x = six_r_omega_4_in_axes4_z*six_r_s_5 -
-            six_r_omega_3_t;
-        const real six_r_omega_4_in_axes5_y = six_r_c_5*six_r_omega_4_in_axes4_z -
-            six_r_omega_3_t_2;
+        const real six_r_omega_4_in_axes4_z = six_r_omega_2_in_axes3_y + six_r_qd_4;
+        const real six_r_omega_4_in_axes5_x = six_r_omega_3_t +
+            v.six_r_c_5*six_r_omega_4_in_axes4_z;
+        const real six_r_omega_4_in_axes5_y = six_r_omega_3_t_2 -
+            six_r_omega_4_in_axes4_z*v.six_r_s_5;
         /* (six_r-W_4) centripetal tensor of link 4 */
         const real six_r_W_4_in_axes4_xy = six_r_omega_3_in_axes4_x*six_r_omega_3_in_axes4_y;
         const real six_r_W_4_in_axes4_xz = six_r_omega_3_in_axes4_x*six_r_omega_4_in_axes4_z;
         const real six_r_W_4_in_axes4_yz = six_r_omega_3_in_axes4_y*six_r_omega_4_in_axes4_z;
         const real six_r_W_4_in_axes5_xy = six_r_omega_4_in_axes5_x*six_r_omega_4_in_axes5_y;
         /* (six_r-omega_5) angular velocity of link 5 */
-        const real six_r_omega_5_in_axes5_z = six_r_omega_3_in_axes4_x + six_r_qd_5;
+        const real six_r_omega_5_in_axes5_z = six_r_omega_3_in_axes4_y + six_r_qd_5;
         /* (six_r-W_5) centripetal tensor of link 5 */
         const real six_r_W_5_t = six_r_omega_4_in_axes5_y*six_r_omega_4_in_axes5_y;
         const real six_r_W_5_t_2 = six_r_omega_5_in_axes5_z*six_r_omega_5_in_axes5_z;
-        const real six_r_W_5_in_axes5_xx = -six_r_W_5_t - six_r_W_5_t_2;
+        const real six_r_W_5_t_3 = six_r_W_5_t + six_r_W_5_t_2;
         const real six_r_W_5_in_axes5_xz = six_r_omega_4_in_axes5_x*six_r_omega_5_in_axes5_z;
         const real six_r_W_5_in_axes5_yz = six_r_omega_4_in_axes5_y*six_r_omega_5_in_axes5_z;
         /* (six_r-u_1) centripetal acceleration of the connection point */
-        const real six_r_u_1_x = omega_y*six_r_S_dot_t_16 - omega_z*six_r_S_dot_t_15;
-        const real six_r_u_1_y = omega_z*six_r_S_dot_t_14 - omega_x*six_r_S_dot_t_16;
-        const real six_r_u_1_z = omega_x*six_r_S_dot_t_15 - omega_y*six_r_S_dot_t_14;
-        const real six_r_u_1_in_axes5_x = axis_x_six_r_axes5_x*six_r_u_1_x +
-            axis_x_six_r_axes5_y*six_r_u_1_y + axis_x_six_r_axes5_z*six_r_u_1_z;
-        const real six_r_u_1_in_axes5_y = axis_y_six_r_axes5_x*six_r_u_1_x +
-            axis_y_six_r_axes5_y*six_r_u_1_y + axis_y_six_r_axes5_z*six_r_u_1_z;
-        const real six_r_u_1_in_axes5_z = axis_z_six_r_axes5_x*six_r_u_1_x +
-            axis_z_six_r_axes5_y*six_r_u_1_y + axis_z_six_r_axes5_z*six_r_u_1_z;
+        const real six_r_u_1_in_axes5_x = v.axis_x_six_r_axes5_x*v.six_r_u_1_x +
+            v.axis_x_six_r_axes5_y*v.six_r_u_1_y + v.axis_x_six_r_axes5_z*v.six_r_u_1_z;
+        const real six_r_u_1_in_axes5_y = v.axis_y_six_r_axes5_x*v.six_r_u_1_x +
+            v.axis_y_six_r_axes5_y*v.six_r_u_1_y + v.axis_y_six_r_axes5_z*v.six_r_u_1_z;
+        const real six_r_u_1_in_axes5_z = v.axis_z_six_r_axes5_x*v.six_r_u_1_x +
+            v.axis_z_six_r_axes5_y*v.six_r_u_1_y + v.axis_z_six_r_axes5_z*v.six_r_u_1_z;
         /* (six_r-zeta_2) angular acceleration of link 2 from the turning of axis 2 */
         const real six_r_zeta_2_in_axes2_y = -six_r_omega_1_in_axes2_x*six_r_qd_1_t_9;
-        const real six_r_zeta_2_in_axes3_x = six_r_W_2_in_axes2_yz*six_r_c_3 +
-            six_r_s_3*six_r_zeta_2_in_axes2_y;
-        const real six_r_zeta_2_in_axes3_y = six_r_c_3*six_r_zeta_2_in_axes2_y -
-            six_r_W_2_in_axes2_yz*six_r_s_3;
-        const real six_r_zeta_2_in_axes5_z = six_r_c_4*six_r_zeta_2_in_axes3_y;
-        const real six_r_zeta_2_t = six_r_s_4*six_r_zeta_2_in_axes3_y;
-        const real six_r_zeta_2_in_axes5_x = six_r_s_5*six_r_zeta_2_in_axes3_x -
-            six_r_c_5*six_r_zeta_2_t;
-        const real six_r_zeta_2_in_axes5_y = six_r_c_5*six_r_zeta_2_in_axes3_x +
-            six_r_s_5*six_r_zeta_2_t;
+        const real six_r_zeta_2_in_axes3_x = six_r_W_2_in_axes2_yz*v.six_r_s_3 -
+            v.six_r_c_3*six_r_zeta_2_in_axes2_y;
+        const real six_r_zeta_2_in_axes3_y = six_r_W_2_in_axes2_yz*v.six_r_c_3 +
+            v.six_r_s_3*six_r_zeta_2_in_axes2_y;
+        const real six_r_zeta_2_t = v.six_r_c_4*six_r_zeta_2_in_axes3_x;
+        const real six_r_zeta_2_in_axes5_z = v.six_r_s_4*six_r_zeta_2_in_axes3_x;
+        const real six_r_zeta_2_in_axes5_x = v.six_r_c_5*six_r_zeta_2_in_axes3_y -
+            v.six_r_s_5*six_r_zeta_2_t;
+        const real six_r_zeta_2_in_axes5_y = -v.six_r_c_5*six_r_zeta_2_t -
+            v.six_r_s_5*six_r_zeta_2_in_axes3_y;
         /* (six_r-zeta_3) angular acceleration of link 3 from the turning of axis 3 */
         const real six_r_zeta_3_in_axes3_x = six_r_omega_2_in_axes3_y*six_r_qd_1_t_8;
         const real six_r_zeta_3_t = six_r_omega_2_in_axes3_x*six_r_qd_1_t_8;
         /* (six_r-beta_3) angular acceleration of link 3 at zero joint accelerations */
         const real six_r_beta_3_in_axes3_x = six_r_zeta_2_in_axes3_x + six_r_zeta_3_in_axes3_x;
         const real six_r_beta_3_in_axes3_y = six_r_zeta_2_in_axes3_y - six_r_zeta_3_t;
-        const real six_r_beta_3_in_axes4_x = six_r_beta_3_in_axes3_y*six_r_c_4;
-        const real six_r_beta_3_in_axes4_y = -six_r_beta_3_in_axes3_y*six_r_s_4;
+        const real six_r_beta_3_t = six_r_beta_3_in_axes3_x*v.six_r_c_4;
+        const real six_r_beta_3_in_axes4_y = six_r_beta_3_in_axes3_x*v.six_r_s_4;
         /* (six_r-zeta_4) angular acceleration of link 4 from the turning of axis 4 */
         const real six_r_zeta_4_in_axes4_x = six_r_omega_3_in_axes4_y*six_r_qd_4;
-        const real six_r_zeta_4_in_axes4_y = -six_r_omega_3_in_axes4_x*six_r_qd_4;
+        const real six_r_zeta_4_t = six_r_omega_3_in_axes4_x*six_r_qd_4;
         /* (six_r-beta_4) angular acceleration of link 4 at zero joint accelerations */
-        const real six_r_beta_4_in_axes4_x = six_r_beta_3_in_axes4_x + six_r_zeta_4_in_axes4_x;
-        const real six_r_beta_4_in_axes4_y = six_r_beta_3_in_axes4_y + six_r_zeta_4_in_axes4_y;
-        const real six_r_beta_4_t = six_r_beta_3_in_axes3_x*six_r_s_5;
-        const real six_r_beta_4_in_axes5_x = six_r_beta_4_t + six_r_beta_4_in_axes4_y*six_r_c_5;
-        const real six_r_beta_4_t_2 = -six_r_beta_3_in_axes3_x*six_r_c_5;
-        const real six_r_beta_4_in_axes5_y = -six_r_beta_4_t_2 -
-            six_r_beta_4_in_axes4_y*six_r_s_5;
+        const real six_r_beta_4_in_axes4_x = six_r_zeta_4_in_axes4_x - six_r_beta_3_t;
+        const real six_r_beta_4_in_axes4_y = six_r_beta_3_in_axes4_y - six_r_zeta_4_t;
+        const real six_r_beta_4_t = six_r_beta_3_in_axes3_y*v.six_r_c_5;
+        const real six_r_beta_4_in_axes5_x = six_r_beta_4_t + six_r_beta_4_in_axes4_x*v.six_r_s_5;
+        const real six_r_beta_4_t_2 = six_r_beta_3_in_axes3_y*v.six_r_s_5;
+        const real six_r_beta_4_in_axes5_y = six_r_beta_4_in_axes4_x*v.six_r_c_5 -
+            six_r_beta_4_t_2;
         /* (six_r-zeta_5) angular acceleration of link 5 from the turning of axis 5 */
         const real six_r_zeta_5_in_axes5_x = six_r_omega_4_in_axes5_y*six_r_qd_5;
         const real six_r_zeta_5_t = six_r_omega_4_in_axes5_x*six_r_qd_5;
@@ -6400,137 +6979,124 @@ INLINE void Z_legs_six_r(const prepared *m, size_t w, size_t leg, size_t legs, c
         const real six_r_beta_5_in_axes5_x = six_r_beta_4_in_axes5_x + six_r_zeta_5_in_axes5_x;
         const real six_r_beta_5_in_axes5_y = six_r_beta_4_in_axes5_y - six_r_zeta_5_t;
         /* (six_r-bias) acceleration of the connection point at zero joint accelerations */
-        const real six_r_bias_t = six_r_omega_3_in_axes4_x*six_r_omega_3_in_axes4_x;
+        const real six_r_bias_t = six_r_omega_3_in_axes4_y*six_r_omega_3_in_axes4_y;
         const real six_r_bias_t_2 = six_r_omega_4_in_axes5_x*six_r_omega_4_in_axes5_x;
-        const real six_r_d_2_in_spec2_x = six_r_joint2_offset_x*six_r_s_2;
-        const real six_r_d_2_in_spec2_y = six_r_c_2*six_r_joint2_offset_x;
-        const real six_r_bias_t_3 = six_r_c_3*six_r_d_2_in_spec2_x +
-            six_r_d_2_in_spec2_y*six_r_s_3;
-        const real six_r_bias_t_4 = six_r_c_3*six_r_d_2_in_spec2_y -
-            six_r_d_2_in_spec2_x*six_r_s_3;
-        const real six_r_d_2_in_axes5_z = six_r_bias_t_4*six_r_c_4;
-        const real six_r_bias_t_5 = six_r_bias_t_4*six_r_s_4;
-        const real six_r_d_2_in_axes5_x = six_r_bias_t_3*six_r_s_5 - six_r_bias_t_5*six_r_c_5;
-        const real six_r_d_2_in_axes5_y = six_r_bias_t_3*six_r_c_5 + six_r_bias_t_5*six_r_s_5;
-        const real six_r_bias_t_6 = six_r_omega_1_in_axes5_x*six_r_omega_1_in_axes5_x;
-        const real six_r_bias_t_7 = six_r_omega_1_in_axes5_y*six_r_omega_1_in_axes5_y;
-        const real six_r_bias_t_8 = six_r_omega_1_in_axes5_z*six_r_omega_1_in_axes5_z;
-        const real six_r_bias_t_9 = six_r_c_3*six_r_joint3_offset_x;
-        const real six_r_bias_t_10 = six_r_joint3_offset_x*six_r_s_3;
-        const real six_r_d_3_in_axes5_z = -six_r_bias_t_10*six_r_c_4;
-        const real six_r_bias_t_11 = six_r_bias_t_10*six_r_s_4;
-        const real six_r_d_3_in_axes5_x = six_r_bias_t_11*six_r_c_5 + six_r_bias_t_9*six_r_s_5;
-        const real six_r_d_3_in_axes5_y = six_r_bias_t_9*six_r_c_5 - six_r_bias_t_11*six_r_s_5;
-        const real six_r_bias_t_12 = six_r_omega_2_in_axes5_x*six_r_omega_2_in_axes5_x;
-        const real six_r_bias_t_13 = six_r_omega_2_in_axes5_y*six_r_omega_2_in_axes5_y;
-        const real six_r_bias_t_14 = six_r_omega_2_in_axes5_z*six_r_omega_2_in_axes5_z;
-        const real six_r_d_4_in_axes5_x = six_r_joint4_offset_x*six_r_s_5;
-        const real six_r_d_4_in_axes5_y = six_r_c_5*six_r_joint4_offset_x;
-        const real six_r_d_5_in_axes5_x = six_r_joint5_offset_x*six_r_s_5;
-        const real six_r_d_5_in_axes5_y = six_r_c_5*six_r_joint5_offset_x;
-        const real six_r_bias_t_15 = six_r_W_4_in_axes5_xy + six_r_beta_4_in_axes4_x;
+        const real six_r_bias_t_6 = v.six_r_bias_t_4*v.six_r_c_4;
+        const real six_r_d_2_in_axes5_z = v.six_r_bias_t_4*v.six_r_s_4;
+        const real six_r_d_2_in_axes5_x = v.six_r_bias_t_5*v.six_r_c_5 -
+            six_r_bias_t_6*v.six_r_s_5;
+        const real six_r_d_2_in_axes5_y = -v.six_r_bias_t_5*v.six_r_s_5 -
+            six_r_bias_t_6*v.six_r_c_5;
+        const real six_r_bias_t_7 = six_r_omega_1_t*six_r_omega_1_t;
+        const real six_r_bias_t_8 = six_r_omega_1_t_2*six_r_omega_1_t_2;
+        const real six_r_bias_t_9 = six_r_omega_1_t_3*six_r_omega_1_t_3;
+        const real six_r_bias_t_12 = v.six_r_bias_t_10*v.six_r_c_4;
+        const real six_r_d_3_in_axes5_z = v.six_r_bias_t_10*v.six_r_s_4;
+        const real six_r_d_3_in_axes5_x = v.six_r_bias_t_11*v.six_r_c_5 -
+            six_r_bias_t_12*v.six_r_s_5;
+        const real six_r_d_3_in_axes5_y = -v.six_r_bias_t_11*v.six_r_s_5 -
+            six_r_bias_t_12*v.six_r_c_5;
+        const real six_r_bias_t_13 = six_r_omega_2_in_axes5_x*six_r_omega_2_in_axes5_x;
+        const real six_r_bias_t_14 = six_r_omega_2_in_axes5_y*six_r_omega_2_in_axes5_y;
+        const real six_r_bias_t_15 = six_r_omega_2_in_axes5_z*six_r_omega_2_in_axes5_z;
+        const real six_r_joint4_offset_x = m->six_r_joint4_offset_x[i];
+        const real six_r_bias_t_16 = six_r_joint4_offset_x*v.six_r_s_5;
+        const real six_r_joint5_offset_x = m->six_r_joint5_offset_x[i];
+        const real six_r_bias_t_17 = six_r_joint5_offset_x*v.six_r_s_5;
+        const real six_r_bias_t_18 = six_r_W_4_in_axes5_xy + six_r_beta_4_in_axes4_y;
+        const real six_r_platform_joint_offset_x = m->six_r_platform_joint_offset_x[i];
         const real six_r_bias_in_axes5_x = six_r_W_1_in_axes5_xy*six_r_d_2_in_axes5_y +
             six_r_W_1_in_axes5_xz*six_r_d_2_in_axes5_z +
-            six_r_W_5_in_axes5_xx*six_r_platform_joint_offset_x +
             six_r_d_3_in_axes5_y*(six_r_W_2_in_axes5_xy - six_r_zeta_2_in_axes5_z) +
-            six_r_d_3_in_axes5_z*(six_r_W_2_in_axes5_xz + six_r_zeta_2_in_axes5_y) +
-            six_r_d_4_in_axes5_y*(six_r_W_3_in_axes5_xy - six_r_beta_3_in_axes4_x) +
-            six_r_d_5_in_axes5_y*(six_r_W_4_in_axes5_xy - six_r_beta_4_in_axes4_x) -
-            six_r_d_2_in_axes5_x*(six_r_bias_t_7 + six_r_bias_t_8) -
-            six_r_d_3_in_axes5_x*(six_r_bias_t_13 + six_r_bias_t_14) -
-            six_r_d_4_in_axes5_x*(six_r_bias_t +
-            six_r_omega_3_in_axes5_y*six_r_omega_3_in_axes5_y) - six_r_d_5_in_axes5_x*(six_r_W_5_t
-            + six_r_bias_t);
+            six_r_d_3_in_axes5_z*(six_r_W_2_in_axes5_xz + six_r_zeta_2_in_axes5_y) -
+            six_r_W_5_t_3*six_r_platform_joint_offset_x - six_r_bias_t_16*(six_r_W_3_in_axes5_xy -
+            six_r_beta_3_in_axes4_y) - six_r_bias_t_17*(six_r_W_4_in_axes5_xy -
+            six_r_beta_4_in_axes4_y) - six_r_d_2_in_axes5_x*(six_r_bias_t_8 + six_r_bias_t_9) -
+            six_r_d_3_in_axes5_x*(six_r_bias_t_14 + six_r_bias_t_15) -
+            v.six_r_d_4_in_axes5_x*(six_r_bias_t +
+            six_r_omega_3_in_axes5_y*six_r_omega_3_in_axes5_y) -
+            v.six_r_d_5_in_axes5_x*(six_r_W_5_t + six_r_bias_t);
         const real six_r_bias_in_axes5_y = six_r_W_1_in_axes5_xy*six_r_d_2_in_axes5_x +
-            six_r_W_1_in_axes5_yz*six_r_d_2_in_axes5_z + six_r_bias_t_15*six_r_d_5_in_axes5_x +
-            six_r_bias_t_15*six_r_platform_joint_offset_x +
+            six_r_W_1_in_axes5_yz*six_r_d_2_in_axes5_z + six_r_bias_t_16*(six_r_bias_t +
+            six_r_omega_3_in_axes5_x*six_r_omega_3_in_axes5_x) + six_r_bias_t_17*(six_r_bias_t +
+            six_r_bias_t_2) + six_r_bias_t_18*v.six_r_d_5_in_axes5_x +
+            six_r_bias_t_18*six_r_platform_joint_offset_x +
             six_r_d_3_in_axes5_x*(six_r_W_2_in_axes5_xy + six_r_zeta_2_in_axes5_z) +
             six_r_d_3_in_axes5_z*(six_r_W_2_in_axes5_yz - six_r_zeta_2_in_axes5_x) +
-            six_r_d_4_in_axes5_x*(six_r_W_3_in_axes5_xy + six_r_beta_3_in_axes4_x) -
-            six_r_d_2_in_axes5_y*(six_r_bias_t_6 + six_r_bias_t_8) -
-            six_r_d_3_in_axes5_y*(six_r_bias_t_12 + six_r_bias_t_14) -
-            six_r_d_4_in_axes5_y*(six_r_bias_t +
-            six_r_omega_3_in_axes5_x*six_r_omega_3_in_axes5_x) -
-            six_r_d_5_in_axes5_y*(six_r_bias_t + six_r_bias_t_2);
+            v.six_r_d_4_in_axes5_x*(six_r_W_3_in_axes5_xy + six_r_beta_3_in_axes4_y) -
+            six_r_d_2_in_axes5_y*(six_r_bias_t_7 + six_r_bias_t_9) -
+            six_r_d_3_in_axes5_y*(six_r_bias_t_13 + six_r_bias_t_15);
         const real six_r_bias_in_axes5_z = six_r_W_1_in_axes5_xz*six_r_d_2_in_axes5_x +
             six_r_W_1_in_axes5_yz*six_r_d_2_in_axes5_y +
             six_r_d_3_in_axes5_x*(six_r_W_2_in_axes5_xz - six_r_zeta_2_in_axes5_y) +
             six_r_d_3_in_axes5_y*(six_r_W_2_in_axes5_yz + six_r_zeta_2_in_axes5_x) +
-            six_r_d_4_in_axes5_x*(six_r_beta_4_t_2 + six_r_beta_3_in_axes4_y*six_r_s_5 +
-            six_r_omega_3_in_axes4_x*six_r_omega_3_in_axes5_x) +
-            six_r_d_4_in_axes5_y*(six_r_beta_4_t + six_r_beta_3_in_axes4_y*six_r_c_5 +
-            six_r_omega_3_in_axes4_x*six_r_omega_3_in_axes5_y) +
-            six_r_d_5_in_axes5_x*(six_r_omega_3_in_axes4_x*six_r_omega_4_in_axes5_x -
-            six_r_beta_4_in_axes5_y) + six_r_d_5_in_axes5_y*(six_r_beta_4_in_axes5_x +
-            six_r_omega_3_in_axes4_x*six_r_omega_4_in_axes5_y) +
-            six_r_platform_joint_offset_x*(six_r_W_5_in_axes5_xz - six_r_beta_5_in_axes5_y) -
-            six_r_d_2_in_axes5_z*(six_r_bias_t_6 + six_r_bias_t_7) -
-            six_r_d_3_in_axes5_z*(six_r_bias_t_12 + six_r_bias_t_13);
+            v.six_r_d_4_in_axes5_x*(six_r_beta_4_t_2 + six_r_beta_3_t*v.six_r_c_5 +
+            six_r_omega_3_in_axes4_y*six_r_omega_3_in_axes5_x) +
+            v.six_r_d_5_in_axes5_x*(six_r_omega_3_in_axes4_y*six_r_omega_4_in_axes5_x -
+            six_r_beta_4_in_axes5_y) + six_r_platform_joint_offset_x*(six_r_W_5_in_axes5_xz -
+            six_r_beta_5_in_axes5_y) - six_r_bias_t_16*(six_r_beta_4_t +
+            six_r_omega_3_in_axes4_y*six_r_omega_3_in_axes5_y - six_r_beta_3_t*v.six_r_s_5) -
+            six_r_bias_t_17*(six_r_beta_4_in_axes5_x +
+            six_r_omega_3_in_axes4_y*six_r_omega_4_in_axes5_y) -
+            six_r_d_2_in_axes5_z*(six_r_bias_t_7 + six_r_bias_t_8) -
+            six_r_d_3_in_axes5_z*(six_r_bias_t_13 + six_r_bias_t_14);
         /* (six_r-rel_o) remainder without the acceleration in: acceleration of the connection point left
            to the joint accelerations */
         const real six_r_rel_o_in_axes5_x = six_r_u_1_in_axes5_x - six_r_bias_in_axes5_x;
         const real six_r_rel_o_in_axes5_y = six_r_u_1_in_axes5_y - six_r_bias_in_axes5_y;
         const real six_r_rel_o_in_axes5_z = six_r_u_1_in_axes5_z - six_r_bias_in_axes5_z;
         /* (six_r-nd_m1) rate of moment direction 1 */
-        const real six_r_omega_in_axes5_x = axis_x_six_r_axes5_x*omega_x +
-            axis_x_six_r_axes5_y*omega_y + axis_x_six_r_axes5_z*omega_z;
-        const real six_r_omega_in_axes5_y = axis_y_six_r_axes5_x*omega_x +
-            axis_y_six_r_axes5_y*omega_y + axis_y_six_r_axes5_z*omega_z;
-        const real six_r_omega_in_axes5_z = axis_z_six_r_axes5_x*omega_x +
-            axis_z_six_r_axes5_y*omega_y + axis_z_six_r_axes5_z*omega_z;
-        const real six_r_nd_m1_t = six_r_n_m1_in_axes5_y*six_r_omega_in_axes5_z -
-            six_r_end_p1_in_axes5_z*six_r_omega_in_axes5_x;
-        const real six_r_nd_m1_in_axes5_x = -six_r_nd_m1_t -
-            six_r_end_p1_in_axes5_z*six_r_omega_4_in_axes5_x;
-        const real six_r_nd_m1_in_axes5_y = six_r_end_p1_in_axes5_z*six_r_omega_in_axes5_y -
-            six_r_end_p1_in_axes5_z*six_r_omega_4_in_axes5_y -
-            six_r_n_m2_in_axes5_z*six_r_omega_in_axes5_z;
+        const real six_r_nd_m1_in_axes5_x = -v.six_r_nd_m1_t -
+            v.six_r_end_p1_in_axes5_z*six_r_omega_4_in_axes5_x;
+        const real six_r_nd_m1_in_axes5_y = v.six_r_end_p1_in_axes5_z*v.six_r_omega_in_axes5_y -
+            v.six_r_end_p1_in_axes5_z*six_r_omega_4_in_axes5_y -
+            v.six_r_n_m2_in_axes5_z*v.six_r_omega_in_axes5_z;
         /* (six_r-nu_1) bias of the angular acceleration along moment direction 1 */
-        const real six_r_nu_1_t = six_r_n_m2_in_axes5_z*six_r_omega_4_in_axes5_y;
-        const real six_r_nu_1_t_2 = six_r_beta_5_in_axes5_x*six_r_n_m2_in_axes5_z -
-            six_r_beta_5_in_axes5_y*six_r_n_m1_in_axes5_y;
-        const real six_r_nu_1_t_3 = six_r_omega_4_in_axes5_x - six_r_omega_in_axes5_x;
-        const real six_r_nu_1_t_4 = six_r_omega_4_in_axes5_y - six_r_omega_in_axes5_y;
-        const real six_r_nu_1_t_5 = six_r_omega_5_in_axes5_z - six_r_omega_in_axes5_z;
+        const real six_r_nu_1_t = v.six_r_n_m2_in_axes5_z*six_r_omega_4_in_axes5_y;
+        const real six_r_nu_1_t_2 = six_r_beta_5_in_axes5_x*v.six_r_n_m2_in_axes5_z -
+            six_r_beta_5_in_axes5_y*v.six_r_n_m1_in_axes5_y;
+        const real six_r_nu_1_t_3 = six_r_omega_4_in_axes5_x - v.six_r_omega_in_axes5_x;
+        const real six_r_nu_1_t_4 = six_r_omega_4_in_axes5_y - v.six_r_omega_in_axes5_y;
+        const real six_r_nu_1_t_5 = six_r_omega_5_in_axes5_z - v.six_r_omega_in_axes5_z;
         const real six_r_nu_1_t_6 = six_r_nd_m1_in_axes5_x*six_r_nu_1_t_3 +
             six_r_nd_m1_in_axes5_y*six_r_nu_1_t_4 + six_r_nu_1_t_5*(six_r_nu_1_t +
-            six_r_n_m1_in_axes5_y*six_r_omega_4_in_axes5_x);
+            v.six_r_n_m1_in_axes5_y*six_r_omega_4_in_axes5_x);
         const real six_r_nu_1 = six_r_nu_1_t_2 - six_r_nu_1_t_6;
         /* (six_r-nd_m2) rate of moment direction 2 */
-        const real six_r_nd_m2_in_axes5_y = six_r_n_m1_in_axes5_y*six_r_omega_in_axes5_y -
-            six_r_n_m1_in_axes5_y*six_r_omega_4_in_axes5_y -
-            six_r_n_m2_in_axes5_z*six_r_omega_in_axes5_x;
-        const real six_r_nd_m2_in_axes5_z = six_r_nd_m1_t -
-            six_r_n_m1_in_axes5_y*six_r_omega_5_in_axes5_z;
+        const real six_r_nd_m2_in_axes5_y = v.six_r_n_m1_in_axes5_y*v.six_r_omega_in_axes5_y -
+            v.six_r_n_m1_in_axes5_y*six_r_omega_4_in_axes5_y -
+            v.six_r_n_m2_in_axes5_z*v.six_r_omega_in_axes5_x;
+        const real six_r_nd_m2_in_axes5_z = v.six_r_nd_m1_t -
+            v.six_r_n_m1_in_axes5_y*six_r_omega_5_in_axes5_z;
         /* (six_r-nu_2) bias of the angular acceleration along moment direction 2 */
-        const real six_r_nu_2_t = six_r_beta_5_in_axes5_y*six_r_end_p1_in_axes5_z -
-            six_r_beta_4_in_axes4_x*six_r_n_m2_in_axes5_z;
+        const real six_r_nu_2_t = six_r_beta_5_in_axes5_y*v.six_r_end_p1_in_axes5_z -
+            six_r_beta_4_in_axes4_y*v.six_r_n_m2_in_axes5_z;
         const real six_r_nu_2_t_2 = six_r_nd_m2_in_axes5_y*six_r_nu_1_t_4 +
             six_r_nd_m2_in_axes5_z*six_r_nu_1_t_5 + six_r_nu_1_t_3*(six_r_nu_1_t +
-            six_r_end_p1_in_axes5_z*six_r_omega_5_in_axes5_z);
+            v.six_r_end_p1_in_axes5_z*six_r_omega_5_in_axes5_z);
         const real six_r_nu_2 = six_r_nu_2_t - six_r_nu_2_t_2;
         /* (six_r-qdd_1_o) remainder without the acceleration in: acceleration of joint 1 */
         const real six_r_qdd_1_o_t = six_r_nu_1*six_r_size;
         const real six_r_qdd_1_o_t_2 = six_r_nu_2*six_r_size;
-        const real six_r_qdd_1_o_t_3 = inv_six_r_w_1_t_79*(six_r_qd_1_t*six_r_rel_o_in_axes5_x +
-            six_r_qd_1_t_3*six_r_rel_o_in_axes5_z + six_r_qd_1_t_4*six_r_qdd_1_o_t +
-            six_r_qd_1_t_5*six_r_qdd_1_o_t_2 - six_r_qd_1_t_2*six_r_rel_o_in_axes5_y);
-        const real six_r_qdd_1_o_t_4 = inv_six_r_w_1_t_67*(six_r_qdd_1_o_t*six_r_w_1_t_71 +
-            six_r_qdd_1_o_t_2*six_r_w_1_t_72 + six_r_rel_o_in_axes5_x*six_r_w_1_t_68 +
-            six_r_rel_o_in_axes5_z*six_r_w_1_t_70 - six_r_qdd_1_o_t_3*six_r_w_1_t_73 -
-            six_r_rel_o_in_axes5_y*six_r_w_1_t_69);
-        const real six_r_qdd_1_o_t_5 = inv_six_r_w_1_t_49*(six_r_qdd_1_o_t_3*six_r_w_1_t_61 +
-            six_r_qdd_1_o_t_4*six_r_w_1_t_55 + six_r_rel_o_in_axes5_y*six_r_w_1_t_51 -
-            six_r_qdd_1_o_t*six_r_w_1_t_53 - six_r_qdd_1_o_t_2*six_r_w_1_t_54 -
-            six_r_rel_o_in_axes5_x*six_r_w_1_t_50 - six_r_rel_o_in_axes5_z*six_r_w_1_t_52);
+        const real six_r_qdd_1_o_t_3 = v.inv_six_r_w_1_t_79*(v.six_r_qd_1_t*six_r_rel_o_in_axes5_x
+            + v.six_r_qd_1_t_3*six_r_rel_o_in_axes5_z + v.six_r_qd_1_t_4*six_r_qdd_1_o_t +
+            v.six_r_qd_1_t_5*six_r_qdd_1_o_t_2 - v.six_r_qd_1_t_2*six_r_rel_o_in_axes5_y);
+        const real six_r_qdd_1_o_t_4 = v.inv_six_r_w_1_t_67*(six_r_qdd_1_o_t*v.six_r_w_1_t_71 +
+            six_r_qdd_1_o_t_2*v.six_r_w_1_t_72 + six_r_rel_o_in_axes5_x*v.six_r_w_1_t_68 +
+            six_r_rel_o_in_axes5_z*v.six_r_w_1_t_70 - six_r_qdd_1_o_t_3*v.six_r_w_1_t_73 -
+            six_r_rel_o_in_axes5_y*v.six_r_w_1_t_69);
+        const real six_r_qdd_1_o_t_5 = v.inv_six_r_w_1_t_49*(six_r_qdd_1_o_t_3*v.six_r_w_1_t_61 +
+            six_r_qdd_1_o_t_4*v.six_r_w_1_t_55 + six_r_rel_o_in_axes5_y*v.six_r_w_1_t_51 -
+            six_r_qdd_1_o_t*v.six_r_w_1_t_53 - six_r_qdd_1_o_t_2*v.six_r_w_1_t_54 -
+            six_r_rel_o_in_axes5_x*v.six_r_w_1_t_50 - six_r_rel_o_in_axes5_z*v.six_r_w_1_t_52);
         /* (six_r-qdd_4_o) remainder without the acceleration in: acceleration of joint 4 */
-        const real six_r_qdd_4_o = inv_six_r_w_1_t_28*(six_r_qdd_1_o_t*six_r_w_1_t_31 +
-            six_r_qdd_1_o_t_2*six_r_w_1_t_32 + six_r_qdd_1_o_t_3*six_r_w_1_t_44 +
-            six_r_qdd_1_o_t_4*six_r_w_1_t_39 + six_r_rel_o_in_axes5_z*six_r_w_1_t_30 -
-            six_r_qdd_1_o_t_5*six_r_w_1_t_33 - six_r_rel_o_in_axes5_y*six_r_w_1_t_29);
+        const real six_r_qdd_4_o = v.inv_six_r_w_1_t_28*(six_r_qdd_1_o_t*v.six_r_w_1_t_31 +
+            six_r_qdd_1_o_t_2*v.six_r_w_1_t_32 + six_r_qdd_1_o_t_3*v.six_r_w_1_t_44 +
+            six_r_qdd_1_o_t_4*v.six_r_w_1_t_39 + six_r_rel_o_in_axes5_z*v.six_r_w_1_t_30 -
+            six_r_qdd_1_o_t_5*v.six_r_w_1_t_33 - six_r_rel_o_in_axes5_y*v.six_r_w_1_t_29);
         /* (six_r-alpha_1_o) remainder without the acceleration in: angular acceleration of link 1 */
-        const real six_r_alpha_1_o_t = six_r_qdd_1_o_t_5*six_r_s_2;
-        const real six_r_alpha_1_o_in_axes2_y = -six_r_c_2*six_r_qdd_1_o_t_5;
+        const real six_r_alpha_1_o_t = v.six_r_c_2*six_r_qdd_1_o_t_5;
+        const real six_r_alpha_1_o_in_axes2_y = six_r_qdd_1_o_t_5*v.six_r_s_2;
         /* (six_r-alpha_2_o) remainder without the acceleration in: angular acceleration of link 2 */
         const real six_r_alpha_2_o_in_axes2_x = six_r_W_2_in_axes2_yz - six_r_alpha_1_o_t;
         const real six_r_alpha_2_o_in_axes2_y = six_r_alpha_1_o_in_axes2_y +
@@ -6543,9 +7109,9 @@ INLINE void Z_legs_six_r(const prepared *m, size_t w, size_t leg, size_t legs, c
         const real six_r_B_2_o_in_axes2_zy = six_r_W_2_in_axes2_yz + six_r_alpha_2_o_in_axes2_x;
         /* (six_r-alpha_3_o) remainder without the acceleration in: angular acceleration of link 3 */
         const real six_r_alpha_3_o_in_axes3_x = six_r_zeta_3_in_axes3_x +
-            six_r_alpha_2_o_in_axes2_x*six_r_c_3 + six_r_alpha_2_o_in_axes2_y*six_r_s_3;
-        const real six_r_alpha_3_o_in_axes3_y = six_r_alpha_2_o_in_axes2_y*six_r_c_3 -
-            six_r_zeta_3_t - six_r_alpha_2_o_in_axes2_x*six_r_s_3;
+            six_r_alpha_2_o_in_axes2_x*v.six_r_s_3 - six_r_alpha_2_o_in_axes2_y*v.six_r_c_3;
+        const real six_r_alpha_3_o_in_axes3_y = six_r_alpha_2_o_in_axes2_x*v.six_r_c_3 +
+            six_r_alpha_2_o_in_axes2_y*v.six_r_s_3 - six_r_zeta_3_t;
         const real six_r_alpha_3_o_in_axes3_z = six_r_qdd_1_o_t_3 + six_r_qdd_1_o_t_4;
         /* (six_r-B_3_o) remainder of the acceleration tensor of link 3 */
         const real six_r_B_3_o_in_axes3_xy = six_r_W_3_in_axes3_xy - six_r_alpha_3_o_in_axes3_z;
@@ -6556,10 +7122,10 @@ INLINE void Z_legs_six_r(const prepared *m, size_t w, size_t leg, size_t legs, c
         const real six_r_B_3_o_in_axes3_zy = six_r_W_3_in_axes3_yz + six_r_alpha_3_o_in_axes3_x;
         /* (six_r-alpha_4_o) remainder without the acceleration in: angular acceleration of link 4 */
         const real six_r_alpha_4_o_in_axes4_x = six_r_zeta_4_in_axes4_x +
-            six_r_alpha_3_o_in_axes3_y*six_r_c_4 + six_r_alpha_3_o_in_axes3_z*six_r_s_4;
-        const real six_r_alpha_4_o_in_axes4_y = six_r_zeta_4_in_axes4_y +
-            six_r_alpha_3_o_in_axes3_z*six_r_c_4 - six_r_alpha_3_o_in_axes3_y*six_r_s_4;
-        const real six_r_alpha_4_o_in_axes4_z = six_r_alpha_3_o_in_axes3_x + six_r_qdd_4_o;
+            six_r_alpha_3_o_in_axes3_z*v.six_r_s_4 - six_r_alpha_3_o_in_axes3_x*v.six_r_c_4;
+        const real six_r_alpha_4_o_in_axes4_y = six_r_alpha_3_o_in_axes3_x*v.six_r_s_4 +
+            six_r_alpha_3_o_in_axes3_z*v.six_r_c_4 - six_r_zeta_4_t;
+        const real six_r_alpha_4_o_in_axes4_z = six_r_alpha_3_o_in_axes3_y + six_r_qdd_4_o;
         /* (six_r-B_4_o) remainder of the acceleration tensor of link 4 */
         const real six_r_B_4_o_in_axes4_xy = six_r_W_4_in_axes4_xy - six_r_alpha_4_o_in_axes4_z;
         const real six_r_B_4_o_in_axes4_xz = six_r_W_4_in_axes4_xz + six_r_alpha_4_o_in_axes4_y;
@@ -6569,14 +7135,14 @@ INLINE void Z_legs_six_r(const prepared *m, size_t w, size_t leg, size_t legs, c
         const real six_r_B_4_o_in_axes4_zy = six_r_W_4_in_axes4_yz + six_r_alpha_4_o_in_axes4_x;
         /* (six_r-alpha_5_o) remainder without the acceleration in: angular acceleration of link 5 */
         const real six_r_alpha_5_o_in_axes5_x = six_r_zeta_5_in_axes5_x +
-            six_r_alpha_4_o_in_axes4_y*six_r_c_5 + six_r_alpha_4_o_in_axes4_z*six_r_s_5;
-        const real six_r_alpha_5_o_in_axes5_y = six_r_alpha_4_o_in_axes4_z*six_r_c_5 -
-            six_r_zeta_5_t - six_r_alpha_4_o_in_axes4_y*six_r_s_5;
-        const real six_r_alpha_5_o_in_axes5_z = six_r_alpha_4_o_in_axes4_x +
-            inv_six_r_w_1_t_12*(six_r_qdd_1_o_t_2*six_r_w_1_t_14 +
-            six_r_qdd_1_o_t_3*six_r_w_1_t_25 + six_r_qdd_1_o_t_5*six_r_w_1_t_18 +
-            six_r_rel_o_in_axes5_y*six_r_w_1_t_13 - six_r_qdd_1_o_t_4*six_r_w_1_t_22 -
-            six_r_qdd_4_o*six_r_w_1_t_15);
+            six_r_alpha_4_o_in_axes4_x*v.six_r_s_5 + six_r_alpha_4_o_in_axes4_z*v.six_r_c_5;
+        const real six_r_alpha_5_o_in_axes5_y = six_r_alpha_4_o_in_axes4_x*v.six_r_c_5 -
+            six_r_zeta_5_t - six_r_alpha_4_o_in_axes4_z*v.six_r_s_5;
+        const real six_r_alpha_5_o_in_axes5_z = six_r_alpha_4_o_in_axes4_y +
+            v.inv_six_r_w_1_t_12*(six_r_qdd_1_o_t_2*v.six_r_w_1_t_14 +
+            six_r_qdd_1_o_t_3*v.six_r_w_1_t_25 + six_r_qdd_1_o_t_5*v.six_r_w_1_t_18 +
+            six_r_rel_o_in_axes5_y*v.six_r_w_1_t_13 - six_r_qdd_1_o_t_4*v.six_r_w_1_t_22 -
+            six_r_qdd_4_o*v.six_r_w_1_t_15);
         /* (six_r-B_5_o) remainder of the acceleration tensor of link 5 */
         const real six_r_B_5_o_in_axes5_xy = six_r_W_4_in_axes5_xy - six_r_alpha_5_o_in_axes5_z;
         const real six_r_B_5_o_in_axes5_xz = six_r_W_5_in_axes5_xz + six_r_alpha_5_o_in_axes5_y;
@@ -6587,102 +7153,90 @@ INLINE void Z_legs_six_r(const prepared *m, size_t w, size_t leg, size_t legs, c
         /* (six_r-a_o_3_o) remainder without the acceleration in: acceleration of the origin of joint 3 */
         const real six_r_a_o_3_o_t = six_r_omega_1_in_axes2_y*six_r_omega_1_in_axes2_y;
         const real six_r_a_o_3_o_t_2 = six_r_qd_1_t_9*six_r_qd_1_t_9;
-        const real six_r_a_o_3_o_t_3 = six_r_joint3_offset_x*(six_r_a_o_3_o_t +
+        const real six_r_joint3_offset_x = m->six_r_joint3_offset_x[i];
+        const real six_r_a_o_3_o_in_axes2_x = -six_r_joint3_offset_x*(six_r_a_o_3_o_t +
             six_r_a_o_3_o_t_2);
         const real six_r_a_o_3_o_in_axes2_y = six_r_B_2_o_in_axes2_yx*six_r_joint3_offset_x;
         const real six_r_a_o_3_o_in_axes2_z = six_r_B_2_o_in_axes2_zx*six_r_joint3_offset_x;
-        const real six_r_a_o_3_o_in_axes3_x = six_r_a_o_3_o_in_axes2_y*six_r_s_3 -
-            six_r_a_o_3_o_t_3*six_r_c_3;
-        const real six_r_a_o_3_o_in_axes3_y = six_r_a_o_3_o_in_axes2_y*six_r_c_3 +
-            six_r_a_o_3_o_t_3*six_r_s_3;
+        const real six_r_a_o_3_o_in_axes3_x = six_r_a_o_3_o_in_axes2_x*v.six_r_s_3 -
+            six_r_a_o_3_o_in_axes2_y*v.six_r_c_3;
+        const real six_r_a_o_3_o_in_axes3_y = six_r_a_o_3_o_in_axes2_x*v.six_r_c_3 +
+            six_r_a_o_3_o_in_axes2_y*v.six_r_s_3;
         /* (six_r-a_o_4_o) remainder without the acceleration in: acceleration of the origin of joint 4 */
-        const real six_r_a_o_4_o_in_axes3_x = six_r_a_o_3_o_in_axes3_x -
+        const real six_r_a_o_4_o_in_axes3_x = six_r_a_o_3_o_in_axes3_x +
+            six_r_B_3_o_in_axes3_xy*six_r_joint4_offset_x;
+        const real six_r_a_o_4_o_in_axes3_y = six_r_a_o_3_o_in_axes3_y -
             six_r_W_3_t_3*six_r_joint4_offset_x;
-        const real six_r_a_o_4_o_in_axes3_y = six_r_a_o_3_o_in_axes3_y +
-            six_r_B_3_o_in_axes3_yx*six_r_joint4_offset_x;
         const real six_r_a_o_4_o_in_axes3_z = six_r_a_o_3_o_in_axes2_z +
-            six_r_B_3_o_in_axes3_zx*six_r_joint4_offset_x;
+            six_r_B_3_o_in_axes3_zy*six_r_joint4_offset_x;
         /* (six_r-acc_3_o) remainder without the acceleration in: acceleration of the reference point of
            link 3, less gravity */
-        const real six_r_acc_3_t = m->six_r_acc_3_t[i];
-        const real six_r_acc_3_t_2 = m->six_r_acc_3_t_2[i];
-        const real six_r_g_in_axes1_x = six_r_acc_3_t*six_r_c_1 + six_r_acc_3_t_2*six_r_s_1;
-        const real six_r_g_in_axes1_y = six_r_acc_3_t_2*six_r_c_1 - six_r_acc_3_t*six_r_s_1;
-        const real six_r_g_in_axes1_z = m->six_r_g_in_axes1_z[i];
-        const real six_r_g_in_axes2_x = six_r_c_2*six_r_g_in_axes1_y +
-            six_r_g_in_axes1_z*six_r_s_2;
-        const real six_r_g_in_axes2_y = six_r_c_2*six_r_g_in_axes1_z -
-            six_r_g_in_axes1_y*six_r_s_2;
-        const real six_r_g_in_axes3_x = six_r_c_3*six_r_g_in_axes2_x +
-            six_r_g_in_axes2_y*six_r_s_3;
-        const real six_r_g_in_axes3_y = six_r_c_3*six_r_g_in_axes2_y -
-            six_r_g_in_axes2_x*six_r_s_3;
-        const real six_r_acc_3_o_in_axes3_x = six_r_a_o_3_o_in_axes3_x - six_r_g_in_axes3_x;
-        const real six_r_acc_3_o_in_axes3_y = six_r_a_o_3_o_in_axes3_y - six_r_g_in_axes3_y;
-        const real six_r_acc_3_o_in_axes3_z = six_r_a_o_3_o_in_axes2_z - six_r_g_in_axes1_x;
+        const real six_r_acc_3_o_in_axes3_x = six_r_a_o_3_o_in_axes3_x - v.six_r_g_in_axes3_x;
+        const real six_r_acc_3_o_in_axes3_y = six_r_a_o_3_o_in_axes3_y - v.six_r_g_in_axes3_y;
+        const real six_r_acc_3_o_in_axes3_z = six_r_a_o_3_o_in_axes2_z - v.six_r_g_in_axes1_y;
         /* (six_r-f_3_o) remainder without the acceleration in: inertia force of link 3 less its weight */
-        const real six_r_f_3_o_t = six_r_omega_2_in_axes3_x*six_r_omega_2_in_axes3_x;
+        const real six_r_f_3_o_t = six_r_omega_2_in_axes3_y*six_r_omega_2_in_axes3_y;
         const real six_r_h_3_in_spec3_x = m->six_r_h_3_in_spec3_x[i];
         const real six_r_h_3_in_spec3_y = m->six_r_h_3_in_spec3_y[i];
         const real six_r_h_3_in_spec3_z = m->six_r_h_3_in_spec3_z[i];
         const real six_r_link3_mass = m->six_r_link3_mass[i];
-        const real six_r_f_3_o_in_axes3_x = six_r_B_3_o_in_axes3_xy*six_r_h_3_in_spec3_y +
+        const real six_r_f_3_o_in_axes3_x = six_r_B_3_o_in_axes3_xy*six_r_h_3_in_spec3_x +
             six_r_B_3_o_in_axes3_xz*six_r_h_3_in_spec3_z +
-            six_r_acc_3_o_in_axes3_x*six_r_link3_mass - six_r_W_3_t_3*six_r_h_3_in_spec3_x;
-        const real six_r_f_3_o_in_axes3_y = six_r_B_3_o_in_axes3_yx*six_r_h_3_in_spec3_x +
-            six_r_B_3_o_in_axes3_yz*six_r_h_3_in_spec3_z +
-            six_r_acc_3_o_in_axes3_y*six_r_link3_mass - six_r_h_3_in_spec3_y*(six_r_W_3_t_2 +
+            six_r_acc_3_o_in_axes3_x*six_r_link3_mass + six_r_h_3_in_spec3_y*(six_r_W_3_t_2 +
             six_r_f_3_o_t);
-        const real six_r_f_3_o_in_axes3_z = six_r_B_3_o_in_axes3_zx*six_r_h_3_in_spec3_x +
-            six_r_B_3_o_in_axes3_zy*six_r_h_3_in_spec3_y +
-            six_r_acc_3_o_in_axes3_z*six_r_link3_mass - six_r_h_3_in_spec3_z*(six_r_W_3_t +
+        const real six_r_f_3_o_in_axes3_y = six_r_B_3_o_in_axes3_yz*six_r_h_3_in_spec3_z +
+            six_r_acc_3_o_in_axes3_y*six_r_link3_mass -
+            six_r_B_3_o_in_axes3_yx*six_r_h_3_in_spec3_y - six_r_W_3_t_3*six_r_h_3_in_spec3_x;
+        const real six_r_f_3_o_in_axes3_z = six_r_B_3_o_in_axes3_zy*six_r_h_3_in_spec3_x +
+            six_r_acc_3_o_in_axes3_z*six_r_link3_mass -
+            six_r_B_3_o_in_axes3_zx*six_r_h_3_in_spec3_y - six_r_h_3_in_spec3_z*(six_r_W_3_t +
             six_r_f_3_o_t);
         /* (six_r-acc_4_o) remainder without the acceleration in: acceleration of the reference point of
            link 4, less gravity */
-        const real six_r_acc_4_o_in_axes4_x = six_r_a_o_4_o_in_axes3_y*six_r_c_4 +
-            six_r_a_o_4_o_in_axes3_z*six_r_s_4 - six_r_c_4*six_r_g_in_axes3_y -
-            six_r_g_in_axes1_x*six_r_s_4;
-        const real six_r_acc_4_o_in_axes4_y = six_r_a_o_4_o_in_axes3_z*six_r_c_4 +
-            six_r_g_in_axes3_y*six_r_s_4 - six_r_a_o_4_o_in_axes3_y*six_r_s_4 -
-            six_r_c_4*six_r_g_in_axes1_x;
-        const real six_r_acc_4_o_in_axes4_z = six_r_a_o_4_o_in_axes3_x - six_r_g_in_axes3_x;
+        const real six_r_acc_4_o_in_axes4_x = six_r_a_o_4_o_in_axes3_z*v.six_r_s_4 +
+            v.six_r_c_4*v.six_r_g_in_axes3_x - six_r_a_o_4_o_in_axes3_x*v.six_r_c_4 -
+            v.six_r_g_in_axes1_y*v.six_r_s_4;
+        const real six_r_acc_4_o_in_axes4_y = six_r_a_o_4_o_in_axes3_x*v.six_r_s_4 +
+            six_r_a_o_4_o_in_axes3_z*v.six_r_c_4 - v.six_r_c_4*v.six_r_g_in_axes1_y -
+            v.six_r_g_in_axes3_x*v.six_r_s_4;
+        const real six_r_acc_4_o_in_axes4_z = six_r_a_o_4_o_in_axes3_y - v.six_r_g_in_axes3_y;
         /* (six_r-f_4_o) remainder without the acceleration in: inertia force of link 4 less its weight */
-        const real six_r_f_4_o_t = six_r_omega_3_in_axes4_y*six_r_omega_3_in_axes4_y;
+        const real six_r_f_4_o_t = six_r_omega_3_in_axes4_x*six_r_omega_3_in_axes4_x;
         const real six_r_f_4_o_t_2 = six_r_omega_4_in_axes4_z*six_r_omega_4_in_axes4_z;
         const real six_r_h_4_in_spec4_x = m->six_r_h_4_in_spec4_x[i];
         const real six_r_h_4_in_spec4_y = m->six_r_h_4_in_spec4_y[i];
         const real six_r_h_4_in_spec4_z = m->six_r_h_4_in_spec4_z[i];
         const real six_r_link4_mass = m->six_r_link4_mass[i];
-        const real six_r_f_4_o_in_axes4_x = six_r_B_4_o_in_axes4_xz*six_r_h_4_in_spec4_x +
-            six_r_acc_4_o_in_axes4_x*six_r_link4_mass -
-            six_r_B_4_o_in_axes4_xy*six_r_h_4_in_spec4_y - six_r_h_4_in_spec4_z*(six_r_f_4_o_t +
+        const real six_r_f_4_o_in_axes4_x = six_r_B_4_o_in_axes4_xy*six_r_h_4_in_spec4_z +
+            six_r_B_4_o_in_axes4_xz*six_r_h_4_in_spec4_x +
+            six_r_acc_4_o_in_axes4_x*six_r_link4_mass - six_r_h_4_in_spec4_y*(six_r_bias_t +
             six_r_f_4_o_t_2);
-        const real six_r_f_4_o_in_axes4_y = six_r_B_4_o_in_axes4_yx*six_r_h_4_in_spec4_z +
+        const real six_r_f_4_o_in_axes4_y = six_r_B_4_o_in_axes4_yx*six_r_h_4_in_spec4_y +
             six_r_B_4_o_in_axes4_yz*six_r_h_4_in_spec4_x +
-            six_r_acc_4_o_in_axes4_y*six_r_link4_mass + six_r_h_4_in_spec4_y*(six_r_bias_t +
+            six_r_acc_4_o_in_axes4_y*six_r_link4_mass - six_r_h_4_in_spec4_z*(six_r_f_4_o_t +
             six_r_f_4_o_t_2);
-        const real six_r_f_4_o_in_axes4_z = six_r_B_4_o_in_axes4_zx*six_r_h_4_in_spec4_z +
-            six_r_acc_4_o_in_axes4_z*six_r_link4_mass -
-            six_r_B_4_o_in_axes4_zy*six_r_h_4_in_spec4_y - six_r_h_4_in_spec4_x*(six_r_bias_t +
+        const real six_r_f_4_o_in_axes4_z = six_r_B_4_o_in_axes4_zx*six_r_h_4_in_spec4_y +
+            six_r_B_4_o_in_axes4_zy*six_r_h_4_in_spec4_z +
+            six_r_acc_4_o_in_axes4_z*six_r_link4_mass - six_r_h_4_in_spec4_x*(six_r_bias_t +
             six_r_f_4_o_t);
-        const real six_r_f_4_o_in_axes3_y = six_r_c_4*six_r_f_4_o_in_axes4_x -
-            six_r_f_4_o_in_axes4_y*six_r_s_4;
-        const real six_r_f_4_o_in_axes3_z = six_r_c_4*six_r_f_4_o_in_axes4_y +
-            six_r_f_4_o_in_axes4_x*six_r_s_4;
+        const real six_r_f_4_o_in_axes3_x = six_r_f_4_o_in_axes4_y*v.six_r_s_4 -
+            v.six_r_c_4*six_r_f_4_o_in_axes4_x;
+        const real six_r_f_4_o_in_axes3_z = v.six_r_c_4*six_r_f_4_o_in_axes4_y +
+            six_r_f_4_o_in_axes4_x*v.six_r_s_4;
         /* (six_r-acc_5_o) remainder without the acceleration in: acceleration of the reference point of
            link 5, less gravity */
         const real gravity_x = m->gravity_x;
         const real gravity_y = m->gravity_y;
         const real gravity_z = m->gravity_z;
         const real six_r_acc_5_o_in_axes5_x = six_r_u_1_in_axes5_x -
-            axis_x_six_r_axes5_x*gravity_x - axis_x_six_r_axes5_y*gravity_y -
-            axis_x_six_r_axes5_z*gravity_z;
+            v.axis_x_six_r_axes5_x*gravity_x - v.axis_x_six_r_axes5_y*gravity_y -
+            v.axis_x_six_r_axes5_z*gravity_z;
         const real six_r_acc_5_o_in_axes5_y = six_r_u_1_in_axes5_y -
-            axis_y_six_r_axes5_x*gravity_x - axis_y_six_r_axes5_y*gravity_y -
-            axis_y_six_r_axes5_z*gravity_z;
+            v.axis_y_six_r_axes5_x*gravity_x - v.axis_y_six_r_axes5_y*gravity_y -
+            v.axis_y_six_r_axes5_z*gravity_z;
         const real six_r_acc_5_o_in_axes5_z = six_r_u_1_in_axes5_z -
-            axis_z_six_r_axes5_x*gravity_x - axis_z_six_r_axes5_y*gravity_y -
-            axis_z_six_r_axes5_z*gravity_z;
+            v.axis_z_six_r_axes5_x*gravity_x - v.axis_z_six_r_axes5_y*gravity_y -
+            v.axis_z_six_r_axes5_z*gravity_z;
         /* (six_r-mu_5_o) remainder without the acceleration in: inertia moment of the links that turn
            with link 5, about their reference points */
         const real six_r_J_5_in_spec5_xy = m->six_r_J_5_in_spec5_xy[i];
@@ -6721,34 +7275,35 @@ INLINE void Z_legs_six_r(const prepared *m, size_t w, size_t leg, size_t legs, c
         const real six_r_J_4_in_spec4_yz = m->six_r_J_4_in_spec4_yz[i];
         const real six_r_Sigma_4_in_axes4_yy = m->six_r_Sigma_4_in_axes4_yy[i];
         const real six_r_Sigma_4_in_axes4_zz = m->six_r_Sigma_4_in_axes4_zz[i];
-        const real six_r_mu_4_o_in_axes4_x = six_r_B_4_o_in_axes4_yx*six_r_J_4_in_spec4_xz +
-            six_r_B_4_o_in_axes4_zx*six_r_J_4_in_spec4_yz +
-            six_r_B_4_o_in_axes4_zy*six_r_Sigma_4_in_axes4_yy -
+        const real six_r_mu_4_o_in_axes4_x = six_r_B_4_o_in_axes4_yx*six_r_J_4_in_spec4_xy +
+            six_r_B_4_o_in_axes4_zy*six_r_Sigma_4_in_axes4_yy +
+            six_r_J_4_in_spec4_xz*(six_r_bias_t - six_r_f_4_o_t_2) +
+            six_r_acc_4_o_in_axes4_z*six_r_h_4_in_spec4_z -
             six_r_B_4_o_in_axes4_yz*six_r_Sigma_4_in_axes4_zz -
-            six_r_J_4_in_spec4_xy*(six_r_f_4_o_t - six_r_f_4_o_t_2) -
-            six_r_acc_4_o_in_axes4_y*six_r_h_4_in_spec4_x -
-            six_r_acc_4_o_in_axes4_z*six_r_h_4_in_spec4_y;
+            six_r_B_4_o_in_axes4_zx*six_r_J_4_in_spec4_yz -
+            six_r_acc_4_o_in_axes4_y*six_r_h_4_in_spec4_x;
         const real six_r_Sigma_4_in_axes4_xx = m->six_r_Sigma_4_in_axes4_xx[i];
-        const real six_r_mu_4_o_in_axes4_y = six_r_B_4_o_in_axes4_xy*six_r_J_4_in_spec4_xy +
-            six_r_B_4_o_in_axes4_xz*six_r_Sigma_4_in_axes4_zz +
+        const real six_r_mu_4_o_in_axes4_y = six_r_B_4_o_in_axes4_xz*six_r_Sigma_4_in_axes4_zz +
+            six_r_B_4_o_in_axes4_zy*six_r_J_4_in_spec4_yz +
             six_r_acc_4_o_in_axes4_x*six_r_h_4_in_spec4_x -
+            six_r_B_4_o_in_axes4_xy*six_r_J_4_in_spec4_xz -
             six_r_B_4_o_in_axes4_zx*six_r_Sigma_4_in_axes4_xx -
-            six_r_B_4_o_in_axes4_zy*six_r_J_4_in_spec4_yz - six_r_J_4_in_spec4_xz*(six_r_bias_t -
-            six_r_f_4_o_t_2) - six_r_acc_4_o_in_axes4_z*six_r_h_4_in_spec4_z;
-        const real six_r_mu_4_o_in_axes4_z = six_r_B_4_o_in_axes4_yx*six_r_Sigma_4_in_axes4_xx +
-            six_r_acc_4_o_in_axes4_x*six_r_h_4_in_spec4_y +
-            six_r_acc_4_o_in_axes4_y*six_r_h_4_in_spec4_z -
+            six_r_J_4_in_spec4_xy*(six_r_f_4_o_t - six_r_f_4_o_t_2) -
+            six_r_acc_4_o_in_axes4_z*six_r_h_4_in_spec4_y;
+        const real six_r_mu_4_o_in_axes4_z = six_r_B_4_o_in_axes4_xz*six_r_J_4_in_spec4_xz +
+            six_r_B_4_o_in_axes4_yx*six_r_Sigma_4_in_axes4_xx +
+            six_r_J_4_in_spec4_yz*(six_r_f_4_o_t - six_r_bias_t) +
+            six_r_acc_4_o_in_axes4_y*six_r_h_4_in_spec4_y -
             six_r_B_4_o_in_axes4_xy*six_r_Sigma_4_in_axes4_yy -
-            six_r_B_4_o_in_axes4_xz*six_r_J_4_in_spec4_xy -
-            six_r_B_4_o_in_axes4_yz*six_r_J_4_in_spec4_xz - six_r_J_4_in_spec4_yz*(six_r_bias_t -
-            six_r_f_4_o_t);
+            six_r_B_4_o_in_axes4_yz*six_r_J_4_in_spec4_xy -
+            six_r_acc_4_o_in_axes4_x*six_r_h_4_in_spec4_z;
         /* (six_r-N_4_o) remainder without the acceleration in: moment about joint 4 of the links from 4
            outwards, the force at the connection point left out */
-        const real six_r_N_4_o_in_axes4_x = six_r_mu_4_o_in_axes4_x + six_r_mu_5_o_in_axes5_z;
-        const real six_r_N_4_o_in_axes4_y = six_r_mu_4_o_in_axes4_y +
-            six_r_c_5*six_r_mu_5_o_in_axes5_x - six_r_mu_5_o_in_axes5_y*six_r_s_5;
+        const real six_r_N_4_o_in_axes4_x = six_r_mu_4_o_in_axes4_x +
+            v.six_r_c_5*six_r_mu_5_o_in_axes5_y + six_r_mu_5_o_in_axes5_x*v.six_r_s_5;
+        const real six_r_N_4_o_in_axes4_y = six_r_mu_4_o_in_axes4_y + six_r_mu_5_o_in_axes5_z;
         const real six_r_N_4_o_in_axes4_z = six_r_mu_4_o_in_axes4_z +
-            six_r_c_5*six_r_mu_5_o_in_axes5_y + six_r_mu_5_o_in_axes5_x*six_r_s_5;
+            v.six_r_c_5*six_r_mu_5_o_in_axes5_x - six_r_mu_5_o_in_axes5_y*v.six_r_s_5;
         /* (six_r-mu_3_o) remainder without the acceleration in: inertia moment of the links that turn
            with link 3, about their reference points */
         const real six_r_J_3_in_spec3_xy = m->six_r_J_3_in_spec3_xy[i];
@@ -6756,40 +7311,40 @@ INLINE void Z_legs_six_r(const prepared *m, size_t w, size_t leg, size_t legs, c
         const real six_r_J_3_in_spec3_yz = m->six_r_J_3_in_spec3_yz[i];
         const real six_r_Sigma_3_in_axes3_yy = m->six_r_Sigma_3_in_axes3_yy[i];
         const real six_r_Sigma_3_in_axes3_zz = m->six_r_Sigma_3_in_axes3_zz[i];
-        const real six_r_mu_3_o_in_axes3_x = six_r_B_3_o_in_axes3_yx*six_r_J_3_in_spec3_xz +
-            six_r_B_3_o_in_axes3_zy*six_r_Sigma_3_in_axes3_yy + six_r_J_3_in_spec3_yz*(six_r_W_3_t
-            - six_r_W_3_t_2) + six_r_acc_3_o_in_axes3_z*six_r_h_3_in_spec3_y -
+        const real six_r_mu_3_o_in_axes3_x = six_r_B_3_o_in_axes3_zx*six_r_J_3_in_spec3_xy +
+            six_r_B_3_o_in_axes3_zy*six_r_Sigma_3_in_axes3_yy +
+            six_r_J_3_in_spec3_xz*(six_r_f_3_o_t - six_r_W_3_t_2) +
+            six_r_acc_3_o_in_axes3_z*six_r_h_3_in_spec3_x -
+            six_r_B_3_o_in_axes3_yx*six_r_J_3_in_spec3_yz -
             six_r_B_3_o_in_axes3_yz*six_r_Sigma_3_in_axes3_zz -
-            six_r_B_3_o_in_axes3_zx*six_r_J_3_in_spec3_xy -
             six_r_acc_3_o_in_axes3_y*six_r_h_3_in_spec3_z;
         const real six_r_Sigma_3_in_axes3_xx = m->six_r_Sigma_3_in_axes3_xx[i];
         const real six_r_mu_3_o_in_axes3_y = six_r_B_3_o_in_axes3_xz*six_r_Sigma_3_in_axes3_zz +
-            six_r_B_3_o_in_axes3_zy*six_r_J_3_in_spec3_xy +
-            six_r_acc_3_o_in_axes3_x*six_r_h_3_in_spec3_z -
-            six_r_B_3_o_in_axes3_xy*six_r_J_3_in_spec3_yz -
+            six_r_J_3_in_spec3_yz*(six_r_W_3_t - six_r_W_3_t_2) +
+            six_r_acc_3_o_in_axes3_x*six_r_h_3_in_spec3_z +
+            six_r_acc_3_o_in_axes3_z*six_r_h_3_in_spec3_y -
+            six_r_B_3_o_in_axes3_xy*six_r_J_3_in_spec3_xz -
             six_r_B_3_o_in_axes3_zx*six_r_Sigma_3_in_axes3_xx -
-            six_r_J_3_in_spec3_xz*(six_r_f_3_o_t - six_r_W_3_t_2) -
-            six_r_acc_3_o_in_axes3_z*six_r_h_3_in_spec3_x;
-        const real six_r_mu_3_o_in_axes3_z = six_r_B_3_o_in_axes3_xz*six_r_J_3_in_spec3_yz +
+            six_r_B_3_o_in_axes3_zy*six_r_J_3_in_spec3_xy;
+        const real six_r_mu_3_o_in_axes3_z = six_r_B_3_o_in_axes3_xz*six_r_J_3_in_spec3_xz +
             six_r_B_3_o_in_axes3_yx*six_r_Sigma_3_in_axes3_xx +
-            six_r_J_3_in_spec3_xy*(six_r_f_3_o_t - six_r_W_3_t) +
-            six_r_acc_3_o_in_axes3_y*six_r_h_3_in_spec3_x -
-            six_r_B_3_o_in_axes3_xy*six_r_Sigma_3_in_axes3_yy -
-            six_r_B_3_o_in_axes3_yz*six_r_J_3_in_spec3_xz -
-            six_r_acc_3_o_in_axes3_x*six_r_h_3_in_spec3_y;
+            six_r_B_3_o_in_axes3_yz*six_r_J_3_in_spec3_yz -
+            six_r_B_3_o_in_axes3_xy*six_r_Sigma_3_in_axes3_yy - six_r_J_3_in_spec3_xy*(six_r_W_3_t
+            - six_r_f_3_o_t) - six_r_acc_3_o_in_axes3_x*six_r_h_3_in_spec3_x -
+            six_r_acc_3_o_in_axes3_y*six_r_h_3_in_spec3_y;
         /* (six_r-N_3_o) remainder without the acceleration in: moment about joint 3 of the links from 3
            outwards, the force at the connection point left out */
-        const real six_r_N_3_o_in_axes3_x = six_r_N_4_o_in_axes4_z + six_r_mu_3_o_in_axes3_x;
-        const real six_r_N_3_o_in_axes3_y = six_r_mu_3_o_in_axes3_y +
-            six_r_N_4_o_in_axes4_x*six_r_c_4 - six_r_N_4_o_in_axes4_y*six_r_s_4 -
-            six_r_f_4_o_in_axes3_z*six_r_joint4_offset_x;
+        const real six_r_N_3_o_in_axes3_x = six_r_mu_3_o_in_axes3_x +
+            six_r_N_4_o_in_axes4_y*v.six_r_s_4 + six_r_f_4_o_in_axes3_z*six_r_joint4_offset_x -
+            six_r_N_4_o_in_axes4_x*v.six_r_c_4;
+        const real six_r_N_3_o_in_axes3_y = six_r_N_4_o_in_axes4_z + six_r_mu_3_o_in_axes3_y;
         const real six_r_N_3_o_in_axes3_z = six_r_mu_3_o_in_axes3_z +
-            six_r_N_4_o_in_axes4_x*six_r_s_4 + six_r_N_4_o_in_axes4_y*six_r_c_4 +
-            six_r_f_4_o_in_axes3_y*six_r_joint4_offset_x;
+            six_r_N_4_o_in_axes4_x*v.six_r_s_4 + six_r_N_4_o_in_axes4_y*v.six_r_c_4 -
+            six_r_f_4_o_in_axes3_x*six_r_joint4_offset_x;
         /* (six_r-T_3_o) remainder without the acceleration in: inertia force of the links from 3
            outwards, the last link left out */
-        const real six_r_T_3_o_in_axes3_x = six_r_f_3_o_in_axes3_x + six_r_f_4_o_in_axes4_z;
-        const real six_r_T_3_o_in_axes3_y = six_r_f_3_o_in_axes3_y + six_r_f_4_o_in_axes3_y;
+        const real six_r_T_3_o_in_axes3_x = six_r_f_3_o_in_axes3_x + six_r_f_4_o_in_axes3_x;
+        const real six_r_T_3_o_in_axes3_y = six_r_f_3_o_in_axes3_y + six_r_f_4_o_in_axes4_z;
         const real six_r_T_3_o_in_axes3_z = six_r_f_3_o_in_axes3_z + six_r_f_4_o_in_axes3_z;
         /* (six_r-mu_2_o) remainder without the acceleration in: inertia moment of the links that turn
            with link 2, about their reference points */
@@ -6804,108 +7359,112 @@ INLINE void Z_legs_six_r(const prepared *m, size_t w, size_t leg, size_t legs, c
         const real six_r_mu_2_o_in_axes2_x = six_r_B_2_o_in_axes2_yx*six_r_J_2_in_spec2_xz +
             six_r_B_2_o_in_axes2_zy*six_r_Sigma_2_in_axes2_yy +
             six_r_J_2_in_spec2_yz*(six_r_a_o_3_o_t - six_r_a_o_3_o_t_2) +
-            six_r_g_in_axes2_y*six_r_h_2_in_spec2_z -
+            v.six_r_g_in_axes2_y*six_r_h_2_in_spec2_z -
             six_r_B_2_o_in_axes2_zx*six_r_J_2_in_spec2_xy -
-            six_r_Sigma_2_in_axes2_zz*six_r_alpha_1_o_t - six_r_g_in_axes1_x*six_r_h_2_in_spec2_y;
+            six_r_Sigma_2_in_axes2_zz*six_r_alpha_1_o_t -
+            v.six_r_g_in_axes1_y*six_r_h_2_in_spec2_y;
         const real six_r_Sigma_2_in_axes2_xx = m->six_r_Sigma_2_in_axes2_xx[i];
         const real six_r_h_2_in_spec2_x = m->six_r_h_2_in_spec2_x[i];
         const real six_r_mu_2_o_in_axes2_y = six_r_B_2_o_in_axes2_zy*six_r_J_2_in_spec2_xy +
             six_r_Sigma_2_in_axes2_zz*six_r_alpha_1_o_in_axes2_y +
-            six_r_g_in_axes1_x*six_r_h_2_in_spec2_x -
+            v.six_r_g_in_axes1_y*six_r_h_2_in_spec2_x -
             six_r_B_2_o_in_axes2_xy*six_r_J_2_in_spec2_yz -
             six_r_B_2_o_in_axes2_zx*six_r_Sigma_2_in_axes2_xx -
             six_r_J_2_in_spec2_xz*(six_r_mu_2_o_t - six_r_a_o_3_o_t_2) -
-            six_r_g_in_axes2_x*six_r_h_2_in_spec2_z;
+            v.six_r_g_in_axes2_x*six_r_h_2_in_spec2_z;
         const real six_r_mu_2_o_in_axes2_z = six_r_B_2_o_in_axes2_yx*six_r_Sigma_2_in_axes2_xx +
             six_r_J_2_in_spec2_xy*(six_r_mu_2_o_t - six_r_a_o_3_o_t) +
             six_r_J_2_in_spec2_yz*six_r_alpha_1_o_in_axes2_y +
-            six_r_g_in_axes2_x*six_r_h_2_in_spec2_y -
+            v.six_r_g_in_axes2_x*six_r_h_2_in_spec2_y -
             six_r_B_2_o_in_axes2_xy*six_r_Sigma_2_in_axes2_yy -
-            six_r_J_2_in_spec2_xz*six_r_alpha_1_o_t - six_r_g_in_axes2_y*six_r_h_2_in_spec2_x;
+            six_r_J_2_in_spec2_xz*six_r_alpha_1_o_t - v.six_r_g_in_axes2_y*six_r_h_2_in_spec2_x;
         /* (six_r-N_2_o) remainder without the acceleration in: moment about joint 2 of the links from 2
            outwards, the force at the connection point left out */
         const real six_r_N_2_o_in_axes2_x = six_r_mu_2_o_in_axes2_x +
-            six_r_N_3_o_in_axes3_x*six_r_c_3 - six_r_N_3_o_in_axes3_y*six_r_s_3;
+            six_r_N_3_o_in_axes3_x*v.six_r_s_3 + six_r_N_3_o_in_axes3_y*v.six_r_c_3;
         const real six_r_N_2_o_in_axes2_y = six_r_mu_2_o_in_axes2_y +
-            six_r_N_3_o_in_axes3_x*six_r_s_3 + six_r_N_3_o_in_axes3_y*six_r_c_3 -
+            six_r_N_3_o_in_axes3_y*v.six_r_s_3 - six_r_N_3_o_in_axes3_x*v.six_r_c_3 -
             six_r_T_3_o_in_axes3_z*six_r_joint3_offset_x;
-        const real six_r_N_2_o_in_axes2_z = six_r_N_3_o_in_axes3_z + six_r_mu_2_o_in_axes2_z +
-            six_r_joint3_offset_x*(six_r_T_3_o_in_axes3_x*six_r_s_3 +
-            six_r_T_3_o_in_axes3_y*six_r_c_3);
+        const real six_r_N_2_o_in_axes2_z = six_r_N_3_o_in_axes3_z + six_r_mu_2_o_in_axes2_z -
+            six_r_joint3_offset_x*(six_r_T_3_o_in_axes3_x*v.six_r_c_3 -
+            six_r_T_3_o_in_axes3_y*v.six_r_s_3);
         /* (six_r-mu_1_o) remainder without the acceleration in: inertia moment of the links that turn
            with link 1, about their reference points */
         const real six_r_J_1_in_spec1_xx = m->six_r_J_1_in_spec1_xx[i];
         const real six_r_h_1_in_spec1_y = m->six_r_h_1_in_spec1_y[i];
         const real six_r_h_1_in_spec1_z = m->six_r_h_1_in_spec1_z[i];
-        const real six_r_mu_1_o_in_axes1_z = -six_r_J_1_in_spec1_xx*six_r_qdd_1_o_t_5 -
-            six_r_g_in_axes1_x*six_r_h_1_in_spec1_y - six_r_g_in_axes1_y*six_r_h_1_in_spec1_z;
+        const real six_r_mu_1_o_in_axes1_z = v.six_r_g_in_axes1_x*six_r_h_1_in_spec1_z -
+            six_r_J_1_in_spec1_xx*six_r_qdd_1_o_t_5 - v.six_r_g_in_axes1_y*six_r_h_1_in_spec1_y;
         /* (six_r-N_1_o) remainder without the acceleration in: moment about joint 1 of the links from 1
            outwards, the force at the connection point left out */
         const real six_r_N_1_o_in_axes1_z = six_r_mu_1_o_in_axes1_z +
-            six_r_N_2_o_in_axes2_x*six_r_s_2 + six_r_N_2_o_in_axes2_y*six_r_c_2;
+            six_r_N_2_o_in_axes2_x*v.six_r_c_2 - six_r_N_2_o_in_axes2_y*v.six_r_s_2;
         /* (six_r-G_m1_o) remainder without the acceleration in: moment along moment direction 1 that
            balances the leg's inertia and weight along all degrees of freedom */
-        const real six_r_G_m1_o_t = inv_six_r_w_1_t_12*six_r_mu_5_o_in_axes5_z;
-        const real six_r_G_m1_o_t_2 = inv_six_r_w_1_t_28*(six_r_G_m1_o_t*six_r_w_1_t_15 -
+        const real six_r_G_m1_o_t = v.inv_six_r_w_1_t_12*six_r_mu_5_o_in_axes5_z;
+        const real six_r_G_m1_o_t_2 = v.inv_six_r_w_1_t_28*(six_r_G_m1_o_t*v.six_r_w_1_t_15 -
             six_r_N_4_o_in_axes4_z);
-        const real six_r_G_m1_o_t_3 = inv_six_r_w_1_t_49*(six_r_G_m1_o_t*six_r_w_1_t_18 +
-            six_r_G_m1_o_t_2*six_r_w_1_t_33 - six_r_N_1_o_in_axes1_z);
-        const real six_r_G_m1_o_t_4 = inv_six_r_w_1_t_67*(six_r_G_m1_o_t*six_r_w_1_t_22 +
-            six_r_G_m1_o_t_2*six_r_w_1_t_39 - six_r_N_2_o_in_axes2_z -
-            six_r_G_m1_o_t_3*six_r_w_1_t_55);
-        const real six_r_G_m1_o_t_5 = inv_six_r_w_1_t_79*(six_r_N_3_o_in_axes3_z +
-            six_r_G_m1_o_t*six_r_w_1_t_25 + six_r_G_m1_o_t_3*six_r_w_1_t_61 +
-            six_r_G_m1_o_t_4*six_r_w_1_t_73 - six_r_G_m1_o_t_2*six_r_w_1_t_44);
-        const real six_r_G_m1_o_t_6 = six_r_size*(six_r_G_m1_o_t_2*six_r_w_1_t_31 +
-            six_r_G_m1_o_t_3*six_r_w_1_t_53 + six_r_G_m1_o_t_4*six_r_w_1_t_71 -
-            six_r_G_m1_o_t_5*six_r_qd_1_t_4);
+        const real six_r_G_m1_o_t_3 = v.inv_six_r_w_1_t_49*(six_r_G_m1_o_t*v.six_r_w_1_t_18 +
+            six_r_G_m1_o_t_2*v.six_r_w_1_t_33 - six_r_N_1_o_in_axes1_z);
+        const real six_r_G_m1_o_t_4 = v.inv_six_r_w_1_t_67*(six_r_G_m1_o_t*v.six_r_w_1_t_22 +
+            six_r_G_m1_o_t_2*v.six_r_w_1_t_39 - six_r_N_2_o_in_axes2_z -
+            six_r_G_m1_o_t_3*v.six_r_w_1_t_55);
+        const real six_r_G_m1_o_t_5 = v.inv_six_r_w_1_t_79*(six_r_N_3_o_in_axes3_z +
+            six_r_G_m1_o_t*v.six_r_w_1_t_25 + six_r_G_m1_o_t_3*v.six_r_w_1_t_61 +
+            six_r_G_m1_o_t_4*v.six_r_w_1_t_73 - six_r_G_m1_o_t_2*v.six_r_w_1_t_44);
+        const real six_r_G_m1_o_t_6 = six_r_size*(six_r_G_m1_o_t_2*v.six_r_w_1_t_31 +
+            six_r_G_m1_o_t_3*v.six_r_w_1_t_53 + six_r_G_m1_o_t_4*v.six_r_w_1_t_71 -
+            six_r_G_m1_o_t_5*v.six_r_qd_1_t_4);
         /* (six_r-G_m2_o) remainder without the acceleration in: moment along moment direction 2 that
            balances the leg's inertia and weight along all degrees of freedom */
-        const real six_r_G_m2_o_t = six_r_size*(six_r_G_m1_o_t_2*six_r_w_1_t_32 +
-            six_r_G_m1_o_t_3*six_r_w_1_t_54 + six_r_G_m1_o_t_4*six_r_w_1_t_72 -
-            six_r_G_m1_o_t*six_r_w_1_t_14 - six_r_G_m1_o_t_5*six_r_qd_1_t_5);
+        const real six_r_G_m2_o_t = six_r_size*(six_r_G_m1_o_t_2*v.six_r_w_1_t_32 +
+            six_r_G_m1_o_t_3*v.six_r_w_1_t_54 + six_r_G_m1_o_t_4*v.six_r_w_1_t_72 -
+            six_r_G_m1_o_t*v.six_r_w_1_t_14 - six_r_G_m1_o_t_5*v.six_r_qd_1_t_5);
         /* (six_r-G_m_o) remainder without the acceleration in: moment at the connection point that
            balances the leg's inertia and weight along all degrees of freedom */
-        const real six_r_G_m_o_in_axes5_x = six_r_G_m1_o_t_6*six_r_n_m2_in_axes5_z;
-        const real six_r_G_m_o_in_axes5_y = six_r_G_m2_o_t*six_r_end_p1_in_axes5_z -
-            six_r_G_m1_o_t_6*six_r_n_m1_in_axes5_y;
+        const real six_r_G_m_o_in_axes5_x = six_r_G_m1_o_t_6*v.six_r_n_m2_in_axes5_z;
+        const real six_r_G_m_o_in_axes5_y = six_r_G_m2_o_t*v.six_r_end_p1_in_axes5_z -
+            six_r_G_m1_o_t_6*v.six_r_n_m1_in_axes5_y;
         /* (six_r-c_o) remainder without the acceleration in: leg force on the platform without actuation
            and without the mass at the connection point */
-        const real six_r_c_o_in_axes5_x = six_r_G_m1_o_t_3*six_r_w_1_t_50 +
-            six_r_G_m1_o_t_4*six_r_w_1_t_68 - six_r_B_5_o_in_axes5_xy*six_r_h_5_in_spec5_y -
-            six_r_B_5_o_in_axes5_xz*six_r_h_5_in_spec5_z - six_r_G_m1_o_t_5*six_r_qd_1_t -
-            six_r_W_5_in_axes5_xx*six_r_h_5_in_spec5_x;
-        const real six_r_c_o_in_axes5_y = six_r_G_m1_o_t_5*six_r_qd_1_t_2 +
+        const real six_r_c_o_in_axes5_x = six_r_G_m1_o_t_3*v.six_r_w_1_t_50 +
+            six_r_G_m1_o_t_4*v.six_r_w_1_t_68 + six_r_W_5_t_3*six_r_h_5_in_spec5_x -
+            six_r_B_5_o_in_axes5_xy*six_r_h_5_in_spec5_y -
+            six_r_B_5_o_in_axes5_xz*six_r_h_5_in_spec5_z - six_r_G_m1_o_t_5*v.six_r_qd_1_t;
+        const real six_r_c_o_in_axes5_y = six_r_G_m1_o_t_5*v.six_r_qd_1_t_2 +
             six_r_h_5_in_spec5_y*(six_r_W_5_t_2 + six_r_bias_t_2) -
             six_r_B_5_o_in_axes5_yx*six_r_h_5_in_spec5_x -
-            six_r_B_5_o_in_axes5_yz*six_r_h_5_in_spec5_z - six_r_G_m1_o_t*six_r_w_1_t_13 -
-            six_r_G_m1_o_t_2*six_r_w_1_t_29 - six_r_G_m1_o_t_3*six_r_w_1_t_51 -
-            six_r_G_m1_o_t_4*six_r_w_1_t_69;
-        const real six_r_c_o_in_axes5_z = six_r_G_m1_o_t_2*six_r_w_1_t_30 +
-            six_r_G_m1_o_t_3*six_r_w_1_t_52 + six_r_G_m1_o_t_4*six_r_w_1_t_70 +
+            six_r_B_5_o_in_axes5_yz*six_r_h_5_in_spec5_z - six_r_G_m1_o_t*v.six_r_w_1_t_13 -
+            six_r_G_m1_o_t_2*v.six_r_w_1_t_29 - six_r_G_m1_o_t_3*v.six_r_w_1_t_51 -
+            six_r_G_m1_o_t_4*v.six_r_w_1_t_69;
+        const real six_r_c_o_in_axes5_z = six_r_G_m1_o_t_2*v.six_r_w_1_t_30 +
+            six_r_G_m1_o_t_3*v.six_r_w_1_t_52 + six_r_G_m1_o_t_4*v.six_r_w_1_t_70 +
             six_r_h_5_in_spec5_z*(six_r_W_5_t + six_r_bias_t_2) -
             six_r_B_5_o_in_axes5_zx*six_r_h_5_in_spec5_x -
-            six_r_B_5_o_in_axes5_zy*six_r_h_5_in_spec5_y - six_r_G_m1_o_t_5*six_r_qd_1_t_3;
+            six_r_B_5_o_in_axes5_zy*six_r_h_5_in_spec5_y - six_r_G_m1_o_t_5*v.six_r_qd_1_t_3;
         /* (six_r-c_m_o) remainder without the acceleration in: moment of the leg on the platform without
            actuation */
-        const real six_r_c_m_o_in_axes5_z = six_r_G_m2_o_t*six_r_n_m2_in_axes5_z;
+        const real six_r_c_m_o_in_axes5_z = six_r_G_m2_o_t*v.six_r_n_m2_in_axes5_z;
         /* (six_r-U) velocity and gravity terms of the leg force */
-        const real six_r_U_x = -axis_x_six_r_axes5_x*six_r_c_o_in_axes5_x -
-            axis_y_six_r_axes5_x*six_r_c_o_in_axes5_y - axis_z_six_r_axes5_x*six_r_c_o_in_axes5_z;
-        const real six_r_U_y = -axis_x_six_r_axes5_y*six_r_c_o_in_axes5_x -
-            axis_y_six_r_axes5_y*six_r_c_o_in_axes5_y - axis_z_six_r_axes5_y*six_r_c_o_in_axes5_z;
-        const real six_r_U_z = -axis_x_six_r_axes5_z*six_r_c_o_in_axes5_x -
-            axis_y_six_r_axes5_z*six_r_c_o_in_axes5_y - axis_z_six_r_axes5_z*six_r_c_o_in_axes5_z;
+        const real six_r_U_x = -v.axis_x_six_r_axes5_x*six_r_c_o_in_axes5_x -
+            v.axis_y_six_r_axes5_x*six_r_c_o_in_axes5_y -
+            v.axis_z_six_r_axes5_x*six_r_c_o_in_axes5_z;
+        const real six_r_U_y = -v.axis_x_six_r_axes5_y*six_r_c_o_in_axes5_x -
+            v.axis_y_six_r_axes5_y*six_r_c_o_in_axes5_y -
+            v.axis_z_six_r_axes5_y*six_r_c_o_in_axes5_z;
+        const real six_r_U_z = -v.axis_x_six_r_axes5_z*six_r_c_o_in_axes5_x -
+            v.axis_y_six_r_axes5_z*six_r_c_o_in_axes5_y -
+            v.axis_z_six_r_axes5_z*six_r_c_o_in_axes5_z;
         /* (Z_a) rotational part of Z */
-        const real six_r_Z_a_t = axis_x_six_r_axes5_x*six_r_G_m_o_in_axes5_x +
-            axis_y_six_r_axes5_x*six_r_G_m_o_in_axes5_y + six_r_U_z*six_r_q_y -
-            axis_z_six_r_axes5_x*six_r_c_m_o_in_axes5_z - six_r_U_y*six_r_q_z;
-        const real six_r_Z_a_t_2 = axis_x_six_r_axes5_y*six_r_G_m_o_in_axes5_x +
-            axis_y_six_r_axes5_y*six_r_G_m_o_in_axes5_y + six_r_U_x*six_r_q_z -
-            axis_z_six_r_axes5_y*six_r_c_m_o_in_axes5_z - six_r_U_z*six_r_q_x;
-        const real six_r_Z_a_t_3 = axis_x_six_r_axes5_z*six_r_G_m_o_in_axes5_x +
-            axis_y_six_r_axes5_z*six_r_G_m_o_in_axes5_y + six_r_U_y*six_r_q_x -
-            axis_z_six_r_axes5_z*six_r_c_m_o_in_axes5_z - six_r_U_x*six_r_q_y;
+        const real six_r_Z_a_t = v.axis_x_six_r_axes5_x*six_r_G_m_o_in_axes5_x +
+            v.axis_y_six_r_axes5_x*six_r_G_m_o_in_axes5_y + six_r_U_z*v.six_r_q_y -
+            v.axis_z_six_r_axes5_x*six_r_c_m_o_in_axes5_z - six_r_U_y*v.six_r_q_z;
+        const real six_r_Z_a_t_2 = v.axis_x_six_r_axes5_y*six_r_G_m_o_in_axes5_x +
+            v.axis_y_six_r_axes5_y*six_r_G_m_o_in_axes5_y + six_r_U_x*v.six_r_q_z -
+            v.axis_z_six_r_axes5_y*six_r_c_m_o_in_axes5_z - six_r_U_z*v.six_r_q_x;
+        const real six_r_Z_a_t_3 = v.axis_x_six_r_axes5_z*six_r_G_m_o_in_axes5_x +
+            v.axis_y_six_r_axes5_z*six_r_G_m_o_in_axes5_y + six_r_U_y*v.six_r_q_x -
+            v.axis_z_six_r_axes5_z*six_r_c_m_o_in_axes5_z - six_r_U_x*v.six_r_q_y;
         /* (Z_t) translational part of Z */
         gather(&terms[0*count + k], add, six_r_U_x);  /* Z_t_x_of_legs */
         gather(&terms[1*count + k], add, six_r_U_y);  /* Z_t_y_of_legs */
@@ -6914,11 +7473,11 @@ INLINE void Z_legs_six_r(const prepared *m, size_t w, size_t leg, size_t legs, c
         gather(&terms[3*count + k], add, six_r_Z_a_t);  /* Z_a_x_of_legs */
         gather(&terms[4*count + k], add, six_r_Z_a_t_2);  /* Z_a_y_of_legs */
         gather(&terms[5*count + k], add, six_r_Z_a_t_3);  /* Z_a_z_of_legs */
-        o[0*count + k] = UNLESS(magnitude(six_r_w_1_t_12) > TOLERANCE*six_r_size) +
-            UNLESS(magnitude(six_r_w_1_t_28) > TOLERANCE*six_r_size) +
-            UNLESS(magnitude(six_r_w_1_t_49) > TOLERANCE*six_r_size) +
-            UNLESS(magnitude(six_r_w_1_t_67) > TOLERANCE*six_r_size) +
-            UNLESS(magnitude(six_r_w_1_t_79) > TOLERANCE*six_r_size);
+        o[0*count + k] = UNLESS(magnitude(v.six_r_w_1_t_12) > TOLERANCE*six_r_size) +
+            UNLESS(magnitude(v.six_r_w_1_t_28) > TOLERANCE*six_r_size) +
+            UNLESS(magnitude(v.six_r_w_1_t_49) > TOLERANCE*six_r_size) +
+            UNLESS(magnitude(v.six_r_w_1_t_67) > TOLERANCE*six_r_size) +
+            UNLESS(magnitude(v.six_r_w_1_t_79) > TOLERANCE*six_r_size);
     }
 }
 
@@ -6933,24 +7492,24 @@ INLINE void Z_after(size_t w, const real *s, const real *sums, real *Z, verdict 
 {
     for (size_t k = 0; k < w; ++k) {
         /* (Z_t) translational part of Z */
-        const real Z_p_x = s[15*w + k];
+        const real Z_p_x = s[9*w + k];
         const real Z_t_x_of_legs = sums[0*w + k];
         const real Z_t_x = Z_p_x + Z_t_x_of_legs;
-        const real Z_p_y = s[16*w + k];
+        const real Z_p_y = s[10*w + k];
         const real Z_t_y_of_legs = sums[1*w + k];
         const real Z_t_y = Z_p_y + Z_t_y_of_legs;
-        const real Z_p_z = s[17*w + k];
+        const real Z_p_z = s[11*w + k];
         const real Z_t_z_of_legs = sums[2*w + k];
         const real Z_t_z = Z_p_z + Z_t_z_of_legs;
         /* (Z_a) rotational part of Z */
         const real Z_a_x_of_legs = sums[3*w + k];
-        const real Z_q_x = s[18*w + k];
+        const real Z_q_x = s[12*w + k];
         const real Z_a_x = Z_a_x_of_legs + Z_q_x;
         const real Z_a_y_of_legs = sums[4*w + k];
-        const real Z_q_y = s[19*w + k];
+        const real Z_q_y = s[13*w + k];
         const real Z_a_y = Z_a_y_of_legs + Z_q_y;
         const real Z_a_z_of_legs = sums[5*w + k];
-        const real Z_q_z = s[20*w + k];
+        const real Z_q_z = s[14*w + k];
         const real Z_a_z = Z_a_z_of_legs + Z_q_z;
         /* (Z_t) translational part of Z */
         Z[0*w + k] = Z_t_x;
@@ -6967,12 +7526,10 @@ INLINE void Z_after(size_t w, const real *s, const real *sums, real *Z, verdict 
 INLINE void Z_run(const prepared *m, const real *X, const real *V, const real *joints, real *Z,
     verdict *t)
 {
-    real s[21] = {0};
-    real sums[6] = {0};
-    real terms_six_r[6*LEGS(LEGS_OF_six_r)] = {0};
-    real o_six_r[LEGS(LEGS_OF_six_r)] = {0};
+    real s[15] = {0}, sums[6] = {0};
+    real terms_six_r[6*LEGS(LEGS_OF_six_r)] = {0}, o_six_r[LEGS(LEGS_OF_six_r)] = {0};
     Z_before(m, 1, X, V, s, t);
-    Z_legs_six_r(m, 1, 0, 1, s, 0, LEGS(LEGS_OF_six_r), 0, joints, terms_six_r, o_six_r);
+    Z_legs_six_r(m, 1, 0, 1, s, 0, LEGS(LEGS_OF_six_r), 0, V, joints, terms_six_r, o_six_r);
     for (size_t leg = 0; leg < LEGS_OF_six_r; ++leg) {
         Z_place_six_r(1, LEGS(LEGS_OF_six_r), o_six_r, leg, t);
     }
@@ -6985,432 +7542,63 @@ INLINE void Z_run(const prepared *m, const real *X, const real *V, const real *j
 INLINE void Z_run_lanes(const prepared *m, const real *X, const real *V, const real *joints, real
     *Z, verdict *t)
 {
-    real s[21*LANES];
-    real sums[6*LANES];
+    real s[15*LANES], sums[6*LANES];
     real o_six_r[LANES];
     Z_before(m, LANES, X, V, s, t);
     clear(sums, 6*LANES);
     for (size_t leg = 0; leg < LEGS_OF_six_r; ++leg) {
-        Z_legs_six_r(m, LANES, leg, 0, s, 1, LANES, 1, joints, sums, o_six_r);
+        Z_legs_six_r(m, LANES, leg, 0, s, 1, LANES, 1, V, joints, sums, o_six_r);
         Z_place_six_r(LANES, LANES, o_six_r, 0, t);
     }
     Z_after(LANES, s, sums, Z, t);
 }
 
 /* ---- H ---- */
-INLINE void H_before(size_t w, const real *X, real *s, verdict *t)
+INLINE void H_before(const prepared *m, size_t w, const real *X, real *s, verdict *t)
 {
     for (size_t k = 0; k < w; ++k) {
-        /* X: named entries */
-        const real X_3 = X[3*w + k];
-        const real X_4 = X[4*w + k];
-        const real X_5 = X[5*w + k];
-        const real X_6 = X[6*w + k];
-        const real quaternion_norm2 = X_3*X_3 + X_4*X_4 + X_5*X_5 + X_6*X_6;
-        const real quaternion_scale = 2/quaternion_norm2;
-        const real quaternion_sx = X_3*quaternion_scale;
-        const real quaternion_sy = X_4*quaternion_scale;
-        const real quaternion_sz = X_5*quaternion_scale;
-        const real quaternion_wx = X_6*quaternion_sx;
-        const real quaternion_wy = X_6*quaternion_sy;
-        const real quaternion_wz = X_6*quaternion_sz;
-        const real quaternion_xx = X_3*quaternion_sx;
-        const real quaternion_xy = X_3*quaternion_sy;
-        const real quaternion_xz = X_3*quaternion_sz;
-        const real quaternion_yy = X_4*quaternion_sy;
-        const real quaternion_yz = X_4*quaternion_sz;
-        const real quaternion_zz = X_5*quaternion_sz;
-        const real R_xx = 1 - quaternion_yy - quaternion_zz;
-        const real R_xy = quaternion_xy - quaternion_wz;
-        const real R_xz = quaternion_wy + quaternion_xz;
-        const real R_yx = quaternion_wz + quaternion_xy;
-        const real R_yy = 1 - quaternion_xx - quaternion_zz;
-        const real R_yz = quaternion_yz - quaternion_wx;
-        const real R_zx = quaternion_xz - quaternion_wy;
-        const real R_zy = quaternion_wx + quaternion_yz;
-        const real R_zz = 1 - quaternion_xx - quaternion_yy;
-        s[0*w + k] = R_xx;
-        s[1*w + k] = R_xy;
-        s[2*w + k] = R_xz;
-        s[3*w + k] = R_yx;
-        s[4*w + k] = R_yy;
-        s[5*w + k] = R_yz;
-        s[6*w + k] = R_zx;
-        s[7*w + k] = R_zy;
-        s[8*w + k] = R_zz;
-        t->invalid[k] += UNLESS(is_finite(quaternion_scale)) + UNLESS(quaternion_scale > 0);
+        values v;
+        stage_X(m, w, k, X, &v);
+        s[0*w + k] = v.R_xx;
+        s[1*w + k] = v.R_xy;
+        s[2*w + k] = v.R_xz;
+        s[3*w + k] = v.R_yx;
+        s[4*w + k] = v.R_yy;
+        s[5*w + k] = v.R_yz;
+        s[6*w + k] = v.R_zx;
+        s[7*w + k] = v.R_zy;
+        s[8*w + k] = v.R_zz;
+        t->invalid[k] += UNLESS(is_finite(v.quaternion_scale)) + UNLESS(v.quaternion_scale > 0);
     }
 }
 
 INLINE void H_legs_six_r(const prepared *m, size_t w, size_t leg, size_t legs, const real *s,
     size_t states, size_t count, const real *joints, real *o)
 {
-    static const size_t place_six_r_q_1[] = {0, 5, 10, 15, 20, 25, 0, 0};
-    static const size_t place_six_r_q_2[] = {1, 6, 11, 16, 21, 26, 1, 1};
-    static const size_t place_six_r_q_3[] = {2, 7, 12, 17, 22, 27, 2, 2};
-    static const size_t place_six_r_q_4[] = {3, 8, 13, 18, 23, 28, 3, 3};
-    static const size_t place_six_r_q_5[] = {4, 9, 14, 19, 24, 29, 4, 4};
     for (size_t k = 0; k < count; ++k) {
         const size_t i = leg + legs*k;
         const size_t j = states*k;
-        /* (six_r-c_1) cosine of the angle of joint 1 from its reference direction */
-        const real six_r_q_1 = joints[place_six_r_q_1[i]*w + j];
-        const real six_r_c_1 = -sine(six_r_q_1);
-        /* (six_r-s_1) sine of the angle of joint 1 from its reference direction */
-        const real six_r_s_1 = cosine(six_r_q_1);
-        /* (six_r-c_2) cosine of the angle of joint 2 from its reference direction */
-        const real six_r_q_2 = joints[place_six_r_q_2[i]*w + j];
-        const real six_r_c_2 = -sine(six_r_q_2);
-        /* (six_r-s_2) sine of the angle of joint 2 from its reference direction */
-        const real six_r_s_2 = cosine(six_r_q_2);
-        /* (six_r-c_3) cosine of the angle of joint 3 from its reference direction */
-        const real six_r_q_3 = joints[place_six_r_q_3[i]*w + j];
-        const real six_r_c_3 = cosine(six_r_q_3);
-        /* (six_r-s_3) sine of the angle of joint 3 from its reference direction */
-        const real six_r_s_3 = sine(six_r_q_3);
-        /* (six_r-c_4) cosine of the angle of joint 4 from its reference direction */
-        const real six_r_q_4 = joints[place_six_r_q_4[i]*w + j];
-        const real six_r_c_4 = -sine(six_r_q_4);
-        /* (six_r-s_4) sine of the angle of joint 4 from its reference direction */
-        const real six_r_s_4 = cosine(six_r_q_4);
-        /* (six_r-c_5) cosine of the angle of joint 5 from its reference direction */
-        const real six_r_q_5 = joints[place_six_r_q_5[i]*w + j];
-        const real six_r_c_5 = -sine(six_r_q_5);
-        /* (six_r-s_5) sine of the angle of joint 5 from its reference direction */
-        const real six_r_s_5 = cosine(six_r_q_5);
-        /* (six_r-r_4) from joint 4 to the connection point, along the links */
-        const real six_r_platform_joint_offset_x = m->six_r_platform_joint_offset_x[i];
-        const real six_r_r_4_in_axes4_y = six_r_c_5*six_r_platform_joint_offset_x;
-        const real six_r_joint5_offset_x = m->six_r_joint5_offset_x[i];
-        const real six_r_r_4_in_axes4_z = six_r_joint5_offset_x +
-            six_r_platform_joint_offset_x*six_r_s_5;
-        const real six_r_r_4_in_axes3_y = -six_r_r_4_in_axes4_y*six_r_s_4;
-        const real six_r_r_4_in_axes3_z = six_r_c_4*six_r_r_4_in_axes4_y;
-        /* (six_r-r_3) from joint 3 to the connection point, along the links */
-        const real six_r_joint4_offset_x = m->six_r_joint4_offset_x[i];
-        const real six_r_r_3_in_axes3_x = six_r_joint4_offset_x + six_r_r_4_in_axes4_z;
-        const real six_r_r_3_in_axes2_y = six_r_c_3*six_r_r_4_in_axes3_y +
-            six_r_r_3_in_axes3_x*six_r_s_3;
-        const real six_r_r_3_t = six_r_r_4_in_axes3_z*six_r_s_4;
-        const real six_r_r_3_t_2 = -six_r_c_4*six_r_r_4_in_axes3_z;
-        const real six_r_r_3_in_axes5_z = six_r_r_3_t + six_r_c_4*six_r_r_4_in_axes3_y;
-        const real six_r_r_3_t_3 = -six_r_r_3_t_2 - six_r_r_4_in_axes3_y*six_r_s_4;
-        const real six_r_r_3_in_axes5_x = six_r_c_5*six_r_r_3_t_3 +
-            six_r_r_3_in_axes3_x*six_r_s_5;
-        const real six_r_r_3_in_axes5_y = six_r_c_5*six_r_r_3_in_axes3_x -
-            six_r_r_3_t_3*six_r_s_5;
-        /* (six_r-r_2) from joint 2 to the connection point, along the links */
-        const real six_r_joint3_offset_x = m->six_r_joint3_offset_x[i];
-        const real six_r_r_2_in_axes2_x = six_r_joint3_offset_x + six_r_c_3*six_r_r_3_in_axes3_x -
-            six_r_r_4_in_axes3_y*six_r_s_3;
-        const real six_r_r_2_in_axes1_y = six_r_c_2*six_r_r_2_in_axes2_x -
-            six_r_r_3_in_axes2_y*six_r_s_2;
-        const real six_r_r_2_t = six_r_c_3*six_r_r_2_in_axes2_x + six_r_r_3_in_axes2_y*six_r_s_3;
-        const real six_r_r_2_t_2 = six_r_c_3*six_r_r_3_in_axes2_y -
-            six_r_r_2_in_axes2_x*six_r_s_3;
-        const real six_r_r_2_in_axes5_z = six_r_r_3_t + six_r_c_4*six_r_r_2_t_2;
-        const real six_r_r_2_t_3 = -six_r_r_3_t_2 - six_r_r_2_t_2*six_r_s_4;
-        const real six_r_r_2_in_axes5_x = six_r_c_5*six_r_r_2_t_3 + six_r_r_2_t*six_r_s_5;
-        const real six_r_r_2_in_axes5_y = six_r_c_5*six_r_r_2_t - six_r_r_2_t_3*six_r_s_5;
-        /* (six_r-r_1) from joint 1 to the connection point, along the links */
-        const real six_r_joint2_offset_x = m->six_r_joint2_offset_x[i];
-        const real six_r_r_1_in_axes1_z = six_r_joint2_offset_x + six_r_c_2*six_r_r_3_in_axes2_y +
-            six_r_r_2_in_axes2_x*six_r_s_2;
-        const real six_r_r_1_t = six_r_c_2*six_r_r_2_in_axes1_y + six_r_r_1_in_axes1_z*six_r_s_2;
-        const real six_r_r_1_t_2 = six_r_c_2*six_r_r_1_in_axes1_z -
-            six_r_r_2_in_axes1_y*six_r_s_2;
-        const real six_r_r_1_t_3 = six_r_c_3*six_r_r_1_t + six_r_r_1_t_2*six_r_s_3;
-        const real six_r_r_1_t_4 = six_r_c_3*six_r_r_1_t_2 - six_r_r_1_t*six_r_s_3;
-        const real six_r_r_1_in_axes5_z = six_r_r_3_t + six_r_c_4*six_r_r_1_t_4;
-        const real six_r_r_1_t_5 = -six_r_r_3_t_2 - six_r_r_1_t_4*six_r_s_4;
-        const real six_r_r_1_in_axes5_x = six_r_c_5*six_r_r_1_t_5 + six_r_r_1_t_3*six_r_s_5;
-        const real six_r_r_1_in_axes5_y = six_r_c_5*six_r_r_1_t_3 - six_r_r_1_t_5*six_r_s_5;
-        /* (six_r-v_1) velocity of the connection point per rate of joint 1 */
-        const real six_r_v_1_t = six_r_c_2*six_r_s_3 + six_r_c_3*six_r_s_2;
-        const real six_r_v_1_t_2 = six_r_c_2*six_r_c_3 - six_r_s_2*six_r_s_3;
-        const real six_r_e_1_in_axes5_z = six_r_c_4*six_r_v_1_t_2;
-        const real six_r_v_1_t_3 = six_r_s_4*six_r_v_1_t_2;
-        const real six_r_e_1_in_axes5_x = six_r_s_5*six_r_v_1_t - six_r_c_5*six_r_v_1_t_3;
-        const real six_r_e_1_in_axes5_y = six_r_c_5*six_r_v_1_t + six_r_s_5*six_r_v_1_t_3;
-        const real six_r_v_1_in_axes5_x = six_r_e_1_in_axes5_y*six_r_r_1_in_axes5_z -
-            six_r_e_1_in_axes5_z*six_r_r_1_in_axes5_y;
-        const real six_r_v_1_in_axes5_y = six_r_e_1_in_axes5_z*six_r_r_1_in_axes5_x -
-            six_r_e_1_in_axes5_x*six_r_r_1_in_axes5_z;
-        const real six_r_v_1_in_axes5_z = six_r_e_1_in_axes5_x*six_r_r_1_in_axes5_y -
-            six_r_e_1_in_axes5_y*six_r_r_1_in_axes5_x;
-        /* (six_r-v_2) velocity of the connection point per rate of joint 2 */
-        const real six_r_e_2_in_axes5_x = six_r_c_4*six_r_c_5;
-        const real six_r_e_2_in_axes5_y = -six_r_c_4*six_r_s_5;
-        const real six_r_v_2_in_axes5_x = six_r_e_2_in_axes5_y*six_r_r_2_in_axes5_z -
-            six_r_r_2_in_axes5_y*six_r_s_4;
-        const real six_r_v_2_in_axes5_y = six_r_r_2_in_axes5_x*six_r_s_4 -
-            six_r_e_2_in_axes5_x*six_r_r_2_in_axes5_z;
-        const real six_r_v_2_in_axes5_z = six_r_e_2_in_axes5_x*six_r_r_2_in_axes5_y -
-            six_r_e_2_in_axes5_y*six_r_r_2_in_axes5_x;
-        /* (six_r-v_3) velocity of the connection point per rate of joint 3 */
-        const real six_r_v_3_in_axes5_x = six_r_e_2_in_axes5_y*six_r_r_3_in_axes5_z -
-            six_r_r_3_in_axes5_y*six_r_s_4;
-        const real six_r_v_3_in_axes5_y = six_r_r_3_in_axes5_x*six_r_s_4 -
-            six_r_e_2_in_axes5_x*six_r_r_3_in_axes5_z;
-        const real six_r_v_3_in_axes5_z = six_r_e_2_in_axes5_x*six_r_r_3_in_axes5_y -
-            six_r_e_2_in_axes5_y*six_r_r_3_in_axes5_x;
-        /* (six_r-v_4) velocity of the connection point per rate of joint 4 */
-        const real six_r_v_4_in_axes5_z = six_r_s_5*(six_r_c_5*six_r_r_4_in_axes4_z -
-            six_r_r_4_in_axes4_y*six_r_s_5) - six_r_c_5*(six_r_c_5*six_r_r_4_in_axes4_y +
-            six_r_r_4_in_axes4_z*six_r_s_5);
-        /* (six_r-n_m1) direction 1 of the moment that the platform joint transmits */
-        const real R_xx = s[0*w + j];
-        const real R_xy = s[1*w + j];
-        const real R_xz = s[2*w + j];
-        const real R_yx = s[3*w + j];
-        const real R_yy = s[4*w + j];
-        const real R_yz = s[5*w + j];
-        const real R_zx = s[6*w + j];
-        const real R_zy = s[7*w + j];
-        const real R_zz = s[8*w + j];
-        const real six_r_base_frame_xy = m->six_r_base_frame_xy[i];
-        const real six_r_base_frame_yy = m->six_r_base_frame_yy[i];
-        const real six_r_base_frame_zy = m->six_r_base_frame_zy[i];
-        const real six_r_platform_joint_axis_platform_x = m->six_r_platform_joint_axis_platform_x[i];
-        const real six_r_platform_joint_axis_platform_y = m->six_r_platform_joint_axis_platform_y[i];
-        const real six_r_platform_joint_axis_platform_z = m->six_r_platform_joint_axis_platform_z[i];
-        const real six_r_n_m1_t = six_r_platform_joint_axis_platform_x*(R_xx*six_r_base_frame_xy +
-            R_yx*six_r_base_frame_yy + R_zx*six_r_base_frame_zy) +
-            six_r_platform_joint_axis_platform_y*(R_xy*six_r_base_frame_xy +
-            R_yy*six_r_base_frame_yy + R_zy*six_r_base_frame_zy) +
-            six_r_platform_joint_axis_platform_z*(R_xz*six_r_base_frame_xy +
-            R_yz*six_r_base_frame_yy + R_zz*six_r_base_frame_zy);
-        const real six_r_base_frame_xz = m->six_r_base_frame_xz[i];
-        const real six_r_base_frame_yz = m->six_r_base_frame_yz[i];
-        const real six_r_base_frame_zz = m->six_r_base_frame_zz[i];
-        const real six_r_n_m1_t_2 = six_r_platform_joint_axis_platform_x*(R_xx*six_r_base_frame_xz
-            + R_yx*six_r_base_frame_yz + R_zx*six_r_base_frame_zz) +
-            six_r_platform_joint_axis_platform_y*(R_xy*six_r_base_frame_xz +
-            R_yy*six_r_base_frame_yz + R_zy*six_r_base_frame_zz) +
-            six_r_platform_joint_axis_platform_z*(R_xz*six_r_base_frame_xz +
-            R_yz*six_r_base_frame_yz + R_zz*six_r_base_frame_zz);
-        const real six_r_base_frame_xx = m->six_r_base_frame_xx[i];
-        const real six_r_base_frame_yx = m->six_r_base_frame_yx[i];
-        const real six_r_base_frame_zx = m->six_r_base_frame_zx[i];
-        const real six_r_n_m1_t_3 = six_r_platform_joint_axis_platform_x*(R_xx*six_r_base_frame_xx
-            + R_yx*six_r_base_frame_yx + R_zx*six_r_base_frame_zx) +
-            six_r_platform_joint_axis_platform_y*(R_xy*six_r_base_frame_xx +
-            R_yy*six_r_base_frame_yx + R_zy*six_r_base_frame_zx) +
-            six_r_platform_joint_axis_platform_z*(R_xz*six_r_base_frame_xx +
-            R_yz*six_r_base_frame_yx + R_zz*six_r_base_frame_zx);
-        const real six_r_n_m1_t_4 = six_r_c_1*six_r_n_m1_t + six_r_n_m1_t_2*six_r_s_1;
-        const real six_r_n_m1_t_5 = six_r_c_1*six_r_n_m1_t_2 - six_r_n_m1_t*six_r_s_1;
-        const real six_r_n_m1_t_6 = six_r_c_2*six_r_n_m1_t_5 + six_r_n_m1_t_3*six_r_s_2;
-        const real six_r_n_m1_t_7 = six_r_c_2*six_r_n_m1_t_3 - six_r_n_m1_t_5*six_r_s_2;
-        const real six_r_n_m1_t_8 = six_r_c_3*six_r_n_m1_t_6 + six_r_n_m1_t_7*six_r_s_3;
-        const real six_r_n_m1_t_9 = six_r_c_3*six_r_n_m1_t_7 - six_r_n_m1_t_6*six_r_s_3;
-        const real six_r_n_m1_t_10 = six_r_c_4*six_r_n_m1_t_4 - six_r_n_m1_t_9*six_r_s_4;
-        const real six_r_n_m1_in_axes5_y = six_r_c_5*six_r_n_m1_t_10 + six_r_n_m1_t_8*six_r_s_5;
-        /* (six_r-n_m2) direction 2 of the moment that the platform joint transmits */
-        const real six_r_n_m2_in_axes5_z = six_r_c_5*six_r_n_m1_t_8 - six_r_n_m1_t_10*six_r_s_5;
-        /* (six_r-w_1) force part of reciprocal wrench 1 */
-        const real six_r_end_p1_in_axes5_z = six_r_c_4*six_r_n_m1_t_9 + six_r_n_m1_t_4*six_r_s_4;
-        const real six_r_w_1_t = six_r_e_1_in_axes5_x*six_r_n_m2_in_axes5_z -
-            six_r_e_1_in_axes5_y*six_r_n_m1_in_axes5_y;
-        const real six_r_w_1_t_2 = six_r_e_2_in_axes5_x*six_r_n_m2_in_axes5_z -
-            six_r_e_2_in_axes5_y*six_r_n_m1_in_axes5_y;
-        const real six_r_w_1_t_3 = six_r_e_1_in_axes5_y*six_r_end_p1_in_axes5_z -
-            six_r_e_1_in_axes5_z*six_r_n_m2_in_axes5_z;
-        const real six_r_w_1_t_4 = six_r_e_2_in_axes5_y*six_r_end_p1_in_axes5_z -
-            six_r_n_m2_in_axes5_z*six_r_s_4;
+        values_six_r v;
+        stage_six_r_X(m, w, i, j, s, &v);
+        stage_six_r_q(m, w, i, j, joints, &v);
+        stage_six_r_X_q(m, i, &v);
+        stage_six_r_H_condition(m, i, &v);
+        /* (six_r-w_2) force part of reciprocal wrench 2 */
+        o[0*count + k] = v.six_r_w_2_x;
+        o[1*count + k] = v.six_r_w_2_y;
+        o[2*count + k] = v.six_r_w_2_z;
+        /* (six_r-H_a_2) moment of the column's unit force about the platform origin */
+        o[3*count + k] = v.six_r_H_a_2_x;
+        o[4*count + k] = v.six_r_H_a_2_y;
+        o[5*count + k] = v.six_r_H_a_2_z;
+        o[7*count + k] = (v.six_r_w_2_x + (v.six_r_w_2_y + v.six_r_w_2_z)) + (v.six_r_H_a_2_x +
+            (v.six_r_H_a_2_y + v.six_r_H_a_2_z));
         const real six_r_size = m->six_r_size[i];
-        const real six_r_w_1_t_5 = six_r_size*six_r_w_1_t;
-        const real six_r_w_1_t_6 = six_r_size*six_r_w_1_t_3;
-        const real six_r_w_1_t_7 = six_r_size*six_r_w_1_t_2;
-        const real six_r_w_1_t_8 = six_r_size*six_r_w_1_t_4;
-        const real six_r_w_1_t_9 = six_r_size*(six_r_c_5*six_r_n_m1_in_axes5_y -
-            six_r_n_m2_in_axes5_z*six_r_s_5);
-        const real six_r_w_1_t_10 = -six_r_c_5*six_r_end_p1_in_axes5_z*six_r_size;
-        const real six_r_w_1_t_11 = six_r_n_m2_in_axes5_z*six_r_size;
-        const real six_r_size_t = m->six_r_size_t[i];
-        const real six_r_w_1_t_12 = root(six_r_size_t + six_r_w_1_t_11*six_r_w_1_t_11);
-        const real inv_six_r_w_1_t_12 = 1/six_r_w_1_t_12;
-        const real six_r_w_1_t_13 = inv_six_r_w_1_t_12*six_r_platform_joint_offset_x;
-        const real six_r_w_1_t_14 = inv_six_r_w_1_t_12*six_r_w_1_t_11;
-        const real six_r_w_1_t_15 = six_r_w_1_t_10*six_r_w_1_t_14;
-        const real six_r_w_1_t_16 = six_r_w_1_t_13*six_r_w_1_t_15;
-        const real six_r_w_1_t_17 = six_r_w_1_t_10 - six_r_w_1_t_14*six_r_w_1_t_15;
-        const real six_r_w_1_t_18 = six_r_v_1_in_axes5_y*six_r_w_1_t_13 -
-            six_r_w_1_t_14*six_r_w_1_t_6;
-        const real six_r_w_1_t_19 = six_r_v_1_in_axes5_y - six_r_w_1_t_13*six_r_w_1_t_18;
-        const real six_r_w_1_t_20 = six_r_w_1_t_6 + six_r_w_1_t_14*six_r_w_1_t_18;
-        const real six_r_w_1_t_21 = six_r_w_1_t_14*six_r_w_1_t_8;
-        const real six_r_w_1_t_22 = six_r_v_2_in_axes5_y*six_r_w_1_t_13 - six_r_w_1_t_21;
-        const real six_r_w_1_t_23 = six_r_v_2_in_axes5_y - six_r_w_1_t_13*six_r_w_1_t_22;
-        const real six_r_w_1_t_24 = six_r_w_1_t_8 + six_r_w_1_t_14*six_r_w_1_t_22;
-        const real six_r_w_1_t_25 = six_r_w_1_t_21 - six_r_v_3_in_axes5_y*six_r_w_1_t_13;
-        const real six_r_w_1_t_26 = six_r_v_3_in_axes5_y + six_r_w_1_t_13*six_r_w_1_t_25;
-        const real six_r_w_1_t_27 = six_r_w_1_t_8 - six_r_w_1_t_14*six_r_w_1_t_25;
-        const real six_r_w_1_t_28 = root(six_r_v_4_in_axes5_z*six_r_v_4_in_axes5_z +
-            six_r_w_1_t_16*six_r_w_1_t_16 + six_r_w_1_t_17*six_r_w_1_t_17 +
-            six_r_w_1_t_9*six_r_w_1_t_9);
-        const real inv_six_r_w_1_t_28 = 1/six_r_w_1_t_28;
-        const real six_r_w_1_t_29 = inv_six_r_w_1_t_28*six_r_w_1_t_16;
-        const real six_r_w_1_t_30 = inv_six_r_w_1_t_28*six_r_v_4_in_axes5_z;
-        const real six_r_w_1_t_31 = inv_six_r_w_1_t_28*six_r_w_1_t_9;
-        const real six_r_w_1_t_32 = inv_six_r_w_1_t_28*six_r_w_1_t_17;
-        const real six_r_w_1_t_33 = six_r_w_1_t_19*six_r_w_1_t_29 + six_r_w_1_t_20*six_r_w_1_t_32
-            + six_r_w_1_t_31*six_r_w_1_t_5 - six_r_v_1_in_axes5_z*six_r_w_1_t_30;
-        const real six_r_w_1_t_34 = six_r_w_1_t_29*six_r_w_1_t_33 - six_r_w_1_t_19;
-        const real six_r_w_1_t_35 = six_r_v_1_in_axes5_z + six_r_w_1_t_30*six_r_w_1_t_33;
-        const real six_r_w_1_t_36 = six_r_w_1_t_31*six_r_w_1_t_33 - six_r_w_1_t_5;
-        const real six_r_w_1_t_37 = six_r_w_1_t_32*six_r_w_1_t_33 - six_r_w_1_t_20;
-        const real six_r_w_1_t_38 = six_r_w_1_t_31*six_r_w_1_t_7;
-        const real six_r_w_1_t_39 = six_r_w_1_t_38 + six_r_w_1_t_23*six_r_w_1_t_29 +
-            six_r_w_1_t_24*six_r_w_1_t_32 - six_r_v_2_in_axes5_z*six_r_w_1_t_30;
-        const real six_r_w_1_t_40 = six_r_w_1_t_29*six_r_w_1_t_39 - six_r_w_1_t_23;
-        const real six_r_w_1_t_41 = six_r_v_2_in_axes5_z + six_r_w_1_t_30*six_r_w_1_t_39;
-        const real six_r_w_1_t_42 = six_r_w_1_t_31*six_r_w_1_t_39 - six_r_w_1_t_7;
-        const real six_r_w_1_t_43 = six_r_w_1_t_32*six_r_w_1_t_39 - six_r_w_1_t_24;
-        const real six_r_w_1_t_44 = six_r_w_1_t_38 + six_r_w_1_t_26*six_r_w_1_t_29 +
-            six_r_w_1_t_27*six_r_w_1_t_32 - six_r_v_3_in_axes5_z*six_r_w_1_t_30;
-        const real six_r_w_1_t_45 = six_r_w_1_t_29*six_r_w_1_t_44 - six_r_w_1_t_26;
-        const real six_r_w_1_t_46 = six_r_v_3_in_axes5_z + six_r_w_1_t_30*six_r_w_1_t_44;
-        const real six_r_w_1_t_47 = six_r_w_1_t_31*six_r_w_1_t_44 - six_r_w_1_t_7;
-        const real six_r_w_1_t_48 = six_r_w_1_t_32*six_r_w_1_t_44 - six_r_w_1_t_27;
-        const real six_r_w_1_t_49 = root(six_r_v_1_in_axes5_x*six_r_v_1_in_axes5_x +
-            six_r_w_1_t_34*six_r_w_1_t_34 + six_r_w_1_t_35*six_r_w_1_t_35 +
-            six_r_w_1_t_36*six_r_w_1_t_36 + six_r_w_1_t_37*six_r_w_1_t_37);
-        const real inv_six_r_w_1_t_49 = 1/six_r_w_1_t_49;
-        const real six_r_w_1_t_50 = inv_six_r_w_1_t_49*six_r_v_1_in_axes5_x;
-        const real six_r_w_1_t_51 = inv_six_r_w_1_t_49*six_r_w_1_t_34;
-        const real six_r_w_1_t_52 = inv_six_r_w_1_t_49*six_r_w_1_t_35;
-        const real six_r_w_1_t_53 = inv_six_r_w_1_t_49*six_r_w_1_t_36;
-        const real six_r_w_1_t_54 = inv_six_r_w_1_t_49*six_r_w_1_t_37;
-        const real six_r_w_1_t_55 = six_r_v_2_in_axes5_x*six_r_w_1_t_50 +
-            six_r_w_1_t_40*six_r_w_1_t_51 + six_r_w_1_t_41*six_r_w_1_t_52 +
-            six_r_w_1_t_42*six_r_w_1_t_53 + six_r_w_1_t_43*six_r_w_1_t_54;
-        const real six_r_w_1_t_56 = six_r_v_2_in_axes5_x - six_r_w_1_t_50*six_r_w_1_t_55;
-        const real six_r_w_1_t_57 = six_r_w_1_t_40 - six_r_w_1_t_51*six_r_w_1_t_55;
-        const real six_r_w_1_t_58 = six_r_w_1_t_41 - six_r_w_1_t_52*six_r_w_1_t_55;
-        const real six_r_w_1_t_59 = six_r_w_1_t_42 - six_r_w_1_t_53*six_r_w_1_t_55;
-        const real six_r_w_1_t_60 = six_r_w_1_t_43 - six_r_w_1_t_54*six_r_w_1_t_55;
-        const real six_r_w_1_t_61 = six_r_v_3_in_axes5_x*six_r_w_1_t_50 +
-            six_r_w_1_t_45*six_r_w_1_t_51 + six_r_w_1_t_46*six_r_w_1_t_52 +
-            six_r_w_1_t_47*six_r_w_1_t_53 + six_r_w_1_t_48*six_r_w_1_t_54;
-        const real six_r_w_1_t_62 = six_r_v_3_in_axes5_x - six_r_w_1_t_50*six_r_w_1_t_61;
-        const real six_r_w_1_t_63 = six_r_w_1_t_45 - six_r_w_1_t_51*six_r_w_1_t_61;
-        const real six_r_w_1_t_64 = six_r_w_1_t_46 - six_r_w_1_t_52*six_r_w_1_t_61;
-        const real six_r_w_1_t_65 = six_r_w_1_t_47 - six_r_w_1_t_53*six_r_w_1_t_61;
-        const real six_r_w_1_t_66 = six_r_w_1_t_48 - six_r_w_1_t_54*six_r_w_1_t_61;
-        const real six_r_w_1_t_67 = root(six_r_w_1_t_56*six_r_w_1_t_56 +
-            six_r_w_1_t_57*six_r_w_1_t_57 + six_r_w_1_t_58*six_r_w_1_t_58 +
-            six_r_w_1_t_59*six_r_w_1_t_59 + six_r_w_1_t_60*six_r_w_1_t_60);
-        const real inv_six_r_w_1_t_67 = 1/six_r_w_1_t_67;
-        const real six_r_w_1_t_68 = inv_six_r_w_1_t_67*six_r_w_1_t_56;
-        const real six_r_w_1_t_69 = inv_six_r_w_1_t_67*six_r_w_1_t_57;
-        const real six_r_w_1_t_70 = inv_six_r_w_1_t_67*six_r_w_1_t_58;
-        const real six_r_w_1_t_71 = inv_six_r_w_1_t_67*six_r_w_1_t_59;
-        const real six_r_w_1_t_72 = inv_six_r_w_1_t_67*six_r_w_1_t_60;
-        const real six_r_w_1_t_73 = six_r_w_1_t_62*six_r_w_1_t_68 + six_r_w_1_t_63*six_r_w_1_t_69
-            + six_r_w_1_t_64*six_r_w_1_t_70 + six_r_w_1_t_65*six_r_w_1_t_71 +
-            six_r_w_1_t_66*six_r_w_1_t_72;
-        const real six_r_w_1_t_74 = six_r_w_1_t_62 - six_r_w_1_t_68*six_r_w_1_t_73;
-        const real six_r_w_1_t_75 = six_r_w_1_t_63 - six_r_w_1_t_69*six_r_w_1_t_73;
-        const real six_r_w_1_t_76 = six_r_w_1_t_64 - six_r_w_1_t_70*six_r_w_1_t_73;
-        const real six_r_w_1_t_77 = six_r_w_1_t_65 - six_r_w_1_t_71*six_r_w_1_t_73;
-        const real six_r_w_1_t_78 = six_r_w_1_t_66 - six_r_w_1_t_72*six_r_w_1_t_73;
-        const real six_r_w_1_t_79 = root(six_r_w_1_t_74*six_r_w_1_t_74 +
-            six_r_w_1_t_75*six_r_w_1_t_75 + six_r_w_1_t_76*six_r_w_1_t_76 +
-            six_r_w_1_t_77*six_r_w_1_t_77 + six_r_w_1_t_78*six_r_w_1_t_78);
-        /* (six_r-w_2) force part of reciprocal wrench 2 */
-        const real six_r_w_2_t = -six_r_c_4*six_r_s_3;
-        const real six_r_w_2_t_2 = -six_r_c_3*six_r_c_4;
-        const real six_r_w_2_t_3 = six_r_c_2*six_r_w_2_t + six_r_s_2*six_r_w_2_t_2;
-        const real six_r_w_2_t_4 = six_r_s_2*six_r_w_2_t - six_r_c_2*six_r_w_2_t_2;
-        const real six_r_w_2_t_5 = six_r_c_1*six_r_s_4 - six_r_s_1*six_r_w_2_t_3;
-        const real six_r_w_2_t_6 = six_r_c_1*six_r_w_2_t_3 + six_r_s_1*six_r_s_4;
-        const real axis_z_six_r_axes5_x = six_r_base_frame_xx*six_r_w_2_t_4 +
-            six_r_base_frame_xy*six_r_w_2_t_5 + six_r_base_frame_xz*six_r_w_2_t_6;
-        const real axis_z_six_r_axes5_y = six_r_base_frame_yx*six_r_w_2_t_4 +
-            six_r_base_frame_yy*six_r_w_2_t_5 + six_r_base_frame_yz*six_r_w_2_t_6;
-        const real axis_z_six_r_axes5_z = six_r_base_frame_zx*six_r_w_2_t_4 +
-            six_r_base_frame_zy*six_r_w_2_t_5 + six_r_base_frame_zz*six_r_w_2_t_6;
-        const real six_r_w_2_t_7 = six_r_s_4*six_r_s_5;
-        const real six_r_w_2_t_8 = six_r_c_3*six_r_c_5 - six_r_s_3*six_r_w_2_t_7;
-        const real six_r_w_2_t_9 = six_r_c_3*six_r_w_2_t_7 + six_r_c_5*six_r_s_3;
-        const real six_r_w_2_t_10 = six_r_c_2*six_r_w_2_t_8 - six_r_s_2*six_r_w_2_t_9;
-        const real six_r_w_2_t_11 = six_r_c_2*six_r_w_2_t_9 + six_r_s_2*six_r_w_2_t_8;
-        const real six_r_w_2_t_12 = six_r_c_1*six_r_e_2_in_axes5_y - six_r_s_1*six_r_w_2_t_10;
-        const real six_r_w_2_t_13 = six_r_c_1*six_r_w_2_t_10 + six_r_e_2_in_axes5_y*six_r_s_1;
-        const real axis_y_six_r_axes5_x = six_r_base_frame_xx*six_r_w_2_t_11 +
-            six_r_base_frame_xy*six_r_w_2_t_12 + six_r_base_frame_xz*six_r_w_2_t_13;
-        const real axis_y_six_r_axes5_y = six_r_base_frame_yx*six_r_w_2_t_11 +
-            six_r_base_frame_yy*six_r_w_2_t_12 + six_r_base_frame_yz*six_r_w_2_t_13;
-        const real axis_y_six_r_axes5_z = six_r_base_frame_zx*six_r_w_2_t_11 +
-            six_r_base_frame_zy*six_r_w_2_t_12 + six_r_base_frame_zz*six_r_w_2_t_13;
-        const real axis_x_six_r_axes5_x = axis_y_six_r_axes5_y*axis_z_six_r_axes5_z -
-            axis_y_six_r_axes5_z*axis_z_six_r_axes5_y;
-        const real axis_x_six_r_axes5_y = axis_y_six_r_axes5_z*axis_z_six_r_axes5_x -
-            axis_y_six_r_axes5_x*axis_z_six_r_axes5_z;
-        const real axis_x_six_r_axes5_z = axis_y_six_r_axes5_x*axis_z_six_r_axes5_y -
-            axis_y_six_r_axes5_y*axis_z_six_r_axes5_x;
-        const real inv_six_r_w_1_t_79 = 1/six_r_w_1_t_79;
-        const real six_r_w_2_t_14 = inv_six_r_w_1_t_67*inv_six_r_w_1_t_79*six_r_w_1_t_73;
-        const real six_r_w_2_in_axes5_x = inv_six_r_w_1_t_67*six_r_w_1_t_68 -
-            inv_six_r_w_1_t_79*six_r_w_1_t_74*six_r_w_2_t_14;
-        const real six_r_w_2_in_axes5_y = inv_six_r_w_1_t_79*six_r_w_1_t_75*six_r_w_2_t_14 -
-            inv_six_r_w_1_t_67*six_r_w_1_t_69;
-        const real six_r_w_2_in_axes5_z = inv_six_r_w_1_t_67*six_r_w_1_t_70 -
-            inv_six_r_w_1_t_79*six_r_w_1_t_76*six_r_w_2_t_14;
-        const real six_r_w_2_x = axis_x_six_r_axes5_x*six_r_w_2_in_axes5_x +
-            axis_y_six_r_axes5_x*six_r_w_2_in_axes5_y + axis_z_six_r_axes5_x*six_r_w_2_in_axes5_z;
-        const real six_r_w_2_y = axis_x_six_r_axes5_y*six_r_w_2_in_axes5_x +
-            axis_y_six_r_axes5_y*six_r_w_2_in_axes5_y + axis_z_six_r_axes5_y*six_r_w_2_in_axes5_z;
-        const real six_r_w_2_z = axis_x_six_r_axes5_z*six_r_w_2_in_axes5_x +
-            axis_y_six_r_axes5_z*six_r_w_2_in_axes5_y + axis_z_six_r_axes5_z*six_r_w_2_in_axes5_z;
-        /* (six_r-m1_w_2) moment part 1 of reciprocal wrench 2 */
-        const real six_r_m1_w_2 = six_r_size*(inv_six_r_w_1_t_67*six_r_w_1_t_71 -
-            inv_six_r_w_1_t_79*six_r_w_1_t_77*six_r_w_2_t_14);
-        /* (six_r-m2_w_2) moment part 2 of reciprocal wrench 2 */
-        const real six_r_m2_w_2 = six_r_size*(inv_six_r_w_1_t_67*six_r_w_1_t_72 -
-            inv_six_r_w_1_t_79*six_r_w_1_t_78*six_r_w_2_t_14);
-        /* (six_r-o_2) moment part of reciprocal wrench 2 */
-        const real six_r_o_2_x = six_r_m1_w_2*(axis_y_six_r_axes5_x*six_r_n_m1_in_axes5_y -
-            axis_x_six_r_axes5_x*six_r_n_m2_in_axes5_z) +
-            six_r_m2_w_2*(axis_z_six_r_axes5_x*six_r_n_m2_in_axes5_z -
-            axis_y_six_r_axes5_x*six_r_end_p1_in_axes5_z);
-        const real six_r_o_2_y = six_r_m1_w_2*(axis_y_six_r_axes5_y*six_r_n_m1_in_axes5_y -
-            axis_x_six_r_axes5_y*six_r_n_m2_in_axes5_z) +
-            six_r_m2_w_2*(axis_z_six_r_axes5_y*six_r_n_m2_in_axes5_z -
-            axis_y_six_r_axes5_y*six_r_end_p1_in_axes5_z);
-        const real six_r_o_2_z = six_r_m1_w_2*(axis_y_six_r_axes5_z*six_r_n_m1_in_axes5_y -
-            axis_x_six_r_axes5_z*six_r_n_m2_in_axes5_z) +
-            six_r_m2_w_2*(axis_z_six_r_axes5_z*six_r_n_m2_in_axes5_z -
-            axis_y_six_r_axes5_z*six_r_end_p1_in_axes5_z);
-        /* (six_r-H_a_2) moment of the column's unit force about the platform origin */
-        const real six_r_platform_point_x = m->six_r_platform_point_x[i];
-        const real six_r_platform_point_y = m->six_r_platform_point_y[i];
-        const real six_r_platform_point_z = m->six_r_platform_point_z[i];
-        const real six_r_q_x = R_xx*six_r_platform_point_x + R_xy*six_r_platform_point_y +
-            R_xz*six_r_platform_point_z;
-        const real six_r_q_y = R_yx*six_r_platform_point_x + R_yy*six_r_platform_point_y +
-            R_yz*six_r_platform_point_z;
-        const real six_r_q_z = R_zx*six_r_platform_point_x + R_zy*six_r_platform_point_y +
-            R_zz*six_r_platform_point_z;
-        const real six_r_H_a_2_x = six_r_o_2_x + six_r_q_y*six_r_w_2_z - six_r_q_z*six_r_w_2_y;
-        const real six_r_H_a_2_y = six_r_o_2_y + six_r_q_z*six_r_w_2_x - six_r_q_x*six_r_w_2_z;
-        const real six_r_H_a_2_z = six_r_o_2_z + six_r_q_x*six_r_w_2_y - six_r_q_y*six_r_w_2_x;
-        /* (six_r-w_2) force part of reciprocal wrench 2 */
-        o[0*count + k] = six_r_w_2_x;
-        o[1*count + k] = six_r_w_2_y;
-        o[2*count + k] = six_r_w_2_z;
-        /* (six_r-H_a_2) moment of the column's unit force about the platform origin */
-        o[3*count + k] = six_r_H_a_2_x;
-        o[4*count + k] = six_r_H_a_2_y;
-        o[5*count + k] = six_r_H_a_2_z;
-        o[7*count + k] = (six_r_w_2_x + (six_r_w_2_y + six_r_w_2_z)) + (six_r_H_a_2_x +
-            (six_r_H_a_2_y + six_r_H_a_2_z));
-        o[6*count + k] = UNLESS(magnitude(six_r_w_1_t_12) > TOLERANCE*six_r_size) +
-            UNLESS(magnitude(six_r_w_1_t_28) > TOLERANCE*six_r_size) +
-            UNLESS(magnitude(six_r_w_1_t_49) > TOLERANCE*six_r_size) +
-            UNLESS(magnitude(six_r_w_1_t_67) > TOLERANCE*six_r_size) +
-            UNLESS(magnitude(six_r_w_1_t_79) > TOLERANCE*six_r_size);
+        o[6*count + k] = UNLESS(magnitude(v.six_r_w_1_t_12) > TOLERANCE*six_r_size) +
+            UNLESS(magnitude(v.six_r_w_1_t_28) > TOLERANCE*six_r_size) +
+            UNLESS(magnitude(v.six_r_w_1_t_49) > TOLERANCE*six_r_size) +
+            UNLESS(magnitude(v.six_r_w_1_t_67) > TOLERANCE*six_r_size) +
+            UNLESS(magnitude(v.six_r_w_1_t_79) > TOLERANCE*six_r_size);
     }
 }
 
@@ -7418,7 +7606,7 @@ INLINE void H_place_six_r(size_t w, size_t count, const real *o, size_t leg, siz
     *H, verdict *t)
 {
     for (size_t k = 0; k < w; ++k) {
-        H[(0*NU + leg)*w + k] = o[0*count + first + k];
+        H[leg*w + k] = o[0*count + first + k];
         H[(NU + leg)*w + k] = o[1*count + first + k];
         H[(2*NU + leg)*w + k] = o[2*count + first + k];
         H[(3*NU + leg)*w + k] = o[3*count + first + k];
@@ -7433,7 +7621,7 @@ INLINE void H_run(const prepared *m, const real *X, const real *joints, real *H,
 {
     real s[9] = {0};
     real o_six_r[8*LEGS(LEGS_OF_six_r)] = {0};
-    H_before(1, X, s, t);
+    H_before(m, 1, X, s, t);
     H_legs_six_r(m, 1, 0, 1, s, 0, LEGS(LEGS_OF_six_r), joints, o_six_r);
     for (size_t leg = 0; leg < LEGS_OF_six_r; ++leg) {
         H_place_six_r(1, LEGS(LEGS_OF_six_r), o_six_r, leg, leg, H, t);
@@ -7444,7 +7632,7 @@ INLINE void H_run_lanes(const prepared *m, const real *X, const real *joints, re
 {
     real s[9*LANES];
     real o_six_r[8*LANES];
-    H_before(LANES, X, s, t);
+    H_before(m, LANES, X, s, t);
     for (size_t leg = 0; leg < LEGS_OF_six_r; ++leg) {
         H_legs_six_r(m, LANES, leg, 0, s, 1, LANES, joints, o_six_r);
         H_place_six_r(LANES, LANES, o_six_r, leg, 0, H, t);
@@ -7456,1180 +7644,152 @@ INLINE void required_before(const prepared *m, size_t w, const real *X, const re
     *A, real *s, verdict *t)
 {
     for (size_t k = 0; k < w; ++k) {
-        /* X: named entries */
-        const real X_3 = X[3*w + k];
-        const real X_4 = X[4*w + k];
-        const real X_5 = X[5*w + k];
-        const real X_6 = X[6*w + k];
-        const real quaternion_norm2 = X_3*X_3 + X_4*X_4 + X_5*X_5 + X_6*X_6;
-        const real quaternion_scale = 2/quaternion_norm2;
-        const real quaternion_sx = X_3*quaternion_scale;
-        const real quaternion_sy = X_4*quaternion_scale;
-        const real quaternion_sz = X_5*quaternion_scale;
-        const real quaternion_wx = X_6*quaternion_sx;
-        const real quaternion_wy = X_6*quaternion_sy;
-        const real quaternion_wz = X_6*quaternion_sz;
-        const real quaternion_xx = X_3*quaternion_sx;
-        const real quaternion_xy = X_3*quaternion_sy;
-        const real quaternion_xz = X_3*quaternion_sz;
-        const real quaternion_yy = X_4*quaternion_sy;
-        const real quaternion_yz = X_4*quaternion_sz;
-        const real quaternion_zz = X_5*quaternion_sz;
-        const real R_xx = 1 - quaternion_yy - quaternion_zz;
-        const real R_xy = quaternion_xy - quaternion_wz;
-        const real R_xz = quaternion_wy + quaternion_xz;
-        const real R_yx = quaternion_wz + quaternion_xy;
-        const real R_yy = 1 - quaternion_xx - quaternion_zz;
-        const real R_yz = quaternion_yz - quaternion_wx;
-        const real R_zx = quaternion_xz - quaternion_wy;
-        const real R_zy = quaternion_wx + quaternion_yz;
-        const real R_zz = 1 - quaternion_xx - quaternion_yy;
-        /* V: named entries */
-        const real V_0 = V[0*w + k];
-        const real t_dot_x = V_0;
-        const real V_1 = V[1*w + k];
-        const real t_dot_y = V_1;
-        const real V_2 = V[2*w + k];
-        const real t_dot_z = V_2;
-        const real V_3 = V[3*w + k];
-        const real omega_x = V_3;
-        const real V_4 = V[4*w + k];
-        const real omega_y = V_4;
-        const real V_5 = V[5*w + k];
-        const real omega_z = V_5;
-        /* A: named entries */
-        const real A_0 = A[0*w + k];
-        const real t_ddot_x = A_0;
-        const real A_1 = A[1*w + k];
-        const real t_ddot_y = A_1;
-        const real A_2 = A[2*w + k];
-        const real t_ddot_z = A_2;
-        const real A_3 = A[3*w + k];
-        const real alpha_x = A_3;
-        const real A_4 = A[4*w + k];
-        const real alpha_y = A_4;
-        const real A_5 = A[5*w + k];
-        const real alpha_z = A_5;
+        values v;
+        stage_X(m, w, k, X, &v);
+        stage_V_X(w, k, V, &v);
         /* (W_p) centripetal tensor of the platform */
+        const real omega_x = V[3*w + k];
+        const real omega_y = V[4*w + k];
         const real W_p_xy = omega_x*omega_y;
+        const real omega_z = V[5*w + k];
         const real W_p_xz = omega_x*omega_z;
         const real W_p_yz = omega_y*omega_z;
-        /* (h_star) first moment about the platform origin */
-        const real h_star_in_platform_x = m->h_star_in_platform_x;
-        const real h_star_in_platform_y = m->h_star_in_platform_y;
-        const real h_star_in_platform_z = m->h_star_in_platform_z;
-        const real h_star_x = R_xx*h_star_in_platform_x + R_xy*h_star_in_platform_y +
-            R_xz*h_star_in_platform_z;
-        const real h_star_y = R_yx*h_star_in_platform_x + R_yy*h_star_in_platform_y +
-            R_yz*h_star_in_platform_z;
-        const real h_star_z = R_zx*h_star_in_platform_x + R_zy*h_star_in_platform_y +
-            R_zz*h_star_in_platform_z;
         /* (a_t) acceleration of the platform origin, less gravity */
         const real gravity_x = m->gravity_x;
+        const real t_ddot_x = A[0*w + k];
         const real a_t_x = t_ddot_x - gravity_x;
         const real gravity_y = m->gravity_y;
+        const real t_ddot_y = A[1*w + k];
         const real a_t_y = t_ddot_y - gravity_y;
         const real gravity_z = m->gravity_z;
+        const real t_ddot_z = A[2*w + k];
         const real a_t_z = t_ddot_z - gravity_z;
-        const real a_t_in_platform_x = R_xx*a_t_x + R_yx*a_t_y + R_zx*a_t_z;
-        const real a_t_in_platform_y = R_xy*a_t_x + R_yy*a_t_y + R_zy*a_t_z;
-        const real a_t_in_platform_z = R_xz*a_t_x + R_yz*a_t_y + R_zz*a_t_z;
+        const real a_t_in_platform_x = v.R_xx*a_t_x + v.R_yx*a_t_y + v.R_zx*a_t_z;
+        const real a_t_in_platform_y = v.R_xy*a_t_x + v.R_yy*a_t_y + v.R_zy*a_t_z;
+        const real a_t_in_platform_z = v.R_xz*a_t_x + v.R_yz*a_t_y + v.R_zz*a_t_z;
         /* (f_p) inertia force of the platform less its weight */
         const real f_p_t = omega_x*omega_x;
         const real f_p_t_2 = omega_y*omega_y;
         const real f_p_t_3 = omega_z*omega_z;
+        const real alpha_y = A[4*w + k];
+        const real alpha_z = A[5*w + k];
         const real m_star = m->m_star;
-        const real f_p_x = a_t_x*m_star + h_star_y*(W_p_xy - alpha_z) + h_star_z*(W_p_xz +
-            alpha_y) - h_star_x*(f_p_t_2 + f_p_t_3);
-        const real f_p_y = a_t_y*m_star + h_star_x*(W_p_xy + alpha_z) + h_star_z*(W_p_yz -
-            alpha_x) - h_star_y*(f_p_t + f_p_t_3);
-        const real f_p_z = a_t_z*m_star + h_star_x*(W_p_xz - alpha_y) + h_star_y*(W_p_yz +
-            alpha_x) - h_star_z*(f_p_t + f_p_t_2);
+        const real f_p_x = a_t_x*m_star + v.h_star_y*(W_p_xy - alpha_z) + v.h_star_z*(W_p_xz +
+            alpha_y) - v.h_star_x*(f_p_t_2 + f_p_t_3);
+        const real alpha_x = A[3*w + k];
+        const real f_p_y = a_t_y*m_star + v.h_star_x*(W_p_xy + alpha_z) + v.h_star_z*(W_p_yz -
+            alpha_x) - v.h_star_y*(f_p_t + f_p_t_3);
+        const real f_p_z = a_t_z*m_star + v.h_star_x*(W_p_xz - alpha_y) + v.h_star_y*(W_p_yz +
+            alpha_x) - v.h_star_z*(f_p_t + f_p_t_2);
         /* (mu_p) inertia moment of the platform less that of its weight */
-        const real omega_in_platform_x = R_xx*omega_x + R_yx*omega_y + R_zx*omega_z;
-        const real omega_in_platform_y = R_xy*omega_x + R_yy*omega_y + R_zy*omega_z;
-        const real omega_in_platform_z = R_xz*omega_x + R_yz*omega_y + R_zz*omega_z;
         const real J_star_in_platform_xx = m->J_star_in_platform_xx;
         const real J_star_in_platform_xy = m->J_star_in_platform_xy;
         const real J_star_in_platform_xz = m->J_star_in_platform_xz;
-        const real mu_p_t = J_star_in_platform_xx*omega_in_platform_x +
-            J_star_in_platform_xy*omega_in_platform_y + J_star_in_platform_xz*omega_in_platform_z;
+        const real mu_p_t = J_star_in_platform_xx*v.omega_in_platform_x +
+            J_star_in_platform_xy*v.omega_in_platform_y +
+            J_star_in_platform_xz*v.omega_in_platform_z;
         const real J_star_in_platform_yy = m->J_star_in_platform_yy;
         const real J_star_in_platform_yz = m->J_star_in_platform_yz;
-        const real mu_p_t_2 = J_star_in_platform_xy*omega_in_platform_x +
-            J_star_in_platform_yy*omega_in_platform_y + J_star_in_platform_yz*omega_in_platform_z;
+        const real mu_p_t_2 = J_star_in_platform_xy*v.omega_in_platform_x +
+            J_star_in_platform_yy*v.omega_in_platform_y +
+            J_star_in_platform_yz*v.omega_in_platform_z;
         const real J_star_in_platform_zz = m->J_star_in_platform_zz;
-        const real mu_p_t_3 = J_star_in_platform_xz*omega_in_platform_x +
-            J_star_in_platform_yz*omega_in_platform_y + J_star_in_platform_zz*omega_in_platform_z;
-        const real alpha_in_platform_x = R_xx*alpha_x + R_yx*alpha_y + R_zx*alpha_z;
-        const real alpha_in_platform_y = R_xy*alpha_x + R_yy*alpha_y + R_zy*alpha_z;
-        const real alpha_in_platform_z = R_xz*alpha_x + R_yz*alpha_y + R_zz*alpha_z;
+        const real mu_p_t_3 = J_star_in_platform_xz*v.omega_in_platform_x +
+            J_star_in_platform_yz*v.omega_in_platform_y +
+            J_star_in_platform_zz*v.omega_in_platform_z;
+        const real alpha_in_platform_x = v.R_xx*alpha_x + v.R_yx*alpha_y + v.R_zx*alpha_z;
+        const real alpha_in_platform_y = v.R_xy*alpha_x + v.R_yy*alpha_y + v.R_zy*alpha_z;
+        const real alpha_in_platform_z = v.R_xz*alpha_x + v.R_yz*alpha_y + v.R_zz*alpha_z;
+        const real h_star_in_platform_y = m->h_star_in_platform_y;
+        const real h_star_in_platform_z = m->h_star_in_platform_z;
         const real mu_p_in_platform_x = J_star_in_platform_xx*alpha_in_platform_x +
             J_star_in_platform_xy*alpha_in_platform_y + J_star_in_platform_xz*alpha_in_platform_z
-            + a_t_in_platform_z*h_star_in_platform_y + mu_p_t_3*omega_in_platform_y -
-            a_t_in_platform_y*h_star_in_platform_z - mu_p_t_2*omega_in_platform_z;
+            + a_t_in_platform_z*h_star_in_platform_y + mu_p_t_3*v.omega_in_platform_y -
+            a_t_in_platform_y*h_star_in_platform_z - mu_p_t_2*v.omega_in_platform_z;
+        const real h_star_in_platform_x = m->h_star_in_platform_x;
         const real mu_p_in_platform_y = J_star_in_platform_xy*alpha_in_platform_x +
             J_star_in_platform_yy*alpha_in_platform_y + J_star_in_platform_yz*alpha_in_platform_z
-            + a_t_in_platform_x*h_star_in_platform_z + mu_p_t*omega_in_platform_z -
-            a_t_in_platform_z*h_star_in_platform_x - mu_p_t_3*omega_in_platform_x;
+            + a_t_in_platform_x*h_star_in_platform_z + mu_p_t*v.omega_in_platform_z -
+            a_t_in_platform_z*h_star_in_platform_x - mu_p_t_3*v.omega_in_platform_x;
         const real mu_p_in_platform_z = J_star_in_platform_xz*alpha_in_platform_x +
             J_star_in_platform_yz*alpha_in_platform_y + J_star_in_platform_zz*alpha_in_platform_z
-            + a_t_in_platform_y*h_star_in_platform_x + mu_p_t_2*omega_in_platform_x -
-            a_t_in_platform_x*h_star_in_platform_y - mu_p_t*omega_in_platform_y;
-        const real mu_p_x = R_xx*mu_p_in_platform_x + R_xy*mu_p_in_platform_y +
-            R_xz*mu_p_in_platform_z;
-        const real mu_p_y = R_yx*mu_p_in_platform_x + R_yy*mu_p_in_platform_y +
-            R_yz*mu_p_in_platform_z;
-        const real mu_p_z = R_zx*mu_p_in_platform_x + R_zy*mu_p_in_platform_y +
-            R_zz*mu_p_in_platform_z;
-        s[0*w + k] = R_xx;
-        s[1*w + k] = R_xy;
-        s[2*w + k] = R_xz;
-        s[3*w + k] = R_yx;
-        s[4*w + k] = R_yy;
-        s[5*w + k] = R_yz;
-        s[6*w + k] = R_zx;
-        s[7*w + k] = R_zy;
-        s[8*w + k] = R_zz;
-        s[9*w + k] = t_dot_x;
-        s[10*w + k] = t_dot_y;
-        s[11*w + k] = t_dot_z;
-        s[12*w + k] = omega_x;
-        s[13*w + k] = omega_y;
-        s[14*w + k] = omega_z;
-        s[15*w + k] = t_ddot_x;
-        s[16*w + k] = t_ddot_y;
-        s[17*w + k] = t_ddot_z;
-        s[18*w + k] = alpha_x;
-        s[19*w + k] = alpha_y;
-        s[20*w + k] = alpha_z;
-        s[21*w + k] = f_p_x;
-        s[22*w + k] = f_p_y;
-        s[23*w + k] = f_p_z;
-        s[24*w + k] = mu_p_x;
-        s[25*w + k] = mu_p_y;
-        s[26*w + k] = mu_p_z;
-        t->invalid[k] += UNLESS(is_finite(quaternion_scale)) + UNLESS(quaternion_scale > 0);
+            + a_t_in_platform_y*h_star_in_platform_x + mu_p_t_2*v.omega_in_platform_x -
+            a_t_in_platform_x*h_star_in_platform_y - mu_p_t*v.omega_in_platform_y;
+        const real mu_p_x = v.R_xx*mu_p_in_platform_x + v.R_xy*mu_p_in_platform_y +
+            v.R_xz*mu_p_in_platform_z;
+        const real mu_p_y = v.R_yx*mu_p_in_platform_x + v.R_yy*mu_p_in_platform_y +
+            v.R_yz*mu_p_in_platform_z;
+        const real mu_p_z = v.R_zx*mu_p_in_platform_x + v.R_zy*mu_p_in_platform_y +
+            v.R_zz*mu_p_in_platform_z;
+        s[0*w + k] = v.R_xx;
+        s[1*w + k] = v.R_xy;
+        s[2*w + k] = v.R_xz;
+        s[3*w + k] = v.R_yx;
+        s[4*w + k] = v.R_yy;
+        s[5*w + k] = v.R_yz;
+        s[6*w + k] = v.R_zx;
+        s[7*w + k] = v.R_zy;
+        s[8*w + k] = v.R_zz;
+        s[9*w + k] = f_p_x;
+        s[10*w + k] = f_p_y;
+        s[11*w + k] = f_p_z;
+        s[12*w + k] = mu_p_x;
+        s[13*w + k] = mu_p_y;
+        s[14*w + k] = mu_p_z;
+        t->invalid[k] += UNLESS(is_finite(v.quaternion_scale)) + UNLESS(v.quaternion_scale > 0);
     }
 }
 
 INLINE void required_legs_six_r(const prepared *m, size_t w, size_t leg, size_t legs, const real
-    *s, size_t states, size_t count, int add, const real *joints, real *terms, real *o)
+    *s, size_t states, size_t count, int add, const real *V, const real *A, const real *joints,
+    real *terms, real *o)
 {
-    static const size_t place_six_r_q_1[] = {0, 5, 10, 15, 20, 25, 0, 0};
-    static const size_t place_six_r_q_2[] = {1, 6, 11, 16, 21, 26, 1, 1};
-    static const size_t place_six_r_q_3[] = {2, 7, 12, 17, 22, 27, 2, 2};
-    static const size_t place_six_r_q_4[] = {3, 8, 13, 18, 23, 28, 3, 3};
-    static const size_t place_six_r_q_5[] = {4, 9, 14, 19, 24, 29, 4, 4};
     for (size_t k = 0; k < count; ++k) {
         const size_t i = leg + legs*k;
         const size_t j = states*k;
-        /* (six_r-c_1) cosine of the angle of joint 1 from its reference direction */
-        const real six_r_q_1 = joints[place_six_r_q_1[i]*w + j];
-        const real six_r_c_1 = -sine(six_r_q_1);
-        /* (six_r-s_1) sine of the angle of joint 1 from its reference direction */
-        const real six_r_s_1 = cosine(six_r_q_1);
-        /* (six_r-c_2) cosine of the angle of joint 2 from its reference direction */
-        const real six_r_q_2 = joints[place_six_r_q_2[i]*w + j];
-        const real six_r_c_2 = -sine(six_r_q_2);
-        /* (six_r-s_2) sine of the angle of joint 2 from its reference direction */
-        const real six_r_s_2 = cosine(six_r_q_2);
-        /* (six_r-c_3) cosine of the angle of joint 3 from its reference direction */
-        const real six_r_q_3 = joints[place_six_r_q_3[i]*w + j];
-        const real six_r_c_3 = cosine(six_r_q_3);
-        /* (six_r-s_3) sine of the angle of joint 3 from its reference direction */
-        const real six_r_s_3 = sine(six_r_q_3);
-        /* (six_r-c_4) cosine of the angle of joint 4 from its reference direction */
-        const real six_r_q_4 = joints[place_six_r_q_4[i]*w + j];
-        const real six_r_c_4 = -sine(six_r_q_4);
-        /* (six_r-s_4) sine of the angle of joint 4 from its reference direction */
-        const real six_r_s_4 = cosine(six_r_q_4);
-        /* (six_r-c_5) cosine of the angle of joint 5 from its reference direction */
-        const real six_r_q_5 = joints[place_six_r_q_5[i]*w + j];
-        const real six_r_c_5 = -sine(six_r_q_5);
-        /* (six_r-s_5) sine of the angle of joint 5 from its reference direction */
-        const real six_r_s_5 = cosine(six_r_q_5);
-        /* (six_r-S_dot) velocity of the connection point */
-        const real six_r_e_2_in_axes5_y = -six_r_c_4*six_r_s_5;
-        const real six_r_S_dot_t = -six_r_c_4*six_r_s_3;
-        const real six_r_S_dot_t_2 = -six_r_c_3*six_r_c_4;
-        const real six_r_S_dot_t_3 = six_r_S_dot_t*six_r_c_2 + six_r_S_dot_t_2*six_r_s_2;
-        const real six_r_S_dot_t_4 = six_r_S_dot_t*six_r_s_2 - six_r_S_dot_t_2*six_r_c_2;
-        const real six_r_S_dot_t_5 = six_r_c_1*six_r_s_4 - six_r_S_dot_t_3*six_r_s_1;
-        const real six_r_S_dot_t_6 = six_r_S_dot_t_3*six_r_c_1 + six_r_s_1*six_r_s_4;
-        const real six_r_base_frame_xx = m->six_r_base_frame_xx[i];
-        const real six_r_base_frame_xy = m->six_r_base_frame_xy[i];
-        const real six_r_base_frame_xz = m->six_r_base_frame_xz[i];
-        const real axis_z_six_r_axes5_x = six_r_S_dot_t_4*six_r_base_frame_xx +
-            six_r_S_dot_t_5*six_r_base_frame_xy + six_r_S_dot_t_6*six_r_base_frame_xz;
-        const real six_r_base_frame_yx = m->six_r_base_frame_yx[i];
-        const real six_r_base_frame_yy = m->six_r_base_frame_yy[i];
-        const real six_r_base_frame_yz = m->six_r_base_frame_yz[i];
-        const real axis_z_six_r_axes5_y = six_r_S_dot_t_4*six_r_base_frame_yx +
-            six_r_S_dot_t_5*six_r_base_frame_yy + six_r_S_dot_t_6*six_r_base_frame_yz;
-        const real six_r_base_frame_zx = m->six_r_base_frame_zx[i];
-        const real six_r_base_frame_zy = m->six_r_base_frame_zy[i];
-        const real six_r_base_frame_zz = m->six_r_base_frame_zz[i];
-        const real axis_z_six_r_axes5_z = six_r_S_dot_t_4*six_r_base_frame_zx +
-            six_r_S_dot_t_5*six_r_base_frame_zy + six_r_S_dot_t_6*six_r_base_frame_zz;
-        const real six_r_S_dot_t_7 = six_r_s_4*six_r_s_5;
-        const real six_r_S_dot_t_8 = six_r_c_3*six_r_c_5 - six_r_S_dot_t_7*six_r_s_3;
-        const real six_r_S_dot_t_9 = six_r_S_dot_t_7*six_r_c_3 + six_r_c_5*six_r_s_3;
-        const real six_r_S_dot_t_10 = six_r_S_dot_t_8*six_r_c_2 - six_r_S_dot_t_9*six_r_s_2;
-        const real six_r_S_dot_t_11 = six_r_S_dot_t_8*six_r_s_2 + six_r_S_dot_t_9*six_r_c_2;
-        const real six_r_S_dot_t_12 = six_r_c_1*six_r_e_2_in_axes5_y - six_r_S_dot_t_10*six_r_s_1;
-        const real six_r_S_dot_t_13 = six_r_S_dot_t_10*six_r_c_1 + six_r_e_2_in_axes5_y*six_r_s_1;
-        const real axis_y_six_r_axes5_x = six_r_S_dot_t_11*six_r_base_frame_xx +
-            six_r_S_dot_t_12*six_r_base_frame_xy + six_r_S_dot_t_13*six_r_base_frame_xz;
-        const real axis_y_six_r_axes5_y = six_r_S_dot_t_11*six_r_base_frame_yx +
-            six_r_S_dot_t_12*six_r_base_frame_yy + six_r_S_dot_t_13*six_r_base_frame_yz;
-        const real axis_y_six_r_axes5_z = six_r_S_dot_t_11*six_r_base_frame_zx +
-            six_r_S_dot_t_12*six_r_base_frame_zy + six_r_S_dot_t_13*six_r_base_frame_zz;
-        const real axis_x_six_r_axes5_x = axis_y_six_r_axes5_y*axis_z_six_r_axes5_z -
-            axis_y_six_r_axes5_z*axis_z_six_r_axes5_y;
-        const real axis_x_six_r_axes5_y = axis_y_six_r_axes5_z*axis_z_six_r_axes5_x -
-            axis_y_six_r_axes5_x*axis_z_six_r_axes5_z;
-        const real axis_x_six_r_axes5_z = axis_y_six_r_axes5_x*axis_z_six_r_axes5_y -
-            axis_y_six_r_axes5_y*axis_z_six_r_axes5_x;
-        const real R_xx = s[0*w + j];
-        const real R_xy = s[1*w + j];
-        const real R_xz = s[2*w + j];
-        const real six_r_platform_point_x = m->six_r_platform_point_x[i];
-        const real six_r_platform_point_y = m->six_r_platform_point_y[i];
-        const real six_r_platform_point_z = m->six_r_platform_point_z[i];
-        const real six_r_q_x = R_xx*six_r_platform_point_x + R_xy*six_r_platform_point_y +
-            R_xz*six_r_platform_point_z;
-        const real R_yx = s[3*w + j];
-        const real R_yy = s[4*w + j];
-        const real R_yz = s[5*w + j];
-        const real six_r_q_y = R_yx*six_r_platform_point_x + R_yy*six_r_platform_point_y +
-            R_yz*six_r_platform_point_z;
-        const real R_zx = s[6*w + j];
-        const real R_zy = s[7*w + j];
-        const real R_zz = s[8*w + j];
-        const real six_r_q_z = R_zx*six_r_platform_point_x + R_zy*six_r_platform_point_y +
-            R_zz*six_r_platform_point_z;
-        const real omega_y = s[13*w + j];
-        const real omega_z = s[14*w + j];
-        const real six_r_S_dot_t_14 = omega_y*six_r_q_z - omega_z*six_r_q_y;
-        const real omega_x = s[12*w + j];
-        const real six_r_S_dot_t_15 = omega_z*six_r_q_x - omega_x*six_r_q_z;
-        const real six_r_S_dot_t_16 = omega_x*six_r_q_y - omega_y*six_r_q_x;
-        const real t_dot_x = s[9*w + j];
-        const real six_r_S_dot_x = six_r_S_dot_t_14 + t_dot_x;
-        const real t_dot_y = s[10*w + j];
-        const real six_r_S_dot_y = six_r_S_dot_t_15 + t_dot_y;
-        const real t_dot_z = s[11*w + j];
-        const real six_r_S_dot_z = six_r_S_dot_t_16 + t_dot_z;
-        const real six_r_S_dot_in_axes5_x = axis_x_six_r_axes5_x*six_r_S_dot_x +
-            axis_x_six_r_axes5_y*six_r_S_dot_y + axis_x_six_r_axes5_z*six_r_S_dot_z;
-        const real six_r_S_dot_in_axes5_y = axis_y_six_r_axes5_x*six_r_S_dot_x +
-            axis_y_six_r_axes5_y*six_r_S_dot_y + axis_y_six_r_axes5_z*six_r_S_dot_z;
-        const real six_r_S_dot_in_axes5_z = axis_z_six_r_axes5_x*six_r_S_dot_x +
-            axis_z_six_r_axes5_y*six_r_S_dot_y + axis_z_six_r_axes5_z*six_r_S_dot_z;
-        /* (six_r-r_4) from joint 4 to the connection point, along the links */
-        const real six_r_platform_joint_offset_x = m->six_r_platform_joint_offset_x[i];
-        const real six_r_r_4_in_axes4_y = six_r_c_5*six_r_platform_joint_offset_x;
-        const real six_r_joint5_offset_x = m->six_r_joint5_offset_x[i];
-        const real six_r_r_4_in_axes4_z = six_r_joint5_offset_x +
-            six_r_platform_joint_offset_x*six_r_s_5;
-        const real six_r_r_4_in_axes3_y = -six_r_r_4_in_axes4_y*six_r_s_4;
-        const real six_r_r_4_in_axes3_z = six_r_c_4*six_r_r_4_in_axes4_y;
-        /* (six_r-r_3) from joint 3 to the connection point, along the links */
-        const real six_r_joint4_offset_x = m->six_r_joint4_offset_x[i];
-        const real six_r_r_3_in_axes3_x = six_r_joint4_offset_x + six_r_r_4_in_axes4_z;
-        const real six_r_r_3_in_axes2_y = six_r_c_3*six_r_r_4_in_axes3_y +
-            six_r_r_3_in_axes3_x*six_r_s_3;
-        const real six_r_r_3_t = six_r_r_4_in_axes3_z*six_r_s_4;
-        const real six_r_r_3_t_2 = -six_r_c_4*six_r_r_4_in_axes3_z;
-        const real six_r_r_3_in_axes5_z = six_r_r_3_t + six_r_c_4*six_r_r_4_in_axes3_y;
-        const real six_r_r_3_t_3 = -six_r_r_3_t_2 - six_r_r_4_in_axes3_y*six_r_s_4;
-        const real six_r_r_3_in_axes5_x = six_r_c_5*six_r_r_3_t_3 +
-            six_r_r_3_in_axes3_x*six_r_s_5;
-        const real six_r_r_3_in_axes5_y = six_r_c_5*six_r_r_3_in_axes3_x -
-            six_r_r_3_t_3*six_r_s_5;
-        /* (six_r-r_2) from joint 2 to the connection point, along the links */
-        const real six_r_joint3_offset_x = m->six_r_joint3_offset_x[i];
-        const real six_r_r_2_in_axes2_x = six_r_joint3_offset_x + six_r_c_3*six_r_r_3_in_axes3_x -
-            six_r_r_4_in_axes3_y*six_r_s_3;
-        const real six_r_r_2_in_axes1_y = six_r_c_2*six_r_r_2_in_axes2_x -
-            six_r_r_3_in_axes2_y*six_r_s_2;
-        const real six_r_r_2_t = six_r_c_3*six_r_r_2_in_axes2_x + six_r_r_3_in_axes2_y*six_r_s_3;
-        const real six_r_r_2_t_2 = six_r_c_3*six_r_r_3_in_axes2_y -
-            six_r_r_2_in_axes2_x*six_r_s_3;
-        const real six_r_r_2_in_axes5_z = six_r_r_3_t + six_r_c_4*six_r_r_2_t_2;
-        const real six_r_r_2_t_3 = -six_r_r_3_t_2 - six_r_r_2_t_2*six_r_s_4;
-        const real six_r_r_2_in_axes5_x = six_r_c_5*six_r_r_2_t_3 + six_r_r_2_t*six_r_s_5;
-        const real six_r_r_2_in_axes5_y = six_r_c_5*six_r_r_2_t - six_r_r_2_t_3*six_r_s_5;
-        /* (six_r-r_1) from joint 1 to the connection point, along the links */
-        const real six_r_joint2_offset_x = m->six_r_joint2_offset_x[i];
-        const real six_r_r_1_in_axes1_z = six_r_joint2_offset_x + six_r_c_2*six_r_r_3_in_axes2_y +
-            six_r_r_2_in_axes2_x*six_r_s_2;
-        const real six_r_r_1_t = six_r_c_2*six_r_r_2_in_axes1_y + six_r_r_1_in_axes1_z*six_r_s_2;
-        const real six_r_r_1_t_2 = six_r_c_2*six_r_r_1_in_axes1_z -
-            six_r_r_2_in_axes1_y*six_r_s_2;
-        const real six_r_r_1_t_3 = six_r_c_3*six_r_r_1_t + six_r_r_1_t_2*six_r_s_3;
-        const real six_r_r_1_t_4 = six_r_c_3*six_r_r_1_t_2 - six_r_r_1_t*six_r_s_3;
-        const real six_r_r_1_in_axes5_z = six_r_r_3_t + six_r_c_4*six_r_r_1_t_4;
-        const real six_r_r_1_t_5 = -six_r_r_3_t_2 - six_r_r_1_t_4*six_r_s_4;
-        const real six_r_r_1_in_axes5_x = six_r_c_5*six_r_r_1_t_5 + six_r_r_1_t_3*six_r_s_5;
-        const real six_r_r_1_in_axes5_y = six_r_c_5*six_r_r_1_t_3 - six_r_r_1_t_5*six_r_s_5;
-        /* (six_r-v_1) velocity of the connection point per rate of joint 1 */
-        const real six_r_v_1_t = six_r_c_2*six_r_s_3 + six_r_c_3*six_r_s_2;
-        const real six_r_v_1_t_2 = six_r_c_2*six_r_c_3 - six_r_s_2*six_r_s_3;
-        const real six_r_e_1_in_axes5_z = six_r_c_4*six_r_v_1_t_2;
-        const real six_r_v_1_t_3 = six_r_s_4*six_r_v_1_t_2;
-        const real six_r_e_1_in_axes5_x = six_r_s_5*six_r_v_1_t - six_r_c_5*six_r_v_1_t_3;
-        const real six_r_e_1_in_axes5_y = six_r_c_5*six_r_v_1_t + six_r_s_5*six_r_v_1_t_3;
-        const real six_r_v_1_in_axes5_x = six_r_e_1_in_axes5_y*six_r_r_1_in_axes5_z -
-            six_r_e_1_in_axes5_z*six_r_r_1_in_axes5_y;
-        const real six_r_v_1_in_axes5_y = six_r_e_1_in_axes5_z*six_r_r_1_in_axes5_x -
-            six_r_e_1_in_axes5_x*six_r_r_1_in_axes5_z;
-        const real six_r_v_1_in_axes5_z = six_r_e_1_in_axes5_x*six_r_r_1_in_axes5_y -
-            six_r_e_1_in_axes5_y*six_r_r_1_in_axes5_x;
-        /* (six_r-v_2) velocity of the connection point per rate of joint 2 */
-        const real six_r_e_2_in_axes5_x = six_r_c_4*six_r_c_5;
-        const real six_r_v_2_in_axes5_x = six_r_e_2_in_axes5_y*six_r_r_2_in_axes5_z -
-            six_r_r_2_in_axes5_y*six_r_s_4;
-        const real six_r_v_2_in_axes5_y = six_r_r_2_in_axes5_x*six_r_s_4 -
-            six_r_e_2_in_axes5_x*six_r_r_2_in_axes5_z;
-        const real six_r_v_2_in_axes5_z = six_r_e_2_in_axes5_x*six_r_r_2_in_axes5_y -
-            six_r_e_2_in_axes5_y*six_r_r_2_in_axes5_x;
-        /* (six_r-v_3) velocity of the connection point per rate of joint 3 */
-        const real six_r_v_3_in_axes5_x = six_r_e_2_in_axes5_y*six_r_r_3_in_axes5_z -
-            six_r_r_3_in_axes5_y*six_r_s_4;
-        const real six_r_v_3_in_axes5_y = six_r_r_3_in_axes5_x*six_r_s_4 -
-            six_r_e_2_in_axes5_x*six_r_r_3_in_axes5_z;
-        const real six_r_v_3_in_axes5_z = six_r_e_2_in_axes5_x*six_r_r_3_in_axes5_y -
-            six_r_e_2_in_axes5_y*six_r_r_3_in_axes5_x;
-        /* (six_r-v_4) velocity of the connection point per rate of joint 4 */
-        const real six_r_v_4_in_axes5_z = six_r_s_5*(six_r_c_5*six_r_r_4_in_axes4_z -
-            six_r_r_4_in_axes4_y*six_r_s_5) - six_r_c_5*(six_r_c_5*six_r_r_4_in_axes4_y +
-            six_r_r_4_in_axes4_z*six_r_s_5);
-        /* (six_r-n_m1) direction 1 of the moment that the platform joint transmits */
-        const real six_r_platform_joint_axis_platform_x = m->six_r_platform_joint_axis_platform_x[i];
-        const real six_r_platform_joint_axis_platform_y = m->six_r_platform_joint_axis_platform_y[i];
-        const real six_r_platform_joint_axis_platform_z = m->six_r_platform_joint_axis_platform_z[i];
-        const real six_r_n_m1_t = six_r_platform_joint_axis_platform_x*(R_xx*six_r_base_frame_xy +
-            R_yx*six_r_base_frame_yy + R_zx*six_r_base_frame_zy) +
-            six_r_platform_joint_axis_platform_y*(R_xy*six_r_base_frame_xy +
-            R_yy*six_r_base_frame_yy + R_zy*six_r_base_frame_zy) +
-            six_r_platform_joint_axis_platform_z*(R_xz*six_r_base_frame_xy +
-            R_yz*six_r_base_frame_yy + R_zz*six_r_base_frame_zy);
-        const real six_r_n_m1_t_2 = six_r_platform_joint_axis_platform_x*(R_xx*six_r_base_frame_xz
-            + R_yx*six_r_base_frame_yz + R_zx*six_r_base_frame_zz) +
-            six_r_platform_joint_axis_platform_y*(R_xy*six_r_base_frame_xz +
-            R_yy*six_r_base_frame_yz + R_zy*six_r_base_frame_zz) +
-            six_r_platform_joint_axis_platform_z*(R_xz*six_r_base_frame_xz +
-            R_yz*six_r_base_frame_yz + R_zz*six_r_base_frame_zz);
-        const real six_r_n_m1_t_3 = six_r_platform_joint_axis_platform_x*(R_xx*six_r_base_frame_xx
-            + R_yx*six_r_base_frame_yx + R_zx*six_r_base_frame_zx) +
-            six_r_platform_joint_axis_platform_y*(R_xy*six_r_base_frame_xx +
-            R_yy*six_r_base_frame_yx + R_zy*six_r_base_frame_zx) +
-            six_r_platform_joint_axis_platform_z*(R_xz*six_r_base_frame_xx +
-            R_yz*six_r_base_frame_yx + R_zz*six_r_base_frame_zx);
-        const real six_r_n_m1_t_4 = six_r_c_1*six_r_n_m1_t + six_r_n_m1_t_2*six_r_s_1;
-        const real six_r_n_m1_t_5 = six_r_c_1*six_r_n_m1_t_2 - six_r_n_m1_t*six_r_s_1;
-        const real six_r_n_m1_t_6 = six_r_c_2*six_r_n_m1_t_5 + six_r_n_m1_t_3*six_r_s_2;
-        const real six_r_n_m1_t_7 = six_r_c_2*six_r_n_m1_t_3 - six_r_n_m1_t_5*six_r_s_2;
-        const real six_r_n_m1_t_8 = six_r_c_3*six_r_n_m1_t_6 + six_r_n_m1_t_7*six_r_s_3;
-        const real six_r_n_m1_t_9 = six_r_c_3*six_r_n_m1_t_7 - six_r_n_m1_t_6*six_r_s_3;
-        const real six_r_n_m1_t_10 = six_r_c_4*six_r_n_m1_t_4 - six_r_n_m1_t_9*six_r_s_4;
-        const real six_r_n_m1_in_axes5_y = six_r_c_5*six_r_n_m1_t_10 + six_r_n_m1_t_8*six_r_s_5;
-        /* (six_r-n_m2) direction 2 of the moment that the platform joint transmits */
-        const real six_r_n_m2_in_axes5_z = six_r_c_5*six_r_n_m1_t_8 - six_r_n_m1_t_10*six_r_s_5;
-        /* (six_r-w_1) force part of reciprocal wrench 1 */
-        const real six_r_end_p1_in_axes5_z = six_r_c_4*six_r_n_m1_t_9 + six_r_n_m1_t_4*six_r_s_4;
-        const real six_r_w_1_t = six_r_e_1_in_axes5_x*six_r_n_m2_in_axes5_z -
-            six_r_e_1_in_axes5_y*six_r_n_m1_in_axes5_y;
-        const real six_r_w_1_t_2 = six_r_e_2_in_axes5_x*six_r_n_m2_in_axes5_z -
-            six_r_e_2_in_axes5_y*six_r_n_m1_in_axes5_y;
-        const real six_r_w_1_t_3 = six_r_e_1_in_axes5_y*six_r_end_p1_in_axes5_z -
-            six_r_e_1_in_axes5_z*six_r_n_m2_in_axes5_z;
-        const real six_r_w_1_t_4 = six_r_e_2_in_axes5_y*six_r_end_p1_in_axes5_z -
-            six_r_n_m2_in_axes5_z*six_r_s_4;
-        const real six_r_size = m->six_r_size[i];
-        const real six_r_w_1_t_5 = six_r_size*six_r_w_1_t;
-        const real six_r_w_1_t_6 = six_r_size*six_r_w_1_t_3;
-        const real six_r_w_1_t_7 = six_r_size*six_r_w_1_t_2;
-        const real six_r_w_1_t_8 = six_r_size*six_r_w_1_t_4;
-        const real six_r_w_1_t_9 = six_r_size*(six_r_c_5*six_r_n_m1_in_axes5_y -
-            six_r_n_m2_in_axes5_z*six_r_s_5);
-        const real six_r_w_1_t_10 = -six_r_c_5*six_r_end_p1_in_axes5_z*six_r_size;
-        const real six_r_w_1_t_11 = six_r_n_m2_in_axes5_z*six_r_size;
-        const real six_r_size_t = m->six_r_size_t[i];
-        const real six_r_w_1_t_12 = root(six_r_size_t + six_r_w_1_t_11*six_r_w_1_t_11);
-        const real inv_six_r_w_1_t_12 = 1/six_r_w_1_t_12;
-        const real six_r_w_1_t_13 = inv_six_r_w_1_t_12*six_r_platform_joint_offset_x;
-        const real six_r_w_1_t_14 = inv_six_r_w_1_t_12*six_r_w_1_t_11;
-        const real six_r_w_1_t_15 = six_r_w_1_t_10*six_r_w_1_t_14;
-        const real six_r_w_1_t_16 = six_r_w_1_t_13*six_r_w_1_t_15;
-        const real six_r_w_1_t_17 = six_r_w_1_t_10 - six_r_w_1_t_14*six_r_w_1_t_15;
-        const real six_r_w_1_t_18 = six_r_v_1_in_axes5_y*six_r_w_1_t_13 -
-            six_r_w_1_t_14*six_r_w_1_t_6;
-        const real six_r_w_1_t_19 = six_r_v_1_in_axes5_y - six_r_w_1_t_13*six_r_w_1_t_18;
-        const real six_r_w_1_t_20 = six_r_w_1_t_6 + six_r_w_1_t_14*six_r_w_1_t_18;
-        const real six_r_w_1_t_21 = six_r_w_1_t_14*six_r_w_1_t_8;
-        const real six_r_w_1_t_22 = six_r_v_2_in_axes5_y*six_r_w_1_t_13 - six_r_w_1_t_21;
-        const real six_r_w_1_t_23 = six_r_v_2_in_axes5_y - six_r_w_1_t_13*six_r_w_1_t_22;
-        const real six_r_w_1_t_24 = six_r_w_1_t_8 + six_r_w_1_t_14*six_r_w_1_t_22;
-        const real six_r_w_1_t_25 = six_r_w_1_t_21 - six_r_v_3_in_axes5_y*six_r_w_1_t_13;
-        const real six_r_w_1_t_26 = six_r_v_3_in_axes5_y + six_r_w_1_t_13*six_r_w_1_t_25;
-        const real six_r_w_1_t_27 = six_r_w_1_t_8 - six_r_w_1_t_14*six_r_w_1_t_25;
-        const real six_r_w_1_t_28 = root(six_r_v_4_in_axes5_z*six_r_v_4_in_axes5_z +
-            six_r_w_1_t_16*six_r_w_1_t_16 + six_r_w_1_t_17*six_r_w_1_t_17 +
-            six_r_w_1_t_9*six_r_w_1_t_9);
-        const real inv_six_r_w_1_t_28 = 1/six_r_w_1_t_28;
-        const real six_r_w_1_t_29 = inv_six_r_w_1_t_28*six_r_w_1_t_16;
-        const real six_r_w_1_t_30 = inv_six_r_w_1_t_28*six_r_v_4_in_axes5_z;
-        const real six_r_w_1_t_31 = inv_six_r_w_1_t_28*six_r_w_1_t_9;
-        const real six_r_w_1_t_32 = inv_six_r_w_1_t_28*six_r_w_1_t_17;
-        const real six_r_w_1_t_33 = six_r_w_1_t_19*six_r_w_1_t_29 + six_r_w_1_t_20*six_r_w_1_t_32
-            + six_r_w_1_t_31*six_r_w_1_t_5 - six_r_v_1_in_axes5_z*six_r_w_1_t_30;
-        const real six_r_w_1_t_34 = six_r_w_1_t_29*six_r_w_1_t_33 - six_r_w_1_t_19;
-        const real six_r_w_1_t_35 = six_r_v_1_in_axes5_z + six_r_w_1_t_30*six_r_w_1_t_33;
-        const real six_r_w_1_t_36 = six_r_w_1_t_31*six_r_w_1_t_33 - six_r_w_1_t_5;
-        const real six_r_w_1_t_37 = six_r_w_1_t_32*six_r_w_1_t_33 - six_r_w_1_t_20;
-        const real six_r_w_1_t_38 = six_r_w_1_t_31*six_r_w_1_t_7;
-        const real six_r_w_1_t_39 = six_r_w_1_t_38 + six_r_w_1_t_23*six_r_w_1_t_29 +
-            six_r_w_1_t_24*six_r_w_1_t_32 - six_r_v_2_in_axes5_z*six_r_w_1_t_30;
-        const real six_r_w_1_t_40 = six_r_w_1_t_29*six_r_w_1_t_39 - six_r_w_1_t_23;
-        const real six_r_w_1_t_41 = six_r_v_2_in_axes5_z + six_r_w_1_t_30*six_r_w_1_t_39;
-        const real six_r_w_1_t_42 = six_r_w_1_t_31*six_r_w_1_t_39 - six_r_w_1_t_7;
-        const real six_r_w_1_t_43 = six_r_w_1_t_32*six_r_w_1_t_39 - six_r_w_1_t_24;
-        const real six_r_w_1_t_44 = six_r_w_1_t_38 + six_r_w_1_t_26*six_r_w_1_t_29 +
-            six_r_w_1_t_27*six_r_w_1_t_32 - six_r_v_3_in_axes5_z*six_r_w_1_t_30;
-        const real six_r_w_1_t_45 = six_r_w_1_t_29*six_r_w_1_t_44 - six_r_w_1_t_26;
-        const real six_r_w_1_t_46 = six_r_v_3_in_axes5_z + six_r_w_1_t_30*six_r_w_1_t_44;
-        const real six_r_w_1_t_47 = six_r_w_1_t_31*six_r_w_1_t_44 - six_r_w_1_t_7;
-        const real six_r_w_1_t_48 = six_r_w_1_t_32*six_r_w_1_t_44 - six_r_w_1_t_27;
-        const real six_r_w_1_t_49 = root(six_r_v_1_in_axes5_x*six_r_v_1_in_axes5_x +
-            six_r_w_1_t_34*six_r_w_1_t_34 + six_r_w_1_t_35*six_r_w_1_t_35 +
-            six_r_w_1_t_36*six_r_w_1_t_36 + six_r_w_1_t_37*six_r_w_1_t_37);
-        const real inv_six_r_w_1_t_49 = 1/six_r_w_1_t_49;
-        const real six_r_w_1_t_50 = inv_six_r_w_1_t_49*six_r_v_1_in_axes5_x;
-        const real six_r_w_1_t_51 = inv_six_r_w_1_t_49*six_r_w_1_t_34;
-        const real six_r_w_1_t_52 = inv_six_r_w_1_t_49*six_r_w_1_t_35;
-        const real six_r_w_1_t_53 = inv_six_r_w_1_t_49*six_r_w_1_t_36;
-        const real six_r_w_1_t_54 = inv_six_r_w_1_t_49*six_r_w_1_t_37;
-        const real six_r_w_1_t_55 = six_r_v_2_in_axes5_x*six_r_w_1_t_50 +
-            six_r_w_1_t_40*six_r_w_1_t_51 + six_r_w_1_t_41*six_r_w_1_t_52 +
-            six_r_w_1_t_42*six_r_w_1_t_53 + six_r_w_1_t_43*six_r_w_1_t_54;
-        const real six_r_w_1_t_56 = six_r_v_2_in_axes5_x - six_r_w_1_t_50*six_r_w_1_t_55;
-        const real six_r_w_1_t_57 = six_r_w_1_t_40 - six_r_w_1_t_51*six_r_w_1_t_55;
-        const real six_r_w_1_t_58 = six_r_w_1_t_41 - six_r_w_1_t_52*six_r_w_1_t_55;
-        const real six_r_w_1_t_59 = six_r_w_1_t_42 - six_r_w_1_t_53*six_r_w_1_t_55;
-        const real six_r_w_1_t_60 = six_r_w_1_t_43 - six_r_w_1_t_54*six_r_w_1_t_55;
-        const real six_r_w_1_t_61 = six_r_v_3_in_axes5_x*six_r_w_1_t_50 +
-            six_r_w_1_t_45*six_r_w_1_t_51 + six_r_w_1_t_46*six_r_w_1_t_52 +
-            six_r_w_1_t_47*six_r_w_1_t_53 + six_r_w_1_t_48*six_r_w_1_t_54;
-        const real six_r_w_1_t_62 = six_r_v_3_in_axes5_x - six_r_w_1_t_50*six_r_w_1_t_61;
-        const real six_r_w_1_t_63 = six_r_w_1_t_45 - six_r_w_1_t_51*six_r_w_1_t_61;
-        const real six_r_w_1_t_64 = six_r_w_1_t_46 - six_r_w_1_t_52*six_r_w_1_t_61;
-        const real six_r_w_1_t_65 = six_r_w_1_t_47 - six_r_w_1_t_53*six_r_w_1_t_61;
-        const real six_r_w_1_t_66 = six_r_w_1_t_48 - six_r_w_1_t_54*six_r_w_1_t_61;
-        const real six_r_w_1_t_67 = root(six_r_w_1_t_56*six_r_w_1_t_56 +
-            six_r_w_1_t_57*six_r_w_1_t_57 + six_r_w_1_t_58*six_r_w_1_t_58 +
-            six_r_w_1_t_59*six_r_w_1_t_59 + six_r_w_1_t_60*six_r_w_1_t_60);
-        const real inv_six_r_w_1_t_67 = 1/six_r_w_1_t_67;
-        const real six_r_w_1_t_68 = inv_six_r_w_1_t_67*six_r_w_1_t_56;
-        const real six_r_w_1_t_69 = inv_six_r_w_1_t_67*six_r_w_1_t_57;
-        const real six_r_w_1_t_70 = inv_six_r_w_1_t_67*six_r_w_1_t_58;
-        const real six_r_w_1_t_71 = inv_six_r_w_1_t_67*six_r_w_1_t_59;
-        const real six_r_w_1_t_72 = inv_six_r_w_1_t_67*six_r_w_1_t_60;
-        const real six_r_w_1_t_73 = six_r_w_1_t_62*six_r_w_1_t_68 + six_r_w_1_t_63*six_r_w_1_t_69
-            + six_r_w_1_t_64*six_r_w_1_t_70 + six_r_w_1_t_65*six_r_w_1_t_71 +
-            six_r_w_1_t_66*six_r_w_1_t_72;
-        const real six_r_w_1_t_74 = six_r_w_1_t_62 - six_r_w_1_t_68*six_r_w_1_t_73;
-        const real six_r_w_1_t_75 = six_r_w_1_t_63 - six_r_w_1_t_69*six_r_w_1_t_73;
-        const real six_r_w_1_t_76 = six_r_w_1_t_64 - six_r_w_1_t_70*six_r_w_1_t_73;
-        const real six_r_w_1_t_77 = six_r_w_1_t_65 - six_r_w_1_t_71*six_r_w_1_t_73;
-        const real six_r_w_1_t_78 = six_r_w_1_t_66 - six_r_w_1_t_72*six_r_w_1_t_73;
-        const real six_r_w_1_t_79 = root(six_r_w_1_t_74*six_r_w_1_t_74 +
-            six_r_w_1_t_75*six_r_w_1_t_75 + six_r_w_1_t_76*six_r_w_1_t_76 +
-            six_r_w_1_t_77*six_r_w_1_t_77 + six_r_w_1_t_78*six_r_w_1_t_78);
-        /* (six_r-w_2) force part of reciprocal wrench 2 */
-        const real inv_six_r_w_1_t_79 = 1/six_r_w_1_t_79;
-        const real six_r_w_2_t = inv_six_r_w_1_t_79*six_r_w_1_t_74;
-        const real six_r_w_2_t_2 = inv_six_r_w_1_t_79*six_r_w_1_t_75;
-        const real six_r_w_2_t_3 = inv_six_r_w_1_t_79*six_r_w_1_t_76;
-        const real six_r_w_2_t_4 = inv_six_r_w_1_t_67*inv_six_r_w_1_t_79*six_r_w_1_t_73;
-        const real six_r_w_2_in_axes5_x = inv_six_r_w_1_t_67*six_r_w_1_t_68 -
-            six_r_w_2_t*six_r_w_2_t_4;
-        const real six_r_w_2_in_axes5_y = six_r_w_2_t_2*six_r_w_2_t_4 -
-            inv_six_r_w_1_t_67*six_r_w_1_t_69;
-        const real six_r_w_2_in_axes5_z = inv_six_r_w_1_t_67*six_r_w_1_t_70 -
-            six_r_w_2_t_3*six_r_w_2_t_4;
-        const real six_r_w_2_x = axis_x_six_r_axes5_x*six_r_w_2_in_axes5_x +
-            axis_y_six_r_axes5_x*six_r_w_2_in_axes5_y + axis_z_six_r_axes5_x*six_r_w_2_in_axes5_z;
-        const real six_r_w_2_y = axis_x_six_r_axes5_y*six_r_w_2_in_axes5_x +
-            axis_y_six_r_axes5_y*six_r_w_2_in_axes5_y + axis_z_six_r_axes5_y*six_r_w_2_in_axes5_z;
-        const real six_r_w_2_z = axis_x_six_r_axes5_z*six_r_w_2_in_axes5_x +
-            axis_y_six_r_axes5_z*six_r_w_2_in_axes5_y + axis_z_six_r_axes5_z*six_r_w_2_in_axes5_z;
-        /* (six_r-m1_w_2) moment part 1 of reciprocal wrench 2 */
-        const real six_r_m1_w_2_t = inv_six_r_w_1_t_79*six_r_w_1_t_77;
-        const real six_r_m1_w_2 = six_r_size*(inv_six_r_w_1_t_67*six_r_w_1_t_71 -
-            six_r_m1_w_2_t*six_r_w_2_t_4);
-        /* (six_r-m2_w_2) moment part 2 of reciprocal wrench 2 */
-        const real six_r_m2_w_2_t = inv_six_r_w_1_t_79*six_r_w_1_t_78;
-        const real six_r_m2_w_2 = six_r_size*(inv_six_r_w_1_t_67*six_r_w_1_t_72 -
-            six_r_m2_w_2_t*six_r_w_2_t_4);
-        /* (six_r-o_2) moment part of reciprocal wrench 2 */
-        const real six_r_o_2_t = six_r_m1_w_2*six_r_n_m2_in_axes5_z;
-        const real six_r_o_2_in_axes5_z = six_r_m2_w_2*six_r_n_m2_in_axes5_z;
-        const real six_r_o_2_in_axes5_y = six_r_m1_w_2*six_r_n_m1_in_axes5_y -
-            six_r_end_p1_in_axes5_z*six_r_m2_w_2;
-        /* (six_r-eta_1) rate at which the joints turn along moment direction 1 */
-        const real six_r_omega_in_axes5_x = axis_x_six_r_axes5_x*omega_x +
-            axis_x_six_r_axes5_y*omega_y + axis_x_six_r_axes5_z*omega_z;
-        const real six_r_omega_in_axes5_y = axis_y_six_r_axes5_x*omega_x +
-            axis_y_six_r_axes5_y*omega_y + axis_y_six_r_axes5_z*omega_z;
-        const real six_r_eta_1 = six_r_n_m1_in_axes5_y*six_r_omega_in_axes5_y -
-            six_r_n_m2_in_axes5_z*six_r_omega_in_axes5_x;
-        /* (six_r-eta_2) rate at which the joints turn along moment direction 2 */
-        const real six_r_omega_in_axes5_z = axis_z_six_r_axes5_x*omega_x +
-            axis_z_six_r_axes5_y*omega_y + axis_z_six_r_axes5_z*omega_z;
-        const real six_r_eta_2_t = six_r_end_p1_in_axes5_z*six_r_omega_in_axes5_y -
-            six_r_n_m2_in_axes5_z*six_r_omega_in_axes5_z;
-        /* (six_r-qd_1) rate of joint 1 */
-        const real six_r_qd_1_t = six_r_eta_1*six_r_size;
-        const real six_r_qd_1_t_2 = six_r_eta_2_t*six_r_size;
-        const real six_r_qd_1_t_3 = inv_six_r_w_1_t_79*(six_r_S_dot_in_axes5_y*six_r_w_2_t_2 +
-            six_r_m2_w_2_t*six_r_qd_1_t_2 - six_r_S_dot_in_axes5_x*six_r_w_2_t -
-            six_r_S_dot_in_axes5_z*six_r_w_2_t_3 - six_r_m1_w_2_t*six_r_qd_1_t);
-        const real six_r_qd_1_t_4 = -inv_six_r_w_1_t_67*(six_r_S_dot_in_axes5_y*six_r_w_1_t_69 +
-            six_r_qd_1_t_2*six_r_w_1_t_72 - six_r_S_dot_in_axes5_x*six_r_w_1_t_68 -
-            six_r_S_dot_in_axes5_z*six_r_w_1_t_70 - six_r_qd_1_t*six_r_w_1_t_71 -
-            six_r_qd_1_t_3*six_r_w_1_t_73);
-        const real six_r_qd_1 = inv_six_r_w_1_t_49*(six_r_S_dot_in_axes5_x*six_r_w_1_t_50 +
-            six_r_S_dot_in_axes5_z*six_r_w_1_t_52 + six_r_qd_1_t*six_r_w_1_t_53 +
-            six_r_qd_1_t_3*six_r_w_1_t_61 - six_r_S_dot_in_axes5_y*six_r_w_1_t_51 -
-            six_r_qd_1_t_2*six_r_w_1_t_54 - six_r_qd_1_t_4*six_r_w_1_t_55);
-        /* (six_r-qd_4) rate of joint 4 */
-        const real six_r_qd_4 = -inv_six_r_w_1_t_28*(six_r_S_dot_in_axes5_y*six_r_w_1_t_29 +
-            six_r_qd_1_t_2*six_r_w_1_t_32 + six_r_qd_1_t_3*six_r_w_1_t_44 -
-            six_r_S_dot_in_axes5_z*six_r_w_1_t_30 - six_r_qd_1*six_r_w_1_t_33 -
-            six_r_qd_1_t*six_r_w_1_t_31 - six_r_qd_1_t_4*six_r_w_1_t_39);
-        /* (six_r-qd_5) rate of joint 5 */
-        const real six_r_qd_5_t = inv_six_r_w_1_t_12*(six_r_qd_1*six_r_w_1_t_18 +
-            six_r_qd_1_t_2*six_r_w_1_t_14 + six_r_qd_1_t_3*six_r_w_1_t_25 +
-            six_r_qd_1_t_4*six_r_w_1_t_22 + six_r_qd_4*six_r_w_1_t_15 -
-            six_r_S_dot_in_axes5_y*six_r_w_1_t_13);
-        /* (six_r-omega_1) angular velocity of link 1 */
-        const real six_r_omega_1_in_axes2_x = six_r_qd_1*six_r_s_2;
-        const real six_r_omega_1_in_axes2_y = six_r_c_2*six_r_qd_1;
-        const real six_r_omega_1_in_axes5_x = six_r_e_1_in_axes5_x*six_r_qd_1;
-        const real six_r_omega_1_in_axes5_y = six_r_e_1_in_axes5_y*six_r_qd_1;
-        const real six_r_omega_1_in_axes5_z = six_r_e_1_in_axes5_z*six_r_qd_1;
-        /* (six_r-W_1) centripetal tensor of link 1 */
-        const real six_r_W_1_in_axes5_xy = six_r_omega_1_in_axes5_x*six_r_omega_1_in_axes5_y;
-        const real six_r_W_1_in_axes5_xz = six_r_omega_1_in_axes5_x*six_r_omega_1_in_axes5_z;
-        const real six_r_W_1_in_axes5_yz = six_r_omega_1_in_axes5_y*six_r_omega_1_in_axes5_z;
-        /* (six_r-omega_2) angular velocity of link 2 */
-        const real six_r_omega_2_in_axes3_x = six_r_c_3*six_r_omega_1_in_axes2_x +
-            six_r_omega_1_in_axes2_y*six_r_s_3;
-        const real six_r_omega_2_in_axes3_y = six_r_c_3*six_r_omega_1_in_axes2_y -
-            six_r_omega_1_in_axes2_x*six_r_s_3;
-        const real six_r_omega_2_in_axes5_x = six_r_omega_1_in_axes5_x +
-            six_r_e_2_in_axes5_x*six_r_qd_1_t_4;
-        const real six_r_omega_2_in_axes5_y = six_r_omega_1_in_axes5_y +
-            six_r_e_2_in_axes5_y*six_r_qd_1_t_4;
-        const real six_r_omega_2_in_axes5_z = six_r_omega_1_in_axes5_z + six_r_qd_1_t_4*six_r_s_4;
-        /* (six_r-W_2) centripetal tensor of link 2 */
-        const real six_r_W_2_in_axes2_yz = six_r_omega_1_in_axes2_y*six_r_qd_1_t_4;
-        const real six_r_W_2_in_axes2_xy = six_r_omega_1_in_axes2_x*six_r_omega_1_in_axes2_y;
-        const real six_r_W_2_in_axes5_xy = six_r_omega_2_in_axes5_x*six_r_omega_2_in_axes5_y;
-        const real six_r_W_2_in_axes5_xz = six_r_omega_2_in_axes5_x*six_r_omega_2_in_axes5_z;
-        const real six_r_W_2_in_axes5_yz = six_r_omega_2_in_axes5_y*six_r_omega_2_in_axes5_z;
-        /* (six_r-omega_3) angular velocity of link 3 */
-        const real six_r_omega_3_in_axes3_z = six_r_qd_1_t_4 - six_r_qd_1_t_3;
-        const real six_r_omega_3_in_axes4_x = six_r_c_4*six_r_omega_2_in_axes3_y +
-            six_r_omega_3_in_axes3_z*six_r_s_4;
-        const real six_r_omega_3_in_axes4_y = six_r_c_4*six_r_omega_3_in_axes3_z -
-            six_r_omega_2_in_axes3_y*six_r_s_4;
-        const real six_r_omega_3_t = -six_r_c_5*six_r_omega_3_in_axes4_y;
-        const real six_r_omega_3_t_2 = six_r_omega_3_in_axes4_y*six_r_s_5;
-        const real six_r_omega_3_in_axes5_x = six_r_omega_2_in_axes3_x*six_r_s_5 -
-            six_r_omega_3_t;
-        const real six_r_omega_3_in_axes5_y = six_r_c_5*six_r_omega_2_in_axes3_x -
-            six_r_omega_3_t_2;
-        /* (six_r-W_3) centripetal tensor of link 3 */
-        const real six_r_W_3_t = six_r_omega_2_in_axes3_y*six_r_omega_2_in_axes3_y;
-        const real six_r_W_3_t_2 = six_r_omega_3_in_axes3_z*six_r_omega_3_in_axes3_z;
-        const real six_r_W_3_t_3 = six_r_W_3_t + six_r_W_3_t_2;
-        const real six_r_W_3_in_axes3_xy = six_r_omega_2_in_axes3_x*six_r_omega_2_in_axes3_y;
-        const real six_r_W_3_in_axes3_xz = six_r_omega_2_in_axes3_x*six_r_omega_3_in_axes3_z;
-        const real six_r_W_3_in_axes3_yz = six_r_omega_2_in_axes3_y*six_r_omega_3_in_axes3_z;
-        const real six_r_W_3_in_axes5_xy = six_r_omega_3_in_axes5_x*six_r_omega_3_in_axes5_y;
-        /* (six_r-omega_4) angular velocity of link 4 */
-        const real six_r_omega_4_in_axes4_z = six_r_omega_2_in_axes3_x + six_r_qd_4;
-        const real six_r_omega_4_in_axes5_x = six_r_omega_4_in_axes4_z*six_r_s_5 -
-            six_r_omega_3_t;
-        const real six_r_omega_4_in_axes5_y = six_r_c_5*six_r_omega_4_in_axes4_z -
-            six_r_omega_3_t_2;
-        /* (six_r-W_4) centripetal tensor of link 4 */
-        const real six_r_W_4_in_axes4_xy = six_r_omega_3_in_axes4_x*six_r_omega_3_in_axes4_y;
-        const real six_r_W_4_in_axes4_xz = six_r_omega_3_in_axes4_x*six_r_omega_4_in_axes4_z;
-        const real six_r_W_4_in_axes4_yz = six_r_omega_3_in_axes4_y*six_r_omega_4_in_axes4_z;
-        const real six_r_W_4_in_axes5_xy = six_r_omega_4_in_axes5_x*six_r_omega_4_in_axes5_y;
-        /* (six_r-omega_5) angular velocity of link 5 */
-        const real six_r_omega_5_in_axes5_z = six_r_omega_3_in_axes4_x - six_r_qd_5_t;
-        /* (six_r-W_5) centripetal tensor of link 5 */
-        const real six_r_W_5_t = six_r_omega_4_in_axes5_y*six_r_omega_4_in_axes5_y;
-        const real six_r_W_5_t_2 = six_r_omega_5_in_axes5_z*six_r_omega_5_in_axes5_z;
-        const real six_r_W_5_in_axes5_xx = -six_r_W_5_t - six_r_W_5_t_2;
-        const real six_r_W_5_in_axes5_xz = six_r_omega_4_in_axes5_x*six_r_omega_5_in_axes5_z;
-        const real six_r_W_5_in_axes5_yz = six_r_omega_4_in_axes5_y*six_r_omega_5_in_axes5_z;
-        /* (six_r-a_p) acceleration of the connection point without its centripetal part */
-        const real alpha_y = s[19*w + j];
-        const real alpha_z = s[20*w + j];
-        const real t_ddot_x = s[15*w + j];
-        const real six_r_a_p_x = t_ddot_x + alpha_y*six_r_q_z - alpha_z*six_r_q_y;
-        const real alpha_x = s[18*w + j];
-        const real t_ddot_y = s[16*w + j];
-        const real six_r_a_p_y = t_ddot_y + alpha_z*six_r_q_x - alpha_x*six_r_q_z;
-        const real t_ddot_z = s[17*w + j];
-        const real six_r_a_p_z = t_ddot_z + alpha_x*six_r_q_y - alpha_y*six_r_q_x;
-        /* (six_r-S_ddot) acceleration of the connection point */
-        const real six_r_S_ddot_x = six_r_a_p_x + omega_y*six_r_S_dot_t_16 -
-            omega_z*six_r_S_dot_t_15;
-        const real six_r_S_ddot_y = six_r_a_p_y + omega_z*six_r_S_dot_t_14 -
-            omega_x*six_r_S_dot_t_16;
-        const real six_r_S_ddot_z = six_r_a_p_z + omega_x*six_r_S_dot_t_15 -
-            omega_y*six_r_S_dot_t_14;
-        const real six_r_S_ddot_in_axes5_x = axis_x_six_r_axes5_x*six_r_S_ddot_x +
-            axis_x_six_r_axes5_y*six_r_S_ddot_y + axis_x_six_r_axes5_z*six_r_S_ddot_z;
-        const real six_r_S_ddot_in_axes5_y = axis_y_six_r_axes5_x*six_r_S_ddot_x +
-            axis_y_six_r_axes5_y*six_r_S_ddot_y + axis_y_six_r_axes5_z*six_r_S_ddot_z;
-        const real six_r_S_ddot_in_axes5_z = axis_z_six_r_axes5_x*six_r_S_ddot_x +
-            axis_z_six_r_axes5_y*six_r_S_ddot_y + axis_z_six_r_axes5_z*six_r_S_ddot_z;
-        /* (six_r-zeta_2) angular acceleration of link 2 from the turning of axis 2 */
-        const real six_r_zeta_2_in_axes2_y = -six_r_omega_1_in_axes2_x*six_r_qd_1_t_4;
-        const real six_r_zeta_2_in_axes3_x = six_r_W_2_in_axes2_yz*six_r_c_3 +
-            six_r_s_3*six_r_zeta_2_in_axes2_y;
-        const real six_r_zeta_2_in_axes3_y = six_r_c_3*six_r_zeta_2_in_axes2_y -
-            six_r_W_2_in_axes2_yz*six_r_s_3;
-        const real six_r_zeta_2_in_axes5_z = six_r_c_4*six_r_zeta_2_in_axes3_y;
-        const real six_r_zeta_2_t = six_r_s_4*six_r_zeta_2_in_axes3_y;
-        const real six_r_zeta_2_in_axes5_x = six_r_s_5*six_r_zeta_2_in_axes3_x -
-            six_r_c_5*six_r_zeta_2_t;
-        const real six_r_zeta_2_in_axes5_y = six_r_c_5*six_r_zeta_2_in_axes3_x +
-            six_r_s_5*six_r_zeta_2_t;
-        /* (six_r-zeta_3) angular acceleration of link 3 from the turning of axis 3 */
-        const real six_r_zeta_3_t = six_r_omega_2_in_axes3_y*six_r_qd_1_t_3;
-        const real six_r_zeta_3_in_axes3_y = six_r_omega_2_in_axes3_x*six_r_qd_1_t_3;
-        /* (six_r-beta_3) angular acceleration of link 3 at zero joint accelerations */
-        const real six_r_beta_3_in_axes3_x = six_r_zeta_2_in_axes3_x - six_r_zeta_3_t;
-        const real six_r_beta_3_in_axes3_y = six_r_zeta_2_in_axes3_y + six_r_zeta_3_in_axes3_y;
-        const real six_r_beta_3_in_axes4_x = six_r_beta_3_in_axes3_y*six_r_c_4;
-        const real six_r_beta_3_in_axes4_y = -six_r_beta_3_in_axes3_y*six_r_s_4;
-        /* (six_r-zeta_4) angular acceleration of link 4 from the turning of axis 4 */
-        const real six_r_zeta_4_in_axes4_x = six_r_omega_3_in_axes4_y*six_r_qd_4;
-        const real six_r_zeta_4_in_axes4_y = -six_r_omega_3_in_axes4_x*six_r_qd_4;
-        /* (six_r-beta_4) angular acceleration of link 4 at zero joint accelerations */
-        const real six_r_beta_4_in_axes4_x = six_r_beta_3_in_axes4_x + six_r_zeta_4_in_axes4_x;
-        const real six_r_beta_4_in_axes4_y = six_r_beta_3_in_axes4_y + six_r_zeta_4_in_axes4_y;
-        const real six_r_beta_4_t = six_r_beta_3_in_axes3_x*six_r_s_5;
-        const real six_r_beta_4_in_axes5_x = six_r_beta_4_t + six_r_beta_4_in_axes4_y*six_r_c_5;
-        const real six_r_beta_4_t_2 = -six_r_beta_3_in_axes3_x*six_r_c_5;
-        const real six_r_beta_4_in_axes5_y = -six_r_beta_4_t_2 -
-            six_r_beta_4_in_axes4_y*six_r_s_5;
-        /* (six_r-zeta_5) angular acceleration of link 5 from the turning of axis 5 */
-        const real six_r_zeta_5_t = six_r_omega_4_in_axes5_y*six_r_qd_5_t;
-        const real six_r_zeta_5_in_axes5_y = six_r_omega_4_in_axes5_x*six_r_qd_5_t;
-        /* (six_r-beta_5) angular acceleration of link 5 at zero joint accelerations */
-        const real six_r_beta_5_in_axes5_x = six_r_beta_4_in_axes5_x - six_r_zeta_5_t;
-        const real six_r_beta_5_in_axes5_y = six_r_beta_4_in_axes5_y + six_r_zeta_5_in_axes5_y;
-        /* (six_r-bias) acceleration of the connection point at zero joint accelerations */
-        const real six_r_d_2_in_spec2_x = six_r_joint2_offset_x*six_r_s_2;
-        const real six_r_d_2_in_spec2_y = six_r_c_2*six_r_joint2_offset_x;
-        const real six_r_bias_t = six_r_c_3*six_r_d_2_in_spec2_x + six_r_d_2_in_spec2_y*six_r_s_3;
-        const real six_r_bias_t_2 = six_r_c_3*six_r_d_2_in_spec2_y -
-            six_r_d_2_in_spec2_x*six_r_s_3;
-        const real six_r_d_2_in_axes5_z = six_r_bias_t_2*six_r_c_4;
-        const real six_r_bias_t_3 = six_r_bias_t_2*six_r_s_4;
-        const real six_r_d_2_in_axes5_x = six_r_bias_t*six_r_s_5 - six_r_bias_t_3*six_r_c_5;
-        const real six_r_d_2_in_axes5_y = six_r_bias_t*six_r_c_5 + six_r_bias_t_3*six_r_s_5;
-        const real six_r_bias_t_4 = six_r_c_3*six_r_joint3_offset_x;
-        const real six_r_bias_t_5 = six_r_joint3_offset_x*six_r_s_3;
-        const real six_r_d_3_in_axes5_z = -six_r_bias_t_5*six_r_c_4;
-        const real six_r_bias_t_6 = six_r_bias_t_5*six_r_s_4;
-        const real six_r_d_3_in_axes5_x = six_r_bias_t_4*six_r_s_5 + six_r_bias_t_6*six_r_c_5;
-        const real six_r_d_3_in_axes5_y = six_r_bias_t_4*six_r_c_5 - six_r_bias_t_6*six_r_s_5;
-        const real six_r_d_4_in_axes5_x = six_r_joint4_offset_x*six_r_s_5;
-        const real six_r_d_4_in_axes5_y = six_r_c_5*six_r_joint4_offset_x;
-        const real six_r_d_5_in_axes5_x = six_r_joint5_offset_x*six_r_s_5;
-        const real six_r_d_5_in_axes5_y = six_r_c_5*six_r_joint5_offset_x;
-        const real six_r_bias_t_7 = six_r_omega_3_in_axes4_x*six_r_omega_3_in_axes4_x;
-        const real six_r_bias_t_8 = six_r_omega_4_in_axes5_x*six_r_omega_4_in_axes5_x;
-        const real six_r_bias_t_9 = six_r_omega_1_in_axes5_x*six_r_omega_1_in_axes5_x;
-        const real six_r_bias_t_10 = six_r_omega_1_in_axes5_y*six_r_omega_1_in_axes5_y;
-        const real six_r_bias_t_11 = six_r_omega_1_in_axes5_z*six_r_omega_1_in_axes5_z;
-        const real six_r_bias_t_12 = six_r_omega_2_in_axes5_x*six_r_omega_2_in_axes5_x;
-        const real six_r_bias_t_13 = six_r_omega_2_in_axes5_y*six_r_omega_2_in_axes5_y;
-        const real six_r_bias_t_14 = six_r_omega_2_in_axes5_z*six_r_omega_2_in_axes5_z;
-        const real six_r_bias_t_15 = six_r_W_4_in_axes5_xy + six_r_beta_4_in_axes4_x;
-        const real six_r_bias_in_axes5_x = six_r_W_1_in_axes5_xy*six_r_d_2_in_axes5_y +
-            six_r_W_1_in_axes5_xz*six_r_d_2_in_axes5_z +
-            six_r_W_5_in_axes5_xx*six_r_platform_joint_offset_x +
-            six_r_d_3_in_axes5_y*(six_r_W_2_in_axes5_xy - six_r_zeta_2_in_axes5_z) +
-            six_r_d_3_in_axes5_z*(six_r_W_2_in_axes5_xz + six_r_zeta_2_in_axes5_y) +
-            six_r_d_4_in_axes5_y*(six_r_W_3_in_axes5_xy - six_r_beta_3_in_axes4_x) +
-            six_r_d_5_in_axes5_y*(six_r_W_4_in_axes5_xy - six_r_beta_4_in_axes4_x) -
-            six_r_d_2_in_axes5_x*(six_r_bias_t_10 + six_r_bias_t_11) -
-            six_r_d_3_in_axes5_x*(six_r_bias_t_13 + six_r_bias_t_14) -
-            six_r_d_4_in_axes5_x*(six_r_bias_t_7 +
-            six_r_omega_3_in_axes5_y*six_r_omega_3_in_axes5_y) - six_r_d_5_in_axes5_x*(six_r_W_5_t
-            + six_r_bias_t_7);
-        const real six_r_bias_in_axes5_y = six_r_W_1_in_axes5_xy*six_r_d_2_in_axes5_x +
-            six_r_W_1_in_axes5_yz*six_r_d_2_in_axes5_z + six_r_bias_t_15*six_r_d_5_in_axes5_x +
-            six_r_bias_t_15*six_r_platform_joint_offset_x +
-            six_r_d_3_in_axes5_x*(six_r_W_2_in_axes5_xy + six_r_zeta_2_in_axes5_z) +
-            six_r_d_3_in_axes5_z*(six_r_W_2_in_axes5_yz - six_r_zeta_2_in_axes5_x) +
-            six_r_d_4_in_axes5_x*(six_r_W_3_in_axes5_xy + six_r_beta_3_in_axes4_x) -
-            six_r_d_2_in_axes5_y*(six_r_bias_t_11 + six_r_bias_t_9) -
-            six_r_d_3_in_axes5_y*(six_r_bias_t_12 + six_r_bias_t_14) -
-            six_r_d_4_in_axes5_y*(six_r_bias_t_7 +
-            six_r_omega_3_in_axes5_x*six_r_omega_3_in_axes5_x) -
-            six_r_d_5_in_axes5_y*(six_r_bias_t_7 + six_r_bias_t_8);
-        const real six_r_bias_in_axes5_z = six_r_W_1_in_axes5_xz*six_r_d_2_in_axes5_x +
-            six_r_W_1_in_axes5_yz*six_r_d_2_in_axes5_y +
-            six_r_d_3_in_axes5_x*(six_r_W_2_in_axes5_xz - six_r_zeta_2_in_axes5_y) +
-            six_r_d_3_in_axes5_y*(six_r_W_2_in_axes5_yz + six_r_zeta_2_in_axes5_x) +
-            six_r_d_4_in_axes5_x*(six_r_beta_4_t_2 + six_r_beta_3_in_axes4_y*six_r_s_5 +
-            six_r_omega_3_in_axes4_x*six_r_omega_3_in_axes5_x) +
-            six_r_d_4_in_axes5_y*(six_r_beta_4_t + six_r_beta_3_in_axes4_y*six_r_c_5 +
-            six_r_omega_3_in_axes4_x*six_r_omega_3_in_axes5_y) +
-            six_r_d_5_in_axes5_x*(six_r_omega_3_in_axes4_x*six_r_omega_4_in_axes5_x -
-            six_r_beta_4_in_axes5_y) + six_r_d_5_in_axes5_y*(six_r_beta_4_in_axes5_x +
-            six_r_omega_3_in_axes4_x*six_r_omega_4_in_axes5_y) +
-            six_r_platform_joint_offset_x*(six_r_W_5_in_axes5_xz - six_r_beta_5_in_axes5_y) -
-            six_r_d_2_in_axes5_z*(six_r_bias_t_10 + six_r_bias_t_9) -
-            six_r_d_3_in_axes5_z*(six_r_bias_t_12 + six_r_bias_t_13);
-        /* (six_r-rel) acceleration of the connection point left to the joint accelerations */
-        const real six_r_rel_in_axes5_x = six_r_S_ddot_in_axes5_x - six_r_bias_in_axes5_x;
-        const real six_r_rel_in_axes5_y = six_r_S_ddot_in_axes5_y - six_r_bias_in_axes5_y;
-        const real six_r_rel_in_axes5_z = six_r_S_ddot_in_axes5_z - six_r_bias_in_axes5_z;
-        /* (six_r-nd_m1) rate of moment direction 1 */
-        const real six_r_nd_m1_t = six_r_n_m1_in_axes5_y*six_r_omega_in_axes5_z -
-            six_r_end_p1_in_axes5_z*six_r_omega_in_axes5_x;
-        const real six_r_nd_m1_in_axes5_x = -six_r_nd_m1_t -
-            six_r_end_p1_in_axes5_z*six_r_omega_4_in_axes5_x;
-        const real six_r_nd_m1_in_axes5_y = six_r_eta_2_t -
-            six_r_end_p1_in_axes5_z*six_r_omega_4_in_axes5_y;
-        /* (six_r-nu_1) bias of the angular acceleration along moment direction 1 */
-        const real six_r_nu_1_t = six_r_n_m2_in_axes5_z*six_r_omega_4_in_axes5_y;
-        const real six_r_nu_1_t_2 = six_r_beta_5_in_axes5_x*six_r_n_m2_in_axes5_z -
-            six_r_beta_5_in_axes5_y*six_r_n_m1_in_axes5_y;
-        const real six_r_nu_1_t_3 = six_r_omega_4_in_axes5_x - six_r_omega_in_axes5_x;
-        const real six_r_nu_1_t_4 = six_r_omega_4_in_axes5_y - six_r_omega_in_axes5_y;
-        const real six_r_nu_1_t_5 = six_r_omega_5_in_axes5_z - six_r_omega_in_axes5_z;
-        const real six_r_nu_1_t_6 = six_r_nd_m1_in_axes5_x*six_r_nu_1_t_3 +
-            six_r_nd_m1_in_axes5_y*six_r_nu_1_t_4 + six_r_nu_1_t_5*(six_r_nu_1_t +
-            six_r_n_m1_in_axes5_y*six_r_omega_4_in_axes5_x);
-        const real six_r_nu_1 = six_r_nu_1_t_2 - six_r_nu_1_t_6;
-        /* (six_r-nd_m2) rate of moment direction 2 */
-        const real six_r_nd_m2_in_axes5_y = six_r_eta_1 -
-            six_r_n_m1_in_axes5_y*six_r_omega_4_in_axes5_y;
-        const real six_r_nd_m2_in_axes5_z = six_r_nd_m1_t -
-            six_r_n_m1_in_axes5_y*six_r_omega_5_in_axes5_z;
-        /* (six_r-nu_2) bias of the angular acceleration along moment direction 2 */
-        const real six_r_nu_2_t = six_r_beta_5_in_axes5_y*six_r_end_p1_in_axes5_z -
-            six_r_beta_4_in_axes4_x*six_r_n_m2_in_axes5_z;
-        const real six_r_nu_2_t_2 = six_r_nd_m2_in_axes5_y*six_r_nu_1_t_4 +
-            six_r_nd_m2_in_axes5_z*six_r_nu_1_t_5 + six_r_nu_1_t_3*(six_r_nu_1_t +
-            six_r_end_p1_in_axes5_z*six_r_omega_5_in_axes5_z);
-        const real six_r_nu_2 = six_r_nu_2_t - six_r_nu_2_t_2;
-        /* (six_r-etad_1) acceleration with which the joints turn along moment direction 1 */
-        const real six_r_alpha_in_axes5_y = alpha_x*axis_y_six_r_axes5_x +
-            alpha_y*axis_y_six_r_axes5_y + alpha_z*axis_y_six_r_axes5_z;
-        const real six_r_etad_1_t = six_r_n_m2_in_axes5_z*(alpha_x*axis_x_six_r_axes5_x +
-            alpha_y*axis_x_six_r_axes5_y + alpha_z*axis_x_six_r_axes5_z) -
-            six_r_alpha_in_axes5_y*six_r_n_m1_in_axes5_y;
-        const real six_r_etad_1 = six_r_nu_1 - six_r_etad_1_t;
-        /* (six_r-etad_2) acceleration with which the joints turn along moment direction 2 */
-        const real six_r_etad_2_t = six_r_alpha_in_axes5_y*six_r_end_p1_in_axes5_z -
-            six_r_n_m2_in_axes5_z*(alpha_x*axis_z_six_r_axes5_x + alpha_y*axis_z_six_r_axes5_y +
-            alpha_z*axis_z_six_r_axes5_z);
-        const real six_r_etad_2 = six_r_nu_2 - six_r_etad_2_t;
-        /* (six_r-qdd_1) acceleration of joint 1 */
-        const real six_r_qdd_1_t = six_r_etad_1*six_r_size;
-        const real six_r_qdd_1_t_2 = six_r_etad_2*six_r_size;
-        const real six_r_qdd_1_t_3 = inv_six_r_w_1_t_79*(six_r_m1_w_2_t*six_r_qdd_1_t +
-            six_r_m2_w_2_t*six_r_qdd_1_t_2 + six_r_rel_in_axes5_x*six_r_w_2_t +
-            six_r_rel_in_axes5_z*six_r_w_2_t_3 - six_r_rel_in_axes5_y*six_r_w_2_t_2);
-        const real six_r_qdd_1_t_4 = inv_six_r_w_1_t_67*(six_r_qdd_1_t*six_r_w_1_t_71 +
-            six_r_qdd_1_t_2*six_r_w_1_t_72 + six_r_rel_in_axes5_x*six_r_w_1_t_68 +
-            six_r_rel_in_axes5_z*six_r_w_1_t_70 - six_r_qdd_1_t_3*six_r_w_1_t_73 -
-            six_r_rel_in_axes5_y*six_r_w_1_t_69);
-        const real six_r_qdd_1_t_5 = inv_six_r_w_1_t_49*(six_r_qdd_1_t_3*six_r_w_1_t_61 +
-            six_r_qdd_1_t_4*six_r_w_1_t_55 + six_r_rel_in_axes5_y*six_r_w_1_t_51 -
-            six_r_qdd_1_t*six_r_w_1_t_53 - six_r_qdd_1_t_2*six_r_w_1_t_54 -
-            six_r_rel_in_axes5_x*six_r_w_1_t_50 - six_r_rel_in_axes5_z*six_r_w_1_t_52);
-        /* (six_r-qdd_4) acceleration of joint 4 */
-        const real six_r_qdd_4 = inv_six_r_w_1_t_28*(six_r_qdd_1_t*six_r_w_1_t_31 +
-            six_r_qdd_1_t_2*six_r_w_1_t_32 + six_r_qdd_1_t_3*six_r_w_1_t_44 +
-            six_r_qdd_1_t_4*six_r_w_1_t_39 + six_r_rel_in_axes5_z*six_r_w_1_t_30 -
-            six_r_qdd_1_t_5*six_r_w_1_t_33 - six_r_rel_in_axes5_y*six_r_w_1_t_29);
-        /* (six_r-alpha_1) angular acceleration of link 1 */
-        const real six_r_alpha_1_t = six_r_qdd_1_t_5*six_r_s_2;
-        const real six_r_alpha_1_in_axes2_y = -six_r_c_2*six_r_qdd_1_t_5;
-        /* (six_r-alpha_2) angular acceleration of link 2 */
-        const real six_r_alpha_2_in_axes2_x = six_r_W_2_in_axes2_yz - six_r_alpha_1_t;
-        const real six_r_alpha_2_in_axes2_y = six_r_alpha_1_in_axes2_y + six_r_zeta_2_in_axes2_y;
-        /* (six_r-B_2) acceleration tensor of link 2 */
-        const real six_r_B_2_in_axes2_xy = six_r_W_2_in_axes2_xy - six_r_qdd_1_t_4;
-        const real six_r_B_2_in_axes2_yx = six_r_W_2_in_axes2_xy + six_r_qdd_1_t_4;
-        const real six_r_B_2_in_axes2_zx = -six_r_alpha_2_in_axes2_y - six_r_zeta_2_in_axes2_y;
-        const real six_r_B_2_in_axes2_zy = six_r_W_2_in_axes2_yz + six_r_alpha_2_in_axes2_x;
-        /* (six_r-alpha_3) angular acceleration of link 3 */
-        const real six_r_alpha_3_in_axes3_x = six_r_alpha_2_in_axes2_x*six_r_c_3 +
-            six_r_alpha_2_in_axes2_y*six_r_s_3 - six_r_zeta_3_t;
-        const real six_r_alpha_3_in_axes3_y = six_r_zeta_3_in_axes3_y +
-            six_r_alpha_2_in_axes2_y*six_r_c_3 - six_r_alpha_2_in_axes2_x*six_r_s_3;
-        const real six_r_alpha_3_in_axes3_z = six_r_qdd_1_t_3 + six_r_qdd_1_t_4;
-        /* (six_r-B_3) acceleration tensor of link 3 */
-        const real six_r_B_3_in_axes3_xy = six_r_W_3_in_axes3_xy - six_r_alpha_3_in_axes3_z;
-        const real six_r_B_3_in_axes3_xz = six_r_W_3_in_axes3_xz + six_r_alpha_3_in_axes3_y;
-        const real six_r_B_3_in_axes3_yx = six_r_W_3_in_axes3_xy + six_r_alpha_3_in_axes3_z;
-        const real six_r_B_3_in_axes3_yz = six_r_W_3_in_axes3_yz - six_r_alpha_3_in_axes3_x;
-        const real six_r_B_3_in_axes3_zx = six_r_W_3_in_axes3_xz - six_r_alpha_3_in_axes3_y;
-        const real six_r_B_3_in_axes3_zy = six_r_W_3_in_axes3_yz + six_r_alpha_3_in_axes3_x;
-        /* (six_r-alpha_4) angular acceleration of link 4 */
-        const real six_r_alpha_4_in_axes4_x = six_r_zeta_4_in_axes4_x +
-            six_r_alpha_3_in_axes3_y*six_r_c_4 + six_r_alpha_3_in_axes3_z*six_r_s_4;
-        const real six_r_alpha_4_in_axes4_y = six_r_zeta_4_in_axes4_y +
-            six_r_alpha_3_in_axes3_z*six_r_c_4 - six_r_alpha_3_in_axes3_y*six_r_s_4;
-        const real six_r_alpha_4_in_axes4_z = six_r_alpha_3_in_axes3_x + six_r_qdd_4;
-        /* (six_r-B_4) acceleration tensor of link 4 */
-        const real six_r_B_4_in_axes4_xy = six_r_W_4_in_axes4_xy - six_r_alpha_4_in_axes4_z;
-        const real six_r_B_4_in_axes4_xz = six_r_W_4_in_axes4_xz + six_r_alpha_4_in_axes4_y;
-        const real six_r_B_4_in_axes4_yx = six_r_W_4_in_axes4_xy + six_r_alpha_4_in_axes4_z;
-        const real six_r_B_4_in_axes4_yz = six_r_W_4_in_axes4_yz - six_r_alpha_4_in_axes4_x;
-        const real six_r_B_4_in_axes4_zx = six_r_W_4_in_axes4_xz - six_r_alpha_4_in_axes4_y;
-        const real six_r_B_4_in_axes4_zy = six_r_W_4_in_axes4_yz + six_r_alpha_4_in_axes4_x;
-        /* (six_r-alpha_5) angular acceleration of link 5 */
-        const real six_r_alpha_5_in_axes5_x = six_r_alpha_4_in_axes4_y*six_r_c_5 +
-            six_r_alpha_4_in_axes4_z*six_r_s_5 - six_r_zeta_5_t;
-        const real six_r_alpha_5_in_axes5_y = six_r_zeta_5_in_axes5_y +
-            six_r_alpha_4_in_axes4_z*six_r_c_5 - six_r_alpha_4_in_axes4_y*six_r_s_5;
-        const real six_r_alpha_5_in_axes5_z = six_r_alpha_4_in_axes4_x +
-            inv_six_r_w_1_t_12*(six_r_qdd_1_t_2*six_r_w_1_t_14 + six_r_qdd_1_t_3*six_r_w_1_t_25 +
-            six_r_qdd_1_t_5*six_r_w_1_t_18 + six_r_rel_in_axes5_y*six_r_w_1_t_13 -
-            six_r_qdd_1_t_4*six_r_w_1_t_22 - six_r_qdd_4*six_r_w_1_t_15);
-        /* (six_r-B_5) acceleration tensor of link 5 */
-        const real six_r_B_5_in_axes5_xy = six_r_W_4_in_axes5_xy - six_r_alpha_5_in_axes5_z;
-        const real six_r_B_5_in_axes5_xz = six_r_W_5_in_axes5_xz + six_r_alpha_5_in_axes5_y;
-        const real six_r_B_5_in_axes5_yx = six_r_W_4_in_axes5_xy + six_r_alpha_5_in_axes5_z;
-        const real six_r_B_5_in_axes5_yz = six_r_W_5_in_axes5_yz - six_r_alpha_5_in_axes5_x;
-        const real six_r_B_5_in_axes5_zx = six_r_W_5_in_axes5_xz - six_r_alpha_5_in_axes5_y;
-        const real six_r_B_5_in_axes5_zy = six_r_W_5_in_axes5_yz + six_r_alpha_5_in_axes5_x;
-        /* (six_r-a_o_3) acceleration of the origin of joint 3 */
-        const real six_r_a_o_3_t = six_r_omega_1_in_axes2_y*six_r_omega_1_in_axes2_y;
-        const real six_r_a_o_3_t_2 = six_r_qd_1_t_4*six_r_qd_1_t_4;
-        const real six_r_a_o_3_t_3 = six_r_joint3_offset_x*(six_r_a_o_3_t + six_r_a_o_3_t_2);
-        const real six_r_a_o_3_in_axes2_y = six_r_B_2_in_axes2_yx*six_r_joint3_offset_x;
-        const real six_r_a_o_3_in_axes2_z = six_r_B_2_in_axes2_zx*six_r_joint3_offset_x;
-        const real six_r_a_o_3_in_axes3_x = six_r_a_o_3_in_axes2_y*six_r_s_3 -
-            six_r_a_o_3_t_3*six_r_c_3;
-        const real six_r_a_o_3_in_axes3_y = six_r_a_o_3_in_axes2_y*six_r_c_3 +
-            six_r_a_o_3_t_3*six_r_s_3;
-        /* (six_r-a_o_4) acceleration of the origin of joint 4 */
-        const real six_r_a_o_4_in_axes3_x = six_r_a_o_3_in_axes3_x -
-            six_r_W_3_t_3*six_r_joint4_offset_x;
-        const real six_r_a_o_4_in_axes3_y = six_r_a_o_3_in_axes3_y +
-            six_r_B_3_in_axes3_yx*six_r_joint4_offset_x;
-        const real six_r_a_o_4_in_axes3_z = six_r_a_o_3_in_axes2_z +
-            six_r_B_3_in_axes3_zx*six_r_joint4_offset_x;
-        /* (six_r-acc_3) acceleration of the reference point of link 3, less gravity */
-        const real six_r_acc_3_t = m->six_r_acc_3_t[i];
-        const real six_r_acc_3_t_2 = m->six_r_acc_3_t_2[i];
-        const real six_r_g_in_axes1_x = six_r_acc_3_t*six_r_c_1 + six_r_acc_3_t_2*six_r_s_1;
-        const real six_r_g_in_axes1_y = six_r_acc_3_t_2*six_r_c_1 - six_r_acc_3_t*six_r_s_1;
-        const real six_r_g_in_axes1_z = m->six_r_g_in_axes1_z[i];
-        const real six_r_g_in_axes2_x = six_r_c_2*six_r_g_in_axes1_y +
-            six_r_g_in_axes1_z*six_r_s_2;
-        const real six_r_g_in_axes2_y = six_r_c_2*six_r_g_in_axes1_z -
-            six_r_g_in_axes1_y*six_r_s_2;
-        const real six_r_g_in_axes3_x = six_r_c_3*six_r_g_in_axes2_x +
-            six_r_g_in_axes2_y*six_r_s_3;
-        const real six_r_g_in_axes3_y = six_r_c_3*six_r_g_in_axes2_y -
-            six_r_g_in_axes2_x*six_r_s_3;
-        const real six_r_acc_3_in_axes3_x = six_r_a_o_3_in_axes3_x - six_r_g_in_axes3_x;
-        const real six_r_acc_3_in_axes3_y = six_r_a_o_3_in_axes3_y - six_r_g_in_axes3_y;
-        const real six_r_acc_3_in_axes3_z = six_r_a_o_3_in_axes2_z - six_r_g_in_axes1_x;
-        /* (six_r-f_3) inertia force of link 3 less its weight */
-        const real six_r_f_3_t = six_r_omega_2_in_axes3_x*six_r_omega_2_in_axes3_x;
-        const real six_r_h_3_in_spec3_x = m->six_r_h_3_in_spec3_x[i];
-        const real six_r_h_3_in_spec3_y = m->six_r_h_3_in_spec3_y[i];
-        const real six_r_h_3_in_spec3_z = m->six_r_h_3_in_spec3_z[i];
-        const real six_r_link3_mass = m->six_r_link3_mass[i];
-        const real six_r_f_3_in_axes3_x = six_r_B_3_in_axes3_xy*six_r_h_3_in_spec3_y +
-            six_r_B_3_in_axes3_xz*six_r_h_3_in_spec3_z + six_r_acc_3_in_axes3_x*six_r_link3_mass -
-            six_r_W_3_t_3*six_r_h_3_in_spec3_x;
-        const real six_r_f_3_in_axes3_y = six_r_B_3_in_axes3_yx*six_r_h_3_in_spec3_x +
-            six_r_B_3_in_axes3_yz*six_r_h_3_in_spec3_z + six_r_acc_3_in_axes3_y*six_r_link3_mass -
-            six_r_h_3_in_spec3_y*(six_r_W_3_t_2 + six_r_f_3_t);
-        const real six_r_f_3_in_axes3_z = six_r_B_3_in_axes3_zx*six_r_h_3_in_spec3_x +
-            six_r_B_3_in_axes3_zy*six_r_h_3_in_spec3_y + six_r_acc_3_in_axes3_z*six_r_link3_mass -
-            six_r_h_3_in_spec3_z*(six_r_W_3_t + six_r_f_3_t);
-        /* (six_r-acc_4) acceleration of the reference point of link 4, less gravity */
-        const real six_r_acc_4_in_axes4_x = six_r_a_o_4_in_axes3_y*six_r_c_4 +
-            six_r_a_o_4_in_axes3_z*six_r_s_4 - six_r_c_4*six_r_g_in_axes3_y -
-            six_r_g_in_axes1_x*six_r_s_4;
-        const real six_r_acc_4_in_axes4_y = six_r_a_o_4_in_axes3_z*six_r_c_4 +
-            six_r_g_in_axes3_y*six_r_s_4 - six_r_a_o_4_in_axes3_y*six_r_s_4 -
-            six_r_c_4*six_r_g_in_axes1_x;
-        const real six_r_acc_4_in_axes4_z = six_r_a_o_4_in_axes3_x - six_r_g_in_axes3_x;
-        /* (six_r-f_4) inertia force of link 4 less its weight */
-        const real six_r_f_4_t = six_r_omega_3_in_axes4_y*six_r_omega_3_in_axes4_y;
-        const real six_r_f_4_t_2 = six_r_omega_4_in_axes4_z*six_r_omega_4_in_axes4_z;
-        const real six_r_h_4_in_spec4_x = m->six_r_h_4_in_spec4_x[i];
-        const real six_r_h_4_in_spec4_y = m->six_r_h_4_in_spec4_y[i];
-        const real six_r_h_4_in_spec4_z = m->six_r_h_4_in_spec4_z[i];
-        const real six_r_link4_mass = m->six_r_link4_mass[i];
-        const real six_r_f_4_in_axes4_x = six_r_B_4_in_axes4_xz*six_r_h_4_in_spec4_x +
-            six_r_acc_4_in_axes4_x*six_r_link4_mass - six_r_B_4_in_axes4_xy*six_r_h_4_in_spec4_y -
-            six_r_h_4_in_spec4_z*(six_r_f_4_t + six_r_f_4_t_2);
-        const real six_r_f_4_in_axes4_y = six_r_B_4_in_axes4_yx*six_r_h_4_in_spec4_z +
-            six_r_B_4_in_axes4_yz*six_r_h_4_in_spec4_x + six_r_acc_4_in_axes4_y*six_r_link4_mass +
-            six_r_h_4_in_spec4_y*(six_r_bias_t_7 + six_r_f_4_t_2);
-        const real six_r_f_4_in_axes4_z = six_r_B_4_in_axes4_zx*six_r_h_4_in_spec4_z +
-            six_r_acc_4_in_axes4_z*six_r_link4_mass - six_r_B_4_in_axes4_zy*six_r_h_4_in_spec4_y -
-            six_r_h_4_in_spec4_x*(six_r_bias_t_7 + six_r_f_4_t);
-        const real six_r_f_4_in_axes3_y = six_r_c_4*six_r_f_4_in_axes4_x -
-            six_r_f_4_in_axes4_y*six_r_s_4;
-        const real six_r_f_4_in_axes3_z = six_r_c_4*six_r_f_4_in_axes4_y +
-            six_r_f_4_in_axes4_x*six_r_s_4;
-        /* (six_r-acc_5) acceleration of the reference point of link 5, less gravity */
-        const real gravity_x = m->gravity_x;
-        const real gravity_y = m->gravity_y;
-        const real gravity_z = m->gravity_z;
-        const real six_r_acc_5_in_axes5_x = six_r_S_ddot_in_axes5_x -
-            axis_x_six_r_axes5_x*gravity_x - axis_x_six_r_axes5_y*gravity_y -
-            axis_x_six_r_axes5_z*gravity_z;
-        const real six_r_acc_5_in_axes5_y = six_r_S_ddot_in_axes5_y -
-            axis_y_six_r_axes5_x*gravity_x - axis_y_six_r_axes5_y*gravity_y -
-            axis_y_six_r_axes5_z*gravity_z;
-        const real six_r_acc_5_in_axes5_z = six_r_S_ddot_in_axes5_z -
-            axis_z_six_r_axes5_x*gravity_x - axis_z_six_r_axes5_y*gravity_y -
-            axis_z_six_r_axes5_z*gravity_z;
-        /* (six_r-mu_5) inertia moment of the links that turn with link 5, about their reference points */
-        const real six_r_J_5_in_spec5_xy = m->six_r_J_5_in_spec5_xy[i];
-        const real six_r_J_5_in_spec5_xz = m->six_r_J_5_in_spec5_xz[i];
-        const real six_r_J_5_in_spec5_yz = m->six_r_J_5_in_spec5_yz[i];
-        const real six_r_Sigma_5_in_axes5_yy = m->six_r_Sigma_5_in_axes5_yy[i];
-        const real six_r_Sigma_5_in_axes5_zz = m->six_r_Sigma_5_in_axes5_zz[i];
-        const real six_r_h_5_in_spec5_y = m->six_r_h_5_in_spec5_y[i];
-        const real six_r_h_5_in_spec5_z = m->six_r_h_5_in_spec5_z[i];
-        const real six_r_mu_5_in_axes5_x = six_r_B_5_in_axes5_yx*six_r_J_5_in_spec5_xz +
-            six_r_B_5_in_axes5_zy*six_r_Sigma_5_in_axes5_yy + six_r_J_5_in_spec5_yz*(six_r_W_5_t -
-            six_r_W_5_t_2) + six_r_acc_5_in_axes5_z*six_r_h_5_in_spec5_y -
-            six_r_B_5_in_axes5_yz*six_r_Sigma_5_in_axes5_zz -
-            six_r_B_5_in_axes5_zx*six_r_J_5_in_spec5_xy -
-            six_r_acc_5_in_axes5_y*six_r_h_5_in_spec5_z;
-        const real six_r_Sigma_5_in_axes5_xx = m->six_r_Sigma_5_in_axes5_xx[i];
-        const real six_r_h_5_in_spec5_x = m->six_r_h_5_in_spec5_x[i];
-        const real six_r_mu_5_in_axes5_y = six_r_B_5_in_axes5_xz*six_r_Sigma_5_in_axes5_zz +
-            six_r_B_5_in_axes5_zy*six_r_J_5_in_spec5_xy +
-            six_r_acc_5_in_axes5_x*six_r_h_5_in_spec5_z -
-            six_r_B_5_in_axes5_xy*six_r_J_5_in_spec5_yz -
-            six_r_B_5_in_axes5_zx*six_r_Sigma_5_in_axes5_xx -
-            six_r_J_5_in_spec5_xz*(six_r_bias_t_8 - six_r_W_5_t_2) -
-            six_r_acc_5_in_axes5_z*six_r_h_5_in_spec5_x;
-        const real six_r_mu_5_in_axes5_z = six_r_B_5_in_axes5_xz*six_r_J_5_in_spec5_yz +
-            six_r_B_5_in_axes5_yx*six_r_Sigma_5_in_axes5_xx +
-            six_r_J_5_in_spec5_xy*(six_r_bias_t_8 - six_r_W_5_t) +
-            six_r_acc_5_in_axes5_y*six_r_h_5_in_spec5_x -
-            six_r_B_5_in_axes5_xy*six_r_Sigma_5_in_axes5_yy -
-            six_r_B_5_in_axes5_yz*six_r_J_5_in_spec5_xz -
-            six_r_acc_5_in_axes5_x*six_r_h_5_in_spec5_y;
-        /* (six_r-mu_4) inertia moment of the links that turn with link 4, about their reference points */
-        const real six_r_J_4_in_spec4_xy = m->six_r_J_4_in_spec4_xy[i];
-        const real six_r_J_4_in_spec4_xz = m->six_r_J_4_in_spec4_xz[i];
-        const real six_r_J_4_in_spec4_yz = m->six_r_J_4_in_spec4_yz[i];
-        const real six_r_Sigma_4_in_axes4_yy = m->six_r_Sigma_4_in_axes4_yy[i];
-        const real six_r_Sigma_4_in_axes4_zz = m->six_r_Sigma_4_in_axes4_zz[i];
-        const real six_r_mu_4_in_axes4_x = six_r_B_4_in_axes4_yx*six_r_J_4_in_spec4_xz +
-            six_r_B_4_in_axes4_zx*six_r_J_4_in_spec4_yz +
-            six_r_B_4_in_axes4_zy*six_r_Sigma_4_in_axes4_yy -
-            six_r_B_4_in_axes4_yz*six_r_Sigma_4_in_axes4_zz - six_r_J_4_in_spec4_xy*(six_r_f_4_t -
-            six_r_f_4_t_2) - six_r_acc_4_in_axes4_y*six_r_h_4_in_spec4_x -
-            six_r_acc_4_in_axes4_z*six_r_h_4_in_spec4_y;
-        const real six_r_Sigma_4_in_axes4_xx = m->six_r_Sigma_4_in_axes4_xx[i];
-        const real six_r_mu_4_in_axes4_y = six_r_B_4_in_axes4_xy*six_r_J_4_in_spec4_xy +
-            six_r_B_4_in_axes4_xz*six_r_Sigma_4_in_axes4_zz +
-            six_r_acc_4_in_axes4_x*six_r_h_4_in_spec4_x -
-            six_r_B_4_in_axes4_zx*six_r_Sigma_4_in_axes4_xx -
-            six_r_B_4_in_axes4_zy*six_r_J_4_in_spec4_yz - six_r_J_4_in_spec4_xz*(six_r_bias_t_7 -
-            six_r_f_4_t_2) - six_r_acc_4_in_axes4_z*six_r_h_4_in_spec4_z;
-        const real six_r_mu_4_in_axes4_z = six_r_B_4_in_axes4_yx*six_r_Sigma_4_in_axes4_xx +
-            six_r_acc_4_in_axes4_x*six_r_h_4_in_spec4_y +
-            six_r_acc_4_in_axes4_y*six_r_h_4_in_spec4_z -
-            six_r_B_4_in_axes4_xy*six_r_Sigma_4_in_axes4_yy -
-            six_r_B_4_in_axes4_xz*six_r_J_4_in_spec4_xy -
-            six_r_B_4_in_axes4_yz*six_r_J_4_in_spec4_xz - six_r_J_4_in_spec4_yz*(six_r_bias_t_7 -
-            six_r_f_4_t);
-        /* (six_r-N_4) moment about joint 4 of the links from 4 outwards, the force at the connection
-           point left out */
-        const real six_r_N_4_in_axes4_x = six_r_mu_4_in_axes4_x + six_r_mu_5_in_axes5_z;
-        const real six_r_N_4_in_axes4_y = six_r_mu_4_in_axes4_y + six_r_c_5*six_r_mu_5_in_axes5_x
-            - six_r_mu_5_in_axes5_y*six_r_s_5;
-        const real six_r_N_4_in_axes4_z = six_r_mu_4_in_axes4_z + six_r_c_5*six_r_mu_5_in_axes5_y
-            + six_r_mu_5_in_axes5_x*six_r_s_5;
-        /* (six_r-mu_3) inertia moment of the links that turn with link 3, about their reference points */
-        const real six_r_J_3_in_spec3_xy = m->six_r_J_3_in_spec3_xy[i];
-        const real six_r_J_3_in_spec3_xz = m->six_r_J_3_in_spec3_xz[i];
-        const real six_r_J_3_in_spec3_yz = m->six_r_J_3_in_spec3_yz[i];
-        const real six_r_Sigma_3_in_axes3_yy = m->six_r_Sigma_3_in_axes3_yy[i];
-        const real six_r_Sigma_3_in_axes3_zz = m->six_r_Sigma_3_in_axes3_zz[i];
-        const real six_r_mu_3_in_axes3_x = six_r_B_3_in_axes3_yx*six_r_J_3_in_spec3_xz +
-            six_r_B_3_in_axes3_zy*six_r_Sigma_3_in_axes3_yy + six_r_J_3_in_spec3_yz*(six_r_W_3_t -
-            six_r_W_3_t_2) + six_r_acc_3_in_axes3_z*six_r_h_3_in_spec3_y -
-            six_r_B_3_in_axes3_yz*six_r_Sigma_3_in_axes3_zz -
-            six_r_B_3_in_axes3_zx*six_r_J_3_in_spec3_xy -
-            six_r_acc_3_in_axes3_y*six_r_h_3_in_spec3_z;
-        const real six_r_Sigma_3_in_axes3_xx = m->six_r_Sigma_3_in_axes3_xx[i];
-        const real six_r_mu_3_in_axes3_y = six_r_B_3_in_axes3_xz*six_r_Sigma_3_in_axes3_zz +
-            six_r_B_3_in_axes3_zy*six_r_J_3_in_spec3_xy +
-            six_r_acc_3_in_axes3_x*six_r_h_3_in_spec3_z -
-            six_r_B_3_in_axes3_xy*six_r_J_3_in_spec3_yz -
-            six_r_B_3_in_axes3_zx*six_r_Sigma_3_in_axes3_xx - six_r_J_3_in_spec3_xz*(six_r_f_3_t -
-            six_r_W_3_t_2) - six_r_acc_3_in_axes3_z*six_r_h_3_in_spec3_x;
-        const real six_r_mu_3_in_axes3_z = six_r_B_3_in_axes3_xz*six_r_J_3_in_spec3_yz +
-            six_r_B_3_in_axes3_yx*six_r_Sigma_3_in_axes3_xx + six_r_J_3_in_spec3_xy*(six_r_f_3_t -
-            six_r_W_3_t) + six_r_acc_3_in_axes3_y*six_r_h_3_in_spec3_x -
-            six_r_B_3_in_axes3_xy*six_r_Sigma_3_in_axes3_yy -
-            six_r_B_3_in_axes3_yz*six_r_J_3_in_spec3_xz -
-            six_r_acc_3_in_axes3_x*six_r_h_3_in_spec3_y;
-        /* (six_r-N_3) moment about joint 3 of the links from 3 outwards, the force at the connection
-           point left out */
-        const real six_r_N_3_in_axes3_x = six_r_N_4_in_axes4_z + six_r_mu_3_in_axes3_x;
-        const real six_r_N_3_in_axes3_y = six_r_mu_3_in_axes3_y + six_r_N_4_in_axes4_x*six_r_c_4 -
-            six_r_N_4_in_axes4_y*six_r_s_4 - six_r_f_4_in_axes3_z*six_r_joint4_offset_x;
-        const real six_r_N_3_in_axes3_z = six_r_mu_3_in_axes3_z + six_r_N_4_in_axes4_x*six_r_s_4 +
-            six_r_N_4_in_axes4_y*six_r_c_4 + six_r_f_4_in_axes3_y*six_r_joint4_offset_x;
-        /* (six_r-T_3) inertia force of the links from 3 outwards, the last link left out */
-        const real six_r_T_3_in_axes3_x = six_r_f_3_in_axes3_x + six_r_f_4_in_axes4_z;
-        const real six_r_T_3_in_axes3_y = six_r_f_3_in_axes3_y + six_r_f_4_in_axes3_y;
-        const real six_r_T_3_in_axes3_z = six_r_f_3_in_axes3_z + six_r_f_4_in_axes3_z;
-        /* (six_r-mu_2) inertia moment of the links that turn with link 2, about their reference points */
-        const real six_r_mu_2_t = six_r_omega_1_in_axes2_x*six_r_omega_1_in_axes2_x;
-        const real six_r_J_2_in_spec2_xy = m->six_r_J_2_in_spec2_xy[i];
-        const real six_r_J_2_in_spec2_xz = m->six_r_J_2_in_spec2_xz[i];
-        const real six_r_J_2_in_spec2_yz = m->six_r_J_2_in_spec2_yz[i];
-        const real six_r_Sigma_2_in_axes2_yy = m->six_r_Sigma_2_in_axes2_yy[i];
-        const real six_r_Sigma_2_in_axes2_zz = m->six_r_Sigma_2_in_axes2_zz[i];
-        const real six_r_h_2_in_spec2_y = m->six_r_h_2_in_spec2_y[i];
-        const real six_r_h_2_in_spec2_z = m->six_r_h_2_in_spec2_z[i];
-        const real six_r_mu_2_in_axes2_x = six_r_B_2_in_axes2_yx*six_r_J_2_in_spec2_xz +
-            six_r_B_2_in_axes2_zy*six_r_Sigma_2_in_axes2_yy + six_r_J_2_in_spec2_yz*(six_r_a_o_3_t
-            - six_r_a_o_3_t_2) + six_r_g_in_axes2_y*six_r_h_2_in_spec2_z -
-            six_r_B_2_in_axes2_zx*six_r_J_2_in_spec2_xy -
-            six_r_Sigma_2_in_axes2_zz*six_r_alpha_1_t - six_r_g_in_axes1_x*six_r_h_2_in_spec2_y;
-        const real six_r_Sigma_2_in_axes2_xx = m->six_r_Sigma_2_in_axes2_xx[i];
-        const real six_r_h_2_in_spec2_x = m->six_r_h_2_in_spec2_x[i];
-        const real six_r_mu_2_in_axes2_y = six_r_B_2_in_axes2_zy*six_r_J_2_in_spec2_xy +
-            six_r_Sigma_2_in_axes2_zz*six_r_alpha_1_in_axes2_y +
-            six_r_g_in_axes1_x*six_r_h_2_in_spec2_x - six_r_B_2_in_axes2_xy*six_r_J_2_in_spec2_yz
-            - six_r_B_2_in_axes2_zx*six_r_Sigma_2_in_axes2_xx -
-            six_r_J_2_in_spec2_xz*(six_r_mu_2_t - six_r_a_o_3_t_2) -
-            six_r_g_in_axes2_x*six_r_h_2_in_spec2_z;
-        const real six_r_mu_2_in_axes2_z = six_r_B_2_in_axes2_yx*six_r_Sigma_2_in_axes2_xx +
-            six_r_J_2_in_spec2_xy*(six_r_mu_2_t - six_r_a_o_3_t) +
-            six_r_J_2_in_spec2_yz*six_r_alpha_1_in_axes2_y +
-            six_r_g_in_axes2_x*six_r_h_2_in_spec2_y -
-            six_r_B_2_in_axes2_xy*six_r_Sigma_2_in_axes2_yy -
-            six_r_J_2_in_spec2_xz*six_r_alpha_1_t - six_r_g_in_axes2_y*six_r_h_2_in_spec2_x;
-        /* (six_r-N_2) moment about joint 2 of the links from 2 outwards, the force at the connection
-           point left out */
-        const real six_r_N_2_in_axes2_x = six_r_mu_2_in_axes2_x + six_r_N_3_in_axes3_x*six_r_c_3 -
-            six_r_N_3_in_axes3_y*six_r_s_3;
-        const real six_r_N_2_in_axes2_y = six_r_mu_2_in_axes2_y + six_r_N_3_in_axes3_x*six_r_s_3 +
-            six_r_N_3_in_axes3_y*six_r_c_3 - six_r_T_3_in_axes3_z*six_r_joint3_offset_x;
-        const real six_r_N_2_in_axes2_z = six_r_N_3_in_axes3_z + six_r_mu_2_in_axes2_z +
-            six_r_joint3_offset_x*(six_r_T_3_in_axes3_x*six_r_s_3 +
-            six_r_T_3_in_axes3_y*six_r_c_3);
-        /* (six_r-mu_1) inertia moment of the links that turn with link 1, about their reference points */
-        const real six_r_J_1_in_spec1_xx = m->six_r_J_1_in_spec1_xx[i];
-        const real six_r_h_1_in_spec1_y = m->six_r_h_1_in_spec1_y[i];
-        const real six_r_h_1_in_spec1_z = m->six_r_h_1_in_spec1_z[i];
-        const real six_r_mu_1_in_axes1_z = -six_r_J_1_in_spec1_xx*six_r_qdd_1_t_5 -
-            six_r_g_in_axes1_x*six_r_h_1_in_spec1_y - six_r_g_in_axes1_y*six_r_h_1_in_spec1_z;
-        /* (six_r-N_1) moment about joint 1 of the links from 1 outwards, the force at the connection
-           point left out */
-        const real six_r_N_1_in_axes1_z = six_r_mu_1_in_axes1_z + six_r_N_2_in_axes2_x*six_r_s_2 +
-            six_r_N_2_in_axes2_y*six_r_c_2;
-        /* (six_r-G_m1) moment along moment direction 1 that balances the leg's inertia and weight along
-           all degrees of freedom */
-        const real six_r_G_m1_t = inv_six_r_w_1_t_12*six_r_mu_5_in_axes5_z;
-        const real six_r_G_m1_t_2 = inv_six_r_w_1_t_28*(six_r_G_m1_t*six_r_w_1_t_15 -
-            six_r_N_4_in_axes4_z);
-        const real six_r_G_m1_t_3 = inv_six_r_w_1_t_49*(six_r_G_m1_t*six_r_w_1_t_18 +
-            six_r_G_m1_t_2*six_r_w_1_t_33 - six_r_N_1_in_axes1_z);
-        const real six_r_G_m1_t_4 = inv_six_r_w_1_t_67*(six_r_G_m1_t*six_r_w_1_t_22 +
-            six_r_G_m1_t_2*six_r_w_1_t_39 - six_r_N_2_in_axes2_z - six_r_G_m1_t_3*six_r_w_1_t_55);
-        const real six_r_G_m1_t_5 = inv_six_r_w_1_t_79*(six_r_N_3_in_axes3_z +
-            six_r_G_m1_t*six_r_w_1_t_25 + six_r_G_m1_t_3*six_r_w_1_t_61 +
-            six_r_G_m1_t_4*six_r_w_1_t_73 - six_r_G_m1_t_2*six_r_w_1_t_44);
-        const real six_r_G_m1_t_6 = six_r_size*(six_r_G_m1_t_2*six_r_w_1_t_31 +
-            six_r_G_m1_t_3*six_r_w_1_t_53 + six_r_G_m1_t_4*six_r_w_1_t_71 -
-            six_r_G_m1_t_5*six_r_m1_w_2_t);
-        /* (six_r-G_m2) moment along moment direction 2 that balances the leg's inertia and weight along
-           all degrees of freedom */
-        const real six_r_G_m2_t = six_r_size*(six_r_G_m1_t_2*six_r_w_1_t_32 +
-            six_r_G_m1_t_3*six_r_w_1_t_54 + six_r_G_m1_t_4*six_r_w_1_t_72 -
-            six_r_G_m1_t*six_r_w_1_t_14 - six_r_G_m1_t_5*six_r_m2_w_2_t);
-        /* (six_r-G_m) moment at the connection point that balances the leg's inertia and weight along all
-           degrees of freedom */
-        const real six_r_G_m_in_axes5_x = six_r_G_m1_t_6*six_r_n_m2_in_axes5_z;
-        const real six_r_G_m_in_axes5_y = six_r_G_m2_t*six_r_end_p1_in_axes5_z -
-            six_r_G_m1_t_6*six_r_n_m1_in_axes5_y;
+        values_six_r v;
+        stage_six_r_X(m, w, i, j, s, &v);
+        stage_six_r_q(m, w, i, j, joints, &v);
+        stage_six_r_A_X(w, j, A, &v);
+        stage_six_r_A_q(w, j, A, &v);
+        stage_six_r_V_X(w, j, V, &v);
+        stage_six_r_V_q(w, j, V, &v);
+        stage_six_r_X_q(m, i, &v);
+        stage_six_r_A_V_X(w, j, V, &v);
+        stage_six_r_A_X_q(w, j, A, &v);
+        stage_six_r_V_X_q(&v);
+        stage_six_r_legs_required(m, i, &v);
         /* (six_r-c) leg force on the platform without actuation and without the mass at the connection
            point */
-        const real six_r_c_in_axes5_x = six_r_G_m1_t_3*six_r_w_1_t_50 +
-            six_r_G_m1_t_4*six_r_w_1_t_68 - six_r_B_5_in_axes5_xy*six_r_h_5_in_spec5_y -
-            six_r_B_5_in_axes5_xz*six_r_h_5_in_spec5_z - six_r_G_m1_t_5*six_r_w_2_t -
-            six_r_W_5_in_axes5_xx*six_r_h_5_in_spec5_x;
-        const real six_r_c_in_axes5_y = six_r_G_m1_t_5*six_r_w_2_t_2 +
-            six_r_h_5_in_spec5_y*(six_r_W_5_t_2 + six_r_bias_t_8) -
-            six_r_B_5_in_axes5_yx*six_r_h_5_in_spec5_x -
-            six_r_B_5_in_axes5_yz*six_r_h_5_in_spec5_z - six_r_G_m1_t*six_r_w_1_t_13 -
-            six_r_G_m1_t_2*six_r_w_1_t_29 - six_r_G_m1_t_3*six_r_w_1_t_51 -
-            six_r_G_m1_t_4*six_r_w_1_t_69;
-        const real six_r_c_in_axes5_z = six_r_G_m1_t_2*six_r_w_1_t_30 +
-            six_r_G_m1_t_3*six_r_w_1_t_52 + six_r_G_m1_t_4*six_r_w_1_t_70 +
-            six_r_h_5_in_spec5_z*(six_r_W_5_t + six_r_bias_t_8) -
-            six_r_B_5_in_axes5_zx*six_r_h_5_in_spec5_x -
-            six_r_B_5_in_axes5_zy*six_r_h_5_in_spec5_y - six_r_G_m1_t_5*six_r_w_2_t_3;
-        const real six_r_c_x = axis_x_six_r_axes5_x*six_r_c_in_axes5_x +
-            axis_y_six_r_axes5_x*six_r_c_in_axes5_y + axis_z_six_r_axes5_x*six_r_c_in_axes5_z;
-        const real six_r_c_y = axis_x_six_r_axes5_y*six_r_c_in_axes5_x +
-            axis_y_six_r_axes5_y*six_r_c_in_axes5_y + axis_z_six_r_axes5_y*six_r_c_in_axes5_z;
-        const real six_r_c_z = axis_x_six_r_axes5_z*six_r_c_in_axes5_x +
-            axis_y_six_r_axes5_z*six_r_c_in_axes5_y + axis_z_six_r_axes5_z*six_r_c_in_axes5_z;
-        /* (six_r-c_m) moment of the leg on the platform without actuation */
-        const real six_r_c_m_in_axes5_z = six_r_G_m2_t*six_r_n_m2_in_axes5_z;
+        const real six_r_c_x = v.axis_x_six_r_axes5_x*v.six_r_c_in_axes5_x +
+            v.axis_y_six_r_axes5_x*v.six_r_c_in_axes5_y +
+            v.axis_z_six_r_axes5_x*v.six_r_c_in_axes5_z;
+        const real six_r_c_y = v.axis_x_six_r_axes5_y*v.six_r_c_in_axes5_x +
+            v.axis_y_six_r_axes5_y*v.six_r_c_in_axes5_y +
+            v.axis_z_six_r_axes5_y*v.six_r_c_in_axes5_z;
+        const real six_r_c_z = v.axis_x_six_r_axes5_z*v.six_r_c_in_axes5_x +
+            v.axis_y_six_r_axes5_z*v.six_r_c_in_axes5_y +
+            v.axis_z_six_r_axes5_z*v.six_r_c_in_axes5_z;
         /* (R_a) moment that actuators and external wrench must give */
-        const real six_r_R_a_t = axis_x_six_r_axes5_x*six_r_G_m_in_axes5_x +
-            axis_y_six_r_axes5_x*six_r_G_m_in_axes5_y + six_r_c_y*six_r_q_z -
-            axis_z_six_r_axes5_x*six_r_c_m_in_axes5_z - six_r_c_z*six_r_q_y;
-        const real six_r_R_a_t_2 = axis_x_six_r_axes5_y*six_r_G_m_in_axes5_x +
-            axis_y_six_r_axes5_y*six_r_G_m_in_axes5_y + six_r_c_z*six_r_q_x -
-            axis_z_six_r_axes5_y*six_r_c_m_in_axes5_z - six_r_c_x*six_r_q_z;
-        const real six_r_R_a_t_3 = axis_x_six_r_axes5_z*six_r_G_m_in_axes5_x +
-            axis_y_six_r_axes5_z*six_r_G_m_in_axes5_y + six_r_c_x*six_r_q_y -
-            axis_z_six_r_axes5_z*six_r_c_m_in_axes5_z - six_r_c_y*six_r_q_x;
+        const real six_r_R_a_t = v.axis_x_six_r_axes5_x*v.six_r_G_m_in_axes5_x +
+            v.axis_y_six_r_axes5_x*v.six_r_G_m_in_axes5_y + six_r_c_y*v.six_r_q_z -
+            v.axis_z_six_r_axes5_x*v.six_r_c_m_in_axes5_z - six_r_c_z*v.six_r_q_y;
+        const real six_r_R_a_t_2 = v.axis_x_six_r_axes5_y*v.six_r_G_m_in_axes5_x +
+            v.axis_y_six_r_axes5_y*v.six_r_G_m_in_axes5_y + six_r_c_z*v.six_r_q_x -
+            v.axis_z_six_r_axes5_y*v.six_r_c_m_in_axes5_z - six_r_c_x*v.six_r_q_z;
+        const real six_r_R_a_t_3 = v.axis_x_six_r_axes5_z*v.six_r_G_m_in_axes5_x +
+            v.axis_y_six_r_axes5_z*v.six_r_G_m_in_axes5_y + six_r_c_x*v.six_r_q_y -
+            v.axis_z_six_r_axes5_z*v.six_r_c_m_in_axes5_z - six_r_c_y*v.six_r_q_x;
         /* (six_r-H_a_2) moment of the column's unit force about the platform origin */
-        const real six_r_H_a_2_x = axis_y_six_r_axes5_x*six_r_o_2_in_axes5_y +
-            axis_z_six_r_axes5_x*six_r_o_2_in_axes5_z + six_r_q_y*six_r_w_2_z -
-            axis_x_six_r_axes5_x*six_r_o_2_t - six_r_q_z*six_r_w_2_y;
-        const real six_r_H_a_2_y = axis_y_six_r_axes5_y*six_r_o_2_in_axes5_y +
-            axis_z_six_r_axes5_y*six_r_o_2_in_axes5_z + six_r_q_z*six_r_w_2_x -
-            axis_x_six_r_axes5_y*six_r_o_2_t - six_r_q_x*six_r_w_2_z;
-        const real six_r_H_a_2_z = axis_y_six_r_axes5_z*six_r_o_2_in_axes5_y +
-            axis_z_six_r_axes5_z*six_r_o_2_in_axes5_z + six_r_q_x*six_r_w_2_y -
-            axis_x_six_r_axes5_z*six_r_o_2_t - six_r_q_y*six_r_w_2_x;
+        const real six_r_H_a_2_x = v.axis_y_six_r_axes5_x*v.six_r_o_2_in_axes5_y +
+            v.axis_z_six_r_axes5_x*v.six_r_o_2_in_axes5_z + v.six_r_q_y*v.six_r_w_2_z -
+            v.axis_x_six_r_axes5_x*v.six_r_o_2_t - v.six_r_q_z*v.six_r_w_2_y;
+        const real six_r_H_a_2_y = v.axis_y_six_r_axes5_y*v.six_r_o_2_in_axes5_y +
+            v.axis_z_six_r_axes5_y*v.six_r_o_2_in_axes5_z + v.six_r_q_z*v.six_r_w_2_x -
+            v.axis_x_six_r_axes5_y*v.six_r_o_2_t - v.six_r_q_x*v.six_r_w_2_z;
+        const real six_r_H_a_2_z = v.axis_y_six_r_axes5_z*v.six_r_o_2_in_axes5_y +
+            v.axis_z_six_r_axes5_z*v.six_r_o_2_in_axes5_z + v.six_r_q_x*v.six_r_w_2_y -
+            v.axis_x_six_r_axes5_z*v.six_r_o_2_t - v.six_r_q_y*v.six_r_w_2_x;
         /* (R_t) force that actuators and external wrench must give */
         gather(&terms[0*count + k], add, six_r_c_x);  /* R_t_x_of_legs */
         gather(&terms[1*count + k], add, six_r_c_y);  /* R_t_y_of_legs */
@@ -8639,18 +7799,19 @@ INLINE void required_legs_six_r(const prepared *m, size_t w, size_t leg, size_t 
         gather(&terms[4*count + k], add, six_r_R_a_t_2);  /* R_a_y_of_legs */
         gather(&terms[5*count + k], add, six_r_R_a_t_3);  /* R_a_z_of_legs */
         /* (six_r-w_2) force part of reciprocal wrench 2 */
-        o[0*count + k] = six_r_w_2_x;
-        o[1*count + k] = six_r_w_2_y;
-        o[2*count + k] = six_r_w_2_z;
+        o[0*count + k] = v.six_r_w_2_x;
+        o[1*count + k] = v.six_r_w_2_y;
+        o[2*count + k] = v.six_r_w_2_z;
         /* (six_r-H_a_2) moment of the column's unit force about the platform origin */
         o[3*count + k] = six_r_H_a_2_x;
         o[4*count + k] = six_r_H_a_2_y;
         o[5*count + k] = six_r_H_a_2_z;
-        o[6*count + k] = UNLESS(magnitude(six_r_w_1_t_12) > TOLERANCE*six_r_size) +
-            UNLESS(magnitude(six_r_w_1_t_28) > TOLERANCE*six_r_size) +
-            UNLESS(magnitude(six_r_w_1_t_49) > TOLERANCE*six_r_size) +
-            UNLESS(magnitude(six_r_w_1_t_67) > TOLERANCE*six_r_size) +
-            UNLESS(magnitude(six_r_w_1_t_79) > TOLERANCE*six_r_size);
+        const real six_r_size = m->six_r_size[i];
+        o[6*count + k] = UNLESS(magnitude(v.six_r_w_1_t_12) > TOLERANCE*six_r_size) +
+            UNLESS(magnitude(v.six_r_w_1_t_28) > TOLERANCE*six_r_size) +
+            UNLESS(magnitude(v.six_r_w_1_t_49) > TOLERANCE*six_r_size) +
+            UNLESS(magnitude(v.six_r_w_1_t_67) > TOLERANCE*six_r_size) +
+            UNLESS(magnitude(v.six_r_w_1_t_79) > TOLERANCE*six_r_size);
     }
 }
 
@@ -8658,7 +7819,7 @@ INLINE void required_place_six_r(size_t w, size_t count, const real *o, size_t l
     real *H, verdict *t)
 {
     for (size_t k = 0; k < w; ++k) {
-        H[(0*NU + leg)*w + k] = o[0*count + first + k];
+        H[leg*w + k] = o[0*count + first + k];
         H[(NU + leg)*w + k] = o[1*count + first + k];
         H[(2*NU + leg)*w + k] = o[2*count + first + k];
         H[(3*NU + leg)*w + k] = o[3*count + first + k];
@@ -8673,23 +7834,23 @@ INLINE void required_after(size_t w, const real *s, const real *sums, real *requ
     for (size_t k = 0; k < w; ++k) {
         /* (R_t) force that actuators and external wrench must give */
         const real R_t_x_of_legs = sums[0*w + k];
-        const real f_p_x = s[21*w + k];
+        const real f_p_x = s[9*w + k];
         const real R_t_x = f_p_x - R_t_x_of_legs;
         const real R_t_y_of_legs = sums[1*w + k];
-        const real f_p_y = s[22*w + k];
+        const real f_p_y = s[10*w + k];
         const real R_t_y = f_p_y - R_t_y_of_legs;
         const real R_t_z_of_legs = sums[2*w + k];
-        const real f_p_z = s[23*w + k];
+        const real f_p_z = s[11*w + k];
         const real R_t_z = f_p_z - R_t_z_of_legs;
         /* (R_a) moment that actuators and external wrench must give */
         const real R_a_x_of_legs = sums[3*w + k];
-        const real mu_p_x = s[24*w + k];
+        const real mu_p_x = s[12*w + k];
         const real R_a_x = R_a_x_of_legs + mu_p_x;
         const real R_a_y_of_legs = sums[4*w + k];
-        const real mu_p_y = s[25*w + k];
+        const real mu_p_y = s[13*w + k];
         const real R_a_y = R_a_y_of_legs + mu_p_y;
         const real R_a_z_of_legs = sums[5*w + k];
-        const real mu_p_z = s[26*w + k];
+        const real mu_p_z = s[14*w + k];
         const real R_a_z = R_a_z_of_legs + mu_p_z;
         /* (R_t) force that actuators and external wrench must give */
         required[0*w + k] = R_t_x;
@@ -8705,12 +7866,10 @@ INLINE void required_after(size_t w, const real *s, const real *sums, real *requ
 INLINE void required_run(const prepared *m, const real *X, const real *V, const real *A, const
     real *joints, real *required, real *H, verdict *t)
 {
-    real s[27] = {0};
-    real sums[6] = {0};
-    real terms_six_r[6*LEGS(LEGS_OF_six_r)] = {0};
-    real o_six_r[7*LEGS(LEGS_OF_six_r)] = {0};
+    real s[15] = {0}, sums[6] = {0};
+    real terms_six_r[6*LEGS(LEGS_OF_six_r)] = {0}, o_six_r[7*LEGS(LEGS_OF_six_r)] = {0};
     required_before(m, 1, X, V, A, s, t);
-    required_legs_six_r(m, 1, 0, 1, s, 0, LEGS(LEGS_OF_six_r), 0, joints, terms_six_r, o_six_r);
+    required_legs_six_r(m, 1, 0, 1, s, 0, LEGS(LEGS_OF_six_r), 0, V, A, joints, terms_six_r, o_six_r);
     for (size_t leg = 0; leg < LEGS_OF_six_r; ++leg) {
         required_place_six_r(1, LEGS(LEGS_OF_six_r), o_six_r, leg, leg, H, t);
     }
@@ -8723,13 +7882,12 @@ INLINE void required_run(const prepared *m, const real *X, const real *V, const 
 INLINE void required_run_lanes(const prepared *m, const real *X, const real *V, const real *A,
     const real *joints, real *required, real *H, verdict *t)
 {
-    real s[27*LANES];
-    real sums[6*LANES];
+    real s[15*LANES], sums[6*LANES];
     real o_six_r[7*LANES];
     required_before(m, LANES, X, V, A, s, t);
     clear(sums, 6*LANES);
     for (size_t leg = 0; leg < LEGS_OF_six_r; ++leg) {
-        required_legs_six_r(m, LANES, leg, 0, s, 1, LANES, 1, joints, sums, o_six_r);
+        required_legs_six_r(m, LANES, leg, 0, s, 1, LANES, 1, V, A, joints, sums, o_six_r);
         required_place_six_r(LANES, LANES, o_six_r, leg, 0, H, t);
     }
     required_after(LANES, s, sums, required);
@@ -8800,435 +7958,83 @@ INLINE void inverse_kinematics_run_lanes(const real *joints, real *q, verdict *t
 }
 
 /* ---- joint_rates ---- */
-INLINE void joint_rates_before(size_t w, const real *X, const real *V, real *s, verdict *t)
+INLINE void joint_rates_before(const prepared *m, size_t w, const real *X, real *s, verdict *t)
 {
     for (size_t k = 0; k < w; ++k) {
-        /* X: named entries */
-        const real X_3 = X[3*w + k];
-        const real X_4 = X[4*w + k];
-        const real X_5 = X[5*w + k];
-        const real X_6 = X[6*w + k];
-        const real quaternion_norm2 = X_3*X_3 + X_4*X_4 + X_5*X_5 + X_6*X_6;
-        const real quaternion_scale = 2/quaternion_norm2;
-        const real quaternion_sx = X_3*quaternion_scale;
-        const real quaternion_sy = X_4*quaternion_scale;
-        const real quaternion_sz = X_5*quaternion_scale;
-        const real quaternion_wx = X_6*quaternion_sx;
-        const real quaternion_wy = X_6*quaternion_sy;
-        const real quaternion_wz = X_6*quaternion_sz;
-        const real quaternion_xx = X_3*quaternion_sx;
-        const real quaternion_xy = X_3*quaternion_sy;
-        const real quaternion_xz = X_3*quaternion_sz;
-        const real quaternion_yy = X_4*quaternion_sy;
-        const real quaternion_yz = X_4*quaternion_sz;
-        const real quaternion_zz = X_5*quaternion_sz;
-        const real R_xx = 1 - quaternion_yy - quaternion_zz;
-        const real R_xy = quaternion_xy - quaternion_wz;
-        const real R_xz = quaternion_wy + quaternion_xz;
-        const real R_yx = quaternion_wz + quaternion_xy;
-        const real R_yy = 1 - quaternion_xx - quaternion_zz;
-        const real R_yz = quaternion_yz - quaternion_wx;
-        const real R_zx = quaternion_xz - quaternion_wy;
-        const real R_zy = quaternion_wx + quaternion_yz;
-        const real R_zz = 1 - quaternion_xx - quaternion_yy;
-        /* V: named entries */
-        const real V_0 = V[0*w + k];
-        const real t_dot_x = V_0;
-        const real V_1 = V[1*w + k];
-        const real t_dot_y = V_1;
-        const real V_2 = V[2*w + k];
-        const real t_dot_z = V_2;
-        const real V_3 = V[3*w + k];
-        const real omega_x = V_3;
-        const real V_4 = V[4*w + k];
-        const real omega_y = V_4;
-        const real V_5 = V[5*w + k];
-        const real omega_z = V_5;
-        s[0*w + k] = R_xx;
-        s[1*w + k] = R_xy;
-        s[2*w + k] = R_xz;
-        s[3*w + k] = R_yx;
-        s[4*w + k] = R_yy;
-        s[5*w + k] = R_yz;
-        s[6*w + k] = R_zx;
-        s[7*w + k] = R_zy;
-        s[8*w + k] = R_zz;
-        s[9*w + k] = t_dot_x;
-        s[10*w + k] = t_dot_y;
-        s[11*w + k] = t_dot_z;
-        s[12*w + k] = omega_x;
-        s[13*w + k] = omega_y;
-        s[14*w + k] = omega_z;
-        t->invalid[k] += UNLESS(is_finite(quaternion_scale)) + UNLESS(quaternion_scale > 0);
+        values v;
+        stage_X(m, w, k, X, &v);
+        s[0*w + k] = v.R_xx;
+        s[1*w + k] = v.R_xy;
+        s[2*w + k] = v.R_xz;
+        s[3*w + k] = v.R_yx;
+        s[4*w + k] = v.R_yy;
+        s[5*w + k] = v.R_yz;
+        s[6*w + k] = v.R_zx;
+        s[7*w + k] = v.R_zy;
+        s[8*w + k] = v.R_zz;
+        t->invalid[k] += UNLESS(is_finite(v.quaternion_scale)) + UNLESS(v.quaternion_scale > 0);
     }
 }
 
 INLINE void joint_rates_legs_six_r(const prepared *m, size_t w, size_t leg, size_t legs, const
-    real *s, size_t states, size_t count, const real *joints, real *o)
+    real *s, size_t states, size_t count, const real *V, const real *joints, real *o)
 {
-    static const size_t place_six_r_q_1[] = {0, 5, 10, 15, 20, 25, 0, 0};
-    static const size_t place_six_r_q_2[] = {1, 6, 11, 16, 21, 26, 1, 1};
-    static const size_t place_six_r_q_3[] = {2, 7, 12, 17, 22, 27, 2, 2};
-    static const size_t place_six_r_q_4[] = {3, 8, 13, 18, 23, 28, 3, 3};
-    static const size_t place_six_r_q_5[] = {4, 9, 14, 19, 24, 29, 4, 4};
     for (size_t k = 0; k < count; ++k) {
         const size_t i = leg + legs*k;
         const size_t j = states*k;
-        /* (six_r-c_1) cosine of the angle of joint 1 from its reference direction */
-        const real six_r_q_1 = joints[place_six_r_q_1[i]*w + j];
-        const real six_r_c_1 = -sine(six_r_q_1);
-        /* (six_r-s_1) sine of the angle of joint 1 from its reference direction */
-        const real six_r_s_1 = cosine(six_r_q_1);
-        /* (six_r-c_2) cosine of the angle of joint 2 from its reference direction */
-        const real six_r_q_2 = joints[place_six_r_q_2[i]*w + j];
-        const real six_r_c_2 = -sine(six_r_q_2);
-        /* (six_r-s_2) sine of the angle of joint 2 from its reference direction */
-        const real six_r_s_2 = cosine(six_r_q_2);
-        /* (six_r-c_3) cosine of the angle of joint 3 from its reference direction */
-        const real six_r_q_3 = joints[place_six_r_q_3[i]*w + j];
-        const real six_r_c_3 = cosine(six_r_q_3);
-        /* (six_r-s_3) sine of the angle of joint 3 from its reference direction */
-        const real six_r_s_3 = sine(six_r_q_3);
-        /* (six_r-c_4) cosine of the angle of joint 4 from its reference direction */
-        const real six_r_q_4 = joints[place_six_r_q_4[i]*w + j];
-        const real six_r_c_4 = -sine(six_r_q_4);
-        /* (six_r-s_4) sine of the angle of joint 4 from its reference direction */
-        const real six_r_s_4 = cosine(six_r_q_4);
-        /* (six_r-c_5) cosine of the angle of joint 5 from its reference direction */
-        const real six_r_q_5 = joints[place_six_r_q_5[i]*w + j];
-        const real six_r_c_5 = -sine(six_r_q_5);
-        /* (six_r-s_5) sine of the angle of joint 5 from its reference direction */
-        const real six_r_s_5 = cosine(six_r_q_5);
+        values_six_r v;
+        stage_six_r_X(m, w, i, j, s, &v);
+        stage_six_r_q(m, w, i, j, joints, &v);
+        stage_six_r_V_q(w, j, V, &v);
+        stage_six_r_X_q(m, i, &v);
         /* (six_r-S_dot) velocity of the connection point */
-        const real six_r_e_2_in_axes5_y = -six_r_c_4*six_r_s_5;
-        const real six_r_S_dot_t = -six_r_c_4*six_r_s_3;
-        const real six_r_S_dot_t_2 = -six_r_c_3*six_r_c_4;
-        const real six_r_S_dot_t_3 = six_r_S_dot_t*six_r_c_2 + six_r_S_dot_t_2*six_r_s_2;
-        const real six_r_S_dot_t_4 = six_r_S_dot_t*six_r_s_2 - six_r_S_dot_t_2*six_r_c_2;
-        const real six_r_S_dot_t_5 = six_r_c_1*six_r_s_4 - six_r_S_dot_t_3*six_r_s_1;
-        const real six_r_S_dot_t_6 = six_r_S_dot_t_3*six_r_c_1 + six_r_s_1*six_r_s_4;
-        const real six_r_base_frame_xx = m->six_r_base_frame_xx[i];
-        const real six_r_base_frame_xy = m->six_r_base_frame_xy[i];
-        const real six_r_base_frame_xz = m->six_r_base_frame_xz[i];
-        const real axis_z_six_r_axes5_x = six_r_S_dot_t_4*six_r_base_frame_xx +
-            six_r_S_dot_t_5*six_r_base_frame_xy + six_r_S_dot_t_6*six_r_base_frame_xz;
-        const real six_r_base_frame_yx = m->six_r_base_frame_yx[i];
-        const real six_r_base_frame_yy = m->six_r_base_frame_yy[i];
-        const real six_r_base_frame_yz = m->six_r_base_frame_yz[i];
-        const real axis_z_six_r_axes5_y = six_r_S_dot_t_4*six_r_base_frame_yx +
-            six_r_S_dot_t_5*six_r_base_frame_yy + six_r_S_dot_t_6*six_r_base_frame_yz;
-        const real six_r_base_frame_zx = m->six_r_base_frame_zx[i];
-        const real six_r_base_frame_zy = m->six_r_base_frame_zy[i];
-        const real six_r_base_frame_zz = m->six_r_base_frame_zz[i];
-        const real axis_z_six_r_axes5_z = six_r_S_dot_t_4*six_r_base_frame_zx +
-            six_r_S_dot_t_5*six_r_base_frame_zy + six_r_S_dot_t_6*six_r_base_frame_zz;
-        const real six_r_S_dot_t_7 = six_r_s_4*six_r_s_5;
-        const real six_r_S_dot_t_8 = six_r_c_3*six_r_c_5 - six_r_S_dot_t_7*six_r_s_3;
-        const real six_r_S_dot_t_9 = six_r_S_dot_t_7*six_r_c_3 + six_r_c_5*six_r_s_3;
-        const real six_r_S_dot_t_10 = six_r_S_dot_t_8*six_r_c_2 - six_r_S_dot_t_9*six_r_s_2;
-        const real six_r_S_dot_t_11 = six_r_S_dot_t_8*six_r_s_2 + six_r_S_dot_t_9*six_r_c_2;
-        const real six_r_S_dot_t_12 = six_r_c_1*six_r_e_2_in_axes5_y - six_r_S_dot_t_10*six_r_s_1;
-        const real six_r_S_dot_t_13 = six_r_S_dot_t_10*six_r_c_1 + six_r_e_2_in_axes5_y*six_r_s_1;
-        const real axis_y_six_r_axes5_x = six_r_S_dot_t_11*six_r_base_frame_xx +
-            six_r_S_dot_t_12*six_r_base_frame_xy + six_r_S_dot_t_13*six_r_base_frame_xz;
-        const real axis_y_six_r_axes5_y = six_r_S_dot_t_11*six_r_base_frame_yx +
-            six_r_S_dot_t_12*six_r_base_frame_yy + six_r_S_dot_t_13*six_r_base_frame_yz;
-        const real axis_y_six_r_axes5_z = six_r_S_dot_t_11*six_r_base_frame_zx +
-            six_r_S_dot_t_12*six_r_base_frame_zy + six_r_S_dot_t_13*six_r_base_frame_zz;
-        const real axis_x_six_r_axes5_x = axis_y_six_r_axes5_y*axis_z_six_r_axes5_z -
-            axis_y_six_r_axes5_z*axis_z_six_r_axes5_y;
-        const real axis_x_six_r_axes5_y = axis_y_six_r_axes5_z*axis_z_six_r_axes5_x -
-            axis_y_six_r_axes5_x*axis_z_six_r_axes5_z;
-        const real axis_x_six_r_axes5_z = axis_y_six_r_axes5_x*axis_z_six_r_axes5_y -
-            axis_y_six_r_axes5_y*axis_z_six_r_axes5_x;
-        const real R_xx = s[0*w + j];
-        const real R_xy = s[1*w + j];
-        const real R_xz = s[2*w + j];
-        const real six_r_platform_point_x = m->six_r_platform_point_x[i];
-        const real six_r_platform_point_y = m->six_r_platform_point_y[i];
-        const real six_r_platform_point_z = m->six_r_platform_point_z[i];
-        const real six_r_q_x = R_xx*six_r_platform_point_x + R_xy*six_r_platform_point_y +
-            R_xz*six_r_platform_point_z;
-        const real R_yx = s[3*w + j];
-        const real R_yy = s[4*w + j];
-        const real R_yz = s[5*w + j];
-        const real six_r_q_y = R_yx*six_r_platform_point_x + R_yy*six_r_platform_point_y +
-            R_yz*six_r_platform_point_z;
-        const real R_zx = s[6*w + j];
-        const real R_zy = s[7*w + j];
-        const real R_zz = s[8*w + j];
-        const real six_r_q_z = R_zx*six_r_platform_point_x + R_zy*six_r_platform_point_y +
-            R_zz*six_r_platform_point_z;
-        const real omega_y = s[13*w + j];
-        const real omega_z = s[14*w + j];
-        const real t_dot_x = s[9*w + j];
-        const real six_r_S_dot_x = t_dot_x + omega_y*six_r_q_z - omega_z*six_r_q_y;
-        const real omega_x = s[12*w + j];
-        const real t_dot_y = s[10*w + j];
-        const real six_r_S_dot_y = t_dot_y + omega_z*six_r_q_x - omega_x*six_r_q_z;
-        const real t_dot_z = s[11*w + j];
-        const real six_r_S_dot_z = t_dot_z + omega_x*six_r_q_y - omega_y*six_r_q_x;
-        const real six_r_S_dot_in_axes5_x = axis_x_six_r_axes5_x*six_r_S_dot_x +
-            axis_x_six_r_axes5_y*six_r_S_dot_y + axis_x_six_r_axes5_z*six_r_S_dot_z;
-        const real six_r_S_dot_in_axes5_y = axis_y_six_r_axes5_x*six_r_S_dot_x +
-            axis_y_six_r_axes5_y*six_r_S_dot_y + axis_y_six_r_axes5_z*six_r_S_dot_z;
-        const real six_r_S_dot_in_axes5_z = axis_z_six_r_axes5_x*six_r_S_dot_x +
-            axis_z_six_r_axes5_y*six_r_S_dot_y + axis_z_six_r_axes5_z*six_r_S_dot_z;
-        /* (six_r-r_4) from joint 4 to the connection point, along the links */
-        const real six_r_platform_joint_offset_x = m->six_r_platform_joint_offset_x[i];
-        const real six_r_r_4_in_axes4_y = six_r_c_5*six_r_platform_joint_offset_x;
-        const real six_r_joint5_offset_x = m->six_r_joint5_offset_x[i];
-        const real six_r_r_4_in_axes4_z = six_r_joint5_offset_x +
-            six_r_platform_joint_offset_x*six_r_s_5;
-        const real six_r_r_4_in_axes3_y = -six_r_r_4_in_axes4_y*six_r_s_4;
-        const real six_r_r_4_in_axes3_z = six_r_c_4*six_r_r_4_in_axes4_y;
-        /* (six_r-r_3) from joint 3 to the connection point, along the links */
-        const real six_r_joint4_offset_x = m->six_r_joint4_offset_x[i];
-        const real six_r_r_3_in_axes3_x = six_r_joint4_offset_x + six_r_r_4_in_axes4_z;
-        const real six_r_r_3_in_axes2_y = six_r_c_3*six_r_r_4_in_axes3_y +
-            six_r_r_3_in_axes3_x*six_r_s_3;
-        const real six_r_r_3_t = six_r_r_4_in_axes3_z*six_r_s_4;
-        const real six_r_r_3_t_2 = -six_r_c_4*six_r_r_4_in_axes3_z;
-        const real six_r_r_3_in_axes5_z = six_r_r_3_t + six_r_c_4*six_r_r_4_in_axes3_y;
-        const real six_r_r_3_t_3 = -six_r_r_3_t_2 - six_r_r_4_in_axes3_y*six_r_s_4;
-        const real six_r_r_3_in_axes5_x = six_r_c_5*six_r_r_3_t_3 +
-            six_r_r_3_in_axes3_x*six_r_s_5;
-        const real six_r_r_3_in_axes5_y = six_r_c_5*six_r_r_3_in_axes3_x -
-            six_r_r_3_t_3*six_r_s_5;
-        /* (six_r-r_2) from joint 2 to the connection point, along the links */
-        const real six_r_joint3_offset_x = m->six_r_joint3_offset_x[i];
-        const real six_r_r_2_in_axes2_x = six_r_joint3_offset_x + six_r_c_3*six_r_r_3_in_axes3_x -
-            six_r_r_4_in_axes3_y*six_r_s_3;
-        const real six_r_r_2_in_axes1_y = six_r_c_2*six_r_r_2_in_axes2_x -
-            six_r_r_3_in_axes2_y*six_r_s_2;
-        const real six_r_r_2_t = six_r_c_3*six_r_r_2_in_axes2_x + six_r_r_3_in_axes2_y*six_r_s_3;
-        const real six_r_r_2_t_2 = six_r_c_3*six_r_r_3_in_axes2_y -
-            six_r_r_2_in_axes2_x*six_r_s_3;
-        const real six_r_r_2_in_axes5_z = six_r_r_3_t + six_r_c_4*six_r_r_2_t_2;
-        const real six_r_r_2_t_3 = -six_r_r_3_t_2 - six_r_r_2_t_2*six_r_s_4;
-        const real six_r_r_2_in_axes5_x = six_r_c_5*six_r_r_2_t_3 + six_r_r_2_t*six_r_s_5;
-        const real six_r_r_2_in_axes5_y = six_r_c_5*six_r_r_2_t - six_r_r_2_t_3*six_r_s_5;
-        /* (six_r-r_1) from joint 1 to the connection point, along the links */
-        const real six_r_joint2_offset_x = m->six_r_joint2_offset_x[i];
-        const real six_r_r_1_in_axes1_z = six_r_joint2_offset_x + six_r_c_2*six_r_r_3_in_axes2_y +
-            six_r_r_2_in_axes2_x*six_r_s_2;
-        const real six_r_r_1_t = six_r_c_2*six_r_r_2_in_axes1_y + six_r_r_1_in_axes1_z*six_r_s_2;
-        const real six_r_r_1_t_2 = six_r_c_2*six_r_r_1_in_axes1_z -
-            six_r_r_2_in_axes1_y*six_r_s_2;
-        const real six_r_r_1_t_3 = six_r_c_3*six_r_r_1_t + six_r_r_1_t_2*six_r_s_3;
-        const real six_r_r_1_t_4 = six_r_c_3*six_r_r_1_t_2 - six_r_r_1_t*six_r_s_3;
-        const real six_r_r_1_in_axes5_z = six_r_r_3_t + six_r_c_4*six_r_r_1_t_4;
-        const real six_r_r_1_t_5 = -six_r_r_3_t_2 - six_r_r_1_t_4*six_r_s_4;
-        const real six_r_r_1_in_axes5_x = six_r_c_5*six_r_r_1_t_5 + six_r_r_1_t_3*six_r_s_5;
-        const real six_r_r_1_in_axes5_y = six_r_c_5*six_r_r_1_t_3 - six_r_r_1_t_5*six_r_s_5;
-        /* (six_r-v_1) velocity of the connection point per rate of joint 1 */
-        const real six_r_v_1_t = six_r_c_2*six_r_s_3 + six_r_c_3*six_r_s_2;
-        const real six_r_v_1_t_2 = six_r_c_2*six_r_c_3 - six_r_s_2*six_r_s_3;
-        const real six_r_e_1_in_axes5_z = six_r_c_4*six_r_v_1_t_2;
-        const real six_r_v_1_t_3 = six_r_s_4*six_r_v_1_t_2;
-        const real six_r_e_1_in_axes5_x = six_r_s_5*six_r_v_1_t - six_r_c_5*six_r_v_1_t_3;
-        const real six_r_e_1_in_axes5_y = six_r_c_5*six_r_v_1_t + six_r_s_5*six_r_v_1_t_3;
-        const real six_r_v_1_in_axes5_x = six_r_e_1_in_axes5_y*six_r_r_1_in_axes5_z -
-            six_r_e_1_in_axes5_z*six_r_r_1_in_axes5_y;
-        const real six_r_v_1_in_axes5_y = six_r_e_1_in_axes5_z*six_r_r_1_in_axes5_x -
-            six_r_e_1_in_axes5_x*six_r_r_1_in_axes5_z;
-        const real six_r_v_1_in_axes5_z = six_r_e_1_in_axes5_x*six_r_r_1_in_axes5_y -
-            six_r_e_1_in_axes5_y*six_r_r_1_in_axes5_x;
-        /* (six_r-v_2) velocity of the connection point per rate of joint 2 */
-        const real six_r_e_2_in_axes5_x = six_r_c_4*six_r_c_5;
-        const real six_r_v_2_in_axes5_x = six_r_e_2_in_axes5_y*six_r_r_2_in_axes5_z -
-            six_r_r_2_in_axes5_y*six_r_s_4;
-        const real six_r_v_2_in_axes5_y = six_r_r_2_in_axes5_x*six_r_s_4 -
-            six_r_e_2_in_axes5_x*six_r_r_2_in_axes5_z;
-        const real six_r_v_2_in_axes5_z = six_r_e_2_in_axes5_x*six_r_r_2_in_axes5_y -
-            six_r_e_2_in_axes5_y*six_r_r_2_in_axes5_x;
-        /* (six_r-v_3) velocity of the connection point per rate of joint 3 */
-        const real six_r_v_3_in_axes5_x = six_r_e_2_in_axes5_y*six_r_r_3_in_axes5_z -
-            six_r_r_3_in_axes5_y*six_r_s_4;
-        const real six_r_v_3_in_axes5_y = six_r_r_3_in_axes5_x*six_r_s_4 -
-            six_r_e_2_in_axes5_x*six_r_r_3_in_axes5_z;
-        const real six_r_v_3_in_axes5_z = six_r_e_2_in_axes5_x*six_r_r_3_in_axes5_y -
-            six_r_e_2_in_axes5_y*six_r_r_3_in_axes5_x;
-        /* (six_r-v_4) velocity of the connection point per rate of joint 4 */
-        const real six_r_v_4_in_axes5_z = six_r_s_5*(six_r_c_5*six_r_r_4_in_axes4_z -
-            six_r_r_4_in_axes4_y*six_r_s_5) - six_r_c_5*(six_r_c_5*six_r_r_4_in_axes4_y +
-            six_r_r_4_in_axes4_z*six_r_s_5);
-        /* (six_r-n_m1) direction 1 of the moment that the platform joint transmits */
-        const real six_r_platform_joint_axis_platform_x = m->six_r_platform_joint_axis_platform_x[i];
-        const real six_r_platform_joint_axis_platform_y = m->six_r_platform_joint_axis_platform_y[i];
-        const real six_r_platform_joint_axis_platform_z = m->six_r_platform_joint_axis_platform_z[i];
-        const real six_r_n_m1_t = six_r_platform_joint_axis_platform_x*(R_xx*six_r_base_frame_xy +
-            R_yx*six_r_base_frame_yy + R_zx*six_r_base_frame_zy) +
-            six_r_platform_joint_axis_platform_y*(R_xy*six_r_base_frame_xy +
-            R_yy*six_r_base_frame_yy + R_zy*six_r_base_frame_zy) +
-            six_r_platform_joint_axis_platform_z*(R_xz*six_r_base_frame_xy +
-            R_yz*six_r_base_frame_yy + R_zz*six_r_base_frame_zy);
-        const real six_r_n_m1_t_2 = six_r_platform_joint_axis_platform_x*(R_xx*six_r_base_frame_xz
-            + R_yx*six_r_base_frame_yz + R_zx*six_r_base_frame_zz) +
-            six_r_platform_joint_axis_platform_y*(R_xy*six_r_base_frame_xz +
-            R_yy*six_r_base_frame_yz + R_zy*six_r_base_frame_zz) +
-            six_r_platform_joint_axis_platform_z*(R_xz*six_r_base_frame_xz +
-            R_yz*six_r_base_frame_yz + R_zz*six_r_base_frame_zz);
-        const real six_r_n_m1_t_3 = six_r_platform_joint_axis_platform_x*(R_xx*six_r_base_frame_xx
-            + R_yx*six_r_base_frame_yx + R_zx*six_r_base_frame_zx) +
-            six_r_platform_joint_axis_platform_y*(R_xy*six_r_base_frame_xx +
-            R_yy*six_r_base_frame_yx + R_zy*six_r_base_frame_zx) +
-            six_r_platform_joint_axis_platform_z*(R_xz*six_r_base_frame_xx +
-            R_yz*six_r_base_frame_yx + R_zz*six_r_base_frame_zx);
-        const real six_r_n_m1_t_4 = six_r_c_1*six_r_n_m1_t + six_r_n_m1_t_2*six_r_s_1;
-        const real six_r_n_m1_t_5 = six_r_c_1*six_r_n_m1_t_2 - six_r_n_m1_t*six_r_s_1;
-        const real six_r_n_m1_t_6 = six_r_c_2*six_r_n_m1_t_5 + six_r_n_m1_t_3*six_r_s_2;
-        const real six_r_n_m1_t_7 = six_r_c_2*six_r_n_m1_t_3 - six_r_n_m1_t_5*six_r_s_2;
-        const real six_r_n_m1_t_8 = six_r_c_3*six_r_n_m1_t_6 + six_r_n_m1_t_7*six_r_s_3;
-        const real six_r_n_m1_t_9 = six_r_c_3*six_r_n_m1_t_7 - six_r_n_m1_t_6*six_r_s_3;
-        const real six_r_n_m1_t_10 = six_r_c_4*six_r_n_m1_t_4 - six_r_n_m1_t_9*six_r_s_4;
-        const real six_r_n_m1_in_axes5_y = six_r_c_5*six_r_n_m1_t_10 + six_r_n_m1_t_8*six_r_s_5;
-        /* (six_r-n_m2) direction 2 of the moment that the platform joint transmits */
-        const real six_r_n_m2_in_axes5_z = six_r_c_5*six_r_n_m1_t_8 - six_r_n_m1_t_10*six_r_s_5;
-        /* (six_r-w_1) force part of reciprocal wrench 1 */
-        const real six_r_end_p1_in_axes5_z = six_r_c_4*six_r_n_m1_t_9 + six_r_n_m1_t_4*six_r_s_4;
-        const real six_r_w_1_t = six_r_e_1_in_axes5_x*six_r_n_m2_in_axes5_z -
-            six_r_e_1_in_axes5_y*six_r_n_m1_in_axes5_y;
-        const real six_r_w_1_t_2 = six_r_e_2_in_axes5_x*six_r_n_m2_in_axes5_z -
-            six_r_e_2_in_axes5_y*six_r_n_m1_in_axes5_y;
-        const real six_r_w_1_t_3 = six_r_e_1_in_axes5_y*six_r_end_p1_in_axes5_z -
-            six_r_e_1_in_axes5_z*six_r_n_m2_in_axes5_z;
-        const real six_r_w_1_t_4 = six_r_e_2_in_axes5_y*six_r_end_p1_in_axes5_z -
-            six_r_n_m2_in_axes5_z*six_r_s_4;
-        const real six_r_size = m->six_r_size[i];
-        const real six_r_w_1_t_5 = six_r_size*six_r_w_1_t;
-        const real six_r_w_1_t_6 = six_r_size*six_r_w_1_t_3;
-        const real six_r_w_1_t_7 = six_r_size*six_r_w_1_t_2;
-        const real six_r_w_1_t_8 = six_r_size*six_r_w_1_t_4;
-        const real six_r_w_1_t_9 = six_r_size*(six_r_c_5*six_r_n_m1_in_axes5_y -
-            six_r_n_m2_in_axes5_z*six_r_s_5);
-        const real six_r_w_1_t_10 = -six_r_c_5*six_r_end_p1_in_axes5_z*six_r_size;
-        const real six_r_w_1_t_11 = six_r_n_m2_in_axes5_z*six_r_size;
-        const real six_r_size_t = m->six_r_size_t[i];
-        const real six_r_w_1_t_12 = root(six_r_size_t + six_r_w_1_t_11*six_r_w_1_t_11);
-        const real inv_six_r_w_1_t_12 = 1/six_r_w_1_t_12;
-        const real six_r_w_1_t_13 = inv_six_r_w_1_t_12*six_r_platform_joint_offset_x;
-        const real six_r_w_1_t_14 = inv_six_r_w_1_t_12*six_r_w_1_t_11;
-        const real six_r_w_1_t_15 = six_r_w_1_t_10*six_r_w_1_t_14;
-        const real six_r_w_1_t_16 = six_r_w_1_t_13*six_r_w_1_t_15;
-        const real six_r_w_1_t_17 = six_r_w_1_t_10 - six_r_w_1_t_14*six_r_w_1_t_15;
-        const real six_r_w_1_t_18 = six_r_v_1_in_axes5_y*six_r_w_1_t_13 -
-            six_r_w_1_t_14*six_r_w_1_t_6;
-        const real six_r_w_1_t_19 = six_r_v_1_in_axes5_y - six_r_w_1_t_13*six_r_w_1_t_18;
-        const real six_r_w_1_t_20 = six_r_w_1_t_6 + six_r_w_1_t_14*six_r_w_1_t_18;
-        const real six_r_w_1_t_21 = six_r_w_1_t_14*six_r_w_1_t_8;
-        const real six_r_w_1_t_22 = six_r_v_2_in_axes5_y*six_r_w_1_t_13 - six_r_w_1_t_21;
-        const real six_r_w_1_t_23 = six_r_v_2_in_axes5_y - six_r_w_1_t_13*six_r_w_1_t_22;
-        const real six_r_w_1_t_24 = six_r_w_1_t_8 + six_r_w_1_t_14*six_r_w_1_t_22;
-        const real six_r_w_1_t_25 = six_r_w_1_t_21 - six_r_v_3_in_axes5_y*six_r_w_1_t_13;
-        const real six_r_w_1_t_26 = six_r_v_3_in_axes5_y + six_r_w_1_t_13*six_r_w_1_t_25;
-        const real six_r_w_1_t_27 = six_r_w_1_t_8 - six_r_w_1_t_14*six_r_w_1_t_25;
-        const real six_r_w_1_t_28 = root(six_r_v_4_in_axes5_z*six_r_v_4_in_axes5_z +
-            six_r_w_1_t_16*six_r_w_1_t_16 + six_r_w_1_t_17*six_r_w_1_t_17 +
-            six_r_w_1_t_9*six_r_w_1_t_9);
-        const real inv_six_r_w_1_t_28 = 1/six_r_w_1_t_28;
-        const real six_r_w_1_t_29 = inv_six_r_w_1_t_28*six_r_w_1_t_16;
-        const real six_r_w_1_t_30 = inv_six_r_w_1_t_28*six_r_v_4_in_axes5_z;
-        const real six_r_w_1_t_31 = inv_six_r_w_1_t_28*six_r_w_1_t_9;
-        const real six_r_w_1_t_32 = inv_six_r_w_1_t_28*six_r_w_1_t_17;
-        const real six_r_w_1_t_33 = six_r_w_1_t_19*six_r_w_1_t_29 + six_r_w_1_t_20*six_r_w_1_t_32
-            + six_r_w_1_t_31*six_r_w_1_t_5 - six_r_v_1_in_axes5_z*six_r_w_1_t_30;
-        const real six_r_w_1_t_34 = six_r_w_1_t_29*six_r_w_1_t_33 - six_r_w_1_t_19;
-        const real six_r_w_1_t_35 = six_r_v_1_in_axes5_z + six_r_w_1_t_30*six_r_w_1_t_33;
-        const real six_r_w_1_t_36 = six_r_w_1_t_31*six_r_w_1_t_33 - six_r_w_1_t_5;
-        const real six_r_w_1_t_37 = six_r_w_1_t_32*six_r_w_1_t_33 - six_r_w_1_t_20;
-        const real six_r_w_1_t_38 = six_r_w_1_t_31*six_r_w_1_t_7;
-        const real six_r_w_1_t_39 = six_r_w_1_t_38 + six_r_w_1_t_23*six_r_w_1_t_29 +
-            six_r_w_1_t_24*six_r_w_1_t_32 - six_r_v_2_in_axes5_z*six_r_w_1_t_30;
-        const real six_r_w_1_t_40 = six_r_w_1_t_29*six_r_w_1_t_39 - six_r_w_1_t_23;
-        const real six_r_w_1_t_41 = six_r_v_2_in_axes5_z + six_r_w_1_t_30*six_r_w_1_t_39;
-        const real six_r_w_1_t_42 = six_r_w_1_t_31*six_r_w_1_t_39 - six_r_w_1_t_7;
-        const real six_r_w_1_t_43 = six_r_w_1_t_32*six_r_w_1_t_39 - six_r_w_1_t_24;
-        const real six_r_w_1_t_44 = six_r_w_1_t_38 + six_r_w_1_t_26*six_r_w_1_t_29 +
-            six_r_w_1_t_27*six_r_w_1_t_32 - six_r_v_3_in_axes5_z*six_r_w_1_t_30;
-        const real six_r_w_1_t_45 = six_r_w_1_t_29*six_r_w_1_t_44 - six_r_w_1_t_26;
-        const real six_r_w_1_t_46 = six_r_v_3_in_axes5_z + six_r_w_1_t_30*six_r_w_1_t_44;
-        const real six_r_w_1_t_47 = six_r_w_1_t_31*six_r_w_1_t_44 - six_r_w_1_t_7;
-        const real six_r_w_1_t_48 = six_r_w_1_t_32*six_r_w_1_t_44 - six_r_w_1_t_27;
-        const real six_r_w_1_t_49 = root(six_r_v_1_in_axes5_x*six_r_v_1_in_axes5_x +
-            six_r_w_1_t_34*six_r_w_1_t_34 + six_r_w_1_t_35*six_r_w_1_t_35 +
-            six_r_w_1_t_36*six_r_w_1_t_36 + six_r_w_1_t_37*six_r_w_1_t_37);
-        const real inv_six_r_w_1_t_49 = 1/six_r_w_1_t_49;
-        const real six_r_w_1_t_50 = inv_six_r_w_1_t_49*six_r_v_1_in_axes5_x;
-        const real six_r_w_1_t_51 = inv_six_r_w_1_t_49*six_r_w_1_t_34;
-        const real six_r_w_1_t_52 = inv_six_r_w_1_t_49*six_r_w_1_t_35;
-        const real six_r_w_1_t_53 = inv_six_r_w_1_t_49*six_r_w_1_t_36;
-        const real six_r_w_1_t_54 = inv_six_r_w_1_t_49*six_r_w_1_t_37;
-        const real six_r_w_1_t_55 = six_r_v_2_in_axes5_x*six_r_w_1_t_50 +
-            six_r_w_1_t_40*six_r_w_1_t_51 + six_r_w_1_t_41*six_r_w_1_t_52 +
-            six_r_w_1_t_42*six_r_w_1_t_53 + six_r_w_1_t_43*six_r_w_1_t_54;
-        const real six_r_w_1_t_56 = six_r_v_2_in_axes5_x - six_r_w_1_t_50*six_r_w_1_t_55;
-        const real six_r_w_1_t_57 = six_r_w_1_t_40 - six_r_w_1_t_51*six_r_w_1_t_55;
-        const real six_r_w_1_t_58 = six_r_w_1_t_41 - six_r_w_1_t_52*six_r_w_1_t_55;
-        const real six_r_w_1_t_59 = six_r_w_1_t_42 - six_r_w_1_t_53*six_r_w_1_t_55;
-        const real six_r_w_1_t_60 = six_r_w_1_t_43 - six_r_w_1_t_54*six_r_w_1_t_55;
-        const real six_r_w_1_t_61 = six_r_v_3_in_axes5_x*six_r_w_1_t_50 +
-            six_r_w_1_t_45*six_r_w_1_t_51 + six_r_w_1_t_46*six_r_w_1_t_52 +
-            six_r_w_1_t_47*six_r_w_1_t_53 + six_r_w_1_t_48*six_r_w_1_t_54;
-        const real six_r_w_1_t_62 = six_r_v_3_in_axes5_x - six_r_w_1_t_50*six_r_w_1_t_61;
-        const real six_r_w_1_t_63 = six_r_w_1_t_45 - six_r_w_1_t_51*six_r_w_1_t_61;
-        const real six_r_w_1_t_64 = six_r_w_1_t_46 - six_r_w_1_t_52*six_r_w_1_t_61;
-        const real six_r_w_1_t_65 = six_r_w_1_t_47 - six_r_w_1_t_53*six_r_w_1_t_61;
-        const real six_r_w_1_t_66 = six_r_w_1_t_48 - six_r_w_1_t_54*six_r_w_1_t_61;
-        const real six_r_w_1_t_67 = root(six_r_w_1_t_56*six_r_w_1_t_56 +
-            six_r_w_1_t_57*six_r_w_1_t_57 + six_r_w_1_t_58*six_r_w_1_t_58 +
-            six_r_w_1_t_59*six_r_w_1_t_59 + six_r_w_1_t_60*six_r_w_1_t_60);
-        const real inv_six_r_w_1_t_67 = 1/six_r_w_1_t_67;
-        const real six_r_w_1_t_68 = inv_six_r_w_1_t_67*six_r_w_1_t_56;
-        const real six_r_w_1_t_69 = inv_six_r_w_1_t_67*six_r_w_1_t_57;
-        const real six_r_w_1_t_70 = inv_six_r_w_1_t_67*six_r_w_1_t_58;
-        const real six_r_w_1_t_71 = inv_six_r_w_1_t_67*six_r_w_1_t_59;
-        const real six_r_w_1_t_72 = inv_six_r_w_1_t_67*six_r_w_1_t_60;
-        const real six_r_w_1_t_73 = six_r_w_1_t_62*six_r_w_1_t_68 + six_r_w_1_t_63*six_r_w_1_t_69
-            + six_r_w_1_t_64*six_r_w_1_t_70 + six_r_w_1_t_65*six_r_w_1_t_71 +
-            six_r_w_1_t_66*six_r_w_1_t_72;
-        const real six_r_w_1_t_74 = six_r_w_1_t_62 - six_r_w_1_t_68*six_r_w_1_t_73;
-        const real six_r_w_1_t_75 = six_r_w_1_t_63 - six_r_w_1_t_69*six_r_w_1_t_73;
-        const real six_r_w_1_t_76 = six_r_w_1_t_64 - six_r_w_1_t_70*six_r_w_1_t_73;
-        const real six_r_w_1_t_77 = six_r_w_1_t_65 - six_r_w_1_t_71*six_r_w_1_t_73;
-        const real six_r_w_1_t_78 = six_r_w_1_t_66 - six_r_w_1_t_72*six_r_w_1_t_73;
-        const real six_r_w_1_t_79 = root(six_r_w_1_t_74*six_r_w_1_t_74 +
-            six_r_w_1_t_75*six_r_w_1_t_75 + six_r_w_1_t_76*six_r_w_1_t_76 +
-            six_r_w_1_t_77*six_r_w_1_t_77 + six_r_w_1_t_78*six_r_w_1_t_78);
+        const real omega_y = V[4*w + j];
+        const real omega_z = V[5*w + j];
+        const real t_dot_x = V[0*w + j];
+        const real six_r_S_dot_x = t_dot_x + omega_y*v.six_r_q_z - omega_z*v.six_r_q_y;
+        const real omega_x = V[3*w + j];
+        const real t_dot_y = V[1*w + j];
+        const real six_r_S_dot_y = t_dot_y + omega_z*v.six_r_q_x - omega_x*v.six_r_q_z;
+        const real t_dot_z = V[2*w + j];
+        const real six_r_S_dot_z = t_dot_z + omega_x*v.six_r_q_y - omega_y*v.six_r_q_x;
+        const real six_r_S_dot_in_axes5_x = v.axis_x_six_r_axes5_x*six_r_S_dot_x +
+            v.axis_x_six_r_axes5_y*six_r_S_dot_y + v.axis_x_six_r_axes5_z*six_r_S_dot_z;
+        const real six_r_S_dot_in_axes5_y = v.axis_y_six_r_axes5_x*six_r_S_dot_x +
+            v.axis_y_six_r_axes5_y*six_r_S_dot_y + v.axis_y_six_r_axes5_z*six_r_S_dot_z;
+        const real six_r_S_dot_in_axes5_z = v.axis_z_six_r_axes5_x*six_r_S_dot_x +
+            v.axis_z_six_r_axes5_y*six_r_S_dot_y + v.axis_z_six_r_axes5_z*six_r_S_dot_z;
         /* (six_r-qd_1) rate of joint 1 */
-        const real inv_six_r_w_1_t_79 = 1/six_r_w_1_t_79;
-        const real six_r_omega_in_axes5_y = axis_y_six_r_axes5_x*omega_x +
-            axis_y_six_r_axes5_y*omega_y + axis_y_six_r_axes5_z*omega_z;
-        const real six_r_qd_1_t = six_r_size*(six_r_n_m1_in_axes5_y*six_r_omega_in_axes5_y -
-            six_r_n_m2_in_axes5_z*(axis_x_six_r_axes5_x*omega_x + axis_x_six_r_axes5_y*omega_y +
-            axis_x_six_r_axes5_z*omega_z));
-        const real six_r_qd_1_t_2 = six_r_size*(six_r_end_p1_in_axes5_z*six_r_omega_in_axes5_y -
-            six_r_n_m2_in_axes5_z*(axis_z_six_r_axes5_x*omega_x + axis_z_six_r_axes5_y*omega_y +
-            axis_z_six_r_axes5_z*omega_z));
+        const real six_r_size = m->six_r_size[i];
+        const real six_r_qd_1_t = six_r_size*(v.six_r_n_m1_in_axes5_y*v.six_r_omega_in_axes5_y -
+            v.six_r_n_m2_in_axes5_z*(v.axis_x_six_r_axes5_x*omega_x +
+            v.axis_x_six_r_axes5_y*omega_y + v.axis_x_six_r_axes5_z*omega_z));
+        const real six_r_qd_1_t_2 = six_r_size*(v.six_r_end_p1_in_axes5_z*v.six_r_omega_in_axes5_y
+            - v.six_r_n_m2_in_axes5_z*(v.axis_z_six_r_axes5_x*omega_x +
+            v.axis_z_six_r_axes5_y*omega_y + v.axis_z_six_r_axes5_z*omega_z));
         const real six_r_qd_1_t_3 =
-            inv_six_r_w_1_t_79*(inv_six_r_w_1_t_79*six_r_S_dot_in_axes5_y*six_r_w_1_t_75 +
-            inv_six_r_w_1_t_79*six_r_qd_1_t_2*six_r_w_1_t_78 -
-            inv_six_r_w_1_t_79*six_r_S_dot_in_axes5_x*six_r_w_1_t_74 -
-            inv_six_r_w_1_t_79*six_r_S_dot_in_axes5_z*six_r_w_1_t_76 -
-            inv_six_r_w_1_t_79*six_r_qd_1_t*six_r_w_1_t_77);
-        const real six_r_qd_1_t_4 = -inv_six_r_w_1_t_67*(six_r_S_dot_in_axes5_y*six_r_w_1_t_69 +
-            six_r_qd_1_t_2*six_r_w_1_t_72 - six_r_S_dot_in_axes5_x*six_r_w_1_t_68 -
-            six_r_S_dot_in_axes5_z*six_r_w_1_t_70 - six_r_qd_1_t*six_r_w_1_t_71 -
-            six_r_qd_1_t_3*six_r_w_1_t_73);
-        const real six_r_qd_1 = inv_six_r_w_1_t_49*(six_r_S_dot_in_axes5_x*six_r_w_1_t_50 +
-            six_r_S_dot_in_axes5_z*six_r_w_1_t_52 + six_r_qd_1_t*six_r_w_1_t_53 +
-            six_r_qd_1_t_3*six_r_w_1_t_61 - six_r_S_dot_in_axes5_y*six_r_w_1_t_51 -
-            six_r_qd_1_t_2*six_r_w_1_t_54 - six_r_qd_1_t_4*six_r_w_1_t_55);
+            v.inv_six_r_w_1_t_79*(v.inv_six_r_w_1_t_79*six_r_S_dot_in_axes5_y*v.six_r_w_1_t_75 +
+            v.inv_six_r_w_1_t_79*six_r_qd_1_t_2*v.six_r_w_1_t_78 -
+            v.inv_six_r_w_1_t_79*six_r_S_dot_in_axes5_x*v.six_r_w_1_t_74 -
+            v.inv_six_r_w_1_t_79*six_r_S_dot_in_axes5_z*v.six_r_w_1_t_76 -
+            v.inv_six_r_w_1_t_79*six_r_qd_1_t*v.six_r_w_1_t_77);
+        const real six_r_qd_1_t_4 = -v.inv_six_r_w_1_t_67*(six_r_S_dot_in_axes5_y*v.six_r_w_1_t_69
+            + six_r_qd_1_t_2*v.six_r_w_1_t_72 - six_r_S_dot_in_axes5_x*v.six_r_w_1_t_68 -
+            six_r_S_dot_in_axes5_z*v.six_r_w_1_t_70 - six_r_qd_1_t*v.six_r_w_1_t_71 -
+            six_r_qd_1_t_3*v.six_r_w_1_t_73);
+        const real six_r_qd_1 = v.inv_six_r_w_1_t_49*(six_r_S_dot_in_axes5_x*v.six_r_w_1_t_50 +
+            six_r_S_dot_in_axes5_z*v.six_r_w_1_t_52 + six_r_qd_1_t*v.six_r_w_1_t_53 +
+            six_r_qd_1_t_3*v.six_r_w_1_t_61 - six_r_S_dot_in_axes5_y*v.six_r_w_1_t_51 -
+            six_r_qd_1_t_2*v.six_r_w_1_t_54 - six_r_qd_1_t_4*v.six_r_w_1_t_55);
         /* (six_r-qd_4) rate of joint 4 */
-        const real six_r_qd_4 = -inv_six_r_w_1_t_28*(six_r_S_dot_in_axes5_y*six_r_w_1_t_29 +
-            six_r_qd_1_t_2*six_r_w_1_t_32 + six_r_qd_1_t_3*six_r_w_1_t_44 -
-            six_r_S_dot_in_axes5_z*six_r_w_1_t_30 - six_r_qd_1*six_r_w_1_t_33 -
-            six_r_qd_1_t*six_r_w_1_t_31 - six_r_qd_1_t_4*six_r_w_1_t_39);
+        const real six_r_qd_4_t = v.inv_six_r_w_1_t_28*(six_r_S_dot_in_axes5_y*v.six_r_w_1_t_29 +
+            six_r_qd_1_t_2*v.six_r_w_1_t_32 + six_r_qd_1_t_3*v.six_r_w_1_t_44 -
+            six_r_S_dot_in_axes5_z*v.six_r_w_1_t_30 - six_r_qd_1*v.six_r_w_1_t_33 -
+            six_r_qd_1_t*v.six_r_w_1_t_31 - six_r_qd_1_t_4*v.six_r_w_1_t_39);
         /* (six_r-qd_5) rate of joint 5 */
-        const real six_r_qd_5_t = inv_six_r_w_1_t_12*(six_r_qd_1*six_r_w_1_t_18 +
-            six_r_qd_1_t_2*six_r_w_1_t_14 + six_r_qd_1_t_3*six_r_w_1_t_25 +
-            six_r_qd_1_t_4*six_r_w_1_t_22 + six_r_qd_4*six_r_w_1_t_15 -
-            six_r_S_dot_in_axes5_y*six_r_w_1_t_13);
+        const real six_r_qd_5_t = v.inv_six_r_w_1_t_12*(six_r_qd_1*v.six_r_w_1_t_18 +
+            six_r_qd_1_t_2*v.six_r_w_1_t_14 + six_r_qd_1_t_3*v.six_r_w_1_t_25 +
+            six_r_qd_1_t_4*v.six_r_w_1_t_22 - six_r_S_dot_in_axes5_y*v.six_r_w_1_t_13 -
+            six_r_qd_4_t*v.six_r_w_1_t_15);
         /* (six_r-qd_1) rate of joint 1 */
         o[0*count + k] = six_r_qd_1;
         /* (six_r-qd_2) rate of joint 2 */
@@ -9236,16 +8042,16 @@ INLINE void joint_rates_legs_six_r(const prepared *m, size_t w, size_t leg, size
         /* (six_r-qd_3) rate of joint 3 */
         o[2*count + k] = -six_r_qd_1_t_3;
         /* (six_r-qd_4) rate of joint 4 */
-        o[3*count + k] = six_r_qd_4;
+        o[3*count + k] = -six_r_qd_4_t;
         /* (six_r-qd_5) rate of joint 5 */
         o[4*count + k] = -six_r_qd_5_t;
-        o[6*count + k] = (six_r_qd_1 + six_r_qd_1_t_4) + (six_r_qd_1_t_3 + (six_r_qd_4 +
+        o[6*count + k] = (six_r_qd_1 + six_r_qd_1_t_4) + (six_r_qd_1_t_3 + (six_r_qd_4_t +
             six_r_qd_5_t));
-        o[5*count + k] = UNLESS(magnitude(six_r_w_1_t_12) > TOLERANCE*six_r_size) +
-            UNLESS(magnitude(six_r_w_1_t_28) > TOLERANCE*six_r_size) +
-            UNLESS(magnitude(six_r_w_1_t_49) > TOLERANCE*six_r_size) +
-            UNLESS(magnitude(six_r_w_1_t_67) > TOLERANCE*six_r_size) +
-            UNLESS(magnitude(six_r_w_1_t_79) > TOLERANCE*six_r_size);
+        o[5*count + k] = UNLESS(magnitude(v.six_r_w_1_t_12) > TOLERANCE*six_r_size) +
+            UNLESS(magnitude(v.six_r_w_1_t_28) > TOLERANCE*six_r_size) +
+            UNLESS(magnitude(v.six_r_w_1_t_49) > TOLERANCE*six_r_size) +
+            UNLESS(magnitude(v.six_r_w_1_t_67) > TOLERANCE*six_r_size) +
+            UNLESS(magnitude(v.six_r_w_1_t_79) > TOLERANCE*six_r_size);
     }
 }
 
@@ -9266,10 +8072,10 @@ INLINE void joint_rates_place_six_r(size_t w, size_t count, const real *o, size_
 INLINE void joint_rates_run(const prepared *m, const real *X, const real *V, const real *joints,
     real *qd, verdict *t)
 {
-    real s[15] = {0};
+    real s[9] = {0};
     real o_six_r[7*LEGS(LEGS_OF_six_r)] = {0};
-    joint_rates_before(1, X, V, s, t);
-    joint_rates_legs_six_r(m, 1, 0, 1, s, 0, LEGS(LEGS_OF_six_r), joints, o_six_r);
+    joint_rates_before(m, 1, X, s, t);
+    joint_rates_legs_six_r(m, 1, 0, 1, s, 0, LEGS(LEGS_OF_six_r), V, joints, o_six_r);
     for (size_t leg = 0; leg < LEGS_OF_six_r; ++leg) {
         joint_rates_place_six_r(1, LEGS(LEGS_OF_six_r), o_six_r, leg, leg, qd, t);
     }
@@ -9278,496 +8084,102 @@ INLINE void joint_rates_run(const prepared *m, const real *X, const real *V, con
 INLINE void joint_rates_run_lanes(const prepared *m, const real *X, const real *V, const real
     *joints, real *qd, verdict *t)
 {
-    real s[15*LANES];
+    real s[9*LANES];
     real o_six_r[7*LANES];
-    joint_rates_before(LANES, X, V, s, t);
+    joint_rates_before(m, LANES, X, s, t);
     for (size_t leg = 0; leg < LEGS_OF_six_r; ++leg) {
-        joint_rates_legs_six_r(m, LANES, leg, 0, s, 1, LANES, joints, o_six_r);
+        joint_rates_legs_six_r(m, LANES, leg, 0, s, 1, LANES, V, joints, o_six_r);
         joint_rates_place_six_r(LANES, LANES, o_six_r, leg, 0, qd, t);
     }
 }
 
 /* ---- joint_accelerations ---- */
-INLINE void joint_accelerations_before(size_t w, const real *X, const real *V, const real *A, real
-    *s, verdict *t)
+INLINE void joint_accelerations_before(const prepared *m, size_t w, const real *X, real *s,
+    verdict *t)
 {
     for (size_t k = 0; k < w; ++k) {
-        /* X: named entries */
-        const real X_3 = X[3*w + k];
-        const real X_4 = X[4*w + k];
-        const real X_5 = X[5*w + k];
-        const real X_6 = X[6*w + k];
-        const real quaternion_norm2 = X_3*X_3 + X_4*X_4 + X_5*X_5 + X_6*X_6;
-        const real quaternion_scale = 2/quaternion_norm2;
-        const real quaternion_sx = X_3*quaternion_scale;
-        const real quaternion_sy = X_4*quaternion_scale;
-        const real quaternion_sz = X_5*quaternion_scale;
-        const real quaternion_wx = X_6*quaternion_sx;
-        const real quaternion_wy = X_6*quaternion_sy;
-        const real quaternion_wz = X_6*quaternion_sz;
-        const real quaternion_xx = X_3*quaternion_sx;
-        const real quaternion_xy = X_3*quaternion_sy;
-        const real quaternion_xz = X_3*quaternion_sz;
-        const real quaternion_yy = X_4*quaternion_sy;
-        const real quaternion_yz = X_4*quaternion_sz;
-        const real quaternion_zz = X_5*quaternion_sz;
-        const real R_xx = 1 - quaternion_yy - quaternion_zz;
-        const real R_xy = quaternion_xy - quaternion_wz;
-        const real R_xz = quaternion_wy + quaternion_xz;
-        const real R_yx = quaternion_wz + quaternion_xy;
-        const real R_yy = 1 - quaternion_xx - quaternion_zz;
-        const real R_yz = quaternion_yz - quaternion_wx;
-        const real R_zx = quaternion_xz - quaternion_wy;
-        const real R_zy = quaternion_wx + quaternion_yz;
-        const real R_zz = 1 - quaternion_xx - quaternion_yy;
-        /* V: named entries */
-        const real V_0 = V[0*w + k];
-        const real t_dot_x = V_0;
-        const real V_1 = V[1*w + k];
-        const real t_dot_y = V_1;
-        const real V_2 = V[2*w + k];
-        const real t_dot_z = V_2;
-        const real V_3 = V[3*w + k];
-        const real omega_x = V_3;
-        const real V_4 = V[4*w + k];
-        const real omega_y = V_4;
-        const real V_5 = V[5*w + k];
-        const real omega_z = V_5;
-        /* A: named entries */
-        const real A_0 = A[0*w + k];
-        const real t_ddot_x = A_0;
-        const real A_1 = A[1*w + k];
-        const real t_ddot_y = A_1;
-        const real A_2 = A[2*w + k];
-        const real t_ddot_z = A_2;
-        const real A_3 = A[3*w + k];
-        const real alpha_x = A_3;
-        const real A_4 = A[4*w + k];
-        const real alpha_y = A_4;
-        const real A_5 = A[5*w + k];
-        const real alpha_z = A_5;
-        s[0*w + k] = R_xx;
-        s[1*w + k] = R_xy;
-        s[2*w + k] = R_xz;
-        s[3*w + k] = R_yx;
-        s[4*w + k] = R_yy;
-        s[5*w + k] = R_yz;
-        s[6*w + k] = R_zx;
-        s[7*w + k] = R_zy;
-        s[8*w + k] = R_zz;
-        s[9*w + k] = t_dot_x;
-        s[10*w + k] = t_dot_y;
-        s[11*w + k] = t_dot_z;
-        s[12*w + k] = omega_x;
-        s[13*w + k] = omega_y;
-        s[14*w + k] = omega_z;
-        s[15*w + k] = t_ddot_x;
-        s[16*w + k] = t_ddot_y;
-        s[17*w + k] = t_ddot_z;
-        s[18*w + k] = alpha_x;
-        s[19*w + k] = alpha_y;
-        s[20*w + k] = alpha_z;
-        t->invalid[k] += UNLESS(is_finite(quaternion_scale)) + UNLESS(quaternion_scale > 0);
+        values v;
+        stage_X(m, w, k, X, &v);
+        s[0*w + k] = v.R_xx;
+        s[1*w + k] = v.R_xy;
+        s[2*w + k] = v.R_xz;
+        s[3*w + k] = v.R_yx;
+        s[4*w + k] = v.R_yy;
+        s[5*w + k] = v.R_yz;
+        s[6*w + k] = v.R_zx;
+        s[7*w + k] = v.R_zy;
+        s[8*w + k] = v.R_zz;
+        t->invalid[k] += UNLESS(is_finite(v.quaternion_scale)) + UNLESS(v.quaternion_scale > 0);
     }
 }
 
 INLINE void joint_accelerations_legs_six_r(const prepared *m, size_t w, size_t leg, size_t legs,
-    const real *s, size_t states, size_t count, const real *joints, real *o)
+    const real *s, size_t states, size_t count, const real *V, const real *A, const real *joints,
+    real *o)
 {
-    static const size_t place_six_r_q_1[] = {0, 5, 10, 15, 20, 25, 0, 0};
-    static const size_t place_six_r_q_2[] = {1, 6, 11, 16, 21, 26, 1, 1};
-    static const size_t place_six_r_q_3[] = {2, 7, 12, 17, 22, 27, 2, 2};
-    static const size_t place_six_r_q_4[] = {3, 8, 13, 18, 23, 28, 3, 3};
-    static const size_t place_six_r_q_5[] = {4, 9, 14, 19, 24, 29, 4, 4};
     for (size_t k = 0; k < count; ++k) {
         const size_t i = leg + legs*k;
         const size_t j = states*k;
-        /* (six_r-c_1) cosine of the angle of joint 1 from its reference direction */
-        const real six_r_q_1 = joints[place_six_r_q_1[i]*w + j];
-        const real six_r_c_1 = -sine(six_r_q_1);
-        /* (six_r-s_1) sine of the angle of joint 1 from its reference direction */
-        const real six_r_s_1 = cosine(six_r_q_1);
-        /* (six_r-c_2) cosine of the angle of joint 2 from its reference direction */
-        const real six_r_q_2 = joints[place_six_r_q_2[i]*w + j];
-        const real six_r_c_2 = -sine(six_r_q_2);
-        /* (six_r-s_2) sine of the angle of joint 2 from its reference direction */
-        const real six_r_s_2 = cosine(six_r_q_2);
-        /* (six_r-c_3) cosine of the angle of joint 3 from its reference direction */
-        const real six_r_q_3 = joints[place_six_r_q_3[i]*w + j];
-        const real six_r_c_3 = cosine(six_r_q_3);
-        /* (six_r-s_3) sine of the angle of joint 3 from its reference direction */
-        const real six_r_s_3 = sine(six_r_q_3);
-        /* (six_r-c_4) cosine of the angle of joint 4 from its reference direction */
-        const real six_r_q_4 = joints[place_six_r_q_4[i]*w + j];
-        const real six_r_c_4 = -sine(six_r_q_4);
-        /* (six_r-s_4) sine of the angle of joint 4 from its reference direction */
-        const real six_r_s_4 = cosine(six_r_q_4);
-        /* (six_r-c_5) cosine of the angle of joint 5 from its reference direction */
-        const real six_r_q_5 = joints[place_six_r_q_5[i]*w + j];
-        const real six_r_c_5 = -sine(six_r_q_5);
-        /* (six_r-s_5) sine of the angle of joint 5 from its reference direction */
-        const real six_r_s_5 = cosine(six_r_q_5);
-        /* (six_r-S_dot) velocity of the connection point */
-        const real six_r_e_2_in_axes5_y = -six_r_c_4*six_r_s_5;
-        const real six_r_S_dot_t = -six_r_c_4*six_r_s_3;
-        const real six_r_S_dot_t_2 = -six_r_c_3*six_r_c_4;
-        const real six_r_S_dot_t_3 = six_r_S_dot_t*six_r_c_2 + six_r_S_dot_t_2*six_r_s_2;
-        const real six_r_S_dot_t_4 = six_r_S_dot_t*six_r_s_2 - six_r_S_dot_t_2*six_r_c_2;
-        const real six_r_S_dot_t_5 = six_r_c_1*six_r_s_4 - six_r_S_dot_t_3*six_r_s_1;
-        const real six_r_S_dot_t_6 = six_r_S_dot_t_3*six_r_c_1 + six_r_s_1*six_r_s_4;
-        const real six_r_base_frame_xx = m->six_r_base_frame_xx[i];
-        const real six_r_base_frame_xy = m->six_r_base_frame_xy[i];
-        const real six_r_base_frame_xz = m->six_r_base_frame_xz[i];
-        const real axis_z_six_r_axes5_x = six_r_S_dot_t_4*six_r_base_frame_xx +
-            six_r_S_dot_t_5*six_r_base_frame_xy + six_r_S_dot_t_6*six_r_base_frame_xz;
-        const real six_r_base_frame_yx = m->six_r_base_frame_yx[i];
-        const real six_r_base_frame_yy = m->six_r_base_frame_yy[i];
-        const real six_r_base_frame_yz = m->six_r_base_frame_yz[i];
-        const real axis_z_six_r_axes5_y = six_r_S_dot_t_4*six_r_base_frame_yx +
-            six_r_S_dot_t_5*six_r_base_frame_yy + six_r_S_dot_t_6*six_r_base_frame_yz;
-        const real six_r_base_frame_zx = m->six_r_base_frame_zx[i];
-        const real six_r_base_frame_zy = m->six_r_base_frame_zy[i];
-        const real six_r_base_frame_zz = m->six_r_base_frame_zz[i];
-        const real axis_z_six_r_axes5_z = six_r_S_dot_t_4*six_r_base_frame_zx +
-            six_r_S_dot_t_5*six_r_base_frame_zy + six_r_S_dot_t_6*six_r_base_frame_zz;
-        const real six_r_S_dot_t_7 = six_r_s_4*six_r_s_5;
-        const real six_r_S_dot_t_8 = six_r_c_3*six_r_c_5 - six_r_S_dot_t_7*six_r_s_3;
-        const real six_r_S_dot_t_9 = six_r_S_dot_t_7*six_r_c_3 + six_r_c_5*six_r_s_3;
-        const real six_r_S_dot_t_10 = six_r_S_dot_t_8*six_r_c_2 - six_r_S_dot_t_9*six_r_s_2;
-        const real six_r_S_dot_t_11 = six_r_S_dot_t_8*six_r_s_2 + six_r_S_dot_t_9*six_r_c_2;
-        const real six_r_S_dot_t_12 = six_r_c_1*six_r_e_2_in_axes5_y - six_r_S_dot_t_10*six_r_s_1;
-        const real six_r_S_dot_t_13 = six_r_S_dot_t_10*six_r_c_1 + six_r_e_2_in_axes5_y*six_r_s_1;
-        const real axis_y_six_r_axes5_x = six_r_S_dot_t_11*six_r_base_frame_xx +
-            six_r_S_dot_t_12*six_r_base_frame_xy + six_r_S_dot_t_13*six_r_base_frame_xz;
-        const real axis_y_six_r_axes5_y = six_r_S_dot_t_11*six_r_base_frame_yx +
-            six_r_S_dot_t_12*six_r_base_frame_yy + six_r_S_dot_t_13*six_r_base_frame_yz;
-        const real axis_y_six_r_axes5_z = six_r_S_dot_t_11*six_r_base_frame_zx +
-            six_r_S_dot_t_12*six_r_base_frame_zy + six_r_S_dot_t_13*six_r_base_frame_zz;
-        const real axis_x_six_r_axes5_x = axis_y_six_r_axes5_y*axis_z_six_r_axes5_z -
-            axis_y_six_r_axes5_z*axis_z_six_r_axes5_y;
-        const real axis_x_six_r_axes5_y = axis_y_six_r_axes5_z*axis_z_six_r_axes5_x -
-            axis_y_six_r_axes5_x*axis_z_six_r_axes5_z;
-        const real axis_x_six_r_axes5_z = axis_y_six_r_axes5_x*axis_z_six_r_axes5_y -
-            axis_y_six_r_axes5_y*axis_z_six_r_axes5_x;
-        const real R_xx = s[0*w + j];
-        const real R_xy = s[1*w + j];
-        const real R_xz = s[2*w + j];
-        const real six_r_platform_point_x = m->six_r_platform_point_x[i];
-        const real six_r_platform_point_y = m->six_r_platform_point_y[i];
-        const real six_r_platform_point_z = m->six_r_platform_point_z[i];
-        const real six_r_q_x = R_xx*six_r_platform_point_x + R_xy*six_r_platform_point_y +
-            R_xz*six_r_platform_point_z;
-        const real R_yx = s[3*w + j];
-        const real R_yy = s[4*w + j];
-        const real R_yz = s[5*w + j];
-        const real six_r_q_y = R_yx*six_r_platform_point_x + R_yy*six_r_platform_point_y +
-            R_yz*six_r_platform_point_z;
-        const real R_zx = s[6*w + j];
-        const real R_zy = s[7*w + j];
-        const real R_zz = s[8*w + j];
-        const real six_r_q_z = R_zx*six_r_platform_point_x + R_zy*six_r_platform_point_y +
-            R_zz*six_r_platform_point_z;
-        const real omega_y = s[13*w + j];
-        const real omega_z = s[14*w + j];
-        const real six_r_S_dot_t_14 = omega_y*six_r_q_z - omega_z*six_r_q_y;
-        const real omega_x = s[12*w + j];
-        const real six_r_S_dot_t_15 = omega_z*six_r_q_x - omega_x*six_r_q_z;
-        const real six_r_S_dot_t_16 = omega_x*six_r_q_y - omega_y*six_r_q_x;
-        const real t_dot_x = s[9*w + j];
-        const real six_r_S_dot_x = six_r_S_dot_t_14 + t_dot_x;
-        const real t_dot_y = s[10*w + j];
-        const real six_r_S_dot_y = six_r_S_dot_t_15 + t_dot_y;
-        const real t_dot_z = s[11*w + j];
-        const real six_r_S_dot_z = six_r_S_dot_t_16 + t_dot_z;
-        const real six_r_S_dot_in_axes5_x = axis_x_six_r_axes5_x*six_r_S_dot_x +
-            axis_x_six_r_axes5_y*six_r_S_dot_y + axis_x_six_r_axes5_z*six_r_S_dot_z;
-        const real six_r_S_dot_in_axes5_y = axis_y_six_r_axes5_x*six_r_S_dot_x +
-            axis_y_six_r_axes5_y*six_r_S_dot_y + axis_y_six_r_axes5_z*six_r_S_dot_z;
-        const real six_r_S_dot_in_axes5_z = axis_z_six_r_axes5_x*six_r_S_dot_x +
-            axis_z_six_r_axes5_y*six_r_S_dot_y + axis_z_six_r_axes5_z*six_r_S_dot_z;
-        /* (six_r-r_4) from joint 4 to the connection point, along the links */
-        const real six_r_platform_joint_offset_x = m->six_r_platform_joint_offset_x[i];
-        const real six_r_r_4_in_axes4_y = six_r_c_5*six_r_platform_joint_offset_x;
-        const real six_r_joint5_offset_x = m->six_r_joint5_offset_x[i];
-        const real six_r_r_4_in_axes4_z = six_r_joint5_offset_x +
-            six_r_platform_joint_offset_x*six_r_s_5;
-        const real six_r_r_4_in_axes3_y = -six_r_r_4_in_axes4_y*six_r_s_4;
-        const real six_r_r_4_in_axes3_z = six_r_c_4*six_r_r_4_in_axes4_y;
-        /* (six_r-r_3) from joint 3 to the connection point, along the links */
-        const real six_r_joint4_offset_x = m->six_r_joint4_offset_x[i];
-        const real six_r_r_3_in_axes3_x = six_r_joint4_offset_x + six_r_r_4_in_axes4_z;
-        const real six_r_r_3_in_axes2_y = six_r_c_3*six_r_r_4_in_axes3_y +
-            six_r_r_3_in_axes3_x*six_r_s_3;
-        const real six_r_r_3_t = six_r_r_4_in_axes3_z*six_r_s_4;
-        const real six_r_r_3_t_2 = -six_r_c_4*six_r_r_4_in_axes3_z;
-        const real six_r_r_3_in_axes5_z = six_r_r_3_t + six_r_c_4*six_r_r_4_in_axes3_y;
-        const real six_r_r_3_t_3 = -six_r_r_3_t_2 - six_r_r_4_in_axes3_y*six_r_s_4;
-        const real six_r_r_3_in_axes5_x = six_r_c_5*six_r_r_3_t_3 +
-            six_r_r_3_in_axes3_x*six_r_s_5;
-        const real six_r_r_3_in_axes5_y = six_r_c_5*six_r_r_3_in_axes3_x -
-            six_r_r_3_t_3*six_r_s_5;
-        /* (six_r-r_2) from joint 2 to the connection point, along the links */
-        const real six_r_joint3_offset_x = m->six_r_joint3_offset_x[i];
-        const real six_r_r_2_in_axes2_x = six_r_joint3_offset_x + six_r_c_3*six_r_r_3_in_axes3_x -
-            six_r_r_4_in_axes3_y*six_r_s_3;
-        const real six_r_r_2_in_axes1_y = six_r_c_2*six_r_r_2_in_axes2_x -
-            six_r_r_3_in_axes2_y*six_r_s_2;
-        const real six_r_r_2_t = six_r_c_3*six_r_r_2_in_axes2_x + six_r_r_3_in_axes2_y*six_r_s_3;
-        const real six_r_r_2_t_2 = six_r_c_3*six_r_r_3_in_axes2_y -
-            six_r_r_2_in_axes2_x*six_r_s_3;
-        const real six_r_r_2_in_axes5_z = six_r_r_3_t + six_r_c_4*six_r_r_2_t_2;
-        const real six_r_r_2_t_3 = -six_r_r_3_t_2 - six_r_r_2_t_2*six_r_s_4;
-        const real six_r_r_2_in_axes5_x = six_r_c_5*six_r_r_2_t_3 + six_r_r_2_t*six_r_s_5;
-        const real six_r_r_2_in_axes5_y = six_r_c_5*six_r_r_2_t - six_r_r_2_t_3*six_r_s_5;
-        /* (six_r-r_1) from joint 1 to the connection point, along the links */
-        const real six_r_joint2_offset_x = m->six_r_joint2_offset_x[i];
-        const real six_r_r_1_in_axes1_z = six_r_joint2_offset_x + six_r_c_2*six_r_r_3_in_axes2_y +
-            six_r_r_2_in_axes2_x*six_r_s_2;
-        const real six_r_r_1_t = six_r_c_2*six_r_r_2_in_axes1_y + six_r_r_1_in_axes1_z*six_r_s_2;
-        const real six_r_r_1_t_2 = six_r_c_2*six_r_r_1_in_axes1_z -
-            six_r_r_2_in_axes1_y*six_r_s_2;
-        const real six_r_r_1_t_3 = six_r_c_3*six_r_r_1_t + six_r_r_1_t_2*six_r_s_3;
-        const real six_r_r_1_t_4 = six_r_c_3*six_r_r_1_t_2 - six_r_r_1_t*six_r_s_3;
-        const real six_r_r_1_in_axes5_z = six_r_r_3_t + six_r_c_4*six_r_r_1_t_4;
-        const real six_r_r_1_t_5 = -six_r_r_3_t_2 - six_r_r_1_t_4*six_r_s_4;
-        const real six_r_r_1_in_axes5_x = six_r_c_5*six_r_r_1_t_5 + six_r_r_1_t_3*six_r_s_5;
-        const real six_r_r_1_in_axes5_y = six_r_c_5*six_r_r_1_t_3 - six_r_r_1_t_5*six_r_s_5;
-        /* (six_r-v_1) velocity of the connection point per rate of joint 1 */
-        const real six_r_v_1_t = six_r_c_2*six_r_s_3 + six_r_c_3*six_r_s_2;
-        const real six_r_v_1_t_2 = six_r_c_2*six_r_c_3 - six_r_s_2*six_r_s_3;
-        const real six_r_e_1_in_axes5_z = six_r_c_4*six_r_v_1_t_2;
-        const real six_r_v_1_t_3 = six_r_s_4*six_r_v_1_t_2;
-        const real six_r_e_1_in_axes5_x = six_r_s_5*six_r_v_1_t - six_r_c_5*six_r_v_1_t_3;
-        const real six_r_e_1_in_axes5_y = six_r_c_5*six_r_v_1_t + six_r_s_5*six_r_v_1_t_3;
-        const real six_r_v_1_in_axes5_x = six_r_e_1_in_axes5_y*six_r_r_1_in_axes5_z -
-            six_r_e_1_in_axes5_z*six_r_r_1_in_axes5_y;
-        const real six_r_v_1_in_axes5_y = six_r_e_1_in_axes5_z*six_r_r_1_in_axes5_x -
-            six_r_e_1_in_axes5_x*six_r_r_1_in_axes5_z;
-        const real six_r_v_1_in_axes5_z = six_r_e_1_in_axes5_x*six_r_r_1_in_axes5_y -
-            six_r_e_1_in_axes5_y*six_r_r_1_in_axes5_x;
-        /* (six_r-v_2) velocity of the connection point per rate of joint 2 */
-        const real six_r_e_2_in_axes5_x = six_r_c_4*six_r_c_5;
-        const real six_r_v_2_in_axes5_x = six_r_e_2_in_axes5_y*six_r_r_2_in_axes5_z -
-            six_r_r_2_in_axes5_y*six_r_s_4;
-        const real six_r_v_2_in_axes5_y = six_r_r_2_in_axes5_x*six_r_s_4 -
-            six_r_e_2_in_axes5_x*six_r_r_2_in_axes5_z;
-        const real six_r_v_2_in_axes5_z = six_r_e_2_in_axes5_x*six_r_r_2_in_axes5_y -
-            six_r_e_2_in_axes5_y*six_r_r_2_in_axes5_x;
-        /* (six_r-v_3) velocity of the connection point per rate of joint 3 */
-        const real six_r_v_3_in_axes5_x = six_r_e_2_in_axes5_y*six_r_r_3_in_axes5_z -
-            six_r_r_3_in_axes5_y*six_r_s_4;
-        const real six_r_v_3_in_axes5_y = six_r_r_3_in_axes5_x*six_r_s_4 -
-            six_r_e_2_in_axes5_x*six_r_r_3_in_axes5_z;
-        const real six_r_v_3_in_axes5_z = six_r_e_2_in_axes5_x*six_r_r_3_in_axes5_y -
-            six_r_e_2_in_axes5_y*six_r_r_3_in_axes5_x;
-        /* (six_r-v_4) velocity of the connection point per rate of joint 4 */
-        const real six_r_v_4_in_axes5_z = six_r_s_5*(six_r_c_5*six_r_r_4_in_axes4_z -
-            six_r_r_4_in_axes4_y*six_r_s_5) - six_r_c_5*(six_r_c_5*six_r_r_4_in_axes4_y +
-            six_r_r_4_in_axes4_z*six_r_s_5);
-        /* (six_r-n_m1) direction 1 of the moment that the platform joint transmits */
-        const real six_r_platform_joint_axis_platform_x = m->six_r_platform_joint_axis_platform_x[i];
-        const real six_r_platform_joint_axis_platform_y = m->six_r_platform_joint_axis_platform_y[i];
-        const real six_r_platform_joint_axis_platform_z = m->six_r_platform_joint_axis_platform_z[i];
-        const real six_r_n_m1_t = six_r_platform_joint_axis_platform_x*(R_xx*six_r_base_frame_xy +
-            R_yx*six_r_base_frame_yy + R_zx*six_r_base_frame_zy) +
-            six_r_platform_joint_axis_platform_y*(R_xy*six_r_base_frame_xy +
-            R_yy*six_r_base_frame_yy + R_zy*six_r_base_frame_zy) +
-            six_r_platform_joint_axis_platform_z*(R_xz*six_r_base_frame_xy +
-            R_yz*six_r_base_frame_yy + R_zz*six_r_base_frame_zy);
-        const real six_r_n_m1_t_2 = six_r_platform_joint_axis_platform_x*(R_xx*six_r_base_frame_xz
-            + R_yx*six_r_base_frame_yz + R_zx*six_r_base_frame_zz) +
-            six_r_platform_joint_axis_platform_y*(R_xy*six_r_base_frame_xz +
-            R_yy*six_r_base_frame_yz + R_zy*six_r_base_frame_zz) +
-            six_r_platform_joint_axis_platform_z*(R_xz*six_r_base_frame_xz +
-            R_yz*six_r_base_frame_yz + R_zz*six_r_base_frame_zz);
-        const real six_r_n_m1_t_3 = six_r_platform_joint_axis_platform_x*(R_xx*six_r_base_frame_xx
-            + R_yx*six_r_base_frame_yx + R_zx*six_r_base_frame_zx) +
-            six_r_platform_joint_axis_platform_y*(R_xy*six_r_base_frame_xx +
-            R_yy*six_r_base_frame_yx + R_zy*six_r_base_frame_zx) +
-            six_r_platform_joint_axis_platform_z*(R_xz*six_r_base_frame_xx +
-            R_yz*six_r_base_frame_yx + R_zz*six_r_base_frame_zx);
-        const real six_r_n_m1_t_4 = six_r_c_1*six_r_n_m1_t + six_r_n_m1_t_2*six_r_s_1;
-        const real six_r_n_m1_t_5 = six_r_c_1*six_r_n_m1_t_2 - six_r_n_m1_t*six_r_s_1;
-        const real six_r_n_m1_t_6 = six_r_c_2*six_r_n_m1_t_5 + six_r_n_m1_t_3*six_r_s_2;
-        const real six_r_n_m1_t_7 = six_r_c_2*six_r_n_m1_t_3 - six_r_n_m1_t_5*six_r_s_2;
-        const real six_r_n_m1_t_8 = six_r_c_3*six_r_n_m1_t_6 + six_r_n_m1_t_7*six_r_s_3;
-        const real six_r_n_m1_t_9 = six_r_c_3*six_r_n_m1_t_7 - six_r_n_m1_t_6*six_r_s_3;
-        const real six_r_n_m1_t_10 = six_r_c_4*six_r_n_m1_t_4 - six_r_n_m1_t_9*six_r_s_4;
-        const real six_r_n_m1_in_axes5_y = six_r_c_5*six_r_n_m1_t_10 + six_r_n_m1_t_8*six_r_s_5;
-        /* (six_r-n_m2) direction 2 of the moment that the platform joint transmits */
-        const real six_r_n_m2_in_axes5_z = six_r_c_5*six_r_n_m1_t_8 - six_r_n_m1_t_10*six_r_s_5;
-        /* (six_r-w_1) force part of reciprocal wrench 1 */
-        const real six_r_end_p1_in_axes5_z = six_r_c_4*six_r_n_m1_t_9 + six_r_n_m1_t_4*six_r_s_4;
-        const real six_r_w_1_t = six_r_e_1_in_axes5_x*six_r_n_m2_in_axes5_z -
-            six_r_e_1_in_axes5_y*six_r_n_m1_in_axes5_y;
-        const real six_r_w_1_t_2 = six_r_e_2_in_axes5_x*six_r_n_m2_in_axes5_z -
-            six_r_e_2_in_axes5_y*six_r_n_m1_in_axes5_y;
-        const real six_r_w_1_t_3 = six_r_e_1_in_axes5_y*six_r_end_p1_in_axes5_z -
-            six_r_e_1_in_axes5_z*six_r_n_m2_in_axes5_z;
-        const real six_r_w_1_t_4 = six_r_e_2_in_axes5_y*six_r_end_p1_in_axes5_z -
-            six_r_n_m2_in_axes5_z*six_r_s_4;
-        const real six_r_size = m->six_r_size[i];
-        const real six_r_w_1_t_5 = six_r_size*six_r_w_1_t;
-        const real six_r_w_1_t_6 = six_r_size*six_r_w_1_t_3;
-        const real six_r_w_1_t_7 = six_r_size*six_r_w_1_t_2;
-        const real six_r_w_1_t_8 = six_r_size*six_r_w_1_t_4;
-        const real six_r_w_1_t_9 = six_r_size*(six_r_c_5*six_r_n_m1_in_axes5_y -
-            six_r_n_m2_in_axes5_z*six_r_s_5);
-        const real six_r_w_1_t_10 = -six_r_c_5*six_r_end_p1_in_axes5_z*six_r_size;
-        const real six_r_w_1_t_11 = six_r_n_m2_in_axes5_z*six_r_size;
-        const real six_r_size_t = m->six_r_size_t[i];
-        const real six_r_w_1_t_12 = root(six_r_size_t + six_r_w_1_t_11*six_r_w_1_t_11);
-        const real inv_six_r_w_1_t_12 = 1/six_r_w_1_t_12;
-        const real six_r_w_1_t_13 = inv_six_r_w_1_t_12*six_r_platform_joint_offset_x;
-        const real six_r_w_1_t_14 = inv_six_r_w_1_t_12*six_r_w_1_t_11;
-        const real six_r_w_1_t_15 = six_r_w_1_t_10*six_r_w_1_t_14;
-        const real six_r_w_1_t_16 = six_r_w_1_t_13*six_r_w_1_t_15;
-        const real six_r_w_1_t_17 = six_r_w_1_t_10 - six_r_w_1_t_14*six_r_w_1_t_15;
-        const real six_r_w_1_t_18 = six_r_v_1_in_axes5_y*six_r_w_1_t_13 -
-            six_r_w_1_t_14*six_r_w_1_t_6;
-        const real six_r_w_1_t_19 = six_r_v_1_in_axes5_y - six_r_w_1_t_13*six_r_w_1_t_18;
-        const real six_r_w_1_t_20 = six_r_w_1_t_6 + six_r_w_1_t_14*six_r_w_1_t_18;
-        const real six_r_w_1_t_21 = six_r_w_1_t_14*six_r_w_1_t_8;
-        const real six_r_w_1_t_22 = six_r_v_2_in_axes5_y*six_r_w_1_t_13 - six_r_w_1_t_21;
-        const real six_r_w_1_t_23 = six_r_v_2_in_axes5_y - six_r_w_1_t_13*six_r_w_1_t_22;
-        const real six_r_w_1_t_24 = six_r_w_1_t_8 + six_r_w_1_t_14*six_r_w_1_t_22;
-        const real six_r_w_1_t_25 = six_r_w_1_t_21 - six_r_v_3_in_axes5_y*six_r_w_1_t_13;
-        const real six_r_w_1_t_26 = six_r_v_3_in_axes5_y + six_r_w_1_t_13*six_r_w_1_t_25;
-        const real six_r_w_1_t_27 = six_r_w_1_t_8 - six_r_w_1_t_14*six_r_w_1_t_25;
-        const real six_r_w_1_t_28 = root(six_r_v_4_in_axes5_z*six_r_v_4_in_axes5_z +
-            six_r_w_1_t_16*six_r_w_1_t_16 + six_r_w_1_t_17*six_r_w_1_t_17 +
-            six_r_w_1_t_9*six_r_w_1_t_9);
-        const real inv_six_r_w_1_t_28 = 1/six_r_w_1_t_28;
-        const real six_r_w_1_t_29 = inv_six_r_w_1_t_28*six_r_w_1_t_16;
-        const real six_r_w_1_t_30 = inv_six_r_w_1_t_28*six_r_v_4_in_axes5_z;
-        const real six_r_w_1_t_31 = inv_six_r_w_1_t_28*six_r_w_1_t_9;
-        const real six_r_w_1_t_32 = inv_six_r_w_1_t_28*six_r_w_1_t_17;
-        const real six_r_w_1_t_33 = six_r_w_1_t_19*six_r_w_1_t_29 + six_r_w_1_t_20*six_r_w_1_t_32
-            + six_r_w_1_t_31*six_r_w_1_t_5 - six_r_v_1_in_axes5_z*six_r_w_1_t_30;
-        const real six_r_w_1_t_34 = six_r_w_1_t_29*six_r_w_1_t_33 - six_r_w_1_t_19;
-        const real six_r_w_1_t_35 = six_r_v_1_in_axes5_z + six_r_w_1_t_30*six_r_w_1_t_33;
-        const real six_r_w_1_t_36 = six_r_w_1_t_31*six_r_w_1_t_33 - six_r_w_1_t_5;
-        const real six_r_w_1_t_37 = six_r_w_1_t_32*six_r_w_1_t_33 - six_r_w_1_t_20;
-        const real six_r_w_1_t_38 = six_r_w_1_t_31*six_r_w_1_t_7;
-        const real six_r_w_1_t_39 = six_r_w_1_t_38 + six_r_w_1_t_23*six_r_w_1_t_29 +
-            six_r_w_1_t_24*six_r_w_1_t_32 - six_r_v_2_in_axes5_z*six_r_w_1_t_30;
-        const real six_r_w_1_t_40 = six_r_w_1_t_29*six_r_w_1_t_39 - six_r_w_1_t_23;
-        const real six_r_w_1_t_41 = six_r_v_2_in_axes5_z + six_r_w_1_t_30*six_r_w_1_t_39;
-        const real six_r_w_1_t_42 = six_r_w_1_t_31*six_r_w_1_t_39 - six_r_w_1_t_7;
-        const real six_r_w_1_t_43 = six_r_w_1_t_32*six_r_w_1_t_39 - six_r_w_1_t_24;
-        const real six_r_w_1_t_44 = six_r_w_1_t_38 + six_r_w_1_t_26*six_r_w_1_t_29 +
-            six_r_w_1_t_27*six_r_w_1_t_32 - six_r_v_3_in_axes5_z*six_r_w_1_t_30;
-        const real six_r_w_1_t_45 = six_r_w_1_t_29*six_r_w_1_t_44 - six_r_w_1_t_26;
-        const real six_r_w_1_t_46 = six_r_v_3_in_axes5_z + six_r_w_1_t_30*six_r_w_1_t_44;
-        const real six_r_w_1_t_47 = six_r_w_1_t_31*six_r_w_1_t_44 - six_r_w_1_t_7;
-        const real six_r_w_1_t_48 = six_r_w_1_t_32*six_r_w_1_t_44 - six_r_w_1_t_27;
-        const real six_r_w_1_t_49 = root(six_r_v_1_in_axes5_x*six_r_v_1_in_axes5_x +
-            six_r_w_1_t_34*six_r_w_1_t_34 + six_r_w_1_t_35*six_r_w_1_t_35 +
-            six_r_w_1_t_36*six_r_w_1_t_36 + six_r_w_1_t_37*six_r_w_1_t_37);
-        const real inv_six_r_w_1_t_49 = 1/six_r_w_1_t_49;
-        const real six_r_w_1_t_50 = inv_six_r_w_1_t_49*six_r_v_1_in_axes5_x;
-        const real six_r_w_1_t_51 = inv_six_r_w_1_t_49*six_r_w_1_t_34;
-        const real six_r_w_1_t_52 = inv_six_r_w_1_t_49*six_r_w_1_t_35;
-        const real six_r_w_1_t_53 = inv_six_r_w_1_t_49*six_r_w_1_t_36;
-        const real six_r_w_1_t_54 = inv_six_r_w_1_t_49*six_r_w_1_t_37;
-        const real six_r_w_1_t_55 = six_r_v_2_in_axes5_x*six_r_w_1_t_50 +
-            six_r_w_1_t_40*six_r_w_1_t_51 + six_r_w_1_t_41*six_r_w_1_t_52 +
-            six_r_w_1_t_42*six_r_w_1_t_53 + six_r_w_1_t_43*six_r_w_1_t_54;
-        const real six_r_w_1_t_56 = six_r_v_2_in_axes5_x - six_r_w_1_t_50*six_r_w_1_t_55;
-        const real six_r_w_1_t_57 = six_r_w_1_t_40 - six_r_w_1_t_51*six_r_w_1_t_55;
-        const real six_r_w_1_t_58 = six_r_w_1_t_41 - six_r_w_1_t_52*six_r_w_1_t_55;
-        const real six_r_w_1_t_59 = six_r_w_1_t_42 - six_r_w_1_t_53*six_r_w_1_t_55;
-        const real six_r_w_1_t_60 = six_r_w_1_t_43 - six_r_w_1_t_54*six_r_w_1_t_55;
-        const real six_r_w_1_t_61 = six_r_v_3_in_axes5_x*six_r_w_1_t_50 +
-            six_r_w_1_t_45*six_r_w_1_t_51 + six_r_w_1_t_46*six_r_w_1_t_52 +
-            six_r_w_1_t_47*six_r_w_1_t_53 + six_r_w_1_t_48*six_r_w_1_t_54;
-        const real six_r_w_1_t_62 = six_r_v_3_in_axes5_x - six_r_w_1_t_50*six_r_w_1_t_61;
-        const real six_r_w_1_t_63 = six_r_w_1_t_45 - six_r_w_1_t_51*six_r_w_1_t_61;
-        const real six_r_w_1_t_64 = six_r_w_1_t_46 - six_r_w_1_t_52*six_r_w_1_t_61;
-        const real six_r_w_1_t_65 = six_r_w_1_t_47 - six_r_w_1_t_53*six_r_w_1_t_61;
-        const real six_r_w_1_t_66 = six_r_w_1_t_48 - six_r_w_1_t_54*six_r_w_1_t_61;
-        const real six_r_w_1_t_67 = root(six_r_w_1_t_56*six_r_w_1_t_56 +
-            six_r_w_1_t_57*six_r_w_1_t_57 + six_r_w_1_t_58*six_r_w_1_t_58 +
-            six_r_w_1_t_59*six_r_w_1_t_59 + six_r_w_1_t_60*six_r_w_1_t_60);
-        const real inv_six_r_w_1_t_67 = 1/six_r_w_1_t_67;
-        const real six_r_w_1_t_68 = inv_six_r_w_1_t_67*six_r_w_1_t_56;
-        const real six_r_w_1_t_69 = inv_six_r_w_1_t_67*six_r_w_1_t_57;
-        const real six_r_w_1_t_70 = inv_six_r_w_1_t_67*six_r_w_1_t_58;
-        const real six_r_w_1_t_71 = inv_six_r_w_1_t_67*six_r_w_1_t_59;
-        const real six_r_w_1_t_72 = inv_six_r_w_1_t_67*six_r_w_1_t_60;
-        const real six_r_w_1_t_73 = six_r_w_1_t_62*six_r_w_1_t_68 + six_r_w_1_t_63*six_r_w_1_t_69
-            + six_r_w_1_t_64*six_r_w_1_t_70 + six_r_w_1_t_65*six_r_w_1_t_71 +
-            six_r_w_1_t_66*six_r_w_1_t_72;
-        const real six_r_w_1_t_74 = six_r_w_1_t_62 - six_r_w_1_t_68*six_r_w_1_t_73;
-        const real six_r_w_1_t_75 = six_r_w_1_t_63 - six_r_w_1_t_69*six_r_w_1_t_73;
-        const real six_r_w_1_t_76 = six_r_w_1_t_64 - six_r_w_1_t_70*six_r_w_1_t_73;
-        const real six_r_w_1_t_77 = six_r_w_1_t_65 - six_r_w_1_t_71*six_r_w_1_t_73;
-        const real six_r_w_1_t_78 = six_r_w_1_t_66 - six_r_w_1_t_72*six_r_w_1_t_73;
-        const real six_r_w_1_t_79 = root(six_r_w_1_t_74*six_r_w_1_t_74 +
-            six_r_w_1_t_75*six_r_w_1_t_75 + six_r_w_1_t_76*six_r_w_1_t_76 +
-            six_r_w_1_t_77*six_r_w_1_t_77 + six_r_w_1_t_78*six_r_w_1_t_78);
-        /* (six_r-eta_1) rate at which the joints turn along moment direction 1 */
-        const real six_r_omega_in_axes5_x = axis_x_six_r_axes5_x*omega_x +
-            axis_x_six_r_axes5_y*omega_y + axis_x_six_r_axes5_z*omega_z;
-        const real six_r_omega_in_axes5_y = axis_y_six_r_axes5_x*omega_x +
-            axis_y_six_r_axes5_y*omega_y + axis_y_six_r_axes5_z*omega_z;
-        const real six_r_eta_1 = six_r_n_m1_in_axes5_y*six_r_omega_in_axes5_y -
-            six_r_n_m2_in_axes5_z*six_r_omega_in_axes5_x;
-        /* (six_r-eta_2) rate at which the joints turn along moment direction 2 */
-        const real six_r_omega_in_axes5_z = axis_z_six_r_axes5_x*omega_x +
-            axis_z_six_r_axes5_y*omega_y + axis_z_six_r_axes5_z*omega_z;
-        const real six_r_eta_2_t = six_r_end_p1_in_axes5_z*six_r_omega_in_axes5_y -
-            six_r_n_m2_in_axes5_z*six_r_omega_in_axes5_z;
+        values_six_r v;
+        stage_six_r_X(m, w, i, j, s, &v);
+        stage_six_r_q(m, w, i, j, joints, &v);
+        stage_six_r_A_X(w, j, A, &v);
+        stage_six_r_A_q(w, j, A, &v);
+        stage_six_r_V_X(w, j, V, &v);
+        stage_six_r_V_q(w, j, V, &v);
+        stage_six_r_X_q(m, i, &v);
+        stage_six_r_A_V_X(w, j, V, &v);
+        stage_six_r_A_X_q(w, j, A, &v);
+        stage_six_r_V_X_q(&v);
+        stage_six_r_Z_joint_accelerations(&v);
         /* (six_r-qd_1) rate of joint 1 */
-        const real inv_six_r_w_1_t_79 = 1/six_r_w_1_t_79;
-        const real six_r_qd_1_t = inv_six_r_w_1_t_79*six_r_w_1_t_74;
-        const real six_r_qd_1_t_2 = inv_six_r_w_1_t_79*six_r_w_1_t_75;
-        const real six_r_qd_1_t_3 = inv_six_r_w_1_t_79*six_r_w_1_t_76;
-        const real six_r_qd_1_t_4 = inv_six_r_w_1_t_79*six_r_w_1_t_77;
-        const real six_r_qd_1_t_5 = inv_six_r_w_1_t_79*six_r_w_1_t_78;
-        const real six_r_qd_1_t_6 = six_r_eta_1*six_r_size;
-        const real six_r_qd_1_t_7 = six_r_eta_2_t*six_r_size;
-        const real six_r_qd_1_t_8 = inv_six_r_w_1_t_79*(six_r_S_dot_in_axes5_y*six_r_qd_1_t_2 +
-            six_r_qd_1_t_5*six_r_qd_1_t_7 - six_r_S_dot_in_axes5_x*six_r_qd_1_t -
-            six_r_S_dot_in_axes5_z*six_r_qd_1_t_3 - six_r_qd_1_t_4*six_r_qd_1_t_6);
-        const real six_r_qd_1_t_9 = -inv_six_r_w_1_t_67*(six_r_S_dot_in_axes5_y*six_r_w_1_t_69 +
-            six_r_qd_1_t_7*six_r_w_1_t_72 - six_r_S_dot_in_axes5_x*six_r_w_1_t_68 -
-            six_r_S_dot_in_axes5_z*six_r_w_1_t_70 - six_r_qd_1_t_6*six_r_w_1_t_71 -
-            six_r_qd_1_t_8*six_r_w_1_t_73);
-        const real six_r_qd_1 = inv_six_r_w_1_t_49*(six_r_S_dot_in_axes5_x*six_r_w_1_t_50 +
-            six_r_S_dot_in_axes5_z*six_r_w_1_t_52 + six_r_qd_1_t_6*six_r_w_1_t_53 +
-            six_r_qd_1_t_8*six_r_w_1_t_61 - six_r_S_dot_in_axes5_y*six_r_w_1_t_51 -
-            six_r_qd_1_t_7*six_r_w_1_t_54 - six_r_qd_1_t_9*six_r_w_1_t_55);
+        const real six_r_size = m->six_r_size[i];
+        const real six_r_qd_1_t_6 = v.six_r_eta_1*six_r_size;
+        const real six_r_qd_1_t_7 = v.six_r_eta_2_t*six_r_size;
+        const real six_r_qd_1_t_8 =
+            v.inv_six_r_w_1_t_79*(v.six_r_S_dot_in_axes5_y*v.six_r_qd_1_t_2 +
+            v.six_r_qd_1_t_5*six_r_qd_1_t_7 - v.six_r_S_dot_in_axes5_x*v.six_r_qd_1_t -
+            v.six_r_S_dot_in_axes5_z*v.six_r_qd_1_t_3 - v.six_r_qd_1_t_4*six_r_qd_1_t_6);
+        const real six_r_qd_1_t_9 =
+            -v.inv_six_r_w_1_t_67*(v.six_r_S_dot_in_axes5_y*v.six_r_w_1_t_69 +
+            six_r_qd_1_t_7*v.six_r_w_1_t_72 - v.six_r_S_dot_in_axes5_x*v.six_r_w_1_t_68 -
+            v.six_r_S_dot_in_axes5_z*v.six_r_w_1_t_70 - six_r_qd_1_t_6*v.six_r_w_1_t_71 -
+            six_r_qd_1_t_8*v.six_r_w_1_t_73);
+        const real six_r_qd_1 = v.inv_six_r_w_1_t_49*(v.six_r_S_dot_in_axes5_x*v.six_r_w_1_t_50 +
+            v.six_r_S_dot_in_axes5_z*v.six_r_w_1_t_52 + six_r_qd_1_t_6*v.six_r_w_1_t_53 +
+            six_r_qd_1_t_8*v.six_r_w_1_t_61 - v.six_r_S_dot_in_axes5_y*v.six_r_w_1_t_51 -
+            six_r_qd_1_t_7*v.six_r_w_1_t_54 - six_r_qd_1_t_9*v.six_r_w_1_t_55);
         /* (six_r-qd_4) rate of joint 4 */
-        const real six_r_qd_4 = -inv_six_r_w_1_t_28*(six_r_S_dot_in_axes5_y*six_r_w_1_t_29 +
-            six_r_qd_1_t_7*six_r_w_1_t_32 + six_r_qd_1_t_8*six_r_w_1_t_44 -
-            six_r_S_dot_in_axes5_z*six_r_w_1_t_30 - six_r_qd_1*six_r_w_1_t_33 -
-            six_r_qd_1_t_6*six_r_w_1_t_31 - six_r_qd_1_t_9*six_r_w_1_t_39);
+        const real six_r_qd_4_t = v.inv_six_r_w_1_t_28*(v.six_r_S_dot_in_axes5_y*v.six_r_w_1_t_29
+            + six_r_qd_1_t_7*v.six_r_w_1_t_32 + six_r_qd_1_t_8*v.six_r_w_1_t_44 -
+            v.six_r_S_dot_in_axes5_z*v.six_r_w_1_t_30 - six_r_qd_1*v.six_r_w_1_t_33 -
+            six_r_qd_1_t_6*v.six_r_w_1_t_31 - six_r_qd_1_t_9*v.six_r_w_1_t_39);
         /* (six_r-qd_5) rate of joint 5 */
-        const real six_r_qd_5_t = inv_six_r_w_1_t_12*(six_r_qd_1*six_r_w_1_t_18 +
-            six_r_qd_1_t_7*six_r_w_1_t_14 + six_r_qd_1_t_8*six_r_w_1_t_25 +
-            six_r_qd_1_t_9*six_r_w_1_t_22 + six_r_qd_4*six_r_w_1_t_15 -
-            six_r_S_dot_in_axes5_y*six_r_w_1_t_13);
+        const real six_r_qd_5_t = v.inv_six_r_w_1_t_12*(six_r_qd_1*v.six_r_w_1_t_18 +
+            six_r_qd_1_t_7*v.six_r_w_1_t_14 + six_r_qd_1_t_8*v.six_r_w_1_t_25 +
+            six_r_qd_1_t_9*v.six_r_w_1_t_22 - v.six_r_S_dot_in_axes5_y*v.six_r_w_1_t_13 -
+            six_r_qd_4_t*v.six_r_w_1_t_15);
         /* (six_r-omega_1) angular velocity of link 1 */
-        const real six_r_omega_1_in_axes2_x = six_r_qd_1*six_r_s_2;
-        const real six_r_omega_1_in_axes2_y = six_r_c_2*six_r_qd_1;
-        const real six_r_omega_1_in_axes5_x = six_r_e_1_in_axes5_x*six_r_qd_1;
-        const real six_r_omega_1_in_axes5_y = six_r_e_1_in_axes5_y*six_r_qd_1;
-        const real six_r_omega_1_in_axes5_z = six_r_e_1_in_axes5_z*six_r_qd_1;
+        const real six_r_omega_1_in_axes2_x = v.six_r_c_2*six_r_qd_1;
+        const real six_r_omega_1_in_axes2_y = -six_r_qd_1*v.six_r_s_2;
+        const real six_r_omega_1_in_axes5_x = v.six_r_e_1_in_axes5_x*six_r_qd_1;
+        const real six_r_omega_1_in_axes5_y = v.six_r_e_1_in_axes5_y*six_r_qd_1;
+        const real six_r_omega_1_in_axes5_z = v.six_r_e_1_in_axes5_z*six_r_qd_1;
         /* (six_r-W_1) centripetal tensor of link 1 */
         const real six_r_W_1_in_axes5_xy = six_r_omega_1_in_axes5_x*six_r_omega_1_in_axes5_y;
         const real six_r_W_1_in_axes5_xz = six_r_omega_1_in_axes5_x*six_r_omega_1_in_axes5_z;
         const real six_r_W_1_in_axes5_yz = six_r_omega_1_in_axes5_y*six_r_omega_1_in_axes5_z;
         /* (six_r-omega_2) angular velocity of link 2 */
-        const real six_r_omega_2_in_axes3_x = six_r_c_3*six_r_omega_1_in_axes2_x +
-            six_r_omega_1_in_axes2_y*six_r_s_3;
-        const real six_r_omega_2_in_axes3_y = six_r_c_3*six_r_omega_1_in_axes2_y -
-            six_r_omega_1_in_axes2_x*six_r_s_3;
+        const real six_r_omega_2_in_axes3_x = six_r_omega_1_in_axes2_x*v.six_r_s_3 -
+            v.six_r_c_3*six_r_omega_1_in_axes2_y;
+        const real six_r_omega_2_in_axes3_y = v.six_r_c_3*six_r_omega_1_in_axes2_x +
+            six_r_omega_1_in_axes2_y*v.six_r_s_3;
         const real six_r_omega_2_in_axes5_x = six_r_omega_1_in_axes5_x +
-            six_r_e_2_in_axes5_x*six_r_qd_1_t_9;
+            v.six_r_e_2_in_axes5_x*six_r_qd_1_t_9;
         const real six_r_omega_2_in_axes5_y = six_r_omega_1_in_axes5_y +
-            six_r_e_2_in_axes5_y*six_r_qd_1_t_9;
-        const real six_r_omega_2_in_axes5_z = six_r_omega_1_in_axes5_z + six_r_qd_1_t_9*six_r_s_4;
+            v.six_r_e_2_in_axes5_y*six_r_qd_1_t_9;
+        const real six_r_omega_2_in_axes5_z = six_r_omega_1_in_axes5_z +
+            v.six_r_c_4*six_r_qd_1_t_9;
         /* (six_r-W_2) centripetal tensor of link 2 */
         const real six_r_W_2_in_axes2_yz = six_r_omega_1_in_axes2_y*six_r_qd_1_t_9;
         const real six_r_W_2_in_axes5_xy = six_r_omega_2_in_axes5_x*six_r_omega_2_in_axes5_y;
@@ -9775,223 +8187,177 @@ INLINE void joint_accelerations_legs_six_r(const prepared *m, size_t w, size_t l
         const real six_r_W_2_in_axes5_yz = six_r_omega_2_in_axes5_y*six_r_omega_2_in_axes5_z;
         /* (six_r-omega_3) angular velocity of link 3 */
         const real six_r_omega_3_in_axes3_z = six_r_qd_1_t_9 - six_r_qd_1_t_8;
-        const real six_r_omega_3_in_axes4_x = six_r_c_4*six_r_omega_2_in_axes3_y +
-            six_r_omega_3_in_axes3_z*six_r_s_4;
-        const real six_r_omega_3_in_axes4_y = six_r_c_4*six_r_omega_3_in_axes3_z -
-            six_r_omega_2_in_axes3_y*six_r_s_4;
-        const real six_r_omega_3_t = -six_r_c_5*six_r_omega_3_in_axes4_y;
-        const real six_r_omega_3_t_2 = six_r_omega_3_in_axes4_y*six_r_s_5;
-        const real six_r_omega_3_in_axes5_x = six_r_omega_2_in_axes3_x*six_r_s_5 -
-            six_r_omega_3_t;
-        const real six_r_omega_3_in_axes5_y = six_r_c_5*six_r_omega_2_in_axes3_x -
-            six_r_omega_3_t_2;
+        const real six_r_omega_3_in_axes4_x = six_r_omega_3_in_axes3_z*v.six_r_s_4 -
+            v.six_r_c_4*six_r_omega_2_in_axes3_x;
+        const real six_r_omega_3_in_axes4_y = v.six_r_c_4*six_r_omega_3_in_axes3_z +
+            six_r_omega_2_in_axes3_x*v.six_r_s_4;
+        const real six_r_omega_3_t = six_r_omega_3_in_axes4_x*v.six_r_s_5;
+        const real six_r_omega_3_t_2 = v.six_r_c_5*six_r_omega_3_in_axes4_x;
+        const real six_r_omega_3_in_axes5_x = six_r_omega_3_t +
+            v.six_r_c_5*six_r_omega_2_in_axes3_y;
+        const real six_r_omega_3_in_axes5_y = six_r_omega_3_t_2 -
+            six_r_omega_2_in_axes3_y*v.six_r_s_5;
         /* (six_r-W_3) centripetal tensor of link 3 */
         const real six_r_W_3_in_axes5_xy = six_r_omega_3_in_axes5_x*six_r_omega_3_in_axes5_y;
         /* (six_r-omega_4) angular velocity of link 4 */
-        const real six_r_omega_4_in_axes4_z = six_r_omega_2_in_axes3_x + six_r_qd_4;
-        const real six_r_omega_4_in_axes5_x = six_r_omega_4_in_axes4_z*six_r_s_5 -
-            six_r_omega_3_t;
-        const real six_r_omega_4_in_axes5_y = six_r_c_5*six_r_omega_4_in_axes4_z -
-            six_r_omega_3_t_2;
+        const real six_r_omega_4_in_axes4_z = six_r_omega_2_in_axes3_y - six_r_qd_4_t;
+        const real six_r_omega_4_in_axes5_x = six_r_omega_3_t +
+            v.six_r_c_5*six_r_omega_4_in_axes4_z;
+        const real six_r_omega_4_in_axes5_y = six_r_omega_3_t_2 -
+            six_r_omega_4_in_axes4_z*v.six_r_s_5;
         /* (six_r-W_4) centripetal tensor of link 4 */
         const real six_r_W_4_in_axes5_xy = six_r_omega_4_in_axes5_x*six_r_omega_4_in_axes5_y;
         /* (six_r-omega_5) angular velocity of link 5 */
-        const real six_r_omega_5_in_axes5_z = six_r_omega_3_in_axes4_x - six_r_qd_5_t;
-        /* (six_r-a_p) acceleration of the connection point without its centripetal part */
-        const real alpha_y = s[19*w + j];
-        const real alpha_z = s[20*w + j];
-        const real t_ddot_x = s[15*w + j];
-        const real six_r_a_p_x = t_ddot_x + alpha_y*six_r_q_z - alpha_z*six_r_q_y;
-        const real alpha_x = s[18*w + j];
-        const real t_ddot_y = s[16*w + j];
-        const real six_r_a_p_y = t_ddot_y + alpha_z*six_r_q_x - alpha_x*six_r_q_z;
-        const real t_ddot_z = s[17*w + j];
-        const real six_r_a_p_z = t_ddot_z + alpha_x*six_r_q_y - alpha_y*six_r_q_x;
-        /* (six_r-S_ddot) acceleration of the connection point */
-        const real six_r_S_ddot_x = six_r_a_p_x + omega_y*six_r_S_dot_t_16 -
-            omega_z*six_r_S_dot_t_15;
-        const real six_r_S_ddot_y = six_r_a_p_y + omega_z*six_r_S_dot_t_14 -
-            omega_x*six_r_S_dot_t_16;
-        const real six_r_S_ddot_z = six_r_a_p_z + omega_x*six_r_S_dot_t_15 -
-            omega_y*six_r_S_dot_t_14;
+        const real six_r_omega_5_in_axes5_z = six_r_omega_3_in_axes4_y - six_r_qd_5_t;
         /* (six_r-zeta_2) angular acceleration of link 2 from the turning of axis 2 */
         const real six_r_zeta_2_in_axes2_y = -six_r_omega_1_in_axes2_x*six_r_qd_1_t_9;
-        const real six_r_zeta_2_in_axes3_x = six_r_W_2_in_axes2_yz*six_r_c_3 +
-            six_r_s_3*six_r_zeta_2_in_axes2_y;
-        const real six_r_zeta_2_in_axes3_y = six_r_c_3*six_r_zeta_2_in_axes2_y -
-            six_r_W_2_in_axes2_yz*six_r_s_3;
-        const real six_r_zeta_2_in_axes5_z = six_r_c_4*six_r_zeta_2_in_axes3_y;
-        const real six_r_zeta_2_t = six_r_s_4*six_r_zeta_2_in_axes3_y;
-        const real six_r_zeta_2_in_axes5_x = six_r_s_5*six_r_zeta_2_in_axes3_x -
-            six_r_c_5*six_r_zeta_2_t;
-        const real six_r_zeta_2_in_axes5_y = six_r_c_5*six_r_zeta_2_in_axes3_x +
-            six_r_s_5*six_r_zeta_2_t;
+        const real six_r_zeta_2_in_axes3_x = six_r_W_2_in_axes2_yz*v.six_r_s_3 -
+            v.six_r_c_3*six_r_zeta_2_in_axes2_y;
+        const real six_r_zeta_2_in_axes3_y = six_r_W_2_in_axes2_yz*v.six_r_c_3 +
+            v.six_r_s_3*six_r_zeta_2_in_axes2_y;
+        const real six_r_zeta_2_t = v.six_r_c_4*six_r_zeta_2_in_axes3_x;
+        const real six_r_zeta_2_in_axes5_z = v.six_r_s_4*six_r_zeta_2_in_axes3_x;
+        const real six_r_zeta_2_in_axes5_x = v.six_r_c_5*six_r_zeta_2_in_axes3_y -
+            v.six_r_s_5*six_r_zeta_2_t;
+        const real six_r_zeta_2_in_axes5_y = -v.six_r_c_5*six_r_zeta_2_t -
+            v.six_r_s_5*six_r_zeta_2_in_axes3_y;
         /* (six_r-beta_3) angular acceleration of link 3 at zero joint accelerations */
         const real six_r_beta_3_in_axes3_x = six_r_zeta_2_in_axes3_x -
             six_r_omega_2_in_axes3_y*six_r_qd_1_t_8;
         const real six_r_beta_3_in_axes3_y = six_r_zeta_2_in_axes3_y +
             six_r_omega_2_in_axes3_x*six_r_qd_1_t_8;
-        const real six_r_beta_3_in_axes4_x = six_r_beta_3_in_axes3_y*six_r_c_4;
-        const real six_r_beta_3_in_axes4_y = -six_r_beta_3_in_axes3_y*six_r_s_4;
+        const real six_r_beta_3_t = six_r_beta_3_in_axes3_x*v.six_r_c_4;
+        const real six_r_beta_3_in_axes4_y = six_r_beta_3_in_axes3_x*v.six_r_s_4;
         /* (six_r-beta_4) angular acceleration of link 4 at zero joint accelerations */
-        const real six_r_beta_4_in_axes4_x = six_r_beta_3_in_axes4_x +
-            six_r_omega_3_in_axes4_y*six_r_qd_4;
-        const real six_r_beta_4_in_axes4_y = six_r_beta_3_in_axes4_y -
-            six_r_omega_3_in_axes4_x*six_r_qd_4;
-        const real six_r_beta_4_t = six_r_beta_3_in_axes3_x*six_r_s_5;
-        const real six_r_beta_4_in_axes5_x = six_r_beta_4_t + six_r_beta_4_in_axes4_y*six_r_c_5;
-        const real six_r_beta_4_t_2 = -six_r_beta_3_in_axes3_x*six_r_c_5;
-        const real six_r_beta_4_in_axes5_y = -six_r_beta_4_t_2 -
-            six_r_beta_4_in_axes4_y*six_r_s_5;
+        const real six_r_beta_4_in_axes4_x = -six_r_beta_3_t -
+            six_r_omega_3_in_axes4_y*six_r_qd_4_t;
+        const real six_r_beta_4_in_axes4_y = six_r_beta_3_in_axes4_y +
+            six_r_omega_3_in_axes4_x*six_r_qd_4_t;
+        const real six_r_beta_4_t = six_r_beta_3_in_axes3_y*v.six_r_c_5;
+        const real six_r_beta_4_in_axes5_x = six_r_beta_4_t + six_r_beta_4_in_axes4_x*v.six_r_s_5;
+        const real six_r_beta_4_t_2 = six_r_beta_3_in_axes3_y*v.six_r_s_5;
+        const real six_r_beta_4_in_axes5_y = six_r_beta_4_in_axes4_x*v.six_r_c_5 -
+            six_r_beta_4_t_2;
         /* (six_r-beta_5) angular acceleration of link 5 at zero joint accelerations */
         const real six_r_beta_5_in_axes5_x = six_r_beta_4_in_axes5_x -
             six_r_omega_4_in_axes5_y*six_r_qd_5_t;
         const real six_r_beta_5_in_axes5_y = six_r_beta_4_in_axes5_y +
             six_r_omega_4_in_axes5_x*six_r_qd_5_t;
         /* (six_r-bias) acceleration of the connection point at zero joint accelerations */
-        const real six_r_d_2_in_spec2_x = six_r_joint2_offset_x*six_r_s_2;
-        const real six_r_d_2_in_spec2_y = six_r_c_2*six_r_joint2_offset_x;
-        const real six_r_bias_t = six_r_c_3*six_r_d_2_in_spec2_x + six_r_d_2_in_spec2_y*six_r_s_3;
-        const real six_r_bias_t_2 = six_r_c_3*six_r_d_2_in_spec2_y -
-            six_r_d_2_in_spec2_x*six_r_s_3;
-        const real six_r_d_2_in_axes5_z = six_r_bias_t_2*six_r_c_4;
-        const real six_r_bias_t_3 = six_r_bias_t_2*six_r_s_4;
-        const real six_r_d_2_in_axes5_x = six_r_bias_t*six_r_s_5 - six_r_bias_t_3*six_r_c_5;
-        const real six_r_d_2_in_axes5_y = six_r_bias_t*six_r_c_5 + six_r_bias_t_3*six_r_s_5;
-        const real six_r_bias_t_4 = six_r_c_3*six_r_joint3_offset_x;
-        const real six_r_bias_t_5 = six_r_joint3_offset_x*six_r_s_3;
-        const real six_r_d_3_in_axes5_z = -six_r_bias_t_5*six_r_c_4;
-        const real six_r_bias_t_6 = six_r_bias_t_5*six_r_s_4;
-        const real six_r_d_3_in_axes5_x = six_r_bias_t_4*six_r_s_5 + six_r_bias_t_6*six_r_c_5;
-        const real six_r_d_3_in_axes5_y = six_r_bias_t_4*six_r_c_5 - six_r_bias_t_6*six_r_s_5;
-        const real six_r_d_4_in_axes5_x = six_r_joint4_offset_x*six_r_s_5;
-        const real six_r_d_4_in_axes5_y = six_r_c_5*six_r_joint4_offset_x;
-        const real six_r_d_5_in_axes5_x = six_r_joint5_offset_x*six_r_s_5;
-        const real six_r_d_5_in_axes5_y = six_r_c_5*six_r_joint5_offset_x;
-        const real six_r_bias_t_7 = six_r_omega_3_in_axes4_x*six_r_omega_3_in_axes4_x;
-        const real six_r_bias_t_8 = six_r_omega_4_in_axes5_y*six_r_omega_4_in_axes5_y;
-        const real six_r_bias_t_9 = six_r_omega_1_in_axes5_x*six_r_omega_1_in_axes5_x;
-        const real six_r_bias_t_10 = six_r_omega_1_in_axes5_y*six_r_omega_1_in_axes5_y;
-        const real six_r_bias_t_11 = six_r_omega_1_in_axes5_z*six_r_omega_1_in_axes5_z;
-        const real six_r_bias_t_12 = six_r_omega_2_in_axes5_x*six_r_omega_2_in_axes5_x;
-        const real six_r_bias_t_13 = six_r_omega_2_in_axes5_y*six_r_omega_2_in_axes5_y;
-        const real six_r_bias_t_14 = six_r_omega_2_in_axes5_z*six_r_omega_2_in_axes5_z;
-        const real six_r_bias_t_15 = six_r_W_4_in_axes5_xy + six_r_beta_4_in_axes4_x;
-        const real six_r_bias_in_axes5_x = six_r_W_1_in_axes5_xy*six_r_d_2_in_axes5_y +
-            six_r_W_1_in_axes5_xz*six_r_d_2_in_axes5_z +
-            six_r_d_3_in_axes5_y*(six_r_W_2_in_axes5_xy - six_r_zeta_2_in_axes5_z) +
-            six_r_d_3_in_axes5_z*(six_r_W_2_in_axes5_xz + six_r_zeta_2_in_axes5_y) +
-            six_r_d_4_in_axes5_y*(six_r_W_3_in_axes5_xy - six_r_beta_3_in_axes4_x) +
-            six_r_d_5_in_axes5_y*(six_r_W_4_in_axes5_xy - six_r_beta_4_in_axes4_x) +
-            six_r_platform_joint_offset_x*(-six_r_bias_t_8 -
-            six_r_omega_5_in_axes5_z*six_r_omega_5_in_axes5_z) -
-            six_r_d_2_in_axes5_x*(six_r_bias_t_10 + six_r_bias_t_11) -
-            six_r_d_3_in_axes5_x*(six_r_bias_t_13 + six_r_bias_t_14) -
-            six_r_d_4_in_axes5_x*(six_r_bias_t_7 +
+        const real six_r_bias_t_10 = six_r_omega_3_in_axes4_y*six_r_omega_3_in_axes4_y;
+        const real six_r_bias_t_11 = six_r_omega_4_in_axes5_y*six_r_omega_4_in_axes5_y;
+        const real six_r_bias_t_12 = six_r_omega_1_in_axes5_x*six_r_omega_1_in_axes5_x;
+        const real six_r_bias_t_13 = six_r_omega_1_in_axes5_y*six_r_omega_1_in_axes5_y;
+        const real six_r_bias_t_14 = six_r_omega_1_in_axes5_z*six_r_omega_1_in_axes5_z;
+        const real six_r_bias_t_15 = six_r_omega_2_in_axes5_x*six_r_omega_2_in_axes5_x;
+        const real six_r_bias_t_16 = six_r_omega_2_in_axes5_y*six_r_omega_2_in_axes5_y;
+        const real six_r_bias_t_17 = six_r_omega_2_in_axes5_z*six_r_omega_2_in_axes5_z;
+        const real six_r_bias_t_18 = six_r_W_4_in_axes5_xy + six_r_beta_4_in_axes4_y;
+        const real six_r_platform_joint_offset_x = m->six_r_platform_joint_offset_x[i];
+        const real six_r_bias_in_axes5_x = six_r_W_1_in_axes5_xy*v.six_r_d_2_in_axes5_y +
+            six_r_W_1_in_axes5_xz*v.six_r_d_2_in_axes5_z +
+            v.six_r_d_3_in_axes5_y*(six_r_W_2_in_axes5_xy - six_r_zeta_2_in_axes5_z) +
+            v.six_r_d_3_in_axes5_z*(six_r_W_2_in_axes5_xz + six_r_zeta_2_in_axes5_y) -
+            v.six_r_bias_t_8*(six_r_W_3_in_axes5_xy - six_r_beta_3_in_axes4_y) -
+            v.six_r_bias_t_9*(six_r_W_4_in_axes5_xy - six_r_beta_4_in_axes4_y) -
+            v.six_r_d_2_in_axes5_x*(six_r_bias_t_13 + six_r_bias_t_14) -
+            v.six_r_d_3_in_axes5_x*(six_r_bias_t_16 + six_r_bias_t_17) -
+            v.six_r_d_4_in_axes5_x*(six_r_bias_t_10 +
             six_r_omega_3_in_axes5_y*six_r_omega_3_in_axes5_y) -
-            six_r_d_5_in_axes5_x*(six_r_bias_t_7 + six_r_bias_t_8);
-        const real six_r_bias_in_axes5_y = six_r_W_1_in_axes5_xy*six_r_d_2_in_axes5_x +
-            six_r_W_1_in_axes5_yz*six_r_d_2_in_axes5_z + six_r_bias_t_15*six_r_d_5_in_axes5_x +
-            six_r_bias_t_15*six_r_platform_joint_offset_x +
-            six_r_d_3_in_axes5_x*(six_r_W_2_in_axes5_xy + six_r_zeta_2_in_axes5_z) +
-            six_r_d_3_in_axes5_z*(six_r_W_2_in_axes5_yz - six_r_zeta_2_in_axes5_x) +
-            six_r_d_4_in_axes5_x*(six_r_W_3_in_axes5_xy + six_r_beta_3_in_axes4_x) -
-            six_r_d_2_in_axes5_y*(six_r_bias_t_11 + six_r_bias_t_9) -
-            six_r_d_3_in_axes5_y*(six_r_bias_t_12 + six_r_bias_t_14) -
-            six_r_d_4_in_axes5_y*(six_r_bias_t_7 +
-            six_r_omega_3_in_axes5_x*six_r_omega_3_in_axes5_x) -
-            six_r_d_5_in_axes5_y*(six_r_bias_t_7 +
-            six_r_omega_4_in_axes5_x*six_r_omega_4_in_axes5_x);
-        const real six_r_bias_in_axes5_z = six_r_W_1_in_axes5_xz*six_r_d_2_in_axes5_x +
-            six_r_W_1_in_axes5_yz*six_r_d_2_in_axes5_y +
-            six_r_d_3_in_axes5_x*(six_r_W_2_in_axes5_xz - six_r_zeta_2_in_axes5_y) +
-            six_r_d_3_in_axes5_y*(six_r_W_2_in_axes5_yz + six_r_zeta_2_in_axes5_x) +
-            six_r_d_4_in_axes5_x*(six_r_beta_4_t_2 + six_r_beta_3_in_axes4_y*six_r_s_5 +
-            six_r_omega_3_in_axes4_x*six_r_omega_3_in_axes5_x) +
-            six_r_d_4_in_axes5_y*(six_r_beta_4_t + six_r_beta_3_in_axes4_y*six_r_c_5 +
-            six_r_omega_3_in_axes4_x*six_r_omega_3_in_axes5_y) +
-            six_r_d_5_in_axes5_x*(six_r_omega_3_in_axes4_x*six_r_omega_4_in_axes5_x -
-            six_r_beta_4_in_axes5_y) + six_r_d_5_in_axes5_y*(six_r_beta_4_in_axes5_x +
-            six_r_omega_3_in_axes4_x*six_r_omega_4_in_axes5_y) +
+            v.six_r_d_5_in_axes5_x*(six_r_bias_t_10 + six_r_bias_t_11) -
+            six_r_platform_joint_offset_x*(six_r_bias_t_11 +
+            six_r_omega_5_in_axes5_z*six_r_omega_5_in_axes5_z);
+        const real six_r_bias_in_axes5_y = six_r_W_1_in_axes5_xy*v.six_r_d_2_in_axes5_x +
+            six_r_W_1_in_axes5_yz*v.six_r_d_2_in_axes5_z + six_r_bias_t_18*v.six_r_d_5_in_axes5_x
+            + six_r_bias_t_18*six_r_platform_joint_offset_x + v.six_r_bias_t_8*(six_r_bias_t_10 +
+            six_r_omega_3_in_axes5_x*six_r_omega_3_in_axes5_x) + v.six_r_bias_t_9*(six_r_bias_t_10
+            + six_r_omega_4_in_axes5_x*six_r_omega_4_in_axes5_x) +
+            v.six_r_d_3_in_axes5_x*(six_r_W_2_in_axes5_xy + six_r_zeta_2_in_axes5_z) +
+            v.six_r_d_3_in_axes5_z*(six_r_W_2_in_axes5_yz - six_r_zeta_2_in_axes5_x) +
+            v.six_r_d_4_in_axes5_x*(six_r_W_3_in_axes5_xy + six_r_beta_3_in_axes4_y) -
+            v.six_r_d_2_in_axes5_y*(six_r_bias_t_12 + six_r_bias_t_14) -
+            v.six_r_d_3_in_axes5_y*(six_r_bias_t_15 + six_r_bias_t_17);
+        const real six_r_bias_in_axes5_z = six_r_W_1_in_axes5_xz*v.six_r_d_2_in_axes5_x +
+            six_r_W_1_in_axes5_yz*v.six_r_d_2_in_axes5_y +
+            v.six_r_d_3_in_axes5_x*(six_r_W_2_in_axes5_xz - six_r_zeta_2_in_axes5_y) +
+            v.six_r_d_3_in_axes5_y*(six_r_W_2_in_axes5_yz + six_r_zeta_2_in_axes5_x) +
+            v.six_r_d_4_in_axes5_x*(six_r_beta_4_t_2 + six_r_beta_3_t*v.six_r_c_5 +
+            six_r_omega_3_in_axes4_y*six_r_omega_3_in_axes5_x) +
+            v.six_r_d_5_in_axes5_x*(six_r_omega_3_in_axes4_y*six_r_omega_4_in_axes5_x -
+            six_r_beta_4_in_axes5_y) +
             six_r_platform_joint_offset_x*(six_r_omega_4_in_axes5_x*six_r_omega_5_in_axes5_z -
-            six_r_beta_5_in_axes5_y) - six_r_d_2_in_axes5_z*(six_r_bias_t_10 + six_r_bias_t_9) -
-            six_r_d_3_in_axes5_z*(six_r_bias_t_12 + six_r_bias_t_13);
+            six_r_beta_5_in_axes5_y) - v.six_r_bias_t_8*(six_r_beta_4_t +
+            six_r_omega_3_in_axes4_y*six_r_omega_3_in_axes5_y - six_r_beta_3_t*v.six_r_s_5) -
+            v.six_r_bias_t_9*(six_r_beta_4_in_axes5_x +
+            six_r_omega_3_in_axes4_y*six_r_omega_4_in_axes5_y) -
+            v.six_r_d_2_in_axes5_z*(six_r_bias_t_12 + six_r_bias_t_13) -
+            v.six_r_d_3_in_axes5_z*(six_r_bias_t_15 + six_r_bias_t_16);
         /* (six_r-rel) acceleration of the connection point left to the joint accelerations */
-        const real six_r_rel_in_axes5_x = axis_x_six_r_axes5_x*six_r_S_ddot_x +
-            axis_x_six_r_axes5_y*six_r_S_ddot_y + axis_x_six_r_axes5_z*six_r_S_ddot_z -
+        const real six_r_rel_in_axes5_x = v.axis_x_six_r_axes5_x*v.six_r_S_ddot_x +
+            v.axis_x_six_r_axes5_y*v.six_r_S_ddot_y + v.axis_x_six_r_axes5_z*v.six_r_S_ddot_z -
             six_r_bias_in_axes5_x;
-        const real six_r_rel_in_axes5_y = axis_y_six_r_axes5_x*six_r_S_ddot_x +
-            axis_y_six_r_axes5_y*six_r_S_ddot_y + axis_y_six_r_axes5_z*six_r_S_ddot_z -
+        const real six_r_rel_in_axes5_y = v.axis_y_six_r_axes5_x*v.six_r_S_ddot_x +
+            v.axis_y_six_r_axes5_y*v.six_r_S_ddot_y + v.axis_y_six_r_axes5_z*v.six_r_S_ddot_z -
             six_r_bias_in_axes5_y;
-        const real six_r_rel_in_axes5_z = axis_z_six_r_axes5_x*six_r_S_ddot_x +
-            axis_z_six_r_axes5_y*six_r_S_ddot_y + axis_z_six_r_axes5_z*six_r_S_ddot_z -
+        const real six_r_rel_in_axes5_z = v.axis_z_six_r_axes5_x*v.six_r_S_ddot_x +
+            v.axis_z_six_r_axes5_y*v.six_r_S_ddot_y + v.axis_z_six_r_axes5_z*v.six_r_S_ddot_z -
             six_r_bias_in_axes5_z;
         /* (six_r-nd_m1) rate of moment direction 1 */
-        const real six_r_nd_m1_t = six_r_n_m1_in_axes5_y*six_r_omega_in_axes5_z -
-            six_r_end_p1_in_axes5_z*six_r_omega_in_axes5_x;
-        const real six_r_nd_m1_in_axes5_x = -six_r_nd_m1_t -
-            six_r_end_p1_in_axes5_z*six_r_omega_4_in_axes5_x;
-        const real six_r_nd_m1_in_axes5_y = six_r_eta_2_t -
-            six_r_end_p1_in_axes5_z*six_r_omega_4_in_axes5_y;
+        const real six_r_nd_m1_in_axes5_x = -v.six_r_nd_m1_t -
+            v.six_r_end_p1_in_axes5_z*six_r_omega_4_in_axes5_x;
+        const real six_r_nd_m1_in_axes5_y = v.six_r_eta_2_t -
+            v.six_r_end_p1_in_axes5_z*six_r_omega_4_in_axes5_y;
         /* (six_r-nu_1) bias of the angular acceleration along moment direction 1 */
-        const real six_r_nu_1_t = six_r_n_m2_in_axes5_z*six_r_omega_4_in_axes5_y;
-        const real six_r_nu_1_t_2 = six_r_beta_5_in_axes5_x*six_r_n_m2_in_axes5_z -
-            six_r_beta_5_in_axes5_y*six_r_n_m1_in_axes5_y;
-        const real six_r_nu_1_t_3 = six_r_omega_4_in_axes5_x - six_r_omega_in_axes5_x;
-        const real six_r_nu_1_t_4 = six_r_omega_4_in_axes5_y - six_r_omega_in_axes5_y;
-        const real six_r_nu_1_t_5 = six_r_omega_5_in_axes5_z - six_r_omega_in_axes5_z;
+        const real six_r_nu_1_t = v.six_r_n_m2_in_axes5_z*six_r_omega_4_in_axes5_y;
+        const real six_r_nu_1_t_2 = six_r_beta_5_in_axes5_x*v.six_r_n_m2_in_axes5_z -
+            six_r_beta_5_in_axes5_y*v.six_r_n_m1_in_axes5_y;
+        const real six_r_nu_1_t_3 = six_r_omega_4_in_axes5_x - v.six_r_omega_in_axes5_x;
+        const real six_r_nu_1_t_4 = six_r_omega_4_in_axes5_y - v.six_r_omega_in_axes5_y;
+        const real six_r_nu_1_t_5 = six_r_omega_5_in_axes5_z - v.six_r_omega_in_axes5_z;
         const real six_r_nu_1_t_6 = six_r_nd_m1_in_axes5_x*six_r_nu_1_t_3 +
             six_r_nd_m1_in_axes5_y*six_r_nu_1_t_4 + six_r_nu_1_t_5*(six_r_nu_1_t +
-            six_r_n_m1_in_axes5_y*six_r_omega_4_in_axes5_x);
+            v.six_r_n_m1_in_axes5_y*six_r_omega_4_in_axes5_x);
         const real six_r_nu_1 = six_r_nu_1_t_2 - six_r_nu_1_t_6;
         /* (six_r-nd_m2) rate of moment direction 2 */
-        const real six_r_nd_m2_in_axes5_y = six_r_eta_1 -
-            six_r_n_m1_in_axes5_y*six_r_omega_4_in_axes5_y;
-        const real six_r_nd_m2_in_axes5_z = six_r_nd_m1_t -
-            six_r_n_m1_in_axes5_y*six_r_omega_5_in_axes5_z;
+        const real six_r_nd_m2_in_axes5_y = v.six_r_eta_1 -
+            v.six_r_n_m1_in_axes5_y*six_r_omega_4_in_axes5_y;
+        const real six_r_nd_m2_in_axes5_z = v.six_r_nd_m1_t -
+            v.six_r_n_m1_in_axes5_y*six_r_omega_5_in_axes5_z;
         /* (six_r-nu_2) bias of the angular acceleration along moment direction 2 */
-        const real six_r_nu_2_t = six_r_beta_5_in_axes5_y*six_r_end_p1_in_axes5_z -
-            six_r_beta_4_in_axes4_x*six_r_n_m2_in_axes5_z;
+        const real six_r_nu_2_t = six_r_beta_5_in_axes5_y*v.six_r_end_p1_in_axes5_z -
+            six_r_beta_4_in_axes4_y*v.six_r_n_m2_in_axes5_z;
         const real six_r_nu_2_t_2 = six_r_nd_m2_in_axes5_y*six_r_nu_1_t_4 +
             six_r_nd_m2_in_axes5_z*six_r_nu_1_t_5 + six_r_nu_1_t_3*(six_r_nu_1_t +
-            six_r_end_p1_in_axes5_z*six_r_omega_5_in_axes5_z);
+            v.six_r_end_p1_in_axes5_z*six_r_omega_5_in_axes5_z);
         const real six_r_nu_2 = six_r_nu_2_t - six_r_nu_2_t_2;
         /* (six_r-etad_1) acceleration with which the joints turn along moment direction 1 */
-        const real six_r_alpha_in_axes5_y = alpha_x*axis_y_six_r_axes5_x +
-            alpha_y*axis_y_six_r_axes5_y + alpha_z*axis_y_six_r_axes5_z;
-        const real six_r_etad_1_t = six_r_n_m2_in_axes5_z*(alpha_x*axis_x_six_r_axes5_x +
-            alpha_y*axis_x_six_r_axes5_y + alpha_z*axis_x_six_r_axes5_z) -
-            six_r_alpha_in_axes5_y*six_r_n_m1_in_axes5_y;
-        const real six_r_etad_1 = six_r_nu_1 - six_r_etad_1_t;
+        const real six_r_etad_1 = six_r_nu_1 - v.six_r_etad_1_t;
         /* (six_r-etad_2) acceleration with which the joints turn along moment direction 2 */
-        const real six_r_etad_2_t = six_r_alpha_in_axes5_y*six_r_end_p1_in_axes5_z -
-            six_r_n_m2_in_axes5_z*(alpha_x*axis_z_six_r_axes5_x + alpha_y*axis_z_six_r_axes5_y +
-            alpha_z*axis_z_six_r_axes5_z);
-        const real six_r_etad_2 = six_r_nu_2 - six_r_etad_2_t;
+        const real six_r_etad_2 = six_r_nu_2 - v.six_r_etad_2_t;
         /* (six_r-qdd_1) acceleration of joint 1 */
         const real six_r_qdd_1_t = six_r_etad_1*six_r_size;
         const real six_r_qdd_1_t_2 = six_r_etad_2*six_r_size;
-        const real six_r_qdd_1_t_3 = inv_six_r_w_1_t_79*(six_r_qd_1_t*six_r_rel_in_axes5_x +
-            six_r_qd_1_t_3*six_r_rel_in_axes5_z + six_r_qd_1_t_4*six_r_qdd_1_t +
-            six_r_qd_1_t_5*six_r_qdd_1_t_2 - six_r_qd_1_t_2*six_r_rel_in_axes5_y);
-        const real six_r_qdd_1_t_4 = inv_six_r_w_1_t_67*(six_r_qdd_1_t*six_r_w_1_t_71 +
-            six_r_qdd_1_t_2*six_r_w_1_t_72 + six_r_rel_in_axes5_x*six_r_w_1_t_68 +
-            six_r_rel_in_axes5_z*six_r_w_1_t_70 - six_r_qdd_1_t_3*six_r_w_1_t_73 -
-            six_r_rel_in_axes5_y*six_r_w_1_t_69);
-        const real six_r_qdd_1_t_5 = inv_six_r_w_1_t_49*(six_r_qdd_1_t_3*six_r_w_1_t_61 +
-            six_r_qdd_1_t_4*six_r_w_1_t_55 + six_r_rel_in_axes5_y*six_r_w_1_t_51 -
-            six_r_qdd_1_t*six_r_w_1_t_53 - six_r_qdd_1_t_2*six_r_w_1_t_54 -
-            six_r_rel_in_axes5_x*six_r_w_1_t_50 - six_r_rel_in_axes5_z*six_r_w_1_t_52);
+        const real six_r_qdd_1_t_3 = v.inv_six_r_w_1_t_79*(v.six_r_qd_1_t*six_r_rel_in_axes5_x +
+            v.six_r_qd_1_t_3*six_r_rel_in_axes5_z + v.six_r_qd_1_t_4*six_r_qdd_1_t +
+            v.six_r_qd_1_t_5*six_r_qdd_1_t_2 - v.six_r_qd_1_t_2*six_r_rel_in_axes5_y);
+        const real six_r_qdd_1_t_4 = v.inv_six_r_w_1_t_67*(six_r_qdd_1_t*v.six_r_w_1_t_71 +
+            six_r_qdd_1_t_2*v.six_r_w_1_t_72 + six_r_rel_in_axes5_x*v.six_r_w_1_t_68 +
+            six_r_rel_in_axes5_z*v.six_r_w_1_t_70 - six_r_qdd_1_t_3*v.six_r_w_1_t_73 -
+            six_r_rel_in_axes5_y*v.six_r_w_1_t_69);
+        const real six_r_qdd_1_t_5 = v.inv_six_r_w_1_t_49*(six_r_qdd_1_t_3*v.six_r_w_1_t_61 +
+            six_r_qdd_1_t_4*v.six_r_w_1_t_55 + six_r_rel_in_axes5_y*v.six_r_w_1_t_51 -
+            six_r_qdd_1_t*v.six_r_w_1_t_53 - six_r_qdd_1_t_2*v.six_r_w_1_t_54 -
+            six_r_rel_in_axes5_x*v.six_r_w_1_t_50 - six_r_rel_in_axes5_z*v.six_r_w_1_t_52);
         /* (six_r-qdd_4) acceleration of joint 4 */
-        const real six_r_qdd_4 = inv_six_r_w_1_t_28*(six_r_qdd_1_t*six_r_w_1_t_31 +
-            six_r_qdd_1_t_2*six_r_w_1_t_32 + six_r_qdd_1_t_3*six_r_w_1_t_44 +
-            six_r_qdd_1_t_4*six_r_w_1_t_39 + six_r_rel_in_axes5_z*six_r_w_1_t_30 -
-            six_r_qdd_1_t_5*six_r_w_1_t_33 - six_r_rel_in_axes5_y*six_r_w_1_t_29);
+        const real six_r_qdd_4 = v.inv_six_r_w_1_t_28*(six_r_qdd_1_t*v.six_r_w_1_t_31 +
+            six_r_qdd_1_t_2*v.six_r_w_1_t_32 + six_r_qdd_1_t_3*v.six_r_w_1_t_44 +
+            six_r_qdd_1_t_4*v.six_r_w_1_t_39 + six_r_rel_in_axes5_z*v.six_r_w_1_t_30 -
+            six_r_qdd_1_t_5*v.six_r_w_1_t_33 - six_r_rel_in_axes5_y*v.six_r_w_1_t_29);
         /* (six_r-qdd_5) acceleration of joint 5 */
-        const real six_r_qdd_5 = inv_six_r_w_1_t_12*(six_r_qdd_1_t_2*six_r_w_1_t_14 +
-            six_r_qdd_1_t_3*six_r_w_1_t_25 + six_r_qdd_1_t_5*six_r_w_1_t_18 +
-            six_r_rel_in_axes5_y*six_r_w_1_t_13 - six_r_qdd_1_t_4*six_r_w_1_t_22 -
-            six_r_qdd_4*six_r_w_1_t_15);
+        const real six_r_qdd_5 = v.inv_six_r_w_1_t_12*(six_r_qdd_1_t_2*v.six_r_w_1_t_14 +
+            six_r_qdd_1_t_3*v.six_r_w_1_t_25 + six_r_qdd_1_t_5*v.six_r_w_1_t_18 +
+            six_r_rel_in_axes5_y*v.six_r_w_1_t_13 - six_r_qdd_1_t_4*v.six_r_w_1_t_22 -
+            six_r_qdd_4*v.six_r_w_1_t_15);
         /* (six_r-qdd_1) acceleration of joint 1 */
         o[0*count + k] = -six_r_qdd_1_t_5;
         /* (six_r-qdd_2) acceleration of joint 2 */
@@ -10004,11 +8370,11 @@ INLINE void joint_accelerations_legs_six_r(const prepared *m, size_t w, size_t l
         o[4*count + k] = six_r_qdd_5;
         o[6*count + k] = (six_r_qdd_1_t_5 + six_r_qdd_1_t_4) + (six_r_qdd_1_t_3 + (six_r_qdd_4 +
             six_r_qdd_5));
-        o[5*count + k] = UNLESS(magnitude(six_r_w_1_t_12) > TOLERANCE*six_r_size) +
-            UNLESS(magnitude(six_r_w_1_t_28) > TOLERANCE*six_r_size) +
-            UNLESS(magnitude(six_r_w_1_t_49) > TOLERANCE*six_r_size) +
-            UNLESS(magnitude(six_r_w_1_t_67) > TOLERANCE*six_r_size) +
-            UNLESS(magnitude(six_r_w_1_t_79) > TOLERANCE*six_r_size);
+        o[5*count + k] = UNLESS(magnitude(v.six_r_w_1_t_12) > TOLERANCE*six_r_size) +
+            UNLESS(magnitude(v.six_r_w_1_t_28) > TOLERANCE*six_r_size) +
+            UNLESS(magnitude(v.six_r_w_1_t_49) > TOLERANCE*six_r_size) +
+            UNLESS(magnitude(v.six_r_w_1_t_67) > TOLERANCE*six_r_size) +
+            UNLESS(magnitude(v.six_r_w_1_t_79) > TOLERANCE*six_r_size);
     }
 }
 
@@ -10029,10 +8395,10 @@ INLINE void joint_accelerations_place_six_r(size_t w, size_t count, const real *
 INLINE void joint_accelerations_run(const prepared *m, const real *X, const real *V, const real
     *A, const real *joints, real *qdd, verdict *t)
 {
-    real s[21] = {0};
+    real s[9] = {0};
     real o_six_r[7*LEGS(LEGS_OF_six_r)] = {0};
-    joint_accelerations_before(1, X, V, A, s, t);
-    joint_accelerations_legs_six_r(m, 1, 0, 1, s, 0, LEGS(LEGS_OF_six_r), joints, o_six_r);
+    joint_accelerations_before(m, 1, X, s, t);
+    joint_accelerations_legs_six_r(m, 1, 0, 1, s, 0, LEGS(LEGS_OF_six_r), V, A, joints, o_six_r);
     for (size_t leg = 0; leg < LEGS_OF_six_r; ++leg) {
         joint_accelerations_place_six_r(1, LEGS(LEGS_OF_six_r), o_six_r, leg, leg, qdd, t);
     }
@@ -10041,1119 +8407,86 @@ INLINE void joint_accelerations_run(const prepared *m, const real *X, const real
 INLINE void joint_accelerations_run_lanes(const prepared *m, const real *X, const real *V, const
     real *A, const real *joints, real *qdd, verdict *t)
 {
-    real s[21*LANES];
+    real s[9*LANES];
     real o_six_r[7*LANES];
-    joint_accelerations_before(LANES, X, V, A, s, t);
+    joint_accelerations_before(m, LANES, X, s, t);
     for (size_t leg = 0; leg < LEGS_OF_six_r; ++leg) {
-        joint_accelerations_legs_six_r(m, LANES, leg, 0, s, 1, LANES, joints, o_six_r);
+        joint_accelerations_legs_six_r(m, LANES, leg, 0, s, 1, LANES, V, A, joints, o_six_r);
         joint_accelerations_place_six_r(LANES, LANES, o_six_r, leg, 0, qdd, t);
     }
 }
 
 /* ---- legs ---- */
-INLINE void legs_before(size_t w, const real *X, const real *V, const real *A, real *s, verdict
-    *t)
+INLINE void legs_before(const prepared *m, size_t w, const real *X, real *s, verdict *t)
 {
     for (size_t k = 0; k < w; ++k) {
-        /* X: named entries */
-        const real X_3 = X[3*w + k];
-        const real X_4 = X[4*w + k];
-        const real X_5 = X[5*w + k];
-        const real X_6 = X[6*w + k];
-        const real quaternion_norm2 = X_3*X_3 + X_4*X_4 + X_5*X_5 + X_6*X_6;
-        const real quaternion_scale = 2/quaternion_norm2;
-        const real quaternion_sx = X_3*quaternion_scale;
-        const real quaternion_sy = X_4*quaternion_scale;
-        const real quaternion_sz = X_5*quaternion_scale;
-        const real quaternion_wx = X_6*quaternion_sx;
-        const real quaternion_wy = X_6*quaternion_sy;
-        const real quaternion_wz = X_6*quaternion_sz;
-        const real quaternion_xx = X_3*quaternion_sx;
-        const real quaternion_xy = X_3*quaternion_sy;
-        const real quaternion_xz = X_3*quaternion_sz;
-        const real quaternion_yy = X_4*quaternion_sy;
-        const real quaternion_yz = X_4*quaternion_sz;
-        const real quaternion_zz = X_5*quaternion_sz;
-        const real R_xx = 1 - quaternion_yy - quaternion_zz;
-        const real R_xy = quaternion_xy - quaternion_wz;
-        const real R_xz = quaternion_wy + quaternion_xz;
-        const real R_yx = quaternion_wz + quaternion_xy;
-        const real R_yy = 1 - quaternion_xx - quaternion_zz;
-        const real R_yz = quaternion_yz - quaternion_wx;
-        const real R_zx = quaternion_xz - quaternion_wy;
-        const real R_zy = quaternion_wx + quaternion_yz;
-        const real R_zz = 1 - quaternion_xx - quaternion_yy;
-        /* V: named entries */
-        const real V_0 = V[0*w + k];
-        const real t_dot_x = V_0;
-        const real V_1 = V[1*w + k];
-        const real t_dot_y = V_1;
-        const real V_2 = V[2*w + k];
-        const real t_dot_z = V_2;
-        const real V_3 = V[3*w + k];
-        const real omega_x = V_3;
-        const real V_4 = V[4*w + k];
-        const real omega_y = V_4;
-        const real V_5 = V[5*w + k];
-        const real omega_z = V_5;
-        /* A: named entries */
-        const real A_0 = A[0*w + k];
-        const real t_ddot_x = A_0;
-        const real A_1 = A[1*w + k];
-        const real t_ddot_y = A_1;
-        const real A_2 = A[2*w + k];
-        const real t_ddot_z = A_2;
-        const real A_3 = A[3*w + k];
-        const real alpha_x = A_3;
-        const real A_4 = A[4*w + k];
-        const real alpha_y = A_4;
-        const real A_5 = A[5*w + k];
-        const real alpha_z = A_5;
-        s[0*w + k] = R_xx;
-        s[1*w + k] = R_xy;
-        s[2*w + k] = R_xz;
-        s[3*w + k] = R_yx;
-        s[4*w + k] = R_yy;
-        s[5*w + k] = R_yz;
-        s[6*w + k] = R_zx;
-        s[7*w + k] = R_zy;
-        s[8*w + k] = R_zz;
-        s[9*w + k] = t_dot_x;
-        s[10*w + k] = t_dot_y;
-        s[11*w + k] = t_dot_z;
-        s[12*w + k] = omega_x;
-        s[13*w + k] = omega_y;
-        s[14*w + k] = omega_z;
-        s[15*w + k] = t_ddot_x;
-        s[16*w + k] = t_ddot_y;
-        s[17*w + k] = t_ddot_z;
-        s[18*w + k] = alpha_x;
-        s[19*w + k] = alpha_y;
-        s[20*w + k] = alpha_z;
-        t->invalid[k] += UNLESS(is_finite(quaternion_scale)) + UNLESS(quaternion_scale > 0);
+        values v;
+        stage_X(m, w, k, X, &v);
+        s[0*w + k] = v.R_xx;
+        s[1*w + k] = v.R_xy;
+        s[2*w + k] = v.R_xz;
+        s[3*w + k] = v.R_yx;
+        s[4*w + k] = v.R_yy;
+        s[5*w + k] = v.R_yz;
+        s[6*w + k] = v.R_zx;
+        s[7*w + k] = v.R_zy;
+        s[8*w + k] = v.R_zz;
+        t->invalid[k] += UNLESS(is_finite(v.quaternion_scale)) + UNLESS(v.quaternion_scale > 0);
     }
 }
 
 INLINE void legs_legs_six_r(const prepared *m, size_t w, size_t leg, size_t legs, const real *s,
-    size_t states, size_t count, const real *joints, real *o)
+    size_t states, size_t count, const real *V, const real *A, const real *joints, real *o)
 {
-    static const size_t place_six_r_q_1[] = {0, 5, 10, 15, 20, 25, 0, 0};
-    static const size_t place_six_r_q_2[] = {1, 6, 11, 16, 21, 26, 1, 1};
-    static const size_t place_six_r_q_3[] = {2, 7, 12, 17, 22, 27, 2, 2};
-    static const size_t place_six_r_q_4[] = {3, 8, 13, 18, 23, 28, 3, 3};
-    static const size_t place_six_r_q_5[] = {4, 9, 14, 19, 24, 29, 4, 4};
     for (size_t k = 0; k < count; ++k) {
         const size_t i = leg + legs*k;
         const size_t j = states*k;
-        /* (six_r-c_1) cosine of the angle of joint 1 from its reference direction */
-        const real six_r_q_1 = joints[place_six_r_q_1[i]*w + j];
-        const real six_r_c_1 = -sine(six_r_q_1);
-        /* (six_r-s_1) sine of the angle of joint 1 from its reference direction */
-        const real six_r_s_1 = cosine(six_r_q_1);
-        /* (six_r-c_2) cosine of the angle of joint 2 from its reference direction */
-        const real six_r_q_2 = joints[place_six_r_q_2[i]*w + j];
-        const real six_r_c_2 = -sine(six_r_q_2);
-        /* (six_r-s_2) sine of the angle of joint 2 from its reference direction */
-        const real six_r_s_2 = cosine(six_r_q_2);
-        /* (six_r-c_3) cosine of the angle of joint 3 from its reference direction */
-        const real six_r_q_3 = joints[place_six_r_q_3[i]*w + j];
-        const real six_r_c_3 = cosine(six_r_q_3);
-        /* (six_r-s_3) sine of the angle of joint 3 from its reference direction */
-        const real six_r_s_3 = sine(six_r_q_3);
-        /* (six_r-c_4) cosine of the angle of joint 4 from its reference direction */
-        const real six_r_q_4 = joints[place_six_r_q_4[i]*w + j];
-        const real six_r_c_4 = -sine(six_r_q_4);
-        /* (six_r-s_4) sine of the angle of joint 4 from its reference direction */
-        const real six_r_s_4 = cosine(six_r_q_4);
-        /* (six_r-c_5) cosine of the angle of joint 5 from its reference direction */
-        const real six_r_q_5 = joints[place_six_r_q_5[i]*w + j];
-        const real six_r_c_5 = -sine(six_r_q_5);
-        /* (six_r-s_5) sine of the angle of joint 5 from its reference direction */
-        const real six_r_s_5 = cosine(six_r_q_5);
-        /* (six_r-S_dot) velocity of the connection point */
-        const real six_r_e_2_in_axes5_y = -six_r_c_4*six_r_s_5;
-        const real six_r_S_dot_t = -six_r_c_4*six_r_s_3;
-        const real six_r_S_dot_t_2 = -six_r_c_3*six_r_c_4;
-        const real six_r_S_dot_t_3 = six_r_S_dot_t*six_r_c_2 + six_r_S_dot_t_2*six_r_s_2;
-        const real six_r_S_dot_t_4 = six_r_S_dot_t*six_r_s_2 - six_r_S_dot_t_2*six_r_c_2;
-        const real six_r_S_dot_t_5 = six_r_c_1*six_r_s_4 - six_r_S_dot_t_3*six_r_s_1;
-        const real six_r_S_dot_t_6 = six_r_S_dot_t_3*six_r_c_1 + six_r_s_1*six_r_s_4;
-        const real six_r_base_frame_xx = m->six_r_base_frame_xx[i];
-        const real six_r_base_frame_xy = m->six_r_base_frame_xy[i];
-        const real six_r_base_frame_xz = m->six_r_base_frame_xz[i];
-        const real axis_z_six_r_axes5_x = six_r_S_dot_t_4*six_r_base_frame_xx +
-            six_r_S_dot_t_5*six_r_base_frame_xy + six_r_S_dot_t_6*six_r_base_frame_xz;
-        const real six_r_base_frame_yx = m->six_r_base_frame_yx[i];
-        const real six_r_base_frame_yy = m->six_r_base_frame_yy[i];
-        const real six_r_base_frame_yz = m->six_r_base_frame_yz[i];
-        const real axis_z_six_r_axes5_y = six_r_S_dot_t_4*six_r_base_frame_yx +
-            six_r_S_dot_t_5*six_r_base_frame_yy + six_r_S_dot_t_6*six_r_base_frame_yz;
-        const real six_r_base_frame_zx = m->six_r_base_frame_zx[i];
-        const real six_r_base_frame_zy = m->six_r_base_frame_zy[i];
-        const real six_r_base_frame_zz = m->six_r_base_frame_zz[i];
-        const real axis_z_six_r_axes5_z = six_r_S_dot_t_4*six_r_base_frame_zx +
-            six_r_S_dot_t_5*six_r_base_frame_zy + six_r_S_dot_t_6*six_r_base_frame_zz;
-        const real six_r_S_dot_t_7 = six_r_s_4*six_r_s_5;
-        const real six_r_S_dot_t_8 = six_r_c_3*six_r_c_5 - six_r_S_dot_t_7*six_r_s_3;
-        const real six_r_S_dot_t_9 = six_r_S_dot_t_7*six_r_c_3 + six_r_c_5*six_r_s_3;
-        const real six_r_S_dot_t_10 = six_r_S_dot_t_8*six_r_c_2 - six_r_S_dot_t_9*six_r_s_2;
-        const real six_r_S_dot_t_11 = six_r_S_dot_t_8*six_r_s_2 + six_r_S_dot_t_9*six_r_c_2;
-        const real six_r_S_dot_t_12 = six_r_c_1*six_r_e_2_in_axes5_y - six_r_S_dot_t_10*six_r_s_1;
-        const real six_r_S_dot_t_13 = six_r_S_dot_t_10*six_r_c_1 + six_r_e_2_in_axes5_y*six_r_s_1;
-        const real axis_y_six_r_axes5_x = six_r_S_dot_t_11*six_r_base_frame_xx +
-            six_r_S_dot_t_12*six_r_base_frame_xy + six_r_S_dot_t_13*six_r_base_frame_xz;
-        const real axis_y_six_r_axes5_y = six_r_S_dot_t_11*six_r_base_frame_yx +
-            six_r_S_dot_t_12*six_r_base_frame_yy + six_r_S_dot_t_13*six_r_base_frame_yz;
-        const real axis_y_six_r_axes5_z = six_r_S_dot_t_11*six_r_base_frame_zx +
-            six_r_S_dot_t_12*six_r_base_frame_zy + six_r_S_dot_t_13*six_r_base_frame_zz;
-        const real axis_x_six_r_axes5_x = axis_y_six_r_axes5_y*axis_z_six_r_axes5_z -
-            axis_y_six_r_axes5_z*axis_z_six_r_axes5_y;
-        const real axis_x_six_r_axes5_y = axis_y_six_r_axes5_z*axis_z_six_r_axes5_x -
-            axis_y_six_r_axes5_x*axis_z_six_r_axes5_z;
-        const real axis_x_six_r_axes5_z = axis_y_six_r_axes5_x*axis_z_six_r_axes5_y -
-            axis_y_six_r_axes5_y*axis_z_six_r_axes5_x;
-        const real R_xx = s[0*w + j];
-        const real R_xy = s[1*w + j];
-        const real R_xz = s[2*w + j];
-        const real six_r_platform_point_x = m->six_r_platform_point_x[i];
-        const real six_r_platform_point_y = m->six_r_platform_point_y[i];
-        const real six_r_platform_point_z = m->six_r_platform_point_z[i];
-        const real six_r_q_x = R_xx*six_r_platform_point_x + R_xy*six_r_platform_point_y +
-            R_xz*six_r_platform_point_z;
-        const real R_yx = s[3*w + j];
-        const real R_yy = s[4*w + j];
-        const real R_yz = s[5*w + j];
-        const real six_r_q_y = R_yx*six_r_platform_point_x + R_yy*six_r_platform_point_y +
-            R_yz*six_r_platform_point_z;
-        const real R_zx = s[6*w + j];
-        const real R_zy = s[7*w + j];
-        const real R_zz = s[8*w + j];
-        const real six_r_q_z = R_zx*six_r_platform_point_x + R_zy*six_r_platform_point_y +
-            R_zz*six_r_platform_point_z;
-        const real omega_y = s[13*w + j];
-        const real omega_z = s[14*w + j];
-        const real six_r_S_dot_t_14 = omega_y*six_r_q_z - omega_z*six_r_q_y;
-        const real omega_x = s[12*w + j];
-        const real six_r_S_dot_t_15 = omega_z*six_r_q_x - omega_x*six_r_q_z;
-        const real six_r_S_dot_t_16 = omega_x*six_r_q_y - omega_y*six_r_q_x;
-        const real t_dot_x = s[9*w + j];
-        const real six_r_S_dot_x = six_r_S_dot_t_14 + t_dot_x;
-        const real t_dot_y = s[10*w + j];
-        const real six_r_S_dot_y = six_r_S_dot_t_15 + t_dot_y;
-        const real t_dot_z = s[11*w + j];
-        const real six_r_S_dot_z = six_r_S_dot_t_16 + t_dot_z;
-        const real six_r_S_dot_in_axes5_x = axis_x_six_r_axes5_x*six_r_S_dot_x +
-            axis_x_six_r_axes5_y*six_r_S_dot_y + axis_x_six_r_axes5_z*six_r_S_dot_z;
-        const real six_r_S_dot_in_axes5_y = axis_y_six_r_axes5_x*six_r_S_dot_x +
-            axis_y_six_r_axes5_y*six_r_S_dot_y + axis_y_six_r_axes5_z*six_r_S_dot_z;
-        const real six_r_S_dot_in_axes5_z = axis_z_six_r_axes5_x*six_r_S_dot_x +
-            axis_z_six_r_axes5_y*six_r_S_dot_y + axis_z_six_r_axes5_z*six_r_S_dot_z;
-        /* (six_r-r_4) from joint 4 to the connection point, along the links */
-        const real six_r_platform_joint_offset_x = m->six_r_platform_joint_offset_x[i];
-        const real six_r_r_4_in_axes4_y = six_r_c_5*six_r_platform_joint_offset_x;
-        const real six_r_joint5_offset_x = m->six_r_joint5_offset_x[i];
-        const real six_r_r_4_in_axes4_z = six_r_joint5_offset_x +
-            six_r_platform_joint_offset_x*six_r_s_5;
-        const real six_r_r_4_in_axes3_y = -six_r_r_4_in_axes4_y*six_r_s_4;
-        const real six_r_r_4_in_axes3_z = six_r_c_4*six_r_r_4_in_axes4_y;
-        /* (six_r-r_3) from joint 3 to the connection point, along the links */
-        const real six_r_joint4_offset_x = m->six_r_joint4_offset_x[i];
-        const real six_r_r_3_in_axes3_x = six_r_joint4_offset_x + six_r_r_4_in_axes4_z;
-        const real six_r_r_3_in_axes2_y = six_r_c_3*six_r_r_4_in_axes3_y +
-            six_r_r_3_in_axes3_x*six_r_s_3;
-        const real six_r_r_3_t = six_r_r_4_in_axes3_z*six_r_s_4;
-        const real six_r_r_3_t_2 = -six_r_c_4*six_r_r_4_in_axes3_z;
-        const real six_r_r_3_in_axes5_z = six_r_r_3_t + six_r_c_4*six_r_r_4_in_axes3_y;
-        const real six_r_r_3_t_3 = -six_r_r_3_t_2 - six_r_r_4_in_axes3_y*six_r_s_4;
-        const real six_r_r_3_in_axes5_x = six_r_c_5*six_r_r_3_t_3 +
-            six_r_r_3_in_axes3_x*six_r_s_5;
-        const real six_r_r_3_in_axes5_y = six_r_c_5*six_r_r_3_in_axes3_x -
-            six_r_r_3_t_3*six_r_s_5;
-        /* (six_r-r_2) from joint 2 to the connection point, along the links */
-        const real six_r_joint3_offset_x = m->six_r_joint3_offset_x[i];
-        const real six_r_r_2_in_axes2_x = six_r_joint3_offset_x + six_r_c_3*six_r_r_3_in_axes3_x -
-            six_r_r_4_in_axes3_y*six_r_s_3;
-        const real six_r_r_2_in_axes1_y = six_r_c_2*six_r_r_2_in_axes2_x -
-            six_r_r_3_in_axes2_y*six_r_s_2;
-        const real six_r_r_2_t = six_r_c_3*six_r_r_2_in_axes2_x + six_r_r_3_in_axes2_y*six_r_s_3;
-        const real six_r_r_2_t_2 = six_r_c_3*six_r_r_3_in_axes2_y -
-            six_r_r_2_in_axes2_x*six_r_s_3;
-        const real six_r_r_2_in_axes5_z = six_r_r_3_t + six_r_c_4*six_r_r_2_t_2;
-        const real six_r_r_2_t_3 = -six_r_r_3_t_2 - six_r_r_2_t_2*six_r_s_4;
-        const real six_r_r_2_in_axes5_x = six_r_c_5*six_r_r_2_t_3 + six_r_r_2_t*six_r_s_5;
-        const real six_r_r_2_in_axes5_y = six_r_c_5*six_r_r_2_t - six_r_r_2_t_3*six_r_s_5;
-        /* (six_r-r_1) from joint 1 to the connection point, along the links */
-        const real six_r_joint2_offset_x = m->six_r_joint2_offset_x[i];
-        const real six_r_r_1_in_axes1_z = six_r_joint2_offset_x + six_r_c_2*six_r_r_3_in_axes2_y +
-            six_r_r_2_in_axes2_x*six_r_s_2;
-        const real six_r_r_1_t = six_r_c_2*six_r_r_2_in_axes1_y + six_r_r_1_in_axes1_z*six_r_s_2;
-        const real six_r_r_1_t_2 = six_r_c_2*six_r_r_1_in_axes1_z -
-            six_r_r_2_in_axes1_y*six_r_s_2;
-        const real six_r_r_1_t_3 = six_r_c_3*six_r_r_1_t + six_r_r_1_t_2*six_r_s_3;
-        const real six_r_r_1_t_4 = six_r_c_3*six_r_r_1_t_2 - six_r_r_1_t*six_r_s_3;
-        const real six_r_r_1_in_axes5_z = six_r_r_3_t + six_r_c_4*six_r_r_1_t_4;
-        const real six_r_r_1_t_5 = -six_r_r_3_t_2 - six_r_r_1_t_4*six_r_s_4;
-        const real six_r_r_1_in_axes5_x = six_r_c_5*six_r_r_1_t_5 + six_r_r_1_t_3*six_r_s_5;
-        const real six_r_r_1_in_axes5_y = six_r_c_5*six_r_r_1_t_3 - six_r_r_1_t_5*six_r_s_5;
-        /* (six_r-v_1) velocity of the connection point per rate of joint 1 */
-        const real six_r_v_1_t = six_r_c_2*six_r_s_3 + six_r_c_3*six_r_s_2;
-        const real six_r_v_1_t_2 = six_r_c_2*six_r_c_3 - six_r_s_2*six_r_s_3;
-        const real six_r_e_1_in_axes5_z = six_r_c_4*six_r_v_1_t_2;
-        const real six_r_v_1_t_3 = six_r_s_4*six_r_v_1_t_2;
-        const real six_r_e_1_in_axes5_x = six_r_s_5*six_r_v_1_t - six_r_c_5*six_r_v_1_t_3;
-        const real six_r_e_1_in_axes5_y = six_r_c_5*six_r_v_1_t + six_r_s_5*six_r_v_1_t_3;
-        const real six_r_v_1_in_axes5_x = six_r_e_1_in_axes5_y*six_r_r_1_in_axes5_z -
-            six_r_e_1_in_axes5_z*six_r_r_1_in_axes5_y;
-        const real six_r_v_1_in_axes5_y = six_r_e_1_in_axes5_z*six_r_r_1_in_axes5_x -
-            six_r_e_1_in_axes5_x*six_r_r_1_in_axes5_z;
-        const real six_r_v_1_in_axes5_z = six_r_e_1_in_axes5_x*six_r_r_1_in_axes5_y -
-            six_r_e_1_in_axes5_y*six_r_r_1_in_axes5_x;
-        /* (six_r-v_2) velocity of the connection point per rate of joint 2 */
-        const real six_r_e_2_in_axes5_x = six_r_c_4*six_r_c_5;
-        const real six_r_v_2_in_axes5_x = six_r_e_2_in_axes5_y*six_r_r_2_in_axes5_z -
-            six_r_r_2_in_axes5_y*six_r_s_4;
-        const real six_r_v_2_in_axes5_y = six_r_r_2_in_axes5_x*six_r_s_4 -
-            six_r_e_2_in_axes5_x*six_r_r_2_in_axes5_z;
-        const real six_r_v_2_in_axes5_z = six_r_e_2_in_axes5_x*six_r_r_2_in_axes5_y -
-            six_r_e_2_in_axes5_y*six_r_r_2_in_axes5_x;
-        /* (six_r-v_3) velocity of the connection point per rate of joint 3 */
-        const real six_r_v_3_in_axes5_x = six_r_e_2_in_axes5_y*six_r_r_3_in_axes5_z -
-            six_r_r_3_in_axes5_y*six_r_s_4;
-        const real six_r_v_3_in_axes5_y = six_r_r_3_in_axes5_x*six_r_s_4 -
-            six_r_e_2_in_axes5_x*six_r_r_3_in_axes5_z;
-        const real six_r_v_3_in_axes5_z = six_r_e_2_in_axes5_x*six_r_r_3_in_axes5_y -
-            six_r_e_2_in_axes5_y*six_r_r_3_in_axes5_x;
-        /* (six_r-v_4) velocity of the connection point per rate of joint 4 */
-        const real six_r_v_4_in_axes5_z = six_r_s_5*(six_r_c_5*six_r_r_4_in_axes4_z -
-            six_r_r_4_in_axes4_y*six_r_s_5) - six_r_c_5*(six_r_c_5*six_r_r_4_in_axes4_y +
-            six_r_r_4_in_axes4_z*six_r_s_5);
-        /* (six_r-n_m1) direction 1 of the moment that the platform joint transmits */
-        const real six_r_platform_joint_axis_platform_x = m->six_r_platform_joint_axis_platform_x[i];
-        const real six_r_platform_joint_axis_platform_y = m->six_r_platform_joint_axis_platform_y[i];
-        const real six_r_platform_joint_axis_platform_z = m->six_r_platform_joint_axis_platform_z[i];
-        const real six_r_n_m1_t = six_r_platform_joint_axis_platform_x*(R_xx*six_r_base_frame_xy +
-            R_yx*six_r_base_frame_yy + R_zx*six_r_base_frame_zy) +
-            six_r_platform_joint_axis_platform_y*(R_xy*six_r_base_frame_xy +
-            R_yy*six_r_base_frame_yy + R_zy*six_r_base_frame_zy) +
-            six_r_platform_joint_axis_platform_z*(R_xz*six_r_base_frame_xy +
-            R_yz*six_r_base_frame_yy + R_zz*six_r_base_frame_zy);
-        const real six_r_n_m1_t_2 = six_r_platform_joint_axis_platform_x*(R_xx*six_r_base_frame_xz
-            + R_yx*six_r_base_frame_yz + R_zx*six_r_base_frame_zz) +
-            six_r_platform_joint_axis_platform_y*(R_xy*six_r_base_frame_xz +
-            R_yy*six_r_base_frame_yz + R_zy*six_r_base_frame_zz) +
-            six_r_platform_joint_axis_platform_z*(R_xz*six_r_base_frame_xz +
-            R_yz*six_r_base_frame_yz + R_zz*six_r_base_frame_zz);
-        const real six_r_n_m1_t_3 = six_r_platform_joint_axis_platform_x*(R_xx*six_r_base_frame_xx
-            + R_yx*six_r_base_frame_yx + R_zx*six_r_base_frame_zx) +
-            six_r_platform_joint_axis_platform_y*(R_xy*six_r_base_frame_xx +
-            R_yy*six_r_base_frame_yx + R_zy*six_r_base_frame_zx) +
-            six_r_platform_joint_axis_platform_z*(R_xz*six_r_base_frame_xx +
-            R_yz*six_r_base_frame_yx + R_zz*six_r_base_frame_zx);
-        const real six_r_n_m1_t_4 = six_r_c_1*six_r_n_m1_t + six_r_n_m1_t_2*six_r_s_1;
-        const real six_r_n_m1_t_5 = six_r_c_1*six_r_n_m1_t_2 - six_r_n_m1_t*six_r_s_1;
-        const real six_r_n_m1_t_6 = six_r_c_2*six_r_n_m1_t_5 + six_r_n_m1_t_3*six_r_s_2;
-        const real six_r_n_m1_t_7 = six_r_c_2*six_r_n_m1_t_3 - six_r_n_m1_t_5*six_r_s_2;
-        const real six_r_n_m1_t_8 = six_r_c_3*six_r_n_m1_t_6 + six_r_n_m1_t_7*six_r_s_3;
-        const real six_r_n_m1_t_9 = six_r_c_3*six_r_n_m1_t_7 - six_r_n_m1_t_6*six_r_s_3;
-        const real six_r_n_m1_t_10 = six_r_c_4*six_r_n_m1_t_4 - six_r_n_m1_t_9*six_r_s_4;
-        const real six_r_n_m1_in_axes5_y = six_r_c_5*six_r_n_m1_t_10 + six_r_n_m1_t_8*six_r_s_5;
-        /* (six_r-n_m2) direction 2 of the moment that the platform joint transmits */
-        const real six_r_n_m2_in_axes5_z = six_r_c_5*six_r_n_m1_t_8 - six_r_n_m1_t_10*six_r_s_5;
-        /* (six_r-w_1) force part of reciprocal wrench 1 */
-        const real six_r_end_p1_in_axes5_z = six_r_c_4*six_r_n_m1_t_9 + six_r_n_m1_t_4*six_r_s_4;
-        const real six_r_w_1_t = six_r_e_1_in_axes5_x*six_r_n_m2_in_axes5_z -
-            six_r_e_1_in_axes5_y*six_r_n_m1_in_axes5_y;
-        const real six_r_w_1_t_2 = six_r_e_2_in_axes5_x*six_r_n_m2_in_axes5_z -
-            six_r_e_2_in_axes5_y*six_r_n_m1_in_axes5_y;
-        const real six_r_w_1_t_3 = six_r_e_1_in_axes5_y*six_r_end_p1_in_axes5_z -
-            six_r_e_1_in_axes5_z*six_r_n_m2_in_axes5_z;
-        const real six_r_w_1_t_4 = six_r_e_2_in_axes5_y*six_r_end_p1_in_axes5_z -
-            six_r_n_m2_in_axes5_z*six_r_s_4;
-        const real six_r_size = m->six_r_size[i];
-        const real six_r_w_1_t_5 = six_r_size*six_r_w_1_t;
-        const real six_r_w_1_t_6 = six_r_size*six_r_w_1_t_3;
-        const real six_r_w_1_t_7 = six_r_size*six_r_w_1_t_2;
-        const real six_r_w_1_t_8 = six_r_size*six_r_w_1_t_4;
-        const real six_r_w_1_t_9 = six_r_size*(six_r_c_5*six_r_n_m1_in_axes5_y -
-            six_r_n_m2_in_axes5_z*six_r_s_5);
-        const real six_r_w_1_t_10 = -six_r_c_5*six_r_end_p1_in_axes5_z*six_r_size;
-        const real six_r_w_1_t_11 = six_r_n_m2_in_axes5_z*six_r_size;
-        const real six_r_size_t = m->six_r_size_t[i];
-        const real six_r_w_1_t_12 = root(six_r_size_t + six_r_w_1_t_11*six_r_w_1_t_11);
-        const real inv_six_r_w_1_t_12 = 1/six_r_w_1_t_12;
-        const real six_r_w_1_t_13 = inv_six_r_w_1_t_12*six_r_platform_joint_offset_x;
-        const real six_r_w_1_t_14 = inv_six_r_w_1_t_12*six_r_w_1_t_11;
-        const real six_r_w_1_t_15 = six_r_w_1_t_10*six_r_w_1_t_14;
-        const real six_r_w_1_t_16 = six_r_w_1_t_13*six_r_w_1_t_15;
-        const real six_r_w_1_t_17 = six_r_w_1_t_10 - six_r_w_1_t_14*six_r_w_1_t_15;
-        const real six_r_w_1_t_18 = six_r_v_1_in_axes5_y*six_r_w_1_t_13 -
-            six_r_w_1_t_14*six_r_w_1_t_6;
-        const real six_r_w_1_t_19 = six_r_v_1_in_axes5_y - six_r_w_1_t_13*six_r_w_1_t_18;
-        const real six_r_w_1_t_20 = six_r_w_1_t_6 + six_r_w_1_t_14*six_r_w_1_t_18;
-        const real six_r_w_1_t_21 = six_r_w_1_t_14*six_r_w_1_t_8;
-        const real six_r_w_1_t_22 = six_r_v_2_in_axes5_y*six_r_w_1_t_13 - six_r_w_1_t_21;
-        const real six_r_w_1_t_23 = six_r_v_2_in_axes5_y - six_r_w_1_t_13*six_r_w_1_t_22;
-        const real six_r_w_1_t_24 = six_r_w_1_t_8 + six_r_w_1_t_14*six_r_w_1_t_22;
-        const real six_r_w_1_t_25 = six_r_w_1_t_21 - six_r_v_3_in_axes5_y*six_r_w_1_t_13;
-        const real six_r_w_1_t_26 = six_r_v_3_in_axes5_y + six_r_w_1_t_13*six_r_w_1_t_25;
-        const real six_r_w_1_t_27 = six_r_w_1_t_8 - six_r_w_1_t_14*six_r_w_1_t_25;
-        const real six_r_w_1_t_28 = root(six_r_v_4_in_axes5_z*six_r_v_4_in_axes5_z +
-            six_r_w_1_t_16*six_r_w_1_t_16 + six_r_w_1_t_17*six_r_w_1_t_17 +
-            six_r_w_1_t_9*six_r_w_1_t_9);
-        const real inv_six_r_w_1_t_28 = 1/six_r_w_1_t_28;
-        const real six_r_w_1_t_29 = inv_six_r_w_1_t_28*six_r_w_1_t_16;
-        const real six_r_w_1_t_30 = inv_six_r_w_1_t_28*six_r_v_4_in_axes5_z;
-        const real six_r_w_1_t_31 = inv_six_r_w_1_t_28*six_r_w_1_t_9;
-        const real six_r_w_1_t_32 = inv_six_r_w_1_t_28*six_r_w_1_t_17;
-        const real six_r_w_1_t_33 = six_r_w_1_t_19*six_r_w_1_t_29 + six_r_w_1_t_20*six_r_w_1_t_32
-            + six_r_w_1_t_31*six_r_w_1_t_5 - six_r_v_1_in_axes5_z*six_r_w_1_t_30;
-        const real six_r_w_1_t_34 = six_r_w_1_t_29*six_r_w_1_t_33 - six_r_w_1_t_19;
-        const real six_r_w_1_t_35 = six_r_v_1_in_axes5_z + six_r_w_1_t_30*six_r_w_1_t_33;
-        const real six_r_w_1_t_36 = six_r_w_1_t_31*six_r_w_1_t_33 - six_r_w_1_t_5;
-        const real six_r_w_1_t_37 = six_r_w_1_t_32*six_r_w_1_t_33 - six_r_w_1_t_20;
-        const real six_r_w_1_t_38 = six_r_w_1_t_31*six_r_w_1_t_7;
-        const real six_r_w_1_t_39 = six_r_w_1_t_38 + six_r_w_1_t_23*six_r_w_1_t_29 +
-            six_r_w_1_t_24*six_r_w_1_t_32 - six_r_v_2_in_axes5_z*six_r_w_1_t_30;
-        const real six_r_w_1_t_40 = six_r_w_1_t_29*six_r_w_1_t_39 - six_r_w_1_t_23;
-        const real six_r_w_1_t_41 = six_r_v_2_in_axes5_z + six_r_w_1_t_30*six_r_w_1_t_39;
-        const real six_r_w_1_t_42 = six_r_w_1_t_31*six_r_w_1_t_39 - six_r_w_1_t_7;
-        const real six_r_w_1_t_43 = six_r_w_1_t_32*six_r_w_1_t_39 - six_r_w_1_t_24;
-        const real six_r_w_1_t_44 = six_r_w_1_t_38 + six_r_w_1_t_26*six_r_w_1_t_29 +
-            six_r_w_1_t_27*six_r_w_1_t_32 - six_r_v_3_in_axes5_z*six_r_w_1_t_30;
-        const real six_r_w_1_t_45 = six_r_w_1_t_29*six_r_w_1_t_44 - six_r_w_1_t_26;
-        const real six_r_w_1_t_46 = six_r_v_3_in_axes5_z + six_r_w_1_t_30*six_r_w_1_t_44;
-        const real six_r_w_1_t_47 = six_r_w_1_t_31*six_r_w_1_t_44 - six_r_w_1_t_7;
-        const real six_r_w_1_t_48 = six_r_w_1_t_32*six_r_w_1_t_44 - six_r_w_1_t_27;
-        const real six_r_w_1_t_49 = root(six_r_v_1_in_axes5_x*six_r_v_1_in_axes5_x +
-            six_r_w_1_t_34*six_r_w_1_t_34 + six_r_w_1_t_35*six_r_w_1_t_35 +
-            six_r_w_1_t_36*six_r_w_1_t_36 + six_r_w_1_t_37*six_r_w_1_t_37);
-        const real inv_six_r_w_1_t_49 = 1/six_r_w_1_t_49;
-        const real six_r_w_1_t_50 = inv_six_r_w_1_t_49*six_r_v_1_in_axes5_x;
-        const real six_r_w_1_t_51 = inv_six_r_w_1_t_49*six_r_w_1_t_34;
-        const real six_r_w_1_t_52 = inv_six_r_w_1_t_49*six_r_w_1_t_35;
-        const real six_r_w_1_t_53 = inv_six_r_w_1_t_49*six_r_w_1_t_36;
-        const real six_r_w_1_t_54 = inv_six_r_w_1_t_49*six_r_w_1_t_37;
-        const real six_r_w_1_t_55 = six_r_v_2_in_axes5_x*six_r_w_1_t_50 +
-            six_r_w_1_t_40*six_r_w_1_t_51 + six_r_w_1_t_41*six_r_w_1_t_52 +
-            six_r_w_1_t_42*six_r_w_1_t_53 + six_r_w_1_t_43*six_r_w_1_t_54;
-        const real six_r_w_1_t_56 = six_r_v_2_in_axes5_x - six_r_w_1_t_50*six_r_w_1_t_55;
-        const real six_r_w_1_t_57 = six_r_w_1_t_40 - six_r_w_1_t_51*six_r_w_1_t_55;
-        const real six_r_w_1_t_58 = six_r_w_1_t_41 - six_r_w_1_t_52*six_r_w_1_t_55;
-        const real six_r_w_1_t_59 = six_r_w_1_t_42 - six_r_w_1_t_53*six_r_w_1_t_55;
-        const real six_r_w_1_t_60 = six_r_w_1_t_43 - six_r_w_1_t_54*six_r_w_1_t_55;
-        const real six_r_w_1_t_61 = six_r_v_3_in_axes5_x*six_r_w_1_t_50 +
-            six_r_w_1_t_45*six_r_w_1_t_51 + six_r_w_1_t_46*six_r_w_1_t_52 +
-            six_r_w_1_t_47*six_r_w_1_t_53 + six_r_w_1_t_48*six_r_w_1_t_54;
-        const real six_r_w_1_t_62 = six_r_v_3_in_axes5_x - six_r_w_1_t_50*six_r_w_1_t_61;
-        const real six_r_w_1_t_63 = six_r_w_1_t_45 - six_r_w_1_t_51*six_r_w_1_t_61;
-        const real six_r_w_1_t_64 = six_r_w_1_t_46 - six_r_w_1_t_52*six_r_w_1_t_61;
-        const real six_r_w_1_t_65 = six_r_w_1_t_47 - six_r_w_1_t_53*six_r_w_1_t_61;
-        const real six_r_w_1_t_66 = six_r_w_1_t_48 - six_r_w_1_t_54*six_r_w_1_t_61;
-        const real six_r_w_1_t_67 = root(six_r_w_1_t_56*six_r_w_1_t_56 +
-            six_r_w_1_t_57*six_r_w_1_t_57 + six_r_w_1_t_58*six_r_w_1_t_58 +
-            six_r_w_1_t_59*six_r_w_1_t_59 + six_r_w_1_t_60*six_r_w_1_t_60);
-        const real inv_six_r_w_1_t_67 = 1/six_r_w_1_t_67;
-        const real six_r_w_1_t_68 = inv_six_r_w_1_t_67*six_r_w_1_t_56;
-        const real six_r_w_1_t_69 = inv_six_r_w_1_t_67*six_r_w_1_t_57;
-        const real six_r_w_1_t_70 = inv_six_r_w_1_t_67*six_r_w_1_t_58;
-        const real six_r_w_1_t_71 = inv_six_r_w_1_t_67*six_r_w_1_t_59;
-        const real six_r_w_1_t_72 = inv_six_r_w_1_t_67*six_r_w_1_t_60;
-        const real six_r_w_1_t_73 = six_r_w_1_t_62*six_r_w_1_t_68 + six_r_w_1_t_63*six_r_w_1_t_69
-            + six_r_w_1_t_64*six_r_w_1_t_70 + six_r_w_1_t_65*six_r_w_1_t_71 +
-            six_r_w_1_t_66*six_r_w_1_t_72;
-        const real six_r_w_1_t_74 = six_r_w_1_t_62 - six_r_w_1_t_68*six_r_w_1_t_73;
-        const real six_r_w_1_t_75 = six_r_w_1_t_63 - six_r_w_1_t_69*six_r_w_1_t_73;
-        const real six_r_w_1_t_76 = six_r_w_1_t_64 - six_r_w_1_t_70*six_r_w_1_t_73;
-        const real six_r_w_1_t_77 = six_r_w_1_t_65 - six_r_w_1_t_71*six_r_w_1_t_73;
-        const real six_r_w_1_t_78 = six_r_w_1_t_66 - six_r_w_1_t_72*six_r_w_1_t_73;
-        const real six_r_w_1_t_79 = root(six_r_w_1_t_74*six_r_w_1_t_74 +
-            six_r_w_1_t_75*six_r_w_1_t_75 + six_r_w_1_t_76*six_r_w_1_t_76 +
-            six_r_w_1_t_77*six_r_w_1_t_77 + six_r_w_1_t_78*six_r_w_1_t_78);
-        /* (six_r-w_2) force part of reciprocal wrench 2 */
-        const real inv_six_r_w_1_t_79 = 1/six_r_w_1_t_79;
-        const real six_r_w_2_t = inv_six_r_w_1_t_79*six_r_w_1_t_74;
-        const real six_r_w_2_t_2 = inv_six_r_w_1_t_79*six_r_w_1_t_75;
-        const real six_r_w_2_t_3 = inv_six_r_w_1_t_79*six_r_w_1_t_76;
-        const real six_r_w_2_t_4 = inv_six_r_w_1_t_67*inv_six_r_w_1_t_79*six_r_w_1_t_73;
-        const real six_r_w_2_in_axes5_x = inv_six_r_w_1_t_67*six_r_w_1_t_68 -
-            six_r_w_2_t*six_r_w_2_t_4;
-        const real six_r_w_2_in_axes5_y = six_r_w_2_t_2*six_r_w_2_t_4 -
-            inv_six_r_w_1_t_67*six_r_w_1_t_69;
-        const real six_r_w_2_in_axes5_z = inv_six_r_w_1_t_67*six_r_w_1_t_70 -
-            six_r_w_2_t_3*six_r_w_2_t_4;
-        const real six_r_w_2_x = axis_x_six_r_axes5_x*six_r_w_2_in_axes5_x +
-            axis_y_six_r_axes5_x*six_r_w_2_in_axes5_y + axis_z_six_r_axes5_x*six_r_w_2_in_axes5_z;
-        const real six_r_w_2_y = axis_x_six_r_axes5_y*six_r_w_2_in_axes5_x +
-            axis_y_six_r_axes5_y*six_r_w_2_in_axes5_y + axis_z_six_r_axes5_y*six_r_w_2_in_axes5_z;
-        const real six_r_w_2_z = axis_x_six_r_axes5_z*six_r_w_2_in_axes5_x +
-            axis_y_six_r_axes5_z*six_r_w_2_in_axes5_y + axis_z_six_r_axes5_z*six_r_w_2_in_axes5_z;
-        /* (six_r-m1_w_2) moment part 1 of reciprocal wrench 2 */
-        const real six_r_m1_w_2_t = inv_six_r_w_1_t_79*six_r_w_1_t_77;
-        const real six_r_m1_w_2 = six_r_size*(inv_six_r_w_1_t_67*six_r_w_1_t_71 -
-            six_r_m1_w_2_t*six_r_w_2_t_4);
-        /* (six_r-m2_w_2) moment part 2 of reciprocal wrench 2 */
-        const real six_r_m2_w_2_t = inv_six_r_w_1_t_79*six_r_w_1_t_78;
-        const real six_r_m2_w_2 = six_r_size*(inv_six_r_w_1_t_67*six_r_w_1_t_72 -
-            six_r_m2_w_2_t*six_r_w_2_t_4);
+        values_six_r v;
+        stage_six_r_X(m, w, i, j, s, &v);
+        stage_six_r_q(m, w, i, j, joints, &v);
+        stage_six_r_A_X(w, j, A, &v);
+        stage_six_r_A_q(w, j, A, &v);
+        stage_six_r_V_X(w, j, V, &v);
+        stage_six_r_V_q(w, j, V, &v);
+        stage_six_r_X_q(m, i, &v);
+        stage_six_r_A_V_X(w, j, V, &v);
+        stage_six_r_A_X_q(w, j, A, &v);
+        stage_six_r_V_X_q(&v);
+        stage_six_r_legs_required(m, i, &v);
         /* (six_r-o_2) moment part of reciprocal wrench 2 */
-        const real six_r_o_2_t = six_r_m1_w_2*six_r_n_m2_in_axes5_z;
-        const real six_r_o_2_in_axes5_z = six_r_m2_w_2*six_r_n_m2_in_axes5_z;
-        const real six_r_o_2_in_axes5_y = six_r_m1_w_2*six_r_n_m1_in_axes5_y -
-            six_r_end_p1_in_axes5_z*six_r_m2_w_2;
-        const real six_r_o_2_x = axis_y_six_r_axes5_x*six_r_o_2_in_axes5_y +
-            axis_z_six_r_axes5_x*six_r_o_2_in_axes5_z - axis_x_six_r_axes5_x*six_r_o_2_t;
-        const real six_r_o_2_y = axis_y_six_r_axes5_y*six_r_o_2_in_axes5_y +
-            axis_z_six_r_axes5_y*six_r_o_2_in_axes5_z - axis_x_six_r_axes5_y*six_r_o_2_t;
-        const real six_r_o_2_z = axis_y_six_r_axes5_z*six_r_o_2_in_axes5_y +
-            axis_z_six_r_axes5_z*six_r_o_2_in_axes5_z - axis_x_six_r_axes5_z*six_r_o_2_t;
-        /* (six_r-eta_1) rate at which the joints turn along moment direction 1 */
-        const real six_r_omega_in_axes5_x = axis_x_six_r_axes5_x*omega_x +
-            axis_x_six_r_axes5_y*omega_y + axis_x_six_r_axes5_z*omega_z;
-        const real six_r_omega_in_axes5_y = axis_y_six_r_axes5_x*omega_x +
-            axis_y_six_r_axes5_y*omega_y + axis_y_six_r_axes5_z*omega_z;
-        const real six_r_eta_1 = six_r_n_m1_in_axes5_y*six_r_omega_in_axes5_y -
-            six_r_n_m2_in_axes5_z*six_r_omega_in_axes5_x;
-        /* (six_r-eta_2) rate at which the joints turn along moment direction 2 */
-        const real six_r_omega_in_axes5_z = axis_z_six_r_axes5_x*omega_x +
-            axis_z_six_r_axes5_y*omega_y + axis_z_six_r_axes5_z*omega_z;
-        const real six_r_eta_2_t = six_r_end_p1_in_axes5_z*six_r_omega_in_axes5_y -
-            six_r_n_m2_in_axes5_z*six_r_omega_in_axes5_z;
-        /* (six_r-qd_1) rate of joint 1 */
-        const real six_r_qd_1_t = six_r_eta_1*six_r_size;
-        const real six_r_qd_1_t_2 = six_r_eta_2_t*six_r_size;
-        const real six_r_qd_1_t_3 = inv_six_r_w_1_t_79*(six_r_S_dot_in_axes5_y*six_r_w_2_t_2 +
-            six_r_m2_w_2_t*six_r_qd_1_t_2 - six_r_S_dot_in_axes5_x*six_r_w_2_t -
-            six_r_S_dot_in_axes5_z*six_r_w_2_t_3 - six_r_m1_w_2_t*six_r_qd_1_t);
-        const real six_r_qd_1_t_4 = -inv_six_r_w_1_t_67*(six_r_S_dot_in_axes5_y*six_r_w_1_t_69 +
-            six_r_qd_1_t_2*six_r_w_1_t_72 - six_r_S_dot_in_axes5_x*six_r_w_1_t_68 -
-            six_r_S_dot_in_axes5_z*six_r_w_1_t_70 - six_r_qd_1_t*six_r_w_1_t_71 -
-            six_r_qd_1_t_3*six_r_w_1_t_73);
-        const real six_r_qd_1 = inv_six_r_w_1_t_49*(six_r_S_dot_in_axes5_x*six_r_w_1_t_50 +
-            six_r_S_dot_in_axes5_z*six_r_w_1_t_52 + six_r_qd_1_t*six_r_w_1_t_53 +
-            six_r_qd_1_t_3*six_r_w_1_t_61 - six_r_S_dot_in_axes5_y*six_r_w_1_t_51 -
-            six_r_qd_1_t_2*six_r_w_1_t_54 - six_r_qd_1_t_4*six_r_w_1_t_55);
-        /* (six_r-qd_4) rate of joint 4 */
-        const real six_r_qd_4 = -inv_six_r_w_1_t_28*(six_r_S_dot_in_axes5_y*six_r_w_1_t_29 +
-            six_r_qd_1_t_2*six_r_w_1_t_32 + six_r_qd_1_t_3*six_r_w_1_t_44 -
-            six_r_S_dot_in_axes5_z*six_r_w_1_t_30 - six_r_qd_1*six_r_w_1_t_33 -
-            six_r_qd_1_t*six_r_w_1_t_31 - six_r_qd_1_t_4*six_r_w_1_t_39);
-        /* (six_r-qd_5) rate of joint 5 */
-        const real six_r_qd_5_t = inv_six_r_w_1_t_12*(six_r_qd_1*six_r_w_1_t_18 +
-            six_r_qd_1_t_2*six_r_w_1_t_14 + six_r_qd_1_t_3*six_r_w_1_t_25 +
-            six_r_qd_1_t_4*six_r_w_1_t_22 + six_r_qd_4*six_r_w_1_t_15 -
-            six_r_S_dot_in_axes5_y*six_r_w_1_t_13);
-        /* (six_r-omega_1) angular velocity of link 1 */
-        const real six_r_omega_1_in_axes2_x = six_r_qd_1*six_r_s_2;
-        const real six_r_omega_1_in_axes2_y = six_r_c_2*six_r_qd_1;
-        const real six_r_omega_1_in_axes5_x = six_r_e_1_in_axes5_x*six_r_qd_1;
-        const real six_r_omega_1_in_axes5_y = six_r_e_1_in_axes5_y*six_r_qd_1;
-        const real six_r_omega_1_in_axes5_z = six_r_e_1_in_axes5_z*six_r_qd_1;
-        /* (six_r-W_1) centripetal tensor of link 1 */
-        const real six_r_W_1_in_axes5_xy = six_r_omega_1_in_axes5_x*six_r_omega_1_in_axes5_y;
-        const real six_r_W_1_in_axes5_xz = six_r_omega_1_in_axes5_x*six_r_omega_1_in_axes5_z;
-        const real six_r_W_1_in_axes5_yz = six_r_omega_1_in_axes5_y*six_r_omega_1_in_axes5_z;
-        /* (six_r-omega_2) angular velocity of link 2 */
-        const real six_r_omega_2_in_axes3_x = six_r_c_3*six_r_omega_1_in_axes2_x +
-            six_r_omega_1_in_axes2_y*six_r_s_3;
-        const real six_r_omega_2_in_axes3_y = six_r_c_3*six_r_omega_1_in_axes2_y -
-            six_r_omega_1_in_axes2_x*six_r_s_3;
-        const real six_r_omega_2_in_axes5_x = six_r_omega_1_in_axes5_x +
-            six_r_e_2_in_axes5_x*six_r_qd_1_t_4;
-        const real six_r_omega_2_in_axes5_y = six_r_omega_1_in_axes5_y +
-            six_r_e_2_in_axes5_y*six_r_qd_1_t_4;
-        const real six_r_omega_2_in_axes5_z = six_r_omega_1_in_axes5_z + six_r_qd_1_t_4*six_r_s_4;
-        /* (six_r-W_2) centripetal tensor of link 2 */
-        const real six_r_W_2_in_axes2_yz = six_r_omega_1_in_axes2_y*six_r_qd_1_t_4;
-        const real six_r_W_2_in_axes2_xy = six_r_omega_1_in_axes2_x*six_r_omega_1_in_axes2_y;
-        const real six_r_W_2_in_axes5_xy = six_r_omega_2_in_axes5_x*six_r_omega_2_in_axes5_y;
-        const real six_r_W_2_in_axes5_xz = six_r_omega_2_in_axes5_x*six_r_omega_2_in_axes5_z;
-        const real six_r_W_2_in_axes5_yz = six_r_omega_2_in_axes5_y*six_r_omega_2_in_axes5_z;
-        /* (six_r-omega_3) angular velocity of link 3 */
-        const real six_r_omega_3_in_axes3_z = six_r_qd_1_t_4 - six_r_qd_1_t_3;
-        const real six_r_omega_3_in_axes4_x = six_r_c_4*six_r_omega_2_in_axes3_y +
-            six_r_omega_3_in_axes3_z*six_r_s_4;
-        const real six_r_omega_3_in_axes4_y = six_r_c_4*six_r_omega_3_in_axes3_z -
-            six_r_omega_2_in_axes3_y*six_r_s_4;
-        const real six_r_omega_3_t = -six_r_c_5*six_r_omega_3_in_axes4_y;
-        const real six_r_omega_3_t_2 = six_r_omega_3_in_axes4_y*six_r_s_5;
-        const real six_r_omega_3_in_axes5_x = six_r_omega_2_in_axes3_x*six_r_s_5 -
-            six_r_omega_3_t;
-        const real six_r_omega_3_in_axes5_y = six_r_c_5*six_r_omega_2_in_axes3_x -
-            six_r_omega_3_t_2;
-        /* (six_r-W_3) centripetal tensor of link 3 */
-        const real six_r_W_3_t = six_r_omega_2_in_axes3_y*six_r_omega_2_in_axes3_y;
-        const real six_r_W_3_t_2 = six_r_omega_3_in_axes3_z*six_r_omega_3_in_axes3_z;
-        const real six_r_W_3_t_3 = six_r_W_3_t + six_r_W_3_t_2;
-        const real six_r_W_3_in_axes3_xy = six_r_omega_2_in_axes3_x*six_r_omega_2_in_axes3_y;
-        const real six_r_W_3_in_axes3_xz = six_r_omega_2_in_axes3_x*six_r_omega_3_in_axes3_z;
-        const real six_r_W_3_in_axes3_yz = six_r_omega_2_in_axes3_y*six_r_omega_3_in_axes3_z;
-        const real six_r_W_3_in_axes5_xy = six_r_omega_3_in_axes5_x*six_r_omega_3_in_axes5_y;
-        /* (six_r-omega_4) angular velocity of link 4 */
-        const real six_r_omega_4_in_axes4_z = six_r_omega_2_in_axes3_x + six_r_qd_4;
-        const real six_r_omega_4_in_axes5_x = six_r_omega_4_in_axes4_z*six_r_s_5 -
-            six_r_omega_3_t;
-        const real six_r_omega_4_in_axes5_y = six_r_c_5*six_r_omega_4_in_axes4_z -
-            six_r_omega_3_t_2;
-        /* (six_r-W_4) centripetal tensor of link 4 */
-        const real six_r_W_4_in_axes4_xy = six_r_omega_3_in_axes4_x*six_r_omega_3_in_axes4_y;
-        const real six_r_W_4_in_axes4_xz = six_r_omega_3_in_axes4_x*six_r_omega_4_in_axes4_z;
-        const real six_r_W_4_in_axes4_yz = six_r_omega_3_in_axes4_y*six_r_omega_4_in_axes4_z;
-        const real six_r_W_4_in_axes5_xy = six_r_omega_4_in_axes5_x*six_r_omega_4_in_axes5_y;
-        /* (six_r-omega_5) angular velocity of link 5 */
-        const real six_r_omega_5_in_axes5_z = six_r_omega_3_in_axes4_x - six_r_qd_5_t;
-        /* (six_r-W_5) centripetal tensor of link 5 */
-        const real six_r_W_5_t = six_r_omega_4_in_axes5_y*six_r_omega_4_in_axes5_y;
-        const real six_r_W_5_t_2 = six_r_omega_5_in_axes5_z*six_r_omega_5_in_axes5_z;
-        const real six_r_W_5_in_axes5_xx = -six_r_W_5_t - six_r_W_5_t_2;
-        const real six_r_W_5_in_axes5_xz = six_r_omega_4_in_axes5_x*six_r_omega_5_in_axes5_z;
-        const real six_r_W_5_in_axes5_yz = six_r_omega_4_in_axes5_y*six_r_omega_5_in_axes5_z;
-        /* (six_r-a_p) acceleration of the connection point without its centripetal part */
-        const real alpha_y = s[19*w + j];
-        const real alpha_z = s[20*w + j];
-        const real t_ddot_x = s[15*w + j];
-        const real six_r_a_p_x = t_ddot_x + alpha_y*six_r_q_z - alpha_z*six_r_q_y;
-        const real alpha_x = s[18*w + j];
-        const real t_ddot_y = s[16*w + j];
-        const real six_r_a_p_y = t_ddot_y + alpha_z*six_r_q_x - alpha_x*six_r_q_z;
-        const real t_ddot_z = s[17*w + j];
-        const real six_r_a_p_z = t_ddot_z + alpha_x*six_r_q_y - alpha_y*six_r_q_x;
-        /* (six_r-S_ddot) acceleration of the connection point */
-        const real six_r_S_ddot_x = six_r_a_p_x + omega_y*six_r_S_dot_t_16 -
-            omega_z*six_r_S_dot_t_15;
-        const real six_r_S_ddot_y = six_r_a_p_y + omega_z*six_r_S_dot_t_14 -
-            omega_x*six_r_S_dot_t_16;
-        const real six_r_S_ddot_z = six_r_a_p_z + omega_x*six_r_S_dot_t_15 -
-            omega_y*six_r_S_dot_t_14;
-        const real six_r_S_ddot_in_axes5_x = axis_x_six_r_axes5_x*six_r_S_ddot_x +
-            axis_x_six_r_axes5_y*six_r_S_ddot_y + axis_x_six_r_axes5_z*six_r_S_ddot_z;
-        const real six_r_S_ddot_in_axes5_y = axis_y_six_r_axes5_x*six_r_S_ddot_x +
-            axis_y_six_r_axes5_y*six_r_S_ddot_y + axis_y_six_r_axes5_z*six_r_S_ddot_z;
-        const real six_r_S_ddot_in_axes5_z = axis_z_six_r_axes5_x*six_r_S_ddot_x +
-            axis_z_six_r_axes5_y*six_r_S_ddot_y + axis_z_six_r_axes5_z*six_r_S_ddot_z;
-        /* (six_r-zeta_2) angular acceleration of link 2 from the turning of axis 2 */
-        const real six_r_zeta_2_in_axes2_y = -six_r_omega_1_in_axes2_x*six_r_qd_1_t_4;
-        const real six_r_zeta_2_in_axes3_x = six_r_W_2_in_axes2_yz*six_r_c_3 +
-            six_r_s_3*six_r_zeta_2_in_axes2_y;
-        const real six_r_zeta_2_in_axes3_y = six_r_c_3*six_r_zeta_2_in_axes2_y -
-            six_r_W_2_in_axes2_yz*six_r_s_3;
-        const real six_r_zeta_2_in_axes5_z = six_r_c_4*six_r_zeta_2_in_axes3_y;
-        const real six_r_zeta_2_t = six_r_s_4*six_r_zeta_2_in_axes3_y;
-        const real six_r_zeta_2_in_axes5_x = six_r_s_5*six_r_zeta_2_in_axes3_x -
-            six_r_c_5*six_r_zeta_2_t;
-        const real six_r_zeta_2_in_axes5_y = six_r_c_5*six_r_zeta_2_in_axes3_x +
-            six_r_s_5*six_r_zeta_2_t;
-        /* (six_r-zeta_3) angular acceleration of link 3 from the turning of axis 3 */
-        const real six_r_zeta_3_t = six_r_omega_2_in_axes3_y*six_r_qd_1_t_3;
-        const real six_r_zeta_3_in_axes3_y = six_r_omega_2_in_axes3_x*six_r_qd_1_t_3;
-        /* (six_r-beta_3) angular acceleration of link 3 at zero joint accelerations */
-        const real six_r_beta_3_in_axes3_x = six_r_zeta_2_in_axes3_x - six_r_zeta_3_t;
-        const real six_r_beta_3_in_axes3_y = six_r_zeta_2_in_axes3_y + six_r_zeta_3_in_axes3_y;
-        const real six_r_beta_3_in_axes4_x = six_r_beta_3_in_axes3_y*six_r_c_4;
-        const real six_r_beta_3_in_axes4_y = -six_r_beta_3_in_axes3_y*six_r_s_4;
-        /* (six_r-zeta_4) angular acceleration of link 4 from the turning of axis 4 */
-        const real six_r_zeta_4_in_axes4_x = six_r_omega_3_in_axes4_y*six_r_qd_4;
-        const real six_r_zeta_4_in_axes4_y = -six_r_omega_3_in_axes4_x*six_r_qd_4;
-        /* (six_r-beta_4) angular acceleration of link 4 at zero joint accelerations */
-        const real six_r_beta_4_in_axes4_x = six_r_beta_3_in_axes4_x + six_r_zeta_4_in_axes4_x;
-        const real six_r_beta_4_in_axes4_y = six_r_beta_3_in_axes4_y + six_r_zeta_4_in_axes4_y;
-        const real six_r_beta_4_t = six_r_beta_3_in_axes3_x*six_r_s_5;
-        const real six_r_beta_4_in_axes5_x = six_r_beta_4_t + six_r_beta_4_in_axes4_y*six_r_c_5;
-        const real six_r_beta_4_t_2 = -six_r_beta_3_in_axes3_x*six_r_c_5;
-        const real six_r_beta_4_in_axes5_y = -six_r_beta_4_t_2 -
-            six_r_beta_4_in_axes4_y*six_r_s_5;
-        /* (six_r-zeta_5) angular acceleration of link 5 from the turning of axis 5 */
-        const real six_r_zeta_5_t = six_r_omega_4_in_axes5_y*six_r_qd_5_t;
-        const real six_r_zeta_5_in_axes5_y = six_r_omega_4_in_axes5_x*six_r_qd_5_t;
-        /* (six_r-beta_5) angular acceleration of link 5 at zero joint accelerations */
-        const real six_r_beta_5_in_axes5_x = six_r_beta_4_in_axes5_x - six_r_zeta_5_t;
-        const real six_r_beta_5_in_axes5_y = six_r_beta_4_in_axes5_y + six_r_zeta_5_in_axes5_y;
-        /* (six_r-bias) acceleration of the connection point at zero joint accelerations */
-        const real six_r_d_2_in_spec2_x = six_r_joint2_offset_x*six_r_s_2;
-        const real six_r_d_2_in_spec2_y = six_r_c_2*six_r_joint2_offset_x;
-        const real six_r_bias_t = six_r_c_3*six_r_d_2_in_spec2_x + six_r_d_2_in_spec2_y*six_r_s_3;
-        const real six_r_bias_t_2 = six_r_c_3*six_r_d_2_in_spec2_y -
-            six_r_d_2_in_spec2_x*six_r_s_3;
-        const real six_r_d_2_in_axes5_z = six_r_bias_t_2*six_r_c_4;
-        const real six_r_bias_t_3 = six_r_bias_t_2*six_r_s_4;
-        const real six_r_d_2_in_axes5_x = six_r_bias_t*six_r_s_5 - six_r_bias_t_3*six_r_c_5;
-        const real six_r_d_2_in_axes5_y = six_r_bias_t*six_r_c_5 + six_r_bias_t_3*six_r_s_5;
-        const real six_r_bias_t_4 = six_r_c_3*six_r_joint3_offset_x;
-        const real six_r_bias_t_5 = six_r_joint3_offset_x*six_r_s_3;
-        const real six_r_d_3_in_axes5_z = -six_r_bias_t_5*six_r_c_4;
-        const real six_r_bias_t_6 = six_r_bias_t_5*six_r_s_4;
-        const real six_r_d_3_in_axes5_x = six_r_bias_t_4*six_r_s_5 + six_r_bias_t_6*six_r_c_5;
-        const real six_r_d_3_in_axes5_y = six_r_bias_t_4*six_r_c_5 - six_r_bias_t_6*six_r_s_5;
-        const real six_r_d_4_in_axes5_x = six_r_joint4_offset_x*six_r_s_5;
-        const real six_r_d_4_in_axes5_y = six_r_c_5*six_r_joint4_offset_x;
-        const real six_r_d_5_in_axes5_x = six_r_joint5_offset_x*six_r_s_5;
-        const real six_r_d_5_in_axes5_y = six_r_c_5*six_r_joint5_offset_x;
-        const real six_r_bias_t_7 = six_r_omega_3_in_axes4_x*six_r_omega_3_in_axes4_x;
-        const real six_r_bias_t_8 = six_r_omega_4_in_axes5_x*six_r_omega_4_in_axes5_x;
-        const real six_r_bias_t_9 = six_r_omega_1_in_axes5_x*six_r_omega_1_in_axes5_x;
-        const real six_r_bias_t_10 = six_r_omega_1_in_axes5_y*six_r_omega_1_in_axes5_y;
-        const real six_r_bias_t_11 = six_r_omega_1_in_axes5_z*six_r_omega_1_in_axes5_z;
-        const real six_r_bias_t_12 = six_r_omega_2_in_axes5_x*six_r_omega_2_in_axes5_x;
-        const real six_r_bias_t_13 = six_r_omega_2_in_axes5_y*six_r_omega_2_in_axes5_y;
-        const real six_r_bias_t_14 = six_r_omega_2_in_axes5_z*six_r_omega_2_in_axes5_z;
-        const real six_r_bias_t_15 = six_r_W_4_in_axes5_xy + six_r_beta_4_in_axes4_x;
-        const real six_r_bias_in_axes5_x = six_r_W_1_in_axes5_xy*six_r_d_2_in_axes5_y +
-            six_r_W_1_in_axes5_xz*six_r_d_2_in_axes5_z +
-            six_r_W_5_in_axes5_xx*six_r_platform_joint_offset_x +
-            six_r_d_3_in_axes5_y*(six_r_W_2_in_axes5_xy - six_r_zeta_2_in_axes5_z) +
-            six_r_d_3_in_axes5_z*(six_r_W_2_in_axes5_xz + six_r_zeta_2_in_axes5_y) +
-            six_r_d_4_in_axes5_y*(six_r_W_3_in_axes5_xy - six_r_beta_3_in_axes4_x) +
-            six_r_d_5_in_axes5_y*(six_r_W_4_in_axes5_xy - six_r_beta_4_in_axes4_x) -
-            six_r_d_2_in_axes5_x*(six_r_bias_t_10 + six_r_bias_t_11) -
-            six_r_d_3_in_axes5_x*(six_r_bias_t_13 + six_r_bias_t_14) -
-            six_r_d_4_in_axes5_x*(six_r_bias_t_7 +
-            six_r_omega_3_in_axes5_y*six_r_omega_3_in_axes5_y) - six_r_d_5_in_axes5_x*(six_r_W_5_t
-            + six_r_bias_t_7);
-        const real six_r_bias_in_axes5_y = six_r_W_1_in_axes5_xy*six_r_d_2_in_axes5_x +
-            six_r_W_1_in_axes5_yz*six_r_d_2_in_axes5_z + six_r_bias_t_15*six_r_d_5_in_axes5_x +
-            six_r_bias_t_15*six_r_platform_joint_offset_x +
-            six_r_d_3_in_axes5_x*(six_r_W_2_in_axes5_xy + six_r_zeta_2_in_axes5_z) +
-            six_r_d_3_in_axes5_z*(six_r_W_2_in_axes5_yz - six_r_zeta_2_in_axes5_x) +
-            six_r_d_4_in_axes5_x*(six_r_W_3_in_axes5_xy + six_r_beta_3_in_axes4_x) -
-            six_r_d_2_in_axes5_y*(six_r_bias_t_11 + six_r_bias_t_9) -
-            six_r_d_3_in_axes5_y*(six_r_bias_t_12 + six_r_bias_t_14) -
-            six_r_d_4_in_axes5_y*(six_r_bias_t_7 +
-            six_r_omega_3_in_axes5_x*six_r_omega_3_in_axes5_x) -
-            six_r_d_5_in_axes5_y*(six_r_bias_t_7 + six_r_bias_t_8);
-        const real six_r_bias_in_axes5_z = six_r_W_1_in_axes5_xz*six_r_d_2_in_axes5_x +
-            six_r_W_1_in_axes5_yz*six_r_d_2_in_axes5_y +
-            six_r_d_3_in_axes5_x*(six_r_W_2_in_axes5_xz - six_r_zeta_2_in_axes5_y) +
-            six_r_d_3_in_axes5_y*(six_r_W_2_in_axes5_yz + six_r_zeta_2_in_axes5_x) +
-            six_r_d_4_in_axes5_x*(six_r_beta_4_t_2 + six_r_beta_3_in_axes4_y*six_r_s_5 +
-            six_r_omega_3_in_axes4_x*six_r_omega_3_in_axes5_x) +
-            six_r_d_4_in_axes5_y*(six_r_beta_4_t + six_r_beta_3_in_axes4_y*six_r_c_5 +
-            six_r_omega_3_in_axes4_x*six_r_omega_3_in_axes5_y) +
-            six_r_d_5_in_axes5_x*(six_r_omega_3_in_axes4_x*six_r_omega_4_in_axes5_x -
-            six_r_beta_4_in_axes5_y) + six_r_d_5_in_axes5_y*(six_r_beta_4_in_axes5_x +
-            six_r_omega_3_in_axes4_x*six_r_omega_4_in_axes5_y) +
-            six_r_platform_joint_offset_x*(six_r_W_5_in_axes5_xz - six_r_beta_5_in_axes5_y) -
-            six_r_d_2_in_axes5_z*(six_r_bias_t_10 + six_r_bias_t_9) -
-            six_r_d_3_in_axes5_z*(six_r_bias_t_12 + six_r_bias_t_13);
-        /* (six_r-rel) acceleration of the connection point left to the joint accelerations */
-        const real six_r_rel_in_axes5_x = six_r_S_ddot_in_axes5_x - six_r_bias_in_axes5_x;
-        const real six_r_rel_in_axes5_y = six_r_S_ddot_in_axes5_y - six_r_bias_in_axes5_y;
-        const real six_r_rel_in_axes5_z = six_r_S_ddot_in_axes5_z - six_r_bias_in_axes5_z;
-        /* (six_r-nd_m1) rate of moment direction 1 */
-        const real six_r_nd_m1_t = six_r_n_m1_in_axes5_y*six_r_omega_in_axes5_z -
-            six_r_end_p1_in_axes5_z*six_r_omega_in_axes5_x;
-        const real six_r_nd_m1_in_axes5_x = -six_r_nd_m1_t -
-            six_r_end_p1_in_axes5_z*six_r_omega_4_in_axes5_x;
-        const real six_r_nd_m1_in_axes5_y = six_r_eta_2_t -
-            six_r_end_p1_in_axes5_z*six_r_omega_4_in_axes5_y;
-        /* (six_r-nu_1) bias of the angular acceleration along moment direction 1 */
-        const real six_r_nu_1_t = six_r_n_m2_in_axes5_z*six_r_omega_4_in_axes5_y;
-        const real six_r_nu_1_t_2 = six_r_beta_5_in_axes5_x*six_r_n_m2_in_axes5_z -
-            six_r_beta_5_in_axes5_y*six_r_n_m1_in_axes5_y;
-        const real six_r_nu_1_t_3 = six_r_omega_4_in_axes5_x - six_r_omega_in_axes5_x;
-        const real six_r_nu_1_t_4 = six_r_omega_4_in_axes5_y - six_r_omega_in_axes5_y;
-        const real six_r_nu_1_t_5 = six_r_omega_5_in_axes5_z - six_r_omega_in_axes5_z;
-        const real six_r_nu_1_t_6 = six_r_nd_m1_in_axes5_x*six_r_nu_1_t_3 +
-            six_r_nd_m1_in_axes5_y*six_r_nu_1_t_4 + six_r_nu_1_t_5*(six_r_nu_1_t +
-            six_r_n_m1_in_axes5_y*six_r_omega_4_in_axes5_x);
-        const real six_r_nu_1 = six_r_nu_1_t_2 - six_r_nu_1_t_6;
-        /* (six_r-nd_m2) rate of moment direction 2 */
-        const real six_r_nd_m2_in_axes5_y = six_r_eta_1 -
-            six_r_n_m1_in_axes5_y*six_r_omega_4_in_axes5_y;
-        const real six_r_nd_m2_in_axes5_z = six_r_nd_m1_t -
-            six_r_n_m1_in_axes5_y*six_r_omega_5_in_axes5_z;
-        /* (six_r-nu_2) bias of the angular acceleration along moment direction 2 */
-        const real six_r_nu_2_t = six_r_beta_5_in_axes5_y*six_r_end_p1_in_axes5_z -
-            six_r_beta_4_in_axes4_x*six_r_n_m2_in_axes5_z;
-        const real six_r_nu_2_t_2 = six_r_nd_m2_in_axes5_y*six_r_nu_1_t_4 +
-            six_r_nd_m2_in_axes5_z*six_r_nu_1_t_5 + six_r_nu_1_t_3*(six_r_nu_1_t +
-            six_r_end_p1_in_axes5_z*six_r_omega_5_in_axes5_z);
-        const real six_r_nu_2 = six_r_nu_2_t - six_r_nu_2_t_2;
-        /* (six_r-etad_1) acceleration with which the joints turn along moment direction 1 */
-        const real six_r_alpha_in_axes5_y = alpha_x*axis_y_six_r_axes5_x +
-            alpha_y*axis_y_six_r_axes5_y + alpha_z*axis_y_six_r_axes5_z;
-        const real six_r_etad_1_t = six_r_n_m2_in_axes5_z*(alpha_x*axis_x_six_r_axes5_x +
-            alpha_y*axis_x_six_r_axes5_y + alpha_z*axis_x_six_r_axes5_z) -
-            six_r_alpha_in_axes5_y*six_r_n_m1_in_axes5_y;
-        const real six_r_etad_1 = six_r_nu_1 - six_r_etad_1_t;
-        /* (six_r-etad_2) acceleration with which the joints turn along moment direction 2 */
-        const real six_r_etad_2_t = six_r_alpha_in_axes5_y*six_r_end_p1_in_axes5_z -
-            six_r_n_m2_in_axes5_z*(alpha_x*axis_z_six_r_axes5_x + alpha_y*axis_z_six_r_axes5_y +
-            alpha_z*axis_z_six_r_axes5_z);
-        const real six_r_etad_2 = six_r_nu_2 - six_r_etad_2_t;
-        /* (six_r-qdd_1) acceleration of joint 1 */
-        const real six_r_qdd_1_t = six_r_etad_1*six_r_size;
-        const real six_r_qdd_1_t_2 = six_r_etad_2*six_r_size;
-        const real six_r_qdd_1_t_3 = inv_six_r_w_1_t_79*(six_r_m1_w_2_t*six_r_qdd_1_t +
-            six_r_m2_w_2_t*six_r_qdd_1_t_2 + six_r_rel_in_axes5_x*six_r_w_2_t +
-            six_r_rel_in_axes5_z*six_r_w_2_t_3 - six_r_rel_in_axes5_y*six_r_w_2_t_2);
-        const real six_r_qdd_1_t_4 = inv_six_r_w_1_t_67*(six_r_qdd_1_t*six_r_w_1_t_71 +
-            six_r_qdd_1_t_2*six_r_w_1_t_72 + six_r_rel_in_axes5_x*six_r_w_1_t_68 +
-            six_r_rel_in_axes5_z*six_r_w_1_t_70 - six_r_qdd_1_t_3*six_r_w_1_t_73 -
-            six_r_rel_in_axes5_y*six_r_w_1_t_69);
-        const real six_r_qdd_1_t_5 = inv_six_r_w_1_t_49*(six_r_qdd_1_t_3*six_r_w_1_t_61 +
-            six_r_qdd_1_t_4*six_r_w_1_t_55 + six_r_rel_in_axes5_y*six_r_w_1_t_51 -
-            six_r_qdd_1_t*six_r_w_1_t_53 - six_r_qdd_1_t_2*six_r_w_1_t_54 -
-            six_r_rel_in_axes5_x*six_r_w_1_t_50 - six_r_rel_in_axes5_z*six_r_w_1_t_52);
-        /* (six_r-qdd_4) acceleration of joint 4 */
-        const real six_r_qdd_4 = inv_six_r_w_1_t_28*(six_r_qdd_1_t*six_r_w_1_t_31 +
-            six_r_qdd_1_t_2*six_r_w_1_t_32 + six_r_qdd_1_t_3*six_r_w_1_t_44 +
-            six_r_qdd_1_t_4*six_r_w_1_t_39 + six_r_rel_in_axes5_z*six_r_w_1_t_30 -
-            six_r_qdd_1_t_5*six_r_w_1_t_33 - six_r_rel_in_axes5_y*six_r_w_1_t_29);
-        /* (six_r-alpha_1) angular acceleration of link 1 */
-        const real six_r_alpha_1_t = six_r_qdd_1_t_5*six_r_s_2;
-        const real six_r_alpha_1_in_axes2_y = -six_r_c_2*six_r_qdd_1_t_5;
-        /* (six_r-alpha_2) angular acceleration of link 2 */
-        const real six_r_alpha_2_in_axes2_x = six_r_W_2_in_axes2_yz - six_r_alpha_1_t;
-        const real six_r_alpha_2_in_axes2_y = six_r_alpha_1_in_axes2_y + six_r_zeta_2_in_axes2_y;
-        /* (six_r-B_2) acceleration tensor of link 2 */
-        const real six_r_B_2_in_axes2_xy = six_r_W_2_in_axes2_xy - six_r_qdd_1_t_4;
-        const real six_r_B_2_in_axes2_yx = six_r_W_2_in_axes2_xy + six_r_qdd_1_t_4;
-        const real six_r_B_2_in_axes2_zx = -six_r_alpha_2_in_axes2_y - six_r_zeta_2_in_axes2_y;
-        const real six_r_B_2_in_axes2_zy = six_r_W_2_in_axes2_yz + six_r_alpha_2_in_axes2_x;
-        /* (six_r-alpha_3) angular acceleration of link 3 */
-        const real six_r_alpha_3_in_axes3_x = six_r_alpha_2_in_axes2_x*six_r_c_3 +
-            six_r_alpha_2_in_axes2_y*six_r_s_3 - six_r_zeta_3_t;
-        const real six_r_alpha_3_in_axes3_y = six_r_zeta_3_in_axes3_y +
-            six_r_alpha_2_in_axes2_y*six_r_c_3 - six_r_alpha_2_in_axes2_x*six_r_s_3;
-        const real six_r_alpha_3_in_axes3_z = six_r_qdd_1_t_3 + six_r_qdd_1_t_4;
-        /* (six_r-B_3) acceleration tensor of link 3 */
-        const real six_r_B_3_in_axes3_xy = six_r_W_3_in_axes3_xy - six_r_alpha_3_in_axes3_z;
-        const real six_r_B_3_in_axes3_xz = six_r_W_3_in_axes3_xz + six_r_alpha_3_in_axes3_y;
-        const real six_r_B_3_in_axes3_yx = six_r_W_3_in_axes3_xy + six_r_alpha_3_in_axes3_z;
-        const real six_r_B_3_in_axes3_yz = six_r_W_3_in_axes3_yz - six_r_alpha_3_in_axes3_x;
-        const real six_r_B_3_in_axes3_zx = six_r_W_3_in_axes3_xz - six_r_alpha_3_in_axes3_y;
-        const real six_r_B_3_in_axes3_zy = six_r_W_3_in_axes3_yz + six_r_alpha_3_in_axes3_x;
-        /* (six_r-alpha_4) angular acceleration of link 4 */
-        const real six_r_alpha_4_in_axes4_x = six_r_zeta_4_in_axes4_x +
-            six_r_alpha_3_in_axes3_y*six_r_c_4 + six_r_alpha_3_in_axes3_z*six_r_s_4;
-        const real six_r_alpha_4_in_axes4_y = six_r_zeta_4_in_axes4_y +
-            six_r_alpha_3_in_axes3_z*six_r_c_4 - six_r_alpha_3_in_axes3_y*six_r_s_4;
-        const real six_r_alpha_4_in_axes4_z = six_r_alpha_3_in_axes3_x + six_r_qdd_4;
-        /* (six_r-B_4) acceleration tensor of link 4 */
-        const real six_r_B_4_in_axes4_xy = six_r_W_4_in_axes4_xy - six_r_alpha_4_in_axes4_z;
-        const real six_r_B_4_in_axes4_xz = six_r_W_4_in_axes4_xz + six_r_alpha_4_in_axes4_y;
-        const real six_r_B_4_in_axes4_yx = six_r_W_4_in_axes4_xy + six_r_alpha_4_in_axes4_z;
-        const real six_r_B_4_in_axes4_yz = six_r_W_4_in_axes4_yz - six_r_alpha_4_in_axes4_x;
-        const real six_r_B_4_in_axes4_zx = six_r_W_4_in_axes4_xz - six_r_alpha_4_in_axes4_y;
-        const real six_r_B_4_in_axes4_zy = six_r_W_4_in_axes4_yz + six_r_alpha_4_in_axes4_x;
-        /* (six_r-alpha_5) angular acceleration of link 5 */
-        const real six_r_alpha_5_in_axes5_x = six_r_alpha_4_in_axes4_y*six_r_c_5 +
-            six_r_alpha_4_in_axes4_z*six_r_s_5 - six_r_zeta_5_t;
-        const real six_r_alpha_5_in_axes5_y = six_r_zeta_5_in_axes5_y +
-            six_r_alpha_4_in_axes4_z*six_r_c_5 - six_r_alpha_4_in_axes4_y*six_r_s_5;
-        const real six_r_alpha_5_in_axes5_z = six_r_alpha_4_in_axes4_x +
-            inv_six_r_w_1_t_12*(six_r_qdd_1_t_2*six_r_w_1_t_14 + six_r_qdd_1_t_3*six_r_w_1_t_25 +
-            six_r_qdd_1_t_5*six_r_w_1_t_18 + six_r_rel_in_axes5_y*six_r_w_1_t_13 -
-            six_r_qdd_1_t_4*six_r_w_1_t_22 - six_r_qdd_4*six_r_w_1_t_15);
-        /* (six_r-B_5) acceleration tensor of link 5 */
-        const real six_r_B_5_in_axes5_xy = six_r_W_4_in_axes5_xy - six_r_alpha_5_in_axes5_z;
-        const real six_r_B_5_in_axes5_xz = six_r_W_5_in_axes5_xz + six_r_alpha_5_in_axes5_y;
-        const real six_r_B_5_in_axes5_yx = six_r_W_4_in_axes5_xy + six_r_alpha_5_in_axes5_z;
-        const real six_r_B_5_in_axes5_yz = six_r_W_5_in_axes5_yz - six_r_alpha_5_in_axes5_x;
-        const real six_r_B_5_in_axes5_zx = six_r_W_5_in_axes5_xz - six_r_alpha_5_in_axes5_y;
-        const real six_r_B_5_in_axes5_zy = six_r_W_5_in_axes5_yz + six_r_alpha_5_in_axes5_x;
-        /* (six_r-a_o_3) acceleration of the origin of joint 3 */
-        const real six_r_a_o_3_t = six_r_omega_1_in_axes2_y*six_r_omega_1_in_axes2_y;
-        const real six_r_a_o_3_t_2 = six_r_qd_1_t_4*six_r_qd_1_t_4;
-        const real six_r_a_o_3_t_3 = six_r_joint3_offset_x*(six_r_a_o_3_t + six_r_a_o_3_t_2);
-        const real six_r_a_o_3_in_axes2_y = six_r_B_2_in_axes2_yx*six_r_joint3_offset_x;
-        const real six_r_a_o_3_in_axes2_z = six_r_B_2_in_axes2_zx*six_r_joint3_offset_x;
-        const real six_r_a_o_3_in_axes3_x = six_r_a_o_3_in_axes2_y*six_r_s_3 -
-            six_r_a_o_3_t_3*six_r_c_3;
-        const real six_r_a_o_3_in_axes3_y = six_r_a_o_3_in_axes2_y*six_r_c_3 +
-            six_r_a_o_3_t_3*six_r_s_3;
-        /* (six_r-a_o_4) acceleration of the origin of joint 4 */
-        const real six_r_a_o_4_in_axes3_x = six_r_a_o_3_in_axes3_x -
-            six_r_W_3_t_3*six_r_joint4_offset_x;
-        const real six_r_a_o_4_in_axes3_y = six_r_a_o_3_in_axes3_y +
-            six_r_B_3_in_axes3_yx*six_r_joint4_offset_x;
-        const real six_r_a_o_4_in_axes3_z = six_r_a_o_3_in_axes2_z +
-            six_r_B_3_in_axes3_zx*six_r_joint4_offset_x;
-        /* (six_r-acc_3) acceleration of the reference point of link 3, less gravity */
-        const real six_r_acc_3_t = m->six_r_acc_3_t[i];
-        const real six_r_acc_3_t_2 = m->six_r_acc_3_t_2[i];
-        const real six_r_g_in_axes1_x = six_r_acc_3_t*six_r_c_1 + six_r_acc_3_t_2*six_r_s_1;
-        const real six_r_g_in_axes1_y = six_r_acc_3_t_2*six_r_c_1 - six_r_acc_3_t*six_r_s_1;
-        const real six_r_g_in_axes1_z = m->six_r_g_in_axes1_z[i];
-        const real six_r_g_in_axes2_x = six_r_c_2*six_r_g_in_axes1_y +
-            six_r_g_in_axes1_z*six_r_s_2;
-        const real six_r_g_in_axes2_y = six_r_c_2*six_r_g_in_axes1_z -
-            six_r_g_in_axes1_y*six_r_s_2;
-        const real six_r_g_in_axes3_x = six_r_c_3*six_r_g_in_axes2_x +
-            six_r_g_in_axes2_y*six_r_s_3;
-        const real six_r_g_in_axes3_y = six_r_c_3*six_r_g_in_axes2_y -
-            six_r_g_in_axes2_x*six_r_s_3;
-        const real six_r_acc_3_in_axes3_x = six_r_a_o_3_in_axes3_x - six_r_g_in_axes3_x;
-        const real six_r_acc_3_in_axes3_y = six_r_a_o_3_in_axes3_y - six_r_g_in_axes3_y;
-        const real six_r_acc_3_in_axes3_z = six_r_a_o_3_in_axes2_z - six_r_g_in_axes1_x;
-        /* (six_r-f_3) inertia force of link 3 less its weight */
-        const real six_r_f_3_t = six_r_omega_2_in_axes3_x*six_r_omega_2_in_axes3_x;
-        const real six_r_h_3_in_spec3_x = m->six_r_h_3_in_spec3_x[i];
-        const real six_r_h_3_in_spec3_y = m->six_r_h_3_in_spec3_y[i];
-        const real six_r_h_3_in_spec3_z = m->six_r_h_3_in_spec3_z[i];
-        const real six_r_link3_mass = m->six_r_link3_mass[i];
-        const real six_r_f_3_in_axes3_x = six_r_B_3_in_axes3_xy*six_r_h_3_in_spec3_y +
-            six_r_B_3_in_axes3_xz*six_r_h_3_in_spec3_z + six_r_acc_3_in_axes3_x*six_r_link3_mass -
-            six_r_W_3_t_3*six_r_h_3_in_spec3_x;
-        const real six_r_f_3_in_axes3_y = six_r_B_3_in_axes3_yx*six_r_h_3_in_spec3_x +
-            six_r_B_3_in_axes3_yz*six_r_h_3_in_spec3_z + six_r_acc_3_in_axes3_y*six_r_link3_mass -
-            six_r_h_3_in_spec3_y*(six_r_W_3_t_2 + six_r_f_3_t);
-        const real six_r_f_3_in_axes3_z = six_r_B_3_in_axes3_zx*six_r_h_3_in_spec3_x +
-            six_r_B_3_in_axes3_zy*six_r_h_3_in_spec3_y + six_r_acc_3_in_axes3_z*six_r_link3_mass -
-            six_r_h_3_in_spec3_z*(six_r_W_3_t + six_r_f_3_t);
-        /* (six_r-acc_4) acceleration of the reference point of link 4, less gravity */
-        const real six_r_acc_4_in_axes4_x = six_r_a_o_4_in_axes3_y*six_r_c_4 +
-            six_r_a_o_4_in_axes3_z*six_r_s_4 - six_r_c_4*six_r_g_in_axes3_y -
-            six_r_g_in_axes1_x*six_r_s_4;
-        const real six_r_acc_4_in_axes4_y = six_r_a_o_4_in_axes3_z*six_r_c_4 +
-            six_r_g_in_axes3_y*six_r_s_4 - six_r_a_o_4_in_axes3_y*six_r_s_4 -
-            six_r_c_4*six_r_g_in_axes1_x;
-        const real six_r_acc_4_in_axes4_z = six_r_a_o_4_in_axes3_x - six_r_g_in_axes3_x;
-        /* (six_r-f_4) inertia force of link 4 less its weight */
-        const real six_r_f_4_t = six_r_omega_3_in_axes4_y*six_r_omega_3_in_axes4_y;
-        const real six_r_f_4_t_2 = six_r_omega_4_in_axes4_z*six_r_omega_4_in_axes4_z;
-        const real six_r_h_4_in_spec4_x = m->six_r_h_4_in_spec4_x[i];
-        const real six_r_h_4_in_spec4_y = m->six_r_h_4_in_spec4_y[i];
-        const real six_r_h_4_in_spec4_z = m->six_r_h_4_in_spec4_z[i];
-        const real six_r_link4_mass = m->six_r_link4_mass[i];
-        const real six_r_f_4_in_axes4_x = six_r_B_4_in_axes4_xz*six_r_h_4_in_spec4_x +
-            six_r_acc_4_in_axes4_x*six_r_link4_mass - six_r_B_4_in_axes4_xy*six_r_h_4_in_spec4_y -
-            six_r_h_4_in_spec4_z*(six_r_f_4_t + six_r_f_4_t_2);
-        const real six_r_f_4_in_axes4_y = six_r_B_4_in_axes4_yx*six_r_h_4_in_spec4_z +
-            six_r_B_4_in_axes4_yz*six_r_h_4_in_spec4_x + six_r_acc_4_in_axes4_y*six_r_link4_mass +
-            six_r_h_4_in_spec4_y*(six_r_bias_t_7 + six_r_f_4_t_2);
-        const real six_r_f_4_in_axes4_z = six_r_B_4_in_axes4_zx*six_r_h_4_in_spec4_z +
-            six_r_acc_4_in_axes4_z*six_r_link4_mass - six_r_B_4_in_axes4_zy*six_r_h_4_in_spec4_y -
-            six_r_h_4_in_spec4_x*(six_r_bias_t_7 + six_r_f_4_t);
-        const real six_r_f_4_in_axes3_y = six_r_c_4*six_r_f_4_in_axes4_x -
-            six_r_f_4_in_axes4_y*six_r_s_4;
-        const real six_r_f_4_in_axes3_z = six_r_c_4*six_r_f_4_in_axes4_y +
-            six_r_f_4_in_axes4_x*six_r_s_4;
-        /* (six_r-acc_5) acceleration of the reference point of link 5, less gravity */
-        const real gravity_x = m->gravity_x;
-        const real gravity_y = m->gravity_y;
-        const real gravity_z = m->gravity_z;
-        const real six_r_acc_5_in_axes5_x = six_r_S_ddot_in_axes5_x -
-            axis_x_six_r_axes5_x*gravity_x - axis_x_six_r_axes5_y*gravity_y -
-            axis_x_six_r_axes5_z*gravity_z;
-        const real six_r_acc_5_in_axes5_y = six_r_S_ddot_in_axes5_y -
-            axis_y_six_r_axes5_x*gravity_x - axis_y_six_r_axes5_y*gravity_y -
-            axis_y_six_r_axes5_z*gravity_z;
-        const real six_r_acc_5_in_axes5_z = six_r_S_ddot_in_axes5_z -
-            axis_z_six_r_axes5_x*gravity_x - axis_z_six_r_axes5_y*gravity_y -
-            axis_z_six_r_axes5_z*gravity_z;
-        /* (six_r-mu_5) inertia moment of the links that turn with link 5, about their reference points */
-        const real six_r_J_5_in_spec5_xy = m->six_r_J_5_in_spec5_xy[i];
-        const real six_r_J_5_in_spec5_xz = m->six_r_J_5_in_spec5_xz[i];
-        const real six_r_J_5_in_spec5_yz = m->six_r_J_5_in_spec5_yz[i];
-        const real six_r_Sigma_5_in_axes5_yy = m->six_r_Sigma_5_in_axes5_yy[i];
-        const real six_r_Sigma_5_in_axes5_zz = m->six_r_Sigma_5_in_axes5_zz[i];
-        const real six_r_h_5_in_spec5_y = m->six_r_h_5_in_spec5_y[i];
-        const real six_r_h_5_in_spec5_z = m->six_r_h_5_in_spec5_z[i];
-        const real six_r_mu_5_in_axes5_x = six_r_B_5_in_axes5_yx*six_r_J_5_in_spec5_xz +
-            six_r_B_5_in_axes5_zy*six_r_Sigma_5_in_axes5_yy + six_r_J_5_in_spec5_yz*(six_r_W_5_t -
-            six_r_W_5_t_2) + six_r_acc_5_in_axes5_z*six_r_h_5_in_spec5_y -
-            six_r_B_5_in_axes5_yz*six_r_Sigma_5_in_axes5_zz -
-            six_r_B_5_in_axes5_zx*six_r_J_5_in_spec5_xy -
-            six_r_acc_5_in_axes5_y*six_r_h_5_in_spec5_z;
-        const real six_r_Sigma_5_in_axes5_xx = m->six_r_Sigma_5_in_axes5_xx[i];
-        const real six_r_h_5_in_spec5_x = m->six_r_h_5_in_spec5_x[i];
-        const real six_r_mu_5_in_axes5_y = six_r_B_5_in_axes5_xz*six_r_Sigma_5_in_axes5_zz +
-            six_r_B_5_in_axes5_zy*six_r_J_5_in_spec5_xy +
-            six_r_acc_5_in_axes5_x*six_r_h_5_in_spec5_z -
-            six_r_B_5_in_axes5_xy*six_r_J_5_in_spec5_yz -
-            six_r_B_5_in_axes5_zx*six_r_Sigma_5_in_axes5_xx -
-            six_r_J_5_in_spec5_xz*(six_r_bias_t_8 - six_r_W_5_t_2) -
-            six_r_acc_5_in_axes5_z*six_r_h_5_in_spec5_x;
-        const real six_r_mu_5_in_axes5_z = six_r_B_5_in_axes5_xz*six_r_J_5_in_spec5_yz +
-            six_r_B_5_in_axes5_yx*six_r_Sigma_5_in_axes5_xx +
-            six_r_J_5_in_spec5_xy*(six_r_bias_t_8 - six_r_W_5_t) +
-            six_r_acc_5_in_axes5_y*six_r_h_5_in_spec5_x -
-            six_r_B_5_in_axes5_xy*six_r_Sigma_5_in_axes5_yy -
-            six_r_B_5_in_axes5_yz*six_r_J_5_in_spec5_xz -
-            six_r_acc_5_in_axes5_x*six_r_h_5_in_spec5_y;
-        /* (six_r-mu_4) inertia moment of the links that turn with link 4, about their reference points */
-        const real six_r_J_4_in_spec4_xy = m->six_r_J_4_in_spec4_xy[i];
-        const real six_r_J_4_in_spec4_xz = m->six_r_J_4_in_spec4_xz[i];
-        const real six_r_J_4_in_spec4_yz = m->six_r_J_4_in_spec4_yz[i];
-        const real six_r_Sigma_4_in_axes4_yy = m->six_r_Sigma_4_in_axes4_yy[i];
-        const real six_r_Sigma_4_in_axes4_zz = m->six_r_Sigma_4_in_axes4_zz[i];
-        const real six_r_mu_4_in_axes4_x = six_r_B_4_in_axes4_yx*six_r_J_4_in_spec4_xz +
-            six_r_B_4_in_axes4_zx*six_r_J_4_in_spec4_yz +
-            six_r_B_4_in_axes4_zy*six_r_Sigma_4_in_axes4_yy -
-            six_r_B_4_in_axes4_yz*six_r_Sigma_4_in_axes4_zz - six_r_J_4_in_spec4_xy*(six_r_f_4_t -
-            six_r_f_4_t_2) - six_r_acc_4_in_axes4_y*six_r_h_4_in_spec4_x -
-            six_r_acc_4_in_axes4_z*six_r_h_4_in_spec4_y;
-        const real six_r_Sigma_4_in_axes4_xx = m->six_r_Sigma_4_in_axes4_xx[i];
-        const real six_r_mu_4_in_axes4_y = six_r_B_4_in_axes4_xy*six_r_J_4_in_spec4_xy +
-            six_r_B_4_in_axes4_xz*six_r_Sigma_4_in_axes4_zz +
-            six_r_acc_4_in_axes4_x*six_r_h_4_in_spec4_x -
-            six_r_B_4_in_axes4_zx*six_r_Sigma_4_in_axes4_xx -
-            six_r_B_4_in_axes4_zy*six_r_J_4_in_spec4_yz - six_r_J_4_in_spec4_xz*(six_r_bias_t_7 -
-            six_r_f_4_t_2) - six_r_acc_4_in_axes4_z*six_r_h_4_in_spec4_z;
-        const real six_r_mu_4_in_axes4_z = six_r_B_4_in_axes4_yx*six_r_Sigma_4_in_axes4_xx +
-            six_r_acc_4_in_axes4_x*six_r_h_4_in_spec4_y +
-            six_r_acc_4_in_axes4_y*six_r_h_4_in_spec4_z -
-            six_r_B_4_in_axes4_xy*six_r_Sigma_4_in_axes4_yy -
-            six_r_B_4_in_axes4_xz*six_r_J_4_in_spec4_xy -
-            six_r_B_4_in_axes4_yz*six_r_J_4_in_spec4_xz - six_r_J_4_in_spec4_yz*(six_r_bias_t_7 -
-            six_r_f_4_t);
-        /* (six_r-N_4) moment about joint 4 of the links from 4 outwards, the force at the connection
-           point left out */
-        const real six_r_N_4_in_axes4_x = six_r_mu_4_in_axes4_x + six_r_mu_5_in_axes5_z;
-        const real six_r_N_4_in_axes4_y = six_r_mu_4_in_axes4_y + six_r_c_5*six_r_mu_5_in_axes5_x
-            - six_r_mu_5_in_axes5_y*six_r_s_5;
-        const real six_r_N_4_in_axes4_z = six_r_mu_4_in_axes4_z + six_r_c_5*six_r_mu_5_in_axes5_y
-            + six_r_mu_5_in_axes5_x*six_r_s_5;
-        /* (six_r-mu_3) inertia moment of the links that turn with link 3, about their reference points */
-        const real six_r_J_3_in_spec3_xy = m->six_r_J_3_in_spec3_xy[i];
-        const real six_r_J_3_in_spec3_xz = m->six_r_J_3_in_spec3_xz[i];
-        const real six_r_J_3_in_spec3_yz = m->six_r_J_3_in_spec3_yz[i];
-        const real six_r_Sigma_3_in_axes3_yy = m->six_r_Sigma_3_in_axes3_yy[i];
-        const real six_r_Sigma_3_in_axes3_zz = m->six_r_Sigma_3_in_axes3_zz[i];
-        const real six_r_mu_3_in_axes3_x = six_r_B_3_in_axes3_yx*six_r_J_3_in_spec3_xz +
-            six_r_B_3_in_axes3_zy*six_r_Sigma_3_in_axes3_yy + six_r_J_3_in_spec3_yz*(six_r_W_3_t -
-            six_r_W_3_t_2) + six_r_acc_3_in_axes3_z*six_r_h_3_in_spec3_y -
-            six_r_B_3_in_axes3_yz*six_r_Sigma_3_in_axes3_zz -
-            six_r_B_3_in_axes3_zx*six_r_J_3_in_spec3_xy -
-            six_r_acc_3_in_axes3_y*six_r_h_3_in_spec3_z;
-        const real six_r_Sigma_3_in_axes3_xx = m->six_r_Sigma_3_in_axes3_xx[i];
-        const real six_r_mu_3_in_axes3_y = six_r_B_3_in_axes3_xz*six_r_Sigma_3_in_axes3_zz +
-            six_r_B_3_in_axes3_zy*six_r_J_3_in_spec3_xy +
-            six_r_acc_3_in_axes3_x*six_r_h_3_in_spec3_z -
-            six_r_B_3_in_axes3_xy*six_r_J_3_in_spec3_yz -
-            six_r_B_3_in_axes3_zx*six_r_Sigma_3_in_axes3_xx - six_r_J_3_in_spec3_xz*(six_r_f_3_t -
-            six_r_W_3_t_2) - six_r_acc_3_in_axes3_z*six_r_h_3_in_spec3_x;
-        const real six_r_mu_3_in_axes3_z = six_r_B_3_in_axes3_xz*six_r_J_3_in_spec3_yz +
-            six_r_B_3_in_axes3_yx*six_r_Sigma_3_in_axes3_xx + six_r_J_3_in_spec3_xy*(six_r_f_3_t -
-            six_r_W_3_t) + six_r_acc_3_in_axes3_y*six_r_h_3_in_spec3_x -
-            six_r_B_3_in_axes3_xy*six_r_Sigma_3_in_axes3_yy -
-            six_r_B_3_in_axes3_yz*six_r_J_3_in_spec3_xz -
-            six_r_acc_3_in_axes3_x*six_r_h_3_in_spec3_y;
-        /* (six_r-N_3) moment about joint 3 of the links from 3 outwards, the force at the connection
-           point left out */
-        const real six_r_N_3_in_axes3_x = six_r_N_4_in_axes4_z + six_r_mu_3_in_axes3_x;
-        const real six_r_N_3_in_axes3_y = six_r_mu_3_in_axes3_y + six_r_N_4_in_axes4_x*six_r_c_4 -
-            six_r_N_4_in_axes4_y*six_r_s_4 - six_r_f_4_in_axes3_z*six_r_joint4_offset_x;
-        const real six_r_N_3_in_axes3_z = six_r_mu_3_in_axes3_z + six_r_N_4_in_axes4_x*six_r_s_4 +
-            six_r_N_4_in_axes4_y*six_r_c_4 + six_r_f_4_in_axes3_y*six_r_joint4_offset_x;
-        /* (six_r-T_3) inertia force of the links from 3 outwards, the last link left out */
-        const real six_r_T_3_in_axes3_x = six_r_f_3_in_axes3_x + six_r_f_4_in_axes4_z;
-        const real six_r_T_3_in_axes3_y = six_r_f_3_in_axes3_y + six_r_f_4_in_axes3_y;
-        const real six_r_T_3_in_axes3_z = six_r_f_3_in_axes3_z + six_r_f_4_in_axes3_z;
-        /* (six_r-mu_2) inertia moment of the links that turn with link 2, about their reference points */
-        const real six_r_mu_2_t = six_r_omega_1_in_axes2_x*six_r_omega_1_in_axes2_x;
-        const real six_r_J_2_in_spec2_xy = m->six_r_J_2_in_spec2_xy[i];
-        const real six_r_J_2_in_spec2_xz = m->six_r_J_2_in_spec2_xz[i];
-        const real six_r_J_2_in_spec2_yz = m->six_r_J_2_in_spec2_yz[i];
-        const real six_r_Sigma_2_in_axes2_yy = m->six_r_Sigma_2_in_axes2_yy[i];
-        const real six_r_Sigma_2_in_axes2_zz = m->six_r_Sigma_2_in_axes2_zz[i];
-        const real six_r_h_2_in_spec2_y = m->six_r_h_2_in_spec2_y[i];
-        const real six_r_h_2_in_spec2_z = m->six_r_h_2_in_spec2_z[i];
-        const real six_r_mu_2_in_axes2_x = six_r_B_2_in_axes2_yx*six_r_J_2_in_spec2_xz +
-            six_r_B_2_in_axes2_zy*six_r_Sigma_2_in_axes2_yy + six_r_J_2_in_spec2_yz*(six_r_a_o_3_t
-            - six_r_a_o_3_t_2) + six_r_g_in_axes2_y*six_r_h_2_in_spec2_z -
-            six_r_B_2_in_axes2_zx*six_r_J_2_in_spec2_xy -
-            six_r_Sigma_2_in_axes2_zz*six_r_alpha_1_t - six_r_g_in_axes1_x*six_r_h_2_in_spec2_y;
-        const real six_r_Sigma_2_in_axes2_xx = m->six_r_Sigma_2_in_axes2_xx[i];
-        const real six_r_h_2_in_spec2_x = m->six_r_h_2_in_spec2_x[i];
-        const real six_r_mu_2_in_axes2_y = six_r_B_2_in_axes2_zy*six_r_J_2_in_spec2_xy +
-            six_r_Sigma_2_in_axes2_zz*six_r_alpha_1_in_axes2_y +
-            six_r_g_in_axes1_x*six_r_h_2_in_spec2_x - six_r_B_2_in_axes2_xy*six_r_J_2_in_spec2_yz
-            - six_r_B_2_in_axes2_zx*six_r_Sigma_2_in_axes2_xx -
-            six_r_J_2_in_spec2_xz*(six_r_mu_2_t - six_r_a_o_3_t_2) -
-            six_r_g_in_axes2_x*six_r_h_2_in_spec2_z;
-        const real six_r_mu_2_in_axes2_z = six_r_B_2_in_axes2_yx*six_r_Sigma_2_in_axes2_xx +
-            six_r_J_2_in_spec2_xy*(six_r_mu_2_t - six_r_a_o_3_t) +
-            six_r_J_2_in_spec2_yz*six_r_alpha_1_in_axes2_y +
-            six_r_g_in_axes2_x*six_r_h_2_in_spec2_y -
-            six_r_B_2_in_axes2_xy*six_r_Sigma_2_in_axes2_yy -
-            six_r_J_2_in_spec2_xz*six_r_alpha_1_t - six_r_g_in_axes2_y*six_r_h_2_in_spec2_x;
-        /* (six_r-N_2) moment about joint 2 of the links from 2 outwards, the force at the connection
-           point left out */
-        const real six_r_N_2_in_axes2_x = six_r_mu_2_in_axes2_x + six_r_N_3_in_axes3_x*six_r_c_3 -
-            six_r_N_3_in_axes3_y*six_r_s_3;
-        const real six_r_N_2_in_axes2_y = six_r_mu_2_in_axes2_y + six_r_N_3_in_axes3_x*six_r_s_3 +
-            six_r_N_3_in_axes3_y*six_r_c_3 - six_r_T_3_in_axes3_z*six_r_joint3_offset_x;
-        const real six_r_N_2_in_axes2_z = six_r_N_3_in_axes3_z + six_r_mu_2_in_axes2_z +
-            six_r_joint3_offset_x*(six_r_T_3_in_axes3_x*six_r_s_3 +
-            six_r_T_3_in_axes3_y*six_r_c_3);
-        /* (six_r-mu_1) inertia moment of the links that turn with link 1, about their reference points */
-        const real six_r_J_1_in_spec1_xx = m->six_r_J_1_in_spec1_xx[i];
-        const real six_r_h_1_in_spec1_y = m->six_r_h_1_in_spec1_y[i];
-        const real six_r_h_1_in_spec1_z = m->six_r_h_1_in_spec1_z[i];
-        const real six_r_mu_1_in_axes1_z = -six_r_J_1_in_spec1_xx*six_r_qdd_1_t_5 -
-            six_r_g_in_axes1_x*six_r_h_1_in_spec1_y - six_r_g_in_axes1_y*six_r_h_1_in_spec1_z;
-        /* (six_r-N_1) moment about joint 1 of the links from 1 outwards, the force at the connection
-           point left out */
-        const real six_r_N_1_in_axes1_z = six_r_mu_1_in_axes1_z + six_r_N_2_in_axes2_x*six_r_s_2 +
-            six_r_N_2_in_axes2_y*six_r_c_2;
-        /* (six_r-G_m1) moment along moment direction 1 that balances the leg's inertia and weight along
-           all degrees of freedom */
-        const real six_r_G_m1_t = inv_six_r_w_1_t_12*six_r_mu_5_in_axes5_z;
-        const real six_r_G_m1_t_2 = inv_six_r_w_1_t_28*(six_r_G_m1_t*six_r_w_1_t_15 -
-            six_r_N_4_in_axes4_z);
-        const real six_r_G_m1_t_3 = inv_six_r_w_1_t_49*(six_r_G_m1_t*six_r_w_1_t_18 +
-            six_r_G_m1_t_2*six_r_w_1_t_33 - six_r_N_1_in_axes1_z);
-        const real six_r_G_m1_t_4 = inv_six_r_w_1_t_67*(six_r_G_m1_t*six_r_w_1_t_22 +
-            six_r_G_m1_t_2*six_r_w_1_t_39 - six_r_N_2_in_axes2_z - six_r_G_m1_t_3*six_r_w_1_t_55);
-        const real six_r_G_m1_t_5 = inv_six_r_w_1_t_79*(six_r_N_3_in_axes3_z +
-            six_r_G_m1_t*six_r_w_1_t_25 + six_r_G_m1_t_3*six_r_w_1_t_61 +
-            six_r_G_m1_t_4*six_r_w_1_t_73 - six_r_G_m1_t_2*six_r_w_1_t_44);
-        const real six_r_G_m1_t_6 = six_r_size*(six_r_G_m1_t_2*six_r_w_1_t_31 +
-            six_r_G_m1_t_3*six_r_w_1_t_53 + six_r_G_m1_t_4*six_r_w_1_t_71 -
-            six_r_G_m1_t_5*six_r_m1_w_2_t);
-        /* (six_r-G_m2) moment along moment direction 2 that balances the leg's inertia and weight along
-           all degrees of freedom */
-        const real six_r_G_m2_t = six_r_size*(six_r_G_m1_t_2*six_r_w_1_t_32 +
-            six_r_G_m1_t_3*six_r_w_1_t_54 + six_r_G_m1_t_4*six_r_w_1_t_72 -
-            six_r_G_m1_t*six_r_w_1_t_14 - six_r_G_m1_t_5*six_r_m2_w_2_t);
-        /* (six_r-G_m) moment at the connection point that balances the leg's inertia and weight along all
-           degrees of freedom */
-        const real six_r_G_m_in_axes5_x = six_r_G_m1_t_6*six_r_n_m2_in_axes5_z;
-        const real six_r_G_m_in_axes5_y = six_r_G_m2_t*six_r_end_p1_in_axes5_z -
-            six_r_G_m1_t_6*six_r_n_m1_in_axes5_y;
-        /* (six_r-c) leg force on the platform without actuation and without the mass at the connection
-           point */
-        const real six_r_c_in_axes5_x = six_r_G_m1_t_3*six_r_w_1_t_50 +
-            six_r_G_m1_t_4*six_r_w_1_t_68 - six_r_B_5_in_axes5_xy*six_r_h_5_in_spec5_y -
-            six_r_B_5_in_axes5_xz*six_r_h_5_in_spec5_z - six_r_G_m1_t_5*six_r_w_2_t -
-            six_r_W_5_in_axes5_xx*six_r_h_5_in_spec5_x;
-        const real six_r_c_in_axes5_y = six_r_G_m1_t_5*six_r_w_2_t_2 +
-            six_r_h_5_in_spec5_y*(six_r_W_5_t_2 + six_r_bias_t_8) -
-            six_r_B_5_in_axes5_yx*six_r_h_5_in_spec5_x -
-            six_r_B_5_in_axes5_yz*six_r_h_5_in_spec5_z - six_r_G_m1_t*six_r_w_1_t_13 -
-            six_r_G_m1_t_2*six_r_w_1_t_29 - six_r_G_m1_t_3*six_r_w_1_t_51 -
-            six_r_G_m1_t_4*six_r_w_1_t_69;
-        const real six_r_c_in_axes5_z = six_r_G_m1_t_2*six_r_w_1_t_30 +
-            six_r_G_m1_t_3*six_r_w_1_t_52 + six_r_G_m1_t_4*six_r_w_1_t_70 +
-            six_r_h_5_in_spec5_z*(six_r_W_5_t + six_r_bias_t_8) -
-            six_r_B_5_in_axes5_zx*six_r_h_5_in_spec5_x -
-            six_r_B_5_in_axes5_zy*six_r_h_5_in_spec5_y - six_r_G_m1_t_5*six_r_w_2_t_3;
+        const real six_r_o_2_x = v.axis_y_six_r_axes5_x*v.six_r_o_2_in_axes5_y +
+            v.axis_z_six_r_axes5_x*v.six_r_o_2_in_axes5_z - v.axis_x_six_r_axes5_x*v.six_r_o_2_t;
+        const real six_r_o_2_y = v.axis_y_six_r_axes5_y*v.six_r_o_2_in_axes5_y +
+            v.axis_z_six_r_axes5_y*v.six_r_o_2_in_axes5_z - v.axis_x_six_r_axes5_y*v.six_r_o_2_t;
+        const real six_r_o_2_z = v.axis_y_six_r_axes5_z*v.six_r_o_2_in_axes5_y +
+            v.axis_z_six_r_axes5_z*v.six_r_o_2_in_axes5_z - v.axis_x_six_r_axes5_z*v.six_r_o_2_t;
         /* (six_r-c_m) moment of the leg on the platform without actuation */
-        const real six_r_c_m_in_axes5_z = six_r_G_m2_t*six_r_n_m2_in_axes5_z;
-        const real six_r_c_m_x = axis_z_six_r_axes5_x*six_r_c_m_in_axes5_z -
-            axis_x_six_r_axes5_x*six_r_G_m_in_axes5_x - axis_y_six_r_axes5_x*six_r_G_m_in_axes5_y;
-        const real six_r_c_m_y = axis_z_six_r_axes5_y*six_r_c_m_in_axes5_z -
-            axis_x_six_r_axes5_y*six_r_G_m_in_axes5_x - axis_y_six_r_axes5_y*six_r_G_m_in_axes5_y;
-        const real six_r_c_m_z = axis_z_six_r_axes5_z*six_r_c_m_in_axes5_z -
-            axis_x_six_r_axes5_z*six_r_G_m_in_axes5_x - axis_y_six_r_axes5_z*six_r_G_m_in_axes5_y;
+        const real six_r_c_m_x = v.axis_z_six_r_axes5_x*v.six_r_c_m_in_axes5_z -
+            v.axis_x_six_r_axes5_x*v.six_r_G_m_in_axes5_x -
+            v.axis_y_six_r_axes5_x*v.six_r_G_m_in_axes5_y;
+        const real six_r_c_m_y = v.axis_z_six_r_axes5_y*v.six_r_c_m_in_axes5_z -
+            v.axis_x_six_r_axes5_y*v.six_r_G_m_in_axes5_x -
+            v.axis_y_six_r_axes5_y*v.six_r_G_m_in_axes5_y;
+        const real six_r_c_m_z = v.axis_z_six_r_axes5_z*v.six_r_c_m_in_axes5_z -
+            v.axis_x_six_r_axes5_z*v.six_r_G_m_in_axes5_x -
+            v.axis_y_six_r_axes5_z*v.six_r_G_m_in_axes5_y;
         /* (six_r-c_true) leg force on the platform without actuation, the last link's mass included */
         const real six_r_link5_mass = m->six_r_link5_mass[i];
-        const real six_r_c_true_in_axes5_x = six_r_c_in_axes5_x -
-            six_r_acc_5_in_axes5_x*six_r_link5_mass;
-        const real six_r_c_true_in_axes5_y = six_r_c_in_axes5_y -
-            six_r_acc_5_in_axes5_y*six_r_link5_mass;
-        const real six_r_c_true_in_axes5_z = six_r_c_in_axes5_z -
-            six_r_acc_5_in_axes5_z*six_r_link5_mass;
-        const real six_r_c_true_x = axis_x_six_r_axes5_x*six_r_c_true_in_axes5_x +
-            axis_y_six_r_axes5_x*six_r_c_true_in_axes5_y +
-            axis_z_six_r_axes5_x*six_r_c_true_in_axes5_z;
-        const real six_r_c_true_y = axis_x_six_r_axes5_y*six_r_c_true_in_axes5_x +
-            axis_y_six_r_axes5_y*six_r_c_true_in_axes5_y +
-            axis_z_six_r_axes5_y*six_r_c_true_in_axes5_z;
-        const real six_r_c_true_z = axis_x_six_r_axes5_z*six_r_c_true_in_axes5_x +
-            axis_y_six_r_axes5_z*six_r_c_true_in_axes5_y +
-            axis_z_six_r_axes5_z*six_r_c_true_in_axes5_z;
+        const real six_r_c_true_in_axes5_x = v.six_r_c_in_axes5_x -
+            v.six_r_acc_5_in_axes5_x*six_r_link5_mass;
+        const real six_r_c_true_in_axes5_y = v.six_r_c_in_axes5_y -
+            v.six_r_acc_5_in_axes5_y*six_r_link5_mass;
+        const real six_r_c_true_in_axes5_z = v.six_r_c_in_axes5_z -
+            v.six_r_acc_5_in_axes5_z*six_r_link5_mass;
+        const real six_r_c_true_x = v.axis_x_six_r_axes5_x*six_r_c_true_in_axes5_x +
+            v.axis_y_six_r_axes5_x*six_r_c_true_in_axes5_y +
+            v.axis_z_six_r_axes5_x*six_r_c_true_in_axes5_z;
+        const real six_r_c_true_y = v.axis_x_six_r_axes5_y*six_r_c_true_in_axes5_x +
+            v.axis_y_six_r_axes5_y*six_r_c_true_in_axes5_y +
+            v.axis_z_six_r_axes5_y*six_r_c_true_in_axes5_z;
+        const real six_r_c_true_z = v.axis_x_six_r_axes5_z*six_r_c_true_in_axes5_x +
+            v.axis_y_six_r_axes5_z*six_r_c_true_in_axes5_y +
+            v.axis_z_six_r_axes5_z*six_r_c_true_in_axes5_z;
         /* (six_r-c_true) leg force on the platform without actuation, the last link's mass included */
         o[0*count + k] = six_r_c_true_x;
         o[1*count + k] = six_r_c_true_y;
@@ -11163,18 +8496,19 @@ INLINE void legs_legs_six_r(const prepared *m, size_t w, size_t leg, size_t legs
         o[4*count + k] = six_r_c_m_y;
         o[5*count + k] = six_r_c_m_z;
         /* (six_r-w_2) force part of reciprocal wrench 2 */
-        o[6*count + k] = six_r_w_2_x;
-        o[7*count + k] = six_r_w_2_y;
-        o[8*count + k] = six_r_w_2_z;
+        o[6*count + k] = v.six_r_w_2_x;
+        o[7*count + k] = v.six_r_w_2_y;
+        o[8*count + k] = v.six_r_w_2_z;
         /* (six_r-o_2) moment part of reciprocal wrench 2 */
         o[9*count + k] = six_r_o_2_x;
         o[10*count + k] = six_r_o_2_y;
         o[11*count + k] = six_r_o_2_z;
-        o[12*count + k] = UNLESS(magnitude(six_r_w_1_t_12) > TOLERANCE*six_r_size) +
-            UNLESS(magnitude(six_r_w_1_t_28) > TOLERANCE*six_r_size) +
-            UNLESS(magnitude(six_r_w_1_t_49) > TOLERANCE*six_r_size) +
-            UNLESS(magnitude(six_r_w_1_t_67) > TOLERANCE*six_r_size) +
-            UNLESS(magnitude(six_r_w_1_t_79) > TOLERANCE*six_r_size);
+        const real six_r_size = m->six_r_size[i];
+        o[12*count + k] = UNLESS(magnitude(v.six_r_w_1_t_12) > TOLERANCE*six_r_size) +
+            UNLESS(magnitude(v.six_r_w_1_t_28) > TOLERANCE*six_r_size) +
+            UNLESS(magnitude(v.six_r_w_1_t_49) > TOLERANCE*six_r_size) +
+            UNLESS(magnitude(v.six_r_w_1_t_67) > TOLERANCE*six_r_size) +
+            UNLESS(magnitude(v.six_r_w_1_t_79) > TOLERANCE*six_r_size);
     }
 }
 
@@ -11201,10 +8535,10 @@ INLINE void legs_place_six_r(size_t w, size_t count, const real *o, size_t leg, 
 INLINE void legs_run(const prepared *m, const real *X, const real *V, const real *A, const real
     *joints, real *leg_force, real *actuator, verdict *t)
 {
-    real s[21] = {0};
+    real s[9] = {0};
     real o_six_r[13*LEGS(LEGS_OF_six_r)] = {0};
-    legs_before(1, X, V, A, s, t);
-    legs_legs_six_r(m, 1, 0, 1, s, 0, LEGS(LEGS_OF_six_r), joints, o_six_r);
+    legs_before(m, 1, X, s, t);
+    legs_legs_six_r(m, 1, 0, 1, s, 0, LEGS(LEGS_OF_six_r), V, A, joints, o_six_r);
     for (size_t leg = 0; leg < LEGS_OF_six_r; ++leg) {
         legs_place_six_r(1, LEGS(LEGS_OF_six_r), o_six_r, leg, leg, leg_force, actuator, t);
     }
@@ -11214,40 +8548,8 @@ INLINE void legs_run(const prepared *m, const real *X, const real *V, const real
 INLINE void potential_before(const prepared *m, size_t w, const real *X, real *s, verdict *t)
 {
     for (size_t k = 0; k < w; ++k) {
-        /* X: named entries */
-        const real X_0 = X[0*w + k];
-        const real t_x = X_0;
-        const real X_1 = X[1*w + k];
-        const real t_y = X_1;
-        const real X_2 = X[2*w + k];
-        const real t_z = X_2;
-        const real X_3 = X[3*w + k];
-        const real X_4 = X[4*w + k];
-        const real X_5 = X[5*w + k];
-        const real X_6 = X[6*w + k];
-        const real quaternion_norm2 = X_3*X_3 + X_4*X_4 + X_5*X_5 + X_6*X_6;
-        const real quaternion_scale = 2/quaternion_norm2;
-        const real quaternion_sx = X_3*quaternion_scale;
-        const real quaternion_sy = X_4*quaternion_scale;
-        const real quaternion_sz = X_5*quaternion_scale;
-        const real quaternion_wx = X_6*quaternion_sx;
-        const real quaternion_wy = X_6*quaternion_sy;
-        const real quaternion_wz = X_6*quaternion_sz;
-        const real quaternion_xx = X_3*quaternion_sx;
-        const real quaternion_xy = X_3*quaternion_sy;
-        const real quaternion_xz = X_3*quaternion_sz;
-        const real quaternion_yy = X_4*quaternion_sy;
-        const real quaternion_yz = X_4*quaternion_sz;
-        const real quaternion_zz = X_5*quaternion_sz;
-        const real R_xx = 1 - quaternion_yy - quaternion_zz;
-        const real R_xy = quaternion_xy - quaternion_wz;
-        const real R_xz = quaternion_wy + quaternion_xz;
-        const real R_yx = quaternion_wz + quaternion_xy;
-        const real R_yy = 1 - quaternion_xx - quaternion_zz;
-        const real R_yz = quaternion_yz - quaternion_wx;
-        const real R_zx = quaternion_xz - quaternion_wy;
-        const real R_zy = quaternion_wx + quaternion_yz;
-        const real R_zz = 1 - quaternion_xx - quaternion_yy;
+        values v;
+        stage_X(m, w, k, X, &v);
         /* (potential) potential energy */
         const real gravity_x = m->gravity_x;
         const real gravity_y = m->gravity_y;
@@ -11256,83 +8558,51 @@ INLINE void potential_before(const prepared *m, size_t w, const real *X, real *s
         const real h_star_in_platform_y = m->h_star_in_platform_y;
         const real h_star_in_platform_z = m->h_star_in_platform_z;
         const real m_star = m->m_star;
-        const real potential_t = gravity_x*(R_xx*h_star_in_platform_x + R_xy*h_star_in_platform_y
-            + R_xz*h_star_in_platform_z + m_star*t_x) + gravity_y*(R_yx*h_star_in_platform_x +
-            R_yy*h_star_in_platform_y + R_yz*h_star_in_platform_z + m_star*t_y) +
-            gravity_z*(R_zx*h_star_in_platform_x + R_zy*h_star_in_platform_y +
-            R_zz*h_star_in_platform_z + m_star*t_z);
+        const real t_x = X[0*w + k];
+        const real t_y = X[1*w + k];
+        const real t_z = X[2*w + k];
+        const real potential_t = gravity_x*(v.R_xx*h_star_in_platform_x +
+            v.R_xy*h_star_in_platform_y + v.R_xz*h_star_in_platform_z + m_star*t_x) +
+            gravity_y*(v.R_yx*h_star_in_platform_x + v.R_yy*h_star_in_platform_y +
+            v.R_yz*h_star_in_platform_z + m_star*t_y) + gravity_z*(v.R_zx*h_star_in_platform_x +
+            v.R_zy*h_star_in_platform_y + v.R_zz*h_star_in_platform_z + m_star*t_z);
         s[0*w + k] = potential_t;
-        t->invalid[k] += UNLESS(is_finite(quaternion_scale)) + UNLESS(quaternion_scale > 0);
+        t->invalid[k] += UNLESS(is_finite(v.quaternion_scale)) + UNLESS(v.quaternion_scale > 0);
     }
 }
 
 INLINE void potential_legs_six_r(const prepared *m, size_t w, size_t leg, size_t legs, size_t
     states, size_t count, int add, const real *joints, real *terms)
 {
-    static const size_t place_six_r_q_1[] = {0, 5, 10, 15, 20, 25, 0, 0};
-    static const size_t place_six_r_q_2[] = {1, 6, 11, 16, 21, 26, 1, 1};
-    static const size_t place_six_r_q_3[] = {2, 7, 12, 17, 22, 27, 2, 2};
-    static const size_t place_six_r_q_4[] = {3, 8, 13, 18, 23, 28, 3, 3};
-    static const size_t place_six_r_q_5[] = {4, 9, 14, 19, 24, 29, 4, 4};
     for (size_t k = 0; k < count; ++k) {
         const size_t i = leg + legs*k;
         const size_t j = states*k;
-        /* (six_r-h_4) first moment of link 4 about the origin of link 4 */
-        const real six_r_q_4 = joints[place_six_r_q_4[i]*w + j];
-        const real six_r_h_4_t = -sine(six_r_q_4);
-        const real six_r_e_2_in_axes5_z = cosine(six_r_q_4);
-        const real six_r_h_4_in_spec4_y = m->six_r_h_4_in_spec4_y[i];
-        const real six_r_h_4_in_spec4_z = m->six_r_h_4_in_spec4_z[i];
-        const real six_r_h_4_in_axes3_y = six_r_e_2_in_axes5_z*six_r_h_4_in_spec4_y +
-            six_r_h_4_in_spec4_z*six_r_h_4_t;
-        /* (six_r-c_1) cosine of the angle of joint 1 from its reference direction */
-        const real six_r_q_1 = joints[place_six_r_q_1[i]*w + j];
-        const real six_r_c_1 = -sine(six_r_q_1);
-        /* (six_r-s_1) sine of the angle of joint 1 from its reference direction */
-        const real six_r_s_1 = cosine(six_r_q_1);
-        /* (six_r-c_2) cosine of the angle of joint 2 from its reference direction */
-        const real six_r_q_2 = joints[place_six_r_q_2[i]*w + j];
-        const real six_r_c_2 = -sine(six_r_q_2);
-        /* (six_r-s_2) sine of the angle of joint 2 from its reference direction */
-        const real six_r_s_2 = cosine(six_r_q_2);
-        /* (six_r-c_3) cosine of the angle of joint 3 from its reference direction */
-        const real six_r_q_3 = joints[place_six_r_q_3[i]*w + j];
-        const real six_r_c_3 = cosine(six_r_q_3);
-        /* (six_r-s_3) sine of the angle of joint 3 from its reference direction */
-        const real six_r_s_3 = sine(six_r_q_3);
-        /* (six_r-c_5) cosine of the angle of joint 5 from its reference direction */
-        const real six_r_q_5 = joints[place_six_r_q_5[i]*w + j];
-        const real six_r_c_5 = -sine(six_r_q_5);
-        /* (six_r-s_5) sine of the angle of joint 5 from its reference direction */
-        const real six_r_s_5 = cosine(six_r_q_5);
+        values_six_r v;
+        stage_six_r_q(m, w, i, j, joints, &v);
         /* (potential) potential energy */
         const real six_r_h_5_in_spec5_x = m->six_r_h_5_in_spec5_x[i];
         const real six_r_h_5_in_spec5_y = m->six_r_h_5_in_spec5_y[i];
-        const real six_r_potential_t_4 = six_r_h_5_in_spec5_y*six_r_s_5 -
-            six_r_c_5*six_r_h_5_in_spec5_x;
+        const real six_r_potential_t_4 = v.six_r_c_5*six_r_h_5_in_spec5_y +
+            six_r_h_5_in_spec5_x*v.six_r_s_5;
         const real six_r_joint2_offset_x = m->six_r_joint2_offset_x[i];
-        const real six_r_d_2_in_spec2_x = six_r_joint2_offset_x*six_r_s_2;
-        const real six_r_d_2_in_spec2_y = six_r_c_2*six_r_joint2_offset_x;
-        const real six_r_acc_3_t = m->six_r_acc_3_t[i];
-        const real six_r_acc_3_t_2 = m->six_r_acc_3_t_2[i];
-        const real six_r_g_in_axes1_y = six_r_acc_3_t_2*six_r_c_1 - six_r_acc_3_t*six_r_s_1;
+        const real six_r_potential_t_5 = six_r_joint2_offset_x*v.six_r_s_2;
         const real six_r_potential_t = m->six_r_potential_t[i];
         const real six_r_potential_t_2 = m->six_r_potential_t_2[i];
-        const real six_r_b_in_spec2_z = six_r_c_1*six_r_potential_t +
-            six_r_potential_t_2*six_r_s_1;
-        const real six_r_potential_t_5 = six_r_c_1*six_r_potential_t_2 -
-            six_r_potential_t*six_r_s_1;
+        const real six_r_potential_t_6 = v.six_r_c_1*six_r_potential_t +
+            six_r_potential_t_2*v.six_r_s_1;
+        const real six_r_b_in_spec2_z = v.six_r_c_1*six_r_potential_t_2 -
+            six_r_potential_t*v.six_r_s_1;
         const real six_r_potential_t_3 = m->six_r_potential_t_3[i];
-        const real six_r_b_in_spec2_x = six_r_c_2*six_r_potential_t_5 +
-            six_r_potential_t_3*six_r_s_2;
-        const real six_r_b_in_spec2_y = six_r_c_2*six_r_potential_t_3 -
-            six_r_potential_t_5*six_r_s_2;
-        const real six_r_potential_t_6 = six_r_b_in_spec2_y + six_r_d_2_in_spec2_y;
-        const real six_r_potential_t_7 = six_r_c_5*six_r_h_5_in_spec5_y +
-            six_r_h_5_in_spec5_x*six_r_s_5;
+        const real six_r_b_in_spec2_x = v.six_r_c_2*six_r_potential_t_3 +
+            six_r_potential_t_6*v.six_r_s_2;
+        const real six_r_b_in_spec2_y = v.six_r_c_2*six_r_potential_t_6 -
+            six_r_potential_t_3*v.six_r_s_2;
+        const real six_r_potential_t_7 = six_r_b_in_spec2_y - six_r_potential_t_5;
+        const real six_r_potential_t_8 = v.six_r_c_5*six_r_h_5_in_spec5_x -
+            six_r_h_5_in_spec5_y*v.six_r_s_5;
         const real six_r_h_5_in_spec5_z = m->six_r_h_5_in_spec5_z[i];
-        const real six_r_potential_t_8 = six_r_e_2_in_axes5_z*six_r_potential_t_4 +
-            six_r_h_4_t*six_r_h_5_in_spec5_z;
+        const real six_r_potential_t_9 = v.six_r_e_2_in_axes5_z*six_r_potential_t_4 -
+            v.six_r_h_4_t*six_r_h_5_in_spec5_z;
         const real six_r_h_1_in_spec1_x = m->six_r_h_1_in_spec1_x[i];
         const real six_r_h_1_in_spec1_y = m->six_r_h_1_in_spec1_y[i];
         const real six_r_h_2_in_spec2_x = m->six_r_h_2_in_spec2_x[i];
@@ -11345,40 +8615,46 @@ INLINE void potential_legs_six_r(const prepared *m, size_t w, size_t leg, size_t
         const real six_r_link2_mass = m->six_r_link2_mass[i];
         const real six_r_link3_mass = m->six_r_link3_mass[i];
         const real six_r_link4_mass = m->six_r_link4_mass[i];
-        const real six_r_potential_t_9 = six_r_h_2_in_spec2_x +
-            six_r_b_in_spec2_x*six_r_link1_mass + six_r_c_3*six_r_h_3_in_spec3_x +
-            six_r_c_3*six_r_h_4_in_spec4_x + six_r_c_3*six_r_potential_t_7 +
-            six_r_h_1_in_spec1_x*six_r_s_2 + six_r_link2_mass*(six_r_b_in_spec2_x +
-            six_r_d_2_in_spec2_x) + six_r_link3_mass*(six_r_b_in_spec2_x + six_r_d_2_in_spec2_x +
-            six_r_joint3_offset_x) + six_r_link4_mass*(six_r_b_in_spec2_x + six_r_d_2_in_spec2_x +
-            six_r_joint3_offset_x + six_r_c_3*six_r_joint4_offset_x) -
-            six_r_c_2*six_r_h_1_in_spec1_y - six_r_h_3_in_spec3_y*six_r_s_3 -
-            six_r_h_4_in_axes3_y*six_r_s_3 - six_r_potential_t_8*six_r_s_3;
+        const real six_r_potential_t_10 = six_r_h_2_in_spec2_x +
+            six_r_b_in_spec2_x*six_r_link1_mass + v.six_r_c_2*six_r_h_1_in_spec1_x +
+            v.six_r_c_3*six_r_h_3_in_spec3_x + v.six_r_c_3*six_r_h_4_in_spec4_x +
+            v.six_r_c_3*six_r_potential_t_8 + six_r_h_1_in_spec1_y*v.six_r_s_2 +
+            six_r_link2_mass*(six_r_b_in_spec2_x + v.six_r_d_2_in_spec2_x) +
+            six_r_link3_mass*(six_r_b_in_spec2_x + v.six_r_d_2_in_spec2_x + six_r_joint3_offset_x)
+            + six_r_link4_mass*(six_r_b_in_spec2_x + v.six_r_d_2_in_spec2_x +
+            six_r_joint3_offset_x + v.six_r_c_3*six_r_joint4_offset_x) -
+            six_r_h_3_in_spec3_y*v.six_r_s_3 - v.six_r_h_4_in_spec3_y*v.six_r_s_3 -
+            six_r_potential_t_9*v.six_r_s_3;
         const real six_r_h_2_in_spec2_y = m->six_r_h_2_in_spec2_y[i];
-        const real six_r_potential_t_10 = six_r_h_2_in_spec2_y +
-            six_r_b_in_spec2_y*six_r_link1_mass + six_r_c_2*six_r_h_1_in_spec1_x +
-            six_r_c_3*six_r_h_3_in_spec3_y + six_r_c_3*six_r_h_4_in_axes3_y +
-            six_r_c_3*six_r_potential_t_8 + six_r_h_1_in_spec1_y*six_r_s_2 +
-            six_r_h_3_in_spec3_x*six_r_s_3 + six_r_h_4_in_spec4_x*six_r_s_3 +
-            six_r_link2_mass*six_r_potential_t_6 + six_r_link3_mass*six_r_potential_t_6 +
-            six_r_link4_mass*(six_r_b_in_spec2_y + six_r_d_2_in_spec2_y +
-            six_r_joint4_offset_x*six_r_s_3) + six_r_potential_t_7*six_r_s_3;
+        const real six_r_potential_t_11 = six_r_h_2_in_spec2_y +
+            six_r_b_in_spec2_y*six_r_link1_mass + v.six_r_c_2*six_r_h_1_in_spec1_y +
+            v.six_r_c_3*six_r_h_3_in_spec3_y + v.six_r_c_3*v.six_r_h_4_in_spec3_y +
+            v.six_r_c_3*six_r_potential_t_9 + six_r_h_3_in_spec3_x*v.six_r_s_3 +
+            six_r_h_4_in_spec4_x*v.six_r_s_3 + six_r_link2_mass*six_r_potential_t_7 +
+            six_r_link3_mass*six_r_potential_t_7 + six_r_link4_mass*(six_r_b_in_spec2_y +
+            six_r_joint4_offset_x*v.six_r_s_3 - six_r_potential_t_5) +
+            six_r_potential_t_8*v.six_r_s_3 - six_r_h_1_in_spec1_x*v.six_r_s_2;
         const real six_r_h_1_in_spec1_z = m->six_r_h_1_in_spec1_z[i];
         const real six_r_h_2_in_spec2_z = m->six_r_h_2_in_spec2_z[i];
         const real six_r_h_3_in_spec3_z = m->six_r_h_3_in_spec3_z[i];
-        const real six_r_potential_t_11 = six_r_h_1_in_spec1_z + six_r_h_2_in_spec2_z +
+        const real six_r_h_4_in_spec4_y = m->six_r_h_4_in_spec4_y[i];
+        const real six_r_h_4_in_spec4_z = m->six_r_h_4_in_spec4_z[i];
+        const real six_r_potential_t_12 = six_r_h_1_in_spec1_z + six_r_h_2_in_spec2_z +
             six_r_h_3_in_spec3_z + six_r_b_in_spec2_z*six_r_link1_mass +
             six_r_b_in_spec2_z*six_r_link2_mass + six_r_b_in_spec2_z*six_r_link3_mass +
-            six_r_b_in_spec2_z*six_r_link4_mass + six_r_e_2_in_axes5_z*six_r_h_4_in_spec4_z +
-            six_r_e_2_in_axes5_z*six_r_h_5_in_spec5_z - six_r_h_4_in_spec4_y*six_r_h_4_t -
-            six_r_h_4_t*six_r_potential_t_4;
+            six_r_b_in_spec2_z*six_r_link4_mass + v.six_r_e_2_in_axes5_z*six_r_h_4_in_spec4_z +
+            v.six_r_e_2_in_axes5_z*six_r_h_5_in_spec5_z + six_r_h_4_in_spec4_y*v.six_r_h_4_t +
+            v.six_r_h_4_t*six_r_potential_t_4;
+        const real six_r_acc_3_t = m->six_r_acc_3_t[i];
+        const real six_r_acc_3_t_2 = m->six_r_acc_3_t_2[i];
         const real six_r_g_in_axes1_z = m->six_r_g_in_axes1_z[i];
-        const real six_r_potential_t_12 = six_r_potential_t_10*(six_r_c_2*six_r_g_in_axes1_z -
-            six_r_g_in_axes1_y*six_r_s_2) + six_r_potential_t_11*(six_r_acc_3_t*six_r_c_1 +
-            six_r_acc_3_t_2*six_r_s_1) + six_r_potential_t_9*(six_r_c_2*six_r_g_in_axes1_y +
-            six_r_g_in_axes1_z*six_r_s_2);
+        const real six_r_potential_t_13 = six_r_potential_t_10*(v.six_r_c_2*six_r_g_in_axes1_z +
+            v.six_r_g_in_axes1_x*v.six_r_s_2) +
+            six_r_potential_t_11*(v.six_r_c_2*v.six_r_g_in_axes1_x -
+            six_r_g_in_axes1_z*v.six_r_s_2) + six_r_potential_t_12*(six_r_acc_3_t_2*v.six_r_c_1 -
+            six_r_acc_3_t*v.six_r_s_1);
         /* (potential) potential energy */
-        gather(&terms[0*count + k], add, six_r_potential_t_12);  /* potential_of_legs */
+        gather(&terms[0*count + k], add, six_r_potential_t_13);  /* potential_of_legs */
     }
 }
 
@@ -11401,8 +8677,7 @@ INLINE void potential_after(size_t w, const real *s, const real *sums, real *pot
 INLINE void potential_run(const prepared *m, const real *X, const real *joints, real *potential,
     verdict *t)
 {
-    real s[1] = {0};
-    real sums[1] = {0};
+    real s[1] = {0}, sums[1] = {0};
     real terms_six_r[LEGS(LEGS_OF_six_r)] = {0};
     potential_before(m, 1, X, s, t);
     potential_legs_six_r(m, 1, 0, 1, 0, LEGS(LEGS_OF_six_r), 0, joints, terms_six_r);
@@ -11417,443 +8692,79 @@ INLINE void condition_before(const prepared *m, size_t w, const real *X, real *s
     verdict *t)
 {
     for (size_t k = 0; k < w; ++k) {
-        /* X: named entries */
-        const real X_3 = X[3*w + k];
-        const real X_4 = X[4*w + k];
-        const real X_5 = X[5*w + k];
-        const real X_6 = X[6*w + k];
-        const real quaternion_norm2 = X_3*X_3 + X_4*X_4 + X_5*X_5 + X_6*X_6;
-        const real quaternion_scale = 2/quaternion_norm2;
-        const real quaternion_sx = X_3*quaternion_scale;
-        const real quaternion_sy = X_4*quaternion_scale;
-        const real quaternion_sz = X_5*quaternion_scale;
-        const real quaternion_wx = X_6*quaternion_sx;
-        const real quaternion_wy = X_6*quaternion_sy;
-        const real quaternion_wz = X_6*quaternion_sz;
-        const real quaternion_xx = X_3*quaternion_sx;
-        const real quaternion_xy = X_3*quaternion_sy;
-        const real quaternion_xz = X_3*quaternion_sz;
-        const real quaternion_yy = X_4*quaternion_sy;
-        const real quaternion_yz = X_4*quaternion_sz;
-        const real quaternion_zz = X_5*quaternion_sz;
-        const real R_xx = 1 - quaternion_yy - quaternion_zz;
-        const real R_xy = quaternion_xy - quaternion_wz;
-        const real R_xz = quaternion_wy + quaternion_xz;
-        const real R_yx = quaternion_wz + quaternion_xy;
-        const real R_yy = 1 - quaternion_xx - quaternion_zz;
-        const real R_yz = quaternion_yz - quaternion_wx;
-        const real R_zx = quaternion_xz - quaternion_wy;
-        const real R_zy = quaternion_wx + quaternion_yz;
-        const real R_zz = 1 - quaternion_xx - quaternion_yy;
-        s[0*w + k] = R_xx;
-        s[1*w + k] = R_xy;
-        s[2*w + k] = R_xz;
-        s[3*w + k] = R_yx;
-        s[4*w + k] = R_yy;
-        s[5*w + k] = R_yz;
-        s[6*w + k] = R_zx;
-        s[7*w + k] = R_zy;
-        s[8*w + k] = R_zz;
+        values v;
+        stage_X(m, w, k, X, &v);
+        s[0*w + k] = v.R_xx;
+        s[1*w + k] = v.R_xy;
+        s[2*w + k] = v.R_xz;
+        s[3*w + k] = v.R_yx;
+        s[4*w + k] = v.R_yy;
+        s[5*w + k] = v.R_yz;
+        s[6*w + k] = v.R_zx;
+        s[7*w + k] = v.R_zy;
+        s[8*w + k] = v.R_zz;
         /* (legs_size) rms size of the legs, taken where the platform points coincide */
         const real legs_size = m->legs_size;
         lengths[1*w + k] = legs_size;
         t->total[k] += legs_size;
-        t->invalid[k] += UNLESS(is_finite(quaternion_scale)) + UNLESS(quaternion_scale > 0);
+        t->invalid[k] += UNLESS(is_finite(v.quaternion_scale)) + UNLESS(v.quaternion_scale > 0);
     }
 }
 
 INLINE void condition_legs_six_r(const prepared *m, size_t w, size_t leg, size_t legs, const real
     *s, size_t states, size_t count, int add, const real *joints, real *terms, real *o)
 {
-    static const size_t place_six_r_q_1[] = {0, 5, 10, 15, 20, 25, 0, 0};
-    static const size_t place_six_r_q_2[] = {1, 6, 11, 16, 21, 26, 1, 1};
-    static const size_t place_six_r_q_3[] = {2, 7, 12, 17, 22, 27, 2, 2};
-    static const size_t place_six_r_q_4[] = {3, 8, 13, 18, 23, 28, 3, 3};
-    static const size_t place_six_r_q_5[] = {4, 9, 14, 19, 24, 29, 4, 4};
     for (size_t k = 0; k < count; ++k) {
         const size_t i = leg + legs*k;
         const size_t j = states*k;
-        /* (six_r-c_1) cosine of the angle of joint 1 from its reference direction */
-        const real six_r_q_1 = joints[place_six_r_q_1[i]*w + j];
-        const real six_r_c_1 = -sine(six_r_q_1);
-        /* (six_r-s_1) sine of the angle of joint 1 from its reference direction */
-        const real six_r_s_1 = cosine(six_r_q_1);
-        /* (six_r-c_2) cosine of the angle of joint 2 from its reference direction */
-        const real six_r_q_2 = joints[place_six_r_q_2[i]*w + j];
-        const real six_r_c_2 = -sine(six_r_q_2);
-        /* (six_r-s_2) sine of the angle of joint 2 from its reference direction */
-        const real six_r_s_2 = cosine(six_r_q_2);
-        /* (six_r-c_3) cosine of the angle of joint 3 from its reference direction */
-        const real six_r_q_3 = joints[place_six_r_q_3[i]*w + j];
-        const real six_r_c_3 = cosine(six_r_q_3);
-        /* (six_r-s_3) sine of the angle of joint 3 from its reference direction */
-        const real six_r_s_3 = sine(six_r_q_3);
-        /* (six_r-c_4) cosine of the angle of joint 4 from its reference direction */
-        const real six_r_q_4 = joints[place_six_r_q_4[i]*w + j];
-        const real six_r_c_4 = -sine(six_r_q_4);
-        /* (six_r-s_4) sine of the angle of joint 4 from its reference direction */
-        const real six_r_s_4 = cosine(six_r_q_4);
-        /* (six_r-c_5) cosine of the angle of joint 5 from its reference direction */
-        const real six_r_q_5 = joints[place_six_r_q_5[i]*w + j];
-        const real six_r_c_5 = -sine(six_r_q_5);
-        /* (six_r-s_5) sine of the angle of joint 5 from its reference direction */
-        const real six_r_s_5 = cosine(six_r_q_5);
-        /* (six_r-r_4) from joint 4 to the connection point, along the links */
-        const real six_r_platform_joint_offset_x = m->six_r_platform_joint_offset_x[i];
-        const real six_r_r_4_in_axes4_y = six_r_c_5*six_r_platform_joint_offset_x;
-        const real six_r_joint5_offset_x = m->six_r_joint5_offset_x[i];
-        const real six_r_r_4_in_axes4_z = six_r_joint5_offset_x +
-            six_r_platform_joint_offset_x*six_r_s_5;
-        const real six_r_r_4_in_axes3_y = -six_r_r_4_in_axes4_y*six_r_s_4;
-        const real six_r_r_4_in_axes3_z = six_r_c_4*six_r_r_4_in_axes4_y;
-        /* (six_r-r_3) from joint 3 to the connection point, along the links */
-        const real six_r_joint4_offset_x = m->six_r_joint4_offset_x[i];
-        const real six_r_r_3_in_axes3_x = six_r_joint4_offset_x + six_r_r_4_in_axes4_z;
-        const real six_r_r_3_in_axes2_y = six_r_c_3*six_r_r_4_in_axes3_y +
-            six_r_r_3_in_axes3_x*six_r_s_3;
-        const real six_r_r_3_t = six_r_r_4_in_axes3_z*six_r_s_4;
-        const real six_r_r_3_t_2 = -six_r_c_4*six_r_r_4_in_axes3_z;
-        const real six_r_r_3_in_axes5_z = six_r_r_3_t + six_r_c_4*six_r_r_4_in_axes3_y;
-        const real six_r_r_3_t_3 = -six_r_r_3_t_2 - six_r_r_4_in_axes3_y*six_r_s_4;
-        const real six_r_r_3_in_axes5_x = six_r_c_5*six_r_r_3_t_3 +
-            six_r_r_3_in_axes3_x*six_r_s_5;
-        const real six_r_r_3_in_axes5_y = six_r_c_5*six_r_r_3_in_axes3_x -
-            six_r_r_3_t_3*six_r_s_5;
-        /* (six_r-r_2) from joint 2 to the connection point, along the links */
-        const real six_r_joint3_offset_x = m->six_r_joint3_offset_x[i];
-        const real six_r_r_2_in_axes2_x = six_r_joint3_offset_x + six_r_c_3*six_r_r_3_in_axes3_x -
-            six_r_r_4_in_axes3_y*six_r_s_3;
-        const real six_r_r_2_in_axes1_y = six_r_c_2*six_r_r_2_in_axes2_x -
-            six_r_r_3_in_axes2_y*six_r_s_2;
-        const real six_r_r_2_t = six_r_c_3*six_r_r_2_in_axes2_x + six_r_r_3_in_axes2_y*six_r_s_3;
-        const real six_r_r_2_t_2 = six_r_c_3*six_r_r_3_in_axes2_y -
-            six_r_r_2_in_axes2_x*six_r_s_3;
-        const real six_r_r_2_in_axes5_z = six_r_r_3_t + six_r_c_4*six_r_r_2_t_2;
-        const real six_r_r_2_t_3 = -six_r_r_3_t_2 - six_r_r_2_t_2*six_r_s_4;
-        const real six_r_r_2_in_axes5_x = six_r_c_5*six_r_r_2_t_3 + six_r_r_2_t*six_r_s_5;
-        const real six_r_r_2_in_axes5_y = six_r_c_5*six_r_r_2_t - six_r_r_2_t_3*six_r_s_5;
-        /* (six_r-r_1) from joint 1 to the connection point, along the links */
-        const real six_r_joint2_offset_x = m->six_r_joint2_offset_x[i];
-        const real six_r_r_1_in_axes1_z = six_r_joint2_offset_x + six_r_c_2*six_r_r_3_in_axes2_y +
-            six_r_r_2_in_axes2_x*six_r_s_2;
-        const real six_r_r_1_t = six_r_c_2*six_r_r_2_in_axes1_y + six_r_r_1_in_axes1_z*six_r_s_2;
-        const real six_r_r_1_t_2 = six_r_c_2*six_r_r_1_in_axes1_z -
-            six_r_r_2_in_axes1_y*six_r_s_2;
-        const real six_r_r_1_t_3 = six_r_c_3*six_r_r_1_t + six_r_r_1_t_2*six_r_s_3;
-        const real six_r_r_1_t_4 = six_r_c_3*six_r_r_1_t_2 - six_r_r_1_t*six_r_s_3;
-        const real six_r_r_1_in_axes5_z = six_r_r_3_t + six_r_c_4*six_r_r_1_t_4;
-        const real six_r_r_1_t_5 = -six_r_r_3_t_2 - six_r_r_1_t_4*six_r_s_4;
-        const real six_r_r_1_in_axes5_x = six_r_c_5*six_r_r_1_t_5 + six_r_r_1_t_3*six_r_s_5;
-        const real six_r_r_1_in_axes5_y = six_r_c_5*six_r_r_1_t_3 - six_r_r_1_t_5*six_r_s_5;
-        /* (six_r-v_1) velocity of the connection point per rate of joint 1 */
-        const real six_r_v_1_t = six_r_c_2*six_r_s_3 + six_r_c_3*six_r_s_2;
-        const real six_r_v_1_t_2 = six_r_c_2*six_r_c_3 - six_r_s_2*six_r_s_3;
-        const real six_r_e_1_in_axes5_z = six_r_c_4*six_r_v_1_t_2;
-        const real six_r_v_1_t_3 = six_r_s_4*six_r_v_1_t_2;
-        const real six_r_e_1_in_axes5_x = six_r_s_5*six_r_v_1_t - six_r_c_5*six_r_v_1_t_3;
-        const real six_r_e_1_in_axes5_y = six_r_c_5*six_r_v_1_t + six_r_s_5*six_r_v_1_t_3;
-        const real six_r_v_1_in_axes5_x = six_r_e_1_in_axes5_y*six_r_r_1_in_axes5_z -
-            six_r_e_1_in_axes5_z*six_r_r_1_in_axes5_y;
-        const real six_r_v_1_in_axes5_y = six_r_e_1_in_axes5_z*six_r_r_1_in_axes5_x -
-            six_r_e_1_in_axes5_x*six_r_r_1_in_axes5_z;
-        const real six_r_v_1_in_axes5_z = six_r_e_1_in_axes5_x*six_r_r_1_in_axes5_y -
-            six_r_e_1_in_axes5_y*six_r_r_1_in_axes5_x;
-        /* (six_r-v_2) velocity of the connection point per rate of joint 2 */
-        const real six_r_e_2_in_axes5_x = six_r_c_4*six_r_c_5;
-        const real six_r_e_2_in_axes5_y = -six_r_c_4*six_r_s_5;
-        const real six_r_v_2_in_axes5_x = six_r_e_2_in_axes5_y*six_r_r_2_in_axes5_z -
-            six_r_r_2_in_axes5_y*six_r_s_4;
-        const real six_r_v_2_in_axes5_y = six_r_r_2_in_axes5_x*six_r_s_4 -
-            six_r_e_2_in_axes5_x*six_r_r_2_in_axes5_z;
-        const real six_r_v_2_in_axes5_z = six_r_e_2_in_axes5_x*six_r_r_2_in_axes5_y -
-            six_r_e_2_in_axes5_y*six_r_r_2_in_axes5_x;
-        /* (six_r-v_3) velocity of the connection point per rate of joint 3 */
-        const real six_r_v_3_in_axes5_x = six_r_e_2_in_axes5_y*six_r_r_3_in_axes5_z -
-            six_r_r_3_in_axes5_y*six_r_s_4;
-        const real six_r_v_3_in_axes5_y = six_r_r_3_in_axes5_x*six_r_s_4 -
-            six_r_e_2_in_axes5_x*six_r_r_3_in_axes5_z;
-        const real six_r_v_3_in_axes5_z = six_r_e_2_in_axes5_x*six_r_r_3_in_axes5_y -
-            six_r_e_2_in_axes5_y*six_r_r_3_in_axes5_x;
-        /* (six_r-v_4) velocity of the connection point per rate of joint 4 */
-        const real six_r_v_4_in_axes5_z = six_r_s_5*(six_r_c_5*six_r_r_4_in_axes4_z -
-            six_r_r_4_in_axes4_y*six_r_s_5) - six_r_c_5*(six_r_c_5*six_r_r_4_in_axes4_y +
-            six_r_r_4_in_axes4_z*six_r_s_5);
-        /* (six_r-n_m1) direction 1 of the moment that the platform joint transmits */
-        const real R_xx = s[0*w + j];
-        const real R_xy = s[1*w + j];
-        const real R_xz = s[2*w + j];
-        const real R_yx = s[3*w + j];
-        const real R_yy = s[4*w + j];
-        const real R_yz = s[5*w + j];
-        const real R_zx = s[6*w + j];
-        const real R_zy = s[7*w + j];
-        const real R_zz = s[8*w + j];
-        const real six_r_base_frame_xy = m->six_r_base_frame_xy[i];
-        const real six_r_base_frame_yy = m->six_r_base_frame_yy[i];
-        const real six_r_base_frame_zy = m->six_r_base_frame_zy[i];
-        const real six_r_platform_joint_axis_platform_x = m->six_r_platform_joint_axis_platform_x[i];
-        const real six_r_platform_joint_axis_platform_y = m->six_r_platform_joint_axis_platform_y[i];
-        const real six_r_platform_joint_axis_platform_z = m->six_r_platform_joint_axis_platform_z[i];
-        const real six_r_n_m1_t = six_r_platform_joint_axis_platform_x*(R_xx*six_r_base_frame_xy +
-            R_yx*six_r_base_frame_yy + R_zx*six_r_base_frame_zy) +
-            six_r_platform_joint_axis_platform_y*(R_xy*six_r_base_frame_xy +
-            R_yy*six_r_base_frame_yy + R_zy*six_r_base_frame_zy) +
-            six_r_platform_joint_axis_platform_z*(R_xz*six_r_base_frame_xy +
-            R_yz*six_r_base_frame_yy + R_zz*six_r_base_frame_zy);
-        const real six_r_base_frame_xz = m->six_r_base_frame_xz[i];
-        const real six_r_base_frame_yz = m->six_r_base_frame_yz[i];
-        const real six_r_base_frame_zz = m->six_r_base_frame_zz[i];
-        const real six_r_n_m1_t_2 = six_r_platform_joint_axis_platform_x*(R_xx*six_r_base_frame_xz
-            + R_yx*six_r_base_frame_yz + R_zx*six_r_base_frame_zz) +
-            six_r_platform_joint_axis_platform_y*(R_xy*six_r_base_frame_xz +
-            R_yy*six_r_base_frame_yz + R_zy*six_r_base_frame_zz) +
-            six_r_platform_joint_axis_platform_z*(R_xz*six_r_base_frame_xz +
-            R_yz*six_r_base_frame_yz + R_zz*six_r_base_frame_zz);
-        const real six_r_base_frame_xx = m->six_r_base_frame_xx[i];
-        const real six_r_base_frame_yx = m->six_r_base_frame_yx[i];
-        const real six_r_base_frame_zx = m->six_r_base_frame_zx[i];
-        const real six_r_n_m1_t_3 = six_r_platform_joint_axis_platform_x*(R_xx*six_r_base_frame_xx
-            + R_yx*six_r_base_frame_yx + R_zx*six_r_base_frame_zx) +
-            six_r_platform_joint_axis_platform_y*(R_xy*six_r_base_frame_xx +
-            R_yy*six_r_base_frame_yx + R_zy*six_r_base_frame_zx) +
-            six_r_platform_joint_axis_platform_z*(R_xz*six_r_base_frame_xx +
-            R_yz*six_r_base_frame_yx + R_zz*six_r_base_frame_zx);
-        const real six_r_n_m1_t_4 = six_r_c_1*six_r_n_m1_t + six_r_n_m1_t_2*six_r_s_1;
-        const real six_r_n_m1_t_5 = six_r_c_1*six_r_n_m1_t_2 - six_r_n_m1_t*six_r_s_1;
-        const real six_r_n_m1_t_6 = six_r_c_2*six_r_n_m1_t_5 + six_r_n_m1_t_3*six_r_s_2;
-        const real six_r_n_m1_t_7 = six_r_c_2*six_r_n_m1_t_3 - six_r_n_m1_t_5*six_r_s_2;
-        const real six_r_n_m1_t_8 = six_r_c_3*six_r_n_m1_t_6 + six_r_n_m1_t_7*six_r_s_3;
-        const real six_r_n_m1_t_9 = six_r_c_3*six_r_n_m1_t_7 - six_r_n_m1_t_6*six_r_s_3;
-        const real six_r_n_m1_t_10 = six_r_c_4*six_r_n_m1_t_4 - six_r_n_m1_t_9*six_r_s_4;
-        const real six_r_n_m1_in_axes5_y = six_r_c_5*six_r_n_m1_t_10 + six_r_n_m1_t_8*six_r_s_5;
-        /* (six_r-n_m2) direction 2 of the moment that the platform joint transmits */
-        const real six_r_n_m2_in_axes5_z = six_r_c_5*six_r_n_m1_t_8 - six_r_n_m1_t_10*six_r_s_5;
+        values_six_r v;
+        stage_six_r_X(m, w, i, j, s, &v);
+        stage_six_r_q(m, w, i, j, joints, &v);
+        stage_six_r_X_q(m, i, &v);
+        stage_six_r_H_condition(m, i, &v);
         /* (six_r-w_1) force part of reciprocal wrench 1 */
-        const real six_r_end_p1_in_axes5_z = six_r_c_4*six_r_n_m1_t_9 + six_r_n_m1_t_4*six_r_s_4;
-        const real six_r_w_1_t = six_r_e_1_in_axes5_x*six_r_n_m2_in_axes5_z -
-            six_r_e_1_in_axes5_y*six_r_n_m1_in_axes5_y;
-        const real six_r_w_1_t_2 = six_r_e_2_in_axes5_x*six_r_n_m2_in_axes5_z -
-            six_r_e_2_in_axes5_y*six_r_n_m1_in_axes5_y;
-        const real six_r_w_1_t_3 = six_r_e_1_in_axes5_y*six_r_end_p1_in_axes5_z -
-            six_r_e_1_in_axes5_z*six_r_n_m2_in_axes5_z;
-        const real six_r_w_1_t_4 = six_r_e_2_in_axes5_y*six_r_end_p1_in_axes5_z -
-            six_r_n_m2_in_axes5_z*six_r_s_4;
-        const real six_r_size = m->six_r_size[i];
-        const real six_r_w_1_t_5 = six_r_size*six_r_w_1_t;
-        const real six_r_w_1_t_6 = six_r_size*six_r_w_1_t_3;
-        const real six_r_w_1_t_7 = six_r_size*six_r_w_1_t_2;
-        const real six_r_w_1_t_8 = six_r_size*six_r_w_1_t_4;
-        const real six_r_w_1_t_9 = six_r_size*(six_r_c_5*six_r_n_m1_in_axes5_y -
-            six_r_n_m2_in_axes5_z*six_r_s_5);
-        const real six_r_w_1_t_10 = -six_r_c_5*six_r_end_p1_in_axes5_z*six_r_size;
-        const real six_r_w_1_t_11 = six_r_n_m2_in_axes5_z*six_r_size;
-        const real six_r_size_t = m->six_r_size_t[i];
-        const real six_r_w_1_t_12 = root(six_r_size_t + six_r_w_1_t_11*six_r_w_1_t_11);
-        const real inv_six_r_w_1_t_12 = 1/six_r_w_1_t_12;
-        const real six_r_w_1_t_13 = inv_six_r_w_1_t_12*six_r_platform_joint_offset_x;
-        const real six_r_w_1_t_14 = inv_six_r_w_1_t_12*six_r_w_1_t_11;
-        const real six_r_w_1_t_15 = six_r_w_1_t_10*six_r_w_1_t_14;
-        const real six_r_w_1_t_16 = six_r_w_1_t_13*six_r_w_1_t_15;
-        const real six_r_w_1_t_17 = six_r_w_1_t_10 - six_r_w_1_t_14*six_r_w_1_t_15;
-        const real six_r_w_1_t_18 = six_r_v_1_in_axes5_y*six_r_w_1_t_13 -
-            six_r_w_1_t_14*six_r_w_1_t_6;
-        const real six_r_w_1_t_19 = six_r_v_1_in_axes5_y - six_r_w_1_t_13*six_r_w_1_t_18;
-        const real six_r_w_1_t_20 = six_r_w_1_t_6 + six_r_w_1_t_14*six_r_w_1_t_18;
-        const real six_r_w_1_t_21 = six_r_w_1_t_14*six_r_w_1_t_8;
-        const real six_r_w_1_t_22 = six_r_v_2_in_axes5_y*six_r_w_1_t_13 - six_r_w_1_t_21;
-        const real six_r_w_1_t_23 = six_r_v_2_in_axes5_y - six_r_w_1_t_13*six_r_w_1_t_22;
-        const real six_r_w_1_t_24 = six_r_w_1_t_8 + six_r_w_1_t_14*six_r_w_1_t_22;
-        const real six_r_w_1_t_25 = six_r_w_1_t_21 - six_r_v_3_in_axes5_y*six_r_w_1_t_13;
-        const real six_r_w_1_t_26 = six_r_v_3_in_axes5_y + six_r_w_1_t_13*six_r_w_1_t_25;
-        const real six_r_w_1_t_27 = six_r_w_1_t_8 - six_r_w_1_t_14*six_r_w_1_t_25;
-        const real six_r_w_1_t_28 = root(six_r_v_4_in_axes5_z*six_r_v_4_in_axes5_z +
-            six_r_w_1_t_16*six_r_w_1_t_16 + six_r_w_1_t_17*six_r_w_1_t_17 +
-            six_r_w_1_t_9*six_r_w_1_t_9);
-        const real inv_six_r_w_1_t_28 = 1/six_r_w_1_t_28;
-        const real six_r_w_1_t_29 = inv_six_r_w_1_t_28*six_r_w_1_t_16;
-        const real six_r_w_1_t_30 = inv_six_r_w_1_t_28*six_r_v_4_in_axes5_z;
-        const real six_r_w_1_t_31 = inv_six_r_w_1_t_28*six_r_w_1_t_9;
-        const real six_r_w_1_t_32 = inv_six_r_w_1_t_28*six_r_w_1_t_17;
-        const real six_r_w_1_t_33 = six_r_w_1_t_19*six_r_w_1_t_29 + six_r_w_1_t_20*six_r_w_1_t_32
-            + six_r_w_1_t_31*six_r_w_1_t_5 - six_r_v_1_in_axes5_z*six_r_w_1_t_30;
-        const real six_r_w_1_t_34 = six_r_w_1_t_29*six_r_w_1_t_33 - six_r_w_1_t_19;
-        const real six_r_w_1_t_35 = six_r_v_1_in_axes5_z + six_r_w_1_t_30*six_r_w_1_t_33;
-        const real six_r_w_1_t_36 = six_r_w_1_t_31*six_r_w_1_t_33 - six_r_w_1_t_5;
-        const real six_r_w_1_t_37 = six_r_w_1_t_32*six_r_w_1_t_33 - six_r_w_1_t_20;
-        const real six_r_w_1_t_38 = six_r_w_1_t_31*six_r_w_1_t_7;
-        const real six_r_w_1_t_39 = six_r_w_1_t_38 + six_r_w_1_t_23*six_r_w_1_t_29 +
-            six_r_w_1_t_24*six_r_w_1_t_32 - six_r_v_2_in_axes5_z*six_r_w_1_t_30;
-        const real six_r_w_1_t_40 = six_r_w_1_t_29*six_r_w_1_t_39 - six_r_w_1_t_23;
-        const real six_r_w_1_t_41 = six_r_v_2_in_axes5_z + six_r_w_1_t_30*six_r_w_1_t_39;
-        const real six_r_w_1_t_42 = six_r_w_1_t_31*six_r_w_1_t_39 - six_r_w_1_t_7;
-        const real six_r_w_1_t_43 = six_r_w_1_t_32*six_r_w_1_t_39 - six_r_w_1_t_24;
-        const real six_r_w_1_t_44 = six_r_w_1_t_38 + six_r_w_1_t_26*six_r_w_1_t_29 +
-            six_r_w_1_t_27*six_r_w_1_t_32 - six_r_v_3_in_axes5_z*six_r_w_1_t_30;
-        const real six_r_w_1_t_45 = six_r_w_1_t_29*six_r_w_1_t_44 - six_r_w_1_t_26;
-        const real six_r_w_1_t_46 = six_r_v_3_in_axes5_z + six_r_w_1_t_30*six_r_w_1_t_44;
-        const real six_r_w_1_t_47 = six_r_w_1_t_31*six_r_w_1_t_44 - six_r_w_1_t_7;
-        const real six_r_w_1_t_48 = six_r_w_1_t_32*six_r_w_1_t_44 - six_r_w_1_t_27;
-        const real six_r_w_1_t_49 = root(six_r_v_1_in_axes5_x*six_r_v_1_in_axes5_x +
-            six_r_w_1_t_34*six_r_w_1_t_34 + six_r_w_1_t_35*six_r_w_1_t_35 +
-            six_r_w_1_t_36*six_r_w_1_t_36 + six_r_w_1_t_37*six_r_w_1_t_37);
-        const real inv_six_r_w_1_t_49 = 1/six_r_w_1_t_49;
-        const real six_r_w_1_t_50 = inv_six_r_w_1_t_49*six_r_v_1_in_axes5_x;
-        const real six_r_w_1_t_51 = inv_six_r_w_1_t_49*six_r_w_1_t_34;
-        const real six_r_w_1_t_52 = inv_six_r_w_1_t_49*six_r_w_1_t_35;
-        const real six_r_w_1_t_53 = inv_six_r_w_1_t_49*six_r_w_1_t_36;
-        const real six_r_w_1_t_54 = inv_six_r_w_1_t_49*six_r_w_1_t_37;
-        const real six_r_w_1_t_55 = six_r_v_2_in_axes5_x*six_r_w_1_t_50 +
-            six_r_w_1_t_40*six_r_w_1_t_51 + six_r_w_1_t_41*six_r_w_1_t_52 +
-            six_r_w_1_t_42*six_r_w_1_t_53 + six_r_w_1_t_43*six_r_w_1_t_54;
-        const real six_r_w_1_t_56 = six_r_v_2_in_axes5_x - six_r_w_1_t_50*six_r_w_1_t_55;
-        const real six_r_w_1_t_57 = six_r_w_1_t_40 - six_r_w_1_t_51*six_r_w_1_t_55;
-        const real six_r_w_1_t_58 = six_r_w_1_t_41 - six_r_w_1_t_52*six_r_w_1_t_55;
-        const real six_r_w_1_t_59 = six_r_w_1_t_42 - six_r_w_1_t_53*six_r_w_1_t_55;
-        const real six_r_w_1_t_60 = six_r_w_1_t_43 - six_r_w_1_t_54*six_r_w_1_t_55;
-        const real six_r_w_1_t_61 = six_r_v_3_in_axes5_x*six_r_w_1_t_50 +
-            six_r_w_1_t_45*six_r_w_1_t_51 + six_r_w_1_t_46*six_r_w_1_t_52 +
-            six_r_w_1_t_47*six_r_w_1_t_53 + six_r_w_1_t_48*six_r_w_1_t_54;
-        const real six_r_w_1_t_62 = six_r_v_3_in_axes5_x - six_r_w_1_t_50*six_r_w_1_t_61;
-        const real six_r_w_1_t_63 = six_r_w_1_t_45 - six_r_w_1_t_51*six_r_w_1_t_61;
-        const real six_r_w_1_t_64 = six_r_w_1_t_46 - six_r_w_1_t_52*six_r_w_1_t_61;
-        const real six_r_w_1_t_65 = six_r_w_1_t_47 - six_r_w_1_t_53*six_r_w_1_t_61;
-        const real six_r_w_1_t_66 = six_r_w_1_t_48 - six_r_w_1_t_54*six_r_w_1_t_61;
-        const real six_r_w_1_t_67 = root(six_r_w_1_t_56*six_r_w_1_t_56 +
-            six_r_w_1_t_57*six_r_w_1_t_57 + six_r_w_1_t_58*six_r_w_1_t_58 +
-            six_r_w_1_t_59*six_r_w_1_t_59 + six_r_w_1_t_60*six_r_w_1_t_60);
-        const real inv_six_r_w_1_t_67 = 1/six_r_w_1_t_67;
-        const real six_r_w_1_t_68 = inv_six_r_w_1_t_67*six_r_w_1_t_56;
-        const real six_r_w_1_t_69 = inv_six_r_w_1_t_67*six_r_w_1_t_57;
-        const real six_r_w_1_t_70 = inv_six_r_w_1_t_67*six_r_w_1_t_58;
-        const real six_r_w_1_t_71 = inv_six_r_w_1_t_67*six_r_w_1_t_59;
-        const real six_r_w_1_t_72 = inv_six_r_w_1_t_67*six_r_w_1_t_60;
-        const real six_r_w_1_t_73 = six_r_w_1_t_62*six_r_w_1_t_68 + six_r_w_1_t_63*six_r_w_1_t_69
-            + six_r_w_1_t_64*six_r_w_1_t_70 + six_r_w_1_t_65*six_r_w_1_t_71 +
-            six_r_w_1_t_66*six_r_w_1_t_72;
-        const real six_r_w_1_t_74 = six_r_w_1_t_62 - six_r_w_1_t_68*six_r_w_1_t_73;
-        const real six_r_w_1_t_75 = six_r_w_1_t_63 - six_r_w_1_t_69*six_r_w_1_t_73;
-        const real six_r_w_1_t_76 = six_r_w_1_t_64 - six_r_w_1_t_70*six_r_w_1_t_73;
-        const real six_r_w_1_t_77 = six_r_w_1_t_65 - six_r_w_1_t_71*six_r_w_1_t_73;
-        const real six_r_w_1_t_78 = six_r_w_1_t_66 - six_r_w_1_t_72*six_r_w_1_t_73;
-        const real six_r_w_1_t_79 = root(six_r_w_1_t_74*six_r_w_1_t_74 +
-            six_r_w_1_t_75*six_r_w_1_t_75 + six_r_w_1_t_76*six_r_w_1_t_76 +
-            six_r_w_1_t_77*six_r_w_1_t_77 + six_r_w_1_t_78*six_r_w_1_t_78);
-        const real six_r_pivot_size = magnitude(six_r_w_1_t_12);
-        const real six_r_pivot_size_2 = magnitude(six_r_w_1_t_28);
-        const real six_r_pivot_size_3 = magnitude(six_r_w_1_t_49);
-        const real six_r_pivot_size_4 = magnitude(six_r_w_1_t_67);
-        const real six_r_pivot_size_5 = magnitude(six_r_w_1_t_79);
+        const real six_r_pivot_size = magnitude(v.six_r_w_1_t_12);
+        const real six_r_pivot_size_2 = magnitude(v.six_r_w_1_t_28);
+        const real six_r_pivot_size_3 = magnitude(v.six_r_w_1_t_49);
+        const real six_r_pivot_size_4 = magnitude(v.six_r_w_1_t_67);
+        const real six_r_pivot_size_5 = magnitude(v.six_r_w_1_t_79);
         const real inv_six_r_size = m->inv_six_r_size[i];
         const real six_r_least_pivots =
             lesser(lesser(lesser(lesser(inv_six_r_size*six_r_pivot_size,
             inv_six_r_size*six_r_pivot_size_2), inv_six_r_size*six_r_pivot_size_3),
             inv_six_r_size*six_r_pivot_size_4), inv_six_r_size*six_r_pivot_size_5);
-        /* (six_r-w_2) force part of reciprocal wrench 2 */
-        const real six_r_w_2_t = -six_r_c_4*six_r_s_3;
-        const real six_r_w_2_t_2 = -six_r_c_3*six_r_c_4;
-        const real six_r_w_2_t_3 = six_r_c_2*six_r_w_2_t + six_r_s_2*six_r_w_2_t_2;
-        const real six_r_w_2_t_4 = six_r_s_2*six_r_w_2_t - six_r_c_2*six_r_w_2_t_2;
-        const real six_r_w_2_t_5 = six_r_c_1*six_r_s_4 - six_r_s_1*six_r_w_2_t_3;
-        const real six_r_w_2_t_6 = six_r_c_1*six_r_w_2_t_3 + six_r_s_1*six_r_s_4;
-        const real axis_z_six_r_axes5_x = six_r_base_frame_xx*six_r_w_2_t_4 +
-            six_r_base_frame_xy*six_r_w_2_t_5 + six_r_base_frame_xz*six_r_w_2_t_6;
-        const real axis_z_six_r_axes5_y = six_r_base_frame_yx*six_r_w_2_t_4 +
-            six_r_base_frame_yy*six_r_w_2_t_5 + six_r_base_frame_yz*six_r_w_2_t_6;
-        const real axis_z_six_r_axes5_z = six_r_base_frame_zx*six_r_w_2_t_4 +
-            six_r_base_frame_zy*six_r_w_2_t_5 + six_r_base_frame_zz*six_r_w_2_t_6;
-        const real six_r_w_2_t_7 = six_r_s_4*six_r_s_5;
-        const real six_r_w_2_t_8 = six_r_c_3*six_r_c_5 - six_r_s_3*six_r_w_2_t_7;
-        const real six_r_w_2_t_9 = six_r_c_3*six_r_w_2_t_7 + six_r_c_5*six_r_s_3;
-        const real six_r_w_2_t_10 = six_r_c_2*six_r_w_2_t_8 - six_r_s_2*six_r_w_2_t_9;
-        const real six_r_w_2_t_11 = six_r_c_2*six_r_w_2_t_9 + six_r_s_2*six_r_w_2_t_8;
-        const real six_r_w_2_t_12 = six_r_c_1*six_r_e_2_in_axes5_y - six_r_s_1*six_r_w_2_t_10;
-        const real six_r_w_2_t_13 = six_r_c_1*six_r_w_2_t_10 + six_r_e_2_in_axes5_y*six_r_s_1;
-        const real axis_y_six_r_axes5_x = six_r_base_frame_xx*six_r_w_2_t_11 +
-            six_r_base_frame_xy*six_r_w_2_t_12 + six_r_base_frame_xz*six_r_w_2_t_13;
-        const real axis_y_six_r_axes5_y = six_r_base_frame_yx*six_r_w_2_t_11 +
-            six_r_base_frame_yy*six_r_w_2_t_12 + six_r_base_frame_yz*six_r_w_2_t_13;
-        const real axis_y_six_r_axes5_z = six_r_base_frame_zx*six_r_w_2_t_11 +
-            six_r_base_frame_zy*six_r_w_2_t_12 + six_r_base_frame_zz*six_r_w_2_t_13;
-        const real axis_x_six_r_axes5_x = axis_y_six_r_axes5_y*axis_z_six_r_axes5_z -
-            axis_y_six_r_axes5_z*axis_z_six_r_axes5_y;
-        const real axis_x_six_r_axes5_y = axis_y_six_r_axes5_z*axis_z_six_r_axes5_x -
-            axis_y_six_r_axes5_x*axis_z_six_r_axes5_z;
-        const real axis_x_six_r_axes5_z = axis_y_six_r_axes5_x*axis_z_six_r_axes5_y -
-            axis_y_six_r_axes5_y*axis_z_six_r_axes5_x;
-        const real inv_six_r_w_1_t_79 = 1/six_r_w_1_t_79;
-        const real six_r_w_2_t_14 = inv_six_r_w_1_t_67*inv_six_r_w_1_t_79*six_r_w_1_t_73;
-        const real six_r_w_2_in_axes5_x = inv_six_r_w_1_t_67*six_r_w_1_t_68 -
-            inv_six_r_w_1_t_79*six_r_w_1_t_74*six_r_w_2_t_14;
-        const real six_r_w_2_in_axes5_y = inv_six_r_w_1_t_79*six_r_w_1_t_75*six_r_w_2_t_14 -
-            inv_six_r_w_1_t_67*six_r_w_1_t_69;
-        const real six_r_w_2_in_axes5_z = inv_six_r_w_1_t_67*six_r_w_1_t_70 -
-            inv_six_r_w_1_t_79*six_r_w_1_t_76*six_r_w_2_t_14;
-        const real six_r_w_2_x = axis_x_six_r_axes5_x*six_r_w_2_in_axes5_x +
-            axis_y_six_r_axes5_x*six_r_w_2_in_axes5_y + axis_z_six_r_axes5_x*six_r_w_2_in_axes5_z;
-        const real six_r_w_2_y = axis_x_six_r_axes5_y*six_r_w_2_in_axes5_x +
-            axis_y_six_r_axes5_y*six_r_w_2_in_axes5_y + axis_z_six_r_axes5_y*six_r_w_2_in_axes5_z;
-        const real six_r_w_2_z = axis_x_six_r_axes5_z*six_r_w_2_in_axes5_x +
-            axis_y_six_r_axes5_z*six_r_w_2_in_axes5_y + axis_z_six_r_axes5_z*six_r_w_2_in_axes5_z;
-        /* (six_r-m1_w_2) moment part 1 of reciprocal wrench 2 */
-        const real six_r_m1_w_2 = six_r_size*(inv_six_r_w_1_t_67*six_r_w_1_t_71 -
-            inv_six_r_w_1_t_79*six_r_w_1_t_77*six_r_w_2_t_14);
-        /* (six_r-m2_w_2) moment part 2 of reciprocal wrench 2 */
-        const real six_r_m2_w_2 = six_r_size*(inv_six_r_w_1_t_67*six_r_w_1_t_72 -
-            inv_six_r_w_1_t_79*six_r_w_1_t_78*six_r_w_2_t_14);
-        /* (six_r-o_2) moment part of reciprocal wrench 2 */
-        const real six_r_o_2_x = six_r_m1_w_2*(axis_y_six_r_axes5_x*six_r_n_m1_in_axes5_y -
-            axis_x_six_r_axes5_x*six_r_n_m2_in_axes5_z) +
-            six_r_m2_w_2*(axis_z_six_r_axes5_x*six_r_n_m2_in_axes5_z -
-            axis_y_six_r_axes5_x*six_r_end_p1_in_axes5_z);
-        const real six_r_o_2_y = six_r_m1_w_2*(axis_y_six_r_axes5_y*six_r_n_m1_in_axes5_y -
-            axis_x_six_r_axes5_y*six_r_n_m2_in_axes5_z) +
-            six_r_m2_w_2*(axis_z_six_r_axes5_y*six_r_n_m2_in_axes5_z -
-            axis_y_six_r_axes5_y*six_r_end_p1_in_axes5_z);
-        const real six_r_o_2_z = six_r_m1_w_2*(axis_y_six_r_axes5_z*six_r_n_m1_in_axes5_y -
-            axis_x_six_r_axes5_z*six_r_n_m2_in_axes5_z) +
-            six_r_m2_w_2*(axis_z_six_r_axes5_z*six_r_n_m2_in_axes5_z -
-            axis_y_six_r_axes5_z*six_r_end_p1_in_axes5_z);
-        /* (six_r-H_a_2) moment of the column's unit force about the platform origin */
-        const real six_r_platform_point_x = m->six_r_platform_point_x[i];
-        const real six_r_platform_point_y = m->six_r_platform_point_y[i];
-        const real six_r_platform_point_z = m->six_r_platform_point_z[i];
-        const real six_r_q_x = R_xx*six_r_platform_point_x + R_xy*six_r_platform_point_y +
-            R_xz*six_r_platform_point_z;
-        const real six_r_q_y = R_yx*six_r_platform_point_x + R_yy*six_r_platform_point_y +
-            R_yz*six_r_platform_point_z;
-        const real six_r_q_z = R_zx*six_r_platform_point_x + R_zy*six_r_platform_point_y +
-            R_zz*six_r_platform_point_z;
-        const real six_r_H_a_2_x = six_r_o_2_x + six_r_q_y*six_r_w_2_z - six_r_q_z*six_r_w_2_y;
-        const real six_r_H_a_2_y = six_r_o_2_y + six_r_q_z*six_r_w_2_x - six_r_q_x*six_r_w_2_z;
-        const real six_r_H_a_2_z = six_r_o_2_z + six_r_q_x*six_r_w_2_y - six_r_q_y*six_r_w_2_x;
         /* (spread) rms distance of the platform points from their centroid */
         const real b_c_in_platform_x = m->b_c_in_platform_x;
+        const real six_r_platform_point_x = m->six_r_platform_point_x[i];
         const real six_r_spread_t = b_c_in_platform_x - six_r_platform_point_x;
         const real b_c_in_platform_y = m->b_c_in_platform_y;
+        const real six_r_platform_point_y = m->six_r_platform_point_y[i];
         const real six_r_spread_t_2 = b_c_in_platform_y - six_r_platform_point_y;
         const real b_c_in_platform_z = m->b_c_in_platform_z;
+        const real six_r_platform_point_z = m->six_r_platform_point_z[i];
         const real six_r_spread_t_3 = b_c_in_platform_z - six_r_platform_point_z;
         const real six_r_spread_t_4 = six_r_spread_t*six_r_spread_t +
             six_r_spread_t_2*six_r_spread_t_2 + six_r_spread_t_3*six_r_spread_t_3;
         /* (spread) rms distance of the platform points from their centroid */
         gather(&terms[0*count + k], add, six_r_spread_t_4);  /* spread_six_r */
         /* (six_r-w_2) force part of reciprocal wrench 2 */
-        o[0*count + k] = six_r_w_2_x;
-        o[1*count + k] = six_r_w_2_y;
-        o[2*count + k] = six_r_w_2_z;
+        o[0*count + k] = v.six_r_w_2_x;
+        o[1*count + k] = v.six_r_w_2_y;
+        o[2*count + k] = v.six_r_w_2_z;
         /* (six_r-H_a_2) moment of the column's unit force about the platform origin */
-        o[3*count + k] = six_r_H_a_2_x;
-        o[4*count + k] = six_r_H_a_2_y;
-        o[5*count + k] = six_r_H_a_2_z;
+        o[3*count + k] = v.six_r_H_a_2_x;
+        o[4*count + k] = v.six_r_H_a_2_y;
+        o[5*count + k] = v.six_r_H_a_2_z;
         /* (six_r-w_1) force part of reciprocal wrench 1 */
         o[6*count + k] = six_r_least_pivots;
-        o[8*count + k] = (six_r_w_2_x + (six_r_w_2_y + six_r_w_2_z)) + ((six_r_H_a_2_x +
-            six_r_H_a_2_y) + (six_r_H_a_2_z + six_r_least_pivots));
-        o[7*count + k] = UNLESS(magnitude(six_r_w_1_t_12) > TOLERANCE*six_r_size) +
-            UNLESS(magnitude(six_r_w_1_t_28) > TOLERANCE*six_r_size) +
-            UNLESS(magnitude(six_r_w_1_t_49) > TOLERANCE*six_r_size) +
-            UNLESS(magnitude(six_r_w_1_t_67) > TOLERANCE*six_r_size) +
-            UNLESS(magnitude(six_r_w_1_t_79) > TOLERANCE*six_r_size);
+        o[8*count + k] = (v.six_r_w_2_x + (v.six_r_w_2_y + v.six_r_w_2_z)) + ((v.six_r_H_a_2_x +
+            v.six_r_H_a_2_y) + (v.six_r_H_a_2_z + six_r_least_pivots));
+        const real six_r_size = m->six_r_size[i];
+        o[7*count + k] = UNLESS(magnitude(v.six_r_w_1_t_12) > TOLERANCE*six_r_size) +
+            UNLESS(magnitude(v.six_r_w_1_t_28) > TOLERANCE*six_r_size) +
+            UNLESS(magnitude(v.six_r_w_1_t_49) > TOLERANCE*six_r_size) +
+            UNLESS(magnitude(v.six_r_w_1_t_67) > TOLERANCE*six_r_size) +
+            UNLESS(magnitude(v.six_r_w_1_t_79) > TOLERANCE*six_r_size);
     }
 }
 
@@ -11861,7 +8772,7 @@ INLINE void condition_place_six_r(size_t w, size_t count, const real *o, size_t 
     real *H, real *pivots, verdict *t)
 {
     for (size_t k = 0; k < w; ++k) {
-        H[(0*NU + leg)*w + k] = o[0*count + first + k];
+        H[leg*w + k] = o[0*count + first + k];
         H[(NU + leg)*w + k] = o[1*count + first + k];
         H[(2*NU + leg)*w + k] = o[2*count + first + k];
         H[(3*NU + leg)*w + k] = o[3*count + first + k];
@@ -11890,10 +8801,8 @@ INLINE void condition_after(const prepared *m, size_t w, const real *sums, real 
 INLINE void condition_run(const prepared *m, const real *X, const real *joints, real *H, real
     *lengths, real *pivots, real *reach, verdict *t)
 {
-    real s[9] = {0};
-    real sums[1] = {0};
-    real terms_six_r[LEGS(LEGS_OF_six_r)] = {0};
-    real o_six_r[9*LEGS(LEGS_OF_six_r)] = {0};
+    real s[9] = {0}, sums[1] = {0};
+    real terms_six_r[LEGS(LEGS_OF_six_r)] = {0}, o_six_r[9*LEGS(LEGS_OF_six_r)] = {0};
     clear(reach, NL);
     condition_before(m, 1, X, s, lengths, t);
     condition_legs_six_r(m, 1, 0, 1, s, 0, LEGS(LEGS_OF_six_r), 0, joints, terms_six_r, o_six_r);
@@ -12579,11 +9488,87 @@ INLINE void condition_one(const prepared *m, const real *X, const real *q0, cons
     }
 }
 
+INLINE void manipulability_one(const prepared *m, const real *X, const real *q0, real
+    *measure_out, real *isotropy_out, int *code)
+{
+    static const size_t places_divide_rows_1[] = {3, 4, 5};
+    real joints[NJ] = {0}, H[NV*NU] = {0}, lengths[2] = {0}, pivots[NL] = {0}, reach[NL] = {0},
+        subtract_1[1] = {0}, choose_length_1[1] = {0}, divide_rows_1[NV*NU] = {0},
+        singular_values_1[NV] = {0}, measure[1] = {0}, isotropy[1] = {0};
+    verdict why;
+    start(1, &why);
+    check(NQ, 1, X, why.invalid);
+    close_loops(m, 1, X, q0, joints, &why);
+    condition_run(m, X, joints, H, lengths, pivots, reach, &why);
+    const real *const entry_1 = lengths;
+    for (size_t i = 0; i < 1; ++i) {
+        subtract_1[i] = entry_1[i] - entry_1[i];
+    }
+    for (size_t i = 0; i < 1; ++i) {
+        choose_length_1[i] = subtract_1[i] > 0 ? subtract_1[i] : lengths[i] > TINY*lengths[1 + i]
+            ? lengths[i] : lengths[1 + i];
+    }
+    for (size_t i = 0; i < NV*NU; ++i) {
+        divide_rows_1[i] = H[i];
+    }
+    divide_rows(3, NU, 1, places_divide_rows_1, choose_length_1, divide_rows_1);
+    singular_values(NV, NU, divide_rows_1, singular_values_1);
+    spread(NV, singular_values_1, measure, isotropy);
+    check(1, 1, measure, why.overflow);
+    check(1, 1, isotropy, why.overflow);
+    judge(&why, code);
+    copy(1, measure, measure_out);
+    copy(1, isotropy, isotropy_out);
+    if (*code != OK) {
+        refuse(1, measure_out);
+        refuse(1, isotropy_out);
+    }
+}
+
+INLINE void singularity_distance_one(const prepared *m, const real *X, const real *q0, real
+    *actuators_out, real *legs_out, int *code)
+{
+    static const size_t places_divide_rows_1[] = {3, 4, 5};
+    real joints[NJ] = {0}, H[NV*NU] = {0}, lengths[2] = {0}, pivots[NL] = {0}, reach[NL] = {0},
+        subtract_1[1] = {0}, choose_length_1[1] = {0}, divide_rows_1[NV*NU] = {0},
+        singular_values_1[NV] = {0}, spread_1[1] = {0}, actuators[1] = {0}, legs[1] = {0};
+    verdict why;
+    start(1, &why);
+    check(NQ, 1, X, why.invalid);
+    close_loops(m, 1, X, q0, joints, &why);
+    condition_run(m, X, joints, H, lengths, pivots, reach, &why);
+    const real *const entry_1 = lengths;
+    for (size_t i = 0; i < 1; ++i) {
+        subtract_1[i] = entry_1[i] - entry_1[i];
+    }
+    for (size_t i = 0; i < 1; ++i) {
+        choose_length_1[i] = subtract_1[i] > 0 ? subtract_1[i] : lengths[i] > TINY*lengths[1 + i]
+            ? lengths[i] : lengths[1 + i];
+    }
+    for (size_t i = 0; i < NV*NU; ++i) {
+        divide_rows_1[i] = H[i];
+    }
+    divide_rows(3, NU, 1, places_divide_rows_1, choose_length_1, divide_rows_1);
+    singular_values(NV, NU, divide_rows_1, singular_values_1);
+    spread(NV, singular_values_1, spread_1, actuators);
+    least_entry(NL, pivots, legs);
+    check(1, 1, actuators, why.overflow);
+    check(1, 1, legs, why.overflow);
+    judge(&why, code);
+    copy(1, actuators, actuators_out);
+    copy(1, legs, legs_out);
+    if (*code != OK) {
+        refuse(1, actuators_out);
+        refuse(1, legs_out);
+    }
+}
+
 static void mismatch_one(const prepared *m, const real *X, const real *q0, const real *q_actuated,
     real *gap_out, int *code)
 {
     static const size_t places_gap[] = {0, 1, 2, 3, 4, 5};
-    real joints[NJ] = {0}, q[NJ] = {0}, take_1[6] = {0}, subtract_1[NU] = {0}, gap[NU] = {0};
+    real joints[NJ] = {0}, q[NJ] = {0}, q_of_inverse_kinematics_from_1[6] = {0}, subtract_1[NU] = {0},
+        gap[NU] = {0};
     verdict why;
     start(1, &why);
     const real total_in = total(X, NQ) + total(q_actuated, NU);
@@ -12593,9 +9578,9 @@ static void mismatch_one(const prepared *m, const real *X, const real *q0, const
     }
     close_loops(m, 1, X, q0, joints, &why);
     inverse_kinematics_run(joints, q, &why);
-    take(6, 1, hexapod_6x6r_ACTUATED, q, take_1);
+    take(6, 1, hexapod_6x6r_ACTUATED, q, q_of_inverse_kinematics_from_1);
     for (size_t i = 0; i < NU; ++i) {
-        subtract_1[i] = q_actuated[i] - take_1[i];
+        subtract_1[i] = q_actuated[i] - q_of_inverse_kinematics_from_1[i];
     }
     for (size_t i = 0; i < NU; ++i) {
         gap[i] = subtract_1[i];
@@ -12991,8 +9976,8 @@ INLINE void rotation_one(const real *X, real *R_out, int *code)
     verdict why;
     start(1, &why);
     check(NQ, 1, X, why.invalid);
-    const real *const take_1 = X + 3;
-    rotation_of_quaternion(take_1, R);
+    const real *const X_from_3 = X + 3;
+    rotation_of_quaternion(X_from_3, R);
     check(9, 1, R, why.overflow);
     judge(&why, code);
     copy(9, R, R_out);
@@ -13032,11 +10017,11 @@ INLINE void X_dot_one(const real *X, const real *V, real *X_dot_out, int *code)
         check(NQ, 1, X, why.invalid);
         check(NV, 1, V, why.invalid);
     }
-    const real *const take_1 = V + 3;
-    const real *const take_2 = X + 3;
-    quaternion_rate(take_2, take_1, quaternion_rate_1);
-    const real *const take_3 = V;
-    beside(1, 3, 4, take_3, quaternion_rate_1, X_dot);
+    const real *const V_from_3 = V + 3;
+    const real *const X_from_3 = X + 3;
+    quaternion_rate(X_from_3, V_from_3, quaternion_rate_1);
+    const real *const V_from_0 = V;
+    beside(1, 3, 4, V_from_0, quaternion_rate_1, X_dot);
     check(NQ, 1, X_dot, why.overflow);
     judge(&why, code);
     copy(NQ, X_dot, X_dot_out);
@@ -13076,13 +10061,13 @@ INLINE void retract_one(const real *X, const real *step, real *X_moved_out, int 
         check(NQ, 1, X, why.invalid);
         check(NV, 1, step, why.invalid);
     }
-    const real *const take_1 = X;
-    const real *const take_2 = X + 3;
-    const real *const take_3 = step;
-    const real *const take_4 = step + 3;
-    turn_quaternion(take_2, take_4, turn_quaternion_1);
+    const real *const X_from_0 = X;
+    const real *const X_from_3 = X + 3;
+    const real *const step_from_0 = step;
+    const real *const step_from_3 = step + 3;
+    turn_quaternion(X_from_3, step_from_3, turn_quaternion_1);
     for (size_t i = 0; i < 3; ++i) {
-        add_1[i] = take_1[i] + take_3[i];
+        add_1[i] = X_from_0[i] + step_from_0[i];
     }
     beside(1, 3, 4, add_1, turn_quaternion_1, X_moved);
     check(NQ, 1, X_moved, why.overflow);
@@ -13103,13 +10088,13 @@ INLINE void difference_one(const real *X0, const real *X1, real *step_out, int *
         check(NQ, 1, X0, why.invalid);
         check(NQ, 1, X1, why.invalid);
     }
-    const real *const take_1 = X0;
-    const real *const take_2 = X0 + 3;
-    const real *const take_3 = X1;
-    const real *const take_4 = X1 + 3;
-    turn_between(take_2, take_4, turn_between_1);
+    const real *const X0_from_0 = X0;
+    const real *const X0_from_3 = X0 + 3;
+    const real *const X1_from_0 = X1;
+    const real *const X1_from_3 = X1 + 3;
+    turn_between(X0_from_3, X1_from_3, turn_between_1);
     for (size_t i = 0; i < 3; ++i) {
-        subtract_1[i] = take_3[i] - take_1[i];
+        subtract_1[i] = X1_from_0[i] - X0_from_0[i];
     }
     beside(1, 3, 3, subtract_1, turn_between_1, step);
     check(NV, 1, step, why.overflow);
@@ -13132,25 +10117,25 @@ INLINE void interpolate_one(const real *X0, const real *X1, const real *s, real 
         check(NQ, 1, X1, why.invalid);
         check(1, 1, s, why.invalid);
     }
-    const real *const take_1 = X0;
-    const real *const take_2 = X0 + 3;
-    const real *const take_3 = X1;
-    const real *const take_4 = X1 + 3;
-    turn_between(take_2, take_4, turn_between_1);
+    const real *const X0_from_0 = X0;
+    const real *const X0_from_3 = X0 + 3;
+    const real *const X1_from_0 = X1;
+    const real *const X1_from_3 = X1 + 3;
+    turn_between(X0_from_3, X1_from_3, turn_between_1);
     for (size_t i = 0; i < 3; ++i) {
-        subtract_1[i] = take_3[i] - take_1[i];
+        subtract_1[i] = X1_from_0[i] - X0_from_0[i];
     }
     beside(1, 3, 3, subtract_1, turn_between_1, join_1);
     for (size_t i = 0; i < 6; ++i) {
         scale_1[i] = join_1[i]*s[i%(1)];
     }
-    const real *const take_5 = X0;
-    const real *const take_6 = X0 + 3;
-    const real *const take_7 = scale_1;
-    const real *const take_8 = scale_1 + 3;
-    turn_quaternion(take_6, take_8, turn_quaternion_1);
+    const real *const X0_from_0_2 = X0;
+    const real *const X0_from_3_2 = X0 + 3;
+    const real *const scale_1_from_0 = scale_1;
+    const real *const scale_1_from_3 = scale_1 + 3;
+    turn_quaternion(X0_from_3_2, scale_1_from_3, turn_quaternion_1);
     for (size_t i = 0; i < 3; ++i) {
-        add_1[i] = take_5[i] + take_7[i];
+        add_1[i] = X0_from_0_2[i] + scale_1_from_0[i];
     }
     beside(1, 3, 4, add_1, turn_quaternion_1, X);
     check(NQ, 1, X, why.overflow);
@@ -13163,296 +10148,267 @@ INLINE void interpolate_one(const real *X0, const real *X1, const real *s, real 
 
 /* ---- one state, and batches ---- */
 
-int hexapod_6x6r_M(const hexapod_6x6r_model *model, const hexapod_6x6r_real *X, const
-    hexapod_6x6r_real *q0, hexapod_6x6r_real *M)
+int hexapod_6x6r_M(const prepared *model, const real *X, const real *q0, real *M)
 {
     int code;
     M_one(model, X, q0, M, &code);
     return code;
 }
 
-size_t hexapod_6x6r_M_batch(const hexapod_6x6r_model *model, size_t n, const hexapod_6x6r_real *X,
-    const hexapod_6x6r_real *q0, hexapod_6x6r_real *M, int *status)
+size_t hexapod_6x6r_M_batch(const prepared *model, size_t n, const real *X, const real *q0, real
+    *M, int *status)
 {
-    size_t failed = 0, i = 0;
-    for (; LANES > 1 && i + LANES <= n; i += LANES) {
-        int codes[LANES];
-        M_lanes(model, X + NQ*i, q0 ? q0 + NJ*i : NULL, M + NV*NV*i, codes);
-        for (size_t k = 0; k < LANES; ++k) {
+    size_t failed = 0, w;
+    for (size_t i = 0; i < n; i += w) {
+        int codes[LANES] = {INVALID};
+        w = LANES > 1 && i + LANES <= n ? LANES : 1;
+        if (w > 1) {
+            M_lanes(model, X + NQ*i, q0 ? q0 + NJ*i : NULL, M + NV*NV*i, codes);
+        }
+        for (size_t k = 0; k < w; ++k) {
             if (codes[k] != OK) {
                 codes[k] = hexapod_6x6r_M(model, X + NQ*(i + k), q0 ? q0 + NJ*(i + k) : NULL, M + NV*NV*(i + k));
             }
         }
-        failed += record(codes, LANES, status ? status + i : NULL);
-    }
-    for (; i < n; ++i) {
-        const int code = hexapod_6x6r_M(model, X + NQ*i, q0 ? q0 + NJ*i : NULL, M + NV*NV*i);
-        failed += record(&code, 1, status ? status + i : NULL);
+        failed += record(codes, w, status ? status + i : NULL);
     }
     return failed;
 }
 
-int hexapod_6x6r_Z(const hexapod_6x6r_model *model, const hexapod_6x6r_real *X, const
-    hexapod_6x6r_real *q0, const hexapod_6x6r_real *V, hexapod_6x6r_real *Z)
+int hexapod_6x6r_Z(const prepared *model, const real *X, const real *q0, const real *V, real *Z)
 {
     int code;
     Z_one(model, X, q0, V, Z, &code);
     return code;
 }
 
-size_t hexapod_6x6r_Z_batch(const hexapod_6x6r_model *model, size_t n, const hexapod_6x6r_real *X,
-    const hexapod_6x6r_real *q0, const hexapod_6x6r_real *V, hexapod_6x6r_real *Z, int *status)
+size_t hexapod_6x6r_Z_batch(const prepared *model, size_t n, const real *X, const real *q0, const
+    real *V, real *Z, int *status)
 {
-    size_t failed = 0, i = 0;
-    for (; LANES > 1 && i + LANES <= n; i += LANES) {
-        int codes[LANES];
-        Z_lanes(model, X + NQ*i, q0 ? q0 + NJ*i : NULL, V + NV*i, Z + NV*i, codes);
-        for (size_t k = 0; k < LANES; ++k) {
+    size_t failed = 0, w;
+    for (size_t i = 0; i < n; i += w) {
+        int codes[LANES] = {INVALID};
+        w = LANES > 1 && i + LANES <= n ? LANES : 1;
+        if (w > 1) {
+            Z_lanes(model, X + NQ*i, q0 ? q0 + NJ*i : NULL, V + NV*i, Z + NV*i, codes);
+        }
+        for (size_t k = 0; k < w; ++k) {
             if (codes[k] != OK) {
                 codes[k] = hexapod_6x6r_Z(model, X + NQ*(i + k), q0 ? q0 + NJ*(i + k) : NULL, V + NV*(i + k), Z +
                     NV*(i + k));
             }
         }
-        failed += record(codes, LANES, status ? status + i : NULL);
-    }
-    for (; i < n; ++i) {
-        const int code = hexapod_6x6r_Z(model, X + NQ*i, q0 ? q0 + NJ*i : NULL, V + NV*i, Z + NV*i);
-        failed += record(&code, 1, status ? status + i : NULL);
+        failed += record(codes, w, status ? status + i : NULL);
     }
     return failed;
 }
 
-int hexapod_6x6r_H(const hexapod_6x6r_model *model, const hexapod_6x6r_real *X, const
-    hexapod_6x6r_real *q0, hexapod_6x6r_real *H)
+int hexapod_6x6r_H(const prepared *model, const real *X, const real *q0, real *H)
 {
     int code;
     H_one(model, X, q0, H, &code);
     return code;
 }
 
-size_t hexapod_6x6r_H_batch(const hexapod_6x6r_model *model, size_t n, const hexapod_6x6r_real *X,
-    const hexapod_6x6r_real *q0, hexapod_6x6r_real *H, int *status)
+size_t hexapod_6x6r_H_batch(const prepared *model, size_t n, const real *X, const real *q0, real
+    *H, int *status)
 {
-    size_t failed = 0, i = 0;
-    for (; LANES > 1 && i + LANES <= n; i += LANES) {
-        int codes[LANES];
-        H_lanes(model, X + NQ*i, q0 ? q0 + NJ*i : NULL, H + NV*NU*i, codes);
-        for (size_t k = 0; k < LANES; ++k) {
+    size_t failed = 0, w;
+    for (size_t i = 0; i < n; i += w) {
+        int codes[LANES] = {INVALID};
+        w = LANES > 1 && i + LANES <= n ? LANES : 1;
+        if (w > 1) {
+            H_lanes(model, X + NQ*i, q0 ? q0 + NJ*i : NULL, H + NV*NU*i, codes);
+        }
+        for (size_t k = 0; k < w; ++k) {
             if (codes[k] != OK) {
                 codes[k] = hexapod_6x6r_H(model, X + NQ*(i + k), q0 ? q0 + NJ*(i + k) : NULL, H + NV*NU*(i + k));
             }
         }
-        failed += record(codes, LANES, status ? status + i : NULL);
-    }
-    for (; i < n; ++i) {
-        const int code = hexapod_6x6r_H(model, X + NQ*i, q0 ? q0 + NJ*i : NULL, H + NV*NU*i);
-        failed += record(&code, 1, status ? status + i : NULL);
+        failed += record(codes, w, status ? status + i : NULL);
     }
     return failed;
 }
 
-int hexapod_6x6r_inverse_kinematics(const hexapod_6x6r_model *model, const hexapod_6x6r_real *X,
-    const hexapod_6x6r_real *q0, hexapod_6x6r_real *q)
+int hexapod_6x6r_inverse_kinematics(const prepared *model, const real *X, const real *q0, real *q)
 {
     int code;
     inverse_kinematics_one(model, X, q0, q, &code);
     return code;
 }
 
-size_t hexapod_6x6r_inverse_kinematics_batch(const hexapod_6x6r_model *model, size_t n, const
-    hexapod_6x6r_real *X, const hexapod_6x6r_real *q0, hexapod_6x6r_real *q, int *status)
+size_t hexapod_6x6r_inverse_kinematics_batch(const prepared *model, size_t n, const real *X, const
+    real *q0, real *q, int *status)
 {
-    size_t failed = 0, i = 0;
-    for (; LANES > 1 && i + LANES <= n; i += LANES) {
-        int codes[LANES];
-        inverse_kinematics_lanes(model, X + NQ*i, q0 ? q0 + NJ*i : NULL, q + NJ*i, codes);
-        for (size_t k = 0; k < LANES; ++k) {
+    size_t failed = 0, w;
+    for (size_t i = 0; i < n; i += w) {
+        int codes[LANES] = {INVALID};
+        w = LANES > 1 && i + LANES <= n ? LANES : 1;
+        if (w > 1) {
+            inverse_kinematics_lanes(model, X + NQ*i, q0 ? q0 + NJ*i : NULL, q + NJ*i, codes);
+        }
+        for (size_t k = 0; k < w; ++k) {
             if (codes[k] != OK) {
                 codes[k] = hexapod_6x6r_inverse_kinematics(model, X + NQ*(i + k), q0 ? q0 + NJ*(i + k) : NULL, q +
                     NJ*(i + k));
             }
         }
-        failed += record(codes, LANES, status ? status + i : NULL);
-    }
-    for (; i < n; ++i) {
-        const int code = hexapod_6x6r_inverse_kinematics(model, X + NQ*i, q0 ? q0 + NJ*i : NULL, q +
-            NJ*i);
-        failed += record(&code, 1, status ? status + i : NULL);
+        failed += record(codes, w, status ? status + i : NULL);
     }
     return failed;
 }
 
-int hexapod_6x6r_joint_rates(const hexapod_6x6r_model *model, const hexapod_6x6r_real *X, const
-    hexapod_6x6r_real *q0, const hexapod_6x6r_real *V, hexapod_6x6r_real *rates)
+int hexapod_6x6r_joint_rates(const prepared *model, const real *X, const real *q0, const real *V,
+    real *rates)
 {
     int code;
     joint_rates_one(model, X, q0, V, rates, &code);
     return code;
 }
 
-size_t hexapod_6x6r_joint_rates_batch(const hexapod_6x6r_model *model, size_t n, const
-    hexapod_6x6r_real *X, const hexapod_6x6r_real *q0, const hexapod_6x6r_real *V,
-    hexapod_6x6r_real *rates, int *status)
+size_t hexapod_6x6r_joint_rates_batch(const prepared *model, size_t n, const real *X, const real
+    *q0, const real *V, real *rates, int *status)
 {
-    size_t failed = 0, i = 0;
-    for (; LANES > 1 && i + LANES <= n; i += LANES) {
-        int codes[LANES];
-        joint_rates_lanes(model, X + NQ*i, q0 ? q0 + NJ*i : NULL, V + NV*i, rates + NJ*i, codes);
-        for (size_t k = 0; k < LANES; ++k) {
+    size_t failed = 0, w;
+    for (size_t i = 0; i < n; i += w) {
+        int codes[LANES] = {INVALID};
+        w = LANES > 1 && i + LANES <= n ? LANES : 1;
+        if (w > 1) {
+            joint_rates_lanes(model, X + NQ*i, q0 ? q0 + NJ*i : NULL, V + NV*i, rates + NJ*i, codes);
+        }
+        for (size_t k = 0; k < w; ++k) {
             if (codes[k] != OK) {
                 codes[k] = hexapod_6x6r_joint_rates(model, X + NQ*(i + k), q0 ? q0 + NJ*(i + k) : NULL, V + NV*(i
                     + k), rates + NJ*(i + k));
             }
         }
-        failed += record(codes, LANES, status ? status + i : NULL);
-    }
-    for (; i < n; ++i) {
-        const int code = hexapod_6x6r_joint_rates(model, X + NQ*i, q0 ? q0 + NJ*i : NULL, V + NV*i, rates
-            + NJ*i);
-        failed += record(&code, 1, status ? status + i : NULL);
+        failed += record(codes, w, status ? status + i : NULL);
     }
     return failed;
 }
 
-int hexapod_6x6r_joint_accelerations(const hexapod_6x6r_model *model, const hexapod_6x6r_real *X,
-    const hexapod_6x6r_real *q0, const hexapod_6x6r_real *V, const hexapod_6x6r_real *A,
-    hexapod_6x6r_real *accelerations)
+int hexapod_6x6r_joint_accelerations(const prepared *model, const real *X, const real *q0, const
+    real *V, const real *A, real *accelerations)
 {
     int code;
     joint_accelerations_one(model, X, q0, V, A, accelerations, &code);
     return code;
 }
 
-size_t hexapod_6x6r_joint_accelerations_batch(const hexapod_6x6r_model *model, size_t n, const
-    hexapod_6x6r_real *X, const hexapod_6x6r_real *q0, const hexapod_6x6r_real *V, const
-    hexapod_6x6r_real *A, hexapod_6x6r_real *accelerations, int *status)
+size_t hexapod_6x6r_joint_accelerations_batch(const prepared *model, size_t n, const real *X,
+    const real *q0, const real *V, const real *A, real *accelerations, int *status)
 {
-    size_t failed = 0, i = 0;
-    for (; LANES > 1 && i + LANES <= n; i += LANES) {
-        int codes[LANES];
-        joint_accelerations_lanes(model, X + NQ*i, q0 ? q0 + NJ*i : NULL, V + NV*i, A + NV*i,
-            accelerations + NJ*i, codes);
-        for (size_t k = 0; k < LANES; ++k) {
+    size_t failed = 0, w;
+    for (size_t i = 0; i < n; i += w) {
+        int codes[LANES] = {INVALID};
+        w = LANES > 1 && i + LANES <= n ? LANES : 1;
+        if (w > 1) {
+            joint_accelerations_lanes(model, X + NQ*i, q0 ? q0 + NJ*i : NULL, V + NV*i, A + NV*i,
+                accelerations + NJ*i, codes);
+        }
+        for (size_t k = 0; k < w; ++k) {
             if (codes[k] != OK) {
                 codes[k] = hexapod_6x6r_joint_accelerations(model, X + NQ*(i + k), q0 ? q0 + NJ*(i + k) : NULL, V
                     + NV*(i + k), A + NV*(i + k), accelerations + NJ*(i + k));
             }
         }
-        failed += record(codes, LANES, status ? status + i : NULL);
-    }
-    for (; i < n; ++i) {
-        const int code = hexapod_6x6r_joint_accelerations(model, X + NQ*i, q0 ? q0 + NJ*i : NULL, V +
-            NV*i, A + NV*i, accelerations + NJ*i);
-        failed += record(&code, 1, status ? status + i : NULL);
+        failed += record(codes, w, status ? status + i : NULL);
     }
     return failed;
 }
 
-int hexapod_6x6r_dynamics(const hexapod_6x6r_model *model, const hexapod_6x6r_real *X, const
-    hexapod_6x6r_real *q0, const hexapod_6x6r_real *V, hexapod_6x6r_real *M, hexapod_6x6r_real *Z,
-    hexapod_6x6r_real *H)
+int hexapod_6x6r_dynamics(const prepared *model, const real *X, const real *q0, const real *V,
+    real *M, real *Z, real *H)
 {
     int code;
     dynamics_one(model, X, q0, V, M, Z, H, &code);
     return code;
 }
 
-size_t hexapod_6x6r_dynamics_batch(const hexapod_6x6r_model *model, size_t n, const
-    hexapod_6x6r_real *X, const hexapod_6x6r_real *q0, const hexapod_6x6r_real *V,
-    hexapod_6x6r_real *M, hexapod_6x6r_real *Z, hexapod_6x6r_real *H, int *status)
+size_t hexapod_6x6r_dynamics_batch(const prepared *model, size_t n, const real *X, const real *q0,
+    const real *V, real *M, real *Z, real *H, int *status)
 {
-    size_t failed = 0, i = 0;
-    for (; LANES > 1 && i + LANES <= n; i += LANES) {
-        int codes[LANES];
-        dynamics_lanes(model, X + NQ*i, q0 ? q0 + NJ*i : NULL, V + NV*i, M + NV*NV*i, Z + NV*i, H +
-            NV*NU*i, codes);
-        for (size_t k = 0; k < LANES; ++k) {
+    size_t failed = 0, w;
+    for (size_t i = 0; i < n; i += w) {
+        int codes[LANES] = {INVALID};
+        w = LANES > 1 && i + LANES <= n ? LANES : 1;
+        if (w > 1) {
+            dynamics_lanes(model, X + NQ*i, q0 ? q0 + NJ*i : NULL, V + NV*i, M + NV*NV*i, Z + NV*i, H +
+                NV*NU*i, codes);
+        }
+        for (size_t k = 0; k < w; ++k) {
             if (codes[k] != OK) {
                 codes[k] = hexapod_6x6r_dynamics(model, X + NQ*(i + k), q0 ? q0 + NJ*(i + k) : NULL, V + NV*(i +
                     k), M + NV*NV*(i + k), Z + NV*(i + k), H + NV*NU*(i + k));
             }
         }
-        failed += record(codes, LANES, status ? status + i : NULL);
-    }
-    for (; i < n; ++i) {
-        const int code = hexapod_6x6r_dynamics(model, X + NQ*i, q0 ? q0 + NJ*i : NULL, V + NV*i, M +
-            NV*NV*i, Z + NV*i, H + NV*NU*i);
-        failed += record(&code, 1, status ? status + i : NULL);
+        failed += record(codes, w, status ? status + i : NULL);
     }
     return failed;
 }
 
-int hexapod_6x6r_inverse_dynamics(const hexapod_6x6r_model *model, const hexapod_6x6r_real *X,
-    const hexapod_6x6r_real *q0, const hexapod_6x6r_real *V, const hexapod_6x6r_real *A, const
-    hexapod_6x6r_real *wrench, hexapod_6x6r_real *tau)
+int hexapod_6x6r_inverse_dynamics(const prepared *model, const real *X, const real *q0, const real
+    *V, const real *A, const real *wrench, real *tau)
 {
     int code;
     inverse_dynamics_one(model, X, q0, V, A, wrench, tau, &code);
     return code;
 }
 
-size_t hexapod_6x6r_inverse_dynamics_batch(const hexapod_6x6r_model *model, size_t n, const
-    hexapod_6x6r_real *X, const hexapod_6x6r_real *q0, const hexapod_6x6r_real *V, const
-    hexapod_6x6r_real *A, const hexapod_6x6r_real *wrench, hexapod_6x6r_real *tau, int *status)
+size_t hexapod_6x6r_inverse_dynamics_batch(const prepared *model, size_t n, const real *X, const
+    real *q0, const real *V, const real *A, const real *wrench, real *tau, int *status)
 {
-    size_t failed = 0, i = 0;
-    for (; LANES > 1 && i + LANES <= n; i += LANES) {
-        int codes[LANES];
-        inverse_dynamics_lanes(model, X + NQ*i, q0 ? q0 + NJ*i : NULL, V + NV*i, A + NV*i, wrench ? wrench
-            + NW*i : NULL, tau + NU*i, codes);
-        for (size_t k = 0; k < LANES; ++k) {
+    size_t failed = 0, w;
+    for (size_t i = 0; i < n; i += w) {
+        int codes[LANES] = {INVALID};
+        w = LANES > 1 && i + LANES <= n ? LANES : 1;
+        if (w > 1) {
+            inverse_dynamics_lanes(model, X + NQ*i, q0 ? q0 + NJ*i : NULL, V + NV*i, A + NV*i, wrench ? wrench
+                + NW*i : NULL, tau + NU*i, codes);
+        }
+        for (size_t k = 0; k < w; ++k) {
             if (codes[k] != OK) {
                 codes[k] = hexapod_6x6r_inverse_dynamics(model, X + NQ*(i + k), q0 ? q0 + NJ*(i + k) : NULL, V +
                     NV*(i + k), A + NV*(i + k), wrench ? wrench + NW*(i + k) : NULL, tau + NU*(i + k));
             }
         }
-        failed += record(codes, LANES, status ? status + i : NULL);
-    }
-    for (; i < n; ++i) {
-        const int code = hexapod_6x6r_inverse_dynamics(model, X + NQ*i, q0 ? q0 + NJ*i : NULL, V + NV*i, A
-            + NV*i, wrench ? wrench + NW*i : NULL, tau + NU*i);
-        failed += record(&code, 1, status ? status + i : NULL);
+        failed += record(codes, w, status ? status + i : NULL);
     }
     return failed;
 }
 
-int hexapod_6x6r_forward_dynamics(const hexapod_6x6r_model *model, const hexapod_6x6r_real *X,
-    const hexapod_6x6r_real *q0, const hexapod_6x6r_real *V, const hexapod_6x6r_real *tau, const
-    hexapod_6x6r_real *wrench, hexapod_6x6r_real *A)
+int hexapod_6x6r_forward_dynamics(const prepared *model, const real *X, const real *q0, const real
+    *V, const real *tau, const real *wrench, real *A)
 {
     int code;
     forward_dynamics_one(model, X, q0, V, tau, wrench, A, &code);
     return code;
 }
 
-size_t hexapod_6x6r_forward_dynamics_batch(const hexapod_6x6r_model *model, size_t n, const
-    hexapod_6x6r_real *X, const hexapod_6x6r_real *q0, const hexapod_6x6r_real *V, const
-    hexapod_6x6r_real *tau, const hexapod_6x6r_real *wrench, hexapod_6x6r_real *A, int *status)
+size_t hexapod_6x6r_forward_dynamics_batch(const prepared *model, size_t n, const real *X, const
+    real *q0, const real *V, const real *tau, const real *wrench, real *A, int *status)
 {
-    size_t failed = 0, i = 0;
-    for (; LANES > 1 && i + LANES <= n; i += LANES) {
-        int codes[LANES];
-        forward_dynamics_lanes(model, X + NQ*i, q0 ? q0 + NJ*i : NULL, V + NV*i, tau + NU*i, wrench ?
-            wrench + NW*i : NULL, A + NV*i, codes);
-        for (size_t k = 0; k < LANES; ++k) {
+    size_t failed = 0, w;
+    for (size_t i = 0; i < n; i += w) {
+        int codes[LANES] = {INVALID};
+        w = LANES > 1 && i + LANES <= n ? LANES : 1;
+        if (w > 1) {
+            forward_dynamics_lanes(model, X + NQ*i, q0 ? q0 + NJ*i : NULL, V + NV*i, tau + NU*i, wrench ?
+                wrench + NW*i : NULL, A + NV*i, codes);
+        }
+        for (size_t k = 0; k < w; ++k) {
             if (codes[k] != OK) {
                 codes[k] = hexapod_6x6r_forward_dynamics(model, X + NQ*(i + k), q0 ? q0 + NJ*(i + k) : NULL, V +
                     NV*(i + k), tau + NU*(i + k), wrench ? wrench + NW*(i + k) : NULL, A + NV*(i + k));
             }
         }
-        failed += record(codes, LANES, status ? status + i : NULL);
-    }
-    for (; i < n; ++i) {
-        const int code = hexapod_6x6r_forward_dynamics(model, X + NQ*i, q0 ? q0 + NJ*i : NULL, V + NV*i,
-            tau + NU*i, wrench ? wrench + NW*i : NULL, A + NV*i);
-        failed += record(&code, 1, status ? status + i : NULL);
+        failed += record(codes, w, status ? status + i : NULL);
     }
     return failed;
 }
 
-int hexapod_6x6r_complete_acceleration(const hexapod_6x6r_model *model, const hexapod_6x6r_real
-    *X, const hexapod_6x6r_real *q0, const hexapod_6x6r_real *V, const hexapod_6x6r_real *A, const
-    hexapod_6x6r_real *wrench, hexapod_6x6r_real *completed)
+int hexapod_6x6r_complete_acceleration(const prepared *model, const real *X, const real *q0, const
+    real *V, const real *A, const real *wrench, real *completed)
 {
     int code;
     (void)model;
@@ -13464,13 +10420,12 @@ int hexapod_6x6r_complete_acceleration(const hexapod_6x6r_model *model, const he
     return code;
 }
 
-size_t hexapod_6x6r_complete_acceleration_batch(const hexapod_6x6r_model *model, size_t n, const
-    hexapod_6x6r_real *X, const hexapod_6x6r_real *q0, const hexapod_6x6r_real *V, const
-    hexapod_6x6r_real *A, const hexapod_6x6r_real *wrench, hexapod_6x6r_real *completed, int
+size_t hexapod_6x6r_complete_acceleration_batch(const prepared *model, size_t n, const real *X,
+    const real *q0, const real *V, const real *A, const real *wrench, real *completed, int
     *status)
 {
-    size_t failed = 0, i = 0;
-    for (; i < n; ++i) {
+    size_t failed = 0;
+    for (size_t i = 0; i < n; ++i) {
         const int code = hexapod_6x6r_complete_acceleration(model, X + NQ*i, q0 ? q0 + NJ*i : NULL, V +
             NV*i, A + NV*i, wrench ? wrench + NW*i : NULL, completed + NV*i);
         failed += record(&code, 1, status ? status + i : NULL);
@@ -13478,21 +10433,19 @@ size_t hexapod_6x6r_complete_acceleration_batch(const hexapod_6x6r_model *model,
     return failed;
 }
 
-int hexapod_6x6r_leg_reactions(const hexapod_6x6r_model *model, const hexapod_6x6r_real *X, const
-    hexapod_6x6r_real *q0, const hexapod_6x6r_real *V, const hexapod_6x6r_real *A, const
-    hexapod_6x6r_real *wrench, hexapod_6x6r_real *forces)
+int hexapod_6x6r_leg_reactions(const prepared *model, const real *X, const real *q0, const real
+    *V, const real *A, const real *wrench, real *forces)
 {
     int code;
     leg_reactions_one(model, X, q0, V, A, wrench, forces, &code);
     return code;
 }
 
-size_t hexapod_6x6r_leg_reactions_batch(const hexapod_6x6r_model *model, size_t n, const
-    hexapod_6x6r_real *X, const hexapod_6x6r_real *q0, const hexapod_6x6r_real *V, const
-    hexapod_6x6r_real *A, const hexapod_6x6r_real *wrench, hexapod_6x6r_real *forces, int *status)
+size_t hexapod_6x6r_leg_reactions_batch(const prepared *model, size_t n, const real *X, const real
+    *q0, const real *V, const real *A, const real *wrench, real *forces, int *status)
 {
-    size_t failed = 0, i = 0;
-    for (; i < n; ++i) {
+    size_t failed = 0;
+    for (size_t i = 0; i < n; ++i) {
         const int code = hexapod_6x6r_leg_reactions(model, X + NQ*i, q0 ? q0 + NJ*i : NULL, V + NV*i, A +
             NV*i, wrench ? wrench + NW*i : NULL, forces + 36*i);
         failed += record(&code, 1, status ? status + i : NULL);
@@ -13500,21 +10453,19 @@ size_t hexapod_6x6r_leg_reactions_batch(const hexapod_6x6r_model *model, size_t 
     return failed;
 }
 
-int hexapod_6x6r_energy(const hexapod_6x6r_model *model, const hexapod_6x6r_real *X, const
-    hexapod_6x6r_real *q0, const hexapod_6x6r_real *V, hexapod_6x6r_real *kinetic,
-    hexapod_6x6r_real *potential)
+int hexapod_6x6r_energy(const prepared *model, const real *X, const real *q0, const real *V, real
+    *kinetic, real *potential)
 {
     int code;
     energy_one(model, X, q0, V, kinetic, potential, &code);
     return code;
 }
 
-size_t hexapod_6x6r_energy_batch(const hexapod_6x6r_model *model, size_t n, const
-    hexapod_6x6r_real *X, const hexapod_6x6r_real *q0, const hexapod_6x6r_real *V,
-    hexapod_6x6r_real *kinetic, hexapod_6x6r_real *potential, int *status)
+size_t hexapod_6x6r_energy_batch(const prepared *model, size_t n, const real *X, const real *q0,
+    const real *V, real *kinetic, real *potential, int *status)
 {
-    size_t failed = 0, i = 0;
-    for (; i < n; ++i) {
+    size_t failed = 0;
+    for (size_t i = 0; i < n; ++i) {
         const int code = hexapod_6x6r_energy(model, X + NQ*i, q0 ? q0 + NJ*i : NULL, V + NV*i, kinetic +
             i, potential + i);
         failed += record(&code, 1, status ? status + i : NULL);
@@ -13522,20 +10473,19 @@ size_t hexapod_6x6r_energy_batch(const hexapod_6x6r_model *model, size_t n, cons
     return failed;
 }
 
-int hexapod_6x6r_condition(const hexapod_6x6r_model *model, const hexapod_6x6r_real *X, const
-    hexapod_6x6r_real *q0, hexapod_6x6r_real *sigma, hexapod_6x6r_real *legs)
+int hexapod_6x6r_condition(const prepared *model, const real *X, const real *q0, real *sigma, real
+    *legs)
 {
     int code;
     condition_one(model, X, q0, NULL, sigma, legs, &code);
     return code;
 }
 
-size_t hexapod_6x6r_condition_batch(const hexapod_6x6r_model *model, size_t n, const
-    hexapod_6x6r_real *X, const hexapod_6x6r_real *q0, hexapod_6x6r_real *sigma, hexapod_6x6r_real
-    *legs, int *status)
+size_t hexapod_6x6r_condition_batch(const prepared *model, size_t n, const real *X, const real
+    *q0, real *sigma, real *legs, int *status)
 {
-    size_t failed = 0, i = 0;
-    for (; i < n; ++i) {
+    size_t failed = 0;
+    for (size_t i = 0; i < n; ++i) {
         const int code = hexapod_6x6r_condition(model, X + NQ*i, q0 ? q0 + NJ*i : NULL, sigma + 6*i, legs
             + 6*i);
         failed += record(&code, 1, status ? status + i : NULL);
@@ -13543,20 +10493,59 @@ size_t hexapod_6x6r_condition_batch(const hexapod_6x6r_model *model, size_t n, c
     return failed;
 }
 
-int hexapod_6x6r_forward_kinematics(const hexapod_6x6r_model *model, const hexapod_6x6r_real
-    *q_actuated, const hexapod_6x6r_real *X0, const hexapod_6x6r_real *q0, hexapod_6x6r_real *X)
+int hexapod_6x6r_manipulability(const prepared *model, const real *X, const real *q0, real
+    *measure, real *isotropy)
+{
+    int code;
+    manipulability_one(model, X, q0, measure, isotropy, &code);
+    return code;
+}
+
+size_t hexapod_6x6r_manipulability_batch(const prepared *model, size_t n, const real *X, const
+    real *q0, real *measure, real *isotropy, int *status)
+{
+    size_t failed = 0;
+    for (size_t i = 0; i < n; ++i) {
+        const int code = hexapod_6x6r_manipulability(model, X + NQ*i, q0 ? q0 + NJ*i : NULL, measure + i,
+            isotropy + i);
+        failed += record(&code, 1, status ? status + i : NULL);
+    }
+    return failed;
+}
+
+int hexapod_6x6r_singularity_distance(const prepared *model, const real *X, const real *q0, real
+    *actuators, real *legs)
+{
+    int code;
+    singularity_distance_one(model, X, q0, actuators, legs, &code);
+    return code;
+}
+
+size_t hexapod_6x6r_singularity_distance_batch(const prepared *model, size_t n, const real *X,
+    const real *q0, real *actuators, real *legs, int *status)
+{
+    size_t failed = 0;
+    for (size_t i = 0; i < n; ++i) {
+        const int code = hexapod_6x6r_singularity_distance(model, X + NQ*i, q0 ? q0 + NJ*i : NULL,
+            actuators + i, legs + i);
+        failed += record(&code, 1, status ? status + i : NULL);
+    }
+    return failed;
+}
+
+int hexapod_6x6r_forward_kinematics(const prepared *model, const real *q_actuated, const real *X0,
+    const real *q0, real *X)
 {
     int code;
     forward_kinematics_one(model, q_actuated, X0, q0, X, &code);
     return code;
 }
 
-size_t hexapod_6x6r_forward_kinematics_batch(const hexapod_6x6r_model *model, size_t n, const
-    hexapod_6x6r_real *q_actuated, const hexapod_6x6r_real *X0, const hexapod_6x6r_real *q0,
-    hexapod_6x6r_real *X, int *status)
+size_t hexapod_6x6r_forward_kinematics_batch(const prepared *model, size_t n, const real
+    *q_actuated, const real *X0, const real *q0, real *X, int *status)
 {
-    size_t failed = 0, i = 0;
-    for (; i < n; ++i) {
+    size_t failed = 0;
+    for (size_t i = 0; i < n; ++i) {
         const int code = hexapod_6x6r_forward_kinematics(model, q_actuated + NU*i, X0 + NQ*i, q0 ? q0 +
             NJ*i : NULL, X + NQ*i);
         failed += record(&code, 1, status ? status + i : NULL);
@@ -13564,8 +10553,8 @@ size_t hexapod_6x6r_forward_kinematics_batch(const hexapod_6x6r_model *model, si
     return failed;
 }
 
-int hexapod_6x6r_dissipation(const hexapod_6x6r_model *model, const hexapod_6x6r_real *X, const
-    hexapod_6x6r_real *q0, const hexapod_6x6r_real *V, hexapod_6x6r_real *dissipation)
+int hexapod_6x6r_dissipation(const prepared *model, const real *X, const real *q0, const real *V,
+    real *dissipation)
 {
     int code;
     (void)model;
@@ -13575,12 +10564,11 @@ int hexapod_6x6r_dissipation(const hexapod_6x6r_model *model, const hexapod_6x6r
     return code;
 }
 
-size_t hexapod_6x6r_dissipation_batch(const hexapod_6x6r_model *model, size_t n, const
-    hexapod_6x6r_real *X, const hexapod_6x6r_real *q0, const hexapod_6x6r_real *V,
-    hexapod_6x6r_real *dissipation, int *status)
+size_t hexapod_6x6r_dissipation_batch(const prepared *model, size_t n, const real *X, const real
+    *q0, const real *V, real *dissipation, int *status)
 {
-    size_t failed = 0, i = 0;
-    for (; i < n; ++i) {
+    size_t failed = 0;
+    for (size_t i = 0; i < n; ++i) {
         const int code = hexapod_6x6r_dissipation(model, X + NQ*i, q0 ? q0 + NJ*i : NULL, V + NV*i,
             dissipation + i);
         failed += record(&code, 1, status ? status + i : NULL);
@@ -13588,355 +10576,325 @@ size_t hexapod_6x6r_dissipation_batch(const hexapod_6x6r_model *model, size_t n,
     return failed;
 }
 
-int hexapod_6x6r_momentum(const hexapod_6x6r_model *model, const hexapod_6x6r_real *X, const
-    hexapod_6x6r_real *q0, const hexapod_6x6r_real *V, hexapod_6x6r_real *momentum)
+int hexapod_6x6r_momentum(const prepared *model, const real *X, const real *q0, const real *V,
+    real *momentum)
 {
     int code;
     momentum_one(model, X, q0, V, momentum, &code);
     return code;
 }
 
-size_t hexapod_6x6r_momentum_batch(const hexapod_6x6r_model *model, size_t n, const
-    hexapod_6x6r_real *X, const hexapod_6x6r_real *q0, const hexapod_6x6r_real *V,
-    hexapod_6x6r_real *momentum, int *status)
+size_t hexapod_6x6r_momentum_batch(const prepared *model, size_t n, const real *X, const real *q0,
+    const real *V, real *momentum, int *status)
 {
-    size_t failed = 0, i = 0;
-    for (; LANES > 1 && i + LANES <= n; i += LANES) {
-        int codes[LANES];
-        momentum_lanes(model, X + NQ*i, q0 ? q0 + NJ*i : NULL, V + NV*i, momentum + NV*i, codes);
-        for (size_t k = 0; k < LANES; ++k) {
+    size_t failed = 0, w;
+    for (size_t i = 0; i < n; i += w) {
+        int codes[LANES] = {INVALID};
+        w = LANES > 1 && i + LANES <= n ? LANES : 1;
+        if (w > 1) {
+            momentum_lanes(model, X + NQ*i, q0 ? q0 + NJ*i : NULL, V + NV*i, momentum + NV*i, codes);
+        }
+        for (size_t k = 0; k < w; ++k) {
             if (codes[k] != OK) {
                 codes[k] = hexapod_6x6r_momentum(model, X + NQ*(i + k), q0 ? q0 + NJ*(i + k) : NULL, V + NV*(i +
                     k), momentum + NV*(i + k));
             }
         }
-        failed += record(codes, LANES, status ? status + i : NULL);
-    }
-    for (; i < n; ++i) {
-        const int code = hexapod_6x6r_momentum(model, X + NQ*i, q0 ? q0 + NJ*i : NULL, V + NV*i, momentum
-            + NV*i);
-        failed += record(&code, 1, status ? status + i : NULL);
+        failed += record(codes, w, status ? status + i : NULL);
     }
     return failed;
 }
 
-int hexapod_6x6r_joint_margins(const hexapod_6x6r_model *model, const hexapod_6x6r_real *X, const
-    hexapod_6x6r_real *q0, hexapod_6x6r_real *margins)
+int hexapod_6x6r_joint_margins(const prepared *model, const real *X, const real *q0, real
+    *margins)
 {
     int code;
     joint_margins_one(model, X, q0, margins, &code);
     return code;
 }
 
-size_t hexapod_6x6r_joint_margins_batch(const hexapod_6x6r_model *model, size_t n, const
-    hexapod_6x6r_real *X, const hexapod_6x6r_real *q0, hexapod_6x6r_real *margins, int *status)
+size_t hexapod_6x6r_joint_margins_batch(const prepared *model, size_t n, const real *X, const real
+    *q0, real *margins, int *status)
 {
-    size_t failed = 0, i = 0;
-    for (; LANES > 1 && i + LANES <= n; i += LANES) {
-        int codes[LANES];
-        joint_margins_lanes(model, X + NQ*i, q0 ? q0 + NJ*i : NULL, margins + NJ*i, codes);
-        for (size_t k = 0; k < LANES; ++k) {
+    size_t failed = 0, w;
+    for (size_t i = 0; i < n; i += w) {
+        int codes[LANES] = {INVALID};
+        w = LANES > 1 && i + LANES <= n ? LANES : 1;
+        if (w > 1) {
+            joint_margins_lanes(model, X + NQ*i, q0 ? q0 + NJ*i : NULL, margins + NJ*i, codes);
+        }
+        for (size_t k = 0; k < w; ++k) {
             if (codes[k] != OK) {
                 codes[k] = hexapod_6x6r_joint_margins(model, X + NQ*(i + k), q0 ? q0 + NJ*(i + k) : NULL, margins
                     + NJ*(i + k));
             }
         }
-        failed += record(codes, LANES, status ? status + i : NULL);
-    }
-    for (; i < n; ++i) {
-        const int code = hexapod_6x6r_joint_margins(model, X + NQ*i, q0 ? q0 + NJ*i : NULL, margins +
-            NJ*i);
-        failed += record(&code, 1, status ? status + i : NULL);
+        failed += record(codes, w, status ? status + i : NULL);
     }
     return failed;
 }
 
-int hexapod_6x6r_within_limits(const hexapod_6x6r_model *model, const hexapod_6x6r_real *X, const
-    hexapod_6x6r_real *q0, hexapod_6x6r_real *within)
+int hexapod_6x6r_within_limits(const prepared *model, const real *X, const real *q0, real *within)
 {
     int code;
     within_limits_one(model, X, q0, within, &code);
     return code;
 }
 
-size_t hexapod_6x6r_within_limits_batch(const hexapod_6x6r_model *model, size_t n, const
-    hexapod_6x6r_real *X, const hexapod_6x6r_real *q0, hexapod_6x6r_real *within, int *status)
+size_t hexapod_6x6r_within_limits_batch(const prepared *model, size_t n, const real *X, const real
+    *q0, real *within, int *status)
 {
-    size_t failed = 0, i = 0;
-    for (; LANES > 1 && i + LANES <= n; i += LANES) {
-        int codes[LANES];
-        within_limits_lanes(model, X + NQ*i, q0 ? q0 + NJ*i : NULL, within + i, codes);
-        for (size_t k = 0; k < LANES; ++k) {
+    size_t failed = 0, w;
+    for (size_t i = 0; i < n; i += w) {
+        int codes[LANES] = {INVALID};
+        w = LANES > 1 && i + LANES <= n ? LANES : 1;
+        if (w > 1) {
+            within_limits_lanes(model, X + NQ*i, q0 ? q0 + NJ*i : NULL, within + i, codes);
+        }
+        for (size_t k = 0; k < w; ++k) {
             if (codes[k] != OK) {
                 codes[k] = hexapod_6x6r_within_limits(model, X + NQ*(i + k), q0 ? q0 + NJ*(i + k) : NULL, within +
                     (i + k));
             }
         }
-        failed += record(codes, LANES, status ? status + i : NULL);
-    }
-    for (; i < n; ++i) {
-        const int code = hexapod_6x6r_within_limits(model, X + NQ*i, q0 ? q0 + NJ*i : NULL, within + i);
-        failed += record(&code, 1, status ? status + i : NULL);
+        failed += record(codes, w, status ? status + i : NULL);
     }
     return failed;
 }
 
-int hexapod_6x6r_actuator_positions(const hexapod_6x6r_model *model, const hexapod_6x6r_real *X,
-    const hexapod_6x6r_real *q0, hexapod_6x6r_real *q)
+int hexapod_6x6r_actuator_positions(const prepared *model, const real *X, const real *q0, real *q)
 {
     int code;
     actuator_positions_one(model, X, q0, q, &code);
     return code;
 }
 
-size_t hexapod_6x6r_actuator_positions_batch(const hexapod_6x6r_model *model, size_t n, const
-    hexapod_6x6r_real *X, const hexapod_6x6r_real *q0, hexapod_6x6r_real *q, int *status)
+size_t hexapod_6x6r_actuator_positions_batch(const prepared *model, size_t n, const real *X, const
+    real *q0, real *q, int *status)
 {
-    size_t failed = 0, i = 0;
-    for (; LANES > 1 && i + LANES <= n; i += LANES) {
-        int codes[LANES];
-        actuator_positions_lanes(model, X + NQ*i, q0 ? q0 + NJ*i : NULL, q + NU*i, codes);
-        for (size_t k = 0; k < LANES; ++k) {
+    size_t failed = 0, w;
+    for (size_t i = 0; i < n; i += w) {
+        int codes[LANES] = {INVALID};
+        w = LANES > 1 && i + LANES <= n ? LANES : 1;
+        if (w > 1) {
+            actuator_positions_lanes(model, X + NQ*i, q0 ? q0 + NJ*i : NULL, q + NU*i, codes);
+        }
+        for (size_t k = 0; k < w; ++k) {
             if (codes[k] != OK) {
                 codes[k] = hexapod_6x6r_actuator_positions(model, X + NQ*(i + k), q0 ? q0 + NJ*(i + k) : NULL, q +
                     NU*(i + k));
             }
         }
-        failed += record(codes, LANES, status ? status + i : NULL);
-    }
-    for (; i < n; ++i) {
-        const int code = hexapod_6x6r_actuator_positions(model, X + NQ*i, q0 ? q0 + NJ*i : NULL, q +
-            NU*i);
-        failed += record(&code, 1, status ? status + i : NULL);
+        failed += record(codes, w, status ? status + i : NULL);
     }
     return failed;
 }
 
-int hexapod_6x6r_actuator_rates(const hexapod_6x6r_model *model, const hexapod_6x6r_real *X, const
-    hexapod_6x6r_real *q0, const hexapod_6x6r_real *V, hexapod_6x6r_real *rates)
+int hexapod_6x6r_actuator_rates(const prepared *model, const real *X, const real *q0, const real
+    *V, real *rates)
 {
     int code;
     actuator_rates_one(model, X, q0, V, rates, &code);
     return code;
 }
 
-size_t hexapod_6x6r_actuator_rates_batch(const hexapod_6x6r_model *model, size_t n, const
-    hexapod_6x6r_real *X, const hexapod_6x6r_real *q0, const hexapod_6x6r_real *V,
-    hexapod_6x6r_real *rates, int *status)
+size_t hexapod_6x6r_actuator_rates_batch(const prepared *model, size_t n, const real *X, const
+    real *q0, const real *V, real *rates, int *status)
 {
-    size_t failed = 0, i = 0;
-    for (; LANES > 1 && i + LANES <= n; i += LANES) {
-        int codes[LANES];
-        actuator_rates_lanes(model, X + NQ*i, q0 ? q0 + NJ*i : NULL, V + NV*i, rates + NU*i, codes);
-        for (size_t k = 0; k < LANES; ++k) {
+    size_t failed = 0, w;
+    for (size_t i = 0; i < n; i += w) {
+        int codes[LANES] = {INVALID};
+        w = LANES > 1 && i + LANES <= n ? LANES : 1;
+        if (w > 1) {
+            actuator_rates_lanes(model, X + NQ*i, q0 ? q0 + NJ*i : NULL, V + NV*i, rates + NU*i, codes);
+        }
+        for (size_t k = 0; k < w; ++k) {
             if (codes[k] != OK) {
                 codes[k] = hexapod_6x6r_actuator_rates(model, X + NQ*(i + k), q0 ? q0 + NJ*(i + k) : NULL, V +
                     NV*(i + k), rates + NU*(i + k));
             }
         }
-        failed += record(codes, LANES, status ? status + i : NULL);
-    }
-    for (; i < n; ++i) {
-        const int code = hexapod_6x6r_actuator_rates(model, X + NQ*i, q0 ? q0 + NJ*i : NULL, V + NV*i,
-            rates + NU*i);
-        failed += record(&code, 1, status ? status + i : NULL);
+        failed += record(codes, w, status ? status + i : NULL);
     }
     return failed;
 }
 
-int hexapod_6x6r_actuator_accelerations(const hexapod_6x6r_model *model, const hexapod_6x6r_real
-    *X, const hexapod_6x6r_real *q0, const hexapod_6x6r_real *V, const hexapod_6x6r_real *A,
-    hexapod_6x6r_real *accelerations)
+int hexapod_6x6r_actuator_accelerations(const prepared *model, const real *X, const real *q0,
+    const real *V, const real *A, real *accelerations)
 {
     int code;
     actuator_accelerations_one(model, X, q0, V, A, accelerations, &code);
     return code;
 }
 
-size_t hexapod_6x6r_actuator_accelerations_batch(const hexapod_6x6r_model *model, size_t n, const
-    hexapod_6x6r_real *X, const hexapod_6x6r_real *q0, const hexapod_6x6r_real *V, const
-    hexapod_6x6r_real *A, hexapod_6x6r_real *accelerations, int *status)
+size_t hexapod_6x6r_actuator_accelerations_batch(const prepared *model, size_t n, const real *X,
+    const real *q0, const real *V, const real *A, real *accelerations, int *status)
 {
-    size_t failed = 0, i = 0;
-    for (; LANES > 1 && i + LANES <= n; i += LANES) {
-        int codes[LANES];
-        actuator_accelerations_lanes(model, X + NQ*i, q0 ? q0 + NJ*i : NULL, V + NV*i, A + NV*i,
-            accelerations + NU*i, codes);
-        for (size_t k = 0; k < LANES; ++k) {
+    size_t failed = 0, w;
+    for (size_t i = 0; i < n; i += w) {
+        int codes[LANES] = {INVALID};
+        w = LANES > 1 && i + LANES <= n ? LANES : 1;
+        if (w > 1) {
+            actuator_accelerations_lanes(model, X + NQ*i, q0 ? q0 + NJ*i : NULL, V + NV*i, A + NV*i,
+                accelerations + NU*i, codes);
+        }
+        for (size_t k = 0; k < w; ++k) {
             if (codes[k] != OK) {
                 codes[k] = hexapod_6x6r_actuator_accelerations(model, X + NQ*(i + k), q0 ? q0 + NJ*(i + k) : NULL,
                     V + NV*(i + k), A + NV*(i + k), accelerations + NU*(i + k));
             }
         }
-        failed += record(codes, LANES, status ? status + i : NULL);
-    }
-    for (; i < n; ++i) {
-        const int code = hexapod_6x6r_actuator_accelerations(model, X + NQ*i, q0 ? q0 + NJ*i : NULL, V +
-            NV*i, A + NV*i, accelerations + NU*i);
-        failed += record(&code, 1, status ? status + i : NULL);
+        failed += record(codes, w, status ? status + i : NULL);
     }
     return failed;
 }
 
-int hexapod_6x6r_power(const hexapod_6x6r_model *model, const hexapod_6x6r_real *X, const
-    hexapod_6x6r_real *q0, const hexapod_6x6r_real *V, const hexapod_6x6r_real *tau,
-    hexapod_6x6r_real *power)
+int hexapod_6x6r_power(const prepared *model, const real *X, const real *q0, const real *V, const
+    real *tau, real *power)
 {
     int code;
     power_one(model, X, q0, V, tau, power, &code);
     return code;
 }
 
-size_t hexapod_6x6r_power_batch(const hexapod_6x6r_model *model, size_t n, const hexapod_6x6r_real
-    *X, const hexapod_6x6r_real *q0, const hexapod_6x6r_real *V, const hexapod_6x6r_real *tau,
-    hexapod_6x6r_real *power, int *status)
+size_t hexapod_6x6r_power_batch(const prepared *model, size_t n, const real *X, const real *q0,
+    const real *V, const real *tau, real *power, int *status)
 {
-    size_t failed = 0, i = 0;
-    for (; LANES > 1 && i + LANES <= n; i += LANES) {
-        int codes[LANES];
-        power_lanes(model, X + NQ*i, q0 ? q0 + NJ*i : NULL, V + NV*i, tau + NU*i, power + i, codes);
-        for (size_t k = 0; k < LANES; ++k) {
+    size_t failed = 0, w;
+    for (size_t i = 0; i < n; i += w) {
+        int codes[LANES] = {INVALID};
+        w = LANES > 1 && i + LANES <= n ? LANES : 1;
+        if (w > 1) {
+            power_lanes(model, X + NQ*i, q0 ? q0 + NJ*i : NULL, V + NV*i, tau + NU*i, power + i, codes);
+        }
+        for (size_t k = 0; k < w; ++k) {
             if (codes[k] != OK) {
                 codes[k] = hexapod_6x6r_power(model, X + NQ*(i + k), q0 ? q0 + NJ*(i + k) : NULL, V + NV*(i + k),
                     tau + NU*(i + k), power + (i + k));
             }
         }
-        failed += record(codes, LANES, status ? status + i : NULL);
-    }
-    for (; i < n; ++i) {
-        const int code = hexapod_6x6r_power(model, X + NQ*i, q0 ? q0 + NJ*i : NULL, V + NV*i, tau + NU*i,
-            power + i);
-        failed += record(&code, 1, status ? status + i : NULL);
+        failed += record(codes, w, status ? status + i : NULL);
     }
     return failed;
 }
 
-int hexapod_6x6r_rotation(const hexapod_6x6r_real *X, hexapod_6x6r_real *R)
+int hexapod_6x6r_rotation(const real *X, real *R)
 {
     int code;
     rotation_one(X, R, &code);
     return code;
 }
 
-size_t hexapod_6x6r_rotation_batch(size_t n, const hexapod_6x6r_real *X, hexapod_6x6r_real *R, int
-    *status)
+size_t hexapod_6x6r_rotation_batch(size_t n, const real *X, real *R, int *status)
 {
-    size_t failed = 0, i = 0;
-    for (; i < n; ++i) {
+    size_t failed = 0;
+    for (size_t i = 0; i < n; ++i) {
         const int code = hexapod_6x6r_rotation(X + NQ*i, R + 9*i);
         failed += record(&code, 1, status ? status + i : NULL);
     }
     return failed;
 }
 
-int hexapod_6x6r_pose(const hexapod_6x6r_real *t, const hexapod_6x6r_real *R, hexapod_6x6r_real
-    *X)
+int hexapod_6x6r_pose(const real *t, const real *R, real *X)
 {
     int code;
     pose_one(t, R, X, &code);
     return code;
 }
 
-size_t hexapod_6x6r_pose_batch(size_t n, const hexapod_6x6r_real *t, const hexapod_6x6r_real *R,
-    hexapod_6x6r_real *X, int *status)
+size_t hexapod_6x6r_pose_batch(size_t n, const real *t, const real *R, real *X, int *status)
 {
-    size_t failed = 0, i = 0;
-    for (; i < n; ++i) {
+    size_t failed = 0;
+    for (size_t i = 0; i < n; ++i) {
         const int code = hexapod_6x6r_pose(t + 3*i, R + 9*i, X + NQ*i);
         failed += record(&code, 1, status ? status + i : NULL);
     }
     return failed;
 }
 
-int hexapod_6x6r_X_dot(const hexapod_6x6r_real *X, const hexapod_6x6r_real *V, hexapod_6x6r_real
-    *X_dot)
+int hexapod_6x6r_X_dot(const real *X, const real *V, real *X_dot)
 {
     int code;
     X_dot_one(X, V, X_dot, &code);
     return code;
 }
 
-size_t hexapod_6x6r_X_dot_batch(size_t n, const hexapod_6x6r_real *X, const hexapod_6x6r_real *V,
-    hexapod_6x6r_real *X_dot, int *status)
+size_t hexapod_6x6r_X_dot_batch(size_t n, const real *X, const real *V, real *X_dot, int *status)
 {
-    size_t failed = 0, i = 0;
-    for (; i < n; ++i) {
+    size_t failed = 0;
+    for (size_t i = 0; i < n; ++i) {
         const int code = hexapod_6x6r_X_dot(X + NQ*i, V + NV*i, X_dot + NQ*i);
         failed += record(&code, 1, status ? status + i : NULL);
     }
     return failed;
 }
 
-int hexapod_6x6r_pose_from_rpy(const hexapod_6x6r_real *t, const hexapod_6x6r_real *rpy,
-    hexapod_6x6r_real *X)
+int hexapod_6x6r_pose_from_rpy(const real *t, const real *rpy, real *X)
 {
     int code;
     pose_from_rpy_one(t, rpy, X, &code);
     return code;
 }
 
-size_t hexapod_6x6r_pose_from_rpy_batch(size_t n, const hexapod_6x6r_real *t, const
-    hexapod_6x6r_real *rpy, hexapod_6x6r_real *X, int *status)
+size_t hexapod_6x6r_pose_from_rpy_batch(size_t n, const real *t, const real *rpy, real *X, int
+    *status)
 {
-    size_t failed = 0, i = 0;
-    for (; i < n; ++i) {
+    size_t failed = 0;
+    for (size_t i = 0; i < n; ++i) {
         const int code = hexapod_6x6r_pose_from_rpy(t + 3*i, rpy + 3*i, X + NQ*i);
         failed += record(&code, 1, status ? status + i : NULL);
     }
     return failed;
 }
 
-int hexapod_6x6r_retract(const hexapod_6x6r_real *X, const hexapod_6x6r_real *step,
-    hexapod_6x6r_real *X_moved)
+int hexapod_6x6r_retract(const real *X, const real *step, real *X_moved)
 {
     int code;
     retract_one(X, step, X_moved, &code);
     return code;
 }
 
-size_t hexapod_6x6r_retract_batch(size_t n, const hexapod_6x6r_real *X, const hexapod_6x6r_real
-    *step, hexapod_6x6r_real *X_moved, int *status)
+size_t hexapod_6x6r_retract_batch(size_t n, const real *X, const real *step, real *X_moved, int
+    *status)
 {
-    size_t failed = 0, i = 0;
-    for (; i < n; ++i) {
+    size_t failed = 0;
+    for (size_t i = 0; i < n; ++i) {
         const int code = hexapod_6x6r_retract(X + NQ*i, step + NV*i, X_moved + NQ*i);
         failed += record(&code, 1, status ? status + i : NULL);
     }
     return failed;
 }
 
-int hexapod_6x6r_difference(const hexapod_6x6r_real *X0, const hexapod_6x6r_real *X1,
-    hexapod_6x6r_real *step)
+int hexapod_6x6r_difference(const real *X0, const real *X1, real *step)
 {
     int code;
     difference_one(X0, X1, step, &code);
     return code;
 }
 
-size_t hexapod_6x6r_difference_batch(size_t n, const hexapod_6x6r_real *X0, const
-    hexapod_6x6r_real *X1, hexapod_6x6r_real *step, int *status)
+size_t hexapod_6x6r_difference_batch(size_t n, const real *X0, const real *X1, real *step, int
+    *status)
 {
-    size_t failed = 0, i = 0;
-    for (; i < n; ++i) {
+    size_t failed = 0;
+    for (size_t i = 0; i < n; ++i) {
         const int code = hexapod_6x6r_difference(X0 + NQ*i, X1 + NQ*i, step + NV*i);
         failed += record(&code, 1, status ? status + i : NULL);
     }
     return failed;
 }
 
-int hexapod_6x6r_interpolate(const hexapod_6x6r_real *X0, const hexapod_6x6r_real *X1, const
-    hexapod_6x6r_real *s, hexapod_6x6r_real *X)
+int hexapod_6x6r_interpolate(const real *X0, const real *X1, const real *s, real *X)
 {
     int code;
     interpolate_one(X0, X1, s, X, &code);
     return code;
 }
 
-size_t hexapod_6x6r_interpolate_batch(size_t n, const hexapod_6x6r_real *X0, const
-    hexapod_6x6r_real *X1, const hexapod_6x6r_real *s, hexapod_6x6r_real *X, int *status)
+size_t hexapod_6x6r_interpolate_batch(size_t n, const real *X0, const real *X1, const real *s,
+    real *X, int *status)
 {
-    size_t failed = 0, i = 0;
-    for (; i < n; ++i) {
+    size_t failed = 0;
+    for (size_t i = 0; i < n; ++i) {
         const int code = hexapod_6x6r_interpolate(X0 + NQ*i, X1 + NQ*i, s + i, X + NQ*i);
         failed += record(&code, 1, status ? status + i : NULL);
     }

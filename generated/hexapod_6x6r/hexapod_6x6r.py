@@ -61,6 +61,7 @@ __all__ = [
     "joint_margins",
     "joint_rates",
     "leg_reactions",
+    "manipulability",
     "momentum",
     "null_space",
     "pose",
@@ -68,6 +69,7 @@ __all__ = [
     "power",
     "retract",
     "rotation",
+    "singularity_distance",
     "within_limits",
 ]
 
@@ -924,9 +926,9 @@ def _prepare(p):
     gravity_x*six_r_base_frame_xx + gravity_y*six_r_base_frame_yx + gravity_z*six_r_base_frame_zx
     )
     # (six_r-Jc_4) inertia tensor of the links from 4 outwards about joint 4, that of the last link about the connection point
-    six_r_Jc_4_in_axes4_xx = six_r_J_4_in_spec4_zz + six_r_J_5_in_spec5_zz
+    six_r_Jc_4_in_axes4_yy = six_r_J_4_in_spec4_zz + six_r_J_5_in_spec5_zz
     # (six_r-hc_3) first moment of the links from 3 outwards
-    six_r_hc_3_in_axes3_x = (
+    six_r_hc_3_in_axes3_y = (
     six_r_h_3_in_spec3_x + six_r_h_4_in_spec4_x + six_r_joint4_offset_x*six_r_link4_mass
     )
     # (six_r-Jc_3) inertia tensor of the links from 3 outwards about joint 3, that of the last link about the connection point
@@ -937,38 +939,30 @@ def _prepare(p):
     six_r_Jc_3_t_3 = 2.0*six_r_Jc_3_t_2
     # (six_r-Jc_2) inertia tensor of the links from 2 outwards about joint 2, that of the last link about the connection point
     six_r_Jc_2_t = six_r_joint3_offset_x*(six_r_Jc_3_t + 0.5*six_r_link3_mass)
-    # (six_r-trace_J_5) half the trace of that inertia tensor
-    six_r_trace_J_5 = (
-    0.5*six_r_J_5_in_spec5_xx + 0.5*six_r_J_5_in_spec5_yy + 0.5*six_r_J_5_in_spec5_zz
-    )
     # (six_r-Sigma_5) second moment of mass of the links that turn with link 5
-    six_r_Sigma_5_in_axes5_xx = six_r_trace_J_5 - six_r_J_5_in_spec5_xx
-    six_r_Sigma_5_in_axes5_yy = six_r_trace_J_5 - six_r_J_5_in_spec5_yy
-    six_r_Sigma_5_in_axes5_zz = six_r_trace_J_5 - six_r_J_5_in_spec5_zz
-    # (six_r-trace_J_4) half the trace of that inertia tensor
-    six_r_trace_J_4 = (
-    0.5*six_r_J_4_in_spec4_xx + 0.5*six_r_J_4_in_spec4_yy + 0.5*six_r_J_4_in_spec4_zz
-    )
+    six_r_Sigma_5_t = six_r_J_5_in_spec5_xx + six_r_J_5_in_spec5_yy + six_r_J_5_in_spec5_zz
+    six_r_Sigma_5_t_2 = 0.5*six_r_Sigma_5_t
+    six_r_Sigma_5_in_axes5_xx = six_r_Sigma_5_t_2 - six_r_J_5_in_spec5_xx
+    six_r_Sigma_5_in_axes5_yy = six_r_Sigma_5_t_2 - six_r_J_5_in_spec5_yy
+    six_r_Sigma_5_in_axes5_zz = six_r_Sigma_5_t_2 - six_r_J_5_in_spec5_zz
     # (six_r-Sigma_4) second moment of mass of the links that turn with link 4
-    six_r_Sigma_4_in_axes4_xx = six_r_trace_J_4 - six_r_J_4_in_spec4_zz
-    six_r_Sigma_4_in_axes4_yy = six_r_trace_J_4 - six_r_J_4_in_spec4_yy
-    six_r_Sigma_4_in_axes4_zz = six_r_trace_J_4 - six_r_J_4_in_spec4_xx
-    # (six_r-trace_J_3) half the trace of that inertia tensor
-    six_r_trace_J_3 = (
-    0.5*six_r_J_3_in_spec3_xx + 0.5*six_r_J_3_in_spec3_yy + 0.5*six_r_J_3_in_spec3_zz
-    )
+    six_r_Sigma_4_t = six_r_J_4_in_spec4_xx + six_r_J_4_in_spec4_yy + six_r_J_4_in_spec4_zz
+    six_r_Sigma_4_t_2 = 0.5*six_r_Sigma_4_t
+    six_r_Sigma_4_in_axes4_xx = six_r_Sigma_4_t_2 - six_r_J_4_in_spec4_yy
+    six_r_Sigma_4_in_axes4_yy = six_r_Sigma_4_t_2 - six_r_J_4_in_spec4_zz
+    six_r_Sigma_4_in_axes4_zz = six_r_Sigma_4_t_2 - six_r_J_4_in_spec4_xx
     # (six_r-Sigma_3) second moment of mass of the links that turn with link 3
-    six_r_Sigma_3_in_axes3_xx = six_r_trace_J_3 - six_r_J_3_in_spec3_xx
-    six_r_Sigma_3_in_axes3_yy = six_r_trace_J_3 - six_r_J_3_in_spec3_yy
-    six_r_Sigma_3_in_axes3_zz = six_r_trace_J_3 - six_r_J_3_in_spec3_zz
-    # (six_r-trace_J_2) half the trace of that inertia tensor
-    six_r_trace_J_2 = (
-    0.5*six_r_J_2_in_spec2_xx + 0.5*six_r_J_2_in_spec2_yy + 0.5*six_r_J_2_in_spec2_zz
-    )
+    six_r_Sigma_3_t = six_r_J_3_in_spec3_xx + six_r_J_3_in_spec3_yy + six_r_J_3_in_spec3_zz
+    six_r_Sigma_3_t_2 = 0.5*six_r_Sigma_3_t
+    six_r_Sigma_3_in_axes3_xx = six_r_Sigma_3_t_2 - six_r_J_3_in_spec3_yy
+    six_r_Sigma_3_in_axes3_yy = six_r_Sigma_3_t_2 - six_r_J_3_in_spec3_xx
+    six_r_Sigma_3_in_axes3_zz = six_r_Sigma_3_t_2 - six_r_J_3_in_spec3_zz
     # (six_r-Sigma_2) second moment of mass of the links that turn with link 2
-    six_r_Sigma_2_in_axes2_xx = six_r_trace_J_2 - six_r_J_2_in_spec2_xx
-    six_r_Sigma_2_in_axes2_yy = six_r_trace_J_2 - six_r_J_2_in_spec2_yy
-    six_r_Sigma_2_in_axes2_zz = six_r_trace_J_2 - six_r_J_2_in_spec2_zz
+    six_r_Sigma_2_t = six_r_J_2_in_spec2_xx + six_r_J_2_in_spec2_yy + six_r_J_2_in_spec2_zz
+    six_r_Sigma_2_t_2 = 0.5*six_r_Sigma_2_t
+    six_r_Sigma_2_in_axes2_xx = six_r_Sigma_2_t_2 - six_r_J_2_in_spec2_xx
+    six_r_Sigma_2_in_axes2_yy = six_r_Sigma_2_t_2 - six_r_J_2_in_spec2_yy
+    six_r_Sigma_2_in_axes2_zz = six_r_Sigma_2_t_2 - six_r_J_2_in_spec2_zz
     # (h_star) first moment about the platform origin
     six_r_h_star_t = six_r_link5_mass*six_r_platform_point_x
     six_r_h_star_t_2 = six_r_link5_mass*six_r_platform_point_y
@@ -1054,7 +1048,7 @@ def _prepare(p):
                     six_r_J_4_in_spec4_xz, six_r_J_4_in_spec4_yy, six_r_J_4_in_spec4_yz,
                     six_r_J_5_in_spec5_xx, six_r_J_5_in_spec5_xy, six_r_J_5_in_spec5_xz,
                     six_r_J_5_in_spec5_yy, six_r_J_5_in_spec5_yz, six_r_J_5_in_spec5_zz,
-                    six_r_Jc_2_t, six_r_Jc_3_t_2, six_r_Jc_3_t_3, six_r_Jc_4_in_axes4_xx,
+                    six_r_Jc_2_t, six_r_Jc_3_t_2, six_r_Jc_3_t_3, six_r_Jc_4_in_axes4_yy,
                     six_r_Sigma_2_in_axes2_xx, six_r_Sigma_2_in_axes2_yy,
                     six_r_Sigma_2_in_axes2_zz, six_r_Sigma_3_in_axes3_xx,
                     six_r_Sigma_3_in_axes3_yy, six_r_Sigma_3_in_axes3_zz,
@@ -1069,7 +1063,7 @@ def _prepare(p):
                     six_r_h_2_in_spec2_z, six_r_h_3_in_spec3_x, six_r_h_3_in_spec3_y,
                     six_r_h_3_in_spec3_z, six_r_h_4_in_spec4_x, six_r_h_4_in_spec4_y,
                     six_r_h_4_in_spec4_z, six_r_h_5_in_spec5_x, six_r_h_5_in_spec5_y,
-                    six_r_h_5_in_spec5_z, six_r_hc_3_in_axes3_x, six_r_joint2_offset_x,
+                    six_r_h_5_in_spec5_z, six_r_hc_3_in_axes3_y, six_r_joint2_offset_x,
                     six_r_joint3_offset_x, six_r_joint4_offset_x, six_r_joint5_offset_x,
                     six_r_link3_mass, six_r_link4_mass, six_r_platform_joint_axis_platform_x,
                     six_r_platform_joint_axis_platform_y, six_r_platform_joint_axis_platform_z,
@@ -1092,13 +1086,13 @@ def _prepare(p):
                     six_r_J_4_in_spec4_xz, six_r_J_4_in_spec4_yy, six_r_J_4_in_spec4_yz,
                     six_r_J_5_in_spec5_xx, six_r_J_5_in_spec5_xy, six_r_J_5_in_spec5_xz,
                     six_r_J_5_in_spec5_yy, six_r_J_5_in_spec5_yz, six_r_J_5_in_spec5_zz,
-                    six_r_Jc_2_t, six_r_Jc_3_t_2, six_r_Jc_3_t_3, six_r_Jc_4_in_axes4_xx,
+                    six_r_Jc_2_t, six_r_Jc_3_t_2, six_r_Jc_3_t_3, six_r_Jc_4_in_axes4_yy,
                     six_r_base_frame_xx, six_r_base_frame_xy, six_r_base_frame_xz,
                     six_r_base_frame_yx, six_r_base_frame_yy, six_r_base_frame_yz,
                     six_r_base_frame_zx, six_r_base_frame_zy, six_r_base_frame_zz,
                     six_r_h_3_in_spec3_y, six_r_h_3_in_spec3_z, six_r_h_4_in_spec4_y,
                     six_r_h_4_in_spec4_z, six_r_h_5_in_spec5_x, six_r_h_5_in_spec5_y,
-                    six_r_h_5_in_spec5_z, six_r_hc_3_in_axes3_x, six_r_joint2_offset_x,
+                    six_r_h_5_in_spec5_z, six_r_hc_3_in_axes3_y, six_r_joint2_offset_x,
                     six_r_joint3_offset_x, six_r_joint4_offset_x, six_r_joint5_offset_x,
                     six_r_platform_joint_axis_platform_x, six_r_platform_joint_axis_platform_y,
                     six_r_platform_joint_axis_platform_z, six_r_platform_joint_offset_x,
@@ -1326,6 +1320,24 @@ def _constants(p, name):
     return p._cache[name]
 
 
+class _Vector(list):
+    """A vector, or a matrix row by row, of a single state."""
+
+    def __add__(self, other):
+        return _Vector([a + b for a, b in zip(self, other)])
+
+    def __sub__(self, other):
+        return _Vector([a - b for a, b in zip(self, other)])
+
+    def __neg__(self):
+        return _Vector([-a for a in self])
+
+
+def _are_finite(rows):
+    """Whether lists of floats have finite entries alone."""
+    return math.isfinite(sum(map(sum, rows))) or all(all(map(math.isfinite, row)) for row in rows)
+
+
 class _Floats:
     """Functions of a state after another, in Python floats: the way for few states."""
 
@@ -1355,11 +1367,32 @@ class _Floats:
         """Lists that a function gives at a state."""
         try:
             ok, arrays = function(self, *given)
-        except (ZeroDivisionError, OverflowError, ValueError):
+        except (ArithmeticError, ValueError):
             ok = False
-        if ok and all(all(map(math.isfinite, array)) for array in arrays):
+        if ok and _are_finite(arrays):
             return arrays
         return [[np.nan] * math.prod(_SHAPES[n]) for n in names]
+
+    def solved(self, order, a, b):
+        """Solutions, straight through; and which are beyond doubt."""
+        sure, x = np.zeros(self.states, dtype=bool), np.full(b.shape, np.nan)
+        for k, given in enumerate(zip(a.T.tolist(), b.T.tolist())):
+            try:
+                sure[k], (x[:, k],) = order(self, *given)
+            except ZeroDivisionError:
+                pass
+        return sure, x
+
+
+class _Single(_Floats):
+    """A single state in lists of floats throughout."""
+
+    def run(self, function, names, *vectors):
+        """Arrays of a function, row by row; ArithmeticError or ValueError where the state is impossible."""
+        ok, arrays = function(self, *vectors)
+        if not (ok and _are_finite(arrays)):
+            raise ArithmeticError
+        return [_Vector(a) for a in arrays]
 
 
 class _Arrays:
@@ -1389,20 +1422,27 @@ class _Arrays:
     def zeros(self, name):
         return np.zeros((math.prod(_SHAPES[name]), self.states))
 
-    def computed(self, function, names, vectors):
-        """Flags and arrays (*shape, states) of a function."""
+    def computed(self, function, *vectors):
+        """Flags and arrays (entries, states) of a function."""
         if self.kept is None:
-            flags, arrays = function(self, *vectors)
-        else:
-            if self.done not in self.kept:
-                self.kept[self.done] = _Replay(self.p, function, [len(v) for v in vectors], self.states)
-            flags, arrays = self.kept[self.done].run(vectors)
-            self.done += 1
-        return flags, [a.reshape(*_SHAPES[n], self.states) for a, n in zip(arrays, names)]
+            return function(self, *vectors)
+        if self.done not in self.kept:
+            self.kept[self.done] = _Replay(self.p, function, [len(v) for v in vectors], self.states)
+        self.done += 1
+        return self.kept[self.done - 1].run(vectors)
+
+    def shaped(self, names, arrays):
+        return [a.reshape(*_SHAPES[n], self.states) for a, n in zip(arrays, names)]
+
+    def solved(self, order, a, b):
+        """Solutions, straight through; and which are beyond doubt."""
+        sure, (x,) = self.computed(order, a, b)
+        return sure, np.array(x)
 
     def run(self, function, names, *vectors):
         """Arrays (*shape, states) of a function; NaN where the state is impossible."""
-        ok, arrays = self.computed(function, names, vectors)
+        ok, arrays = self.computed(function, *vectors)
+        arrays = self.shaped(names, arrays)
         ok = np.logical_and(ok, _finite(arrays, self.states))
         if not np.all(ok):
             for a in arrays:
@@ -1419,10 +1459,10 @@ class _Judged(_Arrays):
 
     def run(self, function, names, *vectors):
         """Arrays (*shape, states) of a function, also where they are nonsense."""
-        (valid, reached, clear), arrays = self.computed(function, names, vectors)
+        (valid, reached, clear), arrays = self.computed(function, *vectors)
         for code, good in ((3, valid), (1, reached), (2, clear)):
             self.failed[code] |= np.logical_not(good)
-        return arrays
+        return self.shaped(names, arrays)
 
     def closed(self, q):
         """q, noting where the iteration has not converged."""
@@ -1434,26 +1474,90 @@ class _Judged(_Arrays):
         return np.select(list(self.failed.values()), list(self.failed), np.where(possible, 0, 3))
 
 
+_IN_ONE = {}  # by function
+
+
+def _in_one(function):
+    """A function that tells whether a state is possible, of one that tells why not."""
+
+    def run(m, *vectors):
+        (valid, reached, clear), arrays = function(m, *vectors)
+        return valid & reached & clear, arrays
+
+    return _IN_ONE.setdefault(function, run)
+
+
 def _mode(p, states, kept=None):
     """The faster way for so many states."""
     return (_Floats if 0 < states <= _FEW else _Arrays)(p, states, kept)
 
 
-def _call(function, steps, p, *arguments, mode=_mode, unbounded=False):
+def _call(function, steps, p, *arguments, mode=_mode, unbounded=False, plain=()):
     """What the steps give at arguments (name, value, shape of a state, default, rule).
 
-    Where that may be infinite only NaN makes a state impossible.
+    Where that may be infinite only NaN makes a state impossible.  `plain` has the shapes of results
+    where a single state needs no arrays.
     """
+    p, read = _given(p), [a[-1] != "unused" for a in arguments]
+    lists = plain and _lists(arguments)
+    if lists:
+        found = _state(_Single(p, 1), steps, lists, read)
+        results = [_result(a, shape) for a, shape in zip(found or plain, plain)]
+        return results[0] if len(results) == 1 else tuple(results)
     given = [_argument(function, *a) for a in arguments]
     shapes = [a[2] for a in arguments]
     leads = {a[0]: v.shape[: v.ndim - len(a[2])] for a, v in zip(arguments, given)}
-    lead, p = _lead(leads), _given(p)
-    read = [a[4:] != ("unused",) for a in arguments]
-    if lead or mode is _Judged:
+    lead = _lead(leads)
+    if plain and 0 < math.prod(lead) <= _FEW:
+        results = _few(steps, p, lead, given, shapes, read, plain)
+    elif lead or mode is _Judged:
         results = _many(steps, p, lead, given, shapes, read, mode, unbounded)
     else:
         results = _one(steps, p, given, shapes, read, unbounded)
     return results[0] if len(results) == 1 else tuple(results)
+
+
+def _lists(arguments):
+    """Arguments of a single state as lists, where they are such arrays as they mostly are."""
+    found = []
+    for row in arguments:
+        value, shape = row[1:3]
+        if type(value) is np.ndarray:
+            if value.shape != shape or value.dtype is not _REAL or row[-1] == "positive":
+                return None
+            found.append(_Vector(value.tolist()))
+        elif value is None and len(row) > 3 and row[3] is not None:
+            found.append(_Vector(row[3] if isinstance(row[3], tuple) else [row[3]] * shape[0]))
+        else:
+            return None
+    return found
+
+
+def _state(m, steps, given, read):
+    """Lists that the steps give at a state; None where it is impossible."""
+    try:
+        found = steps(m, *given)
+    except (ArithmeticError, ValueError):
+        return None
+    return found if _are_finite(list(compress(given, read))) and _are_finite(found) else None
+
+
+def _result(found, shape):
+    """The array of a list; of an impossible state, for which its shape is given, NaN."""
+    if found is shape:
+        return np.full(shape, np.nan)
+    return np.array(found) if len(shape) == 1 else np.array(found).reshape(shape)
+
+
+def _few(steps, p, lead, given, shapes, read, plain):
+    """Results at a few states, one after another."""
+    m, rows = _Single(p, 1), []
+    for v, shape in zip(given, shapes):
+        flat = np.broadcast_to(v, lead + shape).reshape(math.prod(lead), -1)
+        rows.append(map(_Vector, flat.tolist()))
+    impossible = [[np.nan] * math.prod(shape) for shape in plain]
+    found = [_state(m, steps, state, read) or impossible for state in zip(*rows)]
+    return [np.array(a).reshape(lead + shape) for a, shape in zip(zip(*found), plain)]
 
 
 def _one(steps, p, given, shapes, read, unbounded):
@@ -1472,7 +1576,11 @@ def _many(steps, p, lead, given, shapes, read, mode, unbounded):
     """Results at many states, block by block; the last block begins where it is as long as the others."""
     count = math.prod(lead)
     size, kept = min(count, _BLOCK), {} if count >= _MANY else None
-    flat = [np.broadcast_to(v, lead + s).reshape(count, *s) for v, s in zip(given, shapes)]
+    # one value for all states stands for itself
+    flat = [
+        np.broadcast_to(v, lead + s).reshape(count, *s) if v.ndim > len(s) else v
+        for v, s in zip(given, shapes)
+    ]
     possible, status, outputs = np.ones(count, dtype=bool), np.zeros(count, dtype=int), []
     if count > size:
         # Never touched, freed at once: the C library, which learns from it, then keeps the memory
@@ -1481,7 +1589,7 @@ def _many(steps, p, lead, given, shapes, read, mode, unbounded):
     with np.errstate(all="ignore"):
         for stop in (*range(size, count, max(size, 1)), count):
             block = slice(stop - size, stop)
-            states = [_states_last(v[block]) for v in flat]
+            states = [_states_last(v, s, block) for v, s in zip(flat, shapes)]
             m, good = mode(p, size, kept), possible[block]
             found = steps(m, *states)
             if not outputs:
@@ -1501,15 +1609,17 @@ def _many(steps, p, lead, given, shapes, read, mode, unbounded):
     return [a.reshape(lead + a.shape[1:])[()] for a in outputs]
 
 
-def _states_last(a):
-    """A contiguous array (*shape, states) of one (states, *shape)."""
-    return np.ascontiguousarray(a.transpose(*range(1, a.ndim), 0))
+def _states_last(a, shape, block):
+    """An array (*shape, states) of a block of one (states, *shape), or of a value for all."""
+    if a.ndim == len(shape):
+        return np.broadcast_to(a[..., None], (*shape, block.stop - block.start))
+    return np.ascontiguousarray(a[block].transpose(*range(1, a.ndim), 0))
 
 
 def _finite(arrays, states):
     """In which states all entries of arrays (*shape, states) are finite."""
     flat = [a.reshape(math.prod(a.shape[:-1]), states) for a in arrays]
-    good = np.isfinite(sum(np.add.reduce(a, axis=0) for a in flat))
+    good = np.isfinite(sum(np.einsum("es->s", a) for a in flat))
     if not np.all(good):  # or the sum is too large
         good = np.logical_and.reduce([np.isfinite(a).all(axis=0) for a in flat])
     return good
@@ -1618,6 +1728,8 @@ class _Record:
 
     def made(self, operation, *operands):
         """The result of an operation."""
+        if operation in _WITHOUT and operands[0] is _WITHOUT[operation]:
+            return operands[1]
         numbers = [self.number(operand) for operand in operands]
         if all(self.kinds[n] == "one" for n in numbers):
             kind = "one"
@@ -1654,6 +1766,7 @@ class _Record:
         return counts
 
 
+_WITHOUT = {np.logical_and: True}  # first operands that change nothing
 _OF_FLAGS = {np.logical_and, np.greater, np.greater_equal}
 _RECORDS = {}  # by function
 
@@ -1665,11 +1778,12 @@ class _Replay:
         if function not in _RECORDS:
             _RECORDS[function] = _Record(p, function, sizes)
         r = _RECORDS[function]
-        made = {kind: _rows(n, states, bool if kind == "flag" else float) for kind, n in r.counts.items()}
-        made["one"] = [np.empty(()) for _ in range(r.counts["one"])]
-        made["out"] = _rows(sum(r.sizes), states)
-        self.inputs = [_rows(size, states) for size in sizes]
-        self.arrays = np.split(made["out"], np.cumsum(r.sizes)[:-1])
+        rows = _rows(r.counts["state"] + sum(r.sizes) + sum(sizes), states)
+        given, out, state = np.split(rows, np.cumsum((sum(sizes), sum(r.sizes))))
+        made = {"state": state, "out": out, "one": [np.empty(()) for _ in range(r.counts["one"])]}
+        made["flag"] = np.empty((r.counts["flag"], states), dtype=bool)
+        self.inputs = np.split(given, np.cumsum(sizes)[:-1])
+        self.arrays = np.split(out, np.cumsum(r.sizes)[:-1])
         at = {number: np.array(value) for value, number in r.literals.items()}
         for values, given in zip(r.inputs, self.inputs):
             at |= {v.number: row for v, row in zip(values, given)}
@@ -1691,9 +1805,26 @@ class _Replay:
         return self.flags, self.arrays
 
 
-def _rows(count, states, kind=float):
-    """Rows of so many states, a cache line apart from each other."""
-    return np.empty((count, states + 8), dtype=kind)[:, :states]
+def _rows(count, states):
+    """Rows of so many states in one piece, which the system keeps in a few large pages if it is told.
+
+    NumPy tells it of pieces from 4 MB on.  It makes operations a third faster.
+    """
+    row = states + 8  # a cache line further: rows do not compete for the same places of the cache
+    piece = np.empty(max(count * row, 2 * _PAGE) + _PAGE)
+    start = -(piece.ctypes.data // piece.itemsize) % _PAGE
+    return piece[start : start + count * row].reshape(count, row)[:, :states]
+
+
+_PAGE = (2 << 20) // 8  # numbers in a large page
+
+
+def _times(a, b):
+    """Products of matrices (m, n, states) with vectors (n, states)."""
+    if isinstance(b, _Vector):
+        rows = (a[k : k + len(b)] for k in range(0, len(a), len(b)))
+        return _Vector([sum([x * y for x, y in zip(row, b)]) for row in rows])
+    return np.einsum("ijs,js->is", a, b)
 
 
 def _with_forces(a, amounts, directions, legs):
@@ -1821,8 +1952,10 @@ _CLEARLY = 2.0  # rows change places only for a pivot that is larger by this fac
 
 def _solve(a, b):
     """x with a x = b, a (n, n, states), b (n, states): rows scaled, partial pivoting; NaN if singular."""
+    if isinstance(b, _Vector):
+        return _Vector(_solve_one([a[k : k + len(b)] for k in range(0, len(a), len(b))], b))
     n, states = b.shape
-    if 0 < states <= _FEW:
+    if 0 < states <= 8:
         systems = zip(a.transpose(2, 0, 1).tolist(), b.T.tolist())
         return np.array([_solve_one(*each) for each in systems]).T.reshape(n, states)
     size = np.max(np.abs(a), axis=1, initial=0.0)
@@ -1847,6 +1980,38 @@ def _solve(a, b):
         known = np.einsum("js,js->s", rows[k, k + 1 : n], x[k + 1 :])
         x[k] = (rows[k, n] - known) / rows[k, k]
     x[:, ~(good & np.isfinite(x).all(axis=0))] = np.nan
+    return x
+
+
+class _Order:
+    """How a system is solved near home.
+
+    Args:
+        solve: the function for so many equations.
+        rows: in the order of their pivots.
+        limits: of multiples, column by column, and of 1/pivot.
+    """
+
+    def __init__(self, solve, rows, limits):
+        self.solve, self.rows, self.limits = solve, rows, limits
+
+    def __call__(self, m, a, b):
+        """Solutions of a x = b, and whether these are beyond doubt."""
+        return self.solve(a, b, self.rows, self.limits)
+
+
+def _straight(m, a, b, order):
+    """The same, in the order of rows at home; with a choice of rows only where that is in doubt."""
+    if isinstance(b, _Vector):
+        try:
+            sure, (x,) = order(m, a, b)
+        except ZeroDivisionError:
+            sure = False
+        return _Vector(x) if sure else _solve(a, b)
+    sure, x = m.solved(order, a.reshape(-1, m.states), b)
+    at = np.flatnonzero(np.logical_not(sure))
+    if at.size:
+        x[:, at] = _solve(a[..., at], b[:, at])
     return x
 
 
@@ -1903,6 +2068,16 @@ def _singular_values(a):
     values = np.linalg.svd(a, compute_uv=False).T.copy()
     values[:, bad] = np.nan
     return values
+
+
+def _least_entry(a):
+    """The least entry."""
+    return np.min(a, axis=0)
+
+
+def _spread(a, n):
+    """Of the first n entries the product, and the last over the first, 0 where that is 0."""
+    return np.prod(a[:n], axis=0), np.where(a[0] == 0.0, 0.0, a[n - 1] / a[0])
 
 
 def _closed(m, X, q0):
@@ -2177,7 +2352,7 @@ def _run_dynamics(m, X, V, q):
             six_r_J_4_in_spec4_xz, six_r_J_4_in_spec4_yy, six_r_J_4_in_spec4_yz,
             six_r_J_5_in_spec5_xx, six_r_J_5_in_spec5_xy, six_r_J_5_in_spec5_xz,
             six_r_J_5_in_spec5_yy, six_r_J_5_in_spec5_yz, six_r_J_5_in_spec5_zz, six_r_Jc_2_t,
-            six_r_Jc_3_t_2, six_r_Jc_3_t_3, six_r_Jc_4_in_axes4_xx, six_r_Sigma_2_in_axes2_xx,
+            six_r_Jc_3_t_2, six_r_Jc_3_t_3, six_r_Jc_4_in_axes4_yy, six_r_Sigma_2_in_axes2_xx,
             six_r_Sigma_2_in_axes2_yy, six_r_Sigma_2_in_axes2_zz, six_r_Sigma_3_in_axes3_xx,
             six_r_Sigma_3_in_axes3_yy, six_r_Sigma_3_in_axes3_zz, six_r_Sigma_4_in_axes4_xx,
             six_r_Sigma_4_in_axes4_yy, six_r_Sigma_4_in_axes4_zz, six_r_Sigma_5_in_axes5_xx,
@@ -2189,7 +2364,7 @@ def _run_dynamics(m, X, V, q):
             six_r_h_3_in_spec3_x, six_r_h_3_in_spec3_y, six_r_h_3_in_spec3_z,
             six_r_h_4_in_spec4_x, six_r_h_4_in_spec4_y, six_r_h_4_in_spec4_z,
             six_r_h_5_in_spec5_x, six_r_h_5_in_spec5_y, six_r_h_5_in_spec5_z,
-            six_r_hc_3_in_axes3_x, six_r_joint2_offset_x, six_r_joint3_offset_x,
+            six_r_hc_3_in_axes3_y, six_r_joint2_offset_x, six_r_joint3_offset_x,
             six_r_joint4_offset_x, six_r_joint5_offset_x, six_r_link3_mass, six_r_link4_mass,
             six_r_platform_joint_axis_platform_x, six_r_platform_joint_axis_platform_y,
             six_r_platform_joint_axis_platform_z, six_r_platform_joint_offset_x,
@@ -2202,66 +2377,69 @@ def _run_dynamics(m, X, V, q):
         six_r_q_4 = q[[3, 8, 13, 18, 23, 28][leg]]
         six_r_q_5 = q[[4, 9, 14, 19, 24, 29][leg]]
         # (six_r-h_4) first moment of link 4 about the origin of link 4
-        six_r_h_4_t = -sin(six_r_q_4)
         six_r_e_2_in_axes5_z = cos(six_r_q_4)
-        six_r_h_4_in_axes3_y = (
-        six_r_e_2_in_axes5_z*six_r_h_4_in_spec4_y + six_r_h_4_in_spec4_z*six_r_h_4_t
+        six_r_h_4_t = sin(six_r_q_4)
+        six_r_h_4_in_spec2_z = (
+        six_r_e_2_in_axes5_z*six_r_h_4_in_spec4_z + six_r_h_4_in_spec4_y*six_r_h_4_t
+        )
+        six_r_h_4_in_spec3_y = (
+        six_r_e_2_in_axes5_z*six_r_h_4_in_spec4_y - six_r_h_4_in_spec4_z*six_r_h_4_t
         )
         # (six_r-J_5) inertia tensor of link 5 about the connection point
-        six_r_e_4_in_axes5_y = -sin(six_r_q_5)
         six_r_e_4_in_axes5_x = cos(six_r_q_5)
-        six_r_J_5_in_axes4_xz = (
-        six_r_J_5_in_spec5_xz*six_r_e_4_in_axes5_x + six_r_J_5_in_spec5_yz*six_r_e_4_in_axes5_y
+        six_r_J_5_t = sin(six_r_q_5)
+        six_r_J_5_in_axes4_yz = (
+        six_r_J_5_in_spec5_xz*six_r_e_4_in_axes5_x - six_r_J_5_in_spec5_yz*six_r_J_5_t
         )
         # (six_r-c_1) cosine of the angle of joint 1 from its reference direction
-        six_r_c_1 = -sin(six_r_q_1)
+        six_r_c_1 = cos(six_r_q_1)
         # (six_r-s_1) sine of the angle of joint 1 from its reference direction
-        six_r_s_1 = cos(six_r_q_1)
+        six_r_s_1 = sin(six_r_q_1)
         # (six_r-c_2) cosine of the angle of joint 2 from its reference direction
-        six_r_c_2 = -sin(six_r_q_2)
+        six_r_c_2 = cos(six_r_q_2)
         # (six_r-s_2) sine of the angle of joint 2 from its reference direction
-        six_r_s_2 = cos(six_r_q_2)
+        six_r_s_2 = sin(six_r_q_2)
         # (six_r-c_3) cosine of the angle of joint 3 from its reference direction
         six_r_c_3 = cos(six_r_q_3)
         # (six_r-s_3) sine of the angle of joint 3 from its reference direction
         six_r_s_3 = sin(six_r_q_3)
         # (six_r-S_dot) velocity of the connection point
-        six_r_e_2_in_axes5_y = -six_r_e_4_in_axes5_x*six_r_h_4_t
-        six_r_S_dot_t = -six_r_h_4_t*six_r_s_3
-        six_r_S_dot_t_2 = -six_r_c_3*six_r_h_4_t
-        six_r_S_dot_t_3 = six_r_S_dot_t*six_r_c_2 + six_r_S_dot_t_2*six_r_s_2
-        six_r_S_dot_t_4 = six_r_S_dot_t*six_r_s_2 - six_r_S_dot_t_2*six_r_c_2
-        six_r_S_dot_t_5 = six_r_c_1*six_r_e_2_in_axes5_z - six_r_S_dot_t_3*six_r_s_1
-        six_r_S_dot_t_6 = six_r_S_dot_t_3*six_r_c_1 + six_r_e_2_in_axes5_z*six_r_s_1
+        six_r_e_2_in_axes5_y = six_r_e_4_in_axes5_x*six_r_h_4_t
+        six_r_S_dot_t = six_r_c_3*six_r_h_4_t
+        six_r_S_dot_t_2 = six_r_h_4_t*six_r_s_3
+        six_r_S_dot_t_3 = six_r_S_dot_t*six_r_s_2 + six_r_S_dot_t_2*six_r_c_2
+        six_r_S_dot_t_4 = six_r_S_dot_t_2*six_r_s_2 - six_r_S_dot_t*six_r_c_2
+        six_r_S_dot_t_5 = six_r_S_dot_t_4*six_r_c_1 - six_r_e_2_in_axes5_z*six_r_s_1
+        six_r_S_dot_t_6 = six_r_S_dot_t_4*six_r_s_1 + six_r_c_1*six_r_e_2_in_axes5_z
         axis_z_six_r_axes5_x = (
-        six_r_S_dot_t_4*six_r_base_frame_xx + six_r_S_dot_t_5*six_r_base_frame_xy +
+        six_r_S_dot_t_3*six_r_base_frame_xx + six_r_S_dot_t_5*six_r_base_frame_xy +
             six_r_S_dot_t_6*six_r_base_frame_xz
         )
         axis_z_six_r_axes5_y = (
-        six_r_S_dot_t_4*six_r_base_frame_yx + six_r_S_dot_t_5*six_r_base_frame_yy +
+        six_r_S_dot_t_3*six_r_base_frame_yx + six_r_S_dot_t_5*six_r_base_frame_yy +
             six_r_S_dot_t_6*six_r_base_frame_yz
         )
         axis_z_six_r_axes5_z = (
-        six_r_S_dot_t_4*six_r_base_frame_zx + six_r_S_dot_t_5*six_r_base_frame_zy +
+        six_r_S_dot_t_3*six_r_base_frame_zx + six_r_S_dot_t_5*six_r_base_frame_zy +
             six_r_S_dot_t_6*six_r_base_frame_zz
         )
         six_r_S_dot_t_7 = six_r_e_2_in_axes5_z*six_r_e_4_in_axes5_x
-        six_r_S_dot_t_8 = six_r_c_3*six_r_e_4_in_axes5_y - six_r_S_dot_t_7*six_r_s_3
-        six_r_S_dot_t_9 = six_r_S_dot_t_7*six_r_c_3 + six_r_e_4_in_axes5_y*six_r_s_3
-        six_r_S_dot_t_10 = six_r_S_dot_t_8*six_r_c_2 - six_r_S_dot_t_9*six_r_s_2
-        six_r_S_dot_t_11 = six_r_S_dot_t_8*six_r_s_2 + six_r_S_dot_t_9*six_r_c_2
-        six_r_S_dot_t_12 = six_r_c_1*six_r_e_2_in_axes5_y - six_r_S_dot_t_10*six_r_s_1
-        six_r_S_dot_t_13 = six_r_S_dot_t_10*six_r_c_1 + six_r_e_2_in_axes5_y*six_r_s_1
+        six_r_S_dot_t_8 = six_r_J_5_t*six_r_s_3 - six_r_S_dot_t_7*six_r_c_3
+        six_r_S_dot_t_9 = -six_r_J_5_t*six_r_c_3 - six_r_S_dot_t_7*six_r_s_3
+        six_r_S_dot_t_10 = six_r_S_dot_t_8*six_r_s_2 + six_r_S_dot_t_9*six_r_c_2
+        six_r_S_dot_t_11 = six_r_S_dot_t_9*six_r_s_2 - six_r_S_dot_t_8*six_r_c_2
+        six_r_S_dot_t_12 = six_r_S_dot_t_11*six_r_c_1 - six_r_e_2_in_axes5_y*six_r_s_1
+        six_r_S_dot_t_13 = six_r_S_dot_t_11*six_r_s_1 + six_r_c_1*six_r_e_2_in_axes5_y
         axis_y_six_r_axes5_x = (
-        six_r_S_dot_t_11*six_r_base_frame_xx + six_r_S_dot_t_12*six_r_base_frame_xy +
+        six_r_S_dot_t_10*six_r_base_frame_xx + six_r_S_dot_t_12*six_r_base_frame_xy +
             six_r_S_dot_t_13*six_r_base_frame_xz
         )
         axis_y_six_r_axes5_y = (
-        six_r_S_dot_t_11*six_r_base_frame_yx + six_r_S_dot_t_12*six_r_base_frame_yy +
+        six_r_S_dot_t_10*six_r_base_frame_yx + six_r_S_dot_t_12*six_r_base_frame_yy +
             six_r_S_dot_t_13*six_r_base_frame_yz
         )
         axis_y_six_r_axes5_z = (
-        six_r_S_dot_t_11*six_r_base_frame_zx + six_r_S_dot_t_12*six_r_base_frame_zy +
+        six_r_S_dot_t_10*six_r_base_frame_zx + six_r_S_dot_t_12*six_r_base_frame_zy +
             six_r_S_dot_t_13*six_r_base_frame_zz
         )
         axis_x_six_r_axes5_x = (
@@ -2301,67 +2479,55 @@ def _run_dynamics(m, X, V, q):
             axis_z_six_r_axes5_z*six_r_S_dot_z
         )
         # (six_r-r_4) from joint 4 to the connection point, along the links
-        six_r_r_4_in_axes4_y = six_r_e_4_in_axes5_y*six_r_platform_joint_offset_x
+        six_r_r_4_in_axes4_x = six_r_J_5_t*six_r_platform_joint_offset_x
         six_r_r_4_in_axes4_z = (
         six_r_joint5_offset_x + six_r_e_4_in_axes5_x*six_r_platform_joint_offset_x
         )
-        six_r_r_4_in_axes3_y = -six_r_e_2_in_axes5_z*six_r_r_4_in_axes4_y
-        six_r_r_4_in_axes3_z = six_r_h_4_t*six_r_r_4_in_axes4_y
+        six_r_r_4_in_axes3_x = -six_r_e_2_in_axes5_z*six_r_r_4_in_axes4_x
+        six_r_r_4_in_axes3_z = six_r_h_4_t*six_r_r_4_in_axes4_x
         # (six_r-r_3) from joint 3 to the connection point, along the links
-        six_r_r_3_in_axes3_x = six_r_joint4_offset_x + six_r_r_4_in_axes4_z
-        six_r_r_3_in_axes2_y = six_r_c_3*six_r_r_4_in_axes3_y + six_r_r_3_in_axes3_x*six_r_s_3
-        six_r_r_3_t = six_r_e_2_in_axes5_z*six_r_r_4_in_axes3_z
-        six_r_r_3_t_2 = -six_r_h_4_t*six_r_r_4_in_axes3_z
-        six_r_r_3_in_axes5_z = six_r_r_3_t + six_r_h_4_t*six_r_r_4_in_axes3_y
-        six_r_r_3_t_3 = -six_r_r_3_t_2 - six_r_e_2_in_axes5_z*six_r_r_4_in_axes3_y
+        six_r_r_3_in_axes3_y = six_r_joint4_offset_x + six_r_r_4_in_axes4_z
+        six_r_r_3_in_axes2_y = six_r_r_3_in_axes3_y*six_r_s_3 - six_r_c_3*six_r_r_4_in_axes3_x
+        six_r_r_3_t = six_r_h_4_t*six_r_r_4_in_axes3_z
+        six_r_r_3_t_2 = six_r_e_2_in_axes5_z*six_r_r_4_in_axes3_z
+        six_r_r_3_t_3 = six_r_r_3_t - six_r_e_2_in_axes5_z*six_r_r_4_in_axes3_x
+        six_r_r_3_in_axes5_z = six_r_r_3_t_2 + six_r_h_4_t*six_r_r_4_in_axes3_x
         six_r_r_3_in_axes5_x = (
-        six_r_e_4_in_axes5_x*six_r_r_3_in_axes3_x + six_r_e_4_in_axes5_y*six_r_r_3_t_3
+        six_r_J_5_t*six_r_r_3_t_3 + six_r_e_4_in_axes5_x*six_r_r_3_in_axes3_y
         )
         six_r_r_3_in_axes5_y = (
-        six_r_e_4_in_axes5_y*six_r_r_3_in_axes3_x - six_r_e_4_in_axes5_x*six_r_r_3_t_3
+        six_r_e_4_in_axes5_x*six_r_r_3_t_3 - six_r_J_5_t*six_r_r_3_in_axes3_y
         )
         # (six_r-r_2) from joint 2 to the connection point, along the links
         six_r_r_2_in_axes2_x = (
-        six_r_joint3_offset_x + six_r_c_3*six_r_r_3_in_axes3_x - six_r_r_4_in_axes3_y*six_r_s_3
+        six_r_joint3_offset_x + six_r_c_3*six_r_r_3_in_axes3_y + six_r_r_4_in_axes3_x*six_r_s_3
         )
-        six_r_r_2_in_axes1_y = six_r_c_2*six_r_r_2_in_axes2_x - six_r_r_3_in_axes2_y*six_r_s_2
-        six_r_r_2_t = six_r_c_3*six_r_r_2_in_axes2_x + six_r_r_3_in_axes2_y*six_r_s_3
-        six_r_r_2_t_2 = six_r_c_3*six_r_r_3_in_axes2_y - six_r_r_2_in_axes2_x*six_r_s_3
-        six_r_r_2_in_axes5_z = six_r_r_3_t + six_r_h_4_t*six_r_r_2_t_2
-        six_r_r_2_t_3 = -six_r_r_3_t_2 - six_r_e_2_in_axes5_z*six_r_r_2_t_2
-        six_r_r_2_in_axes5_x = (
-        six_r_e_4_in_axes5_x*six_r_r_2_t + six_r_e_4_in_axes5_y*six_r_r_2_t_3
-        )
-        six_r_r_2_in_axes5_y = (
-        six_r_e_4_in_axes5_y*six_r_r_2_t - six_r_e_4_in_axes5_x*six_r_r_2_t_3
-        )
+        six_r_r_2_in_axes1_x = six_r_c_2*six_r_r_3_in_axes2_y + six_r_r_2_in_axes2_x*six_r_s_2
+        six_r_r_2_t = six_r_r_2_in_axes2_x*six_r_s_3 - six_r_c_3*six_r_r_3_in_axes2_y
+        six_r_r_2_t_2 = six_r_c_3*six_r_r_2_in_axes2_x + six_r_r_3_in_axes2_y*six_r_s_3
+        six_r_r_2_t_3 = six_r_r_3_t - six_r_e_2_in_axes5_z*six_r_r_2_t
+        six_r_r_2_in_axes5_z = six_r_r_3_t_2 + six_r_h_4_t*six_r_r_2_t
+        six_r_r_2_in_axes5_x = six_r_J_5_t*six_r_r_2_t_3 + six_r_e_4_in_axes5_x*six_r_r_2_t_2
+        six_r_r_2_in_axes5_y = six_r_e_4_in_axes5_x*six_r_r_2_t_3 - six_r_J_5_t*six_r_r_2_t_2
         # (six_r-r_1) from joint 1 to the connection point, along the links
         six_r_r_1_in_axes1_z = (
-        six_r_joint2_offset_x + six_r_c_2*six_r_r_3_in_axes2_y + six_r_r_2_in_axes2_x*six_r_s_2
+        six_r_joint2_offset_x + six_r_c_2*six_r_r_2_in_axes2_x - six_r_r_3_in_axes2_y*six_r_s_2
         )
-        six_r_r_1_t = six_r_c_2*six_r_r_2_in_axes1_y + six_r_r_1_in_axes1_z*six_r_s_2
-        six_r_r_1_t_2 = six_r_c_2*six_r_r_1_in_axes1_z - six_r_r_2_in_axes1_y*six_r_s_2
-        six_r_r_1_t_3 = six_r_c_3*six_r_r_1_t + six_r_r_1_t_2*six_r_s_3
-        six_r_r_1_t_4 = six_r_c_3*six_r_r_1_t_2 - six_r_r_1_t*six_r_s_3
-        six_r_r_1_in_axes5_z = six_r_r_3_t + six_r_h_4_t*six_r_r_1_t_4
-        six_r_r_1_t_5 = -six_r_r_3_t_2 - six_r_e_2_in_axes5_z*six_r_r_1_t_4
-        six_r_r_1_in_axes5_x = (
-        six_r_e_4_in_axes5_x*six_r_r_1_t_3 + six_r_e_4_in_axes5_y*six_r_r_1_t_5
-        )
-        six_r_r_1_in_axes5_y = (
-        six_r_e_4_in_axes5_y*six_r_r_1_t_3 - six_r_e_4_in_axes5_x*six_r_r_1_t_5
-        )
+        six_r_r_1_t = six_r_c_2*six_r_r_1_in_axes1_z + six_r_r_2_in_axes1_x*six_r_s_2
+        six_r_r_1_t_2 = six_r_c_2*six_r_r_2_in_axes1_x - six_r_r_1_in_axes1_z*six_r_s_2
+        six_r_r_1_t_3 = six_r_r_1_t*six_r_s_3 - six_r_c_3*six_r_r_1_t_2
+        six_r_r_1_t_4 = six_r_c_3*six_r_r_1_t + six_r_r_1_t_2*six_r_s_3
+        six_r_r_1_t_5 = six_r_r_3_t - six_r_e_2_in_axes5_z*six_r_r_1_t_3
+        six_r_r_1_in_axes5_z = six_r_r_3_t_2 + six_r_h_4_t*six_r_r_1_t_3
+        six_r_r_1_in_axes5_x = six_r_J_5_t*six_r_r_1_t_5 + six_r_e_4_in_axes5_x*six_r_r_1_t_4
+        six_r_r_1_in_axes5_y = six_r_e_4_in_axes5_x*six_r_r_1_t_5 - six_r_J_5_t*six_r_r_1_t_4
         # (six_r-v_1) velocity of the connection point per rate of joint 1
         six_r_v_1_t = six_r_c_2*six_r_s_3 + six_r_c_3*six_r_s_2
         six_r_v_1_t_2 = six_r_c_2*six_r_c_3 - six_r_s_2*six_r_s_3
-        six_r_e_1_in_axes5_z = six_r_h_4_t*six_r_v_1_t_2
-        six_r_v_1_t_3 = six_r_e_2_in_axes5_z*six_r_v_1_t_2
-        six_r_e_1_in_axes5_x = (
-        six_r_e_4_in_axes5_x*six_r_v_1_t - six_r_e_4_in_axes5_y*six_r_v_1_t_3
-        )
-        six_r_e_1_in_axes5_y = (
-        six_r_e_4_in_axes5_x*six_r_v_1_t_3 + six_r_e_4_in_axes5_y*six_r_v_1_t
-        )
+        six_r_v_1_t_3 = six_r_e_2_in_axes5_z*six_r_v_1_t
+        six_r_e_1_in_axes5_z = six_r_h_4_t*six_r_v_1_t
+        six_r_e_1_in_axes5_x = six_r_e_4_in_axes5_x*six_r_v_1_t_2 - six_r_J_5_t*six_r_v_1_t_3
+        six_r_e_1_in_axes5_y = -six_r_J_5_t*six_r_v_1_t_2 - six_r_e_4_in_axes5_x*six_r_v_1_t_3
         six_r_v_1_in_axes5_x = (
         six_r_e_1_in_axes5_y*six_r_r_1_in_axes5_z - six_r_e_1_in_axes5_z*six_r_r_1_in_axes5_y
         )
@@ -2372,7 +2538,7 @@ def _run_dynamics(m, X, V, q):
         six_r_e_1_in_axes5_x*six_r_r_1_in_axes5_y - six_r_e_1_in_axes5_y*six_r_r_1_in_axes5_x
         )
         # (six_r-v_2) velocity of the connection point per rate of joint 2
-        six_r_e_2_in_axes5_x = six_r_e_4_in_axes5_y*six_r_h_4_t
+        six_r_e_2_in_axes5_x = six_r_J_5_t*six_r_h_4_t
         six_r_v_2_in_axes5_x = (
         six_r_e_2_in_axes5_y*six_r_r_2_in_axes5_z - six_r_e_2_in_axes5_z*six_r_r_2_in_axes5_y
         )
@@ -2394,10 +2560,9 @@ def _run_dynamics(m, X, V, q):
         )
         # (six_r-v_4) velocity of the connection point per rate of joint 4
         six_r_v_4_in_axes5_z = (
-        six_r_e_4_in_axes5_x*(six_r_e_4_in_axes5_y*six_r_r_4_in_axes4_z -
-            six_r_e_4_in_axes5_x*six_r_r_4_in_axes4_y) -
-            six_r_e_4_in_axes5_y*(six_r_e_4_in_axes5_x*six_r_r_4_in_axes4_z +
-            six_r_e_4_in_axes5_y*six_r_r_4_in_axes4_y)
+        six_r_J_5_t*(six_r_J_5_t*six_r_r_4_in_axes4_x + six_r_e_4_in_axes5_x*six_r_r_4_in_axes4_z)
+            + six_r_e_4_in_axes5_x*(six_r_e_4_in_axes5_x*six_r_r_4_in_axes4_x -
+            six_r_J_5_t*six_r_r_4_in_axes4_z)
         )
         # (six_r-n_m1) direction 1 of the moment that the platform joint transmits
         six_r_n_m1_t = (
@@ -2426,16 +2591,14 @@ def _run_dynamics(m, X, V, q):
         )
         six_r_n_m1_t_4 = six_r_c_1*six_r_n_m1_t + six_r_n_m1_t_2*six_r_s_1
         six_r_n_m1_t_5 = six_r_c_1*six_r_n_m1_t_2 - six_r_n_m1_t*six_r_s_1
-        six_r_n_m1_t_6 = six_r_c_2*six_r_n_m1_t_5 + six_r_n_m1_t_3*six_r_s_2
-        six_r_n_m1_t_7 = six_r_c_2*six_r_n_m1_t_3 - six_r_n_m1_t_5*six_r_s_2
-        six_r_n_m1_t_8 = six_r_c_3*six_r_n_m1_t_6 + six_r_n_m1_t_7*six_r_s_3
-        six_r_n_m1_t_9 = six_r_c_3*six_r_n_m1_t_7 - six_r_n_m1_t_6*six_r_s_3
-        six_r_n_m1_t_10 = six_r_h_4_t*six_r_n_m1_t_4 - six_r_e_2_in_axes5_z*six_r_n_m1_t_9
-        six_r_n_m1_in_axes5_y = (
-        six_r_e_4_in_axes5_x*six_r_n_m1_t_8 + six_r_e_4_in_axes5_y*six_r_n_m1_t_10
-        )
+        six_r_n_m1_t_6 = six_r_c_2*six_r_n_m1_t_3 + six_r_n_m1_t_4*six_r_s_2
+        six_r_n_m1_t_7 = six_r_c_2*six_r_n_m1_t_4 - six_r_n_m1_t_3*six_r_s_2
+        six_r_n_m1_t_8 = six_r_n_m1_t_6*six_r_s_3 - six_r_c_3*six_r_n_m1_t_7
+        six_r_n_m1_t_9 = six_r_c_3*six_r_n_m1_t_6 + six_r_n_m1_t_7*six_r_s_3
+        six_r_n_m1_t_10 = six_r_h_4_t*six_r_n_m1_t_5 - six_r_e_2_in_axes5_z*six_r_n_m1_t_8
+        six_r_n_m1_in_axes5_y = six_r_J_5_t*six_r_n_m1_t_10 + six_r_e_4_in_axes5_x*six_r_n_m1_t_9
         six_r_end_p1_in_axes5_y = (
-        six_r_e_4_in_axes5_y*six_r_n_m1_t_8 - six_r_e_4_in_axes5_x*six_r_n_m1_t_10
+        six_r_e_4_in_axes5_x*six_r_n_m1_t_10 - six_r_J_5_t*six_r_n_m1_t_9
         )
         six_r_n_m1_x = (
         axis_y_six_r_axes5_x*six_r_n_m1_in_axes5_y - axis_x_six_r_axes5_x*six_r_end_p1_in_axes5_y
@@ -2447,7 +2610,7 @@ def _run_dynamics(m, X, V, q):
         axis_y_six_r_axes5_z*six_r_n_m1_in_axes5_y - axis_x_six_r_axes5_z*six_r_end_p1_in_axes5_y
         )
         # (six_r-n_m2) direction 2 of the moment that the platform joint transmits
-        six_r_end_p1_in_axes5_z = six_r_e_2_in_axes5_z*six_r_n_m1_t_4 + six_r_h_4_t*six_r_n_m1_t_9
+        six_r_end_p1_in_axes5_z = six_r_e_2_in_axes5_z*six_r_n_m1_t_5 + six_r_h_4_t*six_r_n_m1_t_8
         six_r_n_m2_x = (
         axis_z_six_r_axes5_x*six_r_end_p1_in_axes5_y -
             axis_y_six_r_axes5_x*six_r_end_p1_in_axes5_z
@@ -2480,10 +2643,10 @@ def _run_dynamics(m, X, V, q):
         six_r_w_1_t_7 = six_r_size*six_r_w_1_t_2
         six_r_w_1_t_8 = six_r_size*six_r_w_1_t_4
         six_r_w_1_t_9 = (
-        six_r_size*(six_r_e_4_in_axes5_y*six_r_n_m1_in_axes5_y -
+        six_r_size*(-six_r_J_5_t*six_r_n_m1_in_axes5_y -
             six_r_e_4_in_axes5_x*six_r_end_p1_in_axes5_y)
         )
-        six_r_w_1_t_10 = -six_r_e_4_in_axes5_y*six_r_end_p1_in_axes5_z*six_r_size
+        six_r_w_1_t_10 = six_r_J_5_t*six_r_end_p1_in_axes5_z*six_r_size
         six_r_w_1_t_11 = six_r_end_p1_in_axes5_y*six_r_size
         six_r_w_1_t_12 = sqrt(six_r_size_t + six_r_w_1_t_11*six_r_w_1_t_11)
         inv_six_r_w_1_t_12 = 1.0/six_r_w_1_t_12
@@ -2621,8 +2784,8 @@ def _run_dynamics(m, X, V, q):
         )
         # (six_r-m2_w_1) moment part 2 of reciprocal wrench 1
         six_r_m2_w_1_t = inv_six_r_w_1_t_79*six_r_w_1_t_78
-        six_r_m2_w_1 = (
-        -six_r_size*(six_r_m2_w_1_t*six_r_w_1_t_84 + six_r_w_1_t_72*six_r_w_1_t_83 -
+        six_r_m2_w_1_t_2 = (
+        six_r_size*(six_r_m2_w_1_t*six_r_w_1_t_84 + six_r_w_1_t_72*six_r_w_1_t_83 -
             inv_six_r_w_1_t_49*six_r_w_1_t_54)
         )
         # (six_r-w_2) force part of reciprocal wrench 2
@@ -2722,9 +2885,9 @@ def _run_dynamics(m, X, V, q):
         )
         # (six_r-o_1) moment part of reciprocal wrench 1
         six_r_o_1_in_axes5_x = six_r_end_p1_in_axes5_y*six_r_m1_w_1_t_2
-        six_r_o_1_in_axes5_z = six_r_end_p1_in_axes5_y*six_r_m2_w_1
+        six_r_o_1_t = six_r_end_p1_in_axes5_y*six_r_m2_w_1_t_2
         six_r_o_1_in_axes5_y = (
-        -six_r_end_p1_in_axes5_z*six_r_m2_w_1 - six_r_m1_w_1_t_2*six_r_n_m1_in_axes5_y
+        six_r_end_p1_in_axes5_z*six_r_m2_w_1_t_2 - six_r_m1_w_1_t_2*six_r_n_m1_in_axes5_y
         )
         # (six_r-o_2) moment part of reciprocal wrench 2
         six_r_o_2_t = six_r_end_p1_in_axes5_y*six_r_m1_w_2
@@ -2771,45 +2934,45 @@ def _run_dynamics(m, X, V, q):
             six_r_qd_1_t_2*six_r_w_1_t_72 - six_r_S_dot_in_axes5_y*six_r_w_1_t_69 -
             six_r_qd_1_t_3*six_r_w_1_t_73)
         )
-        six_r_qd_1 = (
-        -inv_six_r_w_1_t_49*(six_r_S_dot_in_axes5_y*six_r_w_1_t_51 + six_r_qd_1_t_3*six_r_w_1_t_61
+        six_r_qd_1_t_5 = (
+        inv_six_r_w_1_t_49*(six_r_S_dot_in_axes5_y*six_r_w_1_t_51 + six_r_qd_1_t_3*six_r_w_1_t_61
             + six_r_qd_1_t_4*six_r_w_1_t_55 - six_r_S_dot_in_axes5_x*six_r_w_1_t_50 -
             six_r_S_dot_in_axes5_z*six_r_w_1_t_52 - six_r_qd_1_t*six_r_w_1_t_53 -
             six_r_qd_1_t_2*six_r_w_1_t_54)
         )
         # (six_r-qd_4) rate of joint 4
         six_r_qd_4 = (
-        inv_six_r_w_1_t_28*(six_r_S_dot_in_axes5_z*six_r_w_1_t_30 + six_r_qd_1*six_r_w_1_t_33 +
-            six_r_qd_1_t*six_r_w_1_t_31 + six_r_qd_1_t_2*six_r_w_1_t_32 +
-            six_r_qd_1_t_3*six_r_w_1_t_44 + six_r_qd_1_t_4*six_r_w_1_t_39 -
-            six_r_S_dot_in_axes5_y*six_r_w_1_t_29)
+        inv_six_r_w_1_t_28*(six_r_S_dot_in_axes5_z*six_r_w_1_t_30 + six_r_qd_1_t*six_r_w_1_t_31 +
+            six_r_qd_1_t_2*six_r_w_1_t_32 + six_r_qd_1_t_3*six_r_w_1_t_44 +
+            six_r_qd_1_t_4*six_r_w_1_t_39 - six_r_S_dot_in_axes5_y*six_r_w_1_t_29 -
+            six_r_qd_1_t_5*six_r_w_1_t_33)
         )
         # (six_r-qd_5) rate of joint 5
         six_r_qd_5 = (
         inv_six_r_w_1_t_12*(six_r_S_dot_in_axes5_y*six_r_w_1_t_13 + six_r_qd_1_t_2*six_r_w_1_t_14
-            + six_r_qd_1_t_3*six_r_w_1_t_25 - six_r_qd_1*six_r_w_1_t_18 -
+            + six_r_qd_1_t_3*six_r_w_1_t_25 + six_r_qd_1_t_5*six_r_w_1_t_18 -
             six_r_qd_1_t_4*six_r_w_1_t_22 - six_r_qd_4*six_r_w_1_t_15)
         )
         # (six_r-omega_1) angular velocity of link 1
-        six_r_omega_1_in_axes2_x = six_r_qd_1*six_r_s_2
-        six_r_omega_1_in_axes2_y = six_r_c_2*six_r_qd_1
-        six_r_omega_1_in_axes5_x = six_r_e_1_in_axes5_x*six_r_qd_1
-        six_r_omega_1_in_axes5_y = six_r_e_1_in_axes5_y*six_r_qd_1
-        six_r_omega_1_in_axes5_z = six_r_e_1_in_axes5_z*six_r_qd_1
+        six_r_omega_1_in_axes2_x = -six_r_c_2*six_r_qd_1_t_5
+        six_r_omega_1_in_axes2_y = six_r_qd_1_t_5*six_r_s_2
+        six_r_omega_1_t = six_r_e_1_in_axes5_x*six_r_qd_1_t_5
+        six_r_omega_1_t_2 = six_r_e_1_in_axes5_y*six_r_qd_1_t_5
+        six_r_omega_1_t_3 = six_r_e_1_in_axes5_z*six_r_qd_1_t_5
         # (six_r-W_1) centripetal tensor of link 1
-        six_r_W_1_in_axes5_xy = six_r_omega_1_in_axes5_x*six_r_omega_1_in_axes5_y
-        six_r_W_1_in_axes5_xz = six_r_omega_1_in_axes5_x*six_r_omega_1_in_axes5_z
-        six_r_W_1_in_axes5_yz = six_r_omega_1_in_axes5_y*six_r_omega_1_in_axes5_z
+        six_r_W_1_in_axes5_xy = six_r_omega_1_t*six_r_omega_1_t_2
+        six_r_W_1_in_axes5_xz = six_r_omega_1_t*six_r_omega_1_t_3
+        six_r_W_1_in_axes5_yz = six_r_omega_1_t_2*six_r_omega_1_t_3
         # (six_r-omega_2) angular velocity of link 2
         six_r_omega_2_in_axes3_x = (
-        six_r_c_3*six_r_omega_1_in_axes2_x + six_r_omega_1_in_axes2_y*six_r_s_3
+        six_r_omega_1_in_axes2_x*six_r_s_3 - six_r_c_3*six_r_omega_1_in_axes2_y
         )
         six_r_omega_2_in_axes3_y = (
-        six_r_c_3*six_r_omega_1_in_axes2_y - six_r_omega_1_in_axes2_x*six_r_s_3
+        six_r_c_3*six_r_omega_1_in_axes2_x + six_r_omega_1_in_axes2_y*six_r_s_3
         )
-        six_r_omega_2_in_axes5_x = six_r_omega_1_in_axes5_x + six_r_e_2_in_axes5_x*six_r_qd_1_t_4
-        six_r_omega_2_in_axes5_y = six_r_omega_1_in_axes5_y + six_r_e_2_in_axes5_y*six_r_qd_1_t_4
-        six_r_omega_2_in_axes5_z = six_r_omega_1_in_axes5_z + six_r_e_2_in_axes5_z*six_r_qd_1_t_4
+        six_r_omega_2_in_axes5_x = six_r_e_2_in_axes5_x*six_r_qd_1_t_4 - six_r_omega_1_t
+        six_r_omega_2_in_axes5_y = six_r_e_2_in_axes5_y*six_r_qd_1_t_4 - six_r_omega_1_t_2
+        six_r_omega_2_in_axes5_z = six_r_e_2_in_axes5_z*six_r_qd_1_t_4 - six_r_omega_1_t_3
         # (six_r-W_2) centripetal tensor of link 2
         six_r_W_2_in_axes2_yz = six_r_omega_1_in_axes2_y*six_r_qd_1_t_4
         six_r_W_2_in_axes2_xy = six_r_omega_1_in_axes2_x*six_r_omega_1_in_axes2_y
@@ -2819,42 +2982,38 @@ def _run_dynamics(m, X, V, q):
         # (six_r-omega_3) angular velocity of link 3
         six_r_omega_3_in_axes3_z = six_r_qd_1_t_3 + six_r_qd_1_t_4
         six_r_omega_3_in_axes4_x = (
-        six_r_e_2_in_axes5_z*six_r_omega_3_in_axes3_z + six_r_h_4_t*six_r_omega_2_in_axes3_y
+        six_r_h_4_t*six_r_omega_3_in_axes3_z - six_r_e_2_in_axes5_z*six_r_omega_2_in_axes3_x
         )
         six_r_omega_3_in_axes4_y = (
-        six_r_h_4_t*six_r_omega_3_in_axes3_z - six_r_e_2_in_axes5_z*six_r_omega_2_in_axes3_y
+        six_r_e_2_in_axes5_z*six_r_omega_3_in_axes3_z + six_r_h_4_t*six_r_omega_2_in_axes3_x
         )
-        six_r_omega_3_t = -six_r_e_4_in_axes5_y*six_r_omega_3_in_axes4_y
-        six_r_omega_3_t_2 = six_r_e_4_in_axes5_x*six_r_omega_3_in_axes4_y
-        six_r_omega_3_in_axes5_x = six_r_e_4_in_axes5_x*six_r_omega_2_in_axes3_x - six_r_omega_3_t
-        six_r_omega_3_in_axes5_y = (
-        six_r_e_4_in_axes5_y*six_r_omega_2_in_axes3_x - six_r_omega_3_t_2
-        )
+        six_r_omega_3_t = six_r_J_5_t*six_r_omega_3_in_axes4_x
+        six_r_omega_3_t_2 = six_r_e_4_in_axes5_x*six_r_omega_3_in_axes4_x
+        six_r_omega_3_in_axes5_x = six_r_omega_3_t + six_r_e_4_in_axes5_x*six_r_omega_2_in_axes3_y
+        six_r_omega_3_in_axes5_y = six_r_omega_3_t_2 - six_r_J_5_t*six_r_omega_2_in_axes3_y
         # (six_r-W_3) centripetal tensor of link 3
-        six_r_W_3_t = six_r_omega_2_in_axes3_y*six_r_omega_2_in_axes3_y
+        six_r_W_3_t = six_r_omega_2_in_axes3_x*six_r_omega_2_in_axes3_x
         six_r_W_3_t_2 = six_r_omega_3_in_axes3_z*six_r_omega_3_in_axes3_z
-        six_r_W_3_t_3 = six_r_W_3_t + six_r_W_3_t_2
         six_r_W_3_in_axes3_xy = six_r_omega_2_in_axes3_x*six_r_omega_2_in_axes3_y
         six_r_W_3_in_axes3_xz = six_r_omega_2_in_axes3_x*six_r_omega_3_in_axes3_z
+        six_r_W_3_t_3 = six_r_W_3_t + six_r_W_3_t_2
         six_r_W_3_in_axes3_yz = six_r_omega_2_in_axes3_y*six_r_omega_3_in_axes3_z
         six_r_W_3_in_axes5_xy = six_r_omega_3_in_axes5_x*six_r_omega_3_in_axes5_y
         # (six_r-omega_4) angular velocity of link 4
-        six_r_omega_4_in_axes4_z = six_r_omega_2_in_axes3_x + six_r_qd_4
-        six_r_omega_4_in_axes5_x = six_r_e_4_in_axes5_x*six_r_omega_4_in_axes4_z - six_r_omega_3_t
-        six_r_omega_4_in_axes5_y = (
-        six_r_e_4_in_axes5_y*six_r_omega_4_in_axes4_z - six_r_omega_3_t_2
-        )
+        six_r_omega_4_in_axes4_z = six_r_omega_2_in_axes3_y + six_r_qd_4
+        six_r_omega_4_in_axes5_x = six_r_omega_3_t + six_r_e_4_in_axes5_x*six_r_omega_4_in_axes4_z
+        six_r_omega_4_in_axes5_y = six_r_omega_3_t_2 - six_r_J_5_t*six_r_omega_4_in_axes4_z
         # (six_r-W_4) centripetal tensor of link 4
         six_r_W_4_in_axes4_xy = six_r_omega_3_in_axes4_x*six_r_omega_3_in_axes4_y
         six_r_W_4_in_axes4_xz = six_r_omega_3_in_axes4_x*six_r_omega_4_in_axes4_z
         six_r_W_4_in_axes4_yz = six_r_omega_3_in_axes4_y*six_r_omega_4_in_axes4_z
         six_r_W_4_in_axes5_xy = six_r_omega_4_in_axes5_x*six_r_omega_4_in_axes5_y
         # (six_r-omega_5) angular velocity of link 5
-        six_r_omega_5_in_axes5_z = six_r_omega_3_in_axes4_x + six_r_qd_5
+        six_r_omega_5_in_axes5_z = six_r_omega_3_in_axes4_y + six_r_qd_5
         # (six_r-W_5) centripetal tensor of link 5
         six_r_W_5_t = six_r_omega_4_in_axes5_y*six_r_omega_4_in_axes5_y
         six_r_W_5_t_2 = six_r_omega_5_in_axes5_z*six_r_omega_5_in_axes5_z
-        six_r_W_5_in_axes5_xx = -six_r_W_5_t - six_r_W_5_t_2
+        six_r_W_5_t_3 = six_r_W_5_t + six_r_W_5_t_2
         six_r_W_5_in_axes5_xz = six_r_omega_4_in_axes5_x*six_r_omega_5_in_axes5_z
         six_r_W_5_in_axes5_yz = six_r_omega_4_in_axes5_y*six_r_omega_5_in_axes5_z
         # (six_r-u_1) centripetal acceleration of the connection point
@@ -2876,18 +3035,18 @@ def _run_dynamics(m, X, V, q):
         # (six_r-zeta_2) angular acceleration of link 2 from the turning of axis 2
         six_r_zeta_2_in_axes2_y = -six_r_omega_1_in_axes2_x*six_r_qd_1_t_4
         six_r_zeta_2_in_axes3_x = (
-        six_r_W_2_in_axes2_yz*six_r_c_3 + six_r_s_3*six_r_zeta_2_in_axes2_y
+        six_r_W_2_in_axes2_yz*six_r_s_3 - six_r_c_3*six_r_zeta_2_in_axes2_y
         )
         six_r_zeta_2_in_axes3_y = (
-        six_r_c_3*six_r_zeta_2_in_axes2_y - six_r_W_2_in_axes2_yz*six_r_s_3
+        six_r_W_2_in_axes2_yz*six_r_c_3 + six_r_s_3*six_r_zeta_2_in_axes2_y
         )
-        six_r_zeta_2_in_axes5_z = six_r_h_4_t*six_r_zeta_2_in_axes3_y
-        six_r_zeta_2_t = six_r_e_2_in_axes5_z*six_r_zeta_2_in_axes3_y
+        six_r_zeta_2_t = six_r_e_2_in_axes5_z*six_r_zeta_2_in_axes3_x
+        six_r_zeta_2_in_axes5_z = six_r_h_4_t*six_r_zeta_2_in_axes3_x
         six_r_zeta_2_in_axes5_x = (
-        six_r_e_4_in_axes5_x*six_r_zeta_2_in_axes3_x - six_r_e_4_in_axes5_y*six_r_zeta_2_t
+        six_r_e_4_in_axes5_x*six_r_zeta_2_in_axes3_y - six_r_J_5_t*six_r_zeta_2_t
         )
         six_r_zeta_2_in_axes5_y = (
-        six_r_e_4_in_axes5_x*six_r_zeta_2_t + six_r_e_4_in_axes5_y*six_r_zeta_2_in_axes3_x
+        -six_r_J_5_t*six_r_zeta_2_in_axes3_y - six_r_e_4_in_axes5_x*six_r_zeta_2_t
         )
         # (six_r-zeta_3) angular acceleration of link 3 from the turning of axis 3
         six_r_zeta_3_in_axes3_x = six_r_omega_2_in_axes3_y*six_r_qd_1_t_3
@@ -2895,18 +3054,18 @@ def _run_dynamics(m, X, V, q):
         # (six_r-beta_3) angular acceleration of link 3 at zero joint accelerations
         six_r_beta_3_in_axes3_x = six_r_zeta_2_in_axes3_x + six_r_zeta_3_in_axes3_x
         six_r_beta_3_in_axes3_y = six_r_zeta_2_in_axes3_y - six_r_zeta_3_t
-        six_r_beta_3_in_axes4_x = six_r_beta_3_in_axes3_y*six_r_h_4_t
-        six_r_beta_3_in_axes4_y = -six_r_beta_3_in_axes3_y*six_r_e_2_in_axes5_z
+        six_r_beta_3_t = six_r_beta_3_in_axes3_x*six_r_e_2_in_axes5_z
+        six_r_beta_3_in_axes4_y = six_r_beta_3_in_axes3_x*six_r_h_4_t
         # (six_r-zeta_4) angular acceleration of link 4 from the turning of axis 4
         six_r_zeta_4_in_axes4_x = six_r_omega_3_in_axes4_y*six_r_qd_4
-        six_r_zeta_4_in_axes4_y = -six_r_omega_3_in_axes4_x*six_r_qd_4
+        six_r_zeta_4_t = six_r_omega_3_in_axes4_x*six_r_qd_4
         # (six_r-beta_4) angular acceleration of link 4 at zero joint accelerations
-        six_r_beta_4_in_axes4_x = six_r_beta_3_in_axes4_x + six_r_zeta_4_in_axes4_x
-        six_r_beta_4_in_axes4_y = six_r_beta_3_in_axes4_y + six_r_zeta_4_in_axes4_y
-        six_r_beta_4_t = six_r_beta_3_in_axes3_x*six_r_e_4_in_axes5_x
-        six_r_beta_4_in_axes5_x = six_r_beta_4_t + six_r_beta_4_in_axes4_y*six_r_e_4_in_axes5_y
-        six_r_beta_4_t_2 = -six_r_beta_3_in_axes3_x*six_r_e_4_in_axes5_y
-        six_r_beta_4_in_axes5_y = -six_r_beta_4_t_2 - six_r_beta_4_in_axes4_y*six_r_e_4_in_axes5_x
+        six_r_beta_4_in_axes4_x = six_r_zeta_4_in_axes4_x - six_r_beta_3_t
+        six_r_beta_4_in_axes4_y = six_r_beta_3_in_axes4_y - six_r_zeta_4_t
+        six_r_beta_4_t = six_r_beta_3_in_axes3_y*six_r_e_4_in_axes5_x
+        six_r_beta_4_in_axes5_x = six_r_beta_4_t + six_r_J_5_t*six_r_beta_4_in_axes4_x
+        six_r_beta_4_t_2 = six_r_J_5_t*six_r_beta_3_in_axes3_y
+        six_r_beta_4_in_axes5_y = six_r_beta_4_in_axes4_x*six_r_e_4_in_axes5_x - six_r_beta_4_t_2
         # (six_r-zeta_5) angular acceleration of link 5 from the turning of axis 5
         six_r_zeta_5_in_axes5_x = six_r_omega_4_in_axes5_y*six_r_qd_5
         six_r_zeta_5_t = six_r_omega_4_in_axes5_x*six_r_qd_5
@@ -2914,80 +3073,70 @@ def _run_dynamics(m, X, V, q):
         six_r_beta_5_in_axes5_x = six_r_beta_4_in_axes5_x + six_r_zeta_5_in_axes5_x
         six_r_beta_5_in_axes5_y = six_r_beta_4_in_axes5_y - six_r_zeta_5_t
         # (six_r-bias) acceleration of the connection point at zero joint accelerations
-        six_r_bias_t = six_r_omega_3_in_axes4_x*six_r_omega_3_in_axes4_x
+        six_r_bias_t = six_r_omega_3_in_axes4_y*six_r_omega_3_in_axes4_y
         six_r_bias_t_2 = six_r_omega_4_in_axes5_x*six_r_omega_4_in_axes5_x
-        six_r_d_2_in_spec2_x = six_r_joint2_offset_x*six_r_s_2
-        six_r_d_2_in_spec2_y = six_r_c_2*six_r_joint2_offset_x
-        six_r_bias_t_3 = six_r_c_3*six_r_d_2_in_spec2_x + six_r_d_2_in_spec2_y*six_r_s_3
-        six_r_bias_t_4 = six_r_c_3*six_r_d_2_in_spec2_y - six_r_d_2_in_spec2_x*six_r_s_3
+        six_r_d_2_in_spec2_x = six_r_c_2*six_r_joint2_offset_x
+        six_r_bias_t_3 = six_r_joint2_offset_x*six_r_s_2
+        six_r_bias_t_4 = six_r_bias_t_3*six_r_c_3 + six_r_d_2_in_spec2_x*six_r_s_3
+        six_r_bias_t_5 = six_r_c_3*six_r_d_2_in_spec2_x - six_r_bias_t_3*six_r_s_3
+        six_r_bias_t_6 = six_r_bias_t_4*six_r_e_2_in_axes5_z
         six_r_d_2_in_axes5_z = six_r_bias_t_4*six_r_h_4_t
-        six_r_bias_t_5 = six_r_bias_t_4*six_r_e_2_in_axes5_z
-        six_r_d_2_in_axes5_x = (
-        six_r_bias_t_3*six_r_e_4_in_axes5_x - six_r_bias_t_5*six_r_e_4_in_axes5_y
-        )
-        six_r_d_2_in_axes5_y = (
-        six_r_bias_t_3*six_r_e_4_in_axes5_y + six_r_bias_t_5*six_r_e_4_in_axes5_x
-        )
-        six_r_bias_t_6 = six_r_omega_1_in_axes5_x*six_r_omega_1_in_axes5_x
-        six_r_bias_t_7 = six_r_omega_1_in_axes5_y*six_r_omega_1_in_axes5_y
-        six_r_bias_t_8 = six_r_omega_1_in_axes5_z*six_r_omega_1_in_axes5_z
-        six_r_bias_t_9 = six_r_c_3*six_r_joint3_offset_x
+        six_r_d_2_in_axes5_x = six_r_bias_t_5*six_r_e_4_in_axes5_x - six_r_J_5_t*six_r_bias_t_6
+        six_r_d_2_in_axes5_y = -six_r_J_5_t*six_r_bias_t_5 - six_r_bias_t_6*six_r_e_4_in_axes5_x
+        six_r_bias_t_7 = six_r_omega_1_t*six_r_omega_1_t
+        six_r_bias_t_8 = six_r_omega_1_t_2*six_r_omega_1_t_2
+        six_r_bias_t_9 = six_r_omega_1_t_3*six_r_omega_1_t_3
         six_r_bias_t_10 = six_r_joint3_offset_x*six_r_s_3
-        six_r_d_3_in_axes5_z = -six_r_bias_t_10*six_r_h_4_t
-        six_r_bias_t_11 = six_r_bias_t_10*six_r_e_2_in_axes5_z
-        six_r_d_3_in_axes5_x = (
-        six_r_bias_t_11*six_r_e_4_in_axes5_y + six_r_bias_t_9*six_r_e_4_in_axes5_x
-        )
-        six_r_d_3_in_axes5_y = (
-        six_r_bias_t_9*six_r_e_4_in_axes5_y - six_r_bias_t_11*six_r_e_4_in_axes5_x
-        )
-        six_r_bias_t_12 = six_r_omega_2_in_axes5_x*six_r_omega_2_in_axes5_x
-        six_r_bias_t_13 = six_r_omega_2_in_axes5_y*six_r_omega_2_in_axes5_y
-        six_r_bias_t_14 = six_r_omega_2_in_axes5_z*six_r_omega_2_in_axes5_z
+        six_r_bias_t_11 = six_r_c_3*six_r_joint3_offset_x
+        six_r_bias_t_12 = six_r_bias_t_10*six_r_e_2_in_axes5_z
+        six_r_d_3_in_axes5_z = six_r_bias_t_10*six_r_h_4_t
+        six_r_d_3_in_axes5_x = six_r_bias_t_11*six_r_e_4_in_axes5_x - six_r_J_5_t*six_r_bias_t_12
+        six_r_d_3_in_axes5_y = -six_r_J_5_t*six_r_bias_t_11 - six_r_bias_t_12*six_r_e_4_in_axes5_x
+        six_r_bias_t_13 = six_r_omega_2_in_axes5_x*six_r_omega_2_in_axes5_x
+        six_r_bias_t_14 = six_r_omega_2_in_axes5_y*six_r_omega_2_in_axes5_y
+        six_r_bias_t_15 = six_r_omega_2_in_axes5_z*six_r_omega_2_in_axes5_z
         six_r_d_4_in_axes5_x = six_r_e_4_in_axes5_x*six_r_joint4_offset_x
-        six_r_d_4_in_axes5_y = six_r_e_4_in_axes5_y*six_r_joint4_offset_x
+        six_r_bias_t_16 = six_r_J_5_t*six_r_joint4_offset_x
         six_r_d_5_in_axes5_x = six_r_e_4_in_axes5_x*six_r_joint5_offset_x
-        six_r_d_5_in_axes5_y = six_r_e_4_in_axes5_y*six_r_joint5_offset_x
-        six_r_bias_t_15 = six_r_W_4_in_axes5_xy + six_r_beta_4_in_axes4_x
+        six_r_bias_t_17 = six_r_J_5_t*six_r_joint5_offset_x
+        six_r_bias_t_18 = six_r_W_4_in_axes5_xy + six_r_beta_4_in_axes4_y
         six_r_bias_in_axes5_x = (
         six_r_W_1_in_axes5_xy*six_r_d_2_in_axes5_y + six_r_W_1_in_axes5_xz*six_r_d_2_in_axes5_z +
-            six_r_W_5_in_axes5_xx*six_r_platform_joint_offset_x +
             six_r_d_3_in_axes5_y*(six_r_W_2_in_axes5_xy - six_r_zeta_2_in_axes5_z) +
-            six_r_d_3_in_axes5_z*(six_r_W_2_in_axes5_xz + six_r_zeta_2_in_axes5_y) +
-            six_r_d_4_in_axes5_y*(six_r_W_3_in_axes5_xy - six_r_beta_3_in_axes4_x) +
-            six_r_d_5_in_axes5_y*(six_r_W_4_in_axes5_xy - six_r_beta_4_in_axes4_x) -
-            six_r_d_2_in_axes5_x*(six_r_bias_t_7 + six_r_bias_t_8) -
-            six_r_d_3_in_axes5_x*(six_r_bias_t_13 + six_r_bias_t_14) -
+            six_r_d_3_in_axes5_z*(six_r_W_2_in_axes5_xz + six_r_zeta_2_in_axes5_y) -
+            six_r_W_5_t_3*six_r_platform_joint_offset_x - six_r_bias_t_16*(six_r_W_3_in_axes5_xy -
+            six_r_beta_3_in_axes4_y) - six_r_bias_t_17*(six_r_W_4_in_axes5_xy -
+            six_r_beta_4_in_axes4_y) - six_r_d_2_in_axes5_x*(six_r_bias_t_8 + six_r_bias_t_9) -
+            six_r_d_3_in_axes5_x*(six_r_bias_t_14 + six_r_bias_t_15) -
             six_r_d_4_in_axes5_x*(six_r_bias_t +
             six_r_omega_3_in_axes5_y*six_r_omega_3_in_axes5_y) - six_r_d_5_in_axes5_x*(six_r_W_5_t
             + six_r_bias_t)
         )
         six_r_bias_in_axes5_y = (
         six_r_W_1_in_axes5_xy*six_r_d_2_in_axes5_x + six_r_W_1_in_axes5_yz*six_r_d_2_in_axes5_z +
-            six_r_bias_t_15*six_r_d_5_in_axes5_x + six_r_bias_t_15*six_r_platform_joint_offset_x +
+            six_r_bias_t_16*(six_r_bias_t + six_r_omega_3_in_axes5_x*six_r_omega_3_in_axes5_x) +
+            six_r_bias_t_17*(six_r_bias_t + six_r_bias_t_2) + six_r_bias_t_18*six_r_d_5_in_axes5_x
+            + six_r_bias_t_18*six_r_platform_joint_offset_x +
             six_r_d_3_in_axes5_x*(six_r_W_2_in_axes5_xy + six_r_zeta_2_in_axes5_z) +
             six_r_d_3_in_axes5_z*(six_r_W_2_in_axes5_yz - six_r_zeta_2_in_axes5_x) +
-            six_r_d_4_in_axes5_x*(six_r_W_3_in_axes5_xy + six_r_beta_3_in_axes4_x) -
-            six_r_d_2_in_axes5_y*(six_r_bias_t_6 + six_r_bias_t_8) -
-            six_r_d_3_in_axes5_y*(six_r_bias_t_12 + six_r_bias_t_14) -
-            six_r_d_4_in_axes5_y*(six_r_bias_t +
-            six_r_omega_3_in_axes5_x*six_r_omega_3_in_axes5_x) -
-            six_r_d_5_in_axes5_y*(six_r_bias_t + six_r_bias_t_2)
+            six_r_d_4_in_axes5_x*(six_r_W_3_in_axes5_xy + six_r_beta_3_in_axes4_y) -
+            six_r_d_2_in_axes5_y*(six_r_bias_t_7 + six_r_bias_t_9) -
+            six_r_d_3_in_axes5_y*(six_r_bias_t_13 + six_r_bias_t_15)
         )
         six_r_bias_in_axes5_z = (
         six_r_W_1_in_axes5_xz*six_r_d_2_in_axes5_x + six_r_W_1_in_axes5_yz*six_r_d_2_in_axes5_y +
             six_r_d_3_in_axes5_x*(six_r_W_2_in_axes5_xz - six_r_zeta_2_in_axes5_y) +
             six_r_d_3_in_axes5_y*(six_r_W_2_in_axes5_yz + six_r_zeta_2_in_axes5_x) +
-            six_r_d_4_in_axes5_x*(six_r_beta_4_t_2 + six_r_beta_3_in_axes4_y*six_r_e_4_in_axes5_x
-            + six_r_omega_3_in_axes4_x*six_r_omega_3_in_axes5_x) +
-            six_r_d_4_in_axes5_y*(six_r_beta_4_t + six_r_beta_3_in_axes4_y*six_r_e_4_in_axes5_y +
-            six_r_omega_3_in_axes4_x*six_r_omega_3_in_axes5_y) +
-            six_r_d_5_in_axes5_x*(six_r_omega_3_in_axes4_x*six_r_omega_4_in_axes5_x -
-            six_r_beta_4_in_axes5_y) + six_r_d_5_in_axes5_y*(six_r_beta_4_in_axes5_x +
-            six_r_omega_3_in_axes4_x*six_r_omega_4_in_axes5_y) +
-            six_r_platform_joint_offset_x*(six_r_W_5_in_axes5_xz - six_r_beta_5_in_axes5_y) -
-            six_r_d_2_in_axes5_z*(six_r_bias_t_6 + six_r_bias_t_7) -
-            six_r_d_3_in_axes5_z*(six_r_bias_t_12 + six_r_bias_t_13)
+            six_r_d_4_in_axes5_x*(six_r_beta_4_t_2 + six_r_beta_3_t*six_r_e_4_in_axes5_x +
+            six_r_omega_3_in_axes4_y*six_r_omega_3_in_axes5_x) +
+            six_r_d_5_in_axes5_x*(six_r_omega_3_in_axes4_y*six_r_omega_4_in_axes5_x -
+            six_r_beta_4_in_axes5_y) + six_r_platform_joint_offset_x*(six_r_W_5_in_axes5_xz -
+            six_r_beta_5_in_axes5_y) - six_r_bias_t_16*(six_r_beta_4_t +
+            six_r_omega_3_in_axes4_y*six_r_omega_3_in_axes5_y - six_r_J_5_t*six_r_beta_3_t) -
+            six_r_bias_t_17*(six_r_beta_4_in_axes5_x +
+            six_r_omega_3_in_axes4_y*six_r_omega_4_in_axes5_y) -
+            six_r_d_2_in_axes5_z*(six_r_bias_t_7 + six_r_bias_t_8) -
+            six_r_d_3_in_axes5_z*(six_r_bias_t_13 + six_r_bias_t_14)
         )
         # (six_r-rel_o) remainder without the acceleration in: acceleration of the connection point left to the joint accelerations
         six_r_rel_o_in_axes5_x = six_r_u_1_in_axes5_x - six_r_bias_in_axes5_x
@@ -3037,7 +3186,7 @@ def _run_dynamics(m, X, V, q):
         # (six_r-nu_2) bias of the angular acceleration along moment direction 2
         six_r_nu_2_t = (
         six_r_beta_5_in_axes5_y*six_r_end_p1_in_axes5_z -
-            six_r_beta_4_in_axes4_x*six_r_end_p1_in_axes5_y
+            six_r_beta_4_in_axes4_y*six_r_end_p1_in_axes5_y
         )
         six_r_nu_2_t_2 = (
         six_r_nd_m2_in_axes5_y*six_r_nu_1_t_4 + six_r_nd_m2_in_axes5_z*six_r_nu_1_t_5 +
@@ -3071,8 +3220,8 @@ def _run_dynamics(m, X, V, q):
             six_r_rel_o_in_axes5_y*six_r_w_1_t_29)
         )
         # (six_r-alpha_1_o) remainder without the acceleration in: angular acceleration of link 1
-        six_r_alpha_1_o_t = six_r_qdd_1_o_t_5*six_r_s_2
-        six_r_alpha_1_o_in_axes2_y = -six_r_c_2*six_r_qdd_1_o_t_5
+        six_r_alpha_1_o_t = six_r_c_2*six_r_qdd_1_o_t_5
+        six_r_alpha_1_o_in_axes2_y = six_r_qdd_1_o_t_5*six_r_s_2
         # (six_r-alpha_2_o) remainder without the acceleration in: angular acceleration of link 2
         six_r_alpha_2_o_in_axes2_x = six_r_W_2_in_axes2_yz - six_r_alpha_1_o_t
         six_r_alpha_2_o_in_axes2_y = six_r_alpha_1_o_in_axes2_y + six_r_zeta_2_in_axes2_y
@@ -3083,12 +3232,12 @@ def _run_dynamics(m, X, V, q):
         six_r_B_2_o_in_axes2_zy = six_r_W_2_in_axes2_yz + six_r_alpha_2_o_in_axes2_x
         # (six_r-alpha_3_o) remainder without the acceleration in: angular acceleration of link 3
         six_r_alpha_3_o_in_axes3_x = (
-        six_r_zeta_3_in_axes3_x + six_r_alpha_2_o_in_axes2_x*six_r_c_3 +
-            six_r_alpha_2_o_in_axes2_y*six_r_s_3
+        six_r_zeta_3_in_axes3_x + six_r_alpha_2_o_in_axes2_x*six_r_s_3 -
+            six_r_alpha_2_o_in_axes2_y*six_r_c_3
         )
         six_r_alpha_3_o_in_axes3_y = (
-        six_r_alpha_2_o_in_axes2_y*six_r_c_3 - six_r_zeta_3_t -
-            six_r_alpha_2_o_in_axes2_x*six_r_s_3
+        six_r_alpha_2_o_in_axes2_x*six_r_c_3 + six_r_alpha_2_o_in_axes2_y*six_r_s_3 -
+            six_r_zeta_3_t
         )
         six_r_alpha_3_o_in_axes3_z = six_r_qdd_1_o_t_3 + six_r_qdd_1_o_t_4
         # (six_r-B_3_o) remainder of the acceleration tensor of link 3
@@ -3100,14 +3249,14 @@ def _run_dynamics(m, X, V, q):
         six_r_B_3_o_in_axes3_zy = six_r_W_3_in_axes3_yz + six_r_alpha_3_o_in_axes3_x
         # (six_r-alpha_4_o) remainder without the acceleration in: angular acceleration of link 4
         six_r_alpha_4_o_in_axes4_x = (
-        six_r_zeta_4_in_axes4_x + six_r_alpha_3_o_in_axes3_y*six_r_h_4_t +
-            six_r_alpha_3_o_in_axes3_z*six_r_e_2_in_axes5_z
+        six_r_zeta_4_in_axes4_x + six_r_alpha_3_o_in_axes3_z*six_r_h_4_t -
+            six_r_alpha_3_o_in_axes3_x*six_r_e_2_in_axes5_z
         )
         six_r_alpha_4_o_in_axes4_y = (
-        six_r_zeta_4_in_axes4_y + six_r_alpha_3_o_in_axes3_z*six_r_h_4_t -
-            six_r_alpha_3_o_in_axes3_y*six_r_e_2_in_axes5_z
+        six_r_alpha_3_o_in_axes3_x*six_r_h_4_t + six_r_alpha_3_o_in_axes3_z*six_r_e_2_in_axes5_z -
+            six_r_zeta_4_t
         )
-        six_r_alpha_4_o_in_axes4_z = six_r_alpha_3_o_in_axes3_x + six_r_qdd_4_o
+        six_r_alpha_4_o_in_axes4_z = six_r_alpha_3_o_in_axes3_y + six_r_qdd_4_o
         # (six_r-B_4_o) remainder of the acceleration tensor of link 4
         six_r_B_4_o_in_axes4_xy = six_r_W_4_in_axes4_xy - six_r_alpha_4_o_in_axes4_z
         six_r_B_4_o_in_axes4_xz = six_r_W_4_in_axes4_xz + six_r_alpha_4_o_in_axes4_y
@@ -3125,20 +3274,20 @@ def _run_dynamics(m, X, V, q):
             six_r_e_2_in_axes5_x*six_r_o_3_in_axes5_y + six_r_e_4_in_axes5_x*six_r_o_4_in_axes5_y
         )
         six_r_dalpha_alpha_5_in_axes5_xz = (
-        six_r_e_1_in_axes5_x*six_r_o_1_in_axes5_z + six_r_e_2_in_axes5_x*six_r_o_2_in_axes5_z +
-            six_r_e_2_in_axes5_x*six_r_o_3_in_axes5_z + six_r_e_4_in_axes5_x*six_r_o_4_in_axes5_z
+        six_r_e_2_in_axes5_x*six_r_o_2_in_axes5_z + six_r_e_2_in_axes5_x*six_r_o_3_in_axes5_z +
+            six_r_e_4_in_axes5_x*six_r_o_4_in_axes5_z - six_r_e_1_in_axes5_x*six_r_o_1_t
         )
         six_r_dalpha_alpha_5_in_axes5_yx = (
-        six_r_e_1_in_axes5_y*six_r_o_1_in_axes5_x - six_r_e_2_in_axes5_y*six_r_o_2_t -
-            six_r_e_2_in_axes5_y*six_r_o_3_t - six_r_e_4_in_axes5_y*six_r_o_4_t
+        six_r_J_5_t*six_r_o_4_t + six_r_e_1_in_axes5_y*six_r_o_1_in_axes5_x -
+            six_r_e_2_in_axes5_y*six_r_o_2_t - six_r_e_2_in_axes5_y*six_r_o_3_t
         )
         six_r_dalpha_alpha_5_in_axes5_yy = (
         six_r_e_1_in_axes5_y*six_r_o_1_in_axes5_y + six_r_e_2_in_axes5_y*six_r_o_2_in_axes5_y +
-            six_r_e_2_in_axes5_y*six_r_o_3_in_axes5_y + six_r_e_4_in_axes5_y*six_r_o_4_in_axes5_y
+            six_r_e_2_in_axes5_y*six_r_o_3_in_axes5_y - six_r_J_5_t*six_r_o_4_in_axes5_y
         )
         six_r_dalpha_alpha_5_in_axes5_yz = (
-        six_r_e_1_in_axes5_y*six_r_o_1_in_axes5_z + six_r_e_2_in_axes5_y*six_r_o_2_in_axes5_z +
-            six_r_e_2_in_axes5_y*six_r_o_3_in_axes5_z + six_r_e_4_in_axes5_y*six_r_o_4_in_axes5_z
+        six_r_e_2_in_axes5_y*six_r_o_2_in_axes5_z + six_r_e_2_in_axes5_y*six_r_o_3_in_axes5_z -
+            six_r_J_5_t*six_r_o_4_in_axes5_z - six_r_e_1_in_axes5_y*six_r_o_1_t
         )
         six_r_dalpha_alpha_5_in_axes5_zx = (
         six_r_o_5_in_axes5_x + six_r_e_1_in_axes5_z*six_r_o_1_in_axes5_x -
@@ -3149,8 +3298,8 @@ def _run_dynamics(m, X, V, q):
             six_r_e_2_in_axes5_z*six_r_o_2_in_axes5_y + six_r_e_2_in_axes5_z*six_r_o_3_in_axes5_y
         )
         six_r_dalpha_alpha_5_in_axes5_zz = (
-        six_r_e_1_in_axes5_z*six_r_o_1_in_axes5_z + six_r_e_2_in_axes5_z*six_r_o_2_in_axes5_z +
-            six_r_e_2_in_axes5_z*six_r_o_3_in_axes5_z - six_r_o_5_t
+        six_r_e_2_in_axes5_z*six_r_o_2_in_axes5_z + six_r_e_2_in_axes5_z*six_r_o_3_in_axes5_z -
+            six_r_o_5_t - six_r_e_1_in_axes5_z*six_r_o_1_t
         )
         # (six_r-d_alpha_5) coefficient of the acceleration in: angular acceleration of link 5
         six_r_d_alpha_5_in_axes5_xz = (
@@ -3159,7 +3308,7 @@ def _run_dynamics(m, X, V, q):
         )
         six_r_d_alpha_5_in_axes5_yz = (
         six_r_e_1_in_axes5_y*six_r_w_1_in_axes5_z + six_r_e_2_in_axes5_y*six_r_w_2_in_axes5_z +
-            six_r_e_2_in_axes5_y*six_r_w_3_in_axes5_z + six_r_e_4_in_axes5_y*six_r_w_4_in_axes5_z
+            six_r_e_2_in_axes5_y*six_r_w_3_in_axes5_z - six_r_J_5_t*six_r_w_4_in_axes5_z
         )
         six_r_d_alpha_5_in_axes5_zy = (
         six_r_w_5_in_axes5_y + six_r_e_1_in_axes5_z*six_r_w_1_in_axes5_y +
@@ -3171,15 +3320,15 @@ def _run_dynamics(m, X, V, q):
         )
         # (six_r-alpha_5_o) remainder without the acceleration in: angular acceleration of link 5
         six_r_alpha_5_o_in_axes5_x = (
-        six_r_zeta_5_in_axes5_x + six_r_alpha_4_o_in_axes4_y*six_r_e_4_in_axes5_y +
+        six_r_zeta_5_in_axes5_x + six_r_J_5_t*six_r_alpha_4_o_in_axes4_x +
             six_r_alpha_4_o_in_axes4_z*six_r_e_4_in_axes5_x
         )
         six_r_alpha_5_o_in_axes5_y = (
-        six_r_alpha_4_o_in_axes4_z*six_r_e_4_in_axes5_y - six_r_zeta_5_t -
-            six_r_alpha_4_o_in_axes4_y*six_r_e_4_in_axes5_x
+        six_r_alpha_4_o_in_axes4_x*six_r_e_4_in_axes5_x - six_r_zeta_5_t -
+            six_r_J_5_t*six_r_alpha_4_o_in_axes4_z
         )
         six_r_alpha_5_o_in_axes5_z = (
-        six_r_alpha_4_o_in_axes4_x + inv_six_r_w_1_t_12*(six_r_qdd_1_o_t_2*six_r_w_1_t_14 +
+        six_r_alpha_4_o_in_axes4_y + inv_six_r_w_1_t_12*(six_r_qdd_1_o_t_2*six_r_w_1_t_14 +
             six_r_qdd_1_o_t_3*six_r_w_1_t_25 + six_r_qdd_1_o_t_5*six_r_w_1_t_18 +
             six_r_rel_o_in_axes5_y*six_r_w_1_t_13 - six_r_qdd_1_o_t_4*six_r_w_1_t_22 -
             six_r_qdd_4_o*six_r_w_1_t_15)
@@ -3194,86 +3343,86 @@ def _run_dynamics(m, X, V, q):
         # (six_r-a_o_3_o) remainder without the acceleration in: acceleration of the origin of joint 3
         six_r_a_o_3_o_t = six_r_omega_1_in_axes2_y*six_r_omega_1_in_axes2_y
         six_r_a_o_3_o_t_2 = six_r_qd_1_t_4*six_r_qd_1_t_4
-        six_r_a_o_3_o_t_3 = six_r_joint3_offset_x*(six_r_a_o_3_o_t + six_r_a_o_3_o_t_2)
+        six_r_a_o_3_o_in_axes2_x = -six_r_joint3_offset_x*(six_r_a_o_3_o_t + six_r_a_o_3_o_t_2)
         six_r_a_o_3_o_in_axes2_y = six_r_B_2_o_in_axes2_yx*six_r_joint3_offset_x
         six_r_a_o_3_o_in_axes2_z = six_r_B_2_o_in_axes2_zx*six_r_joint3_offset_x
         six_r_a_o_3_o_in_axes3_x = (
-        six_r_a_o_3_o_in_axes2_y*six_r_s_3 - six_r_a_o_3_o_t_3*six_r_c_3
+        six_r_a_o_3_o_in_axes2_x*six_r_s_3 - six_r_a_o_3_o_in_axes2_y*six_r_c_3
         )
         six_r_a_o_3_o_in_axes3_y = (
-        six_r_a_o_3_o_in_axes2_y*six_r_c_3 + six_r_a_o_3_o_t_3*six_r_s_3
+        six_r_a_o_3_o_in_axes2_x*six_r_c_3 + six_r_a_o_3_o_in_axes2_y*six_r_s_3
         )
         # (six_r-a_o_4_o) remainder without the acceleration in: acceleration of the origin of joint 4
-        six_r_a_o_4_o_in_axes3_x = six_r_a_o_3_o_in_axes3_x - six_r_W_3_t_3*six_r_joint4_offset_x
-        six_r_a_o_4_o_in_axes3_y = (
-        six_r_a_o_3_o_in_axes3_y + six_r_B_3_o_in_axes3_yx*six_r_joint4_offset_x
+        six_r_a_o_4_o_in_axes3_x = (
+        six_r_a_o_3_o_in_axes3_x + six_r_B_3_o_in_axes3_xy*six_r_joint4_offset_x
         )
+        six_r_a_o_4_o_in_axes3_y = six_r_a_o_3_o_in_axes3_y - six_r_W_3_t_3*six_r_joint4_offset_x
         six_r_a_o_4_o_in_axes3_z = (
-        six_r_a_o_3_o_in_axes2_z + six_r_B_3_o_in_axes3_zx*six_r_joint4_offset_x
+        six_r_a_o_3_o_in_axes2_z + six_r_B_3_o_in_axes3_zy*six_r_joint4_offset_x
         )
         # (six_r-acc_3_o) remainder without the acceleration in: acceleration of the reference point of link 3, less gravity
         six_r_g_in_axes1_x = six_r_acc_3_t*six_r_c_1 + six_r_acc_3_t_2*six_r_s_1
         six_r_g_in_axes1_y = six_r_acc_3_t_2*six_r_c_1 - six_r_acc_3_t*six_r_s_1
-        six_r_g_in_axes2_x = six_r_c_2*six_r_g_in_axes1_y + six_r_g_in_axes1_z*six_r_s_2
-        six_r_g_in_axes2_y = six_r_c_2*six_r_g_in_axes1_z - six_r_g_in_axes1_y*six_r_s_2
-        six_r_g_in_axes3_x = six_r_c_3*six_r_g_in_axes2_x + six_r_g_in_axes2_y*six_r_s_3
-        six_r_g_in_axes3_y = six_r_c_3*six_r_g_in_axes2_y - six_r_g_in_axes2_x*six_r_s_3
+        six_r_g_in_axes2_x = six_r_c_2*six_r_g_in_axes1_z + six_r_g_in_axes1_x*six_r_s_2
+        six_r_g_in_axes2_y = six_r_c_2*six_r_g_in_axes1_x - six_r_g_in_axes1_z*six_r_s_2
+        six_r_g_in_axes3_x = six_r_g_in_axes2_x*six_r_s_3 - six_r_c_3*six_r_g_in_axes2_y
+        six_r_g_in_axes3_y = six_r_c_3*six_r_g_in_axes2_x + six_r_g_in_axes2_y*six_r_s_3
         six_r_acc_3_o_in_axes3_x = six_r_a_o_3_o_in_axes3_x - six_r_g_in_axes3_x
         six_r_acc_3_o_in_axes3_y = six_r_a_o_3_o_in_axes3_y - six_r_g_in_axes3_y
-        six_r_acc_3_o_in_axes3_z = six_r_a_o_3_o_in_axes2_z - six_r_g_in_axes1_x
+        six_r_acc_3_o_in_axes3_z = six_r_a_o_3_o_in_axes2_z - six_r_g_in_axes1_y
         # (six_r-f_3_o) remainder without the acceleration in: inertia force of link 3 less its weight
-        six_r_f_3_o_t = six_r_omega_2_in_axes3_x*six_r_omega_2_in_axes3_x
+        six_r_f_3_o_t = six_r_omega_2_in_axes3_y*six_r_omega_2_in_axes3_y
         six_r_f_3_o_in_axes3_x = (
-        six_r_B_3_o_in_axes3_xy*six_r_h_3_in_spec3_y +
+        six_r_B_3_o_in_axes3_xy*six_r_h_3_in_spec3_x +
             six_r_B_3_o_in_axes3_xz*six_r_h_3_in_spec3_z +
-            six_r_acc_3_o_in_axes3_x*six_r_link3_mass - six_r_W_3_t_3*six_r_h_3_in_spec3_x
-        )
-        six_r_f_3_o_in_axes3_y = (
-        six_r_B_3_o_in_axes3_yx*six_r_h_3_in_spec3_x +
-            six_r_B_3_o_in_axes3_yz*six_r_h_3_in_spec3_z +
-            six_r_acc_3_o_in_axes3_y*six_r_link3_mass - six_r_h_3_in_spec3_y*(six_r_W_3_t_2 +
+            six_r_acc_3_o_in_axes3_x*six_r_link3_mass + six_r_h_3_in_spec3_y*(six_r_W_3_t_2 +
             six_r_f_3_o_t)
         )
+        six_r_f_3_o_in_axes3_y = (
+        six_r_B_3_o_in_axes3_yz*six_r_h_3_in_spec3_z + six_r_acc_3_o_in_axes3_y*six_r_link3_mass -
+            six_r_B_3_o_in_axes3_yx*six_r_h_3_in_spec3_y - six_r_W_3_t_3*six_r_h_3_in_spec3_x
+        )
         six_r_f_3_o_in_axes3_z = (
-        six_r_B_3_o_in_axes3_zx*six_r_h_3_in_spec3_x +
-            six_r_B_3_o_in_axes3_zy*six_r_h_3_in_spec3_y +
-            six_r_acc_3_o_in_axes3_z*six_r_link3_mass - six_r_h_3_in_spec3_z*(six_r_W_3_t +
+        six_r_B_3_o_in_axes3_zy*six_r_h_3_in_spec3_x + six_r_acc_3_o_in_axes3_z*six_r_link3_mass -
+            six_r_B_3_o_in_axes3_zx*six_r_h_3_in_spec3_y - six_r_h_3_in_spec3_z*(six_r_W_3_t +
             six_r_f_3_o_t)
         )
         # (six_r-acc_4_o) remainder without the acceleration in: acceleration of the reference point of link 4, less gravity
         six_r_acc_4_o_in_axes4_x = (
-        six_r_a_o_4_o_in_axes3_y*six_r_h_4_t + six_r_a_o_4_o_in_axes3_z*six_r_e_2_in_axes5_z -
-            six_r_e_2_in_axes5_z*six_r_g_in_axes1_x - six_r_g_in_axes3_y*six_r_h_4_t
+        six_r_a_o_4_o_in_axes3_z*six_r_h_4_t + six_r_e_2_in_axes5_z*six_r_g_in_axes3_x -
+            six_r_a_o_4_o_in_axes3_x*six_r_e_2_in_axes5_z - six_r_g_in_axes1_y*six_r_h_4_t
         )
         six_r_acc_4_o_in_axes4_y = (
-        six_r_a_o_4_o_in_axes3_z*six_r_h_4_t + six_r_e_2_in_axes5_z*six_r_g_in_axes3_y -
-            six_r_a_o_4_o_in_axes3_y*six_r_e_2_in_axes5_z - six_r_g_in_axes1_x*six_r_h_4_t
+        six_r_a_o_4_o_in_axes3_x*six_r_h_4_t + six_r_a_o_4_o_in_axes3_z*six_r_e_2_in_axes5_z -
+            six_r_e_2_in_axes5_z*six_r_g_in_axes1_y - six_r_g_in_axes3_x*six_r_h_4_t
         )
-        six_r_acc_4_o_in_axes4_z = six_r_a_o_4_o_in_axes3_x - six_r_g_in_axes3_x
+        six_r_acc_4_o_in_axes4_z = six_r_a_o_4_o_in_axes3_y - six_r_g_in_axes3_y
         # (six_r-f_4_o) remainder without the acceleration in: inertia force of link 4 less its weight
-        six_r_f_4_o_t = six_r_omega_3_in_axes4_y*six_r_omega_3_in_axes4_y
+        six_r_f_4_o_t = six_r_omega_3_in_axes4_x*six_r_omega_3_in_axes4_x
         six_r_f_4_o_t_2 = six_r_omega_4_in_axes4_z*six_r_omega_4_in_axes4_z
         six_r_f_4_o_in_axes4_x = (
-        six_r_B_4_o_in_axes4_xz*six_r_h_4_in_spec4_x + six_r_acc_4_o_in_axes4_x*six_r_link4_mass -
-            six_r_B_4_o_in_axes4_xy*six_r_h_4_in_spec4_y - six_r_h_4_in_spec4_z*(six_r_f_4_o_t +
+        six_r_B_4_o_in_axes4_xy*six_r_h_4_in_spec4_z +
+            six_r_B_4_o_in_axes4_xz*six_r_h_4_in_spec4_x +
+            six_r_acc_4_o_in_axes4_x*six_r_link4_mass - six_r_h_4_in_spec4_y*(six_r_bias_t +
             six_r_f_4_o_t_2)
         )
         six_r_f_4_o_in_axes4_y = (
-        six_r_B_4_o_in_axes4_yx*six_r_h_4_in_spec4_z +
+        six_r_B_4_o_in_axes4_yx*six_r_h_4_in_spec4_y +
             six_r_B_4_o_in_axes4_yz*six_r_h_4_in_spec4_x +
-            six_r_acc_4_o_in_axes4_y*six_r_link4_mass + six_r_h_4_in_spec4_y*(six_r_bias_t +
+            six_r_acc_4_o_in_axes4_y*six_r_link4_mass - six_r_h_4_in_spec4_z*(six_r_f_4_o_t +
             six_r_f_4_o_t_2)
         )
         six_r_f_4_o_in_axes4_z = (
-        six_r_B_4_o_in_axes4_zx*six_r_h_4_in_spec4_z + six_r_acc_4_o_in_axes4_z*six_r_link4_mass -
-            six_r_B_4_o_in_axes4_zy*six_r_h_4_in_spec4_y - six_r_h_4_in_spec4_x*(six_r_bias_t +
+        six_r_B_4_o_in_axes4_zx*six_r_h_4_in_spec4_y +
+            six_r_B_4_o_in_axes4_zy*six_r_h_4_in_spec4_z +
+            six_r_acc_4_o_in_axes4_z*six_r_link4_mass - six_r_h_4_in_spec4_x*(six_r_bias_t +
             six_r_f_4_o_t)
         )
-        six_r_f_4_o_in_axes3_y = (
-        six_r_f_4_o_in_axes4_x*six_r_h_4_t - six_r_e_2_in_axes5_z*six_r_f_4_o_in_axes4_y
+        six_r_f_4_o_in_axes3_x = (
+        six_r_f_4_o_in_axes4_y*six_r_h_4_t - six_r_e_2_in_axes5_z*six_r_f_4_o_in_axes4_x
         )
         six_r_f_4_o_in_axes3_z = (
-        six_r_e_2_in_axes5_z*six_r_f_4_o_in_axes4_x + six_r_f_4_o_in_axes4_y*six_r_h_4_t
+        six_r_e_2_in_axes5_z*six_r_f_4_o_in_axes4_y + six_r_f_4_o_in_axes4_x*six_r_h_4_t
         )
         # (six_r-acc_5_o) remainder without the acceleration in: acceleration of the reference point of link 5, less gravity
         six_r_acc_5_o_in_axes5_x = (
@@ -3292,7 +3441,7 @@ def _run_dynamics(m, X, V, q):
         six_r_d_phi_5_in_axes5_xx = (
         six_r_h_5_in_spec5_z*(six_r_e_1_in_axes5_y*six_r_w_1_in_axes5_x +
             six_r_e_2_in_axes5_y*six_r_w_2_in_axes5_x + six_r_e_2_in_axes5_y*six_r_w_3_in_axes5_x
-            + six_r_e_4_in_axes5_y*six_r_w_4_in_axes5_x) -
+            - six_r_J_5_t*six_r_w_4_in_axes5_x) -
             six_r_h_5_in_spec5_y*(six_r_e_1_in_axes5_z*six_r_w_1_in_axes5_x +
             six_r_e_2_in_axes5_z*six_r_w_2_in_axes5_x + six_r_e_2_in_axes5_z*six_r_w_3_in_axes5_x
             - six_r_w_5_t_5)
@@ -3308,124 +3457,114 @@ def _run_dynamics(m, X, V, q):
             six_r_J_5_in_spec5_zz*six_r_e_1_in_axes5_z
         )
         # (six_r-Jc_4) inertia tensor of the links from 4 outwards about joint 4, that of the last link about the connection point
-        six_r_Jc_4_t = six_r_J_5_in_spec5_xy*six_r_e_4_in_axes5_x
-        six_r_Jc_4_t_2 = six_r_J_5_in_spec5_xx*six_r_e_4_in_axes5_y - six_r_Jc_4_t
-        six_r_Jc_4_t_3 = -six_r_J_5_in_spec5_xy*six_r_e_4_in_axes5_y
-        six_r_Jc_4_t_4 = -six_r_Jc_4_t_3 - six_r_J_5_in_spec5_yy*six_r_e_4_in_axes5_x
+        six_r_Jc_4_t = six_r_J_5_in_spec5_xy*six_r_J_5_t
+        six_r_Jc_4_t_2 = six_r_J_5_in_spec5_xy*six_r_e_4_in_axes5_x
+        six_r_Jc_4_t_3 = six_r_Jc_4_t_2 + six_r_J_5_in_spec5_xx*six_r_J_5_t
+        six_r_Jc_4_t_4 = six_r_Jc_4_t + six_r_J_5_in_spec5_yy*six_r_e_4_in_axes5_x
+        six_r_Jc_4_in_axes4_xx = (
+        six_r_J_4_in_spec4_yy + six_r_J_5_t*six_r_Jc_4_t_3 + six_r_Jc_4_t_4*six_r_e_4_in_axes5_x
+        )
         six_r_Jc_4_in_axes4_xy = (
-        six_r_J_5_in_spec5_xz*six_r_e_4_in_axes5_y - six_r_J_4_in_spec4_yz -
+        six_r_J_4_in_spec4_yz + six_r_J_5_in_spec5_xz*six_r_J_5_t +
             six_r_J_5_in_spec5_yz*six_r_e_4_in_axes5_x
         )
-        six_r_Jc_4_in_axes4_xz = six_r_J_4_in_spec4_xz + six_r_J_5_in_axes4_xz
-        six_r_Jc_4_in_axes4_yy = (
-        six_r_J_4_in_spec4_yy + six_r_Jc_4_t_2*six_r_e_4_in_axes5_y -
-            six_r_Jc_4_t_4*six_r_e_4_in_axes5_x
+        six_r_Jc_4_in_axes4_xz = (
+        six_r_J_4_in_spec4_xy + six_r_Jc_4_t_3*six_r_e_4_in_axes5_x - six_r_J_5_t*six_r_Jc_4_t_4
         )
-        six_r_Jc_4_in_axes4_yz = (
-        six_r_Jc_4_t_2*six_r_e_4_in_axes5_x + six_r_Jc_4_t_4*six_r_e_4_in_axes5_y -
-            six_r_J_4_in_spec4_xy
-        )
+        six_r_Jc_4_in_axes4_yz = six_r_J_4_in_spec4_xz + six_r_J_5_in_axes4_yz
         six_r_Jc_4_in_axes4_zz = (
         six_r_J_4_in_spec4_xx + six_r_e_4_in_axes5_x*(six_r_J_5_in_spec5_xx*six_r_e_4_in_axes5_x -
-            six_r_Jc_4_t_3) + six_r_e_4_in_axes5_y*(six_r_Jc_4_t +
-            six_r_J_5_in_spec5_yy*six_r_e_4_in_axes5_y)
+            six_r_Jc_4_t) - six_r_J_5_t*(six_r_Jc_4_t_2 - six_r_J_5_in_spec5_yy*six_r_J_5_t)
         )
         six_r_Jc_4_in_axes3_xy = (
-        six_r_Jc_4_in_axes4_xz*six_r_h_4_t - six_r_Jc_4_in_axes4_yz*six_r_e_2_in_axes5_z
+        six_r_Jc_4_in_axes4_yz*six_r_h_4_t - six_r_Jc_4_in_axes4_xz*six_r_e_2_in_axes5_z
         )
-        six_r_Jc_4_in_axes3_xz = (
-        six_r_Jc_4_in_axes4_xz*six_r_e_2_in_axes5_z + six_r_Jc_4_in_axes4_yz*six_r_h_4_t
-        )
-        # (six_r-P_c_4) force that accelerates joint 4, per unit
-        six_r_P_c_4_in_axes3_y = (
-        six_r_h_4_in_spec4_y*six_r_h_4_t - six_r_e_2_in_axes5_z*six_r_h_4_in_spec4_z
+        six_r_Jc_4_in_axes3_yz = (
+        six_r_Jc_4_in_axes4_xz*six_r_h_4_t + six_r_Jc_4_in_axes4_yz*six_r_e_2_in_axes5_z
         )
         # (six_r-L_c_4_3) moment about joint 3 that accelerates joint 4, per unit
-        six_r_L_c_4_3_t = six_r_h_4_in_axes3_y*six_r_joint4_offset_x
-        six_r_L_c_4_3_t_2 = six_r_P_c_4_in_axes3_y*six_r_joint4_offset_x
-        six_r_L_c_4_3_in_axes3_y = six_r_Jc_4_in_axes3_xy - six_r_L_c_4_3_t
-        six_r_L_c_4_3_in_axes3_z = six_r_Jc_4_in_axes3_xz + six_r_L_c_4_3_t_2
+        six_r_L_c_4_3_t = six_r_h_4_in_spec3_y*six_r_joint4_offset_x
+        six_r_L_c_4_3_t_2 = -six_r_h_4_in_spec2_z*six_r_joint4_offset_x
+        six_r_L_c_4_3_in_axes3_x = six_r_Jc_4_in_axes3_xy + six_r_L_c_4_3_t
+        six_r_L_c_4_3_in_axes3_z = six_r_Jc_4_in_axes3_yz + six_r_L_c_4_3_t_2
         # (six_r-L_c_4_2) moment about joint 2 that accelerates joint 4, per unit
         six_r_L_c_4_2_in_axes2_y = (
-        six_r_Jc_4_in_axes4_zz*six_r_s_3 + six_r_L_c_4_3_in_axes3_y*six_r_c_3 -
-            six_r_h_4_in_axes3_y*six_r_joint3_offset_x
+        six_r_Jc_4_in_axes4_zz*six_r_s_3 - six_r_L_c_4_3_in_axes3_x*six_r_c_3 -
+            six_r_h_4_in_spec3_y*six_r_joint3_offset_x
         )
         six_r_L_c_4_2_in_axes2_z = (
-        six_r_L_c_4_3_in_axes3_z + six_r_P_c_4_in_axes3_y*six_r_c_3*six_r_joint3_offset_x
+        six_r_L_c_4_3_in_axes3_z - six_r_c_3*six_r_h_4_in_spec2_z*six_r_joint3_offset_x
         )
         six_r_L_c_4_2_in_axes1_z = (
-        six_r_L_c_4_2_in_axes2_y*six_r_c_2 + six_r_s_2*(six_r_Jc_4_in_axes4_zz*six_r_c_3 -
-            six_r_L_c_4_3_in_axes3_y*six_r_s_3)
+        six_r_c_2*(six_r_Jc_4_in_axes4_zz*six_r_c_3 + six_r_L_c_4_3_in_axes3_x*six_r_s_3) -
+            six_r_L_c_4_2_in_axes2_y*six_r_s_2
         )
         # (six_r-hc_3) first moment of the links from 3 outwards
-        six_r_hc_3_in_axes3_y = six_r_h_3_in_spec3_y + six_r_h_4_in_axes3_y
-        six_r_hc_3_in_axes3_z = six_r_h_3_in_spec3_z - six_r_P_c_4_in_axes3_y
-        six_r_hc_3_in_axes2_x = six_r_c_3*six_r_hc_3_in_axes3_x - six_r_hc_3_in_axes3_y*six_r_s_3
+        six_r_hc_3_in_axes3_x = -six_r_h_3_in_spec3_y - six_r_h_4_in_spec3_y
+        six_r_hc_3_in_axes3_z = six_r_h_3_in_spec3_z + six_r_h_4_in_spec2_z
+        six_r_hc_3_in_axes2_x = six_r_c_3*six_r_hc_3_in_axes3_y + six_r_hc_3_in_axes3_x*six_r_s_3
         # (six_r-Jc_3) inertia tensor of the links from 3 outwards about joint 3, that of the last link about the connection point
-        six_r_Jc_3_t = six_r_Jc_4_in_axes4_xy*six_r_e_2_in_axes5_z
-        six_r_Jc_3_t_4 = six_r_Jc_4_in_axes4_xx*six_r_h_4_t - six_r_Jc_3_t
-        six_r_Jc_3_t_5 = -six_r_Jc_4_in_axes4_xy*six_r_h_4_t
-        six_r_Jc_3_t_6 = -six_r_Jc_3_t_5 - six_r_Jc_4_in_axes4_yy*six_r_e_2_in_axes5_z
+        six_r_Jc_3_t = six_r_Jc_4_in_axes4_xy*six_r_h_4_t
+        six_r_Jc_3_t_4 = six_r_Jc_4_in_axes4_xx*six_r_e_2_in_axes5_z - six_r_Jc_3_t
+        six_r_Jc_3_t_5 = six_r_Jc_4_in_axes4_xy*six_r_e_2_in_axes5_z
+        six_r_Jc_3_t_6 = six_r_Jc_3_t_5 - six_r_Jc_4_in_axes4_yy*six_r_h_4_t
         six_r_Jc_3_in_axes3_xx = (
-        six_r_J_3_in_spec3_xx + six_r_Jc_3_t_3 + six_r_Jc_4_in_axes4_zz - 2.0*six_r_Jc_3_t_2
+        six_r_J_3_in_spec3_yy + six_r_Jc_3_t_3 + six_r_Jc_3_t_4*six_r_e_2_in_axes5_z -
+            six_r_Jc_3_t_6*six_r_h_4_t
         )
-        six_r_Jc_3_in_axes3_xy = six_r_J_3_in_spec3_xy + six_r_Jc_4_in_axes3_xy - six_r_L_c_4_3_t
+        six_r_Jc_3_in_axes3_xy = six_r_Jc_4_in_axes3_xy + six_r_L_c_4_3_t - six_r_J_3_in_spec3_xy
         six_r_Jc_3_in_axes3_xz = (
-        six_r_J_3_in_spec3_xz + six_r_Jc_4_in_axes3_xz + six_r_L_c_4_3_t_2
+        -six_r_J_3_in_spec3_yz - six_r_Jc_3_t_4*six_r_h_4_t - six_r_Jc_3_t_6*six_r_e_2_in_axes5_z
         )
         six_r_Jc_3_in_axes3_yy = (
-        six_r_J_3_in_spec3_yy + six_r_Jc_3_t_3 + six_r_Jc_3_t_4*six_r_h_4_t -
-            six_r_Jc_3_t_6*six_r_e_2_in_axes5_z
+        six_r_J_3_in_spec3_xx + six_r_Jc_3_t_3 + six_r_Jc_4_in_axes4_zz - 2.0*six_r_Jc_3_t_2
         )
         six_r_Jc_3_in_axes3_yz = (
-        six_r_J_3_in_spec3_yz + six_r_Jc_3_t_4*six_r_e_2_in_axes5_z + six_r_Jc_3_t_6*six_r_h_4_t
+        six_r_J_3_in_spec3_xz + six_r_Jc_4_in_axes3_yz + six_r_L_c_4_3_t_2
         )
         six_r_Jc_3_in_axes3_zz = (
-        six_r_J_3_in_spec3_zz + six_r_Jc_3_t_3 +
-            six_r_e_2_in_axes5_z*(six_r_Jc_4_in_axes4_xx*six_r_e_2_in_axes5_z - six_r_Jc_3_t_5) +
-            six_r_h_4_t*(six_r_Jc_3_t + six_r_Jc_4_in_axes4_yy*six_r_h_4_t)
-        )
-        six_r_Jc_3_in_axes2_xz = (
-        six_r_Jc_3_in_axes3_xz*six_r_c_3 - six_r_Jc_3_in_axes3_yz*six_r_s_3
+        six_r_J_3_in_spec3_zz + six_r_Jc_3_t_3 + six_r_e_2_in_axes5_z*(six_r_Jc_3_t +
+            six_r_Jc_4_in_axes4_yy*six_r_e_2_in_axes5_z) + six_r_h_4_t*(six_r_Jc_3_t_5 +
+            six_r_Jc_4_in_axes4_xx*six_r_h_4_t)
         )
         six_r_Jc_3_in_axes2_yz = (
+        six_r_Jc_3_in_axes3_yz*six_r_s_3 - six_r_Jc_3_in_axes3_xz*six_r_c_3
+        )
+        six_r_Jc_3_in_axes2_xz = (
         six_r_Jc_3_in_axes3_xz*six_r_s_3 + six_r_Jc_3_in_axes3_yz*six_r_c_3
         )
         # (six_r-P_c_3) force that accelerates joint 3, per unit
-        six_r_P_c_3_in_axes2_x = (
-        -six_r_c_3*six_r_hc_3_in_axes3_y - six_r_hc_3_in_axes3_x*six_r_s_3
-        )
+        six_r_P_c_3_in_axes2_x = six_r_c_3*six_r_hc_3_in_axes3_x - six_r_hc_3_in_axes3_y*six_r_s_3
         # (six_r-L_c_3_2) moment about joint 2 that accelerates joint 3, per unit
         six_r_L_c_3_2_in_axes2_z = (
         six_r_Jc_3_in_axes3_zz + six_r_hc_3_in_axes2_x*six_r_joint3_offset_x
         )
         six_r_L_c_3_2_in_axes1_z = (
-        six_r_Jc_3_in_axes2_xz*six_r_s_2 + six_r_Jc_3_in_axes2_yz*six_r_c_2
+        six_r_Jc_3_in_axes2_xz*six_r_c_2 - six_r_Jc_3_in_axes2_yz*six_r_s_2
         )
         # (six_r-Jc_2) inertia tensor of the links from 2 outwards about joint 2, that of the last link about the connection point
         six_r_Jc_2_t_2 = six_r_Jc_3_in_axes3_xy*six_r_s_3
-        six_r_Jc_2_t_3 = six_r_Jc_3_in_axes3_xx*six_r_c_3 - six_r_Jc_2_t_2
-        six_r_Jc_2_t_4 = six_r_Jc_3_in_axes3_xy*six_r_c_3
-        six_r_Jc_2_t_5 = six_r_Jc_2_t_4 - six_r_Jc_3_in_axes3_yy*six_r_s_3
+        six_r_Jc_2_t_3 = six_r_Jc_3_in_axes3_xy*six_r_c_3
+        six_r_Jc_2_t_4 = six_r_Jc_2_t_3 + six_r_Jc_3_in_axes3_xx*six_r_s_3
+        six_r_Jc_2_t_5 = six_r_Jc_2_t_2 + six_r_Jc_3_in_axes3_yy*six_r_c_3
         six_r_Jc_2_t_6 = six_r_joint3_offset_x*(six_r_Jc_2_t + six_r_hc_3_in_axes2_x)
         six_r_Jc_2_t_7 = 2.0*six_r_Jc_2_t_6
         six_r_Jc_2_in_axes2_xy = (
-        six_r_J_2_in_spec2_xy + six_r_Jc_2_t_3*six_r_s_3 + six_r_Jc_2_t_5*six_r_c_3 +
-            six_r_P_c_3_in_axes2_x*six_r_joint3_offset_x
+        six_r_J_2_in_spec2_xy + six_r_Jc_2_t_5*six_r_s_3 +
+            six_r_P_c_3_in_axes2_x*six_r_joint3_offset_x - six_r_Jc_2_t_4*six_r_c_3
         )
         six_r_Jc_2_in_axes2_zz = six_r_J_2_in_spec2_zz + six_r_Jc_2_t_7 + six_r_Jc_3_in_axes3_zz
-        six_r_Jc_2_in_axes1_xz = (
-        six_r_c_2*(six_r_J_2_in_spec2_yz + six_r_Jc_3_in_axes2_yz) +
-            six_r_s_2*(six_r_J_2_in_spec2_xz + six_r_Jc_3_in_axes2_xz -
-            six_r_hc_3_in_axes3_z*six_r_joint3_offset_x)
+        six_r_Jc_2_in_axes1_yz = (
+        six_r_c_2*(six_r_J_2_in_spec2_xz + six_r_Jc_3_in_axes2_xz -
+            six_r_hc_3_in_axes3_z*six_r_joint3_offset_x) - six_r_s_2*(six_r_J_2_in_spec2_yz +
+            six_r_Jc_3_in_axes2_yz)
         )
         six_r_Jc_2_in_axes1_zz = (
-        six_r_c_2*(six_r_Jc_2_in_axes2_xy*six_r_s_2 + six_r_c_2*(six_r_J_2_in_spec2_yy +
-            six_r_Jc_2_t_7 + six_r_c_3*(six_r_Jc_2_t_2 + six_r_Jc_3_in_axes3_yy*six_r_c_3) +
-            six_r_s_3*(six_r_Jc_2_t_4 + six_r_Jc_3_in_axes3_xx*six_r_s_3))) +
-            six_r_s_2*(six_r_Jc_2_in_axes2_xy*six_r_c_2 + six_r_s_2*(six_r_J_2_in_spec2_xx +
-            six_r_Jc_2_t_7 + six_r_Jc_2_t_3*six_r_c_3 - 2.0*six_r_Jc_2_t_6 -
-            six_r_Jc_2_t_5*six_r_s_3))
+        six_r_c_2*(six_r_c_2*(six_r_J_2_in_spec2_xx + six_r_Jc_2_t_7 + six_r_Jc_2_t_4*six_r_s_3 +
+            six_r_Jc_2_t_5*six_r_c_3 - 2.0*six_r_Jc_2_t_6) - six_r_Jc_2_in_axes2_xy*six_r_s_2) -
+            six_r_s_2*(six_r_Jc_2_in_axes2_xy*six_r_c_2 - six_r_s_2*(six_r_J_2_in_spec2_yy +
+            six_r_Jc_2_t_7 + six_r_c_3*(six_r_Jc_3_in_axes3_xx*six_r_c_3 - six_r_Jc_2_t_2) -
+            six_r_s_3*(six_r_Jc_2_t_3 - six_r_Jc_3_in_axes3_yy*six_r_s_3)))
         )
         # (six_r-Jc_1) inertia tensor of the links from 1 outwards about joint 1, that of the last link about the connection point
         six_r_Jc_1_in_axes1_zz = six_r_J_1_in_spec1_xx + six_r_Jc_2_in_axes1_zz
@@ -3459,22 +3598,22 @@ def _run_dynamics(m, X, V, q):
         # (six_r-dalpha_Gamma_5) coefficient of the acceleration in: moment about axis 5 of the distal links' inertia and weight
         six_r_dalpha_Gamma_5_in_axes5_x = (
         six_r_D_1_5*six_r_o_1_in_axes5_x + six_r_J_5_in_spec5_zz*six_r_o_5_in_axes5_x -
-            six_r_D_3_5*six_r_o_2_t - six_r_D_3_5*six_r_o_3_t - six_r_J_5_in_axes4_xz*six_r_o_4_t
+            six_r_D_3_5*six_r_o_2_t - six_r_D_3_5*six_r_o_3_t - six_r_J_5_in_axes4_yz*six_r_o_4_t
         )
         six_r_dalpha_Gamma_5_in_axes5_y = (
         six_r_D_1_5*six_r_o_1_in_axes5_y + six_r_D_3_5*six_r_o_2_in_axes5_y +
-            six_r_D_3_5*six_r_o_3_in_axes5_y + six_r_J_5_in_axes4_xz*six_r_o_4_in_axes5_y +
+            six_r_D_3_5*six_r_o_3_in_axes5_y + six_r_J_5_in_axes4_yz*six_r_o_4_in_axes5_y +
             six_r_J_5_in_spec5_zz*six_r_o_5_in_axes5_y
         )
         six_r_dalpha_Gamma_5_in_axes5_z = (
-        six_r_D_1_5*six_r_o_1_in_axes5_z + six_r_D_3_5*six_r_o_2_in_axes5_z +
-            six_r_D_3_5*six_r_o_3_in_axes5_z + six_r_J_5_in_axes4_xz*six_r_o_4_in_axes5_z -
+        six_r_D_3_5*six_r_o_2_in_axes5_z + six_r_D_3_5*six_r_o_3_in_axes5_z +
+            six_r_J_5_in_axes4_yz*six_r_o_4_in_axes5_z - six_r_D_1_5*six_r_o_1_t -
             six_r_J_5_in_spec5_zz*six_r_o_5_t
         )
         # (six_r-d_Gamma_5) coefficient of the acceleration in: moment about axis 5 of the distal links' inertia and weight
         six_r_d_Gamma_5_t = inv_six_r_w_1_t_12*six_r_J_5_in_spec5_zz
         six_r_d_Gamma_5_t_2 = (
-        inv_six_r_w_1_t_28*(six_r_J_5_in_axes4_xz - six_r_d_Gamma_5_t*six_r_w_1_t_15)
+        inv_six_r_w_1_t_28*(six_r_J_5_in_axes4_yz - six_r_d_Gamma_5_t*six_r_w_1_t_15)
         )
         six_r_d_Gamma_5_t_3 = (
         inv_six_r_w_1_t_49*(six_r_D_1_5 + six_r_d_Gamma_5_t_2*six_r_w_1_t_33 -
@@ -3504,61 +3643,62 @@ def _run_dynamics(m, X, V, q):
         )
         # (six_r-mu_4_o) remainder without the acceleration in: inertia moment of the links that turn with link 4, about their reference points
         six_r_mu_4_o_in_axes4_x = (
-        six_r_B_4_o_in_axes4_yx*six_r_J_4_in_spec4_xz +
-            six_r_B_4_o_in_axes4_zx*six_r_J_4_in_spec4_yz +
-            six_r_B_4_o_in_axes4_zy*six_r_Sigma_4_in_axes4_yy -
+        six_r_B_4_o_in_axes4_yx*six_r_J_4_in_spec4_xy +
+            six_r_B_4_o_in_axes4_zy*six_r_Sigma_4_in_axes4_yy +
+            six_r_J_4_in_spec4_xz*(six_r_bias_t - six_r_f_4_o_t_2) +
+            six_r_acc_4_o_in_axes4_z*six_r_h_4_in_spec4_z -
             six_r_B_4_o_in_axes4_yz*six_r_Sigma_4_in_axes4_zz -
-            six_r_J_4_in_spec4_xy*(six_r_f_4_o_t - six_r_f_4_o_t_2) -
-            six_r_acc_4_o_in_axes4_y*six_r_h_4_in_spec4_x -
-            six_r_acc_4_o_in_axes4_z*six_r_h_4_in_spec4_y
+            six_r_B_4_o_in_axes4_zx*six_r_J_4_in_spec4_yz -
+            six_r_acc_4_o_in_axes4_y*six_r_h_4_in_spec4_x
         )
         six_r_mu_4_o_in_axes4_y = (
-        six_r_B_4_o_in_axes4_xy*six_r_J_4_in_spec4_xy +
-            six_r_B_4_o_in_axes4_xz*six_r_Sigma_4_in_axes4_zz +
+        six_r_B_4_o_in_axes4_xz*six_r_Sigma_4_in_axes4_zz +
+            six_r_B_4_o_in_axes4_zy*six_r_J_4_in_spec4_yz +
             six_r_acc_4_o_in_axes4_x*six_r_h_4_in_spec4_x -
+            six_r_B_4_o_in_axes4_xy*six_r_J_4_in_spec4_xz -
             six_r_B_4_o_in_axes4_zx*six_r_Sigma_4_in_axes4_xx -
-            six_r_B_4_o_in_axes4_zy*six_r_J_4_in_spec4_yz - six_r_J_4_in_spec4_xz*(six_r_bias_t -
-            six_r_f_4_o_t_2) - six_r_acc_4_o_in_axes4_z*six_r_h_4_in_spec4_z
+            six_r_J_4_in_spec4_xy*(six_r_f_4_o_t - six_r_f_4_o_t_2) -
+            six_r_acc_4_o_in_axes4_z*six_r_h_4_in_spec4_y
         )
         six_r_mu_4_o_in_axes4_z = (
-        six_r_B_4_o_in_axes4_yx*six_r_Sigma_4_in_axes4_xx +
-            six_r_acc_4_o_in_axes4_x*six_r_h_4_in_spec4_y +
-            six_r_acc_4_o_in_axes4_y*six_r_h_4_in_spec4_z -
+        six_r_B_4_o_in_axes4_xz*six_r_J_4_in_spec4_xz +
+            six_r_B_4_o_in_axes4_yx*six_r_Sigma_4_in_axes4_xx +
+            six_r_J_4_in_spec4_yz*(six_r_f_4_o_t - six_r_bias_t) +
+            six_r_acc_4_o_in_axes4_y*six_r_h_4_in_spec4_y -
             six_r_B_4_o_in_axes4_xy*six_r_Sigma_4_in_axes4_yy -
-            six_r_B_4_o_in_axes4_xz*six_r_J_4_in_spec4_xy -
-            six_r_B_4_o_in_axes4_yz*six_r_J_4_in_spec4_xz - six_r_J_4_in_spec4_yz*(six_r_bias_t -
-            six_r_f_4_o_t)
+            six_r_B_4_o_in_axes4_yz*six_r_J_4_in_spec4_xy -
+            six_r_acc_4_o_in_axes4_x*six_r_h_4_in_spec4_z
         )
         # (six_r-N_4_o) remainder without the acceleration in: moment about joint 4 of the links from 4 outwards, the force at the connection point left out
-        six_r_N_4_o_in_axes4_x = six_r_mu_4_o_in_axes4_x + six_r_mu_5_o_in_axes5_z
-        six_r_N_4_o_in_axes4_y = (
-        six_r_mu_4_o_in_axes4_y + six_r_e_4_in_axes5_y*six_r_mu_5_o_in_axes5_x -
+        six_r_N_4_o_in_axes4_x = (
+        six_r_mu_4_o_in_axes4_x + six_r_J_5_t*six_r_mu_5_o_in_axes5_x +
             six_r_e_4_in_axes5_x*six_r_mu_5_o_in_axes5_y
         )
+        six_r_N_4_o_in_axes4_y = six_r_mu_4_o_in_axes4_y + six_r_mu_5_o_in_axes5_z
         six_r_N_4_o_in_axes4_z = (
-        six_r_mu_4_o_in_axes4_z + six_r_e_4_in_axes5_x*six_r_mu_5_o_in_axes5_x +
-            six_r_e_4_in_axes5_y*six_r_mu_5_o_in_axes5_y
+        six_r_mu_4_o_in_axes4_z + six_r_e_4_in_axes5_x*six_r_mu_5_o_in_axes5_x -
+            six_r_J_5_t*six_r_mu_5_o_in_axes5_y
         )
         # (six_r-dalpha_Gamma_4) coefficient of the acceleration in: moment about axis 4 of the distal links' inertia and weight
         six_r_dalpha_Gamma_4_in_axes5_x = (
-        six_r_J_5_in_axes4_xz*six_r_o_5_in_axes5_x + six_r_L_c_4_2_in_axes1_z*six_r_o_1_in_axes5_x
+        six_r_J_5_in_axes4_yz*six_r_o_5_in_axes5_x + six_r_L_c_4_2_in_axes1_z*six_r_o_1_in_axes5_x
             - six_r_Jc_4_in_axes4_zz*six_r_o_4_t - six_r_L_c_4_2_in_axes2_z*six_r_o_2_t -
             six_r_L_c_4_3_in_axes3_z*six_r_o_3_t
         )
         six_r_dalpha_Gamma_4_in_axes5_y = (
-        six_r_J_5_in_axes4_xz*six_r_o_5_in_axes5_y + six_r_Jc_4_in_axes4_zz*six_r_o_4_in_axes5_y +
+        six_r_J_5_in_axes4_yz*six_r_o_5_in_axes5_y + six_r_Jc_4_in_axes4_zz*six_r_o_4_in_axes5_y +
             six_r_L_c_4_2_in_axes1_z*six_r_o_1_in_axes5_y +
             six_r_L_c_4_2_in_axes2_z*six_r_o_2_in_axes5_y +
             six_r_L_c_4_3_in_axes3_z*six_r_o_3_in_axes5_y
         )
         six_r_dalpha_Gamma_4_in_axes5_z = (
         six_r_Jc_4_in_axes4_zz*six_r_o_4_in_axes5_z +
-            six_r_L_c_4_2_in_axes1_z*six_r_o_1_in_axes5_z +
             six_r_L_c_4_2_in_axes2_z*six_r_o_2_in_axes5_z +
-            six_r_L_c_4_3_in_axes3_z*six_r_o_3_in_axes5_z - six_r_J_5_in_axes4_xz*six_r_o_5_t
+            six_r_L_c_4_3_in_axes3_z*six_r_o_3_in_axes5_z - six_r_J_5_in_axes4_yz*six_r_o_5_t -
+            six_r_L_c_4_2_in_axes1_z*six_r_o_1_t
         )
         # (six_r-d_Gamma_4) coefficient of the acceleration in: moment about axis 4 of the distal links' inertia and weight
-        six_r_d_Gamma_4_t = inv_six_r_w_1_t_12*six_r_J_5_in_axes4_xz
+        six_r_d_Gamma_4_t = inv_six_r_w_1_t_12*six_r_J_5_in_axes4_yz
         six_r_d_Gamma_4_t_2 = (
         inv_six_r_w_1_t_28*(six_r_Jc_4_in_axes4_zz - six_r_d_Gamma_4_t*six_r_w_1_t_15)
         )
@@ -3577,7 +3717,7 @@ def _run_dynamics(m, X, V, q):
         )
         six_r_d_Gamma_4_in_axes5_x = (
         six_r_d_Gamma_4_t_3*six_r_w_1_t_50 + six_r_d_Gamma_4_t_4*six_r_w_1_t_68 +
-            six_r_d_Gamma_4_t_5*six_r_w_1_t_80 + six_r_e_4_in_axes5_y*six_r_h_5_in_spec5_z
+            six_r_d_Gamma_4_t_5*six_r_w_1_t_80 - six_r_J_5_t*six_r_h_5_in_spec5_z
         )
         six_r_d_Gamma_4_in_axes5_y = (
         six_r_d_Gamma_4_t*six_r_w_1_t_13 - six_r_d_Gamma_4_t_2*six_r_w_1_t_29 -
@@ -3585,51 +3725,51 @@ def _run_dynamics(m, X, V, q):
             six_r_d_Gamma_4_t_5*six_r_w_1_t_81 - six_r_e_4_in_axes5_x*six_r_h_5_in_spec5_z
         )
         six_r_d_Gamma_4_in_axes5_z = (
-        six_r_d_Gamma_4_t_2*six_r_w_1_t_30 + six_r_d_Gamma_4_t_3*six_r_w_1_t_52 +
-            six_r_d_Gamma_4_t_4*six_r_w_1_t_70 + six_r_d_Gamma_4_t_5*six_r_w_1_t_82 +
-            six_r_e_4_in_axes5_x*six_r_h_5_in_spec5_y - six_r_e_4_in_axes5_y*six_r_h_5_in_spec5_x
+        six_r_J_5_t*six_r_h_5_in_spec5_x + six_r_d_Gamma_4_t_2*six_r_w_1_t_30 +
+            six_r_d_Gamma_4_t_3*six_r_w_1_t_52 + six_r_d_Gamma_4_t_4*six_r_w_1_t_70 +
+            six_r_d_Gamma_4_t_5*six_r_w_1_t_82 + six_r_e_4_in_axes5_x*six_r_h_5_in_spec5_y
         )
         # (six_r-mu_3_o) remainder without the acceleration in: inertia moment of the links that turn with link 3, about their reference points
         six_r_mu_3_o_in_axes3_x = (
-        six_r_B_3_o_in_axes3_yx*six_r_J_3_in_spec3_xz +
-            six_r_B_3_o_in_axes3_zy*six_r_Sigma_3_in_axes3_yy + six_r_J_3_in_spec3_yz*(six_r_W_3_t
-            - six_r_W_3_t_2) + six_r_acc_3_o_in_axes3_z*six_r_h_3_in_spec3_y -
+        six_r_B_3_o_in_axes3_zx*six_r_J_3_in_spec3_xy +
+            six_r_B_3_o_in_axes3_zy*six_r_Sigma_3_in_axes3_yy +
+            six_r_J_3_in_spec3_xz*(six_r_f_3_o_t - six_r_W_3_t_2) +
+            six_r_acc_3_o_in_axes3_z*six_r_h_3_in_spec3_x -
+            six_r_B_3_o_in_axes3_yx*six_r_J_3_in_spec3_yz -
             six_r_B_3_o_in_axes3_yz*six_r_Sigma_3_in_axes3_zz -
-            six_r_B_3_o_in_axes3_zx*six_r_J_3_in_spec3_xy -
             six_r_acc_3_o_in_axes3_y*six_r_h_3_in_spec3_z
         )
         six_r_mu_3_o_in_axes3_y = (
-        six_r_B_3_o_in_axes3_xz*six_r_Sigma_3_in_axes3_zz +
-            six_r_B_3_o_in_axes3_zy*six_r_J_3_in_spec3_xy +
-            six_r_acc_3_o_in_axes3_x*six_r_h_3_in_spec3_z -
-            six_r_B_3_o_in_axes3_xy*six_r_J_3_in_spec3_yz -
+        six_r_B_3_o_in_axes3_xz*six_r_Sigma_3_in_axes3_zz + six_r_J_3_in_spec3_yz*(six_r_W_3_t -
+            six_r_W_3_t_2) + six_r_acc_3_o_in_axes3_x*six_r_h_3_in_spec3_z +
+            six_r_acc_3_o_in_axes3_z*six_r_h_3_in_spec3_y -
+            six_r_B_3_o_in_axes3_xy*six_r_J_3_in_spec3_xz -
             six_r_B_3_o_in_axes3_zx*six_r_Sigma_3_in_axes3_xx -
-            six_r_J_3_in_spec3_xz*(six_r_f_3_o_t - six_r_W_3_t_2) -
-            six_r_acc_3_o_in_axes3_z*six_r_h_3_in_spec3_x
+            six_r_B_3_o_in_axes3_zy*six_r_J_3_in_spec3_xy
         )
         six_r_mu_3_o_in_axes3_z = (
-        six_r_B_3_o_in_axes3_xz*six_r_J_3_in_spec3_yz +
+        six_r_B_3_o_in_axes3_xz*six_r_J_3_in_spec3_xz +
             six_r_B_3_o_in_axes3_yx*six_r_Sigma_3_in_axes3_xx +
-            six_r_J_3_in_spec3_xy*(six_r_f_3_o_t - six_r_W_3_t) +
-            six_r_acc_3_o_in_axes3_y*six_r_h_3_in_spec3_x -
-            six_r_B_3_o_in_axes3_xy*six_r_Sigma_3_in_axes3_yy -
-            six_r_B_3_o_in_axes3_yz*six_r_J_3_in_spec3_xz -
-            six_r_acc_3_o_in_axes3_x*six_r_h_3_in_spec3_y
+            six_r_B_3_o_in_axes3_yz*six_r_J_3_in_spec3_yz -
+            six_r_B_3_o_in_axes3_xy*six_r_Sigma_3_in_axes3_yy - six_r_J_3_in_spec3_xy*(six_r_W_3_t
+            - six_r_f_3_o_t) - six_r_acc_3_o_in_axes3_x*six_r_h_3_in_spec3_x -
+            six_r_acc_3_o_in_axes3_y*six_r_h_3_in_spec3_y
         )
         # (six_r-N_3_o) remainder without the acceleration in: moment about joint 3 of the links from 3 outwards, the force at the connection point left out
-        six_r_N_3_o_in_axes3_x = six_r_N_4_o_in_axes4_z + six_r_mu_3_o_in_axes3_x
-        six_r_N_3_o_in_axes3_y = (
-        six_r_mu_3_o_in_axes3_y + six_r_N_4_o_in_axes4_x*six_r_h_4_t -
-            six_r_N_4_o_in_axes4_y*six_r_e_2_in_axes5_z -
-            six_r_f_4_o_in_axes3_z*six_r_joint4_offset_x
+        six_r_N_3_o_in_axes3_x = (
+        six_r_mu_3_o_in_axes3_x + six_r_N_4_o_in_axes4_y*six_r_h_4_t +
+            six_r_f_4_o_in_axes3_z*six_r_joint4_offset_x -
+            six_r_N_4_o_in_axes4_x*six_r_e_2_in_axes5_z
         )
+        six_r_N_3_o_in_axes3_y = six_r_N_4_o_in_axes4_z + six_r_mu_3_o_in_axes3_y
         six_r_N_3_o_in_axes3_z = (
-        six_r_mu_3_o_in_axes3_z + six_r_N_4_o_in_axes4_x*six_r_e_2_in_axes5_z +
-            six_r_N_4_o_in_axes4_y*six_r_h_4_t + six_r_f_4_o_in_axes3_y*six_r_joint4_offset_x
+        six_r_mu_3_o_in_axes3_z + six_r_N_4_o_in_axes4_x*six_r_h_4_t +
+            six_r_N_4_o_in_axes4_y*six_r_e_2_in_axes5_z -
+            six_r_f_4_o_in_axes3_x*six_r_joint4_offset_x
         )
         # (six_r-T_3_o) remainder without the acceleration in: inertia force of the links from 3 outwards, the last link left out
-        six_r_T_3_o_in_axes3_x = six_r_f_3_o_in_axes3_x + six_r_f_4_o_in_axes4_z
-        six_r_T_3_o_in_axes3_y = six_r_f_3_o_in_axes3_y + six_r_f_4_o_in_axes3_y
+        six_r_T_3_o_in_axes3_x = six_r_f_3_o_in_axes3_x + six_r_f_4_o_in_axes3_x
+        six_r_T_3_o_in_axes3_y = six_r_f_3_o_in_axes3_y + six_r_f_4_o_in_axes4_z
         six_r_T_3_o_in_axes3_z = six_r_f_3_o_in_axes3_z + six_r_f_4_o_in_axes3_z
         # (six_r-dalpha_Gamma_3) coefficient of the acceleration in: moment about axis 3 of the distal links' inertia and weight
         six_r_dalpha_Gamma_3_t = six_r_D_3_5*six_r_o_5_in_axes5_x
@@ -3648,9 +3788,9 @@ def _run_dynamics(m, X, V, q):
         )
         six_r_dalpha_Gamma_3_in_axes5_z = (
         six_r_Jc_3_in_axes3_zz*six_r_o_3_in_axes5_z +
-            six_r_L_c_3_2_in_axes1_z*six_r_o_1_in_axes5_z +
             six_r_L_c_3_2_in_axes2_z*six_r_o_2_in_axes5_z +
-            six_r_L_c_4_3_in_axes3_z*six_r_o_4_in_axes5_z - six_r_dalpha_Gamma_3_t_3
+            six_r_L_c_4_3_in_axes3_z*six_r_o_4_in_axes5_z - six_r_dalpha_Gamma_3_t_3 -
+            six_r_L_c_3_2_in_axes1_z*six_r_o_1_t
         )
         # (six_r-d_Gamma_3) coefficient of the acceleration in: moment about axis 3 of the distal links' inertia and weight
         six_r_d_Gamma_3_t = (
@@ -3704,12 +3844,12 @@ def _run_dynamics(m, X, V, q):
             six_r_J_2_in_spec2_yz*(six_r_a_o_3_o_t - six_r_a_o_3_o_t_2) +
             six_r_g_in_axes2_y*six_r_h_2_in_spec2_z -
             six_r_B_2_o_in_axes2_zx*six_r_J_2_in_spec2_xy -
-            six_r_Sigma_2_in_axes2_zz*six_r_alpha_1_o_t - six_r_g_in_axes1_x*six_r_h_2_in_spec2_y
+            six_r_Sigma_2_in_axes2_zz*six_r_alpha_1_o_t - six_r_g_in_axes1_y*six_r_h_2_in_spec2_y
         )
         six_r_mu_2_o_in_axes2_y = (
         six_r_B_2_o_in_axes2_zy*six_r_J_2_in_spec2_xy +
             six_r_Sigma_2_in_axes2_zz*six_r_alpha_1_o_in_axes2_y +
-            six_r_g_in_axes1_x*six_r_h_2_in_spec2_x -
+            six_r_g_in_axes1_y*six_r_h_2_in_spec2_x -
             six_r_B_2_o_in_axes2_xy*six_r_J_2_in_spec2_yz -
             six_r_B_2_o_in_axes2_zx*six_r_Sigma_2_in_axes2_xx -
             six_r_J_2_in_spec2_xz*(six_r_mu_2_o_t - six_r_a_o_3_o_t_2) -
@@ -3724,39 +3864,40 @@ def _run_dynamics(m, X, V, q):
         )
         # (six_r-N_2_o) remainder without the acceleration in: moment about joint 2 of the links from 2 outwards, the force at the connection point left out
         six_r_N_2_o_in_axes2_x = (
-        six_r_mu_2_o_in_axes2_x + six_r_N_3_o_in_axes3_x*six_r_c_3 -
-            six_r_N_3_o_in_axes3_y*six_r_s_3
+        six_r_mu_2_o_in_axes2_x + six_r_N_3_o_in_axes3_x*six_r_s_3 +
+            six_r_N_3_o_in_axes3_y*six_r_c_3
         )
         six_r_N_2_o_in_axes2_y = (
-        six_r_mu_2_o_in_axes2_y + six_r_N_3_o_in_axes3_x*six_r_s_3 +
-            six_r_N_3_o_in_axes3_y*six_r_c_3 - six_r_T_3_o_in_axes3_z*six_r_joint3_offset_x
+        six_r_mu_2_o_in_axes2_y + six_r_N_3_o_in_axes3_y*six_r_s_3 -
+            six_r_N_3_o_in_axes3_x*six_r_c_3 - six_r_T_3_o_in_axes3_z*six_r_joint3_offset_x
         )
         six_r_N_2_o_in_axes2_z = (
-        six_r_N_3_o_in_axes3_z + six_r_mu_2_o_in_axes2_z +
-            six_r_joint3_offset_x*(six_r_T_3_o_in_axes3_x*six_r_s_3 +
-            six_r_T_3_o_in_axes3_y*six_r_c_3)
+        six_r_N_3_o_in_axes3_z + six_r_mu_2_o_in_axes2_z -
+            six_r_joint3_offset_x*(six_r_T_3_o_in_axes3_x*six_r_c_3 -
+            six_r_T_3_o_in_axes3_y*six_r_s_3)
         )
         # (six_r-dalpha_Gamma_2) coefficient of the acceleration in: moment about axis 2 of the distal links' inertia and weight
         six_r_dalpha_Gamma_2_in_axes5_x = (
-        six_r_dalpha_Gamma_3_t + six_r_Jc_2_in_axes1_xz*six_r_o_1_in_axes5_x -
+        six_r_dalpha_Gamma_3_t + six_r_Jc_2_in_axes1_yz*six_r_o_1_in_axes5_x -
             six_r_Jc_2_in_axes2_zz*six_r_o_2_t - six_r_L_c_3_2_in_axes2_z*six_r_o_3_t -
             six_r_L_c_4_2_in_axes2_z*six_r_o_4_t
         )
         six_r_dalpha_Gamma_2_in_axes5_y = (
-        six_r_dalpha_Gamma_3_t_2 + six_r_Jc_2_in_axes1_xz*six_r_o_1_in_axes5_y +
+        six_r_dalpha_Gamma_3_t_2 + six_r_Jc_2_in_axes1_yz*six_r_o_1_in_axes5_y +
             six_r_Jc_2_in_axes2_zz*six_r_o_2_in_axes5_y +
             six_r_L_c_3_2_in_axes2_z*six_r_o_3_in_axes5_y +
             six_r_L_c_4_2_in_axes2_z*six_r_o_4_in_axes5_y
         )
         six_r_dalpha_Gamma_2_in_axes5_z = (
-        six_r_Jc_2_in_axes1_xz*six_r_o_1_in_axes5_z + six_r_Jc_2_in_axes2_zz*six_r_o_2_in_axes5_z
-            + six_r_L_c_3_2_in_axes2_z*six_r_o_3_in_axes5_z +
-            six_r_L_c_4_2_in_axes2_z*six_r_o_4_in_axes5_z - six_r_dalpha_Gamma_3_t_3
+        six_r_Jc_2_in_axes2_zz*six_r_o_2_in_axes5_z +
+            six_r_L_c_3_2_in_axes2_z*six_r_o_3_in_axes5_z +
+            six_r_L_c_4_2_in_axes2_z*six_r_o_4_in_axes5_z - six_r_dalpha_Gamma_3_t_3 -
+            six_r_Jc_2_in_axes1_yz*six_r_o_1_t
         )
         # (six_r-d_Gamma_2) coefficient of the acceleration in: moment about axis 2 of the distal links' inertia and weight
         six_r_d_Gamma_2_t = inv_six_r_w_1_t_28*(six_r_L_c_4_2_in_axes2_z - six_r_d_Gamma_3_t_5)
         six_r_d_Gamma_2_t_2 = (
-        inv_six_r_w_1_t_49*(six_r_Jc_2_in_axes1_xz + six_r_d_Gamma_2_t*six_r_w_1_t_33 -
+        inv_six_r_w_1_t_49*(six_r_Jc_2_in_axes1_yz + six_r_d_Gamma_2_t*six_r_w_1_t_33 -
             six_r_d_Gamma_3_t_7)
         )
         six_r_d_Gamma_2_t_3 = (
@@ -3784,30 +3925,31 @@ def _run_dynamics(m, X, V, q):
         )
         # (six_r-mu_1_o) remainder without the acceleration in: inertia moment of the links that turn with link 1, about their reference points
         six_r_mu_1_o_in_axes1_z = (
-        -six_r_J_1_in_spec1_xx*six_r_qdd_1_o_t_5 - six_r_g_in_axes1_x*six_r_h_1_in_spec1_y -
-            six_r_g_in_axes1_y*six_r_h_1_in_spec1_z
+        six_r_g_in_axes1_x*six_r_h_1_in_spec1_z - six_r_J_1_in_spec1_xx*six_r_qdd_1_o_t_5 -
+            six_r_g_in_axes1_y*six_r_h_1_in_spec1_y
         )
         # (six_r-N_1_o) remainder without the acceleration in: moment about joint 1 of the links from 1 outwards, the force at the connection point left out
         six_r_N_1_o_in_axes1_z = (
-        six_r_mu_1_o_in_axes1_z + six_r_N_2_o_in_axes2_x*six_r_s_2 +
-            six_r_N_2_o_in_axes2_y*six_r_c_2
+        six_r_mu_1_o_in_axes1_z + six_r_N_2_o_in_axes2_x*six_r_c_2 -
+            six_r_N_2_o_in_axes2_y*six_r_s_2
         )
         # (six_r-dalpha_Gamma_1) coefficient of the acceleration in: moment about axis 1 of the distal links' inertia and weight
         six_r_dalpha_Gamma_1_in_axes5_x = (
         six_r_D_1_5*six_r_o_5_in_axes5_x + six_r_Jc_1_in_axes1_zz*six_r_o_1_in_axes5_x -
-            six_r_Jc_2_in_axes1_xz*six_r_o_2_t - six_r_L_c_3_2_in_axes1_z*six_r_o_3_t -
+            six_r_Jc_2_in_axes1_yz*six_r_o_2_t - six_r_L_c_3_2_in_axes1_z*six_r_o_3_t -
             six_r_L_c_4_2_in_axes1_z*six_r_o_4_t
         )
         six_r_dalpha_Gamma_1_in_axes5_y = (
         six_r_D_1_5*six_r_o_5_in_axes5_y + six_r_Jc_1_in_axes1_zz*six_r_o_1_in_axes5_y +
-            six_r_Jc_2_in_axes1_xz*six_r_o_2_in_axes5_y +
+            six_r_Jc_2_in_axes1_yz*six_r_o_2_in_axes5_y +
             six_r_L_c_3_2_in_axes1_z*six_r_o_3_in_axes5_y +
             six_r_L_c_4_2_in_axes1_z*six_r_o_4_in_axes5_y
         )
         six_r_dalpha_Gamma_1_in_axes5_z = (
-        six_r_Jc_1_in_axes1_zz*six_r_o_1_in_axes5_z + six_r_Jc_2_in_axes1_xz*six_r_o_2_in_axes5_z
-            + six_r_L_c_3_2_in_axes1_z*six_r_o_3_in_axes5_z +
-            six_r_L_c_4_2_in_axes1_z*six_r_o_4_in_axes5_z - six_r_D_1_5*six_r_o_5_t
+        six_r_Jc_2_in_axes1_yz*six_r_o_2_in_axes5_z +
+            six_r_L_c_3_2_in_axes1_z*six_r_o_3_in_axes5_z +
+            six_r_L_c_4_2_in_axes1_z*six_r_o_4_in_axes5_z - six_r_D_1_5*six_r_o_5_t -
+            six_r_Jc_1_in_axes1_zz*six_r_o_1_t
         )
         # (six_r-d_Gamma_1) coefficient of the acceleration in: moment about axis 1 of the distal links' inertia and weight
         six_r_d_Gamma_1_t = inv_six_r_w_1_t_12*six_r_D_1_5
@@ -3819,7 +3961,7 @@ def _run_dynamics(m, X, V, q):
             six_r_d_Gamma_1_t*six_r_w_1_t_18)
         )
         six_r_d_Gamma_1_t_4 = (
-        inv_six_r_w_1_t_67*(six_r_Jc_2_in_axes1_xz + six_r_d_Gamma_1_t_2*six_r_w_1_t_39 -
+        inv_six_r_w_1_t_67*(six_r_Jc_2_in_axes1_yz + six_r_d_Gamma_1_t_2*six_r_w_1_t_39 -
             six_r_d_Gamma_1_t*six_r_w_1_t_22 - six_r_d_Gamma_1_t_3*six_r_w_1_t_55)
         )
         six_r_d_Gamma_1_t_5 = (
@@ -3930,24 +4072,24 @@ def _run_dynamics(m, X, V, q):
         )
         # (six_r-dalpha_G_m2) coefficient of the acceleration in: moment along moment direction 2 that balances the leg's inertia and weight along all degrees of freedom
         six_r_dalpha_G_m2_in_axes5_x = (
-        six_r_dalpha_Gamma_1_in_axes5_x*six_r_m2_w_1 +
-            six_r_dalpha_Gamma_2_in_axes5_x*six_r_m2_w_2 +
+        six_r_dalpha_Gamma_2_in_axes5_x*six_r_m2_w_2 +
             six_r_dalpha_Gamma_3_in_axes5_x*six_r_m2_w_3 +
             six_r_dalpha_Gamma_4_in_axes5_x*six_r_m2_w_4 -
+            six_r_dalpha_Gamma_1_in_axes5_x*six_r_m2_w_1_t_2 -
             six_r_dalpha_Gamma_5_in_axes5_x*six_r_m2_w_5_t
         )
         six_r_dalpha_G_m2_in_axes5_y = (
-        six_r_dalpha_Gamma_1_in_axes5_y*six_r_m2_w_1 +
-            six_r_dalpha_Gamma_2_in_axes5_y*six_r_m2_w_2 +
+        six_r_dalpha_Gamma_2_in_axes5_y*six_r_m2_w_2 +
             six_r_dalpha_Gamma_3_in_axes5_y*six_r_m2_w_3 +
             six_r_dalpha_Gamma_4_in_axes5_y*six_r_m2_w_4 -
+            six_r_dalpha_Gamma_1_in_axes5_y*six_r_m2_w_1_t_2 -
             six_r_dalpha_Gamma_5_in_axes5_y*six_r_m2_w_5_t
         )
         six_r_dalpha_G_m2_in_axes5_z = (
-        six_r_dalpha_Gamma_1_in_axes5_z*six_r_m2_w_1 +
-            six_r_dalpha_Gamma_2_in_axes5_z*six_r_m2_w_2 +
+        six_r_dalpha_Gamma_2_in_axes5_z*six_r_m2_w_2 +
             six_r_dalpha_Gamma_3_in_axes5_z*six_r_m2_w_3 +
             six_r_dalpha_Gamma_4_in_axes5_z*six_r_m2_w_4 -
+            six_r_dalpha_Gamma_1_in_axes5_z*six_r_m2_w_1_t_2 -
             six_r_dalpha_Gamma_5_in_axes5_z*six_r_m2_w_5_t
         )
         six_r_dalpha_G_m2_y = (
@@ -3962,19 +4104,19 @@ def _run_dynamics(m, X, V, q):
         )
         # (six_r-d_G_m2) coefficient of the acceleration in: moment along moment direction 2 that balances the leg's inertia and weight along all degrees of freedom
         six_r_d_G_m2_in_axes5_x = (
-        six_r_d_Gamma_1_in_axes5_x*six_r_m2_w_1 + six_r_d_Gamma_2_in_axes5_x*six_r_m2_w_2 +
-            six_r_d_Gamma_3_in_axes5_x*six_r_m2_w_3 + six_r_d_Gamma_4_in_axes5_x*six_r_m2_w_4 -
-            six_r_d_Gamma_5_in_axes5_x*six_r_m2_w_5_t
+        six_r_d_Gamma_2_in_axes5_x*six_r_m2_w_2 + six_r_d_Gamma_3_in_axes5_x*six_r_m2_w_3 +
+            six_r_d_Gamma_4_in_axes5_x*six_r_m2_w_4 - six_r_d_Gamma_1_in_axes5_x*six_r_m2_w_1_t_2
+            - six_r_d_Gamma_5_in_axes5_x*six_r_m2_w_5_t
         )
         six_r_d_G_m2_in_axes5_y = (
-        six_r_d_Gamma_1_in_axes5_y*six_r_m2_w_1 + six_r_d_Gamma_2_in_axes5_y*six_r_m2_w_2 +
-            six_r_d_Gamma_3_in_axes5_y*six_r_m2_w_3 + six_r_d_Gamma_4_in_axes5_y*six_r_m2_w_4 -
-            six_r_d_Gamma_5_in_axes5_y*six_r_m2_w_5_t
+        six_r_d_Gamma_2_in_axes5_y*six_r_m2_w_2 + six_r_d_Gamma_3_in_axes5_y*six_r_m2_w_3 +
+            six_r_d_Gamma_4_in_axes5_y*six_r_m2_w_4 - six_r_d_Gamma_1_in_axes5_y*six_r_m2_w_1_t_2
+            - six_r_d_Gamma_5_in_axes5_y*six_r_m2_w_5_t
         )
         six_r_d_G_m2_in_axes5_z = (
-        six_r_d_Gamma_1_in_axes5_z*six_r_m2_w_1 + six_r_d_Gamma_2_in_axes5_z*six_r_m2_w_2 +
-            six_r_d_Gamma_3_in_axes5_z*six_r_m2_w_3 + six_r_d_Gamma_4_in_axes5_z*six_r_m2_w_4 -
-            six_r_d_Gamma_5_in_axes5_z*six_r_m2_w_5_t
+        six_r_d_Gamma_2_in_axes5_z*six_r_m2_w_2 + six_r_d_Gamma_3_in_axes5_z*six_r_m2_w_3 +
+            six_r_d_Gamma_4_in_axes5_z*six_r_m2_w_4 - six_r_d_Gamma_1_in_axes5_z*six_r_m2_w_1_t_2
+            - six_r_d_Gamma_5_in_axes5_z*six_r_m2_w_5_t
         )
         six_r_d_G_m2_x = (
         axis_x_six_r_axes5_x*six_r_d_G_m2_in_axes5_x +
@@ -4105,8 +4247,8 @@ def _run_dynamics(m, X, V, q):
             six_r_d_Gamma_3_in_axes5_y*six_r_w_3_in_axes5_x -
             six_r_d_Gamma_4_in_axes5_y*six_r_w_4_in_axes5_x -
             six_r_h_5_in_spec5_z*(six_r_e_1_in_axes5_y*six_r_w_1_in_axes5_y +
-            six_r_e_2_in_axes5_y*six_r_w_2_in_axes5_y + six_r_e_4_in_axes5_y*six_r_w_4_in_axes5_y
-            - six_r_e_2_in_axes5_y*six_r_w_3_t)
+            six_r_e_2_in_axes5_y*six_r_w_2_in_axes5_y - six_r_J_5_t*six_r_w_4_in_axes5_y -
+            six_r_e_2_in_axes5_y*six_r_w_3_t)
         )
         six_r_d_c_in_axes5_xz = (
         six_r_d_Gamma_5_in_axes5_z*six_r_w_5_t_5 +
@@ -4137,10 +4279,9 @@ def _run_dynamics(m, X, V, q):
         )
         # (six_r-c_o) remainder without the acceleration in: leg force on the platform without actuation and without the mass at the connection point
         six_r_c_o_in_axes5_x = (
-        six_r_G_m1_o_t_3*six_r_w_1_t_50 + six_r_G_m1_o_t_4*six_r_w_1_t_68 -
-            six_r_B_5_o_in_axes5_xy*six_r_h_5_in_spec5_y -
-            six_r_B_5_o_in_axes5_xz*six_r_h_5_in_spec5_z - six_r_G_m1_o_t_5*six_r_w_1_t_80 -
-            six_r_W_5_in_axes5_xx*six_r_h_5_in_spec5_x
+        six_r_G_m1_o_t_3*six_r_w_1_t_50 + six_r_G_m1_o_t_4*six_r_w_1_t_68 +
+            six_r_W_5_t_3*six_r_h_5_in_spec5_x - six_r_B_5_o_in_axes5_xy*six_r_h_5_in_spec5_y -
+            six_r_B_5_o_in_axes5_xz*six_r_h_5_in_spec5_z - six_r_G_m1_o_t_5*six_r_w_1_t_80
         )
         six_r_c_o_in_axes5_y = (
         six_r_G_m1_o_t_5*six_r_w_1_t_81 + six_r_h_5_in_spec5_y*(six_r_W_5_t_2 + six_r_bias_t_2) -
@@ -4569,12 +4710,12 @@ def _run_M(m, X, q):
             six_r_J_4_in_spec4_xz, six_r_J_4_in_spec4_yy, six_r_J_4_in_spec4_yz,
             six_r_J_5_in_spec5_xx, six_r_J_5_in_spec5_xy, six_r_J_5_in_spec5_xz,
             six_r_J_5_in_spec5_yy, six_r_J_5_in_spec5_yz, six_r_J_5_in_spec5_zz, six_r_Jc_2_t,
-            six_r_Jc_3_t_2, six_r_Jc_3_t_3, six_r_Jc_4_in_axes4_xx, six_r_base_frame_xx,
+            six_r_Jc_3_t_2, six_r_Jc_3_t_3, six_r_Jc_4_in_axes4_yy, six_r_base_frame_xx,
             six_r_base_frame_xy, six_r_base_frame_xz, six_r_base_frame_yx, six_r_base_frame_yy,
             six_r_base_frame_yz, six_r_base_frame_zx, six_r_base_frame_zy, six_r_base_frame_zz,
             six_r_h_3_in_spec3_y, six_r_h_3_in_spec3_z, six_r_h_4_in_spec4_y,
             six_r_h_4_in_spec4_z, six_r_h_5_in_spec5_x, six_r_h_5_in_spec5_y,
-            six_r_h_5_in_spec5_z, six_r_hc_3_in_axes3_x, six_r_joint2_offset_x,
+            six_r_h_5_in_spec5_z, six_r_hc_3_in_axes3_y, six_r_joint2_offset_x,
             six_r_joint3_offset_x, six_r_joint4_offset_x, six_r_joint5_offset_x,
             six_r_platform_joint_axis_platform_x, six_r_platform_joint_axis_platform_y,
             six_r_platform_joint_axis_platform_z, six_r_platform_joint_offset_x,
@@ -4587,91 +4728,82 @@ def _run_M(m, X, q):
         six_r_q_4 = q[[3, 8, 13, 18, 23, 28][leg]]
         six_r_q_5 = q[[4, 9, 14, 19, 24, 29][leg]]
         # (six_r-h_4) first moment of link 4 about the origin of link 4
-        six_r_h_4_t = -sin(six_r_q_4)
         six_r_e_2_in_axes5_z = cos(six_r_q_4)
-        six_r_h_4_in_axes3_y = (
-        six_r_e_2_in_axes5_z*six_r_h_4_in_spec4_y + six_r_h_4_in_spec4_z*six_r_h_4_t
+        six_r_h_4_t = sin(six_r_q_4)
+        six_r_h_4_in_spec2_z = (
+        six_r_e_2_in_axes5_z*six_r_h_4_in_spec4_z + six_r_h_4_in_spec4_y*six_r_h_4_t
+        )
+        six_r_h_4_in_spec3_y = (
+        six_r_e_2_in_axes5_z*six_r_h_4_in_spec4_y - six_r_h_4_in_spec4_z*six_r_h_4_t
         )
         # (six_r-J_5) inertia tensor of link 5 about the connection point
-        six_r_e_4_in_axes5_y = -sin(six_r_q_5)
         six_r_e_4_in_axes5_x = cos(six_r_q_5)
-        six_r_J_5_in_axes4_xz = (
-        six_r_J_5_in_spec5_xz*six_r_e_4_in_axes5_x + six_r_J_5_in_spec5_yz*six_r_e_4_in_axes5_y
+        six_r_J_5_t = sin(six_r_q_5)
+        six_r_J_5_in_axes4_yz = (
+        six_r_J_5_in_spec5_xz*six_r_e_4_in_axes5_x - six_r_J_5_in_spec5_yz*six_r_J_5_t
         )
         # (six_r-c_1) cosine of the angle of joint 1 from its reference direction
-        six_r_c_1 = -sin(six_r_q_1)
+        six_r_c_1 = cos(six_r_q_1)
         # (six_r-s_1) sine of the angle of joint 1 from its reference direction
-        six_r_s_1 = cos(six_r_q_1)
+        six_r_s_1 = sin(six_r_q_1)
         # (six_r-c_2) cosine of the angle of joint 2 from its reference direction
-        six_r_c_2 = -sin(six_r_q_2)
+        six_r_c_2 = cos(six_r_q_2)
         # (six_r-s_2) sine of the angle of joint 2 from its reference direction
-        six_r_s_2 = cos(six_r_q_2)
+        six_r_s_2 = sin(six_r_q_2)
         # (six_r-c_3) cosine of the angle of joint 3 from its reference direction
         six_r_c_3 = cos(six_r_q_3)
         # (six_r-s_3) sine of the angle of joint 3 from its reference direction
         six_r_s_3 = sin(six_r_q_3)
         # (six_r-r_4) from joint 4 to the connection point, along the links
-        six_r_r_4_in_axes4_y = six_r_e_4_in_axes5_y*six_r_platform_joint_offset_x
+        six_r_r_4_in_axes4_x = six_r_J_5_t*six_r_platform_joint_offset_x
         six_r_r_4_in_axes4_z = (
         six_r_joint5_offset_x + six_r_e_4_in_axes5_x*six_r_platform_joint_offset_x
         )
-        six_r_r_4_in_axes3_y = -six_r_e_2_in_axes5_z*six_r_r_4_in_axes4_y
-        six_r_r_4_in_axes3_z = six_r_h_4_t*six_r_r_4_in_axes4_y
+        six_r_r_4_in_axes3_x = -six_r_e_2_in_axes5_z*six_r_r_4_in_axes4_x
+        six_r_r_4_in_axes3_z = six_r_h_4_t*six_r_r_4_in_axes4_x
         # (six_r-r_3) from joint 3 to the connection point, along the links
-        six_r_r_3_in_axes3_x = six_r_joint4_offset_x + six_r_r_4_in_axes4_z
-        six_r_r_3_in_axes2_y = six_r_c_3*six_r_r_4_in_axes3_y + six_r_r_3_in_axes3_x*six_r_s_3
-        six_r_r_3_t = six_r_e_2_in_axes5_z*six_r_r_4_in_axes3_z
-        six_r_r_3_t_2 = -six_r_h_4_t*six_r_r_4_in_axes3_z
-        six_r_r_3_in_axes5_z = six_r_r_3_t + six_r_h_4_t*six_r_r_4_in_axes3_y
-        six_r_r_3_t_3 = -six_r_r_3_t_2 - six_r_e_2_in_axes5_z*six_r_r_4_in_axes3_y
+        six_r_r_3_in_axes3_y = six_r_joint4_offset_x + six_r_r_4_in_axes4_z
+        six_r_r_3_in_axes2_y = six_r_r_3_in_axes3_y*six_r_s_3 - six_r_c_3*six_r_r_4_in_axes3_x
+        six_r_r_3_t = six_r_h_4_t*six_r_r_4_in_axes3_z
+        six_r_r_3_t_2 = six_r_e_2_in_axes5_z*six_r_r_4_in_axes3_z
+        six_r_r_3_t_3 = six_r_r_3_t - six_r_e_2_in_axes5_z*six_r_r_4_in_axes3_x
+        six_r_r_3_in_axes5_z = six_r_r_3_t_2 + six_r_h_4_t*six_r_r_4_in_axes3_x
         six_r_r_3_in_axes5_x = (
-        six_r_e_4_in_axes5_x*six_r_r_3_in_axes3_x + six_r_e_4_in_axes5_y*six_r_r_3_t_3
+        six_r_J_5_t*six_r_r_3_t_3 + six_r_e_4_in_axes5_x*six_r_r_3_in_axes3_y
         )
         six_r_r_3_in_axes5_y = (
-        six_r_e_4_in_axes5_y*six_r_r_3_in_axes3_x - six_r_e_4_in_axes5_x*six_r_r_3_t_3
+        six_r_e_4_in_axes5_x*six_r_r_3_t_3 - six_r_J_5_t*six_r_r_3_in_axes3_y
         )
         # (six_r-r_2) from joint 2 to the connection point, along the links
         six_r_r_2_in_axes2_x = (
-        six_r_joint3_offset_x + six_r_c_3*six_r_r_3_in_axes3_x - six_r_r_4_in_axes3_y*six_r_s_3
+        six_r_joint3_offset_x + six_r_c_3*six_r_r_3_in_axes3_y + six_r_r_4_in_axes3_x*six_r_s_3
         )
-        six_r_r_2_in_axes1_y = six_r_c_2*six_r_r_2_in_axes2_x - six_r_r_3_in_axes2_y*six_r_s_2
-        six_r_r_2_t = six_r_c_3*six_r_r_2_in_axes2_x + six_r_r_3_in_axes2_y*six_r_s_3
-        six_r_r_2_t_2 = six_r_c_3*six_r_r_3_in_axes2_y - six_r_r_2_in_axes2_x*six_r_s_3
-        six_r_r_2_in_axes5_z = six_r_r_3_t + six_r_h_4_t*six_r_r_2_t_2
-        six_r_r_2_t_3 = -six_r_r_3_t_2 - six_r_e_2_in_axes5_z*six_r_r_2_t_2
-        six_r_r_2_in_axes5_x = (
-        six_r_e_4_in_axes5_x*six_r_r_2_t + six_r_e_4_in_axes5_y*six_r_r_2_t_3
-        )
-        six_r_r_2_in_axes5_y = (
-        six_r_e_4_in_axes5_y*six_r_r_2_t - six_r_e_4_in_axes5_x*six_r_r_2_t_3
-        )
+        six_r_r_2_in_axes1_x = six_r_c_2*six_r_r_3_in_axes2_y + six_r_r_2_in_axes2_x*six_r_s_2
+        six_r_r_2_t = six_r_r_2_in_axes2_x*six_r_s_3 - six_r_c_3*six_r_r_3_in_axes2_y
+        six_r_r_2_t_2 = six_r_c_3*six_r_r_2_in_axes2_x + six_r_r_3_in_axes2_y*six_r_s_3
+        six_r_r_2_t_3 = six_r_r_3_t - six_r_e_2_in_axes5_z*six_r_r_2_t
+        six_r_r_2_in_axes5_z = six_r_r_3_t_2 + six_r_h_4_t*six_r_r_2_t
+        six_r_r_2_in_axes5_x = six_r_J_5_t*six_r_r_2_t_3 + six_r_e_4_in_axes5_x*six_r_r_2_t_2
+        six_r_r_2_in_axes5_y = six_r_e_4_in_axes5_x*six_r_r_2_t_3 - six_r_J_5_t*six_r_r_2_t_2
         # (six_r-r_1) from joint 1 to the connection point, along the links
         six_r_r_1_in_axes1_z = (
-        six_r_joint2_offset_x + six_r_c_2*six_r_r_3_in_axes2_y + six_r_r_2_in_axes2_x*six_r_s_2
+        six_r_joint2_offset_x + six_r_c_2*six_r_r_2_in_axes2_x - six_r_r_3_in_axes2_y*six_r_s_2
         )
-        six_r_r_1_t = six_r_c_2*six_r_r_2_in_axes1_y + six_r_r_1_in_axes1_z*six_r_s_2
-        six_r_r_1_t_2 = six_r_c_2*six_r_r_1_in_axes1_z - six_r_r_2_in_axes1_y*six_r_s_2
-        six_r_r_1_t_3 = six_r_c_3*six_r_r_1_t + six_r_r_1_t_2*six_r_s_3
-        six_r_r_1_t_4 = six_r_c_3*six_r_r_1_t_2 - six_r_r_1_t*six_r_s_3
-        six_r_r_1_in_axes5_z = six_r_r_3_t + six_r_h_4_t*six_r_r_1_t_4
-        six_r_r_1_t_5 = -six_r_r_3_t_2 - six_r_e_2_in_axes5_z*six_r_r_1_t_4
-        six_r_r_1_in_axes5_x = (
-        six_r_e_4_in_axes5_x*six_r_r_1_t_3 + six_r_e_4_in_axes5_y*six_r_r_1_t_5
-        )
-        six_r_r_1_in_axes5_y = (
-        six_r_e_4_in_axes5_y*six_r_r_1_t_3 - six_r_e_4_in_axes5_x*six_r_r_1_t_5
-        )
+        six_r_r_1_t = six_r_c_2*six_r_r_1_in_axes1_z + six_r_r_2_in_axes1_x*six_r_s_2
+        six_r_r_1_t_2 = six_r_c_2*six_r_r_2_in_axes1_x - six_r_r_1_in_axes1_z*six_r_s_2
+        six_r_r_1_t_3 = six_r_r_1_t*six_r_s_3 - six_r_c_3*six_r_r_1_t_2
+        six_r_r_1_t_4 = six_r_c_3*six_r_r_1_t + six_r_r_1_t_2*six_r_s_3
+        six_r_r_1_t_5 = six_r_r_3_t - six_r_e_2_in_axes5_z*six_r_r_1_t_3
+        six_r_r_1_in_axes5_z = six_r_r_3_t_2 + six_r_h_4_t*six_r_r_1_t_3
+        six_r_r_1_in_axes5_x = six_r_J_5_t*six_r_r_1_t_5 + six_r_e_4_in_axes5_x*six_r_r_1_t_4
+        six_r_r_1_in_axes5_y = six_r_e_4_in_axes5_x*six_r_r_1_t_5 - six_r_J_5_t*six_r_r_1_t_4
         # (six_r-v_1) velocity of the connection point per rate of joint 1
         six_r_v_1_t = six_r_c_2*six_r_s_3 + six_r_c_3*six_r_s_2
         six_r_v_1_t_2 = six_r_c_2*six_r_c_3 - six_r_s_2*six_r_s_3
-        six_r_e_1_in_axes5_z = six_r_h_4_t*six_r_v_1_t_2
-        six_r_v_1_t_3 = six_r_e_2_in_axes5_z*six_r_v_1_t_2
-        six_r_e_1_in_axes5_x = (
-        six_r_e_4_in_axes5_x*six_r_v_1_t - six_r_e_4_in_axes5_y*six_r_v_1_t_3
-        )
-        six_r_e_1_in_axes5_y = (
-        six_r_e_4_in_axes5_x*six_r_v_1_t_3 + six_r_e_4_in_axes5_y*six_r_v_1_t
-        )
+        six_r_v_1_t_3 = six_r_e_2_in_axes5_z*six_r_v_1_t
+        six_r_e_1_in_axes5_z = six_r_h_4_t*six_r_v_1_t
+        six_r_e_1_in_axes5_x = six_r_e_4_in_axes5_x*six_r_v_1_t_2 - six_r_J_5_t*six_r_v_1_t_3
+        six_r_e_1_in_axes5_y = -six_r_J_5_t*six_r_v_1_t_2 - six_r_e_4_in_axes5_x*six_r_v_1_t_3
         six_r_v_1_in_axes5_x = (
         six_r_e_1_in_axes5_y*six_r_r_1_in_axes5_z - six_r_e_1_in_axes5_z*six_r_r_1_in_axes5_y
         )
@@ -4682,8 +4814,8 @@ def _run_M(m, X, q):
         six_r_e_1_in_axes5_x*six_r_r_1_in_axes5_y - six_r_e_1_in_axes5_y*six_r_r_1_in_axes5_x
         )
         # (six_r-v_2) velocity of the connection point per rate of joint 2
-        six_r_e_2_in_axes5_x = six_r_e_4_in_axes5_y*six_r_h_4_t
-        six_r_e_2_in_axes5_y = -six_r_e_4_in_axes5_x*six_r_h_4_t
+        six_r_e_2_in_axes5_x = six_r_J_5_t*six_r_h_4_t
+        six_r_e_2_in_axes5_y = six_r_e_4_in_axes5_x*six_r_h_4_t
         six_r_v_2_in_axes5_x = (
         six_r_e_2_in_axes5_y*six_r_r_2_in_axes5_z - six_r_e_2_in_axes5_z*six_r_r_2_in_axes5_y
         )
@@ -4705,47 +4837,46 @@ def _run_M(m, X, q):
         )
         # (six_r-v_4) velocity of the connection point per rate of joint 4
         six_r_v_4_in_axes5_z = (
-        six_r_e_4_in_axes5_x*(six_r_e_4_in_axes5_y*six_r_r_4_in_axes4_z -
-            six_r_e_4_in_axes5_x*six_r_r_4_in_axes4_y) -
-            six_r_e_4_in_axes5_y*(six_r_e_4_in_axes5_x*six_r_r_4_in_axes4_z +
-            six_r_e_4_in_axes5_y*six_r_r_4_in_axes4_y)
+        six_r_J_5_t*(six_r_J_5_t*six_r_r_4_in_axes4_x + six_r_e_4_in_axes5_x*six_r_r_4_in_axes4_z)
+            + six_r_e_4_in_axes5_x*(six_r_e_4_in_axes5_x*six_r_r_4_in_axes4_x -
+            six_r_J_5_t*six_r_r_4_in_axes4_z)
         )
         # (six_r-n_m1) direction 1 of the moment that the platform joint transmits
-        six_r_n_m1_t = -six_r_h_4_t*six_r_s_3
-        six_r_n_m1_t_2 = -six_r_c_3*six_r_h_4_t
-        six_r_n_m1_t_3 = six_r_c_2*six_r_n_m1_t + six_r_n_m1_t_2*six_r_s_2
-        six_r_n_m1_t_4 = six_r_n_m1_t*six_r_s_2 - six_r_c_2*six_r_n_m1_t_2
-        six_r_n_m1_t_5 = six_r_c_1*six_r_e_2_in_axes5_z - six_r_n_m1_t_3*six_r_s_1
-        six_r_n_m1_t_6 = six_r_c_1*six_r_n_m1_t_3 + six_r_e_2_in_axes5_z*six_r_s_1
+        six_r_n_m1_t = six_r_c_3*six_r_h_4_t
+        six_r_n_m1_t_2 = six_r_h_4_t*six_r_s_3
+        six_r_n_m1_t_3 = six_r_c_2*six_r_n_m1_t_2 + six_r_n_m1_t*six_r_s_2
+        six_r_n_m1_t_4 = six_r_n_m1_t_2*six_r_s_2 - six_r_c_2*six_r_n_m1_t
+        six_r_n_m1_t_5 = six_r_c_1*six_r_n_m1_t_4 - six_r_e_2_in_axes5_z*six_r_s_1
+        six_r_n_m1_t_6 = six_r_c_1*six_r_e_2_in_axes5_z + six_r_n_m1_t_4*six_r_s_1
         axis_z_six_r_axes5_x = (
-        six_r_base_frame_xx*six_r_n_m1_t_4 + six_r_base_frame_xy*six_r_n_m1_t_5 +
+        six_r_base_frame_xx*six_r_n_m1_t_3 + six_r_base_frame_xy*six_r_n_m1_t_5 +
             six_r_base_frame_xz*six_r_n_m1_t_6
         )
         axis_z_six_r_axes5_y = (
-        six_r_base_frame_yx*six_r_n_m1_t_4 + six_r_base_frame_yy*six_r_n_m1_t_5 +
+        six_r_base_frame_yx*six_r_n_m1_t_3 + six_r_base_frame_yy*six_r_n_m1_t_5 +
             six_r_base_frame_yz*six_r_n_m1_t_6
         )
         axis_z_six_r_axes5_z = (
-        six_r_base_frame_zx*six_r_n_m1_t_4 + six_r_base_frame_zy*six_r_n_m1_t_5 +
+        six_r_base_frame_zx*six_r_n_m1_t_3 + six_r_base_frame_zy*six_r_n_m1_t_5 +
             six_r_base_frame_zz*six_r_n_m1_t_6
         )
         six_r_n_m1_t_7 = six_r_e_2_in_axes5_z*six_r_e_4_in_axes5_x
-        six_r_n_m1_t_8 = six_r_c_3*six_r_e_4_in_axes5_y - six_r_n_m1_t_7*six_r_s_3
-        six_r_n_m1_t_9 = six_r_c_3*six_r_n_m1_t_7 + six_r_e_4_in_axes5_y*six_r_s_3
-        six_r_n_m1_t_10 = six_r_c_2*six_r_n_m1_t_8 - six_r_n_m1_t_9*six_r_s_2
-        six_r_n_m1_t_11 = six_r_c_2*six_r_n_m1_t_9 + six_r_n_m1_t_8*six_r_s_2
-        six_r_n_m1_t_12 = six_r_c_1*six_r_e_2_in_axes5_y - six_r_n_m1_t_10*six_r_s_1
-        six_r_n_m1_t_13 = six_r_c_1*six_r_n_m1_t_10 + six_r_e_2_in_axes5_y*six_r_s_1
+        six_r_n_m1_t_8 = six_r_J_5_t*six_r_s_3 - six_r_c_3*six_r_n_m1_t_7
+        six_r_n_m1_t_9 = -six_r_J_5_t*six_r_c_3 - six_r_n_m1_t_7*six_r_s_3
+        six_r_n_m1_t_10 = six_r_c_2*six_r_n_m1_t_9 + six_r_n_m1_t_8*six_r_s_2
+        six_r_n_m1_t_11 = six_r_n_m1_t_9*six_r_s_2 - six_r_c_2*six_r_n_m1_t_8
+        six_r_n_m1_t_12 = six_r_c_1*six_r_n_m1_t_11 - six_r_e_2_in_axes5_y*six_r_s_1
+        six_r_n_m1_t_13 = six_r_c_1*six_r_e_2_in_axes5_y + six_r_n_m1_t_11*six_r_s_1
         axis_y_six_r_axes5_x = (
-        six_r_base_frame_xx*six_r_n_m1_t_11 + six_r_base_frame_xy*six_r_n_m1_t_12 +
+        six_r_base_frame_xx*six_r_n_m1_t_10 + six_r_base_frame_xy*six_r_n_m1_t_12 +
             six_r_base_frame_xz*six_r_n_m1_t_13
         )
         axis_y_six_r_axes5_y = (
-        six_r_base_frame_yx*six_r_n_m1_t_11 + six_r_base_frame_yy*six_r_n_m1_t_12 +
+        six_r_base_frame_yx*six_r_n_m1_t_10 + six_r_base_frame_yy*six_r_n_m1_t_12 +
             six_r_base_frame_yz*six_r_n_m1_t_13
         )
         axis_y_six_r_axes5_z = (
-        six_r_base_frame_zx*six_r_n_m1_t_11 + six_r_base_frame_zy*six_r_n_m1_t_12 +
+        six_r_base_frame_zx*six_r_n_m1_t_10 + six_r_base_frame_zy*six_r_n_m1_t_12 +
             six_r_base_frame_zz*six_r_n_m1_t_13
         )
         axis_x_six_r_axes5_x = (
@@ -4783,16 +4914,14 @@ def _run_M(m, X, q):
         )
         six_r_n_m1_t_17 = six_r_c_1*six_r_n_m1_t_14 + six_r_n_m1_t_15*six_r_s_1
         six_r_n_m1_t_18 = six_r_c_1*six_r_n_m1_t_15 - six_r_n_m1_t_14*six_r_s_1
-        six_r_n_m1_t_19 = six_r_c_2*six_r_n_m1_t_18 + six_r_n_m1_t_16*six_r_s_2
-        six_r_n_m1_t_20 = six_r_c_2*six_r_n_m1_t_16 - six_r_n_m1_t_18*six_r_s_2
-        six_r_n_m1_t_21 = six_r_c_3*six_r_n_m1_t_19 + six_r_n_m1_t_20*six_r_s_3
-        six_r_n_m1_t_22 = six_r_c_3*six_r_n_m1_t_20 - six_r_n_m1_t_19*six_r_s_3
-        six_r_n_m1_t_23 = six_r_h_4_t*six_r_n_m1_t_17 - six_r_e_2_in_axes5_z*six_r_n_m1_t_22
-        six_r_n_m1_in_axes5_y = (
-        six_r_e_4_in_axes5_x*six_r_n_m1_t_21 + six_r_e_4_in_axes5_y*six_r_n_m1_t_23
-        )
+        six_r_n_m1_t_19 = six_r_c_2*six_r_n_m1_t_16 + six_r_n_m1_t_17*six_r_s_2
+        six_r_n_m1_t_20 = six_r_c_2*six_r_n_m1_t_17 - six_r_n_m1_t_16*six_r_s_2
+        six_r_n_m1_t_21 = six_r_n_m1_t_19*six_r_s_3 - six_r_c_3*six_r_n_m1_t_20
+        six_r_n_m1_t_22 = six_r_c_3*six_r_n_m1_t_19 + six_r_n_m1_t_20*six_r_s_3
+        six_r_n_m1_t_23 = six_r_h_4_t*six_r_n_m1_t_18 - six_r_e_2_in_axes5_z*six_r_n_m1_t_21
+        six_r_n_m1_in_axes5_y = six_r_J_5_t*six_r_n_m1_t_23 + six_r_e_4_in_axes5_x*six_r_n_m1_t_22
         six_r_end_p1_in_axes5_y = (
-        six_r_e_4_in_axes5_y*six_r_n_m1_t_21 - six_r_e_4_in_axes5_x*six_r_n_m1_t_23
+        six_r_e_4_in_axes5_x*six_r_n_m1_t_23 - six_r_J_5_t*six_r_n_m1_t_22
         )
         six_r_n_m1_x = (
         axis_y_six_r_axes5_x*six_r_n_m1_in_axes5_y - axis_x_six_r_axes5_x*six_r_end_p1_in_axes5_y
@@ -4805,7 +4934,7 @@ def _run_M(m, X, q):
         )
         # (six_r-n_m2) direction 2 of the moment that the platform joint transmits
         six_r_end_p1_in_axes5_z = (
-        six_r_e_2_in_axes5_z*six_r_n_m1_t_17 + six_r_h_4_t*six_r_n_m1_t_22
+        six_r_e_2_in_axes5_z*six_r_n_m1_t_18 + six_r_h_4_t*six_r_n_m1_t_21
         )
         six_r_n_m2_x = (
         axis_z_six_r_axes5_x*six_r_end_p1_in_axes5_y -
@@ -4839,10 +4968,10 @@ def _run_M(m, X, q):
         six_r_w_1_t_7 = six_r_size*six_r_w_1_t_2
         six_r_w_1_t_8 = six_r_size*six_r_w_1_t_4
         six_r_w_1_t_9 = (
-        six_r_size*(six_r_e_4_in_axes5_y*six_r_n_m1_in_axes5_y -
+        six_r_size*(-six_r_J_5_t*six_r_n_m1_in_axes5_y -
             six_r_e_4_in_axes5_x*six_r_end_p1_in_axes5_y)
         )
-        six_r_w_1_t_10 = -six_r_e_4_in_axes5_y*six_r_end_p1_in_axes5_z*six_r_size
+        six_r_w_1_t_10 = six_r_J_5_t*six_r_end_p1_in_axes5_z*six_r_size
         six_r_w_1_t_11 = six_r_end_p1_in_axes5_y*six_r_size
         six_r_w_1_t_12 = sqrt(six_r_size_t + six_r_w_1_t_11*six_r_w_1_t_11)
         inv_six_r_w_1_t_12 = 1.0/six_r_w_1_t_12
@@ -4980,8 +5109,8 @@ def _run_M(m, X, q):
         )
         # (six_r-m2_w_1) moment part 2 of reciprocal wrench 1
         six_r_m2_w_1_t = inv_six_r_w_1_t_79*six_r_w_1_t_78
-        six_r_m2_w_1 = (
-        -six_r_size*(six_r_m2_w_1_t*six_r_w_1_t_84 + six_r_w_1_t_72*six_r_w_1_t_83 -
+        six_r_m2_w_1_t_2 = (
+        six_r_size*(six_r_m2_w_1_t*six_r_w_1_t_84 + six_r_w_1_t_72*six_r_w_1_t_83 -
             inv_six_r_w_1_t_49*six_r_w_1_t_54)
         )
         # (six_r-w_2) force part of reciprocal wrench 2
@@ -5069,9 +5198,9 @@ def _run_M(m, X, q):
         )
         # (six_r-o_1) moment part of reciprocal wrench 1
         six_r_o_1_in_axes5_x = six_r_end_p1_in_axes5_y*six_r_m1_w_1_t_2
-        six_r_o_1_in_axes5_z = six_r_end_p1_in_axes5_y*six_r_m2_w_1
+        six_r_o_1_t = six_r_end_p1_in_axes5_y*six_r_m2_w_1_t_2
         six_r_o_1_in_axes5_y = (
-        -six_r_end_p1_in_axes5_z*six_r_m2_w_1 - six_r_m1_w_1_t_2*six_r_n_m1_in_axes5_y
+        six_r_end_p1_in_axes5_z*six_r_m2_w_1_t_2 - six_r_m1_w_1_t_2*six_r_n_m1_in_axes5_y
         )
         # (six_r-o_2) moment part of reciprocal wrench 2
         six_r_o_2_t = six_r_end_p1_in_axes5_y*six_r_m1_w_2
@@ -5107,20 +5236,20 @@ def _run_M(m, X, q):
             six_r_e_2_in_axes5_x*six_r_o_3_in_axes5_y + six_r_e_4_in_axes5_x*six_r_o_4_in_axes5_y
         )
         six_r_dalpha_alpha_5_in_axes5_xz = (
-        six_r_e_1_in_axes5_x*six_r_o_1_in_axes5_z + six_r_e_2_in_axes5_x*six_r_o_2_in_axes5_z +
-            six_r_e_2_in_axes5_x*six_r_o_3_in_axes5_z + six_r_e_4_in_axes5_x*six_r_o_4_in_axes5_z
+        six_r_e_2_in_axes5_x*six_r_o_2_in_axes5_z + six_r_e_2_in_axes5_x*six_r_o_3_in_axes5_z +
+            six_r_e_4_in_axes5_x*six_r_o_4_in_axes5_z - six_r_e_1_in_axes5_x*six_r_o_1_t
         )
         six_r_dalpha_alpha_5_in_axes5_yx = (
-        six_r_e_1_in_axes5_y*six_r_o_1_in_axes5_x - six_r_e_2_in_axes5_y*six_r_o_2_t -
-            six_r_e_2_in_axes5_y*six_r_o_3_t - six_r_e_4_in_axes5_y*six_r_o_4_t
+        six_r_J_5_t*six_r_o_4_t + six_r_e_1_in_axes5_y*six_r_o_1_in_axes5_x -
+            six_r_e_2_in_axes5_y*six_r_o_2_t - six_r_e_2_in_axes5_y*six_r_o_3_t
         )
         six_r_dalpha_alpha_5_in_axes5_yy = (
         six_r_e_1_in_axes5_y*six_r_o_1_in_axes5_y + six_r_e_2_in_axes5_y*six_r_o_2_in_axes5_y +
-            six_r_e_2_in_axes5_y*six_r_o_3_in_axes5_y + six_r_e_4_in_axes5_y*six_r_o_4_in_axes5_y
+            six_r_e_2_in_axes5_y*six_r_o_3_in_axes5_y - six_r_J_5_t*six_r_o_4_in_axes5_y
         )
         six_r_dalpha_alpha_5_in_axes5_yz = (
-        six_r_e_1_in_axes5_y*six_r_o_1_in_axes5_z + six_r_e_2_in_axes5_y*six_r_o_2_in_axes5_z +
-            six_r_e_2_in_axes5_y*six_r_o_3_in_axes5_z + six_r_e_4_in_axes5_y*six_r_o_4_in_axes5_z
+        six_r_e_2_in_axes5_y*six_r_o_2_in_axes5_z + six_r_e_2_in_axes5_y*six_r_o_3_in_axes5_z -
+            six_r_J_5_t*six_r_o_4_in_axes5_z - six_r_e_1_in_axes5_y*six_r_o_1_t
         )
         six_r_dalpha_alpha_5_in_axes5_zx = (
         six_r_o_5_in_axes5_x + six_r_e_1_in_axes5_z*six_r_o_1_in_axes5_x -
@@ -5131,8 +5260,8 @@ def _run_M(m, X, q):
             six_r_e_2_in_axes5_z*six_r_o_2_in_axes5_y + six_r_e_2_in_axes5_z*six_r_o_3_in_axes5_y
         )
         six_r_dalpha_alpha_5_in_axes5_zz = (
-        six_r_e_1_in_axes5_z*six_r_o_1_in_axes5_z + six_r_e_2_in_axes5_z*six_r_o_2_in_axes5_z +
-            six_r_e_2_in_axes5_z*six_r_o_3_in_axes5_z - six_r_o_5_t
+        six_r_e_2_in_axes5_z*six_r_o_2_in_axes5_z + six_r_e_2_in_axes5_z*six_r_o_3_in_axes5_z -
+            six_r_o_5_t - six_r_e_1_in_axes5_z*six_r_o_1_t
         )
         # (six_r-d_alpha_5) coefficient of the acceleration in: angular acceleration of link 5
         six_r_d_alpha_5_in_axes5_xz = (
@@ -5141,7 +5270,7 @@ def _run_M(m, X, q):
         )
         six_r_d_alpha_5_in_axes5_yz = (
         six_r_e_1_in_axes5_y*six_r_w_1_in_axes5_z + six_r_e_2_in_axes5_y*six_r_w_2_in_axes5_z +
-            six_r_e_2_in_axes5_y*six_r_w_3_in_axes5_z + six_r_e_4_in_axes5_y*six_r_w_4_in_axes5_z
+            six_r_e_2_in_axes5_y*six_r_w_3_in_axes5_z - six_r_J_5_t*six_r_w_4_in_axes5_z
         )
         six_r_d_alpha_5_in_axes5_zy = (
         six_r_w_5_in_axes5_y + six_r_e_1_in_axes5_z*six_r_w_1_in_axes5_y +
@@ -5155,7 +5284,7 @@ def _run_M(m, X, q):
         six_r_d_phi_5_in_axes5_xx = (
         six_r_h_5_in_spec5_z*(six_r_e_1_in_axes5_y*six_r_w_1_in_axes5_x +
             six_r_e_2_in_axes5_y*six_r_w_2_in_axes5_x + six_r_e_2_in_axes5_y*six_r_w_3_in_axes5_x
-            + six_r_e_4_in_axes5_y*six_r_w_4_in_axes5_x) -
+            - six_r_J_5_t*six_r_w_4_in_axes5_x) -
             six_r_h_5_in_spec5_y*(six_r_e_1_in_axes5_z*six_r_w_1_in_axes5_x +
             six_r_e_2_in_axes5_z*six_r_w_2_in_axes5_x + six_r_e_2_in_axes5_z*six_r_w_3_in_axes5_x
             - six_r_w_5_t_5)
@@ -5171,146 +5300,136 @@ def _run_M(m, X, q):
             six_r_J_5_in_spec5_zz*six_r_e_1_in_axes5_z
         )
         # (six_r-Jc_4) inertia tensor of the links from 4 outwards about joint 4, that of the last link about the connection point
-        six_r_Jc_4_t = six_r_J_5_in_spec5_xy*six_r_e_4_in_axes5_x
-        six_r_Jc_4_t_2 = six_r_J_5_in_spec5_xx*six_r_e_4_in_axes5_y - six_r_Jc_4_t
-        six_r_Jc_4_t_3 = -six_r_J_5_in_spec5_xy*six_r_e_4_in_axes5_y
-        six_r_Jc_4_t_4 = -six_r_Jc_4_t_3 - six_r_J_5_in_spec5_yy*six_r_e_4_in_axes5_x
+        six_r_Jc_4_t = six_r_J_5_in_spec5_xy*six_r_J_5_t
+        six_r_Jc_4_t_2 = six_r_J_5_in_spec5_xy*six_r_e_4_in_axes5_x
+        six_r_Jc_4_t_3 = six_r_Jc_4_t_2 + six_r_J_5_in_spec5_xx*six_r_J_5_t
+        six_r_Jc_4_t_4 = six_r_Jc_4_t + six_r_J_5_in_spec5_yy*six_r_e_4_in_axes5_x
+        six_r_Jc_4_in_axes4_xx = (
+        six_r_J_4_in_spec4_yy + six_r_J_5_t*six_r_Jc_4_t_3 + six_r_Jc_4_t_4*six_r_e_4_in_axes5_x
+        )
         six_r_Jc_4_in_axes4_xy = (
-        six_r_J_5_in_spec5_xz*six_r_e_4_in_axes5_y - six_r_J_4_in_spec4_yz -
+        six_r_J_4_in_spec4_yz + six_r_J_5_in_spec5_xz*six_r_J_5_t +
             six_r_J_5_in_spec5_yz*six_r_e_4_in_axes5_x
         )
-        six_r_Jc_4_in_axes4_xz = six_r_J_4_in_spec4_xz + six_r_J_5_in_axes4_xz
-        six_r_Jc_4_in_axes4_yy = (
-        six_r_J_4_in_spec4_yy + six_r_Jc_4_t_2*six_r_e_4_in_axes5_y -
-            six_r_Jc_4_t_4*six_r_e_4_in_axes5_x
+        six_r_Jc_4_in_axes4_xz = (
+        six_r_J_4_in_spec4_xy + six_r_Jc_4_t_3*six_r_e_4_in_axes5_x - six_r_J_5_t*six_r_Jc_4_t_4
         )
-        six_r_Jc_4_in_axes4_yz = (
-        six_r_Jc_4_t_2*six_r_e_4_in_axes5_x + six_r_Jc_4_t_4*six_r_e_4_in_axes5_y -
-            six_r_J_4_in_spec4_xy
-        )
+        six_r_Jc_4_in_axes4_yz = six_r_J_4_in_spec4_xz + six_r_J_5_in_axes4_yz
         six_r_Jc_4_in_axes4_zz = (
         six_r_J_4_in_spec4_xx + six_r_e_4_in_axes5_x*(six_r_J_5_in_spec5_xx*six_r_e_4_in_axes5_x -
-            six_r_Jc_4_t_3) + six_r_e_4_in_axes5_y*(six_r_Jc_4_t +
-            six_r_J_5_in_spec5_yy*six_r_e_4_in_axes5_y)
+            six_r_Jc_4_t) - six_r_J_5_t*(six_r_Jc_4_t_2 - six_r_J_5_in_spec5_yy*six_r_J_5_t)
         )
         six_r_Jc_4_in_axes3_xy = (
-        six_r_Jc_4_in_axes4_xz*six_r_h_4_t - six_r_Jc_4_in_axes4_yz*six_r_e_2_in_axes5_z
+        six_r_Jc_4_in_axes4_yz*six_r_h_4_t - six_r_Jc_4_in_axes4_xz*six_r_e_2_in_axes5_z
         )
-        six_r_Jc_4_in_axes3_xz = (
-        six_r_Jc_4_in_axes4_xz*six_r_e_2_in_axes5_z + six_r_Jc_4_in_axes4_yz*six_r_h_4_t
-        )
-        # (six_r-P_c_4) force that accelerates joint 4, per unit
-        six_r_P_c_4_in_axes3_y = (
-        six_r_h_4_in_spec4_y*six_r_h_4_t - six_r_e_2_in_axes5_z*six_r_h_4_in_spec4_z
+        six_r_Jc_4_in_axes3_yz = (
+        six_r_Jc_4_in_axes4_xz*six_r_h_4_t + six_r_Jc_4_in_axes4_yz*six_r_e_2_in_axes5_z
         )
         # (six_r-L_c_4_3) moment about joint 3 that accelerates joint 4, per unit
-        six_r_L_c_4_3_t = six_r_h_4_in_axes3_y*six_r_joint4_offset_x
-        six_r_L_c_4_3_t_2 = six_r_P_c_4_in_axes3_y*six_r_joint4_offset_x
-        six_r_L_c_4_3_in_axes3_y = six_r_Jc_4_in_axes3_xy - six_r_L_c_4_3_t
-        six_r_L_c_4_3_in_axes3_z = six_r_Jc_4_in_axes3_xz + six_r_L_c_4_3_t_2
+        six_r_L_c_4_3_t = six_r_h_4_in_spec3_y*six_r_joint4_offset_x
+        six_r_L_c_4_3_t_2 = -six_r_h_4_in_spec2_z*six_r_joint4_offset_x
+        six_r_L_c_4_3_in_axes3_x = six_r_Jc_4_in_axes3_xy + six_r_L_c_4_3_t
+        six_r_L_c_4_3_in_axes3_z = six_r_Jc_4_in_axes3_yz + six_r_L_c_4_3_t_2
         # (six_r-L_c_4_2) moment about joint 2 that accelerates joint 4, per unit
         six_r_L_c_4_2_in_axes2_y = (
-        six_r_Jc_4_in_axes4_zz*six_r_s_3 + six_r_L_c_4_3_in_axes3_y*six_r_c_3 -
-            six_r_h_4_in_axes3_y*six_r_joint3_offset_x
+        six_r_Jc_4_in_axes4_zz*six_r_s_3 - six_r_L_c_4_3_in_axes3_x*six_r_c_3 -
+            six_r_h_4_in_spec3_y*six_r_joint3_offset_x
         )
         six_r_L_c_4_2_in_axes2_z = (
-        six_r_L_c_4_3_in_axes3_z + six_r_P_c_4_in_axes3_y*six_r_c_3*six_r_joint3_offset_x
+        six_r_L_c_4_3_in_axes3_z - six_r_c_3*six_r_h_4_in_spec2_z*six_r_joint3_offset_x
         )
         six_r_L_c_4_2_in_axes1_z = (
-        six_r_L_c_4_2_in_axes2_y*six_r_c_2 + six_r_s_2*(six_r_Jc_4_in_axes4_zz*six_r_c_3 -
-            six_r_L_c_4_3_in_axes3_y*six_r_s_3)
+        six_r_c_2*(six_r_Jc_4_in_axes4_zz*six_r_c_3 + six_r_L_c_4_3_in_axes3_x*six_r_s_3) -
+            six_r_L_c_4_2_in_axes2_y*six_r_s_2
         )
         # (six_r-hc_3) first moment of the links from 3 outwards
-        six_r_hc_3_in_axes3_y = six_r_h_3_in_spec3_y + six_r_h_4_in_axes3_y
-        six_r_hc_3_in_axes3_z = six_r_h_3_in_spec3_z - six_r_P_c_4_in_axes3_y
-        six_r_hc_3_in_axes2_x = six_r_c_3*six_r_hc_3_in_axes3_x - six_r_hc_3_in_axes3_y*six_r_s_3
+        six_r_hc_3_in_axes3_x = -six_r_h_3_in_spec3_y - six_r_h_4_in_spec3_y
+        six_r_hc_3_in_axes3_z = six_r_h_3_in_spec3_z + six_r_h_4_in_spec2_z
+        six_r_hc_3_in_axes2_x = six_r_c_3*six_r_hc_3_in_axes3_y + six_r_hc_3_in_axes3_x*six_r_s_3
         # (six_r-Jc_3) inertia tensor of the links from 3 outwards about joint 3, that of the last link about the connection point
-        six_r_Jc_3_t = six_r_Jc_4_in_axes4_xy*six_r_e_2_in_axes5_z
-        six_r_Jc_3_t_4 = six_r_Jc_4_in_axes4_xx*six_r_h_4_t - six_r_Jc_3_t
-        six_r_Jc_3_t_5 = -six_r_Jc_4_in_axes4_xy*six_r_h_4_t
-        six_r_Jc_3_t_6 = -six_r_Jc_3_t_5 - six_r_Jc_4_in_axes4_yy*six_r_e_2_in_axes5_z
+        six_r_Jc_3_t = six_r_Jc_4_in_axes4_xy*six_r_h_4_t
+        six_r_Jc_3_t_4 = six_r_Jc_4_in_axes4_xx*six_r_e_2_in_axes5_z - six_r_Jc_3_t
+        six_r_Jc_3_t_5 = six_r_Jc_4_in_axes4_xy*six_r_e_2_in_axes5_z
+        six_r_Jc_3_t_6 = six_r_Jc_3_t_5 - six_r_Jc_4_in_axes4_yy*six_r_h_4_t
         six_r_Jc_3_in_axes3_xx = (
-        six_r_J_3_in_spec3_xx + six_r_Jc_3_t_3 + six_r_Jc_4_in_axes4_zz - 2.0*six_r_Jc_3_t_2
+        six_r_J_3_in_spec3_yy + six_r_Jc_3_t_3 + six_r_Jc_3_t_4*six_r_e_2_in_axes5_z -
+            six_r_Jc_3_t_6*six_r_h_4_t
         )
-        six_r_Jc_3_in_axes3_xy = six_r_J_3_in_spec3_xy + six_r_Jc_4_in_axes3_xy - six_r_L_c_4_3_t
+        six_r_Jc_3_in_axes3_xy = six_r_Jc_4_in_axes3_xy + six_r_L_c_4_3_t - six_r_J_3_in_spec3_xy
         six_r_Jc_3_in_axes3_xz = (
-        six_r_J_3_in_spec3_xz + six_r_Jc_4_in_axes3_xz + six_r_L_c_4_3_t_2
+        -six_r_J_3_in_spec3_yz - six_r_Jc_3_t_4*six_r_h_4_t - six_r_Jc_3_t_6*six_r_e_2_in_axes5_z
         )
         six_r_Jc_3_in_axes3_yy = (
-        six_r_J_3_in_spec3_yy + six_r_Jc_3_t_3 + six_r_Jc_3_t_4*six_r_h_4_t -
-            six_r_Jc_3_t_6*six_r_e_2_in_axes5_z
+        six_r_J_3_in_spec3_xx + six_r_Jc_3_t_3 + six_r_Jc_4_in_axes4_zz - 2.0*six_r_Jc_3_t_2
         )
         six_r_Jc_3_in_axes3_yz = (
-        six_r_J_3_in_spec3_yz + six_r_Jc_3_t_4*six_r_e_2_in_axes5_z + six_r_Jc_3_t_6*six_r_h_4_t
+        six_r_J_3_in_spec3_xz + six_r_Jc_4_in_axes3_yz + six_r_L_c_4_3_t_2
         )
         six_r_Jc_3_in_axes3_zz = (
-        six_r_J_3_in_spec3_zz + six_r_Jc_3_t_3 +
-            six_r_e_2_in_axes5_z*(six_r_Jc_4_in_axes4_xx*six_r_e_2_in_axes5_z - six_r_Jc_3_t_5) +
-            six_r_h_4_t*(six_r_Jc_3_t + six_r_Jc_4_in_axes4_yy*six_r_h_4_t)
-        )
-        six_r_Jc_3_in_axes2_xz = (
-        six_r_Jc_3_in_axes3_xz*six_r_c_3 - six_r_Jc_3_in_axes3_yz*six_r_s_3
+        six_r_J_3_in_spec3_zz + six_r_Jc_3_t_3 + six_r_e_2_in_axes5_z*(six_r_Jc_3_t +
+            six_r_Jc_4_in_axes4_yy*six_r_e_2_in_axes5_z) + six_r_h_4_t*(six_r_Jc_3_t_5 +
+            six_r_Jc_4_in_axes4_xx*six_r_h_4_t)
         )
         six_r_Jc_3_in_axes2_yz = (
+        six_r_Jc_3_in_axes3_yz*six_r_s_3 - six_r_Jc_3_in_axes3_xz*six_r_c_3
+        )
+        six_r_Jc_3_in_axes2_xz = (
         six_r_Jc_3_in_axes3_xz*six_r_s_3 + six_r_Jc_3_in_axes3_yz*six_r_c_3
         )
         # (six_r-P_c_3) force that accelerates joint 3, per unit
-        six_r_P_c_3_in_axes2_x = (
-        -six_r_c_3*six_r_hc_3_in_axes3_y - six_r_hc_3_in_axes3_x*six_r_s_3
-        )
+        six_r_P_c_3_in_axes2_x = six_r_c_3*six_r_hc_3_in_axes3_x - six_r_hc_3_in_axes3_y*six_r_s_3
         # (six_r-L_c_3_2) moment about joint 2 that accelerates joint 3, per unit
         six_r_L_c_3_2_in_axes2_z = (
         six_r_Jc_3_in_axes3_zz + six_r_hc_3_in_axes2_x*six_r_joint3_offset_x
         )
         six_r_L_c_3_2_in_axes1_z = (
-        six_r_Jc_3_in_axes2_xz*six_r_s_2 + six_r_Jc_3_in_axes2_yz*six_r_c_2
+        six_r_Jc_3_in_axes2_xz*six_r_c_2 - six_r_Jc_3_in_axes2_yz*six_r_s_2
         )
         # (six_r-Jc_2) inertia tensor of the links from 2 outwards about joint 2, that of the last link about the connection point
         six_r_Jc_2_t_2 = six_r_Jc_3_in_axes3_xy*six_r_s_3
-        six_r_Jc_2_t_3 = six_r_Jc_3_in_axes3_xx*six_r_c_3 - six_r_Jc_2_t_2
-        six_r_Jc_2_t_4 = six_r_Jc_3_in_axes3_xy*six_r_c_3
-        six_r_Jc_2_t_5 = six_r_Jc_2_t_4 - six_r_Jc_3_in_axes3_yy*six_r_s_3
+        six_r_Jc_2_t_3 = six_r_Jc_3_in_axes3_xy*six_r_c_3
+        six_r_Jc_2_t_4 = six_r_Jc_2_t_3 + six_r_Jc_3_in_axes3_xx*six_r_s_3
+        six_r_Jc_2_t_5 = six_r_Jc_2_t_2 + six_r_Jc_3_in_axes3_yy*six_r_c_3
         six_r_Jc_2_t_6 = six_r_joint3_offset_x*(six_r_Jc_2_t + six_r_hc_3_in_axes2_x)
         six_r_Jc_2_t_7 = 2.0*six_r_Jc_2_t_6
         six_r_Jc_2_in_axes2_xy = (
-        six_r_J_2_in_spec2_xy + six_r_Jc_2_t_3*six_r_s_3 + six_r_Jc_2_t_5*six_r_c_3 +
-            six_r_P_c_3_in_axes2_x*six_r_joint3_offset_x
+        six_r_J_2_in_spec2_xy + six_r_Jc_2_t_5*six_r_s_3 +
+            six_r_P_c_3_in_axes2_x*six_r_joint3_offset_x - six_r_Jc_2_t_4*six_r_c_3
         )
         six_r_Jc_2_in_axes2_zz = six_r_J_2_in_spec2_zz + six_r_Jc_2_t_7 + six_r_Jc_3_in_axes3_zz
-        six_r_Jc_2_in_axes1_xz = (
-        six_r_c_2*(six_r_J_2_in_spec2_yz + six_r_Jc_3_in_axes2_yz) +
-            six_r_s_2*(six_r_J_2_in_spec2_xz + six_r_Jc_3_in_axes2_xz -
-            six_r_hc_3_in_axes3_z*six_r_joint3_offset_x)
+        six_r_Jc_2_in_axes1_yz = (
+        six_r_c_2*(six_r_J_2_in_spec2_xz + six_r_Jc_3_in_axes2_xz -
+            six_r_hc_3_in_axes3_z*six_r_joint3_offset_x) - six_r_s_2*(six_r_J_2_in_spec2_yz +
+            six_r_Jc_3_in_axes2_yz)
         )
         six_r_Jc_2_in_axes1_zz = (
-        six_r_c_2*(six_r_Jc_2_in_axes2_xy*six_r_s_2 + six_r_c_2*(six_r_J_2_in_spec2_yy +
-            six_r_Jc_2_t_7 + six_r_c_3*(six_r_Jc_2_t_2 + six_r_Jc_3_in_axes3_yy*six_r_c_3) +
-            six_r_s_3*(six_r_Jc_2_t_4 + six_r_Jc_3_in_axes3_xx*six_r_s_3))) +
-            six_r_s_2*(six_r_Jc_2_in_axes2_xy*six_r_c_2 + six_r_s_2*(six_r_J_2_in_spec2_xx +
-            six_r_Jc_2_t_7 + six_r_Jc_2_t_3*six_r_c_3 - 2.0*six_r_Jc_2_t_6 -
-            six_r_Jc_2_t_5*six_r_s_3))
+        six_r_c_2*(six_r_c_2*(six_r_J_2_in_spec2_xx + six_r_Jc_2_t_7 + six_r_Jc_2_t_4*six_r_s_3 +
+            six_r_Jc_2_t_5*six_r_c_3 - 2.0*six_r_Jc_2_t_6) - six_r_Jc_2_in_axes2_xy*six_r_s_2) -
+            six_r_s_2*(six_r_Jc_2_in_axes2_xy*six_r_c_2 - six_r_s_2*(six_r_J_2_in_spec2_yy +
+            six_r_Jc_2_t_7 + six_r_c_3*(six_r_Jc_3_in_axes3_xx*six_r_c_3 - six_r_Jc_2_t_2) -
+            six_r_s_3*(six_r_Jc_2_t_3 - six_r_Jc_3_in_axes3_yy*six_r_s_3)))
         )
         # (six_r-Jc_1) inertia tensor of the links from 1 outwards about joint 1, that of the last link about the connection point
         six_r_Jc_1_in_axes1_zz = six_r_J_1_in_spec1_xx + six_r_Jc_2_in_axes1_zz
         # (six_r-dalpha_Gamma_5) coefficient of the acceleration in: moment about axis 5 of the distal links' inertia and weight
         six_r_dalpha_Gamma_5_in_axes5_x = (
         six_r_D_1_5*six_r_o_1_in_axes5_x + six_r_J_5_in_spec5_zz*six_r_o_5_in_axes5_x -
-            six_r_D_3_5*six_r_o_2_t - six_r_D_3_5*six_r_o_3_t - six_r_J_5_in_axes4_xz*six_r_o_4_t
+            six_r_D_3_5*six_r_o_2_t - six_r_D_3_5*six_r_o_3_t - six_r_J_5_in_axes4_yz*six_r_o_4_t
         )
         six_r_dalpha_Gamma_5_in_axes5_y = (
         six_r_D_1_5*six_r_o_1_in_axes5_y + six_r_D_3_5*six_r_o_2_in_axes5_y +
-            six_r_D_3_5*six_r_o_3_in_axes5_y + six_r_J_5_in_axes4_xz*six_r_o_4_in_axes5_y +
+            six_r_D_3_5*six_r_o_3_in_axes5_y + six_r_J_5_in_axes4_yz*six_r_o_4_in_axes5_y +
             six_r_J_5_in_spec5_zz*six_r_o_5_in_axes5_y
         )
         six_r_dalpha_Gamma_5_in_axes5_z = (
-        six_r_D_1_5*six_r_o_1_in_axes5_z + six_r_D_3_5*six_r_o_2_in_axes5_z +
-            six_r_D_3_5*six_r_o_3_in_axes5_z + six_r_J_5_in_axes4_xz*six_r_o_4_in_axes5_z -
+        six_r_D_3_5*six_r_o_2_in_axes5_z + six_r_D_3_5*six_r_o_3_in_axes5_z +
+            six_r_J_5_in_axes4_yz*six_r_o_4_in_axes5_z - six_r_D_1_5*six_r_o_1_t -
             six_r_J_5_in_spec5_zz*six_r_o_5_t
         )
         # (six_r-d_Gamma_5) coefficient of the acceleration in: moment about axis 5 of the distal links' inertia and weight
         six_r_d_Gamma_5_t = inv_six_r_w_1_t_12*six_r_J_5_in_spec5_zz
         six_r_d_Gamma_5_t_2 = (
-        inv_six_r_w_1_t_28*(six_r_J_5_in_axes4_xz - six_r_d_Gamma_5_t*six_r_w_1_t_15)
+        inv_six_r_w_1_t_28*(six_r_J_5_in_axes4_yz - six_r_d_Gamma_5_t*six_r_w_1_t_15)
         )
         six_r_d_Gamma_5_t_3 = (
         inv_six_r_w_1_t_49*(six_r_D_1_5 + six_r_d_Gamma_5_t_2*six_r_w_1_t_33 -
@@ -5340,24 +5459,24 @@ def _run_M(m, X, q):
         )
         # (six_r-dalpha_Gamma_4) coefficient of the acceleration in: moment about axis 4 of the distal links' inertia and weight
         six_r_dalpha_Gamma_4_in_axes5_x = (
-        six_r_J_5_in_axes4_xz*six_r_o_5_in_axes5_x + six_r_L_c_4_2_in_axes1_z*six_r_o_1_in_axes5_x
+        six_r_J_5_in_axes4_yz*six_r_o_5_in_axes5_x + six_r_L_c_4_2_in_axes1_z*six_r_o_1_in_axes5_x
             - six_r_Jc_4_in_axes4_zz*six_r_o_4_t - six_r_L_c_4_2_in_axes2_z*six_r_o_2_t -
             six_r_L_c_4_3_in_axes3_z*six_r_o_3_t
         )
         six_r_dalpha_Gamma_4_in_axes5_y = (
-        six_r_J_5_in_axes4_xz*six_r_o_5_in_axes5_y + six_r_Jc_4_in_axes4_zz*six_r_o_4_in_axes5_y +
+        six_r_J_5_in_axes4_yz*six_r_o_5_in_axes5_y + six_r_Jc_4_in_axes4_zz*six_r_o_4_in_axes5_y +
             six_r_L_c_4_2_in_axes1_z*six_r_o_1_in_axes5_y +
             six_r_L_c_4_2_in_axes2_z*six_r_o_2_in_axes5_y +
             six_r_L_c_4_3_in_axes3_z*six_r_o_3_in_axes5_y
         )
         six_r_dalpha_Gamma_4_in_axes5_z = (
         six_r_Jc_4_in_axes4_zz*six_r_o_4_in_axes5_z +
-            six_r_L_c_4_2_in_axes1_z*six_r_o_1_in_axes5_z +
             six_r_L_c_4_2_in_axes2_z*six_r_o_2_in_axes5_z +
-            six_r_L_c_4_3_in_axes3_z*six_r_o_3_in_axes5_z - six_r_J_5_in_axes4_xz*six_r_o_5_t
+            six_r_L_c_4_3_in_axes3_z*six_r_o_3_in_axes5_z - six_r_J_5_in_axes4_yz*six_r_o_5_t -
+            six_r_L_c_4_2_in_axes1_z*six_r_o_1_t
         )
         # (six_r-d_Gamma_4) coefficient of the acceleration in: moment about axis 4 of the distal links' inertia and weight
-        six_r_d_Gamma_4_t = inv_six_r_w_1_t_12*six_r_J_5_in_axes4_xz
+        six_r_d_Gamma_4_t = inv_six_r_w_1_t_12*six_r_J_5_in_axes4_yz
         six_r_d_Gamma_4_t_2 = (
         inv_six_r_w_1_t_28*(six_r_Jc_4_in_axes4_zz - six_r_d_Gamma_4_t*six_r_w_1_t_15)
         )
@@ -5376,7 +5495,7 @@ def _run_M(m, X, q):
         )
         six_r_d_Gamma_4_in_axes5_x = (
         six_r_d_Gamma_4_t_3*six_r_w_1_t_50 + six_r_d_Gamma_4_t_4*six_r_w_1_t_68 +
-            six_r_d_Gamma_4_t_5*six_r_w_1_t_80 + six_r_e_4_in_axes5_y*six_r_h_5_in_spec5_z
+            six_r_d_Gamma_4_t_5*six_r_w_1_t_80 - six_r_J_5_t*six_r_h_5_in_spec5_z
         )
         six_r_d_Gamma_4_in_axes5_y = (
         six_r_d_Gamma_4_t*six_r_w_1_t_13 - six_r_d_Gamma_4_t_2*six_r_w_1_t_29 -
@@ -5384,9 +5503,9 @@ def _run_M(m, X, q):
             six_r_d_Gamma_4_t_5*six_r_w_1_t_81 - six_r_e_4_in_axes5_x*six_r_h_5_in_spec5_z
         )
         six_r_d_Gamma_4_in_axes5_z = (
-        six_r_d_Gamma_4_t_2*six_r_w_1_t_30 + six_r_d_Gamma_4_t_3*six_r_w_1_t_52 +
-            six_r_d_Gamma_4_t_4*six_r_w_1_t_70 + six_r_d_Gamma_4_t_5*six_r_w_1_t_82 +
-            six_r_e_4_in_axes5_x*six_r_h_5_in_spec5_y - six_r_e_4_in_axes5_y*six_r_h_5_in_spec5_x
+        six_r_J_5_t*six_r_h_5_in_spec5_x + six_r_d_Gamma_4_t_2*six_r_w_1_t_30 +
+            six_r_d_Gamma_4_t_3*six_r_w_1_t_52 + six_r_d_Gamma_4_t_4*six_r_w_1_t_70 +
+            six_r_d_Gamma_4_t_5*six_r_w_1_t_82 + six_r_e_4_in_axes5_x*six_r_h_5_in_spec5_y
         )
         # (six_r-dalpha_Gamma_3) coefficient of the acceleration in: moment about axis 3 of the distal links' inertia and weight
         six_r_dalpha_Gamma_3_t = six_r_D_3_5*six_r_o_5_in_axes5_x
@@ -5405,9 +5524,9 @@ def _run_M(m, X, q):
         )
         six_r_dalpha_Gamma_3_in_axes5_z = (
         six_r_Jc_3_in_axes3_zz*six_r_o_3_in_axes5_z +
-            six_r_L_c_3_2_in_axes1_z*six_r_o_1_in_axes5_z +
             six_r_L_c_3_2_in_axes2_z*six_r_o_2_in_axes5_z +
-            six_r_L_c_4_3_in_axes3_z*six_r_o_4_in_axes5_z - six_r_dalpha_Gamma_3_t_3
+            six_r_L_c_4_3_in_axes3_z*six_r_o_4_in_axes5_z - six_r_dalpha_Gamma_3_t_3 -
+            six_r_L_c_3_2_in_axes1_z*six_r_o_1_t
         )
         # (six_r-d_Gamma_3) coefficient of the acceleration in: moment about axis 3 of the distal links' inertia and weight
         six_r_d_Gamma_3_t = (
@@ -5455,25 +5574,26 @@ def _run_M(m, X, q):
         )
         # (six_r-dalpha_Gamma_2) coefficient of the acceleration in: moment about axis 2 of the distal links' inertia and weight
         six_r_dalpha_Gamma_2_in_axes5_x = (
-        six_r_dalpha_Gamma_3_t + six_r_Jc_2_in_axes1_xz*six_r_o_1_in_axes5_x -
+        six_r_dalpha_Gamma_3_t + six_r_Jc_2_in_axes1_yz*six_r_o_1_in_axes5_x -
             six_r_Jc_2_in_axes2_zz*six_r_o_2_t - six_r_L_c_3_2_in_axes2_z*six_r_o_3_t -
             six_r_L_c_4_2_in_axes2_z*six_r_o_4_t
         )
         six_r_dalpha_Gamma_2_in_axes5_y = (
-        six_r_dalpha_Gamma_3_t_2 + six_r_Jc_2_in_axes1_xz*six_r_o_1_in_axes5_y +
+        six_r_dalpha_Gamma_3_t_2 + six_r_Jc_2_in_axes1_yz*six_r_o_1_in_axes5_y +
             six_r_Jc_2_in_axes2_zz*six_r_o_2_in_axes5_y +
             six_r_L_c_3_2_in_axes2_z*six_r_o_3_in_axes5_y +
             six_r_L_c_4_2_in_axes2_z*six_r_o_4_in_axes5_y
         )
         six_r_dalpha_Gamma_2_in_axes5_z = (
-        six_r_Jc_2_in_axes1_xz*six_r_o_1_in_axes5_z + six_r_Jc_2_in_axes2_zz*six_r_o_2_in_axes5_z
-            + six_r_L_c_3_2_in_axes2_z*six_r_o_3_in_axes5_z +
-            six_r_L_c_4_2_in_axes2_z*six_r_o_4_in_axes5_z - six_r_dalpha_Gamma_3_t_3
+        six_r_Jc_2_in_axes2_zz*six_r_o_2_in_axes5_z +
+            six_r_L_c_3_2_in_axes2_z*six_r_o_3_in_axes5_z +
+            six_r_L_c_4_2_in_axes2_z*six_r_o_4_in_axes5_z - six_r_dalpha_Gamma_3_t_3 -
+            six_r_Jc_2_in_axes1_yz*six_r_o_1_t
         )
         # (six_r-d_Gamma_2) coefficient of the acceleration in: moment about axis 2 of the distal links' inertia and weight
         six_r_d_Gamma_2_t = inv_six_r_w_1_t_28*(six_r_L_c_4_2_in_axes2_z - six_r_d_Gamma_3_t_5)
         six_r_d_Gamma_2_t_2 = (
-        inv_six_r_w_1_t_49*(six_r_Jc_2_in_axes1_xz + six_r_d_Gamma_2_t*six_r_w_1_t_33 -
+        inv_six_r_w_1_t_49*(six_r_Jc_2_in_axes1_yz + six_r_d_Gamma_2_t*six_r_w_1_t_33 -
             six_r_d_Gamma_3_t_7)
         )
         six_r_d_Gamma_2_t_3 = (
@@ -5502,19 +5622,20 @@ def _run_M(m, X, q):
         # (six_r-dalpha_Gamma_1) coefficient of the acceleration in: moment about axis 1 of the distal links' inertia and weight
         six_r_dalpha_Gamma_1_in_axes5_x = (
         six_r_D_1_5*six_r_o_5_in_axes5_x + six_r_Jc_1_in_axes1_zz*six_r_o_1_in_axes5_x -
-            six_r_Jc_2_in_axes1_xz*six_r_o_2_t - six_r_L_c_3_2_in_axes1_z*six_r_o_3_t -
+            six_r_Jc_2_in_axes1_yz*six_r_o_2_t - six_r_L_c_3_2_in_axes1_z*six_r_o_3_t -
             six_r_L_c_4_2_in_axes1_z*six_r_o_4_t
         )
         six_r_dalpha_Gamma_1_in_axes5_y = (
         six_r_D_1_5*six_r_o_5_in_axes5_y + six_r_Jc_1_in_axes1_zz*six_r_o_1_in_axes5_y +
-            six_r_Jc_2_in_axes1_xz*six_r_o_2_in_axes5_y +
+            six_r_Jc_2_in_axes1_yz*six_r_o_2_in_axes5_y +
             six_r_L_c_3_2_in_axes1_z*six_r_o_3_in_axes5_y +
             six_r_L_c_4_2_in_axes1_z*six_r_o_4_in_axes5_y
         )
         six_r_dalpha_Gamma_1_in_axes5_z = (
-        six_r_Jc_1_in_axes1_zz*six_r_o_1_in_axes5_z + six_r_Jc_2_in_axes1_xz*six_r_o_2_in_axes5_z
-            + six_r_L_c_3_2_in_axes1_z*six_r_o_3_in_axes5_z +
-            six_r_L_c_4_2_in_axes1_z*six_r_o_4_in_axes5_z - six_r_D_1_5*six_r_o_5_t
+        six_r_Jc_2_in_axes1_yz*six_r_o_2_in_axes5_z +
+            six_r_L_c_3_2_in_axes1_z*six_r_o_3_in_axes5_z +
+            six_r_L_c_4_2_in_axes1_z*six_r_o_4_in_axes5_z - six_r_D_1_5*six_r_o_5_t -
+            six_r_Jc_1_in_axes1_zz*six_r_o_1_t
         )
         # (six_r-d_Gamma_1) coefficient of the acceleration in: moment about axis 1 of the distal links' inertia and weight
         six_r_d_Gamma_1_t = inv_six_r_w_1_t_12*six_r_D_1_5
@@ -5526,7 +5647,7 @@ def _run_M(m, X, q):
             six_r_d_Gamma_1_t*six_r_w_1_t_18)
         )
         six_r_d_Gamma_1_t_4 = (
-        inv_six_r_w_1_t_67*(six_r_Jc_2_in_axes1_xz + six_r_d_Gamma_1_t_2*six_r_w_1_t_39 -
+        inv_six_r_w_1_t_67*(six_r_Jc_2_in_axes1_yz + six_r_d_Gamma_1_t_2*six_r_w_1_t_39 -
             six_r_d_Gamma_1_t*six_r_w_1_t_22 - six_r_d_Gamma_1_t_3*six_r_w_1_t_55)
         )
         six_r_d_Gamma_1_t_5 = (
@@ -5615,24 +5736,24 @@ def _run_M(m, X, q):
         )
         # (six_r-dalpha_G_m2) coefficient of the acceleration in: moment along moment direction 2 that balances the leg's inertia and weight along all degrees of freedom
         six_r_dalpha_G_m2_in_axes5_x = (
-        six_r_dalpha_Gamma_1_in_axes5_x*six_r_m2_w_1 +
-            six_r_dalpha_Gamma_2_in_axes5_x*six_r_m2_w_2 +
+        six_r_dalpha_Gamma_2_in_axes5_x*six_r_m2_w_2 +
             six_r_dalpha_Gamma_3_in_axes5_x*six_r_m2_w_3 +
             six_r_dalpha_Gamma_4_in_axes5_x*six_r_m2_w_4 -
+            six_r_dalpha_Gamma_1_in_axes5_x*six_r_m2_w_1_t_2 -
             six_r_dalpha_Gamma_5_in_axes5_x*six_r_m2_w_5_t
         )
         six_r_dalpha_G_m2_in_axes5_y = (
-        six_r_dalpha_Gamma_1_in_axes5_y*six_r_m2_w_1 +
-            six_r_dalpha_Gamma_2_in_axes5_y*six_r_m2_w_2 +
+        six_r_dalpha_Gamma_2_in_axes5_y*six_r_m2_w_2 +
             six_r_dalpha_Gamma_3_in_axes5_y*six_r_m2_w_3 +
             six_r_dalpha_Gamma_4_in_axes5_y*six_r_m2_w_4 -
+            six_r_dalpha_Gamma_1_in_axes5_y*six_r_m2_w_1_t_2 -
             six_r_dalpha_Gamma_5_in_axes5_y*six_r_m2_w_5_t
         )
         six_r_dalpha_G_m2_in_axes5_z = (
-        six_r_dalpha_Gamma_1_in_axes5_z*six_r_m2_w_1 +
-            six_r_dalpha_Gamma_2_in_axes5_z*six_r_m2_w_2 +
+        six_r_dalpha_Gamma_2_in_axes5_z*six_r_m2_w_2 +
             six_r_dalpha_Gamma_3_in_axes5_z*six_r_m2_w_3 +
             six_r_dalpha_Gamma_4_in_axes5_z*six_r_m2_w_4 -
+            six_r_dalpha_Gamma_1_in_axes5_z*six_r_m2_w_1_t_2 -
             six_r_dalpha_Gamma_5_in_axes5_z*six_r_m2_w_5_t
         )
         six_r_dalpha_G_m2_y = (
@@ -5647,19 +5768,19 @@ def _run_M(m, X, q):
         )
         # (six_r-d_G_m2) coefficient of the acceleration in: moment along moment direction 2 that balances the leg's inertia and weight along all degrees of freedom
         six_r_d_G_m2_in_axes5_x = (
-        six_r_d_Gamma_1_in_axes5_x*six_r_m2_w_1 + six_r_d_Gamma_2_in_axes5_x*six_r_m2_w_2 +
-            six_r_d_Gamma_3_in_axes5_x*six_r_m2_w_3 + six_r_d_Gamma_4_in_axes5_x*six_r_m2_w_4 -
-            six_r_d_Gamma_5_in_axes5_x*six_r_m2_w_5_t
+        six_r_d_Gamma_2_in_axes5_x*six_r_m2_w_2 + six_r_d_Gamma_3_in_axes5_x*six_r_m2_w_3 +
+            six_r_d_Gamma_4_in_axes5_x*six_r_m2_w_4 - six_r_d_Gamma_1_in_axes5_x*six_r_m2_w_1_t_2
+            - six_r_d_Gamma_5_in_axes5_x*six_r_m2_w_5_t
         )
         six_r_d_G_m2_in_axes5_y = (
-        six_r_d_Gamma_1_in_axes5_y*six_r_m2_w_1 + six_r_d_Gamma_2_in_axes5_y*six_r_m2_w_2 +
-            six_r_d_Gamma_3_in_axes5_y*six_r_m2_w_3 + six_r_d_Gamma_4_in_axes5_y*six_r_m2_w_4 -
-            six_r_d_Gamma_5_in_axes5_y*six_r_m2_w_5_t
+        six_r_d_Gamma_2_in_axes5_y*six_r_m2_w_2 + six_r_d_Gamma_3_in_axes5_y*six_r_m2_w_3 +
+            six_r_d_Gamma_4_in_axes5_y*six_r_m2_w_4 - six_r_d_Gamma_1_in_axes5_y*six_r_m2_w_1_t_2
+            - six_r_d_Gamma_5_in_axes5_y*six_r_m2_w_5_t
         )
         six_r_d_G_m2_in_axes5_z = (
-        six_r_d_Gamma_1_in_axes5_z*six_r_m2_w_1 + six_r_d_Gamma_2_in_axes5_z*six_r_m2_w_2 +
-            six_r_d_Gamma_3_in_axes5_z*six_r_m2_w_3 + six_r_d_Gamma_4_in_axes5_z*six_r_m2_w_4 -
-            six_r_d_Gamma_5_in_axes5_z*six_r_m2_w_5_t
+        six_r_d_Gamma_2_in_axes5_z*six_r_m2_w_2 + six_r_d_Gamma_3_in_axes5_z*six_r_m2_w_3 +
+            six_r_d_Gamma_4_in_axes5_z*six_r_m2_w_4 - six_r_d_Gamma_1_in_axes5_z*six_r_m2_w_1_t_2
+            - six_r_d_Gamma_5_in_axes5_z*six_r_m2_w_5_t
         )
         six_r_d_G_m2_x = (
         axis_x_six_r_axes5_x*six_r_d_G_m2_in_axes5_x +
@@ -5779,8 +5900,8 @@ def _run_M(m, X, q):
             six_r_d_Gamma_3_in_axes5_y*six_r_w_3_in_axes5_x -
             six_r_d_Gamma_4_in_axes5_y*six_r_w_4_in_axes5_x -
             six_r_h_5_in_spec5_z*(six_r_e_1_in_axes5_y*six_r_w_1_in_axes5_y +
-            six_r_e_2_in_axes5_y*six_r_w_2_in_axes5_y + six_r_e_4_in_axes5_y*six_r_w_4_in_axes5_y
-            - six_r_e_2_in_axes5_y*six_r_w_3_t)
+            six_r_e_2_in_axes5_y*six_r_w_2_in_axes5_y - six_r_J_5_t*six_r_w_4_in_axes5_y -
+            six_r_e_2_in_axes5_y*six_r_w_3_t)
         )
         six_r_d_c_in_axes5_xz = (
         six_r_d_Gamma_5_in_axes5_z*six_r_w_5_t_5 +
@@ -6218,62 +6339,62 @@ def _run_Z(m, X, V, q):
         six_r_q_4 = q[[3, 8, 13, 18, 23, 28][leg]]
         six_r_q_5 = q[[4, 9, 14, 19, 24, 29][leg]]
         # (six_r-c_1) cosine of the angle of joint 1 from its reference direction
-        six_r_c_1 = -sin(six_r_q_1)
+        six_r_c_1 = cos(six_r_q_1)
         # (six_r-s_1) sine of the angle of joint 1 from its reference direction
-        six_r_s_1 = cos(six_r_q_1)
+        six_r_s_1 = sin(six_r_q_1)
         # (six_r-c_2) cosine of the angle of joint 2 from its reference direction
-        six_r_c_2 = -sin(six_r_q_2)
+        six_r_c_2 = cos(six_r_q_2)
         # (six_r-s_2) sine of the angle of joint 2 from its reference direction
-        six_r_s_2 = cos(six_r_q_2)
+        six_r_s_2 = sin(six_r_q_2)
         # (six_r-c_3) cosine of the angle of joint 3 from its reference direction
         six_r_c_3 = cos(six_r_q_3)
         # (six_r-s_3) sine of the angle of joint 3 from its reference direction
         six_r_s_3 = sin(six_r_q_3)
         # (six_r-c_4) cosine of the angle of joint 4 from its reference direction
-        six_r_c_4 = -sin(six_r_q_4)
+        six_r_c_4 = cos(six_r_q_4)
         # (six_r-s_4) sine of the angle of joint 4 from its reference direction
-        six_r_s_4 = cos(six_r_q_4)
+        six_r_s_4 = sin(six_r_q_4)
         # (six_r-c_5) cosine of the angle of joint 5 from its reference direction
-        six_r_c_5 = -sin(six_r_q_5)
+        six_r_c_5 = cos(six_r_q_5)
         # (six_r-s_5) sine of the angle of joint 5 from its reference direction
-        six_r_s_5 = cos(six_r_q_5)
+        six_r_s_5 = sin(six_r_q_5)
         # (six_r-S_dot) velocity of the connection point
-        six_r_e_2_in_axes5_y = -six_r_c_4*six_r_s_5
-        six_r_S_dot_t = -six_r_c_4*six_r_s_3
-        six_r_S_dot_t_2 = -six_r_c_3*six_r_c_4
-        six_r_S_dot_t_3 = six_r_S_dot_t*six_r_c_2 + six_r_S_dot_t_2*six_r_s_2
-        six_r_S_dot_t_4 = six_r_S_dot_t*six_r_s_2 - six_r_S_dot_t_2*six_r_c_2
-        six_r_S_dot_t_5 = six_r_c_1*six_r_s_4 - six_r_S_dot_t_3*six_r_s_1
-        six_r_S_dot_t_6 = six_r_S_dot_t_3*six_r_c_1 + six_r_s_1*six_r_s_4
+        six_r_e_2_in_axes5_y = six_r_c_5*six_r_s_4
+        six_r_S_dot_t = six_r_c_3*six_r_s_4
+        six_r_S_dot_t_2 = six_r_s_3*six_r_s_4
+        six_r_S_dot_t_3 = six_r_S_dot_t*six_r_s_2 + six_r_S_dot_t_2*six_r_c_2
+        six_r_S_dot_t_4 = six_r_S_dot_t_2*six_r_s_2 - six_r_S_dot_t*six_r_c_2
+        six_r_S_dot_t_5 = six_r_S_dot_t_4*six_r_c_1 - six_r_c_4*six_r_s_1
+        six_r_S_dot_t_6 = six_r_S_dot_t_4*six_r_s_1 + six_r_c_1*six_r_c_4
         axis_z_six_r_axes5_x = (
-        six_r_S_dot_t_4*six_r_base_frame_xx + six_r_S_dot_t_5*six_r_base_frame_xy +
+        six_r_S_dot_t_3*six_r_base_frame_xx + six_r_S_dot_t_5*six_r_base_frame_xy +
             six_r_S_dot_t_6*six_r_base_frame_xz
         )
         axis_z_six_r_axes5_y = (
-        six_r_S_dot_t_4*six_r_base_frame_yx + six_r_S_dot_t_5*six_r_base_frame_yy +
+        six_r_S_dot_t_3*six_r_base_frame_yx + six_r_S_dot_t_5*six_r_base_frame_yy +
             six_r_S_dot_t_6*six_r_base_frame_yz
         )
         axis_z_six_r_axes5_z = (
-        six_r_S_dot_t_4*six_r_base_frame_zx + six_r_S_dot_t_5*six_r_base_frame_zy +
+        six_r_S_dot_t_3*six_r_base_frame_zx + six_r_S_dot_t_5*six_r_base_frame_zy +
             six_r_S_dot_t_6*six_r_base_frame_zz
         )
-        six_r_S_dot_t_7 = six_r_s_4*six_r_s_5
-        six_r_S_dot_t_8 = six_r_c_3*six_r_c_5 - six_r_S_dot_t_7*six_r_s_3
-        six_r_S_dot_t_9 = six_r_S_dot_t_7*six_r_c_3 + six_r_c_5*six_r_s_3
-        six_r_S_dot_t_10 = six_r_S_dot_t_8*six_r_c_2 - six_r_S_dot_t_9*six_r_s_2
-        six_r_S_dot_t_11 = six_r_S_dot_t_8*six_r_s_2 + six_r_S_dot_t_9*six_r_c_2
-        six_r_S_dot_t_12 = six_r_c_1*six_r_e_2_in_axes5_y - six_r_S_dot_t_10*six_r_s_1
-        six_r_S_dot_t_13 = six_r_S_dot_t_10*six_r_c_1 + six_r_e_2_in_axes5_y*six_r_s_1
+        six_r_S_dot_t_7 = six_r_c_4*six_r_c_5
+        six_r_S_dot_t_8 = six_r_s_3*six_r_s_5 - six_r_S_dot_t_7*six_r_c_3
+        six_r_S_dot_t_9 = -six_r_S_dot_t_7*six_r_s_3 - six_r_c_3*six_r_s_5
+        six_r_S_dot_t_10 = six_r_S_dot_t_8*six_r_s_2 + six_r_S_dot_t_9*six_r_c_2
+        six_r_S_dot_t_11 = six_r_S_dot_t_9*six_r_s_2 - six_r_S_dot_t_8*six_r_c_2
+        six_r_S_dot_t_12 = six_r_S_dot_t_11*six_r_c_1 - six_r_e_2_in_axes5_y*six_r_s_1
+        six_r_S_dot_t_13 = six_r_S_dot_t_11*six_r_s_1 + six_r_c_1*six_r_e_2_in_axes5_y
         axis_y_six_r_axes5_x = (
-        six_r_S_dot_t_11*six_r_base_frame_xx + six_r_S_dot_t_12*six_r_base_frame_xy +
+        six_r_S_dot_t_10*six_r_base_frame_xx + six_r_S_dot_t_12*six_r_base_frame_xy +
             six_r_S_dot_t_13*six_r_base_frame_xz
         )
         axis_y_six_r_axes5_y = (
-        six_r_S_dot_t_11*six_r_base_frame_yx + six_r_S_dot_t_12*six_r_base_frame_yy +
+        six_r_S_dot_t_10*six_r_base_frame_yx + six_r_S_dot_t_12*six_r_base_frame_yy +
             six_r_S_dot_t_13*six_r_base_frame_yz
         )
         axis_y_six_r_axes5_z = (
-        six_r_S_dot_t_11*six_r_base_frame_zx + six_r_S_dot_t_12*six_r_base_frame_zy +
+        six_r_S_dot_t_10*six_r_base_frame_zx + six_r_S_dot_t_12*six_r_base_frame_zy +
             six_r_S_dot_t_13*six_r_base_frame_zz
         )
         axis_x_six_r_axes5_x = (
@@ -6313,49 +6434,49 @@ def _run_Z(m, X, V, q):
             axis_z_six_r_axes5_z*six_r_S_dot_z
         )
         # (six_r-r_4) from joint 4 to the connection point, along the links
-        six_r_r_4_in_axes4_y = six_r_c_5*six_r_platform_joint_offset_x
-        six_r_r_4_in_axes4_z = six_r_joint5_offset_x + six_r_platform_joint_offset_x*six_r_s_5
-        six_r_r_4_in_axes3_y = -six_r_r_4_in_axes4_y*six_r_s_4
-        six_r_r_4_in_axes3_z = six_r_c_4*six_r_r_4_in_axes4_y
+        six_r_r_4_in_axes4_x = six_r_platform_joint_offset_x*six_r_s_5
+        six_r_r_4_in_axes4_z = six_r_joint5_offset_x + six_r_c_5*six_r_platform_joint_offset_x
+        six_r_r_4_in_axes3_x = -six_r_c_4*six_r_r_4_in_axes4_x
+        six_r_r_4_in_axes3_z = six_r_r_4_in_axes4_x*six_r_s_4
         # (six_r-r_3) from joint 3 to the connection point, along the links
-        six_r_r_3_in_axes3_x = six_r_joint4_offset_x + six_r_r_4_in_axes4_z
-        six_r_r_3_in_axes2_y = six_r_c_3*six_r_r_4_in_axes3_y + six_r_r_3_in_axes3_x*six_r_s_3
+        six_r_r_3_in_axes3_y = six_r_joint4_offset_x + six_r_r_4_in_axes4_z
+        six_r_r_3_in_axes2_y = six_r_r_3_in_axes3_y*six_r_s_3 - six_r_c_3*six_r_r_4_in_axes3_x
         six_r_r_3_t = six_r_r_4_in_axes3_z*six_r_s_4
-        six_r_r_3_t_2 = -six_r_c_4*six_r_r_4_in_axes3_z
-        six_r_r_3_in_axes5_z = six_r_r_3_t + six_r_c_4*six_r_r_4_in_axes3_y
-        six_r_r_3_t_3 = -six_r_r_3_t_2 - six_r_r_4_in_axes3_y*six_r_s_4
-        six_r_r_3_in_axes5_x = six_r_c_5*six_r_r_3_t_3 + six_r_r_3_in_axes3_x*six_r_s_5
-        six_r_r_3_in_axes5_y = six_r_c_5*six_r_r_3_in_axes3_x - six_r_r_3_t_3*six_r_s_5
+        six_r_r_3_t_2 = six_r_c_4*six_r_r_4_in_axes3_z
+        six_r_r_3_t_3 = six_r_r_3_t - six_r_c_4*six_r_r_4_in_axes3_x
+        six_r_r_3_in_axes5_z = six_r_r_3_t_2 + six_r_r_4_in_axes3_x*six_r_s_4
+        six_r_r_3_in_axes5_x = six_r_c_5*six_r_r_3_in_axes3_y + six_r_r_3_t_3*six_r_s_5
+        six_r_r_3_in_axes5_y = six_r_c_5*six_r_r_3_t_3 - six_r_r_3_in_axes3_y*six_r_s_5
         # (six_r-r_2) from joint 2 to the connection point, along the links
         six_r_r_2_in_axes2_x = (
-        six_r_joint3_offset_x + six_r_c_3*six_r_r_3_in_axes3_x - six_r_r_4_in_axes3_y*six_r_s_3
+        six_r_joint3_offset_x + six_r_c_3*six_r_r_3_in_axes3_y + six_r_r_4_in_axes3_x*six_r_s_3
         )
-        six_r_r_2_in_axes1_y = six_r_c_2*six_r_r_2_in_axes2_x - six_r_r_3_in_axes2_y*six_r_s_2
-        six_r_r_2_t = six_r_c_3*six_r_r_2_in_axes2_x + six_r_r_3_in_axes2_y*six_r_s_3
-        six_r_r_2_t_2 = six_r_c_3*six_r_r_3_in_axes2_y - six_r_r_2_in_axes2_x*six_r_s_3
-        six_r_r_2_in_axes5_z = six_r_r_3_t + six_r_c_4*six_r_r_2_t_2
-        six_r_r_2_t_3 = -six_r_r_3_t_2 - six_r_r_2_t_2*six_r_s_4
-        six_r_r_2_in_axes5_x = six_r_c_5*six_r_r_2_t_3 + six_r_r_2_t*six_r_s_5
-        six_r_r_2_in_axes5_y = six_r_c_5*six_r_r_2_t - six_r_r_2_t_3*six_r_s_5
+        six_r_r_2_in_axes1_x = six_r_c_2*six_r_r_3_in_axes2_y + six_r_r_2_in_axes2_x*six_r_s_2
+        six_r_r_2_t = six_r_r_2_in_axes2_x*six_r_s_3 - six_r_c_3*six_r_r_3_in_axes2_y
+        six_r_r_2_t_2 = six_r_c_3*six_r_r_2_in_axes2_x + six_r_r_3_in_axes2_y*six_r_s_3
+        six_r_r_2_t_3 = six_r_r_3_t - six_r_c_4*six_r_r_2_t
+        six_r_r_2_in_axes5_z = six_r_r_3_t_2 + six_r_r_2_t*six_r_s_4
+        six_r_r_2_in_axes5_x = six_r_c_5*six_r_r_2_t_2 + six_r_r_2_t_3*six_r_s_5
+        six_r_r_2_in_axes5_y = six_r_c_5*six_r_r_2_t_3 - six_r_r_2_t_2*six_r_s_5
         # (six_r-r_1) from joint 1 to the connection point, along the links
         six_r_r_1_in_axes1_z = (
-        six_r_joint2_offset_x + six_r_c_2*six_r_r_3_in_axes2_y + six_r_r_2_in_axes2_x*six_r_s_2
+        six_r_joint2_offset_x + six_r_c_2*six_r_r_2_in_axes2_x - six_r_r_3_in_axes2_y*six_r_s_2
         )
-        six_r_r_1_t = six_r_c_2*six_r_r_2_in_axes1_y + six_r_r_1_in_axes1_z*six_r_s_2
-        six_r_r_1_t_2 = six_r_c_2*six_r_r_1_in_axes1_z - six_r_r_2_in_axes1_y*six_r_s_2
-        six_r_r_1_t_3 = six_r_c_3*six_r_r_1_t + six_r_r_1_t_2*six_r_s_3
-        six_r_r_1_t_4 = six_r_c_3*six_r_r_1_t_2 - six_r_r_1_t*six_r_s_3
-        six_r_r_1_in_axes5_z = six_r_r_3_t + six_r_c_4*six_r_r_1_t_4
-        six_r_r_1_t_5 = -six_r_r_3_t_2 - six_r_r_1_t_4*six_r_s_4
-        six_r_r_1_in_axes5_x = six_r_c_5*six_r_r_1_t_5 + six_r_r_1_t_3*six_r_s_5
-        six_r_r_1_in_axes5_y = six_r_c_5*six_r_r_1_t_3 - six_r_r_1_t_5*six_r_s_5
+        six_r_r_1_t = six_r_c_2*six_r_r_1_in_axes1_z + six_r_r_2_in_axes1_x*six_r_s_2
+        six_r_r_1_t_2 = six_r_c_2*six_r_r_2_in_axes1_x - six_r_r_1_in_axes1_z*six_r_s_2
+        six_r_r_1_t_3 = six_r_r_1_t*six_r_s_3 - six_r_c_3*six_r_r_1_t_2
+        six_r_r_1_t_4 = six_r_c_3*six_r_r_1_t + six_r_r_1_t_2*six_r_s_3
+        six_r_r_1_t_5 = six_r_r_3_t - six_r_c_4*six_r_r_1_t_3
+        six_r_r_1_in_axes5_z = six_r_r_3_t_2 + six_r_r_1_t_3*six_r_s_4
+        six_r_r_1_in_axes5_x = six_r_c_5*six_r_r_1_t_4 + six_r_r_1_t_5*six_r_s_5
+        six_r_r_1_in_axes5_y = six_r_c_5*six_r_r_1_t_5 - six_r_r_1_t_4*six_r_s_5
         # (six_r-v_1) velocity of the connection point per rate of joint 1
         six_r_v_1_t = six_r_c_2*six_r_s_3 + six_r_c_3*six_r_s_2
         six_r_v_1_t_2 = six_r_c_2*six_r_c_3 - six_r_s_2*six_r_s_3
-        six_r_e_1_in_axes5_z = six_r_c_4*six_r_v_1_t_2
-        six_r_v_1_t_3 = six_r_s_4*six_r_v_1_t_2
-        six_r_e_1_in_axes5_x = six_r_s_5*six_r_v_1_t - six_r_c_5*six_r_v_1_t_3
-        six_r_e_1_in_axes5_y = six_r_c_5*six_r_v_1_t + six_r_s_5*six_r_v_1_t_3
+        six_r_v_1_t_3 = six_r_c_4*six_r_v_1_t
+        six_r_e_1_in_axes5_z = six_r_s_4*six_r_v_1_t
+        six_r_e_1_in_axes5_x = six_r_c_5*six_r_v_1_t_2 - six_r_s_5*six_r_v_1_t_3
+        six_r_e_1_in_axes5_y = -six_r_c_5*six_r_v_1_t_3 - six_r_s_5*six_r_v_1_t_2
         six_r_v_1_in_axes5_x = (
         six_r_e_1_in_axes5_y*six_r_r_1_in_axes5_z - six_r_e_1_in_axes5_z*six_r_r_1_in_axes5_y
         )
@@ -6366,30 +6487,30 @@ def _run_Z(m, X, V, q):
         six_r_e_1_in_axes5_x*six_r_r_1_in_axes5_y - six_r_e_1_in_axes5_y*six_r_r_1_in_axes5_x
         )
         # (six_r-v_2) velocity of the connection point per rate of joint 2
-        six_r_e_2_in_axes5_x = six_r_c_4*six_r_c_5
+        six_r_e_2_in_axes5_x = six_r_s_4*six_r_s_5
         six_r_v_2_in_axes5_x = (
-        six_r_e_2_in_axes5_y*six_r_r_2_in_axes5_z - six_r_r_2_in_axes5_y*six_r_s_4
+        six_r_e_2_in_axes5_y*six_r_r_2_in_axes5_z - six_r_c_4*six_r_r_2_in_axes5_y
         )
         six_r_v_2_in_axes5_y = (
-        six_r_r_2_in_axes5_x*six_r_s_4 - six_r_e_2_in_axes5_x*six_r_r_2_in_axes5_z
+        six_r_c_4*six_r_r_2_in_axes5_x - six_r_e_2_in_axes5_x*six_r_r_2_in_axes5_z
         )
         six_r_v_2_in_axes5_z = (
         six_r_e_2_in_axes5_x*six_r_r_2_in_axes5_y - six_r_e_2_in_axes5_y*six_r_r_2_in_axes5_x
         )
         # (six_r-v_3) velocity of the connection point per rate of joint 3
         six_r_v_3_in_axes5_x = (
-        six_r_e_2_in_axes5_y*six_r_r_3_in_axes5_z - six_r_r_3_in_axes5_y*six_r_s_4
+        six_r_e_2_in_axes5_y*six_r_r_3_in_axes5_z - six_r_c_4*six_r_r_3_in_axes5_y
         )
         six_r_v_3_in_axes5_y = (
-        six_r_r_3_in_axes5_x*six_r_s_4 - six_r_e_2_in_axes5_x*six_r_r_3_in_axes5_z
+        six_r_c_4*six_r_r_3_in_axes5_x - six_r_e_2_in_axes5_x*six_r_r_3_in_axes5_z
         )
         six_r_v_3_in_axes5_z = (
         six_r_e_2_in_axes5_x*six_r_r_3_in_axes5_y - six_r_e_2_in_axes5_y*six_r_r_3_in_axes5_x
         )
         # (six_r-v_4) velocity of the connection point per rate of joint 4
         six_r_v_4_in_axes5_z = (
-        six_r_s_5*(six_r_c_5*six_r_r_4_in_axes4_z - six_r_r_4_in_axes4_y*six_r_s_5) -
-            six_r_c_5*(six_r_c_5*six_r_r_4_in_axes4_y + six_r_r_4_in_axes4_z*six_r_s_5)
+        six_r_c_5*(six_r_c_5*six_r_r_4_in_axes4_x - six_r_r_4_in_axes4_z*six_r_s_5) +
+            six_r_s_5*(six_r_c_5*six_r_r_4_in_axes4_z + six_r_r_4_in_axes4_x*six_r_s_5)
         )
         # (six_r-n_m1) direction 1 of the moment that the platform joint transmits
         six_r_n_m1_t = (
@@ -6418,16 +6539,16 @@ def _run_Z(m, X, V, q):
         )
         six_r_n_m1_t_4 = six_r_c_1*six_r_n_m1_t + six_r_n_m1_t_2*six_r_s_1
         six_r_n_m1_t_5 = six_r_c_1*six_r_n_m1_t_2 - six_r_n_m1_t*six_r_s_1
-        six_r_n_m1_t_6 = six_r_c_2*six_r_n_m1_t_5 + six_r_n_m1_t_3*six_r_s_2
-        six_r_n_m1_t_7 = six_r_c_2*six_r_n_m1_t_3 - six_r_n_m1_t_5*six_r_s_2
-        six_r_n_m1_t_8 = six_r_c_3*six_r_n_m1_t_6 + six_r_n_m1_t_7*six_r_s_3
-        six_r_n_m1_t_9 = six_r_c_3*six_r_n_m1_t_7 - six_r_n_m1_t_6*six_r_s_3
-        six_r_n_m1_t_10 = six_r_c_4*six_r_n_m1_t_4 - six_r_n_m1_t_9*six_r_s_4
-        six_r_n_m1_in_axes5_y = six_r_c_5*six_r_n_m1_t_10 + six_r_n_m1_t_8*six_r_s_5
+        six_r_n_m1_t_6 = six_r_c_2*six_r_n_m1_t_3 + six_r_n_m1_t_4*six_r_s_2
+        six_r_n_m1_t_7 = six_r_c_2*six_r_n_m1_t_4 - six_r_n_m1_t_3*six_r_s_2
+        six_r_n_m1_t_8 = six_r_n_m1_t_6*six_r_s_3 - six_r_c_3*six_r_n_m1_t_7
+        six_r_n_m1_t_9 = six_r_c_3*six_r_n_m1_t_6 + six_r_n_m1_t_7*six_r_s_3
+        six_r_n_m1_t_10 = six_r_n_m1_t_5*six_r_s_4 - six_r_c_4*six_r_n_m1_t_8
+        six_r_n_m1_in_axes5_y = six_r_c_5*six_r_n_m1_t_9 + six_r_n_m1_t_10*six_r_s_5
         # (six_r-n_m2) direction 2 of the moment that the platform joint transmits
-        six_r_n_m2_in_axes5_z = six_r_c_5*six_r_n_m1_t_8 - six_r_n_m1_t_10*six_r_s_5
+        six_r_n_m2_in_axes5_z = six_r_c_5*six_r_n_m1_t_10 - six_r_n_m1_t_9*six_r_s_5
         # (six_r-w_1) force part of reciprocal wrench 1
-        six_r_end_p1_in_axes5_z = six_r_c_4*six_r_n_m1_t_9 + six_r_n_m1_t_4*six_r_s_4
+        six_r_end_p1_in_axes5_z = six_r_c_4*six_r_n_m1_t_5 + six_r_n_m1_t_8*six_r_s_4
         six_r_w_1_t = (
         six_r_e_1_in_axes5_x*six_r_n_m2_in_axes5_z - six_r_e_1_in_axes5_y*six_r_n_m1_in_axes5_y
         )
@@ -6438,16 +6559,16 @@ def _run_Z(m, X, V, q):
         six_r_e_1_in_axes5_y*six_r_end_p1_in_axes5_z - six_r_e_1_in_axes5_z*six_r_n_m2_in_axes5_z
         )
         six_r_w_1_t_4 = (
-        six_r_e_2_in_axes5_y*six_r_end_p1_in_axes5_z - six_r_n_m2_in_axes5_z*six_r_s_4
+        six_r_e_2_in_axes5_y*six_r_end_p1_in_axes5_z - six_r_c_4*six_r_n_m2_in_axes5_z
         )
         six_r_w_1_t_5 = six_r_size*six_r_w_1_t
         six_r_w_1_t_6 = six_r_size*six_r_w_1_t_3
         six_r_w_1_t_7 = six_r_size*six_r_w_1_t_2
         six_r_w_1_t_8 = six_r_size*six_r_w_1_t_4
         six_r_w_1_t_9 = (
-        six_r_size*(six_r_c_5*six_r_n_m1_in_axes5_y - six_r_n_m2_in_axes5_z*six_r_s_5)
+        six_r_size*(-six_r_c_5*six_r_n_m2_in_axes5_z - six_r_n_m1_in_axes5_y*six_r_s_5)
         )
-        six_r_w_1_t_10 = -six_r_c_5*six_r_end_p1_in_axes5_z*six_r_size
+        six_r_w_1_t_10 = six_r_end_p1_in_axes5_z*six_r_s_5*six_r_size
         six_r_w_1_t_11 = six_r_n_m2_in_axes5_z*six_r_size
         six_r_w_1_t_12 = sqrt(six_r_size_t + six_r_w_1_t_11*six_r_w_1_t_11)
         inv_six_r_w_1_t_12 = 1.0/six_r_w_1_t_12
@@ -6595,45 +6716,45 @@ def _run_Z(m, X, V, q):
             six_r_qd_1_t_7*six_r_w_1_t_72 - six_r_S_dot_in_axes5_y*six_r_w_1_t_69 -
             six_r_qd_1_t_8*six_r_w_1_t_73)
         )
-        six_r_qd_1 = (
-        -inv_six_r_w_1_t_49*(six_r_S_dot_in_axes5_y*six_r_w_1_t_51 + six_r_qd_1_t_8*six_r_w_1_t_61
+        six_r_qd_1_t_10 = (
+        inv_six_r_w_1_t_49*(six_r_S_dot_in_axes5_y*six_r_w_1_t_51 + six_r_qd_1_t_8*six_r_w_1_t_61
             + six_r_qd_1_t_9*six_r_w_1_t_55 - six_r_S_dot_in_axes5_x*six_r_w_1_t_50 -
             six_r_S_dot_in_axes5_z*six_r_w_1_t_52 - six_r_qd_1_t_6*six_r_w_1_t_53 -
             six_r_qd_1_t_7*six_r_w_1_t_54)
         )
         # (six_r-qd_4) rate of joint 4
         six_r_qd_4 = (
-        inv_six_r_w_1_t_28*(six_r_S_dot_in_axes5_z*six_r_w_1_t_30 + six_r_qd_1*six_r_w_1_t_33 +
-            six_r_qd_1_t_6*six_r_w_1_t_31 + six_r_qd_1_t_7*six_r_w_1_t_32 +
-            six_r_qd_1_t_8*six_r_w_1_t_44 + six_r_qd_1_t_9*six_r_w_1_t_39 -
-            six_r_S_dot_in_axes5_y*six_r_w_1_t_29)
+        inv_six_r_w_1_t_28*(six_r_S_dot_in_axes5_z*six_r_w_1_t_30 + six_r_qd_1_t_6*six_r_w_1_t_31
+            + six_r_qd_1_t_7*six_r_w_1_t_32 + six_r_qd_1_t_8*six_r_w_1_t_44 +
+            six_r_qd_1_t_9*six_r_w_1_t_39 - six_r_S_dot_in_axes5_y*six_r_w_1_t_29 -
+            six_r_qd_1_t_10*six_r_w_1_t_33)
         )
         # (six_r-qd_5) rate of joint 5
         six_r_qd_5 = (
-        inv_six_r_w_1_t_12*(six_r_S_dot_in_axes5_y*six_r_w_1_t_13 + six_r_qd_1_t_7*six_r_w_1_t_14
-            + six_r_qd_1_t_8*six_r_w_1_t_25 - six_r_qd_1*six_r_w_1_t_18 -
+        inv_six_r_w_1_t_12*(six_r_S_dot_in_axes5_y*six_r_w_1_t_13 + six_r_qd_1_t_10*six_r_w_1_t_18
+            + six_r_qd_1_t_7*six_r_w_1_t_14 + six_r_qd_1_t_8*six_r_w_1_t_25 -
             six_r_qd_1_t_9*six_r_w_1_t_22 - six_r_qd_4*six_r_w_1_t_15)
         )
         # (six_r-omega_1) angular velocity of link 1
-        six_r_omega_1_in_axes2_x = six_r_qd_1*six_r_s_2
-        six_r_omega_1_in_axes2_y = six_r_c_2*six_r_qd_1
-        six_r_omega_1_in_axes5_x = six_r_e_1_in_axes5_x*six_r_qd_1
-        six_r_omega_1_in_axes5_y = six_r_e_1_in_axes5_y*six_r_qd_1
-        six_r_omega_1_in_axes5_z = six_r_e_1_in_axes5_z*six_r_qd_1
+        six_r_omega_1_in_axes2_x = -six_r_c_2*six_r_qd_1_t_10
+        six_r_omega_1_in_axes2_y = six_r_qd_1_t_10*six_r_s_2
+        six_r_omega_1_t = six_r_e_1_in_axes5_x*six_r_qd_1_t_10
+        six_r_omega_1_t_2 = six_r_e_1_in_axes5_y*six_r_qd_1_t_10
+        six_r_omega_1_t_3 = six_r_e_1_in_axes5_z*six_r_qd_1_t_10
         # (six_r-W_1) centripetal tensor of link 1
-        six_r_W_1_in_axes5_xy = six_r_omega_1_in_axes5_x*six_r_omega_1_in_axes5_y
-        six_r_W_1_in_axes5_xz = six_r_omega_1_in_axes5_x*six_r_omega_1_in_axes5_z
-        six_r_W_1_in_axes5_yz = six_r_omega_1_in_axes5_y*six_r_omega_1_in_axes5_z
+        six_r_W_1_in_axes5_xy = six_r_omega_1_t*six_r_omega_1_t_2
+        six_r_W_1_in_axes5_xz = six_r_omega_1_t*six_r_omega_1_t_3
+        six_r_W_1_in_axes5_yz = six_r_omega_1_t_2*six_r_omega_1_t_3
         # (six_r-omega_2) angular velocity of link 2
         six_r_omega_2_in_axes3_x = (
-        six_r_c_3*six_r_omega_1_in_axes2_x + six_r_omega_1_in_axes2_y*six_r_s_3
+        six_r_omega_1_in_axes2_x*six_r_s_3 - six_r_c_3*six_r_omega_1_in_axes2_y
         )
         six_r_omega_2_in_axes3_y = (
-        six_r_c_3*six_r_omega_1_in_axes2_y - six_r_omega_1_in_axes2_x*six_r_s_3
+        six_r_c_3*six_r_omega_1_in_axes2_x + six_r_omega_1_in_axes2_y*six_r_s_3
         )
-        six_r_omega_2_in_axes5_x = six_r_omega_1_in_axes5_x + six_r_e_2_in_axes5_x*six_r_qd_1_t_9
-        six_r_omega_2_in_axes5_y = six_r_omega_1_in_axes5_y + six_r_e_2_in_axes5_y*six_r_qd_1_t_9
-        six_r_omega_2_in_axes5_z = six_r_omega_1_in_axes5_z + six_r_qd_1_t_9*six_r_s_4
+        six_r_omega_2_in_axes5_x = six_r_e_2_in_axes5_x*six_r_qd_1_t_9 - six_r_omega_1_t
+        six_r_omega_2_in_axes5_y = six_r_e_2_in_axes5_y*six_r_qd_1_t_9 - six_r_omega_1_t_2
+        six_r_omega_2_in_axes5_z = six_r_c_4*six_r_qd_1_t_9 - six_r_omega_1_t_3
         # (six_r-W_2) centripetal tensor of link 2
         six_r_W_2_in_axes2_yz = six_r_omega_1_in_axes2_y*six_r_qd_1_t_9
         six_r_W_2_in_axes2_xy = six_r_omega_1_in_axes2_x*six_r_omega_1_in_axes2_y
@@ -6643,38 +6764,38 @@ def _run_Z(m, X, V, q):
         # (six_r-omega_3) angular velocity of link 3
         six_r_omega_3_in_axes3_z = six_r_qd_1_t_8 + six_r_qd_1_t_9
         six_r_omega_3_in_axes4_x = (
-        six_r_c_4*six_r_omega_2_in_axes3_y + six_r_omega_3_in_axes3_z*six_r_s_4
+        six_r_omega_3_in_axes3_z*six_r_s_4 - six_r_c_4*six_r_omega_2_in_axes3_x
         )
         six_r_omega_3_in_axes4_y = (
-        six_r_c_4*six_r_omega_3_in_axes3_z - six_r_omega_2_in_axes3_y*six_r_s_4
+        six_r_c_4*six_r_omega_3_in_axes3_z + six_r_omega_2_in_axes3_x*six_r_s_4
         )
-        six_r_omega_3_t = -six_r_c_5*six_r_omega_3_in_axes4_y
-        six_r_omega_3_t_2 = six_r_omega_3_in_axes4_y*six_r_s_5
-        six_r_omega_3_in_axes5_x = six_r_omega_2_in_axes3_x*six_r_s_5 - six_r_omega_3_t
-        six_r_omega_3_in_axes5_y = six_r_c_5*six_r_omega_2_in_axes3_x - six_r_omega_3_t_2
+        six_r_omega_3_t = six_r_omega_3_in_axes4_x*six_r_s_5
+        six_r_omega_3_t_2 = six_r_c_5*six_r_omega_3_in_axes4_x
+        six_r_omega_3_in_axes5_x = six_r_omega_3_t + six_r_c_5*six_r_omega_2_in_axes3_y
+        six_r_omega_3_in_axes5_y = six_r_omega_3_t_2 - six_r_omega_2_in_axes3_y*six_r_s_5
         # (six_r-W_3) centripetal tensor of link 3
-        six_r_W_3_t = six_r_omega_2_in_axes3_y*six_r_omega_2_in_axes3_y
+        six_r_W_3_t = six_r_omega_2_in_axes3_x*six_r_omega_2_in_axes3_x
         six_r_W_3_t_2 = six_r_omega_3_in_axes3_z*six_r_omega_3_in_axes3_z
-        six_r_W_3_t_3 = six_r_W_3_t + six_r_W_3_t_2
         six_r_W_3_in_axes3_xy = six_r_omega_2_in_axes3_x*six_r_omega_2_in_axes3_y
         six_r_W_3_in_axes3_xz = six_r_omega_2_in_axes3_x*six_r_omega_3_in_axes3_z
+        six_r_W_3_t_3 = six_r_W_3_t + six_r_W_3_t_2
         six_r_W_3_in_axes3_yz = six_r_omega_2_in_axes3_y*six_r_omega_3_in_axes3_z
         six_r_W_3_in_axes5_xy = six_r_omega_3_in_axes5_x*six_r_omega_3_in_axes5_y
         # (six_r-omega_4) angular velocity of link 4
-        six_r_omega_4_in_axes4_z = six_r_omega_2_in_axes3_x + six_r_qd_4
-        six_r_omega_4_in_axes5_x = six_r_omega_4_in_axes4_z*six_r_s_5 - six_r_omega_3_t
-        six_r_omega_4_in_axes5_y = six_r_c_5*six_r_omega_4_in_axes4_z - six_r_omega_3_t_2
+        six_r_omega_4_in_axes4_z = six_r_omega_2_in_axes3_y + six_r_qd_4
+        six_r_omega_4_in_axes5_x = six_r_omega_3_t + six_r_c_5*six_r_omega_4_in_axes4_z
+        six_r_omega_4_in_axes5_y = six_r_omega_3_t_2 - six_r_omega_4_in_axes4_z*six_r_s_5
         # (six_r-W_4) centripetal tensor of link 4
         six_r_W_4_in_axes4_xy = six_r_omega_3_in_axes4_x*six_r_omega_3_in_axes4_y
         six_r_W_4_in_axes4_xz = six_r_omega_3_in_axes4_x*six_r_omega_4_in_axes4_z
         six_r_W_4_in_axes4_yz = six_r_omega_3_in_axes4_y*six_r_omega_4_in_axes4_z
         six_r_W_4_in_axes5_xy = six_r_omega_4_in_axes5_x*six_r_omega_4_in_axes5_y
         # (six_r-omega_5) angular velocity of link 5
-        six_r_omega_5_in_axes5_z = six_r_omega_3_in_axes4_x + six_r_qd_5
+        six_r_omega_5_in_axes5_z = six_r_omega_3_in_axes4_y + six_r_qd_5
         # (six_r-W_5) centripetal tensor of link 5
         six_r_W_5_t = six_r_omega_4_in_axes5_y*six_r_omega_4_in_axes5_y
         six_r_W_5_t_2 = six_r_omega_5_in_axes5_z*six_r_omega_5_in_axes5_z
-        six_r_W_5_in_axes5_xx = -six_r_W_5_t - six_r_W_5_t_2
+        six_r_W_5_t_3 = six_r_W_5_t + six_r_W_5_t_2
         six_r_W_5_in_axes5_xz = six_r_omega_4_in_axes5_x*six_r_omega_5_in_axes5_z
         six_r_W_5_in_axes5_yz = six_r_omega_4_in_axes5_y*six_r_omega_5_in_axes5_z
         # (six_r-u_1) centripetal acceleration of the connection point
@@ -6696,33 +6817,33 @@ def _run_Z(m, X, V, q):
         # (six_r-zeta_2) angular acceleration of link 2 from the turning of axis 2
         six_r_zeta_2_in_axes2_y = -six_r_omega_1_in_axes2_x*six_r_qd_1_t_9
         six_r_zeta_2_in_axes3_x = (
-        six_r_W_2_in_axes2_yz*six_r_c_3 + six_r_s_3*six_r_zeta_2_in_axes2_y
+        six_r_W_2_in_axes2_yz*six_r_s_3 - six_r_c_3*six_r_zeta_2_in_axes2_y
         )
         six_r_zeta_2_in_axes3_y = (
-        six_r_c_3*six_r_zeta_2_in_axes2_y - six_r_W_2_in_axes2_yz*six_r_s_3
+        six_r_W_2_in_axes2_yz*six_r_c_3 + six_r_s_3*six_r_zeta_2_in_axes2_y
         )
-        six_r_zeta_2_in_axes5_z = six_r_c_4*six_r_zeta_2_in_axes3_y
-        six_r_zeta_2_t = six_r_s_4*six_r_zeta_2_in_axes3_y
-        six_r_zeta_2_in_axes5_x = six_r_s_5*six_r_zeta_2_in_axes3_x - six_r_c_5*six_r_zeta_2_t
-        six_r_zeta_2_in_axes5_y = six_r_c_5*six_r_zeta_2_in_axes3_x + six_r_s_5*six_r_zeta_2_t
+        six_r_zeta_2_t = six_r_c_4*six_r_zeta_2_in_axes3_x
+        six_r_zeta_2_in_axes5_z = six_r_s_4*six_r_zeta_2_in_axes3_x
+        six_r_zeta_2_in_axes5_x = six_r_c_5*six_r_zeta_2_in_axes3_y - six_r_s_5*six_r_zeta_2_t
+        six_r_zeta_2_in_axes5_y = -six_r_c_5*six_r_zeta_2_t - six_r_s_5*six_r_zeta_2_in_axes3_y
         # (six_r-zeta_3) angular acceleration of link 3 from the turning of axis 3
         six_r_zeta_3_in_axes3_x = six_r_omega_2_in_axes3_y*six_r_qd_1_t_8
         six_r_zeta_3_t = six_r_omega_2_in_axes3_x*six_r_qd_1_t_8
         # (six_r-beta_3) angular acceleration of link 3 at zero joint accelerations
         six_r_beta_3_in_axes3_x = six_r_zeta_2_in_axes3_x + six_r_zeta_3_in_axes3_x
         six_r_beta_3_in_axes3_y = six_r_zeta_2_in_axes3_y - six_r_zeta_3_t
-        six_r_beta_3_in_axes4_x = six_r_beta_3_in_axes3_y*six_r_c_4
-        six_r_beta_3_in_axes4_y = -six_r_beta_3_in_axes3_y*six_r_s_4
+        six_r_beta_3_t = six_r_beta_3_in_axes3_x*six_r_c_4
+        six_r_beta_3_in_axes4_y = six_r_beta_3_in_axes3_x*six_r_s_4
         # (six_r-zeta_4) angular acceleration of link 4 from the turning of axis 4
         six_r_zeta_4_in_axes4_x = six_r_omega_3_in_axes4_y*six_r_qd_4
-        six_r_zeta_4_in_axes4_y = -six_r_omega_3_in_axes4_x*six_r_qd_4
+        six_r_zeta_4_t = six_r_omega_3_in_axes4_x*six_r_qd_4
         # (six_r-beta_4) angular acceleration of link 4 at zero joint accelerations
-        six_r_beta_4_in_axes4_x = six_r_beta_3_in_axes4_x + six_r_zeta_4_in_axes4_x
-        six_r_beta_4_in_axes4_y = six_r_beta_3_in_axes4_y + six_r_zeta_4_in_axes4_y
-        six_r_beta_4_t = six_r_beta_3_in_axes3_x*six_r_s_5
-        six_r_beta_4_in_axes5_x = six_r_beta_4_t + six_r_beta_4_in_axes4_y*six_r_c_5
-        six_r_beta_4_t_2 = -six_r_beta_3_in_axes3_x*six_r_c_5
-        six_r_beta_4_in_axes5_y = -six_r_beta_4_t_2 - six_r_beta_4_in_axes4_y*six_r_s_5
+        six_r_beta_4_in_axes4_x = six_r_zeta_4_in_axes4_x - six_r_beta_3_t
+        six_r_beta_4_in_axes4_y = six_r_beta_3_in_axes4_y - six_r_zeta_4_t
+        six_r_beta_4_t = six_r_beta_3_in_axes3_y*six_r_c_5
+        six_r_beta_4_in_axes5_x = six_r_beta_4_t + six_r_beta_4_in_axes4_x*six_r_s_5
+        six_r_beta_4_t_2 = six_r_beta_3_in_axes3_y*six_r_s_5
+        six_r_beta_4_in_axes5_y = six_r_beta_4_in_axes4_x*six_r_c_5 - six_r_beta_4_t_2
         # (six_r-zeta_5) angular acceleration of link 5 from the turning of axis 5
         six_r_zeta_5_in_axes5_x = six_r_omega_4_in_axes5_y*six_r_qd_5
         six_r_zeta_5_t = six_r_omega_4_in_axes5_x*six_r_qd_5
@@ -6730,72 +6851,70 @@ def _run_Z(m, X, V, q):
         six_r_beta_5_in_axes5_x = six_r_beta_4_in_axes5_x + six_r_zeta_5_in_axes5_x
         six_r_beta_5_in_axes5_y = six_r_beta_4_in_axes5_y - six_r_zeta_5_t
         # (six_r-bias) acceleration of the connection point at zero joint accelerations
-        six_r_bias_t = six_r_omega_3_in_axes4_x*six_r_omega_3_in_axes4_x
+        six_r_bias_t = six_r_omega_3_in_axes4_y*six_r_omega_3_in_axes4_y
         six_r_bias_t_2 = six_r_omega_4_in_axes5_x*six_r_omega_4_in_axes5_x
-        six_r_d_2_in_spec2_x = six_r_joint2_offset_x*six_r_s_2
-        six_r_d_2_in_spec2_y = six_r_c_2*six_r_joint2_offset_x
-        six_r_bias_t_3 = six_r_c_3*six_r_d_2_in_spec2_x + six_r_d_2_in_spec2_y*six_r_s_3
-        six_r_bias_t_4 = six_r_c_3*six_r_d_2_in_spec2_y - six_r_d_2_in_spec2_x*six_r_s_3
-        six_r_d_2_in_axes5_z = six_r_bias_t_4*six_r_c_4
-        six_r_bias_t_5 = six_r_bias_t_4*six_r_s_4
-        six_r_d_2_in_axes5_x = six_r_bias_t_3*six_r_s_5 - six_r_bias_t_5*six_r_c_5
-        six_r_d_2_in_axes5_y = six_r_bias_t_3*six_r_c_5 + six_r_bias_t_5*six_r_s_5
-        six_r_bias_t_6 = six_r_omega_1_in_axes5_x*six_r_omega_1_in_axes5_x
-        six_r_bias_t_7 = six_r_omega_1_in_axes5_y*six_r_omega_1_in_axes5_y
-        six_r_bias_t_8 = six_r_omega_1_in_axes5_z*six_r_omega_1_in_axes5_z
-        six_r_bias_t_9 = six_r_c_3*six_r_joint3_offset_x
+        six_r_d_2_in_spec2_x = six_r_c_2*six_r_joint2_offset_x
+        six_r_bias_t_3 = six_r_joint2_offset_x*six_r_s_2
+        six_r_bias_t_4 = six_r_bias_t_3*six_r_c_3 + six_r_d_2_in_spec2_x*six_r_s_3
+        six_r_bias_t_5 = six_r_c_3*six_r_d_2_in_spec2_x - six_r_bias_t_3*six_r_s_3
+        six_r_bias_t_6 = six_r_bias_t_4*six_r_c_4
+        six_r_d_2_in_axes5_z = six_r_bias_t_4*six_r_s_4
+        six_r_d_2_in_axes5_x = six_r_bias_t_5*six_r_c_5 - six_r_bias_t_6*six_r_s_5
+        six_r_d_2_in_axes5_y = -six_r_bias_t_5*six_r_s_5 - six_r_bias_t_6*six_r_c_5
+        six_r_bias_t_7 = six_r_omega_1_t*six_r_omega_1_t
+        six_r_bias_t_8 = six_r_omega_1_t_2*six_r_omega_1_t_2
+        six_r_bias_t_9 = six_r_omega_1_t_3*six_r_omega_1_t_3
         six_r_bias_t_10 = six_r_joint3_offset_x*six_r_s_3
-        six_r_d_3_in_axes5_z = -six_r_bias_t_10*six_r_c_4
-        six_r_bias_t_11 = six_r_bias_t_10*six_r_s_4
-        six_r_d_3_in_axes5_x = six_r_bias_t_11*six_r_c_5 + six_r_bias_t_9*six_r_s_5
-        six_r_d_3_in_axes5_y = six_r_bias_t_9*six_r_c_5 - six_r_bias_t_11*six_r_s_5
-        six_r_bias_t_12 = six_r_omega_2_in_axes5_x*six_r_omega_2_in_axes5_x
-        six_r_bias_t_13 = six_r_omega_2_in_axes5_y*six_r_omega_2_in_axes5_y
-        six_r_bias_t_14 = six_r_omega_2_in_axes5_z*six_r_omega_2_in_axes5_z
-        six_r_d_4_in_axes5_x = six_r_joint4_offset_x*six_r_s_5
-        six_r_d_4_in_axes5_y = six_r_c_5*six_r_joint4_offset_x
-        six_r_d_5_in_axes5_x = six_r_joint5_offset_x*six_r_s_5
-        six_r_d_5_in_axes5_y = six_r_c_5*six_r_joint5_offset_x
-        six_r_bias_t_15 = six_r_W_4_in_axes5_xy + six_r_beta_4_in_axes4_x
+        six_r_bias_t_11 = six_r_c_3*six_r_joint3_offset_x
+        six_r_bias_t_12 = six_r_bias_t_10*six_r_c_4
+        six_r_d_3_in_axes5_z = six_r_bias_t_10*six_r_s_4
+        six_r_d_3_in_axes5_x = six_r_bias_t_11*six_r_c_5 - six_r_bias_t_12*six_r_s_5
+        six_r_d_3_in_axes5_y = -six_r_bias_t_11*six_r_s_5 - six_r_bias_t_12*six_r_c_5
+        six_r_bias_t_13 = six_r_omega_2_in_axes5_x*six_r_omega_2_in_axes5_x
+        six_r_bias_t_14 = six_r_omega_2_in_axes5_y*six_r_omega_2_in_axes5_y
+        six_r_bias_t_15 = six_r_omega_2_in_axes5_z*six_r_omega_2_in_axes5_z
+        six_r_d_4_in_axes5_x = six_r_c_5*six_r_joint4_offset_x
+        six_r_bias_t_16 = six_r_joint4_offset_x*six_r_s_5
+        six_r_d_5_in_axes5_x = six_r_c_5*six_r_joint5_offset_x
+        six_r_bias_t_17 = six_r_joint5_offset_x*six_r_s_5
+        six_r_bias_t_18 = six_r_W_4_in_axes5_xy + six_r_beta_4_in_axes4_y
         six_r_bias_in_axes5_x = (
         six_r_W_1_in_axes5_xy*six_r_d_2_in_axes5_y + six_r_W_1_in_axes5_xz*six_r_d_2_in_axes5_z +
-            six_r_W_5_in_axes5_xx*six_r_platform_joint_offset_x +
             six_r_d_3_in_axes5_y*(six_r_W_2_in_axes5_xy - six_r_zeta_2_in_axes5_z) +
-            six_r_d_3_in_axes5_z*(six_r_W_2_in_axes5_xz + six_r_zeta_2_in_axes5_y) +
-            six_r_d_4_in_axes5_y*(six_r_W_3_in_axes5_xy - six_r_beta_3_in_axes4_x) +
-            six_r_d_5_in_axes5_y*(six_r_W_4_in_axes5_xy - six_r_beta_4_in_axes4_x) -
-            six_r_d_2_in_axes5_x*(six_r_bias_t_7 + six_r_bias_t_8) -
-            six_r_d_3_in_axes5_x*(six_r_bias_t_13 + six_r_bias_t_14) -
+            six_r_d_3_in_axes5_z*(six_r_W_2_in_axes5_xz + six_r_zeta_2_in_axes5_y) -
+            six_r_W_5_t_3*six_r_platform_joint_offset_x - six_r_bias_t_16*(six_r_W_3_in_axes5_xy -
+            six_r_beta_3_in_axes4_y) - six_r_bias_t_17*(six_r_W_4_in_axes5_xy -
+            six_r_beta_4_in_axes4_y) - six_r_d_2_in_axes5_x*(six_r_bias_t_8 + six_r_bias_t_9) -
+            six_r_d_3_in_axes5_x*(six_r_bias_t_14 + six_r_bias_t_15) -
             six_r_d_4_in_axes5_x*(six_r_bias_t +
             six_r_omega_3_in_axes5_y*six_r_omega_3_in_axes5_y) - six_r_d_5_in_axes5_x*(six_r_W_5_t
             + six_r_bias_t)
         )
         six_r_bias_in_axes5_y = (
         six_r_W_1_in_axes5_xy*six_r_d_2_in_axes5_x + six_r_W_1_in_axes5_yz*six_r_d_2_in_axes5_z +
-            six_r_bias_t_15*six_r_d_5_in_axes5_x + six_r_bias_t_15*six_r_platform_joint_offset_x +
+            six_r_bias_t_16*(six_r_bias_t + six_r_omega_3_in_axes5_x*six_r_omega_3_in_axes5_x) +
+            six_r_bias_t_17*(six_r_bias_t + six_r_bias_t_2) + six_r_bias_t_18*six_r_d_5_in_axes5_x
+            + six_r_bias_t_18*six_r_platform_joint_offset_x +
             six_r_d_3_in_axes5_x*(six_r_W_2_in_axes5_xy + six_r_zeta_2_in_axes5_z) +
             six_r_d_3_in_axes5_z*(six_r_W_2_in_axes5_yz - six_r_zeta_2_in_axes5_x) +
-            six_r_d_4_in_axes5_x*(six_r_W_3_in_axes5_xy + six_r_beta_3_in_axes4_x) -
-            six_r_d_2_in_axes5_y*(six_r_bias_t_6 + six_r_bias_t_8) -
-            six_r_d_3_in_axes5_y*(six_r_bias_t_12 + six_r_bias_t_14) -
-            six_r_d_4_in_axes5_y*(six_r_bias_t +
-            six_r_omega_3_in_axes5_x*six_r_omega_3_in_axes5_x) -
-            six_r_d_5_in_axes5_y*(six_r_bias_t + six_r_bias_t_2)
+            six_r_d_4_in_axes5_x*(six_r_W_3_in_axes5_xy + six_r_beta_3_in_axes4_y) -
+            six_r_d_2_in_axes5_y*(six_r_bias_t_7 + six_r_bias_t_9) -
+            six_r_d_3_in_axes5_y*(six_r_bias_t_13 + six_r_bias_t_15)
         )
         six_r_bias_in_axes5_z = (
         six_r_W_1_in_axes5_xz*six_r_d_2_in_axes5_x + six_r_W_1_in_axes5_yz*six_r_d_2_in_axes5_y +
             six_r_d_3_in_axes5_x*(six_r_W_2_in_axes5_xz - six_r_zeta_2_in_axes5_y) +
             six_r_d_3_in_axes5_y*(six_r_W_2_in_axes5_yz + six_r_zeta_2_in_axes5_x) +
-            six_r_d_4_in_axes5_x*(six_r_beta_4_t_2 + six_r_beta_3_in_axes4_y*six_r_s_5 +
-            six_r_omega_3_in_axes4_x*six_r_omega_3_in_axes5_x) +
-            six_r_d_4_in_axes5_y*(six_r_beta_4_t + six_r_beta_3_in_axes4_y*six_r_c_5 +
-            six_r_omega_3_in_axes4_x*six_r_omega_3_in_axes5_y) +
-            six_r_d_5_in_axes5_x*(six_r_omega_3_in_axes4_x*six_r_omega_4_in_axes5_x -
-            six_r_beta_4_in_axes5_y) + six_r_d_5_in_axes5_y*(six_r_beta_4_in_axes5_x +
-            six_r_omega_3_in_axes4_x*six_r_omega_4_in_axes5_y) +
-            six_r_platform_joint_offset_x*(six_r_W_5_in_axes5_xz - six_r_beta_5_in_axes5_y) -
-            six_r_d_2_in_axes5_z*(six_r_bias_t_6 + six_r_bias_t_7) -
-            six_r_d_3_in_axes5_z*(six_r_bias_t_12 + six_r_bias_t_13)
+            six_r_d_4_in_axes5_x*(six_r_beta_4_t_2 + six_r_beta_3_t*six_r_c_5 +
+            six_r_omega_3_in_axes4_y*six_r_omega_3_in_axes5_x) +
+            six_r_d_5_in_axes5_x*(six_r_omega_3_in_axes4_y*six_r_omega_4_in_axes5_x -
+            six_r_beta_4_in_axes5_y) + six_r_platform_joint_offset_x*(six_r_W_5_in_axes5_xz -
+            six_r_beta_5_in_axes5_y) - six_r_bias_t_16*(six_r_beta_4_t +
+            six_r_omega_3_in_axes4_y*six_r_omega_3_in_axes5_y - six_r_beta_3_t*six_r_s_5) -
+            six_r_bias_t_17*(six_r_beta_4_in_axes5_x +
+            six_r_omega_3_in_axes4_y*six_r_omega_4_in_axes5_y) -
+            six_r_d_2_in_axes5_z*(six_r_bias_t_7 + six_r_bias_t_8) -
+            six_r_d_3_in_axes5_z*(six_r_bias_t_13 + six_r_bias_t_14)
         )
         # (six_r-rel_o) remainder without the acceleration in: acceleration of the connection point left to the joint accelerations
         six_r_rel_o_in_axes5_x = six_r_u_1_in_axes5_x - six_r_bias_in_axes5_x
@@ -6845,7 +6964,7 @@ def _run_Z(m, X, V, q):
         # (six_r-nu_2) bias of the angular acceleration along moment direction 2
         six_r_nu_2_t = (
         six_r_beta_5_in_axes5_y*six_r_end_p1_in_axes5_z -
-            six_r_beta_4_in_axes4_x*six_r_n_m2_in_axes5_z
+            six_r_beta_4_in_axes4_y*six_r_n_m2_in_axes5_z
         )
         six_r_nu_2_t_2 = (
         six_r_nd_m2_in_axes5_y*six_r_nu_1_t_4 + six_r_nd_m2_in_axes5_z*six_r_nu_1_t_5 +
@@ -6879,8 +6998,8 @@ def _run_Z(m, X, V, q):
             six_r_rel_o_in_axes5_y*six_r_w_1_t_29)
         )
         # (six_r-alpha_1_o) remainder without the acceleration in: angular acceleration of link 1
-        six_r_alpha_1_o_t = six_r_qdd_1_o_t_5*six_r_s_2
-        six_r_alpha_1_o_in_axes2_y = -six_r_c_2*six_r_qdd_1_o_t_5
+        six_r_alpha_1_o_t = six_r_c_2*six_r_qdd_1_o_t_5
+        six_r_alpha_1_o_in_axes2_y = six_r_qdd_1_o_t_5*six_r_s_2
         # (six_r-alpha_2_o) remainder without the acceleration in: angular acceleration of link 2
         six_r_alpha_2_o_in_axes2_x = six_r_W_2_in_axes2_yz - six_r_alpha_1_o_t
         six_r_alpha_2_o_in_axes2_y = six_r_alpha_1_o_in_axes2_y + six_r_zeta_2_in_axes2_y
@@ -6891,12 +7010,12 @@ def _run_Z(m, X, V, q):
         six_r_B_2_o_in_axes2_zy = six_r_W_2_in_axes2_yz + six_r_alpha_2_o_in_axes2_x
         # (six_r-alpha_3_o) remainder without the acceleration in: angular acceleration of link 3
         six_r_alpha_3_o_in_axes3_x = (
-        six_r_zeta_3_in_axes3_x + six_r_alpha_2_o_in_axes2_x*six_r_c_3 +
-            six_r_alpha_2_o_in_axes2_y*six_r_s_3
+        six_r_zeta_3_in_axes3_x + six_r_alpha_2_o_in_axes2_x*six_r_s_3 -
+            six_r_alpha_2_o_in_axes2_y*six_r_c_3
         )
         six_r_alpha_3_o_in_axes3_y = (
-        six_r_alpha_2_o_in_axes2_y*six_r_c_3 - six_r_zeta_3_t -
-            six_r_alpha_2_o_in_axes2_x*six_r_s_3
+        six_r_alpha_2_o_in_axes2_x*six_r_c_3 + six_r_alpha_2_o_in_axes2_y*six_r_s_3 -
+            six_r_zeta_3_t
         )
         six_r_alpha_3_o_in_axes3_z = six_r_qdd_1_o_t_3 + six_r_qdd_1_o_t_4
         # (six_r-B_3_o) remainder of the acceleration tensor of link 3
@@ -6908,14 +7027,14 @@ def _run_Z(m, X, V, q):
         six_r_B_3_o_in_axes3_zy = six_r_W_3_in_axes3_yz + six_r_alpha_3_o_in_axes3_x
         # (six_r-alpha_4_o) remainder without the acceleration in: angular acceleration of link 4
         six_r_alpha_4_o_in_axes4_x = (
-        six_r_zeta_4_in_axes4_x + six_r_alpha_3_o_in_axes3_y*six_r_c_4 +
-            six_r_alpha_3_o_in_axes3_z*six_r_s_4
+        six_r_zeta_4_in_axes4_x + six_r_alpha_3_o_in_axes3_z*six_r_s_4 -
+            six_r_alpha_3_o_in_axes3_x*six_r_c_4
         )
         six_r_alpha_4_o_in_axes4_y = (
-        six_r_zeta_4_in_axes4_y + six_r_alpha_3_o_in_axes3_z*six_r_c_4 -
-            six_r_alpha_3_o_in_axes3_y*six_r_s_4
+        six_r_alpha_3_o_in_axes3_x*six_r_s_4 + six_r_alpha_3_o_in_axes3_z*six_r_c_4 -
+            six_r_zeta_4_t
         )
-        six_r_alpha_4_o_in_axes4_z = six_r_alpha_3_o_in_axes3_x + six_r_qdd_4_o
+        six_r_alpha_4_o_in_axes4_z = six_r_alpha_3_o_in_axes3_y + six_r_qdd_4_o
         # (six_r-B_4_o) remainder of the acceleration tensor of link 4
         six_r_B_4_o_in_axes4_xy = six_r_W_4_in_axes4_xy - six_r_alpha_4_o_in_axes4_z
         six_r_B_4_o_in_axes4_xz = six_r_W_4_in_axes4_xz + six_r_alpha_4_o_in_axes4_y
@@ -6925,15 +7044,15 @@ def _run_Z(m, X, V, q):
         six_r_B_4_o_in_axes4_zy = six_r_W_4_in_axes4_yz + six_r_alpha_4_o_in_axes4_x
         # (six_r-alpha_5_o) remainder without the acceleration in: angular acceleration of link 5
         six_r_alpha_5_o_in_axes5_x = (
-        six_r_zeta_5_in_axes5_x + six_r_alpha_4_o_in_axes4_y*six_r_c_5 +
-            six_r_alpha_4_o_in_axes4_z*six_r_s_5
+        six_r_zeta_5_in_axes5_x + six_r_alpha_4_o_in_axes4_x*six_r_s_5 +
+            six_r_alpha_4_o_in_axes4_z*six_r_c_5
         )
         six_r_alpha_5_o_in_axes5_y = (
-        six_r_alpha_4_o_in_axes4_z*six_r_c_5 - six_r_zeta_5_t -
-            six_r_alpha_4_o_in_axes4_y*six_r_s_5
+        six_r_alpha_4_o_in_axes4_x*six_r_c_5 - six_r_zeta_5_t -
+            six_r_alpha_4_o_in_axes4_z*six_r_s_5
         )
         six_r_alpha_5_o_in_axes5_z = (
-        six_r_alpha_4_o_in_axes4_x + inv_six_r_w_1_t_12*(six_r_qdd_1_o_t_2*six_r_w_1_t_14 +
+        six_r_alpha_4_o_in_axes4_y + inv_six_r_w_1_t_12*(six_r_qdd_1_o_t_2*six_r_w_1_t_14 +
             six_r_qdd_1_o_t_3*six_r_w_1_t_25 + six_r_qdd_1_o_t_5*six_r_w_1_t_18 +
             six_r_rel_o_in_axes5_y*six_r_w_1_t_13 - six_r_qdd_1_o_t_4*six_r_w_1_t_22 -
             six_r_qdd_4_o*six_r_w_1_t_15)
@@ -6948,83 +7067,83 @@ def _run_Z(m, X, V, q):
         # (six_r-a_o_3_o) remainder without the acceleration in: acceleration of the origin of joint 3
         six_r_a_o_3_o_t = six_r_omega_1_in_axes2_y*six_r_omega_1_in_axes2_y
         six_r_a_o_3_o_t_2 = six_r_qd_1_t_9*six_r_qd_1_t_9
-        six_r_a_o_3_o_t_3 = six_r_joint3_offset_x*(six_r_a_o_3_o_t + six_r_a_o_3_o_t_2)
+        six_r_a_o_3_o_in_axes2_x = -six_r_joint3_offset_x*(six_r_a_o_3_o_t + six_r_a_o_3_o_t_2)
         six_r_a_o_3_o_in_axes2_y = six_r_B_2_o_in_axes2_yx*six_r_joint3_offset_x
         six_r_a_o_3_o_in_axes2_z = six_r_B_2_o_in_axes2_zx*six_r_joint3_offset_x
         six_r_a_o_3_o_in_axes3_x = (
-        six_r_a_o_3_o_in_axes2_y*six_r_s_3 - six_r_a_o_3_o_t_3*six_r_c_3
+        six_r_a_o_3_o_in_axes2_x*six_r_s_3 - six_r_a_o_3_o_in_axes2_y*six_r_c_3
         )
         six_r_a_o_3_o_in_axes3_y = (
-        six_r_a_o_3_o_in_axes2_y*six_r_c_3 + six_r_a_o_3_o_t_3*six_r_s_3
+        six_r_a_o_3_o_in_axes2_x*six_r_c_3 + six_r_a_o_3_o_in_axes2_y*six_r_s_3
         )
         # (six_r-a_o_4_o) remainder without the acceleration in: acceleration of the origin of joint 4
-        six_r_a_o_4_o_in_axes3_x = six_r_a_o_3_o_in_axes3_x - six_r_W_3_t_3*six_r_joint4_offset_x
-        six_r_a_o_4_o_in_axes3_y = (
-        six_r_a_o_3_o_in_axes3_y + six_r_B_3_o_in_axes3_yx*six_r_joint4_offset_x
+        six_r_a_o_4_o_in_axes3_x = (
+        six_r_a_o_3_o_in_axes3_x + six_r_B_3_o_in_axes3_xy*six_r_joint4_offset_x
         )
+        six_r_a_o_4_o_in_axes3_y = six_r_a_o_3_o_in_axes3_y - six_r_W_3_t_3*six_r_joint4_offset_x
         six_r_a_o_4_o_in_axes3_z = (
-        six_r_a_o_3_o_in_axes2_z + six_r_B_3_o_in_axes3_zx*six_r_joint4_offset_x
+        six_r_a_o_3_o_in_axes2_z + six_r_B_3_o_in_axes3_zy*six_r_joint4_offset_x
         )
         # (six_r-acc_3_o) remainder without the acceleration in: acceleration of the reference point of link 3, less gravity
         six_r_g_in_axes1_x = six_r_acc_3_t*six_r_c_1 + six_r_acc_3_t_2*six_r_s_1
         six_r_g_in_axes1_y = six_r_acc_3_t_2*six_r_c_1 - six_r_acc_3_t*six_r_s_1
-        six_r_g_in_axes2_x = six_r_c_2*six_r_g_in_axes1_y + six_r_g_in_axes1_z*six_r_s_2
-        six_r_g_in_axes2_y = six_r_c_2*six_r_g_in_axes1_z - six_r_g_in_axes1_y*six_r_s_2
-        six_r_g_in_axes3_x = six_r_c_3*six_r_g_in_axes2_x + six_r_g_in_axes2_y*six_r_s_3
-        six_r_g_in_axes3_y = six_r_c_3*six_r_g_in_axes2_y - six_r_g_in_axes2_x*six_r_s_3
+        six_r_g_in_axes2_x = six_r_c_2*six_r_g_in_axes1_z + six_r_g_in_axes1_x*six_r_s_2
+        six_r_g_in_axes2_y = six_r_c_2*six_r_g_in_axes1_x - six_r_g_in_axes1_z*six_r_s_2
+        six_r_g_in_axes3_x = six_r_g_in_axes2_x*six_r_s_3 - six_r_c_3*six_r_g_in_axes2_y
+        six_r_g_in_axes3_y = six_r_c_3*six_r_g_in_axes2_x + six_r_g_in_axes2_y*six_r_s_3
         six_r_acc_3_o_in_axes3_x = six_r_a_o_3_o_in_axes3_x - six_r_g_in_axes3_x
         six_r_acc_3_o_in_axes3_y = six_r_a_o_3_o_in_axes3_y - six_r_g_in_axes3_y
-        six_r_acc_3_o_in_axes3_z = six_r_a_o_3_o_in_axes2_z - six_r_g_in_axes1_x
+        six_r_acc_3_o_in_axes3_z = six_r_a_o_3_o_in_axes2_z - six_r_g_in_axes1_y
         # (six_r-f_3_o) remainder without the acceleration in: inertia force of link 3 less its weight
-        six_r_f_3_o_t = six_r_omega_2_in_axes3_x*six_r_omega_2_in_axes3_x
+        six_r_f_3_o_t = six_r_omega_2_in_axes3_y*six_r_omega_2_in_axes3_y
         six_r_f_3_o_in_axes3_x = (
-        six_r_B_3_o_in_axes3_xy*six_r_h_3_in_spec3_y +
+        six_r_B_3_o_in_axes3_xy*six_r_h_3_in_spec3_x +
             six_r_B_3_o_in_axes3_xz*six_r_h_3_in_spec3_z +
-            six_r_acc_3_o_in_axes3_x*six_r_link3_mass - six_r_W_3_t_3*six_r_h_3_in_spec3_x
-        )
-        six_r_f_3_o_in_axes3_y = (
-        six_r_B_3_o_in_axes3_yx*six_r_h_3_in_spec3_x +
-            six_r_B_3_o_in_axes3_yz*six_r_h_3_in_spec3_z +
-            six_r_acc_3_o_in_axes3_y*six_r_link3_mass - six_r_h_3_in_spec3_y*(six_r_W_3_t_2 +
+            six_r_acc_3_o_in_axes3_x*six_r_link3_mass + six_r_h_3_in_spec3_y*(six_r_W_3_t_2 +
             six_r_f_3_o_t)
         )
+        six_r_f_3_o_in_axes3_y = (
+        six_r_B_3_o_in_axes3_yz*six_r_h_3_in_spec3_z + six_r_acc_3_o_in_axes3_y*six_r_link3_mass -
+            six_r_B_3_o_in_axes3_yx*six_r_h_3_in_spec3_y - six_r_W_3_t_3*six_r_h_3_in_spec3_x
+        )
         six_r_f_3_o_in_axes3_z = (
-        six_r_B_3_o_in_axes3_zx*six_r_h_3_in_spec3_x +
-            six_r_B_3_o_in_axes3_zy*six_r_h_3_in_spec3_y +
-            six_r_acc_3_o_in_axes3_z*six_r_link3_mass - six_r_h_3_in_spec3_z*(six_r_W_3_t +
+        six_r_B_3_o_in_axes3_zy*six_r_h_3_in_spec3_x + six_r_acc_3_o_in_axes3_z*six_r_link3_mass -
+            six_r_B_3_o_in_axes3_zx*six_r_h_3_in_spec3_y - six_r_h_3_in_spec3_z*(six_r_W_3_t +
             six_r_f_3_o_t)
         )
         # (six_r-acc_4_o) remainder without the acceleration in: acceleration of the reference point of link 4, less gravity
         six_r_acc_4_o_in_axes4_x = (
-        six_r_a_o_4_o_in_axes3_y*six_r_c_4 + six_r_a_o_4_o_in_axes3_z*six_r_s_4 -
-            six_r_c_4*six_r_g_in_axes3_y - six_r_g_in_axes1_x*six_r_s_4
+        six_r_a_o_4_o_in_axes3_z*six_r_s_4 + six_r_c_4*six_r_g_in_axes3_x -
+            six_r_a_o_4_o_in_axes3_x*six_r_c_4 - six_r_g_in_axes1_y*six_r_s_4
         )
         six_r_acc_4_o_in_axes4_y = (
-        six_r_a_o_4_o_in_axes3_z*six_r_c_4 + six_r_g_in_axes3_y*six_r_s_4 -
-            six_r_a_o_4_o_in_axes3_y*six_r_s_4 - six_r_c_4*six_r_g_in_axes1_x
+        six_r_a_o_4_o_in_axes3_x*six_r_s_4 + six_r_a_o_4_o_in_axes3_z*six_r_c_4 -
+            six_r_c_4*six_r_g_in_axes1_y - six_r_g_in_axes3_x*six_r_s_4
         )
-        six_r_acc_4_o_in_axes4_z = six_r_a_o_4_o_in_axes3_x - six_r_g_in_axes3_x
+        six_r_acc_4_o_in_axes4_z = six_r_a_o_4_o_in_axes3_y - six_r_g_in_axes3_y
         # (six_r-f_4_o) remainder without the acceleration in: inertia force of link 4 less its weight
-        six_r_f_4_o_t = six_r_omega_3_in_axes4_y*six_r_omega_3_in_axes4_y
+        six_r_f_4_o_t = six_r_omega_3_in_axes4_x*six_r_omega_3_in_axes4_x
         six_r_f_4_o_t_2 = six_r_omega_4_in_axes4_z*six_r_omega_4_in_axes4_z
         six_r_f_4_o_in_axes4_x = (
-        six_r_B_4_o_in_axes4_xz*six_r_h_4_in_spec4_x + six_r_acc_4_o_in_axes4_x*six_r_link4_mass -
-            six_r_B_4_o_in_axes4_xy*six_r_h_4_in_spec4_y - six_r_h_4_in_spec4_z*(six_r_f_4_o_t +
+        six_r_B_4_o_in_axes4_xy*six_r_h_4_in_spec4_z +
+            six_r_B_4_o_in_axes4_xz*six_r_h_4_in_spec4_x +
+            six_r_acc_4_o_in_axes4_x*six_r_link4_mass - six_r_h_4_in_spec4_y*(six_r_bias_t +
             six_r_f_4_o_t_2)
         )
         six_r_f_4_o_in_axes4_y = (
-        six_r_B_4_o_in_axes4_yx*six_r_h_4_in_spec4_z +
+        six_r_B_4_o_in_axes4_yx*six_r_h_4_in_spec4_y +
             six_r_B_4_o_in_axes4_yz*six_r_h_4_in_spec4_x +
-            six_r_acc_4_o_in_axes4_y*six_r_link4_mass + six_r_h_4_in_spec4_y*(six_r_bias_t +
+            six_r_acc_4_o_in_axes4_y*six_r_link4_mass - six_r_h_4_in_spec4_z*(six_r_f_4_o_t +
             six_r_f_4_o_t_2)
         )
         six_r_f_4_o_in_axes4_z = (
-        six_r_B_4_o_in_axes4_zx*six_r_h_4_in_spec4_z + six_r_acc_4_o_in_axes4_z*six_r_link4_mass -
-            six_r_B_4_o_in_axes4_zy*six_r_h_4_in_spec4_y - six_r_h_4_in_spec4_x*(six_r_bias_t +
+        six_r_B_4_o_in_axes4_zx*six_r_h_4_in_spec4_y +
+            six_r_B_4_o_in_axes4_zy*six_r_h_4_in_spec4_z +
+            six_r_acc_4_o_in_axes4_z*six_r_link4_mass - six_r_h_4_in_spec4_x*(six_r_bias_t +
             six_r_f_4_o_t)
         )
-        six_r_f_4_o_in_axes3_y = (
-        six_r_c_4*six_r_f_4_o_in_axes4_x - six_r_f_4_o_in_axes4_y*six_r_s_4
+        six_r_f_4_o_in_axes3_x = (
+        six_r_f_4_o_in_axes4_y*six_r_s_4 - six_r_c_4*six_r_f_4_o_in_axes4_x
         )
         six_r_f_4_o_in_axes3_z = (
         six_r_c_4*six_r_f_4_o_in_axes4_y + six_r_f_4_o_in_axes4_x*six_r_s_4
@@ -7071,81 +7190,81 @@ def _run_Z(m, X, V, q):
         )
         # (six_r-mu_4_o) remainder without the acceleration in: inertia moment of the links that turn with link 4, about their reference points
         six_r_mu_4_o_in_axes4_x = (
-        six_r_B_4_o_in_axes4_yx*six_r_J_4_in_spec4_xz +
-            six_r_B_4_o_in_axes4_zx*six_r_J_4_in_spec4_yz +
-            six_r_B_4_o_in_axes4_zy*six_r_Sigma_4_in_axes4_yy -
+        six_r_B_4_o_in_axes4_yx*six_r_J_4_in_spec4_xy +
+            six_r_B_4_o_in_axes4_zy*six_r_Sigma_4_in_axes4_yy +
+            six_r_J_4_in_spec4_xz*(six_r_bias_t - six_r_f_4_o_t_2) +
+            six_r_acc_4_o_in_axes4_z*six_r_h_4_in_spec4_z -
             six_r_B_4_o_in_axes4_yz*six_r_Sigma_4_in_axes4_zz -
-            six_r_J_4_in_spec4_xy*(six_r_f_4_o_t - six_r_f_4_o_t_2) -
-            six_r_acc_4_o_in_axes4_y*six_r_h_4_in_spec4_x -
-            six_r_acc_4_o_in_axes4_z*six_r_h_4_in_spec4_y
+            six_r_B_4_o_in_axes4_zx*six_r_J_4_in_spec4_yz -
+            six_r_acc_4_o_in_axes4_y*six_r_h_4_in_spec4_x
         )
         six_r_mu_4_o_in_axes4_y = (
-        six_r_B_4_o_in_axes4_xy*six_r_J_4_in_spec4_xy +
-            six_r_B_4_o_in_axes4_xz*six_r_Sigma_4_in_axes4_zz +
+        six_r_B_4_o_in_axes4_xz*six_r_Sigma_4_in_axes4_zz +
+            six_r_B_4_o_in_axes4_zy*six_r_J_4_in_spec4_yz +
             six_r_acc_4_o_in_axes4_x*six_r_h_4_in_spec4_x -
+            six_r_B_4_o_in_axes4_xy*six_r_J_4_in_spec4_xz -
             six_r_B_4_o_in_axes4_zx*six_r_Sigma_4_in_axes4_xx -
-            six_r_B_4_o_in_axes4_zy*six_r_J_4_in_spec4_yz - six_r_J_4_in_spec4_xz*(six_r_bias_t -
-            six_r_f_4_o_t_2) - six_r_acc_4_o_in_axes4_z*six_r_h_4_in_spec4_z
+            six_r_J_4_in_spec4_xy*(six_r_f_4_o_t - six_r_f_4_o_t_2) -
+            six_r_acc_4_o_in_axes4_z*six_r_h_4_in_spec4_y
         )
         six_r_mu_4_o_in_axes4_z = (
-        six_r_B_4_o_in_axes4_yx*six_r_Sigma_4_in_axes4_xx +
-            six_r_acc_4_o_in_axes4_x*six_r_h_4_in_spec4_y +
-            six_r_acc_4_o_in_axes4_y*six_r_h_4_in_spec4_z -
+        six_r_B_4_o_in_axes4_xz*six_r_J_4_in_spec4_xz +
+            six_r_B_4_o_in_axes4_yx*six_r_Sigma_4_in_axes4_xx +
+            six_r_J_4_in_spec4_yz*(six_r_f_4_o_t - six_r_bias_t) +
+            six_r_acc_4_o_in_axes4_y*six_r_h_4_in_spec4_y -
             six_r_B_4_o_in_axes4_xy*six_r_Sigma_4_in_axes4_yy -
-            six_r_B_4_o_in_axes4_xz*six_r_J_4_in_spec4_xy -
-            six_r_B_4_o_in_axes4_yz*six_r_J_4_in_spec4_xz - six_r_J_4_in_spec4_yz*(six_r_bias_t -
-            six_r_f_4_o_t)
+            six_r_B_4_o_in_axes4_yz*six_r_J_4_in_spec4_xy -
+            six_r_acc_4_o_in_axes4_x*six_r_h_4_in_spec4_z
         )
         # (six_r-N_4_o) remainder without the acceleration in: moment about joint 4 of the links from 4 outwards, the force at the connection point left out
-        six_r_N_4_o_in_axes4_x = six_r_mu_4_o_in_axes4_x + six_r_mu_5_o_in_axes5_z
-        six_r_N_4_o_in_axes4_y = (
-        six_r_mu_4_o_in_axes4_y + six_r_c_5*six_r_mu_5_o_in_axes5_x -
-            six_r_mu_5_o_in_axes5_y*six_r_s_5
-        )
-        six_r_N_4_o_in_axes4_z = (
-        six_r_mu_4_o_in_axes4_z + six_r_c_5*six_r_mu_5_o_in_axes5_y +
+        six_r_N_4_o_in_axes4_x = (
+        six_r_mu_4_o_in_axes4_x + six_r_c_5*six_r_mu_5_o_in_axes5_y +
             six_r_mu_5_o_in_axes5_x*six_r_s_5
+        )
+        six_r_N_4_o_in_axes4_y = six_r_mu_4_o_in_axes4_y + six_r_mu_5_o_in_axes5_z
+        six_r_N_4_o_in_axes4_z = (
+        six_r_mu_4_o_in_axes4_z + six_r_c_5*six_r_mu_5_o_in_axes5_x -
+            six_r_mu_5_o_in_axes5_y*six_r_s_5
         )
         # (six_r-mu_3_o) remainder without the acceleration in: inertia moment of the links that turn with link 3, about their reference points
         six_r_mu_3_o_in_axes3_x = (
-        six_r_B_3_o_in_axes3_yx*six_r_J_3_in_spec3_xz +
-            six_r_B_3_o_in_axes3_zy*six_r_Sigma_3_in_axes3_yy + six_r_J_3_in_spec3_yz*(six_r_W_3_t
-            - six_r_W_3_t_2) + six_r_acc_3_o_in_axes3_z*six_r_h_3_in_spec3_y -
+        six_r_B_3_o_in_axes3_zx*six_r_J_3_in_spec3_xy +
+            six_r_B_3_o_in_axes3_zy*six_r_Sigma_3_in_axes3_yy +
+            six_r_J_3_in_spec3_xz*(six_r_f_3_o_t - six_r_W_3_t_2) +
+            six_r_acc_3_o_in_axes3_z*six_r_h_3_in_spec3_x -
+            six_r_B_3_o_in_axes3_yx*six_r_J_3_in_spec3_yz -
             six_r_B_3_o_in_axes3_yz*six_r_Sigma_3_in_axes3_zz -
-            six_r_B_3_o_in_axes3_zx*six_r_J_3_in_spec3_xy -
             six_r_acc_3_o_in_axes3_y*six_r_h_3_in_spec3_z
         )
         six_r_mu_3_o_in_axes3_y = (
-        six_r_B_3_o_in_axes3_xz*six_r_Sigma_3_in_axes3_zz +
-            six_r_B_3_o_in_axes3_zy*six_r_J_3_in_spec3_xy +
-            six_r_acc_3_o_in_axes3_x*six_r_h_3_in_spec3_z -
-            six_r_B_3_o_in_axes3_xy*six_r_J_3_in_spec3_yz -
+        six_r_B_3_o_in_axes3_xz*six_r_Sigma_3_in_axes3_zz + six_r_J_3_in_spec3_yz*(six_r_W_3_t -
+            six_r_W_3_t_2) + six_r_acc_3_o_in_axes3_x*six_r_h_3_in_spec3_z +
+            six_r_acc_3_o_in_axes3_z*six_r_h_3_in_spec3_y -
+            six_r_B_3_o_in_axes3_xy*six_r_J_3_in_spec3_xz -
             six_r_B_3_o_in_axes3_zx*six_r_Sigma_3_in_axes3_xx -
-            six_r_J_3_in_spec3_xz*(six_r_f_3_o_t - six_r_W_3_t_2) -
-            six_r_acc_3_o_in_axes3_z*six_r_h_3_in_spec3_x
+            six_r_B_3_o_in_axes3_zy*six_r_J_3_in_spec3_xy
         )
         six_r_mu_3_o_in_axes3_z = (
-        six_r_B_3_o_in_axes3_xz*six_r_J_3_in_spec3_yz +
+        six_r_B_3_o_in_axes3_xz*six_r_J_3_in_spec3_xz +
             six_r_B_3_o_in_axes3_yx*six_r_Sigma_3_in_axes3_xx +
-            six_r_J_3_in_spec3_xy*(six_r_f_3_o_t - six_r_W_3_t) +
-            six_r_acc_3_o_in_axes3_y*six_r_h_3_in_spec3_x -
-            six_r_B_3_o_in_axes3_xy*six_r_Sigma_3_in_axes3_yy -
-            six_r_B_3_o_in_axes3_yz*six_r_J_3_in_spec3_xz -
-            six_r_acc_3_o_in_axes3_x*six_r_h_3_in_spec3_y
+            six_r_B_3_o_in_axes3_yz*six_r_J_3_in_spec3_yz -
+            six_r_B_3_o_in_axes3_xy*six_r_Sigma_3_in_axes3_yy - six_r_J_3_in_spec3_xy*(six_r_W_3_t
+            - six_r_f_3_o_t) - six_r_acc_3_o_in_axes3_x*six_r_h_3_in_spec3_x -
+            six_r_acc_3_o_in_axes3_y*six_r_h_3_in_spec3_y
         )
         # (six_r-N_3_o) remainder without the acceleration in: moment about joint 3 of the links from 3 outwards, the force at the connection point left out
-        six_r_N_3_o_in_axes3_x = six_r_N_4_o_in_axes4_z + six_r_mu_3_o_in_axes3_x
-        six_r_N_3_o_in_axes3_y = (
-        six_r_mu_3_o_in_axes3_y + six_r_N_4_o_in_axes4_x*six_r_c_4 -
-            six_r_N_4_o_in_axes4_y*six_r_s_4 - six_r_f_4_o_in_axes3_z*six_r_joint4_offset_x
+        six_r_N_3_o_in_axes3_x = (
+        six_r_mu_3_o_in_axes3_x + six_r_N_4_o_in_axes4_y*six_r_s_4 +
+            six_r_f_4_o_in_axes3_z*six_r_joint4_offset_x - six_r_N_4_o_in_axes4_x*six_r_c_4
         )
+        six_r_N_3_o_in_axes3_y = six_r_N_4_o_in_axes4_z + six_r_mu_3_o_in_axes3_y
         six_r_N_3_o_in_axes3_z = (
         six_r_mu_3_o_in_axes3_z + six_r_N_4_o_in_axes4_x*six_r_s_4 +
-            six_r_N_4_o_in_axes4_y*six_r_c_4 + six_r_f_4_o_in_axes3_y*six_r_joint4_offset_x
+            six_r_N_4_o_in_axes4_y*six_r_c_4 - six_r_f_4_o_in_axes3_x*six_r_joint4_offset_x
         )
         # (six_r-T_3_o) remainder without the acceleration in: inertia force of the links from 3 outwards, the last link left out
-        six_r_T_3_o_in_axes3_x = six_r_f_3_o_in_axes3_x + six_r_f_4_o_in_axes4_z
-        six_r_T_3_o_in_axes3_y = six_r_f_3_o_in_axes3_y + six_r_f_4_o_in_axes3_y
+        six_r_T_3_o_in_axes3_x = six_r_f_3_o_in_axes3_x + six_r_f_4_o_in_axes3_x
+        six_r_T_3_o_in_axes3_y = six_r_f_3_o_in_axes3_y + six_r_f_4_o_in_axes4_z
         six_r_T_3_o_in_axes3_z = six_r_f_3_o_in_axes3_z + six_r_f_4_o_in_axes3_z
         # (six_r-mu_2_o) remainder without the acceleration in: inertia moment of the links that turn with link 2, about their reference points
         six_r_mu_2_o_t = six_r_omega_1_in_axes2_x*six_r_omega_1_in_axes2_x
@@ -7155,12 +7274,12 @@ def _run_Z(m, X, V, q):
             six_r_J_2_in_spec2_yz*(six_r_a_o_3_o_t - six_r_a_o_3_o_t_2) +
             six_r_g_in_axes2_y*six_r_h_2_in_spec2_z -
             six_r_B_2_o_in_axes2_zx*six_r_J_2_in_spec2_xy -
-            six_r_Sigma_2_in_axes2_zz*six_r_alpha_1_o_t - six_r_g_in_axes1_x*six_r_h_2_in_spec2_y
+            six_r_Sigma_2_in_axes2_zz*six_r_alpha_1_o_t - six_r_g_in_axes1_y*six_r_h_2_in_spec2_y
         )
         six_r_mu_2_o_in_axes2_y = (
         six_r_B_2_o_in_axes2_zy*six_r_J_2_in_spec2_xy +
             six_r_Sigma_2_in_axes2_zz*six_r_alpha_1_o_in_axes2_y +
-            six_r_g_in_axes1_x*six_r_h_2_in_spec2_x -
+            six_r_g_in_axes1_y*six_r_h_2_in_spec2_x -
             six_r_B_2_o_in_axes2_xy*six_r_J_2_in_spec2_yz -
             six_r_B_2_o_in_axes2_zx*six_r_Sigma_2_in_axes2_xx -
             six_r_J_2_in_spec2_xz*(six_r_mu_2_o_t - six_r_a_o_3_o_t_2) -
@@ -7175,27 +7294,27 @@ def _run_Z(m, X, V, q):
         )
         # (six_r-N_2_o) remainder without the acceleration in: moment about joint 2 of the links from 2 outwards, the force at the connection point left out
         six_r_N_2_o_in_axes2_x = (
-        six_r_mu_2_o_in_axes2_x + six_r_N_3_o_in_axes3_x*six_r_c_3 -
-            six_r_N_3_o_in_axes3_y*six_r_s_3
+        six_r_mu_2_o_in_axes2_x + six_r_N_3_o_in_axes3_x*six_r_s_3 +
+            six_r_N_3_o_in_axes3_y*six_r_c_3
         )
         six_r_N_2_o_in_axes2_y = (
-        six_r_mu_2_o_in_axes2_y + six_r_N_3_o_in_axes3_x*six_r_s_3 +
-            six_r_N_3_o_in_axes3_y*six_r_c_3 - six_r_T_3_o_in_axes3_z*six_r_joint3_offset_x
+        six_r_mu_2_o_in_axes2_y + six_r_N_3_o_in_axes3_y*six_r_s_3 -
+            six_r_N_3_o_in_axes3_x*six_r_c_3 - six_r_T_3_o_in_axes3_z*six_r_joint3_offset_x
         )
         six_r_N_2_o_in_axes2_z = (
-        six_r_N_3_o_in_axes3_z + six_r_mu_2_o_in_axes2_z +
-            six_r_joint3_offset_x*(six_r_T_3_o_in_axes3_x*six_r_s_3 +
-            six_r_T_3_o_in_axes3_y*six_r_c_3)
+        six_r_N_3_o_in_axes3_z + six_r_mu_2_o_in_axes2_z -
+            six_r_joint3_offset_x*(six_r_T_3_o_in_axes3_x*six_r_c_3 -
+            six_r_T_3_o_in_axes3_y*six_r_s_3)
         )
         # (six_r-mu_1_o) remainder without the acceleration in: inertia moment of the links that turn with link 1, about their reference points
         six_r_mu_1_o_in_axes1_z = (
-        -six_r_J_1_in_spec1_xx*six_r_qdd_1_o_t_5 - six_r_g_in_axes1_x*six_r_h_1_in_spec1_y -
-            six_r_g_in_axes1_y*six_r_h_1_in_spec1_z
+        six_r_g_in_axes1_x*six_r_h_1_in_spec1_z - six_r_J_1_in_spec1_xx*six_r_qdd_1_o_t_5 -
+            six_r_g_in_axes1_y*six_r_h_1_in_spec1_y
         )
         # (six_r-N_1_o) remainder without the acceleration in: moment about joint 1 of the links from 1 outwards, the force at the connection point left out
         six_r_N_1_o_in_axes1_z = (
-        six_r_mu_1_o_in_axes1_z + six_r_N_2_o_in_axes2_x*six_r_s_2 +
-            six_r_N_2_o_in_axes2_y*six_r_c_2
+        six_r_mu_1_o_in_axes1_z + six_r_N_2_o_in_axes2_x*six_r_c_2 -
+            six_r_N_2_o_in_axes2_y*six_r_s_2
         )
         # (six_r-G_m1_o) remainder without the acceleration in: moment along moment direction 1 that balances the leg's inertia and weight along all degrees of freedom
         six_r_G_m1_o_t = inv_six_r_w_1_t_12*six_r_mu_5_o_in_axes5_z
@@ -7232,10 +7351,9 @@ def _run_Z(m, X, V, q):
         )
         # (six_r-c_o) remainder without the acceleration in: leg force on the platform without actuation and without the mass at the connection point
         six_r_c_o_in_axes5_x = (
-        six_r_G_m1_o_t_3*six_r_w_1_t_50 + six_r_G_m1_o_t_4*six_r_w_1_t_68 -
-            six_r_B_5_o_in_axes5_xy*six_r_h_5_in_spec5_y -
-            six_r_B_5_o_in_axes5_xz*six_r_h_5_in_spec5_z - six_r_G_m1_o_t_5*six_r_qd_1_t -
-            six_r_W_5_in_axes5_xx*six_r_h_5_in_spec5_x
+        six_r_G_m1_o_t_3*six_r_w_1_t_50 + six_r_G_m1_o_t_4*six_r_w_1_t_68 +
+            six_r_W_5_t_3*six_r_h_5_in_spec5_x - six_r_B_5_o_in_axes5_xy*six_r_h_5_in_spec5_y -
+            six_r_B_5_o_in_axes5_xz*six_r_h_5_in_spec5_z - six_r_G_m1_o_t_5*six_r_qd_1_t
         )
         six_r_c_o_in_axes5_y = (
         six_r_G_m1_o_t_5*six_r_qd_1_t_2 + six_r_h_5_in_spec5_y*(six_r_W_5_t_2 + six_r_bias_t_2) -
@@ -7366,69 +7484,69 @@ def _run_H(m, X, q):
         six_r_q_4 = q[[3, 8, 13, 18, 23, 28][leg]]
         six_r_q_5 = q[[4, 9, 14, 19, 24, 29][leg]]
         # (six_r-c_1) cosine of the angle of joint 1 from its reference direction
-        six_r_c_1 = -sin(six_r_q_1)
+        six_r_c_1 = cos(six_r_q_1)
         # (six_r-s_1) sine of the angle of joint 1 from its reference direction
-        six_r_s_1 = cos(six_r_q_1)
+        six_r_s_1 = sin(six_r_q_1)
         # (six_r-c_2) cosine of the angle of joint 2 from its reference direction
-        six_r_c_2 = -sin(six_r_q_2)
+        six_r_c_2 = cos(six_r_q_2)
         # (six_r-s_2) sine of the angle of joint 2 from its reference direction
-        six_r_s_2 = cos(six_r_q_2)
+        six_r_s_2 = sin(six_r_q_2)
         # (six_r-c_3) cosine of the angle of joint 3 from its reference direction
         six_r_c_3 = cos(six_r_q_3)
         # (six_r-s_3) sine of the angle of joint 3 from its reference direction
         six_r_s_3 = sin(six_r_q_3)
         # (six_r-c_4) cosine of the angle of joint 4 from its reference direction
-        six_r_c_4 = -sin(six_r_q_4)
+        six_r_c_4 = cos(six_r_q_4)
         # (six_r-s_4) sine of the angle of joint 4 from its reference direction
-        six_r_s_4 = cos(six_r_q_4)
+        six_r_s_4 = sin(six_r_q_4)
         # (six_r-c_5) cosine of the angle of joint 5 from its reference direction
-        six_r_c_5 = -sin(six_r_q_5)
+        six_r_c_5 = cos(six_r_q_5)
         # (six_r-s_5) sine of the angle of joint 5 from its reference direction
-        six_r_s_5 = cos(six_r_q_5)
+        six_r_s_5 = sin(six_r_q_5)
         # (six_r-r_4) from joint 4 to the connection point, along the links
-        six_r_r_4_in_axes4_y = six_r_c_5*six_r_platform_joint_offset_x
-        six_r_r_4_in_axes4_z = six_r_joint5_offset_x + six_r_platform_joint_offset_x*six_r_s_5
-        six_r_r_4_in_axes3_y = -six_r_r_4_in_axes4_y*six_r_s_4
-        six_r_r_4_in_axes3_z = six_r_c_4*six_r_r_4_in_axes4_y
+        six_r_r_4_in_axes4_x = six_r_platform_joint_offset_x*six_r_s_5
+        six_r_r_4_in_axes4_z = six_r_joint5_offset_x + six_r_c_5*six_r_platform_joint_offset_x
+        six_r_r_4_in_axes3_x = -six_r_c_4*six_r_r_4_in_axes4_x
+        six_r_r_4_in_axes3_z = six_r_r_4_in_axes4_x*six_r_s_4
         # (six_r-r_3) from joint 3 to the connection point, along the links
-        six_r_r_3_in_axes3_x = six_r_joint4_offset_x + six_r_r_4_in_axes4_z
-        six_r_r_3_in_axes2_y = six_r_c_3*six_r_r_4_in_axes3_y + six_r_r_3_in_axes3_x*six_r_s_3
+        six_r_r_3_in_axes3_y = six_r_joint4_offset_x + six_r_r_4_in_axes4_z
+        six_r_r_3_in_axes2_y = six_r_r_3_in_axes3_y*six_r_s_3 - six_r_c_3*six_r_r_4_in_axes3_x
         six_r_r_3_t = six_r_r_4_in_axes3_z*six_r_s_4
-        six_r_r_3_t_2 = -six_r_c_4*six_r_r_4_in_axes3_z
-        six_r_r_3_in_axes5_z = six_r_r_3_t + six_r_c_4*six_r_r_4_in_axes3_y
-        six_r_r_3_t_3 = -six_r_r_3_t_2 - six_r_r_4_in_axes3_y*six_r_s_4
-        six_r_r_3_in_axes5_x = six_r_c_5*six_r_r_3_t_3 + six_r_r_3_in_axes3_x*six_r_s_5
-        six_r_r_3_in_axes5_y = six_r_c_5*six_r_r_3_in_axes3_x - six_r_r_3_t_3*six_r_s_5
+        six_r_r_3_t_2 = six_r_c_4*six_r_r_4_in_axes3_z
+        six_r_r_3_t_3 = six_r_r_3_t - six_r_c_4*six_r_r_4_in_axes3_x
+        six_r_r_3_in_axes5_z = six_r_r_3_t_2 + six_r_r_4_in_axes3_x*six_r_s_4
+        six_r_r_3_in_axes5_x = six_r_c_5*six_r_r_3_in_axes3_y + six_r_r_3_t_3*six_r_s_5
+        six_r_r_3_in_axes5_y = six_r_c_5*six_r_r_3_t_3 - six_r_r_3_in_axes3_y*six_r_s_5
         # (six_r-r_2) from joint 2 to the connection point, along the links
         six_r_r_2_in_axes2_x = (
-        six_r_joint3_offset_x + six_r_c_3*six_r_r_3_in_axes3_x - six_r_r_4_in_axes3_y*six_r_s_3
+        six_r_joint3_offset_x + six_r_c_3*six_r_r_3_in_axes3_y + six_r_r_4_in_axes3_x*six_r_s_3
         )
-        six_r_r_2_in_axes1_y = six_r_c_2*six_r_r_2_in_axes2_x - six_r_r_3_in_axes2_y*six_r_s_2
-        six_r_r_2_t = six_r_c_3*six_r_r_2_in_axes2_x + six_r_r_3_in_axes2_y*six_r_s_3
-        six_r_r_2_t_2 = six_r_c_3*six_r_r_3_in_axes2_y - six_r_r_2_in_axes2_x*six_r_s_3
-        six_r_r_2_in_axes5_z = six_r_r_3_t + six_r_c_4*six_r_r_2_t_2
-        six_r_r_2_t_3 = -six_r_r_3_t_2 - six_r_r_2_t_2*six_r_s_4
-        six_r_r_2_in_axes5_x = six_r_c_5*six_r_r_2_t_3 + six_r_r_2_t*six_r_s_5
-        six_r_r_2_in_axes5_y = six_r_c_5*six_r_r_2_t - six_r_r_2_t_3*six_r_s_5
+        six_r_r_2_in_axes1_x = six_r_c_2*six_r_r_3_in_axes2_y + six_r_r_2_in_axes2_x*six_r_s_2
+        six_r_r_2_t = six_r_r_2_in_axes2_x*six_r_s_3 - six_r_c_3*six_r_r_3_in_axes2_y
+        six_r_r_2_t_2 = six_r_c_3*six_r_r_2_in_axes2_x + six_r_r_3_in_axes2_y*six_r_s_3
+        six_r_r_2_t_3 = six_r_r_3_t - six_r_c_4*six_r_r_2_t
+        six_r_r_2_in_axes5_z = six_r_r_3_t_2 + six_r_r_2_t*six_r_s_4
+        six_r_r_2_in_axes5_x = six_r_c_5*six_r_r_2_t_2 + six_r_r_2_t_3*six_r_s_5
+        six_r_r_2_in_axes5_y = six_r_c_5*six_r_r_2_t_3 - six_r_r_2_t_2*six_r_s_5
         # (six_r-r_1) from joint 1 to the connection point, along the links
         six_r_r_1_in_axes1_z = (
-        six_r_joint2_offset_x + six_r_c_2*six_r_r_3_in_axes2_y + six_r_r_2_in_axes2_x*six_r_s_2
+        six_r_joint2_offset_x + six_r_c_2*six_r_r_2_in_axes2_x - six_r_r_3_in_axes2_y*six_r_s_2
         )
-        six_r_r_1_t = six_r_c_2*six_r_r_2_in_axes1_y + six_r_r_1_in_axes1_z*six_r_s_2
-        six_r_r_1_t_2 = six_r_c_2*six_r_r_1_in_axes1_z - six_r_r_2_in_axes1_y*six_r_s_2
-        six_r_r_1_t_3 = six_r_c_3*six_r_r_1_t + six_r_r_1_t_2*six_r_s_3
-        six_r_r_1_t_4 = six_r_c_3*six_r_r_1_t_2 - six_r_r_1_t*six_r_s_3
-        six_r_r_1_in_axes5_z = six_r_r_3_t + six_r_c_4*six_r_r_1_t_4
-        six_r_r_1_t_5 = -six_r_r_3_t_2 - six_r_r_1_t_4*six_r_s_4
-        six_r_r_1_in_axes5_x = six_r_c_5*six_r_r_1_t_5 + six_r_r_1_t_3*six_r_s_5
-        six_r_r_1_in_axes5_y = six_r_c_5*six_r_r_1_t_3 - six_r_r_1_t_5*six_r_s_5
+        six_r_r_1_t = six_r_c_2*six_r_r_1_in_axes1_z + six_r_r_2_in_axes1_x*six_r_s_2
+        six_r_r_1_t_2 = six_r_c_2*six_r_r_2_in_axes1_x - six_r_r_1_in_axes1_z*six_r_s_2
+        six_r_r_1_t_3 = six_r_r_1_t*six_r_s_3 - six_r_c_3*six_r_r_1_t_2
+        six_r_r_1_t_4 = six_r_c_3*six_r_r_1_t + six_r_r_1_t_2*six_r_s_3
+        six_r_r_1_t_5 = six_r_r_3_t - six_r_c_4*six_r_r_1_t_3
+        six_r_r_1_in_axes5_z = six_r_r_3_t_2 + six_r_r_1_t_3*six_r_s_4
+        six_r_r_1_in_axes5_x = six_r_c_5*six_r_r_1_t_4 + six_r_r_1_t_5*six_r_s_5
+        six_r_r_1_in_axes5_y = six_r_c_5*six_r_r_1_t_5 - six_r_r_1_t_4*six_r_s_5
         # (six_r-v_1) velocity of the connection point per rate of joint 1
         six_r_v_1_t = six_r_c_2*six_r_s_3 + six_r_c_3*six_r_s_2
         six_r_v_1_t_2 = six_r_c_2*six_r_c_3 - six_r_s_2*six_r_s_3
-        six_r_e_1_in_axes5_z = six_r_c_4*six_r_v_1_t_2
-        six_r_v_1_t_3 = six_r_s_4*six_r_v_1_t_2
-        six_r_e_1_in_axes5_x = six_r_s_5*six_r_v_1_t - six_r_c_5*six_r_v_1_t_3
-        six_r_e_1_in_axes5_y = six_r_c_5*six_r_v_1_t + six_r_s_5*six_r_v_1_t_3
+        six_r_v_1_t_3 = six_r_c_4*six_r_v_1_t
+        six_r_e_1_in_axes5_z = six_r_s_4*six_r_v_1_t
+        six_r_e_1_in_axes5_x = six_r_c_5*six_r_v_1_t_2 - six_r_s_5*six_r_v_1_t_3
+        six_r_e_1_in_axes5_y = -six_r_c_5*six_r_v_1_t_3 - six_r_s_5*six_r_v_1_t_2
         six_r_v_1_in_axes5_x = (
         six_r_e_1_in_axes5_y*six_r_r_1_in_axes5_z - six_r_e_1_in_axes5_z*six_r_r_1_in_axes5_y
         )
@@ -7439,31 +7557,31 @@ def _run_H(m, X, q):
         six_r_e_1_in_axes5_x*six_r_r_1_in_axes5_y - six_r_e_1_in_axes5_y*six_r_r_1_in_axes5_x
         )
         # (six_r-v_2) velocity of the connection point per rate of joint 2
-        six_r_e_2_in_axes5_x = six_r_c_4*six_r_c_5
-        six_r_e_2_in_axes5_y = -six_r_c_4*six_r_s_5
+        six_r_e_2_in_axes5_x = six_r_s_4*six_r_s_5
+        six_r_e_2_in_axes5_y = six_r_c_5*six_r_s_4
         six_r_v_2_in_axes5_x = (
-        six_r_e_2_in_axes5_y*six_r_r_2_in_axes5_z - six_r_r_2_in_axes5_y*six_r_s_4
+        six_r_e_2_in_axes5_y*six_r_r_2_in_axes5_z - six_r_c_4*six_r_r_2_in_axes5_y
         )
         six_r_v_2_in_axes5_y = (
-        six_r_r_2_in_axes5_x*six_r_s_4 - six_r_e_2_in_axes5_x*six_r_r_2_in_axes5_z
+        six_r_c_4*six_r_r_2_in_axes5_x - six_r_e_2_in_axes5_x*six_r_r_2_in_axes5_z
         )
         six_r_v_2_in_axes5_z = (
         six_r_e_2_in_axes5_x*six_r_r_2_in_axes5_y - six_r_e_2_in_axes5_y*six_r_r_2_in_axes5_x
         )
         # (six_r-v_3) velocity of the connection point per rate of joint 3
         six_r_v_3_in_axes5_x = (
-        six_r_e_2_in_axes5_y*six_r_r_3_in_axes5_z - six_r_r_3_in_axes5_y*six_r_s_4
+        six_r_e_2_in_axes5_y*six_r_r_3_in_axes5_z - six_r_c_4*six_r_r_3_in_axes5_y
         )
         six_r_v_3_in_axes5_y = (
-        six_r_r_3_in_axes5_x*six_r_s_4 - six_r_e_2_in_axes5_x*six_r_r_3_in_axes5_z
+        six_r_c_4*six_r_r_3_in_axes5_x - six_r_e_2_in_axes5_x*six_r_r_3_in_axes5_z
         )
         six_r_v_3_in_axes5_z = (
         six_r_e_2_in_axes5_x*six_r_r_3_in_axes5_y - six_r_e_2_in_axes5_y*six_r_r_3_in_axes5_x
         )
         # (six_r-v_4) velocity of the connection point per rate of joint 4
         six_r_v_4_in_axes5_z = (
-        six_r_s_5*(six_r_c_5*six_r_r_4_in_axes4_z - six_r_r_4_in_axes4_y*six_r_s_5) -
-            six_r_c_5*(six_r_c_5*six_r_r_4_in_axes4_y + six_r_r_4_in_axes4_z*six_r_s_5)
+        six_r_c_5*(six_r_c_5*six_r_r_4_in_axes4_x - six_r_r_4_in_axes4_z*six_r_s_5) +
+            six_r_s_5*(six_r_c_5*six_r_r_4_in_axes4_z + six_r_r_4_in_axes4_x*six_r_s_5)
         )
         # (six_r-n_m1) direction 1 of the moment that the platform joint transmits
         six_r_n_m1_t = (
@@ -7492,16 +7610,16 @@ def _run_H(m, X, q):
         )
         six_r_n_m1_t_4 = six_r_c_1*six_r_n_m1_t + six_r_n_m1_t_2*six_r_s_1
         six_r_n_m1_t_5 = six_r_c_1*six_r_n_m1_t_2 - six_r_n_m1_t*six_r_s_1
-        six_r_n_m1_t_6 = six_r_c_2*six_r_n_m1_t_5 + six_r_n_m1_t_3*six_r_s_2
-        six_r_n_m1_t_7 = six_r_c_2*six_r_n_m1_t_3 - six_r_n_m1_t_5*six_r_s_2
-        six_r_n_m1_t_8 = six_r_c_3*six_r_n_m1_t_6 + six_r_n_m1_t_7*six_r_s_3
-        six_r_n_m1_t_9 = six_r_c_3*six_r_n_m1_t_7 - six_r_n_m1_t_6*six_r_s_3
-        six_r_n_m1_t_10 = six_r_c_4*six_r_n_m1_t_4 - six_r_n_m1_t_9*six_r_s_4
-        six_r_n_m1_in_axes5_y = six_r_c_5*six_r_n_m1_t_10 + six_r_n_m1_t_8*six_r_s_5
+        six_r_n_m1_t_6 = six_r_c_2*six_r_n_m1_t_3 + six_r_n_m1_t_4*six_r_s_2
+        six_r_n_m1_t_7 = six_r_c_2*six_r_n_m1_t_4 - six_r_n_m1_t_3*six_r_s_2
+        six_r_n_m1_t_8 = six_r_n_m1_t_6*six_r_s_3 - six_r_c_3*six_r_n_m1_t_7
+        six_r_n_m1_t_9 = six_r_c_3*six_r_n_m1_t_6 + six_r_n_m1_t_7*six_r_s_3
+        six_r_n_m1_t_10 = six_r_n_m1_t_5*six_r_s_4 - six_r_c_4*six_r_n_m1_t_8
+        six_r_n_m1_in_axes5_y = six_r_c_5*six_r_n_m1_t_9 + six_r_n_m1_t_10*six_r_s_5
         # (six_r-n_m2) direction 2 of the moment that the platform joint transmits
-        six_r_n_m2_in_axes5_z = six_r_c_5*six_r_n_m1_t_8 - six_r_n_m1_t_10*six_r_s_5
+        six_r_n_m2_in_axes5_z = six_r_c_5*six_r_n_m1_t_10 - six_r_n_m1_t_9*six_r_s_5
         # (six_r-w_1) force part of reciprocal wrench 1
-        six_r_end_p1_in_axes5_z = six_r_c_4*six_r_n_m1_t_9 + six_r_n_m1_t_4*six_r_s_4
+        six_r_end_p1_in_axes5_z = six_r_c_4*six_r_n_m1_t_5 + six_r_n_m1_t_8*six_r_s_4
         six_r_w_1_t = (
         six_r_e_1_in_axes5_x*six_r_n_m2_in_axes5_z - six_r_e_1_in_axes5_y*six_r_n_m1_in_axes5_y
         )
@@ -7512,16 +7630,16 @@ def _run_H(m, X, q):
         six_r_e_1_in_axes5_y*six_r_end_p1_in_axes5_z - six_r_e_1_in_axes5_z*six_r_n_m2_in_axes5_z
         )
         six_r_w_1_t_4 = (
-        six_r_e_2_in_axes5_y*six_r_end_p1_in_axes5_z - six_r_n_m2_in_axes5_z*six_r_s_4
+        six_r_e_2_in_axes5_y*six_r_end_p1_in_axes5_z - six_r_c_4*six_r_n_m2_in_axes5_z
         )
         six_r_w_1_t_5 = six_r_size*six_r_w_1_t
         six_r_w_1_t_6 = six_r_size*six_r_w_1_t_3
         six_r_w_1_t_7 = six_r_size*six_r_w_1_t_2
         six_r_w_1_t_8 = six_r_size*six_r_w_1_t_4
         six_r_w_1_t_9 = (
-        six_r_size*(six_r_c_5*six_r_n_m1_in_axes5_y - six_r_n_m2_in_axes5_z*six_r_s_5)
+        six_r_size*(-six_r_c_5*six_r_n_m2_in_axes5_z - six_r_n_m1_in_axes5_y*six_r_s_5)
         )
-        six_r_w_1_t_10 = -six_r_c_5*six_r_end_p1_in_axes5_z*six_r_size
+        six_r_w_1_t_10 = six_r_end_p1_in_axes5_z*six_r_s_5*six_r_size
         six_r_w_1_t_11 = six_r_n_m2_in_axes5_z*six_r_size
         six_r_w_1_t_12 = sqrt(six_r_size_t + six_r_w_1_t_11*six_r_w_1_t_11)
         inv_six_r_w_1_t_12 = 1.0/six_r_w_1_t_12
@@ -7632,41 +7750,41 @@ def _run_H(m, X, q):
             six_r_w_1_t_78*six_r_w_1_t_78)
         )
         # (six_r-w_2) force part of reciprocal wrench 2
-        six_r_w_2_t = -six_r_c_4*six_r_s_3
-        six_r_w_2_t_2 = -six_r_c_3*six_r_c_4
-        six_r_w_2_t_3 = six_r_c_2*six_r_w_2_t + six_r_s_2*six_r_w_2_t_2
-        six_r_w_2_t_4 = six_r_s_2*six_r_w_2_t - six_r_c_2*six_r_w_2_t_2
-        six_r_w_2_t_5 = six_r_c_1*six_r_s_4 - six_r_s_1*six_r_w_2_t_3
-        six_r_w_2_t_6 = six_r_c_1*six_r_w_2_t_3 + six_r_s_1*six_r_s_4
+        six_r_w_2_t = six_r_c_3*six_r_s_4
+        six_r_w_2_t_2 = six_r_s_3*six_r_s_4
+        six_r_w_2_t_3 = six_r_c_2*six_r_w_2_t_2 + six_r_s_2*six_r_w_2_t
+        six_r_w_2_t_4 = six_r_s_2*six_r_w_2_t_2 - six_r_c_2*six_r_w_2_t
+        six_r_w_2_t_5 = six_r_c_1*six_r_w_2_t_4 - six_r_c_4*six_r_s_1
+        six_r_w_2_t_6 = six_r_c_1*six_r_c_4 + six_r_s_1*six_r_w_2_t_4
         axis_z_six_r_axes5_x = (
-        six_r_base_frame_xx*six_r_w_2_t_4 + six_r_base_frame_xy*six_r_w_2_t_5 +
+        six_r_base_frame_xx*six_r_w_2_t_3 + six_r_base_frame_xy*six_r_w_2_t_5 +
             six_r_base_frame_xz*six_r_w_2_t_6
         )
         axis_z_six_r_axes5_y = (
-        six_r_base_frame_yx*six_r_w_2_t_4 + six_r_base_frame_yy*six_r_w_2_t_5 +
+        six_r_base_frame_yx*six_r_w_2_t_3 + six_r_base_frame_yy*six_r_w_2_t_5 +
             six_r_base_frame_yz*six_r_w_2_t_6
         )
         axis_z_six_r_axes5_z = (
-        six_r_base_frame_zx*six_r_w_2_t_4 + six_r_base_frame_zy*six_r_w_2_t_5 +
+        six_r_base_frame_zx*six_r_w_2_t_3 + six_r_base_frame_zy*six_r_w_2_t_5 +
             six_r_base_frame_zz*six_r_w_2_t_6
         )
-        six_r_w_2_t_7 = six_r_s_4*six_r_s_5
-        six_r_w_2_t_8 = six_r_c_3*six_r_c_5 - six_r_s_3*six_r_w_2_t_7
-        six_r_w_2_t_9 = six_r_c_3*six_r_w_2_t_7 + six_r_c_5*six_r_s_3
-        six_r_w_2_t_10 = six_r_c_2*six_r_w_2_t_8 - six_r_s_2*six_r_w_2_t_9
-        six_r_w_2_t_11 = six_r_c_2*six_r_w_2_t_9 + six_r_s_2*six_r_w_2_t_8
-        six_r_w_2_t_12 = six_r_c_1*six_r_e_2_in_axes5_y - six_r_s_1*six_r_w_2_t_10
-        six_r_w_2_t_13 = six_r_c_1*six_r_w_2_t_10 + six_r_e_2_in_axes5_y*six_r_s_1
+        six_r_w_2_t_7 = six_r_c_4*six_r_c_5
+        six_r_w_2_t_8 = six_r_s_3*six_r_s_5 - six_r_c_3*six_r_w_2_t_7
+        six_r_w_2_t_9 = -six_r_c_3*six_r_s_5 - six_r_s_3*six_r_w_2_t_7
+        six_r_w_2_t_10 = six_r_c_2*six_r_w_2_t_9 + six_r_s_2*six_r_w_2_t_8
+        six_r_w_2_t_11 = six_r_s_2*six_r_w_2_t_9 - six_r_c_2*six_r_w_2_t_8
+        six_r_w_2_t_12 = six_r_c_1*six_r_w_2_t_11 - six_r_e_2_in_axes5_y*six_r_s_1
+        six_r_w_2_t_13 = six_r_c_1*six_r_e_2_in_axes5_y + six_r_s_1*six_r_w_2_t_11
         axis_y_six_r_axes5_x = (
-        six_r_base_frame_xx*six_r_w_2_t_11 + six_r_base_frame_xy*six_r_w_2_t_12 +
+        six_r_base_frame_xx*six_r_w_2_t_10 + six_r_base_frame_xy*six_r_w_2_t_12 +
             six_r_base_frame_xz*six_r_w_2_t_13
         )
         axis_y_six_r_axes5_y = (
-        six_r_base_frame_yx*six_r_w_2_t_11 + six_r_base_frame_yy*six_r_w_2_t_12 +
+        six_r_base_frame_yx*six_r_w_2_t_10 + six_r_base_frame_yy*six_r_w_2_t_12 +
             six_r_base_frame_yz*six_r_w_2_t_13
         )
         axis_y_six_r_axes5_z = (
-        six_r_base_frame_zx*six_r_w_2_t_11 + six_r_base_frame_zy*six_r_w_2_t_12 +
+        six_r_base_frame_zx*six_r_w_2_t_10 + six_r_base_frame_zy*six_r_w_2_t_12 +
             six_r_base_frame_zz*six_r_w_2_t_13
         )
         axis_x_six_r_axes5_x = (
@@ -7930,62 +8048,62 @@ def _run_required(m, X, V, A, q):
         six_r_q_4 = q[[3, 8, 13, 18, 23, 28][leg]]
         six_r_q_5 = q[[4, 9, 14, 19, 24, 29][leg]]
         # (six_r-c_1) cosine of the angle of joint 1 from its reference direction
-        six_r_c_1 = -sin(six_r_q_1)
+        six_r_c_1 = cos(six_r_q_1)
         # (six_r-s_1) sine of the angle of joint 1 from its reference direction
-        six_r_s_1 = cos(six_r_q_1)
+        six_r_s_1 = sin(six_r_q_1)
         # (six_r-c_2) cosine of the angle of joint 2 from its reference direction
-        six_r_c_2 = -sin(six_r_q_2)
+        six_r_c_2 = cos(six_r_q_2)
         # (six_r-s_2) sine of the angle of joint 2 from its reference direction
-        six_r_s_2 = cos(six_r_q_2)
+        six_r_s_2 = sin(six_r_q_2)
         # (six_r-c_3) cosine of the angle of joint 3 from its reference direction
         six_r_c_3 = cos(six_r_q_3)
         # (six_r-s_3) sine of the angle of joint 3 from its reference direction
         six_r_s_3 = sin(six_r_q_3)
         # (six_r-c_4) cosine of the angle of joint 4 from its reference direction
-        six_r_c_4 = -sin(six_r_q_4)
+        six_r_c_4 = cos(six_r_q_4)
         # (six_r-s_4) sine of the angle of joint 4 from its reference direction
-        six_r_s_4 = cos(six_r_q_4)
+        six_r_s_4 = sin(six_r_q_4)
         # (six_r-c_5) cosine of the angle of joint 5 from its reference direction
-        six_r_c_5 = -sin(six_r_q_5)
+        six_r_c_5 = cos(six_r_q_5)
         # (six_r-s_5) sine of the angle of joint 5 from its reference direction
-        six_r_s_5 = cos(six_r_q_5)
+        six_r_s_5 = sin(six_r_q_5)
         # (six_r-S_dot) velocity of the connection point
-        six_r_e_2_in_axes5_y = -six_r_c_4*six_r_s_5
-        six_r_S_dot_t = -six_r_c_4*six_r_s_3
-        six_r_S_dot_t_2 = -six_r_c_3*six_r_c_4
-        six_r_S_dot_t_3 = six_r_S_dot_t*six_r_c_2 + six_r_S_dot_t_2*six_r_s_2
-        six_r_S_dot_t_4 = six_r_S_dot_t*six_r_s_2 - six_r_S_dot_t_2*six_r_c_2
-        six_r_S_dot_t_5 = six_r_c_1*six_r_s_4 - six_r_S_dot_t_3*six_r_s_1
-        six_r_S_dot_t_6 = six_r_S_dot_t_3*six_r_c_1 + six_r_s_1*six_r_s_4
+        six_r_e_2_in_axes5_y = six_r_c_5*six_r_s_4
+        six_r_S_dot_t = six_r_c_3*six_r_s_4
+        six_r_S_dot_t_2 = six_r_s_3*six_r_s_4
+        six_r_S_dot_t_3 = six_r_S_dot_t*six_r_s_2 + six_r_S_dot_t_2*six_r_c_2
+        six_r_S_dot_t_4 = six_r_S_dot_t_2*six_r_s_2 - six_r_S_dot_t*six_r_c_2
+        six_r_S_dot_t_5 = six_r_S_dot_t_4*six_r_c_1 - six_r_c_4*six_r_s_1
+        six_r_S_dot_t_6 = six_r_S_dot_t_4*six_r_s_1 + six_r_c_1*six_r_c_4
         axis_z_six_r_axes5_x = (
-        six_r_S_dot_t_4*six_r_base_frame_xx + six_r_S_dot_t_5*six_r_base_frame_xy +
+        six_r_S_dot_t_3*six_r_base_frame_xx + six_r_S_dot_t_5*six_r_base_frame_xy +
             six_r_S_dot_t_6*six_r_base_frame_xz
         )
         axis_z_six_r_axes5_y = (
-        six_r_S_dot_t_4*six_r_base_frame_yx + six_r_S_dot_t_5*six_r_base_frame_yy +
+        six_r_S_dot_t_3*six_r_base_frame_yx + six_r_S_dot_t_5*six_r_base_frame_yy +
             six_r_S_dot_t_6*six_r_base_frame_yz
         )
         axis_z_six_r_axes5_z = (
-        six_r_S_dot_t_4*six_r_base_frame_zx + six_r_S_dot_t_5*six_r_base_frame_zy +
+        six_r_S_dot_t_3*six_r_base_frame_zx + six_r_S_dot_t_5*six_r_base_frame_zy +
             six_r_S_dot_t_6*six_r_base_frame_zz
         )
-        six_r_S_dot_t_7 = six_r_s_4*six_r_s_5
-        six_r_S_dot_t_8 = six_r_c_3*six_r_c_5 - six_r_S_dot_t_7*six_r_s_3
-        six_r_S_dot_t_9 = six_r_S_dot_t_7*six_r_c_3 + six_r_c_5*six_r_s_3
-        six_r_S_dot_t_10 = six_r_S_dot_t_8*six_r_c_2 - six_r_S_dot_t_9*six_r_s_2
-        six_r_S_dot_t_11 = six_r_S_dot_t_8*six_r_s_2 + six_r_S_dot_t_9*six_r_c_2
-        six_r_S_dot_t_12 = six_r_c_1*six_r_e_2_in_axes5_y - six_r_S_dot_t_10*six_r_s_1
-        six_r_S_dot_t_13 = six_r_S_dot_t_10*six_r_c_1 + six_r_e_2_in_axes5_y*six_r_s_1
+        six_r_S_dot_t_7 = six_r_c_4*six_r_c_5
+        six_r_S_dot_t_8 = six_r_s_3*six_r_s_5 - six_r_S_dot_t_7*six_r_c_3
+        six_r_S_dot_t_9 = -six_r_S_dot_t_7*six_r_s_3 - six_r_c_3*six_r_s_5
+        six_r_S_dot_t_10 = six_r_S_dot_t_8*six_r_s_2 + six_r_S_dot_t_9*six_r_c_2
+        six_r_S_dot_t_11 = six_r_S_dot_t_9*six_r_s_2 - six_r_S_dot_t_8*six_r_c_2
+        six_r_S_dot_t_12 = six_r_S_dot_t_11*six_r_c_1 - six_r_e_2_in_axes5_y*six_r_s_1
+        six_r_S_dot_t_13 = six_r_S_dot_t_11*six_r_s_1 + six_r_c_1*six_r_e_2_in_axes5_y
         axis_y_six_r_axes5_x = (
-        six_r_S_dot_t_11*six_r_base_frame_xx + six_r_S_dot_t_12*six_r_base_frame_xy +
+        six_r_S_dot_t_10*six_r_base_frame_xx + six_r_S_dot_t_12*six_r_base_frame_xy +
             six_r_S_dot_t_13*six_r_base_frame_xz
         )
         axis_y_six_r_axes5_y = (
-        six_r_S_dot_t_11*six_r_base_frame_yx + six_r_S_dot_t_12*six_r_base_frame_yy +
+        six_r_S_dot_t_10*six_r_base_frame_yx + six_r_S_dot_t_12*six_r_base_frame_yy +
             six_r_S_dot_t_13*six_r_base_frame_yz
         )
         axis_y_six_r_axes5_z = (
-        six_r_S_dot_t_11*six_r_base_frame_zx + six_r_S_dot_t_12*six_r_base_frame_zy +
+        six_r_S_dot_t_10*six_r_base_frame_zx + six_r_S_dot_t_12*six_r_base_frame_zy +
             six_r_S_dot_t_13*six_r_base_frame_zz
         )
         axis_x_six_r_axes5_x = (
@@ -8025,49 +8143,49 @@ def _run_required(m, X, V, A, q):
             axis_z_six_r_axes5_z*six_r_S_dot_z
         )
         # (six_r-r_4) from joint 4 to the connection point, along the links
-        six_r_r_4_in_axes4_y = six_r_c_5*six_r_platform_joint_offset_x
-        six_r_r_4_in_axes4_z = six_r_joint5_offset_x + six_r_platform_joint_offset_x*six_r_s_5
-        six_r_r_4_in_axes3_y = -six_r_r_4_in_axes4_y*six_r_s_4
-        six_r_r_4_in_axes3_z = six_r_c_4*six_r_r_4_in_axes4_y
+        six_r_r_4_in_axes4_x = six_r_platform_joint_offset_x*six_r_s_5
+        six_r_r_4_in_axes4_z = six_r_joint5_offset_x + six_r_c_5*six_r_platform_joint_offset_x
+        six_r_r_4_in_axes3_x = -six_r_c_4*six_r_r_4_in_axes4_x
+        six_r_r_4_in_axes3_z = six_r_r_4_in_axes4_x*six_r_s_4
         # (six_r-r_3) from joint 3 to the connection point, along the links
-        six_r_r_3_in_axes3_x = six_r_joint4_offset_x + six_r_r_4_in_axes4_z
-        six_r_r_3_in_axes2_y = six_r_c_3*six_r_r_4_in_axes3_y + six_r_r_3_in_axes3_x*six_r_s_3
+        six_r_r_3_in_axes3_y = six_r_joint4_offset_x + six_r_r_4_in_axes4_z
+        six_r_r_3_in_axes2_y = six_r_r_3_in_axes3_y*six_r_s_3 - six_r_c_3*six_r_r_4_in_axes3_x
         six_r_r_3_t = six_r_r_4_in_axes3_z*six_r_s_4
-        six_r_r_3_t_2 = -six_r_c_4*six_r_r_4_in_axes3_z
-        six_r_r_3_in_axes5_z = six_r_r_3_t + six_r_c_4*six_r_r_4_in_axes3_y
-        six_r_r_3_t_3 = -six_r_r_3_t_2 - six_r_r_4_in_axes3_y*six_r_s_4
-        six_r_r_3_in_axes5_x = six_r_c_5*six_r_r_3_t_3 + six_r_r_3_in_axes3_x*six_r_s_5
-        six_r_r_3_in_axes5_y = six_r_c_5*six_r_r_3_in_axes3_x - six_r_r_3_t_3*six_r_s_5
+        six_r_r_3_t_2 = six_r_c_4*six_r_r_4_in_axes3_z
+        six_r_r_3_t_3 = six_r_r_3_t - six_r_c_4*six_r_r_4_in_axes3_x
+        six_r_r_3_in_axes5_z = six_r_r_3_t_2 + six_r_r_4_in_axes3_x*six_r_s_4
+        six_r_r_3_in_axes5_x = six_r_c_5*six_r_r_3_in_axes3_y + six_r_r_3_t_3*six_r_s_5
+        six_r_r_3_in_axes5_y = six_r_c_5*six_r_r_3_t_3 - six_r_r_3_in_axes3_y*six_r_s_5
         # (six_r-r_2) from joint 2 to the connection point, along the links
         six_r_r_2_in_axes2_x = (
-        six_r_joint3_offset_x + six_r_c_3*six_r_r_3_in_axes3_x - six_r_r_4_in_axes3_y*six_r_s_3
+        six_r_joint3_offset_x + six_r_c_3*six_r_r_3_in_axes3_y + six_r_r_4_in_axes3_x*six_r_s_3
         )
-        six_r_r_2_in_axes1_y = six_r_c_2*six_r_r_2_in_axes2_x - six_r_r_3_in_axes2_y*six_r_s_2
-        six_r_r_2_t = six_r_c_3*six_r_r_2_in_axes2_x + six_r_r_3_in_axes2_y*six_r_s_3
-        six_r_r_2_t_2 = six_r_c_3*six_r_r_3_in_axes2_y - six_r_r_2_in_axes2_x*six_r_s_3
-        six_r_r_2_in_axes5_z = six_r_r_3_t + six_r_c_4*six_r_r_2_t_2
-        six_r_r_2_t_3 = -six_r_r_3_t_2 - six_r_r_2_t_2*six_r_s_4
-        six_r_r_2_in_axes5_x = six_r_c_5*six_r_r_2_t_3 + six_r_r_2_t*six_r_s_5
-        six_r_r_2_in_axes5_y = six_r_c_5*six_r_r_2_t - six_r_r_2_t_3*six_r_s_5
+        six_r_r_2_in_axes1_x = six_r_c_2*six_r_r_3_in_axes2_y + six_r_r_2_in_axes2_x*six_r_s_2
+        six_r_r_2_t = six_r_r_2_in_axes2_x*six_r_s_3 - six_r_c_3*six_r_r_3_in_axes2_y
+        six_r_r_2_t_2 = six_r_c_3*six_r_r_2_in_axes2_x + six_r_r_3_in_axes2_y*six_r_s_3
+        six_r_r_2_t_3 = six_r_r_3_t - six_r_c_4*six_r_r_2_t
+        six_r_r_2_in_axes5_z = six_r_r_3_t_2 + six_r_r_2_t*six_r_s_4
+        six_r_r_2_in_axes5_x = six_r_c_5*six_r_r_2_t_2 + six_r_r_2_t_3*six_r_s_5
+        six_r_r_2_in_axes5_y = six_r_c_5*six_r_r_2_t_3 - six_r_r_2_t_2*six_r_s_5
         # (six_r-r_1) from joint 1 to the connection point, along the links
         six_r_r_1_in_axes1_z = (
-        six_r_joint2_offset_x + six_r_c_2*six_r_r_3_in_axes2_y + six_r_r_2_in_axes2_x*six_r_s_2
+        six_r_joint2_offset_x + six_r_c_2*six_r_r_2_in_axes2_x - six_r_r_3_in_axes2_y*six_r_s_2
         )
-        six_r_r_1_t = six_r_c_2*six_r_r_2_in_axes1_y + six_r_r_1_in_axes1_z*six_r_s_2
-        six_r_r_1_t_2 = six_r_c_2*six_r_r_1_in_axes1_z - six_r_r_2_in_axes1_y*six_r_s_2
-        six_r_r_1_t_3 = six_r_c_3*six_r_r_1_t + six_r_r_1_t_2*six_r_s_3
-        six_r_r_1_t_4 = six_r_c_3*six_r_r_1_t_2 - six_r_r_1_t*six_r_s_3
-        six_r_r_1_in_axes5_z = six_r_r_3_t + six_r_c_4*six_r_r_1_t_4
-        six_r_r_1_t_5 = -six_r_r_3_t_2 - six_r_r_1_t_4*six_r_s_4
-        six_r_r_1_in_axes5_x = six_r_c_5*six_r_r_1_t_5 + six_r_r_1_t_3*six_r_s_5
-        six_r_r_1_in_axes5_y = six_r_c_5*six_r_r_1_t_3 - six_r_r_1_t_5*six_r_s_5
+        six_r_r_1_t = six_r_c_2*six_r_r_1_in_axes1_z + six_r_r_2_in_axes1_x*six_r_s_2
+        six_r_r_1_t_2 = six_r_c_2*six_r_r_2_in_axes1_x - six_r_r_1_in_axes1_z*six_r_s_2
+        six_r_r_1_t_3 = six_r_r_1_t*six_r_s_3 - six_r_c_3*six_r_r_1_t_2
+        six_r_r_1_t_4 = six_r_c_3*six_r_r_1_t + six_r_r_1_t_2*six_r_s_3
+        six_r_r_1_t_5 = six_r_r_3_t - six_r_c_4*six_r_r_1_t_3
+        six_r_r_1_in_axes5_z = six_r_r_3_t_2 + six_r_r_1_t_3*six_r_s_4
+        six_r_r_1_in_axes5_x = six_r_c_5*six_r_r_1_t_4 + six_r_r_1_t_5*six_r_s_5
+        six_r_r_1_in_axes5_y = six_r_c_5*six_r_r_1_t_5 - six_r_r_1_t_4*six_r_s_5
         # (six_r-v_1) velocity of the connection point per rate of joint 1
         six_r_v_1_t = six_r_c_2*six_r_s_3 + six_r_c_3*six_r_s_2
         six_r_v_1_t_2 = six_r_c_2*six_r_c_3 - six_r_s_2*six_r_s_3
-        six_r_e_1_in_axes5_z = six_r_c_4*six_r_v_1_t_2
-        six_r_v_1_t_3 = six_r_s_4*six_r_v_1_t_2
-        six_r_e_1_in_axes5_x = six_r_s_5*six_r_v_1_t - six_r_c_5*six_r_v_1_t_3
-        six_r_e_1_in_axes5_y = six_r_c_5*six_r_v_1_t + six_r_s_5*six_r_v_1_t_3
+        six_r_v_1_t_3 = six_r_c_4*six_r_v_1_t
+        six_r_e_1_in_axes5_z = six_r_s_4*six_r_v_1_t
+        six_r_e_1_in_axes5_x = six_r_c_5*six_r_v_1_t_2 - six_r_s_5*six_r_v_1_t_3
+        six_r_e_1_in_axes5_y = -six_r_c_5*six_r_v_1_t_3 - six_r_s_5*six_r_v_1_t_2
         six_r_v_1_in_axes5_x = (
         six_r_e_1_in_axes5_y*six_r_r_1_in_axes5_z - six_r_e_1_in_axes5_z*six_r_r_1_in_axes5_y
         )
@@ -8078,30 +8196,30 @@ def _run_required(m, X, V, A, q):
         six_r_e_1_in_axes5_x*six_r_r_1_in_axes5_y - six_r_e_1_in_axes5_y*six_r_r_1_in_axes5_x
         )
         # (six_r-v_2) velocity of the connection point per rate of joint 2
-        six_r_e_2_in_axes5_x = six_r_c_4*six_r_c_5
+        six_r_e_2_in_axes5_x = six_r_s_4*six_r_s_5
         six_r_v_2_in_axes5_x = (
-        six_r_e_2_in_axes5_y*six_r_r_2_in_axes5_z - six_r_r_2_in_axes5_y*six_r_s_4
+        six_r_e_2_in_axes5_y*six_r_r_2_in_axes5_z - six_r_c_4*six_r_r_2_in_axes5_y
         )
         six_r_v_2_in_axes5_y = (
-        six_r_r_2_in_axes5_x*six_r_s_4 - six_r_e_2_in_axes5_x*six_r_r_2_in_axes5_z
+        six_r_c_4*six_r_r_2_in_axes5_x - six_r_e_2_in_axes5_x*six_r_r_2_in_axes5_z
         )
         six_r_v_2_in_axes5_z = (
         six_r_e_2_in_axes5_x*six_r_r_2_in_axes5_y - six_r_e_2_in_axes5_y*six_r_r_2_in_axes5_x
         )
         # (six_r-v_3) velocity of the connection point per rate of joint 3
         six_r_v_3_in_axes5_x = (
-        six_r_e_2_in_axes5_y*six_r_r_3_in_axes5_z - six_r_r_3_in_axes5_y*six_r_s_4
+        six_r_e_2_in_axes5_y*six_r_r_3_in_axes5_z - six_r_c_4*six_r_r_3_in_axes5_y
         )
         six_r_v_3_in_axes5_y = (
-        six_r_r_3_in_axes5_x*six_r_s_4 - six_r_e_2_in_axes5_x*six_r_r_3_in_axes5_z
+        six_r_c_4*six_r_r_3_in_axes5_x - six_r_e_2_in_axes5_x*six_r_r_3_in_axes5_z
         )
         six_r_v_3_in_axes5_z = (
         six_r_e_2_in_axes5_x*six_r_r_3_in_axes5_y - six_r_e_2_in_axes5_y*six_r_r_3_in_axes5_x
         )
         # (six_r-v_4) velocity of the connection point per rate of joint 4
         six_r_v_4_in_axes5_z = (
-        six_r_s_5*(six_r_c_5*six_r_r_4_in_axes4_z - six_r_r_4_in_axes4_y*six_r_s_5) -
-            six_r_c_5*(six_r_c_5*six_r_r_4_in_axes4_y + six_r_r_4_in_axes4_z*six_r_s_5)
+        six_r_c_5*(six_r_c_5*six_r_r_4_in_axes4_x - six_r_r_4_in_axes4_z*six_r_s_5) +
+            six_r_s_5*(six_r_c_5*six_r_r_4_in_axes4_z + six_r_r_4_in_axes4_x*six_r_s_5)
         )
         # (six_r-n_m1) direction 1 of the moment that the platform joint transmits
         six_r_n_m1_t = (
@@ -8130,16 +8248,16 @@ def _run_required(m, X, V, A, q):
         )
         six_r_n_m1_t_4 = six_r_c_1*six_r_n_m1_t + six_r_n_m1_t_2*six_r_s_1
         six_r_n_m1_t_5 = six_r_c_1*six_r_n_m1_t_2 - six_r_n_m1_t*six_r_s_1
-        six_r_n_m1_t_6 = six_r_c_2*six_r_n_m1_t_5 + six_r_n_m1_t_3*six_r_s_2
-        six_r_n_m1_t_7 = six_r_c_2*six_r_n_m1_t_3 - six_r_n_m1_t_5*six_r_s_2
-        six_r_n_m1_t_8 = six_r_c_3*six_r_n_m1_t_6 + six_r_n_m1_t_7*six_r_s_3
-        six_r_n_m1_t_9 = six_r_c_3*six_r_n_m1_t_7 - six_r_n_m1_t_6*six_r_s_3
-        six_r_n_m1_t_10 = six_r_c_4*six_r_n_m1_t_4 - six_r_n_m1_t_9*six_r_s_4
-        six_r_n_m1_in_axes5_y = six_r_c_5*six_r_n_m1_t_10 + six_r_n_m1_t_8*six_r_s_5
+        six_r_n_m1_t_6 = six_r_c_2*six_r_n_m1_t_3 + six_r_n_m1_t_4*six_r_s_2
+        six_r_n_m1_t_7 = six_r_c_2*six_r_n_m1_t_4 - six_r_n_m1_t_3*six_r_s_2
+        six_r_n_m1_t_8 = six_r_n_m1_t_6*six_r_s_3 - six_r_c_3*six_r_n_m1_t_7
+        six_r_n_m1_t_9 = six_r_c_3*six_r_n_m1_t_6 + six_r_n_m1_t_7*six_r_s_3
+        six_r_n_m1_t_10 = six_r_n_m1_t_5*six_r_s_4 - six_r_c_4*six_r_n_m1_t_8
+        six_r_n_m1_in_axes5_y = six_r_c_5*six_r_n_m1_t_9 + six_r_n_m1_t_10*six_r_s_5
         # (six_r-n_m2) direction 2 of the moment that the platform joint transmits
-        six_r_n_m2_in_axes5_z = six_r_c_5*six_r_n_m1_t_8 - six_r_n_m1_t_10*six_r_s_5
+        six_r_n_m2_in_axes5_z = six_r_c_5*six_r_n_m1_t_10 - six_r_n_m1_t_9*six_r_s_5
         # (six_r-w_1) force part of reciprocal wrench 1
-        six_r_end_p1_in_axes5_z = six_r_c_4*six_r_n_m1_t_9 + six_r_n_m1_t_4*six_r_s_4
+        six_r_end_p1_in_axes5_z = six_r_c_4*six_r_n_m1_t_5 + six_r_n_m1_t_8*six_r_s_4
         six_r_w_1_t = (
         six_r_e_1_in_axes5_x*six_r_n_m2_in_axes5_z - six_r_e_1_in_axes5_y*six_r_n_m1_in_axes5_y
         )
@@ -8150,16 +8268,16 @@ def _run_required(m, X, V, A, q):
         six_r_e_1_in_axes5_y*six_r_end_p1_in_axes5_z - six_r_e_1_in_axes5_z*six_r_n_m2_in_axes5_z
         )
         six_r_w_1_t_4 = (
-        six_r_e_2_in_axes5_y*six_r_end_p1_in_axes5_z - six_r_n_m2_in_axes5_z*six_r_s_4
+        six_r_e_2_in_axes5_y*six_r_end_p1_in_axes5_z - six_r_c_4*six_r_n_m2_in_axes5_z
         )
         six_r_w_1_t_5 = six_r_size*six_r_w_1_t
         six_r_w_1_t_6 = six_r_size*six_r_w_1_t_3
         six_r_w_1_t_7 = six_r_size*six_r_w_1_t_2
         six_r_w_1_t_8 = six_r_size*six_r_w_1_t_4
         six_r_w_1_t_9 = (
-        six_r_size*(six_r_c_5*six_r_n_m1_in_axes5_y - six_r_n_m2_in_axes5_z*six_r_s_5)
+        six_r_size*(-six_r_c_5*six_r_n_m2_in_axes5_z - six_r_n_m1_in_axes5_y*six_r_s_5)
         )
-        six_r_w_1_t_10 = -six_r_c_5*six_r_end_p1_in_axes5_z*six_r_size
+        six_r_w_1_t_10 = six_r_end_p1_in_axes5_z*six_r_s_5*six_r_size
         six_r_w_1_t_11 = six_r_n_m2_in_axes5_z*six_r_size
         six_r_w_1_t_12 = sqrt(six_r_size_t + six_r_w_1_t_11*six_r_w_1_t_11)
         inv_six_r_w_1_t_12 = 1.0/six_r_w_1_t_12
@@ -8345,8 +8463,8 @@ def _run_required(m, X, V, A, q):
             six_r_qd_1_t_2*six_r_w_1_t_54 - six_r_qd_1_t_4*six_r_w_1_t_55)
         )
         # (six_r-qd_4) rate of joint 4
-        six_r_qd_4 = (
-        -inv_six_r_w_1_t_28*(six_r_S_dot_in_axes5_y*six_r_w_1_t_29 + six_r_qd_1_t_2*six_r_w_1_t_32
+        six_r_qd_4_t = (
+        inv_six_r_w_1_t_28*(six_r_S_dot_in_axes5_y*six_r_w_1_t_29 + six_r_qd_1_t_2*six_r_w_1_t_32
             + six_r_qd_1_t_3*six_r_w_1_t_44 - six_r_S_dot_in_axes5_z*six_r_w_1_t_30 -
             six_r_qd_1*six_r_w_1_t_33 - six_r_qd_1_t*six_r_w_1_t_31 -
             six_r_qd_1_t_4*six_r_w_1_t_39)
@@ -8354,12 +8472,12 @@ def _run_required(m, X, V, A, q):
         # (six_r-qd_5) rate of joint 5
         six_r_qd_5_t = (
         inv_six_r_w_1_t_12*(six_r_qd_1*six_r_w_1_t_18 + six_r_qd_1_t_2*six_r_w_1_t_14 +
-            six_r_qd_1_t_3*six_r_w_1_t_25 + six_r_qd_1_t_4*six_r_w_1_t_22 +
-            six_r_qd_4*six_r_w_1_t_15 - six_r_S_dot_in_axes5_y*six_r_w_1_t_13)
+            six_r_qd_1_t_3*six_r_w_1_t_25 + six_r_qd_1_t_4*six_r_w_1_t_22 -
+            six_r_S_dot_in_axes5_y*six_r_w_1_t_13 - six_r_qd_4_t*six_r_w_1_t_15)
         )
         # (six_r-omega_1) angular velocity of link 1
-        six_r_omega_1_in_axes2_x = six_r_qd_1*six_r_s_2
-        six_r_omega_1_in_axes2_y = six_r_c_2*six_r_qd_1
+        six_r_omega_1_in_axes2_x = six_r_c_2*six_r_qd_1
+        six_r_omega_1_in_axes2_y = -six_r_qd_1*six_r_s_2
         six_r_omega_1_in_axes5_x = six_r_e_1_in_axes5_x*six_r_qd_1
         six_r_omega_1_in_axes5_y = six_r_e_1_in_axes5_y*six_r_qd_1
         six_r_omega_1_in_axes5_z = six_r_e_1_in_axes5_z*six_r_qd_1
@@ -8369,14 +8487,14 @@ def _run_required(m, X, V, A, q):
         six_r_W_1_in_axes5_yz = six_r_omega_1_in_axes5_y*six_r_omega_1_in_axes5_z
         # (six_r-omega_2) angular velocity of link 2
         six_r_omega_2_in_axes3_x = (
-        six_r_c_3*six_r_omega_1_in_axes2_x + six_r_omega_1_in_axes2_y*six_r_s_3
+        six_r_omega_1_in_axes2_x*six_r_s_3 - six_r_c_3*six_r_omega_1_in_axes2_y
         )
         six_r_omega_2_in_axes3_y = (
-        six_r_c_3*six_r_omega_1_in_axes2_y - six_r_omega_1_in_axes2_x*six_r_s_3
+        six_r_c_3*six_r_omega_1_in_axes2_x + six_r_omega_1_in_axes2_y*six_r_s_3
         )
         six_r_omega_2_in_axes5_x = six_r_omega_1_in_axes5_x + six_r_e_2_in_axes5_x*six_r_qd_1_t_4
         six_r_omega_2_in_axes5_y = six_r_omega_1_in_axes5_y + six_r_e_2_in_axes5_y*six_r_qd_1_t_4
-        six_r_omega_2_in_axes5_z = six_r_omega_1_in_axes5_z + six_r_qd_1_t_4*six_r_s_4
+        six_r_omega_2_in_axes5_z = six_r_omega_1_in_axes5_z + six_r_c_4*six_r_qd_1_t_4
         # (six_r-W_2) centripetal tensor of link 2
         six_r_W_2_in_axes2_yz = six_r_omega_1_in_axes2_y*six_r_qd_1_t_4
         six_r_W_2_in_axes2_xy = six_r_omega_1_in_axes2_x*six_r_omega_1_in_axes2_y
@@ -8386,38 +8504,38 @@ def _run_required(m, X, V, A, q):
         # (six_r-omega_3) angular velocity of link 3
         six_r_omega_3_in_axes3_z = six_r_qd_1_t_4 - six_r_qd_1_t_3
         six_r_omega_3_in_axes4_x = (
-        six_r_c_4*six_r_omega_2_in_axes3_y + six_r_omega_3_in_axes3_z*six_r_s_4
+        six_r_omega_3_in_axes3_z*six_r_s_4 - six_r_c_4*six_r_omega_2_in_axes3_x
         )
         six_r_omega_3_in_axes4_y = (
-        six_r_c_4*six_r_omega_3_in_axes3_z - six_r_omega_2_in_axes3_y*six_r_s_4
+        six_r_c_4*six_r_omega_3_in_axes3_z + six_r_omega_2_in_axes3_x*six_r_s_4
         )
-        six_r_omega_3_t = -six_r_c_5*six_r_omega_3_in_axes4_y
-        six_r_omega_3_t_2 = six_r_omega_3_in_axes4_y*six_r_s_5
-        six_r_omega_3_in_axes5_x = six_r_omega_2_in_axes3_x*six_r_s_5 - six_r_omega_3_t
-        six_r_omega_3_in_axes5_y = six_r_c_5*six_r_omega_2_in_axes3_x - six_r_omega_3_t_2
+        six_r_omega_3_t = six_r_omega_3_in_axes4_x*six_r_s_5
+        six_r_omega_3_t_2 = six_r_c_5*six_r_omega_3_in_axes4_x
+        six_r_omega_3_in_axes5_x = six_r_omega_3_t + six_r_c_5*six_r_omega_2_in_axes3_y
+        six_r_omega_3_in_axes5_y = six_r_omega_3_t_2 - six_r_omega_2_in_axes3_y*six_r_s_5
         # (six_r-W_3) centripetal tensor of link 3
-        six_r_W_3_t = six_r_omega_2_in_axes3_y*six_r_omega_2_in_axes3_y
+        six_r_W_3_t = six_r_omega_2_in_axes3_x*six_r_omega_2_in_axes3_x
         six_r_W_3_t_2 = six_r_omega_3_in_axes3_z*six_r_omega_3_in_axes3_z
-        six_r_W_3_t_3 = six_r_W_3_t + six_r_W_3_t_2
         six_r_W_3_in_axes3_xy = six_r_omega_2_in_axes3_x*six_r_omega_2_in_axes3_y
         six_r_W_3_in_axes3_xz = six_r_omega_2_in_axes3_x*six_r_omega_3_in_axes3_z
+        six_r_W_3_t_3 = six_r_W_3_t + six_r_W_3_t_2
         six_r_W_3_in_axes3_yz = six_r_omega_2_in_axes3_y*six_r_omega_3_in_axes3_z
         six_r_W_3_in_axes5_xy = six_r_omega_3_in_axes5_x*six_r_omega_3_in_axes5_y
         # (six_r-omega_4) angular velocity of link 4
-        six_r_omega_4_in_axes4_z = six_r_omega_2_in_axes3_x + six_r_qd_4
-        six_r_omega_4_in_axes5_x = six_r_omega_4_in_axes4_z*six_r_s_5 - six_r_omega_3_t
-        six_r_omega_4_in_axes5_y = six_r_c_5*six_r_omega_4_in_axes4_z - six_r_omega_3_t_2
+        six_r_omega_4_in_axes4_z = six_r_omega_2_in_axes3_y - six_r_qd_4_t
+        six_r_omega_4_in_axes5_x = six_r_omega_3_t + six_r_c_5*six_r_omega_4_in_axes4_z
+        six_r_omega_4_in_axes5_y = six_r_omega_3_t_2 - six_r_omega_4_in_axes4_z*six_r_s_5
         # (six_r-W_4) centripetal tensor of link 4
         six_r_W_4_in_axes4_xy = six_r_omega_3_in_axes4_x*six_r_omega_3_in_axes4_y
         six_r_W_4_in_axes4_xz = six_r_omega_3_in_axes4_x*six_r_omega_4_in_axes4_z
         six_r_W_4_in_axes4_yz = six_r_omega_3_in_axes4_y*six_r_omega_4_in_axes4_z
         six_r_W_4_in_axes5_xy = six_r_omega_4_in_axes5_x*six_r_omega_4_in_axes5_y
         # (six_r-omega_5) angular velocity of link 5
-        six_r_omega_5_in_axes5_z = six_r_omega_3_in_axes4_x - six_r_qd_5_t
+        six_r_omega_5_in_axes5_z = six_r_omega_3_in_axes4_y - six_r_qd_5_t
         # (six_r-W_5) centripetal tensor of link 5
         six_r_W_5_t = six_r_omega_4_in_axes5_y*six_r_omega_4_in_axes5_y
         six_r_W_5_t_2 = six_r_omega_5_in_axes5_z*six_r_omega_5_in_axes5_z
-        six_r_W_5_in_axes5_xx = -six_r_W_5_t - six_r_W_5_t_2
+        six_r_W_5_t_3 = six_r_W_5_t + six_r_W_5_t_2
         six_r_W_5_in_axes5_xz = six_r_omega_4_in_axes5_x*six_r_omega_5_in_axes5_z
         six_r_W_5_in_axes5_yz = six_r_omega_4_in_axes5_y*six_r_omega_5_in_axes5_z
         # (six_r-a_p) acceleration of the connection point without its centripetal part
@@ -8443,33 +8561,33 @@ def _run_required(m, X, V, A, q):
         # (six_r-zeta_2) angular acceleration of link 2 from the turning of axis 2
         six_r_zeta_2_in_axes2_y = -six_r_omega_1_in_axes2_x*six_r_qd_1_t_4
         six_r_zeta_2_in_axes3_x = (
-        six_r_W_2_in_axes2_yz*six_r_c_3 + six_r_s_3*six_r_zeta_2_in_axes2_y
+        six_r_W_2_in_axes2_yz*six_r_s_3 - six_r_c_3*six_r_zeta_2_in_axes2_y
         )
         six_r_zeta_2_in_axes3_y = (
-        six_r_c_3*six_r_zeta_2_in_axes2_y - six_r_W_2_in_axes2_yz*six_r_s_3
+        six_r_W_2_in_axes2_yz*six_r_c_3 + six_r_s_3*six_r_zeta_2_in_axes2_y
         )
-        six_r_zeta_2_in_axes5_z = six_r_c_4*six_r_zeta_2_in_axes3_y
-        six_r_zeta_2_t = six_r_s_4*six_r_zeta_2_in_axes3_y
-        six_r_zeta_2_in_axes5_x = six_r_s_5*six_r_zeta_2_in_axes3_x - six_r_c_5*six_r_zeta_2_t
-        six_r_zeta_2_in_axes5_y = six_r_c_5*six_r_zeta_2_in_axes3_x + six_r_s_5*six_r_zeta_2_t
+        six_r_zeta_2_t = six_r_c_4*six_r_zeta_2_in_axes3_x
+        six_r_zeta_2_in_axes5_z = six_r_s_4*six_r_zeta_2_in_axes3_x
+        six_r_zeta_2_in_axes5_x = six_r_c_5*six_r_zeta_2_in_axes3_y - six_r_s_5*six_r_zeta_2_t
+        six_r_zeta_2_in_axes5_y = -six_r_c_5*six_r_zeta_2_t - six_r_s_5*six_r_zeta_2_in_axes3_y
         # (six_r-zeta_3) angular acceleration of link 3 from the turning of axis 3
         six_r_zeta_3_t = six_r_omega_2_in_axes3_y*six_r_qd_1_t_3
         six_r_zeta_3_in_axes3_y = six_r_omega_2_in_axes3_x*six_r_qd_1_t_3
         # (six_r-beta_3) angular acceleration of link 3 at zero joint accelerations
         six_r_beta_3_in_axes3_x = six_r_zeta_2_in_axes3_x - six_r_zeta_3_t
         six_r_beta_3_in_axes3_y = six_r_zeta_2_in_axes3_y + six_r_zeta_3_in_axes3_y
-        six_r_beta_3_in_axes4_x = six_r_beta_3_in_axes3_y*six_r_c_4
-        six_r_beta_3_in_axes4_y = -six_r_beta_3_in_axes3_y*six_r_s_4
+        six_r_beta_3_t = six_r_beta_3_in_axes3_x*six_r_c_4
+        six_r_beta_3_in_axes4_y = six_r_beta_3_in_axes3_x*six_r_s_4
         # (six_r-zeta_4) angular acceleration of link 4 from the turning of axis 4
-        six_r_zeta_4_in_axes4_x = six_r_omega_3_in_axes4_y*six_r_qd_4
-        six_r_zeta_4_in_axes4_y = -six_r_omega_3_in_axes4_x*six_r_qd_4
+        six_r_zeta_4_in_axes4_x = -six_r_omega_3_in_axes4_y*six_r_qd_4_t
+        six_r_zeta_4_in_axes4_y = six_r_omega_3_in_axes4_x*six_r_qd_4_t
         # (six_r-beta_4) angular acceleration of link 4 at zero joint accelerations
-        six_r_beta_4_in_axes4_x = six_r_beta_3_in_axes4_x + six_r_zeta_4_in_axes4_x
+        six_r_beta_4_in_axes4_x = six_r_zeta_4_in_axes4_x - six_r_beta_3_t
         six_r_beta_4_in_axes4_y = six_r_beta_3_in_axes4_y + six_r_zeta_4_in_axes4_y
-        six_r_beta_4_t = six_r_beta_3_in_axes3_x*six_r_s_5
-        six_r_beta_4_in_axes5_x = six_r_beta_4_t + six_r_beta_4_in_axes4_y*six_r_c_5
-        six_r_beta_4_t_2 = -six_r_beta_3_in_axes3_x*six_r_c_5
-        six_r_beta_4_in_axes5_y = -six_r_beta_4_t_2 - six_r_beta_4_in_axes4_y*six_r_s_5
+        six_r_beta_4_t = six_r_beta_3_in_axes3_y*six_r_c_5
+        six_r_beta_4_in_axes5_x = six_r_beta_4_t + six_r_beta_4_in_axes4_x*six_r_s_5
+        six_r_beta_4_t_2 = six_r_beta_3_in_axes3_y*six_r_s_5
+        six_r_beta_4_in_axes5_y = six_r_beta_4_in_axes4_x*six_r_c_5 - six_r_beta_4_t_2
         # (six_r-zeta_5) angular acceleration of link 5 from the turning of axis 5
         six_r_zeta_5_t = six_r_omega_4_in_axes5_y*six_r_qd_5_t
         six_r_zeta_5_in_axes5_y = six_r_omega_4_in_axes5_x*six_r_qd_5_t
@@ -8477,72 +8595,70 @@ def _run_required(m, X, V, A, q):
         six_r_beta_5_in_axes5_x = six_r_beta_4_in_axes5_x - six_r_zeta_5_t
         six_r_beta_5_in_axes5_y = six_r_beta_4_in_axes5_y + six_r_zeta_5_in_axes5_y
         # (six_r-bias) acceleration of the connection point at zero joint accelerations
-        six_r_d_2_in_spec2_x = six_r_joint2_offset_x*six_r_s_2
-        six_r_d_2_in_spec2_y = six_r_c_2*six_r_joint2_offset_x
-        six_r_bias_t = six_r_c_3*six_r_d_2_in_spec2_x + six_r_d_2_in_spec2_y*six_r_s_3
-        six_r_bias_t_2 = six_r_c_3*six_r_d_2_in_spec2_y - six_r_d_2_in_spec2_x*six_r_s_3
-        six_r_d_2_in_axes5_z = six_r_bias_t_2*six_r_c_4
-        six_r_bias_t_3 = six_r_bias_t_2*six_r_s_4
-        six_r_d_2_in_axes5_x = six_r_bias_t*six_r_s_5 - six_r_bias_t_3*six_r_c_5
-        six_r_d_2_in_axes5_y = six_r_bias_t*six_r_c_5 + six_r_bias_t_3*six_r_s_5
-        six_r_bias_t_4 = six_r_c_3*six_r_joint3_offset_x
+        six_r_d_2_in_spec2_x = six_r_c_2*six_r_joint2_offset_x
+        six_r_bias_t = six_r_joint2_offset_x*six_r_s_2
+        six_r_bias_t_2 = six_r_bias_t*six_r_c_3 + six_r_d_2_in_spec2_x*six_r_s_3
+        six_r_bias_t_3 = six_r_c_3*six_r_d_2_in_spec2_x - six_r_bias_t*six_r_s_3
+        six_r_bias_t_4 = six_r_bias_t_2*six_r_c_4
+        six_r_d_2_in_axes5_z = six_r_bias_t_2*six_r_s_4
+        six_r_d_2_in_axes5_x = six_r_bias_t_3*six_r_c_5 - six_r_bias_t_4*six_r_s_5
+        six_r_d_2_in_axes5_y = -six_r_bias_t_3*six_r_s_5 - six_r_bias_t_4*six_r_c_5
         six_r_bias_t_5 = six_r_joint3_offset_x*six_r_s_3
-        six_r_d_3_in_axes5_z = -six_r_bias_t_5*six_r_c_4
-        six_r_bias_t_6 = six_r_bias_t_5*six_r_s_4
-        six_r_d_3_in_axes5_x = six_r_bias_t_4*six_r_s_5 + six_r_bias_t_6*six_r_c_5
-        six_r_d_3_in_axes5_y = six_r_bias_t_4*six_r_c_5 - six_r_bias_t_6*six_r_s_5
-        six_r_d_4_in_axes5_x = six_r_joint4_offset_x*six_r_s_5
-        six_r_d_4_in_axes5_y = six_r_c_5*six_r_joint4_offset_x
-        six_r_d_5_in_axes5_x = six_r_joint5_offset_x*six_r_s_5
-        six_r_d_5_in_axes5_y = six_r_c_5*six_r_joint5_offset_x
-        six_r_bias_t_7 = six_r_omega_3_in_axes4_x*six_r_omega_3_in_axes4_x
-        six_r_bias_t_8 = six_r_omega_4_in_axes5_x*six_r_omega_4_in_axes5_x
-        six_r_bias_t_9 = six_r_omega_1_in_axes5_x*six_r_omega_1_in_axes5_x
-        six_r_bias_t_10 = six_r_omega_1_in_axes5_y*six_r_omega_1_in_axes5_y
-        six_r_bias_t_11 = six_r_omega_1_in_axes5_z*six_r_omega_1_in_axes5_z
-        six_r_bias_t_12 = six_r_omega_2_in_axes5_x*six_r_omega_2_in_axes5_x
-        six_r_bias_t_13 = six_r_omega_2_in_axes5_y*six_r_omega_2_in_axes5_y
-        six_r_bias_t_14 = six_r_omega_2_in_axes5_z*six_r_omega_2_in_axes5_z
-        six_r_bias_t_15 = six_r_W_4_in_axes5_xy + six_r_beta_4_in_axes4_x
+        six_r_bias_t_6 = six_r_c_3*six_r_joint3_offset_x
+        six_r_bias_t_7 = six_r_bias_t_5*six_r_c_4
+        six_r_d_3_in_axes5_z = six_r_bias_t_5*six_r_s_4
+        six_r_d_3_in_axes5_x = six_r_bias_t_6*six_r_c_5 - six_r_bias_t_7*six_r_s_5
+        six_r_d_3_in_axes5_y = -six_r_bias_t_6*six_r_s_5 - six_r_bias_t_7*six_r_c_5
+        six_r_d_4_in_axes5_x = six_r_c_5*six_r_joint4_offset_x
+        six_r_bias_t_8 = six_r_joint4_offset_x*six_r_s_5
+        six_r_d_5_in_axes5_x = six_r_c_5*six_r_joint5_offset_x
+        six_r_bias_t_9 = six_r_joint5_offset_x*six_r_s_5
+        six_r_bias_t_10 = six_r_omega_3_in_axes4_y*six_r_omega_3_in_axes4_y
+        six_r_bias_t_11 = six_r_omega_4_in_axes5_x*six_r_omega_4_in_axes5_x
+        six_r_bias_t_12 = six_r_omega_1_in_axes5_x*six_r_omega_1_in_axes5_x
+        six_r_bias_t_13 = six_r_omega_1_in_axes5_y*six_r_omega_1_in_axes5_y
+        six_r_bias_t_14 = six_r_omega_1_in_axes5_z*six_r_omega_1_in_axes5_z
+        six_r_bias_t_15 = six_r_omega_2_in_axes5_x*six_r_omega_2_in_axes5_x
+        six_r_bias_t_16 = six_r_omega_2_in_axes5_y*six_r_omega_2_in_axes5_y
+        six_r_bias_t_17 = six_r_omega_2_in_axes5_z*six_r_omega_2_in_axes5_z
+        six_r_bias_t_18 = six_r_W_4_in_axes5_xy + six_r_beta_4_in_axes4_y
         six_r_bias_in_axes5_x = (
         six_r_W_1_in_axes5_xy*six_r_d_2_in_axes5_y + six_r_W_1_in_axes5_xz*six_r_d_2_in_axes5_z +
-            six_r_W_5_in_axes5_xx*six_r_platform_joint_offset_x +
             six_r_d_3_in_axes5_y*(six_r_W_2_in_axes5_xy - six_r_zeta_2_in_axes5_z) +
-            six_r_d_3_in_axes5_z*(six_r_W_2_in_axes5_xz + six_r_zeta_2_in_axes5_y) +
-            six_r_d_4_in_axes5_y*(six_r_W_3_in_axes5_xy - six_r_beta_3_in_axes4_x) +
-            six_r_d_5_in_axes5_y*(six_r_W_4_in_axes5_xy - six_r_beta_4_in_axes4_x) -
-            six_r_d_2_in_axes5_x*(six_r_bias_t_10 + six_r_bias_t_11) -
-            six_r_d_3_in_axes5_x*(six_r_bias_t_13 + six_r_bias_t_14) -
-            six_r_d_4_in_axes5_x*(six_r_bias_t_7 +
+            six_r_d_3_in_axes5_z*(six_r_W_2_in_axes5_xz + six_r_zeta_2_in_axes5_y) -
+            six_r_W_5_t_3*six_r_platform_joint_offset_x - six_r_bias_t_8*(six_r_W_3_in_axes5_xy -
+            six_r_beta_3_in_axes4_y) - six_r_bias_t_9*(six_r_W_4_in_axes5_xy -
+            six_r_beta_4_in_axes4_y) - six_r_d_2_in_axes5_x*(six_r_bias_t_13 + six_r_bias_t_14) -
+            six_r_d_3_in_axes5_x*(six_r_bias_t_16 + six_r_bias_t_17) -
+            six_r_d_4_in_axes5_x*(six_r_bias_t_10 +
             six_r_omega_3_in_axes5_y*six_r_omega_3_in_axes5_y) - six_r_d_5_in_axes5_x*(six_r_W_5_t
-            + six_r_bias_t_7)
+            + six_r_bias_t_10)
         )
         six_r_bias_in_axes5_y = (
         six_r_W_1_in_axes5_xy*six_r_d_2_in_axes5_x + six_r_W_1_in_axes5_yz*six_r_d_2_in_axes5_z +
-            six_r_bias_t_15*six_r_d_5_in_axes5_x + six_r_bias_t_15*six_r_platform_joint_offset_x +
+            six_r_bias_t_18*six_r_d_5_in_axes5_x + six_r_bias_t_18*six_r_platform_joint_offset_x +
+            six_r_bias_t_8*(six_r_bias_t_10 + six_r_omega_3_in_axes5_x*six_r_omega_3_in_axes5_x) +
+            six_r_bias_t_9*(six_r_bias_t_10 + six_r_bias_t_11) +
             six_r_d_3_in_axes5_x*(six_r_W_2_in_axes5_xy + six_r_zeta_2_in_axes5_z) +
             six_r_d_3_in_axes5_z*(six_r_W_2_in_axes5_yz - six_r_zeta_2_in_axes5_x) +
-            six_r_d_4_in_axes5_x*(six_r_W_3_in_axes5_xy + six_r_beta_3_in_axes4_x) -
-            six_r_d_2_in_axes5_y*(six_r_bias_t_11 + six_r_bias_t_9) -
-            six_r_d_3_in_axes5_y*(six_r_bias_t_12 + six_r_bias_t_14) -
-            six_r_d_4_in_axes5_y*(six_r_bias_t_7 +
-            six_r_omega_3_in_axes5_x*six_r_omega_3_in_axes5_x) -
-            six_r_d_5_in_axes5_y*(six_r_bias_t_7 + six_r_bias_t_8)
+            six_r_d_4_in_axes5_x*(six_r_W_3_in_axes5_xy + six_r_beta_3_in_axes4_y) -
+            six_r_d_2_in_axes5_y*(six_r_bias_t_12 + six_r_bias_t_14) -
+            six_r_d_3_in_axes5_y*(six_r_bias_t_15 + six_r_bias_t_17)
         )
         six_r_bias_in_axes5_z = (
         six_r_W_1_in_axes5_xz*six_r_d_2_in_axes5_x + six_r_W_1_in_axes5_yz*six_r_d_2_in_axes5_y +
             six_r_d_3_in_axes5_x*(six_r_W_2_in_axes5_xz - six_r_zeta_2_in_axes5_y) +
             six_r_d_3_in_axes5_y*(six_r_W_2_in_axes5_yz + six_r_zeta_2_in_axes5_x) +
-            six_r_d_4_in_axes5_x*(six_r_beta_4_t_2 + six_r_beta_3_in_axes4_y*six_r_s_5 +
-            six_r_omega_3_in_axes4_x*six_r_omega_3_in_axes5_x) +
-            six_r_d_4_in_axes5_y*(six_r_beta_4_t + six_r_beta_3_in_axes4_y*six_r_c_5 +
-            six_r_omega_3_in_axes4_x*six_r_omega_3_in_axes5_y) +
-            six_r_d_5_in_axes5_x*(six_r_omega_3_in_axes4_x*six_r_omega_4_in_axes5_x -
-            six_r_beta_4_in_axes5_y) + six_r_d_5_in_axes5_y*(six_r_beta_4_in_axes5_x +
-            six_r_omega_3_in_axes4_x*six_r_omega_4_in_axes5_y) +
-            six_r_platform_joint_offset_x*(six_r_W_5_in_axes5_xz - six_r_beta_5_in_axes5_y) -
-            six_r_d_2_in_axes5_z*(six_r_bias_t_10 + six_r_bias_t_9) -
-            six_r_d_3_in_axes5_z*(six_r_bias_t_12 + six_r_bias_t_13)
+            six_r_d_4_in_axes5_x*(six_r_beta_4_t_2 + six_r_beta_3_t*six_r_c_5 +
+            six_r_omega_3_in_axes4_y*six_r_omega_3_in_axes5_x) +
+            six_r_d_5_in_axes5_x*(six_r_omega_3_in_axes4_y*six_r_omega_4_in_axes5_x -
+            six_r_beta_4_in_axes5_y) + six_r_platform_joint_offset_x*(six_r_W_5_in_axes5_xz -
+            six_r_beta_5_in_axes5_y) - six_r_bias_t_8*(six_r_beta_4_t +
+            six_r_omega_3_in_axes4_y*six_r_omega_3_in_axes5_y - six_r_beta_3_t*six_r_s_5) -
+            six_r_bias_t_9*(six_r_beta_4_in_axes5_x +
+            six_r_omega_3_in_axes4_y*six_r_omega_4_in_axes5_y) -
+            six_r_d_2_in_axes5_z*(six_r_bias_t_12 + six_r_bias_t_13) -
+            six_r_d_3_in_axes5_z*(six_r_bias_t_15 + six_r_bias_t_16)
         )
         # (six_r-rel) acceleration of the connection point left to the joint accelerations
         six_r_rel_in_axes5_x = six_r_S_ddot_in_axes5_x - six_r_bias_in_axes5_x
@@ -8575,7 +8691,7 @@ def _run_required(m, X, V, A, q):
         # (six_r-nu_2) bias of the angular acceleration along moment direction 2
         six_r_nu_2_t = (
         six_r_beta_5_in_axes5_y*six_r_end_p1_in_axes5_z -
-            six_r_beta_4_in_axes4_x*six_r_n_m2_in_axes5_z
+            six_r_beta_4_in_axes4_y*six_r_n_m2_in_axes5_z
         )
         six_r_nu_2_t_2 = (
         six_r_nd_m2_in_axes5_y*six_r_nu_1_t_4 + six_r_nd_m2_in_axes5_z*six_r_nu_1_t_5 +
@@ -8625,8 +8741,8 @@ def _run_required(m, X, V, A, q):
             six_r_rel_in_axes5_y*six_r_w_1_t_29)
         )
         # (six_r-alpha_1) angular acceleration of link 1
-        six_r_alpha_1_t = six_r_qdd_1_t_5*six_r_s_2
-        six_r_alpha_1_in_axes2_y = -six_r_c_2*six_r_qdd_1_t_5
+        six_r_alpha_1_t = six_r_c_2*six_r_qdd_1_t_5
+        six_r_alpha_1_in_axes2_y = six_r_qdd_1_t_5*six_r_s_2
         # (six_r-alpha_2) angular acceleration of link 2
         six_r_alpha_2_in_axes2_x = six_r_W_2_in_axes2_yz - six_r_alpha_1_t
         six_r_alpha_2_in_axes2_y = six_r_alpha_1_in_axes2_y + six_r_zeta_2_in_axes2_y
@@ -8637,11 +8753,11 @@ def _run_required(m, X, V, A, q):
         six_r_B_2_in_axes2_zy = six_r_W_2_in_axes2_yz + six_r_alpha_2_in_axes2_x
         # (six_r-alpha_3) angular acceleration of link 3
         six_r_alpha_3_in_axes3_x = (
-        six_r_alpha_2_in_axes2_x*six_r_c_3 + six_r_alpha_2_in_axes2_y*six_r_s_3 - six_r_zeta_3_t
+        six_r_alpha_2_in_axes2_x*six_r_s_3 - six_r_zeta_3_t - six_r_alpha_2_in_axes2_y*six_r_c_3
         )
         six_r_alpha_3_in_axes3_y = (
-        six_r_zeta_3_in_axes3_y + six_r_alpha_2_in_axes2_y*six_r_c_3 -
-            six_r_alpha_2_in_axes2_x*six_r_s_3
+        six_r_zeta_3_in_axes3_y + six_r_alpha_2_in_axes2_x*six_r_c_3 +
+            six_r_alpha_2_in_axes2_y*six_r_s_3
         )
         six_r_alpha_3_in_axes3_z = six_r_qdd_1_t_3 + six_r_qdd_1_t_4
         # (six_r-B_3) acceleration tensor of link 3
@@ -8653,14 +8769,14 @@ def _run_required(m, X, V, A, q):
         six_r_B_3_in_axes3_zy = six_r_W_3_in_axes3_yz + six_r_alpha_3_in_axes3_x
         # (six_r-alpha_4) angular acceleration of link 4
         six_r_alpha_4_in_axes4_x = (
-        six_r_zeta_4_in_axes4_x + six_r_alpha_3_in_axes3_y*six_r_c_4 +
-            six_r_alpha_3_in_axes3_z*six_r_s_4
+        six_r_zeta_4_in_axes4_x + six_r_alpha_3_in_axes3_z*six_r_s_4 -
+            six_r_alpha_3_in_axes3_x*six_r_c_4
         )
         six_r_alpha_4_in_axes4_y = (
-        six_r_zeta_4_in_axes4_y + six_r_alpha_3_in_axes3_z*six_r_c_4 -
-            six_r_alpha_3_in_axes3_y*six_r_s_4
+        six_r_zeta_4_in_axes4_y + six_r_alpha_3_in_axes3_x*six_r_s_4 +
+            six_r_alpha_3_in_axes3_z*six_r_c_4
         )
-        six_r_alpha_4_in_axes4_z = six_r_alpha_3_in_axes3_x + six_r_qdd_4
+        six_r_alpha_4_in_axes4_z = six_r_alpha_3_in_axes3_y + six_r_qdd_4
         # (six_r-B_4) acceleration tensor of link 4
         six_r_B_4_in_axes4_xy = six_r_W_4_in_axes4_xy - six_r_alpha_4_in_axes4_z
         six_r_B_4_in_axes4_xz = six_r_W_4_in_axes4_xz + six_r_alpha_4_in_axes4_y
@@ -8670,14 +8786,14 @@ def _run_required(m, X, V, A, q):
         six_r_B_4_in_axes4_zy = six_r_W_4_in_axes4_yz + six_r_alpha_4_in_axes4_x
         # (six_r-alpha_5) angular acceleration of link 5
         six_r_alpha_5_in_axes5_x = (
-        six_r_alpha_4_in_axes4_y*six_r_c_5 + six_r_alpha_4_in_axes4_z*six_r_s_5 - six_r_zeta_5_t
+        six_r_alpha_4_in_axes4_x*six_r_s_5 + six_r_alpha_4_in_axes4_z*six_r_c_5 - six_r_zeta_5_t
         )
         six_r_alpha_5_in_axes5_y = (
-        six_r_zeta_5_in_axes5_y + six_r_alpha_4_in_axes4_z*six_r_c_5 -
-            six_r_alpha_4_in_axes4_y*six_r_s_5
+        six_r_zeta_5_in_axes5_y + six_r_alpha_4_in_axes4_x*six_r_c_5 -
+            six_r_alpha_4_in_axes4_z*six_r_s_5
         )
         six_r_alpha_5_in_axes5_z = (
-        six_r_alpha_4_in_axes4_x + inv_six_r_w_1_t_12*(six_r_qdd_1_t_2*six_r_w_1_t_14 +
+        six_r_alpha_4_in_axes4_y + inv_six_r_w_1_t_12*(six_r_qdd_1_t_2*six_r_w_1_t_14 +
             six_r_qdd_1_t_3*six_r_w_1_t_25 + six_r_qdd_1_t_5*six_r_w_1_t_18 +
             six_r_rel_in_axes5_y*six_r_w_1_t_13 - six_r_qdd_1_t_4*six_r_w_1_t_22 -
             six_r_qdd_4*six_r_w_1_t_15)
@@ -8692,74 +8808,78 @@ def _run_required(m, X, V, A, q):
         # (six_r-a_o_3) acceleration of the origin of joint 3
         six_r_a_o_3_t = six_r_omega_1_in_axes2_y*six_r_omega_1_in_axes2_y
         six_r_a_o_3_t_2 = six_r_qd_1_t_4*six_r_qd_1_t_4
-        six_r_a_o_3_t_3 = six_r_joint3_offset_x*(six_r_a_o_3_t + six_r_a_o_3_t_2)
+        six_r_a_o_3_in_axes2_x = -six_r_joint3_offset_x*(six_r_a_o_3_t + six_r_a_o_3_t_2)
         six_r_a_o_3_in_axes2_y = six_r_B_2_in_axes2_yx*six_r_joint3_offset_x
         six_r_a_o_3_in_axes2_z = six_r_B_2_in_axes2_zx*six_r_joint3_offset_x
-        six_r_a_o_3_in_axes3_x = six_r_a_o_3_in_axes2_y*six_r_s_3 - six_r_a_o_3_t_3*six_r_c_3
-        six_r_a_o_3_in_axes3_y = six_r_a_o_3_in_axes2_y*six_r_c_3 + six_r_a_o_3_t_3*six_r_s_3
-        # (six_r-a_o_4) acceleration of the origin of joint 4
-        six_r_a_o_4_in_axes3_x = six_r_a_o_3_in_axes3_x - six_r_W_3_t_3*six_r_joint4_offset_x
-        six_r_a_o_4_in_axes3_y = (
-        six_r_a_o_3_in_axes3_y + six_r_B_3_in_axes3_yx*six_r_joint4_offset_x
+        six_r_a_o_3_in_axes3_x = (
+        six_r_a_o_3_in_axes2_x*six_r_s_3 - six_r_a_o_3_in_axes2_y*six_r_c_3
         )
+        six_r_a_o_3_in_axes3_y = (
+        six_r_a_o_3_in_axes2_x*six_r_c_3 + six_r_a_o_3_in_axes2_y*six_r_s_3
+        )
+        # (six_r-a_o_4) acceleration of the origin of joint 4
+        six_r_a_o_4_in_axes3_x = (
+        six_r_a_o_3_in_axes3_x + six_r_B_3_in_axes3_xy*six_r_joint4_offset_x
+        )
+        six_r_a_o_4_in_axes3_y = six_r_a_o_3_in_axes3_y - six_r_W_3_t_3*six_r_joint4_offset_x
         six_r_a_o_4_in_axes3_z = (
-        six_r_a_o_3_in_axes2_z + six_r_B_3_in_axes3_zx*six_r_joint4_offset_x
+        six_r_a_o_3_in_axes2_z + six_r_B_3_in_axes3_zy*six_r_joint4_offset_x
         )
         # (six_r-acc_3) acceleration of the reference point of link 3, less gravity
         six_r_g_in_axes1_x = six_r_acc_3_t*six_r_c_1 + six_r_acc_3_t_2*six_r_s_1
         six_r_g_in_axes1_y = six_r_acc_3_t_2*six_r_c_1 - six_r_acc_3_t*six_r_s_1
-        six_r_g_in_axes2_x = six_r_c_2*six_r_g_in_axes1_y + six_r_g_in_axes1_z*six_r_s_2
-        six_r_g_in_axes2_y = six_r_c_2*six_r_g_in_axes1_z - six_r_g_in_axes1_y*six_r_s_2
-        six_r_g_in_axes3_x = six_r_c_3*six_r_g_in_axes2_x + six_r_g_in_axes2_y*six_r_s_3
-        six_r_g_in_axes3_y = six_r_c_3*six_r_g_in_axes2_y - six_r_g_in_axes2_x*six_r_s_3
+        six_r_g_in_axes2_x = six_r_c_2*six_r_g_in_axes1_z + six_r_g_in_axes1_x*six_r_s_2
+        six_r_g_in_axes2_y = six_r_c_2*six_r_g_in_axes1_x - six_r_g_in_axes1_z*six_r_s_2
+        six_r_g_in_axes3_x = six_r_g_in_axes2_x*six_r_s_3 - six_r_c_3*six_r_g_in_axes2_y
+        six_r_g_in_axes3_y = six_r_c_3*six_r_g_in_axes2_x + six_r_g_in_axes2_y*six_r_s_3
         six_r_acc_3_in_axes3_x = six_r_a_o_3_in_axes3_x - six_r_g_in_axes3_x
         six_r_acc_3_in_axes3_y = six_r_a_o_3_in_axes3_y - six_r_g_in_axes3_y
-        six_r_acc_3_in_axes3_z = six_r_a_o_3_in_axes2_z - six_r_g_in_axes1_x
+        six_r_acc_3_in_axes3_z = six_r_a_o_3_in_axes2_z - six_r_g_in_axes1_y
         # (six_r-f_3) inertia force of link 3 less its weight
-        six_r_f_3_t = six_r_omega_2_in_axes3_x*six_r_omega_2_in_axes3_x
+        six_r_f_3_t = six_r_omega_2_in_axes3_y*six_r_omega_2_in_axes3_y
         six_r_f_3_in_axes3_x = (
-        six_r_B_3_in_axes3_xy*six_r_h_3_in_spec3_y + six_r_B_3_in_axes3_xz*six_r_h_3_in_spec3_z +
-            six_r_acc_3_in_axes3_x*six_r_link3_mass - six_r_W_3_t_3*six_r_h_3_in_spec3_x
-        )
-        six_r_f_3_in_axes3_y = (
-        six_r_B_3_in_axes3_yx*six_r_h_3_in_spec3_x + six_r_B_3_in_axes3_yz*six_r_h_3_in_spec3_z +
-            six_r_acc_3_in_axes3_y*six_r_link3_mass - six_r_h_3_in_spec3_y*(six_r_W_3_t_2 +
+        six_r_B_3_in_axes3_xy*six_r_h_3_in_spec3_x + six_r_B_3_in_axes3_xz*six_r_h_3_in_spec3_z +
+            six_r_acc_3_in_axes3_x*six_r_link3_mass + six_r_h_3_in_spec3_y*(six_r_W_3_t_2 +
             six_r_f_3_t)
         )
+        six_r_f_3_in_axes3_y = (
+        six_r_B_3_in_axes3_yz*six_r_h_3_in_spec3_z + six_r_acc_3_in_axes3_y*six_r_link3_mass -
+            six_r_B_3_in_axes3_yx*six_r_h_3_in_spec3_y - six_r_W_3_t_3*six_r_h_3_in_spec3_x
+        )
         six_r_f_3_in_axes3_z = (
-        six_r_B_3_in_axes3_zx*six_r_h_3_in_spec3_x + six_r_B_3_in_axes3_zy*six_r_h_3_in_spec3_y +
-            six_r_acc_3_in_axes3_z*six_r_link3_mass - six_r_h_3_in_spec3_z*(six_r_W_3_t +
+        six_r_B_3_in_axes3_zy*six_r_h_3_in_spec3_x + six_r_acc_3_in_axes3_z*six_r_link3_mass -
+            six_r_B_3_in_axes3_zx*six_r_h_3_in_spec3_y - six_r_h_3_in_spec3_z*(six_r_W_3_t +
             six_r_f_3_t)
         )
         # (six_r-acc_4) acceleration of the reference point of link 4, less gravity
         six_r_acc_4_in_axes4_x = (
-        six_r_a_o_4_in_axes3_y*six_r_c_4 + six_r_a_o_4_in_axes3_z*six_r_s_4 -
-            six_r_c_4*six_r_g_in_axes3_y - six_r_g_in_axes1_x*six_r_s_4
+        six_r_a_o_4_in_axes3_z*six_r_s_4 + six_r_c_4*six_r_g_in_axes3_x -
+            six_r_a_o_4_in_axes3_x*six_r_c_4 - six_r_g_in_axes1_y*six_r_s_4
         )
         six_r_acc_4_in_axes4_y = (
-        six_r_a_o_4_in_axes3_z*six_r_c_4 + six_r_g_in_axes3_y*six_r_s_4 -
-            six_r_a_o_4_in_axes3_y*six_r_s_4 - six_r_c_4*six_r_g_in_axes1_x
+        six_r_a_o_4_in_axes3_x*six_r_s_4 + six_r_a_o_4_in_axes3_z*six_r_c_4 -
+            six_r_c_4*six_r_g_in_axes1_y - six_r_g_in_axes3_x*six_r_s_4
         )
-        six_r_acc_4_in_axes4_z = six_r_a_o_4_in_axes3_x - six_r_g_in_axes3_x
+        six_r_acc_4_in_axes4_z = six_r_a_o_4_in_axes3_y - six_r_g_in_axes3_y
         # (six_r-f_4) inertia force of link 4 less its weight
-        six_r_f_4_t = six_r_omega_3_in_axes4_y*six_r_omega_3_in_axes4_y
+        six_r_f_4_t = six_r_omega_3_in_axes4_x*six_r_omega_3_in_axes4_x
         six_r_f_4_t_2 = six_r_omega_4_in_axes4_z*six_r_omega_4_in_axes4_z
         six_r_f_4_in_axes4_x = (
-        six_r_B_4_in_axes4_xz*six_r_h_4_in_spec4_x + six_r_acc_4_in_axes4_x*six_r_link4_mass -
-            six_r_B_4_in_axes4_xy*six_r_h_4_in_spec4_y - six_r_h_4_in_spec4_z*(six_r_f_4_t +
+        six_r_B_4_in_axes4_xy*six_r_h_4_in_spec4_z + six_r_B_4_in_axes4_xz*six_r_h_4_in_spec4_x +
+            six_r_acc_4_in_axes4_x*six_r_link4_mass - six_r_h_4_in_spec4_y*(six_r_bias_t_10 +
             six_r_f_4_t_2)
         )
         six_r_f_4_in_axes4_y = (
-        six_r_B_4_in_axes4_yx*six_r_h_4_in_spec4_z + six_r_B_4_in_axes4_yz*six_r_h_4_in_spec4_x +
-            six_r_acc_4_in_axes4_y*six_r_link4_mass + six_r_h_4_in_spec4_y*(six_r_bias_t_7 +
+        six_r_B_4_in_axes4_yx*six_r_h_4_in_spec4_y + six_r_B_4_in_axes4_yz*six_r_h_4_in_spec4_x +
+            six_r_acc_4_in_axes4_y*six_r_link4_mass - six_r_h_4_in_spec4_z*(six_r_f_4_t +
             six_r_f_4_t_2)
         )
         six_r_f_4_in_axes4_z = (
-        six_r_B_4_in_axes4_zx*six_r_h_4_in_spec4_z + six_r_acc_4_in_axes4_z*six_r_link4_mass -
-            six_r_B_4_in_axes4_zy*six_r_h_4_in_spec4_y - six_r_h_4_in_spec4_x*(six_r_bias_t_7 +
+        six_r_B_4_in_axes4_zx*six_r_h_4_in_spec4_y + six_r_B_4_in_axes4_zy*six_r_h_4_in_spec4_z +
+            six_r_acc_4_in_axes4_z*six_r_link4_mass - six_r_h_4_in_spec4_x*(six_r_bias_t_10 +
             six_r_f_4_t)
         )
-        six_r_f_4_in_axes3_y = six_r_c_4*six_r_f_4_in_axes4_x - six_r_f_4_in_axes4_y*six_r_s_4
+        six_r_f_4_in_axes3_x = six_r_f_4_in_axes4_y*six_r_s_4 - six_r_c_4*six_r_f_4_in_axes4_x
         six_r_f_4_in_axes3_z = six_r_c_4*six_r_f_4_in_axes4_y + six_r_f_4_in_axes4_x*six_r_s_4
         # (six_r-acc_5) acceleration of the reference point of link 5, less gravity
         six_r_acc_5_in_axes5_x = (
@@ -8789,13 +8909,13 @@ def _run_required(m, X, V, A, q):
             six_r_acc_5_in_axes5_x*six_r_h_5_in_spec5_z -
             six_r_B_5_in_axes5_xy*six_r_J_5_in_spec5_yz -
             six_r_B_5_in_axes5_zx*six_r_Sigma_5_in_axes5_xx -
-            six_r_J_5_in_spec5_xz*(six_r_bias_t_8 - six_r_W_5_t_2) -
+            six_r_J_5_in_spec5_xz*(six_r_bias_t_11 - six_r_W_5_t_2) -
             six_r_acc_5_in_axes5_z*six_r_h_5_in_spec5_x
         )
         six_r_mu_5_in_axes5_z = (
         six_r_B_5_in_axes5_xz*six_r_J_5_in_spec5_yz +
             six_r_B_5_in_axes5_yx*six_r_Sigma_5_in_axes5_xx +
-            six_r_J_5_in_spec5_xy*(six_r_bias_t_8 - six_r_W_5_t) +
+            six_r_J_5_in_spec5_xy*(six_r_bias_t_11 - six_r_W_5_t) +
             six_r_acc_5_in_axes5_y*six_r_h_5_in_spec5_x -
             six_r_B_5_in_axes5_xy*six_r_Sigma_5_in_axes5_yy -
             six_r_B_5_in_axes5_yz*six_r_J_5_in_spec5_xz -
@@ -8803,75 +8923,76 @@ def _run_required(m, X, V, A, q):
         )
         # (six_r-mu_4) inertia moment of the links that turn with link 4, about their reference points
         six_r_mu_4_in_axes4_x = (
-        six_r_B_4_in_axes4_yx*six_r_J_4_in_spec4_xz + six_r_B_4_in_axes4_zx*six_r_J_4_in_spec4_yz
-            + six_r_B_4_in_axes4_zy*six_r_Sigma_4_in_axes4_yy -
-            six_r_B_4_in_axes4_yz*six_r_Sigma_4_in_axes4_zz - six_r_J_4_in_spec4_xy*(six_r_f_4_t -
-            six_r_f_4_t_2) - six_r_acc_4_in_axes4_y*six_r_h_4_in_spec4_x -
-            six_r_acc_4_in_axes4_z*six_r_h_4_in_spec4_y
+        six_r_B_4_in_axes4_yx*six_r_J_4_in_spec4_xy +
+            six_r_B_4_in_axes4_zy*six_r_Sigma_4_in_axes4_yy +
+            six_r_J_4_in_spec4_xz*(six_r_bias_t_10 - six_r_f_4_t_2) +
+            six_r_acc_4_in_axes4_z*six_r_h_4_in_spec4_z -
+            six_r_B_4_in_axes4_yz*six_r_Sigma_4_in_axes4_zz -
+            six_r_B_4_in_axes4_zx*six_r_J_4_in_spec4_yz -
+            six_r_acc_4_in_axes4_y*six_r_h_4_in_spec4_x
         )
         six_r_mu_4_in_axes4_y = (
-        six_r_B_4_in_axes4_xy*six_r_J_4_in_spec4_xy +
-            six_r_B_4_in_axes4_xz*six_r_Sigma_4_in_axes4_zz +
+        six_r_B_4_in_axes4_xz*six_r_Sigma_4_in_axes4_zz +
+            six_r_B_4_in_axes4_zy*six_r_J_4_in_spec4_yz +
             six_r_acc_4_in_axes4_x*six_r_h_4_in_spec4_x -
-            six_r_B_4_in_axes4_zx*six_r_Sigma_4_in_axes4_xx -
-            six_r_B_4_in_axes4_zy*six_r_J_4_in_spec4_yz - six_r_J_4_in_spec4_xz*(six_r_bias_t_7 -
-            six_r_f_4_t_2) - six_r_acc_4_in_axes4_z*six_r_h_4_in_spec4_z
+            six_r_B_4_in_axes4_xy*six_r_J_4_in_spec4_xz -
+            six_r_B_4_in_axes4_zx*six_r_Sigma_4_in_axes4_xx - six_r_J_4_in_spec4_xy*(six_r_f_4_t -
+            six_r_f_4_t_2) - six_r_acc_4_in_axes4_z*six_r_h_4_in_spec4_y
         )
         six_r_mu_4_in_axes4_z = (
-        six_r_B_4_in_axes4_yx*six_r_Sigma_4_in_axes4_xx +
-            six_r_acc_4_in_axes4_x*six_r_h_4_in_spec4_y +
-            six_r_acc_4_in_axes4_y*six_r_h_4_in_spec4_z -
+        six_r_B_4_in_axes4_xz*six_r_J_4_in_spec4_xz +
+            six_r_B_4_in_axes4_yx*six_r_Sigma_4_in_axes4_xx + six_r_J_4_in_spec4_yz*(six_r_f_4_t -
+            six_r_bias_t_10) + six_r_acc_4_in_axes4_y*six_r_h_4_in_spec4_y -
             six_r_B_4_in_axes4_xy*six_r_Sigma_4_in_axes4_yy -
-            six_r_B_4_in_axes4_xz*six_r_J_4_in_spec4_xy -
-            six_r_B_4_in_axes4_yz*six_r_J_4_in_spec4_xz - six_r_J_4_in_spec4_yz*(six_r_bias_t_7 -
-            six_r_f_4_t)
+            six_r_B_4_in_axes4_yz*six_r_J_4_in_spec4_xy -
+            six_r_acc_4_in_axes4_x*six_r_h_4_in_spec4_z
         )
         # (six_r-N_4) moment about joint 4 of the links from 4 outwards, the force at the connection point left out
-        six_r_N_4_in_axes4_x = six_r_mu_4_in_axes4_x + six_r_mu_5_in_axes5_z
-        six_r_N_4_in_axes4_y = (
-        six_r_mu_4_in_axes4_y + six_r_c_5*six_r_mu_5_in_axes5_x - six_r_mu_5_in_axes5_y*six_r_s_5
+        six_r_N_4_in_axes4_x = (
+        six_r_mu_4_in_axes4_x + six_r_c_5*six_r_mu_5_in_axes5_y + six_r_mu_5_in_axes5_x*six_r_s_5
         )
+        six_r_N_4_in_axes4_y = six_r_mu_4_in_axes4_y + six_r_mu_5_in_axes5_z
         six_r_N_4_in_axes4_z = (
-        six_r_mu_4_in_axes4_z + six_r_c_5*six_r_mu_5_in_axes5_y + six_r_mu_5_in_axes5_x*six_r_s_5
+        six_r_mu_4_in_axes4_z + six_r_c_5*six_r_mu_5_in_axes5_x - six_r_mu_5_in_axes5_y*six_r_s_5
         )
         # (six_r-mu_3) inertia moment of the links that turn with link 3, about their reference points
         six_r_mu_3_in_axes3_x = (
-        six_r_B_3_in_axes3_yx*six_r_J_3_in_spec3_xz +
-            six_r_B_3_in_axes3_zy*six_r_Sigma_3_in_axes3_yy + six_r_J_3_in_spec3_yz*(six_r_W_3_t -
-            six_r_W_3_t_2) + six_r_acc_3_in_axes3_z*six_r_h_3_in_spec3_y -
+        six_r_B_3_in_axes3_zx*six_r_J_3_in_spec3_xy +
+            six_r_B_3_in_axes3_zy*six_r_Sigma_3_in_axes3_yy + six_r_J_3_in_spec3_xz*(six_r_f_3_t -
+            six_r_W_3_t_2) + six_r_acc_3_in_axes3_z*six_r_h_3_in_spec3_x -
+            six_r_B_3_in_axes3_yx*six_r_J_3_in_spec3_yz -
             six_r_B_3_in_axes3_yz*six_r_Sigma_3_in_axes3_zz -
-            six_r_B_3_in_axes3_zx*six_r_J_3_in_spec3_xy -
             six_r_acc_3_in_axes3_y*six_r_h_3_in_spec3_z
         )
         six_r_mu_3_in_axes3_y = (
-        six_r_B_3_in_axes3_xz*six_r_Sigma_3_in_axes3_zz +
-            six_r_B_3_in_axes3_zy*six_r_J_3_in_spec3_xy +
-            six_r_acc_3_in_axes3_x*six_r_h_3_in_spec3_z -
-            six_r_B_3_in_axes3_xy*six_r_J_3_in_spec3_yz -
-            six_r_B_3_in_axes3_zx*six_r_Sigma_3_in_axes3_xx - six_r_J_3_in_spec3_xz*(six_r_f_3_t -
-            six_r_W_3_t_2) - six_r_acc_3_in_axes3_z*six_r_h_3_in_spec3_x
+        six_r_B_3_in_axes3_xz*six_r_Sigma_3_in_axes3_zz + six_r_J_3_in_spec3_yz*(six_r_W_3_t -
+            six_r_W_3_t_2) + six_r_acc_3_in_axes3_x*six_r_h_3_in_spec3_z +
+            six_r_acc_3_in_axes3_z*six_r_h_3_in_spec3_y -
+            six_r_B_3_in_axes3_xy*six_r_J_3_in_spec3_xz -
+            six_r_B_3_in_axes3_zx*six_r_Sigma_3_in_axes3_xx -
+            six_r_B_3_in_axes3_zy*six_r_J_3_in_spec3_xy
         )
         six_r_mu_3_in_axes3_z = (
-        six_r_B_3_in_axes3_xz*six_r_J_3_in_spec3_yz +
-            six_r_B_3_in_axes3_yx*six_r_Sigma_3_in_axes3_xx + six_r_J_3_in_spec3_xy*(six_r_f_3_t -
-            six_r_W_3_t) + six_r_acc_3_in_axes3_y*six_r_h_3_in_spec3_x -
-            six_r_B_3_in_axes3_xy*six_r_Sigma_3_in_axes3_yy -
-            six_r_B_3_in_axes3_yz*six_r_J_3_in_spec3_xz -
-            six_r_acc_3_in_axes3_x*six_r_h_3_in_spec3_y
+        six_r_B_3_in_axes3_xz*six_r_J_3_in_spec3_xz +
+            six_r_B_3_in_axes3_yx*six_r_Sigma_3_in_axes3_xx +
+            six_r_B_3_in_axes3_yz*six_r_J_3_in_spec3_yz -
+            six_r_B_3_in_axes3_xy*six_r_Sigma_3_in_axes3_yy - six_r_J_3_in_spec3_xy*(six_r_W_3_t -
+            six_r_f_3_t) - six_r_acc_3_in_axes3_x*six_r_h_3_in_spec3_x -
+            six_r_acc_3_in_axes3_y*six_r_h_3_in_spec3_y
         )
         # (six_r-N_3) moment about joint 3 of the links from 3 outwards, the force at the connection point left out
-        six_r_N_3_in_axes3_x = six_r_N_4_in_axes4_z + six_r_mu_3_in_axes3_x
-        six_r_N_3_in_axes3_y = (
-        six_r_mu_3_in_axes3_y + six_r_N_4_in_axes4_x*six_r_c_4 - six_r_N_4_in_axes4_y*six_r_s_4 -
-            six_r_f_4_in_axes3_z*six_r_joint4_offset_x
+        six_r_N_3_in_axes3_x = (
+        six_r_mu_3_in_axes3_x + six_r_N_4_in_axes4_y*six_r_s_4 +
+            six_r_f_4_in_axes3_z*six_r_joint4_offset_x - six_r_N_4_in_axes4_x*six_r_c_4
         )
+        six_r_N_3_in_axes3_y = six_r_N_4_in_axes4_z + six_r_mu_3_in_axes3_y
         six_r_N_3_in_axes3_z = (
-        six_r_mu_3_in_axes3_z + six_r_N_4_in_axes4_x*six_r_s_4 + six_r_N_4_in_axes4_y*six_r_c_4 +
-            six_r_f_4_in_axes3_y*six_r_joint4_offset_x
+        six_r_mu_3_in_axes3_z + six_r_N_4_in_axes4_x*six_r_s_4 + six_r_N_4_in_axes4_y*six_r_c_4 -
+            six_r_f_4_in_axes3_x*six_r_joint4_offset_x
         )
         # (six_r-T_3) inertia force of the links from 3 outwards, the last link left out
-        six_r_T_3_in_axes3_x = six_r_f_3_in_axes3_x + six_r_f_4_in_axes4_z
-        six_r_T_3_in_axes3_y = six_r_f_3_in_axes3_y + six_r_f_4_in_axes3_y
+        six_r_T_3_in_axes3_x = six_r_f_3_in_axes3_x + six_r_f_4_in_axes3_x
+        six_r_T_3_in_axes3_y = six_r_f_3_in_axes3_y + six_r_f_4_in_axes4_z
         six_r_T_3_in_axes3_z = six_r_f_3_in_axes3_z + six_r_f_4_in_axes3_z
         # (six_r-mu_2) inertia moment of the links that turn with link 2, about their reference points
         six_r_mu_2_t = six_r_omega_1_in_axes2_x*six_r_omega_1_in_axes2_x
@@ -8880,12 +9001,12 @@ def _run_required(m, X, V, A, q):
             six_r_B_2_in_axes2_zy*six_r_Sigma_2_in_axes2_yy + six_r_J_2_in_spec2_yz*(six_r_a_o_3_t
             - six_r_a_o_3_t_2) + six_r_g_in_axes2_y*six_r_h_2_in_spec2_z -
             six_r_B_2_in_axes2_zx*six_r_J_2_in_spec2_xy -
-            six_r_Sigma_2_in_axes2_zz*six_r_alpha_1_t - six_r_g_in_axes1_x*six_r_h_2_in_spec2_y
+            six_r_Sigma_2_in_axes2_zz*six_r_alpha_1_t - six_r_g_in_axes1_y*six_r_h_2_in_spec2_y
         )
         six_r_mu_2_in_axes2_y = (
         six_r_B_2_in_axes2_zy*six_r_J_2_in_spec2_xy +
             six_r_Sigma_2_in_axes2_zz*six_r_alpha_1_in_axes2_y +
-            six_r_g_in_axes1_x*six_r_h_2_in_spec2_x - six_r_B_2_in_axes2_xy*six_r_J_2_in_spec2_yz
+            six_r_g_in_axes1_y*six_r_h_2_in_spec2_x - six_r_B_2_in_axes2_xy*six_r_J_2_in_spec2_yz
             - six_r_B_2_in_axes2_zx*six_r_Sigma_2_in_axes2_xx -
             six_r_J_2_in_spec2_xz*(six_r_mu_2_t - six_r_a_o_3_t_2) -
             six_r_g_in_axes2_x*six_r_h_2_in_spec2_z
@@ -8899,25 +9020,25 @@ def _run_required(m, X, V, A, q):
         )
         # (six_r-N_2) moment about joint 2 of the links from 2 outwards, the force at the connection point left out
         six_r_N_2_in_axes2_x = (
-        six_r_mu_2_in_axes2_x + six_r_N_3_in_axes3_x*six_r_c_3 - six_r_N_3_in_axes3_y*six_r_s_3
+        six_r_mu_2_in_axes2_x + six_r_N_3_in_axes3_x*six_r_s_3 + six_r_N_3_in_axes3_y*six_r_c_3
         )
         six_r_N_2_in_axes2_y = (
-        six_r_mu_2_in_axes2_y + six_r_N_3_in_axes3_x*six_r_s_3 + six_r_N_3_in_axes3_y*six_r_c_3 -
+        six_r_mu_2_in_axes2_y + six_r_N_3_in_axes3_y*six_r_s_3 - six_r_N_3_in_axes3_x*six_r_c_3 -
             six_r_T_3_in_axes3_z*six_r_joint3_offset_x
         )
         six_r_N_2_in_axes2_z = (
-        six_r_N_3_in_axes3_z + six_r_mu_2_in_axes2_z +
-            six_r_joint3_offset_x*(six_r_T_3_in_axes3_x*six_r_s_3 +
-            six_r_T_3_in_axes3_y*six_r_c_3)
+        six_r_N_3_in_axes3_z + six_r_mu_2_in_axes2_z -
+            six_r_joint3_offset_x*(six_r_T_3_in_axes3_x*six_r_c_3 -
+            six_r_T_3_in_axes3_y*six_r_s_3)
         )
         # (six_r-mu_1) inertia moment of the links that turn with link 1, about their reference points
         six_r_mu_1_in_axes1_z = (
-        -six_r_J_1_in_spec1_xx*six_r_qdd_1_t_5 - six_r_g_in_axes1_x*six_r_h_1_in_spec1_y -
-            six_r_g_in_axes1_y*six_r_h_1_in_spec1_z
+        six_r_g_in_axes1_x*six_r_h_1_in_spec1_z - six_r_J_1_in_spec1_xx*six_r_qdd_1_t_5 -
+            six_r_g_in_axes1_y*six_r_h_1_in_spec1_y
         )
         # (six_r-N_1) moment about joint 1 of the links from 1 outwards, the force at the connection point left out
         six_r_N_1_in_axes1_z = (
-        six_r_mu_1_in_axes1_z + six_r_N_2_in_axes2_x*six_r_s_2 + six_r_N_2_in_axes2_y*six_r_c_2
+        six_r_mu_1_in_axes1_z + six_r_N_2_in_axes2_x*six_r_c_2 - six_r_N_2_in_axes2_y*six_r_s_2
         )
         # (six_r-G_m1) moment along moment direction 1 that balances the leg's inertia and weight along all degrees of freedom
         six_r_G_m1_t = inv_six_r_w_1_t_12*six_r_mu_5_in_axes5_z
@@ -8952,13 +9073,12 @@ def _run_required(m, X, V, A, q):
         )
         # (six_r-c) leg force on the platform without actuation and without the mass at the connection point
         six_r_c_in_axes5_x = (
-        six_r_G_m1_t_3*six_r_w_1_t_50 + six_r_G_m1_t_4*six_r_w_1_t_68 -
-            six_r_B_5_in_axes5_xy*six_r_h_5_in_spec5_y -
-            six_r_B_5_in_axes5_xz*six_r_h_5_in_spec5_z - six_r_G_m1_t_5*six_r_w_2_t -
-            six_r_W_5_in_axes5_xx*six_r_h_5_in_spec5_x
+        six_r_G_m1_t_3*six_r_w_1_t_50 + six_r_G_m1_t_4*six_r_w_1_t_68 +
+            six_r_W_5_t_3*six_r_h_5_in_spec5_x - six_r_B_5_in_axes5_xy*six_r_h_5_in_spec5_y -
+            six_r_B_5_in_axes5_xz*six_r_h_5_in_spec5_z - six_r_G_m1_t_5*six_r_w_2_t
         )
         six_r_c_in_axes5_y = (
-        six_r_G_m1_t_5*six_r_w_2_t_2 + six_r_h_5_in_spec5_y*(six_r_W_5_t_2 + six_r_bias_t_8) -
+        six_r_G_m1_t_5*six_r_w_2_t_2 + six_r_h_5_in_spec5_y*(six_r_W_5_t_2 + six_r_bias_t_11) -
             six_r_B_5_in_axes5_yx*six_r_h_5_in_spec5_x -
             six_r_B_5_in_axes5_yz*six_r_h_5_in_spec5_z - six_r_G_m1_t*six_r_w_1_t_13 -
             six_r_G_m1_t_2*six_r_w_1_t_29 - six_r_G_m1_t_3*six_r_w_1_t_51 -
@@ -8966,7 +9086,7 @@ def _run_required(m, X, V, A, q):
         )
         six_r_c_in_axes5_z = (
         six_r_G_m1_t_2*six_r_w_1_t_30 + six_r_G_m1_t_3*six_r_w_1_t_52 +
-            six_r_G_m1_t_4*six_r_w_1_t_70 + six_r_h_5_in_spec5_z*(six_r_W_5_t + six_r_bias_t_8) -
+            six_r_G_m1_t_4*six_r_w_1_t_70 + six_r_h_5_in_spec5_z*(six_r_W_5_t + six_r_bias_t_11) -
             six_r_B_5_in_axes5_zx*six_r_h_5_in_spec5_x -
             six_r_B_5_in_axes5_zy*six_r_h_5_in_spec5_y - six_r_G_m1_t_5*six_r_w_2_t_3
         )
@@ -9136,62 +9256,62 @@ def _run_joint_rates(m, X, V, q):
         six_r_q_4 = q[[3, 8, 13, 18, 23, 28][leg]]
         six_r_q_5 = q[[4, 9, 14, 19, 24, 29][leg]]
         # (six_r-c_1) cosine of the angle of joint 1 from its reference direction
-        six_r_c_1 = -sin(six_r_q_1)
+        six_r_c_1 = cos(six_r_q_1)
         # (six_r-s_1) sine of the angle of joint 1 from its reference direction
-        six_r_s_1 = cos(six_r_q_1)
+        six_r_s_1 = sin(six_r_q_1)
         # (six_r-c_2) cosine of the angle of joint 2 from its reference direction
-        six_r_c_2 = -sin(six_r_q_2)
+        six_r_c_2 = cos(six_r_q_2)
         # (six_r-s_2) sine of the angle of joint 2 from its reference direction
-        six_r_s_2 = cos(six_r_q_2)
+        six_r_s_2 = sin(six_r_q_2)
         # (six_r-c_3) cosine of the angle of joint 3 from its reference direction
         six_r_c_3 = cos(six_r_q_3)
         # (six_r-s_3) sine of the angle of joint 3 from its reference direction
         six_r_s_3 = sin(six_r_q_3)
         # (six_r-c_4) cosine of the angle of joint 4 from its reference direction
-        six_r_c_4 = -sin(six_r_q_4)
+        six_r_c_4 = cos(six_r_q_4)
         # (six_r-s_4) sine of the angle of joint 4 from its reference direction
-        six_r_s_4 = cos(six_r_q_4)
+        six_r_s_4 = sin(six_r_q_4)
         # (six_r-c_5) cosine of the angle of joint 5 from its reference direction
-        six_r_c_5 = -sin(six_r_q_5)
+        six_r_c_5 = cos(six_r_q_5)
         # (six_r-s_5) sine of the angle of joint 5 from its reference direction
-        six_r_s_5 = cos(six_r_q_5)
+        six_r_s_5 = sin(six_r_q_5)
         # (six_r-S_dot) velocity of the connection point
-        six_r_e_2_in_axes5_y = -six_r_c_4*six_r_s_5
-        six_r_S_dot_t = -six_r_c_4*six_r_s_3
-        six_r_S_dot_t_2 = -six_r_c_3*six_r_c_4
-        six_r_S_dot_t_3 = six_r_S_dot_t*six_r_c_2 + six_r_S_dot_t_2*six_r_s_2
-        six_r_S_dot_t_4 = six_r_S_dot_t*six_r_s_2 - six_r_S_dot_t_2*six_r_c_2
-        six_r_S_dot_t_5 = six_r_c_1*six_r_s_4 - six_r_S_dot_t_3*six_r_s_1
-        six_r_S_dot_t_6 = six_r_S_dot_t_3*six_r_c_1 + six_r_s_1*six_r_s_4
+        six_r_e_2_in_axes5_y = six_r_c_5*six_r_s_4
+        six_r_S_dot_t = six_r_c_3*six_r_s_4
+        six_r_S_dot_t_2 = six_r_s_3*six_r_s_4
+        six_r_S_dot_t_3 = six_r_S_dot_t*six_r_s_2 + six_r_S_dot_t_2*six_r_c_2
+        six_r_S_dot_t_4 = six_r_S_dot_t_2*six_r_s_2 - six_r_S_dot_t*six_r_c_2
+        six_r_S_dot_t_5 = six_r_S_dot_t_4*six_r_c_1 - six_r_c_4*six_r_s_1
+        six_r_S_dot_t_6 = six_r_S_dot_t_4*six_r_s_1 + six_r_c_1*six_r_c_4
         axis_z_six_r_axes5_x = (
-        six_r_S_dot_t_4*six_r_base_frame_xx + six_r_S_dot_t_5*six_r_base_frame_xy +
+        six_r_S_dot_t_3*six_r_base_frame_xx + six_r_S_dot_t_5*six_r_base_frame_xy +
             six_r_S_dot_t_6*six_r_base_frame_xz
         )
         axis_z_six_r_axes5_y = (
-        six_r_S_dot_t_4*six_r_base_frame_yx + six_r_S_dot_t_5*six_r_base_frame_yy +
+        six_r_S_dot_t_3*six_r_base_frame_yx + six_r_S_dot_t_5*six_r_base_frame_yy +
             six_r_S_dot_t_6*six_r_base_frame_yz
         )
         axis_z_six_r_axes5_z = (
-        six_r_S_dot_t_4*six_r_base_frame_zx + six_r_S_dot_t_5*six_r_base_frame_zy +
+        six_r_S_dot_t_3*six_r_base_frame_zx + six_r_S_dot_t_5*six_r_base_frame_zy +
             six_r_S_dot_t_6*six_r_base_frame_zz
         )
-        six_r_S_dot_t_7 = six_r_s_4*six_r_s_5
-        six_r_S_dot_t_8 = six_r_c_3*six_r_c_5 - six_r_S_dot_t_7*six_r_s_3
-        six_r_S_dot_t_9 = six_r_S_dot_t_7*six_r_c_3 + six_r_c_5*six_r_s_3
-        six_r_S_dot_t_10 = six_r_S_dot_t_8*six_r_c_2 - six_r_S_dot_t_9*six_r_s_2
-        six_r_S_dot_t_11 = six_r_S_dot_t_8*six_r_s_2 + six_r_S_dot_t_9*six_r_c_2
-        six_r_S_dot_t_12 = six_r_c_1*six_r_e_2_in_axes5_y - six_r_S_dot_t_10*six_r_s_1
-        six_r_S_dot_t_13 = six_r_S_dot_t_10*six_r_c_1 + six_r_e_2_in_axes5_y*six_r_s_1
+        six_r_S_dot_t_7 = six_r_c_4*six_r_c_5
+        six_r_S_dot_t_8 = six_r_s_3*six_r_s_5 - six_r_S_dot_t_7*six_r_c_3
+        six_r_S_dot_t_9 = -six_r_S_dot_t_7*six_r_s_3 - six_r_c_3*six_r_s_5
+        six_r_S_dot_t_10 = six_r_S_dot_t_8*six_r_s_2 + six_r_S_dot_t_9*six_r_c_2
+        six_r_S_dot_t_11 = six_r_S_dot_t_9*six_r_s_2 - six_r_S_dot_t_8*six_r_c_2
+        six_r_S_dot_t_12 = six_r_S_dot_t_11*six_r_c_1 - six_r_e_2_in_axes5_y*six_r_s_1
+        six_r_S_dot_t_13 = six_r_S_dot_t_11*six_r_s_1 + six_r_c_1*six_r_e_2_in_axes5_y
         axis_y_six_r_axes5_x = (
-        six_r_S_dot_t_11*six_r_base_frame_xx + six_r_S_dot_t_12*six_r_base_frame_xy +
+        six_r_S_dot_t_10*six_r_base_frame_xx + six_r_S_dot_t_12*six_r_base_frame_xy +
             six_r_S_dot_t_13*six_r_base_frame_xz
         )
         axis_y_six_r_axes5_y = (
-        six_r_S_dot_t_11*six_r_base_frame_yx + six_r_S_dot_t_12*six_r_base_frame_yy +
+        six_r_S_dot_t_10*six_r_base_frame_yx + six_r_S_dot_t_12*six_r_base_frame_yy +
             six_r_S_dot_t_13*six_r_base_frame_yz
         )
         axis_y_six_r_axes5_z = (
-        six_r_S_dot_t_11*six_r_base_frame_zx + six_r_S_dot_t_12*six_r_base_frame_zy +
+        six_r_S_dot_t_10*six_r_base_frame_zx + six_r_S_dot_t_12*six_r_base_frame_zy +
             six_r_S_dot_t_13*six_r_base_frame_zz
         )
         axis_x_six_r_axes5_x = (
@@ -9228,49 +9348,49 @@ def _run_joint_rates(m, X, V, q):
             axis_z_six_r_axes5_z*six_r_S_dot_z
         )
         # (six_r-r_4) from joint 4 to the connection point, along the links
-        six_r_r_4_in_axes4_y = six_r_c_5*six_r_platform_joint_offset_x
-        six_r_r_4_in_axes4_z = six_r_joint5_offset_x + six_r_platform_joint_offset_x*six_r_s_5
-        six_r_r_4_in_axes3_y = -six_r_r_4_in_axes4_y*six_r_s_4
-        six_r_r_4_in_axes3_z = six_r_c_4*six_r_r_4_in_axes4_y
+        six_r_r_4_in_axes4_x = six_r_platform_joint_offset_x*six_r_s_5
+        six_r_r_4_in_axes4_z = six_r_joint5_offset_x + six_r_c_5*six_r_platform_joint_offset_x
+        six_r_r_4_in_axes3_x = -six_r_c_4*six_r_r_4_in_axes4_x
+        six_r_r_4_in_axes3_z = six_r_r_4_in_axes4_x*six_r_s_4
         # (six_r-r_3) from joint 3 to the connection point, along the links
-        six_r_r_3_in_axes3_x = six_r_joint4_offset_x + six_r_r_4_in_axes4_z
-        six_r_r_3_in_axes2_y = six_r_c_3*six_r_r_4_in_axes3_y + six_r_r_3_in_axes3_x*six_r_s_3
+        six_r_r_3_in_axes3_y = six_r_joint4_offset_x + six_r_r_4_in_axes4_z
+        six_r_r_3_in_axes2_y = six_r_r_3_in_axes3_y*six_r_s_3 - six_r_c_3*six_r_r_4_in_axes3_x
         six_r_r_3_t = six_r_r_4_in_axes3_z*six_r_s_4
-        six_r_r_3_t_2 = -six_r_c_4*six_r_r_4_in_axes3_z
-        six_r_r_3_in_axes5_z = six_r_r_3_t + six_r_c_4*six_r_r_4_in_axes3_y
-        six_r_r_3_t_3 = -six_r_r_3_t_2 - six_r_r_4_in_axes3_y*six_r_s_4
-        six_r_r_3_in_axes5_x = six_r_c_5*six_r_r_3_t_3 + six_r_r_3_in_axes3_x*six_r_s_5
-        six_r_r_3_in_axes5_y = six_r_c_5*six_r_r_3_in_axes3_x - six_r_r_3_t_3*six_r_s_5
+        six_r_r_3_t_2 = six_r_c_4*six_r_r_4_in_axes3_z
+        six_r_r_3_t_3 = six_r_r_3_t - six_r_c_4*six_r_r_4_in_axes3_x
+        six_r_r_3_in_axes5_z = six_r_r_3_t_2 + six_r_r_4_in_axes3_x*six_r_s_4
+        six_r_r_3_in_axes5_x = six_r_c_5*six_r_r_3_in_axes3_y + six_r_r_3_t_3*six_r_s_5
+        six_r_r_3_in_axes5_y = six_r_c_5*six_r_r_3_t_3 - six_r_r_3_in_axes3_y*six_r_s_5
         # (six_r-r_2) from joint 2 to the connection point, along the links
         six_r_r_2_in_axes2_x = (
-        six_r_joint3_offset_x + six_r_c_3*six_r_r_3_in_axes3_x - six_r_r_4_in_axes3_y*six_r_s_3
+        six_r_joint3_offset_x + six_r_c_3*six_r_r_3_in_axes3_y + six_r_r_4_in_axes3_x*six_r_s_3
         )
-        six_r_r_2_in_axes1_y = six_r_c_2*six_r_r_2_in_axes2_x - six_r_r_3_in_axes2_y*six_r_s_2
-        six_r_r_2_t = six_r_c_3*six_r_r_2_in_axes2_x + six_r_r_3_in_axes2_y*six_r_s_3
-        six_r_r_2_t_2 = six_r_c_3*six_r_r_3_in_axes2_y - six_r_r_2_in_axes2_x*six_r_s_3
-        six_r_r_2_in_axes5_z = six_r_r_3_t + six_r_c_4*six_r_r_2_t_2
-        six_r_r_2_t_3 = -six_r_r_3_t_2 - six_r_r_2_t_2*six_r_s_4
-        six_r_r_2_in_axes5_x = six_r_c_5*six_r_r_2_t_3 + six_r_r_2_t*six_r_s_5
-        six_r_r_2_in_axes5_y = six_r_c_5*six_r_r_2_t - six_r_r_2_t_3*six_r_s_5
+        six_r_r_2_in_axes1_x = six_r_c_2*six_r_r_3_in_axes2_y + six_r_r_2_in_axes2_x*six_r_s_2
+        six_r_r_2_t = six_r_r_2_in_axes2_x*six_r_s_3 - six_r_c_3*six_r_r_3_in_axes2_y
+        six_r_r_2_t_2 = six_r_c_3*six_r_r_2_in_axes2_x + six_r_r_3_in_axes2_y*six_r_s_3
+        six_r_r_2_t_3 = six_r_r_3_t - six_r_c_4*six_r_r_2_t
+        six_r_r_2_in_axes5_z = six_r_r_3_t_2 + six_r_r_2_t*six_r_s_4
+        six_r_r_2_in_axes5_x = six_r_c_5*six_r_r_2_t_2 + six_r_r_2_t_3*six_r_s_5
+        six_r_r_2_in_axes5_y = six_r_c_5*six_r_r_2_t_3 - six_r_r_2_t_2*six_r_s_5
         # (six_r-r_1) from joint 1 to the connection point, along the links
         six_r_r_1_in_axes1_z = (
-        six_r_joint2_offset_x + six_r_c_2*six_r_r_3_in_axes2_y + six_r_r_2_in_axes2_x*six_r_s_2
+        six_r_joint2_offset_x + six_r_c_2*six_r_r_2_in_axes2_x - six_r_r_3_in_axes2_y*six_r_s_2
         )
-        six_r_r_1_t = six_r_c_2*six_r_r_2_in_axes1_y + six_r_r_1_in_axes1_z*six_r_s_2
-        six_r_r_1_t_2 = six_r_c_2*six_r_r_1_in_axes1_z - six_r_r_2_in_axes1_y*six_r_s_2
-        six_r_r_1_t_3 = six_r_c_3*six_r_r_1_t + six_r_r_1_t_2*six_r_s_3
-        six_r_r_1_t_4 = six_r_c_3*six_r_r_1_t_2 - six_r_r_1_t*six_r_s_3
-        six_r_r_1_in_axes5_z = six_r_r_3_t + six_r_c_4*six_r_r_1_t_4
-        six_r_r_1_t_5 = -six_r_r_3_t_2 - six_r_r_1_t_4*six_r_s_4
-        six_r_r_1_in_axes5_x = six_r_c_5*six_r_r_1_t_5 + six_r_r_1_t_3*six_r_s_5
-        six_r_r_1_in_axes5_y = six_r_c_5*six_r_r_1_t_3 - six_r_r_1_t_5*six_r_s_5
+        six_r_r_1_t = six_r_c_2*six_r_r_1_in_axes1_z + six_r_r_2_in_axes1_x*six_r_s_2
+        six_r_r_1_t_2 = six_r_c_2*six_r_r_2_in_axes1_x - six_r_r_1_in_axes1_z*six_r_s_2
+        six_r_r_1_t_3 = six_r_r_1_t*six_r_s_3 - six_r_c_3*six_r_r_1_t_2
+        six_r_r_1_t_4 = six_r_c_3*six_r_r_1_t + six_r_r_1_t_2*six_r_s_3
+        six_r_r_1_t_5 = six_r_r_3_t - six_r_c_4*six_r_r_1_t_3
+        six_r_r_1_in_axes5_z = six_r_r_3_t_2 + six_r_r_1_t_3*six_r_s_4
+        six_r_r_1_in_axes5_x = six_r_c_5*six_r_r_1_t_4 + six_r_r_1_t_5*six_r_s_5
+        six_r_r_1_in_axes5_y = six_r_c_5*six_r_r_1_t_5 - six_r_r_1_t_4*six_r_s_5
         # (six_r-v_1) velocity of the connection point per rate of joint 1
         six_r_v_1_t = six_r_c_2*six_r_s_3 + six_r_c_3*six_r_s_2
         six_r_v_1_t_2 = six_r_c_2*six_r_c_3 - six_r_s_2*six_r_s_3
-        six_r_e_1_in_axes5_z = six_r_c_4*six_r_v_1_t_2
-        six_r_v_1_t_3 = six_r_s_4*six_r_v_1_t_2
-        six_r_e_1_in_axes5_x = six_r_s_5*six_r_v_1_t - six_r_c_5*six_r_v_1_t_3
-        six_r_e_1_in_axes5_y = six_r_c_5*six_r_v_1_t + six_r_s_5*six_r_v_1_t_3
+        six_r_v_1_t_3 = six_r_c_4*six_r_v_1_t
+        six_r_e_1_in_axes5_z = six_r_s_4*six_r_v_1_t
+        six_r_e_1_in_axes5_x = six_r_c_5*six_r_v_1_t_2 - six_r_s_5*six_r_v_1_t_3
+        six_r_e_1_in_axes5_y = -six_r_c_5*six_r_v_1_t_3 - six_r_s_5*six_r_v_1_t_2
         six_r_v_1_in_axes5_x = (
         six_r_e_1_in_axes5_y*six_r_r_1_in_axes5_z - six_r_e_1_in_axes5_z*six_r_r_1_in_axes5_y
         )
@@ -9281,30 +9401,30 @@ def _run_joint_rates(m, X, V, q):
         six_r_e_1_in_axes5_x*six_r_r_1_in_axes5_y - six_r_e_1_in_axes5_y*six_r_r_1_in_axes5_x
         )
         # (six_r-v_2) velocity of the connection point per rate of joint 2
-        six_r_e_2_in_axes5_x = six_r_c_4*six_r_c_5
+        six_r_e_2_in_axes5_x = six_r_s_4*six_r_s_5
         six_r_v_2_in_axes5_x = (
-        six_r_e_2_in_axes5_y*six_r_r_2_in_axes5_z - six_r_r_2_in_axes5_y*six_r_s_4
+        six_r_e_2_in_axes5_y*six_r_r_2_in_axes5_z - six_r_c_4*six_r_r_2_in_axes5_y
         )
         six_r_v_2_in_axes5_y = (
-        six_r_r_2_in_axes5_x*six_r_s_4 - six_r_e_2_in_axes5_x*six_r_r_2_in_axes5_z
+        six_r_c_4*six_r_r_2_in_axes5_x - six_r_e_2_in_axes5_x*six_r_r_2_in_axes5_z
         )
         six_r_v_2_in_axes5_z = (
         six_r_e_2_in_axes5_x*six_r_r_2_in_axes5_y - six_r_e_2_in_axes5_y*six_r_r_2_in_axes5_x
         )
         # (six_r-v_3) velocity of the connection point per rate of joint 3
         six_r_v_3_in_axes5_x = (
-        six_r_e_2_in_axes5_y*six_r_r_3_in_axes5_z - six_r_r_3_in_axes5_y*six_r_s_4
+        six_r_e_2_in_axes5_y*six_r_r_3_in_axes5_z - six_r_c_4*six_r_r_3_in_axes5_y
         )
         six_r_v_3_in_axes5_y = (
-        six_r_r_3_in_axes5_x*six_r_s_4 - six_r_e_2_in_axes5_x*six_r_r_3_in_axes5_z
+        six_r_c_4*six_r_r_3_in_axes5_x - six_r_e_2_in_axes5_x*six_r_r_3_in_axes5_z
         )
         six_r_v_3_in_axes5_z = (
         six_r_e_2_in_axes5_x*six_r_r_3_in_axes5_y - six_r_e_2_in_axes5_y*six_r_r_3_in_axes5_x
         )
         # (six_r-v_4) velocity of the connection point per rate of joint 4
         six_r_v_4_in_axes5_z = (
-        six_r_s_5*(six_r_c_5*six_r_r_4_in_axes4_z - six_r_r_4_in_axes4_y*six_r_s_5) -
-            six_r_c_5*(six_r_c_5*six_r_r_4_in_axes4_y + six_r_r_4_in_axes4_z*six_r_s_5)
+        six_r_c_5*(six_r_c_5*six_r_r_4_in_axes4_x - six_r_r_4_in_axes4_z*six_r_s_5) +
+            six_r_s_5*(six_r_c_5*six_r_r_4_in_axes4_z + six_r_r_4_in_axes4_x*six_r_s_5)
         )
         # (six_r-n_m1) direction 1 of the moment that the platform joint transmits
         six_r_n_m1_t = (
@@ -9333,16 +9453,16 @@ def _run_joint_rates(m, X, V, q):
         )
         six_r_n_m1_t_4 = six_r_c_1*six_r_n_m1_t + six_r_n_m1_t_2*six_r_s_1
         six_r_n_m1_t_5 = six_r_c_1*six_r_n_m1_t_2 - six_r_n_m1_t*six_r_s_1
-        six_r_n_m1_t_6 = six_r_c_2*six_r_n_m1_t_5 + six_r_n_m1_t_3*six_r_s_2
-        six_r_n_m1_t_7 = six_r_c_2*six_r_n_m1_t_3 - six_r_n_m1_t_5*six_r_s_2
-        six_r_n_m1_t_8 = six_r_c_3*six_r_n_m1_t_6 + six_r_n_m1_t_7*six_r_s_3
-        six_r_n_m1_t_9 = six_r_c_3*six_r_n_m1_t_7 - six_r_n_m1_t_6*six_r_s_3
-        six_r_n_m1_t_10 = six_r_c_4*six_r_n_m1_t_4 - six_r_n_m1_t_9*six_r_s_4
-        six_r_n_m1_in_axes5_y = six_r_c_5*six_r_n_m1_t_10 + six_r_n_m1_t_8*six_r_s_5
+        six_r_n_m1_t_6 = six_r_c_2*six_r_n_m1_t_3 + six_r_n_m1_t_4*six_r_s_2
+        six_r_n_m1_t_7 = six_r_c_2*six_r_n_m1_t_4 - six_r_n_m1_t_3*six_r_s_2
+        six_r_n_m1_t_8 = six_r_n_m1_t_6*six_r_s_3 - six_r_c_3*six_r_n_m1_t_7
+        six_r_n_m1_t_9 = six_r_c_3*six_r_n_m1_t_6 + six_r_n_m1_t_7*six_r_s_3
+        six_r_n_m1_t_10 = six_r_n_m1_t_5*six_r_s_4 - six_r_c_4*six_r_n_m1_t_8
+        six_r_n_m1_in_axes5_y = six_r_c_5*six_r_n_m1_t_9 + six_r_n_m1_t_10*six_r_s_5
         # (six_r-n_m2) direction 2 of the moment that the platform joint transmits
-        six_r_n_m2_in_axes5_z = six_r_c_5*six_r_n_m1_t_8 - six_r_n_m1_t_10*six_r_s_5
+        six_r_n_m2_in_axes5_z = six_r_c_5*six_r_n_m1_t_10 - six_r_n_m1_t_9*six_r_s_5
         # (six_r-w_1) force part of reciprocal wrench 1
-        six_r_end_p1_in_axes5_z = six_r_c_4*six_r_n_m1_t_9 + six_r_n_m1_t_4*six_r_s_4
+        six_r_end_p1_in_axes5_z = six_r_c_4*six_r_n_m1_t_5 + six_r_n_m1_t_8*six_r_s_4
         six_r_w_1_t = (
         six_r_e_1_in_axes5_x*six_r_n_m2_in_axes5_z - six_r_e_1_in_axes5_y*six_r_n_m1_in_axes5_y
         )
@@ -9353,16 +9473,16 @@ def _run_joint_rates(m, X, V, q):
         six_r_e_1_in_axes5_y*six_r_end_p1_in_axes5_z - six_r_e_1_in_axes5_z*six_r_n_m2_in_axes5_z
         )
         six_r_w_1_t_4 = (
-        six_r_e_2_in_axes5_y*six_r_end_p1_in_axes5_z - six_r_n_m2_in_axes5_z*six_r_s_4
+        six_r_e_2_in_axes5_y*six_r_end_p1_in_axes5_z - six_r_c_4*six_r_n_m2_in_axes5_z
         )
         six_r_w_1_t_5 = six_r_size*six_r_w_1_t
         six_r_w_1_t_6 = six_r_size*six_r_w_1_t_3
         six_r_w_1_t_7 = six_r_size*six_r_w_1_t_2
         six_r_w_1_t_8 = six_r_size*six_r_w_1_t_4
         six_r_w_1_t_9 = (
-        six_r_size*(six_r_c_5*six_r_n_m1_in_axes5_y - six_r_n_m2_in_axes5_z*six_r_s_5)
+        six_r_size*(-six_r_c_5*six_r_n_m2_in_axes5_z - six_r_n_m1_in_axes5_y*six_r_s_5)
         )
-        six_r_w_1_t_10 = -six_r_c_5*six_r_end_p1_in_axes5_z*six_r_size
+        six_r_w_1_t_10 = six_r_end_p1_in_axes5_z*six_r_s_5*six_r_size
         six_r_w_1_t_11 = six_r_n_m2_in_axes5_z*six_r_size
         six_r_w_1_t_12 = sqrt(six_r_size_t + six_r_w_1_t_11*six_r_w_1_t_11)
         inv_six_r_w_1_t_12 = 1.0/six_r_w_1_t_12
@@ -9506,8 +9626,8 @@ def _run_joint_rates(m, X, V, q):
             six_r_qd_1_t_2*six_r_w_1_t_54 - six_r_qd_1_t_4*six_r_w_1_t_55)
         )
         # (six_r-qd_4) rate of joint 4
-        six_r_qd_4 = (
-        -inv_six_r_w_1_t_28*(six_r_S_dot_in_axes5_y*six_r_w_1_t_29 + six_r_qd_1_t_2*six_r_w_1_t_32
+        six_r_qd_4_t = (
+        inv_six_r_w_1_t_28*(six_r_S_dot_in_axes5_y*six_r_w_1_t_29 + six_r_qd_1_t_2*six_r_w_1_t_32
             + six_r_qd_1_t_3*six_r_w_1_t_44 - six_r_S_dot_in_axes5_z*six_r_w_1_t_30 -
             six_r_qd_1*six_r_w_1_t_33 - six_r_qd_1_t*six_r_w_1_t_31 -
             six_r_qd_1_t_4*six_r_w_1_t_39)
@@ -9515,8 +9635,8 @@ def _run_joint_rates(m, X, V, q):
         # (six_r-qd_5) rate of joint 5
         six_r_qd_5_t = (
         inv_six_r_w_1_t_12*(six_r_qd_1*six_r_w_1_t_18 + six_r_qd_1_t_2*six_r_w_1_t_14 +
-            six_r_qd_1_t_3*six_r_w_1_t_25 + six_r_qd_1_t_4*six_r_w_1_t_22 +
-            six_r_qd_4*six_r_w_1_t_15 - six_r_S_dot_in_axes5_y*six_r_w_1_t_13)
+            six_r_qd_1_t_3*six_r_w_1_t_25 + six_r_qd_1_t_4*six_r_w_1_t_22 -
+            six_r_S_dot_in_axes5_y*six_r_w_1_t_13 - six_r_qd_4_t*six_r_w_1_t_15)
         )
         ok = (
         ok & (abs(six_r_w_1_t_12) > _TOLERANCE * six_r_size) & (abs(six_r_w_1_t_28) > _TOLERANCE *
@@ -9530,7 +9650,7 @@ def _run_joint_rates(m, X, V, q):
         # (six_r-qd_3) rate of joint 3
         out_qd[_qd_six_r[2][leg]] = -six_r_qd_1_t_3
         # (six_r-qd_4) rate of joint 4
-        out_qd[_qd_six_r[3][leg]] = six_r_qd_4
+        out_qd[_qd_six_r[3][leg]] = -six_r_qd_4_t
         # (six_r-qd_5) rate of joint 5
         out_qd[_qd_six_r[4][leg]] = -six_r_qd_5_t
     return ok, (out_qd,)
@@ -9615,62 +9735,62 @@ def _run_joint_accelerations(m, X, V, A, q):
         six_r_q_4 = q[[3, 8, 13, 18, 23, 28][leg]]
         six_r_q_5 = q[[4, 9, 14, 19, 24, 29][leg]]
         # (six_r-c_1) cosine of the angle of joint 1 from its reference direction
-        six_r_c_1 = -sin(six_r_q_1)
+        six_r_c_1 = cos(six_r_q_1)
         # (six_r-s_1) sine of the angle of joint 1 from its reference direction
-        six_r_s_1 = cos(six_r_q_1)
+        six_r_s_1 = sin(six_r_q_1)
         # (six_r-c_2) cosine of the angle of joint 2 from its reference direction
-        six_r_c_2 = -sin(six_r_q_2)
+        six_r_c_2 = cos(six_r_q_2)
         # (six_r-s_2) sine of the angle of joint 2 from its reference direction
-        six_r_s_2 = cos(six_r_q_2)
+        six_r_s_2 = sin(six_r_q_2)
         # (six_r-c_3) cosine of the angle of joint 3 from its reference direction
         six_r_c_3 = cos(six_r_q_3)
         # (six_r-s_3) sine of the angle of joint 3 from its reference direction
         six_r_s_3 = sin(six_r_q_3)
         # (six_r-c_4) cosine of the angle of joint 4 from its reference direction
-        six_r_c_4 = -sin(six_r_q_4)
+        six_r_c_4 = cos(six_r_q_4)
         # (six_r-s_4) sine of the angle of joint 4 from its reference direction
-        six_r_s_4 = cos(six_r_q_4)
+        six_r_s_4 = sin(six_r_q_4)
         # (six_r-c_5) cosine of the angle of joint 5 from its reference direction
-        six_r_c_5 = -sin(six_r_q_5)
+        six_r_c_5 = cos(six_r_q_5)
         # (six_r-s_5) sine of the angle of joint 5 from its reference direction
-        six_r_s_5 = cos(six_r_q_5)
+        six_r_s_5 = sin(six_r_q_5)
         # (six_r-S_dot) velocity of the connection point
-        six_r_e_2_in_axes5_y = -six_r_c_4*six_r_s_5
-        six_r_S_dot_t = -six_r_c_4*six_r_s_3
-        six_r_S_dot_t_2 = -six_r_c_3*six_r_c_4
-        six_r_S_dot_t_3 = six_r_S_dot_t*six_r_c_2 + six_r_S_dot_t_2*six_r_s_2
-        six_r_S_dot_t_4 = six_r_S_dot_t*six_r_s_2 - six_r_S_dot_t_2*six_r_c_2
-        six_r_S_dot_t_5 = six_r_c_1*six_r_s_4 - six_r_S_dot_t_3*six_r_s_1
-        six_r_S_dot_t_6 = six_r_S_dot_t_3*six_r_c_1 + six_r_s_1*six_r_s_4
+        six_r_e_2_in_axes5_y = six_r_c_5*six_r_s_4
+        six_r_S_dot_t = six_r_c_3*six_r_s_4
+        six_r_S_dot_t_2 = six_r_s_3*six_r_s_4
+        six_r_S_dot_t_3 = six_r_S_dot_t*six_r_s_2 + six_r_S_dot_t_2*six_r_c_2
+        six_r_S_dot_t_4 = six_r_S_dot_t_2*six_r_s_2 - six_r_S_dot_t*six_r_c_2
+        six_r_S_dot_t_5 = six_r_S_dot_t_4*six_r_c_1 - six_r_c_4*six_r_s_1
+        six_r_S_dot_t_6 = six_r_S_dot_t_4*six_r_s_1 + six_r_c_1*six_r_c_4
         axis_z_six_r_axes5_x = (
-        six_r_S_dot_t_4*six_r_base_frame_xx + six_r_S_dot_t_5*six_r_base_frame_xy +
+        six_r_S_dot_t_3*six_r_base_frame_xx + six_r_S_dot_t_5*six_r_base_frame_xy +
             six_r_S_dot_t_6*six_r_base_frame_xz
         )
         axis_z_six_r_axes5_y = (
-        six_r_S_dot_t_4*six_r_base_frame_yx + six_r_S_dot_t_5*six_r_base_frame_yy +
+        six_r_S_dot_t_3*six_r_base_frame_yx + six_r_S_dot_t_5*six_r_base_frame_yy +
             six_r_S_dot_t_6*six_r_base_frame_yz
         )
         axis_z_six_r_axes5_z = (
-        six_r_S_dot_t_4*six_r_base_frame_zx + six_r_S_dot_t_5*six_r_base_frame_zy +
+        six_r_S_dot_t_3*six_r_base_frame_zx + six_r_S_dot_t_5*six_r_base_frame_zy +
             six_r_S_dot_t_6*six_r_base_frame_zz
         )
-        six_r_S_dot_t_7 = six_r_s_4*six_r_s_5
-        six_r_S_dot_t_8 = six_r_c_3*six_r_c_5 - six_r_S_dot_t_7*six_r_s_3
-        six_r_S_dot_t_9 = six_r_S_dot_t_7*six_r_c_3 + six_r_c_5*six_r_s_3
-        six_r_S_dot_t_10 = six_r_S_dot_t_8*six_r_c_2 - six_r_S_dot_t_9*six_r_s_2
-        six_r_S_dot_t_11 = six_r_S_dot_t_8*six_r_s_2 + six_r_S_dot_t_9*six_r_c_2
-        six_r_S_dot_t_12 = six_r_c_1*six_r_e_2_in_axes5_y - six_r_S_dot_t_10*six_r_s_1
-        six_r_S_dot_t_13 = six_r_S_dot_t_10*six_r_c_1 + six_r_e_2_in_axes5_y*six_r_s_1
+        six_r_S_dot_t_7 = six_r_c_4*six_r_c_5
+        six_r_S_dot_t_8 = six_r_s_3*six_r_s_5 - six_r_S_dot_t_7*six_r_c_3
+        six_r_S_dot_t_9 = -six_r_S_dot_t_7*six_r_s_3 - six_r_c_3*six_r_s_5
+        six_r_S_dot_t_10 = six_r_S_dot_t_8*six_r_s_2 + six_r_S_dot_t_9*six_r_c_2
+        six_r_S_dot_t_11 = six_r_S_dot_t_9*six_r_s_2 - six_r_S_dot_t_8*six_r_c_2
+        six_r_S_dot_t_12 = six_r_S_dot_t_11*six_r_c_1 - six_r_e_2_in_axes5_y*six_r_s_1
+        six_r_S_dot_t_13 = six_r_S_dot_t_11*six_r_s_1 + six_r_c_1*six_r_e_2_in_axes5_y
         axis_y_six_r_axes5_x = (
-        six_r_S_dot_t_11*six_r_base_frame_xx + six_r_S_dot_t_12*six_r_base_frame_xy +
+        six_r_S_dot_t_10*six_r_base_frame_xx + six_r_S_dot_t_12*six_r_base_frame_xy +
             six_r_S_dot_t_13*six_r_base_frame_xz
         )
         axis_y_six_r_axes5_y = (
-        six_r_S_dot_t_11*six_r_base_frame_yx + six_r_S_dot_t_12*six_r_base_frame_yy +
+        six_r_S_dot_t_10*six_r_base_frame_yx + six_r_S_dot_t_12*six_r_base_frame_yy +
             six_r_S_dot_t_13*six_r_base_frame_yz
         )
         axis_y_six_r_axes5_z = (
-        six_r_S_dot_t_11*six_r_base_frame_zx + six_r_S_dot_t_12*six_r_base_frame_zy +
+        six_r_S_dot_t_10*six_r_base_frame_zx + six_r_S_dot_t_12*six_r_base_frame_zy +
             six_r_S_dot_t_13*six_r_base_frame_zz
         )
         axis_x_six_r_axes5_x = (
@@ -9710,49 +9830,49 @@ def _run_joint_accelerations(m, X, V, A, q):
             axis_z_six_r_axes5_z*six_r_S_dot_z
         )
         # (six_r-r_4) from joint 4 to the connection point, along the links
-        six_r_r_4_in_axes4_y = six_r_c_5*six_r_platform_joint_offset_x
-        six_r_r_4_in_axes4_z = six_r_joint5_offset_x + six_r_platform_joint_offset_x*six_r_s_5
-        six_r_r_4_in_axes3_y = -six_r_r_4_in_axes4_y*six_r_s_4
-        six_r_r_4_in_axes3_z = six_r_c_4*six_r_r_4_in_axes4_y
+        six_r_r_4_in_axes4_x = six_r_platform_joint_offset_x*six_r_s_5
+        six_r_r_4_in_axes4_z = six_r_joint5_offset_x + six_r_c_5*six_r_platform_joint_offset_x
+        six_r_r_4_in_axes3_x = -six_r_c_4*six_r_r_4_in_axes4_x
+        six_r_r_4_in_axes3_z = six_r_r_4_in_axes4_x*six_r_s_4
         # (six_r-r_3) from joint 3 to the connection point, along the links
-        six_r_r_3_in_axes3_x = six_r_joint4_offset_x + six_r_r_4_in_axes4_z
-        six_r_r_3_in_axes2_y = six_r_c_3*six_r_r_4_in_axes3_y + six_r_r_3_in_axes3_x*six_r_s_3
+        six_r_r_3_in_axes3_y = six_r_joint4_offset_x + six_r_r_4_in_axes4_z
+        six_r_r_3_in_axes2_y = six_r_r_3_in_axes3_y*six_r_s_3 - six_r_c_3*six_r_r_4_in_axes3_x
         six_r_r_3_t = six_r_r_4_in_axes3_z*six_r_s_4
-        six_r_r_3_t_2 = -six_r_c_4*six_r_r_4_in_axes3_z
-        six_r_r_3_in_axes5_z = six_r_r_3_t + six_r_c_4*six_r_r_4_in_axes3_y
-        six_r_r_3_t_3 = -six_r_r_3_t_2 - six_r_r_4_in_axes3_y*six_r_s_4
-        six_r_r_3_in_axes5_x = six_r_c_5*six_r_r_3_t_3 + six_r_r_3_in_axes3_x*six_r_s_5
-        six_r_r_3_in_axes5_y = six_r_c_5*six_r_r_3_in_axes3_x - six_r_r_3_t_3*six_r_s_5
+        six_r_r_3_t_2 = six_r_c_4*six_r_r_4_in_axes3_z
+        six_r_r_3_t_3 = six_r_r_3_t - six_r_c_4*six_r_r_4_in_axes3_x
+        six_r_r_3_in_axes5_z = six_r_r_3_t_2 + six_r_r_4_in_axes3_x*six_r_s_4
+        six_r_r_3_in_axes5_x = six_r_c_5*six_r_r_3_in_axes3_y + six_r_r_3_t_3*six_r_s_5
+        six_r_r_3_in_axes5_y = six_r_c_5*six_r_r_3_t_3 - six_r_r_3_in_axes3_y*six_r_s_5
         # (six_r-r_2) from joint 2 to the connection point, along the links
         six_r_r_2_in_axes2_x = (
-        six_r_joint3_offset_x + six_r_c_3*six_r_r_3_in_axes3_x - six_r_r_4_in_axes3_y*six_r_s_3
+        six_r_joint3_offset_x + six_r_c_3*six_r_r_3_in_axes3_y + six_r_r_4_in_axes3_x*six_r_s_3
         )
-        six_r_r_2_in_axes1_y = six_r_c_2*six_r_r_2_in_axes2_x - six_r_r_3_in_axes2_y*six_r_s_2
-        six_r_r_2_t = six_r_c_3*six_r_r_2_in_axes2_x + six_r_r_3_in_axes2_y*six_r_s_3
-        six_r_r_2_t_2 = six_r_c_3*six_r_r_3_in_axes2_y - six_r_r_2_in_axes2_x*six_r_s_3
-        six_r_r_2_in_axes5_z = six_r_r_3_t + six_r_c_4*six_r_r_2_t_2
-        six_r_r_2_t_3 = -six_r_r_3_t_2 - six_r_r_2_t_2*six_r_s_4
-        six_r_r_2_in_axes5_x = six_r_c_5*six_r_r_2_t_3 + six_r_r_2_t*six_r_s_5
-        six_r_r_2_in_axes5_y = six_r_c_5*six_r_r_2_t - six_r_r_2_t_3*six_r_s_5
+        six_r_r_2_in_axes1_x = six_r_c_2*six_r_r_3_in_axes2_y + six_r_r_2_in_axes2_x*six_r_s_2
+        six_r_r_2_t = six_r_r_2_in_axes2_x*six_r_s_3 - six_r_c_3*six_r_r_3_in_axes2_y
+        six_r_r_2_t_2 = six_r_c_3*six_r_r_2_in_axes2_x + six_r_r_3_in_axes2_y*six_r_s_3
+        six_r_r_2_t_3 = six_r_r_3_t - six_r_c_4*six_r_r_2_t
+        six_r_r_2_in_axes5_z = six_r_r_3_t_2 + six_r_r_2_t*six_r_s_4
+        six_r_r_2_in_axes5_x = six_r_c_5*six_r_r_2_t_2 + six_r_r_2_t_3*six_r_s_5
+        six_r_r_2_in_axes5_y = six_r_c_5*six_r_r_2_t_3 - six_r_r_2_t_2*six_r_s_5
         # (six_r-r_1) from joint 1 to the connection point, along the links
         six_r_r_1_in_axes1_z = (
-        six_r_joint2_offset_x + six_r_c_2*six_r_r_3_in_axes2_y + six_r_r_2_in_axes2_x*six_r_s_2
+        six_r_joint2_offset_x + six_r_c_2*six_r_r_2_in_axes2_x - six_r_r_3_in_axes2_y*six_r_s_2
         )
-        six_r_r_1_t = six_r_c_2*six_r_r_2_in_axes1_y + six_r_r_1_in_axes1_z*six_r_s_2
-        six_r_r_1_t_2 = six_r_c_2*six_r_r_1_in_axes1_z - six_r_r_2_in_axes1_y*six_r_s_2
-        six_r_r_1_t_3 = six_r_c_3*six_r_r_1_t + six_r_r_1_t_2*six_r_s_3
-        six_r_r_1_t_4 = six_r_c_3*six_r_r_1_t_2 - six_r_r_1_t*six_r_s_3
-        six_r_r_1_in_axes5_z = six_r_r_3_t + six_r_c_4*six_r_r_1_t_4
-        six_r_r_1_t_5 = -six_r_r_3_t_2 - six_r_r_1_t_4*six_r_s_4
-        six_r_r_1_in_axes5_x = six_r_c_5*six_r_r_1_t_5 + six_r_r_1_t_3*six_r_s_5
-        six_r_r_1_in_axes5_y = six_r_c_5*six_r_r_1_t_3 - six_r_r_1_t_5*six_r_s_5
+        six_r_r_1_t = six_r_c_2*six_r_r_1_in_axes1_z + six_r_r_2_in_axes1_x*six_r_s_2
+        six_r_r_1_t_2 = six_r_c_2*six_r_r_2_in_axes1_x - six_r_r_1_in_axes1_z*six_r_s_2
+        six_r_r_1_t_3 = six_r_r_1_t*six_r_s_3 - six_r_c_3*six_r_r_1_t_2
+        six_r_r_1_t_4 = six_r_c_3*six_r_r_1_t + six_r_r_1_t_2*six_r_s_3
+        six_r_r_1_t_5 = six_r_r_3_t - six_r_c_4*six_r_r_1_t_3
+        six_r_r_1_in_axes5_z = six_r_r_3_t_2 + six_r_r_1_t_3*six_r_s_4
+        six_r_r_1_in_axes5_x = six_r_c_5*six_r_r_1_t_4 + six_r_r_1_t_5*six_r_s_5
+        six_r_r_1_in_axes5_y = six_r_c_5*six_r_r_1_t_5 - six_r_r_1_t_4*six_r_s_5
         # (six_r-v_1) velocity of the connection point per rate of joint 1
         six_r_v_1_t = six_r_c_2*six_r_s_3 + six_r_c_3*six_r_s_2
         six_r_v_1_t_2 = six_r_c_2*six_r_c_3 - six_r_s_2*six_r_s_3
-        six_r_e_1_in_axes5_z = six_r_c_4*six_r_v_1_t_2
-        six_r_v_1_t_3 = six_r_s_4*six_r_v_1_t_2
-        six_r_e_1_in_axes5_x = six_r_s_5*six_r_v_1_t - six_r_c_5*six_r_v_1_t_3
-        six_r_e_1_in_axes5_y = six_r_c_5*six_r_v_1_t + six_r_s_5*six_r_v_1_t_3
+        six_r_v_1_t_3 = six_r_c_4*six_r_v_1_t
+        six_r_e_1_in_axes5_z = six_r_s_4*six_r_v_1_t
+        six_r_e_1_in_axes5_x = six_r_c_5*six_r_v_1_t_2 - six_r_s_5*six_r_v_1_t_3
+        six_r_e_1_in_axes5_y = -six_r_c_5*six_r_v_1_t_3 - six_r_s_5*six_r_v_1_t_2
         six_r_v_1_in_axes5_x = (
         six_r_e_1_in_axes5_y*six_r_r_1_in_axes5_z - six_r_e_1_in_axes5_z*six_r_r_1_in_axes5_y
         )
@@ -9763,30 +9883,30 @@ def _run_joint_accelerations(m, X, V, A, q):
         six_r_e_1_in_axes5_x*six_r_r_1_in_axes5_y - six_r_e_1_in_axes5_y*six_r_r_1_in_axes5_x
         )
         # (six_r-v_2) velocity of the connection point per rate of joint 2
-        six_r_e_2_in_axes5_x = six_r_c_4*six_r_c_5
+        six_r_e_2_in_axes5_x = six_r_s_4*six_r_s_5
         six_r_v_2_in_axes5_x = (
-        six_r_e_2_in_axes5_y*six_r_r_2_in_axes5_z - six_r_r_2_in_axes5_y*six_r_s_4
+        six_r_e_2_in_axes5_y*six_r_r_2_in_axes5_z - six_r_c_4*six_r_r_2_in_axes5_y
         )
         six_r_v_2_in_axes5_y = (
-        six_r_r_2_in_axes5_x*six_r_s_4 - six_r_e_2_in_axes5_x*six_r_r_2_in_axes5_z
+        six_r_c_4*six_r_r_2_in_axes5_x - six_r_e_2_in_axes5_x*six_r_r_2_in_axes5_z
         )
         six_r_v_2_in_axes5_z = (
         six_r_e_2_in_axes5_x*six_r_r_2_in_axes5_y - six_r_e_2_in_axes5_y*six_r_r_2_in_axes5_x
         )
         # (six_r-v_3) velocity of the connection point per rate of joint 3
         six_r_v_3_in_axes5_x = (
-        six_r_e_2_in_axes5_y*six_r_r_3_in_axes5_z - six_r_r_3_in_axes5_y*six_r_s_4
+        six_r_e_2_in_axes5_y*six_r_r_3_in_axes5_z - six_r_c_4*six_r_r_3_in_axes5_y
         )
         six_r_v_3_in_axes5_y = (
-        six_r_r_3_in_axes5_x*six_r_s_4 - six_r_e_2_in_axes5_x*six_r_r_3_in_axes5_z
+        six_r_c_4*six_r_r_3_in_axes5_x - six_r_e_2_in_axes5_x*six_r_r_3_in_axes5_z
         )
         six_r_v_3_in_axes5_z = (
         six_r_e_2_in_axes5_x*six_r_r_3_in_axes5_y - six_r_e_2_in_axes5_y*six_r_r_3_in_axes5_x
         )
         # (six_r-v_4) velocity of the connection point per rate of joint 4
         six_r_v_4_in_axes5_z = (
-        six_r_s_5*(six_r_c_5*six_r_r_4_in_axes4_z - six_r_r_4_in_axes4_y*six_r_s_5) -
-            six_r_c_5*(six_r_c_5*six_r_r_4_in_axes4_y + six_r_r_4_in_axes4_z*six_r_s_5)
+        six_r_c_5*(six_r_c_5*six_r_r_4_in_axes4_x - six_r_r_4_in_axes4_z*six_r_s_5) +
+            six_r_s_5*(six_r_c_5*six_r_r_4_in_axes4_z + six_r_r_4_in_axes4_x*six_r_s_5)
         )
         # (six_r-n_m1) direction 1 of the moment that the platform joint transmits
         six_r_n_m1_t = (
@@ -9815,16 +9935,16 @@ def _run_joint_accelerations(m, X, V, A, q):
         )
         six_r_n_m1_t_4 = six_r_c_1*six_r_n_m1_t + six_r_n_m1_t_2*six_r_s_1
         six_r_n_m1_t_5 = six_r_c_1*six_r_n_m1_t_2 - six_r_n_m1_t*six_r_s_1
-        six_r_n_m1_t_6 = six_r_c_2*six_r_n_m1_t_5 + six_r_n_m1_t_3*six_r_s_2
-        six_r_n_m1_t_7 = six_r_c_2*six_r_n_m1_t_3 - six_r_n_m1_t_5*six_r_s_2
-        six_r_n_m1_t_8 = six_r_c_3*six_r_n_m1_t_6 + six_r_n_m1_t_7*six_r_s_3
-        six_r_n_m1_t_9 = six_r_c_3*six_r_n_m1_t_7 - six_r_n_m1_t_6*six_r_s_3
-        six_r_n_m1_t_10 = six_r_c_4*six_r_n_m1_t_4 - six_r_n_m1_t_9*six_r_s_4
-        six_r_n_m1_in_axes5_y = six_r_c_5*six_r_n_m1_t_10 + six_r_n_m1_t_8*six_r_s_5
+        six_r_n_m1_t_6 = six_r_c_2*six_r_n_m1_t_3 + six_r_n_m1_t_4*six_r_s_2
+        six_r_n_m1_t_7 = six_r_c_2*six_r_n_m1_t_4 - six_r_n_m1_t_3*six_r_s_2
+        six_r_n_m1_t_8 = six_r_n_m1_t_6*six_r_s_3 - six_r_c_3*six_r_n_m1_t_7
+        six_r_n_m1_t_9 = six_r_c_3*six_r_n_m1_t_6 + six_r_n_m1_t_7*six_r_s_3
+        six_r_n_m1_t_10 = six_r_n_m1_t_5*six_r_s_4 - six_r_c_4*six_r_n_m1_t_8
+        six_r_n_m1_in_axes5_y = six_r_c_5*six_r_n_m1_t_9 + six_r_n_m1_t_10*six_r_s_5
         # (six_r-n_m2) direction 2 of the moment that the platform joint transmits
-        six_r_n_m2_in_axes5_z = six_r_c_5*six_r_n_m1_t_8 - six_r_n_m1_t_10*six_r_s_5
+        six_r_n_m2_in_axes5_z = six_r_c_5*six_r_n_m1_t_10 - six_r_n_m1_t_9*six_r_s_5
         # (six_r-w_1) force part of reciprocal wrench 1
-        six_r_end_p1_in_axes5_z = six_r_c_4*six_r_n_m1_t_9 + six_r_n_m1_t_4*six_r_s_4
+        six_r_end_p1_in_axes5_z = six_r_c_4*six_r_n_m1_t_5 + six_r_n_m1_t_8*six_r_s_4
         six_r_w_1_t = (
         six_r_e_1_in_axes5_x*six_r_n_m2_in_axes5_z - six_r_e_1_in_axes5_y*six_r_n_m1_in_axes5_y
         )
@@ -9835,16 +9955,16 @@ def _run_joint_accelerations(m, X, V, A, q):
         six_r_e_1_in_axes5_y*six_r_end_p1_in_axes5_z - six_r_e_1_in_axes5_z*six_r_n_m2_in_axes5_z
         )
         six_r_w_1_t_4 = (
-        six_r_e_2_in_axes5_y*six_r_end_p1_in_axes5_z - six_r_n_m2_in_axes5_z*six_r_s_4
+        six_r_e_2_in_axes5_y*six_r_end_p1_in_axes5_z - six_r_c_4*six_r_n_m2_in_axes5_z
         )
         six_r_w_1_t_5 = six_r_size*six_r_w_1_t
         six_r_w_1_t_6 = six_r_size*six_r_w_1_t_3
         six_r_w_1_t_7 = six_r_size*six_r_w_1_t_2
         six_r_w_1_t_8 = six_r_size*six_r_w_1_t_4
         six_r_w_1_t_9 = (
-        six_r_size*(six_r_c_5*six_r_n_m1_in_axes5_y - six_r_n_m2_in_axes5_z*six_r_s_5)
+        six_r_size*(-six_r_c_5*six_r_n_m2_in_axes5_z - six_r_n_m1_in_axes5_y*six_r_s_5)
         )
-        six_r_w_1_t_10 = -six_r_c_5*six_r_end_p1_in_axes5_z*six_r_size
+        six_r_w_1_t_10 = six_r_end_p1_in_axes5_z*six_r_s_5*six_r_size
         six_r_w_1_t_11 = six_r_n_m2_in_axes5_z*six_r_size
         six_r_w_1_t_12 = sqrt(six_r_size_t + six_r_w_1_t_11*six_r_w_1_t_11)
         inv_six_r_w_1_t_12 = 1.0/six_r_w_1_t_12
@@ -9999,8 +10119,8 @@ def _run_joint_accelerations(m, X, V, A, q):
             six_r_qd_1_t_7*six_r_w_1_t_54 - six_r_qd_1_t_9*six_r_w_1_t_55)
         )
         # (six_r-qd_4) rate of joint 4
-        six_r_qd_4 = (
-        -inv_six_r_w_1_t_28*(six_r_S_dot_in_axes5_y*six_r_w_1_t_29 + six_r_qd_1_t_7*six_r_w_1_t_32
+        six_r_qd_4_t = (
+        inv_six_r_w_1_t_28*(six_r_S_dot_in_axes5_y*six_r_w_1_t_29 + six_r_qd_1_t_7*six_r_w_1_t_32
             + six_r_qd_1_t_8*six_r_w_1_t_44 - six_r_S_dot_in_axes5_z*six_r_w_1_t_30 -
             six_r_qd_1*six_r_w_1_t_33 - six_r_qd_1_t_6*six_r_w_1_t_31 -
             six_r_qd_1_t_9*six_r_w_1_t_39)
@@ -10008,12 +10128,12 @@ def _run_joint_accelerations(m, X, V, A, q):
         # (six_r-qd_5) rate of joint 5
         six_r_qd_5_t = (
         inv_six_r_w_1_t_12*(six_r_qd_1*six_r_w_1_t_18 + six_r_qd_1_t_7*six_r_w_1_t_14 +
-            six_r_qd_1_t_8*six_r_w_1_t_25 + six_r_qd_1_t_9*six_r_w_1_t_22 +
-            six_r_qd_4*six_r_w_1_t_15 - six_r_S_dot_in_axes5_y*six_r_w_1_t_13)
+            six_r_qd_1_t_8*six_r_w_1_t_25 + six_r_qd_1_t_9*six_r_w_1_t_22 -
+            six_r_S_dot_in_axes5_y*six_r_w_1_t_13 - six_r_qd_4_t*six_r_w_1_t_15)
         )
         # (six_r-omega_1) angular velocity of link 1
-        six_r_omega_1_in_axes2_x = six_r_qd_1*six_r_s_2
-        six_r_omega_1_in_axes2_y = six_r_c_2*six_r_qd_1
+        six_r_omega_1_in_axes2_x = six_r_c_2*six_r_qd_1
+        six_r_omega_1_in_axes2_y = -six_r_qd_1*six_r_s_2
         six_r_omega_1_in_axes5_x = six_r_e_1_in_axes5_x*six_r_qd_1
         six_r_omega_1_in_axes5_y = six_r_e_1_in_axes5_y*six_r_qd_1
         six_r_omega_1_in_axes5_z = six_r_e_1_in_axes5_z*six_r_qd_1
@@ -10023,14 +10143,14 @@ def _run_joint_accelerations(m, X, V, A, q):
         six_r_W_1_in_axes5_yz = six_r_omega_1_in_axes5_y*six_r_omega_1_in_axes5_z
         # (six_r-omega_2) angular velocity of link 2
         six_r_omega_2_in_axes3_x = (
-        six_r_c_3*six_r_omega_1_in_axes2_x + six_r_omega_1_in_axes2_y*six_r_s_3
+        six_r_omega_1_in_axes2_x*six_r_s_3 - six_r_c_3*six_r_omega_1_in_axes2_y
         )
         six_r_omega_2_in_axes3_y = (
-        six_r_c_3*six_r_omega_1_in_axes2_y - six_r_omega_1_in_axes2_x*six_r_s_3
+        six_r_c_3*six_r_omega_1_in_axes2_x + six_r_omega_1_in_axes2_y*six_r_s_3
         )
         six_r_omega_2_in_axes5_x = six_r_omega_1_in_axes5_x + six_r_e_2_in_axes5_x*six_r_qd_1_t_9
         six_r_omega_2_in_axes5_y = six_r_omega_1_in_axes5_y + six_r_e_2_in_axes5_y*six_r_qd_1_t_9
-        six_r_omega_2_in_axes5_z = six_r_omega_1_in_axes5_z + six_r_qd_1_t_9*six_r_s_4
+        six_r_omega_2_in_axes5_z = six_r_omega_1_in_axes5_z + six_r_c_4*six_r_qd_1_t_9
         # (six_r-W_2) centripetal tensor of link 2
         six_r_W_2_in_axes2_yz = six_r_omega_1_in_axes2_y*six_r_qd_1_t_9
         six_r_W_2_in_axes5_xy = six_r_omega_2_in_axes5_x*six_r_omega_2_in_axes5_y
@@ -10039,25 +10159,25 @@ def _run_joint_accelerations(m, X, V, A, q):
         # (six_r-omega_3) angular velocity of link 3
         six_r_omega_3_in_axes3_z = six_r_qd_1_t_9 - six_r_qd_1_t_8
         six_r_omega_3_in_axes4_x = (
-        six_r_c_4*six_r_omega_2_in_axes3_y + six_r_omega_3_in_axes3_z*six_r_s_4
+        six_r_omega_3_in_axes3_z*six_r_s_4 - six_r_c_4*six_r_omega_2_in_axes3_x
         )
         six_r_omega_3_in_axes4_y = (
-        six_r_c_4*six_r_omega_3_in_axes3_z - six_r_omega_2_in_axes3_y*six_r_s_4
+        six_r_c_4*six_r_omega_3_in_axes3_z + six_r_omega_2_in_axes3_x*six_r_s_4
         )
-        six_r_omega_3_t = -six_r_c_5*six_r_omega_3_in_axes4_y
-        six_r_omega_3_t_2 = six_r_omega_3_in_axes4_y*six_r_s_5
-        six_r_omega_3_in_axes5_x = six_r_omega_2_in_axes3_x*six_r_s_5 - six_r_omega_3_t
-        six_r_omega_3_in_axes5_y = six_r_c_5*six_r_omega_2_in_axes3_x - six_r_omega_3_t_2
+        six_r_omega_3_t = six_r_omega_3_in_axes4_x*six_r_s_5
+        six_r_omega_3_t_2 = six_r_c_5*six_r_omega_3_in_axes4_x
+        six_r_omega_3_in_axes5_x = six_r_omega_3_t + six_r_c_5*six_r_omega_2_in_axes3_y
+        six_r_omega_3_in_axes5_y = six_r_omega_3_t_2 - six_r_omega_2_in_axes3_y*six_r_s_5
         # (six_r-W_3) centripetal tensor of link 3
         six_r_W_3_in_axes5_xy = six_r_omega_3_in_axes5_x*six_r_omega_3_in_axes5_y
         # (six_r-omega_4) angular velocity of link 4
-        six_r_omega_4_in_axes4_z = six_r_omega_2_in_axes3_x + six_r_qd_4
-        six_r_omega_4_in_axes5_x = six_r_omega_4_in_axes4_z*six_r_s_5 - six_r_omega_3_t
-        six_r_omega_4_in_axes5_y = six_r_c_5*six_r_omega_4_in_axes4_z - six_r_omega_3_t_2
+        six_r_omega_4_in_axes4_z = six_r_omega_2_in_axes3_y - six_r_qd_4_t
+        six_r_omega_4_in_axes5_x = six_r_omega_3_t + six_r_c_5*six_r_omega_4_in_axes4_z
+        six_r_omega_4_in_axes5_y = six_r_omega_3_t_2 - six_r_omega_4_in_axes4_z*six_r_s_5
         # (six_r-W_4) centripetal tensor of link 4
         six_r_W_4_in_axes5_xy = six_r_omega_4_in_axes5_x*six_r_omega_4_in_axes5_y
         # (six_r-omega_5) angular velocity of link 5
-        six_r_omega_5_in_axes5_z = six_r_omega_3_in_axes4_x - six_r_qd_5_t
+        six_r_omega_5_in_axes5_z = six_r_omega_3_in_axes4_y - six_r_qd_5_t
         # (six_r-a_p) acceleration of the connection point without its centripetal part
         six_r_a_p_x = t_ddot_x + alpha_y*six_r_q_z - alpha_z*six_r_q_y
         six_r_a_p_y = t_ddot_y + alpha_z*six_r_q_x - alpha_x*six_r_q_z
@@ -10069,15 +10189,15 @@ def _run_joint_accelerations(m, X, V, A, q):
         # (six_r-zeta_2) angular acceleration of link 2 from the turning of axis 2
         six_r_zeta_2_in_axes2_y = -six_r_omega_1_in_axes2_x*six_r_qd_1_t_9
         six_r_zeta_2_in_axes3_x = (
-        six_r_W_2_in_axes2_yz*six_r_c_3 + six_r_s_3*six_r_zeta_2_in_axes2_y
+        six_r_W_2_in_axes2_yz*six_r_s_3 - six_r_c_3*six_r_zeta_2_in_axes2_y
         )
         six_r_zeta_2_in_axes3_y = (
-        six_r_c_3*six_r_zeta_2_in_axes2_y - six_r_W_2_in_axes2_yz*six_r_s_3
+        six_r_W_2_in_axes2_yz*six_r_c_3 + six_r_s_3*six_r_zeta_2_in_axes2_y
         )
-        six_r_zeta_2_in_axes5_z = six_r_c_4*six_r_zeta_2_in_axes3_y
-        six_r_zeta_2_t = six_r_s_4*six_r_zeta_2_in_axes3_y
-        six_r_zeta_2_in_axes5_x = six_r_s_5*six_r_zeta_2_in_axes3_x - six_r_c_5*six_r_zeta_2_t
-        six_r_zeta_2_in_axes5_y = six_r_c_5*six_r_zeta_2_in_axes3_x + six_r_s_5*six_r_zeta_2_t
+        six_r_zeta_2_t = six_r_c_4*six_r_zeta_2_in_axes3_x
+        six_r_zeta_2_in_axes5_z = six_r_s_4*six_r_zeta_2_in_axes3_x
+        six_r_zeta_2_in_axes5_x = six_r_c_5*six_r_zeta_2_in_axes3_y - six_r_s_5*six_r_zeta_2_t
+        six_r_zeta_2_in_axes5_y = -six_r_c_5*six_r_zeta_2_t - six_r_s_5*six_r_zeta_2_in_axes3_y
         # (six_r-beta_3) angular acceleration of link 3 at zero joint accelerations
         six_r_beta_3_in_axes3_x = (
         six_r_zeta_2_in_axes3_x - six_r_omega_2_in_axes3_y*six_r_qd_1_t_8
@@ -10085,87 +10205,86 @@ def _run_joint_accelerations(m, X, V, A, q):
         six_r_beta_3_in_axes3_y = (
         six_r_zeta_2_in_axes3_y + six_r_omega_2_in_axes3_x*six_r_qd_1_t_8
         )
-        six_r_beta_3_in_axes4_x = six_r_beta_3_in_axes3_y*six_r_c_4
-        six_r_beta_3_in_axes4_y = -six_r_beta_3_in_axes3_y*six_r_s_4
+        six_r_beta_3_t = six_r_beta_3_in_axes3_x*six_r_c_4
+        six_r_beta_3_in_axes4_y = six_r_beta_3_in_axes3_x*six_r_s_4
         # (six_r-beta_4) angular acceleration of link 4 at zero joint accelerations
-        six_r_beta_4_in_axes4_x = six_r_beta_3_in_axes4_x + six_r_omega_3_in_axes4_y*six_r_qd_4
-        six_r_beta_4_in_axes4_y = six_r_beta_3_in_axes4_y - six_r_omega_3_in_axes4_x*six_r_qd_4
-        six_r_beta_4_t = six_r_beta_3_in_axes3_x*six_r_s_5
-        six_r_beta_4_in_axes5_x = six_r_beta_4_t + six_r_beta_4_in_axes4_y*six_r_c_5
-        six_r_beta_4_t_2 = -six_r_beta_3_in_axes3_x*six_r_c_5
-        six_r_beta_4_in_axes5_y = -six_r_beta_4_t_2 - six_r_beta_4_in_axes4_y*six_r_s_5
+        six_r_beta_4_in_axes4_x = -six_r_beta_3_t - six_r_omega_3_in_axes4_y*six_r_qd_4_t
+        six_r_beta_4_in_axes4_y = six_r_beta_3_in_axes4_y + six_r_omega_3_in_axes4_x*six_r_qd_4_t
+        six_r_beta_4_t = six_r_beta_3_in_axes3_y*six_r_c_5
+        six_r_beta_4_in_axes5_x = six_r_beta_4_t + six_r_beta_4_in_axes4_x*six_r_s_5
+        six_r_beta_4_t_2 = six_r_beta_3_in_axes3_y*six_r_s_5
+        six_r_beta_4_in_axes5_y = six_r_beta_4_in_axes4_x*six_r_c_5 - six_r_beta_4_t_2
         # (six_r-beta_5) angular acceleration of link 5 at zero joint accelerations
         six_r_beta_5_in_axes5_x = six_r_beta_4_in_axes5_x - six_r_omega_4_in_axes5_y*six_r_qd_5_t
         six_r_beta_5_in_axes5_y = six_r_beta_4_in_axes5_y + six_r_omega_4_in_axes5_x*six_r_qd_5_t
         # (six_r-bias) acceleration of the connection point at zero joint accelerations
-        six_r_d_2_in_spec2_x = six_r_joint2_offset_x*six_r_s_2
-        six_r_d_2_in_spec2_y = six_r_c_2*six_r_joint2_offset_x
-        six_r_bias_t = six_r_c_3*six_r_d_2_in_spec2_x + six_r_d_2_in_spec2_y*six_r_s_3
-        six_r_bias_t_2 = six_r_c_3*six_r_d_2_in_spec2_y - six_r_d_2_in_spec2_x*six_r_s_3
-        six_r_d_2_in_axes5_z = six_r_bias_t_2*six_r_c_4
-        six_r_bias_t_3 = six_r_bias_t_2*six_r_s_4
-        six_r_d_2_in_axes5_x = six_r_bias_t*six_r_s_5 - six_r_bias_t_3*six_r_c_5
-        six_r_d_2_in_axes5_y = six_r_bias_t*six_r_c_5 + six_r_bias_t_3*six_r_s_5
-        six_r_bias_t_4 = six_r_c_3*six_r_joint3_offset_x
+        six_r_d_2_in_spec2_x = six_r_c_2*six_r_joint2_offset_x
+        six_r_bias_t = six_r_joint2_offset_x*six_r_s_2
+        six_r_bias_t_2 = six_r_bias_t*six_r_c_3 + six_r_d_2_in_spec2_x*six_r_s_3
+        six_r_bias_t_3 = six_r_c_3*six_r_d_2_in_spec2_x - six_r_bias_t*six_r_s_3
+        six_r_bias_t_4 = six_r_bias_t_2*six_r_c_4
+        six_r_d_2_in_axes5_z = six_r_bias_t_2*six_r_s_4
+        six_r_d_2_in_axes5_x = six_r_bias_t_3*six_r_c_5 - six_r_bias_t_4*six_r_s_5
+        six_r_d_2_in_axes5_y = -six_r_bias_t_3*six_r_s_5 - six_r_bias_t_4*six_r_c_5
         six_r_bias_t_5 = six_r_joint3_offset_x*six_r_s_3
-        six_r_d_3_in_axes5_z = -six_r_bias_t_5*six_r_c_4
-        six_r_bias_t_6 = six_r_bias_t_5*six_r_s_4
-        six_r_d_3_in_axes5_x = six_r_bias_t_4*six_r_s_5 + six_r_bias_t_6*six_r_c_5
-        six_r_d_3_in_axes5_y = six_r_bias_t_4*six_r_c_5 - six_r_bias_t_6*six_r_s_5
-        six_r_d_4_in_axes5_x = six_r_joint4_offset_x*six_r_s_5
-        six_r_d_4_in_axes5_y = six_r_c_5*six_r_joint4_offset_x
-        six_r_d_5_in_axes5_x = six_r_joint5_offset_x*six_r_s_5
-        six_r_d_5_in_axes5_y = six_r_c_5*six_r_joint5_offset_x
-        six_r_bias_t_7 = six_r_omega_3_in_axes4_x*six_r_omega_3_in_axes4_x
-        six_r_bias_t_8 = six_r_omega_4_in_axes5_y*six_r_omega_4_in_axes5_y
-        six_r_bias_t_9 = six_r_omega_1_in_axes5_x*six_r_omega_1_in_axes5_x
-        six_r_bias_t_10 = six_r_omega_1_in_axes5_y*six_r_omega_1_in_axes5_y
-        six_r_bias_t_11 = six_r_omega_1_in_axes5_z*six_r_omega_1_in_axes5_z
-        six_r_bias_t_12 = six_r_omega_2_in_axes5_x*six_r_omega_2_in_axes5_x
-        six_r_bias_t_13 = six_r_omega_2_in_axes5_y*six_r_omega_2_in_axes5_y
-        six_r_bias_t_14 = six_r_omega_2_in_axes5_z*six_r_omega_2_in_axes5_z
-        six_r_bias_t_15 = six_r_W_4_in_axes5_xy + six_r_beta_4_in_axes4_x
+        six_r_bias_t_6 = six_r_c_3*six_r_joint3_offset_x
+        six_r_bias_t_7 = six_r_bias_t_5*six_r_c_4
+        six_r_d_3_in_axes5_z = six_r_bias_t_5*six_r_s_4
+        six_r_d_3_in_axes5_x = six_r_bias_t_6*six_r_c_5 - six_r_bias_t_7*six_r_s_5
+        six_r_d_3_in_axes5_y = -six_r_bias_t_6*six_r_s_5 - six_r_bias_t_7*six_r_c_5
+        six_r_d_4_in_axes5_x = six_r_c_5*six_r_joint4_offset_x
+        six_r_bias_t_8 = six_r_joint4_offset_x*six_r_s_5
+        six_r_d_5_in_axes5_x = six_r_c_5*six_r_joint5_offset_x
+        six_r_bias_t_9 = six_r_joint5_offset_x*six_r_s_5
+        six_r_bias_t_10 = six_r_omega_3_in_axes4_y*six_r_omega_3_in_axes4_y
+        six_r_bias_t_11 = six_r_omega_4_in_axes5_y*six_r_omega_4_in_axes5_y
+        six_r_bias_t_12 = six_r_omega_1_in_axes5_x*six_r_omega_1_in_axes5_x
+        six_r_bias_t_13 = six_r_omega_1_in_axes5_y*six_r_omega_1_in_axes5_y
+        six_r_bias_t_14 = six_r_omega_1_in_axes5_z*six_r_omega_1_in_axes5_z
+        six_r_bias_t_15 = six_r_omega_2_in_axes5_x*six_r_omega_2_in_axes5_x
+        six_r_bias_t_16 = six_r_omega_2_in_axes5_y*six_r_omega_2_in_axes5_y
+        six_r_bias_t_17 = six_r_omega_2_in_axes5_z*six_r_omega_2_in_axes5_z
+        six_r_bias_t_18 = six_r_W_4_in_axes5_xy + six_r_beta_4_in_axes4_y
         six_r_bias_in_axes5_x = (
         six_r_W_1_in_axes5_xy*six_r_d_2_in_axes5_y + six_r_W_1_in_axes5_xz*six_r_d_2_in_axes5_z +
             six_r_d_3_in_axes5_y*(six_r_W_2_in_axes5_xy - six_r_zeta_2_in_axes5_z) +
-            six_r_d_3_in_axes5_z*(six_r_W_2_in_axes5_xz + six_r_zeta_2_in_axes5_y) +
-            six_r_d_4_in_axes5_y*(six_r_W_3_in_axes5_xy - six_r_beta_3_in_axes4_x) +
-            six_r_d_5_in_axes5_y*(six_r_W_4_in_axes5_xy - six_r_beta_4_in_axes4_x) +
-            six_r_platform_joint_offset_x*(-six_r_bias_t_8 -
-            six_r_omega_5_in_axes5_z*six_r_omega_5_in_axes5_z) -
-            six_r_d_2_in_axes5_x*(six_r_bias_t_10 + six_r_bias_t_11) -
-            six_r_d_3_in_axes5_x*(six_r_bias_t_13 + six_r_bias_t_14) -
-            six_r_d_4_in_axes5_x*(six_r_bias_t_7 +
+            six_r_d_3_in_axes5_z*(six_r_W_2_in_axes5_xz + six_r_zeta_2_in_axes5_y) -
+            six_r_bias_t_8*(six_r_W_3_in_axes5_xy - six_r_beta_3_in_axes4_y) -
+            six_r_bias_t_9*(six_r_W_4_in_axes5_xy - six_r_beta_4_in_axes4_y) -
+            six_r_d_2_in_axes5_x*(six_r_bias_t_13 + six_r_bias_t_14) -
+            six_r_d_3_in_axes5_x*(six_r_bias_t_16 + six_r_bias_t_17) -
+            six_r_d_4_in_axes5_x*(six_r_bias_t_10 +
             six_r_omega_3_in_axes5_y*six_r_omega_3_in_axes5_y) -
-            six_r_d_5_in_axes5_x*(six_r_bias_t_7 + six_r_bias_t_8)
+            six_r_d_5_in_axes5_x*(six_r_bias_t_10 + six_r_bias_t_11) -
+            six_r_platform_joint_offset_x*(six_r_bias_t_11 +
+            six_r_omega_5_in_axes5_z*six_r_omega_5_in_axes5_z)
         )
         six_r_bias_in_axes5_y = (
         six_r_W_1_in_axes5_xy*six_r_d_2_in_axes5_x + six_r_W_1_in_axes5_yz*six_r_d_2_in_axes5_z +
-            six_r_bias_t_15*six_r_d_5_in_axes5_x + six_r_bias_t_15*six_r_platform_joint_offset_x +
+            six_r_bias_t_18*six_r_d_5_in_axes5_x + six_r_bias_t_18*six_r_platform_joint_offset_x +
+            six_r_bias_t_8*(six_r_bias_t_10 + six_r_omega_3_in_axes5_x*six_r_omega_3_in_axes5_x) +
+            six_r_bias_t_9*(six_r_bias_t_10 + six_r_omega_4_in_axes5_x*six_r_omega_4_in_axes5_x) +
             six_r_d_3_in_axes5_x*(six_r_W_2_in_axes5_xy + six_r_zeta_2_in_axes5_z) +
             six_r_d_3_in_axes5_z*(six_r_W_2_in_axes5_yz - six_r_zeta_2_in_axes5_x) +
-            six_r_d_4_in_axes5_x*(six_r_W_3_in_axes5_xy + six_r_beta_3_in_axes4_x) -
-            six_r_d_2_in_axes5_y*(six_r_bias_t_11 + six_r_bias_t_9) -
-            six_r_d_3_in_axes5_y*(six_r_bias_t_12 + six_r_bias_t_14) -
-            six_r_d_4_in_axes5_y*(six_r_bias_t_7 +
-            six_r_omega_3_in_axes5_x*six_r_omega_3_in_axes5_x) -
-            six_r_d_5_in_axes5_y*(six_r_bias_t_7 +
-            six_r_omega_4_in_axes5_x*six_r_omega_4_in_axes5_x)
+            six_r_d_4_in_axes5_x*(six_r_W_3_in_axes5_xy + six_r_beta_3_in_axes4_y) -
+            six_r_d_2_in_axes5_y*(six_r_bias_t_12 + six_r_bias_t_14) -
+            six_r_d_3_in_axes5_y*(six_r_bias_t_15 + six_r_bias_t_17)
         )
         six_r_bias_in_axes5_z = (
         six_r_W_1_in_axes5_xz*six_r_d_2_in_axes5_x + six_r_W_1_in_axes5_yz*six_r_d_2_in_axes5_y +
             six_r_d_3_in_axes5_x*(six_r_W_2_in_axes5_xz - six_r_zeta_2_in_axes5_y) +
             six_r_d_3_in_axes5_y*(six_r_W_2_in_axes5_yz + six_r_zeta_2_in_axes5_x) +
-            six_r_d_4_in_axes5_x*(six_r_beta_4_t_2 + six_r_beta_3_in_axes4_y*six_r_s_5 +
-            six_r_omega_3_in_axes4_x*six_r_omega_3_in_axes5_x) +
-            six_r_d_4_in_axes5_y*(six_r_beta_4_t + six_r_beta_3_in_axes4_y*six_r_c_5 +
-            six_r_omega_3_in_axes4_x*six_r_omega_3_in_axes5_y) +
-            six_r_d_5_in_axes5_x*(six_r_omega_3_in_axes4_x*six_r_omega_4_in_axes5_x -
-            six_r_beta_4_in_axes5_y) + six_r_d_5_in_axes5_y*(six_r_beta_4_in_axes5_x +
-            six_r_omega_3_in_axes4_x*six_r_omega_4_in_axes5_y) +
+            six_r_d_4_in_axes5_x*(six_r_beta_4_t_2 + six_r_beta_3_t*six_r_c_5 +
+            six_r_omega_3_in_axes4_y*six_r_omega_3_in_axes5_x) +
+            six_r_d_5_in_axes5_x*(six_r_omega_3_in_axes4_y*six_r_omega_4_in_axes5_x -
+            six_r_beta_4_in_axes5_y) +
             six_r_platform_joint_offset_x*(six_r_omega_4_in_axes5_x*six_r_omega_5_in_axes5_z -
-            six_r_beta_5_in_axes5_y) - six_r_d_2_in_axes5_z*(six_r_bias_t_10 + six_r_bias_t_9) -
-            six_r_d_3_in_axes5_z*(six_r_bias_t_12 + six_r_bias_t_13)
+            six_r_beta_5_in_axes5_y) - six_r_bias_t_8*(six_r_beta_4_t +
+            six_r_omega_3_in_axes4_y*six_r_omega_3_in_axes5_y - six_r_beta_3_t*six_r_s_5) -
+            six_r_bias_t_9*(six_r_beta_4_in_axes5_x +
+            six_r_omega_3_in_axes4_y*six_r_omega_4_in_axes5_y) -
+            six_r_d_2_in_axes5_z*(six_r_bias_t_12 + six_r_bias_t_13) -
+            six_r_d_3_in_axes5_z*(six_r_bias_t_15 + six_r_bias_t_16)
         )
         # (six_r-rel) acceleration of the connection point left to the joint accelerations
         six_r_rel_in_axes5_x = (
@@ -10207,7 +10326,7 @@ def _run_joint_accelerations(m, X, V, A, q):
         # (six_r-nu_2) bias of the angular acceleration along moment direction 2
         six_r_nu_2_t = (
         six_r_beta_5_in_axes5_y*six_r_end_p1_in_axes5_z -
-            six_r_beta_4_in_axes4_x*six_r_n_m2_in_axes5_z
+            six_r_beta_4_in_axes4_y*six_r_n_m2_in_axes5_z
         )
         six_r_nu_2_t_2 = (
         six_r_nd_m2_in_axes5_y*six_r_nu_1_t_4 + six_r_nd_m2_in_axes5_z*six_r_nu_1_t_5 +
@@ -10375,62 +10494,62 @@ def _run_legs(m, X, V, A, q):
         six_r_q_4 = q[[3, 8, 13, 18, 23, 28][leg]]
         six_r_q_5 = q[[4, 9, 14, 19, 24, 29][leg]]
         # (six_r-c_1) cosine of the angle of joint 1 from its reference direction
-        six_r_c_1 = -sin(six_r_q_1)
+        six_r_c_1 = cos(six_r_q_1)
         # (six_r-s_1) sine of the angle of joint 1 from its reference direction
-        six_r_s_1 = cos(six_r_q_1)
+        six_r_s_1 = sin(six_r_q_1)
         # (six_r-c_2) cosine of the angle of joint 2 from its reference direction
-        six_r_c_2 = -sin(six_r_q_2)
+        six_r_c_2 = cos(six_r_q_2)
         # (six_r-s_2) sine of the angle of joint 2 from its reference direction
-        six_r_s_2 = cos(six_r_q_2)
+        six_r_s_2 = sin(six_r_q_2)
         # (six_r-c_3) cosine of the angle of joint 3 from its reference direction
         six_r_c_3 = cos(six_r_q_3)
         # (six_r-s_3) sine of the angle of joint 3 from its reference direction
         six_r_s_3 = sin(six_r_q_3)
         # (six_r-c_4) cosine of the angle of joint 4 from its reference direction
-        six_r_c_4 = -sin(six_r_q_4)
+        six_r_c_4 = cos(six_r_q_4)
         # (six_r-s_4) sine of the angle of joint 4 from its reference direction
-        six_r_s_4 = cos(six_r_q_4)
+        six_r_s_4 = sin(six_r_q_4)
         # (six_r-c_5) cosine of the angle of joint 5 from its reference direction
-        six_r_c_5 = -sin(six_r_q_5)
+        six_r_c_5 = cos(six_r_q_5)
         # (six_r-s_5) sine of the angle of joint 5 from its reference direction
-        six_r_s_5 = cos(six_r_q_5)
+        six_r_s_5 = sin(six_r_q_5)
         # (six_r-S_dot) velocity of the connection point
-        six_r_e_2_in_axes5_y = -six_r_c_4*six_r_s_5
-        six_r_S_dot_t = -six_r_c_4*six_r_s_3
-        six_r_S_dot_t_2 = -six_r_c_3*six_r_c_4
-        six_r_S_dot_t_3 = six_r_S_dot_t*six_r_c_2 + six_r_S_dot_t_2*six_r_s_2
-        six_r_S_dot_t_4 = six_r_S_dot_t*six_r_s_2 - six_r_S_dot_t_2*six_r_c_2
-        six_r_S_dot_t_5 = six_r_c_1*six_r_s_4 - six_r_S_dot_t_3*six_r_s_1
-        six_r_S_dot_t_6 = six_r_S_dot_t_3*six_r_c_1 + six_r_s_1*six_r_s_4
+        six_r_e_2_in_axes5_y = six_r_c_5*six_r_s_4
+        six_r_S_dot_t = six_r_c_3*six_r_s_4
+        six_r_S_dot_t_2 = six_r_s_3*six_r_s_4
+        six_r_S_dot_t_3 = six_r_S_dot_t*six_r_s_2 + six_r_S_dot_t_2*six_r_c_2
+        six_r_S_dot_t_4 = six_r_S_dot_t_2*six_r_s_2 - six_r_S_dot_t*six_r_c_2
+        six_r_S_dot_t_5 = six_r_S_dot_t_4*six_r_c_1 - six_r_c_4*six_r_s_1
+        six_r_S_dot_t_6 = six_r_S_dot_t_4*six_r_s_1 + six_r_c_1*six_r_c_4
         axis_z_six_r_axes5_x = (
-        six_r_S_dot_t_4*six_r_base_frame_xx + six_r_S_dot_t_5*six_r_base_frame_xy +
+        six_r_S_dot_t_3*six_r_base_frame_xx + six_r_S_dot_t_5*six_r_base_frame_xy +
             six_r_S_dot_t_6*six_r_base_frame_xz
         )
         axis_z_six_r_axes5_y = (
-        six_r_S_dot_t_4*six_r_base_frame_yx + six_r_S_dot_t_5*six_r_base_frame_yy +
+        six_r_S_dot_t_3*six_r_base_frame_yx + six_r_S_dot_t_5*six_r_base_frame_yy +
             six_r_S_dot_t_6*six_r_base_frame_yz
         )
         axis_z_six_r_axes5_z = (
-        six_r_S_dot_t_4*six_r_base_frame_zx + six_r_S_dot_t_5*six_r_base_frame_zy +
+        six_r_S_dot_t_3*six_r_base_frame_zx + six_r_S_dot_t_5*six_r_base_frame_zy +
             six_r_S_dot_t_6*six_r_base_frame_zz
         )
-        six_r_S_dot_t_7 = six_r_s_4*six_r_s_5
-        six_r_S_dot_t_8 = six_r_c_3*six_r_c_5 - six_r_S_dot_t_7*six_r_s_3
-        six_r_S_dot_t_9 = six_r_S_dot_t_7*six_r_c_3 + six_r_c_5*six_r_s_3
-        six_r_S_dot_t_10 = six_r_S_dot_t_8*six_r_c_2 - six_r_S_dot_t_9*six_r_s_2
-        six_r_S_dot_t_11 = six_r_S_dot_t_8*six_r_s_2 + six_r_S_dot_t_9*six_r_c_2
-        six_r_S_dot_t_12 = six_r_c_1*six_r_e_2_in_axes5_y - six_r_S_dot_t_10*six_r_s_1
-        six_r_S_dot_t_13 = six_r_S_dot_t_10*six_r_c_1 + six_r_e_2_in_axes5_y*six_r_s_1
+        six_r_S_dot_t_7 = six_r_c_4*six_r_c_5
+        six_r_S_dot_t_8 = six_r_s_3*six_r_s_5 - six_r_S_dot_t_7*six_r_c_3
+        six_r_S_dot_t_9 = -six_r_S_dot_t_7*six_r_s_3 - six_r_c_3*six_r_s_5
+        six_r_S_dot_t_10 = six_r_S_dot_t_8*six_r_s_2 + six_r_S_dot_t_9*six_r_c_2
+        six_r_S_dot_t_11 = six_r_S_dot_t_9*six_r_s_2 - six_r_S_dot_t_8*six_r_c_2
+        six_r_S_dot_t_12 = six_r_S_dot_t_11*six_r_c_1 - six_r_e_2_in_axes5_y*six_r_s_1
+        six_r_S_dot_t_13 = six_r_S_dot_t_11*six_r_s_1 + six_r_c_1*six_r_e_2_in_axes5_y
         axis_y_six_r_axes5_x = (
-        six_r_S_dot_t_11*six_r_base_frame_xx + six_r_S_dot_t_12*six_r_base_frame_xy +
+        six_r_S_dot_t_10*six_r_base_frame_xx + six_r_S_dot_t_12*six_r_base_frame_xy +
             six_r_S_dot_t_13*six_r_base_frame_xz
         )
         axis_y_six_r_axes5_y = (
-        six_r_S_dot_t_11*six_r_base_frame_yx + six_r_S_dot_t_12*six_r_base_frame_yy +
+        six_r_S_dot_t_10*six_r_base_frame_yx + six_r_S_dot_t_12*six_r_base_frame_yy +
             six_r_S_dot_t_13*six_r_base_frame_yz
         )
         axis_y_six_r_axes5_z = (
-        six_r_S_dot_t_11*six_r_base_frame_zx + six_r_S_dot_t_12*six_r_base_frame_zy +
+        six_r_S_dot_t_10*six_r_base_frame_zx + six_r_S_dot_t_12*six_r_base_frame_zy +
             six_r_S_dot_t_13*six_r_base_frame_zz
         )
         axis_x_six_r_axes5_x = (
@@ -10470,49 +10589,49 @@ def _run_legs(m, X, V, A, q):
             axis_z_six_r_axes5_z*six_r_S_dot_z
         )
         # (six_r-r_4) from joint 4 to the connection point, along the links
-        six_r_r_4_in_axes4_y = six_r_c_5*six_r_platform_joint_offset_x
-        six_r_r_4_in_axes4_z = six_r_joint5_offset_x + six_r_platform_joint_offset_x*six_r_s_5
-        six_r_r_4_in_axes3_y = -six_r_r_4_in_axes4_y*six_r_s_4
-        six_r_r_4_in_axes3_z = six_r_c_4*six_r_r_4_in_axes4_y
+        six_r_r_4_in_axes4_x = six_r_platform_joint_offset_x*six_r_s_5
+        six_r_r_4_in_axes4_z = six_r_joint5_offset_x + six_r_c_5*six_r_platform_joint_offset_x
+        six_r_r_4_in_axes3_x = -six_r_c_4*six_r_r_4_in_axes4_x
+        six_r_r_4_in_axes3_z = six_r_r_4_in_axes4_x*six_r_s_4
         # (six_r-r_3) from joint 3 to the connection point, along the links
-        six_r_r_3_in_axes3_x = six_r_joint4_offset_x + six_r_r_4_in_axes4_z
-        six_r_r_3_in_axes2_y = six_r_c_3*six_r_r_4_in_axes3_y + six_r_r_3_in_axes3_x*six_r_s_3
+        six_r_r_3_in_axes3_y = six_r_joint4_offset_x + six_r_r_4_in_axes4_z
+        six_r_r_3_in_axes2_y = six_r_r_3_in_axes3_y*six_r_s_3 - six_r_c_3*six_r_r_4_in_axes3_x
         six_r_r_3_t = six_r_r_4_in_axes3_z*six_r_s_4
-        six_r_r_3_t_2 = -six_r_c_4*six_r_r_4_in_axes3_z
-        six_r_r_3_in_axes5_z = six_r_r_3_t + six_r_c_4*six_r_r_4_in_axes3_y
-        six_r_r_3_t_3 = -six_r_r_3_t_2 - six_r_r_4_in_axes3_y*six_r_s_4
-        six_r_r_3_in_axes5_x = six_r_c_5*six_r_r_3_t_3 + six_r_r_3_in_axes3_x*six_r_s_5
-        six_r_r_3_in_axes5_y = six_r_c_5*six_r_r_3_in_axes3_x - six_r_r_3_t_3*six_r_s_5
+        six_r_r_3_t_2 = six_r_c_4*six_r_r_4_in_axes3_z
+        six_r_r_3_t_3 = six_r_r_3_t - six_r_c_4*six_r_r_4_in_axes3_x
+        six_r_r_3_in_axes5_z = six_r_r_3_t_2 + six_r_r_4_in_axes3_x*six_r_s_4
+        six_r_r_3_in_axes5_x = six_r_c_5*six_r_r_3_in_axes3_y + six_r_r_3_t_3*six_r_s_5
+        six_r_r_3_in_axes5_y = six_r_c_5*six_r_r_3_t_3 - six_r_r_3_in_axes3_y*six_r_s_5
         # (six_r-r_2) from joint 2 to the connection point, along the links
         six_r_r_2_in_axes2_x = (
-        six_r_joint3_offset_x + six_r_c_3*six_r_r_3_in_axes3_x - six_r_r_4_in_axes3_y*six_r_s_3
+        six_r_joint3_offset_x + six_r_c_3*six_r_r_3_in_axes3_y + six_r_r_4_in_axes3_x*six_r_s_3
         )
-        six_r_r_2_in_axes1_y = six_r_c_2*six_r_r_2_in_axes2_x - six_r_r_3_in_axes2_y*six_r_s_2
-        six_r_r_2_t = six_r_c_3*six_r_r_2_in_axes2_x + six_r_r_3_in_axes2_y*six_r_s_3
-        six_r_r_2_t_2 = six_r_c_3*six_r_r_3_in_axes2_y - six_r_r_2_in_axes2_x*six_r_s_3
-        six_r_r_2_in_axes5_z = six_r_r_3_t + six_r_c_4*six_r_r_2_t_2
-        six_r_r_2_t_3 = -six_r_r_3_t_2 - six_r_r_2_t_2*six_r_s_4
-        six_r_r_2_in_axes5_x = six_r_c_5*six_r_r_2_t_3 + six_r_r_2_t*six_r_s_5
-        six_r_r_2_in_axes5_y = six_r_c_5*six_r_r_2_t - six_r_r_2_t_3*six_r_s_5
+        six_r_r_2_in_axes1_x = six_r_c_2*six_r_r_3_in_axes2_y + six_r_r_2_in_axes2_x*six_r_s_2
+        six_r_r_2_t = six_r_r_2_in_axes2_x*six_r_s_3 - six_r_c_3*six_r_r_3_in_axes2_y
+        six_r_r_2_t_2 = six_r_c_3*six_r_r_2_in_axes2_x + six_r_r_3_in_axes2_y*six_r_s_3
+        six_r_r_2_t_3 = six_r_r_3_t - six_r_c_4*six_r_r_2_t
+        six_r_r_2_in_axes5_z = six_r_r_3_t_2 + six_r_r_2_t*six_r_s_4
+        six_r_r_2_in_axes5_x = six_r_c_5*six_r_r_2_t_2 + six_r_r_2_t_3*six_r_s_5
+        six_r_r_2_in_axes5_y = six_r_c_5*six_r_r_2_t_3 - six_r_r_2_t_2*six_r_s_5
         # (six_r-r_1) from joint 1 to the connection point, along the links
         six_r_r_1_in_axes1_z = (
-        six_r_joint2_offset_x + six_r_c_2*six_r_r_3_in_axes2_y + six_r_r_2_in_axes2_x*six_r_s_2
+        six_r_joint2_offset_x + six_r_c_2*six_r_r_2_in_axes2_x - six_r_r_3_in_axes2_y*six_r_s_2
         )
-        six_r_r_1_t = six_r_c_2*six_r_r_2_in_axes1_y + six_r_r_1_in_axes1_z*six_r_s_2
-        six_r_r_1_t_2 = six_r_c_2*six_r_r_1_in_axes1_z - six_r_r_2_in_axes1_y*six_r_s_2
-        six_r_r_1_t_3 = six_r_c_3*six_r_r_1_t + six_r_r_1_t_2*six_r_s_3
-        six_r_r_1_t_4 = six_r_c_3*six_r_r_1_t_2 - six_r_r_1_t*six_r_s_3
-        six_r_r_1_in_axes5_z = six_r_r_3_t + six_r_c_4*six_r_r_1_t_4
-        six_r_r_1_t_5 = -six_r_r_3_t_2 - six_r_r_1_t_4*six_r_s_4
-        six_r_r_1_in_axes5_x = six_r_c_5*six_r_r_1_t_5 + six_r_r_1_t_3*six_r_s_5
-        six_r_r_1_in_axes5_y = six_r_c_5*six_r_r_1_t_3 - six_r_r_1_t_5*six_r_s_5
+        six_r_r_1_t = six_r_c_2*six_r_r_1_in_axes1_z + six_r_r_2_in_axes1_x*six_r_s_2
+        six_r_r_1_t_2 = six_r_c_2*six_r_r_2_in_axes1_x - six_r_r_1_in_axes1_z*six_r_s_2
+        six_r_r_1_t_3 = six_r_r_1_t*six_r_s_3 - six_r_c_3*six_r_r_1_t_2
+        six_r_r_1_t_4 = six_r_c_3*six_r_r_1_t + six_r_r_1_t_2*six_r_s_3
+        six_r_r_1_t_5 = six_r_r_3_t - six_r_c_4*six_r_r_1_t_3
+        six_r_r_1_in_axes5_z = six_r_r_3_t_2 + six_r_r_1_t_3*six_r_s_4
+        six_r_r_1_in_axes5_x = six_r_c_5*six_r_r_1_t_4 + six_r_r_1_t_5*six_r_s_5
+        six_r_r_1_in_axes5_y = six_r_c_5*six_r_r_1_t_5 - six_r_r_1_t_4*six_r_s_5
         # (six_r-v_1) velocity of the connection point per rate of joint 1
         six_r_v_1_t = six_r_c_2*six_r_s_3 + six_r_c_3*six_r_s_2
         six_r_v_1_t_2 = six_r_c_2*six_r_c_3 - six_r_s_2*six_r_s_3
-        six_r_e_1_in_axes5_z = six_r_c_4*six_r_v_1_t_2
-        six_r_v_1_t_3 = six_r_s_4*six_r_v_1_t_2
-        six_r_e_1_in_axes5_x = six_r_s_5*six_r_v_1_t - six_r_c_5*six_r_v_1_t_3
-        six_r_e_1_in_axes5_y = six_r_c_5*six_r_v_1_t + six_r_s_5*six_r_v_1_t_3
+        six_r_v_1_t_3 = six_r_c_4*six_r_v_1_t
+        six_r_e_1_in_axes5_z = six_r_s_4*six_r_v_1_t
+        six_r_e_1_in_axes5_x = six_r_c_5*six_r_v_1_t_2 - six_r_s_5*six_r_v_1_t_3
+        six_r_e_1_in_axes5_y = -six_r_c_5*six_r_v_1_t_3 - six_r_s_5*six_r_v_1_t_2
         six_r_v_1_in_axes5_x = (
         six_r_e_1_in_axes5_y*six_r_r_1_in_axes5_z - six_r_e_1_in_axes5_z*six_r_r_1_in_axes5_y
         )
@@ -10523,30 +10642,30 @@ def _run_legs(m, X, V, A, q):
         six_r_e_1_in_axes5_x*six_r_r_1_in_axes5_y - six_r_e_1_in_axes5_y*six_r_r_1_in_axes5_x
         )
         # (six_r-v_2) velocity of the connection point per rate of joint 2
-        six_r_e_2_in_axes5_x = six_r_c_4*six_r_c_5
+        six_r_e_2_in_axes5_x = six_r_s_4*six_r_s_5
         six_r_v_2_in_axes5_x = (
-        six_r_e_2_in_axes5_y*six_r_r_2_in_axes5_z - six_r_r_2_in_axes5_y*six_r_s_4
+        six_r_e_2_in_axes5_y*six_r_r_2_in_axes5_z - six_r_c_4*six_r_r_2_in_axes5_y
         )
         six_r_v_2_in_axes5_y = (
-        six_r_r_2_in_axes5_x*six_r_s_4 - six_r_e_2_in_axes5_x*six_r_r_2_in_axes5_z
+        six_r_c_4*six_r_r_2_in_axes5_x - six_r_e_2_in_axes5_x*six_r_r_2_in_axes5_z
         )
         six_r_v_2_in_axes5_z = (
         six_r_e_2_in_axes5_x*six_r_r_2_in_axes5_y - six_r_e_2_in_axes5_y*six_r_r_2_in_axes5_x
         )
         # (six_r-v_3) velocity of the connection point per rate of joint 3
         six_r_v_3_in_axes5_x = (
-        six_r_e_2_in_axes5_y*six_r_r_3_in_axes5_z - six_r_r_3_in_axes5_y*six_r_s_4
+        six_r_e_2_in_axes5_y*six_r_r_3_in_axes5_z - six_r_c_4*six_r_r_3_in_axes5_y
         )
         six_r_v_3_in_axes5_y = (
-        six_r_r_3_in_axes5_x*six_r_s_4 - six_r_e_2_in_axes5_x*six_r_r_3_in_axes5_z
+        six_r_c_4*six_r_r_3_in_axes5_x - six_r_e_2_in_axes5_x*six_r_r_3_in_axes5_z
         )
         six_r_v_3_in_axes5_z = (
         six_r_e_2_in_axes5_x*six_r_r_3_in_axes5_y - six_r_e_2_in_axes5_y*six_r_r_3_in_axes5_x
         )
         # (six_r-v_4) velocity of the connection point per rate of joint 4
         six_r_v_4_in_axes5_z = (
-        six_r_s_5*(six_r_c_5*six_r_r_4_in_axes4_z - six_r_r_4_in_axes4_y*six_r_s_5) -
-            six_r_c_5*(six_r_c_5*six_r_r_4_in_axes4_y + six_r_r_4_in_axes4_z*six_r_s_5)
+        six_r_c_5*(six_r_c_5*six_r_r_4_in_axes4_x - six_r_r_4_in_axes4_z*six_r_s_5) +
+            six_r_s_5*(six_r_c_5*six_r_r_4_in_axes4_z + six_r_r_4_in_axes4_x*six_r_s_5)
         )
         # (six_r-n_m1) direction 1 of the moment that the platform joint transmits
         six_r_n_m1_t = (
@@ -10575,16 +10694,16 @@ def _run_legs(m, X, V, A, q):
         )
         six_r_n_m1_t_4 = six_r_c_1*six_r_n_m1_t + six_r_n_m1_t_2*six_r_s_1
         six_r_n_m1_t_5 = six_r_c_1*six_r_n_m1_t_2 - six_r_n_m1_t*six_r_s_1
-        six_r_n_m1_t_6 = six_r_c_2*six_r_n_m1_t_5 + six_r_n_m1_t_3*six_r_s_2
-        six_r_n_m1_t_7 = six_r_c_2*six_r_n_m1_t_3 - six_r_n_m1_t_5*six_r_s_2
-        six_r_n_m1_t_8 = six_r_c_3*six_r_n_m1_t_6 + six_r_n_m1_t_7*six_r_s_3
-        six_r_n_m1_t_9 = six_r_c_3*six_r_n_m1_t_7 - six_r_n_m1_t_6*six_r_s_3
-        six_r_n_m1_t_10 = six_r_c_4*six_r_n_m1_t_4 - six_r_n_m1_t_9*six_r_s_4
-        six_r_n_m1_in_axes5_y = six_r_c_5*six_r_n_m1_t_10 + six_r_n_m1_t_8*six_r_s_5
+        six_r_n_m1_t_6 = six_r_c_2*six_r_n_m1_t_3 + six_r_n_m1_t_4*six_r_s_2
+        six_r_n_m1_t_7 = six_r_c_2*six_r_n_m1_t_4 - six_r_n_m1_t_3*six_r_s_2
+        six_r_n_m1_t_8 = six_r_n_m1_t_6*six_r_s_3 - six_r_c_3*six_r_n_m1_t_7
+        six_r_n_m1_t_9 = six_r_c_3*six_r_n_m1_t_6 + six_r_n_m1_t_7*six_r_s_3
+        six_r_n_m1_t_10 = six_r_n_m1_t_5*six_r_s_4 - six_r_c_4*six_r_n_m1_t_8
+        six_r_n_m1_in_axes5_y = six_r_c_5*six_r_n_m1_t_9 + six_r_n_m1_t_10*six_r_s_5
         # (six_r-n_m2) direction 2 of the moment that the platform joint transmits
-        six_r_n_m2_in_axes5_z = six_r_c_5*six_r_n_m1_t_8 - six_r_n_m1_t_10*six_r_s_5
+        six_r_n_m2_in_axes5_z = six_r_c_5*six_r_n_m1_t_10 - six_r_n_m1_t_9*six_r_s_5
         # (six_r-w_1) force part of reciprocal wrench 1
-        six_r_end_p1_in_axes5_z = six_r_c_4*six_r_n_m1_t_9 + six_r_n_m1_t_4*six_r_s_4
+        six_r_end_p1_in_axes5_z = six_r_c_4*six_r_n_m1_t_5 + six_r_n_m1_t_8*six_r_s_4
         six_r_w_1_t = (
         six_r_e_1_in_axes5_x*six_r_n_m2_in_axes5_z - six_r_e_1_in_axes5_y*six_r_n_m1_in_axes5_y
         )
@@ -10595,16 +10714,16 @@ def _run_legs(m, X, V, A, q):
         six_r_e_1_in_axes5_y*six_r_end_p1_in_axes5_z - six_r_e_1_in_axes5_z*six_r_n_m2_in_axes5_z
         )
         six_r_w_1_t_4 = (
-        six_r_e_2_in_axes5_y*six_r_end_p1_in_axes5_z - six_r_n_m2_in_axes5_z*six_r_s_4
+        six_r_e_2_in_axes5_y*six_r_end_p1_in_axes5_z - six_r_c_4*six_r_n_m2_in_axes5_z
         )
         six_r_w_1_t_5 = six_r_size*six_r_w_1_t
         six_r_w_1_t_6 = six_r_size*six_r_w_1_t_3
         six_r_w_1_t_7 = six_r_size*six_r_w_1_t_2
         six_r_w_1_t_8 = six_r_size*six_r_w_1_t_4
         six_r_w_1_t_9 = (
-        six_r_size*(six_r_c_5*six_r_n_m1_in_axes5_y - six_r_n_m2_in_axes5_z*six_r_s_5)
+        six_r_size*(-six_r_c_5*six_r_n_m2_in_axes5_z - six_r_n_m1_in_axes5_y*six_r_s_5)
         )
-        six_r_w_1_t_10 = -six_r_c_5*six_r_end_p1_in_axes5_z*six_r_size
+        six_r_w_1_t_10 = six_r_end_p1_in_axes5_z*six_r_s_5*six_r_size
         six_r_w_1_t_11 = six_r_n_m2_in_axes5_z*six_r_size
         six_r_w_1_t_12 = sqrt(six_r_size_t + six_r_w_1_t_11*six_r_w_1_t_11)
         inv_six_r_w_1_t_12 = 1.0/six_r_w_1_t_12
@@ -10802,8 +10921,8 @@ def _run_legs(m, X, V, A, q):
             six_r_qd_1_t_2*six_r_w_1_t_54 - six_r_qd_1_t_4*six_r_w_1_t_55)
         )
         # (six_r-qd_4) rate of joint 4
-        six_r_qd_4 = (
-        -inv_six_r_w_1_t_28*(six_r_S_dot_in_axes5_y*six_r_w_1_t_29 + six_r_qd_1_t_2*six_r_w_1_t_32
+        six_r_qd_4_t = (
+        inv_six_r_w_1_t_28*(six_r_S_dot_in_axes5_y*six_r_w_1_t_29 + six_r_qd_1_t_2*six_r_w_1_t_32
             + six_r_qd_1_t_3*six_r_w_1_t_44 - six_r_S_dot_in_axes5_z*six_r_w_1_t_30 -
             six_r_qd_1*six_r_w_1_t_33 - six_r_qd_1_t*six_r_w_1_t_31 -
             six_r_qd_1_t_4*six_r_w_1_t_39)
@@ -10811,12 +10930,12 @@ def _run_legs(m, X, V, A, q):
         # (six_r-qd_5) rate of joint 5
         six_r_qd_5_t = (
         inv_six_r_w_1_t_12*(six_r_qd_1*six_r_w_1_t_18 + six_r_qd_1_t_2*six_r_w_1_t_14 +
-            six_r_qd_1_t_3*six_r_w_1_t_25 + six_r_qd_1_t_4*six_r_w_1_t_22 +
-            six_r_qd_4*six_r_w_1_t_15 - six_r_S_dot_in_axes5_y*six_r_w_1_t_13)
+            six_r_qd_1_t_3*six_r_w_1_t_25 + six_r_qd_1_t_4*six_r_w_1_t_22 -
+            six_r_S_dot_in_axes5_y*six_r_w_1_t_13 - six_r_qd_4_t*six_r_w_1_t_15)
         )
         # (six_r-omega_1) angular velocity of link 1
-        six_r_omega_1_in_axes2_x = six_r_qd_1*six_r_s_2
-        six_r_omega_1_in_axes2_y = six_r_c_2*six_r_qd_1
+        six_r_omega_1_in_axes2_x = six_r_c_2*six_r_qd_1
+        six_r_omega_1_in_axes2_y = -six_r_qd_1*six_r_s_2
         six_r_omega_1_in_axes5_x = six_r_e_1_in_axes5_x*six_r_qd_1
         six_r_omega_1_in_axes5_y = six_r_e_1_in_axes5_y*six_r_qd_1
         six_r_omega_1_in_axes5_z = six_r_e_1_in_axes5_z*six_r_qd_1
@@ -10826,14 +10945,14 @@ def _run_legs(m, X, V, A, q):
         six_r_W_1_in_axes5_yz = six_r_omega_1_in_axes5_y*six_r_omega_1_in_axes5_z
         # (six_r-omega_2) angular velocity of link 2
         six_r_omega_2_in_axes3_x = (
-        six_r_c_3*six_r_omega_1_in_axes2_x + six_r_omega_1_in_axes2_y*six_r_s_3
+        six_r_omega_1_in_axes2_x*six_r_s_3 - six_r_c_3*six_r_omega_1_in_axes2_y
         )
         six_r_omega_2_in_axes3_y = (
-        six_r_c_3*six_r_omega_1_in_axes2_y - six_r_omega_1_in_axes2_x*six_r_s_3
+        six_r_c_3*six_r_omega_1_in_axes2_x + six_r_omega_1_in_axes2_y*six_r_s_3
         )
         six_r_omega_2_in_axes5_x = six_r_omega_1_in_axes5_x + six_r_e_2_in_axes5_x*six_r_qd_1_t_4
         six_r_omega_2_in_axes5_y = six_r_omega_1_in_axes5_y + six_r_e_2_in_axes5_y*six_r_qd_1_t_4
-        six_r_omega_2_in_axes5_z = six_r_omega_1_in_axes5_z + six_r_qd_1_t_4*six_r_s_4
+        six_r_omega_2_in_axes5_z = six_r_omega_1_in_axes5_z + six_r_c_4*six_r_qd_1_t_4
         # (six_r-W_2) centripetal tensor of link 2
         six_r_W_2_in_axes2_yz = six_r_omega_1_in_axes2_y*six_r_qd_1_t_4
         six_r_W_2_in_axes2_xy = six_r_omega_1_in_axes2_x*six_r_omega_1_in_axes2_y
@@ -10843,38 +10962,38 @@ def _run_legs(m, X, V, A, q):
         # (six_r-omega_3) angular velocity of link 3
         six_r_omega_3_in_axes3_z = six_r_qd_1_t_4 - six_r_qd_1_t_3
         six_r_omega_3_in_axes4_x = (
-        six_r_c_4*six_r_omega_2_in_axes3_y + six_r_omega_3_in_axes3_z*six_r_s_4
+        six_r_omega_3_in_axes3_z*six_r_s_4 - six_r_c_4*six_r_omega_2_in_axes3_x
         )
         six_r_omega_3_in_axes4_y = (
-        six_r_c_4*six_r_omega_3_in_axes3_z - six_r_omega_2_in_axes3_y*six_r_s_4
+        six_r_c_4*six_r_omega_3_in_axes3_z + six_r_omega_2_in_axes3_x*six_r_s_4
         )
-        six_r_omega_3_t = -six_r_c_5*six_r_omega_3_in_axes4_y
-        six_r_omega_3_t_2 = six_r_omega_3_in_axes4_y*six_r_s_5
-        six_r_omega_3_in_axes5_x = six_r_omega_2_in_axes3_x*six_r_s_5 - six_r_omega_3_t
-        six_r_omega_3_in_axes5_y = six_r_c_5*six_r_omega_2_in_axes3_x - six_r_omega_3_t_2
+        six_r_omega_3_t = six_r_omega_3_in_axes4_x*six_r_s_5
+        six_r_omega_3_t_2 = six_r_c_5*six_r_omega_3_in_axes4_x
+        six_r_omega_3_in_axes5_x = six_r_omega_3_t + six_r_c_5*six_r_omega_2_in_axes3_y
+        six_r_omega_3_in_axes5_y = six_r_omega_3_t_2 - six_r_omega_2_in_axes3_y*six_r_s_5
         # (six_r-W_3) centripetal tensor of link 3
-        six_r_W_3_t = six_r_omega_2_in_axes3_y*six_r_omega_2_in_axes3_y
+        six_r_W_3_t = six_r_omega_2_in_axes3_x*six_r_omega_2_in_axes3_x
         six_r_W_3_t_2 = six_r_omega_3_in_axes3_z*six_r_omega_3_in_axes3_z
-        six_r_W_3_t_3 = six_r_W_3_t + six_r_W_3_t_2
         six_r_W_3_in_axes3_xy = six_r_omega_2_in_axes3_x*six_r_omega_2_in_axes3_y
         six_r_W_3_in_axes3_xz = six_r_omega_2_in_axes3_x*six_r_omega_3_in_axes3_z
+        six_r_W_3_t_3 = six_r_W_3_t + six_r_W_3_t_2
         six_r_W_3_in_axes3_yz = six_r_omega_2_in_axes3_y*six_r_omega_3_in_axes3_z
         six_r_W_3_in_axes5_xy = six_r_omega_3_in_axes5_x*six_r_omega_3_in_axes5_y
         # (six_r-omega_4) angular velocity of link 4
-        six_r_omega_4_in_axes4_z = six_r_omega_2_in_axes3_x + six_r_qd_4
-        six_r_omega_4_in_axes5_x = six_r_omega_4_in_axes4_z*six_r_s_5 - six_r_omega_3_t
-        six_r_omega_4_in_axes5_y = six_r_c_5*six_r_omega_4_in_axes4_z - six_r_omega_3_t_2
+        six_r_omega_4_in_axes4_z = six_r_omega_2_in_axes3_y - six_r_qd_4_t
+        six_r_omega_4_in_axes5_x = six_r_omega_3_t + six_r_c_5*six_r_omega_4_in_axes4_z
+        six_r_omega_4_in_axes5_y = six_r_omega_3_t_2 - six_r_omega_4_in_axes4_z*six_r_s_5
         # (six_r-W_4) centripetal tensor of link 4
         six_r_W_4_in_axes4_xy = six_r_omega_3_in_axes4_x*six_r_omega_3_in_axes4_y
         six_r_W_4_in_axes4_xz = six_r_omega_3_in_axes4_x*six_r_omega_4_in_axes4_z
         six_r_W_4_in_axes4_yz = six_r_omega_3_in_axes4_y*six_r_omega_4_in_axes4_z
         six_r_W_4_in_axes5_xy = six_r_omega_4_in_axes5_x*six_r_omega_4_in_axes5_y
         # (six_r-omega_5) angular velocity of link 5
-        six_r_omega_5_in_axes5_z = six_r_omega_3_in_axes4_x - six_r_qd_5_t
+        six_r_omega_5_in_axes5_z = six_r_omega_3_in_axes4_y - six_r_qd_5_t
         # (six_r-W_5) centripetal tensor of link 5
         six_r_W_5_t = six_r_omega_4_in_axes5_y*six_r_omega_4_in_axes5_y
         six_r_W_5_t_2 = six_r_omega_5_in_axes5_z*six_r_omega_5_in_axes5_z
-        six_r_W_5_in_axes5_xx = -six_r_W_5_t - six_r_W_5_t_2
+        six_r_W_5_t_3 = six_r_W_5_t + six_r_W_5_t_2
         six_r_W_5_in_axes5_xz = six_r_omega_4_in_axes5_x*six_r_omega_5_in_axes5_z
         six_r_W_5_in_axes5_yz = six_r_omega_4_in_axes5_y*six_r_omega_5_in_axes5_z
         # (six_r-a_p) acceleration of the connection point without its centripetal part
@@ -10900,33 +11019,33 @@ def _run_legs(m, X, V, A, q):
         # (six_r-zeta_2) angular acceleration of link 2 from the turning of axis 2
         six_r_zeta_2_in_axes2_y = -six_r_omega_1_in_axes2_x*six_r_qd_1_t_4
         six_r_zeta_2_in_axes3_x = (
-        six_r_W_2_in_axes2_yz*six_r_c_3 + six_r_s_3*six_r_zeta_2_in_axes2_y
+        six_r_W_2_in_axes2_yz*six_r_s_3 - six_r_c_3*six_r_zeta_2_in_axes2_y
         )
         six_r_zeta_2_in_axes3_y = (
-        six_r_c_3*six_r_zeta_2_in_axes2_y - six_r_W_2_in_axes2_yz*six_r_s_3
+        six_r_W_2_in_axes2_yz*six_r_c_3 + six_r_s_3*six_r_zeta_2_in_axes2_y
         )
-        six_r_zeta_2_in_axes5_z = six_r_c_4*six_r_zeta_2_in_axes3_y
-        six_r_zeta_2_t = six_r_s_4*six_r_zeta_2_in_axes3_y
-        six_r_zeta_2_in_axes5_x = six_r_s_5*six_r_zeta_2_in_axes3_x - six_r_c_5*six_r_zeta_2_t
-        six_r_zeta_2_in_axes5_y = six_r_c_5*six_r_zeta_2_in_axes3_x + six_r_s_5*six_r_zeta_2_t
+        six_r_zeta_2_t = six_r_c_4*six_r_zeta_2_in_axes3_x
+        six_r_zeta_2_in_axes5_z = six_r_s_4*six_r_zeta_2_in_axes3_x
+        six_r_zeta_2_in_axes5_x = six_r_c_5*six_r_zeta_2_in_axes3_y - six_r_s_5*six_r_zeta_2_t
+        six_r_zeta_2_in_axes5_y = -six_r_c_5*six_r_zeta_2_t - six_r_s_5*six_r_zeta_2_in_axes3_y
         # (six_r-zeta_3) angular acceleration of link 3 from the turning of axis 3
         six_r_zeta_3_t = six_r_omega_2_in_axes3_y*six_r_qd_1_t_3
         six_r_zeta_3_in_axes3_y = six_r_omega_2_in_axes3_x*six_r_qd_1_t_3
         # (six_r-beta_3) angular acceleration of link 3 at zero joint accelerations
         six_r_beta_3_in_axes3_x = six_r_zeta_2_in_axes3_x - six_r_zeta_3_t
         six_r_beta_3_in_axes3_y = six_r_zeta_2_in_axes3_y + six_r_zeta_3_in_axes3_y
-        six_r_beta_3_in_axes4_x = six_r_beta_3_in_axes3_y*six_r_c_4
-        six_r_beta_3_in_axes4_y = -six_r_beta_3_in_axes3_y*six_r_s_4
+        six_r_beta_3_t = six_r_beta_3_in_axes3_x*six_r_c_4
+        six_r_beta_3_in_axes4_y = six_r_beta_3_in_axes3_x*six_r_s_4
         # (six_r-zeta_4) angular acceleration of link 4 from the turning of axis 4
-        six_r_zeta_4_in_axes4_x = six_r_omega_3_in_axes4_y*six_r_qd_4
-        six_r_zeta_4_in_axes4_y = -six_r_omega_3_in_axes4_x*six_r_qd_4
+        six_r_zeta_4_in_axes4_x = -six_r_omega_3_in_axes4_y*six_r_qd_4_t
+        six_r_zeta_4_in_axes4_y = six_r_omega_3_in_axes4_x*six_r_qd_4_t
         # (six_r-beta_4) angular acceleration of link 4 at zero joint accelerations
-        six_r_beta_4_in_axes4_x = six_r_beta_3_in_axes4_x + six_r_zeta_4_in_axes4_x
+        six_r_beta_4_in_axes4_x = six_r_zeta_4_in_axes4_x - six_r_beta_3_t
         six_r_beta_4_in_axes4_y = six_r_beta_3_in_axes4_y + six_r_zeta_4_in_axes4_y
-        six_r_beta_4_t = six_r_beta_3_in_axes3_x*six_r_s_5
-        six_r_beta_4_in_axes5_x = six_r_beta_4_t + six_r_beta_4_in_axes4_y*six_r_c_5
-        six_r_beta_4_t_2 = -six_r_beta_3_in_axes3_x*six_r_c_5
-        six_r_beta_4_in_axes5_y = -six_r_beta_4_t_2 - six_r_beta_4_in_axes4_y*six_r_s_5
+        six_r_beta_4_t = six_r_beta_3_in_axes3_y*six_r_c_5
+        six_r_beta_4_in_axes5_x = six_r_beta_4_t + six_r_beta_4_in_axes4_x*six_r_s_5
+        six_r_beta_4_t_2 = six_r_beta_3_in_axes3_y*six_r_s_5
+        six_r_beta_4_in_axes5_y = six_r_beta_4_in_axes4_x*six_r_c_5 - six_r_beta_4_t_2
         # (six_r-zeta_5) angular acceleration of link 5 from the turning of axis 5
         six_r_zeta_5_t = six_r_omega_4_in_axes5_y*six_r_qd_5_t
         six_r_zeta_5_in_axes5_y = six_r_omega_4_in_axes5_x*six_r_qd_5_t
@@ -10934,72 +11053,70 @@ def _run_legs(m, X, V, A, q):
         six_r_beta_5_in_axes5_x = six_r_beta_4_in_axes5_x - six_r_zeta_5_t
         six_r_beta_5_in_axes5_y = six_r_beta_4_in_axes5_y + six_r_zeta_5_in_axes5_y
         # (six_r-bias) acceleration of the connection point at zero joint accelerations
-        six_r_d_2_in_spec2_x = six_r_joint2_offset_x*six_r_s_2
-        six_r_d_2_in_spec2_y = six_r_c_2*six_r_joint2_offset_x
-        six_r_bias_t = six_r_c_3*six_r_d_2_in_spec2_x + six_r_d_2_in_spec2_y*six_r_s_3
-        six_r_bias_t_2 = six_r_c_3*six_r_d_2_in_spec2_y - six_r_d_2_in_spec2_x*six_r_s_3
-        six_r_d_2_in_axes5_z = six_r_bias_t_2*six_r_c_4
-        six_r_bias_t_3 = six_r_bias_t_2*six_r_s_4
-        six_r_d_2_in_axes5_x = six_r_bias_t*six_r_s_5 - six_r_bias_t_3*six_r_c_5
-        six_r_d_2_in_axes5_y = six_r_bias_t*six_r_c_5 + six_r_bias_t_3*six_r_s_5
-        six_r_bias_t_4 = six_r_c_3*six_r_joint3_offset_x
+        six_r_d_2_in_spec2_x = six_r_c_2*six_r_joint2_offset_x
+        six_r_bias_t = six_r_joint2_offset_x*six_r_s_2
+        six_r_bias_t_2 = six_r_bias_t*six_r_c_3 + six_r_d_2_in_spec2_x*six_r_s_3
+        six_r_bias_t_3 = six_r_c_3*six_r_d_2_in_spec2_x - six_r_bias_t*six_r_s_3
+        six_r_bias_t_4 = six_r_bias_t_2*six_r_c_4
+        six_r_d_2_in_axes5_z = six_r_bias_t_2*six_r_s_4
+        six_r_d_2_in_axes5_x = six_r_bias_t_3*six_r_c_5 - six_r_bias_t_4*six_r_s_5
+        six_r_d_2_in_axes5_y = -six_r_bias_t_3*six_r_s_5 - six_r_bias_t_4*six_r_c_5
         six_r_bias_t_5 = six_r_joint3_offset_x*six_r_s_3
-        six_r_d_3_in_axes5_z = -six_r_bias_t_5*six_r_c_4
-        six_r_bias_t_6 = six_r_bias_t_5*six_r_s_4
-        six_r_d_3_in_axes5_x = six_r_bias_t_4*six_r_s_5 + six_r_bias_t_6*six_r_c_5
-        six_r_d_3_in_axes5_y = six_r_bias_t_4*six_r_c_5 - six_r_bias_t_6*six_r_s_5
-        six_r_d_4_in_axes5_x = six_r_joint4_offset_x*six_r_s_5
-        six_r_d_4_in_axes5_y = six_r_c_5*six_r_joint4_offset_x
-        six_r_d_5_in_axes5_x = six_r_joint5_offset_x*six_r_s_5
-        six_r_d_5_in_axes5_y = six_r_c_5*six_r_joint5_offset_x
-        six_r_bias_t_7 = six_r_omega_3_in_axes4_x*six_r_omega_3_in_axes4_x
-        six_r_bias_t_8 = six_r_omega_4_in_axes5_x*six_r_omega_4_in_axes5_x
-        six_r_bias_t_9 = six_r_omega_1_in_axes5_x*six_r_omega_1_in_axes5_x
-        six_r_bias_t_10 = six_r_omega_1_in_axes5_y*six_r_omega_1_in_axes5_y
-        six_r_bias_t_11 = six_r_omega_1_in_axes5_z*six_r_omega_1_in_axes5_z
-        six_r_bias_t_12 = six_r_omega_2_in_axes5_x*six_r_omega_2_in_axes5_x
-        six_r_bias_t_13 = six_r_omega_2_in_axes5_y*six_r_omega_2_in_axes5_y
-        six_r_bias_t_14 = six_r_omega_2_in_axes5_z*six_r_omega_2_in_axes5_z
-        six_r_bias_t_15 = six_r_W_4_in_axes5_xy + six_r_beta_4_in_axes4_x
+        six_r_bias_t_6 = six_r_c_3*six_r_joint3_offset_x
+        six_r_bias_t_7 = six_r_bias_t_5*six_r_c_4
+        six_r_d_3_in_axes5_z = six_r_bias_t_5*six_r_s_4
+        six_r_d_3_in_axes5_x = six_r_bias_t_6*six_r_c_5 - six_r_bias_t_7*six_r_s_5
+        six_r_d_3_in_axes5_y = -six_r_bias_t_6*six_r_s_5 - six_r_bias_t_7*six_r_c_5
+        six_r_d_4_in_axes5_x = six_r_c_5*six_r_joint4_offset_x
+        six_r_bias_t_8 = six_r_joint4_offset_x*six_r_s_5
+        six_r_d_5_in_axes5_x = six_r_c_5*six_r_joint5_offset_x
+        six_r_bias_t_9 = six_r_joint5_offset_x*six_r_s_5
+        six_r_bias_t_10 = six_r_omega_3_in_axes4_y*six_r_omega_3_in_axes4_y
+        six_r_bias_t_11 = six_r_omega_4_in_axes5_x*six_r_omega_4_in_axes5_x
+        six_r_bias_t_12 = six_r_omega_1_in_axes5_x*six_r_omega_1_in_axes5_x
+        six_r_bias_t_13 = six_r_omega_1_in_axes5_y*six_r_omega_1_in_axes5_y
+        six_r_bias_t_14 = six_r_omega_1_in_axes5_z*six_r_omega_1_in_axes5_z
+        six_r_bias_t_15 = six_r_omega_2_in_axes5_x*six_r_omega_2_in_axes5_x
+        six_r_bias_t_16 = six_r_omega_2_in_axes5_y*six_r_omega_2_in_axes5_y
+        six_r_bias_t_17 = six_r_omega_2_in_axes5_z*six_r_omega_2_in_axes5_z
+        six_r_bias_t_18 = six_r_W_4_in_axes5_xy + six_r_beta_4_in_axes4_y
         six_r_bias_in_axes5_x = (
         six_r_W_1_in_axes5_xy*six_r_d_2_in_axes5_y + six_r_W_1_in_axes5_xz*six_r_d_2_in_axes5_z +
-            six_r_W_5_in_axes5_xx*six_r_platform_joint_offset_x +
             six_r_d_3_in_axes5_y*(six_r_W_2_in_axes5_xy - six_r_zeta_2_in_axes5_z) +
-            six_r_d_3_in_axes5_z*(six_r_W_2_in_axes5_xz + six_r_zeta_2_in_axes5_y) +
-            six_r_d_4_in_axes5_y*(six_r_W_3_in_axes5_xy - six_r_beta_3_in_axes4_x) +
-            six_r_d_5_in_axes5_y*(six_r_W_4_in_axes5_xy - six_r_beta_4_in_axes4_x) -
-            six_r_d_2_in_axes5_x*(six_r_bias_t_10 + six_r_bias_t_11) -
-            six_r_d_3_in_axes5_x*(six_r_bias_t_13 + six_r_bias_t_14) -
-            six_r_d_4_in_axes5_x*(six_r_bias_t_7 +
+            six_r_d_3_in_axes5_z*(six_r_W_2_in_axes5_xz + six_r_zeta_2_in_axes5_y) -
+            six_r_W_5_t_3*six_r_platform_joint_offset_x - six_r_bias_t_8*(six_r_W_3_in_axes5_xy -
+            six_r_beta_3_in_axes4_y) - six_r_bias_t_9*(six_r_W_4_in_axes5_xy -
+            six_r_beta_4_in_axes4_y) - six_r_d_2_in_axes5_x*(six_r_bias_t_13 + six_r_bias_t_14) -
+            six_r_d_3_in_axes5_x*(six_r_bias_t_16 + six_r_bias_t_17) -
+            six_r_d_4_in_axes5_x*(six_r_bias_t_10 +
             six_r_omega_3_in_axes5_y*six_r_omega_3_in_axes5_y) - six_r_d_5_in_axes5_x*(six_r_W_5_t
-            + six_r_bias_t_7)
+            + six_r_bias_t_10)
         )
         six_r_bias_in_axes5_y = (
         six_r_W_1_in_axes5_xy*six_r_d_2_in_axes5_x + six_r_W_1_in_axes5_yz*six_r_d_2_in_axes5_z +
-            six_r_bias_t_15*six_r_d_5_in_axes5_x + six_r_bias_t_15*six_r_platform_joint_offset_x +
+            six_r_bias_t_18*six_r_d_5_in_axes5_x + six_r_bias_t_18*six_r_platform_joint_offset_x +
+            six_r_bias_t_8*(six_r_bias_t_10 + six_r_omega_3_in_axes5_x*six_r_omega_3_in_axes5_x) +
+            six_r_bias_t_9*(six_r_bias_t_10 + six_r_bias_t_11) +
             six_r_d_3_in_axes5_x*(six_r_W_2_in_axes5_xy + six_r_zeta_2_in_axes5_z) +
             six_r_d_3_in_axes5_z*(six_r_W_2_in_axes5_yz - six_r_zeta_2_in_axes5_x) +
-            six_r_d_4_in_axes5_x*(six_r_W_3_in_axes5_xy + six_r_beta_3_in_axes4_x) -
-            six_r_d_2_in_axes5_y*(six_r_bias_t_11 + six_r_bias_t_9) -
-            six_r_d_3_in_axes5_y*(six_r_bias_t_12 + six_r_bias_t_14) -
-            six_r_d_4_in_axes5_y*(six_r_bias_t_7 +
-            six_r_omega_3_in_axes5_x*six_r_omega_3_in_axes5_x) -
-            six_r_d_5_in_axes5_y*(six_r_bias_t_7 + six_r_bias_t_8)
+            six_r_d_4_in_axes5_x*(six_r_W_3_in_axes5_xy + six_r_beta_3_in_axes4_y) -
+            six_r_d_2_in_axes5_y*(six_r_bias_t_12 + six_r_bias_t_14) -
+            six_r_d_3_in_axes5_y*(six_r_bias_t_15 + six_r_bias_t_17)
         )
         six_r_bias_in_axes5_z = (
         six_r_W_1_in_axes5_xz*six_r_d_2_in_axes5_x + six_r_W_1_in_axes5_yz*six_r_d_2_in_axes5_y +
             six_r_d_3_in_axes5_x*(six_r_W_2_in_axes5_xz - six_r_zeta_2_in_axes5_y) +
             six_r_d_3_in_axes5_y*(six_r_W_2_in_axes5_yz + six_r_zeta_2_in_axes5_x) +
-            six_r_d_4_in_axes5_x*(six_r_beta_4_t_2 + six_r_beta_3_in_axes4_y*six_r_s_5 +
-            six_r_omega_3_in_axes4_x*six_r_omega_3_in_axes5_x) +
-            six_r_d_4_in_axes5_y*(six_r_beta_4_t + six_r_beta_3_in_axes4_y*six_r_c_5 +
-            six_r_omega_3_in_axes4_x*six_r_omega_3_in_axes5_y) +
-            six_r_d_5_in_axes5_x*(six_r_omega_3_in_axes4_x*six_r_omega_4_in_axes5_x -
-            six_r_beta_4_in_axes5_y) + six_r_d_5_in_axes5_y*(six_r_beta_4_in_axes5_x +
-            six_r_omega_3_in_axes4_x*six_r_omega_4_in_axes5_y) +
-            six_r_platform_joint_offset_x*(six_r_W_5_in_axes5_xz - six_r_beta_5_in_axes5_y) -
-            six_r_d_2_in_axes5_z*(six_r_bias_t_10 + six_r_bias_t_9) -
-            six_r_d_3_in_axes5_z*(six_r_bias_t_12 + six_r_bias_t_13)
+            six_r_d_4_in_axes5_x*(six_r_beta_4_t_2 + six_r_beta_3_t*six_r_c_5 +
+            six_r_omega_3_in_axes4_y*six_r_omega_3_in_axes5_x) +
+            six_r_d_5_in_axes5_x*(six_r_omega_3_in_axes4_y*six_r_omega_4_in_axes5_x -
+            six_r_beta_4_in_axes5_y) + six_r_platform_joint_offset_x*(six_r_W_5_in_axes5_xz -
+            six_r_beta_5_in_axes5_y) - six_r_bias_t_8*(six_r_beta_4_t +
+            six_r_omega_3_in_axes4_y*six_r_omega_3_in_axes5_y - six_r_beta_3_t*six_r_s_5) -
+            six_r_bias_t_9*(six_r_beta_4_in_axes5_x +
+            six_r_omega_3_in_axes4_y*six_r_omega_4_in_axes5_y) -
+            six_r_d_2_in_axes5_z*(six_r_bias_t_12 + six_r_bias_t_13) -
+            six_r_d_3_in_axes5_z*(six_r_bias_t_15 + six_r_bias_t_16)
         )
         # (six_r-rel) acceleration of the connection point left to the joint accelerations
         six_r_rel_in_axes5_x = six_r_S_ddot_in_axes5_x - six_r_bias_in_axes5_x
@@ -11032,7 +11149,7 @@ def _run_legs(m, X, V, A, q):
         # (six_r-nu_2) bias of the angular acceleration along moment direction 2
         six_r_nu_2_t = (
         six_r_beta_5_in_axes5_y*six_r_end_p1_in_axes5_z -
-            six_r_beta_4_in_axes4_x*six_r_n_m2_in_axes5_z
+            six_r_beta_4_in_axes4_y*six_r_n_m2_in_axes5_z
         )
         six_r_nu_2_t_2 = (
         six_r_nd_m2_in_axes5_y*six_r_nu_1_t_4 + six_r_nd_m2_in_axes5_z*six_r_nu_1_t_5 +
@@ -11082,8 +11199,8 @@ def _run_legs(m, X, V, A, q):
             six_r_rel_in_axes5_y*six_r_w_1_t_29)
         )
         # (six_r-alpha_1) angular acceleration of link 1
-        six_r_alpha_1_t = six_r_qdd_1_t_5*six_r_s_2
-        six_r_alpha_1_in_axes2_y = -six_r_c_2*six_r_qdd_1_t_5
+        six_r_alpha_1_t = six_r_c_2*six_r_qdd_1_t_5
+        six_r_alpha_1_in_axes2_y = six_r_qdd_1_t_5*six_r_s_2
         # (six_r-alpha_2) angular acceleration of link 2
         six_r_alpha_2_in_axes2_x = six_r_W_2_in_axes2_yz - six_r_alpha_1_t
         six_r_alpha_2_in_axes2_y = six_r_alpha_1_in_axes2_y + six_r_zeta_2_in_axes2_y
@@ -11094,11 +11211,11 @@ def _run_legs(m, X, V, A, q):
         six_r_B_2_in_axes2_zy = six_r_W_2_in_axes2_yz + six_r_alpha_2_in_axes2_x
         # (six_r-alpha_3) angular acceleration of link 3
         six_r_alpha_3_in_axes3_x = (
-        six_r_alpha_2_in_axes2_x*six_r_c_3 + six_r_alpha_2_in_axes2_y*six_r_s_3 - six_r_zeta_3_t
+        six_r_alpha_2_in_axes2_x*six_r_s_3 - six_r_zeta_3_t - six_r_alpha_2_in_axes2_y*six_r_c_3
         )
         six_r_alpha_3_in_axes3_y = (
-        six_r_zeta_3_in_axes3_y + six_r_alpha_2_in_axes2_y*six_r_c_3 -
-            six_r_alpha_2_in_axes2_x*six_r_s_3
+        six_r_zeta_3_in_axes3_y + six_r_alpha_2_in_axes2_x*six_r_c_3 +
+            six_r_alpha_2_in_axes2_y*six_r_s_3
         )
         six_r_alpha_3_in_axes3_z = six_r_qdd_1_t_3 + six_r_qdd_1_t_4
         # (six_r-B_3) acceleration tensor of link 3
@@ -11110,14 +11227,14 @@ def _run_legs(m, X, V, A, q):
         six_r_B_3_in_axes3_zy = six_r_W_3_in_axes3_yz + six_r_alpha_3_in_axes3_x
         # (six_r-alpha_4) angular acceleration of link 4
         six_r_alpha_4_in_axes4_x = (
-        six_r_zeta_4_in_axes4_x + six_r_alpha_3_in_axes3_y*six_r_c_4 +
-            six_r_alpha_3_in_axes3_z*six_r_s_4
+        six_r_zeta_4_in_axes4_x + six_r_alpha_3_in_axes3_z*six_r_s_4 -
+            six_r_alpha_3_in_axes3_x*six_r_c_4
         )
         six_r_alpha_4_in_axes4_y = (
-        six_r_zeta_4_in_axes4_y + six_r_alpha_3_in_axes3_z*six_r_c_4 -
-            six_r_alpha_3_in_axes3_y*six_r_s_4
+        six_r_zeta_4_in_axes4_y + six_r_alpha_3_in_axes3_x*six_r_s_4 +
+            six_r_alpha_3_in_axes3_z*six_r_c_4
         )
-        six_r_alpha_4_in_axes4_z = six_r_alpha_3_in_axes3_x + six_r_qdd_4
+        six_r_alpha_4_in_axes4_z = six_r_alpha_3_in_axes3_y + six_r_qdd_4
         # (six_r-B_4) acceleration tensor of link 4
         six_r_B_4_in_axes4_xy = six_r_W_4_in_axes4_xy - six_r_alpha_4_in_axes4_z
         six_r_B_4_in_axes4_xz = six_r_W_4_in_axes4_xz + six_r_alpha_4_in_axes4_y
@@ -11127,14 +11244,14 @@ def _run_legs(m, X, V, A, q):
         six_r_B_4_in_axes4_zy = six_r_W_4_in_axes4_yz + six_r_alpha_4_in_axes4_x
         # (six_r-alpha_5) angular acceleration of link 5
         six_r_alpha_5_in_axes5_x = (
-        six_r_alpha_4_in_axes4_y*six_r_c_5 + six_r_alpha_4_in_axes4_z*six_r_s_5 - six_r_zeta_5_t
+        six_r_alpha_4_in_axes4_x*six_r_s_5 + six_r_alpha_4_in_axes4_z*six_r_c_5 - six_r_zeta_5_t
         )
         six_r_alpha_5_in_axes5_y = (
-        six_r_zeta_5_in_axes5_y + six_r_alpha_4_in_axes4_z*six_r_c_5 -
-            six_r_alpha_4_in_axes4_y*six_r_s_5
+        six_r_zeta_5_in_axes5_y + six_r_alpha_4_in_axes4_x*six_r_c_5 -
+            six_r_alpha_4_in_axes4_z*six_r_s_5
         )
         six_r_alpha_5_in_axes5_z = (
-        six_r_alpha_4_in_axes4_x + inv_six_r_w_1_t_12*(six_r_qdd_1_t_2*six_r_w_1_t_14 +
+        six_r_alpha_4_in_axes4_y + inv_six_r_w_1_t_12*(six_r_qdd_1_t_2*six_r_w_1_t_14 +
             six_r_qdd_1_t_3*six_r_w_1_t_25 + six_r_qdd_1_t_5*six_r_w_1_t_18 +
             six_r_rel_in_axes5_y*six_r_w_1_t_13 - six_r_qdd_1_t_4*six_r_w_1_t_22 -
             six_r_qdd_4*six_r_w_1_t_15)
@@ -11149,74 +11266,78 @@ def _run_legs(m, X, V, A, q):
         # (six_r-a_o_3) acceleration of the origin of joint 3
         six_r_a_o_3_t = six_r_omega_1_in_axes2_y*six_r_omega_1_in_axes2_y
         six_r_a_o_3_t_2 = six_r_qd_1_t_4*six_r_qd_1_t_4
-        six_r_a_o_3_t_3 = six_r_joint3_offset_x*(six_r_a_o_3_t + six_r_a_o_3_t_2)
+        six_r_a_o_3_in_axes2_x = -six_r_joint3_offset_x*(six_r_a_o_3_t + six_r_a_o_3_t_2)
         six_r_a_o_3_in_axes2_y = six_r_B_2_in_axes2_yx*six_r_joint3_offset_x
         six_r_a_o_3_in_axes2_z = six_r_B_2_in_axes2_zx*six_r_joint3_offset_x
-        six_r_a_o_3_in_axes3_x = six_r_a_o_3_in_axes2_y*six_r_s_3 - six_r_a_o_3_t_3*six_r_c_3
-        six_r_a_o_3_in_axes3_y = six_r_a_o_3_in_axes2_y*six_r_c_3 + six_r_a_o_3_t_3*six_r_s_3
-        # (six_r-a_o_4) acceleration of the origin of joint 4
-        six_r_a_o_4_in_axes3_x = six_r_a_o_3_in_axes3_x - six_r_W_3_t_3*six_r_joint4_offset_x
-        six_r_a_o_4_in_axes3_y = (
-        six_r_a_o_3_in_axes3_y + six_r_B_3_in_axes3_yx*six_r_joint4_offset_x
+        six_r_a_o_3_in_axes3_x = (
+        six_r_a_o_3_in_axes2_x*six_r_s_3 - six_r_a_o_3_in_axes2_y*six_r_c_3
         )
+        six_r_a_o_3_in_axes3_y = (
+        six_r_a_o_3_in_axes2_x*six_r_c_3 + six_r_a_o_3_in_axes2_y*six_r_s_3
+        )
+        # (six_r-a_o_4) acceleration of the origin of joint 4
+        six_r_a_o_4_in_axes3_x = (
+        six_r_a_o_3_in_axes3_x + six_r_B_3_in_axes3_xy*six_r_joint4_offset_x
+        )
+        six_r_a_o_4_in_axes3_y = six_r_a_o_3_in_axes3_y - six_r_W_3_t_3*six_r_joint4_offset_x
         six_r_a_o_4_in_axes3_z = (
-        six_r_a_o_3_in_axes2_z + six_r_B_3_in_axes3_zx*six_r_joint4_offset_x
+        six_r_a_o_3_in_axes2_z + six_r_B_3_in_axes3_zy*six_r_joint4_offset_x
         )
         # (six_r-acc_3) acceleration of the reference point of link 3, less gravity
         six_r_g_in_axes1_x = six_r_acc_3_t*six_r_c_1 + six_r_acc_3_t_2*six_r_s_1
         six_r_g_in_axes1_y = six_r_acc_3_t_2*six_r_c_1 - six_r_acc_3_t*six_r_s_1
-        six_r_g_in_axes2_x = six_r_c_2*six_r_g_in_axes1_y + six_r_g_in_axes1_z*six_r_s_2
-        six_r_g_in_axes2_y = six_r_c_2*six_r_g_in_axes1_z - six_r_g_in_axes1_y*six_r_s_2
-        six_r_g_in_axes3_x = six_r_c_3*six_r_g_in_axes2_x + six_r_g_in_axes2_y*six_r_s_3
-        six_r_g_in_axes3_y = six_r_c_3*six_r_g_in_axes2_y - six_r_g_in_axes2_x*six_r_s_3
+        six_r_g_in_axes2_x = six_r_c_2*six_r_g_in_axes1_z + six_r_g_in_axes1_x*six_r_s_2
+        six_r_g_in_axes2_y = six_r_c_2*six_r_g_in_axes1_x - six_r_g_in_axes1_z*six_r_s_2
+        six_r_g_in_axes3_x = six_r_g_in_axes2_x*six_r_s_3 - six_r_c_3*six_r_g_in_axes2_y
+        six_r_g_in_axes3_y = six_r_c_3*six_r_g_in_axes2_x + six_r_g_in_axes2_y*six_r_s_3
         six_r_acc_3_in_axes3_x = six_r_a_o_3_in_axes3_x - six_r_g_in_axes3_x
         six_r_acc_3_in_axes3_y = six_r_a_o_3_in_axes3_y - six_r_g_in_axes3_y
-        six_r_acc_3_in_axes3_z = six_r_a_o_3_in_axes2_z - six_r_g_in_axes1_x
+        six_r_acc_3_in_axes3_z = six_r_a_o_3_in_axes2_z - six_r_g_in_axes1_y
         # (six_r-f_3) inertia force of link 3 less its weight
-        six_r_f_3_t = six_r_omega_2_in_axes3_x*six_r_omega_2_in_axes3_x
+        six_r_f_3_t = six_r_omega_2_in_axes3_y*six_r_omega_2_in_axes3_y
         six_r_f_3_in_axes3_x = (
-        six_r_B_3_in_axes3_xy*six_r_h_3_in_spec3_y + six_r_B_3_in_axes3_xz*six_r_h_3_in_spec3_z +
-            six_r_acc_3_in_axes3_x*six_r_link3_mass - six_r_W_3_t_3*six_r_h_3_in_spec3_x
-        )
-        six_r_f_3_in_axes3_y = (
-        six_r_B_3_in_axes3_yx*six_r_h_3_in_spec3_x + six_r_B_3_in_axes3_yz*six_r_h_3_in_spec3_z +
-            six_r_acc_3_in_axes3_y*six_r_link3_mass - six_r_h_3_in_spec3_y*(six_r_W_3_t_2 +
+        six_r_B_3_in_axes3_xy*six_r_h_3_in_spec3_x + six_r_B_3_in_axes3_xz*six_r_h_3_in_spec3_z +
+            six_r_acc_3_in_axes3_x*six_r_link3_mass + six_r_h_3_in_spec3_y*(six_r_W_3_t_2 +
             six_r_f_3_t)
         )
+        six_r_f_3_in_axes3_y = (
+        six_r_B_3_in_axes3_yz*six_r_h_3_in_spec3_z + six_r_acc_3_in_axes3_y*six_r_link3_mass -
+            six_r_B_3_in_axes3_yx*six_r_h_3_in_spec3_y - six_r_W_3_t_3*six_r_h_3_in_spec3_x
+        )
         six_r_f_3_in_axes3_z = (
-        six_r_B_3_in_axes3_zx*six_r_h_3_in_spec3_x + six_r_B_3_in_axes3_zy*six_r_h_3_in_spec3_y +
-            six_r_acc_3_in_axes3_z*six_r_link3_mass - six_r_h_3_in_spec3_z*(six_r_W_3_t +
+        six_r_B_3_in_axes3_zy*six_r_h_3_in_spec3_x + six_r_acc_3_in_axes3_z*six_r_link3_mass -
+            six_r_B_3_in_axes3_zx*six_r_h_3_in_spec3_y - six_r_h_3_in_spec3_z*(six_r_W_3_t +
             six_r_f_3_t)
         )
         # (six_r-acc_4) acceleration of the reference point of link 4, less gravity
         six_r_acc_4_in_axes4_x = (
-        six_r_a_o_4_in_axes3_y*six_r_c_4 + six_r_a_o_4_in_axes3_z*six_r_s_4 -
-            six_r_c_4*six_r_g_in_axes3_y - six_r_g_in_axes1_x*six_r_s_4
+        six_r_a_o_4_in_axes3_z*six_r_s_4 + six_r_c_4*six_r_g_in_axes3_x -
+            six_r_a_o_4_in_axes3_x*six_r_c_4 - six_r_g_in_axes1_y*six_r_s_4
         )
         six_r_acc_4_in_axes4_y = (
-        six_r_a_o_4_in_axes3_z*six_r_c_4 + six_r_g_in_axes3_y*six_r_s_4 -
-            six_r_a_o_4_in_axes3_y*six_r_s_4 - six_r_c_4*six_r_g_in_axes1_x
+        six_r_a_o_4_in_axes3_x*six_r_s_4 + six_r_a_o_4_in_axes3_z*six_r_c_4 -
+            six_r_c_4*six_r_g_in_axes1_y - six_r_g_in_axes3_x*six_r_s_4
         )
-        six_r_acc_4_in_axes4_z = six_r_a_o_4_in_axes3_x - six_r_g_in_axes3_x
+        six_r_acc_4_in_axes4_z = six_r_a_o_4_in_axes3_y - six_r_g_in_axes3_y
         # (six_r-f_4) inertia force of link 4 less its weight
-        six_r_f_4_t = six_r_omega_3_in_axes4_y*six_r_omega_3_in_axes4_y
+        six_r_f_4_t = six_r_omega_3_in_axes4_x*six_r_omega_3_in_axes4_x
         six_r_f_4_t_2 = six_r_omega_4_in_axes4_z*six_r_omega_4_in_axes4_z
         six_r_f_4_in_axes4_x = (
-        six_r_B_4_in_axes4_xz*six_r_h_4_in_spec4_x + six_r_acc_4_in_axes4_x*six_r_link4_mass -
-            six_r_B_4_in_axes4_xy*six_r_h_4_in_spec4_y - six_r_h_4_in_spec4_z*(six_r_f_4_t +
+        six_r_B_4_in_axes4_xy*six_r_h_4_in_spec4_z + six_r_B_4_in_axes4_xz*six_r_h_4_in_spec4_x +
+            six_r_acc_4_in_axes4_x*six_r_link4_mass - six_r_h_4_in_spec4_y*(six_r_bias_t_10 +
             six_r_f_4_t_2)
         )
         six_r_f_4_in_axes4_y = (
-        six_r_B_4_in_axes4_yx*six_r_h_4_in_spec4_z + six_r_B_4_in_axes4_yz*six_r_h_4_in_spec4_x +
-            six_r_acc_4_in_axes4_y*six_r_link4_mass + six_r_h_4_in_spec4_y*(six_r_bias_t_7 +
+        six_r_B_4_in_axes4_yx*six_r_h_4_in_spec4_y + six_r_B_4_in_axes4_yz*six_r_h_4_in_spec4_x +
+            six_r_acc_4_in_axes4_y*six_r_link4_mass - six_r_h_4_in_spec4_z*(six_r_f_4_t +
             six_r_f_4_t_2)
         )
         six_r_f_4_in_axes4_z = (
-        six_r_B_4_in_axes4_zx*six_r_h_4_in_spec4_z + six_r_acc_4_in_axes4_z*six_r_link4_mass -
-            six_r_B_4_in_axes4_zy*six_r_h_4_in_spec4_y - six_r_h_4_in_spec4_x*(six_r_bias_t_7 +
+        six_r_B_4_in_axes4_zx*six_r_h_4_in_spec4_y + six_r_B_4_in_axes4_zy*six_r_h_4_in_spec4_z +
+            six_r_acc_4_in_axes4_z*six_r_link4_mass - six_r_h_4_in_spec4_x*(six_r_bias_t_10 +
             six_r_f_4_t)
         )
-        six_r_f_4_in_axes3_y = six_r_c_4*six_r_f_4_in_axes4_x - six_r_f_4_in_axes4_y*six_r_s_4
+        six_r_f_4_in_axes3_x = six_r_f_4_in_axes4_y*six_r_s_4 - six_r_c_4*six_r_f_4_in_axes4_x
         six_r_f_4_in_axes3_z = six_r_c_4*six_r_f_4_in_axes4_y + six_r_f_4_in_axes4_x*six_r_s_4
         # (six_r-acc_5) acceleration of the reference point of link 5, less gravity
         six_r_acc_5_in_axes5_x = (
@@ -11246,13 +11367,13 @@ def _run_legs(m, X, V, A, q):
             six_r_acc_5_in_axes5_x*six_r_h_5_in_spec5_z -
             six_r_B_5_in_axes5_xy*six_r_J_5_in_spec5_yz -
             six_r_B_5_in_axes5_zx*six_r_Sigma_5_in_axes5_xx -
-            six_r_J_5_in_spec5_xz*(six_r_bias_t_8 - six_r_W_5_t_2) -
+            six_r_J_5_in_spec5_xz*(six_r_bias_t_11 - six_r_W_5_t_2) -
             six_r_acc_5_in_axes5_z*six_r_h_5_in_spec5_x
         )
         six_r_mu_5_in_axes5_z = (
         six_r_B_5_in_axes5_xz*six_r_J_5_in_spec5_yz +
             six_r_B_5_in_axes5_yx*six_r_Sigma_5_in_axes5_xx +
-            six_r_J_5_in_spec5_xy*(six_r_bias_t_8 - six_r_W_5_t) +
+            six_r_J_5_in_spec5_xy*(six_r_bias_t_11 - six_r_W_5_t) +
             six_r_acc_5_in_axes5_y*six_r_h_5_in_spec5_x -
             six_r_B_5_in_axes5_xy*six_r_Sigma_5_in_axes5_yy -
             six_r_B_5_in_axes5_yz*six_r_J_5_in_spec5_xz -
@@ -11260,75 +11381,76 @@ def _run_legs(m, X, V, A, q):
         )
         # (six_r-mu_4) inertia moment of the links that turn with link 4, about their reference points
         six_r_mu_4_in_axes4_x = (
-        six_r_B_4_in_axes4_yx*six_r_J_4_in_spec4_xz + six_r_B_4_in_axes4_zx*six_r_J_4_in_spec4_yz
-            + six_r_B_4_in_axes4_zy*six_r_Sigma_4_in_axes4_yy -
-            six_r_B_4_in_axes4_yz*six_r_Sigma_4_in_axes4_zz - six_r_J_4_in_spec4_xy*(six_r_f_4_t -
-            six_r_f_4_t_2) - six_r_acc_4_in_axes4_y*six_r_h_4_in_spec4_x -
-            six_r_acc_4_in_axes4_z*six_r_h_4_in_spec4_y
+        six_r_B_4_in_axes4_yx*six_r_J_4_in_spec4_xy +
+            six_r_B_4_in_axes4_zy*six_r_Sigma_4_in_axes4_yy +
+            six_r_J_4_in_spec4_xz*(six_r_bias_t_10 - six_r_f_4_t_2) +
+            six_r_acc_4_in_axes4_z*six_r_h_4_in_spec4_z -
+            six_r_B_4_in_axes4_yz*six_r_Sigma_4_in_axes4_zz -
+            six_r_B_4_in_axes4_zx*six_r_J_4_in_spec4_yz -
+            six_r_acc_4_in_axes4_y*six_r_h_4_in_spec4_x
         )
         six_r_mu_4_in_axes4_y = (
-        six_r_B_4_in_axes4_xy*six_r_J_4_in_spec4_xy +
-            six_r_B_4_in_axes4_xz*six_r_Sigma_4_in_axes4_zz +
+        six_r_B_4_in_axes4_xz*six_r_Sigma_4_in_axes4_zz +
+            six_r_B_4_in_axes4_zy*six_r_J_4_in_spec4_yz +
             six_r_acc_4_in_axes4_x*six_r_h_4_in_spec4_x -
-            six_r_B_4_in_axes4_zx*six_r_Sigma_4_in_axes4_xx -
-            six_r_B_4_in_axes4_zy*six_r_J_4_in_spec4_yz - six_r_J_4_in_spec4_xz*(six_r_bias_t_7 -
-            six_r_f_4_t_2) - six_r_acc_4_in_axes4_z*six_r_h_4_in_spec4_z
+            six_r_B_4_in_axes4_xy*six_r_J_4_in_spec4_xz -
+            six_r_B_4_in_axes4_zx*six_r_Sigma_4_in_axes4_xx - six_r_J_4_in_spec4_xy*(six_r_f_4_t -
+            six_r_f_4_t_2) - six_r_acc_4_in_axes4_z*six_r_h_4_in_spec4_y
         )
         six_r_mu_4_in_axes4_z = (
-        six_r_B_4_in_axes4_yx*six_r_Sigma_4_in_axes4_xx +
-            six_r_acc_4_in_axes4_x*six_r_h_4_in_spec4_y +
-            six_r_acc_4_in_axes4_y*six_r_h_4_in_spec4_z -
+        six_r_B_4_in_axes4_xz*six_r_J_4_in_spec4_xz +
+            six_r_B_4_in_axes4_yx*six_r_Sigma_4_in_axes4_xx + six_r_J_4_in_spec4_yz*(six_r_f_4_t -
+            six_r_bias_t_10) + six_r_acc_4_in_axes4_y*six_r_h_4_in_spec4_y -
             six_r_B_4_in_axes4_xy*six_r_Sigma_4_in_axes4_yy -
-            six_r_B_4_in_axes4_xz*six_r_J_4_in_spec4_xy -
-            six_r_B_4_in_axes4_yz*six_r_J_4_in_spec4_xz - six_r_J_4_in_spec4_yz*(six_r_bias_t_7 -
-            six_r_f_4_t)
+            six_r_B_4_in_axes4_yz*six_r_J_4_in_spec4_xy -
+            six_r_acc_4_in_axes4_x*six_r_h_4_in_spec4_z
         )
         # (six_r-N_4) moment about joint 4 of the links from 4 outwards, the force at the connection point left out
-        six_r_N_4_in_axes4_x = six_r_mu_4_in_axes4_x + six_r_mu_5_in_axes5_z
-        six_r_N_4_in_axes4_y = (
-        six_r_mu_4_in_axes4_y + six_r_c_5*six_r_mu_5_in_axes5_x - six_r_mu_5_in_axes5_y*six_r_s_5
+        six_r_N_4_in_axes4_x = (
+        six_r_mu_4_in_axes4_x + six_r_c_5*six_r_mu_5_in_axes5_y + six_r_mu_5_in_axes5_x*six_r_s_5
         )
+        six_r_N_4_in_axes4_y = six_r_mu_4_in_axes4_y + six_r_mu_5_in_axes5_z
         six_r_N_4_in_axes4_z = (
-        six_r_mu_4_in_axes4_z + six_r_c_5*six_r_mu_5_in_axes5_y + six_r_mu_5_in_axes5_x*six_r_s_5
+        six_r_mu_4_in_axes4_z + six_r_c_5*six_r_mu_5_in_axes5_x - six_r_mu_5_in_axes5_y*six_r_s_5
         )
         # (six_r-mu_3) inertia moment of the links that turn with link 3, about their reference points
         six_r_mu_3_in_axes3_x = (
-        six_r_B_3_in_axes3_yx*six_r_J_3_in_spec3_xz +
-            six_r_B_3_in_axes3_zy*six_r_Sigma_3_in_axes3_yy + six_r_J_3_in_spec3_yz*(six_r_W_3_t -
-            six_r_W_3_t_2) + six_r_acc_3_in_axes3_z*six_r_h_3_in_spec3_y -
+        six_r_B_3_in_axes3_zx*six_r_J_3_in_spec3_xy +
+            six_r_B_3_in_axes3_zy*six_r_Sigma_3_in_axes3_yy + six_r_J_3_in_spec3_xz*(six_r_f_3_t -
+            six_r_W_3_t_2) + six_r_acc_3_in_axes3_z*six_r_h_3_in_spec3_x -
+            six_r_B_3_in_axes3_yx*six_r_J_3_in_spec3_yz -
             six_r_B_3_in_axes3_yz*six_r_Sigma_3_in_axes3_zz -
-            six_r_B_3_in_axes3_zx*six_r_J_3_in_spec3_xy -
             six_r_acc_3_in_axes3_y*six_r_h_3_in_spec3_z
         )
         six_r_mu_3_in_axes3_y = (
-        six_r_B_3_in_axes3_xz*six_r_Sigma_3_in_axes3_zz +
-            six_r_B_3_in_axes3_zy*six_r_J_3_in_spec3_xy +
-            six_r_acc_3_in_axes3_x*six_r_h_3_in_spec3_z -
-            six_r_B_3_in_axes3_xy*six_r_J_3_in_spec3_yz -
-            six_r_B_3_in_axes3_zx*six_r_Sigma_3_in_axes3_xx - six_r_J_3_in_spec3_xz*(six_r_f_3_t -
-            six_r_W_3_t_2) - six_r_acc_3_in_axes3_z*six_r_h_3_in_spec3_x
+        six_r_B_3_in_axes3_xz*six_r_Sigma_3_in_axes3_zz + six_r_J_3_in_spec3_yz*(six_r_W_3_t -
+            six_r_W_3_t_2) + six_r_acc_3_in_axes3_x*six_r_h_3_in_spec3_z +
+            six_r_acc_3_in_axes3_z*six_r_h_3_in_spec3_y -
+            six_r_B_3_in_axes3_xy*six_r_J_3_in_spec3_xz -
+            six_r_B_3_in_axes3_zx*six_r_Sigma_3_in_axes3_xx -
+            six_r_B_3_in_axes3_zy*six_r_J_3_in_spec3_xy
         )
         six_r_mu_3_in_axes3_z = (
-        six_r_B_3_in_axes3_xz*six_r_J_3_in_spec3_yz +
-            six_r_B_3_in_axes3_yx*six_r_Sigma_3_in_axes3_xx + six_r_J_3_in_spec3_xy*(six_r_f_3_t -
-            six_r_W_3_t) + six_r_acc_3_in_axes3_y*six_r_h_3_in_spec3_x -
-            six_r_B_3_in_axes3_xy*six_r_Sigma_3_in_axes3_yy -
-            six_r_B_3_in_axes3_yz*six_r_J_3_in_spec3_xz -
-            six_r_acc_3_in_axes3_x*six_r_h_3_in_spec3_y
+        six_r_B_3_in_axes3_xz*six_r_J_3_in_spec3_xz +
+            six_r_B_3_in_axes3_yx*six_r_Sigma_3_in_axes3_xx +
+            six_r_B_3_in_axes3_yz*six_r_J_3_in_spec3_yz -
+            six_r_B_3_in_axes3_xy*six_r_Sigma_3_in_axes3_yy - six_r_J_3_in_spec3_xy*(six_r_W_3_t -
+            six_r_f_3_t) - six_r_acc_3_in_axes3_x*six_r_h_3_in_spec3_x -
+            six_r_acc_3_in_axes3_y*six_r_h_3_in_spec3_y
         )
         # (six_r-N_3) moment about joint 3 of the links from 3 outwards, the force at the connection point left out
-        six_r_N_3_in_axes3_x = six_r_N_4_in_axes4_z + six_r_mu_3_in_axes3_x
-        six_r_N_3_in_axes3_y = (
-        six_r_mu_3_in_axes3_y + six_r_N_4_in_axes4_x*six_r_c_4 - six_r_N_4_in_axes4_y*six_r_s_4 -
-            six_r_f_4_in_axes3_z*six_r_joint4_offset_x
+        six_r_N_3_in_axes3_x = (
+        six_r_mu_3_in_axes3_x + six_r_N_4_in_axes4_y*six_r_s_4 +
+            six_r_f_4_in_axes3_z*six_r_joint4_offset_x - six_r_N_4_in_axes4_x*six_r_c_4
         )
+        six_r_N_3_in_axes3_y = six_r_N_4_in_axes4_z + six_r_mu_3_in_axes3_y
         six_r_N_3_in_axes3_z = (
-        six_r_mu_3_in_axes3_z + six_r_N_4_in_axes4_x*six_r_s_4 + six_r_N_4_in_axes4_y*six_r_c_4 +
-            six_r_f_4_in_axes3_y*six_r_joint4_offset_x
+        six_r_mu_3_in_axes3_z + six_r_N_4_in_axes4_x*six_r_s_4 + six_r_N_4_in_axes4_y*six_r_c_4 -
+            six_r_f_4_in_axes3_x*six_r_joint4_offset_x
         )
         # (six_r-T_3) inertia force of the links from 3 outwards, the last link left out
-        six_r_T_3_in_axes3_x = six_r_f_3_in_axes3_x + six_r_f_4_in_axes4_z
-        six_r_T_3_in_axes3_y = six_r_f_3_in_axes3_y + six_r_f_4_in_axes3_y
+        six_r_T_3_in_axes3_x = six_r_f_3_in_axes3_x + six_r_f_4_in_axes3_x
+        six_r_T_3_in_axes3_y = six_r_f_3_in_axes3_y + six_r_f_4_in_axes4_z
         six_r_T_3_in_axes3_z = six_r_f_3_in_axes3_z + six_r_f_4_in_axes3_z
         # (six_r-mu_2) inertia moment of the links that turn with link 2, about their reference points
         six_r_mu_2_t = six_r_omega_1_in_axes2_x*six_r_omega_1_in_axes2_x
@@ -11337,12 +11459,12 @@ def _run_legs(m, X, V, A, q):
             six_r_B_2_in_axes2_zy*six_r_Sigma_2_in_axes2_yy + six_r_J_2_in_spec2_yz*(six_r_a_o_3_t
             - six_r_a_o_3_t_2) + six_r_g_in_axes2_y*six_r_h_2_in_spec2_z -
             six_r_B_2_in_axes2_zx*six_r_J_2_in_spec2_xy -
-            six_r_Sigma_2_in_axes2_zz*six_r_alpha_1_t - six_r_g_in_axes1_x*six_r_h_2_in_spec2_y
+            six_r_Sigma_2_in_axes2_zz*six_r_alpha_1_t - six_r_g_in_axes1_y*six_r_h_2_in_spec2_y
         )
         six_r_mu_2_in_axes2_y = (
         six_r_B_2_in_axes2_zy*six_r_J_2_in_spec2_xy +
             six_r_Sigma_2_in_axes2_zz*six_r_alpha_1_in_axes2_y +
-            six_r_g_in_axes1_x*six_r_h_2_in_spec2_x - six_r_B_2_in_axes2_xy*six_r_J_2_in_spec2_yz
+            six_r_g_in_axes1_y*six_r_h_2_in_spec2_x - six_r_B_2_in_axes2_xy*six_r_J_2_in_spec2_yz
             - six_r_B_2_in_axes2_zx*six_r_Sigma_2_in_axes2_xx -
             six_r_J_2_in_spec2_xz*(six_r_mu_2_t - six_r_a_o_3_t_2) -
             six_r_g_in_axes2_x*six_r_h_2_in_spec2_z
@@ -11356,25 +11478,25 @@ def _run_legs(m, X, V, A, q):
         )
         # (six_r-N_2) moment about joint 2 of the links from 2 outwards, the force at the connection point left out
         six_r_N_2_in_axes2_x = (
-        six_r_mu_2_in_axes2_x + six_r_N_3_in_axes3_x*six_r_c_3 - six_r_N_3_in_axes3_y*six_r_s_3
+        six_r_mu_2_in_axes2_x + six_r_N_3_in_axes3_x*six_r_s_3 + six_r_N_3_in_axes3_y*six_r_c_3
         )
         six_r_N_2_in_axes2_y = (
-        six_r_mu_2_in_axes2_y + six_r_N_3_in_axes3_x*six_r_s_3 + six_r_N_3_in_axes3_y*six_r_c_3 -
+        six_r_mu_2_in_axes2_y + six_r_N_3_in_axes3_y*six_r_s_3 - six_r_N_3_in_axes3_x*six_r_c_3 -
             six_r_T_3_in_axes3_z*six_r_joint3_offset_x
         )
         six_r_N_2_in_axes2_z = (
-        six_r_N_3_in_axes3_z + six_r_mu_2_in_axes2_z +
-            six_r_joint3_offset_x*(six_r_T_3_in_axes3_x*six_r_s_3 +
-            six_r_T_3_in_axes3_y*six_r_c_3)
+        six_r_N_3_in_axes3_z + six_r_mu_2_in_axes2_z -
+            six_r_joint3_offset_x*(six_r_T_3_in_axes3_x*six_r_c_3 -
+            six_r_T_3_in_axes3_y*six_r_s_3)
         )
         # (six_r-mu_1) inertia moment of the links that turn with link 1, about their reference points
         six_r_mu_1_in_axes1_z = (
-        -six_r_J_1_in_spec1_xx*six_r_qdd_1_t_5 - six_r_g_in_axes1_x*six_r_h_1_in_spec1_y -
-            six_r_g_in_axes1_y*six_r_h_1_in_spec1_z
+        six_r_g_in_axes1_x*six_r_h_1_in_spec1_z - six_r_J_1_in_spec1_xx*six_r_qdd_1_t_5 -
+            six_r_g_in_axes1_y*six_r_h_1_in_spec1_y
         )
         # (six_r-N_1) moment about joint 1 of the links from 1 outwards, the force at the connection point left out
         six_r_N_1_in_axes1_z = (
-        six_r_mu_1_in_axes1_z + six_r_N_2_in_axes2_x*six_r_s_2 + six_r_N_2_in_axes2_y*six_r_c_2
+        six_r_mu_1_in_axes1_z + six_r_N_2_in_axes2_x*six_r_c_2 - six_r_N_2_in_axes2_y*six_r_s_2
         )
         # (six_r-G_m1) moment along moment direction 1 that balances the leg's inertia and weight along all degrees of freedom
         six_r_G_m1_t = inv_six_r_w_1_t_12*six_r_mu_5_in_axes5_z
@@ -11409,13 +11531,12 @@ def _run_legs(m, X, V, A, q):
         )
         # (six_r-c) leg force on the platform without actuation and without the mass at the connection point
         six_r_c_in_axes5_x = (
-        six_r_G_m1_t_3*six_r_w_1_t_50 + six_r_G_m1_t_4*six_r_w_1_t_68 -
-            six_r_B_5_in_axes5_xy*six_r_h_5_in_spec5_y -
-            six_r_B_5_in_axes5_xz*six_r_h_5_in_spec5_z - six_r_G_m1_t_5*six_r_w_2_t -
-            six_r_W_5_in_axes5_xx*six_r_h_5_in_spec5_x
+        six_r_G_m1_t_3*six_r_w_1_t_50 + six_r_G_m1_t_4*six_r_w_1_t_68 +
+            six_r_W_5_t_3*six_r_h_5_in_spec5_x - six_r_B_5_in_axes5_xy*six_r_h_5_in_spec5_y -
+            six_r_B_5_in_axes5_xz*six_r_h_5_in_spec5_z - six_r_G_m1_t_5*six_r_w_2_t
         )
         six_r_c_in_axes5_y = (
-        six_r_G_m1_t_5*six_r_w_2_t_2 + six_r_h_5_in_spec5_y*(six_r_W_5_t_2 + six_r_bias_t_8) -
+        six_r_G_m1_t_5*six_r_w_2_t_2 + six_r_h_5_in_spec5_y*(six_r_W_5_t_2 + six_r_bias_t_11) -
             six_r_B_5_in_axes5_yx*six_r_h_5_in_spec5_x -
             six_r_B_5_in_axes5_yz*six_r_h_5_in_spec5_z - six_r_G_m1_t*six_r_w_1_t_13 -
             six_r_G_m1_t_2*six_r_w_1_t_29 - six_r_G_m1_t_3*six_r_w_1_t_51 -
@@ -11423,7 +11544,7 @@ def _run_legs(m, X, V, A, q):
         )
         six_r_c_in_axes5_z = (
         six_r_G_m1_t_2*six_r_w_1_t_30 + six_r_G_m1_t_3*six_r_w_1_t_52 +
-            six_r_G_m1_t_4*six_r_w_1_t_70 + six_r_h_5_in_spec5_z*(six_r_W_5_t + six_r_bias_t_8) -
+            six_r_G_m1_t_4*six_r_w_1_t_70 + six_r_h_5_in_spec5_z*(six_r_W_5_t + six_r_bias_t_11) -
             six_r_B_5_in_axes5_zx*six_r_h_5_in_spec5_x -
             six_r_B_5_in_axes5_zy*six_r_h_5_in_spec5_y - six_r_G_m1_t_5*six_r_w_2_t_3
         )
@@ -11556,76 +11677,75 @@ def _run_potential(m, X, q):
         six_r_q_4 = q[[3, 8, 13, 18, 23, 28][leg]]
         six_r_q_5 = q[[4, 9, 14, 19, 24, 29][leg]]
         # (six_r-h_4) first moment of link 4 about the origin of link 4
-        six_r_h_4_t = -sin(six_r_q_4)
         six_r_e_2_in_axes5_z = cos(six_r_q_4)
-        six_r_h_4_in_axes3_y = (
-        six_r_e_2_in_axes5_z*six_r_h_4_in_spec4_y + six_r_h_4_in_spec4_z*six_r_h_4_t
+        six_r_h_4_t = sin(six_r_q_4)
+        six_r_h_4_in_spec3_y = (
+        six_r_e_2_in_axes5_z*six_r_h_4_in_spec4_y - six_r_h_4_in_spec4_z*six_r_h_4_t
         )
         # (six_r-c_1) cosine of the angle of joint 1 from its reference direction
-        six_r_c_1 = -sin(six_r_q_1)
+        six_r_c_1 = cos(six_r_q_1)
         # (six_r-s_1) sine of the angle of joint 1 from its reference direction
-        six_r_s_1 = cos(six_r_q_1)
+        six_r_s_1 = sin(six_r_q_1)
         # (six_r-c_2) cosine of the angle of joint 2 from its reference direction
-        six_r_c_2 = -sin(six_r_q_2)
+        six_r_c_2 = cos(six_r_q_2)
         # (six_r-s_2) sine of the angle of joint 2 from its reference direction
-        six_r_s_2 = cos(six_r_q_2)
+        six_r_s_2 = sin(six_r_q_2)
         # (six_r-c_3) cosine of the angle of joint 3 from its reference direction
         six_r_c_3 = cos(six_r_q_3)
         # (six_r-s_3) sine of the angle of joint 3 from its reference direction
         six_r_s_3 = sin(six_r_q_3)
         # (six_r-c_5) cosine of the angle of joint 5 from its reference direction
-        six_r_c_5 = -sin(six_r_q_5)
+        six_r_c_5 = cos(six_r_q_5)
         # (six_r-s_5) sine of the angle of joint 5 from its reference direction
-        six_r_s_5 = cos(six_r_q_5)
+        six_r_s_5 = sin(six_r_q_5)
         # (potential) potential energy
-        six_r_potential_t_4 = six_r_h_5_in_spec5_y*six_r_s_5 - six_r_c_5*six_r_h_5_in_spec5_x
-        six_r_d_2_in_spec2_x = six_r_joint2_offset_x*six_r_s_2
-        six_r_d_2_in_spec2_y = six_r_c_2*six_r_joint2_offset_x
-        six_r_g_in_axes1_y = six_r_acc_3_t_2*six_r_c_1 - six_r_acc_3_t*six_r_s_1
-        six_r_b_in_spec2_z = six_r_c_1*six_r_potential_t + six_r_potential_t_2*six_r_s_1
-        six_r_potential_t_5 = six_r_c_1*six_r_potential_t_2 - six_r_potential_t*six_r_s_1
-        six_r_b_in_spec2_x = six_r_c_2*six_r_potential_t_5 + six_r_potential_t_3*six_r_s_2
-        six_r_b_in_spec2_y = six_r_c_2*six_r_potential_t_3 - six_r_potential_t_5*six_r_s_2
-        six_r_potential_t_6 = six_r_b_in_spec2_y + six_r_d_2_in_spec2_y
-        six_r_potential_t_7 = six_r_c_5*six_r_h_5_in_spec5_y + six_r_h_5_in_spec5_x*six_r_s_5
-        six_r_potential_t_8 = (
-        six_r_e_2_in_axes5_z*six_r_potential_t_4 + six_r_h_4_t*six_r_h_5_in_spec5_z
-        )
+        six_r_potential_t_4 = six_r_c_5*six_r_h_5_in_spec5_y + six_r_h_5_in_spec5_x*six_r_s_5
+        six_r_d_2_in_spec2_x = six_r_c_2*six_r_joint2_offset_x
+        six_r_potential_t_5 = six_r_joint2_offset_x*six_r_s_2
+        six_r_g_in_axes1_x = six_r_acc_3_t*six_r_c_1 + six_r_acc_3_t_2*six_r_s_1
+        six_r_potential_t_6 = six_r_c_1*six_r_potential_t + six_r_potential_t_2*six_r_s_1
+        six_r_b_in_spec2_z = six_r_c_1*six_r_potential_t_2 - six_r_potential_t*six_r_s_1
+        six_r_b_in_spec2_x = six_r_c_2*six_r_potential_t_3 + six_r_potential_t_6*six_r_s_2
+        six_r_b_in_spec2_y = six_r_c_2*six_r_potential_t_6 - six_r_potential_t_3*six_r_s_2
+        six_r_potential_t_7 = six_r_b_in_spec2_y - six_r_potential_t_5
+        six_r_potential_t_8 = six_r_c_5*six_r_h_5_in_spec5_x - six_r_h_5_in_spec5_y*six_r_s_5
         six_r_potential_t_9 = (
-        six_r_h_2_in_spec2_x + six_r_b_in_spec2_x*six_r_link1_mass +
-            six_r_c_3*six_r_h_3_in_spec3_x + six_r_c_3*six_r_h_4_in_spec4_x +
-            six_r_c_3*six_r_potential_t_7 + six_r_h_1_in_spec1_x*six_r_s_2 +
-            six_r_link2_mass*(six_r_b_in_spec2_x + six_r_d_2_in_spec2_x) +
-            six_r_link3_mass*(six_r_b_in_spec2_x + six_r_d_2_in_spec2_x + six_r_joint3_offset_x) +
-            six_r_link4_mass*(six_r_b_in_spec2_x + six_r_d_2_in_spec2_x + six_r_joint3_offset_x +
-            six_r_c_3*six_r_joint4_offset_x) - six_r_c_2*six_r_h_1_in_spec1_y -
-            six_r_h_3_in_spec3_y*six_r_s_3 - six_r_h_4_in_axes3_y*six_r_s_3 -
-            six_r_potential_t_8*six_r_s_3
+        six_r_e_2_in_axes5_z*six_r_potential_t_4 - six_r_h_4_t*six_r_h_5_in_spec5_z
         )
         six_r_potential_t_10 = (
-        six_r_h_2_in_spec2_y + six_r_b_in_spec2_y*six_r_link1_mass +
-            six_r_c_2*six_r_h_1_in_spec1_x + six_r_c_3*six_r_h_3_in_spec3_y +
-            six_r_c_3*six_r_h_4_in_axes3_y + six_r_c_3*six_r_potential_t_8 +
-            six_r_h_1_in_spec1_y*six_r_s_2 + six_r_h_3_in_spec3_x*six_r_s_3 +
-            six_r_h_4_in_spec4_x*six_r_s_3 + six_r_link2_mass*six_r_potential_t_6 +
-            six_r_link3_mass*six_r_potential_t_6 + six_r_link4_mass*(six_r_b_in_spec2_y +
-            six_r_d_2_in_spec2_y + six_r_joint4_offset_x*six_r_s_3) +
-            six_r_potential_t_7*six_r_s_3
+        six_r_h_2_in_spec2_x + six_r_b_in_spec2_x*six_r_link1_mass +
+            six_r_c_2*six_r_h_1_in_spec1_x + six_r_c_3*six_r_h_3_in_spec3_x +
+            six_r_c_3*six_r_h_4_in_spec4_x + six_r_c_3*six_r_potential_t_8 +
+            six_r_h_1_in_spec1_y*six_r_s_2 + six_r_link2_mass*(six_r_b_in_spec2_x +
+            six_r_d_2_in_spec2_x) + six_r_link3_mass*(six_r_b_in_spec2_x + six_r_d_2_in_spec2_x +
+            six_r_joint3_offset_x) + six_r_link4_mass*(six_r_b_in_spec2_x + six_r_d_2_in_spec2_x +
+            six_r_joint3_offset_x + six_r_c_3*six_r_joint4_offset_x) -
+            six_r_h_3_in_spec3_y*six_r_s_3 - six_r_h_4_in_spec3_y*six_r_s_3 -
+            six_r_potential_t_9*six_r_s_3
         )
         six_r_potential_t_11 = (
+        six_r_h_2_in_spec2_y + six_r_b_in_spec2_y*six_r_link1_mass +
+            six_r_c_2*six_r_h_1_in_spec1_y + six_r_c_3*six_r_h_3_in_spec3_y +
+            six_r_c_3*six_r_h_4_in_spec3_y + six_r_c_3*six_r_potential_t_9 +
+            six_r_h_3_in_spec3_x*six_r_s_3 + six_r_h_4_in_spec4_x*six_r_s_3 +
+            six_r_link2_mass*six_r_potential_t_7 + six_r_link3_mass*six_r_potential_t_7 +
+            six_r_link4_mass*(six_r_b_in_spec2_y + six_r_joint4_offset_x*six_r_s_3 -
+            six_r_potential_t_5) + six_r_potential_t_8*six_r_s_3 - six_r_h_1_in_spec1_x*six_r_s_2
+        )
+        six_r_potential_t_12 = (
         six_r_h_1_in_spec1_z + six_r_h_2_in_spec2_z + six_r_h_3_in_spec3_z +
             six_r_b_in_spec2_z*six_r_link1_mass + six_r_b_in_spec2_z*six_r_link2_mass +
             six_r_b_in_spec2_z*six_r_link3_mass + six_r_b_in_spec2_z*six_r_link4_mass +
             six_r_e_2_in_axes5_z*six_r_h_4_in_spec4_z + six_r_e_2_in_axes5_z*six_r_h_5_in_spec5_z
-            - six_r_h_4_in_spec4_y*six_r_h_4_t - six_r_h_4_t*six_r_potential_t_4
+            + six_r_h_4_in_spec4_y*six_r_h_4_t + six_r_h_4_t*six_r_potential_t_4
         )
-        six_r_potential_t_12 = (
-        six_r_potential_t_10*(six_r_c_2*six_r_g_in_axes1_z - six_r_g_in_axes1_y*six_r_s_2) +
-            six_r_potential_t_11*(six_r_acc_3_t*six_r_c_1 + six_r_acc_3_t_2*six_r_s_1) +
-            six_r_potential_t_9*(six_r_c_2*six_r_g_in_axes1_y + six_r_g_in_axes1_z*six_r_s_2)
+        six_r_potential_t_13 = (
+        six_r_potential_t_10*(six_r_c_2*six_r_g_in_axes1_z + six_r_g_in_axes1_x*six_r_s_2) +
+            six_r_potential_t_11*(six_r_c_2*six_r_g_in_axes1_x - six_r_g_in_axes1_z*six_r_s_2) +
+            six_r_potential_t_12*(six_r_acc_3_t_2*six_r_c_1 - six_r_acc_3_t*six_r_s_1)
         )
         # (potential) potential energy
-        potential_t_2 += six_r_potential_t_12
+        potential_t_2 += six_r_potential_t_13
     # (potential) potential energy
     potential = -potential_t - potential_t_2
     # (potential) potential energy
@@ -11697,69 +11817,69 @@ def _run_condition(m, X, q):
         six_r_q_4 = q[[3, 8, 13, 18, 23, 28][leg]]
         six_r_q_5 = q[[4, 9, 14, 19, 24, 29][leg]]
         # (six_r-c_1) cosine of the angle of joint 1 from its reference direction
-        six_r_c_1 = -sin(six_r_q_1)
+        six_r_c_1 = cos(six_r_q_1)
         # (six_r-s_1) sine of the angle of joint 1 from its reference direction
-        six_r_s_1 = cos(six_r_q_1)
+        six_r_s_1 = sin(six_r_q_1)
         # (six_r-c_2) cosine of the angle of joint 2 from its reference direction
-        six_r_c_2 = -sin(six_r_q_2)
+        six_r_c_2 = cos(six_r_q_2)
         # (six_r-s_2) sine of the angle of joint 2 from its reference direction
-        six_r_s_2 = cos(six_r_q_2)
+        six_r_s_2 = sin(six_r_q_2)
         # (six_r-c_3) cosine of the angle of joint 3 from its reference direction
         six_r_c_3 = cos(six_r_q_3)
         # (six_r-s_3) sine of the angle of joint 3 from its reference direction
         six_r_s_3 = sin(six_r_q_3)
         # (six_r-c_4) cosine of the angle of joint 4 from its reference direction
-        six_r_c_4 = -sin(six_r_q_4)
+        six_r_c_4 = cos(six_r_q_4)
         # (six_r-s_4) sine of the angle of joint 4 from its reference direction
-        six_r_s_4 = cos(six_r_q_4)
+        six_r_s_4 = sin(six_r_q_4)
         # (six_r-c_5) cosine of the angle of joint 5 from its reference direction
-        six_r_c_5 = -sin(six_r_q_5)
+        six_r_c_5 = cos(six_r_q_5)
         # (six_r-s_5) sine of the angle of joint 5 from its reference direction
-        six_r_s_5 = cos(six_r_q_5)
+        six_r_s_5 = sin(six_r_q_5)
         # (six_r-r_4) from joint 4 to the connection point, along the links
-        six_r_r_4_in_axes4_y = six_r_c_5*six_r_platform_joint_offset_x
-        six_r_r_4_in_axes4_z = six_r_joint5_offset_x + six_r_platform_joint_offset_x*six_r_s_5
-        six_r_r_4_in_axes3_y = -six_r_r_4_in_axes4_y*six_r_s_4
-        six_r_r_4_in_axes3_z = six_r_c_4*six_r_r_4_in_axes4_y
+        six_r_r_4_in_axes4_x = six_r_platform_joint_offset_x*six_r_s_5
+        six_r_r_4_in_axes4_z = six_r_joint5_offset_x + six_r_c_5*six_r_platform_joint_offset_x
+        six_r_r_4_in_axes3_x = -six_r_c_4*six_r_r_4_in_axes4_x
+        six_r_r_4_in_axes3_z = six_r_r_4_in_axes4_x*six_r_s_4
         # (six_r-r_3) from joint 3 to the connection point, along the links
-        six_r_r_3_in_axes3_x = six_r_joint4_offset_x + six_r_r_4_in_axes4_z
-        six_r_r_3_in_axes2_y = six_r_c_3*six_r_r_4_in_axes3_y + six_r_r_3_in_axes3_x*six_r_s_3
+        six_r_r_3_in_axes3_y = six_r_joint4_offset_x + six_r_r_4_in_axes4_z
+        six_r_r_3_in_axes2_y = six_r_r_3_in_axes3_y*six_r_s_3 - six_r_c_3*six_r_r_4_in_axes3_x
         six_r_r_3_t = six_r_r_4_in_axes3_z*six_r_s_4
-        six_r_r_3_t_2 = -six_r_c_4*six_r_r_4_in_axes3_z
-        six_r_r_3_in_axes5_z = six_r_r_3_t + six_r_c_4*six_r_r_4_in_axes3_y
-        six_r_r_3_t_3 = -six_r_r_3_t_2 - six_r_r_4_in_axes3_y*six_r_s_4
-        six_r_r_3_in_axes5_x = six_r_c_5*six_r_r_3_t_3 + six_r_r_3_in_axes3_x*six_r_s_5
-        six_r_r_3_in_axes5_y = six_r_c_5*six_r_r_3_in_axes3_x - six_r_r_3_t_3*six_r_s_5
+        six_r_r_3_t_2 = six_r_c_4*six_r_r_4_in_axes3_z
+        six_r_r_3_t_3 = six_r_r_3_t - six_r_c_4*six_r_r_4_in_axes3_x
+        six_r_r_3_in_axes5_z = six_r_r_3_t_2 + six_r_r_4_in_axes3_x*six_r_s_4
+        six_r_r_3_in_axes5_x = six_r_c_5*six_r_r_3_in_axes3_y + six_r_r_3_t_3*six_r_s_5
+        six_r_r_3_in_axes5_y = six_r_c_5*six_r_r_3_t_3 - six_r_r_3_in_axes3_y*six_r_s_5
         # (six_r-r_2) from joint 2 to the connection point, along the links
         six_r_r_2_in_axes2_x = (
-        six_r_joint3_offset_x + six_r_c_3*six_r_r_3_in_axes3_x - six_r_r_4_in_axes3_y*six_r_s_3
+        six_r_joint3_offset_x + six_r_c_3*six_r_r_3_in_axes3_y + six_r_r_4_in_axes3_x*six_r_s_3
         )
-        six_r_r_2_in_axes1_y = six_r_c_2*six_r_r_2_in_axes2_x - six_r_r_3_in_axes2_y*six_r_s_2
-        six_r_r_2_t = six_r_c_3*six_r_r_2_in_axes2_x + six_r_r_3_in_axes2_y*six_r_s_3
-        six_r_r_2_t_2 = six_r_c_3*six_r_r_3_in_axes2_y - six_r_r_2_in_axes2_x*six_r_s_3
-        six_r_r_2_in_axes5_z = six_r_r_3_t + six_r_c_4*six_r_r_2_t_2
-        six_r_r_2_t_3 = -six_r_r_3_t_2 - six_r_r_2_t_2*six_r_s_4
-        six_r_r_2_in_axes5_x = six_r_c_5*six_r_r_2_t_3 + six_r_r_2_t*six_r_s_5
-        six_r_r_2_in_axes5_y = six_r_c_5*six_r_r_2_t - six_r_r_2_t_3*six_r_s_5
+        six_r_r_2_in_axes1_x = six_r_c_2*six_r_r_3_in_axes2_y + six_r_r_2_in_axes2_x*six_r_s_2
+        six_r_r_2_t = six_r_r_2_in_axes2_x*six_r_s_3 - six_r_c_3*six_r_r_3_in_axes2_y
+        six_r_r_2_t_2 = six_r_c_3*six_r_r_2_in_axes2_x + six_r_r_3_in_axes2_y*six_r_s_3
+        six_r_r_2_t_3 = six_r_r_3_t - six_r_c_4*six_r_r_2_t
+        six_r_r_2_in_axes5_z = six_r_r_3_t_2 + six_r_r_2_t*six_r_s_4
+        six_r_r_2_in_axes5_x = six_r_c_5*six_r_r_2_t_2 + six_r_r_2_t_3*six_r_s_5
+        six_r_r_2_in_axes5_y = six_r_c_5*six_r_r_2_t_3 - six_r_r_2_t_2*six_r_s_5
         # (six_r-r_1) from joint 1 to the connection point, along the links
         six_r_r_1_in_axes1_z = (
-        six_r_joint2_offset_x + six_r_c_2*six_r_r_3_in_axes2_y + six_r_r_2_in_axes2_x*six_r_s_2
+        six_r_joint2_offset_x + six_r_c_2*six_r_r_2_in_axes2_x - six_r_r_3_in_axes2_y*six_r_s_2
         )
-        six_r_r_1_t = six_r_c_2*six_r_r_2_in_axes1_y + six_r_r_1_in_axes1_z*six_r_s_2
-        six_r_r_1_t_2 = six_r_c_2*six_r_r_1_in_axes1_z - six_r_r_2_in_axes1_y*six_r_s_2
-        six_r_r_1_t_3 = six_r_c_3*six_r_r_1_t + six_r_r_1_t_2*six_r_s_3
-        six_r_r_1_t_4 = six_r_c_3*six_r_r_1_t_2 - six_r_r_1_t*six_r_s_3
-        six_r_r_1_in_axes5_z = six_r_r_3_t + six_r_c_4*six_r_r_1_t_4
-        six_r_r_1_t_5 = -six_r_r_3_t_2 - six_r_r_1_t_4*six_r_s_4
-        six_r_r_1_in_axes5_x = six_r_c_5*six_r_r_1_t_5 + six_r_r_1_t_3*six_r_s_5
-        six_r_r_1_in_axes5_y = six_r_c_5*six_r_r_1_t_3 - six_r_r_1_t_5*six_r_s_5
+        six_r_r_1_t = six_r_c_2*six_r_r_1_in_axes1_z + six_r_r_2_in_axes1_x*six_r_s_2
+        six_r_r_1_t_2 = six_r_c_2*six_r_r_2_in_axes1_x - six_r_r_1_in_axes1_z*six_r_s_2
+        six_r_r_1_t_3 = six_r_r_1_t*six_r_s_3 - six_r_c_3*six_r_r_1_t_2
+        six_r_r_1_t_4 = six_r_c_3*six_r_r_1_t + six_r_r_1_t_2*six_r_s_3
+        six_r_r_1_t_5 = six_r_r_3_t - six_r_c_4*six_r_r_1_t_3
+        six_r_r_1_in_axes5_z = six_r_r_3_t_2 + six_r_r_1_t_3*six_r_s_4
+        six_r_r_1_in_axes5_x = six_r_c_5*six_r_r_1_t_4 + six_r_r_1_t_5*six_r_s_5
+        six_r_r_1_in_axes5_y = six_r_c_5*six_r_r_1_t_5 - six_r_r_1_t_4*six_r_s_5
         # (six_r-v_1) velocity of the connection point per rate of joint 1
         six_r_v_1_t = six_r_c_2*six_r_s_3 + six_r_c_3*six_r_s_2
         six_r_v_1_t_2 = six_r_c_2*six_r_c_3 - six_r_s_2*six_r_s_3
-        six_r_e_1_in_axes5_z = six_r_c_4*six_r_v_1_t_2
-        six_r_v_1_t_3 = six_r_s_4*six_r_v_1_t_2
-        six_r_e_1_in_axes5_x = six_r_s_5*six_r_v_1_t - six_r_c_5*six_r_v_1_t_3
-        six_r_e_1_in_axes5_y = six_r_c_5*six_r_v_1_t + six_r_s_5*six_r_v_1_t_3
+        six_r_v_1_t_3 = six_r_c_4*six_r_v_1_t
+        six_r_e_1_in_axes5_z = six_r_s_4*six_r_v_1_t
+        six_r_e_1_in_axes5_x = six_r_c_5*six_r_v_1_t_2 - six_r_s_5*six_r_v_1_t_3
+        six_r_e_1_in_axes5_y = -six_r_c_5*six_r_v_1_t_3 - six_r_s_5*six_r_v_1_t_2
         six_r_v_1_in_axes5_x = (
         six_r_e_1_in_axes5_y*six_r_r_1_in_axes5_z - six_r_e_1_in_axes5_z*six_r_r_1_in_axes5_y
         )
@@ -11770,31 +11890,31 @@ def _run_condition(m, X, q):
         six_r_e_1_in_axes5_x*six_r_r_1_in_axes5_y - six_r_e_1_in_axes5_y*six_r_r_1_in_axes5_x
         )
         # (six_r-v_2) velocity of the connection point per rate of joint 2
-        six_r_e_2_in_axes5_x = six_r_c_4*six_r_c_5
-        six_r_e_2_in_axes5_y = -six_r_c_4*six_r_s_5
+        six_r_e_2_in_axes5_x = six_r_s_4*six_r_s_5
+        six_r_e_2_in_axes5_y = six_r_c_5*six_r_s_4
         six_r_v_2_in_axes5_x = (
-        six_r_e_2_in_axes5_y*six_r_r_2_in_axes5_z - six_r_r_2_in_axes5_y*six_r_s_4
+        six_r_e_2_in_axes5_y*six_r_r_2_in_axes5_z - six_r_c_4*six_r_r_2_in_axes5_y
         )
         six_r_v_2_in_axes5_y = (
-        six_r_r_2_in_axes5_x*six_r_s_4 - six_r_e_2_in_axes5_x*six_r_r_2_in_axes5_z
+        six_r_c_4*six_r_r_2_in_axes5_x - six_r_e_2_in_axes5_x*six_r_r_2_in_axes5_z
         )
         six_r_v_2_in_axes5_z = (
         six_r_e_2_in_axes5_x*six_r_r_2_in_axes5_y - six_r_e_2_in_axes5_y*six_r_r_2_in_axes5_x
         )
         # (six_r-v_3) velocity of the connection point per rate of joint 3
         six_r_v_3_in_axes5_x = (
-        six_r_e_2_in_axes5_y*six_r_r_3_in_axes5_z - six_r_r_3_in_axes5_y*six_r_s_4
+        six_r_e_2_in_axes5_y*six_r_r_3_in_axes5_z - six_r_c_4*six_r_r_3_in_axes5_y
         )
         six_r_v_3_in_axes5_y = (
-        six_r_r_3_in_axes5_x*six_r_s_4 - six_r_e_2_in_axes5_x*six_r_r_3_in_axes5_z
+        six_r_c_4*six_r_r_3_in_axes5_x - six_r_e_2_in_axes5_x*six_r_r_3_in_axes5_z
         )
         six_r_v_3_in_axes5_z = (
         six_r_e_2_in_axes5_x*six_r_r_3_in_axes5_y - six_r_e_2_in_axes5_y*six_r_r_3_in_axes5_x
         )
         # (six_r-v_4) velocity of the connection point per rate of joint 4
         six_r_v_4_in_axes5_z = (
-        six_r_s_5*(six_r_c_5*six_r_r_4_in_axes4_z - six_r_r_4_in_axes4_y*six_r_s_5) -
-            six_r_c_5*(six_r_c_5*six_r_r_4_in_axes4_y + six_r_r_4_in_axes4_z*six_r_s_5)
+        six_r_c_5*(six_r_c_5*six_r_r_4_in_axes4_x - six_r_r_4_in_axes4_z*six_r_s_5) +
+            six_r_s_5*(six_r_c_5*six_r_r_4_in_axes4_z + six_r_r_4_in_axes4_x*six_r_s_5)
         )
         # (six_r-n_m1) direction 1 of the moment that the platform joint transmits
         six_r_n_m1_t = (
@@ -11823,16 +11943,16 @@ def _run_condition(m, X, q):
         )
         six_r_n_m1_t_4 = six_r_c_1*six_r_n_m1_t + six_r_n_m1_t_2*six_r_s_1
         six_r_n_m1_t_5 = six_r_c_1*six_r_n_m1_t_2 - six_r_n_m1_t*six_r_s_1
-        six_r_n_m1_t_6 = six_r_c_2*six_r_n_m1_t_5 + six_r_n_m1_t_3*six_r_s_2
-        six_r_n_m1_t_7 = six_r_c_2*six_r_n_m1_t_3 - six_r_n_m1_t_5*six_r_s_2
-        six_r_n_m1_t_8 = six_r_c_3*six_r_n_m1_t_6 + six_r_n_m1_t_7*six_r_s_3
-        six_r_n_m1_t_9 = six_r_c_3*six_r_n_m1_t_7 - six_r_n_m1_t_6*six_r_s_3
-        six_r_n_m1_t_10 = six_r_c_4*six_r_n_m1_t_4 - six_r_n_m1_t_9*six_r_s_4
-        six_r_n_m1_in_axes5_y = six_r_c_5*six_r_n_m1_t_10 + six_r_n_m1_t_8*six_r_s_5
+        six_r_n_m1_t_6 = six_r_c_2*six_r_n_m1_t_3 + six_r_n_m1_t_4*six_r_s_2
+        six_r_n_m1_t_7 = six_r_c_2*six_r_n_m1_t_4 - six_r_n_m1_t_3*six_r_s_2
+        six_r_n_m1_t_8 = six_r_n_m1_t_6*six_r_s_3 - six_r_c_3*six_r_n_m1_t_7
+        six_r_n_m1_t_9 = six_r_c_3*six_r_n_m1_t_6 + six_r_n_m1_t_7*six_r_s_3
+        six_r_n_m1_t_10 = six_r_n_m1_t_5*six_r_s_4 - six_r_c_4*six_r_n_m1_t_8
+        six_r_n_m1_in_axes5_y = six_r_c_5*six_r_n_m1_t_9 + six_r_n_m1_t_10*six_r_s_5
         # (six_r-n_m2) direction 2 of the moment that the platform joint transmits
-        six_r_n_m2_in_axes5_z = six_r_c_5*six_r_n_m1_t_8 - six_r_n_m1_t_10*six_r_s_5
+        six_r_n_m2_in_axes5_z = six_r_c_5*six_r_n_m1_t_10 - six_r_n_m1_t_9*six_r_s_5
         # (six_r-w_1) force part of reciprocal wrench 1
-        six_r_end_p1_in_axes5_z = six_r_c_4*six_r_n_m1_t_9 + six_r_n_m1_t_4*six_r_s_4
+        six_r_end_p1_in_axes5_z = six_r_c_4*six_r_n_m1_t_5 + six_r_n_m1_t_8*six_r_s_4
         six_r_w_1_t = (
         six_r_e_1_in_axes5_x*six_r_n_m2_in_axes5_z - six_r_e_1_in_axes5_y*six_r_n_m1_in_axes5_y
         )
@@ -11843,16 +11963,16 @@ def _run_condition(m, X, q):
         six_r_e_1_in_axes5_y*six_r_end_p1_in_axes5_z - six_r_e_1_in_axes5_z*six_r_n_m2_in_axes5_z
         )
         six_r_w_1_t_4 = (
-        six_r_e_2_in_axes5_y*six_r_end_p1_in_axes5_z - six_r_n_m2_in_axes5_z*six_r_s_4
+        six_r_e_2_in_axes5_y*six_r_end_p1_in_axes5_z - six_r_c_4*six_r_n_m2_in_axes5_z
         )
         six_r_w_1_t_5 = six_r_size*six_r_w_1_t
         six_r_w_1_t_6 = six_r_size*six_r_w_1_t_3
         six_r_w_1_t_7 = six_r_size*six_r_w_1_t_2
         six_r_w_1_t_8 = six_r_size*six_r_w_1_t_4
         six_r_w_1_t_9 = (
-        six_r_size*(six_r_c_5*six_r_n_m1_in_axes5_y - six_r_n_m2_in_axes5_z*six_r_s_5)
+        six_r_size*(-six_r_c_5*six_r_n_m2_in_axes5_z - six_r_n_m1_in_axes5_y*six_r_s_5)
         )
-        six_r_w_1_t_10 = -six_r_c_5*six_r_end_p1_in_axes5_z*six_r_size
+        six_r_w_1_t_10 = six_r_end_p1_in_axes5_z*six_r_s_5*six_r_size
         six_r_w_1_t_11 = six_r_n_m2_in_axes5_z*six_r_size
         six_r_w_1_t_12 = sqrt(six_r_size_t + six_r_w_1_t_11*six_r_w_1_t_11)
         inv_six_r_w_1_t_12 = 1.0/six_r_w_1_t_12
@@ -11973,41 +12093,41 @@ def _run_condition(m, X, q):
             inv_six_r_size*six_r_pivot_size_4), inv_six_r_size*six_r_pivot_size_5)
         )
         # (six_r-w_2) force part of reciprocal wrench 2
-        six_r_w_2_t = -six_r_c_4*six_r_s_3
-        six_r_w_2_t_2 = -six_r_c_3*six_r_c_4
-        six_r_w_2_t_3 = six_r_c_2*six_r_w_2_t + six_r_s_2*six_r_w_2_t_2
-        six_r_w_2_t_4 = six_r_s_2*six_r_w_2_t - six_r_c_2*six_r_w_2_t_2
-        six_r_w_2_t_5 = six_r_c_1*six_r_s_4 - six_r_s_1*six_r_w_2_t_3
-        six_r_w_2_t_6 = six_r_c_1*six_r_w_2_t_3 + six_r_s_1*six_r_s_4
+        six_r_w_2_t = six_r_c_3*six_r_s_4
+        six_r_w_2_t_2 = six_r_s_3*six_r_s_4
+        six_r_w_2_t_3 = six_r_c_2*six_r_w_2_t_2 + six_r_s_2*six_r_w_2_t
+        six_r_w_2_t_4 = six_r_s_2*six_r_w_2_t_2 - six_r_c_2*six_r_w_2_t
+        six_r_w_2_t_5 = six_r_c_1*six_r_w_2_t_4 - six_r_c_4*six_r_s_1
+        six_r_w_2_t_6 = six_r_c_1*six_r_c_4 + six_r_s_1*six_r_w_2_t_4
         axis_z_six_r_axes5_x = (
-        six_r_base_frame_xx*six_r_w_2_t_4 + six_r_base_frame_xy*six_r_w_2_t_5 +
+        six_r_base_frame_xx*six_r_w_2_t_3 + six_r_base_frame_xy*six_r_w_2_t_5 +
             six_r_base_frame_xz*six_r_w_2_t_6
         )
         axis_z_six_r_axes5_y = (
-        six_r_base_frame_yx*six_r_w_2_t_4 + six_r_base_frame_yy*six_r_w_2_t_5 +
+        six_r_base_frame_yx*six_r_w_2_t_3 + six_r_base_frame_yy*six_r_w_2_t_5 +
             six_r_base_frame_yz*six_r_w_2_t_6
         )
         axis_z_six_r_axes5_z = (
-        six_r_base_frame_zx*six_r_w_2_t_4 + six_r_base_frame_zy*six_r_w_2_t_5 +
+        six_r_base_frame_zx*six_r_w_2_t_3 + six_r_base_frame_zy*six_r_w_2_t_5 +
             six_r_base_frame_zz*six_r_w_2_t_6
         )
-        six_r_w_2_t_7 = six_r_s_4*six_r_s_5
-        six_r_w_2_t_8 = six_r_c_3*six_r_c_5 - six_r_s_3*six_r_w_2_t_7
-        six_r_w_2_t_9 = six_r_c_3*six_r_w_2_t_7 + six_r_c_5*six_r_s_3
-        six_r_w_2_t_10 = six_r_c_2*six_r_w_2_t_8 - six_r_s_2*six_r_w_2_t_9
-        six_r_w_2_t_11 = six_r_c_2*six_r_w_2_t_9 + six_r_s_2*six_r_w_2_t_8
-        six_r_w_2_t_12 = six_r_c_1*six_r_e_2_in_axes5_y - six_r_s_1*six_r_w_2_t_10
-        six_r_w_2_t_13 = six_r_c_1*six_r_w_2_t_10 + six_r_e_2_in_axes5_y*six_r_s_1
+        six_r_w_2_t_7 = six_r_c_4*six_r_c_5
+        six_r_w_2_t_8 = six_r_s_3*six_r_s_5 - six_r_c_3*six_r_w_2_t_7
+        six_r_w_2_t_9 = -six_r_c_3*six_r_s_5 - six_r_s_3*six_r_w_2_t_7
+        six_r_w_2_t_10 = six_r_c_2*six_r_w_2_t_9 + six_r_s_2*six_r_w_2_t_8
+        six_r_w_2_t_11 = six_r_s_2*six_r_w_2_t_9 - six_r_c_2*six_r_w_2_t_8
+        six_r_w_2_t_12 = six_r_c_1*six_r_w_2_t_11 - six_r_e_2_in_axes5_y*six_r_s_1
+        six_r_w_2_t_13 = six_r_c_1*six_r_e_2_in_axes5_y + six_r_s_1*six_r_w_2_t_11
         axis_y_six_r_axes5_x = (
-        six_r_base_frame_xx*six_r_w_2_t_11 + six_r_base_frame_xy*six_r_w_2_t_12 +
+        six_r_base_frame_xx*six_r_w_2_t_10 + six_r_base_frame_xy*six_r_w_2_t_12 +
             six_r_base_frame_xz*six_r_w_2_t_13
         )
         axis_y_six_r_axes5_y = (
-        six_r_base_frame_yx*six_r_w_2_t_11 + six_r_base_frame_yy*six_r_w_2_t_12 +
+        six_r_base_frame_yx*six_r_w_2_t_10 + six_r_base_frame_yy*six_r_w_2_t_12 +
             six_r_base_frame_yz*six_r_w_2_t_13
         )
         axis_y_six_r_axes5_z = (
-        six_r_base_frame_zx*six_r_w_2_t_11 + six_r_base_frame_zy*six_r_w_2_t_12 +
+        six_r_base_frame_zx*six_r_w_2_t_10 + six_r_base_frame_zy*six_r_w_2_t_12 +
             six_r_base_frame_zz*six_r_w_2_t_13
         )
         axis_x_six_r_axes5_x = (
@@ -12190,69 +12310,69 @@ def _run_closure_six_r(m, X, q):
             R_zz*six_r_platform_point_z - six_r_base_point_z
         )
         # (six_r-c_1) cosine of the angle of joint 1 from its reference direction
-        six_r_c_1 = -sin(six_r_q_1)
+        six_r_c_1 = cos(six_r_q_1)
         # (six_r-s_1) sine of the angle of joint 1 from its reference direction
-        six_r_s_1 = cos(six_r_q_1)
+        six_r_s_1 = sin(six_r_q_1)
         # (six_r-c_2) cosine of the angle of joint 2 from its reference direction
-        six_r_c_2 = -sin(six_r_q_2)
+        six_r_c_2 = cos(six_r_q_2)
         # (six_r-s_2) sine of the angle of joint 2 from its reference direction
-        six_r_s_2 = cos(six_r_q_2)
+        six_r_s_2 = sin(six_r_q_2)
         # (six_r-c_3) cosine of the angle of joint 3 from its reference direction
         six_r_c_3 = cos(six_r_q_3)
         # (six_r-s_3) sine of the angle of joint 3 from its reference direction
         six_r_s_3 = sin(six_r_q_3)
         # (six_r-c_4) cosine of the angle of joint 4 from its reference direction
-        six_r_c_4 = -sin(six_r_q_4)
+        six_r_c_4 = cos(six_r_q_4)
         # (six_r-s_4) sine of the angle of joint 4 from its reference direction
-        six_r_s_4 = cos(six_r_q_4)
+        six_r_s_4 = sin(six_r_q_4)
         # (six_r-c_5) cosine of the angle of joint 5 from its reference direction
-        six_r_c_5 = -sin(six_r_q_5)
+        six_r_c_5 = cos(six_r_q_5)
         # (six_r-s_5) sine of the angle of joint 5 from its reference direction
-        six_r_s_5 = cos(six_r_q_5)
+        six_r_s_5 = sin(six_r_q_5)
         # (six_r-r_4) from joint 4 to the connection point, along the links
-        six_r_r_4_in_axes4_y = six_r_c_5*six_r_platform_joint_offset_x
-        six_r_r_4_in_axes4_z = six_r_joint5_offset_x + six_r_platform_joint_offset_x*six_r_s_5
-        six_r_r_4_in_axes3_y = -six_r_r_4_in_axes4_y*six_r_s_4
-        six_r_r_4_in_axes3_z = six_r_c_4*six_r_r_4_in_axes4_y
+        six_r_r_4_in_axes4_x = six_r_platform_joint_offset_x*six_r_s_5
+        six_r_r_4_in_axes4_z = six_r_joint5_offset_x + six_r_c_5*six_r_platform_joint_offset_x
+        six_r_r_4_in_axes3_x = -six_r_c_4*six_r_r_4_in_axes4_x
+        six_r_r_4_in_axes3_z = six_r_r_4_in_axes4_x*six_r_s_4
         # (six_r-r_3) from joint 3 to the connection point, along the links
-        six_r_r_3_in_axes3_x = six_r_joint4_offset_x + six_r_r_4_in_axes4_z
-        six_r_r_3_in_axes2_y = six_r_c_3*six_r_r_4_in_axes3_y + six_r_r_3_in_axes3_x*six_r_s_3
+        six_r_r_3_in_axes3_y = six_r_joint4_offset_x + six_r_r_4_in_axes4_z
+        six_r_r_3_in_axes2_y = six_r_r_3_in_axes3_y*six_r_s_3 - six_r_c_3*six_r_r_4_in_axes3_x
         six_r_r_3_t = six_r_r_4_in_axes3_z*six_r_s_4
-        six_r_r_3_t_2 = -six_r_c_4*six_r_r_4_in_axes3_z
-        six_r_r_3_in_axes5_z = six_r_r_3_t + six_r_c_4*six_r_r_4_in_axes3_y
-        six_r_r_3_t_3 = -six_r_r_3_t_2 - six_r_r_4_in_axes3_y*six_r_s_4
-        six_r_r_3_in_axes5_x = six_r_c_5*six_r_r_3_t_3 + six_r_r_3_in_axes3_x*six_r_s_5
-        six_r_r_3_in_axes5_y = six_r_c_5*six_r_r_3_in_axes3_x - six_r_r_3_t_3*six_r_s_5
+        six_r_r_3_t_2 = six_r_c_4*six_r_r_4_in_axes3_z
+        six_r_r_3_t_3 = six_r_r_3_t - six_r_c_4*six_r_r_4_in_axes3_x
+        six_r_r_3_in_axes5_z = six_r_r_3_t_2 + six_r_r_4_in_axes3_x*six_r_s_4
+        six_r_r_3_in_axes5_x = six_r_c_5*six_r_r_3_in_axes3_y + six_r_r_3_t_3*six_r_s_5
+        six_r_r_3_in_axes5_y = six_r_c_5*six_r_r_3_t_3 - six_r_r_3_in_axes3_y*six_r_s_5
         # (six_r-r_2) from joint 2 to the connection point, along the links
         six_r_r_2_in_axes2_x = (
-        six_r_joint3_offset_x + six_r_c_3*six_r_r_3_in_axes3_x - six_r_r_4_in_axes3_y*six_r_s_3
+        six_r_joint3_offset_x + six_r_c_3*six_r_r_3_in_axes3_y + six_r_r_4_in_axes3_x*six_r_s_3
         )
-        six_r_r_2_in_axes1_y = six_r_c_2*six_r_r_2_in_axes2_x - six_r_r_3_in_axes2_y*six_r_s_2
-        six_r_r_2_t = six_r_c_3*six_r_r_2_in_axes2_x + six_r_r_3_in_axes2_y*six_r_s_3
-        six_r_r_2_t_2 = six_r_c_3*six_r_r_3_in_axes2_y - six_r_r_2_in_axes2_x*six_r_s_3
-        six_r_r_2_in_axes5_z = six_r_r_3_t + six_r_c_4*six_r_r_2_t_2
-        six_r_r_2_t_3 = -six_r_r_3_t_2 - six_r_r_2_t_2*six_r_s_4
-        six_r_r_2_in_axes5_x = six_r_c_5*six_r_r_2_t_3 + six_r_r_2_t*six_r_s_5
-        six_r_r_2_in_axes5_y = six_r_c_5*six_r_r_2_t - six_r_r_2_t_3*six_r_s_5
+        six_r_r_2_in_axes1_x = six_r_c_2*six_r_r_3_in_axes2_y + six_r_r_2_in_axes2_x*six_r_s_2
+        six_r_r_2_t = six_r_r_2_in_axes2_x*six_r_s_3 - six_r_c_3*six_r_r_3_in_axes2_y
+        six_r_r_2_t_2 = six_r_c_3*six_r_r_2_in_axes2_x + six_r_r_3_in_axes2_y*six_r_s_3
+        six_r_r_2_t_3 = six_r_r_3_t - six_r_c_4*six_r_r_2_t
+        six_r_r_2_in_axes5_z = six_r_r_3_t_2 + six_r_r_2_t*six_r_s_4
+        six_r_r_2_in_axes5_x = six_r_c_5*six_r_r_2_t_2 + six_r_r_2_t_3*six_r_s_5
+        six_r_r_2_in_axes5_y = six_r_c_5*six_r_r_2_t_3 - six_r_r_2_t_2*six_r_s_5
         # (six_r-r_1) from joint 1 to the connection point, along the links
         six_r_r_1_in_axes1_z = (
-        six_r_joint2_offset_x + six_r_c_2*six_r_r_3_in_axes2_y + six_r_r_2_in_axes2_x*six_r_s_2
+        six_r_joint2_offset_x + six_r_c_2*six_r_r_2_in_axes2_x - six_r_r_3_in_axes2_y*six_r_s_2
         )
-        six_r_r_1_t = six_r_c_2*six_r_r_2_in_axes1_y + six_r_r_1_in_axes1_z*six_r_s_2
-        six_r_r_1_t_2 = six_r_c_2*six_r_r_1_in_axes1_z - six_r_r_2_in_axes1_y*six_r_s_2
-        six_r_r_1_t_3 = six_r_c_3*six_r_r_1_t + six_r_r_1_t_2*six_r_s_3
-        six_r_r_1_t_4 = six_r_c_3*six_r_r_1_t_2 - six_r_r_1_t*six_r_s_3
-        six_r_r_1_in_axes5_z = six_r_r_3_t + six_r_c_4*six_r_r_1_t_4
-        six_r_r_1_t_5 = -six_r_r_3_t_2 - six_r_r_1_t_4*six_r_s_4
-        six_r_r_1_in_axes5_x = six_r_c_5*six_r_r_1_t_5 + six_r_r_1_t_3*six_r_s_5
-        six_r_r_1_in_axes5_y = six_r_c_5*six_r_r_1_t_3 - six_r_r_1_t_5*six_r_s_5
+        six_r_r_1_t = six_r_c_2*six_r_r_1_in_axes1_z + six_r_r_2_in_axes1_x*six_r_s_2
+        six_r_r_1_t_2 = six_r_c_2*six_r_r_2_in_axes1_x - six_r_r_1_in_axes1_z*six_r_s_2
+        six_r_r_1_t_3 = six_r_r_1_t*six_r_s_3 - six_r_c_3*six_r_r_1_t_2
+        six_r_r_1_t_4 = six_r_c_3*six_r_r_1_t + six_r_r_1_t_2*six_r_s_3
+        six_r_r_1_t_5 = six_r_r_3_t - six_r_c_4*six_r_r_1_t_3
+        six_r_r_1_in_axes5_z = six_r_r_3_t_2 + six_r_r_1_t_3*six_r_s_4
+        six_r_r_1_in_axes5_x = six_r_c_5*six_r_r_1_t_4 + six_r_r_1_t_5*six_r_s_5
+        six_r_r_1_in_axes5_y = six_r_c_5*six_r_r_1_t_5 - six_r_r_1_t_4*six_r_s_5
         # (six_r-v_1) velocity of the connection point per rate of joint 1
         six_r_v_1_t = six_r_c_2*six_r_s_3 + six_r_c_3*six_r_s_2
         six_r_v_1_t_2 = six_r_c_2*six_r_c_3 - six_r_s_2*six_r_s_3
-        six_r_e_1_in_axes5_z = six_r_c_4*six_r_v_1_t_2
-        six_r_v_1_t_3 = six_r_s_4*six_r_v_1_t_2
-        six_r_e_1_in_axes5_x = six_r_s_5*six_r_v_1_t - six_r_c_5*six_r_v_1_t_3
-        six_r_e_1_in_axes5_y = six_r_c_5*six_r_v_1_t + six_r_s_5*six_r_v_1_t_3
+        six_r_v_1_t_3 = six_r_c_4*six_r_v_1_t
+        six_r_e_1_in_axes5_z = six_r_s_4*six_r_v_1_t
+        six_r_e_1_in_axes5_x = six_r_c_5*six_r_v_1_t_2 - six_r_s_5*six_r_v_1_t_3
+        six_r_e_1_in_axes5_y = -six_r_c_5*six_r_v_1_t_3 - six_r_s_5*six_r_v_1_t_2
         six_r_v_1_in_axes5_x = (
         six_r_e_1_in_axes5_y*six_r_r_1_in_axes5_z - six_r_e_1_in_axes5_z*six_r_r_1_in_axes5_y
         )
@@ -12263,31 +12383,31 @@ def _run_closure_six_r(m, X, q):
         six_r_e_1_in_axes5_x*six_r_r_1_in_axes5_y - six_r_e_1_in_axes5_y*six_r_r_1_in_axes5_x
         )
         # (six_r-v_2) velocity of the connection point per rate of joint 2
-        six_r_e_2_in_axes5_x = six_r_c_4*six_r_c_5
-        six_r_e_2_in_axes5_y = -six_r_c_4*six_r_s_5
+        six_r_e_2_in_axes5_x = six_r_s_4*six_r_s_5
+        six_r_e_2_in_axes5_y = six_r_c_5*six_r_s_4
         six_r_v_2_in_axes5_x = (
-        six_r_e_2_in_axes5_y*six_r_r_2_in_axes5_z - six_r_r_2_in_axes5_y*six_r_s_4
+        six_r_e_2_in_axes5_y*six_r_r_2_in_axes5_z - six_r_c_4*six_r_r_2_in_axes5_y
         )
         six_r_v_2_in_axes5_y = (
-        six_r_r_2_in_axes5_x*six_r_s_4 - six_r_e_2_in_axes5_x*six_r_r_2_in_axes5_z
+        six_r_c_4*six_r_r_2_in_axes5_x - six_r_e_2_in_axes5_x*six_r_r_2_in_axes5_z
         )
         six_r_v_2_in_axes5_z = (
         six_r_e_2_in_axes5_x*six_r_r_2_in_axes5_y - six_r_e_2_in_axes5_y*six_r_r_2_in_axes5_x
         )
         # (six_r-v_3) velocity of the connection point per rate of joint 3
         six_r_v_3_in_axes5_x = (
-        six_r_e_2_in_axes5_y*six_r_r_3_in_axes5_z - six_r_r_3_in_axes5_y*six_r_s_4
+        six_r_e_2_in_axes5_y*six_r_r_3_in_axes5_z - six_r_c_4*six_r_r_3_in_axes5_y
         )
         six_r_v_3_in_axes5_y = (
-        six_r_r_3_in_axes5_x*six_r_s_4 - six_r_e_2_in_axes5_x*six_r_r_3_in_axes5_z
+        six_r_c_4*six_r_r_3_in_axes5_x - six_r_e_2_in_axes5_x*six_r_r_3_in_axes5_z
         )
         six_r_v_3_in_axes5_z = (
         six_r_e_2_in_axes5_x*six_r_r_3_in_axes5_y - six_r_e_2_in_axes5_y*six_r_r_3_in_axes5_x
         )
         # (six_r-v_4) velocity of the connection point per rate of joint 4
         six_r_v_4_in_axes5_z = (
-        six_r_s_5*(six_r_c_5*six_r_r_4_in_axes4_z - six_r_r_4_in_axes4_y*six_r_s_5) -
-            six_r_c_5*(six_r_c_5*six_r_r_4_in_axes4_y + six_r_r_4_in_axes4_z*six_r_s_5)
+        six_r_c_5*(six_r_c_5*six_r_r_4_in_axes4_x - six_r_r_4_in_axes4_z*six_r_s_5) +
+            six_r_s_5*(six_r_c_5*six_r_r_4_in_axes4_z + six_r_r_4_in_axes4_x*six_r_s_5)
         )
         # (six_r-n_m1) direction 1 of the moment that the platform joint transmits
         six_r_n_m1_t = (
@@ -12316,13 +12436,13 @@ def _run_closure_six_r(m, X, q):
         )
         six_r_n_m1_t_4 = six_r_c_1*six_r_n_m1_t + six_r_n_m1_t_2*six_r_s_1
         six_r_n_m1_t_5 = six_r_c_1*six_r_n_m1_t_2 - six_r_n_m1_t*six_r_s_1
-        six_r_n_m1_t_6 = six_r_c_2*six_r_n_m1_t_5 + six_r_n_m1_t_3*six_r_s_2
-        six_r_n_m1_t_7 = six_r_c_2*six_r_n_m1_t_3 - six_r_n_m1_t_5*six_r_s_2
-        six_r_n_m1_t_8 = six_r_c_3*six_r_n_m1_t_6 + six_r_n_m1_t_7*six_r_s_3
-        six_r_n_m1_t_9 = six_r_c_3*six_r_n_m1_t_7 - six_r_n_m1_t_6*six_r_s_3
-        six_r_n_m1_t_10 = six_r_c_4*six_r_n_m1_t_4 - six_r_n_m1_t_9*six_r_s_4
-        six_r_n_m1_in_axes5_y = six_r_c_5*six_r_n_m1_t_10 + six_r_n_m1_t_8*six_r_s_5
-        six_r_end_p1_in_axes5_y = six_r_c_5*six_r_n_m1_t_8 - six_r_n_m1_t_10*six_r_s_5
+        six_r_n_m1_t_6 = six_r_c_2*six_r_n_m1_t_3 + six_r_n_m1_t_4*six_r_s_2
+        six_r_n_m1_t_7 = six_r_c_2*six_r_n_m1_t_4 - six_r_n_m1_t_3*six_r_s_2
+        six_r_n_m1_t_8 = six_r_n_m1_t_6*six_r_s_3 - six_r_c_3*six_r_n_m1_t_7
+        six_r_n_m1_t_9 = six_r_c_3*six_r_n_m1_t_6 + six_r_n_m1_t_7*six_r_s_3
+        six_r_n_m1_t_10 = six_r_n_m1_t_5*six_r_s_4 - six_r_c_4*six_r_n_m1_t_8
+        six_r_n_m1_in_axes5_y = six_r_c_5*six_r_n_m1_t_9 + six_r_n_m1_t_10*six_r_s_5
+        six_r_end_p1_in_axes5_y = six_r_c_5*six_r_n_m1_t_10 - six_r_n_m1_t_9*six_r_s_5
         six_r_n_m1_t_11 = (
         six_r_e_1_in_axes5_x*six_r_end_p1_in_axes5_y - six_r_e_1_in_axes5_y*six_r_n_m1_in_axes5_y
         )
@@ -12330,18 +12450,18 @@ def _run_closure_six_r(m, X, q):
         six_r_e_2_in_axes5_x*six_r_end_p1_in_axes5_y - six_r_e_2_in_axes5_y*six_r_n_m1_in_axes5_y
         )
         six_r_n_m1_in_axes4_z = (
-        six_r_c_5*six_r_n_m1_in_axes5_y - six_r_end_p1_in_axes5_y*six_r_s_5
+        -six_r_c_5*six_r_end_p1_in_axes5_y - six_r_n_m1_in_axes5_y*six_r_s_5
         )
         # (six_r-n_m2) direction 2 of the moment that the platform joint transmits
-        six_r_end_p1_in_axes5_z = six_r_c_4*six_r_n_m1_t_9 + six_r_n_m1_t_4*six_r_s_4
+        six_r_end_p1_in_axes5_z = six_r_c_4*six_r_n_m1_t_5 + six_r_n_m1_t_8*six_r_s_4
         six_r_n_m2_t = (
         six_r_e_1_in_axes5_y*six_r_end_p1_in_axes5_z -
             six_r_e_1_in_axes5_z*six_r_end_p1_in_axes5_y
         )
         six_r_n_m2_t_2 = (
-        six_r_e_2_in_axes5_y*six_r_end_p1_in_axes5_z - six_r_end_p1_in_axes5_y*six_r_s_4
+        six_r_e_2_in_axes5_y*six_r_end_p1_in_axes5_z - six_r_c_4*six_r_end_p1_in_axes5_y
         )
-        six_r_n_m2_in_axes4_z = -six_r_c_5*six_r_end_p1_in_axes5_z
+        six_r_n_m2_in_axes4_z = six_r_end_p1_in_axes5_z*six_r_s_5
         # (six_r-gap) from the connection point as the links reach it to the platform's
         six_r_gap_t = (
         six_r_S_x*six_r_base_frame_xy + six_r_S_y*six_r_base_frame_yy +
@@ -12357,19 +12477,19 @@ def _run_closure_six_r(m, X, q):
         )
         six_r_gap_t_4 = six_r_c_1*six_r_gap_t + six_r_gap_t_2*six_r_s_1
         six_r_gap_t_5 = six_r_c_1*six_r_gap_t_2 - six_r_gap_t*six_r_s_1
-        six_r_gap_t_6 = six_r_c_2*six_r_gap_t_5 + six_r_gap_t_3*six_r_s_2
-        six_r_gap_t_7 = six_r_c_2*six_r_gap_t_3 - six_r_gap_t_5*six_r_s_2
-        six_r_gap_t_8 = six_r_c_3*six_r_gap_t_6 + six_r_gap_t_7*six_r_s_3
-        six_r_gap_t_9 = six_r_c_3*six_r_gap_t_7 - six_r_gap_t_6*six_r_s_3
-        six_r_gap_t_10 = six_r_c_4*six_r_gap_t_4 - six_r_gap_t_9*six_r_s_4
+        six_r_gap_t_6 = six_r_c_2*six_r_gap_t_3 + six_r_gap_t_4*six_r_s_2
+        six_r_gap_t_7 = six_r_c_2*six_r_gap_t_4 - six_r_gap_t_3*six_r_s_2
+        six_r_gap_t_8 = six_r_gap_t_6*six_r_s_3 - six_r_c_3*six_r_gap_t_7
+        six_r_gap_t_9 = six_r_c_3*six_r_gap_t_6 + six_r_gap_t_7*six_r_s_3
+        six_r_gap_t_10 = six_r_gap_t_5*six_r_s_4 - six_r_c_4*six_r_gap_t_8
         six_r_gap_in_axes5_x = (
-        six_r_c_5*six_r_gap_t_10 + six_r_gap_t_8*six_r_s_5 - six_r_r_1_in_axes5_x
+        six_r_c_5*six_r_gap_t_9 + six_r_gap_t_10*six_r_s_5 - six_r_r_1_in_axes5_x
         )
         six_r_gap_in_axes5_y = (
-        six_r_c_5*six_r_gap_t_8 - six_r_r_1_in_axes5_y - six_r_gap_t_10*six_r_s_5
+        six_r_c_5*six_r_gap_t_10 - six_r_r_1_in_axes5_y - six_r_gap_t_9*six_r_s_5
         )
         six_r_gap_in_axes5_z = (
-        six_r_c_4*six_r_gap_t_9 + six_r_gap_t_4*six_r_s_4 - six_r_r_1_in_axes5_z
+        six_r_c_4*six_r_gap_t_5 + six_r_gap_t_8*six_r_s_4 - six_r_r_1_in_axes5_z
         )
         # (six_r-gap) from the connection point as the links reach it to the platform's
         out_gap_six_r[_gap_six_r_six_r[0][leg]] = six_r_gap_in_axes5_x
@@ -12409,6 +12529,130 @@ def _run_closure_six_r(m, X, q):
     return ok, (out_gap_six_r, out_jacobian_six_r,)
 
 
+def _straight_6(a, b, rows, limits):
+    """Solve 6 equations a x = b straight through; and whether that is beyond doubt."""
+    (
+    (a00, a01, a02, a03, a04, a05,), (a10, a11, a12, a13, a14, a15,), (a20, a21, a22, a23, a24,
+        a25,), (a30, a31, a32, a33, a34, a35,), (a40, a41, a42, a43, a44, a45,), (a50, a51, a52,
+        a53, a54, a55,),
+    ) = [a[6 * k : 6 * k + 6] for k in rows]
+    b0, b1, b2, b3, b4, b5, = [b[k] for k in rows]
+    (
+    l10, l20, l30, l40, l50, l21, l31, l41, l51, l32, l42, l52, l43, l53, l54, l0, l1, l2, l3, l4,
+        l5,
+    ) = limits
+    f0 = 1.0/a00
+    g10 = a10*f0
+    a11 = a11 - g10*a01
+    a12 = a12 - g10*a02
+    a13 = a13 - g10*a03
+    a14 = a14 - g10*a04
+    a15 = a15 - g10*a05
+    b1 = b1 - g10*b0
+    g20 = a20*f0
+    a21 = a21 - g20*a01
+    a22 = a22 - g20*a02
+    a23 = a23 - g20*a03
+    a24 = a24 - g20*a04
+    a25 = a25 - g20*a05
+    b2 = b2 - g20*b0
+    g30 = a30*f0
+    a31 = a31 - g30*a01
+    a32 = a32 - g30*a02
+    a33 = a33 - g30*a03
+    a34 = a34 - g30*a04
+    a35 = a35 - g30*a05
+    b3 = b3 - g30*b0
+    g40 = a40*f0
+    a41 = a41 - g40*a01
+    a42 = a42 - g40*a02
+    a43 = a43 - g40*a03
+    a44 = a44 - g40*a04
+    a45 = a45 - g40*a05
+    b4 = b4 - g40*b0
+    g50 = a50*f0
+    a51 = a51 - g50*a01
+    a52 = a52 - g50*a02
+    a53 = a53 - g50*a03
+    a54 = a54 - g50*a04
+    a55 = a55 - g50*a05
+    b5 = b5 - g50*b0
+    f1 = 1.0/a11
+    g21 = a21*f1
+    a22 = a22 - g21*a12
+    a23 = a23 - g21*a13
+    a24 = a24 - g21*a14
+    a25 = a25 - g21*a15
+    b2 = b2 - g21*b1
+    g31 = a31*f1
+    a32 = a32 - g31*a12
+    a33 = a33 - g31*a13
+    a34 = a34 - g31*a14
+    a35 = a35 - g31*a15
+    b3 = b3 - g31*b1
+    g41 = a41*f1
+    a42 = a42 - g41*a12
+    a43 = a43 - g41*a13
+    a44 = a44 - g41*a14
+    a45 = a45 - g41*a15
+    b4 = b4 - g41*b1
+    g51 = a51*f1
+    a52 = a52 - g51*a12
+    a53 = a53 - g51*a13
+    a54 = a54 - g51*a14
+    a55 = a55 - g51*a15
+    b5 = b5 - g51*b1
+    f2 = 1.0/a22
+    g32 = a32*f2
+    a33 = a33 - g32*a23
+    a34 = a34 - g32*a24
+    a35 = a35 - g32*a25
+    b3 = b3 - g32*b2
+    g42 = a42*f2
+    a43 = a43 - g42*a23
+    a44 = a44 - g42*a24
+    a45 = a45 - g42*a25
+    b4 = b4 - g42*b2
+    g52 = a52*f2
+    a53 = a53 - g52*a23
+    a54 = a54 - g52*a24
+    a55 = a55 - g52*a25
+    b5 = b5 - g52*b2
+    f3 = 1.0/a33
+    g43 = a43*f3
+    a44 = a44 - g43*a34
+    a45 = a45 - g43*a35
+    b4 = b4 - g43*b3
+    g53 = a53*f3
+    a54 = a54 - g53*a34
+    a55 = a55 - g53*a35
+    b5 = b5 - g53*b3
+    f4 = 1.0/a44
+    g54 = a54*f4
+    a55 = a55 - g54*a45
+    b5 = b5 - g54*b4
+    f5 = 1.0/a55
+    x5 = b5*f5
+    x4 = (b4 - a45*x5)*f4
+    x3 = (b3 - a35*x5 - a34*x4)*f3
+    x2 = (b2 - a25*x5 - a24*x4 - a23*x3)*f2
+    x1 = (b1 - a15*x5 - a14*x4 - a13*x3 - a12*x2)*f1
+    x0 = (b0 - a05*x5 - a04*x4 - a03*x3 - a02*x2 - a01*x1)*f0
+    sure = (
+    (abs(g10) <= l10) & (abs(g20) <= l20) & (abs(g30) <= l30) & (abs(g40) <= l40) & (abs(g50) <=
+        l50) & (abs(g21) <= l21) & (abs(g31) <= l31) & (abs(g41) <= l41) & (abs(g51) <= l51) &
+        (abs(g32) <= l32) & (abs(g42) <= l42) & (abs(g52) <= l52) & (abs(g43) <= l43) & (abs(g53)
+        <= l53) & (abs(g54) <= l54) & (abs(f0) <= l0) & (abs(f1) <= l1) & (abs(f2) <= l2) &
+        (abs(f3) <= l3) & (abs(f4) <= l4) & (abs(f5) <= l5) & (abs(x0 + x1 + x2 + x3 + x4 + x5 +
+        a00 + a11 + a22 + a33 + a44 + a55) < math.inf)
+    )
+    return sure, ([x0, x1, x2, x3, x4, x5],)
+
+
+_ORDERS = (  # how systems are solved near home
+    _Order(_straight_6, (0, 5, 2, 3, 4, 1), (0.625, 160, 40, 40, 10, 2560, 640, 640, 160, 2.5, 2.5, 0.625, 10, 2.5, 2.5, 4000, 64000, 250, 1000, 1000, 4000,)),
+    _Order(_straight_6, (0, 1, 2, 3, 4, 5), (10, 10, 0.625, 0.625, 0.625, 10, 0.625, 0.625, 0.625, 0.625, 0.625, 0.625, 10, 10, 10, 62.5, 62.5, 62.5, 1000, 1000, 1000,)),
+)
 _GIVEN = ()  # positions in q and X of the extra coordinates
 _CLOSURES = (  # function, its inputs, shapes of its arrays; in q the joints of each leg, and those that turn;
     # rows of the Jacobian whose determinant tells the branch, and its signs
@@ -12465,18 +12709,18 @@ def _steps_inverse_dynamics(m, X, V, A, wrench, weights, q0):
     required, H = m.run(_run_required, ("required", "H"), X, V, A, q)
     extend_1 = wrench
     subtract_1 = required - extend_1
-    tau = _solve(H, subtract_1)
+    tau = _straight(m, H, subtract_1, _ORDERS[0])
     return (tau,)
 
 
 def _steps_forward_dynamics(m, X, V, tau, wrench, q0):
     q = _closed(m, X, q0)
     M, Z, H = m.run(_run_dynamics, ("M", "Z", "H"), X, V, q)
-    times_1 = np.einsum("ijs,js->is", H, tau)
+    times_1 = _times(H, tau)
     extend_1 = wrench
     add_1 = times_1 + extend_1
     subtract_1 = add_1 - Z
-    A = _solve(M, subtract_1)
+    A = _straight(m, M, subtract_1, _ORDERS[1])
     return (A,)
 
 
@@ -12490,7 +12734,7 @@ def _steps_leg_reactions(m, X, V, A, wrench, q0):
     required, H = m.run(_run_required, ("required", "H"), X, V, A, q)
     extend_1 = wrench
     subtract_1 = required - extend_1
-    solve_1 = _solve(H, subtract_1)
+    solve_1 = _straight(m, H, subtract_1, _ORDERS[0])
     leg_force, actuator = m.run(_run_legs, ("leg_force", "actuator"), X, V, A, q)
     forces = _with_forces(leg_force, solve_1, actuator, [0, 1, 2, 3, 4, 5])
     return (forces,)
@@ -12521,11 +12765,40 @@ def _steps_condition(m, X, length, q0):
     return (sigma, legs,)
 
 
+def _steps_manipulability(m, X, q0):
+    q = _closed(m, X, q0)
+    (
+    H, lengths, pivots, reach,
+    ) = m.run(_in_one(_run_condition), ("H", "lengths", "pivots", "reach"), X, q)
+    entry_1 = lengths[0]
+    subtract_1 = entry_1 - entry_1
+    choose_length_1 = _chosen_length(lengths, subtract_1)
+    divide_rows_1 = _rows_divided(H, choose_length_1, [3, 4, 5])
+    singular_values_1 = _singular_values(divide_rows_1)
+    measure, isotropy = _spread(singular_values_1, 6)
+    return (measure, isotropy,)
+
+
+def _steps_singularity_distance(m, X, q0):
+    q = _closed(m, X, q0)
+    (
+    H, lengths, pivots, reach,
+    ) = m.run(_in_one(_run_condition), ("H", "lengths", "pivots", "reach"), X, q)
+    entry_1 = lengths[0]
+    subtract_1 = entry_1 - entry_1
+    choose_length_1 = _chosen_length(lengths, subtract_1)
+    divide_rows_1 = _rows_divided(H, choose_length_1, [3, 4, 5])
+    singular_values_1 = _singular_values(divide_rows_1)
+    spread_1, actuators = _spread(singular_values_1, 6)
+    legs = _least_entry(pivots)
+    return (actuators, legs,)
+
+
 def _steps_mismatch(m, X, q_actuated, q0):
     q = _closed(m, X, q0)
     q, = m.run(_run_inverse_kinematics, ("q",), q)
-    take_1 = q[[1, 6, 11, 16, 21, 26]]
-    subtract_1 = q_actuated - take_1
+    q_of_inverse_kinematics_from_1 = q[[1, 6, 11, 16, 21, 26]]
+    subtract_1 = q_actuated - q_of_inverse_kinematics_from_1
     gap = _wrapped(subtract_1, [0, 1, 2, 3, 4, 5])
     return (gap,)
 
@@ -12550,7 +12823,7 @@ def _steps_dissipation(m, X, V, q0):
 def _steps_momentum(m, X, V, q0):
     q = _closed(m, X, q0)
     M, = m.run(_run_M, ("M",), X, q)
-    momentum = np.einsum("ijs,js->is", M, V)
+    momentum = _times(M, V)
     return (momentum,)
 
 
@@ -12594,14 +12867,14 @@ def _steps_actuator_accelerations(m, X, V, A, q0):
 def _steps_power(m, X, V, tau, q0):
     q = _closed(m, X, q0)
     H, = m.run(_run_H, ("H",), X, q)
-    times_1 = np.einsum("ijs,js->is", H, tau)
+    times_1 = _times(H, tau)
     power = np.sum(times_1 * V, axis=0)
     return (power,)
 
 
 def _steps_rotation(m, X):
-    take_1 = X[3:7]
-    R = _rotation_of_quaternion(take_1)
+    X_from_3 = X[3:7]
+    R = _rotation_of_quaternion(X_from_3)
     return (R,)
 
 
@@ -12613,11 +12886,11 @@ def _steps_pose(m, t, R):
 
 
 def _steps_X_dot(m, X, V):
-    take_1 = V[3:6]
-    take_2 = X[3:7]
-    quaternion_rate_1 = _quaternion_rate(take_2, take_1)
-    take_3 = V[0:3]
-    X_dot = np.concatenate((take_3, quaternion_rate_1))
+    V_from_3 = V[3:6]
+    X_from_3 = X[3:7]
+    quaternion_rate_1 = _quaternion_rate(X_from_3, V_from_3)
+    V_from_0 = V[0:3]
+    X_dot = np.concatenate((V_from_0, quaternion_rate_1))
     return (X_dot,)
 
 
@@ -12629,42 +12902,42 @@ def _steps_pose_from_rpy(m, t, rpy):
 
 
 def _steps_retract(m, X, step):
-    take_1 = X[0:3]
-    take_2 = X[3:7]
-    take_3 = step[0:3]
-    take_4 = step[3:6]
-    turn_quaternion_1 = _turned(take_2, take_4)
-    add_1 = take_1 + take_3
+    X_from_0 = X[0:3]
+    X_from_3 = X[3:7]
+    step_from_0 = step[0:3]
+    step_from_3 = step[3:6]
+    turn_quaternion_1 = _turned(X_from_3, step_from_3)
+    add_1 = X_from_0 + step_from_0
     X_moved = np.concatenate((add_1, turn_quaternion_1))
     return (X_moved,)
 
 
 def _steps_difference(m, X0, X1):
-    take_1 = X0[0:3]
-    take_2 = X0[3:7]
-    take_3 = X1[0:3]
-    take_4 = X1[3:7]
-    turn_between_1 = _turn_between(take_2, take_4)
-    subtract_1 = take_3 - take_1
+    X0_from_0 = X0[0:3]
+    X0_from_3 = X0[3:7]
+    X1_from_0 = X1[0:3]
+    X1_from_3 = X1[3:7]
+    turn_between_1 = _turn_between(X0_from_3, X1_from_3)
+    subtract_1 = X1_from_0 - X0_from_0
     step = np.concatenate((subtract_1, turn_between_1))
     return (step,)
 
 
 def _steps_interpolate(m, X0, X1, s):
-    take_1 = X0[0:3]
-    take_2 = X0[3:7]
-    take_3 = X1[0:3]
-    take_4 = X1[3:7]
-    turn_between_1 = _turn_between(take_2, take_4)
-    subtract_1 = take_3 - take_1
+    X0_from_0 = X0[0:3]
+    X0_from_3 = X0[3:7]
+    X1_from_0 = X1[0:3]
+    X1_from_3 = X1[3:7]
+    turn_between_1 = _turn_between(X0_from_3, X1_from_3)
+    subtract_1 = X1_from_0 - X0_from_0
     join_1 = np.concatenate((subtract_1, turn_between_1))
     scale_1 = join_1 * s
-    take_5 = X0[0:3]
-    take_6 = X0[3:7]
-    take_7 = scale_1[0:3]
-    take_8 = scale_1[3:6]
-    turn_quaternion_1 = _turned(take_6, take_8)
-    add_1 = take_5 + take_7
+    X0_from_0_2 = X0[0:3]
+    X0_from_3_2 = X0[3:7]
+    scale_1_from_0 = scale_1[0:3]
+    scale_1_from_3 = scale_1[3:6]
+    turn_quaternion_1 = _turned(X0_from_3_2, scale_1_from_3)
+    add_1 = X0_from_0_2 + scale_1_from_0
     X = np.concatenate((add_1, turn_quaternion_1))
     return (X,)
 
@@ -12887,6 +13160,7 @@ def complete_acceleration(X, V, A, p=None, *, wrench=None, q0=None):
         ("A", A, (NV,)),
         ("wrench", wrench, (NW,), 0.0, "unused"),
         ("q0", q0, (NJ,), HOME_Q, "unused"),
+        plain=((NV,),),
     )
 
 
@@ -12980,6 +13254,45 @@ def condition(X, p=None, *, length=None, q0=None):
         ("length", length, (), 0.0, "positive"),
         ("q0", q0, (NJ,), HOME_Q),
         mode=_Judged,
+    )
+
+
+def manipulability(X, p=None, *, q0=None):
+    """Manipulability of forces: the product of the singular values that `condition` has by
+    default, and the least over the largest of them.
+
+    Args:
+        X: pose, and extra coordinates (..., NQ).
+        q0: first guess of the displacements, by default HOME_Q (..., NJ).
+        p: parameters, by default those of the specification.
+
+    Returns:
+        measure: product of the singular values (...,).
+        isotropy: least over largest value, 1 where H is isotropic (...,).
+    """
+    return _call(
+        "manipulability", _steps_manipulability, p,
+        ("X", X, (NQ,)),
+        ("q0", q0, (NJ,), HOME_Q),
+    )
+
+
+def singularity_distance(X, p=None, *, q0=None):
+    """How near actuators and legs are to being singular: relative distances, 0 where they are.
+
+    Args:
+        X: pose, and extra coordinates (..., NQ).
+        q0: first guess of the displacements, by default HOME_Q (..., NJ).
+        p: parameters, by default those of the specification.
+
+    Returns:
+        actuators: of H from matrices of lower rank, over its norm (...,).
+        legs: least pivot of all legs (...,).
+    """
+    return _call(
+        "singularity_distance", _steps_singularity_distance, p,
+        ("X", X, (NQ,)),
+        ("q0", q0, (NJ,), HOME_Q),
     )
 
 

@@ -630,13 +630,13 @@ int hybrid_3crs_prepare(const hybrid_3crs_params *params, hybrid_3crs_model *mod
             crs_base_frame_zy*gravity_z;
         const real crs_acc_3_t_2 = crs_base_frame_xz*gravity_x + crs_base_frame_yz*gravity_y +
             crs_base_frame_zz*gravity_z;
-        /* (crs-trace_J_3) half the trace of that inertia tensor */
-        const real crs_trace_J_3 = R(0.5)*crs_J_3_in_spec3_xx + R(0.5)*crs_J_3_in_spec3_yy +
-            R(0.5)*crs_J_3_in_spec3_zz;
         /* (crs-Sigma_3) second moment of mass of the links that turn with link 3 */
-        const real crs_Sigma_3_in_axes3_xx = crs_trace_J_3 - crs_J_3_in_spec3_xx;
-        const real crs_Sigma_3_in_axes3_yy = crs_trace_J_3 - crs_J_3_in_spec3_yy;
-        const real crs_Sigma_3_in_axes3_zz = crs_trace_J_3 - crs_J_3_in_spec3_zz;
+        const real crs_Sigma_3_t = crs_J_3_in_spec3_xx + crs_J_3_in_spec3_yy +
+            crs_J_3_in_spec3_zz;
+        const real crs_Sigma_3_t_2 = R(0.5)*crs_Sigma_3_t;
+        const real crs_Sigma_3_in_axes3_xx = crs_Sigma_3_t_2 - crs_J_3_in_spec3_xx;
+        const real crs_Sigma_3_in_axes3_yy = crs_Sigma_3_t_2 - crs_J_3_in_spec3_yy;
+        const real crs_Sigma_3_in_axes3_zz = crs_Sigma_3_t_2 - crs_J_3_in_spec3_zz;
         /* (crs-G) force at the connection point that balances the leg's inertia and weight along all
            degrees of freedom */
         const real inv_crs_size_t_2 = 1/crs_size_t_2;
@@ -1118,6 +1118,24 @@ INLINE void unlimited(size_t rows, size_t size, size_t w, const size_t *places, 
     }
 }
 
+INLINE void least_entry(size_t n, const real *a, real *x)
+{
+    *x = a[0];
+    for (size_t e = 1; e < n; ++e) {
+        *x = lesser(*x, a[e]);
+    }
+}
+
+/* Of the first n entries the product, and the last over the first, 0 where that is 0. */
+INLINE void spread(size_t n, const real *a, real *product_of, real *ratio)
+{
+    *product_of = 1;
+    for (size_t e = 0; e < n; ++e) {
+        *product_of *= a[e];
+    }
+    *ratio = magnitude(a[0]) > 0 ? a[n - 1]/a[0] : a[0];
+}
+
 /* 1 where no entry is negative, else 0. */
 INLINE void not_negative(size_t size, size_t w, const real *a, real *x, real *flags)
 {
@@ -1305,6 +1323,792 @@ static void moved(const real *X, const real *step, real part, real *to)
     turn_quaternion(X + Q, turn, to + Q);
 }
 
+/* ---- what functions of the state share; v: values for others ---- */
+
+typedef struct {
+    real quaternion_scale, R_xx, R_xy, R_xz, R_yx, R_yy, R_yz, R_zx, R_zy, R_zz, h_star_x, h_star_y,
+        h_star_z, omega_in_platform_x, omega_in_platform_y, omega_in_platform_z, J_star_xx, J_star_xy,
+        J_star_xz, J_star_yy, J_star_yz, J_star_zz, Z_p_x, Z_p_y, Z_p_z, Z_q_x, Z_q_y, Z_q_z;
+} values;
+
+INLINE void stage_X(const prepared *m, size_t w, size_t k, const real *X, values *v)
+{
+    /* X: named entries */
+    const real X_3 = X[3*w + k];
+    const real X_4 = X[4*w + k];
+    const real X_5 = X[5*w + k];
+    const real X_6 = X[6*w + k];
+    const real quaternion_norm2 = X_3*X_3 + X_4*X_4 + X_5*X_5 + X_6*X_6;
+    const real quaternion_scale = 2/quaternion_norm2;
+    const real quaternion_sx = X_3*quaternion_scale;
+    const real quaternion_sy = X_4*quaternion_scale;
+    const real quaternion_sz = X_5*quaternion_scale;
+    const real quaternion_wx = X_6*quaternion_sx;
+    const real quaternion_wy = X_6*quaternion_sy;
+    const real quaternion_wz = X_6*quaternion_sz;
+    const real quaternion_xx = X_3*quaternion_sx;
+    const real quaternion_xy = X_3*quaternion_sy;
+    const real quaternion_xz = X_3*quaternion_sz;
+    const real quaternion_yy = X_4*quaternion_sy;
+    const real quaternion_yz = X_4*quaternion_sz;
+    const real quaternion_zz = X_5*quaternion_sz;
+    const real R_xx = 1 - quaternion_yy - quaternion_zz;
+    const real R_xy = quaternion_xy - quaternion_wz;
+    const real R_xz = quaternion_wy + quaternion_xz;
+    const real R_yx = quaternion_wz + quaternion_xy;
+    const real R_yy = 1 - quaternion_xx - quaternion_zz;
+    const real R_yz = quaternion_yz - quaternion_wx;
+    const real R_zx = quaternion_xz - quaternion_wy;
+    const real R_zy = quaternion_wx + quaternion_yz;
+    const real R_zz = 1 - quaternion_xx - quaternion_yy;
+    /* (h_star) first moment about the platform origin */
+    const real h_star_in_platform_x = m->h_star_in_platform_x;
+    const real h_star_in_platform_y = m->h_star_in_platform_y;
+    const real h_star_in_platform_z = m->h_star_in_platform_z;
+    const real h_star_x = R_xx*h_star_in_platform_x + R_xy*h_star_in_platform_y +
+        R_xz*h_star_in_platform_z;
+    const real h_star_y = R_yx*h_star_in_platform_x + R_yy*h_star_in_platform_y +
+        R_yz*h_star_in_platform_z;
+    const real h_star_z = R_zx*h_star_in_platform_x + R_zy*h_star_in_platform_y +
+        R_zz*h_star_in_platform_z;
+    v->quaternion_scale = quaternion_scale;
+    v->R_xx = R_xx;
+    v->R_xy = R_xy;
+    v->R_xz = R_xz;
+    v->R_yx = R_yx;
+    v->R_yy = R_yy;
+    v->R_yz = R_yz;
+    v->R_zx = R_zx;
+    v->R_zy = R_zy;
+    v->R_zz = R_zz;
+    v->h_star_x = h_star_x;
+    v->h_star_y = h_star_y;
+    v->h_star_z = h_star_z;
+}
+
+INLINE void stage_V_X(size_t w, size_t k, const real *V, values *v)
+{
+    /* (Z_q) gyroscopic moment and moment of the weight of the platform */
+    const real omega_x = V[3*w + k];
+    const real omega_y = V[4*w + k];
+    const real omega_z = V[5*w + k];
+    const real omega_in_platform_x = v->R_xx*omega_x + v->R_yx*omega_y + v->R_zx*omega_z;
+    const real omega_in_platform_y = v->R_xy*omega_x + v->R_yy*omega_y + v->R_zy*omega_z;
+    const real omega_in_platform_z = v->R_xz*omega_x + v->R_yz*omega_y + v->R_zz*omega_z;
+    v->omega_in_platform_x = omega_in_platform_x;
+    v->omega_in_platform_y = omega_in_platform_y;
+    v->omega_in_platform_z = omega_in_platform_z;
+}
+
+INLINE void stage_M_dynamics(const prepared *m, values *v)
+{
+    /* (J_star) inertia tensor about the platform origin */
+    const real J_star_in_platform_xy = m->J_star_in_platform_xy;
+    const real J_star_in_platform_yz = m->J_star_in_platform_yz;
+    const real J_star_t_12 = m->J_star_t_12;
+    const real J_star_t = J_star_in_platform_xy*v->R_xx + J_star_in_platform_yz*v->R_xz -
+        J_star_t_12*v->R_xy;
+    const real J_star_t_2 = J_star_in_platform_xy*v->R_yx + J_star_in_platform_yz*v->R_yz -
+        J_star_t_12*v->R_yy;
+    const real J_star_t_3 = J_star_in_platform_xy*v->R_zx + J_star_in_platform_yz*v->R_zz -
+        J_star_t_12*v->R_zy;
+    const real J_star_in_platform_xz = m->J_star_in_platform_xz;
+    const real J_star_t_14 = m->J_star_t_14;
+    const real J_star_t_4 = J_star_t_14*v->R_xz - J_star_in_platform_xz*v->R_xx;
+    const real J_star_t_5 = J_star_t_14*v->R_yz - J_star_in_platform_xz*v->R_yx;
+    const real J_star_t_6 = J_star_t_14*v->R_zz - J_star_in_platform_xz*v->R_zx;
+    const real J_star_t_7 = J_star_t*v->R_xy - J_star_t_4*v->R_xz;
+    const real J_star_in_platform_xx = m->J_star_in_platform_xx;
+    const real J_star_xx = J_star_in_platform_xx + 2*J_star_t_7;
+    const real J_star_xy = J_star_t*v->R_yy + J_star_t_2*v->R_xy - J_star_t_4*v->R_yz -
+        J_star_t_5*v->R_xz;
+    const real J_star_xz = J_star_t*v->R_zy + J_star_t_3*v->R_xy - J_star_t_4*v->R_zz -
+        J_star_t_6*v->R_xz;
+    const real J_star_t_8 = J_star_t_2*v->R_yy - J_star_t_5*v->R_yz;
+    const real J_star_yy = J_star_in_platform_xx + 2*J_star_t_8;
+    const real J_star_yz = J_star_t_2*v->R_zy + J_star_t_3*v->R_yy - J_star_t_5*v->R_zz -
+        J_star_t_6*v->R_yz;
+    const real J_star_t_9 = J_star_t_3*v->R_zy - J_star_t_6*v->R_zz;
+    const real J_star_zz = J_star_in_platform_xx + 2*J_star_t_9;
+    v->J_star_xx = J_star_xx;
+    v->J_star_xy = J_star_xy;
+    v->J_star_xz = J_star_xz;
+    v->J_star_yy = J_star_yy;
+    v->J_star_yz = J_star_yz;
+    v->J_star_zz = J_star_zz;
+}
+
+INLINE void stage_Z_dynamics(const prepared *m, size_t w, size_t k, const real *V, values *v)
+{
+    /* (Z_p) centripetal force and weight of the platform */
+    const real omega_y = V[4*w + k];
+    const real omega_z = V[5*w + k];
+    const real Z_p_t_4 = v->h_star_z*omega_y - v->h_star_y*omega_z;
+    const real omega_x = V[3*w + k];
+    const real Z_p_t_5 = v->h_star_x*omega_z - v->h_star_z*omega_x;
+    const real Z_p_t_6 = v->h_star_y*omega_x - v->h_star_x*omega_y;
+    const real Z_p_t = m->Z_p_t;
+    const real Z_p_x = Z_p_t_6*omega_y - Z_p_t - Z_p_t_5*omega_z;
+    const real Z_p_t_2 = m->Z_p_t_2;
+    const real Z_p_y = Z_p_t_4*omega_z - Z_p_t_2 - Z_p_t_6*omega_x;
+    const real Z_p_t_3 = m->Z_p_t_3;
+    const real Z_p_z = Z_p_t_5*omega_x - Z_p_t_3 - Z_p_t_4*omega_y;
+    /* (Z_q) gyroscopic moment and moment of the weight of the platform */
+    const real gravity_x = m->gravity_x;
+    const real gravity_y = m->gravity_y;
+    const real gravity_z = m->gravity_z;
+    const real g_in_platform_x = v->R_xx*gravity_x + v->R_yx*gravity_y + v->R_zx*gravity_z;
+    const real g_in_platform_y = v->R_xy*gravity_x + v->R_yy*gravity_y + v->R_zy*gravity_z;
+    const real g_in_platform_z = v->R_xz*gravity_x + v->R_yz*gravity_y + v->R_zz*gravity_z;
+    const real J_star_in_platform_xx = m->J_star_in_platform_xx;
+    const real J_star_in_platform_xy = m->J_star_in_platform_xy;
+    const real J_star_in_platform_xz = m->J_star_in_platform_xz;
+    const real Z_q_t = J_star_in_platform_xx*v->omega_in_platform_x +
+        J_star_in_platform_xy*v->omega_in_platform_y +
+        J_star_in_platform_xz*v->omega_in_platform_z;
+    const real J_star_in_platform_yy = m->J_star_in_platform_yy;
+    const real J_star_in_platform_yz = m->J_star_in_platform_yz;
+    const real Z_q_t_2 = J_star_in_platform_xy*v->omega_in_platform_x +
+        J_star_in_platform_yy*v->omega_in_platform_y +
+        J_star_in_platform_yz*v->omega_in_platform_z;
+    const real J_star_in_platform_zz = m->J_star_in_platform_zz;
+    const real Z_q_t_3 = J_star_in_platform_xz*v->omega_in_platform_x +
+        J_star_in_platform_yz*v->omega_in_platform_y +
+        J_star_in_platform_zz*v->omega_in_platform_z;
+    const real h_star_in_platform_y = m->h_star_in_platform_y;
+    const real h_star_in_platform_z = m->h_star_in_platform_z;
+    const real Z_q_in_platform_x = Z_q_t_3*v->omega_in_platform_y +
+        g_in_platform_y*h_star_in_platform_z - Z_q_t_2*v->omega_in_platform_z -
+        g_in_platform_z*h_star_in_platform_y;
+    const real h_star_in_platform_x = m->h_star_in_platform_x;
+    const real Z_q_in_platform_y = Z_q_t*v->omega_in_platform_z +
+        g_in_platform_z*h_star_in_platform_x - Z_q_t_3*v->omega_in_platform_x -
+        g_in_platform_x*h_star_in_platform_z;
+    const real Z_q_in_platform_z = Z_q_t_2*v->omega_in_platform_x +
+        g_in_platform_x*h_star_in_platform_y - Z_q_t*v->omega_in_platform_y -
+        g_in_platform_y*h_star_in_platform_x;
+    const real Z_q_x = v->R_xx*Z_q_in_platform_x + v->R_xy*Z_q_in_platform_y +
+        v->R_xz*Z_q_in_platform_z;
+    const real Z_q_y = v->R_yx*Z_q_in_platform_x + v->R_yy*Z_q_in_platform_y +
+        v->R_yz*Z_q_in_platform_z;
+    const real Z_q_z = v->R_zx*Z_q_in_platform_x + v->R_zy*Z_q_in_platform_y +
+        v->R_zz*Z_q_in_platform_z;
+    v->Z_p_x = Z_p_x;
+    v->Z_p_y = Z_p_y;
+    v->Z_p_z = Z_p_z;
+    v->Z_q_x = Z_q_x;
+    v->Z_q_y = Z_q_y;
+    v->Z_q_z = Z_q_z;
+}
+
+typedef struct {
+    real crs_q_x, crs_q_y, crs_q_z, crs_rho2_1, crs_c_1, crs_s_1, crs_disc_2, crs_q_2, crs_c_3,
+        crs_s_3, crs_d_4_in_axes1_z, crs_r_1_in_axes1_x, crs_v_1_in_axes3_z, axis_z_crs_axes3_x,
+        axis_z_crs_axes3_y, axis_z_crs_axes3_z, crs_w_1_in_axes3_z, crs_w_1_x, crs_w_1_y, crs_w_1_z,
+        axis_y_crs_axes3_x, axis_y_crs_axes3_y, axis_y_crs_axes3_z, axis_x_crs_axes3_x,
+        axis_x_crs_axes3_y, axis_x_crs_axes3_z, inv_crs_d_4_in_axes1_z, crs_w_2_in_axes3_x,
+        crs_w_2_in_axes3_y, crs_w_2_x, crs_w_2_y, crs_w_2_z, crs_g_in_axes1_x, crs_g_in_axes1_y,
+        crs_H_a_1_x, crs_H_a_1_y, crs_H_a_1_z, crs_a_p_x, crs_a_p_y, crs_a_p_z, crs_S_dot_t,
+        crs_S_dot_t_2, crs_S_dot_t_3, crs_qd_2_t, crs_qd_2, crs_omega_1_in_axes3_x,
+        crs_omega_1_in_axes3_y, crs_W_3_in_axes3_yz, crs_W_3_in_axes3_xz, crs_W_3_in_axes3_xy,
+        crs_bias_t_2, crs_bias_in_axes3_x, crs_bias_in_axes3_y, crs_bias_in_axes3_z, crs_S_ddot_x,
+        crs_S_ddot_y, crs_S_ddot_z, crs_H_a_2_x, crs_H_a_2_y, crs_H_a_2_z, crs_w_3_in_axes3_x,
+        crs_w_3_in_axes3_y, crs_d_alpha_3_in_axes3_xz, crs_d_alpha_3_t, crs_d_Gamma_3_in_axes3_x,
+        crs_d_Gamma_3_in_axes3_y, crs_d_Gamma_2_t, crs_d_Gamma_2_in_axes3_y, crs_d_Gamma_1_in_axes1_y,
+        crs_d_c_in_axes3_xz, crs_d_c_in_axes3_yz, crs_u_1_x, crs_u_1_y, crs_u_1_z,
+        crs_alpha_1_o_in_axes3_x, crs_alpha_1_o_in_axes3_y, crs_B_3_o_in_axes3_zx,
+        crs_B_3_o_in_axes3_zy, crs_acc_3_o_in_axes3_z, crs_mu_3_o_t, crs_mu_3_o_t_2, crs_mu_3_o_t_3,
+        crs_mu_1_o_in_axes1_z, crs_S_in_turn1_x, crs_S_in_turn1_y, crs_root_1, inv_crs_rho2_1,
+        crs_x_3_in_axes1_z, crs_acc_3_in_axes3_x, crs_acc_3_in_axes3_y, crs_acc_3_in_axes3_z,
+        crs_c_in_axes3_x, crs_c_in_axes3_y, crs_c_in_axes3_z;
+} values_crs;
+
+INLINE void stage_crs_X(const prepared *m, size_t w, size_t i, size_t j, const real *s, const real
+    *X, values_crs *v)
+{
+    /* (crs-S) from the base point to the connection point */
+    const real R_xx = s[0*w + j];
+    const real R_xy = s[1*w + j];
+    const real R_xz = s[2*w + j];
+    const real crs_platform_point_x = m->crs_platform_point_x[i];
+    const real crs_platform_point_y = m->crs_platform_point_y[i];
+    const real crs_platform_point_z = m->crs_platform_point_z[i];
+    const real crs_q_x = R_xx*crs_platform_point_x + R_xy*crs_platform_point_y +
+        R_xz*crs_platform_point_z;
+    const real R_yx = s[3*w + j];
+    const real R_yy = s[4*w + j];
+    const real R_yz = s[5*w + j];
+    const real crs_q_y = R_yx*crs_platform_point_x + R_yy*crs_platform_point_y +
+        R_yz*crs_platform_point_z;
+    const real R_zx = s[6*w + j];
+    const real R_zy = s[7*w + j];
+    const real R_zz = s[8*w + j];
+    const real crs_q_z = R_zx*crs_platform_point_x + R_zy*crs_platform_point_y +
+        R_zz*crs_platform_point_z;
+    const real crs_base_point_x = m->crs_base_point_x[i];
+    const real t_x = X[0*w + j];
+    const real crs_S_x = crs_q_x + t_x - crs_base_point_x;
+    const real crs_base_point_y = m->crs_base_point_y[i];
+    const real t_y = X[1*w + j];
+    const real crs_S_y = crs_q_y + t_y - crs_base_point_y;
+    const real crs_base_point_z = m->crs_base_point_z[i];
+    const real t_z = X[2*w + j];
+    const real crs_S_z = crs_q_z + t_z - crs_base_point_z;
+    const real crs_base_frame_xy = m->crs_base_frame_xy[i];
+    const real crs_base_frame_yy = m->crs_base_frame_yy[i];
+    const real crs_base_frame_zy = m->crs_base_frame_zy[i];
+    const real crs_S_in_turn1_x = crs_S_x*crs_base_frame_xy + crs_S_y*crs_base_frame_yy +
+        crs_S_z*crs_base_frame_zy;
+    const real crs_base_frame_xz = m->crs_base_frame_xz[i];
+    const real crs_base_frame_yz = m->crs_base_frame_yz[i];
+    const real crs_base_frame_zz = m->crs_base_frame_zz[i];
+    const real crs_S_in_turn1_y = crs_S_x*crs_base_frame_xz + crs_S_y*crs_base_frame_yz +
+        crs_S_z*crs_base_frame_zz;
+    const real crs_base_frame_xx = m->crs_base_frame_xx[i];
+    const real crs_base_frame_yx = m->crs_base_frame_yx[i];
+    const real crs_base_frame_zx = m->crs_base_frame_zx[i];
+    const real crs_S_in_turn1_z = crs_S_x*crs_base_frame_xx + crs_S_y*crs_base_frame_yx +
+        crs_S_z*crs_base_frame_zx;
+    /* (crs-rho2_1) squared amplitude */
+    const real crs_rho2_1 = crs_S_in_turn1_x*crs_S_in_turn1_x +
+        crs_S_in_turn1_y*crs_S_in_turn1_y;
+    /* (crs-root_1) root, with the sign of the branch */
+    const real crs_branch_1 = m->crs_branch_1[i];
+    const real crs_root_1 = crs_branch_1*root(crs_rho2_1);
+    /* (crs-c_1) cosine of the angle of joint 1 from its reference direction */
+    const real inv_crs_rho2_1 = 1/crs_rho2_1;
+    const real crs_c_1 = crs_S_in_turn1_x*crs_root_1*inv_crs_rho2_1;
+    /* (crs-s_1) sine of the angle of joint 1 from its reference direction */
+    const real crs_s_1 = crs_S_in_turn1_y*crs_root_1*inv_crs_rho2_1;
+    /* (crs-from_centre_2) from the centre at zero displacement to the connection point */
+    const real crs_joint3_offset_x = m->crs_joint3_offset_x[i];
+    const real crs_from_centre_2_in_axes1_z = crs_S_in_turn1_z - crs_joint3_offset_x;
+    /* (crs-disc_2) discriminant of the distance equation */
+    const real crs_size_t = m->crs_size_t[i];
+    const real crs_disc_2 = crs_size_t - crs_rho2_1;
+    /* (crs-q_2) displacement of joint 2 */
+    const real crs_branch_2 = m->crs_branch_2[i];
+    const real crs_q_2 = crs_from_centre_2_in_axes1_z + crs_branch_2*root(crs_disc_2);
+    /* (crs-x_3) from the origin of joint 3 to the connection point */
+    const real crs_x_3_in_axes1_z = crs_S_in_turn1_z - crs_joint3_offset_x - crs_q_2;
+    /* (crs-c_3) cosine of the angle of joint 3 from its reference direction */
+    const real crs_platform_joint_offset_x = m->crs_platform_joint_offset_x[i];
+    const real inv_crs_size_t = m->inv_crs_size_t[i];
+    const real crs_c_3 = crs_platform_joint_offset_x*crs_x_3_in_axes1_z*inv_crs_size_t;
+    /* (crs-s_3) sine of the angle of joint 3 from its reference direction */
+    const real crs_s_3 = crs_platform_joint_offset_x*crs_root_1*inv_crs_size_t;
+    /* (crs-r_1) from joint 1 to the connection point, along the links */
+    const real crs_d_4_in_axes1_z = crs_c_3*crs_platform_joint_offset_x;
+    const real crs_r_1_in_axes1_x = crs_platform_joint_offset_x*crs_s_3;
+    const real crs_r_1_in_axes1_z = crs_d_4_in_axes1_z + crs_joint3_offset_x + crs_q_2;
+    /* (crs-v_1) velocity of the connection point per rate of joint 1 */
+    const real crs_v_1_in_axes3_z = crs_c_3*(crs_c_3*crs_r_1_in_axes1_x -
+        crs_r_1_in_axes1_z*crs_s_3) + crs_s_3*(crs_c_3*crs_r_1_in_axes1_z +
+        crs_r_1_in_axes1_x*crs_s_3);
+    /* (crs-w_1) reciprocal vector 1 */
+    const real axis_z_crs_axes3_x = crs_base_frame_xz*crs_c_1 - crs_base_frame_xy*crs_s_1;
+    const real axis_z_crs_axes3_y = crs_base_frame_yz*crs_c_1 - crs_base_frame_yy*crs_s_1;
+    const real axis_z_crs_axes3_z = crs_base_frame_zz*crs_c_1 - crs_base_frame_zy*crs_s_1;
+    const real crs_w_1_in_axes3_z = 1/crs_v_1_in_axes3_z;
+    const real crs_w_1_x = axis_z_crs_axes3_x*crs_w_1_in_axes3_z;
+    const real crs_w_1_y = axis_z_crs_axes3_y*crs_w_1_in_axes3_z;
+    const real crs_w_1_z = axis_z_crs_axes3_z*crs_w_1_in_axes3_z;
+    /* (crs-w_2) reciprocal vector 2 */
+    const real crs_w_2_t = crs_c_1*crs_c_3;
+    const real crs_w_2_t_2 = crs_c_3*crs_s_1;
+    const real axis_y_crs_axes3_x = crs_base_frame_xy*crs_w_2_t +
+        crs_base_frame_xz*crs_w_2_t_2 - crs_base_frame_xx*crs_s_3;
+    const real axis_y_crs_axes3_y = crs_base_frame_yy*crs_w_2_t +
+        crs_base_frame_yz*crs_w_2_t_2 - crs_base_frame_yx*crs_s_3;
+    const real axis_y_crs_axes3_z = crs_base_frame_zy*crs_w_2_t +
+        crs_base_frame_zz*crs_w_2_t_2 - crs_base_frame_zx*crs_s_3;
+    const real axis_x_crs_axes3_x = axis_y_crs_axes3_y*axis_z_crs_axes3_z -
+        axis_y_crs_axes3_z*axis_z_crs_axes3_y;
+    const real axis_x_crs_axes3_y = axis_y_crs_axes3_z*axis_z_crs_axes3_x -
+        axis_y_crs_axes3_x*axis_z_crs_axes3_z;
+    const real axis_x_crs_axes3_z = axis_y_crs_axes3_x*axis_z_crs_axes3_y -
+        axis_y_crs_axes3_y*axis_z_crs_axes3_x;
+    const real inv_crs_d_4_in_axes1_z = 1/crs_d_4_in_axes1_z;
+    const real crs_w_2_t_3 = crs_r_1_in_axes1_x*inv_crs_d_4_in_axes1_z;
+    const real crs_w_2_in_axes3_x = crs_c_3 + crs_s_3*crs_w_2_t_3;
+    const real crs_w_2_in_axes3_y = crs_c_3*crs_w_2_t_3 - crs_s_3;
+    const real crs_w_2_x = axis_x_crs_axes3_x*crs_w_2_in_axes3_x +
+        axis_y_crs_axes3_x*crs_w_2_in_axes3_y;
+    const real crs_w_2_y = axis_x_crs_axes3_y*crs_w_2_in_axes3_x +
+        axis_y_crs_axes3_y*crs_w_2_in_axes3_y;
+    const real crs_w_2_z = axis_x_crs_axes3_z*crs_w_2_in_axes3_x +
+        axis_y_crs_axes3_z*crs_w_2_in_axes3_y;
+    /* (crs-acc_3_o) remainder without the acceleration in: acceleration of the reference point of
+       link 3, less gravity */
+    const real crs_acc_3_t = m->crs_acc_3_t[i];
+    const real crs_acc_3_t_2 = m->crs_acc_3_t_2[i];
+    const real crs_g_in_axes1_x = crs_acc_3_t*crs_c_1 + crs_acc_3_t_2*crs_s_1;
+    const real crs_g_in_axes1_y = crs_acc_3_t_2*crs_c_1 - crs_acc_3_t*crs_s_1;
+    /* (crs-H_a_1) moment of the column's unit force about the platform origin */
+    const real crs_H_a_1_x = crs_q_y*crs_w_1_z - crs_q_z*crs_w_1_y;
+    const real crs_H_a_1_y = crs_q_z*crs_w_1_x - crs_q_x*crs_w_1_z;
+    const real crs_H_a_1_z = crs_q_x*crs_w_1_y - crs_q_y*crs_w_1_x;
+    v->crs_q_x = crs_q_x;
+    v->crs_q_y = crs_q_y;
+    v->crs_q_z = crs_q_z;
+    v->crs_rho2_1 = crs_rho2_1;
+    v->crs_c_1 = crs_c_1;
+    v->crs_s_1 = crs_s_1;
+    v->crs_disc_2 = crs_disc_2;
+    v->crs_q_2 = crs_q_2;
+    v->crs_c_3 = crs_c_3;
+    v->crs_s_3 = crs_s_3;
+    v->crs_d_4_in_axes1_z = crs_d_4_in_axes1_z;
+    v->crs_r_1_in_axes1_x = crs_r_1_in_axes1_x;
+    v->crs_v_1_in_axes3_z = crs_v_1_in_axes3_z;
+    v->axis_z_crs_axes3_x = axis_z_crs_axes3_x;
+    v->axis_z_crs_axes3_y = axis_z_crs_axes3_y;
+    v->axis_z_crs_axes3_z = axis_z_crs_axes3_z;
+    v->crs_w_1_in_axes3_z = crs_w_1_in_axes3_z;
+    v->crs_w_1_x = crs_w_1_x;
+    v->crs_w_1_y = crs_w_1_y;
+    v->crs_w_1_z = crs_w_1_z;
+    v->axis_y_crs_axes3_x = axis_y_crs_axes3_x;
+    v->axis_y_crs_axes3_y = axis_y_crs_axes3_y;
+    v->axis_y_crs_axes3_z = axis_y_crs_axes3_z;
+    v->axis_x_crs_axes3_x = axis_x_crs_axes3_x;
+    v->axis_x_crs_axes3_y = axis_x_crs_axes3_y;
+    v->axis_x_crs_axes3_z = axis_x_crs_axes3_z;
+    v->inv_crs_d_4_in_axes1_z = inv_crs_d_4_in_axes1_z;
+    v->crs_w_2_in_axes3_x = crs_w_2_in_axes3_x;
+    v->crs_w_2_in_axes3_y = crs_w_2_in_axes3_y;
+    v->crs_w_2_x = crs_w_2_x;
+    v->crs_w_2_y = crs_w_2_y;
+    v->crs_w_2_z = crs_w_2_z;
+    v->crs_g_in_axes1_x = crs_g_in_axes1_x;
+    v->crs_g_in_axes1_y = crs_g_in_axes1_y;
+    v->crs_H_a_1_x = crs_H_a_1_x;
+    v->crs_H_a_1_y = crs_H_a_1_y;
+    v->crs_H_a_1_z = crs_H_a_1_z;
+}
+
+INLINE void stage_crs_A_X(size_t w, size_t j, const real *A, values_crs *v)
+{
+    /* (crs-a_p) acceleration of the connection point without its centripetal part */
+    const real alpha_y = A[4*w + j];
+    const real alpha_z = A[5*w + j];
+    const real t_ddot_x = A[0*w + j];
+    const real crs_a_p_x = t_ddot_x + alpha_y*v->crs_q_z - alpha_z*v->crs_q_y;
+    const real alpha_x = A[3*w + j];
+    const real t_ddot_y = A[1*w + j];
+    const real crs_a_p_y = t_ddot_y + alpha_z*v->crs_q_x - alpha_x*v->crs_q_z;
+    const real t_ddot_z = A[2*w + j];
+    const real crs_a_p_z = t_ddot_z + alpha_x*v->crs_q_y - alpha_y*v->crs_q_x;
+    v->crs_a_p_x = crs_a_p_x;
+    v->crs_a_p_y = crs_a_p_y;
+    v->crs_a_p_z = crs_a_p_z;
+}
+
+INLINE void stage_crs_V_X(const prepared *m, size_t w, size_t i, size_t j, const real *V,
+    values_crs *v)
+{
+    /* (crs-S_dot) velocity of the connection point */
+    const real omega_y = V[4*w + j];
+    const real omega_z = V[5*w + j];
+    const real crs_S_dot_t = v->crs_q_z*omega_y - v->crs_q_y*omega_z;
+    const real omega_x = V[3*w + j];
+    const real crs_S_dot_t_2 = v->crs_q_x*omega_z - v->crs_q_z*omega_x;
+    const real crs_S_dot_t_3 = v->crs_q_y*omega_x - v->crs_q_x*omega_y;
+    const real t_dot_x = V[0*w + j];
+    const real crs_S_dot_x = crs_S_dot_t + t_dot_x;
+    const real t_dot_y = V[1*w + j];
+    const real crs_S_dot_y = crs_S_dot_t_2 + t_dot_y;
+    const real t_dot_z = V[2*w + j];
+    const real crs_S_dot_z = crs_S_dot_t_3 + t_dot_z;
+    /* (crs-qd_1) rate of joint 1 */
+    const real crs_base_frame_xy = m->crs_base_frame_xy[i];
+    const real crs_base_frame_yy = m->crs_base_frame_yy[i];
+    const real crs_base_frame_zy = m->crs_base_frame_zy[i];
+    const real crs_qd_1_t = crs_S_dot_x*crs_base_frame_xy + crs_S_dot_y*crs_base_frame_yy +
+        crs_S_dot_z*crs_base_frame_zy;
+    const real crs_base_frame_xz = m->crs_base_frame_xz[i];
+    const real crs_base_frame_yz = m->crs_base_frame_yz[i];
+    const real crs_base_frame_zz = m->crs_base_frame_zz[i];
+    const real crs_qd_1_t_2 = crs_S_dot_x*crs_base_frame_xz + crs_S_dot_y*crs_base_frame_yz +
+        crs_S_dot_z*crs_base_frame_zz;
+    const real crs_qd_1 = v->crs_w_1_in_axes3_z*(v->crs_c_1*crs_qd_1_t_2 -
+        crs_qd_1_t*v->crs_s_1);
+    /* (crs-qd_2) rate of joint 2 */
+    const real crs_qd_2_t = v->inv_crs_d_4_in_axes1_z*(v->crs_c_1*crs_qd_1_t +
+        crs_qd_1_t_2*v->crs_s_1);
+    const real crs_base_frame_xx = m->crs_base_frame_xx[i];
+    const real crs_base_frame_yx = m->crs_base_frame_yx[i];
+    const real crs_base_frame_zx = m->crs_base_frame_zx[i];
+    const real crs_qd_2 = crs_S_dot_x*crs_base_frame_xx + crs_S_dot_y*crs_base_frame_yx +
+        crs_S_dot_z*crs_base_frame_zx + crs_qd_2_t*v->crs_r_1_in_axes1_x;
+    /* (crs-omega_1) angular velocity of link 1 */
+    const real crs_omega_1_in_axes3_x = v->crs_c_3*crs_qd_1;
+    const real crs_omega_1_in_axes3_y = -crs_qd_1*v->crs_s_3;
+    /* (crs-W_3) centripetal tensor of link 3 */
+    const real crs_W_3_in_axes3_yz = crs_omega_1_in_axes3_y*crs_qd_2_t;
+    const real crs_W_3_in_axes3_xz = crs_omega_1_in_axes3_x*crs_qd_2_t;
+    const real crs_W_3_in_axes3_xy = crs_omega_1_in_axes3_x*crs_omega_1_in_axes3_y;
+    /* (crs-bias) acceleration of the connection point at zero joint accelerations */
+    const real crs_joint3_offset_x = m->crs_joint3_offset_x[i];
+    const real crs_bias_t = crs_omega_1_in_axes3_x*(crs_joint3_offset_x*v->crs_s_3 +
+        v->crs_q_2*v->crs_s_3) + crs_omega_1_in_axes3_y*(v->crs_c_3*crs_joint3_offset_x +
+        v->crs_c_3*v->crs_q_2);
+    const real crs_platform_joint_offset_x = m->crs_platform_joint_offset_x[i];
+    const real crs_bias_t_2 = crs_platform_joint_offset_x*crs_qd_2_t;
+    const real crs_bias_t_3 = -crs_omega_1_in_axes3_y*crs_platform_joint_offset_x;
+    const real crs_bias_in_axes3_x = crs_bias_t_3*crs_omega_1_in_axes3_y -
+        crs_bias_t*crs_omega_1_in_axes3_y - crs_bias_t_2*crs_qd_2_t;
+    const real crs_bias_in_axes3_y = crs_bias_t*crs_omega_1_in_axes3_x -
+        crs_bias_t_3*crs_omega_1_in_axes3_x;
+    const real crs_bias_in_axes3_z = crs_W_3_in_axes3_xz*crs_platform_joint_offset_x +
+        crs_bias_t_2*crs_omega_1_in_axes3_x - 2*crs_qd_2*(v->crs_c_3*crs_omega_1_in_axes3_y +
+        crs_omega_1_in_axes3_x*v->crs_s_3);
+    v->crs_S_dot_t = crs_S_dot_t;
+    v->crs_S_dot_t_2 = crs_S_dot_t_2;
+    v->crs_S_dot_t_3 = crs_S_dot_t_3;
+    v->crs_qd_2_t = crs_qd_2_t;
+    v->crs_qd_2 = crs_qd_2;
+    v->crs_omega_1_in_axes3_x = crs_omega_1_in_axes3_x;
+    v->crs_omega_1_in_axes3_y = crs_omega_1_in_axes3_y;
+    v->crs_W_3_in_axes3_yz = crs_W_3_in_axes3_yz;
+    v->crs_W_3_in_axes3_xz = crs_W_3_in_axes3_xz;
+    v->crs_W_3_in_axes3_xy = crs_W_3_in_axes3_xy;
+    v->crs_bias_t_2 = crs_bias_t_2;
+    v->crs_bias_in_axes3_x = crs_bias_in_axes3_x;
+    v->crs_bias_in_axes3_y = crs_bias_in_axes3_y;
+    v->crs_bias_in_axes3_z = crs_bias_in_axes3_z;
+}
+
+INLINE void stage_crs_A_V_X(size_t w, size_t j, const real *V, values_crs *v)
+{
+    /* (crs-S_ddot) acceleration of the connection point */
+    const real omega_y = V[4*w + j];
+    const real omega_z = V[5*w + j];
+    const real crs_S_ddot_x = v->crs_a_p_x + v->crs_S_dot_t_3*omega_y -
+        v->crs_S_dot_t_2*omega_z;
+    const real omega_x = V[3*w + j];
+    const real crs_S_ddot_y = v->crs_a_p_y + v->crs_S_dot_t*omega_z -
+        v->crs_S_dot_t_3*omega_x;
+    const real crs_S_ddot_z = v->crs_a_p_z + v->crs_S_dot_t_2*omega_x -
+        v->crs_S_dot_t*omega_y;
+    v->crs_S_ddot_x = crs_S_ddot_x;
+    v->crs_S_ddot_y = crs_S_ddot_y;
+    v->crs_S_ddot_z = crs_S_ddot_z;
+}
+
+INLINE void stage_crs_H_condition(values_crs *v)
+{
+    /* (crs-w_2) reciprocal vector 2 */
+    const real crs_w_2_t_3 = v->crs_r_1_in_axes1_x/v->crs_d_4_in_axes1_z;
+    const real crs_w_2_in_axes3_x = v->crs_c_3 + v->crs_s_3*crs_w_2_t_3;
+    const real crs_w_2_in_axes3_y = v->crs_c_3*crs_w_2_t_3 - v->crs_s_3;
+    const real crs_w_2_x = v->axis_y_crs_axes3_x*crs_w_2_in_axes3_y +
+        crs_w_2_in_axes3_x*(v->axis_y_crs_axes3_y*v->axis_z_crs_axes3_z -
+        v->axis_y_crs_axes3_z*v->axis_z_crs_axes3_y);
+    const real crs_w_2_y = v->axis_y_crs_axes3_y*crs_w_2_in_axes3_y +
+        crs_w_2_in_axes3_x*(v->axis_y_crs_axes3_z*v->axis_z_crs_axes3_x -
+        v->axis_y_crs_axes3_x*v->axis_z_crs_axes3_z);
+    const real crs_w_2_z = v->axis_y_crs_axes3_z*crs_w_2_in_axes3_y +
+        crs_w_2_in_axes3_x*(v->axis_y_crs_axes3_x*v->axis_z_crs_axes3_y -
+        v->axis_y_crs_axes3_y*v->axis_z_crs_axes3_x);
+    /* (crs-H_a_2) moment of the column's unit force about the platform origin */
+    const real crs_H_a_2_x = v->crs_q_y*crs_w_2_z - v->crs_q_z*crs_w_2_y;
+    const real crs_H_a_2_y = v->crs_q_z*crs_w_2_x - v->crs_q_x*crs_w_2_z;
+    const real crs_H_a_2_z = v->crs_q_x*crs_w_2_y - v->crs_q_y*crs_w_2_x;
+    v->crs_w_2_x = crs_w_2_x;
+    v->crs_w_2_y = crs_w_2_y;
+    v->crs_w_2_z = crs_w_2_z;
+    v->crs_H_a_2_x = crs_H_a_2_x;
+    v->crs_H_a_2_y = crs_H_a_2_y;
+    v->crs_H_a_2_z = crs_H_a_2_z;
+}
+
+INLINE void stage_crs_M_dynamics(const prepared *m, size_t i, values_crs *v)
+{
+    /* (crs-w_3) reciprocal vector 3 */
+    const real crs_w_3_in_axes3_x = v->crs_s_3*v->inv_crs_d_4_in_axes1_z;
+    const real crs_w_3_in_axes3_y = v->crs_c_3*v->inv_crs_d_4_in_axes1_z;
+    /* (crs-d_alpha_3) coefficient of the acceleration in: angular acceleration of link 3 */
+    const real crs_d_alpha_3_in_axes3_xz = v->crs_c_3*v->crs_w_1_in_axes3_z;
+    const real crs_d_alpha_3_t = v->crs_s_3*v->crs_w_1_in_axes3_z;
+    /* (crs-d_Gamma_3) coefficient of the acceleration in: moment about axis 3 of the distal links'
+       inertia and weight */
+    const real crs_J_3_in_spec3_xz = m->crs_J_3_in_spec3_xz[i];
+    const real crs_J_3_in_spec3_yz = m->crs_J_3_in_spec3_yz[i];
+    const real crs_d_Gamma_3_in_axes3_z =
+        v->crs_w_1_in_axes3_z*(crs_J_3_in_spec3_xz*v->crs_c_3 -
+        crs_J_3_in_spec3_yz*v->crs_s_3);
+    const real crs_J_3_in_spec3_zz = m->crs_J_3_in_spec3_zz[i];
+    const real crs_d_Gamma_3_t = crs_J_3_in_spec3_zz*v->inv_crs_d_4_in_axes1_z;
+    const real crs_h_3_in_spec3_y = m->crs_h_3_in_spec3_y[i];
+    const real crs_d_Gamma_3_in_axes3_x = crs_d_Gamma_3_t*v->crs_s_3 - crs_h_3_in_spec3_y;
+    const real crs_h_3_in_spec3_x = m->crs_h_3_in_spec3_x[i];
+    const real crs_d_Gamma_3_in_axes3_y = crs_h_3_in_spec3_x + v->crs_c_3*crs_d_Gamma_3_t;
+    /* (crs-d_Gamma_2) coefficient of the acceleration in: force along axis 2 of the distal links'
+       inertia and weight */
+    const real crs_link2_mass = m->crs_link2_mass[i];
+    const real crs_d_Gamma_2_t =
+        crs_link2_mass*v->crs_r_1_in_axes1_x*v->inv_crs_d_4_in_axes1_z;
+    const real crs_d_Gamma_2_in_axes3_y = v->crs_c_3*crs_d_Gamma_2_t -
+        crs_link2_mass*v->crs_s_3;
+    /* (crs-d_Gamma_1) coefficient of the acceleration in: moment about axis 1 of the distal links'
+       inertia and weight */
+    const real crs_J_2_in_spec1_xx = m->crs_J_2_in_spec1_xx[i];
+    const real crs_J_3_in_spec3_xx = m->crs_J_3_in_spec3_xx[i];
+    const real crs_J_3_in_spec3_xy = m->crs_J_3_in_spec3_xy[i];
+    const real crs_J_3_in_spec3_yy = m->crs_J_3_in_spec3_yy[i];
+    const real crs_d_Gamma_1_in_axes1_y = v->crs_c_3*crs_h_3_in_spec3_y +
+        crs_h_3_in_spec3_x*v->crs_s_3 + v->crs_w_1_in_axes3_z*(crs_J_2_in_spec1_xx +
+        v->crs_c_3*(crs_J_3_in_spec3_xx*v->crs_c_3 - crs_J_3_in_spec3_xy*v->crs_s_3) -
+        v->crs_s_3*(crs_J_3_in_spec3_xy*v->crs_c_3 - crs_J_3_in_spec3_yy*v->crs_s_3));
+    /* (crs-d_c) coefficient of the acceleration in: leg force on the platform without actuation and
+       without the mass at the connection point */
+    const real crs_h_3_in_spec3_z = m->crs_h_3_in_spec3_z[i];
+    const real crs_d_c_in_axes3_xz = crs_d_alpha_3_t*crs_h_3_in_spec3_z -
+        crs_d_Gamma_3_in_axes3_z*crs_w_3_in_axes3_x;
+    const real crs_d_c_in_axes3_yz = crs_d_alpha_3_in_axes3_xz*crs_h_3_in_spec3_z -
+        crs_d_Gamma_3_in_axes3_z*crs_w_3_in_axes3_y;
+    v->crs_w_3_in_axes3_x = crs_w_3_in_axes3_x;
+    v->crs_w_3_in_axes3_y = crs_w_3_in_axes3_y;
+    v->crs_d_alpha_3_in_axes3_xz = crs_d_alpha_3_in_axes3_xz;
+    v->crs_d_alpha_3_t = crs_d_alpha_3_t;
+    v->crs_d_Gamma_3_in_axes3_x = crs_d_Gamma_3_in_axes3_x;
+    v->crs_d_Gamma_3_in_axes3_y = crs_d_Gamma_3_in_axes3_y;
+    v->crs_d_Gamma_2_t = crs_d_Gamma_2_t;
+    v->crs_d_Gamma_2_in_axes3_y = crs_d_Gamma_2_in_axes3_y;
+    v->crs_d_Gamma_1_in_axes1_y = crs_d_Gamma_1_in_axes1_y;
+    v->crs_d_c_in_axes3_xz = crs_d_c_in_axes3_xz;
+    v->crs_d_c_in_axes3_yz = crs_d_c_in_axes3_yz;
+}
+
+INLINE void stage_crs_Z_dynamics(const prepared *m, size_t w, size_t i, size_t j, const real *V,
+    values_crs *v)
+{
+    /* (crs-u_1) centripetal acceleration of the connection point */
+    const real omega_y = V[4*w + j];
+    const real omega_z = V[5*w + j];
+    const real crs_u_1_x = v->crs_S_dot_t_3*omega_y - v->crs_S_dot_t_2*omega_z;
+    const real omega_x = V[3*w + j];
+    const real crs_u_1_y = v->crs_S_dot_t*omega_z - v->crs_S_dot_t_3*omega_x;
+    const real crs_u_1_z = v->crs_S_dot_t_2*omega_x - v->crs_S_dot_t*omega_y;
+    const real crs_u_1_in_axes3_z = v->axis_z_crs_axes3_x*crs_u_1_x +
+        v->axis_z_crs_axes3_y*crs_u_1_y + v->axis_z_crs_axes3_z*crs_u_1_z;
+    /* (crs-rel_o) remainder without the acceleration in: acceleration of the connection point left to
+       the joint accelerations */
+    const real crs_rel_o_in_axes3_z = crs_u_1_in_axes3_z - v->crs_bias_in_axes3_z;
+    /* (crs-qdd_1_o) remainder without the acceleration in: acceleration of joint 1 */
+    const real crs_qdd_1_o = crs_rel_o_in_axes3_z*v->crs_w_1_in_axes3_z;
+    /* (crs-alpha_1_o) remainder without the acceleration in: angular acceleration of link 1 */
+    const real crs_alpha_1_o_in_axes3_x = v->crs_c_3*crs_qdd_1_o;
+    const real crs_alpha_1_o_in_axes3_y = -crs_qdd_1_o*v->crs_s_3;
+    /* (crs-alpha_3_o) remainder without the acceleration in: angular acceleration of link 3 */
+    const real crs_alpha_3_o_in_axes3_x = v->crs_W_3_in_axes3_yz + crs_alpha_1_o_in_axes3_x;
+    const real crs_alpha_3_o_in_axes3_y = crs_alpha_1_o_in_axes3_y - v->crs_W_3_in_axes3_xz;
+    /* (crs-B_3_o) remainder of the acceleration tensor of link 3 */
+    const real crs_B_3_o_in_axes3_zx = v->crs_W_3_in_axes3_xz - crs_alpha_3_o_in_axes3_y;
+    const real crs_B_3_o_in_axes3_zy = v->crs_W_3_in_axes3_yz + crs_alpha_3_o_in_axes3_x;
+    /* (crs-acc_3_o) remainder without the acceleration in: acceleration of the reference point of
+       link 3, less gravity */
+    const real crs_acc_3_o_in_axes3_z = crs_u_1_in_axes3_z - v->crs_g_in_axes1_y;
+    /* (crs-mu_3_o) remainder without the acceleration in: inertia moment of the links that turn with
+       link 3, about their reference points */
+    const real crs_mu_3_o_t = v->crs_omega_1_in_axes3_x*v->crs_omega_1_in_axes3_x;
+    const real crs_mu_3_o_t_2 = v->crs_omega_1_in_axes3_y*v->crs_omega_1_in_axes3_y;
+    const real crs_mu_3_o_t_3 = v->crs_qd_2_t*v->crs_qd_2_t;
+    /* (crs-mu_1_o) remainder without the acceleration in: inertia moment of the links that turn with
+       link 1, about their reference points */
+    const real crs_J_2_in_spec1_xx = m->crs_J_2_in_spec1_xx[i];
+    const real crs_h_2_in_spec1_y = m->crs_h_2_in_spec1_y[i];
+    const real crs_h_2_in_spec1_z = m->crs_h_2_in_spec1_z[i];
+    const real crs_mu_1_o_in_axes1_z = crs_J_2_in_spec1_xx*crs_qdd_1_o +
+        v->crs_g_in_axes1_x*crs_h_2_in_spec1_z - v->crs_g_in_axes1_y*crs_h_2_in_spec1_y;
+    v->crs_u_1_x = crs_u_1_x;
+    v->crs_u_1_y = crs_u_1_y;
+    v->crs_u_1_z = crs_u_1_z;
+    v->crs_alpha_1_o_in_axes3_x = crs_alpha_1_o_in_axes3_x;
+    v->crs_alpha_1_o_in_axes3_y = crs_alpha_1_o_in_axes3_y;
+    v->crs_B_3_o_in_axes3_zx = crs_B_3_o_in_axes3_zx;
+    v->crs_B_3_o_in_axes3_zy = crs_B_3_o_in_axes3_zy;
+    v->crs_acc_3_o_in_axes3_z = crs_acc_3_o_in_axes3_z;
+    v->crs_mu_3_o_t = crs_mu_3_o_t;
+    v->crs_mu_3_o_t_2 = crs_mu_3_o_t_2;
+    v->crs_mu_3_o_t_3 = crs_mu_3_o_t_3;
+    v->crs_mu_1_o_in_axes1_z = crs_mu_1_o_in_axes1_z;
+}
+
+INLINE void stage_crs_inverse_kinematics_potential(const prepared *m, size_t w, size_t i, size_t
+    j, const real *s, const real *X, values_crs *v)
+{
+    /* (crs-S) from the base point to the connection point */
+    const real R_xx = s[0*w + j];
+    const real R_xy = s[1*w + j];
+    const real R_xz = s[2*w + j];
+    const real crs_base_point_x = m->crs_base_point_x[i];
+    const real crs_platform_point_x = m->crs_platform_point_x[i];
+    const real crs_platform_point_y = m->crs_platform_point_y[i];
+    const real crs_platform_point_z = m->crs_platform_point_z[i];
+    const real t_x = X[0*w + j];
+    const real crs_S_x = t_x + R_xx*crs_platform_point_x + R_xy*crs_platform_point_y +
+        R_xz*crs_platform_point_z - crs_base_point_x;
+    const real R_yx = s[3*w + j];
+    const real R_yy = s[4*w + j];
+    const real R_yz = s[5*w + j];
+    const real crs_base_point_y = m->crs_base_point_y[i];
+    const real t_y = X[1*w + j];
+    const real crs_S_y = t_y + R_yx*crs_platform_point_x + R_yy*crs_platform_point_y +
+        R_yz*crs_platform_point_z - crs_base_point_y;
+    const real R_zx = s[6*w + j];
+    const real R_zy = s[7*w + j];
+    const real R_zz = s[8*w + j];
+    const real crs_base_point_z = m->crs_base_point_z[i];
+    const real t_z = X[2*w + j];
+    const real crs_S_z = t_z + R_zx*crs_platform_point_x + R_zy*crs_platform_point_y +
+        R_zz*crs_platform_point_z - crs_base_point_z;
+    const real crs_base_frame_xy = m->crs_base_frame_xy[i];
+    const real crs_base_frame_yy = m->crs_base_frame_yy[i];
+    const real crs_base_frame_zy = m->crs_base_frame_zy[i];
+    const real crs_S_in_turn1_x = crs_S_x*crs_base_frame_xy + crs_S_y*crs_base_frame_yy +
+        crs_S_z*crs_base_frame_zy;
+    const real crs_base_frame_xz = m->crs_base_frame_xz[i];
+    const real crs_base_frame_yz = m->crs_base_frame_yz[i];
+    const real crs_base_frame_zz = m->crs_base_frame_zz[i];
+    const real crs_S_in_turn1_y = crs_S_x*crs_base_frame_xz + crs_S_y*crs_base_frame_yz +
+        crs_S_z*crs_base_frame_zz;
+    const real crs_base_frame_xx = m->crs_base_frame_xx[i];
+    const real crs_base_frame_yx = m->crs_base_frame_yx[i];
+    const real crs_base_frame_zx = m->crs_base_frame_zx[i];
+    const real crs_S_in_turn1_z = crs_S_x*crs_base_frame_xx + crs_S_y*crs_base_frame_yx +
+        crs_S_z*crs_base_frame_zx;
+    /* (crs-rho2_1) squared amplitude */
+    const real crs_rho2_1 = crs_S_in_turn1_x*crs_S_in_turn1_x +
+        crs_S_in_turn1_y*crs_S_in_turn1_y;
+    /* (crs-root_1) root, with the sign of the branch */
+    const real crs_branch_1 = m->crs_branch_1[i];
+    const real crs_root_1 = crs_branch_1*root(crs_rho2_1);
+    /* (crs-q_1) displacement of joint 1 */
+    const real inv_crs_rho2_1 = 1/crs_rho2_1;
+    /* (crs-from_centre_2) from the centre at zero displacement to the connection point */
+    const real crs_joint3_offset_x = m->crs_joint3_offset_x[i];
+    const real crs_from_centre_2_in_axes1_z = crs_S_in_turn1_z - crs_joint3_offset_x;
+    /* (crs-disc_2) discriminant of the distance equation */
+    const real crs_size_t = m->crs_size_t[i];
+    const real crs_disc_2 = crs_size_t - crs_rho2_1;
+    /* (crs-q_2) displacement of joint 2 */
+    const real crs_branch_2 = m->crs_branch_2[i];
+    const real crs_q_2 = crs_from_centre_2_in_axes1_z + crs_branch_2*root(crs_disc_2);
+    /* (crs-x_3) from the origin of joint 3 to the connection point */
+    const real crs_x_3_in_axes1_z = crs_S_in_turn1_z - crs_joint3_offset_x - crs_q_2;
+    v->crs_S_in_turn1_x = crs_S_in_turn1_x;
+    v->crs_S_in_turn1_y = crs_S_in_turn1_y;
+    v->crs_rho2_1 = crs_rho2_1;
+    v->crs_root_1 = crs_root_1;
+    v->inv_crs_rho2_1 = inv_crs_rho2_1;
+    v->crs_disc_2 = crs_disc_2;
+    v->crs_q_2 = crs_q_2;
+    v->crs_x_3_in_axes1_z = crs_x_3_in_axes1_z;
+}
+
+INLINE void stage_crs_legs_required(const prepared *m, size_t i, values_crs *v)
+{
+    /* (crs-S_ddot) acceleration of the connection point */
+    const real crs_S_ddot_in_axes3_x = v->axis_x_crs_axes3_x*v->crs_S_ddot_x +
+        v->axis_x_crs_axes3_y*v->crs_S_ddot_y + v->axis_x_crs_axes3_z*v->crs_S_ddot_z;
+    const real crs_S_ddot_in_axes3_y = v->axis_y_crs_axes3_x*v->crs_S_ddot_x +
+        v->axis_y_crs_axes3_y*v->crs_S_ddot_y + v->axis_y_crs_axes3_z*v->crs_S_ddot_z;
+    const real crs_S_ddot_in_axes3_z = v->axis_z_crs_axes3_x*v->crs_S_ddot_x +
+        v->axis_z_crs_axes3_y*v->crs_S_ddot_y + v->axis_z_crs_axes3_z*v->crs_S_ddot_z;
+    /* (crs-rel) acceleration of the connection point left to the joint accelerations */
+    const real crs_rel_in_axes3_x = crs_S_ddot_in_axes3_x - v->crs_bias_in_axes3_x;
+    const real crs_rel_in_axes3_y = crs_S_ddot_in_axes3_y - v->crs_bias_in_axes3_y;
+    const real crs_rel_in_axes3_z = crs_S_ddot_in_axes3_z - v->crs_bias_in_axes3_z;
+    /* (crs-qdd_1) acceleration of joint 1 */
+    const real crs_qdd_1 = crs_rel_in_axes3_z*v->crs_w_1_in_axes3_z;
+    /* (crs-qdd_3) acceleration of joint 3 */
+    const real crs_qdd_3 = v->inv_crs_d_4_in_axes1_z*(v->crs_c_3*crs_rel_in_axes3_y +
+        crs_rel_in_axes3_x*v->crs_s_3);
+    /* (crs-alpha_1) angular acceleration of link 1 */
+    const real crs_alpha_1_in_axes3_x = v->crs_c_3*crs_qdd_1;
+    const real crs_alpha_1_in_axes3_y = -crs_qdd_1*v->crs_s_3;
+    /* (crs-alpha_3) angular acceleration of link 3 */
+    const real crs_alpha_3_in_axes3_x = v->crs_W_3_in_axes3_yz + crs_alpha_1_in_axes3_x;
+    const real crs_alpha_3_in_axes3_y = crs_alpha_1_in_axes3_y - v->crs_W_3_in_axes3_xz;
+    /* (crs-B_3) acceleration tensor of link 3 */
+    const real crs_B_3_in_axes3_xy = v->crs_W_3_in_axes3_xy - crs_qdd_3;
+    const real crs_B_3_in_axes3_yx = v->crs_W_3_in_axes3_xy + crs_qdd_3;
+    const real crs_B_3_in_axes3_zx = v->crs_W_3_in_axes3_xz - crs_alpha_3_in_axes3_y;
+    const real crs_B_3_in_axes3_zy = v->crs_W_3_in_axes3_yz + crs_alpha_3_in_axes3_x;
+    /* (crs-acc_2) acceleration of the reference point of link 2, less gravity */
+    const real crs_g_in_axes1_z = m->crs_g_in_axes1_z[i];
+    const real crs_acc_2_in_axes1_z = v->crs_c_3*crs_rel_in_axes3_x +
+        crs_qdd_3*v->crs_r_1_in_axes1_x - crs_g_in_axes1_z - crs_rel_in_axes3_y*v->crs_s_3;
+    /* (crs-f_2) inertia force of link 2 less its weight */
+    const real crs_link2_mass = m->crs_link2_mass[i];
+    const real crs_f_2_in_axes1_z = crs_acc_2_in_axes1_z*crs_link2_mass;
+    /* (crs-acc_3) acceleration of the reference point of link 3, less gravity */
+    const real crs_acc_3_in_axes3_x = crs_S_ddot_in_axes3_x - v->crs_c_3*crs_g_in_axes1_z -
+        v->crs_g_in_axes1_x*v->crs_s_3;
+    const real crs_acc_3_in_axes3_y = crs_S_ddot_in_axes3_y + crs_g_in_axes1_z*v->crs_s_3 -
+        v->crs_c_3*v->crs_g_in_axes1_x;
+    const real crs_acc_3_in_axes3_z = crs_S_ddot_in_axes3_z - v->crs_g_in_axes1_y;
+    /* (crs-mu_3) inertia moment of the links that turn with link 3, about their reference points */
+    const real crs_mu_3_t = v->crs_omega_1_in_axes3_x*v->crs_omega_1_in_axes3_x;
+    const real crs_mu_3_t_2 = v->crs_omega_1_in_axes3_y*v->crs_omega_1_in_axes3_y;
+    const real crs_mu_3_t_3 = v->crs_qd_2_t*v->crs_qd_2_t;
+    const real crs_J_3_in_spec3_xy = m->crs_J_3_in_spec3_xy[i];
+    const real crs_J_3_in_spec3_xz = m->crs_J_3_in_spec3_xz[i];
+    const real crs_J_3_in_spec3_yz = m->crs_J_3_in_spec3_yz[i];
+    const real crs_Sigma_3_in_axes3_yy = m->crs_Sigma_3_in_axes3_yy[i];
+    const real crs_Sigma_3_in_axes3_zz = m->crs_Sigma_3_in_axes3_zz[i];
+    const real crs_h_3_in_spec3_y = m->crs_h_3_in_spec3_y[i];
+    const real crs_h_3_in_spec3_z = m->crs_h_3_in_spec3_z[i];
+    const real crs_mu_3_in_axes3_x = crs_B_3_in_axes3_yx*crs_J_3_in_spec3_xz +
+        crs_B_3_in_axes3_zy*crs_Sigma_3_in_axes3_yy + crs_J_3_in_spec3_yz*(crs_mu_3_t_2 -
+        crs_mu_3_t_3) + crs_Sigma_3_in_axes3_zz*crs_alpha_1_in_axes3_x +
+        crs_acc_3_in_axes3_z*crs_h_3_in_spec3_y - crs_B_3_in_axes3_zx*crs_J_3_in_spec3_xy -
+        crs_acc_3_in_axes3_y*crs_h_3_in_spec3_z;
+    const real crs_Sigma_3_in_axes3_xx = m->crs_Sigma_3_in_axes3_xx[i];
+    const real crs_h_3_in_spec3_x = m->crs_h_3_in_spec3_x[i];
+    const real crs_mu_3_in_axes3_y = crs_B_3_in_axes3_zy*crs_J_3_in_spec3_xy +
+        crs_Sigma_3_in_axes3_zz*crs_alpha_1_in_axes3_y +
+        crs_acc_3_in_axes3_x*crs_h_3_in_spec3_z - crs_B_3_in_axes3_xy*crs_J_3_in_spec3_yz -
+        crs_B_3_in_axes3_zx*crs_Sigma_3_in_axes3_xx - crs_J_3_in_spec3_xz*(crs_mu_3_t -
+        crs_mu_3_t_3) - crs_acc_3_in_axes3_z*crs_h_3_in_spec3_x;
+    const real crs_mu_3_in_axes3_z = crs_B_3_in_axes3_yx*crs_Sigma_3_in_axes3_xx +
+        crs_J_3_in_spec3_xy*(crs_mu_3_t - crs_mu_3_t_2) +
+        crs_J_3_in_spec3_xz*crs_alpha_1_in_axes3_x +
+        crs_J_3_in_spec3_yz*crs_alpha_1_in_axes3_y + crs_acc_3_in_axes3_y*crs_h_3_in_spec3_x -
+        crs_B_3_in_axes3_xy*crs_Sigma_3_in_axes3_yy - crs_acc_3_in_axes3_x*crs_h_3_in_spec3_y;
+    /* (crs-mu_1) inertia moment of the links that turn with link 1, about their reference points */
+    const real crs_J_2_in_spec1_xx = m->crs_J_2_in_spec1_xx[i];
+    const real crs_h_2_in_spec1_y = m->crs_h_2_in_spec1_y[i];
+    const real crs_h_2_in_spec1_z = m->crs_h_2_in_spec1_z[i];
+    const real crs_mu_1_in_axes1_z = crs_J_2_in_spec1_xx*crs_qdd_1 +
+        v->crs_g_in_axes1_x*crs_h_2_in_spec1_z - v->crs_g_in_axes1_y*crs_h_2_in_spec1_y;
+    /* (crs-N_1) moment about joint 1 of the links from 1 outwards, the force at the connection point
+       left out */
+    const real crs_N_1_in_axes1_z = crs_mu_1_in_axes1_z + v->crs_c_3*crs_mu_3_in_axes3_x -
+        crs_mu_3_in_axes3_y*v->crs_s_3;
+    /* (crs-c) leg force on the platform without actuation and without the mass at the connection
+       point */
+    const real crs_c_t = v->inv_crs_d_4_in_axes1_z*(crs_mu_3_in_axes3_z +
+        crs_f_2_in_axes1_z*v->crs_r_1_in_axes1_x);
+    const real crs_c_in_axes3_x = crs_h_3_in_spec3_x*(crs_mu_3_t_2 + crs_mu_3_t_3) -
+        crs_B_3_in_axes3_xy*crs_h_3_in_spec3_y - crs_alpha_1_in_axes3_y*crs_h_3_in_spec3_z -
+        v->crs_c_3*crs_f_2_in_axes1_z - crs_c_t*v->crs_s_3;
+    const real crs_c_in_axes3_y = crs_alpha_1_in_axes3_x*crs_h_3_in_spec3_z +
+        crs_f_2_in_axes1_z*v->crs_s_3 + crs_h_3_in_spec3_y*(crs_mu_3_t + crs_mu_3_t_3) -
+        crs_B_3_in_axes3_yx*crs_h_3_in_spec3_x - v->crs_c_3*crs_c_t;
+    const real crs_c_in_axes3_z = crs_h_3_in_spec3_z*(crs_mu_3_t + crs_mu_3_t_2) -
+        crs_B_3_in_axes3_zx*crs_h_3_in_spec3_x - crs_B_3_in_axes3_zy*crs_h_3_in_spec3_y -
+        crs_N_1_in_axes1_z*v->crs_w_1_in_axes3_z;
+    v->crs_acc_3_in_axes3_x = crs_acc_3_in_axes3_x;
+    v->crs_acc_3_in_axes3_y = crs_acc_3_in_axes3_y;
+    v->crs_acc_3_in_axes3_z = crs_acc_3_in_axes3_z;
+    v->crs_c_in_axes3_x = crs_c_in_axes3_x;
+    v->crs_c_in_axes3_y = crs_c_in_axes3_y;
+    v->crs_c_in_axes3_z = crs_c_in_axes3_z;
+}
+
 /* ---- functions of the state: M, Z, H and the like ---- */
 
 /* ---- dynamics ---- */
@@ -1312,396 +2116,81 @@ INLINE void dynamics_before(const prepared *m, size_t w, const real *X, const re
     verdict *t)
 {
     for (size_t k = 0; k < w; ++k) {
-        /* X: named entries */
-        const real X_0 = X[0*w + k];
-        const real t_x = X_0;
-        const real X_1 = X[1*w + k];
-        const real t_y = X_1;
-        const real X_2 = X[2*w + k];
-        const real t_z = X_2;
-        const real X_3 = X[3*w + k];
-        const real X_4 = X[4*w + k];
-        const real X_5 = X[5*w + k];
-        const real X_6 = X[6*w + k];
-        const real quaternion_norm2 = X_3*X_3 + X_4*X_4 + X_5*X_5 + X_6*X_6;
-        const real quaternion_scale = 2/quaternion_norm2;
-        const real quaternion_sx = X_3*quaternion_scale;
-        const real quaternion_sy = X_4*quaternion_scale;
-        const real quaternion_sz = X_5*quaternion_scale;
-        const real quaternion_wx = X_6*quaternion_sx;
-        const real quaternion_wy = X_6*quaternion_sy;
-        const real quaternion_wz = X_6*quaternion_sz;
-        const real quaternion_xx = X_3*quaternion_sx;
-        const real quaternion_xy = X_3*quaternion_sy;
-        const real quaternion_xz = X_3*quaternion_sz;
-        const real quaternion_yy = X_4*quaternion_sy;
-        const real quaternion_yz = X_4*quaternion_sz;
-        const real quaternion_zz = X_5*quaternion_sz;
-        const real R_xx = 1 - quaternion_yy - quaternion_zz;
-        const real R_xy = quaternion_xy - quaternion_wz;
-        const real R_xz = quaternion_wy + quaternion_xz;
-        const real R_yx = quaternion_wz + quaternion_xy;
-        const real R_yy = 1 - quaternion_xx - quaternion_zz;
-        const real R_yz = quaternion_yz - quaternion_wx;
-        const real R_zx = quaternion_xz - quaternion_wy;
-        const real R_zy = quaternion_wx + quaternion_yz;
-        const real R_zz = 1 - quaternion_xx - quaternion_yy;
-        /* V: named entries */
-        const real V_0 = V[0*w + k];
-        const real t_dot_x = V_0;
-        const real V_1 = V[1*w + k];
-        const real t_dot_y = V_1;
-        const real V_2 = V[2*w + k];
-        const real t_dot_z = V_2;
-        const real V_3 = V[3*w + k];
-        const real omega_x = V_3;
-        const real V_4 = V[4*w + k];
-        const real omega_y = V_4;
-        const real V_5 = V[5*w + k];
-        const real omega_z = V_5;
-        /* (h_star) first moment about the platform origin */
-        const real h_star_in_platform_x = m->h_star_in_platform_x;
-        const real h_star_in_platform_y = m->h_star_in_platform_y;
-        const real h_star_in_platform_z = m->h_star_in_platform_z;
-        const real h_star_x = R_xx*h_star_in_platform_x + R_xy*h_star_in_platform_y +
-            R_xz*h_star_in_platform_z;
-        const real h_star_y = R_yx*h_star_in_platform_x + R_yy*h_star_in_platform_y +
-            R_yz*h_star_in_platform_z;
-        const real h_star_z = R_zx*h_star_in_platform_x + R_zy*h_star_in_platform_y +
-            R_zz*h_star_in_platform_z;
-        /* (J_star) inertia tensor about the platform origin */
-        const real J_star_in_platform_xy = m->J_star_in_platform_xy;
-        const real J_star_in_platform_yz = m->J_star_in_platform_yz;
-        const real J_star_t_12 = m->J_star_t_12;
-        const real J_star_t = J_star_in_platform_xy*R_xx + J_star_in_platform_yz*R_xz -
-            J_star_t_12*R_xy;
-        const real J_star_t_2 = J_star_in_platform_xy*R_yx + J_star_in_platform_yz*R_yz -
-            J_star_t_12*R_yy;
-        const real J_star_t_3 = J_star_in_platform_xy*R_zx + J_star_in_platform_yz*R_zz -
-            J_star_t_12*R_zy;
-        const real J_star_in_platform_xz = m->J_star_in_platform_xz;
-        const real J_star_t_14 = m->J_star_t_14;
-        const real J_star_t_4 = J_star_t_14*R_xz - J_star_in_platform_xz*R_xx;
-        const real J_star_t_5 = J_star_t_14*R_yz - J_star_in_platform_xz*R_yx;
-        const real J_star_t_6 = J_star_t_14*R_zz - J_star_in_platform_xz*R_zx;
-        const real J_star_t_7 = J_star_t*R_xy - J_star_t_4*R_xz;
-        const real J_star_in_platform_xx = m->J_star_in_platform_xx;
-        const real J_star_xx = J_star_in_platform_xx + 2*J_star_t_7;
-        const real J_star_xy = J_star_t*R_yy + J_star_t_2*R_xy - J_star_t_4*R_yz -
-            J_star_t_5*R_xz;
-        const real J_star_xz = J_star_t*R_zy + J_star_t_3*R_xy - J_star_t_4*R_zz -
-            J_star_t_6*R_xz;
-        const real J_star_t_8 = J_star_t_2*R_yy - J_star_t_5*R_yz;
-        const real J_star_yy = J_star_in_platform_xx + 2*J_star_t_8;
-        const real J_star_yz = J_star_t_2*R_zy + J_star_t_3*R_yy - J_star_t_5*R_zz -
-            J_star_t_6*R_yz;
-        const real J_star_t_9 = J_star_t_3*R_zy - J_star_t_6*R_zz;
-        const real J_star_zz = J_star_in_platform_xx + 2*J_star_t_9;
-        /* (Z_p) centripetal force and weight of the platform */
-        const real Z_p_t_4 = h_star_z*omega_y - h_star_y*omega_z;
-        const real Z_p_t_5 = h_star_x*omega_z - h_star_z*omega_x;
-        const real Z_p_t_6 = h_star_y*omega_x - h_star_x*omega_y;
-        const real Z_p_t = m->Z_p_t;
-        const real Z_p_x = Z_p_t_6*omega_y - Z_p_t - Z_p_t_5*omega_z;
-        const real Z_p_t_2 = m->Z_p_t_2;
-        const real Z_p_y = Z_p_t_4*omega_z - Z_p_t_2 - Z_p_t_6*omega_x;
-        const real Z_p_t_3 = m->Z_p_t_3;
-        const real Z_p_z = Z_p_t_5*omega_x - Z_p_t_3 - Z_p_t_4*omega_y;
-        /* (Z_q) gyroscopic moment and moment of the weight of the platform */
-        const real gravity_x = m->gravity_x;
-        const real gravity_y = m->gravity_y;
-        const real gravity_z = m->gravity_z;
-        const real g_in_platform_x = R_xx*gravity_x + R_yx*gravity_y + R_zx*gravity_z;
-        const real g_in_platform_y = R_xy*gravity_x + R_yy*gravity_y + R_zy*gravity_z;
-        const real g_in_platform_z = R_xz*gravity_x + R_yz*gravity_y + R_zz*gravity_z;
-        const real omega_in_platform_x = R_xx*omega_x + R_yx*omega_y + R_zx*omega_z;
-        const real omega_in_platform_y = R_xy*omega_x + R_yy*omega_y + R_zy*omega_z;
-        const real omega_in_platform_z = R_xz*omega_x + R_yz*omega_y + R_zz*omega_z;
-        const real Z_q_t = J_star_in_platform_xx*omega_in_platform_x +
-            J_star_in_platform_xy*omega_in_platform_y + J_star_in_platform_xz*omega_in_platform_z;
-        const real J_star_in_platform_yy = m->J_star_in_platform_yy;
-        const real Z_q_t_2 = J_star_in_platform_xy*omega_in_platform_x +
-            J_star_in_platform_yy*omega_in_platform_y + J_star_in_platform_yz*omega_in_platform_z;
-        const real J_star_in_platform_zz = m->J_star_in_platform_zz;
-        const real Z_q_t_3 = J_star_in_platform_xz*omega_in_platform_x +
-            J_star_in_platform_yz*omega_in_platform_y + J_star_in_platform_zz*omega_in_platform_z;
-        const real Z_q_in_platform_x = Z_q_t_3*omega_in_platform_y +
-            g_in_platform_y*h_star_in_platform_z - Z_q_t_2*omega_in_platform_z -
-            g_in_platform_z*h_star_in_platform_y;
-        const real Z_q_in_platform_y = Z_q_t*omega_in_platform_z +
-            g_in_platform_z*h_star_in_platform_x - Z_q_t_3*omega_in_platform_x -
-            g_in_platform_x*h_star_in_platform_z;
-        const real Z_q_in_platform_z = Z_q_t_2*omega_in_platform_x +
-            g_in_platform_x*h_star_in_platform_y - Z_q_t*omega_in_platform_y -
-            g_in_platform_y*h_star_in_platform_x;
-        const real Z_q_x = R_xx*Z_q_in_platform_x + R_xy*Z_q_in_platform_y +
-            R_xz*Z_q_in_platform_z;
-        const real Z_q_y = R_yx*Z_q_in_platform_x + R_yy*Z_q_in_platform_y +
-            R_yz*Z_q_in_platform_z;
-        const real Z_q_z = R_zx*Z_q_in_platform_x + R_zy*Z_q_in_platform_y +
-            R_zz*Z_q_in_platform_z;
-        s[0*w + k] = t_x;
-        s[1*w + k] = t_y;
-        s[2*w + k] = t_z;
-        s[3*w + k] = R_xx;
-        s[4*w + k] = R_xy;
-        s[5*w + k] = R_xz;
-        s[6*w + k] = R_yx;
-        s[7*w + k] = R_yy;
-        s[8*w + k] = R_yz;
-        s[9*w + k] = R_zx;
-        s[10*w + k] = R_zy;
-        s[11*w + k] = R_zz;
-        s[12*w + k] = t_dot_x;
-        s[13*w + k] = t_dot_y;
-        s[14*w + k] = t_dot_z;
-        s[15*w + k] = omega_x;
-        s[16*w + k] = omega_y;
-        s[17*w + k] = omega_z;
-        s[18*w + k] = h_star_x;
-        s[19*w + k] = h_star_y;
-        s[20*w + k] = h_star_z;
-        s[21*w + k] = J_star_xx;
-        s[22*w + k] = J_star_xy;
-        s[23*w + k] = J_star_xz;
-        s[24*w + k] = J_star_yy;
-        s[25*w + k] = J_star_yz;
-        s[26*w + k] = J_star_zz;
-        s[27*w + k] = Z_p_x;
-        s[28*w + k] = Z_p_y;
-        s[29*w + k] = Z_p_z;
-        s[30*w + k] = Z_q_x;
-        s[31*w + k] = Z_q_y;
-        s[32*w + k] = Z_q_z;
-        t->invalid[k] += UNLESS(is_finite(quaternion_scale)) + UNLESS(quaternion_scale > 0);
+        values v;
+        stage_X(m, w, k, X, &v);
+        stage_V_X(w, k, V, &v);
+        stage_M_dynamics(m, &v);
+        stage_Z_dynamics(m, w, k, V, &v);
+        s[0*w + k] = v.R_xx;
+        s[1*w + k] = v.R_xy;
+        s[2*w + k] = v.R_xz;
+        s[3*w + k] = v.R_yx;
+        s[4*w + k] = v.R_yy;
+        s[5*w + k] = v.R_yz;
+        s[6*w + k] = v.R_zx;
+        s[7*w + k] = v.R_zy;
+        s[8*w + k] = v.R_zz;
+        s[9*w + k] = v.h_star_x;
+        s[10*w + k] = v.h_star_y;
+        s[11*w + k] = v.h_star_z;
+        s[12*w + k] = v.J_star_xx;
+        s[13*w + k] = v.J_star_xy;
+        s[14*w + k] = v.J_star_xz;
+        s[15*w + k] = v.J_star_yy;
+        s[16*w + k] = v.J_star_yz;
+        s[17*w + k] = v.J_star_zz;
+        s[18*w + k] = v.Z_p_x;
+        s[19*w + k] = v.Z_p_y;
+        s[20*w + k] = v.Z_p_z;
+        s[21*w + k] = v.Z_q_x;
+        s[22*w + k] = v.Z_q_y;
+        s[23*w + k] = v.Z_q_z;
+        t->invalid[k] += UNLESS(is_finite(v.quaternion_scale)) + UNLESS(v.quaternion_scale > 0);
     }
 }
 
 INLINE void dynamics_legs_crs(const prepared *m, size_t w, size_t leg, size_t legs, const real *s,
-    size_t states, size_t count, int add, real *terms, real *o)
+    size_t states, size_t count, int add, const real *X, const real *V, real *terms, real *o)
 {
     for (size_t k = 0; k < count; ++k) {
         const size_t i = leg + legs*k;
         const size_t j = states*k;
-        /* (crs-S) from the base point to the connection point */
-        const real R_xx = s[3*w + j];
-        const real R_xy = s[4*w + j];
-        const real R_xz = s[5*w + j];
-        const real crs_platform_point_x = m->crs_platform_point_x[i];
-        const real crs_platform_point_y = m->crs_platform_point_y[i];
-        const real crs_platform_point_z = m->crs_platform_point_z[i];
-        const real crs_q_x = R_xx*crs_platform_point_x + R_xy*crs_platform_point_y +
-            R_xz*crs_platform_point_z;
-        const real R_yx = s[6*w + j];
-        const real R_yy = s[7*w + j];
-        const real R_yz = s[8*w + j];
-        const real crs_q_y = R_yx*crs_platform_point_x + R_yy*crs_platform_point_y +
-            R_yz*crs_platform_point_z;
-        const real R_zx = s[9*w + j];
-        const real R_zy = s[10*w + j];
-        const real R_zz = s[11*w + j];
-        const real crs_q_z = R_zx*crs_platform_point_x + R_zy*crs_platform_point_y +
-            R_zz*crs_platform_point_z;
-        const real crs_base_point_x = m->crs_base_point_x[i];
-        const real t_x = s[0*w + j];
-        const real crs_S_x = crs_q_x + t_x - crs_base_point_x;
-        const real crs_base_point_y = m->crs_base_point_y[i];
-        const real t_y = s[1*w + j];
-        const real crs_S_y = crs_q_y + t_y - crs_base_point_y;
-        const real crs_base_point_z = m->crs_base_point_z[i];
-        const real t_z = s[2*w + j];
-        const real crs_S_z = crs_q_z + t_z - crs_base_point_z;
-        /* (crs-px_1) component along the reference direction */
-        const real crs_base_frame_xy = m->crs_base_frame_xy[i];
-        const real crs_base_frame_yy = m->crs_base_frame_yy[i];
-        const real crs_base_frame_zy = m->crs_base_frame_zy[i];
-        const real crs_px_1 = crs_S_x*crs_base_frame_xy + crs_S_y*crs_base_frame_yy +
-            crs_S_z*crs_base_frame_zy;
-        /* (crs-py_1) component across the reference direction */
-        const real crs_base_frame_xz = m->crs_base_frame_xz[i];
-        const real crs_base_frame_yz = m->crs_base_frame_yz[i];
-        const real crs_base_frame_zz = m->crs_base_frame_zz[i];
-        const real crs_py_1 = crs_S_x*crs_base_frame_xz + crs_S_y*crs_base_frame_yz +
-            crs_S_z*crs_base_frame_zz;
-        /* (crs-rho2_1) squared amplitude */
-        const real crs_rho2_1 = crs_px_1*crs_px_1 + crs_py_1*crs_py_1;
-        /* (crs-root_1) root, with the sign of the branch */
-        const real crs_branch_1 = m->crs_branch_1[i];
-        const real crs_root_1 = crs_branch_1*root(crs_rho2_1);
-        /* (crs-c_1) cosine of the angle of joint 1 from its reference direction */
-        const real inv_crs_rho2_1 = 1/crs_rho2_1;
-        const real crs_c_1 = -crs_py_1*crs_root_1*inv_crs_rho2_1;
-        /* (crs-s_1) sine of the angle of joint 1 from its reference direction */
-        const real crs_s_1 = crs_px_1*crs_root_1*inv_crs_rho2_1;
-        /* (crs-xi_1) the vector from joint 1 to the connection point, resolved along link 1 */
-        const real crs_base_frame_xx = m->crs_base_frame_xx[i];
-        const real crs_base_frame_yx = m->crs_base_frame_yx[i];
-        const real crs_base_frame_zx = m->crs_base_frame_zx[i];
-        const real crs_xi_1_in_axes1_z = crs_S_x*crs_base_frame_xx + crs_S_y*crs_base_frame_yx +
-            crs_S_z*crs_base_frame_zx;
-        /* (crs-from_centre_2) from the centre at zero displacement to the connection point */
-        const real crs_joint3_offset_x = m->crs_joint3_offset_x[i];
-        const real crs_from_centre_2_in_axes1_z = crs_xi_1_in_axes1_z - crs_joint3_offset_x;
-        /* (crs-disc_2) discriminant of the distance equation */
-        const real crs_size_t = m->crs_size_t[i];
-        const real crs_disc_2 = crs_size_t - crs_root_1*crs_root_1;
-        /* (crs-q_2) displacement of joint 2 */
-        const real crs_branch_2 = m->crs_branch_2[i];
-        const real crs_q_2 = crs_from_centre_2_in_axes1_z + crs_branch_2*root(crs_disc_2);
-        /* (crs-x_3) from the origin of joint 3 to the connection point */
-        const real crs_x_3_in_axes1_z = crs_xi_1_in_axes1_z - crs_joint3_offset_x - crs_q_2;
-        /* (crs-c_3) cosine of the angle of joint 3 from its reference direction */
-        const real crs_platform_joint_offset_x = m->crs_platform_joint_offset_x[i];
-        const real inv_crs_size_t = m->inv_crs_size_t[i];
-        const real crs_c_3_t = crs_platform_joint_offset_x*crs_root_1*inv_crs_size_t;
-        /* (crs-s_3) sine of the angle of joint 3 from its reference direction */
-        const real crs_s_3 = crs_platform_joint_offset_x*crs_x_3_in_axes1_z*inv_crs_size_t;
-        /* (crs-S_dot) velocity of the connection point */
-        const real omega_y = s[16*w + j];
-        const real omega_z = s[17*w + j];
-        const real crs_S_dot_t = crs_q_z*omega_y - crs_q_y*omega_z;
-        const real omega_x = s[15*w + j];
-        const real crs_S_dot_t_2 = crs_q_x*omega_z - crs_q_z*omega_x;
-        const real crs_S_dot_t_3 = crs_q_y*omega_x - crs_q_x*omega_y;
-        const real t_dot_x = s[12*w + j];
-        const real crs_S_dot_x = crs_S_dot_t + t_dot_x;
-        const real t_dot_y = s[13*w + j];
-        const real crs_S_dot_y = crs_S_dot_t_2 + t_dot_y;
-        const real t_dot_z = s[14*w + j];
-        const real crs_S_dot_z = crs_S_dot_t_3 + t_dot_z;
-        /* (crs-r_1) from joint 1 to the connection point, along the links */
-        const real crs_r_1_t = crs_c_3_t*crs_platform_joint_offset_x;
-        const real crs_d_4_in_axes1_z = crs_platform_joint_offset_x*crs_s_3;
-        const real crs_r_1_in_axes1_z = crs_d_4_in_axes1_z + crs_joint3_offset_x + crs_q_2;
-        /* (crs-v_1) velocity of the connection point per rate of joint 1 */
-        const real crs_v_1_in_axes3_z = crs_c_3_t*(crs_c_3_t*crs_r_1_t +
-            crs_r_1_in_axes1_z*crs_s_3) + crs_s_3*(crs_r_1_t*crs_s_3 -
-            crs_c_3_t*crs_r_1_in_axes1_z);
-        /* (crs-w_1) reciprocal vector 1 */
-        const real axis_z_crs_axes3_x = crs_base_frame_xy*crs_c_1 + crs_base_frame_xz*crs_s_1;
-        const real axis_z_crs_axes3_y = crs_base_frame_yy*crs_c_1 + crs_base_frame_yz*crs_s_1;
-        const real axis_z_crs_axes3_z = crs_base_frame_zy*crs_c_1 + crs_base_frame_zz*crs_s_1;
-        const real crs_w_1_in_axes3_z = 1/crs_v_1_in_axes3_z;
-        const real crs_w_1_x = axis_z_crs_axes3_x*crs_w_1_in_axes3_z;
-        const real crs_w_1_y = axis_z_crs_axes3_y*crs_w_1_in_axes3_z;
-        const real crs_w_1_z = axis_z_crs_axes3_z*crs_w_1_in_axes3_z;
-        /* (crs-w_2) reciprocal vector 2 */
-        const real crs_w_2_t = crs_s_1*crs_s_3;
-        const real crs_w_2_t_2 = -crs_c_1*crs_s_3;
-        const real axis_y_crs_axes3_x = crs_base_frame_xy*crs_w_2_t +
-            crs_base_frame_xz*crs_w_2_t_2 - crs_base_frame_xx*crs_c_3_t;
-        const real axis_y_crs_axes3_y = crs_base_frame_yy*crs_w_2_t +
-            crs_base_frame_yz*crs_w_2_t_2 - crs_base_frame_yx*crs_c_3_t;
-        const real axis_y_crs_axes3_z = crs_base_frame_zy*crs_w_2_t +
-            crs_base_frame_zz*crs_w_2_t_2 - crs_base_frame_zx*crs_c_3_t;
-        const real axis_x_crs_axes3_x = axis_y_crs_axes3_y*axis_z_crs_axes3_z -
-            axis_y_crs_axes3_z*axis_z_crs_axes3_y;
-        const real axis_x_crs_axes3_y = axis_y_crs_axes3_z*axis_z_crs_axes3_x -
-            axis_y_crs_axes3_x*axis_z_crs_axes3_z;
-        const real axis_x_crs_axes3_z = axis_y_crs_axes3_x*axis_z_crs_axes3_y -
-            axis_y_crs_axes3_y*axis_z_crs_axes3_x;
-        const real inv_crs_d_4_in_axes1_z = 1/crs_d_4_in_axes1_z;
-        const real crs_w_2_t_3 = crs_r_1_t*inv_crs_d_4_in_axes1_z;
-        const real crs_w_2_in_axes3_x = crs_s_3 + crs_c_3_t*crs_w_2_t_3;
-        const real crs_w_2_in_axes3_y = crs_s_3*crs_w_2_t_3 - crs_c_3_t;
-        const real crs_w_2_x = axis_x_crs_axes3_x*crs_w_2_in_axes3_x +
-            axis_y_crs_axes3_x*crs_w_2_in_axes3_y;
-        const real crs_w_2_y = axis_x_crs_axes3_y*crs_w_2_in_axes3_x +
-            axis_y_crs_axes3_y*crs_w_2_in_axes3_y;
-        const real crs_w_2_z = axis_x_crs_axes3_z*crs_w_2_in_axes3_x +
-            axis_y_crs_axes3_z*crs_w_2_in_axes3_y;
-        /* (crs-w_3) reciprocal vector 3 */
-        const real crs_w_3_in_axes3_x = crs_c_3_t*inv_crs_d_4_in_axes1_z;
-        const real crs_w_3_in_axes3_y = crs_s_3*inv_crs_d_4_in_axes1_z;
-        /* (crs-qd_1) rate of joint 1 */
-        const real crs_qd_1_t = crs_S_dot_x*crs_base_frame_xy + crs_S_dot_y*crs_base_frame_yy +
-            crs_S_dot_z*crs_base_frame_zy;
-        const real crs_qd_1_t_2 = crs_S_dot_x*crs_base_frame_xz + crs_S_dot_y*crs_base_frame_yz +
-            crs_S_dot_z*crs_base_frame_zz;
-        const real crs_qd_1 = crs_w_1_in_axes3_z*(crs_c_1*crs_qd_1_t + crs_qd_1_t_2*crs_s_1);
-        /* (crs-qd_2) rate of joint 2 */
-        const real crs_qd_2_t = inv_crs_d_4_in_axes1_z*(crs_c_1*crs_qd_1_t_2 -
-            crs_qd_1_t*crs_s_1);
-        const real crs_qd_2 = crs_S_dot_x*crs_base_frame_xx + crs_S_dot_y*crs_base_frame_yx +
-            crs_S_dot_z*crs_base_frame_zx - crs_qd_2_t*crs_r_1_t;
-        /* (crs-omega_1) angular velocity of link 1 */
-        const real crs_omega_1_in_axes3_x = crs_qd_1*crs_s_3;
-        const real crs_omega_1_t = crs_c_3_t*crs_qd_1;
-        /* (crs-W_3) centripetal tensor of link 3 */
-        const real crs_W_3_in_axes3_yz = crs_omega_1_t*crs_qd_2_t;
-        const real crs_W_3_in_axes3_xy = -crs_omega_1_in_axes3_x*crs_omega_1_t;
+        values_crs v;
+        stage_crs_X(m, w, i, j, s, X, &v);
+        stage_crs_V_X(m, w, i, j, V, &v);
+        stage_crs_M_dynamics(m, i, &v);
+        stage_crs_Z_dynamics(m, w, i, j, V, &v);
         /* (crs-u_1) centripetal acceleration of the connection point */
-        const real crs_u_1_x = crs_S_dot_t_3*omega_y - crs_S_dot_t_2*omega_z;
-        const real crs_u_1_y = crs_S_dot_t*omega_z - crs_S_dot_t_3*omega_x;
-        const real crs_u_1_z = crs_S_dot_t_2*omega_x - crs_S_dot_t*omega_y;
-        const real crs_u_1_in_axes3_x = axis_x_crs_axes3_x*crs_u_1_x +
-            axis_x_crs_axes3_y*crs_u_1_y + axis_x_crs_axes3_z*crs_u_1_z;
-        const real crs_u_1_in_axes3_y = axis_y_crs_axes3_x*crs_u_1_x +
-            axis_y_crs_axes3_y*crs_u_1_y + axis_y_crs_axes3_z*crs_u_1_z;
-        const real crs_u_1_in_axes3_z = axis_z_crs_axes3_x*crs_u_1_x +
-            axis_z_crs_axes3_y*crs_u_1_y + axis_z_crs_axes3_z*crs_u_1_z;
-        /* (crs-zeta_3) angular acceleration of link 3 from the turning of axis 3 */
-        const real crs_zeta_3_in_axes3_y = crs_omega_1_in_axes3_x*crs_qd_2_t;
-        /* (crs-bias) acceleration of the connection point at zero joint accelerations */
-        const real crs_bias_t = crs_omega_1_in_axes3_x*(crs_c_3_t*crs_joint3_offset_x +
-            crs_c_3_t*crs_q_2) - crs_omega_1_t*(crs_joint3_offset_x*crs_s_3 + crs_q_2*crs_s_3);
-        const real crs_bias_t_2 = crs_platform_joint_offset_x*crs_qd_2_t;
-        const real crs_bias_t_3 = crs_omega_1_t*crs_platform_joint_offset_x;
-        const real crs_bias_in_axes3_x = crs_bias_t*crs_omega_1_t - crs_bias_t_2*crs_qd_2_t -
-            crs_bias_t_3*crs_omega_1_t;
-        const real crs_bias_in_axes3_y = crs_bias_t*crs_omega_1_in_axes3_x -
-            crs_bias_t_3*crs_omega_1_in_axes3_x;
-        const real crs_bias_in_axes3_z = -crs_bias_t_2*crs_omega_1_in_axes3_x -
-            crs_platform_joint_offset_x*crs_zeta_3_in_axes3_y -
-            2*crs_qd_2*(crs_c_3_t*crs_omega_1_in_axes3_x - crs_omega_1_t*crs_s_3);
+        const real crs_u_1_in_axes3_x = v.axis_x_crs_axes3_x*v.crs_u_1_x +
+            v.axis_x_crs_axes3_y*v.crs_u_1_y + v.axis_x_crs_axes3_z*v.crs_u_1_z;
+        const real crs_u_1_in_axes3_y = v.axis_y_crs_axes3_x*v.crs_u_1_x +
+            v.axis_y_crs_axes3_y*v.crs_u_1_y + v.axis_y_crs_axes3_z*v.crs_u_1_z;
         /* (crs-rel_o) remainder without the acceleration in: acceleration of the connection point left to
            the joint accelerations */
-        const real crs_rel_o_in_axes3_x = crs_u_1_in_axes3_x - crs_bias_in_axes3_x;
-        const real crs_rel_o_in_axes3_y = crs_u_1_in_axes3_y - crs_bias_in_axes3_y;
-        const real crs_rel_o_in_axes3_z = crs_u_1_in_axes3_z - crs_bias_in_axes3_z;
-        /* (crs-qdd_1_o) remainder without the acceleration in: acceleration of joint 1 */
-        const real crs_qdd_1_o = crs_rel_o_in_axes3_z*crs_w_1_in_axes3_z;
+        const real crs_rel_o_in_axes3_x = crs_u_1_in_axes3_x - v.crs_bias_in_axes3_x;
+        const real crs_rel_o_in_axes3_y = crs_u_1_in_axes3_y - v.crs_bias_in_axes3_y;
         /* (crs-qdd_3_o) remainder without the acceleration in: acceleration of joint 3 */
-        const real crs_qdd_3_o = -inv_crs_d_4_in_axes1_z*(-crs_c_3_t*crs_rel_o_in_axes3_x -
-            crs_rel_o_in_axes3_y*crs_s_3);
-        /* (crs-alpha_1_o) remainder without the acceleration in: angular acceleration of link 1 */
-        const real crs_alpha_1_o_in_axes3_x = crs_qdd_1_o*crs_s_3;
-        const real crs_alpha_1_o_t = crs_c_3_t*crs_qdd_1_o;
-        /* (crs-d_alpha_3) coefficient of the acceleration in: angular acceleration of link 3 */
-        const real crs_d_alpha_3_in_axes3_xz = crs_s_3*crs_w_1_in_axes3_z;
-        const real crs_d_alpha_3_t = crs_c_3_t*crs_w_1_in_axes3_z;
-        /* (crs-alpha_3_o) remainder without the acceleration in: angular acceleration of link 3 */
-        const real crs_alpha_3_o_in_axes3_x = crs_W_3_in_axes3_yz + crs_alpha_1_o_in_axes3_x;
-        const real crs_alpha_3_o_in_axes3_y = crs_zeta_3_in_axes3_y - crs_alpha_1_o_t;
+        const real crs_qdd_3_o = v.inv_crs_d_4_in_axes1_z*(v.crs_c_3*crs_rel_o_in_axes3_y +
+            crs_rel_o_in_axes3_x*v.crs_s_3);
         /* (crs-B_3_o) remainder of the acceleration tensor of link 3 */
-        const real crs_B_3_o_in_axes3_xy = crs_W_3_in_axes3_xy - crs_qdd_3_o;
-        const real crs_B_3_o_in_axes3_yx = crs_W_3_in_axes3_xy + crs_qdd_3_o;
-        const real crs_B_3_o_in_axes3_zx = -crs_alpha_3_o_in_axes3_y - crs_zeta_3_in_axes3_y;
-        const real crs_B_3_o_in_axes3_zy = crs_W_3_in_axes3_yz + crs_alpha_3_o_in_axes3_x;
+        const real crs_B_3_o_in_axes3_xy = v.crs_W_3_in_axes3_xy - crs_qdd_3_o;
+        const real crs_B_3_o_in_axes3_yx = v.crs_W_3_in_axes3_xy + crs_qdd_3_o;
         /* (crs-acc_2_o) remainder without the acceleration in: acceleration of the reference point of
            link 2, less gravity */
         const real crs_g_in_axes1_z = m->crs_g_in_axes1_z[i];
-        const real crs_acc_2_o_in_axes1_z = crs_qdd_3_o*crs_r_1_t + crs_rel_o_in_axes3_x*crs_s_3 -
-            crs_g_in_axes1_z - crs_c_3_t*crs_rel_o_in_axes3_y;
+        const real crs_acc_2_o_in_axes1_z = v.crs_c_3*crs_rel_o_in_axes3_x +
+            crs_qdd_3_o*v.crs_r_1_in_axes1_x - crs_g_in_axes1_z - crs_rel_o_in_axes3_y*v.crs_s_3;
         /* (crs-f_2_o) remainder without the acceleration in: inertia force of link 2 less its weight */
         const real crs_link2_mass = m->crs_link2_mass[i];
         const real crs_f_2_o_in_axes1_z = crs_acc_2_o_in_axes1_z*crs_link2_mass;
         /* (crs-acc_3_o) remainder without the acceleration in: acceleration of the reference point of
            link 3, less gravity */
-        const real crs_acc_3_t = m->crs_acc_3_t[i];
-        const real crs_acc_3_t_2 = m->crs_acc_3_t_2[i];
-        const real crs_g_in_axes1_x = crs_acc_3_t*crs_c_1 + crs_acc_3_t_2*crs_s_1;
-        const real crs_g_in_axes1_y = crs_acc_3_t_2*crs_c_1 - crs_acc_3_t*crs_s_1;
-        const real crs_acc_3_o_in_axes3_x = crs_u_1_in_axes3_x + crs_c_3_t*crs_g_in_axes1_y -
-            crs_g_in_axes1_z*crs_s_3;
-        const real crs_acc_3_o_in_axes3_y = crs_u_1_in_axes3_y + crs_c_3_t*crs_g_in_axes1_z +
-            crs_g_in_axes1_y*crs_s_3;
-        const real crs_acc_3_o_in_axes3_z = crs_u_1_in_axes3_z - crs_g_in_axes1_x;
+        const real crs_acc_3_o_in_axes3_x = crs_u_1_in_axes3_x - v.crs_c_3*crs_g_in_axes1_z -
+            v.crs_g_in_axes1_x*v.crs_s_3;
+        const real crs_acc_3_o_in_axes3_y = crs_u_1_in_axes3_y + crs_g_in_axes1_z*v.crs_s_3 -
+            v.crs_c_3*v.crs_g_in_axes1_x;
         /* (crs-mu_3_o) remainder without the acceleration in: inertia moment of the links that turn with
            link 3, about their reference points */
-        const real crs_mu_3_o_t = crs_omega_1_in_axes3_x*crs_omega_1_in_axes3_x;
-        const real crs_mu_3_o_t_2 = crs_omega_1_t*crs_omega_1_t;
-        const real crs_mu_3_o_t_3 = crs_qd_2_t*crs_qd_2_t;
         const real crs_J_3_in_spec3_xy = m->crs_J_3_in_spec3_xy[i];
         const real crs_J_3_in_spec3_xz = m->crs_J_3_in_spec3_xz[i];
         const real crs_J_3_in_spec3_yz = m->crs_J_3_in_spec3_yz[i];
@@ -1710,150 +2199,122 @@ INLINE void dynamics_legs_crs(const prepared *m, size_t w, size_t leg, size_t le
         const real crs_h_3_in_spec3_y = m->crs_h_3_in_spec3_y[i];
         const real crs_h_3_in_spec3_z = m->crs_h_3_in_spec3_z[i];
         const real crs_mu_3_o_in_axes3_x = crs_B_3_o_in_axes3_yx*crs_J_3_in_spec3_xz +
-            crs_B_3_o_in_axes3_zy*crs_Sigma_3_in_axes3_yy + crs_J_3_in_spec3_yz*(crs_mu_3_o_t_2 -
-            crs_mu_3_o_t_3) + crs_Sigma_3_in_axes3_zz*crs_alpha_1_o_in_axes3_x +
-            crs_acc_3_o_in_axes3_z*crs_h_3_in_spec3_y - crs_B_3_o_in_axes3_zx*crs_J_3_in_spec3_xy
-            - crs_acc_3_o_in_axes3_y*crs_h_3_in_spec3_z;
+            v.crs_B_3_o_in_axes3_zy*crs_Sigma_3_in_axes3_yy +
+            crs_J_3_in_spec3_yz*(v.crs_mu_3_o_t_2 - v.crs_mu_3_o_t_3) +
+            crs_Sigma_3_in_axes3_zz*v.crs_alpha_1_o_in_axes3_x +
+            v.crs_acc_3_o_in_axes3_z*crs_h_3_in_spec3_y -
+            v.crs_B_3_o_in_axes3_zx*crs_J_3_in_spec3_xy -
+            crs_acc_3_o_in_axes3_y*crs_h_3_in_spec3_z;
         const real crs_Sigma_3_in_axes3_xx = m->crs_Sigma_3_in_axes3_xx[i];
         const real crs_h_3_in_spec3_x = m->crs_h_3_in_spec3_x[i];
-        const real crs_mu_3_o_in_axes3_y = crs_B_3_o_in_axes3_zy*crs_J_3_in_spec3_xy +
+        const real crs_mu_3_o_in_axes3_y = v.crs_B_3_o_in_axes3_zy*crs_J_3_in_spec3_xy +
+            crs_Sigma_3_in_axes3_zz*v.crs_alpha_1_o_in_axes3_y +
             crs_acc_3_o_in_axes3_x*crs_h_3_in_spec3_z - crs_B_3_o_in_axes3_xy*crs_J_3_in_spec3_yz
-            - crs_B_3_o_in_axes3_zx*crs_Sigma_3_in_axes3_xx - crs_J_3_in_spec3_xz*(crs_mu_3_o_t -
-            crs_mu_3_o_t_3) - crs_Sigma_3_in_axes3_zz*crs_alpha_1_o_t -
-            crs_acc_3_o_in_axes3_z*crs_h_3_in_spec3_x;
+            - v.crs_B_3_o_in_axes3_zx*crs_Sigma_3_in_axes3_xx -
+            crs_J_3_in_spec3_xz*(v.crs_mu_3_o_t - v.crs_mu_3_o_t_3) -
+            v.crs_acc_3_o_in_axes3_z*crs_h_3_in_spec3_x;
         const real crs_mu_3_o_in_axes3_z = crs_B_3_o_in_axes3_yx*crs_Sigma_3_in_axes3_xx +
-            crs_J_3_in_spec3_xy*(crs_mu_3_o_t - crs_mu_3_o_t_2) +
-            crs_J_3_in_spec3_xz*crs_alpha_1_o_in_axes3_x +
+            crs_J_3_in_spec3_xy*(v.crs_mu_3_o_t - v.crs_mu_3_o_t_2) +
+            crs_J_3_in_spec3_xz*v.crs_alpha_1_o_in_axes3_x +
+            crs_J_3_in_spec3_yz*v.crs_alpha_1_o_in_axes3_y +
             crs_acc_3_o_in_axes3_y*crs_h_3_in_spec3_x -
-            crs_B_3_o_in_axes3_xy*crs_Sigma_3_in_axes3_yy - crs_J_3_in_spec3_yz*crs_alpha_1_o_t -
+            crs_B_3_o_in_axes3_xy*crs_Sigma_3_in_axes3_yy -
             crs_acc_3_o_in_axes3_x*crs_h_3_in_spec3_y;
-        /* (crs-d_Gamma_3) coefficient of the acceleration in: moment about axis 3 of the distal links'
-           inertia and weight */
-        const real crs_d_Gamma_3_in_axes3_z = crs_w_1_in_axes3_z*(crs_J_3_in_spec3_xz*crs_s_3 -
-            crs_J_3_in_spec3_yz*crs_c_3_t);
-        const real crs_J_3_in_spec3_zz = m->crs_J_3_in_spec3_zz[i];
-        const real crs_d_Gamma_3_t = crs_J_3_in_spec3_zz*inv_crs_d_4_in_axes1_z;
-        const real crs_d_Gamma_3_in_axes3_x = crs_c_3_t*crs_d_Gamma_3_t - crs_h_3_in_spec3_y;
-        const real crs_d_Gamma_3_in_axes3_y = crs_h_3_in_spec3_x + crs_d_Gamma_3_t*crs_s_3;
-        /* (crs-mu_1_o) remainder without the acceleration in: inertia moment of the links that turn with
-           link 1, about their reference points */
-        const real crs_J_2_in_spec1_xx = m->crs_J_2_in_spec1_xx[i];
-        const real crs_h_2_in_spec1_y = m->crs_h_2_in_spec1_y[i];
-        const real crs_h_2_in_spec1_z = m->crs_h_2_in_spec1_z[i];
-        const real crs_mu_1_o_in_axes1_z = crs_J_2_in_spec1_xx*crs_qdd_1_o -
-            crs_g_in_axes1_x*crs_h_2_in_spec1_y - crs_g_in_axes1_y*crs_h_2_in_spec1_z;
         /* (crs-N_1_o) remainder without the acceleration in: moment about joint 1 of the links from 1
            outwards, the force at the connection point left out */
-        const real crs_N_1_o_in_axes1_z = crs_mu_1_o_in_axes1_z + crs_mu_3_o_in_axes3_x*crs_s_3 -
-            crs_c_3_t*crs_mu_3_o_in_axes3_y;
-        /* (crs-d_Gamma_2) coefficient of the acceleration in: force along axis 2 of the distal links'
-           inertia and weight */
-        const real crs_d_Gamma_2_t = crs_link2_mass*crs_r_1_t*inv_crs_d_4_in_axes1_z;
-        const real crs_d_Gamma_2_in_axes3_y = crs_d_Gamma_2_t*crs_s_3 - crs_c_3_t*crs_link2_mass;
-        /* (crs-d_Gamma_1) coefficient of the acceleration in: moment about axis 1 of the distal links'
-           inertia and weight */
-        const real crs_J_3_in_spec3_xx = m->crs_J_3_in_spec3_xx[i];
-        const real crs_J_3_in_spec3_yy = m->crs_J_3_in_spec3_yy[i];
-        const real crs_d_Gamma_1_in_axes1_x = crs_c_3_t*crs_h_3_in_spec3_x +
-            crs_h_3_in_spec3_y*crs_s_3 + crs_w_1_in_axes3_z*(crs_J_2_in_spec1_xx +
-            crs_s_3*(crs_J_3_in_spec3_xx*crs_s_3 - crs_J_3_in_spec3_xy*crs_c_3_t) -
-            crs_c_3_t*(crs_J_3_in_spec3_xy*crs_s_3 - crs_J_3_in_spec3_yy*crs_c_3_t));
+        const real crs_N_1_o_in_axes1_z = v.crs_mu_1_o_in_axes1_z +
+            v.crs_c_3*crs_mu_3_o_in_axes3_x - crs_mu_3_o_in_axes3_y*v.crs_s_3;
         /* (crs-d_c) coefficient of the acceleration in: leg force on the platform without actuation and
            without the mass at the connection point */
-        const real crs_d_c_in_axes3_xx = crs_h_3_in_spec3_y*crs_w_3_in_axes3_x -
-            crs_d_Gamma_3_in_axes3_x*crs_w_3_in_axes3_x -
-            crs_w_2_in_axes3_x*(crs_c_3_t*crs_d_Gamma_2_t + crs_link2_mass*crs_s_3);
-        const real crs_d_c_in_axes3_xy = crs_h_3_in_spec3_y*crs_w_3_in_axes3_y -
-            crs_d_Gamma_2_in_axes3_y*crs_w_2_in_axes3_x -
-            crs_d_Gamma_3_in_axes3_y*crs_w_3_in_axes3_x;
-        const real crs_d_c_in_axes3_xz = crs_d_alpha_3_t*crs_h_3_in_spec3_z -
-            crs_d_Gamma_3_in_axes3_z*crs_w_3_in_axes3_x;
-        const real crs_d_c_in_axes3_yz = crs_d_alpha_3_in_axes3_xz*crs_h_3_in_spec3_z -
-            crs_d_Gamma_3_in_axes3_z*crs_w_3_in_axes3_y;
+        const real crs_d_c_in_axes3_xx = crs_h_3_in_spec3_y*v.crs_w_3_in_axes3_x -
+            v.crs_d_Gamma_3_in_axes3_x*v.crs_w_3_in_axes3_x -
+            v.crs_w_2_in_axes3_x*(v.crs_c_3*crs_link2_mass + v.crs_d_Gamma_2_t*v.crs_s_3);
+        const real crs_d_c_in_axes3_xy = crs_h_3_in_spec3_y*v.crs_w_3_in_axes3_y -
+            v.crs_d_Gamma_2_in_axes3_y*v.crs_w_2_in_axes3_x -
+            v.crs_d_Gamma_3_in_axes3_y*v.crs_w_3_in_axes3_x;
         /* (crs-c_o) remainder without the acceleration in: leg force on the platform without actuation
            and without the mass at the connection point */
-        const real crs_c_o_t = inv_crs_d_4_in_axes1_z*(crs_mu_3_o_in_axes3_z +
-            crs_f_2_o_in_axes1_z*crs_r_1_t);
-        const real crs_c_o_in_axes3_x = crs_alpha_1_o_t*crs_h_3_in_spec3_z +
-            crs_h_3_in_spec3_x*(crs_mu_3_o_t_2 + crs_mu_3_o_t_3) -
-            crs_B_3_o_in_axes3_xy*crs_h_3_in_spec3_y - crs_c_3_t*crs_c_o_t -
-            crs_f_2_o_in_axes1_z*crs_s_3;
-        const real crs_c_o_in_axes3_y = crs_alpha_1_o_in_axes3_x*crs_h_3_in_spec3_z +
-            crs_c_3_t*crs_f_2_o_in_axes1_z + crs_h_3_in_spec3_y*(crs_mu_3_o_t + crs_mu_3_o_t_3) -
-            crs_B_3_o_in_axes3_yx*crs_h_3_in_spec3_x - crs_c_o_t*crs_s_3;
-        const real crs_c_o_in_axes3_z = crs_h_3_in_spec3_z*(crs_mu_3_o_t + crs_mu_3_o_t_2) -
-            crs_B_3_o_in_axes3_zx*crs_h_3_in_spec3_x - crs_B_3_o_in_axes3_zy*crs_h_3_in_spec3_y -
-            crs_N_1_o_in_axes1_z*crs_w_1_in_axes3_z;
+        const real crs_c_o_t = v.inv_crs_d_4_in_axes1_z*(crs_mu_3_o_in_axes3_z +
+            crs_f_2_o_in_axes1_z*v.crs_r_1_in_axes1_x);
+        const real crs_c_o_in_axes3_x = crs_h_3_in_spec3_x*(v.crs_mu_3_o_t_2 + v.crs_mu_3_o_t_3) -
+            crs_B_3_o_in_axes3_xy*crs_h_3_in_spec3_y -
+            v.crs_alpha_1_o_in_axes3_y*crs_h_3_in_spec3_z - v.crs_c_3*crs_f_2_o_in_axes1_z -
+            crs_c_o_t*v.crs_s_3;
+        const real crs_c_o_in_axes3_y = v.crs_alpha_1_o_in_axes3_x*crs_h_3_in_spec3_z +
+            crs_f_2_o_in_axes1_z*v.crs_s_3 + crs_h_3_in_spec3_y*(v.crs_mu_3_o_t +
+            v.crs_mu_3_o_t_3) - crs_B_3_o_in_axes3_yx*crs_h_3_in_spec3_x - v.crs_c_3*crs_c_o_t;
+        const real crs_c_o_in_axes3_z = crs_h_3_in_spec3_z*(v.crs_mu_3_o_t + v.crs_mu_3_o_t_2) -
+            v.crs_B_3_o_in_axes3_zx*crs_h_3_in_spec3_x -
+            v.crs_B_3_o_in_axes3_zy*crs_h_3_in_spec3_y -
+            crs_N_1_o_in_axes1_z*v.crs_w_1_in_axes3_z;
         /* (crs-Q) inertia of the leg at the connection point, without the mass gathered there */
-        const real crs_Q_t = crs_d_c_in_axes3_xx + crs_d_Gamma_2_in_axes3_y*crs_w_2_in_axes3_y +
-            crs_d_Gamma_3_in_axes3_y*crs_w_3_in_axes3_y + crs_h_3_in_spec3_x*crs_w_3_in_axes3_y;
+        const real crs_Q_t = crs_d_c_in_axes3_xx + v.crs_d_Gamma_2_in_axes3_y*v.crs_w_2_in_axes3_y
+            + v.crs_d_Gamma_3_in_axes3_y*v.crs_w_3_in_axes3_y +
+            crs_h_3_in_spec3_x*v.crs_w_3_in_axes3_y;
         const real crs_Q_t_2 = R(0.5)*crs_Q_t;
-        const real crs_Q_t_3 = crs_d_c_in_axes3_xx + crs_d_Gamma_1_in_axes1_x*crs_w_1_in_axes3_z +
-            crs_d_alpha_3_in_axes3_xz*crs_h_3_in_spec3_y + crs_d_alpha_3_t*crs_h_3_in_spec3_x;
+        const real crs_Q_t_3 = crs_d_c_in_axes3_xx +
+            v.crs_d_Gamma_1_in_axes1_y*v.crs_w_1_in_axes3_z +
+            v.crs_d_alpha_3_in_axes3_xz*crs_h_3_in_spec3_y + v.crs_d_alpha_3_t*crs_h_3_in_spec3_x;
         const real crs_Q_t_4 = R(0.5)*crs_Q_t_3;
-        const real crs_Q_t_5 = axis_x_crs_axes3_x*crs_d_c_in_axes3_xy +
-            axis_z_crs_axes3_x*crs_d_c_in_axes3_yz - axis_y_crs_axes3_x*crs_Q_t_2;
-        const real crs_Q_t_6 = axis_x_crs_axes3_y*crs_d_c_in_axes3_xy +
-            axis_z_crs_axes3_y*crs_d_c_in_axes3_yz - axis_y_crs_axes3_y*crs_Q_t_2;
-        const real crs_Q_t_7 = axis_x_crs_axes3_z*crs_d_c_in_axes3_xy +
-            axis_z_crs_axes3_z*crs_d_c_in_axes3_yz - axis_y_crs_axes3_z*crs_Q_t_2;
-        const real crs_Q_t_8 = axis_z_crs_axes3_x*crs_Q_t_4 -
-            axis_x_crs_axes3_x*crs_d_c_in_axes3_xz;
-        const real crs_Q_t_9 = axis_z_crs_axes3_y*crs_Q_t_4 -
-            axis_x_crs_axes3_y*crs_d_c_in_axes3_xz;
-        const real crs_Q_t_10 = axis_z_crs_axes3_z*crs_Q_t_4 -
-            axis_x_crs_axes3_z*crs_d_c_in_axes3_xz;
-        const real crs_Q_t_11 = axis_y_crs_axes3_x*crs_Q_t_5 - axis_z_crs_axes3_x*crs_Q_t_8;
+        const real crs_Q_t_5 = v.axis_x_crs_axes3_x*crs_d_c_in_axes3_xy +
+            v.axis_z_crs_axes3_x*v.crs_d_c_in_axes3_yz - v.axis_y_crs_axes3_x*crs_Q_t_2;
+        const real crs_Q_t_6 = v.axis_x_crs_axes3_y*crs_d_c_in_axes3_xy +
+            v.axis_z_crs_axes3_y*v.crs_d_c_in_axes3_yz - v.axis_y_crs_axes3_y*crs_Q_t_2;
+        const real crs_Q_t_7 = v.axis_x_crs_axes3_z*crs_d_c_in_axes3_xy +
+            v.axis_z_crs_axes3_z*v.crs_d_c_in_axes3_yz - v.axis_y_crs_axes3_z*crs_Q_t_2;
+        const real crs_Q_t_8 = v.axis_z_crs_axes3_x*crs_Q_t_4 -
+            v.axis_x_crs_axes3_x*v.crs_d_c_in_axes3_xz;
+        const real crs_Q_t_9 = v.axis_z_crs_axes3_y*crs_Q_t_4 -
+            v.axis_x_crs_axes3_y*v.crs_d_c_in_axes3_xz;
+        const real crs_Q_t_10 = v.axis_z_crs_axes3_z*crs_Q_t_4 -
+            v.axis_x_crs_axes3_z*v.crs_d_c_in_axes3_xz;
+        const real crs_Q_t_11 = v.axis_y_crs_axes3_x*crs_Q_t_5 - v.axis_z_crs_axes3_x*crs_Q_t_8;
         const real crs_Q_xx = -2*crs_Q_t_11 - crs_d_c_in_axes3_xx;
-        const real crs_Q_xy = axis_z_crs_axes3_x*crs_Q_t_9 + axis_z_crs_axes3_y*crs_Q_t_8 -
-            axis_y_crs_axes3_x*crs_Q_t_6 - axis_y_crs_axes3_y*crs_Q_t_5;
-        const real crs_Q_xz = axis_z_crs_axes3_x*crs_Q_t_10 + axis_z_crs_axes3_z*crs_Q_t_8 -
-            axis_y_crs_axes3_x*crs_Q_t_7 - axis_y_crs_axes3_z*crs_Q_t_5;
-        const real crs_Q_t_12 = axis_y_crs_axes3_y*crs_Q_t_6 - axis_z_crs_axes3_y*crs_Q_t_9;
+        const real crs_Q_xy = v.axis_z_crs_axes3_x*crs_Q_t_9 + v.axis_z_crs_axes3_y*crs_Q_t_8 -
+            v.axis_y_crs_axes3_x*crs_Q_t_6 - v.axis_y_crs_axes3_y*crs_Q_t_5;
+        const real crs_Q_xz = v.axis_z_crs_axes3_x*crs_Q_t_10 + v.axis_z_crs_axes3_z*crs_Q_t_8 -
+            v.axis_y_crs_axes3_x*crs_Q_t_7 - v.axis_y_crs_axes3_z*crs_Q_t_5;
+        const real crs_Q_t_12 = v.axis_y_crs_axes3_y*crs_Q_t_6 - v.axis_z_crs_axes3_y*crs_Q_t_9;
         const real crs_Q_yy = -2*crs_Q_t_12 - crs_d_c_in_axes3_xx;
-        const real crs_Q_yz = axis_z_crs_axes3_y*crs_Q_t_10 + axis_z_crs_axes3_z*crs_Q_t_9 -
-            axis_y_crs_axes3_y*crs_Q_t_7 - axis_y_crs_axes3_z*crs_Q_t_6;
-        const real crs_Q_t_13 = axis_y_crs_axes3_z*crs_Q_t_7 - axis_z_crs_axes3_z*crs_Q_t_10;
+        const real crs_Q_yz = v.axis_z_crs_axes3_y*crs_Q_t_10 + v.axis_z_crs_axes3_z*crs_Q_t_9 -
+            v.axis_y_crs_axes3_y*crs_Q_t_7 - v.axis_y_crs_axes3_z*crs_Q_t_6;
+        const real crs_Q_t_13 = v.axis_y_crs_axes3_z*crs_Q_t_7 - v.axis_z_crs_axes3_z*crs_Q_t_10;
         const real crs_Q_zz = -2*crs_Q_t_13 - crs_d_c_in_axes3_xx;
         /* (crs-U) velocity and gravity terms of the leg force */
-        const real crs_U_x = -axis_x_crs_axes3_x*crs_c_o_in_axes3_x -
-            axis_y_crs_axes3_x*crs_c_o_in_axes3_y - axis_z_crs_axes3_x*crs_c_o_in_axes3_z;
-        const real crs_U_y = -axis_x_crs_axes3_y*crs_c_o_in_axes3_x -
-            axis_y_crs_axes3_y*crs_c_o_in_axes3_y - axis_z_crs_axes3_y*crs_c_o_in_axes3_z;
-        const real crs_U_z = -axis_x_crs_axes3_z*crs_c_o_in_axes3_x -
-            axis_y_crs_axes3_z*crs_c_o_in_axes3_y - axis_z_crs_axes3_z*crs_c_o_in_axes3_z;
+        const real crs_U_x = -v.axis_x_crs_axes3_x*crs_c_o_in_axes3_x -
+            v.axis_y_crs_axes3_x*crs_c_o_in_axes3_y - v.axis_z_crs_axes3_x*crs_c_o_in_axes3_z;
+        const real crs_U_y = -v.axis_x_crs_axes3_y*crs_c_o_in_axes3_x -
+            v.axis_y_crs_axes3_y*crs_c_o_in_axes3_y - v.axis_z_crs_axes3_y*crs_c_o_in_axes3_z;
+        const real crs_U_z = -v.axis_x_crs_axes3_z*crs_c_o_in_axes3_x -
+            v.axis_y_crs_axes3_z*crs_c_o_in_axes3_y - v.axis_z_crs_axes3_z*crs_c_o_in_axes3_z;
         /* (M_ta) coupling block of M */
-        const real crs_M_ta_t = -crs_Q_xy*crs_q_z;
-        const real crs_M_ta_t_2 = crs_Q_xz*crs_q_y;
+        const real crs_M_ta_t = -crs_Q_xy*v.crs_q_z;
+        const real crs_M_ta_t_2 = crs_Q_xz*v.crs_q_y;
         const real crs_M_ta_t_3 = crs_M_ta_t + crs_M_ta_t_2;
-        const real crs_M_ta_t_4 = crs_Q_xx*crs_q_z - crs_Q_xz*crs_q_x;
-        const real crs_M_ta_t_5 = crs_Q_xy*crs_q_x - crs_Q_xx*crs_q_y;
-        const real crs_M_ta_t_6 = crs_Q_yz*crs_q_y - crs_Q_yy*crs_q_z;
-        const real crs_M_ta_t_7 = crs_Q_yz*crs_q_x;
+        const real crs_M_ta_t_4 = crs_Q_xx*v.crs_q_z - crs_Q_xz*v.crs_q_x;
+        const real crs_M_ta_t_5 = crs_Q_xy*v.crs_q_x - crs_Q_xx*v.crs_q_y;
+        const real crs_M_ta_t_6 = crs_Q_yz*v.crs_q_y - crs_Q_yy*v.crs_q_z;
+        const real crs_M_ta_t_7 = crs_Q_yz*v.crs_q_x;
         const real crs_M_ta_t_8 = crs_M_ta_t + crs_M_ta_t_7;
-        const real crs_M_ta_t_9 = crs_Q_yy*crs_q_x - crs_Q_xy*crs_q_y;
-        const real crs_M_ta_t_10 = crs_Q_zz*crs_q_y - crs_Q_yz*crs_q_z;
-        const real crs_M_ta_t_11 = crs_Q_xz*crs_q_z - crs_Q_zz*crs_q_x;
+        const real crs_M_ta_t_9 = crs_Q_yy*v.crs_q_x - crs_Q_xy*v.crs_q_y;
+        const real crs_M_ta_t_10 = crs_Q_zz*v.crs_q_y - crs_Q_yz*v.crs_q_z;
+        const real crs_M_ta_t_11 = crs_Q_xz*v.crs_q_z - crs_Q_zz*v.crs_q_x;
         const real crs_M_ta_t_12 = crs_M_ta_t_7 - crs_M_ta_t_2;
         /* (M_aa) rotational block of M */
-        const real crs_M_aa_t = crs_M_ta_t_10*crs_q_y - crs_M_ta_t_6*crs_q_z;
-        const real crs_M_aa_t_2 = crs_M_ta_t_11*crs_q_y + crs_M_ta_t_8*crs_q_z;
-        const real crs_M_aa_t_3 = crs_M_ta_t_12*crs_q_y - crs_M_ta_t_9*crs_q_z;
-        const real crs_M_aa_t_4 = crs_M_ta_t_4*crs_q_z - crs_M_ta_t_11*crs_q_x;
-        const real crs_M_aa_t_5 = crs_M_ta_t_5*crs_q_z - crs_M_ta_t_12*crs_q_x;
-        const real crs_M_aa_t_6 = crs_M_ta_t_9*crs_q_x - crs_M_ta_t_5*crs_q_y;
+        const real crs_M_aa_t = crs_M_ta_t_10*v.crs_q_y - crs_M_ta_t_6*v.crs_q_z;
+        const real crs_M_aa_t_2 = crs_M_ta_t_11*v.crs_q_y + crs_M_ta_t_8*v.crs_q_z;
+        const real crs_M_aa_t_3 = crs_M_ta_t_12*v.crs_q_y - crs_M_ta_t_9*v.crs_q_z;
+        const real crs_M_aa_t_4 = crs_M_ta_t_4*v.crs_q_z - crs_M_ta_t_11*v.crs_q_x;
+        const real crs_M_aa_t_5 = crs_M_ta_t_5*v.crs_q_z - crs_M_ta_t_12*v.crs_q_x;
+        const real crs_M_aa_t_6 = crs_M_ta_t_9*v.crs_q_x - crs_M_ta_t_5*v.crs_q_y;
         /* (Z_a) rotational part of Z */
-        const real crs_Z_a_t = crs_U_z*crs_q_y - crs_U_y*crs_q_z;
-        const real crs_Z_a_t_2 = crs_U_x*crs_q_z - crs_U_z*crs_q_x;
-        const real crs_Z_a_t_3 = crs_U_y*crs_q_x - crs_U_x*crs_q_y;
-        /* (crs-H_a_1) moment of the column's unit force about the platform origin */
-        const real crs_H_a_1_x = crs_q_y*crs_w_1_z - crs_q_z*crs_w_1_y;
-        const real crs_H_a_1_y = crs_q_z*crs_w_1_x - crs_q_x*crs_w_1_z;
-        const real crs_H_a_1_z = crs_q_x*crs_w_1_y - crs_q_y*crs_w_1_x;
+        const real crs_Z_a_t = crs_U_z*v.crs_q_y - crs_U_y*v.crs_q_z;
+        const real crs_Z_a_t_2 = crs_U_x*v.crs_q_z - crs_U_z*v.crs_q_x;
+        const real crs_Z_a_t_3 = crs_U_y*v.crs_q_x - crs_U_x*v.crs_q_y;
         /* (crs-H_a_2) moment of the column's unit force about the platform origin */
-        const real crs_H_a_2_x = crs_q_y*crs_w_2_z - crs_q_z*crs_w_2_y;
-        const real crs_H_a_2_y = crs_q_z*crs_w_2_x - crs_q_x*crs_w_2_z;
-        const real crs_H_a_2_z = crs_q_x*crs_w_2_y - crs_q_y*crs_w_2_x;
+        const real crs_H_a_2_x = v.crs_q_y*v.crs_w_2_z - v.crs_q_z*v.crs_w_2_y;
+        const real crs_H_a_2_y = v.crs_q_z*v.crs_w_2_x - v.crs_q_x*v.crs_w_2_z;
+        const real crs_H_a_2_z = v.crs_q_x*v.crs_w_2_y - v.crs_q_y*v.crs_w_2_x;
         /* (M_tt) translational block of M */
         gather(&terms[0*count + k], add, crs_Q_xx);  /* M_tt_xx_of_legs */
         gather(&terms[1*count + k], add, crs_Q_xy);  /* M_tt_xy */
@@ -1887,30 +2348,30 @@ INLINE void dynamics_legs_crs(const prepared *m, size_t w, size_t leg, size_t le
         gather(&terms[25*count + k], add, crs_Z_a_t_2);  /* Z_a_y_of_legs */
         gather(&terms[26*count + k], add, crs_Z_a_t_3);  /* Z_a_z_of_legs */
         /* (crs-w_1) reciprocal vector 1 */
-        o[0*count + k] = crs_w_1_x;
-        o[1*count + k] = crs_w_1_y;
-        o[2*count + k] = crs_w_1_z;
+        o[0*count + k] = v.crs_w_1_x;
+        o[1*count + k] = v.crs_w_1_y;
+        o[2*count + k] = v.crs_w_1_z;
         /* (crs-H_a_1) moment of the column's unit force about the platform origin */
-        o[3*count + k] = crs_H_a_1_x;
-        o[4*count + k] = crs_H_a_1_y;
-        o[5*count + k] = crs_H_a_1_z;
+        o[3*count + k] = v.crs_H_a_1_x;
+        o[4*count + k] = v.crs_H_a_1_y;
+        o[5*count + k] = v.crs_H_a_1_z;
         /* (crs-w_2) reciprocal vector 2 */
-        o[6*count + k] = crs_w_2_x;
-        o[7*count + k] = crs_w_2_y;
-        o[8*count + k] = crs_w_2_z;
+        o[6*count + k] = v.crs_w_2_x;
+        o[7*count + k] = v.crs_w_2_y;
+        o[8*count + k] = v.crs_w_2_z;
         /* (crs-H_a_2) moment of the column's unit force about the platform origin */
         o[9*count + k] = crs_H_a_2_x;
         o[10*count + k] = crs_H_a_2_y;
         o[11*count + k] = crs_H_a_2_z;
-        o[14*count + k] = ((crs_w_1_x + (crs_w_1_y + crs_w_1_z)) + (crs_H_a_1_x + (crs_H_a_1_y +
-            crs_H_a_1_z))) + ((crs_w_2_x + (crs_w_2_y + crs_w_2_z)) + (crs_H_a_2_x + (crs_H_a_2_y
-            + crs_H_a_2_z)));
+        o[14*count + k] = ((v.crs_w_1_x + (v.crs_w_1_y + v.crs_w_1_z)) + (v.crs_H_a_1_x +
+            (v.crs_H_a_1_y + v.crs_H_a_1_z))) + ((v.crs_w_2_x + (v.crs_w_2_y + v.crs_w_2_z)) +
+            (crs_H_a_2_x + (crs_H_a_2_y + crs_H_a_2_z)));
         const real crs_size_t_2 = m->crs_size_t_2[i];
         const real crs_size = m->crs_size[i];
-        o[13*count + k] = UNLESS(magnitude(crs_rho2_1) > TOLERANCE*TOLERANCE*crs_size_t_2) +
-            UNLESS(magnitude(crs_v_1_in_axes3_z) > TOLERANCE*crs_size) +
-            UNLESS(magnitude(crs_d_4_in_axes1_z) > TOLERANCE*crs_size);
-        o[12*count + k] = UNLESS(crs_disc_2 >= 0);
+        o[13*count + k] = UNLESS(magnitude(v.crs_rho2_1) > TOLERANCE*TOLERANCE*crs_size_t_2) +
+            UNLESS(magnitude(v.crs_v_1_in_axes3_z) > TOLERANCE*crs_size) +
+            UNLESS(magnitude(v.crs_d_4_in_axes1_z) > TOLERANCE*crs_size);
+        o[12*count + k] = UNLESS(v.crs_disc_2 >= 0);
     }
 }
 
@@ -1918,13 +2379,13 @@ INLINE void dynamics_place_crs(size_t w, size_t count, const real *o, size_t leg
     real *H, verdict *t)
 {
     for (size_t k = 0; k < w; ++k) {
-        H[(0*NU + 2*leg)*w + k] = o[0*count + first + k];
+        H[2*leg*w + k] = o[0*count + first + k];
         H[(NU + 2*leg)*w + k] = o[1*count + first + k];
         H[(2*NU + 2*leg)*w + k] = o[2*count + first + k];
         H[(3*NU + 2*leg)*w + k] = o[3*count + first + k];
         H[(4*NU + 2*leg)*w + k] = o[4*count + first + k];
         H[(5*NU + 2*leg)*w + k] = o[5*count + first + k];
-        H[(0*NU + 1 + 2*leg)*w + k] = o[6*count + first + k];
+        H[(1 + 2*leg)*w + k] = o[6*count + first + k];
         H[(NU + 1 + 2*leg)*w + k] = o[7*count + first + k];
         H[(2*NU + 1 + 2*leg)*w + k] = o[8*count + first + k];
         H[(3*NU + 1 + 2*leg)*w + k] = o[9*count + first + k];
@@ -1950,66 +2411,66 @@ INLINE void dynamics_after(const prepared *m, size_t w, const real *s, const rea
         const real M_tt_zz = M_tt_zz_of_legs + m_star;
         /* (M_ta) coupling block of M */
         const real M_ta_xy_of_legs = sums[7*w + k];
-        const real h_star_z = s[20*w + k];
+        const real h_star_z = s[11*w + k];
         const real M_ta_xy = M_ta_xy_of_legs + h_star_z;
         const real M_ta_xz_of_legs = sums[8*w + k];
-        const real h_star_y = s[19*w + k];
+        const real h_star_y = s[10*w + k];
         const real M_ta_xz = M_ta_xz_of_legs - h_star_y;
         const real M_ta_yx_of_legs = sums[9*w + k];
         const real M_ta_yx = M_ta_yx_of_legs - h_star_z;
         const real M_ta_yz_of_legs = sums[11*w + k];
-        const real h_star_x = s[18*w + k];
+        const real h_star_x = s[9*w + k];
         const real M_ta_yz = M_ta_yz_of_legs + h_star_x;
         const real M_ta_zx_of_legs = sums[12*w + k];
         const real M_ta_zx = M_ta_zx_of_legs + h_star_y;
         const real M_ta_zy_of_legs = sums[13*w + k];
         const real M_ta_zy = M_ta_zy_of_legs - h_star_x;
         /* (M_aa) rotational block of M */
-        const real J_star_xx = s[21*w + k];
+        const real J_star_xx = s[12*w + k];
         const real M_aa_xx_of_legs = sums[15*w + k];
         const real M_aa_xx = J_star_xx + M_aa_xx_of_legs;
-        const real J_star_xy = s[22*w + k];
+        const real J_star_xy = s[13*w + k];
         const real M_aa_xy_of_legs = sums[16*w + k];
         const real M_aa_xy = J_star_xy + M_aa_xy_of_legs;
-        const real J_star_xz = s[23*w + k];
+        const real J_star_xz = s[14*w + k];
         const real M_aa_xz_of_legs = sums[17*w + k];
         const real M_aa_xz = J_star_xz + M_aa_xz_of_legs;
-        const real J_star_yy = s[24*w + k];
+        const real J_star_yy = s[15*w + k];
         const real M_aa_yy_of_legs = sums[18*w + k];
         const real M_aa_yy = J_star_yy + M_aa_yy_of_legs;
-        const real J_star_yz = s[25*w + k];
+        const real J_star_yz = s[16*w + k];
         const real M_aa_yz_of_legs = sums[19*w + k];
         const real M_aa_yz = J_star_yz + M_aa_yz_of_legs;
-        const real J_star_zz = s[26*w + k];
+        const real J_star_zz = s[17*w + k];
         const real M_aa_zz_of_legs = sums[20*w + k];
         const real M_aa_zz = J_star_zz + M_aa_zz_of_legs;
         /* (Z_t) translational part of Z */
-        const real Z_p_x = s[27*w + k];
+        const real Z_p_x = s[18*w + k];
         const real Z_t_x_of_legs = sums[21*w + k];
         const real Z_t_x = Z_p_x + Z_t_x_of_legs;
-        const real Z_p_y = s[28*w + k];
+        const real Z_p_y = s[19*w + k];
         const real Z_t_y_of_legs = sums[22*w + k];
         const real Z_t_y = Z_p_y + Z_t_y_of_legs;
-        const real Z_p_z = s[29*w + k];
+        const real Z_p_z = s[20*w + k];
         const real Z_t_z_of_legs = sums[23*w + k];
         const real Z_t_z = Z_p_z + Z_t_z_of_legs;
         /* (Z_a) rotational part of Z */
         const real Z_a_x_of_legs = sums[24*w + k];
-        const real Z_q_x = s[30*w + k];
+        const real Z_q_x = s[21*w + k];
         const real Z_a_x = Z_a_x_of_legs + Z_q_x;
         const real Z_a_y_of_legs = sums[25*w + k];
-        const real Z_q_y = s[31*w + k];
+        const real Z_q_y = s[22*w + k];
         const real Z_a_y = Z_a_y_of_legs + Z_q_y;
         const real Z_a_z_of_legs = sums[26*w + k];
-        const real Z_q_z = s[32*w + k];
+        const real Z_q_z = s[23*w + k];
         const real Z_a_z = Z_a_z_of_legs + Z_q_z;
         /* (M_tt) translational block of M */
-        M[0*NV*w + k] = M_tt_xx;
+        M[0*w + k] = M_tt_xx;
         const real M_tt_xy = sums[1*w + k];
-        M[(0*NV + 1)*w + k] = M_tt_xy;
+        M[1*w + k] = M_tt_xy;
         M[NV*w + k] = M_tt_xy;
         const real M_tt_xz = sums[2*w + k];
-        M[(0*NV + 2)*w + k] = M_tt_xz;
+        M[2*w + k] = M_tt_xz;
         M[2*NV*w + k] = M_tt_xz;
         M[(NV + 1)*w + k] = M_tt_yy;
         const real M_tt_yz = sums[4*w + k];
@@ -2018,11 +2479,11 @@ INLINE void dynamics_after(const prepared *m, size_t w, const real *s, const rea
         M[(2*NV + 2)*w + k] = M_tt_zz;
         /* (M_ta) coupling block of M */
         const real M_ta_xx = sums[6*w + k];
-        M[(0*NV + 3)*w + k] = M_ta_xx;
+        M[3*w + k] = M_ta_xx;
         M[3*NV*w + k] = M_ta_xx;
-        M[(0*NV + 4)*w + k] = M_ta_xy;
+        M[4*w + k] = M_ta_xy;
         M[4*NV*w + k] = M_ta_xy;
-        M[(0*NV + 5)*w + k] = M_ta_xz;
+        M[5*w + k] = M_ta_xz;
         M[5*NV*w + k] = M_ta_xz;
         M[(NV + 3)*w + k] = M_ta_yx;
         M[(3*NV + 1)*w + k] = M_ta_yx;
@@ -2066,12 +2527,10 @@ INLINE void dynamics_after(const prepared *m, size_t w, const real *s, const rea
 INLINE void dynamics_run(const prepared *m, const real *X, const real *V, real *M, real *Z, real
     *H, verdict *t)
 {
-    real s[33] = {0};
-    real sums[27] = {0};
-    real terms_crs[27*LEGS(LEGS_OF_crs)] = {0};
-    real o_crs[15*LEGS(LEGS_OF_crs)] = {0};
+    real s[24] = {0}, sums[27] = {0};
+    real terms_crs[27*LEGS(LEGS_OF_crs)] = {0}, o_crs[15*LEGS(LEGS_OF_crs)] = {0};
     dynamics_before(m, 1, X, V, s, t);
-    dynamics_legs_crs(m, 1, 0, 1, s, 0, LEGS(LEGS_OF_crs), 0, terms_crs, o_crs);
+    dynamics_legs_crs(m, 1, 0, 1, s, 0, LEGS(LEGS_OF_crs), 0, X, V, terms_crs, o_crs);
     for (size_t leg = 0; leg < LEGS_OF_crs; ++leg) {
         dynamics_place_crs(1, LEGS(LEGS_OF_crs), o_crs, leg, leg, H, t);
     }
@@ -2084,13 +2543,12 @@ INLINE void dynamics_run(const prepared *m, const real *X, const real *V, real *
 INLINE void dynamics_run_lanes(const prepared *m, const real *X, const real *V, real *M, real *Z,
     real *H, verdict *t)
 {
-    real s[33*LANES];
-    real sums[27*LANES];
+    real s[24*LANES], sums[27*LANES];
     real o_crs[15*LANES];
     dynamics_before(m, LANES, X, V, s, t);
     clear(sums, 27*LANES);
     for (size_t leg = 0; leg < LEGS_OF_crs; ++leg) {
-        dynamics_legs_crs(m, LANES, leg, 0, s, 1, LANES, 1, sums, o_crs);
+        dynamics_legs_crs(m, LANES, leg, 0, s, 1, LANES, 1, X, V, sums, o_crs);
         dynamics_place_crs(LANES, LANES, o_crs, leg, 0, H, t);
     }
     dynamics_after(m, LANES, s, sums, M, Z, t);
@@ -2100,311 +2558,131 @@ INLINE void dynamics_run_lanes(const prepared *m, const real *X, const real *V, 
 INLINE void M_before(const prepared *m, size_t w, const real *X, real *s, verdict *t)
 {
     for (size_t k = 0; k < w; ++k) {
-        /* X: named entries */
-        const real X_0 = X[0*w + k];
-        const real t_x = X_0;
-        const real X_1 = X[1*w + k];
-        const real t_y = X_1;
-        const real X_2 = X[2*w + k];
-        const real t_z = X_2;
-        const real X_3 = X[3*w + k];
-        const real X_4 = X[4*w + k];
-        const real X_5 = X[5*w + k];
-        const real X_6 = X[6*w + k];
-        const real quaternion_norm2 = X_3*X_3 + X_4*X_4 + X_5*X_5 + X_6*X_6;
-        const real quaternion_scale = 2/quaternion_norm2;
-        const real quaternion_sx = X_3*quaternion_scale;
-        const real quaternion_sy = X_4*quaternion_scale;
-        const real quaternion_sz = X_5*quaternion_scale;
-        const real quaternion_wx = X_6*quaternion_sx;
-        const real quaternion_wy = X_6*quaternion_sy;
-        const real quaternion_wz = X_6*quaternion_sz;
-        const real quaternion_xx = X_3*quaternion_sx;
-        const real quaternion_xy = X_3*quaternion_sy;
-        const real quaternion_xz = X_3*quaternion_sz;
-        const real quaternion_yy = X_4*quaternion_sy;
-        const real quaternion_yz = X_4*quaternion_sz;
-        const real quaternion_zz = X_5*quaternion_sz;
-        const real R_xx = 1 - quaternion_yy - quaternion_zz;
-        const real R_xy = quaternion_xy - quaternion_wz;
-        const real R_xz = quaternion_wy + quaternion_xz;
-        const real R_yx = quaternion_wz + quaternion_xy;
-        const real R_yy = 1 - quaternion_xx - quaternion_zz;
-        const real R_yz = quaternion_yz - quaternion_wx;
-        const real R_zx = quaternion_xz - quaternion_wy;
-        const real R_zy = quaternion_wx + quaternion_yz;
-        const real R_zz = 1 - quaternion_xx - quaternion_yy;
-        /* (h_star) first moment about the platform origin */
-        const real h_star_in_platform_x = m->h_star_in_platform_x;
-        const real h_star_in_platform_y = m->h_star_in_platform_y;
-        const real h_star_in_platform_z = m->h_star_in_platform_z;
-        const real h_star_x = R_xx*h_star_in_platform_x + R_xy*h_star_in_platform_y +
-            R_xz*h_star_in_platform_z;
-        const real h_star_y = R_yx*h_star_in_platform_x + R_yy*h_star_in_platform_y +
-            R_yz*h_star_in_platform_z;
-        const real h_star_z = R_zx*h_star_in_platform_x + R_zy*h_star_in_platform_y +
-            R_zz*h_star_in_platform_z;
-        /* (J_star) inertia tensor about the platform origin */
-        const real J_star_in_platform_xy = m->J_star_in_platform_xy;
-        const real J_star_in_platform_yz = m->J_star_in_platform_yz;
-        const real J_star_t_12 = m->J_star_t_12;
-        const real J_star_t = J_star_in_platform_xy*R_xx + J_star_in_platform_yz*R_xz -
-            J_star_t_12*R_xy;
-        const real J_star_t_2 = J_star_in_platform_xy*R_yx + J_star_in_platform_yz*R_yz -
-            J_star_t_12*R_yy;
-        const real J_star_t_3 = J_star_in_platform_xy*R_zx + J_star_in_platform_yz*R_zz -
-            J_star_t_12*R_zy;
-        const real J_star_in_platform_xz = m->J_star_in_platform_xz;
-        const real J_star_t_14 = m->J_star_t_14;
-        const real J_star_t_4 = J_star_t_14*R_xz - J_star_in_platform_xz*R_xx;
-        const real J_star_t_5 = J_star_t_14*R_yz - J_star_in_platform_xz*R_yx;
-        const real J_star_t_6 = J_star_t_14*R_zz - J_star_in_platform_xz*R_zx;
-        const real J_star_t_7 = J_star_t*R_xy - J_star_t_4*R_xz;
-        const real J_star_in_platform_xx = m->J_star_in_platform_xx;
-        const real J_star_xx = J_star_in_platform_xx + 2*J_star_t_7;
-        const real J_star_xy = J_star_t*R_yy + J_star_t_2*R_xy - J_star_t_4*R_yz -
-            J_star_t_5*R_xz;
-        const real J_star_xz = J_star_t*R_zy + J_star_t_3*R_xy - J_star_t_4*R_zz -
-            J_star_t_6*R_xz;
-        const real J_star_t_8 = J_star_t_2*R_yy - J_star_t_5*R_yz;
-        const real J_star_yy = J_star_in_platform_xx + 2*J_star_t_8;
-        const real J_star_yz = J_star_t_2*R_zy + J_star_t_3*R_yy - J_star_t_5*R_zz -
-            J_star_t_6*R_yz;
-        const real J_star_t_9 = J_star_t_3*R_zy - J_star_t_6*R_zz;
-        const real J_star_zz = J_star_in_platform_xx + 2*J_star_t_9;
-        s[0*w + k] = t_x;
-        s[1*w + k] = t_y;
-        s[2*w + k] = t_z;
-        s[3*w + k] = R_xx;
-        s[4*w + k] = R_xy;
-        s[5*w + k] = R_xz;
-        s[6*w + k] = R_yx;
-        s[7*w + k] = R_yy;
-        s[8*w + k] = R_yz;
-        s[9*w + k] = R_zx;
-        s[10*w + k] = R_zy;
-        s[11*w + k] = R_zz;
-        s[12*w + k] = h_star_x;
-        s[13*w + k] = h_star_y;
-        s[14*w + k] = h_star_z;
-        s[15*w + k] = J_star_xx;
-        s[16*w + k] = J_star_xy;
-        s[17*w + k] = J_star_xz;
-        s[18*w + k] = J_star_yy;
-        s[19*w + k] = J_star_yz;
-        s[20*w + k] = J_star_zz;
-        t->invalid[k] += UNLESS(is_finite(quaternion_scale)) + UNLESS(quaternion_scale > 0);
+        values v;
+        stage_X(m, w, k, X, &v);
+        stage_M_dynamics(m, &v);
+        s[0*w + k] = v.R_xx;
+        s[1*w + k] = v.R_xy;
+        s[2*w + k] = v.R_xz;
+        s[3*w + k] = v.R_yx;
+        s[4*w + k] = v.R_yy;
+        s[5*w + k] = v.R_yz;
+        s[6*w + k] = v.R_zx;
+        s[7*w + k] = v.R_zy;
+        s[8*w + k] = v.R_zz;
+        s[9*w + k] = v.h_star_x;
+        s[10*w + k] = v.h_star_y;
+        s[11*w + k] = v.h_star_z;
+        s[12*w + k] = v.J_star_xx;
+        s[13*w + k] = v.J_star_xy;
+        s[14*w + k] = v.J_star_xz;
+        s[15*w + k] = v.J_star_yy;
+        s[16*w + k] = v.J_star_yz;
+        s[17*w + k] = v.J_star_zz;
+        t->invalid[k] += UNLESS(is_finite(v.quaternion_scale)) + UNLESS(v.quaternion_scale > 0);
     }
 }
 
 INLINE void M_legs_crs(const prepared *m, size_t w, size_t leg, size_t legs, const real *s, size_t
-    states, size_t count, int add, real *terms, real *o)
+    states, size_t count, int add, const real *X, real *terms, real *o)
 {
     for (size_t k = 0; k < count; ++k) {
         const size_t i = leg + legs*k;
         const size_t j = states*k;
-        /* (crs-S) from the base point to the connection point */
-        const real R_xx = s[3*w + j];
-        const real R_xy = s[4*w + j];
-        const real R_xz = s[5*w + j];
-        const real crs_platform_point_x = m->crs_platform_point_x[i];
-        const real crs_platform_point_y = m->crs_platform_point_y[i];
-        const real crs_platform_point_z = m->crs_platform_point_z[i];
-        const real crs_q_x = R_xx*crs_platform_point_x + R_xy*crs_platform_point_y +
-            R_xz*crs_platform_point_z;
-        const real R_yx = s[6*w + j];
-        const real R_yy = s[7*w + j];
-        const real R_yz = s[8*w + j];
-        const real crs_q_y = R_yx*crs_platform_point_x + R_yy*crs_platform_point_y +
-            R_yz*crs_platform_point_z;
-        const real R_zx = s[9*w + j];
-        const real R_zy = s[10*w + j];
-        const real R_zz = s[11*w + j];
-        const real crs_q_z = R_zx*crs_platform_point_x + R_zy*crs_platform_point_y +
-            R_zz*crs_platform_point_z;
-        const real crs_base_point_x = m->crs_base_point_x[i];
-        const real t_x = s[0*w + j];
-        const real crs_S_x = crs_q_x + t_x - crs_base_point_x;
-        const real crs_base_point_y = m->crs_base_point_y[i];
-        const real t_y = s[1*w + j];
-        const real crs_S_y = crs_q_y + t_y - crs_base_point_y;
-        const real crs_base_point_z = m->crs_base_point_z[i];
-        const real t_z = s[2*w + j];
-        const real crs_S_z = crs_q_z + t_z - crs_base_point_z;
-        /* (crs-px_1) component along the reference direction */
-        const real crs_base_frame_xy = m->crs_base_frame_xy[i];
-        const real crs_base_frame_yy = m->crs_base_frame_yy[i];
-        const real crs_base_frame_zy = m->crs_base_frame_zy[i];
-        const real crs_px_1 = crs_S_x*crs_base_frame_xy + crs_S_y*crs_base_frame_yy +
-            crs_S_z*crs_base_frame_zy;
-        /* (crs-py_1) component across the reference direction */
-        const real crs_base_frame_xz = m->crs_base_frame_xz[i];
-        const real crs_base_frame_yz = m->crs_base_frame_yz[i];
-        const real crs_base_frame_zz = m->crs_base_frame_zz[i];
-        const real crs_py_1 = crs_S_x*crs_base_frame_xz + crs_S_y*crs_base_frame_yz +
-            crs_S_z*crs_base_frame_zz;
-        /* (crs-rho2_1) squared amplitude */
-        const real crs_rho2_1 = crs_px_1*crs_px_1 + crs_py_1*crs_py_1;
-        /* (crs-root_1) root, with the sign of the branch */
-        const real crs_branch_1 = m->crs_branch_1[i];
-        const real crs_root_1 = crs_branch_1*root(crs_rho2_1);
-        /* (crs-c_1) cosine of the angle of joint 1 from its reference direction */
-        const real inv_crs_rho2_1 = 1/crs_rho2_1;
-        const real crs_c_1 = -crs_py_1*crs_root_1*inv_crs_rho2_1;
-        /* (crs-s_1) sine of the angle of joint 1 from its reference direction */
-        const real crs_s_1 = crs_px_1*crs_root_1*inv_crs_rho2_1;
-        /* (crs-xi_1) the vector from joint 1 to the connection point, resolved along link 1 */
-        const real crs_base_frame_xx = m->crs_base_frame_xx[i];
-        const real crs_base_frame_yx = m->crs_base_frame_yx[i];
-        const real crs_base_frame_zx = m->crs_base_frame_zx[i];
-        const real crs_xi_1_in_axes1_z = crs_S_x*crs_base_frame_xx + crs_S_y*crs_base_frame_yx +
-            crs_S_z*crs_base_frame_zx;
-        /* (crs-from_centre_2) from the centre at zero displacement to the connection point */
-        const real crs_joint3_offset_x = m->crs_joint3_offset_x[i];
-        const real crs_from_centre_2_in_axes1_z = crs_xi_1_in_axes1_z - crs_joint3_offset_x;
-        /* (crs-disc_2) discriminant of the distance equation */
-        const real crs_size_t = m->crs_size_t[i];
-        const real crs_disc_2 = crs_size_t - crs_root_1*crs_root_1;
-        /* (crs-q_2) displacement of joint 2 */
-        const real crs_branch_2 = m->crs_branch_2[i];
-        const real crs_q_2 = crs_from_centre_2_in_axes1_z + crs_branch_2*root(crs_disc_2);
-        /* (crs-x_3) from the origin of joint 3 to the connection point */
-        const real crs_x_3_in_axes1_z = crs_xi_1_in_axes1_z - crs_joint3_offset_x - crs_q_2;
-        /* (crs-c_3) cosine of the angle of joint 3 from its reference direction */
-        const real crs_platform_joint_offset_x = m->crs_platform_joint_offset_x[i];
-        const real inv_crs_size_t = m->inv_crs_size_t[i];
-        const real crs_c_3_t = crs_platform_joint_offset_x*crs_root_1*inv_crs_size_t;
-        /* (crs-s_3) sine of the angle of joint 3 from its reference direction */
-        const real crs_s_3 = crs_platform_joint_offset_x*crs_x_3_in_axes1_z*inv_crs_size_t;
-        /* (crs-r_1) from joint 1 to the connection point, along the links */
-        const real crs_r_1_t = crs_c_3_t*crs_platform_joint_offset_x;
-        const real crs_d_4_in_axes1_z = crs_platform_joint_offset_x*crs_s_3;
-        const real crs_r_1_in_axes1_z = crs_d_4_in_axes1_z + crs_joint3_offset_x + crs_q_2;
-        /* (crs-v_1) velocity of the connection point per rate of joint 1 */
-        const real crs_v_1_in_axes3_z = crs_c_3_t*(crs_c_3_t*crs_r_1_t +
-            crs_r_1_in_axes1_z*crs_s_3) + crs_s_3*(crs_r_1_t*crs_s_3 -
-            crs_c_3_t*crs_r_1_in_axes1_z);
-        /* (crs-w_1) reciprocal vector 1 */
-        const real crs_w_1_in_axes3_z = 1/crs_v_1_in_axes3_z;
+        values_crs v;
+        stage_crs_X(m, w, i, j, s, X, &v);
+        stage_crs_M_dynamics(m, i, &v);
         /* (crs-w_2) reciprocal vector 2 */
-        const real inv_crs_d_4_in_axes1_z = 1/crs_d_4_in_axes1_z;
-        const real crs_w_2_t = crs_r_1_t*inv_crs_d_4_in_axes1_z;
-        const real crs_w_2_in_axes3_x = crs_s_3 + crs_c_3_t*crs_w_2_t;
-        /* (crs-w_3) reciprocal vector 3 */
-        const real crs_w_3_in_axes3_x = crs_c_3_t*inv_crs_d_4_in_axes1_z;
-        const real crs_w_3_in_axes3_y = crs_s_3*inv_crs_d_4_in_axes1_z;
-        /* (crs-d_alpha_3) coefficient of the acceleration in: angular acceleration of link 3 */
-        const real crs_d_alpha_3_in_axes3_xz = crs_s_3*crs_w_1_in_axes3_z;
-        const real crs_d_alpha_3_t = crs_c_3_t*crs_w_1_in_axes3_z;
-        /* (crs-d_Gamma_3) coefficient of the acceleration in: moment about axis 3 of the distal links'
-           inertia and weight */
-        const real crs_J_3_in_spec3_xz = m->crs_J_3_in_spec3_xz[i];
-        const real crs_J_3_in_spec3_yz = m->crs_J_3_in_spec3_yz[i];
-        const real crs_d_Gamma_3_in_axes3_z = crs_w_1_in_axes3_z*(crs_J_3_in_spec3_xz*crs_s_3 -
-            crs_J_3_in_spec3_yz*crs_c_3_t);
-        const real crs_J_3_in_spec3_zz = m->crs_J_3_in_spec3_zz[i];
-        const real crs_d_Gamma_3_t = crs_J_3_in_spec3_zz*inv_crs_d_4_in_axes1_z;
-        const real crs_h_3_in_spec3_y = m->crs_h_3_in_spec3_y[i];
-        const real crs_d_Gamma_3_in_axes3_x = crs_c_3_t*crs_d_Gamma_3_t - crs_h_3_in_spec3_y;
-        const real crs_h_3_in_spec3_x = m->crs_h_3_in_spec3_x[i];
-        const real crs_d_Gamma_3_in_axes3_y = crs_h_3_in_spec3_x + crs_d_Gamma_3_t*crs_s_3;
-        /* (crs-d_Gamma_2) coefficient of the acceleration in: force along axis 2 of the distal links'
-           inertia and weight */
-        const real crs_link2_mass = m->crs_link2_mass[i];
-        const real crs_d_Gamma_2_t = crs_link2_mass*crs_r_1_t*inv_crs_d_4_in_axes1_z;
-        const real crs_d_Gamma_2_in_axes3_y = crs_d_Gamma_2_t*crs_s_3 - crs_c_3_t*crs_link2_mass;
-        /* (crs-d_Gamma_1) coefficient of the acceleration in: moment about axis 1 of the distal links'
-           inertia and weight */
-        const real crs_J_2_in_spec1_xx = m->crs_J_2_in_spec1_xx[i];
-        const real crs_J_3_in_spec3_xx = m->crs_J_3_in_spec3_xx[i];
-        const real crs_J_3_in_spec3_xy = m->crs_J_3_in_spec3_xy[i];
-        const real crs_J_3_in_spec3_yy = m->crs_J_3_in_spec3_yy[i];
-        const real crs_d_Gamma_1_in_axes1_x = crs_c_3_t*crs_h_3_in_spec3_x +
-            crs_h_3_in_spec3_y*crs_s_3 + crs_w_1_in_axes3_z*(crs_J_2_in_spec1_xx +
-            crs_s_3*(crs_J_3_in_spec3_xx*crs_s_3 - crs_J_3_in_spec3_xy*crs_c_3_t) -
-            crs_c_3_t*(crs_J_3_in_spec3_xy*crs_s_3 - crs_J_3_in_spec3_yy*crs_c_3_t));
+        const real crs_w_2_t = v.crs_r_1_in_axes1_x*v.inv_crs_d_4_in_axes1_z;
+        const real crs_w_2_in_axes3_x = v.crs_c_3 + v.crs_s_3*crs_w_2_t;
         /* (crs-d_c) coefficient of the acceleration in: leg force on the platform without actuation and
            without the mass at the connection point */
-        const real crs_d_c_in_axes3_xx = crs_h_3_in_spec3_y*crs_w_3_in_axes3_x -
-            crs_d_Gamma_3_in_axes3_x*crs_w_3_in_axes3_x -
-            crs_w_2_in_axes3_x*(crs_c_3_t*crs_d_Gamma_2_t + crs_link2_mass*crs_s_3);
-        const real crs_d_c_in_axes3_xy = crs_h_3_in_spec3_y*crs_w_3_in_axes3_y -
-            crs_d_Gamma_2_in_axes3_y*crs_w_2_in_axes3_x -
-            crs_d_Gamma_3_in_axes3_y*crs_w_3_in_axes3_x;
-        const real crs_h_3_in_spec3_z = m->crs_h_3_in_spec3_z[i];
-        const real crs_d_c_in_axes3_xz = crs_d_alpha_3_t*crs_h_3_in_spec3_z -
-            crs_d_Gamma_3_in_axes3_z*crs_w_3_in_axes3_x;
-        const real crs_d_c_in_axes3_yz = crs_d_alpha_3_in_axes3_xz*crs_h_3_in_spec3_z -
-            crs_d_Gamma_3_in_axes3_z*crs_w_3_in_axes3_y;
+        const real crs_h_3_in_spec3_y = m->crs_h_3_in_spec3_y[i];
+        const real crs_link2_mass = m->crs_link2_mass[i];
+        const real crs_d_c_in_axes3_xx = crs_h_3_in_spec3_y*v.crs_w_3_in_axes3_x -
+            v.crs_d_Gamma_3_in_axes3_x*v.crs_w_3_in_axes3_x -
+            crs_w_2_in_axes3_x*(v.crs_c_3*crs_link2_mass + v.crs_d_Gamma_2_t*v.crs_s_3);
+        const real crs_d_c_in_axes3_xy = crs_h_3_in_spec3_y*v.crs_w_3_in_axes3_y -
+            v.crs_d_Gamma_2_in_axes3_y*crs_w_2_in_axes3_x -
+            v.crs_d_Gamma_3_in_axes3_y*v.crs_w_3_in_axes3_x;
         /* (crs-Q) inertia of the leg at the connection point, without the mass gathered there */
-        const real axis_z_crs_axes3_x = crs_base_frame_xy*crs_c_1 + crs_base_frame_xz*crs_s_1;
-        const real axis_z_crs_axes3_y = crs_base_frame_yy*crs_c_1 + crs_base_frame_yz*crs_s_1;
-        const real axis_z_crs_axes3_z = crs_base_frame_zy*crs_c_1 + crs_base_frame_zz*crs_s_1;
-        const real crs_Q_t = crs_s_1*crs_s_3;
-        const real crs_Q_t_2 = -crs_c_1*crs_s_3;
+        const real crs_Q_t = v.crs_c_1*v.crs_c_3;
+        const real crs_Q_t_2 = v.crs_c_3*v.crs_s_1;
+        const real crs_base_frame_xx = m->crs_base_frame_xx[i];
+        const real crs_base_frame_xy = m->crs_base_frame_xy[i];
+        const real crs_base_frame_xz = m->crs_base_frame_xz[i];
         const real axis_y_crs_axes3_x = crs_Q_t*crs_base_frame_xy + crs_Q_t_2*crs_base_frame_xz -
-            crs_base_frame_xx*crs_c_3_t;
+            crs_base_frame_xx*v.crs_s_3;
+        const real crs_base_frame_yx = m->crs_base_frame_yx[i];
+        const real crs_base_frame_yy = m->crs_base_frame_yy[i];
+        const real crs_base_frame_yz = m->crs_base_frame_yz[i];
         const real axis_y_crs_axes3_y = crs_Q_t*crs_base_frame_yy + crs_Q_t_2*crs_base_frame_yz -
-            crs_base_frame_yx*crs_c_3_t;
+            crs_base_frame_yx*v.crs_s_3;
+        const real crs_base_frame_zx = m->crs_base_frame_zx[i];
+        const real crs_base_frame_zy = m->crs_base_frame_zy[i];
+        const real crs_base_frame_zz = m->crs_base_frame_zz[i];
         const real axis_y_crs_axes3_z = crs_Q_t*crs_base_frame_zy + crs_Q_t_2*crs_base_frame_zz -
-            crs_base_frame_zx*crs_c_3_t;
-        const real axis_x_crs_axes3_x = axis_y_crs_axes3_y*axis_z_crs_axes3_z -
-            axis_y_crs_axes3_z*axis_z_crs_axes3_y;
-        const real axis_x_crs_axes3_y = axis_y_crs_axes3_z*axis_z_crs_axes3_x -
-            axis_y_crs_axes3_x*axis_z_crs_axes3_z;
-        const real axis_x_crs_axes3_z = axis_y_crs_axes3_x*axis_z_crs_axes3_y -
-            axis_y_crs_axes3_y*axis_z_crs_axes3_x;
-        const real crs_Q_t_3 = crs_d_c_in_axes3_xx + crs_d_Gamma_2_in_axes3_y*(crs_s_3*crs_w_2_t -
-            crs_c_3_t) + crs_d_Gamma_3_in_axes3_y*crs_w_3_in_axes3_y +
-            crs_h_3_in_spec3_x*crs_w_3_in_axes3_y;
+            crs_base_frame_zx*v.crs_s_3;
+        const real axis_x_crs_axes3_x = axis_y_crs_axes3_y*v.axis_z_crs_axes3_z -
+            axis_y_crs_axes3_z*v.axis_z_crs_axes3_y;
+        const real axis_x_crs_axes3_y = axis_y_crs_axes3_z*v.axis_z_crs_axes3_x -
+            axis_y_crs_axes3_x*v.axis_z_crs_axes3_z;
+        const real axis_x_crs_axes3_z = axis_y_crs_axes3_x*v.axis_z_crs_axes3_y -
+            axis_y_crs_axes3_y*v.axis_z_crs_axes3_x;
+        const real crs_h_3_in_spec3_x = m->crs_h_3_in_spec3_x[i];
+        const real crs_Q_t_3 = crs_d_c_in_axes3_xx +
+            v.crs_d_Gamma_2_in_axes3_y*(v.crs_c_3*crs_w_2_t - v.crs_s_3) +
+            v.crs_d_Gamma_3_in_axes3_y*v.crs_w_3_in_axes3_y +
+            crs_h_3_in_spec3_x*v.crs_w_3_in_axes3_y;
         const real crs_Q_t_4 = R(0.5)*crs_Q_t_3;
-        const real crs_Q_t_5 = crs_d_c_in_axes3_xx + crs_d_Gamma_1_in_axes1_x*crs_w_1_in_axes3_z +
-            crs_d_alpha_3_in_axes3_xz*crs_h_3_in_spec3_y + crs_d_alpha_3_t*crs_h_3_in_spec3_x;
+        const real crs_Q_t_5 = crs_d_c_in_axes3_xx +
+            v.crs_d_Gamma_1_in_axes1_y*v.crs_w_1_in_axes3_z +
+            v.crs_d_alpha_3_in_axes3_xz*crs_h_3_in_spec3_y + v.crs_d_alpha_3_t*crs_h_3_in_spec3_x;
         const real crs_Q_t_6 = R(0.5)*crs_Q_t_5;
         const real crs_Q_t_7 = axis_x_crs_axes3_x*crs_d_c_in_axes3_xy +
-            axis_z_crs_axes3_x*crs_d_c_in_axes3_yz - axis_y_crs_axes3_x*crs_Q_t_4;
+            v.axis_z_crs_axes3_x*v.crs_d_c_in_axes3_yz - axis_y_crs_axes3_x*crs_Q_t_4;
         const real crs_Q_t_8 = axis_x_crs_axes3_y*crs_d_c_in_axes3_xy +
-            axis_z_crs_axes3_y*crs_d_c_in_axes3_yz - axis_y_crs_axes3_y*crs_Q_t_4;
+            v.axis_z_crs_axes3_y*v.crs_d_c_in_axes3_yz - axis_y_crs_axes3_y*crs_Q_t_4;
         const real crs_Q_t_9 = axis_x_crs_axes3_z*crs_d_c_in_axes3_xy +
-            axis_z_crs_axes3_z*crs_d_c_in_axes3_yz - axis_y_crs_axes3_z*crs_Q_t_4;
-        const real crs_Q_t_10 = axis_z_crs_axes3_x*crs_Q_t_6 -
-            axis_x_crs_axes3_x*crs_d_c_in_axes3_xz;
-        const real crs_Q_t_11 = axis_z_crs_axes3_y*crs_Q_t_6 -
-            axis_x_crs_axes3_y*crs_d_c_in_axes3_xz;
-        const real crs_Q_t_12 = axis_z_crs_axes3_z*crs_Q_t_6 -
-            axis_x_crs_axes3_z*crs_d_c_in_axes3_xz;
-        const real crs_Q_t_13 = axis_y_crs_axes3_x*crs_Q_t_7 - axis_z_crs_axes3_x*crs_Q_t_10;
+            v.axis_z_crs_axes3_z*v.crs_d_c_in_axes3_yz - axis_y_crs_axes3_z*crs_Q_t_4;
+        const real crs_Q_t_10 = v.axis_z_crs_axes3_x*crs_Q_t_6 -
+            axis_x_crs_axes3_x*v.crs_d_c_in_axes3_xz;
+        const real crs_Q_t_11 = v.axis_z_crs_axes3_y*crs_Q_t_6 -
+            axis_x_crs_axes3_y*v.crs_d_c_in_axes3_xz;
+        const real crs_Q_t_12 = v.axis_z_crs_axes3_z*crs_Q_t_6 -
+            axis_x_crs_axes3_z*v.crs_d_c_in_axes3_xz;
+        const real crs_Q_t_13 = axis_y_crs_axes3_x*crs_Q_t_7 - v.axis_z_crs_axes3_x*crs_Q_t_10;
         const real crs_Q_xx = -2*crs_Q_t_13 - crs_d_c_in_axes3_xx;
-        const real crs_Q_xy = axis_z_crs_axes3_x*crs_Q_t_11 + axis_z_crs_axes3_y*crs_Q_t_10 -
+        const real crs_Q_xy = v.axis_z_crs_axes3_x*crs_Q_t_11 + v.axis_z_crs_axes3_y*crs_Q_t_10 -
             axis_y_crs_axes3_x*crs_Q_t_8 - axis_y_crs_axes3_y*crs_Q_t_7;
-        const real crs_Q_xz = axis_z_crs_axes3_x*crs_Q_t_12 + axis_z_crs_axes3_z*crs_Q_t_10 -
+        const real crs_Q_xz = v.axis_z_crs_axes3_x*crs_Q_t_12 + v.axis_z_crs_axes3_z*crs_Q_t_10 -
             axis_y_crs_axes3_x*crs_Q_t_9 - axis_y_crs_axes3_z*crs_Q_t_7;
-        const real crs_Q_t_14 = axis_y_crs_axes3_y*crs_Q_t_8 - axis_z_crs_axes3_y*crs_Q_t_11;
+        const real crs_Q_t_14 = axis_y_crs_axes3_y*crs_Q_t_8 - v.axis_z_crs_axes3_y*crs_Q_t_11;
         const real crs_Q_yy = -2*crs_Q_t_14 - crs_d_c_in_axes3_xx;
-        const real crs_Q_yz = axis_z_crs_axes3_y*crs_Q_t_12 + axis_z_crs_axes3_z*crs_Q_t_11 -
+        const real crs_Q_yz = v.axis_z_crs_axes3_y*crs_Q_t_12 + v.axis_z_crs_axes3_z*crs_Q_t_11 -
             axis_y_crs_axes3_y*crs_Q_t_9 - axis_y_crs_axes3_z*crs_Q_t_8;
-        const real crs_Q_t_15 = axis_y_crs_axes3_z*crs_Q_t_9 - axis_z_crs_axes3_z*crs_Q_t_12;
+        const real crs_Q_t_15 = axis_y_crs_axes3_z*crs_Q_t_9 - v.axis_z_crs_axes3_z*crs_Q_t_12;
         const real crs_Q_zz = -2*crs_Q_t_15 - crs_d_c_in_axes3_xx;
         /* (M_ta) coupling block of M */
-        const real crs_M_ta_t = -crs_Q_xy*crs_q_z;
-        const real crs_M_ta_t_2 = crs_Q_xz*crs_q_y;
+        const real crs_M_ta_t = -crs_Q_xy*v.crs_q_z;
+        const real crs_M_ta_t_2 = crs_Q_xz*v.crs_q_y;
         const real crs_M_ta_t_3 = crs_M_ta_t + crs_M_ta_t_2;
-        const real crs_M_ta_t_4 = crs_Q_xx*crs_q_z - crs_Q_xz*crs_q_x;
-        const real crs_M_ta_t_5 = crs_Q_xy*crs_q_x - crs_Q_xx*crs_q_y;
-        const real crs_M_ta_t_6 = crs_Q_yz*crs_q_y - crs_Q_yy*crs_q_z;
-        const real crs_M_ta_t_7 = crs_Q_yz*crs_q_x;
+        const real crs_M_ta_t_4 = crs_Q_xx*v.crs_q_z - crs_Q_xz*v.crs_q_x;
+        const real crs_M_ta_t_5 = crs_Q_xy*v.crs_q_x - crs_Q_xx*v.crs_q_y;
+        const real crs_M_ta_t_6 = crs_Q_yz*v.crs_q_y - crs_Q_yy*v.crs_q_z;
+        const real crs_M_ta_t_7 = crs_Q_yz*v.crs_q_x;
         const real crs_M_ta_t_8 = crs_M_ta_t + crs_M_ta_t_7;
-        const real crs_M_ta_t_9 = crs_Q_yy*crs_q_x - crs_Q_xy*crs_q_y;
-        const real crs_M_ta_t_10 = crs_Q_zz*crs_q_y - crs_Q_yz*crs_q_z;
-        const real crs_M_ta_t_11 = crs_Q_xz*crs_q_z - crs_Q_zz*crs_q_x;
+        const real crs_M_ta_t_9 = crs_Q_yy*v.crs_q_x - crs_Q_xy*v.crs_q_y;
+        const real crs_M_ta_t_10 = crs_Q_zz*v.crs_q_y - crs_Q_yz*v.crs_q_z;
+        const real crs_M_ta_t_11 = crs_Q_xz*v.crs_q_z - crs_Q_zz*v.crs_q_x;
         const real crs_M_ta_t_12 = crs_M_ta_t_7 - crs_M_ta_t_2;
         /* (M_aa) rotational block of M */
-        const real crs_M_aa_t = crs_M_ta_t_10*crs_q_y - crs_M_ta_t_6*crs_q_z;
-        const real crs_M_aa_t_2 = crs_M_ta_t_11*crs_q_y + crs_M_ta_t_8*crs_q_z;
-        const real crs_M_aa_t_3 = crs_M_ta_t_12*crs_q_y - crs_M_ta_t_9*crs_q_z;
-        const real crs_M_aa_t_4 = crs_M_ta_t_4*crs_q_z - crs_M_ta_t_11*crs_q_x;
-        const real crs_M_aa_t_5 = crs_M_ta_t_5*crs_q_z - crs_M_ta_t_12*crs_q_x;
-        const real crs_M_aa_t_6 = crs_M_ta_t_9*crs_q_x - crs_M_ta_t_5*crs_q_y;
+        const real crs_M_aa_t = crs_M_ta_t_10*v.crs_q_y - crs_M_ta_t_6*v.crs_q_z;
+        const real crs_M_aa_t_2 = crs_M_ta_t_11*v.crs_q_y + crs_M_ta_t_8*v.crs_q_z;
+        const real crs_M_aa_t_3 = crs_M_ta_t_12*v.crs_q_y - crs_M_ta_t_9*v.crs_q_z;
+        const real crs_M_aa_t_4 = crs_M_ta_t_4*v.crs_q_z - crs_M_ta_t_11*v.crs_q_x;
+        const real crs_M_aa_t_5 = crs_M_ta_t_5*v.crs_q_z - crs_M_ta_t_12*v.crs_q_x;
+        const real crs_M_aa_t_6 = crs_M_ta_t_9*v.crs_q_x - crs_M_ta_t_5*v.crs_q_y;
         /* (M_tt) translational block of M */
         gather(&terms[0*count + k], add, crs_Q_xx);  /* M_tt_xx_of_legs */
         gather(&terms[1*count + k], add, crs_Q_xy);  /* M_tt_xy */
@@ -2431,10 +2709,10 @@ INLINE void M_legs_crs(const prepared *m, size_t w, size_t leg, size_t legs, con
         gather(&terms[20*count + k], add, crs_M_aa_t_6);  /* M_aa_zz_of_legs */
         const real crs_size_t_2 = m->crs_size_t_2[i];
         const real crs_size = m->crs_size[i];
-        o[1*count + k] = UNLESS(magnitude(crs_rho2_1) > TOLERANCE*TOLERANCE*crs_size_t_2) +
-            UNLESS(magnitude(crs_v_1_in_axes3_z) > TOLERANCE*crs_size) +
-            UNLESS(magnitude(crs_d_4_in_axes1_z) > TOLERANCE*crs_size);
-        o[0*count + k] = UNLESS(crs_disc_2 >= 0);
+        o[1*count + k] = UNLESS(magnitude(v.crs_rho2_1) > TOLERANCE*TOLERANCE*crs_size_t_2) +
+            UNLESS(magnitude(v.crs_v_1_in_axes3_z) > TOLERANCE*crs_size) +
+            UNLESS(magnitude(v.crs_d_4_in_axes1_z) > TOLERANCE*crs_size);
+        o[0*count + k] = UNLESS(v.crs_disc_2 >= 0);
     }
 }
 
@@ -2460,46 +2738,46 @@ INLINE void M_after(const prepared *m, size_t w, const real *s, const real *sums
         const real M_tt_zz = M_tt_zz_of_legs + m_star;
         /* (M_ta) coupling block of M */
         const real M_ta_xy_of_legs = sums[7*w + k];
-        const real h_star_z = s[14*w + k];
+        const real h_star_z = s[11*w + k];
         const real M_ta_xy = M_ta_xy_of_legs + h_star_z;
         const real M_ta_xz_of_legs = sums[8*w + k];
-        const real h_star_y = s[13*w + k];
+        const real h_star_y = s[10*w + k];
         const real M_ta_xz = M_ta_xz_of_legs - h_star_y;
         const real M_ta_yx_of_legs = sums[9*w + k];
         const real M_ta_yx = M_ta_yx_of_legs - h_star_z;
         const real M_ta_yz_of_legs = sums[11*w + k];
-        const real h_star_x = s[12*w + k];
+        const real h_star_x = s[9*w + k];
         const real M_ta_yz = M_ta_yz_of_legs + h_star_x;
         const real M_ta_zx_of_legs = sums[12*w + k];
         const real M_ta_zx = M_ta_zx_of_legs + h_star_y;
         const real M_ta_zy_of_legs = sums[13*w + k];
         const real M_ta_zy = M_ta_zy_of_legs - h_star_x;
         /* (M_aa) rotational block of M */
-        const real J_star_xx = s[15*w + k];
+        const real J_star_xx = s[12*w + k];
         const real M_aa_xx_of_legs = sums[15*w + k];
         const real M_aa_xx = J_star_xx + M_aa_xx_of_legs;
-        const real J_star_xy = s[16*w + k];
+        const real J_star_xy = s[13*w + k];
         const real M_aa_xy_of_legs = sums[16*w + k];
         const real M_aa_xy = J_star_xy + M_aa_xy_of_legs;
-        const real J_star_xz = s[17*w + k];
+        const real J_star_xz = s[14*w + k];
         const real M_aa_xz_of_legs = sums[17*w + k];
         const real M_aa_xz = J_star_xz + M_aa_xz_of_legs;
-        const real J_star_yy = s[18*w + k];
+        const real J_star_yy = s[15*w + k];
         const real M_aa_yy_of_legs = sums[18*w + k];
         const real M_aa_yy = J_star_yy + M_aa_yy_of_legs;
-        const real J_star_yz = s[19*w + k];
+        const real J_star_yz = s[16*w + k];
         const real M_aa_yz_of_legs = sums[19*w + k];
         const real M_aa_yz = J_star_yz + M_aa_yz_of_legs;
-        const real J_star_zz = s[20*w + k];
+        const real J_star_zz = s[17*w + k];
         const real M_aa_zz_of_legs = sums[20*w + k];
         const real M_aa_zz = J_star_zz + M_aa_zz_of_legs;
         /* (M_tt) translational block of M */
-        M[0*NV*w + k] = M_tt_xx;
+        M[0*w + k] = M_tt_xx;
         const real M_tt_xy = sums[1*w + k];
-        M[(0*NV + 1)*w + k] = M_tt_xy;
+        M[1*w + k] = M_tt_xy;
         M[NV*w + k] = M_tt_xy;
         const real M_tt_xz = sums[2*w + k];
-        M[(0*NV + 2)*w + k] = M_tt_xz;
+        M[2*w + k] = M_tt_xz;
         M[2*NV*w + k] = M_tt_xz;
         M[(NV + 1)*w + k] = M_tt_yy;
         const real M_tt_yz = sums[4*w + k];
@@ -2508,11 +2786,11 @@ INLINE void M_after(const prepared *m, size_t w, const real *s, const real *sums
         M[(2*NV + 2)*w + k] = M_tt_zz;
         /* (M_ta) coupling block of M */
         const real M_ta_xx = sums[6*w + k];
-        M[(0*NV + 3)*w + k] = M_ta_xx;
+        M[3*w + k] = M_ta_xx;
         M[3*NV*w + k] = M_ta_xx;
-        M[(0*NV + 4)*w + k] = M_ta_xy;
+        M[4*w + k] = M_ta_xy;
         M[4*NV*w + k] = M_ta_xy;
-        M[(0*NV + 5)*w + k] = M_ta_xz;
+        M[5*w + k] = M_ta_xz;
         M[5*NV*w + k] = M_ta_xz;
         M[(NV + 3)*w + k] = M_ta_yx;
         M[(3*NV + 1)*w + k] = M_ta_yx;
@@ -2547,12 +2825,10 @@ INLINE void M_after(const prepared *m, size_t w, const real *s, const real *sums
 
 INLINE void M_run(const prepared *m, const real *X, real *M, verdict *t)
 {
-    real s[21] = {0};
-    real sums[21] = {0};
-    real terms_crs[21*LEGS(LEGS_OF_crs)] = {0};
-    real o_crs[2*LEGS(LEGS_OF_crs)] = {0};
+    real s[18] = {0}, sums[21] = {0};
+    real terms_crs[21*LEGS(LEGS_OF_crs)] = {0}, o_crs[2*LEGS(LEGS_OF_crs)] = {0};
     M_before(m, 1, X, s, t);
-    M_legs_crs(m, 1, 0, 1, s, 0, LEGS(LEGS_OF_crs), 0, terms_crs, o_crs);
+    M_legs_crs(m, 1, 0, 1, s, 0, LEGS(LEGS_OF_crs), 0, X, terms_crs, o_crs);
     for (size_t leg = 0; leg < LEGS_OF_crs; ++leg) {
         M_place_crs(1, LEGS(LEGS_OF_crs), o_crs, leg, t);
     }
@@ -2564,13 +2840,12 @@ INLINE void M_run(const prepared *m, const real *X, real *M, verdict *t)
 
 INLINE void M_run_lanes(const prepared *m, const real *X, real *M, verdict *t)
 {
-    real s[21*LANES];
-    real sums[21*LANES];
+    real s[18*LANES], sums[21*LANES];
     real o_crs[2*LANES];
     M_before(m, LANES, X, s, t);
     clear(sums, 21*LANES);
     for (size_t leg = 0; leg < LEGS_OF_crs; ++leg) {
-        M_legs_crs(m, LANES, leg, 0, s, 1, LANES, 1, sums, o_crs);
+        M_legs_crs(m, LANES, leg, 0, s, 1, LANES, 1, X, sums, o_crs);
         M_place_crs(LANES, LANES, o_crs, 0, t);
     }
     M_after(m, LANES, s, sums, M, t);
@@ -2581,344 +2856,93 @@ INLINE void Z_before(const prepared *m, size_t w, const real *X, const real *V, 
     *t)
 {
     for (size_t k = 0; k < w; ++k) {
-        /* X: named entries */
-        const real X_0 = X[0*w + k];
-        const real t_x = X_0;
-        const real X_1 = X[1*w + k];
-        const real t_y = X_1;
-        const real X_2 = X[2*w + k];
-        const real t_z = X_2;
-        const real X_3 = X[3*w + k];
-        const real X_4 = X[4*w + k];
-        const real X_5 = X[5*w + k];
-        const real X_6 = X[6*w + k];
-        const real quaternion_norm2 = X_3*X_3 + X_4*X_4 + X_5*X_5 + X_6*X_6;
-        const real quaternion_scale = 2/quaternion_norm2;
-        const real quaternion_sx = X_3*quaternion_scale;
-        const real quaternion_sy = X_4*quaternion_scale;
-        const real quaternion_sz = X_5*quaternion_scale;
-        const real quaternion_wx = X_6*quaternion_sx;
-        const real quaternion_wy = X_6*quaternion_sy;
-        const real quaternion_wz = X_6*quaternion_sz;
-        const real quaternion_xx = X_3*quaternion_sx;
-        const real quaternion_xy = X_3*quaternion_sy;
-        const real quaternion_xz = X_3*quaternion_sz;
-        const real quaternion_yy = X_4*quaternion_sy;
-        const real quaternion_yz = X_4*quaternion_sz;
-        const real quaternion_zz = X_5*quaternion_sz;
-        const real R_xx = 1 - quaternion_yy - quaternion_zz;
-        const real R_xy = quaternion_xy - quaternion_wz;
-        const real R_xz = quaternion_wy + quaternion_xz;
-        const real R_yx = quaternion_wz + quaternion_xy;
-        const real R_yy = 1 - quaternion_xx - quaternion_zz;
-        const real R_yz = quaternion_yz - quaternion_wx;
-        const real R_zx = quaternion_xz - quaternion_wy;
-        const real R_zy = quaternion_wx + quaternion_yz;
-        const real R_zz = 1 - quaternion_xx - quaternion_yy;
-        /* V: named entries */
-        const real V_0 = V[0*w + k];
-        const real t_dot_x = V_0;
-        const real V_1 = V[1*w + k];
-        const real t_dot_y = V_1;
-        const real V_2 = V[2*w + k];
-        const real t_dot_z = V_2;
-        const real V_3 = V[3*w + k];
-        const real omega_x = V_3;
-        const real V_4 = V[4*w + k];
-        const real omega_y = V_4;
-        const real V_5 = V[5*w + k];
-        const real omega_z = V_5;
-        /* (h_star) first moment about the platform origin */
-        const real h_star_in_platform_x = m->h_star_in_platform_x;
-        const real h_star_in_platform_y = m->h_star_in_platform_y;
-        const real h_star_in_platform_z = m->h_star_in_platform_z;
-        const real h_star_x = R_xx*h_star_in_platform_x + R_xy*h_star_in_platform_y +
-            R_xz*h_star_in_platform_z;
-        const real h_star_y = R_yx*h_star_in_platform_x + R_yy*h_star_in_platform_y +
-            R_yz*h_star_in_platform_z;
-        const real h_star_z = R_zx*h_star_in_platform_x + R_zy*h_star_in_platform_y +
-            R_zz*h_star_in_platform_z;
-        /* (Z_p) centripetal force and weight of the platform */
-        const real Z_p_t_4 = h_star_z*omega_y - h_star_y*omega_z;
-        const real Z_p_t_5 = h_star_x*omega_z - h_star_z*omega_x;
-        const real Z_p_t_6 = h_star_y*omega_x - h_star_x*omega_y;
-        const real Z_p_t = m->Z_p_t;
-        const real Z_p_x = Z_p_t_6*omega_y - Z_p_t - Z_p_t_5*omega_z;
-        const real Z_p_t_2 = m->Z_p_t_2;
-        const real Z_p_y = Z_p_t_4*omega_z - Z_p_t_2 - Z_p_t_6*omega_x;
-        const real Z_p_t_3 = m->Z_p_t_3;
-        const real Z_p_z = Z_p_t_5*omega_x - Z_p_t_3 - Z_p_t_4*omega_y;
-        /* (Z_q) gyroscopic moment and moment of the weight of the platform */
-        const real gravity_x = m->gravity_x;
-        const real gravity_y = m->gravity_y;
-        const real gravity_z = m->gravity_z;
-        const real g_in_platform_x = R_xx*gravity_x + R_yx*gravity_y + R_zx*gravity_z;
-        const real g_in_platform_y = R_xy*gravity_x + R_yy*gravity_y + R_zy*gravity_z;
-        const real g_in_platform_z = R_xz*gravity_x + R_yz*gravity_y + R_zz*gravity_z;
-        const real omega_in_platform_x = R_xx*omega_x + R_yx*omega_y + R_zx*omega_z;
-        const real omega_in_platform_y = R_xy*omega_x + R_yy*omega_y + R_zy*omega_z;
-        const real omega_in_platform_z = R_xz*omega_x + R_yz*omega_y + R_zz*omega_z;
-        const real J_star_in_platform_xx = m->J_star_in_platform_xx;
-        const real J_star_in_platform_xy = m->J_star_in_platform_xy;
-        const real J_star_in_platform_xz = m->J_star_in_platform_xz;
-        const real Z_q_t = J_star_in_platform_xx*omega_in_platform_x +
-            J_star_in_platform_xy*omega_in_platform_y + J_star_in_platform_xz*omega_in_platform_z;
-        const real J_star_in_platform_yy = m->J_star_in_platform_yy;
-        const real J_star_in_platform_yz = m->J_star_in_platform_yz;
-        const real Z_q_t_2 = J_star_in_platform_xy*omega_in_platform_x +
-            J_star_in_platform_yy*omega_in_platform_y + J_star_in_platform_yz*omega_in_platform_z;
-        const real J_star_in_platform_zz = m->J_star_in_platform_zz;
-        const real Z_q_t_3 = J_star_in_platform_xz*omega_in_platform_x +
-            J_star_in_platform_yz*omega_in_platform_y + J_star_in_platform_zz*omega_in_platform_z;
-        const real Z_q_in_platform_x = Z_q_t_3*omega_in_platform_y +
-            g_in_platform_y*h_star_in_platform_z - Z_q_t_2*omega_in_platform_z -
-            g_in_platform_z*h_star_in_platform_y;
-        const real Z_q_in_platform_y = Z_q_t*omega_in_platform_z +
-            g_in_platform_z*h_star_in_platform_x - Z_q_t_3*omega_in_platform_x -
-            g_in_platform_x*h_star_in_platform_z;
-        const real Z_q_in_platform_z = Z_q_t_2*omega_in_platform_x +
-            g_in_platform_x*h_star_in_platform_y - Z_q_t*omega_in_platform_y -
-            g_in_platform_y*h_star_in_platform_x;
-        const real Z_q_x = R_xx*Z_q_in_platform_x + R_xy*Z_q_in_platform_y +
-            R_xz*Z_q_in_platform_z;
-        const real Z_q_y = R_yx*Z_q_in_platform_x + R_yy*Z_q_in_platform_y +
-            R_yz*Z_q_in_platform_z;
-        const real Z_q_z = R_zx*Z_q_in_platform_x + R_zy*Z_q_in_platform_y +
-            R_zz*Z_q_in_platform_z;
-        s[0*w + k] = t_x;
-        s[1*w + k] = t_y;
-        s[2*w + k] = t_z;
-        s[3*w + k] = R_xx;
-        s[4*w + k] = R_xy;
-        s[5*w + k] = R_xz;
-        s[6*w + k] = R_yx;
-        s[7*w + k] = R_yy;
-        s[8*w + k] = R_yz;
-        s[9*w + k] = R_zx;
-        s[10*w + k] = R_zy;
-        s[11*w + k] = R_zz;
-        s[12*w + k] = t_dot_x;
-        s[13*w + k] = t_dot_y;
-        s[14*w + k] = t_dot_z;
-        s[15*w + k] = omega_x;
-        s[16*w + k] = omega_y;
-        s[17*w + k] = omega_z;
-        s[18*w + k] = Z_p_x;
-        s[19*w + k] = Z_p_y;
-        s[20*w + k] = Z_p_z;
-        s[21*w + k] = Z_q_x;
-        s[22*w + k] = Z_q_y;
-        s[23*w + k] = Z_q_z;
-        t->invalid[k] += UNLESS(is_finite(quaternion_scale)) + UNLESS(quaternion_scale > 0);
+        values v;
+        stage_X(m, w, k, X, &v);
+        stage_V_X(w, k, V, &v);
+        stage_Z_dynamics(m, w, k, V, &v);
+        s[0*w + k] = v.R_xx;
+        s[1*w + k] = v.R_xy;
+        s[2*w + k] = v.R_xz;
+        s[3*w + k] = v.R_yx;
+        s[4*w + k] = v.R_yy;
+        s[5*w + k] = v.R_yz;
+        s[6*w + k] = v.R_zx;
+        s[7*w + k] = v.R_zy;
+        s[8*w + k] = v.R_zz;
+        s[9*w + k] = v.Z_p_x;
+        s[10*w + k] = v.Z_p_y;
+        s[11*w + k] = v.Z_p_z;
+        s[12*w + k] = v.Z_q_x;
+        s[13*w + k] = v.Z_q_y;
+        s[14*w + k] = v.Z_q_z;
+        t->invalid[k] += UNLESS(is_finite(v.quaternion_scale)) + UNLESS(v.quaternion_scale > 0);
     }
 }
 
 INLINE void Z_legs_crs(const prepared *m, size_t w, size_t leg, size_t legs, const real *s, size_t
-    states, size_t count, int add, real *terms, real *o)
+    states, size_t count, int add, const real *X, const real *V, real *terms, real *o)
 {
     for (size_t k = 0; k < count; ++k) {
         const size_t i = leg + legs*k;
         const size_t j = states*k;
-        /* (crs-S) from the base point to the connection point */
-        const real R_xx = s[3*w + j];
-        const real R_xy = s[4*w + j];
-        const real R_xz = s[5*w + j];
-        const real crs_platform_point_x = m->crs_platform_point_x[i];
-        const real crs_platform_point_y = m->crs_platform_point_y[i];
-        const real crs_platform_point_z = m->crs_platform_point_z[i];
-        const real crs_q_x = R_xx*crs_platform_point_x + R_xy*crs_platform_point_y +
-            R_xz*crs_platform_point_z;
-        const real R_yx = s[6*w + j];
-        const real R_yy = s[7*w + j];
-        const real R_yz = s[8*w + j];
-        const real crs_q_y = R_yx*crs_platform_point_x + R_yy*crs_platform_point_y +
-            R_yz*crs_platform_point_z;
-        const real R_zx = s[9*w + j];
-        const real R_zy = s[10*w + j];
-        const real R_zz = s[11*w + j];
-        const real crs_q_z = R_zx*crs_platform_point_x + R_zy*crs_platform_point_y +
-            R_zz*crs_platform_point_z;
-        const real crs_base_point_x = m->crs_base_point_x[i];
-        const real t_x = s[0*w + j];
-        const real crs_S_x = crs_q_x + t_x - crs_base_point_x;
-        const real crs_base_point_y = m->crs_base_point_y[i];
-        const real t_y = s[1*w + j];
-        const real crs_S_y = crs_q_y + t_y - crs_base_point_y;
-        const real crs_base_point_z = m->crs_base_point_z[i];
-        const real t_z = s[2*w + j];
-        const real crs_S_z = crs_q_z + t_z - crs_base_point_z;
-        /* (crs-px_1) component along the reference direction */
-        const real crs_base_frame_xy = m->crs_base_frame_xy[i];
-        const real crs_base_frame_yy = m->crs_base_frame_yy[i];
-        const real crs_base_frame_zy = m->crs_base_frame_zy[i];
-        const real crs_px_1 = crs_S_x*crs_base_frame_xy + crs_S_y*crs_base_frame_yy +
-            crs_S_z*crs_base_frame_zy;
-        /* (crs-py_1) component across the reference direction */
-        const real crs_base_frame_xz = m->crs_base_frame_xz[i];
-        const real crs_base_frame_yz = m->crs_base_frame_yz[i];
-        const real crs_base_frame_zz = m->crs_base_frame_zz[i];
-        const real crs_py_1 = crs_S_x*crs_base_frame_xz + crs_S_y*crs_base_frame_yz +
-            crs_S_z*crs_base_frame_zz;
-        /* (crs-rho2_1) squared amplitude */
-        const real crs_rho2_1 = crs_px_1*crs_px_1 + crs_py_1*crs_py_1;
-        /* (crs-root_1) root, with the sign of the branch */
-        const real crs_branch_1 = m->crs_branch_1[i];
-        const real crs_root_1 = crs_branch_1*root(crs_rho2_1);
-        /* (crs-c_1) cosine of the angle of joint 1 from its reference direction */
-        const real inv_crs_rho2_1 = 1/crs_rho2_1;
-        const real crs_c_1 = -crs_py_1*crs_root_1*inv_crs_rho2_1;
-        /* (crs-s_1) sine of the angle of joint 1 from its reference direction */
-        const real crs_s_1 = crs_px_1*crs_root_1*inv_crs_rho2_1;
-        /* (crs-xi_1) the vector from joint 1 to the connection point, resolved along link 1 */
-        const real crs_base_frame_xx = m->crs_base_frame_xx[i];
-        const real crs_base_frame_yx = m->crs_base_frame_yx[i];
-        const real crs_base_frame_zx = m->crs_base_frame_zx[i];
-        const real crs_xi_1_in_axes1_z = crs_S_x*crs_base_frame_xx + crs_S_y*crs_base_frame_yx +
-            crs_S_z*crs_base_frame_zx;
-        /* (crs-from_centre_2) from the centre at zero displacement to the connection point */
-        const real crs_joint3_offset_x = m->crs_joint3_offset_x[i];
-        const real crs_from_centre_2_in_axes1_z = crs_xi_1_in_axes1_z - crs_joint3_offset_x;
-        /* (crs-disc_2) discriminant of the distance equation */
-        const real crs_size_t = m->crs_size_t[i];
-        const real crs_disc_2 = crs_size_t - crs_root_1*crs_root_1;
-        /* (crs-q_2) displacement of joint 2 */
-        const real crs_branch_2 = m->crs_branch_2[i];
-        const real crs_q_2 = crs_from_centre_2_in_axes1_z + crs_branch_2*root(crs_disc_2);
-        /* (crs-x_3) from the origin of joint 3 to the connection point */
-        const real crs_x_3_in_axes1_z = crs_xi_1_in_axes1_z - crs_joint3_offset_x - crs_q_2;
-        /* (crs-c_3) cosine of the angle of joint 3 from its reference direction */
-        const real crs_platform_joint_offset_x = m->crs_platform_joint_offset_x[i];
-        const real inv_crs_size_t = m->inv_crs_size_t[i];
-        const real crs_c_3_t = crs_platform_joint_offset_x*crs_root_1*inv_crs_size_t;
-        /* (crs-s_3) sine of the angle of joint 3 from its reference direction */
-        const real crs_s_3 = crs_platform_joint_offset_x*crs_x_3_in_axes1_z*inv_crs_size_t;
-        /* (crs-S_dot) velocity of the connection point */
-        const real omega_y = s[16*w + j];
-        const real omega_z = s[17*w + j];
-        const real crs_S_dot_t = crs_q_z*omega_y - crs_q_y*omega_z;
-        const real omega_x = s[15*w + j];
-        const real crs_S_dot_t_2 = crs_q_x*omega_z - crs_q_z*omega_x;
-        const real crs_S_dot_t_3 = crs_q_y*omega_x - crs_q_x*omega_y;
-        const real t_dot_x = s[12*w + j];
-        const real crs_S_dot_x = crs_S_dot_t + t_dot_x;
-        const real t_dot_y = s[13*w + j];
-        const real crs_S_dot_y = crs_S_dot_t_2 + t_dot_y;
-        const real t_dot_z = s[14*w + j];
-        const real crs_S_dot_z = crs_S_dot_t_3 + t_dot_z;
-        /* (crs-r_1) from joint 1 to the connection point, along the links */
-        const real crs_r_1_t = crs_c_3_t*crs_platform_joint_offset_x;
-        const real crs_d_4_in_axes1_z = crs_platform_joint_offset_x*crs_s_3;
-        const real crs_r_1_in_axes1_z = crs_d_4_in_axes1_z + crs_joint3_offset_x + crs_q_2;
-        /* (crs-v_1) velocity of the connection point per rate of joint 1 */
-        const real crs_v_1_in_axes3_z = crs_c_3_t*(crs_c_3_t*crs_r_1_t +
-            crs_r_1_in_axes1_z*crs_s_3) + crs_s_3*(crs_r_1_t*crs_s_3 -
-            crs_c_3_t*crs_r_1_in_axes1_z);
-        /* (crs-w_1) reciprocal vector 1 */
-        const real crs_w_1_in_axes3_z = 1/crs_v_1_in_axes3_z;
-        /* (crs-qd_1) rate of joint 1 */
-        const real crs_qd_1_t = crs_S_dot_x*crs_base_frame_xy + crs_S_dot_y*crs_base_frame_yy +
-            crs_S_dot_z*crs_base_frame_zy;
-        const real crs_qd_1_t_2 = crs_S_dot_x*crs_base_frame_xz + crs_S_dot_y*crs_base_frame_yz +
-            crs_S_dot_z*crs_base_frame_zz;
-        const real crs_qd_1 = crs_w_1_in_axes3_z*(crs_c_1*crs_qd_1_t + crs_qd_1_t_2*crs_s_1);
-        /* (crs-qd_2) rate of joint 2 */
-        const real inv_crs_d_4_in_axes1_z = 1/crs_d_4_in_axes1_z;
-        const real crs_qd_2_t = inv_crs_d_4_in_axes1_z*(crs_c_1*crs_qd_1_t_2 -
-            crs_qd_1_t*crs_s_1);
-        const real crs_qd_2 = crs_S_dot_x*crs_base_frame_xx + crs_S_dot_y*crs_base_frame_yx +
-            crs_S_dot_z*crs_base_frame_zx - crs_qd_2_t*crs_r_1_t;
-        /* (crs-omega_1) angular velocity of link 1 */
-        const real crs_omega_1_in_axes3_x = crs_qd_1*crs_s_3;
-        const real crs_omega_1_t = crs_c_3_t*crs_qd_1;
-        /* (crs-W_3) centripetal tensor of link 3 */
-        const real crs_W_3_in_axes3_yz = crs_omega_1_t*crs_qd_2_t;
-        const real crs_W_3_in_axes3_xy = -crs_omega_1_in_axes3_x*crs_omega_1_t;
+        values_crs v;
+        stage_crs_X(m, w, i, j, s, X, &v);
+        stage_crs_V_X(m, w, i, j, V, &v);
+        stage_crs_Z_dynamics(m, w, i, j, V, &v);
         /* (crs-u_1) centripetal acceleration of the connection point */
-        const real axis_z_crs_axes3_x = crs_base_frame_xy*crs_c_1 + crs_base_frame_xz*crs_s_1;
-        const real axis_z_crs_axes3_y = crs_base_frame_yy*crs_c_1 + crs_base_frame_yz*crs_s_1;
-        const real axis_z_crs_axes3_z = crs_base_frame_zy*crs_c_1 + crs_base_frame_zz*crs_s_1;
-        const real crs_u_1_t = crs_s_1*crs_s_3;
-        const real crs_u_1_t_2 = -crs_c_1*crs_s_3;
+        const real crs_u_1_t = v.crs_c_1*v.crs_c_3;
+        const real crs_u_1_t_2 = v.crs_c_3*v.crs_s_1;
+        const real crs_base_frame_xx = m->crs_base_frame_xx[i];
+        const real crs_base_frame_xy = m->crs_base_frame_xy[i];
+        const real crs_base_frame_xz = m->crs_base_frame_xz[i];
         const real axis_y_crs_axes3_x = crs_base_frame_xy*crs_u_1_t +
-            crs_base_frame_xz*crs_u_1_t_2 - crs_base_frame_xx*crs_c_3_t;
+            crs_base_frame_xz*crs_u_1_t_2 - crs_base_frame_xx*v.crs_s_3;
+        const real crs_base_frame_yx = m->crs_base_frame_yx[i];
+        const real crs_base_frame_yy = m->crs_base_frame_yy[i];
+        const real crs_base_frame_yz = m->crs_base_frame_yz[i];
         const real axis_y_crs_axes3_y = crs_base_frame_yy*crs_u_1_t +
-            crs_base_frame_yz*crs_u_1_t_2 - crs_base_frame_yx*crs_c_3_t;
+            crs_base_frame_yz*crs_u_1_t_2 - crs_base_frame_yx*v.crs_s_3;
+        const real crs_base_frame_zx = m->crs_base_frame_zx[i];
+        const real crs_base_frame_zy = m->crs_base_frame_zy[i];
+        const real crs_base_frame_zz = m->crs_base_frame_zz[i];
         const real axis_y_crs_axes3_z = crs_base_frame_zy*crs_u_1_t +
-            crs_base_frame_zz*crs_u_1_t_2 - crs_base_frame_zx*crs_c_3_t;
-        const real axis_x_crs_axes3_x = axis_y_crs_axes3_y*axis_z_crs_axes3_z -
-            axis_y_crs_axes3_z*axis_z_crs_axes3_y;
-        const real axis_x_crs_axes3_y = axis_y_crs_axes3_z*axis_z_crs_axes3_x -
-            axis_y_crs_axes3_x*axis_z_crs_axes3_z;
-        const real axis_x_crs_axes3_z = axis_y_crs_axes3_x*axis_z_crs_axes3_y -
-            axis_y_crs_axes3_y*axis_z_crs_axes3_x;
-        const real crs_u_1_x = crs_S_dot_t_3*omega_y - crs_S_dot_t_2*omega_z;
-        const real crs_u_1_y = crs_S_dot_t*omega_z - crs_S_dot_t_3*omega_x;
-        const real crs_u_1_z = crs_S_dot_t_2*omega_x - crs_S_dot_t*omega_y;
-        const real crs_u_1_in_axes3_x = axis_x_crs_axes3_x*crs_u_1_x +
-            axis_x_crs_axes3_y*crs_u_1_y + axis_x_crs_axes3_z*crs_u_1_z;
-        const real crs_u_1_in_axes3_y = axis_y_crs_axes3_x*crs_u_1_x +
-            axis_y_crs_axes3_y*crs_u_1_y + axis_y_crs_axes3_z*crs_u_1_z;
-        const real crs_u_1_in_axes3_z = axis_z_crs_axes3_x*crs_u_1_x +
-            axis_z_crs_axes3_y*crs_u_1_y + axis_z_crs_axes3_z*crs_u_1_z;
-        /* (crs-zeta_3) angular acceleration of link 3 from the turning of axis 3 */
-        const real crs_zeta_3_in_axes3_y = crs_omega_1_in_axes3_x*crs_qd_2_t;
-        /* (crs-bias) acceleration of the connection point at zero joint accelerations */
-        const real crs_bias_t = crs_omega_1_in_axes3_x*(crs_c_3_t*crs_joint3_offset_x +
-            crs_c_3_t*crs_q_2) - crs_omega_1_t*(crs_joint3_offset_x*crs_s_3 + crs_q_2*crs_s_3);
-        const real crs_bias_t_2 = crs_platform_joint_offset_x*crs_qd_2_t;
-        const real crs_bias_t_3 = crs_omega_1_t*crs_platform_joint_offset_x;
-        const real crs_bias_in_axes3_x = crs_bias_t*crs_omega_1_t - crs_bias_t_2*crs_qd_2_t -
-            crs_bias_t_3*crs_omega_1_t;
-        const real crs_bias_in_axes3_y = crs_bias_t*crs_omega_1_in_axes3_x -
-            crs_bias_t_3*crs_omega_1_in_axes3_x;
-        const real crs_bias_in_axes3_z = -crs_bias_t_2*crs_omega_1_in_axes3_x -
-            crs_platform_joint_offset_x*crs_zeta_3_in_axes3_y -
-            2*crs_qd_2*(crs_c_3_t*crs_omega_1_in_axes3_x - crs_omega_1_t*crs_s_3);
+            crs_base_frame_zz*crs_u_1_t_2 - crs_base_frame_zx*v.crs_s_3;
+        const real axis_x_crs_axes3_x = axis_y_crs_axes3_y*v.axis_z_crs_axes3_z -
+            axis_y_crs_axes3_z*v.axis_z_crs_axes3_y;
+        const real axis_x_crs_axes3_y = axis_y_crs_axes3_z*v.axis_z_crs_axes3_x -
+            axis_y_crs_axes3_x*v.axis_z_crs_axes3_z;
+        const real axis_x_crs_axes3_z = axis_y_crs_axes3_x*v.axis_z_crs_axes3_y -
+            axis_y_crs_axes3_y*v.axis_z_crs_axes3_x;
+        const real crs_u_1_in_axes3_x = axis_x_crs_axes3_x*v.crs_u_1_x +
+            axis_x_crs_axes3_y*v.crs_u_1_y + axis_x_crs_axes3_z*v.crs_u_1_z;
+        const real crs_u_1_in_axes3_y = axis_y_crs_axes3_x*v.crs_u_1_x +
+            axis_y_crs_axes3_y*v.crs_u_1_y + axis_y_crs_axes3_z*v.crs_u_1_z;
         /* (crs-rel_o) remainder without the acceleration in: acceleration of the connection point left to
            the joint accelerations */
-        const real crs_rel_o_in_axes3_x = crs_u_1_in_axes3_x - crs_bias_in_axes3_x;
-        const real crs_rel_o_in_axes3_y = crs_u_1_in_axes3_y - crs_bias_in_axes3_y;
-        const real crs_rel_o_in_axes3_z = crs_u_1_in_axes3_z - crs_bias_in_axes3_z;
-        /* (crs-qdd_1_o) remainder without the acceleration in: acceleration of joint 1 */
-        const real crs_qdd_1_o = crs_rel_o_in_axes3_z*crs_w_1_in_axes3_z;
+        const real crs_rel_o_in_axes3_x = crs_u_1_in_axes3_x - v.crs_bias_in_axes3_x;
+        const real crs_rel_o_in_axes3_y = crs_u_1_in_axes3_y - v.crs_bias_in_axes3_y;
         /* (crs-qdd_3_o) remainder without the acceleration in: acceleration of joint 3 */
-        const real crs_qdd_3_o = -inv_crs_d_4_in_axes1_z*(-crs_c_3_t*crs_rel_o_in_axes3_x -
-            crs_rel_o_in_axes3_y*crs_s_3);
-        /* (crs-alpha_1_o) remainder without the acceleration in: angular acceleration of link 1 */
-        const real crs_alpha_1_o_in_axes3_x = crs_qdd_1_o*crs_s_3;
-        const real crs_alpha_1_o_t = crs_c_3_t*crs_qdd_1_o;
-        /* (crs-alpha_3_o) remainder without the acceleration in: angular acceleration of link 3 */
-        const real crs_alpha_3_o_in_axes3_x = crs_W_3_in_axes3_yz + crs_alpha_1_o_in_axes3_x;
-        const real crs_alpha_3_o_in_axes3_y = crs_zeta_3_in_axes3_y - crs_alpha_1_o_t;
+        const real crs_qdd_3_o = v.inv_crs_d_4_in_axes1_z*(v.crs_c_3*crs_rel_o_in_axes3_y +
+            crs_rel_o_in_axes3_x*v.crs_s_3);
         /* (crs-B_3_o) remainder of the acceleration tensor of link 3 */
-        const real crs_B_3_o_in_axes3_xy = crs_W_3_in_axes3_xy - crs_qdd_3_o;
-        const real crs_B_3_o_in_axes3_yx = crs_W_3_in_axes3_xy + crs_qdd_3_o;
-        const real crs_B_3_o_in_axes3_zx = -crs_alpha_3_o_in_axes3_y - crs_zeta_3_in_axes3_y;
-        const real crs_B_3_o_in_axes3_zy = crs_W_3_in_axes3_yz + crs_alpha_3_o_in_axes3_x;
+        const real crs_B_3_o_in_axes3_xy = v.crs_W_3_in_axes3_xy - crs_qdd_3_o;
+        const real crs_B_3_o_in_axes3_yx = v.crs_W_3_in_axes3_xy + crs_qdd_3_o;
         /* (crs-acc_2_o) remainder without the acceleration in: acceleration of the reference point of
            link 2, less gravity */
         const real crs_g_in_axes1_z = m->crs_g_in_axes1_z[i];
-        const real crs_acc_2_o_in_axes1_z = crs_qdd_3_o*crs_r_1_t + crs_rel_o_in_axes3_x*crs_s_3 -
-            crs_g_in_axes1_z - crs_c_3_t*crs_rel_o_in_axes3_y;
+        const real crs_acc_2_o_in_axes1_z = v.crs_c_3*crs_rel_o_in_axes3_x +
+            crs_qdd_3_o*v.crs_r_1_in_axes1_x - crs_g_in_axes1_z - crs_rel_o_in_axes3_y*v.crs_s_3;
         /* (crs-f_2_o) remainder without the acceleration in: inertia force of link 2 less its weight */
         const real crs_link2_mass = m->crs_link2_mass[i];
         const real crs_f_2_o_in_axes1_z = crs_acc_2_o_in_axes1_z*crs_link2_mass;
         /* (crs-acc_3_o) remainder without the acceleration in: acceleration of the reference point of
            link 3, less gravity */
-        const real crs_acc_3_t = m->crs_acc_3_t[i];
-        const real crs_acc_3_t_2 = m->crs_acc_3_t_2[i];
-        const real crs_g_in_axes1_x = crs_acc_3_t*crs_c_1 + crs_acc_3_t_2*crs_s_1;
-        const real crs_g_in_axes1_y = crs_acc_3_t_2*crs_c_1 - crs_acc_3_t*crs_s_1;
-        const real crs_acc_3_o_in_axes3_x = crs_u_1_in_axes3_x + crs_c_3_t*crs_g_in_axes1_y -
-            crs_g_in_axes1_z*crs_s_3;
-        const real crs_acc_3_o_in_axes3_y = crs_u_1_in_axes3_y + crs_c_3_t*crs_g_in_axes1_z +
-            crs_g_in_axes1_y*crs_s_3;
-        const real crs_acc_3_o_in_axes3_z = crs_u_1_in_axes3_z - crs_g_in_axes1_x;
+        const real crs_acc_3_o_in_axes3_x = crs_u_1_in_axes3_x - v.crs_c_3*crs_g_in_axes1_z -
+            v.crs_g_in_axes1_x*v.crs_s_3;
+        const real crs_acc_3_o_in_axes3_y = crs_u_1_in_axes3_y + crs_g_in_axes1_z*v.crs_s_3 -
+            v.crs_c_3*v.crs_g_in_axes1_x;
         /* (crs-mu_3_o) remainder without the acceleration in: inertia moment of the links that turn with
            link 3, about their reference points */
-        const real crs_mu_3_o_t = crs_omega_1_in_axes3_x*crs_omega_1_in_axes3_x;
-        const real crs_mu_3_o_t_2 = crs_omega_1_t*crs_omega_1_t;
-        const real crs_mu_3_o_t_3 = crs_qd_2_t*crs_qd_2_t;
         const real crs_J_3_in_spec3_xy = m->crs_J_3_in_spec3_xy[i];
         const real crs_J_3_in_spec3_xz = m->crs_J_3_in_spec3_xz[i];
         const real crs_J_3_in_spec3_yz = m->crs_J_3_in_spec3_yz[i];
@@ -2927,59 +2951,57 @@ INLINE void Z_legs_crs(const prepared *m, size_t w, size_t leg, size_t legs, con
         const real crs_h_3_in_spec3_y = m->crs_h_3_in_spec3_y[i];
         const real crs_h_3_in_spec3_z = m->crs_h_3_in_spec3_z[i];
         const real crs_mu_3_o_in_axes3_x = crs_B_3_o_in_axes3_yx*crs_J_3_in_spec3_xz +
-            crs_B_3_o_in_axes3_zy*crs_Sigma_3_in_axes3_yy + crs_J_3_in_spec3_yz*(crs_mu_3_o_t_2 -
-            crs_mu_3_o_t_3) + crs_Sigma_3_in_axes3_zz*crs_alpha_1_o_in_axes3_x +
-            crs_acc_3_o_in_axes3_z*crs_h_3_in_spec3_y - crs_B_3_o_in_axes3_zx*crs_J_3_in_spec3_xy
-            - crs_acc_3_o_in_axes3_y*crs_h_3_in_spec3_z;
+            v.crs_B_3_o_in_axes3_zy*crs_Sigma_3_in_axes3_yy +
+            crs_J_3_in_spec3_yz*(v.crs_mu_3_o_t_2 - v.crs_mu_3_o_t_3) +
+            crs_Sigma_3_in_axes3_zz*v.crs_alpha_1_o_in_axes3_x +
+            v.crs_acc_3_o_in_axes3_z*crs_h_3_in_spec3_y -
+            v.crs_B_3_o_in_axes3_zx*crs_J_3_in_spec3_xy -
+            crs_acc_3_o_in_axes3_y*crs_h_3_in_spec3_z;
         const real crs_Sigma_3_in_axes3_xx = m->crs_Sigma_3_in_axes3_xx[i];
         const real crs_h_3_in_spec3_x = m->crs_h_3_in_spec3_x[i];
-        const real crs_mu_3_o_in_axes3_y = crs_B_3_o_in_axes3_zy*crs_J_3_in_spec3_xy +
+        const real crs_mu_3_o_in_axes3_y = v.crs_B_3_o_in_axes3_zy*crs_J_3_in_spec3_xy +
+            crs_Sigma_3_in_axes3_zz*v.crs_alpha_1_o_in_axes3_y +
             crs_acc_3_o_in_axes3_x*crs_h_3_in_spec3_z - crs_B_3_o_in_axes3_xy*crs_J_3_in_spec3_yz
-            - crs_B_3_o_in_axes3_zx*crs_Sigma_3_in_axes3_xx - crs_J_3_in_spec3_xz*(crs_mu_3_o_t -
-            crs_mu_3_o_t_3) - crs_Sigma_3_in_axes3_zz*crs_alpha_1_o_t -
-            crs_acc_3_o_in_axes3_z*crs_h_3_in_spec3_x;
+            - v.crs_B_3_o_in_axes3_zx*crs_Sigma_3_in_axes3_xx -
+            crs_J_3_in_spec3_xz*(v.crs_mu_3_o_t - v.crs_mu_3_o_t_3) -
+            v.crs_acc_3_o_in_axes3_z*crs_h_3_in_spec3_x;
         const real crs_mu_3_o_in_axes3_z = crs_B_3_o_in_axes3_yx*crs_Sigma_3_in_axes3_xx +
-            crs_J_3_in_spec3_xy*(crs_mu_3_o_t - crs_mu_3_o_t_2) +
-            crs_J_3_in_spec3_xz*crs_alpha_1_o_in_axes3_x +
+            crs_J_3_in_spec3_xy*(v.crs_mu_3_o_t - v.crs_mu_3_o_t_2) +
+            crs_J_3_in_spec3_xz*v.crs_alpha_1_o_in_axes3_x +
+            crs_J_3_in_spec3_yz*v.crs_alpha_1_o_in_axes3_y +
             crs_acc_3_o_in_axes3_y*crs_h_3_in_spec3_x -
-            crs_B_3_o_in_axes3_xy*crs_Sigma_3_in_axes3_yy - crs_J_3_in_spec3_yz*crs_alpha_1_o_t -
+            crs_B_3_o_in_axes3_xy*crs_Sigma_3_in_axes3_yy -
             crs_acc_3_o_in_axes3_x*crs_h_3_in_spec3_y;
-        /* (crs-mu_1_o) remainder without the acceleration in: inertia moment of the links that turn with
-           link 1, about their reference points */
-        const real crs_J_2_in_spec1_xx = m->crs_J_2_in_spec1_xx[i];
-        const real crs_h_2_in_spec1_y = m->crs_h_2_in_spec1_y[i];
-        const real crs_h_2_in_spec1_z = m->crs_h_2_in_spec1_z[i];
-        const real crs_mu_1_o_in_axes1_z = crs_J_2_in_spec1_xx*crs_qdd_1_o -
-            crs_g_in_axes1_x*crs_h_2_in_spec1_y - crs_g_in_axes1_y*crs_h_2_in_spec1_z;
         /* (crs-N_1_o) remainder without the acceleration in: moment about joint 1 of the links from 1
            outwards, the force at the connection point left out */
-        const real crs_N_1_o_in_axes1_z = crs_mu_1_o_in_axes1_z + crs_mu_3_o_in_axes3_x*crs_s_3 -
-            crs_c_3_t*crs_mu_3_o_in_axes3_y;
+        const real crs_N_1_o_in_axes1_z = v.crs_mu_1_o_in_axes1_z +
+            v.crs_c_3*crs_mu_3_o_in_axes3_x - crs_mu_3_o_in_axes3_y*v.crs_s_3;
         /* (crs-c_o) remainder without the acceleration in: leg force on the platform without actuation
            and without the mass at the connection point */
-        const real crs_c_o_t = inv_crs_d_4_in_axes1_z*(crs_mu_3_o_in_axes3_z +
-            crs_f_2_o_in_axes1_z*crs_r_1_t);
-        const real crs_c_o_in_axes3_x = crs_alpha_1_o_t*crs_h_3_in_spec3_z +
-            crs_h_3_in_spec3_x*(crs_mu_3_o_t_2 + crs_mu_3_o_t_3) -
-            crs_B_3_o_in_axes3_xy*crs_h_3_in_spec3_y - crs_c_3_t*crs_c_o_t -
-            crs_f_2_o_in_axes1_z*crs_s_3;
-        const real crs_c_o_in_axes3_y = crs_alpha_1_o_in_axes3_x*crs_h_3_in_spec3_z +
-            crs_c_3_t*crs_f_2_o_in_axes1_z + crs_h_3_in_spec3_y*(crs_mu_3_o_t + crs_mu_3_o_t_3) -
-            crs_B_3_o_in_axes3_yx*crs_h_3_in_spec3_x - crs_c_o_t*crs_s_3;
-        const real crs_c_o_in_axes3_z = crs_h_3_in_spec3_z*(crs_mu_3_o_t + crs_mu_3_o_t_2) -
-            crs_B_3_o_in_axes3_zx*crs_h_3_in_spec3_x - crs_B_3_o_in_axes3_zy*crs_h_3_in_spec3_y -
-            crs_N_1_o_in_axes1_z*crs_w_1_in_axes3_z;
+        const real crs_c_o_t = v.inv_crs_d_4_in_axes1_z*(crs_mu_3_o_in_axes3_z +
+            crs_f_2_o_in_axes1_z*v.crs_r_1_in_axes1_x);
+        const real crs_c_o_in_axes3_x = crs_h_3_in_spec3_x*(v.crs_mu_3_o_t_2 + v.crs_mu_3_o_t_3) -
+            crs_B_3_o_in_axes3_xy*crs_h_3_in_spec3_y -
+            v.crs_alpha_1_o_in_axes3_y*crs_h_3_in_spec3_z - v.crs_c_3*crs_f_2_o_in_axes1_z -
+            crs_c_o_t*v.crs_s_3;
+        const real crs_c_o_in_axes3_y = v.crs_alpha_1_o_in_axes3_x*crs_h_3_in_spec3_z +
+            crs_f_2_o_in_axes1_z*v.crs_s_3 + crs_h_3_in_spec3_y*(v.crs_mu_3_o_t +
+            v.crs_mu_3_o_t_3) - crs_B_3_o_in_axes3_yx*crs_h_3_in_spec3_x - v.crs_c_3*crs_c_o_t;
+        const real crs_c_o_in_axes3_z = crs_h_3_in_spec3_z*(v.crs_mu_3_o_t + v.crs_mu_3_o_t_2) -
+            v.crs_B_3_o_in_axes3_zx*crs_h_3_in_spec3_x -
+            v.crs_B_3_o_in_axes3_zy*crs_h_3_in_spec3_y -
+            crs_N_1_o_in_axes1_z*v.crs_w_1_in_axes3_z;
         /* (crs-U) velocity and gravity terms of the leg force */
         const real crs_U_x = -axis_x_crs_axes3_x*crs_c_o_in_axes3_x -
-            axis_y_crs_axes3_x*crs_c_o_in_axes3_y - axis_z_crs_axes3_x*crs_c_o_in_axes3_z;
+            axis_y_crs_axes3_x*crs_c_o_in_axes3_y - v.axis_z_crs_axes3_x*crs_c_o_in_axes3_z;
         const real crs_U_y = -axis_x_crs_axes3_y*crs_c_o_in_axes3_x -
-            axis_y_crs_axes3_y*crs_c_o_in_axes3_y - axis_z_crs_axes3_y*crs_c_o_in_axes3_z;
+            axis_y_crs_axes3_y*crs_c_o_in_axes3_y - v.axis_z_crs_axes3_y*crs_c_o_in_axes3_z;
         const real crs_U_z = -axis_x_crs_axes3_z*crs_c_o_in_axes3_x -
-            axis_y_crs_axes3_z*crs_c_o_in_axes3_y - axis_z_crs_axes3_z*crs_c_o_in_axes3_z;
+            axis_y_crs_axes3_z*crs_c_o_in_axes3_y - v.axis_z_crs_axes3_z*crs_c_o_in_axes3_z;
         /* (Z_a) rotational part of Z */
-        const real crs_Z_a_t = crs_U_z*crs_q_y - crs_U_y*crs_q_z;
-        const real crs_Z_a_t_2 = crs_U_x*crs_q_z - crs_U_z*crs_q_x;
-        const real crs_Z_a_t_3 = crs_U_y*crs_q_x - crs_U_x*crs_q_y;
+        const real crs_Z_a_t = crs_U_z*v.crs_q_y - crs_U_y*v.crs_q_z;
+        const real crs_Z_a_t_2 = crs_U_x*v.crs_q_z - crs_U_z*v.crs_q_x;
+        const real crs_Z_a_t_3 = crs_U_y*v.crs_q_x - crs_U_x*v.crs_q_y;
         /* (Z_t) translational part of Z */
         gather(&terms[0*count + k], add, crs_U_x);  /* Z_t_x_of_legs */
         gather(&terms[1*count + k], add, crs_U_y);  /* Z_t_y_of_legs */
@@ -2990,10 +3012,10 @@ INLINE void Z_legs_crs(const prepared *m, size_t w, size_t leg, size_t legs, con
         gather(&terms[5*count + k], add, crs_Z_a_t_3);  /* Z_a_z_of_legs */
         const real crs_size_t_2 = m->crs_size_t_2[i];
         const real crs_size = m->crs_size[i];
-        o[1*count + k] = UNLESS(magnitude(crs_rho2_1) > TOLERANCE*TOLERANCE*crs_size_t_2) +
-            UNLESS(magnitude(crs_v_1_in_axes3_z) > TOLERANCE*crs_size) +
-            UNLESS(magnitude(crs_d_4_in_axes1_z) > TOLERANCE*crs_size);
-        o[0*count + k] = UNLESS(crs_disc_2 >= 0);
+        o[1*count + k] = UNLESS(magnitude(v.crs_rho2_1) > TOLERANCE*TOLERANCE*crs_size_t_2) +
+            UNLESS(magnitude(v.crs_v_1_in_axes3_z) > TOLERANCE*crs_size) +
+            UNLESS(magnitude(v.crs_d_4_in_axes1_z) > TOLERANCE*crs_size);
+        o[0*count + k] = UNLESS(v.crs_disc_2 >= 0);
     }
 }
 
@@ -3009,24 +3031,24 @@ INLINE void Z_after(size_t w, const real *s, const real *sums, real *Z, verdict 
 {
     for (size_t k = 0; k < w; ++k) {
         /* (Z_t) translational part of Z */
-        const real Z_p_x = s[18*w + k];
+        const real Z_p_x = s[9*w + k];
         const real Z_t_x_of_legs = sums[0*w + k];
         const real Z_t_x = Z_p_x + Z_t_x_of_legs;
-        const real Z_p_y = s[19*w + k];
+        const real Z_p_y = s[10*w + k];
         const real Z_t_y_of_legs = sums[1*w + k];
         const real Z_t_y = Z_p_y + Z_t_y_of_legs;
-        const real Z_p_z = s[20*w + k];
+        const real Z_p_z = s[11*w + k];
         const real Z_t_z_of_legs = sums[2*w + k];
         const real Z_t_z = Z_p_z + Z_t_z_of_legs;
         /* (Z_a) rotational part of Z */
         const real Z_a_x_of_legs = sums[3*w + k];
-        const real Z_q_x = s[21*w + k];
+        const real Z_q_x = s[12*w + k];
         const real Z_a_x = Z_a_x_of_legs + Z_q_x;
         const real Z_a_y_of_legs = sums[4*w + k];
-        const real Z_q_y = s[22*w + k];
+        const real Z_q_y = s[13*w + k];
         const real Z_a_y = Z_a_y_of_legs + Z_q_y;
         const real Z_a_z_of_legs = sums[5*w + k];
-        const real Z_q_z = s[23*w + k];
+        const real Z_q_z = s[14*w + k];
         const real Z_a_z = Z_a_z_of_legs + Z_q_z;
         /* (Z_t) translational part of Z */
         Z[0*w + k] = Z_t_x;
@@ -3042,12 +3064,10 @@ INLINE void Z_after(size_t w, const real *s, const real *sums, real *Z, verdict 
 
 INLINE void Z_run(const prepared *m, const real *X, const real *V, real *Z, verdict *t)
 {
-    real s[24] = {0};
-    real sums[6] = {0};
-    real terms_crs[6*LEGS(LEGS_OF_crs)] = {0};
-    real o_crs[2*LEGS(LEGS_OF_crs)] = {0};
+    real s[15] = {0}, sums[6] = {0};
+    real terms_crs[6*LEGS(LEGS_OF_crs)] = {0}, o_crs[2*LEGS(LEGS_OF_crs)] = {0};
     Z_before(m, 1, X, V, s, t);
-    Z_legs_crs(m, 1, 0, 1, s, 0, LEGS(LEGS_OF_crs), 0, terms_crs, o_crs);
+    Z_legs_crs(m, 1, 0, 1, s, 0, LEGS(LEGS_OF_crs), 0, X, V, terms_crs, o_crs);
     for (size_t leg = 0; leg < LEGS_OF_crs; ++leg) {
         Z_place_crs(1, LEGS(LEGS_OF_crs), o_crs, leg, t);
     }
@@ -3059,221 +3079,70 @@ INLINE void Z_run(const prepared *m, const real *X, const real *V, real *Z, verd
 
 INLINE void Z_run_lanes(const prepared *m, const real *X, const real *V, real *Z, verdict *t)
 {
-    real s[24*LANES];
-    real sums[6*LANES];
+    real s[15*LANES], sums[6*LANES];
     real o_crs[2*LANES];
     Z_before(m, LANES, X, V, s, t);
     clear(sums, 6*LANES);
     for (size_t leg = 0; leg < LEGS_OF_crs; ++leg) {
-        Z_legs_crs(m, LANES, leg, 0, s, 1, LANES, 1, sums, o_crs);
+        Z_legs_crs(m, LANES, leg, 0, s, 1, LANES, 1, X, V, sums, o_crs);
         Z_place_crs(LANES, LANES, o_crs, 0, t);
     }
     Z_after(LANES, s, sums, Z, t);
 }
 
 /* ---- H ---- */
-INLINE void H_before(size_t w, const real *X, real *s, verdict *t)
+INLINE void H_before(const prepared *m, size_t w, const real *X, real *s, verdict *t)
 {
     for (size_t k = 0; k < w; ++k) {
-        /* X: named entries */
-        const real X_0 = X[0*w + k];
-        const real t_x = X_0;
-        const real X_1 = X[1*w + k];
-        const real t_y = X_1;
-        const real X_2 = X[2*w + k];
-        const real t_z = X_2;
-        const real X_3 = X[3*w + k];
-        const real X_4 = X[4*w + k];
-        const real X_5 = X[5*w + k];
-        const real X_6 = X[6*w + k];
-        const real quaternion_norm2 = X_3*X_3 + X_4*X_4 + X_5*X_5 + X_6*X_6;
-        const real quaternion_scale = 2/quaternion_norm2;
-        const real quaternion_sx = X_3*quaternion_scale;
-        const real quaternion_sy = X_4*quaternion_scale;
-        const real quaternion_sz = X_5*quaternion_scale;
-        const real quaternion_wx = X_6*quaternion_sx;
-        const real quaternion_wy = X_6*quaternion_sy;
-        const real quaternion_wz = X_6*quaternion_sz;
-        const real quaternion_xx = X_3*quaternion_sx;
-        const real quaternion_xy = X_3*quaternion_sy;
-        const real quaternion_xz = X_3*quaternion_sz;
-        const real quaternion_yy = X_4*quaternion_sy;
-        const real quaternion_yz = X_4*quaternion_sz;
-        const real quaternion_zz = X_5*quaternion_sz;
-        const real R_xx = 1 - quaternion_yy - quaternion_zz;
-        const real R_xy = quaternion_xy - quaternion_wz;
-        const real R_xz = quaternion_wy + quaternion_xz;
-        const real R_yx = quaternion_wz + quaternion_xy;
-        const real R_yy = 1 - quaternion_xx - quaternion_zz;
-        const real R_yz = quaternion_yz - quaternion_wx;
-        const real R_zx = quaternion_xz - quaternion_wy;
-        const real R_zy = quaternion_wx + quaternion_yz;
-        const real R_zz = 1 - quaternion_xx - quaternion_yy;
-        s[0*w + k] = t_x;
-        s[1*w + k] = t_y;
-        s[2*w + k] = t_z;
-        s[3*w + k] = R_xx;
-        s[4*w + k] = R_xy;
-        s[5*w + k] = R_xz;
-        s[6*w + k] = R_yx;
-        s[7*w + k] = R_yy;
-        s[8*w + k] = R_yz;
-        s[9*w + k] = R_zx;
-        s[10*w + k] = R_zy;
-        s[11*w + k] = R_zz;
-        t->invalid[k] += UNLESS(is_finite(quaternion_scale)) + UNLESS(quaternion_scale > 0);
+        values v;
+        stage_X(m, w, k, X, &v);
+        s[0*w + k] = v.R_xx;
+        s[1*w + k] = v.R_xy;
+        s[2*w + k] = v.R_xz;
+        s[3*w + k] = v.R_yx;
+        s[4*w + k] = v.R_yy;
+        s[5*w + k] = v.R_yz;
+        s[6*w + k] = v.R_zx;
+        s[7*w + k] = v.R_zy;
+        s[8*w + k] = v.R_zz;
+        t->invalid[k] += UNLESS(is_finite(v.quaternion_scale)) + UNLESS(v.quaternion_scale > 0);
     }
 }
 
 INLINE void H_legs_crs(const prepared *m, size_t w, size_t leg, size_t legs, const real *s, size_t
-    states, size_t count, real *o)
+    states, size_t count, const real *X, real *o)
 {
     for (size_t k = 0; k < count; ++k) {
         const size_t i = leg + legs*k;
         const size_t j = states*k;
-        /* (crs-S) from the base point to the connection point */
-        const real R_xx = s[3*w + j];
-        const real R_xy = s[4*w + j];
-        const real R_xz = s[5*w + j];
-        const real crs_platform_point_x = m->crs_platform_point_x[i];
-        const real crs_platform_point_y = m->crs_platform_point_y[i];
-        const real crs_platform_point_z = m->crs_platform_point_z[i];
-        const real crs_q_x = R_xx*crs_platform_point_x + R_xy*crs_platform_point_y +
-            R_xz*crs_platform_point_z;
-        const real R_yx = s[6*w + j];
-        const real R_yy = s[7*w + j];
-        const real R_yz = s[8*w + j];
-        const real crs_q_y = R_yx*crs_platform_point_x + R_yy*crs_platform_point_y +
-            R_yz*crs_platform_point_z;
-        const real R_zx = s[9*w + j];
-        const real R_zy = s[10*w + j];
-        const real R_zz = s[11*w + j];
-        const real crs_q_z = R_zx*crs_platform_point_x + R_zy*crs_platform_point_y +
-            R_zz*crs_platform_point_z;
-        const real crs_base_point_x = m->crs_base_point_x[i];
-        const real t_x = s[0*w + j];
-        const real crs_S_x = crs_q_x + t_x - crs_base_point_x;
-        const real crs_base_point_y = m->crs_base_point_y[i];
-        const real t_y = s[1*w + j];
-        const real crs_S_y = crs_q_y + t_y - crs_base_point_y;
-        const real crs_base_point_z = m->crs_base_point_z[i];
-        const real t_z = s[2*w + j];
-        const real crs_S_z = crs_q_z + t_z - crs_base_point_z;
-        /* (crs-px_1) component along the reference direction */
-        const real crs_base_frame_xy = m->crs_base_frame_xy[i];
-        const real crs_base_frame_yy = m->crs_base_frame_yy[i];
-        const real crs_base_frame_zy = m->crs_base_frame_zy[i];
-        const real crs_px_1 = crs_S_x*crs_base_frame_xy + crs_S_y*crs_base_frame_yy +
-            crs_S_z*crs_base_frame_zy;
-        /* (crs-py_1) component across the reference direction */
-        const real crs_base_frame_xz = m->crs_base_frame_xz[i];
-        const real crs_base_frame_yz = m->crs_base_frame_yz[i];
-        const real crs_base_frame_zz = m->crs_base_frame_zz[i];
-        const real crs_py_1 = crs_S_x*crs_base_frame_xz + crs_S_y*crs_base_frame_yz +
-            crs_S_z*crs_base_frame_zz;
-        /* (crs-rho2_1) squared amplitude */
-        const real crs_rho2_1 = crs_px_1*crs_px_1 + crs_py_1*crs_py_1;
-        /* (crs-root_1) root, with the sign of the branch */
-        const real crs_branch_1 = m->crs_branch_1[i];
-        const real crs_root_1 = crs_branch_1*root(crs_rho2_1);
-        /* (crs-c_1) cosine of the angle of joint 1 from its reference direction */
-        const real inv_crs_rho2_1 = 1/crs_rho2_1;
-        const real crs_c_1 = -crs_py_1*crs_root_1*inv_crs_rho2_1;
-        /* (crs-s_1) sine of the angle of joint 1 from its reference direction */
-        const real crs_s_1 = crs_px_1*crs_root_1*inv_crs_rho2_1;
-        /* (crs-xi_1) the vector from joint 1 to the connection point, resolved along link 1 */
-        const real crs_base_frame_xx = m->crs_base_frame_xx[i];
-        const real crs_base_frame_yx = m->crs_base_frame_yx[i];
-        const real crs_base_frame_zx = m->crs_base_frame_zx[i];
-        const real crs_xi_1_in_axes1_z = crs_S_x*crs_base_frame_xx + crs_S_y*crs_base_frame_yx +
-            crs_S_z*crs_base_frame_zx;
-        /* (crs-from_centre_2) from the centre at zero displacement to the connection point */
-        const real crs_joint3_offset_x = m->crs_joint3_offset_x[i];
-        const real crs_from_centre_2_in_axes1_z = crs_xi_1_in_axes1_z - crs_joint3_offset_x;
-        /* (crs-disc_2) discriminant of the distance equation */
-        const real crs_size_t = m->crs_size_t[i];
-        const real crs_disc_2 = crs_size_t - crs_root_1*crs_root_1;
-        /* (crs-q_2) displacement of joint 2 */
-        const real crs_branch_2 = m->crs_branch_2[i];
-        const real crs_q_2 = crs_from_centre_2_in_axes1_z + crs_branch_2*root(crs_disc_2);
-        /* (crs-x_3) from the origin of joint 3 to the connection point */
-        const real crs_x_3_in_axes1_z = crs_xi_1_in_axes1_z - crs_joint3_offset_x - crs_q_2;
-        /* (crs-c_3) cosine of the angle of joint 3 from its reference direction */
-        const real crs_platform_joint_offset_x = m->crs_platform_joint_offset_x[i];
-        const real inv_crs_size_t = m->inv_crs_size_t[i];
-        const real crs_c_3_t = crs_platform_joint_offset_x*crs_root_1*inv_crs_size_t;
-        /* (crs-s_3) sine of the angle of joint 3 from its reference direction */
-        const real crs_s_3 = crs_platform_joint_offset_x*crs_x_3_in_axes1_z*inv_crs_size_t;
-        /* (crs-r_1) from joint 1 to the connection point, along the links */
-        const real crs_r_1_t = crs_c_3_t*crs_platform_joint_offset_x;
-        const real crs_d_4_in_axes1_z = crs_platform_joint_offset_x*crs_s_3;
-        const real crs_r_1_in_axes1_z = crs_d_4_in_axes1_z + crs_joint3_offset_x + crs_q_2;
-        /* (crs-v_1) velocity of the connection point per rate of joint 1 */
-        const real crs_v_1_in_axes3_z = crs_c_3_t*(crs_c_3_t*crs_r_1_t +
-            crs_r_1_in_axes1_z*crs_s_3) + crs_s_3*(crs_r_1_t*crs_s_3 -
-            crs_c_3_t*crs_r_1_in_axes1_z);
+        values_crs v;
+        stage_crs_X(m, w, i, j, s, X, &v);
+        stage_crs_H_condition(&v);
         /* (crs-w_1) reciprocal vector 1 */
-        const real axis_z_crs_axes3_x = crs_base_frame_xy*crs_c_1 + crs_base_frame_xz*crs_s_1;
-        const real axis_z_crs_axes3_y = crs_base_frame_yy*crs_c_1 + crs_base_frame_yz*crs_s_1;
-        const real axis_z_crs_axes3_z = crs_base_frame_zy*crs_c_1 + crs_base_frame_zz*crs_s_1;
-        const real crs_w_1_in_axes3_z = 1/crs_v_1_in_axes3_z;
-        const real crs_w_1_x = axis_z_crs_axes3_x*crs_w_1_in_axes3_z;
-        const real crs_w_1_y = axis_z_crs_axes3_y*crs_w_1_in_axes3_z;
-        const real crs_w_1_z = axis_z_crs_axes3_z*crs_w_1_in_axes3_z;
-        /* (crs-w_2) reciprocal vector 2 */
-        const real crs_w_2_t = crs_s_1*crs_s_3;
-        const real crs_w_2_t_2 = -crs_c_1*crs_s_3;
-        const real axis_y_crs_axes3_x = crs_base_frame_xy*crs_w_2_t +
-            crs_base_frame_xz*crs_w_2_t_2 - crs_base_frame_xx*crs_c_3_t;
-        const real axis_y_crs_axes3_y = crs_base_frame_yy*crs_w_2_t +
-            crs_base_frame_yz*crs_w_2_t_2 - crs_base_frame_yx*crs_c_3_t;
-        const real axis_y_crs_axes3_z = crs_base_frame_zy*crs_w_2_t +
-            crs_base_frame_zz*crs_w_2_t_2 - crs_base_frame_zx*crs_c_3_t;
-        const real crs_w_2_t_3 = crs_r_1_t/crs_d_4_in_axes1_z;
-        const real crs_w_2_in_axes3_x = crs_s_3 + crs_c_3_t*crs_w_2_t_3;
-        const real crs_w_2_in_axes3_y = crs_s_3*crs_w_2_t_3 - crs_c_3_t;
-        const real crs_w_2_x = axis_y_crs_axes3_x*crs_w_2_in_axes3_y +
-            crs_w_2_in_axes3_x*(axis_y_crs_axes3_y*axis_z_crs_axes3_z -
-            axis_y_crs_axes3_z*axis_z_crs_axes3_y);
-        const real crs_w_2_y = axis_y_crs_axes3_y*crs_w_2_in_axes3_y +
-            crs_w_2_in_axes3_x*(axis_y_crs_axes3_z*axis_z_crs_axes3_x -
-            axis_y_crs_axes3_x*axis_z_crs_axes3_z);
-        const real crs_w_2_z = axis_y_crs_axes3_z*crs_w_2_in_axes3_y +
-            crs_w_2_in_axes3_x*(axis_y_crs_axes3_x*axis_z_crs_axes3_y -
-            axis_y_crs_axes3_y*axis_z_crs_axes3_x);
+        o[0*count + k] = v.crs_w_1_x;
+        o[1*count + k] = v.crs_w_1_y;
+        o[2*count + k] = v.crs_w_1_z;
         /* (crs-H_a_1) moment of the column's unit force about the platform origin */
-        const real crs_H_a_1_x = crs_q_y*crs_w_1_z - crs_q_z*crs_w_1_y;
-        const real crs_H_a_1_y = crs_q_z*crs_w_1_x - crs_q_x*crs_w_1_z;
-        const real crs_H_a_1_z = crs_q_x*crs_w_1_y - crs_q_y*crs_w_1_x;
-        /* (crs-H_a_2) moment of the column's unit force about the platform origin */
-        const real crs_H_a_2_x = crs_q_y*crs_w_2_z - crs_q_z*crs_w_2_y;
-        const real crs_H_a_2_y = crs_q_z*crs_w_2_x - crs_q_x*crs_w_2_z;
-        const real crs_H_a_2_z = crs_q_x*crs_w_2_y - crs_q_y*crs_w_2_x;
-        /* (crs-w_1) reciprocal vector 1 */
-        o[0*count + k] = crs_w_1_x;
-        o[1*count + k] = crs_w_1_y;
-        o[2*count + k] = crs_w_1_z;
-        /* (crs-H_a_1) moment of the column's unit force about the platform origin */
-        o[3*count + k] = crs_H_a_1_x;
-        o[4*count + k] = crs_H_a_1_y;
-        o[5*count + k] = crs_H_a_1_z;
+        o[3*count + k] = v.crs_H_a_1_x;
+        o[4*count + k] = v.crs_H_a_1_y;
+        o[5*count + k] = v.crs_H_a_1_z;
         /* (crs-w_2) reciprocal vector 2 */
-        o[6*count + k] = crs_w_2_x;
-        o[7*count + k] = crs_w_2_y;
-        o[8*count + k] = crs_w_2_z;
+        o[6*count + k] = v.crs_w_2_x;
+        o[7*count + k] = v.crs_w_2_y;
+        o[8*count + k] = v.crs_w_2_z;
         /* (crs-H_a_2) moment of the column's unit force about the platform origin */
-        o[9*count + k] = crs_H_a_2_x;
-        o[10*count + k] = crs_H_a_2_y;
-        o[11*count + k] = crs_H_a_2_z;
-        o[14*count + k] = ((crs_w_1_x + (crs_w_1_y + crs_w_1_z)) + (crs_H_a_1_x + (crs_H_a_1_y +
-            crs_H_a_1_z))) + ((crs_w_2_x + (crs_w_2_y + crs_w_2_z)) + (crs_H_a_2_x + (crs_H_a_2_y
-            + crs_H_a_2_z)));
+        o[9*count + k] = v.crs_H_a_2_x;
+        o[10*count + k] = v.crs_H_a_2_y;
+        o[11*count + k] = v.crs_H_a_2_z;
+        o[14*count + k] = ((v.crs_w_1_x + (v.crs_w_1_y + v.crs_w_1_z)) + (v.crs_H_a_1_x +
+            (v.crs_H_a_1_y + v.crs_H_a_1_z))) + ((v.crs_w_2_x + (v.crs_w_2_y + v.crs_w_2_z)) +
+            (v.crs_H_a_2_x + (v.crs_H_a_2_y + v.crs_H_a_2_z)));
         const real crs_size_t_2 = m->crs_size_t_2[i];
         const real crs_size = m->crs_size[i];
-        o[13*count + k] = UNLESS(magnitude(crs_rho2_1) > TOLERANCE*TOLERANCE*crs_size_t_2) +
-            UNLESS(magnitude(crs_v_1_in_axes3_z) > TOLERANCE*crs_size) +
-            UNLESS(magnitude(crs_d_4_in_axes1_z) > TOLERANCE*crs_size);
-        o[12*count + k] = UNLESS(crs_disc_2 >= 0);
+        o[13*count + k] = UNLESS(magnitude(v.crs_rho2_1) > TOLERANCE*TOLERANCE*crs_size_t_2) +
+            UNLESS(magnitude(v.crs_v_1_in_axes3_z) > TOLERANCE*crs_size) +
+            UNLESS(magnitude(v.crs_d_4_in_axes1_z) > TOLERANCE*crs_size);
+        o[12*count + k] = UNLESS(v.crs_disc_2 >= 0);
     }
 }
 
@@ -3281,13 +3150,13 @@ INLINE void H_place_crs(size_t w, size_t count, const real *o, size_t leg, size_
     verdict *t)
 {
     for (size_t k = 0; k < w; ++k) {
-        H[(0*NU + 2*leg)*w + k] = o[0*count + first + k];
+        H[2*leg*w + k] = o[0*count + first + k];
         H[(NU + 2*leg)*w + k] = o[1*count + first + k];
         H[(2*NU + 2*leg)*w + k] = o[2*count + first + k];
         H[(3*NU + 2*leg)*w + k] = o[3*count + first + k];
         H[(4*NU + 2*leg)*w + k] = o[4*count + first + k];
         H[(5*NU + 2*leg)*w + k] = o[5*count + first + k];
-        H[(0*NU + 1 + 2*leg)*w + k] = o[6*count + first + k];
+        H[(1 + 2*leg)*w + k] = o[6*count + first + k];
         H[(NU + 1 + 2*leg)*w + k] = o[7*count + first + k];
         H[(2*NU + 1 + 2*leg)*w + k] = o[8*count + first + k];
         H[(3*NU + 1 + 2*leg)*w + k] = o[9*count + first + k];
@@ -3301,10 +3170,10 @@ INLINE void H_place_crs(size_t w, size_t count, const real *o, size_t leg, size_
 
 INLINE void H_run(const prepared *m, const real *X, real *H, verdict *t)
 {
-    real s[12] = {0};
+    real s[9] = {0};
     real o_crs[15*LEGS(LEGS_OF_crs)] = {0};
-    H_before(1, X, s, t);
-    H_legs_crs(m, 1, 0, 1, s, 0, LEGS(LEGS_OF_crs), o_crs);
+    H_before(m, 1, X, s, t);
+    H_legs_crs(m, 1, 0, 1, s, 0, LEGS(LEGS_OF_crs), X, o_crs);
     for (size_t leg = 0; leg < LEGS_OF_crs; ++leg) {
         H_place_crs(1, LEGS(LEGS_OF_crs), o_crs, leg, leg, H, t);
     }
@@ -3312,11 +3181,11 @@ INLINE void H_run(const prepared *m, const real *X, real *H, verdict *t)
 
 INLINE void H_run_lanes(const prepared *m, const real *X, real *H, verdict *t)
 {
-    real s[12*LANES];
+    real s[9*LANES];
     real o_crs[15*LANES];
-    H_before(LANES, X, s, t);
+    H_before(m, LANES, X, s, t);
     for (size_t leg = 0; leg < LEGS_OF_crs; ++leg) {
-        H_legs_crs(m, LANES, leg, 0, s, 1, LANES, o_crs);
+        H_legs_crs(m, LANES, leg, 0, s, 1, LANES, X, o_crs);
         H_place_crs(LANES, LANES, o_crs, leg, 0, H, t);
     }
 }
@@ -3326,463 +3195,131 @@ INLINE void required_before(const prepared *m, size_t w, const real *X, const re
     *A, real *s, verdict *t)
 {
     for (size_t k = 0; k < w; ++k) {
-        /* X: named entries */
-        const real X_0 = X[0*w + k];
-        const real t_x = X_0;
-        const real X_1 = X[1*w + k];
-        const real t_y = X_1;
-        const real X_2 = X[2*w + k];
-        const real t_z = X_2;
-        const real X_3 = X[3*w + k];
-        const real X_4 = X[4*w + k];
-        const real X_5 = X[5*w + k];
-        const real X_6 = X[6*w + k];
-        const real quaternion_norm2 = X_3*X_3 + X_4*X_4 + X_5*X_5 + X_6*X_6;
-        const real quaternion_scale = 2/quaternion_norm2;
-        const real quaternion_sx = X_3*quaternion_scale;
-        const real quaternion_sy = X_4*quaternion_scale;
-        const real quaternion_sz = X_5*quaternion_scale;
-        const real quaternion_wx = X_6*quaternion_sx;
-        const real quaternion_wy = X_6*quaternion_sy;
-        const real quaternion_wz = X_6*quaternion_sz;
-        const real quaternion_xx = X_3*quaternion_sx;
-        const real quaternion_xy = X_3*quaternion_sy;
-        const real quaternion_xz = X_3*quaternion_sz;
-        const real quaternion_yy = X_4*quaternion_sy;
-        const real quaternion_yz = X_4*quaternion_sz;
-        const real quaternion_zz = X_5*quaternion_sz;
-        const real R_xx = 1 - quaternion_yy - quaternion_zz;
-        const real R_xy = quaternion_xy - quaternion_wz;
-        const real R_xz = quaternion_wy + quaternion_xz;
-        const real R_yx = quaternion_wz + quaternion_xy;
-        const real R_yy = 1 - quaternion_xx - quaternion_zz;
-        const real R_yz = quaternion_yz - quaternion_wx;
-        const real R_zx = quaternion_xz - quaternion_wy;
-        const real R_zy = quaternion_wx + quaternion_yz;
-        const real R_zz = 1 - quaternion_xx - quaternion_yy;
-        /* V: named entries */
-        const real V_0 = V[0*w + k];
-        const real t_dot_x = V_0;
-        const real V_1 = V[1*w + k];
-        const real t_dot_y = V_1;
-        const real V_2 = V[2*w + k];
-        const real t_dot_z = V_2;
-        const real V_3 = V[3*w + k];
-        const real omega_x = V_3;
-        const real V_4 = V[4*w + k];
-        const real omega_y = V_4;
-        const real V_5 = V[5*w + k];
-        const real omega_z = V_5;
-        /* A: named entries */
-        const real A_0 = A[0*w + k];
-        const real t_ddot_x = A_0;
-        const real A_1 = A[1*w + k];
-        const real t_ddot_y = A_1;
-        const real A_2 = A[2*w + k];
-        const real t_ddot_z = A_2;
-        const real A_3 = A[3*w + k];
-        const real alpha_x = A_3;
-        const real A_4 = A[4*w + k];
-        const real alpha_y = A_4;
-        const real A_5 = A[5*w + k];
-        const real alpha_z = A_5;
+        values v;
+        stage_X(m, w, k, X, &v);
+        stage_V_X(w, k, V, &v);
         /* (W_p) centripetal tensor of the platform */
+        const real omega_x = V[3*w + k];
+        const real omega_y = V[4*w + k];
         const real W_p_xy = omega_x*omega_y;
+        const real omega_z = V[5*w + k];
         const real W_p_xz = omega_x*omega_z;
         const real W_p_yz = omega_y*omega_z;
-        /* (h_star) first moment about the platform origin */
-        const real h_star_in_platform_x = m->h_star_in_platform_x;
-        const real h_star_in_platform_y = m->h_star_in_platform_y;
-        const real h_star_in_platform_z = m->h_star_in_platform_z;
-        const real h_star_x = R_xx*h_star_in_platform_x + R_xy*h_star_in_platform_y +
-            R_xz*h_star_in_platform_z;
-        const real h_star_y = R_yx*h_star_in_platform_x + R_yy*h_star_in_platform_y +
-            R_yz*h_star_in_platform_z;
-        const real h_star_z = R_zx*h_star_in_platform_x + R_zy*h_star_in_platform_y +
-            R_zz*h_star_in_platform_z;
         /* (a_t) acceleration of the platform origin, less gravity */
         const real gravity_x = m->gravity_x;
+        const real t_ddot_x = A[0*w + k];
         const real a_t_x = t_ddot_x - gravity_x;
         const real gravity_y = m->gravity_y;
+        const real t_ddot_y = A[1*w + k];
         const real a_t_y = t_ddot_y - gravity_y;
         const real gravity_z = m->gravity_z;
+        const real t_ddot_z = A[2*w + k];
         const real a_t_z = t_ddot_z - gravity_z;
-        const real a_t_in_platform_x = R_xx*a_t_x + R_yx*a_t_y + R_zx*a_t_z;
-        const real a_t_in_platform_y = R_xy*a_t_x + R_yy*a_t_y + R_zy*a_t_z;
-        const real a_t_in_platform_z = R_xz*a_t_x + R_yz*a_t_y + R_zz*a_t_z;
+        const real a_t_in_platform_x = v.R_xx*a_t_x + v.R_yx*a_t_y + v.R_zx*a_t_z;
+        const real a_t_in_platform_y = v.R_xy*a_t_x + v.R_yy*a_t_y + v.R_zy*a_t_z;
+        const real a_t_in_platform_z = v.R_xz*a_t_x + v.R_yz*a_t_y + v.R_zz*a_t_z;
         /* (f_p) inertia force of the platform less its weight */
         const real f_p_t = omega_x*omega_x;
         const real f_p_t_2 = omega_y*omega_y;
         const real f_p_t_3 = omega_z*omega_z;
+        const real alpha_y = A[4*w + k];
+        const real alpha_z = A[5*w + k];
         const real m_star = m->m_star;
-        const real f_p_x = a_t_x*m_star + h_star_y*(W_p_xy - alpha_z) + h_star_z*(W_p_xz +
-            alpha_y) - h_star_x*(f_p_t_2 + f_p_t_3);
-        const real f_p_y = a_t_y*m_star + h_star_x*(W_p_xy + alpha_z) + h_star_z*(W_p_yz -
-            alpha_x) - h_star_y*(f_p_t + f_p_t_3);
-        const real f_p_z = a_t_z*m_star + h_star_x*(W_p_xz - alpha_y) + h_star_y*(W_p_yz +
-            alpha_x) - h_star_z*(f_p_t + f_p_t_2);
+        const real f_p_x = a_t_x*m_star + v.h_star_y*(W_p_xy - alpha_z) + v.h_star_z*(W_p_xz +
+            alpha_y) - v.h_star_x*(f_p_t_2 + f_p_t_3);
+        const real alpha_x = A[3*w + k];
+        const real f_p_y = a_t_y*m_star + v.h_star_x*(W_p_xy + alpha_z) + v.h_star_z*(W_p_yz -
+            alpha_x) - v.h_star_y*(f_p_t + f_p_t_3);
+        const real f_p_z = a_t_z*m_star + v.h_star_x*(W_p_xz - alpha_y) + v.h_star_y*(W_p_yz +
+            alpha_x) - v.h_star_z*(f_p_t + f_p_t_2);
         /* (mu_p) inertia moment of the platform less that of its weight */
-        const real omega_in_platform_x = R_xx*omega_x + R_yx*omega_y + R_zx*omega_z;
-        const real omega_in_platform_y = R_xy*omega_x + R_yy*omega_y + R_zy*omega_z;
-        const real omega_in_platform_z = R_xz*omega_x + R_yz*omega_y + R_zz*omega_z;
         const real J_star_in_platform_xx = m->J_star_in_platform_xx;
         const real J_star_in_platform_xy = m->J_star_in_platform_xy;
         const real J_star_in_platform_xz = m->J_star_in_platform_xz;
-        const real mu_p_t = J_star_in_platform_xx*omega_in_platform_x +
-            J_star_in_platform_xy*omega_in_platform_y + J_star_in_platform_xz*omega_in_platform_z;
+        const real mu_p_t = J_star_in_platform_xx*v.omega_in_platform_x +
+            J_star_in_platform_xy*v.omega_in_platform_y +
+            J_star_in_platform_xz*v.omega_in_platform_z;
         const real J_star_in_platform_yy = m->J_star_in_platform_yy;
         const real J_star_in_platform_yz = m->J_star_in_platform_yz;
-        const real mu_p_t_2 = J_star_in_platform_xy*omega_in_platform_x +
-            J_star_in_platform_yy*omega_in_platform_y + J_star_in_platform_yz*omega_in_platform_z;
+        const real mu_p_t_2 = J_star_in_platform_xy*v.omega_in_platform_x +
+            J_star_in_platform_yy*v.omega_in_platform_y +
+            J_star_in_platform_yz*v.omega_in_platform_z;
         const real J_star_in_platform_zz = m->J_star_in_platform_zz;
-        const real mu_p_t_3 = J_star_in_platform_xz*omega_in_platform_x +
-            J_star_in_platform_yz*omega_in_platform_y + J_star_in_platform_zz*omega_in_platform_z;
-        const real alpha_in_platform_x = R_xx*alpha_x + R_yx*alpha_y + R_zx*alpha_z;
-        const real alpha_in_platform_y = R_xy*alpha_x + R_yy*alpha_y + R_zy*alpha_z;
-        const real alpha_in_platform_z = R_xz*alpha_x + R_yz*alpha_y + R_zz*alpha_z;
+        const real mu_p_t_3 = J_star_in_platform_xz*v.omega_in_platform_x +
+            J_star_in_platform_yz*v.omega_in_platform_y +
+            J_star_in_platform_zz*v.omega_in_platform_z;
+        const real alpha_in_platform_x = v.R_xx*alpha_x + v.R_yx*alpha_y + v.R_zx*alpha_z;
+        const real alpha_in_platform_y = v.R_xy*alpha_x + v.R_yy*alpha_y + v.R_zy*alpha_z;
+        const real alpha_in_platform_z = v.R_xz*alpha_x + v.R_yz*alpha_y + v.R_zz*alpha_z;
+        const real h_star_in_platform_y = m->h_star_in_platform_y;
+        const real h_star_in_platform_z = m->h_star_in_platform_z;
         const real mu_p_in_platform_x = J_star_in_platform_xx*alpha_in_platform_x +
             J_star_in_platform_xy*alpha_in_platform_y + J_star_in_platform_xz*alpha_in_platform_z
-            + a_t_in_platform_z*h_star_in_platform_y + mu_p_t_3*omega_in_platform_y -
-            a_t_in_platform_y*h_star_in_platform_z - mu_p_t_2*omega_in_platform_z;
+            + a_t_in_platform_z*h_star_in_platform_y + mu_p_t_3*v.omega_in_platform_y -
+            a_t_in_platform_y*h_star_in_platform_z - mu_p_t_2*v.omega_in_platform_z;
+        const real h_star_in_platform_x = m->h_star_in_platform_x;
         const real mu_p_in_platform_y = J_star_in_platform_xy*alpha_in_platform_x +
             J_star_in_platform_yy*alpha_in_platform_y + J_star_in_platform_yz*alpha_in_platform_z
-            + a_t_in_platform_x*h_star_in_platform_z + mu_p_t*omega_in_platform_z -
-            a_t_in_platform_z*h_star_in_platform_x - mu_p_t_3*omega_in_platform_x;
+            + a_t_in_platform_x*h_star_in_platform_z + mu_p_t*v.omega_in_platform_z -
+            a_t_in_platform_z*h_star_in_platform_x - mu_p_t_3*v.omega_in_platform_x;
         const real mu_p_in_platform_z = J_star_in_platform_xz*alpha_in_platform_x +
             J_star_in_platform_yz*alpha_in_platform_y + J_star_in_platform_zz*alpha_in_platform_z
-            + a_t_in_platform_y*h_star_in_platform_x + mu_p_t_2*omega_in_platform_x -
-            a_t_in_platform_x*h_star_in_platform_y - mu_p_t*omega_in_platform_y;
-        const real mu_p_x = R_xx*mu_p_in_platform_x + R_xy*mu_p_in_platform_y +
-            R_xz*mu_p_in_platform_z;
-        const real mu_p_y = R_yx*mu_p_in_platform_x + R_yy*mu_p_in_platform_y +
-            R_yz*mu_p_in_platform_z;
-        const real mu_p_z = R_zx*mu_p_in_platform_x + R_zy*mu_p_in_platform_y +
-            R_zz*mu_p_in_platform_z;
-        s[0*w + k] = t_x;
-        s[1*w + k] = t_y;
-        s[2*w + k] = t_z;
-        s[3*w + k] = R_xx;
-        s[4*w + k] = R_xy;
-        s[5*w + k] = R_xz;
-        s[6*w + k] = R_yx;
-        s[7*w + k] = R_yy;
-        s[8*w + k] = R_yz;
-        s[9*w + k] = R_zx;
-        s[10*w + k] = R_zy;
-        s[11*w + k] = R_zz;
-        s[12*w + k] = t_dot_x;
-        s[13*w + k] = t_dot_y;
-        s[14*w + k] = t_dot_z;
-        s[15*w + k] = omega_x;
-        s[16*w + k] = omega_y;
-        s[17*w + k] = omega_z;
-        s[18*w + k] = t_ddot_x;
-        s[19*w + k] = t_ddot_y;
-        s[20*w + k] = t_ddot_z;
-        s[21*w + k] = alpha_x;
-        s[22*w + k] = alpha_y;
-        s[23*w + k] = alpha_z;
-        s[24*w + k] = f_p_x;
-        s[25*w + k] = f_p_y;
-        s[26*w + k] = f_p_z;
-        s[27*w + k] = mu_p_x;
-        s[28*w + k] = mu_p_y;
-        s[29*w + k] = mu_p_z;
-        t->invalid[k] += UNLESS(is_finite(quaternion_scale)) + UNLESS(quaternion_scale > 0);
+            + a_t_in_platform_y*h_star_in_platform_x + mu_p_t_2*v.omega_in_platform_x -
+            a_t_in_platform_x*h_star_in_platform_y - mu_p_t*v.omega_in_platform_y;
+        const real mu_p_x = v.R_xx*mu_p_in_platform_x + v.R_xy*mu_p_in_platform_y +
+            v.R_xz*mu_p_in_platform_z;
+        const real mu_p_y = v.R_yx*mu_p_in_platform_x + v.R_yy*mu_p_in_platform_y +
+            v.R_yz*mu_p_in_platform_z;
+        const real mu_p_z = v.R_zx*mu_p_in_platform_x + v.R_zy*mu_p_in_platform_y +
+            v.R_zz*mu_p_in_platform_z;
+        s[0*w + k] = v.R_xx;
+        s[1*w + k] = v.R_xy;
+        s[2*w + k] = v.R_xz;
+        s[3*w + k] = v.R_yx;
+        s[4*w + k] = v.R_yy;
+        s[5*w + k] = v.R_yz;
+        s[6*w + k] = v.R_zx;
+        s[7*w + k] = v.R_zy;
+        s[8*w + k] = v.R_zz;
+        s[9*w + k] = f_p_x;
+        s[10*w + k] = f_p_y;
+        s[11*w + k] = f_p_z;
+        s[12*w + k] = mu_p_x;
+        s[13*w + k] = mu_p_y;
+        s[14*w + k] = mu_p_z;
+        t->invalid[k] += UNLESS(is_finite(v.quaternion_scale)) + UNLESS(v.quaternion_scale > 0);
     }
 }
 
 INLINE void required_legs_crs(const prepared *m, size_t w, size_t leg, size_t legs, const real *s,
-    size_t states, size_t count, int add, real *terms, real *o)
+    size_t states, size_t count, int add, const real *X, const real *V, const real *A, real
+    *terms, real *o)
 {
     for (size_t k = 0; k < count; ++k) {
         const size_t i = leg + legs*k;
         const size_t j = states*k;
-        /* (crs-S) from the base point to the connection point */
-        const real R_xx = s[3*w + j];
-        const real R_xy = s[4*w + j];
-        const real R_xz = s[5*w + j];
-        const real crs_platform_point_x = m->crs_platform_point_x[i];
-        const real crs_platform_point_y = m->crs_platform_point_y[i];
-        const real crs_platform_point_z = m->crs_platform_point_z[i];
-        const real crs_q_x = R_xx*crs_platform_point_x + R_xy*crs_platform_point_y +
-            R_xz*crs_platform_point_z;
-        const real R_yx = s[6*w + j];
-        const real R_yy = s[7*w + j];
-        const real R_yz = s[8*w + j];
-        const real crs_q_y = R_yx*crs_platform_point_x + R_yy*crs_platform_point_y +
-            R_yz*crs_platform_point_z;
-        const real R_zx = s[9*w + j];
-        const real R_zy = s[10*w + j];
-        const real R_zz = s[11*w + j];
-        const real crs_q_z = R_zx*crs_platform_point_x + R_zy*crs_platform_point_y +
-            R_zz*crs_platform_point_z;
-        const real crs_base_point_x = m->crs_base_point_x[i];
-        const real t_x = s[0*w + j];
-        const real crs_S_x = crs_q_x + t_x - crs_base_point_x;
-        const real crs_base_point_y = m->crs_base_point_y[i];
-        const real t_y = s[1*w + j];
-        const real crs_S_y = crs_q_y + t_y - crs_base_point_y;
-        const real crs_base_point_z = m->crs_base_point_z[i];
-        const real t_z = s[2*w + j];
-        const real crs_S_z = crs_q_z + t_z - crs_base_point_z;
-        /* (crs-px_1) component along the reference direction */
-        const real crs_base_frame_xy = m->crs_base_frame_xy[i];
-        const real crs_base_frame_yy = m->crs_base_frame_yy[i];
-        const real crs_base_frame_zy = m->crs_base_frame_zy[i];
-        const real crs_px_1 = crs_S_x*crs_base_frame_xy + crs_S_y*crs_base_frame_yy +
-            crs_S_z*crs_base_frame_zy;
-        /* (crs-py_1) component across the reference direction */
-        const real crs_base_frame_xz = m->crs_base_frame_xz[i];
-        const real crs_base_frame_yz = m->crs_base_frame_yz[i];
-        const real crs_base_frame_zz = m->crs_base_frame_zz[i];
-        const real crs_py_1 = crs_S_x*crs_base_frame_xz + crs_S_y*crs_base_frame_yz +
-            crs_S_z*crs_base_frame_zz;
-        /* (crs-rho2_1) squared amplitude */
-        const real crs_rho2_1 = crs_px_1*crs_px_1 + crs_py_1*crs_py_1;
-        /* (crs-root_1) root, with the sign of the branch */
-        const real crs_branch_1 = m->crs_branch_1[i];
-        const real crs_root_1 = crs_branch_1*root(crs_rho2_1);
-        /* (crs-c_1) cosine of the angle of joint 1 from its reference direction */
-        const real inv_crs_rho2_1 = 1/crs_rho2_1;
-        const real crs_c_1 = -crs_py_1*crs_root_1*inv_crs_rho2_1;
-        /* (crs-s_1) sine of the angle of joint 1 from its reference direction */
-        const real crs_s_1 = crs_px_1*crs_root_1*inv_crs_rho2_1;
-        /* (crs-xi_1) the vector from joint 1 to the connection point, resolved along link 1 */
-        const real crs_base_frame_xx = m->crs_base_frame_xx[i];
-        const real crs_base_frame_yx = m->crs_base_frame_yx[i];
-        const real crs_base_frame_zx = m->crs_base_frame_zx[i];
-        const real crs_xi_1_in_axes1_z = crs_S_x*crs_base_frame_xx + crs_S_y*crs_base_frame_yx +
-            crs_S_z*crs_base_frame_zx;
-        /* (crs-from_centre_2) from the centre at zero displacement to the connection point */
-        const real crs_joint3_offset_x = m->crs_joint3_offset_x[i];
-        const real crs_from_centre_2_in_axes1_z = crs_xi_1_in_axes1_z - crs_joint3_offset_x;
-        /* (crs-disc_2) discriminant of the distance equation */
-        const real crs_size_t = m->crs_size_t[i];
-        const real crs_disc_2 = crs_size_t - crs_root_1*crs_root_1;
-        /* (crs-q_2) displacement of joint 2 */
-        const real crs_branch_2 = m->crs_branch_2[i];
-        const real crs_q_2 = crs_from_centre_2_in_axes1_z + crs_branch_2*root(crs_disc_2);
-        /* (crs-x_3) from the origin of joint 3 to the connection point */
-        const real crs_x_3_in_axes1_z = crs_xi_1_in_axes1_z - crs_joint3_offset_x - crs_q_2;
-        /* (crs-c_3) cosine of the angle of joint 3 from its reference direction */
-        const real crs_platform_joint_offset_x = m->crs_platform_joint_offset_x[i];
-        const real inv_crs_size_t = m->inv_crs_size_t[i];
-        const real crs_c_3_t = crs_platform_joint_offset_x*crs_root_1*inv_crs_size_t;
-        /* (crs-s_3) sine of the angle of joint 3 from its reference direction */
-        const real crs_s_3 = crs_platform_joint_offset_x*crs_x_3_in_axes1_z*inv_crs_size_t;
-        /* (crs-S_dot) velocity of the connection point */
-        const real omega_y = s[16*w + j];
-        const real omega_z = s[17*w + j];
-        const real crs_S_dot_t = crs_q_z*omega_y - crs_q_y*omega_z;
-        const real omega_x = s[15*w + j];
-        const real crs_S_dot_t_2 = crs_q_x*omega_z - crs_q_z*omega_x;
-        const real crs_S_dot_t_3 = crs_q_y*omega_x - crs_q_x*omega_y;
-        const real t_dot_x = s[12*w + j];
-        const real crs_S_dot_x = crs_S_dot_t + t_dot_x;
-        const real t_dot_y = s[13*w + j];
-        const real crs_S_dot_y = crs_S_dot_t_2 + t_dot_y;
-        const real t_dot_z = s[14*w + j];
-        const real crs_S_dot_z = crs_S_dot_t_3 + t_dot_z;
-        /* (crs-r_1) from joint 1 to the connection point, along the links */
-        const real crs_r_1_t = crs_c_3_t*crs_platform_joint_offset_x;
-        const real crs_d_4_in_axes1_z = crs_platform_joint_offset_x*crs_s_3;
-        const real crs_r_1_in_axes1_z = crs_d_4_in_axes1_z + crs_joint3_offset_x + crs_q_2;
-        /* (crs-v_1) velocity of the connection point per rate of joint 1 */
-        const real crs_v_1_in_axes3_z = crs_c_3_t*(crs_c_3_t*crs_r_1_t +
-            crs_r_1_in_axes1_z*crs_s_3) + crs_s_3*(crs_r_1_t*crs_s_3 -
-            crs_c_3_t*crs_r_1_in_axes1_z);
-        /* (crs-w_1) reciprocal vector 1 */
-        const real axis_z_crs_axes3_x = crs_base_frame_xy*crs_c_1 + crs_base_frame_xz*crs_s_1;
-        const real axis_z_crs_axes3_y = crs_base_frame_yy*crs_c_1 + crs_base_frame_yz*crs_s_1;
-        const real axis_z_crs_axes3_z = crs_base_frame_zy*crs_c_1 + crs_base_frame_zz*crs_s_1;
-        const real crs_w_1_in_axes3_z = 1/crs_v_1_in_axes3_z;
-        const real crs_w_1_x = axis_z_crs_axes3_x*crs_w_1_in_axes3_z;
-        const real crs_w_1_y = axis_z_crs_axes3_y*crs_w_1_in_axes3_z;
-        const real crs_w_1_z = axis_z_crs_axes3_z*crs_w_1_in_axes3_z;
-        /* (crs-w_2) reciprocal vector 2 */
-        const real crs_w_2_t = crs_s_1*crs_s_3;
-        const real crs_w_2_t_2 = -crs_c_1*crs_s_3;
-        const real axis_y_crs_axes3_x = crs_base_frame_xy*crs_w_2_t +
-            crs_base_frame_xz*crs_w_2_t_2 - crs_base_frame_xx*crs_c_3_t;
-        const real axis_y_crs_axes3_y = crs_base_frame_yy*crs_w_2_t +
-            crs_base_frame_yz*crs_w_2_t_2 - crs_base_frame_yx*crs_c_3_t;
-        const real axis_y_crs_axes3_z = crs_base_frame_zy*crs_w_2_t +
-            crs_base_frame_zz*crs_w_2_t_2 - crs_base_frame_zx*crs_c_3_t;
-        const real axis_x_crs_axes3_x = axis_y_crs_axes3_y*axis_z_crs_axes3_z -
-            axis_y_crs_axes3_z*axis_z_crs_axes3_y;
-        const real axis_x_crs_axes3_y = axis_y_crs_axes3_z*axis_z_crs_axes3_x -
-            axis_y_crs_axes3_x*axis_z_crs_axes3_z;
-        const real axis_x_crs_axes3_z = axis_y_crs_axes3_x*axis_z_crs_axes3_y -
-            axis_y_crs_axes3_y*axis_z_crs_axes3_x;
-        const real inv_crs_d_4_in_axes1_z = 1/crs_d_4_in_axes1_z;
-        const real crs_w_2_t_3 = crs_r_1_t*inv_crs_d_4_in_axes1_z;
-        const real crs_w_2_in_axes3_x = crs_s_3 + crs_c_3_t*crs_w_2_t_3;
-        const real crs_w_2_in_axes3_y = crs_s_3*crs_w_2_t_3 - crs_c_3_t;
-        const real crs_w_2_x = axis_x_crs_axes3_x*crs_w_2_in_axes3_x +
-            axis_y_crs_axes3_x*crs_w_2_in_axes3_y;
-        const real crs_w_2_y = axis_x_crs_axes3_y*crs_w_2_in_axes3_x +
-            axis_y_crs_axes3_y*crs_w_2_in_axes3_y;
-        const real crs_w_2_z = axis_x_crs_axes3_z*crs_w_2_in_axes3_x +
-            axis_y_crs_axes3_z*crs_w_2_in_axes3_y;
-        /* (crs-qd_1) rate of joint 1 */
-        const real crs_qd_1_t = crs_S_dot_x*crs_base_frame_xy + crs_S_dot_y*crs_base_frame_yy +
-            crs_S_dot_z*crs_base_frame_zy;
-        const real crs_qd_1_t_2 = crs_S_dot_x*crs_base_frame_xz + crs_S_dot_y*crs_base_frame_yz +
-            crs_S_dot_z*crs_base_frame_zz;
-        const real crs_qd_1 = crs_w_1_in_axes3_z*(crs_c_1*crs_qd_1_t + crs_qd_1_t_2*crs_s_1);
-        /* (crs-qd_2) rate of joint 2 */
-        const real crs_qd_2_t = inv_crs_d_4_in_axes1_z*(crs_c_1*crs_qd_1_t_2 -
-            crs_qd_1_t*crs_s_1);
-        const real crs_qd_2 = crs_S_dot_x*crs_base_frame_xx + crs_S_dot_y*crs_base_frame_yx +
-            crs_S_dot_z*crs_base_frame_zx - crs_qd_2_t*crs_r_1_t;
-        /* (crs-omega_1) angular velocity of link 1 */
-        const real crs_omega_1_in_axes3_x = crs_qd_1*crs_s_3;
-        const real crs_omega_1_t = crs_c_3_t*crs_qd_1;
-        /* (crs-W_3) centripetal tensor of link 3 */
-        const real crs_W_3_in_axes3_yz = crs_omega_1_t*crs_qd_2_t;
-        const real crs_W_3_in_axes3_xy = -crs_omega_1_in_axes3_x*crs_omega_1_t;
-        /* (crs-a_p) acceleration of the connection point without its centripetal part */
-        const real alpha_y = s[22*w + j];
-        const real alpha_z = s[23*w + j];
-        const real t_ddot_x = s[18*w + j];
-        const real crs_a_p_x = t_ddot_x + alpha_y*crs_q_z - alpha_z*crs_q_y;
-        const real alpha_x = s[21*w + j];
-        const real t_ddot_y = s[19*w + j];
-        const real crs_a_p_y = t_ddot_y + alpha_z*crs_q_x - alpha_x*crs_q_z;
-        const real t_ddot_z = s[20*w + j];
-        const real crs_a_p_z = t_ddot_z + alpha_x*crs_q_y - alpha_y*crs_q_x;
-        /* (crs-S_ddot) acceleration of the connection point */
-        const real crs_S_ddot_x = crs_a_p_x + crs_S_dot_t_3*omega_y - crs_S_dot_t_2*omega_z;
-        const real crs_S_ddot_y = crs_a_p_y + crs_S_dot_t*omega_z - crs_S_dot_t_3*omega_x;
-        const real crs_S_ddot_z = crs_a_p_z + crs_S_dot_t_2*omega_x - crs_S_dot_t*omega_y;
-        const real crs_S_ddot_in_axes3_x = axis_x_crs_axes3_x*crs_S_ddot_x +
-            axis_x_crs_axes3_y*crs_S_ddot_y + axis_x_crs_axes3_z*crs_S_ddot_z;
-        const real crs_S_ddot_in_axes3_y = axis_y_crs_axes3_x*crs_S_ddot_x +
-            axis_y_crs_axes3_y*crs_S_ddot_y + axis_y_crs_axes3_z*crs_S_ddot_z;
-        const real crs_S_ddot_in_axes3_z = axis_z_crs_axes3_x*crs_S_ddot_x +
-            axis_z_crs_axes3_y*crs_S_ddot_y + axis_z_crs_axes3_z*crs_S_ddot_z;
-        /* (crs-zeta_3) angular acceleration of link 3 from the turning of axis 3 */
-        const real crs_zeta_3_in_axes3_y = crs_omega_1_in_axes3_x*crs_qd_2_t;
-        /* (crs-bias) acceleration of the connection point at zero joint accelerations */
-        const real crs_bias_t = crs_omega_1_in_axes3_x*(crs_c_3_t*crs_joint3_offset_x +
-            crs_c_3_t*crs_q_2) - crs_omega_1_t*(crs_joint3_offset_x*crs_s_3 + crs_q_2*crs_s_3);
-        const real crs_bias_t_2 = crs_platform_joint_offset_x*crs_qd_2_t;
-        const real crs_bias_t_3 = crs_omega_1_t*crs_platform_joint_offset_x;
-        const real crs_bias_in_axes3_x = crs_bias_t*crs_omega_1_t - crs_bias_t_2*crs_qd_2_t -
-            crs_bias_t_3*crs_omega_1_t;
-        const real crs_bias_in_axes3_y = crs_bias_t*crs_omega_1_in_axes3_x -
-            crs_bias_t_3*crs_omega_1_in_axes3_x;
-        const real crs_bias_in_axes3_z = -crs_bias_t_2*crs_omega_1_in_axes3_x -
-            crs_platform_joint_offset_x*crs_zeta_3_in_axes3_y -
-            2*crs_qd_2*(crs_c_3_t*crs_omega_1_in_axes3_x - crs_omega_1_t*crs_s_3);
-        /* (crs-rel) acceleration of the connection point left to the joint accelerations */
-        const real crs_rel_in_axes3_x = crs_S_ddot_in_axes3_x - crs_bias_in_axes3_x;
-        const real crs_rel_in_axes3_y = crs_S_ddot_in_axes3_y - crs_bias_in_axes3_y;
-        const real crs_rel_in_axes3_z = crs_S_ddot_in_axes3_z - crs_bias_in_axes3_z;
-        /* (crs-qdd_1) acceleration of joint 1 */
-        const real crs_qdd_1 = crs_rel_in_axes3_z*crs_w_1_in_axes3_z;
-        /* (crs-qdd_3) acceleration of joint 3 */
-        const real crs_qdd_3_t = inv_crs_d_4_in_axes1_z*(-crs_c_3_t*crs_rel_in_axes3_x -
-            crs_rel_in_axes3_y*crs_s_3);
-        /* (crs-alpha_1) angular acceleration of link 1 */
-        const real crs_alpha_1_in_axes3_x = crs_qdd_1*crs_s_3;
-        const real crs_alpha_1_t = crs_c_3_t*crs_qdd_1;
-        /* (crs-alpha_3) angular acceleration of link 3 */
-        const real crs_alpha_3_in_axes3_x = crs_W_3_in_axes3_yz + crs_alpha_1_in_axes3_x;
-        const real crs_alpha_3_in_axes3_y = crs_zeta_3_in_axes3_y - crs_alpha_1_t;
-        /* (crs-B_3) acceleration tensor of link 3 */
-        const real crs_B_3_in_axes3_xy = crs_W_3_in_axes3_xy + crs_qdd_3_t;
-        const real crs_B_3_in_axes3_yx = crs_W_3_in_axes3_xy - crs_qdd_3_t;
-        const real crs_B_3_in_axes3_zx = -crs_alpha_3_in_axes3_y - crs_zeta_3_in_axes3_y;
-        const real crs_B_3_in_axes3_zy = crs_W_3_in_axes3_yz + crs_alpha_3_in_axes3_x;
-        /* (crs-acc_2) acceleration of the reference point of link 2, less gravity */
-        const real crs_g_in_axes1_z = m->crs_g_in_axes1_z[i];
-        const real crs_acc_2_in_axes1_z = crs_rel_in_axes3_x*crs_s_3 - crs_g_in_axes1_z -
-            crs_c_3_t*crs_rel_in_axes3_y - crs_qdd_3_t*crs_r_1_t;
-        /* (crs-f_2) inertia force of link 2 less its weight */
-        const real crs_link2_mass = m->crs_link2_mass[i];
-        const real crs_f_2_in_axes1_z = crs_acc_2_in_axes1_z*crs_link2_mass;
-        /* (crs-acc_3) acceleration of the reference point of link 3, less gravity */
-        const real crs_acc_3_t = m->crs_acc_3_t[i];
-        const real crs_acc_3_t_2 = m->crs_acc_3_t_2[i];
-        const real crs_g_in_axes1_x = crs_acc_3_t*crs_c_1 + crs_acc_3_t_2*crs_s_1;
-        const real crs_g_in_axes1_y = crs_acc_3_t_2*crs_c_1 - crs_acc_3_t*crs_s_1;
-        const real crs_acc_3_in_axes3_x = crs_S_ddot_in_axes3_x + crs_c_3_t*crs_g_in_axes1_y -
-            crs_g_in_axes1_z*crs_s_3;
-        const real crs_acc_3_in_axes3_y = crs_S_ddot_in_axes3_y + crs_c_3_t*crs_g_in_axes1_z +
-            crs_g_in_axes1_y*crs_s_3;
-        const real crs_acc_3_in_axes3_z = crs_S_ddot_in_axes3_z - crs_g_in_axes1_x;
-        /* (crs-mu_3) inertia moment of the links that turn with link 3, about their reference points */
-        const real crs_mu_3_t = crs_omega_1_in_axes3_x*crs_omega_1_in_axes3_x;
-        const real crs_mu_3_t_2 = crs_omega_1_t*crs_omega_1_t;
-        const real crs_mu_3_t_3 = crs_qd_2_t*crs_qd_2_t;
-        const real crs_J_3_in_spec3_xy = m->crs_J_3_in_spec3_xy[i];
-        const real crs_J_3_in_spec3_xz = m->crs_J_3_in_spec3_xz[i];
-        const real crs_J_3_in_spec3_yz = m->crs_J_3_in_spec3_yz[i];
-        const real crs_Sigma_3_in_axes3_yy = m->crs_Sigma_3_in_axes3_yy[i];
-        const real crs_Sigma_3_in_axes3_zz = m->crs_Sigma_3_in_axes3_zz[i];
-        const real crs_h_3_in_spec3_y = m->crs_h_3_in_spec3_y[i];
-        const real crs_h_3_in_spec3_z = m->crs_h_3_in_spec3_z[i];
-        const real crs_mu_3_in_axes3_x = crs_B_3_in_axes3_yx*crs_J_3_in_spec3_xz +
-            crs_B_3_in_axes3_zy*crs_Sigma_3_in_axes3_yy + crs_J_3_in_spec3_yz*(crs_mu_3_t_2 -
-            crs_mu_3_t_3) + crs_Sigma_3_in_axes3_zz*crs_alpha_1_in_axes3_x +
-            crs_acc_3_in_axes3_z*crs_h_3_in_spec3_y - crs_B_3_in_axes3_zx*crs_J_3_in_spec3_xy -
-            crs_acc_3_in_axes3_y*crs_h_3_in_spec3_z;
-        const real crs_Sigma_3_in_axes3_xx = m->crs_Sigma_3_in_axes3_xx[i];
-        const real crs_h_3_in_spec3_x = m->crs_h_3_in_spec3_x[i];
-        const real crs_mu_3_in_axes3_y = crs_B_3_in_axes3_zy*crs_J_3_in_spec3_xy +
-            crs_acc_3_in_axes3_x*crs_h_3_in_spec3_z - crs_B_3_in_axes3_xy*crs_J_3_in_spec3_yz -
-            crs_B_3_in_axes3_zx*crs_Sigma_3_in_axes3_xx - crs_J_3_in_spec3_xz*(crs_mu_3_t -
-            crs_mu_3_t_3) - crs_Sigma_3_in_axes3_zz*crs_alpha_1_t -
-            crs_acc_3_in_axes3_z*crs_h_3_in_spec3_x;
-        const real crs_mu_3_in_axes3_z = crs_B_3_in_axes3_yx*crs_Sigma_3_in_axes3_xx +
-            crs_J_3_in_spec3_xy*(crs_mu_3_t - crs_mu_3_t_2) +
-            crs_J_3_in_spec3_xz*crs_alpha_1_in_axes3_x + crs_acc_3_in_axes3_y*crs_h_3_in_spec3_x -
-            crs_B_3_in_axes3_xy*crs_Sigma_3_in_axes3_yy - crs_J_3_in_spec3_yz*crs_alpha_1_t -
-            crs_acc_3_in_axes3_x*crs_h_3_in_spec3_y;
-        /* (crs-mu_1) inertia moment of the links that turn with link 1, about their reference points */
-        const real crs_J_2_in_spec1_xx = m->crs_J_2_in_spec1_xx[i];
-        const real crs_h_2_in_spec1_y = m->crs_h_2_in_spec1_y[i];
-        const real crs_h_2_in_spec1_z = m->crs_h_2_in_spec1_z[i];
-        const real crs_mu_1_in_axes1_z = crs_J_2_in_spec1_xx*crs_qdd_1 -
-            crs_g_in_axes1_x*crs_h_2_in_spec1_y - crs_g_in_axes1_y*crs_h_2_in_spec1_z;
-        /* (crs-N_1) moment about joint 1 of the links from 1 outwards, the force at the connection point
-           left out */
-        const real crs_N_1_in_axes1_z = crs_mu_1_in_axes1_z + crs_mu_3_in_axes3_x*crs_s_3 -
-            crs_c_3_t*crs_mu_3_in_axes3_y;
+        values_crs v;
+        stage_crs_X(m, w, i, j, s, X, &v);
+        stage_crs_A_X(w, j, A, &v);
+        stage_crs_V_X(m, w, i, j, V, &v);
+        stage_crs_A_V_X(w, j, V, &v);
+        stage_crs_legs_required(m, i, &v);
         /* (crs-c) leg force on the platform without actuation and without the mass at the connection
            point */
-        const real crs_c_t = inv_crs_d_4_in_axes1_z*(crs_mu_3_in_axes3_z +
-            crs_f_2_in_axes1_z*crs_r_1_t);
-        const real crs_c_in_axes3_x = crs_alpha_1_t*crs_h_3_in_spec3_z +
-            crs_h_3_in_spec3_x*(crs_mu_3_t_2 + crs_mu_3_t_3) -
-            crs_B_3_in_axes3_xy*crs_h_3_in_spec3_y - crs_c_3_t*crs_c_t -
-            crs_f_2_in_axes1_z*crs_s_3;
-        const real crs_c_in_axes3_y = crs_alpha_1_in_axes3_x*crs_h_3_in_spec3_z +
-            crs_c_3_t*crs_f_2_in_axes1_z + crs_h_3_in_spec3_y*(crs_mu_3_t + crs_mu_3_t_3) -
-            crs_B_3_in_axes3_yx*crs_h_3_in_spec3_x - crs_c_t*crs_s_3;
-        const real crs_c_in_axes3_z = crs_h_3_in_spec3_z*(crs_mu_3_t + crs_mu_3_t_2) -
-            crs_B_3_in_axes3_zx*crs_h_3_in_spec3_x - crs_B_3_in_axes3_zy*crs_h_3_in_spec3_y -
-            crs_N_1_in_axes1_z*crs_w_1_in_axes3_z;
-        const real crs_c_x = axis_x_crs_axes3_x*crs_c_in_axes3_x +
-            axis_y_crs_axes3_x*crs_c_in_axes3_y + axis_z_crs_axes3_x*crs_c_in_axes3_z;
-        const real crs_c_y = axis_x_crs_axes3_y*crs_c_in_axes3_x +
-            axis_y_crs_axes3_y*crs_c_in_axes3_y + axis_z_crs_axes3_y*crs_c_in_axes3_z;
-        const real crs_c_z = axis_x_crs_axes3_z*crs_c_in_axes3_x +
-            axis_y_crs_axes3_z*crs_c_in_axes3_y + axis_z_crs_axes3_z*crs_c_in_axes3_z;
+        const real crs_c_x = v.axis_x_crs_axes3_x*v.crs_c_in_axes3_x +
+            v.axis_y_crs_axes3_x*v.crs_c_in_axes3_y + v.axis_z_crs_axes3_x*v.crs_c_in_axes3_z;
+        const real crs_c_y = v.axis_x_crs_axes3_y*v.crs_c_in_axes3_x +
+            v.axis_y_crs_axes3_y*v.crs_c_in_axes3_y + v.axis_z_crs_axes3_y*v.crs_c_in_axes3_z;
+        const real crs_c_z = v.axis_x_crs_axes3_z*v.crs_c_in_axes3_x +
+            v.axis_y_crs_axes3_z*v.crs_c_in_axes3_y + v.axis_z_crs_axes3_z*v.crs_c_in_axes3_z;
         /* (R_a) moment that actuators and external wrench must give */
-        const real crs_R_a_t = crs_c_y*crs_q_z - crs_c_z*crs_q_y;
-        const real crs_R_a_t_2 = crs_c_z*crs_q_x - crs_c_x*crs_q_z;
-        const real crs_R_a_t_3 = crs_c_x*crs_q_y - crs_c_y*crs_q_x;
-        /* (crs-H_a_1) moment of the column's unit force about the platform origin */
-        const real crs_H_a_1_x = crs_q_y*crs_w_1_z - crs_q_z*crs_w_1_y;
-        const real crs_H_a_1_y = crs_q_z*crs_w_1_x - crs_q_x*crs_w_1_z;
-        const real crs_H_a_1_z = crs_q_x*crs_w_1_y - crs_q_y*crs_w_1_x;
+        const real crs_R_a_t = crs_c_y*v.crs_q_z - crs_c_z*v.crs_q_y;
+        const real crs_R_a_t_2 = crs_c_z*v.crs_q_x - crs_c_x*v.crs_q_z;
+        const real crs_R_a_t_3 = crs_c_x*v.crs_q_y - crs_c_y*v.crs_q_x;
         /* (crs-H_a_2) moment of the column's unit force about the platform origin */
-        const real crs_H_a_2_x = crs_q_y*crs_w_2_z - crs_q_z*crs_w_2_y;
-        const real crs_H_a_2_y = crs_q_z*crs_w_2_x - crs_q_x*crs_w_2_z;
-        const real crs_H_a_2_z = crs_q_x*crs_w_2_y - crs_q_y*crs_w_2_x;
+        const real crs_H_a_2_x = v.crs_q_y*v.crs_w_2_z - v.crs_q_z*v.crs_w_2_y;
+        const real crs_H_a_2_y = v.crs_q_z*v.crs_w_2_x - v.crs_q_x*v.crs_w_2_z;
+        const real crs_H_a_2_z = v.crs_q_x*v.crs_w_2_y - v.crs_q_y*v.crs_w_2_x;
         /* (R_t) force that actuators and external wrench must give */
         gather(&terms[0*count + k], add, crs_c_x);  /* R_t_x_of_legs */
         gather(&terms[1*count + k], add, crs_c_y);  /* R_t_y_of_legs */
@@ -3792,27 +3329,27 @@ INLINE void required_legs_crs(const prepared *m, size_t w, size_t leg, size_t le
         gather(&terms[4*count + k], add, crs_R_a_t_2);  /* R_a_y_of_legs */
         gather(&terms[5*count + k], add, crs_R_a_t_3);  /* R_a_z_of_legs */
         /* (crs-w_1) reciprocal vector 1 */
-        o[0*count + k] = crs_w_1_x;
-        o[1*count + k] = crs_w_1_y;
-        o[2*count + k] = crs_w_1_z;
+        o[0*count + k] = v.crs_w_1_x;
+        o[1*count + k] = v.crs_w_1_y;
+        o[2*count + k] = v.crs_w_1_z;
         /* (crs-H_a_1) moment of the column's unit force about the platform origin */
-        o[3*count + k] = crs_H_a_1_x;
-        o[4*count + k] = crs_H_a_1_y;
-        o[5*count + k] = crs_H_a_1_z;
+        o[3*count + k] = v.crs_H_a_1_x;
+        o[4*count + k] = v.crs_H_a_1_y;
+        o[5*count + k] = v.crs_H_a_1_z;
         /* (crs-w_2) reciprocal vector 2 */
-        o[6*count + k] = crs_w_2_x;
-        o[7*count + k] = crs_w_2_y;
-        o[8*count + k] = crs_w_2_z;
+        o[6*count + k] = v.crs_w_2_x;
+        o[7*count + k] = v.crs_w_2_y;
+        o[8*count + k] = v.crs_w_2_z;
         /* (crs-H_a_2) moment of the column's unit force about the platform origin */
         o[9*count + k] = crs_H_a_2_x;
         o[10*count + k] = crs_H_a_2_y;
         o[11*count + k] = crs_H_a_2_z;
         const real crs_size_t_2 = m->crs_size_t_2[i];
         const real crs_size = m->crs_size[i];
-        o[13*count + k] = UNLESS(magnitude(crs_rho2_1) > TOLERANCE*TOLERANCE*crs_size_t_2) +
-            UNLESS(magnitude(crs_v_1_in_axes3_z) > TOLERANCE*crs_size) +
-            UNLESS(magnitude(crs_d_4_in_axes1_z) > TOLERANCE*crs_size);
-        o[12*count + k] = UNLESS(crs_disc_2 >= 0);
+        o[13*count + k] = UNLESS(magnitude(v.crs_rho2_1) > TOLERANCE*TOLERANCE*crs_size_t_2) +
+            UNLESS(magnitude(v.crs_v_1_in_axes3_z) > TOLERANCE*crs_size) +
+            UNLESS(magnitude(v.crs_d_4_in_axes1_z) > TOLERANCE*crs_size);
+        o[12*count + k] = UNLESS(v.crs_disc_2 >= 0);
     }
 }
 
@@ -3820,13 +3357,13 @@ INLINE void required_place_crs(size_t w, size_t count, const real *o, size_t leg
     real *H, verdict *t)
 {
     for (size_t k = 0; k < w; ++k) {
-        H[(0*NU + 2*leg)*w + k] = o[0*count + first + k];
+        H[2*leg*w + k] = o[0*count + first + k];
         H[(NU + 2*leg)*w + k] = o[1*count + first + k];
         H[(2*NU + 2*leg)*w + k] = o[2*count + first + k];
         H[(3*NU + 2*leg)*w + k] = o[3*count + first + k];
         H[(4*NU + 2*leg)*w + k] = o[4*count + first + k];
         H[(5*NU + 2*leg)*w + k] = o[5*count + first + k];
-        H[(0*NU + 1 + 2*leg)*w + k] = o[6*count + first + k];
+        H[(1 + 2*leg)*w + k] = o[6*count + first + k];
         H[(NU + 1 + 2*leg)*w + k] = o[7*count + first + k];
         H[(2*NU + 1 + 2*leg)*w + k] = o[8*count + first + k];
         H[(3*NU + 1 + 2*leg)*w + k] = o[9*count + first + k];
@@ -3842,23 +3379,23 @@ INLINE void required_after(size_t w, const real *s, const real *sums, real *requ
     for (size_t k = 0; k < w; ++k) {
         /* (R_t) force that actuators and external wrench must give */
         const real R_t_x_of_legs = sums[0*w + k];
-        const real f_p_x = s[24*w + k];
+        const real f_p_x = s[9*w + k];
         const real R_t_x = f_p_x - R_t_x_of_legs;
         const real R_t_y_of_legs = sums[1*w + k];
-        const real f_p_y = s[25*w + k];
+        const real f_p_y = s[10*w + k];
         const real R_t_y = f_p_y - R_t_y_of_legs;
         const real R_t_z_of_legs = sums[2*w + k];
-        const real f_p_z = s[26*w + k];
+        const real f_p_z = s[11*w + k];
         const real R_t_z = f_p_z - R_t_z_of_legs;
         /* (R_a) moment that actuators and external wrench must give */
         const real R_a_x_of_legs = sums[3*w + k];
-        const real mu_p_x = s[27*w + k];
+        const real mu_p_x = s[12*w + k];
         const real R_a_x = R_a_x_of_legs + mu_p_x;
         const real R_a_y_of_legs = sums[4*w + k];
-        const real mu_p_y = s[28*w + k];
+        const real mu_p_y = s[13*w + k];
         const real R_a_y = R_a_y_of_legs + mu_p_y;
         const real R_a_z_of_legs = sums[5*w + k];
-        const real mu_p_z = s[29*w + k];
+        const real mu_p_z = s[14*w + k];
         const real R_a_z = R_a_z_of_legs + mu_p_z;
         /* (R_t) force that actuators and external wrench must give */
         required[0*w + k] = R_t_x;
@@ -3874,12 +3411,10 @@ INLINE void required_after(size_t w, const real *s, const real *sums, real *requ
 INLINE void required_run(const prepared *m, const real *X, const real *V, const real *A, real
     *required, real *H, verdict *t)
 {
-    real s[30] = {0};
-    real sums[6] = {0};
-    real terms_crs[6*LEGS(LEGS_OF_crs)] = {0};
-    real o_crs[14*LEGS(LEGS_OF_crs)] = {0};
+    real s[15] = {0}, sums[6] = {0};
+    real terms_crs[6*LEGS(LEGS_OF_crs)] = {0}, o_crs[14*LEGS(LEGS_OF_crs)] = {0};
     required_before(m, 1, X, V, A, s, t);
-    required_legs_crs(m, 1, 0, 1, s, 0, LEGS(LEGS_OF_crs), 0, terms_crs, o_crs);
+    required_legs_crs(m, 1, 0, 1, s, 0, LEGS(LEGS_OF_crs), 0, X, V, A, terms_crs, o_crs);
     for (size_t leg = 0; leg < LEGS_OF_crs; ++leg) {
         required_place_crs(1, LEGS(LEGS_OF_crs), o_crs, leg, leg, H, t);
     }
@@ -3892,156 +3427,63 @@ INLINE void required_run(const prepared *m, const real *X, const real *V, const 
 INLINE void required_run_lanes(const prepared *m, const real *X, const real *V, const real *A,
     real *required, real *H, verdict *t)
 {
-    real s[30*LANES];
-    real sums[6*LANES];
+    real s[15*LANES], sums[6*LANES];
     real o_crs[14*LANES];
     required_before(m, LANES, X, V, A, s, t);
     clear(sums, 6*LANES);
     for (size_t leg = 0; leg < LEGS_OF_crs; ++leg) {
-        required_legs_crs(m, LANES, leg, 0, s, 1, LANES, 1, sums, o_crs);
+        required_legs_crs(m, LANES, leg, 0, s, 1, LANES, 1, X, V, A, sums, o_crs);
         required_place_crs(LANES, LANES, o_crs, leg, 0, H, t);
     }
     required_after(LANES, s, sums, required);
 }
 
 /* ---- inverse_kinematics ---- */
-INLINE void inverse_kinematics_before(size_t w, const real *X, real *s, verdict *t)
+INLINE void inverse_kinematics_before(const prepared *m, size_t w, const real *X, real *s, verdict
+    *t)
 {
     for (size_t k = 0; k < w; ++k) {
-        /* X: named entries */
-        const real X_0 = X[0*w + k];
-        const real t_x = X_0;
-        const real X_1 = X[1*w + k];
-        const real t_y = X_1;
-        const real X_2 = X[2*w + k];
-        const real t_z = X_2;
-        const real X_3 = X[3*w + k];
-        const real X_4 = X[4*w + k];
-        const real X_5 = X[5*w + k];
-        const real X_6 = X[6*w + k];
-        const real quaternion_norm2 = X_3*X_3 + X_4*X_4 + X_5*X_5 + X_6*X_6;
-        const real quaternion_scale = 2/quaternion_norm2;
-        const real quaternion_sx = X_3*quaternion_scale;
-        const real quaternion_sy = X_4*quaternion_scale;
-        const real quaternion_sz = X_5*quaternion_scale;
-        const real quaternion_wx = X_6*quaternion_sx;
-        const real quaternion_wy = X_6*quaternion_sy;
-        const real quaternion_wz = X_6*quaternion_sz;
-        const real quaternion_xx = X_3*quaternion_sx;
-        const real quaternion_xy = X_3*quaternion_sy;
-        const real quaternion_xz = X_3*quaternion_sz;
-        const real quaternion_yy = X_4*quaternion_sy;
-        const real quaternion_yz = X_4*quaternion_sz;
-        const real quaternion_zz = X_5*quaternion_sz;
-        const real R_xx = 1 - quaternion_yy - quaternion_zz;
-        const real R_xy = quaternion_xy - quaternion_wz;
-        const real R_xz = quaternion_wy + quaternion_xz;
-        const real R_yx = quaternion_wz + quaternion_xy;
-        const real R_yy = 1 - quaternion_xx - quaternion_zz;
-        const real R_yz = quaternion_yz - quaternion_wx;
-        const real R_zx = quaternion_xz - quaternion_wy;
-        const real R_zy = quaternion_wx + quaternion_yz;
-        const real R_zz = 1 - quaternion_xx - quaternion_yy;
-        s[0*w + k] = t_x;
-        s[1*w + k] = t_y;
-        s[2*w + k] = t_z;
-        s[3*w + k] = R_xx;
-        s[4*w + k] = R_xy;
-        s[5*w + k] = R_xz;
-        s[6*w + k] = R_yx;
-        s[7*w + k] = R_yy;
-        s[8*w + k] = R_yz;
-        s[9*w + k] = R_zx;
-        s[10*w + k] = R_zy;
-        s[11*w + k] = R_zz;
-        t->invalid[k] += UNLESS(is_finite(quaternion_scale)) + UNLESS(quaternion_scale > 0);
+        values v;
+        stage_X(m, w, k, X, &v);
+        s[0*w + k] = v.R_xx;
+        s[1*w + k] = v.R_xy;
+        s[2*w + k] = v.R_xz;
+        s[3*w + k] = v.R_yx;
+        s[4*w + k] = v.R_yy;
+        s[5*w + k] = v.R_yz;
+        s[6*w + k] = v.R_zx;
+        s[7*w + k] = v.R_zy;
+        s[8*w + k] = v.R_zz;
+        t->invalid[k] += UNLESS(is_finite(v.quaternion_scale)) + UNLESS(v.quaternion_scale > 0);
     }
 }
 
 INLINE void inverse_kinematics_legs_crs(const prepared *m, size_t w, size_t leg, size_t legs,
-    const real *s, size_t states, size_t count, real *o)
+    const real *s, size_t states, size_t count, const real *X, real *o)
 {
     for (size_t k = 0; k < count; ++k) {
         const size_t i = leg + legs*k;
         const size_t j = states*k;
-        /* (crs-S) from the base point to the connection point */
-        const real R_xx = s[3*w + j];
-        const real R_xy = s[4*w + j];
-        const real R_xz = s[5*w + j];
-        const real crs_base_point_x = m->crs_base_point_x[i];
-        const real crs_platform_point_x = m->crs_platform_point_x[i];
-        const real crs_platform_point_y = m->crs_platform_point_y[i];
-        const real crs_platform_point_z = m->crs_platform_point_z[i];
-        const real t_x = s[0*w + j];
-        const real crs_S_x = t_x + R_xx*crs_platform_point_x + R_xy*crs_platform_point_y +
-            R_xz*crs_platform_point_z - crs_base_point_x;
-        const real R_yx = s[6*w + j];
-        const real R_yy = s[7*w + j];
-        const real R_yz = s[8*w + j];
-        const real crs_base_point_y = m->crs_base_point_y[i];
-        const real t_y = s[1*w + j];
-        const real crs_S_y = t_y + R_yx*crs_platform_point_x + R_yy*crs_platform_point_y +
-            R_yz*crs_platform_point_z - crs_base_point_y;
-        const real R_zx = s[9*w + j];
-        const real R_zy = s[10*w + j];
-        const real R_zz = s[11*w + j];
-        const real crs_base_point_z = m->crs_base_point_z[i];
-        const real t_z = s[2*w + j];
-        const real crs_S_z = t_z + R_zx*crs_platform_point_x + R_zy*crs_platform_point_y +
-            R_zz*crs_platform_point_z - crs_base_point_z;
-        /* (crs-px_1) component along the reference direction */
-        const real crs_base_frame_xy = m->crs_base_frame_xy[i];
-        const real crs_base_frame_yy = m->crs_base_frame_yy[i];
-        const real crs_base_frame_zy = m->crs_base_frame_zy[i];
-        const real crs_px_1 = crs_S_x*crs_base_frame_xy + crs_S_y*crs_base_frame_yy +
-            crs_S_z*crs_base_frame_zy;
-        /* (crs-py_1) component across the reference direction */
-        const real crs_base_frame_xz = m->crs_base_frame_xz[i];
-        const real crs_base_frame_yz = m->crs_base_frame_yz[i];
-        const real crs_base_frame_zz = m->crs_base_frame_zz[i];
-        const real crs_py_1 = crs_S_x*crs_base_frame_xz + crs_S_y*crs_base_frame_yz +
-            crs_S_z*crs_base_frame_zz;
-        /* (crs-rho2_1) squared amplitude */
-        const real crs_rho2_1 = crs_px_1*crs_px_1 + crs_py_1*crs_py_1;
-        /* (crs-root_1) root, with the sign of the branch */
-        const real crs_branch_1 = m->crs_branch_1[i];
-        const real crs_root_1 = crs_branch_1*root(crs_rho2_1);
+        values_crs v;
+        stage_crs_inverse_kinematics_potential(m, w, i, j, s, X, &v);
         /* (crs-q_1) displacement of joint 1 */
-        const real inv_crs_rho2_1 = 1/crs_rho2_1;
-        const real crs_q_1 = angle(crs_py_1*crs_root_1*inv_crs_rho2_1,
-            crs_px_1*crs_root_1*inv_crs_rho2_1);
-        /* (crs-xi_1) the vector from joint 1 to the connection point, resolved along link 1 */
-        const real crs_base_frame_xx = m->crs_base_frame_xx[i];
-        const real crs_base_frame_yx = m->crs_base_frame_yx[i];
-        const real crs_base_frame_zx = m->crs_base_frame_zx[i];
-        const real crs_xi_1_in_axes1_z = crs_S_x*crs_base_frame_xx + crs_S_y*crs_base_frame_yx +
-            crs_S_z*crs_base_frame_zx;
-        /* (crs-from_centre_2) from the centre at zero displacement to the connection point */
-        const real crs_joint3_offset_x = m->crs_joint3_offset_x[i];
-        const real crs_from_centre_2_in_axes1_z = crs_xi_1_in_axes1_z - crs_joint3_offset_x;
-        /* (crs-disc_2) discriminant of the distance equation */
-        const real crs_size_t = m->crs_size_t[i];
-        const real crs_disc_2 = crs_size_t - crs_root_1*crs_root_1;
-        /* (crs-q_2) displacement of joint 2 */
-        const real crs_branch_2 = m->crs_branch_2[i];
-        const real crs_q_2 = crs_from_centre_2_in_axes1_z + crs_branch_2*root(crs_disc_2);
-        /* (crs-x_3) from the origin of joint 3 to the connection point */
-        const real crs_x_3_in_axes1_z = crs_xi_1_in_axes1_z - crs_joint3_offset_x - crs_q_2;
+        const real crs_q_1 = angle(v.crs_S_in_turn1_y*v.crs_root_1*v.inv_crs_rho2_1,
+            v.crs_S_in_turn1_x*v.crs_root_1*v.inv_crs_rho2_1);
         /* (crs-q_3) displacement of joint 3 */
         const real crs_platform_joint_offset_x = m->crs_platform_joint_offset_x[i];
         const real inv_crs_size_t = m->inv_crs_size_t[i];
-        const real crs_q_3 = angle(crs_platform_joint_offset_x*crs_root_1*inv_crs_size_t,
-            crs_platform_joint_offset_x*crs_x_3_in_axes1_z*inv_crs_size_t);
+        const real crs_q_3 = angle(crs_platform_joint_offset_x*v.crs_root_1*inv_crs_size_t,
+            crs_platform_joint_offset_x*v.crs_x_3_in_axes1_z*inv_crs_size_t);
         /* (crs-q_1) displacement of joint 1 */
         o[0*count + k] = crs_q_1;
         /* (crs-q_2) displacement of joint 2 */
-        o[1*count + k] = crs_q_2;
+        o[1*count + k] = v.crs_q_2;
         /* (crs-q_3) displacement of joint 3 */
         o[2*count + k] = crs_q_3;
-        o[5*count + k] = crs_q_1 + (crs_q_2 + crs_q_3);
+        o[5*count + k] = crs_q_1 + (v.crs_q_2 + crs_q_3);
         const real crs_size_t_2 = m->crs_size_t_2[i];
-        o[4*count + k] = UNLESS(magnitude(crs_rho2_1) > TOLERANCE*TOLERANCE*crs_size_t_2);
-        o[3*count + k] = UNLESS(crs_disc_2 >= 0);
+        o[4*count + k] = UNLESS(magnitude(v.crs_rho2_1) > TOLERANCE*TOLERANCE*crs_size_t_2);
+        o[3*count + k] = UNLESS(v.crs_disc_2 >= 0);
     }
 }
 
@@ -4060,10 +3502,10 @@ INLINE void inverse_kinematics_place_crs(size_t w, size_t count, const real *o, 
 
 INLINE void inverse_kinematics_run(const prepared *m, const real *X, real *q, verdict *t)
 {
-    real s[12] = {0};
+    real s[9] = {0};
     real o_crs[6*LEGS(LEGS_OF_crs)] = {0};
-    inverse_kinematics_before(1, X, s, t);
-    inverse_kinematics_legs_crs(m, 1, 0, 1, s, 0, LEGS(LEGS_OF_crs), o_crs);
+    inverse_kinematics_before(m, 1, X, s, t);
+    inverse_kinematics_legs_crs(m, 1, 0, 1, s, 0, LEGS(LEGS_OF_crs), X, o_crs);
     for (size_t leg = 0; leg < LEGS_OF_crs; ++leg) {
         inverse_kinematics_place_crs(1, LEGS(LEGS_OF_crs), o_crs, leg, leg, q, t);
     }
@@ -4071,208 +3513,86 @@ INLINE void inverse_kinematics_run(const prepared *m, const real *X, real *q, ve
 
 INLINE void inverse_kinematics_run_lanes(const prepared *m, const real *X, real *q, verdict *t)
 {
-    real s[12*LANES];
+    real s[9*LANES];
     real o_crs[6*LANES];
-    inverse_kinematics_before(LANES, X, s, t);
+    inverse_kinematics_before(m, LANES, X, s, t);
     for (size_t leg = 0; leg < LEGS_OF_crs; ++leg) {
-        inverse_kinematics_legs_crs(m, LANES, leg, 0, s, 1, LANES, o_crs);
+        inverse_kinematics_legs_crs(m, LANES, leg, 0, s, 1, LANES, X, o_crs);
         inverse_kinematics_place_crs(LANES, LANES, o_crs, leg, 0, q, t);
     }
 }
 
 /* ---- joint_rates ---- */
-INLINE void joint_rates_before(size_t w, const real *X, const real *V, real *s, verdict *t)
+INLINE void joint_rates_before(const prepared *m, size_t w, const real *X, real *s, verdict *t)
 {
     for (size_t k = 0; k < w; ++k) {
-        /* X: named entries */
-        const real X_0 = X[0*w + k];
-        const real t_x = X_0;
-        const real X_1 = X[1*w + k];
-        const real t_y = X_1;
-        const real X_2 = X[2*w + k];
-        const real t_z = X_2;
-        const real X_3 = X[3*w + k];
-        const real X_4 = X[4*w + k];
-        const real X_5 = X[5*w + k];
-        const real X_6 = X[6*w + k];
-        const real quaternion_norm2 = X_3*X_3 + X_4*X_4 + X_5*X_5 + X_6*X_6;
-        const real quaternion_scale = 2/quaternion_norm2;
-        const real quaternion_sx = X_3*quaternion_scale;
-        const real quaternion_sy = X_4*quaternion_scale;
-        const real quaternion_sz = X_5*quaternion_scale;
-        const real quaternion_wx = X_6*quaternion_sx;
-        const real quaternion_wy = X_6*quaternion_sy;
-        const real quaternion_wz = X_6*quaternion_sz;
-        const real quaternion_xx = X_3*quaternion_sx;
-        const real quaternion_xy = X_3*quaternion_sy;
-        const real quaternion_xz = X_3*quaternion_sz;
-        const real quaternion_yy = X_4*quaternion_sy;
-        const real quaternion_yz = X_4*quaternion_sz;
-        const real quaternion_zz = X_5*quaternion_sz;
-        const real R_xx = 1 - quaternion_yy - quaternion_zz;
-        const real R_xy = quaternion_xy - quaternion_wz;
-        const real R_xz = quaternion_wy + quaternion_xz;
-        const real R_yx = quaternion_wz + quaternion_xy;
-        const real R_yy = 1 - quaternion_xx - quaternion_zz;
-        const real R_yz = quaternion_yz - quaternion_wx;
-        const real R_zx = quaternion_xz - quaternion_wy;
-        const real R_zy = quaternion_wx + quaternion_yz;
-        const real R_zz = 1 - quaternion_xx - quaternion_yy;
-        /* V: named entries */
-        const real V_0 = V[0*w + k];
-        const real t_dot_x = V_0;
-        const real V_1 = V[1*w + k];
-        const real t_dot_y = V_1;
-        const real V_2 = V[2*w + k];
-        const real t_dot_z = V_2;
-        const real V_3 = V[3*w + k];
-        const real omega_x = V_3;
-        const real V_4 = V[4*w + k];
-        const real omega_y = V_4;
-        const real V_5 = V[5*w + k];
-        const real omega_z = V_5;
-        s[0*w + k] = t_x;
-        s[1*w + k] = t_y;
-        s[2*w + k] = t_z;
-        s[3*w + k] = R_xx;
-        s[4*w + k] = R_xy;
-        s[5*w + k] = R_xz;
-        s[6*w + k] = R_yx;
-        s[7*w + k] = R_yy;
-        s[8*w + k] = R_yz;
-        s[9*w + k] = R_zx;
-        s[10*w + k] = R_zy;
-        s[11*w + k] = R_zz;
-        s[12*w + k] = t_dot_x;
-        s[13*w + k] = t_dot_y;
-        s[14*w + k] = t_dot_z;
-        s[15*w + k] = omega_x;
-        s[16*w + k] = omega_y;
-        s[17*w + k] = omega_z;
-        t->invalid[k] += UNLESS(is_finite(quaternion_scale)) + UNLESS(quaternion_scale > 0);
+        values v;
+        stage_X(m, w, k, X, &v);
+        s[0*w + k] = v.R_xx;
+        s[1*w + k] = v.R_xy;
+        s[2*w + k] = v.R_xz;
+        s[3*w + k] = v.R_yx;
+        s[4*w + k] = v.R_yy;
+        s[5*w + k] = v.R_yz;
+        s[6*w + k] = v.R_zx;
+        s[7*w + k] = v.R_zy;
+        s[8*w + k] = v.R_zz;
+        t->invalid[k] += UNLESS(is_finite(v.quaternion_scale)) + UNLESS(v.quaternion_scale > 0);
     }
 }
 
 INLINE void joint_rates_legs_crs(const prepared *m, size_t w, size_t leg, size_t legs, const real
-    *s, size_t states, size_t count, real *o)
+    *s, size_t states, size_t count, const real *X, const real *V, real *o)
 {
     for (size_t k = 0; k < count; ++k) {
         const size_t i = leg + legs*k;
         const size_t j = states*k;
-        /* (crs-S) from the base point to the connection point */
-        const real R_xx = s[3*w + j];
-        const real R_xy = s[4*w + j];
-        const real R_xz = s[5*w + j];
-        const real crs_platform_point_x = m->crs_platform_point_x[i];
-        const real crs_platform_point_y = m->crs_platform_point_y[i];
-        const real crs_platform_point_z = m->crs_platform_point_z[i];
-        const real crs_q_x = R_xx*crs_platform_point_x + R_xy*crs_platform_point_y +
-            R_xz*crs_platform_point_z;
-        const real R_yx = s[6*w + j];
-        const real R_yy = s[7*w + j];
-        const real R_yz = s[8*w + j];
-        const real crs_q_y = R_yx*crs_platform_point_x + R_yy*crs_platform_point_y +
-            R_yz*crs_platform_point_z;
-        const real R_zx = s[9*w + j];
-        const real R_zy = s[10*w + j];
-        const real R_zz = s[11*w + j];
-        const real crs_q_z = R_zx*crs_platform_point_x + R_zy*crs_platform_point_y +
-            R_zz*crs_platform_point_z;
-        const real crs_base_point_x = m->crs_base_point_x[i];
-        const real t_x = s[0*w + j];
-        const real crs_S_x = crs_q_x + t_x - crs_base_point_x;
-        const real crs_base_point_y = m->crs_base_point_y[i];
-        const real t_y = s[1*w + j];
-        const real crs_S_y = crs_q_y + t_y - crs_base_point_y;
-        const real crs_base_point_z = m->crs_base_point_z[i];
-        const real t_z = s[2*w + j];
-        const real crs_S_z = crs_q_z + t_z - crs_base_point_z;
-        /* (crs-px_1) component along the reference direction */
+        values_crs v;
+        stage_crs_X(m, w, i, j, s, X, &v);
+        /* (crs-S_dot) velocity of the connection point */
+        const real omega_y = V[4*w + j];
+        const real omega_z = V[5*w + j];
+        const real t_dot_x = V[0*w + j];
+        const real crs_S_dot_x = t_dot_x + v.crs_q_z*omega_y - v.crs_q_y*omega_z;
+        const real omega_x = V[3*w + j];
+        const real t_dot_y = V[1*w + j];
+        const real crs_S_dot_y = t_dot_y + v.crs_q_x*omega_z - v.crs_q_z*omega_x;
+        const real t_dot_z = V[2*w + j];
+        const real crs_S_dot_z = t_dot_z + v.crs_q_y*omega_x - v.crs_q_x*omega_y;
+        /* (crs-qd_1) rate of joint 1 */
         const real crs_base_frame_xy = m->crs_base_frame_xy[i];
         const real crs_base_frame_yy = m->crs_base_frame_yy[i];
         const real crs_base_frame_zy = m->crs_base_frame_zy[i];
-        const real crs_px_1 = crs_S_x*crs_base_frame_xy + crs_S_y*crs_base_frame_yy +
-            crs_S_z*crs_base_frame_zy;
-        /* (crs-py_1) component across the reference direction */
+        const real crs_qd_1_t = crs_S_dot_x*crs_base_frame_xy + crs_S_dot_y*crs_base_frame_yy +
+            crs_S_dot_z*crs_base_frame_zy;
         const real crs_base_frame_xz = m->crs_base_frame_xz[i];
         const real crs_base_frame_yz = m->crs_base_frame_yz[i];
         const real crs_base_frame_zz = m->crs_base_frame_zz[i];
-        const real crs_py_1 = crs_S_x*crs_base_frame_xz + crs_S_y*crs_base_frame_yz +
-            crs_S_z*crs_base_frame_zz;
-        /* (crs-rho2_1) squared amplitude */
-        const real crs_rho2_1 = crs_px_1*crs_px_1 + crs_py_1*crs_py_1;
-        /* (crs-root_1) root, with the sign of the branch */
-        const real crs_branch_1 = m->crs_branch_1[i];
-        const real crs_root_1 = crs_branch_1*root(crs_rho2_1);
-        /* (crs-c_1) cosine of the angle of joint 1 from its reference direction */
-        const real inv_crs_rho2_1 = 1/crs_rho2_1;
-        const real crs_c_1 = -crs_py_1*crs_root_1*inv_crs_rho2_1;
-        /* (crs-s_1) sine of the angle of joint 1 from its reference direction */
-        const real crs_s_1 = crs_px_1*crs_root_1*inv_crs_rho2_1;
-        /* (crs-xi_1) the vector from joint 1 to the connection point, resolved along link 1 */
+        const real crs_qd_1_t_2 = crs_S_dot_x*crs_base_frame_xz + crs_S_dot_y*crs_base_frame_yz +
+            crs_S_dot_z*crs_base_frame_zz;
+        const real crs_qd_1 = (v.crs_c_1*crs_qd_1_t_2 -
+            crs_qd_1_t*v.crs_s_1)/v.crs_v_1_in_axes3_z;
+        /* (crs-qd_2) rate of joint 2 */
+        const real crs_qd_2_t = (v.crs_c_1*crs_qd_1_t +
+            crs_qd_1_t_2*v.crs_s_1)/v.crs_d_4_in_axes1_z;
         const real crs_base_frame_xx = m->crs_base_frame_xx[i];
         const real crs_base_frame_yx = m->crs_base_frame_yx[i];
         const real crs_base_frame_zx = m->crs_base_frame_zx[i];
-        const real crs_xi_1_in_axes1_z = crs_S_x*crs_base_frame_xx + crs_S_y*crs_base_frame_yx +
-            crs_S_z*crs_base_frame_zx;
-        /* (crs-from_centre_2) from the centre at zero displacement to the connection point */
-        const real crs_joint3_offset_x = m->crs_joint3_offset_x[i];
-        const real crs_from_centre_2_in_axes1_z = crs_xi_1_in_axes1_z - crs_joint3_offset_x;
-        /* (crs-disc_2) discriminant of the distance equation */
-        const real crs_size_t = m->crs_size_t[i];
-        const real crs_disc_2 = crs_size_t - crs_root_1*crs_root_1;
-        /* (crs-q_2) displacement of joint 2 */
-        const real crs_branch_2 = m->crs_branch_2[i];
-        const real crs_q_2 = crs_from_centre_2_in_axes1_z + crs_branch_2*root(crs_disc_2);
-        /* (crs-x_3) from the origin of joint 3 to the connection point */
-        const real crs_x_3_in_axes1_z = crs_xi_1_in_axes1_z - crs_joint3_offset_x - crs_q_2;
-        /* (crs-c_3) cosine of the angle of joint 3 from its reference direction */
-        const real crs_platform_joint_offset_x = m->crs_platform_joint_offset_x[i];
-        const real inv_crs_size_t = m->inv_crs_size_t[i];
-        const real crs_c_3_t = crs_platform_joint_offset_x*crs_root_1*inv_crs_size_t;
-        /* (crs-s_3) sine of the angle of joint 3 from its reference direction */
-        const real crs_s_3 = crs_platform_joint_offset_x*crs_x_3_in_axes1_z*inv_crs_size_t;
-        /* (crs-S_dot) velocity of the connection point */
-        const real omega_y = s[16*w + j];
-        const real omega_z = s[17*w + j];
-        const real t_dot_x = s[12*w + j];
-        const real crs_S_dot_x = t_dot_x + crs_q_z*omega_y - crs_q_y*omega_z;
-        const real omega_x = s[15*w + j];
-        const real t_dot_y = s[13*w + j];
-        const real crs_S_dot_y = t_dot_y + crs_q_x*omega_z - crs_q_z*omega_x;
-        const real t_dot_z = s[14*w + j];
-        const real crs_S_dot_z = t_dot_z + crs_q_y*omega_x - crs_q_x*omega_y;
-        /* (crs-r_1) from joint 1 to the connection point, along the links */
-        const real crs_r_1_t = crs_c_3_t*crs_platform_joint_offset_x;
-        const real crs_d_4_in_axes1_z = crs_platform_joint_offset_x*crs_s_3;
-        const real crs_r_1_in_axes1_z = crs_d_4_in_axes1_z + crs_joint3_offset_x + crs_q_2;
-        /* (crs-v_1) velocity of the connection point per rate of joint 1 */
-        const real crs_v_1_in_axes3_z = crs_c_3_t*(crs_c_3_t*crs_r_1_t +
-            crs_r_1_in_axes1_z*crs_s_3) + crs_s_3*(crs_r_1_t*crs_s_3 -
-            crs_c_3_t*crs_r_1_in_axes1_z);
-        /* (crs-qd_1) rate of joint 1 */
-        const real crs_qd_1_t = crs_S_dot_x*crs_base_frame_xy + crs_S_dot_y*crs_base_frame_yy +
-            crs_S_dot_z*crs_base_frame_zy;
-        const real crs_qd_1_t_2 = crs_S_dot_x*crs_base_frame_xz + crs_S_dot_y*crs_base_frame_yz +
-            crs_S_dot_z*crs_base_frame_zz;
-        const real crs_qd_1 = (crs_c_1*crs_qd_1_t + crs_qd_1_t_2*crs_s_1)/crs_v_1_in_axes3_z;
-        /* (crs-qd_2) rate of joint 2 */
-        const real crs_qd_2_t = (crs_c_1*crs_qd_1_t_2 - crs_qd_1_t*crs_s_1)/crs_d_4_in_axes1_z;
         const real crs_qd_2 = crs_S_dot_x*crs_base_frame_xx + crs_S_dot_y*crs_base_frame_yx +
-            crs_S_dot_z*crs_base_frame_zx - crs_qd_2_t*crs_r_1_t;
+            crs_S_dot_z*crs_base_frame_zx + crs_qd_2_t*v.crs_r_1_in_axes1_x;
         /* (crs-qd_1) rate of joint 1 */
         o[0*count + k] = crs_qd_1;
         /* (crs-qd_2) rate of joint 2 */
         o[1*count + k] = crs_qd_2;
         /* (crs-qd_3) rate of joint 3 */
-        o[2*count + k] = -crs_qd_2_t;
+        o[2*count + k] = crs_qd_2_t;
         o[5*count + k] = crs_qd_1 + (crs_qd_2 + crs_qd_2_t);
         const real crs_size_t_2 = m->crs_size_t_2[i];
         const real crs_size = m->crs_size[i];
-        o[4*count + k] = UNLESS(magnitude(crs_rho2_1) > TOLERANCE*TOLERANCE*crs_size_t_2) +
-            UNLESS(magnitude(crs_v_1_in_axes3_z) > TOLERANCE*crs_size) +
-            UNLESS(magnitude(crs_d_4_in_axes1_z) > TOLERANCE*crs_size);
-        o[3*count + k] = UNLESS(crs_disc_2 >= 0);
+        o[4*count + k] = UNLESS(magnitude(v.crs_rho2_1) > TOLERANCE*TOLERANCE*crs_size_t_2) +
+            UNLESS(magnitude(v.crs_v_1_in_axes3_z) > TOLERANCE*crs_size) +
+            UNLESS(magnitude(v.crs_d_4_in_axes1_z) > TOLERANCE*crs_size);
+        o[3*count + k] = UNLESS(v.crs_disc_2 >= 0);
     }
 }
 
@@ -4291,10 +3611,10 @@ INLINE void joint_rates_place_crs(size_t w, size_t count, const real *o, size_t 
 
 INLINE void joint_rates_run(const prepared *m, const real *X, const real *V, real *qd, verdict *t)
 {
-    real s[18] = {0};
+    real s[9] = {0};
     real o_crs[6*LEGS(LEGS_OF_crs)] = {0};
-    joint_rates_before(1, X, V, s, t);
-    joint_rates_legs_crs(m, 1, 0, 1, s, 0, LEGS(LEGS_OF_crs), o_crs);
+    joint_rates_before(m, 1, X, s, t);
+    joint_rates_legs_crs(m, 1, 0, 1, s, 0, LEGS(LEGS_OF_crs), X, V, o_crs);
     for (size_t leg = 0; leg < LEGS_OF_crs; ++leg) {
         joint_rates_place_crs(1, LEGS(LEGS_OF_crs), o_crs, leg, leg, qd, t);
     }
@@ -4303,295 +3623,103 @@ INLINE void joint_rates_run(const prepared *m, const real *X, const real *V, rea
 INLINE void joint_rates_run_lanes(const prepared *m, const real *X, const real *V, real *qd,
     verdict *t)
 {
-    real s[18*LANES];
+    real s[9*LANES];
     real o_crs[6*LANES];
-    joint_rates_before(LANES, X, V, s, t);
+    joint_rates_before(m, LANES, X, s, t);
     for (size_t leg = 0; leg < LEGS_OF_crs; ++leg) {
-        joint_rates_legs_crs(m, LANES, leg, 0, s, 1, LANES, o_crs);
+        joint_rates_legs_crs(m, LANES, leg, 0, s, 1, LANES, X, V, o_crs);
         joint_rates_place_crs(LANES, LANES, o_crs, leg, 0, qd, t);
     }
 }
 
 /* ---- joint_accelerations ---- */
-INLINE void joint_accelerations_before(size_t w, const real *X, const real *V, const real *A, real
-    *s, verdict *t)
+INLINE void joint_accelerations_before(const prepared *m, size_t w, const real *X, real *s,
+    verdict *t)
 {
     for (size_t k = 0; k < w; ++k) {
-        /* X: named entries */
-        const real X_0 = X[0*w + k];
-        const real t_x = X_0;
-        const real X_1 = X[1*w + k];
-        const real t_y = X_1;
-        const real X_2 = X[2*w + k];
-        const real t_z = X_2;
-        const real X_3 = X[3*w + k];
-        const real X_4 = X[4*w + k];
-        const real X_5 = X[5*w + k];
-        const real X_6 = X[6*w + k];
-        const real quaternion_norm2 = X_3*X_3 + X_4*X_4 + X_5*X_5 + X_6*X_6;
-        const real quaternion_scale = 2/quaternion_norm2;
-        const real quaternion_sx = X_3*quaternion_scale;
-        const real quaternion_sy = X_4*quaternion_scale;
-        const real quaternion_sz = X_5*quaternion_scale;
-        const real quaternion_wx = X_6*quaternion_sx;
-        const real quaternion_wy = X_6*quaternion_sy;
-        const real quaternion_wz = X_6*quaternion_sz;
-        const real quaternion_xx = X_3*quaternion_sx;
-        const real quaternion_xy = X_3*quaternion_sy;
-        const real quaternion_xz = X_3*quaternion_sz;
-        const real quaternion_yy = X_4*quaternion_sy;
-        const real quaternion_yz = X_4*quaternion_sz;
-        const real quaternion_zz = X_5*quaternion_sz;
-        const real R_xx = 1 - quaternion_yy - quaternion_zz;
-        const real R_xy = quaternion_xy - quaternion_wz;
-        const real R_xz = quaternion_wy + quaternion_xz;
-        const real R_yx = quaternion_wz + quaternion_xy;
-        const real R_yy = 1 - quaternion_xx - quaternion_zz;
-        const real R_yz = quaternion_yz - quaternion_wx;
-        const real R_zx = quaternion_xz - quaternion_wy;
-        const real R_zy = quaternion_wx + quaternion_yz;
-        const real R_zz = 1 - quaternion_xx - quaternion_yy;
-        /* V: named entries */
-        const real V_0 = V[0*w + k];
-        const real t_dot_x = V_0;
-        const real V_1 = V[1*w + k];
-        const real t_dot_y = V_1;
-        const real V_2 = V[2*w + k];
-        const real t_dot_z = V_2;
-        const real V_3 = V[3*w + k];
-        const real omega_x = V_3;
-        const real V_4 = V[4*w + k];
-        const real omega_y = V_4;
-        const real V_5 = V[5*w + k];
-        const real omega_z = V_5;
-        /* A: named entries */
-        const real A_0 = A[0*w + k];
-        const real t_ddot_x = A_0;
-        const real A_1 = A[1*w + k];
-        const real t_ddot_y = A_1;
-        const real A_2 = A[2*w + k];
-        const real t_ddot_z = A_2;
-        const real A_3 = A[3*w + k];
-        const real alpha_x = A_3;
-        const real A_4 = A[4*w + k];
-        const real alpha_y = A_4;
-        const real A_5 = A[5*w + k];
-        const real alpha_z = A_5;
-        s[0*w + k] = t_x;
-        s[1*w + k] = t_y;
-        s[2*w + k] = t_z;
-        s[3*w + k] = R_xx;
-        s[4*w + k] = R_xy;
-        s[5*w + k] = R_xz;
-        s[6*w + k] = R_yx;
-        s[7*w + k] = R_yy;
-        s[8*w + k] = R_yz;
-        s[9*w + k] = R_zx;
-        s[10*w + k] = R_zy;
-        s[11*w + k] = R_zz;
-        s[12*w + k] = t_dot_x;
-        s[13*w + k] = t_dot_y;
-        s[14*w + k] = t_dot_z;
-        s[15*w + k] = omega_x;
-        s[16*w + k] = omega_y;
-        s[17*w + k] = omega_z;
-        s[18*w + k] = t_ddot_x;
-        s[19*w + k] = t_ddot_y;
-        s[20*w + k] = t_ddot_z;
-        s[21*w + k] = alpha_x;
-        s[22*w + k] = alpha_y;
-        s[23*w + k] = alpha_z;
-        t->invalid[k] += UNLESS(is_finite(quaternion_scale)) + UNLESS(quaternion_scale > 0);
+        values v;
+        stage_X(m, w, k, X, &v);
+        s[0*w + k] = v.R_xx;
+        s[1*w + k] = v.R_xy;
+        s[2*w + k] = v.R_xz;
+        s[3*w + k] = v.R_yx;
+        s[4*w + k] = v.R_yy;
+        s[5*w + k] = v.R_yz;
+        s[6*w + k] = v.R_zx;
+        s[7*w + k] = v.R_zy;
+        s[8*w + k] = v.R_zz;
+        t->invalid[k] += UNLESS(is_finite(v.quaternion_scale)) + UNLESS(v.quaternion_scale > 0);
     }
 }
 
 INLINE void joint_accelerations_legs_crs(const prepared *m, size_t w, size_t leg, size_t legs,
-    const real *s, size_t states, size_t count, real *o)
+    const real *s, size_t states, size_t count, const real *X, const real *V, const real *A, real
+    *o)
 {
     for (size_t k = 0; k < count; ++k) {
         const size_t i = leg + legs*k;
         const size_t j = states*k;
-        /* (crs-S) from the base point to the connection point */
-        const real R_xx = s[3*w + j];
-        const real R_xy = s[4*w + j];
-        const real R_xz = s[5*w + j];
-        const real crs_platform_point_x = m->crs_platform_point_x[i];
-        const real crs_platform_point_y = m->crs_platform_point_y[i];
-        const real crs_platform_point_z = m->crs_platform_point_z[i];
-        const real crs_q_x = R_xx*crs_platform_point_x + R_xy*crs_platform_point_y +
-            R_xz*crs_platform_point_z;
-        const real R_yx = s[6*w + j];
-        const real R_yy = s[7*w + j];
-        const real R_yz = s[8*w + j];
-        const real crs_q_y = R_yx*crs_platform_point_x + R_yy*crs_platform_point_y +
-            R_yz*crs_platform_point_z;
-        const real R_zx = s[9*w + j];
-        const real R_zy = s[10*w + j];
-        const real R_zz = s[11*w + j];
-        const real crs_q_z = R_zx*crs_platform_point_x + R_zy*crs_platform_point_y +
-            R_zz*crs_platform_point_z;
-        const real crs_base_point_x = m->crs_base_point_x[i];
-        const real t_x = s[0*w + j];
-        const real crs_S_x = crs_q_x + t_x - crs_base_point_x;
-        const real crs_base_point_y = m->crs_base_point_y[i];
-        const real t_y = s[1*w + j];
-        const real crs_S_y = crs_q_y + t_y - crs_base_point_y;
-        const real crs_base_point_z = m->crs_base_point_z[i];
-        const real t_z = s[2*w + j];
-        const real crs_S_z = crs_q_z + t_z - crs_base_point_z;
-        /* (crs-px_1) component along the reference direction */
-        const real crs_base_frame_xy = m->crs_base_frame_xy[i];
-        const real crs_base_frame_yy = m->crs_base_frame_yy[i];
-        const real crs_base_frame_zy = m->crs_base_frame_zy[i];
-        const real crs_px_1 = crs_S_x*crs_base_frame_xy + crs_S_y*crs_base_frame_yy +
-            crs_S_z*crs_base_frame_zy;
-        /* (crs-py_1) component across the reference direction */
-        const real crs_base_frame_xz = m->crs_base_frame_xz[i];
-        const real crs_base_frame_yz = m->crs_base_frame_yz[i];
-        const real crs_base_frame_zz = m->crs_base_frame_zz[i];
-        const real crs_py_1 = crs_S_x*crs_base_frame_xz + crs_S_y*crs_base_frame_yz +
-            crs_S_z*crs_base_frame_zz;
-        /* (crs-rho2_1) squared amplitude */
-        const real crs_rho2_1 = crs_px_1*crs_px_1 + crs_py_1*crs_py_1;
-        /* (crs-root_1) root, with the sign of the branch */
-        const real crs_branch_1 = m->crs_branch_1[i];
-        const real crs_root_1 = crs_branch_1*root(crs_rho2_1);
-        /* (crs-c_1) cosine of the angle of joint 1 from its reference direction */
-        const real inv_crs_rho2_1 = 1/crs_rho2_1;
-        const real crs_c_1 = -crs_py_1*crs_root_1*inv_crs_rho2_1;
-        /* (crs-s_1) sine of the angle of joint 1 from its reference direction */
-        const real crs_s_1 = crs_px_1*crs_root_1*inv_crs_rho2_1;
-        /* (crs-xi_1) the vector from joint 1 to the connection point, resolved along link 1 */
-        const real crs_base_frame_xx = m->crs_base_frame_xx[i];
-        const real crs_base_frame_yx = m->crs_base_frame_yx[i];
-        const real crs_base_frame_zx = m->crs_base_frame_zx[i];
-        const real crs_xi_1_in_axes1_z = crs_S_x*crs_base_frame_xx + crs_S_y*crs_base_frame_yx +
-            crs_S_z*crs_base_frame_zx;
-        /* (crs-from_centre_2) from the centre at zero displacement to the connection point */
-        const real crs_joint3_offset_x = m->crs_joint3_offset_x[i];
-        const real crs_from_centre_2_in_axes1_z = crs_xi_1_in_axes1_z - crs_joint3_offset_x;
-        /* (crs-disc_2) discriminant of the distance equation */
-        const real crs_size_t = m->crs_size_t[i];
-        const real crs_disc_2 = crs_size_t - crs_root_1*crs_root_1;
-        /* (crs-q_2) displacement of joint 2 */
-        const real crs_branch_2 = m->crs_branch_2[i];
-        const real crs_q_2 = crs_from_centre_2_in_axes1_z + crs_branch_2*root(crs_disc_2);
-        /* (crs-x_3) from the origin of joint 3 to the connection point */
-        const real crs_x_3_in_axes1_z = crs_xi_1_in_axes1_z - crs_joint3_offset_x - crs_q_2;
-        /* (crs-c_3) cosine of the angle of joint 3 from its reference direction */
-        const real crs_platform_joint_offset_x = m->crs_platform_joint_offset_x[i];
-        const real inv_crs_size_t = m->inv_crs_size_t[i];
-        const real crs_c_3_t = crs_platform_joint_offset_x*crs_root_1*inv_crs_size_t;
-        /* (crs-s_3) sine of the angle of joint 3 from its reference direction */
-        const real crs_s_3 = crs_platform_joint_offset_x*crs_x_3_in_axes1_z*inv_crs_size_t;
-        /* (crs-S_dot) velocity of the connection point */
-        const real omega_y = s[16*w + j];
-        const real omega_z = s[17*w + j];
-        const real crs_S_dot_t = crs_q_z*omega_y - crs_q_y*omega_z;
-        const real omega_x = s[15*w + j];
-        const real crs_S_dot_t_2 = crs_q_x*omega_z - crs_q_z*omega_x;
-        const real crs_S_dot_t_3 = crs_q_y*omega_x - crs_q_x*omega_y;
-        const real t_dot_x = s[12*w + j];
-        const real crs_S_dot_x = crs_S_dot_t + t_dot_x;
-        const real t_dot_y = s[13*w + j];
-        const real crs_S_dot_y = crs_S_dot_t_2 + t_dot_y;
-        const real t_dot_z = s[14*w + j];
-        const real crs_S_dot_z = crs_S_dot_t_3 + t_dot_z;
-        /* (crs-r_1) from joint 1 to the connection point, along the links */
-        const real crs_r_1_t = crs_c_3_t*crs_platform_joint_offset_x;
-        const real crs_d_4_in_axes1_z = crs_platform_joint_offset_x*crs_s_3;
-        const real crs_r_1_in_axes1_z = crs_d_4_in_axes1_z + crs_joint3_offset_x + crs_q_2;
-        /* (crs-v_1) velocity of the connection point per rate of joint 1 */
-        const real crs_v_1_in_axes3_z = crs_c_3_t*(crs_c_3_t*crs_r_1_t +
-            crs_r_1_in_axes1_z*crs_s_3) + crs_s_3*(crs_r_1_t*crs_s_3 -
-            crs_c_3_t*crs_r_1_in_axes1_z);
-        /* (crs-w_1) reciprocal vector 1 */
-        const real crs_w_1_in_axes3_z = 1/crs_v_1_in_axes3_z;
-        /* (crs-qd_1) rate of joint 1 */
-        const real crs_qd_1_t = crs_S_dot_x*crs_base_frame_xy + crs_S_dot_y*crs_base_frame_yy +
-            crs_S_dot_z*crs_base_frame_zy;
-        const real crs_qd_1_t_2 = crs_S_dot_x*crs_base_frame_xz + crs_S_dot_y*crs_base_frame_yz +
-            crs_S_dot_z*crs_base_frame_zz;
-        const real crs_qd_1 = crs_w_1_in_axes3_z*(crs_c_1*crs_qd_1_t + crs_qd_1_t_2*crs_s_1);
-        /* (crs-qd_2) rate of joint 2 */
-        const real inv_crs_d_4_in_axes1_z = 1/crs_d_4_in_axes1_z;
-        const real crs_qd_2_t = inv_crs_d_4_in_axes1_z*(crs_c_1*crs_qd_1_t_2 -
-            crs_qd_1_t*crs_s_1);
-        const real crs_qd_2 = crs_S_dot_x*crs_base_frame_xx + crs_S_dot_y*crs_base_frame_yx +
-            crs_S_dot_z*crs_base_frame_zx - crs_qd_2_t*crs_r_1_t;
-        /* (crs-omega_1) angular velocity of link 1 */
-        const real crs_omega_1_in_axes3_x = crs_qd_1*crs_s_3;
-        const real crs_omega_1_t = crs_c_3_t*crs_qd_1;
-        /* (crs-a_p) acceleration of the connection point without its centripetal part */
-        const real alpha_y = s[22*w + j];
-        const real alpha_z = s[23*w + j];
-        const real t_ddot_x = s[18*w + j];
-        const real crs_a_p_x = t_ddot_x + alpha_y*crs_q_z - alpha_z*crs_q_y;
-        const real alpha_x = s[21*w + j];
-        const real t_ddot_y = s[19*w + j];
-        const real crs_a_p_y = t_ddot_y + alpha_z*crs_q_x - alpha_x*crs_q_z;
-        const real t_ddot_z = s[20*w + j];
-        const real crs_a_p_z = t_ddot_z + alpha_x*crs_q_y - alpha_y*crs_q_x;
-        /* (crs-S_ddot) acceleration of the connection point */
-        const real crs_S_ddot_x = crs_a_p_x + crs_S_dot_t_3*omega_y - crs_S_dot_t_2*omega_z;
-        const real crs_S_ddot_y = crs_a_p_y + crs_S_dot_t*omega_z - crs_S_dot_t_3*omega_x;
-        const real crs_S_ddot_z = crs_a_p_z + crs_S_dot_t_2*omega_x - crs_S_dot_t*omega_y;
+        values_crs v;
+        stage_crs_X(m, w, i, j, s, X, &v);
+        stage_crs_A_X(w, j, A, &v);
+        stage_crs_V_X(m, w, i, j, V, &v);
+        stage_crs_A_V_X(w, j, V, &v);
         /* (crs-bias) acceleration of the connection point at zero joint accelerations */
-        const real crs_bias_t = crs_omega_1_in_axes3_x*(crs_c_3_t*crs_joint3_offset_x +
-            crs_c_3_t*crs_q_2) - crs_omega_1_t*(crs_joint3_offset_x*crs_s_3 + crs_q_2*crs_s_3);
-        const real crs_bias_t_2 = crs_platform_joint_offset_x*crs_qd_2_t;
-        const real crs_bias_t_3 = crs_omega_1_t*crs_platform_joint_offset_x;
-        const real crs_bias_in_axes3_x = crs_bias_t*crs_omega_1_t - crs_bias_t_2*crs_qd_2_t -
-            crs_bias_t_3*crs_omega_1_t;
-        const real crs_bias_in_axes3_y = crs_bias_t*crs_omega_1_in_axes3_x -
-            crs_bias_t_3*crs_omega_1_in_axes3_x;
-        const real crs_bias_in_axes3_z = -crs_bias_t_2*crs_omega_1_in_axes3_x -
-            2*crs_qd_2*(crs_c_3_t*crs_omega_1_in_axes3_x - crs_omega_1_t*crs_s_3) -
-            crs_omega_1_in_axes3_x*crs_platform_joint_offset_x*crs_qd_2_t;
+        const real crs_platform_joint_offset_x = m->crs_platform_joint_offset_x[i];
+        const real crs_bias_in_axes3_z = v.crs_bias_t_2*v.crs_omega_1_in_axes3_x +
+            v.crs_omega_1_in_axes3_x*crs_platform_joint_offset_x*v.crs_qd_2_t -
+            2*v.crs_qd_2*(v.crs_c_3*v.crs_omega_1_in_axes3_y +
+            v.crs_omega_1_in_axes3_x*v.crs_s_3);
         /* (crs-rel) acceleration of the connection point left to the joint accelerations */
-        const real axis_z_crs_axes3_x = crs_base_frame_xy*crs_c_1 + crs_base_frame_xz*crs_s_1;
-        const real axis_z_crs_axes3_y = crs_base_frame_yy*crs_c_1 + crs_base_frame_yz*crs_s_1;
-        const real axis_z_crs_axes3_z = crs_base_frame_zy*crs_c_1 + crs_base_frame_zz*crs_s_1;
-        const real crs_rel_t = crs_s_1*crs_s_3;
-        const real crs_rel_t_2 = -crs_c_1*crs_s_3;
+        const real crs_rel_t = v.crs_c_1*v.crs_c_3;
+        const real crs_rel_t_2 = v.crs_c_3*v.crs_s_1;
+        const real crs_base_frame_xx = m->crs_base_frame_xx[i];
+        const real crs_base_frame_xy = m->crs_base_frame_xy[i];
+        const real crs_base_frame_xz = m->crs_base_frame_xz[i];
         const real axis_y_crs_axes3_x = crs_base_frame_xy*crs_rel_t +
-            crs_base_frame_xz*crs_rel_t_2 - crs_base_frame_xx*crs_c_3_t;
+            crs_base_frame_xz*crs_rel_t_2 - crs_base_frame_xx*v.crs_s_3;
+        const real crs_base_frame_yx = m->crs_base_frame_yx[i];
+        const real crs_base_frame_yy = m->crs_base_frame_yy[i];
+        const real crs_base_frame_yz = m->crs_base_frame_yz[i];
         const real axis_y_crs_axes3_y = crs_base_frame_yy*crs_rel_t +
-            crs_base_frame_yz*crs_rel_t_2 - crs_base_frame_yx*crs_c_3_t;
+            crs_base_frame_yz*crs_rel_t_2 - crs_base_frame_yx*v.crs_s_3;
+        const real crs_base_frame_zx = m->crs_base_frame_zx[i];
+        const real crs_base_frame_zy = m->crs_base_frame_zy[i];
+        const real crs_base_frame_zz = m->crs_base_frame_zz[i];
         const real axis_y_crs_axes3_z = crs_base_frame_zy*crs_rel_t +
-            crs_base_frame_zz*crs_rel_t_2 - crs_base_frame_zx*crs_c_3_t;
-        const real crs_rel_in_axes3_x = crs_S_ddot_x*(axis_y_crs_axes3_y*axis_z_crs_axes3_z -
-            axis_y_crs_axes3_z*axis_z_crs_axes3_y) +
-            crs_S_ddot_y*(axis_y_crs_axes3_z*axis_z_crs_axes3_x -
-            axis_y_crs_axes3_x*axis_z_crs_axes3_z) +
-            crs_S_ddot_z*(axis_y_crs_axes3_x*axis_z_crs_axes3_y -
-            axis_y_crs_axes3_y*axis_z_crs_axes3_x) - crs_bias_in_axes3_x;
-        const real crs_rel_in_axes3_y = axis_y_crs_axes3_x*crs_S_ddot_x +
-            axis_y_crs_axes3_y*crs_S_ddot_y + axis_y_crs_axes3_z*crs_S_ddot_z -
-            crs_bias_in_axes3_y;
-        const real crs_rel_in_axes3_z = axis_z_crs_axes3_x*crs_S_ddot_x +
-            axis_z_crs_axes3_y*crs_S_ddot_y + axis_z_crs_axes3_z*crs_S_ddot_z -
+            crs_base_frame_zz*crs_rel_t_2 - crs_base_frame_zx*v.crs_s_3;
+        const real crs_rel_in_axes3_x = v.crs_S_ddot_x*(axis_y_crs_axes3_y*v.axis_z_crs_axes3_z -
+            axis_y_crs_axes3_z*v.axis_z_crs_axes3_y) +
+            v.crs_S_ddot_y*(axis_y_crs_axes3_z*v.axis_z_crs_axes3_x -
+            axis_y_crs_axes3_x*v.axis_z_crs_axes3_z) +
+            v.crs_S_ddot_z*(axis_y_crs_axes3_x*v.axis_z_crs_axes3_y -
+            axis_y_crs_axes3_y*v.axis_z_crs_axes3_x) - v.crs_bias_in_axes3_x;
+        const real crs_rel_in_axes3_y = axis_y_crs_axes3_x*v.crs_S_ddot_x +
+            axis_y_crs_axes3_y*v.crs_S_ddot_y + axis_y_crs_axes3_z*v.crs_S_ddot_z -
+            v.crs_bias_in_axes3_y;
+        const real crs_rel_in_axes3_z = v.axis_z_crs_axes3_x*v.crs_S_ddot_x +
+            v.axis_z_crs_axes3_y*v.crs_S_ddot_y + v.axis_z_crs_axes3_z*v.crs_S_ddot_z -
             crs_bias_in_axes3_z;
         /* (crs-qdd_1) acceleration of joint 1 */
-        const real crs_qdd_1 = crs_rel_in_axes3_z*crs_w_1_in_axes3_z;
+        const real crs_qdd_1 = crs_rel_in_axes3_z*v.crs_w_1_in_axes3_z;
         /* (crs-qdd_2) acceleration of joint 2 */
-        const real crs_qdd_2_t = inv_crs_d_4_in_axes1_z*(-crs_c_3_t*crs_rel_in_axes3_x -
-            crs_rel_in_axes3_y*crs_s_3);
-        const real crs_qdd_2 = crs_rel_in_axes3_x*crs_s_3 - crs_c_3_t*crs_rel_in_axes3_y -
-            crs_qdd_2_t*crs_r_1_t;
+        const real crs_qdd_2_t = v.inv_crs_d_4_in_axes1_z*(v.crs_c_3*crs_rel_in_axes3_y +
+            crs_rel_in_axes3_x*v.crs_s_3);
+        const real crs_qdd_2 = v.crs_c_3*crs_rel_in_axes3_x + crs_qdd_2_t*v.crs_r_1_in_axes1_x -
+            crs_rel_in_axes3_y*v.crs_s_3;
         /* (crs-qdd_1) acceleration of joint 1 */
         o[0*count + k] = crs_qdd_1;
         /* (crs-qdd_2) acceleration of joint 2 */
         o[1*count + k] = crs_qdd_2;
         /* (crs-qdd_3) acceleration of joint 3 */
-        o[2*count + k] = -crs_qdd_2_t;
+        o[2*count + k] = crs_qdd_2_t;
         o[5*count + k] = crs_qdd_1 + (crs_qdd_2 + crs_qdd_2_t);
         const real crs_size_t_2 = m->crs_size_t_2[i];
         const real crs_size = m->crs_size[i];
-        o[4*count + k] = UNLESS(magnitude(crs_rho2_1) > TOLERANCE*TOLERANCE*crs_size_t_2) +
-            UNLESS(magnitude(crs_v_1_in_axes3_z) > TOLERANCE*crs_size) +
-            UNLESS(magnitude(crs_d_4_in_axes1_z) > TOLERANCE*crs_size);
-        o[3*count + k] = UNLESS(crs_disc_2 >= 0);
+        o[4*count + k] = UNLESS(magnitude(v.crs_rho2_1) > TOLERANCE*TOLERANCE*crs_size_t_2) +
+            UNLESS(magnitude(v.crs_v_1_in_axes3_z) > TOLERANCE*crs_size) +
+            UNLESS(magnitude(v.crs_d_4_in_axes1_z) > TOLERANCE*crs_size);
+        o[3*count + k] = UNLESS(v.crs_disc_2 >= 0);
     }
 }
 
@@ -4611,10 +3739,10 @@ INLINE void joint_accelerations_place_crs(size_t w, size_t count, const real *o,
 INLINE void joint_accelerations_run(const prepared *m, const real *X, const real *V, const real
     *A, real *qdd, verdict *t)
 {
-    real s[24] = {0};
+    real s[9] = {0};
     real o_crs[6*LEGS(LEGS_OF_crs)] = {0};
-    joint_accelerations_before(1, X, V, A, s, t);
-    joint_accelerations_legs_crs(m, 1, 0, 1, s, 0, LEGS(LEGS_OF_crs), o_crs);
+    joint_accelerations_before(m, 1, X, s, t);
+    joint_accelerations_legs_crs(m, 1, 0, 1, s, 0, LEGS(LEGS_OF_crs), X, V, A, o_crs);
     for (size_t leg = 0; leg < LEGS_OF_crs; ++leg) {
         joint_accelerations_place_crs(1, LEGS(LEGS_OF_crs), o_crs, leg, leg, qdd, t);
     }
@@ -4623,410 +3751,81 @@ INLINE void joint_accelerations_run(const prepared *m, const real *X, const real
 INLINE void joint_accelerations_run_lanes(const prepared *m, const real *X, const real *V, const
     real *A, real *qdd, verdict *t)
 {
-    real s[24*LANES];
+    real s[9*LANES];
     real o_crs[6*LANES];
-    joint_accelerations_before(LANES, X, V, A, s, t);
+    joint_accelerations_before(m, LANES, X, s, t);
     for (size_t leg = 0; leg < LEGS_OF_crs; ++leg) {
-        joint_accelerations_legs_crs(m, LANES, leg, 0, s, 1, LANES, o_crs);
+        joint_accelerations_legs_crs(m, LANES, leg, 0, s, 1, LANES, X, V, A, o_crs);
         joint_accelerations_place_crs(LANES, LANES, o_crs, leg, 0, qdd, t);
     }
 }
 
 /* ---- legs ---- */
-INLINE void legs_before(size_t w, const real *X, const real *V, const real *A, real *s, verdict
-    *t)
+INLINE void legs_before(const prepared *m, size_t w, const real *X, real *s, verdict *t)
 {
     for (size_t k = 0; k < w; ++k) {
-        /* X: named entries */
-        const real X_0 = X[0*w + k];
-        const real t_x = X_0;
-        const real X_1 = X[1*w + k];
-        const real t_y = X_1;
-        const real X_2 = X[2*w + k];
-        const real t_z = X_2;
-        const real X_3 = X[3*w + k];
-        const real X_4 = X[4*w + k];
-        const real X_5 = X[5*w + k];
-        const real X_6 = X[6*w + k];
-        const real quaternion_norm2 = X_3*X_3 + X_4*X_4 + X_5*X_5 + X_6*X_6;
-        const real quaternion_scale = 2/quaternion_norm2;
-        const real quaternion_sx = X_3*quaternion_scale;
-        const real quaternion_sy = X_4*quaternion_scale;
-        const real quaternion_sz = X_5*quaternion_scale;
-        const real quaternion_wx = X_6*quaternion_sx;
-        const real quaternion_wy = X_6*quaternion_sy;
-        const real quaternion_wz = X_6*quaternion_sz;
-        const real quaternion_xx = X_3*quaternion_sx;
-        const real quaternion_xy = X_3*quaternion_sy;
-        const real quaternion_xz = X_3*quaternion_sz;
-        const real quaternion_yy = X_4*quaternion_sy;
-        const real quaternion_yz = X_4*quaternion_sz;
-        const real quaternion_zz = X_5*quaternion_sz;
-        const real R_xx = 1 - quaternion_yy - quaternion_zz;
-        const real R_xy = quaternion_xy - quaternion_wz;
-        const real R_xz = quaternion_wy + quaternion_xz;
-        const real R_yx = quaternion_wz + quaternion_xy;
-        const real R_yy = 1 - quaternion_xx - quaternion_zz;
-        const real R_yz = quaternion_yz - quaternion_wx;
-        const real R_zx = quaternion_xz - quaternion_wy;
-        const real R_zy = quaternion_wx + quaternion_yz;
-        const real R_zz = 1 - quaternion_xx - quaternion_yy;
-        /* V: named entries */
-        const real V_0 = V[0*w + k];
-        const real t_dot_x = V_0;
-        const real V_1 = V[1*w + k];
-        const real t_dot_y = V_1;
-        const real V_2 = V[2*w + k];
-        const real t_dot_z = V_2;
-        const real V_3 = V[3*w + k];
-        const real omega_x = V_3;
-        const real V_4 = V[4*w + k];
-        const real omega_y = V_4;
-        const real V_5 = V[5*w + k];
-        const real omega_z = V_5;
-        /* A: named entries */
-        const real A_0 = A[0*w + k];
-        const real t_ddot_x = A_0;
-        const real A_1 = A[1*w + k];
-        const real t_ddot_y = A_1;
-        const real A_2 = A[2*w + k];
-        const real t_ddot_z = A_2;
-        const real A_3 = A[3*w + k];
-        const real alpha_x = A_3;
-        const real A_4 = A[4*w + k];
-        const real alpha_y = A_4;
-        const real A_5 = A[5*w + k];
-        const real alpha_z = A_5;
-        s[0*w + k] = t_x;
-        s[1*w + k] = t_y;
-        s[2*w + k] = t_z;
-        s[3*w + k] = R_xx;
-        s[4*w + k] = R_xy;
-        s[5*w + k] = R_xz;
-        s[6*w + k] = R_yx;
-        s[7*w + k] = R_yy;
-        s[8*w + k] = R_yz;
-        s[9*w + k] = R_zx;
-        s[10*w + k] = R_zy;
-        s[11*w + k] = R_zz;
-        s[12*w + k] = t_dot_x;
-        s[13*w + k] = t_dot_y;
-        s[14*w + k] = t_dot_z;
-        s[15*w + k] = omega_x;
-        s[16*w + k] = omega_y;
-        s[17*w + k] = omega_z;
-        s[18*w + k] = t_ddot_x;
-        s[19*w + k] = t_ddot_y;
-        s[20*w + k] = t_ddot_z;
-        s[21*w + k] = alpha_x;
-        s[22*w + k] = alpha_y;
-        s[23*w + k] = alpha_z;
-        t->invalid[k] += UNLESS(is_finite(quaternion_scale)) + UNLESS(quaternion_scale > 0);
+        values v;
+        stage_X(m, w, k, X, &v);
+        s[0*w + k] = v.R_xx;
+        s[1*w + k] = v.R_xy;
+        s[2*w + k] = v.R_xz;
+        s[3*w + k] = v.R_yx;
+        s[4*w + k] = v.R_yy;
+        s[5*w + k] = v.R_yz;
+        s[6*w + k] = v.R_zx;
+        s[7*w + k] = v.R_zy;
+        s[8*w + k] = v.R_zz;
+        t->invalid[k] += UNLESS(is_finite(v.quaternion_scale)) + UNLESS(v.quaternion_scale > 0);
     }
 }
 
 INLINE void legs_legs_crs(const prepared *m, size_t w, size_t leg, size_t legs, const real *s,
-    size_t states, size_t count, real *o)
+    size_t states, size_t count, const real *X, const real *V, const real *A, real *o)
 {
     for (size_t k = 0; k < count; ++k) {
         const size_t i = leg + legs*k;
         const size_t j = states*k;
-        /* (crs-S) from the base point to the connection point */
-        const real R_xx = s[3*w + j];
-        const real R_xy = s[4*w + j];
-        const real R_xz = s[5*w + j];
-        const real crs_platform_point_x = m->crs_platform_point_x[i];
-        const real crs_platform_point_y = m->crs_platform_point_y[i];
-        const real crs_platform_point_z = m->crs_platform_point_z[i];
-        const real crs_q_x = R_xx*crs_platform_point_x + R_xy*crs_platform_point_y +
-            R_xz*crs_platform_point_z;
-        const real R_yx = s[6*w + j];
-        const real R_yy = s[7*w + j];
-        const real R_yz = s[8*w + j];
-        const real crs_q_y = R_yx*crs_platform_point_x + R_yy*crs_platform_point_y +
-            R_yz*crs_platform_point_z;
-        const real R_zx = s[9*w + j];
-        const real R_zy = s[10*w + j];
-        const real R_zz = s[11*w + j];
-        const real crs_q_z = R_zx*crs_platform_point_x + R_zy*crs_platform_point_y +
-            R_zz*crs_platform_point_z;
-        const real crs_base_point_x = m->crs_base_point_x[i];
-        const real t_x = s[0*w + j];
-        const real crs_S_x = crs_q_x + t_x - crs_base_point_x;
-        const real crs_base_point_y = m->crs_base_point_y[i];
-        const real t_y = s[1*w + j];
-        const real crs_S_y = crs_q_y + t_y - crs_base_point_y;
-        const real crs_base_point_z = m->crs_base_point_z[i];
-        const real t_z = s[2*w + j];
-        const real crs_S_z = crs_q_z + t_z - crs_base_point_z;
-        /* (crs-px_1) component along the reference direction */
-        const real crs_base_frame_xy = m->crs_base_frame_xy[i];
-        const real crs_base_frame_yy = m->crs_base_frame_yy[i];
-        const real crs_base_frame_zy = m->crs_base_frame_zy[i];
-        const real crs_px_1 = crs_S_x*crs_base_frame_xy + crs_S_y*crs_base_frame_yy +
-            crs_S_z*crs_base_frame_zy;
-        /* (crs-py_1) component across the reference direction */
-        const real crs_base_frame_xz = m->crs_base_frame_xz[i];
-        const real crs_base_frame_yz = m->crs_base_frame_yz[i];
-        const real crs_base_frame_zz = m->crs_base_frame_zz[i];
-        const real crs_py_1 = crs_S_x*crs_base_frame_xz + crs_S_y*crs_base_frame_yz +
-            crs_S_z*crs_base_frame_zz;
-        /* (crs-rho2_1) squared amplitude */
-        const real crs_rho2_1 = crs_px_1*crs_px_1 + crs_py_1*crs_py_1;
-        /* (crs-root_1) root, with the sign of the branch */
-        const real crs_branch_1 = m->crs_branch_1[i];
-        const real crs_root_1 = crs_branch_1*root(crs_rho2_1);
-        /* (crs-c_1) cosine of the angle of joint 1 from its reference direction */
-        const real inv_crs_rho2_1 = 1/crs_rho2_1;
-        const real crs_c_1 = -crs_py_1*crs_root_1*inv_crs_rho2_1;
-        /* (crs-s_1) sine of the angle of joint 1 from its reference direction */
-        const real crs_s_1 = crs_px_1*crs_root_1*inv_crs_rho2_1;
-        /* (crs-xi_1) the vector from joint 1 to the connection point, resolved along link 1 */
-        const real crs_base_frame_xx = m->crs_base_frame_xx[i];
-        const real crs_base_frame_yx = m->crs_base_frame_yx[i];
-        const real crs_base_frame_zx = m->crs_base_frame_zx[i];
-        const real crs_xi_1_in_axes1_z = crs_S_x*crs_base_frame_xx + crs_S_y*crs_base_frame_yx +
-            crs_S_z*crs_base_frame_zx;
-        /* (crs-from_centre_2) from the centre at zero displacement to the connection point */
-        const real crs_joint3_offset_x = m->crs_joint3_offset_x[i];
-        const real crs_from_centre_2_in_axes1_z = crs_xi_1_in_axes1_z - crs_joint3_offset_x;
-        /* (crs-disc_2) discriminant of the distance equation */
-        const real crs_size_t = m->crs_size_t[i];
-        const real crs_disc_2 = crs_size_t - crs_root_1*crs_root_1;
-        /* (crs-q_2) displacement of joint 2 */
-        const real crs_branch_2 = m->crs_branch_2[i];
-        const real crs_q_2 = crs_from_centre_2_in_axes1_z + crs_branch_2*root(crs_disc_2);
-        /* (crs-x_3) from the origin of joint 3 to the connection point */
-        const real crs_x_3_in_axes1_z = crs_xi_1_in_axes1_z - crs_joint3_offset_x - crs_q_2;
-        /* (crs-c_3) cosine of the angle of joint 3 from its reference direction */
-        const real crs_platform_joint_offset_x = m->crs_platform_joint_offset_x[i];
-        const real inv_crs_size_t = m->inv_crs_size_t[i];
-        const real crs_c_3_t = crs_platform_joint_offset_x*crs_root_1*inv_crs_size_t;
-        /* (crs-s_3) sine of the angle of joint 3 from its reference direction */
-        const real crs_s_3 = crs_platform_joint_offset_x*crs_x_3_in_axes1_z*inv_crs_size_t;
-        /* (crs-S_dot) velocity of the connection point */
-        const real omega_y = s[16*w + j];
-        const real omega_z = s[17*w + j];
-        const real crs_S_dot_t = crs_q_z*omega_y - crs_q_y*omega_z;
-        const real omega_x = s[15*w + j];
-        const real crs_S_dot_t_2 = crs_q_x*omega_z - crs_q_z*omega_x;
-        const real crs_S_dot_t_3 = crs_q_y*omega_x - crs_q_x*omega_y;
-        const real t_dot_x = s[12*w + j];
-        const real crs_S_dot_x = crs_S_dot_t + t_dot_x;
-        const real t_dot_y = s[13*w + j];
-        const real crs_S_dot_y = crs_S_dot_t_2 + t_dot_y;
-        const real t_dot_z = s[14*w + j];
-        const real crs_S_dot_z = crs_S_dot_t_3 + t_dot_z;
-        /* (crs-r_1) from joint 1 to the connection point, along the links */
-        const real crs_r_1_t = crs_c_3_t*crs_platform_joint_offset_x;
-        const real crs_d_4_in_axes1_z = crs_platform_joint_offset_x*crs_s_3;
-        const real crs_r_1_in_axes1_z = crs_d_4_in_axes1_z + crs_joint3_offset_x + crs_q_2;
-        /* (crs-v_1) velocity of the connection point per rate of joint 1 */
-        const real crs_v_1_in_axes3_z = crs_c_3_t*(crs_c_3_t*crs_r_1_t +
-            crs_r_1_in_axes1_z*crs_s_3) + crs_s_3*(crs_r_1_t*crs_s_3 -
-            crs_c_3_t*crs_r_1_in_axes1_z);
-        /* (crs-w_1) reciprocal vector 1 */
-        const real axis_z_crs_axes3_x = crs_base_frame_xy*crs_c_1 + crs_base_frame_xz*crs_s_1;
-        const real axis_z_crs_axes3_y = crs_base_frame_yy*crs_c_1 + crs_base_frame_yz*crs_s_1;
-        const real axis_z_crs_axes3_z = crs_base_frame_zy*crs_c_1 + crs_base_frame_zz*crs_s_1;
-        const real crs_w_1_in_axes3_z = 1/crs_v_1_in_axes3_z;
-        const real crs_w_1_x = axis_z_crs_axes3_x*crs_w_1_in_axes3_z;
-        const real crs_w_1_y = axis_z_crs_axes3_y*crs_w_1_in_axes3_z;
-        const real crs_w_1_z = axis_z_crs_axes3_z*crs_w_1_in_axes3_z;
-        /* (crs-w_2) reciprocal vector 2 */
-        const real crs_w_2_t = crs_s_1*crs_s_3;
-        const real crs_w_2_t_2 = -crs_c_1*crs_s_3;
-        const real axis_y_crs_axes3_x = crs_base_frame_xy*crs_w_2_t +
-            crs_base_frame_xz*crs_w_2_t_2 - crs_base_frame_xx*crs_c_3_t;
-        const real axis_y_crs_axes3_y = crs_base_frame_yy*crs_w_2_t +
-            crs_base_frame_yz*crs_w_2_t_2 - crs_base_frame_yx*crs_c_3_t;
-        const real axis_y_crs_axes3_z = crs_base_frame_zy*crs_w_2_t +
-            crs_base_frame_zz*crs_w_2_t_2 - crs_base_frame_zx*crs_c_3_t;
-        const real axis_x_crs_axes3_x = axis_y_crs_axes3_y*axis_z_crs_axes3_z -
-            axis_y_crs_axes3_z*axis_z_crs_axes3_y;
-        const real axis_x_crs_axes3_y = axis_y_crs_axes3_z*axis_z_crs_axes3_x -
-            axis_y_crs_axes3_x*axis_z_crs_axes3_z;
-        const real axis_x_crs_axes3_z = axis_y_crs_axes3_x*axis_z_crs_axes3_y -
-            axis_y_crs_axes3_y*axis_z_crs_axes3_x;
-        const real inv_crs_d_4_in_axes1_z = 1/crs_d_4_in_axes1_z;
-        const real crs_w_2_t_3 = crs_r_1_t*inv_crs_d_4_in_axes1_z;
-        const real crs_w_2_in_axes3_x = crs_s_3 + crs_c_3_t*crs_w_2_t_3;
-        const real crs_w_2_in_axes3_y = crs_s_3*crs_w_2_t_3 - crs_c_3_t;
-        const real crs_w_2_x = axis_x_crs_axes3_x*crs_w_2_in_axes3_x +
-            axis_y_crs_axes3_x*crs_w_2_in_axes3_y;
-        const real crs_w_2_y = axis_x_crs_axes3_y*crs_w_2_in_axes3_x +
-            axis_y_crs_axes3_y*crs_w_2_in_axes3_y;
-        const real crs_w_2_z = axis_x_crs_axes3_z*crs_w_2_in_axes3_x +
-            axis_y_crs_axes3_z*crs_w_2_in_axes3_y;
-        /* (crs-qd_1) rate of joint 1 */
-        const real crs_qd_1_t = crs_S_dot_x*crs_base_frame_xy + crs_S_dot_y*crs_base_frame_yy +
-            crs_S_dot_z*crs_base_frame_zy;
-        const real crs_qd_1_t_2 = crs_S_dot_x*crs_base_frame_xz + crs_S_dot_y*crs_base_frame_yz +
-            crs_S_dot_z*crs_base_frame_zz;
-        const real crs_qd_1 = crs_w_1_in_axes3_z*(crs_c_1*crs_qd_1_t + crs_qd_1_t_2*crs_s_1);
-        /* (crs-qd_2) rate of joint 2 */
-        const real crs_qd_2_t = inv_crs_d_4_in_axes1_z*(crs_c_1*crs_qd_1_t_2 -
-            crs_qd_1_t*crs_s_1);
-        const real crs_qd_2 = crs_S_dot_x*crs_base_frame_xx + crs_S_dot_y*crs_base_frame_yx +
-            crs_S_dot_z*crs_base_frame_zx - crs_qd_2_t*crs_r_1_t;
-        /* (crs-omega_1) angular velocity of link 1 */
-        const real crs_omega_1_in_axes3_x = crs_qd_1*crs_s_3;
-        const real crs_omega_1_t = crs_c_3_t*crs_qd_1;
-        /* (crs-W_3) centripetal tensor of link 3 */
-        const real crs_W_3_in_axes3_yz = crs_omega_1_t*crs_qd_2_t;
-        const real crs_W_3_in_axes3_xy = -crs_omega_1_in_axes3_x*crs_omega_1_t;
-        /* (crs-a_p) acceleration of the connection point without its centripetal part */
-        const real alpha_y = s[22*w + j];
-        const real alpha_z = s[23*w + j];
-        const real t_ddot_x = s[18*w + j];
-        const real crs_a_p_x = t_ddot_x + alpha_y*crs_q_z - alpha_z*crs_q_y;
-        const real alpha_x = s[21*w + j];
-        const real t_ddot_y = s[19*w + j];
-        const real crs_a_p_y = t_ddot_y + alpha_z*crs_q_x - alpha_x*crs_q_z;
-        const real t_ddot_z = s[20*w + j];
-        const real crs_a_p_z = t_ddot_z + alpha_x*crs_q_y - alpha_y*crs_q_x;
-        /* (crs-S_ddot) acceleration of the connection point */
-        const real crs_S_ddot_x = crs_a_p_x + crs_S_dot_t_3*omega_y - crs_S_dot_t_2*omega_z;
-        const real crs_S_ddot_y = crs_a_p_y + crs_S_dot_t*omega_z - crs_S_dot_t_3*omega_x;
-        const real crs_S_ddot_z = crs_a_p_z + crs_S_dot_t_2*omega_x - crs_S_dot_t*omega_y;
-        const real crs_S_ddot_in_axes3_x = axis_x_crs_axes3_x*crs_S_ddot_x +
-            axis_x_crs_axes3_y*crs_S_ddot_y + axis_x_crs_axes3_z*crs_S_ddot_z;
-        const real crs_S_ddot_in_axes3_y = axis_y_crs_axes3_x*crs_S_ddot_x +
-            axis_y_crs_axes3_y*crs_S_ddot_y + axis_y_crs_axes3_z*crs_S_ddot_z;
-        const real crs_S_ddot_in_axes3_z = axis_z_crs_axes3_x*crs_S_ddot_x +
-            axis_z_crs_axes3_y*crs_S_ddot_y + axis_z_crs_axes3_z*crs_S_ddot_z;
-        /* (crs-zeta_3) angular acceleration of link 3 from the turning of axis 3 */
-        const real crs_zeta_3_in_axes3_y = crs_omega_1_in_axes3_x*crs_qd_2_t;
-        /* (crs-bias) acceleration of the connection point at zero joint accelerations */
-        const real crs_bias_t = crs_omega_1_in_axes3_x*(crs_c_3_t*crs_joint3_offset_x +
-            crs_c_3_t*crs_q_2) - crs_omega_1_t*(crs_joint3_offset_x*crs_s_3 + crs_q_2*crs_s_3);
-        const real crs_bias_t_2 = crs_platform_joint_offset_x*crs_qd_2_t;
-        const real crs_bias_t_3 = crs_omega_1_t*crs_platform_joint_offset_x;
-        const real crs_bias_in_axes3_x = crs_bias_t*crs_omega_1_t - crs_bias_t_2*crs_qd_2_t -
-            crs_bias_t_3*crs_omega_1_t;
-        const real crs_bias_in_axes3_y = crs_bias_t*crs_omega_1_in_axes3_x -
-            crs_bias_t_3*crs_omega_1_in_axes3_x;
-        const real crs_bias_in_axes3_z = -crs_bias_t_2*crs_omega_1_in_axes3_x -
-            crs_platform_joint_offset_x*crs_zeta_3_in_axes3_y -
-            2*crs_qd_2*(crs_c_3_t*crs_omega_1_in_axes3_x - crs_omega_1_t*crs_s_3);
-        /* (crs-rel) acceleration of the connection point left to the joint accelerations */
-        const real crs_rel_in_axes3_x = crs_S_ddot_in_axes3_x - crs_bias_in_axes3_x;
-        const real crs_rel_in_axes3_y = crs_S_ddot_in_axes3_y - crs_bias_in_axes3_y;
-        const real crs_rel_in_axes3_z = crs_S_ddot_in_axes3_z - crs_bias_in_axes3_z;
-        /* (crs-qdd_1) acceleration of joint 1 */
-        const real crs_qdd_1 = crs_rel_in_axes3_z*crs_w_1_in_axes3_z;
-        /* (crs-qdd_3) acceleration of joint 3 */
-        const real crs_qdd_3_t = inv_crs_d_4_in_axes1_z*(-crs_c_3_t*crs_rel_in_axes3_x -
-            crs_rel_in_axes3_y*crs_s_3);
-        /* (crs-alpha_1) angular acceleration of link 1 */
-        const real crs_alpha_1_in_axes3_x = crs_qdd_1*crs_s_3;
-        const real crs_alpha_1_t = crs_c_3_t*crs_qdd_1;
-        /* (crs-alpha_3) angular acceleration of link 3 */
-        const real crs_alpha_3_in_axes3_x = crs_W_3_in_axes3_yz + crs_alpha_1_in_axes3_x;
-        const real crs_alpha_3_in_axes3_y = crs_zeta_3_in_axes3_y - crs_alpha_1_t;
-        /* (crs-B_3) acceleration tensor of link 3 */
-        const real crs_B_3_in_axes3_xy = crs_W_3_in_axes3_xy + crs_qdd_3_t;
-        const real crs_B_3_in_axes3_yx = crs_W_3_in_axes3_xy - crs_qdd_3_t;
-        const real crs_B_3_in_axes3_zx = -crs_alpha_3_in_axes3_y - crs_zeta_3_in_axes3_y;
-        const real crs_B_3_in_axes3_zy = crs_W_3_in_axes3_yz + crs_alpha_3_in_axes3_x;
-        /* (crs-acc_2) acceleration of the reference point of link 2, less gravity */
-        const real crs_g_in_axes1_z = m->crs_g_in_axes1_z[i];
-        const real crs_acc_2_in_axes1_z = crs_rel_in_axes3_x*crs_s_3 - crs_g_in_axes1_z -
-            crs_c_3_t*crs_rel_in_axes3_y - crs_qdd_3_t*crs_r_1_t;
-        /* (crs-f_2) inertia force of link 2 less its weight */
-        const real crs_link2_mass = m->crs_link2_mass[i];
-        const real crs_f_2_in_axes1_z = crs_acc_2_in_axes1_z*crs_link2_mass;
-        /* (crs-acc_3) acceleration of the reference point of link 3, less gravity */
-        const real crs_acc_3_t = m->crs_acc_3_t[i];
-        const real crs_acc_3_t_2 = m->crs_acc_3_t_2[i];
-        const real crs_g_in_axes1_x = crs_acc_3_t*crs_c_1 + crs_acc_3_t_2*crs_s_1;
-        const real crs_g_in_axes1_y = crs_acc_3_t_2*crs_c_1 - crs_acc_3_t*crs_s_1;
-        const real crs_acc_3_in_axes3_x = crs_S_ddot_in_axes3_x + crs_c_3_t*crs_g_in_axes1_y -
-            crs_g_in_axes1_z*crs_s_3;
-        const real crs_acc_3_in_axes3_y = crs_S_ddot_in_axes3_y + crs_c_3_t*crs_g_in_axes1_z +
-            crs_g_in_axes1_y*crs_s_3;
-        const real crs_acc_3_in_axes3_z = crs_S_ddot_in_axes3_z - crs_g_in_axes1_x;
-        /* (crs-mu_3) inertia moment of the links that turn with link 3, about their reference points */
-        const real crs_mu_3_t = crs_omega_1_in_axes3_x*crs_omega_1_in_axes3_x;
-        const real crs_mu_3_t_2 = crs_omega_1_t*crs_omega_1_t;
-        const real crs_mu_3_t_3 = crs_qd_2_t*crs_qd_2_t;
-        const real crs_J_3_in_spec3_xy = m->crs_J_3_in_spec3_xy[i];
-        const real crs_J_3_in_spec3_xz = m->crs_J_3_in_spec3_xz[i];
-        const real crs_J_3_in_spec3_yz = m->crs_J_3_in_spec3_yz[i];
-        const real crs_Sigma_3_in_axes3_yy = m->crs_Sigma_3_in_axes3_yy[i];
-        const real crs_Sigma_3_in_axes3_zz = m->crs_Sigma_3_in_axes3_zz[i];
-        const real crs_h_3_in_spec3_y = m->crs_h_3_in_spec3_y[i];
-        const real crs_h_3_in_spec3_z = m->crs_h_3_in_spec3_z[i];
-        const real crs_mu_3_in_axes3_x = crs_B_3_in_axes3_yx*crs_J_3_in_spec3_xz +
-            crs_B_3_in_axes3_zy*crs_Sigma_3_in_axes3_yy + crs_J_3_in_spec3_yz*(crs_mu_3_t_2 -
-            crs_mu_3_t_3) + crs_Sigma_3_in_axes3_zz*crs_alpha_1_in_axes3_x +
-            crs_acc_3_in_axes3_z*crs_h_3_in_spec3_y - crs_B_3_in_axes3_zx*crs_J_3_in_spec3_xy -
-            crs_acc_3_in_axes3_y*crs_h_3_in_spec3_z;
-        const real crs_Sigma_3_in_axes3_xx = m->crs_Sigma_3_in_axes3_xx[i];
-        const real crs_h_3_in_spec3_x = m->crs_h_3_in_spec3_x[i];
-        const real crs_mu_3_in_axes3_y = crs_B_3_in_axes3_zy*crs_J_3_in_spec3_xy +
-            crs_acc_3_in_axes3_x*crs_h_3_in_spec3_z - crs_B_3_in_axes3_xy*crs_J_3_in_spec3_yz -
-            crs_B_3_in_axes3_zx*crs_Sigma_3_in_axes3_xx - crs_J_3_in_spec3_xz*(crs_mu_3_t -
-            crs_mu_3_t_3) - crs_Sigma_3_in_axes3_zz*crs_alpha_1_t -
-            crs_acc_3_in_axes3_z*crs_h_3_in_spec3_x;
-        const real crs_mu_3_in_axes3_z = crs_B_3_in_axes3_yx*crs_Sigma_3_in_axes3_xx +
-            crs_J_3_in_spec3_xy*(crs_mu_3_t - crs_mu_3_t_2) +
-            crs_J_3_in_spec3_xz*crs_alpha_1_in_axes3_x + crs_acc_3_in_axes3_y*crs_h_3_in_spec3_x -
-            crs_B_3_in_axes3_xy*crs_Sigma_3_in_axes3_yy - crs_J_3_in_spec3_yz*crs_alpha_1_t -
-            crs_acc_3_in_axes3_x*crs_h_3_in_spec3_y;
-        /* (crs-mu_1) inertia moment of the links that turn with link 1, about their reference points */
-        const real crs_J_2_in_spec1_xx = m->crs_J_2_in_spec1_xx[i];
-        const real crs_h_2_in_spec1_y = m->crs_h_2_in_spec1_y[i];
-        const real crs_h_2_in_spec1_z = m->crs_h_2_in_spec1_z[i];
-        const real crs_mu_1_in_axes1_z = crs_J_2_in_spec1_xx*crs_qdd_1 -
-            crs_g_in_axes1_x*crs_h_2_in_spec1_y - crs_g_in_axes1_y*crs_h_2_in_spec1_z;
-        /* (crs-N_1) moment about joint 1 of the links from 1 outwards, the force at the connection point
-           left out */
-        const real crs_N_1_in_axes1_z = crs_mu_1_in_axes1_z + crs_mu_3_in_axes3_x*crs_s_3 -
-            crs_c_3_t*crs_mu_3_in_axes3_y;
-        /* (crs-c) leg force on the platform without actuation and without the mass at the connection
-           point */
-        const real crs_c_t = inv_crs_d_4_in_axes1_z*(crs_mu_3_in_axes3_z +
-            crs_f_2_in_axes1_z*crs_r_1_t);
-        const real crs_c_in_axes3_x = crs_alpha_1_t*crs_h_3_in_spec3_z +
-            crs_h_3_in_spec3_x*(crs_mu_3_t_2 + crs_mu_3_t_3) -
-            crs_B_3_in_axes3_xy*crs_h_3_in_spec3_y - crs_c_3_t*crs_c_t -
-            crs_f_2_in_axes1_z*crs_s_3;
-        const real crs_c_in_axes3_y = crs_alpha_1_in_axes3_x*crs_h_3_in_spec3_z +
-            crs_c_3_t*crs_f_2_in_axes1_z + crs_h_3_in_spec3_y*(crs_mu_3_t + crs_mu_3_t_3) -
-            crs_B_3_in_axes3_yx*crs_h_3_in_spec3_x - crs_c_t*crs_s_3;
-        const real crs_c_in_axes3_z = crs_h_3_in_spec3_z*(crs_mu_3_t + crs_mu_3_t_2) -
-            crs_B_3_in_axes3_zx*crs_h_3_in_spec3_x - crs_B_3_in_axes3_zy*crs_h_3_in_spec3_y -
-            crs_N_1_in_axes1_z*crs_w_1_in_axes3_z;
+        values_crs v;
+        stage_crs_X(m, w, i, j, s, X, &v);
+        stage_crs_A_X(w, j, A, &v);
+        stage_crs_V_X(m, w, i, j, V, &v);
+        stage_crs_A_V_X(w, j, V, &v);
+        stage_crs_legs_required(m, i, &v);
         /* (crs-c_true) leg force on the platform without actuation, the last link's mass included */
         const real crs_link3_mass = m->crs_link3_mass[i];
-        const real crs_c_true_in_axes3_x = crs_c_in_axes3_x - crs_acc_3_in_axes3_x*crs_link3_mass;
-        const real crs_c_true_in_axes3_y = crs_c_in_axes3_y - crs_acc_3_in_axes3_y*crs_link3_mass;
-        const real crs_c_true_in_axes3_z = crs_c_in_axes3_z - crs_acc_3_in_axes3_z*crs_link3_mass;
-        const real crs_c_true_x = axis_x_crs_axes3_x*crs_c_true_in_axes3_x +
-            axis_y_crs_axes3_x*crs_c_true_in_axes3_y + axis_z_crs_axes3_x*crs_c_true_in_axes3_z;
-        const real crs_c_true_y = axis_x_crs_axes3_y*crs_c_true_in_axes3_x +
-            axis_y_crs_axes3_y*crs_c_true_in_axes3_y + axis_z_crs_axes3_y*crs_c_true_in_axes3_z;
-        const real crs_c_true_z = axis_x_crs_axes3_z*crs_c_true_in_axes3_x +
-            axis_y_crs_axes3_z*crs_c_true_in_axes3_y + axis_z_crs_axes3_z*crs_c_true_in_axes3_z;
+        const real crs_c_true_in_axes3_x = v.crs_c_in_axes3_x -
+            v.crs_acc_3_in_axes3_x*crs_link3_mass;
+        const real crs_c_true_in_axes3_y = v.crs_c_in_axes3_y -
+            v.crs_acc_3_in_axes3_y*crs_link3_mass;
+        const real crs_c_true_in_axes3_z = v.crs_c_in_axes3_z -
+            v.crs_acc_3_in_axes3_z*crs_link3_mass;
+        const real crs_c_true_x = v.axis_x_crs_axes3_x*crs_c_true_in_axes3_x +
+            v.axis_y_crs_axes3_x*crs_c_true_in_axes3_y +
+            v.axis_z_crs_axes3_x*crs_c_true_in_axes3_z;
+        const real crs_c_true_y = v.axis_x_crs_axes3_y*crs_c_true_in_axes3_x +
+            v.axis_y_crs_axes3_y*crs_c_true_in_axes3_y +
+            v.axis_z_crs_axes3_y*crs_c_true_in_axes3_z;
+        const real crs_c_true_z = v.axis_x_crs_axes3_z*crs_c_true_in_axes3_x +
+            v.axis_y_crs_axes3_z*crs_c_true_in_axes3_y +
+            v.axis_z_crs_axes3_z*crs_c_true_in_axes3_z;
         /* (crs-c_true) leg force on the platform without actuation, the last link's mass included */
         o[0*count + k] = crs_c_true_x;
         o[1*count + k] = crs_c_true_y;
         o[2*count + k] = crs_c_true_z;
         /* (crs-w_1) reciprocal vector 1 */
-        o[3*count + k] = crs_w_1_x;
-        o[4*count + k] = crs_w_1_y;
-        o[5*count + k] = crs_w_1_z;
+        o[3*count + k] = v.crs_w_1_x;
+        o[4*count + k] = v.crs_w_1_y;
+        o[5*count + k] = v.crs_w_1_z;
         /* (crs-w_2) reciprocal vector 2 */
-        o[6*count + k] = crs_w_2_x;
-        o[7*count + k] = crs_w_2_y;
-        o[8*count + k] = crs_w_2_z;
+        o[6*count + k] = v.crs_w_2_x;
+        o[7*count + k] = v.crs_w_2_y;
+        o[8*count + k] = v.crs_w_2_z;
         const real crs_size_t_2 = m->crs_size_t_2[i];
         const real crs_size = m->crs_size[i];
-        o[10*count + k] = UNLESS(magnitude(crs_rho2_1) > TOLERANCE*TOLERANCE*crs_size_t_2) +
-            UNLESS(magnitude(crs_v_1_in_axes3_z) > TOLERANCE*crs_size) +
-            UNLESS(magnitude(crs_d_4_in_axes1_z) > TOLERANCE*crs_size);
-        o[9*count + k] = UNLESS(crs_disc_2 >= 0);
+        o[10*count + k] = UNLESS(magnitude(v.crs_rho2_1) > TOLERANCE*TOLERANCE*crs_size_t_2) +
+            UNLESS(magnitude(v.crs_v_1_in_axes3_z) > TOLERANCE*crs_size) +
+            UNLESS(magnitude(v.crs_d_4_in_axes1_z) > TOLERANCE*crs_size);
+        o[9*count + k] = UNLESS(v.crs_disc_2 >= 0);
     }
 }
 
@@ -5051,10 +3850,10 @@ INLINE void legs_place_crs(size_t w, size_t count, const real *o, size_t leg, si
 INLINE void legs_run(const prepared *m, const real *X, const real *V, const real *A, real
     *leg_force, real *actuator, verdict *t)
 {
-    real s[24] = {0};
+    real s[9] = {0};
     real o_crs[11*LEGS(LEGS_OF_crs)] = {0};
-    legs_before(1, X, V, A, s, t);
-    legs_legs_crs(m, 1, 0, 1, s, 0, LEGS(LEGS_OF_crs), o_crs);
+    legs_before(m, 1, X, s, t);
+    legs_legs_crs(m, 1, 0, 1, s, 0, LEGS(LEGS_OF_crs), X, V, A, o_crs);
     for (size_t leg = 0; leg < LEGS_OF_crs; ++leg) {
         legs_place_crs(1, LEGS(LEGS_OF_crs), o_crs, leg, leg, leg_force, actuator, t);
     }
@@ -5064,40 +3863,8 @@ INLINE void legs_run(const prepared *m, const real *X, const real *V, const real
 INLINE void potential_before(const prepared *m, size_t w, const real *X, real *s, verdict *t)
 {
     for (size_t k = 0; k < w; ++k) {
-        /* X: named entries */
-        const real X_0 = X[0*w + k];
-        const real t_x = X_0;
-        const real X_1 = X[1*w + k];
-        const real t_y = X_1;
-        const real X_2 = X[2*w + k];
-        const real t_z = X_2;
-        const real X_3 = X[3*w + k];
-        const real X_4 = X[4*w + k];
-        const real X_5 = X[5*w + k];
-        const real X_6 = X[6*w + k];
-        const real quaternion_norm2 = X_3*X_3 + X_4*X_4 + X_5*X_5 + X_6*X_6;
-        const real quaternion_scale = 2/quaternion_norm2;
-        const real quaternion_sx = X_3*quaternion_scale;
-        const real quaternion_sy = X_4*quaternion_scale;
-        const real quaternion_sz = X_5*quaternion_scale;
-        const real quaternion_wx = X_6*quaternion_sx;
-        const real quaternion_wy = X_6*quaternion_sy;
-        const real quaternion_wz = X_6*quaternion_sz;
-        const real quaternion_xx = X_3*quaternion_sx;
-        const real quaternion_xy = X_3*quaternion_sy;
-        const real quaternion_xz = X_3*quaternion_sz;
-        const real quaternion_yy = X_4*quaternion_sy;
-        const real quaternion_yz = X_4*quaternion_sz;
-        const real quaternion_zz = X_5*quaternion_sz;
-        const real R_xx = 1 - quaternion_yy - quaternion_zz;
-        const real R_xy = quaternion_xy - quaternion_wz;
-        const real R_xz = quaternion_wy + quaternion_xz;
-        const real R_yx = quaternion_wz + quaternion_xy;
-        const real R_yy = 1 - quaternion_xx - quaternion_zz;
-        const real R_yz = quaternion_yz - quaternion_wx;
-        const real R_zx = quaternion_xz - quaternion_wy;
-        const real R_zy = quaternion_wx + quaternion_yz;
-        const real R_zz = 1 - quaternion_xx - quaternion_yy;
+        values v;
+        stage_X(m, w, k, X, &v);
         /* (potential) potential energy */
         const real gravity_x = m->gravity_x;
         const real gravity_y = m->gravity_y;
@@ -5106,104 +3873,46 @@ INLINE void potential_before(const prepared *m, size_t w, const real *X, real *s
         const real h_star_in_platform_y = m->h_star_in_platform_y;
         const real h_star_in_platform_z = m->h_star_in_platform_z;
         const real m_star = m->m_star;
-        const real potential_t = gravity_x*(R_xx*h_star_in_platform_x + R_xy*h_star_in_platform_y
-            + R_xz*h_star_in_platform_z + m_star*t_x) + gravity_y*(R_yx*h_star_in_platform_x +
-            R_yy*h_star_in_platform_y + R_yz*h_star_in_platform_z + m_star*t_y) +
-            gravity_z*(R_zx*h_star_in_platform_x + R_zy*h_star_in_platform_y +
-            R_zz*h_star_in_platform_z + m_star*t_z);
-        s[0*w + k] = t_x;
-        s[1*w + k] = t_y;
-        s[2*w + k] = t_z;
-        s[3*w + k] = R_xx;
-        s[4*w + k] = R_xy;
-        s[5*w + k] = R_xz;
-        s[6*w + k] = R_yx;
-        s[7*w + k] = R_yy;
-        s[8*w + k] = R_yz;
-        s[9*w + k] = R_zx;
-        s[10*w + k] = R_zy;
-        s[11*w + k] = R_zz;
-        s[12*w + k] = potential_t;
-        t->invalid[k] += UNLESS(is_finite(quaternion_scale)) + UNLESS(quaternion_scale > 0);
+        const real t_x = X[0*w + k];
+        const real t_y = X[1*w + k];
+        const real t_z = X[2*w + k];
+        const real potential_t = gravity_x*(v.R_xx*h_star_in_platform_x +
+            v.R_xy*h_star_in_platform_y + v.R_xz*h_star_in_platform_z + m_star*t_x) +
+            gravity_y*(v.R_yx*h_star_in_platform_x + v.R_yy*h_star_in_platform_y +
+            v.R_yz*h_star_in_platform_z + m_star*t_y) + gravity_z*(v.R_zx*h_star_in_platform_x +
+            v.R_zy*h_star_in_platform_y + v.R_zz*h_star_in_platform_z + m_star*t_z);
+        s[0*w + k] = v.R_xx;
+        s[1*w + k] = v.R_xy;
+        s[2*w + k] = v.R_xz;
+        s[3*w + k] = v.R_yx;
+        s[4*w + k] = v.R_yy;
+        s[5*w + k] = v.R_yz;
+        s[6*w + k] = v.R_zx;
+        s[7*w + k] = v.R_zy;
+        s[8*w + k] = v.R_zz;
+        s[9*w + k] = potential_t;
+        t->invalid[k] += UNLESS(is_finite(v.quaternion_scale)) + UNLESS(v.quaternion_scale > 0);
     }
 }
 
 INLINE void potential_legs_crs(const prepared *m, size_t w, size_t leg, size_t legs, const real
-    *s, size_t states, size_t count, int add, real *terms, real *o)
+    *s, size_t states, size_t count, int add, const real *X, real *terms, real *o)
 {
     for (size_t k = 0; k < count; ++k) {
         const size_t i = leg + legs*k;
         const size_t j = states*k;
-        /* (crs-S) from the base point to the connection point */
-        const real R_xx = s[3*w + j];
-        const real R_xy = s[4*w + j];
-        const real R_xz = s[5*w + j];
-        const real crs_base_point_x = m->crs_base_point_x[i];
-        const real crs_platform_point_x = m->crs_platform_point_x[i];
-        const real crs_platform_point_y = m->crs_platform_point_y[i];
-        const real crs_platform_point_z = m->crs_platform_point_z[i];
-        const real t_x = s[0*w + j];
-        const real crs_S_x = t_x + R_xx*crs_platform_point_x + R_xy*crs_platform_point_y +
-            R_xz*crs_platform_point_z - crs_base_point_x;
-        const real R_yx = s[6*w + j];
-        const real R_yy = s[7*w + j];
-        const real R_yz = s[8*w + j];
-        const real crs_base_point_y = m->crs_base_point_y[i];
-        const real t_y = s[1*w + j];
-        const real crs_S_y = t_y + R_yx*crs_platform_point_x + R_yy*crs_platform_point_y +
-            R_yz*crs_platform_point_z - crs_base_point_y;
-        const real R_zx = s[9*w + j];
-        const real R_zy = s[10*w + j];
-        const real R_zz = s[11*w + j];
-        const real crs_base_point_z = m->crs_base_point_z[i];
-        const real t_z = s[2*w + j];
-        const real crs_S_z = t_z + R_zx*crs_platform_point_x + R_zy*crs_platform_point_y +
-            R_zz*crs_platform_point_z - crs_base_point_z;
-        /* (crs-px_1) component along the reference direction */
-        const real crs_base_frame_xy = m->crs_base_frame_xy[i];
-        const real crs_base_frame_yy = m->crs_base_frame_yy[i];
-        const real crs_base_frame_zy = m->crs_base_frame_zy[i];
-        const real crs_px_1 = crs_S_x*crs_base_frame_xy + crs_S_y*crs_base_frame_yy +
-            crs_S_z*crs_base_frame_zy;
-        /* (crs-py_1) component across the reference direction */
-        const real crs_base_frame_xz = m->crs_base_frame_xz[i];
-        const real crs_base_frame_yz = m->crs_base_frame_yz[i];
-        const real crs_base_frame_zz = m->crs_base_frame_zz[i];
-        const real crs_py_1 = crs_S_x*crs_base_frame_xz + crs_S_y*crs_base_frame_yz +
-            crs_S_z*crs_base_frame_zz;
-        /* (crs-rho2_1) squared amplitude */
-        const real crs_rho2_1 = crs_px_1*crs_px_1 + crs_py_1*crs_py_1;
-        /* (crs-root_1) root, with the sign of the branch */
-        const real crs_branch_1 = m->crs_branch_1[i];
-        const real crs_root_1 = crs_branch_1*root(crs_rho2_1);
+        values_crs v;
+        stage_crs_inverse_kinematics_potential(m, w, i, j, s, X, &v);
         /* (crs-c_1) cosine of the angle of joint 1 from its reference direction */
-        const real inv_crs_rho2_1 = 1/crs_rho2_1;
-        const real crs_c_1 = -crs_py_1*crs_root_1*inv_crs_rho2_1;
+        const real crs_c_1 = v.crs_S_in_turn1_x*v.crs_root_1*v.inv_crs_rho2_1;
         /* (crs-s_1) sine of the angle of joint 1 from its reference direction */
-        const real crs_s_1 = crs_px_1*crs_root_1*inv_crs_rho2_1;
-        /* (crs-xi_1) the vector from joint 1 to the connection point, resolved along link 1 */
-        const real crs_base_frame_xx = m->crs_base_frame_xx[i];
-        const real crs_base_frame_yx = m->crs_base_frame_yx[i];
-        const real crs_base_frame_zx = m->crs_base_frame_zx[i];
-        const real crs_xi_1_in_axes1_z = crs_S_x*crs_base_frame_xx + crs_S_y*crs_base_frame_yx +
-            crs_S_z*crs_base_frame_zx;
-        /* (crs-from_centre_2) from the centre at zero displacement to the connection point */
-        const real crs_joint3_offset_x = m->crs_joint3_offset_x[i];
-        const real crs_from_centre_2_in_axes1_z = crs_xi_1_in_axes1_z - crs_joint3_offset_x;
-        /* (crs-disc_2) discriminant of the distance equation */
-        const real crs_size_t = m->crs_size_t[i];
-        const real crs_disc_2 = crs_size_t - crs_root_1*crs_root_1;
-        /* (crs-q_2) displacement of joint 2 */
-        const real crs_branch_2 = m->crs_branch_2[i];
-        const real crs_q_2 = crs_from_centre_2_in_axes1_z + crs_branch_2*root(crs_disc_2);
-        /* (crs-x_3) from the origin of joint 3 to the connection point */
-        const real crs_x_3_in_axes1_z = crs_xi_1_in_axes1_z - crs_joint3_offset_x - crs_q_2;
+        const real crs_s_1 = v.crs_S_in_turn1_y*v.crs_root_1*v.inv_crs_rho2_1;
         /* (crs-c_3) cosine of the angle of joint 3 from its reference direction */
         const real crs_platform_joint_offset_x = m->crs_platform_joint_offset_x[i];
         const real inv_crs_size_t = m->inv_crs_size_t[i];
-        const real crs_c_3_t = crs_platform_joint_offset_x*crs_root_1*inv_crs_size_t;
+        const real crs_c_3 = crs_platform_joint_offset_x*v.crs_x_3_in_axes1_z*inv_crs_size_t;
         /* (crs-s_3) sine of the angle of joint 3 from its reference direction */
-        const real crs_s_3 = crs_platform_joint_offset_x*crs_x_3_in_axes1_z*inv_crs_size_t;
+        const real crs_s_3 = crs_platform_joint_offset_x*v.crs_root_1*inv_crs_size_t;
         /* (potential) potential energy */
         const real crs_acc_3_t = m->crs_acc_3_t[i];
         const real crs_acc_3_t_2 = m->crs_acc_3_t_2[i];
@@ -5219,19 +3928,18 @@ INLINE void potential_legs_crs(const prepared *m, size_t w, size_t leg, size_t l
         const real crs_potential_t = m->crs_potential_t[i];
         const real crs_potential_t_2 = m->crs_potential_t_2[i];
         const real crs_potential_t_3 = crs_g_in_axes1_z*(crs_h_2_in_spec1_x +
-            crs_h_3_in_spec3_x*crs_s_3 + crs_link2_mass*(crs_b_in_axes1_z + crs_q_2) -
-            crs_c_3_t*crs_h_3_in_spec3_y) + (crs_acc_3_t*crs_c_1 +
-            crs_acc_3_t_2*crs_s_1)*(crs_h_2_in_spec1_z + crs_h_3_in_spec3_z +
-            crs_link2_mass*(crs_c_1*crs_potential_t + crs_potential_t_2*crs_s_1)) +
-            (crs_acc_3_t_2*crs_c_1 -
-            crs_acc_3_t*crs_s_1)*(crs_link2_mass*(crs_c_1*crs_potential_t_2 -
-            crs_potential_t*crs_s_1) - crs_h_2_in_spec1_y - crs_c_3_t*crs_h_3_in_spec3_x -
-            crs_h_3_in_spec3_y*crs_s_3);
+            crs_c_3*crs_h_3_in_spec3_x + crs_link2_mass*(crs_b_in_axes1_z + v.crs_q_2) -
+            crs_h_3_in_spec3_y*crs_s_3) + (crs_acc_3_t*crs_c_1 +
+            crs_acc_3_t_2*crs_s_1)*(crs_h_2_in_spec1_y + crs_c_3*crs_h_3_in_spec3_y +
+            crs_h_3_in_spec3_x*crs_s_3 + crs_link2_mass*(crs_c_1*crs_potential_t +
+            crs_potential_t_2*crs_s_1)) + (crs_acc_3_t_2*crs_c_1 -
+            crs_acc_3_t*crs_s_1)*(crs_h_2_in_spec1_z + crs_h_3_in_spec3_z +
+            crs_link2_mass*(crs_c_1*crs_potential_t_2 - crs_potential_t*crs_s_1));
         /* (potential) potential energy */
         gather(&terms[0*count + k], add, crs_potential_t_3);  /* potential_of_legs */
         const real crs_size_t_2 = m->crs_size_t_2[i];
-        o[1*count + k] = UNLESS(magnitude(crs_rho2_1) > TOLERANCE*TOLERANCE*crs_size_t_2);
-        o[0*count + k] = UNLESS(crs_disc_2 >= 0);
+        o[1*count + k] = UNLESS(magnitude(v.crs_rho2_1) > TOLERANCE*TOLERANCE*crs_size_t_2);
+        o[0*count + k] = UNLESS(v.crs_disc_2 >= 0);
     }
 }
 
@@ -5248,7 +3956,7 @@ INLINE void potential_after(size_t w, const real *s, const real *sums, real *pot
     for (size_t k = 0; k < w; ++k) {
         /* (potential) potential energy */
         const real potential_of_legs = sums[0*w + k];
-        const real potential_t = s[12*w + k];
+        const real potential_t = s[9*w + k];
         const real potential_ = -potential_of_legs - potential_t;
         /* (potential) potential energy */
         potential[0*w + k] = potential_;
@@ -5257,12 +3965,10 @@ INLINE void potential_after(size_t w, const real *s, const real *sums, real *pot
 
 INLINE void potential_run(const prepared *m, const real *X, real *potential, verdict *t)
 {
-    real s[13] = {0};
-    real sums[1] = {0};
-    real terms_crs[LEGS(LEGS_OF_crs)] = {0};
-    real o_crs[2*LEGS(LEGS_OF_crs)] = {0};
+    real s[10] = {0}, sums[1] = {0};
+    real terms_crs[LEGS(LEGS_OF_crs)] = {0}, o_crs[2*LEGS(LEGS_OF_crs)] = {0};
     potential_before(m, 1, X, s, t);
-    potential_legs_crs(m, 1, 0, 1, s, 0, LEGS(LEGS_OF_crs), 0, terms_crs, o_crs);
+    potential_legs_crs(m, 1, 0, 1, s, 0, LEGS(LEGS_OF_crs), 0, X, terms_crs, o_crs);
     for (size_t leg = 0; leg < LEGS_OF_crs; ++leg) {
         potential_place_crs(1, LEGS(LEGS_OF_crs), o_crs, leg, t);
     }
@@ -5277,233 +3983,87 @@ INLINE void condition_before(const prepared *m, size_t w, const real *X, real *s
     verdict *t)
 {
     for (size_t k = 0; k < w; ++k) {
-        /* X: named entries */
-        const real X_0 = X[0*w + k];
-        const real t_x = X_0;
-        const real X_1 = X[1*w + k];
-        const real t_y = X_1;
-        const real X_2 = X[2*w + k];
-        const real t_z = X_2;
-        const real X_3 = X[3*w + k];
-        const real X_4 = X[4*w + k];
-        const real X_5 = X[5*w + k];
-        const real X_6 = X[6*w + k];
-        const real quaternion_norm2 = X_3*X_3 + X_4*X_4 + X_5*X_5 + X_6*X_6;
-        const real quaternion_scale = 2/quaternion_norm2;
-        const real quaternion_sx = X_3*quaternion_scale;
-        const real quaternion_sy = X_4*quaternion_scale;
-        const real quaternion_sz = X_5*quaternion_scale;
-        const real quaternion_wx = X_6*quaternion_sx;
-        const real quaternion_wy = X_6*quaternion_sy;
-        const real quaternion_wz = X_6*quaternion_sz;
-        const real quaternion_xx = X_3*quaternion_sx;
-        const real quaternion_xy = X_3*quaternion_sy;
-        const real quaternion_xz = X_3*quaternion_sz;
-        const real quaternion_yy = X_4*quaternion_sy;
-        const real quaternion_yz = X_4*quaternion_sz;
-        const real quaternion_zz = X_5*quaternion_sz;
-        const real R_xx = 1 - quaternion_yy - quaternion_zz;
-        const real R_xy = quaternion_xy - quaternion_wz;
-        const real R_xz = quaternion_wy + quaternion_xz;
-        const real R_yx = quaternion_wz + quaternion_xy;
-        const real R_yy = 1 - quaternion_xx - quaternion_zz;
-        const real R_yz = quaternion_yz - quaternion_wx;
-        const real R_zx = quaternion_xz - quaternion_wy;
-        const real R_zy = quaternion_wx + quaternion_yz;
-        const real R_zz = 1 - quaternion_xx - quaternion_yy;
-        s[0*w + k] = t_x;
-        s[1*w + k] = t_y;
-        s[2*w + k] = t_z;
-        s[3*w + k] = R_xx;
-        s[4*w + k] = R_xy;
-        s[5*w + k] = R_xz;
-        s[6*w + k] = R_yx;
-        s[7*w + k] = R_yy;
-        s[8*w + k] = R_yz;
-        s[9*w + k] = R_zx;
-        s[10*w + k] = R_zy;
-        s[11*w + k] = R_zz;
+        values v;
+        stage_X(m, w, k, X, &v);
+        s[0*w + k] = v.R_xx;
+        s[1*w + k] = v.R_xy;
+        s[2*w + k] = v.R_xz;
+        s[3*w + k] = v.R_yx;
+        s[4*w + k] = v.R_yy;
+        s[5*w + k] = v.R_yz;
+        s[6*w + k] = v.R_zx;
+        s[7*w + k] = v.R_zy;
+        s[8*w + k] = v.R_zz;
         /* (legs_size) rms size of the legs, taken where the platform points coincide */
         const real legs_size = m->legs_size;
         lengths[1*w + k] = legs_size;
         t->total[k] += legs_size;
-        t->invalid[k] += UNLESS(is_finite(quaternion_scale)) + UNLESS(quaternion_scale > 0);
+        t->invalid[k] += UNLESS(is_finite(v.quaternion_scale)) + UNLESS(v.quaternion_scale > 0);
     }
 }
 
 INLINE void condition_legs_crs(const prepared *m, size_t w, size_t leg, size_t legs, const real
-    *s, size_t states, size_t count, int add, real *terms, real *o)
+    *s, size_t states, size_t count, int add, const real *X, real *terms, real *o)
 {
     for (size_t k = 0; k < count; ++k) {
         const size_t i = leg + legs*k;
         const size_t j = states*k;
-        /* (crs-S) from the base point to the connection point */
-        const real R_xx = s[3*w + j];
-        const real R_xy = s[4*w + j];
-        const real R_xz = s[5*w + j];
-        const real crs_platform_point_x = m->crs_platform_point_x[i];
-        const real crs_platform_point_y = m->crs_platform_point_y[i];
-        const real crs_platform_point_z = m->crs_platform_point_z[i];
-        const real crs_q_x = R_xx*crs_platform_point_x + R_xy*crs_platform_point_y +
-            R_xz*crs_platform_point_z;
-        const real R_yx = s[6*w + j];
-        const real R_yy = s[7*w + j];
-        const real R_yz = s[8*w + j];
-        const real crs_q_y = R_yx*crs_platform_point_x + R_yy*crs_platform_point_y +
-            R_yz*crs_platform_point_z;
-        const real R_zx = s[9*w + j];
-        const real R_zy = s[10*w + j];
-        const real R_zz = s[11*w + j];
-        const real crs_q_z = R_zx*crs_platform_point_x + R_zy*crs_platform_point_y +
-            R_zz*crs_platform_point_z;
-        const real crs_base_point_x = m->crs_base_point_x[i];
-        const real t_x = s[0*w + j];
-        const real crs_S_x = crs_q_x + t_x - crs_base_point_x;
-        const real crs_base_point_y = m->crs_base_point_y[i];
-        const real t_y = s[1*w + j];
-        const real crs_S_y = crs_q_y + t_y - crs_base_point_y;
-        const real crs_base_point_z = m->crs_base_point_z[i];
-        const real t_z = s[2*w + j];
-        const real crs_S_z = crs_q_z + t_z - crs_base_point_z;
-        /* (crs-px_1) component along the reference direction */
-        const real crs_base_frame_xy = m->crs_base_frame_xy[i];
-        const real crs_base_frame_yy = m->crs_base_frame_yy[i];
-        const real crs_base_frame_zy = m->crs_base_frame_zy[i];
-        const real crs_px_1 = crs_S_x*crs_base_frame_xy + crs_S_y*crs_base_frame_yy +
-            crs_S_z*crs_base_frame_zy;
-        /* (crs-py_1) component across the reference direction */
-        const real crs_base_frame_xz = m->crs_base_frame_xz[i];
-        const real crs_base_frame_yz = m->crs_base_frame_yz[i];
-        const real crs_base_frame_zz = m->crs_base_frame_zz[i];
-        const real crs_py_1 = crs_S_x*crs_base_frame_xz + crs_S_y*crs_base_frame_yz +
-            crs_S_z*crs_base_frame_zz;
-        /* (crs-rho2_1) squared amplitude */
-        const real crs_rho2_1 = crs_px_1*crs_px_1 + crs_py_1*crs_py_1;
-        /* (crs-root_1) root, with the sign of the branch */
-        const real crs_branch_1 = m->crs_branch_1[i];
-        const real crs_root_1 = crs_branch_1*root(crs_rho2_1);
-        /* (crs-c_1) cosine of the angle of joint 1 from its reference direction */
-        const real inv_crs_rho2_1 = 1/crs_rho2_1;
-        const real crs_c_1 = -crs_py_1*crs_root_1*inv_crs_rho2_1;
-        /* (crs-s_1) sine of the angle of joint 1 from its reference direction */
-        const real crs_s_1 = crs_px_1*crs_root_1*inv_crs_rho2_1;
-        /* (crs-xi_1) the vector from joint 1 to the connection point, resolved along link 1 */
-        const real crs_base_frame_xx = m->crs_base_frame_xx[i];
-        const real crs_base_frame_yx = m->crs_base_frame_yx[i];
-        const real crs_base_frame_zx = m->crs_base_frame_zx[i];
-        const real crs_xi_1_in_axes1_z = crs_S_x*crs_base_frame_xx + crs_S_y*crs_base_frame_yx +
-            crs_S_z*crs_base_frame_zx;
-        /* (crs-from_centre_2) from the centre at zero displacement to the connection point */
-        const real crs_joint3_offset_x = m->crs_joint3_offset_x[i];
-        const real crs_from_centre_2_in_axes1_z = crs_xi_1_in_axes1_z - crs_joint3_offset_x;
-        /* (crs-disc_2) discriminant of the distance equation */
-        const real crs_size_t = m->crs_size_t[i];
-        const real crs_disc_2 = crs_size_t - crs_root_1*crs_root_1;
-        /* (crs-q_2) displacement of joint 2 */
-        const real crs_branch_2 = m->crs_branch_2[i];
-        const real crs_q_2 = crs_from_centre_2_in_axes1_z + crs_branch_2*root(crs_disc_2);
-        /* (crs-x_3) from the origin of joint 3 to the connection point */
-        const real crs_x_3_in_axes1_z = crs_xi_1_in_axes1_z - crs_joint3_offset_x - crs_q_2;
-        /* (crs-c_3) cosine of the angle of joint 3 from its reference direction */
-        const real crs_platform_joint_offset_x = m->crs_platform_joint_offset_x[i];
-        const real inv_crs_size_t = m->inv_crs_size_t[i];
-        const real crs_c_3_t = crs_platform_joint_offset_x*crs_root_1*inv_crs_size_t;
-        /* (crs-s_3) sine of the angle of joint 3 from its reference direction */
-        const real crs_s_3 = crs_platform_joint_offset_x*crs_x_3_in_axes1_z*inv_crs_size_t;
-        /* (crs-r_1) from joint 1 to the connection point, along the links */
-        const real crs_r_1_t = crs_c_3_t*crs_platform_joint_offset_x;
-        const real crs_d_4_in_axes1_z = crs_platform_joint_offset_x*crs_s_3;
-        const real crs_r_1_in_axes1_z = crs_d_4_in_axes1_z + crs_joint3_offset_x + crs_q_2;
-        /* (crs-v_1) velocity of the connection point per rate of joint 1 */
-        const real crs_v_1_in_axes3_z = crs_c_3_t*(crs_c_3_t*crs_r_1_t +
-            crs_r_1_in_axes1_z*crs_s_3) + crs_s_3*(crs_r_1_t*crs_s_3 -
-            crs_c_3_t*crs_r_1_in_axes1_z);
-        /* (crs-w_1) reciprocal vector 1 */
-        const real axis_z_crs_axes3_x = crs_base_frame_xy*crs_c_1 + crs_base_frame_xz*crs_s_1;
-        const real axis_z_crs_axes3_y = crs_base_frame_yy*crs_c_1 + crs_base_frame_yz*crs_s_1;
-        const real axis_z_crs_axes3_z = crs_base_frame_zy*crs_c_1 + crs_base_frame_zz*crs_s_1;
-        const real crs_w_1_in_axes3_z = 1/crs_v_1_in_axes3_z;
-        const real crs_w_1_x = axis_z_crs_axes3_x*crs_w_1_in_axes3_z;
-        const real crs_w_1_y = axis_z_crs_axes3_y*crs_w_1_in_axes3_z;
-        const real crs_w_1_z = axis_z_crs_axes3_z*crs_w_1_in_axes3_z;
-        /* (crs-w_2) reciprocal vector 2 */
-        const real crs_w_2_t = crs_s_1*crs_s_3;
-        const real crs_w_2_t_2 = -crs_c_1*crs_s_3;
-        const real axis_y_crs_axes3_x = crs_base_frame_xy*crs_w_2_t +
-            crs_base_frame_xz*crs_w_2_t_2 - crs_base_frame_xx*crs_c_3_t;
-        const real axis_y_crs_axes3_y = crs_base_frame_yy*crs_w_2_t +
-            crs_base_frame_yz*crs_w_2_t_2 - crs_base_frame_yx*crs_c_3_t;
-        const real axis_y_crs_axes3_z = crs_base_frame_zy*crs_w_2_t +
-            crs_base_frame_zz*crs_w_2_t_2 - crs_base_frame_zx*crs_c_3_t;
-        const real crs_w_2_t_3 = crs_r_1_t/crs_d_4_in_axes1_z;
-        const real crs_w_2_in_axes3_x = crs_s_3 + crs_c_3_t*crs_w_2_t_3;
-        const real crs_w_2_in_axes3_y = crs_s_3*crs_w_2_t_3 - crs_c_3_t;
-        const real crs_w_2_x = axis_y_crs_axes3_x*crs_w_2_in_axes3_y +
-            crs_w_2_in_axes3_x*(axis_y_crs_axes3_y*axis_z_crs_axes3_z -
-            axis_y_crs_axes3_z*axis_z_crs_axes3_y);
-        const real crs_w_2_y = axis_y_crs_axes3_y*crs_w_2_in_axes3_y +
-            crs_w_2_in_axes3_x*(axis_y_crs_axes3_z*axis_z_crs_axes3_x -
-            axis_y_crs_axes3_x*axis_z_crs_axes3_z);
-        const real crs_w_2_z = axis_y_crs_axes3_z*crs_w_2_in_axes3_y +
-            crs_w_2_in_axes3_x*(axis_y_crs_axes3_x*axis_z_crs_axes3_y -
-            axis_y_crs_axes3_y*axis_z_crs_axes3_x);
+        values_crs v;
+        stage_crs_X(m, w, i, j, s, X, &v);
+        stage_crs_H_condition(&v);
         /* (crs-G) force at the connection point that balances the leg's inertia and weight along all
            degrees of freedom */
-        const real crs_pivot_size = magnitude(crs_rho2_1);
-        const real crs_pivot_size_2 = magnitude(crs_v_1_in_axes3_z);
-        const real crs_pivot_size_3 = magnitude(crs_d_4_in_axes1_z);
+        const real crs_pivot_size = magnitude(v.crs_rho2_1);
+        const real crs_pivot_size_2 = magnitude(v.crs_v_1_in_axes3_z);
+        const real crs_pivot_size_3 = magnitude(v.crs_d_4_in_axes1_z);
         const real inv_crs_size = m->inv_crs_size[i];
         const real inv_crs_size_t_2 = m->inv_crs_size_t_2[i];
         const real crs_least_pivots = lesser(lesser(root(crs_pivot_size*inv_crs_size_t_2),
             crs_pivot_size_2*inv_crs_size), crs_pivot_size_3*inv_crs_size);
-        /* (crs-H_a_1) moment of the column's unit force about the platform origin */
-        const real crs_H_a_1_x = crs_q_y*crs_w_1_z - crs_q_z*crs_w_1_y;
-        const real crs_H_a_1_y = crs_q_z*crs_w_1_x - crs_q_x*crs_w_1_z;
-        const real crs_H_a_1_z = crs_q_x*crs_w_1_y - crs_q_y*crs_w_1_x;
-        /* (crs-H_a_2) moment of the column's unit force about the platform origin */
-        const real crs_H_a_2_x = crs_q_y*crs_w_2_z - crs_q_z*crs_w_2_y;
-        const real crs_H_a_2_y = crs_q_z*crs_w_2_x - crs_q_x*crs_w_2_z;
-        const real crs_H_a_2_z = crs_q_x*crs_w_2_y - crs_q_y*crs_w_2_x;
         /* (spread) rms distance of the platform points from their centroid */
         const real b_c_in_platform_x = m->b_c_in_platform_x;
+        const real crs_platform_point_x = m->crs_platform_point_x[i];
         const real crs_spread_t = b_c_in_platform_x - crs_platform_point_x;
         const real b_c_in_platform_y = m->b_c_in_platform_y;
+        const real crs_platform_point_y = m->crs_platform_point_y[i];
         const real crs_spread_t_2 = b_c_in_platform_y - crs_platform_point_y;
         const real b_c_in_platform_z = m->b_c_in_platform_z;
+        const real crs_platform_point_z = m->crs_platform_point_z[i];
         const real crs_spread_t_3 = b_c_in_platform_z - crs_platform_point_z;
         const real crs_spread_t_4 = crs_spread_t*crs_spread_t + crs_spread_t_2*crs_spread_t_2 +
             crs_spread_t_3*crs_spread_t_3;
         /* (spread) rms distance of the platform points from their centroid */
         gather(&terms[0*count + k], add, crs_spread_t_4);  /* spread_crs */
         /* (crs-w_1) reciprocal vector 1 */
-        o[0*count + k] = crs_w_1_x;
-        o[1*count + k] = crs_w_1_y;
-        o[2*count + k] = crs_w_1_z;
+        o[0*count + k] = v.crs_w_1_x;
+        o[1*count + k] = v.crs_w_1_y;
+        o[2*count + k] = v.crs_w_1_z;
         /* (crs-H_a_1) moment of the column's unit force about the platform origin */
-        o[3*count + k] = crs_H_a_1_x;
-        o[4*count + k] = crs_H_a_1_y;
-        o[5*count + k] = crs_H_a_1_z;
+        o[3*count + k] = v.crs_H_a_1_x;
+        o[4*count + k] = v.crs_H_a_1_y;
+        o[5*count + k] = v.crs_H_a_1_z;
         /* (crs-w_2) reciprocal vector 2 */
-        o[6*count + k] = crs_w_2_x;
-        o[7*count + k] = crs_w_2_y;
-        o[8*count + k] = crs_w_2_z;
+        o[6*count + k] = v.crs_w_2_x;
+        o[7*count + k] = v.crs_w_2_y;
+        o[8*count + k] = v.crs_w_2_z;
         /* (crs-H_a_2) moment of the column's unit force about the platform origin */
-        o[9*count + k] = crs_H_a_2_x;
-        o[10*count + k] = crs_H_a_2_y;
-        o[11*count + k] = crs_H_a_2_z;
+        o[9*count + k] = v.crs_H_a_2_x;
+        o[10*count + k] = v.crs_H_a_2_y;
+        o[11*count + k] = v.crs_H_a_2_z;
         /* (crs-G) force at the connection point that balances the leg's inertia and weight along all
            degrees of freedom */
         o[12*count + k] = crs_least_pivots;
-        o[13*count + k] = crs_disc_2;
-        o[16*count + k] = ((crs_w_1_x + (crs_w_1_y + crs_w_1_z)) + ((crs_H_a_1_x + crs_H_a_1_y) +
-            (crs_H_a_1_z + crs_w_2_x))) + ((crs_w_2_y + (crs_w_2_z + crs_H_a_2_x)) + ((crs_H_a_2_y
-            + crs_H_a_2_z) + (crs_least_pivots + crs_disc_2)));
+        o[13*count + k] = v.crs_disc_2;
+        o[16*count + k] = ((v.crs_w_1_x + (v.crs_w_1_y + v.crs_w_1_z)) + ((v.crs_H_a_1_x +
+            v.crs_H_a_1_y) + (v.crs_H_a_1_z + v.crs_w_2_x))) + ((v.crs_w_2_y + (v.crs_w_2_z +
+            v.crs_H_a_2_x)) + ((v.crs_H_a_2_y + v.crs_H_a_2_z) + (crs_least_pivots +
+            v.crs_disc_2)));
         const real crs_size_t_2 = m->crs_size_t_2[i];
         const real crs_size = m->crs_size[i];
-        o[15*count + k] = UNLESS(magnitude(crs_rho2_1) > TOLERANCE*TOLERANCE*crs_size_t_2) +
-            UNLESS(magnitude(crs_v_1_in_axes3_z) > TOLERANCE*crs_size) +
-            UNLESS(magnitude(crs_d_4_in_axes1_z) > TOLERANCE*crs_size);
-        o[14*count + k] = UNLESS(crs_disc_2 >= 0);
+        o[15*count + k] = UNLESS(magnitude(v.crs_rho2_1) > TOLERANCE*TOLERANCE*crs_size_t_2) +
+            UNLESS(magnitude(v.crs_v_1_in_axes3_z) > TOLERANCE*crs_size) +
+            UNLESS(magnitude(v.crs_d_4_in_axes1_z) > TOLERANCE*crs_size);
+        o[14*count + k] = UNLESS(v.crs_disc_2 >= 0);
     }
 }
 
@@ -5511,13 +4071,13 @@ INLINE void condition_place_crs(size_t w, size_t count, const real *o, size_t le
     real *H, real *pivots, real *reach, verdict *t)
 {
     for (size_t k = 0; k < w; ++k) {
-        H[(0*NU + 2*leg)*w + k] = o[0*count + first + k];
+        H[2*leg*w + k] = o[0*count + first + k];
         H[(NU + 2*leg)*w + k] = o[1*count + first + k];
         H[(2*NU + 2*leg)*w + k] = o[2*count + first + k];
         H[(3*NU + 2*leg)*w + k] = o[3*count + first + k];
         H[(4*NU + 2*leg)*w + k] = o[4*count + first + k];
         H[(5*NU + 2*leg)*w + k] = o[5*count + first + k];
-        H[(0*NU + 1 + 2*leg)*w + k] = o[6*count + first + k];
+        H[(1 + 2*leg)*w + k] = o[6*count + first + k];
         H[(NU + 1 + 2*leg)*w + k] = o[7*count + first + k];
         H[(2*NU + 1 + 2*leg)*w + k] = o[8*count + first + k];
         H[(3*NU + 1 + 2*leg)*w + k] = o[9*count + first + k];
@@ -5548,12 +4108,10 @@ INLINE void condition_after(const prepared *m, size_t w, const real *sums, real 
 INLINE void condition_run(const prepared *m, const real *X, real *H, real *lengths, real *pivots,
     real *reach, verdict *t)
 {
-    real s[12] = {0};
-    real sums[1] = {0};
-    real terms_crs[LEGS(LEGS_OF_crs)] = {0};
-    real o_crs[17*LEGS(LEGS_OF_crs)] = {0};
+    real s[9] = {0}, sums[1] = {0};
+    real terms_crs[LEGS(LEGS_OF_crs)] = {0}, o_crs[17*LEGS(LEGS_OF_crs)] = {0};
     condition_before(m, 1, X, s, lengths, t);
-    condition_legs_crs(m, 1, 0, 1, s, 0, LEGS(LEGS_OF_crs), 0, terms_crs, o_crs);
+    condition_legs_crs(m, 1, 0, 1, s, 0, LEGS(LEGS_OF_crs), 0, X, terms_crs, o_crs);
     for (size_t leg = 0; leg < LEGS_OF_crs; ++leg) {
         condition_place_crs(1, LEGS(LEGS_OF_crs), o_crs, leg, leg, H, pivots, reach, t);
     }
@@ -6194,11 +4752,84 @@ INLINE void condition_one(const prepared *m, const real *X, const real *length, 
     }
 }
 
+INLINE void manipulability_one(const prepared *m, const real *X, real *measure_out, real
+    *isotropy_out, int *code)
+{
+    static const size_t places_divide_rows_1[] = {3, 4, 5};
+    real H[NV*NU] = {0}, lengths[2] = {0}, pivots[NL] = {0}, reach[NL] = {0}, subtract_1[1] = {0},
+        choose_length_1[1] = {0}, divide_rows_1[NV*NU] = {0}, singular_values_1[NV] = {0}, measure[1]
+        = {0}, isotropy[1] = {0};
+    verdict why;
+    start(1, &why);
+    check(NQ, 1, X, why.invalid);
+    condition_run(m, X, H, lengths, pivots, reach, &why);
+    const real *const entry_1 = lengths;
+    for (size_t i = 0; i < 1; ++i) {
+        subtract_1[i] = entry_1[i] - entry_1[i];
+    }
+    for (size_t i = 0; i < 1; ++i) {
+        choose_length_1[i] = subtract_1[i] > 0 ? subtract_1[i] : lengths[i] > TINY*lengths[1 + i]
+            ? lengths[i] : lengths[1 + i];
+    }
+    for (size_t i = 0; i < NV*NU; ++i) {
+        divide_rows_1[i] = H[i];
+    }
+    divide_rows(3, NU, 1, places_divide_rows_1, choose_length_1, divide_rows_1);
+    singular_values(NV, NU, divide_rows_1, singular_values_1);
+    spread(NV, singular_values_1, measure, isotropy);
+    check(1, 1, measure, why.overflow);
+    check(1, 1, isotropy, why.overflow);
+    judge(&why, code);
+    copy(1, measure, measure_out);
+    copy(1, isotropy, isotropy_out);
+    if (*code != OK) {
+        refuse(1, measure_out);
+        refuse(1, isotropy_out);
+    }
+}
+
+INLINE void singularity_distance_one(const prepared *m, const real *X, real *actuators_out, real
+    *legs_out, int *code)
+{
+    static const size_t places_divide_rows_1[] = {3, 4, 5};
+    real H[NV*NU] = {0}, lengths[2] = {0}, pivots[NL] = {0}, reach[NL] = {0}, subtract_1[1] = {0},
+        choose_length_1[1] = {0}, divide_rows_1[NV*NU] = {0}, singular_values_1[NV] = {0}, spread_1[1]
+        = {0}, actuators[1] = {0}, legs[1] = {0};
+    verdict why;
+    start(1, &why);
+    check(NQ, 1, X, why.invalid);
+    condition_run(m, X, H, lengths, pivots, reach, &why);
+    const real *const entry_1 = lengths;
+    for (size_t i = 0; i < 1; ++i) {
+        subtract_1[i] = entry_1[i] - entry_1[i];
+    }
+    for (size_t i = 0; i < 1; ++i) {
+        choose_length_1[i] = subtract_1[i] > 0 ? subtract_1[i] : lengths[i] > TINY*lengths[1 + i]
+            ? lengths[i] : lengths[1 + i];
+    }
+    for (size_t i = 0; i < NV*NU; ++i) {
+        divide_rows_1[i] = H[i];
+    }
+    divide_rows(3, NU, 1, places_divide_rows_1, choose_length_1, divide_rows_1);
+    singular_values(NV, NU, divide_rows_1, singular_values_1);
+    spread(NV, singular_values_1, spread_1, actuators);
+    least_entry(NL, pivots, legs);
+    check(1, 1, actuators, why.overflow);
+    check(1, 1, legs, why.overflow);
+    judge(&why, code);
+    copy(1, actuators, actuators_out);
+    copy(1, legs, legs_out);
+    if (*code != OK) {
+        refuse(1, actuators_out);
+        refuse(1, legs_out);
+    }
+}
+
 static void mismatch_one(const prepared *m, const real *X, const real *q_actuated, real *gap_out,
     int *code)
 {
     static const size_t places_gap[] = {0, 2, 4};
-    real q[NJ] = {0}, take_1[6] = {0}, subtract_1[NU] = {0}, gap[NU] = {0};
+    real q[NJ] = {0}, q_of_inverse_kinematics_from_0[6] = {0}, subtract_1[NU] = {0}, gap[NU] = {0};
     verdict why;
     start(1, &why);
     const real total_in = total(X, NQ) + total(q_actuated, NU);
@@ -6207,9 +4838,9 @@ static void mismatch_one(const prepared *m, const real *X, const real *q_actuate
         check(NU, 1, q_actuated, why.invalid);
     }
     inverse_kinematics_run(m, X, q, &why);
-    take(6, 1, hybrid_3crs_ACTUATED, q, take_1);
+    take(6, 1, hybrid_3crs_ACTUATED, q, q_of_inverse_kinematics_from_0);
     for (size_t i = 0; i < NU; ++i) {
-        subtract_1[i] = q_actuated[i] - take_1[i];
+        subtract_1[i] = q_actuated[i] - q_of_inverse_kinematics_from_0[i];
     }
     for (size_t i = 0; i < NU; ++i) {
         gap[i] = subtract_1[i];
@@ -6578,8 +5209,8 @@ INLINE void rotation_one(const real *X, real *R_out, int *code)
     verdict why;
     start(1, &why);
     check(NQ, 1, X, why.invalid);
-    const real *const take_1 = X + 3;
-    rotation_of_quaternion(take_1, R);
+    const real *const X_from_3 = X + 3;
+    rotation_of_quaternion(X_from_3, R);
     check(9, 1, R, why.overflow);
     judge(&why, code);
     copy(9, R, R_out);
@@ -6619,11 +5250,11 @@ INLINE void X_dot_one(const real *X, const real *V, real *X_dot_out, int *code)
         check(NQ, 1, X, why.invalid);
         check(NV, 1, V, why.invalid);
     }
-    const real *const take_1 = V + 3;
-    const real *const take_2 = X + 3;
-    quaternion_rate(take_2, take_1, quaternion_rate_1);
-    const real *const take_3 = V;
-    beside(1, 3, 4, take_3, quaternion_rate_1, X_dot);
+    const real *const V_from_3 = V + 3;
+    const real *const X_from_3 = X + 3;
+    quaternion_rate(X_from_3, V_from_3, quaternion_rate_1);
+    const real *const V_from_0 = V;
+    beside(1, 3, 4, V_from_0, quaternion_rate_1, X_dot);
     check(NQ, 1, X_dot, why.overflow);
     judge(&why, code);
     copy(NQ, X_dot, X_dot_out);
@@ -6663,13 +5294,13 @@ INLINE void retract_one(const real *X, const real *step, real *X_moved_out, int 
         check(NQ, 1, X, why.invalid);
         check(NV, 1, step, why.invalid);
     }
-    const real *const take_1 = X;
-    const real *const take_2 = X + 3;
-    const real *const take_3 = step;
-    const real *const take_4 = step + 3;
-    turn_quaternion(take_2, take_4, turn_quaternion_1);
+    const real *const X_from_0 = X;
+    const real *const X_from_3 = X + 3;
+    const real *const step_from_0 = step;
+    const real *const step_from_3 = step + 3;
+    turn_quaternion(X_from_3, step_from_3, turn_quaternion_1);
     for (size_t i = 0; i < 3; ++i) {
-        add_1[i] = take_1[i] + take_3[i];
+        add_1[i] = X_from_0[i] + step_from_0[i];
     }
     beside(1, 3, 4, add_1, turn_quaternion_1, X_moved);
     check(NQ, 1, X_moved, why.overflow);
@@ -6690,13 +5321,13 @@ INLINE void difference_one(const real *X0, const real *X1, real *step_out, int *
         check(NQ, 1, X0, why.invalid);
         check(NQ, 1, X1, why.invalid);
     }
-    const real *const take_1 = X0;
-    const real *const take_2 = X0 + 3;
-    const real *const take_3 = X1;
-    const real *const take_4 = X1 + 3;
-    turn_between(take_2, take_4, turn_between_1);
+    const real *const X0_from_0 = X0;
+    const real *const X0_from_3 = X0 + 3;
+    const real *const X1_from_0 = X1;
+    const real *const X1_from_3 = X1 + 3;
+    turn_between(X0_from_3, X1_from_3, turn_between_1);
     for (size_t i = 0; i < 3; ++i) {
-        subtract_1[i] = take_3[i] - take_1[i];
+        subtract_1[i] = X1_from_0[i] - X0_from_0[i];
     }
     beside(1, 3, 3, subtract_1, turn_between_1, step);
     check(NV, 1, step, why.overflow);
@@ -6719,25 +5350,25 @@ INLINE void interpolate_one(const real *X0, const real *X1, const real *s, real 
         check(NQ, 1, X1, why.invalid);
         check(1, 1, s, why.invalid);
     }
-    const real *const take_1 = X0;
-    const real *const take_2 = X0 + 3;
-    const real *const take_3 = X1;
-    const real *const take_4 = X1 + 3;
-    turn_between(take_2, take_4, turn_between_1);
+    const real *const X0_from_0 = X0;
+    const real *const X0_from_3 = X0 + 3;
+    const real *const X1_from_0 = X1;
+    const real *const X1_from_3 = X1 + 3;
+    turn_between(X0_from_3, X1_from_3, turn_between_1);
     for (size_t i = 0; i < 3; ++i) {
-        subtract_1[i] = take_3[i] - take_1[i];
+        subtract_1[i] = X1_from_0[i] - X0_from_0[i];
     }
     beside(1, 3, 3, subtract_1, turn_between_1, join_1);
     for (size_t i = 0; i < 6; ++i) {
         scale_1[i] = join_1[i]*s[i%(1)];
     }
-    const real *const take_5 = X0;
-    const real *const take_6 = X0 + 3;
-    const real *const take_7 = scale_1;
-    const real *const take_8 = scale_1 + 3;
-    turn_quaternion(take_6, take_8, turn_quaternion_1);
+    const real *const X0_from_0_2 = X0;
+    const real *const X0_from_3_2 = X0 + 3;
+    const real *const scale_1_from_0 = scale_1;
+    const real *const scale_1_from_3 = scale_1 + 3;
+    turn_quaternion(X0_from_3_2, scale_1_from_3, turn_quaternion_1);
     for (size_t i = 0; i < 3; ++i) {
-        add_1[i] = take_5[i] + take_7[i];
+        add_1[i] = X0_from_0_2[i] + scale_1_from_0[i];
     }
     beside(1, 3, 4, add_1, turn_quaternion_1, X);
     check(NQ, 1, X, why.overflow);
@@ -6750,284 +5381,259 @@ INLINE void interpolate_one(const real *X0, const real *X1, const real *s, real 
 
 /* ---- one state, and batches ---- */
 
-int hybrid_3crs_M(const hybrid_3crs_model *model, const hybrid_3crs_real *X, hybrid_3crs_real *M)
+int hybrid_3crs_M(const prepared *model, const real *X, real *M)
 {
     int code;
     M_one(model, X, M, &code);
     return code;
 }
 
-size_t hybrid_3crs_M_batch(const hybrid_3crs_model *model, size_t n, const hybrid_3crs_real *X,
-    hybrid_3crs_real *M, int *status)
+size_t hybrid_3crs_M_batch(const prepared *model, size_t n, const real *X, real *M, int *status)
 {
-    size_t failed = 0, i = 0;
-    for (; LANES > 1 && i + LANES <= n; i += LANES) {
-        int codes[LANES];
-        M_lanes(model, X + NQ*i, M + NV*NV*i, codes);
-        for (size_t k = 0; k < LANES; ++k) {
+    size_t failed = 0, w;
+    for (size_t i = 0; i < n; i += w) {
+        int codes[LANES] = {INVALID};
+        w = LANES > 1 && i + LANES <= n ? LANES : 1;
+        if (w > 1) {
+            M_lanes(model, X + NQ*i, M + NV*NV*i, codes);
+        }
+        for (size_t k = 0; k < w; ++k) {
             if (codes[k] != OK) {
                 codes[k] = hybrid_3crs_M(model, X + NQ*(i + k), M + NV*NV*(i + k));
             }
         }
-        failed += record(codes, LANES, status ? status + i : NULL);
-    }
-    for (; i < n; ++i) {
-        const int code = hybrid_3crs_M(model, X + NQ*i, M + NV*NV*i);
-        failed += record(&code, 1, status ? status + i : NULL);
+        failed += record(codes, w, status ? status + i : NULL);
     }
     return failed;
 }
 
-int hybrid_3crs_Z(const hybrid_3crs_model *model, const hybrid_3crs_real *X, const
-    hybrid_3crs_real *V, hybrid_3crs_real *Z)
+int hybrid_3crs_Z(const prepared *model, const real *X, const real *V, real *Z)
 {
     int code;
     Z_one(model, X, V, Z, &code);
     return code;
 }
 
-size_t hybrid_3crs_Z_batch(const hybrid_3crs_model *model, size_t n, const hybrid_3crs_real *X,
-    const hybrid_3crs_real *V, hybrid_3crs_real *Z, int *status)
+size_t hybrid_3crs_Z_batch(const prepared *model, size_t n, const real *X, const real *V, real *Z,
+    int *status)
 {
-    size_t failed = 0, i = 0;
-    for (; LANES > 1 && i + LANES <= n; i += LANES) {
-        int codes[LANES];
-        Z_lanes(model, X + NQ*i, V + NV*i, Z + NV*i, codes);
-        for (size_t k = 0; k < LANES; ++k) {
+    size_t failed = 0, w;
+    for (size_t i = 0; i < n; i += w) {
+        int codes[LANES] = {INVALID};
+        w = LANES > 1 && i + LANES <= n ? LANES : 1;
+        if (w > 1) {
+            Z_lanes(model, X + NQ*i, V + NV*i, Z + NV*i, codes);
+        }
+        for (size_t k = 0; k < w; ++k) {
             if (codes[k] != OK) {
                 codes[k] = hybrid_3crs_Z(model, X + NQ*(i + k), V + NV*(i + k), Z + NV*(i + k));
             }
         }
-        failed += record(codes, LANES, status ? status + i : NULL);
-    }
-    for (; i < n; ++i) {
-        const int code = hybrid_3crs_Z(model, X + NQ*i, V + NV*i, Z + NV*i);
-        failed += record(&code, 1, status ? status + i : NULL);
+        failed += record(codes, w, status ? status + i : NULL);
     }
     return failed;
 }
 
-int hybrid_3crs_H(const hybrid_3crs_model *model, const hybrid_3crs_real *X, hybrid_3crs_real *H)
+int hybrid_3crs_H(const prepared *model, const real *X, real *H)
 {
     int code;
     H_one(model, X, H, &code);
     return code;
 }
 
-size_t hybrid_3crs_H_batch(const hybrid_3crs_model *model, size_t n, const hybrid_3crs_real *X,
-    hybrid_3crs_real *H, int *status)
+size_t hybrid_3crs_H_batch(const prepared *model, size_t n, const real *X, real *H, int *status)
 {
-    size_t failed = 0, i = 0;
-    for (; LANES > 1 && i + LANES <= n; i += LANES) {
-        int codes[LANES];
-        H_lanes(model, X + NQ*i, H + NV*NU*i, codes);
-        for (size_t k = 0; k < LANES; ++k) {
+    size_t failed = 0, w;
+    for (size_t i = 0; i < n; i += w) {
+        int codes[LANES] = {INVALID};
+        w = LANES > 1 && i + LANES <= n ? LANES : 1;
+        if (w > 1) {
+            H_lanes(model, X + NQ*i, H + NV*NU*i, codes);
+        }
+        for (size_t k = 0; k < w; ++k) {
             if (codes[k] != OK) {
                 codes[k] = hybrid_3crs_H(model, X + NQ*(i + k), H + NV*NU*(i + k));
             }
         }
-        failed += record(codes, LANES, status ? status + i : NULL);
-    }
-    for (; i < n; ++i) {
-        const int code = hybrid_3crs_H(model, X + NQ*i, H + NV*NU*i);
-        failed += record(&code, 1, status ? status + i : NULL);
+        failed += record(codes, w, status ? status + i : NULL);
     }
     return failed;
 }
 
-int hybrid_3crs_inverse_kinematics(const hybrid_3crs_model *model, const hybrid_3crs_real *X,
-    hybrid_3crs_real *q)
+int hybrid_3crs_inverse_kinematics(const prepared *model, const real *X, real *q)
 {
     int code;
     inverse_kinematics_one(model, X, q, &code);
     return code;
 }
 
-size_t hybrid_3crs_inverse_kinematics_batch(const hybrid_3crs_model *model, size_t n, const
-    hybrid_3crs_real *X, hybrid_3crs_real *q, int *status)
+size_t hybrid_3crs_inverse_kinematics_batch(const prepared *model, size_t n, const real *X, real
+    *q, int *status)
 {
-    size_t failed = 0, i = 0;
-    for (; LANES > 1 && i + LANES <= n; i += LANES) {
-        int codes[LANES];
-        inverse_kinematics_lanes(model, X + NQ*i, q + NJ*i, codes);
-        for (size_t k = 0; k < LANES; ++k) {
+    size_t failed = 0, w;
+    for (size_t i = 0; i < n; i += w) {
+        int codes[LANES] = {INVALID};
+        w = LANES > 1 && i + LANES <= n ? LANES : 1;
+        if (w > 1) {
+            inverse_kinematics_lanes(model, X + NQ*i, q + NJ*i, codes);
+        }
+        for (size_t k = 0; k < w; ++k) {
             if (codes[k] != OK) {
                 codes[k] = hybrid_3crs_inverse_kinematics(model, X + NQ*(i + k), q + NJ*(i + k));
             }
         }
-        failed += record(codes, LANES, status ? status + i : NULL);
-    }
-    for (; i < n; ++i) {
-        const int code = hybrid_3crs_inverse_kinematics(model, X + NQ*i, q + NJ*i);
-        failed += record(&code, 1, status ? status + i : NULL);
+        failed += record(codes, w, status ? status + i : NULL);
     }
     return failed;
 }
 
-int hybrid_3crs_joint_rates(const hybrid_3crs_model *model, const hybrid_3crs_real *X, const
-    hybrid_3crs_real *V, hybrid_3crs_real *rates)
+int hybrid_3crs_joint_rates(const prepared *model, const real *X, const real *V, real *rates)
 {
     int code;
     joint_rates_one(model, X, V, rates, &code);
     return code;
 }
 
-size_t hybrid_3crs_joint_rates_batch(const hybrid_3crs_model *model, size_t n, const
-    hybrid_3crs_real *X, const hybrid_3crs_real *V, hybrid_3crs_real *rates, int *status)
+size_t hybrid_3crs_joint_rates_batch(const prepared *model, size_t n, const real *X, const real
+    *V, real *rates, int *status)
 {
-    size_t failed = 0, i = 0;
-    for (; LANES > 1 && i + LANES <= n; i += LANES) {
-        int codes[LANES];
-        joint_rates_lanes(model, X + NQ*i, V + NV*i, rates + NJ*i, codes);
-        for (size_t k = 0; k < LANES; ++k) {
+    size_t failed = 0, w;
+    for (size_t i = 0; i < n; i += w) {
+        int codes[LANES] = {INVALID};
+        w = LANES > 1 && i + LANES <= n ? LANES : 1;
+        if (w > 1) {
+            joint_rates_lanes(model, X + NQ*i, V + NV*i, rates + NJ*i, codes);
+        }
+        for (size_t k = 0; k < w; ++k) {
             if (codes[k] != OK) {
                 codes[k] = hybrid_3crs_joint_rates(model, X + NQ*(i + k), V + NV*(i + k), rates + NJ*(i + k));
             }
         }
-        failed += record(codes, LANES, status ? status + i : NULL);
-    }
-    for (; i < n; ++i) {
-        const int code = hybrid_3crs_joint_rates(model, X + NQ*i, V + NV*i, rates + NJ*i);
-        failed += record(&code, 1, status ? status + i : NULL);
+        failed += record(codes, w, status ? status + i : NULL);
     }
     return failed;
 }
 
-int hybrid_3crs_joint_accelerations(const hybrid_3crs_model *model, const hybrid_3crs_real *X,
-    const hybrid_3crs_real *V, const hybrid_3crs_real *A, hybrid_3crs_real *accelerations)
+int hybrid_3crs_joint_accelerations(const prepared *model, const real *X, const real *V, const
+    real *A, real *accelerations)
 {
     int code;
     joint_accelerations_one(model, X, V, A, accelerations, &code);
     return code;
 }
 
-size_t hybrid_3crs_joint_accelerations_batch(const hybrid_3crs_model *model, size_t n, const
-    hybrid_3crs_real *X, const hybrid_3crs_real *V, const hybrid_3crs_real *A, hybrid_3crs_real
-    *accelerations, int *status)
+size_t hybrid_3crs_joint_accelerations_batch(const prepared *model, size_t n, const real *X, const
+    real *V, const real *A, real *accelerations, int *status)
 {
-    size_t failed = 0, i = 0;
-    for (; LANES > 1 && i + LANES <= n; i += LANES) {
-        int codes[LANES];
-        joint_accelerations_lanes(model, X + NQ*i, V + NV*i, A + NV*i, accelerations + NJ*i, codes);
-        for (size_t k = 0; k < LANES; ++k) {
+    size_t failed = 0, w;
+    for (size_t i = 0; i < n; i += w) {
+        int codes[LANES] = {INVALID};
+        w = LANES > 1 && i + LANES <= n ? LANES : 1;
+        if (w > 1) {
+            joint_accelerations_lanes(model, X + NQ*i, V + NV*i, A + NV*i, accelerations + NJ*i, codes);
+        }
+        for (size_t k = 0; k < w; ++k) {
             if (codes[k] != OK) {
                 codes[k] = hybrid_3crs_joint_accelerations(model, X + NQ*(i + k), V + NV*(i + k), A + NV*(i + k),
                     accelerations + NJ*(i + k));
             }
         }
-        failed += record(codes, LANES, status ? status + i : NULL);
-    }
-    for (; i < n; ++i) {
-        const int code = hybrid_3crs_joint_accelerations(model, X + NQ*i, V + NV*i, A + NV*i,
-            accelerations + NJ*i);
-        failed += record(&code, 1, status ? status + i : NULL);
+        failed += record(codes, w, status ? status + i : NULL);
     }
     return failed;
 }
 
-int hybrid_3crs_dynamics(const hybrid_3crs_model *model, const hybrid_3crs_real *X, const
-    hybrid_3crs_real *V, hybrid_3crs_real *M, hybrid_3crs_real *Z, hybrid_3crs_real *H)
+int hybrid_3crs_dynamics(const prepared *model, const real *X, const real *V, real *M, real *Z,
+    real *H)
 {
     int code;
     dynamics_one(model, X, V, M, Z, H, &code);
     return code;
 }
 
-size_t hybrid_3crs_dynamics_batch(const hybrid_3crs_model *model, size_t n, const hybrid_3crs_real
-    *X, const hybrid_3crs_real *V, hybrid_3crs_real *M, hybrid_3crs_real *Z, hybrid_3crs_real *H,
-    int *status)
+size_t hybrid_3crs_dynamics_batch(const prepared *model, size_t n, const real *X, const real *V,
+    real *M, real *Z, real *H, int *status)
 {
-    size_t failed = 0, i = 0;
-    for (; LANES > 1 && i + LANES <= n; i += LANES) {
-        int codes[LANES];
-        dynamics_lanes(model, X + NQ*i, V + NV*i, M + NV*NV*i, Z + NV*i, H + NV*NU*i, codes);
-        for (size_t k = 0; k < LANES; ++k) {
+    size_t failed = 0, w;
+    for (size_t i = 0; i < n; i += w) {
+        int codes[LANES] = {INVALID};
+        w = LANES > 1 && i + LANES <= n ? LANES : 1;
+        if (w > 1) {
+            dynamics_lanes(model, X + NQ*i, V + NV*i, M + NV*NV*i, Z + NV*i, H + NV*NU*i, codes);
+        }
+        for (size_t k = 0; k < w; ++k) {
             if (codes[k] != OK) {
                 codes[k] = hybrid_3crs_dynamics(model, X + NQ*(i + k), V + NV*(i + k), M + NV*NV*(i + k), Z +
                     NV*(i + k), H + NV*NU*(i + k));
             }
         }
-        failed += record(codes, LANES, status ? status + i : NULL);
-    }
-    for (; i < n; ++i) {
-        const int code = hybrid_3crs_dynamics(model, X + NQ*i, V + NV*i, M + NV*NV*i, Z + NV*i, H +
-            NV*NU*i);
-        failed += record(&code, 1, status ? status + i : NULL);
+        failed += record(codes, w, status ? status + i : NULL);
     }
     return failed;
 }
 
-int hybrid_3crs_inverse_dynamics(const hybrid_3crs_model *model, const hybrid_3crs_real *X, const
-    hybrid_3crs_real *V, const hybrid_3crs_real *A, const hybrid_3crs_real *wrench,
-    hybrid_3crs_real *tau)
+int hybrid_3crs_inverse_dynamics(const prepared *model, const real *X, const real *V, const real
+    *A, const real *wrench, real *tau)
 {
     int code;
     inverse_dynamics_one(model, X, V, A, wrench, tau, &code);
     return code;
 }
 
-size_t hybrid_3crs_inverse_dynamics_batch(const hybrid_3crs_model *model, size_t n, const
-    hybrid_3crs_real *X, const hybrid_3crs_real *V, const hybrid_3crs_real *A, const
-    hybrid_3crs_real *wrench, hybrid_3crs_real *tau, int *status)
+size_t hybrid_3crs_inverse_dynamics_batch(const prepared *model, size_t n, const real *X, const
+    real *V, const real *A, const real *wrench, real *tau, int *status)
 {
-    size_t failed = 0, i = 0;
-    for (; LANES > 1 && i + LANES <= n; i += LANES) {
-        int codes[LANES];
-        inverse_dynamics_lanes(model, X + NQ*i, V + NV*i, A + NV*i, wrench ? wrench + NW*i : NULL, tau +
-            NU*i, codes);
-        for (size_t k = 0; k < LANES; ++k) {
+    size_t failed = 0, w;
+    for (size_t i = 0; i < n; i += w) {
+        int codes[LANES] = {INVALID};
+        w = LANES > 1 && i + LANES <= n ? LANES : 1;
+        if (w > 1) {
+            inverse_dynamics_lanes(model, X + NQ*i, V + NV*i, A + NV*i, wrench ? wrench + NW*i : NULL, tau +
+                NU*i, codes);
+        }
+        for (size_t k = 0; k < w; ++k) {
             if (codes[k] != OK) {
                 codes[k] = hybrid_3crs_inverse_dynamics(model, X + NQ*(i + k), V + NV*(i + k), A + NV*(i + k),
                     wrench ? wrench + NW*(i + k) : NULL, tau + NU*(i + k));
             }
         }
-        failed += record(codes, LANES, status ? status + i : NULL);
-    }
-    for (; i < n; ++i) {
-        const int code = hybrid_3crs_inverse_dynamics(model, X + NQ*i, V + NV*i, A + NV*i, wrench ? wrench
-            + NW*i : NULL, tau + NU*i);
-        failed += record(&code, 1, status ? status + i : NULL);
+        failed += record(codes, w, status ? status + i : NULL);
     }
     return failed;
 }
 
-int hybrid_3crs_forward_dynamics(const hybrid_3crs_model *model, const hybrid_3crs_real *X, const
-    hybrid_3crs_real *V, const hybrid_3crs_real *tau, const hybrid_3crs_real *wrench,
-    hybrid_3crs_real *A)
+int hybrid_3crs_forward_dynamics(const prepared *model, const real *X, const real *V, const real
+    *tau, const real *wrench, real *A)
 {
     int code;
     forward_dynamics_one(model, X, V, tau, wrench, A, &code);
     return code;
 }
 
-size_t hybrid_3crs_forward_dynamics_batch(const hybrid_3crs_model *model, size_t n, const
-    hybrid_3crs_real *X, const hybrid_3crs_real *V, const hybrid_3crs_real *tau, const
-    hybrid_3crs_real *wrench, hybrid_3crs_real *A, int *status)
+size_t hybrid_3crs_forward_dynamics_batch(const prepared *model, size_t n, const real *X, const
+    real *V, const real *tau, const real *wrench, real *A, int *status)
 {
-    size_t failed = 0, i = 0;
-    for (; LANES > 1 && i + LANES <= n; i += LANES) {
-        int codes[LANES];
-        forward_dynamics_lanes(model, X + NQ*i, V + NV*i, tau + NU*i, wrench ? wrench + NW*i : NULL, A +
-            NV*i, codes);
-        for (size_t k = 0; k < LANES; ++k) {
+    size_t failed = 0, w;
+    for (size_t i = 0; i < n; i += w) {
+        int codes[LANES] = {INVALID};
+        w = LANES > 1 && i + LANES <= n ? LANES : 1;
+        if (w > 1) {
+            forward_dynamics_lanes(model, X + NQ*i, V + NV*i, tau + NU*i, wrench ? wrench + NW*i : NULL, A +
+                NV*i, codes);
+        }
+        for (size_t k = 0; k < w; ++k) {
             if (codes[k] != OK) {
                 codes[k] = hybrid_3crs_forward_dynamics(model, X + NQ*(i + k), V + NV*(i + k), tau + NU*(i + k),
                     wrench ? wrench + NW*(i + k) : NULL, A + NV*(i + k));
             }
         }
-        failed += record(codes, LANES, status ? status + i : NULL);
-    }
-    for (; i < n; ++i) {
-        const int code = hybrid_3crs_forward_dynamics(model, X + NQ*i, V + NV*i, tau + NU*i, wrench ?
-            wrench + NW*i : NULL, A + NV*i);
-        failed += record(&code, 1, status ? status + i : NULL);
+        failed += record(codes, w, status ? status + i : NULL);
     }
     return failed;
 }
 
-int hybrid_3crs_complete_acceleration(const hybrid_3crs_model *model, const hybrid_3crs_real *X,
-    const hybrid_3crs_real *V, const hybrid_3crs_real *A, const hybrid_3crs_real *wrench,
-    hybrid_3crs_real *completed)
+int hybrid_3crs_complete_acceleration(const prepared *model, const real *X, const real *V, const
+    real *A, const real *wrench, real *completed)
 {
     int code;
     (void)model;
@@ -7038,12 +5644,11 @@ int hybrid_3crs_complete_acceleration(const hybrid_3crs_model *model, const hybr
     return code;
 }
 
-size_t hybrid_3crs_complete_acceleration_batch(const hybrid_3crs_model *model, size_t n, const
-    hybrid_3crs_real *X, const hybrid_3crs_real *V, const hybrid_3crs_real *A, const
-    hybrid_3crs_real *wrench, hybrid_3crs_real *completed, int *status)
+size_t hybrid_3crs_complete_acceleration_batch(const prepared *model, size_t n, const real *X,
+    const real *V, const real *A, const real *wrench, real *completed, int *status)
 {
-    size_t failed = 0, i = 0;
-    for (; i < n; ++i) {
+    size_t failed = 0;
+    for (size_t i = 0; i < n; ++i) {
         const int code = hybrid_3crs_complete_acceleration(model, X + NQ*i, V + NV*i, A + NV*i, wrench ?
             wrench + NW*i : NULL, completed + NV*i);
         failed += record(&code, 1, status ? status + i : NULL);
@@ -7051,21 +5656,19 @@ size_t hybrid_3crs_complete_acceleration_batch(const hybrid_3crs_model *model, s
     return failed;
 }
 
-int hybrid_3crs_leg_reactions(const hybrid_3crs_model *model, const hybrid_3crs_real *X, const
-    hybrid_3crs_real *V, const hybrid_3crs_real *A, const hybrid_3crs_real *wrench,
-    hybrid_3crs_real *forces)
+int hybrid_3crs_leg_reactions(const prepared *model, const real *X, const real *V, const real *A,
+    const real *wrench, real *forces)
 {
     int code;
     leg_reactions_one(model, X, V, A, wrench, forces, &code);
     return code;
 }
 
-size_t hybrid_3crs_leg_reactions_batch(const hybrid_3crs_model *model, size_t n, const
-    hybrid_3crs_real *X, const hybrid_3crs_real *V, const hybrid_3crs_real *A, const
-    hybrid_3crs_real *wrench, hybrid_3crs_real *forces, int *status)
+size_t hybrid_3crs_leg_reactions_batch(const prepared *model, size_t n, const real *X, const real
+    *V, const real *A, const real *wrench, real *forces, int *status)
 {
-    size_t failed = 0, i = 0;
-    for (; i < n; ++i) {
+    size_t failed = 0;
+    for (size_t i = 0; i < n; ++i) {
         const int code = hybrid_3crs_leg_reactions(model, X + NQ*i, V + NV*i, A + NV*i, wrench ? wrench +
             NW*i : NULL, forces + 9*i);
         failed += record(&code, 1, status ? status + i : NULL);
@@ -7073,66 +5676,102 @@ size_t hybrid_3crs_leg_reactions_batch(const hybrid_3crs_model *model, size_t n,
     return failed;
 }
 
-int hybrid_3crs_energy(const hybrid_3crs_model *model, const hybrid_3crs_real *X, const
-    hybrid_3crs_real *V, hybrid_3crs_real *kinetic, hybrid_3crs_real *potential)
+int hybrid_3crs_energy(const prepared *model, const real *X, const real *V, real *kinetic, real
+    *potential)
 {
     int code;
     energy_one(model, X, V, kinetic, potential, &code);
     return code;
 }
 
-size_t hybrid_3crs_energy_batch(const hybrid_3crs_model *model, size_t n, const hybrid_3crs_real
-    *X, const hybrid_3crs_real *V, hybrid_3crs_real *kinetic, hybrid_3crs_real *potential, int
-    *status)
+size_t hybrid_3crs_energy_batch(const prepared *model, size_t n, const real *X, const real *V,
+    real *kinetic, real *potential, int *status)
 {
-    size_t failed = 0, i = 0;
-    for (; i < n; ++i) {
+    size_t failed = 0;
+    for (size_t i = 0; i < n; ++i) {
         const int code = hybrid_3crs_energy(model, X + NQ*i, V + NV*i, kinetic + i, potential + i);
         failed += record(&code, 1, status ? status + i : NULL);
     }
     return failed;
 }
 
-int hybrid_3crs_condition(const hybrid_3crs_model *model, const hybrid_3crs_real *X,
-    hybrid_3crs_real *sigma, hybrid_3crs_real *legs)
+int hybrid_3crs_condition(const prepared *model, const real *X, real *sigma, real *legs)
 {
     int code;
     condition_one(model, X, NULL, sigma, legs, &code);
     return code;
 }
 
-size_t hybrid_3crs_condition_batch(const hybrid_3crs_model *model, size_t n, const
-    hybrid_3crs_real *X, hybrid_3crs_real *sigma, hybrid_3crs_real *legs, int *status)
+size_t hybrid_3crs_condition_batch(const prepared *model, size_t n, const real *X, real *sigma,
+    real *legs, int *status)
 {
-    size_t failed = 0, i = 0;
-    for (; i < n; ++i) {
+    size_t failed = 0;
+    for (size_t i = 0; i < n; ++i) {
         const int code = hybrid_3crs_condition(model, X + NQ*i, sigma + 6*i, legs + 3*i);
         failed += record(&code, 1, status ? status + i : NULL);
     }
     return failed;
 }
 
-int hybrid_3crs_forward_kinematics(const hybrid_3crs_model *model, const hybrid_3crs_real
-    *q_actuated, const hybrid_3crs_real *X0, hybrid_3crs_real *X)
+int hybrid_3crs_manipulability(const prepared *model, const real *X, real *measure, real
+    *isotropy)
+{
+    int code;
+    manipulability_one(model, X, measure, isotropy, &code);
+    return code;
+}
+
+size_t hybrid_3crs_manipulability_batch(const prepared *model, size_t n, const real *X, real
+    *measure, real *isotropy, int *status)
+{
+    size_t failed = 0;
+    for (size_t i = 0; i < n; ++i) {
+        const int code = hybrid_3crs_manipulability(model, X + NQ*i, measure + i, isotropy + i);
+        failed += record(&code, 1, status ? status + i : NULL);
+    }
+    return failed;
+}
+
+int hybrid_3crs_singularity_distance(const prepared *model, const real *X, real *actuators, real
+    *legs)
+{
+    int code;
+    singularity_distance_one(model, X, actuators, legs, &code);
+    return code;
+}
+
+size_t hybrid_3crs_singularity_distance_batch(const prepared *model, size_t n, const real *X, real
+    *actuators, real *legs, int *status)
+{
+    size_t failed = 0;
+    for (size_t i = 0; i < n; ++i) {
+        const int code = hybrid_3crs_singularity_distance(model, X + NQ*i, actuators + i, legs + i);
+        failed += record(&code, 1, status ? status + i : NULL);
+    }
+    return failed;
+}
+
+int hybrid_3crs_forward_kinematics(const prepared *model, const real *q_actuated, const real *X0,
+    real *X)
 {
     int code;
     forward_kinematics_one(model, q_actuated, X0, X, &code);
     return code;
 }
 
-size_t hybrid_3crs_forward_kinematics_batch(const hybrid_3crs_model *model, size_t n, const
-    hybrid_3crs_real *q_actuated, const hybrid_3crs_real *X0, hybrid_3crs_real *X, int *status)
+size_t hybrid_3crs_forward_kinematics_batch(const prepared *model, size_t n, const real
+    *q_actuated, const real *X0, real *X, int *status)
 {
-    size_t failed = 0, i = 0;
-    for (; i < n; ++i) {
+    size_t failed = 0;
+    for (size_t i = 0; i < n; ++i) {
         const int code = hybrid_3crs_forward_kinematics(model, q_actuated + NU*i, X0 + NQ*i, X + NQ*i);
         failed += record(&code, 1, status ? status + i : NULL);
     }
     return failed;
 }
 
-int hybrid_3crs_dissipation(const hybrid_3crs_model *model, const hybrid_3crs_real *X, const
-    hybrid_3crs_real *V, hybrid_3crs_real *dissipation)
+int hybrid_3crs_dissipation(const prepared *model, const real *X, const real *V, real
+    *dissipation)
 {
     int code;
     (void)model;
@@ -7141,350 +5780,327 @@ int hybrid_3crs_dissipation(const hybrid_3crs_model *model, const hybrid_3crs_re
     return code;
 }
 
-size_t hybrid_3crs_dissipation_batch(const hybrid_3crs_model *model, size_t n, const
-    hybrid_3crs_real *X, const hybrid_3crs_real *V, hybrid_3crs_real *dissipation, int *status)
+size_t hybrid_3crs_dissipation_batch(const prepared *model, size_t n, const real *X, const real
+    *V, real *dissipation, int *status)
 {
-    size_t failed = 0, i = 0;
-    for (; i < n; ++i) {
+    size_t failed = 0;
+    for (size_t i = 0; i < n; ++i) {
         const int code = hybrid_3crs_dissipation(model, X + NQ*i, V + NV*i, dissipation + i);
         failed += record(&code, 1, status ? status + i : NULL);
     }
     return failed;
 }
 
-int hybrid_3crs_momentum(const hybrid_3crs_model *model, const hybrid_3crs_real *X, const
-    hybrid_3crs_real *V, hybrid_3crs_real *momentum)
+int hybrid_3crs_momentum(const prepared *model, const real *X, const real *V, real *momentum)
 {
     int code;
     momentum_one(model, X, V, momentum, &code);
     return code;
 }
 
-size_t hybrid_3crs_momentum_batch(const hybrid_3crs_model *model, size_t n, const hybrid_3crs_real
-    *X, const hybrid_3crs_real *V, hybrid_3crs_real *momentum, int *status)
+size_t hybrid_3crs_momentum_batch(const prepared *model, size_t n, const real *X, const real *V,
+    real *momentum, int *status)
 {
-    size_t failed = 0, i = 0;
-    for (; LANES > 1 && i + LANES <= n; i += LANES) {
-        int codes[LANES];
-        momentum_lanes(model, X + NQ*i, V + NV*i, momentum + NV*i, codes);
-        for (size_t k = 0; k < LANES; ++k) {
+    size_t failed = 0, w;
+    for (size_t i = 0; i < n; i += w) {
+        int codes[LANES] = {INVALID};
+        w = LANES > 1 && i + LANES <= n ? LANES : 1;
+        if (w > 1) {
+            momentum_lanes(model, X + NQ*i, V + NV*i, momentum + NV*i, codes);
+        }
+        for (size_t k = 0; k < w; ++k) {
             if (codes[k] != OK) {
                 codes[k] = hybrid_3crs_momentum(model, X + NQ*(i + k), V + NV*(i + k), momentum + NV*(i + k));
             }
         }
-        failed += record(codes, LANES, status ? status + i : NULL);
-    }
-    for (; i < n; ++i) {
-        const int code = hybrid_3crs_momentum(model, X + NQ*i, V + NV*i, momentum + NV*i);
-        failed += record(&code, 1, status ? status + i : NULL);
+        failed += record(codes, w, status ? status + i : NULL);
     }
     return failed;
 }
 
-int hybrid_3crs_joint_margins(const hybrid_3crs_model *model, const hybrid_3crs_real *X,
-    hybrid_3crs_real *margins)
+int hybrid_3crs_joint_margins(const prepared *model, const real *X, real *margins)
 {
     int code;
     joint_margins_one(model, X, margins, &code);
     return code;
 }
 
-size_t hybrid_3crs_joint_margins_batch(const hybrid_3crs_model *model, size_t n, const
-    hybrid_3crs_real *X, hybrid_3crs_real *margins, int *status)
+size_t hybrid_3crs_joint_margins_batch(const prepared *model, size_t n, const real *X, real
+    *margins, int *status)
 {
-    size_t failed = 0, i = 0;
-    for (; LANES > 1 && i + LANES <= n; i += LANES) {
-        int codes[LANES];
-        joint_margins_lanes(model, X + NQ*i, margins + NJ*i, codes);
-        for (size_t k = 0; k < LANES; ++k) {
+    size_t failed = 0, w;
+    for (size_t i = 0; i < n; i += w) {
+        int codes[LANES] = {INVALID};
+        w = LANES > 1 && i + LANES <= n ? LANES : 1;
+        if (w > 1) {
+            joint_margins_lanes(model, X + NQ*i, margins + NJ*i, codes);
+        }
+        for (size_t k = 0; k < w; ++k) {
             if (codes[k] != OK) {
                 codes[k] = hybrid_3crs_joint_margins(model, X + NQ*(i + k), margins + NJ*(i + k));
             }
         }
-        failed += record(codes, LANES, status ? status + i : NULL);
-    }
-    for (; i < n; ++i) {
-        const int code = hybrid_3crs_joint_margins(model, X + NQ*i, margins + NJ*i);
-        failed += record(&code, 1, status ? status + i : NULL);
+        failed += record(codes, w, status ? status + i : NULL);
     }
     return failed;
 }
 
-int hybrid_3crs_within_limits(const hybrid_3crs_model *model, const hybrid_3crs_real *X,
-    hybrid_3crs_real *within)
+int hybrid_3crs_within_limits(const prepared *model, const real *X, real *within)
 {
     int code;
     within_limits_one(model, X, within, &code);
     return code;
 }
 
-size_t hybrid_3crs_within_limits_batch(const hybrid_3crs_model *model, size_t n, const
-    hybrid_3crs_real *X, hybrid_3crs_real *within, int *status)
+size_t hybrid_3crs_within_limits_batch(const prepared *model, size_t n, const real *X, real
+    *within, int *status)
 {
-    size_t failed = 0, i = 0;
-    for (; LANES > 1 && i + LANES <= n; i += LANES) {
-        int codes[LANES];
-        within_limits_lanes(model, X + NQ*i, within + i, codes);
-        for (size_t k = 0; k < LANES; ++k) {
+    size_t failed = 0, w;
+    for (size_t i = 0; i < n; i += w) {
+        int codes[LANES] = {INVALID};
+        w = LANES > 1 && i + LANES <= n ? LANES : 1;
+        if (w > 1) {
+            within_limits_lanes(model, X + NQ*i, within + i, codes);
+        }
+        for (size_t k = 0; k < w; ++k) {
             if (codes[k] != OK) {
                 codes[k] = hybrid_3crs_within_limits(model, X + NQ*(i + k), within + (i + k));
             }
         }
-        failed += record(codes, LANES, status ? status + i : NULL);
-    }
-    for (; i < n; ++i) {
-        const int code = hybrid_3crs_within_limits(model, X + NQ*i, within + i);
-        failed += record(&code, 1, status ? status + i : NULL);
+        failed += record(codes, w, status ? status + i : NULL);
     }
     return failed;
 }
 
-int hybrid_3crs_actuator_positions(const hybrid_3crs_model *model, const hybrid_3crs_real *X,
-    hybrid_3crs_real *q)
+int hybrid_3crs_actuator_positions(const prepared *model, const real *X, real *q)
 {
     int code;
     actuator_positions_one(model, X, q, &code);
     return code;
 }
 
-size_t hybrid_3crs_actuator_positions_batch(const hybrid_3crs_model *model, size_t n, const
-    hybrid_3crs_real *X, hybrid_3crs_real *q, int *status)
+size_t hybrid_3crs_actuator_positions_batch(const prepared *model, size_t n, const real *X, real
+    *q, int *status)
 {
-    size_t failed = 0, i = 0;
-    for (; LANES > 1 && i + LANES <= n; i += LANES) {
-        int codes[LANES];
-        actuator_positions_lanes(model, X + NQ*i, q + NU*i, codes);
-        for (size_t k = 0; k < LANES; ++k) {
+    size_t failed = 0, w;
+    for (size_t i = 0; i < n; i += w) {
+        int codes[LANES] = {INVALID};
+        w = LANES > 1 && i + LANES <= n ? LANES : 1;
+        if (w > 1) {
+            actuator_positions_lanes(model, X + NQ*i, q + NU*i, codes);
+        }
+        for (size_t k = 0; k < w; ++k) {
             if (codes[k] != OK) {
                 codes[k] = hybrid_3crs_actuator_positions(model, X + NQ*(i + k), q + NU*(i + k));
             }
         }
-        failed += record(codes, LANES, status ? status + i : NULL);
-    }
-    for (; i < n; ++i) {
-        const int code = hybrid_3crs_actuator_positions(model, X + NQ*i, q + NU*i);
-        failed += record(&code, 1, status ? status + i : NULL);
+        failed += record(codes, w, status ? status + i : NULL);
     }
     return failed;
 }
 
-int hybrid_3crs_actuator_rates(const hybrid_3crs_model *model, const hybrid_3crs_real *X, const
-    hybrid_3crs_real *V, hybrid_3crs_real *rates)
+int hybrid_3crs_actuator_rates(const prepared *model, const real *X, const real *V, real *rates)
 {
     int code;
     actuator_rates_one(model, X, V, rates, &code);
     return code;
 }
 
-size_t hybrid_3crs_actuator_rates_batch(const hybrid_3crs_model *model, size_t n, const
-    hybrid_3crs_real *X, const hybrid_3crs_real *V, hybrid_3crs_real *rates, int *status)
+size_t hybrid_3crs_actuator_rates_batch(const prepared *model, size_t n, const real *X, const real
+    *V, real *rates, int *status)
 {
-    size_t failed = 0, i = 0;
-    for (; LANES > 1 && i + LANES <= n; i += LANES) {
-        int codes[LANES];
-        actuator_rates_lanes(model, X + NQ*i, V + NV*i, rates + NU*i, codes);
-        for (size_t k = 0; k < LANES; ++k) {
+    size_t failed = 0, w;
+    for (size_t i = 0; i < n; i += w) {
+        int codes[LANES] = {INVALID};
+        w = LANES > 1 && i + LANES <= n ? LANES : 1;
+        if (w > 1) {
+            actuator_rates_lanes(model, X + NQ*i, V + NV*i, rates + NU*i, codes);
+        }
+        for (size_t k = 0; k < w; ++k) {
             if (codes[k] != OK) {
                 codes[k] = hybrid_3crs_actuator_rates(model, X + NQ*(i + k), V + NV*(i + k), rates + NU*(i + k));
             }
         }
-        failed += record(codes, LANES, status ? status + i : NULL);
-    }
-    for (; i < n; ++i) {
-        const int code = hybrid_3crs_actuator_rates(model, X + NQ*i, V + NV*i, rates + NU*i);
-        failed += record(&code, 1, status ? status + i : NULL);
+        failed += record(codes, w, status ? status + i : NULL);
     }
     return failed;
 }
 
-int hybrid_3crs_actuator_accelerations(const hybrid_3crs_model *model, const hybrid_3crs_real *X,
-    const hybrid_3crs_real *V, const hybrid_3crs_real *A, hybrid_3crs_real *accelerations)
+int hybrid_3crs_actuator_accelerations(const prepared *model, const real *X, const real *V, const
+    real *A, real *accelerations)
 {
     int code;
     actuator_accelerations_one(model, X, V, A, accelerations, &code);
     return code;
 }
 
-size_t hybrid_3crs_actuator_accelerations_batch(const hybrid_3crs_model *model, size_t n, const
-    hybrid_3crs_real *X, const hybrid_3crs_real *V, const hybrid_3crs_real *A, hybrid_3crs_real
-    *accelerations, int *status)
+size_t hybrid_3crs_actuator_accelerations_batch(const prepared *model, size_t n, const real *X,
+    const real *V, const real *A, real *accelerations, int *status)
 {
-    size_t failed = 0, i = 0;
-    for (; LANES > 1 && i + LANES <= n; i += LANES) {
-        int codes[LANES];
-        actuator_accelerations_lanes(model, X + NQ*i, V + NV*i, A + NV*i, accelerations + NU*i, codes);
-        for (size_t k = 0; k < LANES; ++k) {
+    size_t failed = 0, w;
+    for (size_t i = 0; i < n; i += w) {
+        int codes[LANES] = {INVALID};
+        w = LANES > 1 && i + LANES <= n ? LANES : 1;
+        if (w > 1) {
+            actuator_accelerations_lanes(model, X + NQ*i, V + NV*i, A + NV*i, accelerations + NU*i, codes);
+        }
+        for (size_t k = 0; k < w; ++k) {
             if (codes[k] != OK) {
                 codes[k] = hybrid_3crs_actuator_accelerations(model, X + NQ*(i + k), V + NV*(i + k), A + NV*(i +
                     k), accelerations + NU*(i + k));
             }
         }
-        failed += record(codes, LANES, status ? status + i : NULL);
-    }
-    for (; i < n; ++i) {
-        const int code = hybrid_3crs_actuator_accelerations(model, X + NQ*i, V + NV*i, A + NV*i,
-            accelerations + NU*i);
-        failed += record(&code, 1, status ? status + i : NULL);
+        failed += record(codes, w, status ? status + i : NULL);
     }
     return failed;
 }
 
-int hybrid_3crs_power(const hybrid_3crs_model *model, const hybrid_3crs_real *X, const
-    hybrid_3crs_real *V, const hybrid_3crs_real *tau, hybrid_3crs_real *power)
+int hybrid_3crs_power(const prepared *model, const real *X, const real *V, const real *tau, real
+    *power)
 {
     int code;
     power_one(model, X, V, tau, power, &code);
     return code;
 }
 
-size_t hybrid_3crs_power_batch(const hybrid_3crs_model *model, size_t n, const hybrid_3crs_real
-    *X, const hybrid_3crs_real *V, const hybrid_3crs_real *tau, hybrid_3crs_real *power, int
-    *status)
+size_t hybrid_3crs_power_batch(const prepared *model, size_t n, const real *X, const real *V,
+    const real *tau, real *power, int *status)
 {
-    size_t failed = 0, i = 0;
-    for (; LANES > 1 && i + LANES <= n; i += LANES) {
-        int codes[LANES];
-        power_lanes(model, X + NQ*i, V + NV*i, tau + NU*i, power + i, codes);
-        for (size_t k = 0; k < LANES; ++k) {
+    size_t failed = 0, w;
+    for (size_t i = 0; i < n; i += w) {
+        int codes[LANES] = {INVALID};
+        w = LANES > 1 && i + LANES <= n ? LANES : 1;
+        if (w > 1) {
+            power_lanes(model, X + NQ*i, V + NV*i, tau + NU*i, power + i, codes);
+        }
+        for (size_t k = 0; k < w; ++k) {
             if (codes[k] != OK) {
                 codes[k] = hybrid_3crs_power(model, X + NQ*(i + k), V + NV*(i + k), tau + NU*(i + k), power + (i +
                     k));
             }
         }
-        failed += record(codes, LANES, status ? status + i : NULL);
-    }
-    for (; i < n; ++i) {
-        const int code = hybrid_3crs_power(model, X + NQ*i, V + NV*i, tau + NU*i, power + i);
-        failed += record(&code, 1, status ? status + i : NULL);
+        failed += record(codes, w, status ? status + i : NULL);
     }
     return failed;
 }
 
-int hybrid_3crs_rotation(const hybrid_3crs_real *X, hybrid_3crs_real *R)
+int hybrid_3crs_rotation(const real *X, real *R)
 {
     int code;
     rotation_one(X, R, &code);
     return code;
 }
 
-size_t hybrid_3crs_rotation_batch(size_t n, const hybrid_3crs_real *X, hybrid_3crs_real *R, int
-    *status)
+size_t hybrid_3crs_rotation_batch(size_t n, const real *X, real *R, int *status)
 {
-    size_t failed = 0, i = 0;
-    for (; i < n; ++i) {
+    size_t failed = 0;
+    for (size_t i = 0; i < n; ++i) {
         const int code = hybrid_3crs_rotation(X + NQ*i, R + 9*i);
         failed += record(&code, 1, status ? status + i : NULL);
     }
     return failed;
 }
 
-int hybrid_3crs_pose(const hybrid_3crs_real *t, const hybrid_3crs_real *R, hybrid_3crs_real *X)
+int hybrid_3crs_pose(const real *t, const real *R, real *X)
 {
     int code;
     pose_one(t, R, X, &code);
     return code;
 }
 
-size_t hybrid_3crs_pose_batch(size_t n, const hybrid_3crs_real *t, const hybrid_3crs_real *R,
-    hybrid_3crs_real *X, int *status)
+size_t hybrid_3crs_pose_batch(size_t n, const real *t, const real *R, real *X, int *status)
 {
-    size_t failed = 0, i = 0;
-    for (; i < n; ++i) {
+    size_t failed = 0;
+    for (size_t i = 0; i < n; ++i) {
         const int code = hybrid_3crs_pose(t + 3*i, R + 9*i, X + NQ*i);
         failed += record(&code, 1, status ? status + i : NULL);
     }
     return failed;
 }
 
-int hybrid_3crs_X_dot(const hybrid_3crs_real *X, const hybrid_3crs_real *V, hybrid_3crs_real
-    *X_dot)
+int hybrid_3crs_X_dot(const real *X, const real *V, real *X_dot)
 {
     int code;
     X_dot_one(X, V, X_dot, &code);
     return code;
 }
 
-size_t hybrid_3crs_X_dot_batch(size_t n, const hybrid_3crs_real *X, const hybrid_3crs_real *V,
-    hybrid_3crs_real *X_dot, int *status)
+size_t hybrid_3crs_X_dot_batch(size_t n, const real *X, const real *V, real *X_dot, int *status)
 {
-    size_t failed = 0, i = 0;
-    for (; i < n; ++i) {
+    size_t failed = 0;
+    for (size_t i = 0; i < n; ++i) {
         const int code = hybrid_3crs_X_dot(X + NQ*i, V + NV*i, X_dot + NQ*i);
         failed += record(&code, 1, status ? status + i : NULL);
     }
     return failed;
 }
 
-int hybrid_3crs_pose_from_rpy(const hybrid_3crs_real *t, const hybrid_3crs_real *rpy,
-    hybrid_3crs_real *X)
+int hybrid_3crs_pose_from_rpy(const real *t, const real *rpy, real *X)
 {
     int code;
     pose_from_rpy_one(t, rpy, X, &code);
     return code;
 }
 
-size_t hybrid_3crs_pose_from_rpy_batch(size_t n, const hybrid_3crs_real *t, const hybrid_3crs_real
-    *rpy, hybrid_3crs_real *X, int *status)
+size_t hybrid_3crs_pose_from_rpy_batch(size_t n, const real *t, const real *rpy, real *X, int
+    *status)
 {
-    size_t failed = 0, i = 0;
-    for (; i < n; ++i) {
+    size_t failed = 0;
+    for (size_t i = 0; i < n; ++i) {
         const int code = hybrid_3crs_pose_from_rpy(t + 3*i, rpy + 3*i, X + NQ*i);
         failed += record(&code, 1, status ? status + i : NULL);
     }
     return failed;
 }
 
-int hybrid_3crs_retract(const hybrid_3crs_real *X, const hybrid_3crs_real *step, hybrid_3crs_real
-    *X_moved)
+int hybrid_3crs_retract(const real *X, const real *step, real *X_moved)
 {
     int code;
     retract_one(X, step, X_moved, &code);
     return code;
 }
 
-size_t hybrid_3crs_retract_batch(size_t n, const hybrid_3crs_real *X, const hybrid_3crs_real
-    *step, hybrid_3crs_real *X_moved, int *status)
+size_t hybrid_3crs_retract_batch(size_t n, const real *X, const real *step, real *X_moved, int
+    *status)
 {
-    size_t failed = 0, i = 0;
-    for (; i < n; ++i) {
+    size_t failed = 0;
+    for (size_t i = 0; i < n; ++i) {
         const int code = hybrid_3crs_retract(X + NQ*i, step + NV*i, X_moved + NQ*i);
         failed += record(&code, 1, status ? status + i : NULL);
     }
     return failed;
 }
 
-int hybrid_3crs_difference(const hybrid_3crs_real *X0, const hybrid_3crs_real *X1,
-    hybrid_3crs_real *step)
+int hybrid_3crs_difference(const real *X0, const real *X1, real *step)
 {
     int code;
     difference_one(X0, X1, step, &code);
     return code;
 }
 
-size_t hybrid_3crs_difference_batch(size_t n, const hybrid_3crs_real *X0, const hybrid_3crs_real
-    *X1, hybrid_3crs_real *step, int *status)
+size_t hybrid_3crs_difference_batch(size_t n, const real *X0, const real *X1, real *step, int
+    *status)
 {
-    size_t failed = 0, i = 0;
-    for (; i < n; ++i) {
+    size_t failed = 0;
+    for (size_t i = 0; i < n; ++i) {
         const int code = hybrid_3crs_difference(X0 + NQ*i, X1 + NQ*i, step + NV*i);
         failed += record(&code, 1, status ? status + i : NULL);
     }
     return failed;
 }
 
-int hybrid_3crs_interpolate(const hybrid_3crs_real *X0, const hybrid_3crs_real *X1, const
-    hybrid_3crs_real *s, hybrid_3crs_real *X)
+int hybrid_3crs_interpolate(const real *X0, const real *X1, const real *s, real *X)
 {
     int code;
     interpolate_one(X0, X1, s, X, &code);
     return code;
 }
 
-size_t hybrid_3crs_interpolate_batch(size_t n, const hybrid_3crs_real *X0, const hybrid_3crs_real
-    *X1, const hybrid_3crs_real *s, hybrid_3crs_real *X, int *status)
+size_t hybrid_3crs_interpolate_batch(size_t n, const real *X0, const real *X1, const real *s, real
+    *X, int *status)
 {
-    size_t failed = 0, i = 0;
-    for (; i < n; ++i) {
+    size_t failed = 0;
+    for (size_t i = 0; i < n; ++i) {
         const int code = hybrid_3crs_interpolate(X0 + NQ*i, X1 + NQ*i, s + i, X + NQ*i);
         failed += record(&code, 1, status ? status + i : NULL);
     }

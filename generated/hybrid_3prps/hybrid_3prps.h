@@ -243,6 +243,22 @@ int hybrid_3prps_condition(const hybrid_3prps_model *model, const hybrid_3prps_r
 size_t hybrid_3prps_condition_batch(const hybrid_3prps_model *model, size_t n, const
     hybrid_3prps_real *X, hybrid_3prps_real *sigma, hybrid_3prps_real *legs, int *status);
 
+/* Manipulability of forces: the product of the singular values that condition has by default, and
+   the least over the largest of them. 130 mul, 99 add, 3 div, 7 sqrt, 0 trig; the singular values
+   apart. In: X (NQ). Out: measure (1), isotropy (1). */
+int hybrid_3prps_manipulability(const hybrid_3prps_model *model, const hybrid_3prps_real *X,
+    hybrid_3prps_real *measure, hybrid_3prps_real *isotropy);
+size_t hybrid_3prps_manipulability_batch(const hybrid_3prps_model *model, size_t n, const
+    hybrid_3prps_real *X, hybrid_3prps_real *measure, hybrid_3prps_real *isotropy, int *status);
+
+/* How near actuators and legs are to being singular: relative distances, 0 where they are. 130
+   mul, 99 add, 3 div, 7 sqrt, 0 trig; the singular values apart. In: X (NQ). Out: actuators (1),
+   legs (1). */
+int hybrid_3prps_singularity_distance(const hybrid_3prps_model *model, const hybrid_3prps_real *X,
+    hybrid_3prps_real *actuators, hybrid_3prps_real *legs);
+size_t hybrid_3prps_singularity_distance_batch(const hybrid_3prps_model *model, size_t n, const
+    hybrid_3prps_real *X, hybrid_3prps_real *actuators, hybrid_3prps_real *legs, int *status);
+
 /* X at which the actuated joints stand at q_actuated, by Gauss-Newton from X0. Extra coordinates
    that actuators do not determine stay. Impossible where no pose is found. In: q_actuated (NU),
    X0 (NQ). Out: X (NQ). */

@@ -61,6 +61,7 @@ __all__ = [
     "joint_margins",
     "joint_rates",
     "leg_reactions",
+    "manipulability",
     "momentum",
     "null_space",
     "pose",
@@ -68,6 +69,7 @@ __all__ = [
     "power",
     "retract",
     "rotation",
+    "singularity_distance",
     "within_limits",
 ]
 
@@ -851,6 +853,24 @@ def _constants(p, name):
     return p._cache[name]
 
 
+class _Vector(list):
+    """A vector, or a matrix row by row, of a single state."""
+
+    def __add__(self, other):
+        return _Vector([a + b for a, b in zip(self, other)])
+
+    def __sub__(self, other):
+        return _Vector([a - b for a, b in zip(self, other)])
+
+    def __neg__(self):
+        return _Vector([-a for a in self])
+
+
+def _are_finite(rows):
+    """Whether lists of floats have finite entries alone."""
+    return math.isfinite(sum(map(sum, rows))) or all(all(map(math.isfinite, row)) for row in rows)
+
+
 class _Floats:
     """Functions of a state after another, in Python floats: the way for few states."""
 
@@ -880,11 +900,32 @@ class _Floats:
         """Lists that a function gives at a state."""
         try:
             ok, arrays = function(self, *given)
-        except (ZeroDivisionError, OverflowError, ValueError):
+        except (ArithmeticError, ValueError):
             ok = False
-        if ok and all(all(map(math.isfinite, array)) for array in arrays):
+        if ok and _are_finite(arrays):
             return arrays
         return [[np.nan] * math.prod(_SHAPES[n]) for n in names]
+
+    def solved(self, order, a, b):
+        """Solutions, straight through; and which are beyond doubt."""
+        sure, x = np.zeros(self.states, dtype=bool), np.full(b.shape, np.nan)
+        for k, given in enumerate(zip(a.T.tolist(), b.T.tolist())):
+            try:
+                sure[k], (x[:, k],) = order(self, *given)
+            except ZeroDivisionError:
+                pass
+        return sure, x
+
+
+class _Single(_Floats):
+    """A single state in lists of floats throughout."""
+
+    def run(self, function, names, *vectors):
+        """Arrays of a function, row by row; ArithmeticError or ValueError where the state is impossible."""
+        ok, arrays = function(self, *vectors)
+        if not (ok and _are_finite(arrays)):
+            raise ArithmeticError
+        return [_Vector(a) for a in arrays]
 
 
 class _Arrays:
@@ -914,20 +955,27 @@ class _Arrays:
     def zeros(self, name):
         return np.zeros((math.prod(_SHAPES[name]), self.states))
 
-    def computed(self, function, names, vectors):
-        """Flags and arrays (*shape, states) of a function."""
+    def computed(self, function, *vectors):
+        """Flags and arrays (entries, states) of a function."""
         if self.kept is None:
-            flags, arrays = function(self, *vectors)
-        else:
-            if self.done not in self.kept:
-                self.kept[self.done] = _Replay(self.p, function, [len(v) for v in vectors], self.states)
-            flags, arrays = self.kept[self.done].run(vectors)
-            self.done += 1
-        return flags, [a.reshape(*_SHAPES[n], self.states) for a, n in zip(arrays, names)]
+            return function(self, *vectors)
+        if self.done not in self.kept:
+            self.kept[self.done] = _Replay(self.p, function, [len(v) for v in vectors], self.states)
+        self.done += 1
+        return self.kept[self.done - 1].run(vectors)
+
+    def shaped(self, names, arrays):
+        return [a.reshape(*_SHAPES[n], self.states) for a, n in zip(arrays, names)]
+
+    def solved(self, order, a, b):
+        """Solutions, straight through; and which are beyond doubt."""
+        sure, (x,) = self.computed(order, a, b)
+        return sure, np.array(x)
 
     def run(self, function, names, *vectors):
         """Arrays (*shape, states) of a function; NaN where the state is impossible."""
-        ok, arrays = self.computed(function, names, vectors)
+        ok, arrays = self.computed(function, *vectors)
+        arrays = self.shaped(names, arrays)
         ok = np.logical_and(ok, _finite(arrays, self.states))
         if not np.all(ok):
             for a in arrays:
@@ -944,10 +992,10 @@ class _Judged(_Arrays):
 
     def run(self, function, names, *vectors):
         """Arrays (*shape, states) of a function, also where they are nonsense."""
-        (valid, reached, clear), arrays = self.computed(function, names, vectors)
+        (valid, reached, clear), arrays = self.computed(function, *vectors)
         for code, good in ((3, valid), (1, reached), (2, clear)):
             self.failed[code] |= np.logical_not(good)
-        return arrays
+        return self.shaped(names, arrays)
 
     def closed(self, q):
         """q, noting where the iteration has not converged."""
@@ -959,26 +1007,90 @@ class _Judged(_Arrays):
         return np.select(list(self.failed.values()), list(self.failed), np.where(possible, 0, 3))
 
 
+_IN_ONE = {}  # by function
+
+
+def _in_one(function):
+    """A function that tells whether a state is possible, of one that tells why not."""
+
+    def run(m, *vectors):
+        (valid, reached, clear), arrays = function(m, *vectors)
+        return valid & reached & clear, arrays
+
+    return _IN_ONE.setdefault(function, run)
+
+
 def _mode(p, states, kept=None):
     """The faster way for so many states."""
     return (_Floats if 0 < states <= _FEW else _Arrays)(p, states, kept)
 
 
-def _call(function, steps, p, *arguments, mode=_mode, unbounded=False):
+def _call(function, steps, p, *arguments, mode=_mode, unbounded=False, plain=()):
     """What the steps give at arguments (name, value, shape of a state, default, rule).
 
-    Where that may be infinite only NaN makes a state impossible.
+    Where that may be infinite only NaN makes a state impossible.  `plain` has the shapes of results
+    where a single state needs no arrays.
     """
+    p, read = _given(p), [a[-1] != "unused" for a in arguments]
+    lists = plain and _lists(arguments)
+    if lists:
+        found = _state(_Single(p, 1), steps, lists, read)
+        results = [_result(a, shape) for a, shape in zip(found or plain, plain)]
+        return results[0] if len(results) == 1 else tuple(results)
     given = [_argument(function, *a) for a in arguments]
     shapes = [a[2] for a in arguments]
     leads = {a[0]: v.shape[: v.ndim - len(a[2])] for a, v in zip(arguments, given)}
-    lead, p = _lead(leads), _given(p)
-    read = [a[4:] != ("unused",) for a in arguments]
-    if lead or mode is _Judged:
+    lead = _lead(leads)
+    if plain and 0 < math.prod(lead) <= _FEW:
+        results = _few(steps, p, lead, given, shapes, read, plain)
+    elif lead or mode is _Judged:
         results = _many(steps, p, lead, given, shapes, read, mode, unbounded)
     else:
         results = _one(steps, p, given, shapes, read, unbounded)
     return results[0] if len(results) == 1 else tuple(results)
+
+
+def _lists(arguments):
+    """Arguments of a single state as lists, where they are such arrays as they mostly are."""
+    found = []
+    for row in arguments:
+        value, shape = row[1:3]
+        if type(value) is np.ndarray:
+            if value.shape != shape or value.dtype is not _REAL or row[-1] == "positive":
+                return None
+            found.append(_Vector(value.tolist()))
+        elif value is None and len(row) > 3 and row[3] is not None:
+            found.append(_Vector(row[3] if isinstance(row[3], tuple) else [row[3]] * shape[0]))
+        else:
+            return None
+    return found
+
+
+def _state(m, steps, given, read):
+    """Lists that the steps give at a state; None where it is impossible."""
+    try:
+        found = steps(m, *given)
+    except (ArithmeticError, ValueError):
+        return None
+    return found if _are_finite(list(compress(given, read))) and _are_finite(found) else None
+
+
+def _result(found, shape):
+    """The array of a list; of an impossible state, for which its shape is given, NaN."""
+    if found is shape:
+        return np.full(shape, np.nan)
+    return np.array(found) if len(shape) == 1 else np.array(found).reshape(shape)
+
+
+def _few(steps, p, lead, given, shapes, read, plain):
+    """Results at a few states, one after another."""
+    m, rows = _Single(p, 1), []
+    for v, shape in zip(given, shapes):
+        flat = np.broadcast_to(v, lead + shape).reshape(math.prod(lead), -1)
+        rows.append(map(_Vector, flat.tolist()))
+    impossible = [[np.nan] * math.prod(shape) for shape in plain]
+    found = [_state(m, steps, state, read) or impossible for state in zip(*rows)]
+    return [np.array(a).reshape(lead + shape) for a, shape in zip(zip(*found), plain)]
 
 
 def _one(steps, p, given, shapes, read, unbounded):
@@ -997,7 +1109,11 @@ def _many(steps, p, lead, given, shapes, read, mode, unbounded):
     """Results at many states, block by block; the last block begins where it is as long as the others."""
     count = math.prod(lead)
     size, kept = min(count, _BLOCK), {} if count >= _MANY else None
-    flat = [np.broadcast_to(v, lead + s).reshape(count, *s) for v, s in zip(given, shapes)]
+    # one value for all states stands for itself
+    flat = [
+        np.broadcast_to(v, lead + s).reshape(count, *s) if v.ndim > len(s) else v
+        for v, s in zip(given, shapes)
+    ]
     possible, status, outputs = np.ones(count, dtype=bool), np.zeros(count, dtype=int), []
     if count > size:
         # Never touched, freed at once: the C library, which learns from it, then keeps the memory
@@ -1006,7 +1122,7 @@ def _many(steps, p, lead, given, shapes, read, mode, unbounded):
     with np.errstate(all="ignore"):
         for stop in (*range(size, count, max(size, 1)), count):
             block = slice(stop - size, stop)
-            states = [_states_last(v[block]) for v in flat]
+            states = [_states_last(v, s, block) for v, s in zip(flat, shapes)]
             m, good = mode(p, size, kept), possible[block]
             found = steps(m, *states)
             if not outputs:
@@ -1026,15 +1142,17 @@ def _many(steps, p, lead, given, shapes, read, mode, unbounded):
     return [a.reshape(lead + a.shape[1:])[()] for a in outputs]
 
 
-def _states_last(a):
-    """A contiguous array (*shape, states) of one (states, *shape)."""
-    return np.ascontiguousarray(a.transpose(*range(1, a.ndim), 0))
+def _states_last(a, shape, block):
+    """An array (*shape, states) of a block of one (states, *shape), or of a value for all."""
+    if a.ndim == len(shape):
+        return np.broadcast_to(a[..., None], (*shape, block.stop - block.start))
+    return np.ascontiguousarray(a[block].transpose(*range(1, a.ndim), 0))
 
 
 def _finite(arrays, states):
     """In which states all entries of arrays (*shape, states) are finite."""
     flat = [a.reshape(math.prod(a.shape[:-1]), states) for a in arrays]
-    good = np.isfinite(sum(np.add.reduce(a, axis=0) for a in flat))
+    good = np.isfinite(sum(np.einsum("es->s", a) for a in flat))
     if not np.all(good):  # or the sum is too large
         good = np.logical_and.reduce([np.isfinite(a).all(axis=0) for a in flat])
     return good
@@ -1143,6 +1261,8 @@ class _Record:
 
     def made(self, operation, *operands):
         """The result of an operation."""
+        if operation in _WITHOUT and operands[0] is _WITHOUT[operation]:
+            return operands[1]
         numbers = [self.number(operand) for operand in operands]
         if all(self.kinds[n] == "one" for n in numbers):
             kind = "one"
@@ -1179,6 +1299,7 @@ class _Record:
         return counts
 
 
+_WITHOUT = {np.logical_and: True}  # first operands that change nothing
 _OF_FLAGS = {np.logical_and, np.greater, np.greater_equal}
 _RECORDS = {}  # by function
 
@@ -1190,11 +1311,12 @@ class _Replay:
         if function not in _RECORDS:
             _RECORDS[function] = _Record(p, function, sizes)
         r = _RECORDS[function]
-        made = {kind: _rows(n, states, bool if kind == "flag" else float) for kind, n in r.counts.items()}
-        made["one"] = [np.empty(()) for _ in range(r.counts["one"])]
-        made["out"] = _rows(sum(r.sizes), states)
-        self.inputs = [_rows(size, states) for size in sizes]
-        self.arrays = np.split(made["out"], np.cumsum(r.sizes)[:-1])
+        rows = _rows(r.counts["state"] + sum(r.sizes) + sum(sizes), states)
+        given, out, state = np.split(rows, np.cumsum((sum(sizes), sum(r.sizes))))
+        made = {"state": state, "out": out, "one": [np.empty(()) for _ in range(r.counts["one"])]}
+        made["flag"] = np.empty((r.counts["flag"], states), dtype=bool)
+        self.inputs = np.split(given, np.cumsum(sizes)[:-1])
+        self.arrays = np.split(out, np.cumsum(r.sizes)[:-1])
         at = {number: np.array(value) for value, number in r.literals.items()}
         for values, given in zip(r.inputs, self.inputs):
             at |= {v.number: row for v, row in zip(values, given)}
@@ -1216,9 +1338,26 @@ class _Replay:
         return self.flags, self.arrays
 
 
-def _rows(count, states, kind=float):
-    """Rows of so many states, a cache line apart from each other."""
-    return np.empty((count, states + 8), dtype=kind)[:, :states]
+def _rows(count, states):
+    """Rows of so many states in one piece, which the system keeps in a few large pages if it is told.
+
+    NumPy tells it of pieces from 4 MB on.  It makes operations a third faster.
+    """
+    row = states + 8  # a cache line further: rows do not compete for the same places of the cache
+    piece = np.empty(max(count * row, 2 * _PAGE) + _PAGE)
+    start = -(piece.ctypes.data // piece.itemsize) % _PAGE
+    return piece[start : start + count * row].reshape(count, row)[:, :states]
+
+
+_PAGE = (2 << 20) // 8  # numbers in a large page
+
+
+def _times(a, b):
+    """Products of matrices (m, n, states) with vectors (n, states)."""
+    if isinstance(b, _Vector):
+        rows = (a[k : k + len(b)] for k in range(0, len(a), len(b)))
+        return _Vector([sum([x * y for x, y in zip(row, b)]) for row in rows])
+    return np.einsum("ijs,js->is", a, b)
 
 
 def _with_forces(a, amounts, directions, legs):
@@ -1339,8 +1478,10 @@ _CLEARLY = 2.0  # rows change places only for a pivot that is larger by this fac
 
 def _solve(a, b):
     """x with a x = b, a (n, n, states), b (n, states): rows scaled, partial pivoting; NaN if singular."""
+    if isinstance(b, _Vector):
+        return _Vector(_solve_one([a[k : k + len(b)] for k in range(0, len(a), len(b))], b))
     n, states = b.shape
-    if 0 < states <= _FEW:
+    if 0 < states <= 8:
         systems = zip(a.transpose(2, 0, 1).tolist(), b.T.tolist())
         return np.array([_solve_one(*each) for each in systems]).T.reshape(n, states)
     size = np.max(np.abs(a), axis=1, initial=0.0)
@@ -1365,6 +1506,38 @@ def _solve(a, b):
         known = np.einsum("js,js->s", rows[k, k + 1 : n], x[k + 1 :])
         x[k] = (rows[k, n] - known) / rows[k, k]
     x[:, ~(good & np.isfinite(x).all(axis=0))] = np.nan
+    return x
+
+
+class _Order:
+    """How a system is solved near home.
+
+    Args:
+        solve: the function for so many equations.
+        rows: in the order of their pivots.
+        limits: of multiples, column by column, and of 1/pivot.
+    """
+
+    def __init__(self, solve, rows, limits):
+        self.solve, self.rows, self.limits = solve, rows, limits
+
+    def __call__(self, m, a, b):
+        """Solutions of a x = b, and whether these are beyond doubt."""
+        return self.solve(a, b, self.rows, self.limits)
+
+
+def _straight(m, a, b, order):
+    """The same, in the order of rows at home; with a choice of rows only where that is in doubt."""
+    if isinstance(b, _Vector):
+        try:
+            sure, (x,) = order(m, a, b)
+        except ZeroDivisionError:
+            sure = False
+        return _Vector(x) if sure else _solve(a, b)
+    sure, x = m.solved(order, a.reshape(-1, m.states), b)
+    at = np.flatnonzero(np.logical_not(sure))
+    if at.size:
+        x[:, at] = _solve(a[..., at], b[:, at])
     return x
 
 
@@ -1421,6 +1594,16 @@ def _singular_values(a):
     values = np.linalg.svd(a, compute_uv=False).T.copy()
     values[:, bad] = np.nan
     return values
+
+
+def _least_entry(a):
+    """The least entry."""
+    return np.min(a, axis=0)
+
+
+def _spread(a, n):
+    """Of the first n entries the product, and the last over the first, 0 where that is 0."""
+    return np.prod(a[:n], axis=0), np.where(a[0] == 0.0, 0.0, a[n - 1] / a[0])
 
 
 def _least_squares(a, b, least):
@@ -1664,15 +1847,14 @@ def _run_dynamics(m, X, V):
         prps_S_in_axes0_y = (
         prps_S_x*prps_base_frame_xy + prps_S_y*prps_base_frame_yy + prps_S_z*prps_base_frame_zy
         )
-        # (prps-rho2_2) squared amplitude
-        prps_rho2_2 = prps_S_in_axes0_x*prps_S_in_axes0_x + prps_S_in_axes0_y*prps_S_in_axes0_y
-        # (prps-root_2) amplitude, with the sign of the branch
-        prps_root_2 = prps_branch_2*sqrt(prps_rho2_2)
+        # (prps-q_3) displacement of joint 3
+        prps_q_3_t = prps_S_in_axes0_x*prps_S_in_axes0_x + prps_S_in_axes0_y*prps_S_in_axes0_y
+        prps_q_3 = prps_branch_2*sqrt(prps_q_3_t)
         # (prps-c_2) cosine of the angle of joint 2 from its reference direction
-        inv_prps_root_2 = 1.0/prps_root_2
-        prps_c_2 = inv_prps_root_2*prps_S_in_axes0_x
+        inv_prps_q_3 = 1.0/prps_q_3
+        prps_c_2 = inv_prps_q_3*prps_S_in_axes0_x
         # (prps-s_2) sine of the angle of joint 2 from its reference direction
-        prps_s_2 = inv_prps_root_2*prps_S_in_axes0_y
+        prps_s_2 = inv_prps_q_3*prps_S_in_axes0_y
         # (prps-S_dot) velocity of the connection point
         axis_x_prps_axes2_x = prps_base_frame_xx*prps_c_2 + prps_base_frame_xy*prps_s_2
         axis_x_prps_axes2_y = prps_base_frame_yx*prps_c_2 + prps_base_frame_yy*prps_s_2
@@ -1692,7 +1874,7 @@ def _run_dynamics(m, X, V):
         axis_y_prps_axes2_y = prps_base_frame_yy*prps_c_2 - prps_base_frame_yx*prps_s_2
         axis_y_prps_axes2_z = prps_base_frame_zy*prps_c_2 - prps_base_frame_zx*prps_s_2
         prps_qd_2 = (
-        inv_prps_root_2*(axis_y_prps_axes2_x*prps_S_dot_x + axis_y_prps_axes2_y*prps_S_dot_y +
+        inv_prps_q_3*(axis_y_prps_axes2_x*prps_S_dot_x + axis_y_prps_axes2_y*prps_S_dot_y +
             axis_y_prps_axes2_z*prps_S_dot_z)
         )
         # (prps-W_2) centripetal tensor of link 2
@@ -1708,7 +1890,7 @@ def _run_dynamics(m, X, V):
         # (prps-rel_o) remainder without the acceleration in: acceleration of the connection point left to the joint accelerations
         prps_rel_o_in_axes2_y = prps_u_1_in_axes2_y - 2.0*prps_S_dot_in_axes2_x*prps_qd_2
         # (prps-qdd_2_o) remainder without the acceleration in: acceleration of joint 2
-        prps_qdd_2_o = inv_prps_root_2*prps_rel_o_in_axes2_y
+        prps_qdd_2_o = inv_prps_q_3*prps_rel_o_in_axes2_y
         # (prps-acc_1_o) remainder without the acceleration in: acceleration of the reference point of link 1, less gravity
         prps_acc_1_o_in_axes0_z = (
         prps_base_frame_xz*prps_u_1_x + prps_base_frame_yz*prps_u_1_y +
@@ -1733,19 +1915,19 @@ def _run_dynamics(m, X, V):
             prps_g_in_axes2_y*prps_h_2_in_spec2_x
         )
         # (prps-d_Gamma_2) coefficient of the acceleration in: moment about axis 2 of the distal links' inertia and weight
-        prps_d_Gamma_2_in_axes2_y = prps_h_3_in_spec2_x + inv_prps_root_2*prps_Jc_2_in_axes2_zz
+        prps_d_Gamma_2_in_axes2_y = prps_h_3_in_spec2_x + inv_prps_q_3*prps_Jc_2_in_axes2_zz
         # (prps-T_1_o) remainder without the acceleration in: inertia force of the links from 1 outwards, the last link left out
         prps_T_1_o_in_axes0_z = (
         prps_acc_1_o_in_axes0_z*prps_link1_mass + prps_acc_1_o_in_axes0_z*prps_link2_mass
         )
         # (prps-d_c) coefficient of the acceleration in: leg force on the platform without actuation and without the mass at the connection point
-        prps_d_c_in_axes2_xy = inv_prps_root_2*prps_h_3_in_spec2_y
+        prps_d_c_in_axes2_xy = inv_prps_q_3*prps_h_3_in_spec2_y
         prps_d_c_in_axes2_yy = (
-        -inv_prps_root_2*prps_d_Gamma_2_in_axes2_y - inv_prps_root_2*prps_h_3_in_spec2_x
+        -inv_prps_q_3*prps_d_Gamma_2_in_axes2_y - inv_prps_q_3*prps_h_3_in_spec2_x
         )
         # (prps-c_o) remainder without the acceleration in: leg force on the platform without actuation and without the mass at the connection point
         prps_c_o_in_axes2_y = (
-        -inv_prps_root_2*prps_mu_2_o_in_axes2_z - prps_W_2_in_axes2_xx*prps_h_3_in_spec2_y -
+        -inv_prps_q_3*prps_mu_2_o_in_axes2_z - prps_W_2_in_axes2_xx*prps_h_3_in_spec2_y -
             prps_h_3_in_spec2_x*prps_qdd_2_o
         )
         # (prps-Q) inertia of the leg at the connection point, without the mass gathered there
@@ -1815,8 +1997,8 @@ def _run_dynamics(m, X, V):
         prps_H_a_3_y = axis_x_prps_axes2_x*prps_q_z - axis_x_prps_axes2_z*prps_q_x
         prps_H_a_3_z = axis_x_prps_axes2_y*prps_q_x - axis_x_prps_axes2_x*prps_q_y
         ok = (
-        ok & (abs(prps_rho2_2) > _TOLERANCE * _TOLERANCE * 0.5625) & (abs(prps_root_2) >
-            _TOLERANCE * 0.75)
+        ok & (abs(prps_q_3_t) > _TOLERANCE * _TOLERANCE * 0.5625) & (abs(prps_q_3) > _TOLERANCE *
+            0.75)
         )
         # (M_tt) translational block of M
         M_tt_prps_xx += prps_Q_xx
@@ -2041,21 +2223,20 @@ def _run_M(m, X):
         prps_S_in_axes0_y = (
         prps_S_x*prps_base_frame_xy + prps_S_y*prps_base_frame_yy + prps_S_z*prps_base_frame_zy
         )
-        # (prps-rho2_2) squared amplitude
-        prps_rho2_2 = prps_S_in_axes0_x*prps_S_in_axes0_x + prps_S_in_axes0_y*prps_S_in_axes0_y
-        # (prps-root_2) amplitude, with the sign of the branch
-        prps_root_2 = prps_branch_2*sqrt(prps_rho2_2)
+        # (prps-q_3) displacement of joint 3
+        prps_q_3_t = prps_S_in_axes0_x*prps_S_in_axes0_x + prps_S_in_axes0_y*prps_S_in_axes0_y
+        prps_q_3 = prps_branch_2*sqrt(prps_q_3_t)
         # (prps-c_2) cosine of the angle of joint 2 from its reference direction
-        inv_prps_root_2 = 1.0/prps_root_2
-        prps_c_2 = inv_prps_root_2*prps_S_in_axes0_x
+        inv_prps_q_3 = 1.0/prps_q_3
+        prps_c_2 = inv_prps_q_3*prps_S_in_axes0_x
         # (prps-s_2) sine of the angle of joint 2 from its reference direction
-        prps_s_2 = inv_prps_root_2*prps_S_in_axes0_y
+        prps_s_2 = inv_prps_q_3*prps_S_in_axes0_y
         # (prps-d_Gamma_2) coefficient of the acceleration in: moment about axis 2 of the distal links' inertia and weight
-        prps_d_Gamma_2_in_axes2_y = prps_h_3_in_spec2_x + inv_prps_root_2*prps_Jc_2_in_axes2_zz
+        prps_d_Gamma_2_in_axes2_y = prps_h_3_in_spec2_x + inv_prps_q_3*prps_Jc_2_in_axes2_zz
         # (prps-d_c) coefficient of the acceleration in: leg force on the platform without actuation and without the mass at the connection point
-        prps_d_c_in_axes2_xy = inv_prps_root_2*prps_h_3_in_spec2_y
+        prps_d_c_in_axes2_xy = inv_prps_q_3*prps_h_3_in_spec2_y
         prps_d_c_in_axes2_yy = (
-        -inv_prps_root_2*prps_d_Gamma_2_in_axes2_y - inv_prps_root_2*prps_h_3_in_spec2_x
+        -inv_prps_q_3*prps_d_Gamma_2_in_axes2_y - inv_prps_q_3*prps_h_3_in_spec2_x
         )
         # (prps-Q) inertia of the leg at the connection point, without the mass gathered there
         axis_y_prps_axes2_x = prps_base_frame_xy*prps_c_2 - prps_base_frame_xx*prps_s_2
@@ -2111,8 +2292,8 @@ def _run_M(m, X):
         prps_M_aa_t_5 = prps_M_ta_t_5*prps_q_z - prps_M_ta_t_12*prps_q_x
         prps_M_aa_t_6 = prps_M_ta_t_9*prps_q_x - prps_M_ta_t_5*prps_q_y
         ok = (
-        ok & (abs(prps_rho2_2) > _TOLERANCE * _TOLERANCE * 0.5625) & (abs(prps_root_2) >
-            _TOLERANCE * 0.75)
+        ok & (abs(prps_q_3_t) > _TOLERANCE * _TOLERANCE * 0.5625) & (abs(prps_q_3) > _TOLERANCE *
+            0.75)
         )
         # (M_tt) translational block of M
         M_tt_prps_xx += prps_Q_xx
@@ -2332,15 +2513,14 @@ def _run_Z(m, X, V):
         prps_S_in_axes0_y = (
         prps_S_x*prps_base_frame_xy + prps_S_y*prps_base_frame_yy + prps_S_z*prps_base_frame_zy
         )
-        # (prps-rho2_2) squared amplitude
-        prps_rho2_2 = prps_S_in_axes0_x*prps_S_in_axes0_x + prps_S_in_axes0_y*prps_S_in_axes0_y
-        # (prps-root_2) amplitude, with the sign of the branch
-        prps_root_2 = prps_branch_2*sqrt(prps_rho2_2)
+        # (prps-q_3) displacement of joint 3
+        prps_q_3_t = prps_S_in_axes0_x*prps_S_in_axes0_x + prps_S_in_axes0_y*prps_S_in_axes0_y
+        prps_q_3 = prps_branch_2*sqrt(prps_q_3_t)
         # (prps-c_2) cosine of the angle of joint 2 from its reference direction
-        inv_prps_root_2 = 1.0/prps_root_2
-        prps_c_2 = inv_prps_root_2*prps_S_in_axes0_x
+        inv_prps_q_3 = 1.0/prps_q_3
+        prps_c_2 = inv_prps_q_3*prps_S_in_axes0_x
         # (prps-s_2) sine of the angle of joint 2 from its reference direction
-        prps_s_2 = inv_prps_root_2*prps_S_in_axes0_y
+        prps_s_2 = inv_prps_q_3*prps_S_in_axes0_y
         # (prps-S_dot) velocity of the connection point
         axis_x_prps_axes2_x = prps_base_frame_xx*prps_c_2 + prps_base_frame_xy*prps_s_2
         axis_x_prps_axes2_y = prps_base_frame_yx*prps_c_2 + prps_base_frame_yy*prps_s_2
@@ -2360,7 +2540,7 @@ def _run_Z(m, X, V):
         axis_y_prps_axes2_y = prps_base_frame_yy*prps_c_2 - prps_base_frame_yx*prps_s_2
         axis_y_prps_axes2_z = prps_base_frame_zy*prps_c_2 - prps_base_frame_zx*prps_s_2
         prps_qd_2 = (
-        inv_prps_root_2*(axis_y_prps_axes2_x*prps_S_dot_x + axis_y_prps_axes2_y*prps_S_dot_y +
+        inv_prps_q_3*(axis_y_prps_axes2_x*prps_S_dot_x + axis_y_prps_axes2_y*prps_S_dot_y +
             axis_y_prps_axes2_z*prps_S_dot_z)
         )
         # (prps-W_2) centripetal tensor of link 2
@@ -2376,7 +2556,7 @@ def _run_Z(m, X, V):
         # (prps-rel_o) remainder without the acceleration in: acceleration of the connection point left to the joint accelerations
         prps_rel_o_in_axes2_y = prps_u_1_in_axes2_y - 2.0*prps_S_dot_in_axes2_x*prps_qd_2
         # (prps-qdd_2_o) remainder without the acceleration in: acceleration of joint 2
-        prps_qdd_2_o = inv_prps_root_2*prps_rel_o_in_axes2_y
+        prps_qdd_2_o = inv_prps_q_3*prps_rel_o_in_axes2_y
         # (prps-acc_1_o) remainder without the acceleration in: acceleration of the reference point of link 1, less gravity
         prps_acc_1_o_in_axes0_z = (
         prps_base_frame_xz*prps_u_1_x + prps_base_frame_yz*prps_u_1_y +
@@ -2406,7 +2586,7 @@ def _run_Z(m, X, V):
         )
         # (prps-c_o) remainder without the acceleration in: leg force on the platform without actuation and without the mass at the connection point
         prps_c_o_in_axes2_y = (
-        -inv_prps_root_2*prps_mu_2_o_in_axes2_z - prps_W_2_in_axes2_xx*prps_h_3_in_spec2_y -
+        -inv_prps_q_3*prps_mu_2_o_in_axes2_z - prps_W_2_in_axes2_xx*prps_h_3_in_spec2_y -
             prps_h_3_in_spec2_x*prps_qdd_2_o
         )
         # (prps-U) velocity and gravity terms of the leg force
@@ -2427,8 +2607,8 @@ def _run_Z(m, X, V):
         prps_Z_a_t_2 = prps_U_x*prps_q_z - prps_U_z*prps_q_x
         prps_Z_a_t_3 = prps_U_y*prps_q_x - prps_U_x*prps_q_y
         ok = (
-        ok & (abs(prps_rho2_2) > _TOLERANCE * _TOLERANCE * 0.5625) & (abs(prps_root_2) >
-            _TOLERANCE * 0.75)
+        ok & (abs(prps_q_3_t) > _TOLERANCE * _TOLERANCE * 0.5625) & (abs(prps_q_3) > _TOLERANCE *
+            0.75)
         )
         # (Z_t) translational part of Z
         Z_t_prps_x += prps_U_x
@@ -2524,15 +2704,14 @@ def _run_H(m, X):
         prps_S_in_axes0_y = (
         prps_S_x*prps_base_frame_xy + prps_S_y*prps_base_frame_yy + prps_S_z*prps_base_frame_zy
         )
-        # (prps-rho2_2) squared amplitude
-        prps_rho2_2 = prps_S_in_axes0_x*prps_S_in_axes0_x + prps_S_in_axes0_y*prps_S_in_axes0_y
-        # (prps-root_2) amplitude, with the sign of the branch
-        prps_root_2 = prps_branch_2*sqrt(prps_rho2_2)
+        # (prps-q_3) displacement of joint 3
+        prps_q_3_t = prps_S_in_axes0_x*prps_S_in_axes0_x + prps_S_in_axes0_y*prps_S_in_axes0_y
+        prps_q_3 = prps_branch_2*sqrt(prps_q_3_t)
         # (prps-c_2) cosine of the angle of joint 2 from its reference direction
-        inv_prps_root_2 = 1.0/prps_root_2
-        prps_c_2 = inv_prps_root_2*prps_S_in_axes0_x
+        inv_prps_q_3 = 1.0/prps_q_3
+        prps_c_2 = inv_prps_q_3*prps_S_in_axes0_x
         # (prps-s_2) sine of the angle of joint 2 from its reference direction
-        prps_s_2 = inv_prps_root_2*prps_S_in_axes0_y
+        prps_s_2 = inv_prps_q_3*prps_S_in_axes0_y
         # (prps-w_3) reciprocal vector 3
         prps_w_3_x = prps_base_frame_xx*prps_c_2 + prps_base_frame_xy*prps_s_2
         prps_w_3_y = prps_base_frame_yx*prps_c_2 + prps_base_frame_yy*prps_s_2
@@ -2546,8 +2725,8 @@ def _run_H(m, X):
         prps_H_a_3_y = prps_q_z*prps_w_3_x - prps_q_x*prps_w_3_z
         prps_H_a_3_z = prps_q_x*prps_w_3_y - prps_q_y*prps_w_3_x
         ok = (
-        ok & (abs(prps_rho2_2) > _TOLERANCE * _TOLERANCE * 0.5625) & (abs(prps_root_2) >
-            _TOLERANCE * 0.75)
+        ok & (abs(prps_q_3_t) > _TOLERANCE * _TOLERANCE * 0.5625) & (abs(prps_q_3) > _TOLERANCE *
+            0.75)
         )
         # (prps-w_1) reciprocal vector 1
         out_H[_H_prps[0][leg]] = prps_base_frame_xz
@@ -2742,15 +2921,14 @@ def _run_required(m, X, V, A):
         prps_S_in_axes0_y = (
         prps_S_x*prps_base_frame_xy + prps_S_y*prps_base_frame_yy + prps_S_z*prps_base_frame_zy
         )
-        # (prps-rho2_2) squared amplitude
-        prps_rho2_2 = prps_S_in_axes0_x*prps_S_in_axes0_x + prps_S_in_axes0_y*prps_S_in_axes0_y
-        # (prps-root_2) amplitude, with the sign of the branch
-        prps_root_2 = prps_branch_2*sqrt(prps_rho2_2)
+        # (prps-q_3) displacement of joint 3
+        prps_q_3_t = prps_S_in_axes0_x*prps_S_in_axes0_x + prps_S_in_axes0_y*prps_S_in_axes0_y
+        prps_q_3 = prps_branch_2*sqrt(prps_q_3_t)
         # (prps-c_2) cosine of the angle of joint 2 from its reference direction
-        inv_prps_root_2 = 1.0/prps_root_2
-        prps_c_2 = inv_prps_root_2*prps_S_in_axes0_x
+        inv_prps_q_3 = 1.0/prps_q_3
+        prps_c_2 = inv_prps_q_3*prps_S_in_axes0_x
         # (prps-s_2) sine of the angle of joint 2 from its reference direction
-        prps_s_2 = inv_prps_root_2*prps_S_in_axes0_y
+        prps_s_2 = inv_prps_q_3*prps_S_in_axes0_y
         # (prps-S_dot) velocity of the connection point
         axis_x_prps_axes2_x = prps_base_frame_xx*prps_c_2 + prps_base_frame_xy*prps_s_2
         axis_x_prps_axes2_y = prps_base_frame_yx*prps_c_2 + prps_base_frame_yy*prps_s_2
@@ -2770,7 +2948,7 @@ def _run_required(m, X, V, A):
         axis_y_prps_axes2_y = prps_base_frame_yy*prps_c_2 - prps_base_frame_yx*prps_s_2
         axis_y_prps_axes2_z = prps_base_frame_zy*prps_c_2 - prps_base_frame_zx*prps_s_2
         prps_qd_2 = (
-        inv_prps_root_2*(axis_y_prps_axes2_x*prps_S_dot_x + axis_y_prps_axes2_y*prps_S_dot_y +
+        inv_prps_q_3*(axis_y_prps_axes2_x*prps_S_dot_x + axis_y_prps_axes2_y*prps_S_dot_y +
             axis_y_prps_axes2_z*prps_S_dot_z)
         )
         # (prps-W_2) centripetal tensor of link 2
@@ -2790,7 +2968,7 @@ def _run_required(m, X, V, A):
         # (prps-rel) acceleration of the connection point left to the joint accelerations
         prps_rel_in_axes2_y = prps_S_ddot_in_axes2_y - 2.0*prps_S_dot_in_axes2_x*prps_qd_2
         # (prps-qdd_2) acceleration of joint 2
-        prps_qdd_2 = inv_prps_root_2*prps_rel_in_axes2_y
+        prps_qdd_2 = inv_prps_q_3*prps_rel_in_axes2_y
         # (prps-acc_1) acceleration of the reference point of link 1, less gravity
         prps_acc_1_in_axes0_z = (
         prps_S_ddot_x*prps_base_frame_xz + prps_S_ddot_y*prps_base_frame_yz +
@@ -2820,7 +2998,7 @@ def _run_required(m, X, V, A):
         )
         # (prps-c) leg force on the platform without actuation and without the mass at the connection point
         prps_c_in_axes2_y = (
-        -inv_prps_root_2*prps_mu_2_in_axes2_z - prps_W_2_in_axes2_xx*prps_h_3_in_spec2_y -
+        -inv_prps_q_3*prps_mu_2_in_axes2_z - prps_W_2_in_axes2_xx*prps_h_3_in_spec2_y -
             prps_h_3_in_spec2_x*prps_qdd_2
         )
         prps_c_x = (
@@ -2848,8 +3026,8 @@ def _run_required(m, X, V, A):
         prps_H_a_3_y = axis_x_prps_axes2_x*prps_q_z - axis_x_prps_axes2_z*prps_q_x
         prps_H_a_3_z = axis_x_prps_axes2_y*prps_q_x - axis_x_prps_axes2_x*prps_q_y
         ok = (
-        ok & (abs(prps_rho2_2) > _TOLERANCE * _TOLERANCE * 0.5625) & (abs(prps_root_2) >
-            _TOLERANCE * 0.75)
+        ok & (abs(prps_q_3_t) > _TOLERANCE * _TOLERANCE * 0.5625) & (abs(prps_q_3) > _TOLERANCE *
+            0.75)
         )
         # (R_t) force that actuators and external wrench must give
         R_t_t += prps_c_x
@@ -2965,23 +3143,22 @@ def _run_inverse_kinematics(m, X):
         prps_S_in_axes0_y = (
         prps_S_x*prps_base_frame_xy + prps_S_y*prps_base_frame_yy + prps_S_z*prps_base_frame_zy
         )
-        # (prps-rho2_2) squared amplitude
-        prps_rho2_2 = prps_S_in_axes0_x*prps_S_in_axes0_x + prps_S_in_axes0_y*prps_S_in_axes0_y
-        # (prps-root_2) amplitude, with the sign of the branch
-        prps_root_2 = prps_branch_2*sqrt(prps_rho2_2)
+        # (prps-q_3) displacement of joint 3
+        prps_q_3_t = prps_S_in_axes0_x*prps_S_in_axes0_x + prps_S_in_axes0_y*prps_S_in_axes0_y
+        prps_q_3 = prps_branch_2*sqrt(prps_q_3_t)
         # (prps-q_2) displacement of joint 2
-        inv_prps_root_2 = 1.0/prps_root_2
-        prps_q_2 = atan2(inv_prps_root_2*prps_S_in_axes0_y, inv_prps_root_2*prps_S_in_axes0_x)
+        inv_prps_q_3 = 1.0/prps_q_3
+        prps_q_2 = atan2(inv_prps_q_3*prps_S_in_axes0_y, inv_prps_q_3*prps_S_in_axes0_x)
         ok = (
-        ok & (abs(prps_rho2_2) > _TOLERANCE * _TOLERANCE * 0.5625) & (abs(prps_root_2) >
-            _TOLERANCE * 0.75)
+        ok & (abs(prps_q_3_t) > _TOLERANCE * _TOLERANCE * 0.5625) & (abs(prps_q_3) > _TOLERANCE *
+            0.75)
         )
         # (prps-q_1) displacement of joint 1
         out_q[_q_prps[0][leg]] = prps_S_in_axes0_z
         # (prps-q_2) displacement of joint 2
         out_q[_q_prps[1][leg]] = prps_q_2
         # (prps-q_3) displacement of joint 3
-        out_q[_q_prps[2][leg]] = prps_root_2
+        out_q[_q_prps[2][leg]] = prps_q_3
     return ok, (out_q,)
 
 
@@ -3065,15 +3242,14 @@ def _run_joint_rates(m, X, V):
         prps_S_in_axes0_y = (
         prps_S_x*prps_base_frame_xy + prps_S_y*prps_base_frame_yy + prps_S_z*prps_base_frame_zy
         )
-        # (prps-rho2_2) squared amplitude
-        prps_rho2_2 = prps_S_in_axes0_x*prps_S_in_axes0_x + prps_S_in_axes0_y*prps_S_in_axes0_y
-        # (prps-root_2) amplitude, with the sign of the branch
-        prps_root_2 = prps_branch_2*sqrt(prps_rho2_2)
+        # (prps-q_3) displacement of joint 3
+        prps_q_3_t = prps_S_in_axes0_x*prps_S_in_axes0_x + prps_S_in_axes0_y*prps_S_in_axes0_y
+        prps_q_3 = prps_branch_2*sqrt(prps_q_3_t)
         # (prps-c_2) cosine of the angle of joint 2 from its reference direction
-        inv_prps_root_2 = 1.0/prps_root_2
-        prps_c_2 = inv_prps_root_2*prps_S_in_axes0_x
+        inv_prps_q_3 = 1.0/prps_q_3
+        prps_c_2 = inv_prps_q_3*prps_S_in_axes0_x
         # (prps-s_2) sine of the angle of joint 2 from its reference direction
-        prps_s_2 = inv_prps_root_2*prps_S_in_axes0_y
+        prps_s_2 = inv_prps_q_3*prps_S_in_axes0_y
         # (prps-S_dot) velocity of the connection point
         prps_S_dot_x = t_dot_x + omega_y*prps_q_z - omega_z*prps_q_y
         prps_S_dot_y = t_dot_y + omega_z*prps_q_x - omega_x*prps_q_z
@@ -3089,13 +3265,13 @@ def _run_joint_rates(m, X, V):
         )
         # (prps-qd_2) rate of joint 2
         prps_qd_2 = (
-        inv_prps_root_2*(prps_S_dot_x*(prps_base_frame_xy*prps_c_2 - prps_base_frame_xx*prps_s_2)
-            + prps_S_dot_y*(prps_base_frame_yy*prps_c_2 - prps_base_frame_yx*prps_s_2) +
+        inv_prps_q_3*(prps_S_dot_x*(prps_base_frame_xy*prps_c_2 - prps_base_frame_xx*prps_s_2) +
+            prps_S_dot_y*(prps_base_frame_yy*prps_c_2 - prps_base_frame_yx*prps_s_2) +
             prps_S_dot_z*(prps_base_frame_zy*prps_c_2 - prps_base_frame_zx*prps_s_2))
         )
         ok = (
-        ok & (abs(prps_rho2_2) > _TOLERANCE * _TOLERANCE * 0.5625) & (abs(prps_root_2) >
-            _TOLERANCE * 0.75)
+        ok & (abs(prps_q_3_t) > _TOLERANCE * _TOLERANCE * 0.5625) & (abs(prps_q_3) > _TOLERANCE *
+            0.75)
         )
         # (prps-qd_1) rate of joint 1
         out_qd[_qd_prps[0][leg]] = prps_S_dot_in_axes2_z
@@ -3199,15 +3375,14 @@ def _run_joint_accelerations(m, X, V, A):
         prps_S_in_axes0_y = (
         prps_S_x*prps_base_frame_xy + prps_S_y*prps_base_frame_yy + prps_S_z*prps_base_frame_zy
         )
-        # (prps-rho2_2) squared amplitude
-        prps_rho2_2 = prps_S_in_axes0_x*prps_S_in_axes0_x + prps_S_in_axes0_y*prps_S_in_axes0_y
-        # (prps-root_2) amplitude, with the sign of the branch
-        prps_root_2 = prps_branch_2*sqrt(prps_rho2_2)
+        # (prps-q_3) displacement of joint 3
+        prps_q_3_t = prps_S_in_axes0_x*prps_S_in_axes0_x + prps_S_in_axes0_y*prps_S_in_axes0_y
+        prps_q_3 = prps_branch_2*sqrt(prps_q_3_t)
         # (prps-c_2) cosine of the angle of joint 2 from its reference direction
-        inv_prps_root_2 = 1.0/prps_root_2
-        prps_c_2 = inv_prps_root_2*prps_S_in_axes0_x
+        inv_prps_q_3 = 1.0/prps_q_3
+        prps_c_2 = inv_prps_q_3*prps_S_in_axes0_x
         # (prps-s_2) sine of the angle of joint 2 from its reference direction
-        prps_s_2 = inv_prps_root_2*prps_S_in_axes0_y
+        prps_s_2 = inv_prps_q_3*prps_S_in_axes0_y
         # (prps-S_dot) velocity of the connection point
         axis_x_prps_axes2_x = prps_base_frame_xx*prps_c_2 + prps_base_frame_xy*prps_s_2
         axis_x_prps_axes2_y = prps_base_frame_yx*prps_c_2 + prps_base_frame_yy*prps_s_2
@@ -3227,7 +3402,7 @@ def _run_joint_accelerations(m, X, V, A):
         axis_y_prps_axes2_y = prps_base_frame_yy*prps_c_2 - prps_base_frame_yx*prps_s_2
         axis_y_prps_axes2_z = prps_base_frame_zy*prps_c_2 - prps_base_frame_zx*prps_s_2
         prps_qd_2 = (
-        inv_prps_root_2*(axis_y_prps_axes2_x*prps_S_dot_x + axis_y_prps_axes2_y*prps_S_dot_y +
+        inv_prps_q_3*(axis_y_prps_axes2_x*prps_S_dot_x + axis_y_prps_axes2_y*prps_S_dot_y +
             axis_y_prps_axes2_z*prps_S_dot_z)
         )
         # (prps-a_p) acceleration of the connection point without its centripetal part
@@ -3245,17 +3420,17 @@ def _run_joint_accelerations(m, X, V, A):
         # (prps-rel) acceleration of the connection point left to the joint accelerations
         prps_rel_in_axes2_x = (
         axis_x_prps_axes2_x*prps_S_ddot_x + axis_x_prps_axes2_y*prps_S_ddot_y +
-            axis_x_prps_axes2_z*prps_S_ddot_z + prps_qd_2*prps_qd_2*prps_root_2
+            axis_x_prps_axes2_z*prps_S_ddot_z + prps_q_3*prps_qd_2*prps_qd_2
         )
         prps_rel_in_axes2_y = (
         axis_y_prps_axes2_x*prps_S_ddot_x + axis_y_prps_axes2_y*prps_S_ddot_y +
             axis_y_prps_axes2_z*prps_S_ddot_z - 2.0*prps_S_dot_in_axes2_x*prps_qd_2
         )
         # (prps-qdd_2) acceleration of joint 2
-        prps_qdd_2 = inv_prps_root_2*prps_rel_in_axes2_y
+        prps_qdd_2 = inv_prps_q_3*prps_rel_in_axes2_y
         ok = (
-        ok & (abs(prps_rho2_2) > _TOLERANCE * _TOLERANCE * 0.5625) & (abs(prps_root_2) >
-            _TOLERANCE * 0.75)
+        ok & (abs(prps_q_3_t) > _TOLERANCE * _TOLERANCE * 0.5625) & (abs(prps_q_3) > _TOLERANCE *
+            0.75)
         )
         # (prps-qdd_1) acceleration of joint 1
         out_qdd[_qdd_prps[0][leg]] = prps_S_ddot_in_axes2_z
@@ -3363,15 +3538,14 @@ def _run_legs(m, X, V, A):
         prps_S_in_axes0_y = (
         prps_S_x*prps_base_frame_xy + prps_S_y*prps_base_frame_yy + prps_S_z*prps_base_frame_zy
         )
-        # (prps-rho2_2) squared amplitude
-        prps_rho2_2 = prps_S_in_axes0_x*prps_S_in_axes0_x + prps_S_in_axes0_y*prps_S_in_axes0_y
-        # (prps-root_2) amplitude, with the sign of the branch
-        prps_root_2 = prps_branch_2*sqrt(prps_rho2_2)
+        # (prps-q_3) displacement of joint 3
+        prps_q_3_t = prps_S_in_axes0_x*prps_S_in_axes0_x + prps_S_in_axes0_y*prps_S_in_axes0_y
+        prps_q_3 = prps_branch_2*sqrt(prps_q_3_t)
         # (prps-c_2) cosine of the angle of joint 2 from its reference direction
-        inv_prps_root_2 = 1.0/prps_root_2
-        prps_c_2 = inv_prps_root_2*prps_S_in_axes0_x
+        inv_prps_q_3 = 1.0/prps_q_3
+        prps_c_2 = inv_prps_q_3*prps_S_in_axes0_x
         # (prps-s_2) sine of the angle of joint 2 from its reference direction
-        prps_s_2 = inv_prps_root_2*prps_S_in_axes0_y
+        prps_s_2 = inv_prps_q_3*prps_S_in_axes0_y
         # (prps-S_dot) velocity of the connection point
         axis_x_prps_axes2_x = prps_base_frame_xx*prps_c_2 + prps_base_frame_xy*prps_s_2
         axis_x_prps_axes2_y = prps_base_frame_yx*prps_c_2 + prps_base_frame_yy*prps_s_2
@@ -3391,7 +3565,7 @@ def _run_legs(m, X, V, A):
         axis_y_prps_axes2_y = prps_base_frame_yy*prps_c_2 - prps_base_frame_yx*prps_s_2
         axis_y_prps_axes2_z = prps_base_frame_zy*prps_c_2 - prps_base_frame_zx*prps_s_2
         prps_qd_2 = (
-        inv_prps_root_2*(axis_y_prps_axes2_x*prps_S_dot_x + axis_y_prps_axes2_y*prps_S_dot_y +
+        inv_prps_q_3*(axis_y_prps_axes2_x*prps_S_dot_x + axis_y_prps_axes2_y*prps_S_dot_y +
             axis_y_prps_axes2_z*prps_S_dot_z)
         )
         # (prps-W_2) centripetal tensor of link 2
@@ -3411,7 +3585,7 @@ def _run_legs(m, X, V, A):
         # (prps-rel) acceleration of the connection point left to the joint accelerations
         prps_rel_in_axes2_y = prps_S_ddot_in_axes2_y - 2.0*prps_S_dot_in_axes2_x*prps_qd_2
         # (prps-qdd_2) acceleration of joint 2
-        prps_qdd_2 = inv_prps_root_2*prps_rel_in_axes2_y
+        prps_qdd_2 = inv_prps_q_3*prps_rel_in_axes2_y
         # (prps-acc_1) acceleration of the reference point of link 1, less gravity
         prps_acc_1_in_axes0_z = (
         prps_S_ddot_x*prps_base_frame_xz + prps_S_ddot_y*prps_base_frame_yz +
@@ -3437,7 +3611,7 @@ def _run_legs(m, X, V, A):
         )
         # (prps-c) leg force on the platform without actuation and without the mass at the connection point
         prps_c_in_axes2_y = (
-        -inv_prps_root_2*prps_mu_2_in_axes2_z - prps_W_2_in_axes2_xx*prps_h_3_in_spec2_y -
+        -inv_prps_q_3*prps_mu_2_in_axes2_z - prps_W_2_in_axes2_xx*prps_h_3_in_spec2_y -
             prps_h_3_in_spec2_x*prps_qdd_2
         )
         # (prps-c_true) leg force on the platform without actuation, the last link's mass included
@@ -3460,8 +3634,8 @@ def _run_legs(m, X, V, A):
             prps_base_frame_zz*prps_c_true_in_axes2_z
         )
         ok = (
-        ok & (abs(prps_rho2_2) > _TOLERANCE * _TOLERANCE * 0.5625) & (abs(prps_root_2) >
-            _TOLERANCE * 0.75)
+        ok & (abs(prps_q_3_t) > _TOLERANCE * _TOLERANCE * 0.5625) & (abs(prps_q_3) > _TOLERANCE *
+            0.75)
         )
         # (prps-c_true) leg force on the platform without actuation, the last link's mass included
         out_leg_force[_leg_force_prps[0][leg]] = prps_c_true_x
@@ -3565,15 +3739,14 @@ def _run_potential(m, X):
         prps_S_in_axes0_y = (
         prps_S_x*prps_base_frame_xy + prps_S_y*prps_base_frame_yy + prps_S_z*prps_base_frame_zy
         )
-        # (prps-rho2_2) squared amplitude
-        prps_rho2_2 = prps_S_in_axes0_x*prps_S_in_axes0_x + prps_S_in_axes0_y*prps_S_in_axes0_y
-        # (prps-root_2) amplitude, with the sign of the branch
-        prps_root_2 = prps_branch_2*sqrt(prps_rho2_2)
+        # (prps-q_3) displacement of joint 3
+        prps_q_3_t = prps_S_in_axes0_x*prps_S_in_axes0_x + prps_S_in_axes0_y*prps_S_in_axes0_y
+        prps_q_3 = prps_branch_2*sqrt(prps_q_3_t)
         # (prps-c_2) cosine of the angle of joint 2 from its reference direction
-        inv_prps_root_2 = 1.0/prps_root_2
-        prps_c_2 = inv_prps_root_2*prps_S_in_axes0_x
+        inv_prps_q_3 = 1.0/prps_q_3
+        prps_c_2 = inv_prps_q_3*prps_S_in_axes0_x
         # (prps-s_2) sine of the angle of joint 2 from its reference direction
-        prps_s_2 = inv_prps_root_2*prps_S_in_axes0_y
+        prps_s_2 = inv_prps_q_3*prps_S_in_axes0_y
         # (potential) potential energy
         prps_potential_t_5 = prps_S_in_axes0_z + prps_b_in_axes0_z
         prps_potential_t_6 = (
@@ -3587,8 +3760,8 @@ def _run_potential(m, X):
             prps_link1_mass*prps_potential_t_5 + prps_link2_mass*prps_potential_t_5)
         )
         ok = (
-        ok & (abs(prps_rho2_2) > _TOLERANCE * _TOLERANCE * 0.5625) & (abs(prps_root_2) >
-            _TOLERANCE * 0.75)
+        ok & (abs(prps_q_3_t) > _TOLERANCE * _TOLERANCE * 0.5625) & (abs(prps_q_3) > _TOLERANCE *
+            0.75)
         )
         # (potential) potential energy
         potential_t_2 += prps_potential_t_6
@@ -3676,22 +3849,21 @@ def _run_condition(m, X):
         prps_S_in_axes0_y = (
         prps_S_x*prps_base_frame_xy + prps_S_y*prps_base_frame_yy + prps_S_z*prps_base_frame_zy
         )
-        # (prps-rho2_2) squared amplitude
-        prps_rho2_2 = prps_S_in_axes0_x*prps_S_in_axes0_x + prps_S_in_axes0_y*prps_S_in_axes0_y
-        # (prps-root_2) amplitude, with the sign of the branch
-        prps_root_2 = prps_branch_2*sqrt(prps_rho2_2)
+        # (prps-q_3) displacement of joint 3
+        prps_q_3_t = prps_S_in_axes0_x*prps_S_in_axes0_x + prps_S_in_axes0_y*prps_S_in_axes0_y
+        prps_q_3 = prps_branch_2*sqrt(prps_q_3_t)
         # (prps-c_2) cosine of the angle of joint 2 from its reference direction
-        inv_prps_root_2 = 1.0/prps_root_2
-        prps_c_2 = inv_prps_root_2*prps_S_in_axes0_x
+        inv_prps_q_3 = 1.0/prps_q_3
+        prps_c_2 = inv_prps_q_3*prps_S_in_axes0_x
         # (prps-s_2) sine of the angle of joint 2 from its reference direction
-        prps_s_2 = inv_prps_root_2*prps_S_in_axes0_y
+        prps_s_2 = inv_prps_q_3*prps_S_in_axes0_y
         # (prps-w_3) reciprocal vector 3
         prps_w_3_x = prps_base_frame_xx*prps_c_2 + prps_base_frame_xy*prps_s_2
         prps_w_3_y = prps_base_frame_yx*prps_c_2 + prps_base_frame_yy*prps_s_2
         prps_w_3_z = prps_base_frame_zx*prps_c_2 + prps_base_frame_zy*prps_s_2
         # (prps-G) force at the connection point that balances the leg's inertia and weight along all degrees of freedom
-        prps_pivot_size = abs(prps_rho2_2)
-        prps_pivot_size_2 = abs(prps_root_2)
+        prps_pivot_size = abs(prps_q_3_t)
+        prps_pivot_size_2 = abs(prps_q_3)
         prps_least_pivots = (
         least(1.3333333333333333*sqrt(prps_pivot_size), 1.3333333333333333*prps_pivot_size_2)
         )
@@ -3712,8 +3884,8 @@ def _run_condition(m, X):
             prps_spread_t_3*prps_spread_t_3
         )
         clear = (
-        clear & (abs(prps_rho2_2) > _TOLERANCE * _TOLERANCE * 0.5625) & (abs(prps_root_2) >
-            _TOLERANCE * 0.75)
+        clear & (abs(prps_q_3_t) > _TOLERANCE * _TOLERANCE * 0.5625) & (abs(prps_q_3) > _TOLERANCE
+            * 0.75)
         )
         # (spread) rms distance of the platform points from their centroid
         spread_prps += prps_spread_t_4
@@ -3742,6 +3914,130 @@ def _run_condition(m, X):
     return (valid, reached, clear), (out_H, out_lengths, out_pivots, out_reach,)
 
 
+def _straight_6(a, b, rows, limits):
+    """Solve 6 equations a x = b straight through; and whether that is beyond doubt."""
+    (
+    (a00, a01, a02, a03, a04, a05,), (a10, a11, a12, a13, a14, a15,), (a20, a21, a22, a23, a24,
+        a25,), (a30, a31, a32, a33, a34, a35,), (a40, a41, a42, a43, a44, a45,), (a50, a51, a52,
+        a53, a54, a55,),
+    ) = [a[6 * k : 6 * k + 6] for k in rows]
+    b0, b1, b2, b3, b4, b5, = [b[k] for k in rows]
+    (
+    l10, l20, l30, l40, l50, l21, l31, l41, l51, l32, l42, l52, l43, l53, l54, l0, l1, l2, l3, l4,
+        l5,
+    ) = limits
+    f0 = 1.0/a00
+    g10 = a10*f0
+    a11 = a11 - g10*a01
+    a12 = a12 - g10*a02
+    a13 = a13 - g10*a03
+    a14 = a14 - g10*a04
+    a15 = a15 - g10*a05
+    b1 = b1 - g10*b0
+    g20 = a20*f0
+    a21 = a21 - g20*a01
+    a22 = a22 - g20*a02
+    a23 = a23 - g20*a03
+    a24 = a24 - g20*a04
+    a25 = a25 - g20*a05
+    b2 = b2 - g20*b0
+    g30 = a30*f0
+    a31 = a31 - g30*a01
+    a32 = a32 - g30*a02
+    a33 = a33 - g30*a03
+    a34 = a34 - g30*a04
+    a35 = a35 - g30*a05
+    b3 = b3 - g30*b0
+    g40 = a40*f0
+    a41 = a41 - g40*a01
+    a42 = a42 - g40*a02
+    a43 = a43 - g40*a03
+    a44 = a44 - g40*a04
+    a45 = a45 - g40*a05
+    b4 = b4 - g40*b0
+    g50 = a50*f0
+    a51 = a51 - g50*a01
+    a52 = a52 - g50*a02
+    a53 = a53 - g50*a03
+    a54 = a54 - g50*a04
+    a55 = a55 - g50*a05
+    b5 = b5 - g50*b0
+    f1 = 1.0/a11
+    g21 = a21*f1
+    a22 = a22 - g21*a12
+    a23 = a23 - g21*a13
+    a24 = a24 - g21*a14
+    a25 = a25 - g21*a15
+    b2 = b2 - g21*b1
+    g31 = a31*f1
+    a32 = a32 - g31*a12
+    a33 = a33 - g31*a13
+    a34 = a34 - g31*a14
+    a35 = a35 - g31*a15
+    b3 = b3 - g31*b1
+    g41 = a41*f1
+    a42 = a42 - g41*a12
+    a43 = a43 - g41*a13
+    a44 = a44 - g41*a14
+    a45 = a45 - g41*a15
+    b4 = b4 - g41*b1
+    g51 = a51*f1
+    a52 = a52 - g51*a12
+    a53 = a53 - g51*a13
+    a54 = a54 - g51*a14
+    a55 = a55 - g51*a15
+    b5 = b5 - g51*b1
+    f2 = 1.0/a22
+    g32 = a32*f2
+    a33 = a33 - g32*a23
+    a34 = a34 - g32*a24
+    a35 = a35 - g32*a25
+    b3 = b3 - g32*b2
+    g42 = a42*f2
+    a43 = a43 - g42*a23
+    a44 = a44 - g42*a24
+    a45 = a45 - g42*a25
+    b4 = b4 - g42*b2
+    g52 = a52*f2
+    a53 = a53 - g52*a23
+    a54 = a54 - g52*a24
+    a55 = a55 - g52*a25
+    b5 = b5 - g52*b2
+    f3 = 1.0/a33
+    g43 = a43*f3
+    a44 = a44 - g43*a34
+    a45 = a45 - g43*a35
+    b4 = b4 - g43*b3
+    g53 = a53*f3
+    a54 = a54 - g53*a34
+    a55 = a55 - g53*a35
+    b5 = b5 - g53*b3
+    f4 = 1.0/a44
+    g54 = a54*f4
+    a55 = a55 - g54*a45
+    b5 = b5 - g54*b4
+    f5 = 1.0/a55
+    x5 = b5*f5
+    x4 = (b4 - a45*x5)*f4
+    x3 = (b3 - a35*x5 - a34*x4)*f3
+    x2 = (b2 - a25*x5 - a24*x4 - a23*x3)*f2
+    x1 = (b1 - a15*x5 - a14*x4 - a13*x3 - a12*x2)*f1
+    x0 = (b0 - a05*x5 - a04*x4 - a03*x3 - a02*x2 - a01*x1)*f0
+    sure = (
+    (abs(g10) <= l10) & (abs(g20) <= l20) & (abs(g30) <= l30) & (abs(g40) <= l40) & (abs(g50) <=
+        l50) & (abs(g21) <= l21) & (abs(g31) <= l31) & (abs(g41) <= l41) & (abs(g51) <= l51) &
+        (abs(g32) <= l32) & (abs(g42) <= l42) & (abs(g52) <= l52) & (abs(g43) <= l43) & (abs(g53)
+        <= l53) & (abs(g54) <= l54) & (abs(f0) <= l0) & (abs(f1) <= l1) & (abs(f2) <= l2) &
+        (abs(f3) <= l3) & (abs(f4) <= l4) & (abs(f5) <= l5) & (abs(x0 + x1 + x2 + x3 + x4 + x5 +
+        a00 + a11 + a22 + a33 + a44 + a55) < math.inf)
+    )
+    return sure, ([x0, x1, x2, x3, x4, x5],)
+
+
+_ORDERS = (  # how systems are solved near home
+    _Order(_straight_6, (1, 2, 0, 4, 5, 3), (10, 10, 2.5, 2.5, 2.5, 10, 2.5, 2.5, 2.5, 2.5, 2.5, 2.5, 10, 10, 10, 1000, 1000, 1000, 4000, 4000, 4000,)),
+    _Order(_straight_6, (0, 1, 2, 3, 4, 5), (10, 10, 0.625, 0.625, 2.5, 10, 0.625, 0.625, 2.5, 0.625, 0.625, 2.5, 10, 40, 40, 62.5, 62.5, 62.5, 1000, 1000, 250,)),
+)
 _Q = 3  # where a quaternion begins in X
 _DEFAULT = Parameters()
 
@@ -3785,17 +4081,17 @@ def _steps_inverse_dynamics(m, X, V, A, wrench, weights):
     required, H = m.run(_run_required, ("required", "H"), X, V, A)
     extend_1 = wrench
     subtract_1 = required - extend_1
-    tau = _solve(H, subtract_1)
+    tau = _straight(m, H, subtract_1, _ORDERS[0])
     return (tau,)
 
 
 def _steps_forward_dynamics(m, X, V, tau, wrench):
     M, Z, H = m.run(_run_dynamics, ("M", "Z", "H"), X, V)
-    times_1 = np.einsum("ijs,js->is", H, tau)
+    times_1 = _times(H, tau)
     extend_1 = wrench
     add_1 = times_1 + extend_1
     subtract_1 = add_1 - Z
-    A = _solve(M, subtract_1)
+    A = _straight(m, M, subtract_1, _ORDERS[1])
     return (A,)
 
 
@@ -3808,7 +4104,7 @@ def _steps_leg_reactions(m, X, V, A, wrench):
     required, H = m.run(_run_required, ("required", "H"), X, V, A)
     extend_1 = wrench
     subtract_1 = required - extend_1
-    solve_1 = _solve(H, subtract_1)
+    solve_1 = _straight(m, H, subtract_1, _ORDERS[0])
     leg_force, actuator = m.run(_run_legs, ("leg_force", "actuator"), X, V, A)
     forces = _with_forces(leg_force, solve_1, actuator, [0, 0, 1, 1, 2, 2])
     return (forces,)
@@ -3836,10 +4132,37 @@ def _steps_condition(m, X, length):
     return (sigma, legs,)
 
 
+def _steps_manipulability(m, X):
+    (
+    H, lengths, pivots, reach,
+    ) = m.run(_in_one(_run_condition), ("H", "lengths", "pivots", "reach"), X)
+    entry_1 = lengths[0]
+    subtract_1 = entry_1 - entry_1
+    choose_length_1 = _chosen_length(lengths, subtract_1)
+    divide_rows_1 = _rows_divided(H, choose_length_1, [3, 4, 5])
+    singular_values_1 = _singular_values(divide_rows_1)
+    measure, isotropy = _spread(singular_values_1, 6)
+    return (measure, isotropy,)
+
+
+def _steps_singularity_distance(m, X):
+    (
+    H, lengths, pivots, reach,
+    ) = m.run(_in_one(_run_condition), ("H", "lengths", "pivots", "reach"), X)
+    entry_1 = lengths[0]
+    subtract_1 = entry_1 - entry_1
+    choose_length_1 = _chosen_length(lengths, subtract_1)
+    divide_rows_1 = _rows_divided(H, choose_length_1, [3, 4, 5])
+    singular_values_1 = _singular_values(divide_rows_1)
+    spread_1, actuators = _spread(singular_values_1, 6)
+    legs = _least_entry(pivots)
+    return (actuators, legs,)
+
+
 def _steps_mismatch(m, X, q_actuated):
     q, = m.run(_run_inverse_kinematics, ("q",), X)
-    take_1 = q[[0, 2, 3, 5, 6, 8]]
-    gap = q_actuated - take_1
+    q_of_inverse_kinematics_from_0 = q[[0, 2, 3, 5, 6, 8]]
+    gap = q_actuated - q_of_inverse_kinematics_from_0
     return (gap,)
 
 
@@ -3861,7 +4184,7 @@ def _steps_dissipation(m, X, V):
 
 def _steps_momentum(m, X, V):
     M, = m.run(_run_M, ("M",), X)
-    momentum = np.einsum("ijs,js->is", M, V)
+    momentum = _times(M, V)
     return (momentum,)
 
 
@@ -3898,14 +4221,14 @@ def _steps_actuator_accelerations(m, X, V, A):
 
 def _steps_power(m, X, V, tau):
     H, = m.run(_run_H, ("H",), X)
-    times_1 = np.einsum("ijs,js->is", H, tau)
+    times_1 = _times(H, tau)
     power = np.sum(times_1 * V, axis=0)
     return (power,)
 
 
 def _steps_rotation(m, X):
-    take_1 = X[3:7]
-    R = _rotation_of_quaternion(take_1)
+    X_from_3 = X[3:7]
+    R = _rotation_of_quaternion(X_from_3)
     return (R,)
 
 
@@ -3917,11 +4240,11 @@ def _steps_pose(m, t, R):
 
 
 def _steps_X_dot(m, X, V):
-    take_1 = V[3:6]
-    take_2 = X[3:7]
-    quaternion_rate_1 = _quaternion_rate(take_2, take_1)
-    take_3 = V[0:3]
-    X_dot = np.concatenate((take_3, quaternion_rate_1))
+    V_from_3 = V[3:6]
+    X_from_3 = X[3:7]
+    quaternion_rate_1 = _quaternion_rate(X_from_3, V_from_3)
+    V_from_0 = V[0:3]
+    X_dot = np.concatenate((V_from_0, quaternion_rate_1))
     return (X_dot,)
 
 
@@ -3933,42 +4256,42 @@ def _steps_pose_from_rpy(m, t, rpy):
 
 
 def _steps_retract(m, X, step):
-    take_1 = X[0:3]
-    take_2 = X[3:7]
-    take_3 = step[0:3]
-    take_4 = step[3:6]
-    turn_quaternion_1 = _turned(take_2, take_4)
-    add_1 = take_1 + take_3
+    X_from_0 = X[0:3]
+    X_from_3 = X[3:7]
+    step_from_0 = step[0:3]
+    step_from_3 = step[3:6]
+    turn_quaternion_1 = _turned(X_from_3, step_from_3)
+    add_1 = X_from_0 + step_from_0
     X_moved = np.concatenate((add_1, turn_quaternion_1))
     return (X_moved,)
 
 
 def _steps_difference(m, X0, X1):
-    take_1 = X0[0:3]
-    take_2 = X0[3:7]
-    take_3 = X1[0:3]
-    take_4 = X1[3:7]
-    turn_between_1 = _turn_between(take_2, take_4)
-    subtract_1 = take_3 - take_1
+    X0_from_0 = X0[0:3]
+    X0_from_3 = X0[3:7]
+    X1_from_0 = X1[0:3]
+    X1_from_3 = X1[3:7]
+    turn_between_1 = _turn_between(X0_from_3, X1_from_3)
+    subtract_1 = X1_from_0 - X0_from_0
     step = np.concatenate((subtract_1, turn_between_1))
     return (step,)
 
 
 def _steps_interpolate(m, X0, X1, s):
-    take_1 = X0[0:3]
-    take_2 = X0[3:7]
-    take_3 = X1[0:3]
-    take_4 = X1[3:7]
-    turn_between_1 = _turn_between(take_2, take_4)
-    subtract_1 = take_3 - take_1
+    X0_from_0 = X0[0:3]
+    X0_from_3 = X0[3:7]
+    X1_from_0 = X1[0:3]
+    X1_from_3 = X1[3:7]
+    turn_between_1 = _turn_between(X0_from_3, X1_from_3)
+    subtract_1 = X1_from_0 - X0_from_0
     join_1 = np.concatenate((subtract_1, turn_between_1))
     scale_1 = join_1 * s
-    take_5 = X0[0:3]
-    take_6 = X0[3:7]
-    take_7 = scale_1[0:3]
-    take_8 = scale_1[3:6]
-    turn_quaternion_1 = _turned(take_6, take_8)
-    add_1 = take_5 + take_7
+    X0_from_0_2 = X0[0:3]
+    X0_from_3_2 = X0[3:7]
+    scale_1_from_0 = scale_1[0:3]
+    scale_1_from_3 = scale_1[3:6]
+    turn_quaternion_1 = _turned(X0_from_3_2, scale_1_from_3)
+    add_1 = X0_from_0_2 + scale_1_from_0
     X = np.concatenate((add_1, turn_quaternion_1))
     return (X,)
 
@@ -3986,6 +4309,7 @@ def M(X, p=None):
     return _call(
         "M", _steps_M, p,
         ("X", X, (NQ,)),
+        plain=((NV, NV,),),
     )
 
 
@@ -4004,6 +4328,7 @@ def Z(X, V, p=None):
         "Z", _steps_Z, p,
         ("X", X, (NQ,)),
         ("V", V, (NV,)),
+        plain=((NV,),),
     )
 
 
@@ -4020,6 +4345,7 @@ def H(X, p=None):
     return _call(
         "H", _steps_H, p,
         ("X", X, (NQ,)),
+        plain=((NV, NU,),),
     )
 
 
@@ -4038,6 +4364,7 @@ def inverse_kinematics(X, p=None):
     return _call(
         "inverse_kinematics", _steps_inverse_kinematics, p,
         ("X", X, (NQ,)),
+        plain=((NJ,),),
     )
 
 
@@ -4056,6 +4383,7 @@ def joint_rates(X, V, p=None):
         "joint_rates", _steps_joint_rates, p,
         ("X", X, (NQ,)),
         ("V", V, (NV,)),
+        plain=((NJ,),),
     )
 
 
@@ -4076,6 +4404,7 @@ def joint_accelerations(X, V, A, p=None):
         ("X", X, (NQ,)),
         ("V", V, (NV,)),
         ("A", A, (NV,)),
+        plain=((NJ,),),
     )
 
 
@@ -4096,6 +4425,7 @@ def dynamics(X, V, p=None):
         "dynamics", _steps_dynamics, p,
         ("X", X, (NQ,)),
         ("V", V, (NV,)),
+        plain=((NV, NV,), (NV,), (NV, NU,),),
     )
 
 
@@ -4123,6 +4453,7 @@ def inverse_dynamics(X, V, A, p=None, *, wrench=None, weights=None):
         ("A", A, (NV,)),
         ("wrench", wrench, (NW,), 0.0),
         ("weights", weights, (NU,), 1.0, "positive"),
+        plain=((NU,),),
     )
 
 
@@ -4145,6 +4476,7 @@ def forward_dynamics(X, V, tau, p=None, *, wrench=None):
         ("V", V, (NV,)),
         ("tau", tau, (NU,)),
         ("wrench", wrench, (NW,), 0.0),
+        plain=((NV,),),
     )
 
 
@@ -4169,6 +4501,7 @@ def complete_acceleration(X, V, A, p=None, *, wrench=None):
         ("V", V, (NV,), None, "unused"),
         ("A", A, (NV,)),
         ("wrench", wrench, (NW,), 0.0, "unused"),
+        plain=((NV,),),
     )
 
 
@@ -4257,6 +4590,41 @@ def condition(X, p=None, *, length=None):
     )
 
 
+def manipulability(X, p=None):
+    """Manipulability of forces: the product of the singular values that `condition` has by
+    default, and the least over the largest of them.
+
+    Args:
+        X: pose, and extra coordinates (..., NQ).
+        p: parameters, by default those of the specification.
+
+    Returns:
+        measure: product of the singular values (...,).
+        isotropy: least over largest value, 1 where H is isotropic (...,).
+    """
+    return _call(
+        "manipulability", _steps_manipulability, p,
+        ("X", X, (NQ,)),
+    )
+
+
+def singularity_distance(X, p=None):
+    """How near actuators and legs are to being singular: relative distances, 0 where they are.
+
+    Args:
+        X: pose, and extra coordinates (..., NQ).
+        p: parameters, by default those of the specification.
+
+    Returns:
+        actuators: of H from matrices of lower rank, over its norm (...,).
+        legs: least pivot of all legs (...,).
+    """
+    return _call(
+        "singularity_distance", _steps_singularity_distance, p,
+        ("X", X, (NQ,)),
+    )
+
+
 def forward_kinematics(q_actuated, X0, p=None):
     """X at which the actuated joints stand at q_actuated, by Gauss-Newton from X0.
 
@@ -4312,6 +4680,7 @@ def momentum(X, V, p=None):
         "momentum", _steps_momentum, p,
         ("X", X, (NQ,)),
         ("V", V, (NV,)),
+        plain=((NV,),),
     )
 
 

@@ -700,24 +700,24 @@ int hybrid_3rrrs_prepare(const hybrid_3rrrs_params *params, hybrid_3rrrs_model *
         /* (rrrs-Jc_2) inertia tensor of the links from 2 outwards about joint 2, that of the last link
            about the connection point */
         const real rrrs_Jc_2_in_axes2_zz = rrrs_J_2_in_spec2_zz + rrrs_J_3_in_spec3_zz;
-        /* (rrrs-trace_J_3) half the trace of that inertia tensor */
-        const real rrrs_trace_J_3 = R(0.5)*rrrs_J_3_in_spec3_xx + R(0.5)*rrrs_J_3_in_spec3_yy +
-            R(0.5)*rrrs_J_3_in_spec3_zz;
         /* (rrrs-Sigma_3) second moment of mass of the links that turn with link 3 */
-        const real rrrs_Sigma_3_in_axes3_xx = rrrs_trace_J_3 - rrrs_J_3_in_spec3_xx;
-        const real rrrs_Sigma_3_in_axes3_yy = rrrs_trace_J_3 - rrrs_J_3_in_spec3_yy;
-        const real rrrs_Sigma_3_in_axes3_zz = rrrs_trace_J_3 - rrrs_J_3_in_spec3_zz;
+        const real rrrs_Sigma_3_t = rrrs_J_3_in_spec3_xx + rrrs_J_3_in_spec3_yy +
+            rrrs_J_3_in_spec3_zz;
+        const real rrrs_Sigma_3_t_2 = R(0.5)*rrrs_Sigma_3_t;
+        const real rrrs_Sigma_3_in_axes3_xx = rrrs_Sigma_3_t_2 - rrrs_J_3_in_spec3_xx;
+        const real rrrs_Sigma_3_in_axes3_yy = rrrs_Sigma_3_t_2 - rrrs_J_3_in_spec3_yy;
+        const real rrrs_Sigma_3_in_axes3_zz = rrrs_Sigma_3_t_2 - rrrs_J_3_in_spec3_zz;
         /* (rrrs-d_Gamma_3) coefficient of the acceleration in: moment about axis 3 of the distal links'
            inertia and weight */
         const real rrrs_d_Gamma_3_t = rrrs_J_3_in_spec3_zz*rrrs_w_3_in_axes3_y;
         const real rrrs_d_Gamma_3_in_axes3_y = rrrs_d_Gamma_3_t + rrrs_h_3_in_spec3_x;
-        /* (rrrs-trace_J_2) half the trace of that inertia tensor */
-        const real rrrs_trace_J_2 = R(0.5)*rrrs_J_2_in_spec2_xx + R(0.5)*rrrs_J_2_in_spec2_yy +
-            R(0.5)*rrrs_J_2_in_spec2_zz;
         /* (rrrs-Sigma_2) second moment of mass of the links that turn with link 2 */
-        const real rrrs_Sigma_2_in_axes2_xx = rrrs_trace_J_2 - rrrs_J_2_in_spec2_xx;
-        const real rrrs_Sigma_2_in_axes2_yy = rrrs_trace_J_2 - rrrs_J_2_in_spec2_yy;
-        const real rrrs_Sigma_2_in_axes2_zz = rrrs_trace_J_2 - rrrs_J_2_in_spec2_zz;
+        const real rrrs_Sigma_2_t = rrrs_J_2_in_spec2_xx + rrrs_J_2_in_spec2_yy +
+            rrrs_J_2_in_spec2_zz;
+        const real rrrs_Sigma_2_t_2 = R(0.5)*rrrs_Sigma_2_t;
+        const real rrrs_Sigma_2_in_axes2_xx = rrrs_Sigma_2_t_2 - rrrs_J_2_in_spec2_xx;
+        const real rrrs_Sigma_2_in_axes2_yy = rrrs_Sigma_2_t_2 - rrrs_J_2_in_spec2_yy;
+        const real rrrs_Sigma_2_in_axes2_zz = rrrs_Sigma_2_t_2 - rrrs_J_2_in_spec2_zz;
         /* (rrrs-mu_2) inertia moment of the links that turn with link 2, about their reference points */
         const real rrrs_mu_2_t = gravity_x*rrrs_base_frame_xy + gravity_y*rrrs_base_frame_yy +
             gravity_z*rrrs_base_frame_zy;
@@ -1238,6 +1238,24 @@ INLINE void unlimited(size_t rows, size_t size, size_t w, const size_t *places, 
     }
 }
 
+INLINE void least_entry(size_t n, const real *a, real *x)
+{
+    *x = a[0];
+    for (size_t e = 1; e < n; ++e) {
+        *x = lesser(*x, a[e]);
+    }
+}
+
+/* Of the first n entries the product, and the last over the first, 0 where that is 0. */
+INLINE void spread(size_t n, const real *a, real *product_of, real *ratio)
+{
+    *product_of = 1;
+    for (size_t e = 0; e < n; ++e) {
+        *product_of *= a[e];
+    }
+    *ratio = magnitude(a[0]) > 0 ? a[n - 1]/a[0] : a[0];
+}
+
 /* 1 where no entry is negative, else 0. */
 INLINE void not_negative(size_t size, size_t w, const real *a, real *x, real *flags)
 {
@@ -1425,6 +1443,952 @@ static void moved(const real *X, const real *step, real part, real *to)
     turn_quaternion(X + Q, turn, to + Q);
 }
 
+/* ---- what functions of the state share; v: values for others ---- */
+
+typedef struct {
+    real quaternion_scale, R_xx, R_xy, R_xz, R_yx, R_yy, R_yz, R_zx, R_zy, R_zz, h_star_x, h_star_y,
+        h_star_z, omega_in_platform_x, omega_in_platform_y, omega_in_platform_z, J_star_xx, J_star_xy,
+        J_star_xz, J_star_yy, J_star_yz, J_star_zz, Z_p_x, Z_p_y, Z_p_z, Z_q_x, Z_q_y, Z_q_z;
+} values;
+
+INLINE void stage_X(const prepared *m, size_t w, size_t k, const real *X, values *v)
+{
+    /* X: named entries */
+    const real X_3 = X[3*w + k];
+    const real X_4 = X[4*w + k];
+    const real X_5 = X[5*w + k];
+    const real X_6 = X[6*w + k];
+    const real quaternion_norm2 = X_3*X_3 + X_4*X_4 + X_5*X_5 + X_6*X_6;
+    const real quaternion_scale = 2/quaternion_norm2;
+    const real quaternion_sx = X_3*quaternion_scale;
+    const real quaternion_sy = X_4*quaternion_scale;
+    const real quaternion_sz = X_5*quaternion_scale;
+    const real quaternion_wx = X_6*quaternion_sx;
+    const real quaternion_wy = X_6*quaternion_sy;
+    const real quaternion_wz = X_6*quaternion_sz;
+    const real quaternion_xx = X_3*quaternion_sx;
+    const real quaternion_xy = X_3*quaternion_sy;
+    const real quaternion_xz = X_3*quaternion_sz;
+    const real quaternion_yy = X_4*quaternion_sy;
+    const real quaternion_yz = X_4*quaternion_sz;
+    const real quaternion_zz = X_5*quaternion_sz;
+    const real R_xx = 1 - quaternion_yy - quaternion_zz;
+    const real R_xy = quaternion_xy - quaternion_wz;
+    const real R_xz = quaternion_wy + quaternion_xz;
+    const real R_yx = quaternion_wz + quaternion_xy;
+    const real R_yy = 1 - quaternion_xx - quaternion_zz;
+    const real R_yz = quaternion_yz - quaternion_wx;
+    const real R_zx = quaternion_xz - quaternion_wy;
+    const real R_zy = quaternion_wx + quaternion_yz;
+    const real R_zz = 1 - quaternion_xx - quaternion_yy;
+    /* (h_star) first moment about the platform origin */
+    const real h_star_in_platform_x = m->h_star_in_platform_x;
+    const real h_star_in_platform_y = m->h_star_in_platform_y;
+    const real h_star_in_platform_z = m->h_star_in_platform_z;
+    const real h_star_x = R_xx*h_star_in_platform_x + R_xy*h_star_in_platform_y +
+        R_xz*h_star_in_platform_z;
+    const real h_star_y = R_yx*h_star_in_platform_x + R_yy*h_star_in_platform_y +
+        R_yz*h_star_in_platform_z;
+    const real h_star_z = R_zx*h_star_in_platform_x + R_zy*h_star_in_platform_y +
+        R_zz*h_star_in_platform_z;
+    v->quaternion_scale = quaternion_scale;
+    v->R_xx = R_xx;
+    v->R_xy = R_xy;
+    v->R_xz = R_xz;
+    v->R_yx = R_yx;
+    v->R_yy = R_yy;
+    v->R_yz = R_yz;
+    v->R_zx = R_zx;
+    v->R_zy = R_zy;
+    v->R_zz = R_zz;
+    v->h_star_x = h_star_x;
+    v->h_star_y = h_star_y;
+    v->h_star_z = h_star_z;
+}
+
+INLINE void stage_V_X(size_t w, size_t k, const real *V, values *v)
+{
+    /* (Z_q) gyroscopic moment and moment of the weight of the platform */
+    const real omega_x = V[3*w + k];
+    const real omega_y = V[4*w + k];
+    const real omega_z = V[5*w + k];
+    const real omega_in_platform_x = v->R_xx*omega_x + v->R_yx*omega_y + v->R_zx*omega_z;
+    const real omega_in_platform_y = v->R_xy*omega_x + v->R_yy*omega_y + v->R_zy*omega_z;
+    const real omega_in_platform_z = v->R_xz*omega_x + v->R_yz*omega_y + v->R_zz*omega_z;
+    v->omega_in_platform_x = omega_in_platform_x;
+    v->omega_in_platform_y = omega_in_platform_y;
+    v->omega_in_platform_z = omega_in_platform_z;
+}
+
+INLINE void stage_M_dynamics(const prepared *m, values *v)
+{
+    /* (J_star) inertia tensor about the platform origin */
+    const real J_star_in_platform_xy = m->J_star_in_platform_xy;
+    const real J_star_in_platform_yz = m->J_star_in_platform_yz;
+    const real J_star_t_12 = m->J_star_t_12;
+    const real J_star_t = J_star_in_platform_xy*v->R_xx + J_star_in_platform_yz*v->R_xz -
+        J_star_t_12*v->R_xy;
+    const real J_star_t_2 = J_star_in_platform_xy*v->R_yx + J_star_in_platform_yz*v->R_yz -
+        J_star_t_12*v->R_yy;
+    const real J_star_t_3 = J_star_in_platform_xy*v->R_zx + J_star_in_platform_yz*v->R_zz -
+        J_star_t_12*v->R_zy;
+    const real J_star_in_platform_xz = m->J_star_in_platform_xz;
+    const real J_star_t_14 = m->J_star_t_14;
+    const real J_star_t_4 = J_star_t_14*v->R_xz - J_star_in_platform_xz*v->R_xx;
+    const real J_star_t_5 = J_star_t_14*v->R_yz - J_star_in_platform_xz*v->R_yx;
+    const real J_star_t_6 = J_star_t_14*v->R_zz - J_star_in_platform_xz*v->R_zx;
+    const real J_star_t_7 = J_star_t*v->R_xy - J_star_t_4*v->R_xz;
+    const real J_star_in_platform_xx = m->J_star_in_platform_xx;
+    const real J_star_xx = J_star_in_platform_xx + 2*J_star_t_7;
+    const real J_star_xy = J_star_t*v->R_yy + J_star_t_2*v->R_xy - J_star_t_4*v->R_yz -
+        J_star_t_5*v->R_xz;
+    const real J_star_xz = J_star_t*v->R_zy + J_star_t_3*v->R_xy - J_star_t_4*v->R_zz -
+        J_star_t_6*v->R_xz;
+    const real J_star_t_8 = J_star_t_2*v->R_yy - J_star_t_5*v->R_yz;
+    const real J_star_yy = J_star_in_platform_xx + 2*J_star_t_8;
+    const real J_star_yz = J_star_t_2*v->R_zy + J_star_t_3*v->R_yy - J_star_t_5*v->R_zz -
+        J_star_t_6*v->R_yz;
+    const real J_star_t_9 = J_star_t_3*v->R_zy - J_star_t_6*v->R_zz;
+    const real J_star_zz = J_star_in_platform_xx + 2*J_star_t_9;
+    v->J_star_xx = J_star_xx;
+    v->J_star_xy = J_star_xy;
+    v->J_star_xz = J_star_xz;
+    v->J_star_yy = J_star_yy;
+    v->J_star_yz = J_star_yz;
+    v->J_star_zz = J_star_zz;
+}
+
+INLINE void stage_Z_dynamics(const prepared *m, size_t w, size_t k, const real *V, values *v)
+{
+    /* (Z_p) centripetal force and weight of the platform */
+    const real omega_y = V[4*w + k];
+    const real omega_z = V[5*w + k];
+    const real Z_p_t_4 = v->h_star_z*omega_y - v->h_star_y*omega_z;
+    const real omega_x = V[3*w + k];
+    const real Z_p_t_5 = v->h_star_x*omega_z - v->h_star_z*omega_x;
+    const real Z_p_t_6 = v->h_star_y*omega_x - v->h_star_x*omega_y;
+    const real Z_p_t = m->Z_p_t;
+    const real Z_p_x = Z_p_t_6*omega_y - Z_p_t - Z_p_t_5*omega_z;
+    const real Z_p_t_2 = m->Z_p_t_2;
+    const real Z_p_y = Z_p_t_4*omega_z - Z_p_t_2 - Z_p_t_6*omega_x;
+    const real Z_p_t_3 = m->Z_p_t_3;
+    const real Z_p_z = Z_p_t_5*omega_x - Z_p_t_3 - Z_p_t_4*omega_y;
+    /* (Z_q) gyroscopic moment and moment of the weight of the platform */
+    const real gravity_x = m->gravity_x;
+    const real gravity_y = m->gravity_y;
+    const real gravity_z = m->gravity_z;
+    const real g_in_platform_x = v->R_xx*gravity_x + v->R_yx*gravity_y + v->R_zx*gravity_z;
+    const real g_in_platform_y = v->R_xy*gravity_x + v->R_yy*gravity_y + v->R_zy*gravity_z;
+    const real g_in_platform_z = v->R_xz*gravity_x + v->R_yz*gravity_y + v->R_zz*gravity_z;
+    const real J_star_in_platform_xx = m->J_star_in_platform_xx;
+    const real J_star_in_platform_xy = m->J_star_in_platform_xy;
+    const real J_star_in_platform_xz = m->J_star_in_platform_xz;
+    const real Z_q_t = J_star_in_platform_xx*v->omega_in_platform_x +
+        J_star_in_platform_xy*v->omega_in_platform_y +
+        J_star_in_platform_xz*v->omega_in_platform_z;
+    const real J_star_in_platform_yy = m->J_star_in_platform_yy;
+    const real J_star_in_platform_yz = m->J_star_in_platform_yz;
+    const real Z_q_t_2 = J_star_in_platform_xy*v->omega_in_platform_x +
+        J_star_in_platform_yy*v->omega_in_platform_y +
+        J_star_in_platform_yz*v->omega_in_platform_z;
+    const real J_star_in_platform_zz = m->J_star_in_platform_zz;
+    const real Z_q_t_3 = J_star_in_platform_xz*v->omega_in_platform_x +
+        J_star_in_platform_yz*v->omega_in_platform_y +
+        J_star_in_platform_zz*v->omega_in_platform_z;
+    const real h_star_in_platform_y = m->h_star_in_platform_y;
+    const real h_star_in_platform_z = m->h_star_in_platform_z;
+    const real Z_q_in_platform_x = Z_q_t_3*v->omega_in_platform_y +
+        g_in_platform_y*h_star_in_platform_z - Z_q_t_2*v->omega_in_platform_z -
+        g_in_platform_z*h_star_in_platform_y;
+    const real h_star_in_platform_x = m->h_star_in_platform_x;
+    const real Z_q_in_platform_y = Z_q_t*v->omega_in_platform_z +
+        g_in_platform_z*h_star_in_platform_x - Z_q_t_3*v->omega_in_platform_x -
+        g_in_platform_x*h_star_in_platform_z;
+    const real Z_q_in_platform_z = Z_q_t_2*v->omega_in_platform_x +
+        g_in_platform_x*h_star_in_platform_y - Z_q_t*v->omega_in_platform_y -
+        g_in_platform_y*h_star_in_platform_x;
+    const real Z_q_x = v->R_xx*Z_q_in_platform_x + v->R_xy*Z_q_in_platform_y +
+        v->R_xz*Z_q_in_platform_z;
+    const real Z_q_y = v->R_yx*Z_q_in_platform_x + v->R_yy*Z_q_in_platform_y +
+        v->R_yz*Z_q_in_platform_z;
+    const real Z_q_z = v->R_zx*Z_q_in_platform_x + v->R_zy*Z_q_in_platform_y +
+        v->R_zz*Z_q_in_platform_z;
+    v->Z_p_x = Z_p_x;
+    v->Z_p_y = Z_p_y;
+    v->Z_p_z = Z_p_z;
+    v->Z_q_x = Z_q_x;
+    v->Z_q_y = Z_q_y;
+    v->Z_q_z = Z_q_z;
+}
+
+typedef struct {
+    real rrrs_q_x, rrrs_q_y, rrrs_q_z, rrrs_rho2_1, rrrs_c_1, rrrs_s_1, rrrs_rho2_2, rrrs_disc_2,
+        rrrs_c_2, rrrs_s_2, rrrs_c_3, rrrs_s_3_t, rrrs_r_2_t, rrrs_r_2_in_axes2_x,
+        rrrs_r_2_in_axes3_x, rrrs_r_2_in_axes3_y, rrrs_e_1_in_axes3_x, rrrs_e_1_in_axes3_y,
+        rrrs_v_1_in_axes3_z, axis_z_rrrs_axes3_x, axis_z_rrrs_axes3_y, axis_z_rrrs_axes3_z,
+        rrrs_w_1_in_axes3_z, rrrs_w_1_x, rrrs_w_1_y, rrrs_w_1_z, axis_y_rrrs_axes3_x,
+        axis_y_rrrs_axes3_y, axis_y_rrrs_axes3_z, axis_x_rrrs_axes3_x, axis_x_rrrs_axes3_y,
+        axis_x_rrrs_axes3_z, rrrs_w_2_in_axes3_x, rrrs_w_2_x, rrrs_w_2_y, rrrs_w_2_z, rrrs_bias_t,
+        rrrs_bias_t_2, rrrs_d_3_in_axes3_x, rrrs_d_3_in_axes3_y, rrrs_g_in_axes1_x, rrrs_g_in_axes1_y,
+        rrrs_g_in_axes2_x, rrrs_g_in_axes2_y, rrrs_H_a_1_x, rrrs_H_a_1_y, rrrs_H_a_1_z, rrrs_qd_2_t_2,
+        rrrs_a_p_x, rrrs_a_p_y, rrrs_a_p_z, rrrs_S_dot_t, rrrs_S_dot_t_2, rrrs_S_dot_t_3,
+        rrrs_S_dot_x, rrrs_S_dot_y, rrrs_S_dot_z, rrrs_qd_2_t, rrrs_qd_3, rrrs_omega_1_in_axes2_x,
+        rrrs_omega_1_t, rrrs_omega_1_in_axes3_x, rrrs_omega_1_in_axes3_y, rrrs_W_2_in_axes2_yz,
+        rrrs_W_2_in_axes2_xy, rrrs_omega_3_in_axes3_z, rrrs_W_3_in_axes3_xy, rrrs_W_3_in_axes3_xz,
+        rrrs_W_3_in_axes3_yz, rrrs_zeta_2_in_axes2_y, rrrs_zeta_3_t, rrrs_bias_t_3, rrrs_bias_t_6,
+        rrrs_bias_t_8, rrrs_bias_in_axes3_x, rrrs_bias_in_axes3_y, rrrs_bias_in_axes3_z,
+        rrrs_S_ddot_x, rrrs_S_ddot_y, rrrs_S_ddot_z, rrrs_H_a_2_x, rrrs_H_a_2_y, rrrs_H_a_2_z,
+        rrrs_d_alpha_3_in_axes3_xz, rrrs_d_alpha_3_in_axes3_yz, rrrs_d_Gamma_1_in_axes3_z,
+        rrrs_d_c_in_axes3_xx, rrrs_d_c_in_axes3_xy, rrrs_d_c_in_axes3_xz, rrrs_d_c_in_axes3_yz,
+        rrrs_u_1_x, rrrs_u_1_y, rrrs_u_1_z, rrrs_u_1_in_axes3_z, rrrs_acc_3_o_in_axes3_z,
+        rrrs_mu_3_o_t, rrrs_mu_3_o_t_2, rrrs_mu_2_o_t, rrrs_mu_2_o_t_2, rrrs_S_in_turn1_x,
+        rrrs_S_in_turn1_y, rrrs_root_1, inv_rrrs_rho2_1, rrrs_Kd_2, rrrs_Kc_2, rrrs_Ks_2, rrrs_root_2,
+        inv_rrrs_rho2_2, rrrs_x_3_in_axes2_x, rrrs_acc_3_in_axes3_x, rrrs_acc_3_in_axes3_y,
+        rrrs_acc_3_in_axes3_z, rrrs_c_in_axes3_x, rrrs_c_in_axes3_y, rrrs_c_in_axes3_z;
+} values_rrrs;
+
+INLINE void stage_rrrs_X(const prepared *m, size_t w, size_t i, size_t j, const real *s, const
+    real *X, values_rrrs *v)
+{
+    /* (rrrs-S) from the base point to the connection point */
+    const real R_xx = s[0*w + j];
+    const real R_xy = s[1*w + j];
+    const real R_xz = s[2*w + j];
+    const real rrrs_platform_point_x = m->rrrs_platform_point_x[i];
+    const real rrrs_platform_point_y = m->rrrs_platform_point_y[i];
+    const real rrrs_platform_point_z = m->rrrs_platform_point_z[i];
+    const real rrrs_q_x = R_xx*rrrs_platform_point_x + R_xy*rrrs_platform_point_y +
+        R_xz*rrrs_platform_point_z;
+    const real R_yx = s[3*w + j];
+    const real R_yy = s[4*w + j];
+    const real R_yz = s[5*w + j];
+    const real rrrs_q_y = R_yx*rrrs_platform_point_x + R_yy*rrrs_platform_point_y +
+        R_yz*rrrs_platform_point_z;
+    const real R_zx = s[6*w + j];
+    const real R_zy = s[7*w + j];
+    const real R_zz = s[8*w + j];
+    const real rrrs_q_z = R_zx*rrrs_platform_point_x + R_zy*rrrs_platform_point_y +
+        R_zz*rrrs_platform_point_z;
+    const real rrrs_base_point_x = m->rrrs_base_point_x[i];
+    const real t_x = X[0*w + j];
+    const real rrrs_S_x = rrrs_q_x + t_x - rrrs_base_point_x;
+    const real rrrs_base_point_y = m->rrrs_base_point_y[i];
+    const real t_y = X[1*w + j];
+    const real rrrs_S_y = rrrs_q_y + t_y - rrrs_base_point_y;
+    const real rrrs_base_point_z = m->rrrs_base_point_z[i];
+    const real t_z = X[2*w + j];
+    const real rrrs_S_z = rrrs_q_z + t_z - rrrs_base_point_z;
+    const real rrrs_base_frame_xy = m->rrrs_base_frame_xy[i];
+    const real rrrs_base_frame_yy = m->rrrs_base_frame_yy[i];
+    const real rrrs_base_frame_zy = m->rrrs_base_frame_zy[i];
+    const real rrrs_S_in_turn1_x = rrrs_S_x*rrrs_base_frame_xy + rrrs_S_y*rrrs_base_frame_yy +
+        rrrs_S_z*rrrs_base_frame_zy;
+    const real rrrs_base_frame_xz = m->rrrs_base_frame_xz[i];
+    const real rrrs_base_frame_yz = m->rrrs_base_frame_yz[i];
+    const real rrrs_base_frame_zz = m->rrrs_base_frame_zz[i];
+    const real rrrs_S_in_turn1_y = rrrs_S_x*rrrs_base_frame_xz + rrrs_S_y*rrrs_base_frame_yz +
+        rrrs_S_z*rrrs_base_frame_zz;
+    const real rrrs_base_frame_xx = m->rrrs_base_frame_xx[i];
+    const real rrrs_base_frame_yx = m->rrrs_base_frame_yx[i];
+    const real rrrs_base_frame_zx = m->rrrs_base_frame_zx[i];
+    const real rrrs_S_in_turn1_z = rrrs_S_x*rrrs_base_frame_xx + rrrs_S_y*rrrs_base_frame_yx +
+        rrrs_S_z*rrrs_base_frame_zx;
+    /* (rrrs-rho2_1) squared amplitude */
+    const real rrrs_rho2_1 = rrrs_S_in_turn1_x*rrrs_S_in_turn1_x +
+        rrrs_S_in_turn1_y*rrrs_S_in_turn1_y;
+    /* (rrrs-root_1) root, with the sign of the branch */
+    const real rrrs_branch_1 = m->rrrs_branch_1[i];
+    const real rrrs_root_1 = rrrs_branch_1*root(rrrs_rho2_1);
+    /* (rrrs-c_1) cosine of the angle of joint 1 from its reference direction */
+    const real inv_rrrs_rho2_1 = 1/rrrs_rho2_1;
+    const real rrrs_c_1 = inv_rrrs_rho2_1*rrrs_S_in_turn1_x*rrrs_root_1;
+    /* (rrrs-s_1) sine of the angle of joint 1 from its reference direction */
+    const real rrrs_s_1 = inv_rrrs_rho2_1*rrrs_S_in_turn1_y*rrrs_root_1;
+    /* (rrrs-x_2) from the origin of joint 2 to the connection point */
+    const real rrrs_joint2_offset_x = m->rrrs_joint2_offset_x[i];
+    const real rrrs_x_2_in_axes1_z = rrrs_S_in_turn1_z - rrrs_joint2_offset_x;
+    /* (rrrs-Kd_2) projection on the centre's direction, from the distance fixed by the joints beyond
+       joint 2 */
+    const real rrrs_Kd_2_t_3 = rrrs_rho2_1 + rrrs_x_2_in_axes1_z*rrrs_x_2_in_axes1_z;
+    const real rrrs_Kd_2_t = m->rrrs_Kd_2_t[i];
+    const real rrrs_Kd_2_t_2 = m->rrrs_Kd_2_t_2[i];
+    const real rrrs_Kd_2 = rrrs_Kd_2_t + R(0.5)*rrrs_Kd_2_t_3 - rrrs_Kd_2_t_2;
+    /* (rrrs-Kc_2) factor of the cosine in the equation of joint 2 */
+    const real rrrs_joint3_offset_x = m->rrrs_joint3_offset_x[i];
+    const real rrrs_Kc_2 = rrrs_joint3_offset_x*rrrs_x_2_in_axes1_z;
+    /* (rrrs-Ks_2) factor of the sine in the equation of joint 2 */
+    const real rrrs_Ks_2 = rrrs_joint3_offset_x*rrrs_root_1;
+    /* (rrrs-rho2_2) squared amplitude */
+    const real rrrs_rho2_2 = rrrs_Kc_2*rrrs_Kc_2 + rrrs_Ks_2*rrrs_Ks_2;
+    /* (rrrs-disc_2) discriminant */
+    const real rrrs_disc_2 = rrrs_rho2_2 - rrrs_Kd_2*rrrs_Kd_2;
+    /* (rrrs-root_2) root, with the sign of the branch */
+    const real rrrs_branch_2 = m->rrrs_branch_2[i];
+    const real rrrs_root_2 = rrrs_branch_2*root(rrrs_disc_2);
+    /* (rrrs-c_2) cosine of the angle of joint 2 from its reference direction */
+    const real inv_rrrs_rho2_2 = 1/rrrs_rho2_2;
+    const real rrrs_c_2 = inv_rrrs_rho2_2*(rrrs_Kc_2*rrrs_Kd_2 - rrrs_Ks_2*rrrs_root_2);
+    /* (rrrs-s_2) sine of the angle of joint 2 from its reference direction */
+    const real rrrs_s_2 = inv_rrrs_rho2_2*(rrrs_Kc_2*rrrs_root_2 + rrrs_Kd_2*rrrs_Ks_2);
+    /* (rrrs-x_3) from the origin of joint 3 to the connection point */
+    const real inv_rrrs_size_t = m->inv_rrrs_size_t[i];
+    const real rrrs_x_3_in_axes2_x = inv_rrrs_size_t*rrrs_Kd_2*rrrs_joint3_offset_x -
+        rrrs_joint3_offset_x;
+    /* (rrrs-c_3) cosine of the angle of joint 3 from its reference direction */
+    const real inv_rrrs_size_t_2 = m->inv_rrrs_size_t_2[i];
+    const real rrrs_platform_joint_offset_x = m->rrrs_platform_joint_offset_x[i];
+    const real rrrs_c_3 = inv_rrrs_size_t_2*rrrs_platform_joint_offset_x*rrrs_x_3_in_axes2_x;
+    /* (rrrs-s_3) sine of the angle of joint 3 from its reference direction */
+    const real rrrs_s_3_t =
+        inv_rrrs_size_t*inv_rrrs_size_t_2*rrrs_joint3_offset_x*rrrs_platform_joint_offset_x*rrrs_root_2;
+    /* (rrrs-r_2) from joint 2 to the connection point, along the links */
+    const real rrrs_r_2_t = rrrs_platform_joint_offset_x*rrrs_s_3_t;
+    const real rrrs_r_2_in_axes2_x = rrrs_joint3_offset_x +
+        rrrs_c_3*rrrs_platform_joint_offset_x;
+    const real rrrs_r_2_in_axes3_x = rrrs_c_3*rrrs_r_2_in_axes2_x + rrrs_r_2_t*rrrs_s_3_t;
+    const real rrrs_r_2_in_axes3_y = rrrs_r_2_in_axes2_x*rrrs_s_3_t - rrrs_c_3*rrrs_r_2_t;
+    /* (rrrs-v_1) velocity of the connection point per rate of joint 1 */
+    const real rrrs_e_1_in_axes3_x = rrrs_c_2*rrrs_c_3 + rrrs_s_2*rrrs_s_3_t;
+    const real rrrs_e_1_in_axes3_y = rrrs_c_2*rrrs_s_3_t - rrrs_c_3*rrrs_s_2;
+    const real rrrs_v_1_t = rrrs_S_in_turn1_z*rrrs_c_2 + rrrs_root_1*rrrs_s_2;
+    const real rrrs_v_1_t_2 = rrrs_c_2*rrrs_root_1 - rrrs_S_in_turn1_z*rrrs_s_2;
+    const real rrrs_v_1_in_axes3_z = rrrs_e_1_in_axes3_x*(rrrs_c_3*rrrs_v_1_t_2 +
+        rrrs_s_3_t*rrrs_v_1_t) - rrrs_e_1_in_axes3_y*(rrrs_c_3*rrrs_v_1_t -
+        rrrs_s_3_t*rrrs_v_1_t_2);
+    /* (rrrs-w_1) reciprocal vector 1 */
+    const real axis_z_rrrs_axes3_x = rrrs_base_frame_xz*rrrs_c_1 -
+        rrrs_base_frame_xy*rrrs_s_1;
+    const real axis_z_rrrs_axes3_y = rrrs_base_frame_yz*rrrs_c_1 -
+        rrrs_base_frame_yy*rrrs_s_1;
+    const real axis_z_rrrs_axes3_z = rrrs_base_frame_zz*rrrs_c_1 -
+        rrrs_base_frame_zy*rrrs_s_1;
+    const real rrrs_w_1_in_axes3_z = 1/rrrs_v_1_in_axes3_z;
+    const real rrrs_w_1_x = axis_z_rrrs_axes3_x*rrrs_w_1_in_axes3_z;
+    const real rrrs_w_1_y = axis_z_rrrs_axes3_y*rrrs_w_1_in_axes3_z;
+    const real rrrs_w_1_z = axis_z_rrrs_axes3_z*rrrs_w_1_in_axes3_z;
+    /* (rrrs-w_2) reciprocal vector 2 */
+    const real rrrs_w_2_t = rrrs_c_1*rrrs_e_1_in_axes3_x;
+    const real rrrs_w_2_t_2 = rrrs_e_1_in_axes3_x*rrrs_s_1;
+    const real axis_y_rrrs_axes3_x = rrrs_base_frame_xx*rrrs_e_1_in_axes3_y +
+        rrrs_base_frame_xy*rrrs_w_2_t + rrrs_base_frame_xz*rrrs_w_2_t_2;
+    const real axis_y_rrrs_axes3_y = rrrs_base_frame_yx*rrrs_e_1_in_axes3_y +
+        rrrs_base_frame_yy*rrrs_w_2_t + rrrs_base_frame_yz*rrrs_w_2_t_2;
+    const real axis_y_rrrs_axes3_z = rrrs_base_frame_zx*rrrs_e_1_in_axes3_y +
+        rrrs_base_frame_zy*rrrs_w_2_t + rrrs_base_frame_zz*rrrs_w_2_t_2;
+    const real axis_x_rrrs_axes3_x = axis_y_rrrs_axes3_y*axis_z_rrrs_axes3_z -
+        axis_y_rrrs_axes3_z*axis_z_rrrs_axes3_y;
+    const real axis_x_rrrs_axes3_y = axis_y_rrrs_axes3_z*axis_z_rrrs_axes3_x -
+        axis_y_rrrs_axes3_x*axis_z_rrrs_axes3_z;
+    const real axis_x_rrrs_axes3_z = axis_y_rrrs_axes3_x*axis_z_rrrs_axes3_y -
+        axis_y_rrrs_axes3_y*axis_z_rrrs_axes3_x;
+    const real rrrs_w_2_in_axes3_x = -1/rrrs_r_2_in_axes3_y;
+    const real rrrs_w_2_x = axis_x_rrrs_axes3_x*rrrs_w_2_in_axes3_x;
+    const real rrrs_w_2_y = axis_x_rrrs_axes3_y*rrrs_w_2_in_axes3_x;
+    const real rrrs_w_2_z = axis_x_rrrs_axes3_z*rrrs_w_2_in_axes3_x;
+    /* (rrrs-bias) acceleration of the connection point at zero joint accelerations */
+    const real rrrs_bias_t = rrrs_c_2*rrrs_joint2_offset_x;
+    const real rrrs_bias_t_2 = rrrs_joint2_offset_x*rrrs_s_2;
+    const real rrrs_d_3_in_axes3_x = rrrs_c_3*rrrs_joint3_offset_x;
+    const real rrrs_d_3_in_axes3_y = rrrs_joint3_offset_x*rrrs_s_3_t;
+    /* (rrrs-mu_2_o) remainder without the acceleration in: inertia moment of the links that turn with
+       link 2, about their reference points */
+    const real rrrs_mu_2_t = m->rrrs_mu_2_t[i];
+    const real rrrs_mu_2_t_2 = m->rrrs_mu_2_t_2[i];
+    const real rrrs_g_in_axes1_x = rrrs_c_1*rrrs_mu_2_t + rrrs_mu_2_t_2*rrrs_s_1;
+    const real rrrs_g_in_axes1_y = rrrs_c_1*rrrs_mu_2_t_2 - rrrs_mu_2_t*rrrs_s_1;
+    const real rrrs_g_in_axes1_z = m->rrrs_g_in_axes1_z[i];
+    const real rrrs_g_in_axes2_x = rrrs_c_2*rrrs_g_in_axes1_z + rrrs_g_in_axes1_x*rrrs_s_2;
+    const real rrrs_g_in_axes2_y = rrrs_c_2*rrrs_g_in_axes1_x - rrrs_g_in_axes1_z*rrrs_s_2;
+    /* (rrrs-H_a_1) moment of the column's unit force about the platform origin */
+    const real rrrs_H_a_1_x = rrrs_q_y*rrrs_w_1_z - rrrs_q_z*rrrs_w_1_y;
+    const real rrrs_H_a_1_y = rrrs_q_z*rrrs_w_1_x - rrrs_q_x*rrrs_w_1_z;
+    const real rrrs_H_a_1_z = rrrs_q_x*rrrs_w_1_y - rrrs_q_y*rrrs_w_1_x;
+    /* (rrrs-qd_2) rate of joint 2 */
+    const real rrrs_qd_2_t_2 = rrrs_e_1_in_axes3_x*rrrs_s_1;
+    v->rrrs_q_x = rrrs_q_x;
+    v->rrrs_q_y = rrrs_q_y;
+    v->rrrs_q_z = rrrs_q_z;
+    v->rrrs_rho2_1 = rrrs_rho2_1;
+    v->rrrs_c_1 = rrrs_c_1;
+    v->rrrs_s_1 = rrrs_s_1;
+    v->rrrs_rho2_2 = rrrs_rho2_2;
+    v->rrrs_disc_2 = rrrs_disc_2;
+    v->rrrs_c_2 = rrrs_c_2;
+    v->rrrs_s_2 = rrrs_s_2;
+    v->rrrs_c_3 = rrrs_c_3;
+    v->rrrs_s_3_t = rrrs_s_3_t;
+    v->rrrs_r_2_t = rrrs_r_2_t;
+    v->rrrs_r_2_in_axes2_x = rrrs_r_2_in_axes2_x;
+    v->rrrs_r_2_in_axes3_x = rrrs_r_2_in_axes3_x;
+    v->rrrs_r_2_in_axes3_y = rrrs_r_2_in_axes3_y;
+    v->rrrs_e_1_in_axes3_x = rrrs_e_1_in_axes3_x;
+    v->rrrs_e_1_in_axes3_y = rrrs_e_1_in_axes3_y;
+    v->rrrs_v_1_in_axes3_z = rrrs_v_1_in_axes3_z;
+    v->axis_z_rrrs_axes3_x = axis_z_rrrs_axes3_x;
+    v->axis_z_rrrs_axes3_y = axis_z_rrrs_axes3_y;
+    v->axis_z_rrrs_axes3_z = axis_z_rrrs_axes3_z;
+    v->rrrs_w_1_in_axes3_z = rrrs_w_1_in_axes3_z;
+    v->rrrs_w_1_x = rrrs_w_1_x;
+    v->rrrs_w_1_y = rrrs_w_1_y;
+    v->rrrs_w_1_z = rrrs_w_1_z;
+    v->axis_y_rrrs_axes3_x = axis_y_rrrs_axes3_x;
+    v->axis_y_rrrs_axes3_y = axis_y_rrrs_axes3_y;
+    v->axis_y_rrrs_axes3_z = axis_y_rrrs_axes3_z;
+    v->axis_x_rrrs_axes3_x = axis_x_rrrs_axes3_x;
+    v->axis_x_rrrs_axes3_y = axis_x_rrrs_axes3_y;
+    v->axis_x_rrrs_axes3_z = axis_x_rrrs_axes3_z;
+    v->rrrs_w_2_in_axes3_x = rrrs_w_2_in_axes3_x;
+    v->rrrs_w_2_x = rrrs_w_2_x;
+    v->rrrs_w_2_y = rrrs_w_2_y;
+    v->rrrs_w_2_z = rrrs_w_2_z;
+    v->rrrs_bias_t = rrrs_bias_t;
+    v->rrrs_bias_t_2 = rrrs_bias_t_2;
+    v->rrrs_d_3_in_axes3_x = rrrs_d_3_in_axes3_x;
+    v->rrrs_d_3_in_axes3_y = rrrs_d_3_in_axes3_y;
+    v->rrrs_g_in_axes1_x = rrrs_g_in_axes1_x;
+    v->rrrs_g_in_axes1_y = rrrs_g_in_axes1_y;
+    v->rrrs_g_in_axes2_x = rrrs_g_in_axes2_x;
+    v->rrrs_g_in_axes2_y = rrrs_g_in_axes2_y;
+    v->rrrs_H_a_1_x = rrrs_H_a_1_x;
+    v->rrrs_H_a_1_y = rrrs_H_a_1_y;
+    v->rrrs_H_a_1_z = rrrs_H_a_1_z;
+    v->rrrs_qd_2_t_2 = rrrs_qd_2_t_2;
+}
+
+INLINE void stage_rrrs_A_X(size_t w, size_t j, const real *A, values_rrrs *v)
+{
+    /* (rrrs-a_p) acceleration of the connection point without its centripetal part */
+    const real alpha_y = A[4*w + j];
+    const real alpha_z = A[5*w + j];
+    const real t_ddot_x = A[0*w + j];
+    const real rrrs_a_p_x = t_ddot_x + alpha_y*v->rrrs_q_z - alpha_z*v->rrrs_q_y;
+    const real alpha_x = A[3*w + j];
+    const real t_ddot_y = A[1*w + j];
+    const real rrrs_a_p_y = t_ddot_y + alpha_z*v->rrrs_q_x - alpha_x*v->rrrs_q_z;
+    const real t_ddot_z = A[2*w + j];
+    const real rrrs_a_p_z = t_ddot_z + alpha_x*v->rrrs_q_y - alpha_y*v->rrrs_q_x;
+    v->rrrs_a_p_x = rrrs_a_p_x;
+    v->rrrs_a_p_y = rrrs_a_p_y;
+    v->rrrs_a_p_z = rrrs_a_p_z;
+}
+
+INLINE void stage_rrrs_V_X(const prepared *m, size_t w, size_t i, size_t j, const real *V,
+    values_rrrs *v)
+{
+    /* (rrrs-S_dot) velocity of the connection point */
+    const real omega_y = V[4*w + j];
+    const real omega_z = V[5*w + j];
+    const real rrrs_S_dot_t = omega_y*v->rrrs_q_z - omega_z*v->rrrs_q_y;
+    const real omega_x = V[3*w + j];
+    const real rrrs_S_dot_t_2 = omega_z*v->rrrs_q_x - omega_x*v->rrrs_q_z;
+    const real rrrs_S_dot_t_3 = omega_x*v->rrrs_q_y - omega_y*v->rrrs_q_x;
+    const real t_dot_x = V[0*w + j];
+    const real rrrs_S_dot_x = rrrs_S_dot_t + t_dot_x;
+    const real t_dot_y = V[1*w + j];
+    const real rrrs_S_dot_y = rrrs_S_dot_t_2 + t_dot_y;
+    const real t_dot_z = V[2*w + j];
+    const real rrrs_S_dot_z = rrrs_S_dot_t_3 + t_dot_z;
+    /* (rrrs-qd_1) rate of joint 1 */
+    const real rrrs_qd_1 = v->rrrs_w_1_in_axes3_z*(v->axis_z_rrrs_axes3_x*rrrs_S_dot_x +
+        v->axis_z_rrrs_axes3_y*rrrs_S_dot_y + v->axis_z_rrrs_axes3_z*rrrs_S_dot_z);
+    /* (rrrs-qd_2) rate of joint 2 */
+    const real rrrs_qd_2_t = -v->rrrs_w_2_in_axes3_x*(v->axis_x_rrrs_axes3_x*rrrs_S_dot_x +
+        v->axis_x_rrrs_axes3_y*rrrs_S_dot_y + v->axis_x_rrrs_axes3_z*rrrs_S_dot_z);
+    /* (rrrs-qd_3) rate of joint 3 */
+    const real rrrs_w_3_in_axes3_y = m->rrrs_w_3_in_axes3_y[i];
+    const real rrrs_qd_3 = rrrs_w_3_in_axes3_y*(v->axis_y_rrrs_axes3_x*rrrs_S_dot_x +
+        v->axis_y_rrrs_axes3_y*rrrs_S_dot_y + v->axis_y_rrrs_axes3_z*rrrs_S_dot_z +
+        rrrs_qd_2_t*v->rrrs_r_2_in_axes3_x);
+    /* (rrrs-omega_1) angular velocity of link 1 */
+    const real rrrs_omega_1_in_axes2_x = v->rrrs_c_2*rrrs_qd_1;
+    const real rrrs_omega_1_t = rrrs_qd_1*v->rrrs_s_2;
+    const real rrrs_omega_1_in_axes3_x = v->rrrs_c_3*rrrs_omega_1_in_axes2_x +
+        rrrs_omega_1_t*v->rrrs_s_3_t;
+    const real rrrs_omega_1_in_axes3_y = rrrs_omega_1_in_axes2_x*v->rrrs_s_3_t -
+        v->rrrs_c_3*rrrs_omega_1_t;
+    /* (rrrs-W_2) centripetal tensor of link 2 */
+    const real rrrs_W_2_in_axes2_yz = rrrs_omega_1_t*rrrs_qd_2_t;
+    const real rrrs_W_2_in_axes2_xy = -rrrs_omega_1_in_axes2_x*rrrs_omega_1_t;
+    /* (rrrs-omega_3) angular velocity of link 3 */
+    const real rrrs_omega_3_in_axes3_z = rrrs_qd_3 - rrrs_qd_2_t;
+    /* (rrrs-W_3) centripetal tensor of link 3 */
+    const real rrrs_W_3_in_axes3_xy = rrrs_omega_1_in_axes3_x*rrrs_omega_1_in_axes3_y;
+    const real rrrs_W_3_in_axes3_xz = rrrs_omega_1_in_axes3_x*rrrs_omega_3_in_axes3_z;
+    const real rrrs_W_3_in_axes3_yz = rrrs_omega_1_in_axes3_y*rrrs_omega_3_in_axes3_z;
+    /* (rrrs-zeta_2) angular acceleration of link 2 from the turning of axis 2 */
+    const real rrrs_zeta_2_in_axes2_y = rrrs_omega_1_in_axes2_x*rrrs_qd_2_t;
+    const real rrrs_zeta_2_in_axes3_y = rrrs_W_2_in_axes2_yz*v->rrrs_s_3_t +
+        v->rrrs_c_3*rrrs_zeta_2_in_axes2_y;
+    /* (rrrs-zeta_3) angular acceleration of link 3 from the turning of axis 3 */
+    const real rrrs_zeta_3_t = rrrs_omega_1_in_axes3_x*rrrs_qd_3;
+    /* (rrrs-beta_3) angular acceleration of link 3 at zero joint accelerations */
+    const real rrrs_beta_3_in_axes3_y = rrrs_zeta_2_in_axes3_y - rrrs_zeta_3_t;
+    /* (rrrs-bias) acceleration of the connection point at zero joint accelerations */
+    const real rrrs_bias_t_3 = rrrs_omega_1_in_axes3_x*(v->rrrs_bias_t*v->rrrs_s_3_t -
+        v->rrrs_bias_t_2*v->rrrs_c_3) - rrrs_omega_1_in_axes3_y*(v->rrrs_bias_t*v->rrrs_c_3 +
+        v->rrrs_bias_t_2*v->rrrs_s_3_t);
+    const real rrrs_bias_t_4 = v->rrrs_d_3_in_axes3_y*rrrs_qd_2_t;
+    const real rrrs_bias_t_5 = v->rrrs_d_3_in_axes3_x*rrrs_qd_2_t;
+    const real rrrs_bias_t_6 = v->rrrs_d_3_in_axes3_y*rrrs_omega_1_in_axes3_x -
+        v->rrrs_d_3_in_axes3_x*rrrs_omega_1_in_axes3_y;
+    const real rrrs_platform_joint_offset_x = m->rrrs_platform_joint_offset_x[i];
+    const real rrrs_bias_t_7 = rrrs_omega_3_in_axes3_z*rrrs_platform_joint_offset_x;
+    const real rrrs_bias_t_8 = rrrs_omega_1_in_axes3_y*rrrs_platform_joint_offset_x;
+    const real rrrs_bias_in_axes3_x = rrrs_bias_t_3*rrrs_omega_1_in_axes3_y +
+        rrrs_bias_t_6*rrrs_omega_1_in_axes3_y - rrrs_bias_t_5*rrrs_qd_2_t -
+        rrrs_bias_t_7*rrrs_omega_3_in_axes3_z - rrrs_bias_t_8*rrrs_omega_1_in_axes3_y;
+    const real rrrs_bias_in_axes3_y = rrrs_bias_t_8*rrrs_omega_1_in_axes3_x -
+        rrrs_bias_t_3*rrrs_omega_1_in_axes3_x - rrrs_bias_t_4*rrrs_qd_2_t -
+        rrrs_bias_t_6*rrrs_omega_1_in_axes3_x;
+    const real rrrs_bias_in_axes3_z = rrrs_bias_t_7*rrrs_omega_1_in_axes3_x +
+        v->rrrs_d_3_in_axes3_y*(rrrs_W_2_in_axes2_yz*v->rrrs_c_3 -
+        v->rrrs_s_3_t*rrrs_zeta_2_in_axes2_y) -
+        rrrs_beta_3_in_axes3_y*rrrs_platform_joint_offset_x -
+        rrrs_bias_t_4*rrrs_omega_1_in_axes3_y - rrrs_bias_t_5*rrrs_omega_1_in_axes3_x -
+        v->rrrs_d_3_in_axes3_x*rrrs_zeta_2_in_axes3_y;
+    v->rrrs_S_dot_t = rrrs_S_dot_t;
+    v->rrrs_S_dot_t_2 = rrrs_S_dot_t_2;
+    v->rrrs_S_dot_t_3 = rrrs_S_dot_t_3;
+    v->rrrs_S_dot_x = rrrs_S_dot_x;
+    v->rrrs_S_dot_y = rrrs_S_dot_y;
+    v->rrrs_S_dot_z = rrrs_S_dot_z;
+    v->rrrs_qd_2_t = rrrs_qd_2_t;
+    v->rrrs_qd_3 = rrrs_qd_3;
+    v->rrrs_omega_1_in_axes2_x = rrrs_omega_1_in_axes2_x;
+    v->rrrs_omega_1_t = rrrs_omega_1_t;
+    v->rrrs_omega_1_in_axes3_x = rrrs_omega_1_in_axes3_x;
+    v->rrrs_omega_1_in_axes3_y = rrrs_omega_1_in_axes3_y;
+    v->rrrs_W_2_in_axes2_yz = rrrs_W_2_in_axes2_yz;
+    v->rrrs_W_2_in_axes2_xy = rrrs_W_2_in_axes2_xy;
+    v->rrrs_omega_3_in_axes3_z = rrrs_omega_3_in_axes3_z;
+    v->rrrs_W_3_in_axes3_xy = rrrs_W_3_in_axes3_xy;
+    v->rrrs_W_3_in_axes3_xz = rrrs_W_3_in_axes3_xz;
+    v->rrrs_W_3_in_axes3_yz = rrrs_W_3_in_axes3_yz;
+    v->rrrs_zeta_2_in_axes2_y = rrrs_zeta_2_in_axes2_y;
+    v->rrrs_zeta_3_t = rrrs_zeta_3_t;
+    v->rrrs_bias_t_3 = rrrs_bias_t_3;
+    v->rrrs_bias_t_6 = rrrs_bias_t_6;
+    v->rrrs_bias_t_8 = rrrs_bias_t_8;
+    v->rrrs_bias_in_axes3_x = rrrs_bias_in_axes3_x;
+    v->rrrs_bias_in_axes3_y = rrrs_bias_in_axes3_y;
+    v->rrrs_bias_in_axes3_z = rrrs_bias_in_axes3_z;
+}
+
+INLINE void stage_rrrs_A_V_X(size_t w, size_t j, const real *V, values_rrrs *v)
+{
+    /* (rrrs-S_ddot) acceleration of the connection point */
+    const real omega_y = V[4*w + j];
+    const real omega_z = V[5*w + j];
+    const real rrrs_S_ddot_x = v->rrrs_a_p_x + omega_y*v->rrrs_S_dot_t_3 -
+        omega_z*v->rrrs_S_dot_t_2;
+    const real omega_x = V[3*w + j];
+    const real rrrs_S_ddot_y = v->rrrs_a_p_y + omega_z*v->rrrs_S_dot_t -
+        omega_x*v->rrrs_S_dot_t_3;
+    const real rrrs_S_ddot_z = v->rrrs_a_p_z + omega_x*v->rrrs_S_dot_t_2 -
+        omega_y*v->rrrs_S_dot_t;
+    v->rrrs_S_ddot_x = rrrs_S_ddot_x;
+    v->rrrs_S_ddot_y = rrrs_S_ddot_y;
+    v->rrrs_S_ddot_z = rrrs_S_ddot_z;
+}
+
+INLINE void stage_rrrs_H_condition(const prepared *m, size_t i, values_rrrs *v)
+{
+    /* (rrrs-r_2) from joint 2 to the connection point, along the links */
+    const real rrrs_platform_joint_offset_x = m->rrrs_platform_joint_offset_x[i];
+    const real rrrs_r_2_in_axes3_y = v->rrrs_r_2_in_axes2_x*v->rrrs_s_3_t -
+        v->rrrs_c_3*rrrs_platform_joint_offset_x*v->rrrs_s_3_t;
+    /* (rrrs-w_2) reciprocal vector 2 */
+    const real rrrs_w_2_in_axes3_x = -1/rrrs_r_2_in_axes3_y;
+    const real rrrs_w_2_x = rrrs_w_2_in_axes3_x*(v->axis_y_rrrs_axes3_y*v->axis_z_rrrs_axes3_z
+        - v->axis_y_rrrs_axes3_z*v->axis_z_rrrs_axes3_y);
+    const real rrrs_w_2_y = rrrs_w_2_in_axes3_x*(v->axis_y_rrrs_axes3_z*v->axis_z_rrrs_axes3_x
+        - v->axis_y_rrrs_axes3_x*v->axis_z_rrrs_axes3_z);
+    const real rrrs_w_2_z = rrrs_w_2_in_axes3_x*(v->axis_y_rrrs_axes3_x*v->axis_z_rrrs_axes3_y
+        - v->axis_y_rrrs_axes3_y*v->axis_z_rrrs_axes3_x);
+    /* (rrrs-H_a_2) moment of the column's unit force about the platform origin */
+    const real rrrs_H_a_2_x = v->rrrs_q_y*rrrs_w_2_z - v->rrrs_q_z*rrrs_w_2_y;
+    const real rrrs_H_a_2_y = v->rrrs_q_z*rrrs_w_2_x - v->rrrs_q_x*rrrs_w_2_z;
+    const real rrrs_H_a_2_z = v->rrrs_q_x*rrrs_w_2_y - v->rrrs_q_y*rrrs_w_2_x;
+    v->rrrs_r_2_in_axes3_y = rrrs_r_2_in_axes3_y;
+    v->rrrs_w_2_x = rrrs_w_2_x;
+    v->rrrs_w_2_y = rrrs_w_2_y;
+    v->rrrs_w_2_z = rrrs_w_2_z;
+    v->rrrs_H_a_2_x = rrrs_H_a_2_x;
+    v->rrrs_H_a_2_y = rrrs_H_a_2_y;
+    v->rrrs_H_a_2_z = rrrs_H_a_2_z;
+}
+
+INLINE void stage_rrrs_M_dynamics(const prepared *m, size_t i, values_rrrs *v)
+{
+    /* (rrrs-w_3) reciprocal vector 3 */
+    const real rrrs_w_3_in_axes3_y = m->rrrs_w_3_in_axes3_y[i];
+    const real rrrs_w_3_in_axes3_x =
+        -v->rrrs_r_2_in_axes3_x*v->rrrs_w_2_in_axes3_x*rrrs_w_3_in_axes3_y;
+    /* (rrrs-d_alpha_3) coefficient of the acceleration in: angular acceleration of link 3 */
+    const real rrrs_d_alpha_3_in_axes3_xz = v->rrrs_e_1_in_axes3_x*v->rrrs_w_1_in_axes3_z;
+    const real rrrs_d_alpha_3_in_axes3_yz = v->rrrs_e_1_in_axes3_y*v->rrrs_w_1_in_axes3_z;
+    /* (rrrs-D_1_3) inertia of joint 3 along joint 1 */
+    const real rrrs_J_3_in_spec3_xz = m->rrrs_J_3_in_spec3_xz[i];
+    const real rrrs_J_3_in_spec3_yz = m->rrrs_J_3_in_spec3_yz[i];
+    const real rrrs_D_1_3 = rrrs_J_3_in_spec3_xz*v->rrrs_e_1_in_axes3_x +
+        rrrs_J_3_in_spec3_yz*v->rrrs_e_1_in_axes3_y;
+    /* (rrrs-Jc_2) inertia tensor of the links from 2 outwards about joint 2, that of the last link
+       about the connection point */
+    const real rrrs_J_3_in_spec3_xy = m->rrrs_J_3_in_spec3_xy[i];
+    const real rrrs_Jc_2_t = rrrs_J_3_in_spec3_xy*v->rrrs_s_3_t;
+    const real rrrs_J_3_in_spec3_xx = m->rrrs_J_3_in_spec3_xx[i];
+    const real rrrs_Jc_2_t_2 = rrrs_Jc_2_t + rrrs_J_3_in_spec3_xx*v->rrrs_c_3;
+    const real rrrs_Jc_2_t_3 = rrrs_J_3_in_spec3_xy*v->rrrs_c_3;
+    const real rrrs_J_3_in_spec3_yy = m->rrrs_J_3_in_spec3_yy[i];
+    const real rrrs_Jc_2_t_4 = rrrs_Jc_2_t_3 + rrrs_J_3_in_spec3_yy*v->rrrs_s_3_t;
+    const real rrrs_J_2_in_spec2_xy = m->rrrs_J_2_in_spec2_xy[i];
+    const real rrrs_Jc_2_in_axes2_xy = rrrs_J_2_in_spec2_xy + rrrs_Jc_2_t_4*v->rrrs_c_3 -
+        rrrs_Jc_2_t_2*v->rrrs_s_3_t;
+    const real rrrs_J_2_in_spec2_xx = m->rrrs_J_2_in_spec2_xx[i];
+    const real rrrs_J_2_in_spec2_yy = m->rrrs_J_2_in_spec2_yy[i];
+    const real rrrs_Jc_2_in_axes1_zz = v->rrrs_c_2*(v->rrrs_c_2*(rrrs_J_2_in_spec2_xx +
+        rrrs_Jc_2_t_2*v->rrrs_c_3 + rrrs_Jc_2_t_4*v->rrrs_s_3_t) -
+        rrrs_Jc_2_in_axes2_xy*v->rrrs_s_2) - v->rrrs_s_2*(rrrs_Jc_2_in_axes2_xy*v->rrrs_c_2 -
+        v->rrrs_s_2*(rrrs_J_2_in_spec2_yy + v->rrrs_c_3*(rrrs_J_3_in_spec3_yy*v->rrrs_c_3 -
+        rrrs_Jc_2_t) - v->rrrs_s_3_t*(rrrs_Jc_2_t_3 - rrrs_J_3_in_spec3_xx*v->rrrs_s_3_t)));
+    /* (rrrs-d_Gamma_3) coefficient of the acceleration in: moment about axis 3 of the distal links'
+       inertia and weight */
+    const real rrrs_d_Gamma_3_in_axes3_z = rrrs_D_1_3*v->rrrs_w_1_in_axes3_z;
+    const real rrrs_d_Gamma_3_t = m->rrrs_d_Gamma_3_t[i];
+    const real rrrs_d_Gamma_3_t_2 = rrrs_d_Gamma_3_t*v->rrrs_r_2_in_axes3_x;
+    const real rrrs_J_3_in_spec3_zz = m->rrrs_J_3_in_spec3_zz[i];
+    const real rrrs_h_3_in_spec3_y = m->rrrs_h_3_in_spec3_y[i];
+    const real rrrs_d_Gamma_3_in_axes3_x = v->rrrs_w_2_in_axes3_x*(rrrs_J_3_in_spec3_zz -
+        rrrs_d_Gamma_3_t_2) - rrrs_h_3_in_spec3_y;
+    /* (rrrs-d_Gamma_2) coefficient of the acceleration in: moment about axis 2 of the distal links'
+       inertia and weight */
+    const real rrrs_Jc_2_in_axes2_zz = m->rrrs_Jc_2_in_axes2_zz[i];
+    const real rrrs_d_Gamma_2_in_axes3_x = v->rrrs_w_2_in_axes3_x*(rrrs_Jc_2_in_axes2_zz -
+        rrrs_d_Gamma_3_t_2) - rrrs_h_3_in_spec3_y;
+    /* (rrrs-d_Gamma_1) coefficient of the acceleration in: moment about axis 1 of the distal links'
+       inertia and weight */
+    const real rrrs_J_1_in_spec1_xx = m->rrrs_J_1_in_spec1_xx[i];
+    const real rrrs_h_3_in_spec3_x = m->rrrs_h_3_in_spec3_x[i];
+    const real rrrs_d_Gamma_1_in_axes3_z = v->rrrs_e_1_in_axes3_x*rrrs_h_3_in_spec3_y +
+        v->rrrs_w_1_in_axes3_z*(rrrs_J_1_in_spec1_xx + rrrs_Jc_2_in_axes1_zz) -
+        v->rrrs_e_1_in_axes3_y*rrrs_h_3_in_spec3_x;
+    /* (rrrs-d_G) coefficient of the acceleration in: force at the connection point that balances the
+       leg's inertia and weight along all degrees of freedom */
+    const real rrrs_J_2_in_spec2_xz = m->rrrs_J_2_in_spec2_xz[i];
+    const real rrrs_J_2_in_spec2_yz = m->rrrs_J_2_in_spec2_yz[i];
+    const real rrrs_d_G_in_axes3_xz = rrrs_d_Gamma_3_in_axes3_z*rrrs_w_3_in_axes3_x +
+        v->rrrs_w_1_in_axes3_z*v->rrrs_w_2_in_axes3_x*(v->rrrs_c_2*(rrrs_J_2_in_spec2_xz +
+        rrrs_J_3_in_spec3_xz*v->rrrs_c_3 + rrrs_J_3_in_spec3_yz*v->rrrs_s_3_t) -
+        v->rrrs_s_2*(rrrs_J_2_in_spec2_yz + rrrs_J_3_in_spec3_yz*v->rrrs_c_3 -
+        rrrs_J_3_in_spec3_xz*v->rrrs_s_3_t));
+    /* (rrrs-d_c) coefficient of the acceleration in: leg force on the platform without actuation and
+       without the mass at the connection point */
+    const real rrrs_d_c_in_axes3_xx = rrrs_h_3_in_spec3_y*(v->rrrs_w_2_in_axes3_x +
+        rrrs_w_3_in_axes3_x) - rrrs_d_Gamma_2_in_axes3_x*v->rrrs_w_2_in_axes3_x -
+        rrrs_d_Gamma_3_in_axes3_x*rrrs_w_3_in_axes3_x;
+    const real rrrs_d_Gamma_3_in_axes3_y = m->rrrs_d_Gamma_3_in_axes3_y[i];
+    const real rrrs_d_phi_3_t = m->rrrs_d_phi_3_t[i];
+    const real rrrs_d_c_in_axes3_xy = rrrs_d_phi_3_t -
+        rrrs_d_Gamma_3_in_axes3_y*v->rrrs_w_2_in_axes3_x -
+        rrrs_d_Gamma_3_in_axes3_y*rrrs_w_3_in_axes3_x;
+    const real rrrs_h_3_in_spec3_z = m->rrrs_h_3_in_spec3_z[i];
+    const real rrrs_d_c_in_axes3_xz = -rrrs_d_G_in_axes3_xz -
+        rrrs_d_alpha_3_in_axes3_yz*rrrs_h_3_in_spec3_z;
+    const real rrrs_d_c_in_axes3_yz = rrrs_d_alpha_3_in_axes3_xz*rrrs_h_3_in_spec3_z -
+        rrrs_d_Gamma_3_in_axes3_z*rrrs_w_3_in_axes3_y;
+    v->rrrs_d_alpha_3_in_axes3_xz = rrrs_d_alpha_3_in_axes3_xz;
+    v->rrrs_d_alpha_3_in_axes3_yz = rrrs_d_alpha_3_in_axes3_yz;
+    v->rrrs_d_Gamma_1_in_axes3_z = rrrs_d_Gamma_1_in_axes3_z;
+    v->rrrs_d_c_in_axes3_xx = rrrs_d_c_in_axes3_xx;
+    v->rrrs_d_c_in_axes3_xy = rrrs_d_c_in_axes3_xy;
+    v->rrrs_d_c_in_axes3_xz = rrrs_d_c_in_axes3_xz;
+    v->rrrs_d_c_in_axes3_yz = rrrs_d_c_in_axes3_yz;
+}
+
+INLINE void stage_rrrs_Z_dynamics(const prepared *m, size_t w, size_t j, const real *V,
+    values_rrrs *v)
+{
+    /* (rrrs-u_1) centripetal acceleration of the connection point */
+    const real omega_y = V[4*w + j];
+    const real omega_z = V[5*w + j];
+    const real rrrs_u_1_x = omega_y*v->rrrs_S_dot_t_3 - omega_z*v->rrrs_S_dot_t_2;
+    const real omega_x = V[3*w + j];
+    const real rrrs_u_1_y = omega_z*v->rrrs_S_dot_t - omega_x*v->rrrs_S_dot_t_3;
+    const real rrrs_u_1_z = omega_x*v->rrrs_S_dot_t_2 - omega_y*v->rrrs_S_dot_t;
+    const real rrrs_u_1_in_axes3_z = v->axis_z_rrrs_axes3_x*rrrs_u_1_x +
+        v->axis_z_rrrs_axes3_y*rrrs_u_1_y + v->axis_z_rrrs_axes3_z*rrrs_u_1_z;
+    /* (rrrs-acc_3_o) remainder without the acceleration in: acceleration of the reference point of
+       link 3, less gravity */
+    const real gravity_x = m->gravity_x;
+    const real gravity_y = m->gravity_y;
+    const real gravity_z = m->gravity_z;
+    const real rrrs_acc_3_o_in_axes3_z = rrrs_u_1_in_axes3_z -
+        v->axis_z_rrrs_axes3_x*gravity_x - v->axis_z_rrrs_axes3_y*gravity_y -
+        v->axis_z_rrrs_axes3_z*gravity_z;
+    /* (rrrs-mu_3_o) remainder without the acceleration in: inertia moment of the links that turn with
+       link 3, about their reference points */
+    const real rrrs_mu_3_o_t = v->rrrs_omega_1_in_axes3_x*v->rrrs_omega_1_in_axes3_x;
+    const real rrrs_mu_3_o_t_2 = v->rrrs_omega_1_in_axes3_y*v->rrrs_omega_1_in_axes3_y;
+    /* (rrrs-mu_2_o) remainder without the acceleration in: inertia moment of the links that turn with
+       link 2, about their reference points */
+    const real rrrs_mu_2_o_t = v->rrrs_omega_1_in_axes2_x*v->rrrs_omega_1_in_axes2_x;
+    const real rrrs_mu_2_o_t_2 = v->rrrs_omega_1_t*v->rrrs_omega_1_t;
+    v->rrrs_u_1_x = rrrs_u_1_x;
+    v->rrrs_u_1_y = rrrs_u_1_y;
+    v->rrrs_u_1_z = rrrs_u_1_z;
+    v->rrrs_u_1_in_axes3_z = rrrs_u_1_in_axes3_z;
+    v->rrrs_acc_3_o_in_axes3_z = rrrs_acc_3_o_in_axes3_z;
+    v->rrrs_mu_3_o_t = rrrs_mu_3_o_t;
+    v->rrrs_mu_3_o_t_2 = rrrs_mu_3_o_t_2;
+    v->rrrs_mu_2_o_t = rrrs_mu_2_o_t;
+    v->rrrs_mu_2_o_t_2 = rrrs_mu_2_o_t_2;
+}
+
+INLINE void stage_rrrs_inverse_kinematics_potential(const prepared *m, size_t w, size_t i, size_t
+    j, const real *s, const real *X, values_rrrs *v)
+{
+    /* (rrrs-S) from the base point to the connection point */
+    const real R_xx = s[0*w + j];
+    const real R_xy = s[1*w + j];
+    const real R_xz = s[2*w + j];
+    const real rrrs_base_point_x = m->rrrs_base_point_x[i];
+    const real rrrs_platform_point_x = m->rrrs_platform_point_x[i];
+    const real rrrs_platform_point_y = m->rrrs_platform_point_y[i];
+    const real rrrs_platform_point_z = m->rrrs_platform_point_z[i];
+    const real t_x = X[0*w + j];
+    const real rrrs_S_x = t_x + R_xx*rrrs_platform_point_x + R_xy*rrrs_platform_point_y +
+        R_xz*rrrs_platform_point_z - rrrs_base_point_x;
+    const real R_yx = s[3*w + j];
+    const real R_yy = s[4*w + j];
+    const real R_yz = s[5*w + j];
+    const real rrrs_base_point_y = m->rrrs_base_point_y[i];
+    const real t_y = X[1*w + j];
+    const real rrrs_S_y = t_y + R_yx*rrrs_platform_point_x + R_yy*rrrs_platform_point_y +
+        R_yz*rrrs_platform_point_z - rrrs_base_point_y;
+    const real R_zx = s[6*w + j];
+    const real R_zy = s[7*w + j];
+    const real R_zz = s[8*w + j];
+    const real rrrs_base_point_z = m->rrrs_base_point_z[i];
+    const real t_z = X[2*w + j];
+    const real rrrs_S_z = t_z + R_zx*rrrs_platform_point_x + R_zy*rrrs_platform_point_y +
+        R_zz*rrrs_platform_point_z - rrrs_base_point_z;
+    const real rrrs_base_frame_xy = m->rrrs_base_frame_xy[i];
+    const real rrrs_base_frame_yy = m->rrrs_base_frame_yy[i];
+    const real rrrs_base_frame_zy = m->rrrs_base_frame_zy[i];
+    const real rrrs_S_in_turn1_x = rrrs_S_x*rrrs_base_frame_xy + rrrs_S_y*rrrs_base_frame_yy +
+        rrrs_S_z*rrrs_base_frame_zy;
+    const real rrrs_base_frame_xz = m->rrrs_base_frame_xz[i];
+    const real rrrs_base_frame_yz = m->rrrs_base_frame_yz[i];
+    const real rrrs_base_frame_zz = m->rrrs_base_frame_zz[i];
+    const real rrrs_S_in_turn1_y = rrrs_S_x*rrrs_base_frame_xz + rrrs_S_y*rrrs_base_frame_yz +
+        rrrs_S_z*rrrs_base_frame_zz;
+    /* (rrrs-rho2_1) squared amplitude */
+    const real rrrs_rho2_1 = rrrs_S_in_turn1_x*rrrs_S_in_turn1_x +
+        rrrs_S_in_turn1_y*rrrs_S_in_turn1_y;
+    /* (rrrs-root_1) root, with the sign of the branch */
+    const real rrrs_branch_1 = m->rrrs_branch_1[i];
+    const real rrrs_root_1 = rrrs_branch_1*root(rrrs_rho2_1);
+    /* (rrrs-q_1) displacement of joint 1 */
+    const real inv_rrrs_rho2_1 = 1/rrrs_rho2_1;
+    /* (rrrs-x_2) from the origin of joint 2 to the connection point */
+    const real rrrs_base_frame_xx = m->rrrs_base_frame_xx[i];
+    const real rrrs_base_frame_yx = m->rrrs_base_frame_yx[i];
+    const real rrrs_base_frame_zx = m->rrrs_base_frame_zx[i];
+    const real rrrs_joint2_offset_x = m->rrrs_joint2_offset_x[i];
+    const real rrrs_x_2_in_axes1_z = rrrs_S_x*rrrs_base_frame_xx + rrrs_S_y*rrrs_base_frame_yx
+        + rrrs_S_z*rrrs_base_frame_zx - rrrs_joint2_offset_x;
+    /* (rrrs-Kd_2) projection on the centre's direction, from the distance fixed by the joints beyond
+       joint 2 */
+    const real rrrs_Kd_2_t_3 = rrrs_rho2_1 + rrrs_x_2_in_axes1_z*rrrs_x_2_in_axes1_z;
+    const real rrrs_Kd_2_t = m->rrrs_Kd_2_t[i];
+    const real rrrs_Kd_2_t_2 = m->rrrs_Kd_2_t_2[i];
+    const real rrrs_Kd_2 = rrrs_Kd_2_t + R(0.5)*rrrs_Kd_2_t_3 - rrrs_Kd_2_t_2;
+    /* (rrrs-Kc_2) factor of the cosine in the equation of joint 2 */
+    const real rrrs_joint3_offset_x = m->rrrs_joint3_offset_x[i];
+    const real rrrs_Kc_2 = rrrs_joint3_offset_x*rrrs_x_2_in_axes1_z;
+    /* (rrrs-Ks_2) factor of the sine in the equation of joint 2 */
+    const real rrrs_Ks_2 = rrrs_joint3_offset_x*rrrs_root_1;
+    /* (rrrs-rho2_2) squared amplitude */
+    const real rrrs_rho2_2 = rrrs_Kc_2*rrrs_Kc_2 + rrrs_Ks_2*rrrs_Ks_2;
+    /* (rrrs-disc_2) discriminant */
+    const real rrrs_disc_2 = rrrs_rho2_2 - rrrs_Kd_2*rrrs_Kd_2;
+    /* (rrrs-root_2) root, with the sign of the branch */
+    const real rrrs_branch_2 = m->rrrs_branch_2[i];
+    const real rrrs_root_2 = rrrs_branch_2*root(rrrs_disc_2);
+    /* (rrrs-q_2) displacement of joint 2 */
+    const real inv_rrrs_rho2_2 = 1/rrrs_rho2_2;
+    /* (rrrs-x_3) from the origin of joint 3 to the connection point */
+    const real inv_rrrs_size_t = m->inv_rrrs_size_t[i];
+    const real rrrs_x_3_in_axes2_x = inv_rrrs_size_t*rrrs_Kd_2*rrrs_joint3_offset_x -
+        rrrs_joint3_offset_x;
+    v->rrrs_S_in_turn1_x = rrrs_S_in_turn1_x;
+    v->rrrs_S_in_turn1_y = rrrs_S_in_turn1_y;
+    v->rrrs_rho2_1 = rrrs_rho2_1;
+    v->rrrs_root_1 = rrrs_root_1;
+    v->inv_rrrs_rho2_1 = inv_rrrs_rho2_1;
+    v->rrrs_Kd_2 = rrrs_Kd_2;
+    v->rrrs_Kc_2 = rrrs_Kc_2;
+    v->rrrs_Ks_2 = rrrs_Ks_2;
+    v->rrrs_rho2_2 = rrrs_rho2_2;
+    v->rrrs_disc_2 = rrrs_disc_2;
+    v->rrrs_root_2 = rrrs_root_2;
+    v->inv_rrrs_rho2_2 = inv_rrrs_rho2_2;
+    v->rrrs_x_3_in_axes2_x = rrrs_x_3_in_axes2_x;
+}
+
+INLINE void stage_rrrs_legs_required(const prepared *m, size_t i, values_rrrs *v)
+{
+    /* (rrrs-S_ddot) acceleration of the connection point */
+    const real rrrs_S_ddot_in_axes3_x = v->axis_x_rrrs_axes3_x*v->rrrs_S_ddot_x +
+        v->axis_x_rrrs_axes3_y*v->rrrs_S_ddot_y + v->axis_x_rrrs_axes3_z*v->rrrs_S_ddot_z;
+    const real rrrs_S_ddot_in_axes3_y = v->axis_y_rrrs_axes3_x*v->rrrs_S_ddot_x +
+        v->axis_y_rrrs_axes3_y*v->rrrs_S_ddot_y + v->axis_y_rrrs_axes3_z*v->rrrs_S_ddot_z;
+    const real rrrs_S_ddot_in_axes3_z = v->axis_z_rrrs_axes3_x*v->rrrs_S_ddot_x +
+        v->axis_z_rrrs_axes3_y*v->rrrs_S_ddot_y + v->axis_z_rrrs_axes3_z*v->rrrs_S_ddot_z;
+    /* (rrrs-rel) acceleration of the connection point left to the joint accelerations */
+    const real rrrs_rel_in_axes3_x = rrrs_S_ddot_in_axes3_x - v->rrrs_bias_in_axes3_x;
+    const real rrrs_rel_in_axes3_y = rrrs_S_ddot_in_axes3_y - v->rrrs_bias_in_axes3_y;
+    const real rrrs_rel_in_axes3_z = rrrs_S_ddot_in_axes3_z - v->rrrs_bias_in_axes3_z;
+    /* (rrrs-qdd_1) acceleration of joint 1 */
+    const real rrrs_qdd_1 = rrrs_rel_in_axes3_z*v->rrrs_w_1_in_axes3_z;
+    /* (rrrs-qdd_2) acceleration of joint 2 */
+    const real rrrs_qdd_2 = rrrs_rel_in_axes3_x*v->rrrs_w_2_in_axes3_x;
+    /* (rrrs-alpha_1) angular acceleration of link 1 */
+    const real rrrs_alpha_1_in_axes2_x = v->rrrs_c_2*rrrs_qdd_1;
+    const real rrrs_alpha_1_t = rrrs_qdd_1*v->rrrs_s_2;
+    /* (rrrs-alpha_2) angular acceleration of link 2 */
+    const real rrrs_alpha_2_in_axes2_x = v->rrrs_W_2_in_axes2_yz + rrrs_alpha_1_in_axes2_x;
+    const real rrrs_alpha_2_in_axes2_y = v->rrrs_zeta_2_in_axes2_y - rrrs_alpha_1_t;
+    /* (rrrs-B_2) acceleration tensor of link 2 */
+    const real rrrs_B_2_in_axes2_xy = v->rrrs_W_2_in_axes2_xy - rrrs_qdd_2;
+    const real rrrs_B_2_in_axes2_yx = v->rrrs_W_2_in_axes2_xy + rrrs_qdd_2;
+    const real rrrs_B_2_in_axes2_zx = -rrrs_alpha_2_in_axes2_y - v->rrrs_zeta_2_in_axes2_y;
+    const real rrrs_B_2_in_axes2_zy = v->rrrs_W_2_in_axes2_yz + rrrs_alpha_2_in_axes2_x;
+    /* (rrrs-alpha_3) angular acceleration of link 3 */
+    const real rrrs_alpha_3_in_axes3_x = rrrs_alpha_2_in_axes2_x*v->rrrs_c_3 +
+        v->rrrs_omega_1_in_axes3_y*v->rrrs_qd_3 - rrrs_alpha_2_in_axes2_y*v->rrrs_s_3_t;
+    const real rrrs_alpha_3_in_axes3_y = rrrs_alpha_2_in_axes2_x*v->rrrs_s_3_t +
+        rrrs_alpha_2_in_axes2_y*v->rrrs_c_3 - v->rrrs_zeta_3_t;
+    const real rrrs_w_3_in_axes3_y = m->rrrs_w_3_in_axes3_y[i];
+    const real rrrs_alpha_3_in_axes3_z = rrrs_qdd_2 + rrrs_w_3_in_axes3_y*(rrrs_rel_in_axes3_y
+        - rrrs_qdd_2*v->rrrs_r_2_in_axes3_x);
+    /* (rrrs-B_3) acceleration tensor of link 3 */
+    const real rrrs_B_3_in_axes3_xy = v->rrrs_W_3_in_axes3_xy - rrrs_alpha_3_in_axes3_z;
+    const real rrrs_B_3_in_axes3_xz = v->rrrs_W_3_in_axes3_xz + rrrs_alpha_3_in_axes3_y;
+    const real rrrs_B_3_in_axes3_yx = v->rrrs_W_3_in_axes3_xy + rrrs_alpha_3_in_axes3_z;
+    const real rrrs_B_3_in_axes3_yz = v->rrrs_W_3_in_axes3_yz - rrrs_alpha_3_in_axes3_x;
+    const real rrrs_B_3_in_axes3_zx = v->rrrs_W_3_in_axes3_xz - rrrs_alpha_3_in_axes3_y;
+    const real rrrs_B_3_in_axes3_zy = v->rrrs_W_3_in_axes3_yz + rrrs_alpha_3_in_axes3_x;
+    /* (rrrs-acc_3) acceleration of the reference point of link 3, less gravity */
+    const real gravity_x = m->gravity_x;
+    const real gravity_y = m->gravity_y;
+    const real gravity_z = m->gravity_z;
+    const real rrrs_acc_3_in_axes3_x = rrrs_S_ddot_in_axes3_x -
+        v->axis_x_rrrs_axes3_x*gravity_x - v->axis_x_rrrs_axes3_y*gravity_y -
+        v->axis_x_rrrs_axes3_z*gravity_z;
+    const real rrrs_acc_3_in_axes3_y = rrrs_S_ddot_in_axes3_y -
+        v->axis_y_rrrs_axes3_x*gravity_x - v->axis_y_rrrs_axes3_y*gravity_y -
+        v->axis_y_rrrs_axes3_z*gravity_z;
+    const real rrrs_acc_3_in_axes3_z = rrrs_S_ddot_in_axes3_z -
+        v->axis_z_rrrs_axes3_x*gravity_x - v->axis_z_rrrs_axes3_y*gravity_y -
+        v->axis_z_rrrs_axes3_z*gravity_z;
+    /* (rrrs-mu_3) inertia moment of the links that turn with link 3, about their reference points */
+    const real rrrs_mu_3_t = v->rrrs_omega_1_in_axes3_x*v->rrrs_omega_1_in_axes3_x;
+    const real rrrs_mu_3_t_2 = v->rrrs_omega_1_in_axes3_y*v->rrrs_omega_1_in_axes3_y;
+    const real rrrs_mu_3_t_3 = v->rrrs_omega_3_in_axes3_z*v->rrrs_omega_3_in_axes3_z;
+    const real rrrs_J_3_in_spec3_xy = m->rrrs_J_3_in_spec3_xy[i];
+    const real rrrs_J_3_in_spec3_xz = m->rrrs_J_3_in_spec3_xz[i];
+    const real rrrs_J_3_in_spec3_yz = m->rrrs_J_3_in_spec3_yz[i];
+    const real rrrs_Sigma_3_in_axes3_yy = m->rrrs_Sigma_3_in_axes3_yy[i];
+    const real rrrs_Sigma_3_in_axes3_zz = m->rrrs_Sigma_3_in_axes3_zz[i];
+    const real rrrs_h_3_in_spec3_y = m->rrrs_h_3_in_spec3_y[i];
+    const real rrrs_h_3_in_spec3_z = m->rrrs_h_3_in_spec3_z[i];
+    const real rrrs_mu_3_in_axes3_x = rrrs_B_3_in_axes3_yx*rrrs_J_3_in_spec3_xz +
+        rrrs_B_3_in_axes3_zy*rrrs_Sigma_3_in_axes3_yy + rrrs_J_3_in_spec3_yz*(rrrs_mu_3_t_2 -
+        rrrs_mu_3_t_3) + rrrs_acc_3_in_axes3_z*rrrs_h_3_in_spec3_y -
+        rrrs_B_3_in_axes3_yz*rrrs_Sigma_3_in_axes3_zz -
+        rrrs_B_3_in_axes3_zx*rrrs_J_3_in_spec3_xy - rrrs_acc_3_in_axes3_y*rrrs_h_3_in_spec3_z;
+    const real rrrs_Sigma_3_in_axes3_xx = m->rrrs_Sigma_3_in_axes3_xx[i];
+    const real rrrs_h_3_in_spec3_x = m->rrrs_h_3_in_spec3_x[i];
+    const real rrrs_mu_3_in_axes3_y = rrrs_B_3_in_axes3_xz*rrrs_Sigma_3_in_axes3_zz +
+        rrrs_B_3_in_axes3_zy*rrrs_J_3_in_spec3_xy + rrrs_acc_3_in_axes3_x*rrrs_h_3_in_spec3_z
+        - rrrs_B_3_in_axes3_xy*rrrs_J_3_in_spec3_yz -
+        rrrs_B_3_in_axes3_zx*rrrs_Sigma_3_in_axes3_xx - rrrs_J_3_in_spec3_xz*(rrrs_mu_3_t -
+        rrrs_mu_3_t_3) - rrrs_acc_3_in_axes3_z*rrrs_h_3_in_spec3_x;
+    const real rrrs_mu_3_in_axes3_z = rrrs_B_3_in_axes3_xz*rrrs_J_3_in_spec3_yz +
+        rrrs_B_3_in_axes3_yx*rrrs_Sigma_3_in_axes3_xx + rrrs_J_3_in_spec3_xy*(rrrs_mu_3_t -
+        rrrs_mu_3_t_2) + rrrs_acc_3_in_axes3_y*rrrs_h_3_in_spec3_x -
+        rrrs_B_3_in_axes3_xy*rrrs_Sigma_3_in_axes3_yy -
+        rrrs_B_3_in_axes3_yz*rrrs_J_3_in_spec3_xz - rrrs_acc_3_in_axes3_x*rrrs_h_3_in_spec3_y;
+    /* (rrrs-mu_2) inertia moment of the links that turn with link 2, about their reference points */
+    const real rrrs_mu_2_t_3 = v->rrrs_omega_1_in_axes2_x*v->rrrs_omega_1_in_axes2_x;
+    const real rrrs_mu_2_t_4 = v->rrrs_omega_1_t*v->rrrs_omega_1_t;
+    const real rrrs_mu_2_t_5 = v->rrrs_qd_2_t*v->rrrs_qd_2_t;
+    const real rrrs_J_2_in_spec2_xy = m->rrrs_J_2_in_spec2_xy[i];
+    const real rrrs_J_2_in_spec2_xz = m->rrrs_J_2_in_spec2_xz[i];
+    const real rrrs_J_2_in_spec2_yz = m->rrrs_J_2_in_spec2_yz[i];
+    const real rrrs_Sigma_2_in_axes2_yy = m->rrrs_Sigma_2_in_axes2_yy[i];
+    const real rrrs_Sigma_2_in_axes2_zz = m->rrrs_Sigma_2_in_axes2_zz[i];
+    const real rrrs_h_2_in_spec2_y = m->rrrs_h_2_in_spec2_y[i];
+    const real rrrs_h_2_in_spec2_z = m->rrrs_h_2_in_spec2_z[i];
+    const real rrrs_mu_2_in_axes2_x = rrrs_B_2_in_axes2_yx*rrrs_J_2_in_spec2_xz +
+        rrrs_B_2_in_axes2_zy*rrrs_Sigma_2_in_axes2_yy + rrrs_J_2_in_spec2_yz*(rrrs_mu_2_t_4 -
+        rrrs_mu_2_t_5) + rrrs_Sigma_2_in_axes2_zz*rrrs_alpha_1_in_axes2_x +
+        v->rrrs_g_in_axes2_y*rrrs_h_2_in_spec2_z - rrrs_B_2_in_axes2_zx*rrrs_J_2_in_spec2_xy -
+        v->rrrs_g_in_axes1_y*rrrs_h_2_in_spec2_y;
+    const real rrrs_Sigma_2_in_axes2_xx = m->rrrs_Sigma_2_in_axes2_xx[i];
+    const real rrrs_h_2_in_spec2_x = m->rrrs_h_2_in_spec2_x[i];
+    const real rrrs_mu_2_in_axes2_y = rrrs_B_2_in_axes2_zy*rrrs_J_2_in_spec2_xy +
+        v->rrrs_g_in_axes1_y*rrrs_h_2_in_spec2_x - rrrs_B_2_in_axes2_xy*rrrs_J_2_in_spec2_yz -
+        rrrs_B_2_in_axes2_zx*rrrs_Sigma_2_in_axes2_xx - rrrs_J_2_in_spec2_xz*(rrrs_mu_2_t_3 -
+        rrrs_mu_2_t_5) - rrrs_Sigma_2_in_axes2_zz*rrrs_alpha_1_t -
+        v->rrrs_g_in_axes2_x*rrrs_h_2_in_spec2_z;
+    const real rrrs_mu_2_in_axes2_z = rrrs_B_2_in_axes2_yx*rrrs_Sigma_2_in_axes2_xx +
+        rrrs_J_2_in_spec2_xy*(rrrs_mu_2_t_3 - rrrs_mu_2_t_4) +
+        rrrs_J_2_in_spec2_xz*rrrs_alpha_1_in_axes2_x +
+        v->rrrs_g_in_axes2_x*rrrs_h_2_in_spec2_y -
+        rrrs_B_2_in_axes2_xy*rrrs_Sigma_2_in_axes2_yy - rrrs_J_2_in_spec2_yz*rrrs_alpha_1_t -
+        v->rrrs_g_in_axes2_y*rrrs_h_2_in_spec2_x;
+    /* (rrrs-N_2) moment about joint 2 of the links from 2 outwards, the force at the connection point
+       left out */
+    const real rrrs_N_2_in_axes2_x = rrrs_mu_2_in_axes2_x + v->rrrs_c_3*rrrs_mu_3_in_axes3_x +
+        rrrs_mu_3_in_axes3_y*v->rrrs_s_3_t;
+    const real rrrs_N_2_in_axes2_y = rrrs_mu_2_in_axes2_y + v->rrrs_c_3*rrrs_mu_3_in_axes3_y -
+        rrrs_mu_3_in_axes3_x*v->rrrs_s_3_t;
+    const real rrrs_N_2_in_axes2_z = rrrs_mu_2_in_axes2_z + rrrs_mu_3_in_axes3_z;
+    /* (rrrs-mu_1) inertia moment of the links that turn with link 1, about their reference points */
+    const real rrrs_J_1_in_spec1_xx = m->rrrs_J_1_in_spec1_xx[i];
+    const real rrrs_h_1_in_spec1_y = m->rrrs_h_1_in_spec1_y[i];
+    const real rrrs_h_1_in_spec1_z = m->rrrs_h_1_in_spec1_z[i];
+    const real rrrs_mu_1_in_axes1_z = rrrs_J_1_in_spec1_xx*rrrs_qdd_1 +
+        v->rrrs_g_in_axes1_x*rrrs_h_1_in_spec1_z - v->rrrs_g_in_axes1_y*rrrs_h_1_in_spec1_y;
+    /* (rrrs-N_1) moment about joint 1 of the links from 1 outwards, the force at the connection point
+       left out */
+    const real rrrs_N_1_in_axes1_z = rrrs_mu_1_in_axes1_z + rrrs_N_2_in_axes2_x*v->rrrs_c_2 -
+        rrrs_N_2_in_axes2_y*v->rrrs_s_2;
+    /* (rrrs-G) force at the connection point that balances the leg's inertia and weight along all
+       degrees of freedom */
+    const real rrrs_G_in_axes3_y = rrrs_mu_3_in_axes3_z*rrrs_w_3_in_axes3_y;
+    /* (rrrs-c) leg force on the platform without actuation and without the mass at the connection
+       point */
+    const real rrrs_c_in_axes3_x = rrrs_h_3_in_spec3_x*(rrrs_mu_3_t_2 + rrrs_mu_3_t_3) +
+        v->rrrs_w_2_in_axes3_x*(rrrs_G_in_axes3_y*v->rrrs_r_2_in_axes3_x -
+        rrrs_N_2_in_axes2_z) - rrrs_B_3_in_axes3_xy*rrrs_h_3_in_spec3_y -
+        rrrs_B_3_in_axes3_xz*rrrs_h_3_in_spec3_z;
+    const real rrrs_c_in_axes3_y = rrrs_h_3_in_spec3_y*(rrrs_mu_3_t + rrrs_mu_3_t_3) -
+        rrrs_G_in_axes3_y - rrrs_B_3_in_axes3_yx*rrrs_h_3_in_spec3_x -
+        rrrs_B_3_in_axes3_yz*rrrs_h_3_in_spec3_z;
+    const real rrrs_c_in_axes3_z = rrrs_h_3_in_spec3_z*(rrrs_mu_3_t + rrrs_mu_3_t_2) -
+        rrrs_B_3_in_axes3_zx*rrrs_h_3_in_spec3_x - rrrs_B_3_in_axes3_zy*rrrs_h_3_in_spec3_y -
+        rrrs_N_1_in_axes1_z*v->rrrs_w_1_in_axes3_z;
+    v->rrrs_acc_3_in_axes3_x = rrrs_acc_3_in_axes3_x;
+    v->rrrs_acc_3_in_axes3_y = rrrs_acc_3_in_axes3_y;
+    v->rrrs_acc_3_in_axes3_z = rrrs_acc_3_in_axes3_z;
+    v->rrrs_c_in_axes3_x = rrrs_c_in_axes3_x;
+    v->rrrs_c_in_axes3_y = rrrs_c_in_axes3_y;
+    v->rrrs_c_in_axes3_z = rrrs_c_in_axes3_z;
+}
+
 /* ---- functions of the state: M, Z, H and the like ---- */
 
 /* ---- dynamics ---- */
@@ -1432,486 +2396,113 @@ INLINE void dynamics_before(const prepared *m, size_t w, const real *X, const re
     verdict *t)
 {
     for (size_t k = 0; k < w; ++k) {
-        /* X: named entries */
-        const real X_0 = X[0*w + k];
-        const real t_x = X_0;
-        const real X_1 = X[1*w + k];
-        const real t_y = X_1;
-        const real X_2 = X[2*w + k];
-        const real t_z = X_2;
-        const real X_3 = X[3*w + k];
-        const real X_4 = X[4*w + k];
-        const real X_5 = X[5*w + k];
-        const real X_6 = X[6*w + k];
-        const real quaternion_norm2 = X_3*X_3 + X_4*X_4 + X_5*X_5 + X_6*X_6;
-        const real quaternion_scale = 2/quaternion_norm2;
-        const real quaternion_sx = X_3*quaternion_scale;
-        const real quaternion_sy = X_4*quaternion_scale;
-        const real quaternion_sz = X_5*quaternion_scale;
-        const real quaternion_wx = X_6*quaternion_sx;
-        const real quaternion_wy = X_6*quaternion_sy;
-        const real quaternion_wz = X_6*quaternion_sz;
-        const real quaternion_xx = X_3*quaternion_sx;
-        const real quaternion_xy = X_3*quaternion_sy;
-        const real quaternion_xz = X_3*quaternion_sz;
-        const real quaternion_yy = X_4*quaternion_sy;
-        const real quaternion_yz = X_4*quaternion_sz;
-        const real quaternion_zz = X_5*quaternion_sz;
-        const real R_xx = 1 - quaternion_yy - quaternion_zz;
-        const real R_xy = quaternion_xy - quaternion_wz;
-        const real R_xz = quaternion_wy + quaternion_xz;
-        const real R_yx = quaternion_wz + quaternion_xy;
-        const real R_yy = 1 - quaternion_xx - quaternion_zz;
-        const real R_yz = quaternion_yz - quaternion_wx;
-        const real R_zx = quaternion_xz - quaternion_wy;
-        const real R_zy = quaternion_wx + quaternion_yz;
-        const real R_zz = 1 - quaternion_xx - quaternion_yy;
-        /* V: named entries */
-        const real V_0 = V[0*w + k];
-        const real t_dot_x = V_0;
-        const real V_1 = V[1*w + k];
-        const real t_dot_y = V_1;
-        const real V_2 = V[2*w + k];
-        const real t_dot_z = V_2;
-        const real V_3 = V[3*w + k];
-        const real omega_x = V_3;
-        const real V_4 = V[4*w + k];
-        const real omega_y = V_4;
-        const real V_5 = V[5*w + k];
-        const real omega_z = V_5;
-        /* (h_star) first moment about the platform origin */
-        const real h_star_in_platform_x = m->h_star_in_platform_x;
-        const real h_star_in_platform_y = m->h_star_in_platform_y;
-        const real h_star_in_platform_z = m->h_star_in_platform_z;
-        const real h_star_x = R_xx*h_star_in_platform_x + R_xy*h_star_in_platform_y +
-            R_xz*h_star_in_platform_z;
-        const real h_star_y = R_yx*h_star_in_platform_x + R_yy*h_star_in_platform_y +
-            R_yz*h_star_in_platform_z;
-        const real h_star_z = R_zx*h_star_in_platform_x + R_zy*h_star_in_platform_y +
-            R_zz*h_star_in_platform_z;
-        /* (J_star) inertia tensor about the platform origin */
-        const real J_star_in_platform_xy = m->J_star_in_platform_xy;
-        const real J_star_in_platform_yz = m->J_star_in_platform_yz;
-        const real J_star_t_12 = m->J_star_t_12;
-        const real J_star_t = J_star_in_platform_xy*R_xx + J_star_in_platform_yz*R_xz -
-            J_star_t_12*R_xy;
-        const real J_star_t_2 = J_star_in_platform_xy*R_yx + J_star_in_platform_yz*R_yz -
-            J_star_t_12*R_yy;
-        const real J_star_t_3 = J_star_in_platform_xy*R_zx + J_star_in_platform_yz*R_zz -
-            J_star_t_12*R_zy;
-        const real J_star_in_platform_xz = m->J_star_in_platform_xz;
-        const real J_star_t_14 = m->J_star_t_14;
-        const real J_star_t_4 = J_star_t_14*R_xz - J_star_in_platform_xz*R_xx;
-        const real J_star_t_5 = J_star_t_14*R_yz - J_star_in_platform_xz*R_yx;
-        const real J_star_t_6 = J_star_t_14*R_zz - J_star_in_platform_xz*R_zx;
-        const real J_star_t_7 = J_star_t*R_xy - J_star_t_4*R_xz;
-        const real J_star_in_platform_xx = m->J_star_in_platform_xx;
-        const real J_star_xx = J_star_in_platform_xx + 2*J_star_t_7;
-        const real J_star_xy = J_star_t*R_yy + J_star_t_2*R_xy - J_star_t_4*R_yz -
-            J_star_t_5*R_xz;
-        const real J_star_xz = J_star_t*R_zy + J_star_t_3*R_xy - J_star_t_4*R_zz -
-            J_star_t_6*R_xz;
-        const real J_star_t_8 = J_star_t_2*R_yy - J_star_t_5*R_yz;
-        const real J_star_yy = J_star_in_platform_xx + 2*J_star_t_8;
-        const real J_star_yz = J_star_t_2*R_zy + J_star_t_3*R_yy - J_star_t_5*R_zz -
-            J_star_t_6*R_yz;
-        const real J_star_t_9 = J_star_t_3*R_zy - J_star_t_6*R_zz;
-        const real J_star_zz = J_star_in_platform_xx + 2*J_star_t_9;
-        /* (Z_p) centripetal force and weight of the platform */
-        const real Z_p_t_4 = h_star_z*omega_y - h_star_y*omega_z;
-        const real Z_p_t_5 = h_star_x*omega_z - h_star_z*omega_x;
-        const real Z_p_t_6 = h_star_y*omega_x - h_star_x*omega_y;
-        const real Z_p_t = m->Z_p_t;
-        const real Z_p_x = Z_p_t_6*omega_y - Z_p_t - Z_p_t_5*omega_z;
-        const real Z_p_t_2 = m->Z_p_t_2;
-        const real Z_p_y = Z_p_t_4*omega_z - Z_p_t_2 - Z_p_t_6*omega_x;
-        const real Z_p_t_3 = m->Z_p_t_3;
-        const real Z_p_z = Z_p_t_5*omega_x - Z_p_t_3 - Z_p_t_4*omega_y;
-        /* (Z_q) gyroscopic moment and moment of the weight of the platform */
-        const real gravity_x = m->gravity_x;
-        const real gravity_y = m->gravity_y;
-        const real gravity_z = m->gravity_z;
-        const real g_in_platform_x = R_xx*gravity_x + R_yx*gravity_y + R_zx*gravity_z;
-        const real g_in_platform_y = R_xy*gravity_x + R_yy*gravity_y + R_zy*gravity_z;
-        const real g_in_platform_z = R_xz*gravity_x + R_yz*gravity_y + R_zz*gravity_z;
-        const real omega_in_platform_x = R_xx*omega_x + R_yx*omega_y + R_zx*omega_z;
-        const real omega_in_platform_y = R_xy*omega_x + R_yy*omega_y + R_zy*omega_z;
-        const real omega_in_platform_z = R_xz*omega_x + R_yz*omega_y + R_zz*omega_z;
-        const real Z_q_t = J_star_in_platform_xx*omega_in_platform_x +
-            J_star_in_platform_xy*omega_in_platform_y + J_star_in_platform_xz*omega_in_platform_z;
-        const real J_star_in_platform_yy = m->J_star_in_platform_yy;
-        const real Z_q_t_2 = J_star_in_platform_xy*omega_in_platform_x +
-            J_star_in_platform_yy*omega_in_platform_y + J_star_in_platform_yz*omega_in_platform_z;
-        const real J_star_in_platform_zz = m->J_star_in_platform_zz;
-        const real Z_q_t_3 = J_star_in_platform_xz*omega_in_platform_x +
-            J_star_in_platform_yz*omega_in_platform_y + J_star_in_platform_zz*omega_in_platform_z;
-        const real Z_q_in_platform_x = Z_q_t_3*omega_in_platform_y +
-            g_in_platform_y*h_star_in_platform_z - Z_q_t_2*omega_in_platform_z -
-            g_in_platform_z*h_star_in_platform_y;
-        const real Z_q_in_platform_y = Z_q_t*omega_in_platform_z +
-            g_in_platform_z*h_star_in_platform_x - Z_q_t_3*omega_in_platform_x -
-            g_in_platform_x*h_star_in_platform_z;
-        const real Z_q_in_platform_z = Z_q_t_2*omega_in_platform_x +
-            g_in_platform_x*h_star_in_platform_y - Z_q_t*omega_in_platform_y -
-            g_in_platform_y*h_star_in_platform_x;
-        const real Z_q_x = R_xx*Z_q_in_platform_x + R_xy*Z_q_in_platform_y +
-            R_xz*Z_q_in_platform_z;
-        const real Z_q_y = R_yx*Z_q_in_platform_x + R_yy*Z_q_in_platform_y +
-            R_yz*Z_q_in_platform_z;
-        const real Z_q_z = R_zx*Z_q_in_platform_x + R_zy*Z_q_in_platform_y +
-            R_zz*Z_q_in_platform_z;
-        s[0*w + k] = t_x;
-        s[1*w + k] = t_y;
-        s[2*w + k] = t_z;
-        s[3*w + k] = R_xx;
-        s[4*w + k] = R_xy;
-        s[5*w + k] = R_xz;
-        s[6*w + k] = R_yx;
-        s[7*w + k] = R_yy;
-        s[8*w + k] = R_yz;
-        s[9*w + k] = R_zx;
-        s[10*w + k] = R_zy;
-        s[11*w + k] = R_zz;
-        s[12*w + k] = t_dot_x;
-        s[13*w + k] = t_dot_y;
-        s[14*w + k] = t_dot_z;
-        s[15*w + k] = omega_x;
-        s[16*w + k] = omega_y;
-        s[17*w + k] = omega_z;
-        s[18*w + k] = h_star_x;
-        s[19*w + k] = h_star_y;
-        s[20*w + k] = h_star_z;
-        s[21*w + k] = J_star_xx;
-        s[22*w + k] = J_star_xy;
-        s[23*w + k] = J_star_xz;
-        s[24*w + k] = J_star_yy;
-        s[25*w + k] = J_star_yz;
-        s[26*w + k] = J_star_zz;
-        s[27*w + k] = Z_p_x;
-        s[28*w + k] = Z_p_y;
-        s[29*w + k] = Z_p_z;
-        s[30*w + k] = Z_q_x;
-        s[31*w + k] = Z_q_y;
-        s[32*w + k] = Z_q_z;
-        t->invalid[k] += UNLESS(is_finite(quaternion_scale)) + UNLESS(quaternion_scale > 0);
+        values v;
+        stage_X(m, w, k, X, &v);
+        stage_V_X(w, k, V, &v);
+        stage_M_dynamics(m, &v);
+        stage_Z_dynamics(m, w, k, V, &v);
+        s[0*w + k] = v.R_xx;
+        s[1*w + k] = v.R_xy;
+        s[2*w + k] = v.R_xz;
+        s[3*w + k] = v.R_yx;
+        s[4*w + k] = v.R_yy;
+        s[5*w + k] = v.R_yz;
+        s[6*w + k] = v.R_zx;
+        s[7*w + k] = v.R_zy;
+        s[8*w + k] = v.R_zz;
+        s[9*w + k] = v.h_star_x;
+        s[10*w + k] = v.h_star_y;
+        s[11*w + k] = v.h_star_z;
+        s[12*w + k] = v.J_star_xx;
+        s[13*w + k] = v.J_star_xy;
+        s[14*w + k] = v.J_star_xz;
+        s[15*w + k] = v.J_star_yy;
+        s[16*w + k] = v.J_star_yz;
+        s[17*w + k] = v.J_star_zz;
+        s[18*w + k] = v.Z_p_x;
+        s[19*w + k] = v.Z_p_y;
+        s[20*w + k] = v.Z_p_z;
+        s[21*w + k] = v.Z_q_x;
+        s[22*w + k] = v.Z_q_y;
+        s[23*w + k] = v.Z_q_z;
+        t->invalid[k] += UNLESS(is_finite(v.quaternion_scale)) + UNLESS(v.quaternion_scale > 0);
     }
 }
 
 INLINE void dynamics_legs_rrrs(const prepared *m, size_t w, size_t leg, size_t legs, const real
-    *s, size_t states, size_t count, int add, real *terms, real *o)
+    *s, size_t states, size_t count, int add, const real *X, const real *V, real *terms, real *o)
 {
     for (size_t k = 0; k < count; ++k) {
         const size_t i = leg + legs*k;
         const size_t j = states*k;
-        /* (rrrs-S) from the base point to the connection point */
-        const real R_xx = s[3*w + j];
-        const real R_xy = s[4*w + j];
-        const real R_xz = s[5*w + j];
-        const real rrrs_platform_point_x = m->rrrs_platform_point_x[i];
-        const real rrrs_platform_point_y = m->rrrs_platform_point_y[i];
-        const real rrrs_platform_point_z = m->rrrs_platform_point_z[i];
-        const real rrrs_q_x = R_xx*rrrs_platform_point_x + R_xy*rrrs_platform_point_y +
-            R_xz*rrrs_platform_point_z;
-        const real R_yx = s[6*w + j];
-        const real R_yy = s[7*w + j];
-        const real R_yz = s[8*w + j];
-        const real rrrs_q_y = R_yx*rrrs_platform_point_x + R_yy*rrrs_platform_point_y +
-            R_yz*rrrs_platform_point_z;
-        const real R_zx = s[9*w + j];
-        const real R_zy = s[10*w + j];
-        const real R_zz = s[11*w + j];
-        const real rrrs_q_z = R_zx*rrrs_platform_point_x + R_zy*rrrs_platform_point_y +
-            R_zz*rrrs_platform_point_z;
-        const real rrrs_base_point_x = m->rrrs_base_point_x[i];
-        const real t_x = s[0*w + j];
-        const real rrrs_S_x = rrrs_q_x + t_x - rrrs_base_point_x;
-        const real rrrs_base_point_y = m->rrrs_base_point_y[i];
-        const real t_y = s[1*w + j];
-        const real rrrs_S_y = rrrs_q_y + t_y - rrrs_base_point_y;
-        const real rrrs_base_point_z = m->rrrs_base_point_z[i];
-        const real t_z = s[2*w + j];
-        const real rrrs_S_z = rrrs_q_z + t_z - rrrs_base_point_z;
-        /* (rrrs-px_1) component along the reference direction */
-        const real rrrs_base_frame_xy = m->rrrs_base_frame_xy[i];
-        const real rrrs_base_frame_yy = m->rrrs_base_frame_yy[i];
-        const real rrrs_base_frame_zy = m->rrrs_base_frame_zy[i];
-        const real rrrs_px_1 = rrrs_S_x*rrrs_base_frame_xy + rrrs_S_y*rrrs_base_frame_yy +
-            rrrs_S_z*rrrs_base_frame_zy;
-        /* (rrrs-py_1) component across the reference direction */
-        const real rrrs_base_frame_xz = m->rrrs_base_frame_xz[i];
-        const real rrrs_base_frame_yz = m->rrrs_base_frame_yz[i];
-        const real rrrs_base_frame_zz = m->rrrs_base_frame_zz[i];
-        const real rrrs_py_1 = rrrs_S_x*rrrs_base_frame_xz + rrrs_S_y*rrrs_base_frame_yz +
-            rrrs_S_z*rrrs_base_frame_zz;
-        /* (rrrs-rho2_1) squared amplitude */
-        const real rrrs_rho2_1 = rrrs_px_1*rrrs_px_1 + rrrs_py_1*rrrs_py_1;
-        /* (rrrs-root_1) root, with the sign of the branch */
-        const real rrrs_branch_1 = m->rrrs_branch_1[i];
-        const real rrrs_root_1 = rrrs_branch_1*root(rrrs_rho2_1);
-        /* (rrrs-c_1) cosine of the angle of joint 1 from its reference direction */
-        const real inv_rrrs_rho2_1 = 1/rrrs_rho2_1;
-        const real rrrs_c_1 = -inv_rrrs_rho2_1*rrrs_py_1*rrrs_root_1;
-        /* (rrrs-s_1) sine of the angle of joint 1 from its reference direction */
-        const real rrrs_s_1 = inv_rrrs_rho2_1*rrrs_px_1*rrrs_root_1;
-        /* (rrrs-xi_1) the vector from joint 1 to the connection point, resolved along link 1 */
-        const real rrrs_base_frame_xx = m->rrrs_base_frame_xx[i];
-        const real rrrs_base_frame_yx = m->rrrs_base_frame_yx[i];
-        const real rrrs_base_frame_zx = m->rrrs_base_frame_zx[i];
-        const real rrrs_xi_1_in_axes1_z = rrrs_S_x*rrrs_base_frame_xx +
-            rrrs_S_y*rrrs_base_frame_yx + rrrs_S_z*rrrs_base_frame_zx;
-        /* (rrrs-x_2) from the origin of joint 2 to the connection point */
-        const real rrrs_joint2_offset_x = m->rrrs_joint2_offset_x[i];
-        const real rrrs_x_2_in_axes1_z = rrrs_xi_1_in_axes1_z - rrrs_joint2_offset_x;
-        /* (rrrs-Kd_2) projection on the centre's direction, from the distance fixed by the joints beyond
-           joint 2 */
-        const real rrrs_Kd_2_t_3 = rrrs_root_1*rrrs_root_1 +
-            rrrs_x_2_in_axes1_z*rrrs_x_2_in_axes1_z;
-        const real rrrs_Kd_2_t = m->rrrs_Kd_2_t[i];
-        const real rrrs_Kd_2_t_2 = m->rrrs_Kd_2_t_2[i];
-        const real rrrs_Kd_2 = rrrs_Kd_2_t + R(0.5)*rrrs_Kd_2_t_3 - rrrs_Kd_2_t_2;
-        /* (rrrs-Kc_2) factor of the cosine in the equation of joint 2 */
-        const real rrrs_joint3_offset_x = m->rrrs_joint3_offset_x[i];
-        const real rrrs_Kc_2 = -rrrs_joint3_offset_x*rrrs_root_1;
-        /* (rrrs-Ks_2) factor of the sine in the equation of joint 2 */
-        const real rrrs_Ks_2 = rrrs_joint3_offset_x*rrrs_x_2_in_axes1_z;
-        /* (rrrs-rho2_2) squared amplitude */
-        const real rrrs_rho2_2 = rrrs_Kc_2*rrrs_Kc_2 + rrrs_Ks_2*rrrs_Ks_2;
-        /* (rrrs-disc_2) discriminant */
-        const real rrrs_disc_2 = rrrs_rho2_2 - rrrs_Kd_2*rrrs_Kd_2;
-        /* (rrrs-root_2) root, with the sign of the branch */
-        const real rrrs_branch_2 = m->rrrs_branch_2[i];
-        const real rrrs_root_2 = rrrs_branch_2*root(rrrs_disc_2);
-        /* (rrrs-c_2) cosine of the angle of joint 2 from its reference direction */
-        const real rrrs_c_2_t = -1/rrrs_rho2_2;
-        const real rrrs_c_2 = rrrs_c_2_t*(rrrs_Ks_2*rrrs_root_2 - rrrs_Kc_2*rrrs_Kd_2);
-        /* (rrrs-s_2) sine of the angle of joint 2 from its reference direction */
-        const real rrrs_s_2 = rrrs_c_2_t*(-rrrs_Kc_2*rrrs_root_2 - rrrs_Kd_2*rrrs_Ks_2);
-        /* (rrrs-x_3) from the origin of joint 3 to the connection point */
-        const real inv_rrrs_size_t = m->inv_rrrs_size_t[i];
-        const real rrrs_x_3_in_axes2_x = inv_rrrs_size_t*rrrs_Kd_2*rrrs_joint3_offset_x -
-            rrrs_joint3_offset_x;
-        /* (rrrs-c_3) cosine of the angle of joint 3 from its reference direction */
-        const real inv_rrrs_size_t_2 = m->inv_rrrs_size_t_2[i];
-        const real rrrs_platform_joint_offset_x = m->rrrs_platform_joint_offset_x[i];
-        const real rrrs_c_3 = inv_rrrs_size_t_2*rrrs_platform_joint_offset_x*rrrs_x_3_in_axes2_x;
-        /* (rrrs-s_3) sine of the angle of joint 3 from its reference direction */
-        const real rrrs_s_3_t =
-            inv_rrrs_size_t*inv_rrrs_size_t_2*rrrs_joint3_offset_x*rrrs_platform_joint_offset_x*rrrs_root_2;
-        /* (rrrs-S_dot) velocity of the connection point */
-        const real omega_y = s[16*w + j];
-        const real omega_z = s[17*w + j];
-        const real rrrs_S_dot_t = omega_y*rrrs_q_z - omega_z*rrrs_q_y;
-        const real omega_x = s[15*w + j];
-        const real rrrs_S_dot_t_2 = omega_z*rrrs_q_x - omega_x*rrrs_q_z;
-        const real rrrs_S_dot_t_3 = omega_x*rrrs_q_y - omega_y*rrrs_q_x;
-        const real t_dot_x = s[12*w + j];
-        const real rrrs_S_dot_x = rrrs_S_dot_t + t_dot_x;
-        const real t_dot_y = s[13*w + j];
-        const real rrrs_S_dot_y = rrrs_S_dot_t_2 + t_dot_y;
-        const real t_dot_z = s[14*w + j];
-        const real rrrs_S_dot_z = rrrs_S_dot_t_3 + t_dot_z;
-        /* (rrrs-r_2) from joint 2 to the connection point, along the links */
-        const real rrrs_r_2_t = rrrs_platform_joint_offset_x*rrrs_s_3_t;
-        const real rrrs_r_2_in_axes2_x = rrrs_joint3_offset_x +
-            rrrs_c_3*rrrs_platform_joint_offset_x;
-        const real rrrs_r_2_in_axes3_x = rrrs_c_3*rrrs_r_2_in_axes2_x + rrrs_r_2_t*rrrs_s_3_t;
-        const real rrrs_r_2_in_axes3_y = rrrs_r_2_in_axes2_x*rrrs_s_3_t - rrrs_c_3*rrrs_r_2_t;
-        /* (rrrs-v_1) velocity of the connection point per rate of joint 1 */
-        const real rrrs_e_1_in_axes3_x = rrrs_c_3*rrrs_s_2 - rrrs_c_2*rrrs_s_3_t;
-        const real rrrs_e_1_in_axes3_y = rrrs_c_2*rrrs_c_3 + rrrs_s_2*rrrs_s_3_t;
-        const real rrrs_v_1_t = rrrs_s_2*rrrs_xi_1_in_axes1_z - rrrs_c_2*rrrs_root_1;
-        const real rrrs_v_1_t_2 = rrrs_c_2*rrrs_xi_1_in_axes1_z + rrrs_root_1*rrrs_s_2;
-        const real rrrs_v_1_in_axes3_z = rrrs_e_1_in_axes3_x*(rrrs_c_3*rrrs_v_1_t_2 +
-            rrrs_s_3_t*rrrs_v_1_t) - rrrs_e_1_in_axes3_y*(rrrs_c_3*rrrs_v_1_t -
-            rrrs_s_3_t*rrrs_v_1_t_2);
-        /* (rrrs-w_1) reciprocal vector 1 */
-        const real axis_z_rrrs_axes3_x = rrrs_base_frame_xy*rrrs_c_1 +
-            rrrs_base_frame_xz*rrrs_s_1;
-        const real axis_z_rrrs_axes3_y = rrrs_base_frame_yy*rrrs_c_1 +
-            rrrs_base_frame_yz*rrrs_s_1;
-        const real axis_z_rrrs_axes3_z = rrrs_base_frame_zy*rrrs_c_1 +
-            rrrs_base_frame_zz*rrrs_s_1;
-        const real rrrs_w_1_in_axes3_z = 1/rrrs_v_1_in_axes3_z;
-        const real rrrs_w_1_x = axis_z_rrrs_axes3_x*rrrs_w_1_in_axes3_z;
-        const real rrrs_w_1_y = axis_z_rrrs_axes3_y*rrrs_w_1_in_axes3_z;
-        const real rrrs_w_1_z = axis_z_rrrs_axes3_z*rrrs_w_1_in_axes3_z;
-        /* (rrrs-w_2) reciprocal vector 2 */
-        const real rrrs_w_2_t = rrrs_e_1_in_axes3_x*rrrs_s_1;
-        const real rrrs_w_2_t_2 = rrrs_c_1*rrrs_e_1_in_axes3_x;
-        const real axis_y_rrrs_axes3_x = rrrs_base_frame_xx*rrrs_e_1_in_axes3_y +
-            rrrs_base_frame_xy*rrrs_w_2_t - rrrs_base_frame_xz*rrrs_w_2_t_2;
-        const real axis_y_rrrs_axes3_y = rrrs_base_frame_yx*rrrs_e_1_in_axes3_y +
-            rrrs_base_frame_yy*rrrs_w_2_t - rrrs_base_frame_yz*rrrs_w_2_t_2;
-        const real axis_y_rrrs_axes3_z = rrrs_base_frame_zx*rrrs_e_1_in_axes3_y +
-            rrrs_base_frame_zy*rrrs_w_2_t - rrrs_base_frame_zz*rrrs_w_2_t_2;
-        const real axis_x_rrrs_axes3_x = axis_y_rrrs_axes3_y*axis_z_rrrs_axes3_z -
-            axis_y_rrrs_axes3_z*axis_z_rrrs_axes3_y;
-        const real axis_x_rrrs_axes3_y = axis_y_rrrs_axes3_z*axis_z_rrrs_axes3_x -
-            axis_y_rrrs_axes3_x*axis_z_rrrs_axes3_z;
-        const real axis_x_rrrs_axes3_z = axis_y_rrrs_axes3_x*axis_z_rrrs_axes3_y -
-            axis_y_rrrs_axes3_y*axis_z_rrrs_axes3_x;
-        const real rrrs_w_2_in_axes3_x = -1/rrrs_r_2_in_axes3_y;
-        const real rrrs_w_2_x = axis_x_rrrs_axes3_x*rrrs_w_2_in_axes3_x;
-        const real rrrs_w_2_y = axis_x_rrrs_axes3_y*rrrs_w_2_in_axes3_x;
-        const real rrrs_w_2_z = axis_x_rrrs_axes3_z*rrrs_w_2_in_axes3_x;
-        /* (rrrs-w_3) reciprocal vector 3 */
-        const real rrrs_w_3_in_axes3_y = m->rrrs_w_3_in_axes3_y[i];
-        const real rrrs_w_3_in_axes3_x =
-            -rrrs_r_2_in_axes3_x*rrrs_w_2_in_axes3_x*rrrs_w_3_in_axes3_y;
-        /* (rrrs-qd_1) rate of joint 1 */
-        const real rrrs_qd_1 = rrrs_w_1_in_axes3_z*(axis_z_rrrs_axes3_x*rrrs_S_dot_x +
-            axis_z_rrrs_axes3_y*rrrs_S_dot_y + axis_z_rrrs_axes3_z*rrrs_S_dot_z);
-        /* (rrrs-qd_2) rate of joint 2 */
-        const real rrrs_qd_2 = rrrs_w_2_in_axes3_x*(axis_x_rrrs_axes3_x*rrrs_S_dot_x +
-            axis_x_rrrs_axes3_y*rrrs_S_dot_y + axis_x_rrrs_axes3_z*rrrs_S_dot_z);
-        /* (rrrs-qd_3) rate of joint 3 */
-        const real rrrs_qd_3 = rrrs_w_3_in_axes3_y*(axis_y_rrrs_axes3_x*rrrs_S_dot_x +
-            axis_y_rrrs_axes3_y*rrrs_S_dot_y + axis_y_rrrs_axes3_z*rrrs_S_dot_z -
-            rrrs_qd_2*rrrs_r_2_in_axes3_x);
-        /* (rrrs-omega_1) angular velocity of link 1 */
-        const real rrrs_omega_1_in_axes2_x = rrrs_qd_1*rrrs_s_2;
-        const real rrrs_omega_1_in_axes2_y = rrrs_c_2*rrrs_qd_1;
-        const real rrrs_omega_1_in_axes3_x = rrrs_c_3*rrrs_omega_1_in_axes2_x -
-            rrrs_omega_1_in_axes2_y*rrrs_s_3_t;
-        const real rrrs_omega_1_in_axes3_y = rrrs_c_3*rrrs_omega_1_in_axes2_y +
-            rrrs_omega_1_in_axes2_x*rrrs_s_3_t;
-        /* (rrrs-W_2) centripetal tensor of link 2 */
-        const real rrrs_W_2_in_axes2_yz = rrrs_omega_1_in_axes2_y*rrrs_qd_2;
-        const real rrrs_W_2_in_axes2_xz = rrrs_omega_1_in_axes2_x*rrrs_qd_2;
-        const real rrrs_W_2_in_axes2_xy = rrrs_omega_1_in_axes2_x*rrrs_omega_1_in_axes2_y;
-        /* (rrrs-omega_3) angular velocity of link 3 */
-        const real rrrs_omega_3_in_axes3_z = rrrs_qd_2 + rrrs_qd_3;
-        /* (rrrs-W_3) centripetal tensor of link 3 */
-        const real rrrs_W_3_in_axes3_xy = rrrs_omega_1_in_axes3_x*rrrs_omega_1_in_axes3_y;
-        const real rrrs_W_3_in_axes3_xz = rrrs_omega_1_in_axes3_x*rrrs_omega_3_in_axes3_z;
-        const real rrrs_W_3_in_axes3_yz = rrrs_omega_1_in_axes3_y*rrrs_omega_3_in_axes3_z;
+        values_rrrs v;
+        stage_rrrs_X(m, w, i, j, s, X, &v);
+        stage_rrrs_V_X(m, w, i, j, V, &v);
+        stage_rrrs_M_dynamics(m, i, &v);
+        stage_rrrs_Z_dynamics(m, w, j, V, &v);
         /* (rrrs-u_1) centripetal acceleration of the connection point */
-        const real rrrs_u_1_x = omega_y*rrrs_S_dot_t_3 - omega_z*rrrs_S_dot_t_2;
-        const real rrrs_u_1_y = omega_z*rrrs_S_dot_t - omega_x*rrrs_S_dot_t_3;
-        const real rrrs_u_1_z = omega_x*rrrs_S_dot_t_2 - omega_y*rrrs_S_dot_t;
-        const real rrrs_u_1_in_axes3_x = axis_x_rrrs_axes3_x*rrrs_u_1_x +
-            axis_x_rrrs_axes3_y*rrrs_u_1_y + axis_x_rrrs_axes3_z*rrrs_u_1_z;
-        const real rrrs_u_1_in_axes3_y = axis_y_rrrs_axes3_x*rrrs_u_1_x +
-            axis_y_rrrs_axes3_y*rrrs_u_1_y + axis_y_rrrs_axes3_z*rrrs_u_1_z;
-        const real rrrs_u_1_in_axes3_z = axis_z_rrrs_axes3_x*rrrs_u_1_x +
-            axis_z_rrrs_axes3_y*rrrs_u_1_y + axis_z_rrrs_axes3_z*rrrs_u_1_z;
-        /* (rrrs-zeta_2) angular acceleration of link 2 from the turning of axis 2 */
-        const real rrrs_zeta_2_in_axes3_y = rrrs_W_2_in_axes2_yz*rrrs_s_3_t -
-            rrrs_W_2_in_axes2_xz*rrrs_c_3;
-        /* (rrrs-zeta_3) angular acceleration of link 3 from the turning of axis 3 */
-        const real rrrs_zeta_3_t = rrrs_omega_1_in_axes3_x*rrrs_qd_3;
-        /* (rrrs-beta_3) angular acceleration of link 3 at zero joint accelerations */
-        const real rrrs_beta_3_in_axes3_y = rrrs_zeta_2_in_axes3_y - rrrs_zeta_3_t;
-        /* (rrrs-bias) acceleration of the connection point at zero joint accelerations */
-        const real rrrs_bias_t = -rrrs_joint2_offset_x*rrrs_s_2;
-        const real rrrs_bias_t_2 = rrrs_c_2*rrrs_joint2_offset_x;
-        const real rrrs_bias_t_3 = rrrs_omega_1_in_axes3_x*(rrrs_bias_t_2*rrrs_c_3 -
-            rrrs_bias_t*rrrs_s_3_t) - rrrs_omega_1_in_axes3_y*(-rrrs_bias_t*rrrs_c_3 -
-            rrrs_bias_t_2*rrrs_s_3_t);
-        const real rrrs_d_3_in_axes3_x = rrrs_c_3*rrrs_joint3_offset_x;
-        const real rrrs_d_3_in_axes3_y = rrrs_joint3_offset_x*rrrs_s_3_t;
-        const real rrrs_bias_t_4 = -rrrs_d_3_in_axes3_y*rrrs_qd_2;
-        const real rrrs_bias_t_5 = -rrrs_d_3_in_axes3_x*rrrs_qd_2;
-        const real rrrs_bias_t_6 = rrrs_d_3_in_axes3_y*rrrs_omega_1_in_axes3_x -
-            rrrs_d_3_in_axes3_x*rrrs_omega_1_in_axes3_y;
-        const real rrrs_bias_t_7 = rrrs_omega_3_in_axes3_z*rrrs_platform_joint_offset_x;
-        const real rrrs_bias_t_8 = rrrs_omega_1_in_axes3_y*rrrs_platform_joint_offset_x;
-        const real rrrs_bias_in_axes3_x = rrrs_bias_t_3*rrrs_omega_1_in_axes3_y +
-            rrrs_bias_t_5*rrrs_qd_2 + rrrs_bias_t_6*rrrs_omega_1_in_axes3_y -
-            rrrs_bias_t_7*rrrs_omega_3_in_axes3_z - rrrs_bias_t_8*rrrs_omega_1_in_axes3_y;
-        const real rrrs_bias_in_axes3_y = rrrs_bias_t_4*rrrs_qd_2 +
-            rrrs_bias_t_8*rrrs_omega_1_in_axes3_x - rrrs_bias_t_3*rrrs_omega_1_in_axes3_x -
-            rrrs_bias_t_6*rrrs_omega_1_in_axes3_x;
-        const real rrrs_bias_in_axes3_z = rrrs_bias_t_7*rrrs_omega_1_in_axes3_x +
-            rrrs_d_3_in_axes3_y*(rrrs_W_2_in_axes2_xz*rrrs_s_3_t + rrrs_W_2_in_axes2_yz*rrrs_c_3)
-            - rrrs_beta_3_in_axes3_y*rrrs_platform_joint_offset_x -
-            rrrs_bias_t_4*rrrs_omega_1_in_axes3_y - rrrs_bias_t_5*rrrs_omega_1_in_axes3_x -
-            rrrs_d_3_in_axes3_x*rrrs_zeta_2_in_axes3_y;
+        const real rrrs_u_1_in_axes3_x = v.axis_x_rrrs_axes3_x*v.rrrs_u_1_x +
+            v.axis_x_rrrs_axes3_y*v.rrrs_u_1_y + v.axis_x_rrrs_axes3_z*v.rrrs_u_1_z;
+        const real rrrs_u_1_in_axes3_y = v.axis_y_rrrs_axes3_x*v.rrrs_u_1_x +
+            v.axis_y_rrrs_axes3_y*v.rrrs_u_1_y + v.axis_y_rrrs_axes3_z*v.rrrs_u_1_z;
         /* (rrrs-rel_o) remainder without the acceleration in: acceleration of the connection point left
            to the joint accelerations */
-        const real rrrs_rel_o_in_axes3_x = rrrs_u_1_in_axes3_x - rrrs_bias_in_axes3_x;
-        const real rrrs_rel_o_in_axes3_y = rrrs_u_1_in_axes3_y - rrrs_bias_in_axes3_y;
-        const real rrrs_rel_o_in_axes3_z = rrrs_u_1_in_axes3_z - rrrs_bias_in_axes3_z;
+        const real rrrs_rel_o_in_axes3_x = rrrs_u_1_in_axes3_x - v.rrrs_bias_in_axes3_x;
+        const real rrrs_rel_o_in_axes3_y = rrrs_u_1_in_axes3_y - v.rrrs_bias_in_axes3_y;
+        const real rrrs_rel_o_in_axes3_z = v.rrrs_u_1_in_axes3_z - v.rrrs_bias_in_axes3_z;
         /* (rrrs-qdd_1_o) remainder without the acceleration in: acceleration of joint 1 */
-        const real rrrs_qdd_1_o = rrrs_rel_o_in_axes3_z*rrrs_w_1_in_axes3_z;
+        const real rrrs_qdd_1_o = rrrs_rel_o_in_axes3_z*v.rrrs_w_1_in_axes3_z;
         /* (rrrs-qdd_2_o) remainder without the acceleration in: acceleration of joint 2 */
-        const real rrrs_qdd_2_o = rrrs_rel_o_in_axes3_x*rrrs_w_2_in_axes3_x;
+        const real rrrs_qdd_2_o = rrrs_rel_o_in_axes3_x*v.rrrs_w_2_in_axes3_x;
         /* (rrrs-alpha_1_o) remainder without the acceleration in: angular acceleration of link 1 */
-        const real rrrs_alpha_1_o_t = -rrrs_qdd_1_o*rrrs_s_2;
-        const real rrrs_alpha_1_o_in_axes2_y = rrrs_c_2*rrrs_qdd_1_o;
+        const real rrrs_alpha_1_o_in_axes2_x = v.rrrs_c_2*rrrs_qdd_1_o;
+        const real rrrs_alpha_1_o_t = rrrs_qdd_1_o*v.rrrs_s_2;
         /* (rrrs-alpha_2_o) remainder without the acceleration in: angular acceleration of link 2 */
-        const real rrrs_alpha_2_o_in_axes2_x = rrrs_W_2_in_axes2_yz - rrrs_alpha_1_o_t;
-        const real rrrs_alpha_2_o_in_axes2_y = rrrs_alpha_1_o_in_axes2_y - rrrs_W_2_in_axes2_xz;
+        const real rrrs_alpha_2_o_in_axes2_x = v.rrrs_W_2_in_axes2_yz + rrrs_alpha_1_o_in_axes2_x;
+        const real rrrs_alpha_2_o_in_axes2_y = v.rrrs_zeta_2_in_axes2_y - rrrs_alpha_1_o_t;
         /* (rrrs-B_2_o) remainder of the acceleration tensor of link 2 */
-        const real rrrs_B_2_o_in_axes2_xy = rrrs_W_2_in_axes2_xy - rrrs_qdd_2_o;
-        const real rrrs_B_2_o_in_axes2_yx = rrrs_W_2_in_axes2_xy + rrrs_qdd_2_o;
-        const real rrrs_B_2_o_in_axes2_zx = rrrs_W_2_in_axes2_xz - rrrs_alpha_2_o_in_axes2_y;
-        const real rrrs_B_2_o_in_axes2_zy = rrrs_W_2_in_axes2_yz + rrrs_alpha_2_o_in_axes2_x;
-        /* (rrrs-d_alpha_3) coefficient of the acceleration in: angular acceleration of link 3 */
-        const real rrrs_d_alpha_3_in_axes3_xz = rrrs_e_1_in_axes3_x*rrrs_w_1_in_axes3_z;
-        const real rrrs_d_alpha_3_in_axes3_yz = rrrs_e_1_in_axes3_y*rrrs_w_1_in_axes3_z;
+        const real rrrs_B_2_o_in_axes2_xy = v.rrrs_W_2_in_axes2_xy - rrrs_qdd_2_o;
+        const real rrrs_B_2_o_in_axes2_yx = v.rrrs_W_2_in_axes2_xy + rrrs_qdd_2_o;
+        const real rrrs_B_2_o_in_axes2_zx = -rrrs_alpha_2_o_in_axes2_y - v.rrrs_zeta_2_in_axes2_y;
+        const real rrrs_B_2_o_in_axes2_zy = v.rrrs_W_2_in_axes2_yz + rrrs_alpha_2_o_in_axes2_x;
         /* (rrrs-alpha_3_o) remainder without the acceleration in: angular acceleration of link 3 */
-        const real rrrs_alpha_3_o_in_axes3_x = rrrs_alpha_2_o_in_axes2_x*rrrs_c_3 +
-            rrrs_omega_1_in_axes3_y*rrrs_qd_3 - rrrs_alpha_2_o_in_axes2_y*rrrs_s_3_t;
-        const real rrrs_alpha_3_o_in_axes3_y = rrrs_alpha_2_o_in_axes2_x*rrrs_s_3_t +
-            rrrs_alpha_2_o_in_axes2_y*rrrs_c_3 - rrrs_zeta_3_t;
+        const real rrrs_alpha_3_o_in_axes3_x = rrrs_alpha_2_o_in_axes2_x*v.rrrs_c_3 +
+            v.rrrs_omega_1_in_axes3_y*v.rrrs_qd_3 - rrrs_alpha_2_o_in_axes2_y*v.rrrs_s_3_t;
+        const real rrrs_alpha_3_o_in_axes3_y = rrrs_alpha_2_o_in_axes2_x*v.rrrs_s_3_t +
+            rrrs_alpha_2_o_in_axes2_y*v.rrrs_c_3 - v.rrrs_zeta_3_t;
+        const real rrrs_w_3_in_axes3_y = m->rrrs_w_3_in_axes3_y[i];
         const real rrrs_alpha_3_o_in_axes3_z = rrrs_qdd_2_o +
-            rrrs_w_3_in_axes3_y*(rrrs_rel_o_in_axes3_y - rrrs_qdd_2_o*rrrs_r_2_in_axes3_x);
+            rrrs_w_3_in_axes3_y*(rrrs_rel_o_in_axes3_y - rrrs_qdd_2_o*v.rrrs_r_2_in_axes3_x);
         /* (rrrs-B_3_o) remainder of the acceleration tensor of link 3 */
-        const real rrrs_B_3_o_in_axes3_xy = rrrs_W_3_in_axes3_xy - rrrs_alpha_3_o_in_axes3_z;
-        const real rrrs_B_3_o_in_axes3_xz = rrrs_W_3_in_axes3_xz + rrrs_alpha_3_o_in_axes3_y;
-        const real rrrs_B_3_o_in_axes3_yx = rrrs_W_3_in_axes3_xy + rrrs_alpha_3_o_in_axes3_z;
-        const real rrrs_B_3_o_in_axes3_yz = rrrs_W_3_in_axes3_yz - rrrs_alpha_3_o_in_axes3_x;
-        const real rrrs_B_3_o_in_axes3_zx = rrrs_W_3_in_axes3_xz - rrrs_alpha_3_o_in_axes3_y;
-        const real rrrs_B_3_o_in_axes3_zy = rrrs_W_3_in_axes3_yz + rrrs_alpha_3_o_in_axes3_x;
+        const real rrrs_B_3_o_in_axes3_xy = v.rrrs_W_3_in_axes3_xy - rrrs_alpha_3_o_in_axes3_z;
+        const real rrrs_B_3_o_in_axes3_xz = v.rrrs_W_3_in_axes3_xz + rrrs_alpha_3_o_in_axes3_y;
+        const real rrrs_B_3_o_in_axes3_yx = v.rrrs_W_3_in_axes3_xy + rrrs_alpha_3_o_in_axes3_z;
+        const real rrrs_B_3_o_in_axes3_yz = v.rrrs_W_3_in_axes3_yz - rrrs_alpha_3_o_in_axes3_x;
+        const real rrrs_B_3_o_in_axes3_zx = v.rrrs_W_3_in_axes3_xz - rrrs_alpha_3_o_in_axes3_y;
+        const real rrrs_B_3_o_in_axes3_zy = v.rrrs_W_3_in_axes3_yz + rrrs_alpha_3_o_in_axes3_x;
         /* (rrrs-acc_3_o) remainder without the acceleration in: acceleration of the reference point of
            link 3, less gravity */
         const real gravity_x = m->gravity_x;
         const real gravity_y = m->gravity_y;
         const real gravity_z = m->gravity_z;
-        const real rrrs_acc_3_o_in_axes3_x = rrrs_u_1_in_axes3_x - axis_x_rrrs_axes3_x*gravity_x -
-            axis_x_rrrs_axes3_y*gravity_y - axis_x_rrrs_axes3_z*gravity_z;
-        const real rrrs_acc_3_o_in_axes3_y = rrrs_u_1_in_axes3_y - axis_y_rrrs_axes3_x*gravity_x -
-            axis_y_rrrs_axes3_y*gravity_y - axis_y_rrrs_axes3_z*gravity_z;
-        const real rrrs_acc_3_o_in_axes3_z = rrrs_u_1_in_axes3_z - axis_z_rrrs_axes3_x*gravity_x -
-            axis_z_rrrs_axes3_y*gravity_y - axis_z_rrrs_axes3_z*gravity_z;
-        /* (rrrs-D_1_3) inertia of joint 3 along joint 1 */
-        const real rrrs_J_3_in_spec3_xz = m->rrrs_J_3_in_spec3_xz[i];
-        const real rrrs_J_3_in_spec3_yz = m->rrrs_J_3_in_spec3_yz[i];
-        const real rrrs_D_1_3 = rrrs_J_3_in_spec3_xz*rrrs_e_1_in_axes3_x +
-            rrrs_J_3_in_spec3_yz*rrrs_e_1_in_axes3_y;
-        /* (rrrs-Jc_2) inertia tensor of the links from 2 outwards about joint 2, that of the last link
-           about the connection point */
-        const real rrrs_J_3_in_spec3_xy = m->rrrs_J_3_in_spec3_xy[i];
-        const real rrrs_Jc_2_t = rrrs_J_3_in_spec3_xy*rrrs_s_3_t;
-        const real rrrs_J_3_in_spec3_xx = m->rrrs_J_3_in_spec3_xx[i];
-        const real rrrs_Jc_2_t_2 = rrrs_Jc_2_t + rrrs_J_3_in_spec3_xx*rrrs_c_3;
-        const real rrrs_Jc_2_t_3 = rrrs_J_3_in_spec3_xy*rrrs_c_3;
-        const real rrrs_J_3_in_spec3_yy = m->rrrs_J_3_in_spec3_yy[i];
-        const real rrrs_Jc_2_t_4 = rrrs_Jc_2_t_3 + rrrs_J_3_in_spec3_yy*rrrs_s_3_t;
-        const real rrrs_J_2_in_spec2_xy = m->rrrs_J_2_in_spec2_xy[i];
-        const real rrrs_Jc_2_in_axes2_xy = rrrs_J_2_in_spec2_xy + rrrs_Jc_2_t_4*rrrs_c_3 -
-            rrrs_Jc_2_t_2*rrrs_s_3_t;
-        const real rrrs_J_2_in_spec2_xx = m->rrrs_J_2_in_spec2_xx[i];
-        const real rrrs_J_2_in_spec2_yy = m->rrrs_J_2_in_spec2_yy[i];
-        const real rrrs_Jc_2_in_axes1_zz = rrrs_c_2*(rrrs_Jc_2_in_axes2_xy*rrrs_s_2 +
-            rrrs_c_2*(rrrs_J_2_in_spec2_yy + rrrs_c_3*(rrrs_J_3_in_spec3_yy*rrrs_c_3 -
-            rrrs_Jc_2_t) - rrrs_s_3_t*(rrrs_Jc_2_t_3 - rrrs_J_3_in_spec3_xx*rrrs_s_3_t))) +
-            rrrs_s_2*(rrrs_Jc_2_in_axes2_xy*rrrs_c_2 + rrrs_s_2*(rrrs_J_2_in_spec2_xx +
-            rrrs_Jc_2_t_2*rrrs_c_3 + rrrs_Jc_2_t_4*rrrs_s_3_t));
+        const real rrrs_acc_3_o_in_axes3_x = rrrs_u_1_in_axes3_x - v.axis_x_rrrs_axes3_x*gravity_x
+            - v.axis_x_rrrs_axes3_y*gravity_y - v.axis_x_rrrs_axes3_z*gravity_z;
+        const real rrrs_acc_3_o_in_axes3_y = rrrs_u_1_in_axes3_y - v.axis_y_rrrs_axes3_x*gravity_x
+            - v.axis_y_rrrs_axes3_y*gravity_y - v.axis_y_rrrs_axes3_z*gravity_z;
         /* (rrrs-mu_3_o) remainder without the acceleration in: inertia moment of the links that turn with
            link 3, about their reference points */
-        const real rrrs_mu_3_o_t = rrrs_omega_1_in_axes3_x*rrrs_omega_1_in_axes3_x;
-        const real rrrs_mu_3_o_t_2 = rrrs_omega_1_in_axes3_y*rrrs_omega_1_in_axes3_y;
-        const real rrrs_mu_3_o_t_3 = rrrs_omega_3_in_axes3_z*rrrs_omega_3_in_axes3_z;
+        const real rrrs_mu_3_o_t_3 = v.rrrs_omega_3_in_axes3_z*v.rrrs_omega_3_in_axes3_z;
+        const real rrrs_J_3_in_spec3_xy = m->rrrs_J_3_in_spec3_xy[i];
+        const real rrrs_J_3_in_spec3_xz = m->rrrs_J_3_in_spec3_xz[i];
+        const real rrrs_J_3_in_spec3_yz = m->rrrs_J_3_in_spec3_yz[i];
         const real rrrs_Sigma_3_in_axes3_yy = m->rrrs_Sigma_3_in_axes3_yy[i];
         const real rrrs_Sigma_3_in_axes3_zz = m->rrrs_Sigma_3_in_axes3_zz[i];
         const real rrrs_h_3_in_spec3_y = m->rrrs_h_3_in_spec3_y[i];
         const real rrrs_h_3_in_spec3_z = m->rrrs_h_3_in_spec3_z[i];
         const real rrrs_mu_3_o_in_axes3_x = rrrs_B_3_o_in_axes3_yx*rrrs_J_3_in_spec3_xz +
             rrrs_B_3_o_in_axes3_zy*rrrs_Sigma_3_in_axes3_yy +
-            rrrs_J_3_in_spec3_yz*(rrrs_mu_3_o_t_2 - rrrs_mu_3_o_t_3) +
-            rrrs_acc_3_o_in_axes3_z*rrrs_h_3_in_spec3_y -
+            rrrs_J_3_in_spec3_yz*(v.rrrs_mu_3_o_t_2 - rrrs_mu_3_o_t_3) +
+            v.rrrs_acc_3_o_in_axes3_z*rrrs_h_3_in_spec3_y -
             rrrs_B_3_o_in_axes3_yz*rrrs_Sigma_3_in_axes3_zz -
             rrrs_B_3_o_in_axes3_zx*rrrs_J_3_in_spec3_xy -
             rrrs_acc_3_o_in_axes3_y*rrrs_h_3_in_spec3_z;
@@ -1921,34 +2512,20 @@ INLINE void dynamics_legs_rrrs(const prepared *m, size_t w, size_t leg, size_t l
             rrrs_B_3_o_in_axes3_zy*rrrs_J_3_in_spec3_xy +
             rrrs_acc_3_o_in_axes3_x*rrrs_h_3_in_spec3_z -
             rrrs_B_3_o_in_axes3_xy*rrrs_J_3_in_spec3_yz -
-            rrrs_B_3_o_in_axes3_zx*rrrs_Sigma_3_in_axes3_xx - rrrs_J_3_in_spec3_xz*(rrrs_mu_3_o_t
-            - rrrs_mu_3_o_t_3) - rrrs_acc_3_o_in_axes3_z*rrrs_h_3_in_spec3_x;
+            rrrs_B_3_o_in_axes3_zx*rrrs_Sigma_3_in_axes3_xx -
+            rrrs_J_3_in_spec3_xz*(v.rrrs_mu_3_o_t - rrrs_mu_3_o_t_3) -
+            v.rrrs_acc_3_o_in_axes3_z*rrrs_h_3_in_spec3_x;
         const real rrrs_mu_3_o_in_axes3_z = rrrs_B_3_o_in_axes3_xz*rrrs_J_3_in_spec3_yz +
-            rrrs_B_3_o_in_axes3_yx*rrrs_Sigma_3_in_axes3_xx + rrrs_J_3_in_spec3_xy*(rrrs_mu_3_o_t
-            - rrrs_mu_3_o_t_2) + rrrs_acc_3_o_in_axes3_y*rrrs_h_3_in_spec3_x -
+            rrrs_B_3_o_in_axes3_yx*rrrs_Sigma_3_in_axes3_xx +
+            rrrs_J_3_in_spec3_xy*(v.rrrs_mu_3_o_t - v.rrrs_mu_3_o_t_2) +
+            rrrs_acc_3_o_in_axes3_y*rrrs_h_3_in_spec3_x -
             rrrs_B_3_o_in_axes3_xy*rrrs_Sigma_3_in_axes3_yy -
             rrrs_B_3_o_in_axes3_yz*rrrs_J_3_in_spec3_xz -
             rrrs_acc_3_o_in_axes3_x*rrrs_h_3_in_spec3_y;
-        /* (rrrs-d_Gamma_3) coefficient of the acceleration in: moment about axis 3 of the distal links'
-           inertia and weight */
-        const real rrrs_d_Gamma_3_in_axes3_z = rrrs_D_1_3*rrrs_w_1_in_axes3_z;
-        const real rrrs_d_Gamma_3_t = m->rrrs_d_Gamma_3_t[i];
-        const real rrrs_d_Gamma_3_t_2 = rrrs_d_Gamma_3_t*rrrs_r_2_in_axes3_x;
-        const real rrrs_J_3_in_spec3_zz = m->rrrs_J_3_in_spec3_zz[i];
-        const real rrrs_d_Gamma_3_in_axes3_x = rrrs_w_2_in_axes3_x*(rrrs_J_3_in_spec3_zz -
-            rrrs_d_Gamma_3_t_2) - rrrs_h_3_in_spec3_y;
         /* (rrrs-mu_2_o) remainder without the acceleration in: inertia moment of the links that turn with
            link 2, about their reference points */
-        const real rrrs_mu_2_o_t = rrrs_omega_1_in_axes2_x*rrrs_omega_1_in_axes2_x;
-        const real rrrs_mu_2_o_t_2 = rrrs_omega_1_in_axes2_y*rrrs_omega_1_in_axes2_y;
-        const real rrrs_mu_2_o_t_3 = rrrs_qd_2*rrrs_qd_2;
-        const real rrrs_mu_2_t = m->rrrs_mu_2_t[i];
-        const real rrrs_mu_2_t_2 = m->rrrs_mu_2_t_2[i];
-        const real rrrs_g_in_axes1_x = rrrs_c_1*rrrs_mu_2_t + rrrs_mu_2_t_2*rrrs_s_1;
-        const real rrrs_g_in_axes1_y = rrrs_c_1*rrrs_mu_2_t_2 - rrrs_mu_2_t*rrrs_s_1;
-        const real rrrs_g_in_axes1_z = m->rrrs_g_in_axes1_z[i];
-        const real rrrs_g_in_axes2_x = rrrs_c_2*rrrs_g_in_axes1_y + rrrs_g_in_axes1_z*rrrs_s_2;
-        const real rrrs_g_in_axes2_y = rrrs_c_2*rrrs_g_in_axes1_z - rrrs_g_in_axes1_y*rrrs_s_2;
+        const real rrrs_mu_2_o_t_3 = v.rrrs_qd_2_t*v.rrrs_qd_2_t;
+        const real rrrs_J_2_in_spec2_xy = m->rrrs_J_2_in_spec2_xy[i];
         const real rrrs_J_2_in_spec2_xz = m->rrrs_J_2_in_spec2_xz[i];
         const real rrrs_J_2_in_spec2_yz = m->rrrs_J_2_in_spec2_yz[i];
         const real rrrs_Sigma_2_in_axes2_yy = m->rrrs_Sigma_2_in_axes2_yy[i];
@@ -1957,158 +2534,130 @@ INLINE void dynamics_legs_rrrs(const prepared *m, size_t w, size_t leg, size_t l
         const real rrrs_h_2_in_spec2_z = m->rrrs_h_2_in_spec2_z[i];
         const real rrrs_mu_2_o_in_axes2_x = rrrs_B_2_o_in_axes2_yx*rrrs_J_2_in_spec2_xz +
             rrrs_B_2_o_in_axes2_zy*rrrs_Sigma_2_in_axes2_yy +
-            rrrs_J_2_in_spec2_yz*(rrrs_mu_2_o_t_2 - rrrs_mu_2_o_t_3) +
-            rrrs_g_in_axes2_y*rrrs_h_2_in_spec2_z - rrrs_B_2_o_in_axes2_zx*rrrs_J_2_in_spec2_xy -
-            rrrs_Sigma_2_in_axes2_zz*rrrs_alpha_1_o_t - rrrs_g_in_axes1_x*rrrs_h_2_in_spec2_y;
+            rrrs_J_2_in_spec2_yz*(v.rrrs_mu_2_o_t_2 - rrrs_mu_2_o_t_3) +
+            rrrs_Sigma_2_in_axes2_zz*rrrs_alpha_1_o_in_axes2_x +
+            v.rrrs_g_in_axes2_y*rrrs_h_2_in_spec2_z - rrrs_B_2_o_in_axes2_zx*rrrs_J_2_in_spec2_xy
+            - v.rrrs_g_in_axes1_y*rrrs_h_2_in_spec2_y;
         const real rrrs_Sigma_2_in_axes2_xx = m->rrrs_Sigma_2_in_axes2_xx[i];
         const real rrrs_h_2_in_spec2_x = m->rrrs_h_2_in_spec2_x[i];
         const real rrrs_mu_2_o_in_axes2_y = rrrs_B_2_o_in_axes2_zy*rrrs_J_2_in_spec2_xy +
-            rrrs_Sigma_2_in_axes2_zz*rrrs_alpha_1_o_in_axes2_y +
-            rrrs_g_in_axes1_x*rrrs_h_2_in_spec2_x - rrrs_B_2_o_in_axes2_xy*rrrs_J_2_in_spec2_yz -
-            rrrs_B_2_o_in_axes2_zx*rrrs_Sigma_2_in_axes2_xx - rrrs_J_2_in_spec2_xz*(rrrs_mu_2_o_t
-            - rrrs_mu_2_o_t_3) - rrrs_g_in_axes2_x*rrrs_h_2_in_spec2_z;
+            v.rrrs_g_in_axes1_y*rrrs_h_2_in_spec2_x - rrrs_B_2_o_in_axes2_xy*rrrs_J_2_in_spec2_yz
+            - rrrs_B_2_o_in_axes2_zx*rrrs_Sigma_2_in_axes2_xx -
+            rrrs_J_2_in_spec2_xz*(v.rrrs_mu_2_o_t - rrrs_mu_2_o_t_3) -
+            rrrs_Sigma_2_in_axes2_zz*rrrs_alpha_1_o_t - v.rrrs_g_in_axes2_x*rrrs_h_2_in_spec2_z;
         const real rrrs_mu_2_o_in_axes2_z = rrrs_B_2_o_in_axes2_yx*rrrs_Sigma_2_in_axes2_xx +
-            rrrs_J_2_in_spec2_xy*(rrrs_mu_2_o_t - rrrs_mu_2_o_t_2) +
-            rrrs_J_2_in_spec2_yz*rrrs_alpha_1_o_in_axes2_y + rrrs_g_in_axes2_x*rrrs_h_2_in_spec2_y
-            - rrrs_B_2_o_in_axes2_xy*rrrs_Sigma_2_in_axes2_yy -
-            rrrs_J_2_in_spec2_xz*rrrs_alpha_1_o_t - rrrs_g_in_axes2_y*rrrs_h_2_in_spec2_x;
+            rrrs_J_2_in_spec2_xy*(v.rrrs_mu_2_o_t - v.rrrs_mu_2_o_t_2) +
+            rrrs_J_2_in_spec2_xz*rrrs_alpha_1_o_in_axes2_x +
+            v.rrrs_g_in_axes2_x*rrrs_h_2_in_spec2_y -
+            rrrs_B_2_o_in_axes2_xy*rrrs_Sigma_2_in_axes2_yy -
+            rrrs_J_2_in_spec2_yz*rrrs_alpha_1_o_t - v.rrrs_g_in_axes2_y*rrrs_h_2_in_spec2_x;
         /* (rrrs-N_2_o) remainder without the acceleration in: moment about joint 2 of the links from 2
            outwards, the force at the connection point left out */
         const real rrrs_N_2_o_in_axes2_x = rrrs_mu_2_o_in_axes2_x +
-            rrrs_c_3*rrrs_mu_3_o_in_axes3_x + rrrs_mu_3_o_in_axes3_y*rrrs_s_3_t;
+            v.rrrs_c_3*rrrs_mu_3_o_in_axes3_x + rrrs_mu_3_o_in_axes3_y*v.rrrs_s_3_t;
         const real rrrs_N_2_o_in_axes2_y = rrrs_mu_2_o_in_axes2_y +
-            rrrs_c_3*rrrs_mu_3_o_in_axes3_y - rrrs_mu_3_o_in_axes3_x*rrrs_s_3_t;
+            v.rrrs_c_3*rrrs_mu_3_o_in_axes3_y - rrrs_mu_3_o_in_axes3_x*v.rrrs_s_3_t;
         const real rrrs_N_2_o_in_axes2_z = rrrs_mu_2_o_in_axes2_z + rrrs_mu_3_o_in_axes3_z;
-        /* (rrrs-d_Gamma_2) coefficient of the acceleration in: moment about axis 2 of the distal links'
-           inertia and weight */
-        const real rrrs_Jc_2_in_axes2_zz = m->rrrs_Jc_2_in_axes2_zz[i];
-        const real rrrs_d_Gamma_2_in_axes3_x = rrrs_w_2_in_axes3_x*(rrrs_Jc_2_in_axes2_zz -
-            rrrs_d_Gamma_3_t_2) - rrrs_h_3_in_spec3_y;
         /* (rrrs-mu_1_o) remainder without the acceleration in: inertia moment of the links that turn with
            link 1, about their reference points */
         const real rrrs_J_1_in_spec1_xx = m->rrrs_J_1_in_spec1_xx[i];
         const real rrrs_h_1_in_spec1_y = m->rrrs_h_1_in_spec1_y[i];
         const real rrrs_h_1_in_spec1_z = m->rrrs_h_1_in_spec1_z[i];
-        const real rrrs_mu_1_o_in_axes1_z = rrrs_J_1_in_spec1_xx*rrrs_qdd_1_o -
-            rrrs_g_in_axes1_x*rrrs_h_1_in_spec1_y - rrrs_g_in_axes1_y*rrrs_h_1_in_spec1_z;
+        const real rrrs_mu_1_o_in_axes1_z = rrrs_J_1_in_spec1_xx*rrrs_qdd_1_o +
+            v.rrrs_g_in_axes1_x*rrrs_h_1_in_spec1_z - v.rrrs_g_in_axes1_y*rrrs_h_1_in_spec1_y;
         /* (rrrs-N_1_o) remainder without the acceleration in: moment about joint 1 of the links from 1
            outwards, the force at the connection point left out */
-        const real rrrs_N_1_o_in_axes1_z = rrrs_mu_1_o_in_axes1_z + rrrs_N_2_o_in_axes2_x*rrrs_s_2
-            + rrrs_N_2_o_in_axes2_y*rrrs_c_2;
-        /* (rrrs-d_Gamma_1) coefficient of the acceleration in: moment about axis 1 of the distal links'
-           inertia and weight */
-        const real rrrs_d_Gamma_1_in_axes3_z = rrrs_e_1_in_axes3_x*rrrs_h_3_in_spec3_y +
-            rrrs_w_1_in_axes3_z*(rrrs_J_1_in_spec1_xx + rrrs_Jc_2_in_axes1_zz) -
-            rrrs_e_1_in_axes3_y*rrrs_h_3_in_spec3_x;
-        /* (rrrs-d_G) coefficient of the acceleration in: force at the connection point that balances the
-           leg's inertia and weight along all degrees of freedom */
-        const real rrrs_d_G_in_axes3_xz = rrrs_d_Gamma_3_in_axes3_z*rrrs_w_3_in_axes3_x +
-            rrrs_w_1_in_axes3_z*rrrs_w_2_in_axes3_x*(rrrs_c_2*(rrrs_J_2_in_spec2_yz +
-            rrrs_J_3_in_spec3_yz*rrrs_c_3 - rrrs_J_3_in_spec3_xz*rrrs_s_3_t) +
-            rrrs_s_2*(rrrs_J_2_in_spec2_xz + rrrs_J_3_in_spec3_xz*rrrs_c_3 +
-            rrrs_J_3_in_spec3_yz*rrrs_s_3_t));
+        const real rrrs_N_1_o_in_axes1_z = rrrs_mu_1_o_in_axes1_z +
+            rrrs_N_2_o_in_axes2_x*v.rrrs_c_2 - rrrs_N_2_o_in_axes2_y*v.rrrs_s_2;
         /* (rrrs-G_o) remainder without the acceleration in: force at the connection point that balances
            the leg's inertia and weight along all degrees of freedom */
         const real rrrs_G_o_in_axes3_y = rrrs_mu_3_o_in_axes3_z*rrrs_w_3_in_axes3_y;
-        /* (rrrs-d_c) coefficient of the acceleration in: leg force on the platform without actuation and
-           without the mass at the connection point */
-        const real rrrs_d_c_in_axes3_xx = rrrs_h_3_in_spec3_y*(rrrs_w_2_in_axes3_x +
-            rrrs_w_3_in_axes3_x) - rrrs_d_Gamma_2_in_axes3_x*rrrs_w_2_in_axes3_x -
-            rrrs_d_Gamma_3_in_axes3_x*rrrs_w_3_in_axes3_x;
-        const real rrrs_d_Gamma_3_in_axes3_y = m->rrrs_d_Gamma_3_in_axes3_y[i];
-        const real rrrs_d_phi_3_t = m->rrrs_d_phi_3_t[i];
-        const real rrrs_d_c_in_axes3_xy = rrrs_d_phi_3_t -
-            rrrs_d_Gamma_3_in_axes3_y*rrrs_w_2_in_axes3_x -
-            rrrs_d_Gamma_3_in_axes3_y*rrrs_w_3_in_axes3_x;
-        const real rrrs_d_c_in_axes3_xz = -rrrs_d_G_in_axes3_xz -
-            rrrs_d_alpha_3_in_axes3_yz*rrrs_h_3_in_spec3_z;
-        const real rrrs_d_c_in_axes3_yz = rrrs_d_alpha_3_in_axes3_xz*rrrs_h_3_in_spec3_z -
-            rrrs_d_Gamma_3_in_axes3_z*rrrs_w_3_in_axes3_y;
         /* (rrrs-c_o) remainder without the acceleration in: leg force on the platform without actuation
            and without the mass at the connection point */
-        const real rrrs_c_o_in_axes3_x = rrrs_h_3_in_spec3_x*(rrrs_mu_3_o_t_2 + rrrs_mu_3_o_t_3) +
-            rrrs_w_2_in_axes3_x*(rrrs_G_o_in_axes3_y*rrrs_r_2_in_axes3_x - rrrs_N_2_o_in_axes2_z)
-            - rrrs_B_3_o_in_axes3_xy*rrrs_h_3_in_spec3_y -
+        const real rrrs_c_o_in_axes3_x = rrrs_h_3_in_spec3_x*(v.rrrs_mu_3_o_t_2 + rrrs_mu_3_o_t_3)
+            + v.rrrs_w_2_in_axes3_x*(rrrs_G_o_in_axes3_y*v.rrrs_r_2_in_axes3_x -
+            rrrs_N_2_o_in_axes2_z) - rrrs_B_3_o_in_axes3_xy*rrrs_h_3_in_spec3_y -
             rrrs_B_3_o_in_axes3_xz*rrrs_h_3_in_spec3_z;
-        const real rrrs_c_o_in_axes3_y = rrrs_h_3_in_spec3_y*(rrrs_mu_3_o_t + rrrs_mu_3_o_t_3) -
+        const real rrrs_c_o_in_axes3_y = rrrs_h_3_in_spec3_y*(v.rrrs_mu_3_o_t + rrrs_mu_3_o_t_3) -
             rrrs_G_o_in_axes3_y - rrrs_B_3_o_in_axes3_yx*rrrs_h_3_in_spec3_x -
             rrrs_B_3_o_in_axes3_yz*rrrs_h_3_in_spec3_z;
-        const real rrrs_c_o_in_axes3_z = rrrs_h_3_in_spec3_z*(rrrs_mu_3_o_t + rrrs_mu_3_o_t_2) -
-            rrrs_B_3_o_in_axes3_zx*rrrs_h_3_in_spec3_x -
+        const real rrrs_c_o_in_axes3_z = rrrs_h_3_in_spec3_z*(v.rrrs_mu_3_o_t + v.rrrs_mu_3_o_t_2)
+            - rrrs_B_3_o_in_axes3_zx*rrrs_h_3_in_spec3_x -
             rrrs_B_3_o_in_axes3_zy*rrrs_h_3_in_spec3_y -
-            rrrs_N_1_o_in_axes1_z*rrrs_w_1_in_axes3_z;
+            rrrs_N_1_o_in_axes1_z*v.rrrs_w_1_in_axes3_z;
         /* (rrrs-Q) inertia of the leg at the connection point, without the mass gathered there */
         const real rrrs_d_c_in_axes3_yy = m->rrrs_d_c_in_axes3_yy[i];
-        const real rrrs_Q_t = rrrs_d_c_in_axes3_xx - rrrs_d_c_in_axes3_yy;
+        const real rrrs_Q_t = v.rrrs_d_c_in_axes3_xx - rrrs_d_c_in_axes3_yy;
         const real rrrs_Q_t_2 = R(0.5)*rrrs_Q_t;
-        const real rrrs_Q_t_3 = rrrs_d_c_in_axes3_xx +
-            rrrs_d_Gamma_1_in_axes3_z*rrrs_w_1_in_axes3_z +
-            rrrs_d_alpha_3_in_axes3_xz*rrrs_h_3_in_spec3_y -
-            rrrs_d_alpha_3_in_axes3_yz*rrrs_h_3_in_spec3_x;
+        const real rrrs_Q_t_3 = v.rrrs_d_c_in_axes3_xx +
+            v.rrrs_d_Gamma_1_in_axes3_z*v.rrrs_w_1_in_axes3_z +
+            v.rrrs_d_alpha_3_in_axes3_xz*rrrs_h_3_in_spec3_y -
+            v.rrrs_d_alpha_3_in_axes3_yz*rrrs_h_3_in_spec3_x;
         const real rrrs_Q_t_4 = R(0.5)*rrrs_Q_t_3;
-        const real rrrs_Q_t_5 = axis_x_rrrs_axes3_x*rrrs_d_c_in_axes3_xy +
-            axis_z_rrrs_axes3_x*rrrs_d_c_in_axes3_yz - axis_y_rrrs_axes3_x*rrrs_Q_t_2;
-        const real rrrs_Q_t_6 = axis_x_rrrs_axes3_y*rrrs_d_c_in_axes3_xy +
-            axis_z_rrrs_axes3_y*rrrs_d_c_in_axes3_yz - axis_y_rrrs_axes3_y*rrrs_Q_t_2;
-        const real rrrs_Q_t_7 = axis_x_rrrs_axes3_z*rrrs_d_c_in_axes3_xy +
-            axis_z_rrrs_axes3_z*rrrs_d_c_in_axes3_yz - axis_y_rrrs_axes3_z*rrrs_Q_t_2;
-        const real rrrs_Q_t_8 = axis_z_rrrs_axes3_x*rrrs_Q_t_4 -
-            axis_x_rrrs_axes3_x*rrrs_d_c_in_axes3_xz;
-        const real rrrs_Q_t_9 = axis_z_rrrs_axes3_y*rrrs_Q_t_4 -
-            axis_x_rrrs_axes3_y*rrrs_d_c_in_axes3_xz;
-        const real rrrs_Q_t_10 = axis_z_rrrs_axes3_z*rrrs_Q_t_4 -
-            axis_x_rrrs_axes3_z*rrrs_d_c_in_axes3_xz;
-        const real rrrs_Q_t_11 = axis_y_rrrs_axes3_x*rrrs_Q_t_5 - axis_z_rrrs_axes3_x*rrrs_Q_t_8;
-        const real rrrs_Q_xx = -2*rrrs_Q_t_11 - rrrs_d_c_in_axes3_xx;
-        const real rrrs_Q_xy = axis_z_rrrs_axes3_x*rrrs_Q_t_9 + axis_z_rrrs_axes3_y*rrrs_Q_t_8 -
-            axis_y_rrrs_axes3_x*rrrs_Q_t_6 - axis_y_rrrs_axes3_y*rrrs_Q_t_5;
-        const real rrrs_Q_xz = axis_z_rrrs_axes3_x*rrrs_Q_t_10 + axis_z_rrrs_axes3_z*rrrs_Q_t_8 -
-            axis_y_rrrs_axes3_x*rrrs_Q_t_7 - axis_y_rrrs_axes3_z*rrrs_Q_t_5;
-        const real rrrs_Q_t_12 = axis_y_rrrs_axes3_y*rrrs_Q_t_6 - axis_z_rrrs_axes3_y*rrrs_Q_t_9;
-        const real rrrs_Q_yy = -2*rrrs_Q_t_12 - rrrs_d_c_in_axes3_xx;
-        const real rrrs_Q_yz = axis_z_rrrs_axes3_y*rrrs_Q_t_10 + axis_z_rrrs_axes3_z*rrrs_Q_t_9 -
-            axis_y_rrrs_axes3_y*rrrs_Q_t_7 - axis_y_rrrs_axes3_z*rrrs_Q_t_6;
-        const real rrrs_Q_t_13 = axis_y_rrrs_axes3_z*rrrs_Q_t_7 - axis_z_rrrs_axes3_z*rrrs_Q_t_10;
-        const real rrrs_Q_zz = -2*rrrs_Q_t_13 - rrrs_d_c_in_axes3_xx;
+        const real rrrs_Q_t_5 = v.axis_x_rrrs_axes3_x*v.rrrs_d_c_in_axes3_xy +
+            v.axis_z_rrrs_axes3_x*v.rrrs_d_c_in_axes3_yz - v.axis_y_rrrs_axes3_x*rrrs_Q_t_2;
+        const real rrrs_Q_t_6 = v.axis_x_rrrs_axes3_y*v.rrrs_d_c_in_axes3_xy +
+            v.axis_z_rrrs_axes3_y*v.rrrs_d_c_in_axes3_yz - v.axis_y_rrrs_axes3_y*rrrs_Q_t_2;
+        const real rrrs_Q_t_7 = v.axis_x_rrrs_axes3_z*v.rrrs_d_c_in_axes3_xy +
+            v.axis_z_rrrs_axes3_z*v.rrrs_d_c_in_axes3_yz - v.axis_y_rrrs_axes3_z*rrrs_Q_t_2;
+        const real rrrs_Q_t_8 = v.axis_z_rrrs_axes3_x*rrrs_Q_t_4 -
+            v.axis_x_rrrs_axes3_x*v.rrrs_d_c_in_axes3_xz;
+        const real rrrs_Q_t_9 = v.axis_z_rrrs_axes3_y*rrrs_Q_t_4 -
+            v.axis_x_rrrs_axes3_y*v.rrrs_d_c_in_axes3_xz;
+        const real rrrs_Q_t_10 = v.axis_z_rrrs_axes3_z*rrrs_Q_t_4 -
+            v.axis_x_rrrs_axes3_z*v.rrrs_d_c_in_axes3_xz;
+        const real rrrs_Q_t_11 = v.axis_y_rrrs_axes3_x*rrrs_Q_t_5 -
+            v.axis_z_rrrs_axes3_x*rrrs_Q_t_8;
+        const real rrrs_Q_xx = -2*rrrs_Q_t_11 - v.rrrs_d_c_in_axes3_xx;
+        const real rrrs_Q_xy = v.axis_z_rrrs_axes3_x*rrrs_Q_t_9 + v.axis_z_rrrs_axes3_y*rrrs_Q_t_8
+            - v.axis_y_rrrs_axes3_x*rrrs_Q_t_6 - v.axis_y_rrrs_axes3_y*rrrs_Q_t_5;
+        const real rrrs_Q_xz = v.axis_z_rrrs_axes3_x*rrrs_Q_t_10 +
+            v.axis_z_rrrs_axes3_z*rrrs_Q_t_8 - v.axis_y_rrrs_axes3_x*rrrs_Q_t_7 -
+            v.axis_y_rrrs_axes3_z*rrrs_Q_t_5;
+        const real rrrs_Q_t_12 = v.axis_y_rrrs_axes3_y*rrrs_Q_t_6 -
+            v.axis_z_rrrs_axes3_y*rrrs_Q_t_9;
+        const real rrrs_Q_yy = -2*rrrs_Q_t_12 - v.rrrs_d_c_in_axes3_xx;
+        const real rrrs_Q_yz = v.axis_z_rrrs_axes3_y*rrrs_Q_t_10 +
+            v.axis_z_rrrs_axes3_z*rrrs_Q_t_9 - v.axis_y_rrrs_axes3_y*rrrs_Q_t_7 -
+            v.axis_y_rrrs_axes3_z*rrrs_Q_t_6;
+        const real rrrs_Q_t_13 = v.axis_y_rrrs_axes3_z*rrrs_Q_t_7 -
+            v.axis_z_rrrs_axes3_z*rrrs_Q_t_10;
+        const real rrrs_Q_zz = -2*rrrs_Q_t_13 - v.rrrs_d_c_in_axes3_xx;
         /* (rrrs-U) velocity and gravity terms of the leg force */
-        const real rrrs_U_x = -axis_x_rrrs_axes3_x*rrrs_c_o_in_axes3_x -
-            axis_y_rrrs_axes3_x*rrrs_c_o_in_axes3_y - axis_z_rrrs_axes3_x*rrrs_c_o_in_axes3_z;
-        const real rrrs_U_y = -axis_x_rrrs_axes3_y*rrrs_c_o_in_axes3_x -
-            axis_y_rrrs_axes3_y*rrrs_c_o_in_axes3_y - axis_z_rrrs_axes3_y*rrrs_c_o_in_axes3_z;
-        const real rrrs_U_z = -axis_x_rrrs_axes3_z*rrrs_c_o_in_axes3_x -
-            axis_y_rrrs_axes3_z*rrrs_c_o_in_axes3_y - axis_z_rrrs_axes3_z*rrrs_c_o_in_axes3_z;
+        const real rrrs_U_x = -v.axis_x_rrrs_axes3_x*rrrs_c_o_in_axes3_x -
+            v.axis_y_rrrs_axes3_x*rrrs_c_o_in_axes3_y - v.axis_z_rrrs_axes3_x*rrrs_c_o_in_axes3_z;
+        const real rrrs_U_y = -v.axis_x_rrrs_axes3_y*rrrs_c_o_in_axes3_x -
+            v.axis_y_rrrs_axes3_y*rrrs_c_o_in_axes3_y - v.axis_z_rrrs_axes3_y*rrrs_c_o_in_axes3_z;
+        const real rrrs_U_z = -v.axis_x_rrrs_axes3_z*rrrs_c_o_in_axes3_x -
+            v.axis_y_rrrs_axes3_z*rrrs_c_o_in_axes3_y - v.axis_z_rrrs_axes3_z*rrrs_c_o_in_axes3_z;
         /* (M_ta) coupling block of M */
-        const real rrrs_M_ta_t = -rrrs_Q_xy*rrrs_q_z;
-        const real rrrs_M_ta_t_2 = rrrs_Q_xz*rrrs_q_y;
+        const real rrrs_M_ta_t = -rrrs_Q_xy*v.rrrs_q_z;
+        const real rrrs_M_ta_t_2 = rrrs_Q_xz*v.rrrs_q_y;
         const real rrrs_M_ta_t_3 = rrrs_M_ta_t + rrrs_M_ta_t_2;
-        const real rrrs_M_ta_t_4 = rrrs_Q_xx*rrrs_q_z - rrrs_Q_xz*rrrs_q_x;
-        const real rrrs_M_ta_t_5 = rrrs_Q_xy*rrrs_q_x - rrrs_Q_xx*rrrs_q_y;
-        const real rrrs_M_ta_t_6 = rrrs_Q_yz*rrrs_q_y - rrrs_Q_yy*rrrs_q_z;
-        const real rrrs_M_ta_t_7 = rrrs_Q_yz*rrrs_q_x;
+        const real rrrs_M_ta_t_4 = rrrs_Q_xx*v.rrrs_q_z - rrrs_Q_xz*v.rrrs_q_x;
+        const real rrrs_M_ta_t_5 = rrrs_Q_xy*v.rrrs_q_x - rrrs_Q_xx*v.rrrs_q_y;
+        const real rrrs_M_ta_t_6 = rrrs_Q_yz*v.rrrs_q_y - rrrs_Q_yy*v.rrrs_q_z;
+        const real rrrs_M_ta_t_7 = rrrs_Q_yz*v.rrrs_q_x;
         const real rrrs_M_ta_t_8 = rrrs_M_ta_t + rrrs_M_ta_t_7;
-        const real rrrs_M_ta_t_9 = rrrs_Q_yy*rrrs_q_x - rrrs_Q_xy*rrrs_q_y;
-        const real rrrs_M_ta_t_10 = rrrs_Q_zz*rrrs_q_y - rrrs_Q_yz*rrrs_q_z;
-        const real rrrs_M_ta_t_11 = rrrs_Q_xz*rrrs_q_z - rrrs_Q_zz*rrrs_q_x;
+        const real rrrs_M_ta_t_9 = rrrs_Q_yy*v.rrrs_q_x - rrrs_Q_xy*v.rrrs_q_y;
+        const real rrrs_M_ta_t_10 = rrrs_Q_zz*v.rrrs_q_y - rrrs_Q_yz*v.rrrs_q_z;
+        const real rrrs_M_ta_t_11 = rrrs_Q_xz*v.rrrs_q_z - rrrs_Q_zz*v.rrrs_q_x;
         const real rrrs_M_ta_t_12 = rrrs_M_ta_t_7 - rrrs_M_ta_t_2;
         /* (M_aa) rotational block of M */
-        const real rrrs_M_aa_t = rrrs_M_ta_t_10*rrrs_q_y - rrrs_M_ta_t_6*rrrs_q_z;
-        const real rrrs_M_aa_t_2 = rrrs_M_ta_t_11*rrrs_q_y + rrrs_M_ta_t_8*rrrs_q_z;
-        const real rrrs_M_aa_t_3 = rrrs_M_ta_t_12*rrrs_q_y - rrrs_M_ta_t_9*rrrs_q_z;
-        const real rrrs_M_aa_t_4 = rrrs_M_ta_t_4*rrrs_q_z - rrrs_M_ta_t_11*rrrs_q_x;
-        const real rrrs_M_aa_t_5 = rrrs_M_ta_t_5*rrrs_q_z - rrrs_M_ta_t_12*rrrs_q_x;
-        const real rrrs_M_aa_t_6 = rrrs_M_ta_t_9*rrrs_q_x - rrrs_M_ta_t_5*rrrs_q_y;
+        const real rrrs_M_aa_t = rrrs_M_ta_t_10*v.rrrs_q_y - rrrs_M_ta_t_6*v.rrrs_q_z;
+        const real rrrs_M_aa_t_2 = rrrs_M_ta_t_11*v.rrrs_q_y + rrrs_M_ta_t_8*v.rrrs_q_z;
+        const real rrrs_M_aa_t_3 = rrrs_M_ta_t_12*v.rrrs_q_y - rrrs_M_ta_t_9*v.rrrs_q_z;
+        const real rrrs_M_aa_t_4 = rrrs_M_ta_t_4*v.rrrs_q_z - rrrs_M_ta_t_11*v.rrrs_q_x;
+        const real rrrs_M_aa_t_5 = rrrs_M_ta_t_5*v.rrrs_q_z - rrrs_M_ta_t_12*v.rrrs_q_x;
+        const real rrrs_M_aa_t_6 = rrrs_M_ta_t_9*v.rrrs_q_x - rrrs_M_ta_t_5*v.rrrs_q_y;
         /* (Z_a) rotational part of Z */
-        const real rrrs_Z_a_t = rrrs_U_z*rrrs_q_y - rrrs_U_y*rrrs_q_z;
-        const real rrrs_Z_a_t_2 = rrrs_U_x*rrrs_q_z - rrrs_U_z*rrrs_q_x;
-        const real rrrs_Z_a_t_3 = rrrs_U_y*rrrs_q_x - rrrs_U_x*rrrs_q_y;
-        /* (rrrs-H_a_1) moment of the column's unit force about the platform origin */
-        const real rrrs_H_a_1_x = rrrs_q_y*rrrs_w_1_z - rrrs_q_z*rrrs_w_1_y;
-        const real rrrs_H_a_1_y = rrrs_q_z*rrrs_w_1_x - rrrs_q_x*rrrs_w_1_z;
-        const real rrrs_H_a_1_z = rrrs_q_x*rrrs_w_1_y - rrrs_q_y*rrrs_w_1_x;
+        const real rrrs_Z_a_t = rrrs_U_z*v.rrrs_q_y - rrrs_U_y*v.rrrs_q_z;
+        const real rrrs_Z_a_t_2 = rrrs_U_x*v.rrrs_q_z - rrrs_U_z*v.rrrs_q_x;
+        const real rrrs_Z_a_t_3 = rrrs_U_y*v.rrrs_q_x - rrrs_U_x*v.rrrs_q_y;
         /* (rrrs-H_a_2) moment of the column's unit force about the platform origin */
-        const real rrrs_H_a_2_x = rrrs_q_y*rrrs_w_2_z - rrrs_q_z*rrrs_w_2_y;
-        const real rrrs_H_a_2_y = rrrs_q_z*rrrs_w_2_x - rrrs_q_x*rrrs_w_2_z;
-        const real rrrs_H_a_2_z = rrrs_q_x*rrrs_w_2_y - rrrs_q_y*rrrs_w_2_x;
+        const real rrrs_H_a_2_x = v.rrrs_q_y*v.rrrs_w_2_z - v.rrrs_q_z*v.rrrs_w_2_y;
+        const real rrrs_H_a_2_y = v.rrrs_q_z*v.rrrs_w_2_x - v.rrrs_q_x*v.rrrs_w_2_z;
+        const real rrrs_H_a_2_z = v.rrrs_q_x*v.rrrs_w_2_y - v.rrrs_q_y*v.rrrs_w_2_x;
         /* (M_tt) translational block of M */
         gather(&terms[0*count + k], add, rrrs_Q_xx);  /* M_tt_xx_of_legs */
         gather(&terms[1*count + k], add, rrrs_Q_xy);  /* M_tt_xy */
@@ -2142,32 +2691,32 @@ INLINE void dynamics_legs_rrrs(const prepared *m, size_t w, size_t leg, size_t l
         gather(&terms[25*count + k], add, rrrs_Z_a_t_2);  /* Z_a_y_of_legs */
         gather(&terms[26*count + k], add, rrrs_Z_a_t_3);  /* Z_a_z_of_legs */
         /* (rrrs-w_1) reciprocal vector 1 */
-        o[0*count + k] = rrrs_w_1_x;
-        o[1*count + k] = rrrs_w_1_y;
-        o[2*count + k] = rrrs_w_1_z;
+        o[0*count + k] = v.rrrs_w_1_x;
+        o[1*count + k] = v.rrrs_w_1_y;
+        o[2*count + k] = v.rrrs_w_1_z;
         /* (rrrs-H_a_1) moment of the column's unit force about the platform origin */
-        o[3*count + k] = rrrs_H_a_1_x;
-        o[4*count + k] = rrrs_H_a_1_y;
-        o[5*count + k] = rrrs_H_a_1_z;
+        o[3*count + k] = v.rrrs_H_a_1_x;
+        o[4*count + k] = v.rrrs_H_a_1_y;
+        o[5*count + k] = v.rrrs_H_a_1_z;
         /* (rrrs-w_2) reciprocal vector 2 */
-        o[6*count + k] = rrrs_w_2_x;
-        o[7*count + k] = rrrs_w_2_y;
-        o[8*count + k] = rrrs_w_2_z;
+        o[6*count + k] = v.rrrs_w_2_x;
+        o[7*count + k] = v.rrrs_w_2_y;
+        o[8*count + k] = v.rrrs_w_2_z;
         /* (rrrs-H_a_2) moment of the column's unit force about the platform origin */
         o[9*count + k] = rrrs_H_a_2_x;
         o[10*count + k] = rrrs_H_a_2_y;
         o[11*count + k] = rrrs_H_a_2_z;
-        o[14*count + k] = ((rrrs_w_1_x + (rrrs_w_1_y + rrrs_w_1_z)) + (rrrs_H_a_1_x +
-            (rrrs_H_a_1_y + rrrs_H_a_1_z))) + ((rrrs_w_2_x + (rrrs_w_2_y + rrrs_w_2_z)) +
-            (rrrs_H_a_2_x + (rrrs_H_a_2_y + rrrs_H_a_2_z)));
+        o[14*count + k] = ((v.rrrs_w_1_x + (v.rrrs_w_1_y + v.rrrs_w_1_z)) + (v.rrrs_H_a_1_x +
+            (v.rrrs_H_a_1_y + v.rrrs_H_a_1_z))) + ((v.rrrs_w_2_x + (v.rrrs_w_2_y + v.rrrs_w_2_z))
+            + (rrrs_H_a_2_x + (rrrs_H_a_2_y + rrrs_H_a_2_z)));
         const real rrrs_size_t_3 = m->rrrs_size_t_3[i];
         const real rrrs_rho2_2_t = m->rrrs_rho2_2_t[i];
         const real rrrs_size = m->rrrs_size[i];
-        o[13*count + k] = UNLESS(magnitude(rrrs_rho2_1) > TOLERANCE*TOLERANCE*rrrs_size_t_3) +
-            UNLESS(magnitude(rrrs_rho2_2) > TOLERANCE*TOLERANCE*rrrs_rho2_2_t) +
-            UNLESS(magnitude(rrrs_v_1_in_axes3_z) > TOLERANCE*rrrs_size) +
-            UNLESS(magnitude(rrrs_r_2_in_axes3_y) > TOLERANCE*rrrs_size);
-        o[12*count + k] = UNLESS(rrrs_disc_2 >= 0);
+        o[13*count + k] = UNLESS(magnitude(v.rrrs_rho2_1) > TOLERANCE*TOLERANCE*rrrs_size_t_3) +
+            UNLESS(magnitude(v.rrrs_rho2_2) > TOLERANCE*TOLERANCE*rrrs_rho2_2_t) +
+            UNLESS(magnitude(v.rrrs_v_1_in_axes3_z) > TOLERANCE*rrrs_size) +
+            UNLESS(magnitude(v.rrrs_r_2_in_axes3_y) > TOLERANCE*rrrs_size);
+        o[12*count + k] = UNLESS(v.rrrs_disc_2 >= 0);
     }
 }
 
@@ -2175,13 +2724,13 @@ INLINE void dynamics_place_rrrs(size_t w, size_t count, const real *o, size_t le
     real *H, verdict *t)
 {
     for (size_t k = 0; k < w; ++k) {
-        H[(0*NU + 2*leg)*w + k] = o[0*count + first + k];
+        H[2*leg*w + k] = o[0*count + first + k];
         H[(NU + 2*leg)*w + k] = o[1*count + first + k];
         H[(2*NU + 2*leg)*w + k] = o[2*count + first + k];
         H[(3*NU + 2*leg)*w + k] = o[3*count + first + k];
         H[(4*NU + 2*leg)*w + k] = o[4*count + first + k];
         H[(5*NU + 2*leg)*w + k] = o[5*count + first + k];
-        H[(0*NU + 1 + 2*leg)*w + k] = o[6*count + first + k];
+        H[(1 + 2*leg)*w + k] = o[6*count + first + k];
         H[(NU + 1 + 2*leg)*w + k] = o[7*count + first + k];
         H[(2*NU + 1 + 2*leg)*w + k] = o[8*count + first + k];
         H[(3*NU + 1 + 2*leg)*w + k] = o[9*count + first + k];
@@ -2207,66 +2756,66 @@ INLINE void dynamics_after(const prepared *m, size_t w, const real *s, const rea
         const real M_tt_zz = M_tt_zz_of_legs + m_star;
         /* (M_ta) coupling block of M */
         const real M_ta_xy_of_legs = sums[7*w + k];
-        const real h_star_z = s[20*w + k];
+        const real h_star_z = s[11*w + k];
         const real M_ta_xy = M_ta_xy_of_legs + h_star_z;
         const real M_ta_xz_of_legs = sums[8*w + k];
-        const real h_star_y = s[19*w + k];
+        const real h_star_y = s[10*w + k];
         const real M_ta_xz = M_ta_xz_of_legs - h_star_y;
         const real M_ta_yx_of_legs = sums[9*w + k];
         const real M_ta_yx = M_ta_yx_of_legs - h_star_z;
         const real M_ta_yz_of_legs = sums[11*w + k];
-        const real h_star_x = s[18*w + k];
+        const real h_star_x = s[9*w + k];
         const real M_ta_yz = M_ta_yz_of_legs + h_star_x;
         const real M_ta_zx_of_legs = sums[12*w + k];
         const real M_ta_zx = M_ta_zx_of_legs + h_star_y;
         const real M_ta_zy_of_legs = sums[13*w + k];
         const real M_ta_zy = M_ta_zy_of_legs - h_star_x;
         /* (M_aa) rotational block of M */
-        const real J_star_xx = s[21*w + k];
+        const real J_star_xx = s[12*w + k];
         const real M_aa_xx_of_legs = sums[15*w + k];
         const real M_aa_xx = J_star_xx + M_aa_xx_of_legs;
-        const real J_star_xy = s[22*w + k];
+        const real J_star_xy = s[13*w + k];
         const real M_aa_xy_of_legs = sums[16*w + k];
         const real M_aa_xy = J_star_xy + M_aa_xy_of_legs;
-        const real J_star_xz = s[23*w + k];
+        const real J_star_xz = s[14*w + k];
         const real M_aa_xz_of_legs = sums[17*w + k];
         const real M_aa_xz = J_star_xz + M_aa_xz_of_legs;
-        const real J_star_yy = s[24*w + k];
+        const real J_star_yy = s[15*w + k];
         const real M_aa_yy_of_legs = sums[18*w + k];
         const real M_aa_yy = J_star_yy + M_aa_yy_of_legs;
-        const real J_star_yz = s[25*w + k];
+        const real J_star_yz = s[16*w + k];
         const real M_aa_yz_of_legs = sums[19*w + k];
         const real M_aa_yz = J_star_yz + M_aa_yz_of_legs;
-        const real J_star_zz = s[26*w + k];
+        const real J_star_zz = s[17*w + k];
         const real M_aa_zz_of_legs = sums[20*w + k];
         const real M_aa_zz = J_star_zz + M_aa_zz_of_legs;
         /* (Z_t) translational part of Z */
-        const real Z_p_x = s[27*w + k];
+        const real Z_p_x = s[18*w + k];
         const real Z_t_x_of_legs = sums[21*w + k];
         const real Z_t_x = Z_p_x + Z_t_x_of_legs;
-        const real Z_p_y = s[28*w + k];
+        const real Z_p_y = s[19*w + k];
         const real Z_t_y_of_legs = sums[22*w + k];
         const real Z_t_y = Z_p_y + Z_t_y_of_legs;
-        const real Z_p_z = s[29*w + k];
+        const real Z_p_z = s[20*w + k];
         const real Z_t_z_of_legs = sums[23*w + k];
         const real Z_t_z = Z_p_z + Z_t_z_of_legs;
         /* (Z_a) rotational part of Z */
         const real Z_a_x_of_legs = sums[24*w + k];
-        const real Z_q_x = s[30*w + k];
+        const real Z_q_x = s[21*w + k];
         const real Z_a_x = Z_a_x_of_legs + Z_q_x;
         const real Z_a_y_of_legs = sums[25*w + k];
-        const real Z_q_y = s[31*w + k];
+        const real Z_q_y = s[22*w + k];
         const real Z_a_y = Z_a_y_of_legs + Z_q_y;
         const real Z_a_z_of_legs = sums[26*w + k];
-        const real Z_q_z = s[32*w + k];
+        const real Z_q_z = s[23*w + k];
         const real Z_a_z = Z_a_z_of_legs + Z_q_z;
         /* (M_tt) translational block of M */
-        M[0*NV*w + k] = M_tt_xx;
+        M[0*w + k] = M_tt_xx;
         const real M_tt_xy = sums[1*w + k];
-        M[(0*NV + 1)*w + k] = M_tt_xy;
+        M[1*w + k] = M_tt_xy;
         M[NV*w + k] = M_tt_xy;
         const real M_tt_xz = sums[2*w + k];
-        M[(0*NV + 2)*w + k] = M_tt_xz;
+        M[2*w + k] = M_tt_xz;
         M[2*NV*w + k] = M_tt_xz;
         M[(NV + 1)*w + k] = M_tt_yy;
         const real M_tt_yz = sums[4*w + k];
@@ -2275,11 +2824,11 @@ INLINE void dynamics_after(const prepared *m, size_t w, const real *s, const rea
         M[(2*NV + 2)*w + k] = M_tt_zz;
         /* (M_ta) coupling block of M */
         const real M_ta_xx = sums[6*w + k];
-        M[(0*NV + 3)*w + k] = M_ta_xx;
+        M[3*w + k] = M_ta_xx;
         M[3*NV*w + k] = M_ta_xx;
-        M[(0*NV + 4)*w + k] = M_ta_xy;
+        M[4*w + k] = M_ta_xy;
         M[4*NV*w + k] = M_ta_xy;
-        M[(0*NV + 5)*w + k] = M_ta_xz;
+        M[5*w + k] = M_ta_xz;
         M[5*NV*w + k] = M_ta_xz;
         M[(NV + 3)*w + k] = M_ta_yx;
         M[(3*NV + 1)*w + k] = M_ta_yx;
@@ -2323,12 +2872,10 @@ INLINE void dynamics_after(const prepared *m, size_t w, const real *s, const rea
 INLINE void dynamics_run(const prepared *m, const real *X, const real *V, real *M, real *Z, real
     *H, verdict *t)
 {
-    real s[33] = {0};
-    real sums[27] = {0};
-    real terms_rrrs[27*LEGS(LEGS_OF_rrrs)] = {0};
-    real o_rrrs[15*LEGS(LEGS_OF_rrrs)] = {0};
+    real s[24] = {0}, sums[27] = {0};
+    real terms_rrrs[27*LEGS(LEGS_OF_rrrs)] = {0}, o_rrrs[15*LEGS(LEGS_OF_rrrs)] = {0};
     dynamics_before(m, 1, X, V, s, t);
-    dynamics_legs_rrrs(m, 1, 0, 1, s, 0, LEGS(LEGS_OF_rrrs), 0, terms_rrrs, o_rrrs);
+    dynamics_legs_rrrs(m, 1, 0, 1, s, 0, LEGS(LEGS_OF_rrrs), 0, X, V, terms_rrrs, o_rrrs);
     for (size_t leg = 0; leg < LEGS_OF_rrrs; ++leg) {
         dynamics_place_rrrs(1, LEGS(LEGS_OF_rrrs), o_rrrs, leg, leg, H, t);
     }
@@ -2341,13 +2888,12 @@ INLINE void dynamics_run(const prepared *m, const real *X, const real *V, real *
 INLINE void dynamics_run_lanes(const prepared *m, const real *X, const real *V, real *M, real *Z,
     real *H, verdict *t)
 {
-    real s[33*LANES];
-    real sums[27*LANES];
+    real s[24*LANES], sums[27*LANES];
     real o_rrrs[15*LANES];
     dynamics_before(m, LANES, X, V, s, t);
     clear(sums, 27*LANES);
     for (size_t leg = 0; leg < LEGS_OF_rrrs; ++leg) {
-        dynamics_legs_rrrs(m, LANES, leg, 0, s, 1, LANES, 1, sums, o_rrrs);
+        dynamics_legs_rrrs(m, LANES, leg, 0, s, 1, LANES, 1, X, V, sums, o_rrrs);
         dynamics_place_rrrs(LANES, LANES, o_rrrs, leg, 0, H, t);
     }
     dynamics_after(m, LANES, s, sums, M, Z, t);
@@ -2357,370 +2903,124 @@ INLINE void dynamics_run_lanes(const prepared *m, const real *X, const real *V, 
 INLINE void M_before(const prepared *m, size_t w, const real *X, real *s, verdict *t)
 {
     for (size_t k = 0; k < w; ++k) {
-        /* X: named entries */
-        const real X_0 = X[0*w + k];
-        const real t_x = X_0;
-        const real X_1 = X[1*w + k];
-        const real t_y = X_1;
-        const real X_2 = X[2*w + k];
-        const real t_z = X_2;
-        const real X_3 = X[3*w + k];
-        const real X_4 = X[4*w + k];
-        const real X_5 = X[5*w + k];
-        const real X_6 = X[6*w + k];
-        const real quaternion_norm2 = X_3*X_3 + X_4*X_4 + X_5*X_5 + X_6*X_6;
-        const real quaternion_scale = 2/quaternion_norm2;
-        const real quaternion_sx = X_3*quaternion_scale;
-        const real quaternion_sy = X_4*quaternion_scale;
-        const real quaternion_sz = X_5*quaternion_scale;
-        const real quaternion_wx = X_6*quaternion_sx;
-        const real quaternion_wy = X_6*quaternion_sy;
-        const real quaternion_wz = X_6*quaternion_sz;
-        const real quaternion_xx = X_3*quaternion_sx;
-        const real quaternion_xy = X_3*quaternion_sy;
-        const real quaternion_xz = X_3*quaternion_sz;
-        const real quaternion_yy = X_4*quaternion_sy;
-        const real quaternion_yz = X_4*quaternion_sz;
-        const real quaternion_zz = X_5*quaternion_sz;
-        const real R_xx = 1 - quaternion_yy - quaternion_zz;
-        const real R_xy = quaternion_xy - quaternion_wz;
-        const real R_xz = quaternion_wy + quaternion_xz;
-        const real R_yx = quaternion_wz + quaternion_xy;
-        const real R_yy = 1 - quaternion_xx - quaternion_zz;
-        const real R_yz = quaternion_yz - quaternion_wx;
-        const real R_zx = quaternion_xz - quaternion_wy;
-        const real R_zy = quaternion_wx + quaternion_yz;
-        const real R_zz = 1 - quaternion_xx - quaternion_yy;
-        /* (h_star) first moment about the platform origin */
-        const real h_star_in_platform_x = m->h_star_in_platform_x;
-        const real h_star_in_platform_y = m->h_star_in_platform_y;
-        const real h_star_in_platform_z = m->h_star_in_platform_z;
-        const real h_star_x = R_xx*h_star_in_platform_x + R_xy*h_star_in_platform_y +
-            R_xz*h_star_in_platform_z;
-        const real h_star_y = R_yx*h_star_in_platform_x + R_yy*h_star_in_platform_y +
-            R_yz*h_star_in_platform_z;
-        const real h_star_z = R_zx*h_star_in_platform_x + R_zy*h_star_in_platform_y +
-            R_zz*h_star_in_platform_z;
-        /* (J_star) inertia tensor about the platform origin */
-        const real J_star_in_platform_xy = m->J_star_in_platform_xy;
-        const real J_star_in_platform_yz = m->J_star_in_platform_yz;
-        const real J_star_t_12 = m->J_star_t_12;
-        const real J_star_t = J_star_in_platform_xy*R_xx + J_star_in_platform_yz*R_xz -
-            J_star_t_12*R_xy;
-        const real J_star_t_2 = J_star_in_platform_xy*R_yx + J_star_in_platform_yz*R_yz -
-            J_star_t_12*R_yy;
-        const real J_star_t_3 = J_star_in_platform_xy*R_zx + J_star_in_platform_yz*R_zz -
-            J_star_t_12*R_zy;
-        const real J_star_in_platform_xz = m->J_star_in_platform_xz;
-        const real J_star_t_14 = m->J_star_t_14;
-        const real J_star_t_4 = J_star_t_14*R_xz - J_star_in_platform_xz*R_xx;
-        const real J_star_t_5 = J_star_t_14*R_yz - J_star_in_platform_xz*R_yx;
-        const real J_star_t_6 = J_star_t_14*R_zz - J_star_in_platform_xz*R_zx;
-        const real J_star_t_7 = J_star_t*R_xy - J_star_t_4*R_xz;
-        const real J_star_in_platform_xx = m->J_star_in_platform_xx;
-        const real J_star_xx = J_star_in_platform_xx + 2*J_star_t_7;
-        const real J_star_xy = J_star_t*R_yy + J_star_t_2*R_xy - J_star_t_4*R_yz -
-            J_star_t_5*R_xz;
-        const real J_star_xz = J_star_t*R_zy + J_star_t_3*R_xy - J_star_t_4*R_zz -
-            J_star_t_6*R_xz;
-        const real J_star_t_8 = J_star_t_2*R_yy - J_star_t_5*R_yz;
-        const real J_star_yy = J_star_in_platform_xx + 2*J_star_t_8;
-        const real J_star_yz = J_star_t_2*R_zy + J_star_t_3*R_yy - J_star_t_5*R_zz -
-            J_star_t_6*R_yz;
-        const real J_star_t_9 = J_star_t_3*R_zy - J_star_t_6*R_zz;
-        const real J_star_zz = J_star_in_platform_xx + 2*J_star_t_9;
-        s[0*w + k] = t_x;
-        s[1*w + k] = t_y;
-        s[2*w + k] = t_z;
-        s[3*w + k] = R_xx;
-        s[4*w + k] = R_xy;
-        s[5*w + k] = R_xz;
-        s[6*w + k] = R_yx;
-        s[7*w + k] = R_yy;
-        s[8*w + k] = R_yz;
-        s[9*w + k] = R_zx;
-        s[10*w + k] = R_zy;
-        s[11*w + k] = R_zz;
-        s[12*w + k] = h_star_x;
-        s[13*w + k] = h_star_y;
-        s[14*w + k] = h_star_z;
-        s[15*w + k] = J_star_xx;
-        s[16*w + k] = J_star_xy;
-        s[17*w + k] = J_star_xz;
-        s[18*w + k] = J_star_yy;
-        s[19*w + k] = J_star_yz;
-        s[20*w + k] = J_star_zz;
-        t->invalid[k] += UNLESS(is_finite(quaternion_scale)) + UNLESS(quaternion_scale > 0);
+        values v;
+        stage_X(m, w, k, X, &v);
+        stage_M_dynamics(m, &v);
+        s[0*w + k] = v.R_xx;
+        s[1*w + k] = v.R_xy;
+        s[2*w + k] = v.R_xz;
+        s[3*w + k] = v.R_yx;
+        s[4*w + k] = v.R_yy;
+        s[5*w + k] = v.R_yz;
+        s[6*w + k] = v.R_zx;
+        s[7*w + k] = v.R_zy;
+        s[8*w + k] = v.R_zz;
+        s[9*w + k] = v.h_star_x;
+        s[10*w + k] = v.h_star_y;
+        s[11*w + k] = v.h_star_z;
+        s[12*w + k] = v.J_star_xx;
+        s[13*w + k] = v.J_star_xy;
+        s[14*w + k] = v.J_star_xz;
+        s[15*w + k] = v.J_star_yy;
+        s[16*w + k] = v.J_star_yz;
+        s[17*w + k] = v.J_star_zz;
+        t->invalid[k] += UNLESS(is_finite(v.quaternion_scale)) + UNLESS(v.quaternion_scale > 0);
     }
 }
 
 INLINE void M_legs_rrrs(const prepared *m, size_t w, size_t leg, size_t legs, const real *s,
-    size_t states, size_t count, int add, real *terms, real *o)
+    size_t states, size_t count, int add, const real *X, real *terms, real *o)
 {
     for (size_t k = 0; k < count; ++k) {
         const size_t i = leg + legs*k;
         const size_t j = states*k;
-        /* (rrrs-S) from the base point to the connection point */
-        const real R_xx = s[3*w + j];
-        const real R_xy = s[4*w + j];
-        const real R_xz = s[5*w + j];
-        const real rrrs_platform_point_x = m->rrrs_platform_point_x[i];
-        const real rrrs_platform_point_y = m->rrrs_platform_point_y[i];
-        const real rrrs_platform_point_z = m->rrrs_platform_point_z[i];
-        const real rrrs_q_x = R_xx*rrrs_platform_point_x + R_xy*rrrs_platform_point_y +
-            R_xz*rrrs_platform_point_z;
-        const real R_yx = s[6*w + j];
-        const real R_yy = s[7*w + j];
-        const real R_yz = s[8*w + j];
-        const real rrrs_q_y = R_yx*rrrs_platform_point_x + R_yy*rrrs_platform_point_y +
-            R_yz*rrrs_platform_point_z;
-        const real R_zx = s[9*w + j];
-        const real R_zy = s[10*w + j];
-        const real R_zz = s[11*w + j];
-        const real rrrs_q_z = R_zx*rrrs_platform_point_x + R_zy*rrrs_platform_point_y +
-            R_zz*rrrs_platform_point_z;
-        const real rrrs_base_point_x = m->rrrs_base_point_x[i];
-        const real t_x = s[0*w + j];
-        const real rrrs_S_x = rrrs_q_x + t_x - rrrs_base_point_x;
-        const real rrrs_base_point_y = m->rrrs_base_point_y[i];
-        const real t_y = s[1*w + j];
-        const real rrrs_S_y = rrrs_q_y + t_y - rrrs_base_point_y;
-        const real rrrs_base_point_z = m->rrrs_base_point_z[i];
-        const real t_z = s[2*w + j];
-        const real rrrs_S_z = rrrs_q_z + t_z - rrrs_base_point_z;
-        /* (rrrs-px_1) component along the reference direction */
-        const real rrrs_base_frame_xy = m->rrrs_base_frame_xy[i];
-        const real rrrs_base_frame_yy = m->rrrs_base_frame_yy[i];
-        const real rrrs_base_frame_zy = m->rrrs_base_frame_zy[i];
-        const real rrrs_px_1 = rrrs_S_x*rrrs_base_frame_xy + rrrs_S_y*rrrs_base_frame_yy +
-            rrrs_S_z*rrrs_base_frame_zy;
-        /* (rrrs-py_1) component across the reference direction */
-        const real rrrs_base_frame_xz = m->rrrs_base_frame_xz[i];
-        const real rrrs_base_frame_yz = m->rrrs_base_frame_yz[i];
-        const real rrrs_base_frame_zz = m->rrrs_base_frame_zz[i];
-        const real rrrs_py_1 = rrrs_S_x*rrrs_base_frame_xz + rrrs_S_y*rrrs_base_frame_yz +
-            rrrs_S_z*rrrs_base_frame_zz;
-        /* (rrrs-rho2_1) squared amplitude */
-        const real rrrs_rho2_1 = rrrs_px_1*rrrs_px_1 + rrrs_py_1*rrrs_py_1;
-        /* (rrrs-root_1) root, with the sign of the branch */
-        const real rrrs_branch_1 = m->rrrs_branch_1[i];
-        const real rrrs_root_1 = rrrs_branch_1*root(rrrs_rho2_1);
-        /* (rrrs-c_1) cosine of the angle of joint 1 from its reference direction */
-        const real inv_rrrs_rho2_1 = 1/rrrs_rho2_1;
-        const real rrrs_c_1 = -inv_rrrs_rho2_1*rrrs_py_1*rrrs_root_1;
-        /* (rrrs-s_1) sine of the angle of joint 1 from its reference direction */
-        const real rrrs_s_1 = inv_rrrs_rho2_1*rrrs_px_1*rrrs_root_1;
-        /* (rrrs-xi_1) the vector from joint 1 to the connection point, resolved along link 1 */
-        const real rrrs_base_frame_xx = m->rrrs_base_frame_xx[i];
-        const real rrrs_base_frame_yx = m->rrrs_base_frame_yx[i];
-        const real rrrs_base_frame_zx = m->rrrs_base_frame_zx[i];
-        const real rrrs_xi_1_in_axes1_z = rrrs_S_x*rrrs_base_frame_xx +
-            rrrs_S_y*rrrs_base_frame_yx + rrrs_S_z*rrrs_base_frame_zx;
-        /* (rrrs-x_2) from the origin of joint 2 to the connection point */
-        const real rrrs_joint2_offset_x = m->rrrs_joint2_offset_x[i];
-        const real rrrs_x_2_in_axes1_z = rrrs_xi_1_in_axes1_z - rrrs_joint2_offset_x;
-        /* (rrrs-Kd_2) projection on the centre's direction, from the distance fixed by the joints beyond
-           joint 2 */
-        const real rrrs_Kd_2_t_3 = rrrs_root_1*rrrs_root_1 +
-            rrrs_x_2_in_axes1_z*rrrs_x_2_in_axes1_z;
-        const real rrrs_Kd_2_t = m->rrrs_Kd_2_t[i];
-        const real rrrs_Kd_2_t_2 = m->rrrs_Kd_2_t_2[i];
-        const real rrrs_Kd_2 = rrrs_Kd_2_t + R(0.5)*rrrs_Kd_2_t_3 - rrrs_Kd_2_t_2;
-        /* (rrrs-Kc_2) factor of the cosine in the equation of joint 2 */
-        const real rrrs_joint3_offset_x = m->rrrs_joint3_offset_x[i];
-        const real rrrs_Kc_2 = -rrrs_joint3_offset_x*rrrs_root_1;
-        /* (rrrs-Ks_2) factor of the sine in the equation of joint 2 */
-        const real rrrs_Ks_2 = rrrs_joint3_offset_x*rrrs_x_2_in_axes1_z;
-        /* (rrrs-rho2_2) squared amplitude */
-        const real rrrs_rho2_2 = rrrs_Kc_2*rrrs_Kc_2 + rrrs_Ks_2*rrrs_Ks_2;
-        /* (rrrs-disc_2) discriminant */
-        const real rrrs_disc_2 = rrrs_rho2_2 - rrrs_Kd_2*rrrs_Kd_2;
-        /* (rrrs-root_2) root, with the sign of the branch */
-        const real rrrs_branch_2 = m->rrrs_branch_2[i];
-        const real rrrs_root_2 = rrrs_branch_2*root(rrrs_disc_2);
-        /* (rrrs-c_2) cosine of the angle of joint 2 from its reference direction */
-        const real rrrs_c_2_t = -1/rrrs_rho2_2;
-        const real rrrs_c_2 = rrrs_c_2_t*(rrrs_Ks_2*rrrs_root_2 - rrrs_Kc_2*rrrs_Kd_2);
-        /* (rrrs-s_2) sine of the angle of joint 2 from its reference direction */
-        const real rrrs_s_2 = rrrs_c_2_t*(-rrrs_Kc_2*rrrs_root_2 - rrrs_Kd_2*rrrs_Ks_2);
-        /* (rrrs-x_3) from the origin of joint 3 to the connection point */
-        const real inv_rrrs_size_t = m->inv_rrrs_size_t[i];
-        const real rrrs_x_3_in_axes2_x = inv_rrrs_size_t*rrrs_Kd_2*rrrs_joint3_offset_x -
-            rrrs_joint3_offset_x;
-        /* (rrrs-c_3) cosine of the angle of joint 3 from its reference direction */
-        const real inv_rrrs_size_t_2 = m->inv_rrrs_size_t_2[i];
-        const real rrrs_platform_joint_offset_x = m->rrrs_platform_joint_offset_x[i];
-        const real rrrs_c_3 = inv_rrrs_size_t_2*rrrs_platform_joint_offset_x*rrrs_x_3_in_axes2_x;
-        /* (rrrs-s_3) sine of the angle of joint 3 from its reference direction */
-        const real rrrs_s_3_t =
-            inv_rrrs_size_t*inv_rrrs_size_t_2*rrrs_joint3_offset_x*rrrs_platform_joint_offset_x*rrrs_root_2;
-        /* (rrrs-r_2) from joint 2 to the connection point, along the links */
-        const real rrrs_r_2_t = rrrs_platform_joint_offset_x*rrrs_s_3_t;
-        const real rrrs_r_2_in_axes2_x = rrrs_joint3_offset_x +
-            rrrs_c_3*rrrs_platform_joint_offset_x;
-        const real rrrs_r_2_in_axes3_x = rrrs_c_3*rrrs_r_2_in_axes2_x + rrrs_r_2_t*rrrs_s_3_t;
-        const real rrrs_r_2_in_axes3_y = rrrs_r_2_in_axes2_x*rrrs_s_3_t - rrrs_c_3*rrrs_r_2_t;
-        /* (rrrs-v_1) velocity of the connection point per rate of joint 1 */
-        const real rrrs_e_1_in_axes3_x = rrrs_c_3*rrrs_s_2 - rrrs_c_2*rrrs_s_3_t;
-        const real rrrs_e_1_in_axes3_y = rrrs_c_2*rrrs_c_3 + rrrs_s_2*rrrs_s_3_t;
-        const real rrrs_v_1_t = rrrs_s_2*rrrs_xi_1_in_axes1_z - rrrs_c_2*rrrs_root_1;
-        const real rrrs_v_1_t_2 = rrrs_c_2*rrrs_xi_1_in_axes1_z + rrrs_root_1*rrrs_s_2;
-        const real rrrs_v_1_in_axes3_z = rrrs_e_1_in_axes3_x*(rrrs_c_3*rrrs_v_1_t_2 +
-            rrrs_s_3_t*rrrs_v_1_t) - rrrs_e_1_in_axes3_y*(rrrs_c_3*rrrs_v_1_t -
-            rrrs_s_3_t*rrrs_v_1_t_2);
-        /* (rrrs-w_1) reciprocal vector 1 */
-        const real rrrs_w_1_in_axes3_z = 1/rrrs_v_1_in_axes3_z;
-        /* (rrrs-w_2) reciprocal vector 2 */
-        const real rrrs_w_2_in_axes3_x = -1/rrrs_r_2_in_axes3_y;
-        /* (rrrs-w_3) reciprocal vector 3 */
-        const real rrrs_w_3_in_axes3_y = m->rrrs_w_3_in_axes3_y[i];
-        const real rrrs_w_3_in_axes3_x =
-            -rrrs_r_2_in_axes3_x*rrrs_w_2_in_axes3_x*rrrs_w_3_in_axes3_y;
-        /* (rrrs-d_alpha_3) coefficient of the acceleration in: angular acceleration of link 3 */
-        const real rrrs_d_alpha_3_in_axes3_xz = rrrs_e_1_in_axes3_x*rrrs_w_1_in_axes3_z;
-        const real rrrs_d_alpha_3_in_axes3_yz = rrrs_e_1_in_axes3_y*rrrs_w_1_in_axes3_z;
-        /* (rrrs-D_1_3) inertia of joint 3 along joint 1 */
-        const real rrrs_J_3_in_spec3_xz = m->rrrs_J_3_in_spec3_xz[i];
-        const real rrrs_J_3_in_spec3_yz = m->rrrs_J_3_in_spec3_yz[i];
-        const real rrrs_D_1_3 = rrrs_J_3_in_spec3_xz*rrrs_e_1_in_axes3_x +
-            rrrs_J_3_in_spec3_yz*rrrs_e_1_in_axes3_y;
-        /* (rrrs-Jc_2) inertia tensor of the links from 2 outwards about joint 2, that of the last link
-           about the connection point */
-        const real rrrs_J_3_in_spec3_xy = m->rrrs_J_3_in_spec3_xy[i];
-        const real rrrs_Jc_2_t = rrrs_J_3_in_spec3_xy*rrrs_s_3_t;
-        const real rrrs_J_3_in_spec3_xx = m->rrrs_J_3_in_spec3_xx[i];
-        const real rrrs_Jc_2_t_2 = rrrs_Jc_2_t + rrrs_J_3_in_spec3_xx*rrrs_c_3;
-        const real rrrs_Jc_2_t_3 = rrrs_J_3_in_spec3_xy*rrrs_c_3;
-        const real rrrs_J_3_in_spec3_yy = m->rrrs_J_3_in_spec3_yy[i];
-        const real rrrs_Jc_2_t_4 = rrrs_Jc_2_t_3 + rrrs_J_3_in_spec3_yy*rrrs_s_3_t;
-        const real rrrs_J_2_in_spec2_xy = m->rrrs_J_2_in_spec2_xy[i];
-        const real rrrs_Jc_2_in_axes2_xy = rrrs_J_2_in_spec2_xy + rrrs_Jc_2_t_4*rrrs_c_3 -
-            rrrs_Jc_2_t_2*rrrs_s_3_t;
-        const real rrrs_J_2_in_spec2_xx = m->rrrs_J_2_in_spec2_xx[i];
-        const real rrrs_J_2_in_spec2_yy = m->rrrs_J_2_in_spec2_yy[i];
-        const real rrrs_Jc_2_in_axes1_zz = rrrs_c_2*(rrrs_Jc_2_in_axes2_xy*rrrs_s_2 +
-            rrrs_c_2*(rrrs_J_2_in_spec2_yy + rrrs_c_3*(rrrs_J_3_in_spec3_yy*rrrs_c_3 -
-            rrrs_Jc_2_t) - rrrs_s_3_t*(rrrs_Jc_2_t_3 - rrrs_J_3_in_spec3_xx*rrrs_s_3_t))) +
-            rrrs_s_2*(rrrs_Jc_2_in_axes2_xy*rrrs_c_2 + rrrs_s_2*(rrrs_J_2_in_spec2_xx +
-            rrrs_Jc_2_t_2*rrrs_c_3 + rrrs_Jc_2_t_4*rrrs_s_3_t));
-        /* (rrrs-d_Gamma_3) coefficient of the acceleration in: moment about axis 3 of the distal links'
-           inertia and weight */
-        const real rrrs_d_Gamma_3_in_axes3_z = rrrs_D_1_3*rrrs_w_1_in_axes3_z;
-        const real rrrs_d_Gamma_3_t = m->rrrs_d_Gamma_3_t[i];
-        const real rrrs_d_Gamma_3_t_2 = rrrs_d_Gamma_3_t*rrrs_r_2_in_axes3_x;
-        const real rrrs_J_3_in_spec3_zz = m->rrrs_J_3_in_spec3_zz[i];
-        const real rrrs_h_3_in_spec3_y = m->rrrs_h_3_in_spec3_y[i];
-        const real rrrs_d_Gamma_3_in_axes3_x = rrrs_w_2_in_axes3_x*(rrrs_J_3_in_spec3_zz -
-            rrrs_d_Gamma_3_t_2) - rrrs_h_3_in_spec3_y;
-        /* (rrrs-d_Gamma_2) coefficient of the acceleration in: moment about axis 2 of the distal links'
-           inertia and weight */
-        const real rrrs_Jc_2_in_axes2_zz = m->rrrs_Jc_2_in_axes2_zz[i];
-        const real rrrs_d_Gamma_2_in_axes3_x = rrrs_w_2_in_axes3_x*(rrrs_Jc_2_in_axes2_zz -
-            rrrs_d_Gamma_3_t_2) - rrrs_h_3_in_spec3_y;
-        /* (rrrs-d_Gamma_1) coefficient of the acceleration in: moment about axis 1 of the distal links'
-           inertia and weight */
-        const real rrrs_J_1_in_spec1_xx = m->rrrs_J_1_in_spec1_xx[i];
-        const real rrrs_h_3_in_spec3_x = m->rrrs_h_3_in_spec3_x[i];
-        const real rrrs_d_Gamma_1_in_axes3_z = rrrs_e_1_in_axes3_x*rrrs_h_3_in_spec3_y +
-            rrrs_w_1_in_axes3_z*(rrrs_J_1_in_spec1_xx + rrrs_Jc_2_in_axes1_zz) -
-            rrrs_e_1_in_axes3_y*rrrs_h_3_in_spec3_x;
-        /* (rrrs-d_G) coefficient of the acceleration in: force at the connection point that balances the
-           leg's inertia and weight along all degrees of freedom */
-        const real rrrs_J_2_in_spec2_xz = m->rrrs_J_2_in_spec2_xz[i];
-        const real rrrs_J_2_in_spec2_yz = m->rrrs_J_2_in_spec2_yz[i];
-        const real rrrs_d_G_in_axes3_xz = rrrs_d_Gamma_3_in_axes3_z*rrrs_w_3_in_axes3_x +
-            rrrs_w_1_in_axes3_z*rrrs_w_2_in_axes3_x*(rrrs_c_2*(rrrs_J_2_in_spec2_yz +
-            rrrs_J_3_in_spec3_yz*rrrs_c_3 - rrrs_J_3_in_spec3_xz*rrrs_s_3_t) +
-            rrrs_s_2*(rrrs_J_2_in_spec2_xz + rrrs_J_3_in_spec3_xz*rrrs_c_3 +
-            rrrs_J_3_in_spec3_yz*rrrs_s_3_t));
-        /* (rrrs-d_c) coefficient of the acceleration in: leg force on the platform without actuation and
-           without the mass at the connection point */
-        const real rrrs_d_c_in_axes3_xx = rrrs_h_3_in_spec3_y*(rrrs_w_2_in_axes3_x +
-            rrrs_w_3_in_axes3_x) - rrrs_d_Gamma_2_in_axes3_x*rrrs_w_2_in_axes3_x -
-            rrrs_d_Gamma_3_in_axes3_x*rrrs_w_3_in_axes3_x;
-        const real rrrs_d_Gamma_3_in_axes3_y = m->rrrs_d_Gamma_3_in_axes3_y[i];
-        const real rrrs_d_phi_3_t = m->rrrs_d_phi_3_t[i];
-        const real rrrs_d_c_in_axes3_xy = rrrs_d_phi_3_t -
-            rrrs_d_Gamma_3_in_axes3_y*rrrs_w_2_in_axes3_x -
-            rrrs_d_Gamma_3_in_axes3_y*rrrs_w_3_in_axes3_x;
-        const real rrrs_h_3_in_spec3_z = m->rrrs_h_3_in_spec3_z[i];
-        const real rrrs_d_c_in_axes3_xz = -rrrs_d_G_in_axes3_xz -
-            rrrs_d_alpha_3_in_axes3_yz*rrrs_h_3_in_spec3_z;
-        const real rrrs_d_c_in_axes3_yz = rrrs_d_alpha_3_in_axes3_xz*rrrs_h_3_in_spec3_z -
-            rrrs_d_Gamma_3_in_axes3_z*rrrs_w_3_in_axes3_y;
+        values_rrrs v;
+        stage_rrrs_X(m, w, i, j, s, X, &v);
+        stage_rrrs_M_dynamics(m, i, &v);
         /* (rrrs-Q) inertia of the leg at the connection point, without the mass gathered there */
-        const real axis_z_rrrs_axes3_x = rrrs_base_frame_xy*rrrs_c_1 +
-            rrrs_base_frame_xz*rrrs_s_1;
-        const real axis_z_rrrs_axes3_y = rrrs_base_frame_yy*rrrs_c_1 +
-            rrrs_base_frame_yz*rrrs_s_1;
-        const real axis_z_rrrs_axes3_z = rrrs_base_frame_zy*rrrs_c_1 +
-            rrrs_base_frame_zz*rrrs_s_1;
-        const real rrrs_Q_t = rrrs_e_1_in_axes3_x*rrrs_s_1;
-        const real rrrs_Q_t_2 = rrrs_c_1*rrrs_e_1_in_axes3_x;
+        const real rrrs_Q_t = v.rrrs_c_1*v.rrrs_e_1_in_axes3_x;
+        const real rrrs_Q_t_2 = v.rrrs_e_1_in_axes3_x*v.rrrs_s_1;
+        const real rrrs_base_frame_xx = m->rrrs_base_frame_xx[i];
+        const real rrrs_base_frame_xy = m->rrrs_base_frame_xy[i];
+        const real rrrs_base_frame_xz = m->rrrs_base_frame_xz[i];
         const real axis_y_rrrs_axes3_x = rrrs_Q_t*rrrs_base_frame_xy +
-            rrrs_base_frame_xx*rrrs_e_1_in_axes3_y - rrrs_Q_t_2*rrrs_base_frame_xz;
+            rrrs_Q_t_2*rrrs_base_frame_xz + rrrs_base_frame_xx*v.rrrs_e_1_in_axes3_y;
+        const real rrrs_base_frame_yx = m->rrrs_base_frame_yx[i];
+        const real rrrs_base_frame_yy = m->rrrs_base_frame_yy[i];
+        const real rrrs_base_frame_yz = m->rrrs_base_frame_yz[i];
         const real axis_y_rrrs_axes3_y = rrrs_Q_t*rrrs_base_frame_yy +
-            rrrs_base_frame_yx*rrrs_e_1_in_axes3_y - rrrs_Q_t_2*rrrs_base_frame_yz;
+            rrrs_Q_t_2*rrrs_base_frame_yz + rrrs_base_frame_yx*v.rrrs_e_1_in_axes3_y;
+        const real rrrs_base_frame_zx = m->rrrs_base_frame_zx[i];
+        const real rrrs_base_frame_zy = m->rrrs_base_frame_zy[i];
+        const real rrrs_base_frame_zz = m->rrrs_base_frame_zz[i];
         const real axis_y_rrrs_axes3_z = rrrs_Q_t*rrrs_base_frame_zy +
-            rrrs_base_frame_zx*rrrs_e_1_in_axes3_y - rrrs_Q_t_2*rrrs_base_frame_zz;
-        const real axis_x_rrrs_axes3_x = axis_y_rrrs_axes3_y*axis_z_rrrs_axes3_z -
-            axis_y_rrrs_axes3_z*axis_z_rrrs_axes3_y;
-        const real axis_x_rrrs_axes3_y = axis_y_rrrs_axes3_z*axis_z_rrrs_axes3_x -
-            axis_y_rrrs_axes3_x*axis_z_rrrs_axes3_z;
-        const real axis_x_rrrs_axes3_z = axis_y_rrrs_axes3_x*axis_z_rrrs_axes3_y -
-            axis_y_rrrs_axes3_y*axis_z_rrrs_axes3_x;
+            rrrs_Q_t_2*rrrs_base_frame_zz + rrrs_base_frame_zx*v.rrrs_e_1_in_axes3_y;
+        const real axis_x_rrrs_axes3_x = axis_y_rrrs_axes3_y*v.axis_z_rrrs_axes3_z -
+            axis_y_rrrs_axes3_z*v.axis_z_rrrs_axes3_y;
+        const real axis_x_rrrs_axes3_y = axis_y_rrrs_axes3_z*v.axis_z_rrrs_axes3_x -
+            axis_y_rrrs_axes3_x*v.axis_z_rrrs_axes3_z;
+        const real axis_x_rrrs_axes3_z = axis_y_rrrs_axes3_x*v.axis_z_rrrs_axes3_y -
+            axis_y_rrrs_axes3_y*v.axis_z_rrrs_axes3_x;
         const real rrrs_d_c_in_axes3_yy = m->rrrs_d_c_in_axes3_yy[i];
-        const real rrrs_Q_t_3 = rrrs_d_c_in_axes3_xx - rrrs_d_c_in_axes3_yy;
+        const real rrrs_Q_t_3 = v.rrrs_d_c_in_axes3_xx - rrrs_d_c_in_axes3_yy;
         const real rrrs_Q_t_4 = R(0.5)*rrrs_Q_t_3;
-        const real rrrs_Q_t_5 = rrrs_d_c_in_axes3_xx +
-            rrrs_d_Gamma_1_in_axes3_z*rrrs_w_1_in_axes3_z +
-            rrrs_d_alpha_3_in_axes3_xz*rrrs_h_3_in_spec3_y -
-            rrrs_d_alpha_3_in_axes3_yz*rrrs_h_3_in_spec3_x;
+        const real rrrs_h_3_in_spec3_x = m->rrrs_h_3_in_spec3_x[i];
+        const real rrrs_h_3_in_spec3_y = m->rrrs_h_3_in_spec3_y[i];
+        const real rrrs_Q_t_5 = v.rrrs_d_c_in_axes3_xx +
+            v.rrrs_d_Gamma_1_in_axes3_z*v.rrrs_w_1_in_axes3_z +
+            v.rrrs_d_alpha_3_in_axes3_xz*rrrs_h_3_in_spec3_y -
+            v.rrrs_d_alpha_3_in_axes3_yz*rrrs_h_3_in_spec3_x;
         const real rrrs_Q_t_6 = R(0.5)*rrrs_Q_t_5;
-        const real rrrs_Q_t_7 = axis_x_rrrs_axes3_x*rrrs_d_c_in_axes3_xy +
-            axis_z_rrrs_axes3_x*rrrs_d_c_in_axes3_yz - axis_y_rrrs_axes3_x*rrrs_Q_t_4;
-        const real rrrs_Q_t_8 = axis_x_rrrs_axes3_y*rrrs_d_c_in_axes3_xy +
-            axis_z_rrrs_axes3_y*rrrs_d_c_in_axes3_yz - axis_y_rrrs_axes3_y*rrrs_Q_t_4;
-        const real rrrs_Q_t_9 = axis_x_rrrs_axes3_z*rrrs_d_c_in_axes3_xy +
-            axis_z_rrrs_axes3_z*rrrs_d_c_in_axes3_yz - axis_y_rrrs_axes3_z*rrrs_Q_t_4;
-        const real rrrs_Q_t_10 = axis_z_rrrs_axes3_x*rrrs_Q_t_6 -
-            axis_x_rrrs_axes3_x*rrrs_d_c_in_axes3_xz;
-        const real rrrs_Q_t_11 = axis_z_rrrs_axes3_y*rrrs_Q_t_6 -
-            axis_x_rrrs_axes3_y*rrrs_d_c_in_axes3_xz;
-        const real rrrs_Q_t_12 = axis_z_rrrs_axes3_z*rrrs_Q_t_6 -
-            axis_x_rrrs_axes3_z*rrrs_d_c_in_axes3_xz;
-        const real rrrs_Q_t_13 = axis_y_rrrs_axes3_x*rrrs_Q_t_7 - axis_z_rrrs_axes3_x*rrrs_Q_t_10;
-        const real rrrs_Q_xx = -2*rrrs_Q_t_13 - rrrs_d_c_in_axes3_xx;
-        const real rrrs_Q_xy = axis_z_rrrs_axes3_x*rrrs_Q_t_11 + axis_z_rrrs_axes3_y*rrrs_Q_t_10 -
-            axis_y_rrrs_axes3_x*rrrs_Q_t_8 - axis_y_rrrs_axes3_y*rrrs_Q_t_7;
-        const real rrrs_Q_xz = axis_z_rrrs_axes3_x*rrrs_Q_t_12 + axis_z_rrrs_axes3_z*rrrs_Q_t_10 -
-            axis_y_rrrs_axes3_x*rrrs_Q_t_9 - axis_y_rrrs_axes3_z*rrrs_Q_t_7;
-        const real rrrs_Q_t_14 = axis_y_rrrs_axes3_y*rrrs_Q_t_8 - axis_z_rrrs_axes3_y*rrrs_Q_t_11;
-        const real rrrs_Q_yy = -2*rrrs_Q_t_14 - rrrs_d_c_in_axes3_xx;
-        const real rrrs_Q_yz = axis_z_rrrs_axes3_y*rrrs_Q_t_12 + axis_z_rrrs_axes3_z*rrrs_Q_t_11 -
-            axis_y_rrrs_axes3_y*rrrs_Q_t_9 - axis_y_rrrs_axes3_z*rrrs_Q_t_8;
-        const real rrrs_Q_t_15 = axis_y_rrrs_axes3_z*rrrs_Q_t_9 - axis_z_rrrs_axes3_z*rrrs_Q_t_12;
-        const real rrrs_Q_zz = -2*rrrs_Q_t_15 - rrrs_d_c_in_axes3_xx;
+        const real rrrs_Q_t_7 = axis_x_rrrs_axes3_x*v.rrrs_d_c_in_axes3_xy +
+            v.axis_z_rrrs_axes3_x*v.rrrs_d_c_in_axes3_yz - axis_y_rrrs_axes3_x*rrrs_Q_t_4;
+        const real rrrs_Q_t_8 = axis_x_rrrs_axes3_y*v.rrrs_d_c_in_axes3_xy +
+            v.axis_z_rrrs_axes3_y*v.rrrs_d_c_in_axes3_yz - axis_y_rrrs_axes3_y*rrrs_Q_t_4;
+        const real rrrs_Q_t_9 = axis_x_rrrs_axes3_z*v.rrrs_d_c_in_axes3_xy +
+            v.axis_z_rrrs_axes3_z*v.rrrs_d_c_in_axes3_yz - axis_y_rrrs_axes3_z*rrrs_Q_t_4;
+        const real rrrs_Q_t_10 = v.axis_z_rrrs_axes3_x*rrrs_Q_t_6 -
+            axis_x_rrrs_axes3_x*v.rrrs_d_c_in_axes3_xz;
+        const real rrrs_Q_t_11 = v.axis_z_rrrs_axes3_y*rrrs_Q_t_6 -
+            axis_x_rrrs_axes3_y*v.rrrs_d_c_in_axes3_xz;
+        const real rrrs_Q_t_12 = v.axis_z_rrrs_axes3_z*rrrs_Q_t_6 -
+            axis_x_rrrs_axes3_z*v.rrrs_d_c_in_axes3_xz;
+        const real rrrs_Q_t_13 = axis_y_rrrs_axes3_x*rrrs_Q_t_7 -
+            v.axis_z_rrrs_axes3_x*rrrs_Q_t_10;
+        const real rrrs_Q_xx = -2*rrrs_Q_t_13 - v.rrrs_d_c_in_axes3_xx;
+        const real rrrs_Q_xy = v.axis_z_rrrs_axes3_x*rrrs_Q_t_11 +
+            v.axis_z_rrrs_axes3_y*rrrs_Q_t_10 - axis_y_rrrs_axes3_x*rrrs_Q_t_8 -
+            axis_y_rrrs_axes3_y*rrrs_Q_t_7;
+        const real rrrs_Q_xz = v.axis_z_rrrs_axes3_x*rrrs_Q_t_12 +
+            v.axis_z_rrrs_axes3_z*rrrs_Q_t_10 - axis_y_rrrs_axes3_x*rrrs_Q_t_9 -
+            axis_y_rrrs_axes3_z*rrrs_Q_t_7;
+        const real rrrs_Q_t_14 = axis_y_rrrs_axes3_y*rrrs_Q_t_8 -
+            v.axis_z_rrrs_axes3_y*rrrs_Q_t_11;
+        const real rrrs_Q_yy = -2*rrrs_Q_t_14 - v.rrrs_d_c_in_axes3_xx;
+        const real rrrs_Q_yz = v.axis_z_rrrs_axes3_y*rrrs_Q_t_12 +
+            v.axis_z_rrrs_axes3_z*rrrs_Q_t_11 - axis_y_rrrs_axes3_y*rrrs_Q_t_9 -
+            axis_y_rrrs_axes3_z*rrrs_Q_t_8;
+        const real rrrs_Q_t_15 = axis_y_rrrs_axes3_z*rrrs_Q_t_9 -
+            v.axis_z_rrrs_axes3_z*rrrs_Q_t_12;
+        const real rrrs_Q_zz = -2*rrrs_Q_t_15 - v.rrrs_d_c_in_axes3_xx;
         /* (M_ta) coupling block of M */
-        const real rrrs_M_ta_t = -rrrs_Q_xy*rrrs_q_z;
-        const real rrrs_M_ta_t_2 = rrrs_Q_xz*rrrs_q_y;
+        const real rrrs_M_ta_t = -rrrs_Q_xy*v.rrrs_q_z;
+        const real rrrs_M_ta_t_2 = rrrs_Q_xz*v.rrrs_q_y;
         const real rrrs_M_ta_t_3 = rrrs_M_ta_t + rrrs_M_ta_t_2;
-        const real rrrs_M_ta_t_4 = rrrs_Q_xx*rrrs_q_z - rrrs_Q_xz*rrrs_q_x;
-        const real rrrs_M_ta_t_5 = rrrs_Q_xy*rrrs_q_x - rrrs_Q_xx*rrrs_q_y;
-        const real rrrs_M_ta_t_6 = rrrs_Q_yz*rrrs_q_y - rrrs_Q_yy*rrrs_q_z;
-        const real rrrs_M_ta_t_7 = rrrs_Q_yz*rrrs_q_x;
+        const real rrrs_M_ta_t_4 = rrrs_Q_xx*v.rrrs_q_z - rrrs_Q_xz*v.rrrs_q_x;
+        const real rrrs_M_ta_t_5 = rrrs_Q_xy*v.rrrs_q_x - rrrs_Q_xx*v.rrrs_q_y;
+        const real rrrs_M_ta_t_6 = rrrs_Q_yz*v.rrrs_q_y - rrrs_Q_yy*v.rrrs_q_z;
+        const real rrrs_M_ta_t_7 = rrrs_Q_yz*v.rrrs_q_x;
         const real rrrs_M_ta_t_8 = rrrs_M_ta_t + rrrs_M_ta_t_7;
-        const real rrrs_M_ta_t_9 = rrrs_Q_yy*rrrs_q_x - rrrs_Q_xy*rrrs_q_y;
-        const real rrrs_M_ta_t_10 = rrrs_Q_zz*rrrs_q_y - rrrs_Q_yz*rrrs_q_z;
-        const real rrrs_M_ta_t_11 = rrrs_Q_xz*rrrs_q_z - rrrs_Q_zz*rrrs_q_x;
+        const real rrrs_M_ta_t_9 = rrrs_Q_yy*v.rrrs_q_x - rrrs_Q_xy*v.rrrs_q_y;
+        const real rrrs_M_ta_t_10 = rrrs_Q_zz*v.rrrs_q_y - rrrs_Q_yz*v.rrrs_q_z;
+        const real rrrs_M_ta_t_11 = rrrs_Q_xz*v.rrrs_q_z - rrrs_Q_zz*v.rrrs_q_x;
         const real rrrs_M_ta_t_12 = rrrs_M_ta_t_7 - rrrs_M_ta_t_2;
         /* (M_aa) rotational block of M */
-        const real rrrs_M_aa_t = rrrs_M_ta_t_10*rrrs_q_y - rrrs_M_ta_t_6*rrrs_q_z;
-        const real rrrs_M_aa_t_2 = rrrs_M_ta_t_11*rrrs_q_y + rrrs_M_ta_t_8*rrrs_q_z;
-        const real rrrs_M_aa_t_3 = rrrs_M_ta_t_12*rrrs_q_y - rrrs_M_ta_t_9*rrrs_q_z;
-        const real rrrs_M_aa_t_4 = rrrs_M_ta_t_4*rrrs_q_z - rrrs_M_ta_t_11*rrrs_q_x;
-        const real rrrs_M_aa_t_5 = rrrs_M_ta_t_5*rrrs_q_z - rrrs_M_ta_t_12*rrrs_q_x;
-        const real rrrs_M_aa_t_6 = rrrs_M_ta_t_9*rrrs_q_x - rrrs_M_ta_t_5*rrrs_q_y;
+        const real rrrs_M_aa_t = rrrs_M_ta_t_10*v.rrrs_q_y - rrrs_M_ta_t_6*v.rrrs_q_z;
+        const real rrrs_M_aa_t_2 = rrrs_M_ta_t_11*v.rrrs_q_y + rrrs_M_ta_t_8*v.rrrs_q_z;
+        const real rrrs_M_aa_t_3 = rrrs_M_ta_t_12*v.rrrs_q_y - rrrs_M_ta_t_9*v.rrrs_q_z;
+        const real rrrs_M_aa_t_4 = rrrs_M_ta_t_4*v.rrrs_q_z - rrrs_M_ta_t_11*v.rrrs_q_x;
+        const real rrrs_M_aa_t_5 = rrrs_M_ta_t_5*v.rrrs_q_z - rrrs_M_ta_t_12*v.rrrs_q_x;
+        const real rrrs_M_aa_t_6 = rrrs_M_ta_t_9*v.rrrs_q_x - rrrs_M_ta_t_5*v.rrrs_q_y;
         /* (M_tt) translational block of M */
         gather(&terms[0*count + k], add, rrrs_Q_xx);  /* M_tt_xx_of_legs */
         gather(&terms[1*count + k], add, rrrs_Q_xy);  /* M_tt_xy */
@@ -2748,11 +3048,11 @@ INLINE void M_legs_rrrs(const prepared *m, size_t w, size_t leg, size_t legs, co
         const real rrrs_size_t_3 = m->rrrs_size_t_3[i];
         const real rrrs_rho2_2_t = m->rrrs_rho2_2_t[i];
         const real rrrs_size = m->rrrs_size[i];
-        o[1*count + k] = UNLESS(magnitude(rrrs_rho2_1) > TOLERANCE*TOLERANCE*rrrs_size_t_3) +
-            UNLESS(magnitude(rrrs_rho2_2) > TOLERANCE*TOLERANCE*rrrs_rho2_2_t) +
-            UNLESS(magnitude(rrrs_v_1_in_axes3_z) > TOLERANCE*rrrs_size) +
-            UNLESS(magnitude(rrrs_r_2_in_axes3_y) > TOLERANCE*rrrs_size);
-        o[0*count + k] = UNLESS(rrrs_disc_2 >= 0);
+        o[1*count + k] = UNLESS(magnitude(v.rrrs_rho2_1) > TOLERANCE*TOLERANCE*rrrs_size_t_3) +
+            UNLESS(magnitude(v.rrrs_rho2_2) > TOLERANCE*TOLERANCE*rrrs_rho2_2_t) +
+            UNLESS(magnitude(v.rrrs_v_1_in_axes3_z) > TOLERANCE*rrrs_size) +
+            UNLESS(magnitude(v.rrrs_r_2_in_axes3_y) > TOLERANCE*rrrs_size);
+        o[0*count + k] = UNLESS(v.rrrs_disc_2 >= 0);
     }
 }
 
@@ -2778,46 +3078,46 @@ INLINE void M_after(const prepared *m, size_t w, const real *s, const real *sums
         const real M_tt_zz = M_tt_zz_of_legs + m_star;
         /* (M_ta) coupling block of M */
         const real M_ta_xy_of_legs = sums[7*w + k];
-        const real h_star_z = s[14*w + k];
+        const real h_star_z = s[11*w + k];
         const real M_ta_xy = M_ta_xy_of_legs + h_star_z;
         const real M_ta_xz_of_legs = sums[8*w + k];
-        const real h_star_y = s[13*w + k];
+        const real h_star_y = s[10*w + k];
         const real M_ta_xz = M_ta_xz_of_legs - h_star_y;
         const real M_ta_yx_of_legs = sums[9*w + k];
         const real M_ta_yx = M_ta_yx_of_legs - h_star_z;
         const real M_ta_yz_of_legs = sums[11*w + k];
-        const real h_star_x = s[12*w + k];
+        const real h_star_x = s[9*w + k];
         const real M_ta_yz = M_ta_yz_of_legs + h_star_x;
         const real M_ta_zx_of_legs = sums[12*w + k];
         const real M_ta_zx = M_ta_zx_of_legs + h_star_y;
         const real M_ta_zy_of_legs = sums[13*w + k];
         const real M_ta_zy = M_ta_zy_of_legs - h_star_x;
         /* (M_aa) rotational block of M */
-        const real J_star_xx = s[15*w + k];
+        const real J_star_xx = s[12*w + k];
         const real M_aa_xx_of_legs = sums[15*w + k];
         const real M_aa_xx = J_star_xx + M_aa_xx_of_legs;
-        const real J_star_xy = s[16*w + k];
+        const real J_star_xy = s[13*w + k];
         const real M_aa_xy_of_legs = sums[16*w + k];
         const real M_aa_xy = J_star_xy + M_aa_xy_of_legs;
-        const real J_star_xz = s[17*w + k];
+        const real J_star_xz = s[14*w + k];
         const real M_aa_xz_of_legs = sums[17*w + k];
         const real M_aa_xz = J_star_xz + M_aa_xz_of_legs;
-        const real J_star_yy = s[18*w + k];
+        const real J_star_yy = s[15*w + k];
         const real M_aa_yy_of_legs = sums[18*w + k];
         const real M_aa_yy = J_star_yy + M_aa_yy_of_legs;
-        const real J_star_yz = s[19*w + k];
+        const real J_star_yz = s[16*w + k];
         const real M_aa_yz_of_legs = sums[19*w + k];
         const real M_aa_yz = J_star_yz + M_aa_yz_of_legs;
-        const real J_star_zz = s[20*w + k];
+        const real J_star_zz = s[17*w + k];
         const real M_aa_zz_of_legs = sums[20*w + k];
         const real M_aa_zz = J_star_zz + M_aa_zz_of_legs;
         /* (M_tt) translational block of M */
-        M[0*NV*w + k] = M_tt_xx;
+        M[0*w + k] = M_tt_xx;
         const real M_tt_xy = sums[1*w + k];
-        M[(0*NV + 1)*w + k] = M_tt_xy;
+        M[1*w + k] = M_tt_xy;
         M[NV*w + k] = M_tt_xy;
         const real M_tt_xz = sums[2*w + k];
-        M[(0*NV + 2)*w + k] = M_tt_xz;
+        M[2*w + k] = M_tt_xz;
         M[2*NV*w + k] = M_tt_xz;
         M[(NV + 1)*w + k] = M_tt_yy;
         const real M_tt_yz = sums[4*w + k];
@@ -2826,11 +3126,11 @@ INLINE void M_after(const prepared *m, size_t w, const real *s, const real *sums
         M[(2*NV + 2)*w + k] = M_tt_zz;
         /* (M_ta) coupling block of M */
         const real M_ta_xx = sums[6*w + k];
-        M[(0*NV + 3)*w + k] = M_ta_xx;
+        M[3*w + k] = M_ta_xx;
         M[3*NV*w + k] = M_ta_xx;
-        M[(0*NV + 4)*w + k] = M_ta_xy;
+        M[4*w + k] = M_ta_xy;
         M[4*NV*w + k] = M_ta_xy;
-        M[(0*NV + 5)*w + k] = M_ta_xz;
+        M[5*w + k] = M_ta_xz;
         M[5*NV*w + k] = M_ta_xz;
         M[(NV + 3)*w + k] = M_ta_yx;
         M[(3*NV + 1)*w + k] = M_ta_yx;
@@ -2865,12 +3165,10 @@ INLINE void M_after(const prepared *m, size_t w, const real *s, const real *sums
 
 INLINE void M_run(const prepared *m, const real *X, real *M, verdict *t)
 {
-    real s[21] = {0};
-    real sums[21] = {0};
-    real terms_rrrs[21*LEGS(LEGS_OF_rrrs)] = {0};
-    real o_rrrs[2*LEGS(LEGS_OF_rrrs)] = {0};
+    real s[18] = {0}, sums[21] = {0};
+    real terms_rrrs[21*LEGS(LEGS_OF_rrrs)] = {0}, o_rrrs[2*LEGS(LEGS_OF_rrrs)] = {0};
     M_before(m, 1, X, s, t);
-    M_legs_rrrs(m, 1, 0, 1, s, 0, LEGS(LEGS_OF_rrrs), 0, terms_rrrs, o_rrrs);
+    M_legs_rrrs(m, 1, 0, 1, s, 0, LEGS(LEGS_OF_rrrs), 0, X, terms_rrrs, o_rrrs);
     for (size_t leg = 0; leg < LEGS_OF_rrrs; ++leg) {
         M_place_rrrs(1, LEGS(LEGS_OF_rrrs), o_rrrs, leg, t);
     }
@@ -2882,13 +3180,12 @@ INLINE void M_run(const prepared *m, const real *X, real *M, verdict *t)
 
 INLINE void M_run_lanes(const prepared *m, const real *X, real *M, verdict *t)
 {
-    real s[21*LANES];
-    real sums[21*LANES];
+    real s[18*LANES], sums[21*LANES];
     real o_rrrs[2*LANES];
     M_before(m, LANES, X, s, t);
     clear(sums, 21*LANES);
     for (size_t leg = 0; leg < LEGS_OF_rrrs; ++leg) {
-        M_legs_rrrs(m, LANES, leg, 0, s, 1, LANES, 1, sums, o_rrrs);
+        M_legs_rrrs(m, LANES, leg, 0, s, 1, LANES, 1, X, sums, o_rrrs);
         M_place_rrrs(LANES, LANES, o_rrrs, 0, t);
     }
     M_after(m, LANES, s, sums, M, t);
@@ -2899,390 +3196,137 @@ INLINE void Z_before(const prepared *m, size_t w, const real *X, const real *V, 
     *t)
 {
     for (size_t k = 0; k < w; ++k) {
-        /* X: named entries */
-        const real X_0 = X[0*w + k];
-        const real t_x = X_0;
-        const real X_1 = X[1*w + k];
-        const real t_y = X_1;
-        const real X_2 = X[2*w + k];
-        const real t_z = X_2;
-        const real X_3 = X[3*w + k];
-        const real X_4 = X[4*w + k];
-        const real X_5 = X[5*w + k];
-        const real X_6 = X[6*w + k];
-        const real quaternion_norm2 = X_3*X_3 + X_4*X_4 + X_5*X_5 + X_6*X_6;
-        const real quaternion_scale = 2/quaternion_norm2;
-        const real quaternion_sx = X_3*quaternion_scale;
-        const real quaternion_sy = X_4*quaternion_scale;
-        const real quaternion_sz = X_5*quaternion_scale;
-        const real quaternion_wx = X_6*quaternion_sx;
-        const real quaternion_wy = X_6*quaternion_sy;
-        const real quaternion_wz = X_6*quaternion_sz;
-        const real quaternion_xx = X_3*quaternion_sx;
-        const real quaternion_xy = X_3*quaternion_sy;
-        const real quaternion_xz = X_3*quaternion_sz;
-        const real quaternion_yy = X_4*quaternion_sy;
-        const real quaternion_yz = X_4*quaternion_sz;
-        const real quaternion_zz = X_5*quaternion_sz;
-        const real R_xx = 1 - quaternion_yy - quaternion_zz;
-        const real R_xy = quaternion_xy - quaternion_wz;
-        const real R_xz = quaternion_wy + quaternion_xz;
-        const real R_yx = quaternion_wz + quaternion_xy;
-        const real R_yy = 1 - quaternion_xx - quaternion_zz;
-        const real R_yz = quaternion_yz - quaternion_wx;
-        const real R_zx = quaternion_xz - quaternion_wy;
-        const real R_zy = quaternion_wx + quaternion_yz;
-        const real R_zz = 1 - quaternion_xx - quaternion_yy;
-        /* V: named entries */
-        const real V_0 = V[0*w + k];
-        const real t_dot_x = V_0;
-        const real V_1 = V[1*w + k];
-        const real t_dot_y = V_1;
-        const real V_2 = V[2*w + k];
-        const real t_dot_z = V_2;
-        const real V_3 = V[3*w + k];
-        const real omega_x = V_3;
-        const real V_4 = V[4*w + k];
-        const real omega_y = V_4;
-        const real V_5 = V[5*w + k];
-        const real omega_z = V_5;
-        /* (h_star) first moment about the platform origin */
-        const real h_star_in_platform_x = m->h_star_in_platform_x;
-        const real h_star_in_platform_y = m->h_star_in_platform_y;
-        const real h_star_in_platform_z = m->h_star_in_platform_z;
-        const real h_star_x = R_xx*h_star_in_platform_x + R_xy*h_star_in_platform_y +
-            R_xz*h_star_in_platform_z;
-        const real h_star_y = R_yx*h_star_in_platform_x + R_yy*h_star_in_platform_y +
-            R_yz*h_star_in_platform_z;
-        const real h_star_z = R_zx*h_star_in_platform_x + R_zy*h_star_in_platform_y +
-            R_zz*h_star_in_platform_z;
-        /* (Z_p) centripetal force and weight of the platform */
-        const real Z_p_t_4 = h_star_z*omega_y - h_star_y*omega_z;
-        const real Z_p_t_5 = h_star_x*omega_z - h_star_z*omega_x;
-        const real Z_p_t_6 = h_star_y*omega_x - h_star_x*omega_y;
-        const real Z_p_t = m->Z_p_t;
-        const real Z_p_x = Z_p_t_6*omega_y - Z_p_t - Z_p_t_5*omega_z;
-        const real Z_p_t_2 = m->Z_p_t_2;
-        const real Z_p_y = Z_p_t_4*omega_z - Z_p_t_2 - Z_p_t_6*omega_x;
-        const real Z_p_t_3 = m->Z_p_t_3;
-        const real Z_p_z = Z_p_t_5*omega_x - Z_p_t_3 - Z_p_t_4*omega_y;
-        /* (Z_q) gyroscopic moment and moment of the weight of the platform */
-        const real gravity_x = m->gravity_x;
-        const real gravity_y = m->gravity_y;
-        const real gravity_z = m->gravity_z;
-        const real g_in_platform_x = R_xx*gravity_x + R_yx*gravity_y + R_zx*gravity_z;
-        const real g_in_platform_y = R_xy*gravity_x + R_yy*gravity_y + R_zy*gravity_z;
-        const real g_in_platform_z = R_xz*gravity_x + R_yz*gravity_y + R_zz*gravity_z;
-        const real omega_in_platform_x = R_xx*omega_x + R_yx*omega_y + R_zx*omega_z;
-        const real omega_in_platform_y = R_xy*omega_x + R_yy*omega_y + R_zy*omega_z;
-        const real omega_in_platform_z = R_xz*omega_x + R_yz*omega_y + R_zz*omega_z;
-        const real J_star_in_platform_xx = m->J_star_in_platform_xx;
-        const real J_star_in_platform_xy = m->J_star_in_platform_xy;
-        const real J_star_in_platform_xz = m->J_star_in_platform_xz;
-        const real Z_q_t = J_star_in_platform_xx*omega_in_platform_x +
-            J_star_in_platform_xy*omega_in_platform_y + J_star_in_platform_xz*omega_in_platform_z;
-        const real J_star_in_platform_yy = m->J_star_in_platform_yy;
-        const real J_star_in_platform_yz = m->J_star_in_platform_yz;
-        const real Z_q_t_2 = J_star_in_platform_xy*omega_in_platform_x +
-            J_star_in_platform_yy*omega_in_platform_y + J_star_in_platform_yz*omega_in_platform_z;
-        const real J_star_in_platform_zz = m->J_star_in_platform_zz;
-        const real Z_q_t_3 = J_star_in_platform_xz*omega_in_platform_x +
-            J_star_in_platform_yz*omega_in_platform_y + J_star_in_platform_zz*omega_in_platform_z;
-        const real Z_q_in_platform_x = Z_q_t_3*omega_in_platform_y +
-            g_in_platform_y*h_star_in_platform_z - Z_q_t_2*omega_in_platform_z -
-            g_in_platform_z*h_star_in_platform_y;
-        const real Z_q_in_platform_y = Z_q_t*omega_in_platform_z +
-            g_in_platform_z*h_star_in_platform_x - Z_q_t_3*omega_in_platform_x -
-            g_in_platform_x*h_star_in_platform_z;
-        const real Z_q_in_platform_z = Z_q_t_2*omega_in_platform_x +
-            g_in_platform_x*h_star_in_platform_y - Z_q_t*omega_in_platform_y -
-            g_in_platform_y*h_star_in_platform_x;
-        const real Z_q_x = R_xx*Z_q_in_platform_x + R_xy*Z_q_in_platform_y +
-            R_xz*Z_q_in_platform_z;
-        const real Z_q_y = R_yx*Z_q_in_platform_x + R_yy*Z_q_in_platform_y +
-            R_yz*Z_q_in_platform_z;
-        const real Z_q_z = R_zx*Z_q_in_platform_x + R_zy*Z_q_in_platform_y +
-            R_zz*Z_q_in_platform_z;
-        s[0*w + k] = t_x;
-        s[1*w + k] = t_y;
-        s[2*w + k] = t_z;
-        s[3*w + k] = R_xx;
-        s[4*w + k] = R_xy;
-        s[5*w + k] = R_xz;
-        s[6*w + k] = R_yx;
-        s[7*w + k] = R_yy;
-        s[8*w + k] = R_yz;
-        s[9*w + k] = R_zx;
-        s[10*w + k] = R_zy;
-        s[11*w + k] = R_zz;
-        s[12*w + k] = t_dot_x;
-        s[13*w + k] = t_dot_y;
-        s[14*w + k] = t_dot_z;
-        s[15*w + k] = omega_x;
-        s[16*w + k] = omega_y;
-        s[17*w + k] = omega_z;
-        s[18*w + k] = Z_p_x;
-        s[19*w + k] = Z_p_y;
-        s[20*w + k] = Z_p_z;
-        s[21*w + k] = Z_q_x;
-        s[22*w + k] = Z_q_y;
-        s[23*w + k] = Z_q_z;
-        t->invalid[k] += UNLESS(is_finite(quaternion_scale)) + UNLESS(quaternion_scale > 0);
+        values v;
+        stage_X(m, w, k, X, &v);
+        stage_V_X(w, k, V, &v);
+        stage_Z_dynamics(m, w, k, V, &v);
+        s[0*w + k] = v.R_xx;
+        s[1*w + k] = v.R_xy;
+        s[2*w + k] = v.R_xz;
+        s[3*w + k] = v.R_yx;
+        s[4*w + k] = v.R_yy;
+        s[5*w + k] = v.R_yz;
+        s[6*w + k] = v.R_zx;
+        s[7*w + k] = v.R_zy;
+        s[8*w + k] = v.R_zz;
+        s[9*w + k] = v.Z_p_x;
+        s[10*w + k] = v.Z_p_y;
+        s[11*w + k] = v.Z_p_z;
+        s[12*w + k] = v.Z_q_x;
+        s[13*w + k] = v.Z_q_y;
+        s[14*w + k] = v.Z_q_z;
+        t->invalid[k] += UNLESS(is_finite(v.quaternion_scale)) + UNLESS(v.quaternion_scale > 0);
     }
 }
 
 INLINE void Z_legs_rrrs(const prepared *m, size_t w, size_t leg, size_t legs, const real *s,
-    size_t states, size_t count, int add, real *terms, real *o)
+    size_t states, size_t count, int add, const real *X, const real *V, real *terms, real *o)
 {
     for (size_t k = 0; k < count; ++k) {
         const size_t i = leg + legs*k;
         const size_t j = states*k;
-        /* (rrrs-S) from the base point to the connection point */
-        const real R_xx = s[3*w + j];
-        const real R_xy = s[4*w + j];
-        const real R_xz = s[5*w + j];
-        const real rrrs_platform_point_x = m->rrrs_platform_point_x[i];
-        const real rrrs_platform_point_y = m->rrrs_platform_point_y[i];
-        const real rrrs_platform_point_z = m->rrrs_platform_point_z[i];
-        const real rrrs_q_x = R_xx*rrrs_platform_point_x + R_xy*rrrs_platform_point_y +
-            R_xz*rrrs_platform_point_z;
-        const real R_yx = s[6*w + j];
-        const real R_yy = s[7*w + j];
-        const real R_yz = s[8*w + j];
-        const real rrrs_q_y = R_yx*rrrs_platform_point_x + R_yy*rrrs_platform_point_y +
-            R_yz*rrrs_platform_point_z;
-        const real R_zx = s[9*w + j];
-        const real R_zy = s[10*w + j];
-        const real R_zz = s[11*w + j];
-        const real rrrs_q_z = R_zx*rrrs_platform_point_x + R_zy*rrrs_platform_point_y +
-            R_zz*rrrs_platform_point_z;
-        const real rrrs_base_point_x = m->rrrs_base_point_x[i];
-        const real t_x = s[0*w + j];
-        const real rrrs_S_x = rrrs_q_x + t_x - rrrs_base_point_x;
-        const real rrrs_base_point_y = m->rrrs_base_point_y[i];
-        const real t_y = s[1*w + j];
-        const real rrrs_S_y = rrrs_q_y + t_y - rrrs_base_point_y;
-        const real rrrs_base_point_z = m->rrrs_base_point_z[i];
-        const real t_z = s[2*w + j];
-        const real rrrs_S_z = rrrs_q_z + t_z - rrrs_base_point_z;
-        /* (rrrs-px_1) component along the reference direction */
-        const real rrrs_base_frame_xy = m->rrrs_base_frame_xy[i];
-        const real rrrs_base_frame_yy = m->rrrs_base_frame_yy[i];
-        const real rrrs_base_frame_zy = m->rrrs_base_frame_zy[i];
-        const real rrrs_px_1 = rrrs_S_x*rrrs_base_frame_xy + rrrs_S_y*rrrs_base_frame_yy +
-            rrrs_S_z*rrrs_base_frame_zy;
-        /* (rrrs-py_1) component across the reference direction */
-        const real rrrs_base_frame_xz = m->rrrs_base_frame_xz[i];
-        const real rrrs_base_frame_yz = m->rrrs_base_frame_yz[i];
-        const real rrrs_base_frame_zz = m->rrrs_base_frame_zz[i];
-        const real rrrs_py_1 = rrrs_S_x*rrrs_base_frame_xz + rrrs_S_y*rrrs_base_frame_yz +
-            rrrs_S_z*rrrs_base_frame_zz;
-        /* (rrrs-rho2_1) squared amplitude */
-        const real rrrs_rho2_1 = rrrs_px_1*rrrs_px_1 + rrrs_py_1*rrrs_py_1;
-        /* (rrrs-root_1) root, with the sign of the branch */
-        const real rrrs_branch_1 = m->rrrs_branch_1[i];
-        const real rrrs_root_1 = rrrs_branch_1*root(rrrs_rho2_1);
-        /* (rrrs-c_1) cosine of the angle of joint 1 from its reference direction */
-        const real inv_rrrs_rho2_1 = 1/rrrs_rho2_1;
-        const real rrrs_c_1 = -inv_rrrs_rho2_1*rrrs_py_1*rrrs_root_1;
-        /* (rrrs-s_1) sine of the angle of joint 1 from its reference direction */
-        const real rrrs_s_1 = inv_rrrs_rho2_1*rrrs_px_1*rrrs_root_1;
-        /* (rrrs-xi_1) the vector from joint 1 to the connection point, resolved along link 1 */
-        const real rrrs_base_frame_xx = m->rrrs_base_frame_xx[i];
-        const real rrrs_base_frame_yx = m->rrrs_base_frame_yx[i];
-        const real rrrs_base_frame_zx = m->rrrs_base_frame_zx[i];
-        const real rrrs_xi_1_in_axes1_z = rrrs_S_x*rrrs_base_frame_xx +
-            rrrs_S_y*rrrs_base_frame_yx + rrrs_S_z*rrrs_base_frame_zx;
-        /* (rrrs-x_2) from the origin of joint 2 to the connection point */
-        const real rrrs_joint2_offset_x = m->rrrs_joint2_offset_x[i];
-        const real rrrs_x_2_in_axes1_z = rrrs_xi_1_in_axes1_z - rrrs_joint2_offset_x;
-        /* (rrrs-Kd_2) projection on the centre's direction, from the distance fixed by the joints beyond
-           joint 2 */
-        const real rrrs_Kd_2_t_3 = rrrs_root_1*rrrs_root_1 +
-            rrrs_x_2_in_axes1_z*rrrs_x_2_in_axes1_z;
-        const real rrrs_Kd_2_t = m->rrrs_Kd_2_t[i];
-        const real rrrs_Kd_2_t_2 = m->rrrs_Kd_2_t_2[i];
-        const real rrrs_Kd_2 = rrrs_Kd_2_t + R(0.5)*rrrs_Kd_2_t_3 - rrrs_Kd_2_t_2;
-        /* (rrrs-Kc_2) factor of the cosine in the equation of joint 2 */
-        const real rrrs_joint3_offset_x = m->rrrs_joint3_offset_x[i];
-        const real rrrs_Kc_2 = -rrrs_joint3_offset_x*rrrs_root_1;
-        /* (rrrs-Ks_2) factor of the sine in the equation of joint 2 */
-        const real rrrs_Ks_2 = rrrs_joint3_offset_x*rrrs_x_2_in_axes1_z;
-        /* (rrrs-rho2_2) squared amplitude */
-        const real rrrs_rho2_2 = rrrs_Kc_2*rrrs_Kc_2 + rrrs_Ks_2*rrrs_Ks_2;
-        /* (rrrs-disc_2) discriminant */
-        const real rrrs_disc_2 = rrrs_rho2_2 - rrrs_Kd_2*rrrs_Kd_2;
-        /* (rrrs-root_2) root, with the sign of the branch */
-        const real rrrs_branch_2 = m->rrrs_branch_2[i];
-        const real rrrs_root_2 = rrrs_branch_2*root(rrrs_disc_2);
-        /* (rrrs-c_2) cosine of the angle of joint 2 from its reference direction */
-        const real rrrs_c_2_t = -1/rrrs_rho2_2;
-        const real rrrs_c_2 = rrrs_c_2_t*(rrrs_Ks_2*rrrs_root_2 - rrrs_Kc_2*rrrs_Kd_2);
-        /* (rrrs-s_2) sine of the angle of joint 2 from its reference direction */
-        const real rrrs_s_2 = rrrs_c_2_t*(-rrrs_Kc_2*rrrs_root_2 - rrrs_Kd_2*rrrs_Ks_2);
-        /* (rrrs-x_3) from the origin of joint 3 to the connection point */
-        const real inv_rrrs_size_t = m->inv_rrrs_size_t[i];
-        const real rrrs_x_3_in_axes2_x = inv_rrrs_size_t*rrrs_Kd_2*rrrs_joint3_offset_x -
-            rrrs_joint3_offset_x;
-        /* (rrrs-c_3) cosine of the angle of joint 3 from its reference direction */
-        const real inv_rrrs_size_t_2 = m->inv_rrrs_size_t_2[i];
-        const real rrrs_platform_joint_offset_x = m->rrrs_platform_joint_offset_x[i];
-        const real rrrs_c_3 = inv_rrrs_size_t_2*rrrs_platform_joint_offset_x*rrrs_x_3_in_axes2_x;
-        /* (rrrs-s_3) sine of the angle of joint 3 from its reference direction */
-        const real rrrs_s_3_t =
-            inv_rrrs_size_t*inv_rrrs_size_t_2*rrrs_joint3_offset_x*rrrs_platform_joint_offset_x*rrrs_root_2;
-        /* (rrrs-S_dot) velocity of the connection point */
-        const real omega_y = s[16*w + j];
-        const real omega_z = s[17*w + j];
-        const real rrrs_S_dot_t = omega_y*rrrs_q_z - omega_z*rrrs_q_y;
-        const real omega_x = s[15*w + j];
-        const real rrrs_S_dot_t_2 = omega_z*rrrs_q_x - omega_x*rrrs_q_z;
-        const real rrrs_S_dot_t_3 = omega_x*rrrs_q_y - omega_y*rrrs_q_x;
-        const real t_dot_x = s[12*w + j];
-        const real rrrs_S_dot_x = rrrs_S_dot_t + t_dot_x;
-        const real t_dot_y = s[13*w + j];
-        const real rrrs_S_dot_y = rrrs_S_dot_t_2 + t_dot_y;
-        const real t_dot_z = s[14*w + j];
-        const real rrrs_S_dot_z = rrrs_S_dot_t_3 + t_dot_z;
-        /* (rrrs-r_2) from joint 2 to the connection point, along the links */
-        const real rrrs_r_2_t = rrrs_platform_joint_offset_x*rrrs_s_3_t;
-        const real rrrs_r_2_in_axes2_x = rrrs_joint3_offset_x +
-            rrrs_c_3*rrrs_platform_joint_offset_x;
-        const real rrrs_r_2_in_axes3_x = rrrs_c_3*rrrs_r_2_in_axes2_x + rrrs_r_2_t*rrrs_s_3_t;
-        const real rrrs_r_2_in_axes3_y = rrrs_r_2_in_axes2_x*rrrs_s_3_t - rrrs_c_3*rrrs_r_2_t;
-        /* (rrrs-v_1) velocity of the connection point per rate of joint 1 */
-        const real rrrs_e_1_in_axes3_x = rrrs_c_3*rrrs_s_2 - rrrs_c_2*rrrs_s_3_t;
-        const real rrrs_e_1_in_axes3_y = rrrs_c_2*rrrs_c_3 + rrrs_s_2*rrrs_s_3_t;
-        const real rrrs_v_1_t = rrrs_s_2*rrrs_xi_1_in_axes1_z - rrrs_c_2*rrrs_root_1;
-        const real rrrs_v_1_t_2 = rrrs_c_2*rrrs_xi_1_in_axes1_z + rrrs_root_1*rrrs_s_2;
-        const real rrrs_v_1_in_axes3_z = rrrs_e_1_in_axes3_x*(rrrs_c_3*rrrs_v_1_t_2 +
-            rrrs_s_3_t*rrrs_v_1_t) - rrrs_e_1_in_axes3_y*(rrrs_c_3*rrrs_v_1_t -
-            rrrs_s_3_t*rrrs_v_1_t_2);
-        /* (rrrs-w_1) reciprocal vector 1 */
-        const real rrrs_w_1_in_axes3_z = 1/rrrs_v_1_in_axes3_z;
-        /* (rrrs-w_2) reciprocal vector 2 */
-        const real rrrs_w_2_in_axes3_x = -1/rrrs_r_2_in_axes3_y;
-        /* (rrrs-qd_1) rate of joint 1 */
-        const real axis_z_rrrs_axes3_x = rrrs_base_frame_xy*rrrs_c_1 +
-            rrrs_base_frame_xz*rrrs_s_1;
-        const real axis_z_rrrs_axes3_y = rrrs_base_frame_yy*rrrs_c_1 +
-            rrrs_base_frame_yz*rrrs_s_1;
-        const real axis_z_rrrs_axes3_z = rrrs_base_frame_zy*rrrs_c_1 +
-            rrrs_base_frame_zz*rrrs_s_1;
-        const real rrrs_qd_1 = rrrs_w_1_in_axes3_z*(axis_z_rrrs_axes3_x*rrrs_S_dot_x +
-            axis_z_rrrs_axes3_y*rrrs_S_dot_y + axis_z_rrrs_axes3_z*rrrs_S_dot_z);
+        values_rrrs v;
+        stage_rrrs_X(m, w, i, j, s, X, &v);
+        stage_rrrs_V_X(m, w, i, j, V, &v);
+        stage_rrrs_Z_dynamics(m, w, j, V, &v);
         /* (rrrs-qd_2) rate of joint 2 */
-        const real rrrs_qd_2_t = rrrs_e_1_in_axes3_x*rrrs_s_1;
-        const real rrrs_qd_2_t_2 = rrrs_c_1*rrrs_e_1_in_axes3_x;
-        const real axis_y_rrrs_axes3_x = rrrs_base_frame_xx*rrrs_e_1_in_axes3_y +
-            rrrs_base_frame_xy*rrrs_qd_2_t - rrrs_base_frame_xz*rrrs_qd_2_t_2;
-        const real axis_y_rrrs_axes3_y = rrrs_base_frame_yx*rrrs_e_1_in_axes3_y +
-            rrrs_base_frame_yy*rrrs_qd_2_t - rrrs_base_frame_yz*rrrs_qd_2_t_2;
-        const real axis_y_rrrs_axes3_z = rrrs_base_frame_zx*rrrs_e_1_in_axes3_y +
-            rrrs_base_frame_zy*rrrs_qd_2_t - rrrs_base_frame_zz*rrrs_qd_2_t_2;
-        const real axis_x_rrrs_axes3_x = axis_y_rrrs_axes3_y*axis_z_rrrs_axes3_z -
-            axis_y_rrrs_axes3_z*axis_z_rrrs_axes3_y;
-        const real axis_x_rrrs_axes3_y = axis_y_rrrs_axes3_z*axis_z_rrrs_axes3_x -
-            axis_y_rrrs_axes3_x*axis_z_rrrs_axes3_z;
-        const real axis_x_rrrs_axes3_z = axis_y_rrrs_axes3_x*axis_z_rrrs_axes3_y -
-            axis_y_rrrs_axes3_y*axis_z_rrrs_axes3_x;
-        const real rrrs_qd_2 = rrrs_w_2_in_axes3_x*(axis_x_rrrs_axes3_x*rrrs_S_dot_x +
-            axis_x_rrrs_axes3_y*rrrs_S_dot_y + axis_x_rrrs_axes3_z*rrrs_S_dot_z);
+        const real rrrs_qd_2_t = v.rrrs_c_1*v.rrrs_e_1_in_axes3_x;
+        const real rrrs_base_frame_xx = m->rrrs_base_frame_xx[i];
+        const real rrrs_base_frame_xy = m->rrrs_base_frame_xy[i];
+        const real rrrs_base_frame_xz = m->rrrs_base_frame_xz[i];
+        const real axis_y_rrrs_axes3_x = rrrs_base_frame_xx*v.rrrs_e_1_in_axes3_y +
+            rrrs_base_frame_xy*rrrs_qd_2_t + rrrs_base_frame_xz*v.rrrs_qd_2_t_2;
+        const real rrrs_base_frame_yx = m->rrrs_base_frame_yx[i];
+        const real rrrs_base_frame_yy = m->rrrs_base_frame_yy[i];
+        const real rrrs_base_frame_yz = m->rrrs_base_frame_yz[i];
+        const real axis_y_rrrs_axes3_y = rrrs_base_frame_yx*v.rrrs_e_1_in_axes3_y +
+            rrrs_base_frame_yy*rrrs_qd_2_t + rrrs_base_frame_yz*v.rrrs_qd_2_t_2;
+        const real rrrs_base_frame_zx = m->rrrs_base_frame_zx[i];
+        const real rrrs_base_frame_zy = m->rrrs_base_frame_zy[i];
+        const real rrrs_base_frame_zz = m->rrrs_base_frame_zz[i];
+        const real axis_y_rrrs_axes3_z = rrrs_base_frame_zx*v.rrrs_e_1_in_axes3_y +
+            rrrs_base_frame_zy*rrrs_qd_2_t + rrrs_base_frame_zz*v.rrrs_qd_2_t_2;
+        const real axis_x_rrrs_axes3_x = axis_y_rrrs_axes3_y*v.axis_z_rrrs_axes3_z -
+            axis_y_rrrs_axes3_z*v.axis_z_rrrs_axes3_y;
+        const real axis_x_rrrs_axes3_y = axis_y_rrrs_axes3_z*v.axis_z_rrrs_axes3_x -
+            axis_y_rrrs_axes3_x*v.axis_z_rrrs_axes3_z;
+        const real axis_x_rrrs_axes3_z = axis_y_rrrs_axes3_x*v.axis_z_rrrs_axes3_y -
+            axis_y_rrrs_axes3_y*v.axis_z_rrrs_axes3_x;
+        const real rrrs_qd_2_t_3 = -v.rrrs_w_2_in_axes3_x*(axis_x_rrrs_axes3_x*v.rrrs_S_dot_x +
+            axis_x_rrrs_axes3_y*v.rrrs_S_dot_y + axis_x_rrrs_axes3_z*v.rrrs_S_dot_z);
         /* (rrrs-qd_3) rate of joint 3 */
         const real rrrs_w_3_in_axes3_y = m->rrrs_w_3_in_axes3_y[i];
-        const real rrrs_qd_3 = rrrs_w_3_in_axes3_y*(axis_y_rrrs_axes3_x*rrrs_S_dot_x +
-            axis_y_rrrs_axes3_y*rrrs_S_dot_y + axis_y_rrrs_axes3_z*rrrs_S_dot_z -
-            rrrs_qd_2*rrrs_r_2_in_axes3_x);
-        /* (rrrs-omega_1) angular velocity of link 1 */
-        const real rrrs_omega_1_in_axes2_x = rrrs_qd_1*rrrs_s_2;
-        const real rrrs_omega_1_in_axes2_y = rrrs_c_2*rrrs_qd_1;
-        const real rrrs_omega_1_in_axes3_x = rrrs_c_3*rrrs_omega_1_in_axes2_x -
-            rrrs_omega_1_in_axes2_y*rrrs_s_3_t;
-        const real rrrs_omega_1_in_axes3_y = rrrs_c_3*rrrs_omega_1_in_axes2_y +
-            rrrs_omega_1_in_axes2_x*rrrs_s_3_t;
+        const real rrrs_qd_3 = rrrs_w_3_in_axes3_y*(axis_y_rrrs_axes3_x*v.rrrs_S_dot_x +
+            axis_y_rrrs_axes3_y*v.rrrs_S_dot_y + axis_y_rrrs_axes3_z*v.rrrs_S_dot_z +
+            rrrs_qd_2_t_3*v.rrrs_r_2_in_axes3_x);
         /* (rrrs-W_2) centripetal tensor of link 2 */
-        const real rrrs_W_2_in_axes2_yz = rrrs_omega_1_in_axes2_y*rrrs_qd_2;
-        const real rrrs_W_2_in_axes2_xz = rrrs_omega_1_in_axes2_x*rrrs_qd_2;
-        const real rrrs_W_2_in_axes2_xy = rrrs_omega_1_in_axes2_x*rrrs_omega_1_in_axes2_y;
+        const real rrrs_W_2_in_axes2_yz = v.rrrs_omega_1_t*rrrs_qd_2_t_3;
         /* (rrrs-omega_3) angular velocity of link 3 */
-        const real rrrs_omega_3_in_axes3_z = rrrs_qd_2 + rrrs_qd_3;
+        const real rrrs_omega_3_in_axes3_z = rrrs_qd_3 - rrrs_qd_2_t_3;
         /* (rrrs-W_3) centripetal tensor of link 3 */
-        const real rrrs_W_3_in_axes3_xy = rrrs_omega_1_in_axes3_x*rrrs_omega_1_in_axes3_y;
-        const real rrrs_W_3_in_axes3_xz = rrrs_omega_1_in_axes3_x*rrrs_omega_3_in_axes3_z;
-        const real rrrs_W_3_in_axes3_yz = rrrs_omega_1_in_axes3_y*rrrs_omega_3_in_axes3_z;
+        const real rrrs_W_3_in_axes3_xz = v.rrrs_omega_1_in_axes3_x*rrrs_omega_3_in_axes3_z;
+        const real rrrs_W_3_in_axes3_yz = v.rrrs_omega_1_in_axes3_y*rrrs_omega_3_in_axes3_z;
         /* (rrrs-u_1) centripetal acceleration of the connection point */
-        const real rrrs_u_1_x = omega_y*rrrs_S_dot_t_3 - omega_z*rrrs_S_dot_t_2;
-        const real rrrs_u_1_y = omega_z*rrrs_S_dot_t - omega_x*rrrs_S_dot_t_3;
-        const real rrrs_u_1_z = omega_x*rrrs_S_dot_t_2 - omega_y*rrrs_S_dot_t;
-        const real rrrs_u_1_in_axes3_x = axis_x_rrrs_axes3_x*rrrs_u_1_x +
-            axis_x_rrrs_axes3_y*rrrs_u_1_y + axis_x_rrrs_axes3_z*rrrs_u_1_z;
-        const real rrrs_u_1_in_axes3_y = axis_y_rrrs_axes3_x*rrrs_u_1_x +
-            axis_y_rrrs_axes3_y*rrrs_u_1_y + axis_y_rrrs_axes3_z*rrrs_u_1_z;
-        const real rrrs_u_1_in_axes3_z = axis_z_rrrs_axes3_x*rrrs_u_1_x +
-            axis_z_rrrs_axes3_y*rrrs_u_1_y + axis_z_rrrs_axes3_z*rrrs_u_1_z;
+        const real rrrs_u_1_in_axes3_x = axis_x_rrrs_axes3_x*v.rrrs_u_1_x +
+            axis_x_rrrs_axes3_y*v.rrrs_u_1_y + axis_x_rrrs_axes3_z*v.rrrs_u_1_z;
+        const real rrrs_u_1_in_axes3_y = axis_y_rrrs_axes3_x*v.rrrs_u_1_x +
+            axis_y_rrrs_axes3_y*v.rrrs_u_1_y + axis_y_rrrs_axes3_z*v.rrrs_u_1_z;
         /* (rrrs-zeta_2) angular acceleration of link 2 from the turning of axis 2 */
-        const real rrrs_zeta_2_in_axes3_y = rrrs_W_2_in_axes2_yz*rrrs_s_3_t -
-            rrrs_W_2_in_axes2_xz*rrrs_c_3;
+        const real rrrs_zeta_2_in_axes2_y = v.rrrs_omega_1_in_axes2_x*rrrs_qd_2_t_3;
+        const real rrrs_zeta_2_in_axes3_y = rrrs_W_2_in_axes2_yz*v.rrrs_s_3_t +
+            v.rrrs_c_3*rrrs_zeta_2_in_axes2_y;
         /* (rrrs-zeta_3) angular acceleration of link 3 from the turning of axis 3 */
-        const real rrrs_zeta_3_t = rrrs_omega_1_in_axes3_x*rrrs_qd_3;
+        const real rrrs_zeta_3_t = v.rrrs_omega_1_in_axes3_x*rrrs_qd_3;
         /* (rrrs-beta_3) angular acceleration of link 3 at zero joint accelerations */
         const real rrrs_beta_3_in_axes3_y = rrrs_zeta_2_in_axes3_y - rrrs_zeta_3_t;
         /* (rrrs-bias) acceleration of the connection point at zero joint accelerations */
-        const real rrrs_bias_t = -rrrs_joint2_offset_x*rrrs_s_2;
-        const real rrrs_bias_t_2 = rrrs_c_2*rrrs_joint2_offset_x;
-        const real rrrs_bias_t_3 = rrrs_omega_1_in_axes3_x*(rrrs_bias_t_2*rrrs_c_3 -
-            rrrs_bias_t*rrrs_s_3_t) - rrrs_omega_1_in_axes3_y*(-rrrs_bias_t*rrrs_c_3 -
-            rrrs_bias_t_2*rrrs_s_3_t);
-        const real rrrs_d_3_in_axes3_x = rrrs_c_3*rrrs_joint3_offset_x;
-        const real rrrs_d_3_in_axes3_y = rrrs_joint3_offset_x*rrrs_s_3_t;
-        const real rrrs_bias_t_4 = -rrrs_d_3_in_axes3_y*rrrs_qd_2;
-        const real rrrs_bias_t_5 = -rrrs_d_3_in_axes3_x*rrrs_qd_2;
-        const real rrrs_bias_t_6 = rrrs_d_3_in_axes3_y*rrrs_omega_1_in_axes3_x -
-            rrrs_d_3_in_axes3_x*rrrs_omega_1_in_axes3_y;
+        const real rrrs_bias_t_4 = v.rrrs_d_3_in_axes3_y*rrrs_qd_2_t_3;
+        const real rrrs_bias_t_5 = v.rrrs_d_3_in_axes3_x*rrrs_qd_2_t_3;
+        const real rrrs_platform_joint_offset_x = m->rrrs_platform_joint_offset_x[i];
         const real rrrs_bias_t_7 = rrrs_omega_3_in_axes3_z*rrrs_platform_joint_offset_x;
-        const real rrrs_bias_t_8 = rrrs_omega_1_in_axes3_y*rrrs_platform_joint_offset_x;
-        const real rrrs_bias_in_axes3_x = rrrs_bias_t_3*rrrs_omega_1_in_axes3_y +
-            rrrs_bias_t_5*rrrs_qd_2 + rrrs_bias_t_6*rrrs_omega_1_in_axes3_y -
-            rrrs_bias_t_7*rrrs_omega_3_in_axes3_z - rrrs_bias_t_8*rrrs_omega_1_in_axes3_y;
-        const real rrrs_bias_in_axes3_y = rrrs_bias_t_4*rrrs_qd_2 +
-            rrrs_bias_t_8*rrrs_omega_1_in_axes3_x - rrrs_bias_t_3*rrrs_omega_1_in_axes3_x -
-            rrrs_bias_t_6*rrrs_omega_1_in_axes3_x;
-        const real rrrs_bias_in_axes3_z = rrrs_bias_t_7*rrrs_omega_1_in_axes3_x +
-            rrrs_d_3_in_axes3_y*(rrrs_W_2_in_axes2_xz*rrrs_s_3_t + rrrs_W_2_in_axes2_yz*rrrs_c_3)
-            - rrrs_beta_3_in_axes3_y*rrrs_platform_joint_offset_x -
-            rrrs_bias_t_4*rrrs_omega_1_in_axes3_y - rrrs_bias_t_5*rrrs_omega_1_in_axes3_x -
-            rrrs_d_3_in_axes3_x*rrrs_zeta_2_in_axes3_y;
+        const real rrrs_bias_in_axes3_x = v.rrrs_bias_t_3*v.rrrs_omega_1_in_axes3_y +
+            v.rrrs_bias_t_6*v.rrrs_omega_1_in_axes3_y - rrrs_bias_t_5*rrrs_qd_2_t_3 -
+            rrrs_bias_t_7*rrrs_omega_3_in_axes3_z - v.rrrs_bias_t_8*v.rrrs_omega_1_in_axes3_y;
+        const real rrrs_bias_in_axes3_y = v.rrrs_bias_t_8*v.rrrs_omega_1_in_axes3_x -
+            v.rrrs_bias_t_3*v.rrrs_omega_1_in_axes3_x - rrrs_bias_t_4*rrrs_qd_2_t_3 -
+            v.rrrs_bias_t_6*v.rrrs_omega_1_in_axes3_x;
+        const real rrrs_bias_in_axes3_z = rrrs_bias_t_7*v.rrrs_omega_1_in_axes3_x +
+            v.rrrs_d_3_in_axes3_y*(rrrs_W_2_in_axes2_yz*v.rrrs_c_3 -
+            v.rrrs_s_3_t*rrrs_zeta_2_in_axes2_y) -
+            rrrs_beta_3_in_axes3_y*rrrs_platform_joint_offset_x -
+            rrrs_bias_t_4*v.rrrs_omega_1_in_axes3_y - rrrs_bias_t_5*v.rrrs_omega_1_in_axes3_x -
+            v.rrrs_d_3_in_axes3_x*rrrs_zeta_2_in_axes3_y;
         /* (rrrs-rel_o) remainder without the acceleration in: acceleration of the connection point left
            to the joint accelerations */
         const real rrrs_rel_o_in_axes3_x = rrrs_u_1_in_axes3_x - rrrs_bias_in_axes3_x;
         const real rrrs_rel_o_in_axes3_y = rrrs_u_1_in_axes3_y - rrrs_bias_in_axes3_y;
-        const real rrrs_rel_o_in_axes3_z = rrrs_u_1_in_axes3_z - rrrs_bias_in_axes3_z;
+        const real rrrs_rel_o_in_axes3_z = v.rrrs_u_1_in_axes3_z - rrrs_bias_in_axes3_z;
         /* (rrrs-qdd_1_o) remainder without the acceleration in: acceleration of joint 1 */
-        const real rrrs_qdd_1_o = rrrs_rel_o_in_axes3_z*rrrs_w_1_in_axes3_z;
+        const real rrrs_qdd_1_o = rrrs_rel_o_in_axes3_z*v.rrrs_w_1_in_axes3_z;
         /* (rrrs-qdd_2_o) remainder without the acceleration in: acceleration of joint 2 */
-        const real rrrs_qdd_2_o = rrrs_rel_o_in_axes3_x*rrrs_w_2_in_axes3_x;
+        const real rrrs_qdd_2_o = rrrs_rel_o_in_axes3_x*v.rrrs_w_2_in_axes3_x;
         /* (rrrs-alpha_1_o) remainder without the acceleration in: angular acceleration of link 1 */
-        const real rrrs_alpha_1_o_t = -rrrs_qdd_1_o*rrrs_s_2;
-        const real rrrs_alpha_1_o_in_axes2_y = rrrs_c_2*rrrs_qdd_1_o;
+        const real rrrs_alpha_1_o_in_axes2_x = v.rrrs_c_2*rrrs_qdd_1_o;
+        const real rrrs_alpha_1_o_t = rrrs_qdd_1_o*v.rrrs_s_2;
         /* (rrrs-alpha_2_o) remainder without the acceleration in: angular acceleration of link 2 */
-        const real rrrs_alpha_2_o_in_axes2_x = rrrs_W_2_in_axes2_yz - rrrs_alpha_1_o_t;
-        const real rrrs_alpha_2_o_in_axes2_y = rrrs_alpha_1_o_in_axes2_y - rrrs_W_2_in_axes2_xz;
+        const real rrrs_alpha_2_o_in_axes2_x = rrrs_W_2_in_axes2_yz + rrrs_alpha_1_o_in_axes2_x;
+        const real rrrs_alpha_2_o_in_axes2_y = rrrs_zeta_2_in_axes2_y - rrrs_alpha_1_o_t;
         /* (rrrs-B_2_o) remainder of the acceleration tensor of link 2 */
-        const real rrrs_B_2_o_in_axes2_xy = rrrs_W_2_in_axes2_xy - rrrs_qdd_2_o;
-        const real rrrs_B_2_o_in_axes2_yx = rrrs_W_2_in_axes2_xy + rrrs_qdd_2_o;
-        const real rrrs_B_2_o_in_axes2_zx = rrrs_W_2_in_axes2_xz - rrrs_alpha_2_o_in_axes2_y;
+        const real rrrs_B_2_o_in_axes2_xy = v.rrrs_W_2_in_axes2_xy - rrrs_qdd_2_o;
+        const real rrrs_B_2_o_in_axes2_yx = v.rrrs_W_2_in_axes2_xy + rrrs_qdd_2_o;
+        const real rrrs_B_2_o_in_axes2_zx = -rrrs_alpha_2_o_in_axes2_y - rrrs_zeta_2_in_axes2_y;
         const real rrrs_B_2_o_in_axes2_zy = rrrs_W_2_in_axes2_yz + rrrs_alpha_2_o_in_axes2_x;
         /* (rrrs-alpha_3_o) remainder without the acceleration in: angular acceleration of link 3 */
-        const real rrrs_alpha_3_o_in_axes3_x = rrrs_alpha_2_o_in_axes2_x*rrrs_c_3 +
-            rrrs_omega_1_in_axes3_y*rrrs_qd_3 - rrrs_alpha_2_o_in_axes2_y*rrrs_s_3_t;
-        const real rrrs_alpha_3_o_in_axes3_y = rrrs_alpha_2_o_in_axes2_x*rrrs_s_3_t +
-            rrrs_alpha_2_o_in_axes2_y*rrrs_c_3 - rrrs_zeta_3_t;
+        const real rrrs_alpha_3_o_in_axes3_x = rrrs_alpha_2_o_in_axes2_x*v.rrrs_c_3 +
+            v.rrrs_omega_1_in_axes3_y*rrrs_qd_3 - rrrs_alpha_2_o_in_axes2_y*v.rrrs_s_3_t;
+        const real rrrs_alpha_3_o_in_axes3_y = rrrs_alpha_2_o_in_axes2_x*v.rrrs_s_3_t +
+            rrrs_alpha_2_o_in_axes2_y*v.rrrs_c_3 - rrrs_zeta_3_t;
         const real rrrs_alpha_3_o_in_axes3_z = rrrs_qdd_2_o +
-            rrrs_w_3_in_axes3_y*(rrrs_rel_o_in_axes3_y - rrrs_qdd_2_o*rrrs_r_2_in_axes3_x);
+            rrrs_w_3_in_axes3_y*(rrrs_rel_o_in_axes3_y - rrrs_qdd_2_o*v.rrrs_r_2_in_axes3_x);
         /* (rrrs-B_3_o) remainder of the acceleration tensor of link 3 */
-        const real rrrs_B_3_o_in_axes3_xy = rrrs_W_3_in_axes3_xy - rrrs_alpha_3_o_in_axes3_z;
+        const real rrrs_B_3_o_in_axes3_xy = v.rrrs_W_3_in_axes3_xy - rrrs_alpha_3_o_in_axes3_z;
         const real rrrs_B_3_o_in_axes3_xz = rrrs_W_3_in_axes3_xz + rrrs_alpha_3_o_in_axes3_y;
-        const real rrrs_B_3_o_in_axes3_yx = rrrs_W_3_in_axes3_xy + rrrs_alpha_3_o_in_axes3_z;
+        const real rrrs_B_3_o_in_axes3_yx = v.rrrs_W_3_in_axes3_xy + rrrs_alpha_3_o_in_axes3_z;
         const real rrrs_B_3_o_in_axes3_yz = rrrs_W_3_in_axes3_yz - rrrs_alpha_3_o_in_axes3_x;
         const real rrrs_B_3_o_in_axes3_zx = rrrs_W_3_in_axes3_xz - rrrs_alpha_3_o_in_axes3_y;
         const real rrrs_B_3_o_in_axes3_zy = rrrs_W_3_in_axes3_yz + rrrs_alpha_3_o_in_axes3_x;
@@ -3295,12 +3339,8 @@ INLINE void Z_legs_rrrs(const prepared *m, size_t w, size_t leg, size_t legs, co
             axis_x_rrrs_axes3_y*gravity_y - axis_x_rrrs_axes3_z*gravity_z;
         const real rrrs_acc_3_o_in_axes3_y = rrrs_u_1_in_axes3_y - axis_y_rrrs_axes3_x*gravity_x -
             axis_y_rrrs_axes3_y*gravity_y - axis_y_rrrs_axes3_z*gravity_z;
-        const real rrrs_acc_3_o_in_axes3_z = rrrs_u_1_in_axes3_z - axis_z_rrrs_axes3_x*gravity_x -
-            axis_z_rrrs_axes3_y*gravity_y - axis_z_rrrs_axes3_z*gravity_z;
         /* (rrrs-mu_3_o) remainder without the acceleration in: inertia moment of the links that turn with
            link 3, about their reference points */
-        const real rrrs_mu_3_o_t = rrrs_omega_1_in_axes3_x*rrrs_omega_1_in_axes3_x;
-        const real rrrs_mu_3_o_t_2 = rrrs_omega_1_in_axes3_y*rrrs_omega_1_in_axes3_y;
         const real rrrs_mu_3_o_t_3 = rrrs_omega_3_in_axes3_z*rrrs_omega_3_in_axes3_z;
         const real rrrs_J_3_in_spec3_xy = m->rrrs_J_3_in_spec3_xy[i];
         const real rrrs_J_3_in_spec3_xz = m->rrrs_J_3_in_spec3_xz[i];
@@ -3311,8 +3351,8 @@ INLINE void Z_legs_rrrs(const prepared *m, size_t w, size_t leg, size_t legs, co
         const real rrrs_h_3_in_spec3_z = m->rrrs_h_3_in_spec3_z[i];
         const real rrrs_mu_3_o_in_axes3_x = rrrs_B_3_o_in_axes3_yx*rrrs_J_3_in_spec3_xz +
             rrrs_B_3_o_in_axes3_zy*rrrs_Sigma_3_in_axes3_yy +
-            rrrs_J_3_in_spec3_yz*(rrrs_mu_3_o_t_2 - rrrs_mu_3_o_t_3) +
-            rrrs_acc_3_o_in_axes3_z*rrrs_h_3_in_spec3_y -
+            rrrs_J_3_in_spec3_yz*(v.rrrs_mu_3_o_t_2 - rrrs_mu_3_o_t_3) +
+            v.rrrs_acc_3_o_in_axes3_z*rrrs_h_3_in_spec3_y -
             rrrs_B_3_o_in_axes3_yz*rrrs_Sigma_3_in_axes3_zz -
             rrrs_B_3_o_in_axes3_zx*rrrs_J_3_in_spec3_xy -
             rrrs_acc_3_o_in_axes3_y*rrrs_h_3_in_spec3_z;
@@ -3322,26 +3362,19 @@ INLINE void Z_legs_rrrs(const prepared *m, size_t w, size_t leg, size_t legs, co
             rrrs_B_3_o_in_axes3_zy*rrrs_J_3_in_spec3_xy +
             rrrs_acc_3_o_in_axes3_x*rrrs_h_3_in_spec3_z -
             rrrs_B_3_o_in_axes3_xy*rrrs_J_3_in_spec3_yz -
-            rrrs_B_3_o_in_axes3_zx*rrrs_Sigma_3_in_axes3_xx - rrrs_J_3_in_spec3_xz*(rrrs_mu_3_o_t
-            - rrrs_mu_3_o_t_3) - rrrs_acc_3_o_in_axes3_z*rrrs_h_3_in_spec3_x;
+            rrrs_B_3_o_in_axes3_zx*rrrs_Sigma_3_in_axes3_xx -
+            rrrs_J_3_in_spec3_xz*(v.rrrs_mu_3_o_t - rrrs_mu_3_o_t_3) -
+            v.rrrs_acc_3_o_in_axes3_z*rrrs_h_3_in_spec3_x;
         const real rrrs_mu_3_o_in_axes3_z = rrrs_B_3_o_in_axes3_xz*rrrs_J_3_in_spec3_yz +
-            rrrs_B_3_o_in_axes3_yx*rrrs_Sigma_3_in_axes3_xx + rrrs_J_3_in_spec3_xy*(rrrs_mu_3_o_t
-            - rrrs_mu_3_o_t_2) + rrrs_acc_3_o_in_axes3_y*rrrs_h_3_in_spec3_x -
+            rrrs_B_3_o_in_axes3_yx*rrrs_Sigma_3_in_axes3_xx +
+            rrrs_J_3_in_spec3_xy*(v.rrrs_mu_3_o_t - v.rrrs_mu_3_o_t_2) +
+            rrrs_acc_3_o_in_axes3_y*rrrs_h_3_in_spec3_x -
             rrrs_B_3_o_in_axes3_xy*rrrs_Sigma_3_in_axes3_yy -
             rrrs_B_3_o_in_axes3_yz*rrrs_J_3_in_spec3_xz -
             rrrs_acc_3_o_in_axes3_x*rrrs_h_3_in_spec3_y;
         /* (rrrs-mu_2_o) remainder without the acceleration in: inertia moment of the links that turn with
            link 2, about their reference points */
-        const real rrrs_mu_2_o_t = rrrs_omega_1_in_axes2_x*rrrs_omega_1_in_axes2_x;
-        const real rrrs_mu_2_o_t_2 = rrrs_omega_1_in_axes2_y*rrrs_omega_1_in_axes2_y;
-        const real rrrs_mu_2_o_t_3 = rrrs_qd_2*rrrs_qd_2;
-        const real rrrs_mu_2_t = m->rrrs_mu_2_t[i];
-        const real rrrs_mu_2_t_2 = m->rrrs_mu_2_t_2[i];
-        const real rrrs_g_in_axes1_x = rrrs_c_1*rrrs_mu_2_t + rrrs_mu_2_t_2*rrrs_s_1;
-        const real rrrs_g_in_axes1_y = rrrs_c_1*rrrs_mu_2_t_2 - rrrs_mu_2_t*rrrs_s_1;
-        const real rrrs_g_in_axes1_z = m->rrrs_g_in_axes1_z[i];
-        const real rrrs_g_in_axes2_x = rrrs_c_2*rrrs_g_in_axes1_y + rrrs_g_in_axes1_z*rrrs_s_2;
-        const real rrrs_g_in_axes2_y = rrrs_c_2*rrrs_g_in_axes1_z - rrrs_g_in_axes1_y*rrrs_s_2;
+        const real rrrs_mu_2_o_t_3 = rrrs_qd_2_t_3*rrrs_qd_2_t_3;
         const real rrrs_J_2_in_spec2_xy = m->rrrs_J_2_in_spec2_xy[i];
         const real rrrs_J_2_in_spec2_xz = m->rrrs_J_2_in_spec2_xz[i];
         const real rrrs_J_2_in_spec2_yz = m->rrrs_J_2_in_spec2_yz[i];
@@ -3351,66 +3384,68 @@ INLINE void Z_legs_rrrs(const prepared *m, size_t w, size_t leg, size_t legs, co
         const real rrrs_h_2_in_spec2_z = m->rrrs_h_2_in_spec2_z[i];
         const real rrrs_mu_2_o_in_axes2_x = rrrs_B_2_o_in_axes2_yx*rrrs_J_2_in_spec2_xz +
             rrrs_B_2_o_in_axes2_zy*rrrs_Sigma_2_in_axes2_yy +
-            rrrs_J_2_in_spec2_yz*(rrrs_mu_2_o_t_2 - rrrs_mu_2_o_t_3) +
-            rrrs_g_in_axes2_y*rrrs_h_2_in_spec2_z - rrrs_B_2_o_in_axes2_zx*rrrs_J_2_in_spec2_xy -
-            rrrs_Sigma_2_in_axes2_zz*rrrs_alpha_1_o_t - rrrs_g_in_axes1_x*rrrs_h_2_in_spec2_y;
+            rrrs_J_2_in_spec2_yz*(v.rrrs_mu_2_o_t_2 - rrrs_mu_2_o_t_3) +
+            rrrs_Sigma_2_in_axes2_zz*rrrs_alpha_1_o_in_axes2_x +
+            v.rrrs_g_in_axes2_y*rrrs_h_2_in_spec2_z - rrrs_B_2_o_in_axes2_zx*rrrs_J_2_in_spec2_xy
+            - v.rrrs_g_in_axes1_y*rrrs_h_2_in_spec2_y;
         const real rrrs_Sigma_2_in_axes2_xx = m->rrrs_Sigma_2_in_axes2_xx[i];
         const real rrrs_h_2_in_spec2_x = m->rrrs_h_2_in_spec2_x[i];
         const real rrrs_mu_2_o_in_axes2_y = rrrs_B_2_o_in_axes2_zy*rrrs_J_2_in_spec2_xy +
-            rrrs_Sigma_2_in_axes2_zz*rrrs_alpha_1_o_in_axes2_y +
-            rrrs_g_in_axes1_x*rrrs_h_2_in_spec2_x - rrrs_B_2_o_in_axes2_xy*rrrs_J_2_in_spec2_yz -
-            rrrs_B_2_o_in_axes2_zx*rrrs_Sigma_2_in_axes2_xx - rrrs_J_2_in_spec2_xz*(rrrs_mu_2_o_t
-            - rrrs_mu_2_o_t_3) - rrrs_g_in_axes2_x*rrrs_h_2_in_spec2_z;
+            v.rrrs_g_in_axes1_y*rrrs_h_2_in_spec2_x - rrrs_B_2_o_in_axes2_xy*rrrs_J_2_in_spec2_yz
+            - rrrs_B_2_o_in_axes2_zx*rrrs_Sigma_2_in_axes2_xx -
+            rrrs_J_2_in_spec2_xz*(v.rrrs_mu_2_o_t - rrrs_mu_2_o_t_3) -
+            rrrs_Sigma_2_in_axes2_zz*rrrs_alpha_1_o_t - v.rrrs_g_in_axes2_x*rrrs_h_2_in_spec2_z;
         const real rrrs_mu_2_o_in_axes2_z = rrrs_B_2_o_in_axes2_yx*rrrs_Sigma_2_in_axes2_xx +
-            rrrs_J_2_in_spec2_xy*(rrrs_mu_2_o_t - rrrs_mu_2_o_t_2) +
-            rrrs_J_2_in_spec2_yz*rrrs_alpha_1_o_in_axes2_y + rrrs_g_in_axes2_x*rrrs_h_2_in_spec2_y
-            - rrrs_B_2_o_in_axes2_xy*rrrs_Sigma_2_in_axes2_yy -
-            rrrs_J_2_in_spec2_xz*rrrs_alpha_1_o_t - rrrs_g_in_axes2_y*rrrs_h_2_in_spec2_x;
+            rrrs_J_2_in_spec2_xy*(v.rrrs_mu_2_o_t - v.rrrs_mu_2_o_t_2) +
+            rrrs_J_2_in_spec2_xz*rrrs_alpha_1_o_in_axes2_x +
+            v.rrrs_g_in_axes2_x*rrrs_h_2_in_spec2_y -
+            rrrs_B_2_o_in_axes2_xy*rrrs_Sigma_2_in_axes2_yy -
+            rrrs_J_2_in_spec2_yz*rrrs_alpha_1_o_t - v.rrrs_g_in_axes2_y*rrrs_h_2_in_spec2_x;
         /* (rrrs-N_2_o) remainder without the acceleration in: moment about joint 2 of the links from 2
            outwards, the force at the connection point left out */
         const real rrrs_N_2_o_in_axes2_x = rrrs_mu_2_o_in_axes2_x +
-            rrrs_c_3*rrrs_mu_3_o_in_axes3_x + rrrs_mu_3_o_in_axes3_y*rrrs_s_3_t;
+            v.rrrs_c_3*rrrs_mu_3_o_in_axes3_x + rrrs_mu_3_o_in_axes3_y*v.rrrs_s_3_t;
         const real rrrs_N_2_o_in_axes2_y = rrrs_mu_2_o_in_axes2_y +
-            rrrs_c_3*rrrs_mu_3_o_in_axes3_y - rrrs_mu_3_o_in_axes3_x*rrrs_s_3_t;
+            v.rrrs_c_3*rrrs_mu_3_o_in_axes3_y - rrrs_mu_3_o_in_axes3_x*v.rrrs_s_3_t;
         const real rrrs_N_2_o_in_axes2_z = rrrs_mu_2_o_in_axes2_z + rrrs_mu_3_o_in_axes3_z;
         /* (rrrs-mu_1_o) remainder without the acceleration in: inertia moment of the links that turn with
            link 1, about their reference points */
         const real rrrs_J_1_in_spec1_xx = m->rrrs_J_1_in_spec1_xx[i];
         const real rrrs_h_1_in_spec1_y = m->rrrs_h_1_in_spec1_y[i];
         const real rrrs_h_1_in_spec1_z = m->rrrs_h_1_in_spec1_z[i];
-        const real rrrs_mu_1_o_in_axes1_z = rrrs_J_1_in_spec1_xx*rrrs_qdd_1_o -
-            rrrs_g_in_axes1_x*rrrs_h_1_in_spec1_y - rrrs_g_in_axes1_y*rrrs_h_1_in_spec1_z;
+        const real rrrs_mu_1_o_in_axes1_z = rrrs_J_1_in_spec1_xx*rrrs_qdd_1_o +
+            v.rrrs_g_in_axes1_x*rrrs_h_1_in_spec1_z - v.rrrs_g_in_axes1_y*rrrs_h_1_in_spec1_y;
         /* (rrrs-N_1_o) remainder without the acceleration in: moment about joint 1 of the links from 1
            outwards, the force at the connection point left out */
-        const real rrrs_N_1_o_in_axes1_z = rrrs_mu_1_o_in_axes1_z + rrrs_N_2_o_in_axes2_x*rrrs_s_2
-            + rrrs_N_2_o_in_axes2_y*rrrs_c_2;
+        const real rrrs_N_1_o_in_axes1_z = rrrs_mu_1_o_in_axes1_z +
+            rrrs_N_2_o_in_axes2_x*v.rrrs_c_2 - rrrs_N_2_o_in_axes2_y*v.rrrs_s_2;
         /* (rrrs-G_o) remainder without the acceleration in: force at the connection point that balances
            the leg's inertia and weight along all degrees of freedom */
         const real rrrs_G_o_in_axes3_y = rrrs_mu_3_o_in_axes3_z*rrrs_w_3_in_axes3_y;
         /* (rrrs-c_o) remainder without the acceleration in: leg force on the platform without actuation
            and without the mass at the connection point */
-        const real rrrs_c_o_in_axes3_x = rrrs_h_3_in_spec3_x*(rrrs_mu_3_o_t_2 + rrrs_mu_3_o_t_3) +
-            rrrs_w_2_in_axes3_x*(rrrs_G_o_in_axes3_y*rrrs_r_2_in_axes3_x - rrrs_N_2_o_in_axes2_z)
-            - rrrs_B_3_o_in_axes3_xy*rrrs_h_3_in_spec3_y -
+        const real rrrs_c_o_in_axes3_x = rrrs_h_3_in_spec3_x*(v.rrrs_mu_3_o_t_2 + rrrs_mu_3_o_t_3)
+            + v.rrrs_w_2_in_axes3_x*(rrrs_G_o_in_axes3_y*v.rrrs_r_2_in_axes3_x -
+            rrrs_N_2_o_in_axes2_z) - rrrs_B_3_o_in_axes3_xy*rrrs_h_3_in_spec3_y -
             rrrs_B_3_o_in_axes3_xz*rrrs_h_3_in_spec3_z;
-        const real rrrs_c_o_in_axes3_y = rrrs_h_3_in_spec3_y*(rrrs_mu_3_o_t + rrrs_mu_3_o_t_3) -
+        const real rrrs_c_o_in_axes3_y = rrrs_h_3_in_spec3_y*(v.rrrs_mu_3_o_t + rrrs_mu_3_o_t_3) -
             rrrs_G_o_in_axes3_y - rrrs_B_3_o_in_axes3_yx*rrrs_h_3_in_spec3_x -
             rrrs_B_3_o_in_axes3_yz*rrrs_h_3_in_spec3_z;
-        const real rrrs_c_o_in_axes3_z = rrrs_h_3_in_spec3_z*(rrrs_mu_3_o_t + rrrs_mu_3_o_t_2) -
-            rrrs_B_3_o_in_axes3_zx*rrrs_h_3_in_spec3_x -
+        const real rrrs_c_o_in_axes3_z = rrrs_h_3_in_spec3_z*(v.rrrs_mu_3_o_t + v.rrrs_mu_3_o_t_2)
+            - rrrs_B_3_o_in_axes3_zx*rrrs_h_3_in_spec3_x -
             rrrs_B_3_o_in_axes3_zy*rrrs_h_3_in_spec3_y -
-            rrrs_N_1_o_in_axes1_z*rrrs_w_1_in_axes3_z;
+            rrrs_N_1_o_in_axes1_z*v.rrrs_w_1_in_axes3_z;
         /* (rrrs-U) velocity and gravity terms of the leg force */
         const real rrrs_U_x = -axis_x_rrrs_axes3_x*rrrs_c_o_in_axes3_x -
-            axis_y_rrrs_axes3_x*rrrs_c_o_in_axes3_y - axis_z_rrrs_axes3_x*rrrs_c_o_in_axes3_z;
+            axis_y_rrrs_axes3_x*rrrs_c_o_in_axes3_y - v.axis_z_rrrs_axes3_x*rrrs_c_o_in_axes3_z;
         const real rrrs_U_y = -axis_x_rrrs_axes3_y*rrrs_c_o_in_axes3_x -
-            axis_y_rrrs_axes3_y*rrrs_c_o_in_axes3_y - axis_z_rrrs_axes3_y*rrrs_c_o_in_axes3_z;
+            axis_y_rrrs_axes3_y*rrrs_c_o_in_axes3_y - v.axis_z_rrrs_axes3_y*rrrs_c_o_in_axes3_z;
         const real rrrs_U_z = -axis_x_rrrs_axes3_z*rrrs_c_o_in_axes3_x -
-            axis_y_rrrs_axes3_z*rrrs_c_o_in_axes3_y - axis_z_rrrs_axes3_z*rrrs_c_o_in_axes3_z;
+            axis_y_rrrs_axes3_z*rrrs_c_o_in_axes3_y - v.axis_z_rrrs_axes3_z*rrrs_c_o_in_axes3_z;
         /* (Z_a) rotational part of Z */
-        const real rrrs_Z_a_t = rrrs_U_z*rrrs_q_y - rrrs_U_y*rrrs_q_z;
-        const real rrrs_Z_a_t_2 = rrrs_U_x*rrrs_q_z - rrrs_U_z*rrrs_q_x;
-        const real rrrs_Z_a_t_3 = rrrs_U_y*rrrs_q_x - rrrs_U_x*rrrs_q_y;
+        const real rrrs_Z_a_t = rrrs_U_z*v.rrrs_q_y - rrrs_U_y*v.rrrs_q_z;
+        const real rrrs_Z_a_t_2 = rrrs_U_x*v.rrrs_q_z - rrrs_U_z*v.rrrs_q_x;
+        const real rrrs_Z_a_t_3 = rrrs_U_y*v.rrrs_q_x - rrrs_U_x*v.rrrs_q_y;
         /* (Z_t) translational part of Z */
         gather(&terms[0*count + k], add, rrrs_U_x);  /* Z_t_x_of_legs */
         gather(&terms[1*count + k], add, rrrs_U_y);  /* Z_t_y_of_legs */
@@ -3422,11 +3457,11 @@ INLINE void Z_legs_rrrs(const prepared *m, size_t w, size_t leg, size_t legs, co
         const real rrrs_size_t_3 = m->rrrs_size_t_3[i];
         const real rrrs_rho2_2_t = m->rrrs_rho2_2_t[i];
         const real rrrs_size = m->rrrs_size[i];
-        o[1*count + k] = UNLESS(magnitude(rrrs_rho2_1) > TOLERANCE*TOLERANCE*rrrs_size_t_3) +
-            UNLESS(magnitude(rrrs_rho2_2) > TOLERANCE*TOLERANCE*rrrs_rho2_2_t) +
-            UNLESS(magnitude(rrrs_v_1_in_axes3_z) > TOLERANCE*rrrs_size) +
-            UNLESS(magnitude(rrrs_r_2_in_axes3_y) > TOLERANCE*rrrs_size);
-        o[0*count + k] = UNLESS(rrrs_disc_2 >= 0);
+        o[1*count + k] = UNLESS(magnitude(v.rrrs_rho2_1) > TOLERANCE*TOLERANCE*rrrs_size_t_3) +
+            UNLESS(magnitude(v.rrrs_rho2_2) > TOLERANCE*TOLERANCE*rrrs_rho2_2_t) +
+            UNLESS(magnitude(v.rrrs_v_1_in_axes3_z) > TOLERANCE*rrrs_size) +
+            UNLESS(magnitude(v.rrrs_r_2_in_axes3_y) > TOLERANCE*rrrs_size);
+        o[0*count + k] = UNLESS(v.rrrs_disc_2 >= 0);
     }
 }
 
@@ -3442,24 +3477,24 @@ INLINE void Z_after(size_t w, const real *s, const real *sums, real *Z, verdict 
 {
     for (size_t k = 0; k < w; ++k) {
         /* (Z_t) translational part of Z */
-        const real Z_p_x = s[18*w + k];
+        const real Z_p_x = s[9*w + k];
         const real Z_t_x_of_legs = sums[0*w + k];
         const real Z_t_x = Z_p_x + Z_t_x_of_legs;
-        const real Z_p_y = s[19*w + k];
+        const real Z_p_y = s[10*w + k];
         const real Z_t_y_of_legs = sums[1*w + k];
         const real Z_t_y = Z_p_y + Z_t_y_of_legs;
-        const real Z_p_z = s[20*w + k];
+        const real Z_p_z = s[11*w + k];
         const real Z_t_z_of_legs = sums[2*w + k];
         const real Z_t_z = Z_p_z + Z_t_z_of_legs;
         /* (Z_a) rotational part of Z */
         const real Z_a_x_of_legs = sums[3*w + k];
-        const real Z_q_x = s[21*w + k];
+        const real Z_q_x = s[12*w + k];
         const real Z_a_x = Z_a_x_of_legs + Z_q_x;
         const real Z_a_y_of_legs = sums[4*w + k];
-        const real Z_q_y = s[22*w + k];
+        const real Z_q_y = s[13*w + k];
         const real Z_a_y = Z_a_y_of_legs + Z_q_y;
         const real Z_a_z_of_legs = sums[5*w + k];
-        const real Z_q_z = s[23*w + k];
+        const real Z_q_z = s[14*w + k];
         const real Z_a_z = Z_a_z_of_legs + Z_q_z;
         /* (Z_t) translational part of Z */
         Z[0*w + k] = Z_t_x;
@@ -3475,12 +3510,10 @@ INLINE void Z_after(size_t w, const real *s, const real *sums, real *Z, verdict 
 
 INLINE void Z_run(const prepared *m, const real *X, const real *V, real *Z, verdict *t)
 {
-    real s[24] = {0};
-    real sums[6] = {0};
-    real terms_rrrs[6*LEGS(LEGS_OF_rrrs)] = {0};
-    real o_rrrs[2*LEGS(LEGS_OF_rrrs)] = {0};
+    real s[15] = {0}, sums[6] = {0};
+    real terms_rrrs[6*LEGS(LEGS_OF_rrrs)] = {0}, o_rrrs[2*LEGS(LEGS_OF_rrrs)] = {0};
     Z_before(m, 1, X, V, s, t);
-    Z_legs_rrrs(m, 1, 0, 1, s, 0, LEGS(LEGS_OF_rrrs), 0, terms_rrrs, o_rrrs);
+    Z_legs_rrrs(m, 1, 0, 1, s, 0, LEGS(LEGS_OF_rrrs), 0, X, V, terms_rrrs, o_rrrs);
     for (size_t leg = 0; leg < LEGS_OF_rrrs; ++leg) {
         Z_place_rrrs(1, LEGS(LEGS_OF_rrrs), o_rrrs, leg, t);
     }
@@ -3492,247 +3525,72 @@ INLINE void Z_run(const prepared *m, const real *X, const real *V, real *Z, verd
 
 INLINE void Z_run_lanes(const prepared *m, const real *X, const real *V, real *Z, verdict *t)
 {
-    real s[24*LANES];
-    real sums[6*LANES];
+    real s[15*LANES], sums[6*LANES];
     real o_rrrs[2*LANES];
     Z_before(m, LANES, X, V, s, t);
     clear(sums, 6*LANES);
     for (size_t leg = 0; leg < LEGS_OF_rrrs; ++leg) {
-        Z_legs_rrrs(m, LANES, leg, 0, s, 1, LANES, 1, sums, o_rrrs);
+        Z_legs_rrrs(m, LANES, leg, 0, s, 1, LANES, 1, X, V, sums, o_rrrs);
         Z_place_rrrs(LANES, LANES, o_rrrs, 0, t);
     }
     Z_after(LANES, s, sums, Z, t);
 }
 
 /* ---- H ---- */
-INLINE void H_before(size_t w, const real *X, real *s, verdict *t)
+INLINE void H_before(const prepared *m, size_t w, const real *X, real *s, verdict *t)
 {
     for (size_t k = 0; k < w; ++k) {
-        /* X: named entries */
-        const real X_0 = X[0*w + k];
-        const real t_x = X_0;
-        const real X_1 = X[1*w + k];
-        const real t_y = X_1;
-        const real X_2 = X[2*w + k];
-        const real t_z = X_2;
-        const real X_3 = X[3*w + k];
-        const real X_4 = X[4*w + k];
-        const real X_5 = X[5*w + k];
-        const real X_6 = X[6*w + k];
-        const real quaternion_norm2 = X_3*X_3 + X_4*X_4 + X_5*X_5 + X_6*X_6;
-        const real quaternion_scale = 2/quaternion_norm2;
-        const real quaternion_sx = X_3*quaternion_scale;
-        const real quaternion_sy = X_4*quaternion_scale;
-        const real quaternion_sz = X_5*quaternion_scale;
-        const real quaternion_wx = X_6*quaternion_sx;
-        const real quaternion_wy = X_6*quaternion_sy;
-        const real quaternion_wz = X_6*quaternion_sz;
-        const real quaternion_xx = X_3*quaternion_sx;
-        const real quaternion_xy = X_3*quaternion_sy;
-        const real quaternion_xz = X_3*quaternion_sz;
-        const real quaternion_yy = X_4*quaternion_sy;
-        const real quaternion_yz = X_4*quaternion_sz;
-        const real quaternion_zz = X_5*quaternion_sz;
-        const real R_xx = 1 - quaternion_yy - quaternion_zz;
-        const real R_xy = quaternion_xy - quaternion_wz;
-        const real R_xz = quaternion_wy + quaternion_xz;
-        const real R_yx = quaternion_wz + quaternion_xy;
-        const real R_yy = 1 - quaternion_xx - quaternion_zz;
-        const real R_yz = quaternion_yz - quaternion_wx;
-        const real R_zx = quaternion_xz - quaternion_wy;
-        const real R_zy = quaternion_wx + quaternion_yz;
-        const real R_zz = 1 - quaternion_xx - quaternion_yy;
-        s[0*w + k] = t_x;
-        s[1*w + k] = t_y;
-        s[2*w + k] = t_z;
-        s[3*w + k] = R_xx;
-        s[4*w + k] = R_xy;
-        s[5*w + k] = R_xz;
-        s[6*w + k] = R_yx;
-        s[7*w + k] = R_yy;
-        s[8*w + k] = R_yz;
-        s[9*w + k] = R_zx;
-        s[10*w + k] = R_zy;
-        s[11*w + k] = R_zz;
-        t->invalid[k] += UNLESS(is_finite(quaternion_scale)) + UNLESS(quaternion_scale > 0);
+        values v;
+        stage_X(m, w, k, X, &v);
+        s[0*w + k] = v.R_xx;
+        s[1*w + k] = v.R_xy;
+        s[2*w + k] = v.R_xz;
+        s[3*w + k] = v.R_yx;
+        s[4*w + k] = v.R_yy;
+        s[5*w + k] = v.R_yz;
+        s[6*w + k] = v.R_zx;
+        s[7*w + k] = v.R_zy;
+        s[8*w + k] = v.R_zz;
+        t->invalid[k] += UNLESS(is_finite(v.quaternion_scale)) + UNLESS(v.quaternion_scale > 0);
     }
 }
 
 INLINE void H_legs_rrrs(const prepared *m, size_t w, size_t leg, size_t legs, const real *s,
-    size_t states, size_t count, real *o)
+    size_t states, size_t count, const real *X, real *o)
 {
     for (size_t k = 0; k < count; ++k) {
         const size_t i = leg + legs*k;
         const size_t j = states*k;
-        /* (rrrs-S) from the base point to the connection point */
-        const real R_xx = s[3*w + j];
-        const real R_xy = s[4*w + j];
-        const real R_xz = s[5*w + j];
-        const real rrrs_platform_point_x = m->rrrs_platform_point_x[i];
-        const real rrrs_platform_point_y = m->rrrs_platform_point_y[i];
-        const real rrrs_platform_point_z = m->rrrs_platform_point_z[i];
-        const real rrrs_q_x = R_xx*rrrs_platform_point_x + R_xy*rrrs_platform_point_y +
-            R_xz*rrrs_platform_point_z;
-        const real R_yx = s[6*w + j];
-        const real R_yy = s[7*w + j];
-        const real R_yz = s[8*w + j];
-        const real rrrs_q_y = R_yx*rrrs_platform_point_x + R_yy*rrrs_platform_point_y +
-            R_yz*rrrs_platform_point_z;
-        const real R_zx = s[9*w + j];
-        const real R_zy = s[10*w + j];
-        const real R_zz = s[11*w + j];
-        const real rrrs_q_z = R_zx*rrrs_platform_point_x + R_zy*rrrs_platform_point_y +
-            R_zz*rrrs_platform_point_z;
-        const real rrrs_base_point_x = m->rrrs_base_point_x[i];
-        const real t_x = s[0*w + j];
-        const real rrrs_S_x = rrrs_q_x + t_x - rrrs_base_point_x;
-        const real rrrs_base_point_y = m->rrrs_base_point_y[i];
-        const real t_y = s[1*w + j];
-        const real rrrs_S_y = rrrs_q_y + t_y - rrrs_base_point_y;
-        const real rrrs_base_point_z = m->rrrs_base_point_z[i];
-        const real t_z = s[2*w + j];
-        const real rrrs_S_z = rrrs_q_z + t_z - rrrs_base_point_z;
-        /* (rrrs-px_1) component along the reference direction */
-        const real rrrs_base_frame_xy = m->rrrs_base_frame_xy[i];
-        const real rrrs_base_frame_yy = m->rrrs_base_frame_yy[i];
-        const real rrrs_base_frame_zy = m->rrrs_base_frame_zy[i];
-        const real rrrs_px_1 = rrrs_S_x*rrrs_base_frame_xy + rrrs_S_y*rrrs_base_frame_yy +
-            rrrs_S_z*rrrs_base_frame_zy;
-        /* (rrrs-py_1) component across the reference direction */
-        const real rrrs_base_frame_xz = m->rrrs_base_frame_xz[i];
-        const real rrrs_base_frame_yz = m->rrrs_base_frame_yz[i];
-        const real rrrs_base_frame_zz = m->rrrs_base_frame_zz[i];
-        const real rrrs_py_1 = rrrs_S_x*rrrs_base_frame_xz + rrrs_S_y*rrrs_base_frame_yz +
-            rrrs_S_z*rrrs_base_frame_zz;
-        /* (rrrs-rho2_1) squared amplitude */
-        const real rrrs_rho2_1 = rrrs_px_1*rrrs_px_1 + rrrs_py_1*rrrs_py_1;
-        /* (rrrs-root_1) root, with the sign of the branch */
-        const real rrrs_branch_1 = m->rrrs_branch_1[i];
-        const real rrrs_root_1 = rrrs_branch_1*root(rrrs_rho2_1);
-        /* (rrrs-c_1) cosine of the angle of joint 1 from its reference direction */
-        const real inv_rrrs_rho2_1 = 1/rrrs_rho2_1;
-        const real rrrs_c_1 = -inv_rrrs_rho2_1*rrrs_py_1*rrrs_root_1;
-        /* (rrrs-s_1) sine of the angle of joint 1 from its reference direction */
-        const real rrrs_s_1 = inv_rrrs_rho2_1*rrrs_px_1*rrrs_root_1;
-        /* (rrrs-xi_1) the vector from joint 1 to the connection point, resolved along link 1 */
-        const real rrrs_base_frame_xx = m->rrrs_base_frame_xx[i];
-        const real rrrs_base_frame_yx = m->rrrs_base_frame_yx[i];
-        const real rrrs_base_frame_zx = m->rrrs_base_frame_zx[i];
-        const real rrrs_xi_1_in_axes1_z = rrrs_S_x*rrrs_base_frame_xx +
-            rrrs_S_y*rrrs_base_frame_yx + rrrs_S_z*rrrs_base_frame_zx;
-        /* (rrrs-x_2) from the origin of joint 2 to the connection point */
-        const real rrrs_joint2_offset_x = m->rrrs_joint2_offset_x[i];
-        const real rrrs_x_2_in_axes1_z = rrrs_xi_1_in_axes1_z - rrrs_joint2_offset_x;
-        /* (rrrs-Kd_2) projection on the centre's direction, from the distance fixed by the joints beyond
-           joint 2 */
-        const real rrrs_Kd_2_t_3 = rrrs_root_1*rrrs_root_1 +
-            rrrs_x_2_in_axes1_z*rrrs_x_2_in_axes1_z;
-        const real rrrs_Kd_2_t = m->rrrs_Kd_2_t[i];
-        const real rrrs_Kd_2_t_2 = m->rrrs_Kd_2_t_2[i];
-        const real rrrs_Kd_2 = rrrs_Kd_2_t + R(0.5)*rrrs_Kd_2_t_3 - rrrs_Kd_2_t_2;
-        /* (rrrs-Kc_2) factor of the cosine in the equation of joint 2 */
-        const real rrrs_joint3_offset_x = m->rrrs_joint3_offset_x[i];
-        const real rrrs_Kc_2 = -rrrs_joint3_offset_x*rrrs_root_1;
-        /* (rrrs-Ks_2) factor of the sine in the equation of joint 2 */
-        const real rrrs_Ks_2 = rrrs_joint3_offset_x*rrrs_x_2_in_axes1_z;
-        /* (rrrs-rho2_2) squared amplitude */
-        const real rrrs_rho2_2 = rrrs_Kc_2*rrrs_Kc_2 + rrrs_Ks_2*rrrs_Ks_2;
-        /* (rrrs-disc_2) discriminant */
-        const real rrrs_disc_2 = rrrs_rho2_2 - rrrs_Kd_2*rrrs_Kd_2;
-        /* (rrrs-root_2) root, with the sign of the branch */
-        const real rrrs_branch_2 = m->rrrs_branch_2[i];
-        const real rrrs_root_2 = rrrs_branch_2*root(rrrs_disc_2);
-        /* (rrrs-c_2) cosine of the angle of joint 2 from its reference direction */
-        const real rrrs_c_2_t = -1/rrrs_rho2_2;
-        const real rrrs_c_2 = rrrs_c_2_t*(rrrs_Ks_2*rrrs_root_2 - rrrs_Kc_2*rrrs_Kd_2);
-        /* (rrrs-s_2) sine of the angle of joint 2 from its reference direction */
-        const real rrrs_s_2 = rrrs_c_2_t*(-rrrs_Kc_2*rrrs_root_2 - rrrs_Kd_2*rrrs_Ks_2);
-        /* (rrrs-x_3) from the origin of joint 3 to the connection point */
-        const real inv_rrrs_size_t = m->inv_rrrs_size_t[i];
-        const real rrrs_x_3_in_axes2_x = inv_rrrs_size_t*rrrs_Kd_2*rrrs_joint3_offset_x -
-            rrrs_joint3_offset_x;
-        /* (rrrs-c_3) cosine of the angle of joint 3 from its reference direction */
-        const real inv_rrrs_size_t_2 = m->inv_rrrs_size_t_2[i];
-        const real rrrs_platform_joint_offset_x = m->rrrs_platform_joint_offset_x[i];
-        const real rrrs_c_3 = inv_rrrs_size_t_2*rrrs_platform_joint_offset_x*rrrs_x_3_in_axes2_x;
-        /* (rrrs-s_3) sine of the angle of joint 3 from its reference direction */
-        const real rrrs_s_3_t =
-            inv_rrrs_size_t*inv_rrrs_size_t_2*rrrs_joint3_offset_x*rrrs_platform_joint_offset_x*rrrs_root_2;
-        /* (rrrs-r_2) from joint 2 to the connection point, along the links */
-        const real rrrs_r_2_in_axes2_x = rrrs_joint3_offset_x +
-            rrrs_c_3*rrrs_platform_joint_offset_x;
-        const real rrrs_r_2_in_axes3_y = rrrs_r_2_in_axes2_x*rrrs_s_3_t -
-            rrrs_c_3*rrrs_platform_joint_offset_x*rrrs_s_3_t;
-        /* (rrrs-v_1) velocity of the connection point per rate of joint 1 */
-        const real rrrs_e_1_in_axes3_x = rrrs_c_3*rrrs_s_2 - rrrs_c_2*rrrs_s_3_t;
-        const real rrrs_e_1_in_axes3_y = rrrs_c_2*rrrs_c_3 + rrrs_s_2*rrrs_s_3_t;
-        const real rrrs_v_1_t = rrrs_s_2*rrrs_xi_1_in_axes1_z - rrrs_c_2*rrrs_root_1;
-        const real rrrs_v_1_t_2 = rrrs_c_2*rrrs_xi_1_in_axes1_z + rrrs_root_1*rrrs_s_2;
-        const real rrrs_v_1_in_axes3_z = rrrs_e_1_in_axes3_x*(rrrs_c_3*rrrs_v_1_t_2 +
-            rrrs_s_3_t*rrrs_v_1_t) - rrrs_e_1_in_axes3_y*(rrrs_c_3*rrrs_v_1_t -
-            rrrs_s_3_t*rrrs_v_1_t_2);
+        values_rrrs v;
+        stage_rrrs_X(m, w, i, j, s, X, &v);
+        stage_rrrs_H_condition(m, i, &v);
         /* (rrrs-w_1) reciprocal vector 1 */
-        const real axis_z_rrrs_axes3_x = rrrs_base_frame_xy*rrrs_c_1 +
-            rrrs_base_frame_xz*rrrs_s_1;
-        const real axis_z_rrrs_axes3_y = rrrs_base_frame_yy*rrrs_c_1 +
-            rrrs_base_frame_yz*rrrs_s_1;
-        const real axis_z_rrrs_axes3_z = rrrs_base_frame_zy*rrrs_c_1 +
-            rrrs_base_frame_zz*rrrs_s_1;
-        const real rrrs_w_1_in_axes3_z = 1/rrrs_v_1_in_axes3_z;
-        const real rrrs_w_1_x = axis_z_rrrs_axes3_x*rrrs_w_1_in_axes3_z;
-        const real rrrs_w_1_y = axis_z_rrrs_axes3_y*rrrs_w_1_in_axes3_z;
-        const real rrrs_w_1_z = axis_z_rrrs_axes3_z*rrrs_w_1_in_axes3_z;
-        /* (rrrs-w_2) reciprocal vector 2 */
-        const real rrrs_w_2_t = rrrs_e_1_in_axes3_x*rrrs_s_1;
-        const real rrrs_w_2_t_2 = rrrs_c_1*rrrs_e_1_in_axes3_x;
-        const real axis_y_rrrs_axes3_x = rrrs_base_frame_xx*rrrs_e_1_in_axes3_y +
-            rrrs_base_frame_xy*rrrs_w_2_t - rrrs_base_frame_xz*rrrs_w_2_t_2;
-        const real axis_y_rrrs_axes3_y = rrrs_base_frame_yx*rrrs_e_1_in_axes3_y +
-            rrrs_base_frame_yy*rrrs_w_2_t - rrrs_base_frame_yz*rrrs_w_2_t_2;
-        const real axis_y_rrrs_axes3_z = rrrs_base_frame_zx*rrrs_e_1_in_axes3_y +
-            rrrs_base_frame_zy*rrrs_w_2_t - rrrs_base_frame_zz*rrrs_w_2_t_2;
-        const real rrrs_w_2_in_axes3_x = -1/rrrs_r_2_in_axes3_y;
-        const real rrrs_w_2_x = rrrs_w_2_in_axes3_x*(axis_y_rrrs_axes3_y*axis_z_rrrs_axes3_z -
-            axis_y_rrrs_axes3_z*axis_z_rrrs_axes3_y);
-        const real rrrs_w_2_y = rrrs_w_2_in_axes3_x*(axis_y_rrrs_axes3_z*axis_z_rrrs_axes3_x -
-            axis_y_rrrs_axes3_x*axis_z_rrrs_axes3_z);
-        const real rrrs_w_2_z = rrrs_w_2_in_axes3_x*(axis_y_rrrs_axes3_x*axis_z_rrrs_axes3_y -
-            axis_y_rrrs_axes3_y*axis_z_rrrs_axes3_x);
+        o[0*count + k] = v.rrrs_w_1_x;
+        o[1*count + k] = v.rrrs_w_1_y;
+        o[2*count + k] = v.rrrs_w_1_z;
         /* (rrrs-H_a_1) moment of the column's unit force about the platform origin */
-        const real rrrs_H_a_1_x = rrrs_q_y*rrrs_w_1_z - rrrs_q_z*rrrs_w_1_y;
-        const real rrrs_H_a_1_y = rrrs_q_z*rrrs_w_1_x - rrrs_q_x*rrrs_w_1_z;
-        const real rrrs_H_a_1_z = rrrs_q_x*rrrs_w_1_y - rrrs_q_y*rrrs_w_1_x;
-        /* (rrrs-H_a_2) moment of the column's unit force about the platform origin */
-        const real rrrs_H_a_2_x = rrrs_q_y*rrrs_w_2_z - rrrs_q_z*rrrs_w_2_y;
-        const real rrrs_H_a_2_y = rrrs_q_z*rrrs_w_2_x - rrrs_q_x*rrrs_w_2_z;
-        const real rrrs_H_a_2_z = rrrs_q_x*rrrs_w_2_y - rrrs_q_y*rrrs_w_2_x;
-        /* (rrrs-w_1) reciprocal vector 1 */
-        o[0*count + k] = rrrs_w_1_x;
-        o[1*count + k] = rrrs_w_1_y;
-        o[2*count + k] = rrrs_w_1_z;
-        /* (rrrs-H_a_1) moment of the column's unit force about the platform origin */
-        o[3*count + k] = rrrs_H_a_1_x;
-        o[4*count + k] = rrrs_H_a_1_y;
-        o[5*count + k] = rrrs_H_a_1_z;
+        o[3*count + k] = v.rrrs_H_a_1_x;
+        o[4*count + k] = v.rrrs_H_a_1_y;
+        o[5*count + k] = v.rrrs_H_a_1_z;
         /* (rrrs-w_2) reciprocal vector 2 */
-        o[6*count + k] = rrrs_w_2_x;
-        o[7*count + k] = rrrs_w_2_y;
-        o[8*count + k] = rrrs_w_2_z;
+        o[6*count + k] = v.rrrs_w_2_x;
+        o[7*count + k] = v.rrrs_w_2_y;
+        o[8*count + k] = v.rrrs_w_2_z;
         /* (rrrs-H_a_2) moment of the column's unit force about the platform origin */
-        o[9*count + k] = rrrs_H_a_2_x;
-        o[10*count + k] = rrrs_H_a_2_y;
-        o[11*count + k] = rrrs_H_a_2_z;
-        o[14*count + k] = ((rrrs_w_1_x + (rrrs_w_1_y + rrrs_w_1_z)) + (rrrs_H_a_1_x +
-            (rrrs_H_a_1_y + rrrs_H_a_1_z))) + ((rrrs_w_2_x + (rrrs_w_2_y + rrrs_w_2_z)) +
-            (rrrs_H_a_2_x + (rrrs_H_a_2_y + rrrs_H_a_2_z)));
+        o[9*count + k] = v.rrrs_H_a_2_x;
+        o[10*count + k] = v.rrrs_H_a_2_y;
+        o[11*count + k] = v.rrrs_H_a_2_z;
+        o[14*count + k] = ((v.rrrs_w_1_x + (v.rrrs_w_1_y + v.rrrs_w_1_z)) + (v.rrrs_H_a_1_x +
+            (v.rrrs_H_a_1_y + v.rrrs_H_a_1_z))) + ((v.rrrs_w_2_x + (v.rrrs_w_2_y + v.rrrs_w_2_z))
+            + (v.rrrs_H_a_2_x + (v.rrrs_H_a_2_y + v.rrrs_H_a_2_z)));
         const real rrrs_size_t_3 = m->rrrs_size_t_3[i];
         const real rrrs_rho2_2_t = m->rrrs_rho2_2_t[i];
         const real rrrs_size = m->rrrs_size[i];
-        o[13*count + k] = UNLESS(magnitude(rrrs_rho2_1) > TOLERANCE*TOLERANCE*rrrs_size_t_3) +
-            UNLESS(magnitude(rrrs_rho2_2) > TOLERANCE*TOLERANCE*rrrs_rho2_2_t) +
-            UNLESS(magnitude(rrrs_v_1_in_axes3_z) > TOLERANCE*rrrs_size) +
-            UNLESS(magnitude(rrrs_r_2_in_axes3_y) > TOLERANCE*rrrs_size);
-        o[12*count + k] = UNLESS(rrrs_disc_2 >= 0);
+        o[13*count + k] = UNLESS(magnitude(v.rrrs_rho2_1) > TOLERANCE*TOLERANCE*rrrs_size_t_3) +
+            UNLESS(magnitude(v.rrrs_rho2_2) > TOLERANCE*TOLERANCE*rrrs_rho2_2_t) +
+            UNLESS(magnitude(v.rrrs_v_1_in_axes3_z) > TOLERANCE*rrrs_size) +
+            UNLESS(magnitude(v.rrrs_r_2_in_axes3_y) > TOLERANCE*rrrs_size);
+        o[12*count + k] = UNLESS(v.rrrs_disc_2 >= 0);
     }
 }
 
@@ -3740,13 +3598,13 @@ INLINE void H_place_rrrs(size_t w, size_t count, const real *o, size_t leg, size
     verdict *t)
 {
     for (size_t k = 0; k < w; ++k) {
-        H[(0*NU + 2*leg)*w + k] = o[0*count + first + k];
+        H[2*leg*w + k] = o[0*count + first + k];
         H[(NU + 2*leg)*w + k] = o[1*count + first + k];
         H[(2*NU + 2*leg)*w + k] = o[2*count + first + k];
         H[(3*NU + 2*leg)*w + k] = o[3*count + first + k];
         H[(4*NU + 2*leg)*w + k] = o[4*count + first + k];
         H[(5*NU + 2*leg)*w + k] = o[5*count + first + k];
-        H[(0*NU + 1 + 2*leg)*w + k] = o[6*count + first + k];
+        H[(1 + 2*leg)*w + k] = o[6*count + first + k];
         H[(NU + 1 + 2*leg)*w + k] = o[7*count + first + k];
         H[(2*NU + 1 + 2*leg)*w + k] = o[8*count + first + k];
         H[(3*NU + 1 + 2*leg)*w + k] = o[9*count + first + k];
@@ -3760,10 +3618,10 @@ INLINE void H_place_rrrs(size_t w, size_t count, const real *o, size_t leg, size
 
 INLINE void H_run(const prepared *m, const real *X, real *H, verdict *t)
 {
-    real s[12] = {0};
+    real s[9] = {0};
     real o_rrrs[15*LEGS(LEGS_OF_rrrs)] = {0};
-    H_before(1, X, s, t);
-    H_legs_rrrs(m, 1, 0, 1, s, 0, LEGS(LEGS_OF_rrrs), o_rrrs);
+    H_before(m, 1, X, s, t);
+    H_legs_rrrs(m, 1, 0, 1, s, 0, LEGS(LEGS_OF_rrrs), X, o_rrrs);
     for (size_t leg = 0; leg < LEGS_OF_rrrs; ++leg) {
         H_place_rrrs(1, LEGS(LEGS_OF_rrrs), o_rrrs, leg, leg, H, t);
     }
@@ -3771,11 +3629,11 @@ INLINE void H_run(const prepared *m, const real *X, real *H, verdict *t)
 
 INLINE void H_run_lanes(const prepared *m, const real *X, real *H, verdict *t)
 {
-    real s[12*LANES];
+    real s[9*LANES];
     real o_rrrs[15*LANES];
-    H_before(LANES, X, s, t);
+    H_before(m, LANES, X, s, t);
     for (size_t leg = 0; leg < LEGS_OF_rrrs; ++leg) {
-        H_legs_rrrs(m, LANES, leg, 0, s, 1, LANES, o_rrrs);
+        H_legs_rrrs(m, LANES, leg, 0, s, 1, LANES, X, o_rrrs);
         H_place_rrrs(LANES, LANES, o_rrrs, leg, 0, H, t);
     }
 }
@@ -3785,564 +3643,131 @@ INLINE void required_before(const prepared *m, size_t w, const real *X, const re
     *A, real *s, verdict *t)
 {
     for (size_t k = 0; k < w; ++k) {
-        /* X: named entries */
-        const real X_0 = X[0*w + k];
-        const real t_x = X_0;
-        const real X_1 = X[1*w + k];
-        const real t_y = X_1;
-        const real X_2 = X[2*w + k];
-        const real t_z = X_2;
-        const real X_3 = X[3*w + k];
-        const real X_4 = X[4*w + k];
-        const real X_5 = X[5*w + k];
-        const real X_6 = X[6*w + k];
-        const real quaternion_norm2 = X_3*X_3 + X_4*X_4 + X_5*X_5 + X_6*X_6;
-        const real quaternion_scale = 2/quaternion_norm2;
-        const real quaternion_sx = X_3*quaternion_scale;
-        const real quaternion_sy = X_4*quaternion_scale;
-        const real quaternion_sz = X_5*quaternion_scale;
-        const real quaternion_wx = X_6*quaternion_sx;
-        const real quaternion_wy = X_6*quaternion_sy;
-        const real quaternion_wz = X_6*quaternion_sz;
-        const real quaternion_xx = X_3*quaternion_sx;
-        const real quaternion_xy = X_3*quaternion_sy;
-        const real quaternion_xz = X_3*quaternion_sz;
-        const real quaternion_yy = X_4*quaternion_sy;
-        const real quaternion_yz = X_4*quaternion_sz;
-        const real quaternion_zz = X_5*quaternion_sz;
-        const real R_xx = 1 - quaternion_yy - quaternion_zz;
-        const real R_xy = quaternion_xy - quaternion_wz;
-        const real R_xz = quaternion_wy + quaternion_xz;
-        const real R_yx = quaternion_wz + quaternion_xy;
-        const real R_yy = 1 - quaternion_xx - quaternion_zz;
-        const real R_yz = quaternion_yz - quaternion_wx;
-        const real R_zx = quaternion_xz - quaternion_wy;
-        const real R_zy = quaternion_wx + quaternion_yz;
-        const real R_zz = 1 - quaternion_xx - quaternion_yy;
-        /* V: named entries */
-        const real V_0 = V[0*w + k];
-        const real t_dot_x = V_0;
-        const real V_1 = V[1*w + k];
-        const real t_dot_y = V_1;
-        const real V_2 = V[2*w + k];
-        const real t_dot_z = V_2;
-        const real V_3 = V[3*w + k];
-        const real omega_x = V_3;
-        const real V_4 = V[4*w + k];
-        const real omega_y = V_4;
-        const real V_5 = V[5*w + k];
-        const real omega_z = V_5;
-        /* A: named entries */
-        const real A_0 = A[0*w + k];
-        const real t_ddot_x = A_0;
-        const real A_1 = A[1*w + k];
-        const real t_ddot_y = A_1;
-        const real A_2 = A[2*w + k];
-        const real t_ddot_z = A_2;
-        const real A_3 = A[3*w + k];
-        const real alpha_x = A_3;
-        const real A_4 = A[4*w + k];
-        const real alpha_y = A_4;
-        const real A_5 = A[5*w + k];
-        const real alpha_z = A_5;
+        values v;
+        stage_X(m, w, k, X, &v);
+        stage_V_X(w, k, V, &v);
         /* (W_p) centripetal tensor of the platform */
+        const real omega_x = V[3*w + k];
+        const real omega_y = V[4*w + k];
         const real W_p_xy = omega_x*omega_y;
+        const real omega_z = V[5*w + k];
         const real W_p_xz = omega_x*omega_z;
         const real W_p_yz = omega_y*omega_z;
-        /* (h_star) first moment about the platform origin */
-        const real h_star_in_platform_x = m->h_star_in_platform_x;
-        const real h_star_in_platform_y = m->h_star_in_platform_y;
-        const real h_star_in_platform_z = m->h_star_in_platform_z;
-        const real h_star_x = R_xx*h_star_in_platform_x + R_xy*h_star_in_platform_y +
-            R_xz*h_star_in_platform_z;
-        const real h_star_y = R_yx*h_star_in_platform_x + R_yy*h_star_in_platform_y +
-            R_yz*h_star_in_platform_z;
-        const real h_star_z = R_zx*h_star_in_platform_x + R_zy*h_star_in_platform_y +
-            R_zz*h_star_in_platform_z;
         /* (a_t) acceleration of the platform origin, less gravity */
         const real gravity_x = m->gravity_x;
+        const real t_ddot_x = A[0*w + k];
         const real a_t_x = t_ddot_x - gravity_x;
         const real gravity_y = m->gravity_y;
+        const real t_ddot_y = A[1*w + k];
         const real a_t_y = t_ddot_y - gravity_y;
         const real gravity_z = m->gravity_z;
+        const real t_ddot_z = A[2*w + k];
         const real a_t_z = t_ddot_z - gravity_z;
-        const real a_t_in_platform_x = R_xx*a_t_x + R_yx*a_t_y + R_zx*a_t_z;
-        const real a_t_in_platform_y = R_xy*a_t_x + R_yy*a_t_y + R_zy*a_t_z;
-        const real a_t_in_platform_z = R_xz*a_t_x + R_yz*a_t_y + R_zz*a_t_z;
+        const real a_t_in_platform_x = v.R_xx*a_t_x + v.R_yx*a_t_y + v.R_zx*a_t_z;
+        const real a_t_in_platform_y = v.R_xy*a_t_x + v.R_yy*a_t_y + v.R_zy*a_t_z;
+        const real a_t_in_platform_z = v.R_xz*a_t_x + v.R_yz*a_t_y + v.R_zz*a_t_z;
         /* (f_p) inertia force of the platform less its weight */
         const real f_p_t = omega_x*omega_x;
         const real f_p_t_2 = omega_y*omega_y;
         const real f_p_t_3 = omega_z*omega_z;
+        const real alpha_y = A[4*w + k];
+        const real alpha_z = A[5*w + k];
         const real m_star = m->m_star;
-        const real f_p_x = a_t_x*m_star + h_star_y*(W_p_xy - alpha_z) + h_star_z*(W_p_xz +
-            alpha_y) - h_star_x*(f_p_t_2 + f_p_t_3);
-        const real f_p_y = a_t_y*m_star + h_star_x*(W_p_xy + alpha_z) + h_star_z*(W_p_yz -
-            alpha_x) - h_star_y*(f_p_t + f_p_t_3);
-        const real f_p_z = a_t_z*m_star + h_star_x*(W_p_xz - alpha_y) + h_star_y*(W_p_yz +
-            alpha_x) - h_star_z*(f_p_t + f_p_t_2);
+        const real f_p_x = a_t_x*m_star + v.h_star_y*(W_p_xy - alpha_z) + v.h_star_z*(W_p_xz +
+            alpha_y) - v.h_star_x*(f_p_t_2 + f_p_t_3);
+        const real alpha_x = A[3*w + k];
+        const real f_p_y = a_t_y*m_star + v.h_star_x*(W_p_xy + alpha_z) + v.h_star_z*(W_p_yz -
+            alpha_x) - v.h_star_y*(f_p_t + f_p_t_3);
+        const real f_p_z = a_t_z*m_star + v.h_star_x*(W_p_xz - alpha_y) + v.h_star_y*(W_p_yz +
+            alpha_x) - v.h_star_z*(f_p_t + f_p_t_2);
         /* (mu_p) inertia moment of the platform less that of its weight */
-        const real omega_in_platform_x = R_xx*omega_x + R_yx*omega_y + R_zx*omega_z;
-        const real omega_in_platform_y = R_xy*omega_x + R_yy*omega_y + R_zy*omega_z;
-        const real omega_in_platform_z = R_xz*omega_x + R_yz*omega_y + R_zz*omega_z;
         const real J_star_in_platform_xx = m->J_star_in_platform_xx;
         const real J_star_in_platform_xy = m->J_star_in_platform_xy;
         const real J_star_in_platform_xz = m->J_star_in_platform_xz;
-        const real mu_p_t = J_star_in_platform_xx*omega_in_platform_x +
-            J_star_in_platform_xy*omega_in_platform_y + J_star_in_platform_xz*omega_in_platform_z;
+        const real mu_p_t = J_star_in_platform_xx*v.omega_in_platform_x +
+            J_star_in_platform_xy*v.omega_in_platform_y +
+            J_star_in_platform_xz*v.omega_in_platform_z;
         const real J_star_in_platform_yy = m->J_star_in_platform_yy;
         const real J_star_in_platform_yz = m->J_star_in_platform_yz;
-        const real mu_p_t_2 = J_star_in_platform_xy*omega_in_platform_x +
-            J_star_in_platform_yy*omega_in_platform_y + J_star_in_platform_yz*omega_in_platform_z;
+        const real mu_p_t_2 = J_star_in_platform_xy*v.omega_in_platform_x +
+            J_star_in_platform_yy*v.omega_in_platform_y +
+            J_star_in_platform_yz*v.omega_in_platform_z;
         const real J_star_in_platform_zz = m->J_star_in_platform_zz;
-        const real mu_p_t_3 = J_star_in_platform_xz*omega_in_platform_x +
-            J_star_in_platform_yz*omega_in_platform_y + J_star_in_platform_zz*omega_in_platform_z;
-        const real alpha_in_platform_x = R_xx*alpha_x + R_yx*alpha_y + R_zx*alpha_z;
-        const real alpha_in_platform_y = R_xy*alpha_x + R_yy*alpha_y + R_zy*alpha_z;
-        const real alpha_in_platform_z = R_xz*alpha_x + R_yz*alpha_y + R_zz*alpha_z;
+        const real mu_p_t_3 = J_star_in_platform_xz*v.omega_in_platform_x +
+            J_star_in_platform_yz*v.omega_in_platform_y +
+            J_star_in_platform_zz*v.omega_in_platform_z;
+        const real alpha_in_platform_x = v.R_xx*alpha_x + v.R_yx*alpha_y + v.R_zx*alpha_z;
+        const real alpha_in_platform_y = v.R_xy*alpha_x + v.R_yy*alpha_y + v.R_zy*alpha_z;
+        const real alpha_in_platform_z = v.R_xz*alpha_x + v.R_yz*alpha_y + v.R_zz*alpha_z;
+        const real h_star_in_platform_y = m->h_star_in_platform_y;
+        const real h_star_in_platform_z = m->h_star_in_platform_z;
         const real mu_p_in_platform_x = J_star_in_platform_xx*alpha_in_platform_x +
             J_star_in_platform_xy*alpha_in_platform_y + J_star_in_platform_xz*alpha_in_platform_z
-            + a_t_in_platform_z*h_star_in_platform_y + mu_p_t_3*omega_in_platform_y -
-            a_t_in_platform_y*h_star_in_platform_z - mu_p_t_2*omega_in_platform_z;
+            + a_t_in_platform_z*h_star_in_platform_y + mu_p_t_3*v.omega_in_platform_y -
+            a_t_in_platform_y*h_star_in_platform_z - mu_p_t_2*v.omega_in_platform_z;
+        const real h_star_in_platform_x = m->h_star_in_platform_x;
         const real mu_p_in_platform_y = J_star_in_platform_xy*alpha_in_platform_x +
             J_star_in_platform_yy*alpha_in_platform_y + J_star_in_platform_yz*alpha_in_platform_z
-            + a_t_in_platform_x*h_star_in_platform_z + mu_p_t*omega_in_platform_z -
-            a_t_in_platform_z*h_star_in_platform_x - mu_p_t_3*omega_in_platform_x;
+            + a_t_in_platform_x*h_star_in_platform_z + mu_p_t*v.omega_in_platform_z -
+            a_t_in_platform_z*h_star_in_platform_x - mu_p_t_3*v.omega_in_platform_x;
         const real mu_p_in_platform_z = J_star_in_platform_xz*alpha_in_platform_x +
             J_star_in_platform_yz*alpha_in_platform_y + J_star_in_platform_zz*alpha_in_platform_z
-            + a_t_in_platform_y*h_star_in_platform_x + mu_p_t_2*omega_in_platform_x -
-            a_t_in_platform_x*h_star_in_platform_y - mu_p_t*omega_in_platform_y;
-        const real mu_p_x = R_xx*mu_p_in_platform_x + R_xy*mu_p_in_platform_y +
-            R_xz*mu_p_in_platform_z;
-        const real mu_p_y = R_yx*mu_p_in_platform_x + R_yy*mu_p_in_platform_y +
-            R_yz*mu_p_in_platform_z;
-        const real mu_p_z = R_zx*mu_p_in_platform_x + R_zy*mu_p_in_platform_y +
-            R_zz*mu_p_in_platform_z;
-        s[0*w + k] = t_x;
-        s[1*w + k] = t_y;
-        s[2*w + k] = t_z;
-        s[3*w + k] = R_xx;
-        s[4*w + k] = R_xy;
-        s[5*w + k] = R_xz;
-        s[6*w + k] = R_yx;
-        s[7*w + k] = R_yy;
-        s[8*w + k] = R_yz;
-        s[9*w + k] = R_zx;
-        s[10*w + k] = R_zy;
-        s[11*w + k] = R_zz;
-        s[12*w + k] = t_dot_x;
-        s[13*w + k] = t_dot_y;
-        s[14*w + k] = t_dot_z;
-        s[15*w + k] = omega_x;
-        s[16*w + k] = omega_y;
-        s[17*w + k] = omega_z;
-        s[18*w + k] = t_ddot_x;
-        s[19*w + k] = t_ddot_y;
-        s[20*w + k] = t_ddot_z;
-        s[21*w + k] = alpha_x;
-        s[22*w + k] = alpha_y;
-        s[23*w + k] = alpha_z;
-        s[24*w + k] = f_p_x;
-        s[25*w + k] = f_p_y;
-        s[26*w + k] = f_p_z;
-        s[27*w + k] = mu_p_x;
-        s[28*w + k] = mu_p_y;
-        s[29*w + k] = mu_p_z;
-        t->invalid[k] += UNLESS(is_finite(quaternion_scale)) + UNLESS(quaternion_scale > 0);
+            + a_t_in_platform_y*h_star_in_platform_x + mu_p_t_2*v.omega_in_platform_x -
+            a_t_in_platform_x*h_star_in_platform_y - mu_p_t*v.omega_in_platform_y;
+        const real mu_p_x = v.R_xx*mu_p_in_platform_x + v.R_xy*mu_p_in_platform_y +
+            v.R_xz*mu_p_in_platform_z;
+        const real mu_p_y = v.R_yx*mu_p_in_platform_x + v.R_yy*mu_p_in_platform_y +
+            v.R_yz*mu_p_in_platform_z;
+        const real mu_p_z = v.R_zx*mu_p_in_platform_x + v.R_zy*mu_p_in_platform_y +
+            v.R_zz*mu_p_in_platform_z;
+        s[0*w + k] = v.R_xx;
+        s[1*w + k] = v.R_xy;
+        s[2*w + k] = v.R_xz;
+        s[3*w + k] = v.R_yx;
+        s[4*w + k] = v.R_yy;
+        s[5*w + k] = v.R_yz;
+        s[6*w + k] = v.R_zx;
+        s[7*w + k] = v.R_zy;
+        s[8*w + k] = v.R_zz;
+        s[9*w + k] = f_p_x;
+        s[10*w + k] = f_p_y;
+        s[11*w + k] = f_p_z;
+        s[12*w + k] = mu_p_x;
+        s[13*w + k] = mu_p_y;
+        s[14*w + k] = mu_p_z;
+        t->invalid[k] += UNLESS(is_finite(v.quaternion_scale)) + UNLESS(v.quaternion_scale > 0);
     }
 }
 
 INLINE void required_legs_rrrs(const prepared *m, size_t w, size_t leg, size_t legs, const real
-    *s, size_t states, size_t count, int add, real *terms, real *o)
+    *s, size_t states, size_t count, int add, const real *X, const real *V, const real *A, real
+    *terms, real *o)
 {
     for (size_t k = 0; k < count; ++k) {
         const size_t i = leg + legs*k;
         const size_t j = states*k;
-        /* (rrrs-S) from the base point to the connection point */
-        const real R_xx = s[3*w + j];
-        const real R_xy = s[4*w + j];
-        const real R_xz = s[5*w + j];
-        const real rrrs_platform_point_x = m->rrrs_platform_point_x[i];
-        const real rrrs_platform_point_y = m->rrrs_platform_point_y[i];
-        const real rrrs_platform_point_z = m->rrrs_platform_point_z[i];
-        const real rrrs_q_x = R_xx*rrrs_platform_point_x + R_xy*rrrs_platform_point_y +
-            R_xz*rrrs_platform_point_z;
-        const real R_yx = s[6*w + j];
-        const real R_yy = s[7*w + j];
-        const real R_yz = s[8*w + j];
-        const real rrrs_q_y = R_yx*rrrs_platform_point_x + R_yy*rrrs_platform_point_y +
-            R_yz*rrrs_platform_point_z;
-        const real R_zx = s[9*w + j];
-        const real R_zy = s[10*w + j];
-        const real R_zz = s[11*w + j];
-        const real rrrs_q_z = R_zx*rrrs_platform_point_x + R_zy*rrrs_platform_point_y +
-            R_zz*rrrs_platform_point_z;
-        const real rrrs_base_point_x = m->rrrs_base_point_x[i];
-        const real t_x = s[0*w + j];
-        const real rrrs_S_x = rrrs_q_x + t_x - rrrs_base_point_x;
-        const real rrrs_base_point_y = m->rrrs_base_point_y[i];
-        const real t_y = s[1*w + j];
-        const real rrrs_S_y = rrrs_q_y + t_y - rrrs_base_point_y;
-        const real rrrs_base_point_z = m->rrrs_base_point_z[i];
-        const real t_z = s[2*w + j];
-        const real rrrs_S_z = rrrs_q_z + t_z - rrrs_base_point_z;
-        /* (rrrs-px_1) component along the reference direction */
-        const real rrrs_base_frame_xy = m->rrrs_base_frame_xy[i];
-        const real rrrs_base_frame_yy = m->rrrs_base_frame_yy[i];
-        const real rrrs_base_frame_zy = m->rrrs_base_frame_zy[i];
-        const real rrrs_px_1 = rrrs_S_x*rrrs_base_frame_xy + rrrs_S_y*rrrs_base_frame_yy +
-            rrrs_S_z*rrrs_base_frame_zy;
-        /* (rrrs-py_1) component across the reference direction */
-        const real rrrs_base_frame_xz = m->rrrs_base_frame_xz[i];
-        const real rrrs_base_frame_yz = m->rrrs_base_frame_yz[i];
-        const real rrrs_base_frame_zz = m->rrrs_base_frame_zz[i];
-        const real rrrs_py_1 = rrrs_S_x*rrrs_base_frame_xz + rrrs_S_y*rrrs_base_frame_yz +
-            rrrs_S_z*rrrs_base_frame_zz;
-        /* (rrrs-rho2_1) squared amplitude */
-        const real rrrs_rho2_1 = rrrs_px_1*rrrs_px_1 + rrrs_py_1*rrrs_py_1;
-        /* (rrrs-root_1) root, with the sign of the branch */
-        const real rrrs_branch_1 = m->rrrs_branch_1[i];
-        const real rrrs_root_1 = rrrs_branch_1*root(rrrs_rho2_1);
-        /* (rrrs-c_1) cosine of the angle of joint 1 from its reference direction */
-        const real inv_rrrs_rho2_1 = 1/rrrs_rho2_1;
-        const real rrrs_c_1 = -inv_rrrs_rho2_1*rrrs_py_1*rrrs_root_1;
-        /* (rrrs-s_1) sine of the angle of joint 1 from its reference direction */
-        const real rrrs_s_1 = inv_rrrs_rho2_1*rrrs_px_1*rrrs_root_1;
-        /* (rrrs-xi_1) the vector from joint 1 to the connection point, resolved along link 1 */
-        const real rrrs_base_frame_xx = m->rrrs_base_frame_xx[i];
-        const real rrrs_base_frame_yx = m->rrrs_base_frame_yx[i];
-        const real rrrs_base_frame_zx = m->rrrs_base_frame_zx[i];
-        const real rrrs_xi_1_in_axes1_z = rrrs_S_x*rrrs_base_frame_xx +
-            rrrs_S_y*rrrs_base_frame_yx + rrrs_S_z*rrrs_base_frame_zx;
-        /* (rrrs-x_2) from the origin of joint 2 to the connection point */
-        const real rrrs_joint2_offset_x = m->rrrs_joint2_offset_x[i];
-        const real rrrs_x_2_in_axes1_z = rrrs_xi_1_in_axes1_z - rrrs_joint2_offset_x;
-        /* (rrrs-Kd_2) projection on the centre's direction, from the distance fixed by the joints beyond
-           joint 2 */
-        const real rrrs_Kd_2_t_3 = rrrs_root_1*rrrs_root_1 +
-            rrrs_x_2_in_axes1_z*rrrs_x_2_in_axes1_z;
-        const real rrrs_Kd_2_t = m->rrrs_Kd_2_t[i];
-        const real rrrs_Kd_2_t_2 = m->rrrs_Kd_2_t_2[i];
-        const real rrrs_Kd_2 = rrrs_Kd_2_t + R(0.5)*rrrs_Kd_2_t_3 - rrrs_Kd_2_t_2;
-        /* (rrrs-Kc_2) factor of the cosine in the equation of joint 2 */
-        const real rrrs_joint3_offset_x = m->rrrs_joint3_offset_x[i];
-        const real rrrs_Kc_2 = -rrrs_joint3_offset_x*rrrs_root_1;
-        /* (rrrs-Ks_2) factor of the sine in the equation of joint 2 */
-        const real rrrs_Ks_2 = rrrs_joint3_offset_x*rrrs_x_2_in_axes1_z;
-        /* (rrrs-rho2_2) squared amplitude */
-        const real rrrs_rho2_2 = rrrs_Kc_2*rrrs_Kc_2 + rrrs_Ks_2*rrrs_Ks_2;
-        /* (rrrs-disc_2) discriminant */
-        const real rrrs_disc_2 = rrrs_rho2_2 - rrrs_Kd_2*rrrs_Kd_2;
-        /* (rrrs-root_2) root, with the sign of the branch */
-        const real rrrs_branch_2 = m->rrrs_branch_2[i];
-        const real rrrs_root_2 = rrrs_branch_2*root(rrrs_disc_2);
-        /* (rrrs-c_2) cosine of the angle of joint 2 from its reference direction */
-        const real rrrs_c_2_t = -1/rrrs_rho2_2;
-        const real rrrs_c_2 = rrrs_c_2_t*(rrrs_Ks_2*rrrs_root_2 - rrrs_Kc_2*rrrs_Kd_2);
-        /* (rrrs-s_2) sine of the angle of joint 2 from its reference direction */
-        const real rrrs_s_2 = rrrs_c_2_t*(-rrrs_Kc_2*rrrs_root_2 - rrrs_Kd_2*rrrs_Ks_2);
-        /* (rrrs-x_3) from the origin of joint 3 to the connection point */
-        const real inv_rrrs_size_t = m->inv_rrrs_size_t[i];
-        const real rrrs_x_3_in_axes2_x = inv_rrrs_size_t*rrrs_Kd_2*rrrs_joint3_offset_x -
-            rrrs_joint3_offset_x;
-        /* (rrrs-c_3) cosine of the angle of joint 3 from its reference direction */
-        const real inv_rrrs_size_t_2 = m->inv_rrrs_size_t_2[i];
-        const real rrrs_platform_joint_offset_x = m->rrrs_platform_joint_offset_x[i];
-        const real rrrs_c_3 = inv_rrrs_size_t_2*rrrs_platform_joint_offset_x*rrrs_x_3_in_axes2_x;
-        /* (rrrs-s_3) sine of the angle of joint 3 from its reference direction */
-        const real rrrs_s_3_t =
-            inv_rrrs_size_t*inv_rrrs_size_t_2*rrrs_joint3_offset_x*rrrs_platform_joint_offset_x*rrrs_root_2;
-        /* (rrrs-S_dot) velocity of the connection point */
-        const real omega_y = s[16*w + j];
-        const real omega_z = s[17*w + j];
-        const real rrrs_S_dot_t = omega_y*rrrs_q_z - omega_z*rrrs_q_y;
-        const real omega_x = s[15*w + j];
-        const real rrrs_S_dot_t_2 = omega_z*rrrs_q_x - omega_x*rrrs_q_z;
-        const real rrrs_S_dot_t_3 = omega_x*rrrs_q_y - omega_y*rrrs_q_x;
-        const real t_dot_x = s[12*w + j];
-        const real rrrs_S_dot_x = rrrs_S_dot_t + t_dot_x;
-        const real t_dot_y = s[13*w + j];
-        const real rrrs_S_dot_y = rrrs_S_dot_t_2 + t_dot_y;
-        const real t_dot_z = s[14*w + j];
-        const real rrrs_S_dot_z = rrrs_S_dot_t_3 + t_dot_z;
-        /* (rrrs-r_2) from joint 2 to the connection point, along the links */
-        const real rrrs_r_2_t = rrrs_platform_joint_offset_x*rrrs_s_3_t;
-        const real rrrs_r_2_in_axes2_x = rrrs_joint3_offset_x +
-            rrrs_c_3*rrrs_platform_joint_offset_x;
-        const real rrrs_r_2_in_axes3_x = rrrs_c_3*rrrs_r_2_in_axes2_x + rrrs_r_2_t*rrrs_s_3_t;
-        const real rrrs_r_2_in_axes3_y = rrrs_r_2_in_axes2_x*rrrs_s_3_t - rrrs_c_3*rrrs_r_2_t;
-        /* (rrrs-v_1) velocity of the connection point per rate of joint 1 */
-        const real rrrs_e_1_in_axes3_x = rrrs_c_3*rrrs_s_2 - rrrs_c_2*rrrs_s_3_t;
-        const real rrrs_e_1_in_axes3_y = rrrs_c_2*rrrs_c_3 + rrrs_s_2*rrrs_s_3_t;
-        const real rrrs_v_1_t = rrrs_s_2*rrrs_xi_1_in_axes1_z - rrrs_c_2*rrrs_root_1;
-        const real rrrs_v_1_t_2 = rrrs_c_2*rrrs_xi_1_in_axes1_z + rrrs_root_1*rrrs_s_2;
-        const real rrrs_v_1_in_axes3_z = rrrs_e_1_in_axes3_x*(rrrs_c_3*rrrs_v_1_t_2 +
-            rrrs_s_3_t*rrrs_v_1_t) - rrrs_e_1_in_axes3_y*(rrrs_c_3*rrrs_v_1_t -
-            rrrs_s_3_t*rrrs_v_1_t_2);
-        /* (rrrs-w_1) reciprocal vector 1 */
-        const real axis_z_rrrs_axes3_x = rrrs_base_frame_xy*rrrs_c_1 +
-            rrrs_base_frame_xz*rrrs_s_1;
-        const real axis_z_rrrs_axes3_y = rrrs_base_frame_yy*rrrs_c_1 +
-            rrrs_base_frame_yz*rrrs_s_1;
-        const real axis_z_rrrs_axes3_z = rrrs_base_frame_zy*rrrs_c_1 +
-            rrrs_base_frame_zz*rrrs_s_1;
-        const real rrrs_w_1_in_axes3_z = 1/rrrs_v_1_in_axes3_z;
-        const real rrrs_w_1_x = axis_z_rrrs_axes3_x*rrrs_w_1_in_axes3_z;
-        const real rrrs_w_1_y = axis_z_rrrs_axes3_y*rrrs_w_1_in_axes3_z;
-        const real rrrs_w_1_z = axis_z_rrrs_axes3_z*rrrs_w_1_in_axes3_z;
-        /* (rrrs-w_2) reciprocal vector 2 */
-        const real rrrs_w_2_t = rrrs_e_1_in_axes3_x*rrrs_s_1;
-        const real rrrs_w_2_t_2 = rrrs_c_1*rrrs_e_1_in_axes3_x;
-        const real axis_y_rrrs_axes3_x = rrrs_base_frame_xx*rrrs_e_1_in_axes3_y +
-            rrrs_base_frame_xy*rrrs_w_2_t - rrrs_base_frame_xz*rrrs_w_2_t_2;
-        const real axis_y_rrrs_axes3_y = rrrs_base_frame_yx*rrrs_e_1_in_axes3_y +
-            rrrs_base_frame_yy*rrrs_w_2_t - rrrs_base_frame_yz*rrrs_w_2_t_2;
-        const real axis_y_rrrs_axes3_z = rrrs_base_frame_zx*rrrs_e_1_in_axes3_y +
-            rrrs_base_frame_zy*rrrs_w_2_t - rrrs_base_frame_zz*rrrs_w_2_t_2;
-        const real axis_x_rrrs_axes3_x = axis_y_rrrs_axes3_y*axis_z_rrrs_axes3_z -
-            axis_y_rrrs_axes3_z*axis_z_rrrs_axes3_y;
-        const real axis_x_rrrs_axes3_y = axis_y_rrrs_axes3_z*axis_z_rrrs_axes3_x -
-            axis_y_rrrs_axes3_x*axis_z_rrrs_axes3_z;
-        const real axis_x_rrrs_axes3_z = axis_y_rrrs_axes3_x*axis_z_rrrs_axes3_y -
-            axis_y_rrrs_axes3_y*axis_z_rrrs_axes3_x;
-        const real rrrs_w_2_in_axes3_x = -1/rrrs_r_2_in_axes3_y;
-        const real rrrs_w_2_x = axis_x_rrrs_axes3_x*rrrs_w_2_in_axes3_x;
-        const real rrrs_w_2_y = axis_x_rrrs_axes3_y*rrrs_w_2_in_axes3_x;
-        const real rrrs_w_2_z = axis_x_rrrs_axes3_z*rrrs_w_2_in_axes3_x;
-        /* (rrrs-qd_1) rate of joint 1 */
-        const real rrrs_qd_1 = rrrs_w_1_in_axes3_z*(axis_z_rrrs_axes3_x*rrrs_S_dot_x +
-            axis_z_rrrs_axes3_y*rrrs_S_dot_y + axis_z_rrrs_axes3_z*rrrs_S_dot_z);
-        /* (rrrs-qd_2) rate of joint 2 */
-        const real rrrs_qd_2 = rrrs_w_2_in_axes3_x*(axis_x_rrrs_axes3_x*rrrs_S_dot_x +
-            axis_x_rrrs_axes3_y*rrrs_S_dot_y + axis_x_rrrs_axes3_z*rrrs_S_dot_z);
-        /* (rrrs-qd_3) rate of joint 3 */
-        const real rrrs_w_3_in_axes3_y = m->rrrs_w_3_in_axes3_y[i];
-        const real rrrs_qd_3 = rrrs_w_3_in_axes3_y*(axis_y_rrrs_axes3_x*rrrs_S_dot_x +
-            axis_y_rrrs_axes3_y*rrrs_S_dot_y + axis_y_rrrs_axes3_z*rrrs_S_dot_z -
-            rrrs_qd_2*rrrs_r_2_in_axes3_x);
-        /* (rrrs-omega_1) angular velocity of link 1 */
-        const real rrrs_omega_1_in_axes2_x = rrrs_qd_1*rrrs_s_2;
-        const real rrrs_omega_1_in_axes2_y = rrrs_c_2*rrrs_qd_1;
-        const real rrrs_omega_1_in_axes3_x = rrrs_c_3*rrrs_omega_1_in_axes2_x -
-            rrrs_omega_1_in_axes2_y*rrrs_s_3_t;
-        const real rrrs_omega_1_in_axes3_y = rrrs_c_3*rrrs_omega_1_in_axes2_y +
-            rrrs_omega_1_in_axes2_x*rrrs_s_3_t;
-        /* (rrrs-W_2) centripetal tensor of link 2 */
-        const real rrrs_W_2_in_axes2_yz = rrrs_omega_1_in_axes2_y*rrrs_qd_2;
-        const real rrrs_W_2_in_axes2_xz = rrrs_omega_1_in_axes2_x*rrrs_qd_2;
-        const real rrrs_W_2_in_axes2_xy = rrrs_omega_1_in_axes2_x*rrrs_omega_1_in_axes2_y;
-        /* (rrrs-omega_3) angular velocity of link 3 */
-        const real rrrs_omega_3_in_axes3_z = rrrs_qd_2 + rrrs_qd_3;
-        /* (rrrs-W_3) centripetal tensor of link 3 */
-        const real rrrs_W_3_in_axes3_xy = rrrs_omega_1_in_axes3_x*rrrs_omega_1_in_axes3_y;
-        const real rrrs_W_3_in_axes3_xz = rrrs_omega_1_in_axes3_x*rrrs_omega_3_in_axes3_z;
-        const real rrrs_W_3_in_axes3_yz = rrrs_omega_1_in_axes3_y*rrrs_omega_3_in_axes3_z;
-        /* (rrrs-a_p) acceleration of the connection point without its centripetal part */
-        const real alpha_y = s[22*w + j];
-        const real alpha_z = s[23*w + j];
-        const real t_ddot_x = s[18*w + j];
-        const real rrrs_a_p_x = t_ddot_x + alpha_y*rrrs_q_z - alpha_z*rrrs_q_y;
-        const real alpha_x = s[21*w + j];
-        const real t_ddot_y = s[19*w + j];
-        const real rrrs_a_p_y = t_ddot_y + alpha_z*rrrs_q_x - alpha_x*rrrs_q_z;
-        const real t_ddot_z = s[20*w + j];
-        const real rrrs_a_p_z = t_ddot_z + alpha_x*rrrs_q_y - alpha_y*rrrs_q_x;
-        /* (rrrs-S_ddot) acceleration of the connection point */
-        const real rrrs_S_ddot_x = rrrs_a_p_x + omega_y*rrrs_S_dot_t_3 - omega_z*rrrs_S_dot_t_2;
-        const real rrrs_S_ddot_y = rrrs_a_p_y + omega_z*rrrs_S_dot_t - omega_x*rrrs_S_dot_t_3;
-        const real rrrs_S_ddot_z = rrrs_a_p_z + omega_x*rrrs_S_dot_t_2 - omega_y*rrrs_S_dot_t;
-        const real rrrs_S_ddot_in_axes3_x = axis_x_rrrs_axes3_x*rrrs_S_ddot_x +
-            axis_x_rrrs_axes3_y*rrrs_S_ddot_y + axis_x_rrrs_axes3_z*rrrs_S_ddot_z;
-        const real rrrs_S_ddot_in_axes3_y = axis_y_rrrs_axes3_x*rrrs_S_ddot_x +
-            axis_y_rrrs_axes3_y*rrrs_S_ddot_y + axis_y_rrrs_axes3_z*rrrs_S_ddot_z;
-        const real rrrs_S_ddot_in_axes3_z = axis_z_rrrs_axes3_x*rrrs_S_ddot_x +
-            axis_z_rrrs_axes3_y*rrrs_S_ddot_y + axis_z_rrrs_axes3_z*rrrs_S_ddot_z;
-        /* (rrrs-zeta_2) angular acceleration of link 2 from the turning of axis 2 */
-        const real rrrs_zeta_2_in_axes3_y = rrrs_W_2_in_axes2_yz*rrrs_s_3_t -
-            rrrs_W_2_in_axes2_xz*rrrs_c_3;
-        /* (rrrs-zeta_3) angular acceleration of link 3 from the turning of axis 3 */
-        const real rrrs_zeta_3_t = rrrs_omega_1_in_axes3_x*rrrs_qd_3;
-        /* (rrrs-beta_3) angular acceleration of link 3 at zero joint accelerations */
-        const real rrrs_beta_3_in_axes3_y = rrrs_zeta_2_in_axes3_y - rrrs_zeta_3_t;
-        /* (rrrs-bias) acceleration of the connection point at zero joint accelerations */
-        const real rrrs_bias_t = -rrrs_joint2_offset_x*rrrs_s_2;
-        const real rrrs_bias_t_2 = rrrs_c_2*rrrs_joint2_offset_x;
-        const real rrrs_bias_t_3 = rrrs_omega_1_in_axes3_x*(rrrs_bias_t_2*rrrs_c_3 -
-            rrrs_bias_t*rrrs_s_3_t) - rrrs_omega_1_in_axes3_y*(-rrrs_bias_t*rrrs_c_3 -
-            rrrs_bias_t_2*rrrs_s_3_t);
-        const real rrrs_d_3_in_axes3_x = rrrs_c_3*rrrs_joint3_offset_x;
-        const real rrrs_d_3_in_axes3_y = rrrs_joint3_offset_x*rrrs_s_3_t;
-        const real rrrs_bias_t_4 = -rrrs_d_3_in_axes3_y*rrrs_qd_2;
-        const real rrrs_bias_t_5 = -rrrs_d_3_in_axes3_x*rrrs_qd_2;
-        const real rrrs_bias_t_6 = rrrs_d_3_in_axes3_y*rrrs_omega_1_in_axes3_x -
-            rrrs_d_3_in_axes3_x*rrrs_omega_1_in_axes3_y;
-        const real rrrs_bias_t_7 = rrrs_omega_3_in_axes3_z*rrrs_platform_joint_offset_x;
-        const real rrrs_bias_t_8 = rrrs_omega_1_in_axes3_y*rrrs_platform_joint_offset_x;
-        const real rrrs_bias_in_axes3_x = rrrs_bias_t_3*rrrs_omega_1_in_axes3_y +
-            rrrs_bias_t_5*rrrs_qd_2 + rrrs_bias_t_6*rrrs_omega_1_in_axes3_y -
-            rrrs_bias_t_7*rrrs_omega_3_in_axes3_z - rrrs_bias_t_8*rrrs_omega_1_in_axes3_y;
-        const real rrrs_bias_in_axes3_y = rrrs_bias_t_4*rrrs_qd_2 +
-            rrrs_bias_t_8*rrrs_omega_1_in_axes3_x - rrrs_bias_t_3*rrrs_omega_1_in_axes3_x -
-            rrrs_bias_t_6*rrrs_omega_1_in_axes3_x;
-        const real rrrs_bias_in_axes3_z = rrrs_bias_t_7*rrrs_omega_1_in_axes3_x +
-            rrrs_d_3_in_axes3_y*(rrrs_W_2_in_axes2_xz*rrrs_s_3_t + rrrs_W_2_in_axes2_yz*rrrs_c_3)
-            - rrrs_beta_3_in_axes3_y*rrrs_platform_joint_offset_x -
-            rrrs_bias_t_4*rrrs_omega_1_in_axes3_y - rrrs_bias_t_5*rrrs_omega_1_in_axes3_x -
-            rrrs_d_3_in_axes3_x*rrrs_zeta_2_in_axes3_y;
-        /* (rrrs-rel) acceleration of the connection point left to the joint accelerations */
-        const real rrrs_rel_in_axes3_x = rrrs_S_ddot_in_axes3_x - rrrs_bias_in_axes3_x;
-        const real rrrs_rel_in_axes3_y = rrrs_S_ddot_in_axes3_y - rrrs_bias_in_axes3_y;
-        const real rrrs_rel_in_axes3_z = rrrs_S_ddot_in_axes3_z - rrrs_bias_in_axes3_z;
-        /* (rrrs-qdd_1) acceleration of joint 1 */
-        const real rrrs_qdd_1 = rrrs_rel_in_axes3_z*rrrs_w_1_in_axes3_z;
-        /* (rrrs-qdd_2) acceleration of joint 2 */
-        const real rrrs_qdd_2 = rrrs_rel_in_axes3_x*rrrs_w_2_in_axes3_x;
-        /* (rrrs-alpha_1) angular acceleration of link 1 */
-        const real rrrs_alpha_1_t = -rrrs_qdd_1*rrrs_s_2;
-        const real rrrs_alpha_1_in_axes2_y = rrrs_c_2*rrrs_qdd_1;
-        /* (rrrs-alpha_2) angular acceleration of link 2 */
-        const real rrrs_alpha_2_in_axes2_x = rrrs_W_2_in_axes2_yz - rrrs_alpha_1_t;
-        const real rrrs_alpha_2_in_axes2_y = rrrs_alpha_1_in_axes2_y - rrrs_W_2_in_axes2_xz;
-        /* (rrrs-B_2) acceleration tensor of link 2 */
-        const real rrrs_B_2_in_axes2_xy = rrrs_W_2_in_axes2_xy - rrrs_qdd_2;
-        const real rrrs_B_2_in_axes2_yx = rrrs_W_2_in_axes2_xy + rrrs_qdd_2;
-        const real rrrs_B_2_in_axes2_zx = rrrs_W_2_in_axes2_xz - rrrs_alpha_2_in_axes2_y;
-        const real rrrs_B_2_in_axes2_zy = rrrs_W_2_in_axes2_yz + rrrs_alpha_2_in_axes2_x;
-        /* (rrrs-alpha_3) angular acceleration of link 3 */
-        const real rrrs_alpha_3_in_axes3_x = rrrs_alpha_2_in_axes2_x*rrrs_c_3 +
-            rrrs_omega_1_in_axes3_y*rrrs_qd_3 - rrrs_alpha_2_in_axes2_y*rrrs_s_3_t;
-        const real rrrs_alpha_3_in_axes3_y = rrrs_alpha_2_in_axes2_x*rrrs_s_3_t +
-            rrrs_alpha_2_in_axes2_y*rrrs_c_3 - rrrs_zeta_3_t;
-        const real rrrs_alpha_3_in_axes3_z = rrrs_qdd_2 + rrrs_w_3_in_axes3_y*(rrrs_rel_in_axes3_y
-            - rrrs_qdd_2*rrrs_r_2_in_axes3_x);
-        /* (rrrs-B_3) acceleration tensor of link 3 */
-        const real rrrs_B_3_in_axes3_xy = rrrs_W_3_in_axes3_xy - rrrs_alpha_3_in_axes3_z;
-        const real rrrs_B_3_in_axes3_xz = rrrs_W_3_in_axes3_xz + rrrs_alpha_3_in_axes3_y;
-        const real rrrs_B_3_in_axes3_yx = rrrs_W_3_in_axes3_xy + rrrs_alpha_3_in_axes3_z;
-        const real rrrs_B_3_in_axes3_yz = rrrs_W_3_in_axes3_yz - rrrs_alpha_3_in_axes3_x;
-        const real rrrs_B_3_in_axes3_zx = rrrs_W_3_in_axes3_xz - rrrs_alpha_3_in_axes3_y;
-        const real rrrs_B_3_in_axes3_zy = rrrs_W_3_in_axes3_yz + rrrs_alpha_3_in_axes3_x;
-        /* (rrrs-acc_3) acceleration of the reference point of link 3, less gravity */
-        const real gravity_x = m->gravity_x;
-        const real gravity_y = m->gravity_y;
-        const real gravity_z = m->gravity_z;
-        const real rrrs_acc_3_in_axes3_x = rrrs_S_ddot_in_axes3_x - axis_x_rrrs_axes3_x*gravity_x
-            - axis_x_rrrs_axes3_y*gravity_y - axis_x_rrrs_axes3_z*gravity_z;
-        const real rrrs_acc_3_in_axes3_y = rrrs_S_ddot_in_axes3_y - axis_y_rrrs_axes3_x*gravity_x
-            - axis_y_rrrs_axes3_y*gravity_y - axis_y_rrrs_axes3_z*gravity_z;
-        const real rrrs_acc_3_in_axes3_z = rrrs_S_ddot_in_axes3_z - axis_z_rrrs_axes3_x*gravity_x
-            - axis_z_rrrs_axes3_y*gravity_y - axis_z_rrrs_axes3_z*gravity_z;
-        /* (rrrs-mu_3) inertia moment of the links that turn with link 3, about their reference points */
-        const real rrrs_mu_3_t = rrrs_omega_1_in_axes3_x*rrrs_omega_1_in_axes3_x;
-        const real rrrs_mu_3_t_2 = rrrs_omega_1_in_axes3_y*rrrs_omega_1_in_axes3_y;
-        const real rrrs_mu_3_t_3 = rrrs_omega_3_in_axes3_z*rrrs_omega_3_in_axes3_z;
-        const real rrrs_J_3_in_spec3_xy = m->rrrs_J_3_in_spec3_xy[i];
-        const real rrrs_J_3_in_spec3_xz = m->rrrs_J_3_in_spec3_xz[i];
-        const real rrrs_J_3_in_spec3_yz = m->rrrs_J_3_in_spec3_yz[i];
-        const real rrrs_Sigma_3_in_axes3_yy = m->rrrs_Sigma_3_in_axes3_yy[i];
-        const real rrrs_Sigma_3_in_axes3_zz = m->rrrs_Sigma_3_in_axes3_zz[i];
-        const real rrrs_h_3_in_spec3_y = m->rrrs_h_3_in_spec3_y[i];
-        const real rrrs_h_3_in_spec3_z = m->rrrs_h_3_in_spec3_z[i];
-        const real rrrs_mu_3_in_axes3_x = rrrs_B_3_in_axes3_yx*rrrs_J_3_in_spec3_xz +
-            rrrs_B_3_in_axes3_zy*rrrs_Sigma_3_in_axes3_yy + rrrs_J_3_in_spec3_yz*(rrrs_mu_3_t_2 -
-            rrrs_mu_3_t_3) + rrrs_acc_3_in_axes3_z*rrrs_h_3_in_spec3_y -
-            rrrs_B_3_in_axes3_yz*rrrs_Sigma_3_in_axes3_zz -
-            rrrs_B_3_in_axes3_zx*rrrs_J_3_in_spec3_xy - rrrs_acc_3_in_axes3_y*rrrs_h_3_in_spec3_z;
-        const real rrrs_Sigma_3_in_axes3_xx = m->rrrs_Sigma_3_in_axes3_xx[i];
-        const real rrrs_h_3_in_spec3_x = m->rrrs_h_3_in_spec3_x[i];
-        const real rrrs_mu_3_in_axes3_y = rrrs_B_3_in_axes3_xz*rrrs_Sigma_3_in_axes3_zz +
-            rrrs_B_3_in_axes3_zy*rrrs_J_3_in_spec3_xy + rrrs_acc_3_in_axes3_x*rrrs_h_3_in_spec3_z
-            - rrrs_B_3_in_axes3_xy*rrrs_J_3_in_spec3_yz -
-            rrrs_B_3_in_axes3_zx*rrrs_Sigma_3_in_axes3_xx - rrrs_J_3_in_spec3_xz*(rrrs_mu_3_t -
-            rrrs_mu_3_t_3) - rrrs_acc_3_in_axes3_z*rrrs_h_3_in_spec3_x;
-        const real rrrs_mu_3_in_axes3_z = rrrs_B_3_in_axes3_xz*rrrs_J_3_in_spec3_yz +
-            rrrs_B_3_in_axes3_yx*rrrs_Sigma_3_in_axes3_xx + rrrs_J_3_in_spec3_xy*(rrrs_mu_3_t -
-            rrrs_mu_3_t_2) + rrrs_acc_3_in_axes3_y*rrrs_h_3_in_spec3_x -
-            rrrs_B_3_in_axes3_xy*rrrs_Sigma_3_in_axes3_yy -
-            rrrs_B_3_in_axes3_yz*rrrs_J_3_in_spec3_xz - rrrs_acc_3_in_axes3_x*rrrs_h_3_in_spec3_y;
-        /* (rrrs-mu_2) inertia moment of the links that turn with link 2, about their reference points */
-        const real rrrs_mu_2_t_3 = rrrs_omega_1_in_axes2_x*rrrs_omega_1_in_axes2_x;
-        const real rrrs_mu_2_t_4 = rrrs_omega_1_in_axes2_y*rrrs_omega_1_in_axes2_y;
-        const real rrrs_mu_2_t_5 = rrrs_qd_2*rrrs_qd_2;
-        const real rrrs_mu_2_t = m->rrrs_mu_2_t[i];
-        const real rrrs_mu_2_t_2 = m->rrrs_mu_2_t_2[i];
-        const real rrrs_g_in_axes1_x = rrrs_c_1*rrrs_mu_2_t + rrrs_mu_2_t_2*rrrs_s_1;
-        const real rrrs_g_in_axes1_y = rrrs_c_1*rrrs_mu_2_t_2 - rrrs_mu_2_t*rrrs_s_1;
-        const real rrrs_g_in_axes1_z = m->rrrs_g_in_axes1_z[i];
-        const real rrrs_g_in_axes2_x = rrrs_c_2*rrrs_g_in_axes1_y + rrrs_g_in_axes1_z*rrrs_s_2;
-        const real rrrs_g_in_axes2_y = rrrs_c_2*rrrs_g_in_axes1_z - rrrs_g_in_axes1_y*rrrs_s_2;
-        const real rrrs_J_2_in_spec2_xy = m->rrrs_J_2_in_spec2_xy[i];
-        const real rrrs_J_2_in_spec2_xz = m->rrrs_J_2_in_spec2_xz[i];
-        const real rrrs_J_2_in_spec2_yz = m->rrrs_J_2_in_spec2_yz[i];
-        const real rrrs_Sigma_2_in_axes2_yy = m->rrrs_Sigma_2_in_axes2_yy[i];
-        const real rrrs_Sigma_2_in_axes2_zz = m->rrrs_Sigma_2_in_axes2_zz[i];
-        const real rrrs_h_2_in_spec2_y = m->rrrs_h_2_in_spec2_y[i];
-        const real rrrs_h_2_in_spec2_z = m->rrrs_h_2_in_spec2_z[i];
-        const real rrrs_mu_2_in_axes2_x = rrrs_B_2_in_axes2_yx*rrrs_J_2_in_spec2_xz +
-            rrrs_B_2_in_axes2_zy*rrrs_Sigma_2_in_axes2_yy + rrrs_J_2_in_spec2_yz*(rrrs_mu_2_t_4 -
-            rrrs_mu_2_t_5) + rrrs_g_in_axes2_y*rrrs_h_2_in_spec2_z -
-            rrrs_B_2_in_axes2_zx*rrrs_J_2_in_spec2_xy - rrrs_Sigma_2_in_axes2_zz*rrrs_alpha_1_t -
-            rrrs_g_in_axes1_x*rrrs_h_2_in_spec2_y;
-        const real rrrs_Sigma_2_in_axes2_xx = m->rrrs_Sigma_2_in_axes2_xx[i];
-        const real rrrs_h_2_in_spec2_x = m->rrrs_h_2_in_spec2_x[i];
-        const real rrrs_mu_2_in_axes2_y = rrrs_B_2_in_axes2_zy*rrrs_J_2_in_spec2_xy +
-            rrrs_Sigma_2_in_axes2_zz*rrrs_alpha_1_in_axes2_y +
-            rrrs_g_in_axes1_x*rrrs_h_2_in_spec2_x - rrrs_B_2_in_axes2_xy*rrrs_J_2_in_spec2_yz -
-            rrrs_B_2_in_axes2_zx*rrrs_Sigma_2_in_axes2_xx - rrrs_J_2_in_spec2_xz*(rrrs_mu_2_t_3 -
-            rrrs_mu_2_t_5) - rrrs_g_in_axes2_x*rrrs_h_2_in_spec2_z;
-        const real rrrs_mu_2_in_axes2_z = rrrs_B_2_in_axes2_yx*rrrs_Sigma_2_in_axes2_xx +
-            rrrs_J_2_in_spec2_xy*(rrrs_mu_2_t_3 - rrrs_mu_2_t_4) +
-            rrrs_J_2_in_spec2_yz*rrrs_alpha_1_in_axes2_y + rrrs_g_in_axes2_x*rrrs_h_2_in_spec2_y -
-            rrrs_B_2_in_axes2_xy*rrrs_Sigma_2_in_axes2_yy - rrrs_J_2_in_spec2_xz*rrrs_alpha_1_t -
-            rrrs_g_in_axes2_y*rrrs_h_2_in_spec2_x;
-        /* (rrrs-N_2) moment about joint 2 of the links from 2 outwards, the force at the connection point
-           left out */
-        const real rrrs_N_2_in_axes2_x = rrrs_mu_2_in_axes2_x + rrrs_c_3*rrrs_mu_3_in_axes3_x +
-            rrrs_mu_3_in_axes3_y*rrrs_s_3_t;
-        const real rrrs_N_2_in_axes2_y = rrrs_mu_2_in_axes2_y + rrrs_c_3*rrrs_mu_3_in_axes3_y -
-            rrrs_mu_3_in_axes3_x*rrrs_s_3_t;
-        const real rrrs_N_2_in_axes2_z = rrrs_mu_2_in_axes2_z + rrrs_mu_3_in_axes3_z;
-        /* (rrrs-mu_1) inertia moment of the links that turn with link 1, about their reference points */
-        const real rrrs_J_1_in_spec1_xx = m->rrrs_J_1_in_spec1_xx[i];
-        const real rrrs_h_1_in_spec1_y = m->rrrs_h_1_in_spec1_y[i];
-        const real rrrs_h_1_in_spec1_z = m->rrrs_h_1_in_spec1_z[i];
-        const real rrrs_mu_1_in_axes1_z = rrrs_J_1_in_spec1_xx*rrrs_qdd_1 -
-            rrrs_g_in_axes1_x*rrrs_h_1_in_spec1_y - rrrs_g_in_axes1_y*rrrs_h_1_in_spec1_z;
-        /* (rrrs-N_1) moment about joint 1 of the links from 1 outwards, the force at the connection point
-           left out */
-        const real rrrs_N_1_in_axes1_z = rrrs_mu_1_in_axes1_z + rrrs_N_2_in_axes2_x*rrrs_s_2 +
-            rrrs_N_2_in_axes2_y*rrrs_c_2;
-        /* (rrrs-G) force at the connection point that balances the leg's inertia and weight along all
-           degrees of freedom */
-        const real rrrs_G_in_axes3_y = rrrs_mu_3_in_axes3_z*rrrs_w_3_in_axes3_y;
+        values_rrrs v;
+        stage_rrrs_X(m, w, i, j, s, X, &v);
+        stage_rrrs_A_X(w, j, A, &v);
+        stage_rrrs_V_X(m, w, i, j, V, &v);
+        stage_rrrs_A_V_X(w, j, V, &v);
+        stage_rrrs_legs_required(m, i, &v);
         /* (rrrs-c) leg force on the platform without actuation and without the mass at the connection
            point */
-        const real rrrs_c_in_axes3_x = rrrs_h_3_in_spec3_x*(rrrs_mu_3_t_2 + rrrs_mu_3_t_3) +
-            rrrs_w_2_in_axes3_x*(rrrs_G_in_axes3_y*rrrs_r_2_in_axes3_x - rrrs_N_2_in_axes2_z) -
-            rrrs_B_3_in_axes3_xy*rrrs_h_3_in_spec3_y - rrrs_B_3_in_axes3_xz*rrrs_h_3_in_spec3_z;
-        const real rrrs_c_in_axes3_y = rrrs_h_3_in_spec3_y*(rrrs_mu_3_t + rrrs_mu_3_t_3) -
-            rrrs_G_in_axes3_y - rrrs_B_3_in_axes3_yx*rrrs_h_3_in_spec3_x -
-            rrrs_B_3_in_axes3_yz*rrrs_h_3_in_spec3_z;
-        const real rrrs_c_in_axes3_z = rrrs_h_3_in_spec3_z*(rrrs_mu_3_t + rrrs_mu_3_t_2) -
-            rrrs_B_3_in_axes3_zx*rrrs_h_3_in_spec3_x - rrrs_B_3_in_axes3_zy*rrrs_h_3_in_spec3_y -
-            rrrs_N_1_in_axes1_z*rrrs_w_1_in_axes3_z;
-        const real rrrs_c_x = axis_x_rrrs_axes3_x*rrrs_c_in_axes3_x +
-            axis_y_rrrs_axes3_x*rrrs_c_in_axes3_y + axis_z_rrrs_axes3_x*rrrs_c_in_axes3_z;
-        const real rrrs_c_y = axis_x_rrrs_axes3_y*rrrs_c_in_axes3_x +
-            axis_y_rrrs_axes3_y*rrrs_c_in_axes3_y + axis_z_rrrs_axes3_y*rrrs_c_in_axes3_z;
-        const real rrrs_c_z = axis_x_rrrs_axes3_z*rrrs_c_in_axes3_x +
-            axis_y_rrrs_axes3_z*rrrs_c_in_axes3_y + axis_z_rrrs_axes3_z*rrrs_c_in_axes3_z;
+        const real rrrs_c_x = v.axis_x_rrrs_axes3_x*v.rrrs_c_in_axes3_x +
+            v.axis_y_rrrs_axes3_x*v.rrrs_c_in_axes3_y + v.axis_z_rrrs_axes3_x*v.rrrs_c_in_axes3_z;
+        const real rrrs_c_y = v.axis_x_rrrs_axes3_y*v.rrrs_c_in_axes3_x +
+            v.axis_y_rrrs_axes3_y*v.rrrs_c_in_axes3_y + v.axis_z_rrrs_axes3_y*v.rrrs_c_in_axes3_z;
+        const real rrrs_c_z = v.axis_x_rrrs_axes3_z*v.rrrs_c_in_axes3_x +
+            v.axis_y_rrrs_axes3_z*v.rrrs_c_in_axes3_y + v.axis_z_rrrs_axes3_z*v.rrrs_c_in_axes3_z;
         /* (R_a) moment that actuators and external wrench must give */
-        const real rrrs_R_a_t = rrrs_c_y*rrrs_q_z - rrrs_c_z*rrrs_q_y;
-        const real rrrs_R_a_t_2 = rrrs_c_z*rrrs_q_x - rrrs_c_x*rrrs_q_z;
-        const real rrrs_R_a_t_3 = rrrs_c_x*rrrs_q_y - rrrs_c_y*rrrs_q_x;
-        /* (rrrs-H_a_1) moment of the column's unit force about the platform origin */
-        const real rrrs_H_a_1_x = rrrs_q_y*rrrs_w_1_z - rrrs_q_z*rrrs_w_1_y;
-        const real rrrs_H_a_1_y = rrrs_q_z*rrrs_w_1_x - rrrs_q_x*rrrs_w_1_z;
-        const real rrrs_H_a_1_z = rrrs_q_x*rrrs_w_1_y - rrrs_q_y*rrrs_w_1_x;
+        const real rrrs_R_a_t = rrrs_c_y*v.rrrs_q_z - rrrs_c_z*v.rrrs_q_y;
+        const real rrrs_R_a_t_2 = rrrs_c_z*v.rrrs_q_x - rrrs_c_x*v.rrrs_q_z;
+        const real rrrs_R_a_t_3 = rrrs_c_x*v.rrrs_q_y - rrrs_c_y*v.rrrs_q_x;
         /* (rrrs-H_a_2) moment of the column's unit force about the platform origin */
-        const real rrrs_H_a_2_x = rrrs_q_y*rrrs_w_2_z - rrrs_q_z*rrrs_w_2_y;
-        const real rrrs_H_a_2_y = rrrs_q_z*rrrs_w_2_x - rrrs_q_x*rrrs_w_2_z;
-        const real rrrs_H_a_2_z = rrrs_q_x*rrrs_w_2_y - rrrs_q_y*rrrs_w_2_x;
+        const real rrrs_H_a_2_x = v.rrrs_q_y*v.rrrs_w_2_z - v.rrrs_q_z*v.rrrs_w_2_y;
+        const real rrrs_H_a_2_y = v.rrrs_q_z*v.rrrs_w_2_x - v.rrrs_q_x*v.rrrs_w_2_z;
+        const real rrrs_H_a_2_z = v.rrrs_q_x*v.rrrs_w_2_y - v.rrrs_q_y*v.rrrs_w_2_x;
         /* (R_t) force that actuators and external wrench must give */
         gather(&terms[0*count + k], add, rrrs_c_x);  /* R_t_x_of_legs */
         gather(&terms[1*count + k], add, rrrs_c_y);  /* R_t_y_of_legs */
@@ -4352,17 +3777,17 @@ INLINE void required_legs_rrrs(const prepared *m, size_t w, size_t leg, size_t l
         gather(&terms[4*count + k], add, rrrs_R_a_t_2);  /* R_a_y_of_legs */
         gather(&terms[5*count + k], add, rrrs_R_a_t_3);  /* R_a_z_of_legs */
         /* (rrrs-w_1) reciprocal vector 1 */
-        o[0*count + k] = rrrs_w_1_x;
-        o[1*count + k] = rrrs_w_1_y;
-        o[2*count + k] = rrrs_w_1_z;
+        o[0*count + k] = v.rrrs_w_1_x;
+        o[1*count + k] = v.rrrs_w_1_y;
+        o[2*count + k] = v.rrrs_w_1_z;
         /* (rrrs-H_a_1) moment of the column's unit force about the platform origin */
-        o[3*count + k] = rrrs_H_a_1_x;
-        o[4*count + k] = rrrs_H_a_1_y;
-        o[5*count + k] = rrrs_H_a_1_z;
+        o[3*count + k] = v.rrrs_H_a_1_x;
+        o[4*count + k] = v.rrrs_H_a_1_y;
+        o[5*count + k] = v.rrrs_H_a_1_z;
         /* (rrrs-w_2) reciprocal vector 2 */
-        o[6*count + k] = rrrs_w_2_x;
-        o[7*count + k] = rrrs_w_2_y;
-        o[8*count + k] = rrrs_w_2_z;
+        o[6*count + k] = v.rrrs_w_2_x;
+        o[7*count + k] = v.rrrs_w_2_y;
+        o[8*count + k] = v.rrrs_w_2_z;
         /* (rrrs-H_a_2) moment of the column's unit force about the platform origin */
         o[9*count + k] = rrrs_H_a_2_x;
         o[10*count + k] = rrrs_H_a_2_y;
@@ -4370,11 +3795,11 @@ INLINE void required_legs_rrrs(const prepared *m, size_t w, size_t leg, size_t l
         const real rrrs_size_t_3 = m->rrrs_size_t_3[i];
         const real rrrs_rho2_2_t = m->rrrs_rho2_2_t[i];
         const real rrrs_size = m->rrrs_size[i];
-        o[13*count + k] = UNLESS(magnitude(rrrs_rho2_1) > TOLERANCE*TOLERANCE*rrrs_size_t_3) +
-            UNLESS(magnitude(rrrs_rho2_2) > TOLERANCE*TOLERANCE*rrrs_rho2_2_t) +
-            UNLESS(magnitude(rrrs_v_1_in_axes3_z) > TOLERANCE*rrrs_size) +
-            UNLESS(magnitude(rrrs_r_2_in_axes3_y) > TOLERANCE*rrrs_size);
-        o[12*count + k] = UNLESS(rrrs_disc_2 >= 0);
+        o[13*count + k] = UNLESS(magnitude(v.rrrs_rho2_1) > TOLERANCE*TOLERANCE*rrrs_size_t_3) +
+            UNLESS(magnitude(v.rrrs_rho2_2) > TOLERANCE*TOLERANCE*rrrs_rho2_2_t) +
+            UNLESS(magnitude(v.rrrs_v_1_in_axes3_z) > TOLERANCE*rrrs_size) +
+            UNLESS(magnitude(v.rrrs_r_2_in_axes3_y) > TOLERANCE*rrrs_size);
+        o[12*count + k] = UNLESS(v.rrrs_disc_2 >= 0);
     }
 }
 
@@ -4382,13 +3807,13 @@ INLINE void required_place_rrrs(size_t w, size_t count, const real *o, size_t le
     real *H, verdict *t)
 {
     for (size_t k = 0; k < w; ++k) {
-        H[(0*NU + 2*leg)*w + k] = o[0*count + first + k];
+        H[2*leg*w + k] = o[0*count + first + k];
         H[(NU + 2*leg)*w + k] = o[1*count + first + k];
         H[(2*NU + 2*leg)*w + k] = o[2*count + first + k];
         H[(3*NU + 2*leg)*w + k] = o[3*count + first + k];
         H[(4*NU + 2*leg)*w + k] = o[4*count + first + k];
         H[(5*NU + 2*leg)*w + k] = o[5*count + first + k];
-        H[(0*NU + 1 + 2*leg)*w + k] = o[6*count + first + k];
+        H[(1 + 2*leg)*w + k] = o[6*count + first + k];
         H[(NU + 1 + 2*leg)*w + k] = o[7*count + first + k];
         H[(2*NU + 1 + 2*leg)*w + k] = o[8*count + first + k];
         H[(3*NU + 1 + 2*leg)*w + k] = o[9*count + first + k];
@@ -4404,23 +3829,23 @@ INLINE void required_after(size_t w, const real *s, const real *sums, real *requ
     for (size_t k = 0; k < w; ++k) {
         /* (R_t) force that actuators and external wrench must give */
         const real R_t_x_of_legs = sums[0*w + k];
-        const real f_p_x = s[24*w + k];
+        const real f_p_x = s[9*w + k];
         const real R_t_x = f_p_x - R_t_x_of_legs;
         const real R_t_y_of_legs = sums[1*w + k];
-        const real f_p_y = s[25*w + k];
+        const real f_p_y = s[10*w + k];
         const real R_t_y = f_p_y - R_t_y_of_legs;
         const real R_t_z_of_legs = sums[2*w + k];
-        const real f_p_z = s[26*w + k];
+        const real f_p_z = s[11*w + k];
         const real R_t_z = f_p_z - R_t_z_of_legs;
         /* (R_a) moment that actuators and external wrench must give */
         const real R_a_x_of_legs = sums[3*w + k];
-        const real mu_p_x = s[27*w + k];
+        const real mu_p_x = s[12*w + k];
         const real R_a_x = R_a_x_of_legs + mu_p_x;
         const real R_a_y_of_legs = sums[4*w + k];
-        const real mu_p_y = s[28*w + k];
+        const real mu_p_y = s[13*w + k];
         const real R_a_y = R_a_y_of_legs + mu_p_y;
         const real R_a_z_of_legs = sums[5*w + k];
-        const real mu_p_z = s[29*w + k];
+        const real mu_p_z = s[14*w + k];
         const real R_a_z = R_a_z_of_legs + mu_p_z;
         /* (R_t) force that actuators and external wrench must give */
         required[0*w + k] = R_t_x;
@@ -4436,12 +3861,10 @@ INLINE void required_after(size_t w, const real *s, const real *sums, real *requ
 INLINE void required_run(const prepared *m, const real *X, const real *V, const real *A, real
     *required, real *H, verdict *t)
 {
-    real s[30] = {0};
-    real sums[6] = {0};
-    real terms_rrrs[6*LEGS(LEGS_OF_rrrs)] = {0};
-    real o_rrrs[14*LEGS(LEGS_OF_rrrs)] = {0};
+    real s[15] = {0}, sums[6] = {0};
+    real terms_rrrs[6*LEGS(LEGS_OF_rrrs)] = {0}, o_rrrs[14*LEGS(LEGS_OF_rrrs)] = {0};
     required_before(m, 1, X, V, A, s, t);
-    required_legs_rrrs(m, 1, 0, 1, s, 0, LEGS(LEGS_OF_rrrs), 0, terms_rrrs, o_rrrs);
+    required_legs_rrrs(m, 1, 0, 1, s, 0, LEGS(LEGS_OF_rrrs), 0, X, V, A, terms_rrrs, o_rrrs);
     for (size_t leg = 0; leg < LEGS_OF_rrrs; ++leg) {
         required_place_rrrs(1, LEGS(LEGS_OF_rrrs), o_rrrs, leg, leg, H, t);
     }
@@ -4454,166 +3877,60 @@ INLINE void required_run(const prepared *m, const real *X, const real *V, const 
 INLINE void required_run_lanes(const prepared *m, const real *X, const real *V, const real *A,
     real *required, real *H, verdict *t)
 {
-    real s[30*LANES];
-    real sums[6*LANES];
+    real s[15*LANES], sums[6*LANES];
     real o_rrrs[14*LANES];
     required_before(m, LANES, X, V, A, s, t);
     clear(sums, 6*LANES);
     for (size_t leg = 0; leg < LEGS_OF_rrrs; ++leg) {
-        required_legs_rrrs(m, LANES, leg, 0, s, 1, LANES, 1, sums, o_rrrs);
+        required_legs_rrrs(m, LANES, leg, 0, s, 1, LANES, 1, X, V, A, sums, o_rrrs);
         required_place_rrrs(LANES, LANES, o_rrrs, leg, 0, H, t);
     }
     required_after(LANES, s, sums, required);
 }
 
 /* ---- inverse_kinematics ---- */
-INLINE void inverse_kinematics_before(size_t w, const real *X, real *s, verdict *t)
+INLINE void inverse_kinematics_before(const prepared *m, size_t w, const real *X, real *s, verdict
+    *t)
 {
     for (size_t k = 0; k < w; ++k) {
-        /* X: named entries */
-        const real X_0 = X[0*w + k];
-        const real t_x = X_0;
-        const real X_1 = X[1*w + k];
-        const real t_y = X_1;
-        const real X_2 = X[2*w + k];
-        const real t_z = X_2;
-        const real X_3 = X[3*w + k];
-        const real X_4 = X[4*w + k];
-        const real X_5 = X[5*w + k];
-        const real X_6 = X[6*w + k];
-        const real quaternion_norm2 = X_3*X_3 + X_4*X_4 + X_5*X_5 + X_6*X_6;
-        const real quaternion_scale = 2/quaternion_norm2;
-        const real quaternion_sx = X_3*quaternion_scale;
-        const real quaternion_sy = X_4*quaternion_scale;
-        const real quaternion_sz = X_5*quaternion_scale;
-        const real quaternion_wx = X_6*quaternion_sx;
-        const real quaternion_wy = X_6*quaternion_sy;
-        const real quaternion_wz = X_6*quaternion_sz;
-        const real quaternion_xx = X_3*quaternion_sx;
-        const real quaternion_xy = X_3*quaternion_sy;
-        const real quaternion_xz = X_3*quaternion_sz;
-        const real quaternion_yy = X_4*quaternion_sy;
-        const real quaternion_yz = X_4*quaternion_sz;
-        const real quaternion_zz = X_5*quaternion_sz;
-        const real R_xx = 1 - quaternion_yy - quaternion_zz;
-        const real R_xy = quaternion_xy - quaternion_wz;
-        const real R_xz = quaternion_wy + quaternion_xz;
-        const real R_yx = quaternion_wz + quaternion_xy;
-        const real R_yy = 1 - quaternion_xx - quaternion_zz;
-        const real R_yz = quaternion_yz - quaternion_wx;
-        const real R_zx = quaternion_xz - quaternion_wy;
-        const real R_zy = quaternion_wx + quaternion_yz;
-        const real R_zz = 1 - quaternion_xx - quaternion_yy;
-        s[0*w + k] = t_x;
-        s[1*w + k] = t_y;
-        s[2*w + k] = t_z;
-        s[3*w + k] = R_xx;
-        s[4*w + k] = R_xy;
-        s[5*w + k] = R_xz;
-        s[6*w + k] = R_yx;
-        s[7*w + k] = R_yy;
-        s[8*w + k] = R_yz;
-        s[9*w + k] = R_zx;
-        s[10*w + k] = R_zy;
-        s[11*w + k] = R_zz;
-        t->invalid[k] += UNLESS(is_finite(quaternion_scale)) + UNLESS(quaternion_scale > 0);
+        values v;
+        stage_X(m, w, k, X, &v);
+        s[0*w + k] = v.R_xx;
+        s[1*w + k] = v.R_xy;
+        s[2*w + k] = v.R_xz;
+        s[3*w + k] = v.R_yx;
+        s[4*w + k] = v.R_yy;
+        s[5*w + k] = v.R_yz;
+        s[6*w + k] = v.R_zx;
+        s[7*w + k] = v.R_zy;
+        s[8*w + k] = v.R_zz;
+        t->invalid[k] += UNLESS(is_finite(v.quaternion_scale)) + UNLESS(v.quaternion_scale > 0);
     }
 }
 
 INLINE void inverse_kinematics_legs_rrrs(const prepared *m, size_t w, size_t leg, size_t legs,
-    const real *s, size_t states, size_t count, real *o)
+    const real *s, size_t states, size_t count, const real *X, real *o)
 {
     for (size_t k = 0; k < count; ++k) {
         const size_t i = leg + legs*k;
         const size_t j = states*k;
-        /* (rrrs-S) from the base point to the connection point */
-        const real R_xx = s[3*w + j];
-        const real R_xy = s[4*w + j];
-        const real R_xz = s[5*w + j];
-        const real rrrs_base_point_x = m->rrrs_base_point_x[i];
-        const real rrrs_platform_point_x = m->rrrs_platform_point_x[i];
-        const real rrrs_platform_point_y = m->rrrs_platform_point_y[i];
-        const real rrrs_platform_point_z = m->rrrs_platform_point_z[i];
-        const real t_x = s[0*w + j];
-        const real rrrs_S_x = t_x + R_xx*rrrs_platform_point_x + R_xy*rrrs_platform_point_y +
-            R_xz*rrrs_platform_point_z - rrrs_base_point_x;
-        const real R_yx = s[6*w + j];
-        const real R_yy = s[7*w + j];
-        const real R_yz = s[8*w + j];
-        const real rrrs_base_point_y = m->rrrs_base_point_y[i];
-        const real t_y = s[1*w + j];
-        const real rrrs_S_y = t_y + R_yx*rrrs_platform_point_x + R_yy*rrrs_platform_point_y +
-            R_yz*rrrs_platform_point_z - rrrs_base_point_y;
-        const real R_zx = s[9*w + j];
-        const real R_zy = s[10*w + j];
-        const real R_zz = s[11*w + j];
-        const real rrrs_base_point_z = m->rrrs_base_point_z[i];
-        const real t_z = s[2*w + j];
-        const real rrrs_S_z = t_z + R_zx*rrrs_platform_point_x + R_zy*rrrs_platform_point_y +
-            R_zz*rrrs_platform_point_z - rrrs_base_point_z;
-        /* (rrrs-px_1) component along the reference direction */
-        const real rrrs_base_frame_xy = m->rrrs_base_frame_xy[i];
-        const real rrrs_base_frame_yy = m->rrrs_base_frame_yy[i];
-        const real rrrs_base_frame_zy = m->rrrs_base_frame_zy[i];
-        const real rrrs_px_1 = rrrs_S_x*rrrs_base_frame_xy + rrrs_S_y*rrrs_base_frame_yy +
-            rrrs_S_z*rrrs_base_frame_zy;
-        /* (rrrs-py_1) component across the reference direction */
-        const real rrrs_base_frame_xz = m->rrrs_base_frame_xz[i];
-        const real rrrs_base_frame_yz = m->rrrs_base_frame_yz[i];
-        const real rrrs_base_frame_zz = m->rrrs_base_frame_zz[i];
-        const real rrrs_py_1 = rrrs_S_x*rrrs_base_frame_xz + rrrs_S_y*rrrs_base_frame_yz +
-            rrrs_S_z*rrrs_base_frame_zz;
-        /* (rrrs-rho2_1) squared amplitude */
-        const real rrrs_rho2_1 = rrrs_px_1*rrrs_px_1 + rrrs_py_1*rrrs_py_1;
-        /* (rrrs-root_1) root, with the sign of the branch */
-        const real rrrs_branch_1 = m->rrrs_branch_1[i];
-        const real rrrs_root_1 = rrrs_branch_1*root(rrrs_rho2_1);
+        values_rrrs v;
+        stage_rrrs_inverse_kinematics_potential(m, w, i, j, s, X, &v);
         /* (rrrs-q_1) displacement of joint 1 */
-        const real inv_rrrs_rho2_1 = 1/rrrs_rho2_1;
-        const real rrrs_q_1 = angle(inv_rrrs_rho2_1*rrrs_py_1*rrrs_root_1,
-            inv_rrrs_rho2_1*rrrs_px_1*rrrs_root_1);
-        /* (rrrs-xi_1) the vector from joint 1 to the connection point, resolved along link 1 */
-        const real rrrs_base_frame_xx = m->rrrs_base_frame_xx[i];
-        const real rrrs_base_frame_yx = m->rrrs_base_frame_yx[i];
-        const real rrrs_base_frame_zx = m->rrrs_base_frame_zx[i];
-        const real rrrs_xi_1_in_axes1_z = rrrs_S_x*rrrs_base_frame_xx +
-            rrrs_S_y*rrrs_base_frame_yx + rrrs_S_z*rrrs_base_frame_zx;
-        /* (rrrs-x_2) from the origin of joint 2 to the connection point */
-        const real rrrs_joint2_offset_x = m->rrrs_joint2_offset_x[i];
-        const real rrrs_x_2_in_axes1_z = rrrs_xi_1_in_axes1_z - rrrs_joint2_offset_x;
-        /* (rrrs-Kd_2) projection on the centre's direction, from the distance fixed by the joints beyond
-           joint 2 */
-        const real rrrs_Kd_2_t_3 = rrrs_root_1*rrrs_root_1 +
-            rrrs_x_2_in_axes1_z*rrrs_x_2_in_axes1_z;
-        const real rrrs_Kd_2_t = m->rrrs_Kd_2_t[i];
-        const real rrrs_Kd_2_t_2 = m->rrrs_Kd_2_t_2[i];
-        const real rrrs_Kd_2 = rrrs_Kd_2_t + R(0.5)*rrrs_Kd_2_t_3 - rrrs_Kd_2_t_2;
-        /* (rrrs-Kc_2) factor of the cosine in the equation of joint 2 */
-        const real rrrs_joint3_offset_x = m->rrrs_joint3_offset_x[i];
-        const real rrrs_Kc_2 = -rrrs_joint3_offset_x*rrrs_root_1;
-        /* (rrrs-Ks_2) factor of the sine in the equation of joint 2 */
-        const real rrrs_Ks_2 = rrrs_joint3_offset_x*rrrs_x_2_in_axes1_z;
-        /* (rrrs-rho2_2) squared amplitude */
-        const real rrrs_rho2_2 = rrrs_Kc_2*rrrs_Kc_2 + rrrs_Ks_2*rrrs_Ks_2;
-        /* (rrrs-disc_2) discriminant */
-        const real rrrs_disc_2 = rrrs_rho2_2 - rrrs_Kd_2*rrrs_Kd_2;
-        /* (rrrs-root_2) root, with the sign of the branch */
-        const real rrrs_branch_2 = m->rrrs_branch_2[i];
-        const real rrrs_root_2 = rrrs_branch_2*root(rrrs_disc_2);
+        const real rrrs_q_1 = angle(v.inv_rrrs_rho2_1*v.rrrs_S_in_turn1_y*v.rrrs_root_1,
+            v.inv_rrrs_rho2_1*v.rrrs_S_in_turn1_x*v.rrrs_root_1);
         /* (rrrs-q_2) displacement of joint 2 */
-        const real rrrs_q_2_t = -1/rrrs_rho2_2;
-        const real rrrs_q_2 = angle(-rrrs_q_2_t*(rrrs_Ks_2*rrrs_root_2 - rrrs_Kc_2*rrrs_Kd_2),
-            rrrs_q_2_t*(-rrrs_Kc_2*rrrs_root_2 - rrrs_Kd_2*rrrs_Ks_2));
-        /* (rrrs-x_3) from the origin of joint 3 to the connection point */
-        const real inv_rrrs_size_t = m->inv_rrrs_size_t[i];
-        const real rrrs_x_3_in_axes2_x = inv_rrrs_size_t*rrrs_Kd_2*rrrs_joint3_offset_x -
-            rrrs_joint3_offset_x;
+        const real rrrs_q_2 = angle(v.inv_rrrs_rho2_2*(v.rrrs_Kc_2*v.rrrs_root_2 +
+            v.rrrs_Kd_2*v.rrrs_Ks_2), v.inv_rrrs_rho2_2*(v.rrrs_Kc_2*v.rrrs_Kd_2 -
+            v.rrrs_Ks_2*v.rrrs_root_2));
         /* (rrrs-q_3) displacement of joint 3 */
+        const real inv_rrrs_size_t = m->inv_rrrs_size_t[i];
         const real inv_rrrs_size_t_2 = m->inv_rrrs_size_t_2[i];
+        const real rrrs_joint3_offset_x = m->rrrs_joint3_offset_x[i];
         const real rrrs_platform_joint_offset_x = m->rrrs_platform_joint_offset_x[i];
         const real rrrs_q_3 =
-            angle(-inv_rrrs_size_t*inv_rrrs_size_t_2*rrrs_joint3_offset_x*rrrs_platform_joint_offset_x*rrrs_root_2,
-            inv_rrrs_size_t_2*rrrs_platform_joint_offset_x*rrrs_x_3_in_axes2_x);
+            angle(-inv_rrrs_size_t*inv_rrrs_size_t_2*rrrs_joint3_offset_x*rrrs_platform_joint_offset_x*v.rrrs_root_2,
+            inv_rrrs_size_t_2*rrrs_platform_joint_offset_x*v.rrrs_x_3_in_axes2_x);
         /* (rrrs-q_1) displacement of joint 1 */
         o[0*count + k] = rrrs_q_1;
         /* (rrrs-q_2) displacement of joint 2 */
@@ -4623,9 +3940,9 @@ INLINE void inverse_kinematics_legs_rrrs(const prepared *m, size_t w, size_t leg
         o[5*count + k] = rrrs_q_1 + (rrrs_q_2 + rrrs_q_3);
         const real rrrs_size_t_3 = m->rrrs_size_t_3[i];
         const real rrrs_rho2_2_t = m->rrrs_rho2_2_t[i];
-        o[4*count + k] = UNLESS(magnitude(rrrs_rho2_1) > TOLERANCE*TOLERANCE*rrrs_size_t_3) +
-            UNLESS(magnitude(rrrs_rho2_2) > TOLERANCE*TOLERANCE*rrrs_rho2_2_t);
-        o[3*count + k] = UNLESS(rrrs_disc_2 >= 0);
+        o[4*count + k] = UNLESS(magnitude(v.rrrs_rho2_1) > TOLERANCE*TOLERANCE*rrrs_size_t_3) +
+            UNLESS(magnitude(v.rrrs_rho2_2) > TOLERANCE*TOLERANCE*rrrs_rho2_2_t);
+        o[3*count + k] = UNLESS(v.rrrs_disc_2 >= 0);
     }
 }
 
@@ -4644,10 +3961,10 @@ INLINE void inverse_kinematics_place_rrrs(size_t w, size_t count, const real *o,
 
 INLINE void inverse_kinematics_run(const prepared *m, const real *X, real *q, verdict *t)
 {
-    real s[12] = {0};
+    real s[9] = {0};
     real o_rrrs[6*LEGS(LEGS_OF_rrrs)] = {0};
-    inverse_kinematics_before(1, X, s, t);
-    inverse_kinematics_legs_rrrs(m, 1, 0, 1, s, 0, LEGS(LEGS_OF_rrrs), o_rrrs);
+    inverse_kinematics_before(m, 1, X, s, t);
+    inverse_kinematics_legs_rrrs(m, 1, 0, 1, s, 0, LEGS(LEGS_OF_rrrs), X, o_rrrs);
     for (size_t leg = 0; leg < LEGS_OF_rrrs; ++leg) {
         inverse_kinematics_place_rrrs(1, LEGS(LEGS_OF_rrrs), o_rrrs, leg, leg, q, t);
     }
@@ -4655,256 +3972,99 @@ INLINE void inverse_kinematics_run(const prepared *m, const real *X, real *q, ve
 
 INLINE void inverse_kinematics_run_lanes(const prepared *m, const real *X, real *q, verdict *t)
 {
-    real s[12*LANES];
+    real s[9*LANES];
     real o_rrrs[6*LANES];
-    inverse_kinematics_before(LANES, X, s, t);
+    inverse_kinematics_before(m, LANES, X, s, t);
     for (size_t leg = 0; leg < LEGS_OF_rrrs; ++leg) {
-        inverse_kinematics_legs_rrrs(m, LANES, leg, 0, s, 1, LANES, o_rrrs);
+        inverse_kinematics_legs_rrrs(m, LANES, leg, 0, s, 1, LANES, X, o_rrrs);
         inverse_kinematics_place_rrrs(LANES, LANES, o_rrrs, leg, 0, q, t);
     }
 }
 
 /* ---- joint_rates ---- */
-INLINE void joint_rates_before(size_t w, const real *X, const real *V, real *s, verdict *t)
+INLINE void joint_rates_before(const prepared *m, size_t w, const real *X, real *s, verdict *t)
 {
     for (size_t k = 0; k < w; ++k) {
-        /* X: named entries */
-        const real X_0 = X[0*w + k];
-        const real t_x = X_0;
-        const real X_1 = X[1*w + k];
-        const real t_y = X_1;
-        const real X_2 = X[2*w + k];
-        const real t_z = X_2;
-        const real X_3 = X[3*w + k];
-        const real X_4 = X[4*w + k];
-        const real X_5 = X[5*w + k];
-        const real X_6 = X[6*w + k];
-        const real quaternion_norm2 = X_3*X_3 + X_4*X_4 + X_5*X_5 + X_6*X_6;
-        const real quaternion_scale = 2/quaternion_norm2;
-        const real quaternion_sx = X_3*quaternion_scale;
-        const real quaternion_sy = X_4*quaternion_scale;
-        const real quaternion_sz = X_5*quaternion_scale;
-        const real quaternion_wx = X_6*quaternion_sx;
-        const real quaternion_wy = X_6*quaternion_sy;
-        const real quaternion_wz = X_6*quaternion_sz;
-        const real quaternion_xx = X_3*quaternion_sx;
-        const real quaternion_xy = X_3*quaternion_sy;
-        const real quaternion_xz = X_3*quaternion_sz;
-        const real quaternion_yy = X_4*quaternion_sy;
-        const real quaternion_yz = X_4*quaternion_sz;
-        const real quaternion_zz = X_5*quaternion_sz;
-        const real R_xx = 1 - quaternion_yy - quaternion_zz;
-        const real R_xy = quaternion_xy - quaternion_wz;
-        const real R_xz = quaternion_wy + quaternion_xz;
-        const real R_yx = quaternion_wz + quaternion_xy;
-        const real R_yy = 1 - quaternion_xx - quaternion_zz;
-        const real R_yz = quaternion_yz - quaternion_wx;
-        const real R_zx = quaternion_xz - quaternion_wy;
-        const real R_zy = quaternion_wx + quaternion_yz;
-        const real R_zz = 1 - quaternion_xx - quaternion_yy;
-        /* V: named entries */
-        const real V_0 = V[0*w + k];
-        const real t_dot_x = V_0;
-        const real V_1 = V[1*w + k];
-        const real t_dot_y = V_1;
-        const real V_2 = V[2*w + k];
-        const real t_dot_z = V_2;
-        const real V_3 = V[3*w + k];
-        const real omega_x = V_3;
-        const real V_4 = V[4*w + k];
-        const real omega_y = V_4;
-        const real V_5 = V[5*w + k];
-        const real omega_z = V_5;
-        s[0*w + k] = t_x;
-        s[1*w + k] = t_y;
-        s[2*w + k] = t_z;
-        s[3*w + k] = R_xx;
-        s[4*w + k] = R_xy;
-        s[5*w + k] = R_xz;
-        s[6*w + k] = R_yx;
-        s[7*w + k] = R_yy;
-        s[8*w + k] = R_yz;
-        s[9*w + k] = R_zx;
-        s[10*w + k] = R_zy;
-        s[11*w + k] = R_zz;
-        s[12*w + k] = t_dot_x;
-        s[13*w + k] = t_dot_y;
-        s[14*w + k] = t_dot_z;
-        s[15*w + k] = omega_x;
-        s[16*w + k] = omega_y;
-        s[17*w + k] = omega_z;
-        t->invalid[k] += UNLESS(is_finite(quaternion_scale)) + UNLESS(quaternion_scale > 0);
+        values v;
+        stage_X(m, w, k, X, &v);
+        s[0*w + k] = v.R_xx;
+        s[1*w + k] = v.R_xy;
+        s[2*w + k] = v.R_xz;
+        s[3*w + k] = v.R_yx;
+        s[4*w + k] = v.R_yy;
+        s[5*w + k] = v.R_yz;
+        s[6*w + k] = v.R_zx;
+        s[7*w + k] = v.R_zy;
+        s[8*w + k] = v.R_zz;
+        t->invalid[k] += UNLESS(is_finite(v.quaternion_scale)) + UNLESS(v.quaternion_scale > 0);
     }
 }
 
 INLINE void joint_rates_legs_rrrs(const prepared *m, size_t w, size_t leg, size_t legs, const real
-    *s, size_t states, size_t count, real *o)
+    *s, size_t states, size_t count, const real *X, const real *V, real *o)
 {
     for (size_t k = 0; k < count; ++k) {
         const size_t i = leg + legs*k;
         const size_t j = states*k;
-        /* (rrrs-S) from the base point to the connection point */
-        const real R_xx = s[3*w + j];
-        const real R_xy = s[4*w + j];
-        const real R_xz = s[5*w + j];
-        const real rrrs_platform_point_x = m->rrrs_platform_point_x[i];
-        const real rrrs_platform_point_y = m->rrrs_platform_point_y[i];
-        const real rrrs_platform_point_z = m->rrrs_platform_point_z[i];
-        const real rrrs_q_x = R_xx*rrrs_platform_point_x + R_xy*rrrs_platform_point_y +
-            R_xz*rrrs_platform_point_z;
-        const real R_yx = s[6*w + j];
-        const real R_yy = s[7*w + j];
-        const real R_yz = s[8*w + j];
-        const real rrrs_q_y = R_yx*rrrs_platform_point_x + R_yy*rrrs_platform_point_y +
-            R_yz*rrrs_platform_point_z;
-        const real R_zx = s[9*w + j];
-        const real R_zy = s[10*w + j];
-        const real R_zz = s[11*w + j];
-        const real rrrs_q_z = R_zx*rrrs_platform_point_x + R_zy*rrrs_platform_point_y +
-            R_zz*rrrs_platform_point_z;
-        const real rrrs_base_point_x = m->rrrs_base_point_x[i];
-        const real t_x = s[0*w + j];
-        const real rrrs_S_x = rrrs_q_x + t_x - rrrs_base_point_x;
-        const real rrrs_base_point_y = m->rrrs_base_point_y[i];
-        const real t_y = s[1*w + j];
-        const real rrrs_S_y = rrrs_q_y + t_y - rrrs_base_point_y;
-        const real rrrs_base_point_z = m->rrrs_base_point_z[i];
-        const real t_z = s[2*w + j];
-        const real rrrs_S_z = rrrs_q_z + t_z - rrrs_base_point_z;
-        /* (rrrs-px_1) component along the reference direction */
-        const real rrrs_base_frame_xy = m->rrrs_base_frame_xy[i];
-        const real rrrs_base_frame_yy = m->rrrs_base_frame_yy[i];
-        const real rrrs_base_frame_zy = m->rrrs_base_frame_zy[i];
-        const real rrrs_px_1 = rrrs_S_x*rrrs_base_frame_xy + rrrs_S_y*rrrs_base_frame_yy +
-            rrrs_S_z*rrrs_base_frame_zy;
-        /* (rrrs-py_1) component across the reference direction */
-        const real rrrs_base_frame_xz = m->rrrs_base_frame_xz[i];
-        const real rrrs_base_frame_yz = m->rrrs_base_frame_yz[i];
-        const real rrrs_base_frame_zz = m->rrrs_base_frame_zz[i];
-        const real rrrs_py_1 = rrrs_S_x*rrrs_base_frame_xz + rrrs_S_y*rrrs_base_frame_yz +
-            rrrs_S_z*rrrs_base_frame_zz;
-        /* (rrrs-rho2_1) squared amplitude */
-        const real rrrs_rho2_1 = rrrs_px_1*rrrs_px_1 + rrrs_py_1*rrrs_py_1;
-        /* (rrrs-root_1) root, with the sign of the branch */
-        const real rrrs_branch_1 = m->rrrs_branch_1[i];
-        const real rrrs_root_1 = rrrs_branch_1*root(rrrs_rho2_1);
-        /* (rrrs-c_1) cosine of the angle of joint 1 from its reference direction */
-        const real inv_rrrs_rho2_1 = 1/rrrs_rho2_1;
-        const real rrrs_c_1 = -inv_rrrs_rho2_1*rrrs_py_1*rrrs_root_1;
-        /* (rrrs-s_1) sine of the angle of joint 1 from its reference direction */
-        const real rrrs_s_1 = inv_rrrs_rho2_1*rrrs_px_1*rrrs_root_1;
-        /* (rrrs-xi_1) the vector from joint 1 to the connection point, resolved along link 1 */
-        const real rrrs_base_frame_xx = m->rrrs_base_frame_xx[i];
-        const real rrrs_base_frame_yx = m->rrrs_base_frame_yx[i];
-        const real rrrs_base_frame_zx = m->rrrs_base_frame_zx[i];
-        const real rrrs_xi_1_in_axes1_z = rrrs_S_x*rrrs_base_frame_xx +
-            rrrs_S_y*rrrs_base_frame_yx + rrrs_S_z*rrrs_base_frame_zx;
-        /* (rrrs-x_2) from the origin of joint 2 to the connection point */
-        const real rrrs_joint2_offset_x = m->rrrs_joint2_offset_x[i];
-        const real rrrs_x_2_in_axes1_z = rrrs_xi_1_in_axes1_z - rrrs_joint2_offset_x;
-        /* (rrrs-Kd_2) projection on the centre's direction, from the distance fixed by the joints beyond
-           joint 2 */
-        const real rrrs_Kd_2_t_3 = rrrs_root_1*rrrs_root_1 +
-            rrrs_x_2_in_axes1_z*rrrs_x_2_in_axes1_z;
-        const real rrrs_Kd_2_t = m->rrrs_Kd_2_t[i];
-        const real rrrs_Kd_2_t_2 = m->rrrs_Kd_2_t_2[i];
-        const real rrrs_Kd_2 = rrrs_Kd_2_t + R(0.5)*rrrs_Kd_2_t_3 - rrrs_Kd_2_t_2;
-        /* (rrrs-Kc_2) factor of the cosine in the equation of joint 2 */
-        const real rrrs_joint3_offset_x = m->rrrs_joint3_offset_x[i];
-        const real rrrs_Kc_2 = -rrrs_joint3_offset_x*rrrs_root_1;
-        /* (rrrs-Ks_2) factor of the sine in the equation of joint 2 */
-        const real rrrs_Ks_2 = rrrs_joint3_offset_x*rrrs_x_2_in_axes1_z;
-        /* (rrrs-rho2_2) squared amplitude */
-        const real rrrs_rho2_2 = rrrs_Kc_2*rrrs_Kc_2 + rrrs_Ks_2*rrrs_Ks_2;
-        /* (rrrs-disc_2) discriminant */
-        const real rrrs_disc_2 = rrrs_rho2_2 - rrrs_Kd_2*rrrs_Kd_2;
-        /* (rrrs-root_2) root, with the sign of the branch */
-        const real rrrs_branch_2 = m->rrrs_branch_2[i];
-        const real rrrs_root_2 = rrrs_branch_2*root(rrrs_disc_2);
-        /* (rrrs-c_2) cosine of the angle of joint 2 from its reference direction */
-        const real rrrs_c_2_t = -1/rrrs_rho2_2;
-        const real rrrs_c_2 = rrrs_c_2_t*(rrrs_Ks_2*rrrs_root_2 - rrrs_Kc_2*rrrs_Kd_2);
-        /* (rrrs-s_2) sine of the angle of joint 2 from its reference direction */
-        const real rrrs_s_2 = rrrs_c_2_t*(-rrrs_Kc_2*rrrs_root_2 - rrrs_Kd_2*rrrs_Ks_2);
-        /* (rrrs-x_3) from the origin of joint 3 to the connection point */
-        const real inv_rrrs_size_t = m->inv_rrrs_size_t[i];
-        const real rrrs_x_3_in_axes2_x = inv_rrrs_size_t*rrrs_Kd_2*rrrs_joint3_offset_x -
-            rrrs_joint3_offset_x;
-        /* (rrrs-c_3) cosine of the angle of joint 3 from its reference direction */
-        const real inv_rrrs_size_t_2 = m->inv_rrrs_size_t_2[i];
-        const real rrrs_platform_joint_offset_x = m->rrrs_platform_joint_offset_x[i];
-        const real rrrs_c_3 = inv_rrrs_size_t_2*rrrs_platform_joint_offset_x*rrrs_x_3_in_axes2_x;
-        /* (rrrs-s_3) sine of the angle of joint 3 from its reference direction */
-        const real rrrs_s_3_t =
-            inv_rrrs_size_t*inv_rrrs_size_t_2*rrrs_joint3_offset_x*rrrs_platform_joint_offset_x*rrrs_root_2;
+        values_rrrs v;
+        stage_rrrs_X(m, w, i, j, s, X, &v);
         /* (rrrs-S_dot) velocity of the connection point */
-        const real omega_y = s[16*w + j];
-        const real omega_z = s[17*w + j];
-        const real t_dot_x = s[12*w + j];
-        const real rrrs_S_dot_x = t_dot_x + omega_y*rrrs_q_z - omega_z*rrrs_q_y;
-        const real omega_x = s[15*w + j];
-        const real t_dot_y = s[13*w + j];
-        const real rrrs_S_dot_y = t_dot_y + omega_z*rrrs_q_x - omega_x*rrrs_q_z;
-        const real t_dot_z = s[14*w + j];
-        const real rrrs_S_dot_z = t_dot_z + omega_x*rrrs_q_y - omega_y*rrrs_q_x;
-        /* (rrrs-r_2) from joint 2 to the connection point, along the links */
-        const real rrrs_r_2_t = rrrs_platform_joint_offset_x*rrrs_s_3_t;
-        const real rrrs_r_2_in_axes2_x = rrrs_joint3_offset_x +
-            rrrs_c_3*rrrs_platform_joint_offset_x;
-        const real rrrs_r_2_in_axes3_y = rrrs_r_2_in_axes2_x*rrrs_s_3_t - rrrs_c_3*rrrs_r_2_t;
-        /* (rrrs-v_1) velocity of the connection point per rate of joint 1 */
-        const real rrrs_e_1_in_axes3_x = rrrs_c_3*rrrs_s_2 - rrrs_c_2*rrrs_s_3_t;
-        const real rrrs_e_1_in_axes3_y = rrrs_c_2*rrrs_c_3 + rrrs_s_2*rrrs_s_3_t;
-        const real rrrs_v_1_t = rrrs_s_2*rrrs_xi_1_in_axes1_z - rrrs_c_2*rrrs_root_1;
-        const real rrrs_v_1_t_2 = rrrs_c_2*rrrs_xi_1_in_axes1_z + rrrs_root_1*rrrs_s_2;
-        const real rrrs_v_1_in_axes3_z = rrrs_e_1_in_axes3_x*(rrrs_c_3*rrrs_v_1_t_2 +
-            rrrs_s_3_t*rrrs_v_1_t) - rrrs_e_1_in_axes3_y*(rrrs_c_3*rrrs_v_1_t -
-            rrrs_s_3_t*rrrs_v_1_t_2);
+        const real omega_y = V[4*w + j];
+        const real omega_z = V[5*w + j];
+        const real t_dot_x = V[0*w + j];
+        const real rrrs_S_dot_x = t_dot_x + omega_y*v.rrrs_q_z - omega_z*v.rrrs_q_y;
+        const real omega_x = V[3*w + j];
+        const real t_dot_y = V[1*w + j];
+        const real rrrs_S_dot_y = t_dot_y + omega_z*v.rrrs_q_x - omega_x*v.rrrs_q_z;
+        const real t_dot_z = V[2*w + j];
+        const real rrrs_S_dot_z = t_dot_z + omega_x*v.rrrs_q_y - omega_y*v.rrrs_q_x;
         /* (rrrs-qd_1) rate of joint 1 */
-        const real axis_z_rrrs_axes3_x = rrrs_base_frame_xy*rrrs_c_1 +
-            rrrs_base_frame_xz*rrrs_s_1;
-        const real axis_z_rrrs_axes3_y = rrrs_base_frame_yy*rrrs_c_1 +
-            rrrs_base_frame_yz*rrrs_s_1;
-        const real axis_z_rrrs_axes3_z = rrrs_base_frame_zy*rrrs_c_1 +
-            rrrs_base_frame_zz*rrrs_s_1;
-        const real rrrs_qd_1 = (axis_z_rrrs_axes3_x*rrrs_S_dot_x +
-            axis_z_rrrs_axes3_y*rrrs_S_dot_y +
-            axis_z_rrrs_axes3_z*rrrs_S_dot_z)/rrrs_v_1_in_axes3_z;
+        const real rrrs_qd_1 = (v.axis_z_rrrs_axes3_x*rrrs_S_dot_x +
+            v.axis_z_rrrs_axes3_y*rrrs_S_dot_y +
+            v.axis_z_rrrs_axes3_z*rrrs_S_dot_z)/v.rrrs_v_1_in_axes3_z;
         /* (rrrs-qd_2) rate of joint 2 */
-        const real rrrs_qd_2_t = rrrs_e_1_in_axes3_x*rrrs_s_1;
-        const real rrrs_qd_2_t_2 = rrrs_c_1*rrrs_e_1_in_axes3_x;
-        const real axis_y_rrrs_axes3_x = rrrs_base_frame_xx*rrrs_e_1_in_axes3_y +
-            rrrs_base_frame_xy*rrrs_qd_2_t - rrrs_base_frame_xz*rrrs_qd_2_t_2;
-        const real axis_y_rrrs_axes3_y = rrrs_base_frame_yx*rrrs_e_1_in_axes3_y +
-            rrrs_base_frame_yy*rrrs_qd_2_t - rrrs_base_frame_yz*rrrs_qd_2_t_2;
-        const real axis_y_rrrs_axes3_z = rrrs_base_frame_zx*rrrs_e_1_in_axes3_y +
-            rrrs_base_frame_zy*rrrs_qd_2_t - rrrs_base_frame_zz*rrrs_qd_2_t_2;
-        const real rrrs_qd_2 = -(rrrs_S_dot_x*(axis_y_rrrs_axes3_y*axis_z_rrrs_axes3_z -
-            axis_y_rrrs_axes3_z*axis_z_rrrs_axes3_y) +
-            rrrs_S_dot_y*(axis_y_rrrs_axes3_z*axis_z_rrrs_axes3_x -
-            axis_y_rrrs_axes3_x*axis_z_rrrs_axes3_z) +
-            rrrs_S_dot_z*(axis_y_rrrs_axes3_x*axis_z_rrrs_axes3_y -
-            axis_y_rrrs_axes3_y*axis_z_rrrs_axes3_x))/rrrs_r_2_in_axes3_y;
+        const real rrrs_qd_2_t = v.rrrs_c_1*v.rrrs_e_1_in_axes3_x;
+        const real rrrs_base_frame_xx = m->rrrs_base_frame_xx[i];
+        const real rrrs_base_frame_xy = m->rrrs_base_frame_xy[i];
+        const real rrrs_base_frame_xz = m->rrrs_base_frame_xz[i];
+        const real axis_y_rrrs_axes3_x = rrrs_base_frame_xx*v.rrrs_e_1_in_axes3_y +
+            rrrs_base_frame_xy*rrrs_qd_2_t + rrrs_base_frame_xz*v.rrrs_qd_2_t_2;
+        const real rrrs_base_frame_yx = m->rrrs_base_frame_yx[i];
+        const real rrrs_base_frame_yy = m->rrrs_base_frame_yy[i];
+        const real rrrs_base_frame_yz = m->rrrs_base_frame_yz[i];
+        const real axis_y_rrrs_axes3_y = rrrs_base_frame_yx*v.rrrs_e_1_in_axes3_y +
+            rrrs_base_frame_yy*rrrs_qd_2_t + rrrs_base_frame_yz*v.rrrs_qd_2_t_2;
+        const real rrrs_base_frame_zx = m->rrrs_base_frame_zx[i];
+        const real rrrs_base_frame_zy = m->rrrs_base_frame_zy[i];
+        const real rrrs_base_frame_zz = m->rrrs_base_frame_zz[i];
+        const real axis_y_rrrs_axes3_z = rrrs_base_frame_zx*v.rrrs_e_1_in_axes3_y +
+            rrrs_base_frame_zy*rrrs_qd_2_t + rrrs_base_frame_zz*v.rrrs_qd_2_t_2;
+        const real rrrs_qd_2_t_3 = (rrrs_S_dot_x*(axis_y_rrrs_axes3_y*v.axis_z_rrrs_axes3_z -
+            axis_y_rrrs_axes3_z*v.axis_z_rrrs_axes3_y) +
+            rrrs_S_dot_y*(axis_y_rrrs_axes3_z*v.axis_z_rrrs_axes3_x -
+            axis_y_rrrs_axes3_x*v.axis_z_rrrs_axes3_z) +
+            rrrs_S_dot_z*(axis_y_rrrs_axes3_x*v.axis_z_rrrs_axes3_y -
+            axis_y_rrrs_axes3_y*v.axis_z_rrrs_axes3_x))/v.rrrs_r_2_in_axes3_y;
         /* (rrrs-qd_3) rate of joint 3 */
         const real rrrs_w_3_in_axes3_y = m->rrrs_w_3_in_axes3_y[i];
         const real rrrs_qd_3 = rrrs_w_3_in_axes3_y*(axis_y_rrrs_axes3_x*rrrs_S_dot_x +
-            axis_y_rrrs_axes3_y*rrrs_S_dot_y + axis_y_rrrs_axes3_z*rrrs_S_dot_z -
-            rrrs_qd_2*(rrrs_c_3*rrrs_r_2_in_axes2_x + rrrs_r_2_t*rrrs_s_3_t));
+            axis_y_rrrs_axes3_y*rrrs_S_dot_y + axis_y_rrrs_axes3_z*rrrs_S_dot_z +
+            rrrs_qd_2_t_3*(v.rrrs_c_3*v.rrrs_r_2_in_axes2_x + v.rrrs_r_2_t*v.rrrs_s_3_t));
         /* (rrrs-qd_1) rate of joint 1 */
         o[0*count + k] = rrrs_qd_1;
         /* (rrrs-qd_2) rate of joint 2 */
-        o[1*count + k] = rrrs_qd_2;
+        o[1*count + k] = -rrrs_qd_2_t_3;
         /* (rrrs-qd_3) rate of joint 3 */
         o[2*count + k] = rrrs_qd_3;
-        o[5*count + k] = rrrs_qd_1 + (rrrs_qd_2 + rrrs_qd_3);
+        o[5*count + k] = rrrs_qd_1 + (rrrs_qd_2_t_3 + rrrs_qd_3);
         const real rrrs_size_t_3 = m->rrrs_size_t_3[i];
         const real rrrs_rho2_2_t = m->rrrs_rho2_2_t[i];
         const real rrrs_size = m->rrrs_size[i];
-        o[4*count + k] = UNLESS(magnitude(rrrs_rho2_1) > TOLERANCE*TOLERANCE*rrrs_size_t_3) +
-            UNLESS(magnitude(rrrs_rho2_2) > TOLERANCE*TOLERANCE*rrrs_rho2_2_t) +
-            UNLESS(magnitude(rrrs_v_1_in_axes3_z) > TOLERANCE*rrrs_size) +
-            UNLESS(magnitude(rrrs_r_2_in_axes3_y) > TOLERANCE*rrrs_size);
-        o[3*count + k] = UNLESS(rrrs_disc_2 >= 0);
+        o[4*count + k] = UNLESS(magnitude(v.rrrs_rho2_1) > TOLERANCE*TOLERANCE*rrrs_size_t_3) +
+            UNLESS(magnitude(v.rrrs_rho2_2) > TOLERANCE*TOLERANCE*rrrs_rho2_2_t) +
+            UNLESS(magnitude(v.rrrs_v_1_in_axes3_z) > TOLERANCE*rrrs_size) +
+            UNLESS(magnitude(v.rrrs_r_2_in_axes3_y) > TOLERANCE*rrrs_size);
+        o[3*count + k] = UNLESS(v.rrrs_disc_2 >= 0);
     }
 }
 
@@ -4923,10 +4083,10 @@ INLINE void joint_rates_place_rrrs(size_t w, size_t count, const real *o, size_t
 
 INLINE void joint_rates_run(const prepared *m, const real *X, const real *V, real *qd, verdict *t)
 {
-    real s[18] = {0};
+    real s[9] = {0};
     real o_rrrs[6*LEGS(LEGS_OF_rrrs)] = {0};
-    joint_rates_before(1, X, V, s, t);
-    joint_rates_legs_rrrs(m, 1, 0, 1, s, 0, LEGS(LEGS_OF_rrrs), o_rrrs);
+    joint_rates_before(m, 1, X, s, t);
+    joint_rates_legs_rrrs(m, 1, 0, 1, s, 0, LEGS(LEGS_OF_rrrs), X, V, o_rrrs);
     for (size_t leg = 0; leg < LEGS_OF_rrrs; ++leg) {
         joint_rates_place_rrrs(1, LEGS(LEGS_OF_rrrs), o_rrrs, leg, leg, qd, t);
     }
@@ -4935,344 +4095,122 @@ INLINE void joint_rates_run(const prepared *m, const real *X, const real *V, rea
 INLINE void joint_rates_run_lanes(const prepared *m, const real *X, const real *V, real *qd,
     verdict *t)
 {
-    real s[18*LANES];
+    real s[9*LANES];
     real o_rrrs[6*LANES];
-    joint_rates_before(LANES, X, V, s, t);
+    joint_rates_before(m, LANES, X, s, t);
     for (size_t leg = 0; leg < LEGS_OF_rrrs; ++leg) {
-        joint_rates_legs_rrrs(m, LANES, leg, 0, s, 1, LANES, o_rrrs);
+        joint_rates_legs_rrrs(m, LANES, leg, 0, s, 1, LANES, X, V, o_rrrs);
         joint_rates_place_rrrs(LANES, LANES, o_rrrs, leg, 0, qd, t);
     }
 }
 
 /* ---- joint_accelerations ---- */
-INLINE void joint_accelerations_before(size_t w, const real *X, const real *V, const real *A, real
-    *s, verdict *t)
+INLINE void joint_accelerations_before(const prepared *m, size_t w, const real *X, real *s,
+    verdict *t)
 {
     for (size_t k = 0; k < w; ++k) {
-        /* X: named entries */
-        const real X_0 = X[0*w + k];
-        const real t_x = X_0;
-        const real X_1 = X[1*w + k];
-        const real t_y = X_1;
-        const real X_2 = X[2*w + k];
-        const real t_z = X_2;
-        const real X_3 = X[3*w + k];
-        const real X_4 = X[4*w + k];
-        const real X_5 = X[5*w + k];
-        const real X_6 = X[6*w + k];
-        const real quaternion_norm2 = X_3*X_3 + X_4*X_4 + X_5*X_5 + X_6*X_6;
-        const real quaternion_scale = 2/quaternion_norm2;
-        const real quaternion_sx = X_3*quaternion_scale;
-        const real quaternion_sy = X_4*quaternion_scale;
-        const real quaternion_sz = X_5*quaternion_scale;
-        const real quaternion_wx = X_6*quaternion_sx;
-        const real quaternion_wy = X_6*quaternion_sy;
-        const real quaternion_wz = X_6*quaternion_sz;
-        const real quaternion_xx = X_3*quaternion_sx;
-        const real quaternion_xy = X_3*quaternion_sy;
-        const real quaternion_xz = X_3*quaternion_sz;
-        const real quaternion_yy = X_4*quaternion_sy;
-        const real quaternion_yz = X_4*quaternion_sz;
-        const real quaternion_zz = X_5*quaternion_sz;
-        const real R_xx = 1 - quaternion_yy - quaternion_zz;
-        const real R_xy = quaternion_xy - quaternion_wz;
-        const real R_xz = quaternion_wy + quaternion_xz;
-        const real R_yx = quaternion_wz + quaternion_xy;
-        const real R_yy = 1 - quaternion_xx - quaternion_zz;
-        const real R_yz = quaternion_yz - quaternion_wx;
-        const real R_zx = quaternion_xz - quaternion_wy;
-        const real R_zy = quaternion_wx + quaternion_yz;
-        const real R_zz = 1 - quaternion_xx - quaternion_yy;
-        /* V: named entries */
-        const real V_0 = V[0*w + k];
-        const real t_dot_x = V_0;
-        const real V_1 = V[1*w + k];
-        const real t_dot_y = V_1;
-        const real V_2 = V[2*w + k];
-        const real t_dot_z = V_2;
-        const real V_3 = V[3*w + k];
-        const real omega_x = V_3;
-        const real V_4 = V[4*w + k];
-        const real omega_y = V_4;
-        const real V_5 = V[5*w + k];
-        const real omega_z = V_5;
-        /* A: named entries */
-        const real A_0 = A[0*w + k];
-        const real t_ddot_x = A_0;
-        const real A_1 = A[1*w + k];
-        const real t_ddot_y = A_1;
-        const real A_2 = A[2*w + k];
-        const real t_ddot_z = A_2;
-        const real A_3 = A[3*w + k];
-        const real alpha_x = A_3;
-        const real A_4 = A[4*w + k];
-        const real alpha_y = A_4;
-        const real A_5 = A[5*w + k];
-        const real alpha_z = A_5;
-        s[0*w + k] = t_x;
-        s[1*w + k] = t_y;
-        s[2*w + k] = t_z;
-        s[3*w + k] = R_xx;
-        s[4*w + k] = R_xy;
-        s[5*w + k] = R_xz;
-        s[6*w + k] = R_yx;
-        s[7*w + k] = R_yy;
-        s[8*w + k] = R_yz;
-        s[9*w + k] = R_zx;
-        s[10*w + k] = R_zy;
-        s[11*w + k] = R_zz;
-        s[12*w + k] = t_dot_x;
-        s[13*w + k] = t_dot_y;
-        s[14*w + k] = t_dot_z;
-        s[15*w + k] = omega_x;
-        s[16*w + k] = omega_y;
-        s[17*w + k] = omega_z;
-        s[18*w + k] = t_ddot_x;
-        s[19*w + k] = t_ddot_y;
-        s[20*w + k] = t_ddot_z;
-        s[21*w + k] = alpha_x;
-        s[22*w + k] = alpha_y;
-        s[23*w + k] = alpha_z;
-        t->invalid[k] += UNLESS(is_finite(quaternion_scale)) + UNLESS(quaternion_scale > 0);
+        values v;
+        stage_X(m, w, k, X, &v);
+        s[0*w + k] = v.R_xx;
+        s[1*w + k] = v.R_xy;
+        s[2*w + k] = v.R_xz;
+        s[3*w + k] = v.R_yx;
+        s[4*w + k] = v.R_yy;
+        s[5*w + k] = v.R_yz;
+        s[6*w + k] = v.R_zx;
+        s[7*w + k] = v.R_zy;
+        s[8*w + k] = v.R_zz;
+        t->invalid[k] += UNLESS(is_finite(v.quaternion_scale)) + UNLESS(v.quaternion_scale > 0);
     }
 }
 
 INLINE void joint_accelerations_legs_rrrs(const prepared *m, size_t w, size_t leg, size_t legs,
-    const real *s, size_t states, size_t count, real *o)
+    const real *s, size_t states, size_t count, const real *X, const real *V, const real *A, real
+    *o)
 {
     for (size_t k = 0; k < count; ++k) {
         const size_t i = leg + legs*k;
         const size_t j = states*k;
-        /* (rrrs-S) from the base point to the connection point */
-        const real R_xx = s[3*w + j];
-        const real R_xy = s[4*w + j];
-        const real R_xz = s[5*w + j];
-        const real rrrs_platform_point_x = m->rrrs_platform_point_x[i];
-        const real rrrs_platform_point_y = m->rrrs_platform_point_y[i];
-        const real rrrs_platform_point_z = m->rrrs_platform_point_z[i];
-        const real rrrs_q_x = R_xx*rrrs_platform_point_x + R_xy*rrrs_platform_point_y +
-            R_xz*rrrs_platform_point_z;
-        const real R_yx = s[6*w + j];
-        const real R_yy = s[7*w + j];
-        const real R_yz = s[8*w + j];
-        const real rrrs_q_y = R_yx*rrrs_platform_point_x + R_yy*rrrs_platform_point_y +
-            R_yz*rrrs_platform_point_z;
-        const real R_zx = s[9*w + j];
-        const real R_zy = s[10*w + j];
-        const real R_zz = s[11*w + j];
-        const real rrrs_q_z = R_zx*rrrs_platform_point_x + R_zy*rrrs_platform_point_y +
-            R_zz*rrrs_platform_point_z;
-        const real rrrs_base_point_x = m->rrrs_base_point_x[i];
-        const real t_x = s[0*w + j];
-        const real rrrs_S_x = rrrs_q_x + t_x - rrrs_base_point_x;
-        const real rrrs_base_point_y = m->rrrs_base_point_y[i];
-        const real t_y = s[1*w + j];
-        const real rrrs_S_y = rrrs_q_y + t_y - rrrs_base_point_y;
-        const real rrrs_base_point_z = m->rrrs_base_point_z[i];
-        const real t_z = s[2*w + j];
-        const real rrrs_S_z = rrrs_q_z + t_z - rrrs_base_point_z;
-        /* (rrrs-px_1) component along the reference direction */
-        const real rrrs_base_frame_xy = m->rrrs_base_frame_xy[i];
-        const real rrrs_base_frame_yy = m->rrrs_base_frame_yy[i];
-        const real rrrs_base_frame_zy = m->rrrs_base_frame_zy[i];
-        const real rrrs_px_1 = rrrs_S_x*rrrs_base_frame_xy + rrrs_S_y*rrrs_base_frame_yy +
-            rrrs_S_z*rrrs_base_frame_zy;
-        /* (rrrs-py_1) component across the reference direction */
-        const real rrrs_base_frame_xz = m->rrrs_base_frame_xz[i];
-        const real rrrs_base_frame_yz = m->rrrs_base_frame_yz[i];
-        const real rrrs_base_frame_zz = m->rrrs_base_frame_zz[i];
-        const real rrrs_py_1 = rrrs_S_x*rrrs_base_frame_xz + rrrs_S_y*rrrs_base_frame_yz +
-            rrrs_S_z*rrrs_base_frame_zz;
-        /* (rrrs-rho2_1) squared amplitude */
-        const real rrrs_rho2_1 = rrrs_px_1*rrrs_px_1 + rrrs_py_1*rrrs_py_1;
-        /* (rrrs-root_1) root, with the sign of the branch */
-        const real rrrs_branch_1 = m->rrrs_branch_1[i];
-        const real rrrs_root_1 = rrrs_branch_1*root(rrrs_rho2_1);
-        /* (rrrs-c_1) cosine of the angle of joint 1 from its reference direction */
-        const real inv_rrrs_rho2_1 = 1/rrrs_rho2_1;
-        const real rrrs_c_1 = -inv_rrrs_rho2_1*rrrs_py_1*rrrs_root_1;
-        /* (rrrs-s_1) sine of the angle of joint 1 from its reference direction */
-        const real rrrs_s_1 = inv_rrrs_rho2_1*rrrs_px_1*rrrs_root_1;
-        /* (rrrs-xi_1) the vector from joint 1 to the connection point, resolved along link 1 */
-        const real rrrs_base_frame_xx = m->rrrs_base_frame_xx[i];
-        const real rrrs_base_frame_yx = m->rrrs_base_frame_yx[i];
-        const real rrrs_base_frame_zx = m->rrrs_base_frame_zx[i];
-        const real rrrs_xi_1_in_axes1_z = rrrs_S_x*rrrs_base_frame_xx +
-            rrrs_S_y*rrrs_base_frame_yx + rrrs_S_z*rrrs_base_frame_zx;
-        /* (rrrs-x_2) from the origin of joint 2 to the connection point */
-        const real rrrs_joint2_offset_x = m->rrrs_joint2_offset_x[i];
-        const real rrrs_x_2_in_axes1_z = rrrs_xi_1_in_axes1_z - rrrs_joint2_offset_x;
-        /* (rrrs-Kd_2) projection on the centre's direction, from the distance fixed by the joints beyond
-           joint 2 */
-        const real rrrs_Kd_2_t_3 = rrrs_root_1*rrrs_root_1 +
-            rrrs_x_2_in_axes1_z*rrrs_x_2_in_axes1_z;
-        const real rrrs_Kd_2_t = m->rrrs_Kd_2_t[i];
-        const real rrrs_Kd_2_t_2 = m->rrrs_Kd_2_t_2[i];
-        const real rrrs_Kd_2 = rrrs_Kd_2_t + R(0.5)*rrrs_Kd_2_t_3 - rrrs_Kd_2_t_2;
-        /* (rrrs-Kc_2) factor of the cosine in the equation of joint 2 */
-        const real rrrs_joint3_offset_x = m->rrrs_joint3_offset_x[i];
-        const real rrrs_Kc_2 = -rrrs_joint3_offset_x*rrrs_root_1;
-        /* (rrrs-Ks_2) factor of the sine in the equation of joint 2 */
-        const real rrrs_Ks_2 = rrrs_joint3_offset_x*rrrs_x_2_in_axes1_z;
-        /* (rrrs-rho2_2) squared amplitude */
-        const real rrrs_rho2_2 = rrrs_Kc_2*rrrs_Kc_2 + rrrs_Ks_2*rrrs_Ks_2;
-        /* (rrrs-disc_2) discriminant */
-        const real rrrs_disc_2 = rrrs_rho2_2 - rrrs_Kd_2*rrrs_Kd_2;
-        /* (rrrs-root_2) root, with the sign of the branch */
-        const real rrrs_branch_2 = m->rrrs_branch_2[i];
-        const real rrrs_root_2 = rrrs_branch_2*root(rrrs_disc_2);
-        /* (rrrs-c_2) cosine of the angle of joint 2 from its reference direction */
-        const real rrrs_c_2_t = -1/rrrs_rho2_2;
-        const real rrrs_c_2 = rrrs_c_2_t*(rrrs_Ks_2*rrrs_root_2 - rrrs_Kc_2*rrrs_Kd_2);
-        /* (rrrs-s_2) sine of the angle of joint 2 from its reference direction */
-        const real rrrs_s_2 = rrrs_c_2_t*(-rrrs_Kc_2*rrrs_root_2 - rrrs_Kd_2*rrrs_Ks_2);
-        /* (rrrs-x_3) from the origin of joint 3 to the connection point */
-        const real inv_rrrs_size_t = m->inv_rrrs_size_t[i];
-        const real rrrs_x_3_in_axes2_x = inv_rrrs_size_t*rrrs_Kd_2*rrrs_joint3_offset_x -
-            rrrs_joint3_offset_x;
-        /* (rrrs-c_3) cosine of the angle of joint 3 from its reference direction */
-        const real inv_rrrs_size_t_2 = m->inv_rrrs_size_t_2[i];
-        const real rrrs_platform_joint_offset_x = m->rrrs_platform_joint_offset_x[i];
-        const real rrrs_c_3 = inv_rrrs_size_t_2*rrrs_platform_joint_offset_x*rrrs_x_3_in_axes2_x;
-        /* (rrrs-s_3) sine of the angle of joint 3 from its reference direction */
-        const real rrrs_s_3_t =
-            inv_rrrs_size_t*inv_rrrs_size_t_2*rrrs_joint3_offset_x*rrrs_platform_joint_offset_x*rrrs_root_2;
-        /* (rrrs-S_dot) velocity of the connection point */
-        const real omega_y = s[16*w + j];
-        const real omega_z = s[17*w + j];
-        const real rrrs_S_dot_t = omega_y*rrrs_q_z - omega_z*rrrs_q_y;
-        const real omega_x = s[15*w + j];
-        const real rrrs_S_dot_t_2 = omega_z*rrrs_q_x - omega_x*rrrs_q_z;
-        const real rrrs_S_dot_t_3 = omega_x*rrrs_q_y - omega_y*rrrs_q_x;
-        const real t_dot_x = s[12*w + j];
-        const real rrrs_S_dot_x = rrrs_S_dot_t + t_dot_x;
-        const real t_dot_y = s[13*w + j];
-        const real rrrs_S_dot_y = rrrs_S_dot_t_2 + t_dot_y;
-        const real t_dot_z = s[14*w + j];
-        const real rrrs_S_dot_z = rrrs_S_dot_t_3 + t_dot_z;
-        /* (rrrs-r_2) from joint 2 to the connection point, along the links */
-        const real rrrs_r_2_t = rrrs_platform_joint_offset_x*rrrs_s_3_t;
-        const real rrrs_r_2_in_axes2_x = rrrs_joint3_offset_x +
-            rrrs_c_3*rrrs_platform_joint_offset_x;
-        const real rrrs_r_2_in_axes3_x = rrrs_c_3*rrrs_r_2_in_axes2_x + rrrs_r_2_t*rrrs_s_3_t;
-        const real rrrs_r_2_in_axes3_y = rrrs_r_2_in_axes2_x*rrrs_s_3_t - rrrs_c_3*rrrs_r_2_t;
-        /* (rrrs-v_1) velocity of the connection point per rate of joint 1 */
-        const real rrrs_e_1_in_axes3_x = rrrs_c_3*rrrs_s_2 - rrrs_c_2*rrrs_s_3_t;
-        const real rrrs_e_1_in_axes3_y = rrrs_c_2*rrrs_c_3 + rrrs_s_2*rrrs_s_3_t;
-        const real rrrs_v_1_t = rrrs_s_2*rrrs_xi_1_in_axes1_z - rrrs_c_2*rrrs_root_1;
-        const real rrrs_v_1_t_2 = rrrs_c_2*rrrs_xi_1_in_axes1_z + rrrs_root_1*rrrs_s_2;
-        const real rrrs_v_1_in_axes3_z = rrrs_e_1_in_axes3_x*(rrrs_c_3*rrrs_v_1_t_2 +
-            rrrs_s_3_t*rrrs_v_1_t) - rrrs_e_1_in_axes3_y*(rrrs_c_3*rrrs_v_1_t -
-            rrrs_s_3_t*rrrs_v_1_t_2);
-        /* (rrrs-w_1) reciprocal vector 1 */
-        const real rrrs_w_1_in_axes3_z = 1/rrrs_v_1_in_axes3_z;
-        /* (rrrs-w_2) reciprocal vector 2 */
-        const real rrrs_w_2_in_axes3_x = -1/rrrs_r_2_in_axes3_y;
-        /* (rrrs-qd_1) rate of joint 1 */
-        const real axis_z_rrrs_axes3_x = rrrs_base_frame_xy*rrrs_c_1 +
-            rrrs_base_frame_xz*rrrs_s_1;
-        const real axis_z_rrrs_axes3_y = rrrs_base_frame_yy*rrrs_c_1 +
-            rrrs_base_frame_yz*rrrs_s_1;
-        const real axis_z_rrrs_axes3_z = rrrs_base_frame_zy*rrrs_c_1 +
-            rrrs_base_frame_zz*rrrs_s_1;
-        const real rrrs_qd_1 = rrrs_w_1_in_axes3_z*(axis_z_rrrs_axes3_x*rrrs_S_dot_x +
-            axis_z_rrrs_axes3_y*rrrs_S_dot_y + axis_z_rrrs_axes3_z*rrrs_S_dot_z);
+        values_rrrs v;
+        stage_rrrs_X(m, w, i, j, s, X, &v);
+        stage_rrrs_A_X(w, j, A, &v);
+        stage_rrrs_V_X(m, w, i, j, V, &v);
+        stage_rrrs_A_V_X(w, j, V, &v);
         /* (rrrs-qd_2) rate of joint 2 */
-        const real rrrs_qd_2_t = rrrs_e_1_in_axes3_x*rrrs_s_1;
-        const real rrrs_qd_2_t_2 = rrrs_c_1*rrrs_e_1_in_axes3_x;
-        const real axis_y_rrrs_axes3_x = rrrs_base_frame_xx*rrrs_e_1_in_axes3_y +
-            rrrs_base_frame_xy*rrrs_qd_2_t - rrrs_base_frame_xz*rrrs_qd_2_t_2;
-        const real axis_y_rrrs_axes3_y = rrrs_base_frame_yx*rrrs_e_1_in_axes3_y +
-            rrrs_base_frame_yy*rrrs_qd_2_t - rrrs_base_frame_yz*rrrs_qd_2_t_2;
-        const real axis_y_rrrs_axes3_z = rrrs_base_frame_zx*rrrs_e_1_in_axes3_y +
-            rrrs_base_frame_zy*rrrs_qd_2_t - rrrs_base_frame_zz*rrrs_qd_2_t_2;
-        const real axis_x_rrrs_axes3_x = axis_y_rrrs_axes3_y*axis_z_rrrs_axes3_z -
-            axis_y_rrrs_axes3_z*axis_z_rrrs_axes3_y;
-        const real axis_x_rrrs_axes3_y = axis_y_rrrs_axes3_z*axis_z_rrrs_axes3_x -
-            axis_y_rrrs_axes3_x*axis_z_rrrs_axes3_z;
-        const real axis_x_rrrs_axes3_z = axis_y_rrrs_axes3_x*axis_z_rrrs_axes3_y -
-            axis_y_rrrs_axes3_y*axis_z_rrrs_axes3_x;
-        const real rrrs_qd_2 = rrrs_w_2_in_axes3_x*(axis_x_rrrs_axes3_x*rrrs_S_dot_x +
-            axis_x_rrrs_axes3_y*rrrs_S_dot_y + axis_x_rrrs_axes3_z*rrrs_S_dot_z);
+        const real rrrs_qd_2_t = v.rrrs_c_1*v.rrrs_e_1_in_axes3_x;
+        const real rrrs_base_frame_xx = m->rrrs_base_frame_xx[i];
+        const real rrrs_base_frame_xy = m->rrrs_base_frame_xy[i];
+        const real rrrs_base_frame_xz = m->rrrs_base_frame_xz[i];
+        const real axis_y_rrrs_axes3_x = rrrs_base_frame_xx*v.rrrs_e_1_in_axes3_y +
+            rrrs_base_frame_xy*rrrs_qd_2_t + rrrs_base_frame_xz*v.rrrs_qd_2_t_2;
+        const real rrrs_base_frame_yx = m->rrrs_base_frame_yx[i];
+        const real rrrs_base_frame_yy = m->rrrs_base_frame_yy[i];
+        const real rrrs_base_frame_yz = m->rrrs_base_frame_yz[i];
+        const real axis_y_rrrs_axes3_y = rrrs_base_frame_yx*v.rrrs_e_1_in_axes3_y +
+            rrrs_base_frame_yy*rrrs_qd_2_t + rrrs_base_frame_yz*v.rrrs_qd_2_t_2;
+        const real rrrs_base_frame_zx = m->rrrs_base_frame_zx[i];
+        const real rrrs_base_frame_zy = m->rrrs_base_frame_zy[i];
+        const real rrrs_base_frame_zz = m->rrrs_base_frame_zz[i];
+        const real axis_y_rrrs_axes3_z = rrrs_base_frame_zx*v.rrrs_e_1_in_axes3_y +
+            rrrs_base_frame_zy*rrrs_qd_2_t + rrrs_base_frame_zz*v.rrrs_qd_2_t_2;
+        const real axis_x_rrrs_axes3_x = axis_y_rrrs_axes3_y*v.axis_z_rrrs_axes3_z -
+            axis_y_rrrs_axes3_z*v.axis_z_rrrs_axes3_y;
+        const real axis_x_rrrs_axes3_y = axis_y_rrrs_axes3_z*v.axis_z_rrrs_axes3_x -
+            axis_y_rrrs_axes3_x*v.axis_z_rrrs_axes3_z;
+        const real axis_x_rrrs_axes3_z = axis_y_rrrs_axes3_x*v.axis_z_rrrs_axes3_y -
+            axis_y_rrrs_axes3_y*v.axis_z_rrrs_axes3_x;
+        const real rrrs_qd_2_t_3 = -v.rrrs_w_2_in_axes3_x*(axis_x_rrrs_axes3_x*v.rrrs_S_dot_x +
+            axis_x_rrrs_axes3_y*v.rrrs_S_dot_y + axis_x_rrrs_axes3_z*v.rrrs_S_dot_z);
         /* (rrrs-qd_3) rate of joint 3 */
         const real rrrs_w_3_in_axes3_y = m->rrrs_w_3_in_axes3_y[i];
-        const real rrrs_qd_3 = rrrs_w_3_in_axes3_y*(axis_y_rrrs_axes3_x*rrrs_S_dot_x +
-            axis_y_rrrs_axes3_y*rrrs_S_dot_y + axis_y_rrrs_axes3_z*rrrs_S_dot_z -
-            rrrs_qd_2*rrrs_r_2_in_axes3_x);
-        /* (rrrs-omega_1) angular velocity of link 1 */
-        const real rrrs_omega_1_in_axes2_x = rrrs_qd_1*rrrs_s_2;
-        const real rrrs_omega_1_in_axes2_y = rrrs_c_2*rrrs_qd_1;
-        const real rrrs_omega_1_in_axes3_x = rrrs_c_3*rrrs_omega_1_in_axes2_x -
-            rrrs_omega_1_in_axes2_y*rrrs_s_3_t;
-        const real rrrs_omega_1_in_axes3_y = rrrs_c_3*rrrs_omega_1_in_axes2_y +
-            rrrs_omega_1_in_axes2_x*rrrs_s_3_t;
+        const real rrrs_qd_3 = rrrs_w_3_in_axes3_y*(axis_y_rrrs_axes3_x*v.rrrs_S_dot_x +
+            axis_y_rrrs_axes3_y*v.rrrs_S_dot_y + axis_y_rrrs_axes3_z*v.rrrs_S_dot_z +
+            rrrs_qd_2_t_3*v.rrrs_r_2_in_axes3_x);
         /* (rrrs-W_2) centripetal tensor of link 2 */
-        const real rrrs_W_2_in_axes2_yz = rrrs_omega_1_in_axes2_y*rrrs_qd_2;
-        const real rrrs_W_2_in_axes2_xz = rrrs_omega_1_in_axes2_x*rrrs_qd_2;
+        const real rrrs_W_2_in_axes2_yz = v.rrrs_omega_1_t*rrrs_qd_2_t_3;
         /* (rrrs-omega_3) angular velocity of link 3 */
-        const real rrrs_omega_3_in_axes3_z = rrrs_qd_2 + rrrs_qd_3;
-        /* (rrrs-a_p) acceleration of the connection point without its centripetal part */
-        const real alpha_y = s[22*w + j];
-        const real alpha_z = s[23*w + j];
-        const real t_ddot_x = s[18*w + j];
-        const real rrrs_a_p_x = t_ddot_x + alpha_y*rrrs_q_z - alpha_z*rrrs_q_y;
-        const real alpha_x = s[21*w + j];
-        const real t_ddot_y = s[19*w + j];
-        const real rrrs_a_p_y = t_ddot_y + alpha_z*rrrs_q_x - alpha_x*rrrs_q_z;
-        const real t_ddot_z = s[20*w + j];
-        const real rrrs_a_p_z = t_ddot_z + alpha_x*rrrs_q_y - alpha_y*rrrs_q_x;
-        /* (rrrs-S_ddot) acceleration of the connection point */
-        const real rrrs_S_ddot_x = rrrs_a_p_x + omega_y*rrrs_S_dot_t_3 - omega_z*rrrs_S_dot_t_2;
-        const real rrrs_S_ddot_y = rrrs_a_p_y + omega_z*rrrs_S_dot_t - omega_x*rrrs_S_dot_t_3;
-        const real rrrs_S_ddot_z = rrrs_a_p_z + omega_x*rrrs_S_dot_t_2 - omega_y*rrrs_S_dot_t;
+        const real rrrs_omega_3_in_axes3_z = rrrs_qd_3 - rrrs_qd_2_t_3;
         /* (rrrs-zeta_2) angular acceleration of link 2 from the turning of axis 2 */
-        const real rrrs_zeta_2_in_axes3_y = rrrs_W_2_in_axes2_yz*rrrs_s_3_t -
-            rrrs_W_2_in_axes2_xz*rrrs_c_3;
+        const real rrrs_zeta_2_in_axes2_y = v.rrrs_omega_1_in_axes2_x*rrrs_qd_2_t_3;
+        const real rrrs_zeta_2_in_axes3_y = rrrs_W_2_in_axes2_yz*v.rrrs_s_3_t +
+            v.rrrs_c_3*rrrs_zeta_2_in_axes2_y;
         /* (rrrs-beta_3) angular acceleration of link 3 at zero joint accelerations */
         const real rrrs_beta_3_in_axes3_y = rrrs_zeta_2_in_axes3_y -
-            rrrs_omega_1_in_axes3_x*rrrs_qd_3;
+            v.rrrs_omega_1_in_axes3_x*rrrs_qd_3;
         /* (rrrs-bias) acceleration of the connection point at zero joint accelerations */
-        const real rrrs_bias_t = -rrrs_joint2_offset_x*rrrs_s_2;
-        const real rrrs_bias_t_2 = rrrs_c_2*rrrs_joint2_offset_x;
-        const real rrrs_bias_t_3 = rrrs_omega_1_in_axes3_x*(rrrs_bias_t_2*rrrs_c_3 -
-            rrrs_bias_t*rrrs_s_3_t) - rrrs_omega_1_in_axes3_y*(-rrrs_bias_t*rrrs_c_3 -
-            rrrs_bias_t_2*rrrs_s_3_t);
-        const real rrrs_d_3_in_axes3_x = rrrs_c_3*rrrs_joint3_offset_x;
-        const real rrrs_d_3_in_axes3_y = rrrs_joint3_offset_x*rrrs_s_3_t;
-        const real rrrs_bias_t_4 = -rrrs_d_3_in_axes3_y*rrrs_qd_2;
-        const real rrrs_bias_t_5 = -rrrs_d_3_in_axes3_x*rrrs_qd_2;
-        const real rrrs_bias_t_6 = rrrs_d_3_in_axes3_y*rrrs_omega_1_in_axes3_x -
-            rrrs_d_3_in_axes3_x*rrrs_omega_1_in_axes3_y;
+        const real rrrs_bias_t_4 = v.rrrs_d_3_in_axes3_y*rrrs_qd_2_t_3;
+        const real rrrs_bias_t_5 = v.rrrs_d_3_in_axes3_x*rrrs_qd_2_t_3;
+        const real rrrs_platform_joint_offset_x = m->rrrs_platform_joint_offset_x[i];
         const real rrrs_bias_t_7 = rrrs_omega_3_in_axes3_z*rrrs_platform_joint_offset_x;
-        const real rrrs_bias_t_8 = rrrs_omega_1_in_axes3_y*rrrs_platform_joint_offset_x;
-        const real rrrs_bias_in_axes3_x = rrrs_bias_t_3*rrrs_omega_1_in_axes3_y +
-            rrrs_bias_t_5*rrrs_qd_2 + rrrs_bias_t_6*rrrs_omega_1_in_axes3_y -
-            rrrs_bias_t_7*rrrs_omega_3_in_axes3_z - rrrs_bias_t_8*rrrs_omega_1_in_axes3_y;
-        const real rrrs_bias_in_axes3_y = rrrs_bias_t_4*rrrs_qd_2 +
-            rrrs_bias_t_8*rrrs_omega_1_in_axes3_x - rrrs_bias_t_3*rrrs_omega_1_in_axes3_x -
-            rrrs_bias_t_6*rrrs_omega_1_in_axes3_x;
-        const real rrrs_bias_in_axes3_z = rrrs_bias_t_7*rrrs_omega_1_in_axes3_x +
-            rrrs_d_3_in_axes3_y*(rrrs_W_2_in_axes2_xz*rrrs_s_3_t + rrrs_W_2_in_axes2_yz*rrrs_c_3)
-            - rrrs_beta_3_in_axes3_y*rrrs_platform_joint_offset_x -
-            rrrs_bias_t_4*rrrs_omega_1_in_axes3_y - rrrs_bias_t_5*rrrs_omega_1_in_axes3_x -
-            rrrs_d_3_in_axes3_x*rrrs_zeta_2_in_axes3_y;
+        const real rrrs_bias_in_axes3_x = v.rrrs_bias_t_3*v.rrrs_omega_1_in_axes3_y +
+            v.rrrs_bias_t_6*v.rrrs_omega_1_in_axes3_y - rrrs_bias_t_5*rrrs_qd_2_t_3 -
+            rrrs_bias_t_7*rrrs_omega_3_in_axes3_z - v.rrrs_bias_t_8*v.rrrs_omega_1_in_axes3_y;
+        const real rrrs_bias_in_axes3_y = v.rrrs_bias_t_8*v.rrrs_omega_1_in_axes3_x -
+            v.rrrs_bias_t_3*v.rrrs_omega_1_in_axes3_x - rrrs_bias_t_4*rrrs_qd_2_t_3 -
+            v.rrrs_bias_t_6*v.rrrs_omega_1_in_axes3_x;
+        const real rrrs_bias_in_axes3_z = rrrs_bias_t_7*v.rrrs_omega_1_in_axes3_x +
+            v.rrrs_d_3_in_axes3_y*(rrrs_W_2_in_axes2_yz*v.rrrs_c_3 -
+            v.rrrs_s_3_t*rrrs_zeta_2_in_axes2_y) -
+            rrrs_beta_3_in_axes3_y*rrrs_platform_joint_offset_x -
+            rrrs_bias_t_4*v.rrrs_omega_1_in_axes3_y - rrrs_bias_t_5*v.rrrs_omega_1_in_axes3_x -
+            v.rrrs_d_3_in_axes3_x*rrrs_zeta_2_in_axes3_y;
         /* (rrrs-rel) acceleration of the connection point left to the joint accelerations */
-        const real rrrs_rel_in_axes3_x = axis_x_rrrs_axes3_x*rrrs_S_ddot_x +
-            axis_x_rrrs_axes3_y*rrrs_S_ddot_y + axis_x_rrrs_axes3_z*rrrs_S_ddot_z -
+        const real rrrs_rel_in_axes3_x = axis_x_rrrs_axes3_x*v.rrrs_S_ddot_x +
+            axis_x_rrrs_axes3_y*v.rrrs_S_ddot_y + axis_x_rrrs_axes3_z*v.rrrs_S_ddot_z -
             rrrs_bias_in_axes3_x;
-        const real rrrs_rel_in_axes3_y = axis_y_rrrs_axes3_x*rrrs_S_ddot_x +
-            axis_y_rrrs_axes3_y*rrrs_S_ddot_y + axis_y_rrrs_axes3_z*rrrs_S_ddot_z -
+        const real rrrs_rel_in_axes3_y = axis_y_rrrs_axes3_x*v.rrrs_S_ddot_x +
+            axis_y_rrrs_axes3_y*v.rrrs_S_ddot_y + axis_y_rrrs_axes3_z*v.rrrs_S_ddot_z -
             rrrs_bias_in_axes3_y;
-        const real rrrs_rel_in_axes3_z = axis_z_rrrs_axes3_x*rrrs_S_ddot_x +
-            axis_z_rrrs_axes3_y*rrrs_S_ddot_y + axis_z_rrrs_axes3_z*rrrs_S_ddot_z -
+        const real rrrs_rel_in_axes3_z = v.axis_z_rrrs_axes3_x*v.rrrs_S_ddot_x +
+            v.axis_z_rrrs_axes3_y*v.rrrs_S_ddot_y + v.axis_z_rrrs_axes3_z*v.rrrs_S_ddot_z -
             rrrs_bias_in_axes3_z;
         /* (rrrs-qdd_1) acceleration of joint 1 */
-        const real rrrs_qdd_1 = rrrs_rel_in_axes3_z*rrrs_w_1_in_axes3_z;
+        const real rrrs_qdd_1 = rrrs_rel_in_axes3_z*v.rrrs_w_1_in_axes3_z;
         /* (rrrs-qdd_2) acceleration of joint 2 */
-        const real rrrs_qdd_2 = rrrs_rel_in_axes3_x*rrrs_w_2_in_axes3_x;
+        const real rrrs_qdd_2 = rrrs_rel_in_axes3_x*v.rrrs_w_2_in_axes3_x;
         /* (rrrs-qdd_3) acceleration of joint 3 */
         const real rrrs_qdd_3 = rrrs_w_3_in_axes3_y*(rrrs_rel_in_axes3_y -
-            rrrs_qdd_2*rrrs_r_2_in_axes3_x);
+            rrrs_qdd_2*v.rrrs_r_2_in_axes3_x);
         /* (rrrs-qdd_1) acceleration of joint 1 */
         o[0*count + k] = rrrs_qdd_1;
         /* (rrrs-qdd_2) acceleration of joint 2 */
@@ -5283,11 +4221,11 @@ INLINE void joint_accelerations_legs_rrrs(const prepared *m, size_t w, size_t le
         const real rrrs_size_t_3 = m->rrrs_size_t_3[i];
         const real rrrs_rho2_2_t = m->rrrs_rho2_2_t[i];
         const real rrrs_size = m->rrrs_size[i];
-        o[4*count + k] = UNLESS(magnitude(rrrs_rho2_1) > TOLERANCE*TOLERANCE*rrrs_size_t_3) +
-            UNLESS(magnitude(rrrs_rho2_2) > TOLERANCE*TOLERANCE*rrrs_rho2_2_t) +
-            UNLESS(magnitude(rrrs_v_1_in_axes3_z) > TOLERANCE*rrrs_size) +
-            UNLESS(magnitude(rrrs_r_2_in_axes3_y) > TOLERANCE*rrrs_size);
-        o[3*count + k] = UNLESS(rrrs_disc_2 >= 0);
+        o[4*count + k] = UNLESS(magnitude(v.rrrs_rho2_1) > TOLERANCE*TOLERANCE*rrrs_size_t_3) +
+            UNLESS(magnitude(v.rrrs_rho2_2) > TOLERANCE*TOLERANCE*rrrs_rho2_2_t) +
+            UNLESS(magnitude(v.rrrs_v_1_in_axes3_z) > TOLERANCE*rrrs_size) +
+            UNLESS(magnitude(v.rrrs_r_2_in_axes3_y) > TOLERANCE*rrrs_size);
+        o[3*count + k] = UNLESS(v.rrrs_disc_2 >= 0);
     }
 }
 
@@ -5307,10 +4245,10 @@ INLINE void joint_accelerations_place_rrrs(size_t w, size_t count, const real *o
 INLINE void joint_accelerations_run(const prepared *m, const real *X, const real *V, const real
     *A, real *qdd, verdict *t)
 {
-    real s[24] = {0};
+    real s[9] = {0};
     real o_rrrs[6*LEGS(LEGS_OF_rrrs)] = {0};
-    joint_accelerations_before(1, X, V, A, s, t);
-    joint_accelerations_legs_rrrs(m, 1, 0, 1, s, 0, LEGS(LEGS_OF_rrrs), o_rrrs);
+    joint_accelerations_before(m, 1, X, s, t);
+    joint_accelerations_legs_rrrs(m, 1, 0, 1, s, 0, LEGS(LEGS_OF_rrrs), X, V, A, o_rrrs);
     for (size_t leg = 0; leg < LEGS_OF_rrrs; ++leg) {
         joint_accelerations_place_rrrs(1, LEGS(LEGS_OF_rrrs), o_rrrs, leg, leg, qdd, t);
     }
@@ -5319,519 +4257,83 @@ INLINE void joint_accelerations_run(const prepared *m, const real *X, const real
 INLINE void joint_accelerations_run_lanes(const prepared *m, const real *X, const real *V, const
     real *A, real *qdd, verdict *t)
 {
-    real s[24*LANES];
+    real s[9*LANES];
     real o_rrrs[6*LANES];
-    joint_accelerations_before(LANES, X, V, A, s, t);
+    joint_accelerations_before(m, LANES, X, s, t);
     for (size_t leg = 0; leg < LEGS_OF_rrrs; ++leg) {
-        joint_accelerations_legs_rrrs(m, LANES, leg, 0, s, 1, LANES, o_rrrs);
+        joint_accelerations_legs_rrrs(m, LANES, leg, 0, s, 1, LANES, X, V, A, o_rrrs);
         joint_accelerations_place_rrrs(LANES, LANES, o_rrrs, leg, 0, qdd, t);
     }
 }
 
 /* ---- legs ---- */
-INLINE void legs_before(size_t w, const real *X, const real *V, const real *A, real *s, verdict
-    *t)
+INLINE void legs_before(const prepared *m, size_t w, const real *X, real *s, verdict *t)
 {
     for (size_t k = 0; k < w; ++k) {
-        /* X: named entries */
-        const real X_0 = X[0*w + k];
-        const real t_x = X_0;
-        const real X_1 = X[1*w + k];
-        const real t_y = X_1;
-        const real X_2 = X[2*w + k];
-        const real t_z = X_2;
-        const real X_3 = X[3*w + k];
-        const real X_4 = X[4*w + k];
-        const real X_5 = X[5*w + k];
-        const real X_6 = X[6*w + k];
-        const real quaternion_norm2 = X_3*X_3 + X_4*X_4 + X_5*X_5 + X_6*X_6;
-        const real quaternion_scale = 2/quaternion_norm2;
-        const real quaternion_sx = X_3*quaternion_scale;
-        const real quaternion_sy = X_4*quaternion_scale;
-        const real quaternion_sz = X_5*quaternion_scale;
-        const real quaternion_wx = X_6*quaternion_sx;
-        const real quaternion_wy = X_6*quaternion_sy;
-        const real quaternion_wz = X_6*quaternion_sz;
-        const real quaternion_xx = X_3*quaternion_sx;
-        const real quaternion_xy = X_3*quaternion_sy;
-        const real quaternion_xz = X_3*quaternion_sz;
-        const real quaternion_yy = X_4*quaternion_sy;
-        const real quaternion_yz = X_4*quaternion_sz;
-        const real quaternion_zz = X_5*quaternion_sz;
-        const real R_xx = 1 - quaternion_yy - quaternion_zz;
-        const real R_xy = quaternion_xy - quaternion_wz;
-        const real R_xz = quaternion_wy + quaternion_xz;
-        const real R_yx = quaternion_wz + quaternion_xy;
-        const real R_yy = 1 - quaternion_xx - quaternion_zz;
-        const real R_yz = quaternion_yz - quaternion_wx;
-        const real R_zx = quaternion_xz - quaternion_wy;
-        const real R_zy = quaternion_wx + quaternion_yz;
-        const real R_zz = 1 - quaternion_xx - quaternion_yy;
-        /* V: named entries */
-        const real V_0 = V[0*w + k];
-        const real t_dot_x = V_0;
-        const real V_1 = V[1*w + k];
-        const real t_dot_y = V_1;
-        const real V_2 = V[2*w + k];
-        const real t_dot_z = V_2;
-        const real V_3 = V[3*w + k];
-        const real omega_x = V_3;
-        const real V_4 = V[4*w + k];
-        const real omega_y = V_4;
-        const real V_5 = V[5*w + k];
-        const real omega_z = V_5;
-        /* A: named entries */
-        const real A_0 = A[0*w + k];
-        const real t_ddot_x = A_0;
-        const real A_1 = A[1*w + k];
-        const real t_ddot_y = A_1;
-        const real A_2 = A[2*w + k];
-        const real t_ddot_z = A_2;
-        const real A_3 = A[3*w + k];
-        const real alpha_x = A_3;
-        const real A_4 = A[4*w + k];
-        const real alpha_y = A_4;
-        const real A_5 = A[5*w + k];
-        const real alpha_z = A_5;
-        s[0*w + k] = t_x;
-        s[1*w + k] = t_y;
-        s[2*w + k] = t_z;
-        s[3*w + k] = R_xx;
-        s[4*w + k] = R_xy;
-        s[5*w + k] = R_xz;
-        s[6*w + k] = R_yx;
-        s[7*w + k] = R_yy;
-        s[8*w + k] = R_yz;
-        s[9*w + k] = R_zx;
-        s[10*w + k] = R_zy;
-        s[11*w + k] = R_zz;
-        s[12*w + k] = t_dot_x;
-        s[13*w + k] = t_dot_y;
-        s[14*w + k] = t_dot_z;
-        s[15*w + k] = omega_x;
-        s[16*w + k] = omega_y;
-        s[17*w + k] = omega_z;
-        s[18*w + k] = t_ddot_x;
-        s[19*w + k] = t_ddot_y;
-        s[20*w + k] = t_ddot_z;
-        s[21*w + k] = alpha_x;
-        s[22*w + k] = alpha_y;
-        s[23*w + k] = alpha_z;
-        t->invalid[k] += UNLESS(is_finite(quaternion_scale)) + UNLESS(quaternion_scale > 0);
+        values v;
+        stage_X(m, w, k, X, &v);
+        s[0*w + k] = v.R_xx;
+        s[1*w + k] = v.R_xy;
+        s[2*w + k] = v.R_xz;
+        s[3*w + k] = v.R_yx;
+        s[4*w + k] = v.R_yy;
+        s[5*w + k] = v.R_yz;
+        s[6*w + k] = v.R_zx;
+        s[7*w + k] = v.R_zy;
+        s[8*w + k] = v.R_zz;
+        t->invalid[k] += UNLESS(is_finite(v.quaternion_scale)) + UNLESS(v.quaternion_scale > 0);
     }
 }
 
 INLINE void legs_legs_rrrs(const prepared *m, size_t w, size_t leg, size_t legs, const real *s,
-    size_t states, size_t count, real *o)
+    size_t states, size_t count, const real *X, const real *V, const real *A, real *o)
 {
     for (size_t k = 0; k < count; ++k) {
         const size_t i = leg + legs*k;
         const size_t j = states*k;
-        /* (rrrs-S) from the base point to the connection point */
-        const real R_xx = s[3*w + j];
-        const real R_xy = s[4*w + j];
-        const real R_xz = s[5*w + j];
-        const real rrrs_platform_point_x = m->rrrs_platform_point_x[i];
-        const real rrrs_platform_point_y = m->rrrs_platform_point_y[i];
-        const real rrrs_platform_point_z = m->rrrs_platform_point_z[i];
-        const real rrrs_q_x = R_xx*rrrs_platform_point_x + R_xy*rrrs_platform_point_y +
-            R_xz*rrrs_platform_point_z;
-        const real R_yx = s[6*w + j];
-        const real R_yy = s[7*w + j];
-        const real R_yz = s[8*w + j];
-        const real rrrs_q_y = R_yx*rrrs_platform_point_x + R_yy*rrrs_platform_point_y +
-            R_yz*rrrs_platform_point_z;
-        const real R_zx = s[9*w + j];
-        const real R_zy = s[10*w + j];
-        const real R_zz = s[11*w + j];
-        const real rrrs_q_z = R_zx*rrrs_platform_point_x + R_zy*rrrs_platform_point_y +
-            R_zz*rrrs_platform_point_z;
-        const real rrrs_base_point_x = m->rrrs_base_point_x[i];
-        const real t_x = s[0*w + j];
-        const real rrrs_S_x = rrrs_q_x + t_x - rrrs_base_point_x;
-        const real rrrs_base_point_y = m->rrrs_base_point_y[i];
-        const real t_y = s[1*w + j];
-        const real rrrs_S_y = rrrs_q_y + t_y - rrrs_base_point_y;
-        const real rrrs_base_point_z = m->rrrs_base_point_z[i];
-        const real t_z = s[2*w + j];
-        const real rrrs_S_z = rrrs_q_z + t_z - rrrs_base_point_z;
-        /* (rrrs-px_1) component along the reference direction */
-        const real rrrs_base_frame_xy = m->rrrs_base_frame_xy[i];
-        const real rrrs_base_frame_yy = m->rrrs_base_frame_yy[i];
-        const real rrrs_base_frame_zy = m->rrrs_base_frame_zy[i];
-        const real rrrs_px_1 = rrrs_S_x*rrrs_base_frame_xy + rrrs_S_y*rrrs_base_frame_yy +
-            rrrs_S_z*rrrs_base_frame_zy;
-        /* (rrrs-py_1) component across the reference direction */
-        const real rrrs_base_frame_xz = m->rrrs_base_frame_xz[i];
-        const real rrrs_base_frame_yz = m->rrrs_base_frame_yz[i];
-        const real rrrs_base_frame_zz = m->rrrs_base_frame_zz[i];
-        const real rrrs_py_1 = rrrs_S_x*rrrs_base_frame_xz + rrrs_S_y*rrrs_base_frame_yz +
-            rrrs_S_z*rrrs_base_frame_zz;
-        /* (rrrs-rho2_1) squared amplitude */
-        const real rrrs_rho2_1 = rrrs_px_1*rrrs_px_1 + rrrs_py_1*rrrs_py_1;
-        /* (rrrs-root_1) root, with the sign of the branch */
-        const real rrrs_branch_1 = m->rrrs_branch_1[i];
-        const real rrrs_root_1 = rrrs_branch_1*root(rrrs_rho2_1);
-        /* (rrrs-c_1) cosine of the angle of joint 1 from its reference direction */
-        const real inv_rrrs_rho2_1 = 1/rrrs_rho2_1;
-        const real rrrs_c_1 = -inv_rrrs_rho2_1*rrrs_py_1*rrrs_root_1;
-        /* (rrrs-s_1) sine of the angle of joint 1 from its reference direction */
-        const real rrrs_s_1 = inv_rrrs_rho2_1*rrrs_px_1*rrrs_root_1;
-        /* (rrrs-xi_1) the vector from joint 1 to the connection point, resolved along link 1 */
-        const real rrrs_base_frame_xx = m->rrrs_base_frame_xx[i];
-        const real rrrs_base_frame_yx = m->rrrs_base_frame_yx[i];
-        const real rrrs_base_frame_zx = m->rrrs_base_frame_zx[i];
-        const real rrrs_xi_1_in_axes1_z = rrrs_S_x*rrrs_base_frame_xx +
-            rrrs_S_y*rrrs_base_frame_yx + rrrs_S_z*rrrs_base_frame_zx;
-        /* (rrrs-x_2) from the origin of joint 2 to the connection point */
-        const real rrrs_joint2_offset_x = m->rrrs_joint2_offset_x[i];
-        const real rrrs_x_2_in_axes1_z = rrrs_xi_1_in_axes1_z - rrrs_joint2_offset_x;
-        /* (rrrs-Kd_2) projection on the centre's direction, from the distance fixed by the joints beyond
-           joint 2 */
-        const real rrrs_Kd_2_t_3 = rrrs_root_1*rrrs_root_1 +
-            rrrs_x_2_in_axes1_z*rrrs_x_2_in_axes1_z;
-        const real rrrs_Kd_2_t = m->rrrs_Kd_2_t[i];
-        const real rrrs_Kd_2_t_2 = m->rrrs_Kd_2_t_2[i];
-        const real rrrs_Kd_2 = rrrs_Kd_2_t + R(0.5)*rrrs_Kd_2_t_3 - rrrs_Kd_2_t_2;
-        /* (rrrs-Kc_2) factor of the cosine in the equation of joint 2 */
-        const real rrrs_joint3_offset_x = m->rrrs_joint3_offset_x[i];
-        const real rrrs_Kc_2 = -rrrs_joint3_offset_x*rrrs_root_1;
-        /* (rrrs-Ks_2) factor of the sine in the equation of joint 2 */
-        const real rrrs_Ks_2 = rrrs_joint3_offset_x*rrrs_x_2_in_axes1_z;
-        /* (rrrs-rho2_2) squared amplitude */
-        const real rrrs_rho2_2 = rrrs_Kc_2*rrrs_Kc_2 + rrrs_Ks_2*rrrs_Ks_2;
-        /* (rrrs-disc_2) discriminant */
-        const real rrrs_disc_2 = rrrs_rho2_2 - rrrs_Kd_2*rrrs_Kd_2;
-        /* (rrrs-root_2) root, with the sign of the branch */
-        const real rrrs_branch_2 = m->rrrs_branch_2[i];
-        const real rrrs_root_2 = rrrs_branch_2*root(rrrs_disc_2);
-        /* (rrrs-c_2) cosine of the angle of joint 2 from its reference direction */
-        const real rrrs_c_2_t = -1/rrrs_rho2_2;
-        const real rrrs_c_2 = rrrs_c_2_t*(rrrs_Ks_2*rrrs_root_2 - rrrs_Kc_2*rrrs_Kd_2);
-        /* (rrrs-s_2) sine of the angle of joint 2 from its reference direction */
-        const real rrrs_s_2 = rrrs_c_2_t*(-rrrs_Kc_2*rrrs_root_2 - rrrs_Kd_2*rrrs_Ks_2);
-        /* (rrrs-x_3) from the origin of joint 3 to the connection point */
-        const real inv_rrrs_size_t = m->inv_rrrs_size_t[i];
-        const real rrrs_x_3_in_axes2_x = inv_rrrs_size_t*rrrs_Kd_2*rrrs_joint3_offset_x -
-            rrrs_joint3_offset_x;
-        /* (rrrs-c_3) cosine of the angle of joint 3 from its reference direction */
-        const real inv_rrrs_size_t_2 = m->inv_rrrs_size_t_2[i];
-        const real rrrs_platform_joint_offset_x = m->rrrs_platform_joint_offset_x[i];
-        const real rrrs_c_3 = inv_rrrs_size_t_2*rrrs_platform_joint_offset_x*rrrs_x_3_in_axes2_x;
-        /* (rrrs-s_3) sine of the angle of joint 3 from its reference direction */
-        const real rrrs_s_3_t =
-            inv_rrrs_size_t*inv_rrrs_size_t_2*rrrs_joint3_offset_x*rrrs_platform_joint_offset_x*rrrs_root_2;
-        /* (rrrs-S_dot) velocity of the connection point */
-        const real omega_y = s[16*w + j];
-        const real omega_z = s[17*w + j];
-        const real rrrs_S_dot_t = omega_y*rrrs_q_z - omega_z*rrrs_q_y;
-        const real omega_x = s[15*w + j];
-        const real rrrs_S_dot_t_2 = omega_z*rrrs_q_x - omega_x*rrrs_q_z;
-        const real rrrs_S_dot_t_3 = omega_x*rrrs_q_y - omega_y*rrrs_q_x;
-        const real t_dot_x = s[12*w + j];
-        const real rrrs_S_dot_x = rrrs_S_dot_t + t_dot_x;
-        const real t_dot_y = s[13*w + j];
-        const real rrrs_S_dot_y = rrrs_S_dot_t_2 + t_dot_y;
-        const real t_dot_z = s[14*w + j];
-        const real rrrs_S_dot_z = rrrs_S_dot_t_3 + t_dot_z;
-        /* (rrrs-r_2) from joint 2 to the connection point, along the links */
-        const real rrrs_r_2_t = rrrs_platform_joint_offset_x*rrrs_s_3_t;
-        const real rrrs_r_2_in_axes2_x = rrrs_joint3_offset_x +
-            rrrs_c_3*rrrs_platform_joint_offset_x;
-        const real rrrs_r_2_in_axes3_x = rrrs_c_3*rrrs_r_2_in_axes2_x + rrrs_r_2_t*rrrs_s_3_t;
-        const real rrrs_r_2_in_axes3_y = rrrs_r_2_in_axes2_x*rrrs_s_3_t - rrrs_c_3*rrrs_r_2_t;
-        /* (rrrs-v_1) velocity of the connection point per rate of joint 1 */
-        const real rrrs_e_1_in_axes3_x = rrrs_c_3*rrrs_s_2 - rrrs_c_2*rrrs_s_3_t;
-        const real rrrs_e_1_in_axes3_y = rrrs_c_2*rrrs_c_3 + rrrs_s_2*rrrs_s_3_t;
-        const real rrrs_v_1_t = rrrs_s_2*rrrs_xi_1_in_axes1_z - rrrs_c_2*rrrs_root_1;
-        const real rrrs_v_1_t_2 = rrrs_c_2*rrrs_xi_1_in_axes1_z + rrrs_root_1*rrrs_s_2;
-        const real rrrs_v_1_in_axes3_z = rrrs_e_1_in_axes3_x*(rrrs_c_3*rrrs_v_1_t_2 +
-            rrrs_s_3_t*rrrs_v_1_t) - rrrs_e_1_in_axes3_y*(rrrs_c_3*rrrs_v_1_t -
-            rrrs_s_3_t*rrrs_v_1_t_2);
-        /* (rrrs-w_1) reciprocal vector 1 */
-        const real axis_z_rrrs_axes3_x = rrrs_base_frame_xy*rrrs_c_1 +
-            rrrs_base_frame_xz*rrrs_s_1;
-        const real axis_z_rrrs_axes3_y = rrrs_base_frame_yy*rrrs_c_1 +
-            rrrs_base_frame_yz*rrrs_s_1;
-        const real axis_z_rrrs_axes3_z = rrrs_base_frame_zy*rrrs_c_1 +
-            rrrs_base_frame_zz*rrrs_s_1;
-        const real rrrs_w_1_in_axes3_z = 1/rrrs_v_1_in_axes3_z;
-        const real rrrs_w_1_x = axis_z_rrrs_axes3_x*rrrs_w_1_in_axes3_z;
-        const real rrrs_w_1_y = axis_z_rrrs_axes3_y*rrrs_w_1_in_axes3_z;
-        const real rrrs_w_1_z = axis_z_rrrs_axes3_z*rrrs_w_1_in_axes3_z;
-        /* (rrrs-w_2) reciprocal vector 2 */
-        const real rrrs_w_2_t = rrrs_e_1_in_axes3_x*rrrs_s_1;
-        const real rrrs_w_2_t_2 = rrrs_c_1*rrrs_e_1_in_axes3_x;
-        const real axis_y_rrrs_axes3_x = rrrs_base_frame_xx*rrrs_e_1_in_axes3_y +
-            rrrs_base_frame_xy*rrrs_w_2_t - rrrs_base_frame_xz*rrrs_w_2_t_2;
-        const real axis_y_rrrs_axes3_y = rrrs_base_frame_yx*rrrs_e_1_in_axes3_y +
-            rrrs_base_frame_yy*rrrs_w_2_t - rrrs_base_frame_yz*rrrs_w_2_t_2;
-        const real axis_y_rrrs_axes3_z = rrrs_base_frame_zx*rrrs_e_1_in_axes3_y +
-            rrrs_base_frame_zy*rrrs_w_2_t - rrrs_base_frame_zz*rrrs_w_2_t_2;
-        const real axis_x_rrrs_axes3_x = axis_y_rrrs_axes3_y*axis_z_rrrs_axes3_z -
-            axis_y_rrrs_axes3_z*axis_z_rrrs_axes3_y;
-        const real axis_x_rrrs_axes3_y = axis_y_rrrs_axes3_z*axis_z_rrrs_axes3_x -
-            axis_y_rrrs_axes3_x*axis_z_rrrs_axes3_z;
-        const real axis_x_rrrs_axes3_z = axis_y_rrrs_axes3_x*axis_z_rrrs_axes3_y -
-            axis_y_rrrs_axes3_y*axis_z_rrrs_axes3_x;
-        const real rrrs_w_2_in_axes3_x = -1/rrrs_r_2_in_axes3_y;
-        const real rrrs_w_2_x = axis_x_rrrs_axes3_x*rrrs_w_2_in_axes3_x;
-        const real rrrs_w_2_y = axis_x_rrrs_axes3_y*rrrs_w_2_in_axes3_x;
-        const real rrrs_w_2_z = axis_x_rrrs_axes3_z*rrrs_w_2_in_axes3_x;
-        /* (rrrs-qd_1) rate of joint 1 */
-        const real rrrs_qd_1 = rrrs_w_1_in_axes3_z*(axis_z_rrrs_axes3_x*rrrs_S_dot_x +
-            axis_z_rrrs_axes3_y*rrrs_S_dot_y + axis_z_rrrs_axes3_z*rrrs_S_dot_z);
-        /* (rrrs-qd_2) rate of joint 2 */
-        const real rrrs_qd_2 = rrrs_w_2_in_axes3_x*(axis_x_rrrs_axes3_x*rrrs_S_dot_x +
-            axis_x_rrrs_axes3_y*rrrs_S_dot_y + axis_x_rrrs_axes3_z*rrrs_S_dot_z);
-        /* (rrrs-qd_3) rate of joint 3 */
-        const real rrrs_w_3_in_axes3_y = m->rrrs_w_3_in_axes3_y[i];
-        const real rrrs_qd_3 = rrrs_w_3_in_axes3_y*(axis_y_rrrs_axes3_x*rrrs_S_dot_x +
-            axis_y_rrrs_axes3_y*rrrs_S_dot_y + axis_y_rrrs_axes3_z*rrrs_S_dot_z -
-            rrrs_qd_2*rrrs_r_2_in_axes3_x);
-        /* (rrrs-omega_1) angular velocity of link 1 */
-        const real rrrs_omega_1_in_axes2_x = rrrs_qd_1*rrrs_s_2;
-        const real rrrs_omega_1_in_axes2_y = rrrs_c_2*rrrs_qd_1;
-        const real rrrs_omega_1_in_axes3_x = rrrs_c_3*rrrs_omega_1_in_axes2_x -
-            rrrs_omega_1_in_axes2_y*rrrs_s_3_t;
-        const real rrrs_omega_1_in_axes3_y = rrrs_c_3*rrrs_omega_1_in_axes2_y +
-            rrrs_omega_1_in_axes2_x*rrrs_s_3_t;
-        /* (rrrs-W_2) centripetal tensor of link 2 */
-        const real rrrs_W_2_in_axes2_yz = rrrs_omega_1_in_axes2_y*rrrs_qd_2;
-        const real rrrs_W_2_in_axes2_xz = rrrs_omega_1_in_axes2_x*rrrs_qd_2;
-        const real rrrs_W_2_in_axes2_xy = rrrs_omega_1_in_axes2_x*rrrs_omega_1_in_axes2_y;
-        /* (rrrs-omega_3) angular velocity of link 3 */
-        const real rrrs_omega_3_in_axes3_z = rrrs_qd_2 + rrrs_qd_3;
-        /* (rrrs-W_3) centripetal tensor of link 3 */
-        const real rrrs_W_3_in_axes3_xy = rrrs_omega_1_in_axes3_x*rrrs_omega_1_in_axes3_y;
-        const real rrrs_W_3_in_axes3_xz = rrrs_omega_1_in_axes3_x*rrrs_omega_3_in_axes3_z;
-        const real rrrs_W_3_in_axes3_yz = rrrs_omega_1_in_axes3_y*rrrs_omega_3_in_axes3_z;
-        /* (rrrs-a_p) acceleration of the connection point without its centripetal part */
-        const real alpha_y = s[22*w + j];
-        const real alpha_z = s[23*w + j];
-        const real t_ddot_x = s[18*w + j];
-        const real rrrs_a_p_x = t_ddot_x + alpha_y*rrrs_q_z - alpha_z*rrrs_q_y;
-        const real alpha_x = s[21*w + j];
-        const real t_ddot_y = s[19*w + j];
-        const real rrrs_a_p_y = t_ddot_y + alpha_z*rrrs_q_x - alpha_x*rrrs_q_z;
-        const real t_ddot_z = s[20*w + j];
-        const real rrrs_a_p_z = t_ddot_z + alpha_x*rrrs_q_y - alpha_y*rrrs_q_x;
-        /* (rrrs-S_ddot) acceleration of the connection point */
-        const real rrrs_S_ddot_x = rrrs_a_p_x + omega_y*rrrs_S_dot_t_3 - omega_z*rrrs_S_dot_t_2;
-        const real rrrs_S_ddot_y = rrrs_a_p_y + omega_z*rrrs_S_dot_t - omega_x*rrrs_S_dot_t_3;
-        const real rrrs_S_ddot_z = rrrs_a_p_z + omega_x*rrrs_S_dot_t_2 - omega_y*rrrs_S_dot_t;
-        const real rrrs_S_ddot_in_axes3_x = axis_x_rrrs_axes3_x*rrrs_S_ddot_x +
-            axis_x_rrrs_axes3_y*rrrs_S_ddot_y + axis_x_rrrs_axes3_z*rrrs_S_ddot_z;
-        const real rrrs_S_ddot_in_axes3_y = axis_y_rrrs_axes3_x*rrrs_S_ddot_x +
-            axis_y_rrrs_axes3_y*rrrs_S_ddot_y + axis_y_rrrs_axes3_z*rrrs_S_ddot_z;
-        const real rrrs_S_ddot_in_axes3_z = axis_z_rrrs_axes3_x*rrrs_S_ddot_x +
-            axis_z_rrrs_axes3_y*rrrs_S_ddot_y + axis_z_rrrs_axes3_z*rrrs_S_ddot_z;
-        /* (rrrs-zeta_2) angular acceleration of link 2 from the turning of axis 2 */
-        const real rrrs_zeta_2_in_axes3_y = rrrs_W_2_in_axes2_yz*rrrs_s_3_t -
-            rrrs_W_2_in_axes2_xz*rrrs_c_3;
-        /* (rrrs-zeta_3) angular acceleration of link 3 from the turning of axis 3 */
-        const real rrrs_zeta_3_t = rrrs_omega_1_in_axes3_x*rrrs_qd_3;
-        /* (rrrs-beta_3) angular acceleration of link 3 at zero joint accelerations */
-        const real rrrs_beta_3_in_axes3_y = rrrs_zeta_2_in_axes3_y - rrrs_zeta_3_t;
-        /* (rrrs-bias) acceleration of the connection point at zero joint accelerations */
-        const real rrrs_bias_t = -rrrs_joint2_offset_x*rrrs_s_2;
-        const real rrrs_bias_t_2 = rrrs_c_2*rrrs_joint2_offset_x;
-        const real rrrs_bias_t_3 = rrrs_omega_1_in_axes3_x*(rrrs_bias_t_2*rrrs_c_3 -
-            rrrs_bias_t*rrrs_s_3_t) - rrrs_omega_1_in_axes3_y*(-rrrs_bias_t*rrrs_c_3 -
-            rrrs_bias_t_2*rrrs_s_3_t);
-        const real rrrs_d_3_in_axes3_x = rrrs_c_3*rrrs_joint3_offset_x;
-        const real rrrs_d_3_in_axes3_y = rrrs_joint3_offset_x*rrrs_s_3_t;
-        const real rrrs_bias_t_4 = -rrrs_d_3_in_axes3_y*rrrs_qd_2;
-        const real rrrs_bias_t_5 = -rrrs_d_3_in_axes3_x*rrrs_qd_2;
-        const real rrrs_bias_t_6 = rrrs_d_3_in_axes3_y*rrrs_omega_1_in_axes3_x -
-            rrrs_d_3_in_axes3_x*rrrs_omega_1_in_axes3_y;
-        const real rrrs_bias_t_7 = rrrs_omega_3_in_axes3_z*rrrs_platform_joint_offset_x;
-        const real rrrs_bias_t_8 = rrrs_omega_1_in_axes3_y*rrrs_platform_joint_offset_x;
-        const real rrrs_bias_in_axes3_x = rrrs_bias_t_3*rrrs_omega_1_in_axes3_y +
-            rrrs_bias_t_5*rrrs_qd_2 + rrrs_bias_t_6*rrrs_omega_1_in_axes3_y -
-            rrrs_bias_t_7*rrrs_omega_3_in_axes3_z - rrrs_bias_t_8*rrrs_omega_1_in_axes3_y;
-        const real rrrs_bias_in_axes3_y = rrrs_bias_t_4*rrrs_qd_2 +
-            rrrs_bias_t_8*rrrs_omega_1_in_axes3_x - rrrs_bias_t_3*rrrs_omega_1_in_axes3_x -
-            rrrs_bias_t_6*rrrs_omega_1_in_axes3_x;
-        const real rrrs_bias_in_axes3_z = rrrs_bias_t_7*rrrs_omega_1_in_axes3_x +
-            rrrs_d_3_in_axes3_y*(rrrs_W_2_in_axes2_xz*rrrs_s_3_t + rrrs_W_2_in_axes2_yz*rrrs_c_3)
-            - rrrs_beta_3_in_axes3_y*rrrs_platform_joint_offset_x -
-            rrrs_bias_t_4*rrrs_omega_1_in_axes3_y - rrrs_bias_t_5*rrrs_omega_1_in_axes3_x -
-            rrrs_d_3_in_axes3_x*rrrs_zeta_2_in_axes3_y;
-        /* (rrrs-rel) acceleration of the connection point left to the joint accelerations */
-        const real rrrs_rel_in_axes3_x = rrrs_S_ddot_in_axes3_x - rrrs_bias_in_axes3_x;
-        const real rrrs_rel_in_axes3_y = rrrs_S_ddot_in_axes3_y - rrrs_bias_in_axes3_y;
-        const real rrrs_rel_in_axes3_z = rrrs_S_ddot_in_axes3_z - rrrs_bias_in_axes3_z;
-        /* (rrrs-qdd_1) acceleration of joint 1 */
-        const real rrrs_qdd_1 = rrrs_rel_in_axes3_z*rrrs_w_1_in_axes3_z;
-        /* (rrrs-qdd_2) acceleration of joint 2 */
-        const real rrrs_qdd_2 = rrrs_rel_in_axes3_x*rrrs_w_2_in_axes3_x;
-        /* (rrrs-alpha_1) angular acceleration of link 1 */
-        const real rrrs_alpha_1_t = -rrrs_qdd_1*rrrs_s_2;
-        const real rrrs_alpha_1_in_axes2_y = rrrs_c_2*rrrs_qdd_1;
-        /* (rrrs-alpha_2) angular acceleration of link 2 */
-        const real rrrs_alpha_2_in_axes2_x = rrrs_W_2_in_axes2_yz - rrrs_alpha_1_t;
-        const real rrrs_alpha_2_in_axes2_y = rrrs_alpha_1_in_axes2_y - rrrs_W_2_in_axes2_xz;
-        /* (rrrs-B_2) acceleration tensor of link 2 */
-        const real rrrs_B_2_in_axes2_xy = rrrs_W_2_in_axes2_xy - rrrs_qdd_2;
-        const real rrrs_B_2_in_axes2_yx = rrrs_W_2_in_axes2_xy + rrrs_qdd_2;
-        const real rrrs_B_2_in_axes2_zx = rrrs_W_2_in_axes2_xz - rrrs_alpha_2_in_axes2_y;
-        const real rrrs_B_2_in_axes2_zy = rrrs_W_2_in_axes2_yz + rrrs_alpha_2_in_axes2_x;
-        /* (rrrs-alpha_3) angular acceleration of link 3 */
-        const real rrrs_alpha_3_in_axes3_x = rrrs_alpha_2_in_axes2_x*rrrs_c_3 +
-            rrrs_omega_1_in_axes3_y*rrrs_qd_3 - rrrs_alpha_2_in_axes2_y*rrrs_s_3_t;
-        const real rrrs_alpha_3_in_axes3_y = rrrs_alpha_2_in_axes2_x*rrrs_s_3_t +
-            rrrs_alpha_2_in_axes2_y*rrrs_c_3 - rrrs_zeta_3_t;
-        const real rrrs_alpha_3_in_axes3_z = rrrs_qdd_2 + rrrs_w_3_in_axes3_y*(rrrs_rel_in_axes3_y
-            - rrrs_qdd_2*rrrs_r_2_in_axes3_x);
-        /* (rrrs-B_3) acceleration tensor of link 3 */
-        const real rrrs_B_3_in_axes3_xy = rrrs_W_3_in_axes3_xy - rrrs_alpha_3_in_axes3_z;
-        const real rrrs_B_3_in_axes3_xz = rrrs_W_3_in_axes3_xz + rrrs_alpha_3_in_axes3_y;
-        const real rrrs_B_3_in_axes3_yx = rrrs_W_3_in_axes3_xy + rrrs_alpha_3_in_axes3_z;
-        const real rrrs_B_3_in_axes3_yz = rrrs_W_3_in_axes3_yz - rrrs_alpha_3_in_axes3_x;
-        const real rrrs_B_3_in_axes3_zx = rrrs_W_3_in_axes3_xz - rrrs_alpha_3_in_axes3_y;
-        const real rrrs_B_3_in_axes3_zy = rrrs_W_3_in_axes3_yz + rrrs_alpha_3_in_axes3_x;
-        /* (rrrs-acc_3) acceleration of the reference point of link 3, less gravity */
-        const real gravity_x = m->gravity_x;
-        const real gravity_y = m->gravity_y;
-        const real gravity_z = m->gravity_z;
-        const real rrrs_acc_3_in_axes3_x = rrrs_S_ddot_in_axes3_x - axis_x_rrrs_axes3_x*gravity_x
-            - axis_x_rrrs_axes3_y*gravity_y - axis_x_rrrs_axes3_z*gravity_z;
-        const real rrrs_acc_3_in_axes3_y = rrrs_S_ddot_in_axes3_y - axis_y_rrrs_axes3_x*gravity_x
-            - axis_y_rrrs_axes3_y*gravity_y - axis_y_rrrs_axes3_z*gravity_z;
-        const real rrrs_acc_3_in_axes3_z = rrrs_S_ddot_in_axes3_z - axis_z_rrrs_axes3_x*gravity_x
-            - axis_z_rrrs_axes3_y*gravity_y - axis_z_rrrs_axes3_z*gravity_z;
-        /* (rrrs-mu_3) inertia moment of the links that turn with link 3, about their reference points */
-        const real rrrs_mu_3_t = rrrs_omega_1_in_axes3_x*rrrs_omega_1_in_axes3_x;
-        const real rrrs_mu_3_t_2 = rrrs_omega_1_in_axes3_y*rrrs_omega_1_in_axes3_y;
-        const real rrrs_mu_3_t_3 = rrrs_omega_3_in_axes3_z*rrrs_omega_3_in_axes3_z;
-        const real rrrs_J_3_in_spec3_xy = m->rrrs_J_3_in_spec3_xy[i];
-        const real rrrs_J_3_in_spec3_xz = m->rrrs_J_3_in_spec3_xz[i];
-        const real rrrs_J_3_in_spec3_yz = m->rrrs_J_3_in_spec3_yz[i];
-        const real rrrs_Sigma_3_in_axes3_yy = m->rrrs_Sigma_3_in_axes3_yy[i];
-        const real rrrs_Sigma_3_in_axes3_zz = m->rrrs_Sigma_3_in_axes3_zz[i];
-        const real rrrs_h_3_in_spec3_y = m->rrrs_h_3_in_spec3_y[i];
-        const real rrrs_h_3_in_spec3_z = m->rrrs_h_3_in_spec3_z[i];
-        const real rrrs_mu_3_in_axes3_x = rrrs_B_3_in_axes3_yx*rrrs_J_3_in_spec3_xz +
-            rrrs_B_3_in_axes3_zy*rrrs_Sigma_3_in_axes3_yy + rrrs_J_3_in_spec3_yz*(rrrs_mu_3_t_2 -
-            rrrs_mu_3_t_3) + rrrs_acc_3_in_axes3_z*rrrs_h_3_in_spec3_y -
-            rrrs_B_3_in_axes3_yz*rrrs_Sigma_3_in_axes3_zz -
-            rrrs_B_3_in_axes3_zx*rrrs_J_3_in_spec3_xy - rrrs_acc_3_in_axes3_y*rrrs_h_3_in_spec3_z;
-        const real rrrs_Sigma_3_in_axes3_xx = m->rrrs_Sigma_3_in_axes3_xx[i];
-        const real rrrs_h_3_in_spec3_x = m->rrrs_h_3_in_spec3_x[i];
-        const real rrrs_mu_3_in_axes3_y = rrrs_B_3_in_axes3_xz*rrrs_Sigma_3_in_axes3_zz +
-            rrrs_B_3_in_axes3_zy*rrrs_J_3_in_spec3_xy + rrrs_acc_3_in_axes3_x*rrrs_h_3_in_spec3_z
-            - rrrs_B_3_in_axes3_xy*rrrs_J_3_in_spec3_yz -
-            rrrs_B_3_in_axes3_zx*rrrs_Sigma_3_in_axes3_xx - rrrs_J_3_in_spec3_xz*(rrrs_mu_3_t -
-            rrrs_mu_3_t_3) - rrrs_acc_3_in_axes3_z*rrrs_h_3_in_spec3_x;
-        const real rrrs_mu_3_in_axes3_z = rrrs_B_3_in_axes3_xz*rrrs_J_3_in_spec3_yz +
-            rrrs_B_3_in_axes3_yx*rrrs_Sigma_3_in_axes3_xx + rrrs_J_3_in_spec3_xy*(rrrs_mu_3_t -
-            rrrs_mu_3_t_2) + rrrs_acc_3_in_axes3_y*rrrs_h_3_in_spec3_x -
-            rrrs_B_3_in_axes3_xy*rrrs_Sigma_3_in_axes3_yy -
-            rrrs_B_3_in_axes3_yz*rrrs_J_3_in_spec3_xz - rrrs_acc_3_in_axes3_x*rrrs_h_3_in_spec3_y;
-        /* (rrrs-mu_2) inertia moment of the links that turn with link 2, about their reference points */
-        const real rrrs_mu_2_t_3 = rrrs_omega_1_in_axes2_x*rrrs_omega_1_in_axes2_x;
-        const real rrrs_mu_2_t_4 = rrrs_omega_1_in_axes2_y*rrrs_omega_1_in_axes2_y;
-        const real rrrs_mu_2_t_5 = rrrs_qd_2*rrrs_qd_2;
-        const real rrrs_mu_2_t = m->rrrs_mu_2_t[i];
-        const real rrrs_mu_2_t_2 = m->rrrs_mu_2_t_2[i];
-        const real rrrs_g_in_axes1_x = rrrs_c_1*rrrs_mu_2_t + rrrs_mu_2_t_2*rrrs_s_1;
-        const real rrrs_g_in_axes1_y = rrrs_c_1*rrrs_mu_2_t_2 - rrrs_mu_2_t*rrrs_s_1;
-        const real rrrs_g_in_axes1_z = m->rrrs_g_in_axes1_z[i];
-        const real rrrs_g_in_axes2_x = rrrs_c_2*rrrs_g_in_axes1_y + rrrs_g_in_axes1_z*rrrs_s_2;
-        const real rrrs_g_in_axes2_y = rrrs_c_2*rrrs_g_in_axes1_z - rrrs_g_in_axes1_y*rrrs_s_2;
-        const real rrrs_J_2_in_spec2_xy = m->rrrs_J_2_in_spec2_xy[i];
-        const real rrrs_J_2_in_spec2_xz = m->rrrs_J_2_in_spec2_xz[i];
-        const real rrrs_J_2_in_spec2_yz = m->rrrs_J_2_in_spec2_yz[i];
-        const real rrrs_Sigma_2_in_axes2_yy = m->rrrs_Sigma_2_in_axes2_yy[i];
-        const real rrrs_Sigma_2_in_axes2_zz = m->rrrs_Sigma_2_in_axes2_zz[i];
-        const real rrrs_h_2_in_spec2_y = m->rrrs_h_2_in_spec2_y[i];
-        const real rrrs_h_2_in_spec2_z = m->rrrs_h_2_in_spec2_z[i];
-        const real rrrs_mu_2_in_axes2_x = rrrs_B_2_in_axes2_yx*rrrs_J_2_in_spec2_xz +
-            rrrs_B_2_in_axes2_zy*rrrs_Sigma_2_in_axes2_yy + rrrs_J_2_in_spec2_yz*(rrrs_mu_2_t_4 -
-            rrrs_mu_2_t_5) + rrrs_g_in_axes2_y*rrrs_h_2_in_spec2_z -
-            rrrs_B_2_in_axes2_zx*rrrs_J_2_in_spec2_xy - rrrs_Sigma_2_in_axes2_zz*rrrs_alpha_1_t -
-            rrrs_g_in_axes1_x*rrrs_h_2_in_spec2_y;
-        const real rrrs_Sigma_2_in_axes2_xx = m->rrrs_Sigma_2_in_axes2_xx[i];
-        const real rrrs_h_2_in_spec2_x = m->rrrs_h_2_in_spec2_x[i];
-        const real rrrs_mu_2_in_axes2_y = rrrs_B_2_in_axes2_zy*rrrs_J_2_in_spec2_xy +
-            rrrs_Sigma_2_in_axes2_zz*rrrs_alpha_1_in_axes2_y +
-            rrrs_g_in_axes1_x*rrrs_h_2_in_spec2_x - rrrs_B_2_in_axes2_xy*rrrs_J_2_in_spec2_yz -
-            rrrs_B_2_in_axes2_zx*rrrs_Sigma_2_in_axes2_xx - rrrs_J_2_in_spec2_xz*(rrrs_mu_2_t_3 -
-            rrrs_mu_2_t_5) - rrrs_g_in_axes2_x*rrrs_h_2_in_spec2_z;
-        const real rrrs_mu_2_in_axes2_z = rrrs_B_2_in_axes2_yx*rrrs_Sigma_2_in_axes2_xx +
-            rrrs_J_2_in_spec2_xy*(rrrs_mu_2_t_3 - rrrs_mu_2_t_4) +
-            rrrs_J_2_in_spec2_yz*rrrs_alpha_1_in_axes2_y + rrrs_g_in_axes2_x*rrrs_h_2_in_spec2_y -
-            rrrs_B_2_in_axes2_xy*rrrs_Sigma_2_in_axes2_yy - rrrs_J_2_in_spec2_xz*rrrs_alpha_1_t -
-            rrrs_g_in_axes2_y*rrrs_h_2_in_spec2_x;
-        /* (rrrs-N_2) moment about joint 2 of the links from 2 outwards, the force at the connection point
-           left out */
-        const real rrrs_N_2_in_axes2_x = rrrs_mu_2_in_axes2_x + rrrs_c_3*rrrs_mu_3_in_axes3_x +
-            rrrs_mu_3_in_axes3_y*rrrs_s_3_t;
-        const real rrrs_N_2_in_axes2_y = rrrs_mu_2_in_axes2_y + rrrs_c_3*rrrs_mu_3_in_axes3_y -
-            rrrs_mu_3_in_axes3_x*rrrs_s_3_t;
-        const real rrrs_N_2_in_axes2_z = rrrs_mu_2_in_axes2_z + rrrs_mu_3_in_axes3_z;
-        /* (rrrs-mu_1) inertia moment of the links that turn with link 1, about their reference points */
-        const real rrrs_J_1_in_spec1_xx = m->rrrs_J_1_in_spec1_xx[i];
-        const real rrrs_h_1_in_spec1_y = m->rrrs_h_1_in_spec1_y[i];
-        const real rrrs_h_1_in_spec1_z = m->rrrs_h_1_in_spec1_z[i];
-        const real rrrs_mu_1_in_axes1_z = rrrs_J_1_in_spec1_xx*rrrs_qdd_1 -
-            rrrs_g_in_axes1_x*rrrs_h_1_in_spec1_y - rrrs_g_in_axes1_y*rrrs_h_1_in_spec1_z;
-        /* (rrrs-N_1) moment about joint 1 of the links from 1 outwards, the force at the connection point
-           left out */
-        const real rrrs_N_1_in_axes1_z = rrrs_mu_1_in_axes1_z + rrrs_N_2_in_axes2_x*rrrs_s_2 +
-            rrrs_N_2_in_axes2_y*rrrs_c_2;
-        /* (rrrs-G) force at the connection point that balances the leg's inertia and weight along all
-           degrees of freedom */
-        const real rrrs_G_in_axes3_y = rrrs_mu_3_in_axes3_z*rrrs_w_3_in_axes3_y;
-        /* (rrrs-c) leg force on the platform without actuation and without the mass at the connection
-           point */
-        const real rrrs_c_in_axes3_x = rrrs_h_3_in_spec3_x*(rrrs_mu_3_t_2 + rrrs_mu_3_t_3) +
-            rrrs_w_2_in_axes3_x*(rrrs_G_in_axes3_y*rrrs_r_2_in_axes3_x - rrrs_N_2_in_axes2_z) -
-            rrrs_B_3_in_axes3_xy*rrrs_h_3_in_spec3_y - rrrs_B_3_in_axes3_xz*rrrs_h_3_in_spec3_z;
-        const real rrrs_c_in_axes3_y = rrrs_h_3_in_spec3_y*(rrrs_mu_3_t + rrrs_mu_3_t_3) -
-            rrrs_G_in_axes3_y - rrrs_B_3_in_axes3_yx*rrrs_h_3_in_spec3_x -
-            rrrs_B_3_in_axes3_yz*rrrs_h_3_in_spec3_z;
-        const real rrrs_c_in_axes3_z = rrrs_h_3_in_spec3_z*(rrrs_mu_3_t + rrrs_mu_3_t_2) -
-            rrrs_B_3_in_axes3_zx*rrrs_h_3_in_spec3_x - rrrs_B_3_in_axes3_zy*rrrs_h_3_in_spec3_y -
-            rrrs_N_1_in_axes1_z*rrrs_w_1_in_axes3_z;
+        values_rrrs v;
+        stage_rrrs_X(m, w, i, j, s, X, &v);
+        stage_rrrs_A_X(w, j, A, &v);
+        stage_rrrs_V_X(m, w, i, j, V, &v);
+        stage_rrrs_A_V_X(w, j, V, &v);
+        stage_rrrs_legs_required(m, i, &v);
         /* (rrrs-c_true) leg force on the platform without actuation, the last link's mass included */
         const real rrrs_link3_mass = m->rrrs_link3_mass[i];
-        const real rrrs_c_true_in_axes3_x = rrrs_c_in_axes3_x -
-            rrrs_acc_3_in_axes3_x*rrrs_link3_mass;
-        const real rrrs_c_true_in_axes3_y = rrrs_c_in_axes3_y -
-            rrrs_acc_3_in_axes3_y*rrrs_link3_mass;
-        const real rrrs_c_true_in_axes3_z = rrrs_c_in_axes3_z -
-            rrrs_acc_3_in_axes3_z*rrrs_link3_mass;
-        const real rrrs_c_true_x = axis_x_rrrs_axes3_x*rrrs_c_true_in_axes3_x +
-            axis_y_rrrs_axes3_x*rrrs_c_true_in_axes3_y +
-            axis_z_rrrs_axes3_x*rrrs_c_true_in_axes3_z;
-        const real rrrs_c_true_y = axis_x_rrrs_axes3_y*rrrs_c_true_in_axes3_x +
-            axis_y_rrrs_axes3_y*rrrs_c_true_in_axes3_y +
-            axis_z_rrrs_axes3_y*rrrs_c_true_in_axes3_z;
-        const real rrrs_c_true_z = axis_x_rrrs_axes3_z*rrrs_c_true_in_axes3_x +
-            axis_y_rrrs_axes3_z*rrrs_c_true_in_axes3_y +
-            axis_z_rrrs_axes3_z*rrrs_c_true_in_axes3_z;
+        const real rrrs_c_true_in_axes3_x = v.rrrs_c_in_axes3_x -
+            v.rrrs_acc_3_in_axes3_x*rrrs_link3_mass;
+        const real rrrs_c_true_in_axes3_y = v.rrrs_c_in_axes3_y -
+            v.rrrs_acc_3_in_axes3_y*rrrs_link3_mass;
+        const real rrrs_c_true_in_axes3_z = v.rrrs_c_in_axes3_z -
+            v.rrrs_acc_3_in_axes3_z*rrrs_link3_mass;
+        const real rrrs_c_true_x = v.axis_x_rrrs_axes3_x*rrrs_c_true_in_axes3_x +
+            v.axis_y_rrrs_axes3_x*rrrs_c_true_in_axes3_y +
+            v.axis_z_rrrs_axes3_x*rrrs_c_true_in_axes3_z;
+        const real rrrs_c_true_y = v.axis_x_rrrs_axes3_y*rrrs_c_true_in_axes3_x +
+            v.axis_y_rrrs_axes3_y*rrrs_c_true_in_axes3_y +
+            v.axis_z_rrrs_axes3_y*rrrs_c_true_in_axes3_z;
+        const real rrrs_c_true_z = v.axis_x_rrrs_axes3_z*rrrs_c_true_in_axes3_x +
+            v.axis_y_rrrs_axes3_z*rrrs_c_true_in_axes3_y +
+            v.axis_z_rrrs_axes3_z*rrrs_c_true_in_axes3_z;
         /* (rrrs-c_true) leg force on the platform without actuation, the last link's mass included */
         o[0*count + k] = rrrs_c_true_x;
         o[1*count + k] = rrrs_c_true_y;
         o[2*count + k] = rrrs_c_true_z;
         /* (rrrs-w_1) reciprocal vector 1 */
-        o[3*count + k] = rrrs_w_1_x;
-        o[4*count + k] = rrrs_w_1_y;
-        o[5*count + k] = rrrs_w_1_z;
+        o[3*count + k] = v.rrrs_w_1_x;
+        o[4*count + k] = v.rrrs_w_1_y;
+        o[5*count + k] = v.rrrs_w_1_z;
         /* (rrrs-w_2) reciprocal vector 2 */
-        o[6*count + k] = rrrs_w_2_x;
-        o[7*count + k] = rrrs_w_2_y;
-        o[8*count + k] = rrrs_w_2_z;
+        o[6*count + k] = v.rrrs_w_2_x;
+        o[7*count + k] = v.rrrs_w_2_y;
+        o[8*count + k] = v.rrrs_w_2_z;
         const real rrrs_size_t_3 = m->rrrs_size_t_3[i];
         const real rrrs_rho2_2_t = m->rrrs_rho2_2_t[i];
         const real rrrs_size = m->rrrs_size[i];
-        o[10*count + k] = UNLESS(magnitude(rrrs_rho2_1) > TOLERANCE*TOLERANCE*rrrs_size_t_3) +
-            UNLESS(magnitude(rrrs_rho2_2) > TOLERANCE*TOLERANCE*rrrs_rho2_2_t) +
-            UNLESS(magnitude(rrrs_v_1_in_axes3_z) > TOLERANCE*rrrs_size) +
-            UNLESS(magnitude(rrrs_r_2_in_axes3_y) > TOLERANCE*rrrs_size);
-        o[9*count + k] = UNLESS(rrrs_disc_2 >= 0);
+        o[10*count + k] = UNLESS(magnitude(v.rrrs_rho2_1) > TOLERANCE*TOLERANCE*rrrs_size_t_3) +
+            UNLESS(magnitude(v.rrrs_rho2_2) > TOLERANCE*TOLERANCE*rrrs_rho2_2_t) +
+            UNLESS(magnitude(v.rrrs_v_1_in_axes3_z) > TOLERANCE*rrrs_size) +
+            UNLESS(magnitude(v.rrrs_r_2_in_axes3_y) > TOLERANCE*rrrs_size);
+        o[9*count + k] = UNLESS(v.rrrs_disc_2 >= 0);
     }
 }
 
@@ -5856,10 +4358,10 @@ INLINE void legs_place_rrrs(size_t w, size_t count, const real *o, size_t leg, s
 INLINE void legs_run(const prepared *m, const real *X, const real *V, const real *A, real
     *leg_force, real *actuator, verdict *t)
 {
-    real s[24] = {0};
+    real s[9] = {0};
     real o_rrrs[11*LEGS(LEGS_OF_rrrs)] = {0};
-    legs_before(1, X, V, A, s, t);
-    legs_legs_rrrs(m, 1, 0, 1, s, 0, LEGS(LEGS_OF_rrrs), o_rrrs);
+    legs_before(m, 1, X, s, t);
+    legs_legs_rrrs(m, 1, 0, 1, s, 0, LEGS(LEGS_OF_rrrs), X, V, A, o_rrrs);
     for (size_t leg = 0; leg < LEGS_OF_rrrs; ++leg) {
         legs_place_rrrs(1, LEGS(LEGS_OF_rrrs), o_rrrs, leg, leg, leg_force, actuator, t);
     }
@@ -5869,40 +4371,8 @@ INLINE void legs_run(const prepared *m, const real *X, const real *V, const real
 INLINE void potential_before(const prepared *m, size_t w, const real *X, real *s, verdict *t)
 {
     for (size_t k = 0; k < w; ++k) {
-        /* X: named entries */
-        const real X_0 = X[0*w + k];
-        const real t_x = X_0;
-        const real X_1 = X[1*w + k];
-        const real t_y = X_1;
-        const real X_2 = X[2*w + k];
-        const real t_z = X_2;
-        const real X_3 = X[3*w + k];
-        const real X_4 = X[4*w + k];
-        const real X_5 = X[5*w + k];
-        const real X_6 = X[6*w + k];
-        const real quaternion_norm2 = X_3*X_3 + X_4*X_4 + X_5*X_5 + X_6*X_6;
-        const real quaternion_scale = 2/quaternion_norm2;
-        const real quaternion_sx = X_3*quaternion_scale;
-        const real quaternion_sy = X_4*quaternion_scale;
-        const real quaternion_sz = X_5*quaternion_scale;
-        const real quaternion_wx = X_6*quaternion_sx;
-        const real quaternion_wy = X_6*quaternion_sy;
-        const real quaternion_wz = X_6*quaternion_sz;
-        const real quaternion_xx = X_3*quaternion_sx;
-        const real quaternion_xy = X_3*quaternion_sy;
-        const real quaternion_xz = X_3*quaternion_sz;
-        const real quaternion_yy = X_4*quaternion_sy;
-        const real quaternion_yz = X_4*quaternion_sz;
-        const real quaternion_zz = X_5*quaternion_sz;
-        const real R_xx = 1 - quaternion_yy - quaternion_zz;
-        const real R_xy = quaternion_xy - quaternion_wz;
-        const real R_xz = quaternion_wy + quaternion_xz;
-        const real R_yx = quaternion_wz + quaternion_xy;
-        const real R_yy = 1 - quaternion_xx - quaternion_zz;
-        const real R_yz = quaternion_yz - quaternion_wx;
-        const real R_zx = quaternion_xz - quaternion_wy;
-        const real R_zy = quaternion_wx + quaternion_yz;
-        const real R_zz = 1 - quaternion_xx - quaternion_yy;
+        values v;
+        stage_X(m, w, k, X, &v);
         /* (potential) potential energy */
         const real gravity_x = m->gravity_x;
         const real gravity_y = m->gravity_y;
@@ -5911,130 +4381,61 @@ INLINE void potential_before(const prepared *m, size_t w, const real *X, real *s
         const real h_star_in_platform_y = m->h_star_in_platform_y;
         const real h_star_in_platform_z = m->h_star_in_platform_z;
         const real m_star = m->m_star;
-        const real potential_t = gravity_x*(R_xx*h_star_in_platform_x + R_xy*h_star_in_platform_y
-            + R_xz*h_star_in_platform_z + m_star*t_x) + gravity_y*(R_yx*h_star_in_platform_x +
-            R_yy*h_star_in_platform_y + R_yz*h_star_in_platform_z + m_star*t_y) +
-            gravity_z*(R_zx*h_star_in_platform_x + R_zy*h_star_in_platform_y +
-            R_zz*h_star_in_platform_z + m_star*t_z);
-        s[0*w + k] = t_x;
-        s[1*w + k] = t_y;
-        s[2*w + k] = t_z;
-        s[3*w + k] = R_xx;
-        s[4*w + k] = R_xy;
-        s[5*w + k] = R_xz;
-        s[6*w + k] = R_yx;
-        s[7*w + k] = R_yy;
-        s[8*w + k] = R_yz;
-        s[9*w + k] = R_zx;
-        s[10*w + k] = R_zy;
-        s[11*w + k] = R_zz;
-        s[12*w + k] = potential_t;
-        t->invalid[k] += UNLESS(is_finite(quaternion_scale)) + UNLESS(quaternion_scale > 0);
+        const real t_x = X[0*w + k];
+        const real t_y = X[1*w + k];
+        const real t_z = X[2*w + k];
+        const real potential_t = gravity_x*(v.R_xx*h_star_in_platform_x +
+            v.R_xy*h_star_in_platform_y + v.R_xz*h_star_in_platform_z + m_star*t_x) +
+            gravity_y*(v.R_yx*h_star_in_platform_x + v.R_yy*h_star_in_platform_y +
+            v.R_yz*h_star_in_platform_z + m_star*t_y) + gravity_z*(v.R_zx*h_star_in_platform_x +
+            v.R_zy*h_star_in_platform_y + v.R_zz*h_star_in_platform_z + m_star*t_z);
+        s[0*w + k] = v.R_xx;
+        s[1*w + k] = v.R_xy;
+        s[2*w + k] = v.R_xz;
+        s[3*w + k] = v.R_yx;
+        s[4*w + k] = v.R_yy;
+        s[5*w + k] = v.R_yz;
+        s[6*w + k] = v.R_zx;
+        s[7*w + k] = v.R_zy;
+        s[8*w + k] = v.R_zz;
+        s[9*w + k] = potential_t;
+        t->invalid[k] += UNLESS(is_finite(v.quaternion_scale)) + UNLESS(v.quaternion_scale > 0);
     }
 }
 
 INLINE void potential_legs_rrrs(const prepared *m, size_t w, size_t leg, size_t legs, const real
-    *s, size_t states, size_t count, int add, real *terms, real *o)
+    *s, size_t states, size_t count, int add, const real *X, real *terms, real *o)
 {
     for (size_t k = 0; k < count; ++k) {
         const size_t i = leg + legs*k;
         const size_t j = states*k;
-        /* (rrrs-S) from the base point to the connection point */
-        const real R_xx = s[3*w + j];
-        const real R_xy = s[4*w + j];
-        const real R_xz = s[5*w + j];
-        const real rrrs_base_point_x = m->rrrs_base_point_x[i];
-        const real rrrs_platform_point_x = m->rrrs_platform_point_x[i];
-        const real rrrs_platform_point_y = m->rrrs_platform_point_y[i];
-        const real rrrs_platform_point_z = m->rrrs_platform_point_z[i];
-        const real t_x = s[0*w + j];
-        const real rrrs_S_x = t_x + R_xx*rrrs_platform_point_x + R_xy*rrrs_platform_point_y +
-            R_xz*rrrs_platform_point_z - rrrs_base_point_x;
-        const real R_yx = s[6*w + j];
-        const real R_yy = s[7*w + j];
-        const real R_yz = s[8*w + j];
-        const real rrrs_base_point_y = m->rrrs_base_point_y[i];
-        const real t_y = s[1*w + j];
-        const real rrrs_S_y = t_y + R_yx*rrrs_platform_point_x + R_yy*rrrs_platform_point_y +
-            R_yz*rrrs_platform_point_z - rrrs_base_point_y;
-        const real R_zx = s[9*w + j];
-        const real R_zy = s[10*w + j];
-        const real R_zz = s[11*w + j];
-        const real rrrs_base_point_z = m->rrrs_base_point_z[i];
-        const real t_z = s[2*w + j];
-        const real rrrs_S_z = t_z + R_zx*rrrs_platform_point_x + R_zy*rrrs_platform_point_y +
-            R_zz*rrrs_platform_point_z - rrrs_base_point_z;
-        /* (rrrs-px_1) component along the reference direction */
-        const real rrrs_base_frame_xy = m->rrrs_base_frame_xy[i];
-        const real rrrs_base_frame_yy = m->rrrs_base_frame_yy[i];
-        const real rrrs_base_frame_zy = m->rrrs_base_frame_zy[i];
-        const real rrrs_px_1 = rrrs_S_x*rrrs_base_frame_xy + rrrs_S_y*rrrs_base_frame_yy +
-            rrrs_S_z*rrrs_base_frame_zy;
-        /* (rrrs-py_1) component across the reference direction */
-        const real rrrs_base_frame_xz = m->rrrs_base_frame_xz[i];
-        const real rrrs_base_frame_yz = m->rrrs_base_frame_yz[i];
-        const real rrrs_base_frame_zz = m->rrrs_base_frame_zz[i];
-        const real rrrs_py_1 = rrrs_S_x*rrrs_base_frame_xz + rrrs_S_y*rrrs_base_frame_yz +
-            rrrs_S_z*rrrs_base_frame_zz;
-        /* (rrrs-rho2_1) squared amplitude */
-        const real rrrs_rho2_1 = rrrs_px_1*rrrs_px_1 + rrrs_py_1*rrrs_py_1;
-        /* (rrrs-root_1) root, with the sign of the branch */
-        const real rrrs_branch_1 = m->rrrs_branch_1[i];
-        const real rrrs_root_1 = rrrs_branch_1*root(rrrs_rho2_1);
+        values_rrrs v;
+        stage_rrrs_inverse_kinematics_potential(m, w, i, j, s, X, &v);
         /* (rrrs-c_1) cosine of the angle of joint 1 from its reference direction */
-        const real inv_rrrs_rho2_1 = 1/rrrs_rho2_1;
-        const real rrrs_c_1 = -inv_rrrs_rho2_1*rrrs_py_1*rrrs_root_1;
+        const real rrrs_c_1 = v.inv_rrrs_rho2_1*v.rrrs_S_in_turn1_x*v.rrrs_root_1;
         /* (rrrs-s_1) sine of the angle of joint 1 from its reference direction */
-        const real rrrs_s_1 = inv_rrrs_rho2_1*rrrs_px_1*rrrs_root_1;
-        /* (rrrs-xi_1) the vector from joint 1 to the connection point, resolved along link 1 */
-        const real rrrs_base_frame_xx = m->rrrs_base_frame_xx[i];
-        const real rrrs_base_frame_yx = m->rrrs_base_frame_yx[i];
-        const real rrrs_base_frame_zx = m->rrrs_base_frame_zx[i];
-        const real rrrs_xi_1_in_axes1_z = rrrs_S_x*rrrs_base_frame_xx +
-            rrrs_S_y*rrrs_base_frame_yx + rrrs_S_z*rrrs_base_frame_zx;
-        /* (rrrs-x_2) from the origin of joint 2 to the connection point */
-        const real rrrs_joint2_offset_x = m->rrrs_joint2_offset_x[i];
-        const real rrrs_x_2_in_axes1_z = rrrs_xi_1_in_axes1_z - rrrs_joint2_offset_x;
-        /* (rrrs-Kd_2) projection on the centre's direction, from the distance fixed by the joints beyond
-           joint 2 */
-        const real rrrs_Kd_2_t_3 = rrrs_root_1*rrrs_root_1 +
-            rrrs_x_2_in_axes1_z*rrrs_x_2_in_axes1_z;
-        const real rrrs_Kd_2_t = m->rrrs_Kd_2_t[i];
-        const real rrrs_Kd_2_t_2 = m->rrrs_Kd_2_t_2[i];
-        const real rrrs_Kd_2 = rrrs_Kd_2_t + R(0.5)*rrrs_Kd_2_t_3 - rrrs_Kd_2_t_2;
-        /* (rrrs-Kc_2) factor of the cosine in the equation of joint 2 */
-        const real rrrs_joint3_offset_x = m->rrrs_joint3_offset_x[i];
-        const real rrrs_Kc_2 = -rrrs_joint3_offset_x*rrrs_root_1;
-        /* (rrrs-Ks_2) factor of the sine in the equation of joint 2 */
-        const real rrrs_Ks_2 = rrrs_joint3_offset_x*rrrs_x_2_in_axes1_z;
-        /* (rrrs-rho2_2) squared amplitude */
-        const real rrrs_rho2_2 = rrrs_Kc_2*rrrs_Kc_2 + rrrs_Ks_2*rrrs_Ks_2;
-        /* (rrrs-disc_2) discriminant */
-        const real rrrs_disc_2 = rrrs_rho2_2 - rrrs_Kd_2*rrrs_Kd_2;
-        /* (rrrs-root_2) root, with the sign of the branch */
-        const real rrrs_branch_2 = m->rrrs_branch_2[i];
-        const real rrrs_root_2 = rrrs_branch_2*root(rrrs_disc_2);
+        const real rrrs_s_1 = v.inv_rrrs_rho2_1*v.rrrs_S_in_turn1_y*v.rrrs_root_1;
         /* (rrrs-c_2) cosine of the angle of joint 2 from its reference direction */
-        const real rrrs_c_2_t = -1/rrrs_rho2_2;
-        const real rrrs_c_2 = rrrs_c_2_t*(rrrs_Ks_2*rrrs_root_2 - rrrs_Kc_2*rrrs_Kd_2);
+        const real rrrs_c_2 = v.inv_rrrs_rho2_2*(v.rrrs_Kc_2*v.rrrs_Kd_2 -
+            v.rrrs_Ks_2*v.rrrs_root_2);
         /* (rrrs-s_2) sine of the angle of joint 2 from its reference direction */
-        const real rrrs_s_2 = rrrs_c_2_t*(-rrrs_Kc_2*rrrs_root_2 - rrrs_Kd_2*rrrs_Ks_2);
-        /* (rrrs-x_3) from the origin of joint 3 to the connection point */
-        const real inv_rrrs_size_t = m->inv_rrrs_size_t[i];
-        const real rrrs_x_3_in_axes2_x = inv_rrrs_size_t*rrrs_Kd_2*rrrs_joint3_offset_x -
-            rrrs_joint3_offset_x;
+        const real rrrs_s_2 = v.inv_rrrs_rho2_2*(v.rrrs_Kc_2*v.rrrs_root_2 +
+            v.rrrs_Kd_2*v.rrrs_Ks_2);
         /* (rrrs-c_3) cosine of the angle of joint 3 from its reference direction */
         const real inv_rrrs_size_t_2 = m->inv_rrrs_size_t_2[i];
         const real rrrs_platform_joint_offset_x = m->rrrs_platform_joint_offset_x[i];
-        const real rrrs_c_3 = inv_rrrs_size_t_2*rrrs_platform_joint_offset_x*rrrs_x_3_in_axes2_x;
+        const real rrrs_c_3 =
+            inv_rrrs_size_t_2*rrrs_platform_joint_offset_x*v.rrrs_x_3_in_axes2_x;
         /* (rrrs-s_3) sine of the angle of joint 3 from its reference direction */
+        const real inv_rrrs_size_t = m->inv_rrrs_size_t[i];
+        const real rrrs_joint3_offset_x = m->rrrs_joint3_offset_x[i];
         const real rrrs_s_3_t =
-            inv_rrrs_size_t*inv_rrrs_size_t_2*rrrs_joint3_offset_x*rrrs_platform_joint_offset_x*rrrs_root_2;
+            inv_rrrs_size_t*inv_rrrs_size_t_2*rrrs_joint3_offset_x*rrrs_platform_joint_offset_x*v.rrrs_root_2;
         /* (potential) potential energy */
         const real rrrs_potential_t = m->rrrs_potential_t[i];
         const real rrrs_potential_t_2 = m->rrrs_potential_t_2[i];
-        const real rrrs_b_in_spec1_z = rrrs_c_1*rrrs_potential_t + rrrs_potential_t_2*rrrs_s_1;
-        const real rrrs_b_in_spec1_y = rrrs_potential_t*rrrs_s_1 - rrrs_c_1*rrrs_potential_t_2;
+        const real rrrs_b_in_spec1_y = rrrs_c_1*rrrs_potential_t + rrrs_potential_t_2*rrrs_s_1;
+        const real rrrs_b_in_spec1_z = rrrs_c_1*rrrs_potential_t_2 - rrrs_potential_t*rrrs_s_1;
         const real rrrs_h_3_in_spec3_x = m->rrrs_h_3_in_spec3_x[i];
         const real rrrs_h_3_in_spec3_y = m->rrrs_h_3_in_spec3_y[i];
         const real rrrs_potential_t_5 = rrrs_c_3*rrrs_h_3_in_spec3_x +
@@ -6048,11 +4449,11 @@ INLINE void potential_legs_rrrs(const prepared *m, size_t w, size_t leg, size_t 
         const real rrrs_link2_mass = m->rrrs_link2_mass[i];
         const real rrrs_mu_2_t = m->rrrs_mu_2_t[i];
         const real rrrs_mu_2_t_2 = m->rrrs_mu_2_t_2[i];
-        const real rrrs_potential_t_7 = (rrrs_c_1*rrrs_mu_2_t_2 -
-            rrrs_mu_2_t*rrrs_s_1)*(rrrs_c_2*rrrs_h_2_in_spec2_x + rrrs_c_2*rrrs_potential_t_5 -
-            rrrs_h_1_in_spec1_y - rrrs_b_in_spec1_y*rrrs_link1_mass -
-            rrrs_b_in_spec1_y*rrrs_link2_mass - rrrs_h_2_in_spec2_y*rrrs_s_2 -
-            rrrs_potential_t_6*rrrs_s_2);
+        const real rrrs_potential_t_7 = (rrrs_c_1*rrrs_mu_2_t +
+            rrrs_mu_2_t_2*rrrs_s_1)*(rrrs_h_1_in_spec1_y + rrrs_b_in_spec1_y*rrrs_link1_mass +
+            rrrs_b_in_spec1_y*rrrs_link2_mass + rrrs_c_2*rrrs_h_2_in_spec2_y +
+            rrrs_c_2*rrrs_potential_t_6 + rrrs_h_2_in_spec2_x*rrrs_s_2 +
+            rrrs_potential_t_5*rrrs_s_2);
         const real rrrs_g_in_axes1_z = m->rrrs_g_in_axes1_z[i];
         const real rrrs_h_1_in_spec1_x = m->rrrs_h_1_in_spec1_x[i];
         const real rrrs_h_1_in_spec1_z = m->rrrs_h_1_in_spec1_z[i];
@@ -6062,18 +4463,18 @@ INLINE void potential_legs_rrrs(const prepared *m, size_t w, size_t leg, size_t 
         const real rrrs_potential_t_4 = m->rrrs_potential_t_4[i];
         const real rrrs_potential_t_8 = rrrs_potential_t_7 +
             rrrs_g_in_axes1_z*(rrrs_h_1_in_spec1_x + rrrs_potential_t_3 + rrrs_potential_t_4 +
-            rrrs_c_2*rrrs_h_2_in_spec2_y + rrrs_c_2*rrrs_potential_t_6 +
-            rrrs_h_2_in_spec2_x*rrrs_s_2 + rrrs_potential_t_5*rrrs_s_2) + (rrrs_c_1*rrrs_mu_2_t +
-            rrrs_mu_2_t_2*rrrs_s_1)*(rrrs_h_1_in_spec1_z + rrrs_h_2_in_spec2_z +
+            rrrs_c_2*rrrs_h_2_in_spec2_x + rrrs_c_2*rrrs_potential_t_5 -
+            rrrs_h_2_in_spec2_y*rrrs_s_2 - rrrs_potential_t_6*rrrs_s_2) + (rrrs_c_1*rrrs_mu_2_t_2
+            - rrrs_mu_2_t*rrrs_s_1)*(rrrs_h_1_in_spec1_z + rrrs_h_2_in_spec2_z +
             rrrs_h_3_in_spec3_z + rrrs_b_in_spec1_z*rrrs_link1_mass +
             rrrs_b_in_spec1_z*rrrs_link2_mass);
         /* (potential) potential energy */
         gather(&terms[0*count + k], add, rrrs_potential_t_8);  /* potential_of_legs */
         const real rrrs_size_t_3 = m->rrrs_size_t_3[i];
         const real rrrs_rho2_2_t = m->rrrs_rho2_2_t[i];
-        o[1*count + k] = UNLESS(magnitude(rrrs_rho2_1) > TOLERANCE*TOLERANCE*rrrs_size_t_3) +
-            UNLESS(magnitude(rrrs_rho2_2) > TOLERANCE*TOLERANCE*rrrs_rho2_2_t);
-        o[0*count + k] = UNLESS(rrrs_disc_2 >= 0);
+        o[1*count + k] = UNLESS(magnitude(v.rrrs_rho2_1) > TOLERANCE*TOLERANCE*rrrs_size_t_3) +
+            UNLESS(magnitude(v.rrrs_rho2_2) > TOLERANCE*TOLERANCE*rrrs_rho2_2_t);
+        o[0*count + k] = UNLESS(v.rrrs_disc_2 >= 0);
     }
 }
 
@@ -6090,7 +4491,7 @@ INLINE void potential_after(size_t w, const real *s, const real *sums, real *pot
     for (size_t k = 0; k < w; ++k) {
         /* (potential) potential energy */
         const real potential_of_legs = sums[0*w + k];
-        const real potential_t = s[12*w + k];
+        const real potential_t = s[9*w + k];
         const real potential_ = -potential_of_legs - potential_t;
         /* (potential) potential energy */
         potential[0*w + k] = potential_;
@@ -6099,12 +4500,10 @@ INLINE void potential_after(size_t w, const real *s, const real *sums, real *pot
 
 INLINE void potential_run(const prepared *m, const real *X, real *potential, verdict *t)
 {
-    real s[13] = {0};
-    real sums[1] = {0};
-    real terms_rrrs[LEGS(LEGS_OF_rrrs)] = {0};
-    real o_rrrs[2*LEGS(LEGS_OF_rrrs)] = {0};
+    real s[10] = {0}, sums[1] = {0};
+    real terms_rrrs[LEGS(LEGS_OF_rrrs)] = {0}, o_rrrs[2*LEGS(LEGS_OF_rrrs)] = {0};
     potential_before(m, 1, X, s, t);
-    potential_legs_rrrs(m, 1, 0, 1, s, 0, LEGS(LEGS_OF_rrrs), 0, terms_rrrs, o_rrrs);
+    potential_legs_rrrs(m, 1, 0, 1, s, 0, LEGS(LEGS_OF_rrrs), 0, X, terms_rrrs, o_rrrs);
     for (size_t leg = 0; leg < LEGS_OF_rrrs; ++leg) {
         potential_place_rrrs(1, LEGS(LEGS_OF_rrrs), o_rrrs, leg, t);
     }
@@ -6119,206 +4518,40 @@ INLINE void condition_before(const prepared *m, size_t w, const real *X, real *s
     verdict *t)
 {
     for (size_t k = 0; k < w; ++k) {
-        /* X: named entries */
-        const real X_0 = X[0*w + k];
-        const real t_x = X_0;
-        const real X_1 = X[1*w + k];
-        const real t_y = X_1;
-        const real X_2 = X[2*w + k];
-        const real t_z = X_2;
-        const real X_3 = X[3*w + k];
-        const real X_4 = X[4*w + k];
-        const real X_5 = X[5*w + k];
-        const real X_6 = X[6*w + k];
-        const real quaternion_norm2 = X_3*X_3 + X_4*X_4 + X_5*X_5 + X_6*X_6;
-        const real quaternion_scale = 2/quaternion_norm2;
-        const real quaternion_sx = X_3*quaternion_scale;
-        const real quaternion_sy = X_4*quaternion_scale;
-        const real quaternion_sz = X_5*quaternion_scale;
-        const real quaternion_wx = X_6*quaternion_sx;
-        const real quaternion_wy = X_6*quaternion_sy;
-        const real quaternion_wz = X_6*quaternion_sz;
-        const real quaternion_xx = X_3*quaternion_sx;
-        const real quaternion_xy = X_3*quaternion_sy;
-        const real quaternion_xz = X_3*quaternion_sz;
-        const real quaternion_yy = X_4*quaternion_sy;
-        const real quaternion_yz = X_4*quaternion_sz;
-        const real quaternion_zz = X_5*quaternion_sz;
-        const real R_xx = 1 - quaternion_yy - quaternion_zz;
-        const real R_xy = quaternion_xy - quaternion_wz;
-        const real R_xz = quaternion_wy + quaternion_xz;
-        const real R_yx = quaternion_wz + quaternion_xy;
-        const real R_yy = 1 - quaternion_xx - quaternion_zz;
-        const real R_yz = quaternion_yz - quaternion_wx;
-        const real R_zx = quaternion_xz - quaternion_wy;
-        const real R_zy = quaternion_wx + quaternion_yz;
-        const real R_zz = 1 - quaternion_xx - quaternion_yy;
-        s[0*w + k] = t_x;
-        s[1*w + k] = t_y;
-        s[2*w + k] = t_z;
-        s[3*w + k] = R_xx;
-        s[4*w + k] = R_xy;
-        s[5*w + k] = R_xz;
-        s[6*w + k] = R_yx;
-        s[7*w + k] = R_yy;
-        s[8*w + k] = R_yz;
-        s[9*w + k] = R_zx;
-        s[10*w + k] = R_zy;
-        s[11*w + k] = R_zz;
+        values v;
+        stage_X(m, w, k, X, &v);
+        s[0*w + k] = v.R_xx;
+        s[1*w + k] = v.R_xy;
+        s[2*w + k] = v.R_xz;
+        s[3*w + k] = v.R_yx;
+        s[4*w + k] = v.R_yy;
+        s[5*w + k] = v.R_yz;
+        s[6*w + k] = v.R_zx;
+        s[7*w + k] = v.R_zy;
+        s[8*w + k] = v.R_zz;
         /* (legs_size) rms size of the legs, taken where the platform points coincide */
         const real legs_size = m->legs_size;
         lengths[1*w + k] = legs_size;
         t->total[k] += legs_size;
-        t->invalid[k] += UNLESS(is_finite(quaternion_scale)) + UNLESS(quaternion_scale > 0);
+        t->invalid[k] += UNLESS(is_finite(v.quaternion_scale)) + UNLESS(v.quaternion_scale > 0);
     }
 }
 
 INLINE void condition_legs_rrrs(const prepared *m, size_t w, size_t leg, size_t legs, const real
-    *s, size_t states, size_t count, int add, real *terms, real *o)
+    *s, size_t states, size_t count, int add, const real *X, real *terms, real *o)
 {
     for (size_t k = 0; k < count; ++k) {
         const size_t i = leg + legs*k;
         const size_t j = states*k;
-        /* (rrrs-S) from the base point to the connection point */
-        const real R_xx = s[3*w + j];
-        const real R_xy = s[4*w + j];
-        const real R_xz = s[5*w + j];
-        const real rrrs_platform_point_x = m->rrrs_platform_point_x[i];
-        const real rrrs_platform_point_y = m->rrrs_platform_point_y[i];
-        const real rrrs_platform_point_z = m->rrrs_platform_point_z[i];
-        const real rrrs_q_x = R_xx*rrrs_platform_point_x + R_xy*rrrs_platform_point_y +
-            R_xz*rrrs_platform_point_z;
-        const real R_yx = s[6*w + j];
-        const real R_yy = s[7*w + j];
-        const real R_yz = s[8*w + j];
-        const real rrrs_q_y = R_yx*rrrs_platform_point_x + R_yy*rrrs_platform_point_y +
-            R_yz*rrrs_platform_point_z;
-        const real R_zx = s[9*w + j];
-        const real R_zy = s[10*w + j];
-        const real R_zz = s[11*w + j];
-        const real rrrs_q_z = R_zx*rrrs_platform_point_x + R_zy*rrrs_platform_point_y +
-            R_zz*rrrs_platform_point_z;
-        const real rrrs_base_point_x = m->rrrs_base_point_x[i];
-        const real t_x = s[0*w + j];
-        const real rrrs_S_x = rrrs_q_x + t_x - rrrs_base_point_x;
-        const real rrrs_base_point_y = m->rrrs_base_point_y[i];
-        const real t_y = s[1*w + j];
-        const real rrrs_S_y = rrrs_q_y + t_y - rrrs_base_point_y;
-        const real rrrs_base_point_z = m->rrrs_base_point_z[i];
-        const real t_z = s[2*w + j];
-        const real rrrs_S_z = rrrs_q_z + t_z - rrrs_base_point_z;
-        /* (rrrs-px_1) component along the reference direction */
-        const real rrrs_base_frame_xy = m->rrrs_base_frame_xy[i];
-        const real rrrs_base_frame_yy = m->rrrs_base_frame_yy[i];
-        const real rrrs_base_frame_zy = m->rrrs_base_frame_zy[i];
-        const real rrrs_px_1 = rrrs_S_x*rrrs_base_frame_xy + rrrs_S_y*rrrs_base_frame_yy +
-            rrrs_S_z*rrrs_base_frame_zy;
-        /* (rrrs-py_1) component across the reference direction */
-        const real rrrs_base_frame_xz = m->rrrs_base_frame_xz[i];
-        const real rrrs_base_frame_yz = m->rrrs_base_frame_yz[i];
-        const real rrrs_base_frame_zz = m->rrrs_base_frame_zz[i];
-        const real rrrs_py_1 = rrrs_S_x*rrrs_base_frame_xz + rrrs_S_y*rrrs_base_frame_yz +
-            rrrs_S_z*rrrs_base_frame_zz;
-        /* (rrrs-rho2_1) squared amplitude */
-        const real rrrs_rho2_1 = rrrs_px_1*rrrs_px_1 + rrrs_py_1*rrrs_py_1;
-        /* (rrrs-root_1) root, with the sign of the branch */
-        const real rrrs_branch_1 = m->rrrs_branch_1[i];
-        const real rrrs_root_1 = rrrs_branch_1*root(rrrs_rho2_1);
-        /* (rrrs-c_1) cosine of the angle of joint 1 from its reference direction */
-        const real inv_rrrs_rho2_1 = 1/rrrs_rho2_1;
-        const real rrrs_c_1 = -inv_rrrs_rho2_1*rrrs_py_1*rrrs_root_1;
-        /* (rrrs-s_1) sine of the angle of joint 1 from its reference direction */
-        const real rrrs_s_1 = inv_rrrs_rho2_1*rrrs_px_1*rrrs_root_1;
-        /* (rrrs-xi_1) the vector from joint 1 to the connection point, resolved along link 1 */
-        const real rrrs_base_frame_xx = m->rrrs_base_frame_xx[i];
-        const real rrrs_base_frame_yx = m->rrrs_base_frame_yx[i];
-        const real rrrs_base_frame_zx = m->rrrs_base_frame_zx[i];
-        const real rrrs_xi_1_in_axes1_z = rrrs_S_x*rrrs_base_frame_xx +
-            rrrs_S_y*rrrs_base_frame_yx + rrrs_S_z*rrrs_base_frame_zx;
-        /* (rrrs-x_2) from the origin of joint 2 to the connection point */
-        const real rrrs_joint2_offset_x = m->rrrs_joint2_offset_x[i];
-        const real rrrs_x_2_in_axes1_z = rrrs_xi_1_in_axes1_z - rrrs_joint2_offset_x;
-        /* (rrrs-Kd_2) projection on the centre's direction, from the distance fixed by the joints beyond
-           joint 2 */
-        const real rrrs_Kd_2_t_3 = rrrs_root_1*rrrs_root_1 +
-            rrrs_x_2_in_axes1_z*rrrs_x_2_in_axes1_z;
-        const real rrrs_Kd_2_t = m->rrrs_Kd_2_t[i];
-        const real rrrs_Kd_2_t_2 = m->rrrs_Kd_2_t_2[i];
-        const real rrrs_Kd_2 = rrrs_Kd_2_t + R(0.5)*rrrs_Kd_2_t_3 - rrrs_Kd_2_t_2;
-        /* (rrrs-Kc_2) factor of the cosine in the equation of joint 2 */
-        const real rrrs_joint3_offset_x = m->rrrs_joint3_offset_x[i];
-        const real rrrs_Kc_2 = -rrrs_joint3_offset_x*rrrs_root_1;
-        /* (rrrs-Ks_2) factor of the sine in the equation of joint 2 */
-        const real rrrs_Ks_2 = rrrs_joint3_offset_x*rrrs_x_2_in_axes1_z;
-        /* (rrrs-rho2_2) squared amplitude */
-        const real rrrs_rho2_2 = rrrs_Kc_2*rrrs_Kc_2 + rrrs_Ks_2*rrrs_Ks_2;
-        /* (rrrs-disc_2) discriminant */
-        const real rrrs_disc_2 = rrrs_rho2_2 - rrrs_Kd_2*rrrs_Kd_2;
-        /* (rrrs-root_2) root, with the sign of the branch */
-        const real rrrs_branch_2 = m->rrrs_branch_2[i];
-        const real rrrs_root_2 = rrrs_branch_2*root(rrrs_disc_2);
-        /* (rrrs-c_2) cosine of the angle of joint 2 from its reference direction */
-        const real rrrs_c_2_t = -1/rrrs_rho2_2;
-        const real rrrs_c_2 = rrrs_c_2_t*(rrrs_Ks_2*rrrs_root_2 - rrrs_Kc_2*rrrs_Kd_2);
-        /* (rrrs-s_2) sine of the angle of joint 2 from its reference direction */
-        const real rrrs_s_2 = rrrs_c_2_t*(-rrrs_Kc_2*rrrs_root_2 - rrrs_Kd_2*rrrs_Ks_2);
-        /* (rrrs-x_3) from the origin of joint 3 to the connection point */
-        const real inv_rrrs_size_t = m->inv_rrrs_size_t[i];
-        const real rrrs_x_3_in_axes2_x = inv_rrrs_size_t*rrrs_Kd_2*rrrs_joint3_offset_x -
-            rrrs_joint3_offset_x;
-        /* (rrrs-c_3) cosine of the angle of joint 3 from its reference direction */
-        const real inv_rrrs_size_t_2 = m->inv_rrrs_size_t_2[i];
-        const real rrrs_platform_joint_offset_x = m->rrrs_platform_joint_offset_x[i];
-        const real rrrs_c_3 = inv_rrrs_size_t_2*rrrs_platform_joint_offset_x*rrrs_x_3_in_axes2_x;
-        /* (rrrs-s_3) sine of the angle of joint 3 from its reference direction */
-        const real rrrs_s_3_t =
-            inv_rrrs_size_t*inv_rrrs_size_t_2*rrrs_joint3_offset_x*rrrs_platform_joint_offset_x*rrrs_root_2;
-        /* (rrrs-r_2) from joint 2 to the connection point, along the links */
-        const real rrrs_r_2_in_axes2_x = rrrs_joint3_offset_x +
-            rrrs_c_3*rrrs_platform_joint_offset_x;
-        const real rrrs_r_2_in_axes3_y = rrrs_r_2_in_axes2_x*rrrs_s_3_t -
-            rrrs_c_3*rrrs_platform_joint_offset_x*rrrs_s_3_t;
-        /* (rrrs-v_1) velocity of the connection point per rate of joint 1 */
-        const real rrrs_e_1_in_axes3_x = rrrs_c_3*rrrs_s_2 - rrrs_c_2*rrrs_s_3_t;
-        const real rrrs_e_1_in_axes3_y = rrrs_c_2*rrrs_c_3 + rrrs_s_2*rrrs_s_3_t;
-        const real rrrs_v_1_t = rrrs_s_2*rrrs_xi_1_in_axes1_z - rrrs_c_2*rrrs_root_1;
-        const real rrrs_v_1_t_2 = rrrs_c_2*rrrs_xi_1_in_axes1_z + rrrs_root_1*rrrs_s_2;
-        const real rrrs_v_1_in_axes3_z = rrrs_e_1_in_axes3_x*(rrrs_c_3*rrrs_v_1_t_2 +
-            rrrs_s_3_t*rrrs_v_1_t) - rrrs_e_1_in_axes3_y*(rrrs_c_3*rrrs_v_1_t -
-            rrrs_s_3_t*rrrs_v_1_t_2);
-        /* (rrrs-w_1) reciprocal vector 1 */
-        const real axis_z_rrrs_axes3_x = rrrs_base_frame_xy*rrrs_c_1 +
-            rrrs_base_frame_xz*rrrs_s_1;
-        const real axis_z_rrrs_axes3_y = rrrs_base_frame_yy*rrrs_c_1 +
-            rrrs_base_frame_yz*rrrs_s_1;
-        const real axis_z_rrrs_axes3_z = rrrs_base_frame_zy*rrrs_c_1 +
-            rrrs_base_frame_zz*rrrs_s_1;
-        const real rrrs_w_1_in_axes3_z = 1/rrrs_v_1_in_axes3_z;
-        const real rrrs_w_1_x = axis_z_rrrs_axes3_x*rrrs_w_1_in_axes3_z;
-        const real rrrs_w_1_y = axis_z_rrrs_axes3_y*rrrs_w_1_in_axes3_z;
-        const real rrrs_w_1_z = axis_z_rrrs_axes3_z*rrrs_w_1_in_axes3_z;
-        /* (rrrs-w_2) reciprocal vector 2 */
-        const real rrrs_w_2_t = rrrs_e_1_in_axes3_x*rrrs_s_1;
-        const real rrrs_w_2_t_2 = rrrs_c_1*rrrs_e_1_in_axes3_x;
-        const real axis_y_rrrs_axes3_x = rrrs_base_frame_xx*rrrs_e_1_in_axes3_y +
-            rrrs_base_frame_xy*rrrs_w_2_t - rrrs_base_frame_xz*rrrs_w_2_t_2;
-        const real axis_y_rrrs_axes3_y = rrrs_base_frame_yx*rrrs_e_1_in_axes3_y +
-            rrrs_base_frame_yy*rrrs_w_2_t - rrrs_base_frame_yz*rrrs_w_2_t_2;
-        const real axis_y_rrrs_axes3_z = rrrs_base_frame_zx*rrrs_e_1_in_axes3_y +
-            rrrs_base_frame_zy*rrrs_w_2_t - rrrs_base_frame_zz*rrrs_w_2_t_2;
-        const real rrrs_w_2_in_axes3_x = -1/rrrs_r_2_in_axes3_y;
-        const real rrrs_w_2_x = rrrs_w_2_in_axes3_x*(axis_y_rrrs_axes3_y*axis_z_rrrs_axes3_z -
-            axis_y_rrrs_axes3_z*axis_z_rrrs_axes3_y);
-        const real rrrs_w_2_y = rrrs_w_2_in_axes3_x*(axis_y_rrrs_axes3_z*axis_z_rrrs_axes3_x -
-            axis_y_rrrs_axes3_x*axis_z_rrrs_axes3_z);
-        const real rrrs_w_2_z = rrrs_w_2_in_axes3_x*(axis_y_rrrs_axes3_x*axis_z_rrrs_axes3_y -
-            axis_y_rrrs_axes3_y*axis_z_rrrs_axes3_x);
+        values_rrrs v;
+        stage_rrrs_X(m, w, i, j, s, X, &v);
+        stage_rrrs_H_condition(m, i, &v);
         /* (rrrs-G) force at the connection point that balances the leg's inertia and weight along all
            degrees of freedom */
-        const real rrrs_pivot_size = magnitude(rrrs_rho2_1);
-        const real rrrs_pivot_size_2 = magnitude(rrrs_rho2_2);
-        const real rrrs_pivot_size_3 = magnitude(rrrs_v_1_in_axes3_z);
-        const real rrrs_pivot_size_4 = magnitude(rrrs_r_2_in_axes3_y);
+        const real rrrs_pivot_size = magnitude(v.rrrs_rho2_1);
+        const real rrrs_pivot_size_2 = magnitude(v.rrrs_rho2_2);
+        const real rrrs_pivot_size_3 = magnitude(v.rrrs_v_1_in_axes3_z);
+        const real rrrs_pivot_size_4 = magnitude(v.rrrs_r_2_in_axes3_y);
         const real inv_rrrs_rho2_2_t = m->inv_rrrs_rho2_2_t[i];
         const real inv_rrrs_size = m->inv_rrrs_size[i];
         const real inv_rrrs_size_t_3 = m->inv_rrrs_size_t_3[i];
@@ -6326,56 +4559,52 @@ INLINE void condition_legs_rrrs(const prepared *m, size_t w, size_t leg, size_t 
             lesser(lesser(lesser(root(inv_rrrs_rho2_2_t*rrrs_pivot_size_2),
             inv_rrrs_size*rrrs_pivot_size_3), inv_rrrs_size*rrrs_pivot_size_4),
             root(inv_rrrs_size_t_3*rrrs_pivot_size));
-        /* (rrrs-H_a_1) moment of the column's unit force about the platform origin */
-        const real rrrs_H_a_1_x = rrrs_q_y*rrrs_w_1_z - rrrs_q_z*rrrs_w_1_y;
-        const real rrrs_H_a_1_y = rrrs_q_z*rrrs_w_1_x - rrrs_q_x*rrrs_w_1_z;
-        const real rrrs_H_a_1_z = rrrs_q_x*rrrs_w_1_y - rrrs_q_y*rrrs_w_1_x;
-        /* (rrrs-H_a_2) moment of the column's unit force about the platform origin */
-        const real rrrs_H_a_2_x = rrrs_q_y*rrrs_w_2_z - rrrs_q_z*rrrs_w_2_y;
-        const real rrrs_H_a_2_y = rrrs_q_z*rrrs_w_2_x - rrrs_q_x*rrrs_w_2_z;
-        const real rrrs_H_a_2_z = rrrs_q_x*rrrs_w_2_y - rrrs_q_y*rrrs_w_2_x;
         /* (spread) rms distance of the platform points from their centroid */
         const real b_c_in_platform_x = m->b_c_in_platform_x;
+        const real rrrs_platform_point_x = m->rrrs_platform_point_x[i];
         const real rrrs_spread_t = b_c_in_platform_x - rrrs_platform_point_x;
         const real b_c_in_platform_y = m->b_c_in_platform_y;
+        const real rrrs_platform_point_y = m->rrrs_platform_point_y[i];
         const real rrrs_spread_t_2 = b_c_in_platform_y - rrrs_platform_point_y;
         const real b_c_in_platform_z = m->b_c_in_platform_z;
+        const real rrrs_platform_point_z = m->rrrs_platform_point_z[i];
         const real rrrs_spread_t_3 = b_c_in_platform_z - rrrs_platform_point_z;
         const real rrrs_spread_t_4 = rrrs_spread_t*rrrs_spread_t + rrrs_spread_t_2*rrrs_spread_t_2
             + rrrs_spread_t_3*rrrs_spread_t_3;
         /* (spread) rms distance of the platform points from their centroid */
         gather(&terms[0*count + k], add, rrrs_spread_t_4);  /* spread_rrrs */
         /* (rrrs-w_1) reciprocal vector 1 */
-        o[0*count + k] = rrrs_w_1_x;
-        o[1*count + k] = rrrs_w_1_y;
-        o[2*count + k] = rrrs_w_1_z;
+        o[0*count + k] = v.rrrs_w_1_x;
+        o[1*count + k] = v.rrrs_w_1_y;
+        o[2*count + k] = v.rrrs_w_1_z;
         /* (rrrs-H_a_1) moment of the column's unit force about the platform origin */
-        o[3*count + k] = rrrs_H_a_1_x;
-        o[4*count + k] = rrrs_H_a_1_y;
-        o[5*count + k] = rrrs_H_a_1_z;
+        o[3*count + k] = v.rrrs_H_a_1_x;
+        o[4*count + k] = v.rrrs_H_a_1_y;
+        o[5*count + k] = v.rrrs_H_a_1_z;
         /* (rrrs-w_2) reciprocal vector 2 */
-        o[6*count + k] = rrrs_w_2_x;
-        o[7*count + k] = rrrs_w_2_y;
-        o[8*count + k] = rrrs_w_2_z;
+        o[6*count + k] = v.rrrs_w_2_x;
+        o[7*count + k] = v.rrrs_w_2_y;
+        o[8*count + k] = v.rrrs_w_2_z;
         /* (rrrs-H_a_2) moment of the column's unit force about the platform origin */
-        o[9*count + k] = rrrs_H_a_2_x;
-        o[10*count + k] = rrrs_H_a_2_y;
-        o[11*count + k] = rrrs_H_a_2_z;
+        o[9*count + k] = v.rrrs_H_a_2_x;
+        o[10*count + k] = v.rrrs_H_a_2_y;
+        o[11*count + k] = v.rrrs_H_a_2_z;
         /* (rrrs-G) force at the connection point that balances the leg's inertia and weight along all
            degrees of freedom */
         o[12*count + k] = rrrs_least_pivots;
-        o[13*count + k] = rrrs_disc_2;
-        o[16*count + k] = ((rrrs_w_1_x + (rrrs_w_1_y + rrrs_w_1_z)) + ((rrrs_H_a_1_x +
-            rrrs_H_a_1_y) + (rrrs_H_a_1_z + rrrs_w_2_x))) + ((rrrs_w_2_y + (rrrs_w_2_z +
-            rrrs_H_a_2_x)) + ((rrrs_H_a_2_y + rrrs_H_a_2_z) + (rrrs_least_pivots + rrrs_disc_2)));
+        o[13*count + k] = v.rrrs_disc_2;
+        o[16*count + k] = ((v.rrrs_w_1_x + (v.rrrs_w_1_y + v.rrrs_w_1_z)) + ((v.rrrs_H_a_1_x +
+            v.rrrs_H_a_1_y) + (v.rrrs_H_a_1_z + v.rrrs_w_2_x))) + ((v.rrrs_w_2_y + (v.rrrs_w_2_z +
+            v.rrrs_H_a_2_x)) + ((v.rrrs_H_a_2_y + v.rrrs_H_a_2_z) + (rrrs_least_pivots +
+            v.rrrs_disc_2)));
         const real rrrs_size_t_3 = m->rrrs_size_t_3[i];
         const real rrrs_rho2_2_t = m->rrrs_rho2_2_t[i];
         const real rrrs_size = m->rrrs_size[i];
-        o[15*count + k] = UNLESS(magnitude(rrrs_rho2_1) > TOLERANCE*TOLERANCE*rrrs_size_t_3) +
-            UNLESS(magnitude(rrrs_rho2_2) > TOLERANCE*TOLERANCE*rrrs_rho2_2_t) +
-            UNLESS(magnitude(rrrs_v_1_in_axes3_z) > TOLERANCE*rrrs_size) +
-            UNLESS(magnitude(rrrs_r_2_in_axes3_y) > TOLERANCE*rrrs_size);
-        o[14*count + k] = UNLESS(rrrs_disc_2 >= 0);
+        o[15*count + k] = UNLESS(magnitude(v.rrrs_rho2_1) > TOLERANCE*TOLERANCE*rrrs_size_t_3) +
+            UNLESS(magnitude(v.rrrs_rho2_2) > TOLERANCE*TOLERANCE*rrrs_rho2_2_t) +
+            UNLESS(magnitude(v.rrrs_v_1_in_axes3_z) > TOLERANCE*rrrs_size) +
+            UNLESS(magnitude(v.rrrs_r_2_in_axes3_y) > TOLERANCE*rrrs_size);
+        o[14*count + k] = UNLESS(v.rrrs_disc_2 >= 0);
     }
 }
 
@@ -6383,13 +4612,13 @@ INLINE void condition_place_rrrs(size_t w, size_t count, const real *o, size_t l
     real *H, real *pivots, real *reach, verdict *t)
 {
     for (size_t k = 0; k < w; ++k) {
-        H[(0*NU + 2*leg)*w + k] = o[0*count + first + k];
+        H[2*leg*w + k] = o[0*count + first + k];
         H[(NU + 2*leg)*w + k] = o[1*count + first + k];
         H[(2*NU + 2*leg)*w + k] = o[2*count + first + k];
         H[(3*NU + 2*leg)*w + k] = o[3*count + first + k];
         H[(4*NU + 2*leg)*w + k] = o[4*count + first + k];
         H[(5*NU + 2*leg)*w + k] = o[5*count + first + k];
-        H[(0*NU + 1 + 2*leg)*w + k] = o[6*count + first + k];
+        H[(1 + 2*leg)*w + k] = o[6*count + first + k];
         H[(NU + 1 + 2*leg)*w + k] = o[7*count + first + k];
         H[(2*NU + 1 + 2*leg)*w + k] = o[8*count + first + k];
         H[(3*NU + 1 + 2*leg)*w + k] = o[9*count + first + k];
@@ -6420,12 +4649,10 @@ INLINE void condition_after(const prepared *m, size_t w, const real *sums, real 
 INLINE void condition_run(const prepared *m, const real *X, real *H, real *lengths, real *pivots,
     real *reach, verdict *t)
 {
-    real s[12] = {0};
-    real sums[1] = {0};
-    real terms_rrrs[LEGS(LEGS_OF_rrrs)] = {0};
-    real o_rrrs[17*LEGS(LEGS_OF_rrrs)] = {0};
+    real s[9] = {0}, sums[1] = {0};
+    real terms_rrrs[LEGS(LEGS_OF_rrrs)] = {0}, o_rrrs[17*LEGS(LEGS_OF_rrrs)] = {0};
     condition_before(m, 1, X, s, lengths, t);
-    condition_legs_rrrs(m, 1, 0, 1, s, 0, LEGS(LEGS_OF_rrrs), 0, terms_rrrs, o_rrrs);
+    condition_legs_rrrs(m, 1, 0, 1, s, 0, LEGS(LEGS_OF_rrrs), 0, X, terms_rrrs, o_rrrs);
     for (size_t leg = 0; leg < LEGS_OF_rrrs; ++leg) {
         condition_place_rrrs(1, LEGS(LEGS_OF_rrrs), o_rrrs, leg, leg, H, pivots, reach, t);
     }
@@ -7066,11 +5293,84 @@ INLINE void condition_one(const prepared *m, const real *X, const real *length, 
     }
 }
 
+INLINE void manipulability_one(const prepared *m, const real *X, real *measure_out, real
+    *isotropy_out, int *code)
+{
+    static const size_t places_divide_rows_1[] = {3, 4, 5};
+    real H[NV*NU] = {0}, lengths[2] = {0}, pivots[NL] = {0}, reach[NL] = {0}, subtract_1[1] = {0},
+        choose_length_1[1] = {0}, divide_rows_1[NV*NU] = {0}, singular_values_1[NV] = {0}, measure[1]
+        = {0}, isotropy[1] = {0};
+    verdict why;
+    start(1, &why);
+    check(NQ, 1, X, why.invalid);
+    condition_run(m, X, H, lengths, pivots, reach, &why);
+    const real *const entry_1 = lengths;
+    for (size_t i = 0; i < 1; ++i) {
+        subtract_1[i] = entry_1[i] - entry_1[i];
+    }
+    for (size_t i = 0; i < 1; ++i) {
+        choose_length_1[i] = subtract_1[i] > 0 ? subtract_1[i] : lengths[i] > TINY*lengths[1 + i]
+            ? lengths[i] : lengths[1 + i];
+    }
+    for (size_t i = 0; i < NV*NU; ++i) {
+        divide_rows_1[i] = H[i];
+    }
+    divide_rows(3, NU, 1, places_divide_rows_1, choose_length_1, divide_rows_1);
+    singular_values(NV, NU, divide_rows_1, singular_values_1);
+    spread(NV, singular_values_1, measure, isotropy);
+    check(1, 1, measure, why.overflow);
+    check(1, 1, isotropy, why.overflow);
+    judge(&why, code);
+    copy(1, measure, measure_out);
+    copy(1, isotropy, isotropy_out);
+    if (*code != OK) {
+        refuse(1, measure_out);
+        refuse(1, isotropy_out);
+    }
+}
+
+INLINE void singularity_distance_one(const prepared *m, const real *X, real *actuators_out, real
+    *legs_out, int *code)
+{
+    static const size_t places_divide_rows_1[] = {3, 4, 5};
+    real H[NV*NU] = {0}, lengths[2] = {0}, pivots[NL] = {0}, reach[NL] = {0}, subtract_1[1] = {0},
+        choose_length_1[1] = {0}, divide_rows_1[NV*NU] = {0}, singular_values_1[NV] = {0}, spread_1[1]
+        = {0}, actuators[1] = {0}, legs[1] = {0};
+    verdict why;
+    start(1, &why);
+    check(NQ, 1, X, why.invalid);
+    condition_run(m, X, H, lengths, pivots, reach, &why);
+    const real *const entry_1 = lengths;
+    for (size_t i = 0; i < 1; ++i) {
+        subtract_1[i] = entry_1[i] - entry_1[i];
+    }
+    for (size_t i = 0; i < 1; ++i) {
+        choose_length_1[i] = subtract_1[i] > 0 ? subtract_1[i] : lengths[i] > TINY*lengths[1 + i]
+            ? lengths[i] : lengths[1 + i];
+    }
+    for (size_t i = 0; i < NV*NU; ++i) {
+        divide_rows_1[i] = H[i];
+    }
+    divide_rows(3, NU, 1, places_divide_rows_1, choose_length_1, divide_rows_1);
+    singular_values(NV, NU, divide_rows_1, singular_values_1);
+    spread(NV, singular_values_1, spread_1, actuators);
+    least_entry(NL, pivots, legs);
+    check(1, 1, actuators, why.overflow);
+    check(1, 1, legs, why.overflow);
+    judge(&why, code);
+    copy(1, actuators, actuators_out);
+    copy(1, legs, legs_out);
+    if (*code != OK) {
+        refuse(1, actuators_out);
+        refuse(1, legs_out);
+    }
+}
+
 static void mismatch_one(const prepared *m, const real *X, const real *q_actuated, real *gap_out,
     int *code)
 {
     static const size_t places_gap[] = {0, 1, 2, 3, 4, 5};
-    real q[NJ] = {0}, take_1[6] = {0}, subtract_1[NU] = {0}, gap[NU] = {0};
+    real q[NJ] = {0}, q_of_inverse_kinematics_from_0[6] = {0}, subtract_1[NU] = {0}, gap[NU] = {0};
     verdict why;
     start(1, &why);
     const real total_in = total(X, NQ) + total(q_actuated, NU);
@@ -7079,9 +5379,9 @@ static void mismatch_one(const prepared *m, const real *X, const real *q_actuate
         check(NU, 1, q_actuated, why.invalid);
     }
     inverse_kinematics_run(m, X, q, &why);
-    take(6, 1, hybrid_3rrrs_ACTUATED, q, take_1);
+    take(6, 1, hybrid_3rrrs_ACTUATED, q, q_of_inverse_kinematics_from_0);
     for (size_t i = 0; i < NU; ++i) {
-        subtract_1[i] = q_actuated[i] - take_1[i];
+        subtract_1[i] = q_actuated[i] - q_of_inverse_kinematics_from_0[i];
     }
     for (size_t i = 0; i < NU; ++i) {
         gap[i] = subtract_1[i];
@@ -7450,8 +5750,8 @@ INLINE void rotation_one(const real *X, real *R_out, int *code)
     verdict why;
     start(1, &why);
     check(NQ, 1, X, why.invalid);
-    const real *const take_1 = X + 3;
-    rotation_of_quaternion(take_1, R);
+    const real *const X_from_3 = X + 3;
+    rotation_of_quaternion(X_from_3, R);
     check(9, 1, R, why.overflow);
     judge(&why, code);
     copy(9, R, R_out);
@@ -7491,11 +5791,11 @@ INLINE void X_dot_one(const real *X, const real *V, real *X_dot_out, int *code)
         check(NQ, 1, X, why.invalid);
         check(NV, 1, V, why.invalid);
     }
-    const real *const take_1 = V + 3;
-    const real *const take_2 = X + 3;
-    quaternion_rate(take_2, take_1, quaternion_rate_1);
-    const real *const take_3 = V;
-    beside(1, 3, 4, take_3, quaternion_rate_1, X_dot);
+    const real *const V_from_3 = V + 3;
+    const real *const X_from_3 = X + 3;
+    quaternion_rate(X_from_3, V_from_3, quaternion_rate_1);
+    const real *const V_from_0 = V;
+    beside(1, 3, 4, V_from_0, quaternion_rate_1, X_dot);
     check(NQ, 1, X_dot, why.overflow);
     judge(&why, code);
     copy(NQ, X_dot, X_dot_out);
@@ -7535,13 +5835,13 @@ INLINE void retract_one(const real *X, const real *step, real *X_moved_out, int 
         check(NQ, 1, X, why.invalid);
         check(NV, 1, step, why.invalid);
     }
-    const real *const take_1 = X;
-    const real *const take_2 = X + 3;
-    const real *const take_3 = step;
-    const real *const take_4 = step + 3;
-    turn_quaternion(take_2, take_4, turn_quaternion_1);
+    const real *const X_from_0 = X;
+    const real *const X_from_3 = X + 3;
+    const real *const step_from_0 = step;
+    const real *const step_from_3 = step + 3;
+    turn_quaternion(X_from_3, step_from_3, turn_quaternion_1);
     for (size_t i = 0; i < 3; ++i) {
-        add_1[i] = take_1[i] + take_3[i];
+        add_1[i] = X_from_0[i] + step_from_0[i];
     }
     beside(1, 3, 4, add_1, turn_quaternion_1, X_moved);
     check(NQ, 1, X_moved, why.overflow);
@@ -7562,13 +5862,13 @@ INLINE void difference_one(const real *X0, const real *X1, real *step_out, int *
         check(NQ, 1, X0, why.invalid);
         check(NQ, 1, X1, why.invalid);
     }
-    const real *const take_1 = X0;
-    const real *const take_2 = X0 + 3;
-    const real *const take_3 = X1;
-    const real *const take_4 = X1 + 3;
-    turn_between(take_2, take_4, turn_between_1);
+    const real *const X0_from_0 = X0;
+    const real *const X0_from_3 = X0 + 3;
+    const real *const X1_from_0 = X1;
+    const real *const X1_from_3 = X1 + 3;
+    turn_between(X0_from_3, X1_from_3, turn_between_1);
     for (size_t i = 0; i < 3; ++i) {
-        subtract_1[i] = take_3[i] - take_1[i];
+        subtract_1[i] = X1_from_0[i] - X0_from_0[i];
     }
     beside(1, 3, 3, subtract_1, turn_between_1, step);
     check(NV, 1, step, why.overflow);
@@ -7591,25 +5891,25 @@ INLINE void interpolate_one(const real *X0, const real *X1, const real *s, real 
         check(NQ, 1, X1, why.invalid);
         check(1, 1, s, why.invalid);
     }
-    const real *const take_1 = X0;
-    const real *const take_2 = X0 + 3;
-    const real *const take_3 = X1;
-    const real *const take_4 = X1 + 3;
-    turn_between(take_2, take_4, turn_between_1);
+    const real *const X0_from_0 = X0;
+    const real *const X0_from_3 = X0 + 3;
+    const real *const X1_from_0 = X1;
+    const real *const X1_from_3 = X1 + 3;
+    turn_between(X0_from_3, X1_from_3, turn_between_1);
     for (size_t i = 0; i < 3; ++i) {
-        subtract_1[i] = take_3[i] - take_1[i];
+        subtract_1[i] = X1_from_0[i] - X0_from_0[i];
     }
     beside(1, 3, 3, subtract_1, turn_between_1, join_1);
     for (size_t i = 0; i < 6; ++i) {
         scale_1[i] = join_1[i]*s[i%(1)];
     }
-    const real *const take_5 = X0;
-    const real *const take_6 = X0 + 3;
-    const real *const take_7 = scale_1;
-    const real *const take_8 = scale_1 + 3;
-    turn_quaternion(take_6, take_8, turn_quaternion_1);
+    const real *const X0_from_0_2 = X0;
+    const real *const X0_from_3_2 = X0 + 3;
+    const real *const scale_1_from_0 = scale_1;
+    const real *const scale_1_from_3 = scale_1 + 3;
+    turn_quaternion(X0_from_3_2, scale_1_from_3, turn_quaternion_1);
     for (size_t i = 0; i < 3; ++i) {
-        add_1[i] = take_5[i] + take_7[i];
+        add_1[i] = X0_from_0_2[i] + scale_1_from_0[i];
     }
     beside(1, 3, 4, add_1, turn_quaternion_1, X);
     check(NQ, 1, X, why.overflow);
@@ -7622,286 +5922,259 @@ INLINE void interpolate_one(const real *X0, const real *X1, const real *s, real 
 
 /* ---- one state, and batches ---- */
 
-int hybrid_3rrrs_M(const hybrid_3rrrs_model *model, const hybrid_3rrrs_real *X, hybrid_3rrrs_real
-    *M)
+int hybrid_3rrrs_M(const prepared *model, const real *X, real *M)
 {
     int code;
     M_one(model, X, M, &code);
     return code;
 }
 
-size_t hybrid_3rrrs_M_batch(const hybrid_3rrrs_model *model, size_t n, const hybrid_3rrrs_real *X,
-    hybrid_3rrrs_real *M, int *status)
+size_t hybrid_3rrrs_M_batch(const prepared *model, size_t n, const real *X, real *M, int *status)
 {
-    size_t failed = 0, i = 0;
-    for (; LANES > 1 && i + LANES <= n; i += LANES) {
-        int codes[LANES];
-        M_lanes(model, X + NQ*i, M + NV*NV*i, codes);
-        for (size_t k = 0; k < LANES; ++k) {
+    size_t failed = 0, w;
+    for (size_t i = 0; i < n; i += w) {
+        int codes[LANES] = {INVALID};
+        w = LANES > 1 && i + LANES <= n ? LANES : 1;
+        if (w > 1) {
+            M_lanes(model, X + NQ*i, M + NV*NV*i, codes);
+        }
+        for (size_t k = 0; k < w; ++k) {
             if (codes[k] != OK) {
                 codes[k] = hybrid_3rrrs_M(model, X + NQ*(i + k), M + NV*NV*(i + k));
             }
         }
-        failed += record(codes, LANES, status ? status + i : NULL);
-    }
-    for (; i < n; ++i) {
-        const int code = hybrid_3rrrs_M(model, X + NQ*i, M + NV*NV*i);
-        failed += record(&code, 1, status ? status + i : NULL);
+        failed += record(codes, w, status ? status + i : NULL);
     }
     return failed;
 }
 
-int hybrid_3rrrs_Z(const hybrid_3rrrs_model *model, const hybrid_3rrrs_real *X, const
-    hybrid_3rrrs_real *V, hybrid_3rrrs_real *Z)
+int hybrid_3rrrs_Z(const prepared *model, const real *X, const real *V, real *Z)
 {
     int code;
     Z_one(model, X, V, Z, &code);
     return code;
 }
 
-size_t hybrid_3rrrs_Z_batch(const hybrid_3rrrs_model *model, size_t n, const hybrid_3rrrs_real *X,
-    const hybrid_3rrrs_real *V, hybrid_3rrrs_real *Z, int *status)
+size_t hybrid_3rrrs_Z_batch(const prepared *model, size_t n, const real *X, const real *V, real
+    *Z, int *status)
 {
-    size_t failed = 0, i = 0;
-    for (; LANES > 1 && i + LANES <= n; i += LANES) {
-        int codes[LANES];
-        Z_lanes(model, X + NQ*i, V + NV*i, Z + NV*i, codes);
-        for (size_t k = 0; k < LANES; ++k) {
+    size_t failed = 0, w;
+    for (size_t i = 0; i < n; i += w) {
+        int codes[LANES] = {INVALID};
+        w = LANES > 1 && i + LANES <= n ? LANES : 1;
+        if (w > 1) {
+            Z_lanes(model, X + NQ*i, V + NV*i, Z + NV*i, codes);
+        }
+        for (size_t k = 0; k < w; ++k) {
             if (codes[k] != OK) {
                 codes[k] = hybrid_3rrrs_Z(model, X + NQ*(i + k), V + NV*(i + k), Z + NV*(i + k));
             }
         }
-        failed += record(codes, LANES, status ? status + i : NULL);
-    }
-    for (; i < n; ++i) {
-        const int code = hybrid_3rrrs_Z(model, X + NQ*i, V + NV*i, Z + NV*i);
-        failed += record(&code, 1, status ? status + i : NULL);
+        failed += record(codes, w, status ? status + i : NULL);
     }
     return failed;
 }
 
-int hybrid_3rrrs_H(const hybrid_3rrrs_model *model, const hybrid_3rrrs_real *X, hybrid_3rrrs_real
-    *H)
+int hybrid_3rrrs_H(const prepared *model, const real *X, real *H)
 {
     int code;
     H_one(model, X, H, &code);
     return code;
 }
 
-size_t hybrid_3rrrs_H_batch(const hybrid_3rrrs_model *model, size_t n, const hybrid_3rrrs_real *X,
-    hybrid_3rrrs_real *H, int *status)
+size_t hybrid_3rrrs_H_batch(const prepared *model, size_t n, const real *X, real *H, int *status)
 {
-    size_t failed = 0, i = 0;
-    for (; LANES > 1 && i + LANES <= n; i += LANES) {
-        int codes[LANES];
-        H_lanes(model, X + NQ*i, H + NV*NU*i, codes);
-        for (size_t k = 0; k < LANES; ++k) {
+    size_t failed = 0, w;
+    for (size_t i = 0; i < n; i += w) {
+        int codes[LANES] = {INVALID};
+        w = LANES > 1 && i + LANES <= n ? LANES : 1;
+        if (w > 1) {
+            H_lanes(model, X + NQ*i, H + NV*NU*i, codes);
+        }
+        for (size_t k = 0; k < w; ++k) {
             if (codes[k] != OK) {
                 codes[k] = hybrid_3rrrs_H(model, X + NQ*(i + k), H + NV*NU*(i + k));
             }
         }
-        failed += record(codes, LANES, status ? status + i : NULL);
-    }
-    for (; i < n; ++i) {
-        const int code = hybrid_3rrrs_H(model, X + NQ*i, H + NV*NU*i);
-        failed += record(&code, 1, status ? status + i : NULL);
+        failed += record(codes, w, status ? status + i : NULL);
     }
     return failed;
 }
 
-int hybrid_3rrrs_inverse_kinematics(const hybrid_3rrrs_model *model, const hybrid_3rrrs_real *X,
-    hybrid_3rrrs_real *q)
+int hybrid_3rrrs_inverse_kinematics(const prepared *model, const real *X, real *q)
 {
     int code;
     inverse_kinematics_one(model, X, q, &code);
     return code;
 }
 
-size_t hybrid_3rrrs_inverse_kinematics_batch(const hybrid_3rrrs_model *model, size_t n, const
-    hybrid_3rrrs_real *X, hybrid_3rrrs_real *q, int *status)
+size_t hybrid_3rrrs_inverse_kinematics_batch(const prepared *model, size_t n, const real *X, real
+    *q, int *status)
 {
-    size_t failed = 0, i = 0;
-    for (; LANES > 1 && i + LANES <= n; i += LANES) {
-        int codes[LANES];
-        inverse_kinematics_lanes(model, X + NQ*i, q + NJ*i, codes);
-        for (size_t k = 0; k < LANES; ++k) {
+    size_t failed = 0, w;
+    for (size_t i = 0; i < n; i += w) {
+        int codes[LANES] = {INVALID};
+        w = LANES > 1 && i + LANES <= n ? LANES : 1;
+        if (w > 1) {
+            inverse_kinematics_lanes(model, X + NQ*i, q + NJ*i, codes);
+        }
+        for (size_t k = 0; k < w; ++k) {
             if (codes[k] != OK) {
                 codes[k] = hybrid_3rrrs_inverse_kinematics(model, X + NQ*(i + k), q + NJ*(i + k));
             }
         }
-        failed += record(codes, LANES, status ? status + i : NULL);
-    }
-    for (; i < n; ++i) {
-        const int code = hybrid_3rrrs_inverse_kinematics(model, X + NQ*i, q + NJ*i);
-        failed += record(&code, 1, status ? status + i : NULL);
+        failed += record(codes, w, status ? status + i : NULL);
     }
     return failed;
 }
 
-int hybrid_3rrrs_joint_rates(const hybrid_3rrrs_model *model, const hybrid_3rrrs_real *X, const
-    hybrid_3rrrs_real *V, hybrid_3rrrs_real *rates)
+int hybrid_3rrrs_joint_rates(const prepared *model, const real *X, const real *V, real *rates)
 {
     int code;
     joint_rates_one(model, X, V, rates, &code);
     return code;
 }
 
-size_t hybrid_3rrrs_joint_rates_batch(const hybrid_3rrrs_model *model, size_t n, const
-    hybrid_3rrrs_real *X, const hybrid_3rrrs_real *V, hybrid_3rrrs_real *rates, int *status)
+size_t hybrid_3rrrs_joint_rates_batch(const prepared *model, size_t n, const real *X, const real
+    *V, real *rates, int *status)
 {
-    size_t failed = 0, i = 0;
-    for (; LANES > 1 && i + LANES <= n; i += LANES) {
-        int codes[LANES];
-        joint_rates_lanes(model, X + NQ*i, V + NV*i, rates + NJ*i, codes);
-        for (size_t k = 0; k < LANES; ++k) {
+    size_t failed = 0, w;
+    for (size_t i = 0; i < n; i += w) {
+        int codes[LANES] = {INVALID};
+        w = LANES > 1 && i + LANES <= n ? LANES : 1;
+        if (w > 1) {
+            joint_rates_lanes(model, X + NQ*i, V + NV*i, rates + NJ*i, codes);
+        }
+        for (size_t k = 0; k < w; ++k) {
             if (codes[k] != OK) {
                 codes[k] = hybrid_3rrrs_joint_rates(model, X + NQ*(i + k), V + NV*(i + k), rates + NJ*(i + k));
             }
         }
-        failed += record(codes, LANES, status ? status + i : NULL);
-    }
-    for (; i < n; ++i) {
-        const int code = hybrid_3rrrs_joint_rates(model, X + NQ*i, V + NV*i, rates + NJ*i);
-        failed += record(&code, 1, status ? status + i : NULL);
+        failed += record(codes, w, status ? status + i : NULL);
     }
     return failed;
 }
 
-int hybrid_3rrrs_joint_accelerations(const hybrid_3rrrs_model *model, const hybrid_3rrrs_real *X,
-    const hybrid_3rrrs_real *V, const hybrid_3rrrs_real *A, hybrid_3rrrs_real *accelerations)
+int hybrid_3rrrs_joint_accelerations(const prepared *model, const real *X, const real *V, const
+    real *A, real *accelerations)
 {
     int code;
     joint_accelerations_one(model, X, V, A, accelerations, &code);
     return code;
 }
 
-size_t hybrid_3rrrs_joint_accelerations_batch(const hybrid_3rrrs_model *model, size_t n, const
-    hybrid_3rrrs_real *X, const hybrid_3rrrs_real *V, const hybrid_3rrrs_real *A,
-    hybrid_3rrrs_real *accelerations, int *status)
+size_t hybrid_3rrrs_joint_accelerations_batch(const prepared *model, size_t n, const real *X,
+    const real *V, const real *A, real *accelerations, int *status)
 {
-    size_t failed = 0, i = 0;
-    for (; LANES > 1 && i + LANES <= n; i += LANES) {
-        int codes[LANES];
-        joint_accelerations_lanes(model, X + NQ*i, V + NV*i, A + NV*i, accelerations + NJ*i, codes);
-        for (size_t k = 0; k < LANES; ++k) {
+    size_t failed = 0, w;
+    for (size_t i = 0; i < n; i += w) {
+        int codes[LANES] = {INVALID};
+        w = LANES > 1 && i + LANES <= n ? LANES : 1;
+        if (w > 1) {
+            joint_accelerations_lanes(model, X + NQ*i, V + NV*i, A + NV*i, accelerations + NJ*i, codes);
+        }
+        for (size_t k = 0; k < w; ++k) {
             if (codes[k] != OK) {
                 codes[k] = hybrid_3rrrs_joint_accelerations(model, X + NQ*(i + k), V + NV*(i + k), A + NV*(i + k),
                     accelerations + NJ*(i + k));
             }
         }
-        failed += record(codes, LANES, status ? status + i : NULL);
-    }
-    for (; i < n; ++i) {
-        const int code = hybrid_3rrrs_joint_accelerations(model, X + NQ*i, V + NV*i, A + NV*i,
-            accelerations + NJ*i);
-        failed += record(&code, 1, status ? status + i : NULL);
+        failed += record(codes, w, status ? status + i : NULL);
     }
     return failed;
 }
 
-int hybrid_3rrrs_dynamics(const hybrid_3rrrs_model *model, const hybrid_3rrrs_real *X, const
-    hybrid_3rrrs_real *V, hybrid_3rrrs_real *M, hybrid_3rrrs_real *Z, hybrid_3rrrs_real *H)
+int hybrid_3rrrs_dynamics(const prepared *model, const real *X, const real *V, real *M, real *Z,
+    real *H)
 {
     int code;
     dynamics_one(model, X, V, M, Z, H, &code);
     return code;
 }
 
-size_t hybrid_3rrrs_dynamics_batch(const hybrid_3rrrs_model *model, size_t n, const
-    hybrid_3rrrs_real *X, const hybrid_3rrrs_real *V, hybrid_3rrrs_real *M, hybrid_3rrrs_real *Z,
-    hybrid_3rrrs_real *H, int *status)
+size_t hybrid_3rrrs_dynamics_batch(const prepared *model, size_t n, const real *X, const real *V,
+    real *M, real *Z, real *H, int *status)
 {
-    size_t failed = 0, i = 0;
-    for (; LANES > 1 && i + LANES <= n; i += LANES) {
-        int codes[LANES];
-        dynamics_lanes(model, X + NQ*i, V + NV*i, M + NV*NV*i, Z + NV*i, H + NV*NU*i, codes);
-        for (size_t k = 0; k < LANES; ++k) {
+    size_t failed = 0, w;
+    for (size_t i = 0; i < n; i += w) {
+        int codes[LANES] = {INVALID};
+        w = LANES > 1 && i + LANES <= n ? LANES : 1;
+        if (w > 1) {
+            dynamics_lanes(model, X + NQ*i, V + NV*i, M + NV*NV*i, Z + NV*i, H + NV*NU*i, codes);
+        }
+        for (size_t k = 0; k < w; ++k) {
             if (codes[k] != OK) {
                 codes[k] = hybrid_3rrrs_dynamics(model, X + NQ*(i + k), V + NV*(i + k), M + NV*NV*(i + k), Z +
                     NV*(i + k), H + NV*NU*(i + k));
             }
         }
-        failed += record(codes, LANES, status ? status + i : NULL);
-    }
-    for (; i < n; ++i) {
-        const int code = hybrid_3rrrs_dynamics(model, X + NQ*i, V + NV*i, M + NV*NV*i, Z + NV*i, H +
-            NV*NU*i);
-        failed += record(&code, 1, status ? status + i : NULL);
+        failed += record(codes, w, status ? status + i : NULL);
     }
     return failed;
 }
 
-int hybrid_3rrrs_inverse_dynamics(const hybrid_3rrrs_model *model, const hybrid_3rrrs_real *X,
-    const hybrid_3rrrs_real *V, const hybrid_3rrrs_real *A, const hybrid_3rrrs_real *wrench,
-    hybrid_3rrrs_real *tau)
+int hybrid_3rrrs_inverse_dynamics(const prepared *model, const real *X, const real *V, const real
+    *A, const real *wrench, real *tau)
 {
     int code;
     inverse_dynamics_one(model, X, V, A, wrench, tau, &code);
     return code;
 }
 
-size_t hybrid_3rrrs_inverse_dynamics_batch(const hybrid_3rrrs_model *model, size_t n, const
-    hybrid_3rrrs_real *X, const hybrid_3rrrs_real *V, const hybrid_3rrrs_real *A, const
-    hybrid_3rrrs_real *wrench, hybrid_3rrrs_real *tau, int *status)
+size_t hybrid_3rrrs_inverse_dynamics_batch(const prepared *model, size_t n, const real *X, const
+    real *V, const real *A, const real *wrench, real *tau, int *status)
 {
-    size_t failed = 0, i = 0;
-    for (; LANES > 1 && i + LANES <= n; i += LANES) {
-        int codes[LANES];
-        inverse_dynamics_lanes(model, X + NQ*i, V + NV*i, A + NV*i, wrench ? wrench + NW*i : NULL, tau +
-            NU*i, codes);
-        for (size_t k = 0; k < LANES; ++k) {
+    size_t failed = 0, w;
+    for (size_t i = 0; i < n; i += w) {
+        int codes[LANES] = {INVALID};
+        w = LANES > 1 && i + LANES <= n ? LANES : 1;
+        if (w > 1) {
+            inverse_dynamics_lanes(model, X + NQ*i, V + NV*i, A + NV*i, wrench ? wrench + NW*i : NULL, tau +
+                NU*i, codes);
+        }
+        for (size_t k = 0; k < w; ++k) {
             if (codes[k] != OK) {
                 codes[k] = hybrid_3rrrs_inverse_dynamics(model, X + NQ*(i + k), V + NV*(i + k), A + NV*(i + k),
                     wrench ? wrench + NW*(i + k) : NULL, tau + NU*(i + k));
             }
         }
-        failed += record(codes, LANES, status ? status + i : NULL);
-    }
-    for (; i < n; ++i) {
-        const int code = hybrid_3rrrs_inverse_dynamics(model, X + NQ*i, V + NV*i, A + NV*i, wrench ?
-            wrench + NW*i : NULL, tau + NU*i);
-        failed += record(&code, 1, status ? status + i : NULL);
+        failed += record(codes, w, status ? status + i : NULL);
     }
     return failed;
 }
 
-int hybrid_3rrrs_forward_dynamics(const hybrid_3rrrs_model *model, const hybrid_3rrrs_real *X,
-    const hybrid_3rrrs_real *V, const hybrid_3rrrs_real *tau, const hybrid_3rrrs_real *wrench,
-    hybrid_3rrrs_real *A)
+int hybrid_3rrrs_forward_dynamics(const prepared *model, const real *X, const real *V, const real
+    *tau, const real *wrench, real *A)
 {
     int code;
     forward_dynamics_one(model, X, V, tau, wrench, A, &code);
     return code;
 }
 
-size_t hybrid_3rrrs_forward_dynamics_batch(const hybrid_3rrrs_model *model, size_t n, const
-    hybrid_3rrrs_real *X, const hybrid_3rrrs_real *V, const hybrid_3rrrs_real *tau, const
-    hybrid_3rrrs_real *wrench, hybrid_3rrrs_real *A, int *status)
+size_t hybrid_3rrrs_forward_dynamics_batch(const prepared *model, size_t n, const real *X, const
+    real *V, const real *tau, const real *wrench, real *A, int *status)
 {
-    size_t failed = 0, i = 0;
-    for (; LANES > 1 && i + LANES <= n; i += LANES) {
-        int codes[LANES];
-        forward_dynamics_lanes(model, X + NQ*i, V + NV*i, tau + NU*i, wrench ? wrench + NW*i : NULL, A +
-            NV*i, codes);
-        for (size_t k = 0; k < LANES; ++k) {
+    size_t failed = 0, w;
+    for (size_t i = 0; i < n; i += w) {
+        int codes[LANES] = {INVALID};
+        w = LANES > 1 && i + LANES <= n ? LANES : 1;
+        if (w > 1) {
+            forward_dynamics_lanes(model, X + NQ*i, V + NV*i, tau + NU*i, wrench ? wrench + NW*i : NULL, A +
+                NV*i, codes);
+        }
+        for (size_t k = 0; k < w; ++k) {
             if (codes[k] != OK) {
                 codes[k] = hybrid_3rrrs_forward_dynamics(model, X + NQ*(i + k), V + NV*(i + k), tau + NU*(i + k),
                     wrench ? wrench + NW*(i + k) : NULL, A + NV*(i + k));
             }
         }
-        failed += record(codes, LANES, status ? status + i : NULL);
-    }
-    for (; i < n; ++i) {
-        const int code = hybrid_3rrrs_forward_dynamics(model, X + NQ*i, V + NV*i, tau + NU*i, wrench ?
-            wrench + NW*i : NULL, A + NV*i);
-        failed += record(&code, 1, status ? status + i : NULL);
+        failed += record(codes, w, status ? status + i : NULL);
     }
     return failed;
 }
 
-int hybrid_3rrrs_complete_acceleration(const hybrid_3rrrs_model *model, const hybrid_3rrrs_real
-    *X, const hybrid_3rrrs_real *V, const hybrid_3rrrs_real *A, const hybrid_3rrrs_real *wrench,
-    hybrid_3rrrs_real *completed)
+int hybrid_3rrrs_complete_acceleration(const prepared *model, const real *X, const real *V, const
+    real *A, const real *wrench, real *completed)
 {
     int code;
     (void)model;
@@ -7912,12 +6185,11 @@ int hybrid_3rrrs_complete_acceleration(const hybrid_3rrrs_model *model, const hy
     return code;
 }
 
-size_t hybrid_3rrrs_complete_acceleration_batch(const hybrid_3rrrs_model *model, size_t n, const
-    hybrid_3rrrs_real *X, const hybrid_3rrrs_real *V, const hybrid_3rrrs_real *A, const
-    hybrid_3rrrs_real *wrench, hybrid_3rrrs_real *completed, int *status)
+size_t hybrid_3rrrs_complete_acceleration_batch(const prepared *model, size_t n, const real *X,
+    const real *V, const real *A, const real *wrench, real *completed, int *status)
 {
-    size_t failed = 0, i = 0;
-    for (; i < n; ++i) {
+    size_t failed = 0;
+    for (size_t i = 0; i < n; ++i) {
         const int code = hybrid_3rrrs_complete_acceleration(model, X + NQ*i, V + NV*i, A + NV*i, wrench ?
             wrench + NW*i : NULL, completed + NV*i);
         failed += record(&code, 1, status ? status + i : NULL);
@@ -7925,21 +6197,19 @@ size_t hybrid_3rrrs_complete_acceleration_batch(const hybrid_3rrrs_model *model,
     return failed;
 }
 
-int hybrid_3rrrs_leg_reactions(const hybrid_3rrrs_model *model, const hybrid_3rrrs_real *X, const
-    hybrid_3rrrs_real *V, const hybrid_3rrrs_real *A, const hybrid_3rrrs_real *wrench,
-    hybrid_3rrrs_real *forces)
+int hybrid_3rrrs_leg_reactions(const prepared *model, const real *X, const real *V, const real *A,
+    const real *wrench, real *forces)
 {
     int code;
     leg_reactions_one(model, X, V, A, wrench, forces, &code);
     return code;
 }
 
-size_t hybrid_3rrrs_leg_reactions_batch(const hybrid_3rrrs_model *model, size_t n, const
-    hybrid_3rrrs_real *X, const hybrid_3rrrs_real *V, const hybrid_3rrrs_real *A, const
-    hybrid_3rrrs_real *wrench, hybrid_3rrrs_real *forces, int *status)
+size_t hybrid_3rrrs_leg_reactions_batch(const prepared *model, size_t n, const real *X, const real
+    *V, const real *A, const real *wrench, real *forces, int *status)
 {
-    size_t failed = 0, i = 0;
-    for (; i < n; ++i) {
+    size_t failed = 0;
+    for (size_t i = 0; i < n; ++i) {
         const int code = hybrid_3rrrs_leg_reactions(model, X + NQ*i, V + NV*i, A + NV*i, wrench ? wrench +
             NW*i : NULL, forces + 9*i);
         failed += record(&code, 1, status ? status + i : NULL);
@@ -7947,66 +6217,102 @@ size_t hybrid_3rrrs_leg_reactions_batch(const hybrid_3rrrs_model *model, size_t 
     return failed;
 }
 
-int hybrid_3rrrs_energy(const hybrid_3rrrs_model *model, const hybrid_3rrrs_real *X, const
-    hybrid_3rrrs_real *V, hybrid_3rrrs_real *kinetic, hybrid_3rrrs_real *potential)
+int hybrid_3rrrs_energy(const prepared *model, const real *X, const real *V, real *kinetic, real
+    *potential)
 {
     int code;
     energy_one(model, X, V, kinetic, potential, &code);
     return code;
 }
 
-size_t hybrid_3rrrs_energy_batch(const hybrid_3rrrs_model *model, size_t n, const
-    hybrid_3rrrs_real *X, const hybrid_3rrrs_real *V, hybrid_3rrrs_real *kinetic,
-    hybrid_3rrrs_real *potential, int *status)
+size_t hybrid_3rrrs_energy_batch(const prepared *model, size_t n, const real *X, const real *V,
+    real *kinetic, real *potential, int *status)
 {
-    size_t failed = 0, i = 0;
-    for (; i < n; ++i) {
+    size_t failed = 0;
+    for (size_t i = 0; i < n; ++i) {
         const int code = hybrid_3rrrs_energy(model, X + NQ*i, V + NV*i, kinetic + i, potential + i);
         failed += record(&code, 1, status ? status + i : NULL);
     }
     return failed;
 }
 
-int hybrid_3rrrs_condition(const hybrid_3rrrs_model *model, const hybrid_3rrrs_real *X,
-    hybrid_3rrrs_real *sigma, hybrid_3rrrs_real *legs)
+int hybrid_3rrrs_condition(const prepared *model, const real *X, real *sigma, real *legs)
 {
     int code;
     condition_one(model, X, NULL, sigma, legs, &code);
     return code;
 }
 
-size_t hybrid_3rrrs_condition_batch(const hybrid_3rrrs_model *model, size_t n, const
-    hybrid_3rrrs_real *X, hybrid_3rrrs_real *sigma, hybrid_3rrrs_real *legs, int *status)
+size_t hybrid_3rrrs_condition_batch(const prepared *model, size_t n, const real *X, real *sigma,
+    real *legs, int *status)
 {
-    size_t failed = 0, i = 0;
-    for (; i < n; ++i) {
+    size_t failed = 0;
+    for (size_t i = 0; i < n; ++i) {
         const int code = hybrid_3rrrs_condition(model, X + NQ*i, sigma + 6*i, legs + 3*i);
         failed += record(&code, 1, status ? status + i : NULL);
     }
     return failed;
 }
 
-int hybrid_3rrrs_forward_kinematics(const hybrid_3rrrs_model *model, const hybrid_3rrrs_real
-    *q_actuated, const hybrid_3rrrs_real *X0, hybrid_3rrrs_real *X)
+int hybrid_3rrrs_manipulability(const prepared *model, const real *X, real *measure, real
+    *isotropy)
+{
+    int code;
+    manipulability_one(model, X, measure, isotropy, &code);
+    return code;
+}
+
+size_t hybrid_3rrrs_manipulability_batch(const prepared *model, size_t n, const real *X, real
+    *measure, real *isotropy, int *status)
+{
+    size_t failed = 0;
+    for (size_t i = 0; i < n; ++i) {
+        const int code = hybrid_3rrrs_manipulability(model, X + NQ*i, measure + i, isotropy + i);
+        failed += record(&code, 1, status ? status + i : NULL);
+    }
+    return failed;
+}
+
+int hybrid_3rrrs_singularity_distance(const prepared *model, const real *X, real *actuators, real
+    *legs)
+{
+    int code;
+    singularity_distance_one(model, X, actuators, legs, &code);
+    return code;
+}
+
+size_t hybrid_3rrrs_singularity_distance_batch(const prepared *model, size_t n, const real *X,
+    real *actuators, real *legs, int *status)
+{
+    size_t failed = 0;
+    for (size_t i = 0; i < n; ++i) {
+        const int code = hybrid_3rrrs_singularity_distance(model, X + NQ*i, actuators + i, legs + i);
+        failed += record(&code, 1, status ? status + i : NULL);
+    }
+    return failed;
+}
+
+int hybrid_3rrrs_forward_kinematics(const prepared *model, const real *q_actuated, const real *X0,
+    real *X)
 {
     int code;
     forward_kinematics_one(model, q_actuated, X0, X, &code);
     return code;
 }
 
-size_t hybrid_3rrrs_forward_kinematics_batch(const hybrid_3rrrs_model *model, size_t n, const
-    hybrid_3rrrs_real *q_actuated, const hybrid_3rrrs_real *X0, hybrid_3rrrs_real *X, int *status)
+size_t hybrid_3rrrs_forward_kinematics_batch(const prepared *model, size_t n, const real
+    *q_actuated, const real *X0, real *X, int *status)
 {
-    size_t failed = 0, i = 0;
-    for (; i < n; ++i) {
+    size_t failed = 0;
+    for (size_t i = 0; i < n; ++i) {
         const int code = hybrid_3rrrs_forward_kinematics(model, q_actuated + NU*i, X0 + NQ*i, X + NQ*i);
         failed += record(&code, 1, status ? status + i : NULL);
     }
     return failed;
 }
 
-int hybrid_3rrrs_dissipation(const hybrid_3rrrs_model *model, const hybrid_3rrrs_real *X, const
-    hybrid_3rrrs_real *V, hybrid_3rrrs_real *dissipation)
+int hybrid_3rrrs_dissipation(const prepared *model, const real *X, const real *V, real
+    *dissipation)
 {
     int code;
     (void)model;
@@ -8015,351 +6321,327 @@ int hybrid_3rrrs_dissipation(const hybrid_3rrrs_model *model, const hybrid_3rrrs
     return code;
 }
 
-size_t hybrid_3rrrs_dissipation_batch(const hybrid_3rrrs_model *model, size_t n, const
-    hybrid_3rrrs_real *X, const hybrid_3rrrs_real *V, hybrid_3rrrs_real *dissipation, int *status)
+size_t hybrid_3rrrs_dissipation_batch(const prepared *model, size_t n, const real *X, const real
+    *V, real *dissipation, int *status)
 {
-    size_t failed = 0, i = 0;
-    for (; i < n; ++i) {
+    size_t failed = 0;
+    for (size_t i = 0; i < n; ++i) {
         const int code = hybrid_3rrrs_dissipation(model, X + NQ*i, V + NV*i, dissipation + i);
         failed += record(&code, 1, status ? status + i : NULL);
     }
     return failed;
 }
 
-int hybrid_3rrrs_momentum(const hybrid_3rrrs_model *model, const hybrid_3rrrs_real *X, const
-    hybrid_3rrrs_real *V, hybrid_3rrrs_real *momentum)
+int hybrid_3rrrs_momentum(const prepared *model, const real *X, const real *V, real *momentum)
 {
     int code;
     momentum_one(model, X, V, momentum, &code);
     return code;
 }
 
-size_t hybrid_3rrrs_momentum_batch(const hybrid_3rrrs_model *model, size_t n, const
-    hybrid_3rrrs_real *X, const hybrid_3rrrs_real *V, hybrid_3rrrs_real *momentum, int *status)
+size_t hybrid_3rrrs_momentum_batch(const prepared *model, size_t n, const real *X, const real *V,
+    real *momentum, int *status)
 {
-    size_t failed = 0, i = 0;
-    for (; LANES > 1 && i + LANES <= n; i += LANES) {
-        int codes[LANES];
-        momentum_lanes(model, X + NQ*i, V + NV*i, momentum + NV*i, codes);
-        for (size_t k = 0; k < LANES; ++k) {
+    size_t failed = 0, w;
+    for (size_t i = 0; i < n; i += w) {
+        int codes[LANES] = {INVALID};
+        w = LANES > 1 && i + LANES <= n ? LANES : 1;
+        if (w > 1) {
+            momentum_lanes(model, X + NQ*i, V + NV*i, momentum + NV*i, codes);
+        }
+        for (size_t k = 0; k < w; ++k) {
             if (codes[k] != OK) {
                 codes[k] = hybrid_3rrrs_momentum(model, X + NQ*(i + k), V + NV*(i + k), momentum + NV*(i + k));
             }
         }
-        failed += record(codes, LANES, status ? status + i : NULL);
-    }
-    for (; i < n; ++i) {
-        const int code = hybrid_3rrrs_momentum(model, X + NQ*i, V + NV*i, momentum + NV*i);
-        failed += record(&code, 1, status ? status + i : NULL);
+        failed += record(codes, w, status ? status + i : NULL);
     }
     return failed;
 }
 
-int hybrid_3rrrs_joint_margins(const hybrid_3rrrs_model *model, const hybrid_3rrrs_real *X,
-    hybrid_3rrrs_real *margins)
+int hybrid_3rrrs_joint_margins(const prepared *model, const real *X, real *margins)
 {
     int code;
     joint_margins_one(model, X, margins, &code);
     return code;
 }
 
-size_t hybrid_3rrrs_joint_margins_batch(const hybrid_3rrrs_model *model, size_t n, const
-    hybrid_3rrrs_real *X, hybrid_3rrrs_real *margins, int *status)
+size_t hybrid_3rrrs_joint_margins_batch(const prepared *model, size_t n, const real *X, real
+    *margins, int *status)
 {
-    size_t failed = 0, i = 0;
-    for (; LANES > 1 && i + LANES <= n; i += LANES) {
-        int codes[LANES];
-        joint_margins_lanes(model, X + NQ*i, margins + NJ*i, codes);
-        for (size_t k = 0; k < LANES; ++k) {
+    size_t failed = 0, w;
+    for (size_t i = 0; i < n; i += w) {
+        int codes[LANES] = {INVALID};
+        w = LANES > 1 && i + LANES <= n ? LANES : 1;
+        if (w > 1) {
+            joint_margins_lanes(model, X + NQ*i, margins + NJ*i, codes);
+        }
+        for (size_t k = 0; k < w; ++k) {
             if (codes[k] != OK) {
                 codes[k] = hybrid_3rrrs_joint_margins(model, X + NQ*(i + k), margins + NJ*(i + k));
             }
         }
-        failed += record(codes, LANES, status ? status + i : NULL);
-    }
-    for (; i < n; ++i) {
-        const int code = hybrid_3rrrs_joint_margins(model, X + NQ*i, margins + NJ*i);
-        failed += record(&code, 1, status ? status + i : NULL);
+        failed += record(codes, w, status ? status + i : NULL);
     }
     return failed;
 }
 
-int hybrid_3rrrs_within_limits(const hybrid_3rrrs_model *model, const hybrid_3rrrs_real *X,
-    hybrid_3rrrs_real *within)
+int hybrid_3rrrs_within_limits(const prepared *model, const real *X, real *within)
 {
     int code;
     within_limits_one(model, X, within, &code);
     return code;
 }
 
-size_t hybrid_3rrrs_within_limits_batch(const hybrid_3rrrs_model *model, size_t n, const
-    hybrid_3rrrs_real *X, hybrid_3rrrs_real *within, int *status)
+size_t hybrid_3rrrs_within_limits_batch(const prepared *model, size_t n, const real *X, real
+    *within, int *status)
 {
-    size_t failed = 0, i = 0;
-    for (; LANES > 1 && i + LANES <= n; i += LANES) {
-        int codes[LANES];
-        within_limits_lanes(model, X + NQ*i, within + i, codes);
-        for (size_t k = 0; k < LANES; ++k) {
+    size_t failed = 0, w;
+    for (size_t i = 0; i < n; i += w) {
+        int codes[LANES] = {INVALID};
+        w = LANES > 1 && i + LANES <= n ? LANES : 1;
+        if (w > 1) {
+            within_limits_lanes(model, X + NQ*i, within + i, codes);
+        }
+        for (size_t k = 0; k < w; ++k) {
             if (codes[k] != OK) {
                 codes[k] = hybrid_3rrrs_within_limits(model, X + NQ*(i + k), within + (i + k));
             }
         }
-        failed += record(codes, LANES, status ? status + i : NULL);
-    }
-    for (; i < n; ++i) {
-        const int code = hybrid_3rrrs_within_limits(model, X + NQ*i, within + i);
-        failed += record(&code, 1, status ? status + i : NULL);
+        failed += record(codes, w, status ? status + i : NULL);
     }
     return failed;
 }
 
-int hybrid_3rrrs_actuator_positions(const hybrid_3rrrs_model *model, const hybrid_3rrrs_real *X,
-    hybrid_3rrrs_real *q)
+int hybrid_3rrrs_actuator_positions(const prepared *model, const real *X, real *q)
 {
     int code;
     actuator_positions_one(model, X, q, &code);
     return code;
 }
 
-size_t hybrid_3rrrs_actuator_positions_batch(const hybrid_3rrrs_model *model, size_t n, const
-    hybrid_3rrrs_real *X, hybrid_3rrrs_real *q, int *status)
+size_t hybrid_3rrrs_actuator_positions_batch(const prepared *model, size_t n, const real *X, real
+    *q, int *status)
 {
-    size_t failed = 0, i = 0;
-    for (; LANES > 1 && i + LANES <= n; i += LANES) {
-        int codes[LANES];
-        actuator_positions_lanes(model, X + NQ*i, q + NU*i, codes);
-        for (size_t k = 0; k < LANES; ++k) {
+    size_t failed = 0, w;
+    for (size_t i = 0; i < n; i += w) {
+        int codes[LANES] = {INVALID};
+        w = LANES > 1 && i + LANES <= n ? LANES : 1;
+        if (w > 1) {
+            actuator_positions_lanes(model, X + NQ*i, q + NU*i, codes);
+        }
+        for (size_t k = 0; k < w; ++k) {
             if (codes[k] != OK) {
                 codes[k] = hybrid_3rrrs_actuator_positions(model, X + NQ*(i + k), q + NU*(i + k));
             }
         }
-        failed += record(codes, LANES, status ? status + i : NULL);
-    }
-    for (; i < n; ++i) {
-        const int code = hybrid_3rrrs_actuator_positions(model, X + NQ*i, q + NU*i);
-        failed += record(&code, 1, status ? status + i : NULL);
+        failed += record(codes, w, status ? status + i : NULL);
     }
     return failed;
 }
 
-int hybrid_3rrrs_actuator_rates(const hybrid_3rrrs_model *model, const hybrid_3rrrs_real *X, const
-    hybrid_3rrrs_real *V, hybrid_3rrrs_real *rates)
+int hybrid_3rrrs_actuator_rates(const prepared *model, const real *X, const real *V, real *rates)
 {
     int code;
     actuator_rates_one(model, X, V, rates, &code);
     return code;
 }
 
-size_t hybrid_3rrrs_actuator_rates_batch(const hybrid_3rrrs_model *model, size_t n, const
-    hybrid_3rrrs_real *X, const hybrid_3rrrs_real *V, hybrid_3rrrs_real *rates, int *status)
+size_t hybrid_3rrrs_actuator_rates_batch(const prepared *model, size_t n, const real *X, const
+    real *V, real *rates, int *status)
 {
-    size_t failed = 0, i = 0;
-    for (; LANES > 1 && i + LANES <= n; i += LANES) {
-        int codes[LANES];
-        actuator_rates_lanes(model, X + NQ*i, V + NV*i, rates + NU*i, codes);
-        for (size_t k = 0; k < LANES; ++k) {
+    size_t failed = 0, w;
+    for (size_t i = 0; i < n; i += w) {
+        int codes[LANES] = {INVALID};
+        w = LANES > 1 && i + LANES <= n ? LANES : 1;
+        if (w > 1) {
+            actuator_rates_lanes(model, X + NQ*i, V + NV*i, rates + NU*i, codes);
+        }
+        for (size_t k = 0; k < w; ++k) {
             if (codes[k] != OK) {
                 codes[k] = hybrid_3rrrs_actuator_rates(model, X + NQ*(i + k), V + NV*(i + k), rates + NU*(i + k));
             }
         }
-        failed += record(codes, LANES, status ? status + i : NULL);
-    }
-    for (; i < n; ++i) {
-        const int code = hybrid_3rrrs_actuator_rates(model, X + NQ*i, V + NV*i, rates + NU*i);
-        failed += record(&code, 1, status ? status + i : NULL);
+        failed += record(codes, w, status ? status + i : NULL);
     }
     return failed;
 }
 
-int hybrid_3rrrs_actuator_accelerations(const hybrid_3rrrs_model *model, const hybrid_3rrrs_real
-    *X, const hybrid_3rrrs_real *V, const hybrid_3rrrs_real *A, hybrid_3rrrs_real *accelerations)
+int hybrid_3rrrs_actuator_accelerations(const prepared *model, const real *X, const real *V, const
+    real *A, real *accelerations)
 {
     int code;
     actuator_accelerations_one(model, X, V, A, accelerations, &code);
     return code;
 }
 
-size_t hybrid_3rrrs_actuator_accelerations_batch(const hybrid_3rrrs_model *model, size_t n, const
-    hybrid_3rrrs_real *X, const hybrid_3rrrs_real *V, const hybrid_3rrrs_real *A,
-    hybrid_3rrrs_real *accelerations, int *status)
+size_t hybrid_3rrrs_actuator_accelerations_batch(const prepared *model, size_t n, const real *X,
+    const real *V, const real *A, real *accelerations, int *status)
 {
-    size_t failed = 0, i = 0;
-    for (; LANES > 1 && i + LANES <= n; i += LANES) {
-        int codes[LANES];
-        actuator_accelerations_lanes(model, X + NQ*i, V + NV*i, A + NV*i, accelerations + NU*i, codes);
-        for (size_t k = 0; k < LANES; ++k) {
+    size_t failed = 0, w;
+    for (size_t i = 0; i < n; i += w) {
+        int codes[LANES] = {INVALID};
+        w = LANES > 1 && i + LANES <= n ? LANES : 1;
+        if (w > 1) {
+            actuator_accelerations_lanes(model, X + NQ*i, V + NV*i, A + NV*i, accelerations + NU*i, codes);
+        }
+        for (size_t k = 0; k < w; ++k) {
             if (codes[k] != OK) {
                 codes[k] = hybrid_3rrrs_actuator_accelerations(model, X + NQ*(i + k), V + NV*(i + k), A + NV*(i +
                     k), accelerations + NU*(i + k));
             }
         }
-        failed += record(codes, LANES, status ? status + i : NULL);
-    }
-    for (; i < n; ++i) {
-        const int code = hybrid_3rrrs_actuator_accelerations(model, X + NQ*i, V + NV*i, A + NV*i,
-            accelerations + NU*i);
-        failed += record(&code, 1, status ? status + i : NULL);
+        failed += record(codes, w, status ? status + i : NULL);
     }
     return failed;
 }
 
-int hybrid_3rrrs_power(const hybrid_3rrrs_model *model, const hybrid_3rrrs_real *X, const
-    hybrid_3rrrs_real *V, const hybrid_3rrrs_real *tau, hybrid_3rrrs_real *power)
+int hybrid_3rrrs_power(const prepared *model, const real *X, const real *V, const real *tau, real
+    *power)
 {
     int code;
     power_one(model, X, V, tau, power, &code);
     return code;
 }
 
-size_t hybrid_3rrrs_power_batch(const hybrid_3rrrs_model *model, size_t n, const hybrid_3rrrs_real
-    *X, const hybrid_3rrrs_real *V, const hybrid_3rrrs_real *tau, hybrid_3rrrs_real *power, int
-    *status)
+size_t hybrid_3rrrs_power_batch(const prepared *model, size_t n, const real *X, const real *V,
+    const real *tau, real *power, int *status)
 {
-    size_t failed = 0, i = 0;
-    for (; LANES > 1 && i + LANES <= n; i += LANES) {
-        int codes[LANES];
-        power_lanes(model, X + NQ*i, V + NV*i, tau + NU*i, power + i, codes);
-        for (size_t k = 0; k < LANES; ++k) {
+    size_t failed = 0, w;
+    for (size_t i = 0; i < n; i += w) {
+        int codes[LANES] = {INVALID};
+        w = LANES > 1 && i + LANES <= n ? LANES : 1;
+        if (w > 1) {
+            power_lanes(model, X + NQ*i, V + NV*i, tau + NU*i, power + i, codes);
+        }
+        for (size_t k = 0; k < w; ++k) {
             if (codes[k] != OK) {
                 codes[k] = hybrid_3rrrs_power(model, X + NQ*(i + k), V + NV*(i + k), tau + NU*(i + k), power + (i
                     + k));
             }
         }
-        failed += record(codes, LANES, status ? status + i : NULL);
-    }
-    for (; i < n; ++i) {
-        const int code = hybrid_3rrrs_power(model, X + NQ*i, V + NV*i, tau + NU*i, power + i);
-        failed += record(&code, 1, status ? status + i : NULL);
+        failed += record(codes, w, status ? status + i : NULL);
     }
     return failed;
 }
 
-int hybrid_3rrrs_rotation(const hybrid_3rrrs_real *X, hybrid_3rrrs_real *R)
+int hybrid_3rrrs_rotation(const real *X, real *R)
 {
     int code;
     rotation_one(X, R, &code);
     return code;
 }
 
-size_t hybrid_3rrrs_rotation_batch(size_t n, const hybrid_3rrrs_real *X, hybrid_3rrrs_real *R, int
-    *status)
+size_t hybrid_3rrrs_rotation_batch(size_t n, const real *X, real *R, int *status)
 {
-    size_t failed = 0, i = 0;
-    for (; i < n; ++i) {
+    size_t failed = 0;
+    for (size_t i = 0; i < n; ++i) {
         const int code = hybrid_3rrrs_rotation(X + NQ*i, R + 9*i);
         failed += record(&code, 1, status ? status + i : NULL);
     }
     return failed;
 }
 
-int hybrid_3rrrs_pose(const hybrid_3rrrs_real *t, const hybrid_3rrrs_real *R, hybrid_3rrrs_real
-    *X)
+int hybrid_3rrrs_pose(const real *t, const real *R, real *X)
 {
     int code;
     pose_one(t, R, X, &code);
     return code;
 }
 
-size_t hybrid_3rrrs_pose_batch(size_t n, const hybrid_3rrrs_real *t, const hybrid_3rrrs_real *R,
-    hybrid_3rrrs_real *X, int *status)
+size_t hybrid_3rrrs_pose_batch(size_t n, const real *t, const real *R, real *X, int *status)
 {
-    size_t failed = 0, i = 0;
-    for (; i < n; ++i) {
+    size_t failed = 0;
+    for (size_t i = 0; i < n; ++i) {
         const int code = hybrid_3rrrs_pose(t + 3*i, R + 9*i, X + NQ*i);
         failed += record(&code, 1, status ? status + i : NULL);
     }
     return failed;
 }
 
-int hybrid_3rrrs_X_dot(const hybrid_3rrrs_real *X, const hybrid_3rrrs_real *V, hybrid_3rrrs_real
-    *X_dot)
+int hybrid_3rrrs_X_dot(const real *X, const real *V, real *X_dot)
 {
     int code;
     X_dot_one(X, V, X_dot, &code);
     return code;
 }
 
-size_t hybrid_3rrrs_X_dot_batch(size_t n, const hybrid_3rrrs_real *X, const hybrid_3rrrs_real *V,
-    hybrid_3rrrs_real *X_dot, int *status)
+size_t hybrid_3rrrs_X_dot_batch(size_t n, const real *X, const real *V, real *X_dot, int *status)
 {
-    size_t failed = 0, i = 0;
-    for (; i < n; ++i) {
+    size_t failed = 0;
+    for (size_t i = 0; i < n; ++i) {
         const int code = hybrid_3rrrs_X_dot(X + NQ*i, V + NV*i, X_dot + NQ*i);
         failed += record(&code, 1, status ? status + i : NULL);
     }
     return failed;
 }
 
-int hybrid_3rrrs_pose_from_rpy(const hybrid_3rrrs_real *t, const hybrid_3rrrs_real *rpy,
-    hybrid_3rrrs_real *X)
+int hybrid_3rrrs_pose_from_rpy(const real *t, const real *rpy, real *X)
 {
     int code;
     pose_from_rpy_one(t, rpy, X, &code);
     return code;
 }
 
-size_t hybrid_3rrrs_pose_from_rpy_batch(size_t n, const hybrid_3rrrs_real *t, const
-    hybrid_3rrrs_real *rpy, hybrid_3rrrs_real *X, int *status)
+size_t hybrid_3rrrs_pose_from_rpy_batch(size_t n, const real *t, const real *rpy, real *X, int
+    *status)
 {
-    size_t failed = 0, i = 0;
-    for (; i < n; ++i) {
+    size_t failed = 0;
+    for (size_t i = 0; i < n; ++i) {
         const int code = hybrid_3rrrs_pose_from_rpy(t + 3*i, rpy + 3*i, X + NQ*i);
         failed += record(&code, 1, status ? status + i : NULL);
     }
     return failed;
 }
 
-int hybrid_3rrrs_retract(const hybrid_3rrrs_real *X, const hybrid_3rrrs_real *step,
-    hybrid_3rrrs_real *X_moved)
+int hybrid_3rrrs_retract(const real *X, const real *step, real *X_moved)
 {
     int code;
     retract_one(X, step, X_moved, &code);
     return code;
 }
 
-size_t hybrid_3rrrs_retract_batch(size_t n, const hybrid_3rrrs_real *X, const hybrid_3rrrs_real
-    *step, hybrid_3rrrs_real *X_moved, int *status)
+size_t hybrid_3rrrs_retract_batch(size_t n, const real *X, const real *step, real *X_moved, int
+    *status)
 {
-    size_t failed = 0, i = 0;
-    for (; i < n; ++i) {
+    size_t failed = 0;
+    for (size_t i = 0; i < n; ++i) {
         const int code = hybrid_3rrrs_retract(X + NQ*i, step + NV*i, X_moved + NQ*i);
         failed += record(&code, 1, status ? status + i : NULL);
     }
     return failed;
 }
 
-int hybrid_3rrrs_difference(const hybrid_3rrrs_real *X0, const hybrid_3rrrs_real *X1,
-    hybrid_3rrrs_real *step)
+int hybrid_3rrrs_difference(const real *X0, const real *X1, real *step)
 {
     int code;
     difference_one(X0, X1, step, &code);
     return code;
 }
 
-size_t hybrid_3rrrs_difference_batch(size_t n, const hybrid_3rrrs_real *X0, const
-    hybrid_3rrrs_real *X1, hybrid_3rrrs_real *step, int *status)
+size_t hybrid_3rrrs_difference_batch(size_t n, const real *X0, const real *X1, real *step, int
+    *status)
 {
-    size_t failed = 0, i = 0;
-    for (; i < n; ++i) {
+    size_t failed = 0;
+    for (size_t i = 0; i < n; ++i) {
         const int code = hybrid_3rrrs_difference(X0 + NQ*i, X1 + NQ*i, step + NV*i);
         failed += record(&code, 1, status ? status + i : NULL);
     }
     return failed;
 }
 
-int hybrid_3rrrs_interpolate(const hybrid_3rrrs_real *X0, const hybrid_3rrrs_real *X1, const
-    hybrid_3rrrs_real *s, hybrid_3rrrs_real *X)
+int hybrid_3rrrs_interpolate(const real *X0, const real *X1, const real *s, real *X)
 {
     int code;
     interpolate_one(X0, X1, s, X, &code);
     return code;
 }
 
-size_t hybrid_3rrrs_interpolate_batch(size_t n, const hybrid_3rrrs_real *X0, const
-    hybrid_3rrrs_real *X1, const hybrid_3rrrs_real *s, hybrid_3rrrs_real *X, int *status)
+size_t hybrid_3rrrs_interpolate_batch(size_t n, const real *X0, const real *X1, const real *s,
+    real *X, int *status)
 {
-    size_t failed = 0, i = 0;
-    for (; i < n; ++i) {
+    size_t failed = 0;
+    for (size_t i = 0; i < n; ++i) {
         const int code = hybrid_3rrrs_interpolate(X0 + NQ*i, X1 + NQ*i, s + i, X + NQ*i);
         failed += record(&code, 1, status ? status + i : NULL);
     }

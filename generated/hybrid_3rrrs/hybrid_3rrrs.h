@@ -150,41 +150,41 @@ extern const char *const hybrid_3rrrs_ACTUATOR_NAMES[HYBRID_3RRRS_NU];
    perpendicular, that are so by structure, to 1e-09 (float: 1e-6). */
 int hybrid_3rrrs_prepare(const hybrid_3rrrs_params *params, hybrid_3rrrs_model *model);
 
-/* Inertia matrix M. 666 mul, 489 add, 12 div, 6 sqrt, 0 trig. In: X (NQ). Out: M (NV x NV). */
+/* Inertia matrix M. 663 mul, 489 add, 12 div, 6 sqrt, 0 trig. In: X (NQ). Out: M (NV x NV). */
 int hybrid_3rrrs_M(const hybrid_3rrrs_model *model, const hybrid_3rrrs_real *X, hybrid_3rrrs_real
     *M);
 size_t hybrid_3rrrs_M_batch(const hybrid_3rrrs_model *model, size_t n, const hybrid_3rrrs_real *X,
     hybrid_3rrrs_real *M, int *status);
 
-/* Velocity and gravity terms Z. 927 mul, 675 add, 12 div, 6 sqrt, 0 trig. In: X (NQ), V (NV).
+/* Velocity and gravity terms Z. 924 mul, 675 add, 12 div, 6 sqrt, 0 trig. In: X (NQ), V (NV).
    Out: Z (NV). */
 int hybrid_3rrrs_Z(const hybrid_3rrrs_model *model, const hybrid_3rrrs_real *X, const
     hybrid_3rrrs_real *V, hybrid_3rrrs_real *Z);
 size_t hybrid_3rrrs_Z_batch(const hybrid_3rrrs_model *model, size_t n, const hybrid_3rrrs_real *X,
     const hybrid_3rrrs_real *V, hybrid_3rrrs_real *Z, int *status);
 
-/* Force transformation H: actuators to task space. 321 mul, 165 add, 12 div, 6 sqrt, 0 trig. In:
+/* Force transformation H: actuators to task space. 318 mul, 165 add, 12 div, 6 sqrt, 0 trig. In:
    X (NQ). Out: H (NV x NU). */
 int hybrid_3rrrs_H(const hybrid_3rrrs_model *model, const hybrid_3rrrs_real *X, hybrid_3rrrs_real
     *H);
 size_t hybrid_3rrrs_H_batch(const hybrid_3rrrs_model *model, size_t n, const hybrid_3rrrs_real *X,
     hybrid_3rrrs_real *H, int *status);
 
-/* Displacements q of all joints. They are those of the assembly branch of home. 144 mul, 84 add,
+/* Displacements q of all joints. They are those of the assembly branch of home. 141 mul, 84 add,
    6 div, 6 sqrt, 9 trig. In: X (NQ). Out: q (NJ). */
 int hybrid_3rrrs_inverse_kinematics(const hybrid_3rrrs_model *model, const hybrid_3rrrs_real *X,
     hybrid_3rrrs_real *q);
 size_t hybrid_3rrrs_inverse_kinematics_batch(const hybrid_3rrrs_model *model, size_t n, const
     hybrid_3rrrs_real *X, hybrid_3rrrs_real *q, int *status);
 
-/* Rates of all joints. 324 mul, 189 add, 12 div, 6 sqrt, 0 trig. In: X (NQ), V (NV). Out: rates
+/* Rates of all joints. 321 mul, 189 add, 12 div, 6 sqrt, 0 trig. In: X (NQ), V (NV). Out: rates
    (NJ). */
 int hybrid_3rrrs_joint_rates(const hybrid_3rrrs_model *model, const hybrid_3rrrs_real *X, const
     hybrid_3rrrs_real *V, hybrid_3rrrs_real *rates);
 size_t hybrid_3rrrs_joint_rates_batch(const hybrid_3rrrs_model *model, size_t n, const
     hybrid_3rrrs_real *X, const hybrid_3rrrs_real *V, hybrid_3rrrs_real *rates, int *status);
 
-/* Accelerations of all joints. 537 mul, 321 add, 12 div, 6 sqrt, 0 trig. In: X (NQ), V (NV), A
+/* Accelerations of all joints. 534 mul, 321 add, 12 div, 6 sqrt, 0 trig. In: X (NQ), V (NV), A
    (NV). Out: accelerations (NJ). */
 int hybrid_3rrrs_joint_accelerations(const hybrid_3rrrs_model *model, const hybrid_3rrrs_real *X,
     const hybrid_3rrrs_real *V, const hybrid_3rrrs_real *A, hybrid_3rrrs_real *accelerations);
@@ -192,7 +192,7 @@ size_t hybrid_3rrrs_joint_accelerations_batch(const hybrid_3rrrs_model *model, s
     hybrid_3rrrs_real *X, const hybrid_3rrrs_real *V, const hybrid_3rrrs_real *A,
     hybrid_3rrrs_real *accelerations, int *status);
 
-/* M, Z and H together, sharing the work. 1365 mul, 1026 add, 12 div, 6 sqrt, 0 trig. In: X (NQ),
+/* M, Z and H together, sharing the work. 1362 mul, 1026 add, 12 div, 6 sqrt, 0 trig. In: X (NQ),
    V (NV). Out: M (NV x NV), Z (NV), H (NV x NU). */
 int hybrid_3rrrs_dynamics(const hybrid_3rrrs_model *model, const hybrid_3rrrs_real *X, const
     hybrid_3rrrs_real *V, hybrid_3rrrs_real *M, hybrid_3rrrs_real *Z, hybrid_3rrrs_real *H);
@@ -200,7 +200,7 @@ size_t hybrid_3rrrs_dynamics_batch(const hybrid_3rrrs_model *model, size_t n, co
     hybrid_3rrrs_real *X, const hybrid_3rrrs_real *V, hybrid_3rrrs_real *M, hybrid_3rrrs_real *Z,
     hybrid_3rrrs_real *H, int *status);
 
-/* Actuator forces tau for the acceleration A, by Eq. 3. 1023 mul, 747 add, 12 div, 6 sqrt, 0
+/* Actuator forces tau for the acceleration A, by Eq. 3. 1020 mul, 747 add, 12 div, 6 sqrt, 0
    trig; the solution of the linear equations apart. In: X (NQ), V (NV), A (NV), wrench (NW, or
    NULL). Out: tau (NU). */
 int hybrid_3rrrs_inverse_dynamics(const hybrid_3rrrs_model *model, const hybrid_3rrrs_real *X,
@@ -210,7 +210,7 @@ size_t hybrid_3rrrs_inverse_dynamics_batch(const hybrid_3rrrs_model *model, size
     hybrid_3rrrs_real *X, const hybrid_3rrrs_real *V, const hybrid_3rrrs_real *A, const
     hybrid_3rrrs_real *wrench, hybrid_3rrrs_real *tau, int *status);
 
-/* Acceleration A under the actuator forces tau and the wrench. 1365 mul, 1026 add, 12 div, 6
+/* Acceleration A under the actuator forces tau and the wrench. 1362 mul, 1026 add, 12 div, 6
    sqrt, 0 trig; the solution of the linear equations apart. In: X (NQ), V (NV), tau (NU), wrench
    (NW, or NULL). Out: A (NV). */
 int hybrid_3rrrs_forward_dynamics(const hybrid_3rrrs_model *model, const hybrid_3rrrs_real *X,
@@ -231,7 +231,7 @@ size_t hybrid_3rrrs_complete_acceleration_batch(const hybrid_3rrrs_model *model,
     hybrid_3rrrs_real *wrench, hybrid_3rrrs_real *completed, int *status);
 
 /* Force of each leg on the platform at its platform joint, base axes. The actuators give the
-   forces of inverse_dynamics. 885 mul, 630 add, 12 div, 6 sqrt, 0 trig; inverse dynamics apart.
+   forces of inverse_dynamics. 882 mul, 630 add, 12 div, 6 sqrt, 0 trig; inverse dynamics apart.
    In: X (NQ), V (NV), A (NV), wrench (NW, or NULL). Out: forces (3 x 3). */
 int hybrid_3rrrs_leg_reactions(const hybrid_3rrrs_model *model, const hybrid_3rrrs_real *X, const
     hybrid_3rrrs_real *V, const hybrid_3rrrs_real *A, const hybrid_3rrrs_real *wrench,
@@ -251,12 +251,28 @@ size_t hybrid_3rrrs_energy_batch(const hybrid_3rrrs_model *model, size_t n, cons
 /* How far a pose is from singularities: singular values of H, rows of moments divided by a
    length; for every leg the least tested pivot as a fraction of its scale. The length is the rms
    distance of the platform points from their centroid, or where they coincide the rms size of the
-   legs. 343 mul, 192 add, 12 div, 13 sqrt, 0 trig; the singular values apart. In: X (NQ). Out:
+   legs. 340 mul, 192 add, 12 div, 13 sqrt, 0 trig; the singular values apart. In: X (NQ). Out:
    sigma (6), legs (3). */
 int hybrid_3rrrs_condition(const hybrid_3rrrs_model *model, const hybrid_3rrrs_real *X,
     hybrid_3rrrs_real *sigma, hybrid_3rrrs_real *legs);
 size_t hybrid_3rrrs_condition_batch(const hybrid_3rrrs_model *model, size_t n, const
     hybrid_3rrrs_real *X, hybrid_3rrrs_real *sigma, hybrid_3rrrs_real *legs, int *status);
+
+/* Manipulability of forces: the product of the singular values that condition has by default, and
+   the least over the largest of them. 340 mul, 192 add, 12 div, 13 sqrt, 0 trig; the singular
+   values apart. In: X (NQ). Out: measure (1), isotropy (1). */
+int hybrid_3rrrs_manipulability(const hybrid_3rrrs_model *model, const hybrid_3rrrs_real *X,
+    hybrid_3rrrs_real *measure, hybrid_3rrrs_real *isotropy);
+size_t hybrid_3rrrs_manipulability_batch(const hybrid_3rrrs_model *model, size_t n, const
+    hybrid_3rrrs_real *X, hybrid_3rrrs_real *measure, hybrid_3rrrs_real *isotropy, int *status);
+
+/* How near actuators and legs are to being singular: relative distances, 0 where they are. 340
+   mul, 192 add, 12 div, 13 sqrt, 0 trig; the singular values apart. In: X (NQ). Out: actuators
+   (1), legs (1). */
+int hybrid_3rrrs_singularity_distance(const hybrid_3rrrs_model *model, const hybrid_3rrrs_real *X,
+    hybrid_3rrrs_real *actuators, hybrid_3rrrs_real *legs);
+size_t hybrid_3rrrs_singularity_distance_batch(const hybrid_3rrrs_model *model, size_t n, const
+    hybrid_3rrrs_real *X, hybrid_3rrrs_real *actuators, hybrid_3rrrs_real *legs, int *status);
 
 /* X at which the actuated joints stand at q_actuated, by Gauss-Newton from X0. Extra coordinates
    that actuators do not determine stay. Impossible where no pose is found. In: q_actuated (NU),
@@ -273,7 +289,7 @@ int hybrid_3rrrs_dissipation(const hybrid_3rrrs_model *model, const hybrid_3rrrs
 size_t hybrid_3rrrs_dissipation_batch(const hybrid_3rrrs_model *model, size_t n, const
     hybrid_3rrrs_real *X, const hybrid_3rrrs_real *V, hybrid_3rrrs_real *dissipation, int *status);
 
-/* Generalised momentum M V. 666 mul, 489 add, 12 div, 6 sqrt, 0 trig. In: X (NQ), V (NV). Out:
+/* Generalised momentum M V. 663 mul, 489 add, 12 div, 6 sqrt, 0 trig. In: X (NQ), V (NV). Out:
    momentum (NV). */
 int hybrid_3rrrs_momentum(const hybrid_3rrrs_model *model, const hybrid_3rrrs_real *X, const
     hybrid_3rrrs_real *V, hybrid_3rrrs_real *momentum);
@@ -281,34 +297,34 @@ size_t hybrid_3rrrs_momentum_batch(const hybrid_3rrrs_model *model, size_t n, co
     hybrid_3rrrs_real *X, const hybrid_3rrrs_real *V, hybrid_3rrrs_real *momentum, int *status);
 
 /* How far the joints are from the nearer limit of displacement, negative beyond it; infinite
-   where there is none. 144 mul, 84 add, 6 div, 6 sqrt, 9 trig. In: X (NQ). Out: margins (NJ). */
+   where there is none. 141 mul, 84 add, 6 div, 6 sqrt, 9 trig. In: X (NQ). Out: margins (NJ). */
 int hybrid_3rrrs_joint_margins(const hybrid_3rrrs_model *model, const hybrid_3rrrs_real *X,
     hybrid_3rrrs_real *margins);
 size_t hybrid_3rrrs_joint_margins_batch(const hybrid_3rrrs_model *model, size_t n, const
     hybrid_3rrrs_real *X, hybrid_3rrrs_real *margins, int *status);
 
-/* Whether all joints are within their limits of displacement. 144 mul, 84 add, 6 div, 6 sqrt, 9
+/* Whether all joints are within their limits of displacement. 141 mul, 84 add, 6 div, 6 sqrt, 9
    trig. In: X (NQ). Out: within (1). */
 int hybrid_3rrrs_within_limits(const hybrid_3rrrs_model *model, const hybrid_3rrrs_real *X,
     hybrid_3rrrs_real *within);
 size_t hybrid_3rrrs_within_limits_batch(const hybrid_3rrrs_model *model, size_t n, const
     hybrid_3rrrs_real *X, hybrid_3rrrs_real *within, int *status);
 
-/* Displacements of the actuated joints, in the order of tau. 144 mul, 84 add, 6 div, 6 sqrt, 9
+/* Displacements of the actuated joints, in the order of tau. 141 mul, 84 add, 6 div, 6 sqrt, 9
    trig. In: X (NQ). Out: q (NU). */
 int hybrid_3rrrs_actuator_positions(const hybrid_3rrrs_model *model, const hybrid_3rrrs_real *X,
     hybrid_3rrrs_real *q);
 size_t hybrid_3rrrs_actuator_positions_batch(const hybrid_3rrrs_model *model, size_t n, const
     hybrid_3rrrs_real *X, hybrid_3rrrs_real *q, int *status);
 
-/* Rates of the actuated joints, in the order of tau. 324 mul, 189 add, 12 div, 6 sqrt, 0 trig.
+/* Rates of the actuated joints, in the order of tau. 321 mul, 189 add, 12 div, 6 sqrt, 0 trig.
    In: X (NQ), V (NV). Out: rates (NU). */
 int hybrid_3rrrs_actuator_rates(const hybrid_3rrrs_model *model, const hybrid_3rrrs_real *X, const
     hybrid_3rrrs_real *V, hybrid_3rrrs_real *rates);
 size_t hybrid_3rrrs_actuator_rates_batch(const hybrid_3rrrs_model *model, size_t n, const
     hybrid_3rrrs_real *X, const hybrid_3rrrs_real *V, hybrid_3rrrs_real *rates, int *status);
 
-/* Accelerations of the actuated joints, in the order of tau. 537 mul, 321 add, 12 div, 6 sqrt, 0
+/* Accelerations of the actuated joints, in the order of tau. 534 mul, 321 add, 12 div, 6 sqrt, 0
    trig. In: X (NQ), V (NV), A (NV). Out: accelerations (NU). */
 int hybrid_3rrrs_actuator_accelerations(const hybrid_3rrrs_model *model, const hybrid_3rrrs_real
     *X, const hybrid_3rrrs_real *V, const hybrid_3rrrs_real *A, hybrid_3rrrs_real *accelerations);

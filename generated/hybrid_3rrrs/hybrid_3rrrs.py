@@ -61,6 +61,7 @@ __all__ = [
     "joint_margins",
     "joint_rates",
     "leg_reactions",
+    "manipulability",
     "momentum",
     "null_space",
     "pose",
@@ -68,6 +69,7 @@ __all__ = [
     "power",
     "retract",
     "rotation",
+    "singularity_distance",
     "within_limits",
 ]
 
@@ -659,25 +661,21 @@ def _prepare(p):
     rrrs_d_phi_3_t = rrrs_h_3_in_spec3_y*rrrs_w_3_in_axes3_y
     # (rrrs-Jc_2) inertia tensor of the links from 2 outwards about joint 2, that of the last link about the connection point
     rrrs_Jc_2_in_axes2_zz = rrrs_J_2_in_spec2_zz + rrrs_J_3_in_spec3_zz
-    # (rrrs-trace_J_3) half the trace of that inertia tensor
-    rrrs_trace_J_3 = (
-    0.5*rrrs_J_3_in_spec3_xx + 0.5*rrrs_J_3_in_spec3_yy + 0.5*rrrs_J_3_in_spec3_zz
-    )
     # (rrrs-Sigma_3) second moment of mass of the links that turn with link 3
-    rrrs_Sigma_3_in_axes3_xx = rrrs_trace_J_3 - rrrs_J_3_in_spec3_xx
-    rrrs_Sigma_3_in_axes3_yy = rrrs_trace_J_3 - rrrs_J_3_in_spec3_yy
-    rrrs_Sigma_3_in_axes3_zz = rrrs_trace_J_3 - rrrs_J_3_in_spec3_zz
+    rrrs_Sigma_3_t = rrrs_J_3_in_spec3_xx + rrrs_J_3_in_spec3_yy + rrrs_J_3_in_spec3_zz
+    rrrs_Sigma_3_t_2 = 0.5*rrrs_Sigma_3_t
+    rrrs_Sigma_3_in_axes3_xx = rrrs_Sigma_3_t_2 - rrrs_J_3_in_spec3_xx
+    rrrs_Sigma_3_in_axes3_yy = rrrs_Sigma_3_t_2 - rrrs_J_3_in_spec3_yy
+    rrrs_Sigma_3_in_axes3_zz = rrrs_Sigma_3_t_2 - rrrs_J_3_in_spec3_zz
     # (rrrs-d_Gamma_3) coefficient of the acceleration in: moment about axis 3 of the distal links' inertia and weight
     rrrs_d_Gamma_3_t = rrrs_J_3_in_spec3_zz*rrrs_w_3_in_axes3_y
     rrrs_d_Gamma_3_in_axes3_y = rrrs_d_Gamma_3_t + rrrs_h_3_in_spec3_x
-    # (rrrs-trace_J_2) half the trace of that inertia tensor
-    rrrs_trace_J_2 = (
-    0.5*rrrs_J_2_in_spec2_xx + 0.5*rrrs_J_2_in_spec2_yy + 0.5*rrrs_J_2_in_spec2_zz
-    )
     # (rrrs-Sigma_2) second moment of mass of the links that turn with link 2
-    rrrs_Sigma_2_in_axes2_xx = rrrs_trace_J_2 - rrrs_J_2_in_spec2_xx
-    rrrs_Sigma_2_in_axes2_yy = rrrs_trace_J_2 - rrrs_J_2_in_spec2_yy
-    rrrs_Sigma_2_in_axes2_zz = rrrs_trace_J_2 - rrrs_J_2_in_spec2_zz
+    rrrs_Sigma_2_t = rrrs_J_2_in_spec2_xx + rrrs_J_2_in_spec2_yy + rrrs_J_2_in_spec2_zz
+    rrrs_Sigma_2_t_2 = 0.5*rrrs_Sigma_2_t
+    rrrs_Sigma_2_in_axes2_xx = rrrs_Sigma_2_t_2 - rrrs_J_2_in_spec2_xx
+    rrrs_Sigma_2_in_axes2_yy = rrrs_Sigma_2_t_2 - rrrs_J_2_in_spec2_yy
+    rrrs_Sigma_2_in_axes2_zz = rrrs_Sigma_2_t_2 - rrrs_J_2_in_spec2_zz
     # (rrrs-mu_2) inertia moment of the links that turn with link 2, about their reference points
     rrrs_mu_2_t = (
     gravity_x*rrrs_base_frame_xy + gravity_y*rrrs_base_frame_yy + gravity_z*rrrs_base_frame_zy
@@ -1010,6 +1008,24 @@ def _constants(p, name):
     return p._cache[name]
 
 
+class _Vector(list):
+    """A vector, or a matrix row by row, of a single state."""
+
+    def __add__(self, other):
+        return _Vector([a + b for a, b in zip(self, other)])
+
+    def __sub__(self, other):
+        return _Vector([a - b for a, b in zip(self, other)])
+
+    def __neg__(self):
+        return _Vector([-a for a in self])
+
+
+def _are_finite(rows):
+    """Whether lists of floats have finite entries alone."""
+    return math.isfinite(sum(map(sum, rows))) or all(all(map(math.isfinite, row)) for row in rows)
+
+
 class _Floats:
     """Functions of a state after another, in Python floats: the way for few states."""
 
@@ -1039,11 +1055,32 @@ class _Floats:
         """Lists that a function gives at a state."""
         try:
             ok, arrays = function(self, *given)
-        except (ZeroDivisionError, OverflowError, ValueError):
+        except (ArithmeticError, ValueError):
             ok = False
-        if ok and all(all(map(math.isfinite, array)) for array in arrays):
+        if ok and _are_finite(arrays):
             return arrays
         return [[np.nan] * math.prod(_SHAPES[n]) for n in names]
+
+    def solved(self, order, a, b):
+        """Solutions, straight through; and which are beyond doubt."""
+        sure, x = np.zeros(self.states, dtype=bool), np.full(b.shape, np.nan)
+        for k, given in enumerate(zip(a.T.tolist(), b.T.tolist())):
+            try:
+                sure[k], (x[:, k],) = order(self, *given)
+            except ZeroDivisionError:
+                pass
+        return sure, x
+
+
+class _Single(_Floats):
+    """A single state in lists of floats throughout."""
+
+    def run(self, function, names, *vectors):
+        """Arrays of a function, row by row; ArithmeticError or ValueError where the state is impossible."""
+        ok, arrays = function(self, *vectors)
+        if not (ok and _are_finite(arrays)):
+            raise ArithmeticError
+        return [_Vector(a) for a in arrays]
 
 
 class _Arrays:
@@ -1073,20 +1110,27 @@ class _Arrays:
     def zeros(self, name):
         return np.zeros((math.prod(_SHAPES[name]), self.states))
 
-    def computed(self, function, names, vectors):
-        """Flags and arrays (*shape, states) of a function."""
+    def computed(self, function, *vectors):
+        """Flags and arrays (entries, states) of a function."""
         if self.kept is None:
-            flags, arrays = function(self, *vectors)
-        else:
-            if self.done not in self.kept:
-                self.kept[self.done] = _Replay(self.p, function, [len(v) for v in vectors], self.states)
-            flags, arrays = self.kept[self.done].run(vectors)
-            self.done += 1
-        return flags, [a.reshape(*_SHAPES[n], self.states) for a, n in zip(arrays, names)]
+            return function(self, *vectors)
+        if self.done not in self.kept:
+            self.kept[self.done] = _Replay(self.p, function, [len(v) for v in vectors], self.states)
+        self.done += 1
+        return self.kept[self.done - 1].run(vectors)
+
+    def shaped(self, names, arrays):
+        return [a.reshape(*_SHAPES[n], self.states) for a, n in zip(arrays, names)]
+
+    def solved(self, order, a, b):
+        """Solutions, straight through; and which are beyond doubt."""
+        sure, (x,) = self.computed(order, a, b)
+        return sure, np.array(x)
 
     def run(self, function, names, *vectors):
         """Arrays (*shape, states) of a function; NaN where the state is impossible."""
-        ok, arrays = self.computed(function, names, vectors)
+        ok, arrays = self.computed(function, *vectors)
+        arrays = self.shaped(names, arrays)
         ok = np.logical_and(ok, _finite(arrays, self.states))
         if not np.all(ok):
             for a in arrays:
@@ -1103,10 +1147,10 @@ class _Judged(_Arrays):
 
     def run(self, function, names, *vectors):
         """Arrays (*shape, states) of a function, also where they are nonsense."""
-        (valid, reached, clear), arrays = self.computed(function, names, vectors)
+        (valid, reached, clear), arrays = self.computed(function, *vectors)
         for code, good in ((3, valid), (1, reached), (2, clear)):
             self.failed[code] |= np.logical_not(good)
-        return arrays
+        return self.shaped(names, arrays)
 
     def closed(self, q):
         """q, noting where the iteration has not converged."""
@@ -1118,26 +1162,90 @@ class _Judged(_Arrays):
         return np.select(list(self.failed.values()), list(self.failed), np.where(possible, 0, 3))
 
 
+_IN_ONE = {}  # by function
+
+
+def _in_one(function):
+    """A function that tells whether a state is possible, of one that tells why not."""
+
+    def run(m, *vectors):
+        (valid, reached, clear), arrays = function(m, *vectors)
+        return valid & reached & clear, arrays
+
+    return _IN_ONE.setdefault(function, run)
+
+
 def _mode(p, states, kept=None):
     """The faster way for so many states."""
     return (_Floats if 0 < states <= _FEW else _Arrays)(p, states, kept)
 
 
-def _call(function, steps, p, *arguments, mode=_mode, unbounded=False):
+def _call(function, steps, p, *arguments, mode=_mode, unbounded=False, plain=()):
     """What the steps give at arguments (name, value, shape of a state, default, rule).
 
-    Where that may be infinite only NaN makes a state impossible.
+    Where that may be infinite only NaN makes a state impossible.  `plain` has the shapes of results
+    where a single state needs no arrays.
     """
+    p, read = _given(p), [a[-1] != "unused" for a in arguments]
+    lists = plain and _lists(arguments)
+    if lists:
+        found = _state(_Single(p, 1), steps, lists, read)
+        results = [_result(a, shape) for a, shape in zip(found or plain, plain)]
+        return results[0] if len(results) == 1 else tuple(results)
     given = [_argument(function, *a) for a in arguments]
     shapes = [a[2] for a in arguments]
     leads = {a[0]: v.shape[: v.ndim - len(a[2])] for a, v in zip(arguments, given)}
-    lead, p = _lead(leads), _given(p)
-    read = [a[4:] != ("unused",) for a in arguments]
-    if lead or mode is _Judged:
+    lead = _lead(leads)
+    if plain and 0 < math.prod(lead) <= _FEW:
+        results = _few(steps, p, lead, given, shapes, read, plain)
+    elif lead or mode is _Judged:
         results = _many(steps, p, lead, given, shapes, read, mode, unbounded)
     else:
         results = _one(steps, p, given, shapes, read, unbounded)
     return results[0] if len(results) == 1 else tuple(results)
+
+
+def _lists(arguments):
+    """Arguments of a single state as lists, where they are such arrays as they mostly are."""
+    found = []
+    for row in arguments:
+        value, shape = row[1:3]
+        if type(value) is np.ndarray:
+            if value.shape != shape or value.dtype is not _REAL or row[-1] == "positive":
+                return None
+            found.append(_Vector(value.tolist()))
+        elif value is None and len(row) > 3 and row[3] is not None:
+            found.append(_Vector(row[3] if isinstance(row[3], tuple) else [row[3]] * shape[0]))
+        else:
+            return None
+    return found
+
+
+def _state(m, steps, given, read):
+    """Lists that the steps give at a state; None where it is impossible."""
+    try:
+        found = steps(m, *given)
+    except (ArithmeticError, ValueError):
+        return None
+    return found if _are_finite(list(compress(given, read))) and _are_finite(found) else None
+
+
+def _result(found, shape):
+    """The array of a list; of an impossible state, for which its shape is given, NaN."""
+    if found is shape:
+        return np.full(shape, np.nan)
+    return np.array(found) if len(shape) == 1 else np.array(found).reshape(shape)
+
+
+def _few(steps, p, lead, given, shapes, read, plain):
+    """Results at a few states, one after another."""
+    m, rows = _Single(p, 1), []
+    for v, shape in zip(given, shapes):
+        flat = np.broadcast_to(v, lead + shape).reshape(math.prod(lead), -1)
+        rows.append(map(_Vector, flat.tolist()))
+    impossible = [[np.nan] * math.prod(shape) for shape in plain]
+    found = [_state(m, steps, state, read) or impossible for state in zip(*rows)]
+    return [np.array(a).reshape(lead + shape) for a, shape in zip(zip(*found), plain)]
 
 
 def _one(steps, p, given, shapes, read, unbounded):
@@ -1156,7 +1264,11 @@ def _many(steps, p, lead, given, shapes, read, mode, unbounded):
     """Results at many states, block by block; the last block begins where it is as long as the others."""
     count = math.prod(lead)
     size, kept = min(count, _BLOCK), {} if count >= _MANY else None
-    flat = [np.broadcast_to(v, lead + s).reshape(count, *s) for v, s in zip(given, shapes)]
+    # one value for all states stands for itself
+    flat = [
+        np.broadcast_to(v, lead + s).reshape(count, *s) if v.ndim > len(s) else v
+        for v, s in zip(given, shapes)
+    ]
     possible, status, outputs = np.ones(count, dtype=bool), np.zeros(count, dtype=int), []
     if count > size:
         # Never touched, freed at once: the C library, which learns from it, then keeps the memory
@@ -1165,7 +1277,7 @@ def _many(steps, p, lead, given, shapes, read, mode, unbounded):
     with np.errstate(all="ignore"):
         for stop in (*range(size, count, max(size, 1)), count):
             block = slice(stop - size, stop)
-            states = [_states_last(v[block]) for v in flat]
+            states = [_states_last(v, s, block) for v, s in zip(flat, shapes)]
             m, good = mode(p, size, kept), possible[block]
             found = steps(m, *states)
             if not outputs:
@@ -1185,15 +1297,17 @@ def _many(steps, p, lead, given, shapes, read, mode, unbounded):
     return [a.reshape(lead + a.shape[1:])[()] for a in outputs]
 
 
-def _states_last(a):
-    """A contiguous array (*shape, states) of one (states, *shape)."""
-    return np.ascontiguousarray(a.transpose(*range(1, a.ndim), 0))
+def _states_last(a, shape, block):
+    """An array (*shape, states) of a block of one (states, *shape), or of a value for all."""
+    if a.ndim == len(shape):
+        return np.broadcast_to(a[..., None], (*shape, block.stop - block.start))
+    return np.ascontiguousarray(a[block].transpose(*range(1, a.ndim), 0))
 
 
 def _finite(arrays, states):
     """In which states all entries of arrays (*shape, states) are finite."""
     flat = [a.reshape(math.prod(a.shape[:-1]), states) for a in arrays]
-    good = np.isfinite(sum(np.add.reduce(a, axis=0) for a in flat))
+    good = np.isfinite(sum(np.einsum("es->s", a) for a in flat))
     if not np.all(good):  # or the sum is too large
         good = np.logical_and.reduce([np.isfinite(a).all(axis=0) for a in flat])
     return good
@@ -1302,6 +1416,8 @@ class _Record:
 
     def made(self, operation, *operands):
         """The result of an operation."""
+        if operation in _WITHOUT and operands[0] is _WITHOUT[operation]:
+            return operands[1]
         numbers = [self.number(operand) for operand in operands]
         if all(self.kinds[n] == "one" for n in numbers):
             kind = "one"
@@ -1338,6 +1454,7 @@ class _Record:
         return counts
 
 
+_WITHOUT = {np.logical_and: True}  # first operands that change nothing
 _OF_FLAGS = {np.logical_and, np.greater, np.greater_equal}
 _RECORDS = {}  # by function
 
@@ -1349,11 +1466,12 @@ class _Replay:
         if function not in _RECORDS:
             _RECORDS[function] = _Record(p, function, sizes)
         r = _RECORDS[function]
-        made = {kind: _rows(n, states, bool if kind == "flag" else float) for kind, n in r.counts.items()}
-        made["one"] = [np.empty(()) for _ in range(r.counts["one"])]
-        made["out"] = _rows(sum(r.sizes), states)
-        self.inputs = [_rows(size, states) for size in sizes]
-        self.arrays = np.split(made["out"], np.cumsum(r.sizes)[:-1])
+        rows = _rows(r.counts["state"] + sum(r.sizes) + sum(sizes), states)
+        given, out, state = np.split(rows, np.cumsum((sum(sizes), sum(r.sizes))))
+        made = {"state": state, "out": out, "one": [np.empty(()) for _ in range(r.counts["one"])]}
+        made["flag"] = np.empty((r.counts["flag"], states), dtype=bool)
+        self.inputs = np.split(given, np.cumsum(sizes)[:-1])
+        self.arrays = np.split(out, np.cumsum(r.sizes)[:-1])
         at = {number: np.array(value) for value, number in r.literals.items()}
         for values, given in zip(r.inputs, self.inputs):
             at |= {v.number: row for v, row in zip(values, given)}
@@ -1375,9 +1493,26 @@ class _Replay:
         return self.flags, self.arrays
 
 
-def _rows(count, states, kind=float):
-    """Rows of so many states, a cache line apart from each other."""
-    return np.empty((count, states + 8), dtype=kind)[:, :states]
+def _rows(count, states):
+    """Rows of so many states in one piece, which the system keeps in a few large pages if it is told.
+
+    NumPy tells it of pieces from 4 MB on.  It makes operations a third faster.
+    """
+    row = states + 8  # a cache line further: rows do not compete for the same places of the cache
+    piece = np.empty(max(count * row, 2 * _PAGE) + _PAGE)
+    start = -(piece.ctypes.data // piece.itemsize) % _PAGE
+    return piece[start : start + count * row].reshape(count, row)[:, :states]
+
+
+_PAGE = (2 << 20) // 8  # numbers in a large page
+
+
+def _times(a, b):
+    """Products of matrices (m, n, states) with vectors (n, states)."""
+    if isinstance(b, _Vector):
+        rows = (a[k : k + len(b)] for k in range(0, len(a), len(b)))
+        return _Vector([sum([x * y for x, y in zip(row, b)]) for row in rows])
+    return np.einsum("ijs,js->is", a, b)
 
 
 def _with_forces(a, amounts, directions, legs):
@@ -1505,8 +1640,10 @@ _CLEARLY = 2.0  # rows change places only for a pivot that is larger by this fac
 
 def _solve(a, b):
     """x with a x = b, a (n, n, states), b (n, states): rows scaled, partial pivoting; NaN if singular."""
+    if isinstance(b, _Vector):
+        return _Vector(_solve_one([a[k : k + len(b)] for k in range(0, len(a), len(b))], b))
     n, states = b.shape
-    if 0 < states <= _FEW:
+    if 0 < states <= 8:
         systems = zip(a.transpose(2, 0, 1).tolist(), b.T.tolist())
         return np.array([_solve_one(*each) for each in systems]).T.reshape(n, states)
     size = np.max(np.abs(a), axis=1, initial=0.0)
@@ -1531,6 +1668,38 @@ def _solve(a, b):
         known = np.einsum("js,js->s", rows[k, k + 1 : n], x[k + 1 :])
         x[k] = (rows[k, n] - known) / rows[k, k]
     x[:, ~(good & np.isfinite(x).all(axis=0))] = np.nan
+    return x
+
+
+class _Order:
+    """How a system is solved near home.
+
+    Args:
+        solve: the function for so many equations.
+        rows: in the order of their pivots.
+        limits: of multiples, column by column, and of 1/pivot.
+    """
+
+    def __init__(self, solve, rows, limits):
+        self.solve, self.rows, self.limits = solve, rows, limits
+
+    def __call__(self, m, a, b):
+        """Solutions of a x = b, and whether these are beyond doubt."""
+        return self.solve(a, b, self.rows, self.limits)
+
+
+def _straight(m, a, b, order):
+    """The same, in the order of rows at home; with a choice of rows only where that is in doubt."""
+    if isinstance(b, _Vector):
+        try:
+            sure, (x,) = order(m, a, b)
+        except ZeroDivisionError:
+            sure = False
+        return _Vector(x) if sure else _solve(a, b)
+    sure, x = m.solved(order, a.reshape(-1, m.states), b)
+    at = np.flatnonzero(np.logical_not(sure))
+    if at.size:
+        x[:, at] = _solve(a[..., at], b[:, at])
     return x
 
 
@@ -1587,6 +1756,16 @@ def _singular_values(a):
     values = np.linalg.svd(a, compute_uv=False).T.copy()
     values[:, bad] = np.nan
     return values
+
+
+def _least_entry(a):
+    """The least entry."""
+    return np.min(a, axis=0)
+
+
+def _spread(a, n):
+    """Of the first n entries the product, and the last over the first, 0 where that is 0."""
+    return np.prod(a[:n], axis=0), np.where(a[0] == 0.0, 0.0, a[n - 1] / a[0])
 
 
 def _least_squares(a, b, least):
@@ -1671,7 +1850,7 @@ def _nearest(R):
     return u @ vt
 
 
-# dynamics: 1365 mul, 1026 add, 12 div, 6 sqrt, 0 trig
+# dynamics: 1362 mul, 1026 add, 12 div, 6 sqrt, 0 trig
 def _run_dynamics(m, X, V):
     sqrt = m.sqrt
     shared, legs = m.constants("dynamics")
@@ -1833,36 +2012,33 @@ def _run_dynamics(m, X, V):
         rrrs_S_x = rrrs_q_x + t_x - rrrs_base_point_x
         rrrs_S_y = rrrs_q_y + t_y - rrrs_base_point_y
         rrrs_S_z = rrrs_q_z + t_z - rrrs_base_point_z
-        # (rrrs-px_1) component along the reference direction
-        rrrs_px_1 = (
+        rrrs_S_in_turn1_x = (
         rrrs_S_x*rrrs_base_frame_xy + rrrs_S_y*rrrs_base_frame_yy + rrrs_S_z*rrrs_base_frame_zy
         )
-        # (rrrs-py_1) component across the reference direction
-        rrrs_py_1 = (
+        rrrs_S_in_turn1_y = (
         rrrs_S_x*rrrs_base_frame_xz + rrrs_S_y*rrrs_base_frame_yz + rrrs_S_z*rrrs_base_frame_zz
         )
+        rrrs_S_in_turn1_z = (
+        rrrs_S_x*rrrs_base_frame_xx + rrrs_S_y*rrrs_base_frame_yx + rrrs_S_z*rrrs_base_frame_zx
+        )
         # (rrrs-rho2_1) squared amplitude
-        rrrs_rho2_1 = rrrs_px_1*rrrs_px_1 + rrrs_py_1*rrrs_py_1
+        rrrs_rho2_1 = rrrs_S_in_turn1_x*rrrs_S_in_turn1_x + rrrs_S_in_turn1_y*rrrs_S_in_turn1_y
         # (rrrs-root_1) root, with the sign of the branch
         rrrs_root_1 = rrrs_branch_1*sqrt(rrrs_rho2_1)
         # (rrrs-c_1) cosine of the angle of joint 1 from its reference direction
         inv_rrrs_rho2_1 = 1.0/rrrs_rho2_1
-        rrrs_c_1 = -inv_rrrs_rho2_1*rrrs_py_1*rrrs_root_1
+        rrrs_c_1 = inv_rrrs_rho2_1*rrrs_S_in_turn1_x*rrrs_root_1
         # (rrrs-s_1) sine of the angle of joint 1 from its reference direction
-        rrrs_s_1 = inv_rrrs_rho2_1*rrrs_px_1*rrrs_root_1
-        # (rrrs-xi_1) the vector from joint 1 to the connection point, resolved along link 1
-        rrrs_xi_1_in_axes1_z = (
-        rrrs_S_x*rrrs_base_frame_xx + rrrs_S_y*rrrs_base_frame_yx + rrrs_S_z*rrrs_base_frame_zx
-        )
+        rrrs_s_1 = inv_rrrs_rho2_1*rrrs_S_in_turn1_y*rrrs_root_1
         # (rrrs-x_2) from the origin of joint 2 to the connection point
-        rrrs_x_2_in_axes1_z = rrrs_xi_1_in_axes1_z - rrrs_joint2_offset_x
+        rrrs_x_2_in_axes1_z = rrrs_S_in_turn1_z - rrrs_joint2_offset_x
         # (rrrs-Kd_2) projection on the centre's direction, from the distance fixed by the joints beyond joint 2
-        rrrs_Kd_2_t_3 = rrrs_root_1*rrrs_root_1 + rrrs_x_2_in_axes1_z*rrrs_x_2_in_axes1_z
+        rrrs_Kd_2_t_3 = rrrs_rho2_1 + rrrs_x_2_in_axes1_z*rrrs_x_2_in_axes1_z
         rrrs_Kd_2 = rrrs_Kd_2_t + 0.5*rrrs_Kd_2_t_3 - rrrs_Kd_2_t_2
         # (rrrs-Kc_2) factor of the cosine in the equation of joint 2
-        rrrs_Kc_2 = -rrrs_joint3_offset_x*rrrs_root_1
+        rrrs_Kc_2 = rrrs_joint3_offset_x*rrrs_x_2_in_axes1_z
         # (rrrs-Ks_2) factor of the sine in the equation of joint 2
-        rrrs_Ks_2 = rrrs_joint3_offset_x*rrrs_x_2_in_axes1_z
+        rrrs_Ks_2 = rrrs_joint3_offset_x*rrrs_root_1
         # (rrrs-rho2_2) squared amplitude
         rrrs_rho2_2 = rrrs_Kc_2*rrrs_Kc_2 + rrrs_Ks_2*rrrs_Ks_2
         # (rrrs-disc_2) discriminant
@@ -1870,10 +2046,10 @@ def _run_dynamics(m, X, V):
         # (rrrs-root_2) root, with the sign of the branch
         rrrs_root_2 = rrrs_branch_2*sqrt(rrrs_disc_2)
         # (rrrs-c_2) cosine of the angle of joint 2 from its reference direction
-        rrrs_c_2_t = -1.0/rrrs_rho2_2
-        rrrs_c_2 = rrrs_c_2_t*(rrrs_Ks_2*rrrs_root_2 - rrrs_Kc_2*rrrs_Kd_2)
+        inv_rrrs_rho2_2 = 1.0/rrrs_rho2_2
+        rrrs_c_2 = inv_rrrs_rho2_2*(rrrs_Kc_2*rrrs_Kd_2 - rrrs_Ks_2*rrrs_root_2)
         # (rrrs-s_2) sine of the angle of joint 2 from its reference direction
-        rrrs_s_2 = rrrs_c_2_t*(-rrrs_Kc_2*rrrs_root_2 - rrrs_Kd_2*rrrs_Ks_2)
+        rrrs_s_2 = inv_rrrs_rho2_2*(rrrs_Kc_2*rrrs_root_2 + rrrs_Kd_2*rrrs_Ks_2)
         # (rrrs-x_3) from the origin of joint 3 to the connection point
         rrrs_x_3_in_axes2_x = (
         inv_rrrs_size_t*rrrs_Kd_2*rrrs_joint3_offset_x - rrrs_joint3_offset_x
@@ -1897,35 +2073,35 @@ def _run_dynamics(m, X, V):
         rrrs_r_2_in_axes3_x = rrrs_c_3*rrrs_r_2_in_axes2_x + rrrs_r_2_t*rrrs_s_3_t
         rrrs_r_2_in_axes3_y = rrrs_r_2_in_axes2_x*rrrs_s_3_t - rrrs_c_3*rrrs_r_2_t
         # (rrrs-v_1) velocity of the connection point per rate of joint 1
-        rrrs_e_1_in_axes3_x = rrrs_c_3*rrrs_s_2 - rrrs_c_2*rrrs_s_3_t
-        rrrs_e_1_in_axes3_y = rrrs_c_2*rrrs_c_3 + rrrs_s_2*rrrs_s_3_t
-        rrrs_v_1_t = rrrs_s_2*rrrs_xi_1_in_axes1_z - rrrs_c_2*rrrs_root_1
-        rrrs_v_1_t_2 = rrrs_c_2*rrrs_xi_1_in_axes1_z + rrrs_root_1*rrrs_s_2
+        rrrs_e_1_in_axes3_x = rrrs_c_2*rrrs_c_3 + rrrs_s_2*rrrs_s_3_t
+        rrrs_e_1_in_axes3_y = rrrs_c_2*rrrs_s_3_t - rrrs_c_3*rrrs_s_2
+        rrrs_v_1_t = rrrs_S_in_turn1_z*rrrs_c_2 + rrrs_root_1*rrrs_s_2
+        rrrs_v_1_t_2 = rrrs_c_2*rrrs_root_1 - rrrs_S_in_turn1_z*rrrs_s_2
         rrrs_v_1_in_axes3_z = (
         rrrs_e_1_in_axes3_x*(rrrs_c_3*rrrs_v_1_t_2 + rrrs_s_3_t*rrrs_v_1_t) -
             rrrs_e_1_in_axes3_y*(rrrs_c_3*rrrs_v_1_t - rrrs_s_3_t*rrrs_v_1_t_2)
         )
         # (rrrs-w_1) reciprocal vector 1
-        axis_z_rrrs_axes3_x = rrrs_base_frame_xy*rrrs_c_1 + rrrs_base_frame_xz*rrrs_s_1
-        axis_z_rrrs_axes3_y = rrrs_base_frame_yy*rrrs_c_1 + rrrs_base_frame_yz*rrrs_s_1
-        axis_z_rrrs_axes3_z = rrrs_base_frame_zy*rrrs_c_1 + rrrs_base_frame_zz*rrrs_s_1
+        axis_z_rrrs_axes3_x = rrrs_base_frame_xz*rrrs_c_1 - rrrs_base_frame_xy*rrrs_s_1
+        axis_z_rrrs_axes3_y = rrrs_base_frame_yz*rrrs_c_1 - rrrs_base_frame_yy*rrrs_s_1
+        axis_z_rrrs_axes3_z = rrrs_base_frame_zz*rrrs_c_1 - rrrs_base_frame_zy*rrrs_s_1
         rrrs_w_1_in_axes3_z = 1.0/rrrs_v_1_in_axes3_z
         rrrs_w_1_x = axis_z_rrrs_axes3_x*rrrs_w_1_in_axes3_z
         rrrs_w_1_y = axis_z_rrrs_axes3_y*rrrs_w_1_in_axes3_z
         rrrs_w_1_z = axis_z_rrrs_axes3_z*rrrs_w_1_in_axes3_z
         # (rrrs-w_2) reciprocal vector 2
-        rrrs_w_2_t = rrrs_e_1_in_axes3_x*rrrs_s_1
-        rrrs_w_2_t_2 = rrrs_c_1*rrrs_e_1_in_axes3_x
+        rrrs_w_2_t = rrrs_c_1*rrrs_e_1_in_axes3_x
+        rrrs_w_2_t_2 = rrrs_e_1_in_axes3_x*rrrs_s_1
         axis_y_rrrs_axes3_x = (
-        rrrs_base_frame_xx*rrrs_e_1_in_axes3_y + rrrs_base_frame_xy*rrrs_w_2_t -
+        rrrs_base_frame_xx*rrrs_e_1_in_axes3_y + rrrs_base_frame_xy*rrrs_w_2_t +
             rrrs_base_frame_xz*rrrs_w_2_t_2
         )
         axis_y_rrrs_axes3_y = (
-        rrrs_base_frame_yx*rrrs_e_1_in_axes3_y + rrrs_base_frame_yy*rrrs_w_2_t -
+        rrrs_base_frame_yx*rrrs_e_1_in_axes3_y + rrrs_base_frame_yy*rrrs_w_2_t +
             rrrs_base_frame_yz*rrrs_w_2_t_2
         )
         axis_y_rrrs_axes3_z = (
-        rrrs_base_frame_zx*rrrs_e_1_in_axes3_y + rrrs_base_frame_zy*rrrs_w_2_t -
+        rrrs_base_frame_zx*rrrs_e_1_in_axes3_y + rrrs_base_frame_zy*rrrs_w_2_t +
             rrrs_base_frame_zz*rrrs_w_2_t_2
         )
         axis_x_rrrs_axes3_x = (
@@ -1949,30 +2125,25 @@ def _run_dynamics(m, X, V):
             axis_z_rrrs_axes3_z*rrrs_S_dot_z)
         )
         # (rrrs-qd_2) rate of joint 2
-        rrrs_qd_2 = (
-        rrrs_w_2_in_axes3_x*(axis_x_rrrs_axes3_x*rrrs_S_dot_x + axis_x_rrrs_axes3_y*rrrs_S_dot_y +
-            axis_x_rrrs_axes3_z*rrrs_S_dot_z)
+        rrrs_qd_2_t = (
+        -rrrs_w_2_in_axes3_x*(axis_x_rrrs_axes3_x*rrrs_S_dot_x + axis_x_rrrs_axes3_y*rrrs_S_dot_y
+            + axis_x_rrrs_axes3_z*rrrs_S_dot_z)
         )
         # (rrrs-qd_3) rate of joint 3
         rrrs_qd_3 = (
         rrrs_w_3_in_axes3_y*(axis_y_rrrs_axes3_x*rrrs_S_dot_x + axis_y_rrrs_axes3_y*rrrs_S_dot_y +
-            axis_y_rrrs_axes3_z*rrrs_S_dot_z - rrrs_qd_2*rrrs_r_2_in_axes3_x)
+            axis_y_rrrs_axes3_z*rrrs_S_dot_z + rrrs_qd_2_t*rrrs_r_2_in_axes3_x)
         )
         # (rrrs-omega_1) angular velocity of link 1
-        rrrs_omega_1_in_axes2_x = rrrs_qd_1*rrrs_s_2
-        rrrs_omega_1_in_axes2_y = rrrs_c_2*rrrs_qd_1
-        rrrs_omega_1_in_axes3_x = (
-        rrrs_c_3*rrrs_omega_1_in_axes2_x - rrrs_omega_1_in_axes2_y*rrrs_s_3_t
-        )
-        rrrs_omega_1_in_axes3_y = (
-        rrrs_c_3*rrrs_omega_1_in_axes2_y + rrrs_omega_1_in_axes2_x*rrrs_s_3_t
-        )
+        rrrs_omega_1_in_axes2_x = rrrs_c_2*rrrs_qd_1
+        rrrs_omega_1_t = rrrs_qd_1*rrrs_s_2
+        rrrs_omega_1_in_axes3_x = rrrs_c_3*rrrs_omega_1_in_axes2_x + rrrs_omega_1_t*rrrs_s_3_t
+        rrrs_omega_1_in_axes3_y = rrrs_omega_1_in_axes2_x*rrrs_s_3_t - rrrs_c_3*rrrs_omega_1_t
         # (rrrs-W_2) centripetal tensor of link 2
-        rrrs_W_2_in_axes2_yz = rrrs_omega_1_in_axes2_y*rrrs_qd_2
-        rrrs_W_2_in_axes2_xz = rrrs_omega_1_in_axes2_x*rrrs_qd_2
-        rrrs_W_2_in_axes2_xy = rrrs_omega_1_in_axes2_x*rrrs_omega_1_in_axes2_y
+        rrrs_W_2_in_axes2_yz = rrrs_omega_1_t*rrrs_qd_2_t
+        rrrs_W_2_in_axes2_xy = -rrrs_omega_1_in_axes2_x*rrrs_omega_1_t
         # (rrrs-omega_3) angular velocity of link 3
-        rrrs_omega_3_in_axes3_z = rrrs_qd_2 + rrrs_qd_3
+        rrrs_omega_3_in_axes3_z = rrrs_qd_3 - rrrs_qd_2_t
         # (rrrs-W_3) centripetal tensor of link 3
         rrrs_W_3_in_axes3_xy = rrrs_omega_1_in_axes3_x*rrrs_omega_1_in_axes3_y
         rrrs_W_3_in_axes3_xz = rrrs_omega_1_in_axes3_x*rrrs_omega_3_in_axes3_z
@@ -1994,40 +2165,41 @@ def _run_dynamics(m, X, V):
             axis_z_rrrs_axes3_z*rrrs_u_1_z
         )
         # (rrrs-zeta_2) angular acceleration of link 2 from the turning of axis 2
-        rrrs_zeta_2_in_axes3_y = rrrs_W_2_in_axes2_yz*rrrs_s_3_t - rrrs_W_2_in_axes2_xz*rrrs_c_3
+        rrrs_zeta_2_in_axes2_y = rrrs_omega_1_in_axes2_x*rrrs_qd_2_t
+        rrrs_zeta_2_in_axes3_y = rrrs_W_2_in_axes2_yz*rrrs_s_3_t + rrrs_c_3*rrrs_zeta_2_in_axes2_y
         # (rrrs-zeta_3) angular acceleration of link 3 from the turning of axis 3
         rrrs_zeta_3_t = rrrs_omega_1_in_axes3_x*rrrs_qd_3
         # (rrrs-beta_3) angular acceleration of link 3 at zero joint accelerations
         rrrs_beta_3_in_axes3_y = rrrs_zeta_2_in_axes3_y - rrrs_zeta_3_t
         # (rrrs-bias) acceleration of the connection point at zero joint accelerations
-        rrrs_bias_t = -rrrs_joint2_offset_x*rrrs_s_2
-        rrrs_bias_t_2 = rrrs_c_2*rrrs_joint2_offset_x
+        rrrs_bias_t = rrrs_c_2*rrrs_joint2_offset_x
+        rrrs_bias_t_2 = rrrs_joint2_offset_x*rrrs_s_2
         rrrs_bias_t_3 = (
-        rrrs_omega_1_in_axes3_x*(rrrs_bias_t_2*rrrs_c_3 - rrrs_bias_t*rrrs_s_3_t) -
-            rrrs_omega_1_in_axes3_y*(-rrrs_bias_t*rrrs_c_3 - rrrs_bias_t_2*rrrs_s_3_t)
+        rrrs_omega_1_in_axes3_x*(rrrs_bias_t*rrrs_s_3_t - rrrs_bias_t_2*rrrs_c_3) -
+            rrrs_omega_1_in_axes3_y*(rrrs_bias_t*rrrs_c_3 + rrrs_bias_t_2*rrrs_s_3_t)
         )
         rrrs_d_3_in_axes3_x = rrrs_c_3*rrrs_joint3_offset_x
         rrrs_d_3_in_axes3_y = rrrs_joint3_offset_x*rrrs_s_3_t
-        rrrs_bias_t_4 = -rrrs_d_3_in_axes3_y*rrrs_qd_2
-        rrrs_bias_t_5 = -rrrs_d_3_in_axes3_x*rrrs_qd_2
+        rrrs_bias_t_4 = rrrs_d_3_in_axes3_y*rrrs_qd_2_t
+        rrrs_bias_t_5 = rrrs_d_3_in_axes3_x*rrrs_qd_2_t
         rrrs_bias_t_6 = (
         rrrs_d_3_in_axes3_y*rrrs_omega_1_in_axes3_x - rrrs_d_3_in_axes3_x*rrrs_omega_1_in_axes3_y
         )
         rrrs_bias_t_7 = rrrs_omega_3_in_axes3_z*rrrs_platform_joint_offset_x
         rrrs_bias_t_8 = rrrs_omega_1_in_axes3_y*rrrs_platform_joint_offset_x
         rrrs_bias_in_axes3_x = (
-        rrrs_bias_t_3*rrrs_omega_1_in_axes3_y + rrrs_bias_t_5*rrrs_qd_2 +
-            rrrs_bias_t_6*rrrs_omega_1_in_axes3_y - rrrs_bias_t_7*rrrs_omega_3_in_axes3_z -
+        rrrs_bias_t_3*rrrs_omega_1_in_axes3_y + rrrs_bias_t_6*rrrs_omega_1_in_axes3_y -
+            rrrs_bias_t_5*rrrs_qd_2_t - rrrs_bias_t_7*rrrs_omega_3_in_axes3_z -
             rrrs_bias_t_8*rrrs_omega_1_in_axes3_y
         )
         rrrs_bias_in_axes3_y = (
-        rrrs_bias_t_4*rrrs_qd_2 + rrrs_bias_t_8*rrrs_omega_1_in_axes3_x -
-            rrrs_bias_t_3*rrrs_omega_1_in_axes3_x - rrrs_bias_t_6*rrrs_omega_1_in_axes3_x
+        rrrs_bias_t_8*rrrs_omega_1_in_axes3_x - rrrs_bias_t_3*rrrs_omega_1_in_axes3_x -
+            rrrs_bias_t_4*rrrs_qd_2_t - rrrs_bias_t_6*rrrs_omega_1_in_axes3_x
         )
         rrrs_bias_in_axes3_z = (
-        rrrs_bias_t_7*rrrs_omega_1_in_axes3_x +
-            rrrs_d_3_in_axes3_y*(rrrs_W_2_in_axes2_xz*rrrs_s_3_t + rrrs_W_2_in_axes2_yz*rrrs_c_3)
-            - rrrs_beta_3_in_axes3_y*rrrs_platform_joint_offset_x -
+        rrrs_bias_t_7*rrrs_omega_1_in_axes3_x + rrrs_d_3_in_axes3_y*(rrrs_W_2_in_axes2_yz*rrrs_c_3
+            - rrrs_s_3_t*rrrs_zeta_2_in_axes2_y) -
+            rrrs_beta_3_in_axes3_y*rrrs_platform_joint_offset_x -
             rrrs_bias_t_4*rrrs_omega_1_in_axes3_y - rrrs_bias_t_5*rrrs_omega_1_in_axes3_x -
             rrrs_d_3_in_axes3_x*rrrs_zeta_2_in_axes3_y
         )
@@ -2040,15 +2212,15 @@ def _run_dynamics(m, X, V):
         # (rrrs-qdd_2_o) remainder without the acceleration in: acceleration of joint 2
         rrrs_qdd_2_o = rrrs_rel_o_in_axes3_x*rrrs_w_2_in_axes3_x
         # (rrrs-alpha_1_o) remainder without the acceleration in: angular acceleration of link 1
-        rrrs_alpha_1_o_t = -rrrs_qdd_1_o*rrrs_s_2
-        rrrs_alpha_1_o_in_axes2_y = rrrs_c_2*rrrs_qdd_1_o
+        rrrs_alpha_1_o_in_axes2_x = rrrs_c_2*rrrs_qdd_1_o
+        rrrs_alpha_1_o_t = rrrs_qdd_1_o*rrrs_s_2
         # (rrrs-alpha_2_o) remainder without the acceleration in: angular acceleration of link 2
-        rrrs_alpha_2_o_in_axes2_x = rrrs_W_2_in_axes2_yz - rrrs_alpha_1_o_t
-        rrrs_alpha_2_o_in_axes2_y = rrrs_alpha_1_o_in_axes2_y - rrrs_W_2_in_axes2_xz
+        rrrs_alpha_2_o_in_axes2_x = rrrs_W_2_in_axes2_yz + rrrs_alpha_1_o_in_axes2_x
+        rrrs_alpha_2_o_in_axes2_y = rrrs_zeta_2_in_axes2_y - rrrs_alpha_1_o_t
         # (rrrs-B_2_o) remainder of the acceleration tensor of link 2
         rrrs_B_2_o_in_axes2_xy = rrrs_W_2_in_axes2_xy - rrrs_qdd_2_o
         rrrs_B_2_o_in_axes2_yx = rrrs_W_2_in_axes2_xy + rrrs_qdd_2_o
-        rrrs_B_2_o_in_axes2_zx = rrrs_W_2_in_axes2_xz - rrrs_alpha_2_o_in_axes2_y
+        rrrs_B_2_o_in_axes2_zx = -rrrs_alpha_2_o_in_axes2_y - rrrs_zeta_2_in_axes2_y
         rrrs_B_2_o_in_axes2_zy = rrrs_W_2_in_axes2_yz + rrrs_alpha_2_o_in_axes2_x
         # (rrrs-d_alpha_3) coefficient of the acceleration in: angular acceleration of link 3
         rrrs_d_alpha_3_in_axes3_xz = rrrs_e_1_in_axes3_x*rrrs_w_1_in_axes3_z
@@ -2098,10 +2270,11 @@ def _run_dynamics(m, X, V):
         rrrs_J_2_in_spec2_xy + rrrs_Jc_2_t_4*rrrs_c_3 - rrrs_Jc_2_t_2*rrrs_s_3_t
         )
         rrrs_Jc_2_in_axes1_zz = (
-        rrrs_c_2*(rrrs_Jc_2_in_axes2_xy*rrrs_s_2 + rrrs_c_2*(rrrs_J_2_in_spec2_yy +
+        rrrs_c_2*(rrrs_c_2*(rrrs_J_2_in_spec2_xx + rrrs_Jc_2_t_2*rrrs_c_3 +
+            rrrs_Jc_2_t_4*rrrs_s_3_t) - rrrs_Jc_2_in_axes2_xy*rrrs_s_2) -
+            rrrs_s_2*(rrrs_Jc_2_in_axes2_xy*rrrs_c_2 - rrrs_s_2*(rrrs_J_2_in_spec2_yy +
             rrrs_c_3*(rrrs_J_3_in_spec3_yy*rrrs_c_3 - rrrs_Jc_2_t) - rrrs_s_3_t*(rrrs_Jc_2_t_3 -
-            rrrs_J_3_in_spec3_xx*rrrs_s_3_t))) + rrrs_s_2*(rrrs_Jc_2_in_axes2_xy*rrrs_c_2 +
-            rrrs_s_2*(rrrs_J_2_in_spec2_xx + rrrs_Jc_2_t_2*rrrs_c_3 + rrrs_Jc_2_t_4*rrrs_s_3_t))
+            rrrs_J_3_in_spec3_xx*rrrs_s_3_t)))
         )
         # (rrrs-mu_3_o) remainder without the acceleration in: inertia moment of the links that turn with link 3, about their reference points
         rrrs_mu_3_o_t = rrrs_omega_1_in_axes3_x*rrrs_omega_1_in_axes3_x
@@ -2140,32 +2313,33 @@ def _run_dynamics(m, X, V):
         )
         # (rrrs-mu_2_o) remainder without the acceleration in: inertia moment of the links that turn with link 2, about their reference points
         rrrs_mu_2_o_t = rrrs_omega_1_in_axes2_x*rrrs_omega_1_in_axes2_x
-        rrrs_mu_2_o_t_2 = rrrs_omega_1_in_axes2_y*rrrs_omega_1_in_axes2_y
-        rrrs_mu_2_o_t_3 = rrrs_qd_2*rrrs_qd_2
+        rrrs_mu_2_o_t_2 = rrrs_omega_1_t*rrrs_omega_1_t
+        rrrs_mu_2_o_t_3 = rrrs_qd_2_t*rrrs_qd_2_t
         rrrs_g_in_axes1_x = rrrs_c_1*rrrs_mu_2_t + rrrs_mu_2_t_2*rrrs_s_1
         rrrs_g_in_axes1_y = rrrs_c_1*rrrs_mu_2_t_2 - rrrs_mu_2_t*rrrs_s_1
-        rrrs_g_in_axes2_x = rrrs_c_2*rrrs_g_in_axes1_y + rrrs_g_in_axes1_z*rrrs_s_2
-        rrrs_g_in_axes2_y = rrrs_c_2*rrrs_g_in_axes1_z - rrrs_g_in_axes1_y*rrrs_s_2
+        rrrs_g_in_axes2_x = rrrs_c_2*rrrs_g_in_axes1_z + rrrs_g_in_axes1_x*rrrs_s_2
+        rrrs_g_in_axes2_y = rrrs_c_2*rrrs_g_in_axes1_x - rrrs_g_in_axes1_z*rrrs_s_2
         rrrs_mu_2_o_in_axes2_x = (
         rrrs_B_2_o_in_axes2_yx*rrrs_J_2_in_spec2_xz +
             rrrs_B_2_o_in_axes2_zy*rrrs_Sigma_2_in_axes2_yy +
             rrrs_J_2_in_spec2_yz*(rrrs_mu_2_o_t_2 - rrrs_mu_2_o_t_3) +
+            rrrs_Sigma_2_in_axes2_zz*rrrs_alpha_1_o_in_axes2_x +
             rrrs_g_in_axes2_y*rrrs_h_2_in_spec2_z - rrrs_B_2_o_in_axes2_zx*rrrs_J_2_in_spec2_xy -
-            rrrs_Sigma_2_in_axes2_zz*rrrs_alpha_1_o_t - rrrs_g_in_axes1_x*rrrs_h_2_in_spec2_y
+            rrrs_g_in_axes1_y*rrrs_h_2_in_spec2_y
         )
         rrrs_mu_2_o_in_axes2_y = (
-        rrrs_B_2_o_in_axes2_zy*rrrs_J_2_in_spec2_xy +
-            rrrs_Sigma_2_in_axes2_zz*rrrs_alpha_1_o_in_axes2_y +
-            rrrs_g_in_axes1_x*rrrs_h_2_in_spec2_x - rrrs_B_2_o_in_axes2_xy*rrrs_J_2_in_spec2_yz -
+        rrrs_B_2_o_in_axes2_zy*rrrs_J_2_in_spec2_xy + rrrs_g_in_axes1_y*rrrs_h_2_in_spec2_x -
+            rrrs_B_2_o_in_axes2_xy*rrrs_J_2_in_spec2_yz -
             rrrs_B_2_o_in_axes2_zx*rrrs_Sigma_2_in_axes2_xx - rrrs_J_2_in_spec2_xz*(rrrs_mu_2_o_t
-            - rrrs_mu_2_o_t_3) - rrrs_g_in_axes2_x*rrrs_h_2_in_spec2_z
+            - rrrs_mu_2_o_t_3) - rrrs_Sigma_2_in_axes2_zz*rrrs_alpha_1_o_t -
+            rrrs_g_in_axes2_x*rrrs_h_2_in_spec2_z
         )
         rrrs_mu_2_o_in_axes2_z = (
         rrrs_B_2_o_in_axes2_yx*rrrs_Sigma_2_in_axes2_xx + rrrs_J_2_in_spec2_xy*(rrrs_mu_2_o_t -
-            rrrs_mu_2_o_t_2) + rrrs_J_2_in_spec2_yz*rrrs_alpha_1_o_in_axes2_y +
+            rrrs_mu_2_o_t_2) + rrrs_J_2_in_spec2_xz*rrrs_alpha_1_o_in_axes2_x +
             rrrs_g_in_axes2_x*rrrs_h_2_in_spec2_y -
             rrrs_B_2_o_in_axes2_xy*rrrs_Sigma_2_in_axes2_yy -
-            rrrs_J_2_in_spec2_xz*rrrs_alpha_1_o_t - rrrs_g_in_axes2_y*rrrs_h_2_in_spec2_x
+            rrrs_J_2_in_spec2_yz*rrrs_alpha_1_o_t - rrrs_g_in_axes2_y*rrrs_h_2_in_spec2_x
         )
         # (rrrs-N_2_o) remainder without the acceleration in: moment about joint 2 of the links from 2 outwards, the force at the connection point left out
         rrrs_N_2_o_in_axes2_x = (
@@ -2183,12 +2357,12 @@ def _run_dynamics(m, X, V):
         )
         # (rrrs-mu_1_o) remainder without the acceleration in: inertia moment of the links that turn with link 1, about their reference points
         rrrs_mu_1_o_in_axes1_z = (
-        rrrs_J_1_in_spec1_xx*rrrs_qdd_1_o - rrrs_g_in_axes1_x*rrrs_h_1_in_spec1_y -
-            rrrs_g_in_axes1_y*rrrs_h_1_in_spec1_z
+        rrrs_J_1_in_spec1_xx*rrrs_qdd_1_o + rrrs_g_in_axes1_x*rrrs_h_1_in_spec1_z -
+            rrrs_g_in_axes1_y*rrrs_h_1_in_spec1_y
         )
         # (rrrs-N_1_o) remainder without the acceleration in: moment about joint 1 of the links from 1 outwards, the force at the connection point left out
         rrrs_N_1_o_in_axes1_z = (
-        rrrs_mu_1_o_in_axes1_z + rrrs_N_2_o_in_axes2_x*rrrs_s_2 + rrrs_N_2_o_in_axes2_y*rrrs_c_2
+        rrrs_mu_1_o_in_axes1_z + rrrs_N_2_o_in_axes2_x*rrrs_c_2 - rrrs_N_2_o_in_axes2_y*rrrs_s_2
         )
         # (rrrs-d_Gamma_1) coefficient of the acceleration in: moment about axis 1 of the distal links' inertia and weight
         rrrs_d_Gamma_1_in_axes3_z = (
@@ -2198,10 +2372,10 @@ def _run_dynamics(m, X, V):
         # (rrrs-d_G) coefficient of the acceleration in: force at the connection point that balances the leg's inertia and weight along all degrees of freedom
         rrrs_d_G_in_axes3_xz = (
         rrrs_d_Gamma_3_in_axes3_z*rrrs_w_3_in_axes3_x +
-            rrrs_w_1_in_axes3_z*rrrs_w_2_in_axes3_x*(rrrs_c_2*(rrrs_J_2_in_spec2_yz +
-            rrrs_J_3_in_spec3_yz*rrrs_c_3 - rrrs_J_3_in_spec3_xz*rrrs_s_3_t) +
-            rrrs_s_2*(rrrs_J_2_in_spec2_xz + rrrs_J_3_in_spec3_xz*rrrs_c_3 +
-            rrrs_J_3_in_spec3_yz*rrrs_s_3_t))
+            rrrs_w_1_in_axes3_z*rrrs_w_2_in_axes3_x*(rrrs_c_2*(rrrs_J_2_in_spec2_xz +
+            rrrs_J_3_in_spec3_xz*rrrs_c_3 + rrrs_J_3_in_spec3_yz*rrrs_s_3_t) -
+            rrrs_s_2*(rrrs_J_2_in_spec2_yz + rrrs_J_3_in_spec3_yz*rrrs_c_3 -
+            rrrs_J_3_in_spec3_xz*rrrs_s_3_t))
         )
         # (rrrs-G_o) remainder without the acceleration in: force at the connection point that balances the leg's inertia and weight along all degrees of freedom
         rrrs_G_o_in_axes3_y = rrrs_mu_3_o_in_axes3_z*rrrs_w_3_in_axes3_y
@@ -2456,7 +2630,7 @@ def _run_dynamics(m, X, V):
     return ok, (out_M, out_Z, out_H,)
 
 
-# M: 666 mul, 489 add, 12 div, 6 sqrt, 0 trig
+# M: 663 mul, 489 add, 12 div, 6 sqrt, 0 trig
 def _run_M(m, X):
     sqrt = m.sqrt
     shared, legs = m.constants("M")
@@ -2556,36 +2730,33 @@ def _run_M(m, X):
         rrrs_S_x = rrrs_q_x + t_x - rrrs_base_point_x
         rrrs_S_y = rrrs_q_y + t_y - rrrs_base_point_y
         rrrs_S_z = rrrs_q_z + t_z - rrrs_base_point_z
-        # (rrrs-px_1) component along the reference direction
-        rrrs_px_1 = (
+        rrrs_S_in_turn1_x = (
         rrrs_S_x*rrrs_base_frame_xy + rrrs_S_y*rrrs_base_frame_yy + rrrs_S_z*rrrs_base_frame_zy
         )
-        # (rrrs-py_1) component across the reference direction
-        rrrs_py_1 = (
+        rrrs_S_in_turn1_y = (
         rrrs_S_x*rrrs_base_frame_xz + rrrs_S_y*rrrs_base_frame_yz + rrrs_S_z*rrrs_base_frame_zz
         )
+        rrrs_S_in_turn1_z = (
+        rrrs_S_x*rrrs_base_frame_xx + rrrs_S_y*rrrs_base_frame_yx + rrrs_S_z*rrrs_base_frame_zx
+        )
         # (rrrs-rho2_1) squared amplitude
-        rrrs_rho2_1 = rrrs_px_1*rrrs_px_1 + rrrs_py_1*rrrs_py_1
+        rrrs_rho2_1 = rrrs_S_in_turn1_x*rrrs_S_in_turn1_x + rrrs_S_in_turn1_y*rrrs_S_in_turn1_y
         # (rrrs-root_1) root, with the sign of the branch
         rrrs_root_1 = rrrs_branch_1*sqrt(rrrs_rho2_1)
         # (rrrs-c_1) cosine of the angle of joint 1 from its reference direction
         inv_rrrs_rho2_1 = 1.0/rrrs_rho2_1
-        rrrs_c_1 = -inv_rrrs_rho2_1*rrrs_py_1*rrrs_root_1
+        rrrs_c_1 = inv_rrrs_rho2_1*rrrs_S_in_turn1_x*rrrs_root_1
         # (rrrs-s_1) sine of the angle of joint 1 from its reference direction
-        rrrs_s_1 = inv_rrrs_rho2_1*rrrs_px_1*rrrs_root_1
-        # (rrrs-xi_1) the vector from joint 1 to the connection point, resolved along link 1
-        rrrs_xi_1_in_axes1_z = (
-        rrrs_S_x*rrrs_base_frame_xx + rrrs_S_y*rrrs_base_frame_yx + rrrs_S_z*rrrs_base_frame_zx
-        )
+        rrrs_s_1 = inv_rrrs_rho2_1*rrrs_S_in_turn1_y*rrrs_root_1
         # (rrrs-x_2) from the origin of joint 2 to the connection point
-        rrrs_x_2_in_axes1_z = rrrs_xi_1_in_axes1_z - rrrs_joint2_offset_x
+        rrrs_x_2_in_axes1_z = rrrs_S_in_turn1_z - rrrs_joint2_offset_x
         # (rrrs-Kd_2) projection on the centre's direction, from the distance fixed by the joints beyond joint 2
-        rrrs_Kd_2_t_3 = rrrs_root_1*rrrs_root_1 + rrrs_x_2_in_axes1_z*rrrs_x_2_in_axes1_z
+        rrrs_Kd_2_t_3 = rrrs_rho2_1 + rrrs_x_2_in_axes1_z*rrrs_x_2_in_axes1_z
         rrrs_Kd_2 = rrrs_Kd_2_t + 0.5*rrrs_Kd_2_t_3 - rrrs_Kd_2_t_2
         # (rrrs-Kc_2) factor of the cosine in the equation of joint 2
-        rrrs_Kc_2 = -rrrs_joint3_offset_x*rrrs_root_1
+        rrrs_Kc_2 = rrrs_joint3_offset_x*rrrs_x_2_in_axes1_z
         # (rrrs-Ks_2) factor of the sine in the equation of joint 2
-        rrrs_Ks_2 = rrrs_joint3_offset_x*rrrs_x_2_in_axes1_z
+        rrrs_Ks_2 = rrrs_joint3_offset_x*rrrs_root_1
         # (rrrs-rho2_2) squared amplitude
         rrrs_rho2_2 = rrrs_Kc_2*rrrs_Kc_2 + rrrs_Ks_2*rrrs_Ks_2
         # (rrrs-disc_2) discriminant
@@ -2593,10 +2764,10 @@ def _run_M(m, X):
         # (rrrs-root_2) root, with the sign of the branch
         rrrs_root_2 = rrrs_branch_2*sqrt(rrrs_disc_2)
         # (rrrs-c_2) cosine of the angle of joint 2 from its reference direction
-        rrrs_c_2_t = -1.0/rrrs_rho2_2
-        rrrs_c_2 = rrrs_c_2_t*(rrrs_Ks_2*rrrs_root_2 - rrrs_Kc_2*rrrs_Kd_2)
+        inv_rrrs_rho2_2 = 1.0/rrrs_rho2_2
+        rrrs_c_2 = inv_rrrs_rho2_2*(rrrs_Kc_2*rrrs_Kd_2 - rrrs_Ks_2*rrrs_root_2)
         # (rrrs-s_2) sine of the angle of joint 2 from its reference direction
-        rrrs_s_2 = rrrs_c_2_t*(-rrrs_Kc_2*rrrs_root_2 - rrrs_Kd_2*rrrs_Ks_2)
+        rrrs_s_2 = inv_rrrs_rho2_2*(rrrs_Kc_2*rrrs_root_2 + rrrs_Kd_2*rrrs_Ks_2)
         # (rrrs-x_3) from the origin of joint 3 to the connection point
         rrrs_x_3_in_axes2_x = (
         inv_rrrs_size_t*rrrs_Kd_2*rrrs_joint3_offset_x - rrrs_joint3_offset_x
@@ -2613,10 +2784,10 @@ def _run_M(m, X):
         rrrs_r_2_in_axes3_x = rrrs_c_3*rrrs_r_2_in_axes2_x + rrrs_r_2_t*rrrs_s_3_t
         rrrs_r_2_in_axes3_y = rrrs_r_2_in_axes2_x*rrrs_s_3_t - rrrs_c_3*rrrs_r_2_t
         # (rrrs-v_1) velocity of the connection point per rate of joint 1
-        rrrs_e_1_in_axes3_x = rrrs_c_3*rrrs_s_2 - rrrs_c_2*rrrs_s_3_t
-        rrrs_e_1_in_axes3_y = rrrs_c_2*rrrs_c_3 + rrrs_s_2*rrrs_s_3_t
-        rrrs_v_1_t = rrrs_s_2*rrrs_xi_1_in_axes1_z - rrrs_c_2*rrrs_root_1
-        rrrs_v_1_t_2 = rrrs_c_2*rrrs_xi_1_in_axes1_z + rrrs_root_1*rrrs_s_2
+        rrrs_e_1_in_axes3_x = rrrs_c_2*rrrs_c_3 + rrrs_s_2*rrrs_s_3_t
+        rrrs_e_1_in_axes3_y = rrrs_c_2*rrrs_s_3_t - rrrs_c_3*rrrs_s_2
+        rrrs_v_1_t = rrrs_S_in_turn1_z*rrrs_c_2 + rrrs_root_1*rrrs_s_2
+        rrrs_v_1_t_2 = rrrs_c_2*rrrs_root_1 - rrrs_S_in_turn1_z*rrrs_s_2
         rrrs_v_1_in_axes3_z = (
         rrrs_e_1_in_axes3_x*(rrrs_c_3*rrrs_v_1_t_2 + rrrs_s_3_t*rrrs_v_1_t) -
             rrrs_e_1_in_axes3_y*(rrrs_c_3*rrrs_v_1_t - rrrs_s_3_t*rrrs_v_1_t_2)
@@ -2643,10 +2814,11 @@ def _run_M(m, X):
         rrrs_J_2_in_spec2_xy + rrrs_Jc_2_t_4*rrrs_c_3 - rrrs_Jc_2_t_2*rrrs_s_3_t
         )
         rrrs_Jc_2_in_axes1_zz = (
-        rrrs_c_2*(rrrs_Jc_2_in_axes2_xy*rrrs_s_2 + rrrs_c_2*(rrrs_J_2_in_spec2_yy +
+        rrrs_c_2*(rrrs_c_2*(rrrs_J_2_in_spec2_xx + rrrs_Jc_2_t_2*rrrs_c_3 +
+            rrrs_Jc_2_t_4*rrrs_s_3_t) - rrrs_Jc_2_in_axes2_xy*rrrs_s_2) -
+            rrrs_s_2*(rrrs_Jc_2_in_axes2_xy*rrrs_c_2 - rrrs_s_2*(rrrs_J_2_in_spec2_yy +
             rrrs_c_3*(rrrs_J_3_in_spec3_yy*rrrs_c_3 - rrrs_Jc_2_t) - rrrs_s_3_t*(rrrs_Jc_2_t_3 -
-            rrrs_J_3_in_spec3_xx*rrrs_s_3_t))) + rrrs_s_2*(rrrs_Jc_2_in_axes2_xy*rrrs_c_2 +
-            rrrs_s_2*(rrrs_J_2_in_spec2_xx + rrrs_Jc_2_t_2*rrrs_c_3 + rrrs_Jc_2_t_4*rrrs_s_3_t))
+            rrrs_J_3_in_spec3_xx*rrrs_s_3_t)))
         )
         # (rrrs-d_Gamma_3) coefficient of the acceleration in: moment about axis 3 of the distal links' inertia and weight
         rrrs_d_Gamma_3_in_axes3_z = rrrs_D_1_3*rrrs_w_1_in_axes3_z
@@ -2666,10 +2838,10 @@ def _run_M(m, X):
         # (rrrs-d_G) coefficient of the acceleration in: force at the connection point that balances the leg's inertia and weight along all degrees of freedom
         rrrs_d_G_in_axes3_xz = (
         rrrs_d_Gamma_3_in_axes3_z*rrrs_w_3_in_axes3_x +
-            rrrs_w_1_in_axes3_z*rrrs_w_2_in_axes3_x*(rrrs_c_2*(rrrs_J_2_in_spec2_yz +
-            rrrs_J_3_in_spec3_yz*rrrs_c_3 - rrrs_J_3_in_spec3_xz*rrrs_s_3_t) +
-            rrrs_s_2*(rrrs_J_2_in_spec2_xz + rrrs_J_3_in_spec3_xz*rrrs_c_3 +
-            rrrs_J_3_in_spec3_yz*rrrs_s_3_t))
+            rrrs_w_1_in_axes3_z*rrrs_w_2_in_axes3_x*(rrrs_c_2*(rrrs_J_2_in_spec2_xz +
+            rrrs_J_3_in_spec3_xz*rrrs_c_3 + rrrs_J_3_in_spec3_yz*rrrs_s_3_t) -
+            rrrs_s_2*(rrrs_J_2_in_spec2_yz + rrrs_J_3_in_spec3_yz*rrrs_c_3 -
+            rrrs_J_3_in_spec3_xz*rrrs_s_3_t))
         )
         # (rrrs-d_c) coefficient of the acceleration in: leg force on the platform without actuation and without the mass at the connection point
         rrrs_d_c_in_axes3_xx = (
@@ -2689,22 +2861,22 @@ def _run_M(m, X):
             rrrs_d_Gamma_3_in_axes3_z*rrrs_w_3_in_axes3_y
         )
         # (rrrs-Q) inertia of the leg at the connection point, without the mass gathered there
-        axis_z_rrrs_axes3_x = rrrs_base_frame_xy*rrrs_c_1 + rrrs_base_frame_xz*rrrs_s_1
-        axis_z_rrrs_axes3_y = rrrs_base_frame_yy*rrrs_c_1 + rrrs_base_frame_yz*rrrs_s_1
-        axis_z_rrrs_axes3_z = rrrs_base_frame_zy*rrrs_c_1 + rrrs_base_frame_zz*rrrs_s_1
-        rrrs_Q_t = rrrs_e_1_in_axes3_x*rrrs_s_1
-        rrrs_Q_t_2 = rrrs_c_1*rrrs_e_1_in_axes3_x
+        axis_z_rrrs_axes3_x = rrrs_base_frame_xz*rrrs_c_1 - rrrs_base_frame_xy*rrrs_s_1
+        axis_z_rrrs_axes3_y = rrrs_base_frame_yz*rrrs_c_1 - rrrs_base_frame_yy*rrrs_s_1
+        axis_z_rrrs_axes3_z = rrrs_base_frame_zz*rrrs_c_1 - rrrs_base_frame_zy*rrrs_s_1
+        rrrs_Q_t = rrrs_c_1*rrrs_e_1_in_axes3_x
+        rrrs_Q_t_2 = rrrs_e_1_in_axes3_x*rrrs_s_1
         axis_y_rrrs_axes3_x = (
-        rrrs_Q_t*rrrs_base_frame_xy + rrrs_base_frame_xx*rrrs_e_1_in_axes3_y -
-            rrrs_Q_t_2*rrrs_base_frame_xz
+        rrrs_Q_t*rrrs_base_frame_xy + rrrs_Q_t_2*rrrs_base_frame_xz +
+            rrrs_base_frame_xx*rrrs_e_1_in_axes3_y
         )
         axis_y_rrrs_axes3_y = (
-        rrrs_Q_t*rrrs_base_frame_yy + rrrs_base_frame_yx*rrrs_e_1_in_axes3_y -
-            rrrs_Q_t_2*rrrs_base_frame_yz
+        rrrs_Q_t*rrrs_base_frame_yy + rrrs_Q_t_2*rrrs_base_frame_yz +
+            rrrs_base_frame_yx*rrrs_e_1_in_axes3_y
         )
         axis_y_rrrs_axes3_z = (
-        rrrs_Q_t*rrrs_base_frame_zy + rrrs_base_frame_zx*rrrs_e_1_in_axes3_y -
-            rrrs_Q_t_2*rrrs_base_frame_zz
+        rrrs_Q_t*rrrs_base_frame_zy + rrrs_Q_t_2*rrrs_base_frame_zz +
+            rrrs_base_frame_zx*rrrs_e_1_in_axes3_y
         )
         axis_x_rrrs_axes3_x = (
         axis_y_rrrs_axes3_y*axis_z_rrrs_axes3_z - axis_y_rrrs_axes3_z*axis_z_rrrs_axes3_y
@@ -2866,7 +3038,7 @@ def _run_M(m, X):
     return ok, (out_M,)
 
 
-# Z: 927 mul, 675 add, 12 div, 6 sqrt, 0 trig
+# Z: 924 mul, 675 add, 12 div, 6 sqrt, 0 trig
 def _run_Z(m, X, V):
     sqrt = m.sqrt
     shared, legs = m.constants("Z")
@@ -3001,36 +3173,33 @@ def _run_Z(m, X, V):
         rrrs_S_x = rrrs_q_x + t_x - rrrs_base_point_x
         rrrs_S_y = rrrs_q_y + t_y - rrrs_base_point_y
         rrrs_S_z = rrrs_q_z + t_z - rrrs_base_point_z
-        # (rrrs-px_1) component along the reference direction
-        rrrs_px_1 = (
+        rrrs_S_in_turn1_x = (
         rrrs_S_x*rrrs_base_frame_xy + rrrs_S_y*rrrs_base_frame_yy + rrrs_S_z*rrrs_base_frame_zy
         )
-        # (rrrs-py_1) component across the reference direction
-        rrrs_py_1 = (
+        rrrs_S_in_turn1_y = (
         rrrs_S_x*rrrs_base_frame_xz + rrrs_S_y*rrrs_base_frame_yz + rrrs_S_z*rrrs_base_frame_zz
         )
+        rrrs_S_in_turn1_z = (
+        rrrs_S_x*rrrs_base_frame_xx + rrrs_S_y*rrrs_base_frame_yx + rrrs_S_z*rrrs_base_frame_zx
+        )
         # (rrrs-rho2_1) squared amplitude
-        rrrs_rho2_1 = rrrs_px_1*rrrs_px_1 + rrrs_py_1*rrrs_py_1
+        rrrs_rho2_1 = rrrs_S_in_turn1_x*rrrs_S_in_turn1_x + rrrs_S_in_turn1_y*rrrs_S_in_turn1_y
         # (rrrs-root_1) root, with the sign of the branch
         rrrs_root_1 = rrrs_branch_1*sqrt(rrrs_rho2_1)
         # (rrrs-c_1) cosine of the angle of joint 1 from its reference direction
         inv_rrrs_rho2_1 = 1.0/rrrs_rho2_1
-        rrrs_c_1 = -inv_rrrs_rho2_1*rrrs_py_1*rrrs_root_1
+        rrrs_c_1 = inv_rrrs_rho2_1*rrrs_S_in_turn1_x*rrrs_root_1
         # (rrrs-s_1) sine of the angle of joint 1 from its reference direction
-        rrrs_s_1 = inv_rrrs_rho2_1*rrrs_px_1*rrrs_root_1
-        # (rrrs-xi_1) the vector from joint 1 to the connection point, resolved along link 1
-        rrrs_xi_1_in_axes1_z = (
-        rrrs_S_x*rrrs_base_frame_xx + rrrs_S_y*rrrs_base_frame_yx + rrrs_S_z*rrrs_base_frame_zx
-        )
+        rrrs_s_1 = inv_rrrs_rho2_1*rrrs_S_in_turn1_y*rrrs_root_1
         # (rrrs-x_2) from the origin of joint 2 to the connection point
-        rrrs_x_2_in_axes1_z = rrrs_xi_1_in_axes1_z - rrrs_joint2_offset_x
+        rrrs_x_2_in_axes1_z = rrrs_S_in_turn1_z - rrrs_joint2_offset_x
         # (rrrs-Kd_2) projection on the centre's direction, from the distance fixed by the joints beyond joint 2
-        rrrs_Kd_2_t_3 = rrrs_root_1*rrrs_root_1 + rrrs_x_2_in_axes1_z*rrrs_x_2_in_axes1_z
+        rrrs_Kd_2_t_3 = rrrs_rho2_1 + rrrs_x_2_in_axes1_z*rrrs_x_2_in_axes1_z
         rrrs_Kd_2 = rrrs_Kd_2_t + 0.5*rrrs_Kd_2_t_3 - rrrs_Kd_2_t_2
         # (rrrs-Kc_2) factor of the cosine in the equation of joint 2
-        rrrs_Kc_2 = -rrrs_joint3_offset_x*rrrs_root_1
+        rrrs_Kc_2 = rrrs_joint3_offset_x*rrrs_x_2_in_axes1_z
         # (rrrs-Ks_2) factor of the sine in the equation of joint 2
-        rrrs_Ks_2 = rrrs_joint3_offset_x*rrrs_x_2_in_axes1_z
+        rrrs_Ks_2 = rrrs_joint3_offset_x*rrrs_root_1
         # (rrrs-rho2_2) squared amplitude
         rrrs_rho2_2 = rrrs_Kc_2*rrrs_Kc_2 + rrrs_Ks_2*rrrs_Ks_2
         # (rrrs-disc_2) discriminant
@@ -3038,10 +3207,10 @@ def _run_Z(m, X, V):
         # (rrrs-root_2) root, with the sign of the branch
         rrrs_root_2 = rrrs_branch_2*sqrt(rrrs_disc_2)
         # (rrrs-c_2) cosine of the angle of joint 2 from its reference direction
-        rrrs_c_2_t = -1.0/rrrs_rho2_2
-        rrrs_c_2 = rrrs_c_2_t*(rrrs_Ks_2*rrrs_root_2 - rrrs_Kc_2*rrrs_Kd_2)
+        inv_rrrs_rho2_2 = 1.0/rrrs_rho2_2
+        rrrs_c_2 = inv_rrrs_rho2_2*(rrrs_Kc_2*rrrs_Kd_2 - rrrs_Ks_2*rrrs_root_2)
         # (rrrs-s_2) sine of the angle of joint 2 from its reference direction
-        rrrs_s_2 = rrrs_c_2_t*(-rrrs_Kc_2*rrrs_root_2 - rrrs_Kd_2*rrrs_Ks_2)
+        rrrs_s_2 = inv_rrrs_rho2_2*(rrrs_Kc_2*rrrs_root_2 + rrrs_Kd_2*rrrs_Ks_2)
         # (rrrs-x_3) from the origin of joint 3 to the connection point
         rrrs_x_3_in_axes2_x = (
         inv_rrrs_size_t*rrrs_Kd_2*rrrs_joint3_offset_x - rrrs_joint3_offset_x
@@ -3065,10 +3234,10 @@ def _run_Z(m, X, V):
         rrrs_r_2_in_axes3_x = rrrs_c_3*rrrs_r_2_in_axes2_x + rrrs_r_2_t*rrrs_s_3_t
         rrrs_r_2_in_axes3_y = rrrs_r_2_in_axes2_x*rrrs_s_3_t - rrrs_c_3*rrrs_r_2_t
         # (rrrs-v_1) velocity of the connection point per rate of joint 1
-        rrrs_e_1_in_axes3_x = rrrs_c_3*rrrs_s_2 - rrrs_c_2*rrrs_s_3_t
-        rrrs_e_1_in_axes3_y = rrrs_c_2*rrrs_c_3 + rrrs_s_2*rrrs_s_3_t
-        rrrs_v_1_t = rrrs_s_2*rrrs_xi_1_in_axes1_z - rrrs_c_2*rrrs_root_1
-        rrrs_v_1_t_2 = rrrs_c_2*rrrs_xi_1_in_axes1_z + rrrs_root_1*rrrs_s_2
+        rrrs_e_1_in_axes3_x = rrrs_c_2*rrrs_c_3 + rrrs_s_2*rrrs_s_3_t
+        rrrs_e_1_in_axes3_y = rrrs_c_2*rrrs_s_3_t - rrrs_c_3*rrrs_s_2
+        rrrs_v_1_t = rrrs_S_in_turn1_z*rrrs_c_2 + rrrs_root_1*rrrs_s_2
+        rrrs_v_1_t_2 = rrrs_c_2*rrrs_root_1 - rrrs_S_in_turn1_z*rrrs_s_2
         rrrs_v_1_in_axes3_z = (
         rrrs_e_1_in_axes3_x*(rrrs_c_3*rrrs_v_1_t_2 + rrrs_s_3_t*rrrs_v_1_t) -
             rrrs_e_1_in_axes3_y*(rrrs_c_3*rrrs_v_1_t - rrrs_s_3_t*rrrs_v_1_t_2)
@@ -3078,26 +3247,26 @@ def _run_Z(m, X, V):
         # (rrrs-w_2) reciprocal vector 2
         rrrs_w_2_in_axes3_x = -1.0/rrrs_r_2_in_axes3_y
         # (rrrs-qd_1) rate of joint 1
-        axis_z_rrrs_axes3_x = rrrs_base_frame_xy*rrrs_c_1 + rrrs_base_frame_xz*rrrs_s_1
-        axis_z_rrrs_axes3_y = rrrs_base_frame_yy*rrrs_c_1 + rrrs_base_frame_yz*rrrs_s_1
-        axis_z_rrrs_axes3_z = rrrs_base_frame_zy*rrrs_c_1 + rrrs_base_frame_zz*rrrs_s_1
+        axis_z_rrrs_axes3_x = rrrs_base_frame_xz*rrrs_c_1 - rrrs_base_frame_xy*rrrs_s_1
+        axis_z_rrrs_axes3_y = rrrs_base_frame_yz*rrrs_c_1 - rrrs_base_frame_yy*rrrs_s_1
+        axis_z_rrrs_axes3_z = rrrs_base_frame_zz*rrrs_c_1 - rrrs_base_frame_zy*rrrs_s_1
         rrrs_qd_1 = (
         rrrs_w_1_in_axes3_z*(axis_z_rrrs_axes3_x*rrrs_S_dot_x + axis_z_rrrs_axes3_y*rrrs_S_dot_y +
             axis_z_rrrs_axes3_z*rrrs_S_dot_z)
         )
         # (rrrs-qd_2) rate of joint 2
-        rrrs_qd_2_t = rrrs_e_1_in_axes3_x*rrrs_s_1
-        rrrs_qd_2_t_2 = rrrs_c_1*rrrs_e_1_in_axes3_x
+        rrrs_qd_2_t = rrrs_c_1*rrrs_e_1_in_axes3_x
+        rrrs_qd_2_t_2 = rrrs_e_1_in_axes3_x*rrrs_s_1
         axis_y_rrrs_axes3_x = (
-        rrrs_base_frame_xx*rrrs_e_1_in_axes3_y + rrrs_base_frame_xy*rrrs_qd_2_t -
+        rrrs_base_frame_xx*rrrs_e_1_in_axes3_y + rrrs_base_frame_xy*rrrs_qd_2_t +
             rrrs_base_frame_xz*rrrs_qd_2_t_2
         )
         axis_y_rrrs_axes3_y = (
-        rrrs_base_frame_yx*rrrs_e_1_in_axes3_y + rrrs_base_frame_yy*rrrs_qd_2_t -
+        rrrs_base_frame_yx*rrrs_e_1_in_axes3_y + rrrs_base_frame_yy*rrrs_qd_2_t +
             rrrs_base_frame_yz*rrrs_qd_2_t_2
         )
         axis_y_rrrs_axes3_z = (
-        rrrs_base_frame_zx*rrrs_e_1_in_axes3_y + rrrs_base_frame_zy*rrrs_qd_2_t -
+        rrrs_base_frame_zx*rrrs_e_1_in_axes3_y + rrrs_base_frame_zy*rrrs_qd_2_t +
             rrrs_base_frame_zz*rrrs_qd_2_t_2
         )
         axis_x_rrrs_axes3_x = (
@@ -3109,30 +3278,25 @@ def _run_Z(m, X, V):
         axis_x_rrrs_axes3_z = (
         axis_y_rrrs_axes3_x*axis_z_rrrs_axes3_y - axis_y_rrrs_axes3_y*axis_z_rrrs_axes3_x
         )
-        rrrs_qd_2 = (
-        rrrs_w_2_in_axes3_x*(axis_x_rrrs_axes3_x*rrrs_S_dot_x + axis_x_rrrs_axes3_y*rrrs_S_dot_y +
-            axis_x_rrrs_axes3_z*rrrs_S_dot_z)
+        rrrs_qd_2_t_3 = (
+        -rrrs_w_2_in_axes3_x*(axis_x_rrrs_axes3_x*rrrs_S_dot_x + axis_x_rrrs_axes3_y*rrrs_S_dot_y
+            + axis_x_rrrs_axes3_z*rrrs_S_dot_z)
         )
         # (rrrs-qd_3) rate of joint 3
         rrrs_qd_3 = (
         rrrs_w_3_in_axes3_y*(axis_y_rrrs_axes3_x*rrrs_S_dot_x + axis_y_rrrs_axes3_y*rrrs_S_dot_y +
-            axis_y_rrrs_axes3_z*rrrs_S_dot_z - rrrs_qd_2*rrrs_r_2_in_axes3_x)
+            axis_y_rrrs_axes3_z*rrrs_S_dot_z + rrrs_qd_2_t_3*rrrs_r_2_in_axes3_x)
         )
         # (rrrs-omega_1) angular velocity of link 1
-        rrrs_omega_1_in_axes2_x = rrrs_qd_1*rrrs_s_2
-        rrrs_omega_1_in_axes2_y = rrrs_c_2*rrrs_qd_1
-        rrrs_omega_1_in_axes3_x = (
-        rrrs_c_3*rrrs_omega_1_in_axes2_x - rrrs_omega_1_in_axes2_y*rrrs_s_3_t
-        )
-        rrrs_omega_1_in_axes3_y = (
-        rrrs_c_3*rrrs_omega_1_in_axes2_y + rrrs_omega_1_in_axes2_x*rrrs_s_3_t
-        )
+        rrrs_omega_1_in_axes2_x = rrrs_c_2*rrrs_qd_1
+        rrrs_omega_1_t = rrrs_qd_1*rrrs_s_2
+        rrrs_omega_1_in_axes3_x = rrrs_c_3*rrrs_omega_1_in_axes2_x + rrrs_omega_1_t*rrrs_s_3_t
+        rrrs_omega_1_in_axes3_y = rrrs_omega_1_in_axes2_x*rrrs_s_3_t - rrrs_c_3*rrrs_omega_1_t
         # (rrrs-W_2) centripetal tensor of link 2
-        rrrs_W_2_in_axes2_yz = rrrs_omega_1_in_axes2_y*rrrs_qd_2
-        rrrs_W_2_in_axes2_xz = rrrs_omega_1_in_axes2_x*rrrs_qd_2
-        rrrs_W_2_in_axes2_xy = rrrs_omega_1_in_axes2_x*rrrs_omega_1_in_axes2_y
+        rrrs_W_2_in_axes2_yz = rrrs_omega_1_t*rrrs_qd_2_t_3
+        rrrs_W_2_in_axes2_xy = -rrrs_omega_1_in_axes2_x*rrrs_omega_1_t
         # (rrrs-omega_3) angular velocity of link 3
-        rrrs_omega_3_in_axes3_z = rrrs_qd_2 + rrrs_qd_3
+        rrrs_omega_3_in_axes3_z = rrrs_qd_3 - rrrs_qd_2_t_3
         # (rrrs-W_3) centripetal tensor of link 3
         rrrs_W_3_in_axes3_xy = rrrs_omega_1_in_axes3_x*rrrs_omega_1_in_axes3_y
         rrrs_W_3_in_axes3_xz = rrrs_omega_1_in_axes3_x*rrrs_omega_3_in_axes3_z
@@ -3154,40 +3318,41 @@ def _run_Z(m, X, V):
             axis_z_rrrs_axes3_z*rrrs_u_1_z
         )
         # (rrrs-zeta_2) angular acceleration of link 2 from the turning of axis 2
-        rrrs_zeta_2_in_axes3_y = rrrs_W_2_in_axes2_yz*rrrs_s_3_t - rrrs_W_2_in_axes2_xz*rrrs_c_3
+        rrrs_zeta_2_in_axes2_y = rrrs_omega_1_in_axes2_x*rrrs_qd_2_t_3
+        rrrs_zeta_2_in_axes3_y = rrrs_W_2_in_axes2_yz*rrrs_s_3_t + rrrs_c_3*rrrs_zeta_2_in_axes2_y
         # (rrrs-zeta_3) angular acceleration of link 3 from the turning of axis 3
         rrrs_zeta_3_t = rrrs_omega_1_in_axes3_x*rrrs_qd_3
         # (rrrs-beta_3) angular acceleration of link 3 at zero joint accelerations
         rrrs_beta_3_in_axes3_y = rrrs_zeta_2_in_axes3_y - rrrs_zeta_3_t
         # (rrrs-bias) acceleration of the connection point at zero joint accelerations
-        rrrs_bias_t = -rrrs_joint2_offset_x*rrrs_s_2
-        rrrs_bias_t_2 = rrrs_c_2*rrrs_joint2_offset_x
+        rrrs_bias_t = rrrs_c_2*rrrs_joint2_offset_x
+        rrrs_bias_t_2 = rrrs_joint2_offset_x*rrrs_s_2
         rrrs_bias_t_3 = (
-        rrrs_omega_1_in_axes3_x*(rrrs_bias_t_2*rrrs_c_3 - rrrs_bias_t*rrrs_s_3_t) -
-            rrrs_omega_1_in_axes3_y*(-rrrs_bias_t*rrrs_c_3 - rrrs_bias_t_2*rrrs_s_3_t)
+        rrrs_omega_1_in_axes3_x*(rrrs_bias_t*rrrs_s_3_t - rrrs_bias_t_2*rrrs_c_3) -
+            rrrs_omega_1_in_axes3_y*(rrrs_bias_t*rrrs_c_3 + rrrs_bias_t_2*rrrs_s_3_t)
         )
         rrrs_d_3_in_axes3_x = rrrs_c_3*rrrs_joint3_offset_x
         rrrs_d_3_in_axes3_y = rrrs_joint3_offset_x*rrrs_s_3_t
-        rrrs_bias_t_4 = -rrrs_d_3_in_axes3_y*rrrs_qd_2
-        rrrs_bias_t_5 = -rrrs_d_3_in_axes3_x*rrrs_qd_2
+        rrrs_bias_t_4 = rrrs_d_3_in_axes3_y*rrrs_qd_2_t_3
+        rrrs_bias_t_5 = rrrs_d_3_in_axes3_x*rrrs_qd_2_t_3
         rrrs_bias_t_6 = (
         rrrs_d_3_in_axes3_y*rrrs_omega_1_in_axes3_x - rrrs_d_3_in_axes3_x*rrrs_omega_1_in_axes3_y
         )
         rrrs_bias_t_7 = rrrs_omega_3_in_axes3_z*rrrs_platform_joint_offset_x
         rrrs_bias_t_8 = rrrs_omega_1_in_axes3_y*rrrs_platform_joint_offset_x
         rrrs_bias_in_axes3_x = (
-        rrrs_bias_t_3*rrrs_omega_1_in_axes3_y + rrrs_bias_t_5*rrrs_qd_2 +
-            rrrs_bias_t_6*rrrs_omega_1_in_axes3_y - rrrs_bias_t_7*rrrs_omega_3_in_axes3_z -
+        rrrs_bias_t_3*rrrs_omega_1_in_axes3_y + rrrs_bias_t_6*rrrs_omega_1_in_axes3_y -
+            rrrs_bias_t_5*rrrs_qd_2_t_3 - rrrs_bias_t_7*rrrs_omega_3_in_axes3_z -
             rrrs_bias_t_8*rrrs_omega_1_in_axes3_y
         )
         rrrs_bias_in_axes3_y = (
-        rrrs_bias_t_4*rrrs_qd_2 + rrrs_bias_t_8*rrrs_omega_1_in_axes3_x -
-            rrrs_bias_t_3*rrrs_omega_1_in_axes3_x - rrrs_bias_t_6*rrrs_omega_1_in_axes3_x
+        rrrs_bias_t_8*rrrs_omega_1_in_axes3_x - rrrs_bias_t_3*rrrs_omega_1_in_axes3_x -
+            rrrs_bias_t_4*rrrs_qd_2_t_3 - rrrs_bias_t_6*rrrs_omega_1_in_axes3_x
         )
         rrrs_bias_in_axes3_z = (
-        rrrs_bias_t_7*rrrs_omega_1_in_axes3_x +
-            rrrs_d_3_in_axes3_y*(rrrs_W_2_in_axes2_xz*rrrs_s_3_t + rrrs_W_2_in_axes2_yz*rrrs_c_3)
-            - rrrs_beta_3_in_axes3_y*rrrs_platform_joint_offset_x -
+        rrrs_bias_t_7*rrrs_omega_1_in_axes3_x + rrrs_d_3_in_axes3_y*(rrrs_W_2_in_axes2_yz*rrrs_c_3
+            - rrrs_s_3_t*rrrs_zeta_2_in_axes2_y) -
+            rrrs_beta_3_in_axes3_y*rrrs_platform_joint_offset_x -
             rrrs_bias_t_4*rrrs_omega_1_in_axes3_y - rrrs_bias_t_5*rrrs_omega_1_in_axes3_x -
             rrrs_d_3_in_axes3_x*rrrs_zeta_2_in_axes3_y
         )
@@ -3200,15 +3365,15 @@ def _run_Z(m, X, V):
         # (rrrs-qdd_2_o) remainder without the acceleration in: acceleration of joint 2
         rrrs_qdd_2_o = rrrs_rel_o_in_axes3_x*rrrs_w_2_in_axes3_x
         # (rrrs-alpha_1_o) remainder without the acceleration in: angular acceleration of link 1
-        rrrs_alpha_1_o_t = -rrrs_qdd_1_o*rrrs_s_2
-        rrrs_alpha_1_o_in_axes2_y = rrrs_c_2*rrrs_qdd_1_o
+        rrrs_alpha_1_o_in_axes2_x = rrrs_c_2*rrrs_qdd_1_o
+        rrrs_alpha_1_o_t = rrrs_qdd_1_o*rrrs_s_2
         # (rrrs-alpha_2_o) remainder without the acceleration in: angular acceleration of link 2
-        rrrs_alpha_2_o_in_axes2_x = rrrs_W_2_in_axes2_yz - rrrs_alpha_1_o_t
-        rrrs_alpha_2_o_in_axes2_y = rrrs_alpha_1_o_in_axes2_y - rrrs_W_2_in_axes2_xz
+        rrrs_alpha_2_o_in_axes2_x = rrrs_W_2_in_axes2_yz + rrrs_alpha_1_o_in_axes2_x
+        rrrs_alpha_2_o_in_axes2_y = rrrs_zeta_2_in_axes2_y - rrrs_alpha_1_o_t
         # (rrrs-B_2_o) remainder of the acceleration tensor of link 2
         rrrs_B_2_o_in_axes2_xy = rrrs_W_2_in_axes2_xy - rrrs_qdd_2_o
         rrrs_B_2_o_in_axes2_yx = rrrs_W_2_in_axes2_xy + rrrs_qdd_2_o
-        rrrs_B_2_o_in_axes2_zx = rrrs_W_2_in_axes2_xz - rrrs_alpha_2_o_in_axes2_y
+        rrrs_B_2_o_in_axes2_zx = -rrrs_alpha_2_o_in_axes2_y - rrrs_zeta_2_in_axes2_y
         rrrs_B_2_o_in_axes2_zy = rrrs_W_2_in_axes2_yz + rrrs_alpha_2_o_in_axes2_x
         # (rrrs-alpha_3_o) remainder without the acceleration in: angular acceleration of link 3
         rrrs_alpha_3_o_in_axes3_x = (
@@ -3273,32 +3438,33 @@ def _run_Z(m, X, V):
         )
         # (rrrs-mu_2_o) remainder without the acceleration in: inertia moment of the links that turn with link 2, about their reference points
         rrrs_mu_2_o_t = rrrs_omega_1_in_axes2_x*rrrs_omega_1_in_axes2_x
-        rrrs_mu_2_o_t_2 = rrrs_omega_1_in_axes2_y*rrrs_omega_1_in_axes2_y
-        rrrs_mu_2_o_t_3 = rrrs_qd_2*rrrs_qd_2
+        rrrs_mu_2_o_t_2 = rrrs_omega_1_t*rrrs_omega_1_t
+        rrrs_mu_2_o_t_3 = rrrs_qd_2_t_3*rrrs_qd_2_t_3
         rrrs_g_in_axes1_x = rrrs_c_1*rrrs_mu_2_t + rrrs_mu_2_t_2*rrrs_s_1
         rrrs_g_in_axes1_y = rrrs_c_1*rrrs_mu_2_t_2 - rrrs_mu_2_t*rrrs_s_1
-        rrrs_g_in_axes2_x = rrrs_c_2*rrrs_g_in_axes1_y + rrrs_g_in_axes1_z*rrrs_s_2
-        rrrs_g_in_axes2_y = rrrs_c_2*rrrs_g_in_axes1_z - rrrs_g_in_axes1_y*rrrs_s_2
+        rrrs_g_in_axes2_x = rrrs_c_2*rrrs_g_in_axes1_z + rrrs_g_in_axes1_x*rrrs_s_2
+        rrrs_g_in_axes2_y = rrrs_c_2*rrrs_g_in_axes1_x - rrrs_g_in_axes1_z*rrrs_s_2
         rrrs_mu_2_o_in_axes2_x = (
         rrrs_B_2_o_in_axes2_yx*rrrs_J_2_in_spec2_xz +
             rrrs_B_2_o_in_axes2_zy*rrrs_Sigma_2_in_axes2_yy +
             rrrs_J_2_in_spec2_yz*(rrrs_mu_2_o_t_2 - rrrs_mu_2_o_t_3) +
+            rrrs_Sigma_2_in_axes2_zz*rrrs_alpha_1_o_in_axes2_x +
             rrrs_g_in_axes2_y*rrrs_h_2_in_spec2_z - rrrs_B_2_o_in_axes2_zx*rrrs_J_2_in_spec2_xy -
-            rrrs_Sigma_2_in_axes2_zz*rrrs_alpha_1_o_t - rrrs_g_in_axes1_x*rrrs_h_2_in_spec2_y
+            rrrs_g_in_axes1_y*rrrs_h_2_in_spec2_y
         )
         rrrs_mu_2_o_in_axes2_y = (
-        rrrs_B_2_o_in_axes2_zy*rrrs_J_2_in_spec2_xy +
-            rrrs_Sigma_2_in_axes2_zz*rrrs_alpha_1_o_in_axes2_y +
-            rrrs_g_in_axes1_x*rrrs_h_2_in_spec2_x - rrrs_B_2_o_in_axes2_xy*rrrs_J_2_in_spec2_yz -
+        rrrs_B_2_o_in_axes2_zy*rrrs_J_2_in_spec2_xy + rrrs_g_in_axes1_y*rrrs_h_2_in_spec2_x -
+            rrrs_B_2_o_in_axes2_xy*rrrs_J_2_in_spec2_yz -
             rrrs_B_2_o_in_axes2_zx*rrrs_Sigma_2_in_axes2_xx - rrrs_J_2_in_spec2_xz*(rrrs_mu_2_o_t
-            - rrrs_mu_2_o_t_3) - rrrs_g_in_axes2_x*rrrs_h_2_in_spec2_z
+            - rrrs_mu_2_o_t_3) - rrrs_Sigma_2_in_axes2_zz*rrrs_alpha_1_o_t -
+            rrrs_g_in_axes2_x*rrrs_h_2_in_spec2_z
         )
         rrrs_mu_2_o_in_axes2_z = (
         rrrs_B_2_o_in_axes2_yx*rrrs_Sigma_2_in_axes2_xx + rrrs_J_2_in_spec2_xy*(rrrs_mu_2_o_t -
-            rrrs_mu_2_o_t_2) + rrrs_J_2_in_spec2_yz*rrrs_alpha_1_o_in_axes2_y +
+            rrrs_mu_2_o_t_2) + rrrs_J_2_in_spec2_xz*rrrs_alpha_1_o_in_axes2_x +
             rrrs_g_in_axes2_x*rrrs_h_2_in_spec2_y -
             rrrs_B_2_o_in_axes2_xy*rrrs_Sigma_2_in_axes2_yy -
-            rrrs_J_2_in_spec2_xz*rrrs_alpha_1_o_t - rrrs_g_in_axes2_y*rrrs_h_2_in_spec2_x
+            rrrs_J_2_in_spec2_yz*rrrs_alpha_1_o_t - rrrs_g_in_axes2_y*rrrs_h_2_in_spec2_x
         )
         # (rrrs-N_2_o) remainder without the acceleration in: moment about joint 2 of the links from 2 outwards, the force at the connection point left out
         rrrs_N_2_o_in_axes2_x = (
@@ -3312,12 +3478,12 @@ def _run_Z(m, X, V):
         rrrs_N_2_o_in_axes2_z = rrrs_mu_2_o_in_axes2_z + rrrs_mu_3_o_in_axes3_z
         # (rrrs-mu_1_o) remainder without the acceleration in: inertia moment of the links that turn with link 1, about their reference points
         rrrs_mu_1_o_in_axes1_z = (
-        rrrs_J_1_in_spec1_xx*rrrs_qdd_1_o - rrrs_g_in_axes1_x*rrrs_h_1_in_spec1_y -
-            rrrs_g_in_axes1_y*rrrs_h_1_in_spec1_z
+        rrrs_J_1_in_spec1_xx*rrrs_qdd_1_o + rrrs_g_in_axes1_x*rrrs_h_1_in_spec1_z -
+            rrrs_g_in_axes1_y*rrrs_h_1_in_spec1_y
         )
         # (rrrs-N_1_o) remainder without the acceleration in: moment about joint 1 of the links from 1 outwards, the force at the connection point left out
         rrrs_N_1_o_in_axes1_z = (
-        rrrs_mu_1_o_in_axes1_z + rrrs_N_2_o_in_axes2_x*rrrs_s_2 + rrrs_N_2_o_in_axes2_y*rrrs_c_2
+        rrrs_mu_1_o_in_axes1_z + rrrs_N_2_o_in_axes2_x*rrrs_c_2 - rrrs_N_2_o_in_axes2_y*rrrs_s_2
         )
         # (rrrs-G_o) remainder without the acceleration in: force at the connection point that balances the leg's inertia and weight along all degrees of freedom
         rrrs_G_o_in_axes3_y = rrrs_mu_3_o_in_axes3_z*rrrs_w_3_in_axes3_y
@@ -3388,7 +3554,7 @@ def _run_Z(m, X, V):
     return ok, (out_Z,)
 
 
-# H: 321 mul, 165 add, 12 div, 6 sqrt, 0 trig
+# H: 318 mul, 165 add, 12 div, 6 sqrt, 0 trig
 def _run_H(m, X):
     sqrt = m.sqrt
     shared, legs = m.constants("H")
@@ -3452,36 +3618,33 @@ def _run_H(m, X):
         rrrs_S_x = rrrs_q_x + t_x - rrrs_base_point_x
         rrrs_S_y = rrrs_q_y + t_y - rrrs_base_point_y
         rrrs_S_z = rrrs_q_z + t_z - rrrs_base_point_z
-        # (rrrs-px_1) component along the reference direction
-        rrrs_px_1 = (
+        rrrs_S_in_turn1_x = (
         rrrs_S_x*rrrs_base_frame_xy + rrrs_S_y*rrrs_base_frame_yy + rrrs_S_z*rrrs_base_frame_zy
         )
-        # (rrrs-py_1) component across the reference direction
-        rrrs_py_1 = (
+        rrrs_S_in_turn1_y = (
         rrrs_S_x*rrrs_base_frame_xz + rrrs_S_y*rrrs_base_frame_yz + rrrs_S_z*rrrs_base_frame_zz
         )
+        rrrs_S_in_turn1_z = (
+        rrrs_S_x*rrrs_base_frame_xx + rrrs_S_y*rrrs_base_frame_yx + rrrs_S_z*rrrs_base_frame_zx
+        )
         # (rrrs-rho2_1) squared amplitude
-        rrrs_rho2_1 = rrrs_px_1*rrrs_px_1 + rrrs_py_1*rrrs_py_1
+        rrrs_rho2_1 = rrrs_S_in_turn1_x*rrrs_S_in_turn1_x + rrrs_S_in_turn1_y*rrrs_S_in_turn1_y
         # (rrrs-root_1) root, with the sign of the branch
         rrrs_root_1 = rrrs_branch_1*sqrt(rrrs_rho2_1)
         # (rrrs-c_1) cosine of the angle of joint 1 from its reference direction
         inv_rrrs_rho2_1 = 1.0/rrrs_rho2_1
-        rrrs_c_1 = -inv_rrrs_rho2_1*rrrs_py_1*rrrs_root_1
+        rrrs_c_1 = inv_rrrs_rho2_1*rrrs_S_in_turn1_x*rrrs_root_1
         # (rrrs-s_1) sine of the angle of joint 1 from its reference direction
-        rrrs_s_1 = inv_rrrs_rho2_1*rrrs_px_1*rrrs_root_1
-        # (rrrs-xi_1) the vector from joint 1 to the connection point, resolved along link 1
-        rrrs_xi_1_in_axes1_z = (
-        rrrs_S_x*rrrs_base_frame_xx + rrrs_S_y*rrrs_base_frame_yx + rrrs_S_z*rrrs_base_frame_zx
-        )
+        rrrs_s_1 = inv_rrrs_rho2_1*rrrs_S_in_turn1_y*rrrs_root_1
         # (rrrs-x_2) from the origin of joint 2 to the connection point
-        rrrs_x_2_in_axes1_z = rrrs_xi_1_in_axes1_z - rrrs_joint2_offset_x
+        rrrs_x_2_in_axes1_z = rrrs_S_in_turn1_z - rrrs_joint2_offset_x
         # (rrrs-Kd_2) projection on the centre's direction, from the distance fixed by the joints beyond joint 2
-        rrrs_Kd_2_t_3 = rrrs_root_1*rrrs_root_1 + rrrs_x_2_in_axes1_z*rrrs_x_2_in_axes1_z
+        rrrs_Kd_2_t_3 = rrrs_rho2_1 + rrrs_x_2_in_axes1_z*rrrs_x_2_in_axes1_z
         rrrs_Kd_2 = rrrs_Kd_2_t + 0.5*rrrs_Kd_2_t_3 - rrrs_Kd_2_t_2
         # (rrrs-Kc_2) factor of the cosine in the equation of joint 2
-        rrrs_Kc_2 = -rrrs_joint3_offset_x*rrrs_root_1
+        rrrs_Kc_2 = rrrs_joint3_offset_x*rrrs_x_2_in_axes1_z
         # (rrrs-Ks_2) factor of the sine in the equation of joint 2
-        rrrs_Ks_2 = rrrs_joint3_offset_x*rrrs_x_2_in_axes1_z
+        rrrs_Ks_2 = rrrs_joint3_offset_x*rrrs_root_1
         # (rrrs-rho2_2) squared amplitude
         rrrs_rho2_2 = rrrs_Kc_2*rrrs_Kc_2 + rrrs_Ks_2*rrrs_Ks_2
         # (rrrs-disc_2) discriminant
@@ -3489,10 +3652,10 @@ def _run_H(m, X):
         # (rrrs-root_2) root, with the sign of the branch
         rrrs_root_2 = rrrs_branch_2*sqrt(rrrs_disc_2)
         # (rrrs-c_2) cosine of the angle of joint 2 from its reference direction
-        rrrs_c_2_t = -1.0/rrrs_rho2_2
-        rrrs_c_2 = rrrs_c_2_t*(rrrs_Ks_2*rrrs_root_2 - rrrs_Kc_2*rrrs_Kd_2)
+        inv_rrrs_rho2_2 = 1.0/rrrs_rho2_2
+        rrrs_c_2 = inv_rrrs_rho2_2*(rrrs_Kc_2*rrrs_Kd_2 - rrrs_Ks_2*rrrs_root_2)
         # (rrrs-s_2) sine of the angle of joint 2 from its reference direction
-        rrrs_s_2 = rrrs_c_2_t*(-rrrs_Kc_2*rrrs_root_2 - rrrs_Kd_2*rrrs_Ks_2)
+        rrrs_s_2 = inv_rrrs_rho2_2*(rrrs_Kc_2*rrrs_root_2 + rrrs_Kd_2*rrrs_Ks_2)
         # (rrrs-x_3) from the origin of joint 3 to the connection point
         rrrs_x_3_in_axes2_x = (
         inv_rrrs_size_t*rrrs_Kd_2*rrrs_joint3_offset_x - rrrs_joint3_offset_x
@@ -3509,35 +3672,35 @@ def _run_H(m, X):
         rrrs_r_2_in_axes2_x*rrrs_s_3_t - rrrs_c_3*rrrs_platform_joint_offset_x*rrrs_s_3_t
         )
         # (rrrs-v_1) velocity of the connection point per rate of joint 1
-        rrrs_e_1_in_axes3_x = rrrs_c_3*rrrs_s_2 - rrrs_c_2*rrrs_s_3_t
-        rrrs_e_1_in_axes3_y = rrrs_c_2*rrrs_c_3 + rrrs_s_2*rrrs_s_3_t
-        rrrs_v_1_t = rrrs_s_2*rrrs_xi_1_in_axes1_z - rrrs_c_2*rrrs_root_1
-        rrrs_v_1_t_2 = rrrs_c_2*rrrs_xi_1_in_axes1_z + rrrs_root_1*rrrs_s_2
+        rrrs_e_1_in_axes3_x = rrrs_c_2*rrrs_c_3 + rrrs_s_2*rrrs_s_3_t
+        rrrs_e_1_in_axes3_y = rrrs_c_2*rrrs_s_3_t - rrrs_c_3*rrrs_s_2
+        rrrs_v_1_t = rrrs_S_in_turn1_z*rrrs_c_2 + rrrs_root_1*rrrs_s_2
+        rrrs_v_1_t_2 = rrrs_c_2*rrrs_root_1 - rrrs_S_in_turn1_z*rrrs_s_2
         rrrs_v_1_in_axes3_z = (
         rrrs_e_1_in_axes3_x*(rrrs_c_3*rrrs_v_1_t_2 + rrrs_s_3_t*rrrs_v_1_t) -
             rrrs_e_1_in_axes3_y*(rrrs_c_3*rrrs_v_1_t - rrrs_s_3_t*rrrs_v_1_t_2)
         )
         # (rrrs-w_1) reciprocal vector 1
-        axis_z_rrrs_axes3_x = rrrs_base_frame_xy*rrrs_c_1 + rrrs_base_frame_xz*rrrs_s_1
-        axis_z_rrrs_axes3_y = rrrs_base_frame_yy*rrrs_c_1 + rrrs_base_frame_yz*rrrs_s_1
-        axis_z_rrrs_axes3_z = rrrs_base_frame_zy*rrrs_c_1 + rrrs_base_frame_zz*rrrs_s_1
+        axis_z_rrrs_axes3_x = rrrs_base_frame_xz*rrrs_c_1 - rrrs_base_frame_xy*rrrs_s_1
+        axis_z_rrrs_axes3_y = rrrs_base_frame_yz*rrrs_c_1 - rrrs_base_frame_yy*rrrs_s_1
+        axis_z_rrrs_axes3_z = rrrs_base_frame_zz*rrrs_c_1 - rrrs_base_frame_zy*rrrs_s_1
         rrrs_w_1_in_axes3_z = 1.0/rrrs_v_1_in_axes3_z
         rrrs_w_1_x = axis_z_rrrs_axes3_x*rrrs_w_1_in_axes3_z
         rrrs_w_1_y = axis_z_rrrs_axes3_y*rrrs_w_1_in_axes3_z
         rrrs_w_1_z = axis_z_rrrs_axes3_z*rrrs_w_1_in_axes3_z
         # (rrrs-w_2) reciprocal vector 2
-        rrrs_w_2_t = rrrs_e_1_in_axes3_x*rrrs_s_1
-        rrrs_w_2_t_2 = rrrs_c_1*rrrs_e_1_in_axes3_x
+        rrrs_w_2_t = rrrs_c_1*rrrs_e_1_in_axes3_x
+        rrrs_w_2_t_2 = rrrs_e_1_in_axes3_x*rrrs_s_1
         axis_y_rrrs_axes3_x = (
-        rrrs_base_frame_xx*rrrs_e_1_in_axes3_y + rrrs_base_frame_xy*rrrs_w_2_t -
+        rrrs_base_frame_xx*rrrs_e_1_in_axes3_y + rrrs_base_frame_xy*rrrs_w_2_t +
             rrrs_base_frame_xz*rrrs_w_2_t_2
         )
         axis_y_rrrs_axes3_y = (
-        rrrs_base_frame_yx*rrrs_e_1_in_axes3_y + rrrs_base_frame_yy*rrrs_w_2_t -
+        rrrs_base_frame_yx*rrrs_e_1_in_axes3_y + rrrs_base_frame_yy*rrrs_w_2_t +
             rrrs_base_frame_yz*rrrs_w_2_t_2
         )
         axis_y_rrrs_axes3_z = (
-        rrrs_base_frame_zx*rrrs_e_1_in_axes3_y + rrrs_base_frame_zy*rrrs_w_2_t -
+        rrrs_base_frame_zx*rrrs_e_1_in_axes3_y + rrrs_base_frame_zy*rrrs_w_2_t +
             rrrs_base_frame_zz*rrrs_w_2_t_2
         )
         rrrs_w_2_in_axes3_x = -1.0/rrrs_r_2_in_axes3_y
@@ -3586,7 +3749,7 @@ def _run_H(m, X):
     return ok, (out_H,)
 
 
-# required: 1023 mul, 747 add, 12 div, 6 sqrt, 0 trig
+# required: 1020 mul, 747 add, 12 div, 6 sqrt, 0 trig
 def _run_required(m, X, V, A):
     sqrt = m.sqrt
     shared, legs = m.constants("required")
@@ -3761,36 +3924,33 @@ def _run_required(m, X, V, A):
         rrrs_S_x = rrrs_q_x + t_x - rrrs_base_point_x
         rrrs_S_y = rrrs_q_y + t_y - rrrs_base_point_y
         rrrs_S_z = rrrs_q_z + t_z - rrrs_base_point_z
-        # (rrrs-px_1) component along the reference direction
-        rrrs_px_1 = (
+        rrrs_S_in_turn1_x = (
         rrrs_S_x*rrrs_base_frame_xy + rrrs_S_y*rrrs_base_frame_yy + rrrs_S_z*rrrs_base_frame_zy
         )
-        # (rrrs-py_1) component across the reference direction
-        rrrs_py_1 = (
+        rrrs_S_in_turn1_y = (
         rrrs_S_x*rrrs_base_frame_xz + rrrs_S_y*rrrs_base_frame_yz + rrrs_S_z*rrrs_base_frame_zz
         )
+        rrrs_S_in_turn1_z = (
+        rrrs_S_x*rrrs_base_frame_xx + rrrs_S_y*rrrs_base_frame_yx + rrrs_S_z*rrrs_base_frame_zx
+        )
         # (rrrs-rho2_1) squared amplitude
-        rrrs_rho2_1 = rrrs_px_1*rrrs_px_1 + rrrs_py_1*rrrs_py_1
+        rrrs_rho2_1 = rrrs_S_in_turn1_x*rrrs_S_in_turn1_x + rrrs_S_in_turn1_y*rrrs_S_in_turn1_y
         # (rrrs-root_1) root, with the sign of the branch
         rrrs_root_1 = rrrs_branch_1*sqrt(rrrs_rho2_1)
         # (rrrs-c_1) cosine of the angle of joint 1 from its reference direction
         inv_rrrs_rho2_1 = 1.0/rrrs_rho2_1
-        rrrs_c_1 = -inv_rrrs_rho2_1*rrrs_py_1*rrrs_root_1
+        rrrs_c_1 = inv_rrrs_rho2_1*rrrs_S_in_turn1_x*rrrs_root_1
         # (rrrs-s_1) sine of the angle of joint 1 from its reference direction
-        rrrs_s_1 = inv_rrrs_rho2_1*rrrs_px_1*rrrs_root_1
-        # (rrrs-xi_1) the vector from joint 1 to the connection point, resolved along link 1
-        rrrs_xi_1_in_axes1_z = (
-        rrrs_S_x*rrrs_base_frame_xx + rrrs_S_y*rrrs_base_frame_yx + rrrs_S_z*rrrs_base_frame_zx
-        )
+        rrrs_s_1 = inv_rrrs_rho2_1*rrrs_S_in_turn1_y*rrrs_root_1
         # (rrrs-x_2) from the origin of joint 2 to the connection point
-        rrrs_x_2_in_axes1_z = rrrs_xi_1_in_axes1_z - rrrs_joint2_offset_x
+        rrrs_x_2_in_axes1_z = rrrs_S_in_turn1_z - rrrs_joint2_offset_x
         # (rrrs-Kd_2) projection on the centre's direction, from the distance fixed by the joints beyond joint 2
-        rrrs_Kd_2_t_3 = rrrs_root_1*rrrs_root_1 + rrrs_x_2_in_axes1_z*rrrs_x_2_in_axes1_z
+        rrrs_Kd_2_t_3 = rrrs_rho2_1 + rrrs_x_2_in_axes1_z*rrrs_x_2_in_axes1_z
         rrrs_Kd_2 = rrrs_Kd_2_t + 0.5*rrrs_Kd_2_t_3 - rrrs_Kd_2_t_2
         # (rrrs-Kc_2) factor of the cosine in the equation of joint 2
-        rrrs_Kc_2 = -rrrs_joint3_offset_x*rrrs_root_1
+        rrrs_Kc_2 = rrrs_joint3_offset_x*rrrs_x_2_in_axes1_z
         # (rrrs-Ks_2) factor of the sine in the equation of joint 2
-        rrrs_Ks_2 = rrrs_joint3_offset_x*rrrs_x_2_in_axes1_z
+        rrrs_Ks_2 = rrrs_joint3_offset_x*rrrs_root_1
         # (rrrs-rho2_2) squared amplitude
         rrrs_rho2_2 = rrrs_Kc_2*rrrs_Kc_2 + rrrs_Ks_2*rrrs_Ks_2
         # (rrrs-disc_2) discriminant
@@ -3798,10 +3958,10 @@ def _run_required(m, X, V, A):
         # (rrrs-root_2) root, with the sign of the branch
         rrrs_root_2 = rrrs_branch_2*sqrt(rrrs_disc_2)
         # (rrrs-c_2) cosine of the angle of joint 2 from its reference direction
-        rrrs_c_2_t = -1.0/rrrs_rho2_2
-        rrrs_c_2 = rrrs_c_2_t*(rrrs_Ks_2*rrrs_root_2 - rrrs_Kc_2*rrrs_Kd_2)
+        inv_rrrs_rho2_2 = 1.0/rrrs_rho2_2
+        rrrs_c_2 = inv_rrrs_rho2_2*(rrrs_Kc_2*rrrs_Kd_2 - rrrs_Ks_2*rrrs_root_2)
         # (rrrs-s_2) sine of the angle of joint 2 from its reference direction
-        rrrs_s_2 = rrrs_c_2_t*(-rrrs_Kc_2*rrrs_root_2 - rrrs_Kd_2*rrrs_Ks_2)
+        rrrs_s_2 = inv_rrrs_rho2_2*(rrrs_Kc_2*rrrs_root_2 + rrrs_Kd_2*rrrs_Ks_2)
         # (rrrs-x_3) from the origin of joint 3 to the connection point
         rrrs_x_3_in_axes2_x = (
         inv_rrrs_size_t*rrrs_Kd_2*rrrs_joint3_offset_x - rrrs_joint3_offset_x
@@ -3825,35 +3985,35 @@ def _run_required(m, X, V, A):
         rrrs_r_2_in_axes3_x = rrrs_c_3*rrrs_r_2_in_axes2_x + rrrs_r_2_t*rrrs_s_3_t
         rrrs_r_2_in_axes3_y = rrrs_r_2_in_axes2_x*rrrs_s_3_t - rrrs_c_3*rrrs_r_2_t
         # (rrrs-v_1) velocity of the connection point per rate of joint 1
-        rrrs_e_1_in_axes3_x = rrrs_c_3*rrrs_s_2 - rrrs_c_2*rrrs_s_3_t
-        rrrs_e_1_in_axes3_y = rrrs_c_2*rrrs_c_3 + rrrs_s_2*rrrs_s_3_t
-        rrrs_v_1_t = rrrs_s_2*rrrs_xi_1_in_axes1_z - rrrs_c_2*rrrs_root_1
-        rrrs_v_1_t_2 = rrrs_c_2*rrrs_xi_1_in_axes1_z + rrrs_root_1*rrrs_s_2
+        rrrs_e_1_in_axes3_x = rrrs_c_2*rrrs_c_3 + rrrs_s_2*rrrs_s_3_t
+        rrrs_e_1_in_axes3_y = rrrs_c_2*rrrs_s_3_t - rrrs_c_3*rrrs_s_2
+        rrrs_v_1_t = rrrs_S_in_turn1_z*rrrs_c_2 + rrrs_root_1*rrrs_s_2
+        rrrs_v_1_t_2 = rrrs_c_2*rrrs_root_1 - rrrs_S_in_turn1_z*rrrs_s_2
         rrrs_v_1_in_axes3_z = (
         rrrs_e_1_in_axes3_x*(rrrs_c_3*rrrs_v_1_t_2 + rrrs_s_3_t*rrrs_v_1_t) -
             rrrs_e_1_in_axes3_y*(rrrs_c_3*rrrs_v_1_t - rrrs_s_3_t*rrrs_v_1_t_2)
         )
         # (rrrs-w_1) reciprocal vector 1
-        axis_z_rrrs_axes3_x = rrrs_base_frame_xy*rrrs_c_1 + rrrs_base_frame_xz*rrrs_s_1
-        axis_z_rrrs_axes3_y = rrrs_base_frame_yy*rrrs_c_1 + rrrs_base_frame_yz*rrrs_s_1
-        axis_z_rrrs_axes3_z = rrrs_base_frame_zy*rrrs_c_1 + rrrs_base_frame_zz*rrrs_s_1
+        axis_z_rrrs_axes3_x = rrrs_base_frame_xz*rrrs_c_1 - rrrs_base_frame_xy*rrrs_s_1
+        axis_z_rrrs_axes3_y = rrrs_base_frame_yz*rrrs_c_1 - rrrs_base_frame_yy*rrrs_s_1
+        axis_z_rrrs_axes3_z = rrrs_base_frame_zz*rrrs_c_1 - rrrs_base_frame_zy*rrrs_s_1
         rrrs_w_1_in_axes3_z = 1.0/rrrs_v_1_in_axes3_z
         rrrs_w_1_x = axis_z_rrrs_axes3_x*rrrs_w_1_in_axes3_z
         rrrs_w_1_y = axis_z_rrrs_axes3_y*rrrs_w_1_in_axes3_z
         rrrs_w_1_z = axis_z_rrrs_axes3_z*rrrs_w_1_in_axes3_z
         # (rrrs-w_2) reciprocal vector 2
-        rrrs_w_2_t = rrrs_e_1_in_axes3_x*rrrs_s_1
-        rrrs_w_2_t_2 = rrrs_c_1*rrrs_e_1_in_axes3_x
+        rrrs_w_2_t = rrrs_c_1*rrrs_e_1_in_axes3_x
+        rrrs_w_2_t_2 = rrrs_e_1_in_axes3_x*rrrs_s_1
         axis_y_rrrs_axes3_x = (
-        rrrs_base_frame_xx*rrrs_e_1_in_axes3_y + rrrs_base_frame_xy*rrrs_w_2_t -
+        rrrs_base_frame_xx*rrrs_e_1_in_axes3_y + rrrs_base_frame_xy*rrrs_w_2_t +
             rrrs_base_frame_xz*rrrs_w_2_t_2
         )
         axis_y_rrrs_axes3_y = (
-        rrrs_base_frame_yx*rrrs_e_1_in_axes3_y + rrrs_base_frame_yy*rrrs_w_2_t -
+        rrrs_base_frame_yx*rrrs_e_1_in_axes3_y + rrrs_base_frame_yy*rrrs_w_2_t +
             rrrs_base_frame_yz*rrrs_w_2_t_2
         )
         axis_y_rrrs_axes3_z = (
-        rrrs_base_frame_zx*rrrs_e_1_in_axes3_y + rrrs_base_frame_zy*rrrs_w_2_t -
+        rrrs_base_frame_zx*rrrs_e_1_in_axes3_y + rrrs_base_frame_zy*rrrs_w_2_t +
             rrrs_base_frame_zz*rrrs_w_2_t_2
         )
         axis_x_rrrs_axes3_x = (
@@ -3875,30 +4035,25 @@ def _run_required(m, X, V, A):
             axis_z_rrrs_axes3_z*rrrs_S_dot_z)
         )
         # (rrrs-qd_2) rate of joint 2
-        rrrs_qd_2 = (
-        rrrs_w_2_in_axes3_x*(axis_x_rrrs_axes3_x*rrrs_S_dot_x + axis_x_rrrs_axes3_y*rrrs_S_dot_y +
-            axis_x_rrrs_axes3_z*rrrs_S_dot_z)
+        rrrs_qd_2_t = (
+        -rrrs_w_2_in_axes3_x*(axis_x_rrrs_axes3_x*rrrs_S_dot_x + axis_x_rrrs_axes3_y*rrrs_S_dot_y
+            + axis_x_rrrs_axes3_z*rrrs_S_dot_z)
         )
         # (rrrs-qd_3) rate of joint 3
         rrrs_qd_3 = (
         rrrs_w_3_in_axes3_y*(axis_y_rrrs_axes3_x*rrrs_S_dot_x + axis_y_rrrs_axes3_y*rrrs_S_dot_y +
-            axis_y_rrrs_axes3_z*rrrs_S_dot_z - rrrs_qd_2*rrrs_r_2_in_axes3_x)
+            axis_y_rrrs_axes3_z*rrrs_S_dot_z + rrrs_qd_2_t*rrrs_r_2_in_axes3_x)
         )
         # (rrrs-omega_1) angular velocity of link 1
-        rrrs_omega_1_in_axes2_x = rrrs_qd_1*rrrs_s_2
-        rrrs_omega_1_in_axes2_y = rrrs_c_2*rrrs_qd_1
-        rrrs_omega_1_in_axes3_x = (
-        rrrs_c_3*rrrs_omega_1_in_axes2_x - rrrs_omega_1_in_axes2_y*rrrs_s_3_t
-        )
-        rrrs_omega_1_in_axes3_y = (
-        rrrs_c_3*rrrs_omega_1_in_axes2_y + rrrs_omega_1_in_axes2_x*rrrs_s_3_t
-        )
+        rrrs_omega_1_in_axes2_x = rrrs_c_2*rrrs_qd_1
+        rrrs_omega_1_t = rrrs_qd_1*rrrs_s_2
+        rrrs_omega_1_in_axes3_x = rrrs_c_3*rrrs_omega_1_in_axes2_x + rrrs_omega_1_t*rrrs_s_3_t
+        rrrs_omega_1_in_axes3_y = rrrs_omega_1_in_axes2_x*rrrs_s_3_t - rrrs_c_3*rrrs_omega_1_t
         # (rrrs-W_2) centripetal tensor of link 2
-        rrrs_W_2_in_axes2_yz = rrrs_omega_1_in_axes2_y*rrrs_qd_2
-        rrrs_W_2_in_axes2_xz = rrrs_omega_1_in_axes2_x*rrrs_qd_2
-        rrrs_W_2_in_axes2_xy = rrrs_omega_1_in_axes2_x*rrrs_omega_1_in_axes2_y
+        rrrs_W_2_in_axes2_yz = rrrs_omega_1_t*rrrs_qd_2_t
+        rrrs_W_2_in_axes2_xy = -rrrs_omega_1_in_axes2_x*rrrs_omega_1_t
         # (rrrs-omega_3) angular velocity of link 3
-        rrrs_omega_3_in_axes3_z = rrrs_qd_2 + rrrs_qd_3
+        rrrs_omega_3_in_axes3_z = rrrs_qd_3 - rrrs_qd_2_t
         # (rrrs-W_3) centripetal tensor of link 3
         rrrs_W_3_in_axes3_xy = rrrs_omega_1_in_axes3_x*rrrs_omega_1_in_axes3_y
         rrrs_W_3_in_axes3_xz = rrrs_omega_1_in_axes3_x*rrrs_omega_3_in_axes3_z
@@ -3924,40 +4079,41 @@ def _run_required(m, X, V, A):
             axis_z_rrrs_axes3_z*rrrs_S_ddot_z
         )
         # (rrrs-zeta_2) angular acceleration of link 2 from the turning of axis 2
-        rrrs_zeta_2_in_axes3_y = rrrs_W_2_in_axes2_yz*rrrs_s_3_t - rrrs_W_2_in_axes2_xz*rrrs_c_3
+        rrrs_zeta_2_in_axes2_y = rrrs_omega_1_in_axes2_x*rrrs_qd_2_t
+        rrrs_zeta_2_in_axes3_y = rrrs_W_2_in_axes2_yz*rrrs_s_3_t + rrrs_c_3*rrrs_zeta_2_in_axes2_y
         # (rrrs-zeta_3) angular acceleration of link 3 from the turning of axis 3
         rrrs_zeta_3_t = rrrs_omega_1_in_axes3_x*rrrs_qd_3
         # (rrrs-beta_3) angular acceleration of link 3 at zero joint accelerations
         rrrs_beta_3_in_axes3_y = rrrs_zeta_2_in_axes3_y - rrrs_zeta_3_t
         # (rrrs-bias) acceleration of the connection point at zero joint accelerations
-        rrrs_bias_t = -rrrs_joint2_offset_x*rrrs_s_2
-        rrrs_bias_t_2 = rrrs_c_2*rrrs_joint2_offset_x
+        rrrs_bias_t = rrrs_c_2*rrrs_joint2_offset_x
+        rrrs_bias_t_2 = rrrs_joint2_offset_x*rrrs_s_2
         rrrs_bias_t_3 = (
-        rrrs_omega_1_in_axes3_x*(rrrs_bias_t_2*rrrs_c_3 - rrrs_bias_t*rrrs_s_3_t) -
-            rrrs_omega_1_in_axes3_y*(-rrrs_bias_t*rrrs_c_3 - rrrs_bias_t_2*rrrs_s_3_t)
+        rrrs_omega_1_in_axes3_x*(rrrs_bias_t*rrrs_s_3_t - rrrs_bias_t_2*rrrs_c_3) -
+            rrrs_omega_1_in_axes3_y*(rrrs_bias_t*rrrs_c_3 + rrrs_bias_t_2*rrrs_s_3_t)
         )
         rrrs_d_3_in_axes3_x = rrrs_c_3*rrrs_joint3_offset_x
         rrrs_d_3_in_axes3_y = rrrs_joint3_offset_x*rrrs_s_3_t
-        rrrs_bias_t_4 = -rrrs_d_3_in_axes3_y*rrrs_qd_2
-        rrrs_bias_t_5 = -rrrs_d_3_in_axes3_x*rrrs_qd_2
+        rrrs_bias_t_4 = rrrs_d_3_in_axes3_y*rrrs_qd_2_t
+        rrrs_bias_t_5 = rrrs_d_3_in_axes3_x*rrrs_qd_2_t
         rrrs_bias_t_6 = (
         rrrs_d_3_in_axes3_y*rrrs_omega_1_in_axes3_x - rrrs_d_3_in_axes3_x*rrrs_omega_1_in_axes3_y
         )
         rrrs_bias_t_7 = rrrs_omega_3_in_axes3_z*rrrs_platform_joint_offset_x
         rrrs_bias_t_8 = rrrs_omega_1_in_axes3_y*rrrs_platform_joint_offset_x
         rrrs_bias_in_axes3_x = (
-        rrrs_bias_t_3*rrrs_omega_1_in_axes3_y + rrrs_bias_t_5*rrrs_qd_2 +
-            rrrs_bias_t_6*rrrs_omega_1_in_axes3_y - rrrs_bias_t_7*rrrs_omega_3_in_axes3_z -
+        rrrs_bias_t_3*rrrs_omega_1_in_axes3_y + rrrs_bias_t_6*rrrs_omega_1_in_axes3_y -
+            rrrs_bias_t_5*rrrs_qd_2_t - rrrs_bias_t_7*rrrs_omega_3_in_axes3_z -
             rrrs_bias_t_8*rrrs_omega_1_in_axes3_y
         )
         rrrs_bias_in_axes3_y = (
-        rrrs_bias_t_4*rrrs_qd_2 + rrrs_bias_t_8*rrrs_omega_1_in_axes3_x -
-            rrrs_bias_t_3*rrrs_omega_1_in_axes3_x - rrrs_bias_t_6*rrrs_omega_1_in_axes3_x
+        rrrs_bias_t_8*rrrs_omega_1_in_axes3_x - rrrs_bias_t_3*rrrs_omega_1_in_axes3_x -
+            rrrs_bias_t_4*rrrs_qd_2_t - rrrs_bias_t_6*rrrs_omega_1_in_axes3_x
         )
         rrrs_bias_in_axes3_z = (
-        rrrs_bias_t_7*rrrs_omega_1_in_axes3_x +
-            rrrs_d_3_in_axes3_y*(rrrs_W_2_in_axes2_xz*rrrs_s_3_t + rrrs_W_2_in_axes2_yz*rrrs_c_3)
-            - rrrs_beta_3_in_axes3_y*rrrs_platform_joint_offset_x -
+        rrrs_bias_t_7*rrrs_omega_1_in_axes3_x + rrrs_d_3_in_axes3_y*(rrrs_W_2_in_axes2_yz*rrrs_c_3
+            - rrrs_s_3_t*rrrs_zeta_2_in_axes2_y) -
+            rrrs_beta_3_in_axes3_y*rrrs_platform_joint_offset_x -
             rrrs_bias_t_4*rrrs_omega_1_in_axes3_y - rrrs_bias_t_5*rrrs_omega_1_in_axes3_x -
             rrrs_d_3_in_axes3_x*rrrs_zeta_2_in_axes3_y
         )
@@ -3970,15 +4126,15 @@ def _run_required(m, X, V, A):
         # (rrrs-qdd_2) acceleration of joint 2
         rrrs_qdd_2 = rrrs_rel_in_axes3_x*rrrs_w_2_in_axes3_x
         # (rrrs-alpha_1) angular acceleration of link 1
-        rrrs_alpha_1_t = -rrrs_qdd_1*rrrs_s_2
-        rrrs_alpha_1_in_axes2_y = rrrs_c_2*rrrs_qdd_1
+        rrrs_alpha_1_in_axes2_x = rrrs_c_2*rrrs_qdd_1
+        rrrs_alpha_1_t = rrrs_qdd_1*rrrs_s_2
         # (rrrs-alpha_2) angular acceleration of link 2
-        rrrs_alpha_2_in_axes2_x = rrrs_W_2_in_axes2_yz - rrrs_alpha_1_t
-        rrrs_alpha_2_in_axes2_y = rrrs_alpha_1_in_axes2_y - rrrs_W_2_in_axes2_xz
+        rrrs_alpha_2_in_axes2_x = rrrs_W_2_in_axes2_yz + rrrs_alpha_1_in_axes2_x
+        rrrs_alpha_2_in_axes2_y = rrrs_zeta_2_in_axes2_y - rrrs_alpha_1_t
         # (rrrs-B_2) acceleration tensor of link 2
         rrrs_B_2_in_axes2_xy = rrrs_W_2_in_axes2_xy - rrrs_qdd_2
         rrrs_B_2_in_axes2_yx = rrrs_W_2_in_axes2_xy + rrrs_qdd_2
-        rrrs_B_2_in_axes2_zx = rrrs_W_2_in_axes2_xz - rrrs_alpha_2_in_axes2_y
+        rrrs_B_2_in_axes2_zx = -rrrs_alpha_2_in_axes2_y - rrrs_zeta_2_in_axes2_y
         rrrs_B_2_in_axes2_zy = rrrs_W_2_in_axes2_yz + rrrs_alpha_2_in_axes2_x
         # (rrrs-alpha_3) angular acceleration of link 3
         rrrs_alpha_3_in_axes3_x = (
@@ -4038,30 +4194,31 @@ def _run_required(m, X, V, A):
         )
         # (rrrs-mu_2) inertia moment of the links that turn with link 2, about their reference points
         rrrs_mu_2_t_3 = rrrs_omega_1_in_axes2_x*rrrs_omega_1_in_axes2_x
-        rrrs_mu_2_t_4 = rrrs_omega_1_in_axes2_y*rrrs_omega_1_in_axes2_y
-        rrrs_mu_2_t_5 = rrrs_qd_2*rrrs_qd_2
+        rrrs_mu_2_t_4 = rrrs_omega_1_t*rrrs_omega_1_t
+        rrrs_mu_2_t_5 = rrrs_qd_2_t*rrrs_qd_2_t
         rrrs_g_in_axes1_x = rrrs_c_1*rrrs_mu_2_t + rrrs_mu_2_t_2*rrrs_s_1
         rrrs_g_in_axes1_y = rrrs_c_1*rrrs_mu_2_t_2 - rrrs_mu_2_t*rrrs_s_1
-        rrrs_g_in_axes2_x = rrrs_c_2*rrrs_g_in_axes1_y + rrrs_g_in_axes1_z*rrrs_s_2
-        rrrs_g_in_axes2_y = rrrs_c_2*rrrs_g_in_axes1_z - rrrs_g_in_axes1_y*rrrs_s_2
+        rrrs_g_in_axes2_x = rrrs_c_2*rrrs_g_in_axes1_z + rrrs_g_in_axes1_x*rrrs_s_2
+        rrrs_g_in_axes2_y = rrrs_c_2*rrrs_g_in_axes1_x - rrrs_g_in_axes1_z*rrrs_s_2
         rrrs_mu_2_in_axes2_x = (
         rrrs_B_2_in_axes2_yx*rrrs_J_2_in_spec2_xz + rrrs_B_2_in_axes2_zy*rrrs_Sigma_2_in_axes2_yy
             + rrrs_J_2_in_spec2_yz*(rrrs_mu_2_t_4 - rrrs_mu_2_t_5) +
+            rrrs_Sigma_2_in_axes2_zz*rrrs_alpha_1_in_axes2_x +
             rrrs_g_in_axes2_y*rrrs_h_2_in_spec2_z - rrrs_B_2_in_axes2_zx*rrrs_J_2_in_spec2_xy -
-            rrrs_Sigma_2_in_axes2_zz*rrrs_alpha_1_t - rrrs_g_in_axes1_x*rrrs_h_2_in_spec2_y
+            rrrs_g_in_axes1_y*rrrs_h_2_in_spec2_y
         )
         rrrs_mu_2_in_axes2_y = (
-        rrrs_B_2_in_axes2_zy*rrrs_J_2_in_spec2_xy +
-            rrrs_Sigma_2_in_axes2_zz*rrrs_alpha_1_in_axes2_y +
-            rrrs_g_in_axes1_x*rrrs_h_2_in_spec2_x - rrrs_B_2_in_axes2_xy*rrrs_J_2_in_spec2_yz -
+        rrrs_B_2_in_axes2_zy*rrrs_J_2_in_spec2_xy + rrrs_g_in_axes1_y*rrrs_h_2_in_spec2_x -
+            rrrs_B_2_in_axes2_xy*rrrs_J_2_in_spec2_yz -
             rrrs_B_2_in_axes2_zx*rrrs_Sigma_2_in_axes2_xx - rrrs_J_2_in_spec2_xz*(rrrs_mu_2_t_3 -
-            rrrs_mu_2_t_5) - rrrs_g_in_axes2_x*rrrs_h_2_in_spec2_z
+            rrrs_mu_2_t_5) - rrrs_Sigma_2_in_axes2_zz*rrrs_alpha_1_t -
+            rrrs_g_in_axes2_x*rrrs_h_2_in_spec2_z
         )
         rrrs_mu_2_in_axes2_z = (
         rrrs_B_2_in_axes2_yx*rrrs_Sigma_2_in_axes2_xx + rrrs_J_2_in_spec2_xy*(rrrs_mu_2_t_3 -
-            rrrs_mu_2_t_4) + rrrs_J_2_in_spec2_yz*rrrs_alpha_1_in_axes2_y +
+            rrrs_mu_2_t_4) + rrrs_J_2_in_spec2_xz*rrrs_alpha_1_in_axes2_x +
             rrrs_g_in_axes2_x*rrrs_h_2_in_spec2_y - rrrs_B_2_in_axes2_xy*rrrs_Sigma_2_in_axes2_yy
-            - rrrs_J_2_in_spec2_xz*rrrs_alpha_1_t - rrrs_g_in_axes2_y*rrrs_h_2_in_spec2_x
+            - rrrs_J_2_in_spec2_yz*rrrs_alpha_1_t - rrrs_g_in_axes2_y*rrrs_h_2_in_spec2_x
         )
         # (rrrs-N_2) moment about joint 2 of the links from 2 outwards, the force at the connection point left out
         rrrs_N_2_in_axes2_x = (
@@ -4073,12 +4230,12 @@ def _run_required(m, X, V, A):
         rrrs_N_2_in_axes2_z = rrrs_mu_2_in_axes2_z + rrrs_mu_3_in_axes3_z
         # (rrrs-mu_1) inertia moment of the links that turn with link 1, about their reference points
         rrrs_mu_1_in_axes1_z = (
-        rrrs_J_1_in_spec1_xx*rrrs_qdd_1 - rrrs_g_in_axes1_x*rrrs_h_1_in_spec1_y -
-            rrrs_g_in_axes1_y*rrrs_h_1_in_spec1_z
+        rrrs_J_1_in_spec1_xx*rrrs_qdd_1 + rrrs_g_in_axes1_x*rrrs_h_1_in_spec1_z -
+            rrrs_g_in_axes1_y*rrrs_h_1_in_spec1_y
         )
         # (rrrs-N_1) moment about joint 1 of the links from 1 outwards, the force at the connection point left out
         rrrs_N_1_in_axes1_z = (
-        rrrs_mu_1_in_axes1_z + rrrs_N_2_in_axes2_x*rrrs_s_2 + rrrs_N_2_in_axes2_y*rrrs_c_2
+        rrrs_mu_1_in_axes1_z + rrrs_N_2_in_axes2_x*rrrs_c_2 - rrrs_N_2_in_axes2_y*rrrs_s_2
         )
         # (rrrs-G) force at the connection point that balances the leg's inertia and weight along all degrees of freedom
         rrrs_G_in_axes3_y = rrrs_mu_3_in_axes3_z*rrrs_w_3_in_axes3_y
@@ -4170,7 +4327,7 @@ def _run_required(m, X, V, A):
     return ok, (out_required, out_H,)
 
 
-# inverse_kinematics: 144 mul, 84 add, 6 div, 6 sqrt, 9 trig
+# inverse_kinematics: 141 mul, 84 add, 6 div, 6 sqrt, 9 trig
 def _run_inverse_kinematics(m, X):
     sqrt = m.sqrt
     atan2 = m.atan2
@@ -4235,36 +4392,34 @@ def _run_inverse_kinematics(m, X):
         t_z + R_zx*rrrs_platform_point_x + R_zy*rrrs_platform_point_y + R_zz*rrrs_platform_point_z
             - rrrs_base_point_z
         )
-        # (rrrs-px_1) component along the reference direction
-        rrrs_px_1 = (
+        rrrs_S_in_turn1_x = (
         rrrs_S_x*rrrs_base_frame_xy + rrrs_S_y*rrrs_base_frame_yy + rrrs_S_z*rrrs_base_frame_zy
         )
-        # (rrrs-py_1) component across the reference direction
-        rrrs_py_1 = (
+        rrrs_S_in_turn1_y = (
         rrrs_S_x*rrrs_base_frame_xz + rrrs_S_y*rrrs_base_frame_yz + rrrs_S_z*rrrs_base_frame_zz
         )
         # (rrrs-rho2_1) squared amplitude
-        rrrs_rho2_1 = rrrs_px_1*rrrs_px_1 + rrrs_py_1*rrrs_py_1
+        rrrs_rho2_1 = rrrs_S_in_turn1_x*rrrs_S_in_turn1_x + rrrs_S_in_turn1_y*rrrs_S_in_turn1_y
         # (rrrs-root_1) root, with the sign of the branch
         rrrs_root_1 = rrrs_branch_1*sqrt(rrrs_rho2_1)
         # (rrrs-q_1) displacement of joint 1
         inv_rrrs_rho2_1 = 1.0/rrrs_rho2_1
         rrrs_q_1 = (
-        atan2(inv_rrrs_rho2_1*rrrs_py_1*rrrs_root_1, inv_rrrs_rho2_1*rrrs_px_1*rrrs_root_1)
-        )
-        # (rrrs-xi_1) the vector from joint 1 to the connection point, resolved along link 1
-        rrrs_xi_1_in_axes1_z = (
-        rrrs_S_x*rrrs_base_frame_xx + rrrs_S_y*rrrs_base_frame_yx + rrrs_S_z*rrrs_base_frame_zx
+        atan2(inv_rrrs_rho2_1*rrrs_S_in_turn1_y*rrrs_root_1,
+            inv_rrrs_rho2_1*rrrs_S_in_turn1_x*rrrs_root_1)
         )
         # (rrrs-x_2) from the origin of joint 2 to the connection point
-        rrrs_x_2_in_axes1_z = rrrs_xi_1_in_axes1_z - rrrs_joint2_offset_x
+        rrrs_x_2_in_axes1_z = (
+        rrrs_S_x*rrrs_base_frame_xx + rrrs_S_y*rrrs_base_frame_yx + rrrs_S_z*rrrs_base_frame_zx -
+            rrrs_joint2_offset_x
+        )
         # (rrrs-Kd_2) projection on the centre's direction, from the distance fixed by the joints beyond joint 2
-        rrrs_Kd_2_t_3 = rrrs_root_1*rrrs_root_1 + rrrs_x_2_in_axes1_z*rrrs_x_2_in_axes1_z
+        rrrs_Kd_2_t_3 = rrrs_rho2_1 + rrrs_x_2_in_axes1_z*rrrs_x_2_in_axes1_z
         rrrs_Kd_2 = rrrs_Kd_2_t + 0.5*rrrs_Kd_2_t_3 - rrrs_Kd_2_t_2
         # (rrrs-Kc_2) factor of the cosine in the equation of joint 2
-        rrrs_Kc_2 = -rrrs_joint3_offset_x*rrrs_root_1
+        rrrs_Kc_2 = rrrs_joint3_offset_x*rrrs_x_2_in_axes1_z
         # (rrrs-Ks_2) factor of the sine in the equation of joint 2
-        rrrs_Ks_2 = rrrs_joint3_offset_x*rrrs_x_2_in_axes1_z
+        rrrs_Ks_2 = rrrs_joint3_offset_x*rrrs_root_1
         # (rrrs-rho2_2) squared amplitude
         rrrs_rho2_2 = rrrs_Kc_2*rrrs_Kc_2 + rrrs_Ks_2*rrrs_Ks_2
         # (rrrs-disc_2) discriminant
@@ -4272,10 +4427,10 @@ def _run_inverse_kinematics(m, X):
         # (rrrs-root_2) root, with the sign of the branch
         rrrs_root_2 = rrrs_branch_2*sqrt(rrrs_disc_2)
         # (rrrs-q_2) displacement of joint 2
-        rrrs_q_2_t = -1.0/rrrs_rho2_2
+        inv_rrrs_rho2_2 = 1.0/rrrs_rho2_2
         rrrs_q_2 = (
-        atan2(-rrrs_q_2_t*(rrrs_Ks_2*rrrs_root_2 - rrrs_Kc_2*rrrs_Kd_2),
-            rrrs_q_2_t*(-rrrs_Kc_2*rrrs_root_2 - rrrs_Kd_2*rrrs_Ks_2))
+        atan2(inv_rrrs_rho2_2*(rrrs_Kc_2*rrrs_root_2 + rrrs_Kd_2*rrrs_Ks_2),
+            inv_rrrs_rho2_2*(rrrs_Kc_2*rrrs_Kd_2 - rrrs_Ks_2*rrrs_root_2))
         )
         # (rrrs-x_3) from the origin of joint 3 to the connection point
         rrrs_x_3_in_axes2_x = (
@@ -4299,7 +4454,7 @@ def _run_inverse_kinematics(m, X):
     return ok, (out_q,)
 
 
-# joint_rates: 324 mul, 189 add, 12 div, 6 sqrt, 0 trig
+# joint_rates: 321 mul, 189 add, 12 div, 6 sqrt, 0 trig
 def _run_joint_rates(m, X, V):
     sqrt = m.sqrt
     shared, legs = m.constants("joint_rates")
@@ -4376,36 +4531,33 @@ def _run_joint_rates(m, X, V):
         rrrs_S_x = rrrs_q_x + t_x - rrrs_base_point_x
         rrrs_S_y = rrrs_q_y + t_y - rrrs_base_point_y
         rrrs_S_z = rrrs_q_z + t_z - rrrs_base_point_z
-        # (rrrs-px_1) component along the reference direction
-        rrrs_px_1 = (
+        rrrs_S_in_turn1_x = (
         rrrs_S_x*rrrs_base_frame_xy + rrrs_S_y*rrrs_base_frame_yy + rrrs_S_z*rrrs_base_frame_zy
         )
-        # (rrrs-py_1) component across the reference direction
-        rrrs_py_1 = (
+        rrrs_S_in_turn1_y = (
         rrrs_S_x*rrrs_base_frame_xz + rrrs_S_y*rrrs_base_frame_yz + rrrs_S_z*rrrs_base_frame_zz
         )
+        rrrs_S_in_turn1_z = (
+        rrrs_S_x*rrrs_base_frame_xx + rrrs_S_y*rrrs_base_frame_yx + rrrs_S_z*rrrs_base_frame_zx
+        )
         # (rrrs-rho2_1) squared amplitude
-        rrrs_rho2_1 = rrrs_px_1*rrrs_px_1 + rrrs_py_1*rrrs_py_1
+        rrrs_rho2_1 = rrrs_S_in_turn1_x*rrrs_S_in_turn1_x + rrrs_S_in_turn1_y*rrrs_S_in_turn1_y
         # (rrrs-root_1) root, with the sign of the branch
         rrrs_root_1 = rrrs_branch_1*sqrt(rrrs_rho2_1)
         # (rrrs-c_1) cosine of the angle of joint 1 from its reference direction
         inv_rrrs_rho2_1 = 1.0/rrrs_rho2_1
-        rrrs_c_1 = -inv_rrrs_rho2_1*rrrs_py_1*rrrs_root_1
+        rrrs_c_1 = inv_rrrs_rho2_1*rrrs_S_in_turn1_x*rrrs_root_1
         # (rrrs-s_1) sine of the angle of joint 1 from its reference direction
-        rrrs_s_1 = inv_rrrs_rho2_1*rrrs_px_1*rrrs_root_1
-        # (rrrs-xi_1) the vector from joint 1 to the connection point, resolved along link 1
-        rrrs_xi_1_in_axes1_z = (
-        rrrs_S_x*rrrs_base_frame_xx + rrrs_S_y*rrrs_base_frame_yx + rrrs_S_z*rrrs_base_frame_zx
-        )
+        rrrs_s_1 = inv_rrrs_rho2_1*rrrs_S_in_turn1_y*rrrs_root_1
         # (rrrs-x_2) from the origin of joint 2 to the connection point
-        rrrs_x_2_in_axes1_z = rrrs_xi_1_in_axes1_z - rrrs_joint2_offset_x
+        rrrs_x_2_in_axes1_z = rrrs_S_in_turn1_z - rrrs_joint2_offset_x
         # (rrrs-Kd_2) projection on the centre's direction, from the distance fixed by the joints beyond joint 2
-        rrrs_Kd_2_t_3 = rrrs_root_1*rrrs_root_1 + rrrs_x_2_in_axes1_z*rrrs_x_2_in_axes1_z
+        rrrs_Kd_2_t_3 = rrrs_rho2_1 + rrrs_x_2_in_axes1_z*rrrs_x_2_in_axes1_z
         rrrs_Kd_2 = rrrs_Kd_2_t + 0.5*rrrs_Kd_2_t_3 - rrrs_Kd_2_t_2
         # (rrrs-Kc_2) factor of the cosine in the equation of joint 2
-        rrrs_Kc_2 = -rrrs_joint3_offset_x*rrrs_root_1
+        rrrs_Kc_2 = rrrs_joint3_offset_x*rrrs_x_2_in_axes1_z
         # (rrrs-Ks_2) factor of the sine in the equation of joint 2
-        rrrs_Ks_2 = rrrs_joint3_offset_x*rrrs_x_2_in_axes1_z
+        rrrs_Ks_2 = rrrs_joint3_offset_x*rrrs_root_1
         # (rrrs-rho2_2) squared amplitude
         rrrs_rho2_2 = rrrs_Kc_2*rrrs_Kc_2 + rrrs_Ks_2*rrrs_Ks_2
         # (rrrs-disc_2) discriminant
@@ -4413,10 +4565,10 @@ def _run_joint_rates(m, X, V):
         # (rrrs-root_2) root, with the sign of the branch
         rrrs_root_2 = rrrs_branch_2*sqrt(rrrs_disc_2)
         # (rrrs-c_2) cosine of the angle of joint 2 from its reference direction
-        rrrs_c_2_t = -1.0/rrrs_rho2_2
-        rrrs_c_2 = rrrs_c_2_t*(rrrs_Ks_2*rrrs_root_2 - rrrs_Kc_2*rrrs_Kd_2)
+        inv_rrrs_rho2_2 = 1.0/rrrs_rho2_2
+        rrrs_c_2 = inv_rrrs_rho2_2*(rrrs_Kc_2*rrrs_Kd_2 - rrrs_Ks_2*rrrs_root_2)
         # (rrrs-s_2) sine of the angle of joint 2 from its reference direction
-        rrrs_s_2 = rrrs_c_2_t*(-rrrs_Kc_2*rrrs_root_2 - rrrs_Kd_2*rrrs_Ks_2)
+        rrrs_s_2 = inv_rrrs_rho2_2*(rrrs_Kc_2*rrrs_root_2 + rrrs_Kd_2*rrrs_Ks_2)
         # (rrrs-x_3) from the origin of joint 3 to the connection point
         rrrs_x_3_in_axes2_x = (
         inv_rrrs_size_t*rrrs_Kd_2*rrrs_joint3_offset_x - rrrs_joint3_offset_x
@@ -4436,39 +4588,39 @@ def _run_joint_rates(m, X, V):
         rrrs_r_2_in_axes2_x = rrrs_joint3_offset_x + rrrs_c_3*rrrs_platform_joint_offset_x
         rrrs_r_2_in_axes3_y = rrrs_r_2_in_axes2_x*rrrs_s_3_t - rrrs_c_3*rrrs_r_2_t
         # (rrrs-v_1) velocity of the connection point per rate of joint 1
-        rrrs_e_1_in_axes3_x = rrrs_c_3*rrrs_s_2 - rrrs_c_2*rrrs_s_3_t
-        rrrs_e_1_in_axes3_y = rrrs_c_2*rrrs_c_3 + rrrs_s_2*rrrs_s_3_t
-        rrrs_v_1_t = rrrs_s_2*rrrs_xi_1_in_axes1_z - rrrs_c_2*rrrs_root_1
-        rrrs_v_1_t_2 = rrrs_c_2*rrrs_xi_1_in_axes1_z + rrrs_root_1*rrrs_s_2
+        rrrs_e_1_in_axes3_x = rrrs_c_2*rrrs_c_3 + rrrs_s_2*rrrs_s_3_t
+        rrrs_e_1_in_axes3_y = rrrs_c_2*rrrs_s_3_t - rrrs_c_3*rrrs_s_2
+        rrrs_v_1_t = rrrs_S_in_turn1_z*rrrs_c_2 + rrrs_root_1*rrrs_s_2
+        rrrs_v_1_t_2 = rrrs_c_2*rrrs_root_1 - rrrs_S_in_turn1_z*rrrs_s_2
         rrrs_v_1_in_axes3_z = (
         rrrs_e_1_in_axes3_x*(rrrs_c_3*rrrs_v_1_t_2 + rrrs_s_3_t*rrrs_v_1_t) -
             rrrs_e_1_in_axes3_y*(rrrs_c_3*rrrs_v_1_t - rrrs_s_3_t*rrrs_v_1_t_2)
         )
         # (rrrs-qd_1) rate of joint 1
-        axis_z_rrrs_axes3_x = rrrs_base_frame_xy*rrrs_c_1 + rrrs_base_frame_xz*rrrs_s_1
-        axis_z_rrrs_axes3_y = rrrs_base_frame_yy*rrrs_c_1 + rrrs_base_frame_yz*rrrs_s_1
-        axis_z_rrrs_axes3_z = rrrs_base_frame_zy*rrrs_c_1 + rrrs_base_frame_zz*rrrs_s_1
+        axis_z_rrrs_axes3_x = rrrs_base_frame_xz*rrrs_c_1 - rrrs_base_frame_xy*rrrs_s_1
+        axis_z_rrrs_axes3_y = rrrs_base_frame_yz*rrrs_c_1 - rrrs_base_frame_yy*rrrs_s_1
+        axis_z_rrrs_axes3_z = rrrs_base_frame_zz*rrrs_c_1 - rrrs_base_frame_zy*rrrs_s_1
         rrrs_qd_1 = (
         (axis_z_rrrs_axes3_x*rrrs_S_dot_x + axis_z_rrrs_axes3_y*rrrs_S_dot_y +
             axis_z_rrrs_axes3_z*rrrs_S_dot_z)/rrrs_v_1_in_axes3_z
         )
         # (rrrs-qd_2) rate of joint 2
-        rrrs_qd_2_t = rrrs_e_1_in_axes3_x*rrrs_s_1
-        rrrs_qd_2_t_2 = rrrs_c_1*rrrs_e_1_in_axes3_x
+        rrrs_qd_2_t = rrrs_c_1*rrrs_e_1_in_axes3_x
+        rrrs_qd_2_t_2 = rrrs_e_1_in_axes3_x*rrrs_s_1
         axis_y_rrrs_axes3_x = (
-        rrrs_base_frame_xx*rrrs_e_1_in_axes3_y + rrrs_base_frame_xy*rrrs_qd_2_t -
+        rrrs_base_frame_xx*rrrs_e_1_in_axes3_y + rrrs_base_frame_xy*rrrs_qd_2_t +
             rrrs_base_frame_xz*rrrs_qd_2_t_2
         )
         axis_y_rrrs_axes3_y = (
-        rrrs_base_frame_yx*rrrs_e_1_in_axes3_y + rrrs_base_frame_yy*rrrs_qd_2_t -
+        rrrs_base_frame_yx*rrrs_e_1_in_axes3_y + rrrs_base_frame_yy*rrrs_qd_2_t +
             rrrs_base_frame_yz*rrrs_qd_2_t_2
         )
         axis_y_rrrs_axes3_z = (
-        rrrs_base_frame_zx*rrrs_e_1_in_axes3_y + rrrs_base_frame_zy*rrrs_qd_2_t -
+        rrrs_base_frame_zx*rrrs_e_1_in_axes3_y + rrrs_base_frame_zy*rrrs_qd_2_t +
             rrrs_base_frame_zz*rrrs_qd_2_t_2
         )
-        rrrs_qd_2 = (
-        -(rrrs_S_dot_x*(axis_y_rrrs_axes3_y*axis_z_rrrs_axes3_z -
+        rrrs_qd_2_t_3 = (
+        (rrrs_S_dot_x*(axis_y_rrrs_axes3_y*axis_z_rrrs_axes3_z -
             axis_y_rrrs_axes3_z*axis_z_rrrs_axes3_y) +
             rrrs_S_dot_y*(axis_y_rrrs_axes3_z*axis_z_rrrs_axes3_x -
             axis_y_rrrs_axes3_x*axis_z_rrrs_axes3_z) +
@@ -4478,7 +4630,7 @@ def _run_joint_rates(m, X, V):
         # (rrrs-qd_3) rate of joint 3
         rrrs_qd_3 = (
         rrrs_w_3_in_axes3_y*(axis_y_rrrs_axes3_x*rrrs_S_dot_x + axis_y_rrrs_axes3_y*rrrs_S_dot_y +
-            axis_y_rrrs_axes3_z*rrrs_S_dot_z - rrrs_qd_2*(rrrs_c_3*rrrs_r_2_in_axes2_x +
+            axis_y_rrrs_axes3_z*rrrs_S_dot_z + rrrs_qd_2_t_3*(rrrs_c_3*rrrs_r_2_in_axes2_x +
             rrrs_r_2_t*rrrs_s_3_t))
         )
         ok = (
@@ -4490,13 +4642,13 @@ def _run_joint_rates(m, X, V):
         # (rrrs-qd_1) rate of joint 1
         out_qd[_qd_rrrs[0][leg]] = rrrs_qd_1
         # (rrrs-qd_2) rate of joint 2
-        out_qd[_qd_rrrs[1][leg]] = rrrs_qd_2
+        out_qd[_qd_rrrs[1][leg]] = -rrrs_qd_2_t_3
         # (rrrs-qd_3) rate of joint 3
         out_qd[_qd_rrrs[2][leg]] = rrrs_qd_3
     return ok, (out_qd,)
 
 
-# joint_accelerations: 537 mul, 321 add, 12 div, 6 sqrt, 0 trig
+# joint_accelerations: 534 mul, 321 add, 12 div, 6 sqrt, 0 trig
 def _run_joint_accelerations(m, X, V, A):
     sqrt = m.sqrt
     shared, legs = m.constants("joint_accelerations")
@@ -4586,36 +4738,33 @@ def _run_joint_accelerations(m, X, V, A):
         rrrs_S_x = rrrs_q_x + t_x - rrrs_base_point_x
         rrrs_S_y = rrrs_q_y + t_y - rrrs_base_point_y
         rrrs_S_z = rrrs_q_z + t_z - rrrs_base_point_z
-        # (rrrs-px_1) component along the reference direction
-        rrrs_px_1 = (
+        rrrs_S_in_turn1_x = (
         rrrs_S_x*rrrs_base_frame_xy + rrrs_S_y*rrrs_base_frame_yy + rrrs_S_z*rrrs_base_frame_zy
         )
-        # (rrrs-py_1) component across the reference direction
-        rrrs_py_1 = (
+        rrrs_S_in_turn1_y = (
         rrrs_S_x*rrrs_base_frame_xz + rrrs_S_y*rrrs_base_frame_yz + rrrs_S_z*rrrs_base_frame_zz
         )
+        rrrs_S_in_turn1_z = (
+        rrrs_S_x*rrrs_base_frame_xx + rrrs_S_y*rrrs_base_frame_yx + rrrs_S_z*rrrs_base_frame_zx
+        )
         # (rrrs-rho2_1) squared amplitude
-        rrrs_rho2_1 = rrrs_px_1*rrrs_px_1 + rrrs_py_1*rrrs_py_1
+        rrrs_rho2_1 = rrrs_S_in_turn1_x*rrrs_S_in_turn1_x + rrrs_S_in_turn1_y*rrrs_S_in_turn1_y
         # (rrrs-root_1) root, with the sign of the branch
         rrrs_root_1 = rrrs_branch_1*sqrt(rrrs_rho2_1)
         # (rrrs-c_1) cosine of the angle of joint 1 from its reference direction
         inv_rrrs_rho2_1 = 1.0/rrrs_rho2_1
-        rrrs_c_1 = -inv_rrrs_rho2_1*rrrs_py_1*rrrs_root_1
+        rrrs_c_1 = inv_rrrs_rho2_1*rrrs_S_in_turn1_x*rrrs_root_1
         # (rrrs-s_1) sine of the angle of joint 1 from its reference direction
-        rrrs_s_1 = inv_rrrs_rho2_1*rrrs_px_1*rrrs_root_1
-        # (rrrs-xi_1) the vector from joint 1 to the connection point, resolved along link 1
-        rrrs_xi_1_in_axes1_z = (
-        rrrs_S_x*rrrs_base_frame_xx + rrrs_S_y*rrrs_base_frame_yx + rrrs_S_z*rrrs_base_frame_zx
-        )
+        rrrs_s_1 = inv_rrrs_rho2_1*rrrs_S_in_turn1_y*rrrs_root_1
         # (rrrs-x_2) from the origin of joint 2 to the connection point
-        rrrs_x_2_in_axes1_z = rrrs_xi_1_in_axes1_z - rrrs_joint2_offset_x
+        rrrs_x_2_in_axes1_z = rrrs_S_in_turn1_z - rrrs_joint2_offset_x
         # (rrrs-Kd_2) projection on the centre's direction, from the distance fixed by the joints beyond joint 2
-        rrrs_Kd_2_t_3 = rrrs_root_1*rrrs_root_1 + rrrs_x_2_in_axes1_z*rrrs_x_2_in_axes1_z
+        rrrs_Kd_2_t_3 = rrrs_rho2_1 + rrrs_x_2_in_axes1_z*rrrs_x_2_in_axes1_z
         rrrs_Kd_2 = rrrs_Kd_2_t + 0.5*rrrs_Kd_2_t_3 - rrrs_Kd_2_t_2
         # (rrrs-Kc_2) factor of the cosine in the equation of joint 2
-        rrrs_Kc_2 = -rrrs_joint3_offset_x*rrrs_root_1
+        rrrs_Kc_2 = rrrs_joint3_offset_x*rrrs_x_2_in_axes1_z
         # (rrrs-Ks_2) factor of the sine in the equation of joint 2
-        rrrs_Ks_2 = rrrs_joint3_offset_x*rrrs_x_2_in_axes1_z
+        rrrs_Ks_2 = rrrs_joint3_offset_x*rrrs_root_1
         # (rrrs-rho2_2) squared amplitude
         rrrs_rho2_2 = rrrs_Kc_2*rrrs_Kc_2 + rrrs_Ks_2*rrrs_Ks_2
         # (rrrs-disc_2) discriminant
@@ -4623,10 +4772,10 @@ def _run_joint_accelerations(m, X, V, A):
         # (rrrs-root_2) root, with the sign of the branch
         rrrs_root_2 = rrrs_branch_2*sqrt(rrrs_disc_2)
         # (rrrs-c_2) cosine of the angle of joint 2 from its reference direction
-        rrrs_c_2_t = -1.0/rrrs_rho2_2
-        rrrs_c_2 = rrrs_c_2_t*(rrrs_Ks_2*rrrs_root_2 - rrrs_Kc_2*rrrs_Kd_2)
+        inv_rrrs_rho2_2 = 1.0/rrrs_rho2_2
+        rrrs_c_2 = inv_rrrs_rho2_2*(rrrs_Kc_2*rrrs_Kd_2 - rrrs_Ks_2*rrrs_root_2)
         # (rrrs-s_2) sine of the angle of joint 2 from its reference direction
-        rrrs_s_2 = rrrs_c_2_t*(-rrrs_Kc_2*rrrs_root_2 - rrrs_Kd_2*rrrs_Ks_2)
+        rrrs_s_2 = inv_rrrs_rho2_2*(rrrs_Kc_2*rrrs_root_2 + rrrs_Kd_2*rrrs_Ks_2)
         # (rrrs-x_3) from the origin of joint 3 to the connection point
         rrrs_x_3_in_axes2_x = (
         inv_rrrs_size_t*rrrs_Kd_2*rrrs_joint3_offset_x - rrrs_joint3_offset_x
@@ -4650,10 +4799,10 @@ def _run_joint_accelerations(m, X, V, A):
         rrrs_r_2_in_axes3_x = rrrs_c_3*rrrs_r_2_in_axes2_x + rrrs_r_2_t*rrrs_s_3_t
         rrrs_r_2_in_axes3_y = rrrs_r_2_in_axes2_x*rrrs_s_3_t - rrrs_c_3*rrrs_r_2_t
         # (rrrs-v_1) velocity of the connection point per rate of joint 1
-        rrrs_e_1_in_axes3_x = rrrs_c_3*rrrs_s_2 - rrrs_c_2*rrrs_s_3_t
-        rrrs_e_1_in_axes3_y = rrrs_c_2*rrrs_c_3 + rrrs_s_2*rrrs_s_3_t
-        rrrs_v_1_t = rrrs_s_2*rrrs_xi_1_in_axes1_z - rrrs_c_2*rrrs_root_1
-        rrrs_v_1_t_2 = rrrs_c_2*rrrs_xi_1_in_axes1_z + rrrs_root_1*rrrs_s_2
+        rrrs_e_1_in_axes3_x = rrrs_c_2*rrrs_c_3 + rrrs_s_2*rrrs_s_3_t
+        rrrs_e_1_in_axes3_y = rrrs_c_2*rrrs_s_3_t - rrrs_c_3*rrrs_s_2
+        rrrs_v_1_t = rrrs_S_in_turn1_z*rrrs_c_2 + rrrs_root_1*rrrs_s_2
+        rrrs_v_1_t_2 = rrrs_c_2*rrrs_root_1 - rrrs_S_in_turn1_z*rrrs_s_2
         rrrs_v_1_in_axes3_z = (
         rrrs_e_1_in_axes3_x*(rrrs_c_3*rrrs_v_1_t_2 + rrrs_s_3_t*rrrs_v_1_t) -
             rrrs_e_1_in_axes3_y*(rrrs_c_3*rrrs_v_1_t - rrrs_s_3_t*rrrs_v_1_t_2)
@@ -4663,26 +4812,26 @@ def _run_joint_accelerations(m, X, V, A):
         # (rrrs-w_2) reciprocal vector 2
         rrrs_w_2_in_axes3_x = -1.0/rrrs_r_2_in_axes3_y
         # (rrrs-qd_1) rate of joint 1
-        axis_z_rrrs_axes3_x = rrrs_base_frame_xy*rrrs_c_1 + rrrs_base_frame_xz*rrrs_s_1
-        axis_z_rrrs_axes3_y = rrrs_base_frame_yy*rrrs_c_1 + rrrs_base_frame_yz*rrrs_s_1
-        axis_z_rrrs_axes3_z = rrrs_base_frame_zy*rrrs_c_1 + rrrs_base_frame_zz*rrrs_s_1
+        axis_z_rrrs_axes3_x = rrrs_base_frame_xz*rrrs_c_1 - rrrs_base_frame_xy*rrrs_s_1
+        axis_z_rrrs_axes3_y = rrrs_base_frame_yz*rrrs_c_1 - rrrs_base_frame_yy*rrrs_s_1
+        axis_z_rrrs_axes3_z = rrrs_base_frame_zz*rrrs_c_1 - rrrs_base_frame_zy*rrrs_s_1
         rrrs_qd_1 = (
         rrrs_w_1_in_axes3_z*(axis_z_rrrs_axes3_x*rrrs_S_dot_x + axis_z_rrrs_axes3_y*rrrs_S_dot_y +
             axis_z_rrrs_axes3_z*rrrs_S_dot_z)
         )
         # (rrrs-qd_2) rate of joint 2
-        rrrs_qd_2_t = rrrs_e_1_in_axes3_x*rrrs_s_1
-        rrrs_qd_2_t_2 = rrrs_c_1*rrrs_e_1_in_axes3_x
+        rrrs_qd_2_t = rrrs_c_1*rrrs_e_1_in_axes3_x
+        rrrs_qd_2_t_2 = rrrs_e_1_in_axes3_x*rrrs_s_1
         axis_y_rrrs_axes3_x = (
-        rrrs_base_frame_xx*rrrs_e_1_in_axes3_y + rrrs_base_frame_xy*rrrs_qd_2_t -
+        rrrs_base_frame_xx*rrrs_e_1_in_axes3_y + rrrs_base_frame_xy*rrrs_qd_2_t +
             rrrs_base_frame_xz*rrrs_qd_2_t_2
         )
         axis_y_rrrs_axes3_y = (
-        rrrs_base_frame_yx*rrrs_e_1_in_axes3_y + rrrs_base_frame_yy*rrrs_qd_2_t -
+        rrrs_base_frame_yx*rrrs_e_1_in_axes3_y + rrrs_base_frame_yy*rrrs_qd_2_t +
             rrrs_base_frame_yz*rrrs_qd_2_t_2
         )
         axis_y_rrrs_axes3_z = (
-        rrrs_base_frame_zx*rrrs_e_1_in_axes3_y + rrrs_base_frame_zy*rrrs_qd_2_t -
+        rrrs_base_frame_zx*rrrs_e_1_in_axes3_y + rrrs_base_frame_zy*rrrs_qd_2_t +
             rrrs_base_frame_zz*rrrs_qd_2_t_2
         )
         axis_x_rrrs_axes3_x = (
@@ -4694,29 +4843,24 @@ def _run_joint_accelerations(m, X, V, A):
         axis_x_rrrs_axes3_z = (
         axis_y_rrrs_axes3_x*axis_z_rrrs_axes3_y - axis_y_rrrs_axes3_y*axis_z_rrrs_axes3_x
         )
-        rrrs_qd_2 = (
-        rrrs_w_2_in_axes3_x*(axis_x_rrrs_axes3_x*rrrs_S_dot_x + axis_x_rrrs_axes3_y*rrrs_S_dot_y +
-            axis_x_rrrs_axes3_z*rrrs_S_dot_z)
+        rrrs_qd_2_t_3 = (
+        -rrrs_w_2_in_axes3_x*(axis_x_rrrs_axes3_x*rrrs_S_dot_x + axis_x_rrrs_axes3_y*rrrs_S_dot_y
+            + axis_x_rrrs_axes3_z*rrrs_S_dot_z)
         )
         # (rrrs-qd_3) rate of joint 3
         rrrs_qd_3 = (
         rrrs_w_3_in_axes3_y*(axis_y_rrrs_axes3_x*rrrs_S_dot_x + axis_y_rrrs_axes3_y*rrrs_S_dot_y +
-            axis_y_rrrs_axes3_z*rrrs_S_dot_z - rrrs_qd_2*rrrs_r_2_in_axes3_x)
+            axis_y_rrrs_axes3_z*rrrs_S_dot_z + rrrs_qd_2_t_3*rrrs_r_2_in_axes3_x)
         )
         # (rrrs-omega_1) angular velocity of link 1
-        rrrs_omega_1_in_axes2_x = rrrs_qd_1*rrrs_s_2
-        rrrs_omega_1_in_axes2_y = rrrs_c_2*rrrs_qd_1
-        rrrs_omega_1_in_axes3_x = (
-        rrrs_c_3*rrrs_omega_1_in_axes2_x - rrrs_omega_1_in_axes2_y*rrrs_s_3_t
-        )
-        rrrs_omega_1_in_axes3_y = (
-        rrrs_c_3*rrrs_omega_1_in_axes2_y + rrrs_omega_1_in_axes2_x*rrrs_s_3_t
-        )
+        rrrs_omega_1_in_axes2_x = rrrs_c_2*rrrs_qd_1
+        rrrs_omega_1_t = rrrs_qd_1*rrrs_s_2
+        rrrs_omega_1_in_axes3_x = rrrs_c_3*rrrs_omega_1_in_axes2_x + rrrs_omega_1_t*rrrs_s_3_t
+        rrrs_omega_1_in_axes3_y = rrrs_omega_1_in_axes2_x*rrrs_s_3_t - rrrs_c_3*rrrs_omega_1_t
         # (rrrs-W_2) centripetal tensor of link 2
-        rrrs_W_2_in_axes2_yz = rrrs_omega_1_in_axes2_y*rrrs_qd_2
-        rrrs_W_2_in_axes2_xz = rrrs_omega_1_in_axes2_x*rrrs_qd_2
+        rrrs_W_2_in_axes2_yz = rrrs_omega_1_t*rrrs_qd_2_t_3
         # (rrrs-omega_3) angular velocity of link 3
-        rrrs_omega_3_in_axes3_z = rrrs_qd_2 + rrrs_qd_3
+        rrrs_omega_3_in_axes3_z = rrrs_qd_3 - rrrs_qd_2_t_3
         # (rrrs-a_p) acceleration of the connection point without its centripetal part
         rrrs_a_p_x = t_ddot_x + alpha_y*rrrs_q_z - alpha_z*rrrs_q_y
         rrrs_a_p_y = t_ddot_y + alpha_z*rrrs_q_x - alpha_x*rrrs_q_z
@@ -4726,38 +4870,39 @@ def _run_joint_accelerations(m, X, V, A):
         rrrs_S_ddot_y = rrrs_a_p_y + omega_z*rrrs_S_dot_t - omega_x*rrrs_S_dot_t_3
         rrrs_S_ddot_z = rrrs_a_p_z + omega_x*rrrs_S_dot_t_2 - omega_y*rrrs_S_dot_t
         # (rrrs-zeta_2) angular acceleration of link 2 from the turning of axis 2
-        rrrs_zeta_2_in_axes3_y = rrrs_W_2_in_axes2_yz*rrrs_s_3_t - rrrs_W_2_in_axes2_xz*rrrs_c_3
+        rrrs_zeta_2_in_axes2_y = rrrs_omega_1_in_axes2_x*rrrs_qd_2_t_3
+        rrrs_zeta_2_in_axes3_y = rrrs_W_2_in_axes2_yz*rrrs_s_3_t + rrrs_c_3*rrrs_zeta_2_in_axes2_y
         # (rrrs-beta_3) angular acceleration of link 3 at zero joint accelerations
         rrrs_beta_3_in_axes3_y = rrrs_zeta_2_in_axes3_y - rrrs_omega_1_in_axes3_x*rrrs_qd_3
         # (rrrs-bias) acceleration of the connection point at zero joint accelerations
-        rrrs_bias_t = -rrrs_joint2_offset_x*rrrs_s_2
-        rrrs_bias_t_2 = rrrs_c_2*rrrs_joint2_offset_x
+        rrrs_bias_t = rrrs_c_2*rrrs_joint2_offset_x
+        rrrs_bias_t_2 = rrrs_joint2_offset_x*rrrs_s_2
         rrrs_bias_t_3 = (
-        rrrs_omega_1_in_axes3_x*(rrrs_bias_t_2*rrrs_c_3 - rrrs_bias_t*rrrs_s_3_t) -
-            rrrs_omega_1_in_axes3_y*(-rrrs_bias_t*rrrs_c_3 - rrrs_bias_t_2*rrrs_s_3_t)
+        rrrs_omega_1_in_axes3_x*(rrrs_bias_t*rrrs_s_3_t - rrrs_bias_t_2*rrrs_c_3) -
+            rrrs_omega_1_in_axes3_y*(rrrs_bias_t*rrrs_c_3 + rrrs_bias_t_2*rrrs_s_3_t)
         )
         rrrs_d_3_in_axes3_x = rrrs_c_3*rrrs_joint3_offset_x
         rrrs_d_3_in_axes3_y = rrrs_joint3_offset_x*rrrs_s_3_t
-        rrrs_bias_t_4 = -rrrs_d_3_in_axes3_y*rrrs_qd_2
-        rrrs_bias_t_5 = -rrrs_d_3_in_axes3_x*rrrs_qd_2
+        rrrs_bias_t_4 = rrrs_d_3_in_axes3_y*rrrs_qd_2_t_3
+        rrrs_bias_t_5 = rrrs_d_3_in_axes3_x*rrrs_qd_2_t_3
         rrrs_bias_t_6 = (
         rrrs_d_3_in_axes3_y*rrrs_omega_1_in_axes3_x - rrrs_d_3_in_axes3_x*rrrs_omega_1_in_axes3_y
         )
         rrrs_bias_t_7 = rrrs_omega_3_in_axes3_z*rrrs_platform_joint_offset_x
         rrrs_bias_t_8 = rrrs_omega_1_in_axes3_y*rrrs_platform_joint_offset_x
         rrrs_bias_in_axes3_x = (
-        rrrs_bias_t_3*rrrs_omega_1_in_axes3_y + rrrs_bias_t_5*rrrs_qd_2 +
-            rrrs_bias_t_6*rrrs_omega_1_in_axes3_y - rrrs_bias_t_7*rrrs_omega_3_in_axes3_z -
+        rrrs_bias_t_3*rrrs_omega_1_in_axes3_y + rrrs_bias_t_6*rrrs_omega_1_in_axes3_y -
+            rrrs_bias_t_5*rrrs_qd_2_t_3 - rrrs_bias_t_7*rrrs_omega_3_in_axes3_z -
             rrrs_bias_t_8*rrrs_omega_1_in_axes3_y
         )
         rrrs_bias_in_axes3_y = (
-        rrrs_bias_t_4*rrrs_qd_2 + rrrs_bias_t_8*rrrs_omega_1_in_axes3_x -
-            rrrs_bias_t_3*rrrs_omega_1_in_axes3_x - rrrs_bias_t_6*rrrs_omega_1_in_axes3_x
+        rrrs_bias_t_8*rrrs_omega_1_in_axes3_x - rrrs_bias_t_3*rrrs_omega_1_in_axes3_x -
+            rrrs_bias_t_4*rrrs_qd_2_t_3 - rrrs_bias_t_6*rrrs_omega_1_in_axes3_x
         )
         rrrs_bias_in_axes3_z = (
-        rrrs_bias_t_7*rrrs_omega_1_in_axes3_x +
-            rrrs_d_3_in_axes3_y*(rrrs_W_2_in_axes2_xz*rrrs_s_3_t + rrrs_W_2_in_axes2_yz*rrrs_c_3)
-            - rrrs_beta_3_in_axes3_y*rrrs_platform_joint_offset_x -
+        rrrs_bias_t_7*rrrs_omega_1_in_axes3_x + rrrs_d_3_in_axes3_y*(rrrs_W_2_in_axes2_yz*rrrs_c_3
+            - rrrs_s_3_t*rrrs_zeta_2_in_axes2_y) -
+            rrrs_beta_3_in_axes3_y*rrrs_platform_joint_offset_x -
             rrrs_bias_t_4*rrrs_omega_1_in_axes3_y - rrrs_bias_t_5*rrrs_omega_1_in_axes3_x -
             rrrs_d_3_in_axes3_x*rrrs_zeta_2_in_axes3_y
         )
@@ -4795,7 +4940,7 @@ def _run_joint_accelerations(m, X, V, A):
     return ok, (out_qdd,)
 
 
-# legs: 885 mul, 630 add, 12 div, 6 sqrt, 0 trig
+# legs: 882 mul, 630 add, 12 div, 6 sqrt, 0 trig
 def _run_legs(m, X, V, A):
     sqrt = m.sqrt
     shared, legs = m.constants("legs")
@@ -4894,36 +5039,33 @@ def _run_legs(m, X, V, A):
         rrrs_S_x = rrrs_q_x + t_x - rrrs_base_point_x
         rrrs_S_y = rrrs_q_y + t_y - rrrs_base_point_y
         rrrs_S_z = rrrs_q_z + t_z - rrrs_base_point_z
-        # (rrrs-px_1) component along the reference direction
-        rrrs_px_1 = (
+        rrrs_S_in_turn1_x = (
         rrrs_S_x*rrrs_base_frame_xy + rrrs_S_y*rrrs_base_frame_yy + rrrs_S_z*rrrs_base_frame_zy
         )
-        # (rrrs-py_1) component across the reference direction
-        rrrs_py_1 = (
+        rrrs_S_in_turn1_y = (
         rrrs_S_x*rrrs_base_frame_xz + rrrs_S_y*rrrs_base_frame_yz + rrrs_S_z*rrrs_base_frame_zz
         )
+        rrrs_S_in_turn1_z = (
+        rrrs_S_x*rrrs_base_frame_xx + rrrs_S_y*rrrs_base_frame_yx + rrrs_S_z*rrrs_base_frame_zx
+        )
         # (rrrs-rho2_1) squared amplitude
-        rrrs_rho2_1 = rrrs_px_1*rrrs_px_1 + rrrs_py_1*rrrs_py_1
+        rrrs_rho2_1 = rrrs_S_in_turn1_x*rrrs_S_in_turn1_x + rrrs_S_in_turn1_y*rrrs_S_in_turn1_y
         # (rrrs-root_1) root, with the sign of the branch
         rrrs_root_1 = rrrs_branch_1*sqrt(rrrs_rho2_1)
         # (rrrs-c_1) cosine of the angle of joint 1 from its reference direction
         inv_rrrs_rho2_1 = 1.0/rrrs_rho2_1
-        rrrs_c_1 = -inv_rrrs_rho2_1*rrrs_py_1*rrrs_root_1
+        rrrs_c_1 = inv_rrrs_rho2_1*rrrs_S_in_turn1_x*rrrs_root_1
         # (rrrs-s_1) sine of the angle of joint 1 from its reference direction
-        rrrs_s_1 = inv_rrrs_rho2_1*rrrs_px_1*rrrs_root_1
-        # (rrrs-xi_1) the vector from joint 1 to the connection point, resolved along link 1
-        rrrs_xi_1_in_axes1_z = (
-        rrrs_S_x*rrrs_base_frame_xx + rrrs_S_y*rrrs_base_frame_yx + rrrs_S_z*rrrs_base_frame_zx
-        )
+        rrrs_s_1 = inv_rrrs_rho2_1*rrrs_S_in_turn1_y*rrrs_root_1
         # (rrrs-x_2) from the origin of joint 2 to the connection point
-        rrrs_x_2_in_axes1_z = rrrs_xi_1_in_axes1_z - rrrs_joint2_offset_x
+        rrrs_x_2_in_axes1_z = rrrs_S_in_turn1_z - rrrs_joint2_offset_x
         # (rrrs-Kd_2) projection on the centre's direction, from the distance fixed by the joints beyond joint 2
-        rrrs_Kd_2_t_3 = rrrs_root_1*rrrs_root_1 + rrrs_x_2_in_axes1_z*rrrs_x_2_in_axes1_z
+        rrrs_Kd_2_t_3 = rrrs_rho2_1 + rrrs_x_2_in_axes1_z*rrrs_x_2_in_axes1_z
         rrrs_Kd_2 = rrrs_Kd_2_t + 0.5*rrrs_Kd_2_t_3 - rrrs_Kd_2_t_2
         # (rrrs-Kc_2) factor of the cosine in the equation of joint 2
-        rrrs_Kc_2 = -rrrs_joint3_offset_x*rrrs_root_1
+        rrrs_Kc_2 = rrrs_joint3_offset_x*rrrs_x_2_in_axes1_z
         # (rrrs-Ks_2) factor of the sine in the equation of joint 2
-        rrrs_Ks_2 = rrrs_joint3_offset_x*rrrs_x_2_in_axes1_z
+        rrrs_Ks_2 = rrrs_joint3_offset_x*rrrs_root_1
         # (rrrs-rho2_2) squared amplitude
         rrrs_rho2_2 = rrrs_Kc_2*rrrs_Kc_2 + rrrs_Ks_2*rrrs_Ks_2
         # (rrrs-disc_2) discriminant
@@ -4931,10 +5073,10 @@ def _run_legs(m, X, V, A):
         # (rrrs-root_2) root, with the sign of the branch
         rrrs_root_2 = rrrs_branch_2*sqrt(rrrs_disc_2)
         # (rrrs-c_2) cosine of the angle of joint 2 from its reference direction
-        rrrs_c_2_t = -1.0/rrrs_rho2_2
-        rrrs_c_2 = rrrs_c_2_t*(rrrs_Ks_2*rrrs_root_2 - rrrs_Kc_2*rrrs_Kd_2)
+        inv_rrrs_rho2_2 = 1.0/rrrs_rho2_2
+        rrrs_c_2 = inv_rrrs_rho2_2*(rrrs_Kc_2*rrrs_Kd_2 - rrrs_Ks_2*rrrs_root_2)
         # (rrrs-s_2) sine of the angle of joint 2 from its reference direction
-        rrrs_s_2 = rrrs_c_2_t*(-rrrs_Kc_2*rrrs_root_2 - rrrs_Kd_2*rrrs_Ks_2)
+        rrrs_s_2 = inv_rrrs_rho2_2*(rrrs_Kc_2*rrrs_root_2 + rrrs_Kd_2*rrrs_Ks_2)
         # (rrrs-x_3) from the origin of joint 3 to the connection point
         rrrs_x_3_in_axes2_x = (
         inv_rrrs_size_t*rrrs_Kd_2*rrrs_joint3_offset_x - rrrs_joint3_offset_x
@@ -4958,35 +5100,35 @@ def _run_legs(m, X, V, A):
         rrrs_r_2_in_axes3_x = rrrs_c_3*rrrs_r_2_in_axes2_x + rrrs_r_2_t*rrrs_s_3_t
         rrrs_r_2_in_axes3_y = rrrs_r_2_in_axes2_x*rrrs_s_3_t - rrrs_c_3*rrrs_r_2_t
         # (rrrs-v_1) velocity of the connection point per rate of joint 1
-        rrrs_e_1_in_axes3_x = rrrs_c_3*rrrs_s_2 - rrrs_c_2*rrrs_s_3_t
-        rrrs_e_1_in_axes3_y = rrrs_c_2*rrrs_c_3 + rrrs_s_2*rrrs_s_3_t
-        rrrs_v_1_t = rrrs_s_2*rrrs_xi_1_in_axes1_z - rrrs_c_2*rrrs_root_1
-        rrrs_v_1_t_2 = rrrs_c_2*rrrs_xi_1_in_axes1_z + rrrs_root_1*rrrs_s_2
+        rrrs_e_1_in_axes3_x = rrrs_c_2*rrrs_c_3 + rrrs_s_2*rrrs_s_3_t
+        rrrs_e_1_in_axes3_y = rrrs_c_2*rrrs_s_3_t - rrrs_c_3*rrrs_s_2
+        rrrs_v_1_t = rrrs_S_in_turn1_z*rrrs_c_2 + rrrs_root_1*rrrs_s_2
+        rrrs_v_1_t_2 = rrrs_c_2*rrrs_root_1 - rrrs_S_in_turn1_z*rrrs_s_2
         rrrs_v_1_in_axes3_z = (
         rrrs_e_1_in_axes3_x*(rrrs_c_3*rrrs_v_1_t_2 + rrrs_s_3_t*rrrs_v_1_t) -
             rrrs_e_1_in_axes3_y*(rrrs_c_3*rrrs_v_1_t - rrrs_s_3_t*rrrs_v_1_t_2)
         )
         # (rrrs-w_1) reciprocal vector 1
-        axis_z_rrrs_axes3_x = rrrs_base_frame_xy*rrrs_c_1 + rrrs_base_frame_xz*rrrs_s_1
-        axis_z_rrrs_axes3_y = rrrs_base_frame_yy*rrrs_c_1 + rrrs_base_frame_yz*rrrs_s_1
-        axis_z_rrrs_axes3_z = rrrs_base_frame_zy*rrrs_c_1 + rrrs_base_frame_zz*rrrs_s_1
+        axis_z_rrrs_axes3_x = rrrs_base_frame_xz*rrrs_c_1 - rrrs_base_frame_xy*rrrs_s_1
+        axis_z_rrrs_axes3_y = rrrs_base_frame_yz*rrrs_c_1 - rrrs_base_frame_yy*rrrs_s_1
+        axis_z_rrrs_axes3_z = rrrs_base_frame_zz*rrrs_c_1 - rrrs_base_frame_zy*rrrs_s_1
         rrrs_w_1_in_axes3_z = 1.0/rrrs_v_1_in_axes3_z
         rrrs_w_1_x = axis_z_rrrs_axes3_x*rrrs_w_1_in_axes3_z
         rrrs_w_1_y = axis_z_rrrs_axes3_y*rrrs_w_1_in_axes3_z
         rrrs_w_1_z = axis_z_rrrs_axes3_z*rrrs_w_1_in_axes3_z
         # (rrrs-w_2) reciprocal vector 2
-        rrrs_w_2_t = rrrs_e_1_in_axes3_x*rrrs_s_1
-        rrrs_w_2_t_2 = rrrs_c_1*rrrs_e_1_in_axes3_x
+        rrrs_w_2_t = rrrs_c_1*rrrs_e_1_in_axes3_x
+        rrrs_w_2_t_2 = rrrs_e_1_in_axes3_x*rrrs_s_1
         axis_y_rrrs_axes3_x = (
-        rrrs_base_frame_xx*rrrs_e_1_in_axes3_y + rrrs_base_frame_xy*rrrs_w_2_t -
+        rrrs_base_frame_xx*rrrs_e_1_in_axes3_y + rrrs_base_frame_xy*rrrs_w_2_t +
             rrrs_base_frame_xz*rrrs_w_2_t_2
         )
         axis_y_rrrs_axes3_y = (
-        rrrs_base_frame_yx*rrrs_e_1_in_axes3_y + rrrs_base_frame_yy*rrrs_w_2_t -
+        rrrs_base_frame_yx*rrrs_e_1_in_axes3_y + rrrs_base_frame_yy*rrrs_w_2_t +
             rrrs_base_frame_yz*rrrs_w_2_t_2
         )
         axis_y_rrrs_axes3_z = (
-        rrrs_base_frame_zx*rrrs_e_1_in_axes3_y + rrrs_base_frame_zy*rrrs_w_2_t -
+        rrrs_base_frame_zx*rrrs_e_1_in_axes3_y + rrrs_base_frame_zy*rrrs_w_2_t +
             rrrs_base_frame_zz*rrrs_w_2_t_2
         )
         axis_x_rrrs_axes3_x = (
@@ -5008,30 +5150,25 @@ def _run_legs(m, X, V, A):
             axis_z_rrrs_axes3_z*rrrs_S_dot_z)
         )
         # (rrrs-qd_2) rate of joint 2
-        rrrs_qd_2 = (
-        rrrs_w_2_in_axes3_x*(axis_x_rrrs_axes3_x*rrrs_S_dot_x + axis_x_rrrs_axes3_y*rrrs_S_dot_y +
-            axis_x_rrrs_axes3_z*rrrs_S_dot_z)
+        rrrs_qd_2_t = (
+        -rrrs_w_2_in_axes3_x*(axis_x_rrrs_axes3_x*rrrs_S_dot_x + axis_x_rrrs_axes3_y*rrrs_S_dot_y
+            + axis_x_rrrs_axes3_z*rrrs_S_dot_z)
         )
         # (rrrs-qd_3) rate of joint 3
         rrrs_qd_3 = (
         rrrs_w_3_in_axes3_y*(axis_y_rrrs_axes3_x*rrrs_S_dot_x + axis_y_rrrs_axes3_y*rrrs_S_dot_y +
-            axis_y_rrrs_axes3_z*rrrs_S_dot_z - rrrs_qd_2*rrrs_r_2_in_axes3_x)
+            axis_y_rrrs_axes3_z*rrrs_S_dot_z + rrrs_qd_2_t*rrrs_r_2_in_axes3_x)
         )
         # (rrrs-omega_1) angular velocity of link 1
-        rrrs_omega_1_in_axes2_x = rrrs_qd_1*rrrs_s_2
-        rrrs_omega_1_in_axes2_y = rrrs_c_2*rrrs_qd_1
-        rrrs_omega_1_in_axes3_x = (
-        rrrs_c_3*rrrs_omega_1_in_axes2_x - rrrs_omega_1_in_axes2_y*rrrs_s_3_t
-        )
-        rrrs_omega_1_in_axes3_y = (
-        rrrs_c_3*rrrs_omega_1_in_axes2_y + rrrs_omega_1_in_axes2_x*rrrs_s_3_t
-        )
+        rrrs_omega_1_in_axes2_x = rrrs_c_2*rrrs_qd_1
+        rrrs_omega_1_t = rrrs_qd_1*rrrs_s_2
+        rrrs_omega_1_in_axes3_x = rrrs_c_3*rrrs_omega_1_in_axes2_x + rrrs_omega_1_t*rrrs_s_3_t
+        rrrs_omega_1_in_axes3_y = rrrs_omega_1_in_axes2_x*rrrs_s_3_t - rrrs_c_3*rrrs_omega_1_t
         # (rrrs-W_2) centripetal tensor of link 2
-        rrrs_W_2_in_axes2_yz = rrrs_omega_1_in_axes2_y*rrrs_qd_2
-        rrrs_W_2_in_axes2_xz = rrrs_omega_1_in_axes2_x*rrrs_qd_2
-        rrrs_W_2_in_axes2_xy = rrrs_omega_1_in_axes2_x*rrrs_omega_1_in_axes2_y
+        rrrs_W_2_in_axes2_yz = rrrs_omega_1_t*rrrs_qd_2_t
+        rrrs_W_2_in_axes2_xy = -rrrs_omega_1_in_axes2_x*rrrs_omega_1_t
         # (rrrs-omega_3) angular velocity of link 3
-        rrrs_omega_3_in_axes3_z = rrrs_qd_2 + rrrs_qd_3
+        rrrs_omega_3_in_axes3_z = rrrs_qd_3 - rrrs_qd_2_t
         # (rrrs-W_3) centripetal tensor of link 3
         rrrs_W_3_in_axes3_xy = rrrs_omega_1_in_axes3_x*rrrs_omega_1_in_axes3_y
         rrrs_W_3_in_axes3_xz = rrrs_omega_1_in_axes3_x*rrrs_omega_3_in_axes3_z
@@ -5057,40 +5194,41 @@ def _run_legs(m, X, V, A):
             axis_z_rrrs_axes3_z*rrrs_S_ddot_z
         )
         # (rrrs-zeta_2) angular acceleration of link 2 from the turning of axis 2
-        rrrs_zeta_2_in_axes3_y = rrrs_W_2_in_axes2_yz*rrrs_s_3_t - rrrs_W_2_in_axes2_xz*rrrs_c_3
+        rrrs_zeta_2_in_axes2_y = rrrs_omega_1_in_axes2_x*rrrs_qd_2_t
+        rrrs_zeta_2_in_axes3_y = rrrs_W_2_in_axes2_yz*rrrs_s_3_t + rrrs_c_3*rrrs_zeta_2_in_axes2_y
         # (rrrs-zeta_3) angular acceleration of link 3 from the turning of axis 3
         rrrs_zeta_3_t = rrrs_omega_1_in_axes3_x*rrrs_qd_3
         # (rrrs-beta_3) angular acceleration of link 3 at zero joint accelerations
         rrrs_beta_3_in_axes3_y = rrrs_zeta_2_in_axes3_y - rrrs_zeta_3_t
         # (rrrs-bias) acceleration of the connection point at zero joint accelerations
-        rrrs_bias_t = -rrrs_joint2_offset_x*rrrs_s_2
-        rrrs_bias_t_2 = rrrs_c_2*rrrs_joint2_offset_x
+        rrrs_bias_t = rrrs_c_2*rrrs_joint2_offset_x
+        rrrs_bias_t_2 = rrrs_joint2_offset_x*rrrs_s_2
         rrrs_bias_t_3 = (
-        rrrs_omega_1_in_axes3_x*(rrrs_bias_t_2*rrrs_c_3 - rrrs_bias_t*rrrs_s_3_t) -
-            rrrs_omega_1_in_axes3_y*(-rrrs_bias_t*rrrs_c_3 - rrrs_bias_t_2*rrrs_s_3_t)
+        rrrs_omega_1_in_axes3_x*(rrrs_bias_t*rrrs_s_3_t - rrrs_bias_t_2*rrrs_c_3) -
+            rrrs_omega_1_in_axes3_y*(rrrs_bias_t*rrrs_c_3 + rrrs_bias_t_2*rrrs_s_3_t)
         )
         rrrs_d_3_in_axes3_x = rrrs_c_3*rrrs_joint3_offset_x
         rrrs_d_3_in_axes3_y = rrrs_joint3_offset_x*rrrs_s_3_t
-        rrrs_bias_t_4 = -rrrs_d_3_in_axes3_y*rrrs_qd_2
-        rrrs_bias_t_5 = -rrrs_d_3_in_axes3_x*rrrs_qd_2
+        rrrs_bias_t_4 = rrrs_d_3_in_axes3_y*rrrs_qd_2_t
+        rrrs_bias_t_5 = rrrs_d_3_in_axes3_x*rrrs_qd_2_t
         rrrs_bias_t_6 = (
         rrrs_d_3_in_axes3_y*rrrs_omega_1_in_axes3_x - rrrs_d_3_in_axes3_x*rrrs_omega_1_in_axes3_y
         )
         rrrs_bias_t_7 = rrrs_omega_3_in_axes3_z*rrrs_platform_joint_offset_x
         rrrs_bias_t_8 = rrrs_omega_1_in_axes3_y*rrrs_platform_joint_offset_x
         rrrs_bias_in_axes3_x = (
-        rrrs_bias_t_3*rrrs_omega_1_in_axes3_y + rrrs_bias_t_5*rrrs_qd_2 +
-            rrrs_bias_t_6*rrrs_omega_1_in_axes3_y - rrrs_bias_t_7*rrrs_omega_3_in_axes3_z -
+        rrrs_bias_t_3*rrrs_omega_1_in_axes3_y + rrrs_bias_t_6*rrrs_omega_1_in_axes3_y -
+            rrrs_bias_t_5*rrrs_qd_2_t - rrrs_bias_t_7*rrrs_omega_3_in_axes3_z -
             rrrs_bias_t_8*rrrs_omega_1_in_axes3_y
         )
         rrrs_bias_in_axes3_y = (
-        rrrs_bias_t_4*rrrs_qd_2 + rrrs_bias_t_8*rrrs_omega_1_in_axes3_x -
-            rrrs_bias_t_3*rrrs_omega_1_in_axes3_x - rrrs_bias_t_6*rrrs_omega_1_in_axes3_x
+        rrrs_bias_t_8*rrrs_omega_1_in_axes3_x - rrrs_bias_t_3*rrrs_omega_1_in_axes3_x -
+            rrrs_bias_t_4*rrrs_qd_2_t - rrrs_bias_t_6*rrrs_omega_1_in_axes3_x
         )
         rrrs_bias_in_axes3_z = (
-        rrrs_bias_t_7*rrrs_omega_1_in_axes3_x +
-            rrrs_d_3_in_axes3_y*(rrrs_W_2_in_axes2_xz*rrrs_s_3_t + rrrs_W_2_in_axes2_yz*rrrs_c_3)
-            - rrrs_beta_3_in_axes3_y*rrrs_platform_joint_offset_x -
+        rrrs_bias_t_7*rrrs_omega_1_in_axes3_x + rrrs_d_3_in_axes3_y*(rrrs_W_2_in_axes2_yz*rrrs_c_3
+            - rrrs_s_3_t*rrrs_zeta_2_in_axes2_y) -
+            rrrs_beta_3_in_axes3_y*rrrs_platform_joint_offset_x -
             rrrs_bias_t_4*rrrs_omega_1_in_axes3_y - rrrs_bias_t_5*rrrs_omega_1_in_axes3_x -
             rrrs_d_3_in_axes3_x*rrrs_zeta_2_in_axes3_y
         )
@@ -5103,15 +5241,15 @@ def _run_legs(m, X, V, A):
         # (rrrs-qdd_2) acceleration of joint 2
         rrrs_qdd_2 = rrrs_rel_in_axes3_x*rrrs_w_2_in_axes3_x
         # (rrrs-alpha_1) angular acceleration of link 1
-        rrrs_alpha_1_t = -rrrs_qdd_1*rrrs_s_2
-        rrrs_alpha_1_in_axes2_y = rrrs_c_2*rrrs_qdd_1
+        rrrs_alpha_1_in_axes2_x = rrrs_c_2*rrrs_qdd_1
+        rrrs_alpha_1_t = rrrs_qdd_1*rrrs_s_2
         # (rrrs-alpha_2) angular acceleration of link 2
-        rrrs_alpha_2_in_axes2_x = rrrs_W_2_in_axes2_yz - rrrs_alpha_1_t
-        rrrs_alpha_2_in_axes2_y = rrrs_alpha_1_in_axes2_y - rrrs_W_2_in_axes2_xz
+        rrrs_alpha_2_in_axes2_x = rrrs_W_2_in_axes2_yz + rrrs_alpha_1_in_axes2_x
+        rrrs_alpha_2_in_axes2_y = rrrs_zeta_2_in_axes2_y - rrrs_alpha_1_t
         # (rrrs-B_2) acceleration tensor of link 2
         rrrs_B_2_in_axes2_xy = rrrs_W_2_in_axes2_xy - rrrs_qdd_2
         rrrs_B_2_in_axes2_yx = rrrs_W_2_in_axes2_xy + rrrs_qdd_2
-        rrrs_B_2_in_axes2_zx = rrrs_W_2_in_axes2_xz - rrrs_alpha_2_in_axes2_y
+        rrrs_B_2_in_axes2_zx = -rrrs_alpha_2_in_axes2_y - rrrs_zeta_2_in_axes2_y
         rrrs_B_2_in_axes2_zy = rrrs_W_2_in_axes2_yz + rrrs_alpha_2_in_axes2_x
         # (rrrs-alpha_3) angular acceleration of link 3
         rrrs_alpha_3_in_axes3_x = (
@@ -5171,30 +5309,31 @@ def _run_legs(m, X, V, A):
         )
         # (rrrs-mu_2) inertia moment of the links that turn with link 2, about their reference points
         rrrs_mu_2_t_3 = rrrs_omega_1_in_axes2_x*rrrs_omega_1_in_axes2_x
-        rrrs_mu_2_t_4 = rrrs_omega_1_in_axes2_y*rrrs_omega_1_in_axes2_y
-        rrrs_mu_2_t_5 = rrrs_qd_2*rrrs_qd_2
+        rrrs_mu_2_t_4 = rrrs_omega_1_t*rrrs_omega_1_t
+        rrrs_mu_2_t_5 = rrrs_qd_2_t*rrrs_qd_2_t
         rrrs_g_in_axes1_x = rrrs_c_1*rrrs_mu_2_t + rrrs_mu_2_t_2*rrrs_s_1
         rrrs_g_in_axes1_y = rrrs_c_1*rrrs_mu_2_t_2 - rrrs_mu_2_t*rrrs_s_1
-        rrrs_g_in_axes2_x = rrrs_c_2*rrrs_g_in_axes1_y + rrrs_g_in_axes1_z*rrrs_s_2
-        rrrs_g_in_axes2_y = rrrs_c_2*rrrs_g_in_axes1_z - rrrs_g_in_axes1_y*rrrs_s_2
+        rrrs_g_in_axes2_x = rrrs_c_2*rrrs_g_in_axes1_z + rrrs_g_in_axes1_x*rrrs_s_2
+        rrrs_g_in_axes2_y = rrrs_c_2*rrrs_g_in_axes1_x - rrrs_g_in_axes1_z*rrrs_s_2
         rrrs_mu_2_in_axes2_x = (
         rrrs_B_2_in_axes2_yx*rrrs_J_2_in_spec2_xz + rrrs_B_2_in_axes2_zy*rrrs_Sigma_2_in_axes2_yy
             + rrrs_J_2_in_spec2_yz*(rrrs_mu_2_t_4 - rrrs_mu_2_t_5) +
+            rrrs_Sigma_2_in_axes2_zz*rrrs_alpha_1_in_axes2_x +
             rrrs_g_in_axes2_y*rrrs_h_2_in_spec2_z - rrrs_B_2_in_axes2_zx*rrrs_J_2_in_spec2_xy -
-            rrrs_Sigma_2_in_axes2_zz*rrrs_alpha_1_t - rrrs_g_in_axes1_x*rrrs_h_2_in_spec2_y
+            rrrs_g_in_axes1_y*rrrs_h_2_in_spec2_y
         )
         rrrs_mu_2_in_axes2_y = (
-        rrrs_B_2_in_axes2_zy*rrrs_J_2_in_spec2_xy +
-            rrrs_Sigma_2_in_axes2_zz*rrrs_alpha_1_in_axes2_y +
-            rrrs_g_in_axes1_x*rrrs_h_2_in_spec2_x - rrrs_B_2_in_axes2_xy*rrrs_J_2_in_spec2_yz -
+        rrrs_B_2_in_axes2_zy*rrrs_J_2_in_spec2_xy + rrrs_g_in_axes1_y*rrrs_h_2_in_spec2_x -
+            rrrs_B_2_in_axes2_xy*rrrs_J_2_in_spec2_yz -
             rrrs_B_2_in_axes2_zx*rrrs_Sigma_2_in_axes2_xx - rrrs_J_2_in_spec2_xz*(rrrs_mu_2_t_3 -
-            rrrs_mu_2_t_5) - rrrs_g_in_axes2_x*rrrs_h_2_in_spec2_z
+            rrrs_mu_2_t_5) - rrrs_Sigma_2_in_axes2_zz*rrrs_alpha_1_t -
+            rrrs_g_in_axes2_x*rrrs_h_2_in_spec2_z
         )
         rrrs_mu_2_in_axes2_z = (
         rrrs_B_2_in_axes2_yx*rrrs_Sigma_2_in_axes2_xx + rrrs_J_2_in_spec2_xy*(rrrs_mu_2_t_3 -
-            rrrs_mu_2_t_4) + rrrs_J_2_in_spec2_yz*rrrs_alpha_1_in_axes2_y +
+            rrrs_mu_2_t_4) + rrrs_J_2_in_spec2_xz*rrrs_alpha_1_in_axes2_x +
             rrrs_g_in_axes2_x*rrrs_h_2_in_spec2_y - rrrs_B_2_in_axes2_xy*rrrs_Sigma_2_in_axes2_yy
-            - rrrs_J_2_in_spec2_xz*rrrs_alpha_1_t - rrrs_g_in_axes2_y*rrrs_h_2_in_spec2_x
+            - rrrs_J_2_in_spec2_yz*rrrs_alpha_1_t - rrrs_g_in_axes2_y*rrrs_h_2_in_spec2_x
         )
         # (rrrs-N_2) moment about joint 2 of the links from 2 outwards, the force at the connection point left out
         rrrs_N_2_in_axes2_x = (
@@ -5206,12 +5345,12 @@ def _run_legs(m, X, V, A):
         rrrs_N_2_in_axes2_z = rrrs_mu_2_in_axes2_z + rrrs_mu_3_in_axes3_z
         # (rrrs-mu_1) inertia moment of the links that turn with link 1, about their reference points
         rrrs_mu_1_in_axes1_z = (
-        rrrs_J_1_in_spec1_xx*rrrs_qdd_1 - rrrs_g_in_axes1_x*rrrs_h_1_in_spec1_y -
-            rrrs_g_in_axes1_y*rrrs_h_1_in_spec1_z
+        rrrs_J_1_in_spec1_xx*rrrs_qdd_1 + rrrs_g_in_axes1_x*rrrs_h_1_in_spec1_z -
+            rrrs_g_in_axes1_y*rrrs_h_1_in_spec1_y
         )
         # (rrrs-N_1) moment about joint 1 of the links from 1 outwards, the force at the connection point left out
         rrrs_N_1_in_axes1_z = (
-        rrrs_mu_1_in_axes1_z + rrrs_N_2_in_axes2_x*rrrs_s_2 + rrrs_N_2_in_axes2_y*rrrs_c_2
+        rrrs_mu_1_in_axes1_z + rrrs_N_2_in_axes2_x*rrrs_c_2 - rrrs_N_2_in_axes2_y*rrrs_s_2
         )
         # (rrrs-G) force at the connection point that balances the leg's inertia and weight along all degrees of freedom
         rrrs_G_in_axes3_y = rrrs_mu_3_in_axes3_z*rrrs_w_3_in_axes3_y
@@ -5267,7 +5406,7 @@ def _run_legs(m, X, V, A):
     return ok, (out_leg_force, out_actuator,)
 
 
-# potential: 240 mul, 171 add, 6 div, 6 sqrt, 0 trig
+# potential: 237 mul, 171 add, 6 div, 6 sqrt, 0 trig
 def _run_potential(m, X):
     sqrt = m.sqrt
     shared, legs = m.constants("potential")
@@ -5347,36 +5486,33 @@ def _run_potential(m, X):
         t_z + R_zx*rrrs_platform_point_x + R_zy*rrrs_platform_point_y + R_zz*rrrs_platform_point_z
             - rrrs_base_point_z
         )
-        # (rrrs-px_1) component along the reference direction
-        rrrs_px_1 = (
+        rrrs_S_in_turn1_x = (
         rrrs_S_x*rrrs_base_frame_xy + rrrs_S_y*rrrs_base_frame_yy + rrrs_S_z*rrrs_base_frame_zy
         )
-        # (rrrs-py_1) component across the reference direction
-        rrrs_py_1 = (
+        rrrs_S_in_turn1_y = (
         rrrs_S_x*rrrs_base_frame_xz + rrrs_S_y*rrrs_base_frame_yz + rrrs_S_z*rrrs_base_frame_zz
         )
         # (rrrs-rho2_1) squared amplitude
-        rrrs_rho2_1 = rrrs_px_1*rrrs_px_1 + rrrs_py_1*rrrs_py_1
+        rrrs_rho2_1 = rrrs_S_in_turn1_x*rrrs_S_in_turn1_x + rrrs_S_in_turn1_y*rrrs_S_in_turn1_y
         # (rrrs-root_1) root, with the sign of the branch
         rrrs_root_1 = rrrs_branch_1*sqrt(rrrs_rho2_1)
         # (rrrs-c_1) cosine of the angle of joint 1 from its reference direction
         inv_rrrs_rho2_1 = 1.0/rrrs_rho2_1
-        rrrs_c_1 = -inv_rrrs_rho2_1*rrrs_py_1*rrrs_root_1
+        rrrs_c_1 = inv_rrrs_rho2_1*rrrs_S_in_turn1_x*rrrs_root_1
         # (rrrs-s_1) sine of the angle of joint 1 from its reference direction
-        rrrs_s_1 = inv_rrrs_rho2_1*rrrs_px_1*rrrs_root_1
-        # (rrrs-xi_1) the vector from joint 1 to the connection point, resolved along link 1
-        rrrs_xi_1_in_axes1_z = (
-        rrrs_S_x*rrrs_base_frame_xx + rrrs_S_y*rrrs_base_frame_yx + rrrs_S_z*rrrs_base_frame_zx
-        )
+        rrrs_s_1 = inv_rrrs_rho2_1*rrrs_S_in_turn1_y*rrrs_root_1
         # (rrrs-x_2) from the origin of joint 2 to the connection point
-        rrrs_x_2_in_axes1_z = rrrs_xi_1_in_axes1_z - rrrs_joint2_offset_x
+        rrrs_x_2_in_axes1_z = (
+        rrrs_S_x*rrrs_base_frame_xx + rrrs_S_y*rrrs_base_frame_yx + rrrs_S_z*rrrs_base_frame_zx -
+            rrrs_joint2_offset_x
+        )
         # (rrrs-Kd_2) projection on the centre's direction, from the distance fixed by the joints beyond joint 2
-        rrrs_Kd_2_t_3 = rrrs_root_1*rrrs_root_1 + rrrs_x_2_in_axes1_z*rrrs_x_2_in_axes1_z
+        rrrs_Kd_2_t_3 = rrrs_rho2_1 + rrrs_x_2_in_axes1_z*rrrs_x_2_in_axes1_z
         rrrs_Kd_2 = rrrs_Kd_2_t + 0.5*rrrs_Kd_2_t_3 - rrrs_Kd_2_t_2
         # (rrrs-Kc_2) factor of the cosine in the equation of joint 2
-        rrrs_Kc_2 = -rrrs_joint3_offset_x*rrrs_root_1
+        rrrs_Kc_2 = rrrs_joint3_offset_x*rrrs_x_2_in_axes1_z
         # (rrrs-Ks_2) factor of the sine in the equation of joint 2
-        rrrs_Ks_2 = rrrs_joint3_offset_x*rrrs_x_2_in_axes1_z
+        rrrs_Ks_2 = rrrs_joint3_offset_x*rrrs_root_1
         # (rrrs-rho2_2) squared amplitude
         rrrs_rho2_2 = rrrs_Kc_2*rrrs_Kc_2 + rrrs_Ks_2*rrrs_Ks_2
         # (rrrs-disc_2) discriminant
@@ -5384,10 +5520,10 @@ def _run_potential(m, X):
         # (rrrs-root_2) root, with the sign of the branch
         rrrs_root_2 = rrrs_branch_2*sqrt(rrrs_disc_2)
         # (rrrs-c_2) cosine of the angle of joint 2 from its reference direction
-        rrrs_c_2_t = -1.0/rrrs_rho2_2
-        rrrs_c_2 = rrrs_c_2_t*(rrrs_Ks_2*rrrs_root_2 - rrrs_Kc_2*rrrs_Kd_2)
+        inv_rrrs_rho2_2 = 1.0/rrrs_rho2_2
+        rrrs_c_2 = inv_rrrs_rho2_2*(rrrs_Kc_2*rrrs_Kd_2 - rrrs_Ks_2*rrrs_root_2)
         # (rrrs-s_2) sine of the angle of joint 2 from its reference direction
-        rrrs_s_2 = rrrs_c_2_t*(-rrrs_Kc_2*rrrs_root_2 - rrrs_Kd_2*rrrs_Ks_2)
+        rrrs_s_2 = inv_rrrs_rho2_2*(rrrs_Kc_2*rrrs_root_2 + rrrs_Kd_2*rrrs_Ks_2)
         # (rrrs-x_3) from the origin of joint 3 to the connection point
         rrrs_x_3_in_axes2_x = (
         inv_rrrs_size_t*rrrs_Kd_2*rrrs_joint3_offset_x - rrrs_joint3_offset_x
@@ -5399,21 +5535,21 @@ def _run_potential(m, X):
         inv_rrrs_size_t*inv_rrrs_size_t_2*rrrs_joint3_offset_x*rrrs_platform_joint_offset_x*rrrs_root_2
         )
         # (potential) potential energy
-        rrrs_b_in_spec1_z = rrrs_c_1*rrrs_potential_t + rrrs_potential_t_2*rrrs_s_1
-        rrrs_b_in_spec1_y = rrrs_potential_t*rrrs_s_1 - rrrs_c_1*rrrs_potential_t_2
+        rrrs_b_in_spec1_y = rrrs_c_1*rrrs_potential_t + rrrs_potential_t_2*rrrs_s_1
+        rrrs_b_in_spec1_z = rrrs_c_1*rrrs_potential_t_2 - rrrs_potential_t*rrrs_s_1
         rrrs_potential_t_5 = rrrs_c_3*rrrs_h_3_in_spec3_x + rrrs_h_3_in_spec3_y*rrrs_s_3_t
         rrrs_potential_t_6 = rrrs_c_3*rrrs_h_3_in_spec3_y - rrrs_h_3_in_spec3_x*rrrs_s_3_t
         rrrs_potential_t_7 = (
-        (rrrs_c_1*rrrs_mu_2_t_2 - rrrs_mu_2_t*rrrs_s_1)*(rrrs_c_2*rrrs_h_2_in_spec2_x +
-            rrrs_c_2*rrrs_potential_t_5 - rrrs_h_1_in_spec1_y - rrrs_b_in_spec1_y*rrrs_link1_mass
-            - rrrs_b_in_spec1_y*rrrs_link2_mass - rrrs_h_2_in_spec2_y*rrrs_s_2 -
-            rrrs_potential_t_6*rrrs_s_2)
+        (rrrs_c_1*rrrs_mu_2_t + rrrs_mu_2_t_2*rrrs_s_1)*(rrrs_h_1_in_spec1_y +
+            rrrs_b_in_spec1_y*rrrs_link1_mass + rrrs_b_in_spec1_y*rrrs_link2_mass +
+            rrrs_c_2*rrrs_h_2_in_spec2_y + rrrs_c_2*rrrs_potential_t_6 +
+            rrrs_h_2_in_spec2_x*rrrs_s_2 + rrrs_potential_t_5*rrrs_s_2)
         )
         rrrs_potential_t_8 = (
         rrrs_potential_t_7 + rrrs_g_in_axes1_z*(rrrs_h_1_in_spec1_x + rrrs_potential_t_3 +
-            rrrs_potential_t_4 + rrrs_c_2*rrrs_h_2_in_spec2_y + rrrs_c_2*rrrs_potential_t_6 +
-            rrrs_h_2_in_spec2_x*rrrs_s_2 + rrrs_potential_t_5*rrrs_s_2) + (rrrs_c_1*rrrs_mu_2_t +
-            rrrs_mu_2_t_2*rrrs_s_1)*(rrrs_h_1_in_spec1_z + rrrs_h_2_in_spec2_z +
+            rrrs_potential_t_4 + rrrs_c_2*rrrs_h_2_in_spec2_x + rrrs_c_2*rrrs_potential_t_5 -
+            rrrs_h_2_in_spec2_y*rrrs_s_2 - rrrs_potential_t_6*rrrs_s_2) + (rrrs_c_1*rrrs_mu_2_t_2
+            - rrrs_mu_2_t*rrrs_s_1)*(rrrs_h_1_in_spec1_z + rrrs_h_2_in_spec2_z +
             rrrs_h_3_in_spec3_z + rrrs_b_in_spec1_z*rrrs_link1_mass +
             rrrs_b_in_spec1_z*rrrs_link2_mass)
         )
@@ -5430,7 +5566,7 @@ def _run_potential(m, X):
     return ok, (out_potential,)
 
 
-# condition: 343 mul, 192 add, 12 div, 13 sqrt, 0 trig
+# condition: 340 mul, 192 add, 12 div, 13 sqrt, 0 trig
 def _run_condition(m, X):
     sqrt = m.sqrt
     least = m.least
@@ -5505,36 +5641,33 @@ def _run_condition(m, X):
         rrrs_S_x = rrrs_q_x + t_x - rrrs_base_point_x
         rrrs_S_y = rrrs_q_y + t_y - rrrs_base_point_y
         rrrs_S_z = rrrs_q_z + t_z - rrrs_base_point_z
-        # (rrrs-px_1) component along the reference direction
-        rrrs_px_1 = (
+        rrrs_S_in_turn1_x = (
         rrrs_S_x*rrrs_base_frame_xy + rrrs_S_y*rrrs_base_frame_yy + rrrs_S_z*rrrs_base_frame_zy
         )
-        # (rrrs-py_1) component across the reference direction
-        rrrs_py_1 = (
+        rrrs_S_in_turn1_y = (
         rrrs_S_x*rrrs_base_frame_xz + rrrs_S_y*rrrs_base_frame_yz + rrrs_S_z*rrrs_base_frame_zz
         )
+        rrrs_S_in_turn1_z = (
+        rrrs_S_x*rrrs_base_frame_xx + rrrs_S_y*rrrs_base_frame_yx + rrrs_S_z*rrrs_base_frame_zx
+        )
         # (rrrs-rho2_1) squared amplitude
-        rrrs_rho2_1 = rrrs_px_1*rrrs_px_1 + rrrs_py_1*rrrs_py_1
+        rrrs_rho2_1 = rrrs_S_in_turn1_x*rrrs_S_in_turn1_x + rrrs_S_in_turn1_y*rrrs_S_in_turn1_y
         # (rrrs-root_1) root, with the sign of the branch
         rrrs_root_1 = rrrs_branch_1*sqrt(rrrs_rho2_1)
         # (rrrs-c_1) cosine of the angle of joint 1 from its reference direction
         inv_rrrs_rho2_1 = 1.0/rrrs_rho2_1
-        rrrs_c_1 = -inv_rrrs_rho2_1*rrrs_py_1*rrrs_root_1
+        rrrs_c_1 = inv_rrrs_rho2_1*rrrs_S_in_turn1_x*rrrs_root_1
         # (rrrs-s_1) sine of the angle of joint 1 from its reference direction
-        rrrs_s_1 = inv_rrrs_rho2_1*rrrs_px_1*rrrs_root_1
-        # (rrrs-xi_1) the vector from joint 1 to the connection point, resolved along link 1
-        rrrs_xi_1_in_axes1_z = (
-        rrrs_S_x*rrrs_base_frame_xx + rrrs_S_y*rrrs_base_frame_yx + rrrs_S_z*rrrs_base_frame_zx
-        )
+        rrrs_s_1 = inv_rrrs_rho2_1*rrrs_S_in_turn1_y*rrrs_root_1
         # (rrrs-x_2) from the origin of joint 2 to the connection point
-        rrrs_x_2_in_axes1_z = rrrs_xi_1_in_axes1_z - rrrs_joint2_offset_x
+        rrrs_x_2_in_axes1_z = rrrs_S_in_turn1_z - rrrs_joint2_offset_x
         # (rrrs-Kd_2) projection on the centre's direction, from the distance fixed by the joints beyond joint 2
-        rrrs_Kd_2_t_3 = rrrs_root_1*rrrs_root_1 + rrrs_x_2_in_axes1_z*rrrs_x_2_in_axes1_z
+        rrrs_Kd_2_t_3 = rrrs_rho2_1 + rrrs_x_2_in_axes1_z*rrrs_x_2_in_axes1_z
         rrrs_Kd_2 = rrrs_Kd_2_t + 0.5*rrrs_Kd_2_t_3 - rrrs_Kd_2_t_2
         # (rrrs-Kc_2) factor of the cosine in the equation of joint 2
-        rrrs_Kc_2 = -rrrs_joint3_offset_x*rrrs_root_1
+        rrrs_Kc_2 = rrrs_joint3_offset_x*rrrs_x_2_in_axes1_z
         # (rrrs-Ks_2) factor of the sine in the equation of joint 2
-        rrrs_Ks_2 = rrrs_joint3_offset_x*rrrs_x_2_in_axes1_z
+        rrrs_Ks_2 = rrrs_joint3_offset_x*rrrs_root_1
         # (rrrs-rho2_2) squared amplitude
         rrrs_rho2_2 = rrrs_Kc_2*rrrs_Kc_2 + rrrs_Ks_2*rrrs_Ks_2
         # (rrrs-disc_2) discriminant
@@ -5542,10 +5675,10 @@ def _run_condition(m, X):
         # (rrrs-root_2) root, with the sign of the branch
         rrrs_root_2 = rrrs_branch_2*sqrt(rrrs_disc_2)
         # (rrrs-c_2) cosine of the angle of joint 2 from its reference direction
-        rrrs_c_2_t = -1.0/rrrs_rho2_2
-        rrrs_c_2 = rrrs_c_2_t*(rrrs_Ks_2*rrrs_root_2 - rrrs_Kc_2*rrrs_Kd_2)
+        inv_rrrs_rho2_2 = 1.0/rrrs_rho2_2
+        rrrs_c_2 = inv_rrrs_rho2_2*(rrrs_Kc_2*rrrs_Kd_2 - rrrs_Ks_2*rrrs_root_2)
         # (rrrs-s_2) sine of the angle of joint 2 from its reference direction
-        rrrs_s_2 = rrrs_c_2_t*(-rrrs_Kc_2*rrrs_root_2 - rrrs_Kd_2*rrrs_Ks_2)
+        rrrs_s_2 = inv_rrrs_rho2_2*(rrrs_Kc_2*rrrs_root_2 + rrrs_Kd_2*rrrs_Ks_2)
         # (rrrs-x_3) from the origin of joint 3 to the connection point
         rrrs_x_3_in_axes2_x = (
         inv_rrrs_size_t*rrrs_Kd_2*rrrs_joint3_offset_x - rrrs_joint3_offset_x
@@ -5562,35 +5695,35 @@ def _run_condition(m, X):
         rrrs_r_2_in_axes2_x*rrrs_s_3_t - rrrs_c_3*rrrs_platform_joint_offset_x*rrrs_s_3_t
         )
         # (rrrs-v_1) velocity of the connection point per rate of joint 1
-        rrrs_e_1_in_axes3_x = rrrs_c_3*rrrs_s_2 - rrrs_c_2*rrrs_s_3_t
-        rrrs_e_1_in_axes3_y = rrrs_c_2*rrrs_c_3 + rrrs_s_2*rrrs_s_3_t
-        rrrs_v_1_t = rrrs_s_2*rrrs_xi_1_in_axes1_z - rrrs_c_2*rrrs_root_1
-        rrrs_v_1_t_2 = rrrs_c_2*rrrs_xi_1_in_axes1_z + rrrs_root_1*rrrs_s_2
+        rrrs_e_1_in_axes3_x = rrrs_c_2*rrrs_c_3 + rrrs_s_2*rrrs_s_3_t
+        rrrs_e_1_in_axes3_y = rrrs_c_2*rrrs_s_3_t - rrrs_c_3*rrrs_s_2
+        rrrs_v_1_t = rrrs_S_in_turn1_z*rrrs_c_2 + rrrs_root_1*rrrs_s_2
+        rrrs_v_1_t_2 = rrrs_c_2*rrrs_root_1 - rrrs_S_in_turn1_z*rrrs_s_2
         rrrs_v_1_in_axes3_z = (
         rrrs_e_1_in_axes3_x*(rrrs_c_3*rrrs_v_1_t_2 + rrrs_s_3_t*rrrs_v_1_t) -
             rrrs_e_1_in_axes3_y*(rrrs_c_3*rrrs_v_1_t - rrrs_s_3_t*rrrs_v_1_t_2)
         )
         # (rrrs-w_1) reciprocal vector 1
-        axis_z_rrrs_axes3_x = rrrs_base_frame_xy*rrrs_c_1 + rrrs_base_frame_xz*rrrs_s_1
-        axis_z_rrrs_axes3_y = rrrs_base_frame_yy*rrrs_c_1 + rrrs_base_frame_yz*rrrs_s_1
-        axis_z_rrrs_axes3_z = rrrs_base_frame_zy*rrrs_c_1 + rrrs_base_frame_zz*rrrs_s_1
+        axis_z_rrrs_axes3_x = rrrs_base_frame_xz*rrrs_c_1 - rrrs_base_frame_xy*rrrs_s_1
+        axis_z_rrrs_axes3_y = rrrs_base_frame_yz*rrrs_c_1 - rrrs_base_frame_yy*rrrs_s_1
+        axis_z_rrrs_axes3_z = rrrs_base_frame_zz*rrrs_c_1 - rrrs_base_frame_zy*rrrs_s_1
         rrrs_w_1_in_axes3_z = 1.0/rrrs_v_1_in_axes3_z
         rrrs_w_1_x = axis_z_rrrs_axes3_x*rrrs_w_1_in_axes3_z
         rrrs_w_1_y = axis_z_rrrs_axes3_y*rrrs_w_1_in_axes3_z
         rrrs_w_1_z = axis_z_rrrs_axes3_z*rrrs_w_1_in_axes3_z
         # (rrrs-w_2) reciprocal vector 2
-        rrrs_w_2_t = rrrs_e_1_in_axes3_x*rrrs_s_1
-        rrrs_w_2_t_2 = rrrs_c_1*rrrs_e_1_in_axes3_x
+        rrrs_w_2_t = rrrs_c_1*rrrs_e_1_in_axes3_x
+        rrrs_w_2_t_2 = rrrs_e_1_in_axes3_x*rrrs_s_1
         axis_y_rrrs_axes3_x = (
-        rrrs_base_frame_xx*rrrs_e_1_in_axes3_y + rrrs_base_frame_xy*rrrs_w_2_t -
+        rrrs_base_frame_xx*rrrs_e_1_in_axes3_y + rrrs_base_frame_xy*rrrs_w_2_t +
             rrrs_base_frame_xz*rrrs_w_2_t_2
         )
         axis_y_rrrs_axes3_y = (
-        rrrs_base_frame_yx*rrrs_e_1_in_axes3_y + rrrs_base_frame_yy*rrrs_w_2_t -
+        rrrs_base_frame_yx*rrrs_e_1_in_axes3_y + rrrs_base_frame_yy*rrrs_w_2_t +
             rrrs_base_frame_yz*rrrs_w_2_t_2
         )
         axis_y_rrrs_axes3_z = (
-        rrrs_base_frame_zx*rrrs_e_1_in_axes3_y + rrrs_base_frame_zy*rrrs_w_2_t -
+        rrrs_base_frame_zx*rrrs_e_1_in_axes3_y + rrrs_base_frame_zy*rrrs_w_2_t +
             rrrs_base_frame_zz*rrrs_w_2_t_2
         )
         rrrs_w_2_in_axes3_x = -1.0/rrrs_r_2_in_axes3_y
@@ -5666,6 +5799,130 @@ def _run_condition(m, X):
     return (valid, reached, clear), (out_H, out_lengths, out_pivots, out_reach,)
 
 
+def _straight_6(a, b, rows, limits):
+    """Solve 6 equations a x = b straight through; and whether that is beyond doubt."""
+    (
+    (a00, a01, a02, a03, a04, a05,), (a10, a11, a12, a13, a14, a15,), (a20, a21, a22, a23, a24,
+        a25,), (a30, a31, a32, a33, a34, a35,), (a40, a41, a42, a43, a44, a45,), (a50, a51, a52,
+        a53, a54, a55,),
+    ) = [a[6 * k : 6 * k + 6] for k in rows]
+    b0, b1, b2, b3, b4, b5, = [b[k] for k in rows]
+    (
+    l10, l20, l30, l40, l50, l21, l31, l41, l51, l32, l42, l52, l43, l53, l54, l0, l1, l2, l3, l4,
+        l5,
+    ) = limits
+    f0 = 1.0/a00
+    g10 = a10*f0
+    a11 = a11 - g10*a01
+    a12 = a12 - g10*a02
+    a13 = a13 - g10*a03
+    a14 = a14 - g10*a04
+    a15 = a15 - g10*a05
+    b1 = b1 - g10*b0
+    g20 = a20*f0
+    a21 = a21 - g20*a01
+    a22 = a22 - g20*a02
+    a23 = a23 - g20*a03
+    a24 = a24 - g20*a04
+    a25 = a25 - g20*a05
+    b2 = b2 - g20*b0
+    g30 = a30*f0
+    a31 = a31 - g30*a01
+    a32 = a32 - g30*a02
+    a33 = a33 - g30*a03
+    a34 = a34 - g30*a04
+    a35 = a35 - g30*a05
+    b3 = b3 - g30*b0
+    g40 = a40*f0
+    a41 = a41 - g40*a01
+    a42 = a42 - g40*a02
+    a43 = a43 - g40*a03
+    a44 = a44 - g40*a04
+    a45 = a45 - g40*a05
+    b4 = b4 - g40*b0
+    g50 = a50*f0
+    a51 = a51 - g50*a01
+    a52 = a52 - g50*a02
+    a53 = a53 - g50*a03
+    a54 = a54 - g50*a04
+    a55 = a55 - g50*a05
+    b5 = b5 - g50*b0
+    f1 = 1.0/a11
+    g21 = a21*f1
+    a22 = a22 - g21*a12
+    a23 = a23 - g21*a13
+    a24 = a24 - g21*a14
+    a25 = a25 - g21*a15
+    b2 = b2 - g21*b1
+    g31 = a31*f1
+    a32 = a32 - g31*a12
+    a33 = a33 - g31*a13
+    a34 = a34 - g31*a14
+    a35 = a35 - g31*a15
+    b3 = b3 - g31*b1
+    g41 = a41*f1
+    a42 = a42 - g41*a12
+    a43 = a43 - g41*a13
+    a44 = a44 - g41*a14
+    a45 = a45 - g41*a15
+    b4 = b4 - g41*b1
+    g51 = a51*f1
+    a52 = a52 - g51*a12
+    a53 = a53 - g51*a13
+    a54 = a54 - g51*a14
+    a55 = a55 - g51*a15
+    b5 = b5 - g51*b1
+    f2 = 1.0/a22
+    g32 = a32*f2
+    a33 = a33 - g32*a23
+    a34 = a34 - g32*a24
+    a35 = a35 - g32*a25
+    b3 = b3 - g32*b2
+    g42 = a42*f2
+    a43 = a43 - g42*a23
+    a44 = a44 - g42*a24
+    a45 = a45 - g42*a25
+    b4 = b4 - g42*b2
+    g52 = a52*f2
+    a53 = a53 - g52*a23
+    a54 = a54 - g52*a24
+    a55 = a55 - g52*a25
+    b5 = b5 - g52*b2
+    f3 = 1.0/a33
+    g43 = a43*f3
+    a44 = a44 - g43*a34
+    a45 = a45 - g43*a35
+    b4 = b4 - g43*b3
+    g53 = a53*f3
+    a54 = a54 - g53*a34
+    a55 = a55 - g53*a35
+    b5 = b5 - g53*b3
+    f4 = 1.0/a44
+    g54 = a54*f4
+    a55 = a55 - g54*a45
+    b5 = b5 - g54*b4
+    f5 = 1.0/a55
+    x5 = b5*f5
+    x4 = (b4 - a45*x5)*f4
+    x3 = (b3 - a35*x5 - a34*x4)*f3
+    x2 = (b2 - a25*x5 - a24*x4 - a23*x3)*f2
+    x1 = (b1 - a15*x5 - a14*x4 - a13*x3 - a12*x2)*f1
+    x0 = (b0 - a05*x5 - a04*x4 - a03*x3 - a02*x2 - a01*x1)*f0
+    sure = (
+    (abs(g10) <= l10) & (abs(g20) <= l20) & (abs(g30) <= l30) & (abs(g40) <= l40) & (abs(g50) <=
+        l50) & (abs(g21) <= l21) & (abs(g31) <= l31) & (abs(g41) <= l41) & (abs(g51) <= l51) &
+        (abs(g32) <= l32) & (abs(g42) <= l42) & (abs(g52) <= l52) & (abs(g43) <= l43) & (abs(g53)
+        <= l53) & (abs(g54) <= l54) & (abs(f0) <= l0) & (abs(f1) <= l1) & (abs(f2) <= l2) &
+        (abs(f3) <= l3) & (abs(f4) <= l4) & (abs(f5) <= l5) & (abs(x0 + x1 + x2 + x3 + x4 + x5 +
+        a00 + a11 + a22 + a33 + a44 + a55) < math.inf)
+    )
+    return sure, ([x0, x1, x2, x3, x4, x5],)
+
+
+_ORDERS = (  # how systems are solved near home
+    _Order(_straight_6, (1, 2, 0, 4, 5, 3), (10, 10, 2.5, 2.5, 2.5, 10, 2.5, 2.5, 2.5, 2.5, 2.5, 2.5, 10, 10, 10, 250, 250, 250, 1000, 1000, 1000,)),
+    _Order(_straight_6, (0, 1, 2, 3, 4, 5), (10, 10, 0.625, 0.625, 0.625, 10, 0.625, 0.625, 0.625, 0.625, 0.625, 0.625, 10, 10, 10, 62.5, 62.5, 62.5, 1000, 1000, 1000,)),
+)
 _Q = 3  # where a quaternion begins in X
 _DEFAULT = Parameters()
 
@@ -5709,17 +5966,17 @@ def _steps_inverse_dynamics(m, X, V, A, wrench, weights):
     required, H = m.run(_run_required, ("required", "H"), X, V, A)
     extend_1 = wrench
     subtract_1 = required - extend_1
-    tau = _solve(H, subtract_1)
+    tau = _straight(m, H, subtract_1, _ORDERS[0])
     return (tau,)
 
 
 def _steps_forward_dynamics(m, X, V, tau, wrench):
     M, Z, H = m.run(_run_dynamics, ("M", "Z", "H"), X, V)
-    times_1 = np.einsum("ijs,js->is", H, tau)
+    times_1 = _times(H, tau)
     extend_1 = wrench
     add_1 = times_1 + extend_1
     subtract_1 = add_1 - Z
-    A = _solve(M, subtract_1)
+    A = _straight(m, M, subtract_1, _ORDERS[1])
     return (A,)
 
 
@@ -5732,7 +5989,7 @@ def _steps_leg_reactions(m, X, V, A, wrench):
     required, H = m.run(_run_required, ("required", "H"), X, V, A)
     extend_1 = wrench
     subtract_1 = required - extend_1
-    solve_1 = _solve(H, subtract_1)
+    solve_1 = _straight(m, H, subtract_1, _ORDERS[0])
     leg_force, actuator = m.run(_run_legs, ("leg_force", "actuator"), X, V, A)
     forces = _with_forces(leg_force, solve_1, actuator, [0, 0, 1, 1, 2, 2])
     return (forces,)
@@ -5760,10 +6017,37 @@ def _steps_condition(m, X, length):
     return (sigma, legs,)
 
 
+def _steps_manipulability(m, X):
+    (
+    H, lengths, pivots, reach,
+    ) = m.run(_in_one(_run_condition), ("H", "lengths", "pivots", "reach"), X)
+    entry_1 = lengths[0]
+    subtract_1 = entry_1 - entry_1
+    choose_length_1 = _chosen_length(lengths, subtract_1)
+    divide_rows_1 = _rows_divided(H, choose_length_1, [3, 4, 5])
+    singular_values_1 = _singular_values(divide_rows_1)
+    measure, isotropy = _spread(singular_values_1, 6)
+    return (measure, isotropy,)
+
+
+def _steps_singularity_distance(m, X):
+    (
+    H, lengths, pivots, reach,
+    ) = m.run(_in_one(_run_condition), ("H", "lengths", "pivots", "reach"), X)
+    entry_1 = lengths[0]
+    subtract_1 = entry_1 - entry_1
+    choose_length_1 = _chosen_length(lengths, subtract_1)
+    divide_rows_1 = _rows_divided(H, choose_length_1, [3, 4, 5])
+    singular_values_1 = _singular_values(divide_rows_1)
+    spread_1, actuators = _spread(singular_values_1, 6)
+    legs = _least_entry(pivots)
+    return (actuators, legs,)
+
+
 def _steps_mismatch(m, X, q_actuated):
     q, = m.run(_run_inverse_kinematics, ("q",), X)
-    take_1 = q[[0, 1, 3, 4, 6, 7]]
-    subtract_1 = q_actuated - take_1
+    q_of_inverse_kinematics_from_0 = q[[0, 1, 3, 4, 6, 7]]
+    subtract_1 = q_actuated - q_of_inverse_kinematics_from_0
     gap = _wrapped(subtract_1, [0, 1, 2, 3, 4, 5])
     return (gap,)
 
@@ -5786,7 +6070,7 @@ def _steps_dissipation(m, X, V):
 
 def _steps_momentum(m, X, V):
     M, = m.run(_run_M, ("M",), X)
-    momentum = np.einsum("ijs,js->is", M, V)
+    momentum = _times(M, V)
     return (momentum,)
 
 
@@ -5823,14 +6107,14 @@ def _steps_actuator_accelerations(m, X, V, A):
 
 def _steps_power(m, X, V, tau):
     H, = m.run(_run_H, ("H",), X)
-    times_1 = np.einsum("ijs,js->is", H, tau)
+    times_1 = _times(H, tau)
     power = np.sum(times_1 * V, axis=0)
     return (power,)
 
 
 def _steps_rotation(m, X):
-    take_1 = X[3:7]
-    R = _rotation_of_quaternion(take_1)
+    X_from_3 = X[3:7]
+    R = _rotation_of_quaternion(X_from_3)
     return (R,)
 
 
@@ -5842,11 +6126,11 @@ def _steps_pose(m, t, R):
 
 
 def _steps_X_dot(m, X, V):
-    take_1 = V[3:6]
-    take_2 = X[3:7]
-    quaternion_rate_1 = _quaternion_rate(take_2, take_1)
-    take_3 = V[0:3]
-    X_dot = np.concatenate((take_3, quaternion_rate_1))
+    V_from_3 = V[3:6]
+    X_from_3 = X[3:7]
+    quaternion_rate_1 = _quaternion_rate(X_from_3, V_from_3)
+    V_from_0 = V[0:3]
+    X_dot = np.concatenate((V_from_0, quaternion_rate_1))
     return (X_dot,)
 
 
@@ -5858,42 +6142,42 @@ def _steps_pose_from_rpy(m, t, rpy):
 
 
 def _steps_retract(m, X, step):
-    take_1 = X[0:3]
-    take_2 = X[3:7]
-    take_3 = step[0:3]
-    take_4 = step[3:6]
-    turn_quaternion_1 = _turned(take_2, take_4)
-    add_1 = take_1 + take_3
+    X_from_0 = X[0:3]
+    X_from_3 = X[3:7]
+    step_from_0 = step[0:3]
+    step_from_3 = step[3:6]
+    turn_quaternion_1 = _turned(X_from_3, step_from_3)
+    add_1 = X_from_0 + step_from_0
     X_moved = np.concatenate((add_1, turn_quaternion_1))
     return (X_moved,)
 
 
 def _steps_difference(m, X0, X1):
-    take_1 = X0[0:3]
-    take_2 = X0[3:7]
-    take_3 = X1[0:3]
-    take_4 = X1[3:7]
-    turn_between_1 = _turn_between(take_2, take_4)
-    subtract_1 = take_3 - take_1
+    X0_from_0 = X0[0:3]
+    X0_from_3 = X0[3:7]
+    X1_from_0 = X1[0:3]
+    X1_from_3 = X1[3:7]
+    turn_between_1 = _turn_between(X0_from_3, X1_from_3)
+    subtract_1 = X1_from_0 - X0_from_0
     step = np.concatenate((subtract_1, turn_between_1))
     return (step,)
 
 
 def _steps_interpolate(m, X0, X1, s):
-    take_1 = X0[0:3]
-    take_2 = X0[3:7]
-    take_3 = X1[0:3]
-    take_4 = X1[3:7]
-    turn_between_1 = _turn_between(take_2, take_4)
-    subtract_1 = take_3 - take_1
+    X0_from_0 = X0[0:3]
+    X0_from_3 = X0[3:7]
+    X1_from_0 = X1[0:3]
+    X1_from_3 = X1[3:7]
+    turn_between_1 = _turn_between(X0_from_3, X1_from_3)
+    subtract_1 = X1_from_0 - X0_from_0
     join_1 = np.concatenate((subtract_1, turn_between_1))
     scale_1 = join_1 * s
-    take_5 = X0[0:3]
-    take_6 = X0[3:7]
-    take_7 = scale_1[0:3]
-    take_8 = scale_1[3:6]
-    turn_quaternion_1 = _turned(take_6, take_8)
-    add_1 = take_5 + take_7
+    X0_from_0_2 = X0[0:3]
+    X0_from_3_2 = X0[3:7]
+    scale_1_from_0 = scale_1[0:3]
+    scale_1_from_3 = scale_1[3:6]
+    turn_quaternion_1 = _turned(X0_from_3_2, scale_1_from_3)
+    add_1 = X0_from_0_2 + scale_1_from_0
     X = np.concatenate((add_1, turn_quaternion_1))
     return (X,)
 
@@ -5911,6 +6195,7 @@ def M(X, p=None):
     return _call(
         "M", _steps_M, p,
         ("X", X, (NQ,)),
+        plain=((NV, NV,),),
     )
 
 
@@ -5929,6 +6214,7 @@ def Z(X, V, p=None):
         "Z", _steps_Z, p,
         ("X", X, (NQ,)),
         ("V", V, (NV,)),
+        plain=((NV,),),
     )
 
 
@@ -5945,6 +6231,7 @@ def H(X, p=None):
     return _call(
         "H", _steps_H, p,
         ("X", X, (NQ,)),
+        plain=((NV, NU,),),
     )
 
 
@@ -5963,6 +6250,7 @@ def inverse_kinematics(X, p=None):
     return _call(
         "inverse_kinematics", _steps_inverse_kinematics, p,
         ("X", X, (NQ,)),
+        plain=((NJ,),),
     )
 
 
@@ -5981,6 +6269,7 @@ def joint_rates(X, V, p=None):
         "joint_rates", _steps_joint_rates, p,
         ("X", X, (NQ,)),
         ("V", V, (NV,)),
+        plain=((NJ,),),
     )
 
 
@@ -6001,6 +6290,7 @@ def joint_accelerations(X, V, A, p=None):
         ("X", X, (NQ,)),
         ("V", V, (NV,)),
         ("A", A, (NV,)),
+        plain=((NJ,),),
     )
 
 
@@ -6021,6 +6311,7 @@ def dynamics(X, V, p=None):
         "dynamics", _steps_dynamics, p,
         ("X", X, (NQ,)),
         ("V", V, (NV,)),
+        plain=((NV, NV,), (NV,), (NV, NU,),),
     )
 
 
@@ -6048,6 +6339,7 @@ def inverse_dynamics(X, V, A, p=None, *, wrench=None, weights=None):
         ("A", A, (NV,)),
         ("wrench", wrench, (NW,), 0.0),
         ("weights", weights, (NU,), 1.0, "positive"),
+        plain=((NU,),),
     )
 
 
@@ -6070,6 +6362,7 @@ def forward_dynamics(X, V, tau, p=None, *, wrench=None):
         ("V", V, (NV,)),
         ("tau", tau, (NU,)),
         ("wrench", wrench, (NW,), 0.0),
+        plain=((NV,),),
     )
 
 
@@ -6094,6 +6387,7 @@ def complete_acceleration(X, V, A, p=None, *, wrench=None):
         ("V", V, (NV,), None, "unused"),
         ("A", A, (NV,)),
         ("wrench", wrench, (NW,), 0.0, "unused"),
+        plain=((NV,),),
     )
 
 
@@ -6182,6 +6476,41 @@ def condition(X, p=None, *, length=None):
     )
 
 
+def manipulability(X, p=None):
+    """Manipulability of forces: the product of the singular values that `condition` has by
+    default, and the least over the largest of them.
+
+    Args:
+        X: pose, and extra coordinates (..., NQ).
+        p: parameters, by default those of the specification.
+
+    Returns:
+        measure: product of the singular values (...,).
+        isotropy: least over largest value, 1 where H is isotropic (...,).
+    """
+    return _call(
+        "manipulability", _steps_manipulability, p,
+        ("X", X, (NQ,)),
+    )
+
+
+def singularity_distance(X, p=None):
+    """How near actuators and legs are to being singular: relative distances, 0 where they are.
+
+    Args:
+        X: pose, and extra coordinates (..., NQ).
+        p: parameters, by default those of the specification.
+
+    Returns:
+        actuators: of H from matrices of lower rank, over its norm (...,).
+        legs: least pivot of all legs (...,).
+    """
+    return _call(
+        "singularity_distance", _steps_singularity_distance, p,
+        ("X", X, (NQ,)),
+    )
+
+
 def forward_kinematics(q_actuated, X0, p=None):
     """X at which the actuated joints stand at q_actuated, by Gauss-Newton from X0.
 
@@ -6237,6 +6566,7 @@ def momentum(X, V, p=None):
         "momentum", _steps_momentum, p,
         ("X", X, (NQ,)),
         ("V", V, (NV,)),
+        plain=((NV,),),
     )
 
 

@@ -219,13 +219,13 @@ extern const char *const hybrid_3rrrs_redundant_ACTUATOR_NAMES[HYBRID_3RRRS_REDU
    perpendicular, that are so by structure, to 1e-09 (float: 1e-6). */
 int hybrid_3rrrs_redundant_prepare(const hybrid_3rrrs_redundant_params *params, hybrid_3rrrs_redundant_model *model);
 
-/* Inertia matrix M. 755 mul, 578 add, 12 div, 6 sqrt, 2 trig. In: X (NQ). Out: M (NV x NV). */
+/* Inertia matrix M. 753 mul, 578 add, 12 div, 6 sqrt, 2 trig. In: X (NQ). Out: M (NV x NV). */
 int hybrid_3rrrs_redundant_M(const hybrid_3rrrs_redundant_model *model, const
     hybrid_3rrrs_redundant_real *X, hybrid_3rrrs_redundant_real *M);
 size_t hybrid_3rrrs_redundant_M_batch(const hybrid_3rrrs_redundant_model *model, size_t n, const
     hybrid_3rrrs_redundant_real *X, hybrid_3rrrs_redundant_real *M, int *status);
 
-/* Velocity and gravity terms Z. 1048 mul, 781 add, 12 div, 6 sqrt, 2 trig. In: X (NQ), V (NV).
+/* Velocity and gravity terms Z. 1046 mul, 781 add, 12 div, 6 sqrt, 2 trig. In: X (NQ), V (NV).
    Out: Z (NV). */
 int hybrid_3rrrs_redundant_Z(const hybrid_3rrrs_redundant_model *model, const
     hybrid_3rrrs_redundant_real *X, const hybrid_3rrrs_redundant_real *V,
@@ -234,21 +234,21 @@ size_t hybrid_3rrrs_redundant_Z_batch(const hybrid_3rrrs_redundant_model *model,
     hybrid_3rrrs_redundant_real *X, const hybrid_3rrrs_redundant_real *V,
     hybrid_3rrrs_redundant_real *Z, int *status);
 
-/* Force transformation H: actuators to task space. 346 mul, 179 add, 12 div, 6 sqrt, 2 trig. In:
+/* Force transformation H: actuators to task space. 344 mul, 179 add, 12 div, 6 sqrt, 2 trig. In:
    X (NQ). Out: H (NV x NU). */
 int hybrid_3rrrs_redundant_H(const hybrid_3rrrs_redundant_model *model, const
     hybrid_3rrrs_redundant_real *X, hybrid_3rrrs_redundant_real *H);
 size_t hybrid_3rrrs_redundant_H_batch(const hybrid_3rrrs_redundant_model *model, size_t n, const
     hybrid_3rrrs_redundant_real *X, hybrid_3rrrs_redundant_real *H, int *status);
 
-/* Displacements q of all joints. They are those of the assembly branch of home. 148 mul, 87 add,
+/* Displacements q of all joints. They are those of the assembly branch of home. 146 mul, 87 add,
    6 div, 6 sqrt, 11 trig. In: X (NQ). Out: q (NJ). */
 int hybrid_3rrrs_redundant_inverse_kinematics(const hybrid_3rrrs_redundant_model *model, const
     hybrid_3rrrs_redundant_real *X, hybrid_3rrrs_redundant_real *q);
 size_t hybrid_3rrrs_redundant_inverse_kinematics_batch(const hybrid_3rrrs_redundant_model *model,
     size_t n, const hybrid_3rrrs_redundant_real *X, hybrid_3rrrs_redundant_real *q, int *status);
 
-/* Rates of all joints. 359 mul, 210 add, 12 div, 6 sqrt, 2 trig. In: X (NQ), V (NV). Out: rates
+/* Rates of all joints. 357 mul, 210 add, 12 div, 6 sqrt, 2 trig. In: X (NQ), V (NV). Out: rates
    (NJ). */
 int hybrid_3rrrs_redundant_joint_rates(const hybrid_3rrrs_redundant_model *model, const
     hybrid_3rrrs_redundant_real *X, const hybrid_3rrrs_redundant_real *V,
@@ -257,7 +257,7 @@ size_t hybrid_3rrrs_redundant_joint_rates_batch(const hybrid_3rrrs_redundant_mod
     n, const hybrid_3rrrs_redundant_real *X, const hybrid_3rrrs_redundant_real *V,
     hybrid_3rrrs_redundant_real *rates, int *status);
 
-/* Accelerations of all joints. 603 mul, 365 add, 12 div, 6 sqrt, 2 trig. In: X (NQ), V (NV), A
+/* Accelerations of all joints. 601 mul, 365 add, 12 div, 6 sqrt, 2 trig. In: X (NQ), V (NV), A
    (NV). Out: accelerations (NJ). */
 int hybrid_3rrrs_redundant_joint_accelerations(const hybrid_3rrrs_redundant_model *model, const
     hybrid_3rrrs_redundant_real *X, const hybrid_3rrrs_redundant_real *V, const
@@ -266,7 +266,7 @@ size_t hybrid_3rrrs_redundant_joint_accelerations_batch(const hybrid_3rrrs_redun
     size_t n, const hybrid_3rrrs_redundant_real *X, const hybrid_3rrrs_redundant_real *V, const
     hybrid_3rrrs_redundant_real *A, hybrid_3rrrs_redundant_real *accelerations, int *status);
 
-/* M, Z and H together, sharing the work. 1549 mul, 1206 add, 12 div, 6 sqrt, 2 trig. In: X (NQ),
+/* M, Z and H together, sharing the work. 1547 mul, 1206 add, 12 div, 6 sqrt, 2 trig. In: X (NQ),
    V (NV). Out: M (NV x NV), Z (NV), H (NV x NU). */
 int hybrid_3rrrs_redundant_dynamics(const hybrid_3rrrs_redundant_model *model, const
     hybrid_3rrrs_redundant_real *X, const hybrid_3rrrs_redundant_real *V,
@@ -277,7 +277,7 @@ size_t hybrid_3rrrs_redundant_dynamics_batch(const hybrid_3rrrs_redundant_model 
     hybrid_3rrrs_redundant_real *M, hybrid_3rrrs_redundant_real *Z, hybrid_3rrrs_redundant_real
     *H, int *status);
 
-/* Actuator forces tau for the acceleration A, by Eq. 3. 1147 mul, 858 add, 12 div, 6 sqrt, 2
+/* Actuator forces tau for the acceleration A, by Eq. 3. 1145 mul, 858 add, 12 div, 6 sqrt, 2
    trig; the solution of the linear equations apart. In: X (NQ), V (NV), A (NV), wrench (NW, or
    NULL). Out: tau (NU). */
 int hybrid_3rrrs_redundant_inverse_dynamics(const hybrid_3rrrs_redundant_model *model, const
@@ -289,7 +289,7 @@ size_t hybrid_3rrrs_redundant_inverse_dynamics_batch(const hybrid_3rrrs_redundan
     hybrid_3rrrs_redundant_real *A, const hybrid_3rrrs_redundant_real *wrench,
     hybrid_3rrrs_redundant_real *tau, int *status);
 
-/* Acceleration A under the actuator forces tau and the wrench. 1549 mul, 1206 add, 12 div, 6
+/* Acceleration A under the actuator forces tau and the wrench. 1547 mul, 1206 add, 12 div, 6
    sqrt, 2 trig; the solution of the linear equations apart. In: X (NQ), V (NV), tau (NU), wrench
    (NW, or NULL). Out: A (NV). */
 int hybrid_3rrrs_redundant_forward_dynamics(const hybrid_3rrrs_redundant_model *model, const
@@ -314,7 +314,7 @@ size_t hybrid_3rrrs_redundant_complete_acceleration_batch(const hybrid_3rrrs_red
     hybrid_3rrrs_redundant_real *completed, int *status);
 
 /* Force of each leg on the platform at its platform joint, base axes. The actuators give the
-   forces of inverse_dynamics. 988 mul, 715 add, 12 div, 6 sqrt, 2 trig; inverse dynamics apart.
+   forces of inverse_dynamics. 986 mul, 715 add, 12 div, 6 sqrt, 2 trig; inverse dynamics apart.
    In: X (NQ), V (NV), A (NV), wrench (NW, or NULL). Out: forces (3 x 3). */
 int hybrid_3rrrs_redundant_leg_reactions(const hybrid_3rrrs_redundant_model *model, const
     hybrid_3rrrs_redundant_real *X, const hybrid_3rrrs_redundant_real *V, const
@@ -337,7 +337,7 @@ size_t hybrid_3rrrs_redundant_energy_batch(const hybrid_3rrrs_redundant_model *m
 /* How far a pose is from singularities: singular values of H, rows of moments divided by a
    length; for every leg the least tested pivot as a fraction of its scale. The length is the rms
    distance of the platform points from their centroid, or where they coincide the rms size of the
-   legs. 369 mul, 207 add, 12 div, 13 sqrt, 2 trig; the singular values apart. In: X (NQ). Out:
+   legs. 367 mul, 207 add, 12 div, 13 sqrt, 2 trig; the singular values apart. In: X (NQ). Out:
    sigma (7), legs (3). */
 int hybrid_3rrrs_redundant_condition(const hybrid_3rrrs_redundant_model *model, const
     hybrid_3rrrs_redundant_real *X, hybrid_3rrrs_redundant_real *sigma,
@@ -345,6 +345,26 @@ int hybrid_3rrrs_redundant_condition(const hybrid_3rrrs_redundant_model *model, 
 size_t hybrid_3rrrs_redundant_condition_batch(const hybrid_3rrrs_redundant_model *model, size_t n,
     const hybrid_3rrrs_redundant_real *X, hybrid_3rrrs_redundant_real *sigma,
     hybrid_3rrrs_redundant_real *legs, int *status);
+
+/* Manipulability of forces: the product of the singular values that condition has by default, and
+   the least over the largest of them. 367 mul, 207 add, 12 div, 13 sqrt, 2 trig; the singular
+   values apart. In: X (NQ). Out: measure (1), isotropy (1). */
+int hybrid_3rrrs_redundant_manipulability(const hybrid_3rrrs_redundant_model *model, const
+    hybrid_3rrrs_redundant_real *X, hybrid_3rrrs_redundant_real *measure,
+    hybrid_3rrrs_redundant_real *isotropy);
+size_t hybrid_3rrrs_redundant_manipulability_batch(const hybrid_3rrrs_redundant_model *model,
+    size_t n, const hybrid_3rrrs_redundant_real *X, hybrid_3rrrs_redundant_real *measure,
+    hybrid_3rrrs_redundant_real *isotropy, int *status);
+
+/* How near actuators and legs are to being singular: relative distances, 0 where they are. 367
+   mul, 207 add, 12 div, 13 sqrt, 2 trig; the singular values apart. In: X (NQ). Out: actuators
+   (1), legs (1). */
+int hybrid_3rrrs_redundant_singularity_distance(const hybrid_3rrrs_redundant_model *model, const
+    hybrid_3rrrs_redundant_real *X, hybrid_3rrrs_redundant_real *actuators,
+    hybrid_3rrrs_redundant_real *legs);
+size_t hybrid_3rrrs_redundant_singularity_distance_batch(const hybrid_3rrrs_redundant_model
+    *model, size_t n, const hybrid_3rrrs_redundant_real *X, hybrid_3rrrs_redundant_real
+    *actuators, hybrid_3rrrs_redundant_real *legs, int *status);
 
 /* X at which the actuated joints stand at q_actuated, by Gauss-Newton from X0. Extra coordinates
    that actuators do not determine stay. Impossible where no pose is found. In: q_actuated (NU),
@@ -365,7 +385,7 @@ size_t hybrid_3rrrs_redundant_dissipation_batch(const hybrid_3rrrs_redundant_mod
     n, const hybrid_3rrrs_redundant_real *X, const hybrid_3rrrs_redundant_real *V,
     hybrid_3rrrs_redundant_real *dissipation, int *status);
 
-/* Generalised momentum M V. 755 mul, 578 add, 12 div, 6 sqrt, 2 trig. In: X (NQ), V (NV). Out:
+/* Generalised momentum M V. 753 mul, 578 add, 12 div, 6 sqrt, 2 trig. In: X (NQ), V (NV). Out:
    momentum (NV). */
 int hybrid_3rrrs_redundant_momentum(const hybrid_3rrrs_redundant_model *model, const
     hybrid_3rrrs_redundant_real *X, const hybrid_3rrrs_redundant_real *V,
@@ -375,14 +395,14 @@ size_t hybrid_3rrrs_redundant_momentum_batch(const hybrid_3rrrs_redundant_model 
     hybrid_3rrrs_redundant_real *momentum, int *status);
 
 /* How far the joints are from the nearer limit of displacement, negative beyond it; infinite
-   where there is none. 148 mul, 87 add, 6 div, 6 sqrt, 11 trig. In: X (NQ). Out: margins (NJ). */
+   where there is none. 146 mul, 87 add, 6 div, 6 sqrt, 11 trig. In: X (NQ). Out: margins (NJ). */
 int hybrid_3rrrs_redundant_joint_margins(const hybrid_3rrrs_redundant_model *model, const
     hybrid_3rrrs_redundant_real *X, hybrid_3rrrs_redundant_real *margins);
 size_t hybrid_3rrrs_redundant_joint_margins_batch(const hybrid_3rrrs_redundant_model *model,
     size_t n, const hybrid_3rrrs_redundant_real *X, hybrid_3rrrs_redundant_real *margins, int
     *status);
 
-/* Whether all joints are within their limits of displacement. 148 mul, 87 add, 6 div, 6 sqrt, 11
+/* Whether all joints are within their limits of displacement. 146 mul, 87 add, 6 div, 6 sqrt, 11
    trig. In: X (NQ). Out: within (1). */
 int hybrid_3rrrs_redundant_within_limits(const hybrid_3rrrs_redundant_model *model, const
     hybrid_3rrrs_redundant_real *X, hybrid_3rrrs_redundant_real *within);
@@ -390,14 +410,14 @@ size_t hybrid_3rrrs_redundant_within_limits_batch(const hybrid_3rrrs_redundant_m
     size_t n, const hybrid_3rrrs_redundant_real *X, hybrid_3rrrs_redundant_real *within, int
     *status);
 
-/* Displacements of the actuated joints, in the order of tau. 148 mul, 87 add, 6 div, 6 sqrt, 11
+/* Displacements of the actuated joints, in the order of tau. 146 mul, 87 add, 6 div, 6 sqrt, 11
    trig. In: X (NQ). Out: q (NU). */
 int hybrid_3rrrs_redundant_actuator_positions(const hybrid_3rrrs_redundant_model *model, const
     hybrid_3rrrs_redundant_real *X, hybrid_3rrrs_redundant_real *q);
 size_t hybrid_3rrrs_redundant_actuator_positions_batch(const hybrid_3rrrs_redundant_model *model,
     size_t n, const hybrid_3rrrs_redundant_real *X, hybrid_3rrrs_redundant_real *q, int *status);
 
-/* Rates of the actuated joints, in the order of tau. 359 mul, 210 add, 12 div, 6 sqrt, 2 trig.
+/* Rates of the actuated joints, in the order of tau. 357 mul, 210 add, 12 div, 6 sqrt, 2 trig.
    In: X (NQ), V (NV). Out: rates (NU). */
 int hybrid_3rrrs_redundant_actuator_rates(const hybrid_3rrrs_redundant_model *model, const
     hybrid_3rrrs_redundant_real *X, const hybrid_3rrrs_redundant_real *V,
@@ -406,7 +426,7 @@ size_t hybrid_3rrrs_redundant_actuator_rates_batch(const hybrid_3rrrs_redundant_
     size_t n, const hybrid_3rrrs_redundant_real *X, const hybrid_3rrrs_redundant_real *V,
     hybrid_3rrrs_redundant_real *rates, int *status);
 
-/* Accelerations of the actuated joints, in the order of tau. 603 mul, 365 add, 12 div, 6 sqrt, 2
+/* Accelerations of the actuated joints, in the order of tau. 601 mul, 365 add, 12 div, 6 sqrt, 2
    trig. In: X (NQ), V (NV), A (NV). Out: accelerations (NU). */
 int hybrid_3rrrs_redundant_actuator_accelerations(const hybrid_3rrrs_redundant_model *model, const
     hybrid_3rrrs_redundant_real *X, const hybrid_3rrrs_redundant_real *V, const

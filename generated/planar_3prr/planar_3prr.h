@@ -225,6 +225,22 @@ int planar_3prr_condition(const planar_3prr_model *model, const planar_3prr_real
 size_t planar_3prr_condition_batch(const planar_3prr_model *model, size_t n, const
     planar_3prr_real *X, planar_3prr_real *sigma, planar_3prr_real *legs, int *status);
 
+/* Manipulability of forces: the product of the singular values that condition has by default, and
+   the least over the largest of them. 100 mul, 66 add, 3 div, 4 sqrt, 0 trig; the singular values
+   apart. In: X (NQ). Out: measure (1), isotropy (1). */
+int planar_3prr_manipulability(const planar_3prr_model *model, const planar_3prr_real *X,
+    planar_3prr_real *measure, planar_3prr_real *isotropy);
+size_t planar_3prr_manipulability_batch(const planar_3prr_model *model, size_t n, const
+    planar_3prr_real *X, planar_3prr_real *measure, planar_3prr_real *isotropy, int *status);
+
+/* How near actuators and legs are to being singular: relative distances, 0 where they are. 100
+   mul, 66 add, 3 div, 4 sqrt, 0 trig; the singular values apart. In: X (NQ). Out: actuators (1),
+   legs (1). */
+int planar_3prr_singularity_distance(const planar_3prr_model *model, const planar_3prr_real *X,
+    planar_3prr_real *actuators, planar_3prr_real *legs);
+size_t planar_3prr_singularity_distance_batch(const planar_3prr_model *model, size_t n, const
+    planar_3prr_real *X, planar_3prr_real *actuators, planar_3prr_real *legs, int *status);
+
 /* X at which the actuated joints stand at q_actuated, by Gauss-Newton from X0. Extra coordinates
    that actuators do not determine stay. Impossible where no pose is found. In: q_actuated (NU),
    X0 (NQ). Out: X (NQ). */

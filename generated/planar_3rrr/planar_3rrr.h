@@ -230,6 +230,22 @@ int planar_3rrr_condition(const planar_3rrr_model *model, const planar_3rrr_real
 size_t planar_3rrr_condition_batch(const planar_3rrr_model *model, size_t n, const
     planar_3rrr_real *X, planar_3rrr_real *sigma, planar_3rrr_real *legs, int *status);
 
+/* Manipulability of forces: the product of the singular values that condition has by default, and
+   the least over the largest of them. 154 mul, 84 add, 6 div, 7 sqrt, 0 trig; the singular values
+   apart. In: X (NQ). Out: measure (1), isotropy (1). */
+int planar_3rrr_manipulability(const planar_3rrr_model *model, const planar_3rrr_real *X,
+    planar_3rrr_real *measure, planar_3rrr_real *isotropy);
+size_t planar_3rrr_manipulability_batch(const planar_3rrr_model *model, size_t n, const
+    planar_3rrr_real *X, planar_3rrr_real *measure, planar_3rrr_real *isotropy, int *status);
+
+/* How near actuators and legs are to being singular: relative distances, 0 where they are. 154
+   mul, 84 add, 6 div, 7 sqrt, 0 trig; the singular values apart. In: X (NQ). Out: actuators (1),
+   legs (1). */
+int planar_3rrr_singularity_distance(const planar_3rrr_model *model, const planar_3rrr_real *X,
+    planar_3rrr_real *actuators, planar_3rrr_real *legs);
+size_t planar_3rrr_singularity_distance_batch(const planar_3rrr_model *model, size_t n, const
+    planar_3rrr_real *X, planar_3rrr_real *actuators, planar_3rrr_real *legs, int *status);
+
 /* X at which the actuated joints stand at q_actuated, by Gauss-Newton from X0. Extra coordinates
    that actuators do not determine stay. Impossible where no pose is found. In: q_actuated (NU),
    X0 (NQ). Out: X (NQ). */

@@ -238,6 +238,37 @@ int planar_4rpr_condition(const planar_4rpr_model *model, const planar_4rpr_real
 size_t planar_4rpr_condition_batch(const planar_4rpr_model *model, size_t n, const
     planar_4rpr_real *X, planar_4rpr_real *sigma, planar_4rpr_real *legs, int *status);
 
+/* Manipulability of forces: the product of the singular values that condition has by default, and
+   the least over the largest of them. 77 mul, 60 add, 4 div, 9 sqrt, 0 trig; the singular values
+   apart. In: X (NQ). Out: measure (1), isotropy (1). */
+int planar_4rpr_manipulability(const planar_4rpr_model *model, const planar_4rpr_real *X,
+    planar_4rpr_real *measure, planar_4rpr_real *isotropy);
+size_t planar_4rpr_manipulability_batch(const planar_4rpr_model *model, size_t n, const
+    planar_4rpr_real *X, planar_4rpr_real *measure, planar_4rpr_real *isotropy, int *status);
+
+/* How near actuators and legs are to being singular: relative distances, 0 where they are. 77
+   mul, 60 add, 4 div, 9 sqrt, 0 trig; the singular values apart. In: X (NQ). Out: actuators (1),
+   legs (1). */
+int planar_4rpr_singularity_distance(const planar_4rpr_model *model, const planar_4rpr_real *X,
+    planar_4rpr_real *actuators, planar_4rpr_real *legs);
+size_t planar_4rpr_singularity_distance_batch(const planar_4rpr_model *model, size_t n, const
+    planar_4rpr_real *X, planar_4rpr_real *actuators, planar_4rpr_real *legs, int *status);
+
+/* Actuator forces from tau_min to tau_max for the acceleration A: the nearest to reference. By
+   the dual active-set method of Goldfarb and Idnani; continuous along a motion. Impossible
+   (UNREACHABLE) where no forces within the bounds give the acceleration. Cables pull with
+   negative forces: tau_max = -t keeps tensions of t at least. 238 mul, 165 add, 4 div, 4 sqrt, 0
+   trig; the search apart. In: X (NQ), V (NV), A (NV), tau_min (NU), tau_max (NU), wrench (NW, or
+   NULL), reference (NU, or NULL). Out: tau (NU). */
+int planar_4rpr_force_distribution(const planar_4rpr_model *model, const planar_4rpr_real *X,
+    const planar_4rpr_real *V, const planar_4rpr_real *A, const planar_4rpr_real *tau_min, const
+    planar_4rpr_real *tau_max, const planar_4rpr_real *wrench, const planar_4rpr_real *reference,
+    planar_4rpr_real *tau);
+size_t planar_4rpr_force_distribution_batch(const planar_4rpr_model *model, size_t n, const
+    planar_4rpr_real *X, const planar_4rpr_real *V, const planar_4rpr_real *A, const
+    planar_4rpr_real *tau_min, const planar_4rpr_real *tau_max, const planar_4rpr_real *wrench,
+    const planar_4rpr_real *reference, planar_4rpr_real *tau, int *status);
+
 /* X at which the actuated joints stand at q_actuated, by Gauss-Newton from X0. Extra coordinates
    that actuators do not determine stay. Impossible where no pose is found. In: q_actuated (NU),
    X0 (NQ). Out: X (NQ). */

@@ -51,6 +51,7 @@ __all__ = [
     "dissipation",
     "dynamics",
     "energy",
+    "force_distribution",
     "forward_dynamics",
     "forward_kinematics",
     "interpolate",
@@ -60,12 +61,14 @@ __all__ = [
     "joint_margins",
     "joint_rates",
     "leg_reactions",
+    "manipulability",
     "momentum",
     "null_space",
     "pose",
     "power",
     "retract",
     "rotation",
+    "singularity_distance",
     "within_limits",
 ]
 
@@ -678,6 +681,24 @@ def _constants(p, name):
     return p._cache[name]
 
 
+class _Vector(list):
+    """A vector, or a matrix row by row, of a single state."""
+
+    def __add__(self, other):
+        return _Vector([a + b for a, b in zip(self, other)])
+
+    def __sub__(self, other):
+        return _Vector([a - b for a, b in zip(self, other)])
+
+    def __neg__(self):
+        return _Vector([-a for a in self])
+
+
+def _are_finite(rows):
+    """Whether lists of floats have finite entries alone."""
+    return math.isfinite(sum(map(sum, rows))) or all(all(map(math.isfinite, row)) for row in rows)
+
+
 class _Floats:
     """Functions of a state after another, in Python floats: the way for few states."""
 
@@ -707,11 +728,32 @@ class _Floats:
         """Lists that a function gives at a state."""
         try:
             ok, arrays = function(self, *given)
-        except (ZeroDivisionError, OverflowError, ValueError):
+        except (ArithmeticError, ValueError):
             ok = False
-        if ok and all(all(map(math.isfinite, array)) for array in arrays):
+        if ok and _are_finite(arrays):
             return arrays
         return [[np.nan] * math.prod(_SHAPES[n]) for n in names]
+
+    def solved(self, order, a, b):
+        """Solutions, straight through; and which are beyond doubt."""
+        sure, x = np.zeros(self.states, dtype=bool), np.full(b.shape, np.nan)
+        for k, given in enumerate(zip(a.T.tolist(), b.T.tolist())):
+            try:
+                sure[k], (x[:, k],) = order(self, *given)
+            except ZeroDivisionError:
+                pass
+        return sure, x
+
+
+class _Single(_Floats):
+    """A single state in lists of floats throughout."""
+
+    def run(self, function, names, *vectors):
+        """Arrays of a function, row by row; ArithmeticError or ValueError where the state is impossible."""
+        ok, arrays = function(self, *vectors)
+        if not (ok and _are_finite(arrays)):
+            raise ArithmeticError
+        return [_Vector(a) for a in arrays]
 
 
 class _Arrays:
@@ -741,20 +783,27 @@ class _Arrays:
     def zeros(self, name):
         return np.zeros((math.prod(_SHAPES[name]), self.states))
 
-    def computed(self, function, names, vectors):
-        """Flags and arrays (*shape, states) of a function."""
+    def computed(self, function, *vectors):
+        """Flags and arrays (entries, states) of a function."""
         if self.kept is None:
-            flags, arrays = function(self, *vectors)
-        else:
-            if self.done not in self.kept:
-                self.kept[self.done] = _Replay(self.p, function, [len(v) for v in vectors], self.states)
-            flags, arrays = self.kept[self.done].run(vectors)
-            self.done += 1
-        return flags, [a.reshape(*_SHAPES[n], self.states) for a, n in zip(arrays, names)]
+            return function(self, *vectors)
+        if self.done not in self.kept:
+            self.kept[self.done] = _Replay(self.p, function, [len(v) for v in vectors], self.states)
+        self.done += 1
+        return self.kept[self.done - 1].run(vectors)
+
+    def shaped(self, names, arrays):
+        return [a.reshape(*_SHAPES[n], self.states) for a, n in zip(arrays, names)]
+
+    def solved(self, order, a, b):
+        """Solutions, straight through; and which are beyond doubt."""
+        sure, (x,) = self.computed(order, a, b)
+        return sure, np.array(x)
 
     def run(self, function, names, *vectors):
         """Arrays (*shape, states) of a function; NaN where the state is impossible."""
-        ok, arrays = self.computed(function, names, vectors)
+        ok, arrays = self.computed(function, *vectors)
+        arrays = self.shaped(names, arrays)
         ok = np.logical_and(ok, _finite(arrays, self.states))
         if not np.all(ok):
             for a in arrays:
@@ -771,10 +820,10 @@ class _Judged(_Arrays):
 
     def run(self, function, names, *vectors):
         """Arrays (*shape, states) of a function, also where they are nonsense."""
-        (valid, reached, clear), arrays = self.computed(function, names, vectors)
+        (valid, reached, clear), arrays = self.computed(function, *vectors)
         for code, good in ((3, valid), (1, reached), (2, clear)):
             self.failed[code] |= np.logical_not(good)
-        return arrays
+        return self.shaped(names, arrays)
 
     def closed(self, q):
         """q, noting where the iteration has not converged."""
@@ -786,26 +835,90 @@ class _Judged(_Arrays):
         return np.select(list(self.failed.values()), list(self.failed), np.where(possible, 0, 3))
 
 
+_IN_ONE = {}  # by function
+
+
+def _in_one(function):
+    """A function that tells whether a state is possible, of one that tells why not."""
+
+    def run(m, *vectors):
+        (valid, reached, clear), arrays = function(m, *vectors)
+        return valid & reached & clear, arrays
+
+    return _IN_ONE.setdefault(function, run)
+
+
 def _mode(p, states, kept=None):
     """The faster way for so many states."""
     return (_Floats if 0 < states <= _FEW else _Arrays)(p, states, kept)
 
 
-def _call(function, steps, p, *arguments, mode=_mode, unbounded=False):
+def _call(function, steps, p, *arguments, mode=_mode, unbounded=False, plain=()):
     """What the steps give at arguments (name, value, shape of a state, default, rule).
 
-    Where that may be infinite only NaN makes a state impossible.
+    Where that may be infinite only NaN makes a state impossible.  `plain` has the shapes of results
+    where a single state needs no arrays.
     """
+    p, read = _given(p), [a[-1] != "unused" for a in arguments]
+    lists = plain and _lists(arguments)
+    if lists:
+        found = _state(_Single(p, 1), steps, lists, read)
+        results = [_result(a, shape) for a, shape in zip(found or plain, plain)]
+        return results[0] if len(results) == 1 else tuple(results)
     given = [_argument(function, *a) for a in arguments]
     shapes = [a[2] for a in arguments]
     leads = {a[0]: v.shape[: v.ndim - len(a[2])] for a, v in zip(arguments, given)}
-    lead, p = _lead(leads), _given(p)
-    read = [a[4:] != ("unused",) for a in arguments]
-    if lead or mode is _Judged:
+    lead = _lead(leads)
+    if plain and 0 < math.prod(lead) <= _FEW:
+        results = _few(steps, p, lead, given, shapes, read, plain)
+    elif lead or mode is _Judged:
         results = _many(steps, p, lead, given, shapes, read, mode, unbounded)
     else:
         results = _one(steps, p, given, shapes, read, unbounded)
     return results[0] if len(results) == 1 else tuple(results)
+
+
+def _lists(arguments):
+    """Arguments of a single state as lists, where they are such arrays as they mostly are."""
+    found = []
+    for row in arguments:
+        value, shape = row[1:3]
+        if type(value) is np.ndarray:
+            if value.shape != shape or value.dtype is not _REAL or row[-1] == "positive":
+                return None
+            found.append(_Vector(value.tolist()))
+        elif value is None and len(row) > 3 and row[3] is not None:
+            found.append(_Vector(row[3] if isinstance(row[3], tuple) else [row[3]] * shape[0]))
+        else:
+            return None
+    return found
+
+
+def _state(m, steps, given, read):
+    """Lists that the steps give at a state; None where it is impossible."""
+    try:
+        found = steps(m, *given)
+    except (ArithmeticError, ValueError):
+        return None
+    return found if _are_finite(list(compress(given, read))) and _are_finite(found) else None
+
+
+def _result(found, shape):
+    """The array of a list; of an impossible state, for which its shape is given, NaN."""
+    if found is shape:
+        return np.full(shape, np.nan)
+    return np.array(found) if len(shape) == 1 else np.array(found).reshape(shape)
+
+
+def _few(steps, p, lead, given, shapes, read, plain):
+    """Results at a few states, one after another."""
+    m, rows = _Single(p, 1), []
+    for v, shape in zip(given, shapes):
+        flat = np.broadcast_to(v, lead + shape).reshape(math.prod(lead), -1)
+        rows.append(map(_Vector, flat.tolist()))
+    impossible = [[np.nan] * math.prod(shape) for shape in plain]
+    found = [_state(m, steps, state, read) or impossible for state in zip(*rows)]
+    return [np.array(a).reshape(lead + shape) for a, shape in zip(zip(*found), plain)]
 
 
 def _one(steps, p, given, shapes, read, unbounded):
@@ -824,7 +937,11 @@ def _many(steps, p, lead, given, shapes, read, mode, unbounded):
     """Results at many states, block by block; the last block begins where it is as long as the others."""
     count = math.prod(lead)
     size, kept = min(count, _BLOCK), {} if count >= _MANY else None
-    flat = [np.broadcast_to(v, lead + s).reshape(count, *s) for v, s in zip(given, shapes)]
+    # one value for all states stands for itself
+    flat = [
+        np.broadcast_to(v, lead + s).reshape(count, *s) if v.ndim > len(s) else v
+        for v, s in zip(given, shapes)
+    ]
     possible, status, outputs = np.ones(count, dtype=bool), np.zeros(count, dtype=int), []
     if count > size:
         # Never touched, freed at once: the C library, which learns from it, then keeps the memory
@@ -833,7 +950,7 @@ def _many(steps, p, lead, given, shapes, read, mode, unbounded):
     with np.errstate(all="ignore"):
         for stop in (*range(size, count, max(size, 1)), count):
             block = slice(stop - size, stop)
-            states = [_states_last(v[block]) for v in flat]
+            states = [_states_last(v, s, block) for v, s in zip(flat, shapes)]
             m, good = mode(p, size, kept), possible[block]
             found = steps(m, *states)
             if not outputs:
@@ -853,15 +970,17 @@ def _many(steps, p, lead, given, shapes, read, mode, unbounded):
     return [a.reshape(lead + a.shape[1:])[()] for a in outputs]
 
 
-def _states_last(a):
-    """A contiguous array (*shape, states) of one (states, *shape)."""
-    return np.ascontiguousarray(a.transpose(*range(1, a.ndim), 0))
+def _states_last(a, shape, block):
+    """An array (*shape, states) of a block of one (states, *shape), or of a value for all."""
+    if a.ndim == len(shape):
+        return np.broadcast_to(a[..., None], (*shape, block.stop - block.start))
+    return np.ascontiguousarray(a[block].transpose(*range(1, a.ndim), 0))
 
 
 def _finite(arrays, states):
     """In which states all entries of arrays (*shape, states) are finite."""
     flat = [a.reshape(math.prod(a.shape[:-1]), states) for a in arrays]
-    good = np.isfinite(sum(np.add.reduce(a, axis=0) for a in flat))
+    good = np.isfinite(sum(np.einsum("es->s", a) for a in flat))
     if not np.all(good):  # or the sum is too large
         good = np.logical_and.reduce([np.isfinite(a).all(axis=0) for a in flat])
     return good
@@ -970,6 +1089,8 @@ class _Record:
 
     def made(self, operation, *operands):
         """The result of an operation."""
+        if operation in _WITHOUT and operands[0] is _WITHOUT[operation]:
+            return operands[1]
         numbers = [self.number(operand) for operand in operands]
         if all(self.kinds[n] == "one" for n in numbers):
             kind = "one"
@@ -1006,6 +1127,7 @@ class _Record:
         return counts
 
 
+_WITHOUT = {np.logical_and: True}  # first operands that change nothing
 _OF_FLAGS = {np.logical_and, np.greater, np.greater_equal}
 _RECORDS = {}  # by function
 
@@ -1017,11 +1139,12 @@ class _Replay:
         if function not in _RECORDS:
             _RECORDS[function] = _Record(p, function, sizes)
         r = _RECORDS[function]
-        made = {kind: _rows(n, states, bool if kind == "flag" else float) for kind, n in r.counts.items()}
-        made["one"] = [np.empty(()) for _ in range(r.counts["one"])]
-        made["out"] = _rows(sum(r.sizes), states)
-        self.inputs = [_rows(size, states) for size in sizes]
-        self.arrays = np.split(made["out"], np.cumsum(r.sizes)[:-1])
+        rows = _rows(r.counts["state"] + sum(r.sizes) + sum(sizes), states)
+        given, out, state = np.split(rows, np.cumsum((sum(sizes), sum(r.sizes))))
+        made = {"state": state, "out": out, "one": [np.empty(()) for _ in range(r.counts["one"])]}
+        made["flag"] = np.empty((r.counts["flag"], states), dtype=bool)
+        self.inputs = np.split(given, np.cumsum(sizes)[:-1])
+        self.arrays = np.split(out, np.cumsum(r.sizes)[:-1])
         at = {number: np.array(value) for value, number in r.literals.items()}
         for values, given in zip(r.inputs, self.inputs):
             at |= {v.number: row for v, row in zip(values, given)}
@@ -1043,9 +1166,26 @@ class _Replay:
         return self.flags, self.arrays
 
 
-def _rows(count, states, kind=float):
-    """Rows of so many states, a cache line apart from each other."""
-    return np.empty((count, states + 8), dtype=kind)[:, :states]
+def _rows(count, states):
+    """Rows of so many states in one piece, which the system keeps in a few large pages if it is told.
+
+    NumPy tells it of pieces from 4 MB on.  It makes operations a third faster.
+    """
+    row = states + 8  # a cache line further: rows do not compete for the same places of the cache
+    piece = np.empty(max(count * row, 2 * _PAGE) + _PAGE)
+    start = -(piece.ctypes.data // piece.itemsize) % _PAGE
+    return piece[start : start + count * row].reshape(count, row)[:, :states]
+
+
+_PAGE = (2 << 20) // 8  # numbers in a large page
+
+
+def _times(a, b):
+    """Products of matrices (m, n, states) with vectors (n, states)."""
+    if isinstance(b, _Vector):
+        rows = (a[k : k + len(b)] for k in range(0, len(a), len(b)))
+        return _Vector([sum([x * y for x, y in zip(row, b)]) for row in rows])
+    return np.einsum("ijs,js->is", a, b)
 
 
 def _with_forces(a, amounts, directions, legs):
@@ -1132,8 +1272,10 @@ _CLEARLY = 2.0  # rows change places only for a pivot that is larger by this fac
 
 def _solve(a, b):
     """x with a x = b, a (n, n, states), b (n, states): rows scaled, partial pivoting; NaN if singular."""
+    if isinstance(b, _Vector):
+        return _Vector(_solve_one([a[k : k + len(b)] for k in range(0, len(a), len(b))], b))
     n, states = b.shape
-    if 0 < states <= _FEW:
+    if 0 < states <= 8:
         systems = zip(a.transpose(2, 0, 1).tolist(), b.T.tolist())
         return np.array([_solve_one(*each) for each in systems]).T.reshape(n, states)
     size = np.max(np.abs(a), axis=1, initial=0.0)
@@ -1158,6 +1300,38 @@ def _solve(a, b):
         known = np.einsum("js,js->s", rows[k, k + 1 : n], x[k + 1 :])
         x[k] = (rows[k, n] - known) / rows[k, k]
     x[:, ~(good & np.isfinite(x).all(axis=0))] = np.nan
+    return x
+
+
+class _Order:
+    """How a system is solved near home.
+
+    Args:
+        solve: the function for so many equations.
+        rows: in the order of their pivots.
+        limits: of multiples, column by column, and of 1/pivot.
+    """
+
+    def __init__(self, solve, rows, limits):
+        self.solve, self.rows, self.limits = solve, rows, limits
+
+    def __call__(self, m, a, b):
+        """Solutions of a x = b, and whether these are beyond doubt."""
+        return self.solve(a, b, self.rows, self.limits)
+
+
+def _straight(m, a, b, order):
+    """The same, in the order of rows at home; with a choice of rows only where that is in doubt."""
+    if isinstance(b, _Vector):
+        try:
+            sure, (x,) = order(m, a, b)
+        except ZeroDivisionError:
+            sure = False
+        return _Vector(x) if sure else _solve(a, b)
+    sure, x = m.solved(order, a.reshape(-1, m.states), b)
+    at = np.flatnonzero(np.logical_not(sure))
+    if at.size:
+        x[:, at] = _solve(a[..., at], b[:, at])
     return x
 
 
@@ -1231,6 +1405,94 @@ def _singular_values(a):
     values = np.linalg.svd(a, compute_uv=False).T.copy()
     values[:, bad] = np.nan
     return values
+
+
+_TURNS = 20  # steps of a search, for every bounded force
+
+
+def _least_entry(a):
+    """The least entry."""
+    return np.min(a, axis=0)
+
+
+def _spread(a, n):
+    """Of the first n entries the product, and the last over the first, 0 where that is 0."""
+    return np.prod(a[:n], axis=0), np.where(a[0] == 0.0, 0.0, a[n - 1] / a[0])
+
+
+def _missed_bound(start, t, bounds, side):
+    """The bound that is missed by most, and 1 for a lower, -1 for an upper one; None if none is."""
+    size, endless = np.max(np.abs(start), axis=0)
+    found = None
+    for sign, bound in zip((1.0, -1.0), bounds):
+        for k in np.flatnonzero(np.isfinite(bound) & (side == 0.0)).tolist():
+            gap, rate = sign * (bound[k] - t[k, 0]), -sign * t[k, 1]
+            rate = rate if abs(rate) > _PIVOT * endless else 0.0
+            if rate > 0.0 or (rate == 0.0 and gap > _PIVOT * (size + abs(bound[k]))):
+                if found is None or (rate, gap) > found[0]:
+                    found = (rate, gap), (k, sign)
+    return found and found[1]
+
+
+def _at_bounds(start, gram, bounds, side):
+    """The point nearest to the start at the bounds on these sides."""
+    kept = np.flatnonzero(side)
+    bound = np.where(side > 0.0, *bounds)[kept]
+    right = np.column_stack((bound, np.zeros(len(kept)))) - start[kept]
+    t = start + gram[:, kept] @ np.linalg.solve(gram[np.ix_(kept, kept)], right)
+    t[kept, 0] = bound
+    t[:, 0] = np.clip(t[:, 0], *bounds)
+    return t
+
+
+def _nearest_point(start, gram, *bounds):
+    """The point (n, 2) within the bounds that is nearest to the start; None if there is none."""
+    amounts, side, new = np.zeros_like(start), np.zeros(len(start)), None
+    for _ in range(_TURNS * len(start)):
+        t = start + gram @ amounts
+        new = new or _missed_bound(start, t, bounds, side)
+        if new is None:
+            return _at_bounds(start, gram, bounds, side)
+        p, sign = new
+        kept, without = np.flatnonzero(side), np.zeros(len(side))
+        without[kept] = np.linalg.solve(gram[np.ix_(kept, kept)], sign * gram[kept, p])
+        apart, clear = gram[p, p] - sign * gram[p] @ without, _PIVOT * (1.0 + without @ without)
+        leaving = [k for k in kept.tolist() if side[k] * without[k] > clear]
+        steps = [(*(amounts[k, ::-1] / without[k]).tolist(), k) for k in leaving]
+        if apart > clear:
+            gap = sign * (bounds[0 if sign > 0.0 else 1][p] - t[p, 0])
+            steps.append((-sign * t[p, 1] / apart, gap / apart, -1))
+        if not steps:
+            return None
+        *step, k = min(steps)
+        amounts -= np.outer(without, step[::-1])
+        amounts[p] += sign * np.array(step[::-1])
+        if k < 0:
+            side[p], new = sign, None
+        else:
+            side[k] = amounts[k] = 0.0
+    return None
+
+
+def _each_state(find, size, *operands):
+    """What is found at every state; NaN where that is None, or something is not finite."""
+    found = np.full((size, operands[0].shape[-1]), np.nan)
+    for k in range(found.shape[1]):
+        own = [a[..., k] for a in operands]
+        if all(np.isfinite(a).all() for a in own):
+            made = find(*own)
+            found[:, k] = np.nan if made is None else made
+    return found
+
+
+def _nearest_within(a, b, c, d):
+    """Of the a + b y with entries from c to d the one nearest to a; NaN if there is none."""
+
+    def find(a, b, c, d):
+        t = _nearest_point(np.column_stack((a, np.zeros(len(a)))), b, c, d)
+        return None if t is None else t[:, 0]
+
+    return _each_state(find, len(a), a, b, c, d)
 
 
 def _least_squares(a, b, least):
@@ -1370,27 +1632,22 @@ def _run_dynamics(m, X, V):
         rpr_q_y = R_xx*rpr_platform_point_y + R_yx*rpr_platform_point_x
         rpr_S_x = rpr_q_x + t_x - rpr_base_point_x
         rpr_S_y = rpr_q_y + t_y - rpr_base_point_y
-        # (rpr-px_1) component along the reference direction
-        rpr_px_1 = rpr_S_x*rpr_base_frame_xx + rpr_S_y*rpr_base_frame_yx
-        # (rpr-py_1) component across the reference direction
-        rpr_py_1 = rpr_S_x*rpr_base_frame_xy + rpr_S_y*rpr_base_frame_yy
-        # (rpr-rho2_1) squared amplitude
-        rpr_rho2_1 = rpr_px_1*rpr_px_1 + rpr_py_1*rpr_py_1
-        # (rpr-root_1) amplitude, with the sign of the branch
-        rpr_root_1 = rpr_branch_1*sqrt(rpr_rho2_1)
+        rpr_S_in_turn1_x = rpr_S_x*rpr_base_frame_xx + rpr_S_y*rpr_base_frame_yx
+        rpr_S_in_turn1_y = rpr_S_x*rpr_base_frame_xy + rpr_S_y*rpr_base_frame_yy
+        # (rpr-q_2) displacement of joint 2
+        rpr_q_2_t = rpr_S_in_turn1_x*rpr_S_in_turn1_x + rpr_S_in_turn1_y*rpr_S_in_turn1_y
+        rpr_q_2 = rpr_branch_1*sqrt(rpr_q_2_t)
         # (rpr-S_dot) velocity of the connection point
-        inv_rpr_root_1 = 1.0/rpr_root_1
-        axis_x_rpr_axes1_x = inv_rpr_root_1*rpr_S_x
-        axis_x_rpr_axes1_y = inv_rpr_root_1*rpr_S_y
+        inv_rpr_q_2 = 1.0/rpr_q_2
+        axis_x_rpr_axes1_x = inv_rpr_q_2*rpr_S_x
+        axis_x_rpr_axes1_y = inv_rpr_q_2*rpr_S_y
         rpr_S_dot_t = omega_z*rpr_q_y
         rpr_S_dot_t_2 = omega_z*rpr_q_x
         rpr_S_dot_x = t_dot_x - rpr_S_dot_t
         rpr_S_dot_y = rpr_S_dot_t_2 + t_dot_y
         rpr_S_dot_in_axes1_x = axis_x_rpr_axes1_x*rpr_S_dot_x + axis_x_rpr_axes1_y*rpr_S_dot_y
         # (rpr-qd_1) rate of joint 1
-        rpr_qd_1 = (
-        inv_rpr_root_1*(axis_x_rpr_axes1_x*rpr_S_dot_y - axis_x_rpr_axes1_y*rpr_S_dot_x)
-        )
+        rpr_qd_1 = inv_rpr_q_2*(axis_x_rpr_axes1_x*rpr_S_dot_y - axis_x_rpr_axes1_y*rpr_S_dot_x)
         # (rpr-W_1) centripetal tensor of link 1
         rpr_W_1_in_axes1_xx = -rpr_qd_1*rpr_qd_1
         # (rpr-u_1) centripetal acceleration of the connection point
@@ -1400,7 +1657,7 @@ def _run_dynamics(m, X, V):
         # (rpr-rel_o) remainder without the acceleration in: acceleration of the connection point left to the joint accelerations
         rpr_rel_o_in_axes1_y = rpr_u_1_in_axes1_y - 2.0*rpr_S_dot_in_axes1_x*rpr_qd_1
         # (rpr-qdd_1_o) remainder without the acceleration in: acceleration of joint 1
-        rpr_qdd_1_o = inv_rpr_root_1*rpr_rel_o_in_axes1_y
+        rpr_qdd_1_o = inv_rpr_q_2*rpr_rel_o_in_axes1_y
         # (rpr-acc_2_o) remainder without the acceleration in: acceleration of the reference point of link 2, less gravity
         rpr_g_in_axes1_x = axis_x_rpr_axes1_x*gravity_x + axis_x_rpr_axes1_y*gravity_y
         rpr_g_in_axes1_y = axis_x_rpr_axes1_x*gravity_y - axis_x_rpr_axes1_y*gravity_x
@@ -1419,14 +1676,14 @@ def _run_dynamics(m, X, V):
             rpr_g_in_axes1_y*rpr_h_1_in_spec1_x
         )
         # (rpr-d_c) coefficient of the acceleration in: leg force on the platform without actuation and without the mass at the connection point
-        rpr_d_c_in_axes1_xy = inv_rpr_root_1*rpr_h_2_in_spec1_y
+        rpr_d_c_in_axes1_xy = inv_rpr_q_2*rpr_h_2_in_spec1_y
         rpr_d_c_in_axes1_yy = (
-        -inv_rpr_root_1*rpr_h_2_in_spec1_x - inv_rpr_root_1*(rpr_h_2_in_spec1_x +
-            inv_rpr_root_1*rpr_J_group_1_in_axes1_zz)
+        -inv_rpr_q_2*rpr_h_2_in_spec1_x - inv_rpr_q_2*(rpr_h_2_in_spec1_x +
+            inv_rpr_q_2*rpr_J_group_1_in_axes1_zz)
         )
         # (rpr-c_o) remainder without the acceleration in: leg force on the platform without actuation and without the mass at the connection point
         rpr_c_o_in_axes1_y = (
-        -inv_rpr_root_1*rpr_mu_1_o_in_axes1_z - rpr_W_1_in_axes1_xx*rpr_h_2_in_spec1_y -
+        -inv_rpr_q_2*rpr_mu_1_o_in_axes1_z - rpr_W_1_in_axes1_xx*rpr_h_2_in_spec1_y -
             rpr_h_2_in_spec1_x*rpr_qdd_1_o
         )
         # (rpr-Q) inertia of the leg at the connection point, without the mass gathered there
@@ -1453,8 +1710,8 @@ def _run_dynamics(m, X, V):
         # (rpr-H_a_2) moment of the column's unit force about the platform origin
         rpr_H_a_2_z = axis_x_rpr_axes1_y*rpr_q_x - axis_x_rpr_axes1_x*rpr_q_y
         ok = (
-        ok & (abs(rpr_rho2_1) > _TOLERANCE * _TOLERANCE * 0.3844) & (abs(rpr_root_1) > _TOLERANCE
-            * 0.62)
+        ok & (abs(rpr_q_2_t) > _TOLERANCE * _TOLERANCE * 0.3844) & (abs(rpr_q_2) > _TOLERANCE *
+            0.62)
         )
         # (M_tt) translational block of M
         M_tt_rpr_xx += rpr_Q_xx
@@ -1540,16 +1797,13 @@ def _run_M(m, X):
         rpr_q_y = R_xx*rpr_platform_point_y + R_yx*rpr_platform_point_x
         rpr_S_x = rpr_q_x + t_x - rpr_base_point_x
         rpr_S_y = rpr_q_y + t_y - rpr_base_point_y
-        # (rpr-px_1) component along the reference direction
-        rpr_px_1 = rpr_S_x*rpr_base_frame_xx + rpr_S_y*rpr_base_frame_yx
-        # (rpr-py_1) component across the reference direction
-        rpr_py_1 = rpr_S_x*rpr_base_frame_xy + rpr_S_y*rpr_base_frame_yy
-        # (rpr-rho2_1) squared amplitude
-        rpr_rho2_1 = rpr_px_1*rpr_px_1 + rpr_py_1*rpr_py_1
-        # (rpr-root_1) amplitude, with the sign of the branch
-        rpr_root_1 = rpr_branch_1*sqrt(rpr_rho2_1)
+        rpr_S_in_turn1_x = rpr_S_x*rpr_base_frame_xx + rpr_S_y*rpr_base_frame_yx
+        rpr_S_in_turn1_y = rpr_S_x*rpr_base_frame_xy + rpr_S_y*rpr_base_frame_yy
+        # (rpr-q_2) displacement of joint 2
+        rpr_q_2_t = rpr_S_in_turn1_x*rpr_S_in_turn1_x + rpr_S_in_turn1_y*rpr_S_in_turn1_y
+        rpr_q_2 = rpr_branch_1*sqrt(rpr_q_2_t)
         # (rpr-w_1) reciprocal vector 1
-        rpr_w_1_in_axes1_y = 1.0/rpr_root_1
+        rpr_w_1_in_axes1_y = 1.0/rpr_q_2
         # (rpr-w_2) reciprocal vector 2
         rpr_w_2_x = rpr_S_x*rpr_w_1_in_axes1_y
         rpr_w_2_y = rpr_S_y*rpr_w_1_in_axes1_y
@@ -1572,8 +1826,8 @@ def _run_M(m, X):
         # (M_aa) rotational block of M
         rpr_M_aa_t = rpr_M_ta_t_2*rpr_q_x - rpr_M_ta_t*rpr_q_y
         ok = (
-        ok & (abs(rpr_rho2_1) > _TOLERANCE * _TOLERANCE * 0.3844) & (abs(rpr_root_1) > _TOLERANCE
-            * 0.62)
+        ok & (abs(rpr_q_2_t) > _TOLERANCE * _TOLERANCE * 0.3844) & (abs(rpr_q_2) > _TOLERANCE *
+            0.62)
         )
         # (M_tt) translational block of M
         M_tt_rpr_xx += rpr_Q_xx
@@ -1654,27 +1908,22 @@ def _run_Z(m, X, V):
         rpr_q_y = R_xx*rpr_platform_point_y + R_yx*rpr_platform_point_x
         rpr_S_x = rpr_q_x + t_x - rpr_base_point_x
         rpr_S_y = rpr_q_y + t_y - rpr_base_point_y
-        # (rpr-px_1) component along the reference direction
-        rpr_px_1 = rpr_S_x*rpr_base_frame_xx + rpr_S_y*rpr_base_frame_yx
-        # (rpr-py_1) component across the reference direction
-        rpr_py_1 = rpr_S_x*rpr_base_frame_xy + rpr_S_y*rpr_base_frame_yy
-        # (rpr-rho2_1) squared amplitude
-        rpr_rho2_1 = rpr_px_1*rpr_px_1 + rpr_py_1*rpr_py_1
-        # (rpr-root_1) amplitude, with the sign of the branch
-        rpr_root_1 = rpr_branch_1*sqrt(rpr_rho2_1)
+        rpr_S_in_turn1_x = rpr_S_x*rpr_base_frame_xx + rpr_S_y*rpr_base_frame_yx
+        rpr_S_in_turn1_y = rpr_S_x*rpr_base_frame_xy + rpr_S_y*rpr_base_frame_yy
+        # (rpr-q_2) displacement of joint 2
+        rpr_q_2_t = rpr_S_in_turn1_x*rpr_S_in_turn1_x + rpr_S_in_turn1_y*rpr_S_in_turn1_y
+        rpr_q_2 = rpr_branch_1*sqrt(rpr_q_2_t)
         # (rpr-S_dot) velocity of the connection point
-        inv_rpr_root_1 = 1.0/rpr_root_1
-        axis_x_rpr_axes1_x = inv_rpr_root_1*rpr_S_x
-        axis_x_rpr_axes1_y = inv_rpr_root_1*rpr_S_y
+        inv_rpr_q_2 = 1.0/rpr_q_2
+        axis_x_rpr_axes1_x = inv_rpr_q_2*rpr_S_x
+        axis_x_rpr_axes1_y = inv_rpr_q_2*rpr_S_y
         rpr_S_dot_t = omega_z*rpr_q_y
         rpr_S_dot_t_2 = omega_z*rpr_q_x
         rpr_S_dot_x = t_dot_x - rpr_S_dot_t
         rpr_S_dot_y = rpr_S_dot_t_2 + t_dot_y
         rpr_S_dot_in_axes1_x = axis_x_rpr_axes1_x*rpr_S_dot_x + axis_x_rpr_axes1_y*rpr_S_dot_y
         # (rpr-qd_1) rate of joint 1
-        rpr_qd_1 = (
-        inv_rpr_root_1*(axis_x_rpr_axes1_x*rpr_S_dot_y - axis_x_rpr_axes1_y*rpr_S_dot_x)
-        )
+        rpr_qd_1 = inv_rpr_q_2*(axis_x_rpr_axes1_x*rpr_S_dot_y - axis_x_rpr_axes1_y*rpr_S_dot_x)
         # (rpr-W_1) centripetal tensor of link 1
         rpr_W_1_in_axes1_xx = -rpr_qd_1*rpr_qd_1
         # (rpr-u_1) centripetal acceleration of the connection point
@@ -1684,7 +1933,7 @@ def _run_Z(m, X, V):
         # (rpr-rel_o) remainder without the acceleration in: acceleration of the connection point left to the joint accelerations
         rpr_rel_o_in_axes1_y = rpr_u_1_in_axes1_y - 2.0*rpr_S_dot_in_axes1_x*rpr_qd_1
         # (rpr-qdd_1_o) remainder without the acceleration in: acceleration of joint 1
-        rpr_qdd_1_o = inv_rpr_root_1*rpr_rel_o_in_axes1_y
+        rpr_qdd_1_o = inv_rpr_q_2*rpr_rel_o_in_axes1_y
         # (rpr-acc_2_o) remainder without the acceleration in: acceleration of the reference point of link 2, less gravity
         rpr_g_in_axes1_x = axis_x_rpr_axes1_x*gravity_x + axis_x_rpr_axes1_y*gravity_y
         rpr_g_in_axes1_y = axis_x_rpr_axes1_x*gravity_y - axis_x_rpr_axes1_y*gravity_x
@@ -1704,7 +1953,7 @@ def _run_Z(m, X, V):
         )
         # (rpr-c_o) remainder without the acceleration in: leg force on the platform without actuation and without the mass at the connection point
         rpr_c_o_in_axes1_y = (
-        -inv_rpr_root_1*rpr_mu_1_o_in_axes1_z - rpr_W_1_in_axes1_xx*rpr_h_2_in_spec1_y -
+        -inv_rpr_q_2*rpr_mu_1_o_in_axes1_z - rpr_W_1_in_axes1_xx*rpr_h_2_in_spec1_y -
             rpr_h_2_in_spec1_x*rpr_qdd_1_o
         )
         # (rpr-U) velocity and gravity terms of the leg force
@@ -1717,8 +1966,8 @@ def _run_Z(m, X, V):
         # (Z_a) rotational part of Z
         rpr_Z_a_t = rpr_U_y*rpr_q_x - rpr_U_x*rpr_q_y
         ok = (
-        ok & (abs(rpr_rho2_1) > _TOLERANCE * _TOLERANCE * 0.3844) & (abs(rpr_root_1) > _TOLERANCE
-            * 0.62)
+        ok & (abs(rpr_q_2_t) > _TOLERANCE * _TOLERANCE * 0.3844) & (abs(rpr_q_2) > _TOLERANCE *
+            0.62)
         )
         # (Z_t) translational part of Z
         Z_t_rpr_x += rpr_U_x
@@ -1765,24 +2014,21 @@ def _run_H(m, X):
         rpr_q_y = R_xx*rpr_platform_point_y + R_yx*rpr_platform_point_x
         rpr_S_x = rpr_q_x + t_x - rpr_base_point_x
         rpr_S_y = rpr_q_y + t_y - rpr_base_point_y
-        # (rpr-px_1) component along the reference direction
-        rpr_px_1 = rpr_S_x*rpr_base_frame_xx + rpr_S_y*rpr_base_frame_yx
-        # (rpr-py_1) component across the reference direction
-        rpr_py_1 = rpr_S_x*rpr_base_frame_xy + rpr_S_y*rpr_base_frame_yy
-        # (rpr-rho2_1) squared amplitude
-        rpr_rho2_1 = rpr_px_1*rpr_px_1 + rpr_py_1*rpr_py_1
-        # (rpr-root_1) amplitude, with the sign of the branch
-        rpr_root_1 = rpr_branch_1*sqrt(rpr_rho2_1)
+        rpr_S_in_turn1_x = rpr_S_x*rpr_base_frame_xx + rpr_S_y*rpr_base_frame_yx
+        rpr_S_in_turn1_y = rpr_S_x*rpr_base_frame_xy + rpr_S_y*rpr_base_frame_yy
+        # (rpr-q_2) displacement of joint 2
+        rpr_q_2_t = rpr_S_in_turn1_x*rpr_S_in_turn1_x + rpr_S_in_turn1_y*rpr_S_in_turn1_y
+        rpr_q_2 = rpr_branch_1*sqrt(rpr_q_2_t)
         # (rpr-w_1) reciprocal vector 1
-        rpr_w_1_in_axes1_y = 1.0/rpr_root_1
+        rpr_w_1_in_axes1_y = 1.0/rpr_q_2
         # (rpr-w_2) reciprocal vector 2
         rpr_w_2_x = rpr_S_x*rpr_w_1_in_axes1_y
         rpr_w_2_y = rpr_S_y*rpr_w_1_in_axes1_y
         # (rpr-H_a_2) moment of the column's unit force about the platform origin
         rpr_H_a_2_z = rpr_q_x*rpr_w_2_y - rpr_q_y*rpr_w_2_x
         ok = (
-        ok & (abs(rpr_rho2_1) > _TOLERANCE * _TOLERANCE * 0.3844) & (abs(rpr_root_1) > _TOLERANCE
-            * 0.62)
+        ok & (abs(rpr_q_2_t) > _TOLERANCE * _TOLERANCE * 0.3844) & (abs(rpr_q_2) > _TOLERANCE *
+            0.62)
         )
         # (rpr-w_2) reciprocal vector 2
         out_H[_H_rpr[0][leg]] = rpr_w_2_x
@@ -1850,31 +2096,26 @@ def _run_required(m, X, V, A):
         rpr_q_y = R_xx*rpr_platform_point_y + R_yx*rpr_platform_point_x
         rpr_S_x = rpr_q_x + t_x - rpr_base_point_x
         rpr_S_y = rpr_q_y + t_y - rpr_base_point_y
-        # (rpr-px_1) component along the reference direction
-        rpr_px_1 = rpr_S_x*rpr_base_frame_xx + rpr_S_y*rpr_base_frame_yx
-        # (rpr-py_1) component across the reference direction
-        rpr_py_1 = rpr_S_x*rpr_base_frame_xy + rpr_S_y*rpr_base_frame_yy
-        # (rpr-rho2_1) squared amplitude
-        rpr_rho2_1 = rpr_px_1*rpr_px_1 + rpr_py_1*rpr_py_1
-        # (rpr-root_1) amplitude, with the sign of the branch
-        rpr_root_1 = rpr_branch_1*sqrt(rpr_rho2_1)
+        rpr_S_in_turn1_x = rpr_S_x*rpr_base_frame_xx + rpr_S_y*rpr_base_frame_yx
+        rpr_S_in_turn1_y = rpr_S_x*rpr_base_frame_xy + rpr_S_y*rpr_base_frame_yy
+        # (rpr-q_2) displacement of joint 2
+        rpr_q_2_t = rpr_S_in_turn1_x*rpr_S_in_turn1_x + rpr_S_in_turn1_y*rpr_S_in_turn1_y
+        rpr_q_2 = rpr_branch_1*sqrt(rpr_q_2_t)
         # (rpr-c_1) cosine of the angle of joint 1 from its reference direction
-        inv_rpr_root_1 = 1.0/rpr_root_1
-        rpr_c_1 = inv_rpr_root_1*rpr_px_1
+        inv_rpr_q_2 = 1.0/rpr_q_2
+        rpr_c_1 = inv_rpr_q_2*rpr_S_in_turn1_x
         # (rpr-s_1) sine of the angle of joint 1 from its reference direction
-        rpr_s_1 = inv_rpr_root_1*rpr_py_1
+        rpr_s_1 = inv_rpr_q_2*rpr_S_in_turn1_y
         # (rpr-S_dot) velocity of the connection point
-        axis_x_rpr_axes1_x = inv_rpr_root_1*rpr_S_x
-        axis_x_rpr_axes1_y = inv_rpr_root_1*rpr_S_y
+        axis_x_rpr_axes1_x = inv_rpr_q_2*rpr_S_x
+        axis_x_rpr_axes1_y = inv_rpr_q_2*rpr_S_y
         rpr_S_dot_t = omega_z*rpr_q_y
         rpr_S_dot_t_2 = omega_z*rpr_q_x
         rpr_S_dot_x = t_dot_x - rpr_S_dot_t
         rpr_S_dot_y = rpr_S_dot_t_2 + t_dot_y
         rpr_S_dot_in_axes1_x = axis_x_rpr_axes1_x*rpr_S_dot_x + axis_x_rpr_axes1_y*rpr_S_dot_y
         # (rpr-qd_1) rate of joint 1
-        rpr_qd_1 = (
-        inv_rpr_root_1*(axis_x_rpr_axes1_x*rpr_S_dot_y - axis_x_rpr_axes1_y*rpr_S_dot_x)
-        )
+        rpr_qd_1 = inv_rpr_q_2*(axis_x_rpr_axes1_x*rpr_S_dot_y - axis_x_rpr_axes1_y*rpr_S_dot_x)
         # (rpr-W_1) centripetal tensor of link 1
         rpr_W_1_in_axes1_xx = -rpr_qd_1*rpr_qd_1
         # (rpr-a_p) acceleration of the connection point without its centripetal part
@@ -1887,7 +2128,7 @@ def _run_required(m, X, V, A):
         # (rpr-rel) acceleration of the connection point left to the joint accelerations
         rpr_rel_in_axes1_y = rpr_S_ddot_in_axes1_y - 2.0*rpr_S_dot_in_axes1_x*rpr_qd_1
         # (rpr-qdd_1) acceleration of joint 1
-        rpr_qdd_1 = inv_rpr_root_1*rpr_rel_in_axes1_y
+        rpr_qdd_1 = inv_rpr_q_2*rpr_rel_in_axes1_y
         # (rpr-acc_2) acceleration of the reference point of link 2, less gravity
         rpr_g_in_axes1_x = rpr_acc_2_t*rpr_c_1 + rpr_acc_2_t_2*rpr_s_1
         rpr_g_in_axes1_y = rpr_acc_2_t_2*rpr_c_1 - rpr_acc_2_t*rpr_s_1
@@ -1907,7 +2148,7 @@ def _run_required(m, X, V, A):
         )
         # (rpr-c) leg force on the platform without actuation and without the mass at the connection point
         rpr_c_in_axes1_y = (
-        -inv_rpr_root_1*rpr_mu_1_in_axes1_z - rpr_W_1_in_axes1_xx*rpr_h_2_in_spec1_y -
+        -inv_rpr_q_2*rpr_mu_1_in_axes1_z - rpr_W_1_in_axes1_xx*rpr_h_2_in_spec1_y -
             rpr_h_2_in_spec1_x*rpr_qdd_1
         )
         rpr_c_x = -axis_x_rpr_axes1_x*rpr_phi_2_in_axes1_x - axis_x_rpr_axes1_y*rpr_c_in_axes1_y
@@ -1917,8 +2158,8 @@ def _run_required(m, X, V, A):
         # (rpr-H_a_2) moment of the column's unit force about the platform origin
         rpr_H_a_2_z = axis_x_rpr_axes1_y*rpr_q_x - axis_x_rpr_axes1_x*rpr_q_y
         ok = (
-        ok & (abs(rpr_rho2_1) > _TOLERANCE * _TOLERANCE * 0.3844) & (abs(rpr_root_1) > _TOLERANCE
-            * 0.62)
+        ok & (abs(rpr_q_2_t) > _TOLERANCE * _TOLERANCE * 0.3844) & (abs(rpr_q_2) > _TOLERANCE *
+            0.62)
         )
         # (R_t) force that actuators and external wrench must give
         R_t_t += rpr_c_x
@@ -1969,25 +2210,22 @@ def _run_inverse_kinematics(m, X):
         # (rpr-S) from the base point to the connection point
         rpr_S_x = t_x + R_xx*rpr_platform_point_x - rpr_base_point_x - R_yx*rpr_platform_point_y
         rpr_S_y = t_y + R_xx*rpr_platform_point_y + R_yx*rpr_platform_point_x - rpr_base_point_y
-        # (rpr-px_1) component along the reference direction
-        rpr_px_1 = rpr_S_x*rpr_base_frame_xx + rpr_S_y*rpr_base_frame_yx
-        # (rpr-py_1) component across the reference direction
-        rpr_py_1 = rpr_S_x*rpr_base_frame_xy + rpr_S_y*rpr_base_frame_yy
-        # (rpr-rho2_1) squared amplitude
-        rpr_rho2_1 = rpr_px_1*rpr_px_1 + rpr_py_1*rpr_py_1
-        # (rpr-root_1) amplitude, with the sign of the branch
-        rpr_root_1 = rpr_branch_1*sqrt(rpr_rho2_1)
+        rpr_S_in_turn1_x = rpr_S_x*rpr_base_frame_xx + rpr_S_y*rpr_base_frame_yx
+        rpr_S_in_turn1_y = rpr_S_x*rpr_base_frame_xy + rpr_S_y*rpr_base_frame_yy
+        # (rpr-q_2) displacement of joint 2
+        rpr_q_2_t = rpr_S_in_turn1_x*rpr_S_in_turn1_x + rpr_S_in_turn1_y*rpr_S_in_turn1_y
+        rpr_q_2 = rpr_branch_1*sqrt(rpr_q_2_t)
         # (rpr-q_1) displacement of joint 1
-        inv_rpr_root_1 = 1.0/rpr_root_1
-        rpr_q_1 = atan2(inv_rpr_root_1*rpr_py_1, inv_rpr_root_1*rpr_px_1)
+        inv_rpr_q_2 = 1.0/rpr_q_2
+        rpr_q_1 = atan2(inv_rpr_q_2*rpr_S_in_turn1_y, inv_rpr_q_2*rpr_S_in_turn1_x)
         ok = (
-        ok & (abs(rpr_rho2_1) > _TOLERANCE * _TOLERANCE * 0.3844) & (abs(rpr_root_1) > _TOLERANCE
-            * 0.62)
+        ok & (abs(rpr_q_2_t) > _TOLERANCE * _TOLERANCE * 0.3844) & (abs(rpr_q_2) > _TOLERANCE *
+            0.62)
         )
         # (rpr-q_1) displacement of joint 1
         out_q[_q_rpr[0][leg]] = rpr_q_1
         # (rpr-q_2) displacement of joint 2
-        out_q[_q_rpr[1][leg]] = rpr_root_1
+        out_q[_q_rpr[1][leg]] = rpr_q_2
     return ok, (out_q,)
 
 
@@ -2025,28 +2263,23 @@ def _run_joint_rates(m, X, V):
         rpr_q_y = R_xx*rpr_platform_point_y + R_yx*rpr_platform_point_x
         rpr_S_x = rpr_q_x + t_x - rpr_base_point_x
         rpr_S_y = rpr_q_y + t_y - rpr_base_point_y
-        # (rpr-px_1) component along the reference direction
-        rpr_px_1 = rpr_S_x*rpr_base_frame_xx + rpr_S_y*rpr_base_frame_yx
-        # (rpr-py_1) component across the reference direction
-        rpr_py_1 = rpr_S_x*rpr_base_frame_xy + rpr_S_y*rpr_base_frame_yy
-        # (rpr-rho2_1) squared amplitude
-        rpr_rho2_1 = rpr_px_1*rpr_px_1 + rpr_py_1*rpr_py_1
-        # (rpr-root_1) amplitude, with the sign of the branch
-        rpr_root_1 = rpr_branch_1*sqrt(rpr_rho2_1)
+        rpr_S_in_turn1_x = rpr_S_x*rpr_base_frame_xx + rpr_S_y*rpr_base_frame_yx
+        rpr_S_in_turn1_y = rpr_S_x*rpr_base_frame_xy + rpr_S_y*rpr_base_frame_yy
+        # (rpr-q_2) displacement of joint 2
+        rpr_q_2_t = rpr_S_in_turn1_x*rpr_S_in_turn1_x + rpr_S_in_turn1_y*rpr_S_in_turn1_y
+        rpr_q_2 = rpr_branch_1*sqrt(rpr_q_2_t)
         # (rpr-S_dot) velocity of the connection point
-        inv_rpr_root_1 = 1.0/rpr_root_1
-        axis_x_rpr_axes1_x = inv_rpr_root_1*rpr_S_x
-        axis_x_rpr_axes1_y = inv_rpr_root_1*rpr_S_y
+        inv_rpr_q_2 = 1.0/rpr_q_2
+        axis_x_rpr_axes1_x = inv_rpr_q_2*rpr_S_x
+        axis_x_rpr_axes1_y = inv_rpr_q_2*rpr_S_y
         rpr_S_dot_x = t_dot_x - omega_z*rpr_q_y
         rpr_S_dot_y = t_dot_y + omega_z*rpr_q_x
         rpr_S_dot_in_axes1_x = axis_x_rpr_axes1_x*rpr_S_dot_x + axis_x_rpr_axes1_y*rpr_S_dot_y
         # (rpr-qd_1) rate of joint 1
-        rpr_qd_1 = (
-        inv_rpr_root_1*(axis_x_rpr_axes1_x*rpr_S_dot_y - axis_x_rpr_axes1_y*rpr_S_dot_x)
-        )
+        rpr_qd_1 = inv_rpr_q_2*(axis_x_rpr_axes1_x*rpr_S_dot_y - axis_x_rpr_axes1_y*rpr_S_dot_x)
         ok = (
-        ok & (abs(rpr_rho2_1) > _TOLERANCE * _TOLERANCE * 0.3844) & (abs(rpr_root_1) > _TOLERANCE
-            * 0.62)
+        ok & (abs(rpr_q_2_t) > _TOLERANCE * _TOLERANCE * 0.3844) & (abs(rpr_q_2) > _TOLERANCE *
+            0.62)
         )
         # (rpr-qd_1) rate of joint 1
         out_qd[_qd_rpr[0][leg]] = rpr_qd_1
@@ -2096,27 +2329,22 @@ def _run_joint_accelerations(m, X, V, A):
         rpr_q_y = R_xx*rpr_platform_point_y + R_yx*rpr_platform_point_x
         rpr_S_x = rpr_q_x + t_x - rpr_base_point_x
         rpr_S_y = rpr_q_y + t_y - rpr_base_point_y
-        # (rpr-px_1) component along the reference direction
-        rpr_px_1 = rpr_S_x*rpr_base_frame_xx + rpr_S_y*rpr_base_frame_yx
-        # (rpr-py_1) component across the reference direction
-        rpr_py_1 = rpr_S_x*rpr_base_frame_xy + rpr_S_y*rpr_base_frame_yy
-        # (rpr-rho2_1) squared amplitude
-        rpr_rho2_1 = rpr_px_1*rpr_px_1 + rpr_py_1*rpr_py_1
-        # (rpr-root_1) amplitude, with the sign of the branch
-        rpr_root_1 = rpr_branch_1*sqrt(rpr_rho2_1)
+        rpr_S_in_turn1_x = rpr_S_x*rpr_base_frame_xx + rpr_S_y*rpr_base_frame_yx
+        rpr_S_in_turn1_y = rpr_S_x*rpr_base_frame_xy + rpr_S_y*rpr_base_frame_yy
+        # (rpr-q_2) displacement of joint 2
+        rpr_q_2_t = rpr_S_in_turn1_x*rpr_S_in_turn1_x + rpr_S_in_turn1_y*rpr_S_in_turn1_y
+        rpr_q_2 = rpr_branch_1*sqrt(rpr_q_2_t)
         # (rpr-S_dot) velocity of the connection point
-        inv_rpr_root_1 = 1.0/rpr_root_1
-        axis_x_rpr_axes1_x = inv_rpr_root_1*rpr_S_x
-        axis_x_rpr_axes1_y = inv_rpr_root_1*rpr_S_y
+        inv_rpr_q_2 = 1.0/rpr_q_2
+        axis_x_rpr_axes1_x = inv_rpr_q_2*rpr_S_x
+        axis_x_rpr_axes1_y = inv_rpr_q_2*rpr_S_y
         rpr_S_dot_t = omega_z*rpr_q_y
         rpr_S_dot_t_2 = omega_z*rpr_q_x
         rpr_S_dot_x = t_dot_x - rpr_S_dot_t
         rpr_S_dot_y = rpr_S_dot_t_2 + t_dot_y
         rpr_S_dot_in_axes1_x = axis_x_rpr_axes1_x*rpr_S_dot_x + axis_x_rpr_axes1_y*rpr_S_dot_y
         # (rpr-qd_1) rate of joint 1
-        rpr_qd_1 = (
-        inv_rpr_root_1*(axis_x_rpr_axes1_x*rpr_S_dot_y - axis_x_rpr_axes1_y*rpr_S_dot_x)
-        )
+        rpr_qd_1 = inv_rpr_q_2*(axis_x_rpr_axes1_x*rpr_S_dot_y - axis_x_rpr_axes1_y*rpr_S_dot_x)
         # (rpr-a_p) acceleration of the connection point without its centripetal part
         rpr_a_p_x = t_ddot_x - alpha_z*rpr_q_y
         rpr_a_p_y = t_ddot_y + alpha_z*rpr_q_x
@@ -2126,17 +2354,17 @@ def _run_joint_accelerations(m, X, V, A):
         # (rpr-rel) acceleration of the connection point left to the joint accelerations
         rpr_rel_in_axes1_x = (
         axis_x_rpr_axes1_x*rpr_S_ddot_x + axis_x_rpr_axes1_y*rpr_S_ddot_y +
-            rpr_qd_1*rpr_qd_1*rpr_root_1
+            rpr_q_2*rpr_qd_1*rpr_qd_1
         )
         rpr_rel_in_axes1_y = (
         axis_x_rpr_axes1_x*rpr_S_ddot_y - axis_x_rpr_axes1_y*rpr_S_ddot_x -
             2.0*rpr_S_dot_in_axes1_x*rpr_qd_1
         )
         # (rpr-qdd_1) acceleration of joint 1
-        rpr_qdd_1 = inv_rpr_root_1*rpr_rel_in_axes1_y
+        rpr_qdd_1 = inv_rpr_q_2*rpr_rel_in_axes1_y
         ok = (
-        ok & (abs(rpr_rho2_1) > _TOLERANCE * _TOLERANCE * 0.3844) & (abs(rpr_root_1) > _TOLERANCE
-            * 0.62)
+        ok & (abs(rpr_q_2_t) > _TOLERANCE * _TOLERANCE * 0.3844) & (abs(rpr_q_2) > _TOLERANCE *
+            0.62)
         )
         # (rpr-qdd_1) acceleration of joint 1
         out_qdd[_qdd_rpr[0][leg]] = rpr_qdd_1
@@ -2189,31 +2417,26 @@ def _run_legs(m, X, V, A):
         rpr_q_y = R_xx*rpr_platform_point_y + R_yx*rpr_platform_point_x
         rpr_S_x = rpr_q_x + t_x - rpr_base_point_x
         rpr_S_y = rpr_q_y + t_y - rpr_base_point_y
-        # (rpr-px_1) component along the reference direction
-        rpr_px_1 = rpr_S_x*rpr_base_frame_xx + rpr_S_y*rpr_base_frame_yx
-        # (rpr-py_1) component across the reference direction
-        rpr_py_1 = rpr_S_x*rpr_base_frame_xy + rpr_S_y*rpr_base_frame_yy
-        # (rpr-rho2_1) squared amplitude
-        rpr_rho2_1 = rpr_px_1*rpr_px_1 + rpr_py_1*rpr_py_1
-        # (rpr-root_1) amplitude, with the sign of the branch
-        rpr_root_1 = rpr_branch_1*sqrt(rpr_rho2_1)
+        rpr_S_in_turn1_x = rpr_S_x*rpr_base_frame_xx + rpr_S_y*rpr_base_frame_yx
+        rpr_S_in_turn1_y = rpr_S_x*rpr_base_frame_xy + rpr_S_y*rpr_base_frame_yy
+        # (rpr-q_2) displacement of joint 2
+        rpr_q_2_t = rpr_S_in_turn1_x*rpr_S_in_turn1_x + rpr_S_in_turn1_y*rpr_S_in_turn1_y
+        rpr_q_2 = rpr_branch_1*sqrt(rpr_q_2_t)
         # (rpr-c_1) cosine of the angle of joint 1 from its reference direction
-        inv_rpr_root_1 = 1.0/rpr_root_1
-        rpr_c_1 = inv_rpr_root_1*rpr_px_1
+        inv_rpr_q_2 = 1.0/rpr_q_2
+        rpr_c_1 = inv_rpr_q_2*rpr_S_in_turn1_x
         # (rpr-s_1) sine of the angle of joint 1 from its reference direction
-        rpr_s_1 = inv_rpr_root_1*rpr_py_1
+        rpr_s_1 = inv_rpr_q_2*rpr_S_in_turn1_y
         # (rpr-S_dot) velocity of the connection point
-        axis_x_rpr_axes1_x = inv_rpr_root_1*rpr_S_x
-        axis_x_rpr_axes1_y = inv_rpr_root_1*rpr_S_y
+        axis_x_rpr_axes1_x = inv_rpr_q_2*rpr_S_x
+        axis_x_rpr_axes1_y = inv_rpr_q_2*rpr_S_y
         rpr_S_dot_t = omega_z*rpr_q_y
         rpr_S_dot_t_2 = omega_z*rpr_q_x
         rpr_S_dot_x = t_dot_x - rpr_S_dot_t
         rpr_S_dot_y = rpr_S_dot_t_2 + t_dot_y
         rpr_S_dot_in_axes1_x = axis_x_rpr_axes1_x*rpr_S_dot_x + axis_x_rpr_axes1_y*rpr_S_dot_y
         # (rpr-qd_1) rate of joint 1
-        rpr_qd_1 = (
-        inv_rpr_root_1*(axis_x_rpr_axes1_x*rpr_S_dot_y - axis_x_rpr_axes1_y*rpr_S_dot_x)
-        )
+        rpr_qd_1 = inv_rpr_q_2*(axis_x_rpr_axes1_x*rpr_S_dot_y - axis_x_rpr_axes1_y*rpr_S_dot_x)
         # (rpr-W_1) centripetal tensor of link 1
         rpr_W_1_in_axes1_xx = -rpr_qd_1*rpr_qd_1
         # (rpr-a_p) acceleration of the connection point without its centripetal part
@@ -2226,7 +2449,7 @@ def _run_legs(m, X, V, A):
         # (rpr-rel) acceleration of the connection point left to the joint accelerations
         rpr_rel_in_axes1_y = rpr_S_ddot_in_axes1_y - 2.0*rpr_S_dot_in_axes1_x*rpr_qd_1
         # (rpr-qdd_1) acceleration of joint 1
-        rpr_qdd_1 = inv_rpr_root_1*rpr_rel_in_axes1_y
+        rpr_qdd_1 = inv_rpr_q_2*rpr_rel_in_axes1_y
         # (rpr-acc_2) acceleration of the reference point of link 2, less gravity
         rpr_g_in_axes1_x = rpr_acc_2_t*rpr_c_1 + rpr_acc_2_t_2*rpr_s_1
         rpr_g_in_axes1_y = rpr_acc_2_t_2*rpr_c_1 - rpr_acc_2_t*rpr_s_1
@@ -2242,7 +2465,7 @@ def _run_legs(m, X, V, A):
         )
         # (rpr-c) leg force on the platform without actuation and without the mass at the connection point
         rpr_c_in_axes1_y = (
-        -inv_rpr_root_1*rpr_mu_1_in_axes1_z - rpr_W_1_in_axes1_xx*rpr_h_2_in_spec1_y -
+        -inv_rpr_q_2*rpr_mu_1_in_axes1_z - rpr_W_1_in_axes1_xx*rpr_h_2_in_spec1_y -
             rpr_h_2_in_spec1_x*rpr_qdd_1
         )
         # (rpr-c_true) leg force on the platform without actuation, the last link's mass included
@@ -2258,8 +2481,8 @@ def _run_legs(m, X, V, A):
         axis_x_rpr_axes1_x*rpr_c_true_in_axes1_y + axis_x_rpr_axes1_y*rpr_c_true_in_axes1_x
         )
         ok = (
-        ok & (abs(rpr_rho2_1) > _TOLERANCE * _TOLERANCE * 0.3844) & (abs(rpr_root_1) > _TOLERANCE
-            * 0.62)
+        ok & (abs(rpr_q_2_t) > _TOLERANCE * _TOLERANCE * 0.3844) & (abs(rpr_q_2) > _TOLERANCE *
+            0.62)
         )
         # (rpr-c_true) leg force on the platform without actuation, the last link's mass included
         out_leg_force[_leg_force_rpr[0][leg]] = rpr_c_true_x
@@ -2304,19 +2527,16 @@ def _run_potential(m, X):
         # (rpr-S) from the base point to the connection point
         rpr_S_x = t_x + R_xx*rpr_platform_point_x - rpr_base_point_x - R_yx*rpr_platform_point_y
         rpr_S_y = t_y + R_xx*rpr_platform_point_y + R_yx*rpr_platform_point_x - rpr_base_point_y
-        # (rpr-px_1) component along the reference direction
-        rpr_px_1 = rpr_S_x*rpr_base_frame_xx + rpr_S_y*rpr_base_frame_yx
-        # (rpr-py_1) component across the reference direction
-        rpr_py_1 = rpr_S_x*rpr_base_frame_xy + rpr_S_y*rpr_base_frame_yy
-        # (rpr-rho2_1) squared amplitude
-        rpr_rho2_1 = rpr_px_1*rpr_px_1 + rpr_py_1*rpr_py_1
-        # (rpr-root_1) amplitude, with the sign of the branch
-        rpr_root_1 = rpr_branch_1*sqrt(rpr_rho2_1)
+        rpr_S_in_turn1_x = rpr_S_x*rpr_base_frame_xx + rpr_S_y*rpr_base_frame_yx
+        rpr_S_in_turn1_y = rpr_S_x*rpr_base_frame_xy + rpr_S_y*rpr_base_frame_yy
+        # (rpr-q_2) displacement of joint 2
+        rpr_q_2_t = rpr_S_in_turn1_x*rpr_S_in_turn1_x + rpr_S_in_turn1_y*rpr_S_in_turn1_y
+        rpr_q_2 = rpr_branch_1*sqrt(rpr_q_2_t)
         # (rpr-c_1) cosine of the angle of joint 1 from its reference direction
-        inv_rpr_root_1 = 1.0/rpr_root_1
-        rpr_c_1 = inv_rpr_root_1*rpr_px_1
+        inv_rpr_q_2 = 1.0/rpr_q_2
+        rpr_c_1 = inv_rpr_q_2*rpr_S_in_turn1_x
         # (rpr-s_1) sine of the angle of joint 1 from its reference direction
-        rpr_s_1 = inv_rpr_root_1*rpr_py_1
+        rpr_s_1 = inv_rpr_q_2*rpr_S_in_turn1_y
         # (potential) potential energy
         rpr_potential_t_3 = (
         (rpr_acc_2_t*rpr_c_1 + rpr_acc_2_t_2*rpr_s_1)*(rpr_h_1_in_spec1_x + rpr_h_2_in_spec1_x +
@@ -2325,8 +2545,8 @@ def _run_potential(m, X):
             + rpr_link1_mass*(rpr_c_1*rpr_potential_t_2 - rpr_potential_t*rpr_s_1))
         )
         ok = (
-        ok & (abs(rpr_rho2_1) > _TOLERANCE * _TOLERANCE * 0.3844) & (abs(rpr_root_1) > _TOLERANCE
-            * 0.62)
+        ok & (abs(rpr_q_2_t) > _TOLERANCE * _TOLERANCE * 0.3844) & (abs(rpr_q_2) > _TOLERANCE *
+            0.62)
         )
         # (potential) potential energy
         potential_t_2 += rpr_potential_t_3
@@ -2374,22 +2594,19 @@ def _run_condition(m, X):
         rpr_q_y = R_xx*rpr_platform_point_y + R_yx*rpr_platform_point_x
         rpr_S_x = rpr_q_x + t_x - rpr_base_point_x
         rpr_S_y = rpr_q_y + t_y - rpr_base_point_y
-        # (rpr-px_1) component along the reference direction
-        rpr_px_1 = rpr_S_x*rpr_base_frame_xx + rpr_S_y*rpr_base_frame_yx
-        # (rpr-py_1) component across the reference direction
-        rpr_py_1 = rpr_S_x*rpr_base_frame_xy + rpr_S_y*rpr_base_frame_yy
-        # (rpr-rho2_1) squared amplitude
-        rpr_rho2_1 = rpr_px_1*rpr_px_1 + rpr_py_1*rpr_py_1
-        # (rpr-root_1) amplitude, with the sign of the branch
-        rpr_root_1 = rpr_branch_1*sqrt(rpr_rho2_1)
+        rpr_S_in_turn1_x = rpr_S_x*rpr_base_frame_xx + rpr_S_y*rpr_base_frame_yx
+        rpr_S_in_turn1_y = rpr_S_x*rpr_base_frame_xy + rpr_S_y*rpr_base_frame_yy
+        # (rpr-q_2) displacement of joint 2
+        rpr_q_2_t = rpr_S_in_turn1_x*rpr_S_in_turn1_x + rpr_S_in_turn1_y*rpr_S_in_turn1_y
+        rpr_q_2 = rpr_branch_1*sqrt(rpr_q_2_t)
         # (rpr-w_1) reciprocal vector 1
-        rpr_w_1_in_axes1_y = 1.0/rpr_root_1
+        rpr_w_1_in_axes1_y = 1.0/rpr_q_2
         # (rpr-w_2) reciprocal vector 2
         rpr_w_2_x = rpr_S_x*rpr_w_1_in_axes1_y
         rpr_w_2_y = rpr_S_y*rpr_w_1_in_axes1_y
         # (rpr-G) force at the connection point that balances the leg's inertia and weight along all degrees of freedom
-        rpr_pivot_size = abs(rpr_rho2_1)
-        rpr_pivot_size_2 = abs(rpr_root_1)
+        rpr_pivot_size = abs(rpr_q_2_t)
+        rpr_pivot_size_2 = abs(rpr_q_2)
         rpr_least_pivots = (
         least(1.6129032258064515*sqrt(rpr_pivot_size), 1.6129032258064517*rpr_pivot_size_2)
         )
@@ -2400,8 +2617,8 @@ def _run_condition(m, X):
         rpr_spread_t_2 = b_c_in_platform_y - rpr_platform_point_y
         rpr_spread_t_3 = rpr_spread_t*rpr_spread_t + rpr_spread_t_2*rpr_spread_t_2
         clear = (
-        clear & (abs(rpr_rho2_1) > _TOLERANCE * _TOLERANCE * 0.3844) & (abs(rpr_root_1) >
-            _TOLERANCE * 0.62)
+        clear & (abs(rpr_q_2_t) > _TOLERANCE * _TOLERANCE * 0.3844) & (abs(rpr_q_2) > _TOLERANCE *
+            0.62)
         )
         # (spread) rms distance of the platform points from their centroid
         spread_rpr += rpr_spread_t_3
@@ -2419,6 +2636,38 @@ def _run_condition(m, X):
     return (valid, reached, clear), (out_H, out_lengths, out_pivots, out_reach,)
 
 
+def _straight_3(a, b, rows, limits):
+    """Solve 3 equations a x = b straight through; and whether that is beyond doubt."""
+    (a00, a01, a02,), (a10, a11, a12,), (a20, a21, a22,), = [a[3 * k : 3 * k + 3] for k in rows]
+    b0, b1, b2, = [b[k] for k in rows]
+    l10, l20, l21, l0, l1, l2, = limits
+    f0 = 1.0/a00
+    g10 = a10*f0
+    a11 = a11 - g10*a01
+    a12 = a12 - g10*a02
+    b1 = b1 - g10*b0
+    g20 = a20*f0
+    a21 = a21 - g20*a01
+    a22 = a22 - g20*a02
+    b2 = b2 - g20*b0
+    f1 = 1.0/a11
+    g21 = a21*f1
+    a22 = a22 - g21*a12
+    b2 = b2 - g21*b1
+    f2 = 1.0/a22
+    x2 = b2*f2
+    x1 = (b1 - a12*x2)*f1
+    x0 = (b0 - a02*x2 - a01*x1)*f0
+    sure = (
+    (abs(g10) <= l10) & (abs(g20) <= l20) & (abs(g21) <= l21) & (abs(f0) <= l0) & (abs(f1) <= l1)
+        & (abs(f2) <= l2) & (abs(x0 + x1 + x2 + a00 + a11 + a22) < math.inf)
+    )
+    return sure, ([x0, x1, x2],)
+
+
+_ORDERS = (  # how systems are solved near home
+    _Order(_straight_3, (0, 1, 2), (10, 0.15625, 0.15625, 62.5, 62.5, 4000,)),
+)
 _Q = None  # where a quaternion begins in X
 _DEFAULT = Parameters()
 
@@ -2471,11 +2720,11 @@ def _steps_inverse_dynamics(m, X, V, A, wrench, weights):
 
 def _steps_forward_dynamics(m, X, V, tau, wrench):
     M, Z, H = m.run(_run_dynamics, ("M", "Z", "H"), X, V)
-    times_1 = np.einsum("ijs,js->is", H, tau)
+    times_1 = _times(H, tau)
     extend_1 = wrench
     add_1 = times_1 + extend_1
     subtract_1 = add_1 - Z
-    A = _solve(M, subtract_1)
+    A = _straight(m, M, subtract_1, _ORDERS[0])
     return (A,)
 
 
@@ -2516,10 +2765,51 @@ def _steps_condition(m, X, length):
     return (sigma, legs,)
 
 
+def _steps_manipulability(m, X):
+    (
+    H, lengths, pivots, reach,
+    ) = m.run(_in_one(_run_condition), ("H", "lengths", "pivots", "reach"), X)
+    entry_1 = lengths[0]
+    subtract_1 = entry_1 - entry_1
+    choose_length_1 = _chosen_length(lengths, subtract_1)
+    divide_rows_1 = _rows_divided(H, choose_length_1, [2])
+    singular_values_1 = _singular_values(divide_rows_1)
+    measure, isotropy = _spread(singular_values_1, 3)
+    return (measure, isotropy,)
+
+
+def _steps_singularity_distance(m, X):
+    (
+    H, lengths, pivots, reach,
+    ) = m.run(_in_one(_run_condition), ("H", "lengths", "pivots", "reach"), X)
+    entry_1 = lengths[0]
+    subtract_1 = entry_1 - entry_1
+    choose_length_1 = _chosen_length(lengths, subtract_1)
+    divide_rows_1 = _rows_divided(H, choose_length_1, [2])
+    singular_values_1 = _singular_values(divide_rows_1)
+    spread_1, actuators = _spread(singular_values_1, 3)
+    legs = _least_entry(pivots)
+    return (actuators, legs,)
+
+
+def _steps_force_distribution(m, X, V, A, tau_min, tau_max, wrench, reference):
+    required, H = m.run(_run_required, ("required", "H"), X, V, A)
+    extend_1 = wrench
+    subtract_1 = required - extend_1
+    least_norm_1 = _least_norm(H, subtract_1)
+    null_basis_1 = _null_basis(H, 3)
+    transposed_1 = np.swapaxes(null_basis_1, 0, 1)
+    product_1 = np.einsum("iks,kjs->ijs", null_basis_1, transposed_1)
+    times_1 = _times(product_1, reference)
+    add_1 = least_norm_1 + times_1
+    tau = _nearest_within(add_1, product_1, tau_min, tau_max)
+    return (tau,)
+
+
 def _steps_mismatch(m, X, q_actuated):
     q, = m.run(_run_inverse_kinematics, ("q",), X)
-    take_1 = q[[1, 3, 5, 7]]
-    gap = q_actuated - take_1
+    q_of_inverse_kinematics_from_1 = q[[1, 3, 5, 7]]
+    gap = q_actuated - q_of_inverse_kinematics_from_1
     return (gap,)
 
 
@@ -2541,7 +2831,7 @@ def _steps_dissipation(m, X, V):
 
 def _steps_momentum(m, X, V):
     M, = m.run(_run_M, ("M",), X)
-    momentum = np.einsum("ijs,js->is", M, V)
+    momentum = _times(M, V)
     return (momentum,)
 
 
@@ -2578,14 +2868,14 @@ def _steps_actuator_accelerations(m, X, V, A):
 
 def _steps_power(m, X, V, tau):
     H, = m.run(_run_H, ("H",), X)
-    times_1 = np.einsum("ijs,js->is", H, tau)
+    times_1 = _times(H, tau)
     power = np.sum(times_1 * V, axis=0)
     return (power,)
 
 
 def _steps_rotation(m, X):
-    take_1 = X[2:3]
-    R = _rotation_of_angle(take_1)
+    X_from_2 = X[2:3]
+    R = _rotation_of_angle(X_from_2)
     return (R,)
 
 
@@ -2633,6 +2923,7 @@ def M(X, p=None):
     return _call(
         "M", _steps_M, p,
         ("X", X, (NQ,)),
+        plain=((NV, NV,),),
     )
 
 
@@ -2651,6 +2942,7 @@ def Z(X, V, p=None):
         "Z", _steps_Z, p,
         ("X", X, (NQ,)),
         ("V", V, (NV,)),
+        plain=((NV,),),
     )
 
 
@@ -2667,6 +2959,7 @@ def H(X, p=None):
     return _call(
         "H", _steps_H, p,
         ("X", X, (NQ,)),
+        plain=((NV, NU,),),
     )
 
 
@@ -2685,6 +2978,7 @@ def inverse_kinematics(X, p=None):
     return _call(
         "inverse_kinematics", _steps_inverse_kinematics, p,
         ("X", X, (NQ,)),
+        plain=((NJ,),),
     )
 
 
@@ -2703,6 +2997,7 @@ def joint_rates(X, V, p=None):
         "joint_rates", _steps_joint_rates, p,
         ("X", X, (NQ,)),
         ("V", V, (NV,)),
+        plain=((NJ,),),
     )
 
 
@@ -2723,6 +3018,7 @@ def joint_accelerations(X, V, A, p=None):
         ("X", X, (NQ,)),
         ("V", V, (NV,)),
         ("A", A, (NV,)),
+        plain=((NJ,),),
     )
 
 
@@ -2743,6 +3039,7 @@ def dynamics(X, V, p=None):
         "dynamics", _steps_dynamics, p,
         ("X", X, (NQ,)),
         ("V", V, (NV,)),
+        plain=((NV, NV,), (NV,), (NV, NU,),),
     )
 
 
@@ -2790,6 +3087,7 @@ def forward_dynamics(X, V, tau, p=None, *, wrench=None):
         ("V", V, (NV,)),
         ("tau", tau, (NU,)),
         ("wrench", wrench, (NW,), 0.0),
+        plain=((NV,),),
     )
 
 
@@ -2814,6 +3112,7 @@ def complete_acceleration(X, V, A, p=None, *, wrench=None):
         ("V", V, (NV,), None, "unused"),
         ("A", A, (NV,)),
         ("wrench", wrench, (NW,), 0.0, "unused"),
+        plain=((NV,),),
     )
 
 
@@ -2900,6 +3199,74 @@ def condition(X, p=None, *, length=None):
     )
 
 
+def manipulability(X, p=None):
+    """Manipulability of forces: the product of the singular values that `condition` has by
+    default, and the least over the largest of them.
+
+    Args:
+        X: pose, and extra coordinates (..., NQ).
+        p: parameters, by default those of the specification.
+
+    Returns:
+        measure: product of the singular values (...,).
+        isotropy: least over largest value, 1 where H is isotropic (...,).
+    """
+    return _call(
+        "manipulability", _steps_manipulability, p,
+        ("X", X, (NQ,)),
+    )
+
+
+def singularity_distance(X, p=None):
+    """How near actuators and legs are to being singular: relative distances, 0 where they are.
+
+    Args:
+        X: pose, and extra coordinates (..., NQ).
+        p: parameters, by default those of the specification.
+
+    Returns:
+        actuators: of H from matrices of lower rank, over its norm (...,).
+        legs: least pivot of all legs (...,).
+    """
+    return _call(
+        "singularity_distance", _steps_singularity_distance, p,
+        ("X", X, (NQ,)),
+    )
+
+
+def force_distribution(X, V, A, tau_min, tau_max, p=None, *, wrench=None, reference=None):
+    """Actuator forces from tau_min to tau_max for the acceleration A: the nearest to reference.
+
+    By the dual active-set method of Goldfarb and Idnani; continuous along a motion.
+
+    Impossible (UNREACHABLE) where no forces within the bounds give the acceleration. Cables pull
+    with negative forces: tau_max = -t keeps tensions of t at least.
+
+    Args:
+        X: pose, and extra coordinates (..., NQ).
+        V: velocity (..., NV).
+        A: acceleration (..., NV).
+        tau_min: least actuator forces [N or N m] (..., NU).
+        tau_max: largest actuator forces [N or N m] (..., NU).
+        wrench: external wrench on the platform, by default zero (..., NW).
+        reference: actuator forces to be near to [N or N m], by default zero (..., NU).
+        p: parameters, by default those of the specification.
+
+    Returns:
+        tau: actuator forces [N or N m] (..., NU).
+    """
+    return _call(
+        "force_distribution", _steps_force_distribution, p,
+        ("X", X, (NQ,)),
+        ("V", V, (NV,)),
+        ("A", A, (NV,)),
+        ("tau_min", tau_min, (NU,)),
+        ("tau_max", tau_max, (NU,)),
+        ("wrench", wrench, (NW,), 0.0),
+        ("reference", reference, (NU,), 0.0),
+    )
+
+
 def forward_kinematics(q_actuated, X0, p=None):
     """X at which the actuated joints stand at q_actuated, by Gauss-Newton from X0.
 
@@ -2955,6 +3322,7 @@ def momentum(X, V, p=None):
         "momentum", _steps_momentum, p,
         ("X", X, (NQ,)),
         ("V", V, (NV,)),
+        plain=((NV,),),
     )
 
 
@@ -3117,6 +3485,7 @@ def X_dot(X, V):
         "X_dot", _steps_X_dot, None,
         ("X", X, (NQ,)),
         ("V", V, (NV,)),
+        plain=((NQ,),),
     )
 
 
@@ -3135,6 +3504,7 @@ def retract(X, step):
         "retract", _steps_retract, None,
         ("X", X, (NQ,)),
         ("step", step, (NV,)),
+        plain=((NQ,),),
     )
 
 

@@ -256,6 +256,24 @@ size_t planar_4rpr_free_condition_batch(const planar_4rpr_free_model *model, siz
     planar_4rpr_free_real *X, planar_4rpr_free_real *sigma, planar_4rpr_free_real *legs, int
     *status);
 
+/* Manipulability of forces: the product of the singular values that condition has by default, and
+   the least over the largest of them. 74 mul, 60 add, 3 div, 9 sqrt, 0 trig; the singular values
+   apart. In: X (NQ). Out: measure (1), isotropy (1). */
+int planar_4rpr_free_manipulability(const planar_4rpr_free_model *model, const
+    planar_4rpr_free_real *X, planar_4rpr_free_real *measure, planar_4rpr_free_real *isotropy);
+size_t planar_4rpr_free_manipulability_batch(const planar_4rpr_free_model *model, size_t n, const
+    planar_4rpr_free_real *X, planar_4rpr_free_real *measure, planar_4rpr_free_real *isotropy, int
+    *status);
+
+/* How near actuators and legs are to being singular: relative distances, 0 where they are. 74
+   mul, 60 add, 3 div, 9 sqrt, 0 trig; the singular values apart. In: X (NQ). Out: actuators (1),
+   legs (1). */
+int planar_4rpr_free_singularity_distance(const planar_4rpr_free_model *model, const
+    planar_4rpr_free_real *X, planar_4rpr_free_real *actuators, planar_4rpr_free_real *legs);
+size_t planar_4rpr_free_singularity_distance_batch(const planar_4rpr_free_model *model, size_t n,
+    const planar_4rpr_free_real *X, planar_4rpr_free_real *actuators, planar_4rpr_free_real *legs,
+    int *status);
+
 /* X at which the actuated joints stand at q_actuated, by Gauss-Newton from X0. Extra coordinates
    that actuators do not determine stay. Impossible where no pose is found. In: q_actuated (NU),
    X0 (NQ). Out: X (NQ). */

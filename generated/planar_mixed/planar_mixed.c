@@ -1285,6 +1285,24 @@ INLINE void unlimited(size_t rows, size_t size, size_t w, const size_t *places, 
     }
 }
 
+INLINE void least_entry(size_t n, const real *a, real *x)
+{
+    *x = a[0];
+    for (size_t e = 1; e < n; ++e) {
+        *x = lesser(*x, a[e]);
+    }
+}
+
+/* Of the first n entries the product, and the last over the first, 0 where that is 0. */
+INLINE void spread(size_t n, const real *a, real *product_of, real *ratio)
+{
+    *product_of = 1;
+    for (size_t e = 0; e < n; ++e) {
+        *product_of *= a[e];
+    }
+    *ratio = magnitude(a[0]) > 0 ? a[n - 1]/a[0] : a[0];
+}
+
 /* 1 where no entry is negative, else 0. */
 INLINE void not_negative(size_t size, size_t w, const real *a, real *x, real *flags)
 {
@@ -1374,173 +1392,962 @@ static void moved(const real *X, const real *step, real part, real *to)
     }
 }
 
+/* ---- what functions of the state share; v: values for others ---- */
+
+typedef struct {
+    real W_p_xx, R_xx, R_yx, h_star_x, h_star_y;
+} values;
+
+INLINE void stage_V(size_t w, size_t k, const real *V, values *v)
+{
+    /* (W_p) centripetal tensor of the platform */
+    const real omega_z = V[2*w + k];
+    const real W_p_xx = -omega_z*omega_z;
+    v->W_p_xx = W_p_xx;
+}
+
+INLINE void stage_X(const prepared *m, size_t w, size_t k, const real *X, values *v)
+{
+    /* X: named entries */
+    const real X_2 = X[2*w + k];
+    const real R_xx = cosine(X_2);
+    const real R_yx = sine(X_2);
+    /* (h_star) first moment about the platform origin */
+    const real h_star_in_platform_x = m->h_star_in_platform_x;
+    const real h_star_in_platform_y = m->h_star_in_platform_y;
+    const real h_star_x = R_xx*h_star_in_platform_x - R_yx*h_star_in_platform_y;
+    const real h_star_y = R_xx*h_star_in_platform_y + R_yx*h_star_in_platform_x;
+    v->R_xx = R_xx;
+    v->R_yx = R_yx;
+    v->h_star_x = h_star_x;
+    v->h_star_y = h_star_y;
+}
+
+typedef struct {
+    real prr_q_x, prr_q_y, prr_S_x, prr_S_y, prr_disc_1, prr_c_2, prr_s_2, prr_v_2_in_axes0_x,
+        prr_v_2_in_axes0_y, axis_y_prr_axes2_x, axis_x_prr_axes2_x, prr_w_1_t, prr_w_1_t_2,
+        prr_w_1_in_axes2_x, prr_w_1_in_axes2_y, prr_w_1_x, prr_w_1_y, prr_a_p_x, prr_a_p_y,
+        prr_S_dot_t, prr_S_dot_t_2, prr_S_dot_x, prr_S_dot_y, prr_qd_2, prr_W_2_t, prr_S_ddot_x,
+        prr_S_ddot_y, prr_S_ddot_in_axes2_y, prr_H_a_1_z, prr_w_2_in_axes2_y,
+        prr_d_Gamma_2_in_axes2_y, prr_d_Gamma_1_in_axes2_y, prr_d_c_in_axes2_xx, prr_d_c_in_axes2_xy,
+        prr_u_1_in_axes2_x, prr_u_1_in_axes2_y, prr_acc_2_o_in_axes2_x, prr_acc_2_o_in_axes2_y,
+        prr_q_1_t, prr_q_1, prr_acc_2_in_axes2_x, prr_acc_2_in_axes2_y, prr_c_in_axes2_x,
+        prr_c_in_axes2_y;
+} values_prr;
+
+INLINE void stage_prr_X(const prepared *m, size_t w, size_t i, size_t j, const real *s, const real
+    *X, values_prr *v)
+{
+    /* (prr-S) from the base point to the connection point */
+    const real R_xx = s[0*w + j];
+    const real R_yx = s[1*w + j];
+    const real prr_platform_point_x = m->prr_platform_point_x[i];
+    const real prr_platform_point_y = m->prr_platform_point_y[i];
+    const real prr_q_x = R_xx*prr_platform_point_x - R_yx*prr_platform_point_y;
+    const real prr_q_y = R_xx*prr_platform_point_y + R_yx*prr_platform_point_x;
+    const real prr_base_point_x = m->prr_base_point_x[i];
+    const real t_x = X[0*w + j];
+    const real prr_S_x = prr_q_x + t_x - prr_base_point_x;
+    const real prr_base_point_y = m->prr_base_point_y[i];
+    const real t_y = X[1*w + j];
+    const real prr_S_y = prr_q_y + t_y - prr_base_point_y;
+    const real prr_base_frame_xx = m->prr_base_frame_xx[i];
+    const real prr_base_frame_yx = m->prr_base_frame_yx[i];
+    const real prr_S_in_axes0_x = prr_S_x*prr_base_frame_xx + prr_S_y*prr_base_frame_yx;
+    /* (prr-disc_1) discriminant of the distance equation */
+    const real prr_disc_1_t = prr_S_x*prr_S_x + prr_S_y*prr_S_y;
+    const real prr_size_t = m->prr_size_t[i];
+    const real prr_disc_1 = prr_S_in_axes0_x*prr_S_in_axes0_x + prr_size_t - prr_disc_1_t;
+    /* (prr-c_2) cosine of the angle of joint 2 from its reference direction */
+    const real inv_prr_size_t = m->inv_prr_size_t[i];
+    const real prr_branch_1 = m->prr_branch_1[i];
+    const real prr_platform_joint_offset_x = m->prr_platform_joint_offset_x[i];
+    const real prr_c_2 =
+        -inv_prr_size_t*prr_branch_1*root(prr_disc_1)*prr_platform_joint_offset_x;
+    /* (prr-s_2) sine of the angle of joint 2 from its reference direction */
+    const real prr_base_frame_xy = m->prr_base_frame_xy[i];
+    const real prr_base_frame_yy = m->prr_base_frame_yy[i];
+    const real prr_s_2 = inv_prr_size_t*prr_platform_joint_offset_x*(prr_S_x*prr_base_frame_xy
+        + prr_S_y*prr_base_frame_yy);
+    /* (prr-v_2) velocity of the connection point per rate of joint 2 */
+    const real prr_v_2_in_axes0_x = -prr_platform_joint_offset_x*prr_s_2;
+    const real prr_v_2_in_axes0_y = prr_c_2*prr_platform_joint_offset_x;
+    /* (prr-w_1) reciprocal vector 1 */
+    const real axis_y_prr_axes2_x = prr_base_frame_xy*prr_c_2 - prr_base_frame_xx*prr_s_2;
+    const real axis_x_prr_axes2_x = prr_base_frame_yy*prr_c_2 - prr_base_frame_yx*prr_s_2;
+    const real prr_w_1_t = -1/prr_v_2_in_axes0_y;
+    const real prr_w_1_t_2 = prr_v_2_in_axes0_x*prr_w_1_t;
+    const real prr_w_1_in_axes2_x = prr_c_2 + prr_s_2*prr_w_1_t_2;
+    const real prr_w_1_in_axes2_y = prr_c_2*prr_w_1_t_2 - prr_s_2;
+    const real prr_w_1_x = axis_x_prr_axes2_x*prr_w_1_in_axes2_x +
+        axis_y_prr_axes2_x*prr_w_1_in_axes2_y;
+    const real prr_w_1_y = axis_x_prr_axes2_x*prr_w_1_in_axes2_y -
+        axis_y_prr_axes2_x*prr_w_1_in_axes2_x;
+    v->prr_q_x = prr_q_x;
+    v->prr_q_y = prr_q_y;
+    v->prr_S_x = prr_S_x;
+    v->prr_S_y = prr_S_y;
+    v->prr_disc_1 = prr_disc_1;
+    v->prr_c_2 = prr_c_2;
+    v->prr_s_2 = prr_s_2;
+    v->prr_v_2_in_axes0_x = prr_v_2_in_axes0_x;
+    v->prr_v_2_in_axes0_y = prr_v_2_in_axes0_y;
+    v->axis_y_prr_axes2_x = axis_y_prr_axes2_x;
+    v->axis_x_prr_axes2_x = axis_x_prr_axes2_x;
+    v->prr_w_1_t = prr_w_1_t;
+    v->prr_w_1_t_2 = prr_w_1_t_2;
+    v->prr_w_1_in_axes2_x = prr_w_1_in_axes2_x;
+    v->prr_w_1_in_axes2_y = prr_w_1_in_axes2_y;
+    v->prr_w_1_x = prr_w_1_x;
+    v->prr_w_1_y = prr_w_1_y;
+}
+
+INLINE void stage_prr_A_X(size_t w, size_t j, const real *A, values_prr *v)
+{
+    /* (prr-a_p) acceleration of the connection point without its centripetal part */
+    const real alpha_z = A[2*w + j];
+    const real t_ddot_x = A[0*w + j];
+    const real prr_a_p_x = t_ddot_x - alpha_z*v->prr_q_y;
+    const real t_ddot_y = A[1*w + j];
+    const real prr_a_p_y = t_ddot_y + alpha_z*v->prr_q_x;
+    v->prr_a_p_x = prr_a_p_x;
+    v->prr_a_p_y = prr_a_p_y;
+}
+
+INLINE void stage_prr_V_X(const prepared *m, size_t w, size_t i, size_t j, const real *V,
+    values_prr *v)
+{
+    /* (prr-S_dot) velocity of the connection point */
+    const real omega_z = V[2*w + j];
+    const real prr_S_dot_t = omega_z*v->prr_q_y;
+    const real prr_S_dot_t_2 = omega_z*v->prr_q_x;
+    const real t_dot_x = V[0*w + j];
+    const real prr_S_dot_x = t_dot_x - prr_S_dot_t;
+    const real t_dot_y = V[1*w + j];
+    const real prr_S_dot_y = prr_S_dot_t_2 + t_dot_y;
+    /* (prr-qd_2) rate of joint 2 */
+    const real prr_base_frame_xy = m->prr_base_frame_xy[i];
+    const real prr_base_frame_yy = m->prr_base_frame_yy[i];
+    const real prr_qd_2 = -v->prr_w_1_t*(prr_S_dot_x*prr_base_frame_xy +
+        prr_S_dot_y*prr_base_frame_yy);
+    /* (prr-W_2) centripetal tensor of link 2 */
+    const real prr_W_2_t = prr_qd_2*prr_qd_2;
+    v->prr_S_dot_t = prr_S_dot_t;
+    v->prr_S_dot_t_2 = prr_S_dot_t_2;
+    v->prr_S_dot_x = prr_S_dot_x;
+    v->prr_S_dot_y = prr_S_dot_y;
+    v->prr_qd_2 = prr_qd_2;
+    v->prr_W_2_t = prr_W_2_t;
+}
+
+INLINE void stage_prr_A_V_X(size_t w, size_t j, const real *V, values_prr *v)
+{
+    /* (prr-S_ddot) acceleration of the connection point */
+    const real omega_z = V[2*w + j];
+    const real prr_S_ddot_x = v->prr_a_p_x - omega_z*v->prr_S_dot_t_2;
+    const real prr_S_ddot_y = v->prr_a_p_y - omega_z*v->prr_S_dot_t;
+    const real prr_S_ddot_in_axes2_y = v->axis_x_prr_axes2_x*prr_S_ddot_y +
+        v->axis_y_prr_axes2_x*prr_S_ddot_x;
+    v->prr_S_ddot_x = prr_S_ddot_x;
+    v->prr_S_ddot_y = prr_S_ddot_y;
+    v->prr_S_ddot_in_axes2_y = prr_S_ddot_in_axes2_y;
+}
+
+INLINE void stage_prr_H_condition(const prepared *m, size_t i, values_prr *v)
+{
+    /* (prr-w_1) reciprocal vector 1 */
+    const real prr_platform_joint_offset_x = m->prr_platform_joint_offset_x[i];
+    const real prr_w_1_t = prr_platform_joint_offset_x*v->prr_s_2/v->prr_v_2_in_axes0_y;
+    const real prr_w_1_in_axes2_x = v->prr_c_2 + v->prr_s_2*prr_w_1_t;
+    const real prr_w_1_in_axes2_y = v->prr_c_2*prr_w_1_t - v->prr_s_2;
+    const real prr_w_1_x = v->axis_x_prr_axes2_x*prr_w_1_in_axes2_x +
+        v->axis_y_prr_axes2_x*prr_w_1_in_axes2_y;
+    const real prr_w_1_y = v->axis_x_prr_axes2_x*prr_w_1_in_axes2_y -
+        v->axis_y_prr_axes2_x*prr_w_1_in_axes2_x;
+    /* (prr-H_a_1) moment of the column's unit force about the platform origin */
+    const real prr_H_a_1_z = v->prr_q_x*prr_w_1_y - v->prr_q_y*prr_w_1_x;
+    v->prr_w_1_x = prr_w_1_x;
+    v->prr_w_1_y = prr_w_1_y;
+    v->prr_H_a_1_z = prr_H_a_1_z;
+}
+
+INLINE void stage_prr_M_dynamics(const prepared *m, size_t i, values_prr *v)
+{
+    /* (prr-w_2) reciprocal vector 2 */
+    const real prr_w_2_t = v->prr_s_2*v->prr_w_1_t;
+    const real prr_w_2_in_axes2_y = -v->prr_c_2*v->prr_w_1_t;
+    /* (prr-d_Gamma_2) coefficient of the acceleration in: moment about axis 2 of the distal links'
+       inertia and weight */
+    const real prr_J_2_in_spec2_zz = m->prr_J_2_in_spec2_zz[i];
+    const real prr_d_Gamma_2_t = prr_J_2_in_spec2_zz*v->prr_w_1_t;
+    const real prr_h_2_in_spec2_y = m->prr_h_2_in_spec2_y[i];
+    const real prr_d_Gamma_2_in_axes2_x = -prr_h_2_in_spec2_y - prr_d_Gamma_2_t*v->prr_s_2;
+    const real prr_h_2_in_spec2_x = m->prr_h_2_in_spec2_x[i];
+    const real prr_d_Gamma_2_in_axes2_y = prr_h_2_in_spec2_x - v->prr_c_2*prr_d_Gamma_2_t;
+    /* (prr-d_Gamma_1) coefficient of the acceleration in: force along axis 1 of the distal links'
+       inertia and weight */
+    const real prr_link1_mass = m->prr_link1_mass[i];
+    const real prr_d_Gamma_1_t = prr_link1_mass*v->prr_v_2_in_axes0_x*v->prr_w_1_t;
+    const real prr_d_Gamma_1_in_axes2_y = v->prr_c_2*prr_d_Gamma_1_t -
+        prr_link1_mass*v->prr_s_2;
+    /* (prr-d_c) coefficient of the acceleration in: leg force on the platform without actuation and
+       without the mass at the connection point */
+    const real prr_d_c_in_axes2_xx = prr_d_Gamma_2_in_axes2_x*prr_w_2_t -
+        prr_h_2_in_spec2_y*prr_w_2_t - v->prr_w_1_in_axes2_x*(v->prr_c_2*prr_link1_mass +
+        prr_d_Gamma_1_t*v->prr_s_2);
+    const real prr_d_c_in_axes2_xy = prr_d_Gamma_2_in_axes2_y*prr_w_2_t +
+        prr_h_2_in_spec2_y*prr_w_2_in_axes2_y -
+        prr_d_Gamma_1_in_axes2_y*v->prr_w_1_in_axes2_x;
+    v->prr_w_2_in_axes2_y = prr_w_2_in_axes2_y;
+    v->prr_d_Gamma_2_in_axes2_y = prr_d_Gamma_2_in_axes2_y;
+    v->prr_d_Gamma_1_in_axes2_y = prr_d_Gamma_1_in_axes2_y;
+    v->prr_d_c_in_axes2_xx = prr_d_c_in_axes2_xx;
+    v->prr_d_c_in_axes2_xy = prr_d_c_in_axes2_xy;
+}
+
+INLINE void stage_prr_Z_dynamics(const prepared *m, size_t w, size_t i, size_t j, const real *V,
+    values_prr *v)
+{
+    /* (prr-u_1) centripetal acceleration of the connection point */
+    const real omega_z = V[2*w + j];
+    const real prr_u_1_x = -omega_z*v->prr_S_dot_t_2;
+    const real prr_u_1_t = omega_z*v->prr_S_dot_t;
+    const real prr_u_1_in_axes2_x = v->axis_x_prr_axes2_x*prr_u_1_x +
+        v->axis_y_prr_axes2_x*prr_u_1_t;
+    const real prr_u_1_in_axes2_y = v->axis_y_prr_axes2_x*prr_u_1_x -
+        v->axis_x_prr_axes2_x*prr_u_1_t;
+    /* (prr-acc_2_o) remainder without the acceleration in: acceleration of the reference point of
+       link 2, less gravity */
+    const real prr_g_in_axes0_x = m->prr_g_in_axes0_x[i];
+    const real prr_g_in_axes0_y = m->prr_g_in_axes0_y[i];
+    const real prr_acc_2_o_in_axes2_x = prr_u_1_in_axes2_x - v->prr_c_2*prr_g_in_axes0_x -
+        prr_g_in_axes0_y*v->prr_s_2;
+    const real prr_acc_2_o_in_axes2_y = prr_u_1_in_axes2_y + prr_g_in_axes0_x*v->prr_s_2 -
+        v->prr_c_2*prr_g_in_axes0_y;
+    v->prr_u_1_in_axes2_x = prr_u_1_in_axes2_x;
+    v->prr_u_1_in_axes2_y = prr_u_1_in_axes2_y;
+    v->prr_acc_2_o_in_axes2_x = prr_acc_2_o_in_axes2_x;
+    v->prr_acc_2_o_in_axes2_y = prr_acc_2_o_in_axes2_y;
+}
+
+INLINE void stage_prr_inverse_kinematics_potential(const prepared *m, size_t w, size_t i, size_t
+    j, const real *s, const real *X, values_prr *v)
+{
+    /* (prr-S) from the base point to the connection point */
+    const real R_xx = s[0*w + j];
+    const real R_yx = s[1*w + j];
+    const real prr_base_point_x = m->prr_base_point_x[i];
+    const real prr_platform_point_x = m->prr_platform_point_x[i];
+    const real prr_platform_point_y = m->prr_platform_point_y[i];
+    const real t_x = X[0*w + j];
+    const real prr_S_x = t_x + R_xx*prr_platform_point_x - prr_base_point_x -
+        R_yx*prr_platform_point_y;
+    const real prr_base_point_y = m->prr_base_point_y[i];
+    const real t_y = X[1*w + j];
+    const real prr_S_y = t_y + R_xx*prr_platform_point_y + R_yx*prr_platform_point_x -
+        prr_base_point_y;
+    const real prr_base_frame_xx = m->prr_base_frame_xx[i];
+    const real prr_base_frame_yx = m->prr_base_frame_yx[i];
+    const real prr_S_in_axes0_x = prr_S_x*prr_base_frame_xx + prr_S_y*prr_base_frame_yx;
+    /* (prr-disc_1) discriminant of the distance equation */
+    const real prr_disc_1_t = prr_S_x*prr_S_x + prr_S_y*prr_S_y;
+    const real prr_size_t = m->prr_size_t[i];
+    const real prr_disc_1 = prr_S_in_axes0_x*prr_S_in_axes0_x + prr_size_t - prr_disc_1_t;
+    /* (prr-q_1) displacement of joint 1 */
+    const real prr_branch_1 = m->prr_branch_1[i];
+    const real prr_q_1_t = -prr_branch_1*root(prr_disc_1);
+    const real prr_q_1 = prr_S_in_axes0_x - prr_q_1_t;
+    v->prr_S_x = prr_S_x;
+    v->prr_S_y = prr_S_y;
+    v->prr_disc_1 = prr_disc_1;
+    v->prr_q_1_t = prr_q_1_t;
+    v->prr_q_1 = prr_q_1;
+}
+
+INLINE void stage_prr_legs_required(const prepared *m, size_t i, values_prr *v)
+{
+    /* (prr-S_ddot) acceleration of the connection point */
+    const real prr_S_ddot_in_axes2_x = v->axis_x_prr_axes2_x*v->prr_S_ddot_x -
+        v->axis_y_prr_axes2_x*v->prr_S_ddot_y;
+    /* (prr-rel) acceleration of the connection point left to the joint accelerations */
+    const real prr_platform_joint_offset_x = m->prr_platform_joint_offset_x[i];
+    const real prr_rel_in_axes2_x = prr_S_ddot_in_axes2_x +
+        prr_platform_joint_offset_x*v->prr_qd_2*v->prr_qd_2;
+    /* (prr-B_2) acceleration tensor of link 2 */
+    const real prr_B_2_in_axes2_xy = v->prr_w_1_t*(v->prr_S_ddot_in_axes2_y*v->prr_c_2 +
+        prr_rel_in_axes2_x*v->prr_s_2);
+    /* (prr-acc_1) acceleration of the reference point of link 1, less gravity */
+    const real prr_g_in_axes0_x = m->prr_g_in_axes0_x[i];
+    const real prr_acc_1_in_axes0_x = prr_B_2_in_axes2_xy*v->prr_v_2_in_axes0_x +
+        v->prr_c_2*prr_rel_in_axes2_x - prr_g_in_axes0_x -
+        v->prr_S_ddot_in_axes2_y*v->prr_s_2;
+    /* (prr-f_1) inertia force of link 1 less its weight */
+    const real prr_link1_mass = m->prr_link1_mass[i];
+    const real prr_f_1_in_axes0_x = prr_acc_1_in_axes0_x*prr_link1_mass;
+    /* (prr-acc_2) acceleration of the reference point of link 2, less gravity */
+    const real prr_g_in_axes0_y = m->prr_g_in_axes0_y[i];
+    const real prr_acc_2_in_axes2_x = prr_S_ddot_in_axes2_x - v->prr_c_2*prr_g_in_axes0_x -
+        prr_g_in_axes0_y*v->prr_s_2;
+    const real prr_acc_2_in_axes2_y = v->prr_S_ddot_in_axes2_y + prr_g_in_axes0_x*v->prr_s_2 -
+        v->prr_c_2*prr_g_in_axes0_y;
+    /* (prr-mu_2) inertia moment of the links that turn with link 2, about their reference points */
+    const real prr_J_2_in_spec2_zz = m->prr_J_2_in_spec2_zz[i];
+    const real prr_h_2_in_spec2_x = m->prr_h_2_in_spec2_x[i];
+    const real prr_h_2_in_spec2_y = m->prr_h_2_in_spec2_y[i];
+    const real prr_mu_2_in_axes2_z = prr_acc_2_in_axes2_y*prr_h_2_in_spec2_x -
+        prr_B_2_in_axes2_xy*prr_J_2_in_spec2_zz - prr_acc_2_in_axes2_x*prr_h_2_in_spec2_y;
+    /* (prr-c) leg force on the platform without actuation and without the mass at the connection
+       point */
+    const real prr_c_t = v->prr_w_1_t*(prr_mu_2_in_axes2_z -
+        prr_f_1_in_axes0_x*v->prr_v_2_in_axes0_x);
+    const real prr_c_in_axes2_x = v->prr_W_2_t*prr_h_2_in_spec2_x + prr_c_t*v->prr_s_2 -
+        prr_B_2_in_axes2_xy*prr_h_2_in_spec2_y - v->prr_c_2*prr_f_1_in_axes0_x;
+    const real prr_c_in_axes2_y = prr_B_2_in_axes2_xy*prr_h_2_in_spec2_x +
+        v->prr_W_2_t*prr_h_2_in_spec2_y + v->prr_c_2*prr_c_t + prr_f_1_in_axes0_x*v->prr_s_2;
+    v->prr_acc_2_in_axes2_x = prr_acc_2_in_axes2_x;
+    v->prr_acc_2_in_axes2_y = prr_acc_2_in_axes2_y;
+    v->prr_c_in_axes2_x = prr_c_in_axes2_x;
+    v->prr_c_in_axes2_y = prr_c_in_axes2_y;
+}
+
+typedef struct {
+    real rpr_q_x, rpr_q_y, rpr_S_in_turn1_x, rpr_S_in_turn1_y, rpr_q_2_t, rpr_q_2, inv_rpr_q_2,
+        axis_x_rpr_axes1_x, axis_x_rpr_axes1_y, rpr_w_1_in_axes1_y, rpr_w_2_x, rpr_w_2_y, rpr_a_p_x,
+        rpr_a_p_y, rpr_S_dot_t, rpr_S_dot_t_2, rpr_S_dot_in_axes1_x, rpr_qd_1, rpr_W_1_in_axes1_xx,
+        rpr_S_ddot_x, rpr_S_ddot_y, rpr_U_x, rpr_U_y, rpr_Z_a_t, rpr_qdd_1, rpr_acc_2_in_axes1_x,
+        rpr_acc_2_in_axes1_y, rpr_c_in_axes1_y;
+} values_rpr;
+
+INLINE void stage_rpr_X(const prepared *m, size_t w, size_t i, size_t j, const real *s, const real
+    *X, values_rpr *v)
+{
+    /* (rpr-S) from the base point to the connection point */
+    const real R_xx = s[0*w + j];
+    const real R_yx = s[1*w + j];
+    const real rpr_platform_point_x = m->rpr_platform_point_x[i];
+    const real rpr_platform_point_y = m->rpr_platform_point_y[i];
+    const real rpr_q_x = R_xx*rpr_platform_point_x - R_yx*rpr_platform_point_y;
+    const real rpr_q_y = R_xx*rpr_platform_point_y + R_yx*rpr_platform_point_x;
+    const real rpr_base_point_x = m->rpr_base_point_x[i];
+    const real t_x = X[0*w + j];
+    const real rpr_S_x = rpr_q_x + t_x - rpr_base_point_x;
+    const real rpr_base_point_y = m->rpr_base_point_y[i];
+    const real t_y = X[1*w + j];
+    const real rpr_S_y = rpr_q_y + t_y - rpr_base_point_y;
+    const real rpr_base_frame_xx = m->rpr_base_frame_xx[i];
+    const real rpr_base_frame_yx = m->rpr_base_frame_yx[i];
+    const real rpr_S_in_turn1_x = rpr_S_x*rpr_base_frame_xx + rpr_S_y*rpr_base_frame_yx;
+    const real rpr_base_frame_xy = m->rpr_base_frame_xy[i];
+    const real rpr_base_frame_yy = m->rpr_base_frame_yy[i];
+    const real rpr_S_in_turn1_y = rpr_S_x*rpr_base_frame_xy + rpr_S_y*rpr_base_frame_yy;
+    /* (rpr-q_2) displacement of joint 2 */
+    const real rpr_q_2_t = rpr_S_in_turn1_x*rpr_S_in_turn1_x +
+        rpr_S_in_turn1_y*rpr_S_in_turn1_y;
+    const real rpr_branch_1 = m->rpr_branch_1[i];
+    const real rpr_q_2 = rpr_branch_1*root(rpr_q_2_t);
+    /* (rpr-S_dot) velocity of the connection point */
+    const real inv_rpr_q_2 = 1/rpr_q_2;
+    const real axis_x_rpr_axes1_x = inv_rpr_q_2*rpr_S_x;
+    const real axis_x_rpr_axes1_y = inv_rpr_q_2*rpr_S_y;
+    /* (rpr-w_1) reciprocal vector 1 */
+    const real rpr_w_1_in_axes1_y = 1/rpr_q_2;
+    /* (rpr-w_2) reciprocal vector 2 */
+    const real rpr_w_2_x = rpr_S_x*rpr_w_1_in_axes1_y;
+    const real rpr_w_2_y = rpr_S_y*rpr_w_1_in_axes1_y;
+    v->rpr_q_x = rpr_q_x;
+    v->rpr_q_y = rpr_q_y;
+    v->rpr_S_in_turn1_x = rpr_S_in_turn1_x;
+    v->rpr_S_in_turn1_y = rpr_S_in_turn1_y;
+    v->rpr_q_2_t = rpr_q_2_t;
+    v->rpr_q_2 = rpr_q_2;
+    v->inv_rpr_q_2 = inv_rpr_q_2;
+    v->axis_x_rpr_axes1_x = axis_x_rpr_axes1_x;
+    v->axis_x_rpr_axes1_y = axis_x_rpr_axes1_y;
+    v->rpr_w_1_in_axes1_y = rpr_w_1_in_axes1_y;
+    v->rpr_w_2_x = rpr_w_2_x;
+    v->rpr_w_2_y = rpr_w_2_y;
+}
+
+INLINE void stage_rpr_A_X(size_t w, size_t j, const real *A, values_rpr *v)
+{
+    /* (rpr-a_p) acceleration of the connection point without its centripetal part */
+    const real alpha_z = A[2*w + j];
+    const real t_ddot_x = A[0*w + j];
+    const real rpr_a_p_x = t_ddot_x - alpha_z*v->rpr_q_y;
+    const real t_ddot_y = A[1*w + j];
+    const real rpr_a_p_y = t_ddot_y + alpha_z*v->rpr_q_x;
+    v->rpr_a_p_x = rpr_a_p_x;
+    v->rpr_a_p_y = rpr_a_p_y;
+}
+
+INLINE void stage_rpr_V_X(size_t w, size_t j, const real *V, values_rpr *v)
+{
+    /* (rpr-S_dot) velocity of the connection point */
+    const real omega_z = V[2*w + j];
+    const real rpr_S_dot_t = omega_z*v->rpr_q_y;
+    const real rpr_S_dot_t_2 = omega_z*v->rpr_q_x;
+    const real t_dot_x = V[0*w + j];
+    const real rpr_S_dot_x = t_dot_x - rpr_S_dot_t;
+    const real t_dot_y = V[1*w + j];
+    const real rpr_S_dot_y = rpr_S_dot_t_2 + t_dot_y;
+    const real rpr_S_dot_in_axes1_x = v->axis_x_rpr_axes1_x*rpr_S_dot_x +
+        v->axis_x_rpr_axes1_y*rpr_S_dot_y;
+    /* (rpr-qd_1) rate of joint 1 */
+    const real rpr_qd_1 = v->inv_rpr_q_2*(v->axis_x_rpr_axes1_x*rpr_S_dot_y -
+        v->axis_x_rpr_axes1_y*rpr_S_dot_x);
+    /* (rpr-W_1) centripetal tensor of link 1 */
+    const real rpr_W_1_in_axes1_xx = -rpr_qd_1*rpr_qd_1;
+    v->rpr_S_dot_t = rpr_S_dot_t;
+    v->rpr_S_dot_t_2 = rpr_S_dot_t_2;
+    v->rpr_S_dot_in_axes1_x = rpr_S_dot_in_axes1_x;
+    v->rpr_qd_1 = rpr_qd_1;
+    v->rpr_W_1_in_axes1_xx = rpr_W_1_in_axes1_xx;
+}
+
+INLINE void stage_rpr_A_V_X(size_t w, size_t j, const real *V, values_rpr *v)
+{
+    /* (rpr-S_ddot) acceleration of the connection point */
+    const real omega_z = V[2*w + j];
+    const real rpr_S_ddot_x = v->rpr_a_p_x - omega_z*v->rpr_S_dot_t_2;
+    const real rpr_S_ddot_y = v->rpr_a_p_y - omega_z*v->rpr_S_dot_t;
+    v->rpr_S_ddot_x = rpr_S_ddot_x;
+    v->rpr_S_ddot_y = rpr_S_ddot_y;
+}
+
+INLINE void stage_rpr_Z_dynamics(const prepared *m, size_t w, size_t i, size_t j, const real *V,
+    values_rpr *v)
+{
+    /* (rpr-u_1) centripetal acceleration of the connection point */
+    const real omega_z = V[2*w + j];
+    const real rpr_u_1_t = omega_z*v->rpr_S_dot_t_2;
+    const real rpr_u_1_y = -omega_z*v->rpr_S_dot_t;
+    const real rpr_u_1_in_axes1_y = v->axis_x_rpr_axes1_x*rpr_u_1_y +
+        v->axis_x_rpr_axes1_y*rpr_u_1_t;
+    /* (rpr-rel_o) remainder without the acceleration in: acceleration of the connection point left to
+       the joint accelerations */
+    const real rpr_rel_o_in_axes1_y = rpr_u_1_in_axes1_y -
+        2*v->rpr_S_dot_in_axes1_x*v->rpr_qd_1;
+    /* (rpr-qdd_1_o) remainder without the acceleration in: acceleration of joint 1 */
+    const real rpr_qdd_1_o = v->inv_rpr_q_2*rpr_rel_o_in_axes1_y;
+    /* (rpr-acc_2_o) remainder without the acceleration in: acceleration of the reference point of
+       link 2, less gravity */
+    const real gravity_x = m->gravity_x;
+    const real gravity_y = m->gravity_y;
+    const real rpr_g_in_axes1_x = v->axis_x_rpr_axes1_x*gravity_x +
+        v->axis_x_rpr_axes1_y*gravity_y;
+    const real rpr_g_in_axes1_y = v->axis_x_rpr_axes1_x*gravity_y -
+        v->axis_x_rpr_axes1_y*gravity_x;
+    const real rpr_acc_2_o_in_axes1_x = v->axis_x_rpr_axes1_y*rpr_u_1_y - rpr_g_in_axes1_x -
+        v->axis_x_rpr_axes1_x*rpr_u_1_t;
+    const real rpr_acc_2_o_in_axes1_y = rpr_u_1_in_axes1_y - rpr_g_in_axes1_y;
+    /* (rpr-phi_2_o) remainder without the acceleration in: inertia force of link 2 from its turning
+       about its reference point */
+    const real rpr_h_2_in_spec1_x = m->rpr_h_2_in_spec1_x[i];
+    const real rpr_h_2_in_spec1_y = m->rpr_h_2_in_spec1_y[i];
+    const real rpr_phi_2_o_in_axes1_x = v->rpr_W_1_in_axes1_xx*rpr_h_2_in_spec1_x -
+        rpr_h_2_in_spec1_y*rpr_qdd_1_o;
+    /* (rpr-mu_1_o) remainder without the acceleration in: inertia moment of the links that turn with
+       link 1, about their reference points */
+    const real rpr_J_group_1_in_axes1_zz = m->rpr_J_group_1_in_axes1_zz[i];
+    const real rpr_h_1_in_spec1_x = m->rpr_h_1_in_spec1_x[i];
+    const real rpr_h_1_in_spec1_y = m->rpr_h_1_in_spec1_y[i];
+    const real rpr_mu_1_o_in_axes1_z = rpr_J_group_1_in_axes1_zz*rpr_qdd_1_o +
+        rpr_acc_2_o_in_axes1_y*rpr_h_2_in_spec1_x + rpr_g_in_axes1_x*rpr_h_1_in_spec1_y -
+        rpr_acc_2_o_in_axes1_x*rpr_h_2_in_spec1_y - rpr_g_in_axes1_y*rpr_h_1_in_spec1_x;
+    /* (rpr-c_o) remainder without the acceleration in: leg force on the platform without actuation
+       and without the mass at the connection point */
+    const real rpr_c_o_in_axes1_y = -v->inv_rpr_q_2*rpr_mu_1_o_in_axes1_z -
+        v->rpr_W_1_in_axes1_xx*rpr_h_2_in_spec1_y - rpr_h_2_in_spec1_x*rpr_qdd_1_o;
+    /* (rpr-U) velocity and gravity terms of the leg force */
+    const real rpr_U_x = v->axis_x_rpr_axes1_x*rpr_phi_2_o_in_axes1_x +
+        v->axis_x_rpr_axes1_y*rpr_c_o_in_axes1_y;
+    const real rpr_U_y = v->axis_x_rpr_axes1_y*rpr_phi_2_o_in_axes1_x -
+        v->axis_x_rpr_axes1_x*rpr_c_o_in_axes1_y;
+    /* (Z_a) rotational part of Z */
+    const real rpr_Z_a_t = rpr_U_y*v->rpr_q_x - rpr_U_x*v->rpr_q_y;
+    v->rpr_U_x = rpr_U_x;
+    v->rpr_U_y = rpr_U_y;
+    v->rpr_Z_a_t = rpr_Z_a_t;
+}
+
+INLINE void stage_rpr_inverse_kinematics_potential(const prepared *m, size_t w, size_t i, size_t
+    j, const real *s, const real *X, values_rpr *v)
+{
+    /* (rpr-S) from the base point to the connection point */
+    const real R_xx = s[0*w + j];
+    const real R_yx = s[1*w + j];
+    const real rpr_base_point_x = m->rpr_base_point_x[i];
+    const real rpr_platform_point_x = m->rpr_platform_point_x[i];
+    const real rpr_platform_point_y = m->rpr_platform_point_y[i];
+    const real t_x = X[0*w + j];
+    const real rpr_S_x = t_x + R_xx*rpr_platform_point_x - rpr_base_point_x -
+        R_yx*rpr_platform_point_y;
+    const real rpr_base_point_y = m->rpr_base_point_y[i];
+    const real t_y = X[1*w + j];
+    const real rpr_S_y = t_y + R_xx*rpr_platform_point_y + R_yx*rpr_platform_point_x -
+        rpr_base_point_y;
+    const real rpr_base_frame_xx = m->rpr_base_frame_xx[i];
+    const real rpr_base_frame_yx = m->rpr_base_frame_yx[i];
+    const real rpr_S_in_turn1_x = rpr_S_x*rpr_base_frame_xx + rpr_S_y*rpr_base_frame_yx;
+    const real rpr_base_frame_xy = m->rpr_base_frame_xy[i];
+    const real rpr_base_frame_yy = m->rpr_base_frame_yy[i];
+    const real rpr_S_in_turn1_y = rpr_S_x*rpr_base_frame_xy + rpr_S_y*rpr_base_frame_yy;
+    /* (rpr-q_2) displacement of joint 2 */
+    const real rpr_q_2_t = rpr_S_in_turn1_x*rpr_S_in_turn1_x +
+        rpr_S_in_turn1_y*rpr_S_in_turn1_y;
+    const real rpr_branch_1 = m->rpr_branch_1[i];
+    const real rpr_q_2 = rpr_branch_1*root(rpr_q_2_t);
+    /* (rpr-q_1) displacement of joint 1 */
+    const real inv_rpr_q_2 = 1/rpr_q_2;
+    v->rpr_S_in_turn1_x = rpr_S_in_turn1_x;
+    v->rpr_S_in_turn1_y = rpr_S_in_turn1_y;
+    v->rpr_q_2_t = rpr_q_2_t;
+    v->rpr_q_2 = rpr_q_2;
+    v->inv_rpr_q_2 = inv_rpr_q_2;
+}
+
+INLINE void stage_rpr_legs_required(const prepared *m, size_t i, values_rpr *v)
+{
+    /* (rpr-c_1) cosine of the angle of joint 1 from its reference direction */
+    const real rpr_c_1 = v->inv_rpr_q_2*v->rpr_S_in_turn1_x;
+    /* (rpr-s_1) sine of the angle of joint 1 from its reference direction */
+    const real rpr_s_1 = v->inv_rpr_q_2*v->rpr_S_in_turn1_y;
+    /* (rpr-S_ddot) acceleration of the connection point */
+    const real rpr_S_ddot_in_axes1_y = v->axis_x_rpr_axes1_x*v->rpr_S_ddot_y -
+        v->axis_x_rpr_axes1_y*v->rpr_S_ddot_x;
+    /* (rpr-rel) acceleration of the connection point left to the joint accelerations */
+    const real rpr_rel_in_axes1_y = rpr_S_ddot_in_axes1_y -
+        2*v->rpr_S_dot_in_axes1_x*v->rpr_qd_1;
+    /* (rpr-qdd_1) acceleration of joint 1 */
+    const real rpr_qdd_1 = v->inv_rpr_q_2*rpr_rel_in_axes1_y;
+    /* (rpr-acc_2) acceleration of the reference point of link 2, less gravity */
+    const real rpr_acc_2_t = m->rpr_acc_2_t[i];
+    const real rpr_acc_2_t_2 = m->rpr_acc_2_t_2[i];
+    const real rpr_g_in_axes1_x = rpr_acc_2_t*rpr_c_1 + rpr_acc_2_t_2*rpr_s_1;
+    const real rpr_g_in_axes1_y = rpr_acc_2_t_2*rpr_c_1 - rpr_acc_2_t*rpr_s_1;
+    const real rpr_acc_2_in_axes1_x = v->axis_x_rpr_axes1_x*v->rpr_S_ddot_x +
+        v->axis_x_rpr_axes1_y*v->rpr_S_ddot_y - rpr_g_in_axes1_x;
+    const real rpr_acc_2_in_axes1_y = rpr_S_ddot_in_axes1_y - rpr_g_in_axes1_y;
+    /* (rpr-mu_1) inertia moment of the links that turn with link 1, about their reference points */
+    const real rpr_J_group_1_in_axes1_zz = m->rpr_J_group_1_in_axes1_zz[i];
+    const real rpr_h_1_in_spec1_x = m->rpr_h_1_in_spec1_x[i];
+    const real rpr_h_1_in_spec1_y = m->rpr_h_1_in_spec1_y[i];
+    const real rpr_h_2_in_spec1_x = m->rpr_h_2_in_spec1_x[i];
+    const real rpr_h_2_in_spec1_y = m->rpr_h_2_in_spec1_y[i];
+    const real rpr_mu_1_in_axes1_z = rpr_J_group_1_in_axes1_zz*rpr_qdd_1 +
+        rpr_acc_2_in_axes1_y*rpr_h_2_in_spec1_x + rpr_g_in_axes1_x*rpr_h_1_in_spec1_y -
+        rpr_acc_2_in_axes1_x*rpr_h_2_in_spec1_y - rpr_g_in_axes1_y*rpr_h_1_in_spec1_x;
+    /* (rpr-c) leg force on the platform without actuation and without the mass at the connection
+       point */
+    const real rpr_c_in_axes1_y = -v->inv_rpr_q_2*rpr_mu_1_in_axes1_z -
+        v->rpr_W_1_in_axes1_xx*rpr_h_2_in_spec1_y - rpr_h_2_in_spec1_x*rpr_qdd_1;
+    v->rpr_qdd_1 = rpr_qdd_1;
+    v->rpr_acc_2_in_axes1_x = rpr_acc_2_in_axes1_x;
+    v->rpr_acc_2_in_axes1_y = rpr_acc_2_in_axes1_y;
+    v->rpr_c_in_axes1_y = rpr_c_in_axes1_y;
+}
+
+typedef struct {
+    real rrr_q_x, rrr_q_y, rrr_rho2_1, rrr_disc_1, rrr_c_1, rrr_s_1, rrr_c_2, rrr_s_2,
+        rrr_r_1_in_axes1_y, rrr_r_1_in_axes1_x, rrr_r_1_in_axes2_x, rrr_r_1_in_axes2_y, rrr_w_1_t,
+        rrr_w_1_t_2, axis_y_rrr_axes2_x, axis_x_rrr_axes2_x, rrr_w_1_in_axes2_x, rrr_w_1_x, rrr_w_1_y,
+        rrr_qd_1_t, rrr_qd_1_t_2, rrr_a_p_x, rrr_a_p_y, rrr_S_dot_t, rrr_S_dot_t_2, rrr_S_dot_x,
+        rrr_S_dot_y, rrr_W_1_t, rrr_W_2_t, rrr_bias_in_axes2_x, rrr_S_ddot_x, rrr_S_ddot_y,
+        rrr_H_a_1_z, rrr_w_2_in_axes2_x, rrr_d_Gamma_2_in_axes2_x, rrr_d_Gamma_1_in_axes2_x,
+        rrr_d_c_in_axes2_xy, rrr_Kd_1, rrr_Kc_1, rrr_Ks_1, rrr_root_1, inv_rrr_rho2_1,
+        rrr_x_2_in_axes1_x, rrr_acc_2_in_axes2_x, rrr_acc_2_in_axes2_y, rrr_c_in_axes2_x,
+        rrr_c_in_axes2_y;
+} values_rrr;
+
+INLINE void stage_rrr_X(const prepared *m, size_t w, size_t i, size_t j, const real *s, const real
+    *X, values_rrr *v)
+{
+    /* (rrr-S) from the base point to the connection point */
+    const real R_xx = s[0*w + j];
+    const real R_yx = s[1*w + j];
+    const real rrr_platform_point_x = m->rrr_platform_point_x[i];
+    const real rrr_platform_point_y = m->rrr_platform_point_y[i];
+    const real rrr_q_x = R_xx*rrr_platform_point_x - R_yx*rrr_platform_point_y;
+    const real rrr_q_y = R_xx*rrr_platform_point_y + R_yx*rrr_platform_point_x;
+    const real rrr_base_point_x = m->rrr_base_point_x[i];
+    const real t_x = X[0*w + j];
+    const real rrr_S_x = rrr_q_x + t_x - rrr_base_point_x;
+    const real rrr_base_point_y = m->rrr_base_point_y[i];
+    const real t_y = X[1*w + j];
+    const real rrr_S_y = rrr_q_y + t_y - rrr_base_point_y;
+    /* (rrr-Kd_1) projection on the centre's direction, from the distance fixed by the joints beyond
+       joint 1 */
+    const real rrr_Kd_1_t_3 = rrr_S_x*rrr_S_x + rrr_S_y*rrr_S_y;
+    const real rrr_Kd_1_t = m->rrr_Kd_1_t[i];
+    const real rrr_Kd_1_t_2 = m->rrr_Kd_1_t_2[i];
+    const real rrr_Kd_1 = rrr_Kd_1_t + R(0.5)*rrr_Kd_1_t_3 - rrr_Kd_1_t_2;
+    /* (rrr-Kc_1) factor of the cosine in the equation of joint 1 */
+    const real rrr_base_frame_xx = m->rrr_base_frame_xx[i];
+    const real rrr_base_frame_yx = m->rrr_base_frame_yx[i];
+    const real rrr_joint2_offset_x = m->rrr_joint2_offset_x[i];
+    const real rrr_Kc_1 = rrr_joint2_offset_x*(rrr_S_x*rrr_base_frame_xx +
+        rrr_S_y*rrr_base_frame_yx);
+    /* (rrr-Ks_1) factor of the sine in the equation of joint 1 */
+    const real rrr_base_frame_xy = m->rrr_base_frame_xy[i];
+    const real rrr_base_frame_yy = m->rrr_base_frame_yy[i];
+    const real rrr_Ks_1 = rrr_joint2_offset_x*(rrr_S_x*rrr_base_frame_xy +
+        rrr_S_y*rrr_base_frame_yy);
+    /* (rrr-rho2_1) squared amplitude */
+    const real rrr_rho2_1 = rrr_Kc_1*rrr_Kc_1 + rrr_Ks_1*rrr_Ks_1;
+    /* (rrr-disc_1) discriminant */
+    const real rrr_disc_1 = rrr_rho2_1 - rrr_Kd_1*rrr_Kd_1;
+    /* (rrr-root_1) root, with the sign of the branch */
+    const real rrr_branch_1 = m->rrr_branch_1[i];
+    const real rrr_root_1 = rrr_branch_1*root(rrr_disc_1);
+    /* (rrr-c_1) cosine of the angle of joint 1 from its reference direction */
+    const real inv_rrr_rho2_1 = 1/rrr_rho2_1;
+    const real rrr_c_1 = inv_rrr_rho2_1*(rrr_Kc_1*rrr_Kd_1 - rrr_Ks_1*rrr_root_1);
+    /* (rrr-s_1) sine of the angle of joint 1 from its reference direction */
+    const real rrr_s_1 = inv_rrr_rho2_1*(rrr_Kc_1*rrr_root_1 + rrr_Kd_1*rrr_Ks_1);
+    /* (rrr-x_2) from the origin of joint 2 to the connection point */
+    const real inv_rrr_size_t = m->inv_rrr_size_t[i];
+    const real rrr_x_2_in_axes1_x = inv_rrr_size_t*rrr_Kd_1*rrr_joint2_offset_x -
+        rrr_joint2_offset_x;
+    /* (rrr-c_2) cosine of the angle of joint 2 from its reference direction */
+    const real inv_rrr_size_t_2 = m->inv_rrr_size_t_2[i];
+    const real rrr_platform_joint_offset_x = m->rrr_platform_joint_offset_x[i];
+    const real rrr_c_2 = inv_rrr_size_t_2*rrr_platform_joint_offset_x*rrr_x_2_in_axes1_x;
+    /* (rrr-s_2) sine of the angle of joint 2 from its reference direction */
+    const real rrr_s_2 =
+        -inv_rrr_size_t*inv_rrr_size_t_2*rrr_joint2_offset_x*rrr_platform_joint_offset_x*rrr_root_1;
+    /* (rrr-r_1) from joint 1 to the connection point, along the links */
+    const real rrr_r_1_in_axes1_y = rrr_platform_joint_offset_x*rrr_s_2;
+    const real rrr_r_1_in_axes1_x = rrr_joint2_offset_x + rrr_c_2*rrr_platform_joint_offset_x;
+    const real rrr_r_1_in_axes2_x = rrr_c_2*rrr_r_1_in_axes1_x + rrr_r_1_in_axes1_y*rrr_s_2;
+    const real rrr_r_1_in_axes2_y = rrr_c_2*rrr_r_1_in_axes1_y - rrr_r_1_in_axes1_x*rrr_s_2;
+    /* (rrr-w_1) reciprocal vector 1 */
+    const real rrr_w_1_t = rrr_c_1*rrr_s_2 + rrr_c_2*rrr_s_1;
+    const real rrr_w_1_t_2 = rrr_c_1*rrr_c_2 - rrr_s_1*rrr_s_2;
+    const real axis_y_rrr_axes2_x = rrr_base_frame_xy*rrr_w_1_t_2 -
+        rrr_base_frame_xx*rrr_w_1_t;
+    const real axis_x_rrr_axes2_x = rrr_base_frame_yy*rrr_w_1_t_2 -
+        rrr_base_frame_yx*rrr_w_1_t;
+    const real rrr_w_1_in_axes2_x = -1/rrr_r_1_in_axes2_y;
+    const real rrr_w_1_x = axis_x_rrr_axes2_x*rrr_w_1_in_axes2_x;
+    const real rrr_w_1_y = -axis_y_rrr_axes2_x*rrr_w_1_in_axes2_x;
+    /* (rrr-qd_1) rate of joint 1 */
+    const real rrr_qd_1_t = rrr_c_1*rrr_s_2 + rrr_c_2*rrr_s_1;
+    const real rrr_qd_1_t_2 = rrr_c_1*rrr_c_2 - rrr_s_1*rrr_s_2;
+    v->rrr_q_x = rrr_q_x;
+    v->rrr_q_y = rrr_q_y;
+    v->rrr_rho2_1 = rrr_rho2_1;
+    v->rrr_disc_1 = rrr_disc_1;
+    v->rrr_c_1 = rrr_c_1;
+    v->rrr_s_1 = rrr_s_1;
+    v->rrr_c_2 = rrr_c_2;
+    v->rrr_s_2 = rrr_s_2;
+    v->rrr_r_1_in_axes1_y = rrr_r_1_in_axes1_y;
+    v->rrr_r_1_in_axes1_x = rrr_r_1_in_axes1_x;
+    v->rrr_r_1_in_axes2_x = rrr_r_1_in_axes2_x;
+    v->rrr_r_1_in_axes2_y = rrr_r_1_in_axes2_y;
+    v->rrr_w_1_t = rrr_w_1_t;
+    v->rrr_w_1_t_2 = rrr_w_1_t_2;
+    v->axis_y_rrr_axes2_x = axis_y_rrr_axes2_x;
+    v->axis_x_rrr_axes2_x = axis_x_rrr_axes2_x;
+    v->rrr_w_1_in_axes2_x = rrr_w_1_in_axes2_x;
+    v->rrr_w_1_x = rrr_w_1_x;
+    v->rrr_w_1_y = rrr_w_1_y;
+    v->rrr_qd_1_t = rrr_qd_1_t;
+    v->rrr_qd_1_t_2 = rrr_qd_1_t_2;
+}
+
+INLINE void stage_rrr_A_X(size_t w, size_t j, const real *A, values_rrr *v)
+{
+    /* (rrr-a_p) acceleration of the connection point without its centripetal part */
+    const real alpha_z = A[2*w + j];
+    const real t_ddot_x = A[0*w + j];
+    const real rrr_a_p_x = t_ddot_x - alpha_z*v->rrr_q_y;
+    const real t_ddot_y = A[1*w + j];
+    const real rrr_a_p_y = t_ddot_y + alpha_z*v->rrr_q_x;
+    v->rrr_a_p_x = rrr_a_p_x;
+    v->rrr_a_p_y = rrr_a_p_y;
+}
+
+INLINE void stage_rrr_V_X(const prepared *m, size_t w, size_t i, size_t j, const real *V,
+    values_rrr *v)
+{
+    /* (rrr-S_dot) velocity of the connection point */
+    const real omega_z = V[2*w + j];
+    const real rrr_S_dot_t = omega_z*v->rrr_q_y;
+    const real rrr_S_dot_t_2 = omega_z*v->rrr_q_x;
+    const real t_dot_x = V[0*w + j];
+    const real rrr_S_dot_x = t_dot_x - rrr_S_dot_t;
+    const real t_dot_y = V[1*w + j];
+    const real rrr_S_dot_y = rrr_S_dot_t_2 + t_dot_y;
+    /* (rrr-qd_1) rate of joint 1 */
+    const real rrr_qd_1 = v->rrr_w_1_in_axes2_x*(v->axis_x_rrr_axes2_x*rrr_S_dot_x -
+        v->axis_y_rrr_axes2_x*rrr_S_dot_y);
+    /* (rrr-W_1) centripetal tensor of link 1 */
+    const real rrr_W_1_t = rrr_qd_1*rrr_qd_1;
+    /* (rrr-omega_2) angular velocity of link 2 */
+    const real rrr_w_2_in_axes2_y = m->rrr_w_2_in_axes2_y[i];
+    const real rrr_omega_2_in_axes2_z = rrr_qd_1 +
+        rrr_w_2_in_axes2_y*(v->axis_x_rrr_axes2_x*rrr_S_dot_y +
+        v->axis_y_rrr_axes2_x*rrr_S_dot_x - rrr_qd_1*v->rrr_r_1_in_axes2_x);
+    /* (rrr-W_2) centripetal tensor of link 2 */
+    const real rrr_W_2_t = rrr_omega_2_in_axes2_z*rrr_omega_2_in_axes2_z;
+    /* (rrr-bias) acceleration of the connection point at zero joint accelerations */
+    const real rrr_joint2_offset_x = m->rrr_joint2_offset_x[i];
+    const real rrr_platform_joint_offset_x = m->rrr_platform_joint_offset_x[i];
+    const real rrr_bias_in_axes2_x = -rrr_W_2_t*rrr_platform_joint_offset_x -
+        rrr_W_1_t*v->rrr_c_2*rrr_joint2_offset_x;
+    v->rrr_S_dot_t = rrr_S_dot_t;
+    v->rrr_S_dot_t_2 = rrr_S_dot_t_2;
+    v->rrr_S_dot_x = rrr_S_dot_x;
+    v->rrr_S_dot_y = rrr_S_dot_y;
+    v->rrr_W_1_t = rrr_W_1_t;
+    v->rrr_W_2_t = rrr_W_2_t;
+    v->rrr_bias_in_axes2_x = rrr_bias_in_axes2_x;
+}
+
+INLINE void stage_rrr_A_V_X(size_t w, size_t j, const real *V, values_rrr *v)
+{
+    /* (rrr-S_ddot) acceleration of the connection point */
+    const real omega_z = V[2*w + j];
+    const real rrr_S_ddot_x = v->rrr_a_p_x - omega_z*v->rrr_S_dot_t_2;
+    const real rrr_S_ddot_y = v->rrr_a_p_y - omega_z*v->rrr_S_dot_t;
+    v->rrr_S_ddot_x = rrr_S_ddot_x;
+    v->rrr_S_ddot_y = rrr_S_ddot_y;
+}
+
+INLINE void stage_rrr_H_condition(const prepared *m, size_t i, values_rrr *v)
+{
+    /* (rrr-r_1) from joint 1 to the connection point, along the links */
+    const real rrr_platform_joint_offset_x = m->rrr_platform_joint_offset_x[i];
+    const real rrr_r_1_in_axes2_y = v->rrr_c_2*rrr_platform_joint_offset_x*v->rrr_s_2 -
+        v->rrr_r_1_in_axes1_x*v->rrr_s_2;
+    /* (rrr-w_1) reciprocal vector 1 */
+    const real rrr_w_1_in_axes2_x = -1/rrr_r_1_in_axes2_y;
+    const real rrr_base_frame_yx = m->rrr_base_frame_yx[i];
+    const real rrr_base_frame_yy = m->rrr_base_frame_yy[i];
+    const real rrr_w_1_x = rrr_w_1_in_axes2_x*(rrr_base_frame_yy*v->rrr_w_1_t_2 -
+        rrr_base_frame_yx*v->rrr_w_1_t);
+    const real rrr_base_frame_xx = m->rrr_base_frame_xx[i];
+    const real rrr_base_frame_xy = m->rrr_base_frame_xy[i];
+    const real rrr_w_1_y = -rrr_w_1_in_axes2_x*(rrr_base_frame_xy*v->rrr_w_1_t_2 -
+        rrr_base_frame_xx*v->rrr_w_1_t);
+    /* (rrr-H_a_1) moment of the column's unit force about the platform origin */
+    const real rrr_H_a_1_z = v->rrr_q_x*rrr_w_1_y - v->rrr_q_y*rrr_w_1_x;
+    v->rrr_r_1_in_axes2_y = rrr_r_1_in_axes2_y;
+    v->rrr_w_1_x = rrr_w_1_x;
+    v->rrr_w_1_y = rrr_w_1_y;
+    v->rrr_H_a_1_z = rrr_H_a_1_z;
+}
+
+INLINE void stage_rrr_M_dynamics(const prepared *m, size_t i, values_rrr *v)
+{
+    /* (rrr-w_2) reciprocal vector 2 */
+    const real rrr_w_2_in_axes2_y = m->rrr_w_2_in_axes2_y[i];
+    const real rrr_w_2_in_axes2_x =
+        -v->rrr_r_1_in_axes2_x*v->rrr_w_1_in_axes2_x*rrr_w_2_in_axes2_y;
+    /* (rrr-d_Gamma_2) coefficient of the acceleration in: moment about axis 2 of the distal links'
+       inertia and weight */
+    const real rrr_d_Gamma_2_t = m->rrr_d_Gamma_2_t[i];
+    const real rrr_d_Gamma_2_t_2 = rrr_d_Gamma_2_t*v->rrr_r_1_in_axes2_x;
+    const real rrr_J_2_in_spec2_zz = m->rrr_J_2_in_spec2_zz[i];
+    const real rrr_h_2_in_spec2_y = m->rrr_h_2_in_spec2_y[i];
+    const real rrr_d_Gamma_2_in_axes2_x = v->rrr_w_1_in_axes2_x*(rrr_J_2_in_spec2_zz -
+        rrr_d_Gamma_2_t_2) - rrr_h_2_in_spec2_y;
+    /* (rrr-d_Gamma_1) coefficient of the acceleration in: moment about axis 1 of the distal links'
+       inertia and weight */
+    const real rrr_Jc_1_in_axes1_zz = m->rrr_Jc_1_in_axes1_zz[i];
+    const real rrr_d_Gamma_1_in_axes2_x = v->rrr_w_1_in_axes2_x*(rrr_Jc_1_in_axes1_zz -
+        rrr_d_Gamma_2_t_2) - rrr_h_2_in_spec2_y;
+    /* (rrr-d_c) coefficient of the acceleration in: leg force on the platform without actuation and
+       without the mass at the connection point */
+    const real rrr_d_Gamma_2_in_axes2_y = m->rrr_d_Gamma_2_in_axes2_y[i];
+    const real rrr_d_phi_2_t = m->rrr_d_phi_2_t[i];
+    const real rrr_d_c_in_axes2_xy = rrr_d_phi_2_t -
+        rrr_d_Gamma_2_in_axes2_y*v->rrr_w_1_in_axes2_x -
+        rrr_d_Gamma_2_in_axes2_y*rrr_w_2_in_axes2_x;
+    v->rrr_w_2_in_axes2_x = rrr_w_2_in_axes2_x;
+    v->rrr_d_Gamma_2_in_axes2_x = rrr_d_Gamma_2_in_axes2_x;
+    v->rrr_d_Gamma_1_in_axes2_x = rrr_d_Gamma_1_in_axes2_x;
+    v->rrr_d_c_in_axes2_xy = rrr_d_c_in_axes2_xy;
+}
+
+INLINE void stage_rrr_inverse_kinematics_potential(const prepared *m, size_t w, size_t i, size_t
+    j, const real *s, const real *X, values_rrr *v)
+{
+    /* (rrr-S) from the base point to the connection point */
+    const real R_xx = s[0*w + j];
+    const real R_yx = s[1*w + j];
+    const real rrr_base_point_x = m->rrr_base_point_x[i];
+    const real rrr_platform_point_x = m->rrr_platform_point_x[i];
+    const real rrr_platform_point_y = m->rrr_platform_point_y[i];
+    const real t_x = X[0*w + j];
+    const real rrr_S_x = t_x + R_xx*rrr_platform_point_x - rrr_base_point_x -
+        R_yx*rrr_platform_point_y;
+    const real rrr_base_point_y = m->rrr_base_point_y[i];
+    const real t_y = X[1*w + j];
+    const real rrr_S_y = t_y + R_xx*rrr_platform_point_y + R_yx*rrr_platform_point_x -
+        rrr_base_point_y;
+    /* (rrr-Kd_1) projection on the centre's direction, from the distance fixed by the joints beyond
+       joint 1 */
+    const real rrr_Kd_1_t_3 = rrr_S_x*rrr_S_x + rrr_S_y*rrr_S_y;
+    const real rrr_Kd_1_t = m->rrr_Kd_1_t[i];
+    const real rrr_Kd_1_t_2 = m->rrr_Kd_1_t_2[i];
+    const real rrr_Kd_1 = rrr_Kd_1_t + R(0.5)*rrr_Kd_1_t_3 - rrr_Kd_1_t_2;
+    /* (rrr-Kc_1) factor of the cosine in the equation of joint 1 */
+    const real rrr_base_frame_xx = m->rrr_base_frame_xx[i];
+    const real rrr_base_frame_yx = m->rrr_base_frame_yx[i];
+    const real rrr_joint2_offset_x = m->rrr_joint2_offset_x[i];
+    const real rrr_Kc_1 = rrr_joint2_offset_x*(rrr_S_x*rrr_base_frame_xx +
+        rrr_S_y*rrr_base_frame_yx);
+    /* (rrr-Ks_1) factor of the sine in the equation of joint 1 */
+    const real rrr_base_frame_xy = m->rrr_base_frame_xy[i];
+    const real rrr_base_frame_yy = m->rrr_base_frame_yy[i];
+    const real rrr_Ks_1 = rrr_joint2_offset_x*(rrr_S_x*rrr_base_frame_xy +
+        rrr_S_y*rrr_base_frame_yy);
+    /* (rrr-rho2_1) squared amplitude */
+    const real rrr_rho2_1 = rrr_Kc_1*rrr_Kc_1 + rrr_Ks_1*rrr_Ks_1;
+    /* (rrr-disc_1) discriminant */
+    const real rrr_disc_1 = rrr_rho2_1 - rrr_Kd_1*rrr_Kd_1;
+    /* (rrr-root_1) root, with the sign of the branch */
+    const real rrr_branch_1 = m->rrr_branch_1[i];
+    const real rrr_root_1 = rrr_branch_1*root(rrr_disc_1);
+    /* (rrr-q_1) displacement of joint 1 */
+    const real inv_rrr_rho2_1 = 1/rrr_rho2_1;
+    /* (rrr-x_2) from the origin of joint 2 to the connection point */
+    const real inv_rrr_size_t = m->inv_rrr_size_t[i];
+    const real rrr_x_2_in_axes1_x = inv_rrr_size_t*rrr_Kd_1*rrr_joint2_offset_x -
+        rrr_joint2_offset_x;
+    v->rrr_Kd_1 = rrr_Kd_1;
+    v->rrr_Kc_1 = rrr_Kc_1;
+    v->rrr_Ks_1 = rrr_Ks_1;
+    v->rrr_rho2_1 = rrr_rho2_1;
+    v->rrr_disc_1 = rrr_disc_1;
+    v->rrr_root_1 = rrr_root_1;
+    v->inv_rrr_rho2_1 = inv_rrr_rho2_1;
+    v->rrr_x_2_in_axes1_x = rrr_x_2_in_axes1_x;
+}
+
+INLINE void stage_rrr_legs_required(const prepared *m, size_t i, values_rrr *v)
+{
+    /* (rrr-S_ddot) acceleration of the connection point */
+    const real rrr_S_ddot_in_axes2_x = v->axis_x_rrr_axes2_x*v->rrr_S_ddot_x -
+        v->axis_y_rrr_axes2_x*v->rrr_S_ddot_y;
+    const real rrr_S_ddot_in_axes2_y = v->axis_x_rrr_axes2_x*v->rrr_S_ddot_y +
+        v->axis_y_rrr_axes2_x*v->rrr_S_ddot_x;
+    /* (rrr-rel) acceleration of the connection point left to the joint accelerations */
+    const real rrr_rel_in_axes2_x = rrr_S_ddot_in_axes2_x - v->rrr_bias_in_axes2_x;
+    const real rrr_joint2_offset_x = m->rrr_joint2_offset_x[i];
+    const real rrr_rel_in_axes2_y = rrr_S_ddot_in_axes2_y -
+        v->rrr_W_1_t*rrr_joint2_offset_x*v->rrr_s_2;
+    /* (rrr-B_1) acceleration tensor of link 1 */
+    const real rrr_B_1_in_axes1_xy = -rrr_rel_in_axes2_x*v->rrr_w_1_in_axes2_x;
+    /* (rrr-alpha_2) angular acceleration of link 2 */
+    const real rrr_w_2_in_axes2_y = m->rrr_w_2_in_axes2_y[i];
+    const real rrr_alpha_2_in_axes2_z = rrr_w_2_in_axes2_y*(rrr_rel_in_axes2_y +
+        rrr_B_1_in_axes1_xy*v->rrr_r_1_in_axes2_x) - rrr_B_1_in_axes1_xy;
+    /* (rrr-acc_2) acceleration of the reference point of link 2, less gravity */
+    const real gravity_x = m->gravity_x;
+    const real gravity_y = m->gravity_y;
+    const real rrr_acc_2_in_axes2_x = rrr_S_ddot_in_axes2_x + v->axis_y_rrr_axes2_x*gravity_y
+        - v->axis_x_rrr_axes2_x*gravity_x;
+    const real rrr_acc_2_in_axes2_y = rrr_S_ddot_in_axes2_y - v->axis_x_rrr_axes2_x*gravity_y
+        - v->axis_y_rrr_axes2_x*gravity_x;
+    /* (rrr-mu_2) inertia moment of the links that turn with link 2, about their reference points */
+    const real rrr_J_2_in_spec2_zz = m->rrr_J_2_in_spec2_zz[i];
+    const real rrr_h_2_in_spec2_x = m->rrr_h_2_in_spec2_x[i];
+    const real rrr_h_2_in_spec2_y = m->rrr_h_2_in_spec2_y[i];
+    const real rrr_mu_2_in_axes2_z = rrr_J_2_in_spec2_zz*rrr_alpha_2_in_axes2_z +
+        rrr_acc_2_in_axes2_y*rrr_h_2_in_spec2_x - rrr_acc_2_in_axes2_x*rrr_h_2_in_spec2_y;
+    /* (rrr-mu_1) inertia moment of the links that turn with link 1, about their reference points */
+    const real rrr_J_1_in_spec1_zz = m->rrr_J_1_in_spec1_zz[i];
+    const real rrr_h_1_in_spec1_x = m->rrr_h_1_in_spec1_x[i];
+    const real rrr_h_1_in_spec1_y = m->rrr_h_1_in_spec1_y[i];
+    const real rrr_mu_1_t = m->rrr_mu_1_t[i];
+    const real rrr_mu_1_t_2 = m->rrr_mu_1_t_2[i];
+    const real rrr_mu_1_in_axes1_z = rrr_h_1_in_spec1_y*(v->rrr_c_1*rrr_mu_1_t +
+        rrr_mu_1_t_2*v->rrr_s_1) - rrr_B_1_in_axes1_xy*rrr_J_1_in_spec1_zz -
+        rrr_h_1_in_spec1_x*(v->rrr_c_1*rrr_mu_1_t_2 - rrr_mu_1_t*v->rrr_s_1);
+    /* (rrr-N_1) moment about joint 1 of the links from 1 outwards, the force at the connection point
+       left out */
+    const real rrr_N_1_in_axes1_z = rrr_mu_1_in_axes1_z + rrr_mu_2_in_axes2_z;
+    /* (rrr-G) force at the connection point that balances the leg's inertia and weight along all
+       degrees of freedom */
+    const real rrr_G_in_axes2_y = rrr_mu_2_in_axes2_z*rrr_w_2_in_axes2_y;
+    /* (rrr-c) leg force on the platform without actuation and without the mass at the connection
+       point */
+    const real rrr_c_in_axes2_x = v->rrr_W_2_t*rrr_h_2_in_spec2_x +
+        rrr_alpha_2_in_axes2_z*rrr_h_2_in_spec2_y +
+        v->rrr_w_1_in_axes2_x*(rrr_G_in_axes2_y*v->rrr_r_1_in_axes2_x - rrr_N_1_in_axes1_z);
+    const real rrr_c_in_axes2_y = v->rrr_W_2_t*rrr_h_2_in_spec2_y - rrr_G_in_axes2_y -
+        rrr_alpha_2_in_axes2_z*rrr_h_2_in_spec2_x;
+    v->rrr_acc_2_in_axes2_x = rrr_acc_2_in_axes2_x;
+    v->rrr_acc_2_in_axes2_y = rrr_acc_2_in_axes2_y;
+    v->rrr_c_in_axes2_x = rrr_c_in_axes2_x;
+    v->rrr_c_in_axes2_y = rrr_c_in_axes2_y;
+}
+
 /* ---- functions of the state: M, Z, H and the like ---- */
 
 /* ---- dynamics ---- */
 INLINE void dynamics_before(const prepared *m, size_t w, const real *X, const real *V, real *s)
 {
     for (size_t k = 0; k < w; ++k) {
-        /* X: named entries */
-        const real X_0 = X[0*w + k];
-        const real t_x = X_0;
-        const real X_1 = X[1*w + k];
-        const real t_y = X_1;
-        const real X_2 = X[2*w + k];
-        const real R_xx = cosine(X_2);
-        const real R_yx = sine(X_2);
-        /* V: named entries */
-        const real V_0 = V[0*w + k];
-        const real t_dot_x = V_0;
-        const real V_1 = V[1*w + k];
-        const real t_dot_y = V_1;
-        const real V_2 = V[2*w + k];
-        const real omega_z = V_2;
-        /* (W_p) centripetal tensor of the platform */
-        const real W_p_xx = -omega_z*omega_z;
-        /* (h_star) first moment about the platform origin */
-        const real h_star_in_platform_x = m->h_star_in_platform_x;
-        const real h_star_in_platform_y = m->h_star_in_platform_y;
-        const real h_star_x = R_xx*h_star_in_platform_x - R_yx*h_star_in_platform_y;
-        const real h_star_y = R_xx*h_star_in_platform_y + R_yx*h_star_in_platform_x;
+        values v;
+        stage_V(w, k, V, &v);
+        stage_X(m, w, k, X, &v);
         /* (Z_p) centripetal force and weight of the platform */
         const real Z_p_t = m->Z_p_t;
-        const real Z_p_x = W_p_xx*h_star_x - Z_p_t;
+        const real Z_p_x = v.W_p_xx*v.h_star_x - Z_p_t;
         const real Z_p_t_2 = m->Z_p_t_2;
-        const real Z_p_y = W_p_xx*h_star_y - Z_p_t_2;
+        const real Z_p_y = v.W_p_xx*v.h_star_y - Z_p_t_2;
         /* (Z_q) gyroscopic moment and moment of the weight of the platform */
         const real gravity_x = m->gravity_x;
         const real gravity_y = m->gravity_y;
-        const real Z_q_z = gravity_x*h_star_y - gravity_y*h_star_x;
-        s[0*w + k] = t_x;
-        s[1*w + k] = t_y;
-        s[2*w + k] = R_xx;
-        s[3*w + k] = R_yx;
-        s[4*w + k] = t_dot_x;
-        s[5*w + k] = t_dot_y;
-        s[6*w + k] = omega_z;
-        s[7*w + k] = h_star_x;
-        s[8*w + k] = h_star_y;
-        s[9*w + k] = Z_p_x;
-        s[10*w + k] = Z_p_y;
-        s[11*w + k] = Z_q_z;
+        const real Z_q_z = gravity_x*v.h_star_y - gravity_y*v.h_star_x;
+        s[0*w + k] = v.R_xx;
+        s[1*w + k] = v.R_yx;
+        s[2*w + k] = v.h_star_x;
+        s[3*w + k] = v.h_star_y;
+        s[4*w + k] = Z_p_x;
+        s[5*w + k] = Z_p_y;
+        s[6*w + k] = Z_q_z;
     }
 }
 
 INLINE void dynamics_legs_rpr(const prepared *m, size_t w, size_t leg, size_t legs, const real *s,
-    size_t states, size_t count, int add, real *terms, real *o)
+    size_t states, size_t count, int add, const real *X, const real *V, real *terms, real *o)
 {
     for (size_t k = 0; k < count; ++k) {
         const size_t i = leg + legs*k;
         const size_t j = states*k;
-        /* (rpr-S) from the base point to the connection point */
-        const real R_xx = s[2*w + j];
-        const real R_yx = s[3*w + j];
-        const real rpr_platform_point_x = m->rpr_platform_point_x[i];
-        const real rpr_platform_point_y = m->rpr_platform_point_y[i];
-        const real rpr_q_x = R_xx*rpr_platform_point_x - R_yx*rpr_platform_point_y;
-        const real rpr_q_y = R_xx*rpr_platform_point_y + R_yx*rpr_platform_point_x;
-        const real rpr_base_point_x = m->rpr_base_point_x[i];
-        const real t_x = s[0*w + j];
-        const real rpr_S_x = rpr_q_x + t_x - rpr_base_point_x;
-        const real rpr_base_point_y = m->rpr_base_point_y[i];
-        const real t_y = s[1*w + j];
-        const real rpr_S_y = rpr_q_y + t_y - rpr_base_point_y;
-        /* (rpr-px_1) component along the reference direction */
-        const real rpr_base_frame_xx = m->rpr_base_frame_xx[i];
-        const real rpr_base_frame_yx = m->rpr_base_frame_yx[i];
-        const real rpr_px_1 = rpr_S_x*rpr_base_frame_xx + rpr_S_y*rpr_base_frame_yx;
-        /* (rpr-py_1) component across the reference direction */
-        const real rpr_base_frame_xy = m->rpr_base_frame_xy[i];
-        const real rpr_base_frame_yy = m->rpr_base_frame_yy[i];
-        const real rpr_py_1 = rpr_S_x*rpr_base_frame_xy + rpr_S_y*rpr_base_frame_yy;
-        /* (rpr-rho2_1) squared amplitude */
-        const real rpr_rho2_1 = rpr_px_1*rpr_px_1 + rpr_py_1*rpr_py_1;
-        /* (rpr-root_1) amplitude, with the sign of the branch */
-        const real rpr_branch_1 = m->rpr_branch_1[i];
-        const real rpr_root_1 = rpr_branch_1*root(rpr_rho2_1);
-        /* (rpr-S_dot) velocity of the connection point */
-        const real inv_rpr_root_1 = 1/rpr_root_1;
-        const real axis_x_rpr_axes1_x = inv_rpr_root_1*rpr_S_x;
-        const real axis_x_rpr_axes1_y = inv_rpr_root_1*rpr_S_y;
-        const real omega_z = s[6*w + j];
-        const real rpr_S_dot_t = omega_z*rpr_q_y;
-        const real rpr_S_dot_t_2 = omega_z*rpr_q_x;
-        const real t_dot_x = s[4*w + j];
-        const real rpr_S_dot_x = t_dot_x - rpr_S_dot_t;
-        const real t_dot_y = s[5*w + j];
-        const real rpr_S_dot_y = rpr_S_dot_t_2 + t_dot_y;
-        const real rpr_S_dot_in_axes1_x = axis_x_rpr_axes1_x*rpr_S_dot_x +
-            axis_x_rpr_axes1_y*rpr_S_dot_y;
-        /* (rpr-qd_1) rate of joint 1 */
-        const real rpr_qd_1 = inv_rpr_root_1*(axis_x_rpr_axes1_x*rpr_S_dot_y -
-            axis_x_rpr_axes1_y*rpr_S_dot_x);
-        /* (rpr-W_1) centripetal tensor of link 1 */
-        const real rpr_W_1_in_axes1_xx = -rpr_qd_1*rpr_qd_1;
-        /* (rpr-u_1) centripetal acceleration of the connection point */
-        const real rpr_u_1_t = omega_z*rpr_S_dot_t_2;
-        const real rpr_u_1_y = -omega_z*rpr_S_dot_t;
-        const real rpr_u_1_in_axes1_y = axis_x_rpr_axes1_x*rpr_u_1_y +
-            axis_x_rpr_axes1_y*rpr_u_1_t;
-        /* (rpr-rel_o) remainder without the acceleration in: acceleration of the connection point left to
-           the joint accelerations */
-        const real rpr_rel_o_in_axes1_y = rpr_u_1_in_axes1_y - 2*rpr_S_dot_in_axes1_x*rpr_qd_1;
-        /* (rpr-qdd_1_o) remainder without the acceleration in: acceleration of joint 1 */
-        const real rpr_qdd_1_o = inv_rpr_root_1*rpr_rel_o_in_axes1_y;
-        /* (rpr-acc_2_o) remainder without the acceleration in: acceleration of the reference point of
-           link 2, less gravity */
-        const real gravity_x = m->gravity_x;
-        const real gravity_y = m->gravity_y;
-        const real rpr_g_in_axes1_x = axis_x_rpr_axes1_x*gravity_x + axis_x_rpr_axes1_y*gravity_y;
-        const real rpr_g_in_axes1_y = axis_x_rpr_axes1_x*gravity_y - axis_x_rpr_axes1_y*gravity_x;
-        const real rpr_acc_2_o_in_axes1_x = axis_x_rpr_axes1_y*rpr_u_1_y - rpr_g_in_axes1_x -
-            axis_x_rpr_axes1_x*rpr_u_1_t;
-        const real rpr_acc_2_o_in_axes1_y = rpr_u_1_in_axes1_y - rpr_g_in_axes1_y;
-        /* (rpr-phi_2_o) remainder without the acceleration in: inertia force of link 2 from its turning
-           about its reference point */
-        const real rpr_h_2_in_spec1_x = m->rpr_h_2_in_spec1_x[i];
-        const real rpr_h_2_in_spec1_y = m->rpr_h_2_in_spec1_y[i];
-        const real rpr_phi_2_o_in_axes1_x = rpr_W_1_in_axes1_xx*rpr_h_2_in_spec1_x -
-            rpr_h_2_in_spec1_y*rpr_qdd_1_o;
-        /* (rpr-mu_1_o) remainder without the acceleration in: inertia moment of the links that turn with
-           link 1, about their reference points */
-        const real rpr_J_group_1_in_axes1_zz = m->rpr_J_group_1_in_axes1_zz[i];
-        const real rpr_h_1_in_spec1_x = m->rpr_h_1_in_spec1_x[i];
-        const real rpr_h_1_in_spec1_y = m->rpr_h_1_in_spec1_y[i];
-        const real rpr_mu_1_o_in_axes1_z = rpr_J_group_1_in_axes1_zz*rpr_qdd_1_o +
-            rpr_acc_2_o_in_axes1_y*rpr_h_2_in_spec1_x + rpr_g_in_axes1_x*rpr_h_1_in_spec1_y -
-            rpr_acc_2_o_in_axes1_x*rpr_h_2_in_spec1_y - rpr_g_in_axes1_y*rpr_h_1_in_spec1_x;
+        values_rpr v;
+        stage_rpr_X(m, w, i, j, s, X, &v);
+        stage_rpr_V_X(w, j, V, &v);
+        stage_rpr_Z_dynamics(m, w, i, j, V, &v);
         /* (rpr-d_c) coefficient of the acceleration in: leg force on the platform without actuation and
            without the mass at the connection point */
-        const real rpr_d_c_in_axes1_xy = inv_rpr_root_1*rpr_h_2_in_spec1_y;
-        const real rpr_d_c_in_axes1_yy = -inv_rpr_root_1*rpr_h_2_in_spec1_x -
-            inv_rpr_root_1*(rpr_h_2_in_spec1_x + inv_rpr_root_1*rpr_J_group_1_in_axes1_zz);
-        /* (rpr-c_o) remainder without the acceleration in: leg force on the platform without actuation
-           and without the mass at the connection point */
-        const real rpr_c_o_in_axes1_y = -inv_rpr_root_1*rpr_mu_1_o_in_axes1_z -
-            rpr_W_1_in_axes1_xx*rpr_h_2_in_spec1_y - rpr_h_2_in_spec1_x*rpr_qdd_1_o;
+        const real rpr_h_2_in_spec1_y = m->rpr_h_2_in_spec1_y[i];
+        const real rpr_d_c_in_axes1_xy = v.inv_rpr_q_2*rpr_h_2_in_spec1_y;
+        const real rpr_J_group_1_in_axes1_zz = m->rpr_J_group_1_in_axes1_zz[i];
+        const real rpr_h_2_in_spec1_x = m->rpr_h_2_in_spec1_x[i];
+        const real rpr_d_c_in_axes1_yy = -v.inv_rpr_q_2*rpr_h_2_in_spec1_x -
+            v.inv_rpr_q_2*(rpr_h_2_in_spec1_x + v.inv_rpr_q_2*rpr_J_group_1_in_axes1_zz);
         /* (rpr-Q) inertia of the leg at the connection point, without the mass gathered there */
         const real rpr_Q_t = R(0.5)*rpr_d_c_in_axes1_yy;
-        const real rpr_Q_t_2 = axis_x_rpr_axes1_y*rpr_Q_t -
-            axis_x_rpr_axes1_x*rpr_d_c_in_axes1_xy;
-        const real rpr_Q_t_3 = axis_x_rpr_axes1_x*rpr_Q_t +
-            axis_x_rpr_axes1_y*rpr_d_c_in_axes1_xy;
-        const real rpr_Q_xx = -2*axis_x_rpr_axes1_y*rpr_Q_t_2;
-        const real rpr_Q_xy = axis_x_rpr_axes1_x*rpr_Q_t_2 + axis_x_rpr_axes1_y*rpr_Q_t_3;
-        const real rpr_Q_yy = -2*axis_x_rpr_axes1_x*rpr_Q_t_3;
-        /* (rpr-U) velocity and gravity terms of the leg force */
-        const real rpr_U_x = axis_x_rpr_axes1_x*rpr_phi_2_o_in_axes1_x +
-            axis_x_rpr_axes1_y*rpr_c_o_in_axes1_y;
-        const real rpr_U_y = axis_x_rpr_axes1_y*rpr_phi_2_o_in_axes1_x -
-            axis_x_rpr_axes1_x*rpr_c_o_in_axes1_y;
+        const real rpr_Q_t_2 = v.axis_x_rpr_axes1_y*rpr_Q_t -
+            v.axis_x_rpr_axes1_x*rpr_d_c_in_axes1_xy;
+        const real rpr_Q_t_3 = v.axis_x_rpr_axes1_x*rpr_Q_t +
+            v.axis_x_rpr_axes1_y*rpr_d_c_in_axes1_xy;
+        const real rpr_Q_xx = -2*v.axis_x_rpr_axes1_y*rpr_Q_t_2;
+        const real rpr_Q_xy = v.axis_x_rpr_axes1_x*rpr_Q_t_2 + v.axis_x_rpr_axes1_y*rpr_Q_t_3;
+        const real rpr_Q_yy = -2*v.axis_x_rpr_axes1_x*rpr_Q_t_3;
         /* (M_ta) coupling block of M */
-        const real rpr_M_ta_t = rpr_Q_xy*rpr_q_x - rpr_Q_xx*rpr_q_y;
-        const real rpr_M_ta_t_2 = rpr_Q_yy*rpr_q_x - rpr_Q_xy*rpr_q_y;
+        const real rpr_M_ta_t = rpr_Q_xy*v.rpr_q_x - rpr_Q_xx*v.rpr_q_y;
+        const real rpr_M_ta_t_2 = rpr_Q_yy*v.rpr_q_x - rpr_Q_xy*v.rpr_q_y;
         /* (M_aa) rotational block of M */
-        const real rpr_M_aa_t = rpr_M_ta_t_2*rpr_q_x - rpr_M_ta_t*rpr_q_y;
-        /* (Z_a) rotational part of Z */
-        const real rpr_Z_a_t = rpr_U_y*rpr_q_x - rpr_U_x*rpr_q_y;
+        const real rpr_M_aa_t = rpr_M_ta_t_2*v.rpr_q_x - rpr_M_ta_t*v.rpr_q_y;
         /* (rpr-H_a_2) moment of the column's unit force about the platform origin */
-        const real rpr_H_a_2_z = axis_x_rpr_axes1_y*rpr_q_x - axis_x_rpr_axes1_x*rpr_q_y;
+        const real rpr_H_a_2_z = v.axis_x_rpr_axes1_y*v.rpr_q_x - v.axis_x_rpr_axes1_x*v.rpr_q_y;
         /* (M_tt) translational block of M */
         gather(&terms[0*count + k], add, rpr_Q_xx);  /* M_tt_xx_of_legs */
         gather(&terms[1*count + k], add, rpr_Q_xy);  /* M_tt_xy */
@@ -1551,17 +2358,17 @@ INLINE void dynamics_legs_rpr(const prepared *m, size_t w, size_t leg, size_t le
         /* (M_aa) rotational block of M */
         gather(&terms[5*count + k], add, rpr_M_aa_t);  /* M_aa_zz_of_legs */
         /* (Z_t) translational part of Z */
-        gather(&terms[6*count + k], add, rpr_U_x);  /* Z_t_x_of_legs */
-        gather(&terms[7*count + k], add, rpr_U_y);  /* Z_t_y_of_legs */
+        gather(&terms[6*count + k], add, v.rpr_U_x);  /* Z_t_x_of_legs */
+        gather(&terms[7*count + k], add, v.rpr_U_y);  /* Z_t_y_of_legs */
         /* (Z_a) rotational part of Z */
-        gather(&terms[8*count + k], add, rpr_Z_a_t);  /* Z_a_z_of_legs */
+        gather(&terms[8*count + k], add, v.rpr_Z_a_t);  /* Z_a_z_of_legs */
         /* (rpr-w_2) reciprocal vector 2 */
-        o[0*count + k] = axis_x_rpr_axes1_x;
-        o[1*count + k] = axis_x_rpr_axes1_y;
+        o[0*count + k] = v.axis_x_rpr_axes1_x;
+        o[1*count + k] = v.axis_x_rpr_axes1_y;
         /* (rpr-H_a_2) moment of the column's unit force about the platform origin */
         o[2*count + k] = rpr_H_a_2_z;
-        o[4*count + k] = axis_x_rpr_axes1_x + (axis_x_rpr_axes1_y + rpr_H_a_2_z);
-        o[3*count + k] = UNLESS(magnitude(rpr_rho2_1) > LEAST_1) + UNLESS(magnitude(rpr_root_1) >
+        o[4*count + k] = v.axis_x_rpr_axes1_x + (v.axis_x_rpr_axes1_y + rpr_H_a_2_z);
+        o[3*count + k] = UNLESS(magnitude(v.rpr_q_2_t) > LEAST_1) + UNLESS(magnitude(v.rpr_q_2) >
             LEAST_2);
     }
 }
@@ -1570,7 +2377,7 @@ INLINE void dynamics_place_rpr(size_t w, size_t count, const real *o, size_t fir
     verdict *t)
 {
     for (size_t k = 0; k < w; ++k) {
-        H[0*NU*w + k] = o[0*count + first + k];
+        H[0*w + k] = o[0*count + first + k];
         H[NU*w + k] = o[1*count + first + k];
         H[2*NU*w + k] = o[2*count + first + k];
         t->singular[k] += o[3*count + first + k];
@@ -1579,131 +2386,43 @@ INLINE void dynamics_place_rpr(size_t w, size_t count, const real *o, size_t fir
 }
 
 INLINE void dynamics_legs_rrr(const prepared *m, size_t w, size_t leg, size_t legs, const real *s,
-    size_t states, size_t count, int add, real *terms, real *o)
+    size_t states, size_t count, int add, const real *X, const real *V, real *terms, real *o)
 {
     for (size_t k = 0; k < count; ++k) {
         const size_t i = leg + legs*k;
         const size_t j = states*k;
-        /* (rrr-S) from the base point to the connection point */
-        const real R_xx = s[2*w + j];
-        const real R_yx = s[3*w + j];
-        const real rrr_platform_point_x = m->rrr_platform_point_x[i];
-        const real rrr_platform_point_y = m->rrr_platform_point_y[i];
-        const real rrr_q_x = R_xx*rrr_platform_point_x - R_yx*rrr_platform_point_y;
-        const real rrr_q_y = R_xx*rrr_platform_point_y + R_yx*rrr_platform_point_x;
-        const real rrr_base_point_x = m->rrr_base_point_x[i];
-        const real t_x = s[0*w + j];
-        const real rrr_S_x = rrr_q_x + t_x - rrr_base_point_x;
-        const real rrr_base_point_y = m->rrr_base_point_y[i];
-        const real t_y = s[1*w + j];
-        const real rrr_S_y = rrr_q_y + t_y - rrr_base_point_y;
-        /* (rrr-Kd_1) projection on the centre's direction, from the distance fixed by the joints beyond
-           joint 1 */
-        const real rrr_Kd_1_t_3 = rrr_S_x*rrr_S_x + rrr_S_y*rrr_S_y;
-        const real rrr_Kd_1_t = m->rrr_Kd_1_t[i];
-        const real rrr_Kd_1_t_2 = m->rrr_Kd_1_t_2[i];
-        const real rrr_Kd_1 = rrr_Kd_1_t + R(0.5)*rrr_Kd_1_t_3 - rrr_Kd_1_t_2;
-        /* (rrr-px_1) component along the reference direction */
-        const real rrr_base_frame_xx = m->rrr_base_frame_xx[i];
-        const real rrr_base_frame_yx = m->rrr_base_frame_yx[i];
-        const real rrr_px_1 = rrr_S_x*rrr_base_frame_xx + rrr_S_y*rrr_base_frame_yx;
-        /* (rrr-py_1) component across the reference direction */
-        const real rrr_base_frame_xy = m->rrr_base_frame_xy[i];
-        const real rrr_base_frame_yy = m->rrr_base_frame_yy[i];
-        const real rrr_py_1 = rrr_S_x*rrr_base_frame_xy + rrr_S_y*rrr_base_frame_yy;
-        /* (rrr-Kc_1) factor of the cosine in the equation of joint 1 */
-        const real rrr_joint2_offset_x = m->rrr_joint2_offset_x[i];
-        const real rrr_Kc_1 = rrr_joint2_offset_x*rrr_px_1;
-        /* (rrr-Ks_1) factor of the sine in the equation of joint 1 */
-        const real rrr_Ks_1 = rrr_joint2_offset_x*rrr_py_1;
-        /* (rrr-rho2_1) squared amplitude */
-        const real rrr_rho2_1 = rrr_Kc_1*rrr_Kc_1 + rrr_Ks_1*rrr_Ks_1;
-        /* (rrr-disc_1) discriminant */
-        const real rrr_disc_1 = rrr_rho2_1 - rrr_Kd_1*rrr_Kd_1;
-        /* (rrr-root_1) root, with the sign of the branch */
-        const real rrr_branch_1 = m->rrr_branch_1[i];
-        const real rrr_root_1 = rrr_branch_1*root(rrr_disc_1);
-        /* (rrr-c_1) cosine of the angle of joint 1 from its reference direction */
-        const real inv_rrr_rho2_1 = 1/rrr_rho2_1;
-        const real rrr_c_1 = inv_rrr_rho2_1*(rrr_Kc_1*rrr_Kd_1 - rrr_Ks_1*rrr_root_1);
-        /* (rrr-s_1) sine of the angle of joint 1 from its reference direction */
-        const real rrr_s_1 = inv_rrr_rho2_1*(rrr_Kc_1*rrr_root_1 + rrr_Kd_1*rrr_Ks_1);
-        /* (rrr-x_2) from the origin of joint 2 to the connection point */
-        const real inv_rrr_size_t = m->inv_rrr_size_t[i];
-        const real rrr_x_2_in_axes1_x = inv_rrr_size_t*rrr_Kd_1*rrr_joint2_offset_x -
-            rrr_joint2_offset_x;
-        /* (rrr-c_2) cosine of the angle of joint 2 from its reference direction */
-        const real inv_rrr_size_t_2 = m->inv_rrr_size_t_2[i];
-        const real rrr_platform_joint_offset_x = m->rrr_platform_joint_offset_x[i];
-        const real rrr_c_2 = inv_rrr_size_t_2*rrr_platform_joint_offset_x*rrr_x_2_in_axes1_x;
-        /* (rrr-s_2) sine of the angle of joint 2 from its reference direction */
-        const real rrr_s_2 =
-            -inv_rrr_size_t*inv_rrr_size_t_2*rrr_joint2_offset_x*rrr_platform_joint_offset_x*rrr_root_1;
-        /* (rrr-S_dot) velocity of the connection point */
-        const real omega_z = s[6*w + j];
-        const real rrr_S_dot_t = omega_z*rrr_q_y;
-        const real rrr_S_dot_t_2 = omega_z*rrr_q_x;
-        const real t_dot_x = s[4*w + j];
-        const real rrr_S_dot_x = t_dot_x - rrr_S_dot_t;
-        const real t_dot_y = s[5*w + j];
-        const real rrr_S_dot_y = rrr_S_dot_t_2 + t_dot_y;
-        /* (rrr-r_1) from joint 1 to the connection point, along the links */
-        const real rrr_r_1_in_axes1_y = rrr_platform_joint_offset_x*rrr_s_2;
-        const real rrr_r_1_in_axes1_x = rrr_joint2_offset_x + rrr_c_2*rrr_platform_joint_offset_x;
-        const real rrr_r_1_in_axes2_x = rrr_c_2*rrr_r_1_in_axes1_x + rrr_r_1_in_axes1_y*rrr_s_2;
-        const real rrr_r_1_in_axes2_y = rrr_c_2*rrr_r_1_in_axes1_y - rrr_r_1_in_axes1_x*rrr_s_2;
-        /* (rrr-w_1) reciprocal vector 1 */
-        const real rrr_w_1_t = rrr_c_1*rrr_s_2 + rrr_c_2*rrr_s_1;
-        const real rrr_w_1_t_2 = rrr_c_1*rrr_c_2 - rrr_s_1*rrr_s_2;
-        const real axis_y_rrr_axes2_x = rrr_base_frame_xy*rrr_w_1_t_2 -
-            rrr_base_frame_xx*rrr_w_1_t;
-        const real axis_x_rrr_axes2_x = rrr_base_frame_yy*rrr_w_1_t_2 -
-            rrr_base_frame_yx*rrr_w_1_t;
-        const real rrr_w_1_in_axes2_x = -1/rrr_r_1_in_axes2_y;
-        const real rrr_w_1_x = axis_x_rrr_axes2_x*rrr_w_1_in_axes2_x;
-        const real rrr_w_1_y = -axis_y_rrr_axes2_x*rrr_w_1_in_axes2_x;
-        /* (rrr-w_2) reciprocal vector 2 */
-        const real rrr_w_2_in_axes2_y = m->rrr_w_2_in_axes2_y[i];
-        const real rrr_w_2_in_axes2_x = -rrr_r_1_in_axes2_x*rrr_w_1_in_axes2_x*rrr_w_2_in_axes2_y;
-        /* (rrr-qd_1) rate of joint 1 */
-        const real rrr_qd_1 = rrr_w_1_in_axes2_x*(axis_x_rrr_axes2_x*rrr_S_dot_x -
-            axis_y_rrr_axes2_x*rrr_S_dot_y);
-        /* (rrr-W_1) centripetal tensor of link 1 */
-        const real rrr_W_1_t = rrr_qd_1*rrr_qd_1;
-        /* (rrr-omega_2) angular velocity of link 2 */
-        const real rrr_omega_2_in_axes2_z = rrr_qd_1 +
-            rrr_w_2_in_axes2_y*(axis_x_rrr_axes2_x*rrr_S_dot_y + axis_y_rrr_axes2_x*rrr_S_dot_x -
-            rrr_qd_1*rrr_r_1_in_axes2_x);
-        /* (rrr-W_2) centripetal tensor of link 2 */
-        const real rrr_W_2_t = rrr_omega_2_in_axes2_z*rrr_omega_2_in_axes2_z;
+        values_rrr v;
+        stage_rrr_X(m, w, i, j, s, X, &v);
+        stage_rrr_V_X(m, w, i, j, V, &v);
+        stage_rrr_M_dynamics(m, i, &v);
         /* (rrr-u_1) centripetal acceleration of the connection point */
-        const real rrr_u_1_x = -omega_z*rrr_S_dot_t_2;
-        const real rrr_u_1_t = omega_z*rrr_S_dot_t;
-        const real rrr_u_1_in_axes2_x = axis_x_rrr_axes2_x*rrr_u_1_x +
-            axis_y_rrr_axes2_x*rrr_u_1_t;
-        const real rrr_u_1_in_axes2_y = axis_y_rrr_axes2_x*rrr_u_1_x -
-            axis_x_rrr_axes2_x*rrr_u_1_t;
-        /* (rrr-bias) acceleration of the connection point at zero joint accelerations */
-        const real rrr_bias_in_axes2_x = -rrr_W_2_t*rrr_platform_joint_offset_x -
-            rrr_W_1_t*rrr_c_2*rrr_joint2_offset_x;
+        const real omega_z = V[2*w + j];
+        const real rrr_u_1_x = -omega_z*v.rrr_S_dot_t_2;
+        const real rrr_u_1_t = omega_z*v.rrr_S_dot_t;
+        const real rrr_u_1_in_axes2_x = v.axis_x_rrr_axes2_x*rrr_u_1_x +
+            v.axis_y_rrr_axes2_x*rrr_u_1_t;
+        const real rrr_u_1_in_axes2_y = v.axis_y_rrr_axes2_x*rrr_u_1_x -
+            v.axis_x_rrr_axes2_x*rrr_u_1_t;
         /* (rrr-rel_o) remainder without the acceleration in: acceleration of the connection point left to
            the joint accelerations */
-        const real rrr_rel_o_in_axes2_x = rrr_u_1_in_axes2_x - rrr_bias_in_axes2_x;
+        const real rrr_rel_o_in_axes2_x = rrr_u_1_in_axes2_x - v.rrr_bias_in_axes2_x;
+        const real rrr_joint2_offset_x = m->rrr_joint2_offset_x[i];
         const real rrr_rel_o_in_axes2_y = rrr_u_1_in_axes2_y -
-            rrr_W_1_t*rrr_joint2_offset_x*rrr_s_2;
+            v.rrr_W_1_t*rrr_joint2_offset_x*v.rrr_s_2;
         /* (rrr-B_1_o) remainder of the acceleration tensor of link 1 */
-        const real rrr_B_1_o_in_axes1_xy = -rrr_rel_o_in_axes2_x*rrr_w_1_in_axes2_x;
+        const real rrr_B_1_o_in_axes1_xy = -rrr_rel_o_in_axes2_x*v.rrr_w_1_in_axes2_x;
         /* (rrr-alpha_2_o) remainder without the acceleration in: angular acceleration of link 2 */
+        const real rrr_w_2_in_axes2_y = m->rrr_w_2_in_axes2_y[i];
         const real rrr_alpha_2_o_in_axes2_z = rrr_w_2_in_axes2_y*(rrr_rel_o_in_axes2_y +
-            rrr_B_1_o_in_axes1_xy*rrr_r_1_in_axes2_x) - rrr_B_1_o_in_axes1_xy;
+            rrr_B_1_o_in_axes1_xy*v.rrr_r_1_in_axes2_x) - rrr_B_1_o_in_axes1_xy;
         /* (rrr-acc_2_o) remainder without the acceleration in: acceleration of the reference point of
            link 2, less gravity */
         const real gravity_x = m->gravity_x;
         const real gravity_y = m->gravity_y;
-        const real rrr_acc_2_o_in_axes2_x = rrr_u_1_in_axes2_x + axis_y_rrr_axes2_x*gravity_y -
-            axis_x_rrr_axes2_x*gravity_x;
-        const real rrr_acc_2_o_in_axes2_y = rrr_u_1_in_axes2_y - axis_x_rrr_axes2_x*gravity_y -
-            axis_y_rrr_axes2_x*gravity_x;
+        const real rrr_acc_2_o_in_axes2_x = rrr_u_1_in_axes2_x + v.axis_y_rrr_axes2_x*gravity_y -
+            v.axis_x_rrr_axes2_x*gravity_x;
+        const real rrr_acc_2_o_in_axes2_y = rrr_u_1_in_axes2_y - v.axis_x_rrr_axes2_x*gravity_y -
+            v.axis_y_rrr_axes2_x*gravity_x;
         /* (rrr-mu_2_o) remainder without the acceleration in: inertia moment of the links that turn with
            link 2, about their reference points */
         const real rrr_J_2_in_spec2_zz = m->rrr_J_2_in_spec2_zz[i];
@@ -1711,12 +2430,6 @@ INLINE void dynamics_legs_rrr(const prepared *m, size_t w, size_t leg, size_t le
         const real rrr_h_2_in_spec2_y = m->rrr_h_2_in_spec2_y[i];
         const real rrr_mu_2_o_in_axes2_z = rrr_J_2_in_spec2_zz*rrr_alpha_2_o_in_axes2_z +
             rrr_acc_2_o_in_axes2_y*rrr_h_2_in_spec2_x - rrr_acc_2_o_in_axes2_x*rrr_h_2_in_spec2_y;
-        /* (rrr-d_Gamma_2) coefficient of the acceleration in: moment about axis 2 of the distal links'
-           inertia and weight */
-        const real rrr_d_Gamma_2_t = m->rrr_d_Gamma_2_t[i];
-        const real rrr_d_Gamma_2_t_2 = rrr_d_Gamma_2_t*rrr_r_1_in_axes2_x;
-        const real rrr_d_Gamma_2_in_axes2_x = rrr_w_1_in_axes2_x*(rrr_J_2_in_spec2_zz -
-            rrr_d_Gamma_2_t_2) - rrr_h_2_in_spec2_y;
         /* (rrr-mu_1_o) remainder without the acceleration in: inertia moment of the links that turn with
            link 1, about their reference points */
         const real rrr_J_1_in_spec1_zz = m->rrr_J_1_in_spec1_zz[i];
@@ -1724,61 +2437,49 @@ INLINE void dynamics_legs_rrr(const prepared *m, size_t w, size_t leg, size_t le
         const real rrr_h_1_in_spec1_y = m->rrr_h_1_in_spec1_y[i];
         const real rrr_mu_1_t = m->rrr_mu_1_t[i];
         const real rrr_mu_1_t_2 = m->rrr_mu_1_t_2[i];
-        const real rrr_mu_1_o_in_axes1_z = rrr_h_1_in_spec1_y*(rrr_c_1*rrr_mu_1_t +
-            rrr_mu_1_t_2*rrr_s_1) - rrr_B_1_o_in_axes1_xy*rrr_J_1_in_spec1_zz -
-            rrr_h_1_in_spec1_x*(rrr_c_1*rrr_mu_1_t_2 - rrr_mu_1_t*rrr_s_1);
+        const real rrr_mu_1_o_in_axes1_z = rrr_h_1_in_spec1_y*(v.rrr_c_1*rrr_mu_1_t +
+            rrr_mu_1_t_2*v.rrr_s_1) - rrr_B_1_o_in_axes1_xy*rrr_J_1_in_spec1_zz -
+            rrr_h_1_in_spec1_x*(v.rrr_c_1*rrr_mu_1_t_2 - rrr_mu_1_t*v.rrr_s_1);
         /* (rrr-N_1_o) remainder without the acceleration in: moment about joint 1 of the links from 1
            outwards, the force at the connection point left out */
         const real rrr_N_1_o_in_axes1_z = rrr_mu_1_o_in_axes1_z + rrr_mu_2_o_in_axes2_z;
-        /* (rrr-d_Gamma_1) coefficient of the acceleration in: moment about axis 1 of the distal links'
-           inertia and weight */
-        const real rrr_Jc_1_in_axes1_zz = m->rrr_Jc_1_in_axes1_zz[i];
-        const real rrr_d_Gamma_1_in_axes2_x = rrr_w_1_in_axes2_x*(rrr_Jc_1_in_axes1_zz -
-            rrr_d_Gamma_2_t_2) - rrr_h_2_in_spec2_y;
         /* (rrr-G_o) remainder without the acceleration in: force at the connection point that balances
            the leg's inertia and weight along all degrees of freedom */
         const real rrr_G_o_in_axes2_y = rrr_mu_2_o_in_axes2_z*rrr_w_2_in_axes2_y;
-        /* (rrr-d_c) coefficient of the acceleration in: leg force on the platform without actuation and
-           without the mass at the connection point */
-        const real rrr_d_Gamma_2_in_axes2_y = m->rrr_d_Gamma_2_in_axes2_y[i];
-        const real rrr_d_phi_2_t = m->rrr_d_phi_2_t[i];
-        const real rrr_d_c_in_axes2_xy = rrr_d_phi_2_t -
-            rrr_d_Gamma_2_in_axes2_y*rrr_w_1_in_axes2_x -
-            rrr_d_Gamma_2_in_axes2_y*rrr_w_2_in_axes2_x;
         /* (rrr-c_o) remainder without the acceleration in: leg force on the platform without actuation
            and without the mass at the connection point */
-        const real rrr_c_o_in_axes2_x = rrr_W_2_t*rrr_h_2_in_spec2_x +
+        const real rrr_c_o_in_axes2_x = v.rrr_W_2_t*rrr_h_2_in_spec2_x +
             rrr_alpha_2_o_in_axes2_z*rrr_h_2_in_spec2_y +
-            rrr_w_1_in_axes2_x*(rrr_G_o_in_axes2_y*rrr_r_1_in_axes2_x - rrr_N_1_o_in_axes1_z);
-        const real rrr_c_o_in_axes2_y = rrr_W_2_t*rrr_h_2_in_spec2_y - rrr_G_o_in_axes2_y -
+            v.rrr_w_1_in_axes2_x*(rrr_G_o_in_axes2_y*v.rrr_r_1_in_axes2_x - rrr_N_1_o_in_axes1_z);
+        const real rrr_c_o_in_axes2_y = v.rrr_W_2_t*rrr_h_2_in_spec2_y - rrr_G_o_in_axes2_y -
             rrr_alpha_2_o_in_axes2_z*rrr_h_2_in_spec2_x;
         /* (rrr-Q) inertia of the leg at the connection point, without the mass gathered there */
         const real rrr_d_c_in_axes2_yy = m->rrr_d_c_in_axes2_yy[i];
-        const real rrr_Q_t = rrr_h_2_in_spec2_y*(rrr_w_1_in_axes2_x + rrr_w_2_in_axes2_x) -
-            rrr_d_c_in_axes2_yy - rrr_d_Gamma_1_in_axes2_x*rrr_w_1_in_axes2_x -
-            rrr_d_Gamma_2_in_axes2_x*rrr_w_2_in_axes2_x;
+        const real rrr_Q_t = rrr_h_2_in_spec2_y*(v.rrr_w_1_in_axes2_x + v.rrr_w_2_in_axes2_x) -
+            rrr_d_c_in_axes2_yy - v.rrr_d_Gamma_1_in_axes2_x*v.rrr_w_1_in_axes2_x -
+            v.rrr_d_Gamma_2_in_axes2_x*v.rrr_w_2_in_axes2_x;
         const real rrr_Q_t_2 = R(0.5)*rrr_Q_t;
-        const real rrr_Q_t_3 = axis_x_rrr_axes2_x*rrr_Q_t_2 +
-            axis_y_rrr_axes2_x*rrr_d_c_in_axes2_xy;
-        const real rrr_Q_t_4 = axis_y_rrr_axes2_x*rrr_Q_t_2 -
-            axis_x_rrr_axes2_x*rrr_d_c_in_axes2_xy;
-        const real rrr_Q_xx = -rrr_d_c_in_axes2_yy - 2*axis_x_rrr_axes2_x*rrr_Q_t_3;
-        const real rrr_Q_xy = axis_x_rrr_axes2_x*rrr_Q_t_4 + axis_y_rrr_axes2_x*rrr_Q_t_3;
-        const real rrr_Q_yy = -rrr_d_c_in_axes2_yy - 2*axis_y_rrr_axes2_x*rrr_Q_t_4;
+        const real rrr_Q_t_3 = v.axis_x_rrr_axes2_x*rrr_Q_t_2 +
+            v.axis_y_rrr_axes2_x*v.rrr_d_c_in_axes2_xy;
+        const real rrr_Q_t_4 = v.axis_y_rrr_axes2_x*rrr_Q_t_2 -
+            v.axis_x_rrr_axes2_x*v.rrr_d_c_in_axes2_xy;
+        const real rrr_Q_xx = -rrr_d_c_in_axes2_yy - 2*v.axis_x_rrr_axes2_x*rrr_Q_t_3;
+        const real rrr_Q_xy = v.axis_x_rrr_axes2_x*rrr_Q_t_4 + v.axis_y_rrr_axes2_x*rrr_Q_t_3;
+        const real rrr_Q_yy = -rrr_d_c_in_axes2_yy - 2*v.axis_y_rrr_axes2_x*rrr_Q_t_4;
         /* (rrr-U) velocity and gravity terms of the leg force */
-        const real rrr_U_x = -axis_x_rrr_axes2_x*rrr_c_o_in_axes2_x -
-            axis_y_rrr_axes2_x*rrr_c_o_in_axes2_y;
-        const real rrr_U_y = axis_y_rrr_axes2_x*rrr_c_o_in_axes2_x -
-            axis_x_rrr_axes2_x*rrr_c_o_in_axes2_y;
+        const real rrr_U_x = -v.axis_x_rrr_axes2_x*rrr_c_o_in_axes2_x -
+            v.axis_y_rrr_axes2_x*rrr_c_o_in_axes2_y;
+        const real rrr_U_y = v.axis_y_rrr_axes2_x*rrr_c_o_in_axes2_x -
+            v.axis_x_rrr_axes2_x*rrr_c_o_in_axes2_y;
         /* (M_ta) coupling block of M */
-        const real rrr_M_ta_t = rrr_Q_xy*rrr_q_x - rrr_Q_xx*rrr_q_y;
-        const real rrr_M_ta_t_2 = rrr_Q_yy*rrr_q_x - rrr_Q_xy*rrr_q_y;
+        const real rrr_M_ta_t = rrr_Q_xy*v.rrr_q_x - rrr_Q_xx*v.rrr_q_y;
+        const real rrr_M_ta_t_2 = rrr_Q_yy*v.rrr_q_x - rrr_Q_xy*v.rrr_q_y;
         /* (M_aa) rotational block of M */
-        const real rrr_M_aa_t = rrr_M_ta_t_2*rrr_q_x - rrr_M_ta_t*rrr_q_y;
+        const real rrr_M_aa_t = rrr_M_ta_t_2*v.rrr_q_x - rrr_M_ta_t*v.rrr_q_y;
         /* (Z_a) rotational part of Z */
-        const real rrr_Z_a_t = rrr_U_y*rrr_q_x - rrr_U_x*rrr_q_y;
+        const real rrr_Z_a_t = rrr_U_y*v.rrr_q_x - rrr_U_x*v.rrr_q_y;
         /* (rrr-H_a_1) moment of the column's unit force about the platform origin */
-        const real rrr_H_a_1_z = rrr_q_x*rrr_w_1_y - rrr_q_y*rrr_w_1_x;
+        const real rrr_H_a_1_z = v.rrr_q_x*v.rrr_w_1_y - v.rrr_q_y*v.rrr_w_1_x;
         /* (M_tt) translational block of M */
         gather(&terms[0*count + k], add, rrr_Q_xx);  /* M_tt_xx_of_legs */
         gather(&terms[1*count + k], add, rrr_Q_xy);  /* M_tt_xy */
@@ -1794,16 +2495,16 @@ INLINE void dynamics_legs_rrr(const prepared *m, size_t w, size_t leg, size_t le
         /* (Z_a) rotational part of Z */
         gather(&terms[8*count + k], add, rrr_Z_a_t);  /* Z_a_z_of_legs */
         /* (rrr-w_1) reciprocal vector 1 */
-        o[0*count + k] = rrr_w_1_x;
-        o[1*count + k] = rrr_w_1_y;
+        o[0*count + k] = v.rrr_w_1_x;
+        o[1*count + k] = v.rrr_w_1_y;
         /* (rrr-H_a_1) moment of the column's unit force about the platform origin */
         o[2*count + k] = rrr_H_a_1_z;
-        o[5*count + k] = rrr_w_1_x + (rrr_w_1_y + rrr_H_a_1_z);
+        o[5*count + k] = v.rrr_w_1_x + (v.rrr_w_1_y + rrr_H_a_1_z);
         const real rrr_rho2_1_t = m->rrr_rho2_1_t[i];
         const real rrr_size = m->rrr_size[i];
-        o[4*count + k] = UNLESS(magnitude(rrr_rho2_1) > TOLERANCE*TOLERANCE*rrr_rho2_1_t) +
-            UNLESS(magnitude(rrr_r_1_in_axes2_y) > TOLERANCE*rrr_size);
-        o[3*count + k] = UNLESS(rrr_disc_1 >= 0);
+        o[4*count + k] = UNLESS(magnitude(v.rrr_rho2_1) > TOLERANCE*TOLERANCE*rrr_rho2_1_t) +
+            UNLESS(magnitude(v.rrr_r_1_in_axes2_y) > TOLERANCE*rrr_size);
+        o[3*count + k] = UNLESS(v.rrr_disc_1 >= 0);
     }
 }
 
@@ -1811,7 +2512,7 @@ INLINE void dynamics_place_rrr(size_t w, size_t count, const real *o, size_t fir
     verdict *t)
 {
     for (size_t k = 0; k < w; ++k) {
-        H[(0*NU + 1)*w + k] = o[0*count + first + k];
+        H[1*w + k] = o[0*count + first + k];
         H[(NU + 1)*w + k] = o[1*count + first + k];
         H[(2*NU + 1)*w + k] = o[2*count + first + k];
         t->unreachable[k] += o[3*count + first + k];
@@ -1821,157 +2522,75 @@ INLINE void dynamics_place_rrr(size_t w, size_t count, const real *o, size_t fir
 }
 
 INLINE void dynamics_legs_prr(const prepared *m, size_t w, size_t leg, size_t legs, const real *s,
-    size_t states, size_t count, int add, real *terms, real *o)
+    size_t states, size_t count, int add, const real *X, const real *V, real *terms, real *o)
 {
     for (size_t k = 0; k < count; ++k) {
         const size_t i = leg + legs*k;
         const size_t j = states*k;
-        /* (prr-S) from the base point to the connection point */
-        const real R_xx = s[2*w + j];
-        const real R_yx = s[3*w + j];
-        const real prr_platform_point_x = m->prr_platform_point_x[i];
-        const real prr_platform_point_y = m->prr_platform_point_y[i];
-        const real prr_q_x = R_xx*prr_platform_point_x - R_yx*prr_platform_point_y;
-        const real prr_q_y = R_xx*prr_platform_point_y + R_yx*prr_platform_point_x;
-        const real prr_base_point_x = m->prr_base_point_x[i];
-        const real t_x = s[0*w + j];
-        const real prr_S_x = prr_q_x + t_x - prr_base_point_x;
-        const real prr_base_point_y = m->prr_base_point_y[i];
-        const real t_y = s[1*w + j];
-        const real prr_S_y = prr_q_y + t_y - prr_base_point_y;
-        const real prr_base_frame_xx = m->prr_base_frame_xx[i];
-        const real prr_base_frame_yx = m->prr_base_frame_yx[i];
-        const real prr_S_in_axes0_x = prr_S_x*prr_base_frame_xx + prr_S_y*prr_base_frame_yx;
-        /* (prr-disc_1) discriminant of the distance equation */
-        const real prr_disc_1_t = prr_S_x*prr_S_x + prr_S_y*prr_S_y;
-        const real prr_size_t = m->prr_size_t[i];
-        const real prr_disc_1 = prr_S_in_axes0_x*prr_S_in_axes0_x + prr_size_t - prr_disc_1_t;
-        /* (prr-c_2) cosine of the angle of joint 2 from its reference direction */
-        const real inv_prr_size_t = m->inv_prr_size_t[i];
-        const real prr_branch_1 = m->prr_branch_1[i];
-        const real prr_platform_joint_offset_x = m->prr_platform_joint_offset_x[i];
-        const real prr_c_2 =
-            -inv_prr_size_t*prr_branch_1*root(prr_disc_1)*prr_platform_joint_offset_x;
-        /* (prr-s_2) sine of the angle of joint 2 from its reference direction */
-        const real prr_base_frame_xy = m->prr_base_frame_xy[i];
-        const real prr_base_frame_yy = m->prr_base_frame_yy[i];
-        const real prr_s_2 = inv_prr_size_t*prr_platform_joint_offset_x*(prr_S_x*prr_base_frame_xy
-            + prr_S_y*prr_base_frame_yy);
-        /* (prr-S_dot) velocity of the connection point */
-        const real omega_z = s[6*w + j];
-        const real prr_S_dot_t = omega_z*prr_q_y;
-        const real prr_S_dot_t_2 = omega_z*prr_q_x;
-        const real t_dot_x = s[4*w + j];
-        const real prr_S_dot_x = t_dot_x - prr_S_dot_t;
-        const real t_dot_y = s[5*w + j];
-        const real prr_S_dot_y = prr_S_dot_t_2 + t_dot_y;
-        /* (prr-v_2) velocity of the connection point per rate of joint 2 */
-        const real prr_v_2_in_axes0_x = -prr_platform_joint_offset_x*prr_s_2;
-        const real prr_v_2_in_axes0_y = prr_c_2*prr_platform_joint_offset_x;
-        /* (prr-w_1) reciprocal vector 1 */
-        const real axis_y_prr_axes2_x = prr_base_frame_xy*prr_c_2 - prr_base_frame_xx*prr_s_2;
-        const real axis_x_prr_axes2_x = prr_base_frame_yy*prr_c_2 - prr_base_frame_yx*prr_s_2;
-        const real prr_w_1_t = -1/prr_v_2_in_axes0_y;
-        const real prr_w_1_t_2 = prr_v_2_in_axes0_x*prr_w_1_t;
-        const real prr_w_1_in_axes2_x = prr_c_2 + prr_s_2*prr_w_1_t_2;
-        const real prr_w_1_in_axes2_y = prr_c_2*prr_w_1_t_2 - prr_s_2;
-        const real prr_w_1_x = axis_x_prr_axes2_x*prr_w_1_in_axes2_x +
-            axis_y_prr_axes2_x*prr_w_1_in_axes2_y;
-        const real prr_w_1_y = axis_x_prr_axes2_x*prr_w_1_in_axes2_y -
-            axis_y_prr_axes2_x*prr_w_1_in_axes2_x;
-        /* (prr-w_2) reciprocal vector 2 */
-        const real prr_w_2_t = prr_s_2*prr_w_1_t;
-        const real prr_w_2_in_axes2_y = -prr_c_2*prr_w_1_t;
-        /* (prr-qd_2) rate of joint 2 */
-        const real prr_qd_2 = -prr_w_1_t*(prr_S_dot_x*prr_base_frame_xy +
-            prr_S_dot_y*prr_base_frame_yy);
-        /* (prr-W_2) centripetal tensor of link 2 */
-        const real prr_W_2_t = prr_qd_2*prr_qd_2;
-        /* (prr-u_1) centripetal acceleration of the connection point */
-        const real prr_u_1_x = -omega_z*prr_S_dot_t_2;
-        const real prr_u_1_t = omega_z*prr_S_dot_t;
-        const real prr_u_1_in_axes2_x = axis_x_prr_axes2_x*prr_u_1_x +
-            axis_y_prr_axes2_x*prr_u_1_t;
-        const real prr_u_1_in_axes2_y = axis_y_prr_axes2_x*prr_u_1_x -
-            axis_x_prr_axes2_x*prr_u_1_t;
+        values_prr v;
+        stage_prr_X(m, w, i, j, s, X, &v);
+        stage_prr_V_X(m, w, i, j, V, &v);
+        stage_prr_M_dynamics(m, i, &v);
+        stage_prr_Z_dynamics(m, w, i, j, V, &v);
         /* (prr-rel_o) remainder without the acceleration in: acceleration of the connection point left to
            the joint accelerations */
-        const real prr_rel_o_in_axes2_x = prr_u_1_in_axes2_x +
-            prr_platform_joint_offset_x*prr_qd_2*prr_qd_2;
+        const real prr_platform_joint_offset_x = m->prr_platform_joint_offset_x[i];
+        const real prr_rel_o_in_axes2_x = v.prr_u_1_in_axes2_x +
+            prr_platform_joint_offset_x*v.prr_qd_2*v.prr_qd_2;
         /* (prr-B_2_o) remainder of the acceleration tensor of link 2 */
-        const real prr_B_2_o_in_axes2_xy = prr_w_1_t*(prr_c_2*prr_u_1_in_axes2_y +
-            prr_rel_o_in_axes2_x*prr_s_2);
+        const real prr_B_2_o_in_axes2_xy = v.prr_w_1_t*(v.prr_c_2*v.prr_u_1_in_axes2_y +
+            prr_rel_o_in_axes2_x*v.prr_s_2);
         /* (prr-acc_1_o) remainder without the acceleration in: acceleration of the reference point of
            link 1, less gravity */
         const real prr_g_in_axes0_x = m->prr_g_in_axes0_x[i];
-        const real prr_acc_1_o_in_axes0_x = prr_B_2_o_in_axes2_xy*prr_v_2_in_axes0_x +
-            prr_c_2*prr_rel_o_in_axes2_x - prr_g_in_axes0_x - prr_s_2*prr_u_1_in_axes2_y;
+        const real prr_acc_1_o_in_axes0_x = prr_B_2_o_in_axes2_xy*v.prr_v_2_in_axes0_x +
+            v.prr_c_2*prr_rel_o_in_axes2_x - prr_g_in_axes0_x - v.prr_s_2*v.prr_u_1_in_axes2_y;
         /* (prr-f_1_o) remainder without the acceleration in: inertia force of link 1 less its weight */
         const real prr_link1_mass = m->prr_link1_mass[i];
         const real prr_f_1_o_in_axes0_x = prr_acc_1_o_in_axes0_x*prr_link1_mass;
-        /* (prr-acc_2_o) remainder without the acceleration in: acceleration of the reference point of
-           link 2, less gravity */
-        const real prr_g_in_axes0_y = m->prr_g_in_axes0_y[i];
-        const real prr_acc_2_o_in_axes2_x = prr_u_1_in_axes2_x - prr_c_2*prr_g_in_axes0_x -
-            prr_g_in_axes0_y*prr_s_2;
-        const real prr_acc_2_o_in_axes2_y = prr_u_1_in_axes2_y + prr_g_in_axes0_x*prr_s_2 -
-            prr_c_2*prr_g_in_axes0_y;
         /* (prr-mu_2_o) remainder without the acceleration in: inertia moment of the links that turn with
            link 2, about their reference points */
         const real prr_J_2_in_spec2_zz = m->prr_J_2_in_spec2_zz[i];
         const real prr_h_2_in_spec2_x = m->prr_h_2_in_spec2_x[i];
         const real prr_h_2_in_spec2_y = m->prr_h_2_in_spec2_y[i];
-        const real prr_mu_2_o_in_axes2_z = prr_acc_2_o_in_axes2_y*prr_h_2_in_spec2_x -
-            prr_B_2_o_in_axes2_xy*prr_J_2_in_spec2_zz - prr_acc_2_o_in_axes2_x*prr_h_2_in_spec2_y;
-        /* (prr-d_Gamma_2) coefficient of the acceleration in: moment about axis 2 of the distal links'
-           inertia and weight */
-        const real prr_d_Gamma_2_t = prr_J_2_in_spec2_zz*prr_w_1_t;
-        const real prr_d_Gamma_2_in_axes2_x = -prr_h_2_in_spec2_y - prr_d_Gamma_2_t*prr_s_2;
-        const real prr_d_Gamma_2_in_axes2_y = prr_h_2_in_spec2_x - prr_c_2*prr_d_Gamma_2_t;
-        /* (prr-d_Gamma_1) coefficient of the acceleration in: force along axis 1 of the distal links'
-           inertia and weight */
-        const real prr_d_Gamma_1_t = prr_link1_mass*prr_v_2_in_axes0_x*prr_w_1_t;
-        const real prr_d_Gamma_1_in_axes2_y = prr_c_2*prr_d_Gamma_1_t - prr_link1_mass*prr_s_2;
-        /* (prr-d_c) coefficient of the acceleration in: leg force on the platform without actuation and
-           without the mass at the connection point */
-        const real prr_d_c_in_axes2_xx = prr_d_Gamma_2_in_axes2_x*prr_w_2_t -
-            prr_h_2_in_spec2_y*prr_w_2_t - prr_w_1_in_axes2_x*(prr_c_2*prr_link1_mass +
-            prr_d_Gamma_1_t*prr_s_2);
-        const real prr_d_c_in_axes2_xy = prr_d_Gamma_2_in_axes2_y*prr_w_2_t +
-            prr_h_2_in_spec2_y*prr_w_2_in_axes2_y - prr_d_Gamma_1_in_axes2_y*prr_w_1_in_axes2_x;
+        const real prr_mu_2_o_in_axes2_z = v.prr_acc_2_o_in_axes2_y*prr_h_2_in_spec2_x -
+            prr_B_2_o_in_axes2_xy*prr_J_2_in_spec2_zz -
+            v.prr_acc_2_o_in_axes2_x*prr_h_2_in_spec2_y;
         /* (prr-c_o) remainder without the acceleration in: leg force on the platform without actuation
            and without the mass at the connection point */
-        const real prr_c_o_t = prr_w_1_t*(prr_mu_2_o_in_axes2_z -
-            prr_f_1_o_in_axes0_x*prr_v_2_in_axes0_x);
-        const real prr_c_o_in_axes2_x = prr_W_2_t*prr_h_2_in_spec2_x + prr_c_o_t*prr_s_2 -
-            prr_B_2_o_in_axes2_xy*prr_h_2_in_spec2_y - prr_c_2*prr_f_1_o_in_axes0_x;
+        const real prr_c_o_t = v.prr_w_1_t*(prr_mu_2_o_in_axes2_z -
+            prr_f_1_o_in_axes0_x*v.prr_v_2_in_axes0_x);
+        const real prr_c_o_in_axes2_x = v.prr_W_2_t*prr_h_2_in_spec2_x + prr_c_o_t*v.prr_s_2 -
+            prr_B_2_o_in_axes2_xy*prr_h_2_in_spec2_y - v.prr_c_2*prr_f_1_o_in_axes0_x;
         const real prr_c_o_in_axes2_y = prr_B_2_o_in_axes2_xy*prr_h_2_in_spec2_x +
-            prr_W_2_t*prr_h_2_in_spec2_y + prr_c_2*prr_c_o_t + prr_f_1_o_in_axes0_x*prr_s_2;
+            v.prr_W_2_t*prr_h_2_in_spec2_y + v.prr_c_2*prr_c_o_t + prr_f_1_o_in_axes0_x*v.prr_s_2;
         /* (prr-Q) inertia of the leg at the connection point, without the mass gathered there */
-        const real prr_Q_t = prr_d_c_in_axes2_xx + prr_d_Gamma_1_in_axes2_y*prr_w_1_in_axes2_y +
-            prr_d_Gamma_2_in_axes2_y*prr_w_2_in_axes2_y + prr_h_2_in_spec2_x*prr_w_2_in_axes2_y;
+        const real prr_Q_t = v.prr_d_c_in_axes2_xx +
+            v.prr_d_Gamma_1_in_axes2_y*v.prr_w_1_in_axes2_y +
+            v.prr_d_Gamma_2_in_axes2_y*v.prr_w_2_in_axes2_y +
+            prr_h_2_in_spec2_x*v.prr_w_2_in_axes2_y;
         const real prr_Q_t_2 = R(0.5)*prr_Q_t;
-        const real prr_Q_t_3 = axis_y_prr_axes2_x*prr_Q_t_2 -
-            axis_x_prr_axes2_x*prr_d_c_in_axes2_xy;
-        const real prr_Q_t_4 = axis_x_prr_axes2_x*prr_Q_t_2 +
-            axis_y_prr_axes2_x*prr_d_c_in_axes2_xy;
-        const real prr_Q_xx = 2*axis_y_prr_axes2_x*prr_Q_t_3 - prr_d_c_in_axes2_xx;
-        const real prr_Q_xy = axis_x_prr_axes2_x*prr_Q_t_3 + axis_y_prr_axes2_x*prr_Q_t_4;
-        const real prr_Q_yy = 2*axis_x_prr_axes2_x*prr_Q_t_4 - prr_d_c_in_axes2_xx;
+        const real prr_Q_t_3 = v.axis_y_prr_axes2_x*prr_Q_t_2 -
+            v.axis_x_prr_axes2_x*v.prr_d_c_in_axes2_xy;
+        const real prr_Q_t_4 = v.axis_x_prr_axes2_x*prr_Q_t_2 +
+            v.axis_y_prr_axes2_x*v.prr_d_c_in_axes2_xy;
+        const real prr_Q_xx = 2*v.axis_y_prr_axes2_x*prr_Q_t_3 - v.prr_d_c_in_axes2_xx;
+        const real prr_Q_xy = v.axis_x_prr_axes2_x*prr_Q_t_3 + v.axis_y_prr_axes2_x*prr_Q_t_4;
+        const real prr_Q_yy = 2*v.axis_x_prr_axes2_x*prr_Q_t_4 - v.prr_d_c_in_axes2_xx;
         /* (prr-U) velocity and gravity terms of the leg force */
-        const real prr_U_x = -axis_x_prr_axes2_x*prr_c_o_in_axes2_x -
-            axis_y_prr_axes2_x*prr_c_o_in_axes2_y;
-        const real prr_U_y = axis_y_prr_axes2_x*prr_c_o_in_axes2_x -
-            axis_x_prr_axes2_x*prr_c_o_in_axes2_y;
+        const real prr_U_x = -v.axis_x_prr_axes2_x*prr_c_o_in_axes2_x -
+            v.axis_y_prr_axes2_x*prr_c_o_in_axes2_y;
+        const real prr_U_y = v.axis_y_prr_axes2_x*prr_c_o_in_axes2_x -
+            v.axis_x_prr_axes2_x*prr_c_o_in_axes2_y;
         /* (M_ta) coupling block of M */
-        const real prr_M_ta_t = prr_Q_xy*prr_q_x - prr_Q_xx*prr_q_y;
-        const real prr_M_ta_t_2 = prr_Q_yy*prr_q_x - prr_Q_xy*prr_q_y;
+        const real prr_M_ta_t = prr_Q_xy*v.prr_q_x - prr_Q_xx*v.prr_q_y;
+        const real prr_M_ta_t_2 = prr_Q_yy*v.prr_q_x - prr_Q_xy*v.prr_q_y;
         /* (M_aa) rotational block of M */
-        const real prr_M_aa_t = prr_M_ta_t_2*prr_q_x - prr_M_ta_t*prr_q_y;
+        const real prr_M_aa_t = prr_M_ta_t_2*v.prr_q_x - prr_M_ta_t*v.prr_q_y;
         /* (Z_a) rotational part of Z */
-        const real prr_Z_a_t = prr_U_y*prr_q_x - prr_U_x*prr_q_y;
+        const real prr_Z_a_t = prr_U_y*v.prr_q_x - prr_U_x*v.prr_q_y;
         /* (prr-H_a_1) moment of the column's unit force about the platform origin */
-        const real prr_H_a_1_z = prr_q_x*prr_w_1_y - prr_q_y*prr_w_1_x;
+        const real prr_H_a_1_z = v.prr_q_x*v.prr_w_1_y - v.prr_q_y*v.prr_w_1_x;
         /* (M_tt) translational block of M */
         gather(&terms[0*count + k], add, prr_Q_xx);  /* M_tt_xx_of_legs */
         gather(&terms[1*count + k], add, prr_Q_xy);  /* M_tt_xy */
@@ -1987,14 +2606,14 @@ INLINE void dynamics_legs_prr(const prepared *m, size_t w, size_t leg, size_t le
         /* (Z_a) rotational part of Z */
         gather(&terms[8*count + k], add, prr_Z_a_t);  /* Z_a_z_of_legs */
         /* (prr-w_1) reciprocal vector 1 */
-        o[0*count + k] = prr_w_1_x;
-        o[1*count + k] = prr_w_1_y;
+        o[0*count + k] = v.prr_w_1_x;
+        o[1*count + k] = v.prr_w_1_y;
         /* (prr-H_a_1) moment of the column's unit force about the platform origin */
         o[2*count + k] = prr_H_a_1_z;
-        o[5*count + k] = prr_w_1_x + (prr_w_1_y + prr_H_a_1_z);
+        o[5*count + k] = v.prr_w_1_x + (v.prr_w_1_y + prr_H_a_1_z);
         const real prr_size = m->prr_size[i];
-        o[3*count + k] = UNLESS(prr_disc_1 >= 0);
-        o[4*count + k] = UNLESS(magnitude(prr_v_2_in_axes0_y) > TOLERANCE*prr_size);
+        o[3*count + k] = UNLESS(v.prr_disc_1 >= 0);
+        o[4*count + k] = UNLESS(magnitude(v.prr_v_2_in_axes0_y) > TOLERANCE*prr_size);
     }
 }
 
@@ -2002,7 +2621,7 @@ INLINE void dynamics_place_prr(size_t w, size_t count, const real *o, size_t fir
     verdict *t)
 {
     for (size_t k = 0; k < w; ++k) {
-        H[(0*NU + 2)*w + k] = o[0*count + first + k];
+        H[2*w + k] = o[0*count + first + k];
         H[(NU + 2)*w + k] = o[1*count + first + k];
         H[(2*NU + 2)*w + k] = o[2*count + first + k];
         t->unreachable[k] += o[3*count + first + k];
@@ -2023,34 +2642,34 @@ INLINE void dynamics_after(const prepared *m, size_t w, const real *s, const rea
         const real M_tt_yy = M_tt_yy_of_legs + m_star;
         /* (M_ta) coupling block of M */
         const real M_ta_xz_of_legs = sums[3*w + k];
-        const real h_star_y = s[8*w + k];
+        const real h_star_y = s[3*w + k];
         const real M_ta_xz = M_ta_xz_of_legs - h_star_y;
         const real M_ta_yz_of_legs = sums[4*w + k];
-        const real h_star_x = s[7*w + k];
+        const real h_star_x = s[2*w + k];
         const real M_ta_yz = M_ta_yz_of_legs + h_star_x;
         /* (M_aa) rotational block of M */
         const real J_star_zz = m->J_star_zz;
         const real M_aa_zz_of_legs = sums[5*w + k];
         const real M_aa_zz = J_star_zz + M_aa_zz_of_legs;
         /* (Z_t) translational part of Z */
-        const real Z_p_x = s[9*w + k];
+        const real Z_p_x = s[4*w + k];
         const real Z_t_x_of_legs = sums[6*w + k];
         const real Z_t_x = Z_p_x + Z_t_x_of_legs;
-        const real Z_p_y = s[10*w + k];
+        const real Z_p_y = s[5*w + k];
         const real Z_t_y_of_legs = sums[7*w + k];
         const real Z_t_y = Z_p_y + Z_t_y_of_legs;
         /* (Z_a) rotational part of Z */
         const real Z_a_z_of_legs = sums[8*w + k];
-        const real Z_q_z = s[11*w + k];
+        const real Z_q_z = s[6*w + k];
         const real Z_a_z = Z_a_z_of_legs + Z_q_z;
         /* (M_tt) translational block of M */
-        M[0*NV*w + k] = M_tt_xx;
+        M[0*w + k] = M_tt_xx;
         const real M_tt_xy = sums[1*w + k];
-        M[(0*NV + 1)*w + k] = M_tt_xy;
+        M[1*w + k] = M_tt_xy;
         M[NV*w + k] = M_tt_xy;
         M[(NV + 1)*w + k] = M_tt_yy;
         /* (M_ta) coupling block of M */
-        M[(0*NV + 2)*w + k] = M_ta_xz;
+        M[2*w + k] = M_ta_xz;
         M[2*NV*w + k] = M_ta_xz;
         M[(NV + 2)*w + k] = M_ta_yz;
         M[(2*NV + 1)*w + k] = M_ta_yz;
@@ -2069,30 +2688,26 @@ INLINE void dynamics_after(const prepared *m, size_t w, const real *s, const rea
 INLINE void dynamics_run(const prepared *m, const real *X, const real *V, real *M, real *Z, real
     *H, verdict *t)
 {
-    real s[12] = {0};
-    real sums[9] = {0};
-    real terms_rpr[9*LEGS(LEGS_OF_rpr)] = {0};
-    real o_rpr[5*LEGS(LEGS_OF_rpr)] = {0};
-    real terms_rrr[9*LEGS(LEGS_OF_rrr)] = {0};
-    real o_rrr[6*LEGS(LEGS_OF_rrr)] = {0};
-    real terms_prr[9*LEGS(LEGS_OF_prr)] = {0};
-    real o_prr[6*LEGS(LEGS_OF_prr)] = {0};
+    real s[7] = {0}, sums[9] = {0};
+    real terms_rpr[9*LEGS(LEGS_OF_rpr)] = {0}, o_rpr[5*LEGS(LEGS_OF_rpr)] = {0};
+    real terms_rrr[9*LEGS(LEGS_OF_rrr)] = {0}, o_rrr[6*LEGS(LEGS_OF_rrr)] = {0};
+    real terms_prr[9*LEGS(LEGS_OF_prr)] = {0}, o_prr[6*LEGS(LEGS_OF_prr)] = {0};
     dynamics_before(m, 1, X, V, s);
-    dynamics_legs_rpr(m, 1, 0, 1, s, 0, LEGS(LEGS_OF_rpr), 0, terms_rpr, o_rpr);
+    dynamics_legs_rpr(m, 1, 0, 1, s, 0, LEGS(LEGS_OF_rpr), 0, X, V, terms_rpr, o_rpr);
+    dynamics_legs_rrr(m, 1, 0, 1, s, 0, LEGS(LEGS_OF_rrr), 0, X, V, terms_rrr, o_rrr);
+    dynamics_legs_prr(m, 1, 0, 1, s, 0, LEGS(LEGS_OF_prr), 0, X, V, terms_prr, o_prr);
     for (size_t leg = 0; leg < LEGS_OF_rpr; ++leg) {
         dynamics_place_rpr(1, LEGS(LEGS_OF_rpr), o_rpr, leg, H, t);
     }
     for (size_t n = 0; n < 9; ++n) {
         sums[n] = total(terms_rpr + n*LEGS(LEGS_OF_rpr), LEGS_OF_rpr);
     }
-    dynamics_legs_rrr(m, 1, 0, 1, s, 0, LEGS(LEGS_OF_rrr), 0, terms_rrr, o_rrr);
     for (size_t leg = 0; leg < LEGS_OF_rrr; ++leg) {
         dynamics_place_rrr(1, LEGS(LEGS_OF_rrr), o_rrr, leg, H, t);
     }
     for (size_t n = 0; n < 9; ++n) {
         sums[n] += total(terms_rrr + n*LEGS(LEGS_OF_rrr), LEGS_OF_rrr);
     }
-    dynamics_legs_prr(m, 1, 0, 1, s, 0, LEGS(LEGS_OF_prr), 0, terms_prr, o_prr);
     for (size_t leg = 0; leg < LEGS_OF_prr; ++leg) {
         dynamics_place_prr(1, LEGS(LEGS_OF_prr), o_prr, leg, H, t);
     }
@@ -2105,23 +2720,22 @@ INLINE void dynamics_run(const prepared *m, const real *X, const real *V, real *
 INLINE void dynamics_run_lanes(const prepared *m, const real *X, const real *V, real *M, real *Z,
     real *H, verdict *t)
 {
-    real s[12*LANES];
-    real sums[9*LANES];
+    real s[7*LANES], sums[9*LANES];
     real o_rpr[5*LANES];
     real o_rrr[6*LANES];
     real o_prr[6*LANES];
     dynamics_before(m, LANES, X, V, s);
     clear(sums, 9*LANES);
     for (size_t leg = 0; leg < LEGS_OF_rpr; ++leg) {
-        dynamics_legs_rpr(m, LANES, leg, 0, s, 1, LANES, 1, sums, o_rpr);
+        dynamics_legs_rpr(m, LANES, leg, 0, s, 1, LANES, 1, X, V, sums, o_rpr);
         dynamics_place_rpr(LANES, LANES, o_rpr, 0, H, t);
     }
     for (size_t leg = 0; leg < LEGS_OF_rrr; ++leg) {
-        dynamics_legs_rrr(m, LANES, leg, 0, s, 1, LANES, 1, sums, o_rrr);
+        dynamics_legs_rrr(m, LANES, leg, 0, s, 1, LANES, 1, X, V, sums, o_rrr);
         dynamics_place_rrr(LANES, LANES, o_rrr, 0, H, t);
     }
     for (size_t leg = 0; leg < LEGS_OF_prr; ++leg) {
-        dynamics_legs_prr(m, LANES, leg, 0, s, 1, LANES, 1, sums, o_prr);
+        dynamics_legs_prr(m, LANES, leg, 0, s, 1, LANES, 1, X, V, sums, o_prr);
         dynamics_place_prr(LANES, LANES, o_prr, 0, H, t);
     }
     dynamics_after(m, LANES, s, sums, M, Z, t);
@@ -2131,86 +2745,44 @@ INLINE void dynamics_run_lanes(const prepared *m, const real *X, const real *V, 
 INLINE void M_before(const prepared *m, size_t w, const real *X, real *s)
 {
     for (size_t k = 0; k < w; ++k) {
-        /* X: named entries */
-        const real X_0 = X[0*w + k];
-        const real t_x = X_0;
-        const real X_1 = X[1*w + k];
-        const real t_y = X_1;
-        const real X_2 = X[2*w + k];
-        const real R_xx = cosine(X_2);
-        const real R_yx = sine(X_2);
-        /* (h_star) first moment about the platform origin */
-        const real h_star_in_platform_x = m->h_star_in_platform_x;
-        const real h_star_in_platform_y = m->h_star_in_platform_y;
-        const real h_star_x = R_xx*h_star_in_platform_x - R_yx*h_star_in_platform_y;
-        const real h_star_y = R_xx*h_star_in_platform_y + R_yx*h_star_in_platform_x;
-        s[0*w + k] = t_x;
-        s[1*w + k] = t_y;
-        s[2*w + k] = R_xx;
-        s[3*w + k] = R_yx;
-        s[4*w + k] = h_star_x;
-        s[5*w + k] = h_star_y;
+        values v;
+        stage_X(m, w, k, X, &v);
+        s[0*w + k] = v.R_xx;
+        s[1*w + k] = v.R_yx;
+        s[2*w + k] = v.h_star_x;
+        s[3*w + k] = v.h_star_y;
     }
 }
 
 INLINE void M_legs_rpr(const prepared *m, size_t w, size_t leg, size_t legs, const real *s, size_t
-    states, size_t count, int add, real *terms, real *o)
+    states, size_t count, int add, const real *X, real *terms, real *o)
 {
     for (size_t k = 0; k < count; ++k) {
         const size_t i = leg + legs*k;
         const size_t j = states*k;
-        /* (rpr-S) from the base point to the connection point */
-        const real R_xx = s[2*w + j];
-        const real R_yx = s[3*w + j];
-        const real rpr_platform_point_x = m->rpr_platform_point_x[i];
-        const real rpr_platform_point_y = m->rpr_platform_point_y[i];
-        const real rpr_q_x = R_xx*rpr_platform_point_x - R_yx*rpr_platform_point_y;
-        const real rpr_q_y = R_xx*rpr_platform_point_y + R_yx*rpr_platform_point_x;
-        const real rpr_base_point_x = m->rpr_base_point_x[i];
-        const real t_x = s[0*w + j];
-        const real rpr_S_x = rpr_q_x + t_x - rpr_base_point_x;
-        const real rpr_base_point_y = m->rpr_base_point_y[i];
-        const real t_y = s[1*w + j];
-        const real rpr_S_y = rpr_q_y + t_y - rpr_base_point_y;
-        /* (rpr-px_1) component along the reference direction */
-        const real rpr_base_frame_xx = m->rpr_base_frame_xx[i];
-        const real rpr_base_frame_yx = m->rpr_base_frame_yx[i];
-        const real rpr_px_1 = rpr_S_x*rpr_base_frame_xx + rpr_S_y*rpr_base_frame_yx;
-        /* (rpr-py_1) component across the reference direction */
-        const real rpr_base_frame_xy = m->rpr_base_frame_xy[i];
-        const real rpr_base_frame_yy = m->rpr_base_frame_yy[i];
-        const real rpr_py_1 = rpr_S_x*rpr_base_frame_xy + rpr_S_y*rpr_base_frame_yy;
-        /* (rpr-rho2_1) squared amplitude */
-        const real rpr_rho2_1 = rpr_px_1*rpr_px_1 + rpr_py_1*rpr_py_1;
-        /* (rpr-root_1) amplitude, with the sign of the branch */
-        const real rpr_branch_1 = m->rpr_branch_1[i];
-        const real rpr_root_1 = rpr_branch_1*root(rpr_rho2_1);
-        /* (rpr-w_1) reciprocal vector 1 */
-        const real rpr_w_1_in_axes1_y = 1/rpr_root_1;
-        /* (rpr-w_2) reciprocal vector 2 */
-        const real rpr_w_2_x = rpr_S_x*rpr_w_1_in_axes1_y;
-        const real rpr_w_2_y = rpr_S_y*rpr_w_1_in_axes1_y;
+        values_rpr v;
+        stage_rpr_X(m, w, i, j, s, X, &v);
         /* (rpr-d_c) coefficient of the acceleration in: leg force on the platform without actuation and
            without the mass at the connection point */
         const real rpr_h_2_in_spec1_y = m->rpr_h_2_in_spec1_y[i];
-        const real rpr_d_c_in_axes1_xy = rpr_h_2_in_spec1_y*rpr_w_1_in_axes1_y;
+        const real rpr_d_c_in_axes1_xy = rpr_h_2_in_spec1_y*v.rpr_w_1_in_axes1_y;
         const real rpr_J_group_1_in_axes1_zz = m->rpr_J_group_1_in_axes1_zz[i];
         const real rpr_h_2_in_spec1_x = m->rpr_h_2_in_spec1_x[i];
-        const real rpr_d_c_in_axes1_yy = -rpr_h_2_in_spec1_x*rpr_w_1_in_axes1_y -
-            rpr_w_1_in_axes1_y*(rpr_h_2_in_spec1_x +
-            rpr_J_group_1_in_axes1_zz*rpr_w_1_in_axes1_y);
+        const real rpr_d_c_in_axes1_yy = -rpr_h_2_in_spec1_x*v.rpr_w_1_in_axes1_y -
+            v.rpr_w_1_in_axes1_y*(rpr_h_2_in_spec1_x +
+            rpr_J_group_1_in_axes1_zz*v.rpr_w_1_in_axes1_y);
         /* (rpr-Q) inertia of the leg at the connection point, without the mass gathered there */
         const real rpr_Q_t = R(0.5)*rpr_d_c_in_axes1_yy;
-        const real rpr_Q_t_2 = rpr_Q_t*rpr_w_2_y - rpr_d_c_in_axes1_xy*rpr_w_2_x;
-        const real rpr_Q_t_3 = rpr_Q_t*rpr_w_2_x + rpr_d_c_in_axes1_xy*rpr_w_2_y;
-        const real rpr_Q_xx = -2*rpr_Q_t_2*rpr_w_2_y;
-        const real rpr_Q_xy = rpr_Q_t_2*rpr_w_2_x + rpr_Q_t_3*rpr_w_2_y;
-        const real rpr_Q_yy = -2*rpr_Q_t_3*rpr_w_2_x;
+        const real rpr_Q_t_2 = rpr_Q_t*v.rpr_w_2_y - rpr_d_c_in_axes1_xy*v.rpr_w_2_x;
+        const real rpr_Q_t_3 = rpr_Q_t*v.rpr_w_2_x + rpr_d_c_in_axes1_xy*v.rpr_w_2_y;
+        const real rpr_Q_xx = -2*rpr_Q_t_2*v.rpr_w_2_y;
+        const real rpr_Q_xy = rpr_Q_t_2*v.rpr_w_2_x + rpr_Q_t_3*v.rpr_w_2_y;
+        const real rpr_Q_yy = -2*rpr_Q_t_3*v.rpr_w_2_x;
         /* (M_ta) coupling block of M */
-        const real rpr_M_ta_t = rpr_Q_xy*rpr_q_x - rpr_Q_xx*rpr_q_y;
-        const real rpr_M_ta_t_2 = rpr_Q_yy*rpr_q_x - rpr_Q_xy*rpr_q_y;
+        const real rpr_M_ta_t = rpr_Q_xy*v.rpr_q_x - rpr_Q_xx*v.rpr_q_y;
+        const real rpr_M_ta_t_2 = rpr_Q_yy*v.rpr_q_x - rpr_Q_xy*v.rpr_q_y;
         /* (M_aa) rotational block of M */
-        const real rpr_M_aa_t = rpr_M_ta_t_2*rpr_q_x - rpr_M_ta_t*rpr_q_y;
+        const real rpr_M_aa_t = rpr_M_ta_t_2*v.rpr_q_x - rpr_M_ta_t*v.rpr_q_y;
         /* (M_tt) translational block of M */
         gather(&terms[0*count + k], add, rpr_Q_xx);  /* M_tt_xx_of_legs */
         gather(&terms[1*count + k], add, rpr_Q_xy);  /* M_tt_xy */
@@ -2220,7 +2792,7 @@ INLINE void M_legs_rpr(const prepared *m, size_t w, size_t leg, size_t legs, con
         gather(&terms[4*count + k], add, rpr_M_ta_t_2);  /* M_ta_yz_of_legs */
         /* (M_aa) rotational block of M */
         gather(&terms[5*count + k], add, rpr_M_aa_t);  /* M_aa_zz_of_legs */
-        o[0*count + k] = UNLESS(magnitude(rpr_rho2_1) > LEAST_1) + UNLESS(magnitude(rpr_root_1) >
+        o[0*count + k] = UNLESS(magnitude(v.rpr_q_2_t) > LEAST_1) + UNLESS(magnitude(v.rpr_q_2) >
             LEAST_2);
     }
 }
@@ -2233,118 +2805,41 @@ INLINE void M_place_rpr(size_t w, size_t count, const real *o, size_t first, ver
 }
 
 INLINE void M_legs_rrr(const prepared *m, size_t w, size_t leg, size_t legs, const real *s, size_t
-    states, size_t count, int add, real *terms, real *o)
+    states, size_t count, int add, const real *X, real *terms, real *o)
 {
     for (size_t k = 0; k < count; ++k) {
         const size_t i = leg + legs*k;
         const size_t j = states*k;
-        /* (rrr-S) from the base point to the connection point */
-        const real R_xx = s[2*w + j];
-        const real R_yx = s[3*w + j];
-        const real rrr_platform_point_x = m->rrr_platform_point_x[i];
-        const real rrr_platform_point_y = m->rrr_platform_point_y[i];
-        const real rrr_q_x = R_xx*rrr_platform_point_x - R_yx*rrr_platform_point_y;
-        const real rrr_q_y = R_xx*rrr_platform_point_y + R_yx*rrr_platform_point_x;
-        const real rrr_base_point_x = m->rrr_base_point_x[i];
-        const real t_x = s[0*w + j];
-        const real rrr_S_x = rrr_q_x + t_x - rrr_base_point_x;
-        const real rrr_base_point_y = m->rrr_base_point_y[i];
-        const real t_y = s[1*w + j];
-        const real rrr_S_y = rrr_q_y + t_y - rrr_base_point_y;
-        /* (rrr-Kd_1) projection on the centre's direction, from the distance fixed by the joints beyond
-           joint 1 */
-        const real rrr_Kd_1_t_3 = rrr_S_x*rrr_S_x + rrr_S_y*rrr_S_y;
-        const real rrr_Kd_1_t = m->rrr_Kd_1_t[i];
-        const real rrr_Kd_1_t_2 = m->rrr_Kd_1_t_2[i];
-        const real rrr_Kd_1 = rrr_Kd_1_t + R(0.5)*rrr_Kd_1_t_3 - rrr_Kd_1_t_2;
-        /* (rrr-px_1) component along the reference direction */
-        const real rrr_base_frame_xx = m->rrr_base_frame_xx[i];
-        const real rrr_base_frame_yx = m->rrr_base_frame_yx[i];
-        const real rrr_px_1 = rrr_S_x*rrr_base_frame_xx + rrr_S_y*rrr_base_frame_yx;
-        /* (rrr-py_1) component across the reference direction */
-        const real rrr_base_frame_xy = m->rrr_base_frame_xy[i];
-        const real rrr_base_frame_yy = m->rrr_base_frame_yy[i];
-        const real rrr_py_1 = rrr_S_x*rrr_base_frame_xy + rrr_S_y*rrr_base_frame_yy;
-        /* (rrr-Kc_1) factor of the cosine in the equation of joint 1 */
-        const real rrr_joint2_offset_x = m->rrr_joint2_offset_x[i];
-        const real rrr_Kc_1 = rrr_joint2_offset_x*rrr_px_1;
-        /* (rrr-Ks_1) factor of the sine in the equation of joint 1 */
-        const real rrr_Ks_1 = rrr_joint2_offset_x*rrr_py_1;
-        /* (rrr-rho2_1) squared amplitude */
-        const real rrr_rho2_1 = rrr_Kc_1*rrr_Kc_1 + rrr_Ks_1*rrr_Ks_1;
-        /* (rrr-disc_1) discriminant */
-        const real rrr_disc_1 = rrr_rho2_1 - rrr_Kd_1*rrr_Kd_1;
-        /* (rrr-root_1) root, with the sign of the branch */
-        const real rrr_branch_1 = m->rrr_branch_1[i];
-        const real rrr_root_1 = rrr_branch_1*root(rrr_disc_1);
-        /* (rrr-c_1) cosine of the angle of joint 1 from its reference direction */
-        const real inv_rrr_rho2_1 = 1/rrr_rho2_1;
-        const real rrr_c_1 = inv_rrr_rho2_1*(rrr_Kc_1*rrr_Kd_1 - rrr_Ks_1*rrr_root_1);
-        /* (rrr-s_1) sine of the angle of joint 1 from its reference direction */
-        const real rrr_s_1 = inv_rrr_rho2_1*(rrr_Kc_1*rrr_root_1 + rrr_Kd_1*rrr_Ks_1);
-        /* (rrr-x_2) from the origin of joint 2 to the connection point */
-        const real inv_rrr_size_t = m->inv_rrr_size_t[i];
-        const real rrr_x_2_in_axes1_x = inv_rrr_size_t*rrr_Kd_1*rrr_joint2_offset_x -
-            rrr_joint2_offset_x;
-        /* (rrr-c_2) cosine of the angle of joint 2 from its reference direction */
-        const real inv_rrr_size_t_2 = m->inv_rrr_size_t_2[i];
-        const real rrr_platform_joint_offset_x = m->rrr_platform_joint_offset_x[i];
-        const real rrr_c_2 = inv_rrr_size_t_2*rrr_platform_joint_offset_x*rrr_x_2_in_axes1_x;
-        /* (rrr-s_2) sine of the angle of joint 2 from its reference direction */
-        const real rrr_s_2 =
-            -inv_rrr_size_t*inv_rrr_size_t_2*rrr_joint2_offset_x*rrr_platform_joint_offset_x*rrr_root_1;
-        /* (rrr-r_1) from joint 1 to the connection point, along the links */
-        const real rrr_r_1_in_axes1_y = rrr_platform_joint_offset_x*rrr_s_2;
-        const real rrr_r_1_in_axes1_x = rrr_joint2_offset_x + rrr_c_2*rrr_platform_joint_offset_x;
-        const real rrr_r_1_in_axes2_x = rrr_c_2*rrr_r_1_in_axes1_x + rrr_r_1_in_axes1_y*rrr_s_2;
-        const real rrr_r_1_in_axes2_y = rrr_c_2*rrr_r_1_in_axes1_y - rrr_r_1_in_axes1_x*rrr_s_2;
-        /* (rrr-w_1) reciprocal vector 1 */
-        const real rrr_w_1_in_axes2_x = -1/rrr_r_1_in_axes2_y;
-        /* (rrr-w_2) reciprocal vector 2 */
-        const real rrr_w_2_in_axes2_y = m->rrr_w_2_in_axes2_y[i];
-        const real rrr_w_2_in_axes2_x = -rrr_r_1_in_axes2_x*rrr_w_1_in_axes2_x*rrr_w_2_in_axes2_y;
-        /* (rrr-d_Gamma_2) coefficient of the acceleration in: moment about axis 2 of the distal links'
-           inertia and weight */
-        const real rrr_d_Gamma_2_t = m->rrr_d_Gamma_2_t[i];
-        const real rrr_d_Gamma_2_t_2 = rrr_d_Gamma_2_t*rrr_r_1_in_axes2_x;
-        const real rrr_J_2_in_spec2_zz = m->rrr_J_2_in_spec2_zz[i];
-        const real rrr_h_2_in_spec2_y = m->rrr_h_2_in_spec2_y[i];
-        const real rrr_d_Gamma_2_in_axes2_x = rrr_w_1_in_axes2_x*(rrr_J_2_in_spec2_zz -
-            rrr_d_Gamma_2_t_2) - rrr_h_2_in_spec2_y;
-        /* (rrr-d_Gamma_1) coefficient of the acceleration in: moment about axis 1 of the distal links'
-           inertia and weight */
-        const real rrr_Jc_1_in_axes1_zz = m->rrr_Jc_1_in_axes1_zz[i];
-        const real rrr_d_Gamma_1_in_axes2_x = rrr_w_1_in_axes2_x*(rrr_Jc_1_in_axes1_zz -
-            rrr_d_Gamma_2_t_2) - rrr_h_2_in_spec2_y;
-        /* (rrr-d_c) coefficient of the acceleration in: leg force on the platform without actuation and
-           without the mass at the connection point */
-        const real rrr_d_Gamma_2_in_axes2_y = m->rrr_d_Gamma_2_in_axes2_y[i];
-        const real rrr_d_phi_2_t = m->rrr_d_phi_2_t[i];
-        const real rrr_d_c_in_axes2_xy = rrr_d_phi_2_t -
-            rrr_d_Gamma_2_in_axes2_y*rrr_w_1_in_axes2_x -
-            rrr_d_Gamma_2_in_axes2_y*rrr_w_2_in_axes2_x;
+        values_rrr v;
+        stage_rrr_X(m, w, i, j, s, X, &v);
+        stage_rrr_M_dynamics(m, i, &v);
         /* (rrr-Q) inertia of the leg at the connection point, without the mass gathered there */
-        const real rrr_Q_t = rrr_c_1*rrr_s_2 + rrr_c_2*rrr_s_1;
-        const real rrr_Q_t_2 = rrr_c_1*rrr_c_2 - rrr_s_1*rrr_s_2;
+        const real rrr_Q_t = v.rrr_c_1*v.rrr_s_2 + v.rrr_c_2*v.rrr_s_1;
+        const real rrr_Q_t_2 = v.rrr_c_1*v.rrr_c_2 - v.rrr_s_1*v.rrr_s_2;
+        const real rrr_base_frame_xx = m->rrr_base_frame_xx[i];
+        const real rrr_base_frame_xy = m->rrr_base_frame_xy[i];
         const real axis_y_rrr_axes2_x = rrr_Q_t_2*rrr_base_frame_xy - rrr_Q_t*rrr_base_frame_xx;
+        const real rrr_base_frame_yx = m->rrr_base_frame_yx[i];
+        const real rrr_base_frame_yy = m->rrr_base_frame_yy[i];
         const real axis_x_rrr_axes2_x = rrr_Q_t_2*rrr_base_frame_yy - rrr_Q_t*rrr_base_frame_yx;
         const real rrr_d_c_in_axes2_yy = m->rrr_d_c_in_axes2_yy[i];
-        const real rrr_Q_t_3 = rrr_h_2_in_spec2_y*(rrr_w_1_in_axes2_x + rrr_w_2_in_axes2_x) -
-            rrr_d_c_in_axes2_yy - rrr_d_Gamma_1_in_axes2_x*rrr_w_1_in_axes2_x -
-            rrr_d_Gamma_2_in_axes2_x*rrr_w_2_in_axes2_x;
+        const real rrr_h_2_in_spec2_y = m->rrr_h_2_in_spec2_y[i];
+        const real rrr_Q_t_3 = rrr_h_2_in_spec2_y*(v.rrr_w_1_in_axes2_x + v.rrr_w_2_in_axes2_x) -
+            rrr_d_c_in_axes2_yy - v.rrr_d_Gamma_1_in_axes2_x*v.rrr_w_1_in_axes2_x -
+            v.rrr_d_Gamma_2_in_axes2_x*v.rrr_w_2_in_axes2_x;
         const real rrr_Q_t_4 = R(0.5)*rrr_Q_t_3;
         const real rrr_Q_t_5 = axis_x_rrr_axes2_x*rrr_Q_t_4 +
-            axis_y_rrr_axes2_x*rrr_d_c_in_axes2_xy;
+            axis_y_rrr_axes2_x*v.rrr_d_c_in_axes2_xy;
         const real rrr_Q_t_6 = axis_y_rrr_axes2_x*rrr_Q_t_4 -
-            axis_x_rrr_axes2_x*rrr_d_c_in_axes2_xy;
+            axis_x_rrr_axes2_x*v.rrr_d_c_in_axes2_xy;
         const real rrr_Q_xx = -rrr_d_c_in_axes2_yy - 2*axis_x_rrr_axes2_x*rrr_Q_t_5;
         const real rrr_Q_xy = axis_x_rrr_axes2_x*rrr_Q_t_6 + axis_y_rrr_axes2_x*rrr_Q_t_5;
         const real rrr_Q_yy = -rrr_d_c_in_axes2_yy - 2*axis_y_rrr_axes2_x*rrr_Q_t_6;
         /* (M_ta) coupling block of M */
-        const real rrr_M_ta_t = rrr_Q_xy*rrr_q_x - rrr_Q_xx*rrr_q_y;
-        const real rrr_M_ta_t_2 = rrr_Q_yy*rrr_q_x - rrr_Q_xy*rrr_q_y;
+        const real rrr_M_ta_t = rrr_Q_xy*v.rrr_q_x - rrr_Q_xx*v.rrr_q_y;
+        const real rrr_M_ta_t_2 = rrr_Q_yy*v.rrr_q_x - rrr_Q_xy*v.rrr_q_y;
         /* (M_aa) rotational block of M */
-        const real rrr_M_aa_t = rrr_M_ta_t_2*rrr_q_x - rrr_M_ta_t*rrr_q_y;
+        const real rrr_M_aa_t = rrr_M_ta_t_2*v.rrr_q_x - rrr_M_ta_t*v.rrr_q_y;
         /* (M_tt) translational block of M */
         gather(&terms[0*count + k], add, rrr_Q_xx);  /* M_tt_xx_of_legs */
         gather(&terms[1*count + k], add, rrr_Q_xy);  /* M_tt_xy */
@@ -2356,9 +2851,9 @@ INLINE void M_legs_rrr(const prepared *m, size_t w, size_t leg, size_t legs, con
         gather(&terms[5*count + k], add, rrr_M_aa_t);  /* M_aa_zz_of_legs */
         const real rrr_rho2_1_t = m->rrr_rho2_1_t[i];
         const real rrr_size = m->rrr_size[i];
-        o[1*count + k] = UNLESS(magnitude(rrr_rho2_1) > TOLERANCE*TOLERANCE*rrr_rho2_1_t) +
-            UNLESS(magnitude(rrr_r_1_in_axes2_y) > TOLERANCE*rrr_size);
-        o[0*count + k] = UNLESS(rrr_disc_1 >= 0);
+        o[1*count + k] = UNLESS(magnitude(v.rrr_rho2_1) > TOLERANCE*TOLERANCE*rrr_rho2_1_t) +
+            UNLESS(magnitude(v.rrr_r_1_in_axes2_y) > TOLERANCE*rrr_size);
+        o[0*count + k] = UNLESS(v.rrr_disc_1 >= 0);
     }
 }
 
@@ -2371,91 +2866,33 @@ INLINE void M_place_rrr(size_t w, size_t count, const real *o, size_t first, ver
 }
 
 INLINE void M_legs_prr(const prepared *m, size_t w, size_t leg, size_t legs, const real *s, size_t
-    states, size_t count, int add, real *terms, real *o)
+    states, size_t count, int add, const real *X, real *terms, real *o)
 {
     for (size_t k = 0; k < count; ++k) {
         const size_t i = leg + legs*k;
         const size_t j = states*k;
-        /* (prr-S) from the base point to the connection point */
-        const real R_xx = s[2*w + j];
-        const real R_yx = s[3*w + j];
-        const real prr_platform_point_x = m->prr_platform_point_x[i];
-        const real prr_platform_point_y = m->prr_platform_point_y[i];
-        const real prr_q_x = R_xx*prr_platform_point_x - R_yx*prr_platform_point_y;
-        const real prr_q_y = R_xx*prr_platform_point_y + R_yx*prr_platform_point_x;
-        const real prr_base_point_x = m->prr_base_point_x[i];
-        const real t_x = s[0*w + j];
-        const real prr_S_x = prr_q_x + t_x - prr_base_point_x;
-        const real prr_base_point_y = m->prr_base_point_y[i];
-        const real t_y = s[1*w + j];
-        const real prr_S_y = prr_q_y + t_y - prr_base_point_y;
-        const real prr_base_frame_xx = m->prr_base_frame_xx[i];
-        const real prr_base_frame_yx = m->prr_base_frame_yx[i];
-        const real prr_S_in_axes0_x = prr_S_x*prr_base_frame_xx + prr_S_y*prr_base_frame_yx;
-        /* (prr-disc_1) discriminant of the distance equation */
-        const real prr_disc_1_t = prr_S_x*prr_S_x + prr_S_y*prr_S_y;
-        const real prr_size_t = m->prr_size_t[i];
-        const real prr_disc_1 = prr_S_in_axes0_x*prr_S_in_axes0_x + prr_size_t - prr_disc_1_t;
-        /* (prr-c_2) cosine of the angle of joint 2 from its reference direction */
-        const real inv_prr_size_t = m->inv_prr_size_t[i];
-        const real prr_branch_1 = m->prr_branch_1[i];
-        const real prr_platform_joint_offset_x = m->prr_platform_joint_offset_x[i];
-        const real prr_c_2 =
-            -inv_prr_size_t*prr_branch_1*root(prr_disc_1)*prr_platform_joint_offset_x;
-        /* (prr-s_2) sine of the angle of joint 2 from its reference direction */
-        const real prr_base_frame_xy = m->prr_base_frame_xy[i];
-        const real prr_base_frame_yy = m->prr_base_frame_yy[i];
-        const real prr_s_2 = inv_prr_size_t*prr_platform_joint_offset_x*(prr_S_x*prr_base_frame_xy
-            + prr_S_y*prr_base_frame_yy);
-        /* (prr-v_2) velocity of the connection point per rate of joint 2 */
-        const real prr_v_2_in_axes0_x = -prr_platform_joint_offset_x*prr_s_2;
-        const real prr_v_2_in_axes0_y = prr_c_2*prr_platform_joint_offset_x;
-        /* (prr-w_1) reciprocal vector 1 */
-        const real prr_w_1_t = -1/prr_v_2_in_axes0_y;
-        const real prr_w_1_t_2 = prr_v_2_in_axes0_x*prr_w_1_t;
-        const real prr_w_1_in_axes2_x = prr_c_2 + prr_s_2*prr_w_1_t_2;
-        /* (prr-w_2) reciprocal vector 2 */
-        const real prr_w_2_t = prr_s_2*prr_w_1_t;
-        const real prr_w_2_in_axes2_y = -prr_c_2*prr_w_1_t;
-        /* (prr-d_Gamma_2) coefficient of the acceleration in: moment about axis 2 of the distal links'
-           inertia and weight */
-        const real prr_J_2_in_spec2_zz = m->prr_J_2_in_spec2_zz[i];
-        const real prr_d_Gamma_2_t = prr_J_2_in_spec2_zz*prr_w_1_t;
-        const real prr_h_2_in_spec2_y = m->prr_h_2_in_spec2_y[i];
-        const real prr_d_Gamma_2_in_axes2_x = -prr_h_2_in_spec2_y - prr_d_Gamma_2_t*prr_s_2;
-        const real prr_h_2_in_spec2_x = m->prr_h_2_in_spec2_x[i];
-        const real prr_d_Gamma_2_in_axes2_y = prr_h_2_in_spec2_x - prr_c_2*prr_d_Gamma_2_t;
-        /* (prr-d_Gamma_1) coefficient of the acceleration in: force along axis 1 of the distal links'
-           inertia and weight */
-        const real prr_link1_mass = m->prr_link1_mass[i];
-        const real prr_d_Gamma_1_t = prr_link1_mass*prr_v_2_in_axes0_x*prr_w_1_t;
-        const real prr_d_Gamma_1_in_axes2_y = prr_c_2*prr_d_Gamma_1_t - prr_link1_mass*prr_s_2;
-        /* (prr-d_c) coefficient of the acceleration in: leg force on the platform without actuation and
-           without the mass at the connection point */
-        const real prr_d_c_in_axes2_xx = prr_d_Gamma_2_in_axes2_x*prr_w_2_t -
-            prr_h_2_in_spec2_y*prr_w_2_t - prr_w_1_in_axes2_x*(prr_c_2*prr_link1_mass +
-            prr_d_Gamma_1_t*prr_s_2);
-        const real prr_d_c_in_axes2_xy = prr_d_Gamma_2_in_axes2_y*prr_w_2_t +
-            prr_h_2_in_spec2_y*prr_w_2_in_axes2_y - prr_d_Gamma_1_in_axes2_y*prr_w_1_in_axes2_x;
+        values_prr v;
+        stage_prr_X(m, w, i, j, s, X, &v);
+        stage_prr_M_dynamics(m, i, &v);
         /* (prr-Q) inertia of the leg at the connection point, without the mass gathered there */
-        const real axis_y_prr_axes2_x = prr_base_frame_xy*prr_c_2 - prr_base_frame_xx*prr_s_2;
-        const real axis_x_prr_axes2_x = prr_base_frame_yy*prr_c_2 - prr_base_frame_yx*prr_s_2;
-        const real prr_Q_t = prr_d_c_in_axes2_xx + prr_d_Gamma_1_in_axes2_y*(prr_c_2*prr_w_1_t_2 -
-            prr_s_2) + prr_d_Gamma_2_in_axes2_y*prr_w_2_in_axes2_y +
-            prr_h_2_in_spec2_x*prr_w_2_in_axes2_y;
+        const real prr_h_2_in_spec2_x = m->prr_h_2_in_spec2_x[i];
+        const real prr_Q_t = v.prr_d_c_in_axes2_xx +
+            v.prr_d_Gamma_1_in_axes2_y*(v.prr_c_2*v.prr_w_1_t_2 - v.prr_s_2) +
+            v.prr_d_Gamma_2_in_axes2_y*v.prr_w_2_in_axes2_y +
+            prr_h_2_in_spec2_x*v.prr_w_2_in_axes2_y;
         const real prr_Q_t_2 = R(0.5)*prr_Q_t;
-        const real prr_Q_t_3 = axis_y_prr_axes2_x*prr_Q_t_2 -
-            axis_x_prr_axes2_x*prr_d_c_in_axes2_xy;
-        const real prr_Q_t_4 = axis_x_prr_axes2_x*prr_Q_t_2 +
-            axis_y_prr_axes2_x*prr_d_c_in_axes2_xy;
-        const real prr_Q_xx = 2*axis_y_prr_axes2_x*prr_Q_t_3 - prr_d_c_in_axes2_xx;
-        const real prr_Q_xy = axis_x_prr_axes2_x*prr_Q_t_3 + axis_y_prr_axes2_x*prr_Q_t_4;
-        const real prr_Q_yy = 2*axis_x_prr_axes2_x*prr_Q_t_4 - prr_d_c_in_axes2_xx;
+        const real prr_Q_t_3 = v.axis_y_prr_axes2_x*prr_Q_t_2 -
+            v.axis_x_prr_axes2_x*v.prr_d_c_in_axes2_xy;
+        const real prr_Q_t_4 = v.axis_x_prr_axes2_x*prr_Q_t_2 +
+            v.axis_y_prr_axes2_x*v.prr_d_c_in_axes2_xy;
+        const real prr_Q_xx = 2*v.axis_y_prr_axes2_x*prr_Q_t_3 - v.prr_d_c_in_axes2_xx;
+        const real prr_Q_xy = v.axis_x_prr_axes2_x*prr_Q_t_3 + v.axis_y_prr_axes2_x*prr_Q_t_4;
+        const real prr_Q_yy = 2*v.axis_x_prr_axes2_x*prr_Q_t_4 - v.prr_d_c_in_axes2_xx;
         /* (M_ta) coupling block of M */
-        const real prr_M_ta_t = prr_Q_xy*prr_q_x - prr_Q_xx*prr_q_y;
-        const real prr_M_ta_t_2 = prr_Q_yy*prr_q_x - prr_Q_xy*prr_q_y;
+        const real prr_M_ta_t = prr_Q_xy*v.prr_q_x - prr_Q_xx*v.prr_q_y;
+        const real prr_M_ta_t_2 = prr_Q_yy*v.prr_q_x - prr_Q_xy*v.prr_q_y;
         /* (M_aa) rotational block of M */
-        const real prr_M_aa_t = prr_M_ta_t_2*prr_q_x - prr_M_ta_t*prr_q_y;
+        const real prr_M_aa_t = prr_M_ta_t_2*v.prr_q_x - prr_M_ta_t*v.prr_q_y;
         /* (M_tt) translational block of M */
         gather(&terms[0*count + k], add, prr_Q_xx);  /* M_tt_xx_of_legs */
         gather(&terms[1*count + k], add, prr_Q_xy);  /* M_tt_xy */
@@ -2466,8 +2903,8 @@ INLINE void M_legs_prr(const prepared *m, size_t w, size_t leg, size_t legs, con
         /* (M_aa) rotational block of M */
         gather(&terms[5*count + k], add, prr_M_aa_t);  /* M_aa_zz_of_legs */
         const real prr_size = m->prr_size[i];
-        o[0*count + k] = UNLESS(prr_disc_1 >= 0);
-        o[1*count + k] = UNLESS(magnitude(prr_v_2_in_axes0_y) > TOLERANCE*prr_size);
+        o[0*count + k] = UNLESS(v.prr_disc_1 >= 0);
+        o[1*count + k] = UNLESS(magnitude(v.prr_v_2_in_axes0_y) > TOLERANCE*prr_size);
     }
 }
 
@@ -2491,23 +2928,23 @@ INLINE void M_after(const prepared *m, size_t w, const real *s, const real *sums
         const real M_tt_yy = M_tt_yy_of_legs + m_star;
         /* (M_ta) coupling block of M */
         const real M_ta_xz_of_legs = sums[3*w + k];
-        const real h_star_y = s[5*w + k];
+        const real h_star_y = s[3*w + k];
         const real M_ta_xz = M_ta_xz_of_legs - h_star_y;
         const real M_ta_yz_of_legs = sums[4*w + k];
-        const real h_star_x = s[4*w + k];
+        const real h_star_x = s[2*w + k];
         const real M_ta_yz = M_ta_yz_of_legs + h_star_x;
         /* (M_aa) rotational block of M */
         const real J_star_zz = m->J_star_zz;
         const real M_aa_zz_of_legs = sums[5*w + k];
         const real M_aa_zz = J_star_zz + M_aa_zz_of_legs;
         /* (M_tt) translational block of M */
-        M[0*NV*w + k] = M_tt_xx;
+        M[0*w + k] = M_tt_xx;
         const real M_tt_xy = sums[1*w + k];
-        M[(0*NV + 1)*w + k] = M_tt_xy;
+        M[1*w + k] = M_tt_xy;
         M[NV*w + k] = M_tt_xy;
         M[(NV + 1)*w + k] = M_tt_yy;
         /* (M_ta) coupling block of M */
-        M[(0*NV + 2)*w + k] = M_ta_xz;
+        M[2*w + k] = M_ta_xz;
         M[2*NV*w + k] = M_ta_xz;
         M[(NV + 2)*w + k] = M_ta_yz;
         M[(2*NV + 1)*w + k] = M_ta_yz;
@@ -2519,30 +2956,26 @@ INLINE void M_after(const prepared *m, size_t w, const real *s, const real *sums
 
 INLINE void M_run(const prepared *m, const real *X, real *M, verdict *t)
 {
-    real s[6] = {0};
-    real sums[6] = {0};
-    real terms_rpr[6*LEGS(LEGS_OF_rpr)] = {0};
-    real o_rpr[LEGS(LEGS_OF_rpr)] = {0};
-    real terms_rrr[6*LEGS(LEGS_OF_rrr)] = {0};
-    real o_rrr[2*LEGS(LEGS_OF_rrr)] = {0};
-    real terms_prr[6*LEGS(LEGS_OF_prr)] = {0};
-    real o_prr[2*LEGS(LEGS_OF_prr)] = {0};
+    real s[4] = {0}, sums[6] = {0};
+    real terms_rpr[6*LEGS(LEGS_OF_rpr)] = {0}, o_rpr[LEGS(LEGS_OF_rpr)] = {0};
+    real terms_rrr[6*LEGS(LEGS_OF_rrr)] = {0}, o_rrr[2*LEGS(LEGS_OF_rrr)] = {0};
+    real terms_prr[6*LEGS(LEGS_OF_prr)] = {0}, o_prr[2*LEGS(LEGS_OF_prr)] = {0};
     M_before(m, 1, X, s);
-    M_legs_rpr(m, 1, 0, 1, s, 0, LEGS(LEGS_OF_rpr), 0, terms_rpr, o_rpr);
+    M_legs_rpr(m, 1, 0, 1, s, 0, LEGS(LEGS_OF_rpr), 0, X, terms_rpr, o_rpr);
+    M_legs_rrr(m, 1, 0, 1, s, 0, LEGS(LEGS_OF_rrr), 0, X, terms_rrr, o_rrr);
+    M_legs_prr(m, 1, 0, 1, s, 0, LEGS(LEGS_OF_prr), 0, X, terms_prr, o_prr);
     for (size_t leg = 0; leg < LEGS_OF_rpr; ++leg) {
         M_place_rpr(1, LEGS(LEGS_OF_rpr), o_rpr, leg, t);
     }
     for (size_t n = 0; n < 6; ++n) {
         sums[n] = total(terms_rpr + n*LEGS(LEGS_OF_rpr), LEGS_OF_rpr);
     }
-    M_legs_rrr(m, 1, 0, 1, s, 0, LEGS(LEGS_OF_rrr), 0, terms_rrr, o_rrr);
     for (size_t leg = 0; leg < LEGS_OF_rrr; ++leg) {
         M_place_rrr(1, LEGS(LEGS_OF_rrr), o_rrr, leg, t);
     }
     for (size_t n = 0; n < 6; ++n) {
         sums[n] += total(terms_rrr + n*LEGS(LEGS_OF_rrr), LEGS_OF_rrr);
     }
-    M_legs_prr(m, 1, 0, 1, s, 0, LEGS(LEGS_OF_prr), 0, terms_prr, o_prr);
     for (size_t leg = 0; leg < LEGS_OF_prr; ++leg) {
         M_place_prr(1, LEGS(LEGS_OF_prr), o_prr, leg, t);
     }
@@ -2554,23 +2987,22 @@ INLINE void M_run(const prepared *m, const real *X, real *M, verdict *t)
 
 INLINE void M_run_lanes(const prepared *m, const real *X, real *M, verdict *t)
 {
-    real s[6*LANES];
-    real sums[6*LANES];
+    real s[4*LANES], sums[6*LANES];
     real o_rpr[LANES];
     real o_rrr[2*LANES];
     real o_prr[2*LANES];
     M_before(m, LANES, X, s);
     clear(sums, 6*LANES);
     for (size_t leg = 0; leg < LEGS_OF_rpr; ++leg) {
-        M_legs_rpr(m, LANES, leg, 0, s, 1, LANES, 1, sums, o_rpr);
+        M_legs_rpr(m, LANES, leg, 0, s, 1, LANES, 1, X, sums, o_rpr);
         M_place_rpr(LANES, LANES, o_rpr, 0, t);
     }
     for (size_t leg = 0; leg < LEGS_OF_rrr; ++leg) {
-        M_legs_rrr(m, LANES, leg, 0, s, 1, LANES, 1, sums, o_rrr);
+        M_legs_rrr(m, LANES, leg, 0, s, 1, LANES, 1, X, sums, o_rrr);
         M_place_rrr(LANES, LANES, o_rrr, 0, t);
     }
     for (size_t leg = 0; leg < LEGS_OF_prr; ++leg) {
-        M_legs_prr(m, LANES, leg, 0, s, 1, LANES, 1, sums, o_prr);
+        M_legs_prr(m, LANES, leg, 0, s, 1, LANES, 1, X, sums, o_prr);
         M_place_prr(LANES, LANES, o_prr, 0, t);
     }
     M_after(m, LANES, s, sums, M, t);
@@ -2580,150 +3012,42 @@ INLINE void M_run_lanes(const prepared *m, const real *X, real *M, verdict *t)
 INLINE void Z_before(const prepared *m, size_t w, const real *X, const real *V, real *s)
 {
     for (size_t k = 0; k < w; ++k) {
-        /* X: named entries */
-        const real X_0 = X[0*w + k];
-        const real t_x = X_0;
-        const real X_1 = X[1*w + k];
-        const real t_y = X_1;
-        const real X_2 = X[2*w + k];
-        const real R_xx = cosine(X_2);
-        const real R_yx = sine(X_2);
-        /* V: named entries */
-        const real V_0 = V[0*w + k];
-        const real t_dot_x = V_0;
-        const real V_1 = V[1*w + k];
-        const real t_dot_y = V_1;
-        const real V_2 = V[2*w + k];
-        const real omega_z = V_2;
-        /* (W_p) centripetal tensor of the platform */
-        const real W_p_xx = -omega_z*omega_z;
-        /* (h_star) first moment about the platform origin */
-        const real h_star_in_platform_x = m->h_star_in_platform_x;
-        const real h_star_in_platform_y = m->h_star_in_platform_y;
-        const real h_star_x = R_xx*h_star_in_platform_x - R_yx*h_star_in_platform_y;
-        const real h_star_y = R_xx*h_star_in_platform_y + R_yx*h_star_in_platform_x;
+        values v;
+        stage_V(w, k, V, &v);
+        stage_X(m, w, k, X, &v);
         /* (Z_p) centripetal force and weight of the platform */
         const real Z_p_t = m->Z_p_t;
-        const real Z_p_x = W_p_xx*h_star_x - Z_p_t;
+        const real Z_p_x = v.W_p_xx*v.h_star_x - Z_p_t;
         const real Z_p_t_2 = m->Z_p_t_2;
-        const real Z_p_y = W_p_xx*h_star_y - Z_p_t_2;
+        const real Z_p_y = v.W_p_xx*v.h_star_y - Z_p_t_2;
         /* (Z_q) gyroscopic moment and moment of the weight of the platform */
         const real gravity_x = m->gravity_x;
         const real gravity_y = m->gravity_y;
-        const real Z_q_z = gravity_x*h_star_y - gravity_y*h_star_x;
-        s[0*w + k] = t_x;
-        s[1*w + k] = t_y;
-        s[2*w + k] = R_xx;
-        s[3*w + k] = R_yx;
-        s[4*w + k] = t_dot_x;
-        s[5*w + k] = t_dot_y;
-        s[6*w + k] = omega_z;
-        s[7*w + k] = Z_p_x;
-        s[8*w + k] = Z_p_y;
-        s[9*w + k] = Z_q_z;
+        const real Z_q_z = gravity_x*v.h_star_y - gravity_y*v.h_star_x;
+        s[0*w + k] = v.R_xx;
+        s[1*w + k] = v.R_yx;
+        s[2*w + k] = Z_p_x;
+        s[3*w + k] = Z_p_y;
+        s[4*w + k] = Z_q_z;
     }
 }
 
 INLINE void Z_legs_rpr(const prepared *m, size_t w, size_t leg, size_t legs, const real *s, size_t
-    states, size_t count, int add, real *terms, real *o)
+    states, size_t count, int add, const real *X, const real *V, real *terms, real *o)
 {
     for (size_t k = 0; k < count; ++k) {
         const size_t i = leg + legs*k;
         const size_t j = states*k;
-        /* (rpr-S) from the base point to the connection point */
-        const real R_xx = s[2*w + j];
-        const real R_yx = s[3*w + j];
-        const real rpr_platform_point_x = m->rpr_platform_point_x[i];
-        const real rpr_platform_point_y = m->rpr_platform_point_y[i];
-        const real rpr_q_x = R_xx*rpr_platform_point_x - R_yx*rpr_platform_point_y;
-        const real rpr_q_y = R_xx*rpr_platform_point_y + R_yx*rpr_platform_point_x;
-        const real rpr_base_point_x = m->rpr_base_point_x[i];
-        const real t_x = s[0*w + j];
-        const real rpr_S_x = rpr_q_x + t_x - rpr_base_point_x;
-        const real rpr_base_point_y = m->rpr_base_point_y[i];
-        const real t_y = s[1*w + j];
-        const real rpr_S_y = rpr_q_y + t_y - rpr_base_point_y;
-        /* (rpr-px_1) component along the reference direction */
-        const real rpr_base_frame_xx = m->rpr_base_frame_xx[i];
-        const real rpr_base_frame_yx = m->rpr_base_frame_yx[i];
-        const real rpr_px_1 = rpr_S_x*rpr_base_frame_xx + rpr_S_y*rpr_base_frame_yx;
-        /* (rpr-py_1) component across the reference direction */
-        const real rpr_base_frame_xy = m->rpr_base_frame_xy[i];
-        const real rpr_base_frame_yy = m->rpr_base_frame_yy[i];
-        const real rpr_py_1 = rpr_S_x*rpr_base_frame_xy + rpr_S_y*rpr_base_frame_yy;
-        /* (rpr-rho2_1) squared amplitude */
-        const real rpr_rho2_1 = rpr_px_1*rpr_px_1 + rpr_py_1*rpr_py_1;
-        /* (rpr-root_1) amplitude, with the sign of the branch */
-        const real rpr_branch_1 = m->rpr_branch_1[i];
-        const real rpr_root_1 = rpr_branch_1*root(rpr_rho2_1);
-        /* (rpr-S_dot) velocity of the connection point */
-        const real inv_rpr_root_1 = 1/rpr_root_1;
-        const real axis_x_rpr_axes1_x = inv_rpr_root_1*rpr_S_x;
-        const real axis_x_rpr_axes1_y = inv_rpr_root_1*rpr_S_y;
-        const real omega_z = s[6*w + j];
-        const real rpr_S_dot_t = omega_z*rpr_q_y;
-        const real rpr_S_dot_t_2 = omega_z*rpr_q_x;
-        const real t_dot_x = s[4*w + j];
-        const real rpr_S_dot_x = t_dot_x - rpr_S_dot_t;
-        const real t_dot_y = s[5*w + j];
-        const real rpr_S_dot_y = rpr_S_dot_t_2 + t_dot_y;
-        const real rpr_S_dot_in_axes1_x = axis_x_rpr_axes1_x*rpr_S_dot_x +
-            axis_x_rpr_axes1_y*rpr_S_dot_y;
-        /* (rpr-qd_1) rate of joint 1 */
-        const real rpr_qd_1 = inv_rpr_root_1*(axis_x_rpr_axes1_x*rpr_S_dot_y -
-            axis_x_rpr_axes1_y*rpr_S_dot_x);
-        /* (rpr-W_1) centripetal tensor of link 1 */
-        const real rpr_W_1_in_axes1_xx = -rpr_qd_1*rpr_qd_1;
-        /* (rpr-u_1) centripetal acceleration of the connection point */
-        const real rpr_u_1_t = omega_z*rpr_S_dot_t_2;
-        const real rpr_u_1_y = -omega_z*rpr_S_dot_t;
-        const real rpr_u_1_in_axes1_y = axis_x_rpr_axes1_x*rpr_u_1_y +
-            axis_x_rpr_axes1_y*rpr_u_1_t;
-        /* (rpr-rel_o) remainder without the acceleration in: acceleration of the connection point left to
-           the joint accelerations */
-        const real rpr_rel_o_in_axes1_y = rpr_u_1_in_axes1_y - 2*rpr_S_dot_in_axes1_x*rpr_qd_1;
-        /* (rpr-qdd_1_o) remainder without the acceleration in: acceleration of joint 1 */
-        const real rpr_qdd_1_o = inv_rpr_root_1*rpr_rel_o_in_axes1_y;
-        /* (rpr-acc_2_o) remainder without the acceleration in: acceleration of the reference point of
-           link 2, less gravity */
-        const real gravity_x = m->gravity_x;
-        const real gravity_y = m->gravity_y;
-        const real rpr_g_in_axes1_x = axis_x_rpr_axes1_x*gravity_x + axis_x_rpr_axes1_y*gravity_y;
-        const real rpr_g_in_axes1_y = axis_x_rpr_axes1_x*gravity_y - axis_x_rpr_axes1_y*gravity_x;
-        const real rpr_acc_2_o_in_axes1_x = axis_x_rpr_axes1_y*rpr_u_1_y - rpr_g_in_axes1_x -
-            axis_x_rpr_axes1_x*rpr_u_1_t;
-        const real rpr_acc_2_o_in_axes1_y = rpr_u_1_in_axes1_y - rpr_g_in_axes1_y;
-        /* (rpr-phi_2_o) remainder without the acceleration in: inertia force of link 2 from its turning
-           about its reference point */
-        const real rpr_h_2_in_spec1_x = m->rpr_h_2_in_spec1_x[i];
-        const real rpr_h_2_in_spec1_y = m->rpr_h_2_in_spec1_y[i];
-        const real rpr_phi_2_o_in_axes1_x = rpr_W_1_in_axes1_xx*rpr_h_2_in_spec1_x -
-            rpr_h_2_in_spec1_y*rpr_qdd_1_o;
-        /* (rpr-mu_1_o) remainder without the acceleration in: inertia moment of the links that turn with
-           link 1, about their reference points */
-        const real rpr_J_group_1_in_axes1_zz = m->rpr_J_group_1_in_axes1_zz[i];
-        const real rpr_h_1_in_spec1_x = m->rpr_h_1_in_spec1_x[i];
-        const real rpr_h_1_in_spec1_y = m->rpr_h_1_in_spec1_y[i];
-        const real rpr_mu_1_o_in_axes1_z = rpr_J_group_1_in_axes1_zz*rpr_qdd_1_o +
-            rpr_acc_2_o_in_axes1_y*rpr_h_2_in_spec1_x + rpr_g_in_axes1_x*rpr_h_1_in_spec1_y -
-            rpr_acc_2_o_in_axes1_x*rpr_h_2_in_spec1_y - rpr_g_in_axes1_y*rpr_h_1_in_spec1_x;
-        /* (rpr-c_o) remainder without the acceleration in: leg force on the platform without actuation
-           and without the mass at the connection point */
-        const real rpr_c_o_in_axes1_y = -inv_rpr_root_1*rpr_mu_1_o_in_axes1_z -
-            rpr_W_1_in_axes1_xx*rpr_h_2_in_spec1_y - rpr_h_2_in_spec1_x*rpr_qdd_1_o;
-        /* (rpr-U) velocity and gravity terms of the leg force */
-        const real rpr_U_x = axis_x_rpr_axes1_x*rpr_phi_2_o_in_axes1_x +
-            axis_x_rpr_axes1_y*rpr_c_o_in_axes1_y;
-        const real rpr_U_y = axis_x_rpr_axes1_y*rpr_phi_2_o_in_axes1_x -
-            axis_x_rpr_axes1_x*rpr_c_o_in_axes1_y;
-        /* (Z_a) rotational part of Z */
-        const real rpr_Z_a_t = rpr_U_y*rpr_q_x - rpr_U_x*rpr_q_y;
+        values_rpr v;
+        stage_rpr_X(m, w, i, j, s, X, &v);
+        stage_rpr_V_X(w, j, V, &v);
+        stage_rpr_Z_dynamics(m, w, i, j, V, &v);
         /* (Z_t) translational part of Z */
-        gather(&terms[0*count + k], add, rpr_U_x);  /* Z_t_x_of_legs */
-        gather(&terms[1*count + k], add, rpr_U_y);  /* Z_t_y_of_legs */
+        gather(&terms[0*count + k], add, v.rpr_U_x);  /* Z_t_x_of_legs */
+        gather(&terms[1*count + k], add, v.rpr_U_y);  /* Z_t_y_of_legs */
         /* (Z_a) rotational part of Z */
-        gather(&terms[2*count + k], add, rpr_Z_a_t);  /* Z_a_z_of_legs */
-        o[0*count + k] = UNLESS(magnitude(rpr_rho2_1) > LEAST_1) + UNLESS(magnitude(rpr_root_1) >
+        gather(&terms[2*count + k], add, v.rpr_Z_a_t);  /* Z_a_z_of_legs */
+        o[0*count + k] = UNLESS(magnitude(v.rpr_q_2_t) > LEAST_1) + UNLESS(magnitude(v.rpr_q_2) >
             LEAST_2);
     }
 }
@@ -2736,119 +3060,57 @@ INLINE void Z_place_rpr(size_t w, size_t count, const real *o, size_t first, ver
 }
 
 INLINE void Z_legs_rrr(const prepared *m, size_t w, size_t leg, size_t legs, const real *s, size_t
-    states, size_t count, int add, real *terms, real *o)
+    states, size_t count, int add, const real *X, const real *V, real *terms, real *o)
 {
     for (size_t k = 0; k < count; ++k) {
         const size_t i = leg + legs*k;
         const size_t j = states*k;
-        /* (rrr-S) from the base point to the connection point */
-        const real R_xx = s[2*w + j];
-        const real R_yx = s[3*w + j];
-        const real rrr_platform_point_x = m->rrr_platform_point_x[i];
-        const real rrr_platform_point_y = m->rrr_platform_point_y[i];
-        const real rrr_q_x = R_xx*rrr_platform_point_x - R_yx*rrr_platform_point_y;
-        const real rrr_q_y = R_xx*rrr_platform_point_y + R_yx*rrr_platform_point_x;
-        const real rrr_base_point_x = m->rrr_base_point_x[i];
-        const real t_x = s[0*w + j];
-        const real rrr_S_x = rrr_q_x + t_x - rrr_base_point_x;
-        const real rrr_base_point_y = m->rrr_base_point_y[i];
-        const real t_y = s[1*w + j];
-        const real rrr_S_y = rrr_q_y + t_y - rrr_base_point_y;
-        /* (rrr-Kd_1) projection on the centre's direction, from the distance fixed by the joints beyond
-           joint 1 */
-        const real rrr_Kd_1_t_3 = rrr_S_x*rrr_S_x + rrr_S_y*rrr_S_y;
-        const real rrr_Kd_1_t = m->rrr_Kd_1_t[i];
-        const real rrr_Kd_1_t_2 = m->rrr_Kd_1_t_2[i];
-        const real rrr_Kd_1 = rrr_Kd_1_t + R(0.5)*rrr_Kd_1_t_3 - rrr_Kd_1_t_2;
-        /* (rrr-px_1) component along the reference direction */
-        const real rrr_base_frame_xx = m->rrr_base_frame_xx[i];
-        const real rrr_base_frame_yx = m->rrr_base_frame_yx[i];
-        const real rrr_px_1 = rrr_S_x*rrr_base_frame_xx + rrr_S_y*rrr_base_frame_yx;
-        /* (rrr-py_1) component across the reference direction */
-        const real rrr_base_frame_xy = m->rrr_base_frame_xy[i];
-        const real rrr_base_frame_yy = m->rrr_base_frame_yy[i];
-        const real rrr_py_1 = rrr_S_x*rrr_base_frame_xy + rrr_S_y*rrr_base_frame_yy;
-        /* (rrr-Kc_1) factor of the cosine in the equation of joint 1 */
-        const real rrr_joint2_offset_x = m->rrr_joint2_offset_x[i];
-        const real rrr_Kc_1 = rrr_joint2_offset_x*rrr_px_1;
-        /* (rrr-Ks_1) factor of the sine in the equation of joint 1 */
-        const real rrr_Ks_1 = rrr_joint2_offset_x*rrr_py_1;
-        /* (rrr-rho2_1) squared amplitude */
-        const real rrr_rho2_1 = rrr_Kc_1*rrr_Kc_1 + rrr_Ks_1*rrr_Ks_1;
-        /* (rrr-disc_1) discriminant */
-        const real rrr_disc_1 = rrr_rho2_1 - rrr_Kd_1*rrr_Kd_1;
-        /* (rrr-root_1) root, with the sign of the branch */
-        const real rrr_branch_1 = m->rrr_branch_1[i];
-        const real rrr_root_1 = rrr_branch_1*root(rrr_disc_1);
-        /* (rrr-c_1) cosine of the angle of joint 1 from its reference direction */
-        const real inv_rrr_rho2_1 = 1/rrr_rho2_1;
-        const real rrr_c_1 = inv_rrr_rho2_1*(rrr_Kc_1*rrr_Kd_1 - rrr_Ks_1*rrr_root_1);
-        /* (rrr-s_1) sine of the angle of joint 1 from its reference direction */
-        const real rrr_s_1 = inv_rrr_rho2_1*(rrr_Kc_1*rrr_root_1 + rrr_Kd_1*rrr_Ks_1);
-        /* (rrr-x_2) from the origin of joint 2 to the connection point */
-        const real inv_rrr_size_t = m->inv_rrr_size_t[i];
-        const real rrr_x_2_in_axes1_x = inv_rrr_size_t*rrr_Kd_1*rrr_joint2_offset_x -
-            rrr_joint2_offset_x;
-        /* (rrr-c_2) cosine of the angle of joint 2 from its reference direction */
-        const real inv_rrr_size_t_2 = m->inv_rrr_size_t_2[i];
-        const real rrr_platform_joint_offset_x = m->rrr_platform_joint_offset_x[i];
-        const real rrr_c_2 = inv_rrr_size_t_2*rrr_platform_joint_offset_x*rrr_x_2_in_axes1_x;
-        /* (rrr-s_2) sine of the angle of joint 2 from its reference direction */
-        const real rrr_s_2 =
-            -inv_rrr_size_t*inv_rrr_size_t_2*rrr_joint2_offset_x*rrr_platform_joint_offset_x*rrr_root_1;
-        /* (rrr-S_dot) velocity of the connection point */
-        const real omega_z = s[6*w + j];
-        const real rrr_S_dot_t = omega_z*rrr_q_y;
-        const real rrr_S_dot_t_2 = omega_z*rrr_q_x;
-        const real t_dot_x = s[4*w + j];
-        const real rrr_S_dot_x = t_dot_x - rrr_S_dot_t;
-        const real t_dot_y = s[5*w + j];
-        const real rrr_S_dot_y = rrr_S_dot_t_2 + t_dot_y;
-        /* (rrr-r_1) from joint 1 to the connection point, along the links */
-        const real rrr_r_1_in_axes1_y = rrr_platform_joint_offset_x*rrr_s_2;
-        const real rrr_r_1_in_axes1_x = rrr_joint2_offset_x + rrr_c_2*rrr_platform_joint_offset_x;
-        const real rrr_r_1_in_axes2_x = rrr_c_2*rrr_r_1_in_axes1_x + rrr_r_1_in_axes1_y*rrr_s_2;
-        const real rrr_r_1_in_axes2_y = rrr_c_2*rrr_r_1_in_axes1_y - rrr_r_1_in_axes1_x*rrr_s_2;
-        /* (rrr-w_1) reciprocal vector 1 */
-        const real rrr_w_1_in_axes2_x = -1/rrr_r_1_in_axes2_y;
+        values_rrr v;
+        stage_rrr_X(m, w, i, j, s, X, &v);
+        stage_rrr_V_X(m, w, i, j, V, &v);
         /* (rrr-qd_1) rate of joint 1 */
-        const real rrr_qd_1_t = rrr_c_1*rrr_s_2 + rrr_c_2*rrr_s_1;
-        const real rrr_qd_1_t_2 = rrr_c_1*rrr_c_2 - rrr_s_1*rrr_s_2;
-        const real axis_y_rrr_axes2_x = rrr_base_frame_xy*rrr_qd_1_t_2 -
-            rrr_base_frame_xx*rrr_qd_1_t;
-        const real axis_x_rrr_axes2_x = rrr_base_frame_yy*rrr_qd_1_t_2 -
-            rrr_base_frame_yx*rrr_qd_1_t;
-        const real rrr_qd_1 = rrr_w_1_in_axes2_x*(axis_x_rrr_axes2_x*rrr_S_dot_x -
-            axis_y_rrr_axes2_x*rrr_S_dot_y);
+        const real rrr_base_frame_xx = m->rrr_base_frame_xx[i];
+        const real rrr_base_frame_xy = m->rrr_base_frame_xy[i];
+        const real axis_y_rrr_axes2_x = rrr_base_frame_xy*v.rrr_qd_1_t_2 -
+            rrr_base_frame_xx*v.rrr_qd_1_t;
+        const real rrr_base_frame_yx = m->rrr_base_frame_yx[i];
+        const real rrr_base_frame_yy = m->rrr_base_frame_yy[i];
+        const real axis_x_rrr_axes2_x = rrr_base_frame_yy*v.rrr_qd_1_t_2 -
+            rrr_base_frame_yx*v.rrr_qd_1_t;
+        const real rrr_qd_1 = v.rrr_w_1_in_axes2_x*(axis_x_rrr_axes2_x*v.rrr_S_dot_x -
+            axis_y_rrr_axes2_x*v.rrr_S_dot_y);
         /* (rrr-W_1) centripetal tensor of link 1 */
         const real rrr_W_1_t = rrr_qd_1*rrr_qd_1;
         /* (rrr-omega_2) angular velocity of link 2 */
         const real rrr_w_2_in_axes2_y = m->rrr_w_2_in_axes2_y[i];
         const real rrr_omega_2_in_axes2_z = rrr_qd_1 +
-            rrr_w_2_in_axes2_y*(axis_x_rrr_axes2_x*rrr_S_dot_y + axis_y_rrr_axes2_x*rrr_S_dot_x -
-            rrr_qd_1*rrr_r_1_in_axes2_x);
+            rrr_w_2_in_axes2_y*(axis_x_rrr_axes2_x*v.rrr_S_dot_y +
+            axis_y_rrr_axes2_x*v.rrr_S_dot_x - rrr_qd_1*v.rrr_r_1_in_axes2_x);
         /* (rrr-W_2) centripetal tensor of link 2 */
         const real rrr_W_2_t = rrr_omega_2_in_axes2_z*rrr_omega_2_in_axes2_z;
         /* (rrr-u_1) centripetal acceleration of the connection point */
-        const real rrr_u_1_x = -omega_z*rrr_S_dot_t_2;
-        const real rrr_u_1_t = omega_z*rrr_S_dot_t;
+        const real omega_z = V[2*w + j];
+        const real rrr_u_1_x = -omega_z*v.rrr_S_dot_t_2;
+        const real rrr_u_1_t = omega_z*v.rrr_S_dot_t;
         const real rrr_u_1_in_axes2_x = axis_x_rrr_axes2_x*rrr_u_1_x +
             axis_y_rrr_axes2_x*rrr_u_1_t;
         const real rrr_u_1_in_axes2_y = axis_y_rrr_axes2_x*rrr_u_1_x -
             axis_x_rrr_axes2_x*rrr_u_1_t;
         /* (rrr-bias) acceleration of the connection point at zero joint accelerations */
+        const real rrr_joint2_offset_x = m->rrr_joint2_offset_x[i];
+        const real rrr_platform_joint_offset_x = m->rrr_platform_joint_offset_x[i];
         const real rrr_bias_in_axes2_x = -rrr_W_2_t*rrr_platform_joint_offset_x -
-            rrr_W_1_t*rrr_c_2*rrr_joint2_offset_x;
+            rrr_W_1_t*v.rrr_c_2*rrr_joint2_offset_x;
         /* (rrr-rel_o) remainder without the acceleration in: acceleration of the connection point left to
            the joint accelerations */
         const real rrr_rel_o_in_axes2_x = rrr_u_1_in_axes2_x - rrr_bias_in_axes2_x;
         const real rrr_rel_o_in_axes2_y = rrr_u_1_in_axes2_y -
-            rrr_W_1_t*rrr_joint2_offset_x*rrr_s_2;
+            rrr_W_1_t*rrr_joint2_offset_x*v.rrr_s_2;
         /* (rrr-B_1_o) remainder of the acceleration tensor of link 1 */
-        const real rrr_B_1_o_in_axes1_xy = -rrr_rel_o_in_axes2_x*rrr_w_1_in_axes2_x;
+        const real rrr_B_1_o_in_axes1_xy = -rrr_rel_o_in_axes2_x*v.rrr_w_1_in_axes2_x;
         /* (rrr-alpha_2_o) remainder without the acceleration in: angular acceleration of link 2 */
         const real rrr_alpha_2_o_in_axes2_z = rrr_w_2_in_axes2_y*(rrr_rel_o_in_axes2_y +
-            rrr_B_1_o_in_axes1_xy*rrr_r_1_in_axes2_x) - rrr_B_1_o_in_axes1_xy;
+            rrr_B_1_o_in_axes1_xy*v.rrr_r_1_in_axes2_x) - rrr_B_1_o_in_axes1_xy;
         /* (rrr-acc_2_o) remainder without the acceleration in: acceleration of the reference point of
            link 2, less gravity */
         const real gravity_x = m->gravity_x;
@@ -2871,9 +3133,9 @@ INLINE void Z_legs_rrr(const prepared *m, size_t w, size_t leg, size_t legs, con
         const real rrr_h_1_in_spec1_y = m->rrr_h_1_in_spec1_y[i];
         const real rrr_mu_1_t = m->rrr_mu_1_t[i];
         const real rrr_mu_1_t_2 = m->rrr_mu_1_t_2[i];
-        const real rrr_mu_1_o_in_axes1_z = rrr_h_1_in_spec1_y*(rrr_c_1*rrr_mu_1_t +
-            rrr_mu_1_t_2*rrr_s_1) - rrr_B_1_o_in_axes1_xy*rrr_J_1_in_spec1_zz -
-            rrr_h_1_in_spec1_x*(rrr_c_1*rrr_mu_1_t_2 - rrr_mu_1_t*rrr_s_1);
+        const real rrr_mu_1_o_in_axes1_z = rrr_h_1_in_spec1_y*(v.rrr_c_1*rrr_mu_1_t +
+            rrr_mu_1_t_2*v.rrr_s_1) - rrr_B_1_o_in_axes1_xy*rrr_J_1_in_spec1_zz -
+            rrr_h_1_in_spec1_x*(v.rrr_c_1*rrr_mu_1_t_2 - rrr_mu_1_t*v.rrr_s_1);
         /* (rrr-N_1_o) remainder without the acceleration in: moment about joint 1 of the links from 1
            outwards, the force at the connection point left out */
         const real rrr_N_1_o_in_axes1_z = rrr_mu_1_o_in_axes1_z + rrr_mu_2_o_in_axes2_z;
@@ -2884,7 +3146,7 @@ INLINE void Z_legs_rrr(const prepared *m, size_t w, size_t leg, size_t legs, con
            and without the mass at the connection point */
         const real rrr_c_o_in_axes2_x = rrr_W_2_t*rrr_h_2_in_spec2_x +
             rrr_alpha_2_o_in_axes2_z*rrr_h_2_in_spec2_y +
-            rrr_w_1_in_axes2_x*(rrr_G_o_in_axes2_y*rrr_r_1_in_axes2_x - rrr_N_1_o_in_axes1_z);
+            v.rrr_w_1_in_axes2_x*(rrr_G_o_in_axes2_y*v.rrr_r_1_in_axes2_x - rrr_N_1_o_in_axes1_z);
         const real rrr_c_o_in_axes2_y = rrr_W_2_t*rrr_h_2_in_spec2_y - rrr_G_o_in_axes2_y -
             rrr_alpha_2_o_in_axes2_z*rrr_h_2_in_spec2_x;
         /* (rrr-U) velocity and gravity terms of the leg force */
@@ -2893,7 +3155,7 @@ INLINE void Z_legs_rrr(const prepared *m, size_t w, size_t leg, size_t legs, con
         const real rrr_U_y = axis_y_rrr_axes2_x*rrr_c_o_in_axes2_x -
             axis_x_rrr_axes2_x*rrr_c_o_in_axes2_y;
         /* (Z_a) rotational part of Z */
-        const real rrr_Z_a_t = rrr_U_y*rrr_q_x - rrr_U_x*rrr_q_y;
+        const real rrr_Z_a_t = rrr_U_y*v.rrr_q_x - rrr_U_x*v.rrr_q_y;
         /* (Z_t) translational part of Z */
         gather(&terms[0*count + k], add, rrr_U_x);  /* Z_t_x_of_legs */
         gather(&terms[1*count + k], add, rrr_U_y);  /* Z_t_y_of_legs */
@@ -2901,9 +3163,9 @@ INLINE void Z_legs_rrr(const prepared *m, size_t w, size_t leg, size_t legs, con
         gather(&terms[2*count + k], add, rrr_Z_a_t);  /* Z_a_z_of_legs */
         const real rrr_rho2_1_t = m->rrr_rho2_1_t[i];
         const real rrr_size = m->rrr_size[i];
-        o[1*count + k] = UNLESS(magnitude(rrr_rho2_1) > TOLERANCE*TOLERANCE*rrr_rho2_1_t) +
-            UNLESS(magnitude(rrr_r_1_in_axes2_y) > TOLERANCE*rrr_size);
-        o[0*count + k] = UNLESS(rrr_disc_1 >= 0);
+        o[1*count + k] = UNLESS(magnitude(v.rrr_rho2_1) > TOLERANCE*TOLERANCE*rrr_rho2_1_t) +
+            UNLESS(magnitude(v.rrr_r_1_in_axes2_y) > TOLERANCE*rrr_size);
+        o[0*count + k] = UNLESS(v.rrr_disc_1 >= 0);
     }
 }
 
@@ -2916,120 +3178,70 @@ INLINE void Z_place_rrr(size_t w, size_t count, const real *o, size_t first, ver
 }
 
 INLINE void Z_legs_prr(const prepared *m, size_t w, size_t leg, size_t legs, const real *s, size_t
-    states, size_t count, int add, real *terms, real *o)
+    states, size_t count, int add, const real *X, const real *V, real *terms, real *o)
 {
     for (size_t k = 0; k < count; ++k) {
         const size_t i = leg + legs*k;
         const size_t j = states*k;
-        /* (prr-S) from the base point to the connection point */
-        const real R_xx = s[2*w + j];
-        const real R_yx = s[3*w + j];
-        const real prr_platform_point_x = m->prr_platform_point_x[i];
-        const real prr_platform_point_y = m->prr_platform_point_y[i];
-        const real prr_q_x = R_xx*prr_platform_point_x - R_yx*prr_platform_point_y;
-        const real prr_q_y = R_xx*prr_platform_point_y + R_yx*prr_platform_point_x;
-        const real prr_base_point_x = m->prr_base_point_x[i];
-        const real t_x = s[0*w + j];
-        const real prr_S_x = prr_q_x + t_x - prr_base_point_x;
-        const real prr_base_point_y = m->prr_base_point_y[i];
-        const real t_y = s[1*w + j];
-        const real prr_S_y = prr_q_y + t_y - prr_base_point_y;
-        const real prr_base_frame_xx = m->prr_base_frame_xx[i];
-        const real prr_base_frame_yx = m->prr_base_frame_yx[i];
-        const real prr_S_in_axes0_x = prr_S_x*prr_base_frame_xx + prr_S_y*prr_base_frame_yx;
-        /* (prr-disc_1) discriminant of the distance equation */
-        const real prr_disc_1_t = prr_S_x*prr_S_x + prr_S_y*prr_S_y;
-        const real prr_size_t = m->prr_size_t[i];
-        const real prr_disc_1 = prr_S_in_axes0_x*prr_S_in_axes0_x + prr_size_t - prr_disc_1_t;
-        /* (prr-c_2) cosine of the angle of joint 2 from its reference direction */
-        const real inv_prr_size_t = m->inv_prr_size_t[i];
-        const real prr_branch_1 = m->prr_branch_1[i];
-        const real prr_platform_joint_offset_x = m->prr_platform_joint_offset_x[i];
-        const real prr_c_2 =
-            -inv_prr_size_t*prr_branch_1*root(prr_disc_1)*prr_platform_joint_offset_x;
-        /* (prr-s_2) sine of the angle of joint 2 from its reference direction */
+        values_prr v;
+        stage_prr_X(m, w, i, j, s, X, &v);
+        stage_prr_V_X(m, w, i, j, V, &v);
+        stage_prr_Z_dynamics(m, w, i, j, V, &v);
+        /* (prr-qd_2) rate of joint 2 */
+        const real prr_qd_2_t = -1/v.prr_v_2_in_axes0_y;
         const real prr_base_frame_xy = m->prr_base_frame_xy[i];
         const real prr_base_frame_yy = m->prr_base_frame_yy[i];
-        const real prr_s_2 = inv_prr_size_t*prr_platform_joint_offset_x*(prr_S_x*prr_base_frame_xy
-            + prr_S_y*prr_base_frame_yy);
-        /* (prr-S_dot) velocity of the connection point */
-        const real omega_z = s[6*w + j];
-        const real prr_S_dot_t = omega_z*prr_q_y;
-        const real prr_S_dot_t_2 = omega_z*prr_q_x;
-        const real t_dot_x = s[4*w + j];
-        const real prr_S_dot_x = t_dot_x - prr_S_dot_t;
-        const real t_dot_y = s[5*w + j];
-        const real prr_S_dot_y = prr_S_dot_t_2 + t_dot_y;
-        /* (prr-v_2) velocity of the connection point per rate of joint 2 */
-        const real prr_v_2_in_axes0_x = -prr_platform_joint_offset_x*prr_s_2;
-        const real prr_v_2_in_axes0_y = prr_c_2*prr_platform_joint_offset_x;
-        /* (prr-qd_2) rate of joint 2 */
-        const real prr_qd_2_t = -1/prr_v_2_in_axes0_y;
-        const real prr_qd_2 = -prr_qd_2_t*(prr_S_dot_x*prr_base_frame_xy +
-            prr_S_dot_y*prr_base_frame_yy);
+        const real prr_qd_2 = -prr_qd_2_t*(v.prr_S_dot_x*prr_base_frame_xy +
+            v.prr_S_dot_y*prr_base_frame_yy);
         /* (prr-W_2) centripetal tensor of link 2 */
         const real prr_W_2_t = prr_qd_2*prr_qd_2;
-        /* (prr-u_1) centripetal acceleration of the connection point */
-        const real axis_y_prr_axes2_x = prr_base_frame_xy*prr_c_2 - prr_base_frame_xx*prr_s_2;
-        const real axis_x_prr_axes2_x = prr_base_frame_yy*prr_c_2 - prr_base_frame_yx*prr_s_2;
-        const real prr_u_1_x = -omega_z*prr_S_dot_t_2;
-        const real prr_u_1_t = omega_z*prr_S_dot_t;
-        const real prr_u_1_in_axes2_x = axis_x_prr_axes2_x*prr_u_1_x +
-            axis_y_prr_axes2_x*prr_u_1_t;
-        const real prr_u_1_in_axes2_y = axis_y_prr_axes2_x*prr_u_1_x -
-            axis_x_prr_axes2_x*prr_u_1_t;
         /* (prr-rel_o) remainder without the acceleration in: acceleration of the connection point left to
            the joint accelerations */
-        const real prr_rel_o_in_axes2_x = prr_u_1_in_axes2_x +
+        const real prr_platform_joint_offset_x = m->prr_platform_joint_offset_x[i];
+        const real prr_rel_o_in_axes2_x = v.prr_u_1_in_axes2_x +
             prr_platform_joint_offset_x*prr_qd_2*prr_qd_2;
         /* (prr-B_2_o) remainder of the acceleration tensor of link 2 */
-        const real prr_B_2_o_in_axes2_xy = prr_qd_2_t*(prr_c_2*prr_u_1_in_axes2_y +
-            prr_rel_o_in_axes2_x*prr_s_2);
+        const real prr_B_2_o_in_axes2_xy = prr_qd_2_t*(v.prr_c_2*v.prr_u_1_in_axes2_y +
+            prr_rel_o_in_axes2_x*v.prr_s_2);
         /* (prr-acc_1_o) remainder without the acceleration in: acceleration of the reference point of
            link 1, less gravity */
         const real prr_g_in_axes0_x = m->prr_g_in_axes0_x[i];
-        const real prr_acc_1_o_in_axes0_x = prr_B_2_o_in_axes2_xy*prr_v_2_in_axes0_x +
-            prr_c_2*prr_rel_o_in_axes2_x - prr_g_in_axes0_x - prr_s_2*prr_u_1_in_axes2_y;
+        const real prr_acc_1_o_in_axes0_x = prr_B_2_o_in_axes2_xy*v.prr_v_2_in_axes0_x +
+            v.prr_c_2*prr_rel_o_in_axes2_x - prr_g_in_axes0_x - v.prr_s_2*v.prr_u_1_in_axes2_y;
         /* (prr-f_1_o) remainder without the acceleration in: inertia force of link 1 less its weight */
         const real prr_link1_mass = m->prr_link1_mass[i];
         const real prr_f_1_o_in_axes0_x = prr_acc_1_o_in_axes0_x*prr_link1_mass;
-        /* (prr-acc_2_o) remainder without the acceleration in: acceleration of the reference point of
-           link 2, less gravity */
-        const real prr_g_in_axes0_y = m->prr_g_in_axes0_y[i];
-        const real prr_acc_2_o_in_axes2_x = prr_u_1_in_axes2_x - prr_c_2*prr_g_in_axes0_x -
-            prr_g_in_axes0_y*prr_s_2;
-        const real prr_acc_2_o_in_axes2_y = prr_u_1_in_axes2_y + prr_g_in_axes0_x*prr_s_2 -
-            prr_c_2*prr_g_in_axes0_y;
         /* (prr-mu_2_o) remainder without the acceleration in: inertia moment of the links that turn with
            link 2, about their reference points */
         const real prr_J_2_in_spec2_zz = m->prr_J_2_in_spec2_zz[i];
         const real prr_h_2_in_spec2_x = m->prr_h_2_in_spec2_x[i];
         const real prr_h_2_in_spec2_y = m->prr_h_2_in_spec2_y[i];
-        const real prr_mu_2_o_in_axes2_z = prr_acc_2_o_in_axes2_y*prr_h_2_in_spec2_x -
-            prr_B_2_o_in_axes2_xy*prr_J_2_in_spec2_zz - prr_acc_2_o_in_axes2_x*prr_h_2_in_spec2_y;
+        const real prr_mu_2_o_in_axes2_z = v.prr_acc_2_o_in_axes2_y*prr_h_2_in_spec2_x -
+            prr_B_2_o_in_axes2_xy*prr_J_2_in_spec2_zz -
+            v.prr_acc_2_o_in_axes2_x*prr_h_2_in_spec2_y;
         /* (prr-c_o) remainder without the acceleration in: leg force on the platform without actuation
            and without the mass at the connection point */
         const real prr_c_o_t = prr_qd_2_t*(prr_mu_2_o_in_axes2_z -
-            prr_f_1_o_in_axes0_x*prr_v_2_in_axes0_x);
-        const real prr_c_o_in_axes2_x = prr_W_2_t*prr_h_2_in_spec2_x + prr_c_o_t*prr_s_2 -
-            prr_B_2_o_in_axes2_xy*prr_h_2_in_spec2_y - prr_c_2*prr_f_1_o_in_axes0_x;
+            prr_f_1_o_in_axes0_x*v.prr_v_2_in_axes0_x);
+        const real prr_c_o_in_axes2_x = prr_W_2_t*prr_h_2_in_spec2_x + prr_c_o_t*v.prr_s_2 -
+            prr_B_2_o_in_axes2_xy*prr_h_2_in_spec2_y - v.prr_c_2*prr_f_1_o_in_axes0_x;
         const real prr_c_o_in_axes2_y = prr_B_2_o_in_axes2_xy*prr_h_2_in_spec2_x +
-            prr_W_2_t*prr_h_2_in_spec2_y + prr_c_2*prr_c_o_t + prr_f_1_o_in_axes0_x*prr_s_2;
+            prr_W_2_t*prr_h_2_in_spec2_y + v.prr_c_2*prr_c_o_t + prr_f_1_o_in_axes0_x*v.prr_s_2;
         /* (prr-U) velocity and gravity terms of the leg force */
-        const real prr_U_x = -axis_x_prr_axes2_x*prr_c_o_in_axes2_x -
-            axis_y_prr_axes2_x*prr_c_o_in_axes2_y;
-        const real prr_U_y = axis_y_prr_axes2_x*prr_c_o_in_axes2_x -
-            axis_x_prr_axes2_x*prr_c_o_in_axes2_y;
+        const real prr_U_x = -v.axis_x_prr_axes2_x*prr_c_o_in_axes2_x -
+            v.axis_y_prr_axes2_x*prr_c_o_in_axes2_y;
+        const real prr_U_y = v.axis_y_prr_axes2_x*prr_c_o_in_axes2_x -
+            v.axis_x_prr_axes2_x*prr_c_o_in_axes2_y;
         /* (Z_a) rotational part of Z */
-        const real prr_Z_a_t = prr_U_y*prr_q_x - prr_U_x*prr_q_y;
+        const real prr_Z_a_t = prr_U_y*v.prr_q_x - prr_U_x*v.prr_q_y;
         /* (Z_t) translational part of Z */
         gather(&terms[0*count + k], add, prr_U_x);  /* Z_t_x_of_legs */
         gather(&terms[1*count + k], add, prr_U_y);  /* Z_t_y_of_legs */
         /* (Z_a) rotational part of Z */
         gather(&terms[2*count + k], add, prr_Z_a_t);  /* Z_a_z_of_legs */
         const real prr_size = m->prr_size[i];
-        o[0*count + k] = UNLESS(prr_disc_1 >= 0);
-        o[1*count + k] = UNLESS(magnitude(prr_v_2_in_axes0_y) > TOLERANCE*prr_size);
+        o[0*count + k] = UNLESS(v.prr_disc_1 >= 0);
+        o[1*count + k] = UNLESS(magnitude(v.prr_v_2_in_axes0_y) > TOLERANCE*prr_size);
     }
 }
 
@@ -3045,15 +3257,15 @@ INLINE void Z_after(size_t w, const real *s, const real *sums, real *Z, verdict 
 {
     for (size_t k = 0; k < w; ++k) {
         /* (Z_t) translational part of Z */
-        const real Z_p_x = s[7*w + k];
+        const real Z_p_x = s[2*w + k];
         const real Z_t_x_of_legs = sums[0*w + k];
         const real Z_t_x = Z_p_x + Z_t_x_of_legs;
-        const real Z_p_y = s[8*w + k];
+        const real Z_p_y = s[3*w + k];
         const real Z_t_y_of_legs = sums[1*w + k];
         const real Z_t_y = Z_p_y + Z_t_y_of_legs;
         /* (Z_a) rotational part of Z */
         const real Z_a_z_of_legs = sums[2*w + k];
-        const real Z_q_z = s[9*w + k];
+        const real Z_q_z = s[4*w + k];
         const real Z_a_z = Z_a_z_of_legs + Z_q_z;
         /* (Z_t) translational part of Z */
         Z[0*w + k] = Z_t_x;
@@ -3066,30 +3278,26 @@ INLINE void Z_after(size_t w, const real *s, const real *sums, real *Z, verdict 
 
 INLINE void Z_run(const prepared *m, const real *X, const real *V, real *Z, verdict *t)
 {
-    real s[10] = {0};
-    real sums[3] = {0};
-    real terms_rpr[3*LEGS(LEGS_OF_rpr)] = {0};
-    real o_rpr[LEGS(LEGS_OF_rpr)] = {0};
-    real terms_rrr[3*LEGS(LEGS_OF_rrr)] = {0};
-    real o_rrr[2*LEGS(LEGS_OF_rrr)] = {0};
-    real terms_prr[3*LEGS(LEGS_OF_prr)] = {0};
-    real o_prr[2*LEGS(LEGS_OF_prr)] = {0};
+    real s[5] = {0}, sums[3] = {0};
+    real terms_rpr[3*LEGS(LEGS_OF_rpr)] = {0}, o_rpr[LEGS(LEGS_OF_rpr)] = {0};
+    real terms_rrr[3*LEGS(LEGS_OF_rrr)] = {0}, o_rrr[2*LEGS(LEGS_OF_rrr)] = {0};
+    real terms_prr[3*LEGS(LEGS_OF_prr)] = {0}, o_prr[2*LEGS(LEGS_OF_prr)] = {0};
     Z_before(m, 1, X, V, s);
-    Z_legs_rpr(m, 1, 0, 1, s, 0, LEGS(LEGS_OF_rpr), 0, terms_rpr, o_rpr);
+    Z_legs_rpr(m, 1, 0, 1, s, 0, LEGS(LEGS_OF_rpr), 0, X, V, terms_rpr, o_rpr);
+    Z_legs_rrr(m, 1, 0, 1, s, 0, LEGS(LEGS_OF_rrr), 0, X, V, terms_rrr, o_rrr);
+    Z_legs_prr(m, 1, 0, 1, s, 0, LEGS(LEGS_OF_prr), 0, X, V, terms_prr, o_prr);
     for (size_t leg = 0; leg < LEGS_OF_rpr; ++leg) {
         Z_place_rpr(1, LEGS(LEGS_OF_rpr), o_rpr, leg, t);
     }
     for (size_t n = 0; n < 3; ++n) {
         sums[n] = total(terms_rpr + n*LEGS(LEGS_OF_rpr), LEGS_OF_rpr);
     }
-    Z_legs_rrr(m, 1, 0, 1, s, 0, LEGS(LEGS_OF_rrr), 0, terms_rrr, o_rrr);
     for (size_t leg = 0; leg < LEGS_OF_rrr; ++leg) {
         Z_place_rrr(1, LEGS(LEGS_OF_rrr), o_rrr, leg, t);
     }
     for (size_t n = 0; n < 3; ++n) {
         sums[n] += total(terms_rrr + n*LEGS(LEGS_OF_rrr), LEGS_OF_rrr);
     }
-    Z_legs_prr(m, 1, 0, 1, s, 0, LEGS(LEGS_OF_prr), 0, terms_prr, o_prr);
     for (size_t leg = 0; leg < LEGS_OF_prr; ++leg) {
         Z_place_prr(1, LEGS(LEGS_OF_prr), o_prr, leg, t);
     }
@@ -3101,93 +3309,55 @@ INLINE void Z_run(const prepared *m, const real *X, const real *V, real *Z, verd
 
 INLINE void Z_run_lanes(const prepared *m, const real *X, const real *V, real *Z, verdict *t)
 {
-    real s[10*LANES];
-    real sums[3*LANES];
+    real s[5*LANES], sums[3*LANES];
     real o_rpr[LANES];
     real o_rrr[2*LANES];
     real o_prr[2*LANES];
     Z_before(m, LANES, X, V, s);
     clear(sums, 3*LANES);
     for (size_t leg = 0; leg < LEGS_OF_rpr; ++leg) {
-        Z_legs_rpr(m, LANES, leg, 0, s, 1, LANES, 1, sums, o_rpr);
+        Z_legs_rpr(m, LANES, leg, 0, s, 1, LANES, 1, X, V, sums, o_rpr);
         Z_place_rpr(LANES, LANES, o_rpr, 0, t);
     }
     for (size_t leg = 0; leg < LEGS_OF_rrr; ++leg) {
-        Z_legs_rrr(m, LANES, leg, 0, s, 1, LANES, 1, sums, o_rrr);
+        Z_legs_rrr(m, LANES, leg, 0, s, 1, LANES, 1, X, V, sums, o_rrr);
         Z_place_rrr(LANES, LANES, o_rrr, 0, t);
     }
     for (size_t leg = 0; leg < LEGS_OF_prr; ++leg) {
-        Z_legs_prr(m, LANES, leg, 0, s, 1, LANES, 1, sums, o_prr);
+        Z_legs_prr(m, LANES, leg, 0, s, 1, LANES, 1, X, V, sums, o_prr);
         Z_place_prr(LANES, LANES, o_prr, 0, t);
     }
     Z_after(LANES, s, sums, Z, t);
 }
 
 /* ---- H ---- */
-INLINE void H_before(size_t w, const real *X, real *s)
+INLINE void H_before(const prepared *m, size_t w, const real *X, real *s)
 {
     for (size_t k = 0; k < w; ++k) {
-        /* X: named entries */
-        const real X_0 = X[0*w + k];
-        const real t_x = X_0;
-        const real X_1 = X[1*w + k];
-        const real t_y = X_1;
-        const real X_2 = X[2*w + k];
-        const real R_xx = cosine(X_2);
-        const real R_yx = sine(X_2);
-        s[0*w + k] = t_x;
-        s[1*w + k] = t_y;
-        s[2*w + k] = R_xx;
-        s[3*w + k] = R_yx;
+        values v;
+        stage_X(m, w, k, X, &v);
+        s[0*w + k] = v.R_xx;
+        s[1*w + k] = v.R_yx;
     }
 }
 
 INLINE void H_legs_rpr(const prepared *m, size_t w, size_t leg, size_t legs, const real *s, size_t
-    states, size_t count, real *o)
+    states, size_t count, const real *X, real *o)
 {
     for (size_t k = 0; k < count; ++k) {
         const size_t i = leg + legs*k;
         const size_t j = states*k;
-        /* (rpr-S) from the base point to the connection point */
-        const real R_xx = s[2*w + j];
-        const real R_yx = s[3*w + j];
-        const real rpr_platform_point_x = m->rpr_platform_point_x[i];
-        const real rpr_platform_point_y = m->rpr_platform_point_y[i];
-        const real rpr_q_x = R_xx*rpr_platform_point_x - R_yx*rpr_platform_point_y;
-        const real rpr_q_y = R_xx*rpr_platform_point_y + R_yx*rpr_platform_point_x;
-        const real rpr_base_point_x = m->rpr_base_point_x[i];
-        const real t_x = s[0*w + j];
-        const real rpr_S_x = rpr_q_x + t_x - rpr_base_point_x;
-        const real rpr_base_point_y = m->rpr_base_point_y[i];
-        const real t_y = s[1*w + j];
-        const real rpr_S_y = rpr_q_y + t_y - rpr_base_point_y;
-        /* (rpr-px_1) component along the reference direction */
-        const real rpr_base_frame_xx = m->rpr_base_frame_xx[i];
-        const real rpr_base_frame_yx = m->rpr_base_frame_yx[i];
-        const real rpr_px_1 = rpr_S_x*rpr_base_frame_xx + rpr_S_y*rpr_base_frame_yx;
-        /* (rpr-py_1) component across the reference direction */
-        const real rpr_base_frame_xy = m->rpr_base_frame_xy[i];
-        const real rpr_base_frame_yy = m->rpr_base_frame_yy[i];
-        const real rpr_py_1 = rpr_S_x*rpr_base_frame_xy + rpr_S_y*rpr_base_frame_yy;
-        /* (rpr-rho2_1) squared amplitude */
-        const real rpr_rho2_1 = rpr_px_1*rpr_px_1 + rpr_py_1*rpr_py_1;
-        /* (rpr-root_1) amplitude, with the sign of the branch */
-        const real rpr_branch_1 = m->rpr_branch_1[i];
-        const real rpr_root_1 = rpr_branch_1*root(rpr_rho2_1);
-        /* (rpr-w_1) reciprocal vector 1 */
-        const real rpr_w_1_in_axes1_y = 1/rpr_root_1;
-        /* (rpr-w_2) reciprocal vector 2 */
-        const real rpr_w_2_x = rpr_S_x*rpr_w_1_in_axes1_y;
-        const real rpr_w_2_y = rpr_S_y*rpr_w_1_in_axes1_y;
+        values_rpr v;
+        stage_rpr_X(m, w, i, j, s, X, &v);
         /* (rpr-H_a_2) moment of the column's unit force about the platform origin */
-        const real rpr_H_a_2_z = rpr_q_x*rpr_w_2_y - rpr_q_y*rpr_w_2_x;
+        const real rpr_H_a_2_z = v.rpr_q_x*v.rpr_w_2_y - v.rpr_q_y*v.rpr_w_2_x;
         /* (rpr-w_2) reciprocal vector 2 */
-        o[0*count + k] = rpr_w_2_x;
-        o[1*count + k] = rpr_w_2_y;
+        o[0*count + k] = v.rpr_w_2_x;
+        o[1*count + k] = v.rpr_w_2_y;
         /* (rpr-H_a_2) moment of the column's unit force about the platform origin */
         o[2*count + k] = rpr_H_a_2_z;
-        o[4*count + k] = rpr_w_2_x + (rpr_w_2_y + rpr_H_a_2_z);
-        o[3*count + k] = UNLESS(magnitude(rpr_rho2_1) > LEAST_1) + UNLESS(magnitude(rpr_root_1) >
+        o[4*count + k] = v.rpr_w_2_x + (v.rpr_w_2_y + rpr_H_a_2_z);
+        o[3*count + k] = UNLESS(magnitude(v.rpr_q_2_t) > LEAST_1) + UNLESS(magnitude(v.rpr_q_2) >
             LEAST_2);
     }
 }
@@ -3195,7 +3365,7 @@ INLINE void H_legs_rpr(const prepared *m, size_t w, size_t leg, size_t legs, con
 INLINE void H_place_rpr(size_t w, size_t count, const real *o, size_t first, real *H, verdict *t)
 {
     for (size_t k = 0; k < w; ++k) {
-        H[0*NU*w + k] = o[0*count + first + k];
+        H[0*w + k] = o[0*count + first + k];
         H[NU*w + k] = o[1*count + first + k];
         H[2*NU*w + k] = o[2*count + first + k];
         t->singular[k] += o[3*count + first + k];
@@ -3204,98 +3374,32 @@ INLINE void H_place_rpr(size_t w, size_t count, const real *o, size_t first, rea
 }
 
 INLINE void H_legs_rrr(const prepared *m, size_t w, size_t leg, size_t legs, const real *s, size_t
-    states, size_t count, real *o)
+    states, size_t count, const real *X, real *o)
 {
     for (size_t k = 0; k < count; ++k) {
         const size_t i = leg + legs*k;
         const size_t j = states*k;
-        /* (rrr-S) from the base point to the connection point */
-        const real R_xx = s[2*w + j];
-        const real R_yx = s[3*w + j];
-        const real rrr_platform_point_x = m->rrr_platform_point_x[i];
-        const real rrr_platform_point_y = m->rrr_platform_point_y[i];
-        const real rrr_q_x = R_xx*rrr_platform_point_x - R_yx*rrr_platform_point_y;
-        const real rrr_q_y = R_xx*rrr_platform_point_y + R_yx*rrr_platform_point_x;
-        const real rrr_base_point_x = m->rrr_base_point_x[i];
-        const real t_x = s[0*w + j];
-        const real rrr_S_x = rrr_q_x + t_x - rrr_base_point_x;
-        const real rrr_base_point_y = m->rrr_base_point_y[i];
-        const real t_y = s[1*w + j];
-        const real rrr_S_y = rrr_q_y + t_y - rrr_base_point_y;
-        /* (rrr-Kd_1) projection on the centre's direction, from the distance fixed by the joints beyond
-           joint 1 */
-        const real rrr_Kd_1_t_3 = rrr_S_x*rrr_S_x + rrr_S_y*rrr_S_y;
-        const real rrr_Kd_1_t = m->rrr_Kd_1_t[i];
-        const real rrr_Kd_1_t_2 = m->rrr_Kd_1_t_2[i];
-        const real rrr_Kd_1 = rrr_Kd_1_t + R(0.5)*rrr_Kd_1_t_3 - rrr_Kd_1_t_2;
-        /* (rrr-px_1) component along the reference direction */
-        const real rrr_base_frame_xx = m->rrr_base_frame_xx[i];
-        const real rrr_base_frame_yx = m->rrr_base_frame_yx[i];
-        const real rrr_px_1 = rrr_S_x*rrr_base_frame_xx + rrr_S_y*rrr_base_frame_yx;
-        /* (rrr-py_1) component across the reference direction */
-        const real rrr_base_frame_xy = m->rrr_base_frame_xy[i];
-        const real rrr_base_frame_yy = m->rrr_base_frame_yy[i];
-        const real rrr_py_1 = rrr_S_x*rrr_base_frame_xy + rrr_S_y*rrr_base_frame_yy;
-        /* (rrr-Kc_1) factor of the cosine in the equation of joint 1 */
-        const real rrr_joint2_offset_x = m->rrr_joint2_offset_x[i];
-        const real rrr_Kc_1 = rrr_joint2_offset_x*rrr_px_1;
-        /* (rrr-Ks_1) factor of the sine in the equation of joint 1 */
-        const real rrr_Ks_1 = rrr_joint2_offset_x*rrr_py_1;
-        /* (rrr-rho2_1) squared amplitude */
-        const real rrr_rho2_1 = rrr_Kc_1*rrr_Kc_1 + rrr_Ks_1*rrr_Ks_1;
-        /* (rrr-disc_1) discriminant */
-        const real rrr_disc_1 = rrr_rho2_1 - rrr_Kd_1*rrr_Kd_1;
-        /* (rrr-root_1) root, with the sign of the branch */
-        const real rrr_branch_1 = m->rrr_branch_1[i];
-        const real rrr_root_1 = rrr_branch_1*root(rrr_disc_1);
-        /* (rrr-c_1) cosine of the angle of joint 1 from its reference direction */
-        const real inv_rrr_rho2_1 = 1/rrr_rho2_1;
-        const real rrr_c_1 = inv_rrr_rho2_1*(rrr_Kc_1*rrr_Kd_1 - rrr_Ks_1*rrr_root_1);
-        /* (rrr-s_1) sine of the angle of joint 1 from its reference direction */
-        const real rrr_s_1 = inv_rrr_rho2_1*(rrr_Kc_1*rrr_root_1 + rrr_Kd_1*rrr_Ks_1);
-        /* (rrr-x_2) from the origin of joint 2 to the connection point */
-        const real inv_rrr_size_t = m->inv_rrr_size_t[i];
-        const real rrr_x_2_in_axes1_x = inv_rrr_size_t*rrr_Kd_1*rrr_joint2_offset_x -
-            rrr_joint2_offset_x;
-        /* (rrr-c_2) cosine of the angle of joint 2 from its reference direction */
-        const real inv_rrr_size_t_2 = m->inv_rrr_size_t_2[i];
-        const real rrr_platform_joint_offset_x = m->rrr_platform_joint_offset_x[i];
-        const real rrr_c_2 = inv_rrr_size_t_2*rrr_platform_joint_offset_x*rrr_x_2_in_axes1_x;
-        /* (rrr-s_2) sine of the angle of joint 2 from its reference direction */
-        const real rrr_s_2 =
-            -inv_rrr_size_t*inv_rrr_size_t_2*rrr_joint2_offset_x*rrr_platform_joint_offset_x*rrr_root_1;
-        /* (rrr-r_1) from joint 1 to the connection point, along the links */
-        const real rrr_r_1_in_axes1_x = rrr_joint2_offset_x + rrr_c_2*rrr_platform_joint_offset_x;
-        const real rrr_r_1_in_axes2_y = rrr_c_2*rrr_platform_joint_offset_x*rrr_s_2 -
-            rrr_r_1_in_axes1_x*rrr_s_2;
+        values_rrr v;
+        stage_rrr_X(m, w, i, j, s, X, &v);
+        stage_rrr_H_condition(m, i, &v);
         /* (rrr-w_1) reciprocal vector 1 */
-        const real rrr_w_1_t = rrr_c_1*rrr_s_2 + rrr_c_2*rrr_s_1;
-        const real rrr_w_1_t_2 = rrr_c_1*rrr_c_2 - rrr_s_1*rrr_s_2;
-        const real rrr_w_1_in_axes2_x = -1/rrr_r_1_in_axes2_y;
-        const real rrr_w_1_x = rrr_w_1_in_axes2_x*(rrr_base_frame_yy*rrr_w_1_t_2 -
-            rrr_base_frame_yx*rrr_w_1_t);
-        const real rrr_w_1_y = -rrr_w_1_in_axes2_x*(rrr_base_frame_xy*rrr_w_1_t_2 -
-            rrr_base_frame_xx*rrr_w_1_t);
+        o[0*count + k] = v.rrr_w_1_x;
+        o[1*count + k] = v.rrr_w_1_y;
         /* (rrr-H_a_1) moment of the column's unit force about the platform origin */
-        const real rrr_H_a_1_z = rrr_q_x*rrr_w_1_y - rrr_q_y*rrr_w_1_x;
-        /* (rrr-w_1) reciprocal vector 1 */
-        o[0*count + k] = rrr_w_1_x;
-        o[1*count + k] = rrr_w_1_y;
-        /* (rrr-H_a_1) moment of the column's unit force about the platform origin */
-        o[2*count + k] = rrr_H_a_1_z;
-        o[5*count + k] = rrr_w_1_x + (rrr_w_1_y + rrr_H_a_1_z);
+        o[2*count + k] = v.rrr_H_a_1_z;
+        o[5*count + k] = v.rrr_w_1_x + (v.rrr_w_1_y + v.rrr_H_a_1_z);
         const real rrr_rho2_1_t = m->rrr_rho2_1_t[i];
         const real rrr_size = m->rrr_size[i];
-        o[4*count + k] = UNLESS(magnitude(rrr_rho2_1) > TOLERANCE*TOLERANCE*rrr_rho2_1_t) +
-            UNLESS(magnitude(rrr_r_1_in_axes2_y) > TOLERANCE*rrr_size);
-        o[3*count + k] = UNLESS(rrr_disc_1 >= 0);
+        o[4*count + k] = UNLESS(magnitude(v.rrr_rho2_1) > TOLERANCE*TOLERANCE*rrr_rho2_1_t) +
+            UNLESS(magnitude(v.rrr_r_1_in_axes2_y) > TOLERANCE*rrr_size);
+        o[3*count + k] = UNLESS(v.rrr_disc_1 >= 0);
     }
 }
 
 INLINE void H_place_rrr(size_t w, size_t count, const real *o, size_t first, real *H, verdict *t)
 {
     for (size_t k = 0; k < w; ++k) {
-        H[(0*NU + 1)*w + k] = o[0*count + first + k];
+        H[1*w + k] = o[0*count + first + k];
         H[(NU + 1)*w + k] = o[1*count + first + k];
         H[(2*NU + 1)*w + k] = o[2*count + first + k];
         t->unreachable[k] += o[3*count + first + k];
@@ -3305,72 +3409,30 @@ INLINE void H_place_rrr(size_t w, size_t count, const real *o, size_t first, rea
 }
 
 INLINE void H_legs_prr(const prepared *m, size_t w, size_t leg, size_t legs, const real *s, size_t
-    states, size_t count, real *o)
+    states, size_t count, const real *X, real *o)
 {
     for (size_t k = 0; k < count; ++k) {
         const size_t i = leg + legs*k;
         const size_t j = states*k;
-        /* (prr-S) from the base point to the connection point */
-        const real R_xx = s[2*w + j];
-        const real R_yx = s[3*w + j];
-        const real prr_platform_point_x = m->prr_platform_point_x[i];
-        const real prr_platform_point_y = m->prr_platform_point_y[i];
-        const real prr_q_x = R_xx*prr_platform_point_x - R_yx*prr_platform_point_y;
-        const real prr_q_y = R_xx*prr_platform_point_y + R_yx*prr_platform_point_x;
-        const real prr_base_point_x = m->prr_base_point_x[i];
-        const real t_x = s[0*w + j];
-        const real prr_S_x = prr_q_x + t_x - prr_base_point_x;
-        const real prr_base_point_y = m->prr_base_point_y[i];
-        const real t_y = s[1*w + j];
-        const real prr_S_y = prr_q_y + t_y - prr_base_point_y;
-        const real prr_base_frame_xx = m->prr_base_frame_xx[i];
-        const real prr_base_frame_yx = m->prr_base_frame_yx[i];
-        const real prr_S_in_axes0_x = prr_S_x*prr_base_frame_xx + prr_S_y*prr_base_frame_yx;
-        /* (prr-disc_1) discriminant of the distance equation */
-        const real prr_disc_1_t = prr_S_x*prr_S_x + prr_S_y*prr_S_y;
-        const real prr_size_t = m->prr_size_t[i];
-        const real prr_disc_1 = prr_S_in_axes0_x*prr_S_in_axes0_x + prr_size_t - prr_disc_1_t;
-        /* (prr-c_2) cosine of the angle of joint 2 from its reference direction */
-        const real inv_prr_size_t = m->inv_prr_size_t[i];
-        const real prr_branch_1 = m->prr_branch_1[i];
-        const real prr_platform_joint_offset_x = m->prr_platform_joint_offset_x[i];
-        const real prr_c_2 =
-            -inv_prr_size_t*prr_branch_1*root(prr_disc_1)*prr_platform_joint_offset_x;
-        /* (prr-s_2) sine of the angle of joint 2 from its reference direction */
-        const real prr_base_frame_xy = m->prr_base_frame_xy[i];
-        const real prr_base_frame_yy = m->prr_base_frame_yy[i];
-        const real prr_s_2 = inv_prr_size_t*prr_platform_joint_offset_x*(prr_S_x*prr_base_frame_xy
-            + prr_S_y*prr_base_frame_yy);
-        /* (prr-v_2) velocity of the connection point per rate of joint 2 */
-        const real prr_v_2_in_axes0_y = prr_c_2*prr_platform_joint_offset_x;
+        values_prr v;
+        stage_prr_X(m, w, i, j, s, X, &v);
+        stage_prr_H_condition(m, i, &v);
         /* (prr-w_1) reciprocal vector 1 */
-        const real axis_y_prr_axes2_x = prr_base_frame_xy*prr_c_2 - prr_base_frame_xx*prr_s_2;
-        const real axis_x_prr_axes2_x = prr_base_frame_yy*prr_c_2 - prr_base_frame_yx*prr_s_2;
-        const real prr_w_1_t = prr_platform_joint_offset_x*prr_s_2/prr_v_2_in_axes0_y;
-        const real prr_w_1_in_axes2_x = prr_c_2 + prr_s_2*prr_w_1_t;
-        const real prr_w_1_in_axes2_y = prr_c_2*prr_w_1_t - prr_s_2;
-        const real prr_w_1_x = axis_x_prr_axes2_x*prr_w_1_in_axes2_x +
-            axis_y_prr_axes2_x*prr_w_1_in_axes2_y;
-        const real prr_w_1_y = axis_x_prr_axes2_x*prr_w_1_in_axes2_y -
-            axis_y_prr_axes2_x*prr_w_1_in_axes2_x;
+        o[0*count + k] = v.prr_w_1_x;
+        o[1*count + k] = v.prr_w_1_y;
         /* (prr-H_a_1) moment of the column's unit force about the platform origin */
-        const real prr_H_a_1_z = prr_q_x*prr_w_1_y - prr_q_y*prr_w_1_x;
-        /* (prr-w_1) reciprocal vector 1 */
-        o[0*count + k] = prr_w_1_x;
-        o[1*count + k] = prr_w_1_y;
-        /* (prr-H_a_1) moment of the column's unit force about the platform origin */
-        o[2*count + k] = prr_H_a_1_z;
-        o[5*count + k] = prr_w_1_x + (prr_w_1_y + prr_H_a_1_z);
+        o[2*count + k] = v.prr_H_a_1_z;
+        o[5*count + k] = v.prr_w_1_x + (v.prr_w_1_y + v.prr_H_a_1_z);
         const real prr_size = m->prr_size[i];
-        o[3*count + k] = UNLESS(prr_disc_1 >= 0);
-        o[4*count + k] = UNLESS(magnitude(prr_v_2_in_axes0_y) > TOLERANCE*prr_size);
+        o[3*count + k] = UNLESS(v.prr_disc_1 >= 0);
+        o[4*count + k] = UNLESS(magnitude(v.prr_v_2_in_axes0_y) > TOLERANCE*prr_size);
     }
 }
 
 INLINE void H_place_prr(size_t w, size_t count, const real *o, size_t first, real *H, verdict *t)
 {
     for (size_t k = 0; k < w; ++k) {
-        H[(0*NU + 2)*w + k] = o[0*count + first + k];
+        H[2*w + k] = o[0*count + first + k];
         H[(NU + 2)*w + k] = o[1*count + first + k];
         H[(2*NU + 2)*w + k] = o[2*count + first + k];
         t->unreachable[k] += o[3*count + first + k];
@@ -3381,20 +3443,20 @@ INLINE void H_place_prr(size_t w, size_t count, const real *o, size_t first, rea
 
 INLINE void H_run(const prepared *m, const real *X, real *H, verdict *t)
 {
-    real s[4] = {0};
+    real s[2] = {0};
     real o_rpr[5*LEGS(LEGS_OF_rpr)] = {0};
     real o_rrr[6*LEGS(LEGS_OF_rrr)] = {0};
     real o_prr[6*LEGS(LEGS_OF_prr)] = {0};
-    H_before(1, X, s);
-    H_legs_rpr(m, 1, 0, 1, s, 0, LEGS(LEGS_OF_rpr), o_rpr);
+    H_before(m, 1, X, s);
+    H_legs_rpr(m, 1, 0, 1, s, 0, LEGS(LEGS_OF_rpr), X, o_rpr);
+    H_legs_rrr(m, 1, 0, 1, s, 0, LEGS(LEGS_OF_rrr), X, o_rrr);
+    H_legs_prr(m, 1, 0, 1, s, 0, LEGS(LEGS_OF_prr), X, o_prr);
     for (size_t leg = 0; leg < LEGS_OF_rpr; ++leg) {
         H_place_rpr(1, LEGS(LEGS_OF_rpr), o_rpr, leg, H, t);
     }
-    H_legs_rrr(m, 1, 0, 1, s, 0, LEGS(LEGS_OF_rrr), o_rrr);
     for (size_t leg = 0; leg < LEGS_OF_rrr; ++leg) {
         H_place_rrr(1, LEGS(LEGS_OF_rrr), o_rrr, leg, H, t);
     }
-    H_legs_prr(m, 1, 0, 1, s, 0, LEGS(LEGS_OF_prr), o_prr);
     for (size_t leg = 0; leg < LEGS_OF_prr; ++leg) {
         H_place_prr(1, LEGS(LEGS_OF_prr), o_prr, leg, H, t);
     }
@@ -3402,21 +3464,21 @@ INLINE void H_run(const prepared *m, const real *X, real *H, verdict *t)
 
 INLINE void H_run_lanes(const prepared *m, const real *X, real *H, verdict *t)
 {
-    real s[4*LANES];
+    real s[2*LANES];
     real o_rpr[5*LANES];
     real o_rrr[6*LANES];
     real o_prr[6*LANES];
-    H_before(LANES, X, s);
+    H_before(m, LANES, X, s);
     for (size_t leg = 0; leg < LEGS_OF_rpr; ++leg) {
-        H_legs_rpr(m, LANES, leg, 0, s, 1, LANES, o_rpr);
+        H_legs_rpr(m, LANES, leg, 0, s, 1, LANES, X, o_rpr);
         H_place_rpr(LANES, LANES, o_rpr, 0, H, t);
     }
     for (size_t leg = 0; leg < LEGS_OF_rrr; ++leg) {
-        H_legs_rrr(m, LANES, leg, 0, s, 1, LANES, o_rrr);
+        H_legs_rrr(m, LANES, leg, 0, s, 1, LANES, X, o_rrr);
         H_place_rrr(LANES, LANES, o_rrr, 0, H, t);
     }
     for (size_t leg = 0; leg < LEGS_OF_prr; ++leg) {
-        H_legs_prr(m, LANES, leg, 0, s, 1, LANES, o_prr);
+        H_legs_prr(m, LANES, leg, 0, s, 1, LANES, X, o_prr);
         H_place_prr(LANES, LANES, o_prr, 0, H, t);
     }
 }
@@ -3426,175 +3488,71 @@ INLINE void required_before(const prepared *m, size_t w, const real *X, const re
     *A, real *s)
 {
     for (size_t k = 0; k < w; ++k) {
-        /* X: named entries */
-        const real X_0 = X[0*w + k];
-        const real t_x = X_0;
-        const real X_1 = X[1*w + k];
-        const real t_y = X_1;
-        const real X_2 = X[2*w + k];
-        const real R_xx = cosine(X_2);
-        const real R_yx = sine(X_2);
-        /* V: named entries */
-        const real V_0 = V[0*w + k];
-        const real t_dot_x = V_0;
-        const real V_1 = V[1*w + k];
-        const real t_dot_y = V_1;
-        const real V_2 = V[2*w + k];
-        const real omega_z = V_2;
-        /* A: named entries */
-        const real A_0 = A[0*w + k];
-        const real t_ddot_x = A_0;
-        const real A_1 = A[1*w + k];
-        const real t_ddot_y = A_1;
-        const real A_2 = A[2*w + k];
-        const real alpha_z = A_2;
-        /* (W_p) centripetal tensor of the platform */
-        const real W_p_xx = -omega_z*omega_z;
-        /* (h_star) first moment about the platform origin */
-        const real h_star_in_platform_x = m->h_star_in_platform_x;
-        const real h_star_in_platform_y = m->h_star_in_platform_y;
-        const real h_star_x = R_xx*h_star_in_platform_x - R_yx*h_star_in_platform_y;
-        const real h_star_y = R_xx*h_star_in_platform_y + R_yx*h_star_in_platform_x;
+        values v;
+        stage_V(w, k, V, &v);
+        stage_X(m, w, k, X, &v);
         /* (a_t) acceleration of the platform origin, less gravity */
         const real gravity_x = m->gravity_x;
+        const real t_ddot_x = A[0*w + k];
         const real a_t_x = t_ddot_x - gravity_x;
         const real gravity_y = m->gravity_y;
+        const real t_ddot_y = A[1*w + k];
         const real a_t_y = t_ddot_y - gravity_y;
         /* (f_p) inertia force of the platform less its weight */
+        const real alpha_z = A[2*w + k];
         const real m_star = m->m_star;
-        const real f_p_x = W_p_xx*h_star_x + a_t_x*m_star - alpha_z*h_star_y;
-        const real f_p_y = W_p_xx*h_star_y + a_t_y*m_star + alpha_z*h_star_x;
+        const real f_p_x = v.W_p_xx*v.h_star_x + a_t_x*m_star - alpha_z*v.h_star_y;
+        const real f_p_y = v.W_p_xx*v.h_star_y + a_t_y*m_star + alpha_z*v.h_star_x;
         /* (mu_p) inertia moment of the platform less that of its weight */
         const real J_star_zz = m->J_star_zz;
-        const real mu_p_z = J_star_zz*alpha_z + a_t_y*h_star_x - a_t_x*h_star_y;
-        s[0*w + k] = t_x;
-        s[1*w + k] = t_y;
-        s[2*w + k] = R_xx;
-        s[3*w + k] = R_yx;
-        s[4*w + k] = t_dot_x;
-        s[5*w + k] = t_dot_y;
-        s[6*w + k] = omega_z;
-        s[7*w + k] = t_ddot_x;
-        s[8*w + k] = t_ddot_y;
-        s[9*w + k] = alpha_z;
-        s[10*w + k] = f_p_x;
-        s[11*w + k] = f_p_y;
-        s[12*w + k] = mu_p_z;
+        const real mu_p_z = J_star_zz*alpha_z + a_t_y*v.h_star_x - a_t_x*v.h_star_y;
+        s[0*w + k] = v.R_xx;
+        s[1*w + k] = v.R_yx;
+        s[2*w + k] = f_p_x;
+        s[3*w + k] = f_p_y;
+        s[4*w + k] = mu_p_z;
     }
 }
 
 INLINE void required_legs_rpr(const prepared *m, size_t w, size_t leg, size_t legs, const real *s,
-    size_t states, size_t count, int add, real *terms, real *o)
+    size_t states, size_t count, int add, const real *X, const real *V, const real *A, real
+    *terms, real *o)
 {
     for (size_t k = 0; k < count; ++k) {
         const size_t i = leg + legs*k;
         const size_t j = states*k;
-        /* (rpr-S) from the base point to the connection point */
-        const real R_xx = s[2*w + j];
-        const real R_yx = s[3*w + j];
-        const real rpr_platform_point_x = m->rpr_platform_point_x[i];
-        const real rpr_platform_point_y = m->rpr_platform_point_y[i];
-        const real rpr_q_x = R_xx*rpr_platform_point_x - R_yx*rpr_platform_point_y;
-        const real rpr_q_y = R_xx*rpr_platform_point_y + R_yx*rpr_platform_point_x;
-        const real rpr_base_point_x = m->rpr_base_point_x[i];
-        const real t_x = s[0*w + j];
-        const real rpr_S_x = rpr_q_x + t_x - rpr_base_point_x;
-        const real rpr_base_point_y = m->rpr_base_point_y[i];
-        const real t_y = s[1*w + j];
-        const real rpr_S_y = rpr_q_y + t_y - rpr_base_point_y;
-        /* (rpr-px_1) component along the reference direction */
-        const real rpr_base_frame_xx = m->rpr_base_frame_xx[i];
-        const real rpr_base_frame_yx = m->rpr_base_frame_yx[i];
-        const real rpr_px_1 = rpr_S_x*rpr_base_frame_xx + rpr_S_y*rpr_base_frame_yx;
-        /* (rpr-py_1) component across the reference direction */
-        const real rpr_base_frame_xy = m->rpr_base_frame_xy[i];
-        const real rpr_base_frame_yy = m->rpr_base_frame_yy[i];
-        const real rpr_py_1 = rpr_S_x*rpr_base_frame_xy + rpr_S_y*rpr_base_frame_yy;
-        /* (rpr-rho2_1) squared amplitude */
-        const real rpr_rho2_1 = rpr_px_1*rpr_px_1 + rpr_py_1*rpr_py_1;
-        /* (rpr-root_1) amplitude, with the sign of the branch */
-        const real rpr_branch_1 = m->rpr_branch_1[i];
-        const real rpr_root_1 = rpr_branch_1*root(rpr_rho2_1);
-        /* (rpr-c_1) cosine of the angle of joint 1 from its reference direction */
-        const real inv_rpr_root_1 = 1/rpr_root_1;
-        const real rpr_c_1 = inv_rpr_root_1*rpr_px_1;
-        /* (rpr-s_1) sine of the angle of joint 1 from its reference direction */
-        const real rpr_s_1 = inv_rpr_root_1*rpr_py_1;
-        /* (rpr-S_dot) velocity of the connection point */
-        const real axis_x_rpr_axes1_x = inv_rpr_root_1*rpr_S_x;
-        const real axis_x_rpr_axes1_y = inv_rpr_root_1*rpr_S_y;
-        const real omega_z = s[6*w + j];
-        const real rpr_S_dot_t = omega_z*rpr_q_y;
-        const real rpr_S_dot_t_2 = omega_z*rpr_q_x;
-        const real t_dot_x = s[4*w + j];
-        const real rpr_S_dot_x = t_dot_x - rpr_S_dot_t;
-        const real t_dot_y = s[5*w + j];
-        const real rpr_S_dot_y = rpr_S_dot_t_2 + t_dot_y;
-        const real rpr_S_dot_in_axes1_x = axis_x_rpr_axes1_x*rpr_S_dot_x +
-            axis_x_rpr_axes1_y*rpr_S_dot_y;
-        /* (rpr-qd_1) rate of joint 1 */
-        const real rpr_qd_1 = inv_rpr_root_1*(axis_x_rpr_axes1_x*rpr_S_dot_y -
-            axis_x_rpr_axes1_y*rpr_S_dot_x);
-        /* (rpr-W_1) centripetal tensor of link 1 */
-        const real rpr_W_1_in_axes1_xx = -rpr_qd_1*rpr_qd_1;
-        /* (rpr-a_p) acceleration of the connection point without its centripetal part */
-        const real alpha_z = s[9*w + j];
-        const real t_ddot_x = s[7*w + j];
-        const real rpr_a_p_x = t_ddot_x - alpha_z*rpr_q_y;
-        const real t_ddot_y = s[8*w + j];
-        const real rpr_a_p_y = t_ddot_y + alpha_z*rpr_q_x;
-        /* (rpr-S_ddot) acceleration of the connection point */
-        const real rpr_S_ddot_x = rpr_a_p_x - omega_z*rpr_S_dot_t_2;
-        const real rpr_S_ddot_y = rpr_a_p_y - omega_z*rpr_S_dot_t;
-        const real rpr_S_ddot_in_axes1_y = axis_x_rpr_axes1_x*rpr_S_ddot_y -
-            axis_x_rpr_axes1_y*rpr_S_ddot_x;
-        /* (rpr-rel) acceleration of the connection point left to the joint accelerations */
-        const real rpr_rel_in_axes1_y = rpr_S_ddot_in_axes1_y - 2*rpr_S_dot_in_axes1_x*rpr_qd_1;
-        /* (rpr-qdd_1) acceleration of joint 1 */
-        const real rpr_qdd_1 = inv_rpr_root_1*rpr_rel_in_axes1_y;
-        /* (rpr-acc_2) acceleration of the reference point of link 2, less gravity */
-        const real rpr_acc_2_t = m->rpr_acc_2_t[i];
-        const real rpr_acc_2_t_2 = m->rpr_acc_2_t_2[i];
-        const real rpr_g_in_axes1_x = rpr_acc_2_t*rpr_c_1 + rpr_acc_2_t_2*rpr_s_1;
-        const real rpr_g_in_axes1_y = rpr_acc_2_t_2*rpr_c_1 - rpr_acc_2_t*rpr_s_1;
-        const real rpr_acc_2_in_axes1_x = axis_x_rpr_axes1_x*rpr_S_ddot_x +
-            axis_x_rpr_axes1_y*rpr_S_ddot_y - rpr_g_in_axes1_x;
-        const real rpr_acc_2_in_axes1_y = rpr_S_ddot_in_axes1_y - rpr_g_in_axes1_y;
+        values_rpr v;
+        stage_rpr_X(m, w, i, j, s, X, &v);
+        stage_rpr_A_X(w, j, A, &v);
+        stage_rpr_V_X(w, j, V, &v);
+        stage_rpr_A_V_X(w, j, V, &v);
+        stage_rpr_legs_required(m, i, &v);
         /* (rpr-phi_2) inertia force of link 2 from its turning about its reference point */
         const real rpr_h_2_in_spec1_x = m->rpr_h_2_in_spec1_x[i];
         const real rpr_h_2_in_spec1_y = m->rpr_h_2_in_spec1_y[i];
-        const real rpr_phi_2_in_axes1_x = rpr_W_1_in_axes1_xx*rpr_h_2_in_spec1_x -
-            rpr_h_2_in_spec1_y*rpr_qdd_1;
-        /* (rpr-mu_1) inertia moment of the links that turn with link 1, about their reference points */
-        const real rpr_J_group_1_in_axes1_zz = m->rpr_J_group_1_in_axes1_zz[i];
-        const real rpr_h_1_in_spec1_x = m->rpr_h_1_in_spec1_x[i];
-        const real rpr_h_1_in_spec1_y = m->rpr_h_1_in_spec1_y[i];
-        const real rpr_mu_1_in_axes1_z = rpr_J_group_1_in_axes1_zz*rpr_qdd_1 +
-            rpr_acc_2_in_axes1_y*rpr_h_2_in_spec1_x + rpr_g_in_axes1_x*rpr_h_1_in_spec1_y -
-            rpr_acc_2_in_axes1_x*rpr_h_2_in_spec1_y - rpr_g_in_axes1_y*rpr_h_1_in_spec1_x;
+        const real rpr_phi_2_in_axes1_x = v.rpr_W_1_in_axes1_xx*rpr_h_2_in_spec1_x -
+            rpr_h_2_in_spec1_y*v.rpr_qdd_1;
         /* (rpr-c) leg force on the platform without actuation and without the mass at the connection
            point */
-        const real rpr_c_in_axes1_y = -inv_rpr_root_1*rpr_mu_1_in_axes1_z -
-            rpr_W_1_in_axes1_xx*rpr_h_2_in_spec1_y - rpr_h_2_in_spec1_x*rpr_qdd_1;
-        const real rpr_c_x = -axis_x_rpr_axes1_x*rpr_phi_2_in_axes1_x -
-            axis_x_rpr_axes1_y*rpr_c_in_axes1_y;
-        const real rpr_c_y = axis_x_rpr_axes1_x*rpr_c_in_axes1_y -
-            axis_x_rpr_axes1_y*rpr_phi_2_in_axes1_x;
+        const real rpr_c_x = -v.axis_x_rpr_axes1_x*rpr_phi_2_in_axes1_x -
+            v.axis_x_rpr_axes1_y*v.rpr_c_in_axes1_y;
+        const real rpr_c_y = v.axis_x_rpr_axes1_x*v.rpr_c_in_axes1_y -
+            v.axis_x_rpr_axes1_y*rpr_phi_2_in_axes1_x;
         /* (R_a) moment that actuators and external wrench must give */
-        const real rpr_R_a_t = rpr_c_x*rpr_q_y - rpr_c_y*rpr_q_x;
+        const real rpr_R_a_t = rpr_c_x*v.rpr_q_y - rpr_c_y*v.rpr_q_x;
         /* (rpr-H_a_2) moment of the column's unit force about the platform origin */
-        const real rpr_H_a_2_z = axis_x_rpr_axes1_y*rpr_q_x - axis_x_rpr_axes1_x*rpr_q_y;
+        const real rpr_H_a_2_z = v.axis_x_rpr_axes1_y*v.rpr_q_x - v.axis_x_rpr_axes1_x*v.rpr_q_y;
         /* (R_t) force that actuators and external wrench must give */
         gather(&terms[0*count + k], add, rpr_c_x);  /* R_t_x_of_legs */
         gather(&terms[1*count + k], add, rpr_c_y);  /* R_t_y_of_legs */
         /* (R_a) moment that actuators and external wrench must give */
         gather(&terms[2*count + k], add, rpr_R_a_t);  /* R_a_z_of_legs */
         /* (rpr-w_2) reciprocal vector 2 */
-        o[0*count + k] = axis_x_rpr_axes1_x;
-        o[1*count + k] = axis_x_rpr_axes1_y;
+        o[0*count + k] = v.axis_x_rpr_axes1_x;
+        o[1*count + k] = v.axis_x_rpr_axes1_y;
         /* (rpr-H_a_2) moment of the column's unit force about the platform origin */
         o[2*count + k] = rpr_H_a_2_z;
-        o[3*count + k] = UNLESS(magnitude(rpr_rho2_1) > LEAST_1) + UNLESS(magnitude(rpr_root_1) >
+        o[3*count + k] = UNLESS(magnitude(v.rpr_q_2_t) > LEAST_1) + UNLESS(magnitude(v.rpr_q_2) >
             LEAST_2);
     }
 }
@@ -3603,7 +3561,7 @@ INLINE void required_place_rpr(size_t w, size_t count, const real *o, size_t fir
     verdict *t)
 {
     for (size_t k = 0; k < w; ++k) {
-        H[0*NU*w + k] = o[0*count + first + k];
+        H[0*w + k] = o[0*count + first + k];
         H[NU*w + k] = o[1*count + first + k];
         H[2*NU*w + k] = o[2*count + first + k];
         t->singular[k] += o[3*count + first + k];
@@ -3611,184 +3569,43 @@ INLINE void required_place_rpr(size_t w, size_t count, const real *o, size_t fir
 }
 
 INLINE void required_legs_rrr(const prepared *m, size_t w, size_t leg, size_t legs, const real *s,
-    size_t states, size_t count, int add, real *terms, real *o)
+    size_t states, size_t count, int add, const real *X, const real *V, const real *A, real
+    *terms, real *o)
 {
     for (size_t k = 0; k < count; ++k) {
         const size_t i = leg + legs*k;
         const size_t j = states*k;
-        /* (rrr-S) from the base point to the connection point */
-        const real R_xx = s[2*w + j];
-        const real R_yx = s[3*w + j];
-        const real rrr_platform_point_x = m->rrr_platform_point_x[i];
-        const real rrr_platform_point_y = m->rrr_platform_point_y[i];
-        const real rrr_q_x = R_xx*rrr_platform_point_x - R_yx*rrr_platform_point_y;
-        const real rrr_q_y = R_xx*rrr_platform_point_y + R_yx*rrr_platform_point_x;
-        const real rrr_base_point_x = m->rrr_base_point_x[i];
-        const real t_x = s[0*w + j];
-        const real rrr_S_x = rrr_q_x + t_x - rrr_base_point_x;
-        const real rrr_base_point_y = m->rrr_base_point_y[i];
-        const real t_y = s[1*w + j];
-        const real rrr_S_y = rrr_q_y + t_y - rrr_base_point_y;
-        /* (rrr-Kd_1) projection on the centre's direction, from the distance fixed by the joints beyond
-           joint 1 */
-        const real rrr_Kd_1_t_3 = rrr_S_x*rrr_S_x + rrr_S_y*rrr_S_y;
-        const real rrr_Kd_1_t = m->rrr_Kd_1_t[i];
-        const real rrr_Kd_1_t_2 = m->rrr_Kd_1_t_2[i];
-        const real rrr_Kd_1 = rrr_Kd_1_t + R(0.5)*rrr_Kd_1_t_3 - rrr_Kd_1_t_2;
-        /* (rrr-px_1) component along the reference direction */
-        const real rrr_base_frame_xx = m->rrr_base_frame_xx[i];
-        const real rrr_base_frame_yx = m->rrr_base_frame_yx[i];
-        const real rrr_px_1 = rrr_S_x*rrr_base_frame_xx + rrr_S_y*rrr_base_frame_yx;
-        /* (rrr-py_1) component across the reference direction */
-        const real rrr_base_frame_xy = m->rrr_base_frame_xy[i];
-        const real rrr_base_frame_yy = m->rrr_base_frame_yy[i];
-        const real rrr_py_1 = rrr_S_x*rrr_base_frame_xy + rrr_S_y*rrr_base_frame_yy;
-        /* (rrr-Kc_1) factor of the cosine in the equation of joint 1 */
-        const real rrr_joint2_offset_x = m->rrr_joint2_offset_x[i];
-        const real rrr_Kc_1 = rrr_joint2_offset_x*rrr_px_1;
-        /* (rrr-Ks_1) factor of the sine in the equation of joint 1 */
-        const real rrr_Ks_1 = rrr_joint2_offset_x*rrr_py_1;
-        /* (rrr-rho2_1) squared amplitude */
-        const real rrr_rho2_1 = rrr_Kc_1*rrr_Kc_1 + rrr_Ks_1*rrr_Ks_1;
-        /* (rrr-disc_1) discriminant */
-        const real rrr_disc_1 = rrr_rho2_1 - rrr_Kd_1*rrr_Kd_1;
-        /* (rrr-root_1) root, with the sign of the branch */
-        const real rrr_branch_1 = m->rrr_branch_1[i];
-        const real rrr_root_1 = rrr_branch_1*root(rrr_disc_1);
-        /* (rrr-c_1) cosine of the angle of joint 1 from its reference direction */
-        const real inv_rrr_rho2_1 = 1/rrr_rho2_1;
-        const real rrr_c_1 = inv_rrr_rho2_1*(rrr_Kc_1*rrr_Kd_1 - rrr_Ks_1*rrr_root_1);
-        /* (rrr-s_1) sine of the angle of joint 1 from its reference direction */
-        const real rrr_s_1 = inv_rrr_rho2_1*(rrr_Kc_1*rrr_root_1 + rrr_Kd_1*rrr_Ks_1);
-        /* (rrr-x_2) from the origin of joint 2 to the connection point */
-        const real inv_rrr_size_t = m->inv_rrr_size_t[i];
-        const real rrr_x_2_in_axes1_x = inv_rrr_size_t*rrr_Kd_1*rrr_joint2_offset_x -
-            rrr_joint2_offset_x;
-        /* (rrr-c_2) cosine of the angle of joint 2 from its reference direction */
-        const real inv_rrr_size_t_2 = m->inv_rrr_size_t_2[i];
-        const real rrr_platform_joint_offset_x = m->rrr_platform_joint_offset_x[i];
-        const real rrr_c_2 = inv_rrr_size_t_2*rrr_platform_joint_offset_x*rrr_x_2_in_axes1_x;
-        /* (rrr-s_2) sine of the angle of joint 2 from its reference direction */
-        const real rrr_s_2 =
-            -inv_rrr_size_t*inv_rrr_size_t_2*rrr_joint2_offset_x*rrr_platform_joint_offset_x*rrr_root_1;
-        /* (rrr-S_dot) velocity of the connection point */
-        const real omega_z = s[6*w + j];
-        const real rrr_S_dot_t = omega_z*rrr_q_y;
-        const real rrr_S_dot_t_2 = omega_z*rrr_q_x;
-        const real t_dot_x = s[4*w + j];
-        const real rrr_S_dot_x = t_dot_x - rrr_S_dot_t;
-        const real t_dot_y = s[5*w + j];
-        const real rrr_S_dot_y = rrr_S_dot_t_2 + t_dot_y;
-        /* (rrr-r_1) from joint 1 to the connection point, along the links */
-        const real rrr_r_1_in_axes1_y = rrr_platform_joint_offset_x*rrr_s_2;
-        const real rrr_r_1_in_axes1_x = rrr_joint2_offset_x + rrr_c_2*rrr_platform_joint_offset_x;
-        const real rrr_r_1_in_axes2_x = rrr_c_2*rrr_r_1_in_axes1_x + rrr_r_1_in_axes1_y*rrr_s_2;
-        const real rrr_r_1_in_axes2_y = rrr_c_2*rrr_r_1_in_axes1_y - rrr_r_1_in_axes1_x*rrr_s_2;
-        /* (rrr-w_1) reciprocal vector 1 */
-        const real rrr_w_1_t = rrr_c_1*rrr_s_2 + rrr_c_2*rrr_s_1;
-        const real rrr_w_1_t_2 = rrr_c_1*rrr_c_2 - rrr_s_1*rrr_s_2;
-        const real axis_y_rrr_axes2_x = rrr_base_frame_xy*rrr_w_1_t_2 -
-            rrr_base_frame_xx*rrr_w_1_t;
-        const real axis_x_rrr_axes2_x = rrr_base_frame_yy*rrr_w_1_t_2 -
-            rrr_base_frame_yx*rrr_w_1_t;
-        const real rrr_w_1_in_axes2_x = -1/rrr_r_1_in_axes2_y;
-        const real rrr_w_1_x = axis_x_rrr_axes2_x*rrr_w_1_in_axes2_x;
-        const real rrr_w_1_y = -axis_y_rrr_axes2_x*rrr_w_1_in_axes2_x;
-        /* (rrr-qd_1) rate of joint 1 */
-        const real rrr_qd_1 = rrr_w_1_in_axes2_x*(axis_x_rrr_axes2_x*rrr_S_dot_x -
-            axis_y_rrr_axes2_x*rrr_S_dot_y);
-        /* (rrr-W_1) centripetal tensor of link 1 */
-        const real rrr_W_1_t = rrr_qd_1*rrr_qd_1;
-        /* (rrr-omega_2) angular velocity of link 2 */
-        const real rrr_w_2_in_axes2_y = m->rrr_w_2_in_axes2_y[i];
-        const real rrr_omega_2_in_axes2_z = rrr_qd_1 +
-            rrr_w_2_in_axes2_y*(axis_x_rrr_axes2_x*rrr_S_dot_y + axis_y_rrr_axes2_x*rrr_S_dot_x -
-            rrr_qd_1*rrr_r_1_in_axes2_x);
-        /* (rrr-W_2) centripetal tensor of link 2 */
-        const real rrr_W_2_t = rrr_omega_2_in_axes2_z*rrr_omega_2_in_axes2_z;
-        /* (rrr-a_p) acceleration of the connection point without its centripetal part */
-        const real alpha_z = s[9*w + j];
-        const real t_ddot_x = s[7*w + j];
-        const real rrr_a_p_x = t_ddot_x - alpha_z*rrr_q_y;
-        const real t_ddot_y = s[8*w + j];
-        const real rrr_a_p_y = t_ddot_y + alpha_z*rrr_q_x;
-        /* (rrr-S_ddot) acceleration of the connection point */
-        const real rrr_S_ddot_x = rrr_a_p_x - omega_z*rrr_S_dot_t_2;
-        const real rrr_S_ddot_y = rrr_a_p_y - omega_z*rrr_S_dot_t;
-        const real rrr_S_ddot_in_axes2_x = axis_x_rrr_axes2_x*rrr_S_ddot_x -
-            axis_y_rrr_axes2_x*rrr_S_ddot_y;
-        const real rrr_S_ddot_in_axes2_y = axis_x_rrr_axes2_x*rrr_S_ddot_y +
-            axis_y_rrr_axes2_x*rrr_S_ddot_x;
-        /* (rrr-bias) acceleration of the connection point at zero joint accelerations */
-        const real rrr_bias_in_axes2_x = -rrr_W_2_t*rrr_platform_joint_offset_x -
-            rrr_W_1_t*rrr_c_2*rrr_joint2_offset_x;
-        /* (rrr-rel) acceleration of the connection point left to the joint accelerations */
-        const real rrr_rel_in_axes2_x = rrr_S_ddot_in_axes2_x - rrr_bias_in_axes2_x;
-        const real rrr_rel_in_axes2_y = rrr_S_ddot_in_axes2_y -
-            rrr_W_1_t*rrr_joint2_offset_x*rrr_s_2;
-        /* (rrr-B_1) acceleration tensor of link 1 */
-        const real rrr_B_1_in_axes1_xy = -rrr_rel_in_axes2_x*rrr_w_1_in_axes2_x;
-        /* (rrr-alpha_2) angular acceleration of link 2 */
-        const real rrr_alpha_2_in_axes2_z = rrr_w_2_in_axes2_y*(rrr_rel_in_axes2_y +
-            rrr_B_1_in_axes1_xy*rrr_r_1_in_axes2_x) - rrr_B_1_in_axes1_xy;
-        /* (rrr-acc_2) acceleration of the reference point of link 2, less gravity */
-        const real gravity_x = m->gravity_x;
-        const real gravity_y = m->gravity_y;
-        const real rrr_acc_2_in_axes2_x = rrr_S_ddot_in_axes2_x + axis_y_rrr_axes2_x*gravity_y -
-            axis_x_rrr_axes2_x*gravity_x;
-        const real rrr_acc_2_in_axes2_y = rrr_S_ddot_in_axes2_y - axis_x_rrr_axes2_x*gravity_y -
-            axis_y_rrr_axes2_x*gravity_x;
-        /* (rrr-mu_2) inertia moment of the links that turn with link 2, about their reference points */
-        const real rrr_J_2_in_spec2_zz = m->rrr_J_2_in_spec2_zz[i];
-        const real rrr_h_2_in_spec2_x = m->rrr_h_2_in_spec2_x[i];
-        const real rrr_h_2_in_spec2_y = m->rrr_h_2_in_spec2_y[i];
-        const real rrr_mu_2_in_axes2_z = rrr_J_2_in_spec2_zz*rrr_alpha_2_in_axes2_z +
-            rrr_acc_2_in_axes2_y*rrr_h_2_in_spec2_x - rrr_acc_2_in_axes2_x*rrr_h_2_in_spec2_y;
-        /* (rrr-mu_1) inertia moment of the links that turn with link 1, about their reference points */
-        const real rrr_J_1_in_spec1_zz = m->rrr_J_1_in_spec1_zz[i];
-        const real rrr_h_1_in_spec1_x = m->rrr_h_1_in_spec1_x[i];
-        const real rrr_h_1_in_spec1_y = m->rrr_h_1_in_spec1_y[i];
-        const real rrr_mu_1_t = m->rrr_mu_1_t[i];
-        const real rrr_mu_1_t_2 = m->rrr_mu_1_t_2[i];
-        const real rrr_mu_1_in_axes1_z = rrr_h_1_in_spec1_y*(rrr_c_1*rrr_mu_1_t +
-            rrr_mu_1_t_2*rrr_s_1) - rrr_B_1_in_axes1_xy*rrr_J_1_in_spec1_zz -
-            rrr_h_1_in_spec1_x*(rrr_c_1*rrr_mu_1_t_2 - rrr_mu_1_t*rrr_s_1);
-        /* (rrr-N_1) moment about joint 1 of the links from 1 outwards, the force at the connection point
-           left out */
-        const real rrr_N_1_in_axes1_z = rrr_mu_1_in_axes1_z + rrr_mu_2_in_axes2_z;
-        /* (rrr-G) force at the connection point that balances the leg's inertia and weight along all
-           degrees of freedom */
-        const real rrr_G_in_axes2_y = rrr_mu_2_in_axes2_z*rrr_w_2_in_axes2_y;
+        values_rrr v;
+        stage_rrr_X(m, w, i, j, s, X, &v);
+        stage_rrr_A_X(w, j, A, &v);
+        stage_rrr_V_X(m, w, i, j, V, &v);
+        stage_rrr_A_V_X(w, j, V, &v);
+        stage_rrr_legs_required(m, i, &v);
         /* (rrr-c) leg force on the platform without actuation and without the mass at the connection
            point */
-        const real rrr_c_in_axes2_x = rrr_W_2_t*rrr_h_2_in_spec2_x +
-            rrr_alpha_2_in_axes2_z*rrr_h_2_in_spec2_y +
-            rrr_w_1_in_axes2_x*(rrr_G_in_axes2_y*rrr_r_1_in_axes2_x - rrr_N_1_in_axes1_z);
-        const real rrr_c_in_axes2_y = rrr_W_2_t*rrr_h_2_in_spec2_y - rrr_G_in_axes2_y -
-            rrr_alpha_2_in_axes2_z*rrr_h_2_in_spec2_x;
-        const real rrr_c_x = axis_x_rrr_axes2_x*rrr_c_in_axes2_x +
-            axis_y_rrr_axes2_x*rrr_c_in_axes2_y;
-        const real rrr_c_y = axis_x_rrr_axes2_x*rrr_c_in_axes2_y -
-            axis_y_rrr_axes2_x*rrr_c_in_axes2_x;
+        const real rrr_c_x = v.axis_x_rrr_axes2_x*v.rrr_c_in_axes2_x +
+            v.axis_y_rrr_axes2_x*v.rrr_c_in_axes2_y;
+        const real rrr_c_y = v.axis_x_rrr_axes2_x*v.rrr_c_in_axes2_y -
+            v.axis_y_rrr_axes2_x*v.rrr_c_in_axes2_x;
         /* (R_a) moment that actuators and external wrench must give */
-        const real rrr_R_a_t = rrr_c_x*rrr_q_y - rrr_c_y*rrr_q_x;
+        const real rrr_R_a_t = rrr_c_x*v.rrr_q_y - rrr_c_y*v.rrr_q_x;
         /* (rrr-H_a_1) moment of the column's unit force about the platform origin */
-        const real rrr_H_a_1_z = rrr_q_x*rrr_w_1_y - rrr_q_y*rrr_w_1_x;
+        const real rrr_H_a_1_z = v.rrr_q_x*v.rrr_w_1_y - v.rrr_q_y*v.rrr_w_1_x;
         /* (R_t) force that actuators and external wrench must give */
         gather(&terms[0*count + k], add, rrr_c_x);  /* R_t_x_of_legs */
         gather(&terms[1*count + k], add, rrr_c_y);  /* R_t_y_of_legs */
         /* (R_a) moment that actuators and external wrench must give */
         gather(&terms[2*count + k], add, rrr_R_a_t);  /* R_a_z_of_legs */
         /* (rrr-w_1) reciprocal vector 1 */
-        o[0*count + k] = rrr_w_1_x;
-        o[1*count + k] = rrr_w_1_y;
+        o[0*count + k] = v.rrr_w_1_x;
+        o[1*count + k] = v.rrr_w_1_y;
         /* (rrr-H_a_1) moment of the column's unit force about the platform origin */
         o[2*count + k] = rrr_H_a_1_z;
         const real rrr_rho2_1_t = m->rrr_rho2_1_t[i];
         const real rrr_size = m->rrr_size[i];
-        o[4*count + k] = UNLESS(magnitude(rrr_rho2_1) > TOLERANCE*TOLERANCE*rrr_rho2_1_t) +
-            UNLESS(magnitude(rrr_r_1_in_axes2_y) > TOLERANCE*rrr_size);
-        o[3*count + k] = UNLESS(rrr_disc_1 >= 0);
+        o[4*count + k] = UNLESS(magnitude(v.rrr_rho2_1) > TOLERANCE*TOLERANCE*rrr_rho2_1_t) +
+            UNLESS(magnitude(v.rrr_r_1_in_axes2_y) > TOLERANCE*rrr_size);
+        o[3*count + k] = UNLESS(v.rrr_disc_1 >= 0);
     }
 }
 
@@ -3796,7 +3613,7 @@ INLINE void required_place_rrr(size_t w, size_t count, const real *o, size_t fir
     verdict *t)
 {
     for (size_t k = 0; k < w; ++k) {
-        H[(0*NU + 1)*w + k] = o[0*count + first + k];
+        H[1*w + k] = o[0*count + first + k];
         H[(NU + 1)*w + k] = o[1*count + first + k];
         H[(2*NU + 1)*w + k] = o[2*count + first + k];
         t->unreachable[k] += o[3*count + first + k];
@@ -3805,136 +3622,41 @@ INLINE void required_place_rrr(size_t w, size_t count, const real *o, size_t fir
 }
 
 INLINE void required_legs_prr(const prepared *m, size_t w, size_t leg, size_t legs, const real *s,
-    size_t states, size_t count, int add, real *terms, real *o)
+    size_t states, size_t count, int add, const real *X, const real *V, const real *A, real
+    *terms, real *o)
 {
     for (size_t k = 0; k < count; ++k) {
         const size_t i = leg + legs*k;
         const size_t j = states*k;
-        /* (prr-S) from the base point to the connection point */
-        const real R_xx = s[2*w + j];
-        const real R_yx = s[3*w + j];
-        const real prr_platform_point_x = m->prr_platform_point_x[i];
-        const real prr_platform_point_y = m->prr_platform_point_y[i];
-        const real prr_q_x = R_xx*prr_platform_point_x - R_yx*prr_platform_point_y;
-        const real prr_q_y = R_xx*prr_platform_point_y + R_yx*prr_platform_point_x;
-        const real prr_base_point_x = m->prr_base_point_x[i];
-        const real t_x = s[0*w + j];
-        const real prr_S_x = prr_q_x + t_x - prr_base_point_x;
-        const real prr_base_point_y = m->prr_base_point_y[i];
-        const real t_y = s[1*w + j];
-        const real prr_S_y = prr_q_y + t_y - prr_base_point_y;
-        const real prr_base_frame_xx = m->prr_base_frame_xx[i];
-        const real prr_base_frame_yx = m->prr_base_frame_yx[i];
-        const real prr_S_in_axes0_x = prr_S_x*prr_base_frame_xx + prr_S_y*prr_base_frame_yx;
-        /* (prr-disc_1) discriminant of the distance equation */
-        const real prr_disc_1_t = prr_S_x*prr_S_x + prr_S_y*prr_S_y;
-        const real prr_size_t = m->prr_size_t[i];
-        const real prr_disc_1 = prr_S_in_axes0_x*prr_S_in_axes0_x + prr_size_t - prr_disc_1_t;
-        /* (prr-c_2) cosine of the angle of joint 2 from its reference direction */
-        const real inv_prr_size_t = m->inv_prr_size_t[i];
-        const real prr_branch_1 = m->prr_branch_1[i];
-        const real prr_platform_joint_offset_x = m->prr_platform_joint_offset_x[i];
-        const real prr_c_2 =
-            -inv_prr_size_t*prr_branch_1*root(prr_disc_1)*prr_platform_joint_offset_x;
-        /* (prr-s_2) sine of the angle of joint 2 from its reference direction */
-        const real prr_base_frame_xy = m->prr_base_frame_xy[i];
-        const real prr_base_frame_yy = m->prr_base_frame_yy[i];
-        const real prr_s_2 = inv_prr_size_t*prr_platform_joint_offset_x*(prr_S_x*prr_base_frame_xy
-            + prr_S_y*prr_base_frame_yy);
-        /* (prr-S_dot) velocity of the connection point */
-        const real omega_z = s[6*w + j];
-        const real prr_S_dot_t = omega_z*prr_q_y;
-        const real prr_S_dot_t_2 = omega_z*prr_q_x;
-        const real t_dot_x = s[4*w + j];
-        const real prr_S_dot_x = t_dot_x - prr_S_dot_t;
-        const real t_dot_y = s[5*w + j];
-        const real prr_S_dot_y = prr_S_dot_t_2 + t_dot_y;
-        /* (prr-v_2) velocity of the connection point per rate of joint 2 */
-        const real prr_v_2_in_axes0_x = -prr_platform_joint_offset_x*prr_s_2;
-        const real prr_v_2_in_axes0_y = prr_c_2*prr_platform_joint_offset_x;
-        /* (prr-w_1) reciprocal vector 1 */
-        const real axis_y_prr_axes2_x = prr_base_frame_xy*prr_c_2 - prr_base_frame_xx*prr_s_2;
-        const real axis_x_prr_axes2_x = prr_base_frame_yy*prr_c_2 - prr_base_frame_yx*prr_s_2;
-        const real prr_w_1_t = -1/prr_v_2_in_axes0_y;
-        const real prr_w_1_t_2 = prr_v_2_in_axes0_x*prr_w_1_t;
-        const real prr_w_1_in_axes2_x = prr_c_2 + prr_s_2*prr_w_1_t_2;
-        const real prr_w_1_in_axes2_y = prr_c_2*prr_w_1_t_2 - prr_s_2;
-        const real prr_w_1_x = axis_x_prr_axes2_x*prr_w_1_in_axes2_x +
-            axis_y_prr_axes2_x*prr_w_1_in_axes2_y;
-        const real prr_w_1_y = axis_x_prr_axes2_x*prr_w_1_in_axes2_y -
-            axis_y_prr_axes2_x*prr_w_1_in_axes2_x;
-        /* (prr-qd_2) rate of joint 2 */
-        const real prr_qd_2 = -prr_w_1_t*(prr_S_dot_x*prr_base_frame_xy +
-            prr_S_dot_y*prr_base_frame_yy);
-        /* (prr-W_2) centripetal tensor of link 2 */
-        const real prr_W_2_t = prr_qd_2*prr_qd_2;
-        /* (prr-a_p) acceleration of the connection point without its centripetal part */
-        const real alpha_z = s[9*w + j];
-        const real t_ddot_x = s[7*w + j];
-        const real prr_a_p_x = t_ddot_x - alpha_z*prr_q_y;
-        const real t_ddot_y = s[8*w + j];
-        const real prr_a_p_y = t_ddot_y + alpha_z*prr_q_x;
-        /* (prr-S_ddot) acceleration of the connection point */
-        const real prr_S_ddot_x = prr_a_p_x - omega_z*prr_S_dot_t_2;
-        const real prr_S_ddot_y = prr_a_p_y - omega_z*prr_S_dot_t;
-        const real prr_S_ddot_in_axes2_x = axis_x_prr_axes2_x*prr_S_ddot_x -
-            axis_y_prr_axes2_x*prr_S_ddot_y;
-        const real prr_S_ddot_in_axes2_y = axis_x_prr_axes2_x*prr_S_ddot_y +
-            axis_y_prr_axes2_x*prr_S_ddot_x;
-        /* (prr-rel) acceleration of the connection point left to the joint accelerations */
-        const real prr_rel_in_axes2_x = prr_S_ddot_in_axes2_x +
-            prr_platform_joint_offset_x*prr_qd_2*prr_qd_2;
-        /* (prr-B_2) acceleration tensor of link 2 */
-        const real prr_B_2_in_axes2_xy = prr_w_1_t*(prr_S_ddot_in_axes2_y*prr_c_2 +
-            prr_rel_in_axes2_x*prr_s_2);
-        /* (prr-acc_1) acceleration of the reference point of link 1, less gravity */
-        const real prr_g_in_axes0_x = m->prr_g_in_axes0_x[i];
-        const real prr_acc_1_in_axes0_x = prr_B_2_in_axes2_xy*prr_v_2_in_axes0_x +
-            prr_c_2*prr_rel_in_axes2_x - prr_g_in_axes0_x - prr_S_ddot_in_axes2_y*prr_s_2;
-        /* (prr-f_1) inertia force of link 1 less its weight */
-        const real prr_link1_mass = m->prr_link1_mass[i];
-        const real prr_f_1_in_axes0_x = prr_acc_1_in_axes0_x*prr_link1_mass;
-        /* (prr-acc_2) acceleration of the reference point of link 2, less gravity */
-        const real prr_g_in_axes0_y = m->prr_g_in_axes0_y[i];
-        const real prr_acc_2_in_axes2_x = prr_S_ddot_in_axes2_x - prr_c_2*prr_g_in_axes0_x -
-            prr_g_in_axes0_y*prr_s_2;
-        const real prr_acc_2_in_axes2_y = prr_S_ddot_in_axes2_y + prr_g_in_axes0_x*prr_s_2 -
-            prr_c_2*prr_g_in_axes0_y;
-        /* (prr-mu_2) inertia moment of the links that turn with link 2, about their reference points */
-        const real prr_J_2_in_spec2_zz = m->prr_J_2_in_spec2_zz[i];
-        const real prr_h_2_in_spec2_x = m->prr_h_2_in_spec2_x[i];
-        const real prr_h_2_in_spec2_y = m->prr_h_2_in_spec2_y[i];
-        const real prr_mu_2_in_axes2_z = prr_acc_2_in_axes2_y*prr_h_2_in_spec2_x -
-            prr_B_2_in_axes2_xy*prr_J_2_in_spec2_zz - prr_acc_2_in_axes2_x*prr_h_2_in_spec2_y;
+        values_prr v;
+        stage_prr_X(m, w, i, j, s, X, &v);
+        stage_prr_A_X(w, j, A, &v);
+        stage_prr_V_X(m, w, i, j, V, &v);
+        stage_prr_A_V_X(w, j, V, &v);
+        stage_prr_legs_required(m, i, &v);
         /* (prr-c) leg force on the platform without actuation and without the mass at the connection
            point */
-        const real prr_c_t = prr_w_1_t*(prr_mu_2_in_axes2_z -
-            prr_f_1_in_axes0_x*prr_v_2_in_axes0_x);
-        const real prr_c_in_axes2_x = prr_W_2_t*prr_h_2_in_spec2_x + prr_c_t*prr_s_2 -
-            prr_B_2_in_axes2_xy*prr_h_2_in_spec2_y - prr_c_2*prr_f_1_in_axes0_x;
-        const real prr_c_in_axes2_y = prr_B_2_in_axes2_xy*prr_h_2_in_spec2_x +
-            prr_W_2_t*prr_h_2_in_spec2_y + prr_c_2*prr_c_t + prr_f_1_in_axes0_x*prr_s_2;
-        const real prr_c_x = axis_x_prr_axes2_x*prr_c_in_axes2_x +
-            axis_y_prr_axes2_x*prr_c_in_axes2_y;
-        const real prr_c_y = axis_x_prr_axes2_x*prr_c_in_axes2_y -
-            axis_y_prr_axes2_x*prr_c_in_axes2_x;
+        const real prr_c_x = v.axis_x_prr_axes2_x*v.prr_c_in_axes2_x +
+            v.axis_y_prr_axes2_x*v.prr_c_in_axes2_y;
+        const real prr_c_y = v.axis_x_prr_axes2_x*v.prr_c_in_axes2_y -
+            v.axis_y_prr_axes2_x*v.prr_c_in_axes2_x;
         /* (R_a) moment that actuators and external wrench must give */
-        const real prr_R_a_t = prr_c_x*prr_q_y - prr_c_y*prr_q_x;
+        const real prr_R_a_t = prr_c_x*v.prr_q_y - prr_c_y*v.prr_q_x;
         /* (prr-H_a_1) moment of the column's unit force about the platform origin */
-        const real prr_H_a_1_z = prr_q_x*prr_w_1_y - prr_q_y*prr_w_1_x;
+        const real prr_H_a_1_z = v.prr_q_x*v.prr_w_1_y - v.prr_q_y*v.prr_w_1_x;
         /* (R_t) force that actuators and external wrench must give */
         gather(&terms[0*count + k], add, prr_c_x);  /* R_t_x_of_legs */
         gather(&terms[1*count + k], add, prr_c_y);  /* R_t_y_of_legs */
         /* (R_a) moment that actuators and external wrench must give */
         gather(&terms[2*count + k], add, prr_R_a_t);  /* R_a_z_of_legs */
         /* (prr-w_1) reciprocal vector 1 */
-        o[0*count + k] = prr_w_1_x;
-        o[1*count + k] = prr_w_1_y;
+        o[0*count + k] = v.prr_w_1_x;
+        o[1*count + k] = v.prr_w_1_y;
         /* (prr-H_a_1) moment of the column's unit force about the platform origin */
         o[2*count + k] = prr_H_a_1_z;
         const real prr_size = m->prr_size[i];
-        o[3*count + k] = UNLESS(prr_disc_1 >= 0);
-        o[4*count + k] = UNLESS(magnitude(prr_v_2_in_axes0_y) > TOLERANCE*prr_size);
+        o[3*count + k] = UNLESS(v.prr_disc_1 >= 0);
+        o[4*count + k] = UNLESS(magnitude(v.prr_v_2_in_axes0_y) > TOLERANCE*prr_size);
     }
 }
 
@@ -3942,7 +3664,7 @@ INLINE void required_place_prr(size_t w, size_t count, const real *o, size_t fir
     verdict *t)
 {
     for (size_t k = 0; k < w; ++k) {
-        H[(0*NU + 2)*w + k] = o[0*count + first + k];
+        H[2*w + k] = o[0*count + first + k];
         H[(NU + 2)*w + k] = o[1*count + first + k];
         H[(2*NU + 2)*w + k] = o[2*count + first + k];
         t->unreachable[k] += o[3*count + first + k];
@@ -3955,14 +3677,14 @@ INLINE void required_after(size_t w, const real *s, const real *sums, real *requ
     for (size_t k = 0; k < w; ++k) {
         /* (R_t) force that actuators and external wrench must give */
         const real R_t_x_of_legs = sums[0*w + k];
-        const real f_p_x = s[10*w + k];
+        const real f_p_x = s[2*w + k];
         const real R_t_x = f_p_x - R_t_x_of_legs;
         const real R_t_y_of_legs = sums[1*w + k];
-        const real f_p_y = s[11*w + k];
+        const real f_p_y = s[3*w + k];
         const real R_t_y = f_p_y - R_t_y_of_legs;
         /* (R_a) moment that actuators and external wrench must give */
         const real R_a_z_of_legs = sums[2*w + k];
-        const real mu_p_z = s[12*w + k];
+        const real mu_p_z = s[4*w + k];
         const real R_a_z = R_a_z_of_legs + mu_p_z;
         /* (R_t) force that actuators and external wrench must give */
         required[0*w + k] = R_t_x;
@@ -3975,30 +3697,26 @@ INLINE void required_after(size_t w, const real *s, const real *sums, real *requ
 INLINE void required_run(const prepared *m, const real *X, const real *V, const real *A, real
     *required, real *H, verdict *t)
 {
-    real s[13] = {0};
-    real sums[3] = {0};
-    real terms_rpr[3*LEGS(LEGS_OF_rpr)] = {0};
-    real o_rpr[4*LEGS(LEGS_OF_rpr)] = {0};
-    real terms_rrr[3*LEGS(LEGS_OF_rrr)] = {0};
-    real o_rrr[5*LEGS(LEGS_OF_rrr)] = {0};
-    real terms_prr[3*LEGS(LEGS_OF_prr)] = {0};
-    real o_prr[5*LEGS(LEGS_OF_prr)] = {0};
+    real s[5] = {0}, sums[3] = {0};
+    real terms_rpr[3*LEGS(LEGS_OF_rpr)] = {0}, o_rpr[4*LEGS(LEGS_OF_rpr)] = {0};
+    real terms_rrr[3*LEGS(LEGS_OF_rrr)] = {0}, o_rrr[5*LEGS(LEGS_OF_rrr)] = {0};
+    real terms_prr[3*LEGS(LEGS_OF_prr)] = {0}, o_prr[5*LEGS(LEGS_OF_prr)] = {0};
     required_before(m, 1, X, V, A, s);
-    required_legs_rpr(m, 1, 0, 1, s, 0, LEGS(LEGS_OF_rpr), 0, terms_rpr, o_rpr);
+    required_legs_rpr(m, 1, 0, 1, s, 0, LEGS(LEGS_OF_rpr), 0, X, V, A, terms_rpr, o_rpr);
+    required_legs_rrr(m, 1, 0, 1, s, 0, LEGS(LEGS_OF_rrr), 0, X, V, A, terms_rrr, o_rrr);
+    required_legs_prr(m, 1, 0, 1, s, 0, LEGS(LEGS_OF_prr), 0, X, V, A, terms_prr, o_prr);
     for (size_t leg = 0; leg < LEGS_OF_rpr; ++leg) {
         required_place_rpr(1, LEGS(LEGS_OF_rpr), o_rpr, leg, H, t);
     }
     for (size_t n = 0; n < 3; ++n) {
         sums[n] = total(terms_rpr + n*LEGS(LEGS_OF_rpr), LEGS_OF_rpr);
     }
-    required_legs_rrr(m, 1, 0, 1, s, 0, LEGS(LEGS_OF_rrr), 0, terms_rrr, o_rrr);
     for (size_t leg = 0; leg < LEGS_OF_rrr; ++leg) {
         required_place_rrr(1, LEGS(LEGS_OF_rrr), o_rrr, leg, H, t);
     }
     for (size_t n = 0; n < 3; ++n) {
         sums[n] += total(terms_rrr + n*LEGS(LEGS_OF_rrr), LEGS_OF_rrr);
     }
-    required_legs_prr(m, 1, 0, 1, s, 0, LEGS(LEGS_OF_prr), 0, terms_prr, o_prr);
     for (size_t leg = 0; leg < LEGS_OF_prr; ++leg) {
         required_place_prr(1, LEGS(LEGS_OF_prr), o_prr, leg, H, t);
     }
@@ -4011,88 +3729,55 @@ INLINE void required_run(const prepared *m, const real *X, const real *V, const 
 INLINE void required_run_lanes(const prepared *m, const real *X, const real *V, const real *A,
     real *required, real *H, verdict *t)
 {
-    real s[13*LANES];
-    real sums[3*LANES];
+    real s[5*LANES], sums[3*LANES];
     real o_rpr[4*LANES];
     real o_rrr[5*LANES];
     real o_prr[5*LANES];
     required_before(m, LANES, X, V, A, s);
     clear(sums, 3*LANES);
     for (size_t leg = 0; leg < LEGS_OF_rpr; ++leg) {
-        required_legs_rpr(m, LANES, leg, 0, s, 1, LANES, 1, sums, o_rpr);
+        required_legs_rpr(m, LANES, leg, 0, s, 1, LANES, 1, X, V, A, sums, o_rpr);
         required_place_rpr(LANES, LANES, o_rpr, 0, H, t);
     }
     for (size_t leg = 0; leg < LEGS_OF_rrr; ++leg) {
-        required_legs_rrr(m, LANES, leg, 0, s, 1, LANES, 1, sums, o_rrr);
+        required_legs_rrr(m, LANES, leg, 0, s, 1, LANES, 1, X, V, A, sums, o_rrr);
         required_place_rrr(LANES, LANES, o_rrr, 0, H, t);
     }
     for (size_t leg = 0; leg < LEGS_OF_prr; ++leg) {
-        required_legs_prr(m, LANES, leg, 0, s, 1, LANES, 1, sums, o_prr);
+        required_legs_prr(m, LANES, leg, 0, s, 1, LANES, 1, X, V, A, sums, o_prr);
         required_place_prr(LANES, LANES, o_prr, 0, H, t);
     }
     required_after(LANES, s, sums, required);
 }
 
 /* ---- inverse_kinematics ---- */
-INLINE void inverse_kinematics_before(size_t w, const real *X, real *s)
+INLINE void inverse_kinematics_before(const prepared *m, size_t w, const real *X, real *s)
 {
     for (size_t k = 0; k < w; ++k) {
-        /* X: named entries */
-        const real X_0 = X[0*w + k];
-        const real t_x = X_0;
-        const real X_1 = X[1*w + k];
-        const real t_y = X_1;
-        const real X_2 = X[2*w + k];
-        const real R_xx = cosine(X_2);
-        const real R_yx = sine(X_2);
-        s[0*w + k] = t_x;
-        s[1*w + k] = t_y;
-        s[2*w + k] = R_xx;
-        s[3*w + k] = R_yx;
+        values v;
+        stage_X(m, w, k, X, &v);
+        s[0*w + k] = v.R_xx;
+        s[1*w + k] = v.R_yx;
     }
 }
 
 INLINE void inverse_kinematics_legs_rpr(const prepared *m, size_t w, size_t leg, size_t legs,
-    const real *s, size_t states, size_t count, real *o)
+    const real *s, size_t states, size_t count, const real *X, real *o)
 {
     for (size_t k = 0; k < count; ++k) {
         const size_t i = leg + legs*k;
         const size_t j = states*k;
-        /* (rpr-S) from the base point to the connection point */
-        const real R_xx = s[2*w + j];
-        const real R_yx = s[3*w + j];
-        const real rpr_base_point_x = m->rpr_base_point_x[i];
-        const real rpr_platform_point_x = m->rpr_platform_point_x[i];
-        const real rpr_platform_point_y = m->rpr_platform_point_y[i];
-        const real t_x = s[0*w + j];
-        const real rpr_S_x = t_x + R_xx*rpr_platform_point_x - rpr_base_point_x -
-            R_yx*rpr_platform_point_y;
-        const real rpr_base_point_y = m->rpr_base_point_y[i];
-        const real t_y = s[1*w + j];
-        const real rpr_S_y = t_y + R_xx*rpr_platform_point_y + R_yx*rpr_platform_point_x -
-            rpr_base_point_y;
-        /* (rpr-px_1) component along the reference direction */
-        const real rpr_base_frame_xx = m->rpr_base_frame_xx[i];
-        const real rpr_base_frame_yx = m->rpr_base_frame_yx[i];
-        const real rpr_px_1 = rpr_S_x*rpr_base_frame_xx + rpr_S_y*rpr_base_frame_yx;
-        /* (rpr-py_1) component across the reference direction */
-        const real rpr_base_frame_xy = m->rpr_base_frame_xy[i];
-        const real rpr_base_frame_yy = m->rpr_base_frame_yy[i];
-        const real rpr_py_1 = rpr_S_x*rpr_base_frame_xy + rpr_S_y*rpr_base_frame_yy;
-        /* (rpr-rho2_1) squared amplitude */
-        const real rpr_rho2_1 = rpr_px_1*rpr_px_1 + rpr_py_1*rpr_py_1;
-        /* (rpr-root_1) amplitude, with the sign of the branch */
-        const real rpr_branch_1 = m->rpr_branch_1[i];
-        const real rpr_root_1 = rpr_branch_1*root(rpr_rho2_1);
+        values_rpr v;
+        stage_rpr_inverse_kinematics_potential(m, w, i, j, s, X, &v);
         /* (rpr-q_1) displacement of joint 1 */
-        const real inv_rpr_root_1 = 1/rpr_root_1;
-        const real rpr_q_1 = angle(inv_rpr_root_1*rpr_py_1, inv_rpr_root_1*rpr_px_1);
+        const real rpr_q_1 = angle(v.inv_rpr_q_2*v.rpr_S_in_turn1_y,
+            v.inv_rpr_q_2*v.rpr_S_in_turn1_x);
         /* (rpr-q_1) displacement of joint 1 */
         o[0*count + k] = rpr_q_1;
         /* (rpr-q_2) displacement of joint 2 */
-        o[1*count + k] = rpr_root_1;
-        o[3*count + k] = rpr_q_1 + rpr_root_1;
-        o[2*count + k] = UNLESS(magnitude(rpr_rho2_1) > LEAST_1) + UNLESS(magnitude(rpr_root_1) >
+        o[1*count + k] = v.rpr_q_2;
+        o[3*count + k] = rpr_q_1 + v.rpr_q_2;
+        o[2*count + k] = UNLESS(magnitude(v.rpr_q_2_t) > LEAST_1) + UNLESS(magnitude(v.rpr_q_2) >
             LEAST_2);
     }
 }
@@ -4109,72 +3794,33 @@ INLINE void inverse_kinematics_place_rpr(size_t w, size_t count, const real *o, 
 }
 
 INLINE void inverse_kinematics_legs_rrr(const prepared *m, size_t w, size_t leg, size_t legs,
-    const real *s, size_t states, size_t count, real *o)
+    const real *s, size_t states, size_t count, const real *X, real *o)
 {
     for (size_t k = 0; k < count; ++k) {
         const size_t i = leg + legs*k;
         const size_t j = states*k;
-        /* (rrr-S) from the base point to the connection point */
-        const real R_xx = s[2*w + j];
-        const real R_yx = s[3*w + j];
-        const real rrr_base_point_x = m->rrr_base_point_x[i];
-        const real rrr_platform_point_x = m->rrr_platform_point_x[i];
-        const real rrr_platform_point_y = m->rrr_platform_point_y[i];
-        const real t_x = s[0*w + j];
-        const real rrr_S_x = t_x + R_xx*rrr_platform_point_x - rrr_base_point_x -
-            R_yx*rrr_platform_point_y;
-        const real rrr_base_point_y = m->rrr_base_point_y[i];
-        const real t_y = s[1*w + j];
-        const real rrr_S_y = t_y + R_xx*rrr_platform_point_y + R_yx*rrr_platform_point_x -
-            rrr_base_point_y;
-        /* (rrr-Kd_1) projection on the centre's direction, from the distance fixed by the joints beyond
-           joint 1 */
-        const real rrr_Kd_1_t_3 = rrr_S_x*rrr_S_x + rrr_S_y*rrr_S_y;
-        const real rrr_Kd_1_t = m->rrr_Kd_1_t[i];
-        const real rrr_Kd_1_t_2 = m->rrr_Kd_1_t_2[i];
-        const real rrr_Kd_1 = rrr_Kd_1_t + R(0.5)*rrr_Kd_1_t_3 - rrr_Kd_1_t_2;
-        /* (rrr-px_1) component along the reference direction */
-        const real rrr_base_frame_xx = m->rrr_base_frame_xx[i];
-        const real rrr_base_frame_yx = m->rrr_base_frame_yx[i];
-        const real rrr_px_1 = rrr_S_x*rrr_base_frame_xx + rrr_S_y*rrr_base_frame_yx;
-        /* (rrr-py_1) component across the reference direction */
-        const real rrr_base_frame_xy = m->rrr_base_frame_xy[i];
-        const real rrr_base_frame_yy = m->rrr_base_frame_yy[i];
-        const real rrr_py_1 = rrr_S_x*rrr_base_frame_xy + rrr_S_y*rrr_base_frame_yy;
-        /* (rrr-Kc_1) factor of the cosine in the equation of joint 1 */
-        const real rrr_joint2_offset_x = m->rrr_joint2_offset_x[i];
-        const real rrr_Kc_1 = rrr_joint2_offset_x*rrr_px_1;
-        /* (rrr-Ks_1) factor of the sine in the equation of joint 1 */
-        const real rrr_Ks_1 = rrr_joint2_offset_x*rrr_py_1;
-        /* (rrr-rho2_1) squared amplitude */
-        const real rrr_rho2_1 = rrr_Kc_1*rrr_Kc_1 + rrr_Ks_1*rrr_Ks_1;
-        /* (rrr-disc_1) discriminant */
-        const real rrr_disc_1 = rrr_rho2_1 - rrr_Kd_1*rrr_Kd_1;
-        /* (rrr-root_1) root, with the sign of the branch */
-        const real rrr_branch_1 = m->rrr_branch_1[i];
-        const real rrr_root_1 = rrr_branch_1*root(rrr_disc_1);
+        values_rrr v;
+        stage_rrr_inverse_kinematics_potential(m, w, i, j, s, X, &v);
         /* (rrr-q_1) displacement of joint 1 */
-        const real inv_rrr_rho2_1 = 1/rrr_rho2_1;
-        const real rrr_q_1 = angle(inv_rrr_rho2_1*(rrr_Kc_1*rrr_root_1 + rrr_Kd_1*rrr_Ks_1),
-            inv_rrr_rho2_1*(rrr_Kc_1*rrr_Kd_1 - rrr_Ks_1*rrr_root_1));
-        /* (rrr-x_2) from the origin of joint 2 to the connection point */
-        const real inv_rrr_size_t = m->inv_rrr_size_t[i];
-        const real rrr_x_2_in_axes1_x = inv_rrr_size_t*rrr_Kd_1*rrr_joint2_offset_x -
-            rrr_joint2_offset_x;
+        const real rrr_q_1 = angle(v.inv_rrr_rho2_1*(v.rrr_Kc_1*v.rrr_root_1 +
+            v.rrr_Kd_1*v.rrr_Ks_1), v.inv_rrr_rho2_1*(v.rrr_Kc_1*v.rrr_Kd_1 -
+            v.rrr_Ks_1*v.rrr_root_1));
         /* (rrr-q_2) displacement of joint 2 */
+        const real inv_rrr_size_t = m->inv_rrr_size_t[i];
         const real inv_rrr_size_t_2 = m->inv_rrr_size_t_2[i];
+        const real rrr_joint2_offset_x = m->rrr_joint2_offset_x[i];
         const real rrr_platform_joint_offset_x = m->rrr_platform_joint_offset_x[i];
         const real rrr_q_2 =
-            angle(-inv_rrr_size_t*inv_rrr_size_t_2*rrr_joint2_offset_x*rrr_platform_joint_offset_x*rrr_root_1,
-            inv_rrr_size_t_2*rrr_platform_joint_offset_x*rrr_x_2_in_axes1_x);
+            angle(-inv_rrr_size_t*inv_rrr_size_t_2*rrr_joint2_offset_x*rrr_platform_joint_offset_x*v.rrr_root_1,
+            inv_rrr_size_t_2*rrr_platform_joint_offset_x*v.rrr_x_2_in_axes1_x);
         /* (rrr-q_1) displacement of joint 1 */
         o[0*count + k] = rrr_q_1;
         /* (rrr-q_2) displacement of joint 2 */
         o[1*count + k] = rrr_q_2;
         o[4*count + k] = rrr_q_1 + rrr_q_2;
         const real rrr_rho2_1_t = m->rrr_rho2_1_t[i];
-        o[3*count + k] = UNLESS(magnitude(rrr_rho2_1) > TOLERANCE*TOLERANCE*rrr_rho2_1_t);
-        o[2*count + k] = UNLESS(rrr_disc_1 >= 0);
+        o[3*count + k] = UNLESS(magnitude(v.rrr_rho2_1) > TOLERANCE*TOLERANCE*rrr_rho2_1_t);
+        o[2*count + k] = UNLESS(v.rrr_disc_1 >= 0);
     }
 }
 
@@ -4191,49 +3837,27 @@ INLINE void inverse_kinematics_place_rrr(size_t w, size_t count, const real *o, 
 }
 
 INLINE void inverse_kinematics_legs_prr(const prepared *m, size_t w, size_t leg, size_t legs,
-    const real *s, size_t states, size_t count, real *o)
+    const real *s, size_t states, size_t count, const real *X, real *o)
 {
     for (size_t k = 0; k < count; ++k) {
         const size_t i = leg + legs*k;
         const size_t j = states*k;
-        /* (prr-S) from the base point to the connection point */
-        const real R_xx = s[2*w + j];
-        const real R_yx = s[3*w + j];
-        const real prr_base_point_x = m->prr_base_point_x[i];
-        const real prr_platform_point_x = m->prr_platform_point_x[i];
-        const real prr_platform_point_y = m->prr_platform_point_y[i];
-        const real t_x = s[0*w + j];
-        const real prr_S_x = t_x + R_xx*prr_platform_point_x - prr_base_point_x -
-            R_yx*prr_platform_point_y;
-        const real prr_base_point_y = m->prr_base_point_y[i];
-        const real t_y = s[1*w + j];
-        const real prr_S_y = t_y + R_xx*prr_platform_point_y + R_yx*prr_platform_point_x -
-            prr_base_point_y;
-        const real prr_base_frame_xx = m->prr_base_frame_xx[i];
-        const real prr_base_frame_yx = m->prr_base_frame_yx[i];
-        const real prr_S_in_axes0_x = prr_S_x*prr_base_frame_xx + prr_S_y*prr_base_frame_yx;
-        /* (prr-disc_1) discriminant of the distance equation */
-        const real prr_disc_1_t = prr_S_x*prr_S_x + prr_S_y*prr_S_y;
-        const real prr_size_t = m->prr_size_t[i];
-        const real prr_disc_1 = prr_S_in_axes0_x*prr_S_in_axes0_x + prr_size_t - prr_disc_1_t;
-        /* (prr-q_1) displacement of joint 1 */
-        const real prr_branch_1 = m->prr_branch_1[i];
-        const real prr_q_1_t = -prr_branch_1*root(prr_disc_1);
-        const real prr_q_1 = prr_S_in_axes0_x - prr_q_1_t;
+        values_prr v;
+        stage_prr_inverse_kinematics_potential(m, w, i, j, s, X, &v);
         /* (prr-q_2) displacement of joint 2 */
         const real inv_prr_size_t = m->inv_prr_size_t[i];
         const real prr_base_frame_xy = m->prr_base_frame_xy[i];
         const real prr_base_frame_yy = m->prr_base_frame_yy[i];
         const real prr_platform_joint_offset_x = m->prr_platform_joint_offset_x[i];
         const real prr_q_2 =
-            angle(inv_prr_size_t*prr_platform_joint_offset_x*(prr_S_x*prr_base_frame_xy +
-            prr_S_y*prr_base_frame_yy), inv_prr_size_t*prr_platform_joint_offset_x*prr_q_1_t);
+            angle(inv_prr_size_t*prr_platform_joint_offset_x*(v.prr_S_x*prr_base_frame_xy +
+            v.prr_S_y*prr_base_frame_yy), inv_prr_size_t*prr_platform_joint_offset_x*v.prr_q_1_t);
         /* (prr-q_1) displacement of joint 1 */
-        o[0*count + k] = prr_q_1;
+        o[0*count + k] = v.prr_q_1;
         /* (prr-q_2) displacement of joint 2 */
         o[1*count + k] = prr_q_2;
-        o[3*count + k] = prr_q_1 + prr_q_2;
-        o[2*count + k] = UNLESS(prr_disc_1 >= 0);
+        o[3*count + k] = v.prr_q_1 + prr_q_2;
+        o[2*count + k] = UNLESS(v.prr_disc_1 >= 0);
     }
 }
 
@@ -4250,20 +3874,20 @@ INLINE void inverse_kinematics_place_prr(size_t w, size_t count, const real *o, 
 
 INLINE void inverse_kinematics_run(const prepared *m, const real *X, real *q, verdict *t)
 {
-    real s[4] = {0};
+    real s[2] = {0};
     real o_rpr[4*LEGS(LEGS_OF_rpr)] = {0};
     real o_rrr[5*LEGS(LEGS_OF_rrr)] = {0};
     real o_prr[4*LEGS(LEGS_OF_prr)] = {0};
-    inverse_kinematics_before(1, X, s);
-    inverse_kinematics_legs_rpr(m, 1, 0, 1, s, 0, LEGS(LEGS_OF_rpr), o_rpr);
+    inverse_kinematics_before(m, 1, X, s);
+    inverse_kinematics_legs_rpr(m, 1, 0, 1, s, 0, LEGS(LEGS_OF_rpr), X, o_rpr);
+    inverse_kinematics_legs_rrr(m, 1, 0, 1, s, 0, LEGS(LEGS_OF_rrr), X, o_rrr);
+    inverse_kinematics_legs_prr(m, 1, 0, 1, s, 0, LEGS(LEGS_OF_prr), X, o_prr);
     for (size_t leg = 0; leg < LEGS_OF_rpr; ++leg) {
         inverse_kinematics_place_rpr(1, LEGS(LEGS_OF_rpr), o_rpr, leg, q, t);
     }
-    inverse_kinematics_legs_rrr(m, 1, 0, 1, s, 0, LEGS(LEGS_OF_rrr), o_rrr);
     for (size_t leg = 0; leg < LEGS_OF_rrr; ++leg) {
         inverse_kinematics_place_rrr(1, LEGS(LEGS_OF_rrr), o_rrr, leg, q, t);
     }
-    inverse_kinematics_legs_prr(m, 1, 0, 1, s, 0, LEGS(LEGS_OF_prr), o_prr);
     for (size_t leg = 0; leg < LEGS_OF_prr; ++leg) {
         inverse_kinematics_place_prr(1, LEGS(LEGS_OF_prr), o_prr, leg, q, t);
     }
@@ -4271,106 +3895,61 @@ INLINE void inverse_kinematics_run(const prepared *m, const real *X, real *q, ve
 
 INLINE void inverse_kinematics_run_lanes(const prepared *m, const real *X, real *q, verdict *t)
 {
-    real s[4*LANES];
+    real s[2*LANES];
     real o_rpr[4*LANES];
     real o_rrr[5*LANES];
     real o_prr[4*LANES];
-    inverse_kinematics_before(LANES, X, s);
+    inverse_kinematics_before(m, LANES, X, s);
     for (size_t leg = 0; leg < LEGS_OF_rpr; ++leg) {
-        inverse_kinematics_legs_rpr(m, LANES, leg, 0, s, 1, LANES, o_rpr);
+        inverse_kinematics_legs_rpr(m, LANES, leg, 0, s, 1, LANES, X, o_rpr);
         inverse_kinematics_place_rpr(LANES, LANES, o_rpr, 0, q, t);
     }
     for (size_t leg = 0; leg < LEGS_OF_rrr; ++leg) {
-        inverse_kinematics_legs_rrr(m, LANES, leg, 0, s, 1, LANES, o_rrr);
+        inverse_kinematics_legs_rrr(m, LANES, leg, 0, s, 1, LANES, X, o_rrr);
         inverse_kinematics_place_rrr(LANES, LANES, o_rrr, 0, q, t);
     }
     for (size_t leg = 0; leg < LEGS_OF_prr; ++leg) {
-        inverse_kinematics_legs_prr(m, LANES, leg, 0, s, 1, LANES, o_prr);
+        inverse_kinematics_legs_prr(m, LANES, leg, 0, s, 1, LANES, X, o_prr);
         inverse_kinematics_place_prr(LANES, LANES, o_prr, 0, q, t);
     }
 }
 
 /* ---- joint_rates ---- */
-INLINE void joint_rates_before(size_t w, const real *X, const real *V, real *s)
+INLINE void joint_rates_before(const prepared *m, size_t w, const real *X, real *s)
 {
     for (size_t k = 0; k < w; ++k) {
-        /* X: named entries */
-        const real X_0 = X[0*w + k];
-        const real t_x = X_0;
-        const real X_1 = X[1*w + k];
-        const real t_y = X_1;
-        const real X_2 = X[2*w + k];
-        const real R_xx = cosine(X_2);
-        const real R_yx = sine(X_2);
-        /* V: named entries */
-        const real V_0 = V[0*w + k];
-        const real t_dot_x = V_0;
-        const real V_1 = V[1*w + k];
-        const real t_dot_y = V_1;
-        const real V_2 = V[2*w + k];
-        const real omega_z = V_2;
-        s[0*w + k] = t_x;
-        s[1*w + k] = t_y;
-        s[2*w + k] = R_xx;
-        s[3*w + k] = R_yx;
-        s[4*w + k] = t_dot_x;
-        s[5*w + k] = t_dot_y;
-        s[6*w + k] = omega_z;
+        values v;
+        stage_X(m, w, k, X, &v);
+        s[0*w + k] = v.R_xx;
+        s[1*w + k] = v.R_yx;
     }
 }
 
 INLINE void joint_rates_legs_rpr(const prepared *m, size_t w, size_t leg, size_t legs, const real
-    *s, size_t states, size_t count, real *o)
+    *s, size_t states, size_t count, const real *X, const real *V, real *o)
 {
     for (size_t k = 0; k < count; ++k) {
         const size_t i = leg + legs*k;
         const size_t j = states*k;
-        /* (rpr-S) from the base point to the connection point */
-        const real R_xx = s[2*w + j];
-        const real R_yx = s[3*w + j];
-        const real rpr_platform_point_x = m->rpr_platform_point_x[i];
-        const real rpr_platform_point_y = m->rpr_platform_point_y[i];
-        const real rpr_q_x = R_xx*rpr_platform_point_x - R_yx*rpr_platform_point_y;
-        const real rpr_q_y = R_xx*rpr_platform_point_y + R_yx*rpr_platform_point_x;
-        const real rpr_base_point_x = m->rpr_base_point_x[i];
-        const real t_x = s[0*w + j];
-        const real rpr_S_x = rpr_q_x + t_x - rpr_base_point_x;
-        const real rpr_base_point_y = m->rpr_base_point_y[i];
-        const real t_y = s[1*w + j];
-        const real rpr_S_y = rpr_q_y + t_y - rpr_base_point_y;
-        /* (rpr-px_1) component along the reference direction */
-        const real rpr_base_frame_xx = m->rpr_base_frame_xx[i];
-        const real rpr_base_frame_yx = m->rpr_base_frame_yx[i];
-        const real rpr_px_1 = rpr_S_x*rpr_base_frame_xx + rpr_S_y*rpr_base_frame_yx;
-        /* (rpr-py_1) component across the reference direction */
-        const real rpr_base_frame_xy = m->rpr_base_frame_xy[i];
-        const real rpr_base_frame_yy = m->rpr_base_frame_yy[i];
-        const real rpr_py_1 = rpr_S_x*rpr_base_frame_xy + rpr_S_y*rpr_base_frame_yy;
-        /* (rpr-rho2_1) squared amplitude */
-        const real rpr_rho2_1 = rpr_px_1*rpr_px_1 + rpr_py_1*rpr_py_1;
-        /* (rpr-root_1) amplitude, with the sign of the branch */
-        const real rpr_branch_1 = m->rpr_branch_1[i];
-        const real rpr_root_1 = rpr_branch_1*root(rpr_rho2_1);
+        values_rpr v;
+        stage_rpr_X(m, w, i, j, s, X, &v);
         /* (rpr-S_dot) velocity of the connection point */
-        const real inv_rpr_root_1 = 1/rpr_root_1;
-        const real axis_x_rpr_axes1_x = inv_rpr_root_1*rpr_S_x;
-        const real axis_x_rpr_axes1_y = inv_rpr_root_1*rpr_S_y;
-        const real omega_z = s[6*w + j];
-        const real t_dot_x = s[4*w + j];
-        const real rpr_S_dot_x = t_dot_x - omega_z*rpr_q_y;
-        const real t_dot_y = s[5*w + j];
-        const real rpr_S_dot_y = t_dot_y + omega_z*rpr_q_x;
-        const real rpr_S_dot_in_axes1_x = axis_x_rpr_axes1_x*rpr_S_dot_x +
-            axis_x_rpr_axes1_y*rpr_S_dot_y;
+        const real omega_z = V[2*w + j];
+        const real t_dot_x = V[0*w + j];
+        const real rpr_S_dot_x = t_dot_x - omega_z*v.rpr_q_y;
+        const real t_dot_y = V[1*w + j];
+        const real rpr_S_dot_y = t_dot_y + omega_z*v.rpr_q_x;
+        const real rpr_S_dot_in_axes1_x = v.axis_x_rpr_axes1_x*rpr_S_dot_x +
+            v.axis_x_rpr_axes1_y*rpr_S_dot_y;
         /* (rpr-qd_1) rate of joint 1 */
-        const real rpr_qd_1 = inv_rpr_root_1*(axis_x_rpr_axes1_x*rpr_S_dot_y -
-            axis_x_rpr_axes1_y*rpr_S_dot_x);
+        const real rpr_qd_1 = v.inv_rpr_q_2*(v.axis_x_rpr_axes1_x*rpr_S_dot_y -
+            v.axis_x_rpr_axes1_y*rpr_S_dot_x);
         /* (rpr-qd_1) rate of joint 1 */
         o[0*count + k] = rpr_qd_1;
         /* (rpr-qd_2) rate of joint 2 */
         o[1*count + k] = rpr_S_dot_in_axes1_x;
         o[3*count + k] = rpr_qd_1 + rpr_S_dot_in_axes1_x;
-        o[2*count + k] = UNLESS(magnitude(rpr_rho2_1) > LEAST_1) + UNLESS(magnitude(rpr_root_1) >
+        o[2*count + k] = UNLESS(magnitude(v.rpr_q_2_t) > LEAST_1) + UNLESS(magnitude(v.rpr_q_2) >
             LEAST_2);
     }
 }
@@ -4387,90 +3966,35 @@ INLINE void joint_rates_place_rpr(size_t w, size_t count, const real *o, size_t 
 }
 
 INLINE void joint_rates_legs_rrr(const prepared *m, size_t w, size_t leg, size_t legs, const real
-    *s, size_t states, size_t count, real *o)
+    *s, size_t states, size_t count, const real *X, const real *V, real *o)
 {
     for (size_t k = 0; k < count; ++k) {
         const size_t i = leg + legs*k;
         const size_t j = states*k;
-        /* (rrr-S) from the base point to the connection point */
-        const real R_xx = s[2*w + j];
-        const real R_yx = s[3*w + j];
-        const real rrr_platform_point_x = m->rrr_platform_point_x[i];
-        const real rrr_platform_point_y = m->rrr_platform_point_y[i];
-        const real rrr_q_x = R_xx*rrr_platform_point_x - R_yx*rrr_platform_point_y;
-        const real rrr_q_y = R_xx*rrr_platform_point_y + R_yx*rrr_platform_point_x;
-        const real rrr_base_point_x = m->rrr_base_point_x[i];
-        const real t_x = s[0*w + j];
-        const real rrr_S_x = rrr_q_x + t_x - rrr_base_point_x;
-        const real rrr_base_point_y = m->rrr_base_point_y[i];
-        const real t_y = s[1*w + j];
-        const real rrr_S_y = rrr_q_y + t_y - rrr_base_point_y;
-        /* (rrr-Kd_1) projection on the centre's direction, from the distance fixed by the joints beyond
-           joint 1 */
-        const real rrr_Kd_1_t_3 = rrr_S_x*rrr_S_x + rrr_S_y*rrr_S_y;
-        const real rrr_Kd_1_t = m->rrr_Kd_1_t[i];
-        const real rrr_Kd_1_t_2 = m->rrr_Kd_1_t_2[i];
-        const real rrr_Kd_1 = rrr_Kd_1_t + R(0.5)*rrr_Kd_1_t_3 - rrr_Kd_1_t_2;
-        /* (rrr-px_1) component along the reference direction */
-        const real rrr_base_frame_xx = m->rrr_base_frame_xx[i];
-        const real rrr_base_frame_yx = m->rrr_base_frame_yx[i];
-        const real rrr_px_1 = rrr_S_x*rrr_base_frame_xx + rrr_S_y*rrr_base_frame_yx;
-        /* (rrr-py_1) component across the reference direction */
-        const real rrr_base_frame_xy = m->rrr_base_frame_xy[i];
-        const real rrr_base_frame_yy = m->rrr_base_frame_yy[i];
-        const real rrr_py_1 = rrr_S_x*rrr_base_frame_xy + rrr_S_y*rrr_base_frame_yy;
-        /* (rrr-Kc_1) factor of the cosine in the equation of joint 1 */
-        const real rrr_joint2_offset_x = m->rrr_joint2_offset_x[i];
-        const real rrr_Kc_1 = rrr_joint2_offset_x*rrr_px_1;
-        /* (rrr-Ks_1) factor of the sine in the equation of joint 1 */
-        const real rrr_Ks_1 = rrr_joint2_offset_x*rrr_py_1;
-        /* (rrr-rho2_1) squared amplitude */
-        const real rrr_rho2_1 = rrr_Kc_1*rrr_Kc_1 + rrr_Ks_1*rrr_Ks_1;
-        /* (rrr-disc_1) discriminant */
-        const real rrr_disc_1 = rrr_rho2_1 - rrr_Kd_1*rrr_Kd_1;
-        /* (rrr-root_1) root, with the sign of the branch */
-        const real rrr_branch_1 = m->rrr_branch_1[i];
-        const real rrr_root_1 = rrr_branch_1*root(rrr_disc_1);
-        /* (rrr-c_1) cosine of the angle of joint 1 from its reference direction */
-        const real inv_rrr_rho2_1 = 1/rrr_rho2_1;
-        const real rrr_c_1 = inv_rrr_rho2_1*(rrr_Kc_1*rrr_Kd_1 - rrr_Ks_1*rrr_root_1);
-        /* (rrr-s_1) sine of the angle of joint 1 from its reference direction */
-        const real rrr_s_1 = inv_rrr_rho2_1*(rrr_Kc_1*rrr_root_1 + rrr_Kd_1*rrr_Ks_1);
-        /* (rrr-x_2) from the origin of joint 2 to the connection point */
-        const real inv_rrr_size_t = m->inv_rrr_size_t[i];
-        const real rrr_x_2_in_axes1_x = inv_rrr_size_t*rrr_Kd_1*rrr_joint2_offset_x -
-            rrr_joint2_offset_x;
-        /* (rrr-c_2) cosine of the angle of joint 2 from its reference direction */
-        const real inv_rrr_size_t_2 = m->inv_rrr_size_t_2[i];
-        const real rrr_platform_joint_offset_x = m->rrr_platform_joint_offset_x[i];
-        const real rrr_c_2 = inv_rrr_size_t_2*rrr_platform_joint_offset_x*rrr_x_2_in_axes1_x;
-        /* (rrr-s_2) sine of the angle of joint 2 from its reference direction */
-        const real rrr_s_2 =
-            -inv_rrr_size_t*inv_rrr_size_t_2*rrr_joint2_offset_x*rrr_platform_joint_offset_x*rrr_root_1;
+        values_rrr v;
+        stage_rrr_X(m, w, i, j, s, X, &v);
         /* (rrr-S_dot) velocity of the connection point */
-        const real omega_z = s[6*w + j];
-        const real t_dot_x = s[4*w + j];
-        const real rrr_S_dot_x = t_dot_x - omega_z*rrr_q_y;
-        const real t_dot_y = s[5*w + j];
-        const real rrr_S_dot_y = t_dot_y + omega_z*rrr_q_x;
-        /* (rrr-r_1) from joint 1 to the connection point, along the links */
-        const real rrr_r_1_in_axes1_y = rrr_platform_joint_offset_x*rrr_s_2;
-        const real rrr_r_1_in_axes1_x = rrr_joint2_offset_x + rrr_c_2*rrr_platform_joint_offset_x;
-        const real rrr_r_1_in_axes2_y = rrr_c_2*rrr_r_1_in_axes1_y - rrr_r_1_in_axes1_x*rrr_s_2;
+        const real omega_z = V[2*w + j];
+        const real t_dot_x = V[0*w + j];
+        const real rrr_S_dot_x = t_dot_x - omega_z*v.rrr_q_y;
+        const real t_dot_y = V[1*w + j];
+        const real rrr_S_dot_y = t_dot_y + omega_z*v.rrr_q_x;
         /* (rrr-qd_1) rate of joint 1 */
-        const real rrr_qd_1_t = rrr_c_1*rrr_s_2 + rrr_c_2*rrr_s_1;
-        const real rrr_qd_1_t_2 = rrr_c_1*rrr_c_2 - rrr_s_1*rrr_s_2;
-        const real axis_y_rrr_axes2_x = rrr_base_frame_xy*rrr_qd_1_t_2 -
-            rrr_base_frame_xx*rrr_qd_1_t;
-        const real axis_x_rrr_axes2_x = rrr_base_frame_yy*rrr_qd_1_t_2 -
-            rrr_base_frame_yx*rrr_qd_1_t;
+        const real rrr_base_frame_xx = m->rrr_base_frame_xx[i];
+        const real rrr_base_frame_xy = m->rrr_base_frame_xy[i];
+        const real axis_y_rrr_axes2_x = rrr_base_frame_xy*v.rrr_qd_1_t_2 -
+            rrr_base_frame_xx*v.rrr_qd_1_t;
+        const real rrr_base_frame_yx = m->rrr_base_frame_yx[i];
+        const real rrr_base_frame_yy = m->rrr_base_frame_yy[i];
+        const real axis_x_rrr_axes2_x = rrr_base_frame_yy*v.rrr_qd_1_t_2 -
+            rrr_base_frame_yx*v.rrr_qd_1_t;
         const real rrr_qd_1 = -(axis_x_rrr_axes2_x*rrr_S_dot_x -
-            axis_y_rrr_axes2_x*rrr_S_dot_y)/rrr_r_1_in_axes2_y;
+            axis_y_rrr_axes2_x*rrr_S_dot_y)/v.rrr_r_1_in_axes2_y;
         /* (rrr-qd_2) rate of joint 2 */
         const real rrr_w_2_in_axes2_y = m->rrr_w_2_in_axes2_y[i];
         const real rrr_qd_2 = rrr_w_2_in_axes2_y*(axis_x_rrr_axes2_x*rrr_S_dot_y +
-            axis_y_rrr_axes2_x*rrr_S_dot_x - rrr_qd_1*(rrr_c_2*rrr_r_1_in_axes1_x +
-            rrr_r_1_in_axes1_y*rrr_s_2));
+            axis_y_rrr_axes2_x*rrr_S_dot_x - rrr_qd_1*(v.rrr_c_2*v.rrr_r_1_in_axes1_x +
+            v.rrr_r_1_in_axes1_y*v.rrr_s_2));
         /* (rrr-qd_1) rate of joint 1 */
         o[0*count + k] = rrr_qd_1;
         /* (rrr-qd_2) rate of joint 2 */
@@ -4478,9 +4002,9 @@ INLINE void joint_rates_legs_rrr(const prepared *m, size_t w, size_t leg, size_t
         o[4*count + k] = rrr_qd_1 + rrr_qd_2;
         const real rrr_rho2_1_t = m->rrr_rho2_1_t[i];
         const real rrr_size = m->rrr_size[i];
-        o[3*count + k] = UNLESS(magnitude(rrr_rho2_1) > TOLERANCE*TOLERANCE*rrr_rho2_1_t) +
-            UNLESS(magnitude(rrr_r_1_in_axes2_y) > TOLERANCE*rrr_size);
-        o[2*count + k] = UNLESS(rrr_disc_1 >= 0);
+        o[3*count + k] = UNLESS(magnitude(v.rrr_rho2_1) > TOLERANCE*TOLERANCE*rrr_rho2_1_t) +
+            UNLESS(magnitude(v.rrr_r_1_in_axes2_y) > TOLERANCE*rrr_size);
+        o[2*count + k] = UNLESS(v.rrr_disc_1 >= 0);
     }
 }
 
@@ -4497,58 +4021,42 @@ INLINE void joint_rates_place_rrr(size_t w, size_t count, const real *o, size_t 
 }
 
 INLINE void joint_rates_legs_prr(const prepared *m, size_t w, size_t leg, size_t legs, const real
-    *s, size_t states, size_t count, real *o)
+    *s, size_t states, size_t count, const real *X, const real *V, real *o)
 {
     for (size_t k = 0; k < count; ++k) {
         const size_t i = leg + legs*k;
         const size_t j = states*k;
-        /* (prr-S) from the base point to the connection point */
-        const real R_xx = s[2*w + j];
-        const real R_yx = s[3*w + j];
-        const real prr_platform_point_x = m->prr_platform_point_x[i];
-        const real prr_platform_point_y = m->prr_platform_point_y[i];
-        const real prr_q_x = R_xx*prr_platform_point_x - R_yx*prr_platform_point_y;
-        const real prr_q_y = R_xx*prr_platform_point_y + R_yx*prr_platform_point_x;
-        const real prr_base_point_x = m->prr_base_point_x[i];
-        const real t_x = s[0*w + j];
-        const real prr_S_x = prr_q_x + t_x - prr_base_point_x;
-        const real prr_base_point_y = m->prr_base_point_y[i];
-        const real t_y = s[1*w + j];
-        const real prr_S_y = prr_q_y + t_y - prr_base_point_y;
-        const real prr_base_frame_xx = m->prr_base_frame_xx[i];
-        const real prr_base_frame_yx = m->prr_base_frame_yx[i];
-        const real prr_S_in_axes0_x = prr_S_x*prr_base_frame_xx + prr_S_y*prr_base_frame_yx;
-        /* (prr-disc_1) discriminant of the distance equation */
-        const real prr_disc_1_t = prr_S_x*prr_S_x + prr_S_y*prr_S_y;
-        const real prr_size_t = m->prr_size_t[i];
-        const real prr_disc_1 = prr_S_in_axes0_x*prr_S_in_axes0_x + prr_size_t - prr_disc_1_t;
+        values_prr v;
+        stage_prr_X(m, w, i, j, s, X, &v);
         /* (prr-S_dot) velocity of the connection point */
-        const real omega_z = s[6*w + j];
-        const real t_dot_x = s[4*w + j];
-        const real prr_S_dot_x = t_dot_x - omega_z*prr_q_y;
-        const real t_dot_y = s[5*w + j];
-        const real prr_S_dot_y = t_dot_y + omega_z*prr_q_x;
+        const real omega_z = V[2*w + j];
+        const real t_dot_x = V[0*w + j];
+        const real prr_S_dot_x = t_dot_x - omega_z*v.prr_q_y;
+        const real t_dot_y = V[1*w + j];
+        const real prr_S_dot_y = t_dot_y + omega_z*v.prr_q_x;
         /* (prr-v_2) velocity of the connection point per rate of joint 2 */
         const real inv_prr_size_t = m->inv_prr_size_t[i];
         const real prr_branch_1 = m->prr_branch_1[i];
         const real prr_platform_joint_offset_x = m->prr_platform_joint_offset_x[i];
         const real prr_v_2_in_axes0_y =
-            -inv_prr_size_t*prr_branch_1*root(prr_disc_1)*prr_platform_joint_offset_x*prr_platform_joint_offset_x;
+            -inv_prr_size_t*prr_branch_1*root(v.prr_disc_1)*prr_platform_joint_offset_x*prr_platform_joint_offset_x;
         /* (prr-qd_1) rate of joint 1 */
         const real prr_base_frame_xy = m->prr_base_frame_xy[i];
         const real prr_base_frame_yy = m->prr_base_frame_yy[i];
         const real prr_qd_1_t = (prr_S_dot_x*prr_base_frame_xy +
             prr_S_dot_y*prr_base_frame_yy)/prr_v_2_in_axes0_y;
+        const real prr_base_frame_xx = m->prr_base_frame_xx[i];
+        const real prr_base_frame_yx = m->prr_base_frame_yx[i];
         const real prr_qd_1 = prr_S_dot_x*prr_base_frame_xx + prr_S_dot_y*prr_base_frame_yx +
-            inv_prr_size_t*prr_platform_joint_offset_x*prr_platform_joint_offset_x*prr_qd_1_t*(prr_S_x*prr_base_frame_xy
-            + prr_S_y*prr_base_frame_yy);
+            inv_prr_size_t*prr_platform_joint_offset_x*prr_platform_joint_offset_x*prr_qd_1_t*(v.prr_S_x*prr_base_frame_xy
+            + v.prr_S_y*prr_base_frame_yy);
         /* (prr-qd_1) rate of joint 1 */
         o[0*count + k] = prr_qd_1;
         /* (prr-qd_2) rate of joint 2 */
         o[1*count + k] = prr_qd_1_t;
         o[4*count + k] = prr_qd_1 + prr_qd_1_t;
         const real prr_size = m->prr_size[i];
-        o[2*count + k] = UNLESS(prr_disc_1 >= 0);
+        o[2*count + k] = UNLESS(v.prr_disc_1 >= 0);
         o[3*count + k] = UNLESS(magnitude(prr_v_2_in_axes0_y) > TOLERANCE*prr_size);
     }
 }
@@ -4567,20 +4075,20 @@ INLINE void joint_rates_place_prr(size_t w, size_t count, const real *o, size_t 
 
 INLINE void joint_rates_run(const prepared *m, const real *X, const real *V, real *qd, verdict *t)
 {
-    real s[7] = {0};
+    real s[2] = {0};
     real o_rpr[4*LEGS(LEGS_OF_rpr)] = {0};
     real o_rrr[5*LEGS(LEGS_OF_rrr)] = {0};
     real o_prr[5*LEGS(LEGS_OF_prr)] = {0};
-    joint_rates_before(1, X, V, s);
-    joint_rates_legs_rpr(m, 1, 0, 1, s, 0, LEGS(LEGS_OF_rpr), o_rpr);
+    joint_rates_before(m, 1, X, s);
+    joint_rates_legs_rpr(m, 1, 0, 1, s, 0, LEGS(LEGS_OF_rpr), X, V, o_rpr);
+    joint_rates_legs_rrr(m, 1, 0, 1, s, 0, LEGS(LEGS_OF_rrr), X, V, o_rrr);
+    joint_rates_legs_prr(m, 1, 0, 1, s, 0, LEGS(LEGS_OF_prr), X, V, o_prr);
     for (size_t leg = 0; leg < LEGS_OF_rpr; ++leg) {
         joint_rates_place_rpr(1, LEGS(LEGS_OF_rpr), o_rpr, leg, qd, t);
     }
-    joint_rates_legs_rrr(m, 1, 0, 1, s, 0, LEGS(LEGS_OF_rrr), o_rrr);
     for (size_t leg = 0; leg < LEGS_OF_rrr; ++leg) {
         joint_rates_place_rrr(1, LEGS(LEGS_OF_rrr), o_rrr, leg, qd, t);
     }
-    joint_rates_legs_prr(m, 1, 0, 1, s, 0, LEGS(LEGS_OF_prr), o_prr);
     for (size_t leg = 0; leg < LEGS_OF_prr; ++leg) {
         joint_rates_place_prr(1, LEGS(LEGS_OF_prr), o_prr, leg, qd, t);
     }
@@ -4589,135 +4097,61 @@ INLINE void joint_rates_run(const prepared *m, const real *X, const real *V, rea
 INLINE void joint_rates_run_lanes(const prepared *m, const real *X, const real *V, real *qd,
     verdict *t)
 {
-    real s[7*LANES];
+    real s[2*LANES];
     real o_rpr[4*LANES];
     real o_rrr[5*LANES];
     real o_prr[5*LANES];
-    joint_rates_before(LANES, X, V, s);
+    joint_rates_before(m, LANES, X, s);
     for (size_t leg = 0; leg < LEGS_OF_rpr; ++leg) {
-        joint_rates_legs_rpr(m, LANES, leg, 0, s, 1, LANES, o_rpr);
+        joint_rates_legs_rpr(m, LANES, leg, 0, s, 1, LANES, X, V, o_rpr);
         joint_rates_place_rpr(LANES, LANES, o_rpr, 0, qd, t);
     }
     for (size_t leg = 0; leg < LEGS_OF_rrr; ++leg) {
-        joint_rates_legs_rrr(m, LANES, leg, 0, s, 1, LANES, o_rrr);
+        joint_rates_legs_rrr(m, LANES, leg, 0, s, 1, LANES, X, V, o_rrr);
         joint_rates_place_rrr(LANES, LANES, o_rrr, 0, qd, t);
     }
     for (size_t leg = 0; leg < LEGS_OF_prr; ++leg) {
-        joint_rates_legs_prr(m, LANES, leg, 0, s, 1, LANES, o_prr);
+        joint_rates_legs_prr(m, LANES, leg, 0, s, 1, LANES, X, V, o_prr);
         joint_rates_place_prr(LANES, LANES, o_prr, 0, qd, t);
     }
 }
 
 /* ---- joint_accelerations ---- */
-INLINE void joint_accelerations_before(size_t w, const real *X, const real *V, const real *A, real
-    *s)
+INLINE void joint_accelerations_before(const prepared *m, size_t w, const real *X, real *s)
 {
     for (size_t k = 0; k < w; ++k) {
-        /* X: named entries */
-        const real X_0 = X[0*w + k];
-        const real t_x = X_0;
-        const real X_1 = X[1*w + k];
-        const real t_y = X_1;
-        const real X_2 = X[2*w + k];
-        const real R_xx = cosine(X_2);
-        const real R_yx = sine(X_2);
-        /* V: named entries */
-        const real V_0 = V[0*w + k];
-        const real t_dot_x = V_0;
-        const real V_1 = V[1*w + k];
-        const real t_dot_y = V_1;
-        const real V_2 = V[2*w + k];
-        const real omega_z = V_2;
-        /* A: named entries */
-        const real A_0 = A[0*w + k];
-        const real t_ddot_x = A_0;
-        const real A_1 = A[1*w + k];
-        const real t_ddot_y = A_1;
-        const real A_2 = A[2*w + k];
-        const real alpha_z = A_2;
-        s[0*w + k] = t_x;
-        s[1*w + k] = t_y;
-        s[2*w + k] = R_xx;
-        s[3*w + k] = R_yx;
-        s[4*w + k] = t_dot_x;
-        s[5*w + k] = t_dot_y;
-        s[6*w + k] = omega_z;
-        s[7*w + k] = t_ddot_x;
-        s[8*w + k] = t_ddot_y;
-        s[9*w + k] = alpha_z;
+        values v;
+        stage_X(m, w, k, X, &v);
+        s[0*w + k] = v.R_xx;
+        s[1*w + k] = v.R_yx;
     }
 }
 
 INLINE void joint_accelerations_legs_rpr(const prepared *m, size_t w, size_t leg, size_t legs,
-    const real *s, size_t states, size_t count, real *o)
+    const real *s, size_t states, size_t count, const real *X, const real *V, const real *A, real
+    *o)
 {
     for (size_t k = 0; k < count; ++k) {
         const size_t i = leg + legs*k;
         const size_t j = states*k;
-        /* (rpr-S) from the base point to the connection point */
-        const real R_xx = s[2*w + j];
-        const real R_yx = s[3*w + j];
-        const real rpr_platform_point_x = m->rpr_platform_point_x[i];
-        const real rpr_platform_point_y = m->rpr_platform_point_y[i];
-        const real rpr_q_x = R_xx*rpr_platform_point_x - R_yx*rpr_platform_point_y;
-        const real rpr_q_y = R_xx*rpr_platform_point_y + R_yx*rpr_platform_point_x;
-        const real rpr_base_point_x = m->rpr_base_point_x[i];
-        const real t_x = s[0*w + j];
-        const real rpr_S_x = rpr_q_x + t_x - rpr_base_point_x;
-        const real rpr_base_point_y = m->rpr_base_point_y[i];
-        const real t_y = s[1*w + j];
-        const real rpr_S_y = rpr_q_y + t_y - rpr_base_point_y;
-        /* (rpr-px_1) component along the reference direction */
-        const real rpr_base_frame_xx = m->rpr_base_frame_xx[i];
-        const real rpr_base_frame_yx = m->rpr_base_frame_yx[i];
-        const real rpr_px_1 = rpr_S_x*rpr_base_frame_xx + rpr_S_y*rpr_base_frame_yx;
-        /* (rpr-py_1) component across the reference direction */
-        const real rpr_base_frame_xy = m->rpr_base_frame_xy[i];
-        const real rpr_base_frame_yy = m->rpr_base_frame_yy[i];
-        const real rpr_py_1 = rpr_S_x*rpr_base_frame_xy + rpr_S_y*rpr_base_frame_yy;
-        /* (rpr-rho2_1) squared amplitude */
-        const real rpr_rho2_1 = rpr_px_1*rpr_px_1 + rpr_py_1*rpr_py_1;
-        /* (rpr-root_1) amplitude, with the sign of the branch */
-        const real rpr_branch_1 = m->rpr_branch_1[i];
-        const real rpr_root_1 = rpr_branch_1*root(rpr_rho2_1);
-        /* (rpr-S_dot) velocity of the connection point */
-        const real inv_rpr_root_1 = 1/rpr_root_1;
-        const real axis_x_rpr_axes1_x = inv_rpr_root_1*rpr_S_x;
-        const real axis_x_rpr_axes1_y = inv_rpr_root_1*rpr_S_y;
-        const real omega_z = s[6*w + j];
-        const real rpr_S_dot_t = omega_z*rpr_q_y;
-        const real rpr_S_dot_t_2 = omega_z*rpr_q_x;
-        const real t_dot_x = s[4*w + j];
-        const real rpr_S_dot_x = t_dot_x - rpr_S_dot_t;
-        const real t_dot_y = s[5*w + j];
-        const real rpr_S_dot_y = rpr_S_dot_t_2 + t_dot_y;
-        const real rpr_S_dot_in_axes1_x = axis_x_rpr_axes1_x*rpr_S_dot_x +
-            axis_x_rpr_axes1_y*rpr_S_dot_y;
-        /* (rpr-qd_1) rate of joint 1 */
-        const real rpr_qd_1 = inv_rpr_root_1*(axis_x_rpr_axes1_x*rpr_S_dot_y -
-            axis_x_rpr_axes1_y*rpr_S_dot_x);
-        /* (rpr-a_p) acceleration of the connection point without its centripetal part */
-        const real alpha_z = s[9*w + j];
-        const real t_ddot_x = s[7*w + j];
-        const real rpr_a_p_x = t_ddot_x - alpha_z*rpr_q_y;
-        const real t_ddot_y = s[8*w + j];
-        const real rpr_a_p_y = t_ddot_y + alpha_z*rpr_q_x;
-        /* (rpr-S_ddot) acceleration of the connection point */
-        const real rpr_S_ddot_x = rpr_a_p_x - omega_z*rpr_S_dot_t_2;
-        const real rpr_S_ddot_y = rpr_a_p_y - omega_z*rpr_S_dot_t;
+        values_rpr v;
+        stage_rpr_X(m, w, i, j, s, X, &v);
+        stage_rpr_A_X(w, j, A, &v);
+        stage_rpr_V_X(w, j, V, &v);
+        stage_rpr_A_V_X(w, j, V, &v);
         /* (rpr-rel) acceleration of the connection point left to the joint accelerations */
-        const real rpr_rel_in_axes1_x = axis_x_rpr_axes1_x*rpr_S_ddot_x +
-            axis_x_rpr_axes1_y*rpr_S_ddot_y + rpr_qd_1*rpr_qd_1*rpr_root_1;
-        const real rpr_rel_in_axes1_y = axis_x_rpr_axes1_x*rpr_S_ddot_y -
-            axis_x_rpr_axes1_y*rpr_S_ddot_x - 2*rpr_S_dot_in_axes1_x*rpr_qd_1;
+        const real rpr_rel_in_axes1_x = v.axis_x_rpr_axes1_x*v.rpr_S_ddot_x +
+            v.axis_x_rpr_axes1_y*v.rpr_S_ddot_y + v.rpr_q_2*v.rpr_qd_1*v.rpr_qd_1;
+        const real rpr_rel_in_axes1_y = v.axis_x_rpr_axes1_x*v.rpr_S_ddot_y -
+            v.axis_x_rpr_axes1_y*v.rpr_S_ddot_x - 2*v.rpr_S_dot_in_axes1_x*v.rpr_qd_1;
         /* (rpr-qdd_1) acceleration of joint 1 */
-        const real rpr_qdd_1 = inv_rpr_root_1*rpr_rel_in_axes1_y;
+        const real rpr_qdd_1 = v.inv_rpr_q_2*rpr_rel_in_axes1_y;
         /* (rpr-qdd_1) acceleration of joint 1 */
         o[0*count + k] = rpr_qdd_1;
         /* (rpr-qdd_2) acceleration of joint 2 */
         o[1*count + k] = rpr_rel_in_axes1_x;
         o[3*count + k] = rpr_qdd_1 + rpr_rel_in_axes1_x;
-        o[2*count + k] = UNLESS(magnitude(rpr_rho2_1) > LEAST_1) + UNLESS(magnitude(rpr_root_1) >
+        o[2*count + k] = UNLESS(magnitude(v.rpr_q_2_t) > LEAST_1) + UNLESS(magnitude(v.rpr_q_2) >
             LEAST_2);
     }
 }
@@ -4734,120 +4168,51 @@ INLINE void joint_accelerations_place_rpr(size_t w, size_t count, const real *o,
 }
 
 INLINE void joint_accelerations_legs_rrr(const prepared *m, size_t w, size_t leg, size_t legs,
-    const real *s, size_t states, size_t count, real *o)
+    const real *s, size_t states, size_t count, const real *X, const real *V, const real *A, real
+    *o)
 {
     for (size_t k = 0; k < count; ++k) {
         const size_t i = leg + legs*k;
         const size_t j = states*k;
-        /* (rrr-S) from the base point to the connection point */
-        const real R_xx = s[2*w + j];
-        const real R_yx = s[3*w + j];
-        const real rrr_platform_point_x = m->rrr_platform_point_x[i];
-        const real rrr_platform_point_y = m->rrr_platform_point_y[i];
-        const real rrr_q_x = R_xx*rrr_platform_point_x - R_yx*rrr_platform_point_y;
-        const real rrr_q_y = R_xx*rrr_platform_point_y + R_yx*rrr_platform_point_x;
-        const real rrr_base_point_x = m->rrr_base_point_x[i];
-        const real t_x = s[0*w + j];
-        const real rrr_S_x = rrr_q_x + t_x - rrr_base_point_x;
-        const real rrr_base_point_y = m->rrr_base_point_y[i];
-        const real t_y = s[1*w + j];
-        const real rrr_S_y = rrr_q_y + t_y - rrr_base_point_y;
-        /* (rrr-Kd_1) projection on the centre's direction, from the distance fixed by the joints beyond
-           joint 1 */
-        const real rrr_Kd_1_t_3 = rrr_S_x*rrr_S_x + rrr_S_y*rrr_S_y;
-        const real rrr_Kd_1_t = m->rrr_Kd_1_t[i];
-        const real rrr_Kd_1_t_2 = m->rrr_Kd_1_t_2[i];
-        const real rrr_Kd_1 = rrr_Kd_1_t + R(0.5)*rrr_Kd_1_t_3 - rrr_Kd_1_t_2;
-        /* (rrr-px_1) component along the reference direction */
-        const real rrr_base_frame_xx = m->rrr_base_frame_xx[i];
-        const real rrr_base_frame_yx = m->rrr_base_frame_yx[i];
-        const real rrr_px_1 = rrr_S_x*rrr_base_frame_xx + rrr_S_y*rrr_base_frame_yx;
-        /* (rrr-py_1) component across the reference direction */
-        const real rrr_base_frame_xy = m->rrr_base_frame_xy[i];
-        const real rrr_base_frame_yy = m->rrr_base_frame_yy[i];
-        const real rrr_py_1 = rrr_S_x*rrr_base_frame_xy + rrr_S_y*rrr_base_frame_yy;
-        /* (rrr-Kc_1) factor of the cosine in the equation of joint 1 */
-        const real rrr_joint2_offset_x = m->rrr_joint2_offset_x[i];
-        const real rrr_Kc_1 = rrr_joint2_offset_x*rrr_px_1;
-        /* (rrr-Ks_1) factor of the sine in the equation of joint 1 */
-        const real rrr_Ks_1 = rrr_joint2_offset_x*rrr_py_1;
-        /* (rrr-rho2_1) squared amplitude */
-        const real rrr_rho2_1 = rrr_Kc_1*rrr_Kc_1 + rrr_Ks_1*rrr_Ks_1;
-        /* (rrr-disc_1) discriminant */
-        const real rrr_disc_1 = rrr_rho2_1 - rrr_Kd_1*rrr_Kd_1;
-        /* (rrr-root_1) root, with the sign of the branch */
-        const real rrr_branch_1 = m->rrr_branch_1[i];
-        const real rrr_root_1 = rrr_branch_1*root(rrr_disc_1);
-        /* (rrr-c_1) cosine of the angle of joint 1 from its reference direction */
-        const real inv_rrr_rho2_1 = 1/rrr_rho2_1;
-        const real rrr_c_1 = inv_rrr_rho2_1*(rrr_Kc_1*rrr_Kd_1 - rrr_Ks_1*rrr_root_1);
-        /* (rrr-s_1) sine of the angle of joint 1 from its reference direction */
-        const real rrr_s_1 = inv_rrr_rho2_1*(rrr_Kc_1*rrr_root_1 + rrr_Kd_1*rrr_Ks_1);
-        /* (rrr-x_2) from the origin of joint 2 to the connection point */
-        const real inv_rrr_size_t = m->inv_rrr_size_t[i];
-        const real rrr_x_2_in_axes1_x = inv_rrr_size_t*rrr_Kd_1*rrr_joint2_offset_x -
-            rrr_joint2_offset_x;
-        /* (rrr-c_2) cosine of the angle of joint 2 from its reference direction */
-        const real inv_rrr_size_t_2 = m->inv_rrr_size_t_2[i];
-        const real rrr_platform_joint_offset_x = m->rrr_platform_joint_offset_x[i];
-        const real rrr_c_2 = inv_rrr_size_t_2*rrr_platform_joint_offset_x*rrr_x_2_in_axes1_x;
-        /* (rrr-s_2) sine of the angle of joint 2 from its reference direction */
-        const real rrr_s_2 =
-            -inv_rrr_size_t*inv_rrr_size_t_2*rrr_joint2_offset_x*rrr_platform_joint_offset_x*rrr_root_1;
-        /* (rrr-S_dot) velocity of the connection point */
-        const real omega_z = s[6*w + j];
-        const real rrr_S_dot_t = omega_z*rrr_q_y;
-        const real rrr_S_dot_t_2 = omega_z*rrr_q_x;
-        const real t_dot_x = s[4*w + j];
-        const real rrr_S_dot_x = t_dot_x - rrr_S_dot_t;
-        const real t_dot_y = s[5*w + j];
-        const real rrr_S_dot_y = rrr_S_dot_t_2 + t_dot_y;
-        /* (rrr-r_1) from joint 1 to the connection point, along the links */
-        const real rrr_r_1_in_axes1_y = rrr_platform_joint_offset_x*rrr_s_2;
-        const real rrr_r_1_in_axes1_x = rrr_joint2_offset_x + rrr_c_2*rrr_platform_joint_offset_x;
-        const real rrr_r_1_in_axes2_x = rrr_c_2*rrr_r_1_in_axes1_x + rrr_r_1_in_axes1_y*rrr_s_2;
-        const real rrr_r_1_in_axes2_y = rrr_c_2*rrr_r_1_in_axes1_y - rrr_r_1_in_axes1_x*rrr_s_2;
-        /* (rrr-w_1) reciprocal vector 1 */
-        const real rrr_w_1_in_axes2_x = -1/rrr_r_1_in_axes2_y;
+        values_rrr v;
+        stage_rrr_X(m, w, i, j, s, X, &v);
+        stage_rrr_A_X(w, j, A, &v);
+        stage_rrr_V_X(m, w, i, j, V, &v);
+        stage_rrr_A_V_X(w, j, V, &v);
         /* (rrr-qd_1) rate of joint 1 */
-        const real rrr_qd_1_t = rrr_c_1*rrr_s_2 + rrr_c_2*rrr_s_1;
-        const real rrr_qd_1_t_2 = rrr_c_1*rrr_c_2 - rrr_s_1*rrr_s_2;
-        const real axis_y_rrr_axes2_x = rrr_base_frame_xy*rrr_qd_1_t_2 -
-            rrr_base_frame_xx*rrr_qd_1_t;
-        const real axis_x_rrr_axes2_x = rrr_base_frame_yy*rrr_qd_1_t_2 -
-            rrr_base_frame_yx*rrr_qd_1_t;
-        const real rrr_qd_1 = rrr_w_1_in_axes2_x*(axis_x_rrr_axes2_x*rrr_S_dot_x -
-            axis_y_rrr_axes2_x*rrr_S_dot_y);
+        const real rrr_base_frame_xx = m->rrr_base_frame_xx[i];
+        const real rrr_base_frame_xy = m->rrr_base_frame_xy[i];
+        const real axis_y_rrr_axes2_x = rrr_base_frame_xy*v.rrr_qd_1_t_2 -
+            rrr_base_frame_xx*v.rrr_qd_1_t;
+        const real rrr_base_frame_yx = m->rrr_base_frame_yx[i];
+        const real rrr_base_frame_yy = m->rrr_base_frame_yy[i];
+        const real axis_x_rrr_axes2_x = rrr_base_frame_yy*v.rrr_qd_1_t_2 -
+            rrr_base_frame_yx*v.rrr_qd_1_t;
+        const real rrr_qd_1 = v.rrr_w_1_in_axes2_x*(axis_x_rrr_axes2_x*v.rrr_S_dot_x -
+            axis_y_rrr_axes2_x*v.rrr_S_dot_y);
         /* (rrr-W_1) centripetal tensor of link 1 */
         const real rrr_W_1_t = rrr_qd_1*rrr_qd_1;
         /* (rrr-omega_2) angular velocity of link 2 */
         const real rrr_w_2_in_axes2_y = m->rrr_w_2_in_axes2_y[i];
         const real rrr_omega_2_in_axes2_z = rrr_qd_1 +
-            rrr_w_2_in_axes2_y*(axis_x_rrr_axes2_x*rrr_S_dot_y + axis_y_rrr_axes2_x*rrr_S_dot_x -
-            rrr_qd_1*rrr_r_1_in_axes2_x);
-        /* (rrr-a_p) acceleration of the connection point without its centripetal part */
-        const real alpha_z = s[9*w + j];
-        const real t_ddot_x = s[7*w + j];
-        const real rrr_a_p_x = t_ddot_x - alpha_z*rrr_q_y;
-        const real t_ddot_y = s[8*w + j];
-        const real rrr_a_p_y = t_ddot_y + alpha_z*rrr_q_x;
-        /* (rrr-S_ddot) acceleration of the connection point */
-        const real rrr_S_ddot_x = rrr_a_p_x - omega_z*rrr_S_dot_t_2;
-        const real rrr_S_ddot_y = rrr_a_p_y - omega_z*rrr_S_dot_t;
+            rrr_w_2_in_axes2_y*(axis_x_rrr_axes2_x*v.rrr_S_dot_y +
+            axis_y_rrr_axes2_x*v.rrr_S_dot_x - rrr_qd_1*v.rrr_r_1_in_axes2_x);
         /* (rrr-bias) acceleration of the connection point at zero joint accelerations */
+        const real rrr_joint2_offset_x = m->rrr_joint2_offset_x[i];
+        const real rrr_platform_joint_offset_x = m->rrr_platform_joint_offset_x[i];
         const real rrr_bias_in_axes2_x =
             -rrr_omega_2_in_axes2_z*rrr_omega_2_in_axes2_z*rrr_platform_joint_offset_x -
-            rrr_W_1_t*rrr_c_2*rrr_joint2_offset_x;
+            rrr_W_1_t*v.rrr_c_2*rrr_joint2_offset_x;
         /* (rrr-rel) acceleration of the connection point left to the joint accelerations */
-        const real rrr_rel_in_axes2_x = axis_x_rrr_axes2_x*rrr_S_ddot_x - rrr_bias_in_axes2_x -
-            axis_y_rrr_axes2_x*rrr_S_ddot_y;
-        const real rrr_rel_in_axes2_y = axis_x_rrr_axes2_x*rrr_S_ddot_y +
-            axis_y_rrr_axes2_x*rrr_S_ddot_x - rrr_W_1_t*rrr_joint2_offset_x*rrr_s_2;
+        const real rrr_rel_in_axes2_x = axis_x_rrr_axes2_x*v.rrr_S_ddot_x - rrr_bias_in_axes2_x -
+            axis_y_rrr_axes2_x*v.rrr_S_ddot_y;
+        const real rrr_rel_in_axes2_y = axis_x_rrr_axes2_x*v.rrr_S_ddot_y +
+            axis_y_rrr_axes2_x*v.rrr_S_ddot_x - rrr_W_1_t*rrr_joint2_offset_x*v.rrr_s_2;
         /* (rrr-qdd_1) acceleration of joint 1 */
-        const real rrr_qdd_1_t = -rrr_rel_in_axes2_x*rrr_w_1_in_axes2_x;
+        const real rrr_qdd_1_t = -rrr_rel_in_axes2_x*v.rrr_w_1_in_axes2_x;
         /* (rrr-qdd_2) acceleration of joint 2 */
         const real rrr_qdd_2 = rrr_w_2_in_axes2_y*(rrr_rel_in_axes2_y +
-            rrr_qdd_1_t*rrr_r_1_in_axes2_x);
+            rrr_qdd_1_t*v.rrr_r_1_in_axes2_x);
         /* (rrr-qdd_1) acceleration of joint 1 */
         o[0*count + k] = -rrr_qdd_1_t;
         /* (rrr-qdd_2) acceleration of joint 2 */
@@ -4855,9 +4220,9 @@ INLINE void joint_accelerations_legs_rrr(const prepared *m, size_t w, size_t leg
         o[4*count + k] = rrr_qdd_1_t + rrr_qdd_2;
         const real rrr_rho2_1_t = m->rrr_rho2_1_t[i];
         const real rrr_size = m->rrr_size[i];
-        o[3*count + k] = UNLESS(magnitude(rrr_rho2_1) > TOLERANCE*TOLERANCE*rrr_rho2_1_t) +
-            UNLESS(magnitude(rrr_r_1_in_axes2_y) > TOLERANCE*rrr_size);
-        o[2*count + k] = UNLESS(rrr_disc_1 >= 0);
+        o[3*count + k] = UNLESS(magnitude(v.rrr_rho2_1) > TOLERANCE*TOLERANCE*rrr_rho2_1_t) +
+            UNLESS(magnitude(v.rrr_r_1_in_axes2_y) > TOLERANCE*rrr_size);
+        o[2*count + k] = UNLESS(v.rrr_disc_1 >= 0);
     }
 }
 
@@ -4874,85 +4239,40 @@ INLINE void joint_accelerations_place_rrr(size_t w, size_t count, const real *o,
 }
 
 INLINE void joint_accelerations_legs_prr(const prepared *m, size_t w, size_t leg, size_t legs,
-    const real *s, size_t states, size_t count, real *o)
+    const real *s, size_t states, size_t count, const real *X, const real *V, const real *A, real
+    *o)
 {
     for (size_t k = 0; k < count; ++k) {
         const size_t i = leg + legs*k;
         const size_t j = states*k;
-        /* (prr-S) from the base point to the connection point */
-        const real R_xx = s[2*w + j];
-        const real R_yx = s[3*w + j];
-        const real prr_platform_point_x = m->prr_platform_point_x[i];
-        const real prr_platform_point_y = m->prr_platform_point_y[i];
-        const real prr_q_x = R_xx*prr_platform_point_x - R_yx*prr_platform_point_y;
-        const real prr_q_y = R_xx*prr_platform_point_y + R_yx*prr_platform_point_x;
-        const real prr_base_point_x = m->prr_base_point_x[i];
-        const real t_x = s[0*w + j];
-        const real prr_S_x = prr_q_x + t_x - prr_base_point_x;
-        const real prr_base_point_y = m->prr_base_point_y[i];
-        const real t_y = s[1*w + j];
-        const real prr_S_y = prr_q_y + t_y - prr_base_point_y;
-        const real prr_base_frame_xx = m->prr_base_frame_xx[i];
-        const real prr_base_frame_yx = m->prr_base_frame_yx[i];
-        const real prr_S_in_axes0_x = prr_S_x*prr_base_frame_xx + prr_S_y*prr_base_frame_yx;
-        /* (prr-disc_1) discriminant of the distance equation */
-        const real prr_disc_1_t = prr_S_x*prr_S_x + prr_S_y*prr_S_y;
-        const real prr_size_t = m->prr_size_t[i];
-        const real prr_disc_1 = prr_S_in_axes0_x*prr_S_in_axes0_x + prr_size_t - prr_disc_1_t;
-        /* (prr-c_2) cosine of the angle of joint 2 from its reference direction */
-        const real inv_prr_size_t = m->inv_prr_size_t[i];
-        const real prr_branch_1 = m->prr_branch_1[i];
-        const real prr_platform_joint_offset_x = m->prr_platform_joint_offset_x[i];
-        const real prr_c_2 =
-            -inv_prr_size_t*prr_branch_1*root(prr_disc_1)*prr_platform_joint_offset_x;
-        /* (prr-s_2) sine of the angle of joint 2 from its reference direction */
+        values_prr v;
+        stage_prr_X(m, w, i, j, s, X, &v);
+        stage_prr_A_X(w, j, A, &v);
+        stage_prr_V_X(m, w, i, j, V, &v);
+        stage_prr_A_V_X(w, j, V, &v);
+        /* (prr-qd_2) rate of joint 2 */
+        const real prr_qd_2_t = -1/v.prr_v_2_in_axes0_y;
         const real prr_base_frame_xy = m->prr_base_frame_xy[i];
         const real prr_base_frame_yy = m->prr_base_frame_yy[i];
-        const real prr_s_2 = inv_prr_size_t*prr_platform_joint_offset_x*(prr_S_x*prr_base_frame_xy
-            + prr_S_y*prr_base_frame_yy);
-        /* (prr-S_dot) velocity of the connection point */
-        const real omega_z = s[6*w + j];
-        const real prr_S_dot_t = omega_z*prr_q_y;
-        const real prr_S_dot_t_2 = omega_z*prr_q_x;
-        const real t_dot_x = s[4*w + j];
-        const real prr_S_dot_x = t_dot_x - prr_S_dot_t;
-        const real t_dot_y = s[5*w + j];
-        const real prr_S_dot_y = prr_S_dot_t_2 + t_dot_y;
-        /* (prr-v_2) velocity of the connection point per rate of joint 2 */
-        const real prr_v_2_in_axes0_y = prr_c_2*prr_platform_joint_offset_x;
-        /* (prr-qd_2) rate of joint 2 */
-        const real prr_qd_2_t = -1/prr_v_2_in_axes0_y;
-        const real prr_qd_2 = -prr_qd_2_t*(prr_S_dot_x*prr_base_frame_xy +
-            prr_S_dot_y*prr_base_frame_yy);
-        /* (prr-a_p) acceleration of the connection point without its centripetal part */
-        const real alpha_z = s[9*w + j];
-        const real t_ddot_x = s[7*w + j];
-        const real prr_a_p_x = t_ddot_x - alpha_z*prr_q_y;
-        const real t_ddot_y = s[8*w + j];
-        const real prr_a_p_y = t_ddot_y + alpha_z*prr_q_x;
-        /* (prr-S_ddot) acceleration of the connection point */
-        const real axis_y_prr_axes2_x = prr_base_frame_xy*prr_c_2 - prr_base_frame_xx*prr_s_2;
-        const real axis_x_prr_axes2_x = prr_base_frame_yy*prr_c_2 - prr_base_frame_yx*prr_s_2;
-        const real prr_S_ddot_x = prr_a_p_x - omega_z*prr_S_dot_t_2;
-        const real prr_S_ddot_y = prr_a_p_y - omega_z*prr_S_dot_t;
-        const real prr_S_ddot_in_axes2_y = axis_x_prr_axes2_x*prr_S_ddot_y +
-            axis_y_prr_axes2_x*prr_S_ddot_x;
+        const real prr_qd_2 = -prr_qd_2_t*(v.prr_S_dot_x*prr_base_frame_xy +
+            v.prr_S_dot_y*prr_base_frame_yy);
         /* (prr-rel) acceleration of the connection point left to the joint accelerations */
-        const real prr_rel_in_axes2_x = axis_x_prr_axes2_x*prr_S_ddot_x +
-            prr_platform_joint_offset_x*prr_qd_2*prr_qd_2 - axis_y_prr_axes2_x*prr_S_ddot_y;
+        const real prr_platform_joint_offset_x = m->prr_platform_joint_offset_x[i];
+        const real prr_rel_in_axes2_x = v.axis_x_prr_axes2_x*v.prr_S_ddot_x +
+            prr_platform_joint_offset_x*prr_qd_2*prr_qd_2 - v.axis_y_prr_axes2_x*v.prr_S_ddot_y;
         /* (prr-qdd_1) acceleration of joint 1 */
-        const real prr_qdd_1_t = prr_qd_2_t*(prr_S_ddot_in_axes2_y*prr_c_2 +
-            prr_rel_in_axes2_x*prr_s_2);
-        const real prr_qdd_1 = prr_c_2*prr_rel_in_axes2_x - prr_S_ddot_in_axes2_y*prr_s_2 -
-            prr_platform_joint_offset_x*prr_qdd_1_t*prr_s_2;
+        const real prr_qdd_1_t = prr_qd_2_t*(v.prr_S_ddot_in_axes2_y*v.prr_c_2 +
+            prr_rel_in_axes2_x*v.prr_s_2);
+        const real prr_qdd_1 = v.prr_c_2*prr_rel_in_axes2_x - v.prr_S_ddot_in_axes2_y*v.prr_s_2 -
+            prr_platform_joint_offset_x*prr_qdd_1_t*v.prr_s_2;
         /* (prr-qdd_1) acceleration of joint 1 */
         o[0*count + k] = prr_qdd_1;
         /* (prr-qdd_2) acceleration of joint 2 */
         o[1*count + k] = -prr_qdd_1_t;
         o[4*count + k] = prr_qdd_1 + prr_qdd_1_t;
         const real prr_size = m->prr_size[i];
-        o[2*count + k] = UNLESS(prr_disc_1 >= 0);
-        o[3*count + k] = UNLESS(magnitude(prr_v_2_in_axes0_y) > TOLERANCE*prr_size);
+        o[2*count + k] = UNLESS(v.prr_disc_1 >= 0);
+        o[3*count + k] = UNLESS(magnitude(v.prr_v_2_in_axes0_y) > TOLERANCE*prr_size);
     }
 }
 
@@ -4971,20 +4291,20 @@ INLINE void joint_accelerations_place_prr(size_t w, size_t count, const real *o,
 INLINE void joint_accelerations_run(const prepared *m, const real *X, const real *V, const real
     *A, real *qdd, verdict *t)
 {
-    real s[10] = {0};
+    real s[2] = {0};
     real o_rpr[4*LEGS(LEGS_OF_rpr)] = {0};
     real o_rrr[5*LEGS(LEGS_OF_rrr)] = {0};
     real o_prr[5*LEGS(LEGS_OF_prr)] = {0};
-    joint_accelerations_before(1, X, V, A, s);
-    joint_accelerations_legs_rpr(m, 1, 0, 1, s, 0, LEGS(LEGS_OF_rpr), o_rpr);
+    joint_accelerations_before(m, 1, X, s);
+    joint_accelerations_legs_rpr(m, 1, 0, 1, s, 0, LEGS(LEGS_OF_rpr), X, V, A, o_rpr);
+    joint_accelerations_legs_rrr(m, 1, 0, 1, s, 0, LEGS(LEGS_OF_rrr), X, V, A, o_rrr);
+    joint_accelerations_legs_prr(m, 1, 0, 1, s, 0, LEGS(LEGS_OF_prr), X, V, A, o_prr);
     for (size_t leg = 0; leg < LEGS_OF_rpr; ++leg) {
         joint_accelerations_place_rpr(1, LEGS(LEGS_OF_rpr), o_rpr, leg, qdd, t);
     }
-    joint_accelerations_legs_rrr(m, 1, 0, 1, s, 0, LEGS(LEGS_OF_rrr), o_rrr);
     for (size_t leg = 0; leg < LEGS_OF_rrr; ++leg) {
         joint_accelerations_place_rrr(1, LEGS(LEGS_OF_rrr), o_rrr, leg, qdd, t);
     }
-    joint_accelerations_legs_prr(m, 1, 0, 1, s, 0, LEGS(LEGS_OF_prr), o_prr);
     for (size_t leg = 0; leg < LEGS_OF_prr; ++leg) {
         joint_accelerations_place_prr(1, LEGS(LEGS_OF_prr), o_prr, leg, qdd, t);
     }
@@ -4993,170 +4313,67 @@ INLINE void joint_accelerations_run(const prepared *m, const real *X, const real
 INLINE void joint_accelerations_run_lanes(const prepared *m, const real *X, const real *V, const
     real *A, real *qdd, verdict *t)
 {
-    real s[10*LANES];
+    real s[2*LANES];
     real o_rpr[4*LANES];
     real o_rrr[5*LANES];
     real o_prr[5*LANES];
-    joint_accelerations_before(LANES, X, V, A, s);
+    joint_accelerations_before(m, LANES, X, s);
     for (size_t leg = 0; leg < LEGS_OF_rpr; ++leg) {
-        joint_accelerations_legs_rpr(m, LANES, leg, 0, s, 1, LANES, o_rpr);
+        joint_accelerations_legs_rpr(m, LANES, leg, 0, s, 1, LANES, X, V, A, o_rpr);
         joint_accelerations_place_rpr(LANES, LANES, o_rpr, 0, qdd, t);
     }
     for (size_t leg = 0; leg < LEGS_OF_rrr; ++leg) {
-        joint_accelerations_legs_rrr(m, LANES, leg, 0, s, 1, LANES, o_rrr);
+        joint_accelerations_legs_rrr(m, LANES, leg, 0, s, 1, LANES, X, V, A, o_rrr);
         joint_accelerations_place_rrr(LANES, LANES, o_rrr, 0, qdd, t);
     }
     for (size_t leg = 0; leg < LEGS_OF_prr; ++leg) {
-        joint_accelerations_legs_prr(m, LANES, leg, 0, s, 1, LANES, o_prr);
+        joint_accelerations_legs_prr(m, LANES, leg, 0, s, 1, LANES, X, V, A, o_prr);
         joint_accelerations_place_prr(LANES, LANES, o_prr, 0, qdd, t);
     }
 }
 
 /* ---- legs ---- */
-INLINE void legs_before(size_t w, const real *X, const real *V, const real *A, real *s)
+INLINE void legs_before(const prepared *m, size_t w, const real *X, real *s)
 {
     for (size_t k = 0; k < w; ++k) {
-        /* X: named entries */
-        const real X_0 = X[0*w + k];
-        const real t_x = X_0;
-        const real X_1 = X[1*w + k];
-        const real t_y = X_1;
-        const real X_2 = X[2*w + k];
-        const real R_xx = cosine(X_2);
-        const real R_yx = sine(X_2);
-        /* V: named entries */
-        const real V_0 = V[0*w + k];
-        const real t_dot_x = V_0;
-        const real V_1 = V[1*w + k];
-        const real t_dot_y = V_1;
-        const real V_2 = V[2*w + k];
-        const real omega_z = V_2;
-        /* A: named entries */
-        const real A_0 = A[0*w + k];
-        const real t_ddot_x = A_0;
-        const real A_1 = A[1*w + k];
-        const real t_ddot_y = A_1;
-        const real A_2 = A[2*w + k];
-        const real alpha_z = A_2;
-        s[0*w + k] = t_x;
-        s[1*w + k] = t_y;
-        s[2*w + k] = R_xx;
-        s[3*w + k] = R_yx;
-        s[4*w + k] = t_dot_x;
-        s[5*w + k] = t_dot_y;
-        s[6*w + k] = omega_z;
-        s[7*w + k] = t_ddot_x;
-        s[8*w + k] = t_ddot_y;
-        s[9*w + k] = alpha_z;
+        values v;
+        stage_X(m, w, k, X, &v);
+        s[0*w + k] = v.R_xx;
+        s[1*w + k] = v.R_yx;
     }
 }
 
 INLINE void legs_legs_rpr(const prepared *m, size_t w, size_t leg, size_t legs, const real *s,
-    size_t states, size_t count, real *o)
+    size_t states, size_t count, const real *X, const real *V, const real *A, real *o)
 {
     for (size_t k = 0; k < count; ++k) {
         const size_t i = leg + legs*k;
         const size_t j = states*k;
-        /* (rpr-S) from the base point to the connection point */
-        const real R_xx = s[2*w + j];
-        const real R_yx = s[3*w + j];
-        const real rpr_platform_point_x = m->rpr_platform_point_x[i];
-        const real rpr_platform_point_y = m->rpr_platform_point_y[i];
-        const real rpr_q_x = R_xx*rpr_platform_point_x - R_yx*rpr_platform_point_y;
-        const real rpr_q_y = R_xx*rpr_platform_point_y + R_yx*rpr_platform_point_x;
-        const real rpr_base_point_x = m->rpr_base_point_x[i];
-        const real t_x = s[0*w + j];
-        const real rpr_S_x = rpr_q_x + t_x - rpr_base_point_x;
-        const real rpr_base_point_y = m->rpr_base_point_y[i];
-        const real t_y = s[1*w + j];
-        const real rpr_S_y = rpr_q_y + t_y - rpr_base_point_y;
-        /* (rpr-px_1) component along the reference direction */
-        const real rpr_base_frame_xx = m->rpr_base_frame_xx[i];
-        const real rpr_base_frame_yx = m->rpr_base_frame_yx[i];
-        const real rpr_px_1 = rpr_S_x*rpr_base_frame_xx + rpr_S_y*rpr_base_frame_yx;
-        /* (rpr-py_1) component across the reference direction */
-        const real rpr_base_frame_xy = m->rpr_base_frame_xy[i];
-        const real rpr_base_frame_yy = m->rpr_base_frame_yy[i];
-        const real rpr_py_1 = rpr_S_x*rpr_base_frame_xy + rpr_S_y*rpr_base_frame_yy;
-        /* (rpr-rho2_1) squared amplitude */
-        const real rpr_rho2_1 = rpr_px_1*rpr_px_1 + rpr_py_1*rpr_py_1;
-        /* (rpr-root_1) amplitude, with the sign of the branch */
-        const real rpr_branch_1 = m->rpr_branch_1[i];
-        const real rpr_root_1 = rpr_branch_1*root(rpr_rho2_1);
-        /* (rpr-c_1) cosine of the angle of joint 1 from its reference direction */
-        const real inv_rpr_root_1 = 1/rpr_root_1;
-        const real rpr_c_1 = inv_rpr_root_1*rpr_px_1;
-        /* (rpr-s_1) sine of the angle of joint 1 from its reference direction */
-        const real rpr_s_1 = inv_rpr_root_1*rpr_py_1;
-        /* (rpr-S_dot) velocity of the connection point */
-        const real axis_x_rpr_axes1_x = inv_rpr_root_1*rpr_S_x;
-        const real axis_x_rpr_axes1_y = inv_rpr_root_1*rpr_S_y;
-        const real omega_z = s[6*w + j];
-        const real rpr_S_dot_t = omega_z*rpr_q_y;
-        const real rpr_S_dot_t_2 = omega_z*rpr_q_x;
-        const real t_dot_x = s[4*w + j];
-        const real rpr_S_dot_x = t_dot_x - rpr_S_dot_t;
-        const real t_dot_y = s[5*w + j];
-        const real rpr_S_dot_y = rpr_S_dot_t_2 + t_dot_y;
-        const real rpr_S_dot_in_axes1_x = axis_x_rpr_axes1_x*rpr_S_dot_x +
-            axis_x_rpr_axes1_y*rpr_S_dot_y;
-        /* (rpr-qd_1) rate of joint 1 */
-        const real rpr_qd_1 = inv_rpr_root_1*(axis_x_rpr_axes1_x*rpr_S_dot_y -
-            axis_x_rpr_axes1_y*rpr_S_dot_x);
-        /* (rpr-W_1) centripetal tensor of link 1 */
-        const real rpr_W_1_in_axes1_xx = -rpr_qd_1*rpr_qd_1;
-        /* (rpr-a_p) acceleration of the connection point without its centripetal part */
-        const real alpha_z = s[9*w + j];
-        const real t_ddot_x = s[7*w + j];
-        const real rpr_a_p_x = t_ddot_x - alpha_z*rpr_q_y;
-        const real t_ddot_y = s[8*w + j];
-        const real rpr_a_p_y = t_ddot_y + alpha_z*rpr_q_x;
-        /* (rpr-S_ddot) acceleration of the connection point */
-        const real rpr_S_ddot_x = rpr_a_p_x - omega_z*rpr_S_dot_t_2;
-        const real rpr_S_ddot_y = rpr_a_p_y - omega_z*rpr_S_dot_t;
-        const real rpr_S_ddot_in_axes1_y = axis_x_rpr_axes1_x*rpr_S_ddot_y -
-            axis_x_rpr_axes1_y*rpr_S_ddot_x;
-        /* (rpr-rel) acceleration of the connection point left to the joint accelerations */
-        const real rpr_rel_in_axes1_y = rpr_S_ddot_in_axes1_y - 2*rpr_S_dot_in_axes1_x*rpr_qd_1;
-        /* (rpr-qdd_1) acceleration of joint 1 */
-        const real rpr_qdd_1 = inv_rpr_root_1*rpr_rel_in_axes1_y;
-        /* (rpr-acc_2) acceleration of the reference point of link 2, less gravity */
-        const real rpr_acc_2_t = m->rpr_acc_2_t[i];
-        const real rpr_acc_2_t_2 = m->rpr_acc_2_t_2[i];
-        const real rpr_g_in_axes1_x = rpr_acc_2_t*rpr_c_1 + rpr_acc_2_t_2*rpr_s_1;
-        const real rpr_g_in_axes1_y = rpr_acc_2_t_2*rpr_c_1 - rpr_acc_2_t*rpr_s_1;
-        const real rpr_acc_2_in_axes1_x = axis_x_rpr_axes1_x*rpr_S_ddot_x +
-            axis_x_rpr_axes1_y*rpr_S_ddot_y - rpr_g_in_axes1_x;
-        const real rpr_acc_2_in_axes1_y = rpr_S_ddot_in_axes1_y - rpr_g_in_axes1_y;
-        /* (rpr-mu_1) inertia moment of the links that turn with link 1, about their reference points */
-        const real rpr_J_group_1_in_axes1_zz = m->rpr_J_group_1_in_axes1_zz[i];
-        const real rpr_h_1_in_spec1_x = m->rpr_h_1_in_spec1_x[i];
-        const real rpr_h_1_in_spec1_y = m->rpr_h_1_in_spec1_y[i];
+        values_rpr v;
+        stage_rpr_X(m, w, i, j, s, X, &v);
+        stage_rpr_A_X(w, j, A, &v);
+        stage_rpr_V_X(w, j, V, &v);
+        stage_rpr_A_V_X(w, j, V, &v);
+        stage_rpr_legs_required(m, i, &v);
+        /* (rpr-c_true) leg force on the platform without actuation, the last link's mass included */
         const real rpr_h_2_in_spec1_x = m->rpr_h_2_in_spec1_x[i];
         const real rpr_h_2_in_spec1_y = m->rpr_h_2_in_spec1_y[i];
-        const real rpr_mu_1_in_axes1_z = rpr_J_group_1_in_axes1_zz*rpr_qdd_1 +
-            rpr_acc_2_in_axes1_y*rpr_h_2_in_spec1_x + rpr_g_in_axes1_x*rpr_h_1_in_spec1_y -
-            rpr_acc_2_in_axes1_x*rpr_h_2_in_spec1_y - rpr_g_in_axes1_y*rpr_h_1_in_spec1_x;
-        /* (rpr-c) leg force on the platform without actuation and without the mass at the connection
-           point */
-        const real rpr_c_in_axes1_y = -inv_rpr_root_1*rpr_mu_1_in_axes1_z -
-            rpr_W_1_in_axes1_xx*rpr_h_2_in_spec1_y - rpr_h_2_in_spec1_x*rpr_qdd_1;
-        /* (rpr-c_true) leg force on the platform without actuation, the last link's mass included */
         const real rpr_link2_mass = m->rpr_link2_mass[i];
-        const real rpr_c_true_in_axes1_x = rpr_h_2_in_spec1_y*rpr_qdd_1 -
-            rpr_W_1_in_axes1_xx*rpr_h_2_in_spec1_x - rpr_acc_2_in_axes1_x*rpr_link2_mass;
-        const real rpr_c_true_in_axes1_y = rpr_c_in_axes1_y - rpr_acc_2_in_axes1_y*rpr_link2_mass;
-        const real rpr_c_true_x = axis_x_rpr_axes1_x*rpr_c_true_in_axes1_x -
-            axis_x_rpr_axes1_y*rpr_c_true_in_axes1_y;
-        const real rpr_c_true_y = axis_x_rpr_axes1_x*rpr_c_true_in_axes1_y +
-            axis_x_rpr_axes1_y*rpr_c_true_in_axes1_x;
+        const real rpr_c_true_in_axes1_x = rpr_h_2_in_spec1_y*v.rpr_qdd_1 -
+            v.rpr_W_1_in_axes1_xx*rpr_h_2_in_spec1_x - v.rpr_acc_2_in_axes1_x*rpr_link2_mass;
+        const real rpr_c_true_in_axes1_y = v.rpr_c_in_axes1_y -
+            v.rpr_acc_2_in_axes1_y*rpr_link2_mass;
+        const real rpr_c_true_x = v.axis_x_rpr_axes1_x*rpr_c_true_in_axes1_x -
+            v.axis_x_rpr_axes1_y*rpr_c_true_in_axes1_y;
+        const real rpr_c_true_y = v.axis_x_rpr_axes1_x*rpr_c_true_in_axes1_y +
+            v.axis_x_rpr_axes1_y*rpr_c_true_in_axes1_x;
         /* (rpr-c_true) leg force on the platform without actuation, the last link's mass included */
         o[0*count + k] = rpr_c_true_x;
         o[1*count + k] = rpr_c_true_y;
         /* (rpr-w_2) reciprocal vector 2 */
-        o[2*count + k] = axis_x_rpr_axes1_x;
-        o[3*count + k] = axis_x_rpr_axes1_y;
-        o[4*count + k] = UNLESS(magnitude(rpr_rho2_1) > LEAST_1) + UNLESS(magnitude(rpr_root_1) >
+        o[2*count + k] = v.axis_x_rpr_axes1_x;
+        o[3*count + k] = v.axis_x_rpr_axes1_y;
+        o[4*count + k] = UNLESS(magnitude(v.rpr_q_2_t) > LEAST_1) + UNLESS(magnitude(v.rpr_q_2) >
             LEAST_2);
     }
 }
@@ -5174,180 +4391,38 @@ INLINE void legs_place_rpr(size_t w, size_t count, const real *o, size_t first, 
 }
 
 INLINE void legs_legs_rrr(const prepared *m, size_t w, size_t leg, size_t legs, const real *s,
-    size_t states, size_t count, real *o)
+    size_t states, size_t count, const real *X, const real *V, const real *A, real *o)
 {
     for (size_t k = 0; k < count; ++k) {
         const size_t i = leg + legs*k;
         const size_t j = states*k;
-        /* (rrr-S) from the base point to the connection point */
-        const real R_xx = s[2*w + j];
-        const real R_yx = s[3*w + j];
-        const real rrr_platform_point_x = m->rrr_platform_point_x[i];
-        const real rrr_platform_point_y = m->rrr_platform_point_y[i];
-        const real rrr_q_x = R_xx*rrr_platform_point_x - R_yx*rrr_platform_point_y;
-        const real rrr_q_y = R_xx*rrr_platform_point_y + R_yx*rrr_platform_point_x;
-        const real rrr_base_point_x = m->rrr_base_point_x[i];
-        const real t_x = s[0*w + j];
-        const real rrr_S_x = rrr_q_x + t_x - rrr_base_point_x;
-        const real rrr_base_point_y = m->rrr_base_point_y[i];
-        const real t_y = s[1*w + j];
-        const real rrr_S_y = rrr_q_y + t_y - rrr_base_point_y;
-        /* (rrr-Kd_1) projection on the centre's direction, from the distance fixed by the joints beyond
-           joint 1 */
-        const real rrr_Kd_1_t_3 = rrr_S_x*rrr_S_x + rrr_S_y*rrr_S_y;
-        const real rrr_Kd_1_t = m->rrr_Kd_1_t[i];
-        const real rrr_Kd_1_t_2 = m->rrr_Kd_1_t_2[i];
-        const real rrr_Kd_1 = rrr_Kd_1_t + R(0.5)*rrr_Kd_1_t_3 - rrr_Kd_1_t_2;
-        /* (rrr-px_1) component along the reference direction */
-        const real rrr_base_frame_xx = m->rrr_base_frame_xx[i];
-        const real rrr_base_frame_yx = m->rrr_base_frame_yx[i];
-        const real rrr_px_1 = rrr_S_x*rrr_base_frame_xx + rrr_S_y*rrr_base_frame_yx;
-        /* (rrr-py_1) component across the reference direction */
-        const real rrr_base_frame_xy = m->rrr_base_frame_xy[i];
-        const real rrr_base_frame_yy = m->rrr_base_frame_yy[i];
-        const real rrr_py_1 = rrr_S_x*rrr_base_frame_xy + rrr_S_y*rrr_base_frame_yy;
-        /* (rrr-Kc_1) factor of the cosine in the equation of joint 1 */
-        const real rrr_joint2_offset_x = m->rrr_joint2_offset_x[i];
-        const real rrr_Kc_1 = rrr_joint2_offset_x*rrr_px_1;
-        /* (rrr-Ks_1) factor of the sine in the equation of joint 1 */
-        const real rrr_Ks_1 = rrr_joint2_offset_x*rrr_py_1;
-        /* (rrr-rho2_1) squared amplitude */
-        const real rrr_rho2_1 = rrr_Kc_1*rrr_Kc_1 + rrr_Ks_1*rrr_Ks_1;
-        /* (rrr-disc_1) discriminant */
-        const real rrr_disc_1 = rrr_rho2_1 - rrr_Kd_1*rrr_Kd_1;
-        /* (rrr-root_1) root, with the sign of the branch */
-        const real rrr_branch_1 = m->rrr_branch_1[i];
-        const real rrr_root_1 = rrr_branch_1*root(rrr_disc_1);
-        /* (rrr-c_1) cosine of the angle of joint 1 from its reference direction */
-        const real inv_rrr_rho2_1 = 1/rrr_rho2_1;
-        const real rrr_c_1 = inv_rrr_rho2_1*(rrr_Kc_1*rrr_Kd_1 - rrr_Ks_1*rrr_root_1);
-        /* (rrr-s_1) sine of the angle of joint 1 from its reference direction */
-        const real rrr_s_1 = inv_rrr_rho2_1*(rrr_Kc_1*rrr_root_1 + rrr_Kd_1*rrr_Ks_1);
-        /* (rrr-x_2) from the origin of joint 2 to the connection point */
-        const real inv_rrr_size_t = m->inv_rrr_size_t[i];
-        const real rrr_x_2_in_axes1_x = inv_rrr_size_t*rrr_Kd_1*rrr_joint2_offset_x -
-            rrr_joint2_offset_x;
-        /* (rrr-c_2) cosine of the angle of joint 2 from its reference direction */
-        const real inv_rrr_size_t_2 = m->inv_rrr_size_t_2[i];
-        const real rrr_platform_joint_offset_x = m->rrr_platform_joint_offset_x[i];
-        const real rrr_c_2 = inv_rrr_size_t_2*rrr_platform_joint_offset_x*rrr_x_2_in_axes1_x;
-        /* (rrr-s_2) sine of the angle of joint 2 from its reference direction */
-        const real rrr_s_2 =
-            -inv_rrr_size_t*inv_rrr_size_t_2*rrr_joint2_offset_x*rrr_platform_joint_offset_x*rrr_root_1;
-        /* (rrr-S_dot) velocity of the connection point */
-        const real omega_z = s[6*w + j];
-        const real rrr_S_dot_t = omega_z*rrr_q_y;
-        const real rrr_S_dot_t_2 = omega_z*rrr_q_x;
-        const real t_dot_x = s[4*w + j];
-        const real rrr_S_dot_x = t_dot_x - rrr_S_dot_t;
-        const real t_dot_y = s[5*w + j];
-        const real rrr_S_dot_y = rrr_S_dot_t_2 + t_dot_y;
-        /* (rrr-r_1) from joint 1 to the connection point, along the links */
-        const real rrr_r_1_in_axes1_y = rrr_platform_joint_offset_x*rrr_s_2;
-        const real rrr_r_1_in_axes1_x = rrr_joint2_offset_x + rrr_c_2*rrr_platform_joint_offset_x;
-        const real rrr_r_1_in_axes2_x = rrr_c_2*rrr_r_1_in_axes1_x + rrr_r_1_in_axes1_y*rrr_s_2;
-        const real rrr_r_1_in_axes2_y = rrr_c_2*rrr_r_1_in_axes1_y - rrr_r_1_in_axes1_x*rrr_s_2;
-        /* (rrr-w_1) reciprocal vector 1 */
-        const real rrr_w_1_t = rrr_c_1*rrr_s_2 + rrr_c_2*rrr_s_1;
-        const real rrr_w_1_t_2 = rrr_c_1*rrr_c_2 - rrr_s_1*rrr_s_2;
-        const real axis_y_rrr_axes2_x = rrr_base_frame_xy*rrr_w_1_t_2 -
-            rrr_base_frame_xx*rrr_w_1_t;
-        const real axis_x_rrr_axes2_x = rrr_base_frame_yy*rrr_w_1_t_2 -
-            rrr_base_frame_yx*rrr_w_1_t;
-        const real rrr_w_1_in_axes2_x = -1/rrr_r_1_in_axes2_y;
-        const real rrr_w_1_x = axis_x_rrr_axes2_x*rrr_w_1_in_axes2_x;
-        const real rrr_w_1_y = -axis_y_rrr_axes2_x*rrr_w_1_in_axes2_x;
-        /* (rrr-qd_1) rate of joint 1 */
-        const real rrr_qd_1 = rrr_w_1_in_axes2_x*(axis_x_rrr_axes2_x*rrr_S_dot_x -
-            axis_y_rrr_axes2_x*rrr_S_dot_y);
-        /* (rrr-W_1) centripetal tensor of link 1 */
-        const real rrr_W_1_t = rrr_qd_1*rrr_qd_1;
-        /* (rrr-omega_2) angular velocity of link 2 */
-        const real rrr_w_2_in_axes2_y = m->rrr_w_2_in_axes2_y[i];
-        const real rrr_omega_2_in_axes2_z = rrr_qd_1 +
-            rrr_w_2_in_axes2_y*(axis_x_rrr_axes2_x*rrr_S_dot_y + axis_y_rrr_axes2_x*rrr_S_dot_x -
-            rrr_qd_1*rrr_r_1_in_axes2_x);
-        /* (rrr-W_2) centripetal tensor of link 2 */
-        const real rrr_W_2_t = rrr_omega_2_in_axes2_z*rrr_omega_2_in_axes2_z;
-        /* (rrr-a_p) acceleration of the connection point without its centripetal part */
-        const real alpha_z = s[9*w + j];
-        const real t_ddot_x = s[7*w + j];
-        const real rrr_a_p_x = t_ddot_x - alpha_z*rrr_q_y;
-        const real t_ddot_y = s[8*w + j];
-        const real rrr_a_p_y = t_ddot_y + alpha_z*rrr_q_x;
-        /* (rrr-S_ddot) acceleration of the connection point */
-        const real rrr_S_ddot_x = rrr_a_p_x - omega_z*rrr_S_dot_t_2;
-        const real rrr_S_ddot_y = rrr_a_p_y - omega_z*rrr_S_dot_t;
-        const real rrr_S_ddot_in_axes2_x = axis_x_rrr_axes2_x*rrr_S_ddot_x -
-            axis_y_rrr_axes2_x*rrr_S_ddot_y;
-        const real rrr_S_ddot_in_axes2_y = axis_x_rrr_axes2_x*rrr_S_ddot_y +
-            axis_y_rrr_axes2_x*rrr_S_ddot_x;
-        /* (rrr-bias) acceleration of the connection point at zero joint accelerations */
-        const real rrr_bias_in_axes2_x = -rrr_W_2_t*rrr_platform_joint_offset_x -
-            rrr_W_1_t*rrr_c_2*rrr_joint2_offset_x;
-        /* (rrr-rel) acceleration of the connection point left to the joint accelerations */
-        const real rrr_rel_in_axes2_x = rrr_S_ddot_in_axes2_x - rrr_bias_in_axes2_x;
-        const real rrr_rel_in_axes2_y = rrr_S_ddot_in_axes2_y -
-            rrr_W_1_t*rrr_joint2_offset_x*rrr_s_2;
-        /* (rrr-B_1) acceleration tensor of link 1 */
-        const real rrr_B_1_in_axes1_xy = -rrr_rel_in_axes2_x*rrr_w_1_in_axes2_x;
-        /* (rrr-alpha_2) angular acceleration of link 2 */
-        const real rrr_alpha_2_in_axes2_z = rrr_w_2_in_axes2_y*(rrr_rel_in_axes2_y +
-            rrr_B_1_in_axes1_xy*rrr_r_1_in_axes2_x) - rrr_B_1_in_axes1_xy;
-        /* (rrr-acc_2) acceleration of the reference point of link 2, less gravity */
-        const real gravity_x = m->gravity_x;
-        const real gravity_y = m->gravity_y;
-        const real rrr_acc_2_in_axes2_x = rrr_S_ddot_in_axes2_x + axis_y_rrr_axes2_x*gravity_y -
-            axis_x_rrr_axes2_x*gravity_x;
-        const real rrr_acc_2_in_axes2_y = rrr_S_ddot_in_axes2_y - axis_x_rrr_axes2_x*gravity_y -
-            axis_y_rrr_axes2_x*gravity_x;
-        /* (rrr-mu_2) inertia moment of the links that turn with link 2, about their reference points */
-        const real rrr_J_2_in_spec2_zz = m->rrr_J_2_in_spec2_zz[i];
-        const real rrr_h_2_in_spec2_x = m->rrr_h_2_in_spec2_x[i];
-        const real rrr_h_2_in_spec2_y = m->rrr_h_2_in_spec2_y[i];
-        const real rrr_mu_2_in_axes2_z = rrr_J_2_in_spec2_zz*rrr_alpha_2_in_axes2_z +
-            rrr_acc_2_in_axes2_y*rrr_h_2_in_spec2_x - rrr_acc_2_in_axes2_x*rrr_h_2_in_spec2_y;
-        /* (rrr-mu_1) inertia moment of the links that turn with link 1, about their reference points */
-        const real rrr_J_1_in_spec1_zz = m->rrr_J_1_in_spec1_zz[i];
-        const real rrr_h_1_in_spec1_x = m->rrr_h_1_in_spec1_x[i];
-        const real rrr_h_1_in_spec1_y = m->rrr_h_1_in_spec1_y[i];
-        const real rrr_mu_1_t = m->rrr_mu_1_t[i];
-        const real rrr_mu_1_t_2 = m->rrr_mu_1_t_2[i];
-        const real rrr_mu_1_in_axes1_z = rrr_h_1_in_spec1_y*(rrr_c_1*rrr_mu_1_t +
-            rrr_mu_1_t_2*rrr_s_1) - rrr_B_1_in_axes1_xy*rrr_J_1_in_spec1_zz -
-            rrr_h_1_in_spec1_x*(rrr_c_1*rrr_mu_1_t_2 - rrr_mu_1_t*rrr_s_1);
-        /* (rrr-N_1) moment about joint 1 of the links from 1 outwards, the force at the connection point
-           left out */
-        const real rrr_N_1_in_axes1_z = rrr_mu_1_in_axes1_z + rrr_mu_2_in_axes2_z;
-        /* (rrr-G) force at the connection point that balances the leg's inertia and weight along all
-           degrees of freedom */
-        const real rrr_G_in_axes2_y = rrr_mu_2_in_axes2_z*rrr_w_2_in_axes2_y;
-        /* (rrr-c) leg force on the platform without actuation and without the mass at the connection
-           point */
-        const real rrr_c_in_axes2_x = rrr_W_2_t*rrr_h_2_in_spec2_x +
-            rrr_alpha_2_in_axes2_z*rrr_h_2_in_spec2_y +
-            rrr_w_1_in_axes2_x*(rrr_G_in_axes2_y*rrr_r_1_in_axes2_x - rrr_N_1_in_axes1_z);
-        const real rrr_c_in_axes2_y = rrr_W_2_t*rrr_h_2_in_spec2_y - rrr_G_in_axes2_y -
-            rrr_alpha_2_in_axes2_z*rrr_h_2_in_spec2_x;
+        values_rrr v;
+        stage_rrr_X(m, w, i, j, s, X, &v);
+        stage_rrr_A_X(w, j, A, &v);
+        stage_rrr_V_X(m, w, i, j, V, &v);
+        stage_rrr_A_V_X(w, j, V, &v);
+        stage_rrr_legs_required(m, i, &v);
         /* (rrr-c_true) leg force on the platform without actuation, the last link's mass included */
         const real rrr_link2_mass = m->rrr_link2_mass[i];
-        const real rrr_c_true_in_axes2_x = rrr_c_in_axes2_x - rrr_acc_2_in_axes2_x*rrr_link2_mass;
-        const real rrr_c_true_in_axes2_y = rrr_c_in_axes2_y - rrr_acc_2_in_axes2_y*rrr_link2_mass;
-        const real rrr_c_true_x = axis_x_rrr_axes2_x*rrr_c_true_in_axes2_x +
-            axis_y_rrr_axes2_x*rrr_c_true_in_axes2_y;
-        const real rrr_c_true_y = axis_x_rrr_axes2_x*rrr_c_true_in_axes2_y -
-            axis_y_rrr_axes2_x*rrr_c_true_in_axes2_x;
+        const real rrr_c_true_in_axes2_x = v.rrr_c_in_axes2_x -
+            v.rrr_acc_2_in_axes2_x*rrr_link2_mass;
+        const real rrr_c_true_in_axes2_y = v.rrr_c_in_axes2_y -
+            v.rrr_acc_2_in_axes2_y*rrr_link2_mass;
+        const real rrr_c_true_x = v.axis_x_rrr_axes2_x*rrr_c_true_in_axes2_x +
+            v.axis_y_rrr_axes2_x*rrr_c_true_in_axes2_y;
+        const real rrr_c_true_y = v.axis_x_rrr_axes2_x*rrr_c_true_in_axes2_y -
+            v.axis_y_rrr_axes2_x*rrr_c_true_in_axes2_x;
         /* (rrr-c_true) leg force on the platform without actuation, the last link's mass included */
         o[0*count + k] = rrr_c_true_x;
         o[1*count + k] = rrr_c_true_y;
         /* (rrr-w_1) reciprocal vector 1 */
-        o[2*count + k] = rrr_w_1_x;
-        o[3*count + k] = rrr_w_1_y;
+        o[2*count + k] = v.rrr_w_1_x;
+        o[3*count + k] = v.rrr_w_1_y;
         const real rrr_rho2_1_t = m->rrr_rho2_1_t[i];
         const real rrr_size = m->rrr_size[i];
-        o[5*count + k] = UNLESS(magnitude(rrr_rho2_1) > TOLERANCE*TOLERANCE*rrr_rho2_1_t) +
-            UNLESS(magnitude(rrr_r_1_in_axes2_y) > TOLERANCE*rrr_size);
-        o[4*count + k] = UNLESS(rrr_disc_1 >= 0);
+        o[5*count + k] = UNLESS(magnitude(v.rrr_rho2_1) > TOLERANCE*TOLERANCE*rrr_rho2_1_t) +
+            UNLESS(magnitude(v.rrr_r_1_in_axes2_y) > TOLERANCE*rrr_size);
+        o[4*count + k] = UNLESS(v.rrr_disc_1 >= 0);
     }
 }
 
@@ -5365,132 +4440,36 @@ INLINE void legs_place_rrr(size_t w, size_t count, const real *o, size_t first, 
 }
 
 INLINE void legs_legs_prr(const prepared *m, size_t w, size_t leg, size_t legs, const real *s,
-    size_t states, size_t count, real *o)
+    size_t states, size_t count, const real *X, const real *V, const real *A, real *o)
 {
     for (size_t k = 0; k < count; ++k) {
         const size_t i = leg + legs*k;
         const size_t j = states*k;
-        /* (prr-S) from the base point to the connection point */
-        const real R_xx = s[2*w + j];
-        const real R_yx = s[3*w + j];
-        const real prr_platform_point_x = m->prr_platform_point_x[i];
-        const real prr_platform_point_y = m->prr_platform_point_y[i];
-        const real prr_q_x = R_xx*prr_platform_point_x - R_yx*prr_platform_point_y;
-        const real prr_q_y = R_xx*prr_platform_point_y + R_yx*prr_platform_point_x;
-        const real prr_base_point_x = m->prr_base_point_x[i];
-        const real t_x = s[0*w + j];
-        const real prr_S_x = prr_q_x + t_x - prr_base_point_x;
-        const real prr_base_point_y = m->prr_base_point_y[i];
-        const real t_y = s[1*w + j];
-        const real prr_S_y = prr_q_y + t_y - prr_base_point_y;
-        const real prr_base_frame_xx = m->prr_base_frame_xx[i];
-        const real prr_base_frame_yx = m->prr_base_frame_yx[i];
-        const real prr_S_in_axes0_x = prr_S_x*prr_base_frame_xx + prr_S_y*prr_base_frame_yx;
-        /* (prr-disc_1) discriminant of the distance equation */
-        const real prr_disc_1_t = prr_S_x*prr_S_x + prr_S_y*prr_S_y;
-        const real prr_size_t = m->prr_size_t[i];
-        const real prr_disc_1 = prr_S_in_axes0_x*prr_S_in_axes0_x + prr_size_t - prr_disc_1_t;
-        /* (prr-c_2) cosine of the angle of joint 2 from its reference direction */
-        const real inv_prr_size_t = m->inv_prr_size_t[i];
-        const real prr_branch_1 = m->prr_branch_1[i];
-        const real prr_platform_joint_offset_x = m->prr_platform_joint_offset_x[i];
-        const real prr_c_2 =
-            -inv_prr_size_t*prr_branch_1*root(prr_disc_1)*prr_platform_joint_offset_x;
-        /* (prr-s_2) sine of the angle of joint 2 from its reference direction */
-        const real prr_base_frame_xy = m->prr_base_frame_xy[i];
-        const real prr_base_frame_yy = m->prr_base_frame_yy[i];
-        const real prr_s_2 = inv_prr_size_t*prr_platform_joint_offset_x*(prr_S_x*prr_base_frame_xy
-            + prr_S_y*prr_base_frame_yy);
-        /* (prr-S_dot) velocity of the connection point */
-        const real omega_z = s[6*w + j];
-        const real prr_S_dot_t = omega_z*prr_q_y;
-        const real prr_S_dot_t_2 = omega_z*prr_q_x;
-        const real t_dot_x = s[4*w + j];
-        const real prr_S_dot_x = t_dot_x - prr_S_dot_t;
-        const real t_dot_y = s[5*w + j];
-        const real prr_S_dot_y = prr_S_dot_t_2 + t_dot_y;
-        /* (prr-v_2) velocity of the connection point per rate of joint 2 */
-        const real prr_v_2_in_axes0_x = -prr_platform_joint_offset_x*prr_s_2;
-        const real prr_v_2_in_axes0_y = prr_c_2*prr_platform_joint_offset_x;
-        /* (prr-w_1) reciprocal vector 1 */
-        const real axis_y_prr_axes2_x = prr_base_frame_xy*prr_c_2 - prr_base_frame_xx*prr_s_2;
-        const real axis_x_prr_axes2_x = prr_base_frame_yy*prr_c_2 - prr_base_frame_yx*prr_s_2;
-        const real prr_w_1_t = -1/prr_v_2_in_axes0_y;
-        const real prr_w_1_t_2 = prr_v_2_in_axes0_x*prr_w_1_t;
-        const real prr_w_1_in_axes2_x = prr_c_2 + prr_s_2*prr_w_1_t_2;
-        const real prr_w_1_in_axes2_y = prr_c_2*prr_w_1_t_2 - prr_s_2;
-        const real prr_w_1_x = axis_x_prr_axes2_x*prr_w_1_in_axes2_x +
-            axis_y_prr_axes2_x*prr_w_1_in_axes2_y;
-        const real prr_w_1_y = axis_x_prr_axes2_x*prr_w_1_in_axes2_y -
-            axis_y_prr_axes2_x*prr_w_1_in_axes2_x;
-        /* (prr-qd_2) rate of joint 2 */
-        const real prr_qd_2 = -prr_w_1_t*(prr_S_dot_x*prr_base_frame_xy +
-            prr_S_dot_y*prr_base_frame_yy);
-        /* (prr-W_2) centripetal tensor of link 2 */
-        const real prr_W_2_t = prr_qd_2*prr_qd_2;
-        /* (prr-a_p) acceleration of the connection point without its centripetal part */
-        const real alpha_z = s[9*w + j];
-        const real t_ddot_x = s[7*w + j];
-        const real prr_a_p_x = t_ddot_x - alpha_z*prr_q_y;
-        const real t_ddot_y = s[8*w + j];
-        const real prr_a_p_y = t_ddot_y + alpha_z*prr_q_x;
-        /* (prr-S_ddot) acceleration of the connection point */
-        const real prr_S_ddot_x = prr_a_p_x - omega_z*prr_S_dot_t_2;
-        const real prr_S_ddot_y = prr_a_p_y - omega_z*prr_S_dot_t;
-        const real prr_S_ddot_in_axes2_x = axis_x_prr_axes2_x*prr_S_ddot_x -
-            axis_y_prr_axes2_x*prr_S_ddot_y;
-        const real prr_S_ddot_in_axes2_y = axis_x_prr_axes2_x*prr_S_ddot_y +
-            axis_y_prr_axes2_x*prr_S_ddot_x;
-        /* (prr-rel) acceleration of the connection point left to the joint accelerations */
-        const real prr_rel_in_axes2_x = prr_S_ddot_in_axes2_x +
-            prr_platform_joint_offset_x*prr_qd_2*prr_qd_2;
-        /* (prr-B_2) acceleration tensor of link 2 */
-        const real prr_B_2_in_axes2_xy = prr_w_1_t*(prr_S_ddot_in_axes2_y*prr_c_2 +
-            prr_rel_in_axes2_x*prr_s_2);
-        /* (prr-acc_1) acceleration of the reference point of link 1, less gravity */
-        const real prr_g_in_axes0_x = m->prr_g_in_axes0_x[i];
-        const real prr_acc_1_in_axes0_x = prr_B_2_in_axes2_xy*prr_v_2_in_axes0_x +
-            prr_c_2*prr_rel_in_axes2_x - prr_g_in_axes0_x - prr_S_ddot_in_axes2_y*prr_s_2;
-        /* (prr-f_1) inertia force of link 1 less its weight */
-        const real prr_link1_mass = m->prr_link1_mass[i];
-        const real prr_f_1_in_axes0_x = prr_acc_1_in_axes0_x*prr_link1_mass;
-        /* (prr-acc_2) acceleration of the reference point of link 2, less gravity */
-        const real prr_g_in_axes0_y = m->prr_g_in_axes0_y[i];
-        const real prr_acc_2_in_axes2_x = prr_S_ddot_in_axes2_x - prr_c_2*prr_g_in_axes0_x -
-            prr_g_in_axes0_y*prr_s_2;
-        const real prr_acc_2_in_axes2_y = prr_S_ddot_in_axes2_y + prr_g_in_axes0_x*prr_s_2 -
-            prr_c_2*prr_g_in_axes0_y;
-        /* (prr-mu_2) inertia moment of the links that turn with link 2, about their reference points */
-        const real prr_J_2_in_spec2_zz = m->prr_J_2_in_spec2_zz[i];
-        const real prr_h_2_in_spec2_x = m->prr_h_2_in_spec2_x[i];
-        const real prr_h_2_in_spec2_y = m->prr_h_2_in_spec2_y[i];
-        const real prr_mu_2_in_axes2_z = prr_acc_2_in_axes2_y*prr_h_2_in_spec2_x -
-            prr_B_2_in_axes2_xy*prr_J_2_in_spec2_zz - prr_acc_2_in_axes2_x*prr_h_2_in_spec2_y;
-        /* (prr-c) leg force on the platform without actuation and without the mass at the connection
-           point */
-        const real prr_c_t = prr_w_1_t*(prr_mu_2_in_axes2_z -
-            prr_f_1_in_axes0_x*prr_v_2_in_axes0_x);
-        const real prr_c_in_axes2_x = prr_W_2_t*prr_h_2_in_spec2_x + prr_c_t*prr_s_2 -
-            prr_B_2_in_axes2_xy*prr_h_2_in_spec2_y - prr_c_2*prr_f_1_in_axes0_x;
-        const real prr_c_in_axes2_y = prr_B_2_in_axes2_xy*prr_h_2_in_spec2_x +
-            prr_W_2_t*prr_h_2_in_spec2_y + prr_c_2*prr_c_t + prr_f_1_in_axes0_x*prr_s_2;
+        values_prr v;
+        stage_prr_X(m, w, i, j, s, X, &v);
+        stage_prr_A_X(w, j, A, &v);
+        stage_prr_V_X(m, w, i, j, V, &v);
+        stage_prr_A_V_X(w, j, V, &v);
+        stage_prr_legs_required(m, i, &v);
         /* (prr-c_true) leg force on the platform without actuation, the last link's mass included */
         const real prr_link2_mass = m->prr_link2_mass[i];
-        const real prr_c_true_in_axes2_x = prr_c_in_axes2_x - prr_acc_2_in_axes2_x*prr_link2_mass;
-        const real prr_c_true_in_axes2_y = prr_c_in_axes2_y - prr_acc_2_in_axes2_y*prr_link2_mass;
-        const real prr_c_true_x = axis_x_prr_axes2_x*prr_c_true_in_axes2_x +
-            axis_y_prr_axes2_x*prr_c_true_in_axes2_y;
-        const real prr_c_true_y = axis_x_prr_axes2_x*prr_c_true_in_axes2_y -
-            axis_y_prr_axes2_x*prr_c_true_in_axes2_x;
+        const real prr_c_true_in_axes2_x = v.prr_c_in_axes2_x -
+            v.prr_acc_2_in_axes2_x*prr_link2_mass;
+        const real prr_c_true_in_axes2_y = v.prr_c_in_axes2_y -
+            v.prr_acc_2_in_axes2_y*prr_link2_mass;
+        const real prr_c_true_x = v.axis_x_prr_axes2_x*prr_c_true_in_axes2_x +
+            v.axis_y_prr_axes2_x*prr_c_true_in_axes2_y;
+        const real prr_c_true_y = v.axis_x_prr_axes2_x*prr_c_true_in_axes2_y -
+            v.axis_y_prr_axes2_x*prr_c_true_in_axes2_x;
         /* (prr-c_true) leg force on the platform without actuation, the last link's mass included */
         o[0*count + k] = prr_c_true_x;
         o[1*count + k] = prr_c_true_y;
         /* (prr-w_1) reciprocal vector 1 */
-        o[2*count + k] = prr_w_1_x;
-        o[3*count + k] = prr_w_1_y;
+        o[2*count + k] = v.prr_w_1_x;
+        o[3*count + k] = v.prr_w_1_y;
         const real prr_size = m->prr_size[i];
-        o[4*count + k] = UNLESS(prr_disc_1 >= 0);
-        o[5*count + k] = UNLESS(magnitude(prr_v_2_in_axes0_y) > TOLERANCE*prr_size);
+        o[4*count + k] = UNLESS(v.prr_disc_1 >= 0);
+        o[5*count + k] = UNLESS(magnitude(v.prr_v_2_in_axes0_y) > TOLERANCE*prr_size);
     }
 }
 
@@ -5510,22 +4489,22 @@ INLINE void legs_place_prr(size_t w, size_t count, const real *o, size_t first, 
 INLINE void legs_run(const prepared *m, const real *X, const real *V, const real *A, real
     *leg_force, real *actuator, verdict *t)
 {
-    real s[10] = {0};
+    real s[2] = {0};
     real o_rpr[5*LEGS(LEGS_OF_rpr)] = {0};
     real o_rrr[6*LEGS(LEGS_OF_rrr)] = {0};
     real o_prr[6*LEGS(LEGS_OF_prr)] = {0};
     clear(leg_force, 3*NL);
     clear(actuator, 9);
-    legs_before(1, X, V, A, s);
-    legs_legs_rpr(m, 1, 0, 1, s, 0, LEGS(LEGS_OF_rpr), o_rpr);
+    legs_before(m, 1, X, s);
+    legs_legs_rpr(m, 1, 0, 1, s, 0, LEGS(LEGS_OF_rpr), X, V, A, o_rpr);
+    legs_legs_rrr(m, 1, 0, 1, s, 0, LEGS(LEGS_OF_rrr), X, V, A, o_rrr);
+    legs_legs_prr(m, 1, 0, 1, s, 0, LEGS(LEGS_OF_prr), X, V, A, o_prr);
     for (size_t leg = 0; leg < LEGS_OF_rpr; ++leg) {
         legs_place_rpr(1, LEGS(LEGS_OF_rpr), o_rpr, leg, leg_force, actuator, t);
     }
-    legs_legs_rrr(m, 1, 0, 1, s, 0, LEGS(LEGS_OF_rrr), o_rrr);
     for (size_t leg = 0; leg < LEGS_OF_rrr; ++leg) {
         legs_place_rrr(1, LEGS(LEGS_OF_rrr), o_rrr, leg, leg_force, actuator, t);
     }
-    legs_legs_prr(m, 1, 0, 1, s, 0, LEGS(LEGS_OF_prr), o_prr);
     for (size_t leg = 0; leg < LEGS_OF_prr; ++leg) {
         legs_place_prr(1, LEGS(LEGS_OF_prr), o_prr, leg, leg_force, actuator, t);
     }
@@ -5535,68 +4514,37 @@ INLINE void legs_run(const prepared *m, const real *X, const real *V, const real
 INLINE void potential_before(const prepared *m, size_t w, const real *X, real *s)
 {
     for (size_t k = 0; k < w; ++k) {
-        /* X: named entries */
-        const real X_0 = X[0*w + k];
-        const real t_x = X_0;
-        const real X_1 = X[1*w + k];
-        const real t_y = X_1;
-        const real X_2 = X[2*w + k];
-        const real R_xx = cosine(X_2);
-        const real R_yx = sine(X_2);
+        values v;
+        stage_X(m, w, k, X, &v);
         /* (potential) potential energy */
         const real gravity_x = m->gravity_x;
         const real gravity_y = m->gravity_y;
         const real h_star_in_platform_x = m->h_star_in_platform_x;
         const real h_star_in_platform_y = m->h_star_in_platform_y;
         const real m_star = m->m_star;
-        const real potential_t = gravity_x*(R_xx*h_star_in_platform_x + m_star*t_x -
-            R_yx*h_star_in_platform_y) + gravity_y*(R_xx*h_star_in_platform_y +
-            R_yx*h_star_in_platform_x + m_star*t_y);
-        s[0*w + k] = t_x;
-        s[1*w + k] = t_y;
-        s[2*w + k] = R_xx;
-        s[3*w + k] = R_yx;
-        s[4*w + k] = potential_t;
+        const real t_x = X[0*w + k];
+        const real t_y = X[1*w + k];
+        const real potential_t = gravity_x*(v.R_xx*h_star_in_platform_x + m_star*t_x -
+            v.R_yx*h_star_in_platform_y) + gravity_y*(v.R_xx*h_star_in_platform_y +
+            v.R_yx*h_star_in_platform_x + m_star*t_y);
+        s[0*w + k] = v.R_xx;
+        s[1*w + k] = v.R_yx;
+        s[2*w + k] = potential_t;
     }
 }
 
 INLINE void potential_legs_rpr(const prepared *m, size_t w, size_t leg, size_t legs, const real
-    *s, size_t states, size_t count, int add, real *terms, real *o)
+    *s, size_t states, size_t count, int add, const real *X, real *terms, real *o)
 {
     for (size_t k = 0; k < count; ++k) {
         const size_t i = leg + legs*k;
         const size_t j = states*k;
-        /* (rpr-S) from the base point to the connection point */
-        const real R_xx = s[2*w + j];
-        const real R_yx = s[3*w + j];
-        const real rpr_base_point_x = m->rpr_base_point_x[i];
-        const real rpr_platform_point_x = m->rpr_platform_point_x[i];
-        const real rpr_platform_point_y = m->rpr_platform_point_y[i];
-        const real t_x = s[0*w + j];
-        const real rpr_S_x = t_x + R_xx*rpr_platform_point_x - rpr_base_point_x -
-            R_yx*rpr_platform_point_y;
-        const real rpr_base_point_y = m->rpr_base_point_y[i];
-        const real t_y = s[1*w + j];
-        const real rpr_S_y = t_y + R_xx*rpr_platform_point_y + R_yx*rpr_platform_point_x -
-            rpr_base_point_y;
-        /* (rpr-px_1) component along the reference direction */
-        const real rpr_base_frame_xx = m->rpr_base_frame_xx[i];
-        const real rpr_base_frame_yx = m->rpr_base_frame_yx[i];
-        const real rpr_px_1 = rpr_S_x*rpr_base_frame_xx + rpr_S_y*rpr_base_frame_yx;
-        /* (rpr-py_1) component across the reference direction */
-        const real rpr_base_frame_xy = m->rpr_base_frame_xy[i];
-        const real rpr_base_frame_yy = m->rpr_base_frame_yy[i];
-        const real rpr_py_1 = rpr_S_x*rpr_base_frame_xy + rpr_S_y*rpr_base_frame_yy;
-        /* (rpr-rho2_1) squared amplitude */
-        const real rpr_rho2_1 = rpr_px_1*rpr_px_1 + rpr_py_1*rpr_py_1;
-        /* (rpr-root_1) amplitude, with the sign of the branch */
-        const real rpr_branch_1 = m->rpr_branch_1[i];
-        const real rpr_root_1 = rpr_branch_1*root(rpr_rho2_1);
+        values_rpr v;
+        stage_rpr_inverse_kinematics_potential(m, w, i, j, s, X, &v);
         /* (rpr-c_1) cosine of the angle of joint 1 from its reference direction */
-        const real inv_rpr_root_1 = 1/rpr_root_1;
-        const real rpr_c_1 = inv_rpr_root_1*rpr_px_1;
+        const real rpr_c_1 = v.inv_rpr_q_2*v.rpr_S_in_turn1_x;
         /* (rpr-s_1) sine of the angle of joint 1 from its reference direction */
-        const real rpr_s_1 = inv_rpr_root_1*rpr_py_1;
+        const real rpr_s_1 = v.inv_rpr_q_2*v.rpr_S_in_turn1_y;
         /* (potential) potential energy */
         const real rpr_acc_2_t = m->rpr_acc_2_t[i];
         const real rpr_acc_2_t_2 = m->rpr_acc_2_t_2[i];
@@ -5614,7 +4562,7 @@ INLINE void potential_legs_rpr(const prepared *m, size_t w, size_t leg, size_t l
             + rpr_link1_mass*(rpr_c_1*rpr_potential_t_2 - rpr_potential_t*rpr_s_1));
         /* (potential) potential energy */
         gather(&terms[0*count + k], add, rpr_potential_t_3);  /* potential_t_2 */
-        o[0*count + k] = UNLESS(magnitude(rpr_rho2_1) > LEAST_1) + UNLESS(magnitude(rpr_root_1) >
+        o[0*count + k] = UNLESS(magnitude(v.rpr_q_2_t) > LEAST_1) + UNLESS(magnitude(v.rpr_q_2) >
             LEAST_2);
     }
 }
@@ -5627,66 +4575,26 @@ INLINE void potential_place_rpr(size_t w, size_t count, const real *o, size_t fi
 }
 
 INLINE void potential_legs_rrr(const prepared *m, size_t w, size_t leg, size_t legs, const real
-    *s, size_t states, size_t count, int add, real *terms, real *o)
+    *s, size_t states, size_t count, int add, const real *X, real *terms, real *o)
 {
     for (size_t k = 0; k < count; ++k) {
         const size_t i = leg + legs*k;
         const size_t j = states*k;
-        /* (rrr-S) from the base point to the connection point */
-        const real R_xx = s[2*w + j];
-        const real R_yx = s[3*w + j];
-        const real rrr_base_point_x = m->rrr_base_point_x[i];
-        const real rrr_platform_point_x = m->rrr_platform_point_x[i];
-        const real rrr_platform_point_y = m->rrr_platform_point_y[i];
-        const real t_x = s[0*w + j];
-        const real rrr_S_x = t_x + R_xx*rrr_platform_point_x - rrr_base_point_x -
-            R_yx*rrr_platform_point_y;
-        const real rrr_base_point_y = m->rrr_base_point_y[i];
-        const real t_y = s[1*w + j];
-        const real rrr_S_y = t_y + R_xx*rrr_platform_point_y + R_yx*rrr_platform_point_x -
-            rrr_base_point_y;
-        /* (rrr-Kd_1) projection on the centre's direction, from the distance fixed by the joints beyond
-           joint 1 */
-        const real rrr_Kd_1_t_3 = rrr_S_x*rrr_S_x + rrr_S_y*rrr_S_y;
-        const real rrr_Kd_1_t = m->rrr_Kd_1_t[i];
-        const real rrr_Kd_1_t_2 = m->rrr_Kd_1_t_2[i];
-        const real rrr_Kd_1 = rrr_Kd_1_t + R(0.5)*rrr_Kd_1_t_3 - rrr_Kd_1_t_2;
-        /* (rrr-px_1) component along the reference direction */
-        const real rrr_base_frame_xx = m->rrr_base_frame_xx[i];
-        const real rrr_base_frame_yx = m->rrr_base_frame_yx[i];
-        const real rrr_px_1 = rrr_S_x*rrr_base_frame_xx + rrr_S_y*rrr_base_frame_yx;
-        /* (rrr-py_1) component across the reference direction */
-        const real rrr_base_frame_xy = m->rrr_base_frame_xy[i];
-        const real rrr_base_frame_yy = m->rrr_base_frame_yy[i];
-        const real rrr_py_1 = rrr_S_x*rrr_base_frame_xy + rrr_S_y*rrr_base_frame_yy;
-        /* (rrr-Kc_1) factor of the cosine in the equation of joint 1 */
-        const real rrr_joint2_offset_x = m->rrr_joint2_offset_x[i];
-        const real rrr_Kc_1 = rrr_joint2_offset_x*rrr_px_1;
-        /* (rrr-Ks_1) factor of the sine in the equation of joint 1 */
-        const real rrr_Ks_1 = rrr_joint2_offset_x*rrr_py_1;
-        /* (rrr-rho2_1) squared amplitude */
-        const real rrr_rho2_1 = rrr_Kc_1*rrr_Kc_1 + rrr_Ks_1*rrr_Ks_1;
-        /* (rrr-disc_1) discriminant */
-        const real rrr_disc_1 = rrr_rho2_1 - rrr_Kd_1*rrr_Kd_1;
-        /* (rrr-root_1) root, with the sign of the branch */
-        const real rrr_branch_1 = m->rrr_branch_1[i];
-        const real rrr_root_1 = rrr_branch_1*root(rrr_disc_1);
+        values_rrr v;
+        stage_rrr_inverse_kinematics_potential(m, w, i, j, s, X, &v);
         /* (rrr-c_1) cosine of the angle of joint 1 from its reference direction */
-        const real inv_rrr_rho2_1 = 1/rrr_rho2_1;
-        const real rrr_c_1 = inv_rrr_rho2_1*(rrr_Kc_1*rrr_Kd_1 - rrr_Ks_1*rrr_root_1);
+        const real rrr_c_1 = v.inv_rrr_rho2_1*(v.rrr_Kc_1*v.rrr_Kd_1 - v.rrr_Ks_1*v.rrr_root_1);
         /* (rrr-s_1) sine of the angle of joint 1 from its reference direction */
-        const real rrr_s_1 = inv_rrr_rho2_1*(rrr_Kc_1*rrr_root_1 + rrr_Kd_1*rrr_Ks_1);
-        /* (rrr-x_2) from the origin of joint 2 to the connection point */
-        const real inv_rrr_size_t = m->inv_rrr_size_t[i];
-        const real rrr_x_2_in_axes1_x = inv_rrr_size_t*rrr_Kd_1*rrr_joint2_offset_x -
-            rrr_joint2_offset_x;
+        const real rrr_s_1 = v.inv_rrr_rho2_1*(v.rrr_Kc_1*v.rrr_root_1 + v.rrr_Kd_1*v.rrr_Ks_1);
         /* (rrr-c_2) cosine of the angle of joint 2 from its reference direction */
         const real inv_rrr_size_t_2 = m->inv_rrr_size_t_2[i];
         const real rrr_platform_joint_offset_x = m->rrr_platform_joint_offset_x[i];
-        const real rrr_c_2 = inv_rrr_size_t_2*rrr_platform_joint_offset_x*rrr_x_2_in_axes1_x;
+        const real rrr_c_2 = inv_rrr_size_t_2*rrr_platform_joint_offset_x*v.rrr_x_2_in_axes1_x;
         /* (rrr-s_2) sine of the angle of joint 2 from its reference direction */
+        const real inv_rrr_size_t = m->inv_rrr_size_t[i];
+        const real rrr_joint2_offset_x = m->rrr_joint2_offset_x[i];
         const real rrr_s_2 =
-            -inv_rrr_size_t*inv_rrr_size_t_2*rrr_joint2_offset_x*rrr_platform_joint_offset_x*rrr_root_1;
+            -inv_rrr_size_t*inv_rrr_size_t_2*rrr_joint2_offset_x*rrr_platform_joint_offset_x*v.rrr_root_1;
         /* (potential) potential energy */
         const real rrr_h_1_in_spec1_x = m->rrr_h_1_in_spec1_x[i];
         const real rrr_h_1_in_spec1_y = m->rrr_h_1_in_spec1_y[i];
@@ -5707,8 +4615,8 @@ INLINE void potential_legs_rrr(const prepared *m, size_t w, size_t leg, size_t l
         /* (potential) potential energy */
         gather(&terms[1*count + k], add, rrr_potential_t_3);  /* potential_t_3 */
         const real rrr_rho2_1_t = m->rrr_rho2_1_t[i];
-        o[1*count + k] = UNLESS(magnitude(rrr_rho2_1) > TOLERANCE*TOLERANCE*rrr_rho2_1_t);
-        o[0*count + k] = UNLESS(rrr_disc_1 >= 0);
+        o[1*count + k] = UNLESS(magnitude(v.rrr_rho2_1) > TOLERANCE*TOLERANCE*rrr_rho2_1_t);
+        o[0*count + k] = UNLESS(v.rrr_disc_1 >= 0);
     }
 }
 
@@ -5721,44 +4629,23 @@ INLINE void potential_place_rrr(size_t w, size_t count, const real *o, size_t fi
 }
 
 INLINE void potential_legs_prr(const prepared *m, size_t w, size_t leg, size_t legs, const real
-    *s, size_t states, size_t count, int add, real *terms, real *o)
+    *s, size_t states, size_t count, int add, const real *X, real *terms, real *o)
 {
     for (size_t k = 0; k < count; ++k) {
         const size_t i = leg + legs*k;
         const size_t j = states*k;
-        /* (prr-S) from the base point to the connection point */
-        const real R_xx = s[2*w + j];
-        const real R_yx = s[3*w + j];
-        const real prr_base_point_x = m->prr_base_point_x[i];
-        const real prr_platform_point_x = m->prr_platform_point_x[i];
-        const real prr_platform_point_y = m->prr_platform_point_y[i];
-        const real t_x = s[0*w + j];
-        const real prr_S_x = t_x + R_xx*prr_platform_point_x - prr_base_point_x -
-            R_yx*prr_platform_point_y;
-        const real prr_base_point_y = m->prr_base_point_y[i];
-        const real t_y = s[1*w + j];
-        const real prr_S_y = t_y + R_xx*prr_platform_point_y + R_yx*prr_platform_point_x -
-            prr_base_point_y;
-        const real prr_base_frame_xx = m->prr_base_frame_xx[i];
-        const real prr_base_frame_yx = m->prr_base_frame_yx[i];
-        const real prr_S_in_axes0_x = prr_S_x*prr_base_frame_xx + prr_S_y*prr_base_frame_yx;
-        /* (prr-disc_1) discriminant of the distance equation */
-        const real prr_disc_1_t = prr_S_x*prr_S_x + prr_S_y*prr_S_y;
-        const real prr_size_t = m->prr_size_t[i];
-        const real prr_disc_1 = prr_S_in_axes0_x*prr_S_in_axes0_x + prr_size_t - prr_disc_1_t;
-        /* (prr-q_1) displacement of joint 1 */
-        const real prr_branch_1 = m->prr_branch_1[i];
-        const real prr_q_1_t = -prr_branch_1*root(prr_disc_1);
-        const real prr_q_1 = prr_S_in_axes0_x - prr_q_1_t;
+        values_prr v;
+        stage_prr_inverse_kinematics_potential(m, w, i, j, s, X, &v);
         /* (prr-c_2) cosine of the angle of joint 2 from its reference direction */
         const real inv_prr_size_t = m->inv_prr_size_t[i];
         const real prr_platform_joint_offset_x = m->prr_platform_joint_offset_x[i];
-        const real prr_c_2 = inv_prr_size_t*prr_platform_joint_offset_x*prr_q_1_t;
+        const real prr_c_2 = inv_prr_size_t*prr_platform_joint_offset_x*v.prr_q_1_t;
         /* (prr-s_2) sine of the angle of joint 2 from its reference direction */
         const real prr_base_frame_xy = m->prr_base_frame_xy[i];
         const real prr_base_frame_yy = m->prr_base_frame_yy[i];
-        const real prr_s_2 = inv_prr_size_t*prr_platform_joint_offset_x*(prr_S_x*prr_base_frame_xy
-            + prr_S_y*prr_base_frame_yy);
+        const real prr_s_2 =
+            inv_prr_size_t*prr_platform_joint_offset_x*(v.prr_S_x*prr_base_frame_xy +
+            v.prr_S_y*prr_base_frame_yy);
         /* (potential) potential energy */
         const real prr_b_in_axes0_x = m->prr_b_in_axes0_x[i];
         const real prr_g_in_axes0_x = m->prr_g_in_axes0_x[i];
@@ -5770,12 +4657,12 @@ INLINE void potential_legs_prr(const prepared *m, size_t w, size_t leg, size_t l
         const real prr_link1_mass = m->prr_link1_mass[i];
         const real prr_potential_t = m->prr_potential_t[i];
         const real prr_potential_t_2 = prr_g_in_axes0_x*(prr_h_1_in_spec0_x +
-            prr_c_2*prr_h_2_in_spec2_x + prr_link1_mass*(prr_b_in_axes0_x + prr_q_1) -
+            prr_c_2*prr_h_2_in_spec2_x + prr_link1_mass*(prr_b_in_axes0_x + v.prr_q_1) -
             prr_h_2_in_spec2_y*prr_s_2) + prr_g_in_axes0_y*(prr_h_1_in_spec0_y + prr_potential_t +
             prr_c_2*prr_h_2_in_spec2_y + prr_h_2_in_spec2_x*prr_s_2);
         /* (potential) potential energy */
         gather(&terms[2*count + k], add, -prr_potential_t_2);  /* potential_of_legs */
-        o[0*count + k] = UNLESS(prr_disc_1 >= 0);
+        o[0*count + k] = UNLESS(v.prr_disc_1 >= 0);
     }
 }
 
@@ -5791,7 +4678,7 @@ INLINE void potential_after(size_t w, const real *s, const real *sums, real *pot
     for (size_t k = 0; k < w; ++k) {
         /* (potential) potential energy */
         const real potential_of_legs = sums[2*w + k];
-        const real potential_t = s[4*w + k];
+        const real potential_t = s[2*w + k];
         const real potential_t_2 = sums[0*w + k];
         const real potential_t_3 = sums[1*w + k];
         const real potential_ = potential_of_legs - potential_t - potential_t_2 - potential_t_3;
@@ -5802,30 +4689,26 @@ INLINE void potential_after(size_t w, const real *s, const real *sums, real *pot
 
 INLINE void potential_run(const prepared *m, const real *X, real *potential, verdict *t)
 {
-    real s[5] = {0};
-    real sums[3] = {0};
-    real terms_rpr[3*LEGS(LEGS_OF_rpr)] = {0};
-    real o_rpr[LEGS(LEGS_OF_rpr)] = {0};
-    real terms_rrr[3*LEGS(LEGS_OF_rrr)] = {0};
-    real o_rrr[2*LEGS(LEGS_OF_rrr)] = {0};
-    real terms_prr[3*LEGS(LEGS_OF_prr)] = {0};
-    real o_prr[LEGS(LEGS_OF_prr)] = {0};
+    real s[3] = {0}, sums[3] = {0};
+    real terms_rpr[3*LEGS(LEGS_OF_rpr)] = {0}, o_rpr[LEGS(LEGS_OF_rpr)] = {0};
+    real terms_rrr[3*LEGS(LEGS_OF_rrr)] = {0}, o_rrr[2*LEGS(LEGS_OF_rrr)] = {0};
+    real terms_prr[3*LEGS(LEGS_OF_prr)] = {0}, o_prr[LEGS(LEGS_OF_prr)] = {0};
     potential_before(m, 1, X, s);
-    potential_legs_rpr(m, 1, 0, 1, s, 0, LEGS(LEGS_OF_rpr), 0, terms_rpr, o_rpr);
+    potential_legs_rpr(m, 1, 0, 1, s, 0, LEGS(LEGS_OF_rpr), 0, X, terms_rpr, o_rpr);
+    potential_legs_rrr(m, 1, 0, 1, s, 0, LEGS(LEGS_OF_rrr), 0, X, terms_rrr, o_rrr);
+    potential_legs_prr(m, 1, 0, 1, s, 0, LEGS(LEGS_OF_prr), 0, X, terms_prr, o_prr);
     for (size_t leg = 0; leg < LEGS_OF_rpr; ++leg) {
         potential_place_rpr(1, LEGS(LEGS_OF_rpr), o_rpr, leg, t);
     }
     for (size_t n = 0; n < 3; ++n) {
         sums[n] = total(terms_rpr + n*LEGS(LEGS_OF_rpr), LEGS_OF_rpr);
     }
-    potential_legs_rrr(m, 1, 0, 1, s, 0, LEGS(LEGS_OF_rrr), 0, terms_rrr, o_rrr);
     for (size_t leg = 0; leg < LEGS_OF_rrr; ++leg) {
         potential_place_rrr(1, LEGS(LEGS_OF_rrr), o_rrr, leg, t);
     }
     for (size_t n = 0; n < 3; ++n) {
         sums[n] += total(terms_rrr + n*LEGS(LEGS_OF_rrr), LEGS_OF_rrr);
     }
-    potential_legs_prr(m, 1, 0, 1, s, 0, LEGS(LEGS_OF_prr), 0, terms_prr, o_prr);
     for (size_t leg = 0; leg < LEGS_OF_prr; ++leg) {
         potential_place_prr(1, LEGS(LEGS_OF_prr), o_prr, leg, t);
     }
@@ -5840,18 +4723,10 @@ INLINE void condition_before(const prepared *m, size_t w, const real *X, real *s
     verdict *t)
 {
     for (size_t k = 0; k < w; ++k) {
-        /* X: named entries */
-        const real X_0 = X[0*w + k];
-        const real t_x = X_0;
-        const real X_1 = X[1*w + k];
-        const real t_y = X_1;
-        const real X_2 = X[2*w + k];
-        const real R_xx = cosine(X_2);
-        const real R_yx = sine(X_2);
-        s[0*w + k] = t_x;
-        s[1*w + k] = t_y;
-        s[2*w + k] = R_xx;
-        s[3*w + k] = R_yx;
+        values v;
+        stage_X(m, w, k, X, &v);
+        s[0*w + k] = v.R_xx;
+        s[1*w + k] = v.R_yx;
         /* (legs_size) rms size of the legs, taken where the platform points coincide */
         const real legs_size = m->legs_size;
         lengths[1*w + k] = legs_size;
@@ -5860,68 +4735,41 @@ INLINE void condition_before(const prepared *m, size_t w, const real *X, real *s
 }
 
 INLINE void condition_legs_rpr(const prepared *m, size_t w, size_t leg, size_t legs, const real
-    *s, size_t states, size_t count, int add, real *terms, real *o)
+    *s, size_t states, size_t count, int add, const real *X, real *terms, real *o)
 {
     for (size_t k = 0; k < count; ++k) {
         const size_t i = leg + legs*k;
         const size_t j = states*k;
-        /* (rpr-S) from the base point to the connection point */
-        const real R_xx = s[2*w + j];
-        const real R_yx = s[3*w + j];
-        const real rpr_platform_point_x = m->rpr_platform_point_x[i];
-        const real rpr_platform_point_y = m->rpr_platform_point_y[i];
-        const real rpr_q_x = R_xx*rpr_platform_point_x - R_yx*rpr_platform_point_y;
-        const real rpr_q_y = R_xx*rpr_platform_point_y + R_yx*rpr_platform_point_x;
-        const real rpr_base_point_x = m->rpr_base_point_x[i];
-        const real t_x = s[0*w + j];
-        const real rpr_S_x = rpr_q_x + t_x - rpr_base_point_x;
-        const real rpr_base_point_y = m->rpr_base_point_y[i];
-        const real t_y = s[1*w + j];
-        const real rpr_S_y = rpr_q_y + t_y - rpr_base_point_y;
-        /* (rpr-px_1) component along the reference direction */
-        const real rpr_base_frame_xx = m->rpr_base_frame_xx[i];
-        const real rpr_base_frame_yx = m->rpr_base_frame_yx[i];
-        const real rpr_px_1 = rpr_S_x*rpr_base_frame_xx + rpr_S_y*rpr_base_frame_yx;
-        /* (rpr-py_1) component across the reference direction */
-        const real rpr_base_frame_xy = m->rpr_base_frame_xy[i];
-        const real rpr_base_frame_yy = m->rpr_base_frame_yy[i];
-        const real rpr_py_1 = rpr_S_x*rpr_base_frame_xy + rpr_S_y*rpr_base_frame_yy;
-        /* (rpr-rho2_1) squared amplitude */
-        const real rpr_rho2_1 = rpr_px_1*rpr_px_1 + rpr_py_1*rpr_py_1;
-        /* (rpr-root_1) amplitude, with the sign of the branch */
-        const real rpr_branch_1 = m->rpr_branch_1[i];
-        const real rpr_root_1 = rpr_branch_1*root(rpr_rho2_1);
-        /* (rpr-w_1) reciprocal vector 1 */
-        const real rpr_w_1_in_axes1_y = 1/rpr_root_1;
-        /* (rpr-w_2) reciprocal vector 2 */
-        const real rpr_w_2_x = rpr_S_x*rpr_w_1_in_axes1_y;
-        const real rpr_w_2_y = rpr_S_y*rpr_w_1_in_axes1_y;
+        values_rpr v;
+        stage_rpr_X(m, w, i, j, s, X, &v);
         /* (rpr-G) force at the connection point that balances the leg's inertia and weight along all
            degrees of freedom */
-        const real rpr_pivot_size = magnitude(rpr_rho2_1);
-        const real rpr_pivot_size_2 = magnitude(rpr_root_1);
+        const real rpr_pivot_size = magnitude(v.rpr_q_2_t);
+        const real rpr_pivot_size_2 = magnitude(v.rpr_q_2);
         const real rpr_least_pivots = lesser(R(1.6129032258064515)*root(rpr_pivot_size),
             R(1.6129032258064517)*rpr_pivot_size_2);
         /* (rpr-H_a_2) moment of the column's unit force about the platform origin */
-        const real rpr_H_a_2_z = rpr_q_x*rpr_w_2_y - rpr_q_y*rpr_w_2_x;
+        const real rpr_H_a_2_z = v.rpr_q_x*v.rpr_w_2_y - v.rpr_q_y*v.rpr_w_2_x;
         /* (spread) rms distance of the platform points from their centroid */
         const real b_c_in_platform_x = m->b_c_in_platform_x;
+        const real rpr_platform_point_x = m->rpr_platform_point_x[i];
         const real rpr_spread_t = b_c_in_platform_x - rpr_platform_point_x;
         const real b_c_in_platform_y = m->b_c_in_platform_y;
+        const real rpr_platform_point_y = m->rpr_platform_point_y[i];
         const real rpr_spread_t_2 = b_c_in_platform_y - rpr_platform_point_y;
         const real rpr_spread_t_3 = rpr_spread_t*rpr_spread_t + rpr_spread_t_2*rpr_spread_t_2;
         /* (spread) rms distance of the platform points from their centroid */
         gather(&terms[0*count + k], add, rpr_spread_t_3);  /* spread_rpr */
         /* (rpr-w_2) reciprocal vector 2 */
-        o[0*count + k] = rpr_w_2_x;
-        o[1*count + k] = rpr_w_2_y;
+        o[0*count + k] = v.rpr_w_2_x;
+        o[1*count + k] = v.rpr_w_2_y;
         /* (rpr-H_a_2) moment of the column's unit force about the platform origin */
         o[2*count + k] = rpr_H_a_2_z;
         /* (rpr-G) force at the connection point that balances the leg's inertia and weight along all
            degrees of freedom */
         o[3*count + k] = rpr_least_pivots;
-        o[5*count + k] = (rpr_w_2_x + rpr_w_2_y) + (rpr_H_a_2_z + rpr_least_pivots);
-        o[4*count + k] = UNLESS(magnitude(rpr_rho2_1) > LEAST_1) + UNLESS(magnitude(rpr_root_1) >
+        o[5*count + k] = (v.rpr_w_2_x + v.rpr_w_2_y) + (rpr_H_a_2_z + rpr_least_pivots);
+        o[4*count + k] = UNLESS(magnitude(v.rpr_q_2_t) > LEAST_1) + UNLESS(magnitude(v.rpr_q_2) >
             LEAST_2);
     }
 }
@@ -5930,7 +4778,7 @@ INLINE void condition_place_rpr(size_t w, size_t count, const real *o, size_t fi
     *pivots, verdict *t)
 {
     for (size_t k = 0; k < w; ++k) {
-        H[0*NU*w + k] = o[0*count + first + k];
+        H[0*w + k] = o[0*count + first + k];
         H[NU*w + k] = o[1*count + first + k];
         H[2*NU*w + k] = o[2*count + first + k];
         pivots[0*w + k] = o[3*count + first + k];
@@ -5940,112 +4788,48 @@ INLINE void condition_place_rpr(size_t w, size_t count, const real *o, size_t fi
 }
 
 INLINE void condition_legs_rrr(const prepared *m, size_t w, size_t leg, size_t legs, const real
-    *s, size_t states, size_t count, int add, real *terms, real *o)
+    *s, size_t states, size_t count, int add, const real *X, real *terms, real *o)
 {
     for (size_t k = 0; k < count; ++k) {
         const size_t i = leg + legs*k;
         const size_t j = states*k;
-        /* (rrr-S) from the base point to the connection point */
-        const real R_xx = s[2*w + j];
-        const real R_yx = s[3*w + j];
-        const real rrr_platform_point_x = m->rrr_platform_point_x[i];
-        const real rrr_platform_point_y = m->rrr_platform_point_y[i];
-        const real rrr_q_x = R_xx*rrr_platform_point_x - R_yx*rrr_platform_point_y;
-        const real rrr_q_y = R_xx*rrr_platform_point_y + R_yx*rrr_platform_point_x;
-        const real rrr_base_point_x = m->rrr_base_point_x[i];
-        const real t_x = s[0*w + j];
-        const real rrr_S_x = rrr_q_x + t_x - rrr_base_point_x;
-        const real rrr_base_point_y = m->rrr_base_point_y[i];
-        const real t_y = s[1*w + j];
-        const real rrr_S_y = rrr_q_y + t_y - rrr_base_point_y;
-        /* (rrr-Kd_1) projection on the centre's direction, from the distance fixed by the joints beyond
-           joint 1 */
-        const real rrr_Kd_1_t_3 = rrr_S_x*rrr_S_x + rrr_S_y*rrr_S_y;
-        const real rrr_Kd_1_t = m->rrr_Kd_1_t[i];
-        const real rrr_Kd_1_t_2 = m->rrr_Kd_1_t_2[i];
-        const real rrr_Kd_1 = rrr_Kd_1_t + R(0.5)*rrr_Kd_1_t_3 - rrr_Kd_1_t_2;
-        /* (rrr-px_1) component along the reference direction */
-        const real rrr_base_frame_xx = m->rrr_base_frame_xx[i];
-        const real rrr_base_frame_yx = m->rrr_base_frame_yx[i];
-        const real rrr_px_1 = rrr_S_x*rrr_base_frame_xx + rrr_S_y*rrr_base_frame_yx;
-        /* (rrr-py_1) component across the reference direction */
-        const real rrr_base_frame_xy = m->rrr_base_frame_xy[i];
-        const real rrr_base_frame_yy = m->rrr_base_frame_yy[i];
-        const real rrr_py_1 = rrr_S_x*rrr_base_frame_xy + rrr_S_y*rrr_base_frame_yy;
-        /* (rrr-Kc_1) factor of the cosine in the equation of joint 1 */
-        const real rrr_joint2_offset_x = m->rrr_joint2_offset_x[i];
-        const real rrr_Kc_1 = rrr_joint2_offset_x*rrr_px_1;
-        /* (rrr-Ks_1) factor of the sine in the equation of joint 1 */
-        const real rrr_Ks_1 = rrr_joint2_offset_x*rrr_py_1;
-        /* (rrr-rho2_1) squared amplitude */
-        const real rrr_rho2_1 = rrr_Kc_1*rrr_Kc_1 + rrr_Ks_1*rrr_Ks_1;
-        /* (rrr-disc_1) discriminant */
-        const real rrr_disc_1 = rrr_rho2_1 - rrr_Kd_1*rrr_Kd_1;
-        /* (rrr-root_1) root, with the sign of the branch */
-        const real rrr_branch_1 = m->rrr_branch_1[i];
-        const real rrr_root_1 = rrr_branch_1*root(rrr_disc_1);
-        /* (rrr-c_1) cosine of the angle of joint 1 from its reference direction */
-        const real inv_rrr_rho2_1 = 1/rrr_rho2_1;
-        const real rrr_c_1 = inv_rrr_rho2_1*(rrr_Kc_1*rrr_Kd_1 - rrr_Ks_1*rrr_root_1);
-        /* (rrr-s_1) sine of the angle of joint 1 from its reference direction */
-        const real rrr_s_1 = inv_rrr_rho2_1*(rrr_Kc_1*rrr_root_1 + rrr_Kd_1*rrr_Ks_1);
-        /* (rrr-x_2) from the origin of joint 2 to the connection point */
-        const real inv_rrr_size_t = m->inv_rrr_size_t[i];
-        const real rrr_x_2_in_axes1_x = inv_rrr_size_t*rrr_Kd_1*rrr_joint2_offset_x -
-            rrr_joint2_offset_x;
-        /* (rrr-c_2) cosine of the angle of joint 2 from its reference direction */
-        const real inv_rrr_size_t_2 = m->inv_rrr_size_t_2[i];
-        const real rrr_platform_joint_offset_x = m->rrr_platform_joint_offset_x[i];
-        const real rrr_c_2 = inv_rrr_size_t_2*rrr_platform_joint_offset_x*rrr_x_2_in_axes1_x;
-        /* (rrr-s_2) sine of the angle of joint 2 from its reference direction */
-        const real rrr_s_2 =
-            -inv_rrr_size_t*inv_rrr_size_t_2*rrr_joint2_offset_x*rrr_platform_joint_offset_x*rrr_root_1;
-        /* (rrr-r_1) from joint 1 to the connection point, along the links */
-        const real rrr_r_1_in_axes1_x = rrr_joint2_offset_x + rrr_c_2*rrr_platform_joint_offset_x;
-        const real rrr_r_1_in_axes2_y = rrr_c_2*rrr_platform_joint_offset_x*rrr_s_2 -
-            rrr_r_1_in_axes1_x*rrr_s_2;
-        /* (rrr-w_1) reciprocal vector 1 */
-        const real rrr_w_1_t = rrr_c_1*rrr_s_2 + rrr_c_2*rrr_s_1;
-        const real rrr_w_1_t_2 = rrr_c_1*rrr_c_2 - rrr_s_1*rrr_s_2;
-        const real rrr_w_1_in_axes2_x = -1/rrr_r_1_in_axes2_y;
-        const real rrr_w_1_x = rrr_w_1_in_axes2_x*(rrr_base_frame_yy*rrr_w_1_t_2 -
-            rrr_base_frame_yx*rrr_w_1_t);
-        const real rrr_w_1_y = -rrr_w_1_in_axes2_x*(rrr_base_frame_xy*rrr_w_1_t_2 -
-            rrr_base_frame_xx*rrr_w_1_t);
+        values_rrr v;
+        stage_rrr_X(m, w, i, j, s, X, &v);
+        stage_rrr_H_condition(m, i, &v);
         /* (rrr-G) force at the connection point that balances the leg's inertia and weight along all
            degrees of freedom */
-        const real rrr_pivot_size = magnitude(rrr_rho2_1);
-        const real rrr_pivot_size_2 = magnitude(rrr_r_1_in_axes2_y);
+        const real rrr_pivot_size = magnitude(v.rrr_rho2_1);
+        const real rrr_pivot_size_2 = magnitude(v.rrr_r_1_in_axes2_y);
         const real inv_rrr_rho2_1_t = m->inv_rrr_rho2_1_t[i];
         const real inv_rrr_size = m->inv_rrr_size[i];
         const real rrr_least_pivots = lesser(root(inv_rrr_rho2_1_t*rrr_pivot_size),
             inv_rrr_size*rrr_pivot_size_2);
-        /* (rrr-H_a_1) moment of the column's unit force about the platform origin */
-        const real rrr_H_a_1_z = rrr_q_x*rrr_w_1_y - rrr_q_y*rrr_w_1_x;
         /* (spread) rms distance of the platform points from their centroid */
         const real b_c_in_platform_x = m->b_c_in_platform_x;
+        const real rrr_platform_point_x = m->rrr_platform_point_x[i];
         const real rrr_spread_t = b_c_in_platform_x - rrr_platform_point_x;
         const real b_c_in_platform_y = m->b_c_in_platform_y;
+        const real rrr_platform_point_y = m->rrr_platform_point_y[i];
         const real rrr_spread_t_2 = b_c_in_platform_y - rrr_platform_point_y;
         const real rrr_spread_t_3 = rrr_spread_t*rrr_spread_t + rrr_spread_t_2*rrr_spread_t_2;
         /* (spread) rms distance of the platform points from their centroid */
         gather(&terms[1*count + k], add, rrr_spread_t_3);  /* spread_rrr */
         /* (rrr-w_1) reciprocal vector 1 */
-        o[0*count + k] = rrr_w_1_x;
-        o[1*count + k] = rrr_w_1_y;
+        o[0*count + k] = v.rrr_w_1_x;
+        o[1*count + k] = v.rrr_w_1_y;
         /* (rrr-H_a_1) moment of the column's unit force about the platform origin */
-        o[2*count + k] = rrr_H_a_1_z;
+        o[2*count + k] = v.rrr_H_a_1_z;
         /* (rrr-G) force at the connection point that balances the leg's inertia and weight along all
            degrees of freedom */
         o[3*count + k] = rrr_least_pivots;
-        o[4*count + k] = rrr_disc_1;
-        o[7*count + k] = (rrr_w_1_x + rrr_w_1_y) + (rrr_H_a_1_z + (rrr_least_pivots +
-            rrr_disc_1));
+        o[4*count + k] = v.rrr_disc_1;
+        o[7*count + k] = (v.rrr_w_1_x + v.rrr_w_1_y) + (v.rrr_H_a_1_z + (rrr_least_pivots +
+            v.rrr_disc_1));
         const real rrr_rho2_1_t = m->rrr_rho2_1_t[i];
         const real rrr_size = m->rrr_size[i];
-        o[6*count + k] = UNLESS(magnitude(rrr_rho2_1) > TOLERANCE*TOLERANCE*rrr_rho2_1_t) +
-            UNLESS(magnitude(rrr_r_1_in_axes2_y) > TOLERANCE*rrr_size);
-        o[5*count + k] = UNLESS(rrr_disc_1 >= 0);
+        o[6*count + k] = UNLESS(magnitude(v.rrr_rho2_1) > TOLERANCE*TOLERANCE*rrr_rho2_1_t) +
+            UNLESS(magnitude(v.rrr_r_1_in_axes2_y) > TOLERANCE*rrr_size);
+        o[5*count + k] = UNLESS(v.rrr_disc_1 >= 0);
     }
 }
 
@@ -6053,7 +4837,7 @@ INLINE void condition_place_rrr(size_t w, size_t count, const real *o, size_t fi
     *pivots, real *reach, verdict *t)
 {
     for (size_t k = 0; k < w; ++k) {
-        H[(0*NU + 1)*w + k] = o[0*count + first + k];
+        H[1*w + k] = o[0*count + first + k];
         H[(NU + 1)*w + k] = o[1*count + first + k];
         H[(2*NU + 1)*w + k] = o[2*count + first + k];
         pivots[1*w + k] = o[3*count + first + k];
@@ -6065,82 +4849,43 @@ INLINE void condition_place_rrr(size_t w, size_t count, const real *o, size_t fi
 }
 
 INLINE void condition_legs_prr(const prepared *m, size_t w, size_t leg, size_t legs, const real
-    *s, size_t states, size_t count, int add, real *terms, real *o)
+    *s, size_t states, size_t count, int add, const real *X, real *terms, real *o)
 {
     for (size_t k = 0; k < count; ++k) {
         const size_t i = leg + legs*k;
         const size_t j = states*k;
-        /* (prr-S) from the base point to the connection point */
-        const real R_xx = s[2*w + j];
-        const real R_yx = s[3*w + j];
-        const real prr_platform_point_x = m->prr_platform_point_x[i];
-        const real prr_platform_point_y = m->prr_platform_point_y[i];
-        const real prr_q_x = R_xx*prr_platform_point_x - R_yx*prr_platform_point_y;
-        const real prr_q_y = R_xx*prr_platform_point_y + R_yx*prr_platform_point_x;
-        const real prr_base_point_x = m->prr_base_point_x[i];
-        const real t_x = s[0*w + j];
-        const real prr_S_x = prr_q_x + t_x - prr_base_point_x;
-        const real prr_base_point_y = m->prr_base_point_y[i];
-        const real t_y = s[1*w + j];
-        const real prr_S_y = prr_q_y + t_y - prr_base_point_y;
-        const real prr_base_frame_xx = m->prr_base_frame_xx[i];
-        const real prr_base_frame_yx = m->prr_base_frame_yx[i];
-        const real prr_S_in_axes0_x = prr_S_x*prr_base_frame_xx + prr_S_y*prr_base_frame_yx;
-        /* (prr-disc_1) discriminant of the distance equation */
-        const real prr_disc_1_t = prr_S_x*prr_S_x + prr_S_y*prr_S_y;
-        const real prr_size_t = m->prr_size_t[i];
-        const real prr_disc_1 = prr_S_in_axes0_x*prr_S_in_axes0_x + prr_size_t - prr_disc_1_t;
-        /* (prr-c_2) cosine of the angle of joint 2 from its reference direction */
-        const real inv_prr_size_t = m->inv_prr_size_t[i];
-        const real prr_branch_1 = m->prr_branch_1[i];
-        const real prr_platform_joint_offset_x = m->prr_platform_joint_offset_x[i];
-        const real prr_c_2 =
-            -inv_prr_size_t*prr_branch_1*root(prr_disc_1)*prr_platform_joint_offset_x;
-        /* (prr-s_2) sine of the angle of joint 2 from its reference direction */
-        const real prr_base_frame_xy = m->prr_base_frame_xy[i];
-        const real prr_base_frame_yy = m->prr_base_frame_yy[i];
-        const real prr_s_2 = inv_prr_size_t*prr_platform_joint_offset_x*(prr_S_x*prr_base_frame_xy
-            + prr_S_y*prr_base_frame_yy);
-        /* (prr-v_2) velocity of the connection point per rate of joint 2 */
-        const real prr_v_2_in_axes0_y = prr_c_2*prr_platform_joint_offset_x;
-        /* (prr-w_1) reciprocal vector 1 */
-        const real axis_y_prr_axes2_x = prr_base_frame_xy*prr_c_2 - prr_base_frame_xx*prr_s_2;
-        const real axis_x_prr_axes2_x = prr_base_frame_yy*prr_c_2 - prr_base_frame_yx*prr_s_2;
-        const real prr_w_1_t = prr_platform_joint_offset_x*prr_s_2/prr_v_2_in_axes0_y;
-        const real prr_w_1_in_axes2_x = prr_c_2 + prr_s_2*prr_w_1_t;
-        const real prr_w_1_in_axes2_y = prr_c_2*prr_w_1_t - prr_s_2;
-        const real prr_w_1_x = axis_x_prr_axes2_x*prr_w_1_in_axes2_x +
-            axis_y_prr_axes2_x*prr_w_1_in_axes2_y;
-        const real prr_w_1_y = axis_x_prr_axes2_x*prr_w_1_in_axes2_y -
-            axis_y_prr_axes2_x*prr_w_1_in_axes2_x;
+        values_prr v;
+        stage_prr_X(m, w, i, j, s, X, &v);
+        stage_prr_H_condition(m, i, &v);
         /* (prr-G) force at the connection point that balances the leg's inertia and weight along all
            degrees of freedom */
-        const real prr_pivot_size = magnitude(prr_v_2_in_axes0_y);
+        const real prr_pivot_size = magnitude(v.prr_v_2_in_axes0_y);
         const real inv_prr_size = m->inv_prr_size[i];
         const real prr_pivot = inv_prr_size*prr_pivot_size;
-        /* (prr-H_a_1) moment of the column's unit force about the platform origin */
-        const real prr_H_a_1_z = prr_q_x*prr_w_1_y - prr_q_y*prr_w_1_x;
         /* (spread) rms distance of the platform points from their centroid */
         const real b_c_in_platform_x = m->b_c_in_platform_x;
+        const real prr_platform_point_x = m->prr_platform_point_x[i];
         const real prr_spread_t = b_c_in_platform_x - prr_platform_point_x;
         const real b_c_in_platform_y = m->b_c_in_platform_y;
+        const real prr_platform_point_y = m->prr_platform_point_y[i];
         const real prr_spread_t_2 = b_c_in_platform_y - prr_platform_point_y;
         const real prr_spread_t_3 = prr_spread_t*prr_spread_t + prr_spread_t_2*prr_spread_t_2;
         /* (spread) rms distance of the platform points from their centroid */
         gather(&terms[2*count + k], add, prr_spread_t_3);  /* spread_prr */
         /* (prr-w_1) reciprocal vector 1 */
-        o[0*count + k] = prr_w_1_x;
-        o[1*count + k] = prr_w_1_y;
+        o[0*count + k] = v.prr_w_1_x;
+        o[1*count + k] = v.prr_w_1_y;
         /* (prr-H_a_1) moment of the column's unit force about the platform origin */
-        o[2*count + k] = prr_H_a_1_z;
+        o[2*count + k] = v.prr_H_a_1_z;
         /* (prr-G) force at the connection point that balances the leg's inertia and weight along all
            degrees of freedom */
         o[3*count + k] = prr_pivot;
-        o[4*count + k] = prr_disc_1;
-        o[7*count + k] = (prr_w_1_x + prr_w_1_y) + (prr_H_a_1_z + (prr_pivot + prr_disc_1));
+        o[4*count + k] = v.prr_disc_1;
+        o[7*count + k] = (v.prr_w_1_x + v.prr_w_1_y) + (v.prr_H_a_1_z + (prr_pivot +
+            v.prr_disc_1));
         const real prr_size = m->prr_size[i];
-        o[5*count + k] = UNLESS(prr_disc_1 >= 0);
-        o[6*count + k] = UNLESS(magnitude(prr_v_2_in_axes0_y) > TOLERANCE*prr_size);
+        o[5*count + k] = UNLESS(v.prr_disc_1 >= 0);
+        o[6*count + k] = UNLESS(magnitude(v.prr_v_2_in_axes0_y) > TOLERANCE*prr_size);
     }
 }
 
@@ -6148,7 +4893,7 @@ INLINE void condition_place_prr(size_t w, size_t count, const real *o, size_t fi
     *pivots, real *reach, verdict *t)
 {
     for (size_t k = 0; k < w; ++k) {
-        H[(0*NU + 2)*w + k] = o[0*count + first + k];
+        H[2*w + k] = o[0*count + first + k];
         H[(NU + 2)*w + k] = o[1*count + first + k];
         H[(2*NU + 2)*w + k] = o[2*count + first + k];
         pivots[2*w + k] = o[3*count + first + k];
@@ -6177,31 +4922,27 @@ INLINE void condition_after(size_t w, const real *sums, real *lengths, verdict *
 INLINE void condition_run(const prepared *m, const real *X, real *H, real *lengths, real *pivots,
     real *reach, verdict *t)
 {
-    real s[4] = {0};
-    real sums[3] = {0};
-    real terms_rpr[3*LEGS(LEGS_OF_rpr)] = {0};
-    real o_rpr[6*LEGS(LEGS_OF_rpr)] = {0};
-    real terms_rrr[3*LEGS(LEGS_OF_rrr)] = {0};
-    real o_rrr[8*LEGS(LEGS_OF_rrr)] = {0};
-    real terms_prr[3*LEGS(LEGS_OF_prr)] = {0};
-    real o_prr[8*LEGS(LEGS_OF_prr)] = {0};
+    real s[2] = {0}, sums[3] = {0};
+    real terms_rpr[3*LEGS(LEGS_OF_rpr)] = {0}, o_rpr[6*LEGS(LEGS_OF_rpr)] = {0};
+    real terms_rrr[3*LEGS(LEGS_OF_rrr)] = {0}, o_rrr[8*LEGS(LEGS_OF_rrr)] = {0};
+    real terms_prr[3*LEGS(LEGS_OF_prr)] = {0}, o_prr[8*LEGS(LEGS_OF_prr)] = {0};
     clear(reach, NL);
     condition_before(m, 1, X, s, lengths, t);
-    condition_legs_rpr(m, 1, 0, 1, s, 0, LEGS(LEGS_OF_rpr), 0, terms_rpr, o_rpr);
+    condition_legs_rpr(m, 1, 0, 1, s, 0, LEGS(LEGS_OF_rpr), 0, X, terms_rpr, o_rpr);
+    condition_legs_rrr(m, 1, 0, 1, s, 0, LEGS(LEGS_OF_rrr), 0, X, terms_rrr, o_rrr);
+    condition_legs_prr(m, 1, 0, 1, s, 0, LEGS(LEGS_OF_prr), 0, X, terms_prr, o_prr);
     for (size_t leg = 0; leg < LEGS_OF_rpr; ++leg) {
         condition_place_rpr(1, LEGS(LEGS_OF_rpr), o_rpr, leg, H, pivots, t);
     }
     for (size_t n = 0; n < 3; ++n) {
         sums[n] = total(terms_rpr + n*LEGS(LEGS_OF_rpr), LEGS_OF_rpr);
     }
-    condition_legs_rrr(m, 1, 0, 1, s, 0, LEGS(LEGS_OF_rrr), 0, terms_rrr, o_rrr);
     for (size_t leg = 0; leg < LEGS_OF_rrr; ++leg) {
         condition_place_rrr(1, LEGS(LEGS_OF_rrr), o_rrr, leg, H, pivots, reach, t);
     }
     for (size_t n = 0; n < 3; ++n) {
         sums[n] += total(terms_rrr + n*LEGS(LEGS_OF_rrr), LEGS_OF_rrr);
     }
-    condition_legs_prr(m, 1, 0, 1, s, 0, LEGS(LEGS_OF_prr), 0, terms_prr, o_prr);
     for (size_t leg = 0; leg < LEGS_OF_prr; ++leg) {
         condition_place_prr(1, LEGS(LEGS_OF_prr), o_prr, leg, H, pivots, reach, t);
     }
@@ -6719,11 +5460,84 @@ INLINE void condition_one(const prepared *m, const real *X, const real *length, 
     }
 }
 
+INLINE void manipulability_one(const prepared *m, const real *X, real *measure_out, real
+    *isotropy_out, int *code)
+{
+    static const size_t places_divide_rows_1[] = {2};
+    real H[NV*NU] = {0}, lengths[2] = {0}, pivots[NL] = {0}, reach[NL] = {0}, subtract_1[1] = {0},
+        choose_length_1[1] = {0}, divide_rows_1[NV*NU] = {0}, singular_values_1[NV] = {0}, measure[1]
+        = {0}, isotropy[1] = {0};
+    verdict why;
+    start(1, &why);
+    check(NQ, 1, X, why.invalid);
+    condition_run(m, X, H, lengths, pivots, reach, &why);
+    const real *const entry_1 = lengths;
+    for (size_t i = 0; i < 1; ++i) {
+        subtract_1[i] = entry_1[i] - entry_1[i];
+    }
+    for (size_t i = 0; i < 1; ++i) {
+        choose_length_1[i] = subtract_1[i] > 0 ? subtract_1[i] : lengths[i] > TINY*lengths[1 + i]
+            ? lengths[i] : lengths[1 + i];
+    }
+    for (size_t i = 0; i < NV*NU; ++i) {
+        divide_rows_1[i] = H[i];
+    }
+    divide_rows(1, NU, 1, places_divide_rows_1, choose_length_1, divide_rows_1);
+    singular_values(NV, NU, divide_rows_1, singular_values_1);
+    spread(NV, singular_values_1, measure, isotropy);
+    check(1, 1, measure, why.overflow);
+    check(1, 1, isotropy, why.overflow);
+    judge(&why, code);
+    copy(1, measure, measure_out);
+    copy(1, isotropy, isotropy_out);
+    if (*code != OK) {
+        refuse(1, measure_out);
+        refuse(1, isotropy_out);
+    }
+}
+
+INLINE void singularity_distance_one(const prepared *m, const real *X, real *actuators_out, real
+    *legs_out, int *code)
+{
+    static const size_t places_divide_rows_1[] = {2};
+    real H[NV*NU] = {0}, lengths[2] = {0}, pivots[NL] = {0}, reach[NL] = {0}, subtract_1[1] = {0},
+        choose_length_1[1] = {0}, divide_rows_1[NV*NU] = {0}, singular_values_1[NV] = {0}, spread_1[1]
+        = {0}, actuators[1] = {0}, legs[1] = {0};
+    verdict why;
+    start(1, &why);
+    check(NQ, 1, X, why.invalid);
+    condition_run(m, X, H, lengths, pivots, reach, &why);
+    const real *const entry_1 = lengths;
+    for (size_t i = 0; i < 1; ++i) {
+        subtract_1[i] = entry_1[i] - entry_1[i];
+    }
+    for (size_t i = 0; i < 1; ++i) {
+        choose_length_1[i] = subtract_1[i] > 0 ? subtract_1[i] : lengths[i] > TINY*lengths[1 + i]
+            ? lengths[i] : lengths[1 + i];
+    }
+    for (size_t i = 0; i < NV*NU; ++i) {
+        divide_rows_1[i] = H[i];
+    }
+    divide_rows(1, NU, 1, places_divide_rows_1, choose_length_1, divide_rows_1);
+    singular_values(NV, NU, divide_rows_1, singular_values_1);
+    spread(NV, singular_values_1, spread_1, actuators);
+    least_entry(NL, pivots, legs);
+    check(1, 1, actuators, why.overflow);
+    check(1, 1, legs, why.overflow);
+    judge(&why, code);
+    copy(1, actuators, actuators_out);
+    copy(1, legs, legs_out);
+    if (*code != OK) {
+        refuse(1, actuators_out);
+        refuse(1, legs_out);
+    }
+}
+
 static void mismatch_one(const prepared *m, const real *X, const real *q_actuated, real *gap_out,
     int *code)
 {
     static const size_t places_gap[] = {1};
-    real q[NJ] = {0}, take_1[3] = {0}, subtract_1[NU] = {0}, gap[NU] = {0};
+    real q[NJ] = {0}, q_of_inverse_kinematics_from_1[3] = {0}, subtract_1[NU] = {0}, gap[NU] = {0};
     verdict why;
     start(1, &why);
     const real total_in = total(X, NQ) + total(q_actuated, NU);
@@ -6732,9 +5546,9 @@ static void mismatch_one(const prepared *m, const real *X, const real *q_actuate
         check(NU, 1, q_actuated, why.invalid);
     }
     inverse_kinematics_run(m, X, q, &why);
-    take(3, 1, planar_mixed_ACTUATED, q, take_1);
+    take(3, 1, planar_mixed_ACTUATED, q, q_of_inverse_kinematics_from_1);
     for (size_t i = 0; i < NU; ++i) {
-        subtract_1[i] = q_actuated[i] - take_1[i];
+        subtract_1[i] = q_actuated[i] - q_of_inverse_kinematics_from_1[i];
     }
     for (size_t i = 0; i < NU; ++i) {
         gap[i] = subtract_1[i];
@@ -7103,8 +5917,8 @@ INLINE void rotation_one(const real *X, real *R_out, int *code)
     verdict why;
     start(1, &why);
     check(NQ, 1, X, why.invalid);
-    const real *const take_1 = X + 2;
-    rotation_of_angle(take_1, R);
+    const real *const X_from_2 = X + 2;
+    rotation_of_angle(X_from_2, R);
     check(4, 1, R, why.overflow);
     judge(&why, code);
     copy(4, R, R_out);
@@ -7234,286 +6048,259 @@ INLINE void interpolate_one(const real *X0, const real *X1, const real *s, real 
 
 /* ---- one state, and batches ---- */
 
-int planar_mixed_M(const planar_mixed_model *model, const planar_mixed_real *X, planar_mixed_real
-    *M)
+int planar_mixed_M(const prepared *model, const real *X, real *M)
 {
     int code;
     M_one(model, X, M, &code);
     return code;
 }
 
-size_t planar_mixed_M_batch(const planar_mixed_model *model, size_t n, const planar_mixed_real *X,
-    planar_mixed_real *M, int *status)
+size_t planar_mixed_M_batch(const prepared *model, size_t n, const real *X, real *M, int *status)
 {
-    size_t failed = 0, i = 0;
-    for (; LANES > 1 && i + LANES <= n; i += LANES) {
-        int codes[LANES];
-        M_lanes(model, X + NQ*i, M + NV*NV*i, codes);
-        for (size_t k = 0; k < LANES; ++k) {
+    size_t failed = 0, w;
+    for (size_t i = 0; i < n; i += w) {
+        int codes[LANES] = {INVALID};
+        w = LANES > 1 && i + LANES <= n ? LANES : 1;
+        if (w > 1) {
+            M_lanes(model, X + NQ*i, M + NV*NV*i, codes);
+        }
+        for (size_t k = 0; k < w; ++k) {
             if (codes[k] != OK) {
                 codes[k] = planar_mixed_M(model, X + NQ*(i + k), M + NV*NV*(i + k));
             }
         }
-        failed += record(codes, LANES, status ? status + i : NULL);
-    }
-    for (; i < n; ++i) {
-        const int code = planar_mixed_M(model, X + NQ*i, M + NV*NV*i);
-        failed += record(&code, 1, status ? status + i : NULL);
+        failed += record(codes, w, status ? status + i : NULL);
     }
     return failed;
 }
 
-int planar_mixed_Z(const planar_mixed_model *model, const planar_mixed_real *X, const
-    planar_mixed_real *V, planar_mixed_real *Z)
+int planar_mixed_Z(const prepared *model, const real *X, const real *V, real *Z)
 {
     int code;
     Z_one(model, X, V, Z, &code);
     return code;
 }
 
-size_t planar_mixed_Z_batch(const planar_mixed_model *model, size_t n, const planar_mixed_real *X,
-    const planar_mixed_real *V, planar_mixed_real *Z, int *status)
+size_t planar_mixed_Z_batch(const prepared *model, size_t n, const real *X, const real *V, real
+    *Z, int *status)
 {
-    size_t failed = 0, i = 0;
-    for (; LANES > 1 && i + LANES <= n; i += LANES) {
-        int codes[LANES];
-        Z_lanes(model, X + NQ*i, V + NV*i, Z + NV*i, codes);
-        for (size_t k = 0; k < LANES; ++k) {
+    size_t failed = 0, w;
+    for (size_t i = 0; i < n; i += w) {
+        int codes[LANES] = {INVALID};
+        w = LANES > 1 && i + LANES <= n ? LANES : 1;
+        if (w > 1) {
+            Z_lanes(model, X + NQ*i, V + NV*i, Z + NV*i, codes);
+        }
+        for (size_t k = 0; k < w; ++k) {
             if (codes[k] != OK) {
                 codes[k] = planar_mixed_Z(model, X + NQ*(i + k), V + NV*(i + k), Z + NV*(i + k));
             }
         }
-        failed += record(codes, LANES, status ? status + i : NULL);
-    }
-    for (; i < n; ++i) {
-        const int code = planar_mixed_Z(model, X + NQ*i, V + NV*i, Z + NV*i);
-        failed += record(&code, 1, status ? status + i : NULL);
+        failed += record(codes, w, status ? status + i : NULL);
     }
     return failed;
 }
 
-int planar_mixed_H(const planar_mixed_model *model, const planar_mixed_real *X, planar_mixed_real
-    *H)
+int planar_mixed_H(const prepared *model, const real *X, real *H)
 {
     int code;
     H_one(model, X, H, &code);
     return code;
 }
 
-size_t planar_mixed_H_batch(const planar_mixed_model *model, size_t n, const planar_mixed_real *X,
-    planar_mixed_real *H, int *status)
+size_t planar_mixed_H_batch(const prepared *model, size_t n, const real *X, real *H, int *status)
 {
-    size_t failed = 0, i = 0;
-    for (; LANES > 1 && i + LANES <= n; i += LANES) {
-        int codes[LANES];
-        H_lanes(model, X + NQ*i, H + NV*NU*i, codes);
-        for (size_t k = 0; k < LANES; ++k) {
+    size_t failed = 0, w;
+    for (size_t i = 0; i < n; i += w) {
+        int codes[LANES] = {INVALID};
+        w = LANES > 1 && i + LANES <= n ? LANES : 1;
+        if (w > 1) {
+            H_lanes(model, X + NQ*i, H + NV*NU*i, codes);
+        }
+        for (size_t k = 0; k < w; ++k) {
             if (codes[k] != OK) {
                 codes[k] = planar_mixed_H(model, X + NQ*(i + k), H + NV*NU*(i + k));
             }
         }
-        failed += record(codes, LANES, status ? status + i : NULL);
-    }
-    for (; i < n; ++i) {
-        const int code = planar_mixed_H(model, X + NQ*i, H + NV*NU*i);
-        failed += record(&code, 1, status ? status + i : NULL);
+        failed += record(codes, w, status ? status + i : NULL);
     }
     return failed;
 }
 
-int planar_mixed_inverse_kinematics(const planar_mixed_model *model, const planar_mixed_real *X,
-    planar_mixed_real *q)
+int planar_mixed_inverse_kinematics(const prepared *model, const real *X, real *q)
 {
     int code;
     inverse_kinematics_one(model, X, q, &code);
     return code;
 }
 
-size_t planar_mixed_inverse_kinematics_batch(const planar_mixed_model *model, size_t n, const
-    planar_mixed_real *X, planar_mixed_real *q, int *status)
+size_t planar_mixed_inverse_kinematics_batch(const prepared *model, size_t n, const real *X, real
+    *q, int *status)
 {
-    size_t failed = 0, i = 0;
-    for (; LANES > 1 && i + LANES <= n; i += LANES) {
-        int codes[LANES];
-        inverse_kinematics_lanes(model, X + NQ*i, q + NJ*i, codes);
-        for (size_t k = 0; k < LANES; ++k) {
+    size_t failed = 0, w;
+    for (size_t i = 0; i < n; i += w) {
+        int codes[LANES] = {INVALID};
+        w = LANES > 1 && i + LANES <= n ? LANES : 1;
+        if (w > 1) {
+            inverse_kinematics_lanes(model, X + NQ*i, q + NJ*i, codes);
+        }
+        for (size_t k = 0; k < w; ++k) {
             if (codes[k] != OK) {
                 codes[k] = planar_mixed_inverse_kinematics(model, X + NQ*(i + k), q + NJ*(i + k));
             }
         }
-        failed += record(codes, LANES, status ? status + i : NULL);
-    }
-    for (; i < n; ++i) {
-        const int code = planar_mixed_inverse_kinematics(model, X + NQ*i, q + NJ*i);
-        failed += record(&code, 1, status ? status + i : NULL);
+        failed += record(codes, w, status ? status + i : NULL);
     }
     return failed;
 }
 
-int planar_mixed_joint_rates(const planar_mixed_model *model, const planar_mixed_real *X, const
-    planar_mixed_real *V, planar_mixed_real *rates)
+int planar_mixed_joint_rates(const prepared *model, const real *X, const real *V, real *rates)
 {
     int code;
     joint_rates_one(model, X, V, rates, &code);
     return code;
 }
 
-size_t planar_mixed_joint_rates_batch(const planar_mixed_model *model, size_t n, const
-    planar_mixed_real *X, const planar_mixed_real *V, planar_mixed_real *rates, int *status)
+size_t planar_mixed_joint_rates_batch(const prepared *model, size_t n, const real *X, const real
+    *V, real *rates, int *status)
 {
-    size_t failed = 0, i = 0;
-    for (; LANES > 1 && i + LANES <= n; i += LANES) {
-        int codes[LANES];
-        joint_rates_lanes(model, X + NQ*i, V + NV*i, rates + NJ*i, codes);
-        for (size_t k = 0; k < LANES; ++k) {
+    size_t failed = 0, w;
+    for (size_t i = 0; i < n; i += w) {
+        int codes[LANES] = {INVALID};
+        w = LANES > 1 && i + LANES <= n ? LANES : 1;
+        if (w > 1) {
+            joint_rates_lanes(model, X + NQ*i, V + NV*i, rates + NJ*i, codes);
+        }
+        for (size_t k = 0; k < w; ++k) {
             if (codes[k] != OK) {
                 codes[k] = planar_mixed_joint_rates(model, X + NQ*(i + k), V + NV*(i + k), rates + NJ*(i + k));
             }
         }
-        failed += record(codes, LANES, status ? status + i : NULL);
-    }
-    for (; i < n; ++i) {
-        const int code = planar_mixed_joint_rates(model, X + NQ*i, V + NV*i, rates + NJ*i);
-        failed += record(&code, 1, status ? status + i : NULL);
+        failed += record(codes, w, status ? status + i : NULL);
     }
     return failed;
 }
 
-int planar_mixed_joint_accelerations(const planar_mixed_model *model, const planar_mixed_real *X,
-    const planar_mixed_real *V, const planar_mixed_real *A, planar_mixed_real *accelerations)
+int planar_mixed_joint_accelerations(const prepared *model, const real *X, const real *V, const
+    real *A, real *accelerations)
 {
     int code;
     joint_accelerations_one(model, X, V, A, accelerations, &code);
     return code;
 }
 
-size_t planar_mixed_joint_accelerations_batch(const planar_mixed_model *model, size_t n, const
-    planar_mixed_real *X, const planar_mixed_real *V, const planar_mixed_real *A,
-    planar_mixed_real *accelerations, int *status)
+size_t planar_mixed_joint_accelerations_batch(const prepared *model, size_t n, const real *X,
+    const real *V, const real *A, real *accelerations, int *status)
 {
-    size_t failed = 0, i = 0;
-    for (; LANES > 1 && i + LANES <= n; i += LANES) {
-        int codes[LANES];
-        joint_accelerations_lanes(model, X + NQ*i, V + NV*i, A + NV*i, accelerations + NJ*i, codes);
-        for (size_t k = 0; k < LANES; ++k) {
+    size_t failed = 0, w;
+    for (size_t i = 0; i < n; i += w) {
+        int codes[LANES] = {INVALID};
+        w = LANES > 1 && i + LANES <= n ? LANES : 1;
+        if (w > 1) {
+            joint_accelerations_lanes(model, X + NQ*i, V + NV*i, A + NV*i, accelerations + NJ*i, codes);
+        }
+        for (size_t k = 0; k < w; ++k) {
             if (codes[k] != OK) {
                 codes[k] = planar_mixed_joint_accelerations(model, X + NQ*(i + k), V + NV*(i + k), A + NV*(i + k),
                     accelerations + NJ*(i + k));
             }
         }
-        failed += record(codes, LANES, status ? status + i : NULL);
-    }
-    for (; i < n; ++i) {
-        const int code = planar_mixed_joint_accelerations(model, X + NQ*i, V + NV*i, A + NV*i,
-            accelerations + NJ*i);
-        failed += record(&code, 1, status ? status + i : NULL);
+        failed += record(codes, w, status ? status + i : NULL);
     }
     return failed;
 }
 
-int planar_mixed_dynamics(const planar_mixed_model *model, const planar_mixed_real *X, const
-    planar_mixed_real *V, planar_mixed_real *M, planar_mixed_real *Z, planar_mixed_real *H)
+int planar_mixed_dynamics(const prepared *model, const real *X, const real *V, real *M, real *Z,
+    real *H)
 {
     int code;
     dynamics_one(model, X, V, M, Z, H, &code);
     return code;
 }
 
-size_t planar_mixed_dynamics_batch(const planar_mixed_model *model, size_t n, const
-    planar_mixed_real *X, const planar_mixed_real *V, planar_mixed_real *M, planar_mixed_real *Z,
-    planar_mixed_real *H, int *status)
+size_t planar_mixed_dynamics_batch(const prepared *model, size_t n, const real *X, const real *V,
+    real *M, real *Z, real *H, int *status)
 {
-    size_t failed = 0, i = 0;
-    for (; LANES > 1 && i + LANES <= n; i += LANES) {
-        int codes[LANES];
-        dynamics_lanes(model, X + NQ*i, V + NV*i, M + NV*NV*i, Z + NV*i, H + NV*NU*i, codes);
-        for (size_t k = 0; k < LANES; ++k) {
+    size_t failed = 0, w;
+    for (size_t i = 0; i < n; i += w) {
+        int codes[LANES] = {INVALID};
+        w = LANES > 1 && i + LANES <= n ? LANES : 1;
+        if (w > 1) {
+            dynamics_lanes(model, X + NQ*i, V + NV*i, M + NV*NV*i, Z + NV*i, H + NV*NU*i, codes);
+        }
+        for (size_t k = 0; k < w; ++k) {
             if (codes[k] != OK) {
                 codes[k] = planar_mixed_dynamics(model, X + NQ*(i + k), V + NV*(i + k), M + NV*NV*(i + k), Z +
                     NV*(i + k), H + NV*NU*(i + k));
             }
         }
-        failed += record(codes, LANES, status ? status + i : NULL);
-    }
-    for (; i < n; ++i) {
-        const int code = planar_mixed_dynamics(model, X + NQ*i, V + NV*i, M + NV*NV*i, Z + NV*i, H +
-            NV*NU*i);
-        failed += record(&code, 1, status ? status + i : NULL);
+        failed += record(codes, w, status ? status + i : NULL);
     }
     return failed;
 }
 
-int planar_mixed_inverse_dynamics(const planar_mixed_model *model, const planar_mixed_real *X,
-    const planar_mixed_real *V, const planar_mixed_real *A, const planar_mixed_real *wrench,
-    planar_mixed_real *tau)
+int planar_mixed_inverse_dynamics(const prepared *model, const real *X, const real *V, const real
+    *A, const real *wrench, real *tau)
 {
     int code;
     inverse_dynamics_one(model, X, V, A, wrench, tau, &code);
     return code;
 }
 
-size_t planar_mixed_inverse_dynamics_batch(const planar_mixed_model *model, size_t n, const
-    planar_mixed_real *X, const planar_mixed_real *V, const planar_mixed_real *A, const
-    planar_mixed_real *wrench, planar_mixed_real *tau, int *status)
+size_t planar_mixed_inverse_dynamics_batch(const prepared *model, size_t n, const real *X, const
+    real *V, const real *A, const real *wrench, real *tau, int *status)
 {
-    size_t failed = 0, i = 0;
-    for (; LANES > 1 && i + LANES <= n; i += LANES) {
-        int codes[LANES];
-        inverse_dynamics_lanes(model, X + NQ*i, V + NV*i, A + NV*i, wrench ? wrench + NW*i : NULL, tau +
-            NU*i, codes);
-        for (size_t k = 0; k < LANES; ++k) {
+    size_t failed = 0, w;
+    for (size_t i = 0; i < n; i += w) {
+        int codes[LANES] = {INVALID};
+        w = LANES > 1 && i + LANES <= n ? LANES : 1;
+        if (w > 1) {
+            inverse_dynamics_lanes(model, X + NQ*i, V + NV*i, A + NV*i, wrench ? wrench + NW*i : NULL, tau +
+                NU*i, codes);
+        }
+        for (size_t k = 0; k < w; ++k) {
             if (codes[k] != OK) {
                 codes[k] = planar_mixed_inverse_dynamics(model, X + NQ*(i + k), V + NV*(i + k), A + NV*(i + k),
                     wrench ? wrench + NW*(i + k) : NULL, tau + NU*(i + k));
             }
         }
-        failed += record(codes, LANES, status ? status + i : NULL);
-    }
-    for (; i < n; ++i) {
-        const int code = planar_mixed_inverse_dynamics(model, X + NQ*i, V + NV*i, A + NV*i, wrench ?
-            wrench + NW*i : NULL, tau + NU*i);
-        failed += record(&code, 1, status ? status + i : NULL);
+        failed += record(codes, w, status ? status + i : NULL);
     }
     return failed;
 }
 
-int planar_mixed_forward_dynamics(const planar_mixed_model *model, const planar_mixed_real *X,
-    const planar_mixed_real *V, const planar_mixed_real *tau, const planar_mixed_real *wrench,
-    planar_mixed_real *A)
+int planar_mixed_forward_dynamics(const prepared *model, const real *X, const real *V, const real
+    *tau, const real *wrench, real *A)
 {
     int code;
     forward_dynamics_one(model, X, V, tau, wrench, A, &code);
     return code;
 }
 
-size_t planar_mixed_forward_dynamics_batch(const planar_mixed_model *model, size_t n, const
-    planar_mixed_real *X, const planar_mixed_real *V, const planar_mixed_real *tau, const
-    planar_mixed_real *wrench, planar_mixed_real *A, int *status)
+size_t planar_mixed_forward_dynamics_batch(const prepared *model, size_t n, const real *X, const
+    real *V, const real *tau, const real *wrench, real *A, int *status)
 {
-    size_t failed = 0, i = 0;
-    for (; LANES > 1 && i + LANES <= n; i += LANES) {
-        int codes[LANES];
-        forward_dynamics_lanes(model, X + NQ*i, V + NV*i, tau + NU*i, wrench ? wrench + NW*i : NULL, A +
-            NV*i, codes);
-        for (size_t k = 0; k < LANES; ++k) {
+    size_t failed = 0, w;
+    for (size_t i = 0; i < n; i += w) {
+        int codes[LANES] = {INVALID};
+        w = LANES > 1 && i + LANES <= n ? LANES : 1;
+        if (w > 1) {
+            forward_dynamics_lanes(model, X + NQ*i, V + NV*i, tau + NU*i, wrench ? wrench + NW*i : NULL, A +
+                NV*i, codes);
+        }
+        for (size_t k = 0; k < w; ++k) {
             if (codes[k] != OK) {
                 codes[k] = planar_mixed_forward_dynamics(model, X + NQ*(i + k), V + NV*(i + k), tau + NU*(i + k),
                     wrench ? wrench + NW*(i + k) : NULL, A + NV*(i + k));
             }
         }
-        failed += record(codes, LANES, status ? status + i : NULL);
-    }
-    for (; i < n; ++i) {
-        const int code = planar_mixed_forward_dynamics(model, X + NQ*i, V + NV*i, tau + NU*i, wrench ?
-            wrench + NW*i : NULL, A + NV*i);
-        failed += record(&code, 1, status ? status + i : NULL);
+        failed += record(codes, w, status ? status + i : NULL);
     }
     return failed;
 }
 
-int planar_mixed_complete_acceleration(const planar_mixed_model *model, const planar_mixed_real
-    *X, const planar_mixed_real *V, const planar_mixed_real *A, const planar_mixed_real *wrench,
-    planar_mixed_real *completed)
+int planar_mixed_complete_acceleration(const prepared *model, const real *X, const real *V, const
+    real *A, const real *wrench, real *completed)
 {
     int code;
     (void)model;
@@ -7524,12 +6311,11 @@ int planar_mixed_complete_acceleration(const planar_mixed_model *model, const pl
     return code;
 }
 
-size_t planar_mixed_complete_acceleration_batch(const planar_mixed_model *model, size_t n, const
-    planar_mixed_real *X, const planar_mixed_real *V, const planar_mixed_real *A, const
-    planar_mixed_real *wrench, planar_mixed_real *completed, int *status)
+size_t planar_mixed_complete_acceleration_batch(const prepared *model, size_t n, const real *X,
+    const real *V, const real *A, const real *wrench, real *completed, int *status)
 {
-    size_t failed = 0, i = 0;
-    for (; i < n; ++i) {
+    size_t failed = 0;
+    for (size_t i = 0; i < n; ++i) {
         const int code = planar_mixed_complete_acceleration(model, X + NQ*i, V + NV*i, A + NV*i, wrench ?
             wrench + NW*i : NULL, completed + NV*i);
         failed += record(&code, 1, status ? status + i : NULL);
@@ -7537,21 +6323,19 @@ size_t planar_mixed_complete_acceleration_batch(const planar_mixed_model *model,
     return failed;
 }
 
-int planar_mixed_leg_reactions(const planar_mixed_model *model, const planar_mixed_real *X, const
-    planar_mixed_real *V, const planar_mixed_real *A, const planar_mixed_real *wrench,
-    planar_mixed_real *forces)
+int planar_mixed_leg_reactions(const prepared *model, const real *X, const real *V, const real *A,
+    const real *wrench, real *forces)
 {
     int code;
     leg_reactions_one(model, X, V, A, wrench, forces, &code);
     return code;
 }
 
-size_t planar_mixed_leg_reactions_batch(const planar_mixed_model *model, size_t n, const
-    planar_mixed_real *X, const planar_mixed_real *V, const planar_mixed_real *A, const
-    planar_mixed_real *wrench, planar_mixed_real *forces, int *status)
+size_t planar_mixed_leg_reactions_batch(const prepared *model, size_t n, const real *X, const real
+    *V, const real *A, const real *wrench, real *forces, int *status)
 {
-    size_t failed = 0, i = 0;
-    for (; i < n; ++i) {
+    size_t failed = 0;
+    for (size_t i = 0; i < n; ++i) {
         const int code = planar_mixed_leg_reactions(model, X + NQ*i, V + NV*i, A + NV*i, wrench ? wrench +
             NW*i : NULL, forces + 9*i);
         failed += record(&code, 1, status ? status + i : NULL);
@@ -7559,66 +6343,102 @@ size_t planar_mixed_leg_reactions_batch(const planar_mixed_model *model, size_t 
     return failed;
 }
 
-int planar_mixed_energy(const planar_mixed_model *model, const planar_mixed_real *X, const
-    planar_mixed_real *V, planar_mixed_real *kinetic, planar_mixed_real *potential)
+int planar_mixed_energy(const prepared *model, const real *X, const real *V, real *kinetic, real
+    *potential)
 {
     int code;
     energy_one(model, X, V, kinetic, potential, &code);
     return code;
 }
 
-size_t planar_mixed_energy_batch(const planar_mixed_model *model, size_t n, const
-    planar_mixed_real *X, const planar_mixed_real *V, planar_mixed_real *kinetic,
-    planar_mixed_real *potential, int *status)
+size_t planar_mixed_energy_batch(const prepared *model, size_t n, const real *X, const real *V,
+    real *kinetic, real *potential, int *status)
 {
-    size_t failed = 0, i = 0;
-    for (; i < n; ++i) {
+    size_t failed = 0;
+    for (size_t i = 0; i < n; ++i) {
         const int code = planar_mixed_energy(model, X + NQ*i, V + NV*i, kinetic + i, potential + i);
         failed += record(&code, 1, status ? status + i : NULL);
     }
     return failed;
 }
 
-int planar_mixed_condition(const planar_mixed_model *model, const planar_mixed_real *X,
-    planar_mixed_real *sigma, planar_mixed_real *legs)
+int planar_mixed_condition(const prepared *model, const real *X, real *sigma, real *legs)
 {
     int code;
     condition_one(model, X, NULL, sigma, legs, &code);
     return code;
 }
 
-size_t planar_mixed_condition_batch(const planar_mixed_model *model, size_t n, const
-    planar_mixed_real *X, planar_mixed_real *sigma, planar_mixed_real *legs, int *status)
+size_t planar_mixed_condition_batch(const prepared *model, size_t n, const real *X, real *sigma,
+    real *legs, int *status)
 {
-    size_t failed = 0, i = 0;
-    for (; i < n; ++i) {
+    size_t failed = 0;
+    for (size_t i = 0; i < n; ++i) {
         const int code = planar_mixed_condition(model, X + NQ*i, sigma + 3*i, legs + 3*i);
         failed += record(&code, 1, status ? status + i : NULL);
     }
     return failed;
 }
 
-int planar_mixed_forward_kinematics(const planar_mixed_model *model, const planar_mixed_real
-    *q_actuated, const planar_mixed_real *X0, planar_mixed_real *X)
+int planar_mixed_manipulability(const prepared *model, const real *X, real *measure, real
+    *isotropy)
+{
+    int code;
+    manipulability_one(model, X, measure, isotropy, &code);
+    return code;
+}
+
+size_t planar_mixed_manipulability_batch(const prepared *model, size_t n, const real *X, real
+    *measure, real *isotropy, int *status)
+{
+    size_t failed = 0;
+    for (size_t i = 0; i < n; ++i) {
+        const int code = planar_mixed_manipulability(model, X + NQ*i, measure + i, isotropy + i);
+        failed += record(&code, 1, status ? status + i : NULL);
+    }
+    return failed;
+}
+
+int planar_mixed_singularity_distance(const prepared *model, const real *X, real *actuators, real
+    *legs)
+{
+    int code;
+    singularity_distance_one(model, X, actuators, legs, &code);
+    return code;
+}
+
+size_t planar_mixed_singularity_distance_batch(const prepared *model, size_t n, const real *X,
+    real *actuators, real *legs, int *status)
+{
+    size_t failed = 0;
+    for (size_t i = 0; i < n; ++i) {
+        const int code = planar_mixed_singularity_distance(model, X + NQ*i, actuators + i, legs + i);
+        failed += record(&code, 1, status ? status + i : NULL);
+    }
+    return failed;
+}
+
+int planar_mixed_forward_kinematics(const prepared *model, const real *q_actuated, const real *X0,
+    real *X)
 {
     int code;
     forward_kinematics_one(model, q_actuated, X0, X, &code);
     return code;
 }
 
-size_t planar_mixed_forward_kinematics_batch(const planar_mixed_model *model, size_t n, const
-    planar_mixed_real *q_actuated, const planar_mixed_real *X0, planar_mixed_real *X, int *status)
+size_t planar_mixed_forward_kinematics_batch(const prepared *model, size_t n, const real
+    *q_actuated, const real *X0, real *X, int *status)
 {
-    size_t failed = 0, i = 0;
-    for (; i < n; ++i) {
+    size_t failed = 0;
+    for (size_t i = 0; i < n; ++i) {
         const int code = planar_mixed_forward_kinematics(model, q_actuated + NU*i, X0 + NQ*i, X + NQ*i);
         failed += record(&code, 1, status ? status + i : NULL);
     }
     return failed;
 }
 
-int planar_mixed_dissipation(const planar_mixed_model *model, const planar_mixed_real *X, const
-    planar_mixed_real *V, planar_mixed_real *dissipation)
+int planar_mixed_dissipation(const prepared *model, const real *X, const real *V, real
+    *dissipation)
 {
     int code;
     (void)model;
@@ -7627,332 +6447,309 @@ int planar_mixed_dissipation(const planar_mixed_model *model, const planar_mixed
     return code;
 }
 
-size_t planar_mixed_dissipation_batch(const planar_mixed_model *model, size_t n, const
-    planar_mixed_real *X, const planar_mixed_real *V, planar_mixed_real *dissipation, int *status)
+size_t planar_mixed_dissipation_batch(const prepared *model, size_t n, const real *X, const real
+    *V, real *dissipation, int *status)
 {
-    size_t failed = 0, i = 0;
-    for (; i < n; ++i) {
+    size_t failed = 0;
+    for (size_t i = 0; i < n; ++i) {
         const int code = planar_mixed_dissipation(model, X + NQ*i, V + NV*i, dissipation + i);
         failed += record(&code, 1, status ? status + i : NULL);
     }
     return failed;
 }
 
-int planar_mixed_momentum(const planar_mixed_model *model, const planar_mixed_real *X, const
-    planar_mixed_real *V, planar_mixed_real *momentum)
+int planar_mixed_momentum(const prepared *model, const real *X, const real *V, real *momentum)
 {
     int code;
     momentum_one(model, X, V, momentum, &code);
     return code;
 }
 
-size_t planar_mixed_momentum_batch(const planar_mixed_model *model, size_t n, const
-    planar_mixed_real *X, const planar_mixed_real *V, planar_mixed_real *momentum, int *status)
+size_t planar_mixed_momentum_batch(const prepared *model, size_t n, const real *X, const real *V,
+    real *momentum, int *status)
 {
-    size_t failed = 0, i = 0;
-    for (; LANES > 1 && i + LANES <= n; i += LANES) {
-        int codes[LANES];
-        momentum_lanes(model, X + NQ*i, V + NV*i, momentum + NV*i, codes);
-        for (size_t k = 0; k < LANES; ++k) {
+    size_t failed = 0, w;
+    for (size_t i = 0; i < n; i += w) {
+        int codes[LANES] = {INVALID};
+        w = LANES > 1 && i + LANES <= n ? LANES : 1;
+        if (w > 1) {
+            momentum_lanes(model, X + NQ*i, V + NV*i, momentum + NV*i, codes);
+        }
+        for (size_t k = 0; k < w; ++k) {
             if (codes[k] != OK) {
                 codes[k] = planar_mixed_momentum(model, X + NQ*(i + k), V + NV*(i + k), momentum + NV*(i + k));
             }
         }
-        failed += record(codes, LANES, status ? status + i : NULL);
-    }
-    for (; i < n; ++i) {
-        const int code = planar_mixed_momentum(model, X + NQ*i, V + NV*i, momentum + NV*i);
-        failed += record(&code, 1, status ? status + i : NULL);
+        failed += record(codes, w, status ? status + i : NULL);
     }
     return failed;
 }
 
-int planar_mixed_joint_margins(const planar_mixed_model *model, const planar_mixed_real *X,
-    planar_mixed_real *margins)
+int planar_mixed_joint_margins(const prepared *model, const real *X, real *margins)
 {
     int code;
     joint_margins_one(model, X, margins, &code);
     return code;
 }
 
-size_t planar_mixed_joint_margins_batch(const planar_mixed_model *model, size_t n, const
-    planar_mixed_real *X, planar_mixed_real *margins, int *status)
+size_t planar_mixed_joint_margins_batch(const prepared *model, size_t n, const real *X, real
+    *margins, int *status)
 {
-    size_t failed = 0, i = 0;
-    for (; LANES > 1 && i + LANES <= n; i += LANES) {
-        int codes[LANES];
-        joint_margins_lanes(model, X + NQ*i, margins + NJ*i, codes);
-        for (size_t k = 0; k < LANES; ++k) {
+    size_t failed = 0, w;
+    for (size_t i = 0; i < n; i += w) {
+        int codes[LANES] = {INVALID};
+        w = LANES > 1 && i + LANES <= n ? LANES : 1;
+        if (w > 1) {
+            joint_margins_lanes(model, X + NQ*i, margins + NJ*i, codes);
+        }
+        for (size_t k = 0; k < w; ++k) {
             if (codes[k] != OK) {
                 codes[k] = planar_mixed_joint_margins(model, X + NQ*(i + k), margins + NJ*(i + k));
             }
         }
-        failed += record(codes, LANES, status ? status + i : NULL);
-    }
-    for (; i < n; ++i) {
-        const int code = planar_mixed_joint_margins(model, X + NQ*i, margins + NJ*i);
-        failed += record(&code, 1, status ? status + i : NULL);
+        failed += record(codes, w, status ? status + i : NULL);
     }
     return failed;
 }
 
-int planar_mixed_within_limits(const planar_mixed_model *model, const planar_mixed_real *X,
-    planar_mixed_real *within)
+int planar_mixed_within_limits(const prepared *model, const real *X, real *within)
 {
     int code;
     within_limits_one(model, X, within, &code);
     return code;
 }
 
-size_t planar_mixed_within_limits_batch(const planar_mixed_model *model, size_t n, const
-    planar_mixed_real *X, planar_mixed_real *within, int *status)
+size_t planar_mixed_within_limits_batch(const prepared *model, size_t n, const real *X, real
+    *within, int *status)
 {
-    size_t failed = 0, i = 0;
-    for (; LANES > 1 && i + LANES <= n; i += LANES) {
-        int codes[LANES];
-        within_limits_lanes(model, X + NQ*i, within + i, codes);
-        for (size_t k = 0; k < LANES; ++k) {
+    size_t failed = 0, w;
+    for (size_t i = 0; i < n; i += w) {
+        int codes[LANES] = {INVALID};
+        w = LANES > 1 && i + LANES <= n ? LANES : 1;
+        if (w > 1) {
+            within_limits_lanes(model, X + NQ*i, within + i, codes);
+        }
+        for (size_t k = 0; k < w; ++k) {
             if (codes[k] != OK) {
                 codes[k] = planar_mixed_within_limits(model, X + NQ*(i + k), within + (i + k));
             }
         }
-        failed += record(codes, LANES, status ? status + i : NULL);
-    }
-    for (; i < n; ++i) {
-        const int code = planar_mixed_within_limits(model, X + NQ*i, within + i);
-        failed += record(&code, 1, status ? status + i : NULL);
+        failed += record(codes, w, status ? status + i : NULL);
     }
     return failed;
 }
 
-int planar_mixed_actuator_positions(const planar_mixed_model *model, const planar_mixed_real *X,
-    planar_mixed_real *q)
+int planar_mixed_actuator_positions(const prepared *model, const real *X, real *q)
 {
     int code;
     actuator_positions_one(model, X, q, &code);
     return code;
 }
 
-size_t planar_mixed_actuator_positions_batch(const planar_mixed_model *model, size_t n, const
-    planar_mixed_real *X, planar_mixed_real *q, int *status)
+size_t planar_mixed_actuator_positions_batch(const prepared *model, size_t n, const real *X, real
+    *q, int *status)
 {
-    size_t failed = 0, i = 0;
-    for (; LANES > 1 && i + LANES <= n; i += LANES) {
-        int codes[LANES];
-        actuator_positions_lanes(model, X + NQ*i, q + NU*i, codes);
-        for (size_t k = 0; k < LANES; ++k) {
+    size_t failed = 0, w;
+    for (size_t i = 0; i < n; i += w) {
+        int codes[LANES] = {INVALID};
+        w = LANES > 1 && i + LANES <= n ? LANES : 1;
+        if (w > 1) {
+            actuator_positions_lanes(model, X + NQ*i, q + NU*i, codes);
+        }
+        for (size_t k = 0; k < w; ++k) {
             if (codes[k] != OK) {
                 codes[k] = planar_mixed_actuator_positions(model, X + NQ*(i + k), q + NU*(i + k));
             }
         }
-        failed += record(codes, LANES, status ? status + i : NULL);
-    }
-    for (; i < n; ++i) {
-        const int code = planar_mixed_actuator_positions(model, X + NQ*i, q + NU*i);
-        failed += record(&code, 1, status ? status + i : NULL);
+        failed += record(codes, w, status ? status + i : NULL);
     }
     return failed;
 }
 
-int planar_mixed_actuator_rates(const planar_mixed_model *model, const planar_mixed_real *X, const
-    planar_mixed_real *V, planar_mixed_real *rates)
+int planar_mixed_actuator_rates(const prepared *model, const real *X, const real *V, real *rates)
 {
     int code;
     actuator_rates_one(model, X, V, rates, &code);
     return code;
 }
 
-size_t planar_mixed_actuator_rates_batch(const planar_mixed_model *model, size_t n, const
-    planar_mixed_real *X, const planar_mixed_real *V, planar_mixed_real *rates, int *status)
+size_t planar_mixed_actuator_rates_batch(const prepared *model, size_t n, const real *X, const
+    real *V, real *rates, int *status)
 {
-    size_t failed = 0, i = 0;
-    for (; LANES > 1 && i + LANES <= n; i += LANES) {
-        int codes[LANES];
-        actuator_rates_lanes(model, X + NQ*i, V + NV*i, rates + NU*i, codes);
-        for (size_t k = 0; k < LANES; ++k) {
+    size_t failed = 0, w;
+    for (size_t i = 0; i < n; i += w) {
+        int codes[LANES] = {INVALID};
+        w = LANES > 1 && i + LANES <= n ? LANES : 1;
+        if (w > 1) {
+            actuator_rates_lanes(model, X + NQ*i, V + NV*i, rates + NU*i, codes);
+        }
+        for (size_t k = 0; k < w; ++k) {
             if (codes[k] != OK) {
                 codes[k] = planar_mixed_actuator_rates(model, X + NQ*(i + k), V + NV*(i + k), rates + NU*(i + k));
             }
         }
-        failed += record(codes, LANES, status ? status + i : NULL);
-    }
-    for (; i < n; ++i) {
-        const int code = planar_mixed_actuator_rates(model, X + NQ*i, V + NV*i, rates + NU*i);
-        failed += record(&code, 1, status ? status + i : NULL);
+        failed += record(codes, w, status ? status + i : NULL);
     }
     return failed;
 }
 
-int planar_mixed_actuator_accelerations(const planar_mixed_model *model, const planar_mixed_real
-    *X, const planar_mixed_real *V, const planar_mixed_real *A, planar_mixed_real *accelerations)
+int planar_mixed_actuator_accelerations(const prepared *model, const real *X, const real *V, const
+    real *A, real *accelerations)
 {
     int code;
     actuator_accelerations_one(model, X, V, A, accelerations, &code);
     return code;
 }
 
-size_t planar_mixed_actuator_accelerations_batch(const planar_mixed_model *model, size_t n, const
-    planar_mixed_real *X, const planar_mixed_real *V, const planar_mixed_real *A,
-    planar_mixed_real *accelerations, int *status)
+size_t planar_mixed_actuator_accelerations_batch(const prepared *model, size_t n, const real *X,
+    const real *V, const real *A, real *accelerations, int *status)
 {
-    size_t failed = 0, i = 0;
-    for (; LANES > 1 && i + LANES <= n; i += LANES) {
-        int codes[LANES];
-        actuator_accelerations_lanes(model, X + NQ*i, V + NV*i, A + NV*i, accelerations + NU*i, codes);
-        for (size_t k = 0; k < LANES; ++k) {
+    size_t failed = 0, w;
+    for (size_t i = 0; i < n; i += w) {
+        int codes[LANES] = {INVALID};
+        w = LANES > 1 && i + LANES <= n ? LANES : 1;
+        if (w > 1) {
+            actuator_accelerations_lanes(model, X + NQ*i, V + NV*i, A + NV*i, accelerations + NU*i, codes);
+        }
+        for (size_t k = 0; k < w; ++k) {
             if (codes[k] != OK) {
                 codes[k] = planar_mixed_actuator_accelerations(model, X + NQ*(i + k), V + NV*(i + k), A + NV*(i +
                     k), accelerations + NU*(i + k));
             }
         }
-        failed += record(codes, LANES, status ? status + i : NULL);
-    }
-    for (; i < n; ++i) {
-        const int code = planar_mixed_actuator_accelerations(model, X + NQ*i, V + NV*i, A + NV*i,
-            accelerations + NU*i);
-        failed += record(&code, 1, status ? status + i : NULL);
+        failed += record(codes, w, status ? status + i : NULL);
     }
     return failed;
 }
 
-int planar_mixed_power(const planar_mixed_model *model, const planar_mixed_real *X, const
-    planar_mixed_real *V, const planar_mixed_real *tau, planar_mixed_real *power)
+int planar_mixed_power(const prepared *model, const real *X, const real *V, const real *tau, real
+    *power)
 {
     int code;
     power_one(model, X, V, tau, power, &code);
     return code;
 }
 
-size_t planar_mixed_power_batch(const planar_mixed_model *model, size_t n, const planar_mixed_real
-    *X, const planar_mixed_real *V, const planar_mixed_real *tau, planar_mixed_real *power, int
-    *status)
+size_t planar_mixed_power_batch(const prepared *model, size_t n, const real *X, const real *V,
+    const real *tau, real *power, int *status)
 {
-    size_t failed = 0, i = 0;
-    for (; LANES > 1 && i + LANES <= n; i += LANES) {
-        int codes[LANES];
-        power_lanes(model, X + NQ*i, V + NV*i, tau + NU*i, power + i, codes);
-        for (size_t k = 0; k < LANES; ++k) {
+    size_t failed = 0, w;
+    for (size_t i = 0; i < n; i += w) {
+        int codes[LANES] = {INVALID};
+        w = LANES > 1 && i + LANES <= n ? LANES : 1;
+        if (w > 1) {
+            power_lanes(model, X + NQ*i, V + NV*i, tau + NU*i, power + i, codes);
+        }
+        for (size_t k = 0; k < w; ++k) {
             if (codes[k] != OK) {
                 codes[k] = planar_mixed_power(model, X + NQ*(i + k), V + NV*(i + k), tau + NU*(i + k), power + (i
                     + k));
             }
         }
-        failed += record(codes, LANES, status ? status + i : NULL);
-    }
-    for (; i < n; ++i) {
-        const int code = planar_mixed_power(model, X + NQ*i, V + NV*i, tau + NU*i, power + i);
-        failed += record(&code, 1, status ? status + i : NULL);
+        failed += record(codes, w, status ? status + i : NULL);
     }
     return failed;
 }
 
-int planar_mixed_rotation(const planar_mixed_real *X, planar_mixed_real *R)
+int planar_mixed_rotation(const real *X, real *R)
 {
     int code;
     rotation_one(X, R, &code);
     return code;
 }
 
-size_t planar_mixed_rotation_batch(size_t n, const planar_mixed_real *X, planar_mixed_real *R, int
-    *status)
+size_t planar_mixed_rotation_batch(size_t n, const real *X, real *R, int *status)
 {
-    size_t failed = 0, i = 0;
-    for (; i < n; ++i) {
+    size_t failed = 0;
+    for (size_t i = 0; i < n; ++i) {
         const int code = planar_mixed_rotation(X + NQ*i, R + 4*i);
         failed += record(&code, 1, status ? status + i : NULL);
     }
     return failed;
 }
 
-int planar_mixed_pose(const planar_mixed_real *t, const planar_mixed_real *R, planar_mixed_real
-    *X)
+int planar_mixed_pose(const real *t, const real *R, real *X)
 {
     int code;
     pose_one(t, R, X, &code);
     return code;
 }
 
-size_t planar_mixed_pose_batch(size_t n, const planar_mixed_real *t, const planar_mixed_real *R,
-    planar_mixed_real *X, int *status)
+size_t planar_mixed_pose_batch(size_t n, const real *t, const real *R, real *X, int *status)
 {
-    size_t failed = 0, i = 0;
-    for (; i < n; ++i) {
+    size_t failed = 0;
+    for (size_t i = 0; i < n; ++i) {
         const int code = planar_mixed_pose(t + 2*i, R + 4*i, X + NQ*i);
         failed += record(&code, 1, status ? status + i : NULL);
     }
     return failed;
 }
 
-int planar_mixed_X_dot(const planar_mixed_real *X, const planar_mixed_real *V, planar_mixed_real
-    *X_dot)
+int planar_mixed_X_dot(const real *X, const real *V, real *X_dot)
 {
     int code;
     X_dot_one(X, V, X_dot, &code);
     return code;
 }
 
-size_t planar_mixed_X_dot_batch(size_t n, const planar_mixed_real *X, const planar_mixed_real *V,
-    planar_mixed_real *X_dot, int *status)
+size_t planar_mixed_X_dot_batch(size_t n, const real *X, const real *V, real *X_dot, int *status)
 {
-    size_t failed = 0, i = 0;
-    for (; i < n; ++i) {
+    size_t failed = 0;
+    for (size_t i = 0; i < n; ++i) {
         const int code = planar_mixed_X_dot(X + NQ*i, V + NV*i, X_dot + NQ*i);
         failed += record(&code, 1, status ? status + i : NULL);
     }
     return failed;
 }
 
-int planar_mixed_retract(const planar_mixed_real *X, const planar_mixed_real *step,
-    planar_mixed_real *X_moved)
+int planar_mixed_retract(const real *X, const real *step, real *X_moved)
 {
     int code;
     retract_one(X, step, X_moved, &code);
     return code;
 }
 
-size_t planar_mixed_retract_batch(size_t n, const planar_mixed_real *X, const planar_mixed_real
-    *step, planar_mixed_real *X_moved, int *status)
+size_t planar_mixed_retract_batch(size_t n, const real *X, const real *step, real *X_moved, int
+    *status)
 {
-    size_t failed = 0, i = 0;
-    for (; i < n; ++i) {
+    size_t failed = 0;
+    for (size_t i = 0; i < n; ++i) {
         const int code = planar_mixed_retract(X + NQ*i, step + NV*i, X_moved + NQ*i);
         failed += record(&code, 1, status ? status + i : NULL);
     }
     return failed;
 }
 
-int planar_mixed_difference(const planar_mixed_real *X0, const planar_mixed_real *X1,
-    planar_mixed_real *step)
+int planar_mixed_difference(const real *X0, const real *X1, real *step)
 {
     int code;
     difference_one(X0, X1, step, &code);
     return code;
 }
 
-size_t planar_mixed_difference_batch(size_t n, const planar_mixed_real *X0, const
-    planar_mixed_real *X1, planar_mixed_real *step, int *status)
+size_t planar_mixed_difference_batch(size_t n, const real *X0, const real *X1, real *step, int
+    *status)
 {
-    size_t failed = 0, i = 0;
-    for (; i < n; ++i) {
+    size_t failed = 0;
+    for (size_t i = 0; i < n; ++i) {
         const int code = planar_mixed_difference(X0 + NQ*i, X1 + NQ*i, step + NV*i);
         failed += record(&code, 1, status ? status + i : NULL);
     }
     return failed;
 }
 
-int planar_mixed_interpolate(const planar_mixed_real *X0, const planar_mixed_real *X1, const
-    planar_mixed_real *s, planar_mixed_real *X)
+int planar_mixed_interpolate(const real *X0, const real *X1, const real *s, real *X)
 {
     int code;
     interpolate_one(X0, X1, s, X, &code);
     return code;
 }
 
-size_t planar_mixed_interpolate_batch(size_t n, const planar_mixed_real *X0, const
-    planar_mixed_real *X1, const planar_mixed_real *s, planar_mixed_real *X, int *status)
+size_t planar_mixed_interpolate_batch(size_t n, const real *X0, const real *X1, const real *s,
+    real *X, int *status)
 {
-    size_t failed = 0, i = 0;
-    for (; i < n; ++i) {
+    size_t failed = 0;
+    for (size_t i = 0; i < n; ++i) {
         const int code = planar_mixed_interpolate(X0 + NQ*i, X1 + NQ*i, s + i, X + NQ*i);
         failed += record(&code, 1, status ? status + i : NULL);
     }

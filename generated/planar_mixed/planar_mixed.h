@@ -285,6 +285,22 @@ int planar_mixed_condition(const planar_mixed_model *model, const planar_mixed_r
 size_t planar_mixed_condition_batch(const planar_mixed_model *model, size_t n, const
     planar_mixed_real *X, planar_mixed_real *sigma, planar_mixed_real *legs, int *status);
 
+/* Manipulability of forces: the product of the singular values that condition has by default, and
+   the least over the largest of them. 106 mul, 67 add, 4 div, 6 sqrt, 0 trig; the singular values
+   apart. In: X (NQ). Out: measure (1), isotropy (1). */
+int planar_mixed_manipulability(const planar_mixed_model *model, const planar_mixed_real *X,
+    planar_mixed_real *measure, planar_mixed_real *isotropy);
+size_t planar_mixed_manipulability_batch(const planar_mixed_model *model, size_t n, const
+    planar_mixed_real *X, planar_mixed_real *measure, planar_mixed_real *isotropy, int *status);
+
+/* How near actuators and legs are to being singular: relative distances, 0 where they are. 106
+   mul, 67 add, 4 div, 6 sqrt, 0 trig; the singular values apart. In: X (NQ). Out: actuators (1),
+   legs (1). */
+int planar_mixed_singularity_distance(const planar_mixed_model *model, const planar_mixed_real *X,
+    planar_mixed_real *actuators, planar_mixed_real *legs);
+size_t planar_mixed_singularity_distance_batch(const planar_mixed_model *model, size_t n, const
+    planar_mixed_real *X, planar_mixed_real *actuators, planar_mixed_real *legs, int *status);
+
 /* X at which the actuated joints stand at q_actuated, by Gauss-Newton from X0. Extra coordinates
    that actuators do not determine stay. Impossible where no pose is found. In: q_actuated (NU),
    X0 (NQ). Out: X (NQ). */

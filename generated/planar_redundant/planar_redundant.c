@@ -652,13 +652,12 @@ int planar_redundant_prepare(const planar_redundant_params *params, planar_redun
         /* (prrr-w_3) reciprocal vector 2 */
         const real prrr_w_3_in_axes3_y = 1/prrr_platform_joint_offset_x;
         /* (prrr-acc_1) acceleration of the reference point of link 1, less gravity */
+        const real prrr_acc_1_in_axes0_y = gravity_x*prrr_base_frame_xx +
+            gravity_y*prrr_base_frame_yx;
         const real prrr_g_in_axes0_x = gravity_x*prrr_base_frame_xy +
             gravity_y*prrr_base_frame_yy;
         /* (prrr-f_1_o) remainder without the acceleration in: inertia force of link 1 less its weight */
         const real prrr_f_1_o_in_axes0_x = -prrr_g_in_axes0_x*prrr_link1_mass;
-        /* (prrr-acc_2) acceleration of the reference point of link 2, less gravity */
-        const real prrr_g_in_axes0_y = -gravity_x*prrr_base_frame_xx -
-            gravity_y*prrr_base_frame_yx;
         /* (prrr-d_phi_3) coefficient of the acceleration in: inertia force of link 3 from its turning
            about its reference point */
         const real prrr_d_phi_3_t = prrr_h_3_in_spec3_y*prrr_w_3_in_axes3_y;
@@ -707,6 +706,7 @@ int planar_redundant_prepare(const planar_redundant_params *params, planar_redun
         model->prrr_Kd_2_t[leg] = prrr_Kd_2_t;
         model->prrr_Kd_2_t_2[leg] = prrr_Kd_2_t_2;
         model->prrr_P_c_1_in_axes0_x[leg] = prrr_P_c_1_in_axes0_x;
+        model->prrr_acc_1_in_axes0_y[leg] = prrr_acc_1_in_axes0_y;
         model->prrr_b_in_axes0_x[leg] = prrr_b_in_axes0_x;
         model->prrr_base_frame_xx[leg] = prrr_base_frame_xx;
         model->prrr_base_frame_xy[leg] = prrr_base_frame_xy;
@@ -722,7 +722,6 @@ int planar_redundant_prepare(const planar_redundant_params *params, planar_redun
         model->prrr_d_phi_3_t[leg] = prrr_d_phi_3_t;
         model->prrr_f_1_o_in_axes0_x[leg] = prrr_f_1_o_in_axes0_x;
         model->prrr_g_in_axes0_x[leg] = prrr_g_in_axes0_x;
-        model->prrr_g_in_axes0_y[leg] = prrr_g_in_axes0_y;
         model->prrr_h_1_in_spec0_x[leg] = prrr_h_1_in_spec0_x;
         model->prrr_h_1_in_spec0_y[leg] = prrr_h_1_in_spec0_y;
         model->prrr_h_2_in_spec2_x[leg] = prrr_h_2_in_spec2_x;
@@ -1255,6 +1254,24 @@ INLINE void unlimited(size_t rows, size_t size, size_t w, const size_t *places, 
     }
 }
 
+INLINE void least_entry(size_t n, const real *a, real *x)
+{
+    *x = a[0];
+    for (size_t e = 1; e < n; ++e) {
+        *x = lesser(*x, a[e]);
+    }
+}
+
+/* Of the first n entries the product, and the last over the first, 0 where that is 0. */
+INLINE void spread(size_t n, const real *a, real *product_of, real *ratio)
+{
+    *product_of = 1;
+    for (size_t e = 0; e < n; ++e) {
+        *product_of *= a[e];
+    }
+    *ratio = magnitude(a[0]) > 0 ? a[n - 1]/a[0] : a[0];
+}
+
 /* 1 where no entry is negative, else 0. */
 INLINE void not_negative(size_t size, size_t w, const real *a, real *x, real *flags)
 {
@@ -1344,55 +1361,801 @@ static void moved(const real *X, const real *step, real part, real *to)
     }
 }
 
+/* ---- what functions of the state share; v: values for others ---- */
+
+typedef struct {
+    real W_p_xx, R_xx, R_yx, h_star_x, h_star_y;
+} values;
+
+INLINE void stage_V(size_t w, size_t k, const real *V, values *v)
+{
+    /* (W_p) centripetal tensor of the platform */
+    const real omega_z = V[2*w + k];
+    const real W_p_xx = -omega_z*omega_z;
+    v->W_p_xx = W_p_xx;
+}
+
+INLINE void stage_X(const prepared *m, size_t w, size_t k, const real *X, values *v)
+{
+    /* X: named entries */
+    const real X_2 = X[2*w + k];
+    const real R_xx = cosine(X_2);
+    const real R_yx = sine(X_2);
+    /* (h_star) first moment about the platform origin */
+    const real h_star_in_platform_x = m->h_star_in_platform_x;
+    const real h_star_in_platform_y = m->h_star_in_platform_y;
+    const real h_star_x = R_xx*h_star_in_platform_x - R_yx*h_star_in_platform_y;
+    const real h_star_y = R_xx*h_star_in_platform_y + R_yx*h_star_in_platform_x;
+    v->R_xx = R_xx;
+    v->R_yx = R_yx;
+    v->h_star_x = h_star_x;
+    v->h_star_y = h_star_y;
+}
+
+typedef struct {
+    real prrr_q_x, prrr_q_y, prrr_rho2_2, prrr_disc_2, prrr_c_2, prrr_s_2, prrr_c_3, prrr_s_3_t,
+        prrr_r_2_t, prrr_r_2_in_axes2_x, prrr_r_2_in_axes3_x, prrr_r_2_in_axes3_y, prrr_w_2_t,
+        prrr_e_1_in_axes3_y, axis_y_prrr_axes3_x, axis_x_prrr_axes3_x, inv_prrr_r_2_in_axes3_y,
+        prrr_w_2_x, prrr_w_2_y, prrr_qd_2_t, prrr_a_p_x, prrr_a_p_y, prrr_S_dot_t, prrr_S_dot_t_2,
+        prrr_S_dot_rest_x, prrr_S_dot_rest_y, prrr_W_2_in_axes2_xx, prrr_W_3_t, prrr_bias_in_axes3_x,
+        prrr_S_ddot_x, prrr_S_ddot_y, prrr_w_2_t_2, prrr_H_a_2_z, prrr_P_c_2_in_axes0_x,
+        prrr_d_Gamma_3_in_axes3_x, prrr_d_G_in_axes3_xx, prrr_d_G_in_axes3_xy, prrr_d_c_in_axes3_xy,
+        prrr_Q_t_2, prrr_u_1_x, prrr_u_1_t, prrr_g_in_axes2_x, prrr_g_in_axes2_y, prrr_Kd_2,
+        prrr_Kc_2, prrr_Ks_2, prrr_root_2, inv_prrr_rho2_2, prrr_x_3_in_axes2_x, prrr_B_2_in_axes2_xy,
+        prrr_alpha_3_in_axes3_z, prrr_acc_2_in_axes2_x, prrr_acc_2_in_axes2_y, prrr_acc_3_in_axes3_x,
+        prrr_acc_3_in_axes3_y, prrr_N_2_in_axes2_z, prrr_G_in_axes3_y, prrr_c_in_axes3_y;
+} values_prrr;
+
+INLINE void stage_prrr_X(const prepared *m, size_t w, size_t i, size_t j, const real *s, const
+    real *X, values_prrr *v)
+{
+    /* (prrr-S) from the base point to the connection point */
+    const real R_xx = s[0*w + j];
+    const real R_yx = s[1*w + j];
+    const real prrr_platform_point_x = m->prrr_platform_point_x[i];
+    const real prrr_platform_point_y = m->prrr_platform_point_y[i];
+    const real prrr_q_x = R_xx*prrr_platform_point_x - R_yx*prrr_platform_point_y;
+    const real prrr_q_y = R_xx*prrr_platform_point_y + R_yx*prrr_platform_point_x;
+    const real prrr_base_point_x = m->prrr_base_point_x[i];
+    const real t_x = X[0*w + j];
+    const real prrr_S_x = prrr_q_x + t_x - prrr_base_point_x;
+    const real prrr_base_point_y = m->prrr_base_point_y[i];
+    const real t_y = X[1*w + j];
+    const real prrr_S_y = prrr_q_y + t_y - prrr_base_point_y;
+    const real prrr_base_frame_xx = m->prrr_base_frame_xx[i];
+    const real prrr_base_frame_yx = m->prrr_base_frame_yx[i];
+    const real prrr_S_in_axes0_y = -prrr_S_x*prrr_base_frame_xx - prrr_S_y*prrr_base_frame_yx;
+    /* (prrr-x_2) from the origin of joint 2 to the connection point */
+    const real prrr_base_frame_xy = m->prrr_base_frame_xy[i];
+    const real prrr_base_frame_yy = m->prrr_base_frame_yy[i];
+    const real prrr_y_1_extra = X[3*w + j];
+    const real prrr_x_2_in_axes0_x = prrr_S_x*prrr_base_frame_xy + prrr_S_y*prrr_base_frame_yy
+        - prrr_y_1_extra;
+    /* (prrr-Kd_2) projection on the centre's direction, from the distance fixed by the joints beyond
+       joint 2 */
+    const real prrr_Kd_2_t_3 = prrr_S_in_axes0_y*prrr_S_in_axes0_y +
+        prrr_x_2_in_axes0_x*prrr_x_2_in_axes0_x;
+    const real prrr_Kd_2_t = m->prrr_Kd_2_t[i];
+    const real prrr_Kd_2_t_2 = m->prrr_Kd_2_t_2[i];
+    const real prrr_Kd_2 = prrr_Kd_2_t + R(0.5)*prrr_Kd_2_t_3 - prrr_Kd_2_t_2;
+    /* (prrr-Kc_2) factor of the cosine in the equation of joint 2 */
+    const real prrr_joint3_offset_x = m->prrr_joint3_offset_x[i];
+    const real prrr_Kc_2 = -prrr_S_in_axes0_y*prrr_joint3_offset_x;
+    /* (prrr-Ks_2) factor of the sine in the equation of joint 2 */
+    const real prrr_Ks_2 = prrr_joint3_offset_x*prrr_x_2_in_axes0_x;
+    /* (prrr-rho2_2) squared amplitude */
+    const real prrr_rho2_2 = prrr_Kc_2*prrr_Kc_2 + prrr_Ks_2*prrr_Ks_2;
+    /* (prrr-disc_2) discriminant */
+    const real prrr_disc_2 = prrr_rho2_2 - prrr_Kd_2*prrr_Kd_2;
+    /* (prrr-root_2) root, with the sign of the branch */
+    const real prrr_branch_2 = m->prrr_branch_2[i];
+    const real prrr_root_2 = prrr_branch_2*root(prrr_disc_2);
+    /* (prrr-c_2) cosine of the angle of joint 2 from its reference direction */
+    const real inv_prrr_rho2_2 = 1/prrr_rho2_2;
+    const real prrr_c_2 = -inv_prrr_rho2_2*(prrr_Ks_2*prrr_root_2 - prrr_Kc_2*prrr_Kd_2);
+    /* (prrr-s_2) sine of the angle of joint 2 from its reference direction */
+    const real prrr_s_2 = -inv_prrr_rho2_2*(-prrr_Kc_2*prrr_root_2 - prrr_Kd_2*prrr_Ks_2);
+    /* (prrr-x_3) from the origin of joint 3 to the connection point */
+    const real inv_prrr_size_t = m->inv_prrr_size_t[i];
+    const real prrr_x_3_in_axes2_x = inv_prrr_size_t*prrr_Kd_2*prrr_joint3_offset_x -
+        prrr_joint3_offset_x;
+    /* (prrr-c_3) cosine of the angle of joint 3 from its reference direction */
+    const real inv_prrr_size_t_2 = m->inv_prrr_size_t_2[i];
+    const real prrr_platform_joint_offset_x = m->prrr_platform_joint_offset_x[i];
+    const real prrr_c_3 = inv_prrr_size_t_2*prrr_platform_joint_offset_x*prrr_x_3_in_axes2_x;
+    /* (prrr-s_3) sine of the angle of joint 3 from its reference direction */
+    const real prrr_s_3_t =
+        inv_prrr_size_t*inv_prrr_size_t_2*prrr_joint3_offset_x*prrr_platform_joint_offset_x*prrr_root_2;
+    /* (prrr-r_2) from joint 2 to the connection point, along the links */
+    const real prrr_r_2_t = prrr_platform_joint_offset_x*prrr_s_3_t;
+    const real prrr_r_2_in_axes2_x = prrr_joint3_offset_x +
+        prrr_c_3*prrr_platform_joint_offset_x;
+    const real prrr_r_2_in_axes3_x = prrr_c_3*prrr_r_2_in_axes2_x + prrr_r_2_t*prrr_s_3_t;
+    const real prrr_r_2_in_axes3_y = prrr_r_2_in_axes2_x*prrr_s_3_t - prrr_c_3*prrr_r_2_t;
+    /* (prrr-w_2) reciprocal vector 1 */
+    const real prrr_w_2_t = prrr_c_2*prrr_s_3_t - prrr_c_3*prrr_s_2;
+    const real prrr_e_1_in_axes3_y = prrr_c_2*prrr_c_3 + prrr_s_2*prrr_s_3_t;
+    const real axis_y_prrr_axes3_x = prrr_base_frame_xx*prrr_w_2_t +
+        prrr_base_frame_xy*prrr_e_1_in_axes3_y;
+    const real axis_x_prrr_axes3_x = prrr_base_frame_yx*prrr_w_2_t +
+        prrr_base_frame_yy*prrr_e_1_in_axes3_y;
+    const real inv_prrr_r_2_in_axes3_y = 1/prrr_r_2_in_axes3_y;
+    const real prrr_w_2_x = -axis_x_prrr_axes3_x*inv_prrr_r_2_in_axes3_y;
+    const real prrr_w_2_y = axis_y_prrr_axes3_x*inv_prrr_r_2_in_axes3_y;
+    /* (prrr-qd_2) rate of joint 2 */
+    const real prrr_qd_2_t = prrr_c_2*prrr_s_3_t - prrr_c_3*prrr_s_2;
+    v->prrr_q_x = prrr_q_x;
+    v->prrr_q_y = prrr_q_y;
+    v->prrr_rho2_2 = prrr_rho2_2;
+    v->prrr_disc_2 = prrr_disc_2;
+    v->prrr_c_2 = prrr_c_2;
+    v->prrr_s_2 = prrr_s_2;
+    v->prrr_c_3 = prrr_c_3;
+    v->prrr_s_3_t = prrr_s_3_t;
+    v->prrr_r_2_t = prrr_r_2_t;
+    v->prrr_r_2_in_axes2_x = prrr_r_2_in_axes2_x;
+    v->prrr_r_2_in_axes3_x = prrr_r_2_in_axes3_x;
+    v->prrr_r_2_in_axes3_y = prrr_r_2_in_axes3_y;
+    v->prrr_w_2_t = prrr_w_2_t;
+    v->prrr_e_1_in_axes3_y = prrr_e_1_in_axes3_y;
+    v->axis_y_prrr_axes3_x = axis_y_prrr_axes3_x;
+    v->axis_x_prrr_axes3_x = axis_x_prrr_axes3_x;
+    v->inv_prrr_r_2_in_axes3_y = inv_prrr_r_2_in_axes3_y;
+    v->prrr_w_2_x = prrr_w_2_x;
+    v->prrr_w_2_y = prrr_w_2_y;
+    v->prrr_qd_2_t = prrr_qd_2_t;
+}
+
+INLINE void stage_prrr_A_X(size_t w, size_t j, const real *A, values_prrr *v)
+{
+    /* (prrr-a_p) acceleration of the connection point without its centripetal part */
+    const real alpha_z = A[2*w + j];
+    const real t_ddot_x = A[0*w + j];
+    const real prrr_a_p_x = t_ddot_x - alpha_z*v->prrr_q_y;
+    const real t_ddot_y = A[1*w + j];
+    const real prrr_a_p_y = t_ddot_y + alpha_z*v->prrr_q_x;
+    v->prrr_a_p_x = prrr_a_p_x;
+    v->prrr_a_p_y = prrr_a_p_y;
+}
+
+INLINE void stage_prrr_V_X(const prepared *m, size_t w, size_t i, size_t j, const real *V,
+    values_prrr *v)
+{
+    /* (prrr-S_dot) velocity of the connection point */
+    const real omega_z = V[2*w + j];
+    const real prrr_S_dot_t = omega_z*v->prrr_q_y;
+    const real prrr_S_dot_t_2 = omega_z*v->prrr_q_x;
+    const real t_dot_x = V[0*w + j];
+    const real prrr_S_dot_x = t_dot_x - prrr_S_dot_t;
+    const real t_dot_y = V[1*w + j];
+    const real prrr_S_dot_y = prrr_S_dot_t_2 + t_dot_y;
+    /* (prrr-S_dot_rest) velocity of the connection point left to the joints that are not extra */
+    const real prrr_base_frame_xy = m->prrr_base_frame_xy[i];
+    const real prrr_yd_1 = V[3*w + j];
+    const real prrr_S_dot_rest_x = prrr_S_dot_x - prrr_base_frame_xy*prrr_yd_1;
+    const real prrr_base_frame_yy = m->prrr_base_frame_yy[i];
+    const real prrr_S_dot_rest_y = prrr_S_dot_y - prrr_base_frame_yy*prrr_yd_1;
+    /* (prrr-qd_2) rate of joint 2 */
+    const real prrr_qd_2 =
+        -v->inv_prrr_r_2_in_axes3_y*(v->axis_x_prrr_axes3_x*prrr_S_dot_rest_x -
+        v->axis_y_prrr_axes3_x*prrr_S_dot_rest_y);
+    /* (prrr-W_2) centripetal tensor of link 2 */
+    const real prrr_W_2_in_axes2_xx = -prrr_qd_2*prrr_qd_2;
+    /* (prrr-omega_3) angular velocity of link 3 */
+    const real prrr_w_3_in_axes3_y = m->prrr_w_3_in_axes3_y[i];
+    const real prrr_omega_3_in_axes3_z = prrr_qd_2 +
+        prrr_w_3_in_axes3_y*(v->axis_x_prrr_axes3_x*prrr_S_dot_rest_y +
+        v->axis_y_prrr_axes3_x*prrr_S_dot_rest_x - prrr_qd_2*v->prrr_r_2_in_axes3_x);
+    /* (prrr-W_3) centripetal tensor of link 3 */
+    const real prrr_W_3_t = prrr_omega_3_in_axes3_z*prrr_omega_3_in_axes3_z;
+    /* (prrr-bias) acceleration of the connection point at zero joint accelerations */
+    const real prrr_joint3_offset_x = m->prrr_joint3_offset_x[i];
+    const real prrr_platform_joint_offset_x = m->prrr_platform_joint_offset_x[i];
+    const real prrr_bias_in_axes3_x = prrr_W_2_in_axes2_xx*v->prrr_c_3*prrr_joint3_offset_x -
+        prrr_W_3_t*prrr_platform_joint_offset_x;
+    v->prrr_S_dot_t = prrr_S_dot_t;
+    v->prrr_S_dot_t_2 = prrr_S_dot_t_2;
+    v->prrr_S_dot_rest_x = prrr_S_dot_rest_x;
+    v->prrr_S_dot_rest_y = prrr_S_dot_rest_y;
+    v->prrr_W_2_in_axes2_xx = prrr_W_2_in_axes2_xx;
+    v->prrr_W_3_t = prrr_W_3_t;
+    v->prrr_bias_in_axes3_x = prrr_bias_in_axes3_x;
+}
+
+INLINE void stage_prrr_A_V_X(size_t w, size_t j, const real *V, values_prrr *v)
+{
+    /* (prrr-S_ddot) acceleration of the connection point */
+    const real omega_z = V[2*w + j];
+    const real prrr_S_ddot_x = v->prrr_a_p_x - omega_z*v->prrr_S_dot_t_2;
+    const real prrr_S_ddot_y = v->prrr_a_p_y - omega_z*v->prrr_S_dot_t;
+    v->prrr_S_ddot_x = prrr_S_ddot_x;
+    v->prrr_S_ddot_y = prrr_S_ddot_y;
+}
+
+INLINE void stage_prrr_H_condition(const prepared *m, size_t i, values_prrr *v)
+{
+    /* (prrr-r_2) from joint 2 to the connection point, along the links */
+    const real prrr_platform_joint_offset_x = m->prrr_platform_joint_offset_x[i];
+    const real prrr_r_2_in_axes3_y = v->prrr_r_2_in_axes2_x*v->prrr_s_3_t -
+        v->prrr_c_3*prrr_platform_joint_offset_x*v->prrr_s_3_t;
+    /* (prrr-w_2) reciprocal vector 1 */
+    const real inv_prrr_r_2_in_axes3_y = 1/prrr_r_2_in_axes3_y;
+    const real prrr_w_2_t_2 = -inv_prrr_r_2_in_axes3_y*v->prrr_w_2_t;
+    const real prrr_base_frame_yx = m->prrr_base_frame_yx[i];
+    const real prrr_base_frame_yy = m->prrr_base_frame_yy[i];
+    const real prrr_w_2_x = -inv_prrr_r_2_in_axes3_y*(prrr_base_frame_yx*v->prrr_w_2_t +
+        prrr_base_frame_yy*v->prrr_e_1_in_axes3_y);
+    const real prrr_base_frame_xx = m->prrr_base_frame_xx[i];
+    const real prrr_base_frame_xy = m->prrr_base_frame_xy[i];
+    const real prrr_w_2_y = inv_prrr_r_2_in_axes3_y*(prrr_base_frame_xx*v->prrr_w_2_t +
+        prrr_base_frame_xy*v->prrr_e_1_in_axes3_y);
+    /* (prrr-H_a_2) moment of the column's unit force about the platform origin */
+    const real prrr_H_a_2_z = v->prrr_q_x*prrr_w_2_y - v->prrr_q_y*prrr_w_2_x;
+    v->prrr_r_2_in_axes3_y = prrr_r_2_in_axes3_y;
+    v->prrr_w_2_t_2 = prrr_w_2_t_2;
+    v->prrr_w_2_x = prrr_w_2_x;
+    v->prrr_w_2_y = prrr_w_2_y;
+    v->prrr_H_a_2_z = prrr_H_a_2_z;
+}
+
+INLINE void stage_prrr_M_dynamics(const prepared *m, size_t i, values_prrr *v)
+{
+    /* (prrr-w_3) reciprocal vector 2 */
+    const real prrr_w_3_in_axes3_y = m->prrr_w_3_in_axes3_y[i];
+    const real prrr_w_3_in_axes3_x =
+        v->inv_prrr_r_2_in_axes3_y*v->prrr_r_2_in_axes3_x*prrr_w_3_in_axes3_y;
+    /* (prrr-P_c_2) force that accelerates joint 2, per unit */
+    const real prrr_h_2_in_spec2_x = m->prrr_h_2_in_spec2_x[i];
+    const real prrr_h_2_in_spec2_y = m->prrr_h_2_in_spec2_y[i];
+    const real prrr_P_c_2_in_axes0_x = v->prrr_c_2*prrr_h_2_in_spec2_x -
+        prrr_h_2_in_spec2_y*v->prrr_s_2;
+    /* (prrr-d_Gamma_3) coefficient of the acceleration in: moment about axis 3 of the distal links'
+       inertia and weight */
+    const real prrr_d_Gamma_3_t = m->prrr_d_Gamma_3_t[i];
+    const real prrr_d_Gamma_3_t_2 = prrr_d_Gamma_3_t*v->prrr_r_2_in_axes3_x;
+    const real prrr_J_3_in_spec3_zz = m->prrr_J_3_in_spec3_zz[i];
+    const real prrr_h_3_in_spec3_y = m->prrr_h_3_in_spec3_y[i];
+    const real prrr_d_Gamma_3_in_axes3_x = -prrr_h_3_in_spec3_y -
+        v->inv_prrr_r_2_in_axes3_y*(prrr_J_3_in_spec3_zz - prrr_d_Gamma_3_t_2);
+    /* (prrr-d_Gamma_2) coefficient of the acceleration in: moment about axis 2 of the distal links'
+       inertia and weight */
+    const real prrr_Jc_2_in_axes2_zz = m->prrr_Jc_2_in_axes2_zz[i];
+    const real prrr_d_Gamma_2_in_axes3_x = -prrr_h_3_in_spec3_y -
+        v->inv_prrr_r_2_in_axes3_y*(prrr_Jc_2_in_axes2_zz - prrr_d_Gamma_3_t_2);
+    /* (prrr-d_G) coefficient of the acceleration in: force at the connection point that balances the
+       leg's inertia and weight along all degrees of freedom */
+    const real prrr_d_G_in_axes3_xx = prrr_d_Gamma_3_in_axes3_x*prrr_w_3_in_axes3_x -
+        v->inv_prrr_r_2_in_axes3_y*prrr_d_Gamma_2_in_axes3_x;
+    const real prrr_d_Gamma_3_in_axes3_y = m->prrr_d_Gamma_3_in_axes3_y[i];
+    const real prrr_d_G_in_axes3_xy = prrr_d_Gamma_3_in_axes3_y*prrr_w_3_in_axes3_x -
+        v->inv_prrr_r_2_in_axes3_y*prrr_d_Gamma_3_in_axes3_y;
+    /* (prrr-d_c) coefficient of the acceleration in: leg force on the platform without actuation and
+       without the mass at the connection point */
+    const real prrr_d_phi_3_t = m->prrr_d_phi_3_t[i];
+    const real prrr_d_c_in_axes3_xy = prrr_d_phi_3_t - prrr_d_G_in_axes3_xy;
+    /* (prrr-Q) inertia of the leg at the connection point, without the mass gathered there */
+    const real prrr_d_c_in_axes3_yy = m->prrr_d_c_in_axes3_yy[i];
+    const real prrr_Q_t = prrr_h_3_in_spec3_y*(prrr_w_3_in_axes3_x -
+        v->inv_prrr_r_2_in_axes3_y) - prrr_d_G_in_axes3_xx - prrr_d_c_in_axes3_yy;
+    const real prrr_Q_t_2 = R(0.5)*prrr_Q_t;
+    v->prrr_P_c_2_in_axes0_x = prrr_P_c_2_in_axes0_x;
+    v->prrr_d_Gamma_3_in_axes3_x = prrr_d_Gamma_3_in_axes3_x;
+    v->prrr_d_G_in_axes3_xx = prrr_d_G_in_axes3_xx;
+    v->prrr_d_G_in_axes3_xy = prrr_d_G_in_axes3_xy;
+    v->prrr_d_c_in_axes3_xy = prrr_d_c_in_axes3_xy;
+    v->prrr_Q_t_2 = prrr_Q_t_2;
+}
+
+INLINE void stage_prrr_Z_dynamics(const prepared *m, size_t w, size_t i, size_t j, const real *V,
+    values_prrr *v)
+{
+    /* (prrr-u_1) centripetal acceleration of the connection point */
+    const real omega_z = V[2*w + j];
+    const real prrr_u_1_x = -omega_z*v->prrr_S_dot_t_2;
+    const real prrr_u_1_t = omega_z*v->prrr_S_dot_t;
+    /* (prrr-f_2_o) remainder without the acceleration in: inertia force of link 2 less its weight */
+    const real prrr_acc_1_in_axes0_y = m->prrr_acc_1_in_axes0_y[i];
+    const real prrr_g_in_axes0_x = m->prrr_g_in_axes0_x[i];
+    const real prrr_g_in_axes2_x = prrr_acc_1_in_axes0_y*v->prrr_c_2 +
+        prrr_g_in_axes0_x*v->prrr_s_2;
+    const real prrr_g_in_axes2_y = v->prrr_c_2*prrr_g_in_axes0_x -
+        prrr_acc_1_in_axes0_y*v->prrr_s_2;
+    v->prrr_u_1_x = prrr_u_1_x;
+    v->prrr_u_1_t = prrr_u_1_t;
+    v->prrr_g_in_axes2_x = prrr_g_in_axes2_x;
+    v->prrr_g_in_axes2_y = prrr_g_in_axes2_y;
+}
+
+INLINE void stage_prrr_inverse_kinematics_potential(const prepared *m, size_t w, size_t i, size_t
+    j, const real *s, const real *X, values_prrr *v)
+{
+    /* (prrr-S) from the base point to the connection point */
+    const real R_xx = s[0*w + j];
+    const real R_yx = s[1*w + j];
+    const real prrr_base_point_x = m->prrr_base_point_x[i];
+    const real prrr_platform_point_x = m->prrr_platform_point_x[i];
+    const real prrr_platform_point_y = m->prrr_platform_point_y[i];
+    const real t_x = X[0*w + j];
+    const real prrr_S_x = t_x + R_xx*prrr_platform_point_x - prrr_base_point_x -
+        R_yx*prrr_platform_point_y;
+    const real prrr_base_point_y = m->prrr_base_point_y[i];
+    const real t_y = X[1*w + j];
+    const real prrr_S_y = t_y + R_xx*prrr_platform_point_y + R_yx*prrr_platform_point_x -
+        prrr_base_point_y;
+    const real prrr_base_frame_xx = m->prrr_base_frame_xx[i];
+    const real prrr_base_frame_yx = m->prrr_base_frame_yx[i];
+    const real prrr_S_in_axes0_y = -prrr_S_x*prrr_base_frame_xx - prrr_S_y*prrr_base_frame_yx;
+    /* (prrr-x_2) from the origin of joint 2 to the connection point */
+    const real prrr_base_frame_xy = m->prrr_base_frame_xy[i];
+    const real prrr_base_frame_yy = m->prrr_base_frame_yy[i];
+    const real prrr_y_1_extra = X[3*w + j];
+    const real prrr_x_2_in_axes0_x = prrr_S_x*prrr_base_frame_xy + prrr_S_y*prrr_base_frame_yy
+        - prrr_y_1_extra;
+    /* (prrr-Kd_2) projection on the centre's direction, from the distance fixed by the joints beyond
+       joint 2 */
+    const real prrr_Kd_2_t_3 = prrr_S_in_axes0_y*prrr_S_in_axes0_y +
+        prrr_x_2_in_axes0_x*prrr_x_2_in_axes0_x;
+    const real prrr_Kd_2_t = m->prrr_Kd_2_t[i];
+    const real prrr_Kd_2_t_2 = m->prrr_Kd_2_t_2[i];
+    const real prrr_Kd_2 = prrr_Kd_2_t + R(0.5)*prrr_Kd_2_t_3 - prrr_Kd_2_t_2;
+    /* (prrr-Kc_2) factor of the cosine in the equation of joint 2 */
+    const real prrr_joint3_offset_x = m->prrr_joint3_offset_x[i];
+    const real prrr_Kc_2 = -prrr_S_in_axes0_y*prrr_joint3_offset_x;
+    /* (prrr-Ks_2) factor of the sine in the equation of joint 2 */
+    const real prrr_Ks_2 = prrr_joint3_offset_x*prrr_x_2_in_axes0_x;
+    /* (prrr-rho2_2) squared amplitude */
+    const real prrr_rho2_2 = prrr_Kc_2*prrr_Kc_2 + prrr_Ks_2*prrr_Ks_2;
+    /* (prrr-disc_2) discriminant */
+    const real prrr_disc_2 = prrr_rho2_2 - prrr_Kd_2*prrr_Kd_2;
+    /* (prrr-root_2) root, with the sign of the branch */
+    const real prrr_branch_2 = m->prrr_branch_2[i];
+    const real prrr_root_2 = prrr_branch_2*root(prrr_disc_2);
+    /* (prrr-q_2) displacement of joint 2 */
+    const real inv_prrr_rho2_2 = 1/prrr_rho2_2;
+    /* (prrr-x_3) from the origin of joint 3 to the connection point */
+    const real inv_prrr_size_t = m->inv_prrr_size_t[i];
+    const real prrr_x_3_in_axes2_x = inv_prrr_size_t*prrr_Kd_2*prrr_joint3_offset_x -
+        prrr_joint3_offset_x;
+    v->prrr_Kd_2 = prrr_Kd_2;
+    v->prrr_Kc_2 = prrr_Kc_2;
+    v->prrr_Ks_2 = prrr_Ks_2;
+    v->prrr_rho2_2 = prrr_rho2_2;
+    v->prrr_disc_2 = prrr_disc_2;
+    v->prrr_root_2 = prrr_root_2;
+    v->inv_prrr_rho2_2 = inv_prrr_rho2_2;
+    v->prrr_x_3_in_axes2_x = prrr_x_3_in_axes2_x;
+}
+
+INLINE void stage_prrr_legs_required(const prepared *m, size_t w, size_t i, size_t j, const real
+    *A, values_prrr *v)
+{
+    /* (prrr-S_ddot) acceleration of the connection point */
+    const real prrr_S_ddot_in_axes3_x = v->axis_x_prrr_axes3_x*v->prrr_S_ddot_x -
+        v->axis_y_prrr_axes3_x*v->prrr_S_ddot_y;
+    const real prrr_S_ddot_in_axes3_y = v->axis_x_prrr_axes3_x*v->prrr_S_ddot_y +
+        v->axis_y_prrr_axes3_x*v->prrr_S_ddot_x;
+    /* (prrr-rel) acceleration of the connection point left to the joint accelerations */
+    const real prrr_ydd_1 = A[3*w + j];
+    const real prrr_rel_in_axes3_x = prrr_S_ddot_in_axes3_x + v->prrr_w_2_t*prrr_ydd_1 -
+        v->prrr_bias_in_axes3_x;
+    const real prrr_joint3_offset_x = m->prrr_joint3_offset_x[i];
+    const real prrr_rel_in_axes3_y = prrr_S_ddot_in_axes3_y -
+        v->prrr_e_1_in_axes3_y*prrr_ydd_1 -
+        v->prrr_W_2_in_axes2_xx*prrr_joint3_offset_x*v->prrr_s_3_t;
+    /* (prrr-B_2) acceleration tensor of link 2 */
+    const real prrr_B_2_in_axes2_xy = v->inv_prrr_r_2_in_axes3_y*prrr_rel_in_axes3_x;
+    /* (prrr-alpha_3) angular acceleration of link 3 */
+    const real prrr_w_3_in_axes3_y = m->prrr_w_3_in_axes3_y[i];
+    const real prrr_alpha_3_in_axes3_z = prrr_w_3_in_axes3_y*(prrr_rel_in_axes3_y +
+        prrr_B_2_in_axes2_xy*v->prrr_r_2_in_axes3_x) - prrr_B_2_in_axes2_xy;
+    /* (prrr-acc_2) acceleration of the reference point of link 2, less gravity */
+    const real prrr_acc_1_in_axes0_y = m->prrr_acc_1_in_axes0_y[i];
+    const real prrr_g_in_axes0_x = m->prrr_g_in_axes0_x[i];
+    const real prrr_acc_2_in_axes2_x = v->prrr_s_2*prrr_ydd_1 -
+        prrr_acc_1_in_axes0_y*v->prrr_c_2 - prrr_g_in_axes0_x*v->prrr_s_2;
+    const real prrr_acc_2_in_axes2_y = prrr_acc_1_in_axes0_y*v->prrr_s_2 +
+        v->prrr_c_2*prrr_ydd_1 - v->prrr_c_2*prrr_g_in_axes0_x;
+    /* (prrr-acc_3) acceleration of the reference point of link 3, less gravity */
+    const real gravity_x = m->gravity_x;
+    const real gravity_y = m->gravity_y;
+    const real prrr_acc_3_in_axes3_x = prrr_S_ddot_in_axes3_x +
+        v->axis_y_prrr_axes3_x*gravity_y - v->axis_x_prrr_axes3_x*gravity_x;
+    const real prrr_acc_3_in_axes3_y = prrr_S_ddot_in_axes3_y -
+        v->axis_x_prrr_axes3_x*gravity_y - v->axis_y_prrr_axes3_x*gravity_x;
+    /* (prrr-mu_3) inertia moment of the links that turn with link 3, about their reference points */
+    const real prrr_J_3_in_spec3_zz = m->prrr_J_3_in_spec3_zz[i];
+    const real prrr_h_3_in_spec3_x = m->prrr_h_3_in_spec3_x[i];
+    const real prrr_h_3_in_spec3_y = m->prrr_h_3_in_spec3_y[i];
+    const real prrr_mu_3_in_axes3_z = prrr_J_3_in_spec3_zz*prrr_alpha_3_in_axes3_z +
+        prrr_acc_3_in_axes3_y*prrr_h_3_in_spec3_x - prrr_acc_3_in_axes3_x*prrr_h_3_in_spec3_y;
+    /* (prrr-mu_2) inertia moment of the links that turn with link 2, about their reference points */
+    const real prrr_J_2_in_spec2_zz = m->prrr_J_2_in_spec2_zz[i];
+    const real prrr_h_2_in_spec2_x = m->prrr_h_2_in_spec2_x[i];
+    const real prrr_h_2_in_spec2_y = m->prrr_h_2_in_spec2_y[i];
+    const real prrr_mu_2_in_axes2_z = prrr_acc_2_in_axes2_y*prrr_h_2_in_spec2_x -
+        prrr_B_2_in_axes2_xy*prrr_J_2_in_spec2_zz - prrr_acc_2_in_axes2_x*prrr_h_2_in_spec2_y;
+    /* (prrr-N_2) moment about joint 2 of the links from 2 outwards, the force at the connection point
+       left out */
+    const real prrr_N_2_in_axes2_z = prrr_mu_2_in_axes2_z + prrr_mu_3_in_axes3_z;
+    /* (prrr-G) force at the connection point that balances the leg's inertia and weight along all
+       degrees of freedom */
+    const real prrr_G_in_axes3_y = prrr_mu_3_in_axes3_z*prrr_w_3_in_axes3_y;
+    /* (prrr-c) leg force on the platform without actuation and without the mass at the connection
+       point */
+    const real prrr_c_in_axes3_y = v->prrr_W_3_t*prrr_h_3_in_spec3_y - prrr_G_in_axes3_y -
+        prrr_alpha_3_in_axes3_z*prrr_h_3_in_spec3_x;
+    v->prrr_B_2_in_axes2_xy = prrr_B_2_in_axes2_xy;
+    v->prrr_alpha_3_in_axes3_z = prrr_alpha_3_in_axes3_z;
+    v->prrr_acc_2_in_axes2_x = prrr_acc_2_in_axes2_x;
+    v->prrr_acc_2_in_axes2_y = prrr_acc_2_in_axes2_y;
+    v->prrr_acc_3_in_axes3_x = prrr_acc_3_in_axes3_x;
+    v->prrr_acc_3_in_axes3_y = prrr_acc_3_in_axes3_y;
+    v->prrr_N_2_in_axes2_z = prrr_N_2_in_axes2_z;
+    v->prrr_G_in_axes3_y = prrr_G_in_axes3_y;
+    v->prrr_c_in_axes3_y = prrr_c_in_axes3_y;
+}
+
+typedef struct {
+    real rrr_q_x, rrr_q_y, rrr_rho2_1, rrr_disc_1, rrr_c_1, rrr_s_1, rrr_c_2, rrr_s_2,
+        rrr_r_1_in_axes1_y, rrr_r_1_in_axes1_x, rrr_r_1_in_axes2_x, rrr_r_1_in_axes2_y, rrr_w_1_t,
+        rrr_w_1_t_2, axis_y_rrr_axes2_x, axis_x_rrr_axes2_x, inv_rrr_r_1_in_axes2_y, rrr_w_1_x,
+        rrr_w_1_y, rrr_qd_1_t_2, rrr_a_p_x, rrr_a_p_y, rrr_S_dot_t, rrr_S_dot_t_2, rrr_S_dot_x,
+        rrr_S_dot_y, rrr_W_1_t, rrr_W_2_t, rrr_bias_in_axes2_x, rrr_S_ddot_x, rrr_S_ddot_y,
+        rrr_H_a_1_z, rrr_w_2_in_axes2_x, rrr_d_Gamma_2_in_axes2_x, rrr_d_Gamma_1_in_axes2_x,
+        rrr_d_c_in_axes2_xy, rrr_Kd_1, rrr_Kc_1, rrr_Ks_1, rrr_root_1, inv_rrr_rho2_1,
+        rrr_x_2_in_axes1_x, rrr_acc_2_in_axes2_x, rrr_acc_2_in_axes2_y, rrr_c_in_axes2_x,
+        rrr_c_in_axes2_y;
+} values_rrr;
+
+INLINE void stage_rrr_X(const prepared *m, size_t w, size_t i, size_t j, const real *s, const real
+    *X, values_rrr *v)
+{
+    /* (rrr-S) from the base point to the connection point */
+    const real R_xx = s[0*w + j];
+    const real R_yx = s[1*w + j];
+    const real rrr_platform_point_x = m->rrr_platform_point_x[i];
+    const real rrr_platform_point_y = m->rrr_platform_point_y[i];
+    const real rrr_q_x = R_xx*rrr_platform_point_x - R_yx*rrr_platform_point_y;
+    const real rrr_q_y = R_xx*rrr_platform_point_y + R_yx*rrr_platform_point_x;
+    const real rrr_base_point_x = m->rrr_base_point_x[i];
+    const real t_x = X[0*w + j];
+    const real rrr_S_x = rrr_q_x + t_x - rrr_base_point_x;
+    const real rrr_base_point_y = m->rrr_base_point_y[i];
+    const real t_y = X[1*w + j];
+    const real rrr_S_y = rrr_q_y + t_y - rrr_base_point_y;
+    /* (rrr-Kd_1) projection on the centre's direction, from the distance fixed by the joints beyond
+       joint 1 */
+    const real rrr_Kd_1_t_3 = rrr_S_x*rrr_S_x + rrr_S_y*rrr_S_y;
+    const real rrr_Kd_1_t = m->rrr_Kd_1_t[i];
+    const real rrr_Kd_1_t_2 = m->rrr_Kd_1_t_2[i];
+    const real rrr_Kd_1 = rrr_Kd_1_t + R(0.5)*rrr_Kd_1_t_3 - rrr_Kd_1_t_2;
+    /* (rrr-Kc_1) factor of the cosine in the equation of joint 1 */
+    const real rrr_base_frame_xx = m->rrr_base_frame_xx[i];
+    const real rrr_base_frame_yx = m->rrr_base_frame_yx[i];
+    const real rrr_joint2_offset_x = m->rrr_joint2_offset_x[i];
+    const real rrr_Kc_1 = rrr_joint2_offset_x*(rrr_S_x*rrr_base_frame_xx +
+        rrr_S_y*rrr_base_frame_yx);
+    /* (rrr-Ks_1) factor of the sine in the equation of joint 1 */
+    const real rrr_base_frame_xy = m->rrr_base_frame_xy[i];
+    const real rrr_base_frame_yy = m->rrr_base_frame_yy[i];
+    const real rrr_Ks_1 = rrr_joint2_offset_x*(rrr_S_x*rrr_base_frame_xy +
+        rrr_S_y*rrr_base_frame_yy);
+    /* (rrr-rho2_1) squared amplitude */
+    const real rrr_rho2_1 = rrr_Kc_1*rrr_Kc_1 + rrr_Ks_1*rrr_Ks_1;
+    /* (rrr-disc_1) discriminant */
+    const real rrr_disc_1 = rrr_rho2_1 - rrr_Kd_1*rrr_Kd_1;
+    /* (rrr-root_1) root, with the sign of the branch */
+    const real rrr_branch_1 = m->rrr_branch_1[i];
+    const real rrr_root_1 = rrr_branch_1*root(rrr_disc_1);
+    /* (rrr-c_1) cosine of the angle of joint 1 from its reference direction */
+    const real inv_rrr_rho2_1 = 1/rrr_rho2_1;
+    const real rrr_c_1 = inv_rrr_rho2_1*(rrr_Kc_1*rrr_Kd_1 - rrr_Ks_1*rrr_root_1);
+    /* (rrr-s_1) sine of the angle of joint 1 from its reference direction */
+    const real rrr_s_1 = inv_rrr_rho2_1*(rrr_Kc_1*rrr_root_1 + rrr_Kd_1*rrr_Ks_1);
+    /* (rrr-x_2) from the origin of joint 2 to the connection point */
+    const real inv_rrr_size_t = m->inv_rrr_size_t[i];
+    const real rrr_x_2_in_axes1_x = inv_rrr_size_t*rrr_Kd_1*rrr_joint2_offset_x -
+        rrr_joint2_offset_x;
+    /* (rrr-c_2) cosine of the angle of joint 2 from its reference direction */
+    const real inv_rrr_size_t_2 = m->inv_rrr_size_t_2[i];
+    const real rrr_platform_joint_offset_x = m->rrr_platform_joint_offset_x[i];
+    const real rrr_c_2 = inv_rrr_size_t_2*rrr_platform_joint_offset_x*rrr_x_2_in_axes1_x;
+    /* (rrr-s_2) sine of the angle of joint 2 from its reference direction */
+    const real rrr_s_2 =
+        -inv_rrr_size_t*inv_rrr_size_t_2*rrr_joint2_offset_x*rrr_platform_joint_offset_x*rrr_root_1;
+    /* (rrr-r_1) from joint 1 to the connection point, along the links */
+    const real rrr_r_1_in_axes1_y = rrr_platform_joint_offset_x*rrr_s_2;
+    const real rrr_r_1_in_axes1_x = rrr_joint2_offset_x + rrr_c_2*rrr_platform_joint_offset_x;
+    const real rrr_r_1_in_axes2_x = rrr_c_2*rrr_r_1_in_axes1_x + rrr_r_1_in_axes1_y*rrr_s_2;
+    const real rrr_r_1_in_axes2_y = rrr_c_2*rrr_r_1_in_axes1_y - rrr_r_1_in_axes1_x*rrr_s_2;
+    /* (rrr-w_1) reciprocal vector 1 */
+    const real rrr_w_1_t = rrr_c_1*rrr_s_2 + rrr_c_2*rrr_s_1;
+    const real rrr_w_1_t_2 = rrr_c_1*rrr_c_2 - rrr_s_1*rrr_s_2;
+    const real axis_y_rrr_axes2_x = rrr_base_frame_xy*rrr_w_1_t_2 -
+        rrr_base_frame_xx*rrr_w_1_t;
+    const real axis_x_rrr_axes2_x = rrr_base_frame_yy*rrr_w_1_t_2 -
+        rrr_base_frame_yx*rrr_w_1_t;
+    const real inv_rrr_r_1_in_axes2_y = 1/rrr_r_1_in_axes2_y;
+    const real rrr_w_1_x = -axis_x_rrr_axes2_x*inv_rrr_r_1_in_axes2_y;
+    const real rrr_w_1_y = axis_y_rrr_axes2_x*inv_rrr_r_1_in_axes2_y;
+    /* (rrr-qd_1) rate of joint 1 */
+    const real rrr_qd_1_t_2 = rrr_c_1*rrr_c_2 - rrr_s_1*rrr_s_2;
+    v->rrr_q_x = rrr_q_x;
+    v->rrr_q_y = rrr_q_y;
+    v->rrr_rho2_1 = rrr_rho2_1;
+    v->rrr_disc_1 = rrr_disc_1;
+    v->rrr_c_1 = rrr_c_1;
+    v->rrr_s_1 = rrr_s_1;
+    v->rrr_c_2 = rrr_c_2;
+    v->rrr_s_2 = rrr_s_2;
+    v->rrr_r_1_in_axes1_y = rrr_r_1_in_axes1_y;
+    v->rrr_r_1_in_axes1_x = rrr_r_1_in_axes1_x;
+    v->rrr_r_1_in_axes2_x = rrr_r_1_in_axes2_x;
+    v->rrr_r_1_in_axes2_y = rrr_r_1_in_axes2_y;
+    v->rrr_w_1_t = rrr_w_1_t;
+    v->rrr_w_1_t_2 = rrr_w_1_t_2;
+    v->axis_y_rrr_axes2_x = axis_y_rrr_axes2_x;
+    v->axis_x_rrr_axes2_x = axis_x_rrr_axes2_x;
+    v->inv_rrr_r_1_in_axes2_y = inv_rrr_r_1_in_axes2_y;
+    v->rrr_w_1_x = rrr_w_1_x;
+    v->rrr_w_1_y = rrr_w_1_y;
+    v->rrr_qd_1_t_2 = rrr_qd_1_t_2;
+}
+
+INLINE void stage_rrr_A_X(size_t w, size_t j, const real *A, values_rrr *v)
+{
+    /* (rrr-a_p) acceleration of the connection point without its centripetal part */
+    const real alpha_z = A[2*w + j];
+    const real t_ddot_x = A[0*w + j];
+    const real rrr_a_p_x = t_ddot_x - alpha_z*v->rrr_q_y;
+    const real t_ddot_y = A[1*w + j];
+    const real rrr_a_p_y = t_ddot_y + alpha_z*v->rrr_q_x;
+    v->rrr_a_p_x = rrr_a_p_x;
+    v->rrr_a_p_y = rrr_a_p_y;
+}
+
+INLINE void stage_rrr_V_X(const prepared *m, size_t w, size_t i, size_t j, const real *V,
+    values_rrr *v)
+{
+    /* (rrr-S_dot) velocity of the connection point */
+    const real omega_z = V[2*w + j];
+    const real rrr_S_dot_t = omega_z*v->rrr_q_y;
+    const real rrr_S_dot_t_2 = omega_z*v->rrr_q_x;
+    const real t_dot_x = V[0*w + j];
+    const real rrr_S_dot_x = t_dot_x - rrr_S_dot_t;
+    const real t_dot_y = V[1*w + j];
+    const real rrr_S_dot_y = rrr_S_dot_t_2 + t_dot_y;
+    /* (rrr-qd_1) rate of joint 1 */
+    const real rrr_qd_1_t = v->inv_rrr_r_1_in_axes2_y*(v->axis_x_rrr_axes2_x*rrr_S_dot_x -
+        v->axis_y_rrr_axes2_x*rrr_S_dot_y);
+    /* (rrr-W_1) centripetal tensor of link 1 */
+    const real rrr_W_1_t = rrr_qd_1_t*rrr_qd_1_t;
+    /* (rrr-omega_2) angular velocity of link 2 */
+    const real rrr_w_2_in_axes2_y = m->rrr_w_2_in_axes2_y[i];
+    const real rrr_omega_2_in_axes2_z = rrr_w_2_in_axes2_y*(v->axis_x_rrr_axes2_x*rrr_S_dot_y
+        + v->axis_y_rrr_axes2_x*rrr_S_dot_x + rrr_qd_1_t*v->rrr_r_1_in_axes2_x) - rrr_qd_1_t;
+    /* (rrr-W_2) centripetal tensor of link 2 */
+    const real rrr_W_2_t = rrr_omega_2_in_axes2_z*rrr_omega_2_in_axes2_z;
+    /* (rrr-bias) acceleration of the connection point at zero joint accelerations */
+    const real rrr_joint2_offset_x = m->rrr_joint2_offset_x[i];
+    const real rrr_platform_joint_offset_x = m->rrr_platform_joint_offset_x[i];
+    const real rrr_bias_in_axes2_x = -rrr_W_2_t*rrr_platform_joint_offset_x -
+        rrr_W_1_t*v->rrr_c_2*rrr_joint2_offset_x;
+    v->rrr_S_dot_t = rrr_S_dot_t;
+    v->rrr_S_dot_t_2 = rrr_S_dot_t_2;
+    v->rrr_S_dot_x = rrr_S_dot_x;
+    v->rrr_S_dot_y = rrr_S_dot_y;
+    v->rrr_W_1_t = rrr_W_1_t;
+    v->rrr_W_2_t = rrr_W_2_t;
+    v->rrr_bias_in_axes2_x = rrr_bias_in_axes2_x;
+}
+
+INLINE void stage_rrr_A_V_X(size_t w, size_t j, const real *V, values_rrr *v)
+{
+    /* (rrr-S_ddot) acceleration of the connection point */
+    const real omega_z = V[2*w + j];
+    const real rrr_S_ddot_x = v->rrr_a_p_x - omega_z*v->rrr_S_dot_t_2;
+    const real rrr_S_ddot_y = v->rrr_a_p_y - omega_z*v->rrr_S_dot_t;
+    v->rrr_S_ddot_x = rrr_S_ddot_x;
+    v->rrr_S_ddot_y = rrr_S_ddot_y;
+}
+
+INLINE void stage_rrr_H_condition(const prepared *m, size_t i, values_rrr *v)
+{
+    /* (rrr-r_1) from joint 1 to the connection point, along the links */
+    const real rrr_platform_joint_offset_x = m->rrr_platform_joint_offset_x[i];
+    const real rrr_r_1_in_axes2_y = v->rrr_c_2*rrr_platform_joint_offset_x*v->rrr_s_2 -
+        v->rrr_r_1_in_axes1_x*v->rrr_s_2;
+    /* (rrr-w_1) reciprocal vector 1 */
+    const real inv_rrr_r_1_in_axes2_y = 1/rrr_r_1_in_axes2_y;
+    const real rrr_base_frame_yx = m->rrr_base_frame_yx[i];
+    const real rrr_base_frame_yy = m->rrr_base_frame_yy[i];
+    const real rrr_w_1_x = -inv_rrr_r_1_in_axes2_y*(rrr_base_frame_yy*v->rrr_w_1_t_2 -
+        rrr_base_frame_yx*v->rrr_w_1_t);
+    const real rrr_base_frame_xx = m->rrr_base_frame_xx[i];
+    const real rrr_base_frame_xy = m->rrr_base_frame_xy[i];
+    const real rrr_w_1_y = inv_rrr_r_1_in_axes2_y*(rrr_base_frame_xy*v->rrr_w_1_t_2 -
+        rrr_base_frame_xx*v->rrr_w_1_t);
+    /* (rrr-H_a_1) moment of the column's unit force about the platform origin */
+    const real rrr_H_a_1_z = v->rrr_q_x*rrr_w_1_y - v->rrr_q_y*rrr_w_1_x;
+    v->rrr_r_1_in_axes2_y = rrr_r_1_in_axes2_y;
+    v->rrr_w_1_x = rrr_w_1_x;
+    v->rrr_w_1_y = rrr_w_1_y;
+    v->rrr_H_a_1_z = rrr_H_a_1_z;
+}
+
+INLINE void stage_rrr_M_dynamics(const prepared *m, size_t i, values_rrr *v)
+{
+    /* (rrr-w_2) reciprocal vector 2 */
+    const real rrr_w_2_in_axes2_y = m->rrr_w_2_in_axes2_y[i];
+    const real rrr_w_2_in_axes2_x =
+        v->inv_rrr_r_1_in_axes2_y*v->rrr_r_1_in_axes2_x*rrr_w_2_in_axes2_y;
+    /* (rrr-d_Gamma_2) coefficient of the acceleration in: moment about axis 2 of the distal links'
+       inertia and weight */
+    const real rrr_d_Gamma_2_t = m->rrr_d_Gamma_2_t[i];
+    const real rrr_d_Gamma_2_t_2 = rrr_d_Gamma_2_t*v->rrr_r_1_in_axes2_x;
+    const real rrr_J_2_in_spec2_zz = m->rrr_J_2_in_spec2_zz[i];
+    const real rrr_h_2_in_spec2_y = m->rrr_h_2_in_spec2_y[i];
+    const real rrr_d_Gamma_2_in_axes2_x = -rrr_h_2_in_spec2_y -
+        v->inv_rrr_r_1_in_axes2_y*(rrr_J_2_in_spec2_zz - rrr_d_Gamma_2_t_2);
+    /* (rrr-d_Gamma_1) coefficient of the acceleration in: moment about axis 1 of the distal links'
+       inertia and weight */
+    const real rrr_Jc_1_in_axes1_zz = m->rrr_Jc_1_in_axes1_zz[i];
+    const real rrr_d_Gamma_1_in_axes2_x = -rrr_h_2_in_spec2_y -
+        v->inv_rrr_r_1_in_axes2_y*(rrr_Jc_1_in_axes1_zz - rrr_d_Gamma_2_t_2);
+    /* (rrr-d_c) coefficient of the acceleration in: leg force on the platform without actuation and
+       without the mass at the connection point */
+    const real rrr_d_Gamma_2_in_axes2_y = m->rrr_d_Gamma_2_in_axes2_y[i];
+    const real rrr_d_phi_2_in_axes2_xy = m->rrr_d_phi_2_in_axes2_xy[i];
+    const real rrr_d_c_in_axes2_xy = v->inv_rrr_r_1_in_axes2_y*rrr_d_Gamma_2_in_axes2_y -
+        rrr_d_phi_2_in_axes2_xy - rrr_d_Gamma_2_in_axes2_y*rrr_w_2_in_axes2_x;
+    v->rrr_w_2_in_axes2_x = rrr_w_2_in_axes2_x;
+    v->rrr_d_Gamma_2_in_axes2_x = rrr_d_Gamma_2_in_axes2_x;
+    v->rrr_d_Gamma_1_in_axes2_x = rrr_d_Gamma_1_in_axes2_x;
+    v->rrr_d_c_in_axes2_xy = rrr_d_c_in_axes2_xy;
+}
+
+INLINE void stage_rrr_inverse_kinematics_potential(const prepared *m, size_t w, size_t i, size_t
+    j, const real *s, const real *X, values_rrr *v)
+{
+    /* (rrr-S) from the base point to the connection point */
+    const real R_xx = s[0*w + j];
+    const real R_yx = s[1*w + j];
+    const real rrr_base_point_x = m->rrr_base_point_x[i];
+    const real rrr_platform_point_x = m->rrr_platform_point_x[i];
+    const real rrr_platform_point_y = m->rrr_platform_point_y[i];
+    const real t_x = X[0*w + j];
+    const real rrr_S_x = t_x + R_xx*rrr_platform_point_x - rrr_base_point_x -
+        R_yx*rrr_platform_point_y;
+    const real rrr_base_point_y = m->rrr_base_point_y[i];
+    const real t_y = X[1*w + j];
+    const real rrr_S_y = t_y + R_xx*rrr_platform_point_y + R_yx*rrr_platform_point_x -
+        rrr_base_point_y;
+    /* (rrr-Kd_1) projection on the centre's direction, from the distance fixed by the joints beyond
+       joint 1 */
+    const real rrr_Kd_1_t_3 = rrr_S_x*rrr_S_x + rrr_S_y*rrr_S_y;
+    const real rrr_Kd_1_t = m->rrr_Kd_1_t[i];
+    const real rrr_Kd_1_t_2 = m->rrr_Kd_1_t_2[i];
+    const real rrr_Kd_1 = rrr_Kd_1_t + R(0.5)*rrr_Kd_1_t_3 - rrr_Kd_1_t_2;
+    /* (rrr-Kc_1) factor of the cosine in the equation of joint 1 */
+    const real rrr_base_frame_xx = m->rrr_base_frame_xx[i];
+    const real rrr_base_frame_yx = m->rrr_base_frame_yx[i];
+    const real rrr_joint2_offset_x = m->rrr_joint2_offset_x[i];
+    const real rrr_Kc_1 = rrr_joint2_offset_x*(rrr_S_x*rrr_base_frame_xx +
+        rrr_S_y*rrr_base_frame_yx);
+    /* (rrr-Ks_1) factor of the sine in the equation of joint 1 */
+    const real rrr_base_frame_xy = m->rrr_base_frame_xy[i];
+    const real rrr_base_frame_yy = m->rrr_base_frame_yy[i];
+    const real rrr_Ks_1 = rrr_joint2_offset_x*(rrr_S_x*rrr_base_frame_xy +
+        rrr_S_y*rrr_base_frame_yy);
+    /* (rrr-rho2_1) squared amplitude */
+    const real rrr_rho2_1 = rrr_Kc_1*rrr_Kc_1 + rrr_Ks_1*rrr_Ks_1;
+    /* (rrr-disc_1) discriminant */
+    const real rrr_disc_1 = rrr_rho2_1 - rrr_Kd_1*rrr_Kd_1;
+    /* (rrr-root_1) root, with the sign of the branch */
+    const real rrr_branch_1 = m->rrr_branch_1[i];
+    const real rrr_root_1 = rrr_branch_1*root(rrr_disc_1);
+    /* (rrr-q_1) displacement of joint 1 */
+    const real inv_rrr_rho2_1 = 1/rrr_rho2_1;
+    /* (rrr-x_2) from the origin of joint 2 to the connection point */
+    const real inv_rrr_size_t = m->inv_rrr_size_t[i];
+    const real rrr_x_2_in_axes1_x = inv_rrr_size_t*rrr_Kd_1*rrr_joint2_offset_x -
+        rrr_joint2_offset_x;
+    v->rrr_Kd_1 = rrr_Kd_1;
+    v->rrr_Kc_1 = rrr_Kc_1;
+    v->rrr_Ks_1 = rrr_Ks_1;
+    v->rrr_rho2_1 = rrr_rho2_1;
+    v->rrr_disc_1 = rrr_disc_1;
+    v->rrr_root_1 = rrr_root_1;
+    v->inv_rrr_rho2_1 = inv_rrr_rho2_1;
+    v->rrr_x_2_in_axes1_x = rrr_x_2_in_axes1_x;
+}
+
+INLINE void stage_rrr_legs_required(const prepared *m, size_t i, values_rrr *v)
+{
+    /* (rrr-S_ddot) acceleration of the connection point */
+    const real rrr_S_ddot_in_axes2_x = v->axis_x_rrr_axes2_x*v->rrr_S_ddot_x -
+        v->axis_y_rrr_axes2_x*v->rrr_S_ddot_y;
+    const real rrr_S_ddot_in_axes2_y = v->axis_x_rrr_axes2_x*v->rrr_S_ddot_y +
+        v->axis_y_rrr_axes2_x*v->rrr_S_ddot_x;
+    /* (rrr-rel) acceleration of the connection point left to the joint accelerations */
+    const real rrr_rel_in_axes2_x = rrr_S_ddot_in_axes2_x - v->rrr_bias_in_axes2_x;
+    const real rrr_joint2_offset_x = m->rrr_joint2_offset_x[i];
+    const real rrr_rel_in_axes2_y = rrr_S_ddot_in_axes2_y -
+        v->rrr_W_1_t*rrr_joint2_offset_x*v->rrr_s_2;
+    /* (rrr-B_1) acceleration tensor of link 1 */
+    const real rrr_B_1_in_axes1_xy = v->inv_rrr_r_1_in_axes2_y*rrr_rel_in_axes2_x;
+    /* (rrr-alpha_2) angular acceleration of link 2 */
+    const real rrr_w_2_in_axes2_y = m->rrr_w_2_in_axes2_y[i];
+    const real rrr_alpha_2_in_axes2_z = rrr_w_2_in_axes2_y*(rrr_rel_in_axes2_y +
+        rrr_B_1_in_axes1_xy*v->rrr_r_1_in_axes2_x) - rrr_B_1_in_axes1_xy;
+    /* (rrr-acc_2) acceleration of the reference point of link 2, less gravity */
+    const real gravity_x = m->gravity_x;
+    const real gravity_y = m->gravity_y;
+    const real rrr_acc_2_in_axes2_x = rrr_S_ddot_in_axes2_x + v->axis_y_rrr_axes2_x*gravity_y
+        - v->axis_x_rrr_axes2_x*gravity_x;
+    const real rrr_acc_2_in_axes2_y = rrr_S_ddot_in_axes2_y - v->axis_x_rrr_axes2_x*gravity_y
+        - v->axis_y_rrr_axes2_x*gravity_x;
+    /* (rrr-mu_2) inertia moment of the links that turn with link 2, about their reference points */
+    const real rrr_J_2_in_spec2_zz = m->rrr_J_2_in_spec2_zz[i];
+    const real rrr_h_2_in_spec2_x = m->rrr_h_2_in_spec2_x[i];
+    const real rrr_h_2_in_spec2_y = m->rrr_h_2_in_spec2_y[i];
+    const real rrr_mu_2_in_axes2_z = rrr_J_2_in_spec2_zz*rrr_alpha_2_in_axes2_z +
+        rrr_acc_2_in_axes2_y*rrr_h_2_in_spec2_x - rrr_acc_2_in_axes2_x*rrr_h_2_in_spec2_y;
+    /* (rrr-mu_1) inertia moment of the links that turn with link 1, about their reference points */
+    const real rrr_J_1_in_spec1_zz = m->rrr_J_1_in_spec1_zz[i];
+    const real rrr_h_1_in_spec1_x = m->rrr_h_1_in_spec1_x[i];
+    const real rrr_h_1_in_spec1_y = m->rrr_h_1_in_spec1_y[i];
+    const real rrr_mu_1_t = m->rrr_mu_1_t[i];
+    const real rrr_mu_1_t_2 = m->rrr_mu_1_t_2[i];
+    const real rrr_mu_1_in_axes1_z = rrr_h_1_in_spec1_y*(v->rrr_c_1*rrr_mu_1_t +
+        rrr_mu_1_t_2*v->rrr_s_1) - rrr_B_1_in_axes1_xy*rrr_J_1_in_spec1_zz -
+        rrr_h_1_in_spec1_x*(v->rrr_c_1*rrr_mu_1_t_2 - rrr_mu_1_t*v->rrr_s_1);
+    /* (rrr-N_1) moment about joint 1 of the links from 1 outwards, the force at the connection point
+       left out */
+    const real rrr_N_1_in_axes1_z = rrr_mu_1_in_axes1_z + rrr_mu_2_in_axes2_z;
+    /* (rrr-G) force at the connection point that balances the leg's inertia and weight along all
+       degrees of freedom */
+    const real rrr_G_in_axes2_y = rrr_mu_2_in_axes2_z*rrr_w_2_in_axes2_y;
+    /* (rrr-c) leg force on the platform without actuation and without the mass at the connection
+       point */
+    const real rrr_c_in_axes2_x = v->rrr_W_2_t*rrr_h_2_in_spec2_x +
+        rrr_alpha_2_in_axes2_z*rrr_h_2_in_spec2_y -
+        v->inv_rrr_r_1_in_axes2_y*(rrr_G_in_axes2_y*v->rrr_r_1_in_axes2_x -
+        rrr_N_1_in_axes1_z);
+    const real rrr_c_in_axes2_y = v->rrr_W_2_t*rrr_h_2_in_spec2_y - rrr_G_in_axes2_y -
+        rrr_alpha_2_in_axes2_z*rrr_h_2_in_spec2_x;
+    v->rrr_acc_2_in_axes2_x = rrr_acc_2_in_axes2_x;
+    v->rrr_acc_2_in_axes2_y = rrr_acc_2_in_axes2_y;
+    v->rrr_c_in_axes2_x = rrr_c_in_axes2_x;
+    v->rrr_c_in_axes2_y = rrr_c_in_axes2_y;
+}
+
 /* ---- functions of the state: M, Z, H and the like ---- */
 
 /* ---- dynamics ---- */
 INLINE void dynamics_before(const prepared *m, size_t w, const real *X, const real *V, real *s)
 {
     for (size_t k = 0; k < w; ++k) {
-        /* X: named entries */
-        const real X_0 = X[0*w + k];
-        const real t_x = X_0;
-        const real X_1 = X[1*w + k];
-        const real t_y = X_1;
-        const real X_2 = X[2*w + k];
-        const real R_xx = cosine(X_2);
-        const real R_yx = sine(X_2);
-        /* V: named entries */
-        const real V_0 = V[0*w + k];
-        const real t_dot_x = V_0;
-        const real V_1 = V[1*w + k];
-        const real t_dot_y = V_1;
-        const real V_2 = V[2*w + k];
-        const real omega_z = V_2;
-        /* (W_p) centripetal tensor of the platform */
-        const real W_p_xx = -omega_z*omega_z;
-        /* (h_star) first moment about the platform origin */
-        const real h_star_in_platform_x = m->h_star_in_platform_x;
-        const real h_star_in_platform_y = m->h_star_in_platform_y;
-        const real h_star_x = R_xx*h_star_in_platform_x - R_yx*h_star_in_platform_y;
-        const real h_star_y = R_xx*h_star_in_platform_y + R_yx*h_star_in_platform_x;
+        values v;
+        stage_V(w, k, V, &v);
+        stage_X(m, w, k, X, &v);
         /* (Z_p) centripetal force and weight of the platform */
         const real Z_p_t = m->Z_p_t;
-        const real Z_p_x = W_p_xx*h_star_x - Z_p_t;
+        const real Z_p_x = v.W_p_xx*v.h_star_x - Z_p_t;
         const real Z_p_t_2 = m->Z_p_t_2;
-        const real Z_p_y = W_p_xx*h_star_y - Z_p_t_2;
+        const real Z_p_y = v.W_p_xx*v.h_star_y - Z_p_t_2;
         /* (Z_q) gyroscopic moment and moment of the weight of the platform */
         const real gravity_x = m->gravity_x;
         const real gravity_y = m->gravity_y;
-        const real Z_q_z = gravity_x*h_star_y - gravity_y*h_star_x;
-        s[0*w + k] = t_x;
-        s[1*w + k] = t_y;
-        s[2*w + k] = R_xx;
-        s[3*w + k] = R_yx;
-        s[4*w + k] = t_dot_x;
-        s[5*w + k] = t_dot_y;
-        s[6*w + k] = omega_z;
-        s[7*w + k] = h_star_x;
-        s[8*w + k] = h_star_y;
-        s[9*w + k] = Z_p_x;
-        s[10*w + k] = Z_p_y;
-        s[11*w + k] = Z_q_z;
+        const real Z_q_z = gravity_x*v.h_star_y - gravity_y*v.h_star_x;
+        s[0*w + k] = v.R_xx;
+        s[1*w + k] = v.R_yx;
+        s[2*w + k] = v.h_star_x;
+        s[3*w + k] = v.h_star_y;
+        s[4*w + k] = Z_p_x;
+        s[5*w + k] = Z_p_y;
+        s[6*w + k] = Z_q_z;
     }
 }
 
@@ -1402,150 +2165,46 @@ INLINE void dynamics_legs_prrr(const prepared *m, size_t w, size_t leg, size_t l
     for (size_t k = 0; k < count; ++k) {
         const size_t i = leg + legs*k;
         const size_t j = states*k;
-        /* (prrr-S) from the base point to the connection point */
-        const real R_xx = s[2*w + j];
-        const real R_yx = s[3*w + j];
-        const real prrr_platform_point_x = m->prrr_platform_point_x[i];
-        const real prrr_platform_point_y = m->prrr_platform_point_y[i];
-        const real prrr_q_x = R_xx*prrr_platform_point_x - R_yx*prrr_platform_point_y;
-        const real prrr_q_y = R_xx*prrr_platform_point_y + R_yx*prrr_platform_point_x;
-        const real prrr_base_point_x = m->prrr_base_point_x[i];
-        const real t_x = s[0*w + j];
-        const real prrr_S_x = prrr_q_x + t_x - prrr_base_point_x;
-        const real prrr_base_point_y = m->prrr_base_point_y[i];
-        const real t_y = s[1*w + j];
-        const real prrr_S_y = prrr_q_y + t_y - prrr_base_point_y;
-        const real prrr_base_frame_xx = m->prrr_base_frame_xx[i];
-        const real prrr_base_frame_yx = m->prrr_base_frame_yx[i];
-        const real prrr_S_in_axes0_y = -prrr_S_x*prrr_base_frame_xx - prrr_S_y*prrr_base_frame_yx;
-        /* (prrr-x_2) from the origin of joint 2 to the connection point */
-        const real prrr_base_frame_xy = m->prrr_base_frame_xy[i];
-        const real prrr_base_frame_yy = m->prrr_base_frame_yy[i];
-        const real prrr_y_1_extra = X[3*w + j];
-        const real prrr_x_2_in_axes0_x = prrr_S_x*prrr_base_frame_xy + prrr_S_y*prrr_base_frame_yy
-            - prrr_y_1_extra;
-        /* (prrr-Kd_2) projection on the centre's direction, from the distance fixed by the joints beyond
-           joint 2 */
-        const real prrr_Kd_2_t_3 = prrr_S_in_axes0_y*prrr_S_in_axes0_y +
-            prrr_x_2_in_axes0_x*prrr_x_2_in_axes0_x;
-        const real prrr_Kd_2_t = m->prrr_Kd_2_t[i];
-        const real prrr_Kd_2_t_2 = m->prrr_Kd_2_t_2[i];
-        const real prrr_Kd_2 = prrr_Kd_2_t + R(0.5)*prrr_Kd_2_t_3 - prrr_Kd_2_t_2;
-        /* (prrr-Kc_2) factor of the cosine in the equation of joint 2 */
-        const real prrr_joint3_offset_x = m->prrr_joint3_offset_x[i];
-        const real prrr_Kc_2 = prrr_joint3_offset_x*prrr_x_2_in_axes0_x;
-        /* (prrr-Ks_2) factor of the sine in the equation of joint 2 */
-        const real prrr_Ks_2 = prrr_S_in_axes0_y*prrr_joint3_offset_x;
-        /* (prrr-rho2_2) squared amplitude */
-        const real prrr_rho2_2 = prrr_Kc_2*prrr_Kc_2 + prrr_Ks_2*prrr_Ks_2;
-        /* (prrr-disc_2) discriminant */
-        const real prrr_disc_2 = prrr_rho2_2 - prrr_Kd_2*prrr_Kd_2;
-        /* (prrr-root_2) root, with the sign of the branch */
-        const real prrr_branch_2 = m->prrr_branch_2[i];
-        const real prrr_root_2 = prrr_branch_2*root(prrr_disc_2);
-        /* (prrr-c_2) cosine of the angle of joint 2 from its reference direction */
-        const real inv_prrr_rho2_2 = 1/prrr_rho2_2;
-        const real prrr_c_2 = inv_prrr_rho2_2*(prrr_Kc_2*prrr_Kd_2 - prrr_Ks_2*prrr_root_2);
-        /* (prrr-s_2) sine of the angle of joint 2 from its reference direction */
-        const real prrr_s_2 = inv_prrr_rho2_2*(prrr_Kc_2*prrr_root_2 + prrr_Kd_2*prrr_Ks_2);
-        /* (prrr-x_3) from the origin of joint 3 to the connection point */
-        const real inv_prrr_size_t = m->inv_prrr_size_t[i];
-        const real prrr_x_3_in_axes2_x = inv_prrr_size_t*prrr_Kd_2*prrr_joint3_offset_x -
-            prrr_joint3_offset_x;
-        /* (prrr-c_3) cosine of the angle of joint 3 from its reference direction */
-        const real inv_prrr_size_t_2 = m->inv_prrr_size_t_2[i];
-        const real prrr_platform_joint_offset_x = m->prrr_platform_joint_offset_x[i];
-        const real prrr_c_3 = inv_prrr_size_t_2*prrr_platform_joint_offset_x*prrr_x_3_in_axes2_x;
-        /* (prrr-s_3) sine of the angle of joint 3 from its reference direction */
-        const real prrr_s_3_t =
-            inv_prrr_size_t*inv_prrr_size_t_2*prrr_joint3_offset_x*prrr_platform_joint_offset_x*prrr_root_2;
-        /* (prrr-S_dot) velocity of the connection point */
-        const real omega_z = s[6*w + j];
-        const real prrr_S_dot_t = omega_z*prrr_q_y;
-        const real prrr_S_dot_t_2 = omega_z*prrr_q_x;
-        const real t_dot_x = s[4*w + j];
-        const real prrr_S_dot_x = t_dot_x - prrr_S_dot_t;
-        const real t_dot_y = s[5*w + j];
-        const real prrr_S_dot_y = prrr_S_dot_t_2 + t_dot_y;
-        /* (prrr-r_2) from joint 2 to the connection point, along the links */
-        const real prrr_r_2_t = prrr_platform_joint_offset_x*prrr_s_3_t;
-        const real prrr_r_2_in_axes2_x = prrr_joint3_offset_x +
-            prrr_c_3*prrr_platform_joint_offset_x;
-        const real prrr_r_2_in_axes3_x = prrr_c_3*prrr_r_2_in_axes2_x + prrr_r_2_t*prrr_s_3_t;
-        const real prrr_r_2_in_axes3_y = prrr_r_2_in_axes2_x*prrr_s_3_t - prrr_c_3*prrr_r_2_t;
+        values_prrr v;
+        stage_prrr_X(m, w, i, j, s, X, &v);
+        stage_prrr_V_X(m, w, i, j, V, &v);
+        stage_prrr_M_dynamics(m, i, &v);
+        stage_prrr_Z_dynamics(m, w, i, j, V, &v);
         /* (prrr-w_2) reciprocal vector 1 */
-        const real prrr_e_1_in_axes3_y = prrr_c_2*prrr_s_3_t - prrr_c_3*prrr_s_2;
-        const real prrr_e_1_in_axes3_x = prrr_c_2*prrr_c_3 + prrr_s_2*prrr_s_3_t;
-        const real axis_y_prrr_axes3_x = prrr_base_frame_xy*prrr_e_1_in_axes3_y -
-            prrr_base_frame_xx*prrr_e_1_in_axes3_x;
-        const real axis_x_prrr_axes3_x = prrr_base_frame_yy*prrr_e_1_in_axes3_y -
-            prrr_base_frame_yx*prrr_e_1_in_axes3_x;
-        const real inv_prrr_r_2_in_axes3_y = 1/prrr_r_2_in_axes3_y;
-        const real prrr_w_2_t = inv_prrr_r_2_in_axes3_y*prrr_e_1_in_axes3_x;
-        const real prrr_w_2_x = -axis_x_prrr_axes3_x*inv_prrr_r_2_in_axes3_y;
-        const real prrr_w_2_y = axis_y_prrr_axes3_x*inv_prrr_r_2_in_axes3_y;
-        /* (prrr-w_3) reciprocal vector 2 */
-        const real prrr_w_3_in_axes3_y = m->prrr_w_3_in_axes3_y[i];
-        const real prrr_w_3_in_axes3_x =
-            inv_prrr_r_2_in_axes3_y*prrr_r_2_in_axes3_x*prrr_w_3_in_axes3_y;
-        /* (prrr-S_dot_rest) velocity of the connection point left to the joints that are not extra */
-        const real prrr_yd_1 = V[3*w + j];
-        const real prrr_S_dot_rest_x = prrr_S_dot_x - prrr_base_frame_xy*prrr_yd_1;
-        const real prrr_S_dot_rest_y = prrr_S_dot_y - prrr_base_frame_yy*prrr_yd_1;
-        /* (prrr-qd_2) rate of joint 2 */
-        const real prrr_qd_2 = -inv_prrr_r_2_in_axes3_y*(axis_x_prrr_axes3_x*prrr_S_dot_rest_x -
-            axis_y_prrr_axes3_x*prrr_S_dot_rest_y);
-        /* (prrr-W_2) centripetal tensor of link 2 */
-        const real prrr_W_2_in_axes2_xx = -prrr_qd_2*prrr_qd_2;
-        /* (prrr-omega_3) angular velocity of link 3 */
-        const real prrr_omega_3_in_axes3_z = prrr_qd_2 +
-            prrr_w_3_in_axes3_y*(axis_x_prrr_axes3_x*prrr_S_dot_rest_y +
-            axis_y_prrr_axes3_x*prrr_S_dot_rest_x - prrr_qd_2*prrr_r_2_in_axes3_x);
-        /* (prrr-W_3) centripetal tensor of link 3 */
-        const real prrr_W_3_t = prrr_omega_3_in_axes3_z*prrr_omega_3_in_axes3_z;
+        const real prrr_w_2_t_2 = -v.inv_prrr_r_2_in_axes3_y*v.prrr_w_2_t;
         /* (prrr-u_1) centripetal acceleration of the connection point */
-        const real prrr_u_1_x = -omega_z*prrr_S_dot_t_2;
-        const real prrr_u_1_t = omega_z*prrr_S_dot_t;
-        const real prrr_u_1_in_axes3_x = axis_x_prrr_axes3_x*prrr_u_1_x +
-            axis_y_prrr_axes3_x*prrr_u_1_t;
-        const real prrr_u_1_in_axes3_y = axis_y_prrr_axes3_x*prrr_u_1_x -
-            axis_x_prrr_axes3_x*prrr_u_1_t;
-        /* (prrr-bias) acceleration of the connection point at zero joint accelerations */
-        const real prrr_bias_in_axes3_x = prrr_W_2_in_axes2_xx*prrr_c_3*prrr_joint3_offset_x -
-            prrr_W_3_t*prrr_platform_joint_offset_x;
+        const real prrr_u_1_in_axes3_x = v.axis_x_prrr_axes3_x*v.prrr_u_1_x +
+            v.axis_y_prrr_axes3_x*v.prrr_u_1_t;
+        const real prrr_u_1_in_axes3_y = v.axis_y_prrr_axes3_x*v.prrr_u_1_x -
+            v.axis_x_prrr_axes3_x*v.prrr_u_1_t;
         /* (prrr-rel_o) remainder without the acceleration in: acceleration of the connection point left
            to the joint accelerations */
-        const real prrr_rel_o_in_axes3_x = prrr_u_1_in_axes3_x - prrr_bias_in_axes3_x;
+        const real prrr_rel_o_in_axes3_x = prrr_u_1_in_axes3_x - v.prrr_bias_in_axes3_x;
+        const real prrr_joint3_offset_x = m->prrr_joint3_offset_x[i];
         const real prrr_rel_o_in_axes3_y = prrr_u_1_in_axes3_y -
-            prrr_W_2_in_axes2_xx*prrr_joint3_offset_x*prrr_s_3_t;
+            v.prrr_W_2_in_axes2_xx*prrr_joint3_offset_x*v.prrr_s_3_t;
         /* (prrr-B_2_o) remainder of the acceleration tensor of link 2 */
-        const real prrr_B_2_o_in_axes2_xy = inv_prrr_r_2_in_axes3_y*prrr_rel_o_in_axes3_x;
+        const real prrr_B_2_o_in_axes2_xy = v.inv_prrr_r_2_in_axes3_y*prrr_rel_o_in_axes3_x;
         /* (prrr-alpha_3_o) remainder without the acceleration in: angular acceleration of link 3 */
+        const real prrr_w_3_in_axes3_y = m->prrr_w_3_in_axes3_y[i];
         const real prrr_alpha_3_o_in_axes3_z = prrr_w_3_in_axes3_y*(prrr_rel_o_in_axes3_y +
-            prrr_B_2_o_in_axes2_xy*prrr_r_2_in_axes3_x) - prrr_B_2_o_in_axes2_xy;
+            prrr_B_2_o_in_axes2_xy*v.prrr_r_2_in_axes3_x) - prrr_B_2_o_in_axes2_xy;
         /* (prrr-f_2_o) remainder without the acceleration in: inertia force of link 2 less its weight */
-        const real prrr_g_in_axes0_x = m->prrr_g_in_axes0_x[i];
-        const real prrr_g_in_axes0_y = m->prrr_g_in_axes0_y[i];
-        const real prrr_g_in_axes2_x = prrr_c_2*prrr_g_in_axes0_x + prrr_g_in_axes0_y*prrr_s_2;
-        const real prrr_g_in_axes2_y = prrr_c_2*prrr_g_in_axes0_y - prrr_g_in_axes0_x*prrr_s_2;
         const real prrr_h_2_in_spec2_x = m->prrr_h_2_in_spec2_x[i];
         const real prrr_h_2_in_spec2_y = m->prrr_h_2_in_spec2_y[i];
         const real prrr_link2_mass = m->prrr_link2_mass[i];
         const real prrr_f_2_o_in_axes2_x = prrr_B_2_o_in_axes2_xy*prrr_h_2_in_spec2_y +
-            prrr_W_2_in_axes2_xx*prrr_h_2_in_spec2_x - prrr_g_in_axes2_x*prrr_link2_mass;
-        const real prrr_f_2_o_in_axes2_y = prrr_W_2_in_axes2_xx*prrr_h_2_in_spec2_y -
-            prrr_B_2_o_in_axes2_xy*prrr_h_2_in_spec2_x - prrr_g_in_axes2_y*prrr_link2_mass;
+            v.prrr_W_2_in_axes2_xx*prrr_h_2_in_spec2_x - v.prrr_g_in_axes2_x*prrr_link2_mass;
+        const real prrr_f_2_o_in_axes2_y = v.prrr_W_2_in_axes2_xx*prrr_h_2_in_spec2_y -
+            prrr_B_2_o_in_axes2_xy*prrr_h_2_in_spec2_x - v.prrr_g_in_axes2_y*prrr_link2_mass;
         /* (prrr-acc_3_o) remainder without the acceleration in: acceleration of the reference point of
            link 3, less gravity */
         const real gravity_x = m->gravity_x;
         const real gravity_y = m->gravity_y;
-        const real prrr_acc_3_o_in_axes3_x = prrr_u_1_in_axes3_x + axis_y_prrr_axes3_x*gravity_y -
-            axis_x_prrr_axes3_x*gravity_x;
-        const real prrr_acc_3_o_in_axes3_y = prrr_u_1_in_axes3_y - axis_x_prrr_axes3_x*gravity_y -
-            axis_y_prrr_axes3_x*gravity_x;
-        /* (prrr-P_c_2) force that accelerates joint 2, per unit */
-        const real prrr_P_c_2_in_axes0_x = -prrr_c_2*prrr_h_2_in_spec2_y -
-            prrr_h_2_in_spec2_x*prrr_s_2;
+        const real prrr_acc_3_o_in_axes3_x = prrr_u_1_in_axes3_x + v.axis_y_prrr_axes3_x*gravity_y
+            - v.axis_x_prrr_axes3_x*gravity_x;
+        const real prrr_acc_3_o_in_axes3_y = prrr_u_1_in_axes3_y - v.axis_x_prrr_axes3_x*gravity_y
+            - v.axis_y_prrr_axes3_x*gravity_x;
         /* (prrr-mu_3_o) remainder without the acceleration in: inertia moment of the links that turn with
            link 3, about their reference points */
         const real prrr_J_3_in_spec3_zz = m->prrr_J_3_in_spec3_zz[i];
@@ -1554,121 +2213,99 @@ INLINE void dynamics_legs_prrr(const prepared *m, size_t w, size_t leg, size_t l
         const real prrr_mu_3_o_in_axes3_z = prrr_J_3_in_spec3_zz*prrr_alpha_3_o_in_axes3_z +
             prrr_acc_3_o_in_axes3_y*prrr_h_3_in_spec3_x -
             prrr_acc_3_o_in_axes3_x*prrr_h_3_in_spec3_y;
-        /* (prrr-d_Gamma_3) coefficient of the acceleration in: moment about axis 3 of the distal links'
-           inertia and weight */
-        const real prrr_d_Gamma_3_t = m->prrr_d_Gamma_3_t[i];
-        const real prrr_d_Gamma_3_t_2 = prrr_d_Gamma_3_t*prrr_r_2_in_axes3_x;
-        const real prrr_d_Gamma_3_in_axes3_x = -prrr_h_3_in_spec3_y -
-            inv_prrr_r_2_in_axes3_y*(prrr_J_3_in_spec3_zz - prrr_d_Gamma_3_t_2);
         /* (prrr-dy_1_Gamma_3) coefficient of the acceleration in: moment about axis 3 of the distal
            links' inertia and weight */
         const real prrr_dy_1_Gamma_3_t =
-            prrr_J_3_in_spec3_zz*prrr_w_3_in_axes3_y*(prrr_e_1_in_axes3_y +
-            prrr_r_2_in_axes3_x*prrr_w_2_t);
-        const real prrr_dy_1_Gamma_3 = prrr_J_3_in_spec3_zz*prrr_w_2_t - prrr_dy_1_Gamma_3_t;
+            prrr_J_3_in_spec3_zz*prrr_w_3_in_axes3_y*(v.prrr_e_1_in_axes3_y +
+            v.prrr_r_2_in_axes3_x*prrr_w_2_t_2);
+        const real prrr_dy_1_Gamma_3 = prrr_J_3_in_spec3_zz*prrr_w_2_t_2 - prrr_dy_1_Gamma_3_t;
         /* (prrr-mu_2_o) remainder without the acceleration in: inertia moment of the links that turn with
            link 2, about their reference points */
         const real prrr_J_2_in_spec2_zz = m->prrr_J_2_in_spec2_zz[i];
-        const real prrr_mu_2_o_in_axes2_z = prrr_g_in_axes2_x*prrr_h_2_in_spec2_y -
-            prrr_B_2_o_in_axes2_xy*prrr_J_2_in_spec2_zz - prrr_g_in_axes2_y*prrr_h_2_in_spec2_x;
+        const real prrr_mu_2_o_in_axes2_z = v.prrr_g_in_axes2_x*prrr_h_2_in_spec2_y -
+            prrr_B_2_o_in_axes2_xy*prrr_J_2_in_spec2_zz - v.prrr_g_in_axes2_y*prrr_h_2_in_spec2_x;
         /* (prrr-N_2_o) remainder without the acceleration in: moment about joint 2 of the links from 2
            outwards, the force at the connection point left out */
         const real prrr_N_2_o_in_axes2_z = prrr_mu_2_o_in_axes2_z + prrr_mu_3_o_in_axes3_z;
         /* (prrr-dy_1_Gamma_2) coefficient of the acceleration in: moment about axis 2 of the distal
            links' inertia and weight */
         const real prrr_Jc_2_in_axes2_zz = m->prrr_Jc_2_in_axes2_zz[i];
-        const real prrr_dy_1_Gamma_2 = prrr_P_c_2_in_axes0_x + prrr_Jc_2_in_axes2_zz*prrr_w_2_t -
-            prrr_dy_1_Gamma_3_t;
-        /* (prrr-d_Gamma_2) coefficient of the acceleration in: moment about axis 2 of the distal links'
-           inertia and weight */
-        const real prrr_d_Gamma_2_in_axes3_x = -prrr_h_3_in_spec3_y -
-            inv_prrr_r_2_in_axes3_y*(prrr_Jc_2_in_axes2_zz - prrr_d_Gamma_3_t_2);
+        const real prrr_dy_1_Gamma_2 = v.prrr_P_c_2_in_axes0_x +
+            prrr_Jc_2_in_axes2_zz*prrr_w_2_t_2 - prrr_dy_1_Gamma_3_t;
         /* (prrr-T_1_o) remainder without the acceleration in: inertia force of the links from 1 outwards,
            the last link left out */
         const real prrr_f_1_o_in_axes0_x = m->prrr_f_1_o_in_axes0_x[i];
-        const real prrr_T_1_o_in_axes0_x = prrr_f_1_o_in_axes0_x + prrr_c_2*prrr_f_2_o_in_axes2_x
-            - prrr_f_2_o_in_axes2_y*prrr_s_2;
+        const real prrr_T_1_o_in_axes0_x = prrr_f_1_o_in_axes0_x +
+            v.prrr_c_2*prrr_f_2_o_in_axes2_y + prrr_f_2_o_in_axes2_x*v.prrr_s_2;
         /* (prrr-dy_1_Gamma_1) coefficient of the acceleration in: force along axis 1 of the distal links'
            inertia and weight */
         const real prrr_P_c_1_in_axes0_x = m->prrr_P_c_1_in_axes0_x[i];
-        const real prrr_dy_1_Gamma_1 = prrr_P_c_1_in_axes0_x + prrr_P_c_2_in_axes0_x*prrr_w_2_t;
+        const real prrr_dy_1_Gamma_1 = prrr_P_c_1_in_axes0_x +
+            v.prrr_P_c_2_in_axes0_x*prrr_w_2_t_2;
         /* (prrr-dy_1_G) coefficient of the acceleration in: force at the connection point that balances
            the leg's inertia and weight along all degrees of freedom */
         const real prrr_dy_1_G_in_axes3_y = prrr_dy_1_Gamma_3*prrr_w_3_in_axes3_y;
-        /* (prrr-d_G) coefficient of the acceleration in: force at the connection point that balances the
-           leg's inertia and weight along all degrees of freedom */
-        const real prrr_d_G_in_axes3_xx = prrr_d_Gamma_3_in_axes3_x*prrr_w_3_in_axes3_x -
-            inv_prrr_r_2_in_axes3_y*prrr_d_Gamma_2_in_axes3_x;
-        const real prrr_d_Gamma_3_in_axes3_y = m->prrr_d_Gamma_3_in_axes3_y[i];
-        const real prrr_d_G_in_axes3_xy = prrr_d_Gamma_3_in_axes3_y*prrr_w_3_in_axes3_x -
-            inv_prrr_r_2_in_axes3_y*prrr_d_Gamma_3_in_axes3_y;
         /* (prrr-G_o) remainder without the acceleration in: force at the connection point that balances
            the leg's inertia and weight along all degrees of freedom */
         const real prrr_G_o_in_axes3_y = prrr_mu_3_o_in_axes3_z*prrr_w_3_in_axes3_y;
         const real prrr_G_o_in_axes3_x =
-            inv_prrr_r_2_in_axes3_y*(prrr_G_o_in_axes3_y*prrr_r_2_in_axes3_x -
+            v.inv_prrr_r_2_in_axes3_y*(prrr_G_o_in_axes3_y*v.prrr_r_2_in_axes3_x -
             prrr_N_2_o_in_axes2_z);
-        /* (prrr-d_c) coefficient of the acceleration in: leg force on the platform without actuation and
-           without the mass at the connection point */
-        const real prrr_d_phi_3_t = m->prrr_d_phi_3_t[i];
-        const real prrr_d_c_in_axes3_xy = prrr_d_phi_3_t - prrr_d_G_in_axes3_xy;
         /* (prrr-c_o) remainder without the acceleration in: leg force on the platform without actuation
            and without the mass at the connection point */
-        const real prrr_c_o_in_axes3_x = prrr_W_3_t*prrr_h_3_in_spec3_x +
+        const real prrr_c_o_in_axes3_x = v.prrr_W_3_t*prrr_h_3_in_spec3_x +
             prrr_alpha_3_o_in_axes3_z*prrr_h_3_in_spec3_y - prrr_G_o_in_axes3_x;
-        const real prrr_c_o_in_axes3_y = prrr_W_3_t*prrr_h_3_in_spec3_y - prrr_G_o_in_axes3_y -
+        const real prrr_c_o_in_axes3_y = v.prrr_W_3_t*prrr_h_3_in_spec3_y - prrr_G_o_in_axes3_y -
             prrr_alpha_3_o_in_axes3_z*prrr_h_3_in_spec3_x;
         /* (prrr-Q) inertia of the leg at the connection point, without the mass gathered there */
+        const real prrr_Q_t_3 = v.axis_x_prrr_axes3_x*v.prrr_Q_t_2 +
+            v.axis_y_prrr_axes3_x*v.prrr_d_c_in_axes3_xy;
+        const real prrr_Q_t_4 = v.axis_y_prrr_axes3_x*v.prrr_Q_t_2 -
+            v.axis_x_prrr_axes3_x*v.prrr_d_c_in_axes3_xy;
         const real prrr_d_c_in_axes3_yy = m->prrr_d_c_in_axes3_yy[i];
-        const real prrr_Q_t = prrr_h_3_in_spec3_y*(prrr_w_3_in_axes3_x - inv_prrr_r_2_in_axes3_y)
-            - prrr_d_G_in_axes3_xx - prrr_d_c_in_axes3_yy;
-        const real prrr_Q_t_2 = R(0.5)*prrr_Q_t;
-        const real prrr_Q_t_3 = axis_x_prrr_axes3_x*prrr_Q_t_2 +
-            axis_y_prrr_axes3_x*prrr_d_c_in_axes3_xy;
-        const real prrr_Q_t_4 = axis_y_prrr_axes3_x*prrr_Q_t_2 -
-            axis_x_prrr_axes3_x*prrr_d_c_in_axes3_xy;
-        const real prrr_Q_xx = -prrr_d_c_in_axes3_yy - 2*axis_x_prrr_axes3_x*prrr_Q_t_3;
-        const real prrr_Q_xy = axis_x_prrr_axes3_x*prrr_Q_t_4 + axis_y_prrr_axes3_x*prrr_Q_t_3;
-        const real prrr_Q_yy = -prrr_d_c_in_axes3_yy - 2*axis_y_prrr_axes3_x*prrr_Q_t_4;
+        const real prrr_Q_xx = -prrr_d_c_in_axes3_yy - 2*v.axis_x_prrr_axes3_x*prrr_Q_t_3;
+        const real prrr_Q_xy = v.axis_x_prrr_axes3_x*prrr_Q_t_4 +
+            v.axis_y_prrr_axes3_x*prrr_Q_t_3;
+        const real prrr_Q_yy = -prrr_d_c_in_axes3_yy - 2*v.axis_y_prrr_axes3_x*prrr_Q_t_4;
         /* (prrr-U) velocity and gravity terms of the leg force */
-        const real prrr_U_x = -axis_x_prrr_axes3_x*prrr_c_o_in_axes3_x -
-            axis_y_prrr_axes3_x*prrr_c_o_in_axes3_y;
-        const real prrr_U_y = axis_y_prrr_axes3_x*prrr_c_o_in_axes3_x -
-            axis_x_prrr_axes3_x*prrr_c_o_in_axes3_y;
+        const real prrr_U_x = -v.axis_x_prrr_axes3_x*prrr_c_o_in_axes3_x -
+            v.axis_y_prrr_axes3_x*prrr_c_o_in_axes3_y;
+        const real prrr_U_y = v.axis_y_prrr_axes3_x*prrr_c_o_in_axes3_x -
+            v.axis_x_prrr_axes3_x*prrr_c_o_in_axes3_y;
         /* (prrr-dy_1_P_1) coefficient of the acceleration in: inertia and weight of the leg along the
            extra degree of freedom of joint 1 */
-        const real prrr_dy_1_P_1_t = prrr_dy_1_G_in_axes3_y*prrr_e_1_in_axes3_y +
-            inv_prrr_r_2_in_axes3_y*prrr_e_1_in_axes3_x*(prrr_dy_1_G_in_axes3_y*prrr_r_2_in_axes3_x
-            - prrr_dy_1_Gamma_2);
-        const real prrr_dy_1_P_1 = prrr_dy_1_Gamma_1 - prrr_dy_1_P_1_t;
+        const real prrr_dy_1_P_1_t =
+            v.inv_prrr_r_2_in_axes3_y*v.prrr_w_2_t*(prrr_dy_1_G_in_axes3_y*v.prrr_r_2_in_axes3_x -
+            prrr_dy_1_Gamma_2) - prrr_dy_1_G_in_axes3_y*v.prrr_e_1_in_axes3_y;
+        const real prrr_dy_1_P_1 = prrr_dy_1_Gamma_1 + prrr_dy_1_P_1_t;
         /* (prrr-d_P_1) coefficient of the acceleration in: inertia and weight of the leg along the extra
            degree of freedom of joint 1 */
         const real prrr_d_G_in_axes3_yy = m->prrr_d_G_in_axes3_yy[i];
-        const real prrr_d_P_1_in_axes3_y = -prrr_d_G_in_axes3_xy*prrr_e_1_in_axes3_x -
-            prrr_d_G_in_axes3_yy*prrr_e_1_in_axes3_y;
-        const real prrr_d_P_1_in_axes3_x = -inv_prrr_r_2_in_axes3_y*prrr_P_c_2_in_axes0_x -
-            prrr_d_G_in_axes3_xx*prrr_e_1_in_axes3_x -
-            prrr_d_Gamma_3_in_axes3_x*prrr_e_1_in_axes3_y*prrr_w_3_in_axes3_y;
-        const real prrr_d_P_1_x = axis_x_prrr_axes3_x*prrr_d_P_1_in_axes3_x +
-            axis_y_prrr_axes3_x*prrr_d_P_1_in_axes3_y;
-        const real prrr_d_P_1_y = axis_x_prrr_axes3_x*prrr_d_P_1_in_axes3_y -
-            axis_y_prrr_axes3_x*prrr_d_P_1_in_axes3_x;
+        const real prrr_d_P_1_in_axes3_y = v.prrr_d_G_in_axes3_xy*v.prrr_w_2_t -
+            prrr_d_G_in_axes3_yy*v.prrr_e_1_in_axes3_y;
+        const real prrr_d_P_1_in_axes3_x = v.prrr_d_G_in_axes3_xx*v.prrr_w_2_t -
+            v.inv_prrr_r_2_in_axes3_y*v.prrr_P_c_2_in_axes0_x -
+            v.prrr_d_Gamma_3_in_axes3_x*v.prrr_e_1_in_axes3_y*prrr_w_3_in_axes3_y;
+        const real prrr_d_P_1_x = v.axis_x_prrr_axes3_x*prrr_d_P_1_in_axes3_x +
+            v.axis_y_prrr_axes3_x*prrr_d_P_1_in_axes3_y;
+        const real prrr_d_P_1_y = v.axis_x_prrr_axes3_x*prrr_d_P_1_in_axes3_y -
+            v.axis_y_prrr_axes3_x*prrr_d_P_1_in_axes3_x;
         /* (prrr-P_1_o) remainder without the acceleration in: inertia and weight of the leg along the
            extra degree of freedom of joint 1 */
-        const real prrr_P_1_o_t = prrr_G_o_in_axes3_x*prrr_e_1_in_axes3_x +
-            prrr_G_o_in_axes3_y*prrr_e_1_in_axes3_y;
-        const real prrr_P_1_o = prrr_T_1_o_in_axes0_x - prrr_P_1_o_t;
+        const real prrr_P_1_o_t = prrr_G_o_in_axes3_x*v.prrr_w_2_t -
+            prrr_G_o_in_axes3_y*v.prrr_e_1_in_axes3_y;
+        const real prrr_P_1_o = prrr_P_1_o_t + prrr_T_1_o_in_axes0_x;
         /* (M_ta) coupling block of M */
-        const real prrr_M_ta_t = prrr_Q_xy*prrr_q_x - prrr_Q_xx*prrr_q_y;
-        const real prrr_M_ta_t_2 = prrr_Q_yy*prrr_q_x - prrr_Q_xy*prrr_q_y;
+        const real prrr_M_ta_t = prrr_Q_xy*v.prrr_q_x - prrr_Q_xx*v.prrr_q_y;
+        const real prrr_M_ta_t_2 = prrr_Q_yy*v.prrr_q_x - prrr_Q_xy*v.prrr_q_y;
         /* (M_aa) rotational block of M */
-        const real prrr_M_aa_t = prrr_M_ta_t_2*prrr_q_x - prrr_M_ta_t*prrr_q_y;
+        const real prrr_M_aa_t = prrr_M_ta_t_2*v.prrr_q_x - prrr_M_ta_t*v.prrr_q_y;
         /* (Z_a) rotational part of Z */
-        const real prrr_Z_a_t = prrr_U_y*prrr_q_x - prrr_U_x*prrr_q_y;
+        const real prrr_Z_a_t = prrr_U_y*v.prrr_q_x - prrr_U_x*v.prrr_q_y;
         /* (prrr-M_ya_1) coupling of extra joint 1 with the rotation of the platform */
-        const real prrr_M_ya_1_z = prrr_d_P_1_y*prrr_q_x - prrr_d_P_1_x*prrr_q_y;
+        const real prrr_M_ya_1_z = prrr_d_P_1_y*v.prrr_q_x - prrr_d_P_1_x*v.prrr_q_y;
         /* (prrr-H_a_2) moment of the column's unit force about the platform origin */
-        const real prrr_H_a_2_z = prrr_q_x*prrr_w_2_y - prrr_q_y*prrr_w_2_x;
+        const real prrr_H_a_2_z = v.prrr_q_x*v.prrr_w_2_y - v.prrr_q_y*v.prrr_w_2_x;
         /* (M_tt) translational block of M */
         gather(&terms[0*count + k], add, prrr_Q_xx);  /* M_tt_xx_of_legs */
         gather(&terms[1*count + k], add, prrr_Q_xy);  /* M_tt_xy */
@@ -1701,19 +2338,19 @@ INLINE void dynamics_legs_prrr(const prepared *m, size_t w, size_t leg, size_t l
         /* (legs_size) rms size of the legs, taken where the platform points coincide */
         o[8*count + k] = 1;
         /* (prrr-w_2) reciprocal vector 1 */
-        o[9*count + k] = prrr_w_2_x;
-        o[10*count + k] = prrr_w_2_y;
+        o[9*count + k] = v.prrr_w_2_x;
+        o[10*count + k] = v.prrr_w_2_y;
         /* (prrr-H_a_2) moment of the column's unit force about the platform origin */
         o[11*count + k] = prrr_H_a_2_z;
         /* (prrr-w_2) reciprocal vector 1 */
-        o[12*count + k] = prrr_w_2_t;
+        o[12*count + k] = prrr_w_2_t_2;
         o[15*count + k] = ((prrr_P_1_o + prrr_d_P_1_x) + (prrr_d_P_1_y + prrr_M_ya_1_z)) +
-            ((prrr_dy_1_P_1 + prrr_w_2_x) + (prrr_w_2_y + (prrr_H_a_2_z + prrr_w_2_t)));
+            ((prrr_dy_1_P_1 + v.prrr_w_2_x) + (v.prrr_w_2_y + (prrr_H_a_2_z + prrr_w_2_t_2)));
         const real prrr_rho2_2_t = m->prrr_rho2_2_t[i];
         const real prrr_size = m->prrr_size[i];
-        o[14*count + k] = UNLESS(magnitude(prrr_rho2_2) > TOLERANCE*TOLERANCE*prrr_rho2_2_t) +
-            UNLESS(magnitude(prrr_r_2_in_axes3_y) > TOLERANCE*prrr_size);
-        o[13*count + k] = UNLESS(prrr_disc_2 >= 0);
+        o[14*count + k] = UNLESS(magnitude(v.prrr_rho2_2) > TOLERANCE*TOLERANCE*prrr_rho2_2_t) +
+            UNLESS(magnitude(v.prrr_r_2_in_axes3_y) > TOLERANCE*prrr_size);
+        o[13*count + k] = UNLESS(v.prrr_disc_2 >= 0);
     }
 }
 
@@ -1723,14 +2360,14 @@ INLINE void dynamics_place_prrr(size_t w, size_t count, const real *o, size_t fi
     for (size_t k = 0; k < w; ++k) {
         Z[3*w + k] = o[0*count + first + k];
         M[3*NV*w + k] = o[1*count + first + k];
-        M[(0*NV + 3)*w + k] = o[2*count + first + k];
+        M[3*w + k] = o[2*count + first + k];
         M[(3*NV + 1)*w + k] = o[3*count + first + k];
         M[(NV + 3)*w + k] = o[4*count + first + k];
         M[(3*NV + 2)*w + k] = o[5*count + first + k];
         M[(2*NV + 3)*w + k] = o[6*count + first + k];
         M[(3*NV + 3)*w + k] = o[7*count + first + k];
         H[3*NU*w + k] = o[8*count + first + k];
-        H[(0*NU + 1)*w + k] = o[9*count + first + k];
+        H[1*w + k] = o[9*count + first + k];
         H[(NU + 1)*w + k] = o[10*count + first + k];
         H[(2*NU + 1)*w + k] = o[11*count + first + k];
         H[(3*NU + 1)*w + k] = o[12*count + first + k];
@@ -1741,131 +2378,43 @@ INLINE void dynamics_place_prrr(size_t w, size_t count, const real *o, size_t fi
 }
 
 INLINE void dynamics_legs_rrr(const prepared *m, size_t w, size_t leg, size_t legs, const real *s,
-    size_t states, size_t count, int add, real *terms, real *o)
+    size_t states, size_t count, int add, const real *X, const real *V, real *terms, real *o)
 {
     for (size_t k = 0; k < count; ++k) {
         const size_t i = leg + legs*k;
         const size_t j = states*k;
-        /* (rrr-S) from the base point to the connection point */
-        const real R_xx = s[2*w + j];
-        const real R_yx = s[3*w + j];
-        const real rrr_platform_point_x = m->rrr_platform_point_x[i];
-        const real rrr_platform_point_y = m->rrr_platform_point_y[i];
-        const real rrr_q_x = R_xx*rrr_platform_point_x - R_yx*rrr_platform_point_y;
-        const real rrr_q_y = R_xx*rrr_platform_point_y + R_yx*rrr_platform_point_x;
-        const real rrr_base_point_x = m->rrr_base_point_x[i];
-        const real t_x = s[0*w + j];
-        const real rrr_S_x = rrr_q_x + t_x - rrr_base_point_x;
-        const real rrr_base_point_y = m->rrr_base_point_y[i];
-        const real t_y = s[1*w + j];
-        const real rrr_S_y = rrr_q_y + t_y - rrr_base_point_y;
-        /* (rrr-Kd_1) projection on the centre's direction, from the distance fixed by the joints beyond
-           joint 1 */
-        const real rrr_Kd_1_t_3 = rrr_S_x*rrr_S_x + rrr_S_y*rrr_S_y;
-        const real rrr_Kd_1_t = m->rrr_Kd_1_t[i];
-        const real rrr_Kd_1_t_2 = m->rrr_Kd_1_t_2[i];
-        const real rrr_Kd_1 = rrr_Kd_1_t + R(0.5)*rrr_Kd_1_t_3 - rrr_Kd_1_t_2;
-        /* (rrr-px_1) component along the reference direction */
-        const real rrr_base_frame_xx = m->rrr_base_frame_xx[i];
-        const real rrr_base_frame_yx = m->rrr_base_frame_yx[i];
-        const real rrr_px_1 = rrr_S_x*rrr_base_frame_xx + rrr_S_y*rrr_base_frame_yx;
-        /* (rrr-py_1) component across the reference direction */
-        const real rrr_base_frame_xy = m->rrr_base_frame_xy[i];
-        const real rrr_base_frame_yy = m->rrr_base_frame_yy[i];
-        const real rrr_py_1 = rrr_S_x*rrr_base_frame_xy + rrr_S_y*rrr_base_frame_yy;
-        /* (rrr-Kc_1) factor of the cosine in the equation of joint 1 */
-        const real rrr_joint2_offset_x = m->rrr_joint2_offset_x[i];
-        const real rrr_Kc_1 = rrr_joint2_offset_x*rrr_px_1;
-        /* (rrr-Ks_1) factor of the sine in the equation of joint 1 */
-        const real rrr_Ks_1 = rrr_joint2_offset_x*rrr_py_1;
-        /* (rrr-rho2_1) squared amplitude */
-        const real rrr_rho2_1 = rrr_Kc_1*rrr_Kc_1 + rrr_Ks_1*rrr_Ks_1;
-        /* (rrr-disc_1) discriminant */
-        const real rrr_disc_1 = rrr_rho2_1 - rrr_Kd_1*rrr_Kd_1;
-        /* (rrr-root_1) root, with the sign of the branch */
-        const real rrr_branch_1 = m->rrr_branch_1[i];
-        const real rrr_root_1 = rrr_branch_1*root(rrr_disc_1);
-        /* (rrr-c_1) cosine of the angle of joint 1 from its reference direction */
-        const real inv_rrr_rho2_1 = 1/rrr_rho2_1;
-        const real rrr_c_1 = inv_rrr_rho2_1*(rrr_Kc_1*rrr_Kd_1 - rrr_Ks_1*rrr_root_1);
-        /* (rrr-s_1) sine of the angle of joint 1 from its reference direction */
-        const real rrr_s_1 = inv_rrr_rho2_1*(rrr_Kc_1*rrr_root_1 + rrr_Kd_1*rrr_Ks_1);
-        /* (rrr-x_2) from the origin of joint 2 to the connection point */
-        const real inv_rrr_size_t = m->inv_rrr_size_t[i];
-        const real rrr_x_2_in_axes1_x = inv_rrr_size_t*rrr_Kd_1*rrr_joint2_offset_x -
-            rrr_joint2_offset_x;
-        /* (rrr-c_2) cosine of the angle of joint 2 from its reference direction */
-        const real inv_rrr_size_t_2 = m->inv_rrr_size_t_2[i];
-        const real rrr_platform_joint_offset_x = m->rrr_platform_joint_offset_x[i];
-        const real rrr_c_2 = inv_rrr_size_t_2*rrr_platform_joint_offset_x*rrr_x_2_in_axes1_x;
-        /* (rrr-s_2) sine of the angle of joint 2 from its reference direction */
-        const real rrr_s_2 =
-            -inv_rrr_size_t*inv_rrr_size_t_2*rrr_joint2_offset_x*rrr_platform_joint_offset_x*rrr_root_1;
-        /* (rrr-S_dot) velocity of the connection point */
-        const real omega_z = s[6*w + j];
-        const real rrr_S_dot_t = omega_z*rrr_q_y;
-        const real rrr_S_dot_t_2 = omega_z*rrr_q_x;
-        const real t_dot_x = s[4*w + j];
-        const real rrr_S_dot_x = t_dot_x - rrr_S_dot_t;
-        const real t_dot_y = s[5*w + j];
-        const real rrr_S_dot_y = rrr_S_dot_t_2 + t_dot_y;
-        /* (rrr-r_1) from joint 1 to the connection point, along the links */
-        const real rrr_r_1_in_axes1_y = rrr_platform_joint_offset_x*rrr_s_2;
-        const real rrr_r_1_in_axes1_x = rrr_joint2_offset_x + rrr_c_2*rrr_platform_joint_offset_x;
-        const real rrr_r_1_in_axes2_x = rrr_c_2*rrr_r_1_in_axes1_x + rrr_r_1_in_axes1_y*rrr_s_2;
-        const real rrr_r_1_in_axes2_y = rrr_c_2*rrr_r_1_in_axes1_y - rrr_r_1_in_axes1_x*rrr_s_2;
-        /* (rrr-w_1) reciprocal vector 1 */
-        const real rrr_w_1_t = rrr_c_1*rrr_s_2 + rrr_c_2*rrr_s_1;
-        const real rrr_w_1_t_2 = rrr_c_1*rrr_c_2 - rrr_s_1*rrr_s_2;
-        const real axis_y_rrr_axes2_x = rrr_base_frame_xy*rrr_w_1_t_2 -
-            rrr_base_frame_xx*rrr_w_1_t;
-        const real axis_x_rrr_axes2_x = rrr_base_frame_yy*rrr_w_1_t_2 -
-            rrr_base_frame_yx*rrr_w_1_t;
-        const real inv_rrr_r_1_in_axes2_y = 1/rrr_r_1_in_axes2_y;
-        const real rrr_w_1_x = -axis_x_rrr_axes2_x*inv_rrr_r_1_in_axes2_y;
-        const real rrr_w_1_y = axis_y_rrr_axes2_x*inv_rrr_r_1_in_axes2_y;
-        /* (rrr-w_2) reciprocal vector 2 */
-        const real rrr_w_2_in_axes2_y = m->rrr_w_2_in_axes2_y[i];
-        const real rrr_w_2_in_axes2_x =
-            inv_rrr_r_1_in_axes2_y*rrr_r_1_in_axes2_x*rrr_w_2_in_axes2_y;
-        /* (rrr-qd_1) rate of joint 1 */
-        const real rrr_qd_1_t = inv_rrr_r_1_in_axes2_y*(axis_x_rrr_axes2_x*rrr_S_dot_x -
-            axis_y_rrr_axes2_x*rrr_S_dot_y);
-        /* (rrr-W_1) centripetal tensor of link 1 */
-        const real rrr_W_1_t = rrr_qd_1_t*rrr_qd_1_t;
-        /* (rrr-omega_2) angular velocity of link 2 */
-        const real rrr_omega_2_in_axes2_z = rrr_w_2_in_axes2_y*(axis_x_rrr_axes2_x*rrr_S_dot_y +
-            axis_y_rrr_axes2_x*rrr_S_dot_x + rrr_qd_1_t*rrr_r_1_in_axes2_x) - rrr_qd_1_t;
-        /* (rrr-W_2) centripetal tensor of link 2 */
-        const real rrr_W_2_t = rrr_omega_2_in_axes2_z*rrr_omega_2_in_axes2_z;
+        values_rrr v;
+        stage_rrr_X(m, w, i, j, s, X, &v);
+        stage_rrr_V_X(m, w, i, j, V, &v);
+        stage_rrr_M_dynamics(m, i, &v);
         /* (rrr-u_1) centripetal acceleration of the connection point */
-        const real rrr_u_1_x = -omega_z*rrr_S_dot_t_2;
-        const real rrr_u_1_t = omega_z*rrr_S_dot_t;
-        const real rrr_u_1_in_axes2_x = axis_x_rrr_axes2_x*rrr_u_1_x +
-            axis_y_rrr_axes2_x*rrr_u_1_t;
-        const real rrr_u_1_in_axes2_y = axis_y_rrr_axes2_x*rrr_u_1_x -
-            axis_x_rrr_axes2_x*rrr_u_1_t;
-        /* (rrr-bias) acceleration of the connection point at zero joint accelerations */
-        const real rrr_bias_in_axes2_x = -rrr_W_2_t*rrr_platform_joint_offset_x -
-            rrr_W_1_t*rrr_c_2*rrr_joint2_offset_x;
+        const real omega_z = V[2*w + j];
+        const real rrr_u_1_x = -omega_z*v.rrr_S_dot_t_2;
+        const real rrr_u_1_t = omega_z*v.rrr_S_dot_t;
+        const real rrr_u_1_in_axes2_x = v.axis_x_rrr_axes2_x*rrr_u_1_x +
+            v.axis_y_rrr_axes2_x*rrr_u_1_t;
+        const real rrr_u_1_in_axes2_y = v.axis_y_rrr_axes2_x*rrr_u_1_x -
+            v.axis_x_rrr_axes2_x*rrr_u_1_t;
         /* (rrr-rel_o) remainder without the acceleration in: acceleration of the connection point left to
            the joint accelerations */
-        const real rrr_rel_o_in_axes2_x = rrr_u_1_in_axes2_x - rrr_bias_in_axes2_x;
+        const real rrr_rel_o_in_axes2_x = rrr_u_1_in_axes2_x - v.rrr_bias_in_axes2_x;
+        const real rrr_joint2_offset_x = m->rrr_joint2_offset_x[i];
         const real rrr_rel_o_in_axes2_y = rrr_u_1_in_axes2_y -
-            rrr_W_1_t*rrr_joint2_offset_x*rrr_s_2;
+            v.rrr_W_1_t*rrr_joint2_offset_x*v.rrr_s_2;
         /* (rrr-B_1_o) remainder of the acceleration tensor of link 1 */
-        const real rrr_B_1_o_in_axes1_xy = inv_rrr_r_1_in_axes2_y*rrr_rel_o_in_axes2_x;
+        const real rrr_B_1_o_in_axes1_xy = v.inv_rrr_r_1_in_axes2_y*rrr_rel_o_in_axes2_x;
         /* (rrr-alpha_2_o) remainder without the acceleration in: angular acceleration of link 2 */
+        const real rrr_w_2_in_axes2_y = m->rrr_w_2_in_axes2_y[i];
         const real rrr_alpha_2_o_in_axes2_z = rrr_w_2_in_axes2_y*(rrr_rel_o_in_axes2_y +
-            rrr_B_1_o_in_axes1_xy*rrr_r_1_in_axes2_x) - rrr_B_1_o_in_axes1_xy;
+            rrr_B_1_o_in_axes1_xy*v.rrr_r_1_in_axes2_x) - rrr_B_1_o_in_axes1_xy;
         /* (rrr-acc_2_o) remainder without the acceleration in: acceleration of the reference point of
            link 2, less gravity */
         const real gravity_x = m->gravity_x;
         const real gravity_y = m->gravity_y;
-        const real rrr_acc_2_o_in_axes2_x = rrr_u_1_in_axes2_x + axis_y_rrr_axes2_x*gravity_y -
-            axis_x_rrr_axes2_x*gravity_x;
-        const real rrr_acc_2_o_in_axes2_y = rrr_u_1_in_axes2_y - axis_x_rrr_axes2_x*gravity_y -
-            axis_y_rrr_axes2_x*gravity_x;
+        const real rrr_acc_2_o_in_axes2_x = rrr_u_1_in_axes2_x + v.axis_y_rrr_axes2_x*gravity_y -
+            v.axis_x_rrr_axes2_x*gravity_x;
+        const real rrr_acc_2_o_in_axes2_y = rrr_u_1_in_axes2_y - v.axis_x_rrr_axes2_x*gravity_y -
+            v.axis_y_rrr_axes2_x*gravity_x;
         /* (rrr-mu_2_o) remainder without the acceleration in: inertia moment of the links that turn with
            link 2, about their reference points */
         const real rrr_J_2_in_spec2_zz = m->rrr_J_2_in_spec2_zz[i];
@@ -1873,12 +2422,6 @@ INLINE void dynamics_legs_rrr(const prepared *m, size_t w, size_t leg, size_t le
         const real rrr_h_2_in_spec2_y = m->rrr_h_2_in_spec2_y[i];
         const real rrr_mu_2_o_in_axes2_z = rrr_J_2_in_spec2_zz*rrr_alpha_2_o_in_axes2_z +
             rrr_acc_2_o_in_axes2_y*rrr_h_2_in_spec2_x - rrr_acc_2_o_in_axes2_x*rrr_h_2_in_spec2_y;
-        /* (rrr-d_Gamma_2) coefficient of the acceleration in: moment about axis 2 of the distal links'
-           inertia and weight */
-        const real rrr_d_Gamma_2_t = m->rrr_d_Gamma_2_t[i];
-        const real rrr_d_Gamma_2_t_2 = rrr_d_Gamma_2_t*rrr_r_1_in_axes2_x;
-        const real rrr_d_Gamma_2_in_axes2_x = -rrr_h_2_in_spec2_y -
-            inv_rrr_r_1_in_axes2_y*(rrr_J_2_in_spec2_zz - rrr_d_Gamma_2_t_2);
         /* (rrr-mu_1_o) remainder without the acceleration in: inertia moment of the links that turn with
            link 1, about their reference points */
         const real rrr_J_1_in_spec1_zz = m->rrr_J_1_in_spec1_zz[i];
@@ -1886,60 +2429,50 @@ INLINE void dynamics_legs_rrr(const prepared *m, size_t w, size_t leg, size_t le
         const real rrr_h_1_in_spec1_y = m->rrr_h_1_in_spec1_y[i];
         const real rrr_mu_1_t = m->rrr_mu_1_t[i];
         const real rrr_mu_1_t_2 = m->rrr_mu_1_t_2[i];
-        const real rrr_mu_1_o_in_axes1_z = rrr_h_1_in_spec1_y*(rrr_c_1*rrr_mu_1_t +
-            rrr_mu_1_t_2*rrr_s_1) - rrr_B_1_o_in_axes1_xy*rrr_J_1_in_spec1_zz -
-            rrr_h_1_in_spec1_x*(rrr_c_1*rrr_mu_1_t_2 - rrr_mu_1_t*rrr_s_1);
+        const real rrr_mu_1_o_in_axes1_z = rrr_h_1_in_spec1_y*(v.rrr_c_1*rrr_mu_1_t +
+            rrr_mu_1_t_2*v.rrr_s_1) - rrr_B_1_o_in_axes1_xy*rrr_J_1_in_spec1_zz -
+            rrr_h_1_in_spec1_x*(v.rrr_c_1*rrr_mu_1_t_2 - rrr_mu_1_t*v.rrr_s_1);
         /* (rrr-N_1_o) remainder without the acceleration in: moment about joint 1 of the links from 1
            outwards, the force at the connection point left out */
         const real rrr_N_1_o_in_axes1_z = rrr_mu_1_o_in_axes1_z + rrr_mu_2_o_in_axes2_z;
-        /* (rrr-d_Gamma_1) coefficient of the acceleration in: moment about axis 1 of the distal links'
-           inertia and weight */
-        const real rrr_Jc_1_in_axes1_zz = m->rrr_Jc_1_in_axes1_zz[i];
-        const real rrr_d_Gamma_1_in_axes2_x = -rrr_h_2_in_spec2_y -
-            inv_rrr_r_1_in_axes2_y*(rrr_Jc_1_in_axes1_zz - rrr_d_Gamma_2_t_2);
         /* (rrr-G_o) remainder without the acceleration in: force at the connection point that balances
            the leg's inertia and weight along all degrees of freedom */
         const real rrr_G_o_in_axes2_y = rrr_mu_2_o_in_axes2_z*rrr_w_2_in_axes2_y;
-        /* (rrr-d_c) coefficient of the acceleration in: leg force on the platform without actuation and
-           without the mass at the connection point */
-        const real rrr_d_Gamma_2_in_axes2_y = m->rrr_d_Gamma_2_in_axes2_y[i];
-        const real rrr_d_phi_2_in_axes2_xy = m->rrr_d_phi_2_in_axes2_xy[i];
-        const real rrr_d_c_in_axes2_xy = inv_rrr_r_1_in_axes2_y*rrr_d_Gamma_2_in_axes2_y -
-            rrr_d_phi_2_in_axes2_xy - rrr_d_Gamma_2_in_axes2_y*rrr_w_2_in_axes2_x;
         /* (rrr-c_o) remainder without the acceleration in: leg force on the platform without actuation
            and without the mass at the connection point */
-        const real rrr_c_o_in_axes2_x = rrr_W_2_t*rrr_h_2_in_spec2_x +
+        const real rrr_c_o_in_axes2_x = v.rrr_W_2_t*rrr_h_2_in_spec2_x +
             rrr_alpha_2_o_in_axes2_z*rrr_h_2_in_spec2_y -
-            inv_rrr_r_1_in_axes2_y*(rrr_G_o_in_axes2_y*rrr_r_1_in_axes2_x - rrr_N_1_o_in_axes1_z);
-        const real rrr_c_o_in_axes2_y = rrr_W_2_t*rrr_h_2_in_spec2_y - rrr_G_o_in_axes2_y -
+            v.inv_rrr_r_1_in_axes2_y*(rrr_G_o_in_axes2_y*v.rrr_r_1_in_axes2_x -
+            rrr_N_1_o_in_axes1_z);
+        const real rrr_c_o_in_axes2_y = v.rrr_W_2_t*rrr_h_2_in_spec2_y - rrr_G_o_in_axes2_y -
             rrr_alpha_2_o_in_axes2_z*rrr_h_2_in_spec2_x;
         /* (rrr-Q) inertia of the leg at the connection point, without the mass gathered there */
         const real rrr_d_c_in_axes2_yy = m->rrr_d_c_in_axes2_yy[i];
-        const real rrr_Q_t = inv_rrr_r_1_in_axes2_y*rrr_d_Gamma_1_in_axes2_x +
-            rrr_h_2_in_spec2_y*(rrr_w_2_in_axes2_x - inv_rrr_r_1_in_axes2_y) - rrr_d_c_in_axes2_yy
-            - rrr_d_Gamma_2_in_axes2_x*rrr_w_2_in_axes2_x;
+        const real rrr_Q_t = v.inv_rrr_r_1_in_axes2_y*v.rrr_d_Gamma_1_in_axes2_x +
+            rrr_h_2_in_spec2_y*(v.rrr_w_2_in_axes2_x - v.inv_rrr_r_1_in_axes2_y) -
+            rrr_d_c_in_axes2_yy - v.rrr_d_Gamma_2_in_axes2_x*v.rrr_w_2_in_axes2_x;
         const real rrr_Q_t_2 = R(0.5)*rrr_Q_t;
-        const real rrr_Q_t_3 = axis_x_rrr_axes2_x*rrr_Q_t_2 +
-            axis_y_rrr_axes2_x*rrr_d_c_in_axes2_xy;
-        const real rrr_Q_t_4 = axis_y_rrr_axes2_x*rrr_Q_t_2 -
-            axis_x_rrr_axes2_x*rrr_d_c_in_axes2_xy;
-        const real rrr_Q_xx = -rrr_d_c_in_axes2_yy - 2*axis_x_rrr_axes2_x*rrr_Q_t_3;
-        const real rrr_Q_xy = axis_x_rrr_axes2_x*rrr_Q_t_4 + axis_y_rrr_axes2_x*rrr_Q_t_3;
-        const real rrr_Q_yy = -rrr_d_c_in_axes2_yy - 2*axis_y_rrr_axes2_x*rrr_Q_t_4;
+        const real rrr_Q_t_3 = v.axis_x_rrr_axes2_x*rrr_Q_t_2 +
+            v.axis_y_rrr_axes2_x*v.rrr_d_c_in_axes2_xy;
+        const real rrr_Q_t_4 = v.axis_y_rrr_axes2_x*rrr_Q_t_2 -
+            v.axis_x_rrr_axes2_x*v.rrr_d_c_in_axes2_xy;
+        const real rrr_Q_xx = -rrr_d_c_in_axes2_yy - 2*v.axis_x_rrr_axes2_x*rrr_Q_t_3;
+        const real rrr_Q_xy = v.axis_x_rrr_axes2_x*rrr_Q_t_4 + v.axis_y_rrr_axes2_x*rrr_Q_t_3;
+        const real rrr_Q_yy = -rrr_d_c_in_axes2_yy - 2*v.axis_y_rrr_axes2_x*rrr_Q_t_4;
         /* (rrr-U) velocity and gravity terms of the leg force */
-        const real rrr_U_x = -axis_x_rrr_axes2_x*rrr_c_o_in_axes2_x -
-            axis_y_rrr_axes2_x*rrr_c_o_in_axes2_y;
-        const real rrr_U_y = axis_y_rrr_axes2_x*rrr_c_o_in_axes2_x -
-            axis_x_rrr_axes2_x*rrr_c_o_in_axes2_y;
+        const real rrr_U_x = -v.axis_x_rrr_axes2_x*rrr_c_o_in_axes2_x -
+            v.axis_y_rrr_axes2_x*rrr_c_o_in_axes2_y;
+        const real rrr_U_y = v.axis_y_rrr_axes2_x*rrr_c_o_in_axes2_x -
+            v.axis_x_rrr_axes2_x*rrr_c_o_in_axes2_y;
         /* (M_ta) coupling block of M */
-        const real rrr_M_ta_t = rrr_Q_xy*rrr_q_x - rrr_Q_xx*rrr_q_y;
-        const real rrr_M_ta_t_2 = rrr_Q_yy*rrr_q_x - rrr_Q_xy*rrr_q_y;
+        const real rrr_M_ta_t = rrr_Q_xy*v.rrr_q_x - rrr_Q_xx*v.rrr_q_y;
+        const real rrr_M_ta_t_2 = rrr_Q_yy*v.rrr_q_x - rrr_Q_xy*v.rrr_q_y;
         /* (M_aa) rotational block of M */
-        const real rrr_M_aa_t = rrr_M_ta_t_2*rrr_q_x - rrr_M_ta_t*rrr_q_y;
+        const real rrr_M_aa_t = rrr_M_ta_t_2*v.rrr_q_x - rrr_M_ta_t*v.rrr_q_y;
         /* (Z_a) rotational part of Z */
-        const real rrr_Z_a_t = rrr_U_y*rrr_q_x - rrr_U_x*rrr_q_y;
+        const real rrr_Z_a_t = rrr_U_y*v.rrr_q_x - rrr_U_x*v.rrr_q_y;
         /* (rrr-H_a_1) moment of the column's unit force about the platform origin */
-        const real rrr_H_a_1_z = rrr_q_x*rrr_w_1_y - rrr_q_y*rrr_w_1_x;
+        const real rrr_H_a_1_z = v.rrr_q_x*v.rrr_w_1_y - v.rrr_q_y*v.rrr_w_1_x;
         /* (M_tt) translational block of M */
         gather(&terms[0*count + k], add, rrr_Q_xx);  /* M_tt_xx_of_legs */
         gather(&terms[1*count + k], add, rrr_Q_xy);  /* M_tt_xy */
@@ -1955,16 +2488,16 @@ INLINE void dynamics_legs_rrr(const prepared *m, size_t w, size_t leg, size_t le
         /* (Z_a) rotational part of Z */
         gather(&terms[8*count + k], add, rrr_Z_a_t);  /* Z_a_z_of_legs */
         /* (rrr-w_1) reciprocal vector 1 */
-        o[0*count + k] = rrr_w_1_x;
-        o[1*count + k] = rrr_w_1_y;
+        o[0*count + k] = v.rrr_w_1_x;
+        o[1*count + k] = v.rrr_w_1_y;
         /* (rrr-H_a_1) moment of the column's unit force about the platform origin */
         o[2*count + k] = rrr_H_a_1_z;
-        o[5*count + k] = rrr_w_1_x + (rrr_w_1_y + rrr_H_a_1_z);
+        o[5*count + k] = v.rrr_w_1_x + (v.rrr_w_1_y + rrr_H_a_1_z);
         const real rrr_rho2_1_t = m->rrr_rho2_1_t[i];
         const real rrr_size = m->rrr_size[i];
-        o[4*count + k] = UNLESS(magnitude(rrr_rho2_1) > TOLERANCE*TOLERANCE*rrr_rho2_1_t) +
-            UNLESS(magnitude(rrr_r_1_in_axes2_y) > TOLERANCE*rrr_size);
-        o[3*count + k] = UNLESS(rrr_disc_1 >= 0);
+        o[4*count + k] = UNLESS(magnitude(v.rrr_rho2_1) > TOLERANCE*TOLERANCE*rrr_rho2_1_t) +
+            UNLESS(magnitude(v.rrr_r_1_in_axes2_y) > TOLERANCE*rrr_size);
+        o[3*count + k] = UNLESS(v.rrr_disc_1 >= 0);
     }
 }
 
@@ -1972,7 +2505,7 @@ INLINE void dynamics_place_rrr(size_t w, size_t count, const real *o, size_t leg
     real *H, verdict *t)
 {
     for (size_t k = 0; k < w; ++k) {
-        H[(0*NU + 2 + leg)*w + k] = o[0*count + first + k];
+        H[(2 + leg)*w + k] = o[0*count + first + k];
         H[(NU + 2 + leg)*w + k] = o[1*count + first + k];
         H[(2*NU + 2 + leg)*w + k] = o[2*count + first + k];
         t->unreachable[k] += o[3*count + first + k];
@@ -1993,34 +2526,34 @@ INLINE void dynamics_after(const prepared *m, size_t w, const real *s, const rea
         const real M_tt_yy = M_tt_yy_of_legs + m_star;
         /* (M_ta) coupling block of M */
         const real M_ta_xz_of_legs = sums[3*w + k];
-        const real h_star_y = s[8*w + k];
+        const real h_star_y = s[3*w + k];
         const real M_ta_xz = M_ta_xz_of_legs - h_star_y;
         const real M_ta_yz_of_legs = sums[4*w + k];
-        const real h_star_x = s[7*w + k];
+        const real h_star_x = s[2*w + k];
         const real M_ta_yz = M_ta_yz_of_legs + h_star_x;
         /* (M_aa) rotational block of M */
         const real J_star_zz = m->J_star_zz;
         const real M_aa_zz_of_legs = sums[5*w + k];
         const real M_aa_zz = J_star_zz + M_aa_zz_of_legs;
         /* (Z_t) translational part of Z */
-        const real Z_p_x = s[9*w + k];
+        const real Z_p_x = s[4*w + k];
         const real Z_t_x_of_legs = sums[6*w + k];
         const real Z_t_x = Z_p_x + Z_t_x_of_legs;
-        const real Z_p_y = s[10*w + k];
+        const real Z_p_y = s[5*w + k];
         const real Z_t_y_of_legs = sums[7*w + k];
         const real Z_t_y = Z_p_y + Z_t_y_of_legs;
         /* (Z_a) rotational part of Z */
         const real Z_a_z_of_legs = sums[8*w + k];
-        const real Z_q_z = s[11*w + k];
+        const real Z_q_z = s[6*w + k];
         const real Z_a_z = Z_a_z_of_legs + Z_q_z;
         /* (M_tt) translational block of M */
-        M[0*NV*w + k] = M_tt_xx;
+        M[0*w + k] = M_tt_xx;
         const real M_tt_xy = sums[1*w + k];
-        M[(0*NV + 1)*w + k] = M_tt_xy;
+        M[1*w + k] = M_tt_xy;
         M[NV*w + k] = M_tt_xy;
         M[(NV + 1)*w + k] = M_tt_yy;
         /* (M_ta) coupling block of M */
-        M[(0*NV + 2)*w + k] = M_ta_xz;
+        M[2*w + k] = M_ta_xz;
         M[2*NV*w + k] = M_ta_xz;
         M[(NV + 2)*w + k] = M_ta_yz;
         M[(2*NV + 1)*w + k] = M_ta_yz;
@@ -2039,22 +2572,19 @@ INLINE void dynamics_after(const prepared *m, size_t w, const real *s, const rea
 INLINE void dynamics_run(const prepared *m, const real *X, const real *V, real *M, real *Z, real
     *H, verdict *t)
 {
-    real s[12] = {0};
-    real sums[9] = {0};
-    real terms_prrr[9*LEGS(LEGS_OF_prrr)] = {0};
-    real o_prrr[16*LEGS(LEGS_OF_prrr)] = {0};
-    real terms_rrr[9*LEGS(LEGS_OF_rrr)] = {0};
-    real o_rrr[6*LEGS(LEGS_OF_rrr)] = {0};
+    real s[7] = {0}, sums[9] = {0};
+    real terms_prrr[9*LEGS(LEGS_OF_prrr)] = {0}, o_prrr[16*LEGS(LEGS_OF_prrr)] = {0};
+    real terms_rrr[9*LEGS(LEGS_OF_rrr)] = {0}, o_rrr[6*LEGS(LEGS_OF_rrr)] = {0};
     clear(H, NV*NU);
     dynamics_before(m, 1, X, V, s);
     dynamics_legs_prrr(m, 1, 0, 1, s, 0, LEGS(LEGS_OF_prrr), 0, X, V, terms_prrr, o_prrr);
+    dynamics_legs_rrr(m, 1, 0, 1, s, 0, LEGS(LEGS_OF_rrr), 0, X, V, terms_rrr, o_rrr);
     for (size_t leg = 0; leg < LEGS_OF_prrr; ++leg) {
         dynamics_place_prrr(1, LEGS(LEGS_OF_prrr), o_prrr, leg, M, Z, H, t);
     }
     for (size_t n = 0; n < 9; ++n) {
         sums[n] = total(terms_prrr + n*LEGS(LEGS_OF_prrr), LEGS_OF_prrr);
     }
-    dynamics_legs_rrr(m, 1, 0, 1, s, 0, LEGS(LEGS_OF_rrr), 0, terms_rrr, o_rrr);
     for (size_t leg = 0; leg < LEGS_OF_rrr; ++leg) {
         dynamics_place_rrr(1, LEGS(LEGS_OF_rrr), o_rrr, leg, leg, H, t);
     }
@@ -2067,8 +2597,7 @@ INLINE void dynamics_run(const prepared *m, const real *X, const real *V, real *
 INLINE void dynamics_run_lanes(const prepared *m, const real *X, const real *V, real *M, real *Z,
     real *H, verdict *t)
 {
-    real s[12*LANES];
-    real sums[9*LANES];
+    real s[7*LANES], sums[9*LANES];
     real o_prrr[16*LANES];
     real o_rrr[6*LANES];
     clear(H, NV*NU*LANES);
@@ -2079,7 +2608,7 @@ INLINE void dynamics_run_lanes(const prepared *m, const real *X, const real *V, 
         dynamics_place_prrr(LANES, LANES, o_prrr, 0, M, Z, H, t);
     }
     for (size_t leg = 0; leg < LEGS_OF_rrr; ++leg) {
-        dynamics_legs_rrr(m, LANES, leg, 0, s, 1, LANES, 1, sums, o_rrr);
+        dynamics_legs_rrr(m, LANES, leg, 0, s, 1, LANES, 1, X, V, sums, o_rrr);
         dynamics_place_rrr(LANES, LANES, o_rrr, leg, 0, H, t);
     }
     dynamics_after(m, LANES, s, sums, M, Z, t);
@@ -2089,25 +2618,12 @@ INLINE void dynamics_run_lanes(const prepared *m, const real *X, const real *V, 
 INLINE void M_before(const prepared *m, size_t w, const real *X, real *s)
 {
     for (size_t k = 0; k < w; ++k) {
-        /* X: named entries */
-        const real X_0 = X[0*w + k];
-        const real t_x = X_0;
-        const real X_1 = X[1*w + k];
-        const real t_y = X_1;
-        const real X_2 = X[2*w + k];
-        const real R_xx = cosine(X_2);
-        const real R_yx = sine(X_2);
-        /* (h_star) first moment about the platform origin */
-        const real h_star_in_platform_x = m->h_star_in_platform_x;
-        const real h_star_in_platform_y = m->h_star_in_platform_y;
-        const real h_star_x = R_xx*h_star_in_platform_x - R_yx*h_star_in_platform_y;
-        const real h_star_y = R_xx*h_star_in_platform_y + R_yx*h_star_in_platform_x;
-        s[0*w + k] = t_x;
-        s[1*w + k] = t_y;
-        s[2*w + k] = R_xx;
-        s[3*w + k] = R_yx;
-        s[4*w + k] = h_star_x;
-        s[5*w + k] = h_star_y;
+        values v;
+        stage_X(m, w, k, X, &v);
+        s[0*w + k] = v.R_xx;
+        s[1*w + k] = v.R_yx;
+        s[2*w + k] = v.h_star_x;
+        s[3*w + k] = v.h_star_y;
     }
 }
 
@@ -2117,167 +2633,77 @@ INLINE void M_legs_prrr(const prepared *m, size_t w, size_t leg, size_t legs, co
     for (size_t k = 0; k < count; ++k) {
         const size_t i = leg + legs*k;
         const size_t j = states*k;
-        /* (prrr-S) from the base point to the connection point */
-        const real R_xx = s[2*w + j];
-        const real R_yx = s[3*w + j];
-        const real prrr_platform_point_x = m->prrr_platform_point_x[i];
-        const real prrr_platform_point_y = m->prrr_platform_point_y[i];
-        const real prrr_q_x = R_xx*prrr_platform_point_x - R_yx*prrr_platform_point_y;
-        const real prrr_q_y = R_xx*prrr_platform_point_y + R_yx*prrr_platform_point_x;
-        const real prrr_base_point_x = m->prrr_base_point_x[i];
-        const real t_x = s[0*w + j];
-        const real prrr_S_x = prrr_q_x + t_x - prrr_base_point_x;
-        const real prrr_base_point_y = m->prrr_base_point_y[i];
-        const real t_y = s[1*w + j];
-        const real prrr_S_y = prrr_q_y + t_y - prrr_base_point_y;
-        const real prrr_base_frame_xx = m->prrr_base_frame_xx[i];
-        const real prrr_base_frame_yx = m->prrr_base_frame_yx[i];
-        const real prrr_S_in_axes0_y = -prrr_S_x*prrr_base_frame_xx - prrr_S_y*prrr_base_frame_yx;
-        /* (prrr-x_2) from the origin of joint 2 to the connection point */
-        const real prrr_base_frame_xy = m->prrr_base_frame_xy[i];
-        const real prrr_base_frame_yy = m->prrr_base_frame_yy[i];
-        const real prrr_y_1_extra = X[3*w + j];
-        const real prrr_x_2_in_axes0_x = prrr_S_x*prrr_base_frame_xy + prrr_S_y*prrr_base_frame_yy
-            - prrr_y_1_extra;
-        /* (prrr-Kd_2) projection on the centre's direction, from the distance fixed by the joints beyond
-           joint 2 */
-        const real prrr_Kd_2_t_3 = prrr_S_in_axes0_y*prrr_S_in_axes0_y +
-            prrr_x_2_in_axes0_x*prrr_x_2_in_axes0_x;
-        const real prrr_Kd_2_t = m->prrr_Kd_2_t[i];
-        const real prrr_Kd_2_t_2 = m->prrr_Kd_2_t_2[i];
-        const real prrr_Kd_2 = prrr_Kd_2_t + R(0.5)*prrr_Kd_2_t_3 - prrr_Kd_2_t_2;
-        /* (prrr-Kc_2) factor of the cosine in the equation of joint 2 */
-        const real prrr_joint3_offset_x = m->prrr_joint3_offset_x[i];
-        const real prrr_Kc_2 = prrr_joint3_offset_x*prrr_x_2_in_axes0_x;
-        /* (prrr-Ks_2) factor of the sine in the equation of joint 2 */
-        const real prrr_Ks_2 = prrr_S_in_axes0_y*prrr_joint3_offset_x;
-        /* (prrr-rho2_2) squared amplitude */
-        const real prrr_rho2_2 = prrr_Kc_2*prrr_Kc_2 + prrr_Ks_2*prrr_Ks_2;
-        /* (prrr-disc_2) discriminant */
-        const real prrr_disc_2 = prrr_rho2_2 - prrr_Kd_2*prrr_Kd_2;
-        /* (prrr-root_2) root, with the sign of the branch */
-        const real prrr_branch_2 = m->prrr_branch_2[i];
-        const real prrr_root_2 = prrr_branch_2*root(prrr_disc_2);
-        /* (prrr-c_2) cosine of the angle of joint 2 from its reference direction */
-        const real inv_prrr_rho2_2 = 1/prrr_rho2_2;
-        const real prrr_c_2 = inv_prrr_rho2_2*(prrr_Kc_2*prrr_Kd_2 - prrr_Ks_2*prrr_root_2);
-        /* (prrr-s_2) sine of the angle of joint 2 from its reference direction */
-        const real prrr_s_2 = inv_prrr_rho2_2*(prrr_Kc_2*prrr_root_2 + prrr_Kd_2*prrr_Ks_2);
-        /* (prrr-x_3) from the origin of joint 3 to the connection point */
-        const real inv_prrr_size_t = m->inv_prrr_size_t[i];
-        const real prrr_x_3_in_axes2_x = inv_prrr_size_t*prrr_Kd_2*prrr_joint3_offset_x -
-            prrr_joint3_offset_x;
-        /* (prrr-c_3) cosine of the angle of joint 3 from its reference direction */
-        const real inv_prrr_size_t_2 = m->inv_prrr_size_t_2[i];
-        const real prrr_platform_joint_offset_x = m->prrr_platform_joint_offset_x[i];
-        const real prrr_c_3 = inv_prrr_size_t_2*prrr_platform_joint_offset_x*prrr_x_3_in_axes2_x;
-        /* (prrr-s_3) sine of the angle of joint 3 from its reference direction */
-        const real prrr_s_3_t =
-            inv_prrr_size_t*inv_prrr_size_t_2*prrr_joint3_offset_x*prrr_platform_joint_offset_x*prrr_root_2;
-        /* (prrr-r_2) from joint 2 to the connection point, along the links */
-        const real prrr_r_2_t = prrr_platform_joint_offset_x*prrr_s_3_t;
-        const real prrr_r_2_in_axes2_x = prrr_joint3_offset_x +
-            prrr_c_3*prrr_platform_joint_offset_x;
-        const real prrr_r_2_in_axes3_x = prrr_c_3*prrr_r_2_in_axes2_x + prrr_r_2_t*prrr_s_3_t;
-        const real prrr_r_2_in_axes3_y = prrr_r_2_in_axes2_x*prrr_s_3_t - prrr_c_3*prrr_r_2_t;
-        /* (prrr-w_2) reciprocal vector 1 */
-        const real inv_prrr_r_2_in_axes3_y = 1/prrr_r_2_in_axes3_y;
-        /* (prrr-w_3) reciprocal vector 2 */
-        const real prrr_w_3_in_axes3_y = m->prrr_w_3_in_axes3_y[i];
-        const real prrr_w_3_in_axes3_x =
-            inv_prrr_r_2_in_axes3_y*prrr_r_2_in_axes3_x*prrr_w_3_in_axes3_y;
+        values_prrr v;
+        stage_prrr_X(m, w, i, j, s, X, &v);
+        stage_prrr_M_dynamics(m, i, &v);
+        /* (prrr-dy_1_rel) coefficient of the acceleration in: acceleration of the connection point left
+           to the joint accelerations */
+        const real prrr_dy_1_rel_in_axes3_x = v.prrr_c_2*v.prrr_s_3_t - v.prrr_c_3*v.prrr_s_2;
         /* (prrr-dy_1_qdd_2) coefficient of the acceleration in: acceleration of joint 2 */
-        const real prrr_e_1_in_axes3_x = prrr_c_2*prrr_c_3 + prrr_s_2*prrr_s_3_t;
-        const real prrr_dy_1_qdd_2 = inv_prrr_r_2_in_axes3_y*prrr_e_1_in_axes3_x;
-        /* (prrr-P_c_2) force that accelerates joint 2, per unit */
-        const real prrr_h_2_in_spec2_x = m->prrr_h_2_in_spec2_x[i];
-        const real prrr_h_2_in_spec2_y = m->prrr_h_2_in_spec2_y[i];
-        const real prrr_P_c_2_in_axes0_x = -prrr_c_2*prrr_h_2_in_spec2_y -
-            prrr_h_2_in_spec2_x*prrr_s_2;
-        /* (prrr-d_Gamma_3) coefficient of the acceleration in: moment about axis 3 of the distal links'
-           inertia and weight */
-        const real prrr_d_Gamma_3_t = m->prrr_d_Gamma_3_t[i];
-        const real prrr_d_Gamma_3_t_2 = prrr_d_Gamma_3_t*prrr_r_2_in_axes3_x;
-        const real prrr_J_3_in_spec3_zz = m->prrr_J_3_in_spec3_zz[i];
-        const real prrr_h_3_in_spec3_y = m->prrr_h_3_in_spec3_y[i];
-        const real prrr_d_Gamma_3_in_axes3_x = -prrr_h_3_in_spec3_y -
-            inv_prrr_r_2_in_axes3_y*(prrr_J_3_in_spec3_zz - prrr_d_Gamma_3_t_2);
+        const real prrr_dy_1_qdd_2 = -v.inv_prrr_r_2_in_axes3_y*prrr_dy_1_rel_in_axes3_x;
         /* (prrr-dy_1_Gamma_3) coefficient of the acceleration in: moment about axis 3 of the distal
            links' inertia and weight */
-        const real prrr_e_1_in_axes3_y = prrr_c_2*prrr_s_3_t - prrr_c_3*prrr_s_2;
+        const real prrr_J_3_in_spec3_zz = m->prrr_J_3_in_spec3_zz[i];
+        const real prrr_w_3_in_axes3_y = m->prrr_w_3_in_axes3_y[i];
         const real prrr_dy_1_Gamma_3_t =
-            prrr_J_3_in_spec3_zz*prrr_w_3_in_axes3_y*(prrr_e_1_in_axes3_y +
-            prrr_dy_1_qdd_2*prrr_r_2_in_axes3_x);
+            prrr_J_3_in_spec3_zz*prrr_w_3_in_axes3_y*(v.prrr_e_1_in_axes3_y +
+            prrr_dy_1_qdd_2*v.prrr_r_2_in_axes3_x);
         const real prrr_dy_1_Gamma_3 = prrr_J_3_in_spec3_zz*prrr_dy_1_qdd_2 - prrr_dy_1_Gamma_3_t;
         /* (prrr-dy_1_Gamma_2) coefficient of the acceleration in: moment about axis 2 of the distal
            links' inertia and weight */
         const real prrr_Jc_2_in_axes2_zz = m->prrr_Jc_2_in_axes2_zz[i];
-        const real prrr_dy_1_Gamma_2 = prrr_P_c_2_in_axes0_x +
+        const real prrr_dy_1_Gamma_2 = v.prrr_P_c_2_in_axes0_x +
             prrr_Jc_2_in_axes2_zz*prrr_dy_1_qdd_2 - prrr_dy_1_Gamma_3_t;
-        /* (prrr-d_Gamma_2) coefficient of the acceleration in: moment about axis 2 of the distal links'
-           inertia and weight */
-        const real prrr_d_Gamma_2_in_axes3_x = -prrr_h_3_in_spec3_y -
-            inv_prrr_r_2_in_axes3_y*(prrr_Jc_2_in_axes2_zz - prrr_d_Gamma_3_t_2);
         /* (prrr-dy_1_Gamma_1) coefficient of the acceleration in: force along axis 1 of the distal links'
            inertia and weight */
         const real prrr_P_c_1_in_axes0_x = m->prrr_P_c_1_in_axes0_x[i];
         const real prrr_dy_1_Gamma_1 = prrr_P_c_1_in_axes0_x +
-            prrr_P_c_2_in_axes0_x*prrr_dy_1_qdd_2;
+            v.prrr_P_c_2_in_axes0_x*prrr_dy_1_qdd_2;
         /* (prrr-dy_1_G) coefficient of the acceleration in: force at the connection point that balances
            the leg's inertia and weight along all degrees of freedom */
         const real prrr_dy_1_G_in_axes3_y = prrr_dy_1_Gamma_3*prrr_w_3_in_axes3_y;
-        /* (prrr-d_G) coefficient of the acceleration in: force at the connection point that balances the
-           leg's inertia and weight along all degrees of freedom */
-        const real prrr_d_G_in_axes3_xx = prrr_d_Gamma_3_in_axes3_x*prrr_w_3_in_axes3_x -
-            inv_prrr_r_2_in_axes3_y*prrr_d_Gamma_2_in_axes3_x;
-        const real prrr_d_Gamma_3_in_axes3_y = m->prrr_d_Gamma_3_in_axes3_y[i];
-        const real prrr_d_G_in_axes3_xy = prrr_d_Gamma_3_in_axes3_y*prrr_w_3_in_axes3_x -
-            inv_prrr_r_2_in_axes3_y*prrr_d_Gamma_3_in_axes3_y;
-        /* (prrr-d_c) coefficient of the acceleration in: leg force on the platform without actuation and
-           without the mass at the connection point */
-        const real prrr_d_phi_3_t = m->prrr_d_phi_3_t[i];
-        const real prrr_d_c_in_axes3_xy = prrr_d_phi_3_t - prrr_d_G_in_axes3_xy;
         /* (prrr-Q) inertia of the leg at the connection point, without the mass gathered there */
-        const real axis_y_prrr_axes3_x = prrr_base_frame_xy*prrr_e_1_in_axes3_y -
-            prrr_base_frame_xx*prrr_e_1_in_axes3_x;
-        const real axis_x_prrr_axes3_x = prrr_base_frame_yy*prrr_e_1_in_axes3_y -
-            prrr_base_frame_yx*prrr_e_1_in_axes3_x;
+        const real prrr_base_frame_xx = m->prrr_base_frame_xx[i];
+        const real prrr_base_frame_xy = m->prrr_base_frame_xy[i];
+        const real axis_y_prrr_axes3_x = prrr_base_frame_xx*prrr_dy_1_rel_in_axes3_x +
+            prrr_base_frame_xy*v.prrr_e_1_in_axes3_y;
+        const real prrr_base_frame_yx = m->prrr_base_frame_yx[i];
+        const real prrr_base_frame_yy = m->prrr_base_frame_yy[i];
+        const real axis_x_prrr_axes3_x = prrr_base_frame_yx*prrr_dy_1_rel_in_axes3_x +
+            prrr_base_frame_yy*v.prrr_e_1_in_axes3_y;
+        const real prrr_Q_t_3 = axis_x_prrr_axes3_x*v.prrr_Q_t_2 +
+            axis_y_prrr_axes3_x*v.prrr_d_c_in_axes3_xy;
+        const real prrr_Q_t_4 = axis_y_prrr_axes3_x*v.prrr_Q_t_2 -
+            axis_x_prrr_axes3_x*v.prrr_d_c_in_axes3_xy;
         const real prrr_d_c_in_axes3_yy = m->prrr_d_c_in_axes3_yy[i];
-        const real prrr_Q_t = prrr_h_3_in_spec3_y*(prrr_w_3_in_axes3_x - inv_prrr_r_2_in_axes3_y)
-            - prrr_d_G_in_axes3_xx - prrr_d_c_in_axes3_yy;
-        const real prrr_Q_t_2 = R(0.5)*prrr_Q_t;
-        const real prrr_Q_t_3 = axis_x_prrr_axes3_x*prrr_Q_t_2 +
-            axis_y_prrr_axes3_x*prrr_d_c_in_axes3_xy;
-        const real prrr_Q_t_4 = axis_y_prrr_axes3_x*prrr_Q_t_2 -
-            axis_x_prrr_axes3_x*prrr_d_c_in_axes3_xy;
         const real prrr_Q_xx = -prrr_d_c_in_axes3_yy - 2*axis_x_prrr_axes3_x*prrr_Q_t_3;
         const real prrr_Q_xy = axis_x_prrr_axes3_x*prrr_Q_t_4 + axis_y_prrr_axes3_x*prrr_Q_t_3;
         const real prrr_Q_yy = -prrr_d_c_in_axes3_yy - 2*axis_y_prrr_axes3_x*prrr_Q_t_4;
         /* (prrr-dy_1_P_1) coefficient of the acceleration in: inertia and weight of the leg along the
            extra degree of freedom of joint 1 */
-        const real prrr_dy_1_P_1_t = prrr_dy_1_G_in_axes3_y*prrr_e_1_in_axes3_y +
-            inv_prrr_r_2_in_axes3_y*prrr_e_1_in_axes3_x*(prrr_dy_1_G_in_axes3_y*prrr_r_2_in_axes3_x
-            - prrr_dy_1_Gamma_2);
-        const real prrr_dy_1_P_1 = prrr_dy_1_Gamma_1 - prrr_dy_1_P_1_t;
+        const real prrr_dy_1_P_1_t =
+            v.inv_prrr_r_2_in_axes3_y*prrr_dy_1_rel_in_axes3_x*(prrr_dy_1_G_in_axes3_y*v.prrr_r_2_in_axes3_x
+            - prrr_dy_1_Gamma_2) - prrr_dy_1_G_in_axes3_y*v.prrr_e_1_in_axes3_y;
+        const real prrr_dy_1_P_1 = prrr_dy_1_Gamma_1 + prrr_dy_1_P_1_t;
         /* (prrr-d_P_1) coefficient of the acceleration in: inertia and weight of the leg along the extra
            degree of freedom of joint 1 */
         const real prrr_d_G_in_axes3_yy = m->prrr_d_G_in_axes3_yy[i];
-        const real prrr_d_P_1_in_axes3_y = -prrr_d_G_in_axes3_xy*prrr_e_1_in_axes3_x -
-            prrr_d_G_in_axes3_yy*prrr_e_1_in_axes3_y;
-        const real prrr_d_P_1_in_axes3_x = -inv_prrr_r_2_in_axes3_y*prrr_P_c_2_in_axes0_x -
-            prrr_d_G_in_axes3_xx*prrr_e_1_in_axes3_x -
-            prrr_d_Gamma_3_in_axes3_x*prrr_e_1_in_axes3_y*prrr_w_3_in_axes3_y;
+        const real prrr_d_P_1_in_axes3_y = v.prrr_d_G_in_axes3_xy*prrr_dy_1_rel_in_axes3_x -
+            prrr_d_G_in_axes3_yy*v.prrr_e_1_in_axes3_y;
+        const real prrr_d_P_1_in_axes3_x = v.prrr_d_G_in_axes3_xx*prrr_dy_1_rel_in_axes3_x -
+            v.inv_prrr_r_2_in_axes3_y*v.prrr_P_c_2_in_axes0_x -
+            v.prrr_d_Gamma_3_in_axes3_x*v.prrr_e_1_in_axes3_y*prrr_w_3_in_axes3_y;
         const real prrr_d_P_1_x = axis_x_prrr_axes3_x*prrr_d_P_1_in_axes3_x +
             axis_y_prrr_axes3_x*prrr_d_P_1_in_axes3_y;
         const real prrr_d_P_1_y = axis_x_prrr_axes3_x*prrr_d_P_1_in_axes3_y -
             axis_y_prrr_axes3_x*prrr_d_P_1_in_axes3_x;
         /* (M_ta) coupling block of M */
-        const real prrr_M_ta_t = prrr_Q_xy*prrr_q_x - prrr_Q_xx*prrr_q_y;
-        const real prrr_M_ta_t_2 = prrr_Q_yy*prrr_q_x - prrr_Q_xy*prrr_q_y;
+        const real prrr_M_ta_t = prrr_Q_xy*v.prrr_q_x - prrr_Q_xx*v.prrr_q_y;
+        const real prrr_M_ta_t_2 = prrr_Q_yy*v.prrr_q_x - prrr_Q_xy*v.prrr_q_y;
         /* (M_aa) rotational block of M */
-        const real prrr_M_aa_t = prrr_M_ta_t_2*prrr_q_x - prrr_M_ta_t*prrr_q_y;
+        const real prrr_M_aa_t = prrr_M_ta_t_2*v.prrr_q_x - prrr_M_ta_t*v.prrr_q_y;
         /* (prrr-M_ya_1) coupling of extra joint 1 with the rotation of the platform */
-        const real prrr_M_ya_1_z = prrr_d_P_1_y*prrr_q_x - prrr_d_P_1_x*prrr_q_y;
+        const real prrr_M_ya_1_z = prrr_d_P_1_y*v.prrr_q_x - prrr_d_P_1_x*v.prrr_q_y;
         /* (M_tt) translational block of M */
         gather(&terms[0*count + k], add, prrr_Q_xx);  /* M_tt_xx_of_legs */
         gather(&terms[1*count + k], add, prrr_Q_xy);  /* M_tt_xy */
@@ -2302,9 +2728,9 @@ INLINE void M_legs_prrr(const prepared *m, size_t w, size_t leg, size_t legs, co
         o[9*count + k] = (prrr_d_P_1_x + prrr_d_P_1_y) + (prrr_M_ya_1_z + prrr_dy_1_P_1);
         const real prrr_rho2_2_t = m->prrr_rho2_2_t[i];
         const real prrr_size = m->prrr_size[i];
-        o[8*count + k] = UNLESS(magnitude(prrr_rho2_2) > TOLERANCE*TOLERANCE*prrr_rho2_2_t) +
-            UNLESS(magnitude(prrr_r_2_in_axes3_y) > TOLERANCE*prrr_size);
-        o[7*count + k] = UNLESS(prrr_disc_2 >= 0);
+        o[8*count + k] = UNLESS(magnitude(v.prrr_rho2_2) > TOLERANCE*TOLERANCE*prrr_rho2_2_t) +
+            UNLESS(magnitude(v.prrr_r_2_in_axes3_y) > TOLERANCE*prrr_size);
+        o[7*count + k] = UNLESS(v.prrr_disc_2 >= 0);
     }
 }
 
@@ -2312,7 +2738,7 @@ INLINE void M_place_prrr(size_t w, size_t count, const real *o, size_t first, re
 {
     for (size_t k = 0; k < w; ++k) {
         M[3*NV*w + k] = o[0*count + first + k];
-        M[(0*NV + 3)*w + k] = o[1*count + first + k];
+        M[3*w + k] = o[1*count + first + k];
         M[(3*NV + 1)*w + k] = o[2*count + first + k];
         M[(NV + 3)*w + k] = o[3*count + first + k];
         M[(3*NV + 2)*w + k] = o[4*count + first + k];
@@ -2325,118 +2751,41 @@ INLINE void M_place_prrr(size_t w, size_t count, const real *o, size_t first, re
 }
 
 INLINE void M_legs_rrr(const prepared *m, size_t w, size_t leg, size_t legs, const real *s, size_t
-    states, size_t count, int add, real *terms, real *o)
+    states, size_t count, int add, const real *X, real *terms, real *o)
 {
     for (size_t k = 0; k < count; ++k) {
         const size_t i = leg + legs*k;
         const size_t j = states*k;
-        /* (rrr-S) from the base point to the connection point */
-        const real R_xx = s[2*w + j];
-        const real R_yx = s[3*w + j];
-        const real rrr_platform_point_x = m->rrr_platform_point_x[i];
-        const real rrr_platform_point_y = m->rrr_platform_point_y[i];
-        const real rrr_q_x = R_xx*rrr_platform_point_x - R_yx*rrr_platform_point_y;
-        const real rrr_q_y = R_xx*rrr_platform_point_y + R_yx*rrr_platform_point_x;
-        const real rrr_base_point_x = m->rrr_base_point_x[i];
-        const real t_x = s[0*w + j];
-        const real rrr_S_x = rrr_q_x + t_x - rrr_base_point_x;
-        const real rrr_base_point_y = m->rrr_base_point_y[i];
-        const real t_y = s[1*w + j];
-        const real rrr_S_y = rrr_q_y + t_y - rrr_base_point_y;
-        /* (rrr-Kd_1) projection on the centre's direction, from the distance fixed by the joints beyond
-           joint 1 */
-        const real rrr_Kd_1_t_3 = rrr_S_x*rrr_S_x + rrr_S_y*rrr_S_y;
-        const real rrr_Kd_1_t = m->rrr_Kd_1_t[i];
-        const real rrr_Kd_1_t_2 = m->rrr_Kd_1_t_2[i];
-        const real rrr_Kd_1 = rrr_Kd_1_t + R(0.5)*rrr_Kd_1_t_3 - rrr_Kd_1_t_2;
-        /* (rrr-px_1) component along the reference direction */
-        const real rrr_base_frame_xx = m->rrr_base_frame_xx[i];
-        const real rrr_base_frame_yx = m->rrr_base_frame_yx[i];
-        const real rrr_px_1 = rrr_S_x*rrr_base_frame_xx + rrr_S_y*rrr_base_frame_yx;
-        /* (rrr-py_1) component across the reference direction */
-        const real rrr_base_frame_xy = m->rrr_base_frame_xy[i];
-        const real rrr_base_frame_yy = m->rrr_base_frame_yy[i];
-        const real rrr_py_1 = rrr_S_x*rrr_base_frame_xy + rrr_S_y*rrr_base_frame_yy;
-        /* (rrr-Kc_1) factor of the cosine in the equation of joint 1 */
-        const real rrr_joint2_offset_x = m->rrr_joint2_offset_x[i];
-        const real rrr_Kc_1 = rrr_joint2_offset_x*rrr_px_1;
-        /* (rrr-Ks_1) factor of the sine in the equation of joint 1 */
-        const real rrr_Ks_1 = rrr_joint2_offset_x*rrr_py_1;
-        /* (rrr-rho2_1) squared amplitude */
-        const real rrr_rho2_1 = rrr_Kc_1*rrr_Kc_1 + rrr_Ks_1*rrr_Ks_1;
-        /* (rrr-disc_1) discriminant */
-        const real rrr_disc_1 = rrr_rho2_1 - rrr_Kd_1*rrr_Kd_1;
-        /* (rrr-root_1) root, with the sign of the branch */
-        const real rrr_branch_1 = m->rrr_branch_1[i];
-        const real rrr_root_1 = rrr_branch_1*root(rrr_disc_1);
-        /* (rrr-c_1) cosine of the angle of joint 1 from its reference direction */
-        const real inv_rrr_rho2_1 = 1/rrr_rho2_1;
-        const real rrr_c_1 = inv_rrr_rho2_1*(rrr_Kc_1*rrr_Kd_1 - rrr_Ks_1*rrr_root_1);
-        /* (rrr-s_1) sine of the angle of joint 1 from its reference direction */
-        const real rrr_s_1 = inv_rrr_rho2_1*(rrr_Kc_1*rrr_root_1 + rrr_Kd_1*rrr_Ks_1);
-        /* (rrr-x_2) from the origin of joint 2 to the connection point */
-        const real inv_rrr_size_t = m->inv_rrr_size_t[i];
-        const real rrr_x_2_in_axes1_x = inv_rrr_size_t*rrr_Kd_1*rrr_joint2_offset_x -
-            rrr_joint2_offset_x;
-        /* (rrr-c_2) cosine of the angle of joint 2 from its reference direction */
-        const real inv_rrr_size_t_2 = m->inv_rrr_size_t_2[i];
-        const real rrr_platform_joint_offset_x = m->rrr_platform_joint_offset_x[i];
-        const real rrr_c_2 = inv_rrr_size_t_2*rrr_platform_joint_offset_x*rrr_x_2_in_axes1_x;
-        /* (rrr-s_2) sine of the angle of joint 2 from its reference direction */
-        const real rrr_s_2 =
-            -inv_rrr_size_t*inv_rrr_size_t_2*rrr_joint2_offset_x*rrr_platform_joint_offset_x*rrr_root_1;
-        /* (rrr-r_1) from joint 1 to the connection point, along the links */
-        const real rrr_r_1_in_axes1_y = rrr_platform_joint_offset_x*rrr_s_2;
-        const real rrr_r_1_in_axes1_x = rrr_joint2_offset_x + rrr_c_2*rrr_platform_joint_offset_x;
-        const real rrr_r_1_in_axes2_x = rrr_c_2*rrr_r_1_in_axes1_x + rrr_r_1_in_axes1_y*rrr_s_2;
-        const real rrr_r_1_in_axes2_y = rrr_c_2*rrr_r_1_in_axes1_y - rrr_r_1_in_axes1_x*rrr_s_2;
-        /* (rrr-w_1) reciprocal vector 1 */
-        const real inv_rrr_r_1_in_axes2_y = 1/rrr_r_1_in_axes2_y;
-        /* (rrr-w_2) reciprocal vector 2 */
-        const real rrr_w_2_in_axes2_y = m->rrr_w_2_in_axes2_y[i];
-        const real rrr_w_2_in_axes2_x =
-            inv_rrr_r_1_in_axes2_y*rrr_r_1_in_axes2_x*rrr_w_2_in_axes2_y;
-        /* (rrr-d_Gamma_2) coefficient of the acceleration in: moment about axis 2 of the distal links'
-           inertia and weight */
-        const real rrr_d_Gamma_2_t = m->rrr_d_Gamma_2_t[i];
-        const real rrr_d_Gamma_2_t_2 = rrr_d_Gamma_2_t*rrr_r_1_in_axes2_x;
-        const real rrr_J_2_in_spec2_zz = m->rrr_J_2_in_spec2_zz[i];
-        const real rrr_h_2_in_spec2_y = m->rrr_h_2_in_spec2_y[i];
-        const real rrr_d_Gamma_2_in_axes2_x = -rrr_h_2_in_spec2_y -
-            inv_rrr_r_1_in_axes2_y*(rrr_J_2_in_spec2_zz - rrr_d_Gamma_2_t_2);
-        /* (rrr-d_Gamma_1) coefficient of the acceleration in: moment about axis 1 of the distal links'
-           inertia and weight */
-        const real rrr_Jc_1_in_axes1_zz = m->rrr_Jc_1_in_axes1_zz[i];
-        const real rrr_d_Gamma_1_in_axes2_x = -rrr_h_2_in_spec2_y -
-            inv_rrr_r_1_in_axes2_y*(rrr_Jc_1_in_axes1_zz - rrr_d_Gamma_2_t_2);
-        /* (rrr-d_c) coefficient of the acceleration in: leg force on the platform without actuation and
-           without the mass at the connection point */
-        const real rrr_d_Gamma_2_in_axes2_y = m->rrr_d_Gamma_2_in_axes2_y[i];
-        const real rrr_d_phi_2_in_axes2_xy = m->rrr_d_phi_2_in_axes2_xy[i];
-        const real rrr_d_c_in_axes2_xy = inv_rrr_r_1_in_axes2_y*rrr_d_Gamma_2_in_axes2_y -
-            rrr_d_phi_2_in_axes2_xy - rrr_d_Gamma_2_in_axes2_y*rrr_w_2_in_axes2_x;
+        values_rrr v;
+        stage_rrr_X(m, w, i, j, s, X, &v);
+        stage_rrr_M_dynamics(m, i, &v);
         /* (rrr-Q) inertia of the leg at the connection point, without the mass gathered there */
-        const real rrr_Q_t = rrr_c_1*rrr_s_2 + rrr_c_2*rrr_s_1;
-        const real rrr_Q_t_2 = rrr_c_1*rrr_c_2 - rrr_s_1*rrr_s_2;
+        const real rrr_Q_t = v.rrr_c_1*v.rrr_s_2 + v.rrr_c_2*v.rrr_s_1;
+        const real rrr_Q_t_2 = v.rrr_c_1*v.rrr_c_2 - v.rrr_s_1*v.rrr_s_2;
+        const real rrr_base_frame_xx = m->rrr_base_frame_xx[i];
+        const real rrr_base_frame_xy = m->rrr_base_frame_xy[i];
         const real axis_y_rrr_axes2_x = rrr_Q_t_2*rrr_base_frame_xy - rrr_Q_t*rrr_base_frame_xx;
+        const real rrr_base_frame_yx = m->rrr_base_frame_yx[i];
+        const real rrr_base_frame_yy = m->rrr_base_frame_yy[i];
         const real axis_x_rrr_axes2_x = rrr_Q_t_2*rrr_base_frame_yy - rrr_Q_t*rrr_base_frame_yx;
         const real rrr_d_c_in_axes2_yy = m->rrr_d_c_in_axes2_yy[i];
-        const real rrr_Q_t_3 = inv_rrr_r_1_in_axes2_y*rrr_d_Gamma_1_in_axes2_x +
-            rrr_h_2_in_spec2_y*(rrr_w_2_in_axes2_x - inv_rrr_r_1_in_axes2_y) - rrr_d_c_in_axes2_yy
-            - rrr_d_Gamma_2_in_axes2_x*rrr_w_2_in_axes2_x;
+        const real rrr_h_2_in_spec2_y = m->rrr_h_2_in_spec2_y[i];
+        const real rrr_Q_t_3 = v.inv_rrr_r_1_in_axes2_y*v.rrr_d_Gamma_1_in_axes2_x +
+            rrr_h_2_in_spec2_y*(v.rrr_w_2_in_axes2_x - v.inv_rrr_r_1_in_axes2_y) -
+            rrr_d_c_in_axes2_yy - v.rrr_d_Gamma_2_in_axes2_x*v.rrr_w_2_in_axes2_x;
         const real rrr_Q_t_4 = R(0.5)*rrr_Q_t_3;
         const real rrr_Q_t_5 = axis_x_rrr_axes2_x*rrr_Q_t_4 +
-            axis_y_rrr_axes2_x*rrr_d_c_in_axes2_xy;
+            axis_y_rrr_axes2_x*v.rrr_d_c_in_axes2_xy;
         const real rrr_Q_t_6 = axis_y_rrr_axes2_x*rrr_Q_t_4 -
-            axis_x_rrr_axes2_x*rrr_d_c_in_axes2_xy;
+            axis_x_rrr_axes2_x*v.rrr_d_c_in_axes2_xy;
         const real rrr_Q_xx = -rrr_d_c_in_axes2_yy - 2*axis_x_rrr_axes2_x*rrr_Q_t_5;
         const real rrr_Q_xy = axis_x_rrr_axes2_x*rrr_Q_t_6 + axis_y_rrr_axes2_x*rrr_Q_t_5;
         const real rrr_Q_yy = -rrr_d_c_in_axes2_yy - 2*axis_y_rrr_axes2_x*rrr_Q_t_6;
         /* (M_ta) coupling block of M */
-        const real rrr_M_ta_t = rrr_Q_xy*rrr_q_x - rrr_Q_xx*rrr_q_y;
-        const real rrr_M_ta_t_2 = rrr_Q_yy*rrr_q_x - rrr_Q_xy*rrr_q_y;
+        const real rrr_M_ta_t = rrr_Q_xy*v.rrr_q_x - rrr_Q_xx*v.rrr_q_y;
+        const real rrr_M_ta_t_2 = rrr_Q_yy*v.rrr_q_x - rrr_Q_xy*v.rrr_q_y;
         /* (M_aa) rotational block of M */
-        const real rrr_M_aa_t = rrr_M_ta_t_2*rrr_q_x - rrr_M_ta_t*rrr_q_y;
+        const real rrr_M_aa_t = rrr_M_ta_t_2*v.rrr_q_x - rrr_M_ta_t*v.rrr_q_y;
         /* (M_tt) translational block of M */
         gather(&terms[0*count + k], add, rrr_Q_xx);  /* M_tt_xx_of_legs */
         gather(&terms[1*count + k], add, rrr_Q_xy);  /* M_tt_xy */
@@ -2448,9 +2797,9 @@ INLINE void M_legs_rrr(const prepared *m, size_t w, size_t leg, size_t legs, con
         gather(&terms[5*count + k], add, rrr_M_aa_t);  /* M_aa_zz_of_legs */
         const real rrr_rho2_1_t = m->rrr_rho2_1_t[i];
         const real rrr_size = m->rrr_size[i];
-        o[1*count + k] = UNLESS(magnitude(rrr_rho2_1) > TOLERANCE*TOLERANCE*rrr_rho2_1_t) +
-            UNLESS(magnitude(rrr_r_1_in_axes2_y) > TOLERANCE*rrr_size);
-        o[0*count + k] = UNLESS(rrr_disc_1 >= 0);
+        o[1*count + k] = UNLESS(magnitude(v.rrr_rho2_1) > TOLERANCE*TOLERANCE*rrr_rho2_1_t) +
+            UNLESS(magnitude(v.rrr_r_1_in_axes2_y) > TOLERANCE*rrr_size);
+        o[0*count + k] = UNLESS(v.rrr_disc_1 >= 0);
     }
 }
 
@@ -2474,23 +2823,23 @@ INLINE void M_after(const prepared *m, size_t w, const real *s, const real *sums
         const real M_tt_yy = M_tt_yy_of_legs + m_star;
         /* (M_ta) coupling block of M */
         const real M_ta_xz_of_legs = sums[3*w + k];
-        const real h_star_y = s[5*w + k];
+        const real h_star_y = s[3*w + k];
         const real M_ta_xz = M_ta_xz_of_legs - h_star_y;
         const real M_ta_yz_of_legs = sums[4*w + k];
-        const real h_star_x = s[4*w + k];
+        const real h_star_x = s[2*w + k];
         const real M_ta_yz = M_ta_yz_of_legs + h_star_x;
         /* (M_aa) rotational block of M */
         const real J_star_zz = m->J_star_zz;
         const real M_aa_zz_of_legs = sums[5*w + k];
         const real M_aa_zz = J_star_zz + M_aa_zz_of_legs;
         /* (M_tt) translational block of M */
-        M[0*NV*w + k] = M_tt_xx;
+        M[0*w + k] = M_tt_xx;
         const real M_tt_xy = sums[1*w + k];
-        M[(0*NV + 1)*w + k] = M_tt_xy;
+        M[1*w + k] = M_tt_xy;
         M[NV*w + k] = M_tt_xy;
         M[(NV + 1)*w + k] = M_tt_yy;
         /* (M_ta) coupling block of M */
-        M[(0*NV + 2)*w + k] = M_ta_xz;
+        M[2*w + k] = M_ta_xz;
         M[2*NV*w + k] = M_ta_xz;
         M[(NV + 2)*w + k] = M_ta_yz;
         M[(2*NV + 1)*w + k] = M_ta_yz;
@@ -2502,21 +2851,18 @@ INLINE void M_after(const prepared *m, size_t w, const real *s, const real *sums
 
 INLINE void M_run(const prepared *m, const real *X, real *M, verdict *t)
 {
-    real s[6] = {0};
-    real sums[6] = {0};
-    real terms_prrr[6*LEGS(LEGS_OF_prrr)] = {0};
-    real o_prrr[10*LEGS(LEGS_OF_prrr)] = {0};
-    real terms_rrr[6*LEGS(LEGS_OF_rrr)] = {0};
-    real o_rrr[2*LEGS(LEGS_OF_rrr)] = {0};
+    real s[4] = {0}, sums[6] = {0};
+    real terms_prrr[6*LEGS(LEGS_OF_prrr)] = {0}, o_prrr[10*LEGS(LEGS_OF_prrr)] = {0};
+    real terms_rrr[6*LEGS(LEGS_OF_rrr)] = {0}, o_rrr[2*LEGS(LEGS_OF_rrr)] = {0};
     M_before(m, 1, X, s);
     M_legs_prrr(m, 1, 0, 1, s, 0, LEGS(LEGS_OF_prrr), 0, X, terms_prrr, o_prrr);
+    M_legs_rrr(m, 1, 0, 1, s, 0, LEGS(LEGS_OF_rrr), 0, X, terms_rrr, o_rrr);
     for (size_t leg = 0; leg < LEGS_OF_prrr; ++leg) {
         M_place_prrr(1, LEGS(LEGS_OF_prrr), o_prrr, leg, M, t);
     }
     for (size_t n = 0; n < 6; ++n) {
         sums[n] = total(terms_prrr + n*LEGS(LEGS_OF_prrr), LEGS_OF_prrr);
     }
-    M_legs_rrr(m, 1, 0, 1, s, 0, LEGS(LEGS_OF_rrr), 0, terms_rrr, o_rrr);
     for (size_t leg = 0; leg < LEGS_OF_rrr; ++leg) {
         M_place_rrr(1, LEGS(LEGS_OF_rrr), o_rrr, leg, t);
     }
@@ -2528,8 +2874,7 @@ INLINE void M_run(const prepared *m, const real *X, real *M, verdict *t)
 
 INLINE void M_run_lanes(const prepared *m, const real *X, real *M, verdict *t)
 {
-    real s[6*LANES];
-    real sums[6*LANES];
+    real s[4*LANES], sums[6*LANES];
     real o_prrr[10*LANES];
     real o_rrr[2*LANES];
     M_before(m, LANES, X, s);
@@ -2539,7 +2884,7 @@ INLINE void M_run_lanes(const prepared *m, const real *X, real *M, verdict *t)
         M_place_prrr(LANES, LANES, o_prrr, 0, M, t);
     }
     for (size_t leg = 0; leg < LEGS_OF_rrr; ++leg) {
-        M_legs_rrr(m, LANES, leg, 0, s, 1, LANES, 1, sums, o_rrr);
+        M_legs_rrr(m, LANES, leg, 0, s, 1, LANES, 1, X, sums, o_rrr);
         M_place_rrr(LANES, LANES, o_rrr, 0, t);
     }
     M_after(m, LANES, s, sums, M, t);
@@ -2549,47 +2894,23 @@ INLINE void M_run_lanes(const prepared *m, const real *X, real *M, verdict *t)
 INLINE void Z_before(const prepared *m, size_t w, const real *X, const real *V, real *s)
 {
     for (size_t k = 0; k < w; ++k) {
-        /* X: named entries */
-        const real X_0 = X[0*w + k];
-        const real t_x = X_0;
-        const real X_1 = X[1*w + k];
-        const real t_y = X_1;
-        const real X_2 = X[2*w + k];
-        const real R_xx = cosine(X_2);
-        const real R_yx = sine(X_2);
-        /* V: named entries */
-        const real V_0 = V[0*w + k];
-        const real t_dot_x = V_0;
-        const real V_1 = V[1*w + k];
-        const real t_dot_y = V_1;
-        const real V_2 = V[2*w + k];
-        const real omega_z = V_2;
-        /* (W_p) centripetal tensor of the platform */
-        const real W_p_xx = -omega_z*omega_z;
-        /* (h_star) first moment about the platform origin */
-        const real h_star_in_platform_x = m->h_star_in_platform_x;
-        const real h_star_in_platform_y = m->h_star_in_platform_y;
-        const real h_star_x = R_xx*h_star_in_platform_x - R_yx*h_star_in_platform_y;
-        const real h_star_y = R_xx*h_star_in_platform_y + R_yx*h_star_in_platform_x;
+        values v;
+        stage_V(w, k, V, &v);
+        stage_X(m, w, k, X, &v);
         /* (Z_p) centripetal force and weight of the platform */
         const real Z_p_t = m->Z_p_t;
-        const real Z_p_x = W_p_xx*h_star_x - Z_p_t;
+        const real Z_p_x = v.W_p_xx*v.h_star_x - Z_p_t;
         const real Z_p_t_2 = m->Z_p_t_2;
-        const real Z_p_y = W_p_xx*h_star_y - Z_p_t_2;
+        const real Z_p_y = v.W_p_xx*v.h_star_y - Z_p_t_2;
         /* (Z_q) gyroscopic moment and moment of the weight of the platform */
         const real gravity_x = m->gravity_x;
         const real gravity_y = m->gravity_y;
-        const real Z_q_z = gravity_x*h_star_y - gravity_y*h_star_x;
-        s[0*w + k] = t_x;
-        s[1*w + k] = t_y;
-        s[2*w + k] = R_xx;
-        s[3*w + k] = R_yx;
-        s[4*w + k] = t_dot_x;
-        s[5*w + k] = t_dot_y;
-        s[6*w + k] = omega_z;
-        s[7*w + k] = Z_p_x;
-        s[8*w + k] = Z_p_y;
-        s[9*w + k] = Z_q_z;
+        const real Z_q_z = gravity_x*v.h_star_y - gravity_y*v.h_star_x;
+        s[0*w + k] = v.R_xx;
+        s[1*w + k] = v.R_yx;
+        s[2*w + k] = Z_p_x;
+        s[3*w + k] = Z_p_y;
+        s[4*w + k] = Z_q_z;
     }
 }
 
@@ -2599,133 +2920,58 @@ INLINE void Z_legs_prrr(const prepared *m, size_t w, size_t leg, size_t legs, co
     for (size_t k = 0; k < count; ++k) {
         const size_t i = leg + legs*k;
         const size_t j = states*k;
-        /* (prrr-S) from the base point to the connection point */
-        const real R_xx = s[2*w + j];
-        const real R_yx = s[3*w + j];
-        const real prrr_platform_point_x = m->prrr_platform_point_x[i];
-        const real prrr_platform_point_y = m->prrr_platform_point_y[i];
-        const real prrr_q_x = R_xx*prrr_platform_point_x - R_yx*prrr_platform_point_y;
-        const real prrr_q_y = R_xx*prrr_platform_point_y + R_yx*prrr_platform_point_x;
-        const real prrr_base_point_x = m->prrr_base_point_x[i];
-        const real t_x = s[0*w + j];
-        const real prrr_S_x = prrr_q_x + t_x - prrr_base_point_x;
-        const real prrr_base_point_y = m->prrr_base_point_y[i];
-        const real t_y = s[1*w + j];
-        const real prrr_S_y = prrr_q_y + t_y - prrr_base_point_y;
-        const real prrr_base_frame_xx = m->prrr_base_frame_xx[i];
-        const real prrr_base_frame_yx = m->prrr_base_frame_yx[i];
-        const real prrr_S_in_axes0_y = -prrr_S_x*prrr_base_frame_xx - prrr_S_y*prrr_base_frame_yx;
-        /* (prrr-x_2) from the origin of joint 2 to the connection point */
-        const real prrr_base_frame_xy = m->prrr_base_frame_xy[i];
-        const real prrr_base_frame_yy = m->prrr_base_frame_yy[i];
-        const real prrr_y_1_extra = X[3*w + j];
-        const real prrr_x_2_in_axes0_x = prrr_S_x*prrr_base_frame_xy + prrr_S_y*prrr_base_frame_yy
-            - prrr_y_1_extra;
-        /* (prrr-Kd_2) projection on the centre's direction, from the distance fixed by the joints beyond
-           joint 2 */
-        const real prrr_Kd_2_t_3 = prrr_S_in_axes0_y*prrr_S_in_axes0_y +
-            prrr_x_2_in_axes0_x*prrr_x_2_in_axes0_x;
-        const real prrr_Kd_2_t = m->prrr_Kd_2_t[i];
-        const real prrr_Kd_2_t_2 = m->prrr_Kd_2_t_2[i];
-        const real prrr_Kd_2 = prrr_Kd_2_t + R(0.5)*prrr_Kd_2_t_3 - prrr_Kd_2_t_2;
-        /* (prrr-Kc_2) factor of the cosine in the equation of joint 2 */
-        const real prrr_joint3_offset_x = m->prrr_joint3_offset_x[i];
-        const real prrr_Kc_2 = prrr_joint3_offset_x*prrr_x_2_in_axes0_x;
-        /* (prrr-Ks_2) factor of the sine in the equation of joint 2 */
-        const real prrr_Ks_2 = prrr_S_in_axes0_y*prrr_joint3_offset_x;
-        /* (prrr-rho2_2) squared amplitude */
-        const real prrr_rho2_2 = prrr_Kc_2*prrr_Kc_2 + prrr_Ks_2*prrr_Ks_2;
-        /* (prrr-disc_2) discriminant */
-        const real prrr_disc_2 = prrr_rho2_2 - prrr_Kd_2*prrr_Kd_2;
-        /* (prrr-root_2) root, with the sign of the branch */
-        const real prrr_branch_2 = m->prrr_branch_2[i];
-        const real prrr_root_2 = prrr_branch_2*root(prrr_disc_2);
-        /* (prrr-c_2) cosine of the angle of joint 2 from its reference direction */
-        const real inv_prrr_rho2_2 = 1/prrr_rho2_2;
-        const real prrr_c_2 = inv_prrr_rho2_2*(prrr_Kc_2*prrr_Kd_2 - prrr_Ks_2*prrr_root_2);
-        /* (prrr-s_2) sine of the angle of joint 2 from its reference direction */
-        const real prrr_s_2 = inv_prrr_rho2_2*(prrr_Kc_2*prrr_root_2 + prrr_Kd_2*prrr_Ks_2);
-        /* (prrr-x_3) from the origin of joint 3 to the connection point */
-        const real inv_prrr_size_t = m->inv_prrr_size_t[i];
-        const real prrr_x_3_in_axes2_x = inv_prrr_size_t*prrr_Kd_2*prrr_joint3_offset_x -
-            prrr_joint3_offset_x;
-        /* (prrr-c_3) cosine of the angle of joint 3 from its reference direction */
-        const real inv_prrr_size_t_2 = m->inv_prrr_size_t_2[i];
-        const real prrr_platform_joint_offset_x = m->prrr_platform_joint_offset_x[i];
-        const real prrr_c_3 = inv_prrr_size_t_2*prrr_platform_joint_offset_x*prrr_x_3_in_axes2_x;
-        /* (prrr-s_3) sine of the angle of joint 3 from its reference direction */
-        const real prrr_s_3_t =
-            inv_prrr_size_t*inv_prrr_size_t_2*prrr_joint3_offset_x*prrr_platform_joint_offset_x*prrr_root_2;
-        /* (prrr-S_dot) velocity of the connection point */
-        const real omega_z = s[6*w + j];
-        const real prrr_S_dot_t = omega_z*prrr_q_y;
-        const real prrr_S_dot_t_2 = omega_z*prrr_q_x;
-        const real t_dot_x = s[4*w + j];
-        const real prrr_S_dot_x = t_dot_x - prrr_S_dot_t;
-        const real t_dot_y = s[5*w + j];
-        const real prrr_S_dot_y = prrr_S_dot_t_2 + t_dot_y;
-        /* (prrr-r_2) from joint 2 to the connection point, along the links */
-        const real prrr_r_2_t = prrr_platform_joint_offset_x*prrr_s_3_t;
-        const real prrr_r_2_in_axes2_x = prrr_joint3_offset_x +
-            prrr_c_3*prrr_platform_joint_offset_x;
-        const real prrr_r_2_in_axes3_x = prrr_c_3*prrr_r_2_in_axes2_x + prrr_r_2_t*prrr_s_3_t;
-        const real prrr_r_2_in_axes3_y = prrr_r_2_in_axes2_x*prrr_s_3_t - prrr_c_3*prrr_r_2_t;
-        /* (prrr-w_2) reciprocal vector 1 */
-        const real inv_prrr_r_2_in_axes3_y = 1/prrr_r_2_in_axes3_y;
-        /* (prrr-S_dot_rest) velocity of the connection point left to the joints that are not extra */
-        const real prrr_yd_1 = V[3*w + j];
-        const real prrr_S_dot_rest_x = prrr_S_dot_x - prrr_base_frame_xy*prrr_yd_1;
-        const real prrr_S_dot_rest_y = prrr_S_dot_y - prrr_base_frame_yy*prrr_yd_1;
+        values_prrr v;
+        stage_prrr_X(m, w, i, j, s, X, &v);
+        stage_prrr_V_X(m, w, i, j, V, &v);
+        stage_prrr_Z_dynamics(m, w, i, j, V, &v);
         /* (prrr-qd_2) rate of joint 2 */
-        const real prrr_e_1_in_axes3_y = prrr_c_2*prrr_s_3_t - prrr_c_3*prrr_s_2;
-        const real prrr_e_1_in_axes3_x = prrr_c_2*prrr_c_3 + prrr_s_2*prrr_s_3_t;
-        const real axis_y_prrr_axes3_x = prrr_base_frame_xy*prrr_e_1_in_axes3_y -
-            prrr_base_frame_xx*prrr_e_1_in_axes3_x;
-        const real axis_x_prrr_axes3_x = prrr_base_frame_yy*prrr_e_1_in_axes3_y -
-            prrr_base_frame_yx*prrr_e_1_in_axes3_x;
-        const real prrr_qd_2 = -inv_prrr_r_2_in_axes3_y*(axis_x_prrr_axes3_x*prrr_S_dot_rest_x -
-            axis_y_prrr_axes3_x*prrr_S_dot_rest_y);
+        const real prrr_base_frame_xx = m->prrr_base_frame_xx[i];
+        const real prrr_base_frame_xy = m->prrr_base_frame_xy[i];
+        const real axis_y_prrr_axes3_x = prrr_base_frame_xx*v.prrr_qd_2_t +
+            prrr_base_frame_xy*v.prrr_e_1_in_axes3_y;
+        const real prrr_base_frame_yx = m->prrr_base_frame_yx[i];
+        const real prrr_base_frame_yy = m->prrr_base_frame_yy[i];
+        const real axis_x_prrr_axes3_x = prrr_base_frame_yx*v.prrr_qd_2_t +
+            prrr_base_frame_yy*v.prrr_e_1_in_axes3_y;
+        const real prrr_qd_2 = -v.inv_prrr_r_2_in_axes3_y*(axis_x_prrr_axes3_x*v.prrr_S_dot_rest_x
+            - axis_y_prrr_axes3_x*v.prrr_S_dot_rest_y);
         /* (prrr-W_2) centripetal tensor of link 2 */
         const real prrr_W_2_in_axes2_xx = -prrr_qd_2*prrr_qd_2;
         /* (prrr-omega_3) angular velocity of link 3 */
         const real prrr_w_3_in_axes3_y = m->prrr_w_3_in_axes3_y[i];
         const real prrr_omega_3_in_axes3_z = prrr_qd_2 +
-            prrr_w_3_in_axes3_y*(axis_x_prrr_axes3_x*prrr_S_dot_rest_y +
-            axis_y_prrr_axes3_x*prrr_S_dot_rest_x - prrr_qd_2*prrr_r_2_in_axes3_x);
+            prrr_w_3_in_axes3_y*(axis_x_prrr_axes3_x*v.prrr_S_dot_rest_y +
+            axis_y_prrr_axes3_x*v.prrr_S_dot_rest_x - prrr_qd_2*v.prrr_r_2_in_axes3_x);
         /* (prrr-W_3) centripetal tensor of link 3 */
         const real prrr_W_3_t = prrr_omega_3_in_axes3_z*prrr_omega_3_in_axes3_z;
         /* (prrr-u_1) centripetal acceleration of the connection point */
-        const real prrr_u_1_x = -omega_z*prrr_S_dot_t_2;
-        const real prrr_u_1_t = omega_z*prrr_S_dot_t;
-        const real prrr_u_1_in_axes3_x = axis_x_prrr_axes3_x*prrr_u_1_x +
-            axis_y_prrr_axes3_x*prrr_u_1_t;
-        const real prrr_u_1_in_axes3_y = axis_y_prrr_axes3_x*prrr_u_1_x -
-            axis_x_prrr_axes3_x*prrr_u_1_t;
+        const real prrr_u_1_in_axes3_x = axis_x_prrr_axes3_x*v.prrr_u_1_x +
+            axis_y_prrr_axes3_x*v.prrr_u_1_t;
+        const real prrr_u_1_in_axes3_y = axis_y_prrr_axes3_x*v.prrr_u_1_x -
+            axis_x_prrr_axes3_x*v.prrr_u_1_t;
         /* (prrr-bias) acceleration of the connection point at zero joint accelerations */
-        const real prrr_bias_in_axes3_x = prrr_W_2_in_axes2_xx*prrr_c_3*prrr_joint3_offset_x -
+        const real prrr_joint3_offset_x = m->prrr_joint3_offset_x[i];
+        const real prrr_platform_joint_offset_x = m->prrr_platform_joint_offset_x[i];
+        const real prrr_bias_in_axes3_x = prrr_W_2_in_axes2_xx*v.prrr_c_3*prrr_joint3_offset_x -
             prrr_W_3_t*prrr_platform_joint_offset_x;
         /* (prrr-rel_o) remainder without the acceleration in: acceleration of the connection point left
            to the joint accelerations */
         const real prrr_rel_o_in_axes3_x = prrr_u_1_in_axes3_x - prrr_bias_in_axes3_x;
         const real prrr_rel_o_in_axes3_y = prrr_u_1_in_axes3_y -
-            prrr_W_2_in_axes2_xx*prrr_joint3_offset_x*prrr_s_3_t;
+            prrr_W_2_in_axes2_xx*prrr_joint3_offset_x*v.prrr_s_3_t;
         /* (prrr-B_2_o) remainder of the acceleration tensor of link 2 */
-        const real prrr_B_2_o_in_axes2_xy = inv_prrr_r_2_in_axes3_y*prrr_rel_o_in_axes3_x;
+        const real prrr_B_2_o_in_axes2_xy = v.inv_prrr_r_2_in_axes3_y*prrr_rel_o_in_axes3_x;
         /* (prrr-alpha_3_o) remainder without the acceleration in: angular acceleration of link 3 */
         const real prrr_alpha_3_o_in_axes3_z = prrr_w_3_in_axes3_y*(prrr_rel_o_in_axes3_y +
-            prrr_B_2_o_in_axes2_xy*prrr_r_2_in_axes3_x) - prrr_B_2_o_in_axes2_xy;
+            prrr_B_2_o_in_axes2_xy*v.prrr_r_2_in_axes3_x) - prrr_B_2_o_in_axes2_xy;
         /* (prrr-f_2_o) remainder without the acceleration in: inertia force of link 2 less its weight */
-        const real prrr_g_in_axes0_x = m->prrr_g_in_axes0_x[i];
-        const real prrr_g_in_axes0_y = m->prrr_g_in_axes0_y[i];
-        const real prrr_g_in_axes2_x = prrr_c_2*prrr_g_in_axes0_x + prrr_g_in_axes0_y*prrr_s_2;
-        const real prrr_g_in_axes2_y = prrr_c_2*prrr_g_in_axes0_y - prrr_g_in_axes0_x*prrr_s_2;
         const real prrr_h_2_in_spec2_x = m->prrr_h_2_in_spec2_x[i];
         const real prrr_h_2_in_spec2_y = m->prrr_h_2_in_spec2_y[i];
         const real prrr_link2_mass = m->prrr_link2_mass[i];
         const real prrr_f_2_o_in_axes2_x = prrr_B_2_o_in_axes2_xy*prrr_h_2_in_spec2_y +
-            prrr_W_2_in_axes2_xx*prrr_h_2_in_spec2_x - prrr_g_in_axes2_x*prrr_link2_mass;
+            prrr_W_2_in_axes2_xx*prrr_h_2_in_spec2_x - v.prrr_g_in_axes2_x*prrr_link2_mass;
         const real prrr_f_2_o_in_axes2_y = prrr_W_2_in_axes2_xx*prrr_h_2_in_spec2_y -
-            prrr_B_2_o_in_axes2_xy*prrr_h_2_in_spec2_x - prrr_g_in_axes2_y*prrr_link2_mass;
+            prrr_B_2_o_in_axes2_xy*prrr_h_2_in_spec2_x - v.prrr_g_in_axes2_y*prrr_link2_mass;
         /* (prrr-acc_3_o) remainder without the acceleration in: acceleration of the reference point of
            link 3, less gravity */
         const real gravity_x = m->gravity_x;
@@ -2745,21 +2991,21 @@ INLINE void Z_legs_prrr(const prepared *m, size_t w, size_t leg, size_t legs, co
         /* (prrr-mu_2_o) remainder without the acceleration in: inertia moment of the links that turn with
            link 2, about their reference points */
         const real prrr_J_2_in_spec2_zz = m->prrr_J_2_in_spec2_zz[i];
-        const real prrr_mu_2_o_in_axes2_z = prrr_g_in_axes2_x*prrr_h_2_in_spec2_y -
-            prrr_B_2_o_in_axes2_xy*prrr_J_2_in_spec2_zz - prrr_g_in_axes2_y*prrr_h_2_in_spec2_x;
+        const real prrr_mu_2_o_in_axes2_z = v.prrr_g_in_axes2_x*prrr_h_2_in_spec2_y -
+            prrr_B_2_o_in_axes2_xy*prrr_J_2_in_spec2_zz - v.prrr_g_in_axes2_y*prrr_h_2_in_spec2_x;
         /* (prrr-N_2_o) remainder without the acceleration in: moment about joint 2 of the links from 2
            outwards, the force at the connection point left out */
         const real prrr_N_2_o_in_axes2_z = prrr_mu_2_o_in_axes2_z + prrr_mu_3_o_in_axes3_z;
         /* (prrr-T_1_o) remainder without the acceleration in: inertia force of the links from 1 outwards,
            the last link left out */
         const real prrr_f_1_o_in_axes0_x = m->prrr_f_1_o_in_axes0_x[i];
-        const real prrr_T_1_o_in_axes0_x = prrr_f_1_o_in_axes0_x + prrr_c_2*prrr_f_2_o_in_axes2_x
-            - prrr_f_2_o_in_axes2_y*prrr_s_2;
+        const real prrr_T_1_o_in_axes0_x = prrr_f_1_o_in_axes0_x +
+            v.prrr_c_2*prrr_f_2_o_in_axes2_y + prrr_f_2_o_in_axes2_x*v.prrr_s_2;
         /* (prrr-G_o) remainder without the acceleration in: force at the connection point that balances
            the leg's inertia and weight along all degrees of freedom */
         const real prrr_G_o_in_axes3_y = prrr_mu_3_o_in_axes3_z*prrr_w_3_in_axes3_y;
         const real prrr_G_o_in_axes3_x =
-            inv_prrr_r_2_in_axes3_y*(prrr_G_o_in_axes3_y*prrr_r_2_in_axes3_x -
+            v.inv_prrr_r_2_in_axes3_y*(prrr_G_o_in_axes3_y*v.prrr_r_2_in_axes3_x -
             prrr_N_2_o_in_axes2_z);
         /* (prrr-c_o) remainder without the acceleration in: leg force on the platform without actuation
            and without the mass at the connection point */
@@ -2774,11 +3020,11 @@ INLINE void Z_legs_prrr(const prepared *m, size_t w, size_t leg, size_t legs, co
             axis_x_prrr_axes3_x*prrr_c_o_in_axes3_y;
         /* (prrr-P_1_o) remainder without the acceleration in: inertia and weight of the leg along the
            extra degree of freedom of joint 1 */
-        const real prrr_P_1_o_t = prrr_G_o_in_axes3_x*prrr_e_1_in_axes3_x +
-            prrr_G_o_in_axes3_y*prrr_e_1_in_axes3_y;
-        const real prrr_P_1_o = prrr_T_1_o_in_axes0_x - prrr_P_1_o_t;
+        const real prrr_P_1_o_t = prrr_G_o_in_axes3_x*v.prrr_qd_2_t -
+            prrr_G_o_in_axes3_y*v.prrr_e_1_in_axes3_y;
+        const real prrr_P_1_o = prrr_P_1_o_t + prrr_T_1_o_in_axes0_x;
         /* (Z_a) rotational part of Z */
-        const real prrr_Z_a_t = prrr_U_y*prrr_q_x - prrr_U_x*prrr_q_y;
+        const real prrr_Z_a_t = prrr_U_y*v.prrr_q_x - prrr_U_x*v.prrr_q_y;
         /* (Z_t) translational part of Z */
         gather(&terms[0*count + k], add, prrr_U_x);  /* Z_t_x_of_legs */
         gather(&terms[1*count + k], add, prrr_U_y);  /* Z_t_y_of_legs */
@@ -2790,9 +3036,9 @@ INLINE void Z_legs_prrr(const prepared *m, size_t w, size_t leg, size_t legs, co
         o[3*count + k] = prrr_P_1_o;
         const real prrr_rho2_2_t = m->prrr_rho2_2_t[i];
         const real prrr_size = m->prrr_size[i];
-        o[2*count + k] = UNLESS(magnitude(prrr_rho2_2) > TOLERANCE*TOLERANCE*prrr_rho2_2_t) +
-            UNLESS(magnitude(prrr_r_2_in_axes3_y) > TOLERANCE*prrr_size);
-        o[1*count + k] = UNLESS(prrr_disc_2 >= 0);
+        o[2*count + k] = UNLESS(magnitude(v.prrr_rho2_2) > TOLERANCE*TOLERANCE*prrr_rho2_2_t) +
+            UNLESS(magnitude(v.prrr_r_2_in_axes3_y) > TOLERANCE*prrr_size);
+        o[1*count + k] = UNLESS(v.prrr_disc_2 >= 0);
     }
 }
 
@@ -2807,118 +3053,57 @@ INLINE void Z_place_prrr(size_t w, size_t count, const real *o, size_t first, re
 }
 
 INLINE void Z_legs_rrr(const prepared *m, size_t w, size_t leg, size_t legs, const real *s, size_t
-    states, size_t count, int add, real *terms, real *o)
+    states, size_t count, int add, const real *X, const real *V, real *terms, real *o)
 {
     for (size_t k = 0; k < count; ++k) {
         const size_t i = leg + legs*k;
         const size_t j = states*k;
-        /* (rrr-S) from the base point to the connection point */
-        const real R_xx = s[2*w + j];
-        const real R_yx = s[3*w + j];
-        const real rrr_platform_point_x = m->rrr_platform_point_x[i];
-        const real rrr_platform_point_y = m->rrr_platform_point_y[i];
-        const real rrr_q_x = R_xx*rrr_platform_point_x - R_yx*rrr_platform_point_y;
-        const real rrr_q_y = R_xx*rrr_platform_point_y + R_yx*rrr_platform_point_x;
-        const real rrr_base_point_x = m->rrr_base_point_x[i];
-        const real t_x = s[0*w + j];
-        const real rrr_S_x = rrr_q_x + t_x - rrr_base_point_x;
-        const real rrr_base_point_y = m->rrr_base_point_y[i];
-        const real t_y = s[1*w + j];
-        const real rrr_S_y = rrr_q_y + t_y - rrr_base_point_y;
-        /* (rrr-Kd_1) projection on the centre's direction, from the distance fixed by the joints beyond
-           joint 1 */
-        const real rrr_Kd_1_t_3 = rrr_S_x*rrr_S_x + rrr_S_y*rrr_S_y;
-        const real rrr_Kd_1_t = m->rrr_Kd_1_t[i];
-        const real rrr_Kd_1_t_2 = m->rrr_Kd_1_t_2[i];
-        const real rrr_Kd_1 = rrr_Kd_1_t + R(0.5)*rrr_Kd_1_t_3 - rrr_Kd_1_t_2;
-        /* (rrr-px_1) component along the reference direction */
-        const real rrr_base_frame_xx = m->rrr_base_frame_xx[i];
-        const real rrr_base_frame_yx = m->rrr_base_frame_yx[i];
-        const real rrr_px_1 = rrr_S_x*rrr_base_frame_xx + rrr_S_y*rrr_base_frame_yx;
-        /* (rrr-py_1) component across the reference direction */
-        const real rrr_base_frame_xy = m->rrr_base_frame_xy[i];
-        const real rrr_base_frame_yy = m->rrr_base_frame_yy[i];
-        const real rrr_py_1 = rrr_S_x*rrr_base_frame_xy + rrr_S_y*rrr_base_frame_yy;
-        /* (rrr-Kc_1) factor of the cosine in the equation of joint 1 */
-        const real rrr_joint2_offset_x = m->rrr_joint2_offset_x[i];
-        const real rrr_Kc_1 = rrr_joint2_offset_x*rrr_px_1;
-        /* (rrr-Ks_1) factor of the sine in the equation of joint 1 */
-        const real rrr_Ks_1 = rrr_joint2_offset_x*rrr_py_1;
-        /* (rrr-rho2_1) squared amplitude */
-        const real rrr_rho2_1 = rrr_Kc_1*rrr_Kc_1 + rrr_Ks_1*rrr_Ks_1;
-        /* (rrr-disc_1) discriminant */
-        const real rrr_disc_1 = rrr_rho2_1 - rrr_Kd_1*rrr_Kd_1;
-        /* (rrr-root_1) root, with the sign of the branch */
-        const real rrr_branch_1 = m->rrr_branch_1[i];
-        const real rrr_root_1 = rrr_branch_1*root(rrr_disc_1);
-        /* (rrr-c_1) cosine of the angle of joint 1 from its reference direction */
-        const real inv_rrr_rho2_1 = 1/rrr_rho2_1;
-        const real rrr_c_1 = inv_rrr_rho2_1*(rrr_Kc_1*rrr_Kd_1 - rrr_Ks_1*rrr_root_1);
-        /* (rrr-s_1) sine of the angle of joint 1 from its reference direction */
-        const real rrr_s_1 = inv_rrr_rho2_1*(rrr_Kc_1*rrr_root_1 + rrr_Kd_1*rrr_Ks_1);
-        /* (rrr-x_2) from the origin of joint 2 to the connection point */
-        const real inv_rrr_size_t = m->inv_rrr_size_t[i];
-        const real rrr_x_2_in_axes1_x = inv_rrr_size_t*rrr_Kd_1*rrr_joint2_offset_x -
-            rrr_joint2_offset_x;
-        /* (rrr-c_2) cosine of the angle of joint 2 from its reference direction */
-        const real inv_rrr_size_t_2 = m->inv_rrr_size_t_2[i];
-        const real rrr_platform_joint_offset_x = m->rrr_platform_joint_offset_x[i];
-        const real rrr_c_2 = inv_rrr_size_t_2*rrr_platform_joint_offset_x*rrr_x_2_in_axes1_x;
-        /* (rrr-s_2) sine of the angle of joint 2 from its reference direction */
-        const real rrr_s_2 =
-            -inv_rrr_size_t*inv_rrr_size_t_2*rrr_joint2_offset_x*rrr_platform_joint_offset_x*rrr_root_1;
-        /* (rrr-S_dot) velocity of the connection point */
-        const real omega_z = s[6*w + j];
-        const real rrr_S_dot_t = omega_z*rrr_q_y;
-        const real rrr_S_dot_t_2 = omega_z*rrr_q_x;
-        const real t_dot_x = s[4*w + j];
-        const real rrr_S_dot_x = t_dot_x - rrr_S_dot_t;
-        const real t_dot_y = s[5*w + j];
-        const real rrr_S_dot_y = rrr_S_dot_t_2 + t_dot_y;
-        /* (rrr-r_1) from joint 1 to the connection point, along the links */
-        const real rrr_r_1_in_axes1_y = rrr_platform_joint_offset_x*rrr_s_2;
-        const real rrr_r_1_in_axes1_x = rrr_joint2_offset_x + rrr_c_2*rrr_platform_joint_offset_x;
-        const real rrr_r_1_in_axes2_x = rrr_c_2*rrr_r_1_in_axes1_x + rrr_r_1_in_axes1_y*rrr_s_2;
-        const real rrr_r_1_in_axes2_y = rrr_c_2*rrr_r_1_in_axes1_y - rrr_r_1_in_axes1_x*rrr_s_2;
-        /* (rrr-w_1) reciprocal vector 1 */
-        const real inv_rrr_r_1_in_axes2_y = 1/rrr_r_1_in_axes2_y;
+        values_rrr v;
+        stage_rrr_X(m, w, i, j, s, X, &v);
+        stage_rrr_V_X(m, w, i, j, V, &v);
         /* (rrr-qd_1) rate of joint 1 */
-        const real rrr_qd_1_t = rrr_c_1*rrr_s_2 + rrr_c_2*rrr_s_1;
-        const real rrr_qd_1_t_2 = rrr_c_1*rrr_c_2 - rrr_s_1*rrr_s_2;
-        const real axis_y_rrr_axes2_x = rrr_base_frame_xy*rrr_qd_1_t_2 -
+        const real rrr_qd_1_t = v.rrr_c_1*v.rrr_s_2 + v.rrr_c_2*v.rrr_s_1;
+        const real rrr_base_frame_xx = m->rrr_base_frame_xx[i];
+        const real rrr_base_frame_xy = m->rrr_base_frame_xy[i];
+        const real axis_y_rrr_axes2_x = rrr_base_frame_xy*v.rrr_qd_1_t_2 -
             rrr_base_frame_xx*rrr_qd_1_t;
-        const real axis_x_rrr_axes2_x = rrr_base_frame_yy*rrr_qd_1_t_2 -
+        const real rrr_base_frame_yx = m->rrr_base_frame_yx[i];
+        const real rrr_base_frame_yy = m->rrr_base_frame_yy[i];
+        const real axis_x_rrr_axes2_x = rrr_base_frame_yy*v.rrr_qd_1_t_2 -
             rrr_base_frame_yx*rrr_qd_1_t;
-        const real rrr_qd_1_t_3 = inv_rrr_r_1_in_axes2_y*(axis_x_rrr_axes2_x*rrr_S_dot_x -
-            axis_y_rrr_axes2_x*rrr_S_dot_y);
+        const real rrr_qd_1_t_3 = v.inv_rrr_r_1_in_axes2_y*(axis_x_rrr_axes2_x*v.rrr_S_dot_x -
+            axis_y_rrr_axes2_x*v.rrr_S_dot_y);
         /* (rrr-W_1) centripetal tensor of link 1 */
         const real rrr_W_1_t = rrr_qd_1_t_3*rrr_qd_1_t_3;
         /* (rrr-omega_2) angular velocity of link 2 */
         const real rrr_w_2_in_axes2_y = m->rrr_w_2_in_axes2_y[i];
-        const real rrr_omega_2_in_axes2_z = rrr_w_2_in_axes2_y*(axis_x_rrr_axes2_x*rrr_S_dot_y +
-            axis_y_rrr_axes2_x*rrr_S_dot_x + rrr_qd_1_t_3*rrr_r_1_in_axes2_x) - rrr_qd_1_t_3;
+        const real rrr_omega_2_in_axes2_z = rrr_w_2_in_axes2_y*(axis_x_rrr_axes2_x*v.rrr_S_dot_y +
+            axis_y_rrr_axes2_x*v.rrr_S_dot_x + rrr_qd_1_t_3*v.rrr_r_1_in_axes2_x) - rrr_qd_1_t_3;
         /* (rrr-W_2) centripetal tensor of link 2 */
         const real rrr_W_2_t = rrr_omega_2_in_axes2_z*rrr_omega_2_in_axes2_z;
         /* (rrr-u_1) centripetal acceleration of the connection point */
-        const real rrr_u_1_x = -omega_z*rrr_S_dot_t_2;
-        const real rrr_u_1_t = omega_z*rrr_S_dot_t;
+        const real omega_z = V[2*w + j];
+        const real rrr_u_1_x = -omega_z*v.rrr_S_dot_t_2;
+        const real rrr_u_1_t = omega_z*v.rrr_S_dot_t;
         const real rrr_u_1_in_axes2_x = axis_x_rrr_axes2_x*rrr_u_1_x +
             axis_y_rrr_axes2_x*rrr_u_1_t;
         const real rrr_u_1_in_axes2_y = axis_y_rrr_axes2_x*rrr_u_1_x -
             axis_x_rrr_axes2_x*rrr_u_1_t;
         /* (rrr-bias) acceleration of the connection point at zero joint accelerations */
+        const real rrr_joint2_offset_x = m->rrr_joint2_offset_x[i];
+        const real rrr_platform_joint_offset_x = m->rrr_platform_joint_offset_x[i];
         const real rrr_bias_in_axes2_x = -rrr_W_2_t*rrr_platform_joint_offset_x -
-            rrr_W_1_t*rrr_c_2*rrr_joint2_offset_x;
+            rrr_W_1_t*v.rrr_c_2*rrr_joint2_offset_x;
         /* (rrr-rel_o) remainder without the acceleration in: acceleration of the connection point left to
            the joint accelerations */
         const real rrr_rel_o_in_axes2_x = rrr_u_1_in_axes2_x - rrr_bias_in_axes2_x;
         const real rrr_rel_o_in_axes2_y = rrr_u_1_in_axes2_y -
-            rrr_W_1_t*rrr_joint2_offset_x*rrr_s_2;
+            rrr_W_1_t*rrr_joint2_offset_x*v.rrr_s_2;
         /* (rrr-B_1_o) remainder of the acceleration tensor of link 1 */
-        const real rrr_B_1_o_in_axes1_xy = inv_rrr_r_1_in_axes2_y*rrr_rel_o_in_axes2_x;
+        const real rrr_B_1_o_in_axes1_xy = v.inv_rrr_r_1_in_axes2_y*rrr_rel_o_in_axes2_x;
         /* (rrr-alpha_2_o) remainder without the acceleration in: angular acceleration of link 2 */
         const real rrr_alpha_2_o_in_axes2_z = rrr_w_2_in_axes2_y*(rrr_rel_o_in_axes2_y +
-            rrr_B_1_o_in_axes1_xy*rrr_r_1_in_axes2_x) - rrr_B_1_o_in_axes1_xy;
+            rrr_B_1_o_in_axes1_xy*v.rrr_r_1_in_axes2_x) - rrr_B_1_o_in_axes1_xy;
         /* (rrr-acc_2_o) remainder without the acceleration in: acceleration of the reference point of
            link 2, less gravity */
         const real gravity_x = m->gravity_x;
@@ -2941,9 +3126,9 @@ INLINE void Z_legs_rrr(const prepared *m, size_t w, size_t leg, size_t legs, con
         const real rrr_h_1_in_spec1_y = m->rrr_h_1_in_spec1_y[i];
         const real rrr_mu_1_t = m->rrr_mu_1_t[i];
         const real rrr_mu_1_t_2 = m->rrr_mu_1_t_2[i];
-        const real rrr_mu_1_o_in_axes1_z = rrr_h_1_in_spec1_y*(rrr_c_1*rrr_mu_1_t +
-            rrr_mu_1_t_2*rrr_s_1) - rrr_B_1_o_in_axes1_xy*rrr_J_1_in_spec1_zz -
-            rrr_h_1_in_spec1_x*(rrr_c_1*rrr_mu_1_t_2 - rrr_mu_1_t*rrr_s_1);
+        const real rrr_mu_1_o_in_axes1_z = rrr_h_1_in_spec1_y*(v.rrr_c_1*rrr_mu_1_t +
+            rrr_mu_1_t_2*v.rrr_s_1) - rrr_B_1_o_in_axes1_xy*rrr_J_1_in_spec1_zz -
+            rrr_h_1_in_spec1_x*(v.rrr_c_1*rrr_mu_1_t_2 - rrr_mu_1_t*v.rrr_s_1);
         /* (rrr-N_1_o) remainder without the acceleration in: moment about joint 1 of the links from 1
            outwards, the force at the connection point left out */
         const real rrr_N_1_o_in_axes1_z = rrr_mu_1_o_in_axes1_z + rrr_mu_2_o_in_axes2_z;
@@ -2954,7 +3139,8 @@ INLINE void Z_legs_rrr(const prepared *m, size_t w, size_t leg, size_t legs, con
            and without the mass at the connection point */
         const real rrr_c_o_in_axes2_x = rrr_W_2_t*rrr_h_2_in_spec2_x +
             rrr_alpha_2_o_in_axes2_z*rrr_h_2_in_spec2_y -
-            inv_rrr_r_1_in_axes2_y*(rrr_G_o_in_axes2_y*rrr_r_1_in_axes2_x - rrr_N_1_o_in_axes1_z);
+            v.inv_rrr_r_1_in_axes2_y*(rrr_G_o_in_axes2_y*v.rrr_r_1_in_axes2_x -
+            rrr_N_1_o_in_axes1_z);
         const real rrr_c_o_in_axes2_y = rrr_W_2_t*rrr_h_2_in_spec2_y - rrr_G_o_in_axes2_y -
             rrr_alpha_2_o_in_axes2_z*rrr_h_2_in_spec2_x;
         /* (rrr-U) velocity and gravity terms of the leg force */
@@ -2963,7 +3149,7 @@ INLINE void Z_legs_rrr(const prepared *m, size_t w, size_t leg, size_t legs, con
         const real rrr_U_y = axis_y_rrr_axes2_x*rrr_c_o_in_axes2_x -
             axis_x_rrr_axes2_x*rrr_c_o_in_axes2_y;
         /* (Z_a) rotational part of Z */
-        const real rrr_Z_a_t = rrr_U_y*rrr_q_x - rrr_U_x*rrr_q_y;
+        const real rrr_Z_a_t = rrr_U_y*v.rrr_q_x - rrr_U_x*v.rrr_q_y;
         /* (Z_t) translational part of Z */
         gather(&terms[0*count + k], add, rrr_U_x);  /* Z_t_x_of_legs */
         gather(&terms[1*count + k], add, rrr_U_y);  /* Z_t_y_of_legs */
@@ -2971,9 +3157,9 @@ INLINE void Z_legs_rrr(const prepared *m, size_t w, size_t leg, size_t legs, con
         gather(&terms[2*count + k], add, rrr_Z_a_t);  /* Z_a_z_of_legs */
         const real rrr_rho2_1_t = m->rrr_rho2_1_t[i];
         const real rrr_size = m->rrr_size[i];
-        o[1*count + k] = UNLESS(magnitude(rrr_rho2_1) > TOLERANCE*TOLERANCE*rrr_rho2_1_t) +
-            UNLESS(magnitude(rrr_r_1_in_axes2_y) > TOLERANCE*rrr_size);
-        o[0*count + k] = UNLESS(rrr_disc_1 >= 0);
+        o[1*count + k] = UNLESS(magnitude(v.rrr_rho2_1) > TOLERANCE*TOLERANCE*rrr_rho2_1_t) +
+            UNLESS(magnitude(v.rrr_r_1_in_axes2_y) > TOLERANCE*rrr_size);
+        o[0*count + k] = UNLESS(v.rrr_disc_1 >= 0);
     }
 }
 
@@ -2989,15 +3175,15 @@ INLINE void Z_after(size_t w, const real *s, const real *sums, real *Z, verdict 
 {
     for (size_t k = 0; k < w; ++k) {
         /* (Z_t) translational part of Z */
-        const real Z_p_x = s[7*w + k];
+        const real Z_p_x = s[2*w + k];
         const real Z_t_x_of_legs = sums[0*w + k];
         const real Z_t_x = Z_p_x + Z_t_x_of_legs;
-        const real Z_p_y = s[8*w + k];
+        const real Z_p_y = s[3*w + k];
         const real Z_t_y_of_legs = sums[1*w + k];
         const real Z_t_y = Z_p_y + Z_t_y_of_legs;
         /* (Z_a) rotational part of Z */
         const real Z_a_z_of_legs = sums[2*w + k];
-        const real Z_q_z = s[9*w + k];
+        const real Z_q_z = s[4*w + k];
         const real Z_a_z = Z_a_z_of_legs + Z_q_z;
         /* (Z_t) translational part of Z */
         Z[0*w + k] = Z_t_x;
@@ -3010,21 +3196,18 @@ INLINE void Z_after(size_t w, const real *s, const real *sums, real *Z, verdict 
 
 INLINE void Z_run(const prepared *m, const real *X, const real *V, real *Z, verdict *t)
 {
-    real s[10] = {0};
-    real sums[3] = {0};
-    real terms_prrr[3*LEGS(LEGS_OF_prrr)] = {0};
-    real o_prrr[4*LEGS(LEGS_OF_prrr)] = {0};
-    real terms_rrr[3*LEGS(LEGS_OF_rrr)] = {0};
-    real o_rrr[2*LEGS(LEGS_OF_rrr)] = {0};
+    real s[5] = {0}, sums[3] = {0};
+    real terms_prrr[3*LEGS(LEGS_OF_prrr)] = {0}, o_prrr[4*LEGS(LEGS_OF_prrr)] = {0};
+    real terms_rrr[3*LEGS(LEGS_OF_rrr)] = {0}, o_rrr[2*LEGS(LEGS_OF_rrr)] = {0};
     Z_before(m, 1, X, V, s);
     Z_legs_prrr(m, 1, 0, 1, s, 0, LEGS(LEGS_OF_prrr), 0, X, V, terms_prrr, o_prrr);
+    Z_legs_rrr(m, 1, 0, 1, s, 0, LEGS(LEGS_OF_rrr), 0, X, V, terms_rrr, o_rrr);
     for (size_t leg = 0; leg < LEGS_OF_prrr; ++leg) {
         Z_place_prrr(1, LEGS(LEGS_OF_prrr), o_prrr, leg, Z, t);
     }
     for (size_t n = 0; n < 3; ++n) {
         sums[n] = total(terms_prrr + n*LEGS(LEGS_OF_prrr), LEGS_OF_prrr);
     }
-    Z_legs_rrr(m, 1, 0, 1, s, 0, LEGS(LEGS_OF_rrr), 0, terms_rrr, o_rrr);
     for (size_t leg = 0; leg < LEGS_OF_rrr; ++leg) {
         Z_place_rrr(1, LEGS(LEGS_OF_rrr), o_rrr, leg, t);
     }
@@ -3036,8 +3219,7 @@ INLINE void Z_run(const prepared *m, const real *X, const real *V, real *Z, verd
 
 INLINE void Z_run_lanes(const prepared *m, const real *X, const real *V, real *Z, verdict *t)
 {
-    real s[10*LANES];
-    real sums[3*LANES];
+    real s[5*LANES], sums[3*LANES];
     real o_prrr[4*LANES];
     real o_rrr[2*LANES];
     Z_before(m, LANES, X, V, s);
@@ -3047,28 +3229,20 @@ INLINE void Z_run_lanes(const prepared *m, const real *X, const real *V, real *Z
         Z_place_prrr(LANES, LANES, o_prrr, 0, Z, t);
     }
     for (size_t leg = 0; leg < LEGS_OF_rrr; ++leg) {
-        Z_legs_rrr(m, LANES, leg, 0, s, 1, LANES, 1, sums, o_rrr);
+        Z_legs_rrr(m, LANES, leg, 0, s, 1, LANES, 1, X, V, sums, o_rrr);
         Z_place_rrr(LANES, LANES, o_rrr, 0, t);
     }
     Z_after(LANES, s, sums, Z, t);
 }
 
 /* ---- H ---- */
-INLINE void H_before(size_t w, const real *X, real *s)
+INLINE void H_before(const prepared *m, size_t w, const real *X, real *s)
 {
     for (size_t k = 0; k < w; ++k) {
-        /* X: named entries */
-        const real X_0 = X[0*w + k];
-        const real t_x = X_0;
-        const real X_1 = X[1*w + k];
-        const real t_y = X_1;
-        const real X_2 = X[2*w + k];
-        const real R_xx = cosine(X_2);
-        const real R_yx = sine(X_2);
-        s[0*w + k] = t_x;
-        s[1*w + k] = t_y;
-        s[2*w + k] = R_xx;
-        s[3*w + k] = R_yx;
+        values v;
+        stage_X(m, w, k, X, &v);
+        s[0*w + k] = v.R_xx;
+        s[1*w + k] = v.R_yx;
     }
 }
 
@@ -3078,94 +3252,24 @@ INLINE void H_legs_prrr(const prepared *m, size_t w, size_t leg, size_t legs, co
     for (size_t k = 0; k < count; ++k) {
         const size_t i = leg + legs*k;
         const size_t j = states*k;
-        /* (prrr-S) from the base point to the connection point */
-        const real R_xx = s[2*w + j];
-        const real R_yx = s[3*w + j];
-        const real prrr_platform_point_x = m->prrr_platform_point_x[i];
-        const real prrr_platform_point_y = m->prrr_platform_point_y[i];
-        const real prrr_q_x = R_xx*prrr_platform_point_x - R_yx*prrr_platform_point_y;
-        const real prrr_q_y = R_xx*prrr_platform_point_y + R_yx*prrr_platform_point_x;
-        const real prrr_base_point_x = m->prrr_base_point_x[i];
-        const real t_x = s[0*w + j];
-        const real prrr_S_x = prrr_q_x + t_x - prrr_base_point_x;
-        const real prrr_base_point_y = m->prrr_base_point_y[i];
-        const real t_y = s[1*w + j];
-        const real prrr_S_y = prrr_q_y + t_y - prrr_base_point_y;
-        const real prrr_base_frame_xx = m->prrr_base_frame_xx[i];
-        const real prrr_base_frame_yx = m->prrr_base_frame_yx[i];
-        const real prrr_S_in_axes0_y = -prrr_S_x*prrr_base_frame_xx - prrr_S_y*prrr_base_frame_yx;
-        /* (prrr-x_2) from the origin of joint 2 to the connection point */
-        const real prrr_base_frame_xy = m->prrr_base_frame_xy[i];
-        const real prrr_base_frame_yy = m->prrr_base_frame_yy[i];
-        const real prrr_y_1_extra = X[3*w + j];
-        const real prrr_x_2_in_axes0_x = prrr_S_x*prrr_base_frame_xy + prrr_S_y*prrr_base_frame_yy
-            - prrr_y_1_extra;
-        /* (prrr-Kd_2) projection on the centre's direction, from the distance fixed by the joints beyond
-           joint 2 */
-        const real prrr_Kd_2_t_3 = prrr_S_in_axes0_y*prrr_S_in_axes0_y +
-            prrr_x_2_in_axes0_x*prrr_x_2_in_axes0_x;
-        const real prrr_Kd_2_t = m->prrr_Kd_2_t[i];
-        const real prrr_Kd_2_t_2 = m->prrr_Kd_2_t_2[i];
-        const real prrr_Kd_2 = prrr_Kd_2_t + R(0.5)*prrr_Kd_2_t_3 - prrr_Kd_2_t_2;
-        /* (prrr-Kc_2) factor of the cosine in the equation of joint 2 */
-        const real prrr_joint3_offset_x = m->prrr_joint3_offset_x[i];
-        const real prrr_Kc_2 = prrr_joint3_offset_x*prrr_x_2_in_axes0_x;
-        /* (prrr-Ks_2) factor of the sine in the equation of joint 2 */
-        const real prrr_Ks_2 = prrr_S_in_axes0_y*prrr_joint3_offset_x;
-        /* (prrr-rho2_2) squared amplitude */
-        const real prrr_rho2_2 = prrr_Kc_2*prrr_Kc_2 + prrr_Ks_2*prrr_Ks_2;
-        /* (prrr-disc_2) discriminant */
-        const real prrr_disc_2 = prrr_rho2_2 - prrr_Kd_2*prrr_Kd_2;
-        /* (prrr-root_2) root, with the sign of the branch */
-        const real prrr_branch_2 = m->prrr_branch_2[i];
-        const real prrr_root_2 = prrr_branch_2*root(prrr_disc_2);
-        /* (prrr-c_2) cosine of the angle of joint 2 from its reference direction */
-        const real inv_prrr_rho2_2 = 1/prrr_rho2_2;
-        const real prrr_c_2 = inv_prrr_rho2_2*(prrr_Kc_2*prrr_Kd_2 - prrr_Ks_2*prrr_root_2);
-        /* (prrr-s_2) sine of the angle of joint 2 from its reference direction */
-        const real prrr_s_2 = inv_prrr_rho2_2*(prrr_Kc_2*prrr_root_2 + prrr_Kd_2*prrr_Ks_2);
-        /* (prrr-x_3) from the origin of joint 3 to the connection point */
-        const real inv_prrr_size_t = m->inv_prrr_size_t[i];
-        const real prrr_x_3_in_axes2_x = inv_prrr_size_t*prrr_Kd_2*prrr_joint3_offset_x -
-            prrr_joint3_offset_x;
-        /* (prrr-c_3) cosine of the angle of joint 3 from its reference direction */
-        const real inv_prrr_size_t_2 = m->inv_prrr_size_t_2[i];
-        const real prrr_platform_joint_offset_x = m->prrr_platform_joint_offset_x[i];
-        const real prrr_c_3 = inv_prrr_size_t_2*prrr_platform_joint_offset_x*prrr_x_3_in_axes2_x;
-        /* (prrr-s_3) sine of the angle of joint 3 from its reference direction */
-        const real prrr_s_3_t =
-            inv_prrr_size_t*inv_prrr_size_t_2*prrr_joint3_offset_x*prrr_platform_joint_offset_x*prrr_root_2;
-        /* (prrr-r_2) from joint 2 to the connection point, along the links */
-        const real prrr_r_2_in_axes2_x = prrr_joint3_offset_x +
-            prrr_c_3*prrr_platform_joint_offset_x;
-        const real prrr_r_2_in_axes3_y = prrr_r_2_in_axes2_x*prrr_s_3_t -
-            prrr_c_3*prrr_platform_joint_offset_x*prrr_s_3_t;
-        /* (prrr-w_2) reciprocal vector 1 */
-        const real prrr_e_1_in_axes3_y = prrr_c_2*prrr_s_3_t - prrr_c_3*prrr_s_2;
-        const real prrr_e_1_in_axes3_x = prrr_c_2*prrr_c_3 + prrr_s_2*prrr_s_3_t;
-        const real inv_prrr_r_2_in_axes3_y = 1/prrr_r_2_in_axes3_y;
-        const real prrr_w_2_t = inv_prrr_r_2_in_axes3_y*prrr_e_1_in_axes3_x;
-        const real prrr_w_2_x = -inv_prrr_r_2_in_axes3_y*(prrr_base_frame_yy*prrr_e_1_in_axes3_y -
-            prrr_base_frame_yx*prrr_e_1_in_axes3_x);
-        const real prrr_w_2_y = inv_prrr_r_2_in_axes3_y*(prrr_base_frame_xy*prrr_e_1_in_axes3_y -
-            prrr_base_frame_xx*prrr_e_1_in_axes3_x);
-        /* (prrr-H_a_2) moment of the column's unit force about the platform origin */
-        const real prrr_H_a_2_z = prrr_q_x*prrr_w_2_y - prrr_q_y*prrr_w_2_x;
+        values_prrr v;
+        stage_prrr_X(m, w, i, j, s, X, &v);
+        stage_prrr_H_condition(m, i, &v);
         /* (legs_size) rms size of the legs, taken where the platform points coincide */
         o[0*count + k] = 1;
         /* (prrr-w_2) reciprocal vector 1 */
-        o[1*count + k] = prrr_w_2_x;
-        o[2*count + k] = prrr_w_2_y;
+        o[1*count + k] = v.prrr_w_2_x;
+        o[2*count + k] = v.prrr_w_2_y;
         /* (prrr-H_a_2) moment of the column's unit force about the platform origin */
-        o[3*count + k] = prrr_H_a_2_z;
+        o[3*count + k] = v.prrr_H_a_2_z;
         /* (prrr-w_2) reciprocal vector 1 */
-        o[4*count + k] = prrr_w_2_t;
-        o[7*count + k] = (prrr_w_2_x + prrr_w_2_y) + (prrr_H_a_2_z + prrr_w_2_t);
+        o[4*count + k] = v.prrr_w_2_t_2;
+        o[7*count + k] = (v.prrr_w_2_x + v.prrr_w_2_y) + (v.prrr_H_a_2_z + v.prrr_w_2_t_2);
         const real prrr_rho2_2_t = m->prrr_rho2_2_t[i];
         const real prrr_size = m->prrr_size[i];
-        o[6*count + k] = UNLESS(magnitude(prrr_rho2_2) > TOLERANCE*TOLERANCE*prrr_rho2_2_t) +
-            UNLESS(magnitude(prrr_r_2_in_axes3_y) > TOLERANCE*prrr_size);
-        o[5*count + k] = UNLESS(prrr_disc_2 >= 0);
+        o[6*count + k] = UNLESS(magnitude(v.prrr_rho2_2) > TOLERANCE*TOLERANCE*prrr_rho2_2_t) +
+            UNLESS(magnitude(v.prrr_r_2_in_axes3_y) > TOLERANCE*prrr_size);
+        o[5*count + k] = UNLESS(v.prrr_disc_2 >= 0);
     }
 }
 
@@ -3173,7 +3277,7 @@ INLINE void H_place_prrr(size_t w, size_t count, const real *o, size_t first, re
 {
     for (size_t k = 0; k < w; ++k) {
         H[3*NU*w + k] = o[0*count + first + k];
-        H[(0*NU + 1)*w + k] = o[1*count + first + k];
+        H[1*w + k] = o[1*count + first + k];
         H[(NU + 1)*w + k] = o[2*count + first + k];
         H[(2*NU + 1)*w + k] = o[3*count + first + k];
         H[(3*NU + 1)*w + k] = o[4*count + first + k];
@@ -3184,91 +3288,25 @@ INLINE void H_place_prrr(size_t w, size_t count, const real *o, size_t first, re
 }
 
 INLINE void H_legs_rrr(const prepared *m, size_t w, size_t leg, size_t legs, const real *s, size_t
-    states, size_t count, real *o)
+    states, size_t count, const real *X, real *o)
 {
     for (size_t k = 0; k < count; ++k) {
         const size_t i = leg + legs*k;
         const size_t j = states*k;
-        /* (rrr-S) from the base point to the connection point */
-        const real R_xx = s[2*w + j];
-        const real R_yx = s[3*w + j];
-        const real rrr_platform_point_x = m->rrr_platform_point_x[i];
-        const real rrr_platform_point_y = m->rrr_platform_point_y[i];
-        const real rrr_q_x = R_xx*rrr_platform_point_x - R_yx*rrr_platform_point_y;
-        const real rrr_q_y = R_xx*rrr_platform_point_y + R_yx*rrr_platform_point_x;
-        const real rrr_base_point_x = m->rrr_base_point_x[i];
-        const real t_x = s[0*w + j];
-        const real rrr_S_x = rrr_q_x + t_x - rrr_base_point_x;
-        const real rrr_base_point_y = m->rrr_base_point_y[i];
-        const real t_y = s[1*w + j];
-        const real rrr_S_y = rrr_q_y + t_y - rrr_base_point_y;
-        /* (rrr-Kd_1) projection on the centre's direction, from the distance fixed by the joints beyond
-           joint 1 */
-        const real rrr_Kd_1_t_3 = rrr_S_x*rrr_S_x + rrr_S_y*rrr_S_y;
-        const real rrr_Kd_1_t = m->rrr_Kd_1_t[i];
-        const real rrr_Kd_1_t_2 = m->rrr_Kd_1_t_2[i];
-        const real rrr_Kd_1 = rrr_Kd_1_t + R(0.5)*rrr_Kd_1_t_3 - rrr_Kd_1_t_2;
-        /* (rrr-px_1) component along the reference direction */
-        const real rrr_base_frame_xx = m->rrr_base_frame_xx[i];
-        const real rrr_base_frame_yx = m->rrr_base_frame_yx[i];
-        const real rrr_px_1 = rrr_S_x*rrr_base_frame_xx + rrr_S_y*rrr_base_frame_yx;
-        /* (rrr-py_1) component across the reference direction */
-        const real rrr_base_frame_xy = m->rrr_base_frame_xy[i];
-        const real rrr_base_frame_yy = m->rrr_base_frame_yy[i];
-        const real rrr_py_1 = rrr_S_x*rrr_base_frame_xy + rrr_S_y*rrr_base_frame_yy;
-        /* (rrr-Kc_1) factor of the cosine in the equation of joint 1 */
-        const real rrr_joint2_offset_x = m->rrr_joint2_offset_x[i];
-        const real rrr_Kc_1 = rrr_joint2_offset_x*rrr_px_1;
-        /* (rrr-Ks_1) factor of the sine in the equation of joint 1 */
-        const real rrr_Ks_1 = rrr_joint2_offset_x*rrr_py_1;
-        /* (rrr-rho2_1) squared amplitude */
-        const real rrr_rho2_1 = rrr_Kc_1*rrr_Kc_1 + rrr_Ks_1*rrr_Ks_1;
-        /* (rrr-disc_1) discriminant */
-        const real rrr_disc_1 = rrr_rho2_1 - rrr_Kd_1*rrr_Kd_1;
-        /* (rrr-root_1) root, with the sign of the branch */
-        const real rrr_branch_1 = m->rrr_branch_1[i];
-        const real rrr_root_1 = rrr_branch_1*root(rrr_disc_1);
-        /* (rrr-c_1) cosine of the angle of joint 1 from its reference direction */
-        const real inv_rrr_rho2_1 = 1/rrr_rho2_1;
-        const real rrr_c_1 = inv_rrr_rho2_1*(rrr_Kc_1*rrr_Kd_1 - rrr_Ks_1*rrr_root_1);
-        /* (rrr-s_1) sine of the angle of joint 1 from its reference direction */
-        const real rrr_s_1 = inv_rrr_rho2_1*(rrr_Kc_1*rrr_root_1 + rrr_Kd_1*rrr_Ks_1);
-        /* (rrr-x_2) from the origin of joint 2 to the connection point */
-        const real inv_rrr_size_t = m->inv_rrr_size_t[i];
-        const real rrr_x_2_in_axes1_x = inv_rrr_size_t*rrr_Kd_1*rrr_joint2_offset_x -
-            rrr_joint2_offset_x;
-        /* (rrr-c_2) cosine of the angle of joint 2 from its reference direction */
-        const real inv_rrr_size_t_2 = m->inv_rrr_size_t_2[i];
-        const real rrr_platform_joint_offset_x = m->rrr_platform_joint_offset_x[i];
-        const real rrr_c_2 = inv_rrr_size_t_2*rrr_platform_joint_offset_x*rrr_x_2_in_axes1_x;
-        /* (rrr-s_2) sine of the angle of joint 2 from its reference direction */
-        const real rrr_s_2 =
-            -inv_rrr_size_t*inv_rrr_size_t_2*rrr_joint2_offset_x*rrr_platform_joint_offset_x*rrr_root_1;
-        /* (rrr-r_1) from joint 1 to the connection point, along the links */
-        const real rrr_r_1_in_axes1_x = rrr_joint2_offset_x + rrr_c_2*rrr_platform_joint_offset_x;
-        const real rrr_r_1_in_axes2_y = rrr_c_2*rrr_platform_joint_offset_x*rrr_s_2 -
-            rrr_r_1_in_axes1_x*rrr_s_2;
+        values_rrr v;
+        stage_rrr_X(m, w, i, j, s, X, &v);
+        stage_rrr_H_condition(m, i, &v);
         /* (rrr-w_1) reciprocal vector 1 */
-        const real rrr_w_1_t = rrr_c_1*rrr_s_2 + rrr_c_2*rrr_s_1;
-        const real rrr_w_1_t_2 = rrr_c_1*rrr_c_2 - rrr_s_1*rrr_s_2;
-        const real inv_rrr_r_1_in_axes2_y = 1/rrr_r_1_in_axes2_y;
-        const real rrr_w_1_x = -inv_rrr_r_1_in_axes2_y*(rrr_base_frame_yy*rrr_w_1_t_2 -
-            rrr_base_frame_yx*rrr_w_1_t);
-        const real rrr_w_1_y = inv_rrr_r_1_in_axes2_y*(rrr_base_frame_xy*rrr_w_1_t_2 -
-            rrr_base_frame_xx*rrr_w_1_t);
+        o[0*count + k] = v.rrr_w_1_x;
+        o[1*count + k] = v.rrr_w_1_y;
         /* (rrr-H_a_1) moment of the column's unit force about the platform origin */
-        const real rrr_H_a_1_z = rrr_q_x*rrr_w_1_y - rrr_q_y*rrr_w_1_x;
-        /* (rrr-w_1) reciprocal vector 1 */
-        o[0*count + k] = rrr_w_1_x;
-        o[1*count + k] = rrr_w_1_y;
-        /* (rrr-H_a_1) moment of the column's unit force about the platform origin */
-        o[2*count + k] = rrr_H_a_1_z;
-        o[5*count + k] = rrr_w_1_x + (rrr_w_1_y + rrr_H_a_1_z);
+        o[2*count + k] = v.rrr_H_a_1_z;
+        o[5*count + k] = v.rrr_w_1_x + (v.rrr_w_1_y + v.rrr_H_a_1_z);
         const real rrr_rho2_1_t = m->rrr_rho2_1_t[i];
         const real rrr_size = m->rrr_size[i];
-        o[4*count + k] = UNLESS(magnitude(rrr_rho2_1) > TOLERANCE*TOLERANCE*rrr_rho2_1_t) +
-            UNLESS(magnitude(rrr_r_1_in_axes2_y) > TOLERANCE*rrr_size);
-        o[3*count + k] = UNLESS(rrr_disc_1 >= 0);
+        o[4*count + k] = UNLESS(magnitude(v.rrr_rho2_1) > TOLERANCE*TOLERANCE*rrr_rho2_1_t) +
+            UNLESS(magnitude(v.rrr_r_1_in_axes2_y) > TOLERANCE*rrr_size);
+        o[3*count + k] = UNLESS(v.rrr_disc_1 >= 0);
     }
 }
 
@@ -3276,7 +3314,7 @@ INLINE void H_place_rrr(size_t w, size_t count, const real *o, size_t leg, size_
     verdict *t)
 {
     for (size_t k = 0; k < w; ++k) {
-        H[(0*NU + 2 + leg)*w + k] = o[0*count + first + k];
+        H[(2 + leg)*w + k] = o[0*count + first + k];
         H[(NU + 2 + leg)*w + k] = o[1*count + first + k];
         H[(2*NU + 2 + leg)*w + k] = o[2*count + first + k];
         t->unreachable[k] += o[3*count + first + k];
@@ -3287,16 +3325,16 @@ INLINE void H_place_rrr(size_t w, size_t count, const real *o, size_t leg, size_
 
 INLINE void H_run(const prepared *m, const real *X, real *H, verdict *t)
 {
-    real s[4] = {0};
+    real s[2] = {0};
     real o_prrr[8*LEGS(LEGS_OF_prrr)] = {0};
     real o_rrr[6*LEGS(LEGS_OF_rrr)] = {0};
     clear(H, NV*NU);
-    H_before(1, X, s);
+    H_before(m, 1, X, s);
     H_legs_prrr(m, 1, 0, 1, s, 0, LEGS(LEGS_OF_prrr), X, o_prrr);
+    H_legs_rrr(m, 1, 0, 1, s, 0, LEGS(LEGS_OF_rrr), X, o_rrr);
     for (size_t leg = 0; leg < LEGS_OF_prrr; ++leg) {
         H_place_prrr(1, LEGS(LEGS_OF_prrr), o_prrr, leg, H, t);
     }
-    H_legs_rrr(m, 1, 0, 1, s, 0, LEGS(LEGS_OF_rrr), o_rrr);
     for (size_t leg = 0; leg < LEGS_OF_rrr; ++leg) {
         H_place_rrr(1, LEGS(LEGS_OF_rrr), o_rrr, leg, leg, H, t);
     }
@@ -3304,17 +3342,17 @@ INLINE void H_run(const prepared *m, const real *X, real *H, verdict *t)
 
 INLINE void H_run_lanes(const prepared *m, const real *X, real *H, verdict *t)
 {
-    real s[4*LANES];
+    real s[2*LANES];
     real o_prrr[8*LANES];
     real o_rrr[6*LANES];
     clear(H, NV*NU*LANES);
-    H_before(LANES, X, s);
+    H_before(m, LANES, X, s);
     for (size_t leg = 0; leg < LEGS_OF_prrr; ++leg) {
         H_legs_prrr(m, LANES, leg, 0, s, 1, LANES, X, o_prrr);
         H_place_prrr(LANES, LANES, o_prrr, 0, H, t);
     }
     for (size_t leg = 0; leg < LEGS_OF_rrr; ++leg) {
-        H_legs_rrr(m, LANES, leg, 0, s, 1, LANES, o_rrr);
+        H_legs_rrr(m, LANES, leg, 0, s, 1, LANES, X, o_rrr);
         H_place_rrr(LANES, LANES, o_rrr, leg, 0, H, t);
     }
 }
@@ -3324,60 +3362,29 @@ INLINE void required_before(const prepared *m, size_t w, const real *X, const re
     *A, real *s)
 {
     for (size_t k = 0; k < w; ++k) {
-        /* X: named entries */
-        const real X_0 = X[0*w + k];
-        const real t_x = X_0;
-        const real X_1 = X[1*w + k];
-        const real t_y = X_1;
-        const real X_2 = X[2*w + k];
-        const real R_xx = cosine(X_2);
-        const real R_yx = sine(X_2);
-        /* V: named entries */
-        const real V_0 = V[0*w + k];
-        const real t_dot_x = V_0;
-        const real V_1 = V[1*w + k];
-        const real t_dot_y = V_1;
-        const real V_2 = V[2*w + k];
-        const real omega_z = V_2;
-        /* A: named entries */
-        const real A_0 = A[0*w + k];
-        const real t_ddot_x = A_0;
-        const real A_1 = A[1*w + k];
-        const real t_ddot_y = A_1;
-        const real A_2 = A[2*w + k];
-        const real alpha_z = A_2;
-        /* (W_p) centripetal tensor of the platform */
-        const real W_p_xx = -omega_z*omega_z;
-        /* (h_star) first moment about the platform origin */
-        const real h_star_in_platform_x = m->h_star_in_platform_x;
-        const real h_star_in_platform_y = m->h_star_in_platform_y;
-        const real h_star_x = R_xx*h_star_in_platform_x - R_yx*h_star_in_platform_y;
-        const real h_star_y = R_xx*h_star_in_platform_y + R_yx*h_star_in_platform_x;
+        values v;
+        stage_V(w, k, V, &v);
+        stage_X(m, w, k, X, &v);
         /* (a_t) acceleration of the platform origin, less gravity */
         const real gravity_x = m->gravity_x;
+        const real t_ddot_x = A[0*w + k];
         const real a_t_x = t_ddot_x - gravity_x;
         const real gravity_y = m->gravity_y;
+        const real t_ddot_y = A[1*w + k];
         const real a_t_y = t_ddot_y - gravity_y;
         /* (f_p) inertia force of the platform less its weight */
+        const real alpha_z = A[2*w + k];
         const real m_star = m->m_star;
-        const real f_p_x = W_p_xx*h_star_x + a_t_x*m_star - alpha_z*h_star_y;
-        const real f_p_y = W_p_xx*h_star_y + a_t_y*m_star + alpha_z*h_star_x;
+        const real f_p_x = v.W_p_xx*v.h_star_x + a_t_x*m_star - alpha_z*v.h_star_y;
+        const real f_p_y = v.W_p_xx*v.h_star_y + a_t_y*m_star + alpha_z*v.h_star_x;
         /* (mu_p) inertia moment of the platform less that of its weight */
         const real J_star_zz = m->J_star_zz;
-        const real mu_p_z = J_star_zz*alpha_z + a_t_y*h_star_x - a_t_x*h_star_y;
-        s[0*w + k] = t_x;
-        s[1*w + k] = t_y;
-        s[2*w + k] = R_xx;
-        s[3*w + k] = R_yx;
-        s[4*w + k] = t_dot_x;
-        s[5*w + k] = t_dot_y;
-        s[6*w + k] = omega_z;
-        s[7*w + k] = t_ddot_x;
-        s[8*w + k] = t_ddot_y;
-        s[9*w + k] = alpha_z;
-        s[10*w + k] = f_p_x;
-        s[11*w + k] = f_p_y;
-        s[12*w + k] = mu_p_z;
+        const real mu_p_z = J_star_zz*alpha_z + a_t_y*v.h_star_x - a_t_x*v.h_star_y;
+        s[0*w + k] = v.R_xx;
+        s[1*w + k] = v.R_yx;
+        s[2*w + k] = f_p_x;
+        s[3*w + k] = f_p_y;
+        s[4*w + k] = mu_p_z;
     }
 }
 
@@ -3388,195 +3395,53 @@ INLINE void required_legs_prrr(const prepared *m, size_t w, size_t leg, size_t l
     for (size_t k = 0; k < count; ++k) {
         const size_t i = leg + legs*k;
         const size_t j = states*k;
-        /* (prrr-S) from the base point to the connection point */
-        const real R_xx = s[2*w + j];
-        const real R_yx = s[3*w + j];
-        const real prrr_platform_point_x = m->prrr_platform_point_x[i];
-        const real prrr_platform_point_y = m->prrr_platform_point_y[i];
-        const real prrr_q_x = R_xx*prrr_platform_point_x - R_yx*prrr_platform_point_y;
-        const real prrr_q_y = R_xx*prrr_platform_point_y + R_yx*prrr_platform_point_x;
-        const real prrr_base_point_x = m->prrr_base_point_x[i];
-        const real t_x = s[0*w + j];
-        const real prrr_S_x = prrr_q_x + t_x - prrr_base_point_x;
-        const real prrr_base_point_y = m->prrr_base_point_y[i];
-        const real t_y = s[1*w + j];
-        const real prrr_S_y = prrr_q_y + t_y - prrr_base_point_y;
-        const real prrr_base_frame_xx = m->prrr_base_frame_xx[i];
-        const real prrr_base_frame_yx = m->prrr_base_frame_yx[i];
-        const real prrr_S_in_axes0_y = -prrr_S_x*prrr_base_frame_xx - prrr_S_y*prrr_base_frame_yx;
-        /* (prrr-x_2) from the origin of joint 2 to the connection point */
-        const real prrr_base_frame_xy = m->prrr_base_frame_xy[i];
-        const real prrr_base_frame_yy = m->prrr_base_frame_yy[i];
-        const real prrr_y_1_extra = X[3*w + j];
-        const real prrr_x_2_in_axes0_x = prrr_S_x*prrr_base_frame_xy + prrr_S_y*prrr_base_frame_yy
-            - prrr_y_1_extra;
-        /* (prrr-Kd_2) projection on the centre's direction, from the distance fixed by the joints beyond
-           joint 2 */
-        const real prrr_Kd_2_t_3 = prrr_S_in_axes0_y*prrr_S_in_axes0_y +
-            prrr_x_2_in_axes0_x*prrr_x_2_in_axes0_x;
-        const real prrr_Kd_2_t = m->prrr_Kd_2_t[i];
-        const real prrr_Kd_2_t_2 = m->prrr_Kd_2_t_2[i];
-        const real prrr_Kd_2 = prrr_Kd_2_t + R(0.5)*prrr_Kd_2_t_3 - prrr_Kd_2_t_2;
-        /* (prrr-Kc_2) factor of the cosine in the equation of joint 2 */
-        const real prrr_joint3_offset_x = m->prrr_joint3_offset_x[i];
-        const real prrr_Kc_2 = prrr_joint3_offset_x*prrr_x_2_in_axes0_x;
-        /* (prrr-Ks_2) factor of the sine in the equation of joint 2 */
-        const real prrr_Ks_2 = prrr_S_in_axes0_y*prrr_joint3_offset_x;
-        /* (prrr-rho2_2) squared amplitude */
-        const real prrr_rho2_2 = prrr_Kc_2*prrr_Kc_2 + prrr_Ks_2*prrr_Ks_2;
-        /* (prrr-disc_2) discriminant */
-        const real prrr_disc_2 = prrr_rho2_2 - prrr_Kd_2*prrr_Kd_2;
-        /* (prrr-root_2) root, with the sign of the branch */
-        const real prrr_branch_2 = m->prrr_branch_2[i];
-        const real prrr_root_2 = prrr_branch_2*root(prrr_disc_2);
-        /* (prrr-c_2) cosine of the angle of joint 2 from its reference direction */
-        const real inv_prrr_rho2_2 = 1/prrr_rho2_2;
-        const real prrr_c_2 = inv_prrr_rho2_2*(prrr_Kc_2*prrr_Kd_2 - prrr_Ks_2*prrr_root_2);
-        /* (prrr-s_2) sine of the angle of joint 2 from its reference direction */
-        const real prrr_s_2 = inv_prrr_rho2_2*(prrr_Kc_2*prrr_root_2 + prrr_Kd_2*prrr_Ks_2);
-        /* (prrr-x_3) from the origin of joint 3 to the connection point */
-        const real inv_prrr_size_t = m->inv_prrr_size_t[i];
-        const real prrr_x_3_in_axes2_x = inv_prrr_size_t*prrr_Kd_2*prrr_joint3_offset_x -
-            prrr_joint3_offset_x;
-        /* (prrr-c_3) cosine of the angle of joint 3 from its reference direction */
-        const real inv_prrr_size_t_2 = m->inv_prrr_size_t_2[i];
-        const real prrr_platform_joint_offset_x = m->prrr_platform_joint_offset_x[i];
-        const real prrr_c_3 = inv_prrr_size_t_2*prrr_platform_joint_offset_x*prrr_x_3_in_axes2_x;
-        /* (prrr-s_3) sine of the angle of joint 3 from its reference direction */
-        const real prrr_s_3_t =
-            inv_prrr_size_t*inv_prrr_size_t_2*prrr_joint3_offset_x*prrr_platform_joint_offset_x*prrr_root_2;
-        /* (prrr-S_dot) velocity of the connection point */
-        const real omega_z = s[6*w + j];
-        const real prrr_S_dot_t = omega_z*prrr_q_y;
-        const real prrr_S_dot_t_2 = omega_z*prrr_q_x;
-        const real t_dot_x = s[4*w + j];
-        const real prrr_S_dot_x = t_dot_x - prrr_S_dot_t;
-        const real t_dot_y = s[5*w + j];
-        const real prrr_S_dot_y = prrr_S_dot_t_2 + t_dot_y;
-        /* (prrr-r_2) from joint 2 to the connection point, along the links */
-        const real prrr_r_2_t = prrr_platform_joint_offset_x*prrr_s_3_t;
-        const real prrr_r_2_in_axes2_x = prrr_joint3_offset_x +
-            prrr_c_3*prrr_platform_joint_offset_x;
-        const real prrr_r_2_in_axes3_x = prrr_c_3*prrr_r_2_in_axes2_x + prrr_r_2_t*prrr_s_3_t;
-        const real prrr_r_2_in_axes3_y = prrr_r_2_in_axes2_x*prrr_s_3_t - prrr_c_3*prrr_r_2_t;
+        values_prrr v;
+        stage_prrr_X(m, w, i, j, s, X, &v);
+        stage_prrr_A_X(w, j, A, &v);
+        stage_prrr_V_X(m, w, i, j, V, &v);
+        stage_prrr_A_V_X(w, j, V, &v);
+        stage_prrr_legs_required(m, w, i, j, A, &v);
         /* (prrr-w_2) reciprocal vector 1 */
-        const real prrr_e_1_in_axes3_y = prrr_c_2*prrr_s_3_t - prrr_c_3*prrr_s_2;
-        const real prrr_e_1_in_axes3_x = prrr_c_2*prrr_c_3 + prrr_s_2*prrr_s_3_t;
-        const real axis_y_prrr_axes3_x = prrr_base_frame_xy*prrr_e_1_in_axes3_y -
-            prrr_base_frame_xx*prrr_e_1_in_axes3_x;
-        const real axis_x_prrr_axes3_x = prrr_base_frame_yy*prrr_e_1_in_axes3_y -
-            prrr_base_frame_yx*prrr_e_1_in_axes3_x;
-        const real inv_prrr_r_2_in_axes3_y = 1/prrr_r_2_in_axes3_y;
-        const real prrr_w_2_t = inv_prrr_r_2_in_axes3_y*prrr_e_1_in_axes3_x;
-        const real prrr_w_2_x = -axis_x_prrr_axes3_x*inv_prrr_r_2_in_axes3_y;
-        const real prrr_w_2_y = axis_y_prrr_axes3_x*inv_prrr_r_2_in_axes3_y;
-        /* (prrr-S_dot_rest) velocity of the connection point left to the joints that are not extra */
-        const real prrr_yd_1 = V[3*w + j];
-        const real prrr_S_dot_rest_x = prrr_S_dot_x - prrr_base_frame_xy*prrr_yd_1;
-        const real prrr_S_dot_rest_y = prrr_S_dot_y - prrr_base_frame_yy*prrr_yd_1;
-        /* (prrr-qd_2) rate of joint 2 */
-        const real prrr_qd_2 = -inv_prrr_r_2_in_axes3_y*(axis_x_prrr_axes3_x*prrr_S_dot_rest_x -
-            axis_y_prrr_axes3_x*prrr_S_dot_rest_y);
-        /* (prrr-W_2) centripetal tensor of link 2 */
-        const real prrr_W_2_in_axes2_xx = -prrr_qd_2*prrr_qd_2;
-        /* (prrr-omega_3) angular velocity of link 3 */
-        const real prrr_w_3_in_axes3_y = m->prrr_w_3_in_axes3_y[i];
-        const real prrr_omega_3_in_axes3_z = prrr_qd_2 +
-            prrr_w_3_in_axes3_y*(axis_x_prrr_axes3_x*prrr_S_dot_rest_y +
-            axis_y_prrr_axes3_x*prrr_S_dot_rest_x - prrr_qd_2*prrr_r_2_in_axes3_x);
-        /* (prrr-W_3) centripetal tensor of link 3 */
-        const real prrr_W_3_t = prrr_omega_3_in_axes3_z*prrr_omega_3_in_axes3_z;
-        /* (prrr-a_p) acceleration of the connection point without its centripetal part */
-        const real alpha_z = s[9*w + j];
-        const real t_ddot_x = s[7*w + j];
-        const real prrr_a_p_x = t_ddot_x - alpha_z*prrr_q_y;
-        const real t_ddot_y = s[8*w + j];
-        const real prrr_a_p_y = t_ddot_y + alpha_z*prrr_q_x;
-        /* (prrr-S_ddot) acceleration of the connection point */
-        const real prrr_S_ddot_x = prrr_a_p_x - omega_z*prrr_S_dot_t_2;
-        const real prrr_S_ddot_y = prrr_a_p_y - omega_z*prrr_S_dot_t;
-        const real prrr_S_ddot_in_axes3_x = axis_x_prrr_axes3_x*prrr_S_ddot_x -
-            axis_y_prrr_axes3_x*prrr_S_ddot_y;
-        const real prrr_S_ddot_in_axes3_y = axis_x_prrr_axes3_x*prrr_S_ddot_y +
-            axis_y_prrr_axes3_x*prrr_S_ddot_x;
-        /* (prrr-bias) acceleration of the connection point at zero joint accelerations */
-        const real prrr_bias_in_axes3_x = prrr_W_2_in_axes2_xx*prrr_c_3*prrr_joint3_offset_x -
-            prrr_W_3_t*prrr_platform_joint_offset_x;
-        /* (prrr-rel) acceleration of the connection point left to the joint accelerations */
-        const real prrr_ydd_1 = A[3*w + j];
-        const real prrr_rel_in_axes3_x = prrr_S_ddot_in_axes3_x - prrr_bias_in_axes3_x -
-            prrr_e_1_in_axes3_x*prrr_ydd_1;
-        const real prrr_rel_in_axes3_y = prrr_S_ddot_in_axes3_y - prrr_e_1_in_axes3_y*prrr_ydd_1 -
-            prrr_W_2_in_axes2_xx*prrr_joint3_offset_x*prrr_s_3_t;
-        /* (prrr-B_2) acceleration tensor of link 2 */
-        const real prrr_B_2_in_axes2_xy = inv_prrr_r_2_in_axes3_y*prrr_rel_in_axes3_x;
-        /* (prrr-alpha_3) angular acceleration of link 3 */
-        const real prrr_alpha_3_in_axes3_z = prrr_w_3_in_axes3_y*(prrr_rel_in_axes3_y +
-            prrr_B_2_in_axes2_xy*prrr_r_2_in_axes3_x) - prrr_B_2_in_axes2_xy;
+        const real prrr_w_2_t_2 = -v.inv_prrr_r_2_in_axes3_y*v.prrr_w_2_t;
         /* (prrr-acc_1) acceleration of the reference point of link 1, less gravity */
         const real prrr_g_in_axes0_x = m->prrr_g_in_axes0_x[i];
+        const real prrr_ydd_1 = A[3*w + j];
         const real prrr_acc_1_in_axes0_x = prrr_ydd_1 - prrr_g_in_axes0_x;
-        /* (prrr-acc_2) acceleration of the reference point of link 2, less gravity */
-        const real prrr_g_in_axes0_y = m->prrr_g_in_axes0_y[i];
-        const real prrr_acc_2_in_axes2_x = prrr_c_2*prrr_ydd_1 - prrr_c_2*prrr_g_in_axes0_x -
-            prrr_g_in_axes0_y*prrr_s_2;
-        const real prrr_acc_2_in_axes2_y = prrr_g_in_axes0_x*prrr_s_2 - prrr_c_2*prrr_g_in_axes0_y
-            - prrr_s_2*prrr_ydd_1;
         /* (prrr-f_2) inertia force of link 2 less its weight */
         const real prrr_h_2_in_spec2_x = m->prrr_h_2_in_spec2_x[i];
         const real prrr_h_2_in_spec2_y = m->prrr_h_2_in_spec2_y[i];
         const real prrr_link2_mass = m->prrr_link2_mass[i];
-        const real prrr_f_2_in_axes2_x = prrr_B_2_in_axes2_xy*prrr_h_2_in_spec2_y +
-            prrr_W_2_in_axes2_xx*prrr_h_2_in_spec2_x + prrr_acc_2_in_axes2_x*prrr_link2_mass;
-        const real prrr_f_2_in_axes2_y = prrr_W_2_in_axes2_xx*prrr_h_2_in_spec2_y +
-            prrr_acc_2_in_axes2_y*prrr_link2_mass - prrr_B_2_in_axes2_xy*prrr_h_2_in_spec2_x;
-        /* (prrr-acc_3) acceleration of the reference point of link 3, less gravity */
-        const real gravity_x = m->gravity_x;
-        const real gravity_y = m->gravity_y;
-        const real prrr_acc_3_in_axes3_x = prrr_S_ddot_in_axes3_x + axis_y_prrr_axes3_x*gravity_y
-            - axis_x_prrr_axes3_x*gravity_x;
-        const real prrr_acc_3_in_axes3_y = prrr_S_ddot_in_axes3_y - axis_x_prrr_axes3_x*gravity_y
-            - axis_y_prrr_axes3_x*gravity_x;
-        /* (prrr-mu_3) inertia moment of the links that turn with link 3, about their reference points */
-        const real prrr_J_3_in_spec3_zz = m->prrr_J_3_in_spec3_zz[i];
-        const real prrr_h_3_in_spec3_x = m->prrr_h_3_in_spec3_x[i];
-        const real prrr_h_3_in_spec3_y = m->prrr_h_3_in_spec3_y[i];
-        const real prrr_mu_3_in_axes3_z = prrr_J_3_in_spec3_zz*prrr_alpha_3_in_axes3_z +
-            prrr_acc_3_in_axes3_y*prrr_h_3_in_spec3_x - prrr_acc_3_in_axes3_x*prrr_h_3_in_spec3_y;
-        /* (prrr-mu_2) inertia moment of the links that turn with link 2, about their reference points */
-        const real prrr_J_2_in_spec2_zz = m->prrr_J_2_in_spec2_zz[i];
-        const real prrr_mu_2_in_axes2_z = prrr_acc_2_in_axes2_y*prrr_h_2_in_spec2_x -
-            prrr_B_2_in_axes2_xy*prrr_J_2_in_spec2_zz - prrr_acc_2_in_axes2_x*prrr_h_2_in_spec2_y;
-        /* (prrr-N_2) moment about joint 2 of the links from 2 outwards, the force at the connection point
-           left out */
-        const real prrr_N_2_in_axes2_z = prrr_mu_2_in_axes2_z + prrr_mu_3_in_axes3_z;
+        const real prrr_f_2_in_axes2_x = v.prrr_B_2_in_axes2_xy*prrr_h_2_in_spec2_y +
+            v.prrr_W_2_in_axes2_xx*prrr_h_2_in_spec2_x + v.prrr_acc_2_in_axes2_x*prrr_link2_mass;
+        const real prrr_f_2_in_axes2_y = v.prrr_W_2_in_axes2_xx*prrr_h_2_in_spec2_y +
+            v.prrr_acc_2_in_axes2_y*prrr_link2_mass - v.prrr_B_2_in_axes2_xy*prrr_h_2_in_spec2_x;
         /* (prrr-T_1) inertia force of the links from 1 outwards, the last link left out */
         const real prrr_link1_mass = m->prrr_link1_mass[i];
         const real prrr_T_1_in_axes0_x = prrr_acc_1_in_axes0_x*prrr_link1_mass +
-            prrr_c_2*prrr_f_2_in_axes2_x - prrr_f_2_in_axes2_y*prrr_s_2;
+            v.prrr_c_2*prrr_f_2_in_axes2_y + prrr_f_2_in_axes2_x*v.prrr_s_2;
         /* (prrr-G) force at the connection point that balances the leg's inertia and weight along all
            degrees of freedom */
-        const real prrr_G_in_axes3_y = prrr_mu_3_in_axes3_z*prrr_w_3_in_axes3_y;
         const real prrr_G_in_axes3_x =
-            inv_prrr_r_2_in_axes3_y*(prrr_G_in_axes3_y*prrr_r_2_in_axes3_x - prrr_N_2_in_axes2_z);
+            v.inv_prrr_r_2_in_axes3_y*(v.prrr_G_in_axes3_y*v.prrr_r_2_in_axes3_x -
+            v.prrr_N_2_in_axes2_z);
         /* (prrr-c) leg force on the platform without actuation and without the mass at the connection
            point */
-        const real prrr_c_in_axes3_x = prrr_W_3_t*prrr_h_3_in_spec3_x +
-            prrr_alpha_3_in_axes3_z*prrr_h_3_in_spec3_y - prrr_G_in_axes3_x;
-        const real prrr_c_in_axes3_y = prrr_W_3_t*prrr_h_3_in_spec3_y - prrr_G_in_axes3_y -
-            prrr_alpha_3_in_axes3_z*prrr_h_3_in_spec3_x;
-        const real prrr_c_x = axis_x_prrr_axes3_x*prrr_c_in_axes3_x +
-            axis_y_prrr_axes3_x*prrr_c_in_axes3_y;
-        const real prrr_c_y = axis_x_prrr_axes3_x*prrr_c_in_axes3_y -
-            axis_y_prrr_axes3_x*prrr_c_in_axes3_x;
+        const real prrr_h_3_in_spec3_x = m->prrr_h_3_in_spec3_x[i];
+        const real prrr_h_3_in_spec3_y = m->prrr_h_3_in_spec3_y[i];
+        const real prrr_c_in_axes3_x = v.prrr_W_3_t*prrr_h_3_in_spec3_x +
+            v.prrr_alpha_3_in_axes3_z*prrr_h_3_in_spec3_y - prrr_G_in_axes3_x;
+        const real prrr_c_x = v.axis_x_prrr_axes3_x*prrr_c_in_axes3_x +
+            v.axis_y_prrr_axes3_x*v.prrr_c_in_axes3_y;
+        const real prrr_c_y = v.axis_x_prrr_axes3_x*v.prrr_c_in_axes3_y -
+            v.axis_y_prrr_axes3_x*prrr_c_in_axes3_x;
         /* (prrr-P_1) inertia and weight of the leg along the extra degree of freedom of joint 1 */
-        const real prrr_P_1_t = prrr_G_in_axes3_x*prrr_e_1_in_axes3_x +
-            prrr_G_in_axes3_y*prrr_e_1_in_axes3_y;
-        const real prrr_P_1 = prrr_T_1_in_axes0_x - prrr_P_1_t;
+        const real prrr_P_1_t = prrr_G_in_axes3_x*v.prrr_w_2_t -
+            v.prrr_G_in_axes3_y*v.prrr_e_1_in_axes3_y;
+        const real prrr_P_1 = prrr_P_1_t + prrr_T_1_in_axes0_x;
         /* (R_a) moment that actuators and external wrench must give */
-        const real prrr_R_a_t = prrr_c_x*prrr_q_y - prrr_c_y*prrr_q_x;
+        const real prrr_R_a_t = prrr_c_x*v.prrr_q_y - prrr_c_y*v.prrr_q_x;
         /* (prrr-H_a_2) moment of the column's unit force about the platform origin */
-        const real prrr_H_a_2_z = prrr_q_x*prrr_w_2_y - prrr_q_y*prrr_w_2_x;
+        const real prrr_H_a_2_z = v.prrr_q_x*v.prrr_w_2_y - v.prrr_q_y*v.prrr_w_2_x;
         /* (R_t) force that actuators and external wrench must give */
         gather(&terms[0*count + k], add, prrr_c_x);  /* R_t_x_of_legs */
         gather(&terms[1*count + k], add, prrr_c_y);  /* R_t_y_of_legs */
@@ -3587,17 +3452,17 @@ INLINE void required_legs_prrr(const prepared *m, size_t w, size_t leg, size_t l
         /* (legs_size) rms size of the legs, taken where the platform points coincide */
         o[1*count + k] = 1;
         /* (prrr-w_2) reciprocal vector 1 */
-        o[2*count + k] = prrr_w_2_x;
-        o[3*count + k] = prrr_w_2_y;
+        o[2*count + k] = v.prrr_w_2_x;
+        o[3*count + k] = v.prrr_w_2_y;
         /* (prrr-H_a_2) moment of the column's unit force about the platform origin */
         o[4*count + k] = prrr_H_a_2_z;
         /* (prrr-w_2) reciprocal vector 1 */
-        o[5*count + k] = prrr_w_2_t;
+        o[5*count + k] = prrr_w_2_t_2;
         const real prrr_rho2_2_t = m->prrr_rho2_2_t[i];
         const real prrr_size = m->prrr_size[i];
-        o[7*count + k] = UNLESS(magnitude(prrr_rho2_2) > TOLERANCE*TOLERANCE*prrr_rho2_2_t) +
-            UNLESS(magnitude(prrr_r_2_in_axes3_y) > TOLERANCE*prrr_size);
-        o[6*count + k] = UNLESS(prrr_disc_2 >= 0);
+        o[7*count + k] = UNLESS(magnitude(v.prrr_rho2_2) > TOLERANCE*TOLERANCE*prrr_rho2_2_t) +
+            UNLESS(magnitude(v.prrr_r_2_in_axes3_y) > TOLERANCE*prrr_size);
+        o[6*count + k] = UNLESS(v.prrr_disc_2 >= 0);
     }
 }
 
@@ -3607,7 +3472,7 @@ INLINE void required_place_prrr(size_t w, size_t count, const real *o, size_t fi
     for (size_t k = 0; k < w; ++k) {
         required[3*w + k] = o[0*count + first + k];
         H[3*NU*w + k] = o[1*count + first + k];
-        H[(0*NU + 1)*w + k] = o[2*count + first + k];
+        H[1*w + k] = o[2*count + first + k];
         H[(NU + 1)*w + k] = o[3*count + first + k];
         H[(2*NU + 1)*w + k] = o[4*count + first + k];
         H[(3*NU + 1)*w + k] = o[5*count + first + k];
@@ -3617,183 +3482,43 @@ INLINE void required_place_prrr(size_t w, size_t count, const real *o, size_t fi
 }
 
 INLINE void required_legs_rrr(const prepared *m, size_t w, size_t leg, size_t legs, const real *s,
-    size_t states, size_t count, int add, real *terms, real *o)
+    size_t states, size_t count, int add, const real *X, const real *V, const real *A, real
+    *terms, real *o)
 {
     for (size_t k = 0; k < count; ++k) {
         const size_t i = leg + legs*k;
         const size_t j = states*k;
-        /* (rrr-S) from the base point to the connection point */
-        const real R_xx = s[2*w + j];
-        const real R_yx = s[3*w + j];
-        const real rrr_platform_point_x = m->rrr_platform_point_x[i];
-        const real rrr_platform_point_y = m->rrr_platform_point_y[i];
-        const real rrr_q_x = R_xx*rrr_platform_point_x - R_yx*rrr_platform_point_y;
-        const real rrr_q_y = R_xx*rrr_platform_point_y + R_yx*rrr_platform_point_x;
-        const real rrr_base_point_x = m->rrr_base_point_x[i];
-        const real t_x = s[0*w + j];
-        const real rrr_S_x = rrr_q_x + t_x - rrr_base_point_x;
-        const real rrr_base_point_y = m->rrr_base_point_y[i];
-        const real t_y = s[1*w + j];
-        const real rrr_S_y = rrr_q_y + t_y - rrr_base_point_y;
-        /* (rrr-Kd_1) projection on the centre's direction, from the distance fixed by the joints beyond
-           joint 1 */
-        const real rrr_Kd_1_t_3 = rrr_S_x*rrr_S_x + rrr_S_y*rrr_S_y;
-        const real rrr_Kd_1_t = m->rrr_Kd_1_t[i];
-        const real rrr_Kd_1_t_2 = m->rrr_Kd_1_t_2[i];
-        const real rrr_Kd_1 = rrr_Kd_1_t + R(0.5)*rrr_Kd_1_t_3 - rrr_Kd_1_t_2;
-        /* (rrr-px_1) component along the reference direction */
-        const real rrr_base_frame_xx = m->rrr_base_frame_xx[i];
-        const real rrr_base_frame_yx = m->rrr_base_frame_yx[i];
-        const real rrr_px_1 = rrr_S_x*rrr_base_frame_xx + rrr_S_y*rrr_base_frame_yx;
-        /* (rrr-py_1) component across the reference direction */
-        const real rrr_base_frame_xy = m->rrr_base_frame_xy[i];
-        const real rrr_base_frame_yy = m->rrr_base_frame_yy[i];
-        const real rrr_py_1 = rrr_S_x*rrr_base_frame_xy + rrr_S_y*rrr_base_frame_yy;
-        /* (rrr-Kc_1) factor of the cosine in the equation of joint 1 */
-        const real rrr_joint2_offset_x = m->rrr_joint2_offset_x[i];
-        const real rrr_Kc_1 = rrr_joint2_offset_x*rrr_px_1;
-        /* (rrr-Ks_1) factor of the sine in the equation of joint 1 */
-        const real rrr_Ks_1 = rrr_joint2_offset_x*rrr_py_1;
-        /* (rrr-rho2_1) squared amplitude */
-        const real rrr_rho2_1 = rrr_Kc_1*rrr_Kc_1 + rrr_Ks_1*rrr_Ks_1;
-        /* (rrr-disc_1) discriminant */
-        const real rrr_disc_1 = rrr_rho2_1 - rrr_Kd_1*rrr_Kd_1;
-        /* (rrr-root_1) root, with the sign of the branch */
-        const real rrr_branch_1 = m->rrr_branch_1[i];
-        const real rrr_root_1 = rrr_branch_1*root(rrr_disc_1);
-        /* (rrr-c_1) cosine of the angle of joint 1 from its reference direction */
-        const real inv_rrr_rho2_1 = 1/rrr_rho2_1;
-        const real rrr_c_1 = inv_rrr_rho2_1*(rrr_Kc_1*rrr_Kd_1 - rrr_Ks_1*rrr_root_1);
-        /* (rrr-s_1) sine of the angle of joint 1 from its reference direction */
-        const real rrr_s_1 = inv_rrr_rho2_1*(rrr_Kc_1*rrr_root_1 + rrr_Kd_1*rrr_Ks_1);
-        /* (rrr-x_2) from the origin of joint 2 to the connection point */
-        const real inv_rrr_size_t = m->inv_rrr_size_t[i];
-        const real rrr_x_2_in_axes1_x = inv_rrr_size_t*rrr_Kd_1*rrr_joint2_offset_x -
-            rrr_joint2_offset_x;
-        /* (rrr-c_2) cosine of the angle of joint 2 from its reference direction */
-        const real inv_rrr_size_t_2 = m->inv_rrr_size_t_2[i];
-        const real rrr_platform_joint_offset_x = m->rrr_platform_joint_offset_x[i];
-        const real rrr_c_2 = inv_rrr_size_t_2*rrr_platform_joint_offset_x*rrr_x_2_in_axes1_x;
-        /* (rrr-s_2) sine of the angle of joint 2 from its reference direction */
-        const real rrr_s_2 =
-            -inv_rrr_size_t*inv_rrr_size_t_2*rrr_joint2_offset_x*rrr_platform_joint_offset_x*rrr_root_1;
-        /* (rrr-S_dot) velocity of the connection point */
-        const real omega_z = s[6*w + j];
-        const real rrr_S_dot_t = omega_z*rrr_q_y;
-        const real rrr_S_dot_t_2 = omega_z*rrr_q_x;
-        const real t_dot_x = s[4*w + j];
-        const real rrr_S_dot_x = t_dot_x - rrr_S_dot_t;
-        const real t_dot_y = s[5*w + j];
-        const real rrr_S_dot_y = rrr_S_dot_t_2 + t_dot_y;
-        /* (rrr-r_1) from joint 1 to the connection point, along the links */
-        const real rrr_r_1_in_axes1_y = rrr_platform_joint_offset_x*rrr_s_2;
-        const real rrr_r_1_in_axes1_x = rrr_joint2_offset_x + rrr_c_2*rrr_platform_joint_offset_x;
-        const real rrr_r_1_in_axes2_x = rrr_c_2*rrr_r_1_in_axes1_x + rrr_r_1_in_axes1_y*rrr_s_2;
-        const real rrr_r_1_in_axes2_y = rrr_c_2*rrr_r_1_in_axes1_y - rrr_r_1_in_axes1_x*rrr_s_2;
-        /* (rrr-w_1) reciprocal vector 1 */
-        const real rrr_w_1_t = rrr_c_1*rrr_s_2 + rrr_c_2*rrr_s_1;
-        const real rrr_w_1_t_2 = rrr_c_1*rrr_c_2 - rrr_s_1*rrr_s_2;
-        const real axis_y_rrr_axes2_x = rrr_base_frame_xy*rrr_w_1_t_2 -
-            rrr_base_frame_xx*rrr_w_1_t;
-        const real axis_x_rrr_axes2_x = rrr_base_frame_yy*rrr_w_1_t_2 -
-            rrr_base_frame_yx*rrr_w_1_t;
-        const real inv_rrr_r_1_in_axes2_y = 1/rrr_r_1_in_axes2_y;
-        const real rrr_w_1_x = -axis_x_rrr_axes2_x*inv_rrr_r_1_in_axes2_y;
-        const real rrr_w_1_y = axis_y_rrr_axes2_x*inv_rrr_r_1_in_axes2_y;
-        /* (rrr-qd_1) rate of joint 1 */
-        const real rrr_qd_1_t = inv_rrr_r_1_in_axes2_y*(axis_x_rrr_axes2_x*rrr_S_dot_x -
-            axis_y_rrr_axes2_x*rrr_S_dot_y);
-        /* (rrr-W_1) centripetal tensor of link 1 */
-        const real rrr_W_1_t = rrr_qd_1_t*rrr_qd_1_t;
-        /* (rrr-omega_2) angular velocity of link 2 */
-        const real rrr_w_2_in_axes2_y = m->rrr_w_2_in_axes2_y[i];
-        const real rrr_omega_2_in_axes2_z = rrr_w_2_in_axes2_y*(axis_x_rrr_axes2_x*rrr_S_dot_y +
-            axis_y_rrr_axes2_x*rrr_S_dot_x + rrr_qd_1_t*rrr_r_1_in_axes2_x) - rrr_qd_1_t;
-        /* (rrr-W_2) centripetal tensor of link 2 */
-        const real rrr_W_2_t = rrr_omega_2_in_axes2_z*rrr_omega_2_in_axes2_z;
-        /* (rrr-a_p) acceleration of the connection point without its centripetal part */
-        const real alpha_z = s[9*w + j];
-        const real t_ddot_x = s[7*w + j];
-        const real rrr_a_p_x = t_ddot_x - alpha_z*rrr_q_y;
-        const real t_ddot_y = s[8*w + j];
-        const real rrr_a_p_y = t_ddot_y + alpha_z*rrr_q_x;
-        /* (rrr-S_ddot) acceleration of the connection point */
-        const real rrr_S_ddot_x = rrr_a_p_x - omega_z*rrr_S_dot_t_2;
-        const real rrr_S_ddot_y = rrr_a_p_y - omega_z*rrr_S_dot_t;
-        const real rrr_S_ddot_in_axes2_x = axis_x_rrr_axes2_x*rrr_S_ddot_x -
-            axis_y_rrr_axes2_x*rrr_S_ddot_y;
-        const real rrr_S_ddot_in_axes2_y = axis_x_rrr_axes2_x*rrr_S_ddot_y +
-            axis_y_rrr_axes2_x*rrr_S_ddot_x;
-        /* (rrr-bias) acceleration of the connection point at zero joint accelerations */
-        const real rrr_bias_in_axes2_x = -rrr_W_2_t*rrr_platform_joint_offset_x -
-            rrr_W_1_t*rrr_c_2*rrr_joint2_offset_x;
-        /* (rrr-rel) acceleration of the connection point left to the joint accelerations */
-        const real rrr_rel_in_axes2_x = rrr_S_ddot_in_axes2_x - rrr_bias_in_axes2_x;
-        const real rrr_rel_in_axes2_y = rrr_S_ddot_in_axes2_y -
-            rrr_W_1_t*rrr_joint2_offset_x*rrr_s_2;
-        /* (rrr-B_1) acceleration tensor of link 1 */
-        const real rrr_B_1_in_axes1_xy = inv_rrr_r_1_in_axes2_y*rrr_rel_in_axes2_x;
-        /* (rrr-alpha_2) angular acceleration of link 2 */
-        const real rrr_alpha_2_in_axes2_z = rrr_w_2_in_axes2_y*(rrr_rel_in_axes2_y +
-            rrr_B_1_in_axes1_xy*rrr_r_1_in_axes2_x) - rrr_B_1_in_axes1_xy;
-        /* (rrr-acc_2) acceleration of the reference point of link 2, less gravity */
-        const real gravity_x = m->gravity_x;
-        const real gravity_y = m->gravity_y;
-        const real rrr_acc_2_in_axes2_x = rrr_S_ddot_in_axes2_x + axis_y_rrr_axes2_x*gravity_y -
-            axis_x_rrr_axes2_x*gravity_x;
-        const real rrr_acc_2_in_axes2_y = rrr_S_ddot_in_axes2_y - axis_x_rrr_axes2_x*gravity_y -
-            axis_y_rrr_axes2_x*gravity_x;
-        /* (rrr-mu_2) inertia moment of the links that turn with link 2, about their reference points */
-        const real rrr_J_2_in_spec2_zz = m->rrr_J_2_in_spec2_zz[i];
-        const real rrr_h_2_in_spec2_x = m->rrr_h_2_in_spec2_x[i];
-        const real rrr_h_2_in_spec2_y = m->rrr_h_2_in_spec2_y[i];
-        const real rrr_mu_2_in_axes2_z = rrr_J_2_in_spec2_zz*rrr_alpha_2_in_axes2_z +
-            rrr_acc_2_in_axes2_y*rrr_h_2_in_spec2_x - rrr_acc_2_in_axes2_x*rrr_h_2_in_spec2_y;
-        /* (rrr-mu_1) inertia moment of the links that turn with link 1, about their reference points */
-        const real rrr_J_1_in_spec1_zz = m->rrr_J_1_in_spec1_zz[i];
-        const real rrr_h_1_in_spec1_x = m->rrr_h_1_in_spec1_x[i];
-        const real rrr_h_1_in_spec1_y = m->rrr_h_1_in_spec1_y[i];
-        const real rrr_mu_1_t = m->rrr_mu_1_t[i];
-        const real rrr_mu_1_t_2 = m->rrr_mu_1_t_2[i];
-        const real rrr_mu_1_in_axes1_z = rrr_h_1_in_spec1_y*(rrr_c_1*rrr_mu_1_t +
-            rrr_mu_1_t_2*rrr_s_1) - rrr_B_1_in_axes1_xy*rrr_J_1_in_spec1_zz -
-            rrr_h_1_in_spec1_x*(rrr_c_1*rrr_mu_1_t_2 - rrr_mu_1_t*rrr_s_1);
-        /* (rrr-N_1) moment about joint 1 of the links from 1 outwards, the force at the connection point
-           left out */
-        const real rrr_N_1_in_axes1_z = rrr_mu_1_in_axes1_z + rrr_mu_2_in_axes2_z;
-        /* (rrr-G) force at the connection point that balances the leg's inertia and weight along all
-           degrees of freedom */
-        const real rrr_G_in_axes2_y = rrr_mu_2_in_axes2_z*rrr_w_2_in_axes2_y;
+        values_rrr v;
+        stage_rrr_X(m, w, i, j, s, X, &v);
+        stage_rrr_A_X(w, j, A, &v);
+        stage_rrr_V_X(m, w, i, j, V, &v);
+        stage_rrr_A_V_X(w, j, V, &v);
+        stage_rrr_legs_required(m, i, &v);
         /* (rrr-c) leg force on the platform without actuation and without the mass at the connection
            point */
-        const real rrr_c_in_axes2_x = rrr_W_2_t*rrr_h_2_in_spec2_x +
-            rrr_alpha_2_in_axes2_z*rrr_h_2_in_spec2_y -
-            inv_rrr_r_1_in_axes2_y*(rrr_G_in_axes2_y*rrr_r_1_in_axes2_x - rrr_N_1_in_axes1_z);
-        const real rrr_c_in_axes2_y = rrr_W_2_t*rrr_h_2_in_spec2_y - rrr_G_in_axes2_y -
-            rrr_alpha_2_in_axes2_z*rrr_h_2_in_spec2_x;
-        const real rrr_c_x = axis_x_rrr_axes2_x*rrr_c_in_axes2_x +
-            axis_y_rrr_axes2_x*rrr_c_in_axes2_y;
-        const real rrr_c_y = axis_x_rrr_axes2_x*rrr_c_in_axes2_y -
-            axis_y_rrr_axes2_x*rrr_c_in_axes2_x;
+        const real rrr_c_x = v.axis_x_rrr_axes2_x*v.rrr_c_in_axes2_x +
+            v.axis_y_rrr_axes2_x*v.rrr_c_in_axes2_y;
+        const real rrr_c_y = v.axis_x_rrr_axes2_x*v.rrr_c_in_axes2_y -
+            v.axis_y_rrr_axes2_x*v.rrr_c_in_axes2_x;
         /* (R_a) moment that actuators and external wrench must give */
-        const real rrr_R_a_t = rrr_c_x*rrr_q_y - rrr_c_y*rrr_q_x;
+        const real rrr_R_a_t = rrr_c_x*v.rrr_q_y - rrr_c_y*v.rrr_q_x;
         /* (rrr-H_a_1) moment of the column's unit force about the platform origin */
-        const real rrr_H_a_1_z = rrr_q_x*rrr_w_1_y - rrr_q_y*rrr_w_1_x;
+        const real rrr_H_a_1_z = v.rrr_q_x*v.rrr_w_1_y - v.rrr_q_y*v.rrr_w_1_x;
         /* (R_t) force that actuators and external wrench must give */
         gather(&terms[0*count + k], add, rrr_c_x);  /* R_t_x_of_legs */
         gather(&terms[1*count + k], add, rrr_c_y);  /* R_t_y_of_legs */
         /* (R_a) moment that actuators and external wrench must give */
         gather(&terms[2*count + k], add, rrr_R_a_t);  /* R_a_z_of_legs */
         /* (rrr-w_1) reciprocal vector 1 */
-        o[0*count + k] = rrr_w_1_x;
-        o[1*count + k] = rrr_w_1_y;
+        o[0*count + k] = v.rrr_w_1_x;
+        o[1*count + k] = v.rrr_w_1_y;
         /* (rrr-H_a_1) moment of the column's unit force about the platform origin */
         o[2*count + k] = rrr_H_a_1_z;
         const real rrr_rho2_1_t = m->rrr_rho2_1_t[i];
         const real rrr_size = m->rrr_size[i];
-        o[4*count + k] = UNLESS(magnitude(rrr_rho2_1) > TOLERANCE*TOLERANCE*rrr_rho2_1_t) +
-            UNLESS(magnitude(rrr_r_1_in_axes2_y) > TOLERANCE*rrr_size);
-        o[3*count + k] = UNLESS(rrr_disc_1 >= 0);
+        o[4*count + k] = UNLESS(magnitude(v.rrr_rho2_1) > TOLERANCE*TOLERANCE*rrr_rho2_1_t) +
+            UNLESS(magnitude(v.rrr_r_1_in_axes2_y) > TOLERANCE*rrr_size);
+        o[3*count + k] = UNLESS(v.rrr_disc_1 >= 0);
     }
 }
 
@@ -3801,7 +3526,7 @@ INLINE void required_place_rrr(size_t w, size_t count, const real *o, size_t leg
     real *H, verdict *t)
 {
     for (size_t k = 0; k < w; ++k) {
-        H[(0*NU + 2 + leg)*w + k] = o[0*count + first + k];
+        H[(2 + leg)*w + k] = o[0*count + first + k];
         H[(NU + 2 + leg)*w + k] = o[1*count + first + k];
         H[(2*NU + 2 + leg)*w + k] = o[2*count + first + k];
         t->unreachable[k] += o[3*count + first + k];
@@ -3814,14 +3539,14 @@ INLINE void required_after(size_t w, const real *s, const real *sums, real *requ
     for (size_t k = 0; k < w; ++k) {
         /* (R_t) force that actuators and external wrench must give */
         const real R_t_x_of_legs = sums[0*w + k];
-        const real f_p_x = s[10*w + k];
+        const real f_p_x = s[2*w + k];
         const real R_t_x = f_p_x - R_t_x_of_legs;
         const real R_t_y_of_legs = sums[1*w + k];
-        const real f_p_y = s[11*w + k];
+        const real f_p_y = s[3*w + k];
         const real R_t_y = f_p_y - R_t_y_of_legs;
         /* (R_a) moment that actuators and external wrench must give */
         const real R_a_z_of_legs = sums[2*w + k];
-        const real mu_p_z = s[12*w + k];
+        const real mu_p_z = s[4*w + k];
         const real R_a_z = R_a_z_of_legs + mu_p_z;
         /* (R_t) force that actuators and external wrench must give */
         required[0*w + k] = R_t_x;
@@ -3834,22 +3559,19 @@ INLINE void required_after(size_t w, const real *s, const real *sums, real *requ
 INLINE void required_run(const prepared *m, const real *X, const real *V, const real *A, real
     *required, real *H, verdict *t)
 {
-    real s[13] = {0};
-    real sums[3] = {0};
-    real terms_prrr[3*LEGS(LEGS_OF_prrr)] = {0};
-    real o_prrr[8*LEGS(LEGS_OF_prrr)] = {0};
-    real terms_rrr[3*LEGS(LEGS_OF_rrr)] = {0};
-    real o_rrr[5*LEGS(LEGS_OF_rrr)] = {0};
+    real s[5] = {0}, sums[3] = {0};
+    real terms_prrr[3*LEGS(LEGS_OF_prrr)] = {0}, o_prrr[8*LEGS(LEGS_OF_prrr)] = {0};
+    real terms_rrr[3*LEGS(LEGS_OF_rrr)] = {0}, o_rrr[5*LEGS(LEGS_OF_rrr)] = {0};
     clear(H, NV*NU);
     required_before(m, 1, X, V, A, s);
     required_legs_prrr(m, 1, 0, 1, s, 0, LEGS(LEGS_OF_prrr), 0, X, V, A, terms_prrr, o_prrr);
+    required_legs_rrr(m, 1, 0, 1, s, 0, LEGS(LEGS_OF_rrr), 0, X, V, A, terms_rrr, o_rrr);
     for (size_t leg = 0; leg < LEGS_OF_prrr; ++leg) {
         required_place_prrr(1, LEGS(LEGS_OF_prrr), o_prrr, leg, required, H, t);
     }
     for (size_t n = 0; n < 3; ++n) {
         sums[n] = total(terms_prrr + n*LEGS(LEGS_OF_prrr), LEGS_OF_prrr);
     }
-    required_legs_rrr(m, 1, 0, 1, s, 0, LEGS(LEGS_OF_rrr), 0, terms_rrr, o_rrr);
     for (size_t leg = 0; leg < LEGS_OF_rrr; ++leg) {
         required_place_rrr(1, LEGS(LEGS_OF_rrr), o_rrr, leg, leg, H, t);
     }
@@ -3862,8 +3584,7 @@ INLINE void required_run(const prepared *m, const real *X, const real *V, const 
 INLINE void required_run_lanes(const prepared *m, const real *X, const real *V, const real *A,
     real *required, real *H, verdict *t)
 {
-    real s[13*LANES];
-    real sums[3*LANES];
+    real s[5*LANES], sums[3*LANES];
     real o_prrr[8*LANES];
     real o_rrr[5*LANES];
     clear(H, NV*NU*LANES);
@@ -3874,28 +3595,20 @@ INLINE void required_run_lanes(const prepared *m, const real *X, const real *V, 
         required_place_prrr(LANES, LANES, o_prrr, 0, required, H, t);
     }
     for (size_t leg = 0; leg < LEGS_OF_rrr; ++leg) {
-        required_legs_rrr(m, LANES, leg, 0, s, 1, LANES, 1, sums, o_rrr);
+        required_legs_rrr(m, LANES, leg, 0, s, 1, LANES, 1, X, V, A, sums, o_rrr);
         required_place_rrr(LANES, LANES, o_rrr, leg, 0, H, t);
     }
     required_after(LANES, s, sums, required);
 }
 
 /* ---- inverse_kinematics ---- */
-INLINE void inverse_kinematics_before(size_t w, const real *X, real *s)
+INLINE void inverse_kinematics_before(const prepared *m, size_t w, const real *X, real *s)
 {
     for (size_t k = 0; k < w; ++k) {
-        /* X: named entries */
-        const real X_0 = X[0*w + k];
-        const real t_x = X_0;
-        const real X_1 = X[1*w + k];
-        const real t_y = X_1;
-        const real X_2 = X[2*w + k];
-        const real R_xx = cosine(X_2);
-        const real R_yx = sine(X_2);
-        s[0*w + k] = t_x;
-        s[1*w + k] = t_y;
-        s[2*w + k] = R_xx;
-        s[3*w + k] = R_yx;
+        values v;
+        stage_X(m, w, k, X, &v);
+        s[0*w + k] = v.R_xx;
+        s[1*w + k] = v.R_yx;
     }
 }
 
@@ -3905,62 +3618,22 @@ INLINE void inverse_kinematics_legs_prrr(const prepared *m, size_t w, size_t leg
     for (size_t k = 0; k < count; ++k) {
         const size_t i = leg + legs*k;
         const size_t j = states*k;
-        /* (prrr-S) from the base point to the connection point */
-        const real R_xx = s[2*w + j];
-        const real R_yx = s[3*w + j];
-        const real prrr_base_point_x = m->prrr_base_point_x[i];
-        const real prrr_platform_point_x = m->prrr_platform_point_x[i];
-        const real prrr_platform_point_y = m->prrr_platform_point_y[i];
-        const real t_x = s[0*w + j];
-        const real prrr_S_x = t_x + R_xx*prrr_platform_point_x - prrr_base_point_x -
-            R_yx*prrr_platform_point_y;
-        const real prrr_base_point_y = m->prrr_base_point_y[i];
-        const real t_y = s[1*w + j];
-        const real prrr_S_y = t_y + R_xx*prrr_platform_point_y + R_yx*prrr_platform_point_x -
-            prrr_base_point_y;
-        const real prrr_base_frame_xx = m->prrr_base_frame_xx[i];
-        const real prrr_base_frame_yx = m->prrr_base_frame_yx[i];
-        const real prrr_S_in_axes0_y = -prrr_S_x*prrr_base_frame_xx - prrr_S_y*prrr_base_frame_yx;
-        /* (prrr-x_2) from the origin of joint 2 to the connection point */
-        const real prrr_base_frame_xy = m->prrr_base_frame_xy[i];
-        const real prrr_base_frame_yy = m->prrr_base_frame_yy[i];
-        const real prrr_y_1_extra = X[3*w + j];
-        const real prrr_x_2_in_axes0_x = prrr_S_x*prrr_base_frame_xy + prrr_S_y*prrr_base_frame_yy
-            - prrr_y_1_extra;
-        /* (prrr-Kd_2) projection on the centre's direction, from the distance fixed by the joints beyond
-           joint 2 */
-        const real prrr_Kd_2_t_3 = prrr_S_in_axes0_y*prrr_S_in_axes0_y +
-            prrr_x_2_in_axes0_x*prrr_x_2_in_axes0_x;
-        const real prrr_Kd_2_t = m->prrr_Kd_2_t[i];
-        const real prrr_Kd_2_t_2 = m->prrr_Kd_2_t_2[i];
-        const real prrr_Kd_2 = prrr_Kd_2_t + R(0.5)*prrr_Kd_2_t_3 - prrr_Kd_2_t_2;
-        /* (prrr-Kc_2) factor of the cosine in the equation of joint 2 */
-        const real prrr_joint3_offset_x = m->prrr_joint3_offset_x[i];
-        const real prrr_Kc_2 = prrr_joint3_offset_x*prrr_x_2_in_axes0_x;
-        /* (prrr-Ks_2) factor of the sine in the equation of joint 2 */
-        const real prrr_Ks_2 = prrr_S_in_axes0_y*prrr_joint3_offset_x;
-        /* (prrr-rho2_2) squared amplitude */
-        const real prrr_rho2_2 = prrr_Kc_2*prrr_Kc_2 + prrr_Ks_2*prrr_Ks_2;
-        /* (prrr-disc_2) discriminant */
-        const real prrr_disc_2 = prrr_rho2_2 - prrr_Kd_2*prrr_Kd_2;
-        /* (prrr-root_2) root, with the sign of the branch */
-        const real prrr_branch_2 = m->prrr_branch_2[i];
-        const real prrr_root_2 = prrr_branch_2*root(prrr_disc_2);
+        values_prrr v;
+        stage_prrr_inverse_kinematics_potential(m, w, i, j, s, X, &v);
         /* (prrr-q_2) displacement of joint 2 */
-        const real inv_prrr_rho2_2 = 1/prrr_rho2_2;
-        const real prrr_q_2 = angle(inv_prrr_rho2_2*(prrr_Kc_2*prrr_Kd_2 - prrr_Ks_2*prrr_root_2),
-            -inv_prrr_rho2_2*(prrr_Kc_2*prrr_root_2 + prrr_Kd_2*prrr_Ks_2));
-        /* (prrr-x_3) from the origin of joint 3 to the connection point */
-        const real inv_prrr_size_t = m->inv_prrr_size_t[i];
-        const real prrr_x_3_in_axes2_x = inv_prrr_size_t*prrr_Kd_2*prrr_joint3_offset_x -
-            prrr_joint3_offset_x;
+        const real prrr_q_2 = angle(-v.inv_prrr_rho2_2*(-v.prrr_Kc_2*v.prrr_root_2 -
+            v.prrr_Kd_2*v.prrr_Ks_2), -v.inv_prrr_rho2_2*(v.prrr_Ks_2*v.prrr_root_2 -
+            v.prrr_Kc_2*v.prrr_Kd_2));
         /* (prrr-q_3) displacement of joint 3 */
+        const real inv_prrr_size_t = m->inv_prrr_size_t[i];
         const real inv_prrr_size_t_2 = m->inv_prrr_size_t_2[i];
+        const real prrr_joint3_offset_x = m->prrr_joint3_offset_x[i];
         const real prrr_platform_joint_offset_x = m->prrr_platform_joint_offset_x[i];
         const real prrr_q_3 =
-            angle(-inv_prrr_size_t*inv_prrr_size_t_2*prrr_joint3_offset_x*prrr_platform_joint_offset_x*prrr_root_2,
-            inv_prrr_size_t_2*prrr_platform_joint_offset_x*prrr_x_3_in_axes2_x);
+            angle(-inv_prrr_size_t*inv_prrr_size_t_2*prrr_joint3_offset_x*prrr_platform_joint_offset_x*v.prrr_root_2,
+            inv_prrr_size_t_2*prrr_platform_joint_offset_x*v.prrr_x_3_in_axes2_x);
         /* (legs_size) rms size of the legs, taken where the platform points coincide */
+        const real prrr_y_1_extra = X[3*w + j];
         o[0*count + k] = prrr_y_1_extra;
         /* (prrr-q_2) displacement of joint 2 */
         o[1*count + k] = prrr_q_2;
@@ -3968,8 +3641,8 @@ INLINE void inverse_kinematics_legs_prrr(const prepared *m, size_t w, size_t leg
         o[2*count + k] = prrr_q_3;
         o[5*count + k] = prrr_y_1_extra + (prrr_q_2 + prrr_q_3);
         const real prrr_rho2_2_t = m->prrr_rho2_2_t[i];
-        o[4*count + k] = UNLESS(magnitude(prrr_rho2_2) > TOLERANCE*TOLERANCE*prrr_rho2_2_t);
-        o[3*count + k] = UNLESS(prrr_disc_2 >= 0);
+        o[4*count + k] = UNLESS(magnitude(v.prrr_rho2_2) > TOLERANCE*TOLERANCE*prrr_rho2_2_t);
+        o[3*count + k] = UNLESS(v.prrr_disc_2 >= 0);
     }
 }
 
@@ -3987,72 +3660,33 @@ INLINE void inverse_kinematics_place_prrr(size_t w, size_t count, const real *o,
 }
 
 INLINE void inverse_kinematics_legs_rrr(const prepared *m, size_t w, size_t leg, size_t legs,
-    const real *s, size_t states, size_t count, real *o)
+    const real *s, size_t states, size_t count, const real *X, real *o)
 {
     for (size_t k = 0; k < count; ++k) {
         const size_t i = leg + legs*k;
         const size_t j = states*k;
-        /* (rrr-S) from the base point to the connection point */
-        const real R_xx = s[2*w + j];
-        const real R_yx = s[3*w + j];
-        const real rrr_base_point_x = m->rrr_base_point_x[i];
-        const real rrr_platform_point_x = m->rrr_platform_point_x[i];
-        const real rrr_platform_point_y = m->rrr_platform_point_y[i];
-        const real t_x = s[0*w + j];
-        const real rrr_S_x = t_x + R_xx*rrr_platform_point_x - rrr_base_point_x -
-            R_yx*rrr_platform_point_y;
-        const real rrr_base_point_y = m->rrr_base_point_y[i];
-        const real t_y = s[1*w + j];
-        const real rrr_S_y = t_y + R_xx*rrr_platform_point_y + R_yx*rrr_platform_point_x -
-            rrr_base_point_y;
-        /* (rrr-Kd_1) projection on the centre's direction, from the distance fixed by the joints beyond
-           joint 1 */
-        const real rrr_Kd_1_t_3 = rrr_S_x*rrr_S_x + rrr_S_y*rrr_S_y;
-        const real rrr_Kd_1_t = m->rrr_Kd_1_t[i];
-        const real rrr_Kd_1_t_2 = m->rrr_Kd_1_t_2[i];
-        const real rrr_Kd_1 = rrr_Kd_1_t + R(0.5)*rrr_Kd_1_t_3 - rrr_Kd_1_t_2;
-        /* (rrr-px_1) component along the reference direction */
-        const real rrr_base_frame_xx = m->rrr_base_frame_xx[i];
-        const real rrr_base_frame_yx = m->rrr_base_frame_yx[i];
-        const real rrr_px_1 = rrr_S_x*rrr_base_frame_xx + rrr_S_y*rrr_base_frame_yx;
-        /* (rrr-py_1) component across the reference direction */
-        const real rrr_base_frame_xy = m->rrr_base_frame_xy[i];
-        const real rrr_base_frame_yy = m->rrr_base_frame_yy[i];
-        const real rrr_py_1 = rrr_S_x*rrr_base_frame_xy + rrr_S_y*rrr_base_frame_yy;
-        /* (rrr-Kc_1) factor of the cosine in the equation of joint 1 */
-        const real rrr_joint2_offset_x = m->rrr_joint2_offset_x[i];
-        const real rrr_Kc_1 = rrr_joint2_offset_x*rrr_px_1;
-        /* (rrr-Ks_1) factor of the sine in the equation of joint 1 */
-        const real rrr_Ks_1 = rrr_joint2_offset_x*rrr_py_1;
-        /* (rrr-rho2_1) squared amplitude */
-        const real rrr_rho2_1 = rrr_Kc_1*rrr_Kc_1 + rrr_Ks_1*rrr_Ks_1;
-        /* (rrr-disc_1) discriminant */
-        const real rrr_disc_1 = rrr_rho2_1 - rrr_Kd_1*rrr_Kd_1;
-        /* (rrr-root_1) root, with the sign of the branch */
-        const real rrr_branch_1 = m->rrr_branch_1[i];
-        const real rrr_root_1 = rrr_branch_1*root(rrr_disc_1);
+        values_rrr v;
+        stage_rrr_inverse_kinematics_potential(m, w, i, j, s, X, &v);
         /* (rrr-q_1) displacement of joint 1 */
-        const real inv_rrr_rho2_1 = 1/rrr_rho2_1;
-        const real rrr_q_1 = angle(inv_rrr_rho2_1*(rrr_Kc_1*rrr_root_1 + rrr_Kd_1*rrr_Ks_1),
-            inv_rrr_rho2_1*(rrr_Kc_1*rrr_Kd_1 - rrr_Ks_1*rrr_root_1));
-        /* (rrr-x_2) from the origin of joint 2 to the connection point */
-        const real inv_rrr_size_t = m->inv_rrr_size_t[i];
-        const real rrr_x_2_in_axes1_x = inv_rrr_size_t*rrr_Kd_1*rrr_joint2_offset_x -
-            rrr_joint2_offset_x;
+        const real rrr_q_1 = angle(v.inv_rrr_rho2_1*(v.rrr_Kc_1*v.rrr_root_1 +
+            v.rrr_Kd_1*v.rrr_Ks_1), v.inv_rrr_rho2_1*(v.rrr_Kc_1*v.rrr_Kd_1 -
+            v.rrr_Ks_1*v.rrr_root_1));
         /* (rrr-q_2) displacement of joint 2 */
+        const real inv_rrr_size_t = m->inv_rrr_size_t[i];
         const real inv_rrr_size_t_2 = m->inv_rrr_size_t_2[i];
+        const real rrr_joint2_offset_x = m->rrr_joint2_offset_x[i];
         const real rrr_platform_joint_offset_x = m->rrr_platform_joint_offset_x[i];
         const real rrr_q_2 =
-            angle(-inv_rrr_size_t*inv_rrr_size_t_2*rrr_joint2_offset_x*rrr_platform_joint_offset_x*rrr_root_1,
-            inv_rrr_size_t_2*rrr_platform_joint_offset_x*rrr_x_2_in_axes1_x);
+            angle(-inv_rrr_size_t*inv_rrr_size_t_2*rrr_joint2_offset_x*rrr_platform_joint_offset_x*v.rrr_root_1,
+            inv_rrr_size_t_2*rrr_platform_joint_offset_x*v.rrr_x_2_in_axes1_x);
         /* (rrr-q_1) displacement of joint 1 */
         o[0*count + k] = rrr_q_1;
         /* (rrr-q_2) displacement of joint 2 */
         o[1*count + k] = rrr_q_2;
         o[4*count + k] = rrr_q_1 + rrr_q_2;
         const real rrr_rho2_1_t = m->rrr_rho2_1_t[i];
-        o[3*count + k] = UNLESS(magnitude(rrr_rho2_1) > TOLERANCE*TOLERANCE*rrr_rho2_1_t);
-        o[2*count + k] = UNLESS(rrr_disc_1 >= 0);
+        o[3*count + k] = UNLESS(magnitude(v.rrr_rho2_1) > TOLERANCE*TOLERANCE*rrr_rho2_1_t);
+        o[2*count + k] = UNLESS(v.rrr_disc_1 >= 0);
     }
 }
 
@@ -4070,15 +3704,15 @@ INLINE void inverse_kinematics_place_rrr(size_t w, size_t count, const real *o, 
 
 INLINE void inverse_kinematics_run(const prepared *m, const real *X, real *q, verdict *t)
 {
-    real s[4] = {0};
+    real s[2] = {0};
     real o_prrr[6*LEGS(LEGS_OF_prrr)] = {0};
     real o_rrr[5*LEGS(LEGS_OF_rrr)] = {0};
-    inverse_kinematics_before(1, X, s);
+    inverse_kinematics_before(m, 1, X, s);
     inverse_kinematics_legs_prrr(m, 1, 0, 1, s, 0, LEGS(LEGS_OF_prrr), X, o_prrr);
+    inverse_kinematics_legs_rrr(m, 1, 0, 1, s, 0, LEGS(LEGS_OF_rrr), X, o_rrr);
     for (size_t leg = 0; leg < LEGS_OF_prrr; ++leg) {
         inverse_kinematics_place_prrr(1, LEGS(LEGS_OF_prrr), o_prrr, leg, q, t);
     }
-    inverse_kinematics_legs_rrr(m, 1, 0, 1, s, 0, LEGS(LEGS_OF_rrr), o_rrr);
     for (size_t leg = 0; leg < LEGS_OF_rrr; ++leg) {
         inverse_kinematics_place_rrr(1, LEGS(LEGS_OF_rrr), o_rrr, leg, leg, q, t);
     }
@@ -4086,46 +3720,28 @@ INLINE void inverse_kinematics_run(const prepared *m, const real *X, real *q, ve
 
 INLINE void inverse_kinematics_run_lanes(const prepared *m, const real *X, real *q, verdict *t)
 {
-    real s[4*LANES];
+    real s[2*LANES];
     real o_prrr[6*LANES];
     real o_rrr[5*LANES];
-    inverse_kinematics_before(LANES, X, s);
+    inverse_kinematics_before(m, LANES, X, s);
     for (size_t leg = 0; leg < LEGS_OF_prrr; ++leg) {
         inverse_kinematics_legs_prrr(m, LANES, leg, 0, s, 1, LANES, X, o_prrr);
         inverse_kinematics_place_prrr(LANES, LANES, o_prrr, 0, q, t);
     }
     for (size_t leg = 0; leg < LEGS_OF_rrr; ++leg) {
-        inverse_kinematics_legs_rrr(m, LANES, leg, 0, s, 1, LANES, o_rrr);
+        inverse_kinematics_legs_rrr(m, LANES, leg, 0, s, 1, LANES, X, o_rrr);
         inverse_kinematics_place_rrr(LANES, LANES, o_rrr, leg, 0, q, t);
     }
 }
 
 /* ---- joint_rates ---- */
-INLINE void joint_rates_before(size_t w, const real *X, const real *V, real *s)
+INLINE void joint_rates_before(const prepared *m, size_t w, const real *X, real *s)
 {
     for (size_t k = 0; k < w; ++k) {
-        /* X: named entries */
-        const real X_0 = X[0*w + k];
-        const real t_x = X_0;
-        const real X_1 = X[1*w + k];
-        const real t_y = X_1;
-        const real X_2 = X[2*w + k];
-        const real R_xx = cosine(X_2);
-        const real R_yx = sine(X_2);
-        /* V: named entries */
-        const real V_0 = V[0*w + k];
-        const real t_dot_x = V_0;
-        const real V_1 = V[1*w + k];
-        const real t_dot_y = V_1;
-        const real V_2 = V[2*w + k];
-        const real omega_z = V_2;
-        s[0*w + k] = t_x;
-        s[1*w + k] = t_y;
-        s[2*w + k] = R_xx;
-        s[3*w + k] = R_yx;
-        s[4*w + k] = t_dot_x;
-        s[5*w + k] = t_dot_y;
-        s[6*w + k] = omega_z;
+        values v;
+        stage_X(m, w, k, X, &v);
+        s[0*w + k] = v.R_xx;
+        s[1*w + k] = v.R_yx;
     }
 }
 
@@ -4135,92 +3751,34 @@ INLINE void joint_rates_legs_prrr(const prepared *m, size_t w, size_t leg, size_
     for (size_t k = 0; k < count; ++k) {
         const size_t i = leg + legs*k;
         const size_t j = states*k;
-        /* (prrr-S) from the base point to the connection point */
-        const real R_xx = s[2*w + j];
-        const real R_yx = s[3*w + j];
-        const real prrr_platform_point_x = m->prrr_platform_point_x[i];
-        const real prrr_platform_point_y = m->prrr_platform_point_y[i];
-        const real prrr_q_x = R_xx*prrr_platform_point_x - R_yx*prrr_platform_point_y;
-        const real prrr_q_y = R_xx*prrr_platform_point_y + R_yx*prrr_platform_point_x;
-        const real prrr_base_point_x = m->prrr_base_point_x[i];
-        const real t_x = s[0*w + j];
-        const real prrr_S_x = prrr_q_x + t_x - prrr_base_point_x;
-        const real prrr_base_point_y = m->prrr_base_point_y[i];
-        const real t_y = s[1*w + j];
-        const real prrr_S_y = prrr_q_y + t_y - prrr_base_point_y;
-        const real prrr_base_frame_xx = m->prrr_base_frame_xx[i];
-        const real prrr_base_frame_yx = m->prrr_base_frame_yx[i];
-        const real prrr_S_in_axes0_y = -prrr_S_x*prrr_base_frame_xx - prrr_S_y*prrr_base_frame_yx;
-        /* (prrr-x_2) from the origin of joint 2 to the connection point */
-        const real prrr_base_frame_xy = m->prrr_base_frame_xy[i];
-        const real prrr_base_frame_yy = m->prrr_base_frame_yy[i];
-        const real prrr_y_1_extra = X[3*w + j];
-        const real prrr_x_2_in_axes0_x = prrr_S_x*prrr_base_frame_xy + prrr_S_y*prrr_base_frame_yy
-            - prrr_y_1_extra;
-        /* (prrr-Kd_2) projection on the centre's direction, from the distance fixed by the joints beyond
-           joint 2 */
-        const real prrr_Kd_2_t_3 = prrr_S_in_axes0_y*prrr_S_in_axes0_y +
-            prrr_x_2_in_axes0_x*prrr_x_2_in_axes0_x;
-        const real prrr_Kd_2_t = m->prrr_Kd_2_t[i];
-        const real prrr_Kd_2_t_2 = m->prrr_Kd_2_t_2[i];
-        const real prrr_Kd_2 = prrr_Kd_2_t + R(0.5)*prrr_Kd_2_t_3 - prrr_Kd_2_t_2;
-        /* (prrr-Kc_2) factor of the cosine in the equation of joint 2 */
-        const real prrr_joint3_offset_x = m->prrr_joint3_offset_x[i];
-        const real prrr_Kc_2 = prrr_joint3_offset_x*prrr_x_2_in_axes0_x;
-        /* (prrr-Ks_2) factor of the sine in the equation of joint 2 */
-        const real prrr_Ks_2 = prrr_S_in_axes0_y*prrr_joint3_offset_x;
-        /* (prrr-rho2_2) squared amplitude */
-        const real prrr_rho2_2 = prrr_Kc_2*prrr_Kc_2 + prrr_Ks_2*prrr_Ks_2;
-        /* (prrr-disc_2) discriminant */
-        const real prrr_disc_2 = prrr_rho2_2 - prrr_Kd_2*prrr_Kd_2;
-        /* (prrr-root_2) root, with the sign of the branch */
-        const real prrr_branch_2 = m->prrr_branch_2[i];
-        const real prrr_root_2 = prrr_branch_2*root(prrr_disc_2);
-        /* (prrr-c_2) cosine of the angle of joint 2 from its reference direction */
-        const real inv_prrr_rho2_2 = 1/prrr_rho2_2;
-        const real prrr_c_2 = inv_prrr_rho2_2*(prrr_Kc_2*prrr_Kd_2 - prrr_Ks_2*prrr_root_2);
-        /* (prrr-s_2) sine of the angle of joint 2 from its reference direction */
-        const real prrr_s_2 = inv_prrr_rho2_2*(prrr_Kc_2*prrr_root_2 + prrr_Kd_2*prrr_Ks_2);
-        /* (prrr-x_3) from the origin of joint 3 to the connection point */
-        const real inv_prrr_size_t = m->inv_prrr_size_t[i];
-        const real prrr_x_3_in_axes2_x = inv_prrr_size_t*prrr_Kd_2*prrr_joint3_offset_x -
-            prrr_joint3_offset_x;
-        /* (prrr-c_3) cosine of the angle of joint 3 from its reference direction */
-        const real inv_prrr_size_t_2 = m->inv_prrr_size_t_2[i];
-        const real prrr_platform_joint_offset_x = m->prrr_platform_joint_offset_x[i];
-        const real prrr_c_3 = inv_prrr_size_t_2*prrr_platform_joint_offset_x*prrr_x_3_in_axes2_x;
-        /* (prrr-s_3) sine of the angle of joint 3 from its reference direction */
-        const real prrr_s_3_t =
-            inv_prrr_size_t*inv_prrr_size_t_2*prrr_joint3_offset_x*prrr_platform_joint_offset_x*prrr_root_2;
+        values_prrr v;
+        stage_prrr_X(m, w, i, j, s, X, &v);
         /* (prrr-S_dot) velocity of the connection point */
-        const real omega_z = s[6*w + j];
-        const real t_dot_x = s[4*w + j];
-        const real prrr_S_dot_x = t_dot_x - omega_z*prrr_q_y;
-        const real t_dot_y = s[5*w + j];
-        const real prrr_S_dot_y = t_dot_y + omega_z*prrr_q_x;
-        /* (prrr-r_2) from joint 2 to the connection point, along the links */
-        const real prrr_r_2_t = prrr_platform_joint_offset_x*prrr_s_3_t;
-        const real prrr_r_2_in_axes2_x = prrr_joint3_offset_x +
-            prrr_c_3*prrr_platform_joint_offset_x;
-        const real prrr_r_2_in_axes3_y = prrr_r_2_in_axes2_x*prrr_s_3_t - prrr_c_3*prrr_r_2_t;
+        const real omega_z = V[2*w + j];
+        const real t_dot_x = V[0*w + j];
+        const real prrr_S_dot_x = t_dot_x - omega_z*v.prrr_q_y;
+        const real t_dot_y = V[1*w + j];
+        const real prrr_S_dot_y = t_dot_y + omega_z*v.prrr_q_x;
         /* (prrr-S_dot_rest) velocity of the connection point left to the joints that are not extra */
+        const real prrr_base_frame_xy = m->prrr_base_frame_xy[i];
         const real prrr_yd_1 = V[3*w + j];
         const real prrr_S_dot_rest_x = prrr_S_dot_x - prrr_base_frame_xy*prrr_yd_1;
+        const real prrr_base_frame_yy = m->prrr_base_frame_yy[i];
         const real prrr_S_dot_rest_y = prrr_S_dot_y - prrr_base_frame_yy*prrr_yd_1;
         /* (prrr-qd_2) rate of joint 2 */
-        const real prrr_e_1_in_axes3_y = prrr_c_2*prrr_s_3_t - prrr_c_3*prrr_s_2;
-        const real prrr_e_1_in_axes3_x = prrr_c_2*prrr_c_3 + prrr_s_2*prrr_s_3_t;
-        const real axis_y_prrr_axes3_x = prrr_base_frame_xy*prrr_e_1_in_axes3_y -
-            prrr_base_frame_xx*prrr_e_1_in_axes3_x;
-        const real axis_x_prrr_axes3_x = prrr_base_frame_yy*prrr_e_1_in_axes3_y -
-            prrr_base_frame_yx*prrr_e_1_in_axes3_x;
+        const real prrr_base_frame_xx = m->prrr_base_frame_xx[i];
+        const real axis_y_prrr_axes3_x = prrr_base_frame_xx*v.prrr_qd_2_t +
+            prrr_base_frame_xy*v.prrr_e_1_in_axes3_y;
+        const real prrr_base_frame_yx = m->prrr_base_frame_yx[i];
+        const real axis_x_prrr_axes3_x = prrr_base_frame_yx*v.prrr_qd_2_t +
+            prrr_base_frame_yy*v.prrr_e_1_in_axes3_y;
         const real prrr_qd_2 = -(axis_x_prrr_axes3_x*prrr_S_dot_rest_x -
-            axis_y_prrr_axes3_x*prrr_S_dot_rest_y)/prrr_r_2_in_axes3_y;
+            axis_y_prrr_axes3_x*prrr_S_dot_rest_y)/v.prrr_r_2_in_axes3_y;
         /* (prrr-qd_3) rate of joint 3 */
         const real prrr_w_3_in_axes3_y = m->prrr_w_3_in_axes3_y[i];
         const real prrr_qd_3 = prrr_w_3_in_axes3_y*(axis_x_prrr_axes3_x*prrr_S_dot_rest_y +
-            axis_y_prrr_axes3_x*prrr_S_dot_rest_x - prrr_qd_2*(prrr_c_3*prrr_r_2_in_axes2_x +
-            prrr_r_2_t*prrr_s_3_t));
+            axis_y_prrr_axes3_x*prrr_S_dot_rest_x - prrr_qd_2*(v.prrr_c_3*v.prrr_r_2_in_axes2_x +
+            v.prrr_r_2_t*v.prrr_s_3_t));
         /* (legs_size) rms size of the legs, taken where the platform points coincide */
         o[0*count + k] = prrr_yd_1;
         /* (prrr-qd_2) rate of joint 2 */
@@ -4230,9 +3788,9 @@ INLINE void joint_rates_legs_prrr(const prepared *m, size_t w, size_t leg, size_
         o[5*count + k] = prrr_yd_1 + (prrr_qd_2 + prrr_qd_3);
         const real prrr_rho2_2_t = m->prrr_rho2_2_t[i];
         const real prrr_size = m->prrr_size[i];
-        o[4*count + k] = UNLESS(magnitude(prrr_rho2_2) > TOLERANCE*TOLERANCE*prrr_rho2_2_t) +
-            UNLESS(magnitude(prrr_r_2_in_axes3_y) > TOLERANCE*prrr_size);
-        o[3*count + k] = UNLESS(prrr_disc_2 >= 0);
+        o[4*count + k] = UNLESS(magnitude(v.prrr_rho2_2) > TOLERANCE*TOLERANCE*prrr_rho2_2_t) +
+            UNLESS(magnitude(v.prrr_r_2_in_axes3_y) > TOLERANCE*prrr_size);
+        o[3*count + k] = UNLESS(v.prrr_disc_2 >= 0);
     }
 }
 
@@ -4250,90 +3808,36 @@ INLINE void joint_rates_place_prrr(size_t w, size_t count, const real *o, size_t
 }
 
 INLINE void joint_rates_legs_rrr(const prepared *m, size_t w, size_t leg, size_t legs, const real
-    *s, size_t states, size_t count, real *o)
+    *s, size_t states, size_t count, const real *X, const real *V, real *o)
 {
     for (size_t k = 0; k < count; ++k) {
         const size_t i = leg + legs*k;
         const size_t j = states*k;
-        /* (rrr-S) from the base point to the connection point */
-        const real R_xx = s[2*w + j];
-        const real R_yx = s[3*w + j];
-        const real rrr_platform_point_x = m->rrr_platform_point_x[i];
-        const real rrr_platform_point_y = m->rrr_platform_point_y[i];
-        const real rrr_q_x = R_xx*rrr_platform_point_x - R_yx*rrr_platform_point_y;
-        const real rrr_q_y = R_xx*rrr_platform_point_y + R_yx*rrr_platform_point_x;
-        const real rrr_base_point_x = m->rrr_base_point_x[i];
-        const real t_x = s[0*w + j];
-        const real rrr_S_x = rrr_q_x + t_x - rrr_base_point_x;
-        const real rrr_base_point_y = m->rrr_base_point_y[i];
-        const real t_y = s[1*w + j];
-        const real rrr_S_y = rrr_q_y + t_y - rrr_base_point_y;
-        /* (rrr-Kd_1) projection on the centre's direction, from the distance fixed by the joints beyond
-           joint 1 */
-        const real rrr_Kd_1_t_3 = rrr_S_x*rrr_S_x + rrr_S_y*rrr_S_y;
-        const real rrr_Kd_1_t = m->rrr_Kd_1_t[i];
-        const real rrr_Kd_1_t_2 = m->rrr_Kd_1_t_2[i];
-        const real rrr_Kd_1 = rrr_Kd_1_t + R(0.5)*rrr_Kd_1_t_3 - rrr_Kd_1_t_2;
-        /* (rrr-px_1) component along the reference direction */
-        const real rrr_base_frame_xx = m->rrr_base_frame_xx[i];
-        const real rrr_base_frame_yx = m->rrr_base_frame_yx[i];
-        const real rrr_px_1 = rrr_S_x*rrr_base_frame_xx + rrr_S_y*rrr_base_frame_yx;
-        /* (rrr-py_1) component across the reference direction */
-        const real rrr_base_frame_xy = m->rrr_base_frame_xy[i];
-        const real rrr_base_frame_yy = m->rrr_base_frame_yy[i];
-        const real rrr_py_1 = rrr_S_x*rrr_base_frame_xy + rrr_S_y*rrr_base_frame_yy;
-        /* (rrr-Kc_1) factor of the cosine in the equation of joint 1 */
-        const real rrr_joint2_offset_x = m->rrr_joint2_offset_x[i];
-        const real rrr_Kc_1 = rrr_joint2_offset_x*rrr_px_1;
-        /* (rrr-Ks_1) factor of the sine in the equation of joint 1 */
-        const real rrr_Ks_1 = rrr_joint2_offset_x*rrr_py_1;
-        /* (rrr-rho2_1) squared amplitude */
-        const real rrr_rho2_1 = rrr_Kc_1*rrr_Kc_1 + rrr_Ks_1*rrr_Ks_1;
-        /* (rrr-disc_1) discriminant */
-        const real rrr_disc_1 = rrr_rho2_1 - rrr_Kd_1*rrr_Kd_1;
-        /* (rrr-root_1) root, with the sign of the branch */
-        const real rrr_branch_1 = m->rrr_branch_1[i];
-        const real rrr_root_1 = rrr_branch_1*root(rrr_disc_1);
-        /* (rrr-c_1) cosine of the angle of joint 1 from its reference direction */
-        const real inv_rrr_rho2_1 = 1/rrr_rho2_1;
-        const real rrr_c_1 = inv_rrr_rho2_1*(rrr_Kc_1*rrr_Kd_1 - rrr_Ks_1*rrr_root_1);
-        /* (rrr-s_1) sine of the angle of joint 1 from its reference direction */
-        const real rrr_s_1 = inv_rrr_rho2_1*(rrr_Kc_1*rrr_root_1 + rrr_Kd_1*rrr_Ks_1);
-        /* (rrr-x_2) from the origin of joint 2 to the connection point */
-        const real inv_rrr_size_t = m->inv_rrr_size_t[i];
-        const real rrr_x_2_in_axes1_x = inv_rrr_size_t*rrr_Kd_1*rrr_joint2_offset_x -
-            rrr_joint2_offset_x;
-        /* (rrr-c_2) cosine of the angle of joint 2 from its reference direction */
-        const real inv_rrr_size_t_2 = m->inv_rrr_size_t_2[i];
-        const real rrr_platform_joint_offset_x = m->rrr_platform_joint_offset_x[i];
-        const real rrr_c_2 = inv_rrr_size_t_2*rrr_platform_joint_offset_x*rrr_x_2_in_axes1_x;
-        /* (rrr-s_2) sine of the angle of joint 2 from its reference direction */
-        const real rrr_s_2 =
-            -inv_rrr_size_t*inv_rrr_size_t_2*rrr_joint2_offset_x*rrr_platform_joint_offset_x*rrr_root_1;
+        values_rrr v;
+        stage_rrr_X(m, w, i, j, s, X, &v);
         /* (rrr-S_dot) velocity of the connection point */
-        const real omega_z = s[6*w + j];
-        const real t_dot_x = s[4*w + j];
-        const real rrr_S_dot_x = t_dot_x - omega_z*rrr_q_y;
-        const real t_dot_y = s[5*w + j];
-        const real rrr_S_dot_y = t_dot_y + omega_z*rrr_q_x;
-        /* (rrr-r_1) from joint 1 to the connection point, along the links */
-        const real rrr_r_1_in_axes1_y = rrr_platform_joint_offset_x*rrr_s_2;
-        const real rrr_r_1_in_axes1_x = rrr_joint2_offset_x + rrr_c_2*rrr_platform_joint_offset_x;
-        const real rrr_r_1_in_axes2_y = rrr_c_2*rrr_r_1_in_axes1_y - rrr_r_1_in_axes1_x*rrr_s_2;
+        const real omega_z = V[2*w + j];
+        const real t_dot_x = V[0*w + j];
+        const real rrr_S_dot_x = t_dot_x - omega_z*v.rrr_q_y;
+        const real t_dot_y = V[1*w + j];
+        const real rrr_S_dot_y = t_dot_y + omega_z*v.rrr_q_x;
         /* (rrr-qd_1) rate of joint 1 */
-        const real rrr_qd_1_t = rrr_c_1*rrr_s_2 + rrr_c_2*rrr_s_1;
-        const real rrr_qd_1_t_2 = rrr_c_1*rrr_c_2 - rrr_s_1*rrr_s_2;
-        const real axis_y_rrr_axes2_x = rrr_base_frame_xy*rrr_qd_1_t_2 -
+        const real rrr_qd_1_t = v.rrr_c_1*v.rrr_s_2 + v.rrr_c_2*v.rrr_s_1;
+        const real rrr_base_frame_xx = m->rrr_base_frame_xx[i];
+        const real rrr_base_frame_xy = m->rrr_base_frame_xy[i];
+        const real axis_y_rrr_axes2_x = rrr_base_frame_xy*v.rrr_qd_1_t_2 -
             rrr_base_frame_xx*rrr_qd_1_t;
-        const real axis_x_rrr_axes2_x = rrr_base_frame_yy*rrr_qd_1_t_2 -
+        const real rrr_base_frame_yx = m->rrr_base_frame_yx[i];
+        const real rrr_base_frame_yy = m->rrr_base_frame_yy[i];
+        const real axis_x_rrr_axes2_x = rrr_base_frame_yy*v.rrr_qd_1_t_2 -
             rrr_base_frame_yx*rrr_qd_1_t;
         const real rrr_qd_1_t_3 = (axis_x_rrr_axes2_x*rrr_S_dot_x -
-            axis_y_rrr_axes2_x*rrr_S_dot_y)/rrr_r_1_in_axes2_y;
+            axis_y_rrr_axes2_x*rrr_S_dot_y)/v.rrr_r_1_in_axes2_y;
         /* (rrr-qd_2) rate of joint 2 */
         const real rrr_w_2_in_axes2_y = m->rrr_w_2_in_axes2_y[i];
         const real rrr_qd_2 = rrr_w_2_in_axes2_y*(axis_x_rrr_axes2_x*rrr_S_dot_y +
-            axis_y_rrr_axes2_x*rrr_S_dot_x + rrr_qd_1_t_3*(rrr_c_2*rrr_r_1_in_axes1_x +
-            rrr_r_1_in_axes1_y*rrr_s_2));
+            axis_y_rrr_axes2_x*rrr_S_dot_x + rrr_qd_1_t_3*(v.rrr_c_2*v.rrr_r_1_in_axes1_x +
+            v.rrr_r_1_in_axes1_y*v.rrr_s_2));
         /* (rrr-qd_1) rate of joint 1 */
         o[0*count + k] = -rrr_qd_1_t_3;
         /* (rrr-qd_2) rate of joint 2 */
@@ -4341,9 +3845,9 @@ INLINE void joint_rates_legs_rrr(const prepared *m, size_t w, size_t leg, size_t
         o[4*count + k] = rrr_qd_1_t_3 + rrr_qd_2;
         const real rrr_rho2_1_t = m->rrr_rho2_1_t[i];
         const real rrr_size = m->rrr_size[i];
-        o[3*count + k] = UNLESS(magnitude(rrr_rho2_1) > TOLERANCE*TOLERANCE*rrr_rho2_1_t) +
-            UNLESS(magnitude(rrr_r_1_in_axes2_y) > TOLERANCE*rrr_size);
-        o[2*count + k] = UNLESS(rrr_disc_1 >= 0);
+        o[3*count + k] = UNLESS(magnitude(v.rrr_rho2_1) > TOLERANCE*TOLERANCE*rrr_rho2_1_t) +
+            UNLESS(magnitude(v.rrr_r_1_in_axes2_y) > TOLERANCE*rrr_size);
+        o[2*count + k] = UNLESS(v.rrr_disc_1 >= 0);
     }
 }
 
@@ -4361,15 +3865,15 @@ INLINE void joint_rates_place_rrr(size_t w, size_t count, const real *o, size_t 
 
 INLINE void joint_rates_run(const prepared *m, const real *X, const real *V, real *qd, verdict *t)
 {
-    real s[7] = {0};
+    real s[2] = {0};
     real o_prrr[6*LEGS(LEGS_OF_prrr)] = {0};
     real o_rrr[5*LEGS(LEGS_OF_rrr)] = {0};
-    joint_rates_before(1, X, V, s);
+    joint_rates_before(m, 1, X, s);
     joint_rates_legs_prrr(m, 1, 0, 1, s, 0, LEGS(LEGS_OF_prrr), X, V, o_prrr);
+    joint_rates_legs_rrr(m, 1, 0, 1, s, 0, LEGS(LEGS_OF_rrr), X, V, o_rrr);
     for (size_t leg = 0; leg < LEGS_OF_prrr; ++leg) {
         joint_rates_place_prrr(1, LEGS(LEGS_OF_prrr), o_prrr, leg, qd, t);
     }
-    joint_rates_legs_rrr(m, 1, 0, 1, s, 0, LEGS(LEGS_OF_rrr), o_rrr);
     for (size_t leg = 0; leg < LEGS_OF_rrr; ++leg) {
         joint_rates_place_rrr(1, LEGS(LEGS_OF_rrr), o_rrr, leg, leg, qd, t);
     }
@@ -4378,57 +3882,28 @@ INLINE void joint_rates_run(const prepared *m, const real *X, const real *V, rea
 INLINE void joint_rates_run_lanes(const prepared *m, const real *X, const real *V, real *qd,
     verdict *t)
 {
-    real s[7*LANES];
+    real s[2*LANES];
     real o_prrr[6*LANES];
     real o_rrr[5*LANES];
-    joint_rates_before(LANES, X, V, s);
+    joint_rates_before(m, LANES, X, s);
     for (size_t leg = 0; leg < LEGS_OF_prrr; ++leg) {
         joint_rates_legs_prrr(m, LANES, leg, 0, s, 1, LANES, X, V, o_prrr);
         joint_rates_place_prrr(LANES, LANES, o_prrr, 0, qd, t);
     }
     for (size_t leg = 0; leg < LEGS_OF_rrr; ++leg) {
-        joint_rates_legs_rrr(m, LANES, leg, 0, s, 1, LANES, o_rrr);
+        joint_rates_legs_rrr(m, LANES, leg, 0, s, 1, LANES, X, V, o_rrr);
         joint_rates_place_rrr(LANES, LANES, o_rrr, leg, 0, qd, t);
     }
 }
 
 /* ---- joint_accelerations ---- */
-INLINE void joint_accelerations_before(size_t w, const real *X, const real *V, const real *A, real
-    *s)
+INLINE void joint_accelerations_before(const prepared *m, size_t w, const real *X, real *s)
 {
     for (size_t k = 0; k < w; ++k) {
-        /* X: named entries */
-        const real X_0 = X[0*w + k];
-        const real t_x = X_0;
-        const real X_1 = X[1*w + k];
-        const real t_y = X_1;
-        const real X_2 = X[2*w + k];
-        const real R_xx = cosine(X_2);
-        const real R_yx = sine(X_2);
-        /* V: named entries */
-        const real V_0 = V[0*w + k];
-        const real t_dot_x = V_0;
-        const real V_1 = V[1*w + k];
-        const real t_dot_y = V_1;
-        const real V_2 = V[2*w + k];
-        const real omega_z = V_2;
-        /* A: named entries */
-        const real A_0 = A[0*w + k];
-        const real t_ddot_x = A_0;
-        const real A_1 = A[1*w + k];
-        const real t_ddot_y = A_1;
-        const real A_2 = A[2*w + k];
-        const real alpha_z = A_2;
-        s[0*w + k] = t_x;
-        s[1*w + k] = t_y;
-        s[2*w + k] = R_xx;
-        s[3*w + k] = R_yx;
-        s[4*w + k] = t_dot_x;
-        s[5*w + k] = t_dot_y;
-        s[6*w + k] = omega_z;
-        s[7*w + k] = t_ddot_x;
-        s[8*w + k] = t_ddot_y;
-        s[9*w + k] = alpha_z;
+        values v;
+        stage_X(m, w, k, X, &v);
+        s[0*w + k] = v.R_xx;
+        s[1*w + k] = v.R_yx;
     }
 }
 
@@ -4439,123 +3914,46 @@ INLINE void joint_accelerations_legs_prrr(const prepared *m, size_t w, size_t le
     for (size_t k = 0; k < count; ++k) {
         const size_t i = leg + legs*k;
         const size_t j = states*k;
-        /* (prrr-S) from the base point to the connection point */
-        const real R_xx = s[2*w + j];
-        const real R_yx = s[3*w + j];
-        const real prrr_platform_point_x = m->prrr_platform_point_x[i];
-        const real prrr_platform_point_y = m->prrr_platform_point_y[i];
-        const real prrr_q_x = R_xx*prrr_platform_point_x - R_yx*prrr_platform_point_y;
-        const real prrr_q_y = R_xx*prrr_platform_point_y + R_yx*prrr_platform_point_x;
-        const real prrr_base_point_x = m->prrr_base_point_x[i];
-        const real t_x = s[0*w + j];
-        const real prrr_S_x = prrr_q_x + t_x - prrr_base_point_x;
-        const real prrr_base_point_y = m->prrr_base_point_y[i];
-        const real t_y = s[1*w + j];
-        const real prrr_S_y = prrr_q_y + t_y - prrr_base_point_y;
-        const real prrr_base_frame_xx = m->prrr_base_frame_xx[i];
-        const real prrr_base_frame_yx = m->prrr_base_frame_yx[i];
-        const real prrr_S_in_axes0_y = -prrr_S_x*prrr_base_frame_xx - prrr_S_y*prrr_base_frame_yx;
-        /* (prrr-x_2) from the origin of joint 2 to the connection point */
-        const real prrr_base_frame_xy = m->prrr_base_frame_xy[i];
-        const real prrr_base_frame_yy = m->prrr_base_frame_yy[i];
-        const real prrr_y_1_extra = X[3*w + j];
-        const real prrr_x_2_in_axes0_x = prrr_S_x*prrr_base_frame_xy + prrr_S_y*prrr_base_frame_yy
-            - prrr_y_1_extra;
-        /* (prrr-Kd_2) projection on the centre's direction, from the distance fixed by the joints beyond
-           joint 2 */
-        const real prrr_Kd_2_t_3 = prrr_S_in_axes0_y*prrr_S_in_axes0_y +
-            prrr_x_2_in_axes0_x*prrr_x_2_in_axes0_x;
-        const real prrr_Kd_2_t = m->prrr_Kd_2_t[i];
-        const real prrr_Kd_2_t_2 = m->prrr_Kd_2_t_2[i];
-        const real prrr_Kd_2 = prrr_Kd_2_t + R(0.5)*prrr_Kd_2_t_3 - prrr_Kd_2_t_2;
-        /* (prrr-Kc_2) factor of the cosine in the equation of joint 2 */
-        const real prrr_joint3_offset_x = m->prrr_joint3_offset_x[i];
-        const real prrr_Kc_2 = prrr_joint3_offset_x*prrr_x_2_in_axes0_x;
-        /* (prrr-Ks_2) factor of the sine in the equation of joint 2 */
-        const real prrr_Ks_2 = prrr_S_in_axes0_y*prrr_joint3_offset_x;
-        /* (prrr-rho2_2) squared amplitude */
-        const real prrr_rho2_2 = prrr_Kc_2*prrr_Kc_2 + prrr_Ks_2*prrr_Ks_2;
-        /* (prrr-disc_2) discriminant */
-        const real prrr_disc_2 = prrr_rho2_2 - prrr_Kd_2*prrr_Kd_2;
-        /* (prrr-root_2) root, with the sign of the branch */
-        const real prrr_branch_2 = m->prrr_branch_2[i];
-        const real prrr_root_2 = prrr_branch_2*root(prrr_disc_2);
-        /* (prrr-c_2) cosine of the angle of joint 2 from its reference direction */
-        const real inv_prrr_rho2_2 = 1/prrr_rho2_2;
-        const real prrr_c_2 = inv_prrr_rho2_2*(prrr_Kc_2*prrr_Kd_2 - prrr_Ks_2*prrr_root_2);
-        /* (prrr-s_2) sine of the angle of joint 2 from its reference direction */
-        const real prrr_s_2 = inv_prrr_rho2_2*(prrr_Kc_2*prrr_root_2 + prrr_Kd_2*prrr_Ks_2);
-        /* (prrr-x_3) from the origin of joint 3 to the connection point */
-        const real inv_prrr_size_t = m->inv_prrr_size_t[i];
-        const real prrr_x_3_in_axes2_x = inv_prrr_size_t*prrr_Kd_2*prrr_joint3_offset_x -
-            prrr_joint3_offset_x;
-        /* (prrr-c_3) cosine of the angle of joint 3 from its reference direction */
-        const real inv_prrr_size_t_2 = m->inv_prrr_size_t_2[i];
-        const real prrr_platform_joint_offset_x = m->prrr_platform_joint_offset_x[i];
-        const real prrr_c_3 = inv_prrr_size_t_2*prrr_platform_joint_offset_x*prrr_x_3_in_axes2_x;
-        /* (prrr-s_3) sine of the angle of joint 3 from its reference direction */
-        const real prrr_s_3_t =
-            inv_prrr_size_t*inv_prrr_size_t_2*prrr_joint3_offset_x*prrr_platform_joint_offset_x*prrr_root_2;
-        /* (prrr-S_dot) velocity of the connection point */
-        const real omega_z = s[6*w + j];
-        const real prrr_S_dot_t = omega_z*prrr_q_y;
-        const real prrr_S_dot_t_2 = omega_z*prrr_q_x;
-        const real t_dot_x = s[4*w + j];
-        const real prrr_S_dot_x = t_dot_x - prrr_S_dot_t;
-        const real t_dot_y = s[5*w + j];
-        const real prrr_S_dot_y = prrr_S_dot_t_2 + t_dot_y;
-        /* (prrr-r_2) from joint 2 to the connection point, along the links */
-        const real prrr_r_2_t = prrr_platform_joint_offset_x*prrr_s_3_t;
-        const real prrr_r_2_in_axes2_x = prrr_joint3_offset_x +
-            prrr_c_3*prrr_platform_joint_offset_x;
-        const real prrr_r_2_in_axes3_x = prrr_c_3*prrr_r_2_in_axes2_x + prrr_r_2_t*prrr_s_3_t;
-        const real prrr_r_2_in_axes3_y = prrr_r_2_in_axes2_x*prrr_s_3_t - prrr_c_3*prrr_r_2_t;
-        /* (prrr-w_2) reciprocal vector 1 */
-        const real inv_prrr_r_2_in_axes3_y = 1/prrr_r_2_in_axes3_y;
-        /* (prrr-S_dot_rest) velocity of the connection point left to the joints that are not extra */
-        const real prrr_yd_1 = V[3*w + j];
-        const real prrr_S_dot_rest_x = prrr_S_dot_x - prrr_base_frame_xy*prrr_yd_1;
-        const real prrr_S_dot_rest_y = prrr_S_dot_y - prrr_base_frame_yy*prrr_yd_1;
+        values_prrr v;
+        stage_prrr_X(m, w, i, j, s, X, &v);
+        stage_prrr_A_X(w, j, A, &v);
+        stage_prrr_V_X(m, w, i, j, V, &v);
+        stage_prrr_A_V_X(w, j, V, &v);
         /* (prrr-qd_2) rate of joint 2 */
-        const real prrr_e_1_in_axes3_y = prrr_c_2*prrr_s_3_t - prrr_c_3*prrr_s_2;
-        const real prrr_e_1_in_axes3_x = prrr_c_2*prrr_c_3 + prrr_s_2*prrr_s_3_t;
-        const real axis_y_prrr_axes3_x = prrr_base_frame_xy*prrr_e_1_in_axes3_y -
-            prrr_base_frame_xx*prrr_e_1_in_axes3_x;
-        const real axis_x_prrr_axes3_x = prrr_base_frame_yy*prrr_e_1_in_axes3_y -
-            prrr_base_frame_yx*prrr_e_1_in_axes3_x;
-        const real prrr_qd_2 = -inv_prrr_r_2_in_axes3_y*(axis_x_prrr_axes3_x*prrr_S_dot_rest_x -
-            axis_y_prrr_axes3_x*prrr_S_dot_rest_y);
+        const real prrr_base_frame_xx = m->prrr_base_frame_xx[i];
+        const real prrr_base_frame_xy = m->prrr_base_frame_xy[i];
+        const real axis_y_prrr_axes3_x = prrr_base_frame_xx*v.prrr_qd_2_t +
+            prrr_base_frame_xy*v.prrr_e_1_in_axes3_y;
+        const real prrr_base_frame_yx = m->prrr_base_frame_yx[i];
+        const real prrr_base_frame_yy = m->prrr_base_frame_yy[i];
+        const real axis_x_prrr_axes3_x = prrr_base_frame_yx*v.prrr_qd_2_t +
+            prrr_base_frame_yy*v.prrr_e_1_in_axes3_y;
+        const real prrr_qd_2 = -v.inv_prrr_r_2_in_axes3_y*(axis_x_prrr_axes3_x*v.prrr_S_dot_rest_x
+            - axis_y_prrr_axes3_x*v.prrr_S_dot_rest_y);
         /* (prrr-W_2) centripetal tensor of link 2 */
         const real prrr_W_2_in_axes2_xx = -prrr_qd_2*prrr_qd_2;
         /* (prrr-omega_3) angular velocity of link 3 */
         const real prrr_w_3_in_axes3_y = m->prrr_w_3_in_axes3_y[i];
         const real prrr_omega_3_in_axes3_z = prrr_qd_2 +
-            prrr_w_3_in_axes3_y*(axis_x_prrr_axes3_x*prrr_S_dot_rest_y +
-            axis_y_prrr_axes3_x*prrr_S_dot_rest_x - prrr_qd_2*prrr_r_2_in_axes3_x);
-        /* (prrr-a_p) acceleration of the connection point without its centripetal part */
-        const real alpha_z = s[9*w + j];
-        const real t_ddot_x = s[7*w + j];
-        const real prrr_a_p_x = t_ddot_x - alpha_z*prrr_q_y;
-        const real t_ddot_y = s[8*w + j];
-        const real prrr_a_p_y = t_ddot_y + alpha_z*prrr_q_x;
-        /* (prrr-S_ddot) acceleration of the connection point */
-        const real prrr_S_ddot_x = prrr_a_p_x - omega_z*prrr_S_dot_t_2;
-        const real prrr_S_ddot_y = prrr_a_p_y - omega_z*prrr_S_dot_t;
+            prrr_w_3_in_axes3_y*(axis_x_prrr_axes3_x*v.prrr_S_dot_rest_y +
+            axis_y_prrr_axes3_x*v.prrr_S_dot_rest_x - prrr_qd_2*v.prrr_r_2_in_axes3_x);
         /* (prrr-bias) acceleration of the connection point at zero joint accelerations */
-        const real prrr_bias_in_axes3_x = prrr_W_2_in_axes2_xx*prrr_c_3*prrr_joint3_offset_x -
+        const real prrr_joint3_offset_x = m->prrr_joint3_offset_x[i];
+        const real prrr_platform_joint_offset_x = m->prrr_platform_joint_offset_x[i];
+        const real prrr_bias_in_axes3_x = prrr_W_2_in_axes2_xx*v.prrr_c_3*prrr_joint3_offset_x -
             prrr_omega_3_in_axes3_z*prrr_omega_3_in_axes3_z*prrr_platform_joint_offset_x;
         /* (prrr-rel) acceleration of the connection point left to the joint accelerations */
         const real prrr_ydd_1 = A[3*w + j];
-        const real prrr_rel_in_axes3_x = axis_x_prrr_axes3_x*prrr_S_ddot_x - prrr_bias_in_axes3_x
-            - axis_y_prrr_axes3_x*prrr_S_ddot_y - prrr_e_1_in_axes3_x*prrr_ydd_1;
-        const real prrr_rel_in_axes3_y = axis_x_prrr_axes3_x*prrr_S_ddot_y +
-            axis_y_prrr_axes3_x*prrr_S_ddot_x - prrr_e_1_in_axes3_y*prrr_ydd_1 -
-            prrr_W_2_in_axes2_xx*prrr_joint3_offset_x*prrr_s_3_t;
+        const real prrr_rel_in_axes3_x = axis_x_prrr_axes3_x*v.prrr_S_ddot_x +
+            v.prrr_qd_2_t*prrr_ydd_1 - prrr_bias_in_axes3_x - axis_y_prrr_axes3_x*v.prrr_S_ddot_y;
+        const real prrr_rel_in_axes3_y = axis_x_prrr_axes3_x*v.prrr_S_ddot_y +
+            axis_y_prrr_axes3_x*v.prrr_S_ddot_x - v.prrr_e_1_in_axes3_y*prrr_ydd_1 -
+            prrr_W_2_in_axes2_xx*prrr_joint3_offset_x*v.prrr_s_3_t;
         /* (prrr-qdd_2) acceleration of joint 2 */
-        const real prrr_qdd_2_t = inv_prrr_r_2_in_axes3_y*prrr_rel_in_axes3_x;
+        const real prrr_qdd_2_t = v.inv_prrr_r_2_in_axes3_y*prrr_rel_in_axes3_x;
         /* (prrr-qdd_3) acceleration of joint 3 */
         const real prrr_qdd_3 = prrr_w_3_in_axes3_y*(prrr_rel_in_axes3_y +
-            prrr_qdd_2_t*prrr_r_2_in_axes3_x);
+            prrr_qdd_2_t*v.prrr_r_2_in_axes3_x);
         /* (legs_size) rms size of the legs, taken where the platform points coincide */
         o[0*count + k] = prrr_ydd_1;
         /* (prrr-qdd_2) acceleration of joint 2 */
@@ -4565,9 +3963,9 @@ INLINE void joint_accelerations_legs_prrr(const prepared *m, size_t w, size_t le
         o[5*count + k] = prrr_ydd_1 + (prrr_qdd_2_t + prrr_qdd_3);
         const real prrr_rho2_2_t = m->prrr_rho2_2_t[i];
         const real prrr_size = m->prrr_size[i];
-        o[4*count + k] = UNLESS(magnitude(prrr_rho2_2) > TOLERANCE*TOLERANCE*prrr_rho2_2_t) +
-            UNLESS(magnitude(prrr_r_2_in_axes3_y) > TOLERANCE*prrr_size);
-        o[3*count + k] = UNLESS(prrr_disc_2 >= 0);
+        o[4*count + k] = UNLESS(magnitude(v.prrr_rho2_2) > TOLERANCE*TOLERANCE*prrr_rho2_2_t) +
+            UNLESS(magnitude(v.prrr_r_2_in_axes3_y) > TOLERANCE*prrr_size);
+        o[3*count + k] = UNLESS(v.prrr_disc_2 >= 0);
     }
 }
 
@@ -4585,119 +3983,51 @@ INLINE void joint_accelerations_place_prrr(size_t w, size_t count, const real *o
 }
 
 INLINE void joint_accelerations_legs_rrr(const prepared *m, size_t w, size_t leg, size_t legs,
-    const real *s, size_t states, size_t count, real *o)
+    const real *s, size_t states, size_t count, const real *X, const real *V, const real *A, real
+    *o)
 {
     for (size_t k = 0; k < count; ++k) {
         const size_t i = leg + legs*k;
         const size_t j = states*k;
-        /* (rrr-S) from the base point to the connection point */
-        const real R_xx = s[2*w + j];
-        const real R_yx = s[3*w + j];
-        const real rrr_platform_point_x = m->rrr_platform_point_x[i];
-        const real rrr_platform_point_y = m->rrr_platform_point_y[i];
-        const real rrr_q_x = R_xx*rrr_platform_point_x - R_yx*rrr_platform_point_y;
-        const real rrr_q_y = R_xx*rrr_platform_point_y + R_yx*rrr_platform_point_x;
-        const real rrr_base_point_x = m->rrr_base_point_x[i];
-        const real t_x = s[0*w + j];
-        const real rrr_S_x = rrr_q_x + t_x - rrr_base_point_x;
-        const real rrr_base_point_y = m->rrr_base_point_y[i];
-        const real t_y = s[1*w + j];
-        const real rrr_S_y = rrr_q_y + t_y - rrr_base_point_y;
-        /* (rrr-Kd_1) projection on the centre's direction, from the distance fixed by the joints beyond
-           joint 1 */
-        const real rrr_Kd_1_t_3 = rrr_S_x*rrr_S_x + rrr_S_y*rrr_S_y;
-        const real rrr_Kd_1_t = m->rrr_Kd_1_t[i];
-        const real rrr_Kd_1_t_2 = m->rrr_Kd_1_t_2[i];
-        const real rrr_Kd_1 = rrr_Kd_1_t + R(0.5)*rrr_Kd_1_t_3 - rrr_Kd_1_t_2;
-        /* (rrr-px_1) component along the reference direction */
-        const real rrr_base_frame_xx = m->rrr_base_frame_xx[i];
-        const real rrr_base_frame_yx = m->rrr_base_frame_yx[i];
-        const real rrr_px_1 = rrr_S_x*rrr_base_frame_xx + rrr_S_y*rrr_base_frame_yx;
-        /* (rrr-py_1) component across the reference direction */
-        const real rrr_base_frame_xy = m->rrr_base_frame_xy[i];
-        const real rrr_base_frame_yy = m->rrr_base_frame_yy[i];
-        const real rrr_py_1 = rrr_S_x*rrr_base_frame_xy + rrr_S_y*rrr_base_frame_yy;
-        /* (rrr-Kc_1) factor of the cosine in the equation of joint 1 */
-        const real rrr_joint2_offset_x = m->rrr_joint2_offset_x[i];
-        const real rrr_Kc_1 = rrr_joint2_offset_x*rrr_px_1;
-        /* (rrr-Ks_1) factor of the sine in the equation of joint 1 */
-        const real rrr_Ks_1 = rrr_joint2_offset_x*rrr_py_1;
-        /* (rrr-rho2_1) squared amplitude */
-        const real rrr_rho2_1 = rrr_Kc_1*rrr_Kc_1 + rrr_Ks_1*rrr_Ks_1;
-        /* (rrr-disc_1) discriminant */
-        const real rrr_disc_1 = rrr_rho2_1 - rrr_Kd_1*rrr_Kd_1;
-        /* (rrr-root_1) root, with the sign of the branch */
-        const real rrr_branch_1 = m->rrr_branch_1[i];
-        const real rrr_root_1 = rrr_branch_1*root(rrr_disc_1);
-        /* (rrr-c_1) cosine of the angle of joint 1 from its reference direction */
-        const real inv_rrr_rho2_1 = 1/rrr_rho2_1;
-        const real rrr_c_1 = inv_rrr_rho2_1*(rrr_Kc_1*rrr_Kd_1 - rrr_Ks_1*rrr_root_1);
-        /* (rrr-s_1) sine of the angle of joint 1 from its reference direction */
-        const real rrr_s_1 = inv_rrr_rho2_1*(rrr_Kc_1*rrr_root_1 + rrr_Kd_1*rrr_Ks_1);
-        /* (rrr-x_2) from the origin of joint 2 to the connection point */
-        const real inv_rrr_size_t = m->inv_rrr_size_t[i];
-        const real rrr_x_2_in_axes1_x = inv_rrr_size_t*rrr_Kd_1*rrr_joint2_offset_x -
-            rrr_joint2_offset_x;
-        /* (rrr-c_2) cosine of the angle of joint 2 from its reference direction */
-        const real inv_rrr_size_t_2 = m->inv_rrr_size_t_2[i];
-        const real rrr_platform_joint_offset_x = m->rrr_platform_joint_offset_x[i];
-        const real rrr_c_2 = inv_rrr_size_t_2*rrr_platform_joint_offset_x*rrr_x_2_in_axes1_x;
-        /* (rrr-s_2) sine of the angle of joint 2 from its reference direction */
-        const real rrr_s_2 =
-            -inv_rrr_size_t*inv_rrr_size_t_2*rrr_joint2_offset_x*rrr_platform_joint_offset_x*rrr_root_1;
-        /* (rrr-S_dot) velocity of the connection point */
-        const real omega_z = s[6*w + j];
-        const real rrr_S_dot_t = omega_z*rrr_q_y;
-        const real rrr_S_dot_t_2 = omega_z*rrr_q_x;
-        const real t_dot_x = s[4*w + j];
-        const real rrr_S_dot_x = t_dot_x - rrr_S_dot_t;
-        const real t_dot_y = s[5*w + j];
-        const real rrr_S_dot_y = rrr_S_dot_t_2 + t_dot_y;
-        /* (rrr-r_1) from joint 1 to the connection point, along the links */
-        const real rrr_r_1_in_axes1_y = rrr_platform_joint_offset_x*rrr_s_2;
-        const real rrr_r_1_in_axes1_x = rrr_joint2_offset_x + rrr_c_2*rrr_platform_joint_offset_x;
-        const real rrr_r_1_in_axes2_x = rrr_c_2*rrr_r_1_in_axes1_x + rrr_r_1_in_axes1_y*rrr_s_2;
-        const real rrr_r_1_in_axes2_y = rrr_c_2*rrr_r_1_in_axes1_y - rrr_r_1_in_axes1_x*rrr_s_2;
-        /* (rrr-w_1) reciprocal vector 1 */
-        const real inv_rrr_r_1_in_axes2_y = 1/rrr_r_1_in_axes2_y;
+        values_rrr v;
+        stage_rrr_X(m, w, i, j, s, X, &v);
+        stage_rrr_A_X(w, j, A, &v);
+        stage_rrr_V_X(m, w, i, j, V, &v);
+        stage_rrr_A_V_X(w, j, V, &v);
         /* (rrr-qd_1) rate of joint 1 */
-        const real rrr_qd_1_t = rrr_c_1*rrr_s_2 + rrr_c_2*rrr_s_1;
-        const real rrr_qd_1_t_2 = rrr_c_1*rrr_c_2 - rrr_s_1*rrr_s_2;
-        const real axis_y_rrr_axes2_x = rrr_base_frame_xy*rrr_qd_1_t_2 -
+        const real rrr_qd_1_t = v.rrr_c_1*v.rrr_s_2 + v.rrr_c_2*v.rrr_s_1;
+        const real rrr_base_frame_xx = m->rrr_base_frame_xx[i];
+        const real rrr_base_frame_xy = m->rrr_base_frame_xy[i];
+        const real axis_y_rrr_axes2_x = rrr_base_frame_xy*v.rrr_qd_1_t_2 -
             rrr_base_frame_xx*rrr_qd_1_t;
-        const real axis_x_rrr_axes2_x = rrr_base_frame_yy*rrr_qd_1_t_2 -
+        const real rrr_base_frame_yx = m->rrr_base_frame_yx[i];
+        const real rrr_base_frame_yy = m->rrr_base_frame_yy[i];
+        const real axis_x_rrr_axes2_x = rrr_base_frame_yy*v.rrr_qd_1_t_2 -
             rrr_base_frame_yx*rrr_qd_1_t;
-        const real rrr_qd_1_t_3 = inv_rrr_r_1_in_axes2_y*(axis_x_rrr_axes2_x*rrr_S_dot_x -
-            axis_y_rrr_axes2_x*rrr_S_dot_y);
+        const real rrr_qd_1_t_3 = v.inv_rrr_r_1_in_axes2_y*(axis_x_rrr_axes2_x*v.rrr_S_dot_x -
+            axis_y_rrr_axes2_x*v.rrr_S_dot_y);
         /* (rrr-W_1) centripetal tensor of link 1 */
         const real rrr_W_1_t = rrr_qd_1_t_3*rrr_qd_1_t_3;
         /* (rrr-omega_2) angular velocity of link 2 */
         const real rrr_w_2_in_axes2_y = m->rrr_w_2_in_axes2_y[i];
-        const real rrr_omega_2_in_axes2_z = rrr_w_2_in_axes2_y*(axis_x_rrr_axes2_x*rrr_S_dot_y +
-            axis_y_rrr_axes2_x*rrr_S_dot_x + rrr_qd_1_t_3*rrr_r_1_in_axes2_x) - rrr_qd_1_t_3;
-        /* (rrr-a_p) acceleration of the connection point without its centripetal part */
-        const real alpha_z = s[9*w + j];
-        const real t_ddot_x = s[7*w + j];
-        const real rrr_a_p_x = t_ddot_x - alpha_z*rrr_q_y;
-        const real t_ddot_y = s[8*w + j];
-        const real rrr_a_p_y = t_ddot_y + alpha_z*rrr_q_x;
-        /* (rrr-S_ddot) acceleration of the connection point */
-        const real rrr_S_ddot_x = rrr_a_p_x - omega_z*rrr_S_dot_t_2;
-        const real rrr_S_ddot_y = rrr_a_p_y - omega_z*rrr_S_dot_t;
+        const real rrr_omega_2_in_axes2_z = rrr_w_2_in_axes2_y*(axis_x_rrr_axes2_x*v.rrr_S_dot_y +
+            axis_y_rrr_axes2_x*v.rrr_S_dot_x + rrr_qd_1_t_3*v.rrr_r_1_in_axes2_x) - rrr_qd_1_t_3;
         /* (rrr-bias) acceleration of the connection point at zero joint accelerations */
+        const real rrr_joint2_offset_x = m->rrr_joint2_offset_x[i];
+        const real rrr_platform_joint_offset_x = m->rrr_platform_joint_offset_x[i];
         const real rrr_bias_in_axes2_x =
             -rrr_omega_2_in_axes2_z*rrr_omega_2_in_axes2_z*rrr_platform_joint_offset_x -
-            rrr_W_1_t*rrr_c_2*rrr_joint2_offset_x;
+            rrr_W_1_t*v.rrr_c_2*rrr_joint2_offset_x;
         /* (rrr-rel) acceleration of the connection point left to the joint accelerations */
-        const real rrr_rel_in_axes2_x = axis_x_rrr_axes2_x*rrr_S_ddot_x - rrr_bias_in_axes2_x -
-            axis_y_rrr_axes2_x*rrr_S_ddot_y;
-        const real rrr_rel_in_axes2_y = axis_x_rrr_axes2_x*rrr_S_ddot_y +
-            axis_y_rrr_axes2_x*rrr_S_ddot_x - rrr_W_1_t*rrr_joint2_offset_x*rrr_s_2;
+        const real rrr_rel_in_axes2_x = axis_x_rrr_axes2_x*v.rrr_S_ddot_x - rrr_bias_in_axes2_x -
+            axis_y_rrr_axes2_x*v.rrr_S_ddot_y;
+        const real rrr_rel_in_axes2_y = axis_x_rrr_axes2_x*v.rrr_S_ddot_y +
+            axis_y_rrr_axes2_x*v.rrr_S_ddot_x - rrr_W_1_t*rrr_joint2_offset_x*v.rrr_s_2;
         /* (rrr-qdd_1) acceleration of joint 1 */
-        const real rrr_qdd_1_t = inv_rrr_r_1_in_axes2_y*rrr_rel_in_axes2_x;
+        const real rrr_qdd_1_t = v.inv_rrr_r_1_in_axes2_y*rrr_rel_in_axes2_x;
         /* (rrr-qdd_2) acceleration of joint 2 */
         const real rrr_qdd_2 = rrr_w_2_in_axes2_y*(rrr_rel_in_axes2_y +
-            rrr_qdd_1_t*rrr_r_1_in_axes2_x);
+            rrr_qdd_1_t*v.rrr_r_1_in_axes2_x);
         /* (rrr-qdd_1) acceleration of joint 1 */
         o[0*count + k] = -rrr_qdd_1_t;
         /* (rrr-qdd_2) acceleration of joint 2 */
@@ -4705,9 +4035,9 @@ INLINE void joint_accelerations_legs_rrr(const prepared *m, size_t w, size_t leg
         o[4*count + k] = rrr_qdd_1_t + rrr_qdd_2;
         const real rrr_rho2_1_t = m->rrr_rho2_1_t[i];
         const real rrr_size = m->rrr_size[i];
-        o[3*count + k] = UNLESS(magnitude(rrr_rho2_1) > TOLERANCE*TOLERANCE*rrr_rho2_1_t) +
-            UNLESS(magnitude(rrr_r_1_in_axes2_y) > TOLERANCE*rrr_size);
-        o[2*count + k] = UNLESS(rrr_disc_1 >= 0);
+        o[3*count + k] = UNLESS(magnitude(v.rrr_rho2_1) > TOLERANCE*TOLERANCE*rrr_rho2_1_t) +
+            UNLESS(magnitude(v.rrr_r_1_in_axes2_y) > TOLERANCE*rrr_size);
+        o[2*count + k] = UNLESS(v.rrr_disc_1 >= 0);
     }
 }
 
@@ -4726,15 +4056,15 @@ INLINE void joint_accelerations_place_rrr(size_t w, size_t count, const real *o,
 INLINE void joint_accelerations_run(const prepared *m, const real *X, const real *V, const real
     *A, real *qdd, verdict *t)
 {
-    real s[10] = {0};
+    real s[2] = {0};
     real o_prrr[6*LEGS(LEGS_OF_prrr)] = {0};
     real o_rrr[5*LEGS(LEGS_OF_rrr)] = {0};
-    joint_accelerations_before(1, X, V, A, s);
+    joint_accelerations_before(m, 1, X, s);
     joint_accelerations_legs_prrr(m, 1, 0, 1, s, 0, LEGS(LEGS_OF_prrr), X, V, A, o_prrr);
+    joint_accelerations_legs_rrr(m, 1, 0, 1, s, 0, LEGS(LEGS_OF_rrr), X, V, A, o_rrr);
     for (size_t leg = 0; leg < LEGS_OF_prrr; ++leg) {
         joint_accelerations_place_prrr(1, LEGS(LEGS_OF_prrr), o_prrr, leg, qdd, t);
     }
-    joint_accelerations_legs_rrr(m, 1, 0, 1, s, 0, LEGS(LEGS_OF_rrr), o_rrr);
     for (size_t leg = 0; leg < LEGS_OF_rrr; ++leg) {
         joint_accelerations_place_rrr(1, LEGS(LEGS_OF_rrr), o_rrr, leg, leg, qdd, t);
     }
@@ -4743,56 +4073,28 @@ INLINE void joint_accelerations_run(const prepared *m, const real *X, const real
 INLINE void joint_accelerations_run_lanes(const prepared *m, const real *X, const real *V, const
     real *A, real *qdd, verdict *t)
 {
-    real s[10*LANES];
+    real s[2*LANES];
     real o_prrr[6*LANES];
     real o_rrr[5*LANES];
-    joint_accelerations_before(LANES, X, V, A, s);
+    joint_accelerations_before(m, LANES, X, s);
     for (size_t leg = 0; leg < LEGS_OF_prrr; ++leg) {
         joint_accelerations_legs_prrr(m, LANES, leg, 0, s, 1, LANES, X, V, A, o_prrr);
         joint_accelerations_place_prrr(LANES, LANES, o_prrr, 0, qdd, t);
     }
     for (size_t leg = 0; leg < LEGS_OF_rrr; ++leg) {
-        joint_accelerations_legs_rrr(m, LANES, leg, 0, s, 1, LANES, o_rrr);
+        joint_accelerations_legs_rrr(m, LANES, leg, 0, s, 1, LANES, X, V, A, o_rrr);
         joint_accelerations_place_rrr(LANES, LANES, o_rrr, leg, 0, qdd, t);
     }
 }
 
 /* ---- legs ---- */
-INLINE void legs_before(size_t w, const real *X, const real *V, const real *A, real *s)
+INLINE void legs_before(const prepared *m, size_t w, const real *X, real *s)
 {
     for (size_t k = 0; k < w; ++k) {
-        /* X: named entries */
-        const real X_0 = X[0*w + k];
-        const real t_x = X_0;
-        const real X_1 = X[1*w + k];
-        const real t_y = X_1;
-        const real X_2 = X[2*w + k];
-        const real R_xx = cosine(X_2);
-        const real R_yx = sine(X_2);
-        /* V: named entries */
-        const real V_0 = V[0*w + k];
-        const real t_dot_x = V_0;
-        const real V_1 = V[1*w + k];
-        const real t_dot_y = V_1;
-        const real V_2 = V[2*w + k];
-        const real omega_z = V_2;
-        /* A: named entries */
-        const real A_0 = A[0*w + k];
-        const real t_ddot_x = A_0;
-        const real A_1 = A[1*w + k];
-        const real t_ddot_y = A_1;
-        const real A_2 = A[2*w + k];
-        const real alpha_z = A_2;
-        s[0*w + k] = t_x;
-        s[1*w + k] = t_y;
-        s[2*w + k] = R_xx;
-        s[3*w + k] = R_yx;
-        s[4*w + k] = t_dot_x;
-        s[5*w + k] = t_dot_y;
-        s[6*w + k] = omega_z;
-        s[7*w + k] = t_ddot_x;
-        s[8*w + k] = t_ddot_y;
-        s[9*w + k] = alpha_z;
+        values v;
+        stage_X(m, w, k, X, &v);
+        s[0*w + k] = v.R_xx;
+        s[1*w + k] = v.R_yx;
     }
 }
 
@@ -4802,190 +4104,41 @@ INLINE void legs_legs_prrr(const prepared *m, size_t w, size_t leg, size_t legs,
     for (size_t k = 0; k < count; ++k) {
         const size_t i = leg + legs*k;
         const size_t j = states*k;
-        /* (prrr-S) from the base point to the connection point */
-        const real R_xx = s[2*w + j];
-        const real R_yx = s[3*w + j];
-        const real prrr_platform_point_x = m->prrr_platform_point_x[i];
-        const real prrr_platform_point_y = m->prrr_platform_point_y[i];
-        const real prrr_q_x = R_xx*prrr_platform_point_x - R_yx*prrr_platform_point_y;
-        const real prrr_q_y = R_xx*prrr_platform_point_y + R_yx*prrr_platform_point_x;
-        const real prrr_base_point_x = m->prrr_base_point_x[i];
-        const real t_x = s[0*w + j];
-        const real prrr_S_x = prrr_q_x + t_x - prrr_base_point_x;
-        const real prrr_base_point_y = m->prrr_base_point_y[i];
-        const real t_y = s[1*w + j];
-        const real prrr_S_y = prrr_q_y + t_y - prrr_base_point_y;
-        const real prrr_base_frame_xx = m->prrr_base_frame_xx[i];
-        const real prrr_base_frame_yx = m->prrr_base_frame_yx[i];
-        const real prrr_S_in_axes0_y = -prrr_S_x*prrr_base_frame_xx - prrr_S_y*prrr_base_frame_yx;
-        /* (prrr-x_2) from the origin of joint 2 to the connection point */
-        const real prrr_base_frame_xy = m->prrr_base_frame_xy[i];
-        const real prrr_base_frame_yy = m->prrr_base_frame_yy[i];
-        const real prrr_y_1_extra = X[3*w + j];
-        const real prrr_x_2_in_axes0_x = prrr_S_x*prrr_base_frame_xy + prrr_S_y*prrr_base_frame_yy
-            - prrr_y_1_extra;
-        /* (prrr-Kd_2) projection on the centre's direction, from the distance fixed by the joints beyond
-           joint 2 */
-        const real prrr_Kd_2_t_3 = prrr_S_in_axes0_y*prrr_S_in_axes0_y +
-            prrr_x_2_in_axes0_x*prrr_x_2_in_axes0_x;
-        const real prrr_Kd_2_t = m->prrr_Kd_2_t[i];
-        const real prrr_Kd_2_t_2 = m->prrr_Kd_2_t_2[i];
-        const real prrr_Kd_2 = prrr_Kd_2_t + R(0.5)*prrr_Kd_2_t_3 - prrr_Kd_2_t_2;
-        /* (prrr-Kc_2) factor of the cosine in the equation of joint 2 */
-        const real prrr_joint3_offset_x = m->prrr_joint3_offset_x[i];
-        const real prrr_Kc_2 = prrr_joint3_offset_x*prrr_x_2_in_axes0_x;
-        /* (prrr-Ks_2) factor of the sine in the equation of joint 2 */
-        const real prrr_Ks_2 = prrr_S_in_axes0_y*prrr_joint3_offset_x;
-        /* (prrr-rho2_2) squared amplitude */
-        const real prrr_rho2_2 = prrr_Kc_2*prrr_Kc_2 + prrr_Ks_2*prrr_Ks_2;
-        /* (prrr-disc_2) discriminant */
-        const real prrr_disc_2 = prrr_rho2_2 - prrr_Kd_2*prrr_Kd_2;
-        /* (prrr-root_2) root, with the sign of the branch */
-        const real prrr_branch_2 = m->prrr_branch_2[i];
-        const real prrr_root_2 = prrr_branch_2*root(prrr_disc_2);
-        /* (prrr-c_2) cosine of the angle of joint 2 from its reference direction */
-        const real inv_prrr_rho2_2 = 1/prrr_rho2_2;
-        const real prrr_c_2 = inv_prrr_rho2_2*(prrr_Kc_2*prrr_Kd_2 - prrr_Ks_2*prrr_root_2);
-        /* (prrr-s_2) sine of the angle of joint 2 from its reference direction */
-        const real prrr_s_2 = inv_prrr_rho2_2*(prrr_Kc_2*prrr_root_2 + prrr_Kd_2*prrr_Ks_2);
-        /* (prrr-x_3) from the origin of joint 3 to the connection point */
-        const real inv_prrr_size_t = m->inv_prrr_size_t[i];
-        const real prrr_x_3_in_axes2_x = inv_prrr_size_t*prrr_Kd_2*prrr_joint3_offset_x -
-            prrr_joint3_offset_x;
-        /* (prrr-c_3) cosine of the angle of joint 3 from its reference direction */
-        const real inv_prrr_size_t_2 = m->inv_prrr_size_t_2[i];
-        const real prrr_platform_joint_offset_x = m->prrr_platform_joint_offset_x[i];
-        const real prrr_c_3 = inv_prrr_size_t_2*prrr_platform_joint_offset_x*prrr_x_3_in_axes2_x;
-        /* (prrr-s_3) sine of the angle of joint 3 from its reference direction */
-        const real prrr_s_3_t =
-            inv_prrr_size_t*inv_prrr_size_t_2*prrr_joint3_offset_x*prrr_platform_joint_offset_x*prrr_root_2;
-        /* (prrr-S_dot) velocity of the connection point */
-        const real omega_z = s[6*w + j];
-        const real prrr_S_dot_t = omega_z*prrr_q_y;
-        const real prrr_S_dot_t_2 = omega_z*prrr_q_x;
-        const real t_dot_x = s[4*w + j];
-        const real prrr_S_dot_x = t_dot_x - prrr_S_dot_t;
-        const real t_dot_y = s[5*w + j];
-        const real prrr_S_dot_y = prrr_S_dot_t_2 + t_dot_y;
-        /* (prrr-r_2) from joint 2 to the connection point, along the links */
-        const real prrr_r_2_t = prrr_platform_joint_offset_x*prrr_s_3_t;
-        const real prrr_r_2_in_axes2_x = prrr_joint3_offset_x +
-            prrr_c_3*prrr_platform_joint_offset_x;
-        const real prrr_r_2_in_axes3_x = prrr_c_3*prrr_r_2_in_axes2_x + prrr_r_2_t*prrr_s_3_t;
-        const real prrr_r_2_in_axes3_y = prrr_r_2_in_axes2_x*prrr_s_3_t - prrr_c_3*prrr_r_2_t;
-        /* (prrr-w_2) reciprocal vector 1 */
-        const real prrr_e_1_in_axes3_y = prrr_c_2*prrr_s_3_t - prrr_c_3*prrr_s_2;
-        const real prrr_e_1_in_axes3_x = prrr_c_2*prrr_c_3 + prrr_s_2*prrr_s_3_t;
-        const real axis_y_prrr_axes3_x = prrr_base_frame_xy*prrr_e_1_in_axes3_y -
-            prrr_base_frame_xx*prrr_e_1_in_axes3_x;
-        const real axis_x_prrr_axes3_x = prrr_base_frame_yy*prrr_e_1_in_axes3_y -
-            prrr_base_frame_yx*prrr_e_1_in_axes3_x;
-        const real inv_prrr_r_2_in_axes3_y = 1/prrr_r_2_in_axes3_y;
-        const real prrr_w_2_x = -axis_x_prrr_axes3_x*inv_prrr_r_2_in_axes3_y;
-        const real prrr_w_2_y = axis_y_prrr_axes3_x*inv_prrr_r_2_in_axes3_y;
-        /* (prrr-S_dot_rest) velocity of the connection point left to the joints that are not extra */
-        const real prrr_yd_1 = V[3*w + j];
-        const real prrr_S_dot_rest_x = prrr_S_dot_x - prrr_base_frame_xy*prrr_yd_1;
-        const real prrr_S_dot_rest_y = prrr_S_dot_y - prrr_base_frame_yy*prrr_yd_1;
-        /* (prrr-qd_2) rate of joint 2 */
-        const real prrr_qd_2 = -inv_prrr_r_2_in_axes3_y*(axis_x_prrr_axes3_x*prrr_S_dot_rest_x -
-            axis_y_prrr_axes3_x*prrr_S_dot_rest_y);
-        /* (prrr-W_2) centripetal tensor of link 2 */
-        const real prrr_W_2_in_axes2_xx = -prrr_qd_2*prrr_qd_2;
-        /* (prrr-omega_3) angular velocity of link 3 */
-        const real prrr_w_3_in_axes3_y = m->prrr_w_3_in_axes3_y[i];
-        const real prrr_omega_3_in_axes3_z = prrr_qd_2 +
-            prrr_w_3_in_axes3_y*(axis_x_prrr_axes3_x*prrr_S_dot_rest_y +
-            axis_y_prrr_axes3_x*prrr_S_dot_rest_x - prrr_qd_2*prrr_r_2_in_axes3_x);
-        /* (prrr-W_3) centripetal tensor of link 3 */
-        const real prrr_W_3_t = prrr_omega_3_in_axes3_z*prrr_omega_3_in_axes3_z;
-        /* (prrr-a_p) acceleration of the connection point without its centripetal part */
-        const real alpha_z = s[9*w + j];
-        const real t_ddot_x = s[7*w + j];
-        const real prrr_a_p_x = t_ddot_x - alpha_z*prrr_q_y;
-        const real t_ddot_y = s[8*w + j];
-        const real prrr_a_p_y = t_ddot_y + alpha_z*prrr_q_x;
-        /* (prrr-S_ddot) acceleration of the connection point */
-        const real prrr_S_ddot_x = prrr_a_p_x - omega_z*prrr_S_dot_t_2;
-        const real prrr_S_ddot_y = prrr_a_p_y - omega_z*prrr_S_dot_t;
-        const real prrr_S_ddot_in_axes3_x = axis_x_prrr_axes3_x*prrr_S_ddot_x -
-            axis_y_prrr_axes3_x*prrr_S_ddot_y;
-        const real prrr_S_ddot_in_axes3_y = axis_x_prrr_axes3_x*prrr_S_ddot_y +
-            axis_y_prrr_axes3_x*prrr_S_ddot_x;
-        /* (prrr-bias) acceleration of the connection point at zero joint accelerations */
-        const real prrr_bias_in_axes3_x = prrr_W_2_in_axes2_xx*prrr_c_3*prrr_joint3_offset_x -
-            prrr_W_3_t*prrr_platform_joint_offset_x;
-        /* (prrr-rel) acceleration of the connection point left to the joint accelerations */
-        const real prrr_ydd_1 = A[3*w + j];
-        const real prrr_rel_in_axes3_x = prrr_S_ddot_in_axes3_x - prrr_bias_in_axes3_x -
-            prrr_e_1_in_axes3_x*prrr_ydd_1;
-        const real prrr_rel_in_axes3_y = prrr_S_ddot_in_axes3_y - prrr_e_1_in_axes3_y*prrr_ydd_1 -
-            prrr_W_2_in_axes2_xx*prrr_joint3_offset_x*prrr_s_3_t;
-        /* (prrr-B_2) acceleration tensor of link 2 */
-        const real prrr_B_2_in_axes2_xy = inv_prrr_r_2_in_axes3_y*prrr_rel_in_axes3_x;
-        /* (prrr-alpha_3) angular acceleration of link 3 */
-        const real prrr_alpha_3_in_axes3_z = prrr_w_3_in_axes3_y*(prrr_rel_in_axes3_y +
-            prrr_B_2_in_axes2_xy*prrr_r_2_in_axes3_x) - prrr_B_2_in_axes2_xy;
-        /* (prrr-acc_2) acceleration of the reference point of link 2, less gravity */
-        const real prrr_g_in_axes0_x = m->prrr_g_in_axes0_x[i];
-        const real prrr_g_in_axes0_y = m->prrr_g_in_axes0_y[i];
-        const real prrr_acc_2_in_axes2_x = prrr_c_2*prrr_ydd_1 - prrr_c_2*prrr_g_in_axes0_x -
-            prrr_g_in_axes0_y*prrr_s_2;
-        const real prrr_acc_2_in_axes2_y = prrr_g_in_axes0_x*prrr_s_2 - prrr_c_2*prrr_g_in_axes0_y
-            - prrr_s_2*prrr_ydd_1;
-        /* (prrr-acc_3) acceleration of the reference point of link 3, less gravity */
-        const real gravity_x = m->gravity_x;
-        const real gravity_y = m->gravity_y;
-        const real prrr_acc_3_in_axes3_x = prrr_S_ddot_in_axes3_x + axis_y_prrr_axes3_x*gravity_y
-            - axis_x_prrr_axes3_x*gravity_x;
-        const real prrr_acc_3_in_axes3_y = prrr_S_ddot_in_axes3_y - axis_x_prrr_axes3_x*gravity_y
-            - axis_y_prrr_axes3_x*gravity_x;
-        /* (prrr-mu_3) inertia moment of the links that turn with link 3, about their reference points */
-        const real prrr_J_3_in_spec3_zz = m->prrr_J_3_in_spec3_zz[i];
-        const real prrr_h_3_in_spec3_x = m->prrr_h_3_in_spec3_x[i];
-        const real prrr_h_3_in_spec3_y = m->prrr_h_3_in_spec3_y[i];
-        const real prrr_mu_3_in_axes3_z = prrr_J_3_in_spec3_zz*prrr_alpha_3_in_axes3_z +
-            prrr_acc_3_in_axes3_y*prrr_h_3_in_spec3_x - prrr_acc_3_in_axes3_x*prrr_h_3_in_spec3_y;
-        /* (prrr-mu_2) inertia moment of the links that turn with link 2, about their reference points */
-        const real prrr_J_2_in_spec2_zz = m->prrr_J_2_in_spec2_zz[i];
-        const real prrr_h_2_in_spec2_x = m->prrr_h_2_in_spec2_x[i];
-        const real prrr_h_2_in_spec2_y = m->prrr_h_2_in_spec2_y[i];
-        const real prrr_mu_2_in_axes2_z = prrr_acc_2_in_axes2_y*prrr_h_2_in_spec2_x -
-            prrr_B_2_in_axes2_xy*prrr_J_2_in_spec2_zz - prrr_acc_2_in_axes2_x*prrr_h_2_in_spec2_y;
-        /* (prrr-N_2) moment about joint 2 of the links from 2 outwards, the force at the connection point
-           left out */
-        const real prrr_N_2_in_axes2_z = prrr_mu_2_in_axes2_z + prrr_mu_3_in_axes3_z;
-        /* (prrr-G) force at the connection point that balances the leg's inertia and weight along all
-           degrees of freedom */
-        const real prrr_G_in_axes3_y = prrr_mu_3_in_axes3_z*prrr_w_3_in_axes3_y;
+        values_prrr v;
+        stage_prrr_X(m, w, i, j, s, X, &v);
+        stage_prrr_A_X(w, j, A, &v);
+        stage_prrr_V_X(m, w, i, j, V, &v);
+        stage_prrr_A_V_X(w, j, V, &v);
+        stage_prrr_legs_required(m, w, i, j, A, &v);
         /* (prrr-c) leg force on the platform without actuation and without the mass at the connection
            point */
-        const real prrr_c_in_axes3_x = prrr_W_3_t*prrr_h_3_in_spec3_x +
-            prrr_alpha_3_in_axes3_z*prrr_h_3_in_spec3_y -
-            inv_prrr_r_2_in_axes3_y*(prrr_G_in_axes3_y*prrr_r_2_in_axes3_x - prrr_N_2_in_axes2_z);
-        const real prrr_c_in_axes3_y = prrr_W_3_t*prrr_h_3_in_spec3_y - prrr_G_in_axes3_y -
-            prrr_alpha_3_in_axes3_z*prrr_h_3_in_spec3_x;
+        const real prrr_h_3_in_spec3_x = m->prrr_h_3_in_spec3_x[i];
+        const real prrr_h_3_in_spec3_y = m->prrr_h_3_in_spec3_y[i];
+        const real prrr_c_in_axes3_x = v.prrr_W_3_t*prrr_h_3_in_spec3_x +
+            v.prrr_alpha_3_in_axes3_z*prrr_h_3_in_spec3_y -
+            v.inv_prrr_r_2_in_axes3_y*(v.prrr_G_in_axes3_y*v.prrr_r_2_in_axes3_x -
+            v.prrr_N_2_in_axes2_z);
         /* (prrr-c_true) leg force on the platform without actuation, the last link's mass included */
         const real prrr_link3_mass = m->prrr_link3_mass[i];
         const real prrr_c_true_in_axes3_x = prrr_c_in_axes3_x -
-            prrr_acc_3_in_axes3_x*prrr_link3_mass;
-        const real prrr_c_true_in_axes3_y = prrr_c_in_axes3_y -
-            prrr_acc_3_in_axes3_y*prrr_link3_mass;
-        const real prrr_c_true_x = axis_x_prrr_axes3_x*prrr_c_true_in_axes3_x +
-            axis_y_prrr_axes3_x*prrr_c_true_in_axes3_y;
-        const real prrr_c_true_y = axis_x_prrr_axes3_x*prrr_c_true_in_axes3_y -
-            axis_y_prrr_axes3_x*prrr_c_true_in_axes3_x;
+            v.prrr_acc_3_in_axes3_x*prrr_link3_mass;
+        const real prrr_c_true_in_axes3_y = v.prrr_c_in_axes3_y -
+            v.prrr_acc_3_in_axes3_y*prrr_link3_mass;
+        const real prrr_c_true_x = v.axis_x_prrr_axes3_x*prrr_c_true_in_axes3_x +
+            v.axis_y_prrr_axes3_x*prrr_c_true_in_axes3_y;
+        const real prrr_c_true_y = v.axis_x_prrr_axes3_x*prrr_c_true_in_axes3_y -
+            v.axis_y_prrr_axes3_x*prrr_c_true_in_axes3_x;
         /* (prrr-c_true) leg force on the platform without actuation, the last link's mass included */
         o[0*count + k] = prrr_c_true_x;
         o[1*count + k] = prrr_c_true_y;
         /* (prrr-w_2) reciprocal vector 1 */
-        o[2*count + k] = prrr_w_2_x;
-        o[3*count + k] = prrr_w_2_y;
+        o[2*count + k] = v.prrr_w_2_x;
+        o[3*count + k] = v.prrr_w_2_y;
         const real prrr_rho2_2_t = m->prrr_rho2_2_t[i];
         const real prrr_size = m->prrr_size[i];
-        o[5*count + k] = UNLESS(magnitude(prrr_rho2_2) > TOLERANCE*TOLERANCE*prrr_rho2_2_t) +
-            UNLESS(magnitude(prrr_r_2_in_axes3_y) > TOLERANCE*prrr_size);
-        o[4*count + k] = UNLESS(prrr_disc_2 >= 0);
+        o[5*count + k] = UNLESS(magnitude(v.prrr_rho2_2) > TOLERANCE*TOLERANCE*prrr_rho2_2_t) +
+            UNLESS(magnitude(v.prrr_r_2_in_axes3_y) > TOLERANCE*prrr_size);
+        o[4*count + k] = UNLESS(v.prrr_disc_2 >= 0);
     }
 }
 
@@ -5003,179 +4156,38 @@ INLINE void legs_place_prrr(size_t w, size_t count, const real *o, size_t first,
 }
 
 INLINE void legs_legs_rrr(const prepared *m, size_t w, size_t leg, size_t legs, const real *s,
-    size_t states, size_t count, real *o)
+    size_t states, size_t count, const real *X, const real *V, const real *A, real *o)
 {
     for (size_t k = 0; k < count; ++k) {
         const size_t i = leg + legs*k;
         const size_t j = states*k;
-        /* (rrr-S) from the base point to the connection point */
-        const real R_xx = s[2*w + j];
-        const real R_yx = s[3*w + j];
-        const real rrr_platform_point_x = m->rrr_platform_point_x[i];
-        const real rrr_platform_point_y = m->rrr_platform_point_y[i];
-        const real rrr_q_x = R_xx*rrr_platform_point_x - R_yx*rrr_platform_point_y;
-        const real rrr_q_y = R_xx*rrr_platform_point_y + R_yx*rrr_platform_point_x;
-        const real rrr_base_point_x = m->rrr_base_point_x[i];
-        const real t_x = s[0*w + j];
-        const real rrr_S_x = rrr_q_x + t_x - rrr_base_point_x;
-        const real rrr_base_point_y = m->rrr_base_point_y[i];
-        const real t_y = s[1*w + j];
-        const real rrr_S_y = rrr_q_y + t_y - rrr_base_point_y;
-        /* (rrr-Kd_1) projection on the centre's direction, from the distance fixed by the joints beyond
-           joint 1 */
-        const real rrr_Kd_1_t_3 = rrr_S_x*rrr_S_x + rrr_S_y*rrr_S_y;
-        const real rrr_Kd_1_t = m->rrr_Kd_1_t[i];
-        const real rrr_Kd_1_t_2 = m->rrr_Kd_1_t_2[i];
-        const real rrr_Kd_1 = rrr_Kd_1_t + R(0.5)*rrr_Kd_1_t_3 - rrr_Kd_1_t_2;
-        /* (rrr-px_1) component along the reference direction */
-        const real rrr_base_frame_xx = m->rrr_base_frame_xx[i];
-        const real rrr_base_frame_yx = m->rrr_base_frame_yx[i];
-        const real rrr_px_1 = rrr_S_x*rrr_base_frame_xx + rrr_S_y*rrr_base_frame_yx;
-        /* (rrr-py_1) component across the reference direction */
-        const real rrr_base_frame_xy = m->rrr_base_frame_xy[i];
-        const real rrr_base_frame_yy = m->rrr_base_frame_yy[i];
-        const real rrr_py_1 = rrr_S_x*rrr_base_frame_xy + rrr_S_y*rrr_base_frame_yy;
-        /* (rrr-Kc_1) factor of the cosine in the equation of joint 1 */
-        const real rrr_joint2_offset_x = m->rrr_joint2_offset_x[i];
-        const real rrr_Kc_1 = rrr_joint2_offset_x*rrr_px_1;
-        /* (rrr-Ks_1) factor of the sine in the equation of joint 1 */
-        const real rrr_Ks_1 = rrr_joint2_offset_x*rrr_py_1;
-        /* (rrr-rho2_1) squared amplitude */
-        const real rrr_rho2_1 = rrr_Kc_1*rrr_Kc_1 + rrr_Ks_1*rrr_Ks_1;
-        /* (rrr-disc_1) discriminant */
-        const real rrr_disc_1 = rrr_rho2_1 - rrr_Kd_1*rrr_Kd_1;
-        /* (rrr-root_1) root, with the sign of the branch */
-        const real rrr_branch_1 = m->rrr_branch_1[i];
-        const real rrr_root_1 = rrr_branch_1*root(rrr_disc_1);
-        /* (rrr-c_1) cosine of the angle of joint 1 from its reference direction */
-        const real inv_rrr_rho2_1 = 1/rrr_rho2_1;
-        const real rrr_c_1 = inv_rrr_rho2_1*(rrr_Kc_1*rrr_Kd_1 - rrr_Ks_1*rrr_root_1);
-        /* (rrr-s_1) sine of the angle of joint 1 from its reference direction */
-        const real rrr_s_1 = inv_rrr_rho2_1*(rrr_Kc_1*rrr_root_1 + rrr_Kd_1*rrr_Ks_1);
-        /* (rrr-x_2) from the origin of joint 2 to the connection point */
-        const real inv_rrr_size_t = m->inv_rrr_size_t[i];
-        const real rrr_x_2_in_axes1_x = inv_rrr_size_t*rrr_Kd_1*rrr_joint2_offset_x -
-            rrr_joint2_offset_x;
-        /* (rrr-c_2) cosine of the angle of joint 2 from its reference direction */
-        const real inv_rrr_size_t_2 = m->inv_rrr_size_t_2[i];
-        const real rrr_platform_joint_offset_x = m->rrr_platform_joint_offset_x[i];
-        const real rrr_c_2 = inv_rrr_size_t_2*rrr_platform_joint_offset_x*rrr_x_2_in_axes1_x;
-        /* (rrr-s_2) sine of the angle of joint 2 from its reference direction */
-        const real rrr_s_2 =
-            -inv_rrr_size_t*inv_rrr_size_t_2*rrr_joint2_offset_x*rrr_platform_joint_offset_x*rrr_root_1;
-        /* (rrr-S_dot) velocity of the connection point */
-        const real omega_z = s[6*w + j];
-        const real rrr_S_dot_t = omega_z*rrr_q_y;
-        const real rrr_S_dot_t_2 = omega_z*rrr_q_x;
-        const real t_dot_x = s[4*w + j];
-        const real rrr_S_dot_x = t_dot_x - rrr_S_dot_t;
-        const real t_dot_y = s[5*w + j];
-        const real rrr_S_dot_y = rrr_S_dot_t_2 + t_dot_y;
-        /* (rrr-r_1) from joint 1 to the connection point, along the links */
-        const real rrr_r_1_in_axes1_y = rrr_platform_joint_offset_x*rrr_s_2;
-        const real rrr_r_1_in_axes1_x = rrr_joint2_offset_x + rrr_c_2*rrr_platform_joint_offset_x;
-        const real rrr_r_1_in_axes2_x = rrr_c_2*rrr_r_1_in_axes1_x + rrr_r_1_in_axes1_y*rrr_s_2;
-        const real rrr_r_1_in_axes2_y = rrr_c_2*rrr_r_1_in_axes1_y - rrr_r_1_in_axes1_x*rrr_s_2;
-        /* (rrr-w_1) reciprocal vector 1 */
-        const real rrr_w_1_t = rrr_c_1*rrr_s_2 + rrr_c_2*rrr_s_1;
-        const real rrr_w_1_t_2 = rrr_c_1*rrr_c_2 - rrr_s_1*rrr_s_2;
-        const real axis_y_rrr_axes2_x = rrr_base_frame_xy*rrr_w_1_t_2 -
-            rrr_base_frame_xx*rrr_w_1_t;
-        const real axis_x_rrr_axes2_x = rrr_base_frame_yy*rrr_w_1_t_2 -
-            rrr_base_frame_yx*rrr_w_1_t;
-        const real inv_rrr_r_1_in_axes2_y = 1/rrr_r_1_in_axes2_y;
-        const real rrr_w_1_x = -axis_x_rrr_axes2_x*inv_rrr_r_1_in_axes2_y;
-        const real rrr_w_1_y = axis_y_rrr_axes2_x*inv_rrr_r_1_in_axes2_y;
-        /* (rrr-qd_1) rate of joint 1 */
-        const real rrr_qd_1_t = inv_rrr_r_1_in_axes2_y*(axis_x_rrr_axes2_x*rrr_S_dot_x -
-            axis_y_rrr_axes2_x*rrr_S_dot_y);
-        /* (rrr-W_1) centripetal tensor of link 1 */
-        const real rrr_W_1_t = rrr_qd_1_t*rrr_qd_1_t;
-        /* (rrr-omega_2) angular velocity of link 2 */
-        const real rrr_w_2_in_axes2_y = m->rrr_w_2_in_axes2_y[i];
-        const real rrr_omega_2_in_axes2_z = rrr_w_2_in_axes2_y*(axis_x_rrr_axes2_x*rrr_S_dot_y +
-            axis_y_rrr_axes2_x*rrr_S_dot_x + rrr_qd_1_t*rrr_r_1_in_axes2_x) - rrr_qd_1_t;
-        /* (rrr-W_2) centripetal tensor of link 2 */
-        const real rrr_W_2_t = rrr_omega_2_in_axes2_z*rrr_omega_2_in_axes2_z;
-        /* (rrr-a_p) acceleration of the connection point without its centripetal part */
-        const real alpha_z = s[9*w + j];
-        const real t_ddot_x = s[7*w + j];
-        const real rrr_a_p_x = t_ddot_x - alpha_z*rrr_q_y;
-        const real t_ddot_y = s[8*w + j];
-        const real rrr_a_p_y = t_ddot_y + alpha_z*rrr_q_x;
-        /* (rrr-S_ddot) acceleration of the connection point */
-        const real rrr_S_ddot_x = rrr_a_p_x - omega_z*rrr_S_dot_t_2;
-        const real rrr_S_ddot_y = rrr_a_p_y - omega_z*rrr_S_dot_t;
-        const real rrr_S_ddot_in_axes2_x = axis_x_rrr_axes2_x*rrr_S_ddot_x -
-            axis_y_rrr_axes2_x*rrr_S_ddot_y;
-        const real rrr_S_ddot_in_axes2_y = axis_x_rrr_axes2_x*rrr_S_ddot_y +
-            axis_y_rrr_axes2_x*rrr_S_ddot_x;
-        /* (rrr-bias) acceleration of the connection point at zero joint accelerations */
-        const real rrr_bias_in_axes2_x = -rrr_W_2_t*rrr_platform_joint_offset_x -
-            rrr_W_1_t*rrr_c_2*rrr_joint2_offset_x;
-        /* (rrr-rel) acceleration of the connection point left to the joint accelerations */
-        const real rrr_rel_in_axes2_x = rrr_S_ddot_in_axes2_x - rrr_bias_in_axes2_x;
-        const real rrr_rel_in_axes2_y = rrr_S_ddot_in_axes2_y -
-            rrr_W_1_t*rrr_joint2_offset_x*rrr_s_2;
-        /* (rrr-B_1) acceleration tensor of link 1 */
-        const real rrr_B_1_in_axes1_xy = inv_rrr_r_1_in_axes2_y*rrr_rel_in_axes2_x;
-        /* (rrr-alpha_2) angular acceleration of link 2 */
-        const real rrr_alpha_2_in_axes2_z = rrr_w_2_in_axes2_y*(rrr_rel_in_axes2_y +
-            rrr_B_1_in_axes1_xy*rrr_r_1_in_axes2_x) - rrr_B_1_in_axes1_xy;
-        /* (rrr-acc_2) acceleration of the reference point of link 2, less gravity */
-        const real gravity_x = m->gravity_x;
-        const real gravity_y = m->gravity_y;
-        const real rrr_acc_2_in_axes2_x = rrr_S_ddot_in_axes2_x + axis_y_rrr_axes2_x*gravity_y -
-            axis_x_rrr_axes2_x*gravity_x;
-        const real rrr_acc_2_in_axes2_y = rrr_S_ddot_in_axes2_y - axis_x_rrr_axes2_x*gravity_y -
-            axis_y_rrr_axes2_x*gravity_x;
-        /* (rrr-mu_2) inertia moment of the links that turn with link 2, about their reference points */
-        const real rrr_J_2_in_spec2_zz = m->rrr_J_2_in_spec2_zz[i];
-        const real rrr_h_2_in_spec2_x = m->rrr_h_2_in_spec2_x[i];
-        const real rrr_h_2_in_spec2_y = m->rrr_h_2_in_spec2_y[i];
-        const real rrr_mu_2_in_axes2_z = rrr_J_2_in_spec2_zz*rrr_alpha_2_in_axes2_z +
-            rrr_acc_2_in_axes2_y*rrr_h_2_in_spec2_x - rrr_acc_2_in_axes2_x*rrr_h_2_in_spec2_y;
-        /* (rrr-mu_1) inertia moment of the links that turn with link 1, about their reference points */
-        const real rrr_J_1_in_spec1_zz = m->rrr_J_1_in_spec1_zz[i];
-        const real rrr_h_1_in_spec1_x = m->rrr_h_1_in_spec1_x[i];
-        const real rrr_h_1_in_spec1_y = m->rrr_h_1_in_spec1_y[i];
-        const real rrr_mu_1_t = m->rrr_mu_1_t[i];
-        const real rrr_mu_1_t_2 = m->rrr_mu_1_t_2[i];
-        const real rrr_mu_1_in_axes1_z = rrr_h_1_in_spec1_y*(rrr_c_1*rrr_mu_1_t +
-            rrr_mu_1_t_2*rrr_s_1) - rrr_B_1_in_axes1_xy*rrr_J_1_in_spec1_zz -
-            rrr_h_1_in_spec1_x*(rrr_c_1*rrr_mu_1_t_2 - rrr_mu_1_t*rrr_s_1);
-        /* (rrr-N_1) moment about joint 1 of the links from 1 outwards, the force at the connection point
-           left out */
-        const real rrr_N_1_in_axes1_z = rrr_mu_1_in_axes1_z + rrr_mu_2_in_axes2_z;
-        /* (rrr-G) force at the connection point that balances the leg's inertia and weight along all
-           degrees of freedom */
-        const real rrr_G_in_axes2_y = rrr_mu_2_in_axes2_z*rrr_w_2_in_axes2_y;
-        /* (rrr-c) leg force on the platform without actuation and without the mass at the connection
-           point */
-        const real rrr_c_in_axes2_x = rrr_W_2_t*rrr_h_2_in_spec2_x +
-            rrr_alpha_2_in_axes2_z*rrr_h_2_in_spec2_y -
-            inv_rrr_r_1_in_axes2_y*(rrr_G_in_axes2_y*rrr_r_1_in_axes2_x - rrr_N_1_in_axes1_z);
-        const real rrr_c_in_axes2_y = rrr_W_2_t*rrr_h_2_in_spec2_y - rrr_G_in_axes2_y -
-            rrr_alpha_2_in_axes2_z*rrr_h_2_in_spec2_x;
+        values_rrr v;
+        stage_rrr_X(m, w, i, j, s, X, &v);
+        stage_rrr_A_X(w, j, A, &v);
+        stage_rrr_V_X(m, w, i, j, V, &v);
+        stage_rrr_A_V_X(w, j, V, &v);
+        stage_rrr_legs_required(m, i, &v);
         /* (rrr-c_true) leg force on the platform without actuation, the last link's mass included */
         const real rrr_link2_mass = m->rrr_link2_mass[i];
-        const real rrr_c_true_in_axes2_x = rrr_c_in_axes2_x - rrr_acc_2_in_axes2_x*rrr_link2_mass;
-        const real rrr_c_true_in_axes2_y = rrr_c_in_axes2_y - rrr_acc_2_in_axes2_y*rrr_link2_mass;
-        const real rrr_c_true_x = axis_x_rrr_axes2_x*rrr_c_true_in_axes2_x +
-            axis_y_rrr_axes2_x*rrr_c_true_in_axes2_y;
-        const real rrr_c_true_y = axis_x_rrr_axes2_x*rrr_c_true_in_axes2_y -
-            axis_y_rrr_axes2_x*rrr_c_true_in_axes2_x;
+        const real rrr_c_true_in_axes2_x = v.rrr_c_in_axes2_x -
+            v.rrr_acc_2_in_axes2_x*rrr_link2_mass;
+        const real rrr_c_true_in_axes2_y = v.rrr_c_in_axes2_y -
+            v.rrr_acc_2_in_axes2_y*rrr_link2_mass;
+        const real rrr_c_true_x = v.axis_x_rrr_axes2_x*rrr_c_true_in_axes2_x +
+            v.axis_y_rrr_axes2_x*rrr_c_true_in_axes2_y;
+        const real rrr_c_true_y = v.axis_x_rrr_axes2_x*rrr_c_true_in_axes2_y -
+            v.axis_y_rrr_axes2_x*rrr_c_true_in_axes2_x;
         /* (rrr-c_true) leg force on the platform without actuation, the last link's mass included */
         o[0*count + k] = rrr_c_true_x;
         o[1*count + k] = rrr_c_true_y;
         /* (rrr-w_1) reciprocal vector 1 */
-        o[2*count + k] = rrr_w_1_x;
-        o[3*count + k] = rrr_w_1_y;
+        o[2*count + k] = v.rrr_w_1_x;
+        o[3*count + k] = v.rrr_w_1_y;
         const real rrr_rho2_1_t = m->rrr_rho2_1_t[i];
         const real rrr_size = m->rrr_size[i];
-        o[5*count + k] = UNLESS(magnitude(rrr_rho2_1) > TOLERANCE*TOLERANCE*rrr_rho2_1_t) +
-            UNLESS(magnitude(rrr_r_1_in_axes2_y) > TOLERANCE*rrr_size);
-        o[4*count + k] = UNLESS(rrr_disc_1 >= 0);
+        o[5*count + k] = UNLESS(magnitude(v.rrr_rho2_1) > TOLERANCE*TOLERANCE*rrr_rho2_1_t) +
+            UNLESS(magnitude(v.rrr_r_1_in_axes2_y) > TOLERANCE*rrr_size);
+        o[4*count + k] = UNLESS(v.rrr_disc_1 >= 0);
     }
 }
 
@@ -5195,17 +4207,17 @@ INLINE void legs_place_rrr(size_t w, size_t count, const real *o, size_t leg, si
 INLINE void legs_run(const prepared *m, const real *X, const real *V, const real *A, real
     *leg_force, real *actuator, verdict *t)
 {
-    real s[10] = {0};
+    real s[2] = {0};
     real o_prrr[6*LEGS(LEGS_OF_prrr)] = {0};
     real o_rrr[6*LEGS(LEGS_OF_rrr)] = {0};
     clear(leg_force, 3*NL);
     clear(actuator, 12);
-    legs_before(1, X, V, A, s);
+    legs_before(m, 1, X, s);
     legs_legs_prrr(m, 1, 0, 1, s, 0, LEGS(LEGS_OF_prrr), X, V, A, o_prrr);
+    legs_legs_rrr(m, 1, 0, 1, s, 0, LEGS(LEGS_OF_rrr), X, V, A, o_rrr);
     for (size_t leg = 0; leg < LEGS_OF_prrr; ++leg) {
         legs_place_prrr(1, LEGS(LEGS_OF_prrr), o_prrr, leg, leg_force, actuator, t);
     }
-    legs_legs_rrr(m, 1, 0, 1, s, 0, LEGS(LEGS_OF_rrr), o_rrr);
     for (size_t leg = 0; leg < LEGS_OF_rrr; ++leg) {
         legs_place_rrr(1, LEGS(LEGS_OF_rrr), o_rrr, leg, leg, leg_force, actuator, t);
     }
@@ -5215,28 +4227,22 @@ INLINE void legs_run(const prepared *m, const real *X, const real *V, const real
 INLINE void potential_before(const prepared *m, size_t w, const real *X, real *s)
 {
     for (size_t k = 0; k < w; ++k) {
-        /* X: named entries */
-        const real X_0 = X[0*w + k];
-        const real t_x = X_0;
-        const real X_1 = X[1*w + k];
-        const real t_y = X_1;
-        const real X_2 = X[2*w + k];
-        const real R_xx = cosine(X_2);
-        const real R_yx = sine(X_2);
+        values v;
+        stage_X(m, w, k, X, &v);
         /* (potential) potential energy */
         const real gravity_x = m->gravity_x;
         const real gravity_y = m->gravity_y;
         const real h_star_in_platform_x = m->h_star_in_platform_x;
         const real h_star_in_platform_y = m->h_star_in_platform_y;
         const real m_star = m->m_star;
-        const real potential_t = gravity_x*(R_xx*h_star_in_platform_x + m_star*t_x -
-            R_yx*h_star_in_platform_y) + gravity_y*(R_xx*h_star_in_platform_y +
-            R_yx*h_star_in_platform_x + m_star*t_y);
-        s[0*w + k] = t_x;
-        s[1*w + k] = t_y;
-        s[2*w + k] = R_xx;
-        s[3*w + k] = R_yx;
-        s[4*w + k] = potential_t;
+        const real t_x = X[0*w + k];
+        const real t_y = X[1*w + k];
+        const real potential_t = gravity_x*(v.R_xx*h_star_in_platform_x + m_star*t_x -
+            v.R_yx*h_star_in_platform_y) + gravity_y*(v.R_xx*h_star_in_platform_y +
+            v.R_yx*h_star_in_platform_x + m_star*t_y);
+        s[0*w + k] = v.R_xx;
+        s[1*w + k] = v.R_yx;
+        s[2*w + k] = potential_t;
     }
 }
 
@@ -5246,65 +4252,27 @@ INLINE void potential_legs_prrr(const prepared *m, size_t w, size_t leg, size_t 
     for (size_t k = 0; k < count; ++k) {
         const size_t i = leg + legs*k;
         const size_t j = states*k;
-        /* (prrr-S) from the base point to the connection point */
-        const real R_xx = s[2*w + j];
-        const real R_yx = s[3*w + j];
-        const real prrr_base_point_x = m->prrr_base_point_x[i];
-        const real prrr_platform_point_x = m->prrr_platform_point_x[i];
-        const real prrr_platform_point_y = m->prrr_platform_point_y[i];
-        const real t_x = s[0*w + j];
-        const real prrr_S_x = t_x + R_xx*prrr_platform_point_x - prrr_base_point_x -
-            R_yx*prrr_platform_point_y;
-        const real prrr_base_point_y = m->prrr_base_point_y[i];
-        const real t_y = s[1*w + j];
-        const real prrr_S_y = t_y + R_xx*prrr_platform_point_y + R_yx*prrr_platform_point_x -
-            prrr_base_point_y;
-        const real prrr_base_frame_xx = m->prrr_base_frame_xx[i];
-        const real prrr_base_frame_yx = m->prrr_base_frame_yx[i];
-        const real prrr_S_in_axes0_y = -prrr_S_x*prrr_base_frame_xx - prrr_S_y*prrr_base_frame_yx;
-        /* (prrr-x_2) from the origin of joint 2 to the connection point */
-        const real prrr_base_frame_xy = m->prrr_base_frame_xy[i];
-        const real prrr_base_frame_yy = m->prrr_base_frame_yy[i];
-        const real prrr_y_1_extra = X[3*w + j];
-        const real prrr_x_2_in_axes0_x = prrr_S_x*prrr_base_frame_xy + prrr_S_y*prrr_base_frame_yy
-            - prrr_y_1_extra;
-        /* (prrr-Kd_2) projection on the centre's direction, from the distance fixed by the joints beyond
-           joint 2 */
-        const real prrr_Kd_2_t_3 = prrr_S_in_axes0_y*prrr_S_in_axes0_y +
-            prrr_x_2_in_axes0_x*prrr_x_2_in_axes0_x;
-        const real prrr_Kd_2_t = m->prrr_Kd_2_t[i];
-        const real prrr_Kd_2_t_2 = m->prrr_Kd_2_t_2[i];
-        const real prrr_Kd_2 = prrr_Kd_2_t + R(0.5)*prrr_Kd_2_t_3 - prrr_Kd_2_t_2;
-        /* (prrr-Kc_2) factor of the cosine in the equation of joint 2 */
-        const real prrr_joint3_offset_x = m->prrr_joint3_offset_x[i];
-        const real prrr_Kc_2 = prrr_joint3_offset_x*prrr_x_2_in_axes0_x;
-        /* (prrr-Ks_2) factor of the sine in the equation of joint 2 */
-        const real prrr_Ks_2 = prrr_S_in_axes0_y*prrr_joint3_offset_x;
-        /* (prrr-rho2_2) squared amplitude */
-        const real prrr_rho2_2 = prrr_Kc_2*prrr_Kc_2 + prrr_Ks_2*prrr_Ks_2;
-        /* (prrr-disc_2) discriminant */
-        const real prrr_disc_2 = prrr_rho2_2 - prrr_Kd_2*prrr_Kd_2;
-        /* (prrr-root_2) root, with the sign of the branch */
-        const real prrr_branch_2 = m->prrr_branch_2[i];
-        const real prrr_root_2 = prrr_branch_2*root(prrr_disc_2);
+        values_prrr v;
+        stage_prrr_inverse_kinematics_potential(m, w, i, j, s, X, &v);
         /* (prrr-c_2) cosine of the angle of joint 2 from its reference direction */
-        const real inv_prrr_rho2_2 = 1/prrr_rho2_2;
-        const real prrr_c_2 = inv_prrr_rho2_2*(prrr_Kc_2*prrr_Kd_2 - prrr_Ks_2*prrr_root_2);
+        const real prrr_c_2 = -v.inv_prrr_rho2_2*(v.prrr_Ks_2*v.prrr_root_2 -
+            v.prrr_Kc_2*v.prrr_Kd_2);
         /* (prrr-s_2) sine of the angle of joint 2 from its reference direction */
-        const real prrr_s_2 = inv_prrr_rho2_2*(prrr_Kc_2*prrr_root_2 + prrr_Kd_2*prrr_Ks_2);
-        /* (prrr-x_3) from the origin of joint 3 to the connection point */
-        const real inv_prrr_size_t = m->inv_prrr_size_t[i];
-        const real prrr_x_3_in_axes2_x = inv_prrr_size_t*prrr_Kd_2*prrr_joint3_offset_x -
-            prrr_joint3_offset_x;
+        const real prrr_s_2 = -v.inv_prrr_rho2_2*(-v.prrr_Kc_2*v.prrr_root_2 -
+            v.prrr_Kd_2*v.prrr_Ks_2);
         /* (prrr-c_3) cosine of the angle of joint 3 from its reference direction */
         const real inv_prrr_size_t_2 = m->inv_prrr_size_t_2[i];
         const real prrr_platform_joint_offset_x = m->prrr_platform_joint_offset_x[i];
-        const real prrr_c_3 = inv_prrr_size_t_2*prrr_platform_joint_offset_x*prrr_x_3_in_axes2_x;
+        const real prrr_c_3 =
+            inv_prrr_size_t_2*prrr_platform_joint_offset_x*v.prrr_x_3_in_axes2_x;
         /* (prrr-s_3) sine of the angle of joint 3 from its reference direction */
+        const real inv_prrr_size_t = m->inv_prrr_size_t[i];
+        const real prrr_joint3_offset_x = m->prrr_joint3_offset_x[i];
         const real prrr_s_3_t =
-            inv_prrr_size_t*inv_prrr_size_t_2*prrr_joint3_offset_x*prrr_platform_joint_offset_x*prrr_root_2;
+            inv_prrr_size_t*inv_prrr_size_t_2*prrr_joint3_offset_x*prrr_platform_joint_offset_x*v.prrr_root_2;
         /* (potential) potential energy */
         const real prrr_b_in_axes0_x = m->prrr_b_in_axes0_x[i];
+        const real prrr_y_1_extra = X[3*w + j];
         const real prrr_potential_t_3 = prrr_b_in_axes0_x + prrr_y_1_extra;
         const real prrr_h_3_in_spec3_x = m->prrr_h_3_in_spec3_x[i];
         const real prrr_h_3_in_spec3_y = m->prrr_h_3_in_spec3_y[i];
@@ -5312,8 +4280,8 @@ INLINE void potential_legs_prrr(const prepared *m, size_t w, size_t leg, size_t 
             prrr_h_3_in_spec3_y*prrr_s_3_t;
         const real prrr_potential_t_5 = prrr_c_3*prrr_h_3_in_spec3_y -
             prrr_h_3_in_spec3_x*prrr_s_3_t;
+        const real prrr_acc_1_in_axes0_y = m->prrr_acc_1_in_axes0_y[i];
         const real prrr_g_in_axes0_x = m->prrr_g_in_axes0_x[i];
-        const real prrr_g_in_axes0_y = m->prrr_g_in_axes0_y[i];
         const real prrr_h_1_in_spec0_x = m->prrr_h_1_in_spec0_x[i];
         const real prrr_h_1_in_spec0_y = m->prrr_h_1_in_spec0_y[i];
         const real prrr_h_2_in_spec2_x = m->prrr_h_2_in_spec2_x[i];
@@ -5322,18 +4290,18 @@ INLINE void potential_legs_prrr(const prepared *m, size_t w, size_t leg, size_t 
         const real prrr_link2_mass = m->prrr_link2_mass[i];
         const real prrr_potential_t = m->prrr_potential_t[i];
         const real prrr_potential_t_2 = m->prrr_potential_t_2[i];
-        const real prrr_potential_t_6 = prrr_g_in_axes0_x*(prrr_h_1_in_spec0_y +
-            prrr_c_2*prrr_h_2_in_spec2_x + prrr_c_2*prrr_potential_t_4 +
-            prrr_link1_mass*prrr_potential_t_3 + prrr_link2_mass*prrr_potential_t_3 -
-            prrr_h_2_in_spec2_y*prrr_s_2 - prrr_potential_t_5*prrr_s_2) +
-            prrr_g_in_axes0_y*(prrr_potential_t + prrr_potential_t_2 +
-            prrr_c_2*prrr_h_2_in_spec2_y + prrr_c_2*prrr_potential_t_5 +
-            prrr_h_2_in_spec2_x*prrr_s_2 + prrr_potential_t_4*prrr_s_2 - prrr_h_1_in_spec0_x);
+        const real prrr_potential_t_6 = prrr_acc_1_in_axes0_y*(prrr_h_1_in_spec0_x +
+            prrr_c_2*prrr_h_2_in_spec2_x + prrr_c_2*prrr_potential_t_4 - prrr_potential_t -
+            prrr_potential_t_2 - prrr_h_2_in_spec2_y*prrr_s_2 - prrr_potential_t_5*prrr_s_2) +
+            prrr_g_in_axes0_x*(prrr_h_1_in_spec0_y + prrr_c_2*prrr_h_2_in_spec2_y +
+            prrr_c_2*prrr_potential_t_5 + prrr_h_2_in_spec2_x*prrr_s_2 +
+            prrr_link1_mass*prrr_potential_t_3 + prrr_link2_mass*prrr_potential_t_3 +
+            prrr_potential_t_4*prrr_s_2);
         /* (potential) potential energy */
         gather(&terms[0*count + k], add, -prrr_potential_t_6);  /* potential_of_legs */
         const real prrr_rho2_2_t = m->prrr_rho2_2_t[i];
-        o[1*count + k] = UNLESS(magnitude(prrr_rho2_2) > TOLERANCE*TOLERANCE*prrr_rho2_2_t);
-        o[0*count + k] = UNLESS(prrr_disc_2 >= 0);
+        o[1*count + k] = UNLESS(magnitude(v.prrr_rho2_2) > TOLERANCE*TOLERANCE*prrr_rho2_2_t);
+        o[0*count + k] = UNLESS(v.prrr_disc_2 >= 0);
     }
 }
 
@@ -5346,66 +4314,26 @@ INLINE void potential_place_prrr(size_t w, size_t count, const real *o, size_t f
 }
 
 INLINE void potential_legs_rrr(const prepared *m, size_t w, size_t leg, size_t legs, const real
-    *s, size_t states, size_t count, int add, real *terms, real *o)
+    *s, size_t states, size_t count, int add, const real *X, real *terms, real *o)
 {
     for (size_t k = 0; k < count; ++k) {
         const size_t i = leg + legs*k;
         const size_t j = states*k;
-        /* (rrr-S) from the base point to the connection point */
-        const real R_xx = s[2*w + j];
-        const real R_yx = s[3*w + j];
-        const real rrr_base_point_x = m->rrr_base_point_x[i];
-        const real rrr_platform_point_x = m->rrr_platform_point_x[i];
-        const real rrr_platform_point_y = m->rrr_platform_point_y[i];
-        const real t_x = s[0*w + j];
-        const real rrr_S_x = t_x + R_xx*rrr_platform_point_x - rrr_base_point_x -
-            R_yx*rrr_platform_point_y;
-        const real rrr_base_point_y = m->rrr_base_point_y[i];
-        const real t_y = s[1*w + j];
-        const real rrr_S_y = t_y + R_xx*rrr_platform_point_y + R_yx*rrr_platform_point_x -
-            rrr_base_point_y;
-        /* (rrr-Kd_1) projection on the centre's direction, from the distance fixed by the joints beyond
-           joint 1 */
-        const real rrr_Kd_1_t_3 = rrr_S_x*rrr_S_x + rrr_S_y*rrr_S_y;
-        const real rrr_Kd_1_t = m->rrr_Kd_1_t[i];
-        const real rrr_Kd_1_t_2 = m->rrr_Kd_1_t_2[i];
-        const real rrr_Kd_1 = rrr_Kd_1_t + R(0.5)*rrr_Kd_1_t_3 - rrr_Kd_1_t_2;
-        /* (rrr-px_1) component along the reference direction */
-        const real rrr_base_frame_xx = m->rrr_base_frame_xx[i];
-        const real rrr_base_frame_yx = m->rrr_base_frame_yx[i];
-        const real rrr_px_1 = rrr_S_x*rrr_base_frame_xx + rrr_S_y*rrr_base_frame_yx;
-        /* (rrr-py_1) component across the reference direction */
-        const real rrr_base_frame_xy = m->rrr_base_frame_xy[i];
-        const real rrr_base_frame_yy = m->rrr_base_frame_yy[i];
-        const real rrr_py_1 = rrr_S_x*rrr_base_frame_xy + rrr_S_y*rrr_base_frame_yy;
-        /* (rrr-Kc_1) factor of the cosine in the equation of joint 1 */
-        const real rrr_joint2_offset_x = m->rrr_joint2_offset_x[i];
-        const real rrr_Kc_1 = rrr_joint2_offset_x*rrr_px_1;
-        /* (rrr-Ks_1) factor of the sine in the equation of joint 1 */
-        const real rrr_Ks_1 = rrr_joint2_offset_x*rrr_py_1;
-        /* (rrr-rho2_1) squared amplitude */
-        const real rrr_rho2_1 = rrr_Kc_1*rrr_Kc_1 + rrr_Ks_1*rrr_Ks_1;
-        /* (rrr-disc_1) discriminant */
-        const real rrr_disc_1 = rrr_rho2_1 - rrr_Kd_1*rrr_Kd_1;
-        /* (rrr-root_1) root, with the sign of the branch */
-        const real rrr_branch_1 = m->rrr_branch_1[i];
-        const real rrr_root_1 = rrr_branch_1*root(rrr_disc_1);
+        values_rrr v;
+        stage_rrr_inverse_kinematics_potential(m, w, i, j, s, X, &v);
         /* (rrr-c_1) cosine of the angle of joint 1 from its reference direction */
-        const real inv_rrr_rho2_1 = 1/rrr_rho2_1;
-        const real rrr_c_1 = inv_rrr_rho2_1*(rrr_Kc_1*rrr_Kd_1 - rrr_Ks_1*rrr_root_1);
+        const real rrr_c_1 = v.inv_rrr_rho2_1*(v.rrr_Kc_1*v.rrr_Kd_1 - v.rrr_Ks_1*v.rrr_root_1);
         /* (rrr-s_1) sine of the angle of joint 1 from its reference direction */
-        const real rrr_s_1 = inv_rrr_rho2_1*(rrr_Kc_1*rrr_root_1 + rrr_Kd_1*rrr_Ks_1);
-        /* (rrr-x_2) from the origin of joint 2 to the connection point */
-        const real inv_rrr_size_t = m->inv_rrr_size_t[i];
-        const real rrr_x_2_in_axes1_x = inv_rrr_size_t*rrr_Kd_1*rrr_joint2_offset_x -
-            rrr_joint2_offset_x;
+        const real rrr_s_1 = v.inv_rrr_rho2_1*(v.rrr_Kc_1*v.rrr_root_1 + v.rrr_Kd_1*v.rrr_Ks_1);
         /* (rrr-c_2) cosine of the angle of joint 2 from its reference direction */
         const real inv_rrr_size_t_2 = m->inv_rrr_size_t_2[i];
         const real rrr_platform_joint_offset_x = m->rrr_platform_joint_offset_x[i];
-        const real rrr_c_2 = inv_rrr_size_t_2*rrr_platform_joint_offset_x*rrr_x_2_in_axes1_x;
+        const real rrr_c_2 = inv_rrr_size_t_2*rrr_platform_joint_offset_x*v.rrr_x_2_in_axes1_x;
         /* (rrr-s_2) sine of the angle of joint 2 from its reference direction */
+        const real inv_rrr_size_t = m->inv_rrr_size_t[i];
+        const real rrr_joint2_offset_x = m->rrr_joint2_offset_x[i];
         const real rrr_s_2 =
-            -inv_rrr_size_t*inv_rrr_size_t_2*rrr_joint2_offset_x*rrr_platform_joint_offset_x*rrr_root_1;
+            -inv_rrr_size_t*inv_rrr_size_t_2*rrr_joint2_offset_x*rrr_platform_joint_offset_x*v.rrr_root_1;
         /* (potential) potential energy */
         const real rrr_h_1_in_spec1_x = m->rrr_h_1_in_spec1_x[i];
         const real rrr_h_1_in_spec1_y = m->rrr_h_1_in_spec1_y[i];
@@ -5426,8 +4354,8 @@ INLINE void potential_legs_rrr(const prepared *m, size_t w, size_t leg, size_t l
         /* (potential) potential energy */
         gather(&terms[1*count + k], add, rrr_potential_t_3);  /* potential_t_2 */
         const real rrr_rho2_1_t = m->rrr_rho2_1_t[i];
-        o[1*count + k] = UNLESS(magnitude(rrr_rho2_1) > TOLERANCE*TOLERANCE*rrr_rho2_1_t);
-        o[0*count + k] = UNLESS(rrr_disc_1 >= 0);
+        o[1*count + k] = UNLESS(magnitude(v.rrr_rho2_1) > TOLERANCE*TOLERANCE*rrr_rho2_1_t);
+        o[0*count + k] = UNLESS(v.rrr_disc_1 >= 0);
     }
 }
 
@@ -5444,7 +4372,7 @@ INLINE void potential_after(size_t w, const real *s, const real *sums, real *pot
     for (size_t k = 0; k < w; ++k) {
         /* (potential) potential energy */
         const real potential_of_legs = sums[0*w + k];
-        const real potential_t = s[4*w + k];
+        const real potential_t = s[2*w + k];
         const real potential_t_2 = sums[1*w + k];
         const real potential_ = potential_of_legs - potential_t - potential_t_2;
         /* (potential) potential energy */
@@ -5454,21 +4382,18 @@ INLINE void potential_after(size_t w, const real *s, const real *sums, real *pot
 
 INLINE void potential_run(const prepared *m, const real *X, real *potential, verdict *t)
 {
-    real s[5] = {0};
-    real sums[2] = {0};
-    real terms_prrr[2*LEGS(LEGS_OF_prrr)] = {0};
-    real o_prrr[2*LEGS(LEGS_OF_prrr)] = {0};
-    real terms_rrr[2*LEGS(LEGS_OF_rrr)] = {0};
-    real o_rrr[2*LEGS(LEGS_OF_rrr)] = {0};
+    real s[3] = {0}, sums[2] = {0};
+    real terms_prrr[2*LEGS(LEGS_OF_prrr)] = {0}, o_prrr[2*LEGS(LEGS_OF_prrr)] = {0};
+    real terms_rrr[2*LEGS(LEGS_OF_rrr)] = {0}, o_rrr[2*LEGS(LEGS_OF_rrr)] = {0};
     potential_before(m, 1, X, s);
     potential_legs_prrr(m, 1, 0, 1, s, 0, LEGS(LEGS_OF_prrr), 0, X, terms_prrr, o_prrr);
+    potential_legs_rrr(m, 1, 0, 1, s, 0, LEGS(LEGS_OF_rrr), 0, X, terms_rrr, o_rrr);
     for (size_t leg = 0; leg < LEGS_OF_prrr; ++leg) {
         potential_place_prrr(1, LEGS(LEGS_OF_prrr), o_prrr, leg, t);
     }
     for (size_t n = 0; n < 2; ++n) {
         sums[n] = total(terms_prrr + n*LEGS(LEGS_OF_prrr), LEGS_OF_prrr);
     }
-    potential_legs_rrr(m, 1, 0, 1, s, 0, LEGS(LEGS_OF_rrr), 0, terms_rrr, o_rrr);
     for (size_t leg = 0; leg < LEGS_OF_rrr; ++leg) {
         potential_place_rrr(1, LEGS(LEGS_OF_rrr), o_rrr, leg, t);
     }
@@ -5483,18 +4408,10 @@ INLINE void condition_before(const prepared *m, size_t w, const real *X, real *s
     verdict *t)
 {
     for (size_t k = 0; k < w; ++k) {
-        /* X: named entries */
-        const real X_0 = X[0*w + k];
-        const real t_x = X_0;
-        const real X_1 = X[1*w + k];
-        const real t_y = X_1;
-        const real X_2 = X[2*w + k];
-        const real R_xx = cosine(X_2);
-        const real R_yx = sine(X_2);
-        s[0*w + k] = t_x;
-        s[1*w + k] = t_y;
-        s[2*w + k] = R_xx;
-        s[3*w + k] = R_yx;
+        values v;
+        stage_X(m, w, k, X, &v);
+        s[0*w + k] = v.R_xx;
+        s[1*w + k] = v.R_yx;
         /* (legs_size) rms size of the legs, taken where the platform points coincide */
         const real legs_size = m->legs_size;
         lengths[1*w + k] = legs_size;
@@ -5508,91 +4425,23 @@ INLINE void condition_legs_prrr(const prepared *m, size_t w, size_t leg, size_t 
     for (size_t k = 0; k < count; ++k) {
         const size_t i = leg + legs*k;
         const size_t j = states*k;
-        /* (prrr-S) from the base point to the connection point */
-        const real R_xx = s[2*w + j];
-        const real R_yx = s[3*w + j];
-        const real prrr_platform_point_x = m->prrr_platform_point_x[i];
-        const real prrr_platform_point_y = m->prrr_platform_point_y[i];
-        const real prrr_q_x = R_xx*prrr_platform_point_x - R_yx*prrr_platform_point_y;
-        const real prrr_q_y = R_xx*prrr_platform_point_y + R_yx*prrr_platform_point_x;
-        const real prrr_base_point_x = m->prrr_base_point_x[i];
-        const real t_x = s[0*w + j];
-        const real prrr_S_x = prrr_q_x + t_x - prrr_base_point_x;
-        const real prrr_base_point_y = m->prrr_base_point_y[i];
-        const real t_y = s[1*w + j];
-        const real prrr_S_y = prrr_q_y + t_y - prrr_base_point_y;
-        const real prrr_base_frame_xx = m->prrr_base_frame_xx[i];
-        const real prrr_base_frame_yx = m->prrr_base_frame_yx[i];
-        const real prrr_S_in_axes0_y = -prrr_S_x*prrr_base_frame_xx - prrr_S_y*prrr_base_frame_yx;
-        /* (prrr-x_2) from the origin of joint 2 to the connection point */
-        const real prrr_base_frame_xy = m->prrr_base_frame_xy[i];
-        const real prrr_base_frame_yy = m->prrr_base_frame_yy[i];
-        const real prrr_y_1_extra = X[3*w + j];
-        const real prrr_x_2_in_axes0_x = prrr_S_x*prrr_base_frame_xy + prrr_S_y*prrr_base_frame_yy
-            - prrr_y_1_extra;
-        /* (prrr-Kd_2) projection on the centre's direction, from the distance fixed by the joints beyond
-           joint 2 */
-        const real prrr_Kd_2_t_3 = prrr_S_in_axes0_y*prrr_S_in_axes0_y +
-            prrr_x_2_in_axes0_x*prrr_x_2_in_axes0_x;
-        const real prrr_Kd_2_t = m->prrr_Kd_2_t[i];
-        const real prrr_Kd_2_t_2 = m->prrr_Kd_2_t_2[i];
-        const real prrr_Kd_2 = prrr_Kd_2_t + R(0.5)*prrr_Kd_2_t_3 - prrr_Kd_2_t_2;
-        /* (prrr-Kc_2) factor of the cosine in the equation of joint 2 */
-        const real prrr_joint3_offset_x = m->prrr_joint3_offset_x[i];
-        const real prrr_Kc_2 = prrr_joint3_offset_x*prrr_x_2_in_axes0_x;
-        /* (prrr-Ks_2) factor of the sine in the equation of joint 2 */
-        const real prrr_Ks_2 = prrr_S_in_axes0_y*prrr_joint3_offset_x;
-        /* (prrr-rho2_2) squared amplitude */
-        const real prrr_rho2_2 = prrr_Kc_2*prrr_Kc_2 + prrr_Ks_2*prrr_Ks_2;
-        /* (prrr-disc_2) discriminant */
-        const real prrr_disc_2 = prrr_rho2_2 - prrr_Kd_2*prrr_Kd_2;
-        /* (prrr-root_2) root, with the sign of the branch */
-        const real prrr_branch_2 = m->prrr_branch_2[i];
-        const real prrr_root_2 = prrr_branch_2*root(prrr_disc_2);
-        /* (prrr-c_2) cosine of the angle of joint 2 from its reference direction */
-        const real inv_prrr_rho2_2 = 1/prrr_rho2_2;
-        const real prrr_c_2 = inv_prrr_rho2_2*(prrr_Kc_2*prrr_Kd_2 - prrr_Ks_2*prrr_root_2);
-        /* (prrr-s_2) sine of the angle of joint 2 from its reference direction */
-        const real prrr_s_2 = inv_prrr_rho2_2*(prrr_Kc_2*prrr_root_2 + prrr_Kd_2*prrr_Ks_2);
-        /* (prrr-x_3) from the origin of joint 3 to the connection point */
-        const real inv_prrr_size_t = m->inv_prrr_size_t[i];
-        const real prrr_x_3_in_axes2_x = inv_prrr_size_t*prrr_Kd_2*prrr_joint3_offset_x -
-            prrr_joint3_offset_x;
-        /* (prrr-c_3) cosine of the angle of joint 3 from its reference direction */
-        const real inv_prrr_size_t_2 = m->inv_prrr_size_t_2[i];
-        const real prrr_platform_joint_offset_x = m->prrr_platform_joint_offset_x[i];
-        const real prrr_c_3 = inv_prrr_size_t_2*prrr_platform_joint_offset_x*prrr_x_3_in_axes2_x;
-        /* (prrr-s_3) sine of the angle of joint 3 from its reference direction */
-        const real prrr_s_3_t =
-            inv_prrr_size_t*inv_prrr_size_t_2*prrr_joint3_offset_x*prrr_platform_joint_offset_x*prrr_root_2;
-        /* (prrr-r_2) from joint 2 to the connection point, along the links */
-        const real prrr_r_2_in_axes2_x = prrr_joint3_offset_x +
-            prrr_c_3*prrr_platform_joint_offset_x;
-        const real prrr_r_2_in_axes3_y = prrr_r_2_in_axes2_x*prrr_s_3_t -
-            prrr_c_3*prrr_platform_joint_offset_x*prrr_s_3_t;
-        /* (prrr-w_2) reciprocal vector 1 */
-        const real prrr_e_1_in_axes3_y = prrr_c_2*prrr_s_3_t - prrr_c_3*prrr_s_2;
-        const real prrr_e_1_in_axes3_x = prrr_c_2*prrr_c_3 + prrr_s_2*prrr_s_3_t;
-        const real inv_prrr_r_2_in_axes3_y = 1/prrr_r_2_in_axes3_y;
-        const real prrr_w_2_t = inv_prrr_r_2_in_axes3_y*prrr_e_1_in_axes3_x;
-        const real prrr_w_2_x = -inv_prrr_r_2_in_axes3_y*(prrr_base_frame_yy*prrr_e_1_in_axes3_y -
-            prrr_base_frame_yx*prrr_e_1_in_axes3_x);
-        const real prrr_w_2_y = inv_prrr_r_2_in_axes3_y*(prrr_base_frame_xy*prrr_e_1_in_axes3_y -
-            prrr_base_frame_xx*prrr_e_1_in_axes3_x);
+        values_prrr v;
+        stage_prrr_X(m, w, i, j, s, X, &v);
+        stage_prrr_H_condition(m, i, &v);
         /* (prrr-G) force at the connection point that balances the leg's inertia and weight along all
            degrees of freedom */
-        const real prrr_pivot_size = magnitude(prrr_rho2_2);
-        const real prrr_pivot_size_2 = magnitude(prrr_r_2_in_axes3_y);
+        const real prrr_pivot_size = magnitude(v.prrr_rho2_2);
+        const real prrr_pivot_size_2 = magnitude(v.prrr_r_2_in_axes3_y);
         const real inv_prrr_rho2_2_t = m->inv_prrr_rho2_2_t[i];
         const real inv_prrr_size = m->inv_prrr_size[i];
         const real prrr_least_pivots = lesser(root(inv_prrr_rho2_2_t*prrr_pivot_size),
             inv_prrr_size*prrr_pivot_size_2);
-        /* (prrr-H_a_2) moment of the column's unit force about the platform origin */
-        const real prrr_H_a_2_z = prrr_q_x*prrr_w_2_y - prrr_q_y*prrr_w_2_x;
         /* (spread) rms distance of the platform points from their centroid */
         const real b_c_in_platform_x = m->b_c_in_platform_x;
+        const real prrr_platform_point_x = m->prrr_platform_point_x[i];
         const real prrr_spread_t = b_c_in_platform_x - prrr_platform_point_x;
         const real b_c_in_platform_y = m->b_c_in_platform_y;
+        const real prrr_platform_point_y = m->prrr_platform_point_y[i];
         const real prrr_spread_t_2 = b_c_in_platform_y - prrr_platform_point_y;
         const real prrr_spread_t_3 = prrr_spread_t*prrr_spread_t +
             prrr_spread_t_2*prrr_spread_t_2;
@@ -5601,23 +4450,23 @@ INLINE void condition_legs_prrr(const prepared *m, size_t w, size_t leg, size_t 
         /* (legs_size) rms size of the legs, taken where the platform points coincide */
         o[0*count + k] = 1;
         /* (prrr-w_2) reciprocal vector 1 */
-        o[1*count + k] = prrr_w_2_x;
-        o[2*count + k] = prrr_w_2_y;
+        o[1*count + k] = v.prrr_w_2_x;
+        o[2*count + k] = v.prrr_w_2_y;
         /* (prrr-H_a_2) moment of the column's unit force about the platform origin */
-        o[3*count + k] = prrr_H_a_2_z;
+        o[3*count + k] = v.prrr_H_a_2_z;
         /* (prrr-w_2) reciprocal vector 1 */
-        o[4*count + k] = prrr_w_2_t;
+        o[4*count + k] = v.prrr_w_2_t_2;
         /* (prrr-G) force at the connection point that balances the leg's inertia and weight along all
            degrees of freedom */
         o[5*count + k] = prrr_least_pivots;
-        o[6*count + k] = prrr_disc_2;
-        o[9*count + k] = (prrr_w_2_x + (prrr_w_2_y + prrr_H_a_2_z)) + (prrr_w_2_t +
-            (prrr_least_pivots + prrr_disc_2));
+        o[6*count + k] = v.prrr_disc_2;
+        o[9*count + k] = (v.prrr_w_2_x + (v.prrr_w_2_y + v.prrr_H_a_2_z)) + (v.prrr_w_2_t_2 +
+            (prrr_least_pivots + v.prrr_disc_2));
         const real prrr_rho2_2_t = m->prrr_rho2_2_t[i];
         const real prrr_size = m->prrr_size[i];
-        o[8*count + k] = UNLESS(magnitude(prrr_rho2_2) > TOLERANCE*TOLERANCE*prrr_rho2_2_t) +
-            UNLESS(magnitude(prrr_r_2_in_axes3_y) > TOLERANCE*prrr_size);
-        o[7*count + k] = UNLESS(prrr_disc_2 >= 0);
+        o[8*count + k] = UNLESS(magnitude(v.prrr_rho2_2) > TOLERANCE*TOLERANCE*prrr_rho2_2_t) +
+            UNLESS(magnitude(v.prrr_r_2_in_axes3_y) > TOLERANCE*prrr_size);
+        o[7*count + k] = UNLESS(v.prrr_disc_2 >= 0);
     }
 }
 
@@ -5626,7 +4475,7 @@ INLINE void condition_place_prrr(size_t w, size_t count, const real *o, size_t f
 {
     for (size_t k = 0; k < w; ++k) {
         H[3*NU*w + k] = o[0*count + first + k];
-        H[(0*NU + 1)*w + k] = o[1*count + first + k];
+        H[1*w + k] = o[1*count + first + k];
         H[(NU + 1)*w + k] = o[2*count + first + k];
         H[(2*NU + 1)*w + k] = o[3*count + first + k];
         H[(3*NU + 1)*w + k] = o[4*count + first + k];
@@ -5639,112 +4488,48 @@ INLINE void condition_place_prrr(size_t w, size_t count, const real *o, size_t f
 }
 
 INLINE void condition_legs_rrr(const prepared *m, size_t w, size_t leg, size_t legs, const real
-    *s, size_t states, size_t count, int add, real *terms, real *o)
+    *s, size_t states, size_t count, int add, const real *X, real *terms, real *o)
 {
     for (size_t k = 0; k < count; ++k) {
         const size_t i = leg + legs*k;
         const size_t j = states*k;
-        /* (rrr-S) from the base point to the connection point */
-        const real R_xx = s[2*w + j];
-        const real R_yx = s[3*w + j];
-        const real rrr_platform_point_x = m->rrr_platform_point_x[i];
-        const real rrr_platform_point_y = m->rrr_platform_point_y[i];
-        const real rrr_q_x = R_xx*rrr_platform_point_x - R_yx*rrr_platform_point_y;
-        const real rrr_q_y = R_xx*rrr_platform_point_y + R_yx*rrr_platform_point_x;
-        const real rrr_base_point_x = m->rrr_base_point_x[i];
-        const real t_x = s[0*w + j];
-        const real rrr_S_x = rrr_q_x + t_x - rrr_base_point_x;
-        const real rrr_base_point_y = m->rrr_base_point_y[i];
-        const real t_y = s[1*w + j];
-        const real rrr_S_y = rrr_q_y + t_y - rrr_base_point_y;
-        /* (rrr-Kd_1) projection on the centre's direction, from the distance fixed by the joints beyond
-           joint 1 */
-        const real rrr_Kd_1_t_3 = rrr_S_x*rrr_S_x + rrr_S_y*rrr_S_y;
-        const real rrr_Kd_1_t = m->rrr_Kd_1_t[i];
-        const real rrr_Kd_1_t_2 = m->rrr_Kd_1_t_2[i];
-        const real rrr_Kd_1 = rrr_Kd_1_t + R(0.5)*rrr_Kd_1_t_3 - rrr_Kd_1_t_2;
-        /* (rrr-px_1) component along the reference direction */
-        const real rrr_base_frame_xx = m->rrr_base_frame_xx[i];
-        const real rrr_base_frame_yx = m->rrr_base_frame_yx[i];
-        const real rrr_px_1 = rrr_S_x*rrr_base_frame_xx + rrr_S_y*rrr_base_frame_yx;
-        /* (rrr-py_1) component across the reference direction */
-        const real rrr_base_frame_xy = m->rrr_base_frame_xy[i];
-        const real rrr_base_frame_yy = m->rrr_base_frame_yy[i];
-        const real rrr_py_1 = rrr_S_x*rrr_base_frame_xy + rrr_S_y*rrr_base_frame_yy;
-        /* (rrr-Kc_1) factor of the cosine in the equation of joint 1 */
-        const real rrr_joint2_offset_x = m->rrr_joint2_offset_x[i];
-        const real rrr_Kc_1 = rrr_joint2_offset_x*rrr_px_1;
-        /* (rrr-Ks_1) factor of the sine in the equation of joint 1 */
-        const real rrr_Ks_1 = rrr_joint2_offset_x*rrr_py_1;
-        /* (rrr-rho2_1) squared amplitude */
-        const real rrr_rho2_1 = rrr_Kc_1*rrr_Kc_1 + rrr_Ks_1*rrr_Ks_1;
-        /* (rrr-disc_1) discriminant */
-        const real rrr_disc_1 = rrr_rho2_1 - rrr_Kd_1*rrr_Kd_1;
-        /* (rrr-root_1) root, with the sign of the branch */
-        const real rrr_branch_1 = m->rrr_branch_1[i];
-        const real rrr_root_1 = rrr_branch_1*root(rrr_disc_1);
-        /* (rrr-c_1) cosine of the angle of joint 1 from its reference direction */
-        const real inv_rrr_rho2_1 = 1/rrr_rho2_1;
-        const real rrr_c_1 = inv_rrr_rho2_1*(rrr_Kc_1*rrr_Kd_1 - rrr_Ks_1*rrr_root_1);
-        /* (rrr-s_1) sine of the angle of joint 1 from its reference direction */
-        const real rrr_s_1 = inv_rrr_rho2_1*(rrr_Kc_1*rrr_root_1 + rrr_Kd_1*rrr_Ks_1);
-        /* (rrr-x_2) from the origin of joint 2 to the connection point */
-        const real inv_rrr_size_t = m->inv_rrr_size_t[i];
-        const real rrr_x_2_in_axes1_x = inv_rrr_size_t*rrr_Kd_1*rrr_joint2_offset_x -
-            rrr_joint2_offset_x;
-        /* (rrr-c_2) cosine of the angle of joint 2 from its reference direction */
-        const real inv_rrr_size_t_2 = m->inv_rrr_size_t_2[i];
-        const real rrr_platform_joint_offset_x = m->rrr_platform_joint_offset_x[i];
-        const real rrr_c_2 = inv_rrr_size_t_2*rrr_platform_joint_offset_x*rrr_x_2_in_axes1_x;
-        /* (rrr-s_2) sine of the angle of joint 2 from its reference direction */
-        const real rrr_s_2 =
-            -inv_rrr_size_t*inv_rrr_size_t_2*rrr_joint2_offset_x*rrr_platform_joint_offset_x*rrr_root_1;
-        /* (rrr-r_1) from joint 1 to the connection point, along the links */
-        const real rrr_r_1_in_axes1_x = rrr_joint2_offset_x + rrr_c_2*rrr_platform_joint_offset_x;
-        const real rrr_r_1_in_axes2_y = rrr_c_2*rrr_platform_joint_offset_x*rrr_s_2 -
-            rrr_r_1_in_axes1_x*rrr_s_2;
-        /* (rrr-w_1) reciprocal vector 1 */
-        const real rrr_w_1_t = rrr_c_1*rrr_s_2 + rrr_c_2*rrr_s_1;
-        const real rrr_w_1_t_2 = rrr_c_1*rrr_c_2 - rrr_s_1*rrr_s_2;
-        const real inv_rrr_r_1_in_axes2_y = 1/rrr_r_1_in_axes2_y;
-        const real rrr_w_1_x = -inv_rrr_r_1_in_axes2_y*(rrr_base_frame_yy*rrr_w_1_t_2 -
-            rrr_base_frame_yx*rrr_w_1_t);
-        const real rrr_w_1_y = inv_rrr_r_1_in_axes2_y*(rrr_base_frame_xy*rrr_w_1_t_2 -
-            rrr_base_frame_xx*rrr_w_1_t);
+        values_rrr v;
+        stage_rrr_X(m, w, i, j, s, X, &v);
+        stage_rrr_H_condition(m, i, &v);
         /* (rrr-G) force at the connection point that balances the leg's inertia and weight along all
            degrees of freedom */
-        const real rrr_pivot_size = magnitude(rrr_rho2_1);
-        const real rrr_pivot_size_2 = magnitude(rrr_r_1_in_axes2_y);
+        const real rrr_pivot_size = magnitude(v.rrr_rho2_1);
+        const real rrr_pivot_size_2 = magnitude(v.rrr_r_1_in_axes2_y);
         const real inv_rrr_rho2_1_t = m->inv_rrr_rho2_1_t[i];
         const real inv_rrr_size = m->inv_rrr_size[i];
         const real rrr_least_pivots = lesser(root(inv_rrr_rho2_1_t*rrr_pivot_size),
             inv_rrr_size*rrr_pivot_size_2);
-        /* (rrr-H_a_1) moment of the column's unit force about the platform origin */
-        const real rrr_H_a_1_z = rrr_q_x*rrr_w_1_y - rrr_q_y*rrr_w_1_x;
         /* (spread) rms distance of the platform points from their centroid */
         const real b_c_in_platform_x = m->b_c_in_platform_x;
+        const real rrr_platform_point_x = m->rrr_platform_point_x[i];
         const real rrr_spread_t = b_c_in_platform_x - rrr_platform_point_x;
         const real b_c_in_platform_y = m->b_c_in_platform_y;
+        const real rrr_platform_point_y = m->rrr_platform_point_y[i];
         const real rrr_spread_t_2 = b_c_in_platform_y - rrr_platform_point_y;
         const real rrr_spread_t_3 = rrr_spread_t*rrr_spread_t + rrr_spread_t_2*rrr_spread_t_2;
         /* (spread) rms distance of the platform points from their centroid */
         gather(&terms[1*count + k], add, rrr_spread_t_3);  /* spread_rrr */
         /* (rrr-w_1) reciprocal vector 1 */
-        o[0*count + k] = rrr_w_1_x;
-        o[1*count + k] = rrr_w_1_y;
+        o[0*count + k] = v.rrr_w_1_x;
+        o[1*count + k] = v.rrr_w_1_y;
         /* (rrr-H_a_1) moment of the column's unit force about the platform origin */
-        o[2*count + k] = rrr_H_a_1_z;
+        o[2*count + k] = v.rrr_H_a_1_z;
         /* (rrr-G) force at the connection point that balances the leg's inertia and weight along all
            degrees of freedom */
         o[3*count + k] = rrr_least_pivots;
-        o[4*count + k] = rrr_disc_1;
-        o[7*count + k] = (rrr_w_1_x + rrr_w_1_y) + (rrr_H_a_1_z + (rrr_least_pivots +
-            rrr_disc_1));
+        o[4*count + k] = v.rrr_disc_1;
+        o[7*count + k] = (v.rrr_w_1_x + v.rrr_w_1_y) + (v.rrr_H_a_1_z + (rrr_least_pivots +
+            v.rrr_disc_1));
         const real rrr_rho2_1_t = m->rrr_rho2_1_t[i];
         const real rrr_size = m->rrr_size[i];
-        o[6*count + k] = UNLESS(magnitude(rrr_rho2_1) > TOLERANCE*TOLERANCE*rrr_rho2_1_t) +
-            UNLESS(magnitude(rrr_r_1_in_axes2_y) > TOLERANCE*rrr_size);
-        o[5*count + k] = UNLESS(rrr_disc_1 >= 0);
+        o[6*count + k] = UNLESS(magnitude(v.rrr_rho2_1) > TOLERANCE*TOLERANCE*rrr_rho2_1_t) +
+            UNLESS(magnitude(v.rrr_r_1_in_axes2_y) > TOLERANCE*rrr_size);
+        o[5*count + k] = UNLESS(v.rrr_disc_1 >= 0);
     }
 }
 
@@ -5752,7 +4537,7 @@ INLINE void condition_place_rrr(size_t w, size_t count, const real *o, size_t le
     real *H, real *pivots, real *reach, verdict *t)
 {
     for (size_t k = 0; k < w; ++k) {
-        H[(0*NU + 2 + leg)*w + k] = o[0*count + first + k];
+        H[(2 + leg)*w + k] = o[0*count + first + k];
         H[(NU + 2 + leg)*w + k] = o[1*count + first + k];
         H[(2*NU + 2 + leg)*w + k] = o[2*count + first + k];
         pivots[(1 + leg)*w + k] = o[3*count + first + k];
@@ -5780,22 +4565,19 @@ INLINE void condition_after(size_t w, const real *sums, real *lengths, verdict *
 INLINE void condition_run(const prepared *m, const real *X, real *H, real *lengths, real *pivots,
     real *reach, verdict *t)
 {
-    real s[4] = {0};
-    real sums[2] = {0};
-    real terms_prrr[2*LEGS(LEGS_OF_prrr)] = {0};
-    real o_prrr[10*LEGS(LEGS_OF_prrr)] = {0};
-    real terms_rrr[2*LEGS(LEGS_OF_rrr)] = {0};
-    real o_rrr[8*LEGS(LEGS_OF_rrr)] = {0};
+    real s[2] = {0}, sums[2] = {0};
+    real terms_prrr[2*LEGS(LEGS_OF_prrr)] = {0}, o_prrr[10*LEGS(LEGS_OF_prrr)] = {0};
+    real terms_rrr[2*LEGS(LEGS_OF_rrr)] = {0}, o_rrr[8*LEGS(LEGS_OF_rrr)] = {0};
     clear(H, NV*NU);
     condition_before(m, 1, X, s, lengths, t);
     condition_legs_prrr(m, 1, 0, 1, s, 0, LEGS(LEGS_OF_prrr), 0, X, terms_prrr, o_prrr);
+    condition_legs_rrr(m, 1, 0, 1, s, 0, LEGS(LEGS_OF_rrr), 0, X, terms_rrr, o_rrr);
     for (size_t leg = 0; leg < LEGS_OF_prrr; ++leg) {
         condition_place_prrr(1, LEGS(LEGS_OF_prrr), o_prrr, leg, H, pivots, reach, t);
     }
     for (size_t n = 0; n < 2; ++n) {
         sums[n] = total(terms_prrr + n*LEGS(LEGS_OF_prrr), LEGS_OF_prrr);
     }
-    condition_legs_rrr(m, 1, 0, 1, s, 0, LEGS(LEGS_OF_rrr), 0, terms_rrr, o_rrr);
     for (size_t leg = 0; leg < LEGS_OF_rrr; ++leg) {
         condition_place_rrr(1, LEGS(LEGS_OF_rrr), o_rrr, leg, leg, H, pivots, reach, t);
     }
@@ -6367,11 +5149,84 @@ INLINE void condition_one(const prepared *m, const real *X, const real *length, 
     }
 }
 
+INLINE void manipulability_one(const prepared *m, const real *X, real *measure_out, real
+    *isotropy_out, int *code)
+{
+    static const size_t places_divide_rows_1[] = {2};
+    real H[NV*NU] = {0}, lengths[2] = {0}, pivots[NL] = {0}, reach[NL] = {0}, subtract_1[1] = {0},
+        choose_length_1[1] = {0}, divide_rows_1[NV*NU] = {0}, singular_values_1[NV] = {0}, measure[1]
+        = {0}, isotropy[1] = {0};
+    verdict why;
+    start(1, &why);
+    check(NQ, 1, X, why.invalid);
+    condition_run(m, X, H, lengths, pivots, reach, &why);
+    const real *const entry_1 = lengths;
+    for (size_t i = 0; i < 1; ++i) {
+        subtract_1[i] = entry_1[i] - entry_1[i];
+    }
+    for (size_t i = 0; i < 1; ++i) {
+        choose_length_1[i] = subtract_1[i] > 0 ? subtract_1[i] : lengths[i] > TINY*lengths[1 + i]
+            ? lengths[i] : lengths[1 + i];
+    }
+    for (size_t i = 0; i < NV*NU; ++i) {
+        divide_rows_1[i] = H[i];
+    }
+    divide_rows(1, NU, 1, places_divide_rows_1, choose_length_1, divide_rows_1);
+    singular_values(NV, NU, divide_rows_1, singular_values_1);
+    spread(NV, singular_values_1, measure, isotropy);
+    check(1, 1, measure, why.overflow);
+    check(1, 1, isotropy, why.overflow);
+    judge(&why, code);
+    copy(1, measure, measure_out);
+    copy(1, isotropy, isotropy_out);
+    if (*code != OK) {
+        refuse(1, measure_out);
+        refuse(1, isotropy_out);
+    }
+}
+
+INLINE void singularity_distance_one(const prepared *m, const real *X, real *actuators_out, real
+    *legs_out, int *code)
+{
+    static const size_t places_divide_rows_1[] = {2};
+    real H[NV*NU] = {0}, lengths[2] = {0}, pivots[NL] = {0}, reach[NL] = {0}, subtract_1[1] = {0},
+        choose_length_1[1] = {0}, divide_rows_1[NV*NU] = {0}, singular_values_1[NV] = {0}, spread_1[1]
+        = {0}, actuators[1] = {0}, legs[1] = {0};
+    verdict why;
+    start(1, &why);
+    check(NQ, 1, X, why.invalid);
+    condition_run(m, X, H, lengths, pivots, reach, &why);
+    const real *const entry_1 = lengths;
+    for (size_t i = 0; i < 1; ++i) {
+        subtract_1[i] = entry_1[i] - entry_1[i];
+    }
+    for (size_t i = 0; i < 1; ++i) {
+        choose_length_1[i] = subtract_1[i] > 0 ? subtract_1[i] : lengths[i] > TINY*lengths[1 + i]
+            ? lengths[i] : lengths[1 + i];
+    }
+    for (size_t i = 0; i < NV*NU; ++i) {
+        divide_rows_1[i] = H[i];
+    }
+    divide_rows(1, NU, 1, places_divide_rows_1, choose_length_1, divide_rows_1);
+    singular_values(NV, NU, divide_rows_1, singular_values_1);
+    spread(NV, singular_values_1, spread_1, actuators);
+    least_entry(NL, pivots, legs);
+    check(1, 1, actuators, why.overflow);
+    check(1, 1, legs, why.overflow);
+    judge(&why, code);
+    copy(1, actuators, actuators_out);
+    copy(1, legs, legs_out);
+    if (*code != OK) {
+        refuse(1, actuators_out);
+        refuse(1, legs_out);
+    }
+}
+
 static void mismatch_one(const prepared *m, const real *X, const real *q_actuated, real *gap_out,
     int *code)
 {
     static const size_t places_gap[] = {1, 2, 3};
-    real q[NJ] = {0}, take_1[4] = {0}, subtract_1[NU] = {0}, gap[NU] = {0};
+    real q[NJ] = {0}, q_of_inverse_kinematics_from_0[4] = {0}, subtract_1[NU] = {0}, gap[NU] = {0};
     verdict why;
     start(1, &why);
     const real total_in = total(X, NQ) + total(q_actuated, NU);
@@ -6380,9 +5235,9 @@ static void mismatch_one(const prepared *m, const real *X, const real *q_actuate
         check(NU, 1, q_actuated, why.invalid);
     }
     inverse_kinematics_run(m, X, q, &why);
-    take(4, 1, planar_redundant_ACTUATED, q, take_1);
+    take(4, 1, planar_redundant_ACTUATED, q, q_of_inverse_kinematics_from_0);
     for (size_t i = 0; i < NU; ++i) {
-        subtract_1[i] = q_actuated[i] - take_1[i];
+        subtract_1[i] = q_actuated[i] - q_of_inverse_kinematics_from_0[i];
     }
     for (size_t i = 0; i < NU; ++i) {
         gap[i] = subtract_1[i];
@@ -6753,8 +5608,8 @@ INLINE void rotation_one(const real *X, real *R_out, int *code)
     verdict why;
     start(1, &why);
     check(NQ, 1, X, why.invalid);
-    const real *const take_1 = X + 2;
-    rotation_of_angle(take_1, R);
+    const real *const X_from_2 = X + 2;
+    rotation_of_angle(X_from_2, R);
     check(4, 1, R, why.overflow);
     judge(&why, code);
     copy(4, R, R_out);
@@ -6886,291 +5741,262 @@ INLINE void interpolate_one(const real *X0, const real *X1, const real *s, real 
 
 /* ---- one state, and batches ---- */
 
-int planar_redundant_M(const planar_redundant_model *model, const planar_redundant_real *X,
-    planar_redundant_real *M)
+int planar_redundant_M(const prepared *model, const real *X, real *M)
 {
     int code;
     M_one(model, X, M, &code);
     return code;
 }
 
-size_t planar_redundant_M_batch(const planar_redundant_model *model, size_t n, const
-    planar_redundant_real *X, planar_redundant_real *M, int *status)
+size_t planar_redundant_M_batch(const prepared *model, size_t n, const real *X, real *M, int
+    *status)
 {
-    size_t failed = 0, i = 0;
-    for (; LANES > 1 && i + LANES <= n; i += LANES) {
-        int codes[LANES];
-        M_lanes(model, X + NQ*i, M + NV*NV*i, codes);
-        for (size_t k = 0; k < LANES; ++k) {
+    size_t failed = 0, w;
+    for (size_t i = 0; i < n; i += w) {
+        int codes[LANES] = {INVALID};
+        w = LANES > 1 && i + LANES <= n ? LANES : 1;
+        if (w > 1) {
+            M_lanes(model, X + NQ*i, M + NV*NV*i, codes);
+        }
+        for (size_t k = 0; k < w; ++k) {
             if (codes[k] != OK) {
                 codes[k] = planar_redundant_M(model, X + NQ*(i + k), M + NV*NV*(i + k));
             }
         }
-        failed += record(codes, LANES, status ? status + i : NULL);
-    }
-    for (; i < n; ++i) {
-        const int code = planar_redundant_M(model, X + NQ*i, M + NV*NV*i);
-        failed += record(&code, 1, status ? status + i : NULL);
+        failed += record(codes, w, status ? status + i : NULL);
     }
     return failed;
 }
 
-int planar_redundant_Z(const planar_redundant_model *model, const planar_redundant_real *X, const
-    planar_redundant_real *V, planar_redundant_real *Z)
+int planar_redundant_Z(const prepared *model, const real *X, const real *V, real *Z)
 {
     int code;
     Z_one(model, X, V, Z, &code);
     return code;
 }
 
-size_t planar_redundant_Z_batch(const planar_redundant_model *model, size_t n, const
-    planar_redundant_real *X, const planar_redundant_real *V, planar_redundant_real *Z, int
-    *status)
+size_t planar_redundant_Z_batch(const prepared *model, size_t n, const real *X, const real *V,
+    real *Z, int *status)
 {
-    size_t failed = 0, i = 0;
-    for (; LANES > 1 && i + LANES <= n; i += LANES) {
-        int codes[LANES];
-        Z_lanes(model, X + NQ*i, V + NV*i, Z + NV*i, codes);
-        for (size_t k = 0; k < LANES; ++k) {
+    size_t failed = 0, w;
+    for (size_t i = 0; i < n; i += w) {
+        int codes[LANES] = {INVALID};
+        w = LANES > 1 && i + LANES <= n ? LANES : 1;
+        if (w > 1) {
+            Z_lanes(model, X + NQ*i, V + NV*i, Z + NV*i, codes);
+        }
+        for (size_t k = 0; k < w; ++k) {
             if (codes[k] != OK) {
                 codes[k] = planar_redundant_Z(model, X + NQ*(i + k), V + NV*(i + k), Z + NV*(i + k));
             }
         }
-        failed += record(codes, LANES, status ? status + i : NULL);
-    }
-    for (; i < n; ++i) {
-        const int code = planar_redundant_Z(model, X + NQ*i, V + NV*i, Z + NV*i);
-        failed += record(&code, 1, status ? status + i : NULL);
+        failed += record(codes, w, status ? status + i : NULL);
     }
     return failed;
 }
 
-int planar_redundant_H(const planar_redundant_model *model, const planar_redundant_real *X,
-    planar_redundant_real *H)
+int planar_redundant_H(const prepared *model, const real *X, real *H)
 {
     int code;
     H_one(model, X, H, &code);
     return code;
 }
 
-size_t planar_redundant_H_batch(const planar_redundant_model *model, size_t n, const
-    planar_redundant_real *X, planar_redundant_real *H, int *status)
+size_t planar_redundant_H_batch(const prepared *model, size_t n, const real *X, real *H, int
+    *status)
 {
-    size_t failed = 0, i = 0;
-    for (; LANES > 1 && i + LANES <= n; i += LANES) {
-        int codes[LANES];
-        H_lanes(model, X + NQ*i, H + NV*NU*i, codes);
-        for (size_t k = 0; k < LANES; ++k) {
+    size_t failed = 0, w;
+    for (size_t i = 0; i < n; i += w) {
+        int codes[LANES] = {INVALID};
+        w = LANES > 1 && i + LANES <= n ? LANES : 1;
+        if (w > 1) {
+            H_lanes(model, X + NQ*i, H + NV*NU*i, codes);
+        }
+        for (size_t k = 0; k < w; ++k) {
             if (codes[k] != OK) {
                 codes[k] = planar_redundant_H(model, X + NQ*(i + k), H + NV*NU*(i + k));
             }
         }
-        failed += record(codes, LANES, status ? status + i : NULL);
-    }
-    for (; i < n; ++i) {
-        const int code = planar_redundant_H(model, X + NQ*i, H + NV*NU*i);
-        failed += record(&code, 1, status ? status + i : NULL);
+        failed += record(codes, w, status ? status + i : NULL);
     }
     return failed;
 }
 
-int planar_redundant_inverse_kinematics(const planar_redundant_model *model, const
-    planar_redundant_real *X, planar_redundant_real *q)
+int planar_redundant_inverse_kinematics(const prepared *model, const real *X, real *q)
 {
     int code;
     inverse_kinematics_one(model, X, q, &code);
     return code;
 }
 
-size_t planar_redundant_inverse_kinematics_batch(const planar_redundant_model *model, size_t n,
-    const planar_redundant_real *X, planar_redundant_real *q, int *status)
+size_t planar_redundant_inverse_kinematics_batch(const prepared *model, size_t n, const real *X,
+    real *q, int *status)
 {
-    size_t failed = 0, i = 0;
-    for (; LANES > 1 && i + LANES <= n; i += LANES) {
-        int codes[LANES];
-        inverse_kinematics_lanes(model, X + NQ*i, q + NJ*i, codes);
-        for (size_t k = 0; k < LANES; ++k) {
+    size_t failed = 0, w;
+    for (size_t i = 0; i < n; i += w) {
+        int codes[LANES] = {INVALID};
+        w = LANES > 1 && i + LANES <= n ? LANES : 1;
+        if (w > 1) {
+            inverse_kinematics_lanes(model, X + NQ*i, q + NJ*i, codes);
+        }
+        for (size_t k = 0; k < w; ++k) {
             if (codes[k] != OK) {
                 codes[k] = planar_redundant_inverse_kinematics(model, X + NQ*(i + k), q + NJ*(i + k));
             }
         }
-        failed += record(codes, LANES, status ? status + i : NULL);
-    }
-    for (; i < n; ++i) {
-        const int code = planar_redundant_inverse_kinematics(model, X + NQ*i, q + NJ*i);
-        failed += record(&code, 1, status ? status + i : NULL);
+        failed += record(codes, w, status ? status + i : NULL);
     }
     return failed;
 }
 
-int planar_redundant_joint_rates(const planar_redundant_model *model, const planar_redundant_real
-    *X, const planar_redundant_real *V, planar_redundant_real *rates)
+int planar_redundant_joint_rates(const prepared *model, const real *X, const real *V, real *rates)
 {
     int code;
     joint_rates_one(model, X, V, rates, &code);
     return code;
 }
 
-size_t planar_redundant_joint_rates_batch(const planar_redundant_model *model, size_t n, const
-    planar_redundant_real *X, const planar_redundant_real *V, planar_redundant_real *rates, int
-    *status)
+size_t planar_redundant_joint_rates_batch(const prepared *model, size_t n, const real *X, const
+    real *V, real *rates, int *status)
 {
-    size_t failed = 0, i = 0;
-    for (; LANES > 1 && i + LANES <= n; i += LANES) {
-        int codes[LANES];
-        joint_rates_lanes(model, X + NQ*i, V + NV*i, rates + NJ*i, codes);
-        for (size_t k = 0; k < LANES; ++k) {
+    size_t failed = 0, w;
+    for (size_t i = 0; i < n; i += w) {
+        int codes[LANES] = {INVALID};
+        w = LANES > 1 && i + LANES <= n ? LANES : 1;
+        if (w > 1) {
+            joint_rates_lanes(model, X + NQ*i, V + NV*i, rates + NJ*i, codes);
+        }
+        for (size_t k = 0; k < w; ++k) {
             if (codes[k] != OK) {
                 codes[k] = planar_redundant_joint_rates(model, X + NQ*(i + k), V + NV*(i + k), rates + NJ*(i +
                     k));
             }
         }
-        failed += record(codes, LANES, status ? status + i : NULL);
-    }
-    for (; i < n; ++i) {
-        const int code = planar_redundant_joint_rates(model, X + NQ*i, V + NV*i, rates + NJ*i);
-        failed += record(&code, 1, status ? status + i : NULL);
+        failed += record(codes, w, status ? status + i : NULL);
     }
     return failed;
 }
 
-int planar_redundant_joint_accelerations(const planar_redundant_model *model, const
-    planar_redundant_real *X, const planar_redundant_real *V, const planar_redundant_real *A,
-    planar_redundant_real *accelerations)
+int planar_redundant_joint_accelerations(const prepared *model, const real *X, const real *V,
+    const real *A, real *accelerations)
 {
     int code;
     joint_accelerations_one(model, X, V, A, accelerations, &code);
     return code;
 }
 
-size_t planar_redundant_joint_accelerations_batch(const planar_redundant_model *model, size_t n,
-    const planar_redundant_real *X, const planar_redundant_real *V, const planar_redundant_real
-    *A, planar_redundant_real *accelerations, int *status)
+size_t planar_redundant_joint_accelerations_batch(const prepared *model, size_t n, const real *X,
+    const real *V, const real *A, real *accelerations, int *status)
 {
-    size_t failed = 0, i = 0;
-    for (; LANES > 1 && i + LANES <= n; i += LANES) {
-        int codes[LANES];
-        joint_accelerations_lanes(model, X + NQ*i, V + NV*i, A + NV*i, accelerations + NJ*i, codes);
-        for (size_t k = 0; k < LANES; ++k) {
+    size_t failed = 0, w;
+    for (size_t i = 0; i < n; i += w) {
+        int codes[LANES] = {INVALID};
+        w = LANES > 1 && i + LANES <= n ? LANES : 1;
+        if (w > 1) {
+            joint_accelerations_lanes(model, X + NQ*i, V + NV*i, A + NV*i, accelerations + NJ*i, codes);
+        }
+        for (size_t k = 0; k < w; ++k) {
             if (codes[k] != OK) {
                 codes[k] = planar_redundant_joint_accelerations(model, X + NQ*(i + k), V + NV*(i + k), A + NV*(i +
                     k), accelerations + NJ*(i + k));
             }
         }
-        failed += record(codes, LANES, status ? status + i : NULL);
-    }
-    for (; i < n; ++i) {
-        const int code = planar_redundant_joint_accelerations(model, X + NQ*i, V + NV*i, A + NV*i,
-            accelerations + NJ*i);
-        failed += record(&code, 1, status ? status + i : NULL);
+        failed += record(codes, w, status ? status + i : NULL);
     }
     return failed;
 }
 
-int planar_redundant_dynamics(const planar_redundant_model *model, const planar_redundant_real *X,
-    const planar_redundant_real *V, planar_redundant_real *M, planar_redundant_real *Z,
-    planar_redundant_real *H)
+int planar_redundant_dynamics(const prepared *model, const real *X, const real *V, real *M, real
+    *Z, real *H)
 {
     int code;
     dynamics_one(model, X, V, M, Z, H, &code);
     return code;
 }
 
-size_t planar_redundant_dynamics_batch(const planar_redundant_model *model, size_t n, const
-    planar_redundant_real *X, const planar_redundant_real *V, planar_redundant_real *M,
-    planar_redundant_real *Z, planar_redundant_real *H, int *status)
+size_t planar_redundant_dynamics_batch(const prepared *model, size_t n, const real *X, const real
+    *V, real *M, real *Z, real *H, int *status)
 {
-    size_t failed = 0, i = 0;
-    for (; LANES > 1 && i + LANES <= n; i += LANES) {
-        int codes[LANES];
-        dynamics_lanes(model, X + NQ*i, V + NV*i, M + NV*NV*i, Z + NV*i, H + NV*NU*i, codes);
-        for (size_t k = 0; k < LANES; ++k) {
+    size_t failed = 0, w;
+    for (size_t i = 0; i < n; i += w) {
+        int codes[LANES] = {INVALID};
+        w = LANES > 1 && i + LANES <= n ? LANES : 1;
+        if (w > 1) {
+            dynamics_lanes(model, X + NQ*i, V + NV*i, M + NV*NV*i, Z + NV*i, H + NV*NU*i, codes);
+        }
+        for (size_t k = 0; k < w; ++k) {
             if (codes[k] != OK) {
                 codes[k] = planar_redundant_dynamics(model, X + NQ*(i + k), V + NV*(i + k), M + NV*NV*(i + k), Z +
                     NV*(i + k), H + NV*NU*(i + k));
             }
         }
-        failed += record(codes, LANES, status ? status + i : NULL);
-    }
-    for (; i < n; ++i) {
-        const int code = planar_redundant_dynamics(model, X + NQ*i, V + NV*i, M + NV*NV*i, Z + NV*i, H +
-            NV*NU*i);
-        failed += record(&code, 1, status ? status + i : NULL);
+        failed += record(codes, w, status ? status + i : NULL);
     }
     return failed;
 }
 
-int planar_redundant_inverse_dynamics(const planar_redundant_model *model, const
-    planar_redundant_real *X, const planar_redundant_real *V, const planar_redundant_real *A,
-    const planar_redundant_real *wrench, planar_redundant_real *tau)
+int planar_redundant_inverse_dynamics(const prepared *model, const real *X, const real *V, const
+    real *A, const real *wrench, real *tau)
 {
     int code;
     inverse_dynamics_one(model, X, V, A, wrench, tau, &code);
     return code;
 }
 
-size_t planar_redundant_inverse_dynamics_batch(const planar_redundant_model *model, size_t n,
-    const planar_redundant_real *X, const planar_redundant_real *V, const planar_redundant_real
-    *A, const planar_redundant_real *wrench, planar_redundant_real *tau, int *status)
+size_t planar_redundant_inverse_dynamics_batch(const prepared *model, size_t n, const real *X,
+    const real *V, const real *A, const real *wrench, real *tau, int *status)
 {
-    size_t failed = 0, i = 0;
-    for (; LANES > 1 && i + LANES <= n; i += LANES) {
-        int codes[LANES];
-        inverse_dynamics_lanes(model, X + NQ*i, V + NV*i, A + NV*i, wrench ? wrench + NW*i : NULL, tau +
-            NU*i, codes);
-        for (size_t k = 0; k < LANES; ++k) {
+    size_t failed = 0, w;
+    for (size_t i = 0; i < n; i += w) {
+        int codes[LANES] = {INVALID};
+        w = LANES > 1 && i + LANES <= n ? LANES : 1;
+        if (w > 1) {
+            inverse_dynamics_lanes(model, X + NQ*i, V + NV*i, A + NV*i, wrench ? wrench + NW*i : NULL, tau +
+                NU*i, codes);
+        }
+        for (size_t k = 0; k < w; ++k) {
             if (codes[k] != OK) {
                 codes[k] = planar_redundant_inverse_dynamics(model, X + NQ*(i + k), V + NV*(i + k), A + NV*(i +
                     k), wrench ? wrench + NW*(i + k) : NULL, tau + NU*(i + k));
             }
         }
-        failed += record(codes, LANES, status ? status + i : NULL);
-    }
-    for (; i < n; ++i) {
-        const int code = planar_redundant_inverse_dynamics(model, X + NQ*i, V + NV*i, A + NV*i, wrench ?
-            wrench + NW*i : NULL, tau + NU*i);
-        failed += record(&code, 1, status ? status + i : NULL);
+        failed += record(codes, w, status ? status + i : NULL);
     }
     return failed;
 }
 
-int planar_redundant_forward_dynamics(const planar_redundant_model *model, const
-    planar_redundant_real *X, const planar_redundant_real *V, const planar_redundant_real *tau,
-    const planar_redundant_real *wrench, planar_redundant_real *A)
+int planar_redundant_forward_dynamics(const prepared *model, const real *X, const real *V, const
+    real *tau, const real *wrench, real *A)
 {
     int code;
     forward_dynamics_one(model, X, V, tau, wrench, A, &code);
     return code;
 }
 
-size_t planar_redundant_forward_dynamics_batch(const planar_redundant_model *model, size_t n,
-    const planar_redundant_real *X, const planar_redundant_real *V, const planar_redundant_real
-    *tau, const planar_redundant_real *wrench, planar_redundant_real *A, int *status)
+size_t planar_redundant_forward_dynamics_batch(const prepared *model, size_t n, const real *X,
+    const real *V, const real *tau, const real *wrench, real *A, int *status)
 {
-    size_t failed = 0, i = 0;
-    for (; LANES > 1 && i + LANES <= n; i += LANES) {
-        int codes[LANES];
-        forward_dynamics_lanes(model, X + NQ*i, V + NV*i, tau + NU*i, wrench ? wrench + NW*i : NULL, A +
-            NV*i, codes);
-        for (size_t k = 0; k < LANES; ++k) {
+    size_t failed = 0, w;
+    for (size_t i = 0; i < n; i += w) {
+        int codes[LANES] = {INVALID};
+        w = LANES > 1 && i + LANES <= n ? LANES : 1;
+        if (w > 1) {
+            forward_dynamics_lanes(model, X + NQ*i, V + NV*i, tau + NU*i, wrench ? wrench + NW*i : NULL, A +
+                NV*i, codes);
+        }
+        for (size_t k = 0; k < w; ++k) {
             if (codes[k] != OK) {
                 codes[k] = planar_redundant_forward_dynamics(model, X + NQ*(i + k), V + NV*(i + k), tau + NU*(i +
                     k), wrench ? wrench + NW*(i + k) : NULL, A + NV*(i + k));
             }
         }
-        failed += record(codes, LANES, status ? status + i : NULL);
-    }
-    for (; i < n; ++i) {
-        const int code = planar_redundant_forward_dynamics(model, X + NQ*i, V + NV*i, tau + NU*i, wrench ?
-            wrench + NW*i : NULL, A + NV*i);
-        failed += record(&code, 1, status ? status + i : NULL);
+        failed += record(codes, w, status ? status + i : NULL);
     }
     return failed;
 }
 
-int planar_redundant_complete_acceleration(const planar_redundant_model *model, const
-    planar_redundant_real *X, const planar_redundant_real *V, const planar_redundant_real *A,
-    const planar_redundant_real *wrench, planar_redundant_real *completed)
+int planar_redundant_complete_acceleration(const prepared *model, const real *X, const real *V,
+    const real *A, const real *wrench, real *completed)
 {
     int code;
     (void)model;
@@ -7181,12 +6007,11 @@ int planar_redundant_complete_acceleration(const planar_redundant_model *model, 
     return code;
 }
 
-size_t planar_redundant_complete_acceleration_batch(const planar_redundant_model *model, size_t n,
-    const planar_redundant_real *X, const planar_redundant_real *V, const planar_redundant_real
-    *A, const planar_redundant_real *wrench, planar_redundant_real *completed, int *status)
+size_t planar_redundant_complete_acceleration_batch(const prepared *model, size_t n, const real
+    *X, const real *V, const real *A, const real *wrench, real *completed, int *status)
 {
-    size_t failed = 0, i = 0;
-    for (; i < n; ++i) {
+    size_t failed = 0;
+    for (size_t i = 0; i < n; ++i) {
         const int code = planar_redundant_complete_acceleration(model, X + NQ*i, V + NV*i, A + NV*i,
             wrench ? wrench + NW*i : NULL, completed + NV*i);
         failed += record(&code, 1, status ? status + i : NULL);
@@ -7194,21 +6019,19 @@ size_t planar_redundant_complete_acceleration_batch(const planar_redundant_model
     return failed;
 }
 
-int planar_redundant_leg_reactions(const planar_redundant_model *model, const
-    planar_redundant_real *X, const planar_redundant_real *V, const planar_redundant_real *A,
-    const planar_redundant_real *wrench, planar_redundant_real *forces)
+int planar_redundant_leg_reactions(const prepared *model, const real *X, const real *V, const real
+    *A, const real *wrench, real *forces)
 {
     int code;
     leg_reactions_one(model, X, V, A, wrench, forces, &code);
     return code;
 }
 
-size_t planar_redundant_leg_reactions_batch(const planar_redundant_model *model, size_t n, const
-    planar_redundant_real *X, const planar_redundant_real *V, const planar_redundant_real *A,
-    const planar_redundant_real *wrench, planar_redundant_real *forces, int *status)
+size_t planar_redundant_leg_reactions_batch(const prepared *model, size_t n, const real *X, const
+    real *V, const real *A, const real *wrench, real *forces, int *status)
 {
-    size_t failed = 0, i = 0;
-    for (; i < n; ++i) {
+    size_t failed = 0;
+    for (size_t i = 0; i < n; ++i) {
         const int code = planar_redundant_leg_reactions(model, X + NQ*i, V + NV*i, A + NV*i, wrench ?
             wrench + NW*i : NULL, forces + 9*i);
         failed += record(&code, 1, status ? status + i : NULL);
@@ -7216,61 +6039,94 @@ size_t planar_redundant_leg_reactions_batch(const planar_redundant_model *model,
     return failed;
 }
 
-int planar_redundant_energy(const planar_redundant_model *model, const planar_redundant_real *X,
-    const planar_redundant_real *V, planar_redundant_real *kinetic, planar_redundant_real
-    *potential)
+int planar_redundant_energy(const prepared *model, const real *X, const real *V, real *kinetic,
+    real *potential)
 {
     int code;
     energy_one(model, X, V, kinetic, potential, &code);
     return code;
 }
 
-size_t planar_redundant_energy_batch(const planar_redundant_model *model, size_t n, const
-    planar_redundant_real *X, const planar_redundant_real *V, planar_redundant_real *kinetic,
-    planar_redundant_real *potential, int *status)
+size_t planar_redundant_energy_batch(const prepared *model, size_t n, const real *X, const real
+    *V, real *kinetic, real *potential, int *status)
 {
-    size_t failed = 0, i = 0;
-    for (; i < n; ++i) {
+    size_t failed = 0;
+    for (size_t i = 0; i < n; ++i) {
         const int code = planar_redundant_energy(model, X + NQ*i, V + NV*i, kinetic + i, potential + i);
         failed += record(&code, 1, status ? status + i : NULL);
     }
     return failed;
 }
 
-int planar_redundant_condition(const planar_redundant_model *model, const planar_redundant_real
-    *X, planar_redundant_real *sigma, planar_redundant_real *legs)
+int planar_redundant_condition(const prepared *model, const real *X, real *sigma, real *legs)
 {
     int code;
     condition_one(model, X, NULL, sigma, legs, &code);
     return code;
 }
 
-size_t planar_redundant_condition_batch(const planar_redundant_model *model, size_t n, const
-    planar_redundant_real *X, planar_redundant_real *sigma, planar_redundant_real *legs, int
-    *status)
+size_t planar_redundant_condition_batch(const prepared *model, size_t n, const real *X, real
+    *sigma, real *legs, int *status)
 {
-    size_t failed = 0, i = 0;
-    for (; i < n; ++i) {
+    size_t failed = 0;
+    for (size_t i = 0; i < n; ++i) {
         const int code = planar_redundant_condition(model, X + NQ*i, sigma + 4*i, legs + 3*i);
         failed += record(&code, 1, status ? status + i : NULL);
     }
     return failed;
 }
 
-int planar_redundant_forward_kinematics(const planar_redundant_model *model, const
-    planar_redundant_real *q_actuated, const planar_redundant_real *X0, planar_redundant_real *X)
+int planar_redundant_manipulability(const prepared *model, const real *X, real *measure, real
+    *isotropy)
+{
+    int code;
+    manipulability_one(model, X, measure, isotropy, &code);
+    return code;
+}
+
+size_t planar_redundant_manipulability_batch(const prepared *model, size_t n, const real *X, real
+    *measure, real *isotropy, int *status)
+{
+    size_t failed = 0;
+    for (size_t i = 0; i < n; ++i) {
+        const int code = planar_redundant_manipulability(model, X + NQ*i, measure + i, isotropy + i);
+        failed += record(&code, 1, status ? status + i : NULL);
+    }
+    return failed;
+}
+
+int planar_redundant_singularity_distance(const prepared *model, const real *X, real *actuators,
+    real *legs)
+{
+    int code;
+    singularity_distance_one(model, X, actuators, legs, &code);
+    return code;
+}
+
+size_t planar_redundant_singularity_distance_batch(const prepared *model, size_t n, const real *X,
+    real *actuators, real *legs, int *status)
+{
+    size_t failed = 0;
+    for (size_t i = 0; i < n; ++i) {
+        const int code = planar_redundant_singularity_distance(model, X + NQ*i, actuators + i, legs + i);
+        failed += record(&code, 1, status ? status + i : NULL);
+    }
+    return failed;
+}
+
+int planar_redundant_forward_kinematics(const prepared *model, const real *q_actuated, const real
+    *X0, real *X)
 {
     int code;
     forward_kinematics_one(model, q_actuated, X0, X, &code);
     return code;
 }
 
-size_t planar_redundant_forward_kinematics_batch(const planar_redundant_model *model, size_t n,
-    const planar_redundant_real *q_actuated, const planar_redundant_real *X0,
-    planar_redundant_real *X, int *status)
+size_t planar_redundant_forward_kinematics_batch(const prepared *model, size_t n, const real
+    *q_actuated, const real *X0, real *X, int *status)
 {
-    size_t failed = 0, i = 0;
-    for (; i < n; ++i) {
+    size_t failed = 0;
+    for (size_t i = 0; i < n; ++i) {
         const int code = planar_redundant_forward_kinematics(model, q_actuated + NU*i, X0 + NQ*i, X +
             NQ*i);
         failed += record(&code, 1, status ? status + i : NULL);
@@ -7278,8 +6134,8 @@ size_t planar_redundant_forward_kinematics_batch(const planar_redundant_model *m
     return failed;
 }
 
-int planar_redundant_dissipation(const planar_redundant_model *model, const planar_redundant_real
-    *X, const planar_redundant_real *V, planar_redundant_real *dissipation)
+int planar_redundant_dissipation(const prepared *model, const real *X, const real *V, real
+    *dissipation)
 {
     int code;
     (void)model;
@@ -7288,340 +6144,313 @@ int planar_redundant_dissipation(const planar_redundant_model *model, const plan
     return code;
 }
 
-size_t planar_redundant_dissipation_batch(const planar_redundant_model *model, size_t n, const
-    planar_redundant_real *X, const planar_redundant_real *V, planar_redundant_real *dissipation,
-    int *status)
+size_t planar_redundant_dissipation_batch(const prepared *model, size_t n, const real *X, const
+    real *V, real *dissipation, int *status)
 {
-    size_t failed = 0, i = 0;
-    for (; i < n; ++i) {
+    size_t failed = 0;
+    for (size_t i = 0; i < n; ++i) {
         const int code = planar_redundant_dissipation(model, X + NQ*i, V + NV*i, dissipation + i);
         failed += record(&code, 1, status ? status + i : NULL);
     }
     return failed;
 }
 
-int planar_redundant_momentum(const planar_redundant_model *model, const planar_redundant_real *X,
-    const planar_redundant_real *V, planar_redundant_real *momentum)
+int planar_redundant_momentum(const prepared *model, const real *X, const real *V, real *momentum)
 {
     int code;
     momentum_one(model, X, V, momentum, &code);
     return code;
 }
 
-size_t planar_redundant_momentum_batch(const planar_redundant_model *model, size_t n, const
-    planar_redundant_real *X, const planar_redundant_real *V, planar_redundant_real *momentum, int
-    *status)
+size_t planar_redundant_momentum_batch(const prepared *model, size_t n, const real *X, const real
+    *V, real *momentum, int *status)
 {
-    size_t failed = 0, i = 0;
-    for (; LANES > 1 && i + LANES <= n; i += LANES) {
-        int codes[LANES];
-        momentum_lanes(model, X + NQ*i, V + NV*i, momentum + NV*i, codes);
-        for (size_t k = 0; k < LANES; ++k) {
+    size_t failed = 0, w;
+    for (size_t i = 0; i < n; i += w) {
+        int codes[LANES] = {INVALID};
+        w = LANES > 1 && i + LANES <= n ? LANES : 1;
+        if (w > 1) {
+            momentum_lanes(model, X + NQ*i, V + NV*i, momentum + NV*i, codes);
+        }
+        for (size_t k = 0; k < w; ++k) {
             if (codes[k] != OK) {
                 codes[k] = planar_redundant_momentum(model, X + NQ*(i + k), V + NV*(i + k), momentum + NV*(i +
                     k));
             }
         }
-        failed += record(codes, LANES, status ? status + i : NULL);
-    }
-    for (; i < n; ++i) {
-        const int code = planar_redundant_momentum(model, X + NQ*i, V + NV*i, momentum + NV*i);
-        failed += record(&code, 1, status ? status + i : NULL);
+        failed += record(codes, w, status ? status + i : NULL);
     }
     return failed;
 }
 
-int planar_redundant_joint_margins(const planar_redundant_model *model, const
-    planar_redundant_real *X, planar_redundant_real *margins)
+int planar_redundant_joint_margins(const prepared *model, const real *X, real *margins)
 {
     int code;
     joint_margins_one(model, X, margins, &code);
     return code;
 }
 
-size_t planar_redundant_joint_margins_batch(const planar_redundant_model *model, size_t n, const
-    planar_redundant_real *X, planar_redundant_real *margins, int *status)
+size_t planar_redundant_joint_margins_batch(const prepared *model, size_t n, const real *X, real
+    *margins, int *status)
 {
-    size_t failed = 0, i = 0;
-    for (; LANES > 1 && i + LANES <= n; i += LANES) {
-        int codes[LANES];
-        joint_margins_lanes(model, X + NQ*i, margins + NJ*i, codes);
-        for (size_t k = 0; k < LANES; ++k) {
+    size_t failed = 0, w;
+    for (size_t i = 0; i < n; i += w) {
+        int codes[LANES] = {INVALID};
+        w = LANES > 1 && i + LANES <= n ? LANES : 1;
+        if (w > 1) {
+            joint_margins_lanes(model, X + NQ*i, margins + NJ*i, codes);
+        }
+        for (size_t k = 0; k < w; ++k) {
             if (codes[k] != OK) {
                 codes[k] = planar_redundant_joint_margins(model, X + NQ*(i + k), margins + NJ*(i + k));
             }
         }
-        failed += record(codes, LANES, status ? status + i : NULL);
-    }
-    for (; i < n; ++i) {
-        const int code = planar_redundant_joint_margins(model, X + NQ*i, margins + NJ*i);
-        failed += record(&code, 1, status ? status + i : NULL);
+        failed += record(codes, w, status ? status + i : NULL);
     }
     return failed;
 }
 
-int planar_redundant_within_limits(const planar_redundant_model *model, const
-    planar_redundant_real *X, planar_redundant_real *within)
+int planar_redundant_within_limits(const prepared *model, const real *X, real *within)
 {
     int code;
     within_limits_one(model, X, within, &code);
     return code;
 }
 
-size_t planar_redundant_within_limits_batch(const planar_redundant_model *model, size_t n, const
-    planar_redundant_real *X, planar_redundant_real *within, int *status)
+size_t planar_redundant_within_limits_batch(const prepared *model, size_t n, const real *X, real
+    *within, int *status)
 {
-    size_t failed = 0, i = 0;
-    for (; LANES > 1 && i + LANES <= n; i += LANES) {
-        int codes[LANES];
-        within_limits_lanes(model, X + NQ*i, within + i, codes);
-        for (size_t k = 0; k < LANES; ++k) {
+    size_t failed = 0, w;
+    for (size_t i = 0; i < n; i += w) {
+        int codes[LANES] = {INVALID};
+        w = LANES > 1 && i + LANES <= n ? LANES : 1;
+        if (w > 1) {
+            within_limits_lanes(model, X + NQ*i, within + i, codes);
+        }
+        for (size_t k = 0; k < w; ++k) {
             if (codes[k] != OK) {
                 codes[k] = planar_redundant_within_limits(model, X + NQ*(i + k), within + (i + k));
             }
         }
-        failed += record(codes, LANES, status ? status + i : NULL);
-    }
-    for (; i < n; ++i) {
-        const int code = planar_redundant_within_limits(model, X + NQ*i, within + i);
-        failed += record(&code, 1, status ? status + i : NULL);
+        failed += record(codes, w, status ? status + i : NULL);
     }
     return failed;
 }
 
-int planar_redundant_actuator_positions(const planar_redundant_model *model, const
-    planar_redundant_real *X, planar_redundant_real *q)
+int planar_redundant_actuator_positions(const prepared *model, const real *X, real *q)
 {
     int code;
     actuator_positions_one(model, X, q, &code);
     return code;
 }
 
-size_t planar_redundant_actuator_positions_batch(const planar_redundant_model *model, size_t n,
-    const planar_redundant_real *X, planar_redundant_real *q, int *status)
+size_t planar_redundant_actuator_positions_batch(const prepared *model, size_t n, const real *X,
+    real *q, int *status)
 {
-    size_t failed = 0, i = 0;
-    for (; LANES > 1 && i + LANES <= n; i += LANES) {
-        int codes[LANES];
-        actuator_positions_lanes(model, X + NQ*i, q + NU*i, codes);
-        for (size_t k = 0; k < LANES; ++k) {
+    size_t failed = 0, w;
+    for (size_t i = 0; i < n; i += w) {
+        int codes[LANES] = {INVALID};
+        w = LANES > 1 && i + LANES <= n ? LANES : 1;
+        if (w > 1) {
+            actuator_positions_lanes(model, X + NQ*i, q + NU*i, codes);
+        }
+        for (size_t k = 0; k < w; ++k) {
             if (codes[k] != OK) {
                 codes[k] = planar_redundant_actuator_positions(model, X + NQ*(i + k), q + NU*(i + k));
             }
         }
-        failed += record(codes, LANES, status ? status + i : NULL);
-    }
-    for (; i < n; ++i) {
-        const int code = planar_redundant_actuator_positions(model, X + NQ*i, q + NU*i);
-        failed += record(&code, 1, status ? status + i : NULL);
+        failed += record(codes, w, status ? status + i : NULL);
     }
     return failed;
 }
 
-int planar_redundant_actuator_rates(const planar_redundant_model *model, const
-    planar_redundant_real *X, const planar_redundant_real *V, planar_redundant_real *rates)
+int planar_redundant_actuator_rates(const prepared *model, const real *X, const real *V, real
+    *rates)
 {
     int code;
     actuator_rates_one(model, X, V, rates, &code);
     return code;
 }
 
-size_t planar_redundant_actuator_rates_batch(const planar_redundant_model *model, size_t n, const
-    planar_redundant_real *X, const planar_redundant_real *V, planar_redundant_real *rates, int
-    *status)
+size_t planar_redundant_actuator_rates_batch(const prepared *model, size_t n, const real *X, const
+    real *V, real *rates, int *status)
 {
-    size_t failed = 0, i = 0;
-    for (; LANES > 1 && i + LANES <= n; i += LANES) {
-        int codes[LANES];
-        actuator_rates_lanes(model, X + NQ*i, V + NV*i, rates + NU*i, codes);
-        for (size_t k = 0; k < LANES; ++k) {
+    size_t failed = 0, w;
+    for (size_t i = 0; i < n; i += w) {
+        int codes[LANES] = {INVALID};
+        w = LANES > 1 && i + LANES <= n ? LANES : 1;
+        if (w > 1) {
+            actuator_rates_lanes(model, X + NQ*i, V + NV*i, rates + NU*i, codes);
+        }
+        for (size_t k = 0; k < w; ++k) {
             if (codes[k] != OK) {
                 codes[k] = planar_redundant_actuator_rates(model, X + NQ*(i + k), V + NV*(i + k), rates + NU*(i +
                     k));
             }
         }
-        failed += record(codes, LANES, status ? status + i : NULL);
-    }
-    for (; i < n; ++i) {
-        const int code = planar_redundant_actuator_rates(model, X + NQ*i, V + NV*i, rates + NU*i);
-        failed += record(&code, 1, status ? status + i : NULL);
+        failed += record(codes, w, status ? status + i : NULL);
     }
     return failed;
 }
 
-int planar_redundant_actuator_accelerations(const planar_redundant_model *model, const
-    planar_redundant_real *X, const planar_redundant_real *V, const planar_redundant_real *A,
-    planar_redundant_real *accelerations)
+int planar_redundant_actuator_accelerations(const prepared *model, const real *X, const real *V,
+    const real *A, real *accelerations)
 {
     int code;
     actuator_accelerations_one(model, X, V, A, accelerations, &code);
     return code;
 }
 
-size_t planar_redundant_actuator_accelerations_batch(const planar_redundant_model *model, size_t
-    n, const planar_redundant_real *X, const planar_redundant_real *V, const planar_redundant_real
-    *A, planar_redundant_real *accelerations, int *status)
+size_t planar_redundant_actuator_accelerations_batch(const prepared *model, size_t n, const real
+    *X, const real *V, const real *A, real *accelerations, int *status)
 {
-    size_t failed = 0, i = 0;
-    for (; LANES > 1 && i + LANES <= n; i += LANES) {
-        int codes[LANES];
-        actuator_accelerations_lanes(model, X + NQ*i, V + NV*i, A + NV*i, accelerations + NU*i, codes);
-        for (size_t k = 0; k < LANES; ++k) {
+    size_t failed = 0, w;
+    for (size_t i = 0; i < n; i += w) {
+        int codes[LANES] = {INVALID};
+        w = LANES > 1 && i + LANES <= n ? LANES : 1;
+        if (w > 1) {
+            actuator_accelerations_lanes(model, X + NQ*i, V + NV*i, A + NV*i, accelerations + NU*i, codes);
+        }
+        for (size_t k = 0; k < w; ++k) {
             if (codes[k] != OK) {
                 codes[k] = planar_redundant_actuator_accelerations(model, X + NQ*(i + k), V + NV*(i + k), A +
                     NV*(i + k), accelerations + NU*(i + k));
             }
         }
-        failed += record(codes, LANES, status ? status + i : NULL);
-    }
-    for (; i < n; ++i) {
-        const int code = planar_redundant_actuator_accelerations(model, X + NQ*i, V + NV*i, A + NV*i,
-            accelerations + NU*i);
-        failed += record(&code, 1, status ? status + i : NULL);
+        failed += record(codes, w, status ? status + i : NULL);
     }
     return failed;
 }
 
-int planar_redundant_power(const planar_redundant_model *model, const planar_redundant_real *X,
-    const planar_redundant_real *V, const planar_redundant_real *tau, planar_redundant_real
-    *power)
+int planar_redundant_power(const prepared *model, const real *X, const real *V, const real *tau,
+    real *power)
 {
     int code;
     power_one(model, X, V, tau, power, &code);
     return code;
 }
 
-size_t planar_redundant_power_batch(const planar_redundant_model *model, size_t n, const
-    planar_redundant_real *X, const planar_redundant_real *V, const planar_redundant_real *tau,
-    planar_redundant_real *power, int *status)
+size_t planar_redundant_power_batch(const prepared *model, size_t n, const real *X, const real *V,
+    const real *tau, real *power, int *status)
 {
-    size_t failed = 0, i = 0;
-    for (; LANES > 1 && i + LANES <= n; i += LANES) {
-        int codes[LANES];
-        power_lanes(model, X + NQ*i, V + NV*i, tau + NU*i, power + i, codes);
-        for (size_t k = 0; k < LANES; ++k) {
+    size_t failed = 0, w;
+    for (size_t i = 0; i < n; i += w) {
+        int codes[LANES] = {INVALID};
+        w = LANES > 1 && i + LANES <= n ? LANES : 1;
+        if (w > 1) {
+            power_lanes(model, X + NQ*i, V + NV*i, tau + NU*i, power + i, codes);
+        }
+        for (size_t k = 0; k < w; ++k) {
             if (codes[k] != OK) {
                 codes[k] = planar_redundant_power(model, X + NQ*(i + k), V + NV*(i + k), tau + NU*(i + k), power +
                     (i + k));
             }
         }
-        failed += record(codes, LANES, status ? status + i : NULL);
-    }
-    for (; i < n; ++i) {
-        const int code = planar_redundant_power(model, X + NQ*i, V + NV*i, tau + NU*i, power + i);
-        failed += record(&code, 1, status ? status + i : NULL);
+        failed += record(codes, w, status ? status + i : NULL);
     }
     return failed;
 }
 
-int planar_redundant_rotation(const planar_redundant_real *X, planar_redundant_real *R)
+int planar_redundant_rotation(const real *X, real *R)
 {
     int code;
     rotation_one(X, R, &code);
     return code;
 }
 
-size_t planar_redundant_rotation_batch(size_t n, const planar_redundant_real *X,
-    planar_redundant_real *R, int *status)
+size_t planar_redundant_rotation_batch(size_t n, const real *X, real *R, int *status)
 {
-    size_t failed = 0, i = 0;
-    for (; i < n; ++i) {
+    size_t failed = 0;
+    for (size_t i = 0; i < n; ++i) {
         const int code = planar_redundant_rotation(X + NQ*i, R + 4*i);
         failed += record(&code, 1, status ? status + i : NULL);
     }
     return failed;
 }
 
-int planar_redundant_pose(const planar_redundant_real *t, const planar_redundant_real *R,
-    planar_redundant_real *X)
+int planar_redundant_pose(const real *t, const real *R, real *X)
 {
     int code;
     pose_one(t, R, X, &code);
     return code;
 }
 
-size_t planar_redundant_pose_batch(size_t n, const planar_redundant_real *t, const
-    planar_redundant_real *R, planar_redundant_real *X, int *status)
+size_t planar_redundant_pose_batch(size_t n, const real *t, const real *R, real *X, int *status)
 {
-    size_t failed = 0, i = 0;
-    for (; i < n; ++i) {
+    size_t failed = 0;
+    for (size_t i = 0; i < n; ++i) {
         const int code = planar_redundant_pose(t + 2*i, R + 4*i, X + NQ*i);
         failed += record(&code, 1, status ? status + i : NULL);
     }
     return failed;
 }
 
-int planar_redundant_X_dot(const planar_redundant_real *X, const planar_redundant_real *V,
-    planar_redundant_real *X_dot)
+int planar_redundant_X_dot(const real *X, const real *V, real *X_dot)
 {
     int code;
     X_dot_one(X, V, X_dot, &code);
     return code;
 }
 
-size_t planar_redundant_X_dot_batch(size_t n, const planar_redundant_real *X, const
-    planar_redundant_real *V, planar_redundant_real *X_dot, int *status)
+size_t planar_redundant_X_dot_batch(size_t n, const real *X, const real *V, real *X_dot, int
+    *status)
 {
-    size_t failed = 0, i = 0;
-    for (; i < n; ++i) {
+    size_t failed = 0;
+    for (size_t i = 0; i < n; ++i) {
         const int code = planar_redundant_X_dot(X + NQ*i, V + NV*i, X_dot + NQ*i);
         failed += record(&code, 1, status ? status + i : NULL);
     }
     return failed;
 }
 
-int planar_redundant_retract(const planar_redundant_real *X, const planar_redundant_real *step,
-    planar_redundant_real *X_moved)
+int planar_redundant_retract(const real *X, const real *step, real *X_moved)
 {
     int code;
     retract_one(X, step, X_moved, &code);
     return code;
 }
 
-size_t planar_redundant_retract_batch(size_t n, const planar_redundant_real *X, const
-    planar_redundant_real *step, planar_redundant_real *X_moved, int *status)
+size_t planar_redundant_retract_batch(size_t n, const real *X, const real *step, real *X_moved,
+    int *status)
 {
-    size_t failed = 0, i = 0;
-    for (; i < n; ++i) {
+    size_t failed = 0;
+    for (size_t i = 0; i < n; ++i) {
         const int code = planar_redundant_retract(X + NQ*i, step + NV*i, X_moved + NQ*i);
         failed += record(&code, 1, status ? status + i : NULL);
     }
     return failed;
 }
 
-int planar_redundant_difference(const planar_redundant_real *X0, const planar_redundant_real *X1,
-    planar_redundant_real *step)
+int planar_redundant_difference(const real *X0, const real *X1, real *step)
 {
     int code;
     difference_one(X0, X1, step, &code);
     return code;
 }
 
-size_t planar_redundant_difference_batch(size_t n, const planar_redundant_real *X0, const
-    planar_redundant_real *X1, planar_redundant_real *step, int *status)
+size_t planar_redundant_difference_batch(size_t n, const real *X0, const real *X1, real *step, int
+    *status)
 {
-    size_t failed = 0, i = 0;
-    for (; i < n; ++i) {
+    size_t failed = 0;
+    for (size_t i = 0; i < n; ++i) {
         const int code = planar_redundant_difference(X0 + NQ*i, X1 + NQ*i, step + NV*i);
         failed += record(&code, 1, status ? status + i : NULL);
     }
     return failed;
 }
 
-int planar_redundant_interpolate(const planar_redundant_real *X0, const planar_redundant_real *X1,
-    const planar_redundant_real *s, planar_redundant_real *X)
+int planar_redundant_interpolate(const real *X0, const real *X1, const real *s, real *X)
 {
     int code;
     interpolate_one(X0, X1, s, X, &code);
     return code;
 }
 
-size_t planar_redundant_interpolate_batch(size_t n, const planar_redundant_real *X0, const
-    planar_redundant_real *X1, const planar_redundant_real *s, planar_redundant_real *X, int
-    *status)
+size_t planar_redundant_interpolate_batch(size_t n, const real *X0, const real *X1, const real *s,
+    real *X, int *status)
 {
-    size_t failed = 0, i = 0;
-    for (; i < n; ++i) {
+    size_t failed = 0;
+    for (size_t i = 0; i < n; ++i) {
         const int code = planar_redundant_interpolate(X0 + NQ*i, X1 + NQ*i, s + i, X + NQ*i);
         failed += record(&code, 1, status ? status + i : NULL);
     }

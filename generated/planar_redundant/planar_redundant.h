@@ -127,11 +127,11 @@ typedef struct {
     planar_redundant_real inv_prrr_rho2_2_t[1], inv_prrr_size[1], inv_prrr_size_t[1],
             inv_prrr_size_t_2[1], prrr_J_2_in_spec2_zz[1], prrr_J_3_in_spec3_zz[1],
             prrr_Jc_2_in_axes2_zz[1], prrr_Kd_2_t[1], prrr_Kd_2_t_2[1], prrr_P_c_1_in_axes0_x[1],
-            prrr_b_in_axes0_x[1], prrr_base_frame_xx[1], prrr_base_frame_xy[1], prrr_base_frame_yx[1],
-            prrr_base_frame_yy[1], prrr_base_point_x[1], prrr_base_point_y[1], prrr_branch_2[1],
-            prrr_d_G_in_axes3_yy[1], prrr_d_Gamma_3_in_axes3_y[1], prrr_d_Gamma_3_t[1],
-            prrr_d_c_in_axes3_yy[1], prrr_d_phi_3_t[1], prrr_f_1_o_in_axes0_x[1],
-            prrr_g_in_axes0_x[1], prrr_g_in_axes0_y[1], prrr_h_1_in_spec0_x[1],
+            prrr_acc_1_in_axes0_y[1], prrr_b_in_axes0_x[1], prrr_base_frame_xx[1],
+            prrr_base_frame_xy[1], prrr_base_frame_yx[1], prrr_base_frame_yy[1], prrr_base_point_x[1],
+            prrr_base_point_y[1], prrr_branch_2[1], prrr_d_G_in_axes3_yy[1],
+            prrr_d_Gamma_3_in_axes3_y[1], prrr_d_Gamma_3_t[1], prrr_d_c_in_axes3_yy[1],
+            prrr_d_phi_3_t[1], prrr_f_1_o_in_axes0_x[1], prrr_g_in_axes0_x[1], prrr_h_1_in_spec0_x[1],
             prrr_h_1_in_spec0_y[1], prrr_h_2_in_spec2_x[1], prrr_h_2_in_spec2_y[1],
             prrr_h_3_in_spec3_x[1], prrr_h_3_in_spec3_y[1], prrr_joint3_offset_x[1],
             prrr_link1_mass[1], prrr_link2_mass[1], prrr_link3_mass[1],
@@ -281,6 +281,24 @@ int planar_redundant_condition(const planar_redundant_model *model, const planar
 size_t planar_redundant_condition_batch(const planar_redundant_model *model, size_t n, const
     planar_redundant_real *X, planar_redundant_real *sigma, planar_redundant_real *legs, int
     *status);
+
+/* Manipulability of forces: the product of the singular values that condition has by default, and
+   the least over the largest of them. 156 mul, 86 add, 6 div, 7 sqrt, 0 trig; the singular values
+   apart. In: X (NQ). Out: measure (1), isotropy (1). */
+int planar_redundant_manipulability(const planar_redundant_model *model, const
+    planar_redundant_real *X, planar_redundant_real *measure, planar_redundant_real *isotropy);
+size_t planar_redundant_manipulability_batch(const planar_redundant_model *model, size_t n, const
+    planar_redundant_real *X, planar_redundant_real *measure, planar_redundant_real *isotropy, int
+    *status);
+
+/* How near actuators and legs are to being singular: relative distances, 0 where they are. 156
+   mul, 86 add, 6 div, 7 sqrt, 0 trig; the singular values apart. In: X (NQ). Out: actuators (1),
+   legs (1). */
+int planar_redundant_singularity_distance(const planar_redundant_model *model, const
+    planar_redundant_real *X, planar_redundant_real *actuators, planar_redundant_real *legs);
+size_t planar_redundant_singularity_distance_batch(const planar_redundant_model *model, size_t n,
+    const planar_redundant_real *X, planar_redundant_real *actuators, planar_redundant_real *legs,
+    int *status);
 
 /* X at which the actuated joints stand at q_actuated, by Gauss-Newton from X0. Extra coordinates
    that actuators do not determine stay. Impossible where no pose is found. In: q_actuated (NU),

@@ -60,12 +60,14 @@ __all__ = [
     "joint_margins",
     "joint_rates",
     "leg_reactions",
+    "manipulability",
     "momentum",
     "null_space",
     "pose",
     "power",
     "retract",
     "rotation",
+    "singularity_distance",
     "within_limits",
 ]
 
@@ -664,11 +666,10 @@ def _prepare(p):
     # (prrr-w_3) reciprocal vector 2
     prrr_w_3_in_axes3_y = 1.0/prrr_platform_joint_offset_x
     # (prrr-acc_1) acceleration of the reference point of link 1, less gravity
+    prrr_acc_1_in_axes0_y = gravity_x*prrr_base_frame_xx + gravity_y*prrr_base_frame_yx
     prrr_g_in_axes0_x = gravity_x*prrr_base_frame_xy + gravity_y*prrr_base_frame_yy
     # (prrr-f_1_o) remainder without the acceleration in: inertia force of link 1 less its weight
     prrr_f_1_o_in_axes0_x = -prrr_g_in_axes0_x*prrr_link1_mass
-    # (prrr-acc_2) acceleration of the reference point of link 2, less gravity
-    prrr_g_in_axes0_y = -gravity_x*prrr_base_frame_xx - gravity_y*prrr_base_frame_yx
     # (prrr-d_phi_3) coefficient of the acceleration in: inertia force of link 3 from its turning about its reference point
     prrr_d_phi_3_t = prrr_h_3_in_spec3_y*prrr_w_3_in_axes3_y
     # (prrr-Jc_2) inertia tensor of the links from 2 outwards about joint 2, that of the last link about the connection point
@@ -814,15 +815,14 @@ def _prepare(p):
                 (_prrr,
         (inv_prrr_size_t, inv_prrr_size_t_2, prrr_J_2_in_spec2_zz, prrr_J_3_in_spec3_zz,
                     prrr_Jc_2_in_axes2_zz, prrr_Kd_2_t, prrr_Kd_2_t_2, prrr_P_c_1_in_axes0_x,
-                    prrr_base_frame_xx, prrr_base_frame_xy, prrr_base_frame_yx,
-                    prrr_base_frame_yy, prrr_base_point_x, prrr_base_point_y, prrr_branch_2,
-                    prrr_d_G_in_axes3_yy, prrr_d_Gamma_3_in_axes3_y, prrr_d_Gamma_3_t,
-                    prrr_d_c_in_axes3_yy, prrr_d_phi_3_t, prrr_f_1_o_in_axes0_x,
-                    prrr_g_in_axes0_x, prrr_g_in_axes0_y, prrr_h_2_in_spec2_x,
-                    prrr_h_2_in_spec2_y, prrr_h_3_in_spec3_x, prrr_h_3_in_spec3_y,
-                    prrr_joint3_offset_x, prrr_link2_mass, prrr_platform_joint_offset_x,
-                    prrr_platform_point_x, prrr_platform_point_y, prrr_rho2_2_t, prrr_size,
-                    prrr_w_3_in_axes3_y,),
+                    prrr_acc_1_in_axes0_y, prrr_base_frame_xx, prrr_base_frame_xy,
+                    prrr_base_frame_yx, prrr_base_frame_yy, prrr_base_point_x, prrr_base_point_y,
+                    prrr_branch_2, prrr_d_G_in_axes3_yy, prrr_d_Gamma_3_in_axes3_y,
+                    prrr_d_Gamma_3_t, prrr_d_c_in_axes3_yy, prrr_d_phi_3_t, prrr_f_1_o_in_axes0_x,
+                    prrr_g_in_axes0_x, prrr_h_2_in_spec2_x, prrr_h_2_in_spec2_y,
+                    prrr_h_3_in_spec3_x, prrr_h_3_in_spec3_y, prrr_joint3_offset_x,
+                    prrr_link2_mass, prrr_platform_joint_offset_x, prrr_platform_point_x,
+                    prrr_platform_point_y, prrr_rho2_2_t, prrr_size, prrr_w_3_in_axes3_y,),
                 ),
                 (_rrr,
         (inv_rrr_size_t, inv_rrr_size_t_2, rrr_J_1_in_spec1_zz, rrr_J_2_in_spec2_zz,
@@ -866,9 +866,9 @@ def _prepare(p):
             (
                 (_prrr,
         (inv_prrr_size_t, inv_prrr_size_t_2, prrr_J_2_in_spec2_zz, prrr_J_3_in_spec3_zz,
-                    prrr_Kd_2_t, prrr_Kd_2_t_2, prrr_base_frame_xx, prrr_base_frame_xy,
-                    prrr_base_frame_yx, prrr_base_frame_yy, prrr_base_point_x, prrr_base_point_y,
-                    prrr_branch_2, prrr_f_1_o_in_axes0_x, prrr_g_in_axes0_x, prrr_g_in_axes0_y,
+                    prrr_Kd_2_t, prrr_Kd_2_t_2, prrr_acc_1_in_axes0_y, prrr_base_frame_xx,
+                    prrr_base_frame_xy, prrr_base_frame_yx, prrr_base_frame_yy, prrr_base_point_x,
+                    prrr_base_point_y, prrr_branch_2, prrr_f_1_o_in_axes0_x, prrr_g_in_axes0_x,
                     prrr_h_2_in_spec2_x, prrr_h_2_in_spec2_y, prrr_h_3_in_spec3_x,
                     prrr_h_3_in_spec3_y, prrr_joint3_offset_x, prrr_link2_mass,
                     prrr_platform_joint_offset_x, prrr_platform_point_x, prrr_platform_point_y,
@@ -909,9 +909,9 @@ def _prepare(p):
             (
                 (_prrr,
         (inv_prrr_size_t, inv_prrr_size_t_2, prrr_J_2_in_spec2_zz, prrr_J_3_in_spec3_zz,
-                    prrr_Kd_2_t, prrr_Kd_2_t_2, prrr_base_frame_xx, prrr_base_frame_xy,
-                    prrr_base_frame_yx, prrr_base_frame_yy, prrr_base_point_x, prrr_base_point_y,
-                    prrr_branch_2, prrr_g_in_axes0_x, prrr_g_in_axes0_y, prrr_h_2_in_spec2_x,
+                    prrr_Kd_2_t, prrr_Kd_2_t_2, prrr_acc_1_in_axes0_y, prrr_base_frame_xx,
+                    prrr_base_frame_xy, prrr_base_frame_yx, prrr_base_frame_yy, prrr_base_point_x,
+                    prrr_base_point_y, prrr_branch_2, prrr_g_in_axes0_x, prrr_h_2_in_spec2_x,
                     prrr_h_2_in_spec2_y, prrr_h_3_in_spec3_x, prrr_h_3_in_spec3_y,
                     prrr_joint3_offset_x, prrr_link1_mass, prrr_link2_mass,
                     prrr_platform_joint_offset_x, prrr_platform_point_x, prrr_platform_point_y,
@@ -990,9 +990,9 @@ def _prepare(p):
             (
                 (_prrr,
         (inv_prrr_size_t, inv_prrr_size_t_2, prrr_J_2_in_spec2_zz, prrr_J_3_in_spec3_zz,
-                    prrr_Kd_2_t, prrr_Kd_2_t_2, prrr_base_frame_xx, prrr_base_frame_xy,
-                    prrr_base_frame_yx, prrr_base_frame_yy, prrr_base_point_x, prrr_base_point_y,
-                    prrr_branch_2, prrr_g_in_axes0_x, prrr_g_in_axes0_y, prrr_h_2_in_spec2_x,
+                    prrr_Kd_2_t, prrr_Kd_2_t_2, prrr_acc_1_in_axes0_y, prrr_base_frame_xx,
+                    prrr_base_frame_xy, prrr_base_frame_yx, prrr_base_frame_yy, prrr_base_point_x,
+                    prrr_base_point_y, prrr_branch_2, prrr_g_in_axes0_x, prrr_h_2_in_spec2_x,
                     prrr_h_2_in_spec2_y, prrr_h_3_in_spec3_x, prrr_h_3_in_spec3_y,
                     prrr_joint3_offset_x, prrr_link3_mass, prrr_platform_joint_offset_x,
                     prrr_platform_point_x, prrr_platform_point_y, prrr_rho2_2_t, prrr_size,
@@ -1013,15 +1013,14 @@ def _prepare(p):
         (gravity_x, gravity_y, h_star_in_platform_x, h_star_in_platform_y, m_star,),
             (
                 (_prrr,
-        (inv_prrr_size_t, inv_prrr_size_t_2, prrr_Kd_2_t, prrr_Kd_2_t_2, prrr_b_in_axes0_x,
-                    prrr_base_frame_xx, prrr_base_frame_xy, prrr_base_frame_yx,
+        (inv_prrr_size_t, inv_prrr_size_t_2, prrr_Kd_2_t, prrr_Kd_2_t_2, prrr_acc_1_in_axes0_y,
+                    prrr_b_in_axes0_x, prrr_base_frame_xx, prrr_base_frame_xy, prrr_base_frame_yx,
                     prrr_base_frame_yy, prrr_base_point_x, prrr_base_point_y, prrr_branch_2,
-                    prrr_g_in_axes0_x, prrr_g_in_axes0_y, prrr_h_1_in_spec0_x,
-                    prrr_h_1_in_spec0_y, prrr_h_2_in_spec2_x, prrr_h_2_in_spec2_y,
-                    prrr_h_3_in_spec3_x, prrr_h_3_in_spec3_y, prrr_joint3_offset_x,
-                    prrr_link1_mass, prrr_link2_mass, prrr_platform_joint_offset_x,
-                    prrr_platform_point_x, prrr_platform_point_y, prrr_potential_t,
-                    prrr_potential_t_2, prrr_rho2_2_t,),
+                    prrr_g_in_axes0_x, prrr_h_1_in_spec0_x, prrr_h_1_in_spec0_y,
+                    prrr_h_2_in_spec2_x, prrr_h_2_in_spec2_y, prrr_h_3_in_spec3_x,
+                    prrr_h_3_in_spec3_y, prrr_joint3_offset_x, prrr_link1_mass, prrr_link2_mass,
+                    prrr_platform_joint_offset_x, prrr_platform_point_x, prrr_platform_point_y,
+                    prrr_potential_t, prrr_potential_t_2, prrr_rho2_2_t,),
                 ),
                 (_rrr,
         (inv_rrr_size_t, inv_rrr_size_t_2, rrr_Kd_1_t, rrr_Kd_1_t_2, rrr_base_frame_xx,
@@ -1072,6 +1071,24 @@ def _constants(p, name):
     return p._cache[name]
 
 
+class _Vector(list):
+    """A vector, or a matrix row by row, of a single state."""
+
+    def __add__(self, other):
+        return _Vector([a + b for a, b in zip(self, other)])
+
+    def __sub__(self, other):
+        return _Vector([a - b for a, b in zip(self, other)])
+
+    def __neg__(self):
+        return _Vector([-a for a in self])
+
+
+def _are_finite(rows):
+    """Whether lists of floats have finite entries alone."""
+    return math.isfinite(sum(map(sum, rows))) or all(all(map(math.isfinite, row)) for row in rows)
+
+
 class _Floats:
     """Functions of a state after another, in Python floats: the way for few states."""
 
@@ -1101,11 +1118,32 @@ class _Floats:
         """Lists that a function gives at a state."""
         try:
             ok, arrays = function(self, *given)
-        except (ZeroDivisionError, OverflowError, ValueError):
+        except (ArithmeticError, ValueError):
             ok = False
-        if ok and all(all(map(math.isfinite, array)) for array in arrays):
+        if ok and _are_finite(arrays):
             return arrays
         return [[np.nan] * math.prod(_SHAPES[n]) for n in names]
+
+    def solved(self, order, a, b):
+        """Solutions, straight through; and which are beyond doubt."""
+        sure, x = np.zeros(self.states, dtype=bool), np.full(b.shape, np.nan)
+        for k, given in enumerate(zip(a.T.tolist(), b.T.tolist())):
+            try:
+                sure[k], (x[:, k],) = order(self, *given)
+            except ZeroDivisionError:
+                pass
+        return sure, x
+
+
+class _Single(_Floats):
+    """A single state in lists of floats throughout."""
+
+    def run(self, function, names, *vectors):
+        """Arrays of a function, row by row; ArithmeticError or ValueError where the state is impossible."""
+        ok, arrays = function(self, *vectors)
+        if not (ok and _are_finite(arrays)):
+            raise ArithmeticError
+        return [_Vector(a) for a in arrays]
 
 
 class _Arrays:
@@ -1135,20 +1173,27 @@ class _Arrays:
     def zeros(self, name):
         return np.zeros((math.prod(_SHAPES[name]), self.states))
 
-    def computed(self, function, names, vectors):
-        """Flags and arrays (*shape, states) of a function."""
+    def computed(self, function, *vectors):
+        """Flags and arrays (entries, states) of a function."""
         if self.kept is None:
-            flags, arrays = function(self, *vectors)
-        else:
-            if self.done not in self.kept:
-                self.kept[self.done] = _Replay(self.p, function, [len(v) for v in vectors], self.states)
-            flags, arrays = self.kept[self.done].run(vectors)
-            self.done += 1
-        return flags, [a.reshape(*_SHAPES[n], self.states) for a, n in zip(arrays, names)]
+            return function(self, *vectors)
+        if self.done not in self.kept:
+            self.kept[self.done] = _Replay(self.p, function, [len(v) for v in vectors], self.states)
+        self.done += 1
+        return self.kept[self.done - 1].run(vectors)
+
+    def shaped(self, names, arrays):
+        return [a.reshape(*_SHAPES[n], self.states) for a, n in zip(arrays, names)]
+
+    def solved(self, order, a, b):
+        """Solutions, straight through; and which are beyond doubt."""
+        sure, (x,) = self.computed(order, a, b)
+        return sure, np.array(x)
 
     def run(self, function, names, *vectors):
         """Arrays (*shape, states) of a function; NaN where the state is impossible."""
-        ok, arrays = self.computed(function, names, vectors)
+        ok, arrays = self.computed(function, *vectors)
+        arrays = self.shaped(names, arrays)
         ok = np.logical_and(ok, _finite(arrays, self.states))
         if not np.all(ok):
             for a in arrays:
@@ -1165,10 +1210,10 @@ class _Judged(_Arrays):
 
     def run(self, function, names, *vectors):
         """Arrays (*shape, states) of a function, also where they are nonsense."""
-        (valid, reached, clear), arrays = self.computed(function, names, vectors)
+        (valid, reached, clear), arrays = self.computed(function, *vectors)
         for code, good in ((3, valid), (1, reached), (2, clear)):
             self.failed[code] |= np.logical_not(good)
-        return arrays
+        return self.shaped(names, arrays)
 
     def closed(self, q):
         """q, noting where the iteration has not converged."""
@@ -1180,26 +1225,90 @@ class _Judged(_Arrays):
         return np.select(list(self.failed.values()), list(self.failed), np.where(possible, 0, 3))
 
 
+_IN_ONE = {}  # by function
+
+
+def _in_one(function):
+    """A function that tells whether a state is possible, of one that tells why not."""
+
+    def run(m, *vectors):
+        (valid, reached, clear), arrays = function(m, *vectors)
+        return valid & reached & clear, arrays
+
+    return _IN_ONE.setdefault(function, run)
+
+
 def _mode(p, states, kept=None):
     """The faster way for so many states."""
     return (_Floats if 0 < states <= _FEW else _Arrays)(p, states, kept)
 
 
-def _call(function, steps, p, *arguments, mode=_mode, unbounded=False):
+def _call(function, steps, p, *arguments, mode=_mode, unbounded=False, plain=()):
     """What the steps give at arguments (name, value, shape of a state, default, rule).
 
-    Where that may be infinite only NaN makes a state impossible.
+    Where that may be infinite only NaN makes a state impossible.  `plain` has the shapes of results
+    where a single state needs no arrays.
     """
+    p, read = _given(p), [a[-1] != "unused" for a in arguments]
+    lists = plain and _lists(arguments)
+    if lists:
+        found = _state(_Single(p, 1), steps, lists, read)
+        results = [_result(a, shape) for a, shape in zip(found or plain, plain)]
+        return results[0] if len(results) == 1 else tuple(results)
     given = [_argument(function, *a) for a in arguments]
     shapes = [a[2] for a in arguments]
     leads = {a[0]: v.shape[: v.ndim - len(a[2])] for a, v in zip(arguments, given)}
-    lead, p = _lead(leads), _given(p)
-    read = [a[4:] != ("unused",) for a in arguments]
-    if lead or mode is _Judged:
+    lead = _lead(leads)
+    if plain and 0 < math.prod(lead) <= _FEW:
+        results = _few(steps, p, lead, given, shapes, read, plain)
+    elif lead or mode is _Judged:
         results = _many(steps, p, lead, given, shapes, read, mode, unbounded)
     else:
         results = _one(steps, p, given, shapes, read, unbounded)
     return results[0] if len(results) == 1 else tuple(results)
+
+
+def _lists(arguments):
+    """Arguments of a single state as lists, where they are such arrays as they mostly are."""
+    found = []
+    for row in arguments:
+        value, shape = row[1:3]
+        if type(value) is np.ndarray:
+            if value.shape != shape or value.dtype is not _REAL or row[-1] == "positive":
+                return None
+            found.append(_Vector(value.tolist()))
+        elif value is None and len(row) > 3 and row[3] is not None:
+            found.append(_Vector(row[3] if isinstance(row[3], tuple) else [row[3]] * shape[0]))
+        else:
+            return None
+    return found
+
+
+def _state(m, steps, given, read):
+    """Lists that the steps give at a state; None where it is impossible."""
+    try:
+        found = steps(m, *given)
+    except (ArithmeticError, ValueError):
+        return None
+    return found if _are_finite(list(compress(given, read))) and _are_finite(found) else None
+
+
+def _result(found, shape):
+    """The array of a list; of an impossible state, for which its shape is given, NaN."""
+    if found is shape:
+        return np.full(shape, np.nan)
+    return np.array(found) if len(shape) == 1 else np.array(found).reshape(shape)
+
+
+def _few(steps, p, lead, given, shapes, read, plain):
+    """Results at a few states, one after another."""
+    m, rows = _Single(p, 1), []
+    for v, shape in zip(given, shapes):
+        flat = np.broadcast_to(v, lead + shape).reshape(math.prod(lead), -1)
+        rows.append(map(_Vector, flat.tolist()))
+    impossible = [[np.nan] * math.prod(shape) for shape in plain]
+    found = [_state(m, steps, state, read) or impossible for state in zip(*rows)]
+    return [np.array(a).reshape(lead + shape) for a, shape in zip(zip(*found), plain)]
 
 
 def _one(steps, p, given, shapes, read, unbounded):
@@ -1218,7 +1327,11 @@ def _many(steps, p, lead, given, shapes, read, mode, unbounded):
     """Results at many states, block by block; the last block begins where it is as long as the others."""
     count = math.prod(lead)
     size, kept = min(count, _BLOCK), {} if count >= _MANY else None
-    flat = [np.broadcast_to(v, lead + s).reshape(count, *s) for v, s in zip(given, shapes)]
+    # one value for all states stands for itself
+    flat = [
+        np.broadcast_to(v, lead + s).reshape(count, *s) if v.ndim > len(s) else v
+        for v, s in zip(given, shapes)
+    ]
     possible, status, outputs = np.ones(count, dtype=bool), np.zeros(count, dtype=int), []
     if count > size:
         # Never touched, freed at once: the C library, which learns from it, then keeps the memory
@@ -1227,7 +1340,7 @@ def _many(steps, p, lead, given, shapes, read, mode, unbounded):
     with np.errstate(all="ignore"):
         for stop in (*range(size, count, max(size, 1)), count):
             block = slice(stop - size, stop)
-            states = [_states_last(v[block]) for v in flat]
+            states = [_states_last(v, s, block) for v, s in zip(flat, shapes)]
             m, good = mode(p, size, kept), possible[block]
             found = steps(m, *states)
             if not outputs:
@@ -1247,15 +1360,17 @@ def _many(steps, p, lead, given, shapes, read, mode, unbounded):
     return [a.reshape(lead + a.shape[1:])[()] for a in outputs]
 
 
-def _states_last(a):
-    """A contiguous array (*shape, states) of one (states, *shape)."""
-    return np.ascontiguousarray(a.transpose(*range(1, a.ndim), 0))
+def _states_last(a, shape, block):
+    """An array (*shape, states) of a block of one (states, *shape), or of a value for all."""
+    if a.ndim == len(shape):
+        return np.broadcast_to(a[..., None], (*shape, block.stop - block.start))
+    return np.ascontiguousarray(a[block].transpose(*range(1, a.ndim), 0))
 
 
 def _finite(arrays, states):
     """In which states all entries of arrays (*shape, states) are finite."""
     flat = [a.reshape(math.prod(a.shape[:-1]), states) for a in arrays]
-    good = np.isfinite(sum(np.add.reduce(a, axis=0) for a in flat))
+    good = np.isfinite(sum(np.einsum("es->s", a) for a in flat))
     if not np.all(good):  # or the sum is too large
         good = np.logical_and.reduce([np.isfinite(a).all(axis=0) for a in flat])
     return good
@@ -1364,6 +1479,8 @@ class _Record:
 
     def made(self, operation, *operands):
         """The result of an operation."""
+        if operation in _WITHOUT and operands[0] is _WITHOUT[operation]:
+            return operands[1]
         numbers = [self.number(operand) for operand in operands]
         if all(self.kinds[n] == "one" for n in numbers):
             kind = "one"
@@ -1400,6 +1517,7 @@ class _Record:
         return counts
 
 
+_WITHOUT = {np.logical_and: True}  # first operands that change nothing
 _OF_FLAGS = {np.logical_and, np.greater, np.greater_equal}
 _RECORDS = {}  # by function
 
@@ -1411,11 +1529,12 @@ class _Replay:
         if function not in _RECORDS:
             _RECORDS[function] = _Record(p, function, sizes)
         r = _RECORDS[function]
-        made = {kind: _rows(n, states, bool if kind == "flag" else float) for kind, n in r.counts.items()}
-        made["one"] = [np.empty(()) for _ in range(r.counts["one"])]
-        made["out"] = _rows(sum(r.sizes), states)
-        self.inputs = [_rows(size, states) for size in sizes]
-        self.arrays = np.split(made["out"], np.cumsum(r.sizes)[:-1])
+        rows = _rows(r.counts["state"] + sum(r.sizes) + sum(sizes), states)
+        given, out, state = np.split(rows, np.cumsum((sum(sizes), sum(r.sizes))))
+        made = {"state": state, "out": out, "one": [np.empty(()) for _ in range(r.counts["one"])]}
+        made["flag"] = np.empty((r.counts["flag"], states), dtype=bool)
+        self.inputs = np.split(given, np.cumsum(sizes)[:-1])
+        self.arrays = np.split(out, np.cumsum(r.sizes)[:-1])
         at = {number: np.array(value) for value, number in r.literals.items()}
         for values, given in zip(r.inputs, self.inputs):
             at |= {v.number: row for v, row in zip(values, given)}
@@ -1437,9 +1556,26 @@ class _Replay:
         return self.flags, self.arrays
 
 
-def _rows(count, states, kind=float):
-    """Rows of so many states, a cache line apart from each other."""
-    return np.empty((count, states + 8), dtype=kind)[:, :states]
+def _rows(count, states):
+    """Rows of so many states in one piece, which the system keeps in a few large pages if it is told.
+
+    NumPy tells it of pieces from 4 MB on.  It makes operations a third faster.
+    """
+    row = states + 8  # a cache line further: rows do not compete for the same places of the cache
+    piece = np.empty(max(count * row, 2 * _PAGE) + _PAGE)
+    start = -(piece.ctypes.data // piece.itemsize) % _PAGE
+    return piece[start : start + count * row].reshape(count, row)[:, :states]
+
+
+_PAGE = (2 << 20) // 8  # numbers in a large page
+
+
+def _times(a, b):
+    """Products of matrices (m, n, states) with vectors (n, states)."""
+    if isinstance(b, _Vector):
+        rows = (a[k : k + len(b)] for k in range(0, len(a), len(b)))
+        return _Vector([sum([x * y for x, y in zip(row, b)]) for row in rows])
+    return np.einsum("ijs,js->is", a, b)
 
 
 def _extended(a, size):
@@ -1531,8 +1667,10 @@ _CLEARLY = 2.0  # rows change places only for a pivot that is larger by this fac
 
 def _solve(a, b):
     """x with a x = b, a (n, n, states), b (n, states): rows scaled, partial pivoting; NaN if singular."""
+    if isinstance(b, _Vector):
+        return _Vector(_solve_one([a[k : k + len(b)] for k in range(0, len(a), len(b))], b))
     n, states = b.shape
-    if 0 < states <= _FEW:
+    if 0 < states <= 8:
         systems = zip(a.transpose(2, 0, 1).tolist(), b.T.tolist())
         return np.array([_solve_one(*each) for each in systems]).T.reshape(n, states)
     size = np.max(np.abs(a), axis=1, initial=0.0)
@@ -1557,6 +1695,38 @@ def _solve(a, b):
         known = np.einsum("js,js->s", rows[k, k + 1 : n], x[k + 1 :])
         x[k] = (rows[k, n] - known) / rows[k, k]
     x[:, ~(good & np.isfinite(x).all(axis=0))] = np.nan
+    return x
+
+
+class _Order:
+    """How a system is solved near home.
+
+    Args:
+        solve: the function for so many equations.
+        rows: in the order of their pivots.
+        limits: of multiples, column by column, and of 1/pivot.
+    """
+
+    def __init__(self, solve, rows, limits):
+        self.solve, self.rows, self.limits = solve, rows, limits
+
+    def __call__(self, m, a, b):
+        """Solutions of a x = b, and whether these are beyond doubt."""
+        return self.solve(a, b, self.rows, self.limits)
+
+
+def _straight(m, a, b, order):
+    """The same, in the order of rows at home; with a choice of rows only where that is in doubt."""
+    if isinstance(b, _Vector):
+        try:
+            sure, (x,) = order(m, a, b)
+        except ZeroDivisionError:
+            sure = False
+        return _Vector(x) if sure else _solve(a, b)
+    sure, x = m.solved(order, a.reshape(-1, m.states), b)
+    at = np.flatnonzero(np.logical_not(sure))
+    if at.size:
+        x[:, at] = _solve(a[..., at], b[:, at])
     return x
 
 
@@ -1613,6 +1783,16 @@ def _singular_values(a):
     values = np.linalg.svd(a, compute_uv=False).T.copy()
     values[:, bad] = np.nan
     return values
+
+
+def _least_entry(a):
+    """The least entry."""
+    return np.min(a, axis=0)
+
+
+def _spread(a, n):
+    """Of the first n entries the product, and the last over the first, 0 where that is 0."""
+    return np.prod(a[:n], axis=0), np.where(a[0] == 0.0, 0.0, a[n - 1] / a[0])
 
 
 def _least_squares(a, b, least):
@@ -1744,13 +1924,14 @@ def _run_dynamics(m, X, V):
         (
         inv_prrr_size_t, inv_prrr_size_t_2, prrr_J_2_in_spec2_zz, prrr_J_3_in_spec3_zz,
             prrr_Jc_2_in_axes2_zz, prrr_Kd_2_t, prrr_Kd_2_t_2, prrr_P_c_1_in_axes0_x,
-            prrr_base_frame_xx, prrr_base_frame_xy, prrr_base_frame_yx, prrr_base_frame_yy,
-            prrr_base_point_x, prrr_base_point_y, prrr_branch_2, prrr_d_G_in_axes3_yy,
-            prrr_d_Gamma_3_in_axes3_y, prrr_d_Gamma_3_t, prrr_d_c_in_axes3_yy, prrr_d_phi_3_t,
-            prrr_f_1_o_in_axes0_x, prrr_g_in_axes0_x, prrr_g_in_axes0_y, prrr_h_2_in_spec2_x,
-            prrr_h_2_in_spec2_y, prrr_h_3_in_spec3_x, prrr_h_3_in_spec3_y, prrr_joint3_offset_x,
-            prrr_link2_mass, prrr_platform_joint_offset_x, prrr_platform_point_x,
-            prrr_platform_point_y, prrr_rho2_2_t, prrr_size, prrr_w_3_in_axes3_y,
+            prrr_acc_1_in_axes0_y, prrr_base_frame_xx, prrr_base_frame_xy, prrr_base_frame_yx,
+            prrr_base_frame_yy, prrr_base_point_x, prrr_base_point_y, prrr_branch_2,
+            prrr_d_G_in_axes3_yy, prrr_d_Gamma_3_in_axes3_y, prrr_d_Gamma_3_t,
+            prrr_d_c_in_axes3_yy, prrr_d_phi_3_t, prrr_f_1_o_in_axes0_x, prrr_g_in_axes0_x,
+            prrr_h_2_in_spec2_x, prrr_h_2_in_spec2_y, prrr_h_3_in_spec3_x, prrr_h_3_in_spec3_y,
+            prrr_joint3_offset_x, prrr_link2_mass, prrr_platform_joint_offset_x,
+            prrr_platform_point_x, prrr_platform_point_y, prrr_rho2_2_t, prrr_size,
+            prrr_w_3_in_axes3_y,
         ) = k
         prrr_y_1_extra = X[[3][leg]]
         prrr_yd_1 = V[[3][leg]]
@@ -1770,9 +1951,9 @@ def _run_dynamics(m, X, V):
         )
         prrr_Kd_2 = prrr_Kd_2_t + 0.5*prrr_Kd_2_t_3 - prrr_Kd_2_t_2
         # (prrr-Kc_2) factor of the cosine in the equation of joint 2
-        prrr_Kc_2 = prrr_joint3_offset_x*prrr_x_2_in_axes0_x
+        prrr_Kc_2 = -prrr_S_in_axes0_y*prrr_joint3_offset_x
         # (prrr-Ks_2) factor of the sine in the equation of joint 2
-        prrr_Ks_2 = prrr_S_in_axes0_y*prrr_joint3_offset_x
+        prrr_Ks_2 = prrr_joint3_offset_x*prrr_x_2_in_axes0_x
         # (prrr-rho2_2) squared amplitude
         prrr_rho2_2 = prrr_Kc_2*prrr_Kc_2 + prrr_Ks_2*prrr_Ks_2
         # (prrr-disc_2) discriminant
@@ -1781,9 +1962,9 @@ def _run_dynamics(m, X, V):
         prrr_root_2 = prrr_branch_2*sqrt(prrr_disc_2)
         # (prrr-c_2) cosine of the angle of joint 2 from its reference direction
         inv_prrr_rho2_2 = 1.0/prrr_rho2_2
-        prrr_c_2 = inv_prrr_rho2_2*(prrr_Kc_2*prrr_Kd_2 - prrr_Ks_2*prrr_root_2)
+        prrr_c_2 = -inv_prrr_rho2_2*(prrr_Ks_2*prrr_root_2 - prrr_Kc_2*prrr_Kd_2)
         # (prrr-s_2) sine of the angle of joint 2 from its reference direction
-        prrr_s_2 = inv_prrr_rho2_2*(prrr_Kc_2*prrr_root_2 + prrr_Kd_2*prrr_Ks_2)
+        prrr_s_2 = -inv_prrr_rho2_2*(-prrr_Kc_2*prrr_root_2 - prrr_Kd_2*prrr_Ks_2)
         # (prrr-x_3) from the origin of joint 3 to the connection point
         prrr_x_3_in_axes2_x = (
         inv_prrr_size_t*prrr_Kd_2*prrr_joint3_offset_x - prrr_joint3_offset_x
@@ -1805,16 +1986,16 @@ def _run_dynamics(m, X, V):
         prrr_r_2_in_axes3_x = prrr_c_3*prrr_r_2_in_axes2_x + prrr_r_2_t*prrr_s_3_t
         prrr_r_2_in_axes3_y = prrr_r_2_in_axes2_x*prrr_s_3_t - prrr_c_3*prrr_r_2_t
         # (prrr-w_2) reciprocal vector 1
-        prrr_e_1_in_axes3_y = prrr_c_2*prrr_s_3_t - prrr_c_3*prrr_s_2
-        prrr_e_1_in_axes3_x = prrr_c_2*prrr_c_3 + prrr_s_2*prrr_s_3_t
+        prrr_w_2_t = prrr_c_2*prrr_s_3_t - prrr_c_3*prrr_s_2
+        prrr_e_1_in_axes3_y = prrr_c_2*prrr_c_3 + prrr_s_2*prrr_s_3_t
         axis_y_prrr_axes3_x = (
-        prrr_base_frame_xy*prrr_e_1_in_axes3_y - prrr_base_frame_xx*prrr_e_1_in_axes3_x
+        prrr_base_frame_xx*prrr_w_2_t + prrr_base_frame_xy*prrr_e_1_in_axes3_y
         )
         axis_x_prrr_axes3_x = (
-        prrr_base_frame_yy*prrr_e_1_in_axes3_y - prrr_base_frame_yx*prrr_e_1_in_axes3_x
+        prrr_base_frame_yx*prrr_w_2_t + prrr_base_frame_yy*prrr_e_1_in_axes3_y
         )
         inv_prrr_r_2_in_axes3_y = 1.0/prrr_r_2_in_axes3_y
-        prrr_w_2_t = inv_prrr_r_2_in_axes3_y*prrr_e_1_in_axes3_x
+        prrr_w_2_t_2 = -inv_prrr_r_2_in_axes3_y*prrr_w_2_t
         prrr_w_2_x = -axis_x_prrr_axes3_x*inv_prrr_r_2_in_axes3_y
         prrr_w_2_y = axis_y_prrr_axes3_x*inv_prrr_r_2_in_axes3_y
         # (prrr-w_3) reciprocal vector 2
@@ -1859,8 +2040,8 @@ def _run_dynamics(m, X, V):
             prrr_B_2_o_in_axes2_xy
         )
         # (prrr-f_2_o) remainder without the acceleration in: inertia force of link 2 less its weight
-        prrr_g_in_axes2_x = prrr_c_2*prrr_g_in_axes0_x + prrr_g_in_axes0_y*prrr_s_2
-        prrr_g_in_axes2_y = prrr_c_2*prrr_g_in_axes0_y - prrr_g_in_axes0_x*prrr_s_2
+        prrr_g_in_axes2_x = prrr_acc_1_in_axes0_y*prrr_c_2 + prrr_g_in_axes0_x*prrr_s_2
+        prrr_g_in_axes2_y = prrr_c_2*prrr_g_in_axes0_x - prrr_acc_1_in_axes0_y*prrr_s_2
         prrr_f_2_o_in_axes2_x = (
         prrr_B_2_o_in_axes2_xy*prrr_h_2_in_spec2_y + prrr_W_2_in_axes2_xx*prrr_h_2_in_spec2_x -
             prrr_g_in_axes2_x*prrr_link2_mass
@@ -1877,7 +2058,7 @@ def _run_dynamics(m, X, V):
         prrr_u_1_in_axes3_y - axis_x_prrr_axes3_x*gravity_y - axis_y_prrr_axes3_x*gravity_x
         )
         # (prrr-P_c_2) force that accelerates joint 2, per unit
-        prrr_P_c_2_in_axes0_x = -prrr_c_2*prrr_h_2_in_spec2_y - prrr_h_2_in_spec2_x*prrr_s_2
+        prrr_P_c_2_in_axes0_x = prrr_c_2*prrr_h_2_in_spec2_x - prrr_h_2_in_spec2_y*prrr_s_2
         # (prrr-mu_3_o) remainder without the acceleration in: inertia moment of the links that turn with link 3, about their reference points
         prrr_mu_3_o_in_axes3_z = (
         prrr_J_3_in_spec3_zz*prrr_alpha_3_o_in_axes3_z +
@@ -1892,9 +2073,9 @@ def _run_dynamics(m, X, V):
         # (prrr-dy_1_Gamma_3) coefficient of the acceleration in: moment about axis 3 of the distal links' inertia and weight
         prrr_dy_1_Gamma_3_t = (
         prrr_J_3_in_spec3_zz*prrr_w_3_in_axes3_y*(prrr_e_1_in_axes3_y +
-            prrr_r_2_in_axes3_x*prrr_w_2_t)
+            prrr_r_2_in_axes3_x*prrr_w_2_t_2)
         )
-        prrr_dy_1_Gamma_3 = prrr_J_3_in_spec3_zz*prrr_w_2_t - prrr_dy_1_Gamma_3_t
+        prrr_dy_1_Gamma_3 = prrr_J_3_in_spec3_zz*prrr_w_2_t_2 - prrr_dy_1_Gamma_3_t
         # (prrr-mu_2_o) remainder without the acceleration in: inertia moment of the links that turn with link 2, about their reference points
         prrr_mu_2_o_in_axes2_z = (
         prrr_g_in_axes2_x*prrr_h_2_in_spec2_y - prrr_B_2_o_in_axes2_xy*prrr_J_2_in_spec2_zz -
@@ -1904,7 +2085,7 @@ def _run_dynamics(m, X, V):
         prrr_N_2_o_in_axes2_z = prrr_mu_2_o_in_axes2_z + prrr_mu_3_o_in_axes3_z
         # (prrr-dy_1_Gamma_2) coefficient of the acceleration in: moment about axis 2 of the distal links' inertia and weight
         prrr_dy_1_Gamma_2 = (
-        prrr_P_c_2_in_axes0_x + prrr_Jc_2_in_axes2_zz*prrr_w_2_t - prrr_dy_1_Gamma_3_t
+        prrr_P_c_2_in_axes0_x + prrr_Jc_2_in_axes2_zz*prrr_w_2_t_2 - prrr_dy_1_Gamma_3_t
         )
         # (prrr-d_Gamma_2) coefficient of the acceleration in: moment about axis 2 of the distal links' inertia and weight
         prrr_d_Gamma_2_in_axes3_x = (
@@ -1913,10 +2094,10 @@ def _run_dynamics(m, X, V):
         )
         # (prrr-T_1_o) remainder without the acceleration in: inertia force of the links from 1 outwards, the last link left out
         prrr_T_1_o_in_axes0_x = (
-        prrr_f_1_o_in_axes0_x + prrr_c_2*prrr_f_2_o_in_axes2_x - prrr_f_2_o_in_axes2_y*prrr_s_2
+        prrr_f_1_o_in_axes0_x + prrr_c_2*prrr_f_2_o_in_axes2_y + prrr_f_2_o_in_axes2_x*prrr_s_2
         )
         # (prrr-dy_1_Gamma_1) coefficient of the acceleration in: force along axis 1 of the distal links' inertia and weight
-        prrr_dy_1_Gamma_1 = prrr_P_c_1_in_axes0_x + prrr_P_c_2_in_axes0_x*prrr_w_2_t
+        prrr_dy_1_Gamma_1 = prrr_P_c_1_in_axes0_x + prrr_P_c_2_in_axes0_x*prrr_w_2_t_2
         # (prrr-dy_1_G) coefficient of the acceleration in: force at the connection point that balances the leg's inertia and weight along all degrees of freedom
         prrr_dy_1_G_in_axes3_y = prrr_dy_1_Gamma_3*prrr_w_3_in_axes3_y
         # (prrr-d_G) coefficient of the acceleration in: force at the connection point that balances the leg's inertia and weight along all degrees of freedom
@@ -1964,18 +2145,17 @@ def _run_dynamics(m, X, V):
         )
         # (prrr-dy_1_P_1) coefficient of the acceleration in: inertia and weight of the leg along the extra degree of freedom of joint 1
         prrr_dy_1_P_1_t = (
-        prrr_dy_1_G_in_axes3_y*prrr_e_1_in_axes3_y +
-            inv_prrr_r_2_in_axes3_y*prrr_e_1_in_axes3_x*(prrr_dy_1_G_in_axes3_y*prrr_r_2_in_axes3_x
-            - prrr_dy_1_Gamma_2)
+        inv_prrr_r_2_in_axes3_y*prrr_w_2_t*(prrr_dy_1_G_in_axes3_y*prrr_r_2_in_axes3_x -
+            prrr_dy_1_Gamma_2) - prrr_dy_1_G_in_axes3_y*prrr_e_1_in_axes3_y
         )
-        prrr_dy_1_P_1 = prrr_dy_1_Gamma_1 - prrr_dy_1_P_1_t
+        prrr_dy_1_P_1 = prrr_dy_1_Gamma_1 + prrr_dy_1_P_1_t
         # (prrr-d_P_1) coefficient of the acceleration in: inertia and weight of the leg along the extra degree of freedom of joint 1
         prrr_d_P_1_in_axes3_y = (
-        -prrr_d_G_in_axes3_xy*prrr_e_1_in_axes3_x - prrr_d_G_in_axes3_yy*prrr_e_1_in_axes3_y
+        prrr_d_G_in_axes3_xy*prrr_w_2_t - prrr_d_G_in_axes3_yy*prrr_e_1_in_axes3_y
         )
         prrr_d_P_1_in_axes3_x = (
-        -inv_prrr_r_2_in_axes3_y*prrr_P_c_2_in_axes0_x - prrr_d_G_in_axes3_xx*prrr_e_1_in_axes3_x
-            - prrr_d_Gamma_3_in_axes3_x*prrr_e_1_in_axes3_y*prrr_w_3_in_axes3_y
+        prrr_d_G_in_axes3_xx*prrr_w_2_t - inv_prrr_r_2_in_axes3_y*prrr_P_c_2_in_axes0_x -
+            prrr_d_Gamma_3_in_axes3_x*prrr_e_1_in_axes3_y*prrr_w_3_in_axes3_y
         )
         prrr_d_P_1_x = (
         axis_x_prrr_axes3_x*prrr_d_P_1_in_axes3_x + axis_y_prrr_axes3_x*prrr_d_P_1_in_axes3_y
@@ -1984,10 +2164,8 @@ def _run_dynamics(m, X, V):
         axis_x_prrr_axes3_x*prrr_d_P_1_in_axes3_y - axis_y_prrr_axes3_x*prrr_d_P_1_in_axes3_x
         )
         # (prrr-P_1_o) remainder without the acceleration in: inertia and weight of the leg along the extra degree of freedom of joint 1
-        prrr_P_1_o_t = (
-        prrr_G_o_in_axes3_x*prrr_e_1_in_axes3_x + prrr_G_o_in_axes3_y*prrr_e_1_in_axes3_y
-        )
-        prrr_P_1_o = prrr_T_1_o_in_axes0_x - prrr_P_1_o_t
+        prrr_P_1_o_t = prrr_G_o_in_axes3_x*prrr_w_2_t - prrr_G_o_in_axes3_y*prrr_e_1_in_axes3_y
+        prrr_P_1_o = prrr_P_1_o_t + prrr_T_1_o_in_axes0_x
         # (M_ta) coupling block of M
         prrr_M_ta_t = prrr_Q_xy*prrr_q_x - prrr_Q_xx*prrr_q_y
         prrr_M_ta_t_2 = prrr_Q_yy*prrr_q_x - prrr_Q_xy*prrr_q_y
@@ -2037,7 +2215,7 @@ def _run_dynamics(m, X, V):
         # (prrr-H_a_2) moment of the column's unit force about the platform origin
         out_H[_H_prrr[3][leg]] = prrr_H_a_2_z
         # (prrr-w_2) reciprocal vector 1
-        out_H[_H_prrr[4][leg]] = prrr_w_2_t
+        out_H[_H_prrr[4][leg]] = prrr_w_2_t_2
     (
     M_tt_rrr_xx, M_tt_rrr_xy, M_tt_rrr_yy, M_ta_rrr_xz, M_ta_rrr_yz, M_aa_rrr_zz, Z_t_rrr_x,
         Z_t_rrr_y, Z_a_rrr_z,
@@ -2061,14 +2239,10 @@ def _run_dynamics(m, X, V):
         # (rrr-Kd_1) projection on the centre's direction, from the distance fixed by the joints beyond joint 1
         rrr_Kd_1_t_3 = rrr_S_x*rrr_S_x + rrr_S_y*rrr_S_y
         rrr_Kd_1 = rrr_Kd_1_t + 0.5*rrr_Kd_1_t_3 - rrr_Kd_1_t_2
-        # (rrr-px_1) component along the reference direction
-        rrr_px_1 = rrr_S_x*rrr_base_frame_xx + rrr_S_y*rrr_base_frame_yx
-        # (rrr-py_1) component across the reference direction
-        rrr_py_1 = rrr_S_x*rrr_base_frame_xy + rrr_S_y*rrr_base_frame_yy
         # (rrr-Kc_1) factor of the cosine in the equation of joint 1
-        rrr_Kc_1 = rrr_joint2_offset_x*rrr_px_1
+        rrr_Kc_1 = rrr_joint2_offset_x*(rrr_S_x*rrr_base_frame_xx + rrr_S_y*rrr_base_frame_yx)
         # (rrr-Ks_1) factor of the sine in the equation of joint 1
-        rrr_Ks_1 = rrr_joint2_offset_x*rrr_py_1
+        rrr_Ks_1 = rrr_joint2_offset_x*(rrr_S_x*rrr_base_frame_xy + rrr_S_y*rrr_base_frame_yy)
         # (rrr-rho2_1) squared amplitude
         rrr_rho2_1 = rrr_Kc_1*rrr_Kc_1 + rrr_Ks_1*rrr_Ks_1
         # (rrr-disc_1) discriminant
@@ -2315,9 +2489,9 @@ def _run_M(m, X):
         )
         prrr_Kd_2 = prrr_Kd_2_t + 0.5*prrr_Kd_2_t_3 - prrr_Kd_2_t_2
         # (prrr-Kc_2) factor of the cosine in the equation of joint 2
-        prrr_Kc_2 = prrr_joint3_offset_x*prrr_x_2_in_axes0_x
+        prrr_Kc_2 = -prrr_S_in_axes0_y*prrr_joint3_offset_x
         # (prrr-Ks_2) factor of the sine in the equation of joint 2
-        prrr_Ks_2 = prrr_S_in_axes0_y*prrr_joint3_offset_x
+        prrr_Ks_2 = prrr_joint3_offset_x*prrr_x_2_in_axes0_x
         # (prrr-rho2_2) squared amplitude
         prrr_rho2_2 = prrr_Kc_2*prrr_Kc_2 + prrr_Ks_2*prrr_Ks_2
         # (prrr-disc_2) discriminant
@@ -2326,9 +2500,9 @@ def _run_M(m, X):
         prrr_root_2 = prrr_branch_2*sqrt(prrr_disc_2)
         # (prrr-c_2) cosine of the angle of joint 2 from its reference direction
         inv_prrr_rho2_2 = 1.0/prrr_rho2_2
-        prrr_c_2 = inv_prrr_rho2_2*(prrr_Kc_2*prrr_Kd_2 - prrr_Ks_2*prrr_root_2)
+        prrr_c_2 = -inv_prrr_rho2_2*(prrr_Ks_2*prrr_root_2 - prrr_Kc_2*prrr_Kd_2)
         # (prrr-s_2) sine of the angle of joint 2 from its reference direction
-        prrr_s_2 = inv_prrr_rho2_2*(prrr_Kc_2*prrr_root_2 + prrr_Kd_2*prrr_Ks_2)
+        prrr_s_2 = -inv_prrr_rho2_2*(-prrr_Kc_2*prrr_root_2 - prrr_Kd_2*prrr_Ks_2)
         # (prrr-x_3) from the origin of joint 3 to the connection point
         prrr_x_3_in_axes2_x = (
         inv_prrr_size_t*prrr_Kd_2*prrr_joint3_offset_x - prrr_joint3_offset_x
@@ -2348,18 +2522,19 @@ def _run_M(m, X):
         inv_prrr_r_2_in_axes3_y = 1.0/prrr_r_2_in_axes3_y
         # (prrr-w_3) reciprocal vector 2
         prrr_w_3_in_axes3_x = inv_prrr_r_2_in_axes3_y*prrr_r_2_in_axes3_x*prrr_w_3_in_axes3_y
+        # (prrr-dy_1_rel) coefficient of the acceleration in: acceleration of the connection point left to the joint accelerations
+        prrr_dy_1_rel_in_axes3_x = prrr_c_2*prrr_s_3_t - prrr_c_3*prrr_s_2
         # (prrr-dy_1_qdd_2) coefficient of the acceleration in: acceleration of joint 2
-        prrr_e_1_in_axes3_x = prrr_c_2*prrr_c_3 + prrr_s_2*prrr_s_3_t
-        prrr_dy_1_qdd_2 = inv_prrr_r_2_in_axes3_y*prrr_e_1_in_axes3_x
+        prrr_dy_1_qdd_2 = -inv_prrr_r_2_in_axes3_y*prrr_dy_1_rel_in_axes3_x
         # (prrr-P_c_2) force that accelerates joint 2, per unit
-        prrr_P_c_2_in_axes0_x = -prrr_c_2*prrr_h_2_in_spec2_y - prrr_h_2_in_spec2_x*prrr_s_2
+        prrr_P_c_2_in_axes0_x = prrr_c_2*prrr_h_2_in_spec2_x - prrr_h_2_in_spec2_y*prrr_s_2
         # (prrr-d_Gamma_3) coefficient of the acceleration in: moment about axis 3 of the distal links' inertia and weight
         prrr_d_Gamma_3_t_2 = prrr_d_Gamma_3_t*prrr_r_2_in_axes3_x
         prrr_d_Gamma_3_in_axes3_x = (
         -prrr_h_3_in_spec3_y - inv_prrr_r_2_in_axes3_y*(prrr_J_3_in_spec3_zz - prrr_d_Gamma_3_t_2)
         )
         # (prrr-dy_1_Gamma_3) coefficient of the acceleration in: moment about axis 3 of the distal links' inertia and weight
-        prrr_e_1_in_axes3_y = prrr_c_2*prrr_s_3_t - prrr_c_3*prrr_s_2
+        prrr_e_1_in_axes3_y = prrr_c_2*prrr_c_3 + prrr_s_2*prrr_s_3_t
         prrr_dy_1_Gamma_3_t = (
         prrr_J_3_in_spec3_zz*prrr_w_3_in_axes3_y*(prrr_e_1_in_axes3_y +
             prrr_dy_1_qdd_2*prrr_r_2_in_axes3_x)
@@ -2391,10 +2566,10 @@ def _run_M(m, X):
         prrr_d_c_in_axes3_xy = prrr_d_phi_3_t - prrr_d_G_in_axes3_xy
         # (prrr-Q) inertia of the leg at the connection point, without the mass gathered there
         axis_y_prrr_axes3_x = (
-        prrr_base_frame_xy*prrr_e_1_in_axes3_y - prrr_base_frame_xx*prrr_e_1_in_axes3_x
+        prrr_base_frame_xx*prrr_dy_1_rel_in_axes3_x + prrr_base_frame_xy*prrr_e_1_in_axes3_y
         )
         axis_x_prrr_axes3_x = (
-        prrr_base_frame_yy*prrr_e_1_in_axes3_y - prrr_base_frame_yx*prrr_e_1_in_axes3_x
+        prrr_base_frame_yx*prrr_dy_1_rel_in_axes3_x + prrr_base_frame_yy*prrr_e_1_in_axes3_y
         )
         prrr_Q_t = (
         prrr_h_3_in_spec3_y*(prrr_w_3_in_axes3_x - inv_prrr_r_2_in_axes3_y) - prrr_d_G_in_axes3_xx
@@ -2408,18 +2583,18 @@ def _run_M(m, X):
         prrr_Q_yy = -prrr_d_c_in_axes3_yy - 2.0*axis_y_prrr_axes3_x*prrr_Q_t_4
         # (prrr-dy_1_P_1) coefficient of the acceleration in: inertia and weight of the leg along the extra degree of freedom of joint 1
         prrr_dy_1_P_1_t = (
-        prrr_dy_1_G_in_axes3_y*prrr_e_1_in_axes3_y +
-            inv_prrr_r_2_in_axes3_y*prrr_e_1_in_axes3_x*(prrr_dy_1_G_in_axes3_y*prrr_r_2_in_axes3_x
-            - prrr_dy_1_Gamma_2)
+        inv_prrr_r_2_in_axes3_y*prrr_dy_1_rel_in_axes3_x*(prrr_dy_1_G_in_axes3_y*prrr_r_2_in_axes3_x
+            - prrr_dy_1_Gamma_2) - prrr_dy_1_G_in_axes3_y*prrr_e_1_in_axes3_y
         )
-        prrr_dy_1_P_1 = prrr_dy_1_Gamma_1 - prrr_dy_1_P_1_t
+        prrr_dy_1_P_1 = prrr_dy_1_Gamma_1 + prrr_dy_1_P_1_t
         # (prrr-d_P_1) coefficient of the acceleration in: inertia and weight of the leg along the extra degree of freedom of joint 1
         prrr_d_P_1_in_axes3_y = (
-        -prrr_d_G_in_axes3_xy*prrr_e_1_in_axes3_x - prrr_d_G_in_axes3_yy*prrr_e_1_in_axes3_y
+        prrr_d_G_in_axes3_xy*prrr_dy_1_rel_in_axes3_x - prrr_d_G_in_axes3_yy*prrr_e_1_in_axes3_y
         )
         prrr_d_P_1_in_axes3_x = (
-        -inv_prrr_r_2_in_axes3_y*prrr_P_c_2_in_axes0_x - prrr_d_G_in_axes3_xx*prrr_e_1_in_axes3_x
-            - prrr_d_Gamma_3_in_axes3_x*prrr_e_1_in_axes3_y*prrr_w_3_in_axes3_y
+        prrr_d_G_in_axes3_xx*prrr_dy_1_rel_in_axes3_x -
+            inv_prrr_r_2_in_axes3_y*prrr_P_c_2_in_axes0_x -
+            prrr_d_Gamma_3_in_axes3_x*prrr_e_1_in_axes3_y*prrr_w_3_in_axes3_y
         )
         prrr_d_P_1_x = (
         axis_x_prrr_axes3_x*prrr_d_P_1_in_axes3_x + axis_y_prrr_axes3_x*prrr_d_P_1_in_axes3_y
@@ -2476,14 +2651,10 @@ def _run_M(m, X):
         # (rrr-Kd_1) projection on the centre's direction, from the distance fixed by the joints beyond joint 1
         rrr_Kd_1_t_3 = rrr_S_x*rrr_S_x + rrr_S_y*rrr_S_y
         rrr_Kd_1 = rrr_Kd_1_t + 0.5*rrr_Kd_1_t_3 - rrr_Kd_1_t_2
-        # (rrr-px_1) component along the reference direction
-        rrr_px_1 = rrr_S_x*rrr_base_frame_xx + rrr_S_y*rrr_base_frame_yx
-        # (rrr-py_1) component across the reference direction
-        rrr_py_1 = rrr_S_x*rrr_base_frame_xy + rrr_S_y*rrr_base_frame_yy
         # (rrr-Kc_1) factor of the cosine in the equation of joint 1
-        rrr_Kc_1 = rrr_joint2_offset_x*rrr_px_1
+        rrr_Kc_1 = rrr_joint2_offset_x*(rrr_S_x*rrr_base_frame_xx + rrr_S_y*rrr_base_frame_yx)
         # (rrr-Ks_1) factor of the sine in the equation of joint 1
-        rrr_Ks_1 = rrr_joint2_offset_x*rrr_py_1
+        rrr_Ks_1 = rrr_joint2_offset_x*(rrr_S_x*rrr_base_frame_xy + rrr_S_y*rrr_base_frame_yy)
         # (rrr-rho2_1) squared amplitude
         rrr_rho2_1 = rrr_Kc_1*rrr_Kc_1 + rrr_Ks_1*rrr_Ks_1
         # (rrr-disc_1) discriminant
@@ -2622,9 +2793,9 @@ def _run_Z(m, X, V):
     for leg, k in legs[0]:
         (
         inv_prrr_size_t, inv_prrr_size_t_2, prrr_J_2_in_spec2_zz, prrr_J_3_in_spec3_zz,
-            prrr_Kd_2_t, prrr_Kd_2_t_2, prrr_base_frame_xx, prrr_base_frame_xy,
-            prrr_base_frame_yx, prrr_base_frame_yy, prrr_base_point_x, prrr_base_point_y,
-            prrr_branch_2, prrr_f_1_o_in_axes0_x, prrr_g_in_axes0_x, prrr_g_in_axes0_y,
+            prrr_Kd_2_t, prrr_Kd_2_t_2, prrr_acc_1_in_axes0_y, prrr_base_frame_xx,
+            prrr_base_frame_xy, prrr_base_frame_yx, prrr_base_frame_yy, prrr_base_point_x,
+            prrr_base_point_y, prrr_branch_2, prrr_f_1_o_in_axes0_x, prrr_g_in_axes0_x,
             prrr_h_2_in_spec2_x, prrr_h_2_in_spec2_y, prrr_h_3_in_spec3_x, prrr_h_3_in_spec3_y,
             prrr_joint3_offset_x, prrr_link2_mass, prrr_platform_joint_offset_x,
             prrr_platform_point_x, prrr_platform_point_y, prrr_rho2_2_t, prrr_size,
@@ -2648,9 +2819,9 @@ def _run_Z(m, X, V):
         )
         prrr_Kd_2 = prrr_Kd_2_t + 0.5*prrr_Kd_2_t_3 - prrr_Kd_2_t_2
         # (prrr-Kc_2) factor of the cosine in the equation of joint 2
-        prrr_Kc_2 = prrr_joint3_offset_x*prrr_x_2_in_axes0_x
+        prrr_Kc_2 = -prrr_S_in_axes0_y*prrr_joint3_offset_x
         # (prrr-Ks_2) factor of the sine in the equation of joint 2
-        prrr_Ks_2 = prrr_S_in_axes0_y*prrr_joint3_offset_x
+        prrr_Ks_2 = prrr_joint3_offset_x*prrr_x_2_in_axes0_x
         # (prrr-rho2_2) squared amplitude
         prrr_rho2_2 = prrr_Kc_2*prrr_Kc_2 + prrr_Ks_2*prrr_Ks_2
         # (prrr-disc_2) discriminant
@@ -2659,9 +2830,9 @@ def _run_Z(m, X, V):
         prrr_root_2 = prrr_branch_2*sqrt(prrr_disc_2)
         # (prrr-c_2) cosine of the angle of joint 2 from its reference direction
         inv_prrr_rho2_2 = 1.0/prrr_rho2_2
-        prrr_c_2 = inv_prrr_rho2_2*(prrr_Kc_2*prrr_Kd_2 - prrr_Ks_2*prrr_root_2)
+        prrr_c_2 = -inv_prrr_rho2_2*(prrr_Ks_2*prrr_root_2 - prrr_Kc_2*prrr_Kd_2)
         # (prrr-s_2) sine of the angle of joint 2 from its reference direction
-        prrr_s_2 = inv_prrr_rho2_2*(prrr_Kc_2*prrr_root_2 + prrr_Kd_2*prrr_Ks_2)
+        prrr_s_2 = -inv_prrr_rho2_2*(-prrr_Kc_2*prrr_root_2 - prrr_Kd_2*prrr_Ks_2)
         # (prrr-x_3) from the origin of joint 3 to the connection point
         prrr_x_3_in_axes2_x = (
         inv_prrr_size_t*prrr_Kd_2*prrr_joint3_offset_x - prrr_joint3_offset_x
@@ -2688,13 +2859,13 @@ def _run_Z(m, X, V):
         prrr_S_dot_rest_x = prrr_S_dot_x - prrr_base_frame_xy*prrr_yd_1
         prrr_S_dot_rest_y = prrr_S_dot_y - prrr_base_frame_yy*prrr_yd_1
         # (prrr-qd_2) rate of joint 2
-        prrr_e_1_in_axes3_y = prrr_c_2*prrr_s_3_t - prrr_c_3*prrr_s_2
-        prrr_e_1_in_axes3_x = prrr_c_2*prrr_c_3 + prrr_s_2*prrr_s_3_t
+        prrr_qd_2_t = prrr_c_2*prrr_s_3_t - prrr_c_3*prrr_s_2
+        prrr_e_1_in_axes3_y = prrr_c_2*prrr_c_3 + prrr_s_2*prrr_s_3_t
         axis_y_prrr_axes3_x = (
-        prrr_base_frame_xy*prrr_e_1_in_axes3_y - prrr_base_frame_xx*prrr_e_1_in_axes3_x
+        prrr_base_frame_xx*prrr_qd_2_t + prrr_base_frame_xy*prrr_e_1_in_axes3_y
         )
         axis_x_prrr_axes3_x = (
-        prrr_base_frame_yy*prrr_e_1_in_axes3_y - prrr_base_frame_yx*prrr_e_1_in_axes3_x
+        prrr_base_frame_yx*prrr_qd_2_t + prrr_base_frame_yy*prrr_e_1_in_axes3_y
         )
         prrr_qd_2 = (
         -inv_prrr_r_2_in_axes3_y*(axis_x_prrr_axes3_x*prrr_S_dot_rest_x -
@@ -2732,8 +2903,8 @@ def _run_Z(m, X, V):
             prrr_B_2_o_in_axes2_xy
         )
         # (prrr-f_2_o) remainder without the acceleration in: inertia force of link 2 less its weight
-        prrr_g_in_axes2_x = prrr_c_2*prrr_g_in_axes0_x + prrr_g_in_axes0_y*prrr_s_2
-        prrr_g_in_axes2_y = prrr_c_2*prrr_g_in_axes0_y - prrr_g_in_axes0_x*prrr_s_2
+        prrr_g_in_axes2_x = prrr_acc_1_in_axes0_y*prrr_c_2 + prrr_g_in_axes0_x*prrr_s_2
+        prrr_g_in_axes2_y = prrr_c_2*prrr_g_in_axes0_x - prrr_acc_1_in_axes0_y*prrr_s_2
         prrr_f_2_o_in_axes2_x = (
         prrr_B_2_o_in_axes2_xy*prrr_h_2_in_spec2_y + prrr_W_2_in_axes2_xx*prrr_h_2_in_spec2_x -
             prrr_g_in_axes2_x*prrr_link2_mass
@@ -2764,7 +2935,7 @@ def _run_Z(m, X, V):
         prrr_N_2_o_in_axes2_z = prrr_mu_2_o_in_axes2_z + prrr_mu_3_o_in_axes3_z
         # (prrr-T_1_o) remainder without the acceleration in: inertia force of the links from 1 outwards, the last link left out
         prrr_T_1_o_in_axes0_x = (
-        prrr_f_1_o_in_axes0_x + prrr_c_2*prrr_f_2_o_in_axes2_x - prrr_f_2_o_in_axes2_y*prrr_s_2
+        prrr_f_1_o_in_axes0_x + prrr_c_2*prrr_f_2_o_in_axes2_y + prrr_f_2_o_in_axes2_x*prrr_s_2
         )
         # (prrr-G_o) remainder without the acceleration in: force at the connection point that balances the leg's inertia and weight along all degrees of freedom
         prrr_G_o_in_axes3_y = prrr_mu_3_o_in_axes3_z*prrr_w_3_in_axes3_y
@@ -2788,10 +2959,8 @@ def _run_Z(m, X, V):
         axis_y_prrr_axes3_x*prrr_c_o_in_axes3_x - axis_x_prrr_axes3_x*prrr_c_o_in_axes3_y
         )
         # (prrr-P_1_o) remainder without the acceleration in: inertia and weight of the leg along the extra degree of freedom of joint 1
-        prrr_P_1_o_t = (
-        prrr_G_o_in_axes3_x*prrr_e_1_in_axes3_x + prrr_G_o_in_axes3_y*prrr_e_1_in_axes3_y
-        )
-        prrr_P_1_o = prrr_T_1_o_in_axes0_x - prrr_P_1_o_t
+        prrr_P_1_o_t = prrr_G_o_in_axes3_x*prrr_qd_2_t - prrr_G_o_in_axes3_y*prrr_e_1_in_axes3_y
+        prrr_P_1_o = prrr_P_1_o_t + prrr_T_1_o_in_axes0_x
         # (Z_a) rotational part of Z
         prrr_Z_a_t = prrr_U_y*prrr_q_x - prrr_U_x*prrr_q_y
         ok = (
@@ -2824,14 +2993,10 @@ def _run_Z(m, X, V):
         # (rrr-Kd_1) projection on the centre's direction, from the distance fixed by the joints beyond joint 1
         rrr_Kd_1_t_3 = rrr_S_x*rrr_S_x + rrr_S_y*rrr_S_y
         rrr_Kd_1 = rrr_Kd_1_t + 0.5*rrr_Kd_1_t_3 - rrr_Kd_1_t_2
-        # (rrr-px_1) component along the reference direction
-        rrr_px_1 = rrr_S_x*rrr_base_frame_xx + rrr_S_y*rrr_base_frame_yx
-        # (rrr-py_1) component across the reference direction
-        rrr_py_1 = rrr_S_x*rrr_base_frame_xy + rrr_S_y*rrr_base_frame_yy
         # (rrr-Kc_1) factor of the cosine in the equation of joint 1
-        rrr_Kc_1 = rrr_joint2_offset_x*rrr_px_1
+        rrr_Kc_1 = rrr_joint2_offset_x*(rrr_S_x*rrr_base_frame_xx + rrr_S_y*rrr_base_frame_yx)
         # (rrr-Ks_1) factor of the sine in the equation of joint 1
-        rrr_Ks_1 = rrr_joint2_offset_x*rrr_py_1
+        rrr_Ks_1 = rrr_joint2_offset_x*(rrr_S_x*rrr_base_frame_xy + rrr_S_y*rrr_base_frame_yy)
         # (rrr-rho2_1) squared amplitude
         rrr_rho2_1 = rrr_Kc_1*rrr_Kc_1 + rrr_Ks_1*rrr_Ks_1
         # (rrr-disc_1) discriminant
@@ -2997,9 +3162,9 @@ def _run_H(m, X):
         )
         prrr_Kd_2 = prrr_Kd_2_t + 0.5*prrr_Kd_2_t_3 - prrr_Kd_2_t_2
         # (prrr-Kc_2) factor of the cosine in the equation of joint 2
-        prrr_Kc_2 = prrr_joint3_offset_x*prrr_x_2_in_axes0_x
+        prrr_Kc_2 = -prrr_S_in_axes0_y*prrr_joint3_offset_x
         # (prrr-Ks_2) factor of the sine in the equation of joint 2
-        prrr_Ks_2 = prrr_S_in_axes0_y*prrr_joint3_offset_x
+        prrr_Ks_2 = prrr_joint3_offset_x*prrr_x_2_in_axes0_x
         # (prrr-rho2_2) squared amplitude
         prrr_rho2_2 = prrr_Kc_2*prrr_Kc_2 + prrr_Ks_2*prrr_Ks_2
         # (prrr-disc_2) discriminant
@@ -3008,9 +3173,9 @@ def _run_H(m, X):
         prrr_root_2 = prrr_branch_2*sqrt(prrr_disc_2)
         # (prrr-c_2) cosine of the angle of joint 2 from its reference direction
         inv_prrr_rho2_2 = 1.0/prrr_rho2_2
-        prrr_c_2 = inv_prrr_rho2_2*(prrr_Kc_2*prrr_Kd_2 - prrr_Ks_2*prrr_root_2)
+        prrr_c_2 = -inv_prrr_rho2_2*(prrr_Ks_2*prrr_root_2 - prrr_Kc_2*prrr_Kd_2)
         # (prrr-s_2) sine of the angle of joint 2 from its reference direction
-        prrr_s_2 = inv_prrr_rho2_2*(prrr_Kc_2*prrr_root_2 + prrr_Kd_2*prrr_Ks_2)
+        prrr_s_2 = -inv_prrr_rho2_2*(-prrr_Kc_2*prrr_root_2 - prrr_Kd_2*prrr_Ks_2)
         # (prrr-x_3) from the origin of joint 3 to the connection point
         prrr_x_3_in_axes2_x = (
         inv_prrr_size_t*prrr_Kd_2*prrr_joint3_offset_x - prrr_joint3_offset_x
@@ -3027,17 +3192,17 @@ def _run_H(m, X):
         prrr_r_2_in_axes2_x*prrr_s_3_t - prrr_c_3*prrr_platform_joint_offset_x*prrr_s_3_t
         )
         # (prrr-w_2) reciprocal vector 1
-        prrr_e_1_in_axes3_y = prrr_c_2*prrr_s_3_t - prrr_c_3*prrr_s_2
-        prrr_e_1_in_axes3_x = prrr_c_2*prrr_c_3 + prrr_s_2*prrr_s_3_t
+        prrr_w_2_t = prrr_c_2*prrr_s_3_t - prrr_c_3*prrr_s_2
+        prrr_e_1_in_axes3_y = prrr_c_2*prrr_c_3 + prrr_s_2*prrr_s_3_t
         inv_prrr_r_2_in_axes3_y = 1.0/prrr_r_2_in_axes3_y
-        prrr_w_2_t = inv_prrr_r_2_in_axes3_y*prrr_e_1_in_axes3_x
+        prrr_w_2_t_2 = -inv_prrr_r_2_in_axes3_y*prrr_w_2_t
         prrr_w_2_x = (
-        -inv_prrr_r_2_in_axes3_y*(prrr_base_frame_yy*prrr_e_1_in_axes3_y -
-            prrr_base_frame_yx*prrr_e_1_in_axes3_x)
+        -inv_prrr_r_2_in_axes3_y*(prrr_base_frame_yx*prrr_w_2_t +
+            prrr_base_frame_yy*prrr_e_1_in_axes3_y)
         )
         prrr_w_2_y = (
-        inv_prrr_r_2_in_axes3_y*(prrr_base_frame_xy*prrr_e_1_in_axes3_y -
-            prrr_base_frame_xx*prrr_e_1_in_axes3_x)
+        inv_prrr_r_2_in_axes3_y*(prrr_base_frame_xx*prrr_w_2_t +
+            prrr_base_frame_xy*prrr_e_1_in_axes3_y)
         )
         # (prrr-H_a_2) moment of the column's unit force about the platform origin
         prrr_H_a_2_z = prrr_q_x*prrr_w_2_y - prrr_q_y*prrr_w_2_x
@@ -3053,7 +3218,7 @@ def _run_H(m, X):
         # (prrr-H_a_2) moment of the column's unit force about the platform origin
         out_H[_H_prrr[3][leg]] = prrr_H_a_2_z
         # (prrr-w_2) reciprocal vector 1
-        out_H[_H_prrr[4][leg]] = prrr_w_2_t
+        out_H[_H_prrr[4][leg]] = prrr_w_2_t_2
     for leg, k in legs[1]:
         (
         inv_rrr_size_t, inv_rrr_size_t_2, rrr_Kd_1_t, rrr_Kd_1_t_2, rrr_base_frame_xx,
@@ -3069,14 +3234,10 @@ def _run_H(m, X):
         # (rrr-Kd_1) projection on the centre's direction, from the distance fixed by the joints beyond joint 1
         rrr_Kd_1_t_3 = rrr_S_x*rrr_S_x + rrr_S_y*rrr_S_y
         rrr_Kd_1 = rrr_Kd_1_t + 0.5*rrr_Kd_1_t_3 - rrr_Kd_1_t_2
-        # (rrr-px_1) component along the reference direction
-        rrr_px_1 = rrr_S_x*rrr_base_frame_xx + rrr_S_y*rrr_base_frame_yx
-        # (rrr-py_1) component across the reference direction
-        rrr_py_1 = rrr_S_x*rrr_base_frame_xy + rrr_S_y*rrr_base_frame_yy
         # (rrr-Kc_1) factor of the cosine in the equation of joint 1
-        rrr_Kc_1 = rrr_joint2_offset_x*rrr_px_1
+        rrr_Kc_1 = rrr_joint2_offset_x*(rrr_S_x*rrr_base_frame_xx + rrr_S_y*rrr_base_frame_yx)
         # (rrr-Ks_1) factor of the sine in the equation of joint 1
-        rrr_Ks_1 = rrr_joint2_offset_x*rrr_py_1
+        rrr_Ks_1 = rrr_joint2_offset_x*(rrr_S_x*rrr_base_frame_xy + rrr_S_y*rrr_base_frame_yy)
         # (rrr-rho2_1) squared amplitude
         rrr_rho2_1 = rrr_Kc_1*rrr_Kc_1 + rrr_Ks_1*rrr_Ks_1
         # (rrr-disc_1) discriminant
@@ -3174,9 +3335,9 @@ def _run_required(m, X, V, A):
     for leg, k in legs[0]:
         (
         inv_prrr_size_t, inv_prrr_size_t_2, prrr_J_2_in_spec2_zz, prrr_J_3_in_spec3_zz,
-            prrr_Kd_2_t, prrr_Kd_2_t_2, prrr_base_frame_xx, prrr_base_frame_xy,
-            prrr_base_frame_yx, prrr_base_frame_yy, prrr_base_point_x, prrr_base_point_y,
-            prrr_branch_2, prrr_g_in_axes0_x, prrr_g_in_axes0_y, prrr_h_2_in_spec2_x,
+            prrr_Kd_2_t, prrr_Kd_2_t_2, prrr_acc_1_in_axes0_y, prrr_base_frame_xx,
+            prrr_base_frame_xy, prrr_base_frame_yx, prrr_base_frame_yy, prrr_base_point_x,
+            prrr_base_point_y, prrr_branch_2, prrr_g_in_axes0_x, prrr_h_2_in_spec2_x,
             prrr_h_2_in_spec2_y, prrr_h_3_in_spec3_x, prrr_h_3_in_spec3_y, prrr_joint3_offset_x,
             prrr_link1_mass, prrr_link2_mass, prrr_platform_joint_offset_x, prrr_platform_point_x,
             prrr_platform_point_y, prrr_rho2_2_t, prrr_size, prrr_w_3_in_axes3_y,
@@ -3200,9 +3361,9 @@ def _run_required(m, X, V, A):
         )
         prrr_Kd_2 = prrr_Kd_2_t + 0.5*prrr_Kd_2_t_3 - prrr_Kd_2_t_2
         # (prrr-Kc_2) factor of the cosine in the equation of joint 2
-        prrr_Kc_2 = prrr_joint3_offset_x*prrr_x_2_in_axes0_x
+        prrr_Kc_2 = -prrr_S_in_axes0_y*prrr_joint3_offset_x
         # (prrr-Ks_2) factor of the sine in the equation of joint 2
-        prrr_Ks_2 = prrr_S_in_axes0_y*prrr_joint3_offset_x
+        prrr_Ks_2 = prrr_joint3_offset_x*prrr_x_2_in_axes0_x
         # (prrr-rho2_2) squared amplitude
         prrr_rho2_2 = prrr_Kc_2*prrr_Kc_2 + prrr_Ks_2*prrr_Ks_2
         # (prrr-disc_2) discriminant
@@ -3211,9 +3372,9 @@ def _run_required(m, X, V, A):
         prrr_root_2 = prrr_branch_2*sqrt(prrr_disc_2)
         # (prrr-c_2) cosine of the angle of joint 2 from its reference direction
         inv_prrr_rho2_2 = 1.0/prrr_rho2_2
-        prrr_c_2 = inv_prrr_rho2_2*(prrr_Kc_2*prrr_Kd_2 - prrr_Ks_2*prrr_root_2)
+        prrr_c_2 = -inv_prrr_rho2_2*(prrr_Ks_2*prrr_root_2 - prrr_Kc_2*prrr_Kd_2)
         # (prrr-s_2) sine of the angle of joint 2 from its reference direction
-        prrr_s_2 = inv_prrr_rho2_2*(prrr_Kc_2*prrr_root_2 + prrr_Kd_2*prrr_Ks_2)
+        prrr_s_2 = -inv_prrr_rho2_2*(-prrr_Kc_2*prrr_root_2 - prrr_Kd_2*prrr_Ks_2)
         # (prrr-x_3) from the origin of joint 3 to the connection point
         prrr_x_3_in_axes2_x = (
         inv_prrr_size_t*prrr_Kd_2*prrr_joint3_offset_x - prrr_joint3_offset_x
@@ -3235,16 +3396,16 @@ def _run_required(m, X, V, A):
         prrr_r_2_in_axes3_x = prrr_c_3*prrr_r_2_in_axes2_x + prrr_r_2_t*prrr_s_3_t
         prrr_r_2_in_axes3_y = prrr_r_2_in_axes2_x*prrr_s_3_t - prrr_c_3*prrr_r_2_t
         # (prrr-w_2) reciprocal vector 1
-        prrr_e_1_in_axes3_y = prrr_c_2*prrr_s_3_t - prrr_c_3*prrr_s_2
-        prrr_e_1_in_axes3_x = prrr_c_2*prrr_c_3 + prrr_s_2*prrr_s_3_t
+        prrr_w_2_t = prrr_c_2*prrr_s_3_t - prrr_c_3*prrr_s_2
+        prrr_e_1_in_axes3_y = prrr_c_2*prrr_c_3 + prrr_s_2*prrr_s_3_t
         axis_y_prrr_axes3_x = (
-        prrr_base_frame_xy*prrr_e_1_in_axes3_y - prrr_base_frame_xx*prrr_e_1_in_axes3_x
+        prrr_base_frame_xx*prrr_w_2_t + prrr_base_frame_xy*prrr_e_1_in_axes3_y
         )
         axis_x_prrr_axes3_x = (
-        prrr_base_frame_yy*prrr_e_1_in_axes3_y - prrr_base_frame_yx*prrr_e_1_in_axes3_x
+        prrr_base_frame_yx*prrr_w_2_t + prrr_base_frame_yy*prrr_e_1_in_axes3_y
         )
         inv_prrr_r_2_in_axes3_y = 1.0/prrr_r_2_in_axes3_y
-        prrr_w_2_t = inv_prrr_r_2_in_axes3_y*prrr_e_1_in_axes3_x
+        prrr_w_2_t_2 = -inv_prrr_r_2_in_axes3_y*prrr_w_2_t
         prrr_w_2_x = -axis_x_prrr_axes3_x*inv_prrr_r_2_in_axes3_y
         prrr_w_2_y = axis_y_prrr_axes3_x*inv_prrr_r_2_in_axes3_y
         # (prrr-S_dot_rest) velocity of the connection point left to the joints that are not extra
@@ -3283,7 +3444,7 @@ def _run_required(m, X, V, A):
         )
         # (prrr-rel) acceleration of the connection point left to the joint accelerations
         prrr_rel_in_axes3_x = (
-        prrr_S_ddot_in_axes3_x - prrr_bias_in_axes3_x - prrr_e_1_in_axes3_x*prrr_ydd_1
+        prrr_S_ddot_in_axes3_x + prrr_w_2_t*prrr_ydd_1 - prrr_bias_in_axes3_x
         )
         prrr_rel_in_axes3_y = (
         prrr_S_ddot_in_axes3_y - prrr_e_1_in_axes3_y*prrr_ydd_1 -
@@ -3300,10 +3461,10 @@ def _run_required(m, X, V, A):
         prrr_acc_1_in_axes0_x = prrr_ydd_1 - prrr_g_in_axes0_x
         # (prrr-acc_2) acceleration of the reference point of link 2, less gravity
         prrr_acc_2_in_axes2_x = (
-        prrr_c_2*prrr_ydd_1 - prrr_c_2*prrr_g_in_axes0_x - prrr_g_in_axes0_y*prrr_s_2
+        prrr_s_2*prrr_ydd_1 - prrr_acc_1_in_axes0_y*prrr_c_2 - prrr_g_in_axes0_x*prrr_s_2
         )
         prrr_acc_2_in_axes2_y = (
-        prrr_g_in_axes0_x*prrr_s_2 - prrr_c_2*prrr_g_in_axes0_y - prrr_s_2*prrr_ydd_1
+        prrr_acc_1_in_axes0_y*prrr_s_2 + prrr_c_2*prrr_ydd_1 - prrr_c_2*prrr_g_in_axes0_x
         )
         # (prrr-f_2) inertia force of link 2 less its weight
         prrr_f_2_in_axes2_x = (
@@ -3335,8 +3496,8 @@ def _run_required(m, X, V, A):
         prrr_N_2_in_axes2_z = prrr_mu_2_in_axes2_z + prrr_mu_3_in_axes3_z
         # (prrr-T_1) inertia force of the links from 1 outwards, the last link left out
         prrr_T_1_in_axes0_x = (
-        prrr_acc_1_in_axes0_x*prrr_link1_mass + prrr_c_2*prrr_f_2_in_axes2_x -
-            prrr_f_2_in_axes2_y*prrr_s_2
+        prrr_acc_1_in_axes0_x*prrr_link1_mass + prrr_c_2*prrr_f_2_in_axes2_y +
+            prrr_f_2_in_axes2_x*prrr_s_2
         )
         # (prrr-G) force at the connection point that balances the leg's inertia and weight along all degrees of freedom
         prrr_G_in_axes3_y = prrr_mu_3_in_axes3_z*prrr_w_3_in_axes3_y
@@ -3355,8 +3516,8 @@ def _run_required(m, X, V, A):
         prrr_c_x = axis_x_prrr_axes3_x*prrr_c_in_axes3_x + axis_y_prrr_axes3_x*prrr_c_in_axes3_y
         prrr_c_y = axis_x_prrr_axes3_x*prrr_c_in_axes3_y - axis_y_prrr_axes3_x*prrr_c_in_axes3_x
         # (prrr-P_1) inertia and weight of the leg along the extra degree of freedom of joint 1
-        prrr_P_1_t = prrr_G_in_axes3_x*prrr_e_1_in_axes3_x + prrr_G_in_axes3_y*prrr_e_1_in_axes3_y
-        prrr_P_1 = prrr_T_1_in_axes0_x - prrr_P_1_t
+        prrr_P_1_t = prrr_G_in_axes3_x*prrr_w_2_t - prrr_G_in_axes3_y*prrr_e_1_in_axes3_y
+        prrr_P_1 = prrr_P_1_t + prrr_T_1_in_axes0_x
         # (R_a) moment that actuators and external wrench must give
         prrr_R_a_t = prrr_c_x*prrr_q_y - prrr_c_y*prrr_q_x
         # (prrr-H_a_2) moment of the column's unit force about the platform origin
@@ -3380,7 +3541,7 @@ def _run_required(m, X, V, A):
         # (prrr-H_a_2) moment of the column's unit force about the platform origin
         out_H[_H_prrr[3][leg]] = prrr_H_a_2_z
         # (prrr-w_2) reciprocal vector 1
-        out_H[_H_prrr[4][leg]] = prrr_w_2_t
+        out_H[_H_prrr[4][leg]] = prrr_w_2_t_2
     R_t_t_3, R_t_t_4, R_a_rrr_z = [0.0] * 3
     for leg, k in legs[1]:
         (
@@ -3400,14 +3561,10 @@ def _run_required(m, X, V, A):
         # (rrr-Kd_1) projection on the centre's direction, from the distance fixed by the joints beyond joint 1
         rrr_Kd_1_t_3 = rrr_S_x*rrr_S_x + rrr_S_y*rrr_S_y
         rrr_Kd_1 = rrr_Kd_1_t + 0.5*rrr_Kd_1_t_3 - rrr_Kd_1_t_2
-        # (rrr-px_1) component along the reference direction
-        rrr_px_1 = rrr_S_x*rrr_base_frame_xx + rrr_S_y*rrr_base_frame_yx
-        # (rrr-py_1) component across the reference direction
-        rrr_py_1 = rrr_S_x*rrr_base_frame_xy + rrr_S_y*rrr_base_frame_yy
         # (rrr-Kc_1) factor of the cosine in the equation of joint 1
-        rrr_Kc_1 = rrr_joint2_offset_x*rrr_px_1
+        rrr_Kc_1 = rrr_joint2_offset_x*(rrr_S_x*rrr_base_frame_xx + rrr_S_y*rrr_base_frame_yx)
         # (rrr-Ks_1) factor of the sine in the equation of joint 1
-        rrr_Ks_1 = rrr_joint2_offset_x*rrr_py_1
+        rrr_Ks_1 = rrr_joint2_offset_x*(rrr_S_x*rrr_base_frame_xy + rrr_S_y*rrr_base_frame_yy)
         # (rrr-rho2_1) squared amplitude
         rrr_rho2_1 = rrr_Kc_1*rrr_Kc_1 + rrr_Ks_1*rrr_Ks_1
         # (rrr-disc_1) discriminant
@@ -3587,9 +3744,9 @@ def _run_inverse_kinematics(m, X):
         )
         prrr_Kd_2 = prrr_Kd_2_t + 0.5*prrr_Kd_2_t_3 - prrr_Kd_2_t_2
         # (prrr-Kc_2) factor of the cosine in the equation of joint 2
-        prrr_Kc_2 = prrr_joint3_offset_x*prrr_x_2_in_axes0_x
+        prrr_Kc_2 = -prrr_S_in_axes0_y*prrr_joint3_offset_x
         # (prrr-Ks_2) factor of the sine in the equation of joint 2
-        prrr_Ks_2 = prrr_S_in_axes0_y*prrr_joint3_offset_x
+        prrr_Ks_2 = prrr_joint3_offset_x*prrr_x_2_in_axes0_x
         # (prrr-rho2_2) squared amplitude
         prrr_rho2_2 = prrr_Kc_2*prrr_Kc_2 + prrr_Ks_2*prrr_Ks_2
         # (prrr-disc_2) discriminant
@@ -3599,8 +3756,8 @@ def _run_inverse_kinematics(m, X):
         # (prrr-q_2) displacement of joint 2
         inv_prrr_rho2_2 = 1.0/prrr_rho2_2
         prrr_q_2 = (
-        atan2(inv_prrr_rho2_2*(prrr_Kc_2*prrr_Kd_2 - prrr_Ks_2*prrr_root_2),
-            -inv_prrr_rho2_2*(prrr_Kc_2*prrr_root_2 + prrr_Kd_2*prrr_Ks_2))
+        atan2(-inv_prrr_rho2_2*(-prrr_Kc_2*prrr_root_2 - prrr_Kd_2*prrr_Ks_2),
+            -inv_prrr_rho2_2*(prrr_Ks_2*prrr_root_2 - prrr_Kc_2*prrr_Kd_2))
         )
         # (prrr-x_3) from the origin of joint 3 to the connection point
         prrr_x_3_in_axes2_x = (
@@ -3633,14 +3790,10 @@ def _run_inverse_kinematics(m, X):
         # (rrr-Kd_1) projection on the centre's direction, from the distance fixed by the joints beyond joint 1
         rrr_Kd_1_t_3 = rrr_S_x*rrr_S_x + rrr_S_y*rrr_S_y
         rrr_Kd_1 = rrr_Kd_1_t + 0.5*rrr_Kd_1_t_3 - rrr_Kd_1_t_2
-        # (rrr-px_1) component along the reference direction
-        rrr_px_1 = rrr_S_x*rrr_base_frame_xx + rrr_S_y*rrr_base_frame_yx
-        # (rrr-py_1) component across the reference direction
-        rrr_py_1 = rrr_S_x*rrr_base_frame_xy + rrr_S_y*rrr_base_frame_yy
         # (rrr-Kc_1) factor of the cosine in the equation of joint 1
-        rrr_Kc_1 = rrr_joint2_offset_x*rrr_px_1
+        rrr_Kc_1 = rrr_joint2_offset_x*(rrr_S_x*rrr_base_frame_xx + rrr_S_y*rrr_base_frame_yx)
         # (rrr-Ks_1) factor of the sine in the equation of joint 1
-        rrr_Ks_1 = rrr_joint2_offset_x*rrr_py_1
+        rrr_Ks_1 = rrr_joint2_offset_x*(rrr_S_x*rrr_base_frame_xy + rrr_S_y*rrr_base_frame_yy)
         # (rrr-rho2_1) squared amplitude
         rrr_rho2_1 = rrr_Kc_1*rrr_Kc_1 + rrr_Ks_1*rrr_Ks_1
         # (rrr-disc_1) discriminant
@@ -3717,9 +3870,9 @@ def _run_joint_rates(m, X, V):
         )
         prrr_Kd_2 = prrr_Kd_2_t + 0.5*prrr_Kd_2_t_3 - prrr_Kd_2_t_2
         # (prrr-Kc_2) factor of the cosine in the equation of joint 2
-        prrr_Kc_2 = prrr_joint3_offset_x*prrr_x_2_in_axes0_x
+        prrr_Kc_2 = -prrr_S_in_axes0_y*prrr_joint3_offset_x
         # (prrr-Ks_2) factor of the sine in the equation of joint 2
-        prrr_Ks_2 = prrr_S_in_axes0_y*prrr_joint3_offset_x
+        prrr_Ks_2 = prrr_joint3_offset_x*prrr_x_2_in_axes0_x
         # (prrr-rho2_2) squared amplitude
         prrr_rho2_2 = prrr_Kc_2*prrr_Kc_2 + prrr_Ks_2*prrr_Ks_2
         # (prrr-disc_2) discriminant
@@ -3728,9 +3881,9 @@ def _run_joint_rates(m, X, V):
         prrr_root_2 = prrr_branch_2*sqrt(prrr_disc_2)
         # (prrr-c_2) cosine of the angle of joint 2 from its reference direction
         inv_prrr_rho2_2 = 1.0/prrr_rho2_2
-        prrr_c_2 = inv_prrr_rho2_2*(prrr_Kc_2*prrr_Kd_2 - prrr_Ks_2*prrr_root_2)
+        prrr_c_2 = -inv_prrr_rho2_2*(prrr_Ks_2*prrr_root_2 - prrr_Kc_2*prrr_Kd_2)
         # (prrr-s_2) sine of the angle of joint 2 from its reference direction
-        prrr_s_2 = inv_prrr_rho2_2*(prrr_Kc_2*prrr_root_2 + prrr_Kd_2*prrr_Ks_2)
+        prrr_s_2 = -inv_prrr_rho2_2*(-prrr_Kc_2*prrr_root_2 - prrr_Kd_2*prrr_Ks_2)
         # (prrr-x_3) from the origin of joint 3 to the connection point
         prrr_x_3_in_axes2_x = (
         inv_prrr_size_t*prrr_Kd_2*prrr_joint3_offset_x - prrr_joint3_offset_x
@@ -3752,13 +3905,13 @@ def _run_joint_rates(m, X, V):
         prrr_S_dot_rest_x = prrr_S_dot_x - prrr_base_frame_xy*prrr_yd_1
         prrr_S_dot_rest_y = prrr_S_dot_y - prrr_base_frame_yy*prrr_yd_1
         # (prrr-qd_2) rate of joint 2
-        prrr_e_1_in_axes3_y = prrr_c_2*prrr_s_3_t - prrr_c_3*prrr_s_2
-        prrr_e_1_in_axes3_x = prrr_c_2*prrr_c_3 + prrr_s_2*prrr_s_3_t
+        prrr_qd_2_t = prrr_c_2*prrr_s_3_t - prrr_c_3*prrr_s_2
+        prrr_e_1_in_axes3_y = prrr_c_2*prrr_c_3 + prrr_s_2*prrr_s_3_t
         axis_y_prrr_axes3_x = (
-        prrr_base_frame_xy*prrr_e_1_in_axes3_y - prrr_base_frame_xx*prrr_e_1_in_axes3_x
+        prrr_base_frame_xx*prrr_qd_2_t + prrr_base_frame_xy*prrr_e_1_in_axes3_y
         )
         axis_x_prrr_axes3_x = (
-        prrr_base_frame_yy*prrr_e_1_in_axes3_y - prrr_base_frame_yx*prrr_e_1_in_axes3_x
+        prrr_base_frame_yx*prrr_qd_2_t + prrr_base_frame_yy*prrr_e_1_in_axes3_y
         )
         prrr_qd_2 = (
         -(axis_x_prrr_axes3_x*prrr_S_dot_rest_x -
@@ -3796,14 +3949,10 @@ def _run_joint_rates(m, X, V):
         # (rrr-Kd_1) projection on the centre's direction, from the distance fixed by the joints beyond joint 1
         rrr_Kd_1_t_3 = rrr_S_x*rrr_S_x + rrr_S_y*rrr_S_y
         rrr_Kd_1 = rrr_Kd_1_t + 0.5*rrr_Kd_1_t_3 - rrr_Kd_1_t_2
-        # (rrr-px_1) component along the reference direction
-        rrr_px_1 = rrr_S_x*rrr_base_frame_xx + rrr_S_y*rrr_base_frame_yx
-        # (rrr-py_1) component across the reference direction
-        rrr_py_1 = rrr_S_x*rrr_base_frame_xy + rrr_S_y*rrr_base_frame_yy
         # (rrr-Kc_1) factor of the cosine in the equation of joint 1
-        rrr_Kc_1 = rrr_joint2_offset_x*rrr_px_1
+        rrr_Kc_1 = rrr_joint2_offset_x*(rrr_S_x*rrr_base_frame_xx + rrr_S_y*rrr_base_frame_yx)
         # (rrr-Ks_1) factor of the sine in the equation of joint 1
-        rrr_Ks_1 = rrr_joint2_offset_x*rrr_py_1
+        rrr_Ks_1 = rrr_joint2_offset_x*(rrr_S_x*rrr_base_frame_xy + rrr_S_y*rrr_base_frame_yy)
         # (rrr-rho2_1) squared amplitude
         rrr_rho2_1 = rrr_Kc_1*rrr_Kc_1 + rrr_Ks_1*rrr_Ks_1
         # (rrr-disc_1) discriminant
@@ -3911,9 +4060,9 @@ def _run_joint_accelerations(m, X, V, A):
         )
         prrr_Kd_2 = prrr_Kd_2_t + 0.5*prrr_Kd_2_t_3 - prrr_Kd_2_t_2
         # (prrr-Kc_2) factor of the cosine in the equation of joint 2
-        prrr_Kc_2 = prrr_joint3_offset_x*prrr_x_2_in_axes0_x
+        prrr_Kc_2 = -prrr_S_in_axes0_y*prrr_joint3_offset_x
         # (prrr-Ks_2) factor of the sine in the equation of joint 2
-        prrr_Ks_2 = prrr_S_in_axes0_y*prrr_joint3_offset_x
+        prrr_Ks_2 = prrr_joint3_offset_x*prrr_x_2_in_axes0_x
         # (prrr-rho2_2) squared amplitude
         prrr_rho2_2 = prrr_Kc_2*prrr_Kc_2 + prrr_Ks_2*prrr_Ks_2
         # (prrr-disc_2) discriminant
@@ -3922,9 +4071,9 @@ def _run_joint_accelerations(m, X, V, A):
         prrr_root_2 = prrr_branch_2*sqrt(prrr_disc_2)
         # (prrr-c_2) cosine of the angle of joint 2 from its reference direction
         inv_prrr_rho2_2 = 1.0/prrr_rho2_2
-        prrr_c_2 = inv_prrr_rho2_2*(prrr_Kc_2*prrr_Kd_2 - prrr_Ks_2*prrr_root_2)
+        prrr_c_2 = -inv_prrr_rho2_2*(prrr_Ks_2*prrr_root_2 - prrr_Kc_2*prrr_Kd_2)
         # (prrr-s_2) sine of the angle of joint 2 from its reference direction
-        prrr_s_2 = inv_prrr_rho2_2*(prrr_Kc_2*prrr_root_2 + prrr_Kd_2*prrr_Ks_2)
+        prrr_s_2 = -inv_prrr_rho2_2*(-prrr_Kc_2*prrr_root_2 - prrr_Kd_2*prrr_Ks_2)
         # (prrr-x_3) from the origin of joint 3 to the connection point
         prrr_x_3_in_axes2_x = (
         inv_prrr_size_t*prrr_Kd_2*prrr_joint3_offset_x - prrr_joint3_offset_x
@@ -3951,13 +4100,13 @@ def _run_joint_accelerations(m, X, V, A):
         prrr_S_dot_rest_x = prrr_S_dot_x - prrr_base_frame_xy*prrr_yd_1
         prrr_S_dot_rest_y = prrr_S_dot_y - prrr_base_frame_yy*prrr_yd_1
         # (prrr-qd_2) rate of joint 2
-        prrr_e_1_in_axes3_y = prrr_c_2*prrr_s_3_t - prrr_c_3*prrr_s_2
-        prrr_e_1_in_axes3_x = prrr_c_2*prrr_c_3 + prrr_s_2*prrr_s_3_t
+        prrr_qd_2_t = prrr_c_2*prrr_s_3_t - prrr_c_3*prrr_s_2
+        prrr_e_1_in_axes3_y = prrr_c_2*prrr_c_3 + prrr_s_2*prrr_s_3_t
         axis_y_prrr_axes3_x = (
-        prrr_base_frame_xy*prrr_e_1_in_axes3_y - prrr_base_frame_xx*prrr_e_1_in_axes3_x
+        prrr_base_frame_xx*prrr_qd_2_t + prrr_base_frame_xy*prrr_e_1_in_axes3_y
         )
         axis_x_prrr_axes3_x = (
-        prrr_base_frame_yy*prrr_e_1_in_axes3_y - prrr_base_frame_yx*prrr_e_1_in_axes3_x
+        prrr_base_frame_yx*prrr_qd_2_t + prrr_base_frame_yy*prrr_e_1_in_axes3_y
         )
         prrr_qd_2 = (
         -inv_prrr_r_2_in_axes3_y*(axis_x_prrr_axes3_x*prrr_S_dot_rest_x -
@@ -3983,8 +4132,8 @@ def _run_joint_accelerations(m, X, V, A):
         )
         # (prrr-rel) acceleration of the connection point left to the joint accelerations
         prrr_rel_in_axes3_x = (
-        axis_x_prrr_axes3_x*prrr_S_ddot_x - prrr_bias_in_axes3_x -
-            axis_y_prrr_axes3_x*prrr_S_ddot_y - prrr_e_1_in_axes3_x*prrr_ydd_1
+        axis_x_prrr_axes3_x*prrr_S_ddot_x + prrr_qd_2_t*prrr_ydd_1 - prrr_bias_in_axes3_x -
+            axis_y_prrr_axes3_x*prrr_S_ddot_y
         )
         prrr_rel_in_axes3_y = (
         axis_x_prrr_axes3_x*prrr_S_ddot_y + axis_y_prrr_axes3_x*prrr_S_ddot_x -
@@ -4020,14 +4169,10 @@ def _run_joint_accelerations(m, X, V, A):
         # (rrr-Kd_1) projection on the centre's direction, from the distance fixed by the joints beyond joint 1
         rrr_Kd_1_t_3 = rrr_S_x*rrr_S_x + rrr_S_y*rrr_S_y
         rrr_Kd_1 = rrr_Kd_1_t + 0.5*rrr_Kd_1_t_3 - rrr_Kd_1_t_2
-        # (rrr-px_1) component along the reference direction
-        rrr_px_1 = rrr_S_x*rrr_base_frame_xx + rrr_S_y*rrr_base_frame_yx
-        # (rrr-py_1) component across the reference direction
-        rrr_py_1 = rrr_S_x*rrr_base_frame_xy + rrr_S_y*rrr_base_frame_yy
         # (rrr-Kc_1) factor of the cosine in the equation of joint 1
-        rrr_Kc_1 = rrr_joint2_offset_x*rrr_px_1
+        rrr_Kc_1 = rrr_joint2_offset_x*(rrr_S_x*rrr_base_frame_xx + rrr_S_y*rrr_base_frame_yx)
         # (rrr-Ks_1) factor of the sine in the equation of joint 1
-        rrr_Ks_1 = rrr_joint2_offset_x*rrr_py_1
+        rrr_Ks_1 = rrr_joint2_offset_x*(rrr_S_x*rrr_base_frame_xy + rrr_S_y*rrr_base_frame_yy)
         # (rrr-rho2_1) squared amplitude
         rrr_rho2_1 = rrr_Kc_1*rrr_Kc_1 + rrr_Ks_1*rrr_Ks_1
         # (rrr-disc_1) discriminant
@@ -4143,9 +4288,9 @@ def _run_legs(m, X, V, A):
     for leg, k in legs[0]:
         (
         inv_prrr_size_t, inv_prrr_size_t_2, prrr_J_2_in_spec2_zz, prrr_J_3_in_spec3_zz,
-            prrr_Kd_2_t, prrr_Kd_2_t_2, prrr_base_frame_xx, prrr_base_frame_xy,
-            prrr_base_frame_yx, prrr_base_frame_yy, prrr_base_point_x, prrr_base_point_y,
-            prrr_branch_2, prrr_g_in_axes0_x, prrr_g_in_axes0_y, prrr_h_2_in_spec2_x,
+            prrr_Kd_2_t, prrr_Kd_2_t_2, prrr_acc_1_in_axes0_y, prrr_base_frame_xx,
+            prrr_base_frame_xy, prrr_base_frame_yx, prrr_base_frame_yy, prrr_base_point_x,
+            prrr_base_point_y, prrr_branch_2, prrr_g_in_axes0_x, prrr_h_2_in_spec2_x,
             prrr_h_2_in_spec2_y, prrr_h_3_in_spec3_x, prrr_h_3_in_spec3_y, prrr_joint3_offset_x,
             prrr_link3_mass, prrr_platform_joint_offset_x, prrr_platform_point_x,
             prrr_platform_point_y, prrr_rho2_2_t, prrr_size, prrr_w_3_in_axes3_y,
@@ -4169,9 +4314,9 @@ def _run_legs(m, X, V, A):
         )
         prrr_Kd_2 = prrr_Kd_2_t + 0.5*prrr_Kd_2_t_3 - prrr_Kd_2_t_2
         # (prrr-Kc_2) factor of the cosine in the equation of joint 2
-        prrr_Kc_2 = prrr_joint3_offset_x*prrr_x_2_in_axes0_x
+        prrr_Kc_2 = -prrr_S_in_axes0_y*prrr_joint3_offset_x
         # (prrr-Ks_2) factor of the sine in the equation of joint 2
-        prrr_Ks_2 = prrr_S_in_axes0_y*prrr_joint3_offset_x
+        prrr_Ks_2 = prrr_joint3_offset_x*prrr_x_2_in_axes0_x
         # (prrr-rho2_2) squared amplitude
         prrr_rho2_2 = prrr_Kc_2*prrr_Kc_2 + prrr_Ks_2*prrr_Ks_2
         # (prrr-disc_2) discriminant
@@ -4180,9 +4325,9 @@ def _run_legs(m, X, V, A):
         prrr_root_2 = prrr_branch_2*sqrt(prrr_disc_2)
         # (prrr-c_2) cosine of the angle of joint 2 from its reference direction
         inv_prrr_rho2_2 = 1.0/prrr_rho2_2
-        prrr_c_2 = inv_prrr_rho2_2*(prrr_Kc_2*prrr_Kd_2 - prrr_Ks_2*prrr_root_2)
+        prrr_c_2 = -inv_prrr_rho2_2*(prrr_Ks_2*prrr_root_2 - prrr_Kc_2*prrr_Kd_2)
         # (prrr-s_2) sine of the angle of joint 2 from its reference direction
-        prrr_s_2 = inv_prrr_rho2_2*(prrr_Kc_2*prrr_root_2 + prrr_Kd_2*prrr_Ks_2)
+        prrr_s_2 = -inv_prrr_rho2_2*(-prrr_Kc_2*prrr_root_2 - prrr_Kd_2*prrr_Ks_2)
         # (prrr-x_3) from the origin of joint 3 to the connection point
         prrr_x_3_in_axes2_x = (
         inv_prrr_size_t*prrr_Kd_2*prrr_joint3_offset_x - prrr_joint3_offset_x
@@ -4204,13 +4349,13 @@ def _run_legs(m, X, V, A):
         prrr_r_2_in_axes3_x = prrr_c_3*prrr_r_2_in_axes2_x + prrr_r_2_t*prrr_s_3_t
         prrr_r_2_in_axes3_y = prrr_r_2_in_axes2_x*prrr_s_3_t - prrr_c_3*prrr_r_2_t
         # (prrr-w_2) reciprocal vector 1
-        prrr_e_1_in_axes3_y = prrr_c_2*prrr_s_3_t - prrr_c_3*prrr_s_2
-        prrr_e_1_in_axes3_x = prrr_c_2*prrr_c_3 + prrr_s_2*prrr_s_3_t
+        prrr_w_2_t = prrr_c_2*prrr_s_3_t - prrr_c_3*prrr_s_2
+        prrr_e_1_in_axes3_y = prrr_c_2*prrr_c_3 + prrr_s_2*prrr_s_3_t
         axis_y_prrr_axes3_x = (
-        prrr_base_frame_xy*prrr_e_1_in_axes3_y - prrr_base_frame_xx*prrr_e_1_in_axes3_x
+        prrr_base_frame_xx*prrr_w_2_t + prrr_base_frame_xy*prrr_e_1_in_axes3_y
         )
         axis_x_prrr_axes3_x = (
-        prrr_base_frame_yy*prrr_e_1_in_axes3_y - prrr_base_frame_yx*prrr_e_1_in_axes3_x
+        prrr_base_frame_yx*prrr_w_2_t + prrr_base_frame_yy*prrr_e_1_in_axes3_y
         )
         inv_prrr_r_2_in_axes3_y = 1.0/prrr_r_2_in_axes3_y
         prrr_w_2_x = -axis_x_prrr_axes3_x*inv_prrr_r_2_in_axes3_y
@@ -4251,7 +4396,7 @@ def _run_legs(m, X, V, A):
         )
         # (prrr-rel) acceleration of the connection point left to the joint accelerations
         prrr_rel_in_axes3_x = (
-        prrr_S_ddot_in_axes3_x - prrr_bias_in_axes3_x - prrr_e_1_in_axes3_x*prrr_ydd_1
+        prrr_S_ddot_in_axes3_x + prrr_w_2_t*prrr_ydd_1 - prrr_bias_in_axes3_x
         )
         prrr_rel_in_axes3_y = (
         prrr_S_ddot_in_axes3_y - prrr_e_1_in_axes3_y*prrr_ydd_1 -
@@ -4266,10 +4411,10 @@ def _run_legs(m, X, V, A):
         )
         # (prrr-acc_2) acceleration of the reference point of link 2, less gravity
         prrr_acc_2_in_axes2_x = (
-        prrr_c_2*prrr_ydd_1 - prrr_c_2*prrr_g_in_axes0_x - prrr_g_in_axes0_y*prrr_s_2
+        prrr_s_2*prrr_ydd_1 - prrr_acc_1_in_axes0_y*prrr_c_2 - prrr_g_in_axes0_x*prrr_s_2
         )
         prrr_acc_2_in_axes2_y = (
-        prrr_g_in_axes0_x*prrr_s_2 - prrr_c_2*prrr_g_in_axes0_y - prrr_s_2*prrr_ydd_1
+        prrr_acc_1_in_axes0_y*prrr_s_2 + prrr_c_2*prrr_ydd_1 - prrr_c_2*prrr_g_in_axes0_x
         )
         # (prrr-acc_3) acceleration of the reference point of link 3, less gravity
         prrr_acc_3_in_axes3_x = (
@@ -4338,14 +4483,10 @@ def _run_legs(m, X, V, A):
         # (rrr-Kd_1) projection on the centre's direction, from the distance fixed by the joints beyond joint 1
         rrr_Kd_1_t_3 = rrr_S_x*rrr_S_x + rrr_S_y*rrr_S_y
         rrr_Kd_1 = rrr_Kd_1_t + 0.5*rrr_Kd_1_t_3 - rrr_Kd_1_t_2
-        # (rrr-px_1) component along the reference direction
-        rrr_px_1 = rrr_S_x*rrr_base_frame_xx + rrr_S_y*rrr_base_frame_yx
-        # (rrr-py_1) component across the reference direction
-        rrr_py_1 = rrr_S_x*rrr_base_frame_xy + rrr_S_y*rrr_base_frame_yy
         # (rrr-Kc_1) factor of the cosine in the equation of joint 1
-        rrr_Kc_1 = rrr_joint2_offset_x*rrr_px_1
+        rrr_Kc_1 = rrr_joint2_offset_x*(rrr_S_x*rrr_base_frame_xx + rrr_S_y*rrr_base_frame_yx)
         # (rrr-Ks_1) factor of the sine in the equation of joint 1
-        rrr_Ks_1 = rrr_joint2_offset_x*rrr_py_1
+        rrr_Ks_1 = rrr_joint2_offset_x*(rrr_S_x*rrr_base_frame_xy + rrr_S_y*rrr_base_frame_yy)
         # (rrr-rho2_1) squared amplitude
         rrr_rho2_1 = rrr_Kc_1*rrr_Kc_1 + rrr_Ks_1*rrr_Ks_1
         # (rrr-disc_1) discriminant
@@ -4496,10 +4637,10 @@ def _run_potential(m, X):
     potential_prrr, = [0.0] * 1
     for leg, k in legs[0]:
         (
-        inv_prrr_size_t, inv_prrr_size_t_2, prrr_Kd_2_t, prrr_Kd_2_t_2, prrr_b_in_axes0_x,
-            prrr_base_frame_xx, prrr_base_frame_xy, prrr_base_frame_yx, prrr_base_frame_yy,
-            prrr_base_point_x, prrr_base_point_y, prrr_branch_2, prrr_g_in_axes0_x,
-            prrr_g_in_axes0_y, prrr_h_1_in_spec0_x, prrr_h_1_in_spec0_y, prrr_h_2_in_spec2_x,
+        inv_prrr_size_t, inv_prrr_size_t_2, prrr_Kd_2_t, prrr_Kd_2_t_2, prrr_acc_1_in_axes0_y,
+            prrr_b_in_axes0_x, prrr_base_frame_xx, prrr_base_frame_xy, prrr_base_frame_yx,
+            prrr_base_frame_yy, prrr_base_point_x, prrr_base_point_y, prrr_branch_2,
+            prrr_g_in_axes0_x, prrr_h_1_in_spec0_x, prrr_h_1_in_spec0_y, prrr_h_2_in_spec2_x,
             prrr_h_2_in_spec2_y, prrr_h_3_in_spec3_x, prrr_h_3_in_spec3_y, prrr_joint3_offset_x,
             prrr_link1_mass, prrr_link2_mass, prrr_platform_joint_offset_x, prrr_platform_point_x,
             prrr_platform_point_y, prrr_potential_t, prrr_potential_t_2, prrr_rho2_2_t,
@@ -4523,9 +4664,9 @@ def _run_potential(m, X):
         )
         prrr_Kd_2 = prrr_Kd_2_t + 0.5*prrr_Kd_2_t_3 - prrr_Kd_2_t_2
         # (prrr-Kc_2) factor of the cosine in the equation of joint 2
-        prrr_Kc_2 = prrr_joint3_offset_x*prrr_x_2_in_axes0_x
+        prrr_Kc_2 = -prrr_S_in_axes0_y*prrr_joint3_offset_x
         # (prrr-Ks_2) factor of the sine in the equation of joint 2
-        prrr_Ks_2 = prrr_S_in_axes0_y*prrr_joint3_offset_x
+        prrr_Ks_2 = prrr_joint3_offset_x*prrr_x_2_in_axes0_x
         # (prrr-rho2_2) squared amplitude
         prrr_rho2_2 = prrr_Kc_2*prrr_Kc_2 + prrr_Ks_2*prrr_Ks_2
         # (prrr-disc_2) discriminant
@@ -4534,9 +4675,9 @@ def _run_potential(m, X):
         prrr_root_2 = prrr_branch_2*sqrt(prrr_disc_2)
         # (prrr-c_2) cosine of the angle of joint 2 from its reference direction
         inv_prrr_rho2_2 = 1.0/prrr_rho2_2
-        prrr_c_2 = inv_prrr_rho2_2*(prrr_Kc_2*prrr_Kd_2 - prrr_Ks_2*prrr_root_2)
+        prrr_c_2 = -inv_prrr_rho2_2*(prrr_Ks_2*prrr_root_2 - prrr_Kc_2*prrr_Kd_2)
         # (prrr-s_2) sine of the angle of joint 2 from its reference direction
-        prrr_s_2 = inv_prrr_rho2_2*(prrr_Kc_2*prrr_root_2 + prrr_Kd_2*prrr_Ks_2)
+        prrr_s_2 = -inv_prrr_rho2_2*(-prrr_Kc_2*prrr_root_2 - prrr_Kd_2*prrr_Ks_2)
         # (prrr-x_3) from the origin of joint 3 to the connection point
         prrr_x_3_in_axes2_x = (
         inv_prrr_size_t*prrr_Kd_2*prrr_joint3_offset_x - prrr_joint3_offset_x
@@ -4552,12 +4693,13 @@ def _run_potential(m, X):
         prrr_potential_t_4 = prrr_c_3*prrr_h_3_in_spec3_x + prrr_h_3_in_spec3_y*prrr_s_3_t
         prrr_potential_t_5 = prrr_c_3*prrr_h_3_in_spec3_y - prrr_h_3_in_spec3_x*prrr_s_3_t
         prrr_potential_t_6 = (
-        prrr_g_in_axes0_x*(prrr_h_1_in_spec0_y + prrr_c_2*prrr_h_2_in_spec2_x +
-            prrr_c_2*prrr_potential_t_4 + prrr_link1_mass*prrr_potential_t_3 +
-            prrr_link2_mass*prrr_potential_t_3 - prrr_h_2_in_spec2_y*prrr_s_2 -
-            prrr_potential_t_5*prrr_s_2) + prrr_g_in_axes0_y*(prrr_potential_t +
-            prrr_potential_t_2 + prrr_c_2*prrr_h_2_in_spec2_y + prrr_c_2*prrr_potential_t_5 +
-            prrr_h_2_in_spec2_x*prrr_s_2 + prrr_potential_t_4*prrr_s_2 - prrr_h_1_in_spec0_x)
+        prrr_acc_1_in_axes0_y*(prrr_h_1_in_spec0_x + prrr_c_2*prrr_h_2_in_spec2_x +
+            prrr_c_2*prrr_potential_t_4 - prrr_potential_t - prrr_potential_t_2 -
+            prrr_h_2_in_spec2_y*prrr_s_2 - prrr_potential_t_5*prrr_s_2) +
+            prrr_g_in_axes0_x*(prrr_h_1_in_spec0_y + prrr_c_2*prrr_h_2_in_spec2_y +
+            prrr_c_2*prrr_potential_t_5 + prrr_h_2_in_spec2_x*prrr_s_2 +
+            prrr_link1_mass*prrr_potential_t_3 + prrr_link2_mass*prrr_potential_t_3 +
+            prrr_potential_t_4*prrr_s_2)
         )
         ok = (
         ok & (abs(prrr_rho2_2) > _TOLERANCE * _TOLERANCE * prrr_rho2_2_t) & (prrr_disc_2 >= 0.0)
@@ -4580,14 +4722,10 @@ def _run_potential(m, X):
         # (rrr-Kd_1) projection on the centre's direction, from the distance fixed by the joints beyond joint 1
         rrr_Kd_1_t_3 = rrr_S_x*rrr_S_x + rrr_S_y*rrr_S_y
         rrr_Kd_1 = rrr_Kd_1_t + 0.5*rrr_Kd_1_t_3 - rrr_Kd_1_t_2
-        # (rrr-px_1) component along the reference direction
-        rrr_px_1 = rrr_S_x*rrr_base_frame_xx + rrr_S_y*rrr_base_frame_yx
-        # (rrr-py_1) component across the reference direction
-        rrr_py_1 = rrr_S_x*rrr_base_frame_xy + rrr_S_y*rrr_base_frame_yy
         # (rrr-Kc_1) factor of the cosine in the equation of joint 1
-        rrr_Kc_1 = rrr_joint2_offset_x*rrr_px_1
+        rrr_Kc_1 = rrr_joint2_offset_x*(rrr_S_x*rrr_base_frame_xx + rrr_S_y*rrr_base_frame_yx)
         # (rrr-Ks_1) factor of the sine in the equation of joint 1
-        rrr_Ks_1 = rrr_joint2_offset_x*rrr_py_1
+        rrr_Ks_1 = rrr_joint2_offset_x*(rrr_S_x*rrr_base_frame_xy + rrr_S_y*rrr_base_frame_yy)
         # (rrr-rho2_1) squared amplitude
         rrr_rho2_1 = rrr_Kc_1*rrr_Kc_1 + rrr_Ks_1*rrr_Ks_1
         # (rrr-disc_1) discriminant
@@ -4677,9 +4815,9 @@ def _run_condition(m, X):
         )
         prrr_Kd_2 = prrr_Kd_2_t + 0.5*prrr_Kd_2_t_3 - prrr_Kd_2_t_2
         # (prrr-Kc_2) factor of the cosine in the equation of joint 2
-        prrr_Kc_2 = prrr_joint3_offset_x*prrr_x_2_in_axes0_x
+        prrr_Kc_2 = -prrr_S_in_axes0_y*prrr_joint3_offset_x
         # (prrr-Ks_2) factor of the sine in the equation of joint 2
-        prrr_Ks_2 = prrr_S_in_axes0_y*prrr_joint3_offset_x
+        prrr_Ks_2 = prrr_joint3_offset_x*prrr_x_2_in_axes0_x
         # (prrr-rho2_2) squared amplitude
         prrr_rho2_2 = prrr_Kc_2*prrr_Kc_2 + prrr_Ks_2*prrr_Ks_2
         # (prrr-disc_2) discriminant
@@ -4688,9 +4826,9 @@ def _run_condition(m, X):
         prrr_root_2 = prrr_branch_2*sqrt(prrr_disc_2)
         # (prrr-c_2) cosine of the angle of joint 2 from its reference direction
         inv_prrr_rho2_2 = 1.0/prrr_rho2_2
-        prrr_c_2 = inv_prrr_rho2_2*(prrr_Kc_2*prrr_Kd_2 - prrr_Ks_2*prrr_root_2)
+        prrr_c_2 = -inv_prrr_rho2_2*(prrr_Ks_2*prrr_root_2 - prrr_Kc_2*prrr_Kd_2)
         # (prrr-s_2) sine of the angle of joint 2 from its reference direction
-        prrr_s_2 = inv_prrr_rho2_2*(prrr_Kc_2*prrr_root_2 + prrr_Kd_2*prrr_Ks_2)
+        prrr_s_2 = -inv_prrr_rho2_2*(-prrr_Kc_2*prrr_root_2 - prrr_Kd_2*prrr_Ks_2)
         # (prrr-x_3) from the origin of joint 3 to the connection point
         prrr_x_3_in_axes2_x = (
         inv_prrr_size_t*prrr_Kd_2*prrr_joint3_offset_x - prrr_joint3_offset_x
@@ -4707,17 +4845,17 @@ def _run_condition(m, X):
         prrr_r_2_in_axes2_x*prrr_s_3_t - prrr_c_3*prrr_platform_joint_offset_x*prrr_s_3_t
         )
         # (prrr-w_2) reciprocal vector 1
-        prrr_e_1_in_axes3_y = prrr_c_2*prrr_s_3_t - prrr_c_3*prrr_s_2
-        prrr_e_1_in_axes3_x = prrr_c_2*prrr_c_3 + prrr_s_2*prrr_s_3_t
+        prrr_w_2_t = prrr_c_2*prrr_s_3_t - prrr_c_3*prrr_s_2
+        prrr_e_1_in_axes3_y = prrr_c_2*prrr_c_3 + prrr_s_2*prrr_s_3_t
         inv_prrr_r_2_in_axes3_y = 1.0/prrr_r_2_in_axes3_y
-        prrr_w_2_t = inv_prrr_r_2_in_axes3_y*prrr_e_1_in_axes3_x
+        prrr_w_2_t_2 = -inv_prrr_r_2_in_axes3_y*prrr_w_2_t
         prrr_w_2_x = (
-        -inv_prrr_r_2_in_axes3_y*(prrr_base_frame_yy*prrr_e_1_in_axes3_y -
-            prrr_base_frame_yx*prrr_e_1_in_axes3_x)
+        -inv_prrr_r_2_in_axes3_y*(prrr_base_frame_yx*prrr_w_2_t +
+            prrr_base_frame_yy*prrr_e_1_in_axes3_y)
         )
         prrr_w_2_y = (
-        inv_prrr_r_2_in_axes3_y*(prrr_base_frame_xy*prrr_e_1_in_axes3_y -
-            prrr_base_frame_xx*prrr_e_1_in_axes3_x)
+        inv_prrr_r_2_in_axes3_y*(prrr_base_frame_xx*prrr_w_2_t +
+            prrr_base_frame_xy*prrr_e_1_in_axes3_y)
         )
         # (prrr-G) force at the connection point that balances the leg's inertia and weight along all degrees of freedom
         prrr_pivot_size = abs(prrr_rho2_2)
@@ -4746,7 +4884,7 @@ def _run_condition(m, X):
         # (prrr-H_a_2) moment of the column's unit force about the platform origin
         out_H[_H_prrr[3][leg]] = prrr_H_a_2_z
         # (prrr-w_2) reciprocal vector 1
-        out_H[_H_prrr[4][leg]] = prrr_w_2_t
+        out_H[_H_prrr[4][leg]] = prrr_w_2_t_2
         # (prrr-G) force at the connection point that balances the leg's inertia and weight along all degrees of freedom
         out_pivots[_pivots_prrr[0][leg]] = prrr_least_pivots
         out_reach[_reach_prrr[0][leg]] = prrr_disc_2
@@ -4767,14 +4905,10 @@ def _run_condition(m, X):
         # (rrr-Kd_1) projection on the centre's direction, from the distance fixed by the joints beyond joint 1
         rrr_Kd_1_t_3 = rrr_S_x*rrr_S_x + rrr_S_y*rrr_S_y
         rrr_Kd_1 = rrr_Kd_1_t + 0.5*rrr_Kd_1_t_3 - rrr_Kd_1_t_2
-        # (rrr-px_1) component along the reference direction
-        rrr_px_1 = rrr_S_x*rrr_base_frame_xx + rrr_S_y*rrr_base_frame_yx
-        # (rrr-py_1) component across the reference direction
-        rrr_py_1 = rrr_S_x*rrr_base_frame_xy + rrr_S_y*rrr_base_frame_yy
         # (rrr-Kc_1) factor of the cosine in the equation of joint 1
-        rrr_Kc_1 = rrr_joint2_offset_x*rrr_px_1
+        rrr_Kc_1 = rrr_joint2_offset_x*(rrr_S_x*rrr_base_frame_xx + rrr_S_y*rrr_base_frame_yx)
         # (rrr-Ks_1) factor of the sine in the equation of joint 1
-        rrr_Ks_1 = rrr_joint2_offset_x*rrr_py_1
+        rrr_Ks_1 = rrr_joint2_offset_x*(rrr_S_x*rrr_base_frame_xy + rrr_S_y*rrr_base_frame_yy)
         # (rrr-rho2_1) squared amplitude
         rrr_rho2_1 = rrr_Kc_1*rrr_Kc_1 + rrr_Ks_1*rrr_Ks_1
         # (rrr-disc_1) discriminant
@@ -4843,6 +4977,59 @@ def _run_condition(m, X):
     return (valid, reached, clear), (out_H, out_lengths, out_pivots, out_reach,)
 
 
+def _straight_4(a, b, rows, limits):
+    """Solve 4 equations a x = b straight through; and whether that is beyond doubt."""
+    (
+    (a00, a01, a02, a03,), (a10, a11, a12, a13,), (a20, a21, a22, a23,), (a30, a31, a32, a33,),
+    ) = [a[4 * k : 4 * k + 4] for k in rows]
+    b0, b1, b2, b3, = [b[k] for k in rows]
+    l10, l20, l30, l21, l31, l32, l0, l1, l2, l3, = limits
+    f0 = 1.0/a00
+    g10 = a10*f0
+    a11 = a11 - g10*a01
+    a12 = a12 - g10*a02
+    a13 = a13 - g10*a03
+    b1 = b1 - g10*b0
+    g20 = a20*f0
+    a21 = a21 - g20*a01
+    a22 = a22 - g20*a02
+    a23 = a23 - g20*a03
+    b2 = b2 - g20*b0
+    g30 = a30*f0
+    a31 = a31 - g30*a01
+    a32 = a32 - g30*a02
+    a33 = a33 - g30*a03
+    b3 = b3 - g30*b0
+    f1 = 1.0/a11
+    g21 = a21*f1
+    a22 = a22 - g21*a12
+    a23 = a23 - g21*a13
+    b2 = b2 - g21*b1
+    g31 = a31*f1
+    a32 = a32 - g31*a12
+    a33 = a33 - g31*a13
+    b3 = b3 - g31*b1
+    f2 = 1.0/a22
+    g32 = a32*f2
+    a33 = a33 - g32*a23
+    b3 = b3 - g32*b2
+    f3 = 1.0/a33
+    x3 = b3*f3
+    x2 = (b2 - a23*x3)*f2
+    x1 = (b1 - a13*x3 - a12*x2)*f1
+    x0 = (b0 - a03*x3 - a02*x2 - a01*x1)*f0
+    sure = (
+    (abs(g10) <= l10) & (abs(g20) <= l20) & (abs(g30) <= l30) & (abs(g21) <= l21) & (abs(g31) <=
+        l31) & (abs(g32) <= l32) & (abs(f0) <= l0) & (abs(f1) <= l1) & (abs(f2) <= l2) & (abs(f3)
+        <= l3) & (abs(x0 + x1 + x2 + x3 + a00 + a11 + a22 + a33) < math.inf)
+    )
+    return sure, ([x0, x1, x2, x3],)
+
+
+_ORDERS = (  # how systems are solved near home
+    _Order(_straight_4, (3, 1, 2, 0), (40, 2.5, 40, 0.625, 10, 160, 1000, 250, 4000, 250,)),
+    _Order(_straight_4, (0, 1, 2, 3), (10, 0.625, 10, 0.625, 10, 160, 250, 250, 4000, 250,)),
+)
 _Q = None  # where a quaternion begins in X
 _DEFAULT = Parameters()
 
@@ -4886,17 +5073,17 @@ def _steps_inverse_dynamics(m, X, V, A, wrench, weights):
     required, H = m.run(_run_required, ("required", "H"), X, V, A)
     extend_1 = _extended(wrench, 4)
     subtract_1 = required - extend_1
-    tau = _solve(H, subtract_1)
+    tau = _straight(m, H, subtract_1, _ORDERS[0])
     return (tau,)
 
 
 def _steps_forward_dynamics(m, X, V, tau, wrench):
     M, Z, H = m.run(_run_dynamics, ("M", "Z", "H"), X, V)
-    times_1 = np.einsum("ijs,js->is", H, tau)
+    times_1 = _times(H, tau)
     extend_1 = _extended(wrench, 4)
     add_1 = times_1 + extend_1
     subtract_1 = add_1 - Z
-    A = _solve(M, subtract_1)
+    A = _straight(m, M, subtract_1, _ORDERS[1])
     return (A,)
 
 
@@ -4909,7 +5096,7 @@ def _steps_leg_reactions(m, X, V, A, wrench):
     required, H = m.run(_run_required, ("required", "H"), X, V, A)
     extend_1 = _extended(wrench, 4)
     subtract_1 = required - extend_1
-    solve_1 = _solve(H, subtract_1)
+    solve_1 = _straight(m, H, subtract_1, _ORDERS[0])
     leg_force, actuator = m.run(_run_legs, ("leg_force", "actuator"), X, V, A)
     forces = _with_forces(leg_force, solve_1, actuator, [0, 0, 1, 2])
     return (forces,)
@@ -4937,10 +5124,37 @@ def _steps_condition(m, X, length):
     return (sigma, legs,)
 
 
+def _steps_manipulability(m, X):
+    (
+    H, lengths, pivots, reach,
+    ) = m.run(_in_one(_run_condition), ("H", "lengths", "pivots", "reach"), X)
+    entry_1 = lengths[0]
+    subtract_1 = entry_1 - entry_1
+    choose_length_1 = _chosen_length(lengths, subtract_1)
+    divide_rows_1 = _rows_divided(H, choose_length_1, [2])
+    singular_values_1 = _singular_values(divide_rows_1)
+    measure, isotropy = _spread(singular_values_1, 4)
+    return (measure, isotropy,)
+
+
+def _steps_singularity_distance(m, X):
+    (
+    H, lengths, pivots, reach,
+    ) = m.run(_in_one(_run_condition), ("H", "lengths", "pivots", "reach"), X)
+    entry_1 = lengths[0]
+    subtract_1 = entry_1 - entry_1
+    choose_length_1 = _chosen_length(lengths, subtract_1)
+    divide_rows_1 = _rows_divided(H, choose_length_1, [2])
+    singular_values_1 = _singular_values(divide_rows_1)
+    spread_1, actuators = _spread(singular_values_1, 4)
+    legs = _least_entry(pivots)
+    return (actuators, legs,)
+
+
 def _steps_mismatch(m, X, q_actuated):
     q, = m.run(_run_inverse_kinematics, ("q",), X)
-    take_1 = q[[0, 1, 3, 5]]
-    subtract_1 = q_actuated - take_1
+    q_of_inverse_kinematics_from_0 = q[[0, 1, 3, 5]]
+    subtract_1 = q_actuated - q_of_inverse_kinematics_from_0
     gap = _wrapped(subtract_1, [1, 2, 3])
     return (gap,)
 
@@ -4963,7 +5177,7 @@ def _steps_dissipation(m, X, V):
 
 def _steps_momentum(m, X, V):
     M, = m.run(_run_M, ("M",), X)
-    momentum = np.einsum("ijs,js->is", M, V)
+    momentum = _times(M, V)
     return (momentum,)
 
 
@@ -5000,14 +5214,14 @@ def _steps_actuator_accelerations(m, X, V, A):
 
 def _steps_power(m, X, V, tau):
     H, = m.run(_run_H, ("H",), X)
-    times_1 = np.einsum("ijs,js->is", H, tau)
+    times_1 = _times(H, tau)
     power = np.sum(times_1 * V, axis=0)
     return (power,)
 
 
 def _steps_rotation(m, X):
-    take_1 = X[2:3]
-    R = _rotation_of_angle(take_1)
+    X_from_2 = X[2:3]
+    R = _rotation_of_angle(X_from_2)
     return (R,)
 
 
@@ -5055,6 +5269,7 @@ def M(X, p=None):
     return _call(
         "M", _steps_M, p,
         ("X", X, (NQ,)),
+        plain=((NV, NV,),),
     )
 
 
@@ -5073,6 +5288,7 @@ def Z(X, V, p=None):
         "Z", _steps_Z, p,
         ("X", X, (NQ,)),
         ("V", V, (NV,)),
+        plain=((NV,),),
     )
 
 
@@ -5089,6 +5305,7 @@ def H(X, p=None):
     return _call(
         "H", _steps_H, p,
         ("X", X, (NQ,)),
+        plain=((NV, NU,),),
     )
 
 
@@ -5107,6 +5324,7 @@ def inverse_kinematics(X, p=None):
     return _call(
         "inverse_kinematics", _steps_inverse_kinematics, p,
         ("X", X, (NQ,)),
+        plain=((NJ,),),
     )
 
 
@@ -5125,6 +5343,7 @@ def joint_rates(X, V, p=None):
         "joint_rates", _steps_joint_rates, p,
         ("X", X, (NQ,)),
         ("V", V, (NV,)),
+        plain=((NJ,),),
     )
 
 
@@ -5145,6 +5364,7 @@ def joint_accelerations(X, V, A, p=None):
         ("X", X, (NQ,)),
         ("V", V, (NV,)),
         ("A", A, (NV,)),
+        plain=((NJ,),),
     )
 
 
@@ -5165,6 +5385,7 @@ def dynamics(X, V, p=None):
         "dynamics", _steps_dynamics, p,
         ("X", X, (NQ,)),
         ("V", V, (NV,)),
+        plain=((NV, NV,), (NV,), (NV, NU,),),
     )
 
 
@@ -5238,6 +5459,7 @@ def complete_acceleration(X, V, A, p=None, *, wrench=None):
         ("V", V, (NV,), None, "unused"),
         ("A", A, (NV,)),
         ("wrench", wrench, (NW,), 0.0, "unused"),
+        plain=((NV,),),
     )
 
 
@@ -5326,6 +5548,41 @@ def condition(X, p=None, *, length=None):
     )
 
 
+def manipulability(X, p=None):
+    """Manipulability of forces: the product of the singular values that `condition` has by
+    default, and the least over the largest of them.
+
+    Args:
+        X: pose, and extra coordinates (..., NQ).
+        p: parameters, by default those of the specification.
+
+    Returns:
+        measure: product of the singular values (...,).
+        isotropy: least over largest value, 1 where H is isotropic (...,).
+    """
+    return _call(
+        "manipulability", _steps_manipulability, p,
+        ("X", X, (NQ,)),
+    )
+
+
+def singularity_distance(X, p=None):
+    """How near actuators and legs are to being singular: relative distances, 0 where they are.
+
+    Args:
+        X: pose, and extra coordinates (..., NQ).
+        p: parameters, by default those of the specification.
+
+    Returns:
+        actuators: of H from matrices of lower rank, over its norm (...,).
+        legs: least pivot of all legs (...,).
+    """
+    return _call(
+        "singularity_distance", _steps_singularity_distance, p,
+        ("X", X, (NQ,)),
+    )
+
+
 def forward_kinematics(q_actuated, X0, p=None):
     """X at which the actuated joints stand at q_actuated, by Gauss-Newton from X0.
 
@@ -5381,6 +5638,7 @@ def momentum(X, V, p=None):
         "momentum", _steps_momentum, p,
         ("X", X, (NQ,)),
         ("V", V, (NV,)),
+        plain=((NV,),),
     )
 
 
@@ -5543,6 +5801,7 @@ def X_dot(X, V):
         "X_dot", _steps_X_dot, None,
         ("X", X, (NQ,)),
         ("V", V, (NV,)),
+        plain=((NQ,),),
     )
 
 
@@ -5561,6 +5820,7 @@ def retract(X, step):
         "retract", _steps_retract, None,
         ("X", X, (NQ,)),
         ("step", step, (NV,)),
+        plain=((NQ,),),
     )
 
 

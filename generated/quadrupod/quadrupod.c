@@ -663,13 +663,13 @@ int quadrupod_prepare(const quadrupod_params *params, quadrupod_model *model)
         const real ups_J_group_2_in_axes2_zz = ups_link2_inertia_yy + ups_link3_inertia_yy -
             ups_link2_mass*(ups_J_group_2_t_2 - ups_J_group_2_t_4) -
             ups_link3_mass*(ups_J_group_2_t_6 - ups_J_group_2_t_8);
-        /* (ups-trace_J_2) half the trace of that inertia tensor */
-        const real ups_trace_J_2 = R(0.5)*ups_J_group_2_in_axes2_xx +
-            R(0.5)*ups_J_group_2_in_axes2_yy + R(0.5)*ups_J_group_2_in_axes2_zz;
         /* (ups-Sigma_2) second moment of mass of the links that turn with link 2 */
-        const real ups_Sigma_2_in_axes2_xx = ups_trace_J_2 - ups_J_group_2_in_axes2_xx;
-        const real ups_Sigma_2_in_axes2_yy = ups_trace_J_2 - ups_J_group_2_in_axes2_yy;
-        const real ups_Sigma_2_in_axes2_zz = ups_trace_J_2 - ups_J_group_2_in_axes2_zz;
+        const real ups_Sigma_2_t = ups_J_group_2_in_axes2_xx + ups_J_group_2_in_axes2_yy +
+            ups_J_group_2_in_axes2_zz;
+        const real ups_Sigma_2_t_2 = R(0.5)*ups_Sigma_2_t;
+        const real ups_Sigma_2_in_axes2_xx = ups_Sigma_2_t_2 - ups_J_group_2_in_axes2_xx;
+        const real ups_Sigma_2_in_axes2_yy = ups_Sigma_2_t_2 - ups_J_group_2_in_axes2_yy;
+        const real ups_Sigma_2_in_axes2_zz = ups_Sigma_2_t_2 - ups_J_group_2_in_axes2_zz;
         /* (h_star) first moment about the platform origin */
         const real ups_h_star_t = ups_link3_mass*ups_platform_point_x;
         const real ups_h_star_t_2 = ups_link3_mass*ups_platform_point_y;
@@ -842,13 +842,13 @@ int quadrupod_prepare(const quadrupod_params *params, quadrupod_model *model)
         const real tube_J_group_2_in_axes2_zz = tube_link2_inertia_yy + tube_link3_inertia_yy -
             tube_link2_mass*(tube_J_group_2_t_2 - tube_J_group_2_t_4) -
             tube_link3_mass*(tube_J_group_2_t_6 - tube_J_group_2_t_8);
-        /* (tube-trace_J_2) half the trace of that inertia tensor */
-        const real tube_trace_J_2 = R(0.5)*tube_J_group_2_in_axes2_xx +
-            R(0.5)*tube_J_group_2_in_axes2_yy + R(0.5)*tube_J_group_2_in_axes2_zz;
         /* (tube-Sigma_2) second moment of mass of the links that turn with link 2 */
-        const real tube_Sigma_2_in_axes2_xx = tube_trace_J_2 - tube_J_group_2_in_axes2_xx;
-        const real tube_Sigma_2_in_axes2_yy = tube_trace_J_2 - tube_J_group_2_in_axes2_yy;
-        const real tube_Sigma_2_in_axes2_zz = tube_trace_J_2 - tube_J_group_2_in_axes2_zz;
+        const real tube_Sigma_2_t = tube_J_group_2_in_axes2_xx + tube_J_group_2_in_axes2_yy +
+            tube_J_group_2_in_axes2_zz;
+        const real tube_Sigma_2_t_2 = R(0.5)*tube_Sigma_2_t;
+        const real tube_Sigma_2_in_axes2_xx = tube_Sigma_2_t_2 - tube_J_group_2_in_axes2_xx;
+        const real tube_Sigma_2_in_axes2_yy = tube_Sigma_2_t_2 - tube_J_group_2_in_axes2_yy;
+        const real tube_Sigma_2_in_axes2_zz = tube_Sigma_2_t_2 - tube_J_group_2_in_axes2_zz;
         /* (potential) potential energy */
         const real tube_potential_t = tube_base_frame_xx*tube_base_point_x +
             tube_base_frame_yx*tube_base_point_y + tube_base_frame_zx*tube_base_point_z;
@@ -1355,6 +1355,24 @@ static void resolve(size_t m, size_t n, size_t rank, const real *a, real *x, rea
     }
 }
 
+/* Orthonormal columns x[n][n - rank] with a x = 0, for a[m][n] of this rank. */
+static void null_basis(size_t m, size_t n, size_t rank, const real *a, real *x)
+{
+    real t[2*BIG*BIG] = {0};
+    for (size_t j = 0; j < n; ++j) {
+        for (size_t i = 0; i < m; ++i) {
+            t[j*(m + n) + i] = a[i*n + j];
+        }
+        t[j*(m + n) + m + j] = 1;
+    }
+    rotate(n, m + n, m, rank, t);
+    for (size_t j = 0; j < n; ++j) {
+        for (size_t c = rank; c < n; ++c) {
+            x[j*(n - rank) + c - rank] = t[c*(m + n) + m + j];
+        }
+    }
+}
+
 /* Turn columns p and q of a[rows][columns] until they are perpendicular; returns whether they were
    not, to rounding. */
 static int turn_columns(size_t rows, size_t columns, size_t p, size_t q, real *a)
@@ -1429,6 +1447,15 @@ INLINE void product(size_t m, size_t n, size_t p, size_t w, const real *a, const
     }
 }
 
+INLINE void transpose(size_t m, size_t n, size_t w, const real *a, real *x)
+{
+    for (size_t e = 0; e < m*n; ++e) {
+        for (size_t k = 0; k < w; ++k) {
+            x[((e%n)*m + e/n)*w + k] = a[e*w + k];
+        }
+    }
+}
+
 /* a . b */
 INLINE void inner(size_t n, size_t w, const real *a, const real *b, real *x)
 {
@@ -1473,6 +1500,24 @@ INLINE void unlimited(size_t rows, size_t size, size_t w, const size_t *places, 
             x[places[i]*w + k] = R(INFINITY);
         }
     }
+}
+
+INLINE void least_entry(size_t n, const real *a, real *x)
+{
+    *x = a[0];
+    for (size_t e = 1; e < n; ++e) {
+        *x = lesser(*x, a[e]);
+    }
+}
+
+/* Of the first n entries the product, and the last over the first, 0 where that is 0. */
+INLINE void spread(size_t n, const real *a, real *product_of, real *ratio)
+{
+    *product_of = 1;
+    for (size_t e = 0; e < n; ++e) {
+        *product_of *= a[e];
+    }
+    *ratio = magnitude(a[0]) > 0 ? a[n - 1]/a[0] : a[0];
 }
 
 /* 1 where no entry is negative, else 0. */
@@ -1543,6 +1588,151 @@ INLINE void add_forces(size_t rows, size_t n, size_t w, const size_t *places, co
 }
 
 #define TINY R(1e-09)  /* a length below this fraction of the legs' size is none */
+
+/* Flag a state of which inputs are not known, or else nothing is found. */
+INLINE void doubt(int known, int found, real *unreachable, real *overflow)
+{
+    *overflow += UNLESS(known);
+    *unreachable += UNLESS(found || !known);
+}
+
+/* The bound that is missed by most, n if none; sign is 1 for a lower, -1 for an upper one. */
+static size_t missed_bound(size_t n, const real *start, const real *t, const real *least,
+        const real *most, const real *side, real *sign)
+{
+    const real size = largest(start, n), endless = largest(start + n, n);
+    real first = 0, second = 0;
+    size_t worst = n;
+    for (size_t k = 0; k < 2*n; ++k) {
+        const size_t i = k < n ? k : k - n;
+        const real s = k < n ? 1 : -1, bound = k < n ? least[i] : most[i], gap = s*(bound - t[i]);
+        const real rate = magnitude(t[n + i]) > PIVOT*endless ? -s*t[n + i] : 0;
+        const int is_missed = rate > 0 || (rate >= 0 && gap > PIVOT*(size + magnitude(bound)));
+        if (is_missed && is_finite(bound) && !(magnitude(side[i]) > 0)
+            && (rate > second || (rate >= second && gap > first))) {
+            worst = i;
+            first = gap;
+            second = rate;
+            *sign = s;
+        }
+    }
+    return worst;
+}
+
+/* x with gram x = right at the bounds that are kept, zero elsewhere. */
+static void at_bounds(size_t n, const real *gram, const real *side, const real *right, real *x)
+{
+    real rows[BIG*(BIG + 4)] = {0}, unsure = 0;
+    const size_t stride = stride_of(n, 1);
+    for (size_t i = 0; i < n; ++i) {
+        for (size_t j = 0; j < n; ++j) {
+            rows[i*stride + j] = magnitude(side[i]*side[j]) > 0 ? gram[i*n + j] : R(i == j);
+        }
+        rows[i*stride + n] = magnitude(side[i]) > 0 ? right[i] : 0;
+    }
+    solve_one(n, stride, rows, x, &unsure);
+}
+
+/* Points from amounts of the normals. */
+static void moved_by(size_t n, const real *start, const real *gram, const real *amounts, real *t)
+{
+    for (size_t e = 0; e < 2*n; ++e) {
+        const real *const row = gram + e%n*n, *const own = amounts + (e < n ? 0 : n);
+        t[e] = start[e];
+        for (size_t j = 0; j < n; ++j) {
+            t[e] += row[j]*own[j];
+        }
+    }
+}
+
+/* The point nearest to the start at the bounds on these sides. */
+static void settle(size_t n, const real *start, const real *gram, const real *least,
+        const real *most, const real *side, real *t)
+{
+    real amounts[2*BIG] = {0}, right[2*BIG] = {0};
+    for (size_t i = 0; i < n; ++i) {
+        right[i] = (side[i] > 0 ? least[i] : most[i]) - start[i];
+        right[n + i] = -start[n + i];
+    }
+    at_bounds(n, gram, side, right, amounts);
+    at_bounds(n, gram, side, right + n, amounts + n);
+    moved_by(n, start, gram, amounts, t);
+    for (size_t i = 0; i < n; ++i) {
+        t[i] = side[i] > 0 || t[i] < least[i] ? least[i] : side[i] < 0 || t[i] > most[i] ? most[i] : t[i];
+    }
+}
+
+#define TURNS 20  /* steps of the search, for every bounded force */
+
+/* Whether there are such points; t[2*n] is the nearest one. */
+static int nearest_point(size_t n, const real *start, const real *gram, const real *least,
+        const real *most, real *t)
+{
+    real amounts[2*BIG] = {0}, side[BIG] = {0}, right[BIG] = {0}, without[BIG] = {0}, sign = 0;
+    size_t p = n;
+    for (size_t turn = 0; turn < TURNS*n; ++turn) {
+        moved_by(n, start, gram, amounts, t);
+        p = p < n ? p : missed_bound(n, start, t, least, most, side, &sign);
+        if (p >= n) {
+            settle(n, start, gram, least, most, side, t);
+            return 1;
+        }
+        for (size_t i = 0; i < n; ++i) {
+            right[i] = sign*gram[i*n + p];
+        }
+        at_bounds(n, gram, side, right, without);
+        real apart = gram[p*n + p], clear = 1;
+        for (size_t i = 0; i < n; ++i) {
+            apart -= right[i]*without[i];
+            clear += without[i]*without[i];
+        }
+        clear *= PIVOT;  /* above what rounding makes of zero */
+        size_t leaving = 2*n;
+        real first = 0, second = 0;
+        if (apart > clear) {
+            leaving = n;
+            first = sign*((sign > 0 ? least[p] : most[p]) - t[p])/apart;
+            second = -sign*t[n + p]/apart;
+        }
+        for (size_t i = 0; i < n; ++i) {
+            const real share = side[i]*without[i] > clear ? without[i] : R(INFINITY);
+            const real shift = amounts[i]/share, rate = amounts[n + i]/share;
+            if (is_finite(share)
+                && (leaving == 2*n || rate < second || (rate <= second && shift < first))) {
+                leaving = i;
+                first = shift;
+                second = rate;
+            }
+        }
+        if (leaving == 2*n) {
+            return 0;
+        }
+        for (size_t i = 0; i < n; ++i) {
+            amounts[i] -= without[i]*first;
+            amounts[n + i] -= without[i]*second;
+        }
+        amounts[p] += sign*first;
+        amounts[n + p] += sign*second;
+        if (leaving == n) {
+            side[p] = sign;
+            p = n;
+        } else {
+            side[leaving] = amounts[leaving] = amounts[n + leaving] = 0;
+        }
+    }
+    return 0;
+}
+
+/* Of the a + b y with entries from c to d the one nearest to a. */
+static void nearest_within(size_t n, const real *a, const real *b, const real *c, const real *d,
+        real *x, real *unreachable, real *overflow)
+{
+    real start[2*BIG] = {0}, t[2*BIG] = {0};
+    copy(n, a, start);
+    const int known = all_finite(a, n) && all_finite(b, n*n) && all_finite(c, n) && all_finite(d, n);
+    doubt(known, known && nearest_point(n, start, b, c, d, t), unreachable, overflow);
+    copy(n, t, x);
+}
 
 /* A quaternion with largest entry 1, so that squares of tiny ones keep their digits; NaN if it is
    zero or its squared length overflows. */
@@ -1671,6 +1861,1762 @@ static void moved(const real *X, const real *step, real part, real *to)
     turn_quaternion(X + Q, turn, to + Q);
 }
 
+/* ---- what functions of the state share; v: values for others ---- */
+
+typedef struct {
+    real quaternion_scale, R_xx, R_xy, R_xz, R_yx, R_yy, R_yz, R_zx, R_zy, R_zz, h_star_x, h_star_y,
+        h_star_z, omega_in_platform_x, omega_in_platform_y, omega_in_platform_z, J_star_xx, J_star_xy,
+        J_star_xz, J_star_yy, J_star_yz, J_star_zz, Z_p_x, Z_p_y, Z_p_z, Z_q_x, Z_q_y, Z_q_z;
+} values;
+
+INLINE void stage_X(const prepared *m, size_t w, size_t k, const real *X, values *v)
+{
+    /* X: named entries */
+    const real X_3 = X[3*w + k];
+    const real X_4 = X[4*w + k];
+    const real X_5 = X[5*w + k];
+    const real X_6 = X[6*w + k];
+    const real quaternion_norm2 = X_3*X_3 + X_4*X_4 + X_5*X_5 + X_6*X_6;
+    const real quaternion_scale = 2/quaternion_norm2;
+    const real quaternion_sx = X_3*quaternion_scale;
+    const real quaternion_sy = X_4*quaternion_scale;
+    const real quaternion_sz = X_5*quaternion_scale;
+    const real quaternion_wx = X_6*quaternion_sx;
+    const real quaternion_wy = X_6*quaternion_sy;
+    const real quaternion_wz = X_6*quaternion_sz;
+    const real quaternion_xx = X_3*quaternion_sx;
+    const real quaternion_xy = X_3*quaternion_sy;
+    const real quaternion_xz = X_3*quaternion_sz;
+    const real quaternion_yy = X_4*quaternion_sy;
+    const real quaternion_yz = X_4*quaternion_sz;
+    const real quaternion_zz = X_5*quaternion_sz;
+    const real R_xx = 1 - quaternion_yy - quaternion_zz;
+    const real R_xy = quaternion_xy - quaternion_wz;
+    const real R_xz = quaternion_wy + quaternion_xz;
+    const real R_yx = quaternion_wz + quaternion_xy;
+    const real R_yy = 1 - quaternion_xx - quaternion_zz;
+    const real R_yz = quaternion_yz - quaternion_wx;
+    const real R_zx = quaternion_xz - quaternion_wy;
+    const real R_zy = quaternion_wx + quaternion_yz;
+    const real R_zz = 1 - quaternion_xx - quaternion_yy;
+    /* (h_star) first moment about the platform origin */
+    const real h_star_in_platform_x = m->h_star_in_platform_x;
+    const real h_star_in_platform_y = m->h_star_in_platform_y;
+    const real h_star_in_platform_z = m->h_star_in_platform_z;
+    const real h_star_x = R_xx*h_star_in_platform_x + R_xy*h_star_in_platform_y +
+        R_xz*h_star_in_platform_z;
+    const real h_star_y = R_yx*h_star_in_platform_x + R_yy*h_star_in_platform_y +
+        R_yz*h_star_in_platform_z;
+    const real h_star_z = R_zx*h_star_in_platform_x + R_zy*h_star_in_platform_y +
+        R_zz*h_star_in_platform_z;
+    v->quaternion_scale = quaternion_scale;
+    v->R_xx = R_xx;
+    v->R_xy = R_xy;
+    v->R_xz = R_xz;
+    v->R_yx = R_yx;
+    v->R_yy = R_yy;
+    v->R_yz = R_yz;
+    v->R_zx = R_zx;
+    v->R_zy = R_zy;
+    v->R_zz = R_zz;
+    v->h_star_x = h_star_x;
+    v->h_star_y = h_star_y;
+    v->h_star_z = h_star_z;
+}
+
+INLINE void stage_V_X(size_t w, size_t k, const real *V, values *v)
+{
+    /* (Z_q) gyroscopic moment and moment of the weight of the platform */
+    const real omega_x = V[3*w + k];
+    const real omega_y = V[4*w + k];
+    const real omega_z = V[5*w + k];
+    const real omega_in_platform_x = v->R_xx*omega_x + v->R_yx*omega_y + v->R_zx*omega_z;
+    const real omega_in_platform_y = v->R_xy*omega_x + v->R_yy*omega_y + v->R_zy*omega_z;
+    const real omega_in_platform_z = v->R_xz*omega_x + v->R_yz*omega_y + v->R_zz*omega_z;
+    v->omega_in_platform_x = omega_in_platform_x;
+    v->omega_in_platform_y = omega_in_platform_y;
+    v->omega_in_platform_z = omega_in_platform_z;
+}
+
+INLINE void stage_M_dynamics(const prepared *m, values *v)
+{
+    /* (J_star) inertia tensor about the platform origin */
+    const real J_star_in_platform_xy = m->J_star_in_platform_xy;
+    const real J_star_in_platform_yz = m->J_star_in_platform_yz;
+    const real J_star_t_12 = m->J_star_t_12;
+    const real J_star_t = J_star_in_platform_xy*v->R_xx + J_star_in_platform_yz*v->R_xz -
+        J_star_t_12*v->R_xy;
+    const real J_star_t_2 = J_star_in_platform_xy*v->R_yx + J_star_in_platform_yz*v->R_yz -
+        J_star_t_12*v->R_yy;
+    const real J_star_t_3 = J_star_in_platform_xy*v->R_zx + J_star_in_platform_yz*v->R_zz -
+        J_star_t_12*v->R_zy;
+    const real J_star_in_platform_xz = m->J_star_in_platform_xz;
+    const real J_star_t_14 = m->J_star_t_14;
+    const real J_star_t_4 = J_star_t_14*v->R_xz - J_star_in_platform_xz*v->R_xx;
+    const real J_star_t_5 = J_star_t_14*v->R_yz - J_star_in_platform_xz*v->R_yx;
+    const real J_star_t_6 = J_star_t_14*v->R_zz - J_star_in_platform_xz*v->R_zx;
+    const real J_star_t_7 = J_star_t*v->R_xy - J_star_t_4*v->R_xz;
+    const real J_star_in_platform_xx = m->J_star_in_platform_xx;
+    const real J_star_xx = J_star_in_platform_xx + 2*J_star_t_7;
+    const real J_star_xy = J_star_t*v->R_yy + J_star_t_2*v->R_xy - J_star_t_4*v->R_yz -
+        J_star_t_5*v->R_xz;
+    const real J_star_xz = J_star_t*v->R_zy + J_star_t_3*v->R_xy - J_star_t_4*v->R_zz -
+        J_star_t_6*v->R_xz;
+    const real J_star_t_8 = J_star_t_2*v->R_yy - J_star_t_5*v->R_yz;
+    const real J_star_yy = J_star_in_platform_xx + 2*J_star_t_8;
+    const real J_star_yz = J_star_t_2*v->R_zy + J_star_t_3*v->R_yy - J_star_t_5*v->R_zz -
+        J_star_t_6*v->R_yz;
+    const real J_star_t_9 = J_star_t_3*v->R_zy - J_star_t_6*v->R_zz;
+    const real J_star_zz = J_star_in_platform_xx + 2*J_star_t_9;
+    v->J_star_xx = J_star_xx;
+    v->J_star_xy = J_star_xy;
+    v->J_star_xz = J_star_xz;
+    v->J_star_yy = J_star_yy;
+    v->J_star_yz = J_star_yz;
+    v->J_star_zz = J_star_zz;
+}
+
+INLINE void stage_Z_dynamics(const prepared *m, size_t w, size_t k, const real *V, values *v)
+{
+    /* (Z_p) centripetal force and weight of the platform */
+    const real omega_y = V[4*w + k];
+    const real omega_z = V[5*w + k];
+    const real Z_p_t_4 = v->h_star_z*omega_y - v->h_star_y*omega_z;
+    const real omega_x = V[3*w + k];
+    const real Z_p_t_5 = v->h_star_x*omega_z - v->h_star_z*omega_x;
+    const real Z_p_t_6 = v->h_star_y*omega_x - v->h_star_x*omega_y;
+    const real Z_p_t = m->Z_p_t;
+    const real Z_p_x = Z_p_t_6*omega_y - Z_p_t - Z_p_t_5*omega_z;
+    const real Z_p_t_2 = m->Z_p_t_2;
+    const real Z_p_y = Z_p_t_4*omega_z - Z_p_t_2 - Z_p_t_6*omega_x;
+    const real Z_p_t_3 = m->Z_p_t_3;
+    const real Z_p_z = Z_p_t_5*omega_x - Z_p_t_3 - Z_p_t_4*omega_y;
+    /* (Z_q) gyroscopic moment and moment of the weight of the platform */
+    const real gravity_x = m->gravity_x;
+    const real gravity_y = m->gravity_y;
+    const real gravity_z = m->gravity_z;
+    const real g_in_platform_x = v->R_xx*gravity_x + v->R_yx*gravity_y + v->R_zx*gravity_z;
+    const real g_in_platform_y = v->R_xy*gravity_x + v->R_yy*gravity_y + v->R_zy*gravity_z;
+    const real g_in_platform_z = v->R_xz*gravity_x + v->R_yz*gravity_y + v->R_zz*gravity_z;
+    const real J_star_in_platform_xx = m->J_star_in_platform_xx;
+    const real J_star_in_platform_xy = m->J_star_in_platform_xy;
+    const real J_star_in_platform_xz = m->J_star_in_platform_xz;
+    const real Z_q_t = J_star_in_platform_xx*v->omega_in_platform_x +
+        J_star_in_platform_xy*v->omega_in_platform_y +
+        J_star_in_platform_xz*v->omega_in_platform_z;
+    const real J_star_in_platform_yy = m->J_star_in_platform_yy;
+    const real J_star_in_platform_yz = m->J_star_in_platform_yz;
+    const real Z_q_t_2 = J_star_in_platform_xy*v->omega_in_platform_x +
+        J_star_in_platform_yy*v->omega_in_platform_y +
+        J_star_in_platform_yz*v->omega_in_platform_z;
+    const real J_star_in_platform_zz = m->J_star_in_platform_zz;
+    const real Z_q_t_3 = J_star_in_platform_xz*v->omega_in_platform_x +
+        J_star_in_platform_yz*v->omega_in_platform_y +
+        J_star_in_platform_zz*v->omega_in_platform_z;
+    const real h_star_in_platform_y = m->h_star_in_platform_y;
+    const real h_star_in_platform_z = m->h_star_in_platform_z;
+    const real Z_q_in_platform_x = Z_q_t_3*v->omega_in_platform_y +
+        g_in_platform_y*h_star_in_platform_z - Z_q_t_2*v->omega_in_platform_z -
+        g_in_platform_z*h_star_in_platform_y;
+    const real h_star_in_platform_x = m->h_star_in_platform_x;
+    const real Z_q_in_platform_y = Z_q_t*v->omega_in_platform_z +
+        g_in_platform_z*h_star_in_platform_x - Z_q_t_3*v->omega_in_platform_x -
+        g_in_platform_x*h_star_in_platform_z;
+    const real Z_q_in_platform_z = Z_q_t_2*v->omega_in_platform_x +
+        g_in_platform_x*h_star_in_platform_y - Z_q_t*v->omega_in_platform_y -
+        g_in_platform_y*h_star_in_platform_x;
+    const real Z_q_x = v->R_xx*Z_q_in_platform_x + v->R_xy*Z_q_in_platform_y +
+        v->R_xz*Z_q_in_platform_z;
+    const real Z_q_y = v->R_yx*Z_q_in_platform_x + v->R_yy*Z_q_in_platform_y +
+        v->R_yz*Z_q_in_platform_z;
+    const real Z_q_z = v->R_zx*Z_q_in_platform_x + v->R_zy*Z_q_in_platform_y +
+        v->R_zz*Z_q_in_platform_z;
+    v->Z_p_x = Z_p_x;
+    v->Z_p_y = Z_p_y;
+    v->Z_p_z = Z_p_z;
+    v->Z_q_x = Z_q_x;
+    v->Z_q_y = Z_q_y;
+    v->Z_q_z = Z_q_z;
+}
+
+typedef struct {
+    real tube_q_x, tube_q_y, tube_q_z, tube_root_1_t, tube_root_1, tube_c_1, tube_s_1, tube_q_3_t,
+        tube_q_3, tube_c_2, tube_e_1_in_axes2_x, axis_z_tube_axes2_x, axis_z_tube_axes2_y,
+        axis_z_tube_axes2_z, axis_y_tube_axes2_x, axis_y_tube_axes2_y, axis_y_tube_axes2_z,
+        axis_x_tube_axes2_x, axis_x_tube_axes2_y, axis_x_tube_axes2_z, tube_n_m1_t, tube_n_m1_t_2,
+        tube_n_m1_t_3, tube_n_m1_t_4, tube_n_m1_t_5, tube_n_m1_t_6, tube_n_m1_t_7, tube_n_m1_t_8,
+        tube_n_m1_t_9, tube_n_m1_t_10, tube_n_m1_t_11, tube_n_m1_t_12, tube_end_p1_in_axes2_z,
+        tube_n_m1_in_axes2_z, tube_n_m1_in_axes1_z, tube_n_m2_t, tube_n_m2_t_2, tube_n_m2_t_3,
+        tube_n_m2_in_axes2_y, tube_end_p2_in_axes2_y, tube_n_m3_t, tube_n_m3_t_2, tube_n_m3_t_3,
+        tube_end_p3_in_axes2_z, tube_n_m3_in_axes2_z, tube_n_m3_t_5, tube_f_c1_t, inv_tube_f_c1_t,
+        tube_m1_c1_t, tube_m3_c1_t, tube_m1_c2_t, tube_m3_c2, tube_m1_c3, tube_m3_c3_t,
+        tube_mu_c1_in_axes2_y, tube_mu_c1_in_axes2_x, tube_mu_c1_in_axes2_z, tube_mu_c2_in_axes2_y,
+        tube_mu_c2_t, tube_mu_c2_in_axes2_z, tube_size_c3, inv_tube_size_c3, tube_mu1_c3,
+        tube_mu3_c3_t, tube_mu_c3_x, tube_mu_c3_y, tube_mu_c3_z, tube_w_1_t, tube_w_1_t_2,
+        tube_w_1_t_13, inv_tube_w_1_t_13, tube_w_1_t_14, tube_w_1_t_15, tube_w_1_t_16, tube_w_1_t_17,
+        tube_w_1_t_21, tube_w_1_t_25, tube_w_1_t_29, tube_w_1_t_30, tube_w_1_t_31, tube_w_1_t_32,
+        tube_w_1_t_33, inv_tube_w_1_t_33, tube_w_1_t_34, tube_w_1_t_35, tube_w_1_t_36, tube_w_1_t_37,
+        tube_w_1_t_41, tube_w_1_t_45, tube_w_1_t_49, inv_tube_w_1_t_49, tube_w_1_t_50, tube_w_1_t_51,
+        tube_w_1_t_52, tube_w_1_t_53, tube_w_1_t_58, tube_w_1_t_63, inv_tube_w_1_t_63, tube_w_1_t_64,
+        tube_w_1_t_65, tube_w_1_t_66, tube_w_1_t_67, tube_w_1_t_68, tube_w_1_t_69, tube_w_1_t_70,
+        tube_w_1_t_71, tube_w_1_t_72, tube_w_1_t_73, tube_w_1_t_74, tube_w_1_t_75, inv_tube_w_1_t_75,
+        tube_end_p1_in_axes2_x, tube_end_p2_in_axes2_z, tube_end_p3_in_axes2_y, tube_g_in_axes2_z,
+        tube_n_c1_x, tube_n_c1_y, tube_n_c1_z, tube_n_c2_x, tube_n_c2_y, tube_n_c2_z, tube_a_p_x,
+        tube_a_p_y, tube_a_p_z, tube_etad_1_t, tube_etad_2_t, tube_etad_3_t, tube_S_dot_t_3,
+        tube_S_dot_t_4, tube_S_dot_t_5, tube_S_dot_in_axes2_x, tube_S_dot_in_axes2_y,
+        tube_S_dot_in_axes2_z, tube_omega_in_axes2_y, tube_omega_in_axes2_z, tube_eta_1,
+        tube_omega_in_axes2_x, tube_eta_2, tube_eta_3, tube_u_1_x, tube_u_1_y, tube_u_1_z,
+        tube_bias_t_3, tube_qd_1_t_6, tube_qd_1_t_7, tube_qd_1_t_8, tube_S_ddot_x, tube_S_ddot_y,
+        tube_S_ddot_z, tube_g_in_axes2_x, tube_g_in_axes2_y, tube_acc_3_o_in_axes2_x, tube_qd_1_t,
+        tube_qd_1_t_2, tube_qd_1_t_3, tube_qd_1_t_4, tube_qd_1_t_5, tube_qd_2,
+        tube_omega_1_in_axes2_x, tube_omega_1_in_axes2_y, tube_W_2_in_axes2_yz, tube_W_2_in_axes2_xz,
+        tube_nu_1, tube_nu_2, tube_nu_3, tube_Hk_a_1_x, tube_Hk_a_1_y, tube_Hk_a_1_z, tube_Hk_a_2_x,
+        tube_Hk_a_2_y, tube_Hk_a_2_z, tube_G_m_in_axes2_x, tube_G_m_in_axes2_y, tube_G_m_in_axes2_z,
+        tube_c_x, tube_c_y, tube_c_z;
+} values_tube;
+
+INLINE void stage_tube_X(const prepared *m, size_t w, size_t i, size_t j, const real *s, const
+    real *X, values_tube *v)
+{
+    /* (tube-S) from the base point to the connection point */
+    const real R_xx = s[0*w + j];
+    const real R_xy = s[1*w + j];
+    const real R_xz = s[2*w + j];
+    const real tube_platform_point_x = m->tube_platform_point_x[i];
+    const real tube_platform_point_y = m->tube_platform_point_y[i];
+    const real tube_platform_point_z = m->tube_platform_point_z[i];
+    const real tube_q_x = R_xx*tube_platform_point_x + R_xy*tube_platform_point_y +
+        R_xz*tube_platform_point_z;
+    const real R_yx = s[3*w + j];
+    const real R_yy = s[4*w + j];
+    const real R_yz = s[5*w + j];
+    const real tube_q_y = R_yx*tube_platform_point_x + R_yy*tube_platform_point_y +
+        R_yz*tube_platform_point_z;
+    const real R_zx = s[6*w + j];
+    const real R_zy = s[7*w + j];
+    const real R_zz = s[8*w + j];
+    const real tube_q_z = R_zx*tube_platform_point_x + R_zy*tube_platform_point_y +
+        R_zz*tube_platform_point_z;
+    const real t_x = X[0*w + j];
+    const real tube_base_point_x = m->tube_base_point_x[i];
+    const real tube_S_x = t_x + tube_q_x - tube_base_point_x;
+    const real t_y = X[1*w + j];
+    const real tube_base_point_y = m->tube_base_point_y[i];
+    const real tube_S_y = t_y + tube_q_y - tube_base_point_y;
+    const real t_z = X[2*w + j];
+    const real tube_base_point_z = m->tube_base_point_z[i];
+    const real tube_S_z = t_z + tube_q_z - tube_base_point_z;
+    const real tube_base_frame_xx = m->tube_base_frame_xx[i];
+    const real tube_base_frame_yx = m->tube_base_frame_yx[i];
+    const real tube_base_frame_zx = m->tube_base_frame_zx[i];
+    const real tube_S_in_turn1_x = tube_S_x*tube_base_frame_xx + tube_S_y*tube_base_frame_yx +
+        tube_S_z*tube_base_frame_zx;
+    const real tube_base_frame_xy = m->tube_base_frame_xy[i];
+    const real tube_base_frame_yy = m->tube_base_frame_yy[i];
+    const real tube_base_frame_zy = m->tube_base_frame_zy[i];
+    const real tube_S_in_turn1_y = tube_S_x*tube_base_frame_xy + tube_S_y*tube_base_frame_yy +
+        tube_S_z*tube_base_frame_zy;
+    const real tube_base_frame_xz = m->tube_base_frame_xz[i];
+    const real tube_base_frame_yz = m->tube_base_frame_yz[i];
+    const real tube_base_frame_zz = m->tube_base_frame_zz[i];
+    const real tube_S_in_turn1_z = tube_S_x*tube_base_frame_xz + tube_S_y*tube_base_frame_yz +
+        tube_S_z*tube_base_frame_zz;
+    /* (tube-root_1) amplitude, the length across axis 1, with the sign of the branch */
+    const real tube_root_1_t = tube_S_in_turn1_x*tube_S_in_turn1_x +
+        tube_S_in_turn1_y*tube_S_in_turn1_y;
+    const real tube_branch_1 = m->tube_branch_1[i];
+    const real tube_root_1 = tube_branch_1*root(tube_root_1_t);
+    /* (tube-c_1) cosine of the angle of joint 1 from its reference direction */
+    const real inv_tube_root_1 = 1/tube_root_1;
+    const real tube_c_1 = inv_tube_root_1*tube_S_in_turn1_x;
+    /* (tube-s_1) sine of the angle of joint 1 from its reference direction */
+    const real tube_s_1 = inv_tube_root_1*tube_S_in_turn1_y;
+    /* (tube-q_3) displacement of joint 3 */
+    const real tube_q_3_t = tube_S_in_turn1_z*tube_S_in_turn1_z + tube_root_1_t;
+    const real tube_branch_2 = m->tube_branch_2[i];
+    const real tube_q_3 = tube_branch_2*root(tube_q_3_t);
+    /* (tube-c_2) cosine of the angle of joint 2 from its reference direction */
+    const real inv_tube_q_3 = 1/tube_q_3;
+    const real tube_c_2 = inv_tube_q_3*tube_root_1;
+    /* (tube-S_dot) velocity of the connection point */
+    const real tube_e_1_in_axes2_x = inv_tube_q_3*tube_S_in_turn1_z;
+    const real axis_z_tube_axes2_x = tube_base_frame_xy*tube_c_1 -
+        tube_base_frame_xx*tube_s_1;
+    const real axis_z_tube_axes2_y = tube_base_frame_yy*tube_c_1 -
+        tube_base_frame_yx*tube_s_1;
+    const real axis_z_tube_axes2_z = tube_base_frame_zy*tube_c_1 -
+        tube_base_frame_zx*tube_s_1;
+    const real tube_S_dot_t = tube_c_1*tube_e_1_in_axes2_x;
+    const real tube_S_dot_t_2 = tube_e_1_in_axes2_x*tube_s_1;
+    const real axis_y_tube_axes2_x = tube_S_dot_t*tube_base_frame_xx +
+        tube_S_dot_t_2*tube_base_frame_xy - tube_base_frame_xz*tube_c_2;
+    const real axis_y_tube_axes2_y = tube_S_dot_t*tube_base_frame_yx +
+        tube_S_dot_t_2*tube_base_frame_yy - tube_base_frame_yz*tube_c_2;
+    const real axis_y_tube_axes2_z = tube_S_dot_t*tube_base_frame_zx +
+        tube_S_dot_t_2*tube_base_frame_zy - tube_base_frame_zz*tube_c_2;
+    const real axis_x_tube_axes2_x = axis_y_tube_axes2_y*axis_z_tube_axes2_z -
+        axis_y_tube_axes2_z*axis_z_tube_axes2_y;
+    const real axis_x_tube_axes2_y = axis_y_tube_axes2_z*axis_z_tube_axes2_x -
+        axis_y_tube_axes2_x*axis_z_tube_axes2_z;
+    const real axis_x_tube_axes2_z = axis_y_tube_axes2_x*axis_z_tube_axes2_y -
+        axis_y_tube_axes2_y*axis_z_tube_axes2_x;
+    /* (tube-n_m1) direction 1 of the moment that the platform joint transmits */
+    const real tube_n_m1_t = R_xx*tube_base_frame_xx + R_yx*tube_base_frame_yx +
+        R_zx*tube_base_frame_zx;
+    const real tube_n_m1_t_2 = R_xy*tube_base_frame_xx + R_yy*tube_base_frame_yx +
+        R_zy*tube_base_frame_zx;
+    const real tube_n_m1_t_3 = R_xz*tube_base_frame_xx + R_yz*tube_base_frame_yx +
+        R_zz*tube_base_frame_zx;
+    const real tube_n_m1_t_4 = R_xx*tube_base_frame_xy + R_yx*tube_base_frame_yy +
+        R_zx*tube_base_frame_zy;
+    const real tube_n_m1_t_5 = R_xy*tube_base_frame_xy + R_yy*tube_base_frame_yy +
+        R_zy*tube_base_frame_zy;
+    const real tube_n_m1_t_6 = R_xz*tube_base_frame_xy + R_yz*tube_base_frame_yy +
+        R_zz*tube_base_frame_zy;
+    const real tube_n_m1_t_7 = R_xx*tube_base_frame_xz + R_yx*tube_base_frame_yz +
+        R_zx*tube_base_frame_zz;
+    const real tube_n_m1_t_8 = R_xy*tube_base_frame_xz + R_yy*tube_base_frame_yz +
+        R_zy*tube_base_frame_zz;
+    const real tube_n_m1_t_9 = R_xz*tube_base_frame_xz + R_yz*tube_base_frame_yz +
+        R_zz*tube_base_frame_zz;
+    const real tube_platform_joint_rotation_yx = m->tube_platform_joint_rotation_yx[i];
+    const real tube_platform_joint_rotation_yy = m->tube_platform_joint_rotation_yy[i];
+    const real tube_platform_joint_rotation_yz = m->tube_platform_joint_rotation_yz[i];
+    const real tube_n_m1_t_10 = tube_n_m1_t*tube_platform_joint_rotation_yx +
+        tube_n_m1_t_2*tube_platform_joint_rotation_yy +
+        tube_n_m1_t_3*tube_platform_joint_rotation_yz;
+    const real tube_n_m1_t_11 = tube_n_m1_t_4*tube_platform_joint_rotation_yx +
+        tube_n_m1_t_5*tube_platform_joint_rotation_yy +
+        tube_n_m1_t_6*tube_platform_joint_rotation_yz;
+    const real tube_n_m1_t_12 = tube_n_m1_t_7*tube_platform_joint_rotation_yx +
+        tube_n_m1_t_8*tube_platform_joint_rotation_yy +
+        tube_n_m1_t_9*tube_platform_joint_rotation_yz;
+    const real tube_n_m1_t_13 = tube_c_1*tube_n_m1_t_10 + tube_n_m1_t_11*tube_s_1;
+    const real tube_end_p1_in_axes2_z = tube_c_1*tube_n_m1_t_11 - tube_n_m1_t_10*tube_s_1;
+    const real tube_n_m1_in_axes2_z = tube_e_1_in_axes2_x*tube_n_m1_t_13 -
+        tube_c_2*tube_n_m1_t_12;
+    const real tube_n_m1_in_axes1_z = tube_c_2*tube_end_p1_in_axes2_z;
+    /* (tube-n_m2) direction 2 of the moment that the platform joint transmits */
+    const real tube_platform_joint_rotation_zx = m->tube_platform_joint_rotation_zx[i];
+    const real tube_platform_joint_rotation_zy = m->tube_platform_joint_rotation_zy[i];
+    const real tube_platform_joint_rotation_zz = m->tube_platform_joint_rotation_zz[i];
+    const real tube_n_m2_t = tube_n_m1_t*tube_platform_joint_rotation_zx +
+        tube_n_m1_t_2*tube_platform_joint_rotation_zy +
+        tube_n_m1_t_3*tube_platform_joint_rotation_zz;
+    const real tube_n_m2_t_2 = tube_n_m1_t_4*tube_platform_joint_rotation_zx +
+        tube_n_m1_t_5*tube_platform_joint_rotation_zy +
+        tube_n_m1_t_6*tube_platform_joint_rotation_zz;
+    const real tube_n_m2_t_3 = tube_n_m1_t_7*tube_platform_joint_rotation_zx +
+        tube_n_m1_t_8*tube_platform_joint_rotation_zy +
+        tube_n_m1_t_9*tube_platform_joint_rotation_zz;
+    const real tube_n_m2_t_4 = tube_c_1*tube_n_m2_t + tube_n_m2_t_2*tube_s_1;
+    const real tube_n_m2_in_axes2_y = tube_c_2*tube_n_m2_t_4 +
+        tube_e_1_in_axes2_x*tube_n_m2_t_3;
+    const real tube_end_p2_in_axes2_y = tube_e_1_in_axes2_x*tube_n_m2_t_4 -
+        tube_c_2*tube_n_m2_t_3;
+    const real tube_n_m2_t_5 = tube_c_2*tube_n_m2_in_axes2_y +
+        tube_e_1_in_axes2_x*tube_end_p2_in_axes2_y;
+    /* (tube-n_m3) direction 3 of the moment that the platform joint transmits */
+    const real tube_platform_joint_rotation_xx = m->tube_platform_joint_rotation_xx[i];
+    const real tube_platform_joint_rotation_xy = m->tube_platform_joint_rotation_xy[i];
+    const real tube_platform_joint_rotation_xz = m->tube_platform_joint_rotation_xz[i];
+    const real tube_n_m3_t = tube_n_m1_t*tube_platform_joint_rotation_xx +
+        tube_n_m1_t_2*tube_platform_joint_rotation_xy +
+        tube_n_m1_t_3*tube_platform_joint_rotation_xz;
+    const real tube_n_m3_t_2 = tube_n_m1_t_4*tube_platform_joint_rotation_xx +
+        tube_n_m1_t_5*tube_platform_joint_rotation_xy +
+        tube_n_m1_t_6*tube_platform_joint_rotation_xz;
+    const real tube_n_m3_t_3 = tube_n_m1_t_7*tube_platform_joint_rotation_xx +
+        tube_n_m1_t_8*tube_platform_joint_rotation_xy +
+        tube_n_m1_t_9*tube_platform_joint_rotation_xz;
+    const real tube_n_m3_t_4 = tube_c_1*tube_n_m3_t + tube_n_m3_t_2*tube_s_1;
+    const real tube_end_p3_in_axes2_z = tube_c_1*tube_n_m3_t_2 - tube_n_m3_t*tube_s_1;
+    const real tube_n_m3_in_axes2_z = tube_c_2*tube_n_m3_t_4 +
+        tube_e_1_in_axes2_x*tube_n_m3_t_3;
+    const real tube_n_m3_t_5 = tube_e_1_in_axes2_x*tube_end_p3_in_axes2_z;
+    /* (tube-f_c1) force part of constraint wrench 1 */
+    const real tube_f_c1_t = tube_n_m1_in_axes1_z*tube_n_m3_in_axes2_z +
+        tube_n_m1_in_axes2_z*tube_n_m3_t_5;
+    /* (tube-m1_c1) moment part 1 of constraint wrench 1 */
+    const real inv_tube_f_c1_t = 1/tube_f_c1_t;
+    const real tube_m1_c1_t = inv_tube_f_c1_t*tube_n_m3_t_5*tube_q_3;
+    /* (tube-m3_c1) moment part 3 of constraint wrench 1 */
+    const real tube_m3_c1_t = inv_tube_f_c1_t*tube_n_m1_in_axes1_z*tube_q_3;
+    /* (tube-m1_c2) moment part 1 of constraint wrench 2 */
+    const real tube_m1_c2_t = inv_tube_f_c1_t*tube_n_m3_in_axes2_z*tube_root_1;
+    /* (tube-m3_c2) moment part 3 of constraint wrench 2 */
+    const real tube_m3_c2 = inv_tube_f_c1_t*tube_n_m1_in_axes2_z*tube_root_1;
+    /* (tube-m1_c3) moment part 1 of constraint wrench 3 */
+    const real tube_m1_c3 = inv_tube_f_c1_t*tube_n_m2_t_5*tube_n_m3_in_axes2_z;
+    /* (tube-m3_c3) moment part 3 of constraint wrench 3 */
+    const real tube_m3_c3_t = inv_tube_f_c1_t*tube_n_m1_in_axes2_z*tube_n_m2_t_5;
+    /* (tube-mu_c1) the moment that goes with it */
+    const real tube_mu_c1_in_axes2_y = tube_end_p1_in_axes2_z*tube_m1_c1_t;
+    const real tube_mu_c1_in_axes2_x = tube_end_p3_in_axes2_z*tube_m3_c1_t;
+    const real tube_mu_c1_in_axes2_z = -tube_m1_c1_t*tube_n_m1_in_axes2_z -
+        tube_m3_c1_t*tube_n_m3_in_axes2_z;
+    /* (tube-mu_c2) the moment that goes with it */
+    const real tube_mu_c2_in_axes2_y = tube_end_p1_in_axes2_z*tube_m1_c2_t;
+    const real tube_mu_c2_t = tube_end_p3_in_axes2_z*tube_m3_c2;
+    const real tube_mu_c2_in_axes2_z = tube_m3_c2*tube_n_m3_in_axes2_z -
+        tube_m1_c2_t*tube_n_m1_in_axes2_z;
+    /* (tube-size_c3) size of the moment */
+    const real tube_size_c3 = root(1 + tube_m1_c3*tube_m1_c3 + tube_m3_c3_t*tube_m3_c3_t);
+    /* (tube-mu1_c3) moment along direction 1 that goes with it */
+    const real inv_tube_size_c3 = 1/tube_size_c3;
+    const real tube_mu1_c3 = inv_tube_size_c3*tube_m1_c3;
+    /* (tube-mu3_c3) moment along direction 3 that goes with it */
+    const real tube_mu3_c3_t = inv_tube_size_c3*tube_m3_c3_t;
+    /* (tube-mu_c3) the moment that goes with it */
+    const real tube_mu_c3_in_axes2_x = tube_end_p3_in_axes2_z*tube_mu3_c3_t -
+        inv_tube_size_c3*tube_end_p2_in_axes2_y;
+    const real tube_mu_c3_in_axes2_y = inv_tube_size_c3*tube_n_m2_in_axes2_y -
+        tube_end_p1_in_axes2_z*tube_mu1_c3;
+    const real tube_mu_c3_in_axes2_z = tube_mu1_c3*tube_n_m1_in_axes2_z -
+        tube_mu3_c3_t*tube_n_m3_in_axes2_z;
+    const real tube_mu_c3_x = axis_x_tube_axes2_x*tube_mu_c3_in_axes2_x +
+        axis_y_tube_axes2_x*tube_mu_c3_in_axes2_y + axis_z_tube_axes2_x*tube_mu_c3_in_axes2_z;
+    const real tube_mu_c3_y = axis_x_tube_axes2_y*tube_mu_c3_in_axes2_x +
+        axis_y_tube_axes2_y*tube_mu_c3_in_axes2_y + axis_z_tube_axes2_y*tube_mu_c3_in_axes2_z;
+    const real tube_mu_c3_z = axis_x_tube_axes2_z*tube_mu_c3_in_axes2_x +
+        axis_y_tube_axes2_z*tube_mu_c3_in_axes2_y + axis_z_tube_axes2_z*tube_mu_c3_in_axes2_z;
+    /* (tube-w_1) force part of reciprocal wrench 1 */
+    const real tube_w_1_t = R(1.35)*tube_n_m1_in_axes1_z;
+    const real tube_w_1_t_2 = R(1.35)*tube_n_m2_t_5;
+    const real tube_w_1_t_3 = R(1.35)*tube_n_m3_t_5;
+    const real tube_w_1_t_4 = R(1.35)*tube_n_m1_in_axes2_z;
+    const real tube_w_1_t_5 = R(1.35)*tube_n_m3_in_axes2_z;
+    const real tube_w_1_t_6 = R(1.35)*tube_m1_c1_t;
+    const real tube_w_1_t_7 = R(1.35)*tube_m3_c1_t;
+    const real tube_w_1_t_8 = R(1.35)*tube_m1_c2_t;
+    const real tube_w_1_t_9 = R(1.35)*tube_m3_c2;
+    const real tube_w_1_t_10 = R(1.35)*tube_mu1_c3;
+    const real tube_w_1_t_11 = R(1.35)*inv_tube_size_c3;
+    const real tube_w_1_t_12 = R(1.35)*tube_mu3_c3_t;
+    const real tube_w_1_t_13 = root(tube_q_3_t + tube_w_1_t_4*tube_w_1_t_4 +
+        tube_w_1_t_5*tube_w_1_t_5);
+    const real inv_tube_w_1_t_13 = 1/tube_w_1_t_13;
+    const real tube_w_1_t_14 = inv_tube_w_1_t_13*tube_q_3;
+    const real tube_w_1_t_15 = inv_tube_w_1_t_13*tube_w_1_t_4;
+    const real tube_w_1_t_16 = inv_tube_w_1_t_13*tube_w_1_t_5;
+    const real tube_w_1_t_17 = tube_w_1_t_15*tube_w_1_t_6 + tube_w_1_t_16*tube_w_1_t_7 -
+        tube_w_1_t_14;
+    const real tube_w_1_t_18 = 1 + tube_w_1_t_14*tube_w_1_t_17;
+    const real tube_w_1_t_19 = tube_w_1_t_15*tube_w_1_t_17 - tube_w_1_t_6;
+    const real tube_w_1_t_20 = tube_w_1_t_16*tube_w_1_t_17 - tube_w_1_t_7;
+    const real tube_w_1_t_21 = tube_w_1_t_15*tube_w_1_t_8 - tube_w_1_t_16*tube_w_1_t_9;
+    const real tube_w_1_t_22 = tube_w_1_t_14*tube_w_1_t_21;
+    const real tube_w_1_t_23 = tube_w_1_t_15*tube_w_1_t_21 - tube_w_1_t_8;
+    const real tube_w_1_t_24 = tube_w_1_t_9 + tube_w_1_t_16*tube_w_1_t_21;
+    const real tube_w_1_t_25 = tube_w_1_t_10*tube_w_1_t_15 - tube_w_1_t_12*tube_w_1_t_16;
+    const real tube_w_1_t_26 = tube_w_1_t_14*tube_w_1_t_25;
+    const real tube_w_1_t_27 = tube_w_1_t_10 - tube_w_1_t_15*tube_w_1_t_25;
+    const real tube_w_1_t_28 = tube_w_1_t_12 + tube_w_1_t_16*tube_w_1_t_25;
+    const real tube_w_1_t_29 = tube_w_1_t*tube_w_1_t_15 - tube_w_1_t_16*tube_w_1_t_3;
+    const real tube_w_1_t_30 = tube_w_1_t_14*tube_w_1_t_29;
+    const real tube_w_1_t_31 = tube_w_1_t - tube_w_1_t_15*tube_w_1_t_29;
+    const real tube_w_1_t_32 = tube_w_1_t_3 + tube_w_1_t_16*tube_w_1_t_29;
+    const real tube_w_1_t_33 = root(tube_w_1_t_18*tube_w_1_t_18 + tube_w_1_t_19*tube_w_1_t_19
+        + tube_w_1_t_20*tube_w_1_t_20);
+    const real inv_tube_w_1_t_33 = 1/tube_w_1_t_33;
+    const real tube_w_1_t_34 = inv_tube_w_1_t_33*tube_w_1_t_18;
+    const real tube_w_1_t_35 = inv_tube_w_1_t_33*tube_w_1_t_19;
+    const real tube_w_1_t_36 = inv_tube_w_1_t_33*tube_w_1_t_20;
+    const real tube_w_1_t_37 = tube_w_1_t_22*tube_w_1_t_34 + tube_w_1_t_23*tube_w_1_t_35 +
+        tube_w_1_t_24*tube_w_1_t_36;
+    const real tube_w_1_t_38 = tube_w_1_t_22 - tube_w_1_t_34*tube_w_1_t_37;
+    const real tube_w_1_t_39 = tube_w_1_t_23 - tube_w_1_t_35*tube_w_1_t_37;
+    const real tube_w_1_t_40 = tube_w_1_t_24 - tube_w_1_t_36*tube_w_1_t_37;
+    const real tube_w_1_t_41 = tube_w_1_t_26*tube_w_1_t_34 + tube_w_1_t_28*tube_w_1_t_36 -
+        tube_w_1_t_27*tube_w_1_t_35;
+    const real tube_w_1_t_42 = tube_w_1_t_26 - tube_w_1_t_34*tube_w_1_t_41;
+    const real tube_w_1_t_43 = tube_w_1_t_27 + tube_w_1_t_35*tube_w_1_t_41;
+    const real tube_w_1_t_44 = tube_w_1_t_28 - tube_w_1_t_36*tube_w_1_t_41;
+    const real tube_w_1_t_45 = tube_w_1_t_30*tube_w_1_t_34 + tube_w_1_t_32*tube_w_1_t_36 -
+        tube_w_1_t_31*tube_w_1_t_35;
+    const real tube_w_1_t_46 = tube_w_1_t_30 - tube_w_1_t_34*tube_w_1_t_45;
+    const real tube_w_1_t_47 = tube_w_1_t_31 + tube_w_1_t_35*tube_w_1_t_45;
+    const real tube_w_1_t_48 = tube_w_1_t_32 - tube_w_1_t_36*tube_w_1_t_45;
+    const real tube_w_1_t_49 = root(1 + tube_w_1_t_38*tube_w_1_t_38 +
+        tube_w_1_t_39*tube_w_1_t_39 + tube_w_1_t_40*tube_w_1_t_40);
+    const real inv_tube_w_1_t_49 = 1/tube_w_1_t_49;
+    const real tube_w_1_t_50 = inv_tube_w_1_t_49*tube_w_1_t_38;
+    const real tube_w_1_t_51 = inv_tube_w_1_t_49*tube_w_1_t_39;
+    const real tube_w_1_t_52 = inv_tube_w_1_t_49*tube_w_1_t_40;
+    const real tube_w_1_t_53 = tube_w_1_t_42*tube_w_1_t_50 + tube_w_1_t_44*tube_w_1_t_52 -
+        tube_w_1_t_43*tube_w_1_t_51;
+    const real tube_w_1_t_54 = tube_w_1_t_50*tube_w_1_t_53 - tube_w_1_t_42;
+    const real tube_w_1_t_55 = inv_tube_w_1_t_49*tube_w_1_t_53;
+    const real tube_w_1_t_56 = tube_w_1_t_43 + tube_w_1_t_51*tube_w_1_t_53;
+    const real tube_w_1_t_57 = tube_w_1_t_52*tube_w_1_t_53 - tube_w_1_t_44;
+    const real tube_w_1_t_58 = tube_w_1_t_46*tube_w_1_t_50 + tube_w_1_t_48*tube_w_1_t_52 -
+        inv_tube_w_1_t_49*tube_root_1 - tube_w_1_t_47*tube_w_1_t_51;
+    const real tube_w_1_t_59 = tube_w_1_t_50*tube_w_1_t_58 - tube_w_1_t_46;
+    const real tube_w_1_t_60 = tube_root_1 + inv_tube_w_1_t_49*tube_w_1_t_58;
+    const real tube_w_1_t_61 = tube_w_1_t_47 + tube_w_1_t_51*tube_w_1_t_58;
+    const real tube_w_1_t_62 = tube_w_1_t_52*tube_w_1_t_58 - tube_w_1_t_48;
+    const real tube_w_1_t_63 = root(tube_w_1_t_11*tube_w_1_t_11 + tube_w_1_t_54*tube_w_1_t_54
+        + tube_w_1_t_55*tube_w_1_t_55 + tube_w_1_t_56*tube_w_1_t_56 +
+        tube_w_1_t_57*tube_w_1_t_57);
+    const real inv_tube_w_1_t_63 = 1/tube_w_1_t_63;
+    const real tube_w_1_t_64 = inv_tube_w_1_t_63*tube_w_1_t_54;
+    const real tube_w_1_t_65 = inv_tube_w_1_t_63*tube_w_1_t_55;
+    const real tube_w_1_t_66 = inv_tube_w_1_t_63*tube_w_1_t_56;
+    const real tube_w_1_t_67 = inv_tube_w_1_t_63*tube_w_1_t_11;
+    const real tube_w_1_t_68 = inv_tube_w_1_t_63*tube_w_1_t_57;
+    const real tube_w_1_t_69 = tube_w_1_t_59*tube_w_1_t_64 + tube_w_1_t_60*tube_w_1_t_65 +
+        tube_w_1_t_61*tube_w_1_t_66 + tube_w_1_t_62*tube_w_1_t_68 -
+        tube_w_1_t_2*tube_w_1_t_67;
+    const real tube_w_1_t_70 = tube_w_1_t_59 - tube_w_1_t_64*tube_w_1_t_69;
+    const real tube_w_1_t_71 = tube_w_1_t_60 - tube_w_1_t_65*tube_w_1_t_69;
+    const real tube_w_1_t_72 = tube_w_1_t_61 - tube_w_1_t_66*tube_w_1_t_69;
+    const real tube_w_1_t_73 = tube_w_1_t_2 + tube_w_1_t_67*tube_w_1_t_69;
+    const real tube_w_1_t_74 = tube_w_1_t_62 - tube_w_1_t_68*tube_w_1_t_69;
+    const real tube_w_1_t_75 = root(tube_w_1_t_70*tube_w_1_t_70 + tube_w_1_t_71*tube_w_1_t_71
+        + tube_w_1_t_72*tube_w_1_t_72 + tube_w_1_t_73*tube_w_1_t_73 +
+        tube_w_1_t_74*tube_w_1_t_74);
+    const real inv_tube_w_1_t_75 = 1/tube_w_1_t_75;
+    /* (tube-nd_m1) rate of moment direction 1 */
+    const real tube_end_p1_in_axes2_x = tube_c_2*tube_n_m1_t_13 +
+        tube_e_1_in_axes2_x*tube_n_m1_t_12;
+    /* (tube-nd_m2) rate of moment direction 2 */
+    const real tube_end_p2_in_axes2_z = tube_c_1*tube_n_m2_t_2 - tube_n_m2_t*tube_s_1;
+    /* (tube-nd_m3) rate of moment direction 3 */
+    const real tube_end_p3_in_axes2_y = tube_e_1_in_axes2_x*tube_n_m3_t_4 -
+        tube_c_2*tube_n_m3_t_3;
+    /* (tube-acc_3_o) remainder without the acceleration in: acceleration of the reference point of
+       link 3, less gravity */
+    const real tube_acc_3_t = m->tube_acc_3_t[i];
+    const real tube_acc_3_t_2 = m->tube_acc_3_t_2[i];
+    const real tube_g_in_axes2_z = tube_acc_3_t_2*tube_c_1 - tube_acc_3_t*tube_s_1;
+    /* (tube-n_c1) unit force of the constraint wrench */
+    const real tube_n_c1_t = tube_c_1*tube_e_1_in_axes2_x;
+    const real tube_n_c1_t_2 = tube_e_1_in_axes2_x*tube_s_1;
+    const real tube_n_c1_x = tube_base_frame_xx*tube_n_c1_t + tube_base_frame_xy*tube_n_c1_t_2
+        - tube_base_frame_xz*tube_c_2;
+    const real tube_n_c1_y = tube_base_frame_yx*tube_n_c1_t + tube_base_frame_yy*tube_n_c1_t_2
+        - tube_base_frame_yz*tube_c_2;
+    const real tube_n_c1_z = tube_base_frame_zx*tube_n_c1_t + tube_base_frame_zy*tube_n_c1_t_2
+        - tube_base_frame_zz*tube_c_2;
+    /* (tube-n_c2) unit force of the constraint wrench */
+    const real tube_n_c2_x = tube_base_frame_xy*tube_c_1 - tube_base_frame_xx*tube_s_1;
+    const real tube_n_c2_y = tube_base_frame_yy*tube_c_1 - tube_base_frame_yx*tube_s_1;
+    const real tube_n_c2_z = tube_base_frame_zy*tube_c_1 - tube_base_frame_zx*tube_s_1;
+    v->tube_q_x = tube_q_x;
+    v->tube_q_y = tube_q_y;
+    v->tube_q_z = tube_q_z;
+    v->tube_root_1_t = tube_root_1_t;
+    v->tube_root_1 = tube_root_1;
+    v->tube_c_1 = tube_c_1;
+    v->tube_s_1 = tube_s_1;
+    v->tube_q_3_t = tube_q_3_t;
+    v->tube_q_3 = tube_q_3;
+    v->tube_c_2 = tube_c_2;
+    v->tube_e_1_in_axes2_x = tube_e_1_in_axes2_x;
+    v->axis_z_tube_axes2_x = axis_z_tube_axes2_x;
+    v->axis_z_tube_axes2_y = axis_z_tube_axes2_y;
+    v->axis_z_tube_axes2_z = axis_z_tube_axes2_z;
+    v->axis_y_tube_axes2_x = axis_y_tube_axes2_x;
+    v->axis_y_tube_axes2_y = axis_y_tube_axes2_y;
+    v->axis_y_tube_axes2_z = axis_y_tube_axes2_z;
+    v->axis_x_tube_axes2_x = axis_x_tube_axes2_x;
+    v->axis_x_tube_axes2_y = axis_x_tube_axes2_y;
+    v->axis_x_tube_axes2_z = axis_x_tube_axes2_z;
+    v->tube_n_m1_t = tube_n_m1_t;
+    v->tube_n_m1_t_2 = tube_n_m1_t_2;
+    v->tube_n_m1_t_3 = tube_n_m1_t_3;
+    v->tube_n_m1_t_4 = tube_n_m1_t_4;
+    v->tube_n_m1_t_5 = tube_n_m1_t_5;
+    v->tube_n_m1_t_6 = tube_n_m1_t_6;
+    v->tube_n_m1_t_7 = tube_n_m1_t_7;
+    v->tube_n_m1_t_8 = tube_n_m1_t_8;
+    v->tube_n_m1_t_9 = tube_n_m1_t_9;
+    v->tube_n_m1_t_10 = tube_n_m1_t_10;
+    v->tube_n_m1_t_11 = tube_n_m1_t_11;
+    v->tube_n_m1_t_12 = tube_n_m1_t_12;
+    v->tube_end_p1_in_axes2_z = tube_end_p1_in_axes2_z;
+    v->tube_n_m1_in_axes2_z = tube_n_m1_in_axes2_z;
+    v->tube_n_m1_in_axes1_z = tube_n_m1_in_axes1_z;
+    v->tube_n_m2_t = tube_n_m2_t;
+    v->tube_n_m2_t_2 = tube_n_m2_t_2;
+    v->tube_n_m2_t_3 = tube_n_m2_t_3;
+    v->tube_n_m2_in_axes2_y = tube_n_m2_in_axes2_y;
+    v->tube_end_p2_in_axes2_y = tube_end_p2_in_axes2_y;
+    v->tube_n_m3_t = tube_n_m3_t;
+    v->tube_n_m3_t_2 = tube_n_m3_t_2;
+    v->tube_n_m3_t_3 = tube_n_m3_t_3;
+    v->tube_end_p3_in_axes2_z = tube_end_p3_in_axes2_z;
+    v->tube_n_m3_in_axes2_z = tube_n_m3_in_axes2_z;
+    v->tube_n_m3_t_5 = tube_n_m3_t_5;
+    v->tube_f_c1_t = tube_f_c1_t;
+    v->inv_tube_f_c1_t = inv_tube_f_c1_t;
+    v->tube_m1_c1_t = tube_m1_c1_t;
+    v->tube_m3_c1_t = tube_m3_c1_t;
+    v->tube_m1_c2_t = tube_m1_c2_t;
+    v->tube_m3_c2 = tube_m3_c2;
+    v->tube_m1_c3 = tube_m1_c3;
+    v->tube_m3_c3_t = tube_m3_c3_t;
+    v->tube_mu_c1_in_axes2_y = tube_mu_c1_in_axes2_y;
+    v->tube_mu_c1_in_axes2_x = tube_mu_c1_in_axes2_x;
+    v->tube_mu_c1_in_axes2_z = tube_mu_c1_in_axes2_z;
+    v->tube_mu_c2_in_axes2_y = tube_mu_c2_in_axes2_y;
+    v->tube_mu_c2_t = tube_mu_c2_t;
+    v->tube_mu_c2_in_axes2_z = tube_mu_c2_in_axes2_z;
+    v->tube_size_c3 = tube_size_c3;
+    v->inv_tube_size_c3 = inv_tube_size_c3;
+    v->tube_mu1_c3 = tube_mu1_c3;
+    v->tube_mu3_c3_t = tube_mu3_c3_t;
+    v->tube_mu_c3_x = tube_mu_c3_x;
+    v->tube_mu_c3_y = tube_mu_c3_y;
+    v->tube_mu_c3_z = tube_mu_c3_z;
+    v->tube_w_1_t = tube_w_1_t;
+    v->tube_w_1_t_2 = tube_w_1_t_2;
+    v->tube_w_1_t_13 = tube_w_1_t_13;
+    v->inv_tube_w_1_t_13 = inv_tube_w_1_t_13;
+    v->tube_w_1_t_14 = tube_w_1_t_14;
+    v->tube_w_1_t_15 = tube_w_1_t_15;
+    v->tube_w_1_t_16 = tube_w_1_t_16;
+    v->tube_w_1_t_17 = tube_w_1_t_17;
+    v->tube_w_1_t_21 = tube_w_1_t_21;
+    v->tube_w_1_t_25 = tube_w_1_t_25;
+    v->tube_w_1_t_29 = tube_w_1_t_29;
+    v->tube_w_1_t_30 = tube_w_1_t_30;
+    v->tube_w_1_t_31 = tube_w_1_t_31;
+    v->tube_w_1_t_32 = tube_w_1_t_32;
+    v->tube_w_1_t_33 = tube_w_1_t_33;
+    v->inv_tube_w_1_t_33 = inv_tube_w_1_t_33;
+    v->tube_w_1_t_34 = tube_w_1_t_34;
+    v->tube_w_1_t_35 = tube_w_1_t_35;
+    v->tube_w_1_t_36 = tube_w_1_t_36;
+    v->tube_w_1_t_37 = tube_w_1_t_37;
+    v->tube_w_1_t_41 = tube_w_1_t_41;
+    v->tube_w_1_t_45 = tube_w_1_t_45;
+    v->tube_w_1_t_49 = tube_w_1_t_49;
+    v->inv_tube_w_1_t_49 = inv_tube_w_1_t_49;
+    v->tube_w_1_t_50 = tube_w_1_t_50;
+    v->tube_w_1_t_51 = tube_w_1_t_51;
+    v->tube_w_1_t_52 = tube_w_1_t_52;
+    v->tube_w_1_t_53 = tube_w_1_t_53;
+    v->tube_w_1_t_58 = tube_w_1_t_58;
+    v->tube_w_1_t_63 = tube_w_1_t_63;
+    v->inv_tube_w_1_t_63 = inv_tube_w_1_t_63;
+    v->tube_w_1_t_64 = tube_w_1_t_64;
+    v->tube_w_1_t_65 = tube_w_1_t_65;
+    v->tube_w_1_t_66 = tube_w_1_t_66;
+    v->tube_w_1_t_67 = tube_w_1_t_67;
+    v->tube_w_1_t_68 = tube_w_1_t_68;
+    v->tube_w_1_t_69 = tube_w_1_t_69;
+    v->tube_w_1_t_70 = tube_w_1_t_70;
+    v->tube_w_1_t_71 = tube_w_1_t_71;
+    v->tube_w_1_t_72 = tube_w_1_t_72;
+    v->tube_w_1_t_73 = tube_w_1_t_73;
+    v->tube_w_1_t_74 = tube_w_1_t_74;
+    v->tube_w_1_t_75 = tube_w_1_t_75;
+    v->inv_tube_w_1_t_75 = inv_tube_w_1_t_75;
+    v->tube_end_p1_in_axes2_x = tube_end_p1_in_axes2_x;
+    v->tube_end_p2_in_axes2_z = tube_end_p2_in_axes2_z;
+    v->tube_end_p3_in_axes2_y = tube_end_p3_in_axes2_y;
+    v->tube_g_in_axes2_z = tube_g_in_axes2_z;
+    v->tube_n_c1_x = tube_n_c1_x;
+    v->tube_n_c1_y = tube_n_c1_y;
+    v->tube_n_c1_z = tube_n_c1_z;
+    v->tube_n_c2_x = tube_n_c2_x;
+    v->tube_n_c2_y = tube_n_c2_y;
+    v->tube_n_c2_z = tube_n_c2_z;
+}
+
+INLINE void stage_tube_A_X(size_t w, size_t j, const real *A, values_tube *v)
+{
+    /* (tube-a_p) acceleration of the connection point without its centripetal part */
+    const real alpha_y = A[4*w + j];
+    const real alpha_z = A[5*w + j];
+    const real t_ddot_x = A[0*w + j];
+    const real tube_a_p_x = t_ddot_x + alpha_y*v->tube_q_z - alpha_z*v->tube_q_y;
+    const real alpha_x = A[3*w + j];
+    const real t_ddot_y = A[1*w + j];
+    const real tube_a_p_y = t_ddot_y + alpha_z*v->tube_q_x - alpha_x*v->tube_q_z;
+    const real t_ddot_z = A[2*w + j];
+    const real tube_a_p_z = t_ddot_z + alpha_x*v->tube_q_y - alpha_y*v->tube_q_x;
+    /* (tube-etad_1) acceleration with which the joints turn along moment direction 1 */
+    const real tube_alpha_in_axes2_y = alpha_x*v->axis_y_tube_axes2_x +
+        alpha_y*v->axis_y_tube_axes2_y + alpha_z*v->axis_y_tube_axes2_z;
+    const real tube_alpha_in_axes2_z = alpha_x*v->axis_z_tube_axes2_x +
+        alpha_y*v->axis_z_tube_axes2_y + alpha_z*v->axis_z_tube_axes2_z;
+    const real tube_etad_1_t = tube_alpha_in_axes2_y*v->tube_end_p1_in_axes2_z -
+        tube_alpha_in_axes2_z*v->tube_n_m1_in_axes2_z;
+    /* (tube-etad_2) acceleration with which the joints turn along moment direction 2 */
+    const real tube_alpha_in_axes2_x = alpha_x*v->axis_x_tube_axes2_x +
+        alpha_y*v->axis_x_tube_axes2_y + alpha_z*v->axis_x_tube_axes2_z;
+    const real tube_etad_2_t = tube_alpha_in_axes2_x*v->tube_end_p2_in_axes2_y -
+        tube_alpha_in_axes2_y*v->tube_n_m2_in_axes2_y;
+    /* (tube-etad_3) acceleration with which the joints turn along moment direction 3 */
+    const real tube_etad_3_t = tube_alpha_in_axes2_x*v->tube_end_p3_in_axes2_z -
+        tube_alpha_in_axes2_z*v->tube_n_m3_in_axes2_z;
+    v->tube_a_p_x = tube_a_p_x;
+    v->tube_a_p_y = tube_a_p_y;
+    v->tube_a_p_z = tube_a_p_z;
+    v->tube_etad_1_t = tube_etad_1_t;
+    v->tube_etad_2_t = tube_etad_2_t;
+    v->tube_etad_3_t = tube_etad_3_t;
+}
+
+INLINE void stage_tube_V_X(size_t w, size_t j, const real *V, values_tube *v)
+{
+    /* (tube-S_dot) velocity of the connection point */
+    const real omega_y = V[4*w + j];
+    const real omega_z = V[5*w + j];
+    const real tube_S_dot_t_3 = omega_y*v->tube_q_z - omega_z*v->tube_q_y;
+    const real omega_x = V[3*w + j];
+    const real tube_S_dot_t_4 = omega_z*v->tube_q_x - omega_x*v->tube_q_z;
+    const real tube_S_dot_t_5 = omega_x*v->tube_q_y - omega_y*v->tube_q_x;
+    const real t_dot_x = V[0*w + j];
+    const real tube_S_dot_x = t_dot_x + tube_S_dot_t_3;
+    const real t_dot_y = V[1*w + j];
+    const real tube_S_dot_y = t_dot_y + tube_S_dot_t_4;
+    const real t_dot_z = V[2*w + j];
+    const real tube_S_dot_z = t_dot_z + tube_S_dot_t_5;
+    const real tube_S_dot_in_axes2_x = v->axis_x_tube_axes2_x*tube_S_dot_x +
+        v->axis_x_tube_axes2_y*tube_S_dot_y + v->axis_x_tube_axes2_z*tube_S_dot_z;
+    const real tube_S_dot_in_axes2_y = v->axis_y_tube_axes2_x*tube_S_dot_x +
+        v->axis_y_tube_axes2_y*tube_S_dot_y + v->axis_y_tube_axes2_z*tube_S_dot_z;
+    const real tube_S_dot_in_axes2_z = v->axis_z_tube_axes2_x*tube_S_dot_x +
+        v->axis_z_tube_axes2_y*tube_S_dot_y + v->axis_z_tube_axes2_z*tube_S_dot_z;
+    /* (tube-eta_1) rate at which the joints turn along moment direction 1 */
+    const real tube_omega_in_axes2_y = v->axis_y_tube_axes2_x*omega_x +
+        v->axis_y_tube_axes2_y*omega_y + v->axis_y_tube_axes2_z*omega_z;
+    const real tube_omega_in_axes2_z = v->axis_z_tube_axes2_x*omega_x +
+        v->axis_z_tube_axes2_y*omega_y + v->axis_z_tube_axes2_z*omega_z;
+    const real tube_eta_1 = v->tube_n_m1_in_axes2_z*tube_omega_in_axes2_z -
+        v->tube_end_p1_in_axes2_z*tube_omega_in_axes2_y;
+    /* (tube-eta_2) rate at which the joints turn along moment direction 2 */
+    const real tube_omega_in_axes2_x = v->axis_x_tube_axes2_x*omega_x +
+        v->axis_x_tube_axes2_y*omega_y + v->axis_x_tube_axes2_z*omega_z;
+    const real tube_eta_2 = v->tube_n_m2_in_axes2_y*tube_omega_in_axes2_y -
+        v->tube_end_p2_in_axes2_y*tube_omega_in_axes2_x;
+    /* (tube-eta_3) rate at which the joints turn along moment direction 3 */
+    const real tube_eta_3 = v->tube_n_m3_in_axes2_z*tube_omega_in_axes2_z -
+        v->tube_end_p3_in_axes2_z*tube_omega_in_axes2_x;
+    /* (tube-u_1) centripetal acceleration of the connection point */
+    const real tube_u_1_x = omega_y*tube_S_dot_t_5 - omega_z*tube_S_dot_t_4;
+    const real tube_u_1_y = omega_z*tube_S_dot_t_3 - omega_x*tube_S_dot_t_5;
+    const real tube_u_1_z = omega_x*tube_S_dot_t_4 - omega_y*tube_S_dot_t_3;
+    /* (tube-bias) acceleration of the connection point at zero joint accelerations */
+    const real tube_bias_t_3 = 2*tube_S_dot_in_axes2_x;
+    /* (tube-qd_1) rate of joint 1 */
+    const real tube_qd_1_t_6 = R(1.35)*tube_eta_1;
+    const real tube_qd_1_t_7 = R(1.35)*tube_eta_2;
+    const real tube_qd_1_t_8 = R(1.35)*tube_eta_3;
+    v->tube_S_dot_t_3 = tube_S_dot_t_3;
+    v->tube_S_dot_t_4 = tube_S_dot_t_4;
+    v->tube_S_dot_t_5 = tube_S_dot_t_5;
+    v->tube_S_dot_in_axes2_x = tube_S_dot_in_axes2_x;
+    v->tube_S_dot_in_axes2_y = tube_S_dot_in_axes2_y;
+    v->tube_S_dot_in_axes2_z = tube_S_dot_in_axes2_z;
+    v->tube_omega_in_axes2_y = tube_omega_in_axes2_y;
+    v->tube_omega_in_axes2_z = tube_omega_in_axes2_z;
+    v->tube_eta_1 = tube_eta_1;
+    v->tube_omega_in_axes2_x = tube_omega_in_axes2_x;
+    v->tube_eta_2 = tube_eta_2;
+    v->tube_eta_3 = tube_eta_3;
+    v->tube_u_1_x = tube_u_1_x;
+    v->tube_u_1_y = tube_u_1_y;
+    v->tube_u_1_z = tube_u_1_z;
+    v->tube_bias_t_3 = tube_bias_t_3;
+    v->tube_qd_1_t_6 = tube_qd_1_t_6;
+    v->tube_qd_1_t_7 = tube_qd_1_t_7;
+    v->tube_qd_1_t_8 = tube_qd_1_t_8;
+}
+
+INLINE void stage_tube_A_V_X(size_t w, size_t j, const real *V, values_tube *v)
+{
+    /* (tube-S_ddot) acceleration of the connection point */
+    const real omega_y = V[4*w + j];
+    const real omega_z = V[5*w + j];
+    const real tube_S_ddot_x = v->tube_a_p_x + omega_y*v->tube_S_dot_t_5 -
+        omega_z*v->tube_S_dot_t_4;
+    const real omega_x = V[3*w + j];
+    const real tube_S_ddot_y = v->tube_a_p_y + omega_z*v->tube_S_dot_t_3 -
+        omega_x*v->tube_S_dot_t_5;
+    const real tube_S_ddot_z = v->tube_a_p_z + omega_x*v->tube_S_dot_t_4 -
+        omega_y*v->tube_S_dot_t_3;
+    v->tube_S_ddot_x = tube_S_ddot_x;
+    v->tube_S_ddot_y = tube_S_ddot_y;
+    v->tube_S_ddot_z = tube_S_ddot_z;
+}
+
+INLINE void stage_tube_Z_dynamics(const prepared *m, size_t i, values_tube *v)
+{
+    /* (tube-acc_3_o) remainder without the acceleration in: acceleration of the reference point of
+       link 3, less gravity */
+    const real tube_acc_3_t = m->tube_acc_3_t[i];
+    const real tube_acc_3_t_2 = m->tube_acc_3_t_2[i];
+    const real tube_acc_3_o_t = tube_acc_3_t*v->tube_c_1 + tube_acc_3_t_2*v->tube_s_1;
+    const real tube_acc_3_t_3 = m->tube_acc_3_t_3[i];
+    const real tube_g_in_axes2_x = tube_acc_3_o_t*v->tube_c_2 +
+        tube_acc_3_t_3*v->tube_e_1_in_axes2_x;
+    const real tube_g_in_axes2_y = tube_acc_3_o_t*v->tube_e_1_in_axes2_x -
+        tube_acc_3_t_3*v->tube_c_2;
+    const real tube_acc_3_o_in_axes2_x = v->axis_x_tube_axes2_x*v->tube_u_1_x +
+        v->axis_x_tube_axes2_y*v->tube_u_1_y + v->axis_x_tube_axes2_z*v->tube_u_1_z -
+        tube_g_in_axes2_x;
+    v->tube_g_in_axes2_x = tube_g_in_axes2_x;
+    v->tube_g_in_axes2_y = tube_g_in_axes2_y;
+    v->tube_acc_3_o_in_axes2_x = tube_acc_3_o_in_axes2_x;
+}
+
+INLINE void stage_tube_Z_joint_accelerations(values_tube *v)
+{
+    /* (tube-mu2_c3) moment along direction 2 that goes with it */
+    const real tube_mu2_c3 = 1/v->tube_size_c3;
+    /* (tube-w_1) force part of reciprocal wrench 1 */
+    const real tube_w_1_t_6 = R(1.35)*v->inv_tube_f_c1_t*v->tube_n_m3_t_5*v->tube_q_3;
+    const real tube_w_1_t_7 = R(1.35)*v->inv_tube_f_c1_t*v->tube_n_m1_in_axes1_z*v->tube_q_3;
+    const real tube_w_1_t_8 =
+        R(1.35)*v->inv_tube_f_c1_t*v->tube_n_m3_in_axes2_z*v->tube_root_1;
+    const real tube_w_1_t_9 =
+        R(1.35)*v->inv_tube_f_c1_t*v->tube_n_m1_in_axes2_z*v->tube_root_1;
+    const real tube_w_1_t_10 = R(1.35)*v->tube_m1_c3*tube_mu2_c3;
+    const real tube_w_1_t_11 = R(1.35)*tube_mu2_c3;
+    const real tube_w_1_t_12 = R(1.35)*v->tube_m3_c3_t*tube_mu2_c3;
+    const real tube_w_1_t_17 = v->tube_w_1_t_15*tube_w_1_t_6 + v->tube_w_1_t_16*tube_w_1_t_7 -
+        v->tube_w_1_t_14;
+    const real tube_w_1_t_18 = 1 + v->tube_w_1_t_14*tube_w_1_t_17;
+    const real tube_w_1_t_19 = v->tube_w_1_t_15*tube_w_1_t_17 - tube_w_1_t_6;
+    const real tube_w_1_t_20 = v->tube_w_1_t_16*tube_w_1_t_17 - tube_w_1_t_7;
+    const real tube_w_1_t_21 = v->tube_w_1_t_15*tube_w_1_t_8 - v->tube_w_1_t_16*tube_w_1_t_9;
+    const real tube_w_1_t_22 = v->tube_w_1_t_14*tube_w_1_t_21;
+    const real tube_w_1_t_23 = v->tube_w_1_t_15*tube_w_1_t_21 - tube_w_1_t_8;
+    const real tube_w_1_t_24 = tube_w_1_t_9 + v->tube_w_1_t_16*tube_w_1_t_21;
+    const real tube_w_1_t_25 = tube_w_1_t_10*v->tube_w_1_t_15 -
+        tube_w_1_t_12*v->tube_w_1_t_16;
+    const real tube_w_1_t_26 = v->tube_w_1_t_14*tube_w_1_t_25;
+    const real tube_w_1_t_27 = tube_w_1_t_10 - v->tube_w_1_t_15*tube_w_1_t_25;
+    const real tube_w_1_t_28 = tube_w_1_t_12 + v->tube_w_1_t_16*tube_w_1_t_25;
+    const real tube_w_1_t_33 = root(tube_w_1_t_18*tube_w_1_t_18 + tube_w_1_t_19*tube_w_1_t_19
+        + tube_w_1_t_20*tube_w_1_t_20);
+    const real inv_tube_w_1_t_33 = 1/tube_w_1_t_33;
+    const real tube_w_1_t_34 = inv_tube_w_1_t_33*tube_w_1_t_18;
+    const real tube_w_1_t_35 = inv_tube_w_1_t_33*tube_w_1_t_19;
+    const real tube_w_1_t_36 = inv_tube_w_1_t_33*tube_w_1_t_20;
+    const real tube_w_1_t_37 = tube_w_1_t_22*tube_w_1_t_34 + tube_w_1_t_23*tube_w_1_t_35 +
+        tube_w_1_t_24*tube_w_1_t_36;
+    const real tube_w_1_t_38 = tube_w_1_t_22 - tube_w_1_t_34*tube_w_1_t_37;
+    const real tube_w_1_t_39 = tube_w_1_t_23 - tube_w_1_t_35*tube_w_1_t_37;
+    const real tube_w_1_t_40 = tube_w_1_t_24 - tube_w_1_t_36*tube_w_1_t_37;
+    const real tube_w_1_t_41 = tube_w_1_t_26*tube_w_1_t_34 + tube_w_1_t_28*tube_w_1_t_36 -
+        tube_w_1_t_27*tube_w_1_t_35;
+    const real tube_w_1_t_42 = tube_w_1_t_26 - tube_w_1_t_34*tube_w_1_t_41;
+    const real tube_w_1_t_43 = tube_w_1_t_27 + tube_w_1_t_35*tube_w_1_t_41;
+    const real tube_w_1_t_44 = tube_w_1_t_28 - tube_w_1_t_36*tube_w_1_t_41;
+    const real tube_w_1_t_45 = v->tube_w_1_t_30*tube_w_1_t_34 + v->tube_w_1_t_32*tube_w_1_t_36
+        - v->tube_w_1_t_31*tube_w_1_t_35;
+    const real tube_w_1_t_46 = v->tube_w_1_t_30 - tube_w_1_t_34*tube_w_1_t_45;
+    const real tube_w_1_t_47 = v->tube_w_1_t_31 + tube_w_1_t_35*tube_w_1_t_45;
+    const real tube_w_1_t_48 = v->tube_w_1_t_32 - tube_w_1_t_36*tube_w_1_t_45;
+    const real tube_w_1_t_49 = root(1 + tube_w_1_t_38*tube_w_1_t_38 +
+        tube_w_1_t_39*tube_w_1_t_39 + tube_w_1_t_40*tube_w_1_t_40);
+    const real inv_tube_w_1_t_49 = 1/tube_w_1_t_49;
+    const real tube_w_1_t_50 = inv_tube_w_1_t_49*tube_w_1_t_38;
+    const real tube_w_1_t_51 = inv_tube_w_1_t_49*tube_w_1_t_39;
+    const real tube_w_1_t_52 = inv_tube_w_1_t_49*tube_w_1_t_40;
+    const real tube_w_1_t_53 = tube_w_1_t_42*tube_w_1_t_50 + tube_w_1_t_44*tube_w_1_t_52 -
+        tube_w_1_t_43*tube_w_1_t_51;
+    const real tube_w_1_t_54 = tube_w_1_t_50*tube_w_1_t_53 - tube_w_1_t_42;
+    const real tube_w_1_t_55 = inv_tube_w_1_t_49*tube_w_1_t_53;
+    const real tube_w_1_t_56 = tube_w_1_t_43 + tube_w_1_t_51*tube_w_1_t_53;
+    const real tube_w_1_t_57 = tube_w_1_t_52*tube_w_1_t_53 - tube_w_1_t_44;
+    const real tube_w_1_t_58 = tube_w_1_t_46*tube_w_1_t_50 + tube_w_1_t_48*tube_w_1_t_52 -
+        inv_tube_w_1_t_49*v->tube_root_1 - tube_w_1_t_47*tube_w_1_t_51;
+    const real tube_w_1_t_59 = tube_w_1_t_50*tube_w_1_t_58 - tube_w_1_t_46;
+    const real tube_w_1_t_60 = v->tube_root_1 + inv_tube_w_1_t_49*tube_w_1_t_58;
+    const real tube_w_1_t_61 = tube_w_1_t_47 + tube_w_1_t_51*tube_w_1_t_58;
+    const real tube_w_1_t_62 = tube_w_1_t_52*tube_w_1_t_58 - tube_w_1_t_48;
+    const real tube_w_1_t_63 = root(tube_w_1_t_11*tube_w_1_t_11 + tube_w_1_t_54*tube_w_1_t_54
+        + tube_w_1_t_55*tube_w_1_t_55 + tube_w_1_t_56*tube_w_1_t_56 +
+        tube_w_1_t_57*tube_w_1_t_57);
+    const real inv_tube_w_1_t_63 = 1/tube_w_1_t_63;
+    const real tube_w_1_t_64 = inv_tube_w_1_t_63*tube_w_1_t_54;
+    const real tube_w_1_t_65 = inv_tube_w_1_t_63*tube_w_1_t_55;
+    const real tube_w_1_t_66 = inv_tube_w_1_t_63*tube_w_1_t_56;
+    const real tube_w_1_t_67 = inv_tube_w_1_t_63*tube_w_1_t_11;
+    const real tube_w_1_t_68 = inv_tube_w_1_t_63*tube_w_1_t_57;
+    const real tube_w_1_t_69 = tube_w_1_t_59*tube_w_1_t_64 + tube_w_1_t_60*tube_w_1_t_65 +
+        tube_w_1_t_61*tube_w_1_t_66 + tube_w_1_t_62*tube_w_1_t_68 -
+        v->tube_w_1_t_2*tube_w_1_t_67;
+    const real tube_w_1_t_70 = tube_w_1_t_59 - tube_w_1_t_64*tube_w_1_t_69;
+    const real tube_w_1_t_71 = tube_w_1_t_60 - tube_w_1_t_65*tube_w_1_t_69;
+    const real tube_w_1_t_72 = tube_w_1_t_61 - tube_w_1_t_66*tube_w_1_t_69;
+    const real tube_w_1_t_73 = v->tube_w_1_t_2 + tube_w_1_t_67*tube_w_1_t_69;
+    const real tube_w_1_t_74 = tube_w_1_t_62 - tube_w_1_t_68*tube_w_1_t_69;
+    const real tube_w_1_t_75 = root(tube_w_1_t_70*tube_w_1_t_70 + tube_w_1_t_71*tube_w_1_t_71
+        + tube_w_1_t_72*tube_w_1_t_72 + tube_w_1_t_73*tube_w_1_t_73 +
+        tube_w_1_t_74*tube_w_1_t_74);
+    /* (tube-qd_1) rate of joint 1 */
+    const real inv_tube_w_1_t_75 = 1/tube_w_1_t_75;
+    const real tube_qd_1_t = inv_tube_w_1_t_75*tube_w_1_t_70;
+    const real tube_qd_1_t_2 = inv_tube_w_1_t_75*tube_w_1_t_71;
+    const real tube_qd_1_t_3 = inv_tube_w_1_t_75*tube_w_1_t_72;
+    const real tube_qd_1_t_4 = inv_tube_w_1_t_75*tube_w_1_t_73;
+    const real tube_qd_1_t_5 = inv_tube_w_1_t_75*tube_w_1_t_74;
+    const real tube_qd_1 = inv_tube_w_1_t_75*(v->tube_S_dot_in_axes2_y*tube_qd_1_t +
+        v->tube_S_dot_in_axes2_z*tube_qd_1_t_2 + tube_qd_1_t_3*v->tube_qd_1_t_6 +
+        tube_qd_1_t_5*v->tube_qd_1_t_8 - tube_qd_1_t_4*v->tube_qd_1_t_7);
+    /* (tube-qd_2) rate of joint 2 */
+    const real tube_qd_2_t = inv_tube_w_1_t_63*(v->tube_S_dot_in_axes2_y*tube_w_1_t_64 +
+        v->tube_S_dot_in_axes2_z*tube_w_1_t_65 + v->tube_qd_1_t_6*tube_w_1_t_66 +
+        v->tube_qd_1_t_7*tube_w_1_t_67 + v->tube_qd_1_t_8*tube_w_1_t_68 -
+        tube_qd_1*tube_w_1_t_69);
+    const real tube_qd_2_t_2 = inv_tube_w_1_t_49*(inv_tube_w_1_t_49*v->tube_S_dot_in_axes2_z +
+        v->tube_S_dot_in_axes2_y*tube_w_1_t_50 + tube_qd_1*tube_w_1_t_58 +
+        v->tube_qd_1_t_6*tube_w_1_t_51 + v->tube_qd_1_t_8*tube_w_1_t_52 +
+        tube_qd_2_t*tube_w_1_t_53);
+    const real tube_qd_2_t_3 = v->tube_S_dot_in_axes2_y*v->tube_w_1_t_14 +
+        v->tube_qd_1_t_6*v->tube_w_1_t_15 + v->tube_qd_1_t_8*v->tube_w_1_t_16 +
+        tube_qd_2_t_2*tube_w_1_t_21 +
+        inv_tube_w_1_t_33*tube_w_1_t_17*(v->tube_S_dot_in_axes2_y*tube_w_1_t_34 +
+        tube_qd_1*tube_w_1_t_45 + v->tube_qd_1_t_6*tube_w_1_t_35 +
+        v->tube_qd_1_t_8*tube_w_1_t_36 + tube_qd_2_t*tube_w_1_t_41 -
+        tube_qd_2_t_2*tube_w_1_t_37) - tube_qd_1*v->tube_w_1_t_29 - tube_qd_2_t*tube_w_1_t_25;
+    const real tube_qd_2 = v->inv_tube_w_1_t_13*tube_qd_2_t_3;
+    /* (tube-omega_1) angular velocity of link 1 */
+    const real tube_omega_1_in_axes2_x = v->tube_e_1_in_axes2_x*tube_qd_1;
+    const real tube_omega_1_in_axes2_y = -v->tube_c_2*tube_qd_1;
+    /* (tube-W_2) centripetal tensor of link 2 */
+    const real tube_W_2_in_axes2_yz = tube_omega_1_in_axes2_y*tube_qd_2;
+    const real tube_W_2_in_axes2_xz = tube_omega_1_in_axes2_x*tube_qd_2;
+    /* (tube-nd_m1) rate of moment direction 1 */
+    const real tube_nd_m1_in_axes2_y = v->tube_end_p1_in_axes2_x*v->tube_omega_in_axes2_y -
+        v->tube_end_p1_in_axes2_x*tube_omega_1_in_axes2_y -
+        v->tube_n_m1_in_axes2_z*v->tube_omega_in_axes2_x;
+    const real tube_nd_m1_in_axes2_z = v->tube_end_p1_in_axes2_x*v->tube_omega_in_axes2_z -
+        v->tube_end_p1_in_axes2_x*tube_qd_2 -
+        v->tube_end_p1_in_axes2_z*v->tube_omega_in_axes2_x;
+    /* (tube-nu_1) bias of the angular acceleration along moment direction 1 */
+    const real tube_nu_1_t = tube_omega_1_in_axes2_x - v->tube_omega_in_axes2_x;
+    const real tube_nu_1_t_2 = v->tube_omega_in_axes2_y - tube_omega_1_in_axes2_y;
+    const real tube_nu_1_t_3 = v->tube_omega_in_axes2_z - tube_qd_2;
+    const real tube_nu_1_t_4 = tube_nd_m1_in_axes2_y*tube_nu_1_t_2 +
+        tube_nd_m1_in_axes2_z*tube_nu_1_t_3 - tube_nu_1_t*(v->tube_end_p1_in_axes2_z*tube_qd_2
+        + v->tube_n_m1_in_axes2_z*tube_omega_1_in_axes2_y);
+    const real tube_nu_1 = tube_nu_1_t_4 - tube_W_2_in_axes2_xz*v->tube_end_p1_in_axes2_z;
+    /* (tube-nd_m2) rate of moment direction 2 */
+    const real tube_nd_m2_in_axes2_x = v->tube_end_p2_in_axes2_z*v->tube_omega_in_axes2_x -
+        v->tube_end_p2_in_axes2_z*tube_omega_1_in_axes2_x -
+        v->tube_n_m2_in_axes2_y*v->tube_omega_in_axes2_z;
+    const real tube_nd_m2_in_axes2_y = v->tube_end_p2_in_axes2_z*v->tube_omega_in_axes2_y -
+        v->tube_end_p2_in_axes2_y*v->tube_omega_in_axes2_z -
+        v->tube_end_p2_in_axes2_z*tube_omega_1_in_axes2_y;
+    /* (tube-nu_2) bias of the angular acceleration along moment direction 2 */
+    const real tube_nu_2_t = -tube_W_2_in_axes2_xz*v->tube_n_m2_in_axes2_y -
+        tube_W_2_in_axes2_yz*v->tube_end_p2_in_axes2_y;
+    const real tube_nu_2_t_2 = tube_nd_m2_in_axes2_y*tube_nu_1_t_2 -
+        tube_nd_m2_in_axes2_x*tube_nu_1_t -
+        tube_nu_1_t_3*(-v->tube_end_p2_in_axes2_y*tube_omega_1_in_axes2_y -
+        v->tube_n_m2_in_axes2_y*tube_omega_1_in_axes2_x);
+    const real tube_nu_2 = tube_nu_2_t_2 - tube_nu_2_t;
+    /* (tube-nd_m3) rate of moment direction 3 */
+    const real tube_nd_m3_in_axes2_x = v->tube_end_p3_in_axes2_y*tube_omega_1_in_axes2_x +
+        v->tube_n_m3_in_axes2_z*v->tube_omega_in_axes2_y -
+        v->tube_end_p3_in_axes2_y*v->tube_omega_in_axes2_x;
+    const real tube_nd_m3_in_axes2_z = v->tube_end_p3_in_axes2_y*tube_qd_2 +
+        v->tube_end_p3_in_axes2_z*v->tube_omega_in_axes2_y -
+        v->tube_end_p3_in_axes2_y*v->tube_omega_in_axes2_z;
+    /* (tube-nu_3) bias of the angular acceleration along moment direction 3 */
+    const real tube_nu_3_t = tube_nd_m3_in_axes2_x*tube_nu_1_t +
+        tube_nu_1_t_2*(v->tube_end_p3_in_axes2_z*tube_qd_2 +
+        v->tube_n_m3_in_axes2_z*tube_omega_1_in_axes2_x) -
+        tube_nd_m3_in_axes2_z*tube_nu_1_t_3;
+    const real tube_nu_3 = tube_W_2_in_axes2_yz*v->tube_end_p3_in_axes2_z - tube_nu_3_t;
+    v->tube_w_1_t_17 = tube_w_1_t_17;
+    v->tube_w_1_t_21 = tube_w_1_t_21;
+    v->tube_w_1_t_25 = tube_w_1_t_25;
+    v->tube_w_1_t_33 = tube_w_1_t_33;
+    v->inv_tube_w_1_t_33 = inv_tube_w_1_t_33;
+    v->tube_w_1_t_34 = tube_w_1_t_34;
+    v->tube_w_1_t_35 = tube_w_1_t_35;
+    v->tube_w_1_t_36 = tube_w_1_t_36;
+    v->tube_w_1_t_37 = tube_w_1_t_37;
+    v->tube_w_1_t_41 = tube_w_1_t_41;
+    v->tube_w_1_t_45 = tube_w_1_t_45;
+    v->tube_w_1_t_49 = tube_w_1_t_49;
+    v->inv_tube_w_1_t_49 = inv_tube_w_1_t_49;
+    v->tube_w_1_t_50 = tube_w_1_t_50;
+    v->tube_w_1_t_51 = tube_w_1_t_51;
+    v->tube_w_1_t_52 = tube_w_1_t_52;
+    v->tube_w_1_t_53 = tube_w_1_t_53;
+    v->tube_w_1_t_58 = tube_w_1_t_58;
+    v->tube_w_1_t_63 = tube_w_1_t_63;
+    v->inv_tube_w_1_t_63 = inv_tube_w_1_t_63;
+    v->tube_w_1_t_64 = tube_w_1_t_64;
+    v->tube_w_1_t_65 = tube_w_1_t_65;
+    v->tube_w_1_t_66 = tube_w_1_t_66;
+    v->tube_w_1_t_67 = tube_w_1_t_67;
+    v->tube_w_1_t_68 = tube_w_1_t_68;
+    v->tube_w_1_t_69 = tube_w_1_t_69;
+    v->tube_w_1_t_75 = tube_w_1_t_75;
+    v->inv_tube_w_1_t_75 = inv_tube_w_1_t_75;
+    v->tube_qd_1_t = tube_qd_1_t;
+    v->tube_qd_1_t_2 = tube_qd_1_t_2;
+    v->tube_qd_1_t_3 = tube_qd_1_t_3;
+    v->tube_qd_1_t_4 = tube_qd_1_t_4;
+    v->tube_qd_1_t_5 = tube_qd_1_t_5;
+    v->tube_qd_2 = tube_qd_2;
+    v->tube_omega_1_in_axes2_x = tube_omega_1_in_axes2_x;
+    v->tube_omega_1_in_axes2_y = tube_omega_1_in_axes2_y;
+    v->tube_W_2_in_axes2_yz = tube_W_2_in_axes2_yz;
+    v->tube_W_2_in_axes2_xz = tube_W_2_in_axes2_xz;
+    v->tube_nu_1 = tube_nu_1;
+    v->tube_nu_2 = tube_nu_2;
+    v->tube_nu_3 = tube_nu_3;
+}
+
+INLINE void stage_tube_dynamics_required(values_tube *v)
+{
+    /* (tube-Hk_a_1) moment of the column's unit force about the platform origin */
+    const real tube_Hk_a_1_x = v->axis_x_tube_axes2_x*v->tube_mu_c1_in_axes2_x +
+        v->axis_y_tube_axes2_x*v->tube_mu_c1_in_axes2_y + v->axis_y_tube_axes2_z*v->tube_q_y +
+        v->axis_z_tube_axes2_x*v->tube_mu_c1_in_axes2_z - v->axis_y_tube_axes2_y*v->tube_q_z;
+    const real tube_Hk_a_1_y = v->axis_x_tube_axes2_y*v->tube_mu_c1_in_axes2_x +
+        v->axis_y_tube_axes2_x*v->tube_q_z + v->axis_y_tube_axes2_y*v->tube_mu_c1_in_axes2_y +
+        v->axis_z_tube_axes2_y*v->tube_mu_c1_in_axes2_z - v->axis_y_tube_axes2_z*v->tube_q_x;
+    const real tube_Hk_a_1_z = v->axis_x_tube_axes2_z*v->tube_mu_c1_in_axes2_x +
+        v->axis_y_tube_axes2_y*v->tube_q_x + v->axis_y_tube_axes2_z*v->tube_mu_c1_in_axes2_y +
+        v->axis_z_tube_axes2_z*v->tube_mu_c1_in_axes2_z - v->axis_y_tube_axes2_x*v->tube_q_y;
+    /* (tube-Hk_a_2) moment of the column's unit force about the platform origin */
+    const real tube_Hk_a_2_x = v->axis_y_tube_axes2_x*v->tube_mu_c2_in_axes2_y +
+        v->axis_z_tube_axes2_x*v->tube_mu_c2_in_axes2_z + v->axis_z_tube_axes2_z*v->tube_q_y -
+        v->axis_x_tube_axes2_x*v->tube_mu_c2_t - v->axis_z_tube_axes2_y*v->tube_q_z;
+    const real tube_Hk_a_2_y = v->axis_y_tube_axes2_y*v->tube_mu_c2_in_axes2_y +
+        v->axis_z_tube_axes2_x*v->tube_q_z + v->axis_z_tube_axes2_y*v->tube_mu_c2_in_axes2_z -
+        v->axis_x_tube_axes2_y*v->tube_mu_c2_t - v->axis_z_tube_axes2_z*v->tube_q_x;
+    const real tube_Hk_a_2_z = v->axis_y_tube_axes2_z*v->tube_mu_c2_in_axes2_y +
+        v->axis_z_tube_axes2_y*v->tube_q_x + v->axis_z_tube_axes2_z*v->tube_mu_c2_in_axes2_z -
+        v->axis_x_tube_axes2_z*v->tube_mu_c2_t - v->axis_z_tube_axes2_x*v->tube_q_y;
+    v->tube_Hk_a_1_x = tube_Hk_a_1_x;
+    v->tube_Hk_a_1_y = tube_Hk_a_1_y;
+    v->tube_Hk_a_1_z = tube_Hk_a_1_z;
+    v->tube_Hk_a_2_x = tube_Hk_a_2_x;
+    v->tube_Hk_a_2_y = tube_Hk_a_2_y;
+    v->tube_Hk_a_2_z = tube_Hk_a_2_z;
+}
+
+INLINE void stage_tube_legs_required(const prepared *m, size_t i, values_tube *v)
+{
+    /* (tube-qd_1) rate of joint 1 */
+    const real tube_qd_1_t = v->inv_tube_w_1_t_75*v->tube_w_1_t_70;
+    const real tube_qd_1_t_2 = v->inv_tube_w_1_t_75*v->tube_w_1_t_71;
+    const real tube_qd_1_t_3 = v->inv_tube_w_1_t_75*v->tube_w_1_t_72;
+    const real tube_qd_1_t_4 = v->inv_tube_w_1_t_75*v->tube_w_1_t_73;
+    const real tube_qd_1_t_5 = v->inv_tube_w_1_t_75*v->tube_w_1_t_74;
+    const real tube_qd_1 = v->inv_tube_w_1_t_75*(v->tube_S_dot_in_axes2_y*tube_qd_1_t +
+        v->tube_S_dot_in_axes2_z*tube_qd_1_t_2 + tube_qd_1_t_3*v->tube_qd_1_t_6 +
+        tube_qd_1_t_5*v->tube_qd_1_t_8 - tube_qd_1_t_4*v->tube_qd_1_t_7);
+    /* (tube-qd_2) rate of joint 2 */
+    const real tube_qd_2_t = v->inv_tube_w_1_t_63*(v->tube_S_dot_in_axes2_y*v->tube_w_1_t_64 +
+        v->tube_S_dot_in_axes2_z*v->tube_w_1_t_65 + v->tube_qd_1_t_6*v->tube_w_1_t_66 +
+        v->tube_qd_1_t_7*v->tube_w_1_t_67 + v->tube_qd_1_t_8*v->tube_w_1_t_68 -
+        tube_qd_1*v->tube_w_1_t_69);
+    const real tube_qd_2_t_2 =
+        v->inv_tube_w_1_t_49*(v->inv_tube_w_1_t_49*v->tube_S_dot_in_axes2_z +
+        v->tube_S_dot_in_axes2_y*v->tube_w_1_t_50 + tube_qd_1*v->tube_w_1_t_58 +
+        v->tube_qd_1_t_6*v->tube_w_1_t_51 + v->tube_qd_1_t_8*v->tube_w_1_t_52 +
+        tube_qd_2_t*v->tube_w_1_t_53);
+    const real tube_qd_2_t_3 = v->tube_S_dot_in_axes2_y*v->tube_w_1_t_14 +
+        v->tube_qd_1_t_6*v->tube_w_1_t_15 + v->tube_qd_1_t_8*v->tube_w_1_t_16 +
+        tube_qd_2_t_2*v->tube_w_1_t_21 +
+        v->inv_tube_w_1_t_33*v->tube_w_1_t_17*(v->tube_S_dot_in_axes2_y*v->tube_w_1_t_34 +
+        tube_qd_1*v->tube_w_1_t_45 + v->tube_qd_1_t_6*v->tube_w_1_t_35 +
+        v->tube_qd_1_t_8*v->tube_w_1_t_36 + tube_qd_2_t*v->tube_w_1_t_41 -
+        tube_qd_2_t_2*v->tube_w_1_t_37) - tube_qd_1*v->tube_w_1_t_29 -
+        tube_qd_2_t*v->tube_w_1_t_25;
+    const real tube_qd_2 = v->inv_tube_w_1_t_13*tube_qd_2_t_3;
+    /* (tube-omega_1) angular velocity of link 1 */
+    const real tube_omega_1_in_axes2_x = v->tube_e_1_in_axes2_x*tube_qd_1;
+    const real tube_omega_1_in_axes2_y = -v->tube_c_2*tube_qd_1;
+    /* (tube-W_2) centripetal tensor of link 2 */
+    const real tube_W_2_in_axes2_yz = tube_omega_1_in_axes2_y*tube_qd_2;
+    const real tube_W_2_in_axes2_xz = tube_omega_1_in_axes2_x*tube_qd_2;
+    const real tube_W_2_in_axes2_xy = tube_omega_1_in_axes2_x*tube_omega_1_in_axes2_y;
+    /* (tube-bias) acceleration of the connection point at zero joint accelerations */
+    const real tube_bias_t = tube_W_2_in_axes2_xz*v->tube_q_3;
+    const real tube_bias_t_2 = -tube_W_2_in_axes2_xy*v->tube_q_3;
+    const real tube_bias_t_4 = v->tube_bias_t_3*tube_qd_2;
+    const real tube_bias_t_5 = v->tube_bias_t_3*tube_omega_1_in_axes2_y;
+    const real tube_bias_in_axes2_y = tube_bias_t_4 - tube_bias_t_2;
+    const real tube_bias_in_axes2_z = 2*tube_bias_t - tube_bias_t_5;
+    /* (tube-rel) acceleration of the connection point left to the joint accelerations */
+    const real tube_rel_in_axes2_y = v->axis_y_tube_axes2_x*v->tube_S_ddot_x +
+        v->axis_y_tube_axes2_y*v->tube_S_ddot_y + v->axis_y_tube_axes2_z*v->tube_S_ddot_z -
+        tube_bias_in_axes2_y;
+    const real tube_rel_in_axes2_z = v->axis_z_tube_axes2_x*v->tube_S_ddot_x +
+        v->axis_z_tube_axes2_y*v->tube_S_ddot_y + v->axis_z_tube_axes2_z*v->tube_S_ddot_z -
+        tube_bias_in_axes2_z;
+    /* (tube-nd_m1) rate of moment direction 1 */
+    const real tube_nd_m1_in_axes2_y = v->tube_end_p1_in_axes2_x*v->tube_omega_in_axes2_y -
+        v->tube_end_p1_in_axes2_x*tube_omega_1_in_axes2_y -
+        v->tube_n_m1_in_axes2_z*v->tube_omega_in_axes2_x;
+    const real tube_nd_m1_in_axes2_z = v->tube_end_p1_in_axes2_x*v->tube_omega_in_axes2_z -
+        v->tube_end_p1_in_axes2_x*tube_qd_2 -
+        v->tube_end_p1_in_axes2_z*v->tube_omega_in_axes2_x;
+    /* (tube-nu_1) bias of the angular acceleration along moment direction 1 */
+    const real tube_nu_1_t = tube_omega_1_in_axes2_x - v->tube_omega_in_axes2_x;
+    const real tube_nu_1_t_2 = v->tube_omega_in_axes2_y - tube_omega_1_in_axes2_y;
+    const real tube_nu_1_t_3 = v->tube_omega_in_axes2_z - tube_qd_2;
+    const real tube_nu_1_t_4 = tube_nd_m1_in_axes2_y*tube_nu_1_t_2 +
+        tube_nd_m1_in_axes2_z*tube_nu_1_t_3 - tube_nu_1_t*(v->tube_end_p1_in_axes2_z*tube_qd_2
+        + v->tube_n_m1_in_axes2_z*tube_omega_1_in_axes2_y);
+    const real tube_nu_1 = tube_nu_1_t_4 - tube_W_2_in_axes2_xz*v->tube_end_p1_in_axes2_z;
+    /* (tube-nd_m2) rate of moment direction 2 */
+    const real tube_nd_m2_in_axes2_x = v->tube_end_p2_in_axes2_z*v->tube_omega_in_axes2_x -
+        v->tube_end_p2_in_axes2_z*tube_omega_1_in_axes2_x -
+        v->tube_n_m2_in_axes2_y*v->tube_omega_in_axes2_z;
+    const real tube_nd_m2_in_axes2_y = v->tube_end_p2_in_axes2_z*v->tube_omega_in_axes2_y -
+        v->tube_end_p2_in_axes2_y*v->tube_omega_in_axes2_z -
+        v->tube_end_p2_in_axes2_z*tube_omega_1_in_axes2_y;
+    /* (tube-nu_2) bias of the angular acceleration along moment direction 2 */
+    const real tube_nu_2_t = -tube_W_2_in_axes2_xz*v->tube_n_m2_in_axes2_y -
+        tube_W_2_in_axes2_yz*v->tube_end_p2_in_axes2_y;
+    const real tube_nu_2_t_2 = tube_nd_m2_in_axes2_y*tube_nu_1_t_2 -
+        tube_nd_m2_in_axes2_x*tube_nu_1_t -
+        tube_nu_1_t_3*(-v->tube_end_p2_in_axes2_y*tube_omega_1_in_axes2_y -
+        v->tube_n_m2_in_axes2_y*tube_omega_1_in_axes2_x);
+    const real tube_nu_2 = tube_nu_2_t_2 - tube_nu_2_t;
+    /* (tube-nd_m3) rate of moment direction 3 */
+    const real tube_nd_m3_in_axes2_x = v->tube_end_p3_in_axes2_y*tube_omega_1_in_axes2_x +
+        v->tube_n_m3_in_axes2_z*v->tube_omega_in_axes2_y -
+        v->tube_end_p3_in_axes2_y*v->tube_omega_in_axes2_x;
+    const real tube_nd_m3_in_axes2_z = v->tube_end_p3_in_axes2_y*tube_qd_2 +
+        v->tube_end_p3_in_axes2_z*v->tube_omega_in_axes2_y -
+        v->tube_end_p3_in_axes2_y*v->tube_omega_in_axes2_z;
+    /* (tube-nu_3) bias of the angular acceleration along moment direction 3 */
+    const real tube_nu_3_t = tube_nd_m3_in_axes2_x*tube_nu_1_t +
+        tube_nu_1_t_2*(v->tube_end_p3_in_axes2_z*tube_qd_2 +
+        v->tube_n_m3_in_axes2_z*tube_omega_1_in_axes2_x) -
+        tube_nd_m3_in_axes2_z*tube_nu_1_t_3;
+    const real tube_nu_3 = tube_W_2_in_axes2_yz*v->tube_end_p3_in_axes2_z - tube_nu_3_t;
+    /* (tube-etad_1) acceleration with which the joints turn along moment direction 1 */
+    const real tube_etad_1 = tube_nu_1 - v->tube_etad_1_t;
+    /* (tube-etad_2) acceleration with which the joints turn along moment direction 2 */
+    const real tube_etad_2 = tube_nu_2 - v->tube_etad_2_t;
+    /* (tube-etad_3) acceleration with which the joints turn along moment direction 3 */
+    const real tube_etad_3 = tube_nu_3 - v->tube_etad_3_t;
+    /* (tube-qdd_1) acceleration of joint 1 */
+    const real tube_qdd_1_t = R(1.35)*tube_etad_1;
+    const real tube_qdd_1_t_2 = R(1.35)*tube_etad_2;
+    const real tube_qdd_1_t_3 = R(1.35)*tube_etad_3;
+    const real tube_qdd_1 = v->inv_tube_w_1_t_75*(tube_qd_1_t*tube_rel_in_axes2_y +
+        tube_qd_1_t_2*tube_rel_in_axes2_z + tube_qd_1_t_3*tube_qdd_1_t +
+        tube_qd_1_t_5*tube_qdd_1_t_3 - tube_qd_1_t_4*tube_qdd_1_t_2);
+    /* (tube-qdd_2) acceleration of joint 2 */
+    const real tube_qdd_2_t = v->inv_tube_w_1_t_63*(tube_qdd_1_t*v->tube_w_1_t_66 +
+        tube_qdd_1_t_2*v->tube_w_1_t_67 + tube_qdd_1_t_3*v->tube_w_1_t_68 +
+        tube_rel_in_axes2_y*v->tube_w_1_t_64 + tube_rel_in_axes2_z*v->tube_w_1_t_65 -
+        tube_qdd_1*v->tube_w_1_t_69);
+    const real tube_qdd_2_t_2 = v->inv_tube_w_1_t_49*(v->inv_tube_w_1_t_49*tube_rel_in_axes2_z
+        + tube_qdd_1*v->tube_w_1_t_58 + tube_qdd_1_t*v->tube_w_1_t_51 +
+        tube_qdd_1_t_3*v->tube_w_1_t_52 + tube_qdd_2_t*v->tube_w_1_t_53 +
+        tube_rel_in_axes2_y*v->tube_w_1_t_50);
+    const real tube_qdd_2_t_3 = tube_qdd_1_t*v->tube_w_1_t_15 +
+        tube_qdd_1_t_3*v->tube_w_1_t_16 + tube_qdd_2_t_2*v->tube_w_1_t_21 +
+        tube_rel_in_axes2_y*v->tube_w_1_t_14 +
+        v->inv_tube_w_1_t_33*v->tube_w_1_t_17*(tube_qdd_1*v->tube_w_1_t_45 +
+        tube_qdd_1_t*v->tube_w_1_t_35 + tube_qdd_1_t_3*v->tube_w_1_t_36 +
+        tube_qdd_2_t*v->tube_w_1_t_41 + tube_rel_in_axes2_y*v->tube_w_1_t_34 -
+        tube_qdd_2_t_2*v->tube_w_1_t_37) - tube_qdd_1*v->tube_w_1_t_29 -
+        tube_qdd_2_t*v->tube_w_1_t_25;
+    const real tube_qdd_2 = v->inv_tube_w_1_t_13*tube_qdd_2_t_3;
+    /* (tube-alpha_1) angular acceleration of link 1 */
+    const real tube_alpha_1_in_axes2_x = v->tube_e_1_in_axes2_x*tube_qdd_1;
+    const real tube_alpha_1_in_axes2_y = -v->tube_c_2*tube_qdd_1;
+    /* (tube-alpha_2) angular acceleration of link 2 */
+    const real tube_alpha_2_in_axes2_x = tube_W_2_in_axes2_yz + tube_alpha_1_in_axes2_x;
+    const real tube_alpha_2_in_axes2_y = tube_alpha_1_in_axes2_y - tube_W_2_in_axes2_xz;
+    /* (tube-B_2) acceleration tensor of link 2 */
+    const real tube_B_2_in_axes2_xy = tube_W_2_in_axes2_xy - tube_qdd_2;
+    const real tube_B_2_in_axes2_yx = tube_W_2_in_axes2_xy + tube_qdd_2;
+    const real tube_B_2_in_axes2_zx = tube_W_2_in_axes2_xz - tube_alpha_2_in_axes2_y;
+    const real tube_B_2_in_axes2_zy = tube_W_2_in_axes2_yz + tube_alpha_2_in_axes2_x;
+    /* (tube-acc_3) acceleration of the reference point of link 3, less gravity */
+    const real tube_acc_3_t = m->tube_acc_3_t[i];
+    const real tube_acc_3_t_2 = m->tube_acc_3_t_2[i];
+    const real tube_acc_3_t_4 = tube_acc_3_t*v->tube_c_1 + tube_acc_3_t_2*v->tube_s_1;
+    const real tube_acc_3_t_3 = m->tube_acc_3_t_3[i];
+    const real tube_g_in_axes2_x = tube_acc_3_t_3*v->tube_e_1_in_axes2_x +
+        tube_acc_3_t_4*v->tube_c_2;
+    const real tube_g_in_axes2_y = tube_acc_3_t_4*v->tube_e_1_in_axes2_x -
+        tube_acc_3_t_3*v->tube_c_2;
+    const real tube_acc_3_in_axes2_x = v->axis_x_tube_axes2_x*v->tube_S_ddot_x +
+        v->axis_x_tube_axes2_y*v->tube_S_ddot_y + v->axis_x_tube_axes2_z*v->tube_S_ddot_z -
+        tube_g_in_axes2_x;
+    const real tube_acc_3_in_axes2_y = tube_bias_t_4 + v->tube_q_3*tube_qdd_2 - tube_bias_t_2
+        - tube_g_in_axes2_y;
+    const real tube_acc_3_in_axes2_z = tube_bias_t - tube_bias_t_5 - v->tube_g_in_axes2_z -
+        tube_alpha_2_in_axes2_y*v->tube_q_3;
+    /* (tube-f_3) inertia force of link 3 less its weight */
+    const real tube_f_3_t = tube_omega_1_in_axes2_x*tube_omega_1_in_axes2_x;
+    const real tube_f_3_t_2 = tube_omega_1_in_axes2_y*tube_omega_1_in_axes2_y;
+    const real tube_f_3_t_3 = tube_qd_2*tube_qd_2;
+    const real tube_h_3_in_spec2_x = m->tube_h_3_in_spec2_x[i];
+    const real tube_h_3_in_spec2_y = m->tube_h_3_in_spec2_y[i];
+    const real tube_h_3_in_spec2_z = m->tube_h_3_in_spec2_z[i];
+    const real tube_link3_mass = m->tube_link3_mass[i];
+    const real tube_f_3_in_axes2_x = tube_acc_3_in_axes2_x*tube_link3_mass +
+        tube_alpha_1_in_axes2_y*tube_h_3_in_spec2_y - tube_B_2_in_axes2_xy*tube_h_3_in_spec2_z
+        - tube_h_3_in_spec2_x*(tube_f_3_t_2 + tube_f_3_t_3);
+    const real tube_f_3_in_axes2_y = tube_B_2_in_axes2_yx*tube_h_3_in_spec2_x +
+        tube_acc_3_in_axes2_y*tube_link3_mass + tube_h_3_in_spec2_z*(tube_f_3_t +
+        tube_f_3_t_3) - tube_alpha_1_in_axes2_x*tube_h_3_in_spec2_y;
+    const real tube_f_3_in_axes2_z = tube_B_2_in_axes2_zx*tube_h_3_in_spec2_x +
+        tube_acc_3_in_axes2_z*tube_link3_mass - tube_B_2_in_axes2_zy*tube_h_3_in_spec2_z -
+        tube_h_3_in_spec2_y*(tube_f_3_t + tube_f_3_t_2);
+    /* (tube-mu_2) inertia moment of the links that turn with link 2, about their reference points */
+    const real tube_J_group_2_in_axes2_xy = m->tube_J_group_2_in_axes2_xy[i];
+    const real tube_J_group_2_in_axes2_xz = m->tube_J_group_2_in_axes2_xz[i];
+    const real tube_J_group_2_in_axes2_yz = m->tube_J_group_2_in_axes2_yz[i];
+    const real tube_Sigma_2_in_axes2_yy = m->tube_Sigma_2_in_axes2_yy[i];
+    const real tube_Sigma_2_in_axes2_zz = m->tube_Sigma_2_in_axes2_zz[i];
+    const real tube_h_2_in_spec2_y = m->tube_h_2_in_spec2_y[i];
+    const real tube_h_2_in_spec2_z = m->tube_h_2_in_spec2_z[i];
+    const real tube_mu_2_in_axes2_x = tube_B_2_in_axes2_yx*tube_J_group_2_in_axes2_xz +
+        tube_B_2_in_axes2_zy*tube_Sigma_2_in_axes2_yy +
+        tube_J_group_2_in_axes2_yz*(tube_f_3_t_2 - tube_f_3_t_3) +
+        tube_Sigma_2_in_axes2_zz*tube_alpha_1_in_axes2_x +
+        tube_g_in_axes2_y*tube_h_2_in_spec2_y + v->tube_g_in_axes2_z*tube_h_2_in_spec2_z -
+        tube_B_2_in_axes2_zx*tube_J_group_2_in_axes2_xy -
+        tube_acc_3_in_axes2_y*tube_h_3_in_spec2_y - tube_acc_3_in_axes2_z*tube_h_3_in_spec2_z;
+    const real tube_Sigma_2_in_axes2_xx = m->tube_Sigma_2_in_axes2_xx[i];
+    const real tube_h_2_in_spec2_x = m->tube_h_2_in_spec2_x[i];
+    const real tube_mu_2_in_axes2_y = tube_B_2_in_axes2_zy*tube_J_group_2_in_axes2_xy +
+        tube_Sigma_2_in_axes2_zz*tube_alpha_1_in_axes2_y +
+        tube_acc_3_in_axes2_x*tube_h_3_in_spec2_y + v->tube_g_in_axes2_z*tube_h_2_in_spec2_x -
+        tube_B_2_in_axes2_xy*tube_J_group_2_in_axes2_yz -
+        tube_B_2_in_axes2_zx*tube_Sigma_2_in_axes2_xx - tube_J_group_2_in_axes2_xz*(tube_f_3_t
+        - tube_f_3_t_3) - tube_acc_3_in_axes2_z*tube_h_3_in_spec2_x -
+        tube_g_in_axes2_x*tube_h_2_in_spec2_y;
+    const real tube_mu_2_in_axes2_z = tube_B_2_in_axes2_yx*tube_Sigma_2_in_axes2_xx +
+        tube_J_group_2_in_axes2_xy*(tube_f_3_t - tube_f_3_t_2) +
+        tube_J_group_2_in_axes2_xz*tube_alpha_1_in_axes2_x +
+        tube_J_group_2_in_axes2_yz*tube_alpha_1_in_axes2_y +
+        tube_acc_3_in_axes2_x*tube_h_3_in_spec2_z + tube_acc_3_in_axes2_y*tube_h_3_in_spec2_x
+        - tube_B_2_in_axes2_xy*tube_Sigma_2_in_axes2_yy -
+        tube_g_in_axes2_x*tube_h_2_in_spec2_z - tube_g_in_axes2_y*tube_h_2_in_spec2_x;
+    /* (tube-N_2) moment about joint 2 of the links from 2 outwards, the force at the connection point
+       left out */
+    const real tube_N_2_in_axes2_y = tube_mu_2_in_axes2_y - tube_f_3_in_axes2_z*v->tube_q_3;
+    const real tube_N_2_in_axes2_z = tube_mu_2_in_axes2_z + tube_f_3_in_axes2_y*v->tube_q_3;
+    /* (tube-G) force at the connection point that balances the leg's inertia and weight along all
+       degrees of freedom */
+    const real tube_G_t = v->inv_tube_w_1_t_13*tube_N_2_in_axes2_z;
+    const real tube_G_t_2 = v->inv_tube_w_1_t_33*tube_G_t*v->tube_w_1_t_17;
+    const real tube_G_t_3 = v->inv_tube_w_1_t_49*(tube_G_t*v->tube_w_1_t_21 -
+        tube_G_t_2*v->tube_w_1_t_37);
+    const real tube_G_t_4 = v->inv_tube_w_1_t_63*(tube_G_t_2*v->tube_w_1_t_41 +
+        tube_G_t_3*v->tube_w_1_t_53 - tube_G_t*v->tube_w_1_t_25);
+    const real tube_G_t_5 = v->inv_tube_w_1_t_75*(tube_G_t*v->tube_w_1_t_29 +
+        tube_G_t_4*v->tube_w_1_t_69 + tube_N_2_in_axes2_y*v->tube_c_2 -
+        tube_G_t_2*v->tube_w_1_t_45 - tube_G_t_3*v->tube_w_1_t_58 -
+        v->tube_e_1_in_axes2_x*tube_mu_2_in_axes2_x);
+    const real tube_G_in_axes2_y = tube_G_t*v->tube_w_1_t_14 + tube_G_t_2*v->tube_w_1_t_34 +
+        tube_G_t_3*v->tube_w_1_t_50 + tube_G_t_4*v->tube_w_1_t_64 - tube_G_t_5*tube_qd_1_t;
+    const real tube_G_in_axes2_z = v->inv_tube_w_1_t_49*tube_G_t_3 +
+        tube_G_t_4*v->tube_w_1_t_65 - tube_G_t_5*tube_qd_1_t_2;
+    /* (tube-G_m1) moment along moment direction 1 that balances the leg's inertia and weight along
+       all degrees of freedom */
+    const real tube_G_m1_t = tube_G_t*v->tube_w_1_t_15 + tube_G_t_2*v->tube_w_1_t_35 +
+        tube_G_t_3*v->tube_w_1_t_51 + tube_G_t_4*v->tube_w_1_t_66 - tube_G_t_5*tube_qd_1_t_3;
+    const real tube_G_m1 = R(1.35)*tube_G_m1_t;
+    /* (tube-G_m2) moment along moment direction 2 that balances the leg's inertia and weight along
+       all degrees of freedom */
+    const real tube_G_m2_t = tube_G_t_4*v->tube_w_1_t_67 + tube_G_t_5*tube_qd_1_t_4;
+    const real tube_G_m2 = R(1.35)*tube_G_m2_t;
+    /* (tube-G_m3) moment along moment direction 3 that balances the leg's inertia and weight along
+       all degrees of freedom */
+    const real tube_G_m3_t = tube_G_t*v->tube_w_1_t_16 + tube_G_t_2*v->tube_w_1_t_36 +
+        tube_G_t_3*v->tube_w_1_t_52 + tube_G_t_4*v->tube_w_1_t_68 - tube_G_t_5*tube_qd_1_t_5;
+    const real tube_G_m3 = R(1.35)*tube_G_m3_t;
+    /* (tube-G_m) moment at the connection point that balances the leg's inertia and weight along all
+       degrees of freedom */
+    const real tube_G_m_in_axes2_x = -tube_G_m2*v->tube_end_p2_in_axes2_y -
+        tube_G_m3*v->tube_end_p3_in_axes2_z;
+    const real tube_G_m_in_axes2_y = tube_G_m2*v->tube_n_m2_in_axes2_y -
+        tube_G_m1*v->tube_end_p1_in_axes2_z;
+    const real tube_G_m_in_axes2_z = tube_G_m1*v->tube_n_m1_in_axes2_z +
+        tube_G_m3*v->tube_n_m3_in_axes2_z;
+    /* (tube-c) leg force on the platform without actuation and without the mass at the connection
+       point */
+    const real tube_c_x = -v->axis_x_tube_axes2_x*tube_f_3_in_axes2_x -
+        v->axis_y_tube_axes2_x*tube_G_in_axes2_y - v->axis_z_tube_axes2_x*tube_G_in_axes2_z;
+    const real tube_c_y = -v->axis_x_tube_axes2_y*tube_f_3_in_axes2_x -
+        v->axis_y_tube_axes2_y*tube_G_in_axes2_y - v->axis_z_tube_axes2_y*tube_G_in_axes2_z;
+    const real tube_c_z = -v->axis_x_tube_axes2_z*tube_f_3_in_axes2_x -
+        v->axis_y_tube_axes2_z*tube_G_in_axes2_y - v->axis_z_tube_axes2_z*tube_G_in_axes2_z;
+    v->tube_G_m_in_axes2_x = tube_G_m_in_axes2_x;
+    v->tube_G_m_in_axes2_y = tube_G_m_in_axes2_y;
+    v->tube_G_m_in_axes2_z = tube_G_m_in_axes2_z;
+    v->tube_c_x = tube_c_x;
+    v->tube_c_y = tube_c_y;
+    v->tube_c_z = tube_c_z;
+}
+
+typedef struct {
+    real ups_q_x, ups_q_y, ups_q_z, ups_S_in_turn1_z, ups_root_1_t, ups_root_1, inv_ups_root_1,
+        ups_c_1, ups_s_1, ups_q_3_t, ups_q_3, inv_ups_q_3, ups_c_2, axis_x_ups_axes2_x,
+        axis_x_ups_axes2_y, axis_x_ups_axes2_z, axis_z_ups_axes2_x, axis_z_ups_axes2_y,
+        axis_z_ups_axes2_z, axis_y_ups_axes2_x, axis_y_ups_axes2_y, axis_y_ups_axes2_z,
+        ups_e_1_in_axes2_x, ups_g_in_axes2_z, ups_w_2_in_axes2_y, ups_w_3_x, ups_w_3_y, ups_w_3_z,
+        ups_a_p_x, ups_a_p_y, ups_a_p_z, ups_S_dot_t, ups_S_dot_t_2, ups_S_dot_t_3, ups_qd_1,
+        ups_qd_2, ups_omega_1_in_axes2_x, ups_omega_1_in_axes2_y, ups_W_2_in_axes2_yz,
+        ups_W_2_in_axes2_xz, ups_W_2_in_axes2_xy, ups_bias_t, ups_bias_in_axes2_z, ups_S_ddot_x,
+        ups_S_ddot_y, ups_S_ddot_z, ups_U_x, ups_U_y, ups_U_z, ups_Z_a_t, ups_Z_a_t_2, ups_Z_a_t_3,
+        ups_S_in_turn1_x, ups_S_in_turn1_y, ups_alpha_1_in_axes2_x, ups_alpha_1_in_axes2_y,
+        ups_B_2_in_axes2_yx, ups_B_2_in_axes2_xy, ups_B_2_in_axes2_zx, ups_B_2_in_axes2_zy,
+        ups_g_in_axes2_x, ups_g_in_axes2_y, ups_acc_3_in_axes2_x, ups_acc_3_in_axes2_y,
+        ups_acc_3_in_axes2_z, ups_mu_2_t;
+} values_ups;
+
+INLINE void stage_ups_X(const prepared *m, size_t w, size_t i, size_t j, const real *s, const real
+    *X, values_ups *v)
+{
+    /* (ups-S) from the base point to the connection point */
+    const real R_xx = s[0*w + j];
+    const real R_xy = s[1*w + j];
+    const real R_xz = s[2*w + j];
+    const real ups_platform_point_x = m->ups_platform_point_x[i];
+    const real ups_platform_point_y = m->ups_platform_point_y[i];
+    const real ups_platform_point_z = m->ups_platform_point_z[i];
+    const real ups_q_x = R_xx*ups_platform_point_x + R_xy*ups_platform_point_y +
+        R_xz*ups_platform_point_z;
+    const real R_yx = s[3*w + j];
+    const real R_yy = s[4*w + j];
+    const real R_yz = s[5*w + j];
+    const real ups_q_y = R_yx*ups_platform_point_x + R_yy*ups_platform_point_y +
+        R_yz*ups_platform_point_z;
+    const real R_zx = s[6*w + j];
+    const real R_zy = s[7*w + j];
+    const real R_zz = s[8*w + j];
+    const real ups_q_z = R_zx*ups_platform_point_x + R_zy*ups_platform_point_y +
+        R_zz*ups_platform_point_z;
+    const real t_x = X[0*w + j];
+    const real ups_base_point_x = m->ups_base_point_x[i];
+    const real ups_S_x = t_x + ups_q_x - ups_base_point_x;
+    const real t_y = X[1*w + j];
+    const real ups_base_point_y = m->ups_base_point_y[i];
+    const real ups_S_y = t_y + ups_q_y - ups_base_point_y;
+    const real t_z = X[2*w + j];
+    const real ups_base_point_z = m->ups_base_point_z[i];
+    const real ups_S_z = t_z + ups_q_z - ups_base_point_z;
+    const real ups_base_frame_xx = m->ups_base_frame_xx[i];
+    const real ups_base_frame_yx = m->ups_base_frame_yx[i];
+    const real ups_base_frame_zx = m->ups_base_frame_zx[i];
+    const real ups_S_in_turn1_x = ups_S_x*ups_base_frame_xx + ups_S_y*ups_base_frame_yx +
+        ups_S_z*ups_base_frame_zx;
+    const real ups_base_frame_xy = m->ups_base_frame_xy[i];
+    const real ups_base_frame_yy = m->ups_base_frame_yy[i];
+    const real ups_base_frame_zy = m->ups_base_frame_zy[i];
+    const real ups_S_in_turn1_y = ups_S_x*ups_base_frame_xy + ups_S_y*ups_base_frame_yy +
+        ups_S_z*ups_base_frame_zy;
+    const real ups_base_frame_xz = m->ups_base_frame_xz[i];
+    const real ups_base_frame_yz = m->ups_base_frame_yz[i];
+    const real ups_base_frame_zz = m->ups_base_frame_zz[i];
+    const real ups_S_in_turn1_z = ups_S_x*ups_base_frame_xz + ups_S_y*ups_base_frame_yz +
+        ups_S_z*ups_base_frame_zz;
+    /* (ups-root_1) amplitude, the length across axis 1, with the sign of the branch */
+    const real ups_root_1_t = ups_S_in_turn1_x*ups_S_in_turn1_x +
+        ups_S_in_turn1_y*ups_S_in_turn1_y;
+    const real ups_branch_1 = m->ups_branch_1[i];
+    const real ups_root_1 = ups_branch_1*root(ups_root_1_t);
+    /* (ups-c_1) cosine of the angle of joint 1 from its reference direction */
+    const real inv_ups_root_1 = 1/ups_root_1;
+    const real ups_c_1 = inv_ups_root_1*ups_S_in_turn1_x;
+    /* (ups-s_1) sine of the angle of joint 1 from its reference direction */
+    const real ups_s_1 = inv_ups_root_1*ups_S_in_turn1_y;
+    /* (ups-q_3) displacement of joint 3 */
+    const real ups_q_3_t = ups_S_in_turn1_z*ups_S_in_turn1_z + ups_root_1_t;
+    const real ups_branch_2 = m->ups_branch_2[i];
+    const real ups_q_3 = ups_branch_2*root(ups_q_3_t);
+    /* (ups-c_2) cosine of the angle of joint 2 from its reference direction */
+    const real inv_ups_q_3 = 1/ups_q_3;
+    const real ups_c_2 = inv_ups_q_3*ups_root_1;
+    /* (ups-S_dot) velocity of the connection point */
+    const real axis_x_ups_axes2_x = inv_ups_q_3*ups_S_x;
+    const real axis_x_ups_axes2_y = inv_ups_q_3*ups_S_y;
+    const real axis_x_ups_axes2_z = inv_ups_q_3*ups_S_z;
+    /* (ups-qd_1) rate of joint 1 */
+    const real axis_z_ups_axes2_x = ups_base_frame_xy*ups_c_1 - ups_base_frame_xx*ups_s_1;
+    const real axis_z_ups_axes2_y = ups_base_frame_yy*ups_c_1 - ups_base_frame_yx*ups_s_1;
+    const real axis_z_ups_axes2_z = ups_base_frame_zy*ups_c_1 - ups_base_frame_zx*ups_s_1;
+    /* (ups-qd_2) rate of joint 2 */
+    const real axis_y_ups_axes2_x = axis_x_ups_axes2_z*axis_z_ups_axes2_y -
+        axis_x_ups_axes2_y*axis_z_ups_axes2_z;
+    const real axis_y_ups_axes2_y = axis_x_ups_axes2_x*axis_z_ups_axes2_z -
+        axis_x_ups_axes2_z*axis_z_ups_axes2_x;
+    const real axis_y_ups_axes2_z = axis_x_ups_axes2_y*axis_z_ups_axes2_x -
+        axis_x_ups_axes2_x*axis_z_ups_axes2_y;
+    /* (ups-omega_1) angular velocity of link 1 */
+    const real ups_e_1_in_axes2_x = inv_ups_q_3*ups_S_in_turn1_z;
+    /* (ups-acc_3_o) remainder without the acceleration in: acceleration of the reference point of
+       link 3, less gravity */
+    const real ups_acc_3_t = m->ups_acc_3_t[i];
+    const real ups_acc_3_t_2 = m->ups_acc_3_t_2[i];
+    const real ups_g_in_axes2_z = ups_acc_3_t_2*ups_c_1 - ups_acc_3_t*ups_s_1;
+    /* (ups-w_2) reciprocal vector 2 */
+    const real ups_w_2_in_axes2_y = 1/ups_q_3;
+    /* (ups-w_3) reciprocal vector 3 */
+    const real ups_w_3_x = ups_S_x*ups_w_2_in_axes2_y;
+    const real ups_w_3_y = ups_S_y*ups_w_2_in_axes2_y;
+    const real ups_w_3_z = ups_S_z*ups_w_2_in_axes2_y;
+    v->ups_q_x = ups_q_x;
+    v->ups_q_y = ups_q_y;
+    v->ups_q_z = ups_q_z;
+    v->ups_S_in_turn1_z = ups_S_in_turn1_z;
+    v->ups_root_1_t = ups_root_1_t;
+    v->ups_root_1 = ups_root_1;
+    v->inv_ups_root_1 = inv_ups_root_1;
+    v->ups_c_1 = ups_c_1;
+    v->ups_s_1 = ups_s_1;
+    v->ups_q_3_t = ups_q_3_t;
+    v->ups_q_3 = ups_q_3;
+    v->inv_ups_q_3 = inv_ups_q_3;
+    v->ups_c_2 = ups_c_2;
+    v->axis_x_ups_axes2_x = axis_x_ups_axes2_x;
+    v->axis_x_ups_axes2_y = axis_x_ups_axes2_y;
+    v->axis_x_ups_axes2_z = axis_x_ups_axes2_z;
+    v->axis_z_ups_axes2_x = axis_z_ups_axes2_x;
+    v->axis_z_ups_axes2_y = axis_z_ups_axes2_y;
+    v->axis_z_ups_axes2_z = axis_z_ups_axes2_z;
+    v->axis_y_ups_axes2_x = axis_y_ups_axes2_x;
+    v->axis_y_ups_axes2_y = axis_y_ups_axes2_y;
+    v->axis_y_ups_axes2_z = axis_y_ups_axes2_z;
+    v->ups_e_1_in_axes2_x = ups_e_1_in_axes2_x;
+    v->ups_g_in_axes2_z = ups_g_in_axes2_z;
+    v->ups_w_2_in_axes2_y = ups_w_2_in_axes2_y;
+    v->ups_w_3_x = ups_w_3_x;
+    v->ups_w_3_y = ups_w_3_y;
+    v->ups_w_3_z = ups_w_3_z;
+}
+
+INLINE void stage_ups_A_X(size_t w, size_t j, const real *A, values_ups *v)
+{
+    /* (ups-a_p) acceleration of the connection point without its centripetal part */
+    const real alpha_y = A[4*w + j];
+    const real alpha_z = A[5*w + j];
+    const real t_ddot_x = A[0*w + j];
+    const real ups_a_p_x = t_ddot_x + alpha_y*v->ups_q_z - alpha_z*v->ups_q_y;
+    const real alpha_x = A[3*w + j];
+    const real t_ddot_y = A[1*w + j];
+    const real ups_a_p_y = t_ddot_y + alpha_z*v->ups_q_x - alpha_x*v->ups_q_z;
+    const real t_ddot_z = A[2*w + j];
+    const real ups_a_p_z = t_ddot_z + alpha_x*v->ups_q_y - alpha_y*v->ups_q_x;
+    v->ups_a_p_x = ups_a_p_x;
+    v->ups_a_p_y = ups_a_p_y;
+    v->ups_a_p_z = ups_a_p_z;
+}
+
+INLINE void stage_ups_V_X(size_t w, size_t j, const real *V, values_ups *v)
+{
+    /* (ups-S_dot) velocity of the connection point */
+    const real omega_y = V[4*w + j];
+    const real omega_z = V[5*w + j];
+    const real ups_S_dot_t = omega_y*v->ups_q_z - omega_z*v->ups_q_y;
+    const real omega_x = V[3*w + j];
+    const real ups_S_dot_t_2 = omega_z*v->ups_q_x - omega_x*v->ups_q_z;
+    const real ups_S_dot_t_3 = omega_x*v->ups_q_y - omega_y*v->ups_q_x;
+    const real t_dot_x = V[0*w + j];
+    const real ups_S_dot_x = t_dot_x + ups_S_dot_t;
+    const real t_dot_y = V[1*w + j];
+    const real ups_S_dot_y = t_dot_y + ups_S_dot_t_2;
+    const real t_dot_z = V[2*w + j];
+    const real ups_S_dot_z = t_dot_z + ups_S_dot_t_3;
+    const real ups_S_dot_in_axes2_x = v->axis_x_ups_axes2_x*ups_S_dot_x +
+        v->axis_x_ups_axes2_y*ups_S_dot_y + v->axis_x_ups_axes2_z*ups_S_dot_z;
+    /* (ups-qd_1) rate of joint 1 */
+    const real ups_qd_1 = v->inv_ups_root_1*(v->axis_z_ups_axes2_x*ups_S_dot_x +
+        v->axis_z_ups_axes2_y*ups_S_dot_y + v->axis_z_ups_axes2_z*ups_S_dot_z);
+    /* (ups-qd_2) rate of joint 2 */
+    const real ups_qd_2 = v->inv_ups_q_3*(v->axis_y_ups_axes2_x*ups_S_dot_x +
+        v->axis_y_ups_axes2_y*ups_S_dot_y + v->axis_y_ups_axes2_z*ups_S_dot_z);
+    /* (ups-omega_1) angular velocity of link 1 */
+    const real ups_omega_1_in_axes2_x = v->ups_e_1_in_axes2_x*ups_qd_1;
+    const real ups_omega_1_in_axes2_y = -v->ups_c_2*ups_qd_1;
+    /* (ups-W_2) centripetal tensor of link 2 */
+    const real ups_W_2_in_axes2_yz = ups_omega_1_in_axes2_y*ups_qd_2;
+    const real ups_W_2_in_axes2_xz = ups_omega_1_in_axes2_x*ups_qd_2;
+    const real ups_W_2_in_axes2_xy = ups_omega_1_in_axes2_x*ups_omega_1_in_axes2_y;
+    /* (ups-bias) acceleration of the connection point at zero joint accelerations */
+    const real ups_bias_t = 2*ups_S_dot_in_axes2_x;
+    const real ups_bias_in_axes2_z = 2*ups_W_2_in_axes2_xz*v->ups_q_3 -
+        ups_bias_t*ups_omega_1_in_axes2_y;
+    v->ups_S_dot_t = ups_S_dot_t;
+    v->ups_S_dot_t_2 = ups_S_dot_t_2;
+    v->ups_S_dot_t_3 = ups_S_dot_t_3;
+    v->ups_qd_1 = ups_qd_1;
+    v->ups_qd_2 = ups_qd_2;
+    v->ups_omega_1_in_axes2_x = ups_omega_1_in_axes2_x;
+    v->ups_omega_1_in_axes2_y = ups_omega_1_in_axes2_y;
+    v->ups_W_2_in_axes2_yz = ups_W_2_in_axes2_yz;
+    v->ups_W_2_in_axes2_xz = ups_W_2_in_axes2_xz;
+    v->ups_W_2_in_axes2_xy = ups_W_2_in_axes2_xy;
+    v->ups_bias_t = ups_bias_t;
+    v->ups_bias_in_axes2_z = ups_bias_in_axes2_z;
+}
+
+INLINE void stage_ups_A_V_X(size_t w, size_t j, const real *V, values_ups *v)
+{
+    /* (ups-S_ddot) acceleration of the connection point */
+    const real omega_y = V[4*w + j];
+    const real omega_z = V[5*w + j];
+    const real ups_S_ddot_x = v->ups_a_p_x + omega_y*v->ups_S_dot_t_3 -
+        omega_z*v->ups_S_dot_t_2;
+    const real omega_x = V[3*w + j];
+    const real ups_S_ddot_y = v->ups_a_p_y + omega_z*v->ups_S_dot_t -
+        omega_x*v->ups_S_dot_t_3;
+    const real ups_S_ddot_z = v->ups_a_p_z + omega_x*v->ups_S_dot_t_2 -
+        omega_y*v->ups_S_dot_t;
+    v->ups_S_ddot_x = ups_S_ddot_x;
+    v->ups_S_ddot_y = ups_S_ddot_y;
+    v->ups_S_ddot_z = ups_S_ddot_z;
+}
+
+INLINE void stage_ups_Z_dynamics(const prepared *m, size_t w, size_t i, size_t j, const real *V,
+    values_ups *v)
+{
+    /* (ups-u_1) centripetal acceleration of the connection point */
+    const real omega_y = V[4*w + j];
+    const real omega_z = V[5*w + j];
+    const real ups_u_1_x = omega_y*v->ups_S_dot_t_3 - omega_z*v->ups_S_dot_t_2;
+    const real omega_x = V[3*w + j];
+    const real ups_u_1_y = omega_z*v->ups_S_dot_t - omega_x*v->ups_S_dot_t_3;
+    const real ups_u_1_z = omega_x*v->ups_S_dot_t_2 - omega_y*v->ups_S_dot_t;
+    const real ups_u_1_in_axes2_z = v->axis_z_ups_axes2_x*ups_u_1_x +
+        v->axis_z_ups_axes2_y*ups_u_1_y + v->axis_z_ups_axes2_z*ups_u_1_z;
+    /* (ups-rel_o) remainder without the acceleration in: acceleration of the connection point left to
+       the joint accelerations */
+    const real ups_rel_o_in_axes2_z = ups_u_1_in_axes2_z - v->ups_bias_in_axes2_z;
+    /* (ups-qdd_1_o) remainder without the acceleration in: acceleration of joint 1 */
+    const real ups_qdd_1_o = v->inv_ups_root_1*ups_rel_o_in_axes2_z;
+    /* (ups-alpha_1_o) remainder without the acceleration in: angular acceleration of link 1 */
+    const real ups_alpha_1_o_in_axes2_x = v->ups_e_1_in_axes2_x*ups_qdd_1_o;
+    const real ups_alpha_1_o_in_axes2_y = -v->ups_c_2*ups_qdd_1_o;
+    /* (ups-alpha_2_o) remainder without the acceleration in: angular acceleration of link 2 */
+    const real ups_alpha_2_o_in_axes2_x = v->ups_W_2_in_axes2_yz + ups_alpha_1_o_in_axes2_x;
+    const real ups_alpha_2_o_in_axes2_y = ups_alpha_1_o_in_axes2_y - v->ups_W_2_in_axes2_xz;
+    /* (ups-B_2_o) remainder of the acceleration tensor of link 2 */
+    const real ups_B_2_o_t = v->axis_y_ups_axes2_x*ups_u_1_x;
+    const real ups_B_2_o_t_2 = v->axis_y_ups_axes2_y*ups_u_1_y;
+    const real ups_B_2_o_t_3 = v->axis_y_ups_axes2_z*ups_u_1_z;
+    const real ups_B_2_o_in_axes2_yx = v->inv_ups_q_3*(ups_B_2_o_t + ups_B_2_o_t_2 +
+        ups_B_2_o_t_3 - v->ups_bias_t*v->ups_qd_2);
+    const real ups_B_2_o_in_axes2_xy = 2*v->ups_W_2_in_axes2_xy - ups_B_2_o_in_axes2_yx;
+    const real ups_B_2_o_in_axes2_zx = v->ups_W_2_in_axes2_xz - ups_alpha_2_o_in_axes2_y;
+    const real ups_B_2_o_in_axes2_zy = v->ups_W_2_in_axes2_yz + ups_alpha_2_o_in_axes2_x;
+    /* (ups-acc_3_o) remainder without the acceleration in: acceleration of the reference point of
+       link 3, less gravity */
+    const real ups_acc_3_t = m->ups_acc_3_t[i];
+    const real ups_acc_3_t_2 = m->ups_acc_3_t_2[i];
+    const real ups_acc_3_o_t = ups_acc_3_t*v->ups_c_1 + ups_acc_3_t_2*v->ups_s_1;
+    const real ups_acc_3_t_3 = m->ups_acc_3_t_3[i];
+    const real ups_g_in_axes2_x = ups_acc_3_o_t*v->ups_c_2 +
+        ups_acc_3_t_3*v->ups_e_1_in_axes2_x;
+    const real ups_g_in_axes2_y = ups_acc_3_o_t*v->ups_e_1_in_axes2_x -
+        ups_acc_3_t_3*v->ups_c_2;
+    const real ups_acc_3_o_in_axes2_x = v->axis_x_ups_axes2_x*ups_u_1_x +
+        v->axis_x_ups_axes2_y*ups_u_1_y + v->axis_x_ups_axes2_z*ups_u_1_z - ups_g_in_axes2_x;
+    const real ups_acc_3_o_in_axes2_y = ups_B_2_o_t + ups_B_2_o_t_2 + ups_B_2_o_t_3 -
+        ups_g_in_axes2_y;
+    const real ups_acc_3_o_in_axes2_z = ups_u_1_in_axes2_z - v->ups_g_in_axes2_z;
+    /* (ups-phi_3_o) remainder without the acceleration in: inertia force of link 3 from its turning
+       about its reference point */
+    const real ups_phi_3_o_t = v->ups_omega_1_in_axes2_y*v->ups_omega_1_in_axes2_y;
+    const real ups_phi_3_o_t_2 = v->ups_qd_2*v->ups_qd_2;
+    const real ups_h_3_in_spec2_x = m->ups_h_3_in_spec2_x[i];
+    const real ups_h_3_in_spec2_y = m->ups_h_3_in_spec2_y[i];
+    const real ups_h_3_in_spec2_z = m->ups_h_3_in_spec2_z[i];
+    const real ups_phi_3_o_in_axes2_x = ups_alpha_1_o_in_axes2_y*ups_h_3_in_spec2_y +
+        ups_h_3_in_spec2_x*(-ups_phi_3_o_t - ups_phi_3_o_t_2) -
+        ups_B_2_o_in_axes2_xy*ups_h_3_in_spec2_z;
+    /* (ups-mu_2_o) remainder without the acceleration in: inertia moment of the links that turn with
+       link 2, about their reference points */
+    const real ups_mu_2_o_t = v->ups_omega_1_in_axes2_x*v->ups_omega_1_in_axes2_x;
+    const real ups_J_group_2_in_axes2_xy = m->ups_J_group_2_in_axes2_xy[i];
+    const real ups_J_group_2_in_axes2_xz = m->ups_J_group_2_in_axes2_xz[i];
+    const real ups_J_group_2_in_axes2_yz = m->ups_J_group_2_in_axes2_yz[i];
+    const real ups_Sigma_2_in_axes2_yy = m->ups_Sigma_2_in_axes2_yy[i];
+    const real ups_Sigma_2_in_axes2_zz = m->ups_Sigma_2_in_axes2_zz[i];
+    const real ups_h_2_in_spec2_y = m->ups_h_2_in_spec2_y[i];
+    const real ups_h_2_in_spec2_z = m->ups_h_2_in_spec2_z[i];
+    const real ups_mu_2_o_in_axes2_x = ups_B_2_o_in_axes2_yx*ups_J_group_2_in_axes2_xz +
+        ups_B_2_o_in_axes2_zy*ups_Sigma_2_in_axes2_yy +
+        ups_J_group_2_in_axes2_yz*(ups_phi_3_o_t - ups_phi_3_o_t_2) +
+        ups_Sigma_2_in_axes2_zz*ups_alpha_1_o_in_axes2_x + ups_g_in_axes2_y*ups_h_2_in_spec2_y
+        + v->ups_g_in_axes2_z*ups_h_2_in_spec2_z -
+        ups_B_2_o_in_axes2_zx*ups_J_group_2_in_axes2_xy -
+        ups_acc_3_o_in_axes2_y*ups_h_3_in_spec2_y - ups_acc_3_o_in_axes2_z*ups_h_3_in_spec2_z;
+    const real ups_Sigma_2_in_axes2_xx = m->ups_Sigma_2_in_axes2_xx[i];
+    const real ups_h_2_in_spec2_x = m->ups_h_2_in_spec2_x[i];
+    const real ups_mu_2_o_in_axes2_y = ups_B_2_o_in_axes2_zy*ups_J_group_2_in_axes2_xy +
+        ups_Sigma_2_in_axes2_zz*ups_alpha_1_o_in_axes2_y +
+        ups_acc_3_o_in_axes2_x*ups_h_3_in_spec2_y + v->ups_g_in_axes2_z*ups_h_2_in_spec2_x -
+        ups_B_2_o_in_axes2_xy*ups_J_group_2_in_axes2_yz -
+        ups_B_2_o_in_axes2_zx*ups_Sigma_2_in_axes2_xx -
+        ups_J_group_2_in_axes2_xz*(ups_mu_2_o_t - ups_phi_3_o_t_2) -
+        ups_acc_3_o_in_axes2_z*ups_h_3_in_spec2_x - ups_g_in_axes2_x*ups_h_2_in_spec2_y;
+    const real ups_mu_2_o_in_axes2_z = ups_B_2_o_in_axes2_yx*ups_Sigma_2_in_axes2_xx +
+        ups_J_group_2_in_axes2_xy*(ups_mu_2_o_t - ups_phi_3_o_t) +
+        ups_J_group_2_in_axes2_xz*ups_alpha_1_o_in_axes2_x +
+        ups_J_group_2_in_axes2_yz*ups_alpha_1_o_in_axes2_y +
+        ups_acc_3_o_in_axes2_x*ups_h_3_in_spec2_z + ups_acc_3_o_in_axes2_y*ups_h_3_in_spec2_x
+        - ups_B_2_o_in_axes2_xy*ups_Sigma_2_in_axes2_yy - ups_g_in_axes2_x*ups_h_2_in_spec2_z
+        - ups_g_in_axes2_y*ups_h_2_in_spec2_x;
+    /* (ups-c_o) remainder without the acceleration in: leg force on the platform without actuation
+       and without the mass at the connection point */
+    const real ups_c_o_in_axes2_y = ups_alpha_1_o_in_axes2_x*ups_h_3_in_spec2_y -
+        v->inv_ups_q_3*ups_mu_2_o_in_axes2_z - ups_B_2_o_in_axes2_yx*ups_h_3_in_spec2_x -
+        ups_h_3_in_spec2_z*(ups_mu_2_o_t + ups_phi_3_o_t_2);
+    const real ups_c_o_in_axes2_z = v->inv_ups_root_1*(v->ups_c_2*ups_mu_2_o_in_axes2_y -
+        v->ups_e_1_in_axes2_x*ups_mu_2_o_in_axes2_x) +
+        ups_B_2_o_in_axes2_zy*ups_h_3_in_spec2_z + ups_h_3_in_spec2_y*(ups_mu_2_o_t +
+        ups_phi_3_o_t) - ups_B_2_o_in_axes2_zx*ups_h_3_in_spec2_x;
+    /* (ups-U) velocity and gravity terms of the leg force */
+    const real ups_U_x = v->axis_x_ups_axes2_x*ups_phi_3_o_in_axes2_x -
+        v->axis_y_ups_axes2_x*ups_c_o_in_axes2_y - v->axis_z_ups_axes2_x*ups_c_o_in_axes2_z;
+    const real ups_U_y = v->axis_x_ups_axes2_y*ups_phi_3_o_in_axes2_x -
+        v->axis_y_ups_axes2_y*ups_c_o_in_axes2_y - v->axis_z_ups_axes2_y*ups_c_o_in_axes2_z;
+    const real ups_U_z = v->axis_x_ups_axes2_z*ups_phi_3_o_in_axes2_x -
+        v->axis_y_ups_axes2_z*ups_c_o_in_axes2_y - v->axis_z_ups_axes2_z*ups_c_o_in_axes2_z;
+    /* (Z_a) rotational part of Z */
+    const real ups_Z_a_t = ups_U_z*v->ups_q_y - ups_U_y*v->ups_q_z;
+    const real ups_Z_a_t_2 = ups_U_x*v->ups_q_z - ups_U_z*v->ups_q_x;
+    const real ups_Z_a_t_3 = ups_U_y*v->ups_q_x - ups_U_x*v->ups_q_y;
+    v->ups_U_x = ups_U_x;
+    v->ups_U_y = ups_U_y;
+    v->ups_U_z = ups_U_z;
+    v->ups_Z_a_t = ups_Z_a_t;
+    v->ups_Z_a_t_2 = ups_Z_a_t_2;
+    v->ups_Z_a_t_3 = ups_Z_a_t_3;
+}
+
+INLINE void stage_ups_inverse_kinematics_potential(const prepared *m, size_t w, size_t i, size_t
+    j, const real *s, const real *X, values_ups *v)
+{
+    /* (ups-S) from the base point to the connection point */
+    const real R_xx = s[0*w + j];
+    const real R_xy = s[1*w + j];
+    const real R_xz = s[2*w + j];
+    const real t_x = X[0*w + j];
+    const real ups_base_point_x = m->ups_base_point_x[i];
+    const real ups_platform_point_x = m->ups_platform_point_x[i];
+    const real ups_platform_point_y = m->ups_platform_point_y[i];
+    const real ups_platform_point_z = m->ups_platform_point_z[i];
+    const real ups_S_x = t_x + R_xx*ups_platform_point_x + R_xy*ups_platform_point_y +
+        R_xz*ups_platform_point_z - ups_base_point_x;
+    const real R_yx = s[3*w + j];
+    const real R_yy = s[4*w + j];
+    const real R_yz = s[5*w + j];
+    const real t_y = X[1*w + j];
+    const real ups_base_point_y = m->ups_base_point_y[i];
+    const real ups_S_y = t_y + R_yx*ups_platform_point_x + R_yy*ups_platform_point_y +
+        R_yz*ups_platform_point_z - ups_base_point_y;
+    const real R_zx = s[6*w + j];
+    const real R_zy = s[7*w + j];
+    const real R_zz = s[8*w + j];
+    const real t_z = X[2*w + j];
+    const real ups_base_point_z = m->ups_base_point_z[i];
+    const real ups_S_z = t_z + R_zx*ups_platform_point_x + R_zy*ups_platform_point_y +
+        R_zz*ups_platform_point_z - ups_base_point_z;
+    const real ups_base_frame_xx = m->ups_base_frame_xx[i];
+    const real ups_base_frame_yx = m->ups_base_frame_yx[i];
+    const real ups_base_frame_zx = m->ups_base_frame_zx[i];
+    const real ups_S_in_turn1_x = ups_S_x*ups_base_frame_xx + ups_S_y*ups_base_frame_yx +
+        ups_S_z*ups_base_frame_zx;
+    const real ups_base_frame_xy = m->ups_base_frame_xy[i];
+    const real ups_base_frame_yy = m->ups_base_frame_yy[i];
+    const real ups_base_frame_zy = m->ups_base_frame_zy[i];
+    const real ups_S_in_turn1_y = ups_S_x*ups_base_frame_xy + ups_S_y*ups_base_frame_yy +
+        ups_S_z*ups_base_frame_zy;
+    const real ups_base_frame_xz = m->ups_base_frame_xz[i];
+    const real ups_base_frame_yz = m->ups_base_frame_yz[i];
+    const real ups_base_frame_zz = m->ups_base_frame_zz[i];
+    const real ups_S_in_turn1_z = ups_S_x*ups_base_frame_xz + ups_S_y*ups_base_frame_yz +
+        ups_S_z*ups_base_frame_zz;
+    /* (ups-root_1) amplitude, the length across axis 1, with the sign of the branch */
+    const real ups_root_1_t = ups_S_in_turn1_x*ups_S_in_turn1_x +
+        ups_S_in_turn1_y*ups_S_in_turn1_y;
+    const real ups_branch_1 = m->ups_branch_1[i];
+    const real ups_root_1 = ups_branch_1*root(ups_root_1_t);
+    /* (ups-q_1) displacement of joint 1 */
+    const real inv_ups_root_1 = 1/ups_root_1;
+    /* (ups-q_3) displacement of joint 3 */
+    const real ups_q_3_t = ups_S_in_turn1_z*ups_S_in_turn1_z + ups_root_1_t;
+    const real ups_branch_2 = m->ups_branch_2[i];
+    const real ups_q_3 = ups_branch_2*root(ups_q_3_t);
+    /* (ups-q_2) displacement of joint 2 */
+    const real inv_ups_q_3 = 1/ups_q_3;
+    v->ups_S_in_turn1_x = ups_S_in_turn1_x;
+    v->ups_S_in_turn1_y = ups_S_in_turn1_y;
+    v->ups_S_in_turn1_z = ups_S_in_turn1_z;
+    v->ups_root_1_t = ups_root_1_t;
+    v->ups_root_1 = ups_root_1;
+    v->inv_ups_root_1 = inv_ups_root_1;
+    v->ups_q_3_t = ups_q_3_t;
+    v->ups_q_3 = ups_q_3;
+    v->inv_ups_q_3 = inv_ups_q_3;
+}
+
+INLINE void stage_ups_legs_required(const prepared *m, size_t i, values_ups *v)
+{
+    /* (ups-S_ddot) acceleration of the connection point */
+    const real ups_S_ddot_in_axes2_z = v->axis_z_ups_axes2_x*v->ups_S_ddot_x +
+        v->axis_z_ups_axes2_y*v->ups_S_ddot_y + v->axis_z_ups_axes2_z*v->ups_S_ddot_z;
+    /* (ups-rel) acceleration of the connection point left to the joint accelerations */
+    const real ups_rel_in_axes2_z = ups_S_ddot_in_axes2_z - v->ups_bias_in_axes2_z;
+    /* (ups-qdd_1) acceleration of joint 1 */
+    const real ups_qdd_1 = v->inv_ups_root_1*ups_rel_in_axes2_z;
+    /* (ups-alpha_1) angular acceleration of link 1 */
+    const real ups_alpha_1_in_axes2_x = v->ups_e_1_in_axes2_x*ups_qdd_1;
+    const real ups_alpha_1_in_axes2_y = -v->ups_c_2*ups_qdd_1;
+    /* (ups-alpha_2) angular acceleration of link 2 */
+    const real ups_alpha_2_in_axes2_x = v->ups_W_2_in_axes2_yz + ups_alpha_1_in_axes2_x;
+    const real ups_alpha_2_in_axes2_y = ups_alpha_1_in_axes2_y - v->ups_W_2_in_axes2_xz;
+    /* (ups-B_2) acceleration tensor of link 2 */
+    const real ups_B_2_t = v->axis_y_ups_axes2_x*v->ups_S_ddot_x;
+    const real ups_B_2_t_2 = v->axis_y_ups_axes2_y*v->ups_S_ddot_y;
+    const real ups_B_2_t_3 = v->axis_y_ups_axes2_z*v->ups_S_ddot_z;
+    const real ups_B_2_in_axes2_yx = v->inv_ups_q_3*(ups_B_2_t + ups_B_2_t_2 + ups_B_2_t_3 -
+        v->ups_bias_t*v->ups_qd_2);
+    const real ups_B_2_in_axes2_xy = 2*v->ups_W_2_in_axes2_xy - ups_B_2_in_axes2_yx;
+    const real ups_B_2_in_axes2_zx = v->ups_W_2_in_axes2_xz - ups_alpha_2_in_axes2_y;
+    const real ups_B_2_in_axes2_zy = v->ups_W_2_in_axes2_yz + ups_alpha_2_in_axes2_x;
+    /* (ups-acc_3) acceleration of the reference point of link 3, less gravity */
+    const real ups_acc_3_t = m->ups_acc_3_t[i];
+    const real ups_acc_3_t_2 = m->ups_acc_3_t_2[i];
+    const real ups_acc_3_t_4 = ups_acc_3_t*v->ups_c_1 + ups_acc_3_t_2*v->ups_s_1;
+    const real ups_acc_3_t_3 = m->ups_acc_3_t_3[i];
+    const real ups_g_in_axes2_x = ups_acc_3_t_3*v->ups_e_1_in_axes2_x +
+        ups_acc_3_t_4*v->ups_c_2;
+    const real ups_g_in_axes2_y = ups_acc_3_t_4*v->ups_e_1_in_axes2_x -
+        ups_acc_3_t_3*v->ups_c_2;
+    const real ups_acc_3_in_axes2_x = v->axis_x_ups_axes2_x*v->ups_S_ddot_x +
+        v->axis_x_ups_axes2_y*v->ups_S_ddot_y + v->axis_x_ups_axes2_z*v->ups_S_ddot_z -
+        ups_g_in_axes2_x;
+    const real ups_acc_3_in_axes2_y = ups_B_2_t + ups_B_2_t_2 + ups_B_2_t_3 -
+        ups_g_in_axes2_y;
+    const real ups_acc_3_in_axes2_z = ups_S_ddot_in_axes2_z - v->ups_g_in_axes2_z;
+    /* (ups-mu_2) inertia moment of the links that turn with link 2, about their reference points */
+    const real ups_mu_2_t = v->ups_omega_1_in_axes2_x*v->ups_omega_1_in_axes2_x;
+    v->ups_alpha_1_in_axes2_x = ups_alpha_1_in_axes2_x;
+    v->ups_alpha_1_in_axes2_y = ups_alpha_1_in_axes2_y;
+    v->ups_B_2_in_axes2_yx = ups_B_2_in_axes2_yx;
+    v->ups_B_2_in_axes2_xy = ups_B_2_in_axes2_xy;
+    v->ups_B_2_in_axes2_zx = ups_B_2_in_axes2_zx;
+    v->ups_B_2_in_axes2_zy = ups_B_2_in_axes2_zy;
+    v->ups_g_in_axes2_x = ups_g_in_axes2_x;
+    v->ups_g_in_axes2_y = ups_g_in_axes2_y;
+    v->ups_acc_3_in_axes2_x = ups_acc_3_in_axes2_x;
+    v->ups_acc_3_in_axes2_y = ups_acc_3_in_axes2_y;
+    v->ups_acc_3_in_axes2_z = ups_acc_3_in_axes2_z;
+    v->ups_mu_2_t = ups_mu_2_t;
+}
+
 /* ---- functions of the state: M, Z, H and the like ---- */
 
 /* ---- dynamics ---- */
@@ -1678,464 +3624,130 @@ INLINE void dynamics_before(const prepared *m, size_t w, const real *X, const re
     verdict *t)
 {
     for (size_t k = 0; k < w; ++k) {
-        /* X: named entries */
-        const real X_0 = X[0*w + k];
-        const real t_x = X_0;
-        const real X_1 = X[1*w + k];
-        const real t_y = X_1;
-        const real X_2 = X[2*w + k];
-        const real t_z = X_2;
-        const real X_3 = X[3*w + k];
-        const real X_4 = X[4*w + k];
-        const real X_5 = X[5*w + k];
-        const real X_6 = X[6*w + k];
-        const real quaternion_norm2 = X_3*X_3 + X_4*X_4 + X_5*X_5 + X_6*X_6;
-        const real quaternion_scale = 2/quaternion_norm2;
-        const real quaternion_sx = X_3*quaternion_scale;
-        const real quaternion_sy = X_4*quaternion_scale;
-        const real quaternion_sz = X_5*quaternion_scale;
-        const real quaternion_wx = X_6*quaternion_sx;
-        const real quaternion_wy = X_6*quaternion_sy;
-        const real quaternion_wz = X_6*quaternion_sz;
-        const real quaternion_xx = X_3*quaternion_sx;
-        const real quaternion_xy = X_3*quaternion_sy;
-        const real quaternion_xz = X_3*quaternion_sz;
-        const real quaternion_yy = X_4*quaternion_sy;
-        const real quaternion_yz = X_4*quaternion_sz;
-        const real quaternion_zz = X_5*quaternion_sz;
-        const real R_xx = 1 - quaternion_yy - quaternion_zz;
-        const real R_xy = quaternion_xy - quaternion_wz;
-        const real R_xz = quaternion_wy + quaternion_xz;
-        const real R_yx = quaternion_wz + quaternion_xy;
-        const real R_yy = 1 - quaternion_xx - quaternion_zz;
-        const real R_yz = quaternion_yz - quaternion_wx;
-        const real R_zx = quaternion_xz - quaternion_wy;
-        const real R_zy = quaternion_wx + quaternion_yz;
-        const real R_zz = 1 - quaternion_xx - quaternion_yy;
-        /* V: named entries */
-        const real V_0 = V[0*w + k];
-        const real t_dot_x = V_0;
-        const real V_1 = V[1*w + k];
-        const real t_dot_y = V_1;
-        const real V_2 = V[2*w + k];
-        const real t_dot_z = V_2;
-        const real V_3 = V[3*w + k];
-        const real omega_x = V_3;
-        const real V_4 = V[4*w + k];
-        const real omega_y = V_4;
-        const real V_5 = V[5*w + k];
-        const real omega_z = V_5;
-        /* (h_star) first moment about the platform origin */
-        const real h_star_in_platform_x = m->h_star_in_platform_x;
-        const real h_star_in_platform_y = m->h_star_in_platform_y;
-        const real h_star_in_platform_z = m->h_star_in_platform_z;
-        const real h_star_x = R_xx*h_star_in_platform_x + R_xy*h_star_in_platform_y +
-            R_xz*h_star_in_platform_z;
-        const real h_star_y = R_yx*h_star_in_platform_x + R_yy*h_star_in_platform_y +
-            R_yz*h_star_in_platform_z;
-        const real h_star_z = R_zx*h_star_in_platform_x + R_zy*h_star_in_platform_y +
-            R_zz*h_star_in_platform_z;
-        /* (J_star) inertia tensor about the platform origin */
-        const real J_star_in_platform_xy = m->J_star_in_platform_xy;
-        const real J_star_in_platform_yz = m->J_star_in_platform_yz;
-        const real J_star_t_12 = m->J_star_t_12;
-        const real J_star_t = J_star_in_platform_xy*R_xx + J_star_in_platform_yz*R_xz -
-            J_star_t_12*R_xy;
-        const real J_star_t_2 = J_star_in_platform_xy*R_yx + J_star_in_platform_yz*R_yz -
-            J_star_t_12*R_yy;
-        const real J_star_t_3 = J_star_in_platform_xy*R_zx + J_star_in_platform_yz*R_zz -
-            J_star_t_12*R_zy;
-        const real J_star_in_platform_xz = m->J_star_in_platform_xz;
-        const real J_star_t_14 = m->J_star_t_14;
-        const real J_star_t_4 = J_star_t_14*R_xz - J_star_in_platform_xz*R_xx;
-        const real J_star_t_5 = J_star_t_14*R_yz - J_star_in_platform_xz*R_yx;
-        const real J_star_t_6 = J_star_t_14*R_zz - J_star_in_platform_xz*R_zx;
-        const real J_star_t_7 = J_star_t*R_xy - J_star_t_4*R_xz;
-        const real J_star_in_platform_xx = m->J_star_in_platform_xx;
-        const real J_star_xx = J_star_in_platform_xx + 2*J_star_t_7;
-        const real J_star_xy = J_star_t*R_yy + J_star_t_2*R_xy - J_star_t_4*R_yz -
-            J_star_t_5*R_xz;
-        const real J_star_xz = J_star_t*R_zy + J_star_t_3*R_xy - J_star_t_4*R_zz -
-            J_star_t_6*R_xz;
-        const real J_star_t_8 = J_star_t_2*R_yy - J_star_t_5*R_yz;
-        const real J_star_yy = J_star_in_platform_xx + 2*J_star_t_8;
-        const real J_star_yz = J_star_t_2*R_zy + J_star_t_3*R_yy - J_star_t_5*R_zz -
-            J_star_t_6*R_yz;
-        const real J_star_t_9 = J_star_t_3*R_zy - J_star_t_6*R_zz;
-        const real J_star_zz = J_star_in_platform_xx + 2*J_star_t_9;
-        /* (Z_p) centripetal force and weight of the platform */
-        const real Z_p_t_4 = h_star_z*omega_y - h_star_y*omega_z;
-        const real Z_p_t_5 = h_star_x*omega_z - h_star_z*omega_x;
-        const real Z_p_t_6 = h_star_y*omega_x - h_star_x*omega_y;
-        const real Z_p_t = m->Z_p_t;
-        const real Z_p_x = Z_p_t_6*omega_y - Z_p_t - Z_p_t_5*omega_z;
-        const real Z_p_t_2 = m->Z_p_t_2;
-        const real Z_p_y = Z_p_t_4*omega_z - Z_p_t_2 - Z_p_t_6*omega_x;
-        const real Z_p_t_3 = m->Z_p_t_3;
-        const real Z_p_z = Z_p_t_5*omega_x - Z_p_t_3 - Z_p_t_4*omega_y;
-        /* (Z_q) gyroscopic moment and moment of the weight of the platform */
-        const real gravity_x = m->gravity_x;
-        const real gravity_y = m->gravity_y;
-        const real gravity_z = m->gravity_z;
-        const real g_in_platform_x = R_xx*gravity_x + R_yx*gravity_y + R_zx*gravity_z;
-        const real g_in_platform_y = R_xy*gravity_x + R_yy*gravity_y + R_zy*gravity_z;
-        const real g_in_platform_z = R_xz*gravity_x + R_yz*gravity_y + R_zz*gravity_z;
-        const real omega_in_platform_x = R_xx*omega_x + R_yx*omega_y + R_zx*omega_z;
-        const real omega_in_platform_y = R_xy*omega_x + R_yy*omega_y + R_zy*omega_z;
-        const real omega_in_platform_z = R_xz*omega_x + R_yz*omega_y + R_zz*omega_z;
-        const real Z_q_t = J_star_in_platform_xx*omega_in_platform_x +
-            J_star_in_platform_xy*omega_in_platform_y + J_star_in_platform_xz*omega_in_platform_z;
-        const real J_star_in_platform_yy = m->J_star_in_platform_yy;
-        const real Z_q_t_2 = J_star_in_platform_xy*omega_in_platform_x +
-            J_star_in_platform_yy*omega_in_platform_y + J_star_in_platform_yz*omega_in_platform_z;
-        const real J_star_in_platform_zz = m->J_star_in_platform_zz;
-        const real Z_q_t_3 = J_star_in_platform_xz*omega_in_platform_x +
-            J_star_in_platform_yz*omega_in_platform_y + J_star_in_platform_zz*omega_in_platform_z;
-        const real Z_q_in_platform_x = Z_q_t_3*omega_in_platform_y +
-            g_in_platform_y*h_star_in_platform_z - Z_q_t_2*omega_in_platform_z -
-            g_in_platform_z*h_star_in_platform_y;
-        const real Z_q_in_platform_y = Z_q_t*omega_in_platform_z +
-            g_in_platform_z*h_star_in_platform_x - Z_q_t_3*omega_in_platform_x -
-            g_in_platform_x*h_star_in_platform_z;
-        const real Z_q_in_platform_z = Z_q_t_2*omega_in_platform_x +
-            g_in_platform_x*h_star_in_platform_y - Z_q_t*omega_in_platform_y -
-            g_in_platform_y*h_star_in_platform_x;
-        const real Z_q_x = R_xx*Z_q_in_platform_x + R_xy*Z_q_in_platform_y +
-            R_xz*Z_q_in_platform_z;
-        const real Z_q_y = R_yx*Z_q_in_platform_x + R_yy*Z_q_in_platform_y +
-            R_yz*Z_q_in_platform_z;
-        const real Z_q_z = R_zx*Z_q_in_platform_x + R_zy*Z_q_in_platform_y +
-            R_zz*Z_q_in_platform_z;
-        s[0*w + k] = t_x;
-        s[1*w + k] = t_y;
-        s[2*w + k] = t_z;
-        s[3*w + k] = R_xx;
-        s[4*w + k] = R_xy;
-        s[5*w + k] = R_xz;
-        s[6*w + k] = R_yx;
-        s[7*w + k] = R_yy;
-        s[8*w + k] = R_yz;
-        s[9*w + k] = R_zx;
-        s[10*w + k] = R_zy;
-        s[11*w + k] = R_zz;
-        s[12*w + k] = t_dot_x;
-        s[13*w + k] = t_dot_y;
-        s[14*w + k] = t_dot_z;
-        s[15*w + k] = omega_x;
-        s[16*w + k] = omega_y;
-        s[17*w + k] = omega_z;
-        s[18*w + k] = h_star_x;
-        s[19*w + k] = h_star_y;
-        s[20*w + k] = h_star_z;
-        s[21*w + k] = J_star_xx;
-        s[22*w + k] = J_star_xy;
-        s[23*w + k] = J_star_xz;
-        s[24*w + k] = J_star_yy;
-        s[25*w + k] = J_star_yz;
-        s[26*w + k] = J_star_zz;
-        s[27*w + k] = Z_p_x;
-        s[28*w + k] = Z_p_y;
-        s[29*w + k] = Z_p_z;
-        s[30*w + k] = Z_q_x;
-        s[31*w + k] = Z_q_y;
-        s[32*w + k] = Z_q_z;
-        t->invalid[k] += UNLESS(is_finite(quaternion_scale)) + UNLESS(quaternion_scale > 0);
+        values v;
+        stage_X(m, w, k, X, &v);
+        stage_V_X(w, k, V, &v);
+        stage_M_dynamics(m, &v);
+        stage_Z_dynamics(m, w, k, V, &v);
+        s[0*w + k] = v.R_xx;
+        s[1*w + k] = v.R_xy;
+        s[2*w + k] = v.R_xz;
+        s[3*w + k] = v.R_yx;
+        s[4*w + k] = v.R_yy;
+        s[5*w + k] = v.R_yz;
+        s[6*w + k] = v.R_zx;
+        s[7*w + k] = v.R_zy;
+        s[8*w + k] = v.R_zz;
+        s[9*w + k] = v.h_star_x;
+        s[10*w + k] = v.h_star_y;
+        s[11*w + k] = v.h_star_z;
+        s[12*w + k] = v.J_star_xx;
+        s[13*w + k] = v.J_star_xy;
+        s[14*w + k] = v.J_star_xz;
+        s[15*w + k] = v.J_star_yy;
+        s[16*w + k] = v.J_star_yz;
+        s[17*w + k] = v.J_star_zz;
+        s[18*w + k] = v.Z_p_x;
+        s[19*w + k] = v.Z_p_y;
+        s[20*w + k] = v.Z_p_z;
+        s[21*w + k] = v.Z_q_x;
+        s[22*w + k] = v.Z_q_y;
+        s[23*w + k] = v.Z_q_z;
+        t->invalid[k] += UNLESS(is_finite(v.quaternion_scale)) + UNLESS(v.quaternion_scale > 0);
     }
 }
 
 INLINE void dynamics_legs_ups(const prepared *m, size_t w, size_t leg, size_t legs, const real *s,
-    size_t states, size_t count, int add, real *terms, real *o)
+    size_t states, size_t count, int add, const real *X, const real *V, real *terms, real *o)
 {
     for (size_t k = 0; k < count; ++k) {
         const size_t i = leg + legs*k;
         const size_t j = states*k;
-        /* (ups-S) from the base point to the connection point */
-        const real R_xx = s[3*w + j];
-        const real R_xy = s[4*w + j];
-        const real R_xz = s[5*w + j];
-        const real ups_platform_point_x = m->ups_platform_point_x[i];
-        const real ups_platform_point_y = m->ups_platform_point_y[i];
-        const real ups_platform_point_z = m->ups_platform_point_z[i];
-        const real ups_q_x = R_xx*ups_platform_point_x + R_xy*ups_platform_point_y +
-            R_xz*ups_platform_point_z;
-        const real R_yx = s[6*w + j];
-        const real R_yy = s[7*w + j];
-        const real R_yz = s[8*w + j];
-        const real ups_q_y = R_yx*ups_platform_point_x + R_yy*ups_platform_point_y +
-            R_yz*ups_platform_point_z;
-        const real R_zx = s[9*w + j];
-        const real R_zy = s[10*w + j];
-        const real R_zz = s[11*w + j];
-        const real ups_q_z = R_zx*ups_platform_point_x + R_zy*ups_platform_point_y +
-            R_zz*ups_platform_point_z;
-        const real t_x = s[0*w + j];
-        const real ups_base_point_x = m->ups_base_point_x[i];
-        const real ups_S_x = t_x + ups_q_x - ups_base_point_x;
-        const real t_y = s[1*w + j];
-        const real ups_base_point_y = m->ups_base_point_y[i];
-        const real ups_S_y = t_y + ups_q_y - ups_base_point_y;
-        const real t_z = s[2*w + j];
-        const real ups_base_point_z = m->ups_base_point_z[i];
-        const real ups_S_z = t_z + ups_q_z - ups_base_point_z;
-        /* (ups-px_1) component along the reference direction */
-        const real ups_base_frame_xx = m->ups_base_frame_xx[i];
-        const real ups_base_frame_yx = m->ups_base_frame_yx[i];
-        const real ups_base_frame_zx = m->ups_base_frame_zx[i];
-        const real ups_px_1 = ups_S_x*ups_base_frame_xx + ups_S_y*ups_base_frame_yx +
-            ups_S_z*ups_base_frame_zx;
-        /* (ups-py_1) component across the reference direction */
-        const real ups_base_frame_xy = m->ups_base_frame_xy[i];
-        const real ups_base_frame_yy = m->ups_base_frame_yy[i];
-        const real ups_base_frame_zy = m->ups_base_frame_zy[i];
-        const real ups_py_1 = ups_S_x*ups_base_frame_xy + ups_S_y*ups_base_frame_yy +
-            ups_S_z*ups_base_frame_zy;
-        /* (ups-rho2_1) squared amplitude */
-        const real ups_rho2_1 = ups_px_1*ups_px_1 + ups_py_1*ups_py_1;
-        /* (ups-root_1) amplitude, with the sign of the branch */
-        const real ups_branch_1 = m->ups_branch_1[i];
-        const real ups_root_1 = ups_branch_1*root(ups_rho2_1);
-        /* (ups-c_1) cosine of the angle of joint 1 from its reference direction */
-        const real inv_ups_root_1 = 1/ups_root_1;
-        const real ups_c_1 = -inv_ups_root_1*ups_py_1;
-        /* (ups-s_1) sine of the angle of joint 1 from its reference direction */
-        const real ups_s_1 = inv_ups_root_1*ups_px_1;
-        /* (ups-xi_1) the vector from joint 1 to the connection point, resolved along link 1 */
-        const real ups_base_frame_xz = m->ups_base_frame_xz[i];
-        const real ups_base_frame_yz = m->ups_base_frame_yz[i];
-        const real ups_base_frame_zz = m->ups_base_frame_zz[i];
-        const real ups_xi_1_in_axes1_z = ups_S_x*ups_base_frame_xz + ups_S_y*ups_base_frame_yz +
-            ups_S_z*ups_base_frame_zz;
-        /* (ups-rho2_2) squared amplitude */
-        const real ups_rho2_2 = ups_rho2_1 + ups_xi_1_in_axes1_z*ups_xi_1_in_axes1_z;
-        /* (ups-root_2) amplitude, with the sign of the branch */
-        const real ups_branch_2 = m->ups_branch_2[i];
-        const real ups_root_2 = ups_branch_2*root(ups_rho2_2);
-        /* (ups-c_2) cosine of the angle of joint 2 from its reference direction */
-        const real inv_ups_root_2 = 1/ups_root_2;
-        const real ups_c_2 = -inv_ups_root_2*ups_root_1;
-        /* (ups-s_2) sine of the angle of joint 2 from its reference direction */
-        const real ups_s_2 = inv_ups_root_2*ups_xi_1_in_axes1_z;
-        /* (ups-S_dot) velocity of the connection point */
-        const real axis_x_ups_axes2_x = inv_ups_root_2*ups_S_x;
-        const real axis_x_ups_axes2_y = inv_ups_root_2*ups_S_y;
-        const real axis_x_ups_axes2_z = inv_ups_root_2*ups_S_z;
-        const real omega_y = s[16*w + j];
-        const real omega_z = s[17*w + j];
-        const real ups_S_dot_t = omega_y*ups_q_z - omega_z*ups_q_y;
-        const real omega_x = s[15*w + j];
-        const real ups_S_dot_t_2 = omega_z*ups_q_x - omega_x*ups_q_z;
-        const real ups_S_dot_t_3 = omega_x*ups_q_y - omega_y*ups_q_x;
-        const real t_dot_x = s[12*w + j];
-        const real ups_S_dot_x = t_dot_x + ups_S_dot_t;
-        const real t_dot_y = s[13*w + j];
-        const real ups_S_dot_y = t_dot_y + ups_S_dot_t_2;
-        const real t_dot_z = s[14*w + j];
-        const real ups_S_dot_z = t_dot_z + ups_S_dot_t_3;
-        const real ups_S_dot_in_axes2_x = axis_x_ups_axes2_x*ups_S_dot_x +
-            axis_x_ups_axes2_y*ups_S_dot_y + axis_x_ups_axes2_z*ups_S_dot_z;
-        /* (ups-qd_1) rate of joint 1 */
-        const real axis_z_ups_axes2_x = ups_base_frame_xx*ups_c_1 + ups_base_frame_xy*ups_s_1;
-        const real axis_z_ups_axes2_y = ups_base_frame_yx*ups_c_1 + ups_base_frame_yy*ups_s_1;
-        const real axis_z_ups_axes2_z = ups_base_frame_zx*ups_c_1 + ups_base_frame_zy*ups_s_1;
-        const real ups_qd_1 = inv_ups_root_1*(axis_z_ups_axes2_x*ups_S_dot_x +
-            axis_z_ups_axes2_y*ups_S_dot_y + axis_z_ups_axes2_z*ups_S_dot_z);
-        /* (ups-qd_2) rate of joint 2 */
-        const real axis_y_ups_axes2_x = axis_x_ups_axes2_z*axis_z_ups_axes2_y -
-            axis_x_ups_axes2_y*axis_z_ups_axes2_z;
-        const real axis_y_ups_axes2_y = axis_x_ups_axes2_x*axis_z_ups_axes2_z -
-            axis_x_ups_axes2_z*axis_z_ups_axes2_x;
-        const real axis_y_ups_axes2_z = axis_x_ups_axes2_y*axis_z_ups_axes2_x -
-            axis_x_ups_axes2_x*axis_z_ups_axes2_y;
-        const real ups_qd_2 = inv_ups_root_2*(axis_y_ups_axes2_x*ups_S_dot_x +
-            axis_y_ups_axes2_y*ups_S_dot_y + axis_y_ups_axes2_z*ups_S_dot_z);
-        /* (ups-omega_1) angular velocity of link 1 */
-        const real ups_omega_1_in_axes2_x = ups_qd_1*ups_s_2;
-        const real ups_omega_1_in_axes2_y = ups_c_2*ups_qd_1;
-        /* (ups-W_2) centripetal tensor of link 2 */
-        const real ups_W_2_in_axes2_yz = ups_omega_1_in_axes2_y*ups_qd_2;
-        const real ups_W_2_in_axes2_xz = ups_omega_1_in_axes2_x*ups_qd_2;
-        const real ups_W_2_in_axes2_xy = ups_omega_1_in_axes2_x*ups_omega_1_in_axes2_y;
-        /* (ups-u_1) centripetal acceleration of the connection point */
-        const real ups_u_1_x = omega_y*ups_S_dot_t_3 - omega_z*ups_S_dot_t_2;
-        const real ups_u_1_y = omega_z*ups_S_dot_t - omega_x*ups_S_dot_t_3;
-        const real ups_u_1_z = omega_x*ups_S_dot_t_2 - omega_y*ups_S_dot_t;
-        const real ups_u_1_in_axes2_z = axis_z_ups_axes2_x*ups_u_1_x +
-            axis_z_ups_axes2_y*ups_u_1_y + axis_z_ups_axes2_z*ups_u_1_z;
-        /* (ups-bias) acceleration of the connection point at zero joint accelerations */
-        const real ups_bias_t = 2*ups_S_dot_in_axes2_x;
-        const real ups_bias_in_axes2_z = 2*ups_W_2_in_axes2_xz*ups_root_2 -
-            ups_bias_t*ups_omega_1_in_axes2_y;
-        /* (ups-rel_o) remainder without the acceleration in: acceleration of the connection point left to
-           the joint accelerations */
-        const real ups_rel_o_in_axes2_z = ups_u_1_in_axes2_z - ups_bias_in_axes2_z;
-        /* (ups-qdd_1_o) remainder without the acceleration in: acceleration of joint 1 */
-        const real ups_qdd_1_o = inv_ups_root_1*ups_rel_o_in_axes2_z;
+        values_ups v;
+        stage_ups_X(m, w, i, j, s, X, &v);
+        stage_ups_V_X(w, j, V, &v);
+        stage_ups_Z_dynamics(m, w, i, j, V, &v);
         /* (ups-d_alpha_1) coefficient of the acceleration in: angular acceleration of link 1 */
-        const real ups_d_alpha_1_in_axes2_xz = inv_ups_root_1*ups_s_2;
-        /* (ups-alpha_1_o) remainder without the acceleration in: angular acceleration of link 1 */
-        const real ups_alpha_1_o_in_axes2_x = ups_qdd_1_o*ups_s_2;
-        const real ups_alpha_1_o_in_axes2_y = ups_c_2*ups_qdd_1_o;
-        /* (ups-alpha_2_o) remainder without the acceleration in: angular acceleration of link 2 */
-        const real ups_alpha_2_o_in_axes2_x = ups_W_2_in_axes2_yz + ups_alpha_1_o_in_axes2_x;
-        const real ups_alpha_2_o_in_axes2_y = ups_alpha_1_o_in_axes2_y - ups_W_2_in_axes2_xz;
-        /* (ups-B_2_o) remainder of the acceleration tensor of link 2 */
-        const real ups_B_2_o_t = axis_y_ups_axes2_x*ups_u_1_x;
-        const real ups_B_2_o_t_2 = axis_y_ups_axes2_y*ups_u_1_y;
-        const real ups_B_2_o_t_3 = axis_y_ups_axes2_z*ups_u_1_z;
-        const real ups_B_2_o_in_axes2_yx = inv_ups_root_2*(ups_B_2_o_t + ups_B_2_o_t_2 +
-            ups_B_2_o_t_3 - ups_bias_t*ups_qd_2);
-        const real ups_B_2_o_in_axes2_xy = 2*ups_W_2_in_axes2_xy - ups_B_2_o_in_axes2_yx;
-        const real ups_B_2_o_in_axes2_zx = ups_W_2_in_axes2_xz - ups_alpha_2_o_in_axes2_y;
-        const real ups_B_2_o_in_axes2_zy = ups_W_2_in_axes2_yz + ups_alpha_2_o_in_axes2_x;
-        /* (ups-acc_3_o) remainder without the acceleration in: acceleration of the reference point of
-           link 3, less gravity */
-        const real ups_acc_3_t = m->ups_acc_3_t[i];
-        const real ups_acc_3_t_2 = m->ups_acc_3_t_2[i];
-        const real ups_g_in_axes2_z = ups_acc_3_t*ups_c_1 + ups_acc_3_t_2*ups_s_1;
-        const real ups_acc_3_o_t = ups_acc_3_t_2*ups_c_1 - ups_acc_3_t*ups_s_1;
-        const real ups_acc_3_t_3 = m->ups_acc_3_t_3[i];
-        const real ups_g_in_axes2_x = ups_acc_3_o_t*ups_c_2 + ups_acc_3_t_3*ups_s_2;
-        const real ups_g_in_axes2_y = ups_acc_3_t_3*ups_c_2 - ups_acc_3_o_t*ups_s_2;
-        const real ups_acc_3_o_in_axes2_x = axis_x_ups_axes2_x*ups_u_1_x +
-            axis_x_ups_axes2_y*ups_u_1_y + axis_x_ups_axes2_z*ups_u_1_z - ups_g_in_axes2_x;
-        const real ups_acc_3_o_in_axes2_y = ups_B_2_o_t + ups_B_2_o_t_2 + ups_B_2_o_t_3 -
-            ups_g_in_axes2_y;
-        const real ups_acc_3_o_in_axes2_z = ups_u_1_in_axes2_z - ups_g_in_axes2_z;
+        const real ups_d_alpha_1_in_axes2_xz = v.inv_ups_root_1*v.ups_e_1_in_axes2_x;
         /* (ups-d_phi_3) coefficient of the acceleration in: inertia force of link 3 from its turning
            about its reference point */
         const real ups_h_3_in_spec2_z = m->ups_h_3_in_spec2_z[i];
-        const real ups_d_phi_3_in_axes2_xy = inv_ups_root_2*ups_h_3_in_spec2_z;
+        const real ups_d_phi_3_in_axes2_xy = v.inv_ups_q_3*ups_h_3_in_spec2_z;
         const real ups_h_3_in_spec2_x = m->ups_h_3_in_spec2_x[i];
-        const real ups_d_phi_3_in_axes2_yy = inv_ups_root_2*ups_h_3_in_spec2_x;
-        /* (ups-phi_3_o) remainder without the acceleration in: inertia force of link 3 from its turning
-           about its reference point */
-        const real ups_phi_3_o_t = ups_omega_1_in_axes2_y*ups_omega_1_in_axes2_y;
-        const real ups_phi_3_o_t_2 = ups_qd_2*ups_qd_2;
-        const real ups_h_3_in_spec2_y = m->ups_h_3_in_spec2_y[i];
-        const real ups_phi_3_o_in_axes2_x = ups_alpha_1_o_in_axes2_y*ups_h_3_in_spec2_y +
-            ups_h_3_in_spec2_x*(-ups_phi_3_o_t - ups_phi_3_o_t_2) -
-            ups_B_2_o_in_axes2_xy*ups_h_3_in_spec2_z;
-        /* (ups-mu_2_o) remainder without the acceleration in: inertia moment of the links that turn with
-           link 2, about their reference points */
-        const real ups_mu_2_o_t = ups_omega_1_in_axes2_x*ups_omega_1_in_axes2_x;
-        const real ups_J_group_2_in_axes2_xy = m->ups_J_group_2_in_axes2_xy[i];
-        const real ups_J_group_2_in_axes2_xz = m->ups_J_group_2_in_axes2_xz[i];
-        const real ups_J_group_2_in_axes2_yz = m->ups_J_group_2_in_axes2_yz[i];
-        const real ups_Sigma_2_in_axes2_yy = m->ups_Sigma_2_in_axes2_yy[i];
-        const real ups_Sigma_2_in_axes2_zz = m->ups_Sigma_2_in_axes2_zz[i];
-        const real ups_h_2_in_spec2_y = m->ups_h_2_in_spec2_y[i];
-        const real ups_h_2_in_spec2_z = m->ups_h_2_in_spec2_z[i];
-        const real ups_mu_2_o_in_axes2_x = ups_B_2_o_in_axes2_yx*ups_J_group_2_in_axes2_xz +
-            ups_B_2_o_in_axes2_zy*ups_Sigma_2_in_axes2_yy +
-            ups_J_group_2_in_axes2_yz*(ups_phi_3_o_t - ups_phi_3_o_t_2) +
-            ups_Sigma_2_in_axes2_zz*ups_alpha_1_o_in_axes2_x + ups_g_in_axes2_y*ups_h_2_in_spec2_y
-            + ups_g_in_axes2_z*ups_h_2_in_spec2_z -
-            ups_B_2_o_in_axes2_zx*ups_J_group_2_in_axes2_xy -
-            ups_acc_3_o_in_axes2_y*ups_h_3_in_spec2_y - ups_acc_3_o_in_axes2_z*ups_h_3_in_spec2_z;
-        const real ups_Sigma_2_in_axes2_xx = m->ups_Sigma_2_in_axes2_xx[i];
-        const real ups_h_2_in_spec2_x = m->ups_h_2_in_spec2_x[i];
-        const real ups_mu_2_o_in_axes2_y = ups_B_2_o_in_axes2_zy*ups_J_group_2_in_axes2_xy +
-            ups_Sigma_2_in_axes2_zz*ups_alpha_1_o_in_axes2_y +
-            ups_acc_3_o_in_axes2_x*ups_h_3_in_spec2_y + ups_g_in_axes2_z*ups_h_2_in_spec2_x -
-            ups_B_2_o_in_axes2_xy*ups_J_group_2_in_axes2_yz -
-            ups_B_2_o_in_axes2_zx*ups_Sigma_2_in_axes2_xx -
-            ups_J_group_2_in_axes2_xz*(ups_mu_2_o_t - ups_phi_3_o_t_2) -
-            ups_acc_3_o_in_axes2_z*ups_h_3_in_spec2_x - ups_g_in_axes2_x*ups_h_2_in_spec2_y;
-        const real ups_mu_2_o_in_axes2_z = ups_B_2_o_in_axes2_yx*ups_Sigma_2_in_axes2_xx +
-            ups_J_group_2_in_axes2_xy*(ups_mu_2_o_t - ups_phi_3_o_t) +
-            ups_J_group_2_in_axes2_xz*ups_alpha_1_o_in_axes2_x +
-            ups_J_group_2_in_axes2_yz*ups_alpha_1_o_in_axes2_y +
-            ups_acc_3_o_in_axes2_x*ups_h_3_in_spec2_z + ups_acc_3_o_in_axes2_y*ups_h_3_in_spec2_x
-            - ups_B_2_o_in_axes2_xy*ups_Sigma_2_in_axes2_yy - ups_g_in_axes2_x*ups_h_2_in_spec2_z
-            - ups_g_in_axes2_y*ups_h_2_in_spec2_x;
+        const real ups_d_phi_3_in_axes2_yy = v.inv_ups_q_3*ups_h_3_in_spec2_x;
         /* (ups-d_c) coefficient of the acceleration in: leg force on the platform without actuation and
            without the mass at the connection point */
-        const real ups_d_c_in_axes2_xz = inv_ups_root_2*ups_h_3_in_spec2_y;
+        const real ups_h_3_in_spec2_y = m->ups_h_3_in_spec2_y[i];
+        const real ups_d_c_in_axes2_xz = v.inv_ups_q_3*ups_h_3_in_spec2_y;
         const real ups_J_group_2_in_axes2_zz = m->ups_J_group_2_in_axes2_zz[i];
         const real ups_d_c_in_axes2_yy = -ups_d_phi_3_in_axes2_yy -
-            inv_ups_root_2*(ups_h_3_in_spec2_x + inv_ups_root_2*ups_J_group_2_in_axes2_zz);
+            v.inv_ups_q_3*(ups_h_3_in_spec2_x + v.inv_ups_q_3*ups_J_group_2_in_axes2_zz);
+        const real ups_J_group_2_in_axes2_xz = m->ups_J_group_2_in_axes2_xz[i];
+        const real ups_J_group_2_in_axes2_yz = m->ups_J_group_2_in_axes2_yz[i];
         const real ups_d_c_in_axes2_yz = ups_d_alpha_1_in_axes2_xz*ups_h_3_in_spec2_y -
-            inv_ups_root_2*(ups_J_group_2_in_axes2_xz*ups_d_alpha_1_in_axes2_xz -
-            inv_ups_root_2*ups_J_group_2_in_axes2_yz);
+            v.inv_ups_q_3*(ups_J_group_2_in_axes2_xz*ups_d_alpha_1_in_axes2_xz -
+            v.inv_ups_q_3*ups_J_group_2_in_axes2_yz);
         const real ups_J_group_2_in_axes2_xx = m->ups_J_group_2_in_axes2_xx[i];
+        const real ups_J_group_2_in_axes2_xy = m->ups_J_group_2_in_axes2_xy[i];
         const real ups_J_group_2_in_axes2_yy = m->ups_J_group_2_in_axes2_yy[i];
         const real ups_d_c_in_axes2_zz = ups_d_alpha_1_in_axes2_xz*ups_h_3_in_spec2_z -
             ups_d_phi_3_in_axes2_yy -
-            inv_ups_root_1*(ups_c_2*(ups_J_group_2_in_axes2_xy*ups_d_alpha_1_in_axes2_xz -
-            ups_h_3_in_spec2_x - inv_ups_root_2*ups_J_group_2_in_axes2_yy) +
-            ups_s_2*(ups_J_group_2_in_axes2_xx*ups_d_alpha_1_in_axes2_xz - ups_h_3_in_spec2_z -
-            inv_ups_root_2*ups_J_group_2_in_axes2_xy));
-        /* (ups-c_o) remainder without the acceleration in: leg force on the platform without actuation
-           and without the mass at the connection point */
-        const real ups_c_o_in_axes2_y = ups_alpha_1_o_in_axes2_x*ups_h_3_in_spec2_y -
-            inv_ups_root_2*ups_mu_2_o_in_axes2_z - ups_B_2_o_in_axes2_yx*ups_h_3_in_spec2_x -
-            ups_h_3_in_spec2_z*(ups_mu_2_o_t + ups_phi_3_o_t_2);
-        const real ups_c_o_in_axes2_z = ups_B_2_o_in_axes2_zy*ups_h_3_in_spec2_z +
-            ups_h_3_in_spec2_y*(ups_mu_2_o_t + ups_phi_3_o_t) -
-            inv_ups_root_1*(ups_c_2*ups_mu_2_o_in_axes2_y + ups_mu_2_o_in_axes2_x*ups_s_2) -
-            ups_B_2_o_in_axes2_zx*ups_h_3_in_spec2_x;
+            v.inv_ups_root_1*(v.ups_e_1_in_axes2_x*(ups_J_group_2_in_axes2_xx*ups_d_alpha_1_in_axes2_xz
+            - ups_h_3_in_spec2_z - v.inv_ups_q_3*ups_J_group_2_in_axes2_xy) -
+            v.ups_c_2*(ups_J_group_2_in_axes2_xy*ups_d_alpha_1_in_axes2_xz - ups_h_3_in_spec2_x -
+            v.inv_ups_q_3*ups_J_group_2_in_axes2_yy));
         /* (ups-Q) inertia of the leg at the connection point, without the mass gathered there */
         const real ups_Q_t = R(0.5)*ups_d_c_in_axes2_yy;
         const real ups_Q_t_2 = R(0.5)*ups_d_c_in_axes2_zz;
-        const real ups_Q_t_3 = axis_x_ups_axes2_x*ups_d_phi_3_in_axes2_xy -
-            axis_y_ups_axes2_x*ups_Q_t - axis_z_ups_axes2_x*ups_d_c_in_axes2_yz;
-        const real ups_Q_t_4 = axis_x_ups_axes2_y*ups_d_phi_3_in_axes2_xy -
-            axis_y_ups_axes2_y*ups_Q_t - axis_z_ups_axes2_y*ups_d_c_in_axes2_yz;
-        const real ups_Q_t_5 = axis_y_ups_axes2_z*ups_Q_t + axis_z_ups_axes2_z*ups_d_c_in_axes2_yz
-            - axis_x_ups_axes2_z*ups_d_phi_3_in_axes2_xy;
-        const real ups_Q_t_6 = axis_x_ups_axes2_x*ups_d_c_in_axes2_xz +
-            axis_z_ups_axes2_x*ups_Q_t_2;
-        const real ups_Q_t_7 = axis_x_ups_axes2_y*ups_d_c_in_axes2_xz +
-            axis_z_ups_axes2_y*ups_Q_t_2;
-        const real ups_Q_t_8 = axis_x_ups_axes2_z*ups_d_c_in_axes2_xz +
-            axis_z_ups_axes2_z*ups_Q_t_2;
-        const real ups_Q_t_9 = axis_z_ups_axes2_x*ups_Q_t_6 - axis_y_ups_axes2_x*ups_Q_t_3;
+        const real ups_Q_t_3 = v.axis_x_ups_axes2_x*ups_d_phi_3_in_axes2_xy -
+            v.axis_y_ups_axes2_x*ups_Q_t - v.axis_z_ups_axes2_x*ups_d_c_in_axes2_yz;
+        const real ups_Q_t_4 = v.axis_x_ups_axes2_y*ups_d_phi_3_in_axes2_xy -
+            v.axis_y_ups_axes2_y*ups_Q_t - v.axis_z_ups_axes2_y*ups_d_c_in_axes2_yz;
+        const real ups_Q_t_5 = v.axis_y_ups_axes2_z*ups_Q_t +
+            v.axis_z_ups_axes2_z*ups_d_c_in_axes2_yz -
+            v.axis_x_ups_axes2_z*ups_d_phi_3_in_axes2_xy;
+        const real ups_Q_t_6 = v.axis_x_ups_axes2_x*ups_d_c_in_axes2_xz +
+            v.axis_z_ups_axes2_x*ups_Q_t_2;
+        const real ups_Q_t_7 = v.axis_x_ups_axes2_y*ups_d_c_in_axes2_xz +
+            v.axis_z_ups_axes2_y*ups_Q_t_2;
+        const real ups_Q_t_8 = v.axis_x_ups_axes2_z*ups_d_c_in_axes2_xz +
+            v.axis_z_ups_axes2_z*ups_Q_t_2;
+        const real ups_Q_t_9 = v.axis_z_ups_axes2_x*ups_Q_t_6 - v.axis_y_ups_axes2_x*ups_Q_t_3;
         const real ups_Q_xx = -2*ups_Q_t_9;
-        const real ups_Q_xy = axis_y_ups_axes2_x*ups_Q_t_4 + axis_y_ups_axes2_y*ups_Q_t_3 -
-            axis_z_ups_axes2_x*ups_Q_t_7 - axis_z_ups_axes2_y*ups_Q_t_6;
-        const real ups_Q_xz = axis_y_ups_axes2_z*ups_Q_t_3 - axis_y_ups_axes2_x*ups_Q_t_5 -
-            axis_z_ups_axes2_x*ups_Q_t_8 - axis_z_ups_axes2_z*ups_Q_t_6;
-        const real ups_Q_t_10 = axis_z_ups_axes2_y*ups_Q_t_7 - axis_y_ups_axes2_y*ups_Q_t_4;
+        const real ups_Q_xy = v.axis_y_ups_axes2_x*ups_Q_t_4 + v.axis_y_ups_axes2_y*ups_Q_t_3 -
+            v.axis_z_ups_axes2_x*ups_Q_t_7 - v.axis_z_ups_axes2_y*ups_Q_t_6;
+        const real ups_Q_xz = v.axis_y_ups_axes2_z*ups_Q_t_3 - v.axis_y_ups_axes2_x*ups_Q_t_5 -
+            v.axis_z_ups_axes2_x*ups_Q_t_8 - v.axis_z_ups_axes2_z*ups_Q_t_6;
+        const real ups_Q_t_10 = v.axis_z_ups_axes2_y*ups_Q_t_7 - v.axis_y_ups_axes2_y*ups_Q_t_4;
         const real ups_Q_yy = -2*ups_Q_t_10;
-        const real ups_Q_yz = axis_y_ups_axes2_z*ups_Q_t_4 - axis_y_ups_axes2_y*ups_Q_t_5 -
-            axis_z_ups_axes2_y*ups_Q_t_8 - axis_z_ups_axes2_z*ups_Q_t_7;
-        const real ups_Q_t_11 = axis_y_ups_axes2_z*ups_Q_t_5 + axis_z_ups_axes2_z*ups_Q_t_8;
+        const real ups_Q_yz = v.axis_y_ups_axes2_z*ups_Q_t_4 - v.axis_y_ups_axes2_y*ups_Q_t_5 -
+            v.axis_z_ups_axes2_y*ups_Q_t_8 - v.axis_z_ups_axes2_z*ups_Q_t_7;
+        const real ups_Q_t_11 = v.axis_y_ups_axes2_z*ups_Q_t_5 + v.axis_z_ups_axes2_z*ups_Q_t_8;
         const real ups_Q_zz = -2*ups_Q_t_11;
-        /* (ups-U) velocity and gravity terms of the leg force */
-        const real ups_U_x = axis_x_ups_axes2_x*ups_phi_3_o_in_axes2_x -
-            axis_y_ups_axes2_x*ups_c_o_in_axes2_y - axis_z_ups_axes2_x*ups_c_o_in_axes2_z;
-        const real ups_U_y = axis_x_ups_axes2_y*ups_phi_3_o_in_axes2_x -
-            axis_y_ups_axes2_y*ups_c_o_in_axes2_y - axis_z_ups_axes2_y*ups_c_o_in_axes2_z;
-        const real ups_U_z = axis_x_ups_axes2_z*ups_phi_3_o_in_axes2_x -
-            axis_y_ups_axes2_z*ups_c_o_in_axes2_y - axis_z_ups_axes2_z*ups_c_o_in_axes2_z;
         /* (M_ta) coupling block of M */
-        const real ups_M_ta_t = ups_Q_xy*ups_q_z;
-        const real ups_M_ta_t_2 = ups_Q_xz*ups_q_y;
+        const real ups_M_ta_t = ups_Q_xy*v.ups_q_z;
+        const real ups_M_ta_t_2 = ups_Q_xz*v.ups_q_y;
         const real ups_M_ta_t_3 = ups_M_ta_t_2 - ups_M_ta_t;
-        const real ups_M_ta_t_4 = ups_Q_xx*ups_q_z - ups_Q_xz*ups_q_x;
-        const real ups_M_ta_t_5 = ups_Q_xy*ups_q_x - ups_Q_xx*ups_q_y;
-        const real ups_M_ta_t_6 = ups_Q_yz*ups_q_y - ups_Q_yy*ups_q_z;
-        const real ups_M_ta_t_7 = ups_Q_yz*ups_q_x;
+        const real ups_M_ta_t_4 = ups_Q_xx*v.ups_q_z - ups_Q_xz*v.ups_q_x;
+        const real ups_M_ta_t_5 = ups_Q_xy*v.ups_q_x - ups_Q_xx*v.ups_q_y;
+        const real ups_M_ta_t_6 = ups_Q_yz*v.ups_q_y - ups_Q_yy*v.ups_q_z;
+        const real ups_M_ta_t_7 = ups_Q_yz*v.ups_q_x;
         const real ups_M_ta_t_8 = ups_M_ta_t - ups_M_ta_t_7;
-        const real ups_M_ta_t_9 = ups_Q_yy*ups_q_x - ups_Q_xy*ups_q_y;
-        const real ups_M_ta_t_10 = ups_Q_zz*ups_q_y - ups_Q_yz*ups_q_z;
-        const real ups_M_ta_t_11 = ups_Q_xz*ups_q_z - ups_Q_zz*ups_q_x;
+        const real ups_M_ta_t_9 = ups_Q_yy*v.ups_q_x - ups_Q_xy*v.ups_q_y;
+        const real ups_M_ta_t_10 = ups_Q_zz*v.ups_q_y - ups_Q_yz*v.ups_q_z;
+        const real ups_M_ta_t_11 = ups_Q_xz*v.ups_q_z - ups_Q_zz*v.ups_q_x;
         const real ups_M_ta_t_12 = ups_M_ta_t_7 - ups_M_ta_t_2;
         /* (M_aa) rotational block of M */
-        const real ups_M_aa_t = ups_M_ta_t_10*ups_q_y - ups_M_ta_t_6*ups_q_z;
-        const real ups_M_aa_t_2 = ups_M_ta_t_11*ups_q_y - ups_M_ta_t_8*ups_q_z;
-        const real ups_M_aa_t_3 = ups_M_ta_t_12*ups_q_y - ups_M_ta_t_9*ups_q_z;
-        const real ups_M_aa_t_4 = ups_M_ta_t_4*ups_q_z - ups_M_ta_t_11*ups_q_x;
-        const real ups_M_aa_t_5 = ups_M_ta_t_5*ups_q_z - ups_M_ta_t_12*ups_q_x;
-        const real ups_M_aa_t_6 = ups_M_ta_t_9*ups_q_x - ups_M_ta_t_5*ups_q_y;
-        /* (Z_a) rotational part of Z */
-        const real ups_Z_a_t = ups_U_z*ups_q_y - ups_U_y*ups_q_z;
-        const real ups_Z_a_t_2 = ups_U_x*ups_q_z - ups_U_z*ups_q_x;
-        const real ups_Z_a_t_3 = ups_U_y*ups_q_x - ups_U_x*ups_q_y;
+        const real ups_M_aa_t = ups_M_ta_t_10*v.ups_q_y - ups_M_ta_t_6*v.ups_q_z;
+        const real ups_M_aa_t_2 = ups_M_ta_t_11*v.ups_q_y - ups_M_ta_t_8*v.ups_q_z;
+        const real ups_M_aa_t_3 = ups_M_ta_t_12*v.ups_q_y - ups_M_ta_t_9*v.ups_q_z;
+        const real ups_M_aa_t_4 = ups_M_ta_t_4*v.ups_q_z - ups_M_ta_t_11*v.ups_q_x;
+        const real ups_M_aa_t_5 = ups_M_ta_t_5*v.ups_q_z - ups_M_ta_t_12*v.ups_q_x;
+        const real ups_M_aa_t_6 = ups_M_ta_t_9*v.ups_q_x - ups_M_ta_t_5*v.ups_q_y;
         /* (ups-H_a_3) moment of the column's unit force about the platform origin */
-        const real ups_H_a_3_x = axis_x_ups_axes2_z*ups_q_y - axis_x_ups_axes2_y*ups_q_z;
-        const real ups_H_a_3_y = axis_x_ups_axes2_x*ups_q_z - axis_x_ups_axes2_z*ups_q_x;
-        const real ups_H_a_3_z = axis_x_ups_axes2_y*ups_q_x - axis_x_ups_axes2_x*ups_q_y;
+        const real ups_H_a_3_x = v.axis_x_ups_axes2_z*v.ups_q_y - v.axis_x_ups_axes2_y*v.ups_q_z;
+        const real ups_H_a_3_y = v.axis_x_ups_axes2_x*v.ups_q_z - v.axis_x_ups_axes2_z*v.ups_q_x;
+        const real ups_H_a_3_z = v.axis_x_ups_axes2_y*v.ups_q_x - v.axis_x_ups_axes2_x*v.ups_q_y;
         /* (M_tt) translational block of M */
         gather(&terms[0*count + k], add, ups_Q_xx);  /* M_tt_xx_of_legs */
         gather(&terms[1*count + k], add, ups_Q_xy);  /* M_tt_xy */
@@ -2161,26 +3773,26 @@ INLINE void dynamics_legs_ups(const prepared *m, size_t w, size_t leg, size_t le
         gather(&terms[19*count + k], add, ups_M_aa_t_5);  /* M_aa_yz_of_legs */
         gather(&terms[20*count + k], add, ups_M_aa_t_6);  /* M_aa_zz_of_legs */
         /* (Z_t) translational part of Z */
-        gather(&terms[21*count + k], add, ups_U_x);  /* Z_t_x_of_legs */
-        gather(&terms[22*count + k], add, ups_U_y);  /* Z_t_y_of_legs */
-        gather(&terms[23*count + k], add, ups_U_z);  /* Z_t_z_of_legs */
+        gather(&terms[21*count + k], add, v.ups_U_x);  /* Z_t_x_of_legs */
+        gather(&terms[22*count + k], add, v.ups_U_y);  /* Z_t_y_of_legs */
+        gather(&terms[23*count + k], add, v.ups_U_z);  /* Z_t_z_of_legs */
         /* (Z_a) rotational part of Z */
-        gather(&terms[24*count + k], add, ups_Z_a_t);  /* Z_a_x_of_legs */
-        gather(&terms[25*count + k], add, ups_Z_a_t_2);  /* Z_a_y_of_legs */
-        gather(&terms[26*count + k], add, ups_Z_a_t_3);  /* Z_a_z_of_legs */
+        gather(&terms[24*count + k], add, v.ups_Z_a_t);  /* Z_a_x_of_legs */
+        gather(&terms[25*count + k], add, v.ups_Z_a_t_2);  /* Z_a_y_of_legs */
+        gather(&terms[26*count + k], add, v.ups_Z_a_t_3);  /* Z_a_z_of_legs */
         /* (ups-w_3) reciprocal vector 3 */
-        o[0*count + k] = axis_x_ups_axes2_x;
-        o[1*count + k] = axis_x_ups_axes2_y;
-        o[2*count + k] = axis_x_ups_axes2_z;
+        o[0*count + k] = v.axis_x_ups_axes2_x;
+        o[1*count + k] = v.axis_x_ups_axes2_y;
+        o[2*count + k] = v.axis_x_ups_axes2_z;
         /* (ups-H_a_3) moment of the column's unit force about the platform origin */
         o[3*count + k] = ups_H_a_3_x;
         o[4*count + k] = ups_H_a_3_y;
         o[5*count + k] = ups_H_a_3_z;
-        o[7*count + k] = (axis_x_ups_axes2_x + (axis_x_ups_axes2_y + axis_x_ups_axes2_z)) +
+        o[7*count + k] = (v.axis_x_ups_axes2_x + (v.axis_x_ups_axes2_y + v.axis_x_ups_axes2_z)) +
             (ups_H_a_3_x + (ups_H_a_3_y + ups_H_a_3_z));
-        o[6*count + k] = UNLESS(magnitude(ups_rho2_1) > LEAST_1) + UNLESS(magnitude(ups_rho2_2) >
-            LEAST_1) + UNLESS(magnitude(ups_root_1) > LEAST_2) + UNLESS(magnitude(ups_root_2) >
-            LEAST_2);
+        o[6*count + k] = UNLESS(magnitude(v.ups_root_1_t) > LEAST_1) +
+            UNLESS(magnitude(v.ups_q_3_t) > LEAST_1) + UNLESS(magnitude(v.ups_root_1) > LEAST_2) +
+            UNLESS(magnitude(v.ups_q_3) > LEAST_2);
     }
 }
 
@@ -2188,7 +3800,7 @@ INLINE void dynamics_place_ups(size_t w, size_t count, const real *o, size_t leg
     real *H, verdict *t)
 {
     for (size_t k = 0; k < w; ++k) {
-        H[(0*NU + leg)*w + k] = o[0*count + first + k];
+        H[leg*w + k] = o[0*count + first + k];
         H[(NU + leg)*w + k] = o[1*count + first + k];
         H[(2*NU + leg)*w + k] = o[2*count + first + k];
         H[(3*NU + leg)*w + k] = o[3*count + first + k];
@@ -2200,525 +3812,201 @@ INLINE void dynamics_place_ups(size_t w, size_t count, const real *o, size_t leg
 }
 
 INLINE void dynamics_legs_tube(const prepared *m, size_t w, size_t leg, size_t legs, const real
-    *s, size_t states, size_t count, int add, real *terms, real *o)
+    *s, size_t states, size_t count, int add, const real *X, const real *V, real *terms, real *o)
 {
     for (size_t k = 0; k < count; ++k) {
         const size_t i = leg + legs*k;
         const size_t j = states*k;
-        /* (tube-S) from the base point to the connection point */
-        const real R_xx = s[3*w + j];
-        const real R_xy = s[4*w + j];
-        const real R_xz = s[5*w + j];
-        const real tube_platform_point_x = m->tube_platform_point_x[i];
-        const real tube_platform_point_y = m->tube_platform_point_y[i];
-        const real tube_platform_point_z = m->tube_platform_point_z[i];
-        const real tube_q_x = R_xx*tube_platform_point_x + R_xy*tube_platform_point_y +
-            R_xz*tube_platform_point_z;
-        const real R_yx = s[6*w + j];
-        const real R_yy = s[7*w + j];
-        const real R_yz = s[8*w + j];
-        const real tube_q_y = R_yx*tube_platform_point_x + R_yy*tube_platform_point_y +
-            R_yz*tube_platform_point_z;
-        const real R_zx = s[9*w + j];
-        const real R_zy = s[10*w + j];
-        const real R_zz = s[11*w + j];
-        const real tube_q_z = R_zx*tube_platform_point_x + R_zy*tube_platform_point_y +
-            R_zz*tube_platform_point_z;
-        const real t_x = s[0*w + j];
-        const real tube_base_point_x = m->tube_base_point_x[i];
-        const real tube_S_x = t_x + tube_q_x - tube_base_point_x;
-        const real t_y = s[1*w + j];
-        const real tube_base_point_y = m->tube_base_point_y[i];
-        const real tube_S_y = t_y + tube_q_y - tube_base_point_y;
-        const real t_z = s[2*w + j];
-        const real tube_base_point_z = m->tube_base_point_z[i];
-        const real tube_S_z = t_z + tube_q_z - tube_base_point_z;
-        /* (tube-px_1) component along the reference direction */
-        const real tube_base_frame_xx = m->tube_base_frame_xx[i];
-        const real tube_base_frame_yx = m->tube_base_frame_yx[i];
-        const real tube_base_frame_zx = m->tube_base_frame_zx[i];
-        const real tube_px_1 = tube_S_x*tube_base_frame_xx + tube_S_y*tube_base_frame_yx +
-            tube_S_z*tube_base_frame_zx;
-        /* (tube-py_1) component across the reference direction */
-        const real tube_base_frame_xy = m->tube_base_frame_xy[i];
-        const real tube_base_frame_yy = m->tube_base_frame_yy[i];
-        const real tube_base_frame_zy = m->tube_base_frame_zy[i];
-        const real tube_py_1 = tube_S_x*tube_base_frame_xy + tube_S_y*tube_base_frame_yy +
-            tube_S_z*tube_base_frame_zy;
-        /* (tube-rho2_1) squared amplitude */
-        const real tube_rho2_1 = tube_px_1*tube_px_1 + tube_py_1*tube_py_1;
-        /* (tube-root_1) amplitude, with the sign of the branch */
-        const real tube_branch_1 = m->tube_branch_1[i];
-        const real tube_root_1 = tube_branch_1*root(tube_rho2_1);
-        /* (tube-c_1) cosine of the angle of joint 1 from its reference direction */
-        const real inv_tube_root_1 = 1/tube_root_1;
-        const real tube_c_1 = -inv_tube_root_1*tube_py_1;
-        /* (tube-s_1) sine of the angle of joint 1 from its reference direction */
-        const real tube_s_1 = inv_tube_root_1*tube_px_1;
-        /* (tube-xi_1) the vector from joint 1 to the connection point, resolved along link 1 */
-        const real tube_base_frame_xz = m->tube_base_frame_xz[i];
-        const real tube_base_frame_yz = m->tube_base_frame_yz[i];
-        const real tube_base_frame_zz = m->tube_base_frame_zz[i];
-        const real tube_xi_1_in_axes1_z = tube_S_x*tube_base_frame_xz +
-            tube_S_y*tube_base_frame_yz + tube_S_z*tube_base_frame_zz;
-        /* (tube-rho2_2) squared amplitude */
-        const real tube_rho2_2 = tube_rho2_1 + tube_xi_1_in_axes1_z*tube_xi_1_in_axes1_z;
-        /* (tube-root_2) amplitude, with the sign of the branch */
-        const real tube_branch_2 = m->tube_branch_2[i];
-        const real tube_root_2 = tube_branch_2*root(tube_rho2_2);
-        /* (tube-c_2) cosine of the angle of joint 2 from its reference direction */
-        const real inv_tube_root_2 = 1/tube_root_2;
-        const real tube_c_2 = -inv_tube_root_2*tube_root_1;
-        /* (tube-s_2) sine of the angle of joint 2 from its reference direction */
-        const real tube_s_2 = inv_tube_root_2*tube_xi_1_in_axes1_z;
-        /* (tube-S_dot) velocity of the connection point */
-        const real axis_z_tube_axes2_x = tube_base_frame_xx*tube_c_1 +
-            tube_base_frame_xy*tube_s_1;
-        const real axis_z_tube_axes2_y = tube_base_frame_yx*tube_c_1 +
-            tube_base_frame_yy*tube_s_1;
-        const real axis_z_tube_axes2_z = tube_base_frame_zx*tube_c_1 +
-            tube_base_frame_zy*tube_s_1;
-        const real tube_S_dot_t = tube_s_1*tube_s_2;
-        const real tube_S_dot_t_2 = tube_c_1*tube_s_2;
-        const real axis_y_tube_axes2_x = tube_S_dot_t*tube_base_frame_xx +
-            tube_base_frame_xz*tube_c_2 - tube_S_dot_t_2*tube_base_frame_xy;
-        const real axis_y_tube_axes2_y = tube_S_dot_t*tube_base_frame_yx +
-            tube_base_frame_yz*tube_c_2 - tube_S_dot_t_2*tube_base_frame_yy;
-        const real axis_y_tube_axes2_z = tube_S_dot_t*tube_base_frame_zx +
-            tube_base_frame_zz*tube_c_2 - tube_S_dot_t_2*tube_base_frame_zy;
-        const real axis_x_tube_axes2_x = axis_y_tube_axes2_y*axis_z_tube_axes2_z -
-            axis_y_tube_axes2_z*axis_z_tube_axes2_y;
-        const real axis_x_tube_axes2_y = axis_y_tube_axes2_z*axis_z_tube_axes2_x -
-            axis_y_tube_axes2_x*axis_z_tube_axes2_z;
-        const real axis_x_tube_axes2_z = axis_y_tube_axes2_x*axis_z_tube_axes2_y -
-            axis_y_tube_axes2_y*axis_z_tube_axes2_x;
-        const real omega_y = s[16*w + j];
-        const real omega_z = s[17*w + j];
-        const real tube_S_dot_t_3 = omega_y*tube_q_z - omega_z*tube_q_y;
-        const real omega_x = s[15*w + j];
-        const real tube_S_dot_t_4 = omega_z*tube_q_x - omega_x*tube_q_z;
-        const real tube_S_dot_t_5 = omega_x*tube_q_y - omega_y*tube_q_x;
-        const real t_dot_x = s[12*w + j];
-        const real tube_S_dot_x = t_dot_x + tube_S_dot_t_3;
-        const real t_dot_y = s[13*w + j];
-        const real tube_S_dot_y = t_dot_y + tube_S_dot_t_4;
-        const real t_dot_z = s[14*w + j];
-        const real tube_S_dot_z = t_dot_z + tube_S_dot_t_5;
-        const real tube_S_dot_in_axes2_x = axis_x_tube_axes2_x*tube_S_dot_x +
-            axis_x_tube_axes2_y*tube_S_dot_y + axis_x_tube_axes2_z*tube_S_dot_z;
-        const real tube_S_dot_in_axes2_y = axis_y_tube_axes2_x*tube_S_dot_x +
-            axis_y_tube_axes2_y*tube_S_dot_y + axis_y_tube_axes2_z*tube_S_dot_z;
-        const real tube_S_dot_in_axes2_z = axis_z_tube_axes2_x*tube_S_dot_x +
-            axis_z_tube_axes2_y*tube_S_dot_y + axis_z_tube_axes2_z*tube_S_dot_z;
-        /* (tube-n_m1) direction 1 of the moment that the platform joint transmits */
-        const real tube_n_m1_t = R_xx*tube_base_frame_xx + R_yx*tube_base_frame_yx +
-            R_zx*tube_base_frame_zx;
-        const real tube_n_m1_t_2 = R_xy*tube_base_frame_xx + R_yy*tube_base_frame_yx +
-            R_zy*tube_base_frame_zx;
-        const real tube_n_m1_t_3 = R_xz*tube_base_frame_xx + R_yz*tube_base_frame_yx +
-            R_zz*tube_base_frame_zx;
-        const real tube_n_m1_t_4 = R_xx*tube_base_frame_xy + R_yx*tube_base_frame_yy +
-            R_zx*tube_base_frame_zy;
-        const real tube_n_m1_t_5 = R_xy*tube_base_frame_xy + R_yy*tube_base_frame_yy +
-            R_zy*tube_base_frame_zy;
-        const real tube_n_m1_t_6 = R_xz*tube_base_frame_xy + R_yz*tube_base_frame_yy +
-            R_zz*tube_base_frame_zy;
-        const real tube_n_m1_t_7 = R_xx*tube_base_frame_xz + R_yx*tube_base_frame_yz +
-            R_zx*tube_base_frame_zz;
-        const real tube_n_m1_t_8 = R_xy*tube_base_frame_xz + R_yy*tube_base_frame_yz +
-            R_zy*tube_base_frame_zz;
-        const real tube_n_m1_t_9 = R_xz*tube_base_frame_xz + R_yz*tube_base_frame_yz +
-            R_zz*tube_base_frame_zz;
-        const real tube_platform_joint_rotation_yx = m->tube_platform_joint_rotation_yx[i];
-        const real tube_platform_joint_rotation_yy = m->tube_platform_joint_rotation_yy[i];
-        const real tube_platform_joint_rotation_yz = m->tube_platform_joint_rotation_yz[i];
-        const real tube_n_m1_t_10 = tube_n_m1_t*tube_platform_joint_rotation_yx +
-            tube_n_m1_t_2*tube_platform_joint_rotation_yy +
-            tube_n_m1_t_3*tube_platform_joint_rotation_yz;
-        const real tube_n_m1_t_11 = tube_n_m1_t_4*tube_platform_joint_rotation_yx +
-            tube_n_m1_t_5*tube_platform_joint_rotation_yy +
-            tube_n_m1_t_6*tube_platform_joint_rotation_yz;
-        const real tube_n_m1_t_12 = tube_n_m1_t_7*tube_platform_joint_rotation_yx +
-            tube_n_m1_t_8*tube_platform_joint_rotation_yy +
-            tube_n_m1_t_9*tube_platform_joint_rotation_yz;
-        const real tube_end_p1_in_axes2_z = tube_c_1*tube_n_m1_t_10 + tube_n_m1_t_11*tube_s_1;
-        const real tube_n_m1_t_13 = tube_n_m1_t_10*tube_s_1 - tube_c_1*tube_n_m1_t_11;
-        const real tube_n_m1_in_axes2_z = tube_c_2*tube_n_m1_t_12 + tube_n_m1_t_13*tube_s_2;
-        const real tube_n_m1_in_axes1_z = -tube_c_2*tube_end_p1_in_axes2_z;
-        /* (tube-n_m2) direction 2 of the moment that the platform joint transmits */
-        const real tube_platform_joint_rotation_zx = m->tube_platform_joint_rotation_zx[i];
-        const real tube_platform_joint_rotation_zy = m->tube_platform_joint_rotation_zy[i];
-        const real tube_platform_joint_rotation_zz = m->tube_platform_joint_rotation_zz[i];
-        const real tube_n_m2_t = tube_n_m1_t*tube_platform_joint_rotation_zx +
-            tube_n_m1_t_2*tube_platform_joint_rotation_zy +
-            tube_n_m1_t_3*tube_platform_joint_rotation_zz;
-        const real tube_n_m2_t_2 = tube_n_m1_t_4*tube_platform_joint_rotation_zx +
-            tube_n_m1_t_5*tube_platform_joint_rotation_zy +
-            tube_n_m1_t_6*tube_platform_joint_rotation_zz;
-        const real tube_n_m2_t_3 = tube_n_m1_t_7*tube_platform_joint_rotation_zx +
-            tube_n_m1_t_8*tube_platform_joint_rotation_zy +
-            tube_n_m1_t_9*tube_platform_joint_rotation_zz;
-        const real tube_n_m2_t_4 = tube_n_m2_t*tube_s_1 - tube_c_1*tube_n_m2_t_2;
-        const real tube_n_m2_in_axes2_y = tube_n_m2_t_3*tube_s_2 - tube_c_2*tube_n_m2_t_4;
-        const real tube_end_p2_in_axes2_y = tube_c_2*tube_n_m2_t_3 + tube_n_m2_t_4*tube_s_2;
-        const real tube_n_m2_in_axes1_z = tube_c_2*tube_n_m2_in_axes2_y -
-            tube_end_p2_in_axes2_y*tube_s_2;
-        /* (tube-n_m3) direction 3 of the moment that the platform joint transmits */
-        const real tube_platform_joint_rotation_xx = m->tube_platform_joint_rotation_xx[i];
-        const real tube_platform_joint_rotation_xy = m->tube_platform_joint_rotation_xy[i];
-        const real tube_platform_joint_rotation_xz = m->tube_platform_joint_rotation_xz[i];
-        const real tube_n_m3_t = tube_n_m1_t*tube_platform_joint_rotation_xx +
-            tube_n_m1_t_2*tube_platform_joint_rotation_xy +
-            tube_n_m1_t_3*tube_platform_joint_rotation_xz;
-        const real tube_n_m3_t_2 = tube_n_m1_t_4*tube_platform_joint_rotation_xx +
-            tube_n_m1_t_5*tube_platform_joint_rotation_xy +
-            tube_n_m1_t_6*tube_platform_joint_rotation_xz;
-        const real tube_n_m3_t_3 = tube_n_m1_t_7*tube_platform_joint_rotation_xx +
-            tube_n_m1_t_8*tube_platform_joint_rotation_xy +
-            tube_n_m1_t_9*tube_platform_joint_rotation_xz;
-        const real tube_end_p3_in_axes2_z = tube_c_1*tube_n_m3_t + tube_n_m3_t_2*tube_s_1;
-        const real tube_n_m3_t_4 = tube_n_m3_t*tube_s_1 - tube_c_1*tube_n_m3_t_2;
-        const real tube_n_m3_in_axes2_z = tube_n_m3_t_3*tube_s_2 - tube_c_2*tube_n_m3_t_4;
-        const real tube_n_m3_t_5 = tube_end_p3_in_axes2_z*tube_s_2;
-        /* (tube-f_c1) force part of constraint wrench 1 */
-        const real tube_f_c1_t = tube_n_m1_in_axes1_z*tube_n_m3_in_axes2_z +
-            tube_n_m1_in_axes2_z*tube_n_m3_t_5;
-        /* (tube-m1_c1) moment part 1 of constraint wrench 1 */
-        const real inv_tube_f_c1_t = 1/tube_f_c1_t;
-        const real tube_m1_c1_t = inv_tube_f_c1_t*tube_n_m3_t_5*tube_root_2;
-        /* (tube-m3_c1) moment part 3 of constraint wrench 1 */
-        const real tube_m3_c1_t = inv_tube_f_c1_t*tube_n_m1_in_axes1_z*tube_root_2;
-        /* (tube-m1_c2) moment part 1 of constraint wrench 2 */
-        const real tube_m1_c2_t = inv_tube_f_c1_t*tube_n_m3_in_axes2_z*tube_root_1;
-        /* (tube-m3_c2) moment part 3 of constraint wrench 2 */
-        const real tube_m3_c2 = inv_tube_f_c1_t*tube_n_m1_in_axes2_z*tube_root_1;
-        /* (tube-m1_c3) moment part 1 of constraint wrench 3 */
-        const real tube_m1_c3_t = inv_tube_f_c1_t*tube_n_m2_in_axes1_z*tube_n_m3_in_axes2_z;
-        /* (tube-m3_c3) moment part 3 of constraint wrench 3 */
-        const real tube_m3_c3 = inv_tube_f_c1_t*tube_n_m1_in_axes2_z*tube_n_m2_in_axes1_z;
-        /* (tube-mu_c1) the moment that goes with it */
-        const real tube_mu_c1_in_axes2_y = tube_end_p1_in_axes2_z*tube_m1_c1_t;
-        const real tube_mu_c1_in_axes2_x = tube_end_p3_in_axes2_z*tube_m3_c1_t;
-        const real tube_mu_c1_in_axes2_z = -tube_m1_c1_t*tube_n_m1_in_axes2_z -
-            tube_m3_c1_t*tube_n_m3_in_axes2_z;
-        /* (tube-mu_c2) the moment that goes with it */
-        const real tube_mu_c2_in_axes2_y = tube_end_p1_in_axes2_z*tube_m1_c2_t;
-        const real tube_mu_c2_t = tube_end_p3_in_axes2_z*tube_m3_c2;
-        const real tube_mu_c2_in_axes2_z = tube_m3_c2*tube_n_m3_in_axes2_z -
-            tube_m1_c2_t*tube_n_m1_in_axes2_z;
-        /* (tube-size_c3) size of the moment */
-        const real tube_size_c3 = root(1 + tube_m1_c3_t*tube_m1_c3_t + tube_m3_c3*tube_m3_c3);
-        /* (tube-mu1_c3) moment along direction 1 that goes with it */
-        const real inv_tube_size_c3 = 1/tube_size_c3;
-        const real tube_mu1_c3_t = inv_tube_size_c3*tube_m1_c3_t;
-        /* (tube-mu3_c3) moment along direction 3 that goes with it */
-        const real tube_mu3_c3 = inv_tube_size_c3*tube_m3_c3;
-        /* (tube-mu_c3) the moment that goes with it */
-        const real tube_mu_c3_in_axes2_x = -inv_tube_size_c3*tube_end_p2_in_axes2_y -
-            tube_end_p3_in_axes2_z*tube_mu3_c3;
-        const real tube_mu_c3_in_axes2_y = inv_tube_size_c3*tube_n_m2_in_axes2_y +
-            tube_end_p1_in_axes2_z*tube_mu1_c3_t;
-        const real tube_mu_c3_in_axes2_z = tube_mu3_c3*tube_n_m3_in_axes2_z -
-            tube_mu1_c3_t*tube_n_m1_in_axes2_z;
-        const real tube_mu_c3_x = axis_x_tube_axes2_x*tube_mu_c3_in_axes2_x +
-            axis_y_tube_axes2_x*tube_mu_c3_in_axes2_y + axis_z_tube_axes2_x*tube_mu_c3_in_axes2_z;
-        const real tube_mu_c3_y = axis_x_tube_axes2_y*tube_mu_c3_in_axes2_x +
-            axis_y_tube_axes2_y*tube_mu_c3_in_axes2_y + axis_z_tube_axes2_y*tube_mu_c3_in_axes2_z;
-        const real tube_mu_c3_z = axis_x_tube_axes2_z*tube_mu_c3_in_axes2_x +
-            axis_y_tube_axes2_z*tube_mu_c3_in_axes2_y + axis_z_tube_axes2_z*tube_mu_c3_in_axes2_z;
+        values_tube v;
+        stage_tube_X(m, w, i, j, s, X, &v);
+        stage_tube_V_X(w, j, V, &v);
+        stage_tube_Z_dynamics(m, i, &v);
+        stage_tube_dynamics_required(&v);
         /* (tube-w_1) force part of reciprocal wrench 1 */
-        const real tube_w_1_t = R(1.35)*tube_n_m1_in_axes1_z;
-        const real tube_w_1_t_2 = R(1.35)*tube_n_m2_in_axes1_z;
-        const real tube_w_1_t_3 = R(1.35)*tube_n_m3_t_5;
-        const real tube_w_1_t_4 = R(1.35)*tube_n_m1_in_axes2_z;
-        const real tube_w_1_t_5 = R(1.35)*tube_n_m3_in_axes2_z;
-        const real tube_w_1_t_6 = R(1.35)*tube_m1_c1_t;
-        const real tube_w_1_t_7 = R(1.35)*tube_m3_c1_t;
-        const real tube_w_1_t_8 = R(1.35)*tube_m1_c2_t;
-        const real tube_w_1_t_9 = R(1.35)*tube_m3_c2;
-        const real tube_w_1_t_10 = R(1.35)*tube_mu1_c3_t;
-        const real tube_w_1_t_11 = R(1.35)*inv_tube_size_c3;
-        const real tube_w_1_t_12 = R(1.35)*tube_mu3_c3;
-        const real tube_w_1_t_13 = root(tube_rho2_2 + tube_w_1_t_4*tube_w_1_t_4 +
-            tube_w_1_t_5*tube_w_1_t_5);
-        const real inv_tube_w_1_t_13 = 1/tube_w_1_t_13;
-        const real tube_w_1_t_14 = inv_tube_w_1_t_13*tube_root_2;
-        const real tube_w_1_t_15 = inv_tube_w_1_t_13*tube_w_1_t_4;
-        const real tube_w_1_t_16 = inv_tube_w_1_t_13*tube_w_1_t_5;
-        const real tube_w_1_t_17 = tube_w_1_t_15*tube_w_1_t_6 + tube_w_1_t_16*tube_w_1_t_7 -
-            tube_w_1_t_14;
-        const real tube_w_1_t_18 = 1 + tube_w_1_t_14*tube_w_1_t_17;
-        const real tube_w_1_t_19 = tube_w_1_t_15*tube_w_1_t_17 - tube_w_1_t_6;
-        const real tube_w_1_t_20 = tube_w_1_t_16*tube_w_1_t_17 - tube_w_1_t_7;
-        const real tube_w_1_t_21 = tube_w_1_t_15*tube_w_1_t_8 - tube_w_1_t_16*tube_w_1_t_9;
-        const real tube_w_1_t_22 = tube_w_1_t_14*tube_w_1_t_21;
-        const real tube_w_1_t_23 = tube_w_1_t_15*tube_w_1_t_21 - tube_w_1_t_8;
-        const real tube_w_1_t_24 = tube_w_1_t_9 + tube_w_1_t_16*tube_w_1_t_21;
-        const real tube_w_1_t_25 = tube_w_1_t_10*tube_w_1_t_15 - tube_w_1_t_12*tube_w_1_t_16;
-        const real tube_w_1_t_26 = tube_w_1_t_14*tube_w_1_t_25;
-        const real tube_w_1_t_27 = tube_w_1_t_10 - tube_w_1_t_15*tube_w_1_t_25;
-        const real tube_w_1_t_28 = tube_w_1_t_12 + tube_w_1_t_16*tube_w_1_t_25;
-        const real tube_w_1_t_29 = tube_w_1_t*tube_w_1_t_15 - tube_w_1_t_16*tube_w_1_t_3;
-        const real tube_w_1_t_30 = tube_w_1_t_14*tube_w_1_t_29;
-        const real tube_w_1_t_31 = tube_w_1_t - tube_w_1_t_15*tube_w_1_t_29;
-        const real tube_w_1_t_32 = tube_w_1_t_3 + tube_w_1_t_16*tube_w_1_t_29;
-        const real tube_w_1_t_33 = root(tube_w_1_t_18*tube_w_1_t_18 + tube_w_1_t_19*tube_w_1_t_19
-            + tube_w_1_t_20*tube_w_1_t_20);
-        const real inv_tube_w_1_t_33 = 1/tube_w_1_t_33;
-        const real tube_w_1_t_34 = inv_tube_w_1_t_33*tube_w_1_t_18;
-        const real tube_w_1_t_35 = inv_tube_w_1_t_33*tube_w_1_t_19;
-        const real tube_w_1_t_36 = inv_tube_w_1_t_33*tube_w_1_t_20;
-        const real tube_w_1_t_37 = tube_w_1_t_22*tube_w_1_t_34 + tube_w_1_t_23*tube_w_1_t_35 +
-            tube_w_1_t_24*tube_w_1_t_36;
-        const real tube_w_1_t_38 = tube_w_1_t_22 - tube_w_1_t_34*tube_w_1_t_37;
-        const real tube_w_1_t_39 = tube_w_1_t_23 - tube_w_1_t_35*tube_w_1_t_37;
-        const real tube_w_1_t_40 = tube_w_1_t_24 - tube_w_1_t_36*tube_w_1_t_37;
-        const real tube_w_1_t_41 = tube_w_1_t_26*tube_w_1_t_34 + tube_w_1_t_28*tube_w_1_t_36 -
-            tube_w_1_t_27*tube_w_1_t_35;
-        const real tube_w_1_t_42 = tube_w_1_t_26 - tube_w_1_t_34*tube_w_1_t_41;
-        const real tube_w_1_t_43 = tube_w_1_t_27 + tube_w_1_t_35*tube_w_1_t_41;
-        const real tube_w_1_t_44 = tube_w_1_t_28 - tube_w_1_t_36*tube_w_1_t_41;
-        const real tube_w_1_t_45 = tube_w_1_t_30*tube_w_1_t_34 + tube_w_1_t_32*tube_w_1_t_36 -
-            tube_w_1_t_31*tube_w_1_t_35;
-        const real tube_w_1_t_46 = tube_w_1_t_30 - tube_w_1_t_34*tube_w_1_t_45;
-        const real tube_w_1_t_47 = tube_w_1_t_31 + tube_w_1_t_35*tube_w_1_t_45;
-        const real tube_w_1_t_48 = tube_w_1_t_32 - tube_w_1_t_36*tube_w_1_t_45;
-        const real tube_w_1_t_49 = root(1 + tube_w_1_t_38*tube_w_1_t_38 +
-            tube_w_1_t_39*tube_w_1_t_39 + tube_w_1_t_40*tube_w_1_t_40);
-        const real inv_tube_w_1_t_49 = 1/tube_w_1_t_49;
-        const real tube_w_1_t_50 = inv_tube_w_1_t_49*tube_w_1_t_38;
-        const real tube_w_1_t_51 = inv_tube_w_1_t_49*tube_w_1_t_39;
-        const real tube_w_1_t_52 = inv_tube_w_1_t_49*tube_w_1_t_40;
-        const real tube_w_1_t_53 = tube_w_1_t_42*tube_w_1_t_50 + tube_w_1_t_44*tube_w_1_t_52 -
-            tube_w_1_t_43*tube_w_1_t_51;
-        const real tube_w_1_t_54 = tube_w_1_t_50*tube_w_1_t_53 - tube_w_1_t_42;
-        const real tube_w_1_t_55 = inv_tube_w_1_t_49*tube_w_1_t_53;
-        const real tube_w_1_t_56 = tube_w_1_t_43 + tube_w_1_t_51*tube_w_1_t_53;
-        const real tube_w_1_t_57 = tube_w_1_t_52*tube_w_1_t_53 - tube_w_1_t_44;
-        const real tube_w_1_t_58 = tube_w_1_t_46*tube_w_1_t_50 + tube_w_1_t_48*tube_w_1_t_52 -
-            inv_tube_w_1_t_49*tube_root_1 - tube_w_1_t_47*tube_w_1_t_51;
-        const real tube_w_1_t_59 = tube_w_1_t_50*tube_w_1_t_58 - tube_w_1_t_46;
-        const real tube_w_1_t_60 = tube_root_1 + inv_tube_w_1_t_49*tube_w_1_t_58;
-        const real tube_w_1_t_61 = tube_w_1_t_47 + tube_w_1_t_51*tube_w_1_t_58;
-        const real tube_w_1_t_62 = tube_w_1_t_52*tube_w_1_t_58 - tube_w_1_t_48;
-        const real tube_w_1_t_63 = root(tube_w_1_t_11*tube_w_1_t_11 + tube_w_1_t_54*tube_w_1_t_54
-            + tube_w_1_t_55*tube_w_1_t_55 + tube_w_1_t_56*tube_w_1_t_56 +
-            tube_w_1_t_57*tube_w_1_t_57);
-        const real inv_tube_w_1_t_63 = 1/tube_w_1_t_63;
-        const real tube_w_1_t_64 = inv_tube_w_1_t_63*tube_w_1_t_54;
-        const real tube_w_1_t_65 = inv_tube_w_1_t_63*tube_w_1_t_55;
-        const real tube_w_1_t_66 = inv_tube_w_1_t_63*tube_w_1_t_56;
-        const real tube_w_1_t_67 = inv_tube_w_1_t_63*tube_w_1_t_11;
-        const real tube_w_1_t_68 = inv_tube_w_1_t_63*tube_w_1_t_57;
-        const real tube_w_1_t_69 = tube_w_1_t_59*tube_w_1_t_64 + tube_w_1_t_60*tube_w_1_t_65 +
-            tube_w_1_t_61*tube_w_1_t_66 + tube_w_1_t_62*tube_w_1_t_68 -
-            tube_w_1_t_2*tube_w_1_t_67;
-        const real tube_w_1_t_70 = tube_w_1_t_59 - tube_w_1_t_64*tube_w_1_t_69;
-        const real tube_w_1_t_71 = tube_w_1_t_60 - tube_w_1_t_65*tube_w_1_t_69;
-        const real tube_w_1_t_72 = tube_w_1_t_61 - tube_w_1_t_66*tube_w_1_t_69;
-        const real tube_w_1_t_73 = tube_w_1_t_2 + tube_w_1_t_67*tube_w_1_t_69;
-        const real tube_w_1_t_74 = tube_w_1_t_62 - tube_w_1_t_68*tube_w_1_t_69;
-        const real tube_w_1_t_75 = root(tube_w_1_t_70*tube_w_1_t_70 + tube_w_1_t_71*tube_w_1_t_71
-            + tube_w_1_t_72*tube_w_1_t_72 + tube_w_1_t_73*tube_w_1_t_73 +
-            tube_w_1_t_74*tube_w_1_t_74);
-        const real inv_tube_w_1_t_75 = 1/tube_w_1_t_75;
-        const real tube_w_1_t_76 = inv_tube_w_1_t_75*tube_w_1_t_70;
-        const real tube_w_1_t_77 = inv_tube_w_1_t_75*tube_w_1_t_71;
-        const real tube_w_1_in_axes2_y = inv_tube_w_1_t_75*tube_w_1_t_76;
-        const real tube_w_1_in_axes2_z = inv_tube_w_1_t_75*tube_w_1_t_77;
-        const real tube_w_1_t_78 = -tube_c_2*tube_w_1_in_axes2_y;
+        const real tube_w_1_t_76 = v.inv_tube_w_1_t_75*v.tube_w_1_t_70;
+        const real tube_w_1_t_77 = v.inv_tube_w_1_t_75*v.tube_w_1_t_71;
+        const real tube_w_1_in_axes2_y = v.inv_tube_w_1_t_75*tube_w_1_t_76;
+        const real tube_w_1_in_axes2_z = v.inv_tube_w_1_t_75*tube_w_1_t_77;
+        const real tube_w_1_in_axes1_x = v.tube_e_1_in_axes2_x*tube_w_1_in_axes2_y;
+        const real tube_w_1_t_78 = v.tube_c_2*tube_w_1_in_axes2_y;
         /* (tube-m1_w_1) moment part 1 of reciprocal wrench 1 */
-        const real tube_m1_w_1_t = inv_tube_w_1_t_75*tube_w_1_t_72;
-        const real tube_m1_w_1 = R(1.35)*inv_tube_w_1_t_75*tube_m1_w_1_t;
+        const real tube_m1_w_1_t = v.inv_tube_w_1_t_75*v.tube_w_1_t_72;
+        const real tube_m1_w_1 = R(1.35)*v.inv_tube_w_1_t_75*tube_m1_w_1_t;
         /* (tube-m2_w_1) moment part 2 of reciprocal wrench 1 */
-        const real tube_m2_w_1_t = inv_tube_w_1_t_75*tube_w_1_t_73;
-        const real tube_m2_w_1 = R(1.35)*inv_tube_w_1_t_75*tube_m2_w_1_t;
+        const real tube_m2_w_1_t = v.inv_tube_w_1_t_75*v.tube_w_1_t_73;
+        const real tube_m2_w_1 = -R(1.35)*v.inv_tube_w_1_t_75*tube_m2_w_1_t;
         /* (tube-m3_w_1) moment part 3 of reciprocal wrench 1 */
-        const real tube_m3_w_1_t = inv_tube_w_1_t_75*tube_w_1_t_74;
-        const real tube_m3_w_1 = R(1.35)*inv_tube_w_1_t_75*tube_m3_w_1_t;
+        const real tube_m3_w_1_t = v.inv_tube_w_1_t_75*v.tube_w_1_t_74;
+        const real tube_m3_w_1 = R(1.35)*v.inv_tube_w_1_t_75*tube_m3_w_1_t;
         /* (tube-w_2) force part of reciprocal wrench 2 */
-        const real tube_w_2_t = inv_tube_w_1_t_13*inv_tube_w_1_t_33*tube_w_1_t_17;
-        const real tube_w_2_t_2 = inv_tube_w_1_t_49*(inv_tube_w_1_t_13*tube_w_1_t_21 -
-            tube_w_1_t_37*tube_w_2_t);
-        const real tube_w_2_t_3 = inv_tube_w_1_t_63*(tube_w_1_t_41*tube_w_2_t +
-            tube_w_1_t_53*tube_w_2_t_2 - inv_tube_w_1_t_13*tube_w_1_t_25);
-        const real tube_w_2_t_4 = inv_tube_w_1_t_75*(inv_tube_w_1_t_13*tube_w_1_t_29 +
-            tube_w_1_t_69*tube_w_2_t_3 - tube_w_1_t_45*tube_w_2_t - tube_w_1_t_58*tube_w_2_t_2);
-        const real tube_w_2_in_axes2_y = inv_tube_w_1_t_13*tube_w_1_t_14 +
-            tube_w_1_t_34*tube_w_2_t + tube_w_1_t_50*tube_w_2_t_2 + tube_w_1_t_64*tube_w_2_t_3 -
-            tube_w_1_t_76*tube_w_2_t_4;
-        const real tube_w_2_in_axes2_z = inv_tube_w_1_t_49*tube_w_2_t_2 +
-            tube_w_1_t_65*tube_w_2_t_3 - tube_w_1_t_77*tube_w_2_t_4;
+        const real tube_w_2_t = v.inv_tube_w_1_t_13*v.inv_tube_w_1_t_33*v.tube_w_1_t_17;
+        const real tube_w_2_t_2 = v.inv_tube_w_1_t_49*(v.inv_tube_w_1_t_13*v.tube_w_1_t_21 -
+            v.tube_w_1_t_37*tube_w_2_t);
+        const real tube_w_2_t_3 = v.inv_tube_w_1_t_63*(v.tube_w_1_t_41*tube_w_2_t +
+            v.tube_w_1_t_53*tube_w_2_t_2 - v.inv_tube_w_1_t_13*v.tube_w_1_t_25);
+        const real tube_w_2_t_4 = v.inv_tube_w_1_t_75*(v.inv_tube_w_1_t_13*v.tube_w_1_t_29 +
+            v.tube_w_1_t_69*tube_w_2_t_3 - v.tube_w_1_t_45*tube_w_2_t -
+            v.tube_w_1_t_58*tube_w_2_t_2);
+        const real tube_w_2_in_axes2_y = v.inv_tube_w_1_t_13*v.tube_w_1_t_14 +
+            v.tube_w_1_t_34*tube_w_2_t + v.tube_w_1_t_50*tube_w_2_t_2 +
+            v.tube_w_1_t_64*tube_w_2_t_3 - tube_w_1_t_76*tube_w_2_t_4;
+        const real tube_w_2_in_axes2_z = v.inv_tube_w_1_t_49*tube_w_2_t_2 +
+            v.tube_w_1_t_65*tube_w_2_t_3 - tube_w_1_t_77*tube_w_2_t_4;
         /* (tube-m1_w_2) moment part 1 of reciprocal wrench 2 */
-        const real tube_m1_w_2_t = inv_tube_w_1_t_13*tube_w_1_t_15 + tube_w_1_t_35*tube_w_2_t +
-            tube_w_1_t_51*tube_w_2_t_2 + tube_w_1_t_66*tube_w_2_t_3 - tube_m1_w_1_t*tube_w_2_t_4;
+        const real tube_m1_w_2_t = v.inv_tube_w_1_t_13*v.tube_w_1_t_15 +
+            v.tube_w_1_t_35*tube_w_2_t + v.tube_w_1_t_51*tube_w_2_t_2 +
+            v.tube_w_1_t_66*tube_w_2_t_3 - tube_m1_w_1_t*tube_w_2_t_4;
         const real tube_m1_w_2 = R(1.35)*tube_m1_w_2_t;
         /* (tube-m2_w_2) moment part 2 of reciprocal wrench 2 */
-        const real tube_m2_w_2_t = tube_m2_w_1_t*tube_w_2_t_4 + tube_w_1_t_67*tube_w_2_t_3;
-        const real tube_m2_w_2 = -R(1.35)*tube_m2_w_2_t;
+        const real tube_m2_w_2_t = tube_m2_w_1_t*tube_w_2_t_4 + v.tube_w_1_t_67*tube_w_2_t_3;
+        const real tube_m2_w_2 = R(1.35)*tube_m2_w_2_t;
         /* (tube-m3_w_2) moment part 3 of reciprocal wrench 2 */
-        const real tube_m3_w_2_t = inv_tube_w_1_t_13*tube_w_1_t_16 + tube_w_1_t_36*tube_w_2_t +
-            tube_w_1_t_52*tube_w_2_t_2 + tube_w_1_t_68*tube_w_2_t_3 - tube_m3_w_1_t*tube_w_2_t_4;
+        const real tube_m3_w_2_t = v.inv_tube_w_1_t_13*v.tube_w_1_t_16 +
+            v.tube_w_1_t_36*tube_w_2_t + v.tube_w_1_t_52*tube_w_2_t_2 +
+            v.tube_w_1_t_68*tube_w_2_t_3 - tube_m3_w_1_t*tube_w_2_t_4;
         const real tube_m3_w_2 = R(1.35)*tube_m3_w_2_t;
         /* (tube-o_1) moment part of reciprocal wrench 1 */
-        const real tube_o_1_in_axes2_x = -tube_end_p2_in_axes2_y*tube_m2_w_1 -
-            tube_end_p3_in_axes2_z*tube_m3_w_1;
-        const real tube_o_1_in_axes2_y = tube_m2_w_1*tube_n_m2_in_axes2_y -
-            tube_end_p1_in_axes2_z*tube_m1_w_1;
-        const real tube_o_1_in_axes2_z = tube_m1_w_1*tube_n_m1_in_axes2_z +
-            tube_m3_w_1*tube_n_m3_in_axes2_z;
+        const real tube_o_1_in_axes2_x = -v.tube_end_p2_in_axes2_y*tube_m2_w_1 -
+            v.tube_end_p3_in_axes2_z*tube_m3_w_1;
+        const real tube_o_1_in_axes2_y = tube_m2_w_1*v.tube_n_m2_in_axes2_y -
+            v.tube_end_p1_in_axes2_z*tube_m1_w_1;
+        const real tube_o_1_in_axes2_z = tube_m1_w_1*v.tube_n_m1_in_axes2_z +
+            tube_m3_w_1*v.tube_n_m3_in_axes2_z;
         /* (tube-o_2) moment part of reciprocal wrench 2 */
-        const real tube_o_2_in_axes2_x = -tube_end_p2_in_axes2_y*tube_m2_w_2 -
-            tube_end_p3_in_axes2_z*tube_m3_w_2;
-        const real tube_o_2_in_axes2_y = tube_m2_w_2*tube_n_m2_in_axes2_y -
-            tube_end_p1_in_axes2_z*tube_m1_w_2;
-        const real tube_o_2_in_axes2_z = tube_m1_w_2*tube_n_m1_in_axes2_z +
-            tube_m3_w_2*tube_n_m3_in_axes2_z;
-        /* (tube-eta_1) rate at which the joints turn along moment direction 1 */
-        const real tube_omega_in_axes2_y = axis_y_tube_axes2_x*omega_x +
-            axis_y_tube_axes2_y*omega_y + axis_y_tube_axes2_z*omega_z;
-        const real tube_omega_in_axes2_z = axis_z_tube_axes2_x*omega_x +
-            axis_z_tube_axes2_y*omega_y + axis_z_tube_axes2_z*omega_z;
-        const real tube_eta_1 = tube_n_m1_in_axes2_z*tube_omega_in_axes2_z -
-            tube_end_p1_in_axes2_z*tube_omega_in_axes2_y;
-        /* (tube-eta_2) rate at which the joints turn along moment direction 2 */
-        const real tube_omega_in_axes2_x = axis_x_tube_axes2_x*omega_x +
-            axis_x_tube_axes2_y*omega_y + axis_x_tube_axes2_z*omega_z;
-        const real tube_eta_2 = tube_n_m2_in_axes2_y*tube_omega_in_axes2_y -
-            tube_end_p2_in_axes2_y*tube_omega_in_axes2_x;
-        /* (tube-eta_3) rate at which the joints turn along moment direction 3 */
-        const real tube_eta_3 = tube_n_m3_in_axes2_z*tube_omega_in_axes2_z -
-            tube_end_p3_in_axes2_z*tube_omega_in_axes2_x;
+        const real tube_o_2_in_axes2_x = -v.tube_end_p2_in_axes2_y*tube_m2_w_2 -
+            v.tube_end_p3_in_axes2_z*tube_m3_w_2;
+        const real tube_o_2_in_axes2_y = tube_m2_w_2*v.tube_n_m2_in_axes2_y -
+            v.tube_end_p1_in_axes2_z*tube_m1_w_2;
+        const real tube_o_2_in_axes2_z = tube_m1_w_2*v.tube_n_m1_in_axes2_z +
+            tube_m3_w_2*v.tube_n_m3_in_axes2_z;
         /* (tube-qd_1) rate of joint 1 */
-        const real tube_qd_1_t = R(1.35)*tube_eta_1;
-        const real tube_qd_1_t_2 = R(1.35)*tube_eta_2;
-        const real tube_qd_1_t_3 = R(1.35)*tube_eta_3;
-        const real tube_qd_1 = inv_tube_w_1_t_75*(tube_S_dot_in_axes2_y*tube_w_1_t_76 +
-            tube_S_dot_in_axes2_z*tube_w_1_t_77 + tube_m1_w_1_t*tube_qd_1_t +
-            tube_m2_w_1_t*tube_qd_1_t_2 + tube_m3_w_1_t*tube_qd_1_t_3);
+        const real tube_qd_1_t = R(1.35)*v.tube_eta_1;
+        const real tube_qd_1_t_2 = R(1.35)*v.tube_eta_2;
+        const real tube_qd_1_t_3 = R(1.35)*v.tube_eta_3;
+        const real tube_qd_1 = v.inv_tube_w_1_t_75*(v.tube_S_dot_in_axes2_y*tube_w_1_t_76 +
+            v.tube_S_dot_in_axes2_z*tube_w_1_t_77 + tube_m1_w_1_t*tube_qd_1_t +
+            tube_m3_w_1_t*tube_qd_1_t_3 - tube_m2_w_1_t*tube_qd_1_t_2);
         /* (tube-qd_2) rate of joint 2 */
-        const real tube_qd_2_t = inv_tube_w_1_t_63*(tube_S_dot_in_axes2_y*tube_w_1_t_64 +
-            tube_S_dot_in_axes2_z*tube_w_1_t_65 + tube_qd_1_t*tube_w_1_t_66 +
-            tube_qd_1_t_3*tube_w_1_t_68 - tube_qd_1*tube_w_1_t_69 - tube_qd_1_t_2*tube_w_1_t_67);
-        const real tube_qd_2_t_2 = inv_tube_w_1_t_49*(inv_tube_w_1_t_49*tube_S_dot_in_axes2_z +
-            tube_S_dot_in_axes2_y*tube_w_1_t_50 + tube_qd_1*tube_w_1_t_58 +
-            tube_qd_1_t*tube_w_1_t_51 + tube_qd_1_t_3*tube_w_1_t_52 + tube_qd_2_t*tube_w_1_t_53);
-        const real tube_qd_2_t_3 = tube_S_dot_in_axes2_y*tube_w_1_t_14 + tube_qd_1_t*tube_w_1_t_15
-            + tube_qd_1_t_3*tube_w_1_t_16 + tube_qd_2_t_2*tube_w_1_t_21 +
-            inv_tube_w_1_t_33*tube_w_1_t_17*(tube_S_dot_in_axes2_y*tube_w_1_t_34 +
-            tube_qd_1*tube_w_1_t_45 + tube_qd_1_t*tube_w_1_t_35 + tube_qd_1_t_3*tube_w_1_t_36 +
-            tube_qd_2_t*tube_w_1_t_41 - tube_qd_2_t_2*tube_w_1_t_37) - tube_qd_1*tube_w_1_t_29 -
-            tube_qd_2_t*tube_w_1_t_25;
-        const real tube_qd_2 = inv_tube_w_1_t_13*tube_qd_2_t_3;
+        const real tube_qd_2_t = v.inv_tube_w_1_t_63*(v.tube_S_dot_in_axes2_y*v.tube_w_1_t_64 +
+            v.tube_S_dot_in_axes2_z*v.tube_w_1_t_65 + tube_qd_1_t*v.tube_w_1_t_66 +
+            tube_qd_1_t_2*v.tube_w_1_t_67 + tube_qd_1_t_3*v.tube_w_1_t_68 -
+            tube_qd_1*v.tube_w_1_t_69);
+        const real tube_qd_2_t_2 =
+            v.inv_tube_w_1_t_49*(v.inv_tube_w_1_t_49*v.tube_S_dot_in_axes2_z +
+            v.tube_S_dot_in_axes2_y*v.tube_w_1_t_50 + tube_qd_1*v.tube_w_1_t_58 +
+            tube_qd_1_t*v.tube_w_1_t_51 + tube_qd_1_t_3*v.tube_w_1_t_52 +
+            tube_qd_2_t*v.tube_w_1_t_53);
+        const real tube_qd_2_t_3 = v.tube_S_dot_in_axes2_y*v.tube_w_1_t_14 +
+            tube_qd_1_t*v.tube_w_1_t_15 + tube_qd_1_t_3*v.tube_w_1_t_16 +
+            tube_qd_2_t_2*v.tube_w_1_t_21 +
+            v.inv_tube_w_1_t_33*v.tube_w_1_t_17*(v.tube_S_dot_in_axes2_y*v.tube_w_1_t_34 +
+            tube_qd_1*v.tube_w_1_t_45 + tube_qd_1_t*v.tube_w_1_t_35 +
+            tube_qd_1_t_3*v.tube_w_1_t_36 + tube_qd_2_t*v.tube_w_1_t_41 -
+            tube_qd_2_t_2*v.tube_w_1_t_37) - tube_qd_1*v.tube_w_1_t_29 -
+            tube_qd_2_t*v.tube_w_1_t_25;
+        const real tube_qd_2 = v.inv_tube_w_1_t_13*tube_qd_2_t_3;
         /* (tube-omega_1) angular velocity of link 1 */
-        const real tube_omega_1_in_axes2_x = tube_qd_1*tube_s_2;
-        const real tube_omega_1_in_axes2_y = tube_c_2*tube_qd_1;
+        const real tube_omega_1_in_axes2_x = v.tube_e_1_in_axes2_x*tube_qd_1;
+        const real tube_omega_1_in_axes2_y = -v.tube_c_2*tube_qd_1;
         /* (tube-W_2) centripetal tensor of link 2 */
         const real tube_W_2_in_axes2_yz = tube_omega_1_in_axes2_y*tube_qd_2;
         const real tube_W_2_in_axes2_xz = tube_omega_1_in_axes2_x*tube_qd_2;
         const real tube_W_2_in_axes2_xy = tube_omega_1_in_axes2_x*tube_omega_1_in_axes2_y;
-        /* (tube-u_1) centripetal acceleration of the connection point */
-        const real tube_u_1_x = omega_y*tube_S_dot_t_5 - omega_z*tube_S_dot_t_4;
-        const real tube_u_1_y = omega_z*tube_S_dot_t_3 - omega_x*tube_S_dot_t_5;
-        const real tube_u_1_z = omega_x*tube_S_dot_t_4 - omega_y*tube_S_dot_t_3;
         /* (tube-bias) acceleration of the connection point at zero joint accelerations */
-        const real tube_bias_t = tube_W_2_in_axes2_xz*tube_root_2;
-        const real tube_bias_t_2 = -tube_W_2_in_axes2_xy*tube_root_2;
-        const real tube_bias_t_3 = 2*tube_S_dot_in_axes2_x;
-        const real tube_bias_t_4 = tube_bias_t_3*tube_qd_2;
-        const real tube_bias_t_5 = -tube_bias_t_3*tube_omega_1_in_axes2_y;
+        const real tube_bias_t = tube_W_2_in_axes2_xz*v.tube_q_3;
+        const real tube_bias_t_2 = -tube_W_2_in_axes2_xy*v.tube_q_3;
+        const real tube_bias_t_4 = v.tube_bias_t_3*tube_qd_2;
+        const real tube_bias_t_5 = v.tube_bias_t_3*tube_omega_1_in_axes2_y;
         const real tube_bias_in_axes2_y = tube_bias_t_4 - tube_bias_t_2;
-        const real tube_bias_in_axes2_z = 2*tube_bias_t + tube_bias_t_5;
+        const real tube_bias_in_axes2_z = 2*tube_bias_t - tube_bias_t_5;
         /* (tube-rel_o) remainder without the acceleration in: acceleration of the connection point left
            to the joint accelerations */
-        const real tube_rel_o_in_axes2_y = axis_y_tube_axes2_x*tube_u_1_x +
-            axis_y_tube_axes2_y*tube_u_1_y + axis_y_tube_axes2_z*tube_u_1_z -
+        const real tube_rel_o_in_axes2_y = v.axis_y_tube_axes2_x*v.tube_u_1_x +
+            v.axis_y_tube_axes2_y*v.tube_u_1_y + v.axis_y_tube_axes2_z*v.tube_u_1_z -
             tube_bias_in_axes2_y;
-        const real tube_rel_o_in_axes2_z = axis_z_tube_axes2_x*tube_u_1_x +
-            axis_z_tube_axes2_y*tube_u_1_y + axis_z_tube_axes2_z*tube_u_1_z -
+        const real tube_rel_o_in_axes2_z = v.axis_z_tube_axes2_x*v.tube_u_1_x +
+            v.axis_z_tube_axes2_y*v.tube_u_1_y + v.axis_z_tube_axes2_z*v.tube_u_1_z -
             tube_bias_in_axes2_z;
         /* (tube-nd_m1) rate of moment direction 1 */
-        const real tube_end_p1_in_axes2_x = tube_n_m1_t_12*tube_s_2 - tube_c_2*tube_n_m1_t_13;
-        const real tube_nd_m1_in_axes2_y = tube_end_p1_in_axes2_x*tube_omega_in_axes2_y -
-            tube_end_p1_in_axes2_x*tube_omega_1_in_axes2_y -
-            tube_n_m1_in_axes2_z*tube_omega_in_axes2_x;
-        const real tube_nd_m1_in_axes2_z = tube_end_p1_in_axes2_x*tube_omega_in_axes2_z -
-            tube_end_p1_in_axes2_x*tube_qd_2 - tube_end_p1_in_axes2_z*tube_omega_in_axes2_x;
+        const real tube_nd_m1_in_axes2_y = v.tube_end_p1_in_axes2_x*v.tube_omega_in_axes2_y -
+            v.tube_end_p1_in_axes2_x*tube_omega_1_in_axes2_y -
+            v.tube_n_m1_in_axes2_z*v.tube_omega_in_axes2_x;
+        const real tube_nd_m1_in_axes2_z = v.tube_end_p1_in_axes2_x*v.tube_omega_in_axes2_z -
+            v.tube_end_p1_in_axes2_x*tube_qd_2 - v.tube_end_p1_in_axes2_z*v.tube_omega_in_axes2_x;
         /* (tube-nu_1) bias of the angular acceleration along moment direction 1 */
-        const real tube_nu_1_t = tube_omega_1_in_axes2_x - tube_omega_in_axes2_x;
-        const real tube_nu_1_t_2 = tube_omega_in_axes2_y - tube_omega_1_in_axes2_y;
-        const real tube_nu_1_t_3 = tube_omega_in_axes2_z - tube_qd_2;
+        const real tube_nu_1_t = tube_omega_1_in_axes2_x - v.tube_omega_in_axes2_x;
+        const real tube_nu_1_t_2 = v.tube_omega_in_axes2_y - tube_omega_1_in_axes2_y;
+        const real tube_nu_1_t_3 = v.tube_omega_in_axes2_z - tube_qd_2;
         const real tube_nu_1_t_4 = tube_nd_m1_in_axes2_y*tube_nu_1_t_2 +
-            tube_nd_m1_in_axes2_z*tube_nu_1_t_3 - tube_nu_1_t*(tube_end_p1_in_axes2_z*tube_qd_2 +
-            tube_n_m1_in_axes2_z*tube_omega_1_in_axes2_y);
-        const real tube_nu_1 = tube_nu_1_t_4 - tube_W_2_in_axes2_xz*tube_end_p1_in_axes2_z;
+            tube_nd_m1_in_axes2_z*tube_nu_1_t_3 - tube_nu_1_t*(v.tube_end_p1_in_axes2_z*tube_qd_2
+            + v.tube_n_m1_in_axes2_z*tube_omega_1_in_axes2_y);
+        const real tube_nu_1 = tube_nu_1_t_4 - tube_W_2_in_axes2_xz*v.tube_end_p1_in_axes2_z;
         /* (tube-nd_m2) rate of moment direction 2 */
-        const real tube_end_p2_in_axes2_z = tube_c_1*tube_n_m2_t + tube_n_m2_t_2*tube_s_1;
-        const real tube_nd_m2_in_axes2_x = tube_end_p2_in_axes2_z*tube_omega_in_axes2_x -
-            tube_end_p2_in_axes2_z*tube_omega_1_in_axes2_x -
-            tube_n_m2_in_axes2_y*tube_omega_in_axes2_z;
-        const real tube_nd_m2_in_axes2_y = tube_end_p2_in_axes2_z*tube_omega_in_axes2_y -
-            tube_end_p2_in_axes2_y*tube_omega_in_axes2_z -
-            tube_end_p2_in_axes2_z*tube_omega_1_in_axes2_y;
+        const real tube_nd_m2_in_axes2_x = v.tube_end_p2_in_axes2_z*v.tube_omega_in_axes2_x -
+            v.tube_end_p2_in_axes2_z*tube_omega_1_in_axes2_x -
+            v.tube_n_m2_in_axes2_y*v.tube_omega_in_axes2_z;
+        const real tube_nd_m2_in_axes2_y = v.tube_end_p2_in_axes2_z*v.tube_omega_in_axes2_y -
+            v.tube_end_p2_in_axes2_y*v.tube_omega_in_axes2_z -
+            v.tube_end_p2_in_axes2_z*tube_omega_1_in_axes2_y;
         /* (tube-nu_2) bias of the angular acceleration along moment direction 2 */
-        const real tube_nu_2_t = -tube_W_2_in_axes2_xz*tube_n_m2_in_axes2_y -
-            tube_W_2_in_axes2_yz*tube_end_p2_in_axes2_y;
-        const real tube_nu_2_t_2 = tube_nd_m2_in_axes2_x*tube_nu_1_t +
-            tube_nu_1_t_3*(-tube_end_p2_in_axes2_y*tube_omega_1_in_axes2_y -
-            tube_n_m2_in_axes2_y*tube_omega_1_in_axes2_x) - tube_nd_m2_in_axes2_y*tube_nu_1_t_2;
-        const real tube_nu_2 = -tube_nu_2_t - tube_nu_2_t_2;
+        const real tube_nu_2_t = -tube_W_2_in_axes2_xz*v.tube_n_m2_in_axes2_y -
+            tube_W_2_in_axes2_yz*v.tube_end_p2_in_axes2_y;
+        const real tube_nu_2_t_2 = tube_nd_m2_in_axes2_y*tube_nu_1_t_2 -
+            tube_nd_m2_in_axes2_x*tube_nu_1_t -
+            tube_nu_1_t_3*(-v.tube_end_p2_in_axes2_y*tube_omega_1_in_axes2_y -
+            v.tube_n_m2_in_axes2_y*tube_omega_1_in_axes2_x);
+        const real tube_nu_2 = tube_nu_2_t_2 - tube_nu_2_t;
         /* (tube-nd_m3) rate of moment direction 3 */
-        const real tube_end_p3_in_axes2_y = tube_c_2*tube_n_m3_t_3 + tube_n_m3_t_4*tube_s_2;
-        const real tube_nd_m3_in_axes2_x = tube_end_p3_in_axes2_y*tube_omega_1_in_axes2_x +
-            tube_n_m3_in_axes2_z*tube_omega_in_axes2_y -
-            tube_end_p3_in_axes2_y*tube_omega_in_axes2_x;
-        const real tube_nd_m3_in_axes2_z = tube_end_p3_in_axes2_y*tube_qd_2 +
-            tube_end_p3_in_axes2_z*tube_omega_in_axes2_y -
-            tube_end_p3_in_axes2_y*tube_omega_in_axes2_z;
+        const real tube_nd_m3_in_axes2_x = v.tube_end_p3_in_axes2_y*tube_omega_1_in_axes2_x +
+            v.tube_n_m3_in_axes2_z*v.tube_omega_in_axes2_y -
+            v.tube_end_p3_in_axes2_y*v.tube_omega_in_axes2_x;
+        const real tube_nd_m3_in_axes2_z = v.tube_end_p3_in_axes2_y*tube_qd_2 +
+            v.tube_end_p3_in_axes2_z*v.tube_omega_in_axes2_y -
+            v.tube_end_p3_in_axes2_y*v.tube_omega_in_axes2_z;
         /* (tube-nu_3) bias of the angular acceleration along moment direction 3 */
         const real tube_nu_3_t = tube_nd_m3_in_axes2_x*tube_nu_1_t +
-            tube_nu_1_t_2*(tube_end_p3_in_axes2_z*tube_qd_2 +
-            tube_n_m3_in_axes2_z*tube_omega_1_in_axes2_x) - tube_nd_m3_in_axes2_z*tube_nu_1_t_3;
-        const real tube_nu_3 = tube_W_2_in_axes2_yz*tube_end_p3_in_axes2_z - tube_nu_3_t;
+            tube_nu_1_t_2*(v.tube_end_p3_in_axes2_z*tube_qd_2 +
+            v.tube_n_m3_in_axes2_z*tube_omega_1_in_axes2_x) - tube_nd_m3_in_axes2_z*tube_nu_1_t_3;
+        const real tube_nu_3 = tube_W_2_in_axes2_yz*v.tube_end_p3_in_axes2_z - tube_nu_3_t;
         /* (tube-qdd_1_o) remainder without the acceleration in: acceleration of joint 1 */
         const real tube_qdd_1_o_t = R(1.35)*tube_nu_1;
         const real tube_qdd_1_o_t_2 = R(1.35)*tube_nu_2;
         const real tube_qdd_1_o_t_3 = R(1.35)*tube_nu_3;
-        const real tube_qdd_1_o = inv_tube_w_1_t_75*(tube_m1_w_1_t*tube_qdd_1_o_t +
-            tube_m2_w_1_t*tube_qdd_1_o_t_2 + tube_m3_w_1_t*tube_qdd_1_o_t_3 +
-            tube_rel_o_in_axes2_y*tube_w_1_t_76 + tube_rel_o_in_axes2_z*tube_w_1_t_77);
+        const real tube_qdd_1_o = v.inv_tube_w_1_t_75*(tube_m1_w_1_t*tube_qdd_1_o_t +
+            tube_m3_w_1_t*tube_qdd_1_o_t_3 + tube_rel_o_in_axes2_y*tube_w_1_t_76 +
+            tube_rel_o_in_axes2_z*tube_w_1_t_77 - tube_m2_w_1_t*tube_qdd_1_o_t_2);
         /* (tube-qdd_2_o) remainder without the acceleration in: acceleration of joint 2 */
-        const real tube_qdd_2_o_t = inv_tube_w_1_t_63*(tube_qdd_1_o_t*tube_w_1_t_66 +
-            tube_qdd_1_o_t_3*tube_w_1_t_68 + tube_rel_o_in_axes2_y*tube_w_1_t_64 +
-            tube_rel_o_in_axes2_z*tube_w_1_t_65 - tube_qdd_1_o*tube_w_1_t_69 -
-            tube_qdd_1_o_t_2*tube_w_1_t_67);
-        const real tube_qdd_2_o_t_2 = inv_tube_w_1_t_49*(inv_tube_w_1_t_49*tube_rel_o_in_axes2_z +
-            tube_qdd_1_o*tube_w_1_t_58 + tube_qdd_1_o_t*tube_w_1_t_51 +
-            tube_qdd_1_o_t_3*tube_w_1_t_52 + tube_qdd_2_o_t*tube_w_1_t_53 +
-            tube_rel_o_in_axes2_y*tube_w_1_t_50);
-        const real tube_qdd_2_o_t_3 = tube_qdd_1_o_t*tube_w_1_t_15 +
-            tube_qdd_1_o_t_3*tube_w_1_t_16 + tube_qdd_2_o_t_2*tube_w_1_t_21 +
-            tube_rel_o_in_axes2_y*tube_w_1_t_14 +
-            inv_tube_w_1_t_33*tube_w_1_t_17*(tube_qdd_1_o*tube_w_1_t_45 +
-            tube_qdd_1_o_t*tube_w_1_t_35 + tube_qdd_1_o_t_3*tube_w_1_t_36 +
-            tube_qdd_2_o_t*tube_w_1_t_41 + tube_rel_o_in_axes2_y*tube_w_1_t_34 -
-            tube_qdd_2_o_t_2*tube_w_1_t_37) - tube_qdd_1_o*tube_w_1_t_29 -
-            tube_qdd_2_o_t*tube_w_1_t_25;
-        const real tube_qdd_2_o = inv_tube_w_1_t_13*tube_qdd_2_o_t_3;
+        const real tube_qdd_2_o_t = v.inv_tube_w_1_t_63*(tube_qdd_1_o_t*v.tube_w_1_t_66 +
+            tube_qdd_1_o_t_2*v.tube_w_1_t_67 + tube_qdd_1_o_t_3*v.tube_w_1_t_68 +
+            tube_rel_o_in_axes2_y*v.tube_w_1_t_64 + tube_rel_o_in_axes2_z*v.tube_w_1_t_65 -
+            tube_qdd_1_o*v.tube_w_1_t_69);
+        const real tube_qdd_2_o_t_2 =
+            v.inv_tube_w_1_t_49*(v.inv_tube_w_1_t_49*tube_rel_o_in_axes2_z +
+            tube_qdd_1_o*v.tube_w_1_t_58 + tube_qdd_1_o_t*v.tube_w_1_t_51 +
+            tube_qdd_1_o_t_3*v.tube_w_1_t_52 + tube_qdd_2_o_t*v.tube_w_1_t_53 +
+            tube_rel_o_in_axes2_y*v.tube_w_1_t_50);
+        const real tube_qdd_2_o_t_3 = tube_qdd_1_o_t*v.tube_w_1_t_15 +
+            tube_qdd_1_o_t_3*v.tube_w_1_t_16 + tube_qdd_2_o_t_2*v.tube_w_1_t_21 +
+            tube_rel_o_in_axes2_y*v.tube_w_1_t_14 +
+            v.inv_tube_w_1_t_33*v.tube_w_1_t_17*(tube_qdd_1_o*v.tube_w_1_t_45 +
+            tube_qdd_1_o_t*v.tube_w_1_t_35 + tube_qdd_1_o_t_3*v.tube_w_1_t_36 +
+            tube_qdd_2_o_t*v.tube_w_1_t_41 + tube_rel_o_in_axes2_y*v.tube_w_1_t_34 -
+            tube_qdd_2_o_t_2*v.tube_w_1_t_37) - tube_qdd_1_o*v.tube_w_1_t_29 -
+            tube_qdd_2_o_t*v.tube_w_1_t_25;
+        const real tube_qdd_2_o = v.inv_tube_w_1_t_13*tube_qdd_2_o_t_3;
         /* (tube-dalpha_alpha_1) coefficient of the acceleration in: angular acceleration of link 1 */
-        const real tube_dalpha_alpha_1_t = -tube_c_2*tube_o_1_in_axes2_x;
-        const real tube_dalpha_alpha_1_in_axes2_xy = tube_o_1_in_axes2_y*tube_s_2;
-        const real tube_dalpha_alpha_1_t_2 = -tube_c_2*tube_o_1_in_axes2_y;
-        const real tube_dalpha_alpha_1_in_axes2_xx = tube_o_1_in_axes2_x*tube_s_2;
-        const real tube_dalpha_alpha_1_in_axes2_xz = tube_o_1_in_axes2_z*tube_s_2;
-        const real tube_dalpha_alpha_1_t_3 = -tube_c_2*tube_o_1_in_axes2_z;
+        const real tube_dalpha_alpha_1_t = v.tube_c_2*tube_o_1_in_axes2_x;
+        const real tube_dalpha_alpha_1_in_axes2_xy = v.tube_e_1_in_axes2_x*tube_o_1_in_axes2_y;
+        const real tube_dalpha_alpha_1_t_2 = v.tube_c_2*tube_o_1_in_axes2_y;
+        const real tube_dalpha_alpha_1_in_axes2_xx = v.tube_e_1_in_axes2_x*tube_o_1_in_axes2_x;
+        const real tube_dalpha_alpha_1_in_axes2_xz = v.tube_e_1_in_axes2_x*tube_o_1_in_axes2_z;
+        const real tube_dalpha_alpha_1_t_3 = v.tube_c_2*tube_o_1_in_axes2_z;
         /* (tube-d_alpha_1) coefficient of the acceleration in: angular acceleration of link 1 */
-        const real tube_d_alpha_1_in_axes2_xy = tube_s_2*tube_w_1_in_axes2_y;
-        const real tube_d_alpha_1_in_axes2_xz = tube_s_2*tube_w_1_in_axes2_z;
-        const real tube_d_alpha_1_t = -tube_c_2*tube_w_1_in_axes2_z;
+        const real tube_d_alpha_1_in_axes2_xz = v.tube_e_1_in_axes2_x*tube_w_1_in_axes2_z;
+        const real tube_d_alpha_1_t = v.tube_c_2*tube_w_1_in_axes2_z;
         /* (tube-alpha_1_o) remainder without the acceleration in: angular acceleration of link 1 */
-        const real tube_alpha_1_o_in_axes2_x = tube_qdd_1_o*tube_s_2;
-        const real tube_alpha_1_o_in_axes2_y = tube_c_2*tube_qdd_1_o;
+        const real tube_alpha_1_o_in_axes2_x = v.tube_e_1_in_axes2_x*tube_qdd_1_o;
+        const real tube_alpha_1_o_in_axes2_y = -v.tube_c_2*tube_qdd_1_o;
         /* (tube-alpha_2_o) remainder without the acceleration in: angular acceleration of link 2 */
         const real tube_alpha_2_o_in_axes2_x = tube_W_2_in_axes2_yz + tube_alpha_1_o_in_axes2_x;
         const real tube_alpha_2_o_in_axes2_y = tube_alpha_1_o_in_axes2_y - tube_W_2_in_axes2_xz;
@@ -2729,33 +4017,24 @@ INLINE void dynamics_legs_tube(const prepared *m, size_t w, size_t leg, size_t l
         const real tube_B_2_o_in_axes2_zy = tube_W_2_in_axes2_yz + tube_alpha_2_o_in_axes2_x;
         /* (tube-dalpha_acc_3) coefficient of the acceleration in: acceleration of the reference point of
            link 3, less gravity */
-        const real tube_dalpha_acc_3_in_axes2_yx = tube_o_2_in_axes2_x*tube_root_2;
-        const real tube_dalpha_acc_3_in_axes2_yy = tube_o_2_in_axes2_y*tube_root_2;
-        const real tube_dalpha_acc_3_in_axes2_yz = tube_o_2_in_axes2_z*tube_root_2;
-        const real tube_dalpha_acc_3_in_axes2_zx = tube_dalpha_alpha_1_t*tube_root_2;
-        const real tube_dalpha_acc_3_in_axes2_zy = tube_dalpha_alpha_1_t_2*tube_root_2;
-        const real tube_dalpha_acc_3_in_axes2_zz = tube_dalpha_alpha_1_t_3*tube_root_2;
+        const real tube_dalpha_acc_3_in_axes2_yx = tube_o_2_in_axes2_x*v.tube_q_3;
+        const real tube_dalpha_acc_3_in_axes2_yy = tube_o_2_in_axes2_y*v.tube_q_3;
+        const real tube_dalpha_acc_3_in_axes2_yz = tube_o_2_in_axes2_z*v.tube_q_3;
+        const real tube_dalpha_acc_3_in_axes2_zx = tube_dalpha_alpha_1_t*v.tube_q_3;
+        const real tube_dalpha_acc_3_in_axes2_zy = tube_dalpha_alpha_1_t_2*v.tube_q_3;
+        const real tube_dalpha_acc_3_in_axes2_zz = tube_dalpha_alpha_1_t_3*v.tube_q_3;
         /* (tube-d_acc_3) coefficient of the acceleration in: acceleration of the reference point of link
            3, less gravity */
-        const real tube_d_acc_3_in_axes2_yy = tube_root_2*tube_w_2_in_axes2_y;
-        const real tube_d_acc_3_in_axes2_yz = tube_root_2*tube_w_2_in_axes2_z;
-        const real tube_d_acc_3_in_axes2_zy = tube_root_2*tube_w_1_t_78;
-        const real tube_d_acc_3_in_axes2_zz = tube_d_alpha_1_t*tube_root_2;
+        const real tube_d_acc_3_in_axes2_yy = v.tube_q_3*tube_w_2_in_axes2_y;
+        const real tube_d_acc_3_in_axes2_yz = v.tube_q_3*tube_w_2_in_axes2_z;
+        const real tube_d_acc_3_in_axes2_zy = v.tube_q_3*tube_w_1_t_78;
+        const real tube_d_acc_3_in_axes2_zz = tube_d_alpha_1_t*v.tube_q_3;
         /* (tube-acc_3_o) remainder without the acceleration in: acceleration of the reference point of
            link 3, less gravity */
-        const real tube_acc_3_t = m->tube_acc_3_t[i];
-        const real tube_acc_3_t_2 = m->tube_acc_3_t_2[i];
-        const real tube_g_in_axes2_z = tube_acc_3_t*tube_c_1 + tube_acc_3_t_2*tube_s_1;
-        const real tube_acc_3_o_t = tube_acc_3_t_2*tube_c_1 - tube_acc_3_t*tube_s_1;
-        const real tube_acc_3_t_3 = m->tube_acc_3_t_3[i];
-        const real tube_g_in_axes2_x = tube_acc_3_o_t*tube_c_2 + tube_acc_3_t_3*tube_s_2;
-        const real tube_g_in_axes2_y = tube_acc_3_t_3*tube_c_2 - tube_acc_3_o_t*tube_s_2;
-        const real tube_acc_3_o_in_axes2_x = axis_x_tube_axes2_x*tube_u_1_x +
-            axis_x_tube_axes2_y*tube_u_1_y + axis_x_tube_axes2_z*tube_u_1_z - tube_g_in_axes2_x;
-        const real tube_acc_3_o_in_axes2_y = tube_bias_t_4 + tube_qdd_2_o*tube_root_2 -
-            tube_bias_t_2 - tube_g_in_axes2_y;
-        const real tube_acc_3_o_in_axes2_z = tube_bias_t + tube_bias_t_5 - tube_g_in_axes2_z -
-            tube_alpha_2_o_in_axes2_y*tube_root_2;
+        const real tube_acc_3_o_in_axes2_y = tube_bias_t_4 + v.tube_q_3*tube_qdd_2_o -
+            tube_bias_t_2 - v.tube_g_in_axes2_y;
+        const real tube_acc_3_o_in_axes2_z = tube_bias_t - tube_bias_t_5 - v.tube_g_in_axes2_z -
+            tube_alpha_2_o_in_axes2_y*v.tube_q_3;
         /* (tube-f_3_o) remainder without the acceleration in: inertia force of link 3 less its weight */
         const real tube_f_3_o_t = tube_omega_1_in_axes2_x*tube_omega_1_in_axes2_x;
         const real tube_f_3_o_t_2 = tube_omega_1_in_axes2_y*tube_omega_1_in_axes2_y;
@@ -2764,9 +4043,10 @@ INLINE void dynamics_legs_tube(const prepared *m, size_t w, size_t leg, size_t l
         const real tube_h_3_in_spec2_y = m->tube_h_3_in_spec2_y[i];
         const real tube_h_3_in_spec2_z = m->tube_h_3_in_spec2_z[i];
         const real tube_link3_mass = m->tube_link3_mass[i];
-        const real tube_f_3_o_in_axes2_x = tube_acc_3_o_in_axes2_x*tube_link3_mass +
-            tube_alpha_1_o_in_axes2_y*tube_h_3_in_spec2_y + tube_h_3_in_spec2_x*(-tube_f_3_o_t_2 -
-            tube_f_3_o_t_3) - tube_B_2_o_in_axes2_xy*tube_h_3_in_spec2_z;
+        const real tube_f_3_o_in_axes2_x = v.tube_acc_3_o_in_axes2_x*tube_link3_mass +
+            tube_alpha_1_o_in_axes2_y*tube_h_3_in_spec2_y -
+            tube_B_2_o_in_axes2_xy*tube_h_3_in_spec2_z - tube_h_3_in_spec2_x*(tube_f_3_o_t_2 +
+            tube_f_3_o_t_3);
         const real tube_f_3_o_in_axes2_y = tube_B_2_o_in_axes2_yx*tube_h_3_in_spec2_x +
             tube_acc_3_o_in_axes2_y*tube_link3_mass + tube_h_3_in_spec2_z*(tube_f_3_o_t +
             tube_f_3_o_t_3) - tube_alpha_1_o_in_axes2_x*tube_h_3_in_spec2_y;
@@ -2786,7 +4066,7 @@ INLINE void dynamics_legs_tube(const prepared *m, size_t w, size_t leg, size_t l
             tube_B_2_o_in_axes2_zy*tube_Sigma_2_in_axes2_yy +
             tube_J_group_2_in_axes2_yz*(tube_f_3_o_t_2 - tube_f_3_o_t_3) +
             tube_Sigma_2_in_axes2_zz*tube_alpha_1_o_in_axes2_x +
-            tube_g_in_axes2_y*tube_h_2_in_spec2_y + tube_g_in_axes2_z*tube_h_2_in_spec2_z -
+            v.tube_g_in_axes2_y*tube_h_2_in_spec2_y + v.tube_g_in_axes2_z*tube_h_2_in_spec2_z -
             tube_B_2_o_in_axes2_zx*tube_J_group_2_in_axes2_xy -
             tube_acc_3_o_in_axes2_y*tube_h_3_in_spec2_y -
             tube_acc_3_o_in_axes2_z*tube_h_3_in_spec2_z;
@@ -2794,19 +4074,20 @@ INLINE void dynamics_legs_tube(const prepared *m, size_t w, size_t leg, size_t l
         const real tube_h_2_in_spec2_x = m->tube_h_2_in_spec2_x[i];
         const real tube_mu_2_o_in_axes2_y = tube_B_2_o_in_axes2_zy*tube_J_group_2_in_axes2_xy +
             tube_Sigma_2_in_axes2_zz*tube_alpha_1_o_in_axes2_y +
-            tube_acc_3_o_in_axes2_x*tube_h_3_in_spec2_y + tube_g_in_axes2_z*tube_h_2_in_spec2_x -
+            v.tube_acc_3_o_in_axes2_x*tube_h_3_in_spec2_y +
+            v.tube_g_in_axes2_z*tube_h_2_in_spec2_x -
             tube_B_2_o_in_axes2_xy*tube_J_group_2_in_axes2_yz -
             tube_B_2_o_in_axes2_zx*tube_Sigma_2_in_axes2_xx -
             tube_J_group_2_in_axes2_xz*(tube_f_3_o_t - tube_f_3_o_t_3) -
-            tube_acc_3_o_in_axes2_z*tube_h_3_in_spec2_x - tube_g_in_axes2_x*tube_h_2_in_spec2_y;
+            tube_acc_3_o_in_axes2_z*tube_h_3_in_spec2_x - v.tube_g_in_axes2_x*tube_h_2_in_spec2_y;
         const real tube_mu_2_o_in_axes2_z = tube_B_2_o_in_axes2_yx*tube_Sigma_2_in_axes2_xx +
             tube_J_group_2_in_axes2_xy*(tube_f_3_o_t - tube_f_3_o_t_2) +
             tube_J_group_2_in_axes2_xz*tube_alpha_1_o_in_axes2_x +
             tube_J_group_2_in_axes2_yz*tube_alpha_1_o_in_axes2_y +
-            tube_acc_3_o_in_axes2_x*tube_h_3_in_spec2_z +
+            v.tube_acc_3_o_in_axes2_x*tube_h_3_in_spec2_z +
             tube_acc_3_o_in_axes2_y*tube_h_3_in_spec2_x -
             tube_B_2_o_in_axes2_xy*tube_Sigma_2_in_axes2_yy -
-            tube_g_in_axes2_x*tube_h_2_in_spec2_z - tube_g_in_axes2_y*tube_h_2_in_spec2_x;
+            v.tube_g_in_axes2_x*tube_h_2_in_spec2_z - v.tube_g_in_axes2_y*tube_h_2_in_spec2_x;
         /* (tube-dalpha_N_2) coefficient of the acceleration in: moment about joint 2 of the links from 2
            outwards, the force at the connection point left out */
         const real tube_J_group_2_in_axes2_zz = m->tube_J_group_2_in_axes2_zz[i];
@@ -2814,7 +4095,7 @@ INLINE void dynamics_legs_tube(const prepared *m, size_t w, size_t leg, size_t l
             tube_J_group_2_in_axes2_xz*tube_dalpha_alpha_1_in_axes2_xx +
             tube_J_group_2_in_axes2_zz*tube_o_2_in_axes2_x +
             tube_dalpha_acc_3_in_axes2_yx*tube_h_3_in_spec2_x +
-            tube_root_2*(tube_dalpha_acc_3_in_axes2_yx*tube_link3_mass +
+            v.tube_q_3*(tube_dalpha_acc_3_in_axes2_yx*tube_link3_mass +
             tube_h_3_in_spec2_x*tube_o_2_in_axes2_x -
             tube_dalpha_alpha_1_in_axes2_xx*tube_h_3_in_spec2_y) -
             tube_J_group_2_in_axes2_yz*tube_dalpha_alpha_1_t;
@@ -2822,7 +4103,7 @@ INLINE void dynamics_legs_tube(const prepared *m, size_t w, size_t leg, size_t l
             tube_J_group_2_in_axes2_xz*tube_dalpha_alpha_1_in_axes2_xy +
             tube_J_group_2_in_axes2_zz*tube_o_2_in_axes2_y +
             tube_dalpha_acc_3_in_axes2_yy*tube_h_3_in_spec2_x +
-            tube_root_2*(tube_dalpha_acc_3_in_axes2_yy*tube_link3_mass +
+            v.tube_q_3*(tube_dalpha_acc_3_in_axes2_yy*tube_link3_mass +
             tube_h_3_in_spec2_x*tube_o_2_in_axes2_y -
             tube_dalpha_alpha_1_in_axes2_xy*tube_h_3_in_spec2_y) -
             tube_J_group_2_in_axes2_yz*tube_dalpha_alpha_1_t_2;
@@ -2830,108 +4111,106 @@ INLINE void dynamics_legs_tube(const prepared *m, size_t w, size_t leg, size_t l
             tube_J_group_2_in_axes2_xz*tube_dalpha_alpha_1_in_axes2_xz +
             tube_J_group_2_in_axes2_zz*tube_o_2_in_axes2_z +
             tube_dalpha_acc_3_in_axes2_yz*tube_h_3_in_spec2_x +
-            tube_root_2*(tube_dalpha_acc_3_in_axes2_yz*tube_link3_mass +
+            v.tube_q_3*(tube_dalpha_acc_3_in_axes2_yz*tube_link3_mass +
             tube_h_3_in_spec2_x*tube_o_2_in_axes2_z -
             tube_dalpha_alpha_1_in_axes2_xz*tube_h_3_in_spec2_y) -
             tube_J_group_2_in_axes2_yz*tube_dalpha_alpha_1_t_3;
         /* (tube-d_N_2) coefficient of the acceleration in: moment about joint 2 of the links from 2
            outwards, the force at the connection point left out */
-        const real tube_d_N_2_in_axes2_zy = tube_J_group_2_in_axes2_xz*tube_d_alpha_1_in_axes2_xy
-            + tube_J_group_2_in_axes2_zz*tube_w_2_in_axes2_y +
+        const real tube_d_N_2_in_axes2_zy = tube_J_group_2_in_axes2_xz*tube_w_1_in_axes1_x +
+            tube_J_group_2_in_axes2_zz*tube_w_2_in_axes2_y +
             tube_d_acc_3_in_axes2_yy*tube_h_3_in_spec2_x +
-            tube_root_2*(tube_d_acc_3_in_axes2_yy*tube_link3_mass +
-            tube_h_3_in_spec2_x*tube_w_2_in_axes2_y -
-            tube_d_alpha_1_in_axes2_xy*tube_h_3_in_spec2_y) -
+            v.tube_q_3*(tube_d_acc_3_in_axes2_yy*tube_link3_mass +
+            tube_h_3_in_spec2_x*tube_w_2_in_axes2_y - tube_h_3_in_spec2_y*tube_w_1_in_axes1_x) -
             tube_J_group_2_in_axes2_yz*tube_w_1_t_78;
         const real tube_d_N_2_in_axes2_zz = tube_J_group_2_in_axes2_xz*tube_d_alpha_1_in_axes2_xz
             + tube_J_group_2_in_axes2_zz*tube_w_2_in_axes2_z +
             tube_d_acc_3_in_axes2_yz*tube_h_3_in_spec2_x +
-            tube_root_2*(tube_d_acc_3_in_axes2_yz*tube_link3_mass +
+            v.tube_q_3*(tube_d_acc_3_in_axes2_yz*tube_link3_mass +
             tube_h_3_in_spec2_x*tube_w_2_in_axes2_z -
             tube_d_alpha_1_in_axes2_xz*tube_h_3_in_spec2_y) -
             tube_J_group_2_in_axes2_yz*tube_d_alpha_1_t;
         /* (tube-N_2_o) remainder without the acceleration in: moment about joint 2 of the links from 2
            outwards, the force at the connection point left out */
         const real tube_N_2_o_in_axes2_y = tube_mu_2_o_in_axes2_y -
-            tube_f_3_o_in_axes2_z*tube_root_2;
+            tube_f_3_o_in_axes2_z*v.tube_q_3;
         const real tube_N_2_o_in_axes2_z = tube_mu_2_o_in_axes2_z +
-            tube_f_3_o_in_axes2_y*tube_root_2;
+            tube_f_3_o_in_axes2_y*v.tube_q_3;
         /* (tube-dalpha_Gamma_1) coefficient of the acceleration in: moment about axis 1 of the distal
            links' inertia and weight */
         const real tube_J_group_2_in_axes2_yy = m->tube_J_group_2_in_axes2_yy[i];
         const real tube_dalpha_Gamma_1_t =
-            tube_c_2*(tube_J_group_2_in_axes2_xy*tube_dalpha_alpha_1_in_axes2_xx +
+            v.tube_c_2*(tube_J_group_2_in_axes2_xy*tube_dalpha_alpha_1_in_axes2_xx +
             tube_J_group_2_in_axes2_yz*tube_o_2_in_axes2_x -
             tube_J_group_2_in_axes2_yy*tube_dalpha_alpha_1_t -
             tube_dalpha_acc_3_in_axes2_zx*tube_h_3_in_spec2_x -
-            tube_root_2*(tube_dalpha_acc_3_in_axes2_zx*tube_link3_mass +
+            v.tube_q_3*(tube_dalpha_acc_3_in_axes2_zx*tube_link3_mass +
             tube_dalpha_alpha_1_t*tube_h_3_in_spec2_x -
             tube_dalpha_alpha_1_in_axes2_xx*tube_h_3_in_spec2_z));
         const real tube_J_group_2_in_axes2_xx = m->tube_J_group_2_in_axes2_xx[i];
-        const real tube_dalpha_Gamma_1_in_axes2_x = tube_dalpha_Gamma_1_t +
-            tube_s_2*(tube_J_group_2_in_axes2_xx*tube_dalpha_alpha_1_in_axes2_xx +
+        const real tube_dalpha_Gamma_1_in_axes2_x =
+            v.tube_e_1_in_axes2_x*(tube_J_group_2_in_axes2_xx*tube_dalpha_alpha_1_in_axes2_xx +
             tube_J_group_2_in_axes2_xz*tube_o_2_in_axes2_x -
             tube_J_group_2_in_axes2_xy*tube_dalpha_alpha_1_t -
             tube_dalpha_acc_3_in_axes2_yx*tube_h_3_in_spec2_y -
-            tube_dalpha_acc_3_in_axes2_zx*tube_h_3_in_spec2_z);
+            tube_dalpha_acc_3_in_axes2_zx*tube_h_3_in_spec2_z) - tube_dalpha_Gamma_1_t;
         const real tube_dalpha_Gamma_1_t_2 =
-            tube_c_2*(tube_J_group_2_in_axes2_xy*tube_dalpha_alpha_1_in_axes2_xy +
+            v.tube_c_2*(tube_J_group_2_in_axes2_xy*tube_dalpha_alpha_1_in_axes2_xy +
             tube_J_group_2_in_axes2_yz*tube_o_2_in_axes2_y -
             tube_J_group_2_in_axes2_yy*tube_dalpha_alpha_1_t_2 -
             tube_dalpha_acc_3_in_axes2_zy*tube_h_3_in_spec2_x -
-            tube_root_2*(tube_dalpha_acc_3_in_axes2_zy*tube_link3_mass +
+            v.tube_q_3*(tube_dalpha_acc_3_in_axes2_zy*tube_link3_mass +
             tube_dalpha_alpha_1_t_2*tube_h_3_in_spec2_x -
             tube_dalpha_alpha_1_in_axes2_xy*tube_h_3_in_spec2_z));
-        const real tube_dalpha_Gamma_1_in_axes2_y = tube_dalpha_Gamma_1_t_2 +
-            tube_s_2*(tube_J_group_2_in_axes2_xx*tube_dalpha_alpha_1_in_axes2_xy +
+        const real tube_dalpha_Gamma_1_in_axes2_y =
+            v.tube_e_1_in_axes2_x*(tube_J_group_2_in_axes2_xx*tube_dalpha_alpha_1_in_axes2_xy +
             tube_J_group_2_in_axes2_xz*tube_o_2_in_axes2_y -
             tube_J_group_2_in_axes2_xy*tube_dalpha_alpha_1_t_2 -
             tube_dalpha_acc_3_in_axes2_yy*tube_h_3_in_spec2_y -
-            tube_dalpha_acc_3_in_axes2_zy*tube_h_3_in_spec2_z);
+            tube_dalpha_acc_3_in_axes2_zy*tube_h_3_in_spec2_z) - tube_dalpha_Gamma_1_t_2;
         const real tube_dalpha_Gamma_1_t_3 =
-            tube_c_2*(tube_J_group_2_in_axes2_xy*tube_dalpha_alpha_1_in_axes2_xz +
+            v.tube_c_2*(tube_J_group_2_in_axes2_xy*tube_dalpha_alpha_1_in_axes2_xz +
             tube_J_group_2_in_axes2_yz*tube_o_2_in_axes2_z -
             tube_J_group_2_in_axes2_yy*tube_dalpha_alpha_1_t_3 -
             tube_dalpha_acc_3_in_axes2_zz*tube_h_3_in_spec2_x -
-            tube_root_2*(tube_dalpha_acc_3_in_axes2_zz*tube_link3_mass +
+            v.tube_q_3*(tube_dalpha_acc_3_in_axes2_zz*tube_link3_mass +
             tube_dalpha_alpha_1_t_3*tube_h_3_in_spec2_x -
             tube_dalpha_alpha_1_in_axes2_xz*tube_h_3_in_spec2_z));
-        const real tube_dalpha_Gamma_1_in_axes2_z = tube_dalpha_Gamma_1_t_3 +
-            tube_s_2*(tube_J_group_2_in_axes2_xx*tube_dalpha_alpha_1_in_axes2_xz +
+        const real tube_dalpha_Gamma_1_in_axes2_z =
+            v.tube_e_1_in_axes2_x*(tube_J_group_2_in_axes2_xx*tube_dalpha_alpha_1_in_axes2_xz +
             tube_J_group_2_in_axes2_xz*tube_o_2_in_axes2_z -
             tube_J_group_2_in_axes2_xy*tube_dalpha_alpha_1_t_3 -
             tube_dalpha_acc_3_in_axes2_yz*tube_h_3_in_spec2_y -
-            tube_dalpha_acc_3_in_axes2_zz*tube_h_3_in_spec2_z);
+            tube_dalpha_acc_3_in_axes2_zz*tube_h_3_in_spec2_z) - tube_dalpha_Gamma_1_t_3;
         /* (tube-d_Gamma_1) coefficient of the acceleration in: moment about axis 1 of the distal links'
            inertia and weight */
-        const real tube_d_Gamma_1_in_axes2_x = tube_c_2*tube_h_3_in_spec2_y;
-        const real tube_d_Gamma_1_t =
-            tube_c_2*(tube_J_group_2_in_axes2_xy*tube_d_alpha_1_in_axes2_xy +
-            tube_J_group_2_in_axes2_yz*tube_w_2_in_axes2_y -
+        const real tube_d_Gamma_1_t = v.tube_c_2*tube_h_3_in_spec2_y;
+        const real tube_d_Gamma_1_t_2 = v.tube_c_2*(tube_J_group_2_in_axes2_xy*tube_w_1_in_axes1_x
+            + tube_J_group_2_in_axes2_yz*tube_w_2_in_axes2_y -
             tube_J_group_2_in_axes2_yy*tube_w_1_t_78 -
             tube_d_acc_3_in_axes2_zy*tube_h_3_in_spec2_x -
-            tube_root_2*(tube_d_acc_3_in_axes2_zy*tube_link3_mass +
-            tube_h_3_in_spec2_x*tube_w_1_t_78 - tube_d_alpha_1_in_axes2_xy*tube_h_3_in_spec2_z));
-        const real tube_d_Gamma_1_in_axes2_y = tube_d_Gamma_1_t +
-            tube_s_2*(tube_J_group_2_in_axes2_xx*tube_d_alpha_1_in_axes2_xy +
+            v.tube_q_3*(tube_d_acc_3_in_axes2_zy*tube_link3_mass +
+            tube_h_3_in_spec2_x*tube_w_1_t_78 - tube_h_3_in_spec2_z*tube_w_1_in_axes1_x));
+        const real tube_d_Gamma_1_in_axes2_y =
+            v.tube_e_1_in_axes2_x*(tube_J_group_2_in_axes2_xx*tube_w_1_in_axes1_x +
             tube_J_group_2_in_axes2_xz*tube_w_2_in_axes2_y -
             tube_J_group_2_in_axes2_xy*tube_w_1_t_78 -
             tube_d_acc_3_in_axes2_yy*tube_h_3_in_spec2_y -
-            tube_d_acc_3_in_axes2_zy*tube_h_3_in_spec2_z);
-        const real tube_d_Gamma_1_t_2 =
-            tube_c_2*(tube_J_group_2_in_axes2_xy*tube_d_alpha_1_in_axes2_xz +
+            tube_d_acc_3_in_axes2_zy*tube_h_3_in_spec2_z) - tube_d_Gamma_1_t_2;
+        const real tube_d_Gamma_1_t_3 =
+            v.tube_c_2*(tube_J_group_2_in_axes2_xy*tube_d_alpha_1_in_axes2_xz +
             tube_J_group_2_in_axes2_yz*tube_w_2_in_axes2_z -
             tube_J_group_2_in_axes2_yy*tube_d_alpha_1_t -
             tube_d_acc_3_in_axes2_zz*tube_h_3_in_spec2_x -
-            tube_root_2*(tube_d_acc_3_in_axes2_zz*tube_link3_mass +
+            v.tube_q_3*(tube_d_acc_3_in_axes2_zz*tube_link3_mass +
             tube_d_alpha_1_t*tube_h_3_in_spec2_x -
             tube_d_alpha_1_in_axes2_xz*tube_h_3_in_spec2_z));
-        const real tube_d_Gamma_1_in_axes2_z = tube_d_Gamma_1_t_2 +
-            tube_s_2*(tube_J_group_2_in_axes2_xx*tube_d_alpha_1_in_axes2_xz +
+        const real tube_d_Gamma_1_in_axes2_z =
+            v.tube_e_1_in_axes2_x*(tube_J_group_2_in_axes2_xx*tube_d_alpha_1_in_axes2_xz +
             tube_J_group_2_in_axes2_xz*tube_w_2_in_axes2_z -
             tube_J_group_2_in_axes2_xy*tube_d_alpha_1_t -
             tube_d_acc_3_in_axes2_yz*tube_h_3_in_spec2_y -
-            tube_d_acc_3_in_axes2_zz*tube_h_3_in_spec2_z);
+            tube_d_acc_3_in_axes2_zz*tube_h_3_in_spec2_z) - tube_d_Gamma_1_t_3;
         /* (tube-dalpha_G) coefficient of the acceleration in: force at the connection point that balances
            the leg's inertia and weight along all degrees of freedom */
         const real tube_dalpha_G_in_axes2_yx = tube_dalpha_Gamma_1_in_axes2_x*tube_w_1_in_axes2_y
@@ -2952,20 +4231,21 @@ INLINE void dynamics_legs_tube(const prepared *m, size_t w, size_t leg, size_t l
             tube_d_N_2_in_axes2_zz*tube_w_2_in_axes2_y;
         /* (tube-G_o) remainder without the acceleration in: force at the connection point that balances
            the leg's inertia and weight along all degrees of freedom */
-        const real tube_G_o_t = inv_tube_w_1_t_13*tube_N_2_o_in_axes2_z;
-        const real tube_G_o_t_2 = inv_tube_w_1_t_33*tube_G_o_t*tube_w_1_t_17;
-        const real tube_G_o_t_3 = inv_tube_w_1_t_49*(tube_G_o_t*tube_w_1_t_21 -
-            tube_G_o_t_2*tube_w_1_t_37);
-        const real tube_G_o_t_4 = inv_tube_w_1_t_63*(tube_G_o_t_2*tube_w_1_t_41 +
-            tube_G_o_t_3*tube_w_1_t_53 - tube_G_o_t*tube_w_1_t_25);
-        const real tube_G_o_t_5 = inv_tube_w_1_t_75*(tube_G_o_t_2*tube_w_1_t_45 +
-            tube_G_o_t_3*tube_w_1_t_58 + tube_N_2_o_in_axes2_y*tube_c_2 +
-            tube_mu_2_o_in_axes2_x*tube_s_2 - tube_G_o_t*tube_w_1_t_29 -
-            tube_G_o_t_4*tube_w_1_t_69);
-        const real tube_G_o_in_axes2_y = tube_G_o_t*tube_w_1_t_14 + tube_G_o_t_2*tube_w_1_t_34 +
-            tube_G_o_t_3*tube_w_1_t_50 + tube_G_o_t_4*tube_w_1_t_64 + tube_G_o_t_5*tube_w_1_t_76;
-        const real tube_G_o_in_axes2_z = inv_tube_w_1_t_49*tube_G_o_t_3 +
-            tube_G_o_t_4*tube_w_1_t_65 + tube_G_o_t_5*tube_w_1_t_77;
+        const real tube_G_o_t = v.inv_tube_w_1_t_13*tube_N_2_o_in_axes2_z;
+        const real tube_G_o_t_2 = v.inv_tube_w_1_t_33*tube_G_o_t*v.tube_w_1_t_17;
+        const real tube_G_o_t_3 = v.inv_tube_w_1_t_49*(tube_G_o_t*v.tube_w_1_t_21 -
+            tube_G_o_t_2*v.tube_w_1_t_37);
+        const real tube_G_o_t_4 = v.inv_tube_w_1_t_63*(tube_G_o_t_2*v.tube_w_1_t_41 +
+            tube_G_o_t_3*v.tube_w_1_t_53 - tube_G_o_t*v.tube_w_1_t_25);
+        const real tube_G_o_t_5 = v.inv_tube_w_1_t_75*(tube_G_o_t*v.tube_w_1_t_29 +
+            tube_G_o_t_4*v.tube_w_1_t_69 + tube_N_2_o_in_axes2_y*v.tube_c_2 -
+            tube_G_o_t_2*v.tube_w_1_t_45 - tube_G_o_t_3*v.tube_w_1_t_58 -
+            v.tube_e_1_in_axes2_x*tube_mu_2_o_in_axes2_x);
+        const real tube_G_o_in_axes2_y = tube_G_o_t*v.tube_w_1_t_14 + tube_G_o_t_2*v.tube_w_1_t_34
+            + tube_G_o_t_3*v.tube_w_1_t_50 + tube_G_o_t_4*v.tube_w_1_t_64 -
+            tube_G_o_t_5*tube_w_1_t_76;
+        const real tube_G_o_in_axes2_z = v.inv_tube_w_1_t_49*tube_G_o_t_3 +
+            tube_G_o_t_4*v.tube_w_1_t_65 - tube_G_o_t_5*tube_w_1_t_77;
         /* (tube-dalpha_G_m1) coefficient of the acceleration in: moment along moment direction 1 that
            balances the leg's inertia and weight along all degrees of freedom */
         const real tube_dalpha_G_m1_in_axes2_x = tube_dalpha_Gamma_1_in_axes2_x*tube_m1_w_1 +
@@ -2976,16 +4256,17 @@ INLINE void dynamics_legs_tube(const prepared *m, size_t w, size_t leg, size_t l
             tube_dalpha_N_2_in_axes2_zz*tube_m1_w_2;
         /* (tube-d_G_m1) coefficient of the acceleration in: moment along moment direction 1 that balances
            the leg's inertia and weight along all degrees of freedom */
-        const real tube_d_G_m1_in_axes2_x = tube_d_Gamma_1_in_axes2_x*tube_m1_w_1 +
-            tube_h_3_in_spec2_z*tube_m1_w_2;
+        const real tube_d_G_m1_in_axes2_x = tube_h_3_in_spec2_z*tube_m1_w_2 -
+            tube_d_Gamma_1_t*tube_m1_w_1;
         const real tube_d_G_m1_in_axes2_y = tube_d_Gamma_1_in_axes2_y*tube_m1_w_1 +
             tube_d_N_2_in_axes2_zy*tube_m1_w_2;
         const real tube_d_G_m1_in_axes2_z = tube_d_Gamma_1_in_axes2_z*tube_m1_w_1 +
             tube_d_N_2_in_axes2_zz*tube_m1_w_2;
         /* (tube-G_m1_o) remainder without the acceleration in: moment along moment direction 1 that
            balances the leg's inertia and weight along all degrees of freedom */
-        const real tube_G_m1_o_t = tube_G_o_t*tube_w_1_t_15 + tube_G_o_t_2*tube_w_1_t_35 +
-            tube_G_o_t_3*tube_w_1_t_51 + tube_G_o_t_4*tube_w_1_t_66 + tube_G_o_t_5*tube_m1_w_1_t;
+        const real tube_G_m1_o_t = tube_G_o_t*v.tube_w_1_t_15 + tube_G_o_t_2*v.tube_w_1_t_35 +
+            tube_G_o_t_3*v.tube_w_1_t_51 + tube_G_o_t_4*v.tube_w_1_t_66 -
+            tube_G_o_t_5*tube_m1_w_1_t;
         const real tube_G_m1_o = R(1.35)*tube_G_m1_o_t;
         /* (tube-dalpha_G_m2) coefficient of the acceleration in: moment along moment direction 2 that
            balances the leg's inertia and weight along all degrees of freedom */
@@ -2997,16 +4278,16 @@ INLINE void dynamics_legs_tube(const prepared *m, size_t w, size_t leg, size_t l
             tube_dalpha_N_2_in_axes2_zz*tube_m2_w_2;
         /* (tube-d_G_m2) coefficient of the acceleration in: moment along moment direction 2 that balances
            the leg's inertia and weight along all degrees of freedom */
-        const real tube_d_G_m2_in_axes2_x = tube_d_Gamma_1_in_axes2_x*tube_m2_w_1 +
-            tube_h_3_in_spec2_z*tube_m2_w_2;
+        const real tube_d_G_m2_in_axes2_x = tube_h_3_in_spec2_z*tube_m2_w_2 -
+            tube_d_Gamma_1_t*tube_m2_w_1;
         const real tube_d_G_m2_in_axes2_y = tube_d_Gamma_1_in_axes2_y*tube_m2_w_1 +
             tube_d_N_2_in_axes2_zy*tube_m2_w_2;
         const real tube_d_G_m2_in_axes2_z = tube_d_Gamma_1_in_axes2_z*tube_m2_w_1 +
             tube_d_N_2_in_axes2_zz*tube_m2_w_2;
         /* (tube-G_m2_o) remainder without the acceleration in: moment along moment direction 2 that
            balances the leg's inertia and weight along all degrees of freedom */
-        const real tube_G_m2_o_t = tube_G_o_t_4*tube_w_1_t_67 - tube_G_o_t_5*tube_m2_w_1_t;
-        const real tube_G_m2_o = -R(1.35)*tube_G_m2_o_t;
+        const real tube_G_m2_o_t = tube_G_o_t_4*v.tube_w_1_t_67 + tube_G_o_t_5*tube_m2_w_1_t;
+        const real tube_G_m2_o = R(1.35)*tube_G_m2_o_t;
         /* (tube-dalpha_G_m3) coefficient of the acceleration in: moment along moment direction 3 that
            balances the leg's inertia and weight along all degrees of freedom */
         const real tube_dalpha_G_m3_in_axes2_x = tube_dalpha_Gamma_1_in_axes2_x*tube_m3_w_1 +
@@ -3017,68 +4298,75 @@ INLINE void dynamics_legs_tube(const prepared *m, size_t w, size_t leg, size_t l
             tube_dalpha_N_2_in_axes2_zz*tube_m3_w_2;
         /* (tube-d_G_m3) coefficient of the acceleration in: moment along moment direction 3 that balances
            the leg's inertia and weight along all degrees of freedom */
-        const real tube_d_G_m3_in_axes2_x = tube_d_Gamma_1_in_axes2_x*tube_m3_w_1 +
-            tube_h_3_in_spec2_z*tube_m3_w_2;
+        const real tube_d_G_m3_in_axes2_x = tube_h_3_in_spec2_z*tube_m3_w_2 -
+            tube_d_Gamma_1_t*tube_m3_w_1;
         const real tube_d_G_m3_in_axes2_y = tube_d_Gamma_1_in_axes2_y*tube_m3_w_1 +
             tube_d_N_2_in_axes2_zy*tube_m3_w_2;
         const real tube_d_G_m3_in_axes2_z = tube_d_Gamma_1_in_axes2_z*tube_m3_w_1 +
             tube_d_N_2_in_axes2_zz*tube_m3_w_2;
         /* (tube-G_m3_o) remainder without the acceleration in: moment along moment direction 3 that
            balances the leg's inertia and weight along all degrees of freedom */
-        const real tube_G_m3_o_t = tube_G_o_t*tube_w_1_t_16 + tube_G_o_t_2*tube_w_1_t_36 +
-            tube_G_o_t_3*tube_w_1_t_52 + tube_G_o_t_4*tube_w_1_t_68 + tube_G_o_t_5*tube_m3_w_1_t;
+        const real tube_G_m3_o_t = tube_G_o_t*v.tube_w_1_t_16 + tube_G_o_t_2*v.tube_w_1_t_36 +
+            tube_G_o_t_3*v.tube_w_1_t_52 + tube_G_o_t_4*v.tube_w_1_t_68 -
+            tube_G_o_t_5*tube_m3_w_1_t;
         const real tube_G_m3_o = R(1.35)*tube_G_m3_o_t;
         /* (tube-dalpha_G_m) coefficient of the acceleration in: moment at the connection point that
            balances the leg's inertia and weight along all degrees of freedom */
         const real tube_dalpha_G_m_in_axes2_xx =
-            -tube_dalpha_G_m2_in_axes2_x*tube_end_p2_in_axes2_y -
-            tube_dalpha_G_m3_in_axes2_x*tube_end_p3_in_axes2_z;
+            -tube_dalpha_G_m2_in_axes2_x*v.tube_end_p2_in_axes2_y -
+            tube_dalpha_G_m3_in_axes2_x*v.tube_end_p3_in_axes2_z;
         const real tube_dalpha_G_m_in_axes2_xy =
-            -tube_dalpha_G_m2_in_axes2_y*tube_end_p2_in_axes2_y -
-            tube_dalpha_G_m3_in_axes2_y*tube_end_p3_in_axes2_z;
+            -tube_dalpha_G_m2_in_axes2_y*v.tube_end_p2_in_axes2_y -
+            tube_dalpha_G_m3_in_axes2_y*v.tube_end_p3_in_axes2_z;
         const real tube_dalpha_G_m_in_axes2_xz =
-            -tube_dalpha_G_m2_in_axes2_z*tube_end_p2_in_axes2_y -
-            tube_dalpha_G_m3_in_axes2_z*tube_end_p3_in_axes2_z;
-        const real tube_dalpha_G_m_in_axes2_yx = tube_dalpha_G_m2_in_axes2_x*tube_n_m2_in_axes2_y
-            - tube_dalpha_G_m1_in_axes2_x*tube_end_p1_in_axes2_z;
-        const real tube_dalpha_G_m_in_axes2_yy = tube_dalpha_G_m2_in_axes2_y*tube_n_m2_in_axes2_y
-            - tube_dalpha_G_m1_in_axes2_y*tube_end_p1_in_axes2_z;
-        const real tube_dalpha_G_m_in_axes2_yz = tube_dalpha_G_m2_in_axes2_z*tube_n_m2_in_axes2_y
-            - tube_dalpha_G_m1_in_axes2_z*tube_end_p1_in_axes2_z;
-        const real tube_dalpha_G_m_in_axes2_zx = tube_dalpha_G_m1_in_axes2_x*tube_n_m1_in_axes2_z
-            + tube_dalpha_G_m3_in_axes2_x*tube_n_m3_in_axes2_z;
-        const real tube_dalpha_G_m_in_axes2_zy = tube_dalpha_G_m1_in_axes2_y*tube_n_m1_in_axes2_z
-            + tube_dalpha_G_m3_in_axes2_y*tube_n_m3_in_axes2_z;
-        const real tube_dalpha_G_m_in_axes2_zz = tube_dalpha_G_m1_in_axes2_z*tube_n_m1_in_axes2_z
-            + tube_dalpha_G_m3_in_axes2_z*tube_n_m3_in_axes2_z;
+            -tube_dalpha_G_m2_in_axes2_z*v.tube_end_p2_in_axes2_y -
+            tube_dalpha_G_m3_in_axes2_z*v.tube_end_p3_in_axes2_z;
+        const real tube_dalpha_G_m_in_axes2_yx =
+            tube_dalpha_G_m2_in_axes2_x*v.tube_n_m2_in_axes2_y -
+            tube_dalpha_G_m1_in_axes2_x*v.tube_end_p1_in_axes2_z;
+        const real tube_dalpha_G_m_in_axes2_yy =
+            tube_dalpha_G_m2_in_axes2_y*v.tube_n_m2_in_axes2_y -
+            tube_dalpha_G_m1_in_axes2_y*v.tube_end_p1_in_axes2_z;
+        const real tube_dalpha_G_m_in_axes2_yz =
+            tube_dalpha_G_m2_in_axes2_z*v.tube_n_m2_in_axes2_y -
+            tube_dalpha_G_m1_in_axes2_z*v.tube_end_p1_in_axes2_z;
+        const real tube_dalpha_G_m_in_axes2_zx =
+            tube_dalpha_G_m1_in_axes2_x*v.tube_n_m1_in_axes2_z +
+            tube_dalpha_G_m3_in_axes2_x*v.tube_n_m3_in_axes2_z;
+        const real tube_dalpha_G_m_in_axes2_zy =
+            tube_dalpha_G_m1_in_axes2_y*v.tube_n_m1_in_axes2_z +
+            tube_dalpha_G_m3_in_axes2_y*v.tube_n_m3_in_axes2_z;
+        const real tube_dalpha_G_m_in_axes2_zz =
+            tube_dalpha_G_m1_in_axes2_z*v.tube_n_m1_in_axes2_z +
+            tube_dalpha_G_m3_in_axes2_z*v.tube_n_m3_in_axes2_z;
         /* (tube-d_G_m) coefficient of the acceleration in: moment at the connection point that balances
            the leg's inertia and weight along all degrees of freedom */
-        const real tube_d_G_m_in_axes2_xx = -tube_d_G_m2_in_axes2_x*tube_end_p2_in_axes2_y -
-            tube_d_G_m3_in_axes2_x*tube_end_p3_in_axes2_z;
-        const real tube_d_G_m_in_axes2_xy = -tube_d_G_m2_in_axes2_y*tube_end_p2_in_axes2_y -
-            tube_d_G_m3_in_axes2_y*tube_end_p3_in_axes2_z;
-        const real tube_d_G_m_in_axes2_xz = -tube_d_G_m2_in_axes2_z*tube_end_p2_in_axes2_y -
-            tube_d_G_m3_in_axes2_z*tube_end_p3_in_axes2_z;
-        const real tube_d_G_m_in_axes2_yx = tube_d_G_m2_in_axes2_x*tube_n_m2_in_axes2_y -
-            tube_d_G_m1_in_axes2_x*tube_end_p1_in_axes2_z;
-        const real tube_d_G_m_in_axes2_yy = tube_d_G_m2_in_axes2_y*tube_n_m2_in_axes2_y -
-            tube_d_G_m1_in_axes2_y*tube_end_p1_in_axes2_z;
-        const real tube_d_G_m_in_axes2_yz = tube_d_G_m2_in_axes2_z*tube_n_m2_in_axes2_y -
-            tube_d_G_m1_in_axes2_z*tube_end_p1_in_axes2_z;
-        const real tube_d_G_m_in_axes2_zx = tube_d_G_m1_in_axes2_x*tube_n_m1_in_axes2_z +
-            tube_d_G_m3_in_axes2_x*tube_n_m3_in_axes2_z;
-        const real tube_d_G_m_in_axes2_zy = tube_d_G_m1_in_axes2_y*tube_n_m1_in_axes2_z +
-            tube_d_G_m3_in_axes2_y*tube_n_m3_in_axes2_z;
-        const real tube_d_G_m_in_axes2_zz = tube_d_G_m1_in_axes2_z*tube_n_m1_in_axes2_z +
-            tube_d_G_m3_in_axes2_z*tube_n_m3_in_axes2_z;
+        const real tube_d_G_m_in_axes2_xx = -tube_d_G_m2_in_axes2_x*v.tube_end_p2_in_axes2_y -
+            tube_d_G_m3_in_axes2_x*v.tube_end_p3_in_axes2_z;
+        const real tube_d_G_m_in_axes2_xy = -tube_d_G_m2_in_axes2_y*v.tube_end_p2_in_axes2_y -
+            tube_d_G_m3_in_axes2_y*v.tube_end_p3_in_axes2_z;
+        const real tube_d_G_m_in_axes2_xz = -tube_d_G_m2_in_axes2_z*v.tube_end_p2_in_axes2_y -
+            tube_d_G_m3_in_axes2_z*v.tube_end_p3_in_axes2_z;
+        const real tube_d_G_m_in_axes2_yx = tube_d_G_m2_in_axes2_x*v.tube_n_m2_in_axes2_y -
+            tube_d_G_m1_in_axes2_x*v.tube_end_p1_in_axes2_z;
+        const real tube_d_G_m_in_axes2_yy = tube_d_G_m2_in_axes2_y*v.tube_n_m2_in_axes2_y -
+            tube_d_G_m1_in_axes2_y*v.tube_end_p1_in_axes2_z;
+        const real tube_d_G_m_in_axes2_yz = tube_d_G_m2_in_axes2_z*v.tube_n_m2_in_axes2_y -
+            tube_d_G_m1_in_axes2_z*v.tube_end_p1_in_axes2_z;
+        const real tube_d_G_m_in_axes2_zx = tube_d_G_m1_in_axes2_x*v.tube_n_m1_in_axes2_z +
+            tube_d_G_m3_in_axes2_x*v.tube_n_m3_in_axes2_z;
+        const real tube_d_G_m_in_axes2_zy = tube_d_G_m1_in_axes2_y*v.tube_n_m1_in_axes2_z +
+            tube_d_G_m3_in_axes2_y*v.tube_n_m3_in_axes2_z;
+        const real tube_d_G_m_in_axes2_zz = tube_d_G_m1_in_axes2_z*v.tube_n_m1_in_axes2_z +
+            tube_d_G_m3_in_axes2_z*v.tube_n_m3_in_axes2_z;
         /* (tube-G_m_o) remainder without the acceleration in: moment at the connection point that
            balances the leg's inertia and weight along all degrees of freedom */
-        const real tube_G_m_o_in_axes2_x = -tube_G_m2_o*tube_end_p2_in_axes2_y -
-            tube_G_m3_o*tube_end_p3_in_axes2_z;
-        const real tube_G_m_o_in_axes2_y = tube_G_m2_o*tube_n_m2_in_axes2_y -
-            tube_G_m1_o*tube_end_p1_in_axes2_z;
-        const real tube_G_m_o_in_axes2_z = tube_G_m1_o*tube_n_m1_in_axes2_z +
-            tube_G_m3_o*tube_n_m3_in_axes2_z;
+        const real tube_G_m_o_in_axes2_x = -tube_G_m2_o*v.tube_end_p2_in_axes2_y -
+            tube_G_m3_o*v.tube_end_p3_in_axes2_z;
+        const real tube_G_m_o_in_axes2_y = tube_G_m2_o*v.tube_n_m2_in_axes2_y -
+            tube_G_m1_o*v.tube_end_p1_in_axes2_z;
+        const real tube_G_m_o_in_axes2_z = tube_G_m1_o*v.tube_n_m1_in_axes2_z +
+            tube_G_m3_o*v.tube_n_m3_in_axes2_z;
         /* (tube-dalpha_c) coefficient of the acceleration in: leg force on the platform without actuation
            and without the mass at the connection point */
         const real tube_dalpha_c_in_axes2_xx = tube_dalpha_alpha_1_t*tube_h_3_in_spec2_y -
@@ -3100,229 +4388,222 @@ INLINE void dynamics_legs_tube(const prepared *m, size_t w, size_t leg, size_t l
         const real tube_Q_t_3 = tube_d_Gamma_1_in_axes2_z*tube_w_1_in_axes2_z +
             tube_d_N_2_in_axes2_zz*tube_w_2_in_axes2_z - tube_link3_mass;
         const real tube_Q_t_4 = R(0.5)*tube_Q_t_3;
-        const real tube_Q_t_5 = axis_y_tube_axes2_x*tube_Q_t_2 +
-            axis_z_tube_axes2_x*tube_d_G_in_axes2_yz - axis_x_tube_axes2_x*tube_d_c_in_axes2_xy;
-        const real tube_Q_t_6 = axis_y_tube_axes2_y*tube_Q_t_2 +
-            axis_z_tube_axes2_y*tube_d_G_in_axes2_yz - axis_x_tube_axes2_y*tube_d_c_in_axes2_xy;
-        const real tube_Q_t_7 = axis_y_tube_axes2_z*tube_Q_t_2 +
-            axis_z_tube_axes2_z*tube_d_G_in_axes2_yz - axis_x_tube_axes2_z*tube_d_c_in_axes2_xy;
-        const real tube_Q_t_8 = axis_z_tube_axes2_x*tube_Q_t_4 -
-            axis_x_tube_axes2_x*tube_d_c_in_axes2_xz;
-        const real tube_Q_t_9 = axis_z_tube_axes2_y*tube_Q_t_4 -
-            axis_x_tube_axes2_y*tube_d_c_in_axes2_xz;
-        const real tube_Q_t_10 = axis_z_tube_axes2_z*tube_Q_t_4 -
-            axis_x_tube_axes2_z*tube_d_c_in_axes2_xz;
-        const real tube_Q_t_11 = axis_y_tube_axes2_x*tube_Q_t_5 + axis_z_tube_axes2_x*tube_Q_t_8;
+        const real tube_Q_t_5 = v.axis_y_tube_axes2_x*tube_Q_t_2 +
+            v.axis_z_tube_axes2_x*tube_d_G_in_axes2_yz -
+            v.axis_x_tube_axes2_x*tube_d_c_in_axes2_xy;
+        const real tube_Q_t_6 = v.axis_y_tube_axes2_y*tube_Q_t_2 +
+            v.axis_z_tube_axes2_y*tube_d_G_in_axes2_yz -
+            v.axis_x_tube_axes2_y*tube_d_c_in_axes2_xy;
+        const real tube_Q_t_7 = v.axis_y_tube_axes2_z*tube_Q_t_2 +
+            v.axis_z_tube_axes2_z*tube_d_G_in_axes2_yz -
+            v.axis_x_tube_axes2_z*tube_d_c_in_axes2_xy;
+        const real tube_Q_t_8 = v.axis_z_tube_axes2_x*tube_Q_t_4 -
+            v.axis_x_tube_axes2_x*tube_d_c_in_axes2_xz;
+        const real tube_Q_t_9 = v.axis_z_tube_axes2_y*tube_Q_t_4 -
+            v.axis_x_tube_axes2_y*tube_d_c_in_axes2_xz;
+        const real tube_Q_t_10 = v.axis_z_tube_axes2_z*tube_Q_t_4 -
+            v.axis_x_tube_axes2_z*tube_d_c_in_axes2_xz;
+        const real tube_Q_t_11 = v.axis_y_tube_axes2_x*tube_Q_t_5 +
+            v.axis_z_tube_axes2_x*tube_Q_t_8;
         const real tube_Q_xx = 2*tube_Q_t_11 + tube_link3_mass;
-        const real tube_Q_xy = axis_y_tube_axes2_x*tube_Q_t_6 + axis_y_tube_axes2_y*tube_Q_t_5 +
-            axis_z_tube_axes2_x*tube_Q_t_9 + axis_z_tube_axes2_y*tube_Q_t_8;
-        const real tube_Q_xz = axis_y_tube_axes2_x*tube_Q_t_7 + axis_y_tube_axes2_z*tube_Q_t_5 +
-            axis_z_tube_axes2_x*tube_Q_t_10 + axis_z_tube_axes2_z*tube_Q_t_8;
-        const real tube_Q_t_12 = axis_y_tube_axes2_y*tube_Q_t_6 + axis_z_tube_axes2_y*tube_Q_t_9;
+        const real tube_Q_xy = v.axis_y_tube_axes2_x*tube_Q_t_6 + v.axis_y_tube_axes2_y*tube_Q_t_5
+            + v.axis_z_tube_axes2_x*tube_Q_t_9 + v.axis_z_tube_axes2_y*tube_Q_t_8;
+        const real tube_Q_xz = v.axis_y_tube_axes2_x*tube_Q_t_7 + v.axis_y_tube_axes2_z*tube_Q_t_5
+            + v.axis_z_tube_axes2_x*tube_Q_t_10 + v.axis_z_tube_axes2_z*tube_Q_t_8;
+        const real tube_Q_t_12 = v.axis_y_tube_axes2_y*tube_Q_t_6 +
+            v.axis_z_tube_axes2_y*tube_Q_t_9;
         const real tube_Q_yy = 2*tube_Q_t_12 + tube_link3_mass;
-        const real tube_Q_yz = axis_y_tube_axes2_y*tube_Q_t_7 + axis_y_tube_axes2_z*tube_Q_t_6 +
-            axis_z_tube_axes2_y*tube_Q_t_10 + axis_z_tube_axes2_z*tube_Q_t_9;
-        const real tube_Q_t_13 = axis_y_tube_axes2_z*tube_Q_t_7 + axis_z_tube_axes2_z*tube_Q_t_10;
+        const real tube_Q_yz = v.axis_y_tube_axes2_y*tube_Q_t_7 + v.axis_y_tube_axes2_z*tube_Q_t_6
+            + v.axis_z_tube_axes2_y*tube_Q_t_10 + v.axis_z_tube_axes2_z*tube_Q_t_9;
+        const real tube_Q_t_13 = v.axis_y_tube_axes2_z*tube_Q_t_7 +
+            v.axis_z_tube_axes2_z*tube_Q_t_10;
         const real tube_Q_zz = 2*tube_Q_t_13 + tube_link3_mass;
         /* (tube-dalpha_c_m) coefficient of the acceleration in: moment of the leg on the platform without
            actuation */
         const real tube_dalpha_c_m_zz =
-            axis_x_tube_axes2_z*(-axis_x_tube_axes2_z*tube_dalpha_G_m_in_axes2_xx -
-            axis_y_tube_axes2_z*tube_dalpha_G_m_in_axes2_yx -
-            axis_z_tube_axes2_z*tube_dalpha_G_m_in_axes2_zx) +
-            axis_y_tube_axes2_z*(-axis_x_tube_axes2_z*tube_dalpha_G_m_in_axes2_xy -
-            axis_y_tube_axes2_z*tube_dalpha_G_m_in_axes2_yy -
-            axis_z_tube_axes2_z*tube_dalpha_G_m_in_axes2_zy) +
-            axis_z_tube_axes2_z*(-axis_x_tube_axes2_z*tube_dalpha_G_m_in_axes2_xz -
-            axis_y_tube_axes2_z*tube_dalpha_G_m_in_axes2_yz -
-            axis_z_tube_axes2_z*tube_dalpha_G_m_in_axes2_zz);
+            v.axis_x_tube_axes2_z*(-v.axis_x_tube_axes2_z*tube_dalpha_G_m_in_axes2_xx -
+            v.axis_y_tube_axes2_z*tube_dalpha_G_m_in_axes2_yx -
+            v.axis_z_tube_axes2_z*tube_dalpha_G_m_in_axes2_zx) +
+            v.axis_y_tube_axes2_z*(-v.axis_x_tube_axes2_z*tube_dalpha_G_m_in_axes2_xy -
+            v.axis_y_tube_axes2_z*tube_dalpha_G_m_in_axes2_yy -
+            v.axis_z_tube_axes2_z*tube_dalpha_G_m_in_axes2_zy) +
+            v.axis_z_tube_axes2_z*(-v.axis_x_tube_axes2_z*tube_dalpha_G_m_in_axes2_xz -
+            v.axis_y_tube_axes2_z*tube_dalpha_G_m_in_axes2_yz -
+            v.axis_z_tube_axes2_z*tube_dalpha_G_m_in_axes2_zz);
         /* (tube-d_c_m) coefficient of the acceleration in: moment of the leg on the platform without
            actuation */
-        const real tube_d_c_m_t = -axis_x_tube_axes2_x*tube_d_G_m_in_axes2_xx -
-            axis_y_tube_axes2_x*tube_d_G_m_in_axes2_yx -
-            axis_z_tube_axes2_x*tube_d_G_m_in_axes2_zx;
-        const real tube_d_c_m_t_2 = -axis_x_tube_axes2_y*tube_d_G_m_in_axes2_xx -
-            axis_y_tube_axes2_y*tube_d_G_m_in_axes2_yx -
-            axis_z_tube_axes2_y*tube_d_G_m_in_axes2_zx;
-        const real tube_d_c_m_t_3 = -axis_x_tube_axes2_x*tube_d_G_m_in_axes2_xy -
-            axis_y_tube_axes2_x*tube_d_G_m_in_axes2_yy -
-            axis_z_tube_axes2_x*tube_d_G_m_in_axes2_zy;
-        const real tube_d_c_m_t_4 = -axis_x_tube_axes2_y*tube_d_G_m_in_axes2_xy -
-            axis_y_tube_axes2_y*tube_d_G_m_in_axes2_yy -
-            axis_z_tube_axes2_y*tube_d_G_m_in_axes2_zy;
-        const real tube_d_c_m_t_5 = -axis_x_tube_axes2_x*tube_d_G_m_in_axes2_xz -
-            axis_y_tube_axes2_x*tube_d_G_m_in_axes2_yz -
-            axis_z_tube_axes2_x*tube_d_G_m_in_axes2_zz;
-        const real tube_d_c_m_t_6 = -axis_x_tube_axes2_y*tube_d_G_m_in_axes2_xz -
-            axis_y_tube_axes2_y*tube_d_G_m_in_axes2_yz -
-            axis_z_tube_axes2_y*tube_d_G_m_in_axes2_zz;
-        const real tube_d_c_m_xx = axis_x_tube_axes2_x*tube_d_c_m_t +
-            axis_y_tube_axes2_x*tube_d_c_m_t_3 + axis_z_tube_axes2_x*tube_d_c_m_t_5;
-        const real tube_d_c_m_xy = axis_x_tube_axes2_y*tube_d_c_m_t +
-            axis_y_tube_axes2_y*tube_d_c_m_t_3 + axis_z_tube_axes2_y*tube_d_c_m_t_5;
-        const real tube_d_c_m_xz = axis_x_tube_axes2_z*tube_d_c_m_t +
-            axis_y_tube_axes2_z*tube_d_c_m_t_3 + axis_z_tube_axes2_z*tube_d_c_m_t_5;
-        const real tube_d_c_m_yx = axis_x_tube_axes2_x*tube_d_c_m_t_2 +
-            axis_y_tube_axes2_x*tube_d_c_m_t_4 + axis_z_tube_axes2_x*tube_d_c_m_t_6;
+        const real tube_d_c_m_t = -v.axis_x_tube_axes2_x*tube_d_G_m_in_axes2_xx -
+            v.axis_y_tube_axes2_x*tube_d_G_m_in_axes2_yx -
+            v.axis_z_tube_axes2_x*tube_d_G_m_in_axes2_zx;
+        const real tube_d_c_m_t_2 = -v.axis_x_tube_axes2_y*tube_d_G_m_in_axes2_xx -
+            v.axis_y_tube_axes2_y*tube_d_G_m_in_axes2_yx -
+            v.axis_z_tube_axes2_y*tube_d_G_m_in_axes2_zx;
+        const real tube_d_c_m_t_3 = -v.axis_x_tube_axes2_x*tube_d_G_m_in_axes2_xy -
+            v.axis_y_tube_axes2_x*tube_d_G_m_in_axes2_yy -
+            v.axis_z_tube_axes2_x*tube_d_G_m_in_axes2_zy;
+        const real tube_d_c_m_t_4 = -v.axis_x_tube_axes2_y*tube_d_G_m_in_axes2_xy -
+            v.axis_y_tube_axes2_y*tube_d_G_m_in_axes2_yy -
+            v.axis_z_tube_axes2_y*tube_d_G_m_in_axes2_zy;
+        const real tube_d_c_m_t_5 = -v.axis_x_tube_axes2_x*tube_d_G_m_in_axes2_xz -
+            v.axis_y_tube_axes2_x*tube_d_G_m_in_axes2_yz -
+            v.axis_z_tube_axes2_x*tube_d_G_m_in_axes2_zz;
+        const real tube_d_c_m_t_6 = -v.axis_x_tube_axes2_y*tube_d_G_m_in_axes2_xz -
+            v.axis_y_tube_axes2_y*tube_d_G_m_in_axes2_yz -
+            v.axis_z_tube_axes2_y*tube_d_G_m_in_axes2_zz;
+        const real tube_d_c_m_xx = v.axis_x_tube_axes2_x*tube_d_c_m_t +
+            v.axis_y_tube_axes2_x*tube_d_c_m_t_3 + v.axis_z_tube_axes2_x*tube_d_c_m_t_5;
+        const real tube_d_c_m_xy = v.axis_x_tube_axes2_y*tube_d_c_m_t +
+            v.axis_y_tube_axes2_y*tube_d_c_m_t_3 + v.axis_z_tube_axes2_y*tube_d_c_m_t_5;
+        const real tube_d_c_m_xz = v.axis_x_tube_axes2_z*tube_d_c_m_t +
+            v.axis_y_tube_axes2_z*tube_d_c_m_t_3 + v.axis_z_tube_axes2_z*tube_d_c_m_t_5;
+        const real tube_d_c_m_yx = v.axis_x_tube_axes2_x*tube_d_c_m_t_2 +
+            v.axis_y_tube_axes2_x*tube_d_c_m_t_4 + v.axis_z_tube_axes2_x*tube_d_c_m_t_6;
         /* (tube-U) velocity and gravity terms of the leg force */
-        const real tube_U_x = axis_x_tube_axes2_x*tube_f_3_o_in_axes2_x +
-            axis_y_tube_axes2_x*tube_G_o_in_axes2_y + axis_z_tube_axes2_x*tube_G_o_in_axes2_z;
-        const real tube_U_y = axis_x_tube_axes2_y*tube_f_3_o_in_axes2_x +
-            axis_y_tube_axes2_y*tube_G_o_in_axes2_y + axis_z_tube_axes2_y*tube_G_o_in_axes2_z;
-        const real tube_U_z = axis_x_tube_axes2_z*tube_f_3_o_in_axes2_x +
-            axis_y_tube_axes2_z*tube_G_o_in_axes2_y + axis_z_tube_axes2_z*tube_G_o_in_axes2_z;
+        const real tube_U_x = v.axis_x_tube_axes2_x*tube_f_3_o_in_axes2_x +
+            v.axis_y_tube_axes2_x*tube_G_o_in_axes2_y + v.axis_z_tube_axes2_x*tube_G_o_in_axes2_z;
+        const real tube_U_y = v.axis_x_tube_axes2_y*tube_f_3_o_in_axes2_x +
+            v.axis_y_tube_axes2_y*tube_G_o_in_axes2_y + v.axis_z_tube_axes2_y*tube_G_o_in_axes2_z;
+        const real tube_U_z = v.axis_x_tube_axes2_z*tube_f_3_o_in_axes2_x +
+            v.axis_y_tube_axes2_z*tube_G_o_in_axes2_y + v.axis_z_tube_axes2_z*tube_G_o_in_axes2_z;
         /* (M_ta) coupling block of M */
-        const real tube_M_ta_t = axis_x_tube_axes2_x*tube_dalpha_c_in_axes2_xx -
-            axis_y_tube_axes2_x*tube_dalpha_G_in_axes2_yx -
-            axis_z_tube_axes2_x*tube_dalpha_G_in_axes2_zx;
-        const real tube_M_ta_t_2 = axis_x_tube_axes2_y*tube_dalpha_c_in_axes2_xx -
-            axis_y_tube_axes2_y*tube_dalpha_G_in_axes2_yx -
-            axis_z_tube_axes2_y*tube_dalpha_G_in_axes2_zx;
-        const real tube_M_ta_t_3 = axis_x_tube_axes2_z*tube_dalpha_c_in_axes2_xx -
-            axis_y_tube_axes2_z*tube_dalpha_G_in_axes2_yx -
-            axis_z_tube_axes2_z*tube_dalpha_G_in_axes2_zx;
-        const real tube_M_ta_t_4 = axis_x_tube_axes2_x*tube_dalpha_c_in_axes2_xy -
-            axis_y_tube_axes2_x*tube_dalpha_G_in_axes2_yy -
-            axis_z_tube_axes2_x*tube_dalpha_G_in_axes2_zy;
-        const real tube_M_ta_t_5 = axis_x_tube_axes2_y*tube_dalpha_c_in_axes2_xy -
-            axis_y_tube_axes2_y*tube_dalpha_G_in_axes2_yy -
-            axis_z_tube_axes2_y*tube_dalpha_G_in_axes2_zy;
-        const real tube_M_ta_t_6 = axis_x_tube_axes2_z*tube_dalpha_c_in_axes2_xy -
-            axis_y_tube_axes2_z*tube_dalpha_G_in_axes2_yy -
-            axis_z_tube_axes2_z*tube_dalpha_G_in_axes2_zy;
-        const real tube_M_ta_t_7 = axis_x_tube_axes2_x*tube_dalpha_c_in_axes2_xz -
-            axis_y_tube_axes2_x*tube_dalpha_G_in_axes2_yz -
-            axis_z_tube_axes2_x*tube_dalpha_G_in_axes2_zz;
-        const real tube_M_ta_t_8 = axis_x_tube_axes2_y*tube_dalpha_c_in_axes2_xz -
-            axis_y_tube_axes2_y*tube_dalpha_G_in_axes2_yz -
-            axis_z_tube_axes2_y*tube_dalpha_G_in_axes2_zz;
-        const real tube_M_ta_t_9 = axis_x_tube_axes2_z*tube_dalpha_c_in_axes2_xz -
-            axis_y_tube_axes2_z*tube_dalpha_G_in_axes2_yz -
-            axis_z_tube_axes2_z*tube_dalpha_G_in_axes2_zz;
-        const real tube_M_ta_t_10 = tube_Q_xy*tube_q_z;
-        const real tube_M_ta_t_11 = tube_Q_xz*tube_q_y;
-        const real tube_M_ta_t_12 = tube_Q_yz*tube_q_x;
+        const real tube_M_ta_t = v.axis_x_tube_axes2_x*tube_dalpha_c_in_axes2_xx -
+            v.axis_y_tube_axes2_x*tube_dalpha_G_in_axes2_yx -
+            v.axis_z_tube_axes2_x*tube_dalpha_G_in_axes2_zx;
+        const real tube_M_ta_t_2 = v.axis_x_tube_axes2_y*tube_dalpha_c_in_axes2_xx -
+            v.axis_y_tube_axes2_y*tube_dalpha_G_in_axes2_yx -
+            v.axis_z_tube_axes2_y*tube_dalpha_G_in_axes2_zx;
+        const real tube_M_ta_t_3 = v.axis_x_tube_axes2_z*tube_dalpha_c_in_axes2_xx -
+            v.axis_y_tube_axes2_z*tube_dalpha_G_in_axes2_yx -
+            v.axis_z_tube_axes2_z*tube_dalpha_G_in_axes2_zx;
+        const real tube_M_ta_t_4 = v.axis_x_tube_axes2_x*tube_dalpha_c_in_axes2_xy -
+            v.axis_y_tube_axes2_x*tube_dalpha_G_in_axes2_yy -
+            v.axis_z_tube_axes2_x*tube_dalpha_G_in_axes2_zy;
+        const real tube_M_ta_t_5 = v.axis_x_tube_axes2_y*tube_dalpha_c_in_axes2_xy -
+            v.axis_y_tube_axes2_y*tube_dalpha_G_in_axes2_yy -
+            v.axis_z_tube_axes2_y*tube_dalpha_G_in_axes2_zy;
+        const real tube_M_ta_t_6 = v.axis_x_tube_axes2_z*tube_dalpha_c_in_axes2_xy -
+            v.axis_y_tube_axes2_z*tube_dalpha_G_in_axes2_yy -
+            v.axis_z_tube_axes2_z*tube_dalpha_G_in_axes2_zy;
+        const real tube_M_ta_t_7 = v.axis_x_tube_axes2_x*tube_dalpha_c_in_axes2_xz -
+            v.axis_y_tube_axes2_x*tube_dalpha_G_in_axes2_yz -
+            v.axis_z_tube_axes2_x*tube_dalpha_G_in_axes2_zz;
+        const real tube_M_ta_t_8 = v.axis_x_tube_axes2_y*tube_dalpha_c_in_axes2_xz -
+            v.axis_y_tube_axes2_y*tube_dalpha_G_in_axes2_yz -
+            v.axis_z_tube_axes2_y*tube_dalpha_G_in_axes2_zz;
+        const real tube_M_ta_t_9 = v.axis_x_tube_axes2_z*tube_dalpha_c_in_axes2_xz -
+            v.axis_y_tube_axes2_z*tube_dalpha_G_in_axes2_yz -
+            v.axis_z_tube_axes2_z*tube_dalpha_G_in_axes2_zz;
+        const real tube_M_ta_t_10 = tube_Q_xy*v.tube_q_z;
+        const real tube_M_ta_t_11 = tube_Q_xz*v.tube_q_y;
+        const real tube_M_ta_t_12 = tube_Q_yz*v.tube_q_x;
         const real tube_M_ta_t_13 = tube_M_ta_t_11 - tube_M_ta_t_10 -
-            axis_x_tube_axes2_x*tube_M_ta_t - axis_y_tube_axes2_x*tube_M_ta_t_4 -
-            axis_z_tube_axes2_x*tube_M_ta_t_7;
-        const real tube_M_ta_t_14 = tube_Q_xx*tube_q_z - axis_x_tube_axes2_y*tube_M_ta_t -
-            axis_y_tube_axes2_y*tube_M_ta_t_4 - axis_z_tube_axes2_y*tube_M_ta_t_7 -
-            tube_Q_xz*tube_q_x;
-        const real tube_M_ta_t_15 = tube_Q_xy*tube_q_x - axis_x_tube_axes2_z*tube_M_ta_t -
-            axis_y_tube_axes2_z*tube_M_ta_t_4 - axis_z_tube_axes2_z*tube_M_ta_t_7 -
-            tube_Q_xx*tube_q_y;
-        const real tube_M_ta_t_16 = tube_Q_yz*tube_q_y - axis_x_tube_axes2_x*tube_M_ta_t_2 -
-            axis_y_tube_axes2_x*tube_M_ta_t_5 - axis_z_tube_axes2_x*tube_M_ta_t_8 -
-            tube_Q_yy*tube_q_z;
+            v.axis_x_tube_axes2_x*tube_M_ta_t - v.axis_y_tube_axes2_x*tube_M_ta_t_4 -
+            v.axis_z_tube_axes2_x*tube_M_ta_t_7;
+        const real tube_M_ta_t_14 = tube_Q_xx*v.tube_q_z - v.axis_x_tube_axes2_y*tube_M_ta_t -
+            v.axis_y_tube_axes2_y*tube_M_ta_t_4 - v.axis_z_tube_axes2_y*tube_M_ta_t_7 -
+            tube_Q_xz*v.tube_q_x;
+        const real tube_M_ta_t_15 = tube_Q_xy*v.tube_q_x - v.axis_x_tube_axes2_z*tube_M_ta_t -
+            v.axis_y_tube_axes2_z*tube_M_ta_t_4 - v.axis_z_tube_axes2_z*tube_M_ta_t_7 -
+            tube_Q_xx*v.tube_q_y;
+        const real tube_M_ta_t_16 = tube_Q_yz*v.tube_q_y - v.axis_x_tube_axes2_x*tube_M_ta_t_2 -
+            v.axis_y_tube_axes2_x*tube_M_ta_t_5 - v.axis_z_tube_axes2_x*tube_M_ta_t_8 -
+            tube_Q_yy*v.tube_q_z;
         const real tube_M_ta_t_17 = tube_M_ta_t_10 - tube_M_ta_t_12 -
-            axis_x_tube_axes2_y*tube_M_ta_t_2 - axis_y_tube_axes2_y*tube_M_ta_t_5 -
-            axis_z_tube_axes2_y*tube_M_ta_t_8;
-        const real tube_M_ta_t_18 = tube_Q_yy*tube_q_x - axis_x_tube_axes2_z*tube_M_ta_t_2 -
-            axis_y_tube_axes2_z*tube_M_ta_t_5 - axis_z_tube_axes2_z*tube_M_ta_t_8 -
-            tube_Q_xy*tube_q_y;
-        const real tube_M_ta_t_19 = tube_Q_zz*tube_q_y - axis_x_tube_axes2_x*tube_M_ta_t_3 -
-            axis_y_tube_axes2_x*tube_M_ta_t_6 - axis_z_tube_axes2_x*tube_M_ta_t_9 -
-            tube_Q_yz*tube_q_z;
-        const real tube_M_ta_t_20 = tube_Q_xz*tube_q_z - axis_x_tube_axes2_y*tube_M_ta_t_3 -
-            axis_y_tube_axes2_y*tube_M_ta_t_6 - axis_z_tube_axes2_y*tube_M_ta_t_9 -
-            tube_Q_zz*tube_q_x;
+            v.axis_x_tube_axes2_y*tube_M_ta_t_2 - v.axis_y_tube_axes2_y*tube_M_ta_t_5 -
+            v.axis_z_tube_axes2_y*tube_M_ta_t_8;
+        const real tube_M_ta_t_18 = tube_Q_yy*v.tube_q_x - v.axis_x_tube_axes2_z*tube_M_ta_t_2 -
+            v.axis_y_tube_axes2_z*tube_M_ta_t_5 - v.axis_z_tube_axes2_z*tube_M_ta_t_8 -
+            tube_Q_xy*v.tube_q_y;
+        const real tube_M_ta_t_19 = tube_Q_zz*v.tube_q_y - v.axis_x_tube_axes2_x*tube_M_ta_t_3 -
+            v.axis_y_tube_axes2_x*tube_M_ta_t_6 - v.axis_z_tube_axes2_x*tube_M_ta_t_9 -
+            tube_Q_yz*v.tube_q_z;
+        const real tube_M_ta_t_20 = tube_Q_xz*v.tube_q_z - v.axis_x_tube_axes2_y*tube_M_ta_t_3 -
+            v.axis_y_tube_axes2_y*tube_M_ta_t_6 - v.axis_z_tube_axes2_y*tube_M_ta_t_9 -
+            tube_Q_zz*v.tube_q_x;
         const real tube_M_ta_t_21 = tube_M_ta_t_12 - tube_M_ta_t_11 -
-            axis_x_tube_axes2_z*tube_M_ta_t_3 - axis_y_tube_axes2_z*tube_M_ta_t_6 -
-            axis_z_tube_axes2_z*tube_M_ta_t_9;
+            v.axis_x_tube_axes2_z*tube_M_ta_t_3 - v.axis_y_tube_axes2_z*tube_M_ta_t_6 -
+            v.axis_z_tube_axes2_z*tube_M_ta_t_9;
         /* (M_aa) rotational block of M */
-        const real tube_M_aa_t = -axis_x_tube_axes2_x*tube_dalpha_G_m_in_axes2_xx -
-            axis_y_tube_axes2_x*tube_dalpha_G_m_in_axes2_yx -
-            axis_z_tube_axes2_x*tube_dalpha_G_m_in_axes2_zx;
-        const real tube_M_aa_t_2 = -axis_x_tube_axes2_y*tube_dalpha_G_m_in_axes2_xx -
-            axis_y_tube_axes2_y*tube_dalpha_G_m_in_axes2_yx -
-            axis_z_tube_axes2_y*tube_dalpha_G_m_in_axes2_zx;
-        const real tube_M_aa_t_3 = -axis_x_tube_axes2_x*tube_dalpha_G_m_in_axes2_xy -
-            axis_y_tube_axes2_x*tube_dalpha_G_m_in_axes2_yy -
-            axis_z_tube_axes2_x*tube_dalpha_G_m_in_axes2_zy;
-        const real tube_M_aa_t_4 = -axis_x_tube_axes2_y*tube_dalpha_G_m_in_axes2_xy -
-            axis_y_tube_axes2_y*tube_dalpha_G_m_in_axes2_yy -
-            axis_z_tube_axes2_y*tube_dalpha_G_m_in_axes2_zy;
-        const real tube_M_aa_t_5 = -axis_x_tube_axes2_x*tube_dalpha_G_m_in_axes2_xz -
-            axis_y_tube_axes2_x*tube_dalpha_G_m_in_axes2_yz -
-            axis_z_tube_axes2_x*tube_dalpha_G_m_in_axes2_zz;
-        const real tube_M_aa_t_6 = -axis_x_tube_axes2_y*tube_dalpha_G_m_in_axes2_xz -
-            axis_y_tube_axes2_y*tube_dalpha_G_m_in_axes2_yz -
-            axis_z_tube_axes2_y*tube_dalpha_G_m_in_axes2_zz;
-        const real tube_M_aa_t_7 = -axis_x_tube_axes2_z*tube_d_G_m_in_axes2_xx -
-            axis_y_tube_axes2_z*tube_d_G_m_in_axes2_yx -
-            axis_z_tube_axes2_z*tube_d_G_m_in_axes2_zx;
-        const real tube_M_aa_t_8 = -axis_x_tube_axes2_z*tube_d_G_m_in_axes2_xy -
-            axis_y_tube_axes2_z*tube_d_G_m_in_axes2_yy -
-            axis_z_tube_axes2_z*tube_d_G_m_in_axes2_zy;
-        const real tube_M_aa_t_9 = -axis_x_tube_axes2_z*tube_d_G_m_in_axes2_xz -
-            axis_y_tube_axes2_z*tube_d_G_m_in_axes2_yz -
-            axis_z_tube_axes2_z*tube_d_G_m_in_axes2_zz;
-        const real tube_M_aa_t_10 = tube_M_ta_t_19*tube_q_y + tube_d_c_m_xy*tube_q_z -
-            axis_x_tube_axes2_x*tube_M_aa_t - axis_y_tube_axes2_x*tube_M_aa_t_3 -
-            axis_z_tube_axes2_x*tube_M_aa_t_5 - tube_M_ta_t_16*tube_q_z - tube_d_c_m_xz*tube_q_y;
-        const real tube_M_aa_t_11 = tube_M_ta_t_20*tube_q_y + tube_d_c_m_xz*tube_q_x -
-            axis_x_tube_axes2_y*tube_M_aa_t - axis_y_tube_axes2_y*tube_M_aa_t_3 -
-            axis_z_tube_axes2_y*tube_M_aa_t_5 - tube_M_ta_t_17*tube_q_z - tube_d_c_m_xx*tube_q_z;
-        const real tube_M_aa_t_12 = tube_M_ta_t_21*tube_q_y + tube_d_c_m_xx*tube_q_y -
-            axis_x_tube_axes2_z*tube_M_aa_t - axis_y_tube_axes2_z*tube_M_aa_t_3 -
-            axis_z_tube_axes2_z*tube_M_aa_t_5 - tube_M_ta_t_18*tube_q_z - tube_d_c_m_xy*tube_q_x;
-        const real tube_M_aa_t_13 = tube_M_ta_t_14*tube_q_z +
-            tube_q_x*(axis_x_tube_axes2_z*tube_d_c_m_t_2 + axis_y_tube_axes2_z*tube_d_c_m_t_4 +
-            axis_z_tube_axes2_z*tube_d_c_m_t_6) - axis_x_tube_axes2_y*tube_M_aa_t_2 -
-            axis_y_tube_axes2_y*tube_M_aa_t_4 - axis_z_tube_axes2_y*tube_M_aa_t_6 -
-            tube_M_ta_t_20*tube_q_x - tube_d_c_m_yx*tube_q_z;
-        const real tube_M_aa_t_14 = tube_M_ta_t_15*tube_q_z + tube_d_c_m_yx*tube_q_y -
-            axis_x_tube_axes2_z*tube_M_aa_t_2 - axis_y_tube_axes2_z*tube_M_aa_t_4 -
-            axis_z_tube_axes2_z*tube_M_aa_t_6 - tube_M_ta_t_21*tube_q_x -
-            tube_q_x*(axis_x_tube_axes2_y*tube_d_c_m_t_2 + axis_y_tube_axes2_y*tube_d_c_m_t_4 +
-            axis_z_tube_axes2_y*tube_d_c_m_t_6);
-        const real tube_M_aa_t_15 = tube_M_ta_t_18*tube_q_x +
-            tube_q_y*(axis_x_tube_axes2_x*tube_M_aa_t_7 + axis_y_tube_axes2_x*tube_M_aa_t_8 +
-            axis_z_tube_axes2_x*tube_M_aa_t_9) - tube_dalpha_c_m_zz - tube_M_ta_t_15*tube_q_y -
-            tube_q_x*(axis_x_tube_axes2_y*tube_M_aa_t_7 + axis_y_tube_axes2_y*tube_M_aa_t_8 +
-            axis_z_tube_axes2_y*tube_M_aa_t_9);
+        const real tube_M_aa_t = -v.axis_x_tube_axes2_x*tube_dalpha_G_m_in_axes2_xx -
+            v.axis_y_tube_axes2_x*tube_dalpha_G_m_in_axes2_yx -
+            v.axis_z_tube_axes2_x*tube_dalpha_G_m_in_axes2_zx;
+        const real tube_M_aa_t_2 = -v.axis_x_tube_axes2_y*tube_dalpha_G_m_in_axes2_xx -
+            v.axis_y_tube_axes2_y*tube_dalpha_G_m_in_axes2_yx -
+            v.axis_z_tube_axes2_y*tube_dalpha_G_m_in_axes2_zx;
+        const real tube_M_aa_t_3 = -v.axis_x_tube_axes2_x*tube_dalpha_G_m_in_axes2_xy -
+            v.axis_y_tube_axes2_x*tube_dalpha_G_m_in_axes2_yy -
+            v.axis_z_tube_axes2_x*tube_dalpha_G_m_in_axes2_zy;
+        const real tube_M_aa_t_4 = -v.axis_x_tube_axes2_y*tube_dalpha_G_m_in_axes2_xy -
+            v.axis_y_tube_axes2_y*tube_dalpha_G_m_in_axes2_yy -
+            v.axis_z_tube_axes2_y*tube_dalpha_G_m_in_axes2_zy;
+        const real tube_M_aa_t_5 = -v.axis_x_tube_axes2_x*tube_dalpha_G_m_in_axes2_xz -
+            v.axis_y_tube_axes2_x*tube_dalpha_G_m_in_axes2_yz -
+            v.axis_z_tube_axes2_x*tube_dalpha_G_m_in_axes2_zz;
+        const real tube_M_aa_t_6 = -v.axis_x_tube_axes2_y*tube_dalpha_G_m_in_axes2_xz -
+            v.axis_y_tube_axes2_y*tube_dalpha_G_m_in_axes2_yz -
+            v.axis_z_tube_axes2_y*tube_dalpha_G_m_in_axes2_zz;
+        const real tube_M_aa_t_7 = -v.axis_x_tube_axes2_z*tube_d_G_m_in_axes2_xx -
+            v.axis_y_tube_axes2_z*tube_d_G_m_in_axes2_yx -
+            v.axis_z_tube_axes2_z*tube_d_G_m_in_axes2_zx;
+        const real tube_M_aa_t_8 = -v.axis_x_tube_axes2_z*tube_d_G_m_in_axes2_xy -
+            v.axis_y_tube_axes2_z*tube_d_G_m_in_axes2_yy -
+            v.axis_z_tube_axes2_z*tube_d_G_m_in_axes2_zy;
+        const real tube_M_aa_t_9 = -v.axis_x_tube_axes2_z*tube_d_G_m_in_axes2_xz -
+            v.axis_y_tube_axes2_z*tube_d_G_m_in_axes2_yz -
+            v.axis_z_tube_axes2_z*tube_d_G_m_in_axes2_zz;
+        const real tube_M_aa_t_10 = tube_M_ta_t_19*v.tube_q_y + tube_d_c_m_xy*v.tube_q_z -
+            v.axis_x_tube_axes2_x*tube_M_aa_t - v.axis_y_tube_axes2_x*tube_M_aa_t_3 -
+            v.axis_z_tube_axes2_x*tube_M_aa_t_5 - tube_M_ta_t_16*v.tube_q_z -
+            tube_d_c_m_xz*v.tube_q_y;
+        const real tube_M_aa_t_11 = tube_M_ta_t_20*v.tube_q_y + tube_d_c_m_xz*v.tube_q_x -
+            v.axis_x_tube_axes2_y*tube_M_aa_t - v.axis_y_tube_axes2_y*tube_M_aa_t_3 -
+            v.axis_z_tube_axes2_y*tube_M_aa_t_5 - tube_M_ta_t_17*v.tube_q_z -
+            tube_d_c_m_xx*v.tube_q_z;
+        const real tube_M_aa_t_12 = tube_M_ta_t_21*v.tube_q_y + tube_d_c_m_xx*v.tube_q_y -
+            v.axis_x_tube_axes2_z*tube_M_aa_t - v.axis_y_tube_axes2_z*tube_M_aa_t_3 -
+            v.axis_z_tube_axes2_z*tube_M_aa_t_5 - tube_M_ta_t_18*v.tube_q_z -
+            tube_d_c_m_xy*v.tube_q_x;
+        const real tube_M_aa_t_13 = tube_M_ta_t_14*v.tube_q_z +
+            v.tube_q_x*(v.axis_x_tube_axes2_z*tube_d_c_m_t_2 +
+            v.axis_y_tube_axes2_z*tube_d_c_m_t_4 + v.axis_z_tube_axes2_z*tube_d_c_m_t_6) -
+            v.axis_x_tube_axes2_y*tube_M_aa_t_2 - v.axis_y_tube_axes2_y*tube_M_aa_t_4 -
+            v.axis_z_tube_axes2_y*tube_M_aa_t_6 - tube_M_ta_t_20*v.tube_q_x -
+            tube_d_c_m_yx*v.tube_q_z;
+        const real tube_M_aa_t_14 = tube_M_ta_t_15*v.tube_q_z + tube_d_c_m_yx*v.tube_q_y -
+            v.axis_x_tube_axes2_z*tube_M_aa_t_2 - v.axis_y_tube_axes2_z*tube_M_aa_t_4 -
+            v.axis_z_tube_axes2_z*tube_M_aa_t_6 - tube_M_ta_t_21*v.tube_q_x -
+            v.tube_q_x*(v.axis_x_tube_axes2_y*tube_d_c_m_t_2 +
+            v.axis_y_tube_axes2_y*tube_d_c_m_t_4 + v.axis_z_tube_axes2_y*tube_d_c_m_t_6);
+        const real tube_M_aa_t_15 = tube_M_ta_t_18*v.tube_q_x +
+            v.tube_q_y*(v.axis_x_tube_axes2_x*tube_M_aa_t_7 + v.axis_y_tube_axes2_x*tube_M_aa_t_8
+            + v.axis_z_tube_axes2_x*tube_M_aa_t_9) - tube_dalpha_c_m_zz -
+            tube_M_ta_t_15*v.tube_q_y - v.tube_q_x*(v.axis_x_tube_axes2_y*tube_M_aa_t_7 +
+            v.axis_y_tube_axes2_y*tube_M_aa_t_8 + v.axis_z_tube_axes2_y*tube_M_aa_t_9);
         /* (Z_a) rotational part of Z */
-        const real tube_Z_a_t = axis_x_tube_axes2_x*tube_G_m_o_in_axes2_x +
-            axis_y_tube_axes2_x*tube_G_m_o_in_axes2_y + axis_z_tube_axes2_x*tube_G_m_o_in_axes2_z
-            + tube_U_z*tube_q_y - tube_U_y*tube_q_z;
-        const real tube_Z_a_t_2 = axis_x_tube_axes2_y*tube_G_m_o_in_axes2_x +
-            axis_y_tube_axes2_y*tube_G_m_o_in_axes2_y + axis_z_tube_axes2_y*tube_G_m_o_in_axes2_z
-            + tube_U_x*tube_q_z - tube_U_z*tube_q_x;
-        const real tube_Z_a_t_3 = axis_x_tube_axes2_z*tube_G_m_o_in_axes2_x +
-            axis_y_tube_axes2_z*tube_G_m_o_in_axes2_y + axis_z_tube_axes2_z*tube_G_m_o_in_axes2_z
-            + tube_U_y*tube_q_x - tube_U_x*tube_q_y;
-        /* (tube-Hk_a_1) moment of the column's unit force about the platform origin */
-        const real tube_Hk_a_1_x = axis_x_tube_axes2_x*tube_mu_c1_in_axes2_x +
-            axis_y_tube_axes2_x*tube_mu_c1_in_axes2_y + axis_y_tube_axes2_z*tube_q_y +
-            axis_z_tube_axes2_x*tube_mu_c1_in_axes2_z - axis_y_tube_axes2_y*tube_q_z;
-        const real tube_Hk_a_1_y = axis_x_tube_axes2_y*tube_mu_c1_in_axes2_x +
-            axis_y_tube_axes2_x*tube_q_z + axis_y_tube_axes2_y*tube_mu_c1_in_axes2_y +
-            axis_z_tube_axes2_y*tube_mu_c1_in_axes2_z - axis_y_tube_axes2_z*tube_q_x;
-        const real tube_Hk_a_1_z = axis_x_tube_axes2_z*tube_mu_c1_in_axes2_x +
-            axis_y_tube_axes2_y*tube_q_x + axis_y_tube_axes2_z*tube_mu_c1_in_axes2_y +
-            axis_z_tube_axes2_z*tube_mu_c1_in_axes2_z - axis_y_tube_axes2_x*tube_q_y;
+        const real tube_Z_a_t = v.axis_x_tube_axes2_x*tube_G_m_o_in_axes2_x +
+            v.axis_y_tube_axes2_x*tube_G_m_o_in_axes2_y +
+            v.axis_z_tube_axes2_x*tube_G_m_o_in_axes2_z + tube_U_z*v.tube_q_y -
+            tube_U_y*v.tube_q_z;
+        const real tube_Z_a_t_2 = v.axis_x_tube_axes2_y*tube_G_m_o_in_axes2_x +
+            v.axis_y_tube_axes2_y*tube_G_m_o_in_axes2_y +
+            v.axis_z_tube_axes2_y*tube_G_m_o_in_axes2_z + tube_U_x*v.tube_q_z -
+            tube_U_z*v.tube_q_x;
+        const real tube_Z_a_t_3 = v.axis_x_tube_axes2_z*tube_G_m_o_in_axes2_x +
+            v.axis_y_tube_axes2_z*tube_G_m_o_in_axes2_y +
+            v.axis_z_tube_axes2_z*tube_G_m_o_in_axes2_z + tube_U_y*v.tube_q_x -
+            tube_U_x*v.tube_q_y;
         /* (tube-gamma_c1) part of the constraint's second derivative that does not hold the acceleration
            */
-        const real tube_gamma_c1 = tube_rel_o_in_axes2_y - tube_m1_c1_t*tube_nu_1 -
-            tube_m3_c1_t*tube_nu_3;
-        /* (tube-Hk_a_2) moment of the column's unit force about the platform origin */
-        const real tube_Hk_a_2_x = axis_y_tube_axes2_x*tube_mu_c2_in_axes2_y +
-            axis_z_tube_axes2_x*tube_mu_c2_in_axes2_z + axis_z_tube_axes2_z*tube_q_y -
-            axis_x_tube_axes2_x*tube_mu_c2_t - axis_z_tube_axes2_y*tube_q_z;
-        const real tube_Hk_a_2_y = axis_y_tube_axes2_y*tube_mu_c2_in_axes2_y +
-            axis_z_tube_axes2_x*tube_q_z + axis_z_tube_axes2_y*tube_mu_c2_in_axes2_z -
-            axis_x_tube_axes2_y*tube_mu_c2_t - axis_z_tube_axes2_z*tube_q_x;
-        const real tube_Hk_a_2_z = axis_y_tube_axes2_z*tube_mu_c2_in_axes2_y +
-            axis_z_tube_axes2_y*tube_q_x + axis_z_tube_axes2_z*tube_mu_c2_in_axes2_z -
-            axis_x_tube_axes2_z*tube_mu_c2_t - axis_z_tube_axes2_x*tube_q_y;
+        const real tube_gamma_c1 = tube_rel_o_in_axes2_y - v.tube_m1_c1_t*tube_nu_1 -
+            v.tube_m3_c1_t*tube_nu_3;
         /* (tube-gamma_c2) part of the constraint's second derivative that does not hold the acceleration
            */
-        const real tube_gamma_c2 = tube_rel_o_in_axes2_z + tube_m3_c2*tube_nu_3 -
-            tube_m1_c2_t*tube_nu_1;
+        const real tube_gamma_c2 = tube_rel_o_in_axes2_z + v.tube_m3_c2*tube_nu_3 -
+            v.tube_m1_c2_t*tube_nu_1;
         /* (tube-gamma_c3) part of the constraint's second derivative that does not hold the acceleration
            */
-        const real tube_gamma_c3 = inv_tube_size_c3*tube_nu_2 + tube_mu3_c3*tube_nu_3 -
-            tube_mu1_c3_t*tube_nu_1;
+        const real tube_gamma_c3 = v.inv_tube_size_c3*tube_nu_2 + v.tube_mu1_c3*tube_nu_1 -
+            v.tube_mu3_c3_t*tube_nu_3;
         /* (M_tt) translational block of M */
         gather(&terms[0*count + k], add, tube_Q_xx);  /* M_tt_xx_of_legs */
         gather(&terms[1*count + k], add, tube_Q_xy);  /* M_tt_xy */
@@ -3356,45 +4637,46 @@ INLINE void dynamics_legs_tube(const prepared *m, size_t w, size_t leg, size_t l
         gather(&terms[25*count + k], add, tube_Z_a_t_2);  /* Z_a_y_of_legs */
         gather(&terms[26*count + k], add, tube_Z_a_t_3);  /* Z_a_z_of_legs */
         /* (tube-n_c1) unit force of the constraint wrench */
-        o[0*count + k] = axis_y_tube_axes2_x;
-        o[1*count + k] = axis_y_tube_axes2_y;
-        o[2*count + k] = axis_y_tube_axes2_z;
+        o[0*count + k] = v.axis_y_tube_axes2_x;
+        o[1*count + k] = v.axis_y_tube_axes2_y;
+        o[2*count + k] = v.axis_y_tube_axes2_z;
         /* (tube-Hk_a_1) moment of the column's unit force about the platform origin */
-        o[3*count + k] = tube_Hk_a_1_x;
-        o[4*count + k] = tube_Hk_a_1_y;
-        o[5*count + k] = tube_Hk_a_1_z;
+        o[3*count + k] = v.tube_Hk_a_1_x;
+        o[4*count + k] = v.tube_Hk_a_1_y;
+        o[5*count + k] = v.tube_Hk_a_1_z;
         /* (tube-gamma_c1) part of the constraint's second derivative that does not hold the acceleration
            */
         o[6*count + k] = tube_gamma_c1;
         /* (tube-n_c2) unit force of the constraint wrench */
-        o[7*count + k] = axis_z_tube_axes2_x;
-        o[8*count + k] = axis_z_tube_axes2_y;
-        o[9*count + k] = axis_z_tube_axes2_z;
+        o[7*count + k] = v.axis_z_tube_axes2_x;
+        o[8*count + k] = v.axis_z_tube_axes2_y;
+        o[9*count + k] = v.axis_z_tube_axes2_z;
         /* (tube-Hk_a_2) moment of the column's unit force about the platform origin */
-        o[10*count + k] = tube_Hk_a_2_x;
-        o[11*count + k] = tube_Hk_a_2_y;
-        o[12*count + k] = tube_Hk_a_2_z;
+        o[10*count + k] = v.tube_Hk_a_2_x;
+        o[11*count + k] = v.tube_Hk_a_2_y;
+        o[12*count + k] = v.tube_Hk_a_2_z;
         /* (tube-gamma_c2) part of the constraint's second derivative that does not hold the acceleration
            */
         o[13*count + k] = tube_gamma_c2;
         /* (tube-Hk_a_3) moment of the column's unit force about the platform origin */
-        o[14*count + k] = tube_mu_c3_x;
-        o[15*count + k] = tube_mu_c3_y;
-        o[16*count + k] = tube_mu_c3_z;
+        o[14*count + k] = v.tube_mu_c3_x;
+        o[15*count + k] = v.tube_mu_c3_y;
+        o[16*count + k] = v.tube_mu_c3_z;
         /* (tube-gamma_c3) part of the constraint's second derivative that does not hold the acceleration
            */
         o[17*count + k] = tube_gamma_c3;
-        o[19*count + k] = (((axis_y_tube_axes2_x + axis_y_tube_axes2_y) + (axis_y_tube_axes2_z +
-            tube_Hk_a_1_x)) + ((tube_Hk_a_1_y + tube_Hk_a_1_z) + (tube_gamma_c1 +
-            (axis_z_tube_axes2_x + axis_z_tube_axes2_y)))) + (((axis_z_tube_axes2_z +
-            tube_Hk_a_2_x) + (tube_Hk_a_2_y + tube_Hk_a_2_z)) + ((tube_gamma_c2 + tube_mu_c3_x) +
-            (tube_mu_c3_y + (tube_mu_c3_z + tube_gamma_c3))));
-        o[18*count + k] = UNLESS(magnitude(tube_rho2_1) > LEAST_3) + UNLESS(magnitude(tube_rho2_2)
-            > LEAST_3) + UNLESS(magnitude(tube_f_c1_t) > LEAST_4) + UNLESS(magnitude(tube_size_c3)
-            > LEAST_4) + UNLESS(magnitude(tube_w_1_t_13) > LEAST_5) +
-            UNLESS(magnitude(tube_w_1_t_33) > LEAST_4) + UNLESS(magnitude(tube_w_1_t_49) >
-            LEAST_4) + UNLESS(magnitude(tube_w_1_t_63) > LEAST_5) +
-            UNLESS(magnitude(tube_w_1_t_75) > LEAST_5);
+        o[19*count + k] = (((v.axis_y_tube_axes2_x + v.axis_y_tube_axes2_y) +
+            (v.axis_y_tube_axes2_z + v.tube_Hk_a_1_x)) + ((v.tube_Hk_a_1_y + v.tube_Hk_a_1_z) +
+            (tube_gamma_c1 + (v.axis_z_tube_axes2_x + v.axis_z_tube_axes2_y)))) +
+            (((v.axis_z_tube_axes2_z + v.tube_Hk_a_2_x) + (v.tube_Hk_a_2_y + v.tube_Hk_a_2_z)) +
+            ((tube_gamma_c2 + v.tube_mu_c3_x) + (v.tube_mu_c3_y + (v.tube_mu_c3_z +
+            tube_gamma_c3))));
+        o[18*count + k] = UNLESS(magnitude(v.tube_root_1_t) > LEAST_3) +
+            UNLESS(magnitude(v.tube_q_3_t) > LEAST_3) + UNLESS(magnitude(v.tube_f_c1_t) > LEAST_4)
+            + UNLESS(magnitude(v.tube_size_c3) > LEAST_4) + UNLESS(magnitude(v.tube_w_1_t_13) >
+            LEAST_5) + UNLESS(magnitude(v.tube_w_1_t_33) > LEAST_4) +
+            UNLESS(magnitude(v.tube_w_1_t_49) > LEAST_4) + UNLESS(magnitude(v.tube_w_1_t_63) >
+            LEAST_5) + UNLESS(magnitude(v.tube_w_1_t_75) > LEAST_5);
     }
 }
 
@@ -3402,14 +4684,14 @@ INLINE void dynamics_place_tube(size_t w, size_t count, const real *o, size_t fi
     real *constraint_bias, verdict *t)
 {
     for (size_t k = 0; k < w; ++k) {
-        Hk[0*NC*w + k] = o[0*count + first + k];
+        Hk[0*w + k] = o[0*count + first + k];
         Hk[NC*w + k] = o[1*count + first + k];
         Hk[2*NC*w + k] = o[2*count + first + k];
         Hk[3*NC*w + k] = o[3*count + first + k];
         Hk[4*NC*w + k] = o[4*count + first + k];
         Hk[5*NC*w + k] = o[5*count + first + k];
         constraint_bias[0*w + k] = o[6*count + first + k];
-        Hk[(0*NC + 1)*w + k] = o[7*count + first + k];
+        Hk[1*w + k] = o[7*count + first + k];
         Hk[(NC + 1)*w + k] = o[8*count + first + k];
         Hk[(2*NC + 1)*w + k] = o[9*count + first + k];
         Hk[(3*NC + 1)*w + k] = o[10*count + first + k];
@@ -3439,66 +4721,66 @@ INLINE void dynamics_after(const prepared *m, size_t w, const real *s, const rea
         const real M_tt_zz = M_tt_zz_of_legs + m_star;
         /* (M_ta) coupling block of M */
         const real M_ta_xy_of_legs = sums[7*w + k];
-        const real h_star_z = s[20*w + k];
+        const real h_star_z = s[11*w + k];
         const real M_ta_xy = M_ta_xy_of_legs + h_star_z;
         const real M_ta_xz_of_legs = sums[8*w + k];
-        const real h_star_y = s[19*w + k];
+        const real h_star_y = s[10*w + k];
         const real M_ta_xz = M_ta_xz_of_legs - h_star_y;
         const real M_ta_yx_of_legs = sums[9*w + k];
         const real M_ta_yx = M_ta_yx_of_legs - h_star_z;
         const real M_ta_yz_of_legs = sums[11*w + k];
-        const real h_star_x = s[18*w + k];
+        const real h_star_x = s[9*w + k];
         const real M_ta_yz = M_ta_yz_of_legs + h_star_x;
         const real M_ta_zx_of_legs = sums[12*w + k];
         const real M_ta_zx = M_ta_zx_of_legs + h_star_y;
         const real M_ta_zy_of_legs = sums[13*w + k];
         const real M_ta_zy = M_ta_zy_of_legs - h_star_x;
         /* (M_aa) rotational block of M */
-        const real J_star_xx = s[21*w + k];
+        const real J_star_xx = s[12*w + k];
         const real M_aa_xx_of_legs = sums[15*w + k];
         const real M_aa_xx = J_star_xx + M_aa_xx_of_legs;
-        const real J_star_xy = s[22*w + k];
+        const real J_star_xy = s[13*w + k];
         const real M_aa_xy_of_legs = sums[16*w + k];
         const real M_aa_xy = J_star_xy + M_aa_xy_of_legs;
-        const real J_star_xz = s[23*w + k];
+        const real J_star_xz = s[14*w + k];
         const real M_aa_xz_of_legs = sums[17*w + k];
         const real M_aa_xz = J_star_xz + M_aa_xz_of_legs;
-        const real J_star_yy = s[24*w + k];
+        const real J_star_yy = s[15*w + k];
         const real M_aa_yy_of_legs = sums[18*w + k];
         const real M_aa_yy = J_star_yy + M_aa_yy_of_legs;
-        const real J_star_yz = s[25*w + k];
+        const real J_star_yz = s[16*w + k];
         const real M_aa_yz_of_legs = sums[19*w + k];
         const real M_aa_yz = J_star_yz + M_aa_yz_of_legs;
-        const real J_star_zz = s[26*w + k];
+        const real J_star_zz = s[17*w + k];
         const real M_aa_zz_of_legs = sums[20*w + k];
         const real M_aa_zz = J_star_zz + M_aa_zz_of_legs;
         /* (Z_t) translational part of Z */
-        const real Z_p_x = s[27*w + k];
+        const real Z_p_x = s[18*w + k];
         const real Z_t_x_of_legs = sums[21*w + k];
         const real Z_t_x = Z_p_x + Z_t_x_of_legs;
-        const real Z_p_y = s[28*w + k];
+        const real Z_p_y = s[19*w + k];
         const real Z_t_y_of_legs = sums[22*w + k];
         const real Z_t_y = Z_p_y + Z_t_y_of_legs;
-        const real Z_p_z = s[29*w + k];
+        const real Z_p_z = s[20*w + k];
         const real Z_t_z_of_legs = sums[23*w + k];
         const real Z_t_z = Z_p_z + Z_t_z_of_legs;
         /* (Z_a) rotational part of Z */
         const real Z_a_x_of_legs = sums[24*w + k];
-        const real Z_q_x = s[30*w + k];
+        const real Z_q_x = s[21*w + k];
         const real Z_a_x = Z_a_x_of_legs + Z_q_x;
         const real Z_a_y_of_legs = sums[25*w + k];
-        const real Z_q_y = s[31*w + k];
+        const real Z_q_y = s[22*w + k];
         const real Z_a_y = Z_a_y_of_legs + Z_q_y;
         const real Z_a_z_of_legs = sums[26*w + k];
-        const real Z_q_z = s[32*w + k];
+        const real Z_q_z = s[23*w + k];
         const real Z_a_z = Z_a_z_of_legs + Z_q_z;
         /* (M_tt) translational block of M */
-        M[0*NV*w + k] = M_tt_xx;
+        M[0*w + k] = M_tt_xx;
         const real M_tt_xy = sums[1*w + k];
-        M[(0*NV + 1)*w + k] = M_tt_xy;
+        M[1*w + k] = M_tt_xy;
         M[NV*w + k] = M_tt_xy;
         const real M_tt_xz = sums[2*w + k];
-        M[(0*NV + 2)*w + k] = M_tt_xz;
+        M[2*w + k] = M_tt_xz;
         M[2*NV*w + k] = M_tt_xz;
         M[(NV + 1)*w + k] = M_tt_yy;
         const real M_tt_yz = sums[4*w + k];
@@ -3507,11 +4789,11 @@ INLINE void dynamics_after(const prepared *m, size_t w, const real *s, const rea
         M[(2*NV + 2)*w + k] = M_tt_zz;
         /* (M_ta) coupling block of M */
         const real M_ta_xx = sums[6*w + k];
-        M[(0*NV + 3)*w + k] = M_ta_xx;
+        M[3*w + k] = M_ta_xx;
         M[3*NV*w + k] = M_ta_xx;
-        M[(0*NV + 4)*w + k] = M_ta_xy;
+        M[4*w + k] = M_ta_xy;
         M[4*NV*w + k] = M_ta_xy;
-        M[(0*NV + 5)*w + k] = M_ta_xz;
+        M[5*w + k] = M_ta_xz;
         M[5*NV*w + k] = M_ta_xz;
         M[(NV + 3)*w + k] = M_ta_yx;
         M[(3*NV + 1)*w + k] = M_ta_yx;
@@ -3555,22 +4837,19 @@ INLINE void dynamics_after(const prepared *m, size_t w, const real *s, const rea
 INLINE void dynamics_run(const prepared *m, const real *X, const real *V, real *M, real *Z, real
     *H, real *Hk, real *constraint_bias, verdict *t)
 {
-    real s[33] = {0};
-    real sums[27] = {0};
-    real terms_ups[27*LEGS(LEGS_OF_ups)] = {0};
-    real o_ups[8*LEGS(LEGS_OF_ups)] = {0};
-    real terms_tube[27*LEGS(LEGS_OF_tube)] = {0};
-    real o_tube[20*LEGS(LEGS_OF_tube)] = {0};
+    real s[24] = {0}, sums[27] = {0};
+    real terms_ups[27*LEGS(LEGS_OF_ups)] = {0}, o_ups[8*LEGS(LEGS_OF_ups)] = {0};
+    real terms_tube[27*LEGS(LEGS_OF_tube)] = {0}, o_tube[20*LEGS(LEGS_OF_tube)] = {0};
     clear(Hk, NV*NC);
     dynamics_before(m, 1, X, V, s, t);
-    dynamics_legs_ups(m, 1, 0, 1, s, 0, LEGS(LEGS_OF_ups), 0, terms_ups, o_ups);
+    dynamics_legs_ups(m, 1, 0, 1, s, 0, LEGS(LEGS_OF_ups), 0, X, V, terms_ups, o_ups);
+    dynamics_legs_tube(m, 1, 0, 1, s, 0, LEGS(LEGS_OF_tube), 0, X, V, terms_tube, o_tube);
     for (size_t leg = 0; leg < LEGS_OF_ups; ++leg) {
         dynamics_place_ups(1, LEGS(LEGS_OF_ups), o_ups, leg, leg, H, t);
     }
     for (size_t n = 0; n < 27; ++n) {
         sums[n] = total(terms_ups + n*LEGS(LEGS_OF_ups), LEGS_OF_ups);
     }
-    dynamics_legs_tube(m, 1, 0, 1, s, 0, LEGS(LEGS_OF_tube), 0, terms_tube, o_tube);
     for (size_t leg = 0; leg < LEGS_OF_tube; ++leg) {
         dynamics_place_tube(1, LEGS(LEGS_OF_tube), o_tube, leg, Hk, constraint_bias, t);
     }
@@ -3583,19 +4862,18 @@ INLINE void dynamics_run(const prepared *m, const real *X, const real *V, real *
 INLINE void dynamics_run_lanes(const prepared *m, const real *X, const real *V, real *M, real *Z,
     real *H, real *Hk, real *constraint_bias, verdict *t)
 {
-    real s[33*LANES];
-    real sums[27*LANES];
+    real s[24*LANES], sums[27*LANES];
     real o_ups[8*LANES];
     real o_tube[20*LANES];
     clear(Hk, NV*NC*LANES);
     dynamics_before(m, LANES, X, V, s, t);
     clear(sums, 27*LANES);
     for (size_t leg = 0; leg < LEGS_OF_ups; ++leg) {
-        dynamics_legs_ups(m, LANES, leg, 0, s, 1, LANES, 1, sums, o_ups);
+        dynamics_legs_ups(m, LANES, leg, 0, s, 1, LANES, 1, X, V, sums, o_ups);
         dynamics_place_ups(LANES, LANES, o_ups, leg, 0, H, t);
     }
     for (size_t leg = 0; leg < LEGS_OF_tube; ++leg) {
-        dynamics_legs_tube(m, LANES, leg, 0, s, 1, LANES, 1, sums, o_tube);
+        dynamics_legs_tube(m, LANES, leg, 0, s, 1, LANES, 1, X, V, sums, o_tube);
         dynamics_place_tube(LANES, LANES, o_tube, 0, Hk, constraint_bias, t);
     }
     dynamics_after(m, LANES, s, sums, M, Z, t);
@@ -3605,259 +4883,120 @@ INLINE void dynamics_run_lanes(const prepared *m, const real *X, const real *V, 
 INLINE void M_before(const prepared *m, size_t w, const real *X, real *s, verdict *t)
 {
     for (size_t k = 0; k < w; ++k) {
-        /* X: named entries */
-        const real X_0 = X[0*w + k];
-        const real t_x = X_0;
-        const real X_1 = X[1*w + k];
-        const real t_y = X_1;
-        const real X_2 = X[2*w + k];
-        const real t_z = X_2;
-        const real X_3 = X[3*w + k];
-        const real X_4 = X[4*w + k];
-        const real X_5 = X[5*w + k];
-        const real X_6 = X[6*w + k];
-        const real quaternion_norm2 = X_3*X_3 + X_4*X_4 + X_5*X_5 + X_6*X_6;
-        const real quaternion_scale = 2/quaternion_norm2;
-        const real quaternion_sx = X_3*quaternion_scale;
-        const real quaternion_sy = X_4*quaternion_scale;
-        const real quaternion_sz = X_5*quaternion_scale;
-        const real quaternion_wx = X_6*quaternion_sx;
-        const real quaternion_wy = X_6*quaternion_sy;
-        const real quaternion_wz = X_6*quaternion_sz;
-        const real quaternion_xx = X_3*quaternion_sx;
-        const real quaternion_xy = X_3*quaternion_sy;
-        const real quaternion_xz = X_3*quaternion_sz;
-        const real quaternion_yy = X_4*quaternion_sy;
-        const real quaternion_yz = X_4*quaternion_sz;
-        const real quaternion_zz = X_5*quaternion_sz;
-        const real R_xx = 1 - quaternion_yy - quaternion_zz;
-        const real R_xy = quaternion_xy - quaternion_wz;
-        const real R_xz = quaternion_wy + quaternion_xz;
-        const real R_yx = quaternion_wz + quaternion_xy;
-        const real R_yy = 1 - quaternion_xx - quaternion_zz;
-        const real R_yz = quaternion_yz - quaternion_wx;
-        const real R_zx = quaternion_xz - quaternion_wy;
-        const real R_zy = quaternion_wx + quaternion_yz;
-        const real R_zz = 1 - quaternion_xx - quaternion_yy;
-        /* (h_star) first moment about the platform origin */
-        const real h_star_in_platform_x = m->h_star_in_platform_x;
-        const real h_star_in_platform_y = m->h_star_in_platform_y;
-        const real h_star_in_platform_z = m->h_star_in_platform_z;
-        const real h_star_x = R_xx*h_star_in_platform_x + R_xy*h_star_in_platform_y +
-            R_xz*h_star_in_platform_z;
-        const real h_star_y = R_yx*h_star_in_platform_x + R_yy*h_star_in_platform_y +
-            R_yz*h_star_in_platform_z;
-        const real h_star_z = R_zx*h_star_in_platform_x + R_zy*h_star_in_platform_y +
-            R_zz*h_star_in_platform_z;
-        /* (J_star) inertia tensor about the platform origin */
-        const real J_star_in_platform_xy = m->J_star_in_platform_xy;
-        const real J_star_in_platform_yz = m->J_star_in_platform_yz;
-        const real J_star_t_12 = m->J_star_t_12;
-        const real J_star_t = J_star_in_platform_xy*R_xx + J_star_in_platform_yz*R_xz -
-            J_star_t_12*R_xy;
-        const real J_star_t_2 = J_star_in_platform_xy*R_yx + J_star_in_platform_yz*R_yz -
-            J_star_t_12*R_yy;
-        const real J_star_t_3 = J_star_in_platform_xy*R_zx + J_star_in_platform_yz*R_zz -
-            J_star_t_12*R_zy;
-        const real J_star_in_platform_xz = m->J_star_in_platform_xz;
-        const real J_star_t_14 = m->J_star_t_14;
-        const real J_star_t_4 = J_star_t_14*R_xz - J_star_in_platform_xz*R_xx;
-        const real J_star_t_5 = J_star_t_14*R_yz - J_star_in_platform_xz*R_yx;
-        const real J_star_t_6 = J_star_t_14*R_zz - J_star_in_platform_xz*R_zx;
-        const real J_star_t_7 = J_star_t*R_xy - J_star_t_4*R_xz;
-        const real J_star_in_platform_xx = m->J_star_in_platform_xx;
-        const real J_star_xx = J_star_in_platform_xx + 2*J_star_t_7;
-        const real J_star_xy = J_star_t*R_yy + J_star_t_2*R_xy - J_star_t_4*R_yz -
-            J_star_t_5*R_xz;
-        const real J_star_xz = J_star_t*R_zy + J_star_t_3*R_xy - J_star_t_4*R_zz -
-            J_star_t_6*R_xz;
-        const real J_star_t_8 = J_star_t_2*R_yy - J_star_t_5*R_yz;
-        const real J_star_yy = J_star_in_platform_xx + 2*J_star_t_8;
-        const real J_star_yz = J_star_t_2*R_zy + J_star_t_3*R_yy - J_star_t_5*R_zz -
-            J_star_t_6*R_yz;
-        const real J_star_t_9 = J_star_t_3*R_zy - J_star_t_6*R_zz;
-        const real J_star_zz = J_star_in_platform_xx + 2*J_star_t_9;
-        s[0*w + k] = t_x;
-        s[1*w + k] = t_y;
-        s[2*w + k] = t_z;
-        s[3*w + k] = R_xx;
-        s[4*w + k] = R_xy;
-        s[5*w + k] = R_xz;
-        s[6*w + k] = R_yx;
-        s[7*w + k] = R_yy;
-        s[8*w + k] = R_yz;
-        s[9*w + k] = R_zx;
-        s[10*w + k] = R_zy;
-        s[11*w + k] = R_zz;
-        s[12*w + k] = h_star_x;
-        s[13*w + k] = h_star_y;
-        s[14*w + k] = h_star_z;
-        s[15*w + k] = J_star_xx;
-        s[16*w + k] = J_star_xy;
-        s[17*w + k] = J_star_xz;
-        s[18*w + k] = J_star_yy;
-        s[19*w + k] = J_star_yz;
-        s[20*w + k] = J_star_zz;
-        t->invalid[k] += UNLESS(is_finite(quaternion_scale)) + UNLESS(quaternion_scale > 0);
+        values v;
+        stage_X(m, w, k, X, &v);
+        stage_M_dynamics(m, &v);
+        s[0*w + k] = v.R_xx;
+        s[1*w + k] = v.R_xy;
+        s[2*w + k] = v.R_xz;
+        s[3*w + k] = v.R_yx;
+        s[4*w + k] = v.R_yy;
+        s[5*w + k] = v.R_yz;
+        s[6*w + k] = v.R_zx;
+        s[7*w + k] = v.R_zy;
+        s[8*w + k] = v.R_zz;
+        s[9*w + k] = v.h_star_x;
+        s[10*w + k] = v.h_star_y;
+        s[11*w + k] = v.h_star_z;
+        s[12*w + k] = v.J_star_xx;
+        s[13*w + k] = v.J_star_xy;
+        s[14*w + k] = v.J_star_xz;
+        s[15*w + k] = v.J_star_yy;
+        s[16*w + k] = v.J_star_yz;
+        s[17*w + k] = v.J_star_zz;
+        t->invalid[k] += UNLESS(is_finite(v.quaternion_scale)) + UNLESS(v.quaternion_scale > 0);
     }
 }
 
 INLINE void M_legs_ups(const prepared *m, size_t w, size_t leg, size_t legs, const real *s, size_t
-    states, size_t count, int add, real *terms, real *o)
+    states, size_t count, int add, const real *X, real *terms, real *o)
 {
     for (size_t k = 0; k < count; ++k) {
         const size_t i = leg + legs*k;
         const size_t j = states*k;
-        /* (ups-S) from the base point to the connection point */
-        const real R_xx = s[3*w + j];
-        const real R_xy = s[4*w + j];
-        const real R_xz = s[5*w + j];
-        const real ups_platform_point_x = m->ups_platform_point_x[i];
-        const real ups_platform_point_y = m->ups_platform_point_y[i];
-        const real ups_platform_point_z = m->ups_platform_point_z[i];
-        const real ups_q_x = R_xx*ups_platform_point_x + R_xy*ups_platform_point_y +
-            R_xz*ups_platform_point_z;
-        const real R_yx = s[6*w + j];
-        const real R_yy = s[7*w + j];
-        const real R_yz = s[8*w + j];
-        const real ups_q_y = R_yx*ups_platform_point_x + R_yy*ups_platform_point_y +
-            R_yz*ups_platform_point_z;
-        const real R_zx = s[9*w + j];
-        const real R_zy = s[10*w + j];
-        const real R_zz = s[11*w + j];
-        const real ups_q_z = R_zx*ups_platform_point_x + R_zy*ups_platform_point_y +
-            R_zz*ups_platform_point_z;
-        const real t_x = s[0*w + j];
-        const real ups_base_point_x = m->ups_base_point_x[i];
-        const real ups_S_x = t_x + ups_q_x - ups_base_point_x;
-        const real t_y = s[1*w + j];
-        const real ups_base_point_y = m->ups_base_point_y[i];
-        const real ups_S_y = t_y + ups_q_y - ups_base_point_y;
-        const real t_z = s[2*w + j];
-        const real ups_base_point_z = m->ups_base_point_z[i];
-        const real ups_S_z = t_z + ups_q_z - ups_base_point_z;
-        /* (ups-px_1) component along the reference direction */
-        const real ups_base_frame_xx = m->ups_base_frame_xx[i];
-        const real ups_base_frame_yx = m->ups_base_frame_yx[i];
-        const real ups_base_frame_zx = m->ups_base_frame_zx[i];
-        const real ups_px_1 = ups_S_x*ups_base_frame_xx + ups_S_y*ups_base_frame_yx +
-            ups_S_z*ups_base_frame_zx;
-        /* (ups-py_1) component across the reference direction */
-        const real ups_base_frame_xy = m->ups_base_frame_xy[i];
-        const real ups_base_frame_yy = m->ups_base_frame_yy[i];
-        const real ups_base_frame_zy = m->ups_base_frame_zy[i];
-        const real ups_py_1 = ups_S_x*ups_base_frame_xy + ups_S_y*ups_base_frame_yy +
-            ups_S_z*ups_base_frame_zy;
-        /* (ups-rho2_1) squared amplitude */
-        const real ups_rho2_1 = ups_px_1*ups_px_1 + ups_py_1*ups_py_1;
-        /* (ups-root_1) amplitude, with the sign of the branch */
-        const real ups_branch_1 = m->ups_branch_1[i];
-        const real ups_root_1 = ups_branch_1*root(ups_rho2_1);
-        /* (ups-c_1) cosine of the angle of joint 1 from its reference direction */
-        const real inv_ups_root_1 = 1/ups_root_1;
-        const real ups_c_1 = -inv_ups_root_1*ups_py_1;
-        /* (ups-s_1) sine of the angle of joint 1 from its reference direction */
-        const real ups_s_1 = inv_ups_root_1*ups_px_1;
-        /* (ups-xi_1) the vector from joint 1 to the connection point, resolved along link 1 */
-        const real ups_base_frame_xz = m->ups_base_frame_xz[i];
-        const real ups_base_frame_yz = m->ups_base_frame_yz[i];
-        const real ups_base_frame_zz = m->ups_base_frame_zz[i];
-        const real ups_xi_1_in_axes1_z = ups_S_x*ups_base_frame_xz + ups_S_y*ups_base_frame_yz +
-            ups_S_z*ups_base_frame_zz;
-        /* (ups-rho2_2) squared amplitude */
-        const real ups_rho2_2 = ups_rho2_1 + ups_xi_1_in_axes1_z*ups_xi_1_in_axes1_z;
-        /* (ups-root_2) amplitude, with the sign of the branch */
-        const real ups_branch_2 = m->ups_branch_2[i];
-        const real ups_root_2 = ups_branch_2*root(ups_rho2_2);
-        /* (ups-s_2) sine of the angle of joint 2 from its reference direction */
-        const real inv_ups_root_2 = 1/ups_root_2;
-        const real ups_s_2 = inv_ups_root_2*ups_xi_1_in_axes1_z;
-        /* (ups-w_3) reciprocal vector 3 */
-        const real ups_w_3_x = inv_ups_root_2*ups_S_x;
-        const real ups_w_3_y = inv_ups_root_2*ups_S_y;
-        const real ups_w_3_z = inv_ups_root_2*ups_S_z;
+        values_ups v;
+        stage_ups_X(m, w, i, j, s, X, &v);
         /* (ups-d_alpha_1) coefficient of the acceleration in: angular acceleration of link 1 */
-        const real ups_d_alpha_1_in_axes2_xz = inv_ups_root_1*ups_s_2;
+        const real ups_e_1_in_axes2_x = v.ups_S_in_turn1_z*v.ups_w_2_in_axes2_y;
+        const real ups_d_alpha_1_in_axes2_xz = v.inv_ups_root_1*ups_e_1_in_axes2_x;
         /* (ups-d_phi_3) coefficient of the acceleration in: inertia force of link 3 from its turning
            about its reference point */
         const real ups_h_3_in_spec2_z = m->ups_h_3_in_spec2_z[i];
-        const real ups_d_phi_3_in_axes2_xy = inv_ups_root_2*ups_h_3_in_spec2_z;
+        const real ups_d_phi_3_in_axes2_xy = ups_h_3_in_spec2_z*v.ups_w_2_in_axes2_y;
         const real ups_h_3_in_spec2_x = m->ups_h_3_in_spec2_x[i];
-        const real ups_d_phi_3_in_axes2_yy = inv_ups_root_2*ups_h_3_in_spec2_x;
+        const real ups_d_phi_3_in_axes2_yy = ups_h_3_in_spec2_x*v.ups_w_2_in_axes2_y;
         /* (ups-d_c) coefficient of the acceleration in: leg force on the platform without actuation and
            without the mass at the connection point */
         const real ups_h_3_in_spec2_y = m->ups_h_3_in_spec2_y[i];
-        const real ups_d_c_in_axes2_xz = inv_ups_root_2*ups_h_3_in_spec2_y;
+        const real ups_d_c_in_axes2_xz = ups_h_3_in_spec2_y*v.ups_w_2_in_axes2_y;
         const real ups_J_group_2_in_axes2_zz = m->ups_J_group_2_in_axes2_zz[i];
         const real ups_d_c_in_axes2_yy = -ups_d_phi_3_in_axes2_yy -
-            inv_ups_root_2*(ups_h_3_in_spec2_x + inv_ups_root_2*ups_J_group_2_in_axes2_zz);
+            v.ups_w_2_in_axes2_y*(ups_h_3_in_spec2_x +
+            ups_J_group_2_in_axes2_zz*v.ups_w_2_in_axes2_y);
         const real ups_J_group_2_in_axes2_xz = m->ups_J_group_2_in_axes2_xz[i];
         const real ups_J_group_2_in_axes2_yz = m->ups_J_group_2_in_axes2_yz[i];
         const real ups_d_c_in_axes2_yz = ups_d_alpha_1_in_axes2_xz*ups_h_3_in_spec2_y -
-            inv_ups_root_2*(ups_J_group_2_in_axes2_xz*ups_d_alpha_1_in_axes2_xz -
-            inv_ups_root_2*ups_J_group_2_in_axes2_yz);
+            v.ups_w_2_in_axes2_y*(ups_J_group_2_in_axes2_xz*ups_d_alpha_1_in_axes2_xz -
+            ups_J_group_2_in_axes2_yz*v.ups_w_2_in_axes2_y);
         const real ups_J_group_2_in_axes2_xx = m->ups_J_group_2_in_axes2_xx[i];
         const real ups_J_group_2_in_axes2_xy = m->ups_J_group_2_in_axes2_xy[i];
         const real ups_J_group_2_in_axes2_yy = m->ups_J_group_2_in_axes2_yy[i];
         const real ups_d_c_in_axes2_zz = ups_d_alpha_1_in_axes2_xz*ups_h_3_in_spec2_z -
             ups_d_phi_3_in_axes2_yy -
-            inv_ups_root_1*(ups_s_2*(ups_J_group_2_in_axes2_xx*ups_d_alpha_1_in_axes2_xz -
-            ups_h_3_in_spec2_z - inv_ups_root_2*ups_J_group_2_in_axes2_xy) -
-            inv_ups_root_2*ups_root_1*(ups_J_group_2_in_axes2_xy*ups_d_alpha_1_in_axes2_xz -
-            ups_h_3_in_spec2_x - inv_ups_root_2*ups_J_group_2_in_axes2_yy));
+            v.inv_ups_root_1*(ups_e_1_in_axes2_x*(ups_J_group_2_in_axes2_xx*ups_d_alpha_1_in_axes2_xz
+            - ups_h_3_in_spec2_z - ups_J_group_2_in_axes2_xy*v.ups_w_2_in_axes2_y) -
+            v.ups_root_1*v.ups_w_2_in_axes2_y*(ups_J_group_2_in_axes2_xy*ups_d_alpha_1_in_axes2_xz
+            - ups_h_3_in_spec2_x - ups_J_group_2_in_axes2_yy*v.ups_w_2_in_axes2_y));
         /* (ups-Q) inertia of the leg at the connection point, without the mass gathered there */
-        const real axis_z_ups_axes2_x = ups_base_frame_xx*ups_c_1 + ups_base_frame_xy*ups_s_1;
-        const real axis_z_ups_axes2_y = ups_base_frame_yx*ups_c_1 + ups_base_frame_yy*ups_s_1;
-        const real axis_z_ups_axes2_z = ups_base_frame_zx*ups_c_1 + ups_base_frame_zy*ups_s_1;
-        const real axis_y_ups_axes2_x = axis_z_ups_axes2_y*ups_w_3_z -
-            axis_z_ups_axes2_z*ups_w_3_y;
-        const real axis_y_ups_axes2_y = axis_z_ups_axes2_z*ups_w_3_x -
-            axis_z_ups_axes2_x*ups_w_3_z;
-        const real axis_y_ups_axes2_z = axis_z_ups_axes2_x*ups_w_3_y -
-            axis_z_ups_axes2_y*ups_w_3_x;
+        const real axis_y_ups_axes2_x = v.axis_z_ups_axes2_y*v.ups_w_3_z -
+            v.axis_z_ups_axes2_z*v.ups_w_3_y;
+        const real axis_y_ups_axes2_y = v.axis_z_ups_axes2_z*v.ups_w_3_x -
+            v.axis_z_ups_axes2_x*v.ups_w_3_z;
+        const real axis_y_ups_axes2_z = v.axis_z_ups_axes2_x*v.ups_w_3_y -
+            v.axis_z_ups_axes2_y*v.ups_w_3_x;
         const real ups_Q_t = R(0.5)*ups_d_c_in_axes2_yy;
         const real ups_Q_t_2 = R(0.5)*ups_d_c_in_axes2_zz;
-        const real ups_Q_t_3 = ups_d_phi_3_in_axes2_xy*ups_w_3_x - axis_y_ups_axes2_x*ups_Q_t -
-            axis_z_ups_axes2_x*ups_d_c_in_axes2_yz;
-        const real ups_Q_t_4 = ups_d_phi_3_in_axes2_xy*ups_w_3_y - axis_y_ups_axes2_y*ups_Q_t -
-            axis_z_ups_axes2_y*ups_d_c_in_axes2_yz;
-        const real ups_Q_t_5 = axis_y_ups_axes2_z*ups_Q_t + axis_z_ups_axes2_z*ups_d_c_in_axes2_yz
-            - ups_d_phi_3_in_axes2_xy*ups_w_3_z;
-        const real ups_Q_t_6 = axis_z_ups_axes2_x*ups_Q_t_2 + ups_d_c_in_axes2_xz*ups_w_3_x;
-        const real ups_Q_t_7 = axis_z_ups_axes2_y*ups_Q_t_2 + ups_d_c_in_axes2_xz*ups_w_3_y;
-        const real ups_Q_t_8 = axis_z_ups_axes2_z*ups_Q_t_2 + ups_d_c_in_axes2_xz*ups_w_3_z;
-        const real ups_Q_t_9 = axis_z_ups_axes2_x*ups_Q_t_6 - axis_y_ups_axes2_x*ups_Q_t_3;
+        const real ups_Q_t_3 = ups_d_phi_3_in_axes2_xy*v.ups_w_3_x - axis_y_ups_axes2_x*ups_Q_t -
+            v.axis_z_ups_axes2_x*ups_d_c_in_axes2_yz;
+        const real ups_Q_t_4 = ups_d_phi_3_in_axes2_xy*v.ups_w_3_y - axis_y_ups_axes2_y*ups_Q_t -
+            v.axis_z_ups_axes2_y*ups_d_c_in_axes2_yz;
+        const real ups_Q_t_5 = axis_y_ups_axes2_z*ups_Q_t +
+            v.axis_z_ups_axes2_z*ups_d_c_in_axes2_yz - ups_d_phi_3_in_axes2_xy*v.ups_w_3_z;
+        const real ups_Q_t_6 = v.axis_z_ups_axes2_x*ups_Q_t_2 + ups_d_c_in_axes2_xz*v.ups_w_3_x;
+        const real ups_Q_t_7 = v.axis_z_ups_axes2_y*ups_Q_t_2 + ups_d_c_in_axes2_xz*v.ups_w_3_y;
+        const real ups_Q_t_8 = v.axis_z_ups_axes2_z*ups_Q_t_2 + ups_d_c_in_axes2_xz*v.ups_w_3_z;
+        const real ups_Q_t_9 = v.axis_z_ups_axes2_x*ups_Q_t_6 - axis_y_ups_axes2_x*ups_Q_t_3;
         const real ups_Q_xx = -2*ups_Q_t_9;
         const real ups_Q_xy = axis_y_ups_axes2_x*ups_Q_t_4 + axis_y_ups_axes2_y*ups_Q_t_3 -
-            axis_z_ups_axes2_x*ups_Q_t_7 - axis_z_ups_axes2_y*ups_Q_t_6;
+            v.axis_z_ups_axes2_x*ups_Q_t_7 - v.axis_z_ups_axes2_y*ups_Q_t_6;
         const real ups_Q_xz = axis_y_ups_axes2_z*ups_Q_t_3 - axis_y_ups_axes2_x*ups_Q_t_5 -
-            axis_z_ups_axes2_x*ups_Q_t_8 - axis_z_ups_axes2_z*ups_Q_t_6;
-        const real ups_Q_t_10 = axis_z_ups_axes2_y*ups_Q_t_7 - axis_y_ups_axes2_y*ups_Q_t_4;
+            v.axis_z_ups_axes2_x*ups_Q_t_8 - v.axis_z_ups_axes2_z*ups_Q_t_6;
+        const real ups_Q_t_10 = v.axis_z_ups_axes2_y*ups_Q_t_7 - axis_y_ups_axes2_y*ups_Q_t_4;
         const real ups_Q_yy = -2*ups_Q_t_10;
         const real ups_Q_yz = axis_y_ups_axes2_z*ups_Q_t_4 - axis_y_ups_axes2_y*ups_Q_t_5 -
-            axis_z_ups_axes2_y*ups_Q_t_8 - axis_z_ups_axes2_z*ups_Q_t_7;
-        const real ups_Q_t_11 = axis_y_ups_axes2_z*ups_Q_t_5 + axis_z_ups_axes2_z*ups_Q_t_8;
+            v.axis_z_ups_axes2_y*ups_Q_t_8 - v.axis_z_ups_axes2_z*ups_Q_t_7;
+        const real ups_Q_t_11 = axis_y_ups_axes2_z*ups_Q_t_5 + v.axis_z_ups_axes2_z*ups_Q_t_8;
         const real ups_Q_zz = -2*ups_Q_t_11;
         /* (M_ta) coupling block of M */
-        const real ups_M_ta_t = ups_Q_xy*ups_q_z;
-        const real ups_M_ta_t_2 = ups_Q_xz*ups_q_y;
+        const real ups_M_ta_t = ups_Q_xy*v.ups_q_z;
+        const real ups_M_ta_t_2 = ups_Q_xz*v.ups_q_y;
         const real ups_M_ta_t_3 = ups_M_ta_t_2 - ups_M_ta_t;
-        const real ups_M_ta_t_4 = ups_Q_xx*ups_q_z - ups_Q_xz*ups_q_x;
-        const real ups_M_ta_t_5 = ups_Q_xy*ups_q_x - ups_Q_xx*ups_q_y;
-        const real ups_M_ta_t_6 = ups_Q_yz*ups_q_y - ups_Q_yy*ups_q_z;
-        const real ups_M_ta_t_7 = ups_Q_yz*ups_q_x;
+        const real ups_M_ta_t_4 = ups_Q_xx*v.ups_q_z - ups_Q_xz*v.ups_q_x;
+        const real ups_M_ta_t_5 = ups_Q_xy*v.ups_q_x - ups_Q_xx*v.ups_q_y;
+        const real ups_M_ta_t_6 = ups_Q_yz*v.ups_q_y - ups_Q_yy*v.ups_q_z;
+        const real ups_M_ta_t_7 = ups_Q_yz*v.ups_q_x;
         const real ups_M_ta_t_8 = ups_M_ta_t - ups_M_ta_t_7;
-        const real ups_M_ta_t_9 = ups_Q_yy*ups_q_x - ups_Q_xy*ups_q_y;
-        const real ups_M_ta_t_10 = ups_Q_zz*ups_q_y - ups_Q_yz*ups_q_z;
-        const real ups_M_ta_t_11 = ups_Q_xz*ups_q_z - ups_Q_zz*ups_q_x;
+        const real ups_M_ta_t_9 = ups_Q_yy*v.ups_q_x - ups_Q_xy*v.ups_q_y;
+        const real ups_M_ta_t_10 = ups_Q_zz*v.ups_q_y - ups_Q_yz*v.ups_q_z;
+        const real ups_M_ta_t_11 = ups_Q_xz*v.ups_q_z - ups_Q_zz*v.ups_q_x;
         const real ups_M_ta_t_12 = ups_M_ta_t_7 - ups_M_ta_t_2;
         /* (M_aa) rotational block of M */
-        const real ups_M_aa_t = ups_M_ta_t_10*ups_q_y - ups_M_ta_t_6*ups_q_z;
-        const real ups_M_aa_t_2 = ups_M_ta_t_11*ups_q_y - ups_M_ta_t_8*ups_q_z;
-        const real ups_M_aa_t_3 = ups_M_ta_t_12*ups_q_y - ups_M_ta_t_9*ups_q_z;
-        const real ups_M_aa_t_4 = ups_M_ta_t_4*ups_q_z - ups_M_ta_t_11*ups_q_x;
-        const real ups_M_aa_t_5 = ups_M_ta_t_5*ups_q_z - ups_M_ta_t_12*ups_q_x;
-        const real ups_M_aa_t_6 = ups_M_ta_t_9*ups_q_x - ups_M_ta_t_5*ups_q_y;
+        const real ups_M_aa_t = ups_M_ta_t_10*v.ups_q_y - ups_M_ta_t_6*v.ups_q_z;
+        const real ups_M_aa_t_2 = ups_M_ta_t_11*v.ups_q_y - ups_M_ta_t_8*v.ups_q_z;
+        const real ups_M_aa_t_3 = ups_M_ta_t_12*v.ups_q_y - ups_M_ta_t_9*v.ups_q_z;
+        const real ups_M_aa_t_4 = ups_M_ta_t_4*v.ups_q_z - ups_M_ta_t_11*v.ups_q_x;
+        const real ups_M_aa_t_5 = ups_M_ta_t_5*v.ups_q_z - ups_M_ta_t_12*v.ups_q_x;
+        const real ups_M_aa_t_6 = ups_M_ta_t_9*v.ups_q_x - ups_M_ta_t_5*v.ups_q_y;
         /* (M_tt) translational block of M */
         gather(&terms[0*count + k], add, ups_Q_xx);  /* M_tt_xx_of_legs */
         gather(&terms[1*count + k], add, ups_Q_xy);  /* M_tt_xy */
@@ -3882,9 +5021,9 @@ INLINE void M_legs_ups(const prepared *m, size_t w, size_t leg, size_t legs, con
         gather(&terms[18*count + k], add, ups_M_aa_t_4);  /* M_aa_yy_of_legs */
         gather(&terms[19*count + k], add, ups_M_aa_t_5);  /* M_aa_yz_of_legs */
         gather(&terms[20*count + k], add, ups_M_aa_t_6);  /* M_aa_zz_of_legs */
-        o[0*count + k] = UNLESS(magnitude(ups_rho2_1) > LEAST_1) + UNLESS(magnitude(ups_rho2_2) >
-            LEAST_1) + UNLESS(magnitude(ups_root_1) > LEAST_2) + UNLESS(magnitude(ups_root_2) >
-            LEAST_2);
+        o[0*count + k] = UNLESS(magnitude(v.ups_root_1_t) > LEAST_1) +
+            UNLESS(magnitude(v.ups_q_3_t) > LEAST_1) + UNLESS(magnitude(v.ups_root_1) > LEAST_2) +
+            UNLESS(magnitude(v.ups_q_3) > LEAST_2);
     }
 }
 
@@ -3896,186 +5035,79 @@ INLINE void M_place_ups(size_t w, size_t count, const real *o, size_t first, ver
 }
 
 INLINE void M_legs_tube(const prepared *m, size_t w, size_t leg, size_t legs, const real *s,
-    size_t states, size_t count, int add, real *terms, real *o)
+    size_t states, size_t count, int add, const real *X, real *terms, real *o)
 {
     for (size_t k = 0; k < count; ++k) {
         const size_t i = leg + legs*k;
         const size_t j = states*k;
-        /* (tube-S) from the base point to the connection point */
-        const real R_xx = s[3*w + j];
-        const real R_xy = s[4*w + j];
-        const real R_xz = s[5*w + j];
-        const real tube_platform_point_x = m->tube_platform_point_x[i];
-        const real tube_platform_point_y = m->tube_platform_point_y[i];
-        const real tube_platform_point_z = m->tube_platform_point_z[i];
-        const real tube_q_x = R_xx*tube_platform_point_x + R_xy*tube_platform_point_y +
-            R_xz*tube_platform_point_z;
-        const real R_yx = s[6*w + j];
-        const real R_yy = s[7*w + j];
-        const real R_yz = s[8*w + j];
-        const real tube_q_y = R_yx*tube_platform_point_x + R_yy*tube_platform_point_y +
-            R_yz*tube_platform_point_z;
-        const real R_zx = s[9*w + j];
-        const real R_zy = s[10*w + j];
-        const real R_zz = s[11*w + j];
-        const real tube_q_z = R_zx*tube_platform_point_x + R_zy*tube_platform_point_y +
-            R_zz*tube_platform_point_z;
-        const real t_x = s[0*w + j];
-        const real tube_base_point_x = m->tube_base_point_x[i];
-        const real tube_S_x = t_x + tube_q_x - tube_base_point_x;
-        const real t_y = s[1*w + j];
-        const real tube_base_point_y = m->tube_base_point_y[i];
-        const real tube_S_y = t_y + tube_q_y - tube_base_point_y;
-        const real t_z = s[2*w + j];
-        const real tube_base_point_z = m->tube_base_point_z[i];
-        const real tube_S_z = t_z + tube_q_z - tube_base_point_z;
-        /* (tube-px_1) component along the reference direction */
-        const real tube_base_frame_xx = m->tube_base_frame_xx[i];
-        const real tube_base_frame_yx = m->tube_base_frame_yx[i];
-        const real tube_base_frame_zx = m->tube_base_frame_zx[i];
-        const real tube_px_1 = tube_S_x*tube_base_frame_xx + tube_S_y*tube_base_frame_yx +
-            tube_S_z*tube_base_frame_zx;
-        /* (tube-py_1) component across the reference direction */
-        const real tube_base_frame_xy = m->tube_base_frame_xy[i];
-        const real tube_base_frame_yy = m->tube_base_frame_yy[i];
-        const real tube_base_frame_zy = m->tube_base_frame_zy[i];
-        const real tube_py_1 = tube_S_x*tube_base_frame_xy + tube_S_y*tube_base_frame_yy +
-            tube_S_z*tube_base_frame_zy;
-        /* (tube-rho2_1) squared amplitude */
-        const real tube_rho2_1 = tube_px_1*tube_px_1 + tube_py_1*tube_py_1;
-        /* (tube-root_1) amplitude, with the sign of the branch */
-        const real tube_branch_1 = m->tube_branch_1[i];
-        const real tube_root_1 = tube_branch_1*root(tube_rho2_1);
-        /* (tube-c_1) cosine of the angle of joint 1 from its reference direction */
-        const real inv_tube_root_1 = 1/tube_root_1;
-        const real tube_c_1 = -inv_tube_root_1*tube_py_1;
-        /* (tube-s_1) sine of the angle of joint 1 from its reference direction */
-        const real tube_s_1 = inv_tube_root_1*tube_px_1;
-        /* (tube-xi_1) the vector from joint 1 to the connection point, resolved along link 1 */
-        const real tube_base_frame_xz = m->tube_base_frame_xz[i];
-        const real tube_base_frame_yz = m->tube_base_frame_yz[i];
-        const real tube_base_frame_zz = m->tube_base_frame_zz[i];
-        const real tube_xi_1_in_axes1_z = tube_S_x*tube_base_frame_xz +
-            tube_S_y*tube_base_frame_yz + tube_S_z*tube_base_frame_zz;
-        /* (tube-rho2_2) squared amplitude */
-        const real tube_rho2_2 = tube_rho2_1 + tube_xi_1_in_axes1_z*tube_xi_1_in_axes1_z;
-        /* (tube-root_2) amplitude, with the sign of the branch */
-        const real tube_branch_2 = m->tube_branch_2[i];
-        const real tube_root_2 = tube_branch_2*root(tube_rho2_2);
-        /* (tube-c_2) cosine of the angle of joint 2 from its reference direction */
-        const real inv_tube_root_2 = 1/tube_root_2;
-        const real tube_c_2 = -inv_tube_root_2*tube_root_1;
-        /* (tube-s_2) sine of the angle of joint 2 from its reference direction */
-        const real tube_s_2 = inv_tube_root_2*tube_xi_1_in_axes1_z;
+        values_tube v;
+        stage_tube_X(m, w, i, j, s, X, &v);
         /* (tube-n_m1) direction 1 of the moment that the platform joint transmits */
-        const real tube_n_m1_t = R_xx*tube_base_frame_xx + R_yx*tube_base_frame_yx +
-            R_zx*tube_base_frame_zx;
-        const real tube_n_m1_t_2 = R_xy*tube_base_frame_xx + R_yy*tube_base_frame_yx +
-            R_zy*tube_base_frame_zx;
-        const real tube_n_m1_t_3 = R_xz*tube_base_frame_xx + R_yz*tube_base_frame_yx +
-            R_zz*tube_base_frame_zx;
-        const real tube_n_m1_t_4 = R_xx*tube_base_frame_xy + R_yx*tube_base_frame_yy +
-            R_zx*tube_base_frame_zy;
-        const real tube_n_m1_t_5 = R_xy*tube_base_frame_xy + R_yy*tube_base_frame_yy +
-            R_zy*tube_base_frame_zy;
-        const real tube_n_m1_t_6 = R_xz*tube_base_frame_xy + R_yz*tube_base_frame_yy +
-            R_zz*tube_base_frame_zy;
-        const real tube_n_m1_t_7 = R_xx*tube_base_frame_xz + R_yx*tube_base_frame_yz +
-            R_zx*tube_base_frame_zz;
-        const real tube_n_m1_t_8 = R_xy*tube_base_frame_xz + R_yy*tube_base_frame_yz +
-            R_zy*tube_base_frame_zz;
-        const real tube_n_m1_t_9 = R_xz*tube_base_frame_xz + R_yz*tube_base_frame_yz +
-            R_zz*tube_base_frame_zz;
         const real tube_platform_joint_rotation_yx = m->tube_platform_joint_rotation_yx[i];
         const real tube_platform_joint_rotation_yy = m->tube_platform_joint_rotation_yy[i];
         const real tube_platform_joint_rotation_yz = m->tube_platform_joint_rotation_yz[i];
-        const real tube_n_m1_t_10 = tube_n_m1_t*tube_platform_joint_rotation_yx +
-            tube_n_m1_t_2*tube_platform_joint_rotation_yy +
-            tube_n_m1_t_3*tube_platform_joint_rotation_yz;
-        const real tube_n_m1_t_11 = tube_n_m1_t_4*tube_platform_joint_rotation_yx +
-            tube_n_m1_t_5*tube_platform_joint_rotation_yy +
-            tube_n_m1_t_6*tube_platform_joint_rotation_yz;
-        const real tube_end_p1_in_axes2_z = tube_c_1*tube_n_m1_t_10 + tube_n_m1_t_11*tube_s_1;
-        const real tube_n_m1_in_axes2_z = tube_c_2*(tube_n_m1_t_7*tube_platform_joint_rotation_yx
-            + tube_n_m1_t_8*tube_platform_joint_rotation_yy +
-            tube_n_m1_t_9*tube_platform_joint_rotation_yz) + tube_s_2*(tube_n_m1_t_10*tube_s_1 -
-            tube_c_1*tube_n_m1_t_11);
-        const real tube_n_m1_in_axes1_z = -tube_c_2*tube_end_p1_in_axes2_z;
+        const real tube_n_m1_in_axes2_z = v.tube_e_1_in_axes2_x*(v.tube_c_1*v.tube_n_m1_t_10 +
+            v.tube_n_m1_t_11*v.tube_s_1) -
+            v.tube_c_2*(v.tube_n_m1_t_7*tube_platform_joint_rotation_yx +
+            v.tube_n_m1_t_8*tube_platform_joint_rotation_yy +
+            v.tube_n_m1_t_9*tube_platform_joint_rotation_yz);
         /* (tube-n_m2) direction 2 of the moment that the platform joint transmits */
         const real tube_platform_joint_rotation_zx = m->tube_platform_joint_rotation_zx[i];
         const real tube_platform_joint_rotation_zy = m->tube_platform_joint_rotation_zy[i];
         const real tube_platform_joint_rotation_zz = m->tube_platform_joint_rotation_zz[i];
-        const real tube_n_m2_t = tube_n_m1_t_7*tube_platform_joint_rotation_zx +
-            tube_n_m1_t_8*tube_platform_joint_rotation_zy +
-            tube_n_m1_t_9*tube_platform_joint_rotation_zz;
-        const real tube_n_m2_t_2 = tube_s_1*(tube_n_m1_t*tube_platform_joint_rotation_zx +
-            tube_n_m1_t_2*tube_platform_joint_rotation_zy +
-            tube_n_m1_t_3*tube_platform_joint_rotation_zz) -
-            tube_c_1*(tube_n_m1_t_4*tube_platform_joint_rotation_zx +
-            tube_n_m1_t_5*tube_platform_joint_rotation_zy +
-            tube_n_m1_t_6*tube_platform_joint_rotation_zz);
-        const real tube_n_m2_in_axes2_y = tube_n_m2_t*tube_s_2 - tube_c_2*tube_n_m2_t_2;
-        const real tube_end_p2_in_axes2_y = tube_c_2*tube_n_m2_t + tube_n_m2_t_2*tube_s_2;
-        const real tube_n_m2_in_axes1_z = tube_c_2*tube_n_m2_in_axes2_y -
-            tube_end_p2_in_axes2_y*tube_s_2;
+        const real tube_n_m2_t = v.tube_n_m1_t_7*tube_platform_joint_rotation_zx +
+            v.tube_n_m1_t_8*tube_platform_joint_rotation_zy +
+            v.tube_n_m1_t_9*tube_platform_joint_rotation_zz;
+        const real tube_n_m2_t_2 = v.tube_c_1*(v.tube_n_m1_t*tube_platform_joint_rotation_zx +
+            v.tube_n_m1_t_2*tube_platform_joint_rotation_zy +
+            v.tube_n_m1_t_3*tube_platform_joint_rotation_zz) +
+            v.tube_s_1*(v.tube_n_m1_t_4*tube_platform_joint_rotation_zx +
+            v.tube_n_m1_t_5*tube_platform_joint_rotation_zy +
+            v.tube_n_m1_t_6*tube_platform_joint_rotation_zz);
+        const real tube_n_m2_in_axes2_y = v.tube_c_2*tube_n_m2_t_2 +
+            v.tube_e_1_in_axes2_x*tube_n_m2_t;
+        const real tube_end_p2_in_axes2_y = v.tube_e_1_in_axes2_x*tube_n_m2_t_2 -
+            v.tube_c_2*tube_n_m2_t;
+        const real tube_n_m2_t_3 = v.tube_c_2*tube_n_m2_in_axes2_y +
+            v.tube_e_1_in_axes2_x*tube_end_p2_in_axes2_y;
         /* (tube-n_m3) direction 3 of the moment that the platform joint transmits */
         const real tube_platform_joint_rotation_xx = m->tube_platform_joint_rotation_xx[i];
         const real tube_platform_joint_rotation_xy = m->tube_platform_joint_rotation_xy[i];
         const real tube_platform_joint_rotation_xz = m->tube_platform_joint_rotation_xz[i];
-        const real tube_n_m3_t = tube_n_m1_t*tube_platform_joint_rotation_xx +
-            tube_n_m1_t_2*tube_platform_joint_rotation_xy +
-            tube_n_m1_t_3*tube_platform_joint_rotation_xz;
-        const real tube_n_m3_t_2 = tube_n_m1_t_4*tube_platform_joint_rotation_xx +
-            tube_n_m1_t_5*tube_platform_joint_rotation_xy +
-            tube_n_m1_t_6*tube_platform_joint_rotation_xz;
-        const real tube_end_p3_in_axes2_z = tube_c_1*tube_n_m3_t + tube_n_m3_t_2*tube_s_1;
-        const real tube_n_m3_in_axes2_z = tube_s_2*(tube_n_m1_t_7*tube_platform_joint_rotation_xx
-            + tube_n_m1_t_8*tube_platform_joint_rotation_xy +
-            tube_n_m1_t_9*tube_platform_joint_rotation_xz) - tube_c_2*(tube_n_m3_t*tube_s_1 -
-            tube_c_1*tube_n_m3_t_2);
-        const real tube_n_m3_t_3 = tube_end_p3_in_axes2_z*tube_s_2;
+        const real tube_n_m3_in_axes2_z = v.tube_c_2*(v.tube_c_1*v.tube_n_m3_t +
+            v.tube_n_m3_t_2*v.tube_s_1) +
+            v.tube_e_1_in_axes2_x*(v.tube_n_m1_t_7*tube_platform_joint_rotation_xx +
+            v.tube_n_m1_t_8*tube_platform_joint_rotation_xy +
+            v.tube_n_m1_t_9*tube_platform_joint_rotation_xz);
+        const real tube_n_m3_t_3 = v.tube_e_1_in_axes2_x*v.tube_end_p3_in_axes2_z;
         /* (tube-f_c1) force part of constraint wrench 1 */
-        const real tube_f_c1_t = tube_n_m1_in_axes1_z*tube_n_m3_in_axes2_z +
+        const real tube_f_c1_t = v.tube_n_m1_in_axes1_z*tube_n_m3_in_axes2_z +
             tube_n_m1_in_axes2_z*tube_n_m3_t_3;
         /* (tube-m1_c3) moment part 1 of constraint wrench 3 */
         const real inv_tube_f_c1_t = 1/tube_f_c1_t;
-        const real tube_m1_c3_t = inv_tube_f_c1_t*tube_n_m2_in_axes1_z*tube_n_m3_in_axes2_z;
+        const real tube_m1_c3 = inv_tube_f_c1_t*tube_n_m2_t_3*tube_n_m3_in_axes2_z;
         /* (tube-m3_c3) moment part 3 of constraint wrench 3 */
-        const real tube_m3_c3 = inv_tube_f_c1_t*tube_n_m1_in_axes2_z*tube_n_m2_in_axes1_z;
-        /* (tube-n_c1) unit force of the constraint wrench */
-        const real tube_n_c1_t = tube_s_1*tube_s_2;
-        const real tube_n_c1_t_2 = tube_c_1*tube_s_2;
-        const real tube_n_c1_x = tube_base_frame_xx*tube_n_c1_t + tube_base_frame_xz*tube_c_2 -
-            tube_base_frame_xy*tube_n_c1_t_2;
-        const real tube_n_c1_y = tube_base_frame_yx*tube_n_c1_t + tube_base_frame_yz*tube_c_2 -
-            tube_base_frame_yy*tube_n_c1_t_2;
-        const real tube_n_c1_z = tube_base_frame_zx*tube_n_c1_t + tube_base_frame_zz*tube_c_2 -
-            tube_base_frame_zy*tube_n_c1_t_2;
-        /* (tube-n_c2) unit force of the constraint wrench */
-        const real tube_n_c2_x = tube_base_frame_xx*tube_c_1 + tube_base_frame_xy*tube_s_1;
-        const real tube_n_c2_y = tube_base_frame_yx*tube_c_1 + tube_base_frame_yy*tube_s_1;
-        const real tube_n_c2_z = tube_base_frame_zx*tube_c_1 + tube_base_frame_zy*tube_s_1;
+        const real tube_m3_c3_t = inv_tube_f_c1_t*tube_n_m1_in_axes2_z*tube_n_m2_t_3;
         /* (tube-size_c3) size of the moment */
-        const real tube_size_c3 = root(1 + tube_m1_c3_t*tube_m1_c3_t + tube_m3_c3*tube_m3_c3);
+        const real tube_size_c3 = root(1 + tube_m1_c3*tube_m1_c3 + tube_m3_c3_t*tube_m3_c3_t);
         /* (tube-mu2_c3) moment along direction 2 that goes with it */
         const real tube_mu2_c3 = 1/tube_size_c3;
         /* (tube-w_1) force part of reciprocal wrench 1 */
-        const real tube_w_1_t = R(1.35)*tube_n_m1_in_axes1_z;
-        const real tube_w_1_t_2 = R(1.35)*tube_n_m2_in_axes1_z;
+        const real tube_w_1_t_2 = R(1.35)*tube_n_m2_t_3;
         const real tube_w_1_t_3 = R(1.35)*tube_n_m3_t_3;
         const real tube_w_1_t_4 = R(1.35)*tube_n_m1_in_axes2_z;
         const real tube_w_1_t_5 = R(1.35)*tube_n_m3_in_axes2_z;
-        const real tube_w_1_t_6 = R(1.35)*inv_tube_f_c1_t*tube_n_m3_t_3*tube_root_2;
-        const real tube_w_1_t_7 = R(1.35)*inv_tube_f_c1_t*tube_n_m1_in_axes1_z*tube_root_2;
-        const real tube_w_1_t_8 = R(1.35)*inv_tube_f_c1_t*tube_n_m3_in_axes2_z*tube_root_1;
-        const real tube_w_1_t_9 = R(1.35)*inv_tube_f_c1_t*tube_n_m1_in_axes2_z*tube_root_1;
-        const real tube_w_1_t_10 = R(1.35)*tube_m1_c3_t*tube_mu2_c3;
+        const real tube_w_1_t_6 = R(1.35)*inv_tube_f_c1_t*tube_n_m3_t_3*v.tube_q_3;
+        const real tube_w_1_t_7 = R(1.35)*inv_tube_f_c1_t*v.tube_n_m1_in_axes1_z*v.tube_q_3;
+        const real tube_w_1_t_8 = R(1.35)*inv_tube_f_c1_t*tube_n_m3_in_axes2_z*v.tube_root_1;
+        const real tube_w_1_t_9 = R(1.35)*inv_tube_f_c1_t*tube_n_m1_in_axes2_z*v.tube_root_1;
+        const real tube_w_1_t_10 = R(1.35)*tube_m1_c3*tube_mu2_c3;
         const real tube_w_1_t_11 = R(1.35)*tube_mu2_c3;
-        const real tube_w_1_t_12 = R(1.35)*tube_m3_c3*tube_mu2_c3;
-        const real tube_w_1_t_13 = root(tube_rho2_2 + tube_w_1_t_4*tube_w_1_t_4 +
+        const real tube_w_1_t_12 = R(1.35)*tube_m3_c3_t*tube_mu2_c3;
+        const real tube_w_1_t_13 = root(v.tube_q_3_t + tube_w_1_t_4*tube_w_1_t_4 +
             tube_w_1_t_5*tube_w_1_t_5);
         const real inv_tube_w_1_t_13 = 1/tube_w_1_t_13;
-        const real tube_w_1_t_14 = inv_tube_w_1_t_13*tube_root_2;
+        const real tube_w_1_t_14 = inv_tube_w_1_t_13*v.tube_q_3;
         const real tube_w_1_t_15 = inv_tube_w_1_t_13*tube_w_1_t_4;
         const real tube_w_1_t_16 = inv_tube_w_1_t_13*tube_w_1_t_5;
         const real tube_w_1_t_17 = tube_w_1_t_15*tube_w_1_t_6 + tube_w_1_t_16*tube_w_1_t_7 -
@@ -4091,9 +5123,9 @@ INLINE void M_legs_tube(const prepared *m, size_t w, size_t leg, size_t legs, co
         const real tube_w_1_t_26 = tube_w_1_t_14*tube_w_1_t_25;
         const real tube_w_1_t_27 = tube_w_1_t_10 - tube_w_1_t_15*tube_w_1_t_25;
         const real tube_w_1_t_28 = tube_w_1_t_12 + tube_w_1_t_16*tube_w_1_t_25;
-        const real tube_w_1_t_29 = tube_w_1_t*tube_w_1_t_15 - tube_w_1_t_16*tube_w_1_t_3;
+        const real tube_w_1_t_29 = v.tube_w_1_t*tube_w_1_t_15 - tube_w_1_t_16*tube_w_1_t_3;
         const real tube_w_1_t_30 = tube_w_1_t_14*tube_w_1_t_29;
-        const real tube_w_1_t_31 = tube_w_1_t - tube_w_1_t_15*tube_w_1_t_29;
+        const real tube_w_1_t_31 = v.tube_w_1_t - tube_w_1_t_15*tube_w_1_t_29;
         const real tube_w_1_t_32 = tube_w_1_t_3 + tube_w_1_t_16*tube_w_1_t_29;
         const real tube_w_1_t_33 = root(tube_w_1_t_18*tube_w_1_t_18 + tube_w_1_t_19*tube_w_1_t_19
             + tube_w_1_t_20*tube_w_1_t_20);
@@ -4129,9 +5161,9 @@ INLINE void M_legs_tube(const prepared *m, size_t w, size_t leg, size_t legs, co
         const real tube_w_1_t_56 = tube_w_1_t_43 + tube_w_1_t_51*tube_w_1_t_53;
         const real tube_w_1_t_57 = tube_w_1_t_52*tube_w_1_t_53 - tube_w_1_t_44;
         const real tube_w_1_t_58 = tube_w_1_t_46*tube_w_1_t_50 + tube_w_1_t_48*tube_w_1_t_52 -
-            inv_tube_w_1_t_49*tube_root_1 - tube_w_1_t_47*tube_w_1_t_51;
+            inv_tube_w_1_t_49*v.tube_root_1 - tube_w_1_t_47*tube_w_1_t_51;
         const real tube_w_1_t_59 = tube_w_1_t_50*tube_w_1_t_58 - tube_w_1_t_46;
-        const real tube_w_1_t_60 = tube_root_1 + inv_tube_w_1_t_49*tube_w_1_t_58;
+        const real tube_w_1_t_60 = v.tube_root_1 + inv_tube_w_1_t_49*tube_w_1_t_58;
         const real tube_w_1_t_61 = tube_w_1_t_47 + tube_w_1_t_51*tube_w_1_t_58;
         const real tube_w_1_t_62 = tube_w_1_t_52*tube_w_1_t_58 - tube_w_1_t_48;
         const real tube_w_1_t_63 = root(tube_w_1_t_11*tube_w_1_t_11 + tube_w_1_t_54*tube_w_1_t_54
@@ -4159,13 +5191,14 @@ INLINE void M_legs_tube(const prepared *m, size_t w, size_t leg, size_t legs, co
         const real tube_w_1_t_77 = inv_tube_w_1_t_75*tube_w_1_t_71;
         const real tube_w_1_in_axes2_y = inv_tube_w_1_t_75*tube_w_1_t_76;
         const real tube_w_1_in_axes2_z = inv_tube_w_1_t_75*tube_w_1_t_77;
-        const real tube_w_1_t_78 = -tube_c_2*tube_w_1_in_axes2_y;
+        const real tube_w_1_in_axes1_x = v.tube_e_1_in_axes2_x*tube_w_1_in_axes2_y;
+        const real tube_w_1_t_78 = v.tube_c_2*tube_w_1_in_axes2_y;
         /* (tube-m1_w_1) moment part 1 of reciprocal wrench 1 */
         const real tube_m1_w_1_t = inv_tube_w_1_t_75*tube_w_1_t_72;
         const real tube_m1_w_1 = R(1.35)*inv_tube_w_1_t_75*tube_m1_w_1_t;
         /* (tube-m2_w_1) moment part 2 of reciprocal wrench 1 */
         const real tube_m2_w_1_t = inv_tube_w_1_t_75*tube_w_1_t_73;
-        const real tube_m2_w_1 = R(1.35)*inv_tube_w_1_t_75*tube_m2_w_1_t;
+        const real tube_m2_w_1 = -R(1.35)*inv_tube_w_1_t_75*tube_m2_w_1_t;
         /* (tube-m3_w_1) moment part 3 of reciprocal wrench 1 */
         const real tube_m3_w_1_t = inv_tube_w_1_t_75*tube_w_1_t_74;
         const real tube_m3_w_1 = R(1.35)*inv_tube_w_1_t_75*tube_m3_w_1_t;
@@ -4188,50 +5221,49 @@ INLINE void M_legs_tube(const prepared *m, size_t w, size_t leg, size_t legs, co
         const real tube_m1_w_2 = R(1.35)*tube_m1_w_2_t;
         /* (tube-m2_w_2) moment part 2 of reciprocal wrench 2 */
         const real tube_m2_w_2_t = tube_m2_w_1_t*tube_w_2_t_4 + tube_w_1_t_67*tube_w_2_t_3;
-        const real tube_m2_w_2 = -R(1.35)*tube_m2_w_2_t;
+        const real tube_m2_w_2 = R(1.35)*tube_m2_w_2_t;
         /* (tube-m3_w_2) moment part 3 of reciprocal wrench 2 */
         const real tube_m3_w_2_t = inv_tube_w_1_t_13*tube_w_1_t_16 + tube_w_1_t_36*tube_w_2_t +
             tube_w_1_t_52*tube_w_2_t_2 + tube_w_1_t_68*tube_w_2_t_3 - tube_m3_w_1_t*tube_w_2_t_4;
         const real tube_m3_w_2 = R(1.35)*tube_m3_w_2_t;
         /* (tube-o_1) moment part of reciprocal wrench 1 */
         const real tube_o_1_in_axes2_x = -tube_end_p2_in_axes2_y*tube_m2_w_1 -
-            tube_end_p3_in_axes2_z*tube_m3_w_1;
+            v.tube_end_p3_in_axes2_z*tube_m3_w_1;
         const real tube_o_1_in_axes2_y = tube_m2_w_1*tube_n_m2_in_axes2_y -
-            tube_end_p1_in_axes2_z*tube_m1_w_1;
+            v.tube_end_p1_in_axes2_z*tube_m1_w_1;
         const real tube_o_1_in_axes2_z = tube_m1_w_1*tube_n_m1_in_axes2_z +
             tube_m3_w_1*tube_n_m3_in_axes2_z;
         /* (tube-o_2) moment part of reciprocal wrench 2 */
         const real tube_o_2_in_axes2_x = -tube_end_p2_in_axes2_y*tube_m2_w_2 -
-            tube_end_p3_in_axes2_z*tube_m3_w_2;
+            v.tube_end_p3_in_axes2_z*tube_m3_w_2;
         const real tube_o_2_in_axes2_y = tube_m2_w_2*tube_n_m2_in_axes2_y -
-            tube_end_p1_in_axes2_z*tube_m1_w_2;
+            v.tube_end_p1_in_axes2_z*tube_m1_w_2;
         const real tube_o_2_in_axes2_z = tube_m1_w_2*tube_n_m1_in_axes2_z +
             tube_m3_w_2*tube_n_m3_in_axes2_z;
         /* (tube-dalpha_alpha_1) coefficient of the acceleration in: angular acceleration of link 1 */
-        const real tube_dalpha_alpha_1_t = -tube_c_2*tube_o_1_in_axes2_x;
-        const real tube_dalpha_alpha_1_in_axes2_xy = tube_o_1_in_axes2_y*tube_s_2;
-        const real tube_dalpha_alpha_1_t_2 = -tube_c_2*tube_o_1_in_axes2_y;
-        const real tube_dalpha_alpha_1_in_axes2_xx = tube_o_1_in_axes2_x*tube_s_2;
-        const real tube_dalpha_alpha_1_in_axes2_xz = tube_o_1_in_axes2_z*tube_s_2;
-        const real tube_dalpha_alpha_1_t_3 = -tube_c_2*tube_o_1_in_axes2_z;
+        const real tube_dalpha_alpha_1_t = v.tube_c_2*tube_o_1_in_axes2_x;
+        const real tube_dalpha_alpha_1_in_axes2_xy = v.tube_e_1_in_axes2_x*tube_o_1_in_axes2_y;
+        const real tube_dalpha_alpha_1_t_2 = v.tube_c_2*tube_o_1_in_axes2_y;
+        const real tube_dalpha_alpha_1_in_axes2_xx = v.tube_e_1_in_axes2_x*tube_o_1_in_axes2_x;
+        const real tube_dalpha_alpha_1_in_axes2_xz = v.tube_e_1_in_axes2_x*tube_o_1_in_axes2_z;
+        const real tube_dalpha_alpha_1_t_3 = v.tube_c_2*tube_o_1_in_axes2_z;
         /* (tube-d_alpha_1) coefficient of the acceleration in: angular acceleration of link 1 */
-        const real tube_d_alpha_1_in_axes2_xy = tube_s_2*tube_w_1_in_axes2_y;
-        const real tube_d_alpha_1_in_axes2_xz = tube_s_2*tube_w_1_in_axes2_z;
-        const real tube_d_alpha_1_t = -tube_c_2*tube_w_1_in_axes2_z;
+        const real tube_d_alpha_1_in_axes2_xz = v.tube_e_1_in_axes2_x*tube_w_1_in_axes2_z;
+        const real tube_d_alpha_1_t = v.tube_c_2*tube_w_1_in_axes2_z;
         /* (tube-dalpha_acc_3) coefficient of the acceleration in: acceleration of the reference point of
            link 3, less gravity */
-        const real tube_dalpha_acc_3_in_axes2_yx = tube_o_2_in_axes2_x*tube_root_2;
-        const real tube_dalpha_acc_3_in_axes2_yy = tube_o_2_in_axes2_y*tube_root_2;
-        const real tube_dalpha_acc_3_in_axes2_yz = tube_o_2_in_axes2_z*tube_root_2;
-        const real tube_dalpha_acc_3_in_axes2_zx = tube_dalpha_alpha_1_t*tube_root_2;
-        const real tube_dalpha_acc_3_in_axes2_zy = tube_dalpha_alpha_1_t_2*tube_root_2;
-        const real tube_dalpha_acc_3_in_axes2_zz = tube_dalpha_alpha_1_t_3*tube_root_2;
+        const real tube_dalpha_acc_3_in_axes2_yx = tube_o_2_in_axes2_x*v.tube_q_3;
+        const real tube_dalpha_acc_3_in_axes2_yy = tube_o_2_in_axes2_y*v.tube_q_3;
+        const real tube_dalpha_acc_3_in_axes2_yz = tube_o_2_in_axes2_z*v.tube_q_3;
+        const real tube_dalpha_acc_3_in_axes2_zx = tube_dalpha_alpha_1_t*v.tube_q_3;
+        const real tube_dalpha_acc_3_in_axes2_zy = tube_dalpha_alpha_1_t_2*v.tube_q_3;
+        const real tube_dalpha_acc_3_in_axes2_zz = tube_dalpha_alpha_1_t_3*v.tube_q_3;
         /* (tube-d_acc_3) coefficient of the acceleration in: acceleration of the reference point of link
            3, less gravity */
-        const real tube_d_acc_3_in_axes2_yy = tube_root_2*tube_w_2_in_axes2_y;
-        const real tube_d_acc_3_in_axes2_yz = tube_root_2*tube_w_2_in_axes2_z;
-        const real tube_d_acc_3_in_axes2_zy = tube_root_2*tube_w_1_t_78;
-        const real tube_d_acc_3_in_axes2_zz = tube_d_alpha_1_t*tube_root_2;
+        const real tube_d_acc_3_in_axes2_yy = v.tube_q_3*tube_w_2_in_axes2_y;
+        const real tube_d_acc_3_in_axes2_yz = v.tube_q_3*tube_w_2_in_axes2_z;
+        const real tube_d_acc_3_in_axes2_zy = v.tube_q_3*tube_w_1_t_78;
+        const real tube_d_acc_3_in_axes2_zz = tube_d_alpha_1_t*v.tube_q_3;
         /* (tube-dalpha_N_2) coefficient of the acceleration in: moment about joint 2 of the links from 2
            outwards, the force at the connection point left out */
         const real tube_J_group_2_in_axes2_xz = m->tube_J_group_2_in_axes2_xz[i];
@@ -4244,7 +5276,7 @@ INLINE void M_legs_tube(const prepared *m, size_t w, size_t leg, size_t legs, co
             tube_J_group_2_in_axes2_xz*tube_dalpha_alpha_1_in_axes2_xx +
             tube_J_group_2_in_axes2_zz*tube_o_2_in_axes2_x +
             tube_dalpha_acc_3_in_axes2_yx*tube_h_3_in_spec2_x +
-            tube_root_2*(tube_dalpha_acc_3_in_axes2_yx*tube_link3_mass +
+            v.tube_q_3*(tube_dalpha_acc_3_in_axes2_yx*tube_link3_mass +
             tube_h_3_in_spec2_x*tube_o_2_in_axes2_x -
             tube_dalpha_alpha_1_in_axes2_xx*tube_h_3_in_spec2_y) -
             tube_J_group_2_in_axes2_yz*tube_dalpha_alpha_1_t;
@@ -4252,7 +5284,7 @@ INLINE void M_legs_tube(const prepared *m, size_t w, size_t leg, size_t legs, co
             tube_J_group_2_in_axes2_xz*tube_dalpha_alpha_1_in_axes2_xy +
             tube_J_group_2_in_axes2_zz*tube_o_2_in_axes2_y +
             tube_dalpha_acc_3_in_axes2_yy*tube_h_3_in_spec2_x +
-            tube_root_2*(tube_dalpha_acc_3_in_axes2_yy*tube_link3_mass +
+            v.tube_q_3*(tube_dalpha_acc_3_in_axes2_yy*tube_link3_mass +
             tube_h_3_in_spec2_x*tube_o_2_in_axes2_y -
             tube_dalpha_alpha_1_in_axes2_xy*tube_h_3_in_spec2_y) -
             tube_J_group_2_in_axes2_yz*tube_dalpha_alpha_1_t_2;
@@ -4260,23 +5292,22 @@ INLINE void M_legs_tube(const prepared *m, size_t w, size_t leg, size_t legs, co
             tube_J_group_2_in_axes2_xz*tube_dalpha_alpha_1_in_axes2_xz +
             tube_J_group_2_in_axes2_zz*tube_o_2_in_axes2_z +
             tube_dalpha_acc_3_in_axes2_yz*tube_h_3_in_spec2_x +
-            tube_root_2*(tube_dalpha_acc_3_in_axes2_yz*tube_link3_mass +
+            v.tube_q_3*(tube_dalpha_acc_3_in_axes2_yz*tube_link3_mass +
             tube_h_3_in_spec2_x*tube_o_2_in_axes2_z -
             tube_dalpha_alpha_1_in_axes2_xz*tube_h_3_in_spec2_y) -
             tube_J_group_2_in_axes2_yz*tube_dalpha_alpha_1_t_3;
         /* (tube-d_N_2) coefficient of the acceleration in: moment about joint 2 of the links from 2
            outwards, the force at the connection point left out */
-        const real tube_d_N_2_in_axes2_zy = tube_J_group_2_in_axes2_xz*tube_d_alpha_1_in_axes2_xy
-            + tube_J_group_2_in_axes2_zz*tube_w_2_in_axes2_y +
+        const real tube_d_N_2_in_axes2_zy = tube_J_group_2_in_axes2_xz*tube_w_1_in_axes1_x +
+            tube_J_group_2_in_axes2_zz*tube_w_2_in_axes2_y +
             tube_d_acc_3_in_axes2_yy*tube_h_3_in_spec2_x +
-            tube_root_2*(tube_d_acc_3_in_axes2_yy*tube_link3_mass +
-            tube_h_3_in_spec2_x*tube_w_2_in_axes2_y -
-            tube_d_alpha_1_in_axes2_xy*tube_h_3_in_spec2_y) -
+            v.tube_q_3*(tube_d_acc_3_in_axes2_yy*tube_link3_mass +
+            tube_h_3_in_spec2_x*tube_w_2_in_axes2_y - tube_h_3_in_spec2_y*tube_w_1_in_axes1_x) -
             tube_J_group_2_in_axes2_yz*tube_w_1_t_78;
         const real tube_d_N_2_in_axes2_zz = tube_J_group_2_in_axes2_xz*tube_d_alpha_1_in_axes2_xz
             + tube_J_group_2_in_axes2_zz*tube_w_2_in_axes2_z +
             tube_d_acc_3_in_axes2_yz*tube_h_3_in_spec2_x +
-            tube_root_2*(tube_d_acc_3_in_axes2_yz*tube_link3_mass +
+            v.tube_q_3*(tube_d_acc_3_in_axes2_yz*tube_link3_mass +
             tube_h_3_in_spec2_x*tube_w_2_in_axes2_z -
             tube_d_alpha_1_in_axes2_xz*tube_h_3_in_spec2_y) -
             tube_J_group_2_in_axes2_yz*tube_d_alpha_1_t;
@@ -4286,78 +5317,77 @@ INLINE void M_legs_tube(const prepared *m, size_t w, size_t leg, size_t legs, co
         const real tube_J_group_2_in_axes2_yy = m->tube_J_group_2_in_axes2_yy[i];
         const real tube_h_3_in_spec2_z = m->tube_h_3_in_spec2_z[i];
         const real tube_dalpha_Gamma_1_t =
-            tube_c_2*(tube_J_group_2_in_axes2_xy*tube_dalpha_alpha_1_in_axes2_xx +
+            v.tube_c_2*(tube_J_group_2_in_axes2_xy*tube_dalpha_alpha_1_in_axes2_xx +
             tube_J_group_2_in_axes2_yz*tube_o_2_in_axes2_x -
             tube_J_group_2_in_axes2_yy*tube_dalpha_alpha_1_t -
             tube_dalpha_acc_3_in_axes2_zx*tube_h_3_in_spec2_x -
-            tube_root_2*(tube_dalpha_acc_3_in_axes2_zx*tube_link3_mass +
+            v.tube_q_3*(tube_dalpha_acc_3_in_axes2_zx*tube_link3_mass +
             tube_dalpha_alpha_1_t*tube_h_3_in_spec2_x -
             tube_dalpha_alpha_1_in_axes2_xx*tube_h_3_in_spec2_z));
         const real tube_J_group_2_in_axes2_xx = m->tube_J_group_2_in_axes2_xx[i];
-        const real tube_dalpha_Gamma_1_in_axes2_x = tube_dalpha_Gamma_1_t +
-            tube_s_2*(tube_J_group_2_in_axes2_xx*tube_dalpha_alpha_1_in_axes2_xx +
+        const real tube_dalpha_Gamma_1_in_axes2_x =
+            v.tube_e_1_in_axes2_x*(tube_J_group_2_in_axes2_xx*tube_dalpha_alpha_1_in_axes2_xx +
             tube_J_group_2_in_axes2_xz*tube_o_2_in_axes2_x -
             tube_J_group_2_in_axes2_xy*tube_dalpha_alpha_1_t -
             tube_dalpha_acc_3_in_axes2_yx*tube_h_3_in_spec2_y -
-            tube_dalpha_acc_3_in_axes2_zx*tube_h_3_in_spec2_z);
+            tube_dalpha_acc_3_in_axes2_zx*tube_h_3_in_spec2_z) - tube_dalpha_Gamma_1_t;
         const real tube_dalpha_Gamma_1_t_2 =
-            tube_c_2*(tube_J_group_2_in_axes2_xy*tube_dalpha_alpha_1_in_axes2_xy +
+            v.tube_c_2*(tube_J_group_2_in_axes2_xy*tube_dalpha_alpha_1_in_axes2_xy +
             tube_J_group_2_in_axes2_yz*tube_o_2_in_axes2_y -
             tube_J_group_2_in_axes2_yy*tube_dalpha_alpha_1_t_2 -
             tube_dalpha_acc_3_in_axes2_zy*tube_h_3_in_spec2_x -
-            tube_root_2*(tube_dalpha_acc_3_in_axes2_zy*tube_link3_mass +
+            v.tube_q_3*(tube_dalpha_acc_3_in_axes2_zy*tube_link3_mass +
             tube_dalpha_alpha_1_t_2*tube_h_3_in_spec2_x -
             tube_dalpha_alpha_1_in_axes2_xy*tube_h_3_in_spec2_z));
-        const real tube_dalpha_Gamma_1_in_axes2_y = tube_dalpha_Gamma_1_t_2 +
-            tube_s_2*(tube_J_group_2_in_axes2_xx*tube_dalpha_alpha_1_in_axes2_xy +
+        const real tube_dalpha_Gamma_1_in_axes2_y =
+            v.tube_e_1_in_axes2_x*(tube_J_group_2_in_axes2_xx*tube_dalpha_alpha_1_in_axes2_xy +
             tube_J_group_2_in_axes2_xz*tube_o_2_in_axes2_y -
             tube_J_group_2_in_axes2_xy*tube_dalpha_alpha_1_t_2 -
             tube_dalpha_acc_3_in_axes2_yy*tube_h_3_in_spec2_y -
-            tube_dalpha_acc_3_in_axes2_zy*tube_h_3_in_spec2_z);
+            tube_dalpha_acc_3_in_axes2_zy*tube_h_3_in_spec2_z) - tube_dalpha_Gamma_1_t_2;
         const real tube_dalpha_Gamma_1_t_3 =
-            tube_c_2*(tube_J_group_2_in_axes2_xy*tube_dalpha_alpha_1_in_axes2_xz +
+            v.tube_c_2*(tube_J_group_2_in_axes2_xy*tube_dalpha_alpha_1_in_axes2_xz +
             tube_J_group_2_in_axes2_yz*tube_o_2_in_axes2_z -
             tube_J_group_2_in_axes2_yy*tube_dalpha_alpha_1_t_3 -
             tube_dalpha_acc_3_in_axes2_zz*tube_h_3_in_spec2_x -
-            tube_root_2*(tube_dalpha_acc_3_in_axes2_zz*tube_link3_mass +
+            v.tube_q_3*(tube_dalpha_acc_3_in_axes2_zz*tube_link3_mass +
             tube_dalpha_alpha_1_t_3*tube_h_3_in_spec2_x -
             tube_dalpha_alpha_1_in_axes2_xz*tube_h_3_in_spec2_z));
-        const real tube_dalpha_Gamma_1_in_axes2_z = tube_dalpha_Gamma_1_t_3 +
-            tube_s_2*(tube_J_group_2_in_axes2_xx*tube_dalpha_alpha_1_in_axes2_xz +
+        const real tube_dalpha_Gamma_1_in_axes2_z =
+            v.tube_e_1_in_axes2_x*(tube_J_group_2_in_axes2_xx*tube_dalpha_alpha_1_in_axes2_xz +
             tube_J_group_2_in_axes2_xz*tube_o_2_in_axes2_z -
             tube_J_group_2_in_axes2_xy*tube_dalpha_alpha_1_t_3 -
             tube_dalpha_acc_3_in_axes2_yz*tube_h_3_in_spec2_y -
-            tube_dalpha_acc_3_in_axes2_zz*tube_h_3_in_spec2_z);
+            tube_dalpha_acc_3_in_axes2_zz*tube_h_3_in_spec2_z) - tube_dalpha_Gamma_1_t_3;
         /* (tube-d_Gamma_1) coefficient of the acceleration in: moment about axis 1 of the distal links'
            inertia and weight */
-        const real tube_d_Gamma_1_in_axes2_x = tube_c_2*tube_h_3_in_spec2_y;
-        const real tube_d_Gamma_1_t =
-            tube_c_2*(tube_J_group_2_in_axes2_xy*tube_d_alpha_1_in_axes2_xy +
-            tube_J_group_2_in_axes2_yz*tube_w_2_in_axes2_y -
+        const real tube_d_Gamma_1_t = v.tube_c_2*tube_h_3_in_spec2_y;
+        const real tube_d_Gamma_1_t_2 = v.tube_c_2*(tube_J_group_2_in_axes2_xy*tube_w_1_in_axes1_x
+            + tube_J_group_2_in_axes2_yz*tube_w_2_in_axes2_y -
             tube_J_group_2_in_axes2_yy*tube_w_1_t_78 -
             tube_d_acc_3_in_axes2_zy*tube_h_3_in_spec2_x -
-            tube_root_2*(tube_d_acc_3_in_axes2_zy*tube_link3_mass +
-            tube_h_3_in_spec2_x*tube_w_1_t_78 - tube_d_alpha_1_in_axes2_xy*tube_h_3_in_spec2_z));
-        const real tube_d_Gamma_1_in_axes2_y = tube_d_Gamma_1_t +
-            tube_s_2*(tube_J_group_2_in_axes2_xx*tube_d_alpha_1_in_axes2_xy +
+            v.tube_q_3*(tube_d_acc_3_in_axes2_zy*tube_link3_mass +
+            tube_h_3_in_spec2_x*tube_w_1_t_78 - tube_h_3_in_spec2_z*tube_w_1_in_axes1_x));
+        const real tube_d_Gamma_1_in_axes2_y =
+            v.tube_e_1_in_axes2_x*(tube_J_group_2_in_axes2_xx*tube_w_1_in_axes1_x +
             tube_J_group_2_in_axes2_xz*tube_w_2_in_axes2_y -
             tube_J_group_2_in_axes2_xy*tube_w_1_t_78 -
             tube_d_acc_3_in_axes2_yy*tube_h_3_in_spec2_y -
-            tube_d_acc_3_in_axes2_zy*tube_h_3_in_spec2_z);
-        const real tube_d_Gamma_1_t_2 =
-            tube_c_2*(tube_J_group_2_in_axes2_xy*tube_d_alpha_1_in_axes2_xz +
+            tube_d_acc_3_in_axes2_zy*tube_h_3_in_spec2_z) - tube_d_Gamma_1_t_2;
+        const real tube_d_Gamma_1_t_3 =
+            v.tube_c_2*(tube_J_group_2_in_axes2_xy*tube_d_alpha_1_in_axes2_xz +
             tube_J_group_2_in_axes2_yz*tube_w_2_in_axes2_z -
             tube_J_group_2_in_axes2_yy*tube_d_alpha_1_t -
             tube_d_acc_3_in_axes2_zz*tube_h_3_in_spec2_x -
-            tube_root_2*(tube_d_acc_3_in_axes2_zz*tube_link3_mass +
+            v.tube_q_3*(tube_d_acc_3_in_axes2_zz*tube_link3_mass +
             tube_d_alpha_1_t*tube_h_3_in_spec2_x -
             tube_d_alpha_1_in_axes2_xz*tube_h_3_in_spec2_z));
-        const real tube_d_Gamma_1_in_axes2_z = tube_d_Gamma_1_t_2 +
-            tube_s_2*(tube_J_group_2_in_axes2_xx*tube_d_alpha_1_in_axes2_xz +
+        const real tube_d_Gamma_1_in_axes2_z =
+            v.tube_e_1_in_axes2_x*(tube_J_group_2_in_axes2_xx*tube_d_alpha_1_in_axes2_xz +
             tube_J_group_2_in_axes2_xz*tube_w_2_in_axes2_z -
             tube_J_group_2_in_axes2_xy*tube_d_alpha_1_t -
             tube_d_acc_3_in_axes2_yz*tube_h_3_in_spec2_y -
-            tube_d_acc_3_in_axes2_zz*tube_h_3_in_spec2_z);
+            tube_d_acc_3_in_axes2_zz*tube_h_3_in_spec2_z) - tube_d_Gamma_1_t_3;
         /* (tube-dalpha_G) coefficient of the acceleration in: force at the connection point that balances
            the leg's inertia and weight along all degrees of freedom */
         const real tube_dalpha_G_in_axes2_yx = tube_dalpha_Gamma_1_in_axes2_x*tube_w_1_in_axes2_y
@@ -4386,8 +5416,8 @@ INLINE void M_legs_tube(const prepared *m, size_t w, size_t leg, size_t legs, co
             tube_dalpha_N_2_in_axes2_zz*tube_m1_w_2;
         /* (tube-d_G_m1) coefficient of the acceleration in: moment along moment direction 1 that balances
            the leg's inertia and weight along all degrees of freedom */
-        const real tube_d_G_m1_in_axes2_x = tube_d_Gamma_1_in_axes2_x*tube_m1_w_1 +
-            tube_h_3_in_spec2_z*tube_m1_w_2;
+        const real tube_d_G_m1_in_axes2_x = tube_h_3_in_spec2_z*tube_m1_w_2 -
+            tube_d_Gamma_1_t*tube_m1_w_1;
         const real tube_d_G_m1_in_axes2_y = tube_d_Gamma_1_in_axes2_y*tube_m1_w_1 +
             tube_d_N_2_in_axes2_zy*tube_m1_w_2;
         const real tube_d_G_m1_in_axes2_z = tube_d_Gamma_1_in_axes2_z*tube_m1_w_1 +
@@ -4402,8 +5432,8 @@ INLINE void M_legs_tube(const prepared *m, size_t w, size_t leg, size_t legs, co
             tube_dalpha_N_2_in_axes2_zz*tube_m2_w_2;
         /* (tube-d_G_m2) coefficient of the acceleration in: moment along moment direction 2 that balances
            the leg's inertia and weight along all degrees of freedom */
-        const real tube_d_G_m2_in_axes2_x = tube_d_Gamma_1_in_axes2_x*tube_m2_w_1 +
-            tube_h_3_in_spec2_z*tube_m2_w_2;
+        const real tube_d_G_m2_in_axes2_x = tube_h_3_in_spec2_z*tube_m2_w_2 -
+            tube_d_Gamma_1_t*tube_m2_w_1;
         const real tube_d_G_m2_in_axes2_y = tube_d_Gamma_1_in_axes2_y*tube_m2_w_1 +
             tube_d_N_2_in_axes2_zy*tube_m2_w_2;
         const real tube_d_G_m2_in_axes2_z = tube_d_Gamma_1_in_axes2_z*tube_m2_w_1 +
@@ -4418,8 +5448,8 @@ INLINE void M_legs_tube(const prepared *m, size_t w, size_t leg, size_t legs, co
             tube_dalpha_N_2_in_axes2_zz*tube_m3_w_2;
         /* (tube-d_G_m3) coefficient of the acceleration in: moment along moment direction 3 that balances
            the leg's inertia and weight along all degrees of freedom */
-        const real tube_d_G_m3_in_axes2_x = tube_d_Gamma_1_in_axes2_x*tube_m3_w_1 +
-            tube_h_3_in_spec2_z*tube_m3_w_2;
+        const real tube_d_G_m3_in_axes2_x = tube_h_3_in_spec2_z*tube_m3_w_2 -
+            tube_d_Gamma_1_t*tube_m3_w_1;
         const real tube_d_G_m3_in_axes2_y = tube_d_Gamma_1_in_axes2_y*tube_m3_w_1 +
             tube_d_N_2_in_axes2_zy*tube_m3_w_2;
         const real tube_d_G_m3_in_axes2_z = tube_d_Gamma_1_in_axes2_z*tube_m3_w_1 +
@@ -4428,19 +5458,19 @@ INLINE void M_legs_tube(const prepared *m, size_t w, size_t leg, size_t legs, co
            balances the leg's inertia and weight along all degrees of freedom */
         const real tube_dalpha_G_m_in_axes2_xx =
             -tube_dalpha_G_m2_in_axes2_x*tube_end_p2_in_axes2_y -
-            tube_dalpha_G_m3_in_axes2_x*tube_end_p3_in_axes2_z;
+            tube_dalpha_G_m3_in_axes2_x*v.tube_end_p3_in_axes2_z;
         const real tube_dalpha_G_m_in_axes2_xy =
             -tube_dalpha_G_m2_in_axes2_y*tube_end_p2_in_axes2_y -
-            tube_dalpha_G_m3_in_axes2_y*tube_end_p3_in_axes2_z;
+            tube_dalpha_G_m3_in_axes2_y*v.tube_end_p3_in_axes2_z;
         const real tube_dalpha_G_m_in_axes2_xz =
             -tube_dalpha_G_m2_in_axes2_z*tube_end_p2_in_axes2_y -
-            tube_dalpha_G_m3_in_axes2_z*tube_end_p3_in_axes2_z;
+            tube_dalpha_G_m3_in_axes2_z*v.tube_end_p3_in_axes2_z;
         const real tube_dalpha_G_m_in_axes2_yx = tube_dalpha_G_m2_in_axes2_x*tube_n_m2_in_axes2_y
-            - tube_dalpha_G_m1_in_axes2_x*tube_end_p1_in_axes2_z;
+            - tube_dalpha_G_m1_in_axes2_x*v.tube_end_p1_in_axes2_z;
         const real tube_dalpha_G_m_in_axes2_yy = tube_dalpha_G_m2_in_axes2_y*tube_n_m2_in_axes2_y
-            - tube_dalpha_G_m1_in_axes2_y*tube_end_p1_in_axes2_z;
+            - tube_dalpha_G_m1_in_axes2_y*v.tube_end_p1_in_axes2_z;
         const real tube_dalpha_G_m_in_axes2_yz = tube_dalpha_G_m2_in_axes2_z*tube_n_m2_in_axes2_y
-            - tube_dalpha_G_m1_in_axes2_z*tube_end_p1_in_axes2_z;
+            - tube_dalpha_G_m1_in_axes2_z*v.tube_end_p1_in_axes2_z;
         const real tube_dalpha_G_m_in_axes2_zx = tube_dalpha_G_m1_in_axes2_x*tube_n_m1_in_axes2_z
             + tube_dalpha_G_m3_in_axes2_x*tube_n_m3_in_axes2_z;
         const real tube_dalpha_G_m_in_axes2_zy = tube_dalpha_G_m1_in_axes2_y*tube_n_m1_in_axes2_z
@@ -4450,17 +5480,17 @@ INLINE void M_legs_tube(const prepared *m, size_t w, size_t leg, size_t legs, co
         /* (tube-d_G_m) coefficient of the acceleration in: moment at the connection point that balances
            the leg's inertia and weight along all degrees of freedom */
         const real tube_d_G_m_in_axes2_xx = -tube_d_G_m2_in_axes2_x*tube_end_p2_in_axes2_y -
-            tube_d_G_m3_in_axes2_x*tube_end_p3_in_axes2_z;
+            tube_d_G_m3_in_axes2_x*v.tube_end_p3_in_axes2_z;
         const real tube_d_G_m_in_axes2_xy = -tube_d_G_m2_in_axes2_y*tube_end_p2_in_axes2_y -
-            tube_d_G_m3_in_axes2_y*tube_end_p3_in_axes2_z;
+            tube_d_G_m3_in_axes2_y*v.tube_end_p3_in_axes2_z;
         const real tube_d_G_m_in_axes2_xz = -tube_d_G_m2_in_axes2_z*tube_end_p2_in_axes2_y -
-            tube_d_G_m3_in_axes2_z*tube_end_p3_in_axes2_z;
+            tube_d_G_m3_in_axes2_z*v.tube_end_p3_in_axes2_z;
         const real tube_d_G_m_in_axes2_yx = tube_d_G_m2_in_axes2_x*tube_n_m2_in_axes2_y -
-            tube_d_G_m1_in_axes2_x*tube_end_p1_in_axes2_z;
+            tube_d_G_m1_in_axes2_x*v.tube_end_p1_in_axes2_z;
         const real tube_d_G_m_in_axes2_yy = tube_d_G_m2_in_axes2_y*tube_n_m2_in_axes2_y -
-            tube_d_G_m1_in_axes2_y*tube_end_p1_in_axes2_z;
+            tube_d_G_m1_in_axes2_y*v.tube_end_p1_in_axes2_z;
         const real tube_d_G_m_in_axes2_yz = tube_d_G_m2_in_axes2_z*tube_n_m2_in_axes2_y -
-            tube_d_G_m1_in_axes2_z*tube_end_p1_in_axes2_z;
+            tube_d_G_m1_in_axes2_z*v.tube_end_p1_in_axes2_z;
         const real tube_d_G_m_in_axes2_zx = tube_d_G_m1_in_axes2_x*tube_n_m1_in_axes2_z +
             tube_d_G_m3_in_axes2_x*tube_n_m3_in_axes2_z;
         const real tube_d_G_m_in_axes2_zy = tube_d_G_m1_in_axes2_y*tube_n_m1_in_axes2_z +
@@ -4482,154 +5512,160 @@ INLINE void M_legs_tube(const prepared *m, size_t w, size_t leg, size_t legs, co
         const real tube_d_c_in_axes2_xz = tube_d_alpha_1_t*tube_h_3_in_spec2_y -
             tube_h_3_in_spec2_z*tube_w_2_in_axes2_z;
         /* (tube-Q) inertia of the leg at the connection point, without the mass gathered there */
-        const real axis_x_tube_axes2_x = tube_n_c1_y*tube_n_c2_z - tube_n_c1_z*tube_n_c2_y;
-        const real axis_x_tube_axes2_y = tube_n_c1_z*tube_n_c2_x - tube_n_c1_x*tube_n_c2_z;
-        const real axis_x_tube_axes2_z = tube_n_c1_x*tube_n_c2_y - tube_n_c1_y*tube_n_c2_x;
+        const real axis_x_tube_axes2_x = v.tube_n_c1_y*v.tube_n_c2_z -
+            v.tube_n_c1_z*v.tube_n_c2_y;
+        const real axis_x_tube_axes2_y = v.tube_n_c1_z*v.tube_n_c2_x -
+            v.tube_n_c1_x*v.tube_n_c2_z;
+        const real axis_x_tube_axes2_z = v.tube_n_c1_x*v.tube_n_c2_y -
+            v.tube_n_c1_y*v.tube_n_c2_x;
         const real tube_Q_t = tube_d_Gamma_1_in_axes2_y*tube_w_1_in_axes2_y +
             tube_d_N_2_in_axes2_zy*tube_w_2_in_axes2_y - tube_link3_mass;
         const real tube_Q_t_2 = R(0.5)*tube_Q_t;
         const real tube_Q_t_3 = tube_d_Gamma_1_in_axes2_z*tube_w_1_in_axes2_z +
             tube_d_N_2_in_axes2_zz*tube_w_2_in_axes2_z - tube_link3_mass;
         const real tube_Q_t_4 = R(0.5)*tube_Q_t_3;
-        const real tube_Q_t_5 = tube_Q_t_2*tube_n_c1_x + tube_d_G_in_axes2_yz*tube_n_c2_x -
+        const real tube_Q_t_5 = tube_Q_t_2*v.tube_n_c1_x + tube_d_G_in_axes2_yz*v.tube_n_c2_x -
             axis_x_tube_axes2_x*tube_d_c_in_axes2_xy;
-        const real tube_Q_t_6 = tube_Q_t_2*tube_n_c1_y + tube_d_G_in_axes2_yz*tube_n_c2_y -
+        const real tube_Q_t_6 = tube_Q_t_2*v.tube_n_c1_y + tube_d_G_in_axes2_yz*v.tube_n_c2_y -
             axis_x_tube_axes2_y*tube_d_c_in_axes2_xy;
-        const real tube_Q_t_7 = tube_Q_t_2*tube_n_c1_z + tube_d_G_in_axes2_yz*tube_n_c2_z -
+        const real tube_Q_t_7 = tube_Q_t_2*v.tube_n_c1_z + tube_d_G_in_axes2_yz*v.tube_n_c2_z -
             axis_x_tube_axes2_z*tube_d_c_in_axes2_xy;
-        const real tube_Q_t_8 = tube_Q_t_4*tube_n_c2_x - axis_x_tube_axes2_x*tube_d_c_in_axes2_xz;
-        const real tube_Q_t_9 = tube_Q_t_4*tube_n_c2_y - axis_x_tube_axes2_y*tube_d_c_in_axes2_xz;
-        const real tube_Q_t_10 = tube_Q_t_4*tube_n_c2_z -
+        const real tube_Q_t_8 = tube_Q_t_4*v.tube_n_c2_x -
+            axis_x_tube_axes2_x*tube_d_c_in_axes2_xz;
+        const real tube_Q_t_9 = tube_Q_t_4*v.tube_n_c2_y -
+            axis_x_tube_axes2_y*tube_d_c_in_axes2_xz;
+        const real tube_Q_t_10 = tube_Q_t_4*v.tube_n_c2_z -
             axis_x_tube_axes2_z*tube_d_c_in_axes2_xz;
-        const real tube_Q_t_11 = tube_Q_t_5*tube_n_c1_x + tube_Q_t_8*tube_n_c2_x;
+        const real tube_Q_t_11 = tube_Q_t_5*v.tube_n_c1_x + tube_Q_t_8*v.tube_n_c2_x;
         const real tube_Q_xx = 2*tube_Q_t_11 + tube_link3_mass;
-        const real tube_Q_xy = tube_Q_t_5*tube_n_c1_y + tube_Q_t_6*tube_n_c1_x +
-            tube_Q_t_8*tube_n_c2_y + tube_Q_t_9*tube_n_c2_x;
-        const real tube_Q_xz = tube_Q_t_10*tube_n_c2_x + tube_Q_t_5*tube_n_c1_z +
-            tube_Q_t_7*tube_n_c1_x + tube_Q_t_8*tube_n_c2_z;
-        const real tube_Q_t_12 = tube_Q_t_6*tube_n_c1_y + tube_Q_t_9*tube_n_c2_y;
+        const real tube_Q_xy = tube_Q_t_5*v.tube_n_c1_y + tube_Q_t_6*v.tube_n_c1_x +
+            tube_Q_t_8*v.tube_n_c2_y + tube_Q_t_9*v.tube_n_c2_x;
+        const real tube_Q_xz = tube_Q_t_10*v.tube_n_c2_x + tube_Q_t_5*v.tube_n_c1_z +
+            tube_Q_t_7*v.tube_n_c1_x + tube_Q_t_8*v.tube_n_c2_z;
+        const real tube_Q_t_12 = tube_Q_t_6*v.tube_n_c1_y + tube_Q_t_9*v.tube_n_c2_y;
         const real tube_Q_yy = 2*tube_Q_t_12 + tube_link3_mass;
-        const real tube_Q_yz = tube_Q_t_10*tube_n_c2_y + tube_Q_t_6*tube_n_c1_z +
-            tube_Q_t_7*tube_n_c1_y + tube_Q_t_9*tube_n_c2_z;
-        const real tube_Q_t_13 = tube_Q_t_10*tube_n_c2_z + tube_Q_t_7*tube_n_c1_z;
+        const real tube_Q_yz = tube_Q_t_10*v.tube_n_c2_y + tube_Q_t_6*v.tube_n_c1_z +
+            tube_Q_t_7*v.tube_n_c1_y + tube_Q_t_9*v.tube_n_c2_z;
+        const real tube_Q_t_13 = tube_Q_t_10*v.tube_n_c2_z + tube_Q_t_7*v.tube_n_c1_z;
         const real tube_Q_zz = 2*tube_Q_t_13 + tube_link3_mass;
         /* (tube-dalpha_c_m) coefficient of the acceleration in: moment of the leg on the platform without
            actuation */
         const real tube_dalpha_c_m_zz =
             axis_x_tube_axes2_z*(-axis_x_tube_axes2_z*tube_dalpha_G_m_in_axes2_xx -
-            tube_dalpha_G_m_in_axes2_yx*tube_n_c1_z - tube_dalpha_G_m_in_axes2_zx*tube_n_c2_z) +
-            tube_n_c1_z*(-axis_x_tube_axes2_z*tube_dalpha_G_m_in_axes2_xy -
-            tube_dalpha_G_m_in_axes2_yy*tube_n_c1_z - tube_dalpha_G_m_in_axes2_zy*tube_n_c2_z) +
-            tube_n_c2_z*(-axis_x_tube_axes2_z*tube_dalpha_G_m_in_axes2_xz -
-            tube_dalpha_G_m_in_axes2_yz*tube_n_c1_z - tube_dalpha_G_m_in_axes2_zz*tube_n_c2_z);
+            tube_dalpha_G_m_in_axes2_yx*v.tube_n_c1_z - tube_dalpha_G_m_in_axes2_zx*v.tube_n_c2_z)
+            + v.tube_n_c1_z*(-axis_x_tube_axes2_z*tube_dalpha_G_m_in_axes2_xy -
+            tube_dalpha_G_m_in_axes2_yy*v.tube_n_c1_z - tube_dalpha_G_m_in_axes2_zy*v.tube_n_c2_z)
+            + v.tube_n_c2_z*(-axis_x_tube_axes2_z*tube_dalpha_G_m_in_axes2_xz -
+            tube_dalpha_G_m_in_axes2_yz*v.tube_n_c1_z -
+            tube_dalpha_G_m_in_axes2_zz*v.tube_n_c2_z);
         /* (tube-d_c_m) coefficient of the acceleration in: moment of the leg on the platform without
            actuation */
         const real tube_d_c_m_t = -axis_x_tube_axes2_x*tube_d_G_m_in_axes2_xx -
-            tube_d_G_m_in_axes2_yx*tube_n_c1_x - tube_d_G_m_in_axes2_zx*tube_n_c2_x;
+            tube_d_G_m_in_axes2_yx*v.tube_n_c1_x - tube_d_G_m_in_axes2_zx*v.tube_n_c2_x;
         const real tube_d_c_m_t_2 = -axis_x_tube_axes2_y*tube_d_G_m_in_axes2_xx -
-            tube_d_G_m_in_axes2_yx*tube_n_c1_y - tube_d_G_m_in_axes2_zx*tube_n_c2_y;
+            tube_d_G_m_in_axes2_yx*v.tube_n_c1_y - tube_d_G_m_in_axes2_zx*v.tube_n_c2_y;
         const real tube_d_c_m_t_3 = -axis_x_tube_axes2_x*tube_d_G_m_in_axes2_xy -
-            tube_d_G_m_in_axes2_yy*tube_n_c1_x - tube_d_G_m_in_axes2_zy*tube_n_c2_x;
+            tube_d_G_m_in_axes2_yy*v.tube_n_c1_x - tube_d_G_m_in_axes2_zy*v.tube_n_c2_x;
         const real tube_d_c_m_t_4 = -axis_x_tube_axes2_y*tube_d_G_m_in_axes2_xy -
-            tube_d_G_m_in_axes2_yy*tube_n_c1_y - tube_d_G_m_in_axes2_zy*tube_n_c2_y;
+            tube_d_G_m_in_axes2_yy*v.tube_n_c1_y - tube_d_G_m_in_axes2_zy*v.tube_n_c2_y;
         const real tube_d_c_m_t_5 = -axis_x_tube_axes2_x*tube_d_G_m_in_axes2_xz -
-            tube_d_G_m_in_axes2_yz*tube_n_c1_x - tube_d_G_m_in_axes2_zz*tube_n_c2_x;
+            tube_d_G_m_in_axes2_yz*v.tube_n_c1_x - tube_d_G_m_in_axes2_zz*v.tube_n_c2_x;
         const real tube_d_c_m_t_6 = -axis_x_tube_axes2_y*tube_d_G_m_in_axes2_xz -
-            tube_d_G_m_in_axes2_yz*tube_n_c1_y - tube_d_G_m_in_axes2_zz*tube_n_c2_y;
-        const real tube_d_c_m_xx = axis_x_tube_axes2_x*tube_d_c_m_t + tube_d_c_m_t_3*tube_n_c1_x +
-            tube_d_c_m_t_5*tube_n_c2_x;
-        const real tube_d_c_m_xy = axis_x_tube_axes2_y*tube_d_c_m_t + tube_d_c_m_t_3*tube_n_c1_y +
-            tube_d_c_m_t_5*tube_n_c2_y;
-        const real tube_d_c_m_xz = axis_x_tube_axes2_z*tube_d_c_m_t + tube_d_c_m_t_3*tube_n_c1_z +
-            tube_d_c_m_t_5*tube_n_c2_z;
-        const real tube_d_c_m_yx = axis_x_tube_axes2_x*tube_d_c_m_t_2 + tube_d_c_m_t_4*tube_n_c1_x
-            + tube_d_c_m_t_6*tube_n_c2_x;
+            tube_d_G_m_in_axes2_yz*v.tube_n_c1_y - tube_d_G_m_in_axes2_zz*v.tube_n_c2_y;
+        const real tube_d_c_m_xx = axis_x_tube_axes2_x*tube_d_c_m_t + tube_d_c_m_t_3*v.tube_n_c1_x
+            + tube_d_c_m_t_5*v.tube_n_c2_x;
+        const real tube_d_c_m_xy = axis_x_tube_axes2_y*tube_d_c_m_t + tube_d_c_m_t_3*v.tube_n_c1_y
+            + tube_d_c_m_t_5*v.tube_n_c2_y;
+        const real tube_d_c_m_xz = axis_x_tube_axes2_z*tube_d_c_m_t + tube_d_c_m_t_3*v.tube_n_c1_z
+            + tube_d_c_m_t_5*v.tube_n_c2_z;
+        const real tube_d_c_m_yx = axis_x_tube_axes2_x*tube_d_c_m_t_2 +
+            tube_d_c_m_t_4*v.tube_n_c1_x + tube_d_c_m_t_6*v.tube_n_c2_x;
         /* (M_ta) coupling block of M */
         const real tube_M_ta_t = axis_x_tube_axes2_x*tube_dalpha_c_in_axes2_xx -
-            tube_dalpha_G_in_axes2_yx*tube_n_c1_x - tube_dalpha_G_in_axes2_zx*tube_n_c2_x;
+            tube_dalpha_G_in_axes2_yx*v.tube_n_c1_x - tube_dalpha_G_in_axes2_zx*v.tube_n_c2_x;
         const real tube_M_ta_t_2 = axis_x_tube_axes2_y*tube_dalpha_c_in_axes2_xx -
-            tube_dalpha_G_in_axes2_yx*tube_n_c1_y - tube_dalpha_G_in_axes2_zx*tube_n_c2_y;
+            tube_dalpha_G_in_axes2_yx*v.tube_n_c1_y - tube_dalpha_G_in_axes2_zx*v.tube_n_c2_y;
         const real tube_M_ta_t_3 = axis_x_tube_axes2_z*tube_dalpha_c_in_axes2_xx -
-            tube_dalpha_G_in_axes2_yx*tube_n_c1_z - tube_dalpha_G_in_axes2_zx*tube_n_c2_z;
+            tube_dalpha_G_in_axes2_yx*v.tube_n_c1_z - tube_dalpha_G_in_axes2_zx*v.tube_n_c2_z;
         const real tube_M_ta_t_4 = axis_x_tube_axes2_x*tube_dalpha_c_in_axes2_xy -
-            tube_dalpha_G_in_axes2_yy*tube_n_c1_x - tube_dalpha_G_in_axes2_zy*tube_n_c2_x;
+            tube_dalpha_G_in_axes2_yy*v.tube_n_c1_x - tube_dalpha_G_in_axes2_zy*v.tube_n_c2_x;
         const real tube_M_ta_t_5 = axis_x_tube_axes2_y*tube_dalpha_c_in_axes2_xy -
-            tube_dalpha_G_in_axes2_yy*tube_n_c1_y - tube_dalpha_G_in_axes2_zy*tube_n_c2_y;
+            tube_dalpha_G_in_axes2_yy*v.tube_n_c1_y - tube_dalpha_G_in_axes2_zy*v.tube_n_c2_y;
         const real tube_M_ta_t_6 = axis_x_tube_axes2_z*tube_dalpha_c_in_axes2_xy -
-            tube_dalpha_G_in_axes2_yy*tube_n_c1_z - tube_dalpha_G_in_axes2_zy*tube_n_c2_z;
+            tube_dalpha_G_in_axes2_yy*v.tube_n_c1_z - tube_dalpha_G_in_axes2_zy*v.tube_n_c2_z;
         const real tube_M_ta_t_7 = axis_x_tube_axes2_x*tube_dalpha_c_in_axes2_xz -
-            tube_dalpha_G_in_axes2_yz*tube_n_c1_x - tube_dalpha_G_in_axes2_zz*tube_n_c2_x;
+            tube_dalpha_G_in_axes2_yz*v.tube_n_c1_x - tube_dalpha_G_in_axes2_zz*v.tube_n_c2_x;
         const real tube_M_ta_t_8 = axis_x_tube_axes2_y*tube_dalpha_c_in_axes2_xz -
-            tube_dalpha_G_in_axes2_yz*tube_n_c1_y - tube_dalpha_G_in_axes2_zz*tube_n_c2_y;
+            tube_dalpha_G_in_axes2_yz*v.tube_n_c1_y - tube_dalpha_G_in_axes2_zz*v.tube_n_c2_y;
         const real tube_M_ta_t_9 = axis_x_tube_axes2_z*tube_dalpha_c_in_axes2_xz -
-            tube_dalpha_G_in_axes2_yz*tube_n_c1_z - tube_dalpha_G_in_axes2_zz*tube_n_c2_z;
-        const real tube_M_ta_t_10 = tube_Q_xy*tube_q_z;
-        const real tube_M_ta_t_11 = tube_Q_xz*tube_q_y;
-        const real tube_M_ta_t_12 = tube_Q_yz*tube_q_x;
+            tube_dalpha_G_in_axes2_yz*v.tube_n_c1_z - tube_dalpha_G_in_axes2_zz*v.tube_n_c2_z;
+        const real tube_M_ta_t_10 = tube_Q_xy*v.tube_q_z;
+        const real tube_M_ta_t_11 = tube_Q_xz*v.tube_q_y;
+        const real tube_M_ta_t_12 = tube_Q_yz*v.tube_q_x;
         const real tube_M_ta_t_13 = tube_M_ta_t_11 - tube_M_ta_t_10 -
-            axis_x_tube_axes2_x*tube_M_ta_t - tube_M_ta_t_4*tube_n_c1_x -
-            tube_M_ta_t_7*tube_n_c2_x;
-        const real tube_M_ta_t_14 = tube_Q_xx*tube_q_z - axis_x_tube_axes2_y*tube_M_ta_t -
-            tube_M_ta_t_4*tube_n_c1_y - tube_M_ta_t_7*tube_n_c2_y - tube_Q_xz*tube_q_x;
-        const real tube_M_ta_t_15 = tube_Q_xy*tube_q_x - axis_x_tube_axes2_z*tube_M_ta_t -
-            tube_M_ta_t_4*tube_n_c1_z - tube_M_ta_t_7*tube_n_c2_z - tube_Q_xx*tube_q_y;
-        const real tube_M_ta_t_16 = tube_Q_yz*tube_q_y - axis_x_tube_axes2_x*tube_M_ta_t_2 -
-            tube_M_ta_t_5*tube_n_c1_x - tube_M_ta_t_8*tube_n_c2_x - tube_Q_yy*tube_q_z;
+            axis_x_tube_axes2_x*tube_M_ta_t - tube_M_ta_t_4*v.tube_n_c1_x -
+            tube_M_ta_t_7*v.tube_n_c2_x;
+        const real tube_M_ta_t_14 = tube_Q_xx*v.tube_q_z - axis_x_tube_axes2_y*tube_M_ta_t -
+            tube_M_ta_t_4*v.tube_n_c1_y - tube_M_ta_t_7*v.tube_n_c2_y - tube_Q_xz*v.tube_q_x;
+        const real tube_M_ta_t_15 = tube_Q_xy*v.tube_q_x - axis_x_tube_axes2_z*tube_M_ta_t -
+            tube_M_ta_t_4*v.tube_n_c1_z - tube_M_ta_t_7*v.tube_n_c2_z - tube_Q_xx*v.tube_q_y;
+        const real tube_M_ta_t_16 = tube_Q_yz*v.tube_q_y - axis_x_tube_axes2_x*tube_M_ta_t_2 -
+            tube_M_ta_t_5*v.tube_n_c1_x - tube_M_ta_t_8*v.tube_n_c2_x - tube_Q_yy*v.tube_q_z;
         const real tube_M_ta_t_17 = tube_M_ta_t_10 - tube_M_ta_t_12 -
-            axis_x_tube_axes2_y*tube_M_ta_t_2 - tube_M_ta_t_5*tube_n_c1_y -
-            tube_M_ta_t_8*tube_n_c2_y;
-        const real tube_M_ta_t_18 = tube_Q_yy*tube_q_x - axis_x_tube_axes2_z*tube_M_ta_t_2 -
-            tube_M_ta_t_5*tube_n_c1_z - tube_M_ta_t_8*tube_n_c2_z - tube_Q_xy*tube_q_y;
-        const real tube_M_ta_t_19 = tube_Q_zz*tube_q_y - axis_x_tube_axes2_x*tube_M_ta_t_3 -
-            tube_M_ta_t_6*tube_n_c1_x - tube_M_ta_t_9*tube_n_c2_x - tube_Q_yz*tube_q_z;
-        const real tube_M_ta_t_20 = tube_Q_xz*tube_q_z - axis_x_tube_axes2_y*tube_M_ta_t_3 -
-            tube_M_ta_t_6*tube_n_c1_y - tube_M_ta_t_9*tube_n_c2_y - tube_Q_zz*tube_q_x;
+            axis_x_tube_axes2_y*tube_M_ta_t_2 - tube_M_ta_t_5*v.tube_n_c1_y -
+            tube_M_ta_t_8*v.tube_n_c2_y;
+        const real tube_M_ta_t_18 = tube_Q_yy*v.tube_q_x - axis_x_tube_axes2_z*tube_M_ta_t_2 -
+            tube_M_ta_t_5*v.tube_n_c1_z - tube_M_ta_t_8*v.tube_n_c2_z - tube_Q_xy*v.tube_q_y;
+        const real tube_M_ta_t_19 = tube_Q_zz*v.tube_q_y - axis_x_tube_axes2_x*tube_M_ta_t_3 -
+            tube_M_ta_t_6*v.tube_n_c1_x - tube_M_ta_t_9*v.tube_n_c2_x - tube_Q_yz*v.tube_q_z;
+        const real tube_M_ta_t_20 = tube_Q_xz*v.tube_q_z - axis_x_tube_axes2_y*tube_M_ta_t_3 -
+            tube_M_ta_t_6*v.tube_n_c1_y - tube_M_ta_t_9*v.tube_n_c2_y - tube_Q_zz*v.tube_q_x;
         const real tube_M_ta_t_21 = tube_M_ta_t_12 - tube_M_ta_t_11 -
-            axis_x_tube_axes2_z*tube_M_ta_t_3 - tube_M_ta_t_6*tube_n_c1_z -
-            tube_M_ta_t_9*tube_n_c2_z;
+            axis_x_tube_axes2_z*tube_M_ta_t_3 - tube_M_ta_t_6*v.tube_n_c1_z -
+            tube_M_ta_t_9*v.tube_n_c2_z;
         /* (M_aa) rotational block of M */
         const real tube_M_aa_t = -axis_x_tube_axes2_x*tube_dalpha_G_m_in_axes2_xx -
-            tube_dalpha_G_m_in_axes2_yx*tube_n_c1_x - tube_dalpha_G_m_in_axes2_zx*tube_n_c2_x;
+            tube_dalpha_G_m_in_axes2_yx*v.tube_n_c1_x - tube_dalpha_G_m_in_axes2_zx*v.tube_n_c2_x;
         const real tube_M_aa_t_2 = -axis_x_tube_axes2_y*tube_dalpha_G_m_in_axes2_xx -
-            tube_dalpha_G_m_in_axes2_yx*tube_n_c1_y - tube_dalpha_G_m_in_axes2_zx*tube_n_c2_y;
+            tube_dalpha_G_m_in_axes2_yx*v.tube_n_c1_y - tube_dalpha_G_m_in_axes2_zx*v.tube_n_c2_y;
         const real tube_M_aa_t_3 = -axis_x_tube_axes2_x*tube_dalpha_G_m_in_axes2_xy -
-            tube_dalpha_G_m_in_axes2_yy*tube_n_c1_x - tube_dalpha_G_m_in_axes2_zy*tube_n_c2_x;
+            tube_dalpha_G_m_in_axes2_yy*v.tube_n_c1_x - tube_dalpha_G_m_in_axes2_zy*v.tube_n_c2_x;
         const real tube_M_aa_t_4 = -axis_x_tube_axes2_y*tube_dalpha_G_m_in_axes2_xy -
-            tube_dalpha_G_m_in_axes2_yy*tube_n_c1_y - tube_dalpha_G_m_in_axes2_zy*tube_n_c2_y;
+            tube_dalpha_G_m_in_axes2_yy*v.tube_n_c1_y - tube_dalpha_G_m_in_axes2_zy*v.tube_n_c2_y;
         const real tube_M_aa_t_5 = -axis_x_tube_axes2_x*tube_dalpha_G_m_in_axes2_xz -
-            tube_dalpha_G_m_in_axes2_yz*tube_n_c1_x - tube_dalpha_G_m_in_axes2_zz*tube_n_c2_x;
+            tube_dalpha_G_m_in_axes2_yz*v.tube_n_c1_x - tube_dalpha_G_m_in_axes2_zz*v.tube_n_c2_x;
         const real tube_M_aa_t_6 = -axis_x_tube_axes2_y*tube_dalpha_G_m_in_axes2_xz -
-            tube_dalpha_G_m_in_axes2_yz*tube_n_c1_y - tube_dalpha_G_m_in_axes2_zz*tube_n_c2_y;
+            tube_dalpha_G_m_in_axes2_yz*v.tube_n_c1_y - tube_dalpha_G_m_in_axes2_zz*v.tube_n_c2_y;
         const real tube_M_aa_t_7 = -axis_x_tube_axes2_z*tube_d_G_m_in_axes2_xx -
-            tube_d_G_m_in_axes2_yx*tube_n_c1_z - tube_d_G_m_in_axes2_zx*tube_n_c2_z;
+            tube_d_G_m_in_axes2_yx*v.tube_n_c1_z - tube_d_G_m_in_axes2_zx*v.tube_n_c2_z;
         const real tube_M_aa_t_8 = -axis_x_tube_axes2_z*tube_d_G_m_in_axes2_xy -
-            tube_d_G_m_in_axes2_yy*tube_n_c1_z - tube_d_G_m_in_axes2_zy*tube_n_c2_z;
+            tube_d_G_m_in_axes2_yy*v.tube_n_c1_z - tube_d_G_m_in_axes2_zy*v.tube_n_c2_z;
         const real tube_M_aa_t_9 = -axis_x_tube_axes2_z*tube_d_G_m_in_axes2_xz -
-            tube_d_G_m_in_axes2_yz*tube_n_c1_z - tube_d_G_m_in_axes2_zz*tube_n_c2_z;
-        const real tube_M_aa_t_10 = tube_M_ta_t_19*tube_q_y + tube_d_c_m_xy*tube_q_z -
-            axis_x_tube_axes2_x*tube_M_aa_t - tube_M_aa_t_3*tube_n_c1_x -
-            tube_M_aa_t_5*tube_n_c2_x - tube_M_ta_t_16*tube_q_z - tube_d_c_m_xz*tube_q_y;
-        const real tube_M_aa_t_11 = tube_M_ta_t_20*tube_q_y + tube_d_c_m_xz*tube_q_x -
-            axis_x_tube_axes2_y*tube_M_aa_t - tube_M_aa_t_3*tube_n_c1_y -
-            tube_M_aa_t_5*tube_n_c2_y - tube_M_ta_t_17*tube_q_z - tube_d_c_m_xx*tube_q_z;
-        const real tube_M_aa_t_12 = tube_M_ta_t_21*tube_q_y + tube_d_c_m_xx*tube_q_y -
-            axis_x_tube_axes2_z*tube_M_aa_t - tube_M_aa_t_3*tube_n_c1_z -
-            tube_M_aa_t_5*tube_n_c2_z - tube_M_ta_t_18*tube_q_z - tube_d_c_m_xy*tube_q_x;
-        const real tube_M_aa_t_13 = tube_M_ta_t_14*tube_q_z +
-            tube_q_x*(axis_x_tube_axes2_z*tube_d_c_m_t_2 + tube_d_c_m_t_4*tube_n_c1_z +
-            tube_d_c_m_t_6*tube_n_c2_z) - axis_x_tube_axes2_y*tube_M_aa_t_2 -
-            tube_M_aa_t_4*tube_n_c1_y - tube_M_aa_t_6*tube_n_c2_y - tube_M_ta_t_20*tube_q_x -
-            tube_d_c_m_yx*tube_q_z;
-        const real tube_M_aa_t_14 = tube_M_ta_t_15*tube_q_z + tube_d_c_m_yx*tube_q_y -
-            axis_x_tube_axes2_z*tube_M_aa_t_2 - tube_M_aa_t_4*tube_n_c1_z -
-            tube_M_aa_t_6*tube_n_c2_z - tube_M_ta_t_21*tube_q_x -
-            tube_q_x*(axis_x_tube_axes2_y*tube_d_c_m_t_2 + tube_d_c_m_t_4*tube_n_c1_y +
-            tube_d_c_m_t_6*tube_n_c2_y);
-        const real tube_M_aa_t_15 = tube_M_ta_t_18*tube_q_x +
-            tube_q_y*(axis_x_tube_axes2_x*tube_M_aa_t_7 + tube_M_aa_t_8*tube_n_c1_x +
-            tube_M_aa_t_9*tube_n_c2_x) - tube_dalpha_c_m_zz - tube_M_ta_t_15*tube_q_y -
-            tube_q_x*(axis_x_tube_axes2_y*tube_M_aa_t_7 + tube_M_aa_t_8*tube_n_c1_y +
-            tube_M_aa_t_9*tube_n_c2_y);
+            tube_d_G_m_in_axes2_yz*v.tube_n_c1_z - tube_d_G_m_in_axes2_zz*v.tube_n_c2_z;
+        const real tube_M_aa_t_10 = tube_M_ta_t_19*v.tube_q_y + tube_d_c_m_xy*v.tube_q_z -
+            axis_x_tube_axes2_x*tube_M_aa_t - tube_M_aa_t_3*v.tube_n_c1_x -
+            tube_M_aa_t_5*v.tube_n_c2_x - tube_M_ta_t_16*v.tube_q_z - tube_d_c_m_xz*v.tube_q_y;
+        const real tube_M_aa_t_11 = tube_M_ta_t_20*v.tube_q_y + tube_d_c_m_xz*v.tube_q_x -
+            axis_x_tube_axes2_y*tube_M_aa_t - tube_M_aa_t_3*v.tube_n_c1_y -
+            tube_M_aa_t_5*v.tube_n_c2_y - tube_M_ta_t_17*v.tube_q_z - tube_d_c_m_xx*v.tube_q_z;
+        const real tube_M_aa_t_12 = tube_M_ta_t_21*v.tube_q_y + tube_d_c_m_xx*v.tube_q_y -
+            axis_x_tube_axes2_z*tube_M_aa_t - tube_M_aa_t_3*v.tube_n_c1_z -
+            tube_M_aa_t_5*v.tube_n_c2_z - tube_M_ta_t_18*v.tube_q_z - tube_d_c_m_xy*v.tube_q_x;
+        const real tube_M_aa_t_13 = tube_M_ta_t_14*v.tube_q_z +
+            v.tube_q_x*(axis_x_tube_axes2_z*tube_d_c_m_t_2 + tube_d_c_m_t_4*v.tube_n_c1_z +
+            tube_d_c_m_t_6*v.tube_n_c2_z) - axis_x_tube_axes2_y*tube_M_aa_t_2 -
+            tube_M_aa_t_4*v.tube_n_c1_y - tube_M_aa_t_6*v.tube_n_c2_y - tube_M_ta_t_20*v.tube_q_x
+            - tube_d_c_m_yx*v.tube_q_z;
+        const real tube_M_aa_t_14 = tube_M_ta_t_15*v.tube_q_z + tube_d_c_m_yx*v.tube_q_y -
+            axis_x_tube_axes2_z*tube_M_aa_t_2 - tube_M_aa_t_4*v.tube_n_c1_z -
+            tube_M_aa_t_6*v.tube_n_c2_z - tube_M_ta_t_21*v.tube_q_x -
+            v.tube_q_x*(axis_x_tube_axes2_y*tube_d_c_m_t_2 + tube_d_c_m_t_4*v.tube_n_c1_y +
+            tube_d_c_m_t_6*v.tube_n_c2_y);
+        const real tube_M_aa_t_15 = tube_M_ta_t_18*v.tube_q_x +
+            v.tube_q_y*(axis_x_tube_axes2_x*tube_M_aa_t_7 + tube_M_aa_t_8*v.tube_n_c1_x +
+            tube_M_aa_t_9*v.tube_n_c2_x) - tube_dalpha_c_m_zz - tube_M_ta_t_15*v.tube_q_y -
+            v.tube_q_x*(axis_x_tube_axes2_y*tube_M_aa_t_7 + tube_M_aa_t_8*v.tube_n_c1_y +
+            tube_M_aa_t_9*v.tube_n_c2_y);
         /* (M_tt) translational block of M */
         gather(&terms[0*count + k], add, tube_Q_xx);  /* M_tt_xx_of_legs */
         gather(&terms[1*count + k], add, tube_Q_xy);  /* M_tt_xy */
@@ -4654,10 +5690,10 @@ INLINE void M_legs_tube(const prepared *m, size_t w, size_t leg, size_t legs, co
         gather(&terms[18*count + k], add, tube_M_aa_t_13);  /* M_aa_yy_of_legs */
         gather(&terms[19*count + k], add, tube_M_aa_t_14);  /* M_aa_yz_of_legs */
         gather(&terms[20*count + k], add, tube_M_aa_t_15);  /* M_aa_zz_of_legs */
-        o[0*count + k] = UNLESS(magnitude(tube_rho2_1) > LEAST_3) + UNLESS(magnitude(tube_rho2_2)
-            > LEAST_3) + UNLESS(magnitude(tube_f_c1_t) > LEAST_4) + UNLESS(magnitude(tube_size_c3)
-            > LEAST_4) + UNLESS(magnitude(tube_w_1_t_13) > LEAST_5) +
-            UNLESS(magnitude(tube_w_1_t_33) > LEAST_4) + UNLESS(magnitude(tube_w_1_t_49) >
+        o[0*count + k] = UNLESS(magnitude(v.tube_root_1_t) > LEAST_3) +
+            UNLESS(magnitude(v.tube_q_3_t) > LEAST_3) + UNLESS(magnitude(tube_f_c1_t) > LEAST_4) +
+            UNLESS(magnitude(tube_size_c3) > LEAST_4) + UNLESS(magnitude(tube_w_1_t_13) > LEAST_5)
+            + UNLESS(magnitude(tube_w_1_t_33) > LEAST_4) + UNLESS(magnitude(tube_w_1_t_49) >
             LEAST_4) + UNLESS(magnitude(tube_w_1_t_63) > LEAST_5) +
             UNLESS(magnitude(tube_w_1_t_75) > LEAST_5);
     }
@@ -4684,46 +5720,46 @@ INLINE void M_after(const prepared *m, size_t w, const real *s, const real *sums
         const real M_tt_zz = M_tt_zz_of_legs + m_star;
         /* (M_ta) coupling block of M */
         const real M_ta_xy_of_legs = sums[7*w + k];
-        const real h_star_z = s[14*w + k];
+        const real h_star_z = s[11*w + k];
         const real M_ta_xy = M_ta_xy_of_legs + h_star_z;
         const real M_ta_xz_of_legs = sums[8*w + k];
-        const real h_star_y = s[13*w + k];
+        const real h_star_y = s[10*w + k];
         const real M_ta_xz = M_ta_xz_of_legs - h_star_y;
         const real M_ta_yx_of_legs = sums[9*w + k];
         const real M_ta_yx = M_ta_yx_of_legs - h_star_z;
         const real M_ta_yz_of_legs = sums[11*w + k];
-        const real h_star_x = s[12*w + k];
+        const real h_star_x = s[9*w + k];
         const real M_ta_yz = M_ta_yz_of_legs + h_star_x;
         const real M_ta_zx_of_legs = sums[12*w + k];
         const real M_ta_zx = M_ta_zx_of_legs + h_star_y;
         const real M_ta_zy_of_legs = sums[13*w + k];
         const real M_ta_zy = M_ta_zy_of_legs - h_star_x;
         /* (M_aa) rotational block of M */
-        const real J_star_xx = s[15*w + k];
+        const real J_star_xx = s[12*w + k];
         const real M_aa_xx_of_legs = sums[15*w + k];
         const real M_aa_xx = J_star_xx + M_aa_xx_of_legs;
-        const real J_star_xy = s[16*w + k];
+        const real J_star_xy = s[13*w + k];
         const real M_aa_xy_of_legs = sums[16*w + k];
         const real M_aa_xy = J_star_xy + M_aa_xy_of_legs;
-        const real J_star_xz = s[17*w + k];
+        const real J_star_xz = s[14*w + k];
         const real M_aa_xz_of_legs = sums[17*w + k];
         const real M_aa_xz = J_star_xz + M_aa_xz_of_legs;
-        const real J_star_yy = s[18*w + k];
+        const real J_star_yy = s[15*w + k];
         const real M_aa_yy_of_legs = sums[18*w + k];
         const real M_aa_yy = J_star_yy + M_aa_yy_of_legs;
-        const real J_star_yz = s[19*w + k];
+        const real J_star_yz = s[16*w + k];
         const real M_aa_yz_of_legs = sums[19*w + k];
         const real M_aa_yz = J_star_yz + M_aa_yz_of_legs;
-        const real J_star_zz = s[20*w + k];
+        const real J_star_zz = s[17*w + k];
         const real M_aa_zz_of_legs = sums[20*w + k];
         const real M_aa_zz = J_star_zz + M_aa_zz_of_legs;
         /* (M_tt) translational block of M */
-        M[0*NV*w + k] = M_tt_xx;
+        M[0*w + k] = M_tt_xx;
         const real M_tt_xy = sums[1*w + k];
-        M[(0*NV + 1)*w + k] = M_tt_xy;
+        M[1*w + k] = M_tt_xy;
         M[NV*w + k] = M_tt_xy;
         const real M_tt_xz = sums[2*w + k];
-        M[(0*NV + 2)*w + k] = M_tt_xz;
+        M[2*w + k] = M_tt_xz;
         M[2*NV*w + k] = M_tt_xz;
         M[(NV + 1)*w + k] = M_tt_yy;
         const real M_tt_yz = sums[4*w + k];
@@ -4732,11 +5768,11 @@ INLINE void M_after(const prepared *m, size_t w, const real *s, const real *sums
         M[(2*NV + 2)*w + k] = M_tt_zz;
         /* (M_ta) coupling block of M */
         const real M_ta_xx = sums[6*w + k];
-        M[(0*NV + 3)*w + k] = M_ta_xx;
+        M[3*w + k] = M_ta_xx;
         M[3*NV*w + k] = M_ta_xx;
-        M[(0*NV + 4)*w + k] = M_ta_xy;
+        M[4*w + k] = M_ta_xy;
         M[4*NV*w + k] = M_ta_xy;
-        M[(0*NV + 5)*w + k] = M_ta_xz;
+        M[5*w + k] = M_ta_xz;
         M[5*NV*w + k] = M_ta_xz;
         M[(NV + 3)*w + k] = M_ta_yx;
         M[(3*NV + 1)*w + k] = M_ta_yx;
@@ -4771,21 +5807,18 @@ INLINE void M_after(const prepared *m, size_t w, const real *s, const real *sums
 
 INLINE void M_run(const prepared *m, const real *X, real *M, verdict *t)
 {
-    real s[21] = {0};
-    real sums[21] = {0};
-    real terms_ups[21*LEGS(LEGS_OF_ups)] = {0};
-    real o_ups[LEGS(LEGS_OF_ups)] = {0};
-    real terms_tube[21*LEGS(LEGS_OF_tube)] = {0};
-    real o_tube[LEGS(LEGS_OF_tube)] = {0};
+    real s[18] = {0}, sums[21] = {0};
+    real terms_ups[21*LEGS(LEGS_OF_ups)] = {0}, o_ups[LEGS(LEGS_OF_ups)] = {0};
+    real terms_tube[21*LEGS(LEGS_OF_tube)] = {0}, o_tube[LEGS(LEGS_OF_tube)] = {0};
     M_before(m, 1, X, s, t);
-    M_legs_ups(m, 1, 0, 1, s, 0, LEGS(LEGS_OF_ups), 0, terms_ups, o_ups);
+    M_legs_ups(m, 1, 0, 1, s, 0, LEGS(LEGS_OF_ups), 0, X, terms_ups, o_ups);
+    M_legs_tube(m, 1, 0, 1, s, 0, LEGS(LEGS_OF_tube), 0, X, terms_tube, o_tube);
     for (size_t leg = 0; leg < LEGS_OF_ups; ++leg) {
         M_place_ups(1, LEGS(LEGS_OF_ups), o_ups, leg, t);
     }
     for (size_t n = 0; n < 21; ++n) {
         sums[n] = total(terms_ups + n*LEGS(LEGS_OF_ups), LEGS_OF_ups);
     }
-    M_legs_tube(m, 1, 0, 1, s, 0, LEGS(LEGS_OF_tube), 0, terms_tube, o_tube);
     for (size_t leg = 0; leg < LEGS_OF_tube; ++leg) {
         M_place_tube(1, LEGS(LEGS_OF_tube), o_tube, leg, t);
     }
@@ -4797,18 +5830,17 @@ INLINE void M_run(const prepared *m, const real *X, real *M, verdict *t)
 
 INLINE void M_run_lanes(const prepared *m, const real *X, real *M, verdict *t)
 {
-    real s[21*LANES];
-    real sums[21*LANES];
+    real s[18*LANES], sums[21*LANES];
     real o_ups[LANES];
     real o_tube[LANES];
     M_before(m, LANES, X, s, t);
     clear(sums, 21*LANES);
     for (size_t leg = 0; leg < LEGS_OF_ups; ++leg) {
-        M_legs_ups(m, LANES, leg, 0, s, 1, LANES, 1, sums, o_ups);
+        M_legs_ups(m, LANES, leg, 0, s, 1, LANES, 1, X, sums, o_ups);
         M_place_ups(LANES, LANES, o_ups, 0, t);
     }
     for (size_t leg = 0; leg < LEGS_OF_tube; ++leg) {
-        M_legs_tube(m, LANES, leg, 0, s, 1, LANES, 1, sums, o_tube);
+        M_legs_tube(m, LANES, leg, 0, s, 1, LANES, 1, X, sums, o_tube);
         M_place_tube(LANES, LANES, o_tube, 0, t);
     }
     M_after(m, LANES, s, sums, M, t);
@@ -4819,368 +5851,50 @@ INLINE void Z_before(const prepared *m, size_t w, const real *X, const real *V, 
     *t)
 {
     for (size_t k = 0; k < w; ++k) {
-        /* X: named entries */
-        const real X_0 = X[0*w + k];
-        const real t_x = X_0;
-        const real X_1 = X[1*w + k];
-        const real t_y = X_1;
-        const real X_2 = X[2*w + k];
-        const real t_z = X_2;
-        const real X_3 = X[3*w + k];
-        const real X_4 = X[4*w + k];
-        const real X_5 = X[5*w + k];
-        const real X_6 = X[6*w + k];
-        const real quaternion_norm2 = X_3*X_3 + X_4*X_4 + X_5*X_5 + X_6*X_6;
-        const real quaternion_scale = 2/quaternion_norm2;
-        const real quaternion_sx = X_3*quaternion_scale;
-        const real quaternion_sy = X_4*quaternion_scale;
-        const real quaternion_sz = X_5*quaternion_scale;
-        const real quaternion_wx = X_6*quaternion_sx;
-        const real quaternion_wy = X_6*quaternion_sy;
-        const real quaternion_wz = X_6*quaternion_sz;
-        const real quaternion_xx = X_3*quaternion_sx;
-        const real quaternion_xy = X_3*quaternion_sy;
-        const real quaternion_xz = X_3*quaternion_sz;
-        const real quaternion_yy = X_4*quaternion_sy;
-        const real quaternion_yz = X_4*quaternion_sz;
-        const real quaternion_zz = X_5*quaternion_sz;
-        const real R_xx = 1 - quaternion_yy - quaternion_zz;
-        const real R_xy = quaternion_xy - quaternion_wz;
-        const real R_xz = quaternion_wy + quaternion_xz;
-        const real R_yx = quaternion_wz + quaternion_xy;
-        const real R_yy = 1 - quaternion_xx - quaternion_zz;
-        const real R_yz = quaternion_yz - quaternion_wx;
-        const real R_zx = quaternion_xz - quaternion_wy;
-        const real R_zy = quaternion_wx + quaternion_yz;
-        const real R_zz = 1 - quaternion_xx - quaternion_yy;
-        /* V: named entries */
-        const real V_0 = V[0*w + k];
-        const real t_dot_x = V_0;
-        const real V_1 = V[1*w + k];
-        const real t_dot_y = V_1;
-        const real V_2 = V[2*w + k];
-        const real t_dot_z = V_2;
-        const real V_3 = V[3*w + k];
-        const real omega_x = V_3;
-        const real V_4 = V[4*w + k];
-        const real omega_y = V_4;
-        const real V_5 = V[5*w + k];
-        const real omega_z = V_5;
-        /* (h_star) first moment about the platform origin */
-        const real h_star_in_platform_x = m->h_star_in_platform_x;
-        const real h_star_in_platform_y = m->h_star_in_platform_y;
-        const real h_star_in_platform_z = m->h_star_in_platform_z;
-        const real h_star_x = R_xx*h_star_in_platform_x + R_xy*h_star_in_platform_y +
-            R_xz*h_star_in_platform_z;
-        const real h_star_y = R_yx*h_star_in_platform_x + R_yy*h_star_in_platform_y +
-            R_yz*h_star_in_platform_z;
-        const real h_star_z = R_zx*h_star_in_platform_x + R_zy*h_star_in_platform_y +
-            R_zz*h_star_in_platform_z;
-        /* (Z_p) centripetal force and weight of the platform */
-        const real Z_p_t_4 = h_star_z*omega_y - h_star_y*omega_z;
-        const real Z_p_t_5 = h_star_x*omega_z - h_star_z*omega_x;
-        const real Z_p_t_6 = h_star_y*omega_x - h_star_x*omega_y;
-        const real Z_p_t = m->Z_p_t;
-        const real Z_p_x = Z_p_t_6*omega_y - Z_p_t - Z_p_t_5*omega_z;
-        const real Z_p_t_2 = m->Z_p_t_2;
-        const real Z_p_y = Z_p_t_4*omega_z - Z_p_t_2 - Z_p_t_6*omega_x;
-        const real Z_p_t_3 = m->Z_p_t_3;
-        const real Z_p_z = Z_p_t_5*omega_x - Z_p_t_3 - Z_p_t_4*omega_y;
-        /* (Z_q) gyroscopic moment and moment of the weight of the platform */
-        const real gravity_x = m->gravity_x;
-        const real gravity_y = m->gravity_y;
-        const real gravity_z = m->gravity_z;
-        const real g_in_platform_x = R_xx*gravity_x + R_yx*gravity_y + R_zx*gravity_z;
-        const real g_in_platform_y = R_xy*gravity_x + R_yy*gravity_y + R_zy*gravity_z;
-        const real g_in_platform_z = R_xz*gravity_x + R_yz*gravity_y + R_zz*gravity_z;
-        const real omega_in_platform_x = R_xx*omega_x + R_yx*omega_y + R_zx*omega_z;
-        const real omega_in_platform_y = R_xy*omega_x + R_yy*omega_y + R_zy*omega_z;
-        const real omega_in_platform_z = R_xz*omega_x + R_yz*omega_y + R_zz*omega_z;
-        const real J_star_in_platform_xx = m->J_star_in_platform_xx;
-        const real J_star_in_platform_xy = m->J_star_in_platform_xy;
-        const real J_star_in_platform_xz = m->J_star_in_platform_xz;
-        const real Z_q_t = J_star_in_platform_xx*omega_in_platform_x +
-            J_star_in_platform_xy*omega_in_platform_y + J_star_in_platform_xz*omega_in_platform_z;
-        const real J_star_in_platform_yy = m->J_star_in_platform_yy;
-        const real J_star_in_platform_yz = m->J_star_in_platform_yz;
-        const real Z_q_t_2 = J_star_in_platform_xy*omega_in_platform_x +
-            J_star_in_platform_yy*omega_in_platform_y + J_star_in_platform_yz*omega_in_platform_z;
-        const real J_star_in_platform_zz = m->J_star_in_platform_zz;
-        const real Z_q_t_3 = J_star_in_platform_xz*omega_in_platform_x +
-            J_star_in_platform_yz*omega_in_platform_y + J_star_in_platform_zz*omega_in_platform_z;
-        const real Z_q_in_platform_x = Z_q_t_3*omega_in_platform_y +
-            g_in_platform_y*h_star_in_platform_z - Z_q_t_2*omega_in_platform_z -
-            g_in_platform_z*h_star_in_platform_y;
-        const real Z_q_in_platform_y = Z_q_t*omega_in_platform_z +
-            g_in_platform_z*h_star_in_platform_x - Z_q_t_3*omega_in_platform_x -
-            g_in_platform_x*h_star_in_platform_z;
-        const real Z_q_in_platform_z = Z_q_t_2*omega_in_platform_x +
-            g_in_platform_x*h_star_in_platform_y - Z_q_t*omega_in_platform_y -
-            g_in_platform_y*h_star_in_platform_x;
-        const real Z_q_x = R_xx*Z_q_in_platform_x + R_xy*Z_q_in_platform_y +
-            R_xz*Z_q_in_platform_z;
-        const real Z_q_y = R_yx*Z_q_in_platform_x + R_yy*Z_q_in_platform_y +
-            R_yz*Z_q_in_platform_z;
-        const real Z_q_z = R_zx*Z_q_in_platform_x + R_zy*Z_q_in_platform_y +
-            R_zz*Z_q_in_platform_z;
-        s[0*w + k] = t_x;
-        s[1*w + k] = t_y;
-        s[2*w + k] = t_z;
-        s[3*w + k] = R_xx;
-        s[4*w + k] = R_xy;
-        s[5*w + k] = R_xz;
-        s[6*w + k] = R_yx;
-        s[7*w + k] = R_yy;
-        s[8*w + k] = R_yz;
-        s[9*w + k] = R_zx;
-        s[10*w + k] = R_zy;
-        s[11*w + k] = R_zz;
-        s[12*w + k] = t_dot_x;
-        s[13*w + k] = t_dot_y;
-        s[14*w + k] = t_dot_z;
-        s[15*w + k] = omega_x;
-        s[16*w + k] = omega_y;
-        s[17*w + k] = omega_z;
-        s[18*w + k] = Z_p_x;
-        s[19*w + k] = Z_p_y;
-        s[20*w + k] = Z_p_z;
-        s[21*w + k] = Z_q_x;
-        s[22*w + k] = Z_q_y;
-        s[23*w + k] = Z_q_z;
-        t->invalid[k] += UNLESS(is_finite(quaternion_scale)) + UNLESS(quaternion_scale > 0);
+        values v;
+        stage_X(m, w, k, X, &v);
+        stage_V_X(w, k, V, &v);
+        stage_Z_dynamics(m, w, k, V, &v);
+        s[0*w + k] = v.R_xx;
+        s[1*w + k] = v.R_xy;
+        s[2*w + k] = v.R_xz;
+        s[3*w + k] = v.R_yx;
+        s[4*w + k] = v.R_yy;
+        s[5*w + k] = v.R_yz;
+        s[6*w + k] = v.R_zx;
+        s[7*w + k] = v.R_zy;
+        s[8*w + k] = v.R_zz;
+        s[9*w + k] = v.Z_p_x;
+        s[10*w + k] = v.Z_p_y;
+        s[11*w + k] = v.Z_p_z;
+        s[12*w + k] = v.Z_q_x;
+        s[13*w + k] = v.Z_q_y;
+        s[14*w + k] = v.Z_q_z;
+        t->invalid[k] += UNLESS(is_finite(v.quaternion_scale)) + UNLESS(v.quaternion_scale > 0);
     }
 }
 
 INLINE void Z_legs_ups(const prepared *m, size_t w, size_t leg, size_t legs, const real *s, size_t
-    states, size_t count, int add, real *terms, real *o)
+    states, size_t count, int add, const real *X, const real *V, real *terms, real *o)
 {
     for (size_t k = 0; k < count; ++k) {
         const size_t i = leg + legs*k;
         const size_t j = states*k;
-        /* (ups-S) from the base point to the connection point */
-        const real R_xx = s[3*w + j];
-        const real R_xy = s[4*w + j];
-        const real R_xz = s[5*w + j];
-        const real ups_platform_point_x = m->ups_platform_point_x[i];
-        const real ups_platform_point_y = m->ups_platform_point_y[i];
-        const real ups_platform_point_z = m->ups_platform_point_z[i];
-        const real ups_q_x = R_xx*ups_platform_point_x + R_xy*ups_platform_point_y +
-            R_xz*ups_platform_point_z;
-        const real R_yx = s[6*w + j];
-        const real R_yy = s[7*w + j];
-        const real R_yz = s[8*w + j];
-        const real ups_q_y = R_yx*ups_platform_point_x + R_yy*ups_platform_point_y +
-            R_yz*ups_platform_point_z;
-        const real R_zx = s[9*w + j];
-        const real R_zy = s[10*w + j];
-        const real R_zz = s[11*w + j];
-        const real ups_q_z = R_zx*ups_platform_point_x + R_zy*ups_platform_point_y +
-            R_zz*ups_platform_point_z;
-        const real t_x = s[0*w + j];
-        const real ups_base_point_x = m->ups_base_point_x[i];
-        const real ups_S_x = t_x + ups_q_x - ups_base_point_x;
-        const real t_y = s[1*w + j];
-        const real ups_base_point_y = m->ups_base_point_y[i];
-        const real ups_S_y = t_y + ups_q_y - ups_base_point_y;
-        const real t_z = s[2*w + j];
-        const real ups_base_point_z = m->ups_base_point_z[i];
-        const real ups_S_z = t_z + ups_q_z - ups_base_point_z;
-        /* (ups-px_1) component along the reference direction */
-        const real ups_base_frame_xx = m->ups_base_frame_xx[i];
-        const real ups_base_frame_yx = m->ups_base_frame_yx[i];
-        const real ups_base_frame_zx = m->ups_base_frame_zx[i];
-        const real ups_px_1 = ups_S_x*ups_base_frame_xx + ups_S_y*ups_base_frame_yx +
-            ups_S_z*ups_base_frame_zx;
-        /* (ups-py_1) component across the reference direction */
-        const real ups_base_frame_xy = m->ups_base_frame_xy[i];
-        const real ups_base_frame_yy = m->ups_base_frame_yy[i];
-        const real ups_base_frame_zy = m->ups_base_frame_zy[i];
-        const real ups_py_1 = ups_S_x*ups_base_frame_xy + ups_S_y*ups_base_frame_yy +
-            ups_S_z*ups_base_frame_zy;
-        /* (ups-rho2_1) squared amplitude */
-        const real ups_rho2_1 = ups_px_1*ups_px_1 + ups_py_1*ups_py_1;
-        /* (ups-root_1) amplitude, with the sign of the branch */
-        const real ups_branch_1 = m->ups_branch_1[i];
-        const real ups_root_1 = ups_branch_1*root(ups_rho2_1);
-        /* (ups-c_1) cosine of the angle of joint 1 from its reference direction */
-        const real inv_ups_root_1 = 1/ups_root_1;
-        const real ups_c_1 = -inv_ups_root_1*ups_py_1;
-        /* (ups-s_1) sine of the angle of joint 1 from its reference direction */
-        const real ups_s_1 = inv_ups_root_1*ups_px_1;
-        /* (ups-xi_1) the vector from joint 1 to the connection point, resolved along link 1 */
-        const real ups_base_frame_xz = m->ups_base_frame_xz[i];
-        const real ups_base_frame_yz = m->ups_base_frame_yz[i];
-        const real ups_base_frame_zz = m->ups_base_frame_zz[i];
-        const real ups_xi_1_in_axes1_z = ups_S_x*ups_base_frame_xz + ups_S_y*ups_base_frame_yz +
-            ups_S_z*ups_base_frame_zz;
-        /* (ups-rho2_2) squared amplitude */
-        const real ups_rho2_2 = ups_rho2_1 + ups_xi_1_in_axes1_z*ups_xi_1_in_axes1_z;
-        /* (ups-root_2) amplitude, with the sign of the branch */
-        const real ups_branch_2 = m->ups_branch_2[i];
-        const real ups_root_2 = ups_branch_2*root(ups_rho2_2);
-        /* (ups-c_2) cosine of the angle of joint 2 from its reference direction */
-        const real inv_ups_root_2 = 1/ups_root_2;
-        const real ups_c_2 = -inv_ups_root_2*ups_root_1;
-        /* (ups-s_2) sine of the angle of joint 2 from its reference direction */
-        const real ups_s_2 = inv_ups_root_2*ups_xi_1_in_axes1_z;
-        /* (ups-S_dot) velocity of the connection point */
-        const real axis_x_ups_axes2_x = inv_ups_root_2*ups_S_x;
-        const real axis_x_ups_axes2_y = inv_ups_root_2*ups_S_y;
-        const real axis_x_ups_axes2_z = inv_ups_root_2*ups_S_z;
-        const real omega_y = s[16*w + j];
-        const real omega_z = s[17*w + j];
-        const real ups_S_dot_t = omega_y*ups_q_z - omega_z*ups_q_y;
-        const real omega_x = s[15*w + j];
-        const real ups_S_dot_t_2 = omega_z*ups_q_x - omega_x*ups_q_z;
-        const real ups_S_dot_t_3 = omega_x*ups_q_y - omega_y*ups_q_x;
-        const real t_dot_x = s[12*w + j];
-        const real ups_S_dot_x = t_dot_x + ups_S_dot_t;
-        const real t_dot_y = s[13*w + j];
-        const real ups_S_dot_y = t_dot_y + ups_S_dot_t_2;
-        const real t_dot_z = s[14*w + j];
-        const real ups_S_dot_z = t_dot_z + ups_S_dot_t_3;
-        const real ups_S_dot_in_axes2_x = axis_x_ups_axes2_x*ups_S_dot_x +
-            axis_x_ups_axes2_y*ups_S_dot_y + axis_x_ups_axes2_z*ups_S_dot_z;
-        /* (ups-qd_1) rate of joint 1 */
-        const real axis_z_ups_axes2_x = ups_base_frame_xx*ups_c_1 + ups_base_frame_xy*ups_s_1;
-        const real axis_z_ups_axes2_y = ups_base_frame_yx*ups_c_1 + ups_base_frame_yy*ups_s_1;
-        const real axis_z_ups_axes2_z = ups_base_frame_zx*ups_c_1 + ups_base_frame_zy*ups_s_1;
-        const real ups_qd_1 = inv_ups_root_1*(axis_z_ups_axes2_x*ups_S_dot_x +
-            axis_z_ups_axes2_y*ups_S_dot_y + axis_z_ups_axes2_z*ups_S_dot_z);
-        /* (ups-qd_2) rate of joint 2 */
-        const real axis_y_ups_axes2_x = axis_x_ups_axes2_z*axis_z_ups_axes2_y -
-            axis_x_ups_axes2_y*axis_z_ups_axes2_z;
-        const real axis_y_ups_axes2_y = axis_x_ups_axes2_x*axis_z_ups_axes2_z -
-            axis_x_ups_axes2_z*axis_z_ups_axes2_x;
-        const real axis_y_ups_axes2_z = axis_x_ups_axes2_y*axis_z_ups_axes2_x -
-            axis_x_ups_axes2_x*axis_z_ups_axes2_y;
-        const real ups_qd_2 = inv_ups_root_2*(axis_y_ups_axes2_x*ups_S_dot_x +
-            axis_y_ups_axes2_y*ups_S_dot_y + axis_y_ups_axes2_z*ups_S_dot_z);
-        /* (ups-omega_1) angular velocity of link 1 */
-        const real ups_omega_1_in_axes2_x = ups_qd_1*ups_s_2;
-        const real ups_omega_1_in_axes2_y = ups_c_2*ups_qd_1;
-        /* (ups-W_2) centripetal tensor of link 2 */
-        const real ups_W_2_in_axes2_yz = ups_omega_1_in_axes2_y*ups_qd_2;
-        const real ups_W_2_in_axes2_xz = ups_omega_1_in_axes2_x*ups_qd_2;
-        const real ups_W_2_in_axes2_xy = ups_omega_1_in_axes2_x*ups_omega_1_in_axes2_y;
-        /* (ups-u_1) centripetal acceleration of the connection point */
-        const real ups_u_1_x = omega_y*ups_S_dot_t_3 - omega_z*ups_S_dot_t_2;
-        const real ups_u_1_y = omega_z*ups_S_dot_t - omega_x*ups_S_dot_t_3;
-        const real ups_u_1_z = omega_x*ups_S_dot_t_2 - omega_y*ups_S_dot_t;
-        const real ups_u_1_in_axes2_z = axis_z_ups_axes2_x*ups_u_1_x +
-            axis_z_ups_axes2_y*ups_u_1_y + axis_z_ups_axes2_z*ups_u_1_z;
-        /* (ups-bias) acceleration of the connection point at zero joint accelerations */
-        const real ups_bias_t = 2*ups_S_dot_in_axes2_x;
-        const real ups_bias_in_axes2_z = 2*ups_W_2_in_axes2_xz*ups_root_2 -
-            ups_bias_t*ups_omega_1_in_axes2_y;
-        /* (ups-rel_o) remainder without the acceleration in: acceleration of the connection point left to
-           the joint accelerations */
-        const real ups_rel_o_in_axes2_z = ups_u_1_in_axes2_z - ups_bias_in_axes2_z;
-        /* (ups-qdd_1_o) remainder without the acceleration in: acceleration of joint 1 */
-        const real ups_qdd_1_o = inv_ups_root_1*ups_rel_o_in_axes2_z;
-        /* (ups-alpha_1_o) remainder without the acceleration in: angular acceleration of link 1 */
-        const real ups_alpha_1_o_in_axes2_x = ups_qdd_1_o*ups_s_2;
-        const real ups_alpha_1_o_in_axes2_y = ups_c_2*ups_qdd_1_o;
-        /* (ups-alpha_2_o) remainder without the acceleration in: angular acceleration of link 2 */
-        const real ups_alpha_2_o_in_axes2_x = ups_W_2_in_axes2_yz + ups_alpha_1_o_in_axes2_x;
-        const real ups_alpha_2_o_in_axes2_y = ups_alpha_1_o_in_axes2_y - ups_W_2_in_axes2_xz;
-        /* (ups-B_2_o) remainder of the acceleration tensor of link 2 */
-        const real ups_B_2_o_t = axis_y_ups_axes2_x*ups_u_1_x;
-        const real ups_B_2_o_t_2 = axis_y_ups_axes2_y*ups_u_1_y;
-        const real ups_B_2_o_t_3 = axis_y_ups_axes2_z*ups_u_1_z;
-        const real ups_B_2_o_in_axes2_yx = inv_ups_root_2*(ups_B_2_o_t + ups_B_2_o_t_2 +
-            ups_B_2_o_t_3 - ups_bias_t*ups_qd_2);
-        const real ups_B_2_o_in_axes2_xy = 2*ups_W_2_in_axes2_xy - ups_B_2_o_in_axes2_yx;
-        const real ups_B_2_o_in_axes2_zx = ups_W_2_in_axes2_xz - ups_alpha_2_o_in_axes2_y;
-        const real ups_B_2_o_in_axes2_zy = ups_W_2_in_axes2_yz + ups_alpha_2_o_in_axes2_x;
-        /* (ups-acc_3_o) remainder without the acceleration in: acceleration of the reference point of
-           link 3, less gravity */
-        const real ups_acc_3_t = m->ups_acc_3_t[i];
-        const real ups_acc_3_t_2 = m->ups_acc_3_t_2[i];
-        const real ups_g_in_axes2_z = ups_acc_3_t*ups_c_1 + ups_acc_3_t_2*ups_s_1;
-        const real ups_acc_3_o_t = ups_acc_3_t_2*ups_c_1 - ups_acc_3_t*ups_s_1;
-        const real ups_acc_3_t_3 = m->ups_acc_3_t_3[i];
-        const real ups_g_in_axes2_x = ups_acc_3_o_t*ups_c_2 + ups_acc_3_t_3*ups_s_2;
-        const real ups_g_in_axes2_y = ups_acc_3_t_3*ups_c_2 - ups_acc_3_o_t*ups_s_2;
-        const real ups_acc_3_o_in_axes2_x = axis_x_ups_axes2_x*ups_u_1_x +
-            axis_x_ups_axes2_y*ups_u_1_y + axis_x_ups_axes2_z*ups_u_1_z - ups_g_in_axes2_x;
-        const real ups_acc_3_o_in_axes2_y = ups_B_2_o_t + ups_B_2_o_t_2 + ups_B_2_o_t_3 -
-            ups_g_in_axes2_y;
-        const real ups_acc_3_o_in_axes2_z = ups_u_1_in_axes2_z - ups_g_in_axes2_z;
-        /* (ups-phi_3_o) remainder without the acceleration in: inertia force of link 3 from its turning
-           about its reference point */
-        const real ups_phi_3_o_t = ups_omega_1_in_axes2_y*ups_omega_1_in_axes2_y;
-        const real ups_phi_3_o_t_2 = ups_qd_2*ups_qd_2;
-        const real ups_h_3_in_spec2_x = m->ups_h_3_in_spec2_x[i];
-        const real ups_h_3_in_spec2_y = m->ups_h_3_in_spec2_y[i];
-        const real ups_h_3_in_spec2_z = m->ups_h_3_in_spec2_z[i];
-        const real ups_phi_3_o_in_axes2_x = ups_alpha_1_o_in_axes2_y*ups_h_3_in_spec2_y +
-            ups_h_3_in_spec2_x*(-ups_phi_3_o_t - ups_phi_3_o_t_2) -
-            ups_B_2_o_in_axes2_xy*ups_h_3_in_spec2_z;
-        /* (ups-mu_2_o) remainder without the acceleration in: inertia moment of the links that turn with
-           link 2, about their reference points */
-        const real ups_mu_2_o_t = ups_omega_1_in_axes2_x*ups_omega_1_in_axes2_x;
-        const real ups_J_group_2_in_axes2_xy = m->ups_J_group_2_in_axes2_xy[i];
-        const real ups_J_group_2_in_axes2_xz = m->ups_J_group_2_in_axes2_xz[i];
-        const real ups_J_group_2_in_axes2_yz = m->ups_J_group_2_in_axes2_yz[i];
-        const real ups_Sigma_2_in_axes2_yy = m->ups_Sigma_2_in_axes2_yy[i];
-        const real ups_Sigma_2_in_axes2_zz = m->ups_Sigma_2_in_axes2_zz[i];
-        const real ups_h_2_in_spec2_y = m->ups_h_2_in_spec2_y[i];
-        const real ups_h_2_in_spec2_z = m->ups_h_2_in_spec2_z[i];
-        const real ups_mu_2_o_in_axes2_x = ups_B_2_o_in_axes2_yx*ups_J_group_2_in_axes2_xz +
-            ups_B_2_o_in_axes2_zy*ups_Sigma_2_in_axes2_yy +
-            ups_J_group_2_in_axes2_yz*(ups_phi_3_o_t - ups_phi_3_o_t_2) +
-            ups_Sigma_2_in_axes2_zz*ups_alpha_1_o_in_axes2_x + ups_g_in_axes2_y*ups_h_2_in_spec2_y
-            + ups_g_in_axes2_z*ups_h_2_in_spec2_z -
-            ups_B_2_o_in_axes2_zx*ups_J_group_2_in_axes2_xy -
-            ups_acc_3_o_in_axes2_y*ups_h_3_in_spec2_y - ups_acc_3_o_in_axes2_z*ups_h_3_in_spec2_z;
-        const real ups_Sigma_2_in_axes2_xx = m->ups_Sigma_2_in_axes2_xx[i];
-        const real ups_h_2_in_spec2_x = m->ups_h_2_in_spec2_x[i];
-        const real ups_mu_2_o_in_axes2_y = ups_B_2_o_in_axes2_zy*ups_J_group_2_in_axes2_xy +
-            ups_Sigma_2_in_axes2_zz*ups_alpha_1_o_in_axes2_y +
-            ups_acc_3_o_in_axes2_x*ups_h_3_in_spec2_y + ups_g_in_axes2_z*ups_h_2_in_spec2_x -
-            ups_B_2_o_in_axes2_xy*ups_J_group_2_in_axes2_yz -
-            ups_B_2_o_in_axes2_zx*ups_Sigma_2_in_axes2_xx -
-            ups_J_group_2_in_axes2_xz*(ups_mu_2_o_t - ups_phi_3_o_t_2) -
-            ups_acc_3_o_in_axes2_z*ups_h_3_in_spec2_x - ups_g_in_axes2_x*ups_h_2_in_spec2_y;
-        const real ups_mu_2_o_in_axes2_z = ups_B_2_o_in_axes2_yx*ups_Sigma_2_in_axes2_xx +
-            ups_J_group_2_in_axes2_xy*(ups_mu_2_o_t - ups_phi_3_o_t) +
-            ups_J_group_2_in_axes2_xz*ups_alpha_1_o_in_axes2_x +
-            ups_J_group_2_in_axes2_yz*ups_alpha_1_o_in_axes2_y +
-            ups_acc_3_o_in_axes2_x*ups_h_3_in_spec2_z + ups_acc_3_o_in_axes2_y*ups_h_3_in_spec2_x
-            - ups_B_2_o_in_axes2_xy*ups_Sigma_2_in_axes2_yy - ups_g_in_axes2_x*ups_h_2_in_spec2_z
-            - ups_g_in_axes2_y*ups_h_2_in_spec2_x;
-        /* (ups-c_o) remainder without the acceleration in: leg force on the platform without actuation
-           and without the mass at the connection point */
-        const real ups_c_o_in_axes2_y = ups_alpha_1_o_in_axes2_x*ups_h_3_in_spec2_y -
-            inv_ups_root_2*ups_mu_2_o_in_axes2_z - ups_B_2_o_in_axes2_yx*ups_h_3_in_spec2_x -
-            ups_h_3_in_spec2_z*(ups_mu_2_o_t + ups_phi_3_o_t_2);
-        const real ups_c_o_in_axes2_z = ups_B_2_o_in_axes2_zy*ups_h_3_in_spec2_z +
-            ups_h_3_in_spec2_y*(ups_mu_2_o_t + ups_phi_3_o_t) -
-            inv_ups_root_1*(ups_c_2*ups_mu_2_o_in_axes2_y + ups_mu_2_o_in_axes2_x*ups_s_2) -
-            ups_B_2_o_in_axes2_zx*ups_h_3_in_spec2_x;
-        /* (ups-U) velocity and gravity terms of the leg force */
-        const real ups_U_x = axis_x_ups_axes2_x*ups_phi_3_o_in_axes2_x -
-            axis_y_ups_axes2_x*ups_c_o_in_axes2_y - axis_z_ups_axes2_x*ups_c_o_in_axes2_z;
-        const real ups_U_y = axis_x_ups_axes2_y*ups_phi_3_o_in_axes2_x -
-            axis_y_ups_axes2_y*ups_c_o_in_axes2_y - axis_z_ups_axes2_y*ups_c_o_in_axes2_z;
-        const real ups_U_z = axis_x_ups_axes2_z*ups_phi_3_o_in_axes2_x -
-            axis_y_ups_axes2_z*ups_c_o_in_axes2_y - axis_z_ups_axes2_z*ups_c_o_in_axes2_z;
-        /* (Z_a) rotational part of Z */
-        const real ups_Z_a_t = ups_U_z*ups_q_y - ups_U_y*ups_q_z;
-        const real ups_Z_a_t_2 = ups_U_x*ups_q_z - ups_U_z*ups_q_x;
-        const real ups_Z_a_t_3 = ups_U_y*ups_q_x - ups_U_x*ups_q_y;
+        values_ups v;
+        stage_ups_X(m, w, i, j, s, X, &v);
+        stage_ups_V_X(w, j, V, &v);
+        stage_ups_Z_dynamics(m, w, i, j, V, &v);
         /* (Z_t) translational part of Z */
-        gather(&terms[0*count + k], add, ups_U_x);  /* Z_t_x_of_legs */
-        gather(&terms[1*count + k], add, ups_U_y);  /* Z_t_y_of_legs */
-        gather(&terms[2*count + k], add, ups_U_z);  /* Z_t_z_of_legs */
+        gather(&terms[0*count + k], add, v.ups_U_x);  /* Z_t_x_of_legs */
+        gather(&terms[1*count + k], add, v.ups_U_y);  /* Z_t_y_of_legs */
+        gather(&terms[2*count + k], add, v.ups_U_z);  /* Z_t_z_of_legs */
         /* (Z_a) rotational part of Z */
-        gather(&terms[3*count + k], add, ups_Z_a_t);  /* Z_a_x_of_legs */
-        gather(&terms[4*count + k], add, ups_Z_a_t_2);  /* Z_a_y_of_legs */
-        gather(&terms[5*count + k], add, ups_Z_a_t_3);  /* Z_a_z_of_legs */
-        o[0*count + k] = UNLESS(magnitude(ups_rho2_1) > LEAST_1) + UNLESS(magnitude(ups_rho2_2) >
-            LEAST_1) + UNLESS(magnitude(ups_root_1) > LEAST_2) + UNLESS(magnitude(ups_root_2) >
-            LEAST_2);
+        gather(&terms[3*count + k], add, v.ups_Z_a_t);  /* Z_a_x_of_legs */
+        gather(&terms[4*count + k], add, v.ups_Z_a_t_2);  /* Z_a_y_of_legs */
+        gather(&terms[5*count + k], add, v.ups_Z_a_t_3);  /* Z_a_z_of_legs */
+        o[0*count + k] = UNLESS(magnitude(v.ups_root_1_t) > LEAST_1) +
+            UNLESS(magnitude(v.ups_q_3_t) > LEAST_1) + UNLESS(magnitude(v.ups_root_1) > LEAST_2) +
+            UNLESS(magnitude(v.ups_q_3) > LEAST_2);
     }
 }
 
@@ -5192,469 +5906,88 @@ INLINE void Z_place_ups(size_t w, size_t count, const real *o, size_t first, ver
 }
 
 INLINE void Z_legs_tube(const prepared *m, size_t w, size_t leg, size_t legs, const real *s,
-    size_t states, size_t count, int add, real *terms, real *o)
+    size_t states, size_t count, int add, const real *X, const real *V, real *terms, real *o)
 {
     for (size_t k = 0; k < count; ++k) {
         const size_t i = leg + legs*k;
         const size_t j = states*k;
-        /* (tube-S) from the base point to the connection point */
-        const real R_xx = s[3*w + j];
-        const real R_xy = s[4*w + j];
-        const real R_xz = s[5*w + j];
-        const real tube_platform_point_x = m->tube_platform_point_x[i];
-        const real tube_platform_point_y = m->tube_platform_point_y[i];
-        const real tube_platform_point_z = m->tube_platform_point_z[i];
-        const real tube_q_x = R_xx*tube_platform_point_x + R_xy*tube_platform_point_y +
-            R_xz*tube_platform_point_z;
-        const real R_yx = s[6*w + j];
-        const real R_yy = s[7*w + j];
-        const real R_yz = s[8*w + j];
-        const real tube_q_y = R_yx*tube_platform_point_x + R_yy*tube_platform_point_y +
-            R_yz*tube_platform_point_z;
-        const real R_zx = s[9*w + j];
-        const real R_zy = s[10*w + j];
-        const real R_zz = s[11*w + j];
-        const real tube_q_z = R_zx*tube_platform_point_x + R_zy*tube_platform_point_y +
-            R_zz*tube_platform_point_z;
-        const real t_x = s[0*w + j];
-        const real tube_base_point_x = m->tube_base_point_x[i];
-        const real tube_S_x = t_x + tube_q_x - tube_base_point_x;
-        const real t_y = s[1*w + j];
-        const real tube_base_point_y = m->tube_base_point_y[i];
-        const real tube_S_y = t_y + tube_q_y - tube_base_point_y;
-        const real t_z = s[2*w + j];
-        const real tube_base_point_z = m->tube_base_point_z[i];
-        const real tube_S_z = t_z + tube_q_z - tube_base_point_z;
-        /* (tube-px_1) component along the reference direction */
-        const real tube_base_frame_xx = m->tube_base_frame_xx[i];
-        const real tube_base_frame_yx = m->tube_base_frame_yx[i];
-        const real tube_base_frame_zx = m->tube_base_frame_zx[i];
-        const real tube_px_1 = tube_S_x*tube_base_frame_xx + tube_S_y*tube_base_frame_yx +
-            tube_S_z*tube_base_frame_zx;
-        /* (tube-py_1) component across the reference direction */
-        const real tube_base_frame_xy = m->tube_base_frame_xy[i];
-        const real tube_base_frame_yy = m->tube_base_frame_yy[i];
-        const real tube_base_frame_zy = m->tube_base_frame_zy[i];
-        const real tube_py_1 = tube_S_x*tube_base_frame_xy + tube_S_y*tube_base_frame_yy +
-            tube_S_z*tube_base_frame_zy;
-        /* (tube-rho2_1) squared amplitude */
-        const real tube_rho2_1 = tube_px_1*tube_px_1 + tube_py_1*tube_py_1;
-        /* (tube-root_1) amplitude, with the sign of the branch */
-        const real tube_branch_1 = m->tube_branch_1[i];
-        const real tube_root_1 = tube_branch_1*root(tube_rho2_1);
-        /* (tube-c_1) cosine of the angle of joint 1 from its reference direction */
-        const real inv_tube_root_1 = 1/tube_root_1;
-        const real tube_c_1 = -inv_tube_root_1*tube_py_1;
-        /* (tube-s_1) sine of the angle of joint 1 from its reference direction */
-        const real tube_s_1 = inv_tube_root_1*tube_px_1;
-        /* (tube-xi_1) the vector from joint 1 to the connection point, resolved along link 1 */
-        const real tube_base_frame_xz = m->tube_base_frame_xz[i];
-        const real tube_base_frame_yz = m->tube_base_frame_yz[i];
-        const real tube_base_frame_zz = m->tube_base_frame_zz[i];
-        const real tube_xi_1_in_axes1_z = tube_S_x*tube_base_frame_xz +
-            tube_S_y*tube_base_frame_yz + tube_S_z*tube_base_frame_zz;
-        /* (tube-rho2_2) squared amplitude */
-        const real tube_rho2_2 = tube_rho2_1 + tube_xi_1_in_axes1_z*tube_xi_1_in_axes1_z;
-        /* (tube-root_2) amplitude, with the sign of the branch */
-        const real tube_branch_2 = m->tube_branch_2[i];
-        const real tube_root_2 = tube_branch_2*root(tube_rho2_2);
-        /* (tube-c_2) cosine of the angle of joint 2 from its reference direction */
-        const real inv_tube_root_2 = 1/tube_root_2;
-        const real tube_c_2 = -inv_tube_root_2*tube_root_1;
-        /* (tube-s_2) sine of the angle of joint 2 from its reference direction */
-        const real tube_s_2 = inv_tube_root_2*tube_xi_1_in_axes1_z;
-        /* (tube-S_dot) velocity of the connection point */
-        const real axis_z_tube_axes2_x = tube_base_frame_xx*tube_c_1 +
-            tube_base_frame_xy*tube_s_1;
-        const real axis_z_tube_axes2_y = tube_base_frame_yx*tube_c_1 +
-            tube_base_frame_yy*tube_s_1;
-        const real axis_z_tube_axes2_z = tube_base_frame_zx*tube_c_1 +
-            tube_base_frame_zy*tube_s_1;
-        const real tube_S_dot_t = tube_s_1*tube_s_2;
-        const real tube_S_dot_t_2 = tube_c_1*tube_s_2;
-        const real axis_y_tube_axes2_x = tube_S_dot_t*tube_base_frame_xx +
-            tube_base_frame_xz*tube_c_2 - tube_S_dot_t_2*tube_base_frame_xy;
-        const real axis_y_tube_axes2_y = tube_S_dot_t*tube_base_frame_yx +
-            tube_base_frame_yz*tube_c_2 - tube_S_dot_t_2*tube_base_frame_yy;
-        const real axis_y_tube_axes2_z = tube_S_dot_t*tube_base_frame_zx +
-            tube_base_frame_zz*tube_c_2 - tube_S_dot_t_2*tube_base_frame_zy;
-        const real axis_x_tube_axes2_x = axis_y_tube_axes2_y*axis_z_tube_axes2_z -
-            axis_y_tube_axes2_z*axis_z_tube_axes2_y;
-        const real axis_x_tube_axes2_y = axis_y_tube_axes2_z*axis_z_tube_axes2_x -
-            axis_y_tube_axes2_x*axis_z_tube_axes2_z;
-        const real axis_x_tube_axes2_z = axis_y_tube_axes2_x*axis_z_tube_axes2_y -
-            axis_y_tube_axes2_y*axis_z_tube_axes2_x;
-        const real omega_y = s[16*w + j];
-        const real omega_z = s[17*w + j];
-        const real tube_S_dot_t_3 = omega_y*tube_q_z - omega_z*tube_q_y;
-        const real omega_x = s[15*w + j];
-        const real tube_S_dot_t_4 = omega_z*tube_q_x - omega_x*tube_q_z;
-        const real tube_S_dot_t_5 = omega_x*tube_q_y - omega_y*tube_q_x;
-        const real t_dot_x = s[12*w + j];
-        const real tube_S_dot_x = t_dot_x + tube_S_dot_t_3;
-        const real t_dot_y = s[13*w + j];
-        const real tube_S_dot_y = t_dot_y + tube_S_dot_t_4;
-        const real t_dot_z = s[14*w + j];
-        const real tube_S_dot_z = t_dot_z + tube_S_dot_t_5;
-        const real tube_S_dot_in_axes2_x = axis_x_tube_axes2_x*tube_S_dot_x +
-            axis_x_tube_axes2_y*tube_S_dot_y + axis_x_tube_axes2_z*tube_S_dot_z;
-        const real tube_S_dot_in_axes2_y = axis_y_tube_axes2_x*tube_S_dot_x +
-            axis_y_tube_axes2_y*tube_S_dot_y + axis_y_tube_axes2_z*tube_S_dot_z;
-        const real tube_S_dot_in_axes2_z = axis_z_tube_axes2_x*tube_S_dot_x +
-            axis_z_tube_axes2_y*tube_S_dot_y + axis_z_tube_axes2_z*tube_S_dot_z;
-        /* (tube-n_m1) direction 1 of the moment that the platform joint transmits */
-        const real tube_n_m1_t = R_xx*tube_base_frame_xx + R_yx*tube_base_frame_yx +
-            R_zx*tube_base_frame_zx;
-        const real tube_n_m1_t_2 = R_xy*tube_base_frame_xx + R_yy*tube_base_frame_yx +
-            R_zy*tube_base_frame_zx;
-        const real tube_n_m1_t_3 = R_xz*tube_base_frame_xx + R_yz*tube_base_frame_yx +
-            R_zz*tube_base_frame_zx;
-        const real tube_n_m1_t_4 = R_xx*tube_base_frame_xy + R_yx*tube_base_frame_yy +
-            R_zx*tube_base_frame_zy;
-        const real tube_n_m1_t_5 = R_xy*tube_base_frame_xy + R_yy*tube_base_frame_yy +
-            R_zy*tube_base_frame_zy;
-        const real tube_n_m1_t_6 = R_xz*tube_base_frame_xy + R_yz*tube_base_frame_yy +
-            R_zz*tube_base_frame_zy;
-        const real tube_n_m1_t_7 = R_xx*tube_base_frame_xz + R_yx*tube_base_frame_yz +
-            R_zx*tube_base_frame_zz;
-        const real tube_n_m1_t_8 = R_xy*tube_base_frame_xz + R_yy*tube_base_frame_yz +
-            R_zy*tube_base_frame_zz;
-        const real tube_n_m1_t_9 = R_xz*tube_base_frame_xz + R_yz*tube_base_frame_yz +
-            R_zz*tube_base_frame_zz;
-        const real tube_platform_joint_rotation_yx = m->tube_platform_joint_rotation_yx[i];
-        const real tube_platform_joint_rotation_yy = m->tube_platform_joint_rotation_yy[i];
-        const real tube_platform_joint_rotation_yz = m->tube_platform_joint_rotation_yz[i];
-        const real tube_n_m1_t_10 = tube_n_m1_t*tube_platform_joint_rotation_yx +
-            tube_n_m1_t_2*tube_platform_joint_rotation_yy +
-            tube_n_m1_t_3*tube_platform_joint_rotation_yz;
-        const real tube_n_m1_t_11 = tube_n_m1_t_4*tube_platform_joint_rotation_yx +
-            tube_n_m1_t_5*tube_platform_joint_rotation_yy +
-            tube_n_m1_t_6*tube_platform_joint_rotation_yz;
-        const real tube_n_m1_t_12 = tube_n_m1_t_7*tube_platform_joint_rotation_yx +
-            tube_n_m1_t_8*tube_platform_joint_rotation_yy +
-            tube_n_m1_t_9*tube_platform_joint_rotation_yz;
-        const real tube_end_p1_in_axes2_z = tube_c_1*tube_n_m1_t_10 + tube_n_m1_t_11*tube_s_1;
-        const real tube_n_m1_t_13 = tube_n_m1_t_10*tube_s_1 - tube_c_1*tube_n_m1_t_11;
-        const real tube_n_m1_in_axes2_z = tube_c_2*tube_n_m1_t_12 + tube_n_m1_t_13*tube_s_2;
-        const real tube_n_m1_in_axes1_z = -tube_c_2*tube_end_p1_in_axes2_z;
-        /* (tube-n_m2) direction 2 of the moment that the platform joint transmits */
-        const real tube_platform_joint_rotation_zx = m->tube_platform_joint_rotation_zx[i];
-        const real tube_platform_joint_rotation_zy = m->tube_platform_joint_rotation_zy[i];
-        const real tube_platform_joint_rotation_zz = m->tube_platform_joint_rotation_zz[i];
-        const real tube_n_m2_t = tube_n_m1_t*tube_platform_joint_rotation_zx +
-            tube_n_m1_t_2*tube_platform_joint_rotation_zy +
-            tube_n_m1_t_3*tube_platform_joint_rotation_zz;
-        const real tube_n_m2_t_2 = tube_n_m1_t_4*tube_platform_joint_rotation_zx +
-            tube_n_m1_t_5*tube_platform_joint_rotation_zy +
-            tube_n_m1_t_6*tube_platform_joint_rotation_zz;
-        const real tube_n_m2_t_3 = tube_n_m1_t_7*tube_platform_joint_rotation_zx +
-            tube_n_m1_t_8*tube_platform_joint_rotation_zy +
-            tube_n_m1_t_9*tube_platform_joint_rotation_zz;
-        const real tube_n_m2_t_4 = tube_n_m2_t*tube_s_1 - tube_c_1*tube_n_m2_t_2;
-        const real tube_n_m2_in_axes2_y = tube_n_m2_t_3*tube_s_2 - tube_c_2*tube_n_m2_t_4;
-        const real tube_end_p2_in_axes2_y = tube_c_2*tube_n_m2_t_3 + tube_n_m2_t_4*tube_s_2;
-        const real tube_n_m2_in_axes1_z = tube_c_2*tube_n_m2_in_axes2_y -
-            tube_end_p2_in_axes2_y*tube_s_2;
-        /* (tube-n_m3) direction 3 of the moment that the platform joint transmits */
-        const real tube_platform_joint_rotation_xx = m->tube_platform_joint_rotation_xx[i];
-        const real tube_platform_joint_rotation_xy = m->tube_platform_joint_rotation_xy[i];
-        const real tube_platform_joint_rotation_xz = m->tube_platform_joint_rotation_xz[i];
-        const real tube_n_m3_t = tube_n_m1_t*tube_platform_joint_rotation_xx +
-            tube_n_m1_t_2*tube_platform_joint_rotation_xy +
-            tube_n_m1_t_3*tube_platform_joint_rotation_xz;
-        const real tube_n_m3_t_2 = tube_n_m1_t_4*tube_platform_joint_rotation_xx +
-            tube_n_m1_t_5*tube_platform_joint_rotation_xy +
-            tube_n_m1_t_6*tube_platform_joint_rotation_xz;
-        const real tube_n_m3_t_3 = tube_n_m1_t_7*tube_platform_joint_rotation_xx +
-            tube_n_m1_t_8*tube_platform_joint_rotation_xy +
-            tube_n_m1_t_9*tube_platform_joint_rotation_xz;
-        const real tube_end_p3_in_axes2_z = tube_c_1*tube_n_m3_t + tube_n_m3_t_2*tube_s_1;
-        const real tube_n_m3_t_4 = tube_n_m3_t*tube_s_1 - tube_c_1*tube_n_m3_t_2;
-        const real tube_n_m3_in_axes2_z = tube_n_m3_t_3*tube_s_2 - tube_c_2*tube_n_m3_t_4;
-        const real tube_n_m3_t_5 = tube_end_p3_in_axes2_z*tube_s_2;
-        /* (tube-f_c1) force part of constraint wrench 1 */
-        const real tube_f_c1_t = tube_n_m1_in_axes1_z*tube_n_m3_in_axes2_z +
-            tube_n_m1_in_axes2_z*tube_n_m3_t_5;
-        /* (tube-m1_c3) moment part 1 of constraint wrench 3 */
-        const real inv_tube_f_c1_t = 1/tube_f_c1_t;
-        const real tube_m1_c3_t = inv_tube_f_c1_t*tube_n_m2_in_axes1_z*tube_n_m3_in_axes2_z;
-        /* (tube-m3_c3) moment part 3 of constraint wrench 3 */
-        const real tube_m3_c3 = inv_tube_f_c1_t*tube_n_m1_in_axes2_z*tube_n_m2_in_axes1_z;
-        /* (tube-size_c3) size of the moment */
-        const real tube_size_c3 = root(1 + tube_m1_c3_t*tube_m1_c3_t + tube_m3_c3*tube_m3_c3);
-        /* (tube-mu2_c3) moment along direction 2 that goes with it */
-        const real tube_mu2_c3 = 1/tube_size_c3;
-        /* (tube-w_1) force part of reciprocal wrench 1 */
-        const real tube_w_1_t = R(1.35)*tube_n_m1_in_axes1_z;
-        const real tube_w_1_t_2 = R(1.35)*tube_n_m2_in_axes1_z;
-        const real tube_w_1_t_3 = R(1.35)*tube_n_m3_t_5;
-        const real tube_w_1_t_4 = R(1.35)*tube_n_m1_in_axes2_z;
-        const real tube_w_1_t_5 = R(1.35)*tube_n_m3_in_axes2_z;
-        const real tube_w_1_t_6 = R(1.35)*inv_tube_f_c1_t*tube_n_m3_t_5*tube_root_2;
-        const real tube_w_1_t_7 = R(1.35)*inv_tube_f_c1_t*tube_n_m1_in_axes1_z*tube_root_2;
-        const real tube_w_1_t_8 = R(1.35)*inv_tube_f_c1_t*tube_n_m3_in_axes2_z*tube_root_1;
-        const real tube_w_1_t_9 = R(1.35)*inv_tube_f_c1_t*tube_n_m1_in_axes2_z*tube_root_1;
-        const real tube_w_1_t_10 = R(1.35)*tube_m1_c3_t*tube_mu2_c3;
-        const real tube_w_1_t_11 = R(1.35)*tube_mu2_c3;
-        const real tube_w_1_t_12 = R(1.35)*tube_m3_c3*tube_mu2_c3;
-        const real tube_w_1_t_13 = root(tube_rho2_2 + tube_w_1_t_4*tube_w_1_t_4 +
-            tube_w_1_t_5*tube_w_1_t_5);
-        const real inv_tube_w_1_t_13 = 1/tube_w_1_t_13;
-        const real tube_w_1_t_14 = inv_tube_w_1_t_13*tube_root_2;
-        const real tube_w_1_t_15 = inv_tube_w_1_t_13*tube_w_1_t_4;
-        const real tube_w_1_t_16 = inv_tube_w_1_t_13*tube_w_1_t_5;
-        const real tube_w_1_t_17 = tube_w_1_t_15*tube_w_1_t_6 + tube_w_1_t_16*tube_w_1_t_7 -
-            tube_w_1_t_14;
-        const real tube_w_1_t_18 = 1 + tube_w_1_t_14*tube_w_1_t_17;
-        const real tube_w_1_t_19 = tube_w_1_t_15*tube_w_1_t_17 - tube_w_1_t_6;
-        const real tube_w_1_t_20 = tube_w_1_t_16*tube_w_1_t_17 - tube_w_1_t_7;
-        const real tube_w_1_t_21 = tube_w_1_t_15*tube_w_1_t_8 - tube_w_1_t_16*tube_w_1_t_9;
-        const real tube_w_1_t_22 = tube_w_1_t_14*tube_w_1_t_21;
-        const real tube_w_1_t_23 = tube_w_1_t_15*tube_w_1_t_21 - tube_w_1_t_8;
-        const real tube_w_1_t_24 = tube_w_1_t_9 + tube_w_1_t_16*tube_w_1_t_21;
-        const real tube_w_1_t_25 = tube_w_1_t_10*tube_w_1_t_15 - tube_w_1_t_12*tube_w_1_t_16;
-        const real tube_w_1_t_26 = tube_w_1_t_14*tube_w_1_t_25;
-        const real tube_w_1_t_27 = tube_w_1_t_10 - tube_w_1_t_15*tube_w_1_t_25;
-        const real tube_w_1_t_28 = tube_w_1_t_12 + tube_w_1_t_16*tube_w_1_t_25;
-        const real tube_w_1_t_29 = tube_w_1_t*tube_w_1_t_15 - tube_w_1_t_16*tube_w_1_t_3;
-        const real tube_w_1_t_30 = tube_w_1_t_14*tube_w_1_t_29;
-        const real tube_w_1_t_31 = tube_w_1_t - tube_w_1_t_15*tube_w_1_t_29;
-        const real tube_w_1_t_32 = tube_w_1_t_3 + tube_w_1_t_16*tube_w_1_t_29;
-        const real tube_w_1_t_33 = root(tube_w_1_t_18*tube_w_1_t_18 + tube_w_1_t_19*tube_w_1_t_19
-            + tube_w_1_t_20*tube_w_1_t_20);
-        const real inv_tube_w_1_t_33 = 1/tube_w_1_t_33;
-        const real tube_w_1_t_34 = inv_tube_w_1_t_33*tube_w_1_t_18;
-        const real tube_w_1_t_35 = inv_tube_w_1_t_33*tube_w_1_t_19;
-        const real tube_w_1_t_36 = inv_tube_w_1_t_33*tube_w_1_t_20;
-        const real tube_w_1_t_37 = tube_w_1_t_22*tube_w_1_t_34 + tube_w_1_t_23*tube_w_1_t_35 +
-            tube_w_1_t_24*tube_w_1_t_36;
-        const real tube_w_1_t_38 = tube_w_1_t_22 - tube_w_1_t_34*tube_w_1_t_37;
-        const real tube_w_1_t_39 = tube_w_1_t_23 - tube_w_1_t_35*tube_w_1_t_37;
-        const real tube_w_1_t_40 = tube_w_1_t_24 - tube_w_1_t_36*tube_w_1_t_37;
-        const real tube_w_1_t_41 = tube_w_1_t_26*tube_w_1_t_34 + tube_w_1_t_28*tube_w_1_t_36 -
-            tube_w_1_t_27*tube_w_1_t_35;
-        const real tube_w_1_t_42 = tube_w_1_t_26 - tube_w_1_t_34*tube_w_1_t_41;
-        const real tube_w_1_t_43 = tube_w_1_t_27 + tube_w_1_t_35*tube_w_1_t_41;
-        const real tube_w_1_t_44 = tube_w_1_t_28 - tube_w_1_t_36*tube_w_1_t_41;
-        const real tube_w_1_t_45 = tube_w_1_t_30*tube_w_1_t_34 + tube_w_1_t_32*tube_w_1_t_36 -
-            tube_w_1_t_31*tube_w_1_t_35;
-        const real tube_w_1_t_46 = tube_w_1_t_30 - tube_w_1_t_34*tube_w_1_t_45;
-        const real tube_w_1_t_47 = tube_w_1_t_31 + tube_w_1_t_35*tube_w_1_t_45;
-        const real tube_w_1_t_48 = tube_w_1_t_32 - tube_w_1_t_36*tube_w_1_t_45;
-        const real tube_w_1_t_49 = root(1 + tube_w_1_t_38*tube_w_1_t_38 +
-            tube_w_1_t_39*tube_w_1_t_39 + tube_w_1_t_40*tube_w_1_t_40);
-        const real inv_tube_w_1_t_49 = 1/tube_w_1_t_49;
-        const real tube_w_1_t_50 = inv_tube_w_1_t_49*tube_w_1_t_38;
-        const real tube_w_1_t_51 = inv_tube_w_1_t_49*tube_w_1_t_39;
-        const real tube_w_1_t_52 = inv_tube_w_1_t_49*tube_w_1_t_40;
-        const real tube_w_1_t_53 = tube_w_1_t_42*tube_w_1_t_50 + tube_w_1_t_44*tube_w_1_t_52 -
-            tube_w_1_t_43*tube_w_1_t_51;
-        const real tube_w_1_t_54 = tube_w_1_t_50*tube_w_1_t_53 - tube_w_1_t_42;
-        const real tube_w_1_t_55 = inv_tube_w_1_t_49*tube_w_1_t_53;
-        const real tube_w_1_t_56 = tube_w_1_t_43 + tube_w_1_t_51*tube_w_1_t_53;
-        const real tube_w_1_t_57 = tube_w_1_t_52*tube_w_1_t_53 - tube_w_1_t_44;
-        const real tube_w_1_t_58 = tube_w_1_t_46*tube_w_1_t_50 + tube_w_1_t_48*tube_w_1_t_52 -
-            inv_tube_w_1_t_49*tube_root_1 - tube_w_1_t_47*tube_w_1_t_51;
-        const real tube_w_1_t_59 = tube_w_1_t_50*tube_w_1_t_58 - tube_w_1_t_46;
-        const real tube_w_1_t_60 = tube_root_1 + inv_tube_w_1_t_49*tube_w_1_t_58;
-        const real tube_w_1_t_61 = tube_w_1_t_47 + tube_w_1_t_51*tube_w_1_t_58;
-        const real tube_w_1_t_62 = tube_w_1_t_52*tube_w_1_t_58 - tube_w_1_t_48;
-        const real tube_w_1_t_63 = root(tube_w_1_t_11*tube_w_1_t_11 + tube_w_1_t_54*tube_w_1_t_54
-            + tube_w_1_t_55*tube_w_1_t_55 + tube_w_1_t_56*tube_w_1_t_56 +
-            tube_w_1_t_57*tube_w_1_t_57);
-        const real inv_tube_w_1_t_63 = 1/tube_w_1_t_63;
-        const real tube_w_1_t_64 = inv_tube_w_1_t_63*tube_w_1_t_54;
-        const real tube_w_1_t_65 = inv_tube_w_1_t_63*tube_w_1_t_55;
-        const real tube_w_1_t_66 = inv_tube_w_1_t_63*tube_w_1_t_56;
-        const real tube_w_1_t_67 = inv_tube_w_1_t_63*tube_w_1_t_11;
-        const real tube_w_1_t_68 = inv_tube_w_1_t_63*tube_w_1_t_57;
-        const real tube_w_1_t_69 = tube_w_1_t_59*tube_w_1_t_64 + tube_w_1_t_60*tube_w_1_t_65 +
-            tube_w_1_t_61*tube_w_1_t_66 + tube_w_1_t_62*tube_w_1_t_68 -
-            tube_w_1_t_2*tube_w_1_t_67;
-        const real tube_w_1_t_70 = tube_w_1_t_59 - tube_w_1_t_64*tube_w_1_t_69;
-        const real tube_w_1_t_71 = tube_w_1_t_60 - tube_w_1_t_65*tube_w_1_t_69;
-        const real tube_w_1_t_72 = tube_w_1_t_61 - tube_w_1_t_66*tube_w_1_t_69;
-        const real tube_w_1_t_73 = tube_w_1_t_2 + tube_w_1_t_67*tube_w_1_t_69;
-        const real tube_w_1_t_74 = tube_w_1_t_62 - tube_w_1_t_68*tube_w_1_t_69;
-        const real tube_w_1_t_75 = root(tube_w_1_t_70*tube_w_1_t_70 + tube_w_1_t_71*tube_w_1_t_71
-            + tube_w_1_t_72*tube_w_1_t_72 + tube_w_1_t_73*tube_w_1_t_73 +
-            tube_w_1_t_74*tube_w_1_t_74);
-        /* (tube-eta_1) rate at which the joints turn along moment direction 1 */
-        const real tube_omega_in_axes2_y = axis_y_tube_axes2_x*omega_x +
-            axis_y_tube_axes2_y*omega_y + axis_y_tube_axes2_z*omega_z;
-        const real tube_omega_in_axes2_z = axis_z_tube_axes2_x*omega_x +
-            axis_z_tube_axes2_y*omega_y + axis_z_tube_axes2_z*omega_z;
-        const real tube_eta_1 = tube_n_m1_in_axes2_z*tube_omega_in_axes2_z -
-            tube_end_p1_in_axes2_z*tube_omega_in_axes2_y;
-        /* (tube-eta_2) rate at which the joints turn along moment direction 2 */
-        const real tube_omega_in_axes2_x = axis_x_tube_axes2_x*omega_x +
-            axis_x_tube_axes2_y*omega_y + axis_x_tube_axes2_z*omega_z;
-        const real tube_eta_2 = tube_n_m2_in_axes2_y*tube_omega_in_axes2_y -
-            tube_end_p2_in_axes2_y*tube_omega_in_axes2_x;
-        /* (tube-eta_3) rate at which the joints turn along moment direction 3 */
-        const real tube_eta_3 = tube_n_m3_in_axes2_z*tube_omega_in_axes2_z -
-            tube_end_p3_in_axes2_z*tube_omega_in_axes2_x;
-        /* (tube-qd_1) rate of joint 1 */
-        const real inv_tube_w_1_t_75 = 1/tube_w_1_t_75;
-        const real tube_qd_1_t = inv_tube_w_1_t_75*tube_w_1_t_70;
-        const real tube_qd_1_t_2 = inv_tube_w_1_t_75*tube_w_1_t_71;
-        const real tube_qd_1_t_3 = inv_tube_w_1_t_75*tube_w_1_t_72;
-        const real tube_qd_1_t_4 = inv_tube_w_1_t_75*tube_w_1_t_73;
-        const real tube_qd_1_t_5 = inv_tube_w_1_t_75*tube_w_1_t_74;
-        const real tube_qd_1_t_6 = R(1.35)*tube_eta_1;
-        const real tube_qd_1_t_7 = R(1.35)*tube_eta_2;
-        const real tube_qd_1_t_8 = R(1.35)*tube_eta_3;
-        const real tube_qd_1 = inv_tube_w_1_t_75*(tube_S_dot_in_axes2_y*tube_qd_1_t +
-            tube_S_dot_in_axes2_z*tube_qd_1_t_2 + tube_qd_1_t_3*tube_qd_1_t_6 +
-            tube_qd_1_t_4*tube_qd_1_t_7 + tube_qd_1_t_5*tube_qd_1_t_8);
-        /* (tube-qd_2) rate of joint 2 */
-        const real tube_qd_2_t = inv_tube_w_1_t_63*(tube_S_dot_in_axes2_y*tube_w_1_t_64 +
-            tube_S_dot_in_axes2_z*tube_w_1_t_65 + tube_qd_1_t_6*tube_w_1_t_66 +
-            tube_qd_1_t_8*tube_w_1_t_68 - tube_qd_1*tube_w_1_t_69 - tube_qd_1_t_7*tube_w_1_t_67);
-        const real tube_qd_2_t_2 = inv_tube_w_1_t_49*(inv_tube_w_1_t_49*tube_S_dot_in_axes2_z +
-            tube_S_dot_in_axes2_y*tube_w_1_t_50 + tube_qd_1*tube_w_1_t_58 +
-            tube_qd_1_t_6*tube_w_1_t_51 + tube_qd_1_t_8*tube_w_1_t_52 +
-            tube_qd_2_t*tube_w_1_t_53);
-        const real tube_qd_2_t_3 = tube_S_dot_in_axes2_y*tube_w_1_t_14 +
-            tube_qd_1_t_6*tube_w_1_t_15 + tube_qd_1_t_8*tube_w_1_t_16 +
-            tube_qd_2_t_2*tube_w_1_t_21 +
-            inv_tube_w_1_t_33*tube_w_1_t_17*(tube_S_dot_in_axes2_y*tube_w_1_t_34 +
-            tube_qd_1*tube_w_1_t_45 + tube_qd_1_t_6*tube_w_1_t_35 + tube_qd_1_t_8*tube_w_1_t_36 +
-            tube_qd_2_t*tube_w_1_t_41 - tube_qd_2_t_2*tube_w_1_t_37) - tube_qd_1*tube_w_1_t_29 -
-            tube_qd_2_t*tube_w_1_t_25;
-        const real tube_qd_2 = inv_tube_w_1_t_13*tube_qd_2_t_3;
-        /* (tube-omega_1) angular velocity of link 1 */
-        const real tube_omega_1_in_axes2_x = tube_qd_1*tube_s_2;
-        const real tube_omega_1_in_axes2_y = tube_c_2*tube_qd_1;
+        values_tube v;
+        stage_tube_X(m, w, i, j, s, X, &v);
+        stage_tube_V_X(w, j, V, &v);
+        stage_tube_Z_dynamics(m, i, &v);
+        stage_tube_Z_joint_accelerations(&v);
         /* (tube-W_2) centripetal tensor of link 2 */
-        const real tube_W_2_in_axes2_yz = tube_omega_1_in_axes2_y*tube_qd_2;
-        const real tube_W_2_in_axes2_xz = tube_omega_1_in_axes2_x*tube_qd_2;
-        const real tube_W_2_in_axes2_xy = tube_omega_1_in_axes2_x*tube_omega_1_in_axes2_y;
-        /* (tube-u_1) centripetal acceleration of the connection point */
-        const real tube_u_1_x = omega_y*tube_S_dot_t_5 - omega_z*tube_S_dot_t_4;
-        const real tube_u_1_y = omega_z*tube_S_dot_t_3 - omega_x*tube_S_dot_t_5;
-        const real tube_u_1_z = omega_x*tube_S_dot_t_4 - omega_y*tube_S_dot_t_3;
+        const real tube_W_2_in_axes2_xy = v.tube_omega_1_in_axes2_x*v.tube_omega_1_in_axes2_y;
         /* (tube-bias) acceleration of the connection point at zero joint accelerations */
-        const real tube_bias_t = tube_W_2_in_axes2_xz*tube_root_2;
-        const real tube_bias_t_2 = -tube_W_2_in_axes2_xy*tube_root_2;
-        const real tube_bias_t_3 = 2*tube_S_dot_in_axes2_x;
-        const real tube_bias_t_4 = tube_bias_t_3*tube_qd_2;
-        const real tube_bias_t_5 = -tube_bias_t_3*tube_omega_1_in_axes2_y;
+        const real tube_bias_t = v.tube_W_2_in_axes2_xz*v.tube_q_3;
+        const real tube_bias_t_2 = -tube_W_2_in_axes2_xy*v.tube_q_3;
+        const real tube_bias_t_4 = v.tube_bias_t_3*v.tube_qd_2;
+        const real tube_bias_t_5 = v.tube_bias_t_3*v.tube_omega_1_in_axes2_y;
         const real tube_bias_in_axes2_y = tube_bias_t_4 - tube_bias_t_2;
-        const real tube_bias_in_axes2_z = 2*tube_bias_t + tube_bias_t_5;
+        const real tube_bias_in_axes2_z = 2*tube_bias_t - tube_bias_t_5;
         /* (tube-rel_o) remainder without the acceleration in: acceleration of the connection point left
            to the joint accelerations */
-        const real tube_rel_o_in_axes2_y = axis_y_tube_axes2_x*tube_u_1_x +
-            axis_y_tube_axes2_y*tube_u_1_y + axis_y_tube_axes2_z*tube_u_1_z -
+        const real tube_rel_o_in_axes2_y = v.axis_y_tube_axes2_x*v.tube_u_1_x +
+            v.axis_y_tube_axes2_y*v.tube_u_1_y + v.axis_y_tube_axes2_z*v.tube_u_1_z -
             tube_bias_in_axes2_y;
-        const real tube_rel_o_in_axes2_z = axis_z_tube_axes2_x*tube_u_1_x +
-            axis_z_tube_axes2_y*tube_u_1_y + axis_z_tube_axes2_z*tube_u_1_z -
+        const real tube_rel_o_in_axes2_z = v.axis_z_tube_axes2_x*v.tube_u_1_x +
+            v.axis_z_tube_axes2_y*v.tube_u_1_y + v.axis_z_tube_axes2_z*v.tube_u_1_z -
             tube_bias_in_axes2_z;
-        /* (tube-nd_m1) rate of moment direction 1 */
-        const real tube_end_p1_in_axes2_x = tube_n_m1_t_12*tube_s_2 - tube_c_2*tube_n_m1_t_13;
-        const real tube_nd_m1_in_axes2_y = tube_end_p1_in_axes2_x*tube_omega_in_axes2_y -
-            tube_end_p1_in_axes2_x*tube_omega_1_in_axes2_y -
-            tube_n_m1_in_axes2_z*tube_omega_in_axes2_x;
-        const real tube_nd_m1_in_axes2_z = tube_end_p1_in_axes2_x*tube_omega_in_axes2_z -
-            tube_end_p1_in_axes2_x*tube_qd_2 - tube_end_p1_in_axes2_z*tube_omega_in_axes2_x;
-        /* (tube-nu_1) bias of the angular acceleration along moment direction 1 */
-        const real tube_nu_1_t = tube_omega_1_in_axes2_x - tube_omega_in_axes2_x;
-        const real tube_nu_1_t_2 = tube_omega_in_axes2_y - tube_omega_1_in_axes2_y;
-        const real tube_nu_1_t_3 = tube_omega_in_axes2_z - tube_qd_2;
-        const real tube_nu_1_t_4 = tube_nd_m1_in_axes2_y*tube_nu_1_t_2 +
-            tube_nd_m1_in_axes2_z*tube_nu_1_t_3 - tube_nu_1_t*(tube_end_p1_in_axes2_z*tube_qd_2 +
-            tube_n_m1_in_axes2_z*tube_omega_1_in_axes2_y);
-        const real tube_nu_1 = tube_nu_1_t_4 - tube_W_2_in_axes2_xz*tube_end_p1_in_axes2_z;
-        /* (tube-nd_m2) rate of moment direction 2 */
-        const real tube_end_p2_in_axes2_z = tube_c_1*tube_n_m2_t + tube_n_m2_t_2*tube_s_1;
-        const real tube_nd_m2_in_axes2_x = tube_end_p2_in_axes2_z*tube_omega_in_axes2_x -
-            tube_end_p2_in_axes2_z*tube_omega_1_in_axes2_x -
-            tube_n_m2_in_axes2_y*tube_omega_in_axes2_z;
-        const real tube_nd_m2_in_axes2_y = tube_end_p2_in_axes2_z*tube_omega_in_axes2_y -
-            tube_end_p2_in_axes2_y*tube_omega_in_axes2_z -
-            tube_end_p2_in_axes2_z*tube_omega_1_in_axes2_y;
-        /* (tube-nu_2) bias of the angular acceleration along moment direction 2 */
-        const real tube_nu_2_t = -tube_W_2_in_axes2_xz*tube_n_m2_in_axes2_y -
-            tube_W_2_in_axes2_yz*tube_end_p2_in_axes2_y;
-        const real tube_nu_2_t_2 = tube_nd_m2_in_axes2_x*tube_nu_1_t +
-            tube_nu_1_t_3*(-tube_end_p2_in_axes2_y*tube_omega_1_in_axes2_y -
-            tube_n_m2_in_axes2_y*tube_omega_1_in_axes2_x) - tube_nd_m2_in_axes2_y*tube_nu_1_t_2;
-        const real tube_nu_2 = -tube_nu_2_t - tube_nu_2_t_2;
-        /* (tube-nd_m3) rate of moment direction 3 */
-        const real tube_end_p3_in_axes2_y = tube_c_2*tube_n_m3_t_3 + tube_n_m3_t_4*tube_s_2;
-        const real tube_nd_m3_in_axes2_x = tube_end_p3_in_axes2_y*tube_omega_1_in_axes2_x +
-            tube_n_m3_in_axes2_z*tube_omega_in_axes2_y -
-            tube_end_p3_in_axes2_y*tube_omega_in_axes2_x;
-        const real tube_nd_m3_in_axes2_z = tube_end_p3_in_axes2_y*tube_qd_2 +
-            tube_end_p3_in_axes2_z*tube_omega_in_axes2_y -
-            tube_end_p3_in_axes2_y*tube_omega_in_axes2_z;
-        /* (tube-nu_3) bias of the angular acceleration along moment direction 3 */
-        const real tube_nu_3_t = tube_nd_m3_in_axes2_x*tube_nu_1_t +
-            tube_nu_1_t_2*(tube_end_p3_in_axes2_z*tube_qd_2 +
-            tube_n_m3_in_axes2_z*tube_omega_1_in_axes2_x) - tube_nd_m3_in_axes2_z*tube_nu_1_t_3;
-        const real tube_nu_3 = tube_W_2_in_axes2_yz*tube_end_p3_in_axes2_z - tube_nu_3_t;
         /* (tube-qdd_1_o) remainder without the acceleration in: acceleration of joint 1 */
-        const real tube_qdd_1_o_t = R(1.35)*tube_nu_1;
-        const real tube_qdd_1_o_t_2 = R(1.35)*tube_nu_2;
-        const real tube_qdd_1_o_t_3 = R(1.35)*tube_nu_3;
-        const real tube_qdd_1_o = inv_tube_w_1_t_75*(tube_qd_1_t*tube_rel_o_in_axes2_y +
-            tube_qd_1_t_2*tube_rel_o_in_axes2_z + tube_qd_1_t_3*tube_qdd_1_o_t +
-            tube_qd_1_t_4*tube_qdd_1_o_t_2 + tube_qd_1_t_5*tube_qdd_1_o_t_3);
+        const real tube_qdd_1_o_t = R(1.35)*v.tube_nu_1;
+        const real tube_qdd_1_o_t_2 = R(1.35)*v.tube_nu_2;
+        const real tube_qdd_1_o_t_3 = R(1.35)*v.tube_nu_3;
+        const real tube_qdd_1_o = v.inv_tube_w_1_t_75*(v.tube_qd_1_t*tube_rel_o_in_axes2_y +
+            v.tube_qd_1_t_2*tube_rel_o_in_axes2_z + v.tube_qd_1_t_3*tube_qdd_1_o_t +
+            v.tube_qd_1_t_5*tube_qdd_1_o_t_3 - v.tube_qd_1_t_4*tube_qdd_1_o_t_2);
         /* (tube-qdd_2_o) remainder without the acceleration in: acceleration of joint 2 */
-        const real tube_qdd_2_o_t = inv_tube_w_1_t_63*(tube_qdd_1_o_t*tube_w_1_t_66 +
-            tube_qdd_1_o_t_3*tube_w_1_t_68 + tube_rel_o_in_axes2_y*tube_w_1_t_64 +
-            tube_rel_o_in_axes2_z*tube_w_1_t_65 - tube_qdd_1_o*tube_w_1_t_69 -
-            tube_qdd_1_o_t_2*tube_w_1_t_67);
-        const real tube_qdd_2_o_t_2 = inv_tube_w_1_t_49*(inv_tube_w_1_t_49*tube_rel_o_in_axes2_z +
-            tube_qdd_1_o*tube_w_1_t_58 + tube_qdd_1_o_t*tube_w_1_t_51 +
-            tube_qdd_1_o_t_3*tube_w_1_t_52 + tube_qdd_2_o_t*tube_w_1_t_53 +
-            tube_rel_o_in_axes2_y*tube_w_1_t_50);
-        const real tube_qdd_2_o_t_3 = tube_qdd_1_o_t*tube_w_1_t_15 +
-            tube_qdd_1_o_t_3*tube_w_1_t_16 + tube_qdd_2_o_t_2*tube_w_1_t_21 +
-            tube_rel_o_in_axes2_y*tube_w_1_t_14 +
-            inv_tube_w_1_t_33*tube_w_1_t_17*(tube_qdd_1_o*tube_w_1_t_45 +
-            tube_qdd_1_o_t*tube_w_1_t_35 + tube_qdd_1_o_t_3*tube_w_1_t_36 +
-            tube_qdd_2_o_t*tube_w_1_t_41 + tube_rel_o_in_axes2_y*tube_w_1_t_34 -
-            tube_qdd_2_o_t_2*tube_w_1_t_37) - tube_qdd_1_o*tube_w_1_t_29 -
-            tube_qdd_2_o_t*tube_w_1_t_25;
-        const real tube_qdd_2_o = inv_tube_w_1_t_13*tube_qdd_2_o_t_3;
+        const real tube_qdd_2_o_t = v.inv_tube_w_1_t_63*(tube_qdd_1_o_t*v.tube_w_1_t_66 +
+            tube_qdd_1_o_t_2*v.tube_w_1_t_67 + tube_qdd_1_o_t_3*v.tube_w_1_t_68 +
+            tube_rel_o_in_axes2_y*v.tube_w_1_t_64 + tube_rel_o_in_axes2_z*v.tube_w_1_t_65 -
+            tube_qdd_1_o*v.tube_w_1_t_69);
+        const real tube_qdd_2_o_t_2 =
+            v.inv_tube_w_1_t_49*(v.inv_tube_w_1_t_49*tube_rel_o_in_axes2_z +
+            tube_qdd_1_o*v.tube_w_1_t_58 + tube_qdd_1_o_t*v.tube_w_1_t_51 +
+            tube_qdd_1_o_t_3*v.tube_w_1_t_52 + tube_qdd_2_o_t*v.tube_w_1_t_53 +
+            tube_rel_o_in_axes2_y*v.tube_w_1_t_50);
+        const real tube_qdd_2_o_t_3 = tube_qdd_1_o_t*v.tube_w_1_t_15 +
+            tube_qdd_1_o_t_3*v.tube_w_1_t_16 + tube_qdd_2_o_t_2*v.tube_w_1_t_21 +
+            tube_rel_o_in_axes2_y*v.tube_w_1_t_14 +
+            v.inv_tube_w_1_t_33*v.tube_w_1_t_17*(tube_qdd_1_o*v.tube_w_1_t_45 +
+            tube_qdd_1_o_t*v.tube_w_1_t_35 + tube_qdd_1_o_t_3*v.tube_w_1_t_36 +
+            tube_qdd_2_o_t*v.tube_w_1_t_41 + tube_rel_o_in_axes2_y*v.tube_w_1_t_34 -
+            tube_qdd_2_o_t_2*v.tube_w_1_t_37) - tube_qdd_1_o*v.tube_w_1_t_29 -
+            tube_qdd_2_o_t*v.tube_w_1_t_25;
+        const real tube_qdd_2_o = v.inv_tube_w_1_t_13*tube_qdd_2_o_t_3;
         /* (tube-alpha_1_o) remainder without the acceleration in: angular acceleration of link 1 */
-        const real tube_alpha_1_o_in_axes2_x = tube_qdd_1_o*tube_s_2;
-        const real tube_alpha_1_o_in_axes2_y = tube_c_2*tube_qdd_1_o;
+        const real tube_alpha_1_o_in_axes2_x = v.tube_e_1_in_axes2_x*tube_qdd_1_o;
+        const real tube_alpha_1_o_in_axes2_y = -v.tube_c_2*tube_qdd_1_o;
         /* (tube-alpha_2_o) remainder without the acceleration in: angular acceleration of link 2 */
-        const real tube_alpha_2_o_in_axes2_x = tube_W_2_in_axes2_yz + tube_alpha_1_o_in_axes2_x;
-        const real tube_alpha_2_o_in_axes2_y = tube_alpha_1_o_in_axes2_y - tube_W_2_in_axes2_xz;
+        const real tube_alpha_2_o_in_axes2_x = v.tube_W_2_in_axes2_yz + tube_alpha_1_o_in_axes2_x;
+        const real tube_alpha_2_o_in_axes2_y = tube_alpha_1_o_in_axes2_y - v.tube_W_2_in_axes2_xz;
         /* (tube-B_2_o) remainder of the acceleration tensor of link 2 */
         const real tube_B_2_o_in_axes2_xy = tube_W_2_in_axes2_xy - tube_qdd_2_o;
         const real tube_B_2_o_in_axes2_yx = tube_W_2_in_axes2_xy + tube_qdd_2_o;
-        const real tube_B_2_o_in_axes2_zx = tube_W_2_in_axes2_xz - tube_alpha_2_o_in_axes2_y;
-        const real tube_B_2_o_in_axes2_zy = tube_W_2_in_axes2_yz + tube_alpha_2_o_in_axes2_x;
+        const real tube_B_2_o_in_axes2_zx = v.tube_W_2_in_axes2_xz - tube_alpha_2_o_in_axes2_y;
+        const real tube_B_2_o_in_axes2_zy = v.tube_W_2_in_axes2_yz + tube_alpha_2_o_in_axes2_x;
         /* (tube-acc_3_o) remainder without the acceleration in: acceleration of the reference point of
            link 3, less gravity */
-        const real tube_acc_3_t = m->tube_acc_3_t[i];
-        const real tube_acc_3_t_2 = m->tube_acc_3_t_2[i];
-        const real tube_g_in_axes2_z = tube_acc_3_t*tube_c_1 + tube_acc_3_t_2*tube_s_1;
-        const real tube_acc_3_o_t = tube_acc_3_t_2*tube_c_1 - tube_acc_3_t*tube_s_1;
-        const real tube_acc_3_t_3 = m->tube_acc_3_t_3[i];
-        const real tube_g_in_axes2_x = tube_acc_3_o_t*tube_c_2 + tube_acc_3_t_3*tube_s_2;
-        const real tube_g_in_axes2_y = tube_acc_3_t_3*tube_c_2 - tube_acc_3_o_t*tube_s_2;
-        const real tube_acc_3_o_in_axes2_x = axis_x_tube_axes2_x*tube_u_1_x +
-            axis_x_tube_axes2_y*tube_u_1_y + axis_x_tube_axes2_z*tube_u_1_z - tube_g_in_axes2_x;
-        const real tube_acc_3_o_in_axes2_y = tube_bias_t_4 + tube_qdd_2_o*tube_root_2 -
-            tube_bias_t_2 - tube_g_in_axes2_y;
-        const real tube_acc_3_o_in_axes2_z = tube_bias_t + tube_bias_t_5 - tube_g_in_axes2_z -
-            tube_alpha_2_o_in_axes2_y*tube_root_2;
+        const real tube_acc_3_o_in_axes2_y = tube_bias_t_4 + v.tube_q_3*tube_qdd_2_o -
+            tube_bias_t_2 - v.tube_g_in_axes2_y;
+        const real tube_acc_3_o_in_axes2_z = tube_bias_t - tube_bias_t_5 - v.tube_g_in_axes2_z -
+            tube_alpha_2_o_in_axes2_y*v.tube_q_3;
         /* (tube-f_3_o) remainder without the acceleration in: inertia force of link 3 less its weight */
-        const real tube_f_3_o_t = tube_omega_1_in_axes2_x*tube_omega_1_in_axes2_x;
-        const real tube_f_3_o_t_2 = tube_omega_1_in_axes2_y*tube_omega_1_in_axes2_y;
-        const real tube_f_3_o_t_3 = tube_qd_2*tube_qd_2;
+        const real tube_f_3_o_t = v.tube_omega_1_in_axes2_x*v.tube_omega_1_in_axes2_x;
+        const real tube_f_3_o_t_2 = v.tube_omega_1_in_axes2_y*v.tube_omega_1_in_axes2_y;
+        const real tube_f_3_o_t_3 = v.tube_qd_2*v.tube_qd_2;
         const real tube_h_3_in_spec2_x = m->tube_h_3_in_spec2_x[i];
         const real tube_h_3_in_spec2_y = m->tube_h_3_in_spec2_y[i];
         const real tube_h_3_in_spec2_z = m->tube_h_3_in_spec2_z[i];
         const real tube_link3_mass = m->tube_link3_mass[i];
-        const real tube_f_3_o_in_axes2_x = tube_acc_3_o_in_axes2_x*tube_link3_mass +
-            tube_alpha_1_o_in_axes2_y*tube_h_3_in_spec2_y + tube_h_3_in_spec2_x*(-tube_f_3_o_t_2 -
-            tube_f_3_o_t_3) - tube_B_2_o_in_axes2_xy*tube_h_3_in_spec2_z;
+        const real tube_f_3_o_in_axes2_x = v.tube_acc_3_o_in_axes2_x*tube_link3_mass +
+            tube_alpha_1_o_in_axes2_y*tube_h_3_in_spec2_y -
+            tube_B_2_o_in_axes2_xy*tube_h_3_in_spec2_z - tube_h_3_in_spec2_x*(tube_f_3_o_t_2 +
+            tube_f_3_o_t_3);
         const real tube_f_3_o_in_axes2_y = tube_B_2_o_in_axes2_yx*tube_h_3_in_spec2_x +
             tube_acc_3_o_in_axes2_y*tube_link3_mass + tube_h_3_in_spec2_z*(tube_f_3_o_t +
             tube_f_3_o_t_3) - tube_alpha_1_o_in_axes2_x*tube_h_3_in_spec2_y;
@@ -5674,7 +6007,7 @@ INLINE void Z_legs_tube(const prepared *m, size_t w, size_t leg, size_t legs, co
             tube_B_2_o_in_axes2_zy*tube_Sigma_2_in_axes2_yy +
             tube_J_group_2_in_axes2_yz*(tube_f_3_o_t_2 - tube_f_3_o_t_3) +
             tube_Sigma_2_in_axes2_zz*tube_alpha_1_o_in_axes2_x +
-            tube_g_in_axes2_y*tube_h_2_in_spec2_y + tube_g_in_axes2_z*tube_h_2_in_spec2_z -
+            v.tube_g_in_axes2_y*tube_h_2_in_spec2_y + v.tube_g_in_axes2_z*tube_h_2_in_spec2_z -
             tube_B_2_o_in_axes2_zx*tube_J_group_2_in_axes2_xy -
             tube_acc_3_o_in_axes2_y*tube_h_3_in_spec2_y -
             tube_acc_3_o_in_axes2_z*tube_h_3_in_spec2_z;
@@ -5682,80 +6015,87 @@ INLINE void Z_legs_tube(const prepared *m, size_t w, size_t leg, size_t legs, co
         const real tube_h_2_in_spec2_x = m->tube_h_2_in_spec2_x[i];
         const real tube_mu_2_o_in_axes2_y = tube_B_2_o_in_axes2_zy*tube_J_group_2_in_axes2_xy +
             tube_Sigma_2_in_axes2_zz*tube_alpha_1_o_in_axes2_y +
-            tube_acc_3_o_in_axes2_x*tube_h_3_in_spec2_y + tube_g_in_axes2_z*tube_h_2_in_spec2_x -
+            v.tube_acc_3_o_in_axes2_x*tube_h_3_in_spec2_y +
+            v.tube_g_in_axes2_z*tube_h_2_in_spec2_x -
             tube_B_2_o_in_axes2_xy*tube_J_group_2_in_axes2_yz -
             tube_B_2_o_in_axes2_zx*tube_Sigma_2_in_axes2_xx -
             tube_J_group_2_in_axes2_xz*(tube_f_3_o_t - tube_f_3_o_t_3) -
-            tube_acc_3_o_in_axes2_z*tube_h_3_in_spec2_x - tube_g_in_axes2_x*tube_h_2_in_spec2_y;
+            tube_acc_3_o_in_axes2_z*tube_h_3_in_spec2_x - v.tube_g_in_axes2_x*tube_h_2_in_spec2_y;
         const real tube_mu_2_o_in_axes2_z = tube_B_2_o_in_axes2_yx*tube_Sigma_2_in_axes2_xx +
             tube_J_group_2_in_axes2_xy*(tube_f_3_o_t - tube_f_3_o_t_2) +
             tube_J_group_2_in_axes2_xz*tube_alpha_1_o_in_axes2_x +
             tube_J_group_2_in_axes2_yz*tube_alpha_1_o_in_axes2_y +
-            tube_acc_3_o_in_axes2_x*tube_h_3_in_spec2_z +
+            v.tube_acc_3_o_in_axes2_x*tube_h_3_in_spec2_z +
             tube_acc_3_o_in_axes2_y*tube_h_3_in_spec2_x -
             tube_B_2_o_in_axes2_xy*tube_Sigma_2_in_axes2_yy -
-            tube_g_in_axes2_x*tube_h_2_in_spec2_z - tube_g_in_axes2_y*tube_h_2_in_spec2_x;
+            v.tube_g_in_axes2_x*tube_h_2_in_spec2_z - v.tube_g_in_axes2_y*tube_h_2_in_spec2_x;
         /* (tube-N_2_o) remainder without the acceleration in: moment about joint 2 of the links from 2
            outwards, the force at the connection point left out */
         const real tube_N_2_o_in_axes2_y = tube_mu_2_o_in_axes2_y -
-            tube_f_3_o_in_axes2_z*tube_root_2;
+            tube_f_3_o_in_axes2_z*v.tube_q_3;
         const real tube_N_2_o_in_axes2_z = tube_mu_2_o_in_axes2_z +
-            tube_f_3_o_in_axes2_y*tube_root_2;
+            tube_f_3_o_in_axes2_y*v.tube_q_3;
         /* (tube-G_o) remainder without the acceleration in: force at the connection point that balances
            the leg's inertia and weight along all degrees of freedom */
-        const real tube_G_o_t = inv_tube_w_1_t_13*tube_N_2_o_in_axes2_z;
-        const real tube_G_o_t_2 = inv_tube_w_1_t_33*tube_G_o_t*tube_w_1_t_17;
-        const real tube_G_o_t_3 = inv_tube_w_1_t_49*(tube_G_o_t*tube_w_1_t_21 -
-            tube_G_o_t_2*tube_w_1_t_37);
-        const real tube_G_o_t_4 = inv_tube_w_1_t_63*(tube_G_o_t_2*tube_w_1_t_41 +
-            tube_G_o_t_3*tube_w_1_t_53 - tube_G_o_t*tube_w_1_t_25);
-        const real tube_G_o_t_5 = inv_tube_w_1_t_75*(tube_G_o_t_2*tube_w_1_t_45 +
-            tube_G_o_t_3*tube_w_1_t_58 + tube_N_2_o_in_axes2_y*tube_c_2 +
-            tube_mu_2_o_in_axes2_x*tube_s_2 - tube_G_o_t*tube_w_1_t_29 -
-            tube_G_o_t_4*tube_w_1_t_69);
-        const real tube_G_o_in_axes2_y = tube_G_o_t*tube_w_1_t_14 + tube_G_o_t_2*tube_w_1_t_34 +
-            tube_G_o_t_3*tube_w_1_t_50 + tube_G_o_t_4*tube_w_1_t_64 + tube_G_o_t_5*tube_qd_1_t;
-        const real tube_G_o_in_axes2_z = inv_tube_w_1_t_49*tube_G_o_t_3 +
-            tube_G_o_t_4*tube_w_1_t_65 + tube_G_o_t_5*tube_qd_1_t_2;
+        const real tube_G_o_t = v.inv_tube_w_1_t_13*tube_N_2_o_in_axes2_z;
+        const real tube_G_o_t_2 = v.inv_tube_w_1_t_33*tube_G_o_t*v.tube_w_1_t_17;
+        const real tube_G_o_t_3 = v.inv_tube_w_1_t_49*(tube_G_o_t*v.tube_w_1_t_21 -
+            tube_G_o_t_2*v.tube_w_1_t_37);
+        const real tube_G_o_t_4 = v.inv_tube_w_1_t_63*(tube_G_o_t_2*v.tube_w_1_t_41 +
+            tube_G_o_t_3*v.tube_w_1_t_53 - tube_G_o_t*v.tube_w_1_t_25);
+        const real tube_G_o_t_5 = v.inv_tube_w_1_t_75*(tube_G_o_t*v.tube_w_1_t_29 +
+            tube_G_o_t_4*v.tube_w_1_t_69 + tube_N_2_o_in_axes2_y*v.tube_c_2 -
+            tube_G_o_t_2*v.tube_w_1_t_45 - tube_G_o_t_3*v.tube_w_1_t_58 -
+            v.tube_e_1_in_axes2_x*tube_mu_2_o_in_axes2_x);
+        const real tube_G_o_in_axes2_y = tube_G_o_t*v.tube_w_1_t_14 + tube_G_o_t_2*v.tube_w_1_t_34
+            + tube_G_o_t_3*v.tube_w_1_t_50 + tube_G_o_t_4*v.tube_w_1_t_64 -
+            tube_G_o_t_5*v.tube_qd_1_t;
+        const real tube_G_o_in_axes2_z = v.inv_tube_w_1_t_49*tube_G_o_t_3 +
+            tube_G_o_t_4*v.tube_w_1_t_65 - tube_G_o_t_5*v.tube_qd_1_t_2;
         /* (tube-G_m1_o) remainder without the acceleration in: moment along moment direction 1 that
            balances the leg's inertia and weight along all degrees of freedom */
-        const real tube_G_m1_o_t = tube_G_o_t*tube_w_1_t_15 + tube_G_o_t_2*tube_w_1_t_35 +
-            tube_G_o_t_3*tube_w_1_t_51 + tube_G_o_t_4*tube_w_1_t_66 + tube_G_o_t_5*tube_qd_1_t_3;
+        const real tube_G_m1_o_t = tube_G_o_t*v.tube_w_1_t_15 + tube_G_o_t_2*v.tube_w_1_t_35 +
+            tube_G_o_t_3*v.tube_w_1_t_51 + tube_G_o_t_4*v.tube_w_1_t_66 -
+            tube_G_o_t_5*v.tube_qd_1_t_3;
         const real tube_G_m1_o = R(1.35)*tube_G_m1_o_t;
         /* (tube-G_m2_o) remainder without the acceleration in: moment along moment direction 2 that
            balances the leg's inertia and weight along all degrees of freedom */
-        const real tube_G_m2_o_t = tube_G_o_t_4*tube_w_1_t_67 - tube_G_o_t_5*tube_qd_1_t_4;
-        const real tube_G_m2_o = -R(1.35)*tube_G_m2_o_t;
+        const real tube_G_m2_o_t = tube_G_o_t_4*v.tube_w_1_t_67 + tube_G_o_t_5*v.tube_qd_1_t_4;
+        const real tube_G_m2_o = R(1.35)*tube_G_m2_o_t;
         /* (tube-G_m3_o) remainder without the acceleration in: moment along moment direction 3 that
            balances the leg's inertia and weight along all degrees of freedom */
-        const real tube_G_m3_o_t = tube_G_o_t*tube_w_1_t_16 + tube_G_o_t_2*tube_w_1_t_36 +
-            tube_G_o_t_3*tube_w_1_t_52 + tube_G_o_t_4*tube_w_1_t_68 + tube_G_o_t_5*tube_qd_1_t_5;
+        const real tube_G_m3_o_t = tube_G_o_t*v.tube_w_1_t_16 + tube_G_o_t_2*v.tube_w_1_t_36 +
+            tube_G_o_t_3*v.tube_w_1_t_52 + tube_G_o_t_4*v.tube_w_1_t_68 -
+            tube_G_o_t_5*v.tube_qd_1_t_5;
         const real tube_G_m3_o = R(1.35)*tube_G_m3_o_t;
         /* (tube-G_m_o) remainder without the acceleration in: moment at the connection point that
            balances the leg's inertia and weight along all degrees of freedom */
-        const real tube_G_m_o_in_axes2_x = -tube_G_m2_o*tube_end_p2_in_axes2_y -
-            tube_G_m3_o*tube_end_p3_in_axes2_z;
-        const real tube_G_m_o_in_axes2_y = tube_G_m2_o*tube_n_m2_in_axes2_y -
-            tube_G_m1_o*tube_end_p1_in_axes2_z;
-        const real tube_G_m_o_in_axes2_z = tube_G_m1_o*tube_n_m1_in_axes2_z +
-            tube_G_m3_o*tube_n_m3_in_axes2_z;
+        const real tube_G_m_o_in_axes2_x = -tube_G_m2_o*v.tube_end_p2_in_axes2_y -
+            tube_G_m3_o*v.tube_end_p3_in_axes2_z;
+        const real tube_G_m_o_in_axes2_y = tube_G_m2_o*v.tube_n_m2_in_axes2_y -
+            tube_G_m1_o*v.tube_end_p1_in_axes2_z;
+        const real tube_G_m_o_in_axes2_z = tube_G_m1_o*v.tube_n_m1_in_axes2_z +
+            tube_G_m3_o*v.tube_n_m3_in_axes2_z;
         /* (tube-U) velocity and gravity terms of the leg force */
-        const real tube_U_x = axis_x_tube_axes2_x*tube_f_3_o_in_axes2_x +
-            axis_y_tube_axes2_x*tube_G_o_in_axes2_y + axis_z_tube_axes2_x*tube_G_o_in_axes2_z;
-        const real tube_U_y = axis_x_tube_axes2_y*tube_f_3_o_in_axes2_x +
-            axis_y_tube_axes2_y*tube_G_o_in_axes2_y + axis_z_tube_axes2_y*tube_G_o_in_axes2_z;
-        const real tube_U_z = axis_x_tube_axes2_z*tube_f_3_o_in_axes2_x +
-            axis_y_tube_axes2_z*tube_G_o_in_axes2_y + axis_z_tube_axes2_z*tube_G_o_in_axes2_z;
+        const real tube_U_x = v.axis_x_tube_axes2_x*tube_f_3_o_in_axes2_x +
+            v.axis_y_tube_axes2_x*tube_G_o_in_axes2_y + v.axis_z_tube_axes2_x*tube_G_o_in_axes2_z;
+        const real tube_U_y = v.axis_x_tube_axes2_y*tube_f_3_o_in_axes2_x +
+            v.axis_y_tube_axes2_y*tube_G_o_in_axes2_y + v.axis_z_tube_axes2_y*tube_G_o_in_axes2_z;
+        const real tube_U_z = v.axis_x_tube_axes2_z*tube_f_3_o_in_axes2_x +
+            v.axis_y_tube_axes2_z*tube_G_o_in_axes2_y + v.axis_z_tube_axes2_z*tube_G_o_in_axes2_z;
         /* (Z_a) rotational part of Z */
-        const real tube_Z_a_t = axis_x_tube_axes2_x*tube_G_m_o_in_axes2_x +
-            axis_y_tube_axes2_x*tube_G_m_o_in_axes2_y + axis_z_tube_axes2_x*tube_G_m_o_in_axes2_z
-            + tube_U_z*tube_q_y - tube_U_y*tube_q_z;
-        const real tube_Z_a_t_2 = axis_x_tube_axes2_y*tube_G_m_o_in_axes2_x +
-            axis_y_tube_axes2_y*tube_G_m_o_in_axes2_y + axis_z_tube_axes2_y*tube_G_m_o_in_axes2_z
-            + tube_U_x*tube_q_z - tube_U_z*tube_q_x;
-        const real tube_Z_a_t_3 = axis_x_tube_axes2_z*tube_G_m_o_in_axes2_x +
-            axis_y_tube_axes2_z*tube_G_m_o_in_axes2_y + axis_z_tube_axes2_z*tube_G_m_o_in_axes2_z
-            + tube_U_y*tube_q_x - tube_U_x*tube_q_y;
+        const real tube_Z_a_t = v.axis_x_tube_axes2_x*tube_G_m_o_in_axes2_x +
+            v.axis_y_tube_axes2_x*tube_G_m_o_in_axes2_y +
+            v.axis_z_tube_axes2_x*tube_G_m_o_in_axes2_z + tube_U_z*v.tube_q_y -
+            tube_U_y*v.tube_q_z;
+        const real tube_Z_a_t_2 = v.axis_x_tube_axes2_y*tube_G_m_o_in_axes2_x +
+            v.axis_y_tube_axes2_y*tube_G_m_o_in_axes2_y +
+            v.axis_z_tube_axes2_y*tube_G_m_o_in_axes2_z + tube_U_x*v.tube_q_z -
+            tube_U_z*v.tube_q_x;
+        const real tube_Z_a_t_3 = v.axis_x_tube_axes2_z*tube_G_m_o_in_axes2_x +
+            v.axis_y_tube_axes2_z*tube_G_m_o_in_axes2_y +
+            v.axis_z_tube_axes2_z*tube_G_m_o_in_axes2_z + tube_U_y*v.tube_q_x -
+            tube_U_x*v.tube_q_y;
         /* (Z_t) translational part of Z */
         gather(&terms[0*count + k], add, tube_U_x);  /* Z_t_x_of_legs */
         gather(&terms[1*count + k], add, tube_U_y);  /* Z_t_y_of_legs */
@@ -5764,12 +6104,12 @@ INLINE void Z_legs_tube(const prepared *m, size_t w, size_t leg, size_t legs, co
         gather(&terms[3*count + k], add, tube_Z_a_t);  /* Z_a_x_of_legs */
         gather(&terms[4*count + k], add, tube_Z_a_t_2);  /* Z_a_y_of_legs */
         gather(&terms[5*count + k], add, tube_Z_a_t_3);  /* Z_a_z_of_legs */
-        o[0*count + k] = UNLESS(magnitude(tube_rho2_1) > LEAST_3) + UNLESS(magnitude(tube_rho2_2)
-            > LEAST_3) + UNLESS(magnitude(tube_f_c1_t) > LEAST_4) + UNLESS(magnitude(tube_size_c3)
-            > LEAST_4) + UNLESS(magnitude(tube_w_1_t_13) > LEAST_5) +
-            UNLESS(magnitude(tube_w_1_t_33) > LEAST_4) + UNLESS(magnitude(tube_w_1_t_49) >
-            LEAST_4) + UNLESS(magnitude(tube_w_1_t_63) > LEAST_5) +
-            UNLESS(magnitude(tube_w_1_t_75) > LEAST_5);
+        o[0*count + k] = UNLESS(magnitude(v.tube_root_1_t) > LEAST_3) +
+            UNLESS(magnitude(v.tube_q_3_t) > LEAST_3) + UNLESS(magnitude(v.tube_f_c1_t) > LEAST_4)
+            + UNLESS(magnitude(v.tube_size_c3) > LEAST_4) + UNLESS(magnitude(v.tube_w_1_t_13) >
+            LEAST_5) + UNLESS(magnitude(v.tube_w_1_t_33) > LEAST_4) +
+            UNLESS(magnitude(v.tube_w_1_t_49) > LEAST_4) + UNLESS(magnitude(v.tube_w_1_t_63) >
+            LEAST_5) + UNLESS(magnitude(v.tube_w_1_t_75) > LEAST_5);
     }
 }
 
@@ -5784,24 +6124,24 @@ INLINE void Z_after(size_t w, const real *s, const real *sums, real *Z, verdict 
 {
     for (size_t k = 0; k < w; ++k) {
         /* (Z_t) translational part of Z */
-        const real Z_p_x = s[18*w + k];
+        const real Z_p_x = s[9*w + k];
         const real Z_t_x_of_legs = sums[0*w + k];
         const real Z_t_x = Z_p_x + Z_t_x_of_legs;
-        const real Z_p_y = s[19*w + k];
+        const real Z_p_y = s[10*w + k];
         const real Z_t_y_of_legs = sums[1*w + k];
         const real Z_t_y = Z_p_y + Z_t_y_of_legs;
-        const real Z_p_z = s[20*w + k];
+        const real Z_p_z = s[11*w + k];
         const real Z_t_z_of_legs = sums[2*w + k];
         const real Z_t_z = Z_p_z + Z_t_z_of_legs;
         /* (Z_a) rotational part of Z */
         const real Z_a_x_of_legs = sums[3*w + k];
-        const real Z_q_x = s[21*w + k];
+        const real Z_q_x = s[12*w + k];
         const real Z_a_x = Z_a_x_of_legs + Z_q_x;
         const real Z_a_y_of_legs = sums[4*w + k];
-        const real Z_q_y = s[22*w + k];
+        const real Z_q_y = s[13*w + k];
         const real Z_a_y = Z_a_y_of_legs + Z_q_y;
         const real Z_a_z_of_legs = sums[5*w + k];
-        const real Z_q_z = s[23*w + k];
+        const real Z_q_z = s[14*w + k];
         const real Z_a_z = Z_a_z_of_legs + Z_q_z;
         /* (Z_t) translational part of Z */
         Z[0*w + k] = Z_t_x;
@@ -5817,21 +6157,18 @@ INLINE void Z_after(size_t w, const real *s, const real *sums, real *Z, verdict 
 
 INLINE void Z_run(const prepared *m, const real *X, const real *V, real *Z, verdict *t)
 {
-    real s[24] = {0};
-    real sums[6] = {0};
-    real terms_ups[6*LEGS(LEGS_OF_ups)] = {0};
-    real o_ups[LEGS(LEGS_OF_ups)] = {0};
-    real terms_tube[6*LEGS(LEGS_OF_tube)] = {0};
-    real o_tube[LEGS(LEGS_OF_tube)] = {0};
+    real s[15] = {0}, sums[6] = {0};
+    real terms_ups[6*LEGS(LEGS_OF_ups)] = {0}, o_ups[LEGS(LEGS_OF_ups)] = {0};
+    real terms_tube[6*LEGS(LEGS_OF_tube)] = {0}, o_tube[LEGS(LEGS_OF_tube)] = {0};
     Z_before(m, 1, X, V, s, t);
-    Z_legs_ups(m, 1, 0, 1, s, 0, LEGS(LEGS_OF_ups), 0, terms_ups, o_ups);
+    Z_legs_ups(m, 1, 0, 1, s, 0, LEGS(LEGS_OF_ups), 0, X, V, terms_ups, o_ups);
+    Z_legs_tube(m, 1, 0, 1, s, 0, LEGS(LEGS_OF_tube), 0, X, V, terms_tube, o_tube);
     for (size_t leg = 0; leg < LEGS_OF_ups; ++leg) {
         Z_place_ups(1, LEGS(LEGS_OF_ups), o_ups, leg, t);
     }
     for (size_t n = 0; n < 6; ++n) {
         sums[n] = total(terms_ups + n*LEGS(LEGS_OF_ups), LEGS_OF_ups);
     }
-    Z_legs_tube(m, 1, 0, 1, s, 0, LEGS(LEGS_OF_tube), 0, terms_tube, o_tube);
     for (size_t leg = 0; leg < LEGS_OF_tube; ++leg) {
         Z_place_tube(1, LEGS(LEGS_OF_tube), o_tube, leg, t);
     }
@@ -5843,158 +6180,65 @@ INLINE void Z_run(const prepared *m, const real *X, const real *V, real *Z, verd
 
 INLINE void Z_run_lanes(const prepared *m, const real *X, const real *V, real *Z, verdict *t)
 {
-    real s[24*LANES];
-    real sums[6*LANES];
+    real s[15*LANES], sums[6*LANES];
     real o_ups[LANES];
     real o_tube[LANES];
     Z_before(m, LANES, X, V, s, t);
     clear(sums, 6*LANES);
     for (size_t leg = 0; leg < LEGS_OF_ups; ++leg) {
-        Z_legs_ups(m, LANES, leg, 0, s, 1, LANES, 1, sums, o_ups);
+        Z_legs_ups(m, LANES, leg, 0, s, 1, LANES, 1, X, V, sums, o_ups);
         Z_place_ups(LANES, LANES, o_ups, 0, t);
     }
     for (size_t leg = 0; leg < LEGS_OF_tube; ++leg) {
-        Z_legs_tube(m, LANES, leg, 0, s, 1, LANES, 1, sums, o_tube);
+        Z_legs_tube(m, LANES, leg, 0, s, 1, LANES, 1, X, V, sums, o_tube);
         Z_place_tube(LANES, LANES, o_tube, 0, t);
     }
     Z_after(LANES, s, sums, Z, t);
 }
 
 /* ---- H ---- */
-INLINE void H_before(size_t w, const real *X, real *s, verdict *t)
+INLINE void H_before(const prepared *m, size_t w, const real *X, real *s, verdict *t)
 {
     for (size_t k = 0; k < w; ++k) {
-        /* X: named entries */
-        const real X_0 = X[0*w + k];
-        const real t_x = X_0;
-        const real X_1 = X[1*w + k];
-        const real t_y = X_1;
-        const real X_2 = X[2*w + k];
-        const real t_z = X_2;
-        const real X_3 = X[3*w + k];
-        const real X_4 = X[4*w + k];
-        const real X_5 = X[5*w + k];
-        const real X_6 = X[6*w + k];
-        const real quaternion_norm2 = X_3*X_3 + X_4*X_4 + X_5*X_5 + X_6*X_6;
-        const real quaternion_scale = 2/quaternion_norm2;
-        const real quaternion_sx = X_3*quaternion_scale;
-        const real quaternion_sy = X_4*quaternion_scale;
-        const real quaternion_sz = X_5*quaternion_scale;
-        const real quaternion_wx = X_6*quaternion_sx;
-        const real quaternion_wy = X_6*quaternion_sy;
-        const real quaternion_wz = X_6*quaternion_sz;
-        const real quaternion_xx = X_3*quaternion_sx;
-        const real quaternion_xy = X_3*quaternion_sy;
-        const real quaternion_xz = X_3*quaternion_sz;
-        const real quaternion_yy = X_4*quaternion_sy;
-        const real quaternion_yz = X_4*quaternion_sz;
-        const real quaternion_zz = X_5*quaternion_sz;
-        const real R_xx = 1 - quaternion_yy - quaternion_zz;
-        const real R_xy = quaternion_xy - quaternion_wz;
-        const real R_xz = quaternion_wy + quaternion_xz;
-        const real R_yx = quaternion_wz + quaternion_xy;
-        const real R_yy = 1 - quaternion_xx - quaternion_zz;
-        const real R_yz = quaternion_yz - quaternion_wx;
-        const real R_zx = quaternion_xz - quaternion_wy;
-        const real R_zy = quaternion_wx + quaternion_yz;
-        const real R_zz = 1 - quaternion_xx - quaternion_yy;
-        s[0*w + k] = t_x;
-        s[1*w + k] = t_y;
-        s[2*w + k] = t_z;
-        s[3*w + k] = R_xx;
-        s[4*w + k] = R_xy;
-        s[5*w + k] = R_xz;
-        s[6*w + k] = R_yx;
-        s[7*w + k] = R_yy;
-        s[8*w + k] = R_yz;
-        s[9*w + k] = R_zx;
-        s[10*w + k] = R_zy;
-        s[11*w + k] = R_zz;
-        t->invalid[k] += UNLESS(is_finite(quaternion_scale)) + UNLESS(quaternion_scale > 0);
+        values v;
+        stage_X(m, w, k, X, &v);
+        s[0*w + k] = v.R_xx;
+        s[1*w + k] = v.R_xy;
+        s[2*w + k] = v.R_xz;
+        s[3*w + k] = v.R_yx;
+        s[4*w + k] = v.R_yy;
+        s[5*w + k] = v.R_yz;
+        s[6*w + k] = v.R_zx;
+        s[7*w + k] = v.R_zy;
+        s[8*w + k] = v.R_zz;
+        t->invalid[k] += UNLESS(is_finite(v.quaternion_scale)) + UNLESS(v.quaternion_scale > 0);
     }
 }
 
 INLINE void H_legs_ups(const prepared *m, size_t w, size_t leg, size_t legs, const real *s, size_t
-    states, size_t count, real *o)
+    states, size_t count, const real *X, real *o)
 {
     for (size_t k = 0; k < count; ++k) {
         const size_t i = leg + legs*k;
         const size_t j = states*k;
-        /* (ups-S) from the base point to the connection point */
-        const real R_xx = s[3*w + j];
-        const real R_xy = s[4*w + j];
-        const real R_xz = s[5*w + j];
-        const real ups_platform_point_x = m->ups_platform_point_x[i];
-        const real ups_platform_point_y = m->ups_platform_point_y[i];
-        const real ups_platform_point_z = m->ups_platform_point_z[i];
-        const real ups_q_x = R_xx*ups_platform_point_x + R_xy*ups_platform_point_y +
-            R_xz*ups_platform_point_z;
-        const real R_yx = s[6*w + j];
-        const real R_yy = s[7*w + j];
-        const real R_yz = s[8*w + j];
-        const real ups_q_y = R_yx*ups_platform_point_x + R_yy*ups_platform_point_y +
-            R_yz*ups_platform_point_z;
-        const real R_zx = s[9*w + j];
-        const real R_zy = s[10*w + j];
-        const real R_zz = s[11*w + j];
-        const real ups_q_z = R_zx*ups_platform_point_x + R_zy*ups_platform_point_y +
-            R_zz*ups_platform_point_z;
-        const real t_x = s[0*w + j];
-        const real ups_base_point_x = m->ups_base_point_x[i];
-        const real ups_S_x = t_x + ups_q_x - ups_base_point_x;
-        const real t_y = s[1*w + j];
-        const real ups_base_point_y = m->ups_base_point_y[i];
-        const real ups_S_y = t_y + ups_q_y - ups_base_point_y;
-        const real t_z = s[2*w + j];
-        const real ups_base_point_z = m->ups_base_point_z[i];
-        const real ups_S_z = t_z + ups_q_z - ups_base_point_z;
-        /* (ups-px_1) component along the reference direction */
-        const real ups_base_frame_xx = m->ups_base_frame_xx[i];
-        const real ups_base_frame_yx = m->ups_base_frame_yx[i];
-        const real ups_base_frame_zx = m->ups_base_frame_zx[i];
-        const real ups_px_1 = ups_S_x*ups_base_frame_xx + ups_S_y*ups_base_frame_yx +
-            ups_S_z*ups_base_frame_zx;
-        /* (ups-py_1) component across the reference direction */
-        const real ups_base_frame_xy = m->ups_base_frame_xy[i];
-        const real ups_base_frame_yy = m->ups_base_frame_yy[i];
-        const real ups_base_frame_zy = m->ups_base_frame_zy[i];
-        const real ups_py_1 = ups_S_x*ups_base_frame_xy + ups_S_y*ups_base_frame_yy +
-            ups_S_z*ups_base_frame_zy;
-        /* (ups-rho2_1) squared amplitude */
-        const real ups_rho2_1 = ups_px_1*ups_px_1 + ups_py_1*ups_py_1;
-        /* (ups-xi_1) the vector from joint 1 to the connection point, resolved along link 1 */
-        const real ups_base_frame_xz = m->ups_base_frame_xz[i];
-        const real ups_base_frame_yz = m->ups_base_frame_yz[i];
-        const real ups_base_frame_zz = m->ups_base_frame_zz[i];
-        const real ups_xi_1_in_axes1_z = ups_S_x*ups_base_frame_xz + ups_S_y*ups_base_frame_yz +
-            ups_S_z*ups_base_frame_zz;
-        /* (ups-rho2_2) squared amplitude */
-        const real ups_rho2_2 = ups_rho2_1 + ups_xi_1_in_axes1_z*ups_xi_1_in_axes1_z;
-        /* (ups-root_2) amplitude, with the sign of the branch */
-        const real ups_branch_2 = m->ups_branch_2[i];
-        const real ups_root_2 = ups_branch_2*root(ups_rho2_2);
-        /* (ups-w_2) reciprocal vector 2 */
-        const real ups_w_2_in_axes2_y = 1/ups_root_2;
-        /* (ups-w_3) reciprocal vector 3 */
-        const real ups_w_3_x = ups_S_x*ups_w_2_in_axes2_y;
-        const real ups_w_3_y = ups_S_y*ups_w_2_in_axes2_y;
-        const real ups_w_3_z = ups_S_z*ups_w_2_in_axes2_y;
+        values_ups v;
+        stage_ups_X(m, w, i, j, s, X, &v);
         /* (ups-H_a_3) moment of the column's unit force about the platform origin */
-        const real ups_H_a_3_x = ups_q_y*ups_w_3_z - ups_q_z*ups_w_3_y;
-        const real ups_H_a_3_y = ups_q_z*ups_w_3_x - ups_q_x*ups_w_3_z;
-        const real ups_H_a_3_z = ups_q_x*ups_w_3_y - ups_q_y*ups_w_3_x;
+        const real ups_H_a_3_x = v.ups_q_y*v.ups_w_3_z - v.ups_q_z*v.ups_w_3_y;
+        const real ups_H_a_3_y = v.ups_q_z*v.ups_w_3_x - v.ups_q_x*v.ups_w_3_z;
+        const real ups_H_a_3_z = v.ups_q_x*v.ups_w_3_y - v.ups_q_y*v.ups_w_3_x;
         /* (ups-w_3) reciprocal vector 3 */
-        o[0*count + k] = ups_w_3_x;
-        o[1*count + k] = ups_w_3_y;
-        o[2*count + k] = ups_w_3_z;
+        o[0*count + k] = v.ups_w_3_x;
+        o[1*count + k] = v.ups_w_3_y;
+        o[2*count + k] = v.ups_w_3_z;
         /* (ups-H_a_3) moment of the column's unit force about the platform origin */
         o[3*count + k] = ups_H_a_3_x;
         o[4*count + k] = ups_H_a_3_y;
         o[5*count + k] = ups_H_a_3_z;
-        o[7*count + k] = (ups_w_3_x + (ups_w_3_y + ups_w_3_z)) + (ups_H_a_3_x + (ups_H_a_3_y +
-            ups_H_a_3_z));
-        o[6*count + k] = UNLESS(magnitude(ups_rho2_1) > LEAST_1) + UNLESS(magnitude(ups_rho2_2) >
-            LEAST_1) + UNLESS(magnitude(ups_root_2) > LEAST_2);
+        o[7*count + k] = (v.ups_w_3_x + (v.ups_w_3_y + v.ups_w_3_z)) + (ups_H_a_3_x + (ups_H_a_3_y
+            + ups_H_a_3_z));
+        o[6*count + k] = UNLESS(magnitude(v.ups_root_1_t) > LEAST_1) +
+            UNLESS(magnitude(v.ups_q_3_t) > LEAST_1) + UNLESS(magnitude(v.ups_q_3) > LEAST_2);
     }
 }
 
@@ -6002,7 +6246,7 @@ INLINE void H_place_ups(size_t w, size_t count, const real *o, size_t leg, size_
     verdict *t)
 {
     for (size_t k = 0; k < w; ++k) {
-        H[(0*NU + leg)*w + k] = o[0*count + first + k];
+        H[leg*w + k] = o[0*count + first + k];
         H[(NU + leg)*w + k] = o[1*count + first + k];
         H[(2*NU + leg)*w + k] = o[2*count + first + k];
         H[(3*NU + leg)*w + k] = o[3*count + first + k];
@@ -6015,10 +6259,10 @@ INLINE void H_place_ups(size_t w, size_t count, const real *o, size_t leg, size_
 
 INLINE void H_run(const prepared *m, const real *X, real *H, verdict *t)
 {
-    real s[12] = {0};
+    real s[9] = {0};
     real o_ups[8*LEGS(LEGS_OF_ups)] = {0};
-    H_before(1, X, s, t);
-    H_legs_ups(m, 1, 0, 1, s, 0, LEGS(LEGS_OF_ups), o_ups);
+    H_before(m, 1, X, s, t);
+    H_legs_ups(m, 1, 0, 1, s, 0, LEGS(LEGS_OF_ups), X, o_ups);
     for (size_t leg = 0; leg < LEGS_OF_ups; ++leg) {
         H_place_ups(1, LEGS(LEGS_OF_ups), o_ups, leg, leg, H, t);
     }
@@ -6026,302 +6270,164 @@ INLINE void H_run(const prepared *m, const real *X, real *H, verdict *t)
 
 INLINE void H_run_lanes(const prepared *m, const real *X, real *H, verdict *t)
 {
-    real s[12*LANES];
+    real s[9*LANES];
     real o_ups[8*LANES];
-    H_before(LANES, X, s, t);
+    H_before(m, LANES, X, s, t);
     for (size_t leg = 0; leg < LEGS_OF_ups; ++leg) {
-        H_legs_ups(m, LANES, leg, 0, s, 1, LANES, o_ups);
+        H_legs_ups(m, LANES, leg, 0, s, 1, LANES, X, o_ups);
         H_place_ups(LANES, LANES, o_ups, leg, 0, H, t);
     }
 }
 
 /* ---- Hk ---- */
-INLINE void Hk_before(size_t w, const real *X, real *s, verdict *t)
+INLINE void Hk_before(const prepared *m, size_t w, const real *X, real *s, verdict *t)
 {
     for (size_t k = 0; k < w; ++k) {
-        /* X: named entries */
-        const real X_0 = X[0*w + k];
-        const real t_x = X_0;
-        const real X_1 = X[1*w + k];
-        const real t_y = X_1;
-        const real X_2 = X[2*w + k];
-        const real t_z = X_2;
-        const real X_3 = X[3*w + k];
-        const real X_4 = X[4*w + k];
-        const real X_5 = X[5*w + k];
-        const real X_6 = X[6*w + k];
-        const real quaternion_norm2 = X_3*X_3 + X_4*X_4 + X_5*X_5 + X_6*X_6;
-        const real quaternion_scale = 2/quaternion_norm2;
-        const real quaternion_sx = X_3*quaternion_scale;
-        const real quaternion_sy = X_4*quaternion_scale;
-        const real quaternion_sz = X_5*quaternion_scale;
-        const real quaternion_wx = X_6*quaternion_sx;
-        const real quaternion_wy = X_6*quaternion_sy;
-        const real quaternion_wz = X_6*quaternion_sz;
-        const real quaternion_xx = X_3*quaternion_sx;
-        const real quaternion_xy = X_3*quaternion_sy;
-        const real quaternion_xz = X_3*quaternion_sz;
-        const real quaternion_yy = X_4*quaternion_sy;
-        const real quaternion_yz = X_4*quaternion_sz;
-        const real quaternion_zz = X_5*quaternion_sz;
-        const real R_xx = 1 - quaternion_yy - quaternion_zz;
-        const real R_xy = quaternion_xy - quaternion_wz;
-        const real R_xz = quaternion_wy + quaternion_xz;
-        const real R_yx = quaternion_wz + quaternion_xy;
-        const real R_yy = 1 - quaternion_xx - quaternion_zz;
-        const real R_yz = quaternion_yz - quaternion_wx;
-        const real R_zx = quaternion_xz - quaternion_wy;
-        const real R_zy = quaternion_wx + quaternion_yz;
-        const real R_zz = 1 - quaternion_xx - quaternion_yy;
-        s[0*w + k] = t_x;
-        s[1*w + k] = t_y;
-        s[2*w + k] = t_z;
-        s[3*w + k] = R_xx;
-        s[4*w + k] = R_xy;
-        s[5*w + k] = R_xz;
-        s[6*w + k] = R_yx;
-        s[7*w + k] = R_yy;
-        s[8*w + k] = R_yz;
-        s[9*w + k] = R_zx;
-        s[10*w + k] = R_zy;
-        s[11*w + k] = R_zz;
-        t->invalid[k] += UNLESS(is_finite(quaternion_scale)) + UNLESS(quaternion_scale > 0);
+        values v;
+        stage_X(m, w, k, X, &v);
+        s[0*w + k] = v.R_xx;
+        s[1*w + k] = v.R_xy;
+        s[2*w + k] = v.R_xz;
+        s[3*w + k] = v.R_yx;
+        s[4*w + k] = v.R_yy;
+        s[5*w + k] = v.R_yz;
+        s[6*w + k] = v.R_zx;
+        s[7*w + k] = v.R_zy;
+        s[8*w + k] = v.R_zz;
+        t->invalid[k] += UNLESS(is_finite(v.quaternion_scale)) + UNLESS(v.quaternion_scale > 0);
     }
 }
 
 INLINE void Hk_legs_tube(const prepared *m, size_t w, size_t leg, size_t legs, const real *s,
-    size_t states, size_t count, real *o)
+    size_t states, size_t count, const real *X, real *o)
 {
     for (size_t k = 0; k < count; ++k) {
         const size_t i = leg + legs*k;
         const size_t j = states*k;
-        /* (tube-S) from the base point to the connection point */
-        const real R_xx = s[3*w + j];
-        const real R_xy = s[4*w + j];
-        const real R_xz = s[5*w + j];
-        const real tube_platform_point_x = m->tube_platform_point_x[i];
-        const real tube_platform_point_y = m->tube_platform_point_y[i];
-        const real tube_platform_point_z = m->tube_platform_point_z[i];
-        const real tube_q_x = R_xx*tube_platform_point_x + R_xy*tube_platform_point_y +
-            R_xz*tube_platform_point_z;
-        const real R_yx = s[6*w + j];
-        const real R_yy = s[7*w + j];
-        const real R_yz = s[8*w + j];
-        const real tube_q_y = R_yx*tube_platform_point_x + R_yy*tube_platform_point_y +
-            R_yz*tube_platform_point_z;
-        const real R_zx = s[9*w + j];
-        const real R_zy = s[10*w + j];
-        const real R_zz = s[11*w + j];
-        const real tube_q_z = R_zx*tube_platform_point_x + R_zy*tube_platform_point_y +
-            R_zz*tube_platform_point_z;
-        const real t_x = s[0*w + j];
-        const real tube_base_point_x = m->tube_base_point_x[i];
-        const real tube_S_x = t_x + tube_q_x - tube_base_point_x;
-        const real t_y = s[1*w + j];
-        const real tube_base_point_y = m->tube_base_point_y[i];
-        const real tube_S_y = t_y + tube_q_y - tube_base_point_y;
-        const real t_z = s[2*w + j];
-        const real tube_base_point_z = m->tube_base_point_z[i];
-        const real tube_S_z = t_z + tube_q_z - tube_base_point_z;
-        /* (tube-px_1) component along the reference direction */
-        const real tube_base_frame_xx = m->tube_base_frame_xx[i];
-        const real tube_base_frame_yx = m->tube_base_frame_yx[i];
-        const real tube_base_frame_zx = m->tube_base_frame_zx[i];
-        const real tube_px_1 = tube_S_x*tube_base_frame_xx + tube_S_y*tube_base_frame_yx +
-            tube_S_z*tube_base_frame_zx;
-        /* (tube-py_1) component across the reference direction */
-        const real tube_base_frame_xy = m->tube_base_frame_xy[i];
-        const real tube_base_frame_yy = m->tube_base_frame_yy[i];
-        const real tube_base_frame_zy = m->tube_base_frame_zy[i];
-        const real tube_py_1 = tube_S_x*tube_base_frame_xy + tube_S_y*tube_base_frame_yy +
-            tube_S_z*tube_base_frame_zy;
-        /* (tube-rho2_1) squared amplitude */
-        const real tube_rho2_1 = tube_px_1*tube_px_1 + tube_py_1*tube_py_1;
-        /* (tube-root_1) amplitude, with the sign of the branch */
-        const real tube_branch_1 = m->tube_branch_1[i];
-        const real tube_root_1 = tube_branch_1*root(tube_rho2_1);
-        /* (tube-c_1) cosine of the angle of joint 1 from its reference direction */
-        const real inv_tube_root_1 = 1/tube_root_1;
-        const real tube_c_1 = -inv_tube_root_1*tube_py_1;
-        /* (tube-s_1) sine of the angle of joint 1 from its reference direction */
-        const real tube_s_1 = inv_tube_root_1*tube_px_1;
-        /* (tube-xi_1) the vector from joint 1 to the connection point, resolved along link 1 */
-        const real tube_base_frame_xz = m->tube_base_frame_xz[i];
-        const real tube_base_frame_yz = m->tube_base_frame_yz[i];
-        const real tube_base_frame_zz = m->tube_base_frame_zz[i];
-        const real tube_xi_1_in_axes1_z = tube_S_x*tube_base_frame_xz +
-            tube_S_y*tube_base_frame_yz + tube_S_z*tube_base_frame_zz;
-        /* (tube-rho2_2) squared amplitude */
-        const real tube_rho2_2 = tube_rho2_1 + tube_xi_1_in_axes1_z*tube_xi_1_in_axes1_z;
-        /* (tube-root_2) amplitude, with the sign of the branch */
-        const real tube_branch_2 = m->tube_branch_2[i];
-        const real tube_root_2 = tube_branch_2*root(tube_rho2_2);
-        /* (tube-c_2) cosine of the angle of joint 2 from its reference direction */
-        const real inv_tube_root_2 = 1/tube_root_2;
-        const real tube_c_2 = -inv_tube_root_2*tube_root_1;
-        /* (tube-s_2) sine of the angle of joint 2 from its reference direction */
-        const real tube_s_2 = inv_tube_root_2*tube_xi_1_in_axes1_z;
+        values_tube v;
+        stage_tube_X(m, w, i, j, s, X, &v);
         /* (tube-n_m1) direction 1 of the moment that the platform joint transmits */
-        const real tube_n_m1_t = R_xx*tube_base_frame_xx + R_yx*tube_base_frame_yx +
-            R_zx*tube_base_frame_zx;
-        const real tube_n_m1_t_2 = R_xy*tube_base_frame_xx + R_yy*tube_base_frame_yx +
-            R_zy*tube_base_frame_zx;
-        const real tube_n_m1_t_3 = R_xz*tube_base_frame_xx + R_yz*tube_base_frame_yx +
-            R_zz*tube_base_frame_zx;
-        const real tube_n_m1_t_4 = R_xx*tube_base_frame_xy + R_yx*tube_base_frame_yy +
-            R_zx*tube_base_frame_zy;
-        const real tube_n_m1_t_5 = R_xy*tube_base_frame_xy + R_yy*tube_base_frame_yy +
-            R_zy*tube_base_frame_zy;
-        const real tube_n_m1_t_6 = R_xz*tube_base_frame_xy + R_yz*tube_base_frame_yy +
-            R_zz*tube_base_frame_zy;
-        const real tube_n_m1_t_7 = R_xx*tube_base_frame_xz + R_yx*tube_base_frame_yz +
-            R_zx*tube_base_frame_zz;
-        const real tube_n_m1_t_8 = R_xy*tube_base_frame_xz + R_yy*tube_base_frame_yz +
-            R_zy*tube_base_frame_zz;
-        const real tube_n_m1_t_9 = R_xz*tube_base_frame_xz + R_yz*tube_base_frame_yz +
-            R_zz*tube_base_frame_zz;
         const real tube_platform_joint_rotation_yx = m->tube_platform_joint_rotation_yx[i];
         const real tube_platform_joint_rotation_yy = m->tube_platform_joint_rotation_yy[i];
         const real tube_platform_joint_rotation_yz = m->tube_platform_joint_rotation_yz[i];
-        const real tube_n_m1_t_10 = tube_n_m1_t*tube_platform_joint_rotation_yx +
-            tube_n_m1_t_2*tube_platform_joint_rotation_yy +
-            tube_n_m1_t_3*tube_platform_joint_rotation_yz;
-        const real tube_n_m1_t_11 = tube_n_m1_t_4*tube_platform_joint_rotation_yx +
-            tube_n_m1_t_5*tube_platform_joint_rotation_yy +
-            tube_n_m1_t_6*tube_platform_joint_rotation_yz;
-        const real tube_end_p1_in_axes2_z = tube_c_1*tube_n_m1_t_10 + tube_n_m1_t_11*tube_s_1;
-        const real tube_n_m1_in_axes2_z = tube_c_2*(tube_n_m1_t_7*tube_platform_joint_rotation_yx
-            + tube_n_m1_t_8*tube_platform_joint_rotation_yy +
-            tube_n_m1_t_9*tube_platform_joint_rotation_yz) + tube_s_2*(tube_n_m1_t_10*tube_s_1 -
-            tube_c_1*tube_n_m1_t_11);
-        const real tube_n_m1_in_axes1_z = -tube_c_2*tube_end_p1_in_axes2_z;
+        const real tube_n_m1_in_axes2_z = v.tube_e_1_in_axes2_x*(v.tube_c_1*v.tube_n_m1_t_10 +
+            v.tube_n_m1_t_11*v.tube_s_1) -
+            v.tube_c_2*(v.tube_n_m1_t_7*tube_platform_joint_rotation_yx +
+            v.tube_n_m1_t_8*tube_platform_joint_rotation_yy +
+            v.tube_n_m1_t_9*tube_platform_joint_rotation_yz);
         /* (tube-n_m2) direction 2 of the moment that the platform joint transmits */
         const real tube_platform_joint_rotation_zx = m->tube_platform_joint_rotation_zx[i];
         const real tube_platform_joint_rotation_zy = m->tube_platform_joint_rotation_zy[i];
         const real tube_platform_joint_rotation_zz = m->tube_platform_joint_rotation_zz[i];
-        const real tube_n_m2_t = tube_n_m1_t_7*tube_platform_joint_rotation_zx +
-            tube_n_m1_t_8*tube_platform_joint_rotation_zy +
-            tube_n_m1_t_9*tube_platform_joint_rotation_zz;
-        const real tube_n_m2_t_2 = tube_s_1*(tube_n_m1_t*tube_platform_joint_rotation_zx +
-            tube_n_m1_t_2*tube_platform_joint_rotation_zy +
-            tube_n_m1_t_3*tube_platform_joint_rotation_zz) -
-            tube_c_1*(tube_n_m1_t_4*tube_platform_joint_rotation_zx +
-            tube_n_m1_t_5*tube_platform_joint_rotation_zy +
-            tube_n_m1_t_6*tube_platform_joint_rotation_zz);
-        const real tube_n_m2_in_axes2_y = tube_n_m2_t*tube_s_2 - tube_c_2*tube_n_m2_t_2;
-        const real tube_end_p2_in_axes2_y = tube_c_2*tube_n_m2_t + tube_n_m2_t_2*tube_s_2;
-        const real tube_n_m2_in_axes1_z = tube_c_2*tube_n_m2_in_axes2_y -
-            tube_end_p2_in_axes2_y*tube_s_2;
+        const real tube_n_m2_t = v.tube_n_m1_t_7*tube_platform_joint_rotation_zx +
+            v.tube_n_m1_t_8*tube_platform_joint_rotation_zy +
+            v.tube_n_m1_t_9*tube_platform_joint_rotation_zz;
+        const real tube_n_m2_t_2 = v.tube_c_1*(v.tube_n_m1_t*tube_platform_joint_rotation_zx +
+            v.tube_n_m1_t_2*tube_platform_joint_rotation_zy +
+            v.tube_n_m1_t_3*tube_platform_joint_rotation_zz) +
+            v.tube_s_1*(v.tube_n_m1_t_4*tube_platform_joint_rotation_zx +
+            v.tube_n_m1_t_5*tube_platform_joint_rotation_zy +
+            v.tube_n_m1_t_6*tube_platform_joint_rotation_zz);
+        const real tube_n_m2_in_axes2_y = v.tube_c_2*tube_n_m2_t_2 +
+            v.tube_e_1_in_axes2_x*tube_n_m2_t;
+        const real tube_end_p2_in_axes2_y = v.tube_e_1_in_axes2_x*tube_n_m2_t_2 -
+            v.tube_c_2*tube_n_m2_t;
+        const real tube_n_m2_t_3 = v.tube_c_2*tube_n_m2_in_axes2_y +
+            v.tube_e_1_in_axes2_x*tube_end_p2_in_axes2_y;
         /* (tube-n_m3) direction 3 of the moment that the platform joint transmits */
         const real tube_platform_joint_rotation_xx = m->tube_platform_joint_rotation_xx[i];
         const real tube_platform_joint_rotation_xy = m->tube_platform_joint_rotation_xy[i];
         const real tube_platform_joint_rotation_xz = m->tube_platform_joint_rotation_xz[i];
-        const real tube_n_m3_t = tube_n_m1_t*tube_platform_joint_rotation_xx +
-            tube_n_m1_t_2*tube_platform_joint_rotation_xy +
-            tube_n_m1_t_3*tube_platform_joint_rotation_xz;
-        const real tube_n_m3_t_2 = tube_n_m1_t_4*tube_platform_joint_rotation_xx +
-            tube_n_m1_t_5*tube_platform_joint_rotation_xy +
-            tube_n_m1_t_6*tube_platform_joint_rotation_xz;
-        const real tube_end_p3_in_axes2_z = tube_c_1*tube_n_m3_t + tube_n_m3_t_2*tube_s_1;
-        const real tube_n_m3_in_axes2_z = tube_s_2*(tube_n_m1_t_7*tube_platform_joint_rotation_xx
-            + tube_n_m1_t_8*tube_platform_joint_rotation_xy +
-            tube_n_m1_t_9*tube_platform_joint_rotation_xz) - tube_c_2*(tube_n_m3_t*tube_s_1 -
-            tube_c_1*tube_n_m3_t_2);
-        const real tube_n_m3_t_3 = tube_end_p3_in_axes2_z*tube_s_2;
+        const real tube_n_m3_in_axes2_z = v.tube_c_2*(v.tube_c_1*v.tube_n_m3_t +
+            v.tube_n_m3_t_2*v.tube_s_1) +
+            v.tube_e_1_in_axes2_x*(v.tube_n_m1_t_7*tube_platform_joint_rotation_xx +
+            v.tube_n_m1_t_8*tube_platform_joint_rotation_xy +
+            v.tube_n_m1_t_9*tube_platform_joint_rotation_xz);
+        const real tube_n_m3_t_3 = v.tube_e_1_in_axes2_x*v.tube_end_p3_in_axes2_z;
         /* (tube-f_c1) force part of constraint wrench 1 */
-        const real tube_f_c1_t = tube_n_m1_in_axes1_z*tube_n_m3_in_axes2_z +
+        const real tube_f_c1_t = v.tube_n_m1_in_axes1_z*tube_n_m3_in_axes2_z +
             tube_n_m1_in_axes2_z*tube_n_m3_t_3;
         /* (tube-m1_c1) moment part 1 of constraint wrench 1 */
         const real inv_tube_f_c1_t = 1/tube_f_c1_t;
-        const real tube_m1_c1_t = inv_tube_f_c1_t*tube_n_m3_t_3*tube_root_2;
+        const real tube_m1_c1_t = inv_tube_f_c1_t*tube_n_m3_t_3*v.tube_q_3;
         /* (tube-m3_c1) moment part 3 of constraint wrench 1 */
-        const real tube_m3_c1_t = inv_tube_f_c1_t*tube_n_m1_in_axes1_z*tube_root_2;
+        const real tube_m3_c1_t = inv_tube_f_c1_t*v.tube_n_m1_in_axes1_z*v.tube_q_3;
         /* (tube-m1_c2) moment part 1 of constraint wrench 2 */
-        const real tube_m1_c2_t = inv_tube_f_c1_t*tube_n_m3_in_axes2_z*tube_root_1;
+        const real tube_m1_c2_t = inv_tube_f_c1_t*tube_n_m3_in_axes2_z*v.tube_root_1;
         /* (tube-m3_c2) moment part 3 of constraint wrench 2 */
-        const real tube_m3_c2 = inv_tube_f_c1_t*tube_n_m1_in_axes2_z*tube_root_1;
+        const real tube_m3_c2 = inv_tube_f_c1_t*tube_n_m1_in_axes2_z*v.tube_root_1;
         /* (tube-m1_c3) moment part 1 of constraint wrench 3 */
-        const real tube_m1_c3_t = inv_tube_f_c1_t*tube_n_m2_in_axes1_z*tube_n_m3_in_axes2_z;
+        const real tube_m1_c3 = inv_tube_f_c1_t*tube_n_m2_t_3*tube_n_m3_in_axes2_z;
         /* (tube-m3_c3) moment part 3 of constraint wrench 3 */
-        const real tube_m3_c3 = inv_tube_f_c1_t*tube_n_m1_in_axes2_z*tube_n_m2_in_axes1_z;
-        /* (tube-n_c1) unit force of the constraint wrench */
-        const real tube_n_c1_t = tube_s_1*tube_s_2;
-        const real tube_n_c1_t_2 = tube_c_1*tube_s_2;
-        const real tube_n_c1_x = tube_base_frame_xx*tube_n_c1_t + tube_base_frame_xz*tube_c_2 -
-            tube_base_frame_xy*tube_n_c1_t_2;
-        const real tube_n_c1_y = tube_base_frame_yx*tube_n_c1_t + tube_base_frame_yz*tube_c_2 -
-            tube_base_frame_yy*tube_n_c1_t_2;
-        const real tube_n_c1_z = tube_base_frame_zx*tube_n_c1_t + tube_base_frame_zz*tube_c_2 -
-            tube_base_frame_zy*tube_n_c1_t_2;
+        const real tube_m3_c3_t = inv_tube_f_c1_t*tube_n_m1_in_axes2_z*tube_n_m2_t_3;
         /* (tube-mu_c1) the moment that goes with it */
-        const real tube_mu_c1_in_axes2_y = tube_end_p1_in_axes2_z*tube_m1_c1_t;
-        const real tube_mu_c1_in_axes2_x = tube_end_p3_in_axes2_z*tube_m3_c1_t;
+        const real tube_mu_c1_in_axes2_y = v.tube_end_p1_in_axes2_z*tube_m1_c1_t;
+        const real tube_mu_c1_in_axes2_x = v.tube_end_p3_in_axes2_z*tube_m3_c1_t;
         const real tube_mu_c1_in_axes2_z = -tube_m1_c1_t*tube_n_m1_in_axes2_z -
             tube_m3_c1_t*tube_n_m3_in_axes2_z;
-        /* (tube-n_c2) unit force of the constraint wrench */
-        const real tube_n_c2_x = tube_base_frame_xx*tube_c_1 + tube_base_frame_xy*tube_s_1;
-        const real tube_n_c2_y = tube_base_frame_yx*tube_c_1 + tube_base_frame_yy*tube_s_1;
-        const real tube_n_c2_z = tube_base_frame_zx*tube_c_1 + tube_base_frame_zy*tube_s_1;
         /* (tube-mu_c2) the moment that goes with it */
-        const real tube_mu_c2_in_axes2_y = tube_end_p1_in_axes2_z*tube_m1_c2_t;
-        const real tube_mu_c2_t = tube_end_p3_in_axes2_z*tube_m3_c2;
+        const real tube_mu_c2_in_axes2_y = v.tube_end_p1_in_axes2_z*tube_m1_c2_t;
+        const real tube_mu_c2_t = v.tube_end_p3_in_axes2_z*tube_m3_c2;
         const real tube_mu_c2_in_axes2_z = tube_m3_c2*tube_n_m3_in_axes2_z -
             tube_m1_c2_t*tube_n_m1_in_axes2_z;
         /* (tube-size_c3) size of the moment */
-        const real tube_size_c3 = root(1 + tube_m1_c3_t*tube_m1_c3_t + tube_m3_c3*tube_m3_c3);
+        const real tube_size_c3 = root(1 + tube_m1_c3*tube_m1_c3 + tube_m3_c3_t*tube_m3_c3_t);
         /* (tube-mu1_c3) moment along direction 1 that goes with it */
         const real inv_tube_size_c3 = 1/tube_size_c3;
-        const real tube_mu1_c3_t = inv_tube_size_c3*tube_m1_c3_t;
+        const real tube_mu1_c3 = inv_tube_size_c3*tube_m1_c3;
         /* (tube-mu3_c3) moment along direction 3 that goes with it */
-        const real tube_mu3_c3 = inv_tube_size_c3*tube_m3_c3;
+        const real tube_mu3_c3_t = inv_tube_size_c3*tube_m3_c3_t;
         /* (tube-mu_c3) the moment that goes with it */
-        const real axis_x_tube_axes2_x = tube_n_c1_y*tube_n_c2_z - tube_n_c1_z*tube_n_c2_y;
-        const real axis_x_tube_axes2_y = tube_n_c1_z*tube_n_c2_x - tube_n_c1_x*tube_n_c2_z;
-        const real axis_x_tube_axes2_z = tube_n_c1_x*tube_n_c2_y - tube_n_c1_y*tube_n_c2_x;
-        const real tube_mu_c3_in_axes2_x = -inv_tube_size_c3*tube_end_p2_in_axes2_y -
-            tube_end_p3_in_axes2_z*tube_mu3_c3;
-        const real tube_mu_c3_in_axes2_y = inv_tube_size_c3*tube_n_m2_in_axes2_y +
-            tube_end_p1_in_axes2_z*tube_mu1_c3_t;
-        const real tube_mu_c3_in_axes2_z = tube_mu3_c3*tube_n_m3_in_axes2_z -
-            tube_mu1_c3_t*tube_n_m1_in_axes2_z;
+        const real axis_x_tube_axes2_x = v.tube_n_c1_y*v.tube_n_c2_z -
+            v.tube_n_c1_z*v.tube_n_c2_y;
+        const real axis_x_tube_axes2_y = v.tube_n_c1_z*v.tube_n_c2_x -
+            v.tube_n_c1_x*v.tube_n_c2_z;
+        const real axis_x_tube_axes2_z = v.tube_n_c1_x*v.tube_n_c2_y -
+            v.tube_n_c1_y*v.tube_n_c2_x;
+        const real tube_mu_c3_in_axes2_x = v.tube_end_p3_in_axes2_z*tube_mu3_c3_t -
+            inv_tube_size_c3*tube_end_p2_in_axes2_y;
+        const real tube_mu_c3_in_axes2_y = inv_tube_size_c3*tube_n_m2_in_axes2_y -
+            v.tube_end_p1_in_axes2_z*tube_mu1_c3;
+        const real tube_mu_c3_in_axes2_z = tube_mu1_c3*tube_n_m1_in_axes2_z -
+            tube_mu3_c3_t*tube_n_m3_in_axes2_z;
         const real tube_mu_c3_x = axis_x_tube_axes2_x*tube_mu_c3_in_axes2_x +
-            tube_mu_c3_in_axes2_y*tube_n_c1_x + tube_mu_c3_in_axes2_z*tube_n_c2_x;
+            tube_mu_c3_in_axes2_y*v.tube_n_c1_x + tube_mu_c3_in_axes2_z*v.tube_n_c2_x;
         const real tube_mu_c3_y = axis_x_tube_axes2_y*tube_mu_c3_in_axes2_x +
-            tube_mu_c3_in_axes2_y*tube_n_c1_y + tube_mu_c3_in_axes2_z*tube_n_c2_y;
+            tube_mu_c3_in_axes2_y*v.tube_n_c1_y + tube_mu_c3_in_axes2_z*v.tube_n_c2_y;
         const real tube_mu_c3_z = axis_x_tube_axes2_z*tube_mu_c3_in_axes2_x +
-            tube_mu_c3_in_axes2_y*tube_n_c1_z + tube_mu_c3_in_axes2_z*tube_n_c2_z;
+            tube_mu_c3_in_axes2_y*v.tube_n_c1_z + tube_mu_c3_in_axes2_z*v.tube_n_c2_z;
         /* (tube-Hk_a_1) moment of the column's unit force about the platform origin */
         const real tube_Hk_a_1_x = axis_x_tube_axes2_x*tube_mu_c1_in_axes2_x +
-            tube_mu_c1_in_axes2_y*tube_n_c1_x + tube_mu_c1_in_axes2_z*tube_n_c2_x +
-            tube_n_c1_z*tube_q_y - tube_n_c1_y*tube_q_z;
+            tube_mu_c1_in_axes2_y*v.tube_n_c1_x + tube_mu_c1_in_axes2_z*v.tube_n_c2_x +
+            v.tube_n_c1_z*v.tube_q_y - v.tube_n_c1_y*v.tube_q_z;
         const real tube_Hk_a_1_y = axis_x_tube_axes2_y*tube_mu_c1_in_axes2_x +
-            tube_mu_c1_in_axes2_y*tube_n_c1_y + tube_mu_c1_in_axes2_z*tube_n_c2_y +
-            tube_n_c1_x*tube_q_z - tube_n_c1_z*tube_q_x;
+            tube_mu_c1_in_axes2_y*v.tube_n_c1_y + tube_mu_c1_in_axes2_z*v.tube_n_c2_y +
+            v.tube_n_c1_x*v.tube_q_z - v.tube_n_c1_z*v.tube_q_x;
         const real tube_Hk_a_1_z = axis_x_tube_axes2_z*tube_mu_c1_in_axes2_x +
-            tube_mu_c1_in_axes2_y*tube_n_c1_z + tube_mu_c1_in_axes2_z*tube_n_c2_z +
-            tube_n_c1_y*tube_q_x - tube_n_c1_x*tube_q_y;
+            tube_mu_c1_in_axes2_y*v.tube_n_c1_z + tube_mu_c1_in_axes2_z*v.tube_n_c2_z +
+            v.tube_n_c1_y*v.tube_q_x - v.tube_n_c1_x*v.tube_q_y;
         /* (tube-Hk_a_2) moment of the column's unit force about the platform origin */
-        const real tube_Hk_a_2_x = tube_mu_c2_in_axes2_y*tube_n_c1_x +
-            tube_mu_c2_in_axes2_z*tube_n_c2_x + tube_n_c2_z*tube_q_y -
-            axis_x_tube_axes2_x*tube_mu_c2_t - tube_n_c2_y*tube_q_z;
-        const real tube_Hk_a_2_y = tube_mu_c2_in_axes2_y*tube_n_c1_y +
-            tube_mu_c2_in_axes2_z*tube_n_c2_y + tube_n_c2_x*tube_q_z -
-            axis_x_tube_axes2_y*tube_mu_c2_t - tube_n_c2_z*tube_q_x;
-        const real tube_Hk_a_2_z = tube_mu_c2_in_axes2_y*tube_n_c1_z +
-            tube_mu_c2_in_axes2_z*tube_n_c2_z + tube_n_c2_y*tube_q_x -
-            axis_x_tube_axes2_z*tube_mu_c2_t - tube_n_c2_x*tube_q_y;
+        const real tube_Hk_a_2_x = tube_mu_c2_in_axes2_y*v.tube_n_c1_x +
+            tube_mu_c2_in_axes2_z*v.tube_n_c2_x + v.tube_n_c2_z*v.tube_q_y -
+            axis_x_tube_axes2_x*tube_mu_c2_t - v.tube_n_c2_y*v.tube_q_z;
+        const real tube_Hk_a_2_y = tube_mu_c2_in_axes2_y*v.tube_n_c1_y +
+            tube_mu_c2_in_axes2_z*v.tube_n_c2_y + v.tube_n_c2_x*v.tube_q_z -
+            axis_x_tube_axes2_y*tube_mu_c2_t - v.tube_n_c2_z*v.tube_q_x;
+        const real tube_Hk_a_2_z = tube_mu_c2_in_axes2_y*v.tube_n_c1_z +
+            tube_mu_c2_in_axes2_z*v.tube_n_c2_z + v.tube_n_c2_y*v.tube_q_x -
+            axis_x_tube_axes2_z*tube_mu_c2_t - v.tube_n_c2_x*v.tube_q_y;
         /* (tube-n_c1) unit force of the constraint wrench */
-        o[0*count + k] = tube_n_c1_x;
-        o[1*count + k] = tube_n_c1_y;
-        o[2*count + k] = tube_n_c1_z;
+        o[0*count + k] = v.tube_n_c1_x;
+        o[1*count + k] = v.tube_n_c1_y;
+        o[2*count + k] = v.tube_n_c1_z;
         /* (tube-Hk_a_1) moment of the column's unit force about the platform origin */
         o[3*count + k] = tube_Hk_a_1_x;
         o[4*count + k] = tube_Hk_a_1_y;
         o[5*count + k] = tube_Hk_a_1_z;
         /* (tube-n_c2) unit force of the constraint wrench */
-        o[6*count + k] = tube_n_c2_x;
-        o[7*count + k] = tube_n_c2_y;
-        o[8*count + k] = tube_n_c2_z;
+        o[6*count + k] = v.tube_n_c2_x;
+        o[7*count + k] = v.tube_n_c2_y;
+        o[8*count + k] = v.tube_n_c2_z;
         /* (tube-Hk_a_2) moment of the column's unit force about the platform origin */
         o[9*count + k] = tube_Hk_a_2_x;
         o[10*count + k] = tube_Hk_a_2_y;
@@ -6330,13 +6436,13 @@ INLINE void Hk_legs_tube(const prepared *m, size_t w, size_t leg, size_t legs, c
         o[12*count + k] = tube_mu_c3_x;
         o[13*count + k] = tube_mu_c3_y;
         o[14*count + k] = tube_mu_c3_z;
-        o[16*count + k] = ((tube_n_c1_x + (tube_n_c1_y + tube_n_c1_z)) + ((tube_Hk_a_1_x +
-            tube_Hk_a_1_y) + (tube_Hk_a_1_z + tube_n_c2_x))) + (((tube_n_c2_y + tube_n_c2_z) +
-            (tube_Hk_a_2_x + tube_Hk_a_2_y)) + ((tube_Hk_a_2_z + tube_mu_c3_x) + (tube_mu_c3_y +
+        o[16*count + k] = ((v.tube_n_c1_x + (v.tube_n_c1_y + v.tube_n_c1_z)) + ((tube_Hk_a_1_x +
+            tube_Hk_a_1_y) + (tube_Hk_a_1_z + v.tube_n_c2_x))) + (((v.tube_n_c2_y + v.tube_n_c2_z)
+            + (tube_Hk_a_2_x + tube_Hk_a_2_y)) + ((tube_Hk_a_2_z + tube_mu_c3_x) + (tube_mu_c3_y +
             tube_mu_c3_z)));
-        o[15*count + k] = UNLESS(magnitude(tube_rho2_1) > LEAST_3) + UNLESS(magnitude(tube_rho2_2)
-            > LEAST_3) + UNLESS(magnitude(tube_f_c1_t) > LEAST_4) + UNLESS(magnitude(tube_size_c3)
-            > LEAST_4);
+        o[15*count + k] = UNLESS(magnitude(v.tube_root_1_t) > LEAST_3) +
+            UNLESS(magnitude(v.tube_q_3_t) > LEAST_3) + UNLESS(magnitude(tube_f_c1_t) > LEAST_4) +
+            UNLESS(magnitude(tube_size_c3) > LEAST_4);
     }
 }
 
@@ -6344,13 +6450,13 @@ INLINE void Hk_place_tube(size_t w, size_t count, const real *o, size_t first, r
     *t)
 {
     for (size_t k = 0; k < w; ++k) {
-        Hk[0*NC*w + k] = o[0*count + first + k];
+        Hk[0*w + k] = o[0*count + first + k];
         Hk[NC*w + k] = o[1*count + first + k];
         Hk[2*NC*w + k] = o[2*count + first + k];
         Hk[3*NC*w + k] = o[3*count + first + k];
         Hk[4*NC*w + k] = o[4*count + first + k];
         Hk[5*NC*w + k] = o[5*count + first + k];
-        Hk[(0*NC + 1)*w + k] = o[6*count + first + k];
+        Hk[1*w + k] = o[6*count + first + k];
         Hk[(NC + 1)*w + k] = o[7*count + first + k];
         Hk[(2*NC + 1)*w + k] = o[8*count + first + k];
         Hk[(3*NC + 1)*w + k] = o[9*count + first + k];
@@ -6366,11 +6472,11 @@ INLINE void Hk_place_tube(size_t w, size_t count, const real *o, size_t first, r
 
 INLINE void Hk_run(const prepared *m, const real *X, real *Hk, verdict *t)
 {
-    real s[12] = {0};
+    real s[9] = {0};
     real o_tube[17*LEGS(LEGS_OF_tube)] = {0};
     clear(Hk, NV*NC);
-    Hk_before(1, X, s, t);
-    Hk_legs_tube(m, 1, 0, 1, s, 0, LEGS(LEGS_OF_tube), o_tube);
+    Hk_before(m, 1, X, s, t);
+    Hk_legs_tube(m, 1, 0, 1, s, 0, LEGS(LEGS_OF_tube), X, o_tube);
     for (size_t leg = 0; leg < LEGS_OF_tube; ++leg) {
         Hk_place_tube(1, LEGS(LEGS_OF_tube), o_tube, leg, Hk, t);
     }
@@ -6378,507 +6484,147 @@ INLINE void Hk_run(const prepared *m, const real *X, real *Hk, verdict *t)
 
 INLINE void Hk_run_lanes(const prepared *m, const real *X, real *Hk, verdict *t)
 {
-    real s[12*LANES];
+    real s[9*LANES];
     real o_tube[17*LANES];
     clear(Hk, NV*NC*LANES);
-    Hk_before(LANES, X, s, t);
+    Hk_before(m, LANES, X, s, t);
     for (size_t leg = 0; leg < LEGS_OF_tube; ++leg) {
-        Hk_legs_tube(m, LANES, leg, 0, s, 1, LANES, o_tube);
+        Hk_legs_tube(m, LANES, leg, 0, s, 1, LANES, X, o_tube);
         Hk_place_tube(LANES, LANES, o_tube, 0, Hk, t);
     }
 }
 
 /* ---- constraint_bias ---- */
-INLINE void constraint_bias_before(size_t w, const real *X, const real *V, real *s, verdict *t)
+INLINE void constraint_bias_before(const prepared *m, size_t w, const real *X, real *s, verdict
+    *t)
 {
     for (size_t k = 0; k < w; ++k) {
-        /* X: named entries */
-        const real X_0 = X[0*w + k];
-        const real t_x = X_0;
-        const real X_1 = X[1*w + k];
-        const real t_y = X_1;
-        const real X_2 = X[2*w + k];
-        const real t_z = X_2;
-        const real X_3 = X[3*w + k];
-        const real X_4 = X[4*w + k];
-        const real X_5 = X[5*w + k];
-        const real X_6 = X[6*w + k];
-        const real quaternion_norm2 = X_3*X_3 + X_4*X_4 + X_5*X_5 + X_6*X_6;
-        const real quaternion_scale = 2/quaternion_norm2;
-        const real quaternion_sx = X_3*quaternion_scale;
-        const real quaternion_sy = X_4*quaternion_scale;
-        const real quaternion_sz = X_5*quaternion_scale;
-        const real quaternion_wx = X_6*quaternion_sx;
-        const real quaternion_wy = X_6*quaternion_sy;
-        const real quaternion_wz = X_6*quaternion_sz;
-        const real quaternion_xx = X_3*quaternion_sx;
-        const real quaternion_xy = X_3*quaternion_sy;
-        const real quaternion_xz = X_3*quaternion_sz;
-        const real quaternion_yy = X_4*quaternion_sy;
-        const real quaternion_yz = X_4*quaternion_sz;
-        const real quaternion_zz = X_5*quaternion_sz;
-        const real R_xx = 1 - quaternion_yy - quaternion_zz;
-        const real R_xy = quaternion_xy - quaternion_wz;
-        const real R_xz = quaternion_wy + quaternion_xz;
-        const real R_yx = quaternion_wz + quaternion_xy;
-        const real R_yy = 1 - quaternion_xx - quaternion_zz;
-        const real R_yz = quaternion_yz - quaternion_wx;
-        const real R_zx = quaternion_xz - quaternion_wy;
-        const real R_zy = quaternion_wx + quaternion_yz;
-        const real R_zz = 1 - quaternion_xx - quaternion_yy;
-        /* V: named entries */
-        const real V_0 = V[0*w + k];
-        const real t_dot_x = V_0;
-        const real V_1 = V[1*w + k];
-        const real t_dot_y = V_1;
-        const real V_2 = V[2*w + k];
-        const real t_dot_z = V_2;
-        const real V_3 = V[3*w + k];
-        const real omega_x = V_3;
-        const real V_4 = V[4*w + k];
-        const real omega_y = V_4;
-        const real V_5 = V[5*w + k];
-        const real omega_z = V_5;
-        s[0*w + k] = t_x;
-        s[1*w + k] = t_y;
-        s[2*w + k] = t_z;
-        s[3*w + k] = R_xx;
-        s[4*w + k] = R_xy;
-        s[5*w + k] = R_xz;
-        s[6*w + k] = R_yx;
-        s[7*w + k] = R_yy;
-        s[8*w + k] = R_yz;
-        s[9*w + k] = R_zx;
-        s[10*w + k] = R_zy;
-        s[11*w + k] = R_zz;
-        s[12*w + k] = t_dot_x;
-        s[13*w + k] = t_dot_y;
-        s[14*w + k] = t_dot_z;
-        s[15*w + k] = omega_x;
-        s[16*w + k] = omega_y;
-        s[17*w + k] = omega_z;
-        t->invalid[k] += UNLESS(is_finite(quaternion_scale)) + UNLESS(quaternion_scale > 0);
+        values v;
+        stage_X(m, w, k, X, &v);
+        s[0*w + k] = v.R_xx;
+        s[1*w + k] = v.R_xy;
+        s[2*w + k] = v.R_xz;
+        s[3*w + k] = v.R_yx;
+        s[4*w + k] = v.R_yy;
+        s[5*w + k] = v.R_yz;
+        s[6*w + k] = v.R_zx;
+        s[7*w + k] = v.R_zy;
+        s[8*w + k] = v.R_zz;
+        t->invalid[k] += UNLESS(is_finite(v.quaternion_scale)) + UNLESS(v.quaternion_scale > 0);
     }
 }
 
 INLINE void constraint_bias_legs_tube(const prepared *m, size_t w, size_t leg, size_t legs, const
-    real *s, size_t states, size_t count, real *o)
+    real *s, size_t states, size_t count, const real *X, const real *V, real *o)
 {
     for (size_t k = 0; k < count; ++k) {
         const size_t i = leg + legs*k;
         const size_t j = states*k;
-        /* (tube-S) from the base point to the connection point */
-        const real R_xx = s[3*w + j];
-        const real R_xy = s[4*w + j];
-        const real R_xz = s[5*w + j];
-        const real tube_platform_point_x = m->tube_platform_point_x[i];
-        const real tube_platform_point_y = m->tube_platform_point_y[i];
-        const real tube_platform_point_z = m->tube_platform_point_z[i];
-        const real tube_q_x = R_xx*tube_platform_point_x + R_xy*tube_platform_point_y +
-            R_xz*tube_platform_point_z;
-        const real R_yx = s[6*w + j];
-        const real R_yy = s[7*w + j];
-        const real R_yz = s[8*w + j];
-        const real tube_q_y = R_yx*tube_platform_point_x + R_yy*tube_platform_point_y +
-            R_yz*tube_platform_point_z;
-        const real R_zx = s[9*w + j];
-        const real R_zy = s[10*w + j];
-        const real R_zz = s[11*w + j];
-        const real tube_q_z = R_zx*tube_platform_point_x + R_zy*tube_platform_point_y +
-            R_zz*tube_platform_point_z;
-        const real t_x = s[0*w + j];
-        const real tube_base_point_x = m->tube_base_point_x[i];
-        const real tube_S_x = t_x + tube_q_x - tube_base_point_x;
-        const real t_y = s[1*w + j];
-        const real tube_base_point_y = m->tube_base_point_y[i];
-        const real tube_S_y = t_y + tube_q_y - tube_base_point_y;
-        const real t_z = s[2*w + j];
-        const real tube_base_point_z = m->tube_base_point_z[i];
-        const real tube_S_z = t_z + tube_q_z - tube_base_point_z;
-        /* (tube-px_1) component along the reference direction */
-        const real tube_base_frame_xx = m->tube_base_frame_xx[i];
-        const real tube_base_frame_yx = m->tube_base_frame_yx[i];
-        const real tube_base_frame_zx = m->tube_base_frame_zx[i];
-        const real tube_px_1 = tube_S_x*tube_base_frame_xx + tube_S_y*tube_base_frame_yx +
-            tube_S_z*tube_base_frame_zx;
-        /* (tube-py_1) component across the reference direction */
-        const real tube_base_frame_xy = m->tube_base_frame_xy[i];
-        const real tube_base_frame_yy = m->tube_base_frame_yy[i];
-        const real tube_base_frame_zy = m->tube_base_frame_zy[i];
-        const real tube_py_1 = tube_S_x*tube_base_frame_xy + tube_S_y*tube_base_frame_yy +
-            tube_S_z*tube_base_frame_zy;
-        /* (tube-rho2_1) squared amplitude */
-        const real tube_rho2_1 = tube_px_1*tube_px_1 + tube_py_1*tube_py_1;
-        /* (tube-root_1) amplitude, with the sign of the branch */
-        const real tube_branch_1 = m->tube_branch_1[i];
-        const real tube_root_1 = tube_branch_1*root(tube_rho2_1);
-        /* (tube-c_1) cosine of the angle of joint 1 from its reference direction */
-        const real inv_tube_root_1 = 1/tube_root_1;
-        const real tube_c_1 = -inv_tube_root_1*tube_py_1;
-        /* (tube-s_1) sine of the angle of joint 1 from its reference direction */
-        const real tube_s_1 = inv_tube_root_1*tube_px_1;
-        /* (tube-xi_1) the vector from joint 1 to the connection point, resolved along link 1 */
-        const real tube_base_frame_xz = m->tube_base_frame_xz[i];
-        const real tube_base_frame_yz = m->tube_base_frame_yz[i];
-        const real tube_base_frame_zz = m->tube_base_frame_zz[i];
-        const real tube_xi_1_in_axes1_z = tube_S_x*tube_base_frame_xz +
-            tube_S_y*tube_base_frame_yz + tube_S_z*tube_base_frame_zz;
-        /* (tube-rho2_2) squared amplitude */
-        const real tube_rho2_2 = tube_rho2_1 + tube_xi_1_in_axes1_z*tube_xi_1_in_axes1_z;
-        /* (tube-root_2) amplitude, with the sign of the branch */
-        const real tube_branch_2 = m->tube_branch_2[i];
-        const real tube_root_2 = tube_branch_2*root(tube_rho2_2);
-        /* (tube-c_2) cosine of the angle of joint 2 from its reference direction */
-        const real inv_tube_root_2 = 1/tube_root_2;
-        const real tube_c_2 = -inv_tube_root_2*tube_root_1;
-        /* (tube-s_2) sine of the angle of joint 2 from its reference direction */
-        const real tube_s_2 = inv_tube_root_2*tube_xi_1_in_axes1_z;
-        /* (tube-S_dot) velocity of the connection point */
-        const real axis_z_tube_axes2_x = tube_base_frame_xx*tube_c_1 +
-            tube_base_frame_xy*tube_s_1;
-        const real axis_z_tube_axes2_y = tube_base_frame_yx*tube_c_1 +
-            tube_base_frame_yy*tube_s_1;
-        const real axis_z_tube_axes2_z = tube_base_frame_zx*tube_c_1 +
-            tube_base_frame_zy*tube_s_1;
-        const real tube_S_dot_t = tube_s_1*tube_s_2;
-        const real tube_S_dot_t_2 = tube_c_1*tube_s_2;
-        const real axis_y_tube_axes2_x = tube_S_dot_t*tube_base_frame_xx +
-            tube_base_frame_xz*tube_c_2 - tube_S_dot_t_2*tube_base_frame_xy;
-        const real axis_y_tube_axes2_y = tube_S_dot_t*tube_base_frame_yx +
-            tube_base_frame_yz*tube_c_2 - tube_S_dot_t_2*tube_base_frame_yy;
-        const real axis_y_tube_axes2_z = tube_S_dot_t*tube_base_frame_zx +
-            tube_base_frame_zz*tube_c_2 - tube_S_dot_t_2*tube_base_frame_zy;
-        const real axis_x_tube_axes2_x = axis_y_tube_axes2_y*axis_z_tube_axes2_z -
-            axis_y_tube_axes2_z*axis_z_tube_axes2_y;
-        const real axis_x_tube_axes2_y = axis_y_tube_axes2_z*axis_z_tube_axes2_x -
-            axis_y_tube_axes2_x*axis_z_tube_axes2_z;
-        const real axis_x_tube_axes2_z = axis_y_tube_axes2_x*axis_z_tube_axes2_y -
-            axis_y_tube_axes2_y*axis_z_tube_axes2_x;
-        const real omega_y = s[16*w + j];
-        const real omega_z = s[17*w + j];
-        const real tube_S_dot_t_3 = omega_y*tube_q_z - omega_z*tube_q_y;
-        const real omega_x = s[15*w + j];
-        const real tube_S_dot_t_4 = omega_z*tube_q_x - omega_x*tube_q_z;
-        const real tube_S_dot_t_5 = omega_x*tube_q_y - omega_y*tube_q_x;
-        const real t_dot_x = s[12*w + j];
-        const real tube_S_dot_x = t_dot_x + tube_S_dot_t_3;
-        const real t_dot_y = s[13*w + j];
-        const real tube_S_dot_y = t_dot_y + tube_S_dot_t_4;
-        const real t_dot_z = s[14*w + j];
-        const real tube_S_dot_z = t_dot_z + tube_S_dot_t_5;
-        const real tube_S_dot_in_axes2_x = axis_x_tube_axes2_x*tube_S_dot_x +
-            axis_x_tube_axes2_y*tube_S_dot_y + axis_x_tube_axes2_z*tube_S_dot_z;
-        const real tube_S_dot_in_axes2_y = axis_y_tube_axes2_x*tube_S_dot_x +
-            axis_y_tube_axes2_y*tube_S_dot_y + axis_y_tube_axes2_z*tube_S_dot_z;
-        const real tube_S_dot_in_axes2_z = axis_z_tube_axes2_x*tube_S_dot_x +
-            axis_z_tube_axes2_y*tube_S_dot_y + axis_z_tube_axes2_z*tube_S_dot_z;
-        /* (tube-n_m1) direction 1 of the moment that the platform joint transmits */
-        const real tube_n_m1_t = R_xx*tube_base_frame_xx + R_yx*tube_base_frame_yx +
-            R_zx*tube_base_frame_zx;
-        const real tube_n_m1_t_2 = R_xy*tube_base_frame_xx + R_yy*tube_base_frame_yx +
-            R_zy*tube_base_frame_zx;
-        const real tube_n_m1_t_3 = R_xz*tube_base_frame_xx + R_yz*tube_base_frame_yx +
-            R_zz*tube_base_frame_zx;
-        const real tube_n_m1_t_4 = R_xx*tube_base_frame_xy + R_yx*tube_base_frame_yy +
-            R_zx*tube_base_frame_zy;
-        const real tube_n_m1_t_5 = R_xy*tube_base_frame_xy + R_yy*tube_base_frame_yy +
-            R_zy*tube_base_frame_zy;
-        const real tube_n_m1_t_6 = R_xz*tube_base_frame_xy + R_yz*tube_base_frame_yy +
-            R_zz*tube_base_frame_zy;
-        const real tube_n_m1_t_7 = R_xx*tube_base_frame_xz + R_yx*tube_base_frame_yz +
-            R_zx*tube_base_frame_zz;
-        const real tube_n_m1_t_8 = R_xy*tube_base_frame_xz + R_yy*tube_base_frame_yz +
-            R_zy*tube_base_frame_zz;
-        const real tube_n_m1_t_9 = R_xz*tube_base_frame_xz + R_yz*tube_base_frame_yz +
-            R_zz*tube_base_frame_zz;
-        const real tube_platform_joint_rotation_yx = m->tube_platform_joint_rotation_yx[i];
-        const real tube_platform_joint_rotation_yy = m->tube_platform_joint_rotation_yy[i];
-        const real tube_platform_joint_rotation_yz = m->tube_platform_joint_rotation_yz[i];
-        const real tube_n_m1_t_10 = tube_n_m1_t*tube_platform_joint_rotation_yx +
-            tube_n_m1_t_2*tube_platform_joint_rotation_yy +
-            tube_n_m1_t_3*tube_platform_joint_rotation_yz;
-        const real tube_n_m1_t_11 = tube_n_m1_t_4*tube_platform_joint_rotation_yx +
-            tube_n_m1_t_5*tube_platform_joint_rotation_yy +
-            tube_n_m1_t_6*tube_platform_joint_rotation_yz;
-        const real tube_n_m1_t_12 = tube_n_m1_t_7*tube_platform_joint_rotation_yx +
-            tube_n_m1_t_8*tube_platform_joint_rotation_yy +
-            tube_n_m1_t_9*tube_platform_joint_rotation_yz;
-        const real tube_end_p1_in_axes2_z = tube_c_1*tube_n_m1_t_10 + tube_n_m1_t_11*tube_s_1;
-        const real tube_n_m1_t_13 = tube_n_m1_t_10*tube_s_1 - tube_c_1*tube_n_m1_t_11;
-        const real tube_n_m1_in_axes2_z = tube_c_2*tube_n_m1_t_12 + tube_n_m1_t_13*tube_s_2;
-        const real tube_n_m1_in_axes1_z = -tube_c_2*tube_end_p1_in_axes2_z;
-        /* (tube-n_m2) direction 2 of the moment that the platform joint transmits */
-        const real tube_platform_joint_rotation_zx = m->tube_platform_joint_rotation_zx[i];
-        const real tube_platform_joint_rotation_zy = m->tube_platform_joint_rotation_zy[i];
-        const real tube_platform_joint_rotation_zz = m->tube_platform_joint_rotation_zz[i];
-        const real tube_n_m2_t = tube_n_m1_t*tube_platform_joint_rotation_zx +
-            tube_n_m1_t_2*tube_platform_joint_rotation_zy +
-            tube_n_m1_t_3*tube_platform_joint_rotation_zz;
-        const real tube_n_m2_t_2 = tube_n_m1_t_4*tube_platform_joint_rotation_zx +
-            tube_n_m1_t_5*tube_platform_joint_rotation_zy +
-            tube_n_m1_t_6*tube_platform_joint_rotation_zz;
-        const real tube_n_m2_t_3 = tube_n_m1_t_7*tube_platform_joint_rotation_zx +
-            tube_n_m1_t_8*tube_platform_joint_rotation_zy +
-            tube_n_m1_t_9*tube_platform_joint_rotation_zz;
-        const real tube_n_m2_t_4 = tube_n_m2_t*tube_s_1 - tube_c_1*tube_n_m2_t_2;
-        const real tube_n_m2_in_axes2_y = tube_n_m2_t_3*tube_s_2 - tube_c_2*tube_n_m2_t_4;
-        const real tube_end_p2_in_axes2_y = tube_c_2*tube_n_m2_t_3 + tube_n_m2_t_4*tube_s_2;
-        const real tube_n_m2_in_axes1_z = tube_c_2*tube_n_m2_in_axes2_y -
-            tube_end_p2_in_axes2_y*tube_s_2;
-        /* (tube-n_m3) direction 3 of the moment that the platform joint transmits */
-        const real tube_platform_joint_rotation_xx = m->tube_platform_joint_rotation_xx[i];
-        const real tube_platform_joint_rotation_xy = m->tube_platform_joint_rotation_xy[i];
-        const real tube_platform_joint_rotation_xz = m->tube_platform_joint_rotation_xz[i];
-        const real tube_n_m3_t = tube_n_m1_t*tube_platform_joint_rotation_xx +
-            tube_n_m1_t_2*tube_platform_joint_rotation_xy +
-            tube_n_m1_t_3*tube_platform_joint_rotation_xz;
-        const real tube_n_m3_t_2 = tube_n_m1_t_4*tube_platform_joint_rotation_xx +
-            tube_n_m1_t_5*tube_platform_joint_rotation_xy +
-            tube_n_m1_t_6*tube_platform_joint_rotation_xz;
-        const real tube_n_m3_t_3 = tube_n_m1_t_7*tube_platform_joint_rotation_xx +
-            tube_n_m1_t_8*tube_platform_joint_rotation_xy +
-            tube_n_m1_t_9*tube_platform_joint_rotation_xz;
-        const real tube_end_p3_in_axes2_z = tube_c_1*tube_n_m3_t + tube_n_m3_t_2*tube_s_1;
-        const real tube_n_m3_t_4 = tube_n_m3_t*tube_s_1 - tube_c_1*tube_n_m3_t_2;
-        const real tube_n_m3_in_axes2_z = tube_n_m3_t_3*tube_s_2 - tube_c_2*tube_n_m3_t_4;
-        const real tube_n_m3_t_5 = tube_end_p3_in_axes2_z*tube_s_2;
-        /* (tube-f_c1) force part of constraint wrench 1 */
-        const real tube_f_c1_t = tube_n_m1_in_axes1_z*tube_n_m3_in_axes2_z +
-            tube_n_m1_in_axes2_z*tube_n_m3_t_5;
-        /* (tube-m1_c1) moment part 1 of constraint wrench 1 */
-        const real inv_tube_f_c1_t = 1/tube_f_c1_t;
-        const real tube_m1_c1_t = inv_tube_f_c1_t*tube_n_m3_t_5*tube_root_2;
-        /* (tube-m3_c1) moment part 3 of constraint wrench 1 */
-        const real tube_m3_c1_t = inv_tube_f_c1_t*tube_n_m1_in_axes1_z*tube_root_2;
-        /* (tube-m1_c2) moment part 1 of constraint wrench 2 */
-        const real tube_m1_c2_t = inv_tube_f_c1_t*tube_n_m3_in_axes2_z*tube_root_1;
-        /* (tube-m3_c2) moment part 3 of constraint wrench 2 */
-        const real tube_m3_c2 = inv_tube_f_c1_t*tube_n_m1_in_axes2_z*tube_root_1;
-        /* (tube-m1_c3) moment part 1 of constraint wrench 3 */
-        const real tube_m1_c3_t = inv_tube_f_c1_t*tube_n_m2_in_axes1_z*tube_n_m3_in_axes2_z;
-        /* (tube-m3_c3) moment part 3 of constraint wrench 3 */
-        const real tube_m3_c3 = inv_tube_f_c1_t*tube_n_m1_in_axes2_z*tube_n_m2_in_axes1_z;
-        /* (tube-size_c3) size of the moment */
-        const real tube_size_c3 = root(1 + tube_m1_c3_t*tube_m1_c3_t + tube_m3_c3*tube_m3_c3);
-        /* (tube-mu1_c3) moment along direction 1 that goes with it */
-        const real inv_tube_size_c3 = 1/tube_size_c3;
-        const real tube_mu1_c3_t = inv_tube_size_c3*tube_m1_c3_t;
-        /* (tube-mu3_c3) moment along direction 3 that goes with it */
-        const real tube_mu3_c3 = inv_tube_size_c3*tube_m3_c3;
-        /* (tube-w_1) force part of reciprocal wrench 1 */
-        const real tube_w_1_t = R(1.35)*tube_n_m1_in_axes1_z;
-        const real tube_w_1_t_2 = R(1.35)*tube_n_m2_in_axes1_z;
-        const real tube_w_1_t_3 = R(1.35)*tube_n_m3_t_5;
-        const real tube_w_1_t_4 = R(1.35)*tube_n_m1_in_axes2_z;
-        const real tube_w_1_t_5 = R(1.35)*tube_n_m3_in_axes2_z;
-        const real tube_w_1_t_6 = R(1.35)*tube_m1_c1_t;
-        const real tube_w_1_t_7 = R(1.35)*tube_m3_c1_t;
-        const real tube_w_1_t_8 = R(1.35)*tube_m1_c2_t;
-        const real tube_w_1_t_9 = R(1.35)*tube_m3_c2;
-        const real tube_w_1_t_10 = R(1.35)*tube_mu1_c3_t;
-        const real tube_w_1_t_11 = R(1.35)*inv_tube_size_c3;
-        const real tube_w_1_t_12 = R(1.35)*tube_mu3_c3;
-        const real tube_w_1_t_13 = root(tube_rho2_2 + tube_w_1_t_4*tube_w_1_t_4 +
-            tube_w_1_t_5*tube_w_1_t_5);
-        const real inv_tube_w_1_t_13 = 1/tube_w_1_t_13;
-        const real tube_w_1_t_14 = inv_tube_w_1_t_13*tube_root_2;
-        const real tube_w_1_t_15 = inv_tube_w_1_t_13*tube_w_1_t_4;
-        const real tube_w_1_t_16 = inv_tube_w_1_t_13*tube_w_1_t_5;
-        const real tube_w_1_t_17 = tube_w_1_t_15*tube_w_1_t_6 + tube_w_1_t_16*tube_w_1_t_7 -
-            tube_w_1_t_14;
-        const real tube_w_1_t_18 = 1 + tube_w_1_t_14*tube_w_1_t_17;
-        const real tube_w_1_t_19 = tube_w_1_t_15*tube_w_1_t_17 - tube_w_1_t_6;
-        const real tube_w_1_t_20 = tube_w_1_t_16*tube_w_1_t_17 - tube_w_1_t_7;
-        const real tube_w_1_t_21 = tube_w_1_t_15*tube_w_1_t_8 - tube_w_1_t_16*tube_w_1_t_9;
-        const real tube_w_1_t_22 = tube_w_1_t_14*tube_w_1_t_21;
-        const real tube_w_1_t_23 = tube_w_1_t_15*tube_w_1_t_21 - tube_w_1_t_8;
-        const real tube_w_1_t_24 = tube_w_1_t_9 + tube_w_1_t_16*tube_w_1_t_21;
-        const real tube_w_1_t_25 = tube_w_1_t_10*tube_w_1_t_15 - tube_w_1_t_12*tube_w_1_t_16;
-        const real tube_w_1_t_26 = tube_w_1_t_14*tube_w_1_t_25;
-        const real tube_w_1_t_27 = tube_w_1_t_10 - tube_w_1_t_15*tube_w_1_t_25;
-        const real tube_w_1_t_28 = tube_w_1_t_12 + tube_w_1_t_16*tube_w_1_t_25;
-        const real tube_w_1_t_29 = tube_w_1_t*tube_w_1_t_15 - tube_w_1_t_16*tube_w_1_t_3;
-        const real tube_w_1_t_30 = tube_w_1_t_14*tube_w_1_t_29;
-        const real tube_w_1_t_31 = tube_w_1_t - tube_w_1_t_15*tube_w_1_t_29;
-        const real tube_w_1_t_32 = tube_w_1_t_3 + tube_w_1_t_16*tube_w_1_t_29;
-        const real tube_w_1_t_33 = root(tube_w_1_t_18*tube_w_1_t_18 + tube_w_1_t_19*tube_w_1_t_19
-            + tube_w_1_t_20*tube_w_1_t_20);
-        const real inv_tube_w_1_t_33 = 1/tube_w_1_t_33;
-        const real tube_w_1_t_34 = inv_tube_w_1_t_33*tube_w_1_t_18;
-        const real tube_w_1_t_35 = inv_tube_w_1_t_33*tube_w_1_t_19;
-        const real tube_w_1_t_36 = inv_tube_w_1_t_33*tube_w_1_t_20;
-        const real tube_w_1_t_37 = tube_w_1_t_22*tube_w_1_t_34 + tube_w_1_t_23*tube_w_1_t_35 +
-            tube_w_1_t_24*tube_w_1_t_36;
-        const real tube_w_1_t_38 = tube_w_1_t_22 - tube_w_1_t_34*tube_w_1_t_37;
-        const real tube_w_1_t_39 = tube_w_1_t_23 - tube_w_1_t_35*tube_w_1_t_37;
-        const real tube_w_1_t_40 = tube_w_1_t_24 - tube_w_1_t_36*tube_w_1_t_37;
-        const real tube_w_1_t_41 = tube_w_1_t_26*tube_w_1_t_34 + tube_w_1_t_28*tube_w_1_t_36 -
-            tube_w_1_t_27*tube_w_1_t_35;
-        const real tube_w_1_t_42 = tube_w_1_t_26 - tube_w_1_t_34*tube_w_1_t_41;
-        const real tube_w_1_t_43 = tube_w_1_t_27 + tube_w_1_t_35*tube_w_1_t_41;
-        const real tube_w_1_t_44 = tube_w_1_t_28 - tube_w_1_t_36*tube_w_1_t_41;
-        const real tube_w_1_t_45 = tube_w_1_t_30*tube_w_1_t_34 + tube_w_1_t_32*tube_w_1_t_36 -
-            tube_w_1_t_31*tube_w_1_t_35;
-        const real tube_w_1_t_46 = tube_w_1_t_30 - tube_w_1_t_34*tube_w_1_t_45;
-        const real tube_w_1_t_47 = tube_w_1_t_31 + tube_w_1_t_35*tube_w_1_t_45;
-        const real tube_w_1_t_48 = tube_w_1_t_32 - tube_w_1_t_36*tube_w_1_t_45;
-        const real tube_w_1_t_49 = root(1 + tube_w_1_t_38*tube_w_1_t_38 +
-            tube_w_1_t_39*tube_w_1_t_39 + tube_w_1_t_40*tube_w_1_t_40);
-        const real inv_tube_w_1_t_49 = 1/tube_w_1_t_49;
-        const real tube_w_1_t_50 = inv_tube_w_1_t_49*tube_w_1_t_38;
-        const real tube_w_1_t_51 = inv_tube_w_1_t_49*tube_w_1_t_39;
-        const real tube_w_1_t_52 = inv_tube_w_1_t_49*tube_w_1_t_40;
-        const real tube_w_1_t_53 = tube_w_1_t_42*tube_w_1_t_50 + tube_w_1_t_44*tube_w_1_t_52 -
-            tube_w_1_t_43*tube_w_1_t_51;
-        const real tube_w_1_t_54 = tube_w_1_t_50*tube_w_1_t_53 - tube_w_1_t_42;
-        const real tube_w_1_t_55 = inv_tube_w_1_t_49*tube_w_1_t_53;
-        const real tube_w_1_t_56 = tube_w_1_t_43 + tube_w_1_t_51*tube_w_1_t_53;
-        const real tube_w_1_t_57 = tube_w_1_t_52*tube_w_1_t_53 - tube_w_1_t_44;
-        const real tube_w_1_t_58 = tube_w_1_t_46*tube_w_1_t_50 + tube_w_1_t_48*tube_w_1_t_52 -
-            inv_tube_w_1_t_49*tube_root_1 - tube_w_1_t_47*tube_w_1_t_51;
-        const real tube_w_1_t_59 = tube_w_1_t_50*tube_w_1_t_58 - tube_w_1_t_46;
-        const real tube_w_1_t_60 = tube_root_1 + inv_tube_w_1_t_49*tube_w_1_t_58;
-        const real tube_w_1_t_61 = tube_w_1_t_47 + tube_w_1_t_51*tube_w_1_t_58;
-        const real tube_w_1_t_62 = tube_w_1_t_52*tube_w_1_t_58 - tube_w_1_t_48;
-        const real tube_w_1_t_63 = root(tube_w_1_t_11*tube_w_1_t_11 + tube_w_1_t_54*tube_w_1_t_54
-            + tube_w_1_t_55*tube_w_1_t_55 + tube_w_1_t_56*tube_w_1_t_56 +
-            tube_w_1_t_57*tube_w_1_t_57);
-        const real inv_tube_w_1_t_63 = 1/tube_w_1_t_63;
-        const real tube_w_1_t_64 = inv_tube_w_1_t_63*tube_w_1_t_54;
-        const real tube_w_1_t_65 = inv_tube_w_1_t_63*tube_w_1_t_55;
-        const real tube_w_1_t_66 = inv_tube_w_1_t_63*tube_w_1_t_56;
-        const real tube_w_1_t_67 = inv_tube_w_1_t_63*tube_w_1_t_11;
-        const real tube_w_1_t_68 = inv_tube_w_1_t_63*tube_w_1_t_57;
-        const real tube_w_1_t_69 = tube_w_1_t_59*tube_w_1_t_64 + tube_w_1_t_60*tube_w_1_t_65 +
-            tube_w_1_t_61*tube_w_1_t_66 + tube_w_1_t_62*tube_w_1_t_68 -
-            tube_w_1_t_2*tube_w_1_t_67;
-        const real tube_w_1_t_70 = tube_w_1_t_59 - tube_w_1_t_64*tube_w_1_t_69;
-        const real tube_w_1_t_71 = tube_w_1_t_60 - tube_w_1_t_65*tube_w_1_t_69;
-        const real tube_w_1_t_72 = tube_w_1_t_61 - tube_w_1_t_66*tube_w_1_t_69;
-        const real tube_w_1_t_73 = tube_w_1_t_2 + tube_w_1_t_67*tube_w_1_t_69;
-        const real tube_w_1_t_74 = tube_w_1_t_62 - tube_w_1_t_68*tube_w_1_t_69;
-        const real tube_w_1_t_75 = root(tube_w_1_t_70*tube_w_1_t_70 + tube_w_1_t_71*tube_w_1_t_71
-            + tube_w_1_t_72*tube_w_1_t_72 + tube_w_1_t_73*tube_w_1_t_73 +
-            tube_w_1_t_74*tube_w_1_t_74);
-        /* (tube-eta_1) rate at which the joints turn along moment direction 1 */
-        const real tube_omega_in_axes2_y = axis_y_tube_axes2_x*omega_x +
-            axis_y_tube_axes2_y*omega_y + axis_y_tube_axes2_z*omega_z;
-        const real tube_omega_in_axes2_z = axis_z_tube_axes2_x*omega_x +
-            axis_z_tube_axes2_y*omega_y + axis_z_tube_axes2_z*omega_z;
-        const real tube_eta_1 = tube_n_m1_in_axes2_z*tube_omega_in_axes2_z -
-            tube_end_p1_in_axes2_z*tube_omega_in_axes2_y;
-        /* (tube-eta_2) rate at which the joints turn along moment direction 2 */
-        const real tube_omega_in_axes2_x = axis_x_tube_axes2_x*omega_x +
-            axis_x_tube_axes2_y*omega_y + axis_x_tube_axes2_z*omega_z;
-        const real tube_eta_2 = tube_n_m2_in_axes2_y*tube_omega_in_axes2_y -
-            tube_end_p2_in_axes2_y*tube_omega_in_axes2_x;
-        /* (tube-eta_3) rate at which the joints turn along moment direction 3 */
-        const real tube_eta_3 = tube_n_m3_in_axes2_z*tube_omega_in_axes2_z -
-            tube_end_p3_in_axes2_z*tube_omega_in_axes2_x;
+        values_tube v;
+        stage_tube_X(m, w, i, j, s, X, &v);
+        stage_tube_V_X(w, j, V, &v);
         /* (tube-qd_1) rate of joint 1 */
-        const real inv_tube_w_1_t_75 = 1/tube_w_1_t_75;
-        const real tube_qd_1_t = R(1.35)*tube_eta_1;
-        const real tube_qd_1_t_2 = R(1.35)*tube_eta_2;
-        const real tube_qd_1_t_3 = R(1.35)*tube_eta_3;
+        const real tube_qd_1_t = R(1.35)*v.tube_eta_1;
+        const real tube_qd_1_t_2 = R(1.35)*v.tube_eta_2;
+        const real tube_qd_1_t_3 = R(1.35)*v.tube_eta_3;
         const real tube_qd_1 =
-            inv_tube_w_1_t_75*(inv_tube_w_1_t_75*tube_S_dot_in_axes2_y*tube_w_1_t_70 +
-            inv_tube_w_1_t_75*tube_S_dot_in_axes2_z*tube_w_1_t_71 +
-            inv_tube_w_1_t_75*tube_qd_1_t*tube_w_1_t_72 +
-            inv_tube_w_1_t_75*tube_qd_1_t_2*tube_w_1_t_73 +
-            inv_tube_w_1_t_75*tube_qd_1_t_3*tube_w_1_t_74);
+            v.inv_tube_w_1_t_75*(v.inv_tube_w_1_t_75*v.tube_S_dot_in_axes2_y*v.tube_w_1_t_70 +
+            v.inv_tube_w_1_t_75*v.tube_S_dot_in_axes2_z*v.tube_w_1_t_71 +
+            v.inv_tube_w_1_t_75*tube_qd_1_t*v.tube_w_1_t_72 +
+            v.inv_tube_w_1_t_75*tube_qd_1_t_3*v.tube_w_1_t_74 -
+            v.inv_tube_w_1_t_75*tube_qd_1_t_2*v.tube_w_1_t_73);
         /* (tube-qd_2) rate of joint 2 */
-        const real tube_qd_2_t = inv_tube_w_1_t_63*(tube_S_dot_in_axes2_y*tube_w_1_t_64 +
-            tube_S_dot_in_axes2_z*tube_w_1_t_65 + tube_qd_1_t*tube_w_1_t_66 +
-            tube_qd_1_t_3*tube_w_1_t_68 - tube_qd_1*tube_w_1_t_69 - tube_qd_1_t_2*tube_w_1_t_67);
-        const real tube_qd_2_t_2 = inv_tube_w_1_t_49*(inv_tube_w_1_t_49*tube_S_dot_in_axes2_z +
-            tube_S_dot_in_axes2_y*tube_w_1_t_50 + tube_qd_1*tube_w_1_t_58 +
-            tube_qd_1_t*tube_w_1_t_51 + tube_qd_1_t_3*tube_w_1_t_52 + tube_qd_2_t*tube_w_1_t_53);
-        const real tube_qd_2_t_3 = tube_S_dot_in_axes2_y*tube_w_1_t_14 + tube_qd_1_t*tube_w_1_t_15
-            + tube_qd_1_t_3*tube_w_1_t_16 + tube_qd_2_t_2*tube_w_1_t_21 +
-            inv_tube_w_1_t_33*tube_w_1_t_17*(tube_S_dot_in_axes2_y*tube_w_1_t_34 +
-            tube_qd_1*tube_w_1_t_45 + tube_qd_1_t*tube_w_1_t_35 + tube_qd_1_t_3*tube_w_1_t_36 +
-            tube_qd_2_t*tube_w_1_t_41 - tube_qd_2_t_2*tube_w_1_t_37) - tube_qd_1*tube_w_1_t_29 -
-            tube_qd_2_t*tube_w_1_t_25;
-        const real tube_qd_2 = inv_tube_w_1_t_13*tube_qd_2_t_3;
+        const real tube_qd_2_t = v.inv_tube_w_1_t_63*(v.tube_S_dot_in_axes2_y*v.tube_w_1_t_64 +
+            v.tube_S_dot_in_axes2_z*v.tube_w_1_t_65 + tube_qd_1_t*v.tube_w_1_t_66 +
+            tube_qd_1_t_2*v.tube_w_1_t_67 + tube_qd_1_t_3*v.tube_w_1_t_68 -
+            tube_qd_1*v.tube_w_1_t_69);
+        const real tube_qd_2_t_2 =
+            v.inv_tube_w_1_t_49*(v.inv_tube_w_1_t_49*v.tube_S_dot_in_axes2_z +
+            v.tube_S_dot_in_axes2_y*v.tube_w_1_t_50 + tube_qd_1*v.tube_w_1_t_58 +
+            tube_qd_1_t*v.tube_w_1_t_51 + tube_qd_1_t_3*v.tube_w_1_t_52 +
+            tube_qd_2_t*v.tube_w_1_t_53);
+        const real tube_qd_2_t_3 = v.tube_S_dot_in_axes2_y*v.tube_w_1_t_14 +
+            tube_qd_1_t*v.tube_w_1_t_15 + tube_qd_1_t_3*v.tube_w_1_t_16 +
+            tube_qd_2_t_2*v.tube_w_1_t_21 +
+            v.inv_tube_w_1_t_33*v.tube_w_1_t_17*(v.tube_S_dot_in_axes2_y*v.tube_w_1_t_34 +
+            tube_qd_1*v.tube_w_1_t_45 + tube_qd_1_t*v.tube_w_1_t_35 +
+            tube_qd_1_t_3*v.tube_w_1_t_36 + tube_qd_2_t*v.tube_w_1_t_41 -
+            tube_qd_2_t_2*v.tube_w_1_t_37) - tube_qd_1*v.tube_w_1_t_29 -
+            tube_qd_2_t*v.tube_w_1_t_25;
+        const real tube_qd_2 = v.inv_tube_w_1_t_13*tube_qd_2_t_3;
         /* (tube-omega_1) angular velocity of link 1 */
-        const real tube_omega_1_in_axes2_x = tube_qd_1*tube_s_2;
-        const real tube_omega_1_in_axes2_y = tube_c_2*tube_qd_1;
+        const real tube_omega_1_in_axes2_x = v.tube_e_1_in_axes2_x*tube_qd_1;
+        const real tube_omega_1_in_axes2_y = -v.tube_c_2*tube_qd_1;
         /* (tube-W_2) centripetal tensor of link 2 */
         const real tube_W_2_in_axes2_yz = tube_omega_1_in_axes2_y*tube_qd_2;
         const real tube_W_2_in_axes2_xz = tube_omega_1_in_axes2_x*tube_qd_2;
-        /* (tube-u_1) centripetal acceleration of the connection point */
-        const real tube_u_1_x = omega_y*tube_S_dot_t_5 - omega_z*tube_S_dot_t_4;
-        const real tube_u_1_y = omega_z*tube_S_dot_t_3 - omega_x*tube_S_dot_t_5;
-        const real tube_u_1_z = omega_x*tube_S_dot_t_4 - omega_y*tube_S_dot_t_3;
         /* (tube-bias) acceleration of the connection point at zero joint accelerations */
-        const real tube_bias_t = 2*tube_S_dot_in_axes2_x;
+        const real tube_bias_t = 2*v.tube_S_dot_in_axes2_x;
         const real tube_bias_in_axes2_y = tube_bias_t*tube_qd_2 +
-            tube_omega_1_in_axes2_x*tube_omega_1_in_axes2_y*tube_root_2;
-        const real tube_bias_in_axes2_z = 2*tube_W_2_in_axes2_xz*tube_root_2 -
+            tube_omega_1_in_axes2_x*tube_omega_1_in_axes2_y*v.tube_q_3;
+        const real tube_bias_in_axes2_z = 2*tube_W_2_in_axes2_xz*v.tube_q_3 -
             tube_bias_t*tube_omega_1_in_axes2_y;
         /* (tube-rel_o) remainder without the acceleration in: acceleration of the connection point left
            to the joint accelerations */
-        const real tube_rel_o_in_axes2_y = axis_y_tube_axes2_x*tube_u_1_x +
-            axis_y_tube_axes2_y*tube_u_1_y + axis_y_tube_axes2_z*tube_u_1_z -
+        const real tube_rel_o_in_axes2_y = v.axis_y_tube_axes2_x*v.tube_u_1_x +
+            v.axis_y_tube_axes2_y*v.tube_u_1_y + v.axis_y_tube_axes2_z*v.tube_u_1_z -
             tube_bias_in_axes2_y;
-        const real tube_rel_o_in_axes2_z = axis_z_tube_axes2_x*tube_u_1_x +
-            axis_z_tube_axes2_y*tube_u_1_y + axis_z_tube_axes2_z*tube_u_1_z -
+        const real tube_rel_o_in_axes2_z = v.axis_z_tube_axes2_x*v.tube_u_1_x +
+            v.axis_z_tube_axes2_y*v.tube_u_1_y + v.axis_z_tube_axes2_z*v.tube_u_1_z -
             tube_bias_in_axes2_z;
         /* (tube-nd_m1) rate of moment direction 1 */
-        const real tube_end_p1_in_axes2_x = tube_n_m1_t_12*tube_s_2 - tube_c_2*tube_n_m1_t_13;
-        const real tube_nd_m1_in_axes2_y = tube_end_p1_in_axes2_x*tube_omega_in_axes2_y -
-            tube_end_p1_in_axes2_x*tube_omega_1_in_axes2_y -
-            tube_n_m1_in_axes2_z*tube_omega_in_axes2_x;
-        const real tube_nd_m1_in_axes2_z = tube_end_p1_in_axes2_x*tube_omega_in_axes2_z -
-            tube_end_p1_in_axes2_x*tube_qd_2 - tube_end_p1_in_axes2_z*tube_omega_in_axes2_x;
+        const real tube_nd_m1_in_axes2_y = v.tube_end_p1_in_axes2_x*v.tube_omega_in_axes2_y -
+            v.tube_end_p1_in_axes2_x*tube_omega_1_in_axes2_y -
+            v.tube_n_m1_in_axes2_z*v.tube_omega_in_axes2_x;
+        const real tube_nd_m1_in_axes2_z = v.tube_end_p1_in_axes2_x*v.tube_omega_in_axes2_z -
+            v.tube_end_p1_in_axes2_x*tube_qd_2 - v.tube_end_p1_in_axes2_z*v.tube_omega_in_axes2_x;
         /* (tube-nu_1) bias of the angular acceleration along moment direction 1 */
-        const real tube_nu_1_t = tube_omega_1_in_axes2_x - tube_omega_in_axes2_x;
-        const real tube_nu_1_t_2 = tube_omega_in_axes2_y - tube_omega_1_in_axes2_y;
-        const real tube_nu_1_t_3 = tube_omega_in_axes2_z - tube_qd_2;
+        const real tube_nu_1_t = tube_omega_1_in_axes2_x - v.tube_omega_in_axes2_x;
+        const real tube_nu_1_t_2 = v.tube_omega_in_axes2_y - tube_omega_1_in_axes2_y;
+        const real tube_nu_1_t_3 = v.tube_omega_in_axes2_z - tube_qd_2;
         const real tube_nu_1_t_4 = tube_nd_m1_in_axes2_y*tube_nu_1_t_2 +
-            tube_nd_m1_in_axes2_z*tube_nu_1_t_3 - tube_nu_1_t*(tube_end_p1_in_axes2_z*tube_qd_2 +
-            tube_n_m1_in_axes2_z*tube_omega_1_in_axes2_y);
-        const real tube_nu_1 = tube_nu_1_t_4 - tube_W_2_in_axes2_xz*tube_end_p1_in_axes2_z;
+            tube_nd_m1_in_axes2_z*tube_nu_1_t_3 - tube_nu_1_t*(v.tube_end_p1_in_axes2_z*tube_qd_2
+            + v.tube_n_m1_in_axes2_z*tube_omega_1_in_axes2_y);
+        const real tube_nu_1 = tube_nu_1_t_4 - tube_W_2_in_axes2_xz*v.tube_end_p1_in_axes2_z;
         /* (tube-nd_m2) rate of moment direction 2 */
-        const real tube_end_p2_in_axes2_z = tube_c_1*tube_n_m2_t + tube_n_m2_t_2*tube_s_1;
-        const real tube_nd_m2_in_axes2_x = tube_end_p2_in_axes2_z*tube_omega_in_axes2_x -
-            tube_end_p2_in_axes2_z*tube_omega_1_in_axes2_x -
-            tube_n_m2_in_axes2_y*tube_omega_in_axes2_z;
-        const real tube_nd_m2_in_axes2_y = tube_end_p2_in_axes2_z*tube_omega_in_axes2_y -
-            tube_end_p2_in_axes2_y*tube_omega_in_axes2_z -
-            tube_end_p2_in_axes2_z*tube_omega_1_in_axes2_y;
+        const real tube_nd_m2_in_axes2_x = v.tube_end_p2_in_axes2_z*v.tube_omega_in_axes2_x -
+            v.tube_end_p2_in_axes2_z*tube_omega_1_in_axes2_x -
+            v.tube_n_m2_in_axes2_y*v.tube_omega_in_axes2_z;
+        const real tube_nd_m2_in_axes2_y = v.tube_end_p2_in_axes2_z*v.tube_omega_in_axes2_y -
+            v.tube_end_p2_in_axes2_y*v.tube_omega_in_axes2_z -
+            v.tube_end_p2_in_axes2_z*tube_omega_1_in_axes2_y;
         /* (tube-nu_2) bias of the angular acceleration along moment direction 2 */
-        const real tube_nu_2_t = -tube_W_2_in_axes2_xz*tube_n_m2_in_axes2_y -
-            tube_W_2_in_axes2_yz*tube_end_p2_in_axes2_y;
-        const real tube_nu_2_t_2 = tube_nd_m2_in_axes2_x*tube_nu_1_t +
-            tube_nu_1_t_3*(-tube_end_p2_in_axes2_y*tube_omega_1_in_axes2_y -
-            tube_n_m2_in_axes2_y*tube_omega_1_in_axes2_x) - tube_nd_m2_in_axes2_y*tube_nu_1_t_2;
-        const real tube_nu_2 = -tube_nu_2_t - tube_nu_2_t_2;
+        const real tube_nu_2_t = -tube_W_2_in_axes2_xz*v.tube_n_m2_in_axes2_y -
+            tube_W_2_in_axes2_yz*v.tube_end_p2_in_axes2_y;
+        const real tube_nu_2_t_2 = tube_nd_m2_in_axes2_y*tube_nu_1_t_2 -
+            tube_nd_m2_in_axes2_x*tube_nu_1_t -
+            tube_nu_1_t_3*(-v.tube_end_p2_in_axes2_y*tube_omega_1_in_axes2_y -
+            v.tube_n_m2_in_axes2_y*tube_omega_1_in_axes2_x);
+        const real tube_nu_2 = tube_nu_2_t_2 - tube_nu_2_t;
         /* (tube-nd_m3) rate of moment direction 3 */
-        const real tube_end_p3_in_axes2_y = tube_c_2*tube_n_m3_t_3 + tube_n_m3_t_4*tube_s_2;
-        const real tube_nd_m3_in_axes2_x = tube_end_p3_in_axes2_y*tube_omega_1_in_axes2_x +
-            tube_n_m3_in_axes2_z*tube_omega_in_axes2_y -
-            tube_end_p3_in_axes2_y*tube_omega_in_axes2_x;
-        const real tube_nd_m3_in_axes2_z = tube_end_p3_in_axes2_y*tube_qd_2 +
-            tube_end_p3_in_axes2_z*tube_omega_in_axes2_y -
-            tube_end_p3_in_axes2_y*tube_omega_in_axes2_z;
+        const real tube_nd_m3_in_axes2_x = v.tube_end_p3_in_axes2_y*tube_omega_1_in_axes2_x +
+            v.tube_n_m3_in_axes2_z*v.tube_omega_in_axes2_y -
+            v.tube_end_p3_in_axes2_y*v.tube_omega_in_axes2_x;
+        const real tube_nd_m3_in_axes2_z = v.tube_end_p3_in_axes2_y*tube_qd_2 +
+            v.tube_end_p3_in_axes2_z*v.tube_omega_in_axes2_y -
+            v.tube_end_p3_in_axes2_y*v.tube_omega_in_axes2_z;
         /* (tube-nu_3) bias of the angular acceleration along moment direction 3 */
         const real tube_nu_3_t = tube_nd_m3_in_axes2_x*tube_nu_1_t +
-            tube_nu_1_t_2*(tube_end_p3_in_axes2_z*tube_qd_2 +
-            tube_n_m3_in_axes2_z*tube_omega_1_in_axes2_x) - tube_nd_m3_in_axes2_z*tube_nu_1_t_3;
-        const real tube_nu_3 = tube_W_2_in_axes2_yz*tube_end_p3_in_axes2_z - tube_nu_3_t;
+            tube_nu_1_t_2*(v.tube_end_p3_in_axes2_z*tube_qd_2 +
+            v.tube_n_m3_in_axes2_z*tube_omega_1_in_axes2_x) - tube_nd_m3_in_axes2_z*tube_nu_1_t_3;
+        const real tube_nu_3 = tube_W_2_in_axes2_yz*v.tube_end_p3_in_axes2_z - tube_nu_3_t;
         /* (tube-gamma_c1) part of the constraint's second derivative that does not hold the acceleration
            */
-        const real tube_gamma_c1 = tube_rel_o_in_axes2_y - tube_m1_c1_t*tube_nu_1 -
-            tube_m3_c1_t*tube_nu_3;
+        const real tube_gamma_c1 = tube_rel_o_in_axes2_y - v.tube_m1_c1_t*tube_nu_1 -
+            v.tube_m3_c1_t*tube_nu_3;
         /* (tube-gamma_c2) part of the constraint's second derivative that does not hold the acceleration
            */
-        const real tube_gamma_c2 = tube_rel_o_in_axes2_z + tube_m3_c2*tube_nu_3 -
-            tube_m1_c2_t*tube_nu_1;
+        const real tube_gamma_c2 = tube_rel_o_in_axes2_z + v.tube_m3_c2*tube_nu_3 -
+            v.tube_m1_c2_t*tube_nu_1;
         /* (tube-gamma_c3) part of the constraint's second derivative that does not hold the acceleration
            */
-        const real tube_gamma_c3 = inv_tube_size_c3*tube_nu_2 + tube_mu3_c3*tube_nu_3 -
-            tube_mu1_c3_t*tube_nu_1;
+        const real tube_gamma_c3 = v.inv_tube_size_c3*tube_nu_2 + v.tube_mu1_c3*tube_nu_1 -
+            v.tube_mu3_c3_t*tube_nu_3;
         /* (tube-gamma_c1) part of the constraint's second derivative that does not hold the acceleration
            */
         o[0*count + k] = tube_gamma_c1;
@@ -6889,12 +6635,12 @@ INLINE void constraint_bias_legs_tube(const prepared *m, size_t w, size_t leg, s
            */
         o[2*count + k] = tube_gamma_c3;
         o[4*count + k] = tube_gamma_c1 + (tube_gamma_c2 + tube_gamma_c3);
-        o[3*count + k] = UNLESS(magnitude(tube_rho2_1) > LEAST_3) + UNLESS(magnitude(tube_rho2_2)
-            > LEAST_3) + UNLESS(magnitude(tube_f_c1_t) > LEAST_4) + UNLESS(magnitude(tube_size_c3)
-            > LEAST_4) + UNLESS(magnitude(tube_w_1_t_13) > LEAST_5) +
-            UNLESS(magnitude(tube_w_1_t_33) > LEAST_4) + UNLESS(magnitude(tube_w_1_t_49) >
-            LEAST_4) + UNLESS(magnitude(tube_w_1_t_63) > LEAST_5) +
-            UNLESS(magnitude(tube_w_1_t_75) > LEAST_5);
+        o[3*count + k] = UNLESS(magnitude(v.tube_root_1_t) > LEAST_3) +
+            UNLESS(magnitude(v.tube_q_3_t) > LEAST_3) + UNLESS(magnitude(v.tube_f_c1_t) > LEAST_4)
+            + UNLESS(magnitude(v.tube_size_c3) > LEAST_4) + UNLESS(magnitude(v.tube_w_1_t_13) >
+            LEAST_5) + UNLESS(magnitude(v.tube_w_1_t_33) > LEAST_4) +
+            UNLESS(magnitude(v.tube_w_1_t_49) > LEAST_4) + UNLESS(magnitude(v.tube_w_1_t_63) >
+            LEAST_5) + UNLESS(magnitude(v.tube_w_1_t_75) > LEAST_5);
     }
 }
 
@@ -6913,10 +6659,10 @@ INLINE void constraint_bias_place_tube(size_t w, size_t count, const real *o, si
 INLINE void constraint_bias_run(const prepared *m, const real *X, const real *V, real
     *constraint_bias, verdict *t)
 {
-    real s[18] = {0};
+    real s[9] = {0};
     real o_tube[5*LEGS(LEGS_OF_tube)] = {0};
-    constraint_bias_before(1, X, V, s, t);
-    constraint_bias_legs_tube(m, 1, 0, 1, s, 0, LEGS(LEGS_OF_tube), o_tube);
+    constraint_bias_before(m, 1, X, s, t);
+    constraint_bias_legs_tube(m, 1, 0, 1, s, 0, LEGS(LEGS_OF_tube), X, V, o_tube);
     for (size_t leg = 0; leg < LEGS_OF_tube; ++leg) {
         constraint_bias_place_tube(1, LEGS(LEGS_OF_tube), o_tube, leg, constraint_bias, t);
     }
@@ -6925,11 +6671,11 @@ INLINE void constraint_bias_run(const prepared *m, const real *X, const real *V,
 INLINE void constraint_bias_run_lanes(const prepared *m, const real *X, const real *V, real
     *constraint_bias, verdict *t)
 {
-    real s[18*LANES];
+    real s[9*LANES];
     real o_tube[5*LANES];
-    constraint_bias_before(LANES, X, V, s, t);
+    constraint_bias_before(m, LANES, X, s, t);
     for (size_t leg = 0; leg < LEGS_OF_tube; ++leg) {
-        constraint_bias_legs_tube(m, LANES, leg, 0, s, 1, LANES, o_tube);
+        constraint_bias_legs_tube(m, LANES, leg, 0, s, 1, LANES, X, V, o_tube);
         constraint_bias_place_tube(LANES, LANES, o_tube, 0, constraint_bias, t);
     }
 }
@@ -6939,347 +6685,125 @@ INLINE void required_before(const prepared *m, size_t w, const real *X, const re
     *A, real *s, verdict *t)
 {
     for (size_t k = 0; k < w; ++k) {
-        /* X: named entries */
-        const real X_0 = X[0*w + k];
-        const real t_x = X_0;
-        const real X_1 = X[1*w + k];
-        const real t_y = X_1;
-        const real X_2 = X[2*w + k];
-        const real t_z = X_2;
-        const real X_3 = X[3*w + k];
-        const real X_4 = X[4*w + k];
-        const real X_5 = X[5*w + k];
-        const real X_6 = X[6*w + k];
-        const real quaternion_norm2 = X_3*X_3 + X_4*X_4 + X_5*X_5 + X_6*X_6;
-        const real quaternion_scale = 2/quaternion_norm2;
-        const real quaternion_sx = X_3*quaternion_scale;
-        const real quaternion_sy = X_4*quaternion_scale;
-        const real quaternion_sz = X_5*quaternion_scale;
-        const real quaternion_wx = X_6*quaternion_sx;
-        const real quaternion_wy = X_6*quaternion_sy;
-        const real quaternion_wz = X_6*quaternion_sz;
-        const real quaternion_xx = X_3*quaternion_sx;
-        const real quaternion_xy = X_3*quaternion_sy;
-        const real quaternion_xz = X_3*quaternion_sz;
-        const real quaternion_yy = X_4*quaternion_sy;
-        const real quaternion_yz = X_4*quaternion_sz;
-        const real quaternion_zz = X_5*quaternion_sz;
-        const real R_xx = 1 - quaternion_yy - quaternion_zz;
-        const real R_xy = quaternion_xy - quaternion_wz;
-        const real R_xz = quaternion_wy + quaternion_xz;
-        const real R_yx = quaternion_wz + quaternion_xy;
-        const real R_yy = 1 - quaternion_xx - quaternion_zz;
-        const real R_yz = quaternion_yz - quaternion_wx;
-        const real R_zx = quaternion_xz - quaternion_wy;
-        const real R_zy = quaternion_wx + quaternion_yz;
-        const real R_zz = 1 - quaternion_xx - quaternion_yy;
-        /* V: named entries */
-        const real V_0 = V[0*w + k];
-        const real t_dot_x = V_0;
-        const real V_1 = V[1*w + k];
-        const real t_dot_y = V_1;
-        const real V_2 = V[2*w + k];
-        const real t_dot_z = V_2;
-        const real V_3 = V[3*w + k];
-        const real omega_x = V_3;
-        const real V_4 = V[4*w + k];
-        const real omega_y = V_4;
-        const real V_5 = V[5*w + k];
-        const real omega_z = V_5;
-        /* A: named entries */
-        const real A_0 = A[0*w + k];
-        const real t_ddot_x = A_0;
-        const real A_1 = A[1*w + k];
-        const real t_ddot_y = A_1;
-        const real A_2 = A[2*w + k];
-        const real t_ddot_z = A_2;
-        const real A_3 = A[3*w + k];
-        const real alpha_x = A_3;
-        const real A_4 = A[4*w + k];
-        const real alpha_y = A_4;
-        const real A_5 = A[5*w + k];
-        const real alpha_z = A_5;
+        values v;
+        stage_X(m, w, k, X, &v);
+        stage_V_X(w, k, V, &v);
         /* (W_p) centripetal tensor of the platform */
+        const real omega_x = V[3*w + k];
+        const real omega_y = V[4*w + k];
         const real W_p_xy = omega_x*omega_y;
+        const real omega_z = V[5*w + k];
         const real W_p_xz = omega_x*omega_z;
         const real W_p_yz = omega_y*omega_z;
-        /* (h_star) first moment about the platform origin */
-        const real h_star_in_platform_x = m->h_star_in_platform_x;
-        const real h_star_in_platform_y = m->h_star_in_platform_y;
-        const real h_star_in_platform_z = m->h_star_in_platform_z;
-        const real h_star_x = R_xx*h_star_in_platform_x + R_xy*h_star_in_platform_y +
-            R_xz*h_star_in_platform_z;
-        const real h_star_y = R_yx*h_star_in_platform_x + R_yy*h_star_in_platform_y +
-            R_yz*h_star_in_platform_z;
-        const real h_star_z = R_zx*h_star_in_platform_x + R_zy*h_star_in_platform_y +
-            R_zz*h_star_in_platform_z;
         /* (a_t) acceleration of the platform origin, less gravity */
         const real gravity_x = m->gravity_x;
+        const real t_ddot_x = A[0*w + k];
         const real a_t_x = t_ddot_x - gravity_x;
         const real gravity_y = m->gravity_y;
+        const real t_ddot_y = A[1*w + k];
         const real a_t_y = t_ddot_y - gravity_y;
         const real gravity_z = m->gravity_z;
+        const real t_ddot_z = A[2*w + k];
         const real a_t_z = t_ddot_z - gravity_z;
-        const real a_t_in_platform_x = R_xx*a_t_x + R_yx*a_t_y + R_zx*a_t_z;
-        const real a_t_in_platform_y = R_xy*a_t_x + R_yy*a_t_y + R_zy*a_t_z;
-        const real a_t_in_platform_z = R_xz*a_t_x + R_yz*a_t_y + R_zz*a_t_z;
+        const real a_t_in_platform_x = v.R_xx*a_t_x + v.R_yx*a_t_y + v.R_zx*a_t_z;
+        const real a_t_in_platform_y = v.R_xy*a_t_x + v.R_yy*a_t_y + v.R_zy*a_t_z;
+        const real a_t_in_platform_z = v.R_xz*a_t_x + v.R_yz*a_t_y + v.R_zz*a_t_z;
         /* (f_p) inertia force of the platform less its weight */
         const real f_p_t = omega_x*omega_x;
         const real f_p_t_2 = omega_y*omega_y;
         const real f_p_t_3 = omega_z*omega_z;
+        const real alpha_y = A[4*w + k];
+        const real alpha_z = A[5*w + k];
         const real m_star = m->m_star;
-        const real f_p_x = a_t_x*m_star + h_star_y*(W_p_xy - alpha_z) + h_star_z*(W_p_xz +
-            alpha_y) - h_star_x*(f_p_t_2 + f_p_t_3);
-        const real f_p_y = a_t_y*m_star + h_star_x*(W_p_xy + alpha_z) + h_star_z*(W_p_yz -
-            alpha_x) - h_star_y*(f_p_t + f_p_t_3);
-        const real f_p_z = a_t_z*m_star + h_star_x*(W_p_xz - alpha_y) + h_star_y*(W_p_yz +
-            alpha_x) - h_star_z*(f_p_t + f_p_t_2);
+        const real f_p_x = a_t_x*m_star + v.h_star_y*(W_p_xy - alpha_z) + v.h_star_z*(W_p_xz +
+            alpha_y) - v.h_star_x*(f_p_t_2 + f_p_t_3);
+        const real alpha_x = A[3*w + k];
+        const real f_p_y = a_t_y*m_star + v.h_star_x*(W_p_xy + alpha_z) + v.h_star_z*(W_p_yz -
+            alpha_x) - v.h_star_y*(f_p_t + f_p_t_3);
+        const real f_p_z = a_t_z*m_star + v.h_star_x*(W_p_xz - alpha_y) + v.h_star_y*(W_p_yz +
+            alpha_x) - v.h_star_z*(f_p_t + f_p_t_2);
         /* (mu_p) inertia moment of the platform less that of its weight */
-        const real omega_in_platform_x = R_xx*omega_x + R_yx*omega_y + R_zx*omega_z;
-        const real omega_in_platform_y = R_xy*omega_x + R_yy*omega_y + R_zy*omega_z;
-        const real omega_in_platform_z = R_xz*omega_x + R_yz*omega_y + R_zz*omega_z;
         const real J_star_in_platform_xx = m->J_star_in_platform_xx;
         const real J_star_in_platform_xy = m->J_star_in_platform_xy;
         const real J_star_in_platform_xz = m->J_star_in_platform_xz;
-        const real mu_p_t = J_star_in_platform_xx*omega_in_platform_x +
-            J_star_in_platform_xy*omega_in_platform_y + J_star_in_platform_xz*omega_in_platform_z;
+        const real mu_p_t = J_star_in_platform_xx*v.omega_in_platform_x +
+            J_star_in_platform_xy*v.omega_in_platform_y +
+            J_star_in_platform_xz*v.omega_in_platform_z;
         const real J_star_in_platform_yy = m->J_star_in_platform_yy;
         const real J_star_in_platform_yz = m->J_star_in_platform_yz;
-        const real mu_p_t_2 = J_star_in_platform_xy*omega_in_platform_x +
-            J_star_in_platform_yy*omega_in_platform_y + J_star_in_platform_yz*omega_in_platform_z;
+        const real mu_p_t_2 = J_star_in_platform_xy*v.omega_in_platform_x +
+            J_star_in_platform_yy*v.omega_in_platform_y +
+            J_star_in_platform_yz*v.omega_in_platform_z;
         const real J_star_in_platform_zz = m->J_star_in_platform_zz;
-        const real mu_p_t_3 = J_star_in_platform_xz*omega_in_platform_x +
-            J_star_in_platform_yz*omega_in_platform_y + J_star_in_platform_zz*omega_in_platform_z;
-        const real alpha_in_platform_x = R_xx*alpha_x + R_yx*alpha_y + R_zx*alpha_z;
-        const real alpha_in_platform_y = R_xy*alpha_x + R_yy*alpha_y + R_zy*alpha_z;
-        const real alpha_in_platform_z = R_xz*alpha_x + R_yz*alpha_y + R_zz*alpha_z;
+        const real mu_p_t_3 = J_star_in_platform_xz*v.omega_in_platform_x +
+            J_star_in_platform_yz*v.omega_in_platform_y +
+            J_star_in_platform_zz*v.omega_in_platform_z;
+        const real alpha_in_platform_x = v.R_xx*alpha_x + v.R_yx*alpha_y + v.R_zx*alpha_z;
+        const real alpha_in_platform_y = v.R_xy*alpha_x + v.R_yy*alpha_y + v.R_zy*alpha_z;
+        const real alpha_in_platform_z = v.R_xz*alpha_x + v.R_yz*alpha_y + v.R_zz*alpha_z;
+        const real h_star_in_platform_y = m->h_star_in_platform_y;
+        const real h_star_in_platform_z = m->h_star_in_platform_z;
         const real mu_p_in_platform_x = J_star_in_platform_xx*alpha_in_platform_x +
             J_star_in_platform_xy*alpha_in_platform_y + J_star_in_platform_xz*alpha_in_platform_z
-            + a_t_in_platform_z*h_star_in_platform_y + mu_p_t_3*omega_in_platform_y -
-            a_t_in_platform_y*h_star_in_platform_z - mu_p_t_2*omega_in_platform_z;
+            + a_t_in_platform_z*h_star_in_platform_y + mu_p_t_3*v.omega_in_platform_y -
+            a_t_in_platform_y*h_star_in_platform_z - mu_p_t_2*v.omega_in_platform_z;
+        const real h_star_in_platform_x = m->h_star_in_platform_x;
         const real mu_p_in_platform_y = J_star_in_platform_xy*alpha_in_platform_x +
             J_star_in_platform_yy*alpha_in_platform_y + J_star_in_platform_yz*alpha_in_platform_z
-            + a_t_in_platform_x*h_star_in_platform_z + mu_p_t*omega_in_platform_z -
-            a_t_in_platform_z*h_star_in_platform_x - mu_p_t_3*omega_in_platform_x;
+            + a_t_in_platform_x*h_star_in_platform_z + mu_p_t*v.omega_in_platform_z -
+            a_t_in_platform_z*h_star_in_platform_x - mu_p_t_3*v.omega_in_platform_x;
         const real mu_p_in_platform_z = J_star_in_platform_xz*alpha_in_platform_x +
             J_star_in_platform_yz*alpha_in_platform_y + J_star_in_platform_zz*alpha_in_platform_z
-            + a_t_in_platform_y*h_star_in_platform_x + mu_p_t_2*omega_in_platform_x -
-            a_t_in_platform_x*h_star_in_platform_y - mu_p_t*omega_in_platform_y;
-        const real mu_p_x = R_xx*mu_p_in_platform_x + R_xy*mu_p_in_platform_y +
-            R_xz*mu_p_in_platform_z;
-        const real mu_p_y = R_yx*mu_p_in_platform_x + R_yy*mu_p_in_platform_y +
-            R_yz*mu_p_in_platform_z;
-        const real mu_p_z = R_zx*mu_p_in_platform_x + R_zy*mu_p_in_platform_y +
-            R_zz*mu_p_in_platform_z;
-        s[0*w + k] = t_x;
-        s[1*w + k] = t_y;
-        s[2*w + k] = t_z;
-        s[3*w + k] = R_xx;
-        s[4*w + k] = R_xy;
-        s[5*w + k] = R_xz;
-        s[6*w + k] = R_yx;
-        s[7*w + k] = R_yy;
-        s[8*w + k] = R_yz;
-        s[9*w + k] = R_zx;
-        s[10*w + k] = R_zy;
-        s[11*w + k] = R_zz;
-        s[12*w + k] = t_dot_x;
-        s[13*w + k] = t_dot_y;
-        s[14*w + k] = t_dot_z;
-        s[15*w + k] = omega_x;
-        s[16*w + k] = omega_y;
-        s[17*w + k] = omega_z;
-        s[18*w + k] = t_ddot_x;
-        s[19*w + k] = t_ddot_y;
-        s[20*w + k] = t_ddot_z;
-        s[21*w + k] = alpha_x;
-        s[22*w + k] = alpha_y;
-        s[23*w + k] = alpha_z;
-        s[24*w + k] = f_p_x;
-        s[25*w + k] = f_p_y;
-        s[26*w + k] = f_p_z;
-        s[27*w + k] = mu_p_x;
-        s[28*w + k] = mu_p_y;
-        s[29*w + k] = mu_p_z;
-        t->invalid[k] += UNLESS(is_finite(quaternion_scale)) + UNLESS(quaternion_scale > 0);
+            + a_t_in_platform_y*h_star_in_platform_x + mu_p_t_2*v.omega_in_platform_x -
+            a_t_in_platform_x*h_star_in_platform_y - mu_p_t*v.omega_in_platform_y;
+        const real mu_p_x = v.R_xx*mu_p_in_platform_x + v.R_xy*mu_p_in_platform_y +
+            v.R_xz*mu_p_in_platform_z;
+        const real mu_p_y = v.R_yx*mu_p_in_platform_x + v.R_yy*mu_p_in_platform_y +
+            v.R_yz*mu_p_in_platform_z;
+        const real mu_p_z = v.R_zx*mu_p_in_platform_x + v.R_zy*mu_p_in_platform_y +
+            v.R_zz*mu_p_in_platform_z;
+        s[0*w + k] = v.R_xx;
+        s[1*w + k] = v.R_xy;
+        s[2*w + k] = v.R_xz;
+        s[3*w + k] = v.R_yx;
+        s[4*w + k] = v.R_yy;
+        s[5*w + k] = v.R_yz;
+        s[6*w + k] = v.R_zx;
+        s[7*w + k] = v.R_zy;
+        s[8*w + k] = v.R_zz;
+        s[9*w + k] = f_p_x;
+        s[10*w + k] = f_p_y;
+        s[11*w + k] = f_p_z;
+        s[12*w + k] = mu_p_x;
+        s[13*w + k] = mu_p_y;
+        s[14*w + k] = mu_p_z;
+        t->invalid[k] += UNLESS(is_finite(v.quaternion_scale)) + UNLESS(v.quaternion_scale > 0);
     }
 }
 
 INLINE void required_legs_ups(const prepared *m, size_t w, size_t leg, size_t legs, const real *s,
-    size_t states, size_t count, int add, real *terms, real *o)
+    size_t states, size_t count, int add, const real *X, const real *V, const real *A, real
+    *terms, real *o)
 {
     for (size_t k = 0; k < count; ++k) {
         const size_t i = leg + legs*k;
         const size_t j = states*k;
-        /* (ups-S) from the base point to the connection point */
-        const real R_xx = s[3*w + j];
-        const real R_xy = s[4*w + j];
-        const real R_xz = s[5*w + j];
-        const real ups_platform_point_x = m->ups_platform_point_x[i];
-        const real ups_platform_point_y = m->ups_platform_point_y[i];
-        const real ups_platform_point_z = m->ups_platform_point_z[i];
-        const real ups_q_x = R_xx*ups_platform_point_x + R_xy*ups_platform_point_y +
-            R_xz*ups_platform_point_z;
-        const real R_yx = s[6*w + j];
-        const real R_yy = s[7*w + j];
-        const real R_yz = s[8*w + j];
-        const real ups_q_y = R_yx*ups_platform_point_x + R_yy*ups_platform_point_y +
-            R_yz*ups_platform_point_z;
-        const real R_zx = s[9*w + j];
-        const real R_zy = s[10*w + j];
-        const real R_zz = s[11*w + j];
-        const real ups_q_z = R_zx*ups_platform_point_x + R_zy*ups_platform_point_y +
-            R_zz*ups_platform_point_z;
-        const real t_x = s[0*w + j];
-        const real ups_base_point_x = m->ups_base_point_x[i];
-        const real ups_S_x = t_x + ups_q_x - ups_base_point_x;
-        const real t_y = s[1*w + j];
-        const real ups_base_point_y = m->ups_base_point_y[i];
-        const real ups_S_y = t_y + ups_q_y - ups_base_point_y;
-        const real t_z = s[2*w + j];
-        const real ups_base_point_z = m->ups_base_point_z[i];
-        const real ups_S_z = t_z + ups_q_z - ups_base_point_z;
-        /* (ups-px_1) component along the reference direction */
-        const real ups_base_frame_xx = m->ups_base_frame_xx[i];
-        const real ups_base_frame_yx = m->ups_base_frame_yx[i];
-        const real ups_base_frame_zx = m->ups_base_frame_zx[i];
-        const real ups_px_1 = ups_S_x*ups_base_frame_xx + ups_S_y*ups_base_frame_yx +
-            ups_S_z*ups_base_frame_zx;
-        /* (ups-py_1) component across the reference direction */
-        const real ups_base_frame_xy = m->ups_base_frame_xy[i];
-        const real ups_base_frame_yy = m->ups_base_frame_yy[i];
-        const real ups_base_frame_zy = m->ups_base_frame_zy[i];
-        const real ups_py_1 = ups_S_x*ups_base_frame_xy + ups_S_y*ups_base_frame_yy +
-            ups_S_z*ups_base_frame_zy;
-        /* (ups-rho2_1) squared amplitude */
-        const real ups_rho2_1 = ups_px_1*ups_px_1 + ups_py_1*ups_py_1;
-        /* (ups-root_1) amplitude, with the sign of the branch */
-        const real ups_branch_1 = m->ups_branch_1[i];
-        const real ups_root_1 = ups_branch_1*root(ups_rho2_1);
-        /* (ups-c_1) cosine of the angle of joint 1 from its reference direction */
-        const real inv_ups_root_1 = 1/ups_root_1;
-        const real ups_c_1 = -inv_ups_root_1*ups_py_1;
-        /* (ups-s_1) sine of the angle of joint 1 from its reference direction */
-        const real ups_s_1 = inv_ups_root_1*ups_px_1;
-        /* (ups-xi_1) the vector from joint 1 to the connection point, resolved along link 1 */
-        const real ups_base_frame_xz = m->ups_base_frame_xz[i];
-        const real ups_base_frame_yz = m->ups_base_frame_yz[i];
-        const real ups_base_frame_zz = m->ups_base_frame_zz[i];
-        const real ups_xi_1_in_axes1_z = ups_S_x*ups_base_frame_xz + ups_S_y*ups_base_frame_yz +
-            ups_S_z*ups_base_frame_zz;
-        /* (ups-rho2_2) squared amplitude */
-        const real ups_rho2_2 = ups_rho2_1 + ups_xi_1_in_axes1_z*ups_xi_1_in_axes1_z;
-        /* (ups-root_2) amplitude, with the sign of the branch */
-        const real ups_branch_2 = m->ups_branch_2[i];
-        const real ups_root_2 = ups_branch_2*root(ups_rho2_2);
-        /* (ups-c_2) cosine of the angle of joint 2 from its reference direction */
-        const real inv_ups_root_2 = 1/ups_root_2;
-        const real ups_c_2 = -inv_ups_root_2*ups_root_1;
-        /* (ups-s_2) sine of the angle of joint 2 from its reference direction */
-        const real ups_s_2 = inv_ups_root_2*ups_xi_1_in_axes1_z;
-        /* (ups-S_dot) velocity of the connection point */
-        const real axis_x_ups_axes2_x = inv_ups_root_2*ups_S_x;
-        const real axis_x_ups_axes2_y = inv_ups_root_2*ups_S_y;
-        const real axis_x_ups_axes2_z = inv_ups_root_2*ups_S_z;
-        const real omega_y = s[16*w + j];
-        const real omega_z = s[17*w + j];
-        const real ups_S_dot_t = omega_y*ups_q_z - omega_z*ups_q_y;
-        const real omega_x = s[15*w + j];
-        const real ups_S_dot_t_2 = omega_z*ups_q_x - omega_x*ups_q_z;
-        const real ups_S_dot_t_3 = omega_x*ups_q_y - omega_y*ups_q_x;
-        const real t_dot_x = s[12*w + j];
-        const real ups_S_dot_x = t_dot_x + ups_S_dot_t;
-        const real t_dot_y = s[13*w + j];
-        const real ups_S_dot_y = t_dot_y + ups_S_dot_t_2;
-        const real t_dot_z = s[14*w + j];
-        const real ups_S_dot_z = t_dot_z + ups_S_dot_t_3;
-        const real ups_S_dot_in_axes2_x = axis_x_ups_axes2_x*ups_S_dot_x +
-            axis_x_ups_axes2_y*ups_S_dot_y + axis_x_ups_axes2_z*ups_S_dot_z;
-        /* (ups-qd_1) rate of joint 1 */
-        const real axis_z_ups_axes2_x = ups_base_frame_xx*ups_c_1 + ups_base_frame_xy*ups_s_1;
-        const real axis_z_ups_axes2_y = ups_base_frame_yx*ups_c_1 + ups_base_frame_yy*ups_s_1;
-        const real axis_z_ups_axes2_z = ups_base_frame_zx*ups_c_1 + ups_base_frame_zy*ups_s_1;
-        const real ups_qd_1 = inv_ups_root_1*(axis_z_ups_axes2_x*ups_S_dot_x +
-            axis_z_ups_axes2_y*ups_S_dot_y + axis_z_ups_axes2_z*ups_S_dot_z);
-        /* (ups-qd_2) rate of joint 2 */
-        const real axis_y_ups_axes2_x = axis_x_ups_axes2_z*axis_z_ups_axes2_y -
-            axis_x_ups_axes2_y*axis_z_ups_axes2_z;
-        const real axis_y_ups_axes2_y = axis_x_ups_axes2_x*axis_z_ups_axes2_z -
-            axis_x_ups_axes2_z*axis_z_ups_axes2_x;
-        const real axis_y_ups_axes2_z = axis_x_ups_axes2_y*axis_z_ups_axes2_x -
-            axis_x_ups_axes2_x*axis_z_ups_axes2_y;
-        const real ups_qd_2 = inv_ups_root_2*(axis_y_ups_axes2_x*ups_S_dot_x +
-            axis_y_ups_axes2_y*ups_S_dot_y + axis_y_ups_axes2_z*ups_S_dot_z);
-        /* (ups-omega_1) angular velocity of link 1 */
-        const real ups_omega_1_in_axes2_x = ups_qd_1*ups_s_2;
-        const real ups_omega_1_in_axes2_y = ups_c_2*ups_qd_1;
-        /* (ups-W_2) centripetal tensor of link 2 */
-        const real ups_W_2_in_axes2_yz = ups_omega_1_in_axes2_y*ups_qd_2;
-        const real ups_W_2_in_axes2_xz = ups_omega_1_in_axes2_x*ups_qd_2;
-        const real ups_W_2_in_axes2_xy = ups_omega_1_in_axes2_x*ups_omega_1_in_axes2_y;
-        /* (ups-a_p) acceleration of the connection point without its centripetal part */
-        const real alpha_y = s[22*w + j];
-        const real alpha_z = s[23*w + j];
-        const real t_ddot_x = s[18*w + j];
-        const real ups_a_p_x = t_ddot_x + alpha_y*ups_q_z - alpha_z*ups_q_y;
-        const real alpha_x = s[21*w + j];
-        const real t_ddot_y = s[19*w + j];
-        const real ups_a_p_y = t_ddot_y + alpha_z*ups_q_x - alpha_x*ups_q_z;
-        const real t_ddot_z = s[20*w + j];
-        const real ups_a_p_z = t_ddot_z + alpha_x*ups_q_y - alpha_y*ups_q_x;
-        /* (ups-S_ddot) acceleration of the connection point */
-        const real ups_S_ddot_x = ups_a_p_x + omega_y*ups_S_dot_t_3 - omega_z*ups_S_dot_t_2;
-        const real ups_S_ddot_y = ups_a_p_y + omega_z*ups_S_dot_t - omega_x*ups_S_dot_t_3;
-        const real ups_S_ddot_z = ups_a_p_z + omega_x*ups_S_dot_t_2 - omega_y*ups_S_dot_t;
-        const real ups_S_ddot_in_axes2_z = axis_z_ups_axes2_x*ups_S_ddot_x +
-            axis_z_ups_axes2_y*ups_S_ddot_y + axis_z_ups_axes2_z*ups_S_ddot_z;
-        /* (ups-bias) acceleration of the connection point at zero joint accelerations */
-        const real ups_bias_t = 2*ups_S_dot_in_axes2_x;
-        const real ups_bias_in_axes2_z = 2*ups_W_2_in_axes2_xz*ups_root_2 -
-            ups_bias_t*ups_omega_1_in_axes2_y;
-        /* (ups-rel) acceleration of the connection point left to the joint accelerations */
-        const real ups_rel_in_axes2_z = ups_S_ddot_in_axes2_z - ups_bias_in_axes2_z;
-        /* (ups-qdd_1) acceleration of joint 1 */
-        const real ups_qdd_1 = inv_ups_root_1*ups_rel_in_axes2_z;
-        /* (ups-alpha_1) angular acceleration of link 1 */
-        const real ups_alpha_1_in_axes2_x = ups_qdd_1*ups_s_2;
-        const real ups_alpha_1_in_axes2_y = ups_c_2*ups_qdd_1;
-        /* (ups-alpha_2) angular acceleration of link 2 */
-        const real ups_alpha_2_in_axes2_x = ups_W_2_in_axes2_yz + ups_alpha_1_in_axes2_x;
-        const real ups_alpha_2_in_axes2_y = ups_alpha_1_in_axes2_y - ups_W_2_in_axes2_xz;
-        /* (ups-B_2) acceleration tensor of link 2 */
-        const real ups_B_2_t = axis_y_ups_axes2_x*ups_S_ddot_x;
-        const real ups_B_2_t_2 = axis_y_ups_axes2_y*ups_S_ddot_y;
-        const real ups_B_2_t_3 = axis_y_ups_axes2_z*ups_S_ddot_z;
-        const real ups_B_2_in_axes2_yx = inv_ups_root_2*(ups_B_2_t + ups_B_2_t_2 + ups_B_2_t_3 -
-            ups_bias_t*ups_qd_2);
-        const real ups_B_2_in_axes2_xy = 2*ups_W_2_in_axes2_xy - ups_B_2_in_axes2_yx;
-        const real ups_B_2_in_axes2_zx = ups_W_2_in_axes2_xz - ups_alpha_2_in_axes2_y;
-        const real ups_B_2_in_axes2_zy = ups_W_2_in_axes2_yz + ups_alpha_2_in_axes2_x;
-        /* (ups-acc_3) acceleration of the reference point of link 3, less gravity */
-        const real ups_acc_3_t = m->ups_acc_3_t[i];
-        const real ups_acc_3_t_2 = m->ups_acc_3_t_2[i];
-        const real ups_g_in_axes2_z = ups_acc_3_t*ups_c_1 + ups_acc_3_t_2*ups_s_1;
-        const real ups_acc_3_t_4 = ups_acc_3_t_2*ups_c_1 - ups_acc_3_t*ups_s_1;
-        const real ups_acc_3_t_3 = m->ups_acc_3_t_3[i];
-        const real ups_g_in_axes2_x = ups_acc_3_t_3*ups_s_2 + ups_acc_3_t_4*ups_c_2;
-        const real ups_g_in_axes2_y = ups_acc_3_t_3*ups_c_2 - ups_acc_3_t_4*ups_s_2;
-        const real ups_acc_3_in_axes2_x = axis_x_ups_axes2_x*ups_S_ddot_x +
-            axis_x_ups_axes2_y*ups_S_ddot_y + axis_x_ups_axes2_z*ups_S_ddot_z - ups_g_in_axes2_x;
-        const real ups_acc_3_in_axes2_y = ups_B_2_t + ups_B_2_t_2 + ups_B_2_t_3 -
-            ups_g_in_axes2_y;
-        const real ups_acc_3_in_axes2_z = ups_S_ddot_in_axes2_z - ups_g_in_axes2_z;
+        values_ups v;
+        stage_ups_X(m, w, i, j, s, X, &v);
+        stage_ups_A_X(w, j, A, &v);
+        stage_ups_V_X(w, j, V, &v);
+        stage_ups_A_V_X(w, j, V, &v);
+        stage_ups_legs_required(m, i, &v);
         /* (ups-phi_3) inertia force of link 3 from its turning about its reference point */
-        const real ups_phi_3_t = ups_omega_1_in_axes2_y*ups_omega_1_in_axes2_y;
-        const real ups_phi_3_t_2 = ups_qd_2*ups_qd_2;
+        const real ups_phi_3_t = v.ups_omega_1_in_axes2_y*v.ups_omega_1_in_axes2_y;
+        const real ups_phi_3_t_2 = v.ups_qd_2*v.ups_qd_2;
         const real ups_h_3_in_spec2_x = m->ups_h_3_in_spec2_x[i];
         const real ups_h_3_in_spec2_y = m->ups_h_3_in_spec2_y[i];
         const real ups_h_3_in_spec2_z = m->ups_h_3_in_spec2_z[i];
-        const real ups_phi_3_in_axes2_x = ups_alpha_1_in_axes2_y*ups_h_3_in_spec2_y +
+        const real ups_phi_3_in_axes2_x = v.ups_alpha_1_in_axes2_y*ups_h_3_in_spec2_y +
             ups_h_3_in_spec2_x*(-ups_phi_3_t - ups_phi_3_t_2) -
-            ups_B_2_in_axes2_xy*ups_h_3_in_spec2_z;
+            v.ups_B_2_in_axes2_xy*ups_h_3_in_spec2_z;
         /* (ups-mu_2) inertia moment of the links that turn with link 2, about their reference points */
-        const real ups_mu_2_t = ups_omega_1_in_axes2_x*ups_omega_1_in_axes2_x;
         const real ups_J_group_2_in_axes2_xy = m->ups_J_group_2_in_axes2_xy[i];
         const real ups_J_group_2_in_axes2_xz = m->ups_J_group_2_in_axes2_xz[i];
         const real ups_J_group_2_in_axes2_yz = m->ups_J_group_2_in_axes2_yz[i];
@@ -7287,51 +6811,51 @@ INLINE void required_legs_ups(const prepared *m, size_t w, size_t leg, size_t le
         const real ups_Sigma_2_in_axes2_zz = m->ups_Sigma_2_in_axes2_zz[i];
         const real ups_h_2_in_spec2_y = m->ups_h_2_in_spec2_y[i];
         const real ups_h_2_in_spec2_z = m->ups_h_2_in_spec2_z[i];
-        const real ups_mu_2_in_axes2_x = ups_B_2_in_axes2_yx*ups_J_group_2_in_axes2_xz +
-            ups_B_2_in_axes2_zy*ups_Sigma_2_in_axes2_yy + ups_J_group_2_in_axes2_yz*(ups_phi_3_t -
-            ups_phi_3_t_2) + ups_Sigma_2_in_axes2_zz*ups_alpha_1_in_axes2_x +
-            ups_g_in_axes2_y*ups_h_2_in_spec2_y + ups_g_in_axes2_z*ups_h_2_in_spec2_z -
-            ups_B_2_in_axes2_zx*ups_J_group_2_in_axes2_xy -
-            ups_acc_3_in_axes2_y*ups_h_3_in_spec2_y - ups_acc_3_in_axes2_z*ups_h_3_in_spec2_z;
+        const real ups_mu_2_in_axes2_x = v.ups_B_2_in_axes2_yx*ups_J_group_2_in_axes2_xz +
+            v.ups_B_2_in_axes2_zy*ups_Sigma_2_in_axes2_yy + ups_J_group_2_in_axes2_yz*(ups_phi_3_t
+            - ups_phi_3_t_2) + ups_Sigma_2_in_axes2_zz*v.ups_alpha_1_in_axes2_x +
+            v.ups_g_in_axes2_y*ups_h_2_in_spec2_y + v.ups_g_in_axes2_z*ups_h_2_in_spec2_z -
+            v.ups_B_2_in_axes2_zx*ups_J_group_2_in_axes2_xy -
+            v.ups_acc_3_in_axes2_y*ups_h_3_in_spec2_y - v.ups_acc_3_in_axes2_z*ups_h_3_in_spec2_z;
         const real ups_Sigma_2_in_axes2_xx = m->ups_Sigma_2_in_axes2_xx[i];
         const real ups_h_2_in_spec2_x = m->ups_h_2_in_spec2_x[i];
-        const real ups_mu_2_in_axes2_y = ups_B_2_in_axes2_zy*ups_J_group_2_in_axes2_xy +
-            ups_Sigma_2_in_axes2_zz*ups_alpha_1_in_axes2_y +
-            ups_acc_3_in_axes2_x*ups_h_3_in_spec2_y + ups_g_in_axes2_z*ups_h_2_in_spec2_x -
-            ups_B_2_in_axes2_xy*ups_J_group_2_in_axes2_yz -
-            ups_B_2_in_axes2_zx*ups_Sigma_2_in_axes2_xx - ups_J_group_2_in_axes2_xz*(ups_mu_2_t -
-            ups_phi_3_t_2) - ups_acc_3_in_axes2_z*ups_h_3_in_spec2_x -
-            ups_g_in_axes2_x*ups_h_2_in_spec2_y;
-        const real ups_mu_2_in_axes2_z = ups_B_2_in_axes2_yx*ups_Sigma_2_in_axes2_xx +
-            ups_J_group_2_in_axes2_xy*(ups_mu_2_t - ups_phi_3_t) +
-            ups_J_group_2_in_axes2_xz*ups_alpha_1_in_axes2_x +
-            ups_J_group_2_in_axes2_yz*ups_alpha_1_in_axes2_y +
-            ups_acc_3_in_axes2_x*ups_h_3_in_spec2_z + ups_acc_3_in_axes2_y*ups_h_3_in_spec2_x -
-            ups_B_2_in_axes2_xy*ups_Sigma_2_in_axes2_yy - ups_g_in_axes2_x*ups_h_2_in_spec2_z -
-            ups_g_in_axes2_y*ups_h_2_in_spec2_x;
+        const real ups_mu_2_in_axes2_y = v.ups_B_2_in_axes2_zy*ups_J_group_2_in_axes2_xy +
+            ups_Sigma_2_in_axes2_zz*v.ups_alpha_1_in_axes2_y +
+            v.ups_acc_3_in_axes2_x*ups_h_3_in_spec2_y + v.ups_g_in_axes2_z*ups_h_2_in_spec2_x -
+            v.ups_B_2_in_axes2_xy*ups_J_group_2_in_axes2_yz -
+            v.ups_B_2_in_axes2_zx*ups_Sigma_2_in_axes2_xx -
+            ups_J_group_2_in_axes2_xz*(v.ups_mu_2_t - ups_phi_3_t_2) -
+            v.ups_acc_3_in_axes2_z*ups_h_3_in_spec2_x - v.ups_g_in_axes2_x*ups_h_2_in_spec2_y;
+        const real ups_mu_2_in_axes2_z = v.ups_B_2_in_axes2_yx*ups_Sigma_2_in_axes2_xx +
+            ups_J_group_2_in_axes2_xy*(v.ups_mu_2_t - ups_phi_3_t) +
+            ups_J_group_2_in_axes2_xz*v.ups_alpha_1_in_axes2_x +
+            ups_J_group_2_in_axes2_yz*v.ups_alpha_1_in_axes2_y +
+            v.ups_acc_3_in_axes2_x*ups_h_3_in_spec2_z + v.ups_acc_3_in_axes2_y*ups_h_3_in_spec2_x
+            - v.ups_B_2_in_axes2_xy*ups_Sigma_2_in_axes2_yy -
+            v.ups_g_in_axes2_x*ups_h_2_in_spec2_z - v.ups_g_in_axes2_y*ups_h_2_in_spec2_x;
         /* (ups-c) leg force on the platform without actuation and without the mass at the connection
            point */
-        const real ups_c_in_axes2_y = ups_alpha_1_in_axes2_x*ups_h_3_in_spec2_y -
-            inv_ups_root_2*ups_mu_2_in_axes2_z - ups_B_2_in_axes2_yx*ups_h_3_in_spec2_x -
-            ups_h_3_in_spec2_z*(ups_mu_2_t + ups_phi_3_t_2);
-        const real ups_c_in_axes2_z = ups_B_2_in_axes2_zy*ups_h_3_in_spec2_z +
-            ups_h_3_in_spec2_y*(ups_mu_2_t + ups_phi_3_t) -
-            inv_ups_root_1*(ups_c_2*ups_mu_2_in_axes2_y + ups_mu_2_in_axes2_x*ups_s_2) -
-            ups_B_2_in_axes2_zx*ups_h_3_in_spec2_x;
-        const real ups_c_x = axis_y_ups_axes2_x*ups_c_in_axes2_y +
-            axis_z_ups_axes2_x*ups_c_in_axes2_z - axis_x_ups_axes2_x*ups_phi_3_in_axes2_x;
-        const real ups_c_y = axis_y_ups_axes2_y*ups_c_in_axes2_y +
-            axis_z_ups_axes2_y*ups_c_in_axes2_z - axis_x_ups_axes2_y*ups_phi_3_in_axes2_x;
-        const real ups_c_z = axis_y_ups_axes2_z*ups_c_in_axes2_y +
-            axis_z_ups_axes2_z*ups_c_in_axes2_z - axis_x_ups_axes2_z*ups_phi_3_in_axes2_x;
+        const real ups_c_in_axes2_y = v.ups_alpha_1_in_axes2_x*ups_h_3_in_spec2_y -
+            v.inv_ups_q_3*ups_mu_2_in_axes2_z - v.ups_B_2_in_axes2_yx*ups_h_3_in_spec2_x -
+            ups_h_3_in_spec2_z*(v.ups_mu_2_t + ups_phi_3_t_2);
+        const real ups_c_in_axes2_z = v.inv_ups_root_1*(v.ups_c_2*ups_mu_2_in_axes2_y -
+            v.ups_e_1_in_axes2_x*ups_mu_2_in_axes2_x) + v.ups_B_2_in_axes2_zy*ups_h_3_in_spec2_z +
+            ups_h_3_in_spec2_y*(v.ups_mu_2_t + ups_phi_3_t) -
+            v.ups_B_2_in_axes2_zx*ups_h_3_in_spec2_x;
+        const real ups_c_x = v.axis_y_ups_axes2_x*ups_c_in_axes2_y +
+            v.axis_z_ups_axes2_x*ups_c_in_axes2_z - v.axis_x_ups_axes2_x*ups_phi_3_in_axes2_x;
+        const real ups_c_y = v.axis_y_ups_axes2_y*ups_c_in_axes2_y +
+            v.axis_z_ups_axes2_y*ups_c_in_axes2_z - v.axis_x_ups_axes2_y*ups_phi_3_in_axes2_x;
+        const real ups_c_z = v.axis_y_ups_axes2_z*ups_c_in_axes2_y +
+            v.axis_z_ups_axes2_z*ups_c_in_axes2_z - v.axis_x_ups_axes2_z*ups_phi_3_in_axes2_x;
         /* (R_a) moment that actuators and external wrench must give */
-        const real ups_R_a_t = ups_c_y*ups_q_z - ups_c_z*ups_q_y;
-        const real ups_R_a_t_2 = ups_c_z*ups_q_x - ups_c_x*ups_q_z;
-        const real ups_R_a_t_3 = ups_c_x*ups_q_y - ups_c_y*ups_q_x;
+        const real ups_R_a_t = ups_c_y*v.ups_q_z - ups_c_z*v.ups_q_y;
+        const real ups_R_a_t_2 = ups_c_z*v.ups_q_x - ups_c_x*v.ups_q_z;
+        const real ups_R_a_t_3 = ups_c_x*v.ups_q_y - ups_c_y*v.ups_q_x;
         /* (ups-H_a_3) moment of the column's unit force about the platform origin */
-        const real ups_H_a_3_x = axis_x_ups_axes2_z*ups_q_y - axis_x_ups_axes2_y*ups_q_z;
-        const real ups_H_a_3_y = axis_x_ups_axes2_x*ups_q_z - axis_x_ups_axes2_z*ups_q_x;
-        const real ups_H_a_3_z = axis_x_ups_axes2_y*ups_q_x - axis_x_ups_axes2_x*ups_q_y;
+        const real ups_H_a_3_x = v.axis_x_ups_axes2_z*v.ups_q_y - v.axis_x_ups_axes2_y*v.ups_q_z;
+        const real ups_H_a_3_y = v.axis_x_ups_axes2_x*v.ups_q_z - v.axis_x_ups_axes2_z*v.ups_q_x;
+        const real ups_H_a_3_z = v.axis_x_ups_axes2_y*v.ups_q_x - v.axis_x_ups_axes2_x*v.ups_q_y;
         /* (R_t) force that actuators and external wrench must give */
         gather(&terms[0*count + k], add, ups_c_x);  /* R_t_x_of_legs */
         gather(&terms[1*count + k], add, ups_c_y);  /* R_t_y_of_legs */
@@ -7341,16 +6865,16 @@ INLINE void required_legs_ups(const prepared *m, size_t w, size_t leg, size_t le
         gather(&terms[4*count + k], add, ups_R_a_t_2);  /* R_a_y_of_legs */
         gather(&terms[5*count + k], add, ups_R_a_t_3);  /* R_a_z_of_legs */
         /* (ups-w_3) reciprocal vector 3 */
-        o[0*count + k] = axis_x_ups_axes2_x;
-        o[1*count + k] = axis_x_ups_axes2_y;
-        o[2*count + k] = axis_x_ups_axes2_z;
+        o[0*count + k] = v.axis_x_ups_axes2_x;
+        o[1*count + k] = v.axis_x_ups_axes2_y;
+        o[2*count + k] = v.axis_x_ups_axes2_z;
         /* (ups-H_a_3) moment of the column's unit force about the platform origin */
         o[3*count + k] = ups_H_a_3_x;
         o[4*count + k] = ups_H_a_3_y;
         o[5*count + k] = ups_H_a_3_z;
-        o[6*count + k] = UNLESS(magnitude(ups_rho2_1) > LEAST_1) + UNLESS(magnitude(ups_rho2_2) >
-            LEAST_1) + UNLESS(magnitude(ups_root_1) > LEAST_2) + UNLESS(magnitude(ups_root_2) >
-            LEAST_2);
+        o[6*count + k] = UNLESS(magnitude(v.ups_root_1_t) > LEAST_1) +
+            UNLESS(magnitude(v.ups_q_3_t) > LEAST_1) + UNLESS(magnitude(v.ups_root_1) > LEAST_2) +
+            UNLESS(magnitude(v.ups_q_3) > LEAST_2);
     }
 }
 
@@ -7358,7 +6882,7 @@ INLINE void required_place_ups(size_t w, size_t count, const real *o, size_t leg
     real *H, verdict *t)
 {
     for (size_t k = 0; k < w; ++k) {
-        H[(0*NU + leg)*w + k] = o[0*count + first + k];
+        H[leg*w + k] = o[0*count + first + k];
         H[(NU + leg)*w + k] = o[1*count + first + k];
         H[(2*NU + leg)*w + k] = o[2*count + first + k];
         H[(3*NU + leg)*w + k] = o[3*count + first + k];
@@ -7369,677 +6893,66 @@ INLINE void required_place_ups(size_t w, size_t count, const real *o, size_t leg
 }
 
 INLINE void required_legs_tube(const prepared *m, size_t w, size_t leg, size_t legs, const real
-    *s, size_t states, size_t count, int add, real *terms, real *o)
+    *s, size_t states, size_t count, int add, const real *X, const real *V, const real *A, real
+    *terms, real *o)
 {
     for (size_t k = 0; k < count; ++k) {
         const size_t i = leg + legs*k;
         const size_t j = states*k;
-        /* (tube-S) from the base point to the connection point */
-        const real R_xx = s[3*w + j];
-        const real R_xy = s[4*w + j];
-        const real R_xz = s[5*w + j];
-        const real tube_platform_point_x = m->tube_platform_point_x[i];
-        const real tube_platform_point_y = m->tube_platform_point_y[i];
-        const real tube_platform_point_z = m->tube_platform_point_z[i];
-        const real tube_q_x = R_xx*tube_platform_point_x + R_xy*tube_platform_point_y +
-            R_xz*tube_platform_point_z;
-        const real R_yx = s[6*w + j];
-        const real R_yy = s[7*w + j];
-        const real R_yz = s[8*w + j];
-        const real tube_q_y = R_yx*tube_platform_point_x + R_yy*tube_platform_point_y +
-            R_yz*tube_platform_point_z;
-        const real R_zx = s[9*w + j];
-        const real R_zy = s[10*w + j];
-        const real R_zz = s[11*w + j];
-        const real tube_q_z = R_zx*tube_platform_point_x + R_zy*tube_platform_point_y +
-            R_zz*tube_platform_point_z;
-        const real t_x = s[0*w + j];
-        const real tube_base_point_x = m->tube_base_point_x[i];
-        const real tube_S_x = t_x + tube_q_x - tube_base_point_x;
-        const real t_y = s[1*w + j];
-        const real tube_base_point_y = m->tube_base_point_y[i];
-        const real tube_S_y = t_y + tube_q_y - tube_base_point_y;
-        const real t_z = s[2*w + j];
-        const real tube_base_point_z = m->tube_base_point_z[i];
-        const real tube_S_z = t_z + tube_q_z - tube_base_point_z;
-        /* (tube-px_1) component along the reference direction */
-        const real tube_base_frame_xx = m->tube_base_frame_xx[i];
-        const real tube_base_frame_yx = m->tube_base_frame_yx[i];
-        const real tube_base_frame_zx = m->tube_base_frame_zx[i];
-        const real tube_px_1 = tube_S_x*tube_base_frame_xx + tube_S_y*tube_base_frame_yx +
-            tube_S_z*tube_base_frame_zx;
-        /* (tube-py_1) component across the reference direction */
-        const real tube_base_frame_xy = m->tube_base_frame_xy[i];
-        const real tube_base_frame_yy = m->tube_base_frame_yy[i];
-        const real tube_base_frame_zy = m->tube_base_frame_zy[i];
-        const real tube_py_1 = tube_S_x*tube_base_frame_xy + tube_S_y*tube_base_frame_yy +
-            tube_S_z*tube_base_frame_zy;
-        /* (tube-rho2_1) squared amplitude */
-        const real tube_rho2_1 = tube_px_1*tube_px_1 + tube_py_1*tube_py_1;
-        /* (tube-root_1) amplitude, with the sign of the branch */
-        const real tube_branch_1 = m->tube_branch_1[i];
-        const real tube_root_1 = tube_branch_1*root(tube_rho2_1);
-        /* (tube-c_1) cosine of the angle of joint 1 from its reference direction */
-        const real inv_tube_root_1 = 1/tube_root_1;
-        const real tube_c_1 = -inv_tube_root_1*tube_py_1;
-        /* (tube-s_1) sine of the angle of joint 1 from its reference direction */
-        const real tube_s_1 = inv_tube_root_1*tube_px_1;
-        /* (tube-xi_1) the vector from joint 1 to the connection point, resolved along link 1 */
-        const real tube_base_frame_xz = m->tube_base_frame_xz[i];
-        const real tube_base_frame_yz = m->tube_base_frame_yz[i];
-        const real tube_base_frame_zz = m->tube_base_frame_zz[i];
-        const real tube_xi_1_in_axes1_z = tube_S_x*tube_base_frame_xz +
-            tube_S_y*tube_base_frame_yz + tube_S_z*tube_base_frame_zz;
-        /* (tube-rho2_2) squared amplitude */
-        const real tube_rho2_2 = tube_rho2_1 + tube_xi_1_in_axes1_z*tube_xi_1_in_axes1_z;
-        /* (tube-root_2) amplitude, with the sign of the branch */
-        const real tube_branch_2 = m->tube_branch_2[i];
-        const real tube_root_2 = tube_branch_2*root(tube_rho2_2);
-        /* (tube-c_2) cosine of the angle of joint 2 from its reference direction */
-        const real inv_tube_root_2 = 1/tube_root_2;
-        const real tube_c_2 = -inv_tube_root_2*tube_root_1;
-        /* (tube-s_2) sine of the angle of joint 2 from its reference direction */
-        const real tube_s_2 = inv_tube_root_2*tube_xi_1_in_axes1_z;
-        /* (tube-S_dot) velocity of the connection point */
-        const real axis_z_tube_axes2_x = tube_base_frame_xx*tube_c_1 +
-            tube_base_frame_xy*tube_s_1;
-        const real axis_z_tube_axes2_y = tube_base_frame_yx*tube_c_1 +
-            tube_base_frame_yy*tube_s_1;
-        const real axis_z_tube_axes2_z = tube_base_frame_zx*tube_c_1 +
-            tube_base_frame_zy*tube_s_1;
-        const real tube_S_dot_t = tube_s_1*tube_s_2;
-        const real tube_S_dot_t_2 = tube_c_1*tube_s_2;
-        const real axis_y_tube_axes2_x = tube_S_dot_t*tube_base_frame_xx +
-            tube_base_frame_xz*tube_c_2 - tube_S_dot_t_2*tube_base_frame_xy;
-        const real axis_y_tube_axes2_y = tube_S_dot_t*tube_base_frame_yx +
-            tube_base_frame_yz*tube_c_2 - tube_S_dot_t_2*tube_base_frame_yy;
-        const real axis_y_tube_axes2_z = tube_S_dot_t*tube_base_frame_zx +
-            tube_base_frame_zz*tube_c_2 - tube_S_dot_t_2*tube_base_frame_zy;
-        const real axis_x_tube_axes2_x = axis_y_tube_axes2_y*axis_z_tube_axes2_z -
-            axis_y_tube_axes2_z*axis_z_tube_axes2_y;
-        const real axis_x_tube_axes2_y = axis_y_tube_axes2_z*axis_z_tube_axes2_x -
-            axis_y_tube_axes2_x*axis_z_tube_axes2_z;
-        const real axis_x_tube_axes2_z = axis_y_tube_axes2_x*axis_z_tube_axes2_y -
-            axis_y_tube_axes2_y*axis_z_tube_axes2_x;
-        const real omega_y = s[16*w + j];
-        const real omega_z = s[17*w + j];
-        const real tube_S_dot_t_3 = omega_y*tube_q_z - omega_z*tube_q_y;
-        const real omega_x = s[15*w + j];
-        const real tube_S_dot_t_4 = omega_z*tube_q_x - omega_x*tube_q_z;
-        const real tube_S_dot_t_5 = omega_x*tube_q_y - omega_y*tube_q_x;
-        const real t_dot_x = s[12*w + j];
-        const real tube_S_dot_x = t_dot_x + tube_S_dot_t_3;
-        const real t_dot_y = s[13*w + j];
-        const real tube_S_dot_y = t_dot_y + tube_S_dot_t_4;
-        const real t_dot_z = s[14*w + j];
-        const real tube_S_dot_z = t_dot_z + tube_S_dot_t_5;
-        const real tube_S_dot_in_axes2_x = axis_x_tube_axes2_x*tube_S_dot_x +
-            axis_x_tube_axes2_y*tube_S_dot_y + axis_x_tube_axes2_z*tube_S_dot_z;
-        const real tube_S_dot_in_axes2_y = axis_y_tube_axes2_x*tube_S_dot_x +
-            axis_y_tube_axes2_y*tube_S_dot_y + axis_y_tube_axes2_z*tube_S_dot_z;
-        const real tube_S_dot_in_axes2_z = axis_z_tube_axes2_x*tube_S_dot_x +
-            axis_z_tube_axes2_y*tube_S_dot_y + axis_z_tube_axes2_z*tube_S_dot_z;
-        /* (tube-n_m1) direction 1 of the moment that the platform joint transmits */
-        const real tube_n_m1_t = R_xx*tube_base_frame_xx + R_yx*tube_base_frame_yx +
-            R_zx*tube_base_frame_zx;
-        const real tube_n_m1_t_2 = R_xy*tube_base_frame_xx + R_yy*tube_base_frame_yx +
-            R_zy*tube_base_frame_zx;
-        const real tube_n_m1_t_3 = R_xz*tube_base_frame_xx + R_yz*tube_base_frame_yx +
-            R_zz*tube_base_frame_zx;
-        const real tube_n_m1_t_4 = R_xx*tube_base_frame_xy + R_yx*tube_base_frame_yy +
-            R_zx*tube_base_frame_zy;
-        const real tube_n_m1_t_5 = R_xy*tube_base_frame_xy + R_yy*tube_base_frame_yy +
-            R_zy*tube_base_frame_zy;
-        const real tube_n_m1_t_6 = R_xz*tube_base_frame_xy + R_yz*tube_base_frame_yy +
-            R_zz*tube_base_frame_zy;
-        const real tube_n_m1_t_7 = R_xx*tube_base_frame_xz + R_yx*tube_base_frame_yz +
-            R_zx*tube_base_frame_zz;
-        const real tube_n_m1_t_8 = R_xy*tube_base_frame_xz + R_yy*tube_base_frame_yz +
-            R_zy*tube_base_frame_zz;
-        const real tube_n_m1_t_9 = R_xz*tube_base_frame_xz + R_yz*tube_base_frame_yz +
-            R_zz*tube_base_frame_zz;
-        const real tube_platform_joint_rotation_yx = m->tube_platform_joint_rotation_yx[i];
-        const real tube_platform_joint_rotation_yy = m->tube_platform_joint_rotation_yy[i];
-        const real tube_platform_joint_rotation_yz = m->tube_platform_joint_rotation_yz[i];
-        const real tube_n_m1_t_10 = tube_n_m1_t*tube_platform_joint_rotation_yx +
-            tube_n_m1_t_2*tube_platform_joint_rotation_yy +
-            tube_n_m1_t_3*tube_platform_joint_rotation_yz;
-        const real tube_n_m1_t_11 = tube_n_m1_t_4*tube_platform_joint_rotation_yx +
-            tube_n_m1_t_5*tube_platform_joint_rotation_yy +
-            tube_n_m1_t_6*tube_platform_joint_rotation_yz;
-        const real tube_n_m1_t_12 = tube_n_m1_t_7*tube_platform_joint_rotation_yx +
-            tube_n_m1_t_8*tube_platform_joint_rotation_yy +
-            tube_n_m1_t_9*tube_platform_joint_rotation_yz;
-        const real tube_end_p1_in_axes2_z = tube_c_1*tube_n_m1_t_10 + tube_n_m1_t_11*tube_s_1;
-        const real tube_n_m1_t_13 = tube_n_m1_t_10*tube_s_1 - tube_c_1*tube_n_m1_t_11;
-        const real tube_n_m1_in_axes2_z = tube_c_2*tube_n_m1_t_12 + tube_n_m1_t_13*tube_s_2;
-        const real tube_n_m1_in_axes1_z = -tube_c_2*tube_end_p1_in_axes2_z;
-        /* (tube-n_m2) direction 2 of the moment that the platform joint transmits */
-        const real tube_platform_joint_rotation_zx = m->tube_platform_joint_rotation_zx[i];
-        const real tube_platform_joint_rotation_zy = m->tube_platform_joint_rotation_zy[i];
-        const real tube_platform_joint_rotation_zz = m->tube_platform_joint_rotation_zz[i];
-        const real tube_n_m2_t = tube_n_m1_t*tube_platform_joint_rotation_zx +
-            tube_n_m1_t_2*tube_platform_joint_rotation_zy +
-            tube_n_m1_t_3*tube_platform_joint_rotation_zz;
-        const real tube_n_m2_t_2 = tube_n_m1_t_4*tube_platform_joint_rotation_zx +
-            tube_n_m1_t_5*tube_platform_joint_rotation_zy +
-            tube_n_m1_t_6*tube_platform_joint_rotation_zz;
-        const real tube_n_m2_t_3 = tube_n_m1_t_7*tube_platform_joint_rotation_zx +
-            tube_n_m1_t_8*tube_platform_joint_rotation_zy +
-            tube_n_m1_t_9*tube_platform_joint_rotation_zz;
-        const real tube_n_m2_t_4 = tube_n_m2_t*tube_s_1 - tube_c_1*tube_n_m2_t_2;
-        const real tube_n_m2_in_axes2_y = tube_n_m2_t_3*tube_s_2 - tube_c_2*tube_n_m2_t_4;
-        const real tube_end_p2_in_axes2_y = tube_c_2*tube_n_m2_t_3 + tube_n_m2_t_4*tube_s_2;
-        const real tube_n_m2_in_axes1_z = tube_c_2*tube_n_m2_in_axes2_y -
-            tube_end_p2_in_axes2_y*tube_s_2;
-        /* (tube-n_m3) direction 3 of the moment that the platform joint transmits */
-        const real tube_platform_joint_rotation_xx = m->tube_platform_joint_rotation_xx[i];
-        const real tube_platform_joint_rotation_xy = m->tube_platform_joint_rotation_xy[i];
-        const real tube_platform_joint_rotation_xz = m->tube_platform_joint_rotation_xz[i];
-        const real tube_n_m3_t = tube_n_m1_t*tube_platform_joint_rotation_xx +
-            tube_n_m1_t_2*tube_platform_joint_rotation_xy +
-            tube_n_m1_t_3*tube_platform_joint_rotation_xz;
-        const real tube_n_m3_t_2 = tube_n_m1_t_4*tube_platform_joint_rotation_xx +
-            tube_n_m1_t_5*tube_platform_joint_rotation_xy +
-            tube_n_m1_t_6*tube_platform_joint_rotation_xz;
-        const real tube_n_m3_t_3 = tube_n_m1_t_7*tube_platform_joint_rotation_xx +
-            tube_n_m1_t_8*tube_platform_joint_rotation_xy +
-            tube_n_m1_t_9*tube_platform_joint_rotation_xz;
-        const real tube_end_p3_in_axes2_z = tube_c_1*tube_n_m3_t + tube_n_m3_t_2*tube_s_1;
-        const real tube_n_m3_t_4 = tube_n_m3_t*tube_s_1 - tube_c_1*tube_n_m3_t_2;
-        const real tube_n_m3_in_axes2_z = tube_n_m3_t_3*tube_s_2 - tube_c_2*tube_n_m3_t_4;
-        const real tube_n_m3_t_5 = tube_end_p3_in_axes2_z*tube_s_2;
-        /* (tube-f_c1) force part of constraint wrench 1 */
-        const real tube_f_c1_t = tube_n_m1_in_axes1_z*tube_n_m3_in_axes2_z +
-            tube_n_m1_in_axes2_z*tube_n_m3_t_5;
-        /* (tube-m1_c1) moment part 1 of constraint wrench 1 */
-        const real inv_tube_f_c1_t = 1/tube_f_c1_t;
-        const real tube_m1_c1_t = inv_tube_f_c1_t*tube_n_m3_t_5*tube_root_2;
-        /* (tube-m3_c1) moment part 3 of constraint wrench 1 */
-        const real tube_m3_c1_t = inv_tube_f_c1_t*tube_n_m1_in_axes1_z*tube_root_2;
-        /* (tube-m1_c2) moment part 1 of constraint wrench 2 */
-        const real tube_m1_c2_t = inv_tube_f_c1_t*tube_n_m3_in_axes2_z*tube_root_1;
-        /* (tube-m3_c2) moment part 3 of constraint wrench 2 */
-        const real tube_m3_c2 = inv_tube_f_c1_t*tube_n_m1_in_axes2_z*tube_root_1;
-        /* (tube-m1_c3) moment part 1 of constraint wrench 3 */
-        const real tube_m1_c3_t = inv_tube_f_c1_t*tube_n_m2_in_axes1_z*tube_n_m3_in_axes2_z;
-        /* (tube-m3_c3) moment part 3 of constraint wrench 3 */
-        const real tube_m3_c3 = inv_tube_f_c1_t*tube_n_m1_in_axes2_z*tube_n_m2_in_axes1_z;
-        /* (tube-mu_c1) the moment that goes with it */
-        const real tube_mu_c1_in_axes2_y = tube_end_p1_in_axes2_z*tube_m1_c1_t;
-        const real tube_mu_c1_in_axes2_x = tube_end_p3_in_axes2_z*tube_m3_c1_t;
-        const real tube_mu_c1_in_axes2_z = -tube_m1_c1_t*tube_n_m1_in_axes2_z -
-            tube_m3_c1_t*tube_n_m3_in_axes2_z;
-        /* (tube-mu_c2) the moment that goes with it */
-        const real tube_mu_c2_in_axes2_y = tube_end_p1_in_axes2_z*tube_m1_c2_t;
-        const real tube_mu_c2_t = tube_end_p3_in_axes2_z*tube_m3_c2;
-        const real tube_mu_c2_in_axes2_z = tube_m3_c2*tube_n_m3_in_axes2_z -
-            tube_m1_c2_t*tube_n_m1_in_axes2_z;
-        /* (tube-size_c3) size of the moment */
-        const real tube_size_c3 = root(1 + tube_m1_c3_t*tube_m1_c3_t + tube_m3_c3*tube_m3_c3);
-        /* (tube-mu1_c3) moment along direction 1 that goes with it */
-        const real inv_tube_size_c3 = 1/tube_size_c3;
-        const real tube_mu1_c3_t = inv_tube_size_c3*tube_m1_c3_t;
-        /* (tube-mu3_c3) moment along direction 3 that goes with it */
-        const real tube_mu3_c3 = inv_tube_size_c3*tube_m3_c3;
-        /* (tube-mu_c3) the moment that goes with it */
-        const real tube_mu_c3_in_axes2_x = -inv_tube_size_c3*tube_end_p2_in_axes2_y -
-            tube_end_p3_in_axes2_z*tube_mu3_c3;
-        const real tube_mu_c3_in_axes2_y = inv_tube_size_c3*tube_n_m2_in_axes2_y +
-            tube_end_p1_in_axes2_z*tube_mu1_c3_t;
-        const real tube_mu_c3_in_axes2_z = tube_mu3_c3*tube_n_m3_in_axes2_z -
-            tube_mu1_c3_t*tube_n_m1_in_axes2_z;
-        const real tube_mu_c3_x = axis_x_tube_axes2_x*tube_mu_c3_in_axes2_x +
-            axis_y_tube_axes2_x*tube_mu_c3_in_axes2_y + axis_z_tube_axes2_x*tube_mu_c3_in_axes2_z;
-        const real tube_mu_c3_y = axis_x_tube_axes2_y*tube_mu_c3_in_axes2_x +
-            axis_y_tube_axes2_y*tube_mu_c3_in_axes2_y + axis_z_tube_axes2_y*tube_mu_c3_in_axes2_z;
-        const real tube_mu_c3_z = axis_x_tube_axes2_z*tube_mu_c3_in_axes2_x +
-            axis_y_tube_axes2_z*tube_mu_c3_in_axes2_y + axis_z_tube_axes2_z*tube_mu_c3_in_axes2_z;
-        /* (tube-w_1) force part of reciprocal wrench 1 */
-        const real tube_w_1_t = R(1.35)*tube_n_m1_in_axes1_z;
-        const real tube_w_1_t_2 = R(1.35)*tube_n_m2_in_axes1_z;
-        const real tube_w_1_t_3 = R(1.35)*tube_n_m3_t_5;
-        const real tube_w_1_t_4 = R(1.35)*tube_n_m1_in_axes2_z;
-        const real tube_w_1_t_5 = R(1.35)*tube_n_m3_in_axes2_z;
-        const real tube_w_1_t_6 = R(1.35)*tube_m1_c1_t;
-        const real tube_w_1_t_7 = R(1.35)*tube_m3_c1_t;
-        const real tube_w_1_t_8 = R(1.35)*tube_m1_c2_t;
-        const real tube_w_1_t_9 = R(1.35)*tube_m3_c2;
-        const real tube_w_1_t_10 = R(1.35)*tube_mu1_c3_t;
-        const real tube_w_1_t_11 = R(1.35)*inv_tube_size_c3;
-        const real tube_w_1_t_12 = R(1.35)*tube_mu3_c3;
-        const real tube_w_1_t_13 = root(tube_rho2_2 + tube_w_1_t_4*tube_w_1_t_4 +
-            tube_w_1_t_5*tube_w_1_t_5);
-        const real inv_tube_w_1_t_13 = 1/tube_w_1_t_13;
-        const real tube_w_1_t_14 = inv_tube_w_1_t_13*tube_root_2;
-        const real tube_w_1_t_15 = inv_tube_w_1_t_13*tube_w_1_t_4;
-        const real tube_w_1_t_16 = inv_tube_w_1_t_13*tube_w_1_t_5;
-        const real tube_w_1_t_17 = tube_w_1_t_15*tube_w_1_t_6 + tube_w_1_t_16*tube_w_1_t_7 -
-            tube_w_1_t_14;
-        const real tube_w_1_t_18 = 1 + tube_w_1_t_14*tube_w_1_t_17;
-        const real tube_w_1_t_19 = tube_w_1_t_15*tube_w_1_t_17 - tube_w_1_t_6;
-        const real tube_w_1_t_20 = tube_w_1_t_16*tube_w_1_t_17 - tube_w_1_t_7;
-        const real tube_w_1_t_21 = tube_w_1_t_15*tube_w_1_t_8 - tube_w_1_t_16*tube_w_1_t_9;
-        const real tube_w_1_t_22 = tube_w_1_t_14*tube_w_1_t_21;
-        const real tube_w_1_t_23 = tube_w_1_t_15*tube_w_1_t_21 - tube_w_1_t_8;
-        const real tube_w_1_t_24 = tube_w_1_t_9 + tube_w_1_t_16*tube_w_1_t_21;
-        const real tube_w_1_t_25 = tube_w_1_t_10*tube_w_1_t_15 - tube_w_1_t_12*tube_w_1_t_16;
-        const real tube_w_1_t_26 = tube_w_1_t_14*tube_w_1_t_25;
-        const real tube_w_1_t_27 = tube_w_1_t_10 - tube_w_1_t_15*tube_w_1_t_25;
-        const real tube_w_1_t_28 = tube_w_1_t_12 + tube_w_1_t_16*tube_w_1_t_25;
-        const real tube_w_1_t_29 = tube_w_1_t*tube_w_1_t_15 - tube_w_1_t_16*tube_w_1_t_3;
-        const real tube_w_1_t_30 = tube_w_1_t_14*tube_w_1_t_29;
-        const real tube_w_1_t_31 = tube_w_1_t - tube_w_1_t_15*tube_w_1_t_29;
-        const real tube_w_1_t_32 = tube_w_1_t_3 + tube_w_1_t_16*tube_w_1_t_29;
-        const real tube_w_1_t_33 = root(tube_w_1_t_18*tube_w_1_t_18 + tube_w_1_t_19*tube_w_1_t_19
-            + tube_w_1_t_20*tube_w_1_t_20);
-        const real inv_tube_w_1_t_33 = 1/tube_w_1_t_33;
-        const real tube_w_1_t_34 = inv_tube_w_1_t_33*tube_w_1_t_18;
-        const real tube_w_1_t_35 = inv_tube_w_1_t_33*tube_w_1_t_19;
-        const real tube_w_1_t_36 = inv_tube_w_1_t_33*tube_w_1_t_20;
-        const real tube_w_1_t_37 = tube_w_1_t_22*tube_w_1_t_34 + tube_w_1_t_23*tube_w_1_t_35 +
-            tube_w_1_t_24*tube_w_1_t_36;
-        const real tube_w_1_t_38 = tube_w_1_t_22 - tube_w_1_t_34*tube_w_1_t_37;
-        const real tube_w_1_t_39 = tube_w_1_t_23 - tube_w_1_t_35*tube_w_1_t_37;
-        const real tube_w_1_t_40 = tube_w_1_t_24 - tube_w_1_t_36*tube_w_1_t_37;
-        const real tube_w_1_t_41 = tube_w_1_t_26*tube_w_1_t_34 + tube_w_1_t_28*tube_w_1_t_36 -
-            tube_w_1_t_27*tube_w_1_t_35;
-        const real tube_w_1_t_42 = tube_w_1_t_26 - tube_w_1_t_34*tube_w_1_t_41;
-        const real tube_w_1_t_43 = tube_w_1_t_27 + tube_w_1_t_35*tube_w_1_t_41;
-        const real tube_w_1_t_44 = tube_w_1_t_28 - tube_w_1_t_36*tube_w_1_t_41;
-        const real tube_w_1_t_45 = tube_w_1_t_30*tube_w_1_t_34 + tube_w_1_t_32*tube_w_1_t_36 -
-            tube_w_1_t_31*tube_w_1_t_35;
-        const real tube_w_1_t_46 = tube_w_1_t_30 - tube_w_1_t_34*tube_w_1_t_45;
-        const real tube_w_1_t_47 = tube_w_1_t_31 + tube_w_1_t_35*tube_w_1_t_45;
-        const real tube_w_1_t_48 = tube_w_1_t_32 - tube_w_1_t_36*tube_w_1_t_45;
-        const real tube_w_1_t_49 = root(1 + tube_w_1_t_38*tube_w_1_t_38 +
-            tube_w_1_t_39*tube_w_1_t_39 + tube_w_1_t_40*tube_w_1_t_40);
-        const real inv_tube_w_1_t_49 = 1/tube_w_1_t_49;
-        const real tube_w_1_t_50 = inv_tube_w_1_t_49*tube_w_1_t_38;
-        const real tube_w_1_t_51 = inv_tube_w_1_t_49*tube_w_1_t_39;
-        const real tube_w_1_t_52 = inv_tube_w_1_t_49*tube_w_1_t_40;
-        const real tube_w_1_t_53 = tube_w_1_t_42*tube_w_1_t_50 + tube_w_1_t_44*tube_w_1_t_52 -
-            tube_w_1_t_43*tube_w_1_t_51;
-        const real tube_w_1_t_54 = tube_w_1_t_50*tube_w_1_t_53 - tube_w_1_t_42;
-        const real tube_w_1_t_55 = inv_tube_w_1_t_49*tube_w_1_t_53;
-        const real tube_w_1_t_56 = tube_w_1_t_43 + tube_w_1_t_51*tube_w_1_t_53;
-        const real tube_w_1_t_57 = tube_w_1_t_52*tube_w_1_t_53 - tube_w_1_t_44;
-        const real tube_w_1_t_58 = tube_w_1_t_46*tube_w_1_t_50 + tube_w_1_t_48*tube_w_1_t_52 -
-            inv_tube_w_1_t_49*tube_root_1 - tube_w_1_t_47*tube_w_1_t_51;
-        const real tube_w_1_t_59 = tube_w_1_t_50*tube_w_1_t_58 - tube_w_1_t_46;
-        const real tube_w_1_t_60 = tube_root_1 + inv_tube_w_1_t_49*tube_w_1_t_58;
-        const real tube_w_1_t_61 = tube_w_1_t_47 + tube_w_1_t_51*tube_w_1_t_58;
-        const real tube_w_1_t_62 = tube_w_1_t_52*tube_w_1_t_58 - tube_w_1_t_48;
-        const real tube_w_1_t_63 = root(tube_w_1_t_11*tube_w_1_t_11 + tube_w_1_t_54*tube_w_1_t_54
-            + tube_w_1_t_55*tube_w_1_t_55 + tube_w_1_t_56*tube_w_1_t_56 +
-            tube_w_1_t_57*tube_w_1_t_57);
-        const real inv_tube_w_1_t_63 = 1/tube_w_1_t_63;
-        const real tube_w_1_t_64 = inv_tube_w_1_t_63*tube_w_1_t_54;
-        const real tube_w_1_t_65 = inv_tube_w_1_t_63*tube_w_1_t_55;
-        const real tube_w_1_t_66 = inv_tube_w_1_t_63*tube_w_1_t_56;
-        const real tube_w_1_t_67 = inv_tube_w_1_t_63*tube_w_1_t_11;
-        const real tube_w_1_t_68 = inv_tube_w_1_t_63*tube_w_1_t_57;
-        const real tube_w_1_t_69 = tube_w_1_t_59*tube_w_1_t_64 + tube_w_1_t_60*tube_w_1_t_65 +
-            tube_w_1_t_61*tube_w_1_t_66 + tube_w_1_t_62*tube_w_1_t_68 -
-            tube_w_1_t_2*tube_w_1_t_67;
-        const real tube_w_1_t_70 = tube_w_1_t_59 - tube_w_1_t_64*tube_w_1_t_69;
-        const real tube_w_1_t_71 = tube_w_1_t_60 - tube_w_1_t_65*tube_w_1_t_69;
-        const real tube_w_1_t_72 = tube_w_1_t_61 - tube_w_1_t_66*tube_w_1_t_69;
-        const real tube_w_1_t_73 = tube_w_1_t_2 + tube_w_1_t_67*tube_w_1_t_69;
-        const real tube_w_1_t_74 = tube_w_1_t_62 - tube_w_1_t_68*tube_w_1_t_69;
-        const real tube_w_1_t_75 = root(tube_w_1_t_70*tube_w_1_t_70 + tube_w_1_t_71*tube_w_1_t_71
-            + tube_w_1_t_72*tube_w_1_t_72 + tube_w_1_t_73*tube_w_1_t_73 +
-            tube_w_1_t_74*tube_w_1_t_74);
-        /* (tube-eta_1) rate at which the joints turn along moment direction 1 */
-        const real tube_omega_in_axes2_y = axis_y_tube_axes2_x*omega_x +
-            axis_y_tube_axes2_y*omega_y + axis_y_tube_axes2_z*omega_z;
-        const real tube_omega_in_axes2_z = axis_z_tube_axes2_x*omega_x +
-            axis_z_tube_axes2_y*omega_y + axis_z_tube_axes2_z*omega_z;
-        const real tube_eta_1 = tube_n_m1_in_axes2_z*tube_omega_in_axes2_z -
-            tube_end_p1_in_axes2_z*tube_omega_in_axes2_y;
-        /* (tube-eta_2) rate at which the joints turn along moment direction 2 */
-        const real tube_omega_in_axes2_x = axis_x_tube_axes2_x*omega_x +
-            axis_x_tube_axes2_y*omega_y + axis_x_tube_axes2_z*omega_z;
-        const real tube_eta_2 = tube_n_m2_in_axes2_y*tube_omega_in_axes2_y -
-            tube_end_p2_in_axes2_y*tube_omega_in_axes2_x;
-        /* (tube-eta_3) rate at which the joints turn along moment direction 3 */
-        const real tube_eta_3 = tube_n_m3_in_axes2_z*tube_omega_in_axes2_z -
-            tube_end_p3_in_axes2_z*tube_omega_in_axes2_x;
-        /* (tube-qd_1) rate of joint 1 */
-        const real inv_tube_w_1_t_75 = 1/tube_w_1_t_75;
-        const real tube_qd_1_t = inv_tube_w_1_t_75*tube_w_1_t_70;
-        const real tube_qd_1_t_2 = inv_tube_w_1_t_75*tube_w_1_t_71;
-        const real tube_qd_1_t_3 = inv_tube_w_1_t_75*tube_w_1_t_72;
-        const real tube_qd_1_t_4 = inv_tube_w_1_t_75*tube_w_1_t_73;
-        const real tube_qd_1_t_5 = inv_tube_w_1_t_75*tube_w_1_t_74;
-        const real tube_qd_1_t_6 = R(1.35)*tube_eta_1;
-        const real tube_qd_1_t_7 = R(1.35)*tube_eta_2;
-        const real tube_qd_1_t_8 = R(1.35)*tube_eta_3;
-        const real tube_qd_1 = inv_tube_w_1_t_75*(tube_S_dot_in_axes2_y*tube_qd_1_t +
-            tube_S_dot_in_axes2_z*tube_qd_1_t_2 + tube_qd_1_t_3*tube_qd_1_t_6 +
-            tube_qd_1_t_4*tube_qd_1_t_7 + tube_qd_1_t_5*tube_qd_1_t_8);
-        /* (tube-qd_2) rate of joint 2 */
-        const real tube_qd_2_t = inv_tube_w_1_t_63*(tube_S_dot_in_axes2_y*tube_w_1_t_64 +
-            tube_S_dot_in_axes2_z*tube_w_1_t_65 + tube_qd_1_t_6*tube_w_1_t_66 +
-            tube_qd_1_t_8*tube_w_1_t_68 - tube_qd_1*tube_w_1_t_69 - tube_qd_1_t_7*tube_w_1_t_67);
-        const real tube_qd_2_t_2 = inv_tube_w_1_t_49*(inv_tube_w_1_t_49*tube_S_dot_in_axes2_z +
-            tube_S_dot_in_axes2_y*tube_w_1_t_50 + tube_qd_1*tube_w_1_t_58 +
-            tube_qd_1_t_6*tube_w_1_t_51 + tube_qd_1_t_8*tube_w_1_t_52 +
-            tube_qd_2_t*tube_w_1_t_53);
-        const real tube_qd_2_t_3 = tube_S_dot_in_axes2_y*tube_w_1_t_14 +
-            tube_qd_1_t_6*tube_w_1_t_15 + tube_qd_1_t_8*tube_w_1_t_16 +
-            tube_qd_2_t_2*tube_w_1_t_21 +
-            inv_tube_w_1_t_33*tube_w_1_t_17*(tube_S_dot_in_axes2_y*tube_w_1_t_34 +
-            tube_qd_1*tube_w_1_t_45 + tube_qd_1_t_6*tube_w_1_t_35 + tube_qd_1_t_8*tube_w_1_t_36 +
-            tube_qd_2_t*tube_w_1_t_41 - tube_qd_2_t_2*tube_w_1_t_37) - tube_qd_1*tube_w_1_t_29 -
-            tube_qd_2_t*tube_w_1_t_25;
-        const real tube_qd_2 = inv_tube_w_1_t_13*tube_qd_2_t_3;
-        /* (tube-omega_1) angular velocity of link 1 */
-        const real tube_omega_1_in_axes2_x = tube_qd_1*tube_s_2;
-        const real tube_omega_1_in_axes2_y = tube_c_2*tube_qd_1;
-        /* (tube-W_2) centripetal tensor of link 2 */
-        const real tube_W_2_in_axes2_yz = tube_omega_1_in_axes2_y*tube_qd_2;
-        const real tube_W_2_in_axes2_xz = tube_omega_1_in_axes2_x*tube_qd_2;
-        const real tube_W_2_in_axes2_xy = tube_omega_1_in_axes2_x*tube_omega_1_in_axes2_y;
-        /* (tube-a_p) acceleration of the connection point without its centripetal part */
-        const real alpha_y = s[22*w + j];
-        const real alpha_z = s[23*w + j];
-        const real t_ddot_x = s[18*w + j];
-        const real tube_a_p_x = t_ddot_x + alpha_y*tube_q_z - alpha_z*tube_q_y;
-        const real alpha_x = s[21*w + j];
-        const real t_ddot_y = s[19*w + j];
-        const real tube_a_p_y = t_ddot_y + alpha_z*tube_q_x - alpha_x*tube_q_z;
-        const real t_ddot_z = s[20*w + j];
-        const real tube_a_p_z = t_ddot_z + alpha_x*tube_q_y - alpha_y*tube_q_x;
-        /* (tube-S_ddot) acceleration of the connection point */
-        const real tube_S_ddot_x = tube_a_p_x + omega_y*tube_S_dot_t_5 - omega_z*tube_S_dot_t_4;
-        const real tube_S_ddot_y = tube_a_p_y + omega_z*tube_S_dot_t_3 - omega_x*tube_S_dot_t_5;
-        const real tube_S_ddot_z = tube_a_p_z + omega_x*tube_S_dot_t_4 - omega_y*tube_S_dot_t_3;
-        /* (tube-bias) acceleration of the connection point at zero joint accelerations */
-        const real tube_bias_t = tube_W_2_in_axes2_xz*tube_root_2;
-        const real tube_bias_t_2 = -tube_W_2_in_axes2_xy*tube_root_2;
-        const real tube_bias_t_3 = 2*tube_S_dot_in_axes2_x;
-        const real tube_bias_t_4 = tube_bias_t_3*tube_qd_2;
-        const real tube_bias_t_5 = -tube_bias_t_3*tube_omega_1_in_axes2_y;
-        const real tube_bias_in_axes2_y = tube_bias_t_4 - tube_bias_t_2;
-        const real tube_bias_in_axes2_z = 2*tube_bias_t + tube_bias_t_5;
-        /* (tube-rel) acceleration of the connection point left to the joint accelerations */
-        const real tube_rel_in_axes2_y = axis_y_tube_axes2_x*tube_S_ddot_x +
-            axis_y_tube_axes2_y*tube_S_ddot_y + axis_y_tube_axes2_z*tube_S_ddot_z -
-            tube_bias_in_axes2_y;
-        const real tube_rel_in_axes2_z = axis_z_tube_axes2_x*tube_S_ddot_x +
-            axis_z_tube_axes2_y*tube_S_ddot_y + axis_z_tube_axes2_z*tube_S_ddot_z -
-            tube_bias_in_axes2_z;
-        /* (tube-nd_m1) rate of moment direction 1 */
-        const real tube_end_p1_in_axes2_x = tube_n_m1_t_12*tube_s_2 - tube_c_2*tube_n_m1_t_13;
-        const real tube_nd_m1_in_axes2_y = tube_end_p1_in_axes2_x*tube_omega_in_axes2_y -
-            tube_end_p1_in_axes2_x*tube_omega_1_in_axes2_y -
-            tube_n_m1_in_axes2_z*tube_omega_in_axes2_x;
-        const real tube_nd_m1_in_axes2_z = tube_end_p1_in_axes2_x*tube_omega_in_axes2_z -
-            tube_end_p1_in_axes2_x*tube_qd_2 - tube_end_p1_in_axes2_z*tube_omega_in_axes2_x;
-        /* (tube-nu_1) bias of the angular acceleration along moment direction 1 */
-        const real tube_nu_1_t = tube_omega_1_in_axes2_x - tube_omega_in_axes2_x;
-        const real tube_nu_1_t_2 = tube_omega_in_axes2_y - tube_omega_1_in_axes2_y;
-        const real tube_nu_1_t_3 = tube_omega_in_axes2_z - tube_qd_2;
-        const real tube_nu_1_t_4 = tube_nd_m1_in_axes2_y*tube_nu_1_t_2 +
-            tube_nd_m1_in_axes2_z*tube_nu_1_t_3 - tube_nu_1_t*(tube_end_p1_in_axes2_z*tube_qd_2 +
-            tube_n_m1_in_axes2_z*tube_omega_1_in_axes2_y);
-        const real tube_nu_1 = tube_nu_1_t_4 - tube_W_2_in_axes2_xz*tube_end_p1_in_axes2_z;
-        /* (tube-nd_m2) rate of moment direction 2 */
-        const real tube_end_p2_in_axes2_z = tube_c_1*tube_n_m2_t + tube_n_m2_t_2*tube_s_1;
-        const real tube_nd_m2_in_axes2_x = tube_end_p2_in_axes2_z*tube_omega_in_axes2_x -
-            tube_end_p2_in_axes2_z*tube_omega_1_in_axes2_x -
-            tube_n_m2_in_axes2_y*tube_omega_in_axes2_z;
-        const real tube_nd_m2_in_axes2_y = tube_end_p2_in_axes2_z*tube_omega_in_axes2_y -
-            tube_end_p2_in_axes2_y*tube_omega_in_axes2_z -
-            tube_end_p2_in_axes2_z*tube_omega_1_in_axes2_y;
-        /* (tube-nu_2) bias of the angular acceleration along moment direction 2 */
-        const real tube_nu_2_t = -tube_W_2_in_axes2_xz*tube_n_m2_in_axes2_y -
-            tube_W_2_in_axes2_yz*tube_end_p2_in_axes2_y;
-        const real tube_nu_2_t_2 = tube_nd_m2_in_axes2_x*tube_nu_1_t +
-            tube_nu_1_t_3*(-tube_end_p2_in_axes2_y*tube_omega_1_in_axes2_y -
-            tube_n_m2_in_axes2_y*tube_omega_1_in_axes2_x) - tube_nd_m2_in_axes2_y*tube_nu_1_t_2;
-        const real tube_nu_2 = -tube_nu_2_t - tube_nu_2_t_2;
-        /* (tube-nd_m3) rate of moment direction 3 */
-        const real tube_end_p3_in_axes2_y = tube_c_2*tube_n_m3_t_3 + tube_n_m3_t_4*tube_s_2;
-        const real tube_nd_m3_in_axes2_x = tube_end_p3_in_axes2_y*tube_omega_1_in_axes2_x +
-            tube_n_m3_in_axes2_z*tube_omega_in_axes2_y -
-            tube_end_p3_in_axes2_y*tube_omega_in_axes2_x;
-        const real tube_nd_m3_in_axes2_z = tube_end_p3_in_axes2_y*tube_qd_2 +
-            tube_end_p3_in_axes2_z*tube_omega_in_axes2_y -
-            tube_end_p3_in_axes2_y*tube_omega_in_axes2_z;
-        /* (tube-nu_3) bias of the angular acceleration along moment direction 3 */
-        const real tube_nu_3_t = tube_nd_m3_in_axes2_x*tube_nu_1_t +
-            tube_nu_1_t_2*(tube_end_p3_in_axes2_z*tube_qd_2 +
-            tube_n_m3_in_axes2_z*tube_omega_1_in_axes2_x) - tube_nd_m3_in_axes2_z*tube_nu_1_t_3;
-        const real tube_nu_3 = tube_W_2_in_axes2_yz*tube_end_p3_in_axes2_z - tube_nu_3_t;
-        /* (tube-etad_1) acceleration with which the joints turn along moment direction 1 */
-        const real tube_alpha_in_axes2_y = alpha_x*axis_y_tube_axes2_x +
-            alpha_y*axis_y_tube_axes2_y + alpha_z*axis_y_tube_axes2_z;
-        const real tube_alpha_in_axes2_z = alpha_x*axis_z_tube_axes2_x +
-            alpha_y*axis_z_tube_axes2_y + alpha_z*axis_z_tube_axes2_z;
-        const real tube_etad_1_t = tube_alpha_in_axes2_y*tube_end_p1_in_axes2_z -
-            tube_alpha_in_axes2_z*tube_n_m1_in_axes2_z;
-        const real tube_etad_1 = tube_nu_1 - tube_etad_1_t;
-        /* (tube-etad_2) acceleration with which the joints turn along moment direction 2 */
-        const real tube_alpha_in_axes2_x = alpha_x*axis_x_tube_axes2_x +
-            alpha_y*axis_x_tube_axes2_y + alpha_z*axis_x_tube_axes2_z;
-        const real tube_etad_2_t = tube_alpha_in_axes2_x*tube_end_p2_in_axes2_y -
-            tube_alpha_in_axes2_y*tube_n_m2_in_axes2_y;
-        const real tube_etad_2 = tube_nu_2 - tube_etad_2_t;
-        /* (tube-etad_3) acceleration with which the joints turn along moment direction 3 */
-        const real tube_etad_3_t = tube_alpha_in_axes2_x*tube_end_p3_in_axes2_z -
-            tube_alpha_in_axes2_z*tube_n_m3_in_axes2_z;
-        const real tube_etad_3 = tube_nu_3 - tube_etad_3_t;
-        /* (tube-qdd_1) acceleration of joint 1 */
-        const real tube_qdd_1_t = R(1.35)*tube_etad_1;
-        const real tube_qdd_1_t_2 = R(1.35)*tube_etad_2;
-        const real tube_qdd_1_t_3 = R(1.35)*tube_etad_3;
-        const real tube_qdd_1 = inv_tube_w_1_t_75*(tube_qd_1_t*tube_rel_in_axes2_y +
-            tube_qd_1_t_2*tube_rel_in_axes2_z + tube_qd_1_t_3*tube_qdd_1_t +
-            tube_qd_1_t_4*tube_qdd_1_t_2 + tube_qd_1_t_5*tube_qdd_1_t_3);
-        /* (tube-qdd_2) acceleration of joint 2 */
-        const real tube_qdd_2_t = inv_tube_w_1_t_63*(tube_qdd_1_t*tube_w_1_t_66 +
-            tube_qdd_1_t_3*tube_w_1_t_68 + tube_rel_in_axes2_y*tube_w_1_t_64 +
-            tube_rel_in_axes2_z*tube_w_1_t_65 - tube_qdd_1*tube_w_1_t_69 -
-            tube_qdd_1_t_2*tube_w_1_t_67);
-        const real tube_qdd_2_t_2 = inv_tube_w_1_t_49*(inv_tube_w_1_t_49*tube_rel_in_axes2_z +
-            tube_qdd_1*tube_w_1_t_58 + tube_qdd_1_t*tube_w_1_t_51 + tube_qdd_1_t_3*tube_w_1_t_52 +
-            tube_qdd_2_t*tube_w_1_t_53 + tube_rel_in_axes2_y*tube_w_1_t_50);
-        const real tube_qdd_2_t_3 = tube_qdd_1_t*tube_w_1_t_15 + tube_qdd_1_t_3*tube_w_1_t_16 +
-            tube_qdd_2_t_2*tube_w_1_t_21 + tube_rel_in_axes2_y*tube_w_1_t_14 +
-            inv_tube_w_1_t_33*tube_w_1_t_17*(tube_qdd_1*tube_w_1_t_45 + tube_qdd_1_t*tube_w_1_t_35
-            + tube_qdd_1_t_3*tube_w_1_t_36 + tube_qdd_2_t*tube_w_1_t_41 +
-            tube_rel_in_axes2_y*tube_w_1_t_34 - tube_qdd_2_t_2*tube_w_1_t_37) -
-            tube_qdd_1*tube_w_1_t_29 - tube_qdd_2_t*tube_w_1_t_25;
-        const real tube_qdd_2 = inv_tube_w_1_t_13*tube_qdd_2_t_3;
-        /* (tube-alpha_1) angular acceleration of link 1 */
-        const real tube_alpha_1_in_axes2_x = tube_qdd_1*tube_s_2;
-        const real tube_alpha_1_in_axes2_y = tube_c_2*tube_qdd_1;
-        /* (tube-alpha_2) angular acceleration of link 2 */
-        const real tube_alpha_2_in_axes2_x = tube_W_2_in_axes2_yz + tube_alpha_1_in_axes2_x;
-        const real tube_alpha_2_in_axes2_y = tube_alpha_1_in_axes2_y - tube_W_2_in_axes2_xz;
-        /* (tube-B_2) acceleration tensor of link 2 */
-        const real tube_B_2_in_axes2_xy = tube_W_2_in_axes2_xy - tube_qdd_2;
-        const real tube_B_2_in_axes2_yx = tube_W_2_in_axes2_xy + tube_qdd_2;
-        const real tube_B_2_in_axes2_zx = tube_W_2_in_axes2_xz - tube_alpha_2_in_axes2_y;
-        const real tube_B_2_in_axes2_zy = tube_W_2_in_axes2_yz + tube_alpha_2_in_axes2_x;
-        /* (tube-acc_3) acceleration of the reference point of link 3, less gravity */
-        const real tube_acc_3_t = m->tube_acc_3_t[i];
-        const real tube_acc_3_t_2 = m->tube_acc_3_t_2[i];
-        const real tube_g_in_axes2_z = tube_acc_3_t*tube_c_1 + tube_acc_3_t_2*tube_s_1;
-        const real tube_acc_3_t_4 = tube_acc_3_t_2*tube_c_1 - tube_acc_3_t*tube_s_1;
-        const real tube_acc_3_t_3 = m->tube_acc_3_t_3[i];
-        const real tube_g_in_axes2_x = tube_acc_3_t_3*tube_s_2 + tube_acc_3_t_4*tube_c_2;
-        const real tube_g_in_axes2_y = tube_acc_3_t_3*tube_c_2 - tube_acc_3_t_4*tube_s_2;
-        const real tube_acc_3_in_axes2_x = axis_x_tube_axes2_x*tube_S_ddot_x +
-            axis_x_tube_axes2_y*tube_S_ddot_y + axis_x_tube_axes2_z*tube_S_ddot_z -
-            tube_g_in_axes2_x;
-        const real tube_acc_3_in_axes2_y = tube_bias_t_4 + tube_qdd_2*tube_root_2 - tube_bias_t_2
-            - tube_g_in_axes2_y;
-        const real tube_acc_3_in_axes2_z = tube_bias_t + tube_bias_t_5 - tube_g_in_axes2_z -
-            tube_alpha_2_in_axes2_y*tube_root_2;
-        /* (tube-f_3) inertia force of link 3 less its weight */
-        const real tube_f_3_t = tube_omega_1_in_axes2_x*tube_omega_1_in_axes2_x;
-        const real tube_f_3_t_2 = tube_omega_1_in_axes2_y*tube_omega_1_in_axes2_y;
-        const real tube_f_3_t_3 = tube_qd_2*tube_qd_2;
-        const real tube_h_3_in_spec2_x = m->tube_h_3_in_spec2_x[i];
-        const real tube_h_3_in_spec2_y = m->tube_h_3_in_spec2_y[i];
-        const real tube_h_3_in_spec2_z = m->tube_h_3_in_spec2_z[i];
-        const real tube_link3_mass = m->tube_link3_mass[i];
-        const real tube_f_3_in_axes2_x = tube_acc_3_in_axes2_x*tube_link3_mass +
-            tube_alpha_1_in_axes2_y*tube_h_3_in_spec2_y + tube_h_3_in_spec2_x*(-tube_f_3_t_2 -
-            tube_f_3_t_3) - tube_B_2_in_axes2_xy*tube_h_3_in_spec2_z;
-        const real tube_f_3_in_axes2_y = tube_B_2_in_axes2_yx*tube_h_3_in_spec2_x +
-            tube_acc_3_in_axes2_y*tube_link3_mass + tube_h_3_in_spec2_z*(tube_f_3_t +
-            tube_f_3_t_3) - tube_alpha_1_in_axes2_x*tube_h_3_in_spec2_y;
-        const real tube_f_3_in_axes2_z = tube_B_2_in_axes2_zx*tube_h_3_in_spec2_x +
-            tube_acc_3_in_axes2_z*tube_link3_mass - tube_B_2_in_axes2_zy*tube_h_3_in_spec2_z -
-            tube_h_3_in_spec2_y*(tube_f_3_t + tube_f_3_t_2);
-        /* (tube-mu_2) inertia moment of the links that turn with link 2, about their reference points */
-        const real tube_J_group_2_in_axes2_xy = m->tube_J_group_2_in_axes2_xy[i];
-        const real tube_J_group_2_in_axes2_xz = m->tube_J_group_2_in_axes2_xz[i];
-        const real tube_J_group_2_in_axes2_yz = m->tube_J_group_2_in_axes2_yz[i];
-        const real tube_Sigma_2_in_axes2_yy = m->tube_Sigma_2_in_axes2_yy[i];
-        const real tube_Sigma_2_in_axes2_zz = m->tube_Sigma_2_in_axes2_zz[i];
-        const real tube_h_2_in_spec2_y = m->tube_h_2_in_spec2_y[i];
-        const real tube_h_2_in_spec2_z = m->tube_h_2_in_spec2_z[i];
-        const real tube_mu_2_in_axes2_x = tube_B_2_in_axes2_yx*tube_J_group_2_in_axes2_xz +
-            tube_B_2_in_axes2_zy*tube_Sigma_2_in_axes2_yy +
-            tube_J_group_2_in_axes2_yz*(tube_f_3_t_2 - tube_f_3_t_3) +
-            tube_Sigma_2_in_axes2_zz*tube_alpha_1_in_axes2_x +
-            tube_g_in_axes2_y*tube_h_2_in_spec2_y + tube_g_in_axes2_z*tube_h_2_in_spec2_z -
-            tube_B_2_in_axes2_zx*tube_J_group_2_in_axes2_xy -
-            tube_acc_3_in_axes2_y*tube_h_3_in_spec2_y - tube_acc_3_in_axes2_z*tube_h_3_in_spec2_z;
-        const real tube_Sigma_2_in_axes2_xx = m->tube_Sigma_2_in_axes2_xx[i];
-        const real tube_h_2_in_spec2_x = m->tube_h_2_in_spec2_x[i];
-        const real tube_mu_2_in_axes2_y = tube_B_2_in_axes2_zy*tube_J_group_2_in_axes2_xy +
-            tube_Sigma_2_in_axes2_zz*tube_alpha_1_in_axes2_y +
-            tube_acc_3_in_axes2_x*tube_h_3_in_spec2_y + tube_g_in_axes2_z*tube_h_2_in_spec2_x -
-            tube_B_2_in_axes2_xy*tube_J_group_2_in_axes2_yz -
-            tube_B_2_in_axes2_zx*tube_Sigma_2_in_axes2_xx - tube_J_group_2_in_axes2_xz*(tube_f_3_t
-            - tube_f_3_t_3) - tube_acc_3_in_axes2_z*tube_h_3_in_spec2_x -
-            tube_g_in_axes2_x*tube_h_2_in_spec2_y;
-        const real tube_mu_2_in_axes2_z = tube_B_2_in_axes2_yx*tube_Sigma_2_in_axes2_xx +
-            tube_J_group_2_in_axes2_xy*(tube_f_3_t - tube_f_3_t_2) +
-            tube_J_group_2_in_axes2_xz*tube_alpha_1_in_axes2_x +
-            tube_J_group_2_in_axes2_yz*tube_alpha_1_in_axes2_y +
-            tube_acc_3_in_axes2_x*tube_h_3_in_spec2_z + tube_acc_3_in_axes2_y*tube_h_3_in_spec2_x
-            - tube_B_2_in_axes2_xy*tube_Sigma_2_in_axes2_yy -
-            tube_g_in_axes2_x*tube_h_2_in_spec2_z - tube_g_in_axes2_y*tube_h_2_in_spec2_x;
-        /* (tube-N_2) moment about joint 2 of the links from 2 outwards, the force at the connection point
-           left out */
-        const real tube_N_2_in_axes2_y = tube_mu_2_in_axes2_y - tube_f_3_in_axes2_z*tube_root_2;
-        const real tube_N_2_in_axes2_z = tube_mu_2_in_axes2_z + tube_f_3_in_axes2_y*tube_root_2;
-        /* (tube-G) force at the connection point that balances the leg's inertia and weight along all
-           degrees of freedom */
-        const real tube_G_t = inv_tube_w_1_t_13*tube_N_2_in_axes2_z;
-        const real tube_G_t_2 = inv_tube_w_1_t_33*tube_G_t*tube_w_1_t_17;
-        const real tube_G_t_3 = inv_tube_w_1_t_49*(tube_G_t*tube_w_1_t_21 -
-            tube_G_t_2*tube_w_1_t_37);
-        const real tube_G_t_4 = inv_tube_w_1_t_63*(tube_G_t_2*tube_w_1_t_41 +
-            tube_G_t_3*tube_w_1_t_53 - tube_G_t*tube_w_1_t_25);
-        const real tube_G_t_5 = inv_tube_w_1_t_75*(tube_G_t_2*tube_w_1_t_45 +
-            tube_G_t_3*tube_w_1_t_58 + tube_N_2_in_axes2_y*tube_c_2 +
-            tube_mu_2_in_axes2_x*tube_s_2 - tube_G_t*tube_w_1_t_29 - tube_G_t_4*tube_w_1_t_69);
-        const real tube_G_in_axes2_y = tube_G_t*tube_w_1_t_14 + tube_G_t_2*tube_w_1_t_34 +
-            tube_G_t_3*tube_w_1_t_50 + tube_G_t_4*tube_w_1_t_64 + tube_G_t_5*tube_qd_1_t;
-        const real tube_G_in_axes2_z = inv_tube_w_1_t_49*tube_G_t_3 + tube_G_t_4*tube_w_1_t_65 +
-            tube_G_t_5*tube_qd_1_t_2;
-        /* (tube-G_m1) moment along moment direction 1 that balances the leg's inertia and weight along
-           all degrees of freedom */
-        const real tube_G_m1_t = tube_G_t*tube_w_1_t_15 + tube_G_t_2*tube_w_1_t_35 +
-            tube_G_t_3*tube_w_1_t_51 + tube_G_t_4*tube_w_1_t_66 + tube_G_t_5*tube_qd_1_t_3;
-        const real tube_G_m1 = R(1.35)*tube_G_m1_t;
-        /* (tube-G_m2) moment along moment direction 2 that balances the leg's inertia and weight along
-           all degrees of freedom */
-        const real tube_G_m2_t = tube_G_t_4*tube_w_1_t_67 - tube_G_t_5*tube_qd_1_t_4;
-        const real tube_G_m2 = -R(1.35)*tube_G_m2_t;
-        /* (tube-G_m3) moment along moment direction 3 that balances the leg's inertia and weight along
-           all degrees of freedom */
-        const real tube_G_m3_t = tube_G_t*tube_w_1_t_16 + tube_G_t_2*tube_w_1_t_36 +
-            tube_G_t_3*tube_w_1_t_52 + tube_G_t_4*tube_w_1_t_68 + tube_G_t_5*tube_qd_1_t_5;
-        const real tube_G_m3 = R(1.35)*tube_G_m3_t;
-        /* (tube-G_m) moment at the connection point that balances the leg's inertia and weight along all
-           degrees of freedom */
-        const real tube_G_m_in_axes2_x = -tube_G_m2*tube_end_p2_in_axes2_y -
-            tube_G_m3*tube_end_p3_in_axes2_z;
-        const real tube_G_m_in_axes2_y = tube_G_m2*tube_n_m2_in_axes2_y -
-            tube_G_m1*tube_end_p1_in_axes2_z;
-        const real tube_G_m_in_axes2_z = tube_G_m1*tube_n_m1_in_axes2_z +
-            tube_G_m3*tube_n_m3_in_axes2_z;
-        /* (tube-c) leg force on the platform without actuation and without the mass at the connection
-           point */
-        const real tube_c_x = -axis_x_tube_axes2_x*tube_f_3_in_axes2_x -
-            axis_y_tube_axes2_x*tube_G_in_axes2_y - axis_z_tube_axes2_x*tube_G_in_axes2_z;
-        const real tube_c_y = -axis_x_tube_axes2_y*tube_f_3_in_axes2_x -
-            axis_y_tube_axes2_y*tube_G_in_axes2_y - axis_z_tube_axes2_y*tube_G_in_axes2_z;
-        const real tube_c_z = -axis_x_tube_axes2_z*tube_f_3_in_axes2_x -
-            axis_y_tube_axes2_z*tube_G_in_axes2_y - axis_z_tube_axes2_z*tube_G_in_axes2_z;
+        values_tube v;
+        stage_tube_X(m, w, i, j, s, X, &v);
+        stage_tube_A_X(w, j, A, &v);
+        stage_tube_V_X(w, j, V, &v);
+        stage_tube_A_V_X(w, j, V, &v);
+        stage_tube_dynamics_required(&v);
+        stage_tube_legs_required(m, i, &v);
         /* (R_a) moment that actuators and external wrench must give */
-        const real tube_R_a_t = axis_x_tube_axes2_x*tube_G_m_in_axes2_x +
-            axis_y_tube_axes2_x*tube_G_m_in_axes2_y + axis_z_tube_axes2_x*tube_G_m_in_axes2_z +
-            tube_c_y*tube_q_z - tube_c_z*tube_q_y;
-        const real tube_R_a_t_2 = axis_x_tube_axes2_y*tube_G_m_in_axes2_x +
-            axis_y_tube_axes2_y*tube_G_m_in_axes2_y + axis_z_tube_axes2_y*tube_G_m_in_axes2_z +
-            tube_c_z*tube_q_x - tube_c_x*tube_q_z;
-        const real tube_R_a_t_3 = axis_x_tube_axes2_z*tube_G_m_in_axes2_x +
-            axis_y_tube_axes2_z*tube_G_m_in_axes2_y + axis_z_tube_axes2_z*tube_G_m_in_axes2_z +
-            tube_c_x*tube_q_y - tube_c_y*tube_q_x;
-        /* (tube-Hk_a_1) moment of the column's unit force about the platform origin */
-        const real tube_Hk_a_1_x = axis_x_tube_axes2_x*tube_mu_c1_in_axes2_x +
-            axis_y_tube_axes2_x*tube_mu_c1_in_axes2_y + axis_y_tube_axes2_z*tube_q_y +
-            axis_z_tube_axes2_x*tube_mu_c1_in_axes2_z - axis_y_tube_axes2_y*tube_q_z;
-        const real tube_Hk_a_1_y = axis_x_tube_axes2_y*tube_mu_c1_in_axes2_x +
-            axis_y_tube_axes2_x*tube_q_z + axis_y_tube_axes2_y*tube_mu_c1_in_axes2_y +
-            axis_z_tube_axes2_y*tube_mu_c1_in_axes2_z - axis_y_tube_axes2_z*tube_q_x;
-        const real tube_Hk_a_1_z = axis_x_tube_axes2_z*tube_mu_c1_in_axes2_x +
-            axis_y_tube_axes2_y*tube_q_x + axis_y_tube_axes2_z*tube_mu_c1_in_axes2_y +
-            axis_z_tube_axes2_z*tube_mu_c1_in_axes2_z - axis_y_tube_axes2_x*tube_q_y;
-        /* (tube-Hk_a_2) moment of the column's unit force about the platform origin */
-        const real tube_Hk_a_2_x = axis_y_tube_axes2_x*tube_mu_c2_in_axes2_y +
-            axis_z_tube_axes2_x*tube_mu_c2_in_axes2_z + axis_z_tube_axes2_z*tube_q_y -
-            axis_x_tube_axes2_x*tube_mu_c2_t - axis_z_tube_axes2_y*tube_q_z;
-        const real tube_Hk_a_2_y = axis_y_tube_axes2_y*tube_mu_c2_in_axes2_y +
-            axis_z_tube_axes2_x*tube_q_z + axis_z_tube_axes2_y*tube_mu_c2_in_axes2_z -
-            axis_x_tube_axes2_y*tube_mu_c2_t - axis_z_tube_axes2_z*tube_q_x;
-        const real tube_Hk_a_2_z = axis_y_tube_axes2_z*tube_mu_c2_in_axes2_y +
-            axis_z_tube_axes2_y*tube_q_x + axis_z_tube_axes2_z*tube_mu_c2_in_axes2_z -
-            axis_x_tube_axes2_z*tube_mu_c2_t - axis_z_tube_axes2_x*tube_q_y;
+        const real tube_R_a_t = v.axis_x_tube_axes2_x*v.tube_G_m_in_axes2_x +
+            v.axis_y_tube_axes2_x*v.tube_G_m_in_axes2_y +
+            v.axis_z_tube_axes2_x*v.tube_G_m_in_axes2_z + v.tube_c_y*v.tube_q_z -
+            v.tube_c_z*v.tube_q_y;
+        const real tube_R_a_t_2 = v.axis_x_tube_axes2_y*v.tube_G_m_in_axes2_x +
+            v.axis_y_tube_axes2_y*v.tube_G_m_in_axes2_y +
+            v.axis_z_tube_axes2_y*v.tube_G_m_in_axes2_z + v.tube_c_z*v.tube_q_x -
+            v.tube_c_x*v.tube_q_z;
+        const real tube_R_a_t_3 = v.axis_x_tube_axes2_z*v.tube_G_m_in_axes2_x +
+            v.axis_y_tube_axes2_z*v.tube_G_m_in_axes2_y +
+            v.axis_z_tube_axes2_z*v.tube_G_m_in_axes2_z + v.tube_c_x*v.tube_q_y -
+            v.tube_c_y*v.tube_q_x;
         /* (R_t) force that actuators and external wrench must give */
-        gather(&terms[0*count + k], add, tube_c_x);  /* R_t_x_of_legs */
-        gather(&terms[1*count + k], add, tube_c_y);  /* R_t_y_of_legs */
-        gather(&terms[2*count + k], add, tube_c_z);  /* R_t_z_of_legs */
+        gather(&terms[0*count + k], add, v.tube_c_x);  /* R_t_x_of_legs */
+        gather(&terms[1*count + k], add, v.tube_c_y);  /* R_t_y_of_legs */
+        gather(&terms[2*count + k], add, v.tube_c_z);  /* R_t_z_of_legs */
         /* (R_a) moment that actuators and external wrench must give */
         gather(&terms[3*count + k], add, tube_R_a_t);  /* R_a_x_of_legs */
         gather(&terms[4*count + k], add, tube_R_a_t_2);  /* R_a_y_of_legs */
         gather(&terms[5*count + k], add, tube_R_a_t_3);  /* R_a_z_of_legs */
         /* (tube-n_c1) unit force of the constraint wrench */
-        o[0*count + k] = axis_y_tube_axes2_x;
-        o[1*count + k] = axis_y_tube_axes2_y;
-        o[2*count + k] = axis_y_tube_axes2_z;
+        o[0*count + k] = v.axis_y_tube_axes2_x;
+        o[1*count + k] = v.axis_y_tube_axes2_y;
+        o[2*count + k] = v.axis_y_tube_axes2_z;
         /* (tube-Hk_a_1) moment of the column's unit force about the platform origin */
-        o[3*count + k] = tube_Hk_a_1_x;
-        o[4*count + k] = tube_Hk_a_1_y;
-        o[5*count + k] = tube_Hk_a_1_z;
+        o[3*count + k] = v.tube_Hk_a_1_x;
+        o[4*count + k] = v.tube_Hk_a_1_y;
+        o[5*count + k] = v.tube_Hk_a_1_z;
         /* (tube-n_c2) unit force of the constraint wrench */
-        o[6*count + k] = axis_z_tube_axes2_x;
-        o[7*count + k] = axis_z_tube_axes2_y;
-        o[8*count + k] = axis_z_tube_axes2_z;
+        o[6*count + k] = v.axis_z_tube_axes2_x;
+        o[7*count + k] = v.axis_z_tube_axes2_y;
+        o[8*count + k] = v.axis_z_tube_axes2_z;
         /* (tube-Hk_a_2) moment of the column's unit force about the platform origin */
-        o[9*count + k] = tube_Hk_a_2_x;
-        o[10*count + k] = tube_Hk_a_2_y;
-        o[11*count + k] = tube_Hk_a_2_z;
+        o[9*count + k] = v.tube_Hk_a_2_x;
+        o[10*count + k] = v.tube_Hk_a_2_y;
+        o[11*count + k] = v.tube_Hk_a_2_z;
         /* (tube-Hk_a_3) moment of the column's unit force about the platform origin */
-        o[12*count + k] = tube_mu_c3_x;
-        o[13*count + k] = tube_mu_c3_y;
-        o[14*count + k] = tube_mu_c3_z;
-        o[15*count + k] = UNLESS(magnitude(tube_rho2_1) > LEAST_3) + UNLESS(magnitude(tube_rho2_2)
-            > LEAST_3) + UNLESS(magnitude(tube_f_c1_t) > LEAST_4) + UNLESS(magnitude(tube_size_c3)
-            > LEAST_4) + UNLESS(magnitude(tube_w_1_t_13) > LEAST_5) +
-            UNLESS(magnitude(tube_w_1_t_33) > LEAST_4) + UNLESS(magnitude(tube_w_1_t_49) >
-            LEAST_4) + UNLESS(magnitude(tube_w_1_t_63) > LEAST_5) +
-            UNLESS(magnitude(tube_w_1_t_75) > LEAST_5);
+        o[12*count + k] = v.tube_mu_c3_x;
+        o[13*count + k] = v.tube_mu_c3_y;
+        o[14*count + k] = v.tube_mu_c3_z;
+        o[15*count + k] = UNLESS(magnitude(v.tube_root_1_t) > LEAST_3) +
+            UNLESS(magnitude(v.tube_q_3_t) > LEAST_3) + UNLESS(magnitude(v.tube_f_c1_t) > LEAST_4)
+            + UNLESS(magnitude(v.tube_size_c3) > LEAST_4) + UNLESS(magnitude(v.tube_w_1_t_13) >
+            LEAST_5) + UNLESS(magnitude(v.tube_w_1_t_33) > LEAST_4) +
+            UNLESS(magnitude(v.tube_w_1_t_49) > LEAST_4) + UNLESS(magnitude(v.tube_w_1_t_63) >
+            LEAST_5) + UNLESS(magnitude(v.tube_w_1_t_75) > LEAST_5);
     }
 }
 
@@ -8047,13 +6960,13 @@ INLINE void required_place_tube(size_t w, size_t count, const real *o, size_t fi
     verdict *t)
 {
     for (size_t k = 0; k < w; ++k) {
-        Hk[0*NC*w + k] = o[0*count + first + k];
+        Hk[0*w + k] = o[0*count + first + k];
         Hk[NC*w + k] = o[1*count + first + k];
         Hk[2*NC*w + k] = o[2*count + first + k];
         Hk[3*NC*w + k] = o[3*count + first + k];
         Hk[4*NC*w + k] = o[4*count + first + k];
         Hk[5*NC*w + k] = o[5*count + first + k];
-        Hk[(0*NC + 1)*w + k] = o[6*count + first + k];
+        Hk[1*w + k] = o[6*count + first + k];
         Hk[(NC + 1)*w + k] = o[7*count + first + k];
         Hk[(2*NC + 1)*w + k] = o[8*count + first + k];
         Hk[(3*NC + 1)*w + k] = o[9*count + first + k];
@@ -8071,23 +6984,23 @@ INLINE void required_after(size_t w, const real *s, const real *sums, real *requ
     for (size_t k = 0; k < w; ++k) {
         /* (R_t) force that actuators and external wrench must give */
         const real R_t_x_of_legs = sums[0*w + k];
-        const real f_p_x = s[24*w + k];
+        const real f_p_x = s[9*w + k];
         const real R_t_x = f_p_x - R_t_x_of_legs;
         const real R_t_y_of_legs = sums[1*w + k];
-        const real f_p_y = s[25*w + k];
+        const real f_p_y = s[10*w + k];
         const real R_t_y = f_p_y - R_t_y_of_legs;
         const real R_t_z_of_legs = sums[2*w + k];
-        const real f_p_z = s[26*w + k];
+        const real f_p_z = s[11*w + k];
         const real R_t_z = f_p_z - R_t_z_of_legs;
         /* (R_a) moment that actuators and external wrench must give */
         const real R_a_x_of_legs = sums[3*w + k];
-        const real mu_p_x = s[27*w + k];
+        const real mu_p_x = s[12*w + k];
         const real R_a_x = R_a_x_of_legs + mu_p_x;
         const real R_a_y_of_legs = sums[4*w + k];
-        const real mu_p_y = s[28*w + k];
+        const real mu_p_y = s[13*w + k];
         const real R_a_y = R_a_y_of_legs + mu_p_y;
         const real R_a_z_of_legs = sums[5*w + k];
-        const real mu_p_z = s[29*w + k];
+        const real mu_p_z = s[14*w + k];
         const real R_a_z = R_a_z_of_legs + mu_p_z;
         /* (R_t) force that actuators and external wrench must give */
         required[0*w + k] = R_t_x;
@@ -8103,22 +7016,19 @@ INLINE void required_after(size_t w, const real *s, const real *sums, real *requ
 INLINE void required_run(const prepared *m, const real *X, const real *V, const real *A, real
     *required, real *H, real *Hk, verdict *t)
 {
-    real s[30] = {0};
-    real sums[6] = {0};
-    real terms_ups[6*LEGS(LEGS_OF_ups)] = {0};
-    real o_ups[7*LEGS(LEGS_OF_ups)] = {0};
-    real terms_tube[6*LEGS(LEGS_OF_tube)] = {0};
-    real o_tube[16*LEGS(LEGS_OF_tube)] = {0};
+    real s[15] = {0}, sums[6] = {0};
+    real terms_ups[6*LEGS(LEGS_OF_ups)] = {0}, o_ups[7*LEGS(LEGS_OF_ups)] = {0};
+    real terms_tube[6*LEGS(LEGS_OF_tube)] = {0}, o_tube[16*LEGS(LEGS_OF_tube)] = {0};
     clear(Hk, NV*NC);
     required_before(m, 1, X, V, A, s, t);
-    required_legs_ups(m, 1, 0, 1, s, 0, LEGS(LEGS_OF_ups), 0, terms_ups, o_ups);
+    required_legs_ups(m, 1, 0, 1, s, 0, LEGS(LEGS_OF_ups), 0, X, V, A, terms_ups, o_ups);
+    required_legs_tube(m, 1, 0, 1, s, 0, LEGS(LEGS_OF_tube), 0, X, V, A, terms_tube, o_tube);
     for (size_t leg = 0; leg < LEGS_OF_ups; ++leg) {
         required_place_ups(1, LEGS(LEGS_OF_ups), o_ups, leg, leg, H, t);
     }
     for (size_t n = 0; n < 6; ++n) {
         sums[n] = total(terms_ups + n*LEGS(LEGS_OF_ups), LEGS_OF_ups);
     }
-    required_legs_tube(m, 1, 0, 1, s, 0, LEGS(LEGS_OF_tube), 0, terms_tube, o_tube);
     for (size_t leg = 0; leg < LEGS_OF_tube; ++leg) {
         required_place_tube(1, LEGS(LEGS_OF_tube), o_tube, leg, Hk, t);
     }
@@ -8129,134 +7039,47 @@ INLINE void required_run(const prepared *m, const real *X, const real *V, const 
 }
 
 /* ---- inverse_kinematics ---- */
-INLINE void inverse_kinematics_before(size_t w, const real *X, real *s, verdict *t)
+INLINE void inverse_kinematics_before(const prepared *m, size_t w, const real *X, real *s, verdict
+    *t)
 {
     for (size_t k = 0; k < w; ++k) {
-        /* X: named entries */
-        const real X_0 = X[0*w + k];
-        const real t_x = X_0;
-        const real X_1 = X[1*w + k];
-        const real t_y = X_1;
-        const real X_2 = X[2*w + k];
-        const real t_z = X_2;
-        const real X_3 = X[3*w + k];
-        const real X_4 = X[4*w + k];
-        const real X_5 = X[5*w + k];
-        const real X_6 = X[6*w + k];
-        const real quaternion_norm2 = X_3*X_3 + X_4*X_4 + X_5*X_5 + X_6*X_6;
-        const real quaternion_scale = 2/quaternion_norm2;
-        const real quaternion_sx = X_3*quaternion_scale;
-        const real quaternion_sy = X_4*quaternion_scale;
-        const real quaternion_sz = X_5*quaternion_scale;
-        const real quaternion_wx = X_6*quaternion_sx;
-        const real quaternion_wy = X_6*quaternion_sy;
-        const real quaternion_wz = X_6*quaternion_sz;
-        const real quaternion_xx = X_3*quaternion_sx;
-        const real quaternion_xy = X_3*quaternion_sy;
-        const real quaternion_xz = X_3*quaternion_sz;
-        const real quaternion_yy = X_4*quaternion_sy;
-        const real quaternion_yz = X_4*quaternion_sz;
-        const real quaternion_zz = X_5*quaternion_sz;
-        const real R_xx = 1 - quaternion_yy - quaternion_zz;
-        const real R_xy = quaternion_xy - quaternion_wz;
-        const real R_xz = quaternion_wy + quaternion_xz;
-        const real R_yx = quaternion_wz + quaternion_xy;
-        const real R_yy = 1 - quaternion_xx - quaternion_zz;
-        const real R_yz = quaternion_yz - quaternion_wx;
-        const real R_zx = quaternion_xz - quaternion_wy;
-        const real R_zy = quaternion_wx + quaternion_yz;
-        const real R_zz = 1 - quaternion_xx - quaternion_yy;
-        s[0*w + k] = t_x;
-        s[1*w + k] = t_y;
-        s[2*w + k] = t_z;
-        s[3*w + k] = R_xx;
-        s[4*w + k] = R_xy;
-        s[5*w + k] = R_xz;
-        s[6*w + k] = R_yx;
-        s[7*w + k] = R_yy;
-        s[8*w + k] = R_yz;
-        s[9*w + k] = R_zx;
-        s[10*w + k] = R_zy;
-        s[11*w + k] = R_zz;
-        t->invalid[k] += UNLESS(is_finite(quaternion_scale)) + UNLESS(quaternion_scale > 0);
+        values v;
+        stage_X(m, w, k, X, &v);
+        s[0*w + k] = v.R_xx;
+        s[1*w + k] = v.R_xy;
+        s[2*w + k] = v.R_xz;
+        s[3*w + k] = v.R_yx;
+        s[4*w + k] = v.R_yy;
+        s[5*w + k] = v.R_yz;
+        s[6*w + k] = v.R_zx;
+        s[7*w + k] = v.R_zy;
+        s[8*w + k] = v.R_zz;
+        t->invalid[k] += UNLESS(is_finite(v.quaternion_scale)) + UNLESS(v.quaternion_scale > 0);
     }
 }
 
 INLINE void inverse_kinematics_legs_ups(const prepared *m, size_t w, size_t leg, size_t legs,
-    const real *s, size_t states, size_t count, real *o)
+    const real *s, size_t states, size_t count, const real *X, real *o)
 {
     for (size_t k = 0; k < count; ++k) {
         const size_t i = leg + legs*k;
         const size_t j = states*k;
-        /* (ups-S) from the base point to the connection point */
-        const real R_xx = s[3*w + j];
-        const real R_xy = s[4*w + j];
-        const real R_xz = s[5*w + j];
-        const real t_x = s[0*w + j];
-        const real ups_base_point_x = m->ups_base_point_x[i];
-        const real ups_platform_point_x = m->ups_platform_point_x[i];
-        const real ups_platform_point_y = m->ups_platform_point_y[i];
-        const real ups_platform_point_z = m->ups_platform_point_z[i];
-        const real ups_S_x = t_x + R_xx*ups_platform_point_x + R_xy*ups_platform_point_y +
-            R_xz*ups_platform_point_z - ups_base_point_x;
-        const real R_yx = s[6*w + j];
-        const real R_yy = s[7*w + j];
-        const real R_yz = s[8*w + j];
-        const real t_y = s[1*w + j];
-        const real ups_base_point_y = m->ups_base_point_y[i];
-        const real ups_S_y = t_y + R_yx*ups_platform_point_x + R_yy*ups_platform_point_y +
-            R_yz*ups_platform_point_z - ups_base_point_y;
-        const real R_zx = s[9*w + j];
-        const real R_zy = s[10*w + j];
-        const real R_zz = s[11*w + j];
-        const real t_z = s[2*w + j];
-        const real ups_base_point_z = m->ups_base_point_z[i];
-        const real ups_S_z = t_z + R_zx*ups_platform_point_x + R_zy*ups_platform_point_y +
-            R_zz*ups_platform_point_z - ups_base_point_z;
-        /* (ups-px_1) component along the reference direction */
-        const real ups_base_frame_xx = m->ups_base_frame_xx[i];
-        const real ups_base_frame_yx = m->ups_base_frame_yx[i];
-        const real ups_base_frame_zx = m->ups_base_frame_zx[i];
-        const real ups_px_1 = ups_S_x*ups_base_frame_xx + ups_S_y*ups_base_frame_yx +
-            ups_S_z*ups_base_frame_zx;
-        /* (ups-py_1) component across the reference direction */
-        const real ups_base_frame_xy = m->ups_base_frame_xy[i];
-        const real ups_base_frame_yy = m->ups_base_frame_yy[i];
-        const real ups_base_frame_zy = m->ups_base_frame_zy[i];
-        const real ups_py_1 = ups_S_x*ups_base_frame_xy + ups_S_y*ups_base_frame_yy +
-            ups_S_z*ups_base_frame_zy;
-        /* (ups-rho2_1) squared amplitude */
-        const real ups_rho2_1 = ups_px_1*ups_px_1 + ups_py_1*ups_py_1;
-        /* (ups-root_1) amplitude, with the sign of the branch */
-        const real ups_branch_1 = m->ups_branch_1[i];
-        const real ups_root_1 = ups_branch_1*root(ups_rho2_1);
+        values_ups v;
+        stage_ups_inverse_kinematics_potential(m, w, i, j, s, X, &v);
         /* (ups-q_1) displacement of joint 1 */
-        const real inv_ups_root_1 = 1/ups_root_1;
-        const real ups_q_1 = angle(inv_ups_root_1*ups_py_1, inv_ups_root_1*ups_px_1);
-        /* (ups-xi_1) the vector from joint 1 to the connection point, resolved along link 1 */
-        const real ups_base_frame_xz = m->ups_base_frame_xz[i];
-        const real ups_base_frame_yz = m->ups_base_frame_yz[i];
-        const real ups_base_frame_zz = m->ups_base_frame_zz[i];
-        const real ups_xi_1_in_axes1_z = ups_S_x*ups_base_frame_xz + ups_S_y*ups_base_frame_yz +
-            ups_S_z*ups_base_frame_zz;
-        /* (ups-rho2_2) squared amplitude */
-        const real ups_rho2_2 = ups_rho2_1 + ups_xi_1_in_axes1_z*ups_xi_1_in_axes1_z;
-        /* (ups-root_2) amplitude, with the sign of the branch */
-        const real ups_branch_2 = m->ups_branch_2[i];
-        const real ups_root_2 = ups_branch_2*root(ups_rho2_2);
+        const real ups_q_1 = angle(v.inv_ups_root_1*v.ups_S_in_turn1_y,
+            v.inv_ups_root_1*v.ups_S_in_turn1_x);
         /* (ups-q_2) displacement of joint 2 */
-        const real inv_ups_root_2 = 1/ups_root_2;
-        const real ups_q_2 = angle(-inv_ups_root_2*ups_xi_1_in_axes1_z,
-            inv_ups_root_2*ups_root_1);
+        const real ups_q_2 = angle(-v.inv_ups_q_3*v.ups_S_in_turn1_z, v.inv_ups_q_3*v.ups_root_1);
         /* (ups-q_1) displacement of joint 1 */
         o[0*count + k] = ups_q_1;
         /* (ups-q_2) displacement of joint 2 */
         o[1*count + k] = ups_q_2;
         /* (ups-q_3) displacement of joint 3 */
-        o[2*count + k] = ups_root_2;
-        o[4*count + k] = ups_q_1 + (ups_q_2 + ups_root_2);
-        o[3*count + k] = UNLESS(magnitude(ups_rho2_1) > LEAST_1) + UNLESS(magnitude(ups_rho2_2) >
-            LEAST_1);
+        o[2*count + k] = v.ups_q_3;
+        o[4*count + k] = ups_q_1 + (ups_q_2 + v.ups_q_3);
+        o[3*count + k] = UNLESS(magnitude(v.ups_root_1_t) > LEAST_1) +
+            UNLESS(magnitude(v.ups_q_3_t) > LEAST_1);
     }
 }
 
@@ -8273,79 +7096,75 @@ INLINE void inverse_kinematics_place_ups(size_t w, size_t count, const real *o, 
 }
 
 INLINE void inverse_kinematics_legs_tube(const prepared *m, size_t w, size_t leg, size_t legs,
-    const real *s, size_t states, size_t count, real *o)
+    const real *s, size_t states, size_t count, const real *X, real *o)
 {
     for (size_t k = 0; k < count; ++k) {
         const size_t i = leg + legs*k;
         const size_t j = states*k;
         /* (tube-S) from the base point to the connection point */
-        const real R_xx = s[3*w + j];
-        const real R_xy = s[4*w + j];
-        const real R_xz = s[5*w + j];
-        const real t_x = s[0*w + j];
+        const real R_xx = s[0*w + j];
+        const real R_xy = s[1*w + j];
+        const real R_xz = s[2*w + j];
+        const real t_x = X[0*w + j];
         const real tube_base_point_x = m->tube_base_point_x[i];
         const real tube_platform_point_x = m->tube_platform_point_x[i];
         const real tube_platform_point_y = m->tube_platform_point_y[i];
         const real tube_platform_point_z = m->tube_platform_point_z[i];
         const real tube_S_x = t_x + R_xx*tube_platform_point_x + R_xy*tube_platform_point_y +
             R_xz*tube_platform_point_z - tube_base_point_x;
-        const real R_yx = s[6*w + j];
-        const real R_yy = s[7*w + j];
-        const real R_yz = s[8*w + j];
-        const real t_y = s[1*w + j];
+        const real R_yx = s[3*w + j];
+        const real R_yy = s[4*w + j];
+        const real R_yz = s[5*w + j];
+        const real t_y = X[1*w + j];
         const real tube_base_point_y = m->tube_base_point_y[i];
         const real tube_S_y = t_y + R_yx*tube_platform_point_x + R_yy*tube_platform_point_y +
             R_yz*tube_platform_point_z - tube_base_point_y;
-        const real R_zx = s[9*w + j];
-        const real R_zy = s[10*w + j];
-        const real R_zz = s[11*w + j];
-        const real t_z = s[2*w + j];
+        const real R_zx = s[6*w + j];
+        const real R_zy = s[7*w + j];
+        const real R_zz = s[8*w + j];
+        const real t_z = X[2*w + j];
         const real tube_base_point_z = m->tube_base_point_z[i];
         const real tube_S_z = t_z + R_zx*tube_platform_point_x + R_zy*tube_platform_point_y +
             R_zz*tube_platform_point_z - tube_base_point_z;
-        /* (tube-px_1) component along the reference direction */
         const real tube_base_frame_xx = m->tube_base_frame_xx[i];
         const real tube_base_frame_yx = m->tube_base_frame_yx[i];
         const real tube_base_frame_zx = m->tube_base_frame_zx[i];
-        const real tube_px_1 = tube_S_x*tube_base_frame_xx + tube_S_y*tube_base_frame_yx +
+        const real tube_S_in_turn1_x = tube_S_x*tube_base_frame_xx + tube_S_y*tube_base_frame_yx +
             tube_S_z*tube_base_frame_zx;
-        /* (tube-py_1) component across the reference direction */
         const real tube_base_frame_xy = m->tube_base_frame_xy[i];
         const real tube_base_frame_yy = m->tube_base_frame_yy[i];
         const real tube_base_frame_zy = m->tube_base_frame_zy[i];
-        const real tube_py_1 = tube_S_x*tube_base_frame_xy + tube_S_y*tube_base_frame_yy +
+        const real tube_S_in_turn1_y = tube_S_x*tube_base_frame_xy + tube_S_y*tube_base_frame_yy +
             tube_S_z*tube_base_frame_zy;
-        /* (tube-rho2_1) squared amplitude */
-        const real tube_rho2_1 = tube_px_1*tube_px_1 + tube_py_1*tube_py_1;
-        /* (tube-root_1) amplitude, with the sign of the branch */
-        const real tube_branch_1 = m->tube_branch_1[i];
-        const real tube_root_1 = tube_branch_1*root(tube_rho2_1);
-        /* (tube-q_1) displacement of joint 1 */
-        const real inv_tube_root_1 = 1/tube_root_1;
-        const real tube_q_1 = angle(inv_tube_root_1*tube_py_1, inv_tube_root_1*tube_px_1);
-        /* (tube-xi_1) the vector from joint 1 to the connection point, resolved along link 1 */
         const real tube_base_frame_xz = m->tube_base_frame_xz[i];
         const real tube_base_frame_yz = m->tube_base_frame_yz[i];
         const real tube_base_frame_zz = m->tube_base_frame_zz[i];
-        const real tube_xi_1_in_axes1_z = tube_S_x*tube_base_frame_xz +
-            tube_S_y*tube_base_frame_yz + tube_S_z*tube_base_frame_zz;
-        /* (tube-rho2_2) squared amplitude */
-        const real tube_rho2_2 = tube_rho2_1 + tube_xi_1_in_axes1_z*tube_xi_1_in_axes1_z;
-        /* (tube-root_2) amplitude, with the sign of the branch */
+        const real tube_S_in_turn1_z = tube_S_x*tube_base_frame_xz + tube_S_y*tube_base_frame_yz +
+            tube_S_z*tube_base_frame_zz;
+        /* (tube-root_1) amplitude, the length across axis 1, with the sign of the branch */
+        const real tube_root_1_t = tube_S_in_turn1_x*tube_S_in_turn1_x +
+            tube_S_in_turn1_y*tube_S_in_turn1_y;
+        const real tube_branch_1 = m->tube_branch_1[i];
+        const real tube_root_1 = tube_branch_1*root(tube_root_1_t);
+        /* (tube-q_1) displacement of joint 1 */
+        const real inv_tube_root_1 = 1/tube_root_1;
+        const real tube_q_1 = angle(inv_tube_root_1*tube_S_in_turn1_y,
+            inv_tube_root_1*tube_S_in_turn1_x);
+        /* (tube-q_3) displacement of joint 3 */
+        const real tube_q_3_t = tube_S_in_turn1_z*tube_S_in_turn1_z + tube_root_1_t;
         const real tube_branch_2 = m->tube_branch_2[i];
-        const real tube_root_2 = tube_branch_2*root(tube_rho2_2);
+        const real tube_q_3 = tube_branch_2*root(tube_q_3_t);
         /* (tube-q_2) displacement of joint 2 */
-        const real inv_tube_root_2 = 1/tube_root_2;
-        const real tube_q_2 = angle(-inv_tube_root_2*tube_xi_1_in_axes1_z,
-            inv_tube_root_2*tube_root_1);
+        const real inv_tube_q_3 = 1/tube_q_3;
+        const real tube_q_2 = angle(-inv_tube_q_3*tube_S_in_turn1_z, inv_tube_q_3*tube_root_1);
         /* (tube-q_1) displacement of joint 1 */
         o[0*count + k] = tube_q_1;
         /* (tube-q_2) displacement of joint 2 */
         o[1*count + k] = tube_q_2;
         /* (tube-q_3) displacement of joint 3 */
-        o[2*count + k] = tube_root_2;
-        o[4*count + k] = tube_q_1 + (tube_q_2 + tube_root_2);
-        o[3*count + k] = UNLESS(magnitude(tube_rho2_1) > LEAST_3) + UNLESS(magnitude(tube_rho2_2)
+        o[2*count + k] = tube_q_3;
+        o[4*count + k] = tube_q_1 + (tube_q_2 + tube_q_3);
+        o[3*count + k] = UNLESS(magnitude(tube_root_1_t) > LEAST_3) + UNLESS(magnitude(tube_q_3_t)
             > LEAST_3);
     }
 }
@@ -8364,15 +7183,15 @@ INLINE void inverse_kinematics_place_tube(size_t w, size_t count, const real *o,
 
 INLINE void inverse_kinematics_run(const prepared *m, const real *X, real *q, verdict *t)
 {
-    real s[12] = {0};
+    real s[9] = {0};
     real o_ups[5*LEGS(LEGS_OF_ups)] = {0};
     real o_tube[5*LEGS(LEGS_OF_tube)] = {0};
-    inverse_kinematics_before(1, X, s, t);
-    inverse_kinematics_legs_ups(m, 1, 0, 1, s, 0, LEGS(LEGS_OF_ups), o_ups);
+    inverse_kinematics_before(m, 1, X, s, t);
+    inverse_kinematics_legs_ups(m, 1, 0, 1, s, 0, LEGS(LEGS_OF_ups), X, o_ups);
+    inverse_kinematics_legs_tube(m, 1, 0, 1, s, 0, LEGS(LEGS_OF_tube), X, o_tube);
     for (size_t leg = 0; leg < LEGS_OF_ups; ++leg) {
         inverse_kinematics_place_ups(1, LEGS(LEGS_OF_ups), o_ups, leg, leg, q, t);
     }
-    inverse_kinematics_legs_tube(m, 1, 0, 1, s, 0, LEGS(LEGS_OF_tube), o_tube);
     for (size_t leg = 0; leg < LEGS_OF_tube; ++leg) {
         inverse_kinematics_place_tube(1, LEGS(LEGS_OF_tube), o_tube, leg, q, t);
     }
@@ -8380,189 +7199,70 @@ INLINE void inverse_kinematics_run(const prepared *m, const real *X, real *q, ve
 
 INLINE void inverse_kinematics_run_lanes(const prepared *m, const real *X, real *q, verdict *t)
 {
-    real s[12*LANES];
+    real s[9*LANES];
     real o_ups[5*LANES];
     real o_tube[5*LANES];
-    inverse_kinematics_before(LANES, X, s, t);
+    inverse_kinematics_before(m, LANES, X, s, t);
     for (size_t leg = 0; leg < LEGS_OF_ups; ++leg) {
-        inverse_kinematics_legs_ups(m, LANES, leg, 0, s, 1, LANES, o_ups);
+        inverse_kinematics_legs_ups(m, LANES, leg, 0, s, 1, LANES, X, o_ups);
         inverse_kinematics_place_ups(LANES, LANES, o_ups, leg, 0, q, t);
     }
     for (size_t leg = 0; leg < LEGS_OF_tube; ++leg) {
-        inverse_kinematics_legs_tube(m, LANES, leg, 0, s, 1, LANES, o_tube);
+        inverse_kinematics_legs_tube(m, LANES, leg, 0, s, 1, LANES, X, o_tube);
         inverse_kinematics_place_tube(LANES, LANES, o_tube, 0, q, t);
     }
 }
 
 /* ---- joint_rates ---- */
-INLINE void joint_rates_before(size_t w, const real *X, const real *V, real *s, verdict *t)
+INLINE void joint_rates_before(const prepared *m, size_t w, const real *X, real *s, verdict *t)
 {
     for (size_t k = 0; k < w; ++k) {
-        /* X: named entries */
-        const real X_0 = X[0*w + k];
-        const real t_x = X_0;
-        const real X_1 = X[1*w + k];
-        const real t_y = X_1;
-        const real X_2 = X[2*w + k];
-        const real t_z = X_2;
-        const real X_3 = X[3*w + k];
-        const real X_4 = X[4*w + k];
-        const real X_5 = X[5*w + k];
-        const real X_6 = X[6*w + k];
-        const real quaternion_norm2 = X_3*X_3 + X_4*X_4 + X_5*X_5 + X_6*X_6;
-        const real quaternion_scale = 2/quaternion_norm2;
-        const real quaternion_sx = X_3*quaternion_scale;
-        const real quaternion_sy = X_4*quaternion_scale;
-        const real quaternion_sz = X_5*quaternion_scale;
-        const real quaternion_wx = X_6*quaternion_sx;
-        const real quaternion_wy = X_6*quaternion_sy;
-        const real quaternion_wz = X_6*quaternion_sz;
-        const real quaternion_xx = X_3*quaternion_sx;
-        const real quaternion_xy = X_3*quaternion_sy;
-        const real quaternion_xz = X_3*quaternion_sz;
-        const real quaternion_yy = X_4*quaternion_sy;
-        const real quaternion_yz = X_4*quaternion_sz;
-        const real quaternion_zz = X_5*quaternion_sz;
-        const real R_xx = 1 - quaternion_yy - quaternion_zz;
-        const real R_xy = quaternion_xy - quaternion_wz;
-        const real R_xz = quaternion_wy + quaternion_xz;
-        const real R_yx = quaternion_wz + quaternion_xy;
-        const real R_yy = 1 - quaternion_xx - quaternion_zz;
-        const real R_yz = quaternion_yz - quaternion_wx;
-        const real R_zx = quaternion_xz - quaternion_wy;
-        const real R_zy = quaternion_wx + quaternion_yz;
-        const real R_zz = 1 - quaternion_xx - quaternion_yy;
-        /* V: named entries */
-        const real V_0 = V[0*w + k];
-        const real t_dot_x = V_0;
-        const real V_1 = V[1*w + k];
-        const real t_dot_y = V_1;
-        const real V_2 = V[2*w + k];
-        const real t_dot_z = V_2;
-        const real V_3 = V[3*w + k];
-        const real omega_x = V_3;
-        const real V_4 = V[4*w + k];
-        const real omega_y = V_4;
-        const real V_5 = V[5*w + k];
-        const real omega_z = V_5;
-        s[0*w + k] = t_x;
-        s[1*w + k] = t_y;
-        s[2*w + k] = t_z;
-        s[3*w + k] = R_xx;
-        s[4*w + k] = R_xy;
-        s[5*w + k] = R_xz;
-        s[6*w + k] = R_yx;
-        s[7*w + k] = R_yy;
-        s[8*w + k] = R_yz;
-        s[9*w + k] = R_zx;
-        s[10*w + k] = R_zy;
-        s[11*w + k] = R_zz;
-        s[12*w + k] = t_dot_x;
-        s[13*w + k] = t_dot_y;
-        s[14*w + k] = t_dot_z;
-        s[15*w + k] = omega_x;
-        s[16*w + k] = omega_y;
-        s[17*w + k] = omega_z;
-        t->invalid[k] += UNLESS(is_finite(quaternion_scale)) + UNLESS(quaternion_scale > 0);
+        values v;
+        stage_X(m, w, k, X, &v);
+        s[0*w + k] = v.R_xx;
+        s[1*w + k] = v.R_xy;
+        s[2*w + k] = v.R_xz;
+        s[3*w + k] = v.R_yx;
+        s[4*w + k] = v.R_yy;
+        s[5*w + k] = v.R_yz;
+        s[6*w + k] = v.R_zx;
+        s[7*w + k] = v.R_zy;
+        s[8*w + k] = v.R_zz;
+        t->invalid[k] += UNLESS(is_finite(v.quaternion_scale)) + UNLESS(v.quaternion_scale > 0);
     }
 }
 
 INLINE void joint_rates_legs_ups(const prepared *m, size_t w, size_t leg, size_t legs, const real
-    *s, size_t states, size_t count, real *o)
+    *s, size_t states, size_t count, const real *X, const real *V, real *o)
 {
     for (size_t k = 0; k < count; ++k) {
         const size_t i = leg + legs*k;
         const size_t j = states*k;
-        /* (ups-S) from the base point to the connection point */
-        const real R_xx = s[3*w + j];
-        const real R_xy = s[4*w + j];
-        const real R_xz = s[5*w + j];
-        const real ups_platform_point_x = m->ups_platform_point_x[i];
-        const real ups_platform_point_y = m->ups_platform_point_y[i];
-        const real ups_platform_point_z = m->ups_platform_point_z[i];
-        const real ups_q_x = R_xx*ups_platform_point_x + R_xy*ups_platform_point_y +
-            R_xz*ups_platform_point_z;
-        const real R_yx = s[6*w + j];
-        const real R_yy = s[7*w + j];
-        const real R_yz = s[8*w + j];
-        const real ups_q_y = R_yx*ups_platform_point_x + R_yy*ups_platform_point_y +
-            R_yz*ups_platform_point_z;
-        const real R_zx = s[9*w + j];
-        const real R_zy = s[10*w + j];
-        const real R_zz = s[11*w + j];
-        const real ups_q_z = R_zx*ups_platform_point_x + R_zy*ups_platform_point_y +
-            R_zz*ups_platform_point_z;
-        const real t_x = s[0*w + j];
-        const real ups_base_point_x = m->ups_base_point_x[i];
-        const real ups_S_x = t_x + ups_q_x - ups_base_point_x;
-        const real t_y = s[1*w + j];
-        const real ups_base_point_y = m->ups_base_point_y[i];
-        const real ups_S_y = t_y + ups_q_y - ups_base_point_y;
-        const real t_z = s[2*w + j];
-        const real ups_base_point_z = m->ups_base_point_z[i];
-        const real ups_S_z = t_z + ups_q_z - ups_base_point_z;
-        /* (ups-px_1) component along the reference direction */
-        const real ups_base_frame_xx = m->ups_base_frame_xx[i];
-        const real ups_base_frame_yx = m->ups_base_frame_yx[i];
-        const real ups_base_frame_zx = m->ups_base_frame_zx[i];
-        const real ups_px_1 = ups_S_x*ups_base_frame_xx + ups_S_y*ups_base_frame_yx +
-            ups_S_z*ups_base_frame_zx;
-        /* (ups-py_1) component across the reference direction */
-        const real ups_base_frame_xy = m->ups_base_frame_xy[i];
-        const real ups_base_frame_yy = m->ups_base_frame_yy[i];
-        const real ups_base_frame_zy = m->ups_base_frame_zy[i];
-        const real ups_py_1 = ups_S_x*ups_base_frame_xy + ups_S_y*ups_base_frame_yy +
-            ups_S_z*ups_base_frame_zy;
-        /* (ups-rho2_1) squared amplitude */
-        const real ups_rho2_1 = ups_px_1*ups_px_1 + ups_py_1*ups_py_1;
-        /* (ups-root_1) amplitude, with the sign of the branch */
-        const real ups_branch_1 = m->ups_branch_1[i];
-        const real ups_root_1 = ups_branch_1*root(ups_rho2_1);
-        /* (ups-c_1) cosine of the angle of joint 1 from its reference direction */
-        const real inv_ups_root_1 = 1/ups_root_1;
-        const real ups_c_1 = -inv_ups_root_1*ups_py_1;
-        /* (ups-s_1) sine of the angle of joint 1 from its reference direction */
-        const real ups_s_1 = inv_ups_root_1*ups_px_1;
-        /* (ups-xi_1) the vector from joint 1 to the connection point, resolved along link 1 */
-        const real ups_base_frame_xz = m->ups_base_frame_xz[i];
-        const real ups_base_frame_yz = m->ups_base_frame_yz[i];
-        const real ups_base_frame_zz = m->ups_base_frame_zz[i];
-        const real ups_xi_1_in_axes1_z = ups_S_x*ups_base_frame_xz + ups_S_y*ups_base_frame_yz +
-            ups_S_z*ups_base_frame_zz;
-        /* (ups-rho2_2) squared amplitude */
-        const real ups_rho2_2 = ups_rho2_1 + ups_xi_1_in_axes1_z*ups_xi_1_in_axes1_z;
-        /* (ups-root_2) amplitude, with the sign of the branch */
-        const real ups_branch_2 = m->ups_branch_2[i];
-        const real ups_root_2 = ups_branch_2*root(ups_rho2_2);
+        values_ups v;
+        stage_ups_X(m, w, i, j, s, X, &v);
         /* (ups-S_dot) velocity of the connection point */
-        const real inv_ups_root_2 = 1/ups_root_2;
-        const real axis_x_ups_axes2_x = inv_ups_root_2*ups_S_x;
-        const real axis_x_ups_axes2_y = inv_ups_root_2*ups_S_y;
-        const real axis_x_ups_axes2_z = inv_ups_root_2*ups_S_z;
-        const real omega_y = s[16*w + j];
-        const real omega_z = s[17*w + j];
-        const real t_dot_x = s[12*w + j];
-        const real ups_S_dot_x = t_dot_x + omega_y*ups_q_z - omega_z*ups_q_y;
-        const real omega_x = s[15*w + j];
-        const real t_dot_y = s[13*w + j];
-        const real ups_S_dot_y = t_dot_y + omega_z*ups_q_x - omega_x*ups_q_z;
-        const real t_dot_z = s[14*w + j];
-        const real ups_S_dot_z = t_dot_z + omega_x*ups_q_y - omega_y*ups_q_x;
-        const real ups_S_dot_in_axes2_x = axis_x_ups_axes2_x*ups_S_dot_x +
-            axis_x_ups_axes2_y*ups_S_dot_y + axis_x_ups_axes2_z*ups_S_dot_z;
+        const real omega_y = V[4*w + j];
+        const real omega_z = V[5*w + j];
+        const real t_dot_x = V[0*w + j];
+        const real ups_S_dot_x = t_dot_x + omega_y*v.ups_q_z - omega_z*v.ups_q_y;
+        const real omega_x = V[3*w + j];
+        const real t_dot_y = V[1*w + j];
+        const real ups_S_dot_y = t_dot_y + omega_z*v.ups_q_x - omega_x*v.ups_q_z;
+        const real t_dot_z = V[2*w + j];
+        const real ups_S_dot_z = t_dot_z + omega_x*v.ups_q_y - omega_y*v.ups_q_x;
+        const real ups_S_dot_in_axes2_x = v.axis_x_ups_axes2_x*ups_S_dot_x +
+            v.axis_x_ups_axes2_y*ups_S_dot_y + v.axis_x_ups_axes2_z*ups_S_dot_z;
         /* (ups-qd_1) rate of joint 1 */
-        const real axis_z_ups_axes2_x = ups_base_frame_xx*ups_c_1 + ups_base_frame_xy*ups_s_1;
-        const real axis_z_ups_axes2_y = ups_base_frame_yx*ups_c_1 + ups_base_frame_yy*ups_s_1;
-        const real axis_z_ups_axes2_z = ups_base_frame_zx*ups_c_1 + ups_base_frame_zy*ups_s_1;
-        const real ups_qd_1 = inv_ups_root_1*(axis_z_ups_axes2_x*ups_S_dot_x +
-            axis_z_ups_axes2_y*ups_S_dot_y + axis_z_ups_axes2_z*ups_S_dot_z);
+        const real ups_qd_1 = v.inv_ups_root_1*(v.axis_z_ups_axes2_x*ups_S_dot_x +
+            v.axis_z_ups_axes2_y*ups_S_dot_y + v.axis_z_ups_axes2_z*ups_S_dot_z);
         /* (ups-qd_2) rate of joint 2 */
-        const real ups_qd_2 = inv_ups_root_2*(ups_S_dot_x*(axis_x_ups_axes2_z*axis_z_ups_axes2_y -
-            axis_x_ups_axes2_y*axis_z_ups_axes2_z) +
-            ups_S_dot_y*(axis_x_ups_axes2_x*axis_z_ups_axes2_z -
-            axis_x_ups_axes2_z*axis_z_ups_axes2_x) +
-            ups_S_dot_z*(axis_x_ups_axes2_y*axis_z_ups_axes2_x -
-            axis_x_ups_axes2_x*axis_z_ups_axes2_y));
+        const real ups_qd_2 =
+            v.inv_ups_q_3*(ups_S_dot_x*(v.axis_x_ups_axes2_z*v.axis_z_ups_axes2_y -
+            v.axis_x_ups_axes2_y*v.axis_z_ups_axes2_z) +
+            ups_S_dot_y*(v.axis_x_ups_axes2_x*v.axis_z_ups_axes2_z -
+            v.axis_x_ups_axes2_z*v.axis_z_ups_axes2_x) +
+            ups_S_dot_z*(v.axis_x_ups_axes2_y*v.axis_z_ups_axes2_x -
+            v.axis_x_ups_axes2_x*v.axis_z_ups_axes2_y));
         /* (ups-qd_1) rate of joint 1 */
         o[0*count + k] = ups_qd_1;
         /* (ups-qd_2) rate of joint 2 */
@@ -8570,9 +7270,9 @@ INLINE void joint_rates_legs_ups(const prepared *m, size_t w, size_t leg, size_t
         /* (ups-qd_3) rate of joint 3 */
         o[2*count + k] = ups_S_dot_in_axes2_x;
         o[4*count + k] = ups_qd_1 + (ups_qd_2 + ups_S_dot_in_axes2_x);
-        o[3*count + k] = UNLESS(magnitude(ups_rho2_1) > LEAST_1) + UNLESS(magnitude(ups_rho2_2) >
-            LEAST_1) + UNLESS(magnitude(ups_root_1) > LEAST_2) + UNLESS(magnitude(ups_root_2) >
-            LEAST_2);
+        o[3*count + k] = UNLESS(magnitude(v.ups_root_1_t) > LEAST_1) +
+            UNLESS(magnitude(v.ups_q_3_t) > LEAST_1) + UNLESS(magnitude(v.ups_root_1) > LEAST_2) +
+            UNLESS(magnitude(v.ups_q_3) > LEAST_2);
     }
 }
 
@@ -8589,209 +7289,96 @@ INLINE void joint_rates_place_ups(size_t w, size_t count, const real *o, size_t 
 }
 
 INLINE void joint_rates_legs_tube(const prepared *m, size_t w, size_t leg, size_t legs, const real
-    *s, size_t states, size_t count, real *o)
+    *s, size_t states, size_t count, const real *X, const real *V, real *o)
 {
     for (size_t k = 0; k < count; ++k) {
         const size_t i = leg + legs*k;
         const size_t j = states*k;
-        /* (tube-S) from the base point to the connection point */
-        const real R_xx = s[3*w + j];
-        const real R_xy = s[4*w + j];
-        const real R_xz = s[5*w + j];
-        const real tube_platform_point_x = m->tube_platform_point_x[i];
-        const real tube_platform_point_y = m->tube_platform_point_y[i];
-        const real tube_platform_point_z = m->tube_platform_point_z[i];
-        const real tube_q_x = R_xx*tube_platform_point_x + R_xy*tube_platform_point_y +
-            R_xz*tube_platform_point_z;
-        const real R_yx = s[6*w + j];
-        const real R_yy = s[7*w + j];
-        const real R_yz = s[8*w + j];
-        const real tube_q_y = R_yx*tube_platform_point_x + R_yy*tube_platform_point_y +
-            R_yz*tube_platform_point_z;
-        const real R_zx = s[9*w + j];
-        const real R_zy = s[10*w + j];
-        const real R_zz = s[11*w + j];
-        const real tube_q_z = R_zx*tube_platform_point_x + R_zy*tube_platform_point_y +
-            R_zz*tube_platform_point_z;
-        const real t_x = s[0*w + j];
-        const real tube_base_point_x = m->tube_base_point_x[i];
-        const real tube_S_x = t_x + tube_q_x - tube_base_point_x;
-        const real t_y = s[1*w + j];
-        const real tube_base_point_y = m->tube_base_point_y[i];
-        const real tube_S_y = t_y + tube_q_y - tube_base_point_y;
-        const real t_z = s[2*w + j];
-        const real tube_base_point_z = m->tube_base_point_z[i];
-        const real tube_S_z = t_z + tube_q_z - tube_base_point_z;
-        /* (tube-px_1) component along the reference direction */
-        const real tube_base_frame_xx = m->tube_base_frame_xx[i];
-        const real tube_base_frame_yx = m->tube_base_frame_yx[i];
-        const real tube_base_frame_zx = m->tube_base_frame_zx[i];
-        const real tube_px_1 = tube_S_x*tube_base_frame_xx + tube_S_y*tube_base_frame_yx +
-            tube_S_z*tube_base_frame_zx;
-        /* (tube-py_1) component across the reference direction */
-        const real tube_base_frame_xy = m->tube_base_frame_xy[i];
-        const real tube_base_frame_yy = m->tube_base_frame_yy[i];
-        const real tube_base_frame_zy = m->tube_base_frame_zy[i];
-        const real tube_py_1 = tube_S_x*tube_base_frame_xy + tube_S_y*tube_base_frame_yy +
-            tube_S_z*tube_base_frame_zy;
-        /* (tube-rho2_1) squared amplitude */
-        const real tube_rho2_1 = tube_px_1*tube_px_1 + tube_py_1*tube_py_1;
-        /* (tube-root_1) amplitude, with the sign of the branch */
-        const real tube_branch_1 = m->tube_branch_1[i];
-        const real tube_root_1 = tube_branch_1*root(tube_rho2_1);
-        /* (tube-c_1) cosine of the angle of joint 1 from its reference direction */
-        const real inv_tube_root_1 = 1/tube_root_1;
-        const real tube_c_1 = -inv_tube_root_1*tube_py_1;
-        /* (tube-s_1) sine of the angle of joint 1 from its reference direction */
-        const real tube_s_1 = inv_tube_root_1*tube_px_1;
-        /* (tube-xi_1) the vector from joint 1 to the connection point, resolved along link 1 */
-        const real tube_base_frame_xz = m->tube_base_frame_xz[i];
-        const real tube_base_frame_yz = m->tube_base_frame_yz[i];
-        const real tube_base_frame_zz = m->tube_base_frame_zz[i];
-        const real tube_xi_1_in_axes1_z = tube_S_x*tube_base_frame_xz +
-            tube_S_y*tube_base_frame_yz + tube_S_z*tube_base_frame_zz;
-        /* (tube-rho2_2) squared amplitude */
-        const real tube_rho2_2 = tube_rho2_1 + tube_xi_1_in_axes1_z*tube_xi_1_in_axes1_z;
-        /* (tube-root_2) amplitude, with the sign of the branch */
-        const real tube_branch_2 = m->tube_branch_2[i];
-        const real tube_root_2 = tube_branch_2*root(tube_rho2_2);
-        /* (tube-c_2) cosine of the angle of joint 2 from its reference direction */
-        const real inv_tube_root_2 = 1/tube_root_2;
-        const real tube_c_2 = -inv_tube_root_2*tube_root_1;
-        /* (tube-s_2) sine of the angle of joint 2 from its reference direction */
-        const real tube_s_2 = inv_tube_root_2*tube_xi_1_in_axes1_z;
+        values_tube v;
+        stage_tube_X(m, w, i, j, s, X, &v);
+        stage_tube_V_X(w, j, V, &v);
         /* (tube-S_dot) velocity of the connection point */
-        const real axis_z_tube_axes2_x = tube_base_frame_xx*tube_c_1 +
-            tube_base_frame_xy*tube_s_1;
-        const real axis_z_tube_axes2_y = tube_base_frame_yx*tube_c_1 +
-            tube_base_frame_yy*tube_s_1;
-        const real axis_z_tube_axes2_z = tube_base_frame_zx*tube_c_1 +
-            tube_base_frame_zy*tube_s_1;
-        const real tube_S_dot_t = tube_s_1*tube_s_2;
-        const real tube_S_dot_t_2 = tube_c_1*tube_s_2;
-        const real axis_y_tube_axes2_x = tube_S_dot_t*tube_base_frame_xx +
-            tube_base_frame_xz*tube_c_2 - tube_S_dot_t_2*tube_base_frame_xy;
-        const real axis_y_tube_axes2_y = tube_S_dot_t*tube_base_frame_yx +
-            tube_base_frame_yz*tube_c_2 - tube_S_dot_t_2*tube_base_frame_yy;
-        const real axis_y_tube_axes2_z = tube_S_dot_t*tube_base_frame_zx +
-            tube_base_frame_zz*tube_c_2 - tube_S_dot_t_2*tube_base_frame_zy;
-        const real axis_x_tube_axes2_x = axis_y_tube_axes2_y*axis_z_tube_axes2_z -
-            axis_y_tube_axes2_z*axis_z_tube_axes2_y;
-        const real axis_x_tube_axes2_y = axis_y_tube_axes2_z*axis_z_tube_axes2_x -
-            axis_y_tube_axes2_x*axis_z_tube_axes2_z;
-        const real axis_x_tube_axes2_z = axis_y_tube_axes2_x*axis_z_tube_axes2_y -
-            axis_y_tube_axes2_y*axis_z_tube_axes2_x;
-        const real omega_y = s[16*w + j];
-        const real omega_z = s[17*w + j];
-        const real t_dot_x = s[12*w + j];
-        const real tube_S_dot_x = t_dot_x + omega_y*tube_q_z - omega_z*tube_q_y;
-        const real omega_x = s[15*w + j];
-        const real t_dot_y = s[13*w + j];
-        const real tube_S_dot_y = t_dot_y + omega_z*tube_q_x - omega_x*tube_q_z;
-        const real t_dot_z = s[14*w + j];
-        const real tube_S_dot_z = t_dot_z + omega_x*tube_q_y - omega_y*tube_q_x;
-        const real tube_S_dot_in_axes2_x = axis_x_tube_axes2_x*tube_S_dot_x +
-            axis_x_tube_axes2_y*tube_S_dot_y + axis_x_tube_axes2_z*tube_S_dot_z;
-        const real tube_S_dot_in_axes2_y = axis_y_tube_axes2_x*tube_S_dot_x +
-            axis_y_tube_axes2_y*tube_S_dot_y + axis_y_tube_axes2_z*tube_S_dot_z;
-        const real tube_S_dot_in_axes2_z = axis_z_tube_axes2_x*tube_S_dot_x +
-            axis_z_tube_axes2_y*tube_S_dot_y + axis_z_tube_axes2_z*tube_S_dot_z;
+        const real omega_y = V[4*w + j];
+        const real omega_z = V[5*w + j];
+        const real t_dot_x = V[0*w + j];
+        const real tube_S_dot_x = t_dot_x + omega_y*v.tube_q_z - omega_z*v.tube_q_y;
+        const real omega_x = V[3*w + j];
+        const real t_dot_y = V[1*w + j];
+        const real tube_S_dot_y = t_dot_y + omega_z*v.tube_q_x - omega_x*v.tube_q_z;
+        const real t_dot_z = V[2*w + j];
+        const real tube_S_dot_z = t_dot_z + omega_x*v.tube_q_y - omega_y*v.tube_q_x;
+        const real tube_S_dot_in_axes2_x = v.axis_x_tube_axes2_x*tube_S_dot_x +
+            v.axis_x_tube_axes2_y*tube_S_dot_y + v.axis_x_tube_axes2_z*tube_S_dot_z;
+        const real tube_S_dot_in_axes2_y = v.axis_y_tube_axes2_x*tube_S_dot_x +
+            v.axis_y_tube_axes2_y*tube_S_dot_y + v.axis_y_tube_axes2_z*tube_S_dot_z;
+        const real tube_S_dot_in_axes2_z = v.axis_z_tube_axes2_x*tube_S_dot_x +
+            v.axis_z_tube_axes2_y*tube_S_dot_y + v.axis_z_tube_axes2_z*tube_S_dot_z;
         /* (tube-n_m1) direction 1 of the moment that the platform joint transmits */
-        const real tube_n_m1_t = R_xx*tube_base_frame_xx + R_yx*tube_base_frame_yx +
-            R_zx*tube_base_frame_zx;
-        const real tube_n_m1_t_2 = R_xy*tube_base_frame_xx + R_yy*tube_base_frame_yx +
-            R_zy*tube_base_frame_zx;
-        const real tube_n_m1_t_3 = R_xz*tube_base_frame_xx + R_yz*tube_base_frame_yx +
-            R_zz*tube_base_frame_zx;
-        const real tube_n_m1_t_4 = R_xx*tube_base_frame_xy + R_yx*tube_base_frame_yy +
-            R_zx*tube_base_frame_zy;
-        const real tube_n_m1_t_5 = R_xy*tube_base_frame_xy + R_yy*tube_base_frame_yy +
-            R_zy*tube_base_frame_zy;
-        const real tube_n_m1_t_6 = R_xz*tube_base_frame_xy + R_yz*tube_base_frame_yy +
-            R_zz*tube_base_frame_zy;
-        const real tube_n_m1_t_7 = R_xx*tube_base_frame_xz + R_yx*tube_base_frame_yz +
-            R_zx*tube_base_frame_zz;
-        const real tube_n_m1_t_8 = R_xy*tube_base_frame_xz + R_yy*tube_base_frame_yz +
-            R_zy*tube_base_frame_zz;
-        const real tube_n_m1_t_9 = R_xz*tube_base_frame_xz + R_yz*tube_base_frame_yz +
-            R_zz*tube_base_frame_zz;
         const real tube_platform_joint_rotation_yx = m->tube_platform_joint_rotation_yx[i];
         const real tube_platform_joint_rotation_yy = m->tube_platform_joint_rotation_yy[i];
         const real tube_platform_joint_rotation_yz = m->tube_platform_joint_rotation_yz[i];
-        const real tube_n_m1_t_10 = tube_n_m1_t*tube_platform_joint_rotation_yx +
-            tube_n_m1_t_2*tube_platform_joint_rotation_yy +
-            tube_n_m1_t_3*tube_platform_joint_rotation_yz;
-        const real tube_n_m1_t_11 = tube_n_m1_t_4*tube_platform_joint_rotation_yx +
-            tube_n_m1_t_5*tube_platform_joint_rotation_yy +
-            tube_n_m1_t_6*tube_platform_joint_rotation_yz;
-        const real tube_end_p1_in_axes2_z = tube_c_1*tube_n_m1_t_10 + tube_n_m1_t_11*tube_s_1;
-        const real tube_n_m1_in_axes2_z = tube_c_2*(tube_n_m1_t_7*tube_platform_joint_rotation_yx
-            + tube_n_m1_t_8*tube_platform_joint_rotation_yy +
-            tube_n_m1_t_9*tube_platform_joint_rotation_yz) + tube_s_2*(tube_n_m1_t_10*tube_s_1 -
-            tube_c_1*tube_n_m1_t_11);
-        const real tube_n_m1_in_axes1_z = -tube_c_2*tube_end_p1_in_axes2_z;
+        const real tube_n_m1_in_axes2_z = v.tube_e_1_in_axes2_x*(v.tube_c_1*v.tube_n_m1_t_10 +
+            v.tube_n_m1_t_11*v.tube_s_1) -
+            v.tube_c_2*(v.tube_n_m1_t_7*tube_platform_joint_rotation_yx +
+            v.tube_n_m1_t_8*tube_platform_joint_rotation_yy +
+            v.tube_n_m1_t_9*tube_platform_joint_rotation_yz);
         /* (tube-n_m2) direction 2 of the moment that the platform joint transmits */
         const real tube_platform_joint_rotation_zx = m->tube_platform_joint_rotation_zx[i];
         const real tube_platform_joint_rotation_zy = m->tube_platform_joint_rotation_zy[i];
         const real tube_platform_joint_rotation_zz = m->tube_platform_joint_rotation_zz[i];
-        const real tube_n_m2_t = tube_n_m1_t_7*tube_platform_joint_rotation_zx +
-            tube_n_m1_t_8*tube_platform_joint_rotation_zy +
-            tube_n_m1_t_9*tube_platform_joint_rotation_zz;
-        const real tube_n_m2_t_2 = tube_s_1*(tube_n_m1_t*tube_platform_joint_rotation_zx +
-            tube_n_m1_t_2*tube_platform_joint_rotation_zy +
-            tube_n_m1_t_3*tube_platform_joint_rotation_zz) -
-            tube_c_1*(tube_n_m1_t_4*tube_platform_joint_rotation_zx +
-            tube_n_m1_t_5*tube_platform_joint_rotation_zy +
-            tube_n_m1_t_6*tube_platform_joint_rotation_zz);
-        const real tube_n_m2_in_axes2_y = tube_n_m2_t*tube_s_2 - tube_c_2*tube_n_m2_t_2;
-        const real tube_end_p2_in_axes2_y = tube_c_2*tube_n_m2_t + tube_n_m2_t_2*tube_s_2;
-        const real tube_n_m2_in_axes1_z = tube_c_2*tube_n_m2_in_axes2_y -
-            tube_end_p2_in_axes2_y*tube_s_2;
+        const real tube_n_m2_t = v.tube_n_m1_t_7*tube_platform_joint_rotation_zx +
+            v.tube_n_m1_t_8*tube_platform_joint_rotation_zy +
+            v.tube_n_m1_t_9*tube_platform_joint_rotation_zz;
+        const real tube_n_m2_t_2 = v.tube_c_1*(v.tube_n_m1_t*tube_platform_joint_rotation_zx +
+            v.tube_n_m1_t_2*tube_platform_joint_rotation_zy +
+            v.tube_n_m1_t_3*tube_platform_joint_rotation_zz) +
+            v.tube_s_1*(v.tube_n_m1_t_4*tube_platform_joint_rotation_zx +
+            v.tube_n_m1_t_5*tube_platform_joint_rotation_zy +
+            v.tube_n_m1_t_6*tube_platform_joint_rotation_zz);
+        const real tube_n_m2_in_axes2_y = v.tube_c_2*tube_n_m2_t_2 +
+            v.tube_e_1_in_axes2_x*tube_n_m2_t;
+        const real tube_end_p2_in_axes2_y = v.tube_e_1_in_axes2_x*tube_n_m2_t_2 -
+            v.tube_c_2*tube_n_m2_t;
+        const real tube_n_m2_t_3 = v.tube_c_2*tube_n_m2_in_axes2_y +
+            v.tube_e_1_in_axes2_x*tube_end_p2_in_axes2_y;
         /* (tube-n_m3) direction 3 of the moment that the platform joint transmits */
         const real tube_platform_joint_rotation_xx = m->tube_platform_joint_rotation_xx[i];
         const real tube_platform_joint_rotation_xy = m->tube_platform_joint_rotation_xy[i];
         const real tube_platform_joint_rotation_xz = m->tube_platform_joint_rotation_xz[i];
-        const real tube_n_m3_t = tube_n_m1_t*tube_platform_joint_rotation_xx +
-            tube_n_m1_t_2*tube_platform_joint_rotation_xy +
-            tube_n_m1_t_3*tube_platform_joint_rotation_xz;
-        const real tube_n_m3_t_2 = tube_n_m1_t_4*tube_platform_joint_rotation_xx +
-            tube_n_m1_t_5*tube_platform_joint_rotation_xy +
-            tube_n_m1_t_6*tube_platform_joint_rotation_xz;
-        const real tube_end_p3_in_axes2_z = tube_c_1*tube_n_m3_t + tube_n_m3_t_2*tube_s_1;
-        const real tube_n_m3_in_axes2_z = tube_s_2*(tube_n_m1_t_7*tube_platform_joint_rotation_xx
-            + tube_n_m1_t_8*tube_platform_joint_rotation_xy +
-            tube_n_m1_t_9*tube_platform_joint_rotation_xz) - tube_c_2*(tube_n_m3_t*tube_s_1 -
-            tube_c_1*tube_n_m3_t_2);
-        const real tube_n_m3_t_3 = tube_end_p3_in_axes2_z*tube_s_2;
+        const real tube_n_m3_in_axes2_z = v.tube_c_2*(v.tube_c_1*v.tube_n_m3_t +
+            v.tube_n_m3_t_2*v.tube_s_1) +
+            v.tube_e_1_in_axes2_x*(v.tube_n_m1_t_7*tube_platform_joint_rotation_xx +
+            v.tube_n_m1_t_8*tube_platform_joint_rotation_xy +
+            v.tube_n_m1_t_9*tube_platform_joint_rotation_xz);
+        const real tube_n_m3_t_3 = v.tube_e_1_in_axes2_x*v.tube_end_p3_in_axes2_z;
         /* (tube-f_c1) force part of constraint wrench 1 */
-        const real tube_f_c1_t = tube_n_m1_in_axes1_z*tube_n_m3_in_axes2_z +
+        const real tube_f_c1_t = v.tube_n_m1_in_axes1_z*tube_n_m3_in_axes2_z +
             tube_n_m1_in_axes2_z*tube_n_m3_t_3;
         /* (tube-m1_c3) moment part 1 of constraint wrench 3 */
         const real inv_tube_f_c1_t = 1/tube_f_c1_t;
-        const real tube_m1_c3_t = inv_tube_f_c1_t*tube_n_m2_in_axes1_z*tube_n_m3_in_axes2_z;
+        const real tube_m1_c3 = inv_tube_f_c1_t*tube_n_m2_t_3*tube_n_m3_in_axes2_z;
         /* (tube-m3_c3) moment part 3 of constraint wrench 3 */
-        const real tube_m3_c3 = inv_tube_f_c1_t*tube_n_m1_in_axes2_z*tube_n_m2_in_axes1_z;
+        const real tube_m3_c3_t = inv_tube_f_c1_t*tube_n_m1_in_axes2_z*tube_n_m2_t_3;
         /* (tube-size_c3) size of the moment */
-        const real tube_size_c3 = root(1 + tube_m1_c3_t*tube_m1_c3_t + tube_m3_c3*tube_m3_c3);
+        const real tube_size_c3 = root(1 + tube_m1_c3*tube_m1_c3 + tube_m3_c3_t*tube_m3_c3_t);
         /* (tube-mu2_c3) moment along direction 2 that goes with it */
         const real tube_mu2_c3 = 1/tube_size_c3;
         /* (tube-w_1) force part of reciprocal wrench 1 */
-        const real tube_w_1_t = R(1.35)*tube_n_m1_in_axes1_z;
-        const real tube_w_1_t_2 = R(1.35)*tube_n_m2_in_axes1_z;
+        const real tube_w_1_t_2 = R(1.35)*tube_n_m2_t_3;
         const real tube_w_1_t_3 = R(1.35)*tube_n_m3_t_3;
         const real tube_w_1_t_4 = R(1.35)*tube_n_m1_in_axes2_z;
         const real tube_w_1_t_5 = R(1.35)*tube_n_m3_in_axes2_z;
-        const real tube_w_1_t_6 = R(1.35)*inv_tube_f_c1_t*tube_n_m3_t_3*tube_root_2;
-        const real tube_w_1_t_7 = R(1.35)*inv_tube_f_c1_t*tube_n_m1_in_axes1_z*tube_root_2;
-        const real tube_w_1_t_8 = R(1.35)*inv_tube_f_c1_t*tube_n_m3_in_axes2_z*tube_root_1;
-        const real tube_w_1_t_9 = R(1.35)*inv_tube_f_c1_t*tube_n_m1_in_axes2_z*tube_root_1;
-        const real tube_w_1_t_10 = R(1.35)*tube_m1_c3_t*tube_mu2_c3;
+        const real tube_w_1_t_6 = R(1.35)*inv_tube_f_c1_t*tube_n_m3_t_3*v.tube_q_3;
+        const real tube_w_1_t_7 = R(1.35)*inv_tube_f_c1_t*v.tube_n_m1_in_axes1_z*v.tube_q_3;
+        const real tube_w_1_t_8 = R(1.35)*inv_tube_f_c1_t*tube_n_m3_in_axes2_z*v.tube_root_1;
+        const real tube_w_1_t_9 = R(1.35)*inv_tube_f_c1_t*tube_n_m1_in_axes2_z*v.tube_root_1;
+        const real tube_w_1_t_10 = R(1.35)*tube_m1_c3*tube_mu2_c3;
         const real tube_w_1_t_11 = R(1.35)*tube_mu2_c3;
-        const real tube_w_1_t_12 = R(1.35)*tube_m3_c3*tube_mu2_c3;
-        const real tube_w_1_t_13 = root(tube_rho2_2 + tube_w_1_t_4*tube_w_1_t_4 +
+        const real tube_w_1_t_12 = R(1.35)*tube_m3_c3_t*tube_mu2_c3;
+        const real tube_w_1_t_13 = root(v.tube_q_3_t + tube_w_1_t_4*tube_w_1_t_4 +
             tube_w_1_t_5*tube_w_1_t_5);
         const real inv_tube_w_1_t_13 = 1/tube_w_1_t_13;
-        const real tube_w_1_t_14 = inv_tube_w_1_t_13*tube_root_2;
+        const real tube_w_1_t_14 = inv_tube_w_1_t_13*v.tube_q_3;
         const real tube_w_1_t_15 = inv_tube_w_1_t_13*tube_w_1_t_4;
         const real tube_w_1_t_16 = inv_tube_w_1_t_13*tube_w_1_t_5;
         const real tube_w_1_t_17 = tube_w_1_t_15*tube_w_1_t_6 + tube_w_1_t_16*tube_w_1_t_7 -
@@ -8807,9 +7394,9 @@ INLINE void joint_rates_legs_tube(const prepared *m, size_t w, size_t leg, size_
         const real tube_w_1_t_26 = tube_w_1_t_14*tube_w_1_t_25;
         const real tube_w_1_t_27 = tube_w_1_t_10 - tube_w_1_t_15*tube_w_1_t_25;
         const real tube_w_1_t_28 = tube_w_1_t_12 + tube_w_1_t_16*tube_w_1_t_25;
-        const real tube_w_1_t_29 = tube_w_1_t*tube_w_1_t_15 - tube_w_1_t_16*tube_w_1_t_3;
+        const real tube_w_1_t_29 = v.tube_w_1_t*tube_w_1_t_15 - tube_w_1_t_16*tube_w_1_t_3;
         const real tube_w_1_t_30 = tube_w_1_t_14*tube_w_1_t_29;
-        const real tube_w_1_t_31 = tube_w_1_t - tube_w_1_t_15*tube_w_1_t_29;
+        const real tube_w_1_t_31 = v.tube_w_1_t - tube_w_1_t_15*tube_w_1_t_29;
         const real tube_w_1_t_32 = tube_w_1_t_3 + tube_w_1_t_16*tube_w_1_t_29;
         const real tube_w_1_t_33 = root(tube_w_1_t_18*tube_w_1_t_18 + tube_w_1_t_19*tube_w_1_t_19
             + tube_w_1_t_20*tube_w_1_t_20);
@@ -8845,9 +7432,9 @@ INLINE void joint_rates_legs_tube(const prepared *m, size_t w, size_t leg, size_
         const real tube_w_1_t_56 = tube_w_1_t_43 + tube_w_1_t_51*tube_w_1_t_53;
         const real tube_w_1_t_57 = tube_w_1_t_52*tube_w_1_t_53 - tube_w_1_t_44;
         const real tube_w_1_t_58 = tube_w_1_t_46*tube_w_1_t_50 + tube_w_1_t_48*tube_w_1_t_52 -
-            inv_tube_w_1_t_49*tube_root_1 - tube_w_1_t_47*tube_w_1_t_51;
+            inv_tube_w_1_t_49*v.tube_root_1 - tube_w_1_t_47*tube_w_1_t_51;
         const real tube_w_1_t_59 = tube_w_1_t_50*tube_w_1_t_58 - tube_w_1_t_46;
-        const real tube_w_1_t_60 = tube_root_1 + inv_tube_w_1_t_49*tube_w_1_t_58;
+        const real tube_w_1_t_60 = v.tube_root_1 + inv_tube_w_1_t_49*tube_w_1_t_58;
         const real tube_w_1_t_61 = tube_w_1_t_47 + tube_w_1_t_51*tube_w_1_t_58;
         const real tube_w_1_t_62 = tube_w_1_t_52*tube_w_1_t_58 - tube_w_1_t_48;
         const real tube_w_1_t_63 = root(tube_w_1_t_11*tube_w_1_t_11 + tube_w_1_t_54*tube_w_1_t_54
@@ -8871,20 +7458,14 @@ INLINE void joint_rates_legs_tube(const prepared *m, size_t w, size_t leg, size_
             + tube_w_1_t_72*tube_w_1_t_72 + tube_w_1_t_73*tube_w_1_t_73 +
             tube_w_1_t_74*tube_w_1_t_74);
         /* (tube-eta_1) rate at which the joints turn along moment direction 1 */
-        const real tube_omega_in_axes2_y = axis_y_tube_axes2_x*omega_x +
-            axis_y_tube_axes2_y*omega_y + axis_y_tube_axes2_z*omega_z;
-        const real tube_omega_in_axes2_z = axis_z_tube_axes2_x*omega_x +
-            axis_z_tube_axes2_y*omega_y + axis_z_tube_axes2_z*omega_z;
-        const real tube_eta_1 = tube_n_m1_in_axes2_z*tube_omega_in_axes2_z -
-            tube_end_p1_in_axes2_z*tube_omega_in_axes2_y;
+        const real tube_eta_1 = tube_n_m1_in_axes2_z*v.tube_omega_in_axes2_z -
+            v.tube_end_p1_in_axes2_z*v.tube_omega_in_axes2_y;
         /* (tube-eta_2) rate at which the joints turn along moment direction 2 */
-        const real tube_omega_in_axes2_x = axis_x_tube_axes2_x*omega_x +
-            axis_x_tube_axes2_y*omega_y + axis_x_tube_axes2_z*omega_z;
-        const real tube_eta_2 = tube_n_m2_in_axes2_y*tube_omega_in_axes2_y -
-            tube_end_p2_in_axes2_y*tube_omega_in_axes2_x;
+        const real tube_eta_2 = tube_n_m2_in_axes2_y*v.tube_omega_in_axes2_y -
+            tube_end_p2_in_axes2_y*v.tube_omega_in_axes2_x;
         /* (tube-eta_3) rate at which the joints turn along moment direction 3 */
-        const real tube_eta_3 = tube_n_m3_in_axes2_z*tube_omega_in_axes2_z -
-            tube_end_p3_in_axes2_z*tube_omega_in_axes2_x;
+        const real tube_eta_3 = tube_n_m3_in_axes2_z*v.tube_omega_in_axes2_z -
+            v.tube_end_p3_in_axes2_z*v.tube_omega_in_axes2_x;
         /* (tube-qd_1) rate of joint 1 */
         const real inv_tube_w_1_t_75 = 1/tube_w_1_t_75;
         const real tube_qd_1_t = R(1.35)*tube_eta_1;
@@ -8894,12 +7475,12 @@ INLINE void joint_rates_legs_tube(const prepared *m, size_t w, size_t leg, size_
             inv_tube_w_1_t_75*(inv_tube_w_1_t_75*tube_S_dot_in_axes2_y*tube_w_1_t_70 +
             inv_tube_w_1_t_75*tube_S_dot_in_axes2_z*tube_w_1_t_71 +
             inv_tube_w_1_t_75*tube_qd_1_t*tube_w_1_t_72 +
-            inv_tube_w_1_t_75*tube_qd_1_t_2*tube_w_1_t_73 +
-            inv_tube_w_1_t_75*tube_qd_1_t_3*tube_w_1_t_74);
+            inv_tube_w_1_t_75*tube_qd_1_t_3*tube_w_1_t_74 -
+            inv_tube_w_1_t_75*tube_qd_1_t_2*tube_w_1_t_73);
         /* (tube-qd_2) rate of joint 2 */
         const real tube_qd_2_t = inv_tube_w_1_t_63*(tube_S_dot_in_axes2_y*tube_w_1_t_64 +
             tube_S_dot_in_axes2_z*tube_w_1_t_65 + tube_qd_1_t*tube_w_1_t_66 +
-            tube_qd_1_t_3*tube_w_1_t_68 - tube_qd_1*tube_w_1_t_69 - tube_qd_1_t_2*tube_w_1_t_67);
+            tube_qd_1_t_2*tube_w_1_t_67 + tube_qd_1_t_3*tube_w_1_t_68 - tube_qd_1*tube_w_1_t_69);
         const real tube_qd_2_t_2 = inv_tube_w_1_t_49*(inv_tube_w_1_t_49*tube_S_dot_in_axes2_z +
             tube_S_dot_in_axes2_y*tube_w_1_t_50 + tube_qd_1*tube_w_1_t_58 +
             tube_qd_1_t*tube_w_1_t_51 + tube_qd_1_t_3*tube_w_1_t_52 + tube_qd_2_t*tube_w_1_t_53);
@@ -8917,10 +7498,10 @@ INLINE void joint_rates_legs_tube(const prepared *m, size_t w, size_t leg, size_
         /* (tube-qd_3) rate of joint 3 */
         o[2*count + k] = tube_S_dot_in_axes2_x;
         o[4*count + k] = tube_qd_1 + (tube_qd_2 + tube_S_dot_in_axes2_x);
-        o[3*count + k] = UNLESS(magnitude(tube_rho2_1) > LEAST_3) + UNLESS(magnitude(tube_rho2_2)
-            > LEAST_3) + UNLESS(magnitude(tube_f_c1_t) > LEAST_4) + UNLESS(magnitude(tube_size_c3)
-            > LEAST_4) + UNLESS(magnitude(tube_w_1_t_13) > LEAST_5) +
-            UNLESS(magnitude(tube_w_1_t_33) > LEAST_4) + UNLESS(magnitude(tube_w_1_t_49) >
+        o[3*count + k] = UNLESS(magnitude(v.tube_root_1_t) > LEAST_3) +
+            UNLESS(magnitude(v.tube_q_3_t) > LEAST_3) + UNLESS(magnitude(tube_f_c1_t) > LEAST_4) +
+            UNLESS(magnitude(tube_size_c3) > LEAST_4) + UNLESS(magnitude(tube_w_1_t_13) > LEAST_5)
+            + UNLESS(magnitude(tube_w_1_t_33) > LEAST_4) + UNLESS(magnitude(tube_w_1_t_49) >
             LEAST_4) + UNLESS(magnitude(tube_w_1_t_63) > LEAST_5) +
             UNLESS(magnitude(tube_w_1_t_75) > LEAST_5);
     }
@@ -8940,15 +7521,15 @@ INLINE void joint_rates_place_tube(size_t w, size_t count, const real *o, size_t
 
 INLINE void joint_rates_run(const prepared *m, const real *X, const real *V, real *qd, verdict *t)
 {
-    real s[18] = {0};
+    real s[9] = {0};
     real o_ups[5*LEGS(LEGS_OF_ups)] = {0};
     real o_tube[5*LEGS(LEGS_OF_tube)] = {0};
-    joint_rates_before(1, X, V, s, t);
-    joint_rates_legs_ups(m, 1, 0, 1, s, 0, LEGS(LEGS_OF_ups), o_ups);
+    joint_rates_before(m, 1, X, s, t);
+    joint_rates_legs_ups(m, 1, 0, 1, s, 0, LEGS(LEGS_OF_ups), X, V, o_ups);
+    joint_rates_legs_tube(m, 1, 0, 1, s, 0, LEGS(LEGS_OF_tube), X, V, o_tube);
     for (size_t leg = 0; leg < LEGS_OF_ups; ++leg) {
         joint_rates_place_ups(1, LEGS(LEGS_OF_ups), o_ups, leg, leg, qd, t);
     }
-    joint_rates_legs_tube(m, 1, 0, 1, s, 0, LEGS(LEGS_OF_tube), o_tube);
     for (size_t leg = 0; leg < LEGS_OF_tube; ++leg) {
         joint_rates_place_tube(1, LEGS(LEGS_OF_tube), o_tube, leg, qd, t);
     }
@@ -8957,248 +7538,71 @@ INLINE void joint_rates_run(const prepared *m, const real *X, const real *V, rea
 INLINE void joint_rates_run_lanes(const prepared *m, const real *X, const real *V, real *qd,
     verdict *t)
 {
-    real s[18*LANES];
+    real s[9*LANES];
     real o_ups[5*LANES];
     real o_tube[5*LANES];
-    joint_rates_before(LANES, X, V, s, t);
+    joint_rates_before(m, LANES, X, s, t);
     for (size_t leg = 0; leg < LEGS_OF_ups; ++leg) {
-        joint_rates_legs_ups(m, LANES, leg, 0, s, 1, LANES, o_ups);
+        joint_rates_legs_ups(m, LANES, leg, 0, s, 1, LANES, X, V, o_ups);
         joint_rates_place_ups(LANES, LANES, o_ups, leg, 0, qd, t);
     }
     for (size_t leg = 0; leg < LEGS_OF_tube; ++leg) {
-        joint_rates_legs_tube(m, LANES, leg, 0, s, 1, LANES, o_tube);
+        joint_rates_legs_tube(m, LANES, leg, 0, s, 1, LANES, X, V, o_tube);
         joint_rates_place_tube(LANES, LANES, o_tube, 0, qd, t);
     }
 }
 
 /* ---- joint_accelerations ---- */
-INLINE void joint_accelerations_before(size_t w, const real *X, const real *V, const real *A, real
-    *s, verdict *t)
+INLINE void joint_accelerations_before(const prepared *m, size_t w, const real *X, real *s,
+    verdict *t)
 {
     for (size_t k = 0; k < w; ++k) {
-        /* X: named entries */
-        const real X_0 = X[0*w + k];
-        const real t_x = X_0;
-        const real X_1 = X[1*w + k];
-        const real t_y = X_1;
-        const real X_2 = X[2*w + k];
-        const real t_z = X_2;
-        const real X_3 = X[3*w + k];
-        const real X_4 = X[4*w + k];
-        const real X_5 = X[5*w + k];
-        const real X_6 = X[6*w + k];
-        const real quaternion_norm2 = X_3*X_3 + X_4*X_4 + X_5*X_5 + X_6*X_6;
-        const real quaternion_scale = 2/quaternion_norm2;
-        const real quaternion_sx = X_3*quaternion_scale;
-        const real quaternion_sy = X_4*quaternion_scale;
-        const real quaternion_sz = X_5*quaternion_scale;
-        const real quaternion_wx = X_6*quaternion_sx;
-        const real quaternion_wy = X_6*quaternion_sy;
-        const real quaternion_wz = X_6*quaternion_sz;
-        const real quaternion_xx = X_3*quaternion_sx;
-        const real quaternion_xy = X_3*quaternion_sy;
-        const real quaternion_xz = X_3*quaternion_sz;
-        const real quaternion_yy = X_4*quaternion_sy;
-        const real quaternion_yz = X_4*quaternion_sz;
-        const real quaternion_zz = X_5*quaternion_sz;
-        const real R_xx = 1 - quaternion_yy - quaternion_zz;
-        const real R_xy = quaternion_xy - quaternion_wz;
-        const real R_xz = quaternion_wy + quaternion_xz;
-        const real R_yx = quaternion_wz + quaternion_xy;
-        const real R_yy = 1 - quaternion_xx - quaternion_zz;
-        const real R_yz = quaternion_yz - quaternion_wx;
-        const real R_zx = quaternion_xz - quaternion_wy;
-        const real R_zy = quaternion_wx + quaternion_yz;
-        const real R_zz = 1 - quaternion_xx - quaternion_yy;
-        /* V: named entries */
-        const real V_0 = V[0*w + k];
-        const real t_dot_x = V_0;
-        const real V_1 = V[1*w + k];
-        const real t_dot_y = V_1;
-        const real V_2 = V[2*w + k];
-        const real t_dot_z = V_2;
-        const real V_3 = V[3*w + k];
-        const real omega_x = V_3;
-        const real V_4 = V[4*w + k];
-        const real omega_y = V_4;
-        const real V_5 = V[5*w + k];
-        const real omega_z = V_5;
-        /* A: named entries */
-        const real A_0 = A[0*w + k];
-        const real t_ddot_x = A_0;
-        const real A_1 = A[1*w + k];
-        const real t_ddot_y = A_1;
-        const real A_2 = A[2*w + k];
-        const real t_ddot_z = A_2;
-        const real A_3 = A[3*w + k];
-        const real alpha_x = A_3;
-        const real A_4 = A[4*w + k];
-        const real alpha_y = A_4;
-        const real A_5 = A[5*w + k];
-        const real alpha_z = A_5;
-        s[0*w + k] = t_x;
-        s[1*w + k] = t_y;
-        s[2*w + k] = t_z;
-        s[3*w + k] = R_xx;
-        s[4*w + k] = R_xy;
-        s[5*w + k] = R_xz;
-        s[6*w + k] = R_yx;
-        s[7*w + k] = R_yy;
-        s[8*w + k] = R_yz;
-        s[9*w + k] = R_zx;
-        s[10*w + k] = R_zy;
-        s[11*w + k] = R_zz;
-        s[12*w + k] = t_dot_x;
-        s[13*w + k] = t_dot_y;
-        s[14*w + k] = t_dot_z;
-        s[15*w + k] = omega_x;
-        s[16*w + k] = omega_y;
-        s[17*w + k] = omega_z;
-        s[18*w + k] = t_ddot_x;
-        s[19*w + k] = t_ddot_y;
-        s[20*w + k] = t_ddot_z;
-        s[21*w + k] = alpha_x;
-        s[22*w + k] = alpha_y;
-        s[23*w + k] = alpha_z;
-        t->invalid[k] += UNLESS(is_finite(quaternion_scale)) + UNLESS(quaternion_scale > 0);
+        values v;
+        stage_X(m, w, k, X, &v);
+        s[0*w + k] = v.R_xx;
+        s[1*w + k] = v.R_xy;
+        s[2*w + k] = v.R_xz;
+        s[3*w + k] = v.R_yx;
+        s[4*w + k] = v.R_yy;
+        s[5*w + k] = v.R_yz;
+        s[6*w + k] = v.R_zx;
+        s[7*w + k] = v.R_zy;
+        s[8*w + k] = v.R_zz;
+        t->invalid[k] += UNLESS(is_finite(v.quaternion_scale)) + UNLESS(v.quaternion_scale > 0);
     }
 }
 
 INLINE void joint_accelerations_legs_ups(const prepared *m, size_t w, size_t leg, size_t legs,
-    const real *s, size_t states, size_t count, real *o)
+    const real *s, size_t states, size_t count, const real *X, const real *V, const real *A, real
+    *o)
 {
     for (size_t k = 0; k < count; ++k) {
         const size_t i = leg + legs*k;
         const size_t j = states*k;
-        /* (ups-S) from the base point to the connection point */
-        const real R_xx = s[3*w + j];
-        const real R_xy = s[4*w + j];
-        const real R_xz = s[5*w + j];
-        const real ups_platform_point_x = m->ups_platform_point_x[i];
-        const real ups_platform_point_y = m->ups_platform_point_y[i];
-        const real ups_platform_point_z = m->ups_platform_point_z[i];
-        const real ups_q_x = R_xx*ups_platform_point_x + R_xy*ups_platform_point_y +
-            R_xz*ups_platform_point_z;
-        const real R_yx = s[6*w + j];
-        const real R_yy = s[7*w + j];
-        const real R_yz = s[8*w + j];
-        const real ups_q_y = R_yx*ups_platform_point_x + R_yy*ups_platform_point_y +
-            R_yz*ups_platform_point_z;
-        const real R_zx = s[9*w + j];
-        const real R_zy = s[10*w + j];
-        const real R_zz = s[11*w + j];
-        const real ups_q_z = R_zx*ups_platform_point_x + R_zy*ups_platform_point_y +
-            R_zz*ups_platform_point_z;
-        const real t_x = s[0*w + j];
-        const real ups_base_point_x = m->ups_base_point_x[i];
-        const real ups_S_x = t_x + ups_q_x - ups_base_point_x;
-        const real t_y = s[1*w + j];
-        const real ups_base_point_y = m->ups_base_point_y[i];
-        const real ups_S_y = t_y + ups_q_y - ups_base_point_y;
-        const real t_z = s[2*w + j];
-        const real ups_base_point_z = m->ups_base_point_z[i];
-        const real ups_S_z = t_z + ups_q_z - ups_base_point_z;
-        /* (ups-px_1) component along the reference direction */
-        const real ups_base_frame_xx = m->ups_base_frame_xx[i];
-        const real ups_base_frame_yx = m->ups_base_frame_yx[i];
-        const real ups_base_frame_zx = m->ups_base_frame_zx[i];
-        const real ups_px_1 = ups_S_x*ups_base_frame_xx + ups_S_y*ups_base_frame_yx +
-            ups_S_z*ups_base_frame_zx;
-        /* (ups-py_1) component across the reference direction */
-        const real ups_base_frame_xy = m->ups_base_frame_xy[i];
-        const real ups_base_frame_yy = m->ups_base_frame_yy[i];
-        const real ups_base_frame_zy = m->ups_base_frame_zy[i];
-        const real ups_py_1 = ups_S_x*ups_base_frame_xy + ups_S_y*ups_base_frame_yy +
-            ups_S_z*ups_base_frame_zy;
-        /* (ups-rho2_1) squared amplitude */
-        const real ups_rho2_1 = ups_px_1*ups_px_1 + ups_py_1*ups_py_1;
-        /* (ups-root_1) amplitude, with the sign of the branch */
-        const real ups_branch_1 = m->ups_branch_1[i];
-        const real ups_root_1 = ups_branch_1*root(ups_rho2_1);
-        /* (ups-c_1) cosine of the angle of joint 1 from its reference direction */
-        const real inv_ups_root_1 = 1/ups_root_1;
-        const real ups_c_1 = -inv_ups_root_1*ups_py_1;
-        /* (ups-s_1) sine of the angle of joint 1 from its reference direction */
-        const real ups_s_1 = inv_ups_root_1*ups_px_1;
-        /* (ups-xi_1) the vector from joint 1 to the connection point, resolved along link 1 */
-        const real ups_base_frame_xz = m->ups_base_frame_xz[i];
-        const real ups_base_frame_yz = m->ups_base_frame_yz[i];
-        const real ups_base_frame_zz = m->ups_base_frame_zz[i];
-        const real ups_xi_1_in_axes1_z = ups_S_x*ups_base_frame_xz + ups_S_y*ups_base_frame_yz +
-            ups_S_z*ups_base_frame_zz;
-        /* (ups-rho2_2) squared amplitude */
-        const real ups_rho2_2 = ups_rho2_1 + ups_xi_1_in_axes1_z*ups_xi_1_in_axes1_z;
-        /* (ups-root_2) amplitude, with the sign of the branch */
-        const real ups_branch_2 = m->ups_branch_2[i];
-        const real ups_root_2 = ups_branch_2*root(ups_rho2_2);
-        /* (ups-S_dot) velocity of the connection point */
-        const real inv_ups_root_2 = 1/ups_root_2;
-        const real axis_x_ups_axes2_x = inv_ups_root_2*ups_S_x;
-        const real axis_x_ups_axes2_y = inv_ups_root_2*ups_S_y;
-        const real axis_x_ups_axes2_z = inv_ups_root_2*ups_S_z;
-        const real omega_y = s[16*w + j];
-        const real omega_z = s[17*w + j];
-        const real ups_S_dot_t = omega_y*ups_q_z - omega_z*ups_q_y;
-        const real omega_x = s[15*w + j];
-        const real ups_S_dot_t_2 = omega_z*ups_q_x - omega_x*ups_q_z;
-        const real ups_S_dot_t_3 = omega_x*ups_q_y - omega_y*ups_q_x;
-        const real t_dot_x = s[12*w + j];
-        const real ups_S_dot_x = t_dot_x + ups_S_dot_t;
-        const real t_dot_y = s[13*w + j];
-        const real ups_S_dot_y = t_dot_y + ups_S_dot_t_2;
-        const real t_dot_z = s[14*w + j];
-        const real ups_S_dot_z = t_dot_z + ups_S_dot_t_3;
-        const real ups_S_dot_in_axes2_x = axis_x_ups_axes2_x*ups_S_dot_x +
-            axis_x_ups_axes2_y*ups_S_dot_y + axis_x_ups_axes2_z*ups_S_dot_z;
-        /* (ups-qd_1) rate of joint 1 */
-        const real axis_z_ups_axes2_x = ups_base_frame_xx*ups_c_1 + ups_base_frame_xy*ups_s_1;
-        const real axis_z_ups_axes2_y = ups_base_frame_yx*ups_c_1 + ups_base_frame_yy*ups_s_1;
-        const real axis_z_ups_axes2_z = ups_base_frame_zx*ups_c_1 + ups_base_frame_zy*ups_s_1;
-        const real ups_qd_1 = inv_ups_root_1*(axis_z_ups_axes2_x*ups_S_dot_x +
-            axis_z_ups_axes2_y*ups_S_dot_y + axis_z_ups_axes2_z*ups_S_dot_z);
-        /* (ups-qd_2) rate of joint 2 */
-        const real axis_y_ups_axes2_x = axis_x_ups_axes2_z*axis_z_ups_axes2_y -
-            axis_x_ups_axes2_y*axis_z_ups_axes2_z;
-        const real axis_y_ups_axes2_y = axis_x_ups_axes2_x*axis_z_ups_axes2_z -
-            axis_x_ups_axes2_z*axis_z_ups_axes2_x;
-        const real axis_y_ups_axes2_z = axis_x_ups_axes2_y*axis_z_ups_axes2_x -
-            axis_x_ups_axes2_x*axis_z_ups_axes2_y;
-        const real ups_qd_2 = inv_ups_root_2*(axis_y_ups_axes2_x*ups_S_dot_x +
-            axis_y_ups_axes2_y*ups_S_dot_y + axis_y_ups_axes2_z*ups_S_dot_z);
+        values_ups v;
+        stage_ups_X(m, w, i, j, s, X, &v);
+        stage_ups_A_X(w, j, A, &v);
+        stage_ups_V_X(w, j, V, &v);
+        stage_ups_A_V_X(w, j, V, &v);
         /* (ups-omega_1) angular velocity of link 1 */
-        const real ups_omega_1_in_axes2_x = inv_ups_root_2*ups_qd_1*ups_xi_1_in_axes1_z;
-        const real ups_omega_1_in_axes2_y = -inv_ups_root_2*ups_qd_1*ups_root_1;
-        /* (ups-a_p) acceleration of the connection point without its centripetal part */
-        const real alpha_y = s[22*w + j];
-        const real alpha_z = s[23*w + j];
-        const real t_ddot_x = s[18*w + j];
-        const real ups_a_p_x = t_ddot_x + alpha_y*ups_q_z - alpha_z*ups_q_y;
-        const real alpha_x = s[21*w + j];
-        const real t_ddot_y = s[19*w + j];
-        const real ups_a_p_y = t_ddot_y + alpha_z*ups_q_x - alpha_x*ups_q_z;
-        const real t_ddot_z = s[20*w + j];
-        const real ups_a_p_z = t_ddot_z + alpha_x*ups_q_y - alpha_y*ups_q_x;
-        /* (ups-S_ddot) acceleration of the connection point */
-        const real ups_S_ddot_x = ups_a_p_x + omega_y*ups_S_dot_t_3 - omega_z*ups_S_dot_t_2;
-        const real ups_S_ddot_y = ups_a_p_y + omega_z*ups_S_dot_t - omega_x*ups_S_dot_t_3;
-        const real ups_S_ddot_z = ups_a_p_z + omega_x*ups_S_dot_t_2 - omega_y*ups_S_dot_t;
+        const real ups_omega_1_in_axes2_x = v.inv_ups_q_3*v.ups_S_in_turn1_z*v.ups_qd_1;
+        const real ups_omega_1_in_axes2_y = -v.inv_ups_q_3*v.ups_qd_1*v.ups_root_1;
         /* (ups-bias) acceleration of the connection point at zero joint accelerations */
-        const real ups_bias_t = 2*ups_S_dot_in_axes2_x;
-        const real ups_bias_in_axes2_z = 2*ups_omega_1_in_axes2_x*ups_qd_2*ups_root_2 -
-            ups_bias_t*ups_omega_1_in_axes2_y;
+        const real ups_bias_in_axes2_z = 2*ups_omega_1_in_axes2_x*v.ups_q_3*v.ups_qd_2 -
+            v.ups_bias_t*ups_omega_1_in_axes2_y;
         /* (ups-rel) acceleration of the connection point left to the joint accelerations */
-        const real ups_rel_in_axes2_x = axis_x_ups_axes2_x*ups_S_ddot_x +
-            axis_x_ups_axes2_y*ups_S_ddot_y + axis_x_ups_axes2_z*ups_S_ddot_z -
-            ups_root_2*(-ups_omega_1_in_axes2_y*ups_omega_1_in_axes2_y - ups_qd_2*ups_qd_2);
-        const real ups_rel_in_axes2_z = axis_z_ups_axes2_x*ups_S_ddot_x +
-            axis_z_ups_axes2_y*ups_S_ddot_y + axis_z_ups_axes2_z*ups_S_ddot_z -
+        const real ups_rel_in_axes2_x = v.axis_x_ups_axes2_x*v.ups_S_ddot_x +
+            v.axis_x_ups_axes2_y*v.ups_S_ddot_y + v.axis_x_ups_axes2_z*v.ups_S_ddot_z -
+            v.ups_q_3*(-ups_omega_1_in_axes2_y*ups_omega_1_in_axes2_y - v.ups_qd_2*v.ups_qd_2);
+        const real ups_rel_in_axes2_z = v.axis_z_ups_axes2_x*v.ups_S_ddot_x +
+            v.axis_z_ups_axes2_y*v.ups_S_ddot_y + v.axis_z_ups_axes2_z*v.ups_S_ddot_z -
             ups_bias_in_axes2_z;
         /* (ups-qdd_1) acceleration of joint 1 */
-        const real ups_qdd_1 = inv_ups_root_1*ups_rel_in_axes2_z;
+        const real ups_qdd_1 = v.inv_ups_root_1*ups_rel_in_axes2_z;
         /* (ups-qdd_2) acceleration of joint 2 */
-        const real ups_qdd_2 = inv_ups_root_2*(axis_y_ups_axes2_x*ups_S_ddot_x +
-            axis_y_ups_axes2_y*ups_S_ddot_y + axis_y_ups_axes2_z*ups_S_ddot_z -
-            ups_bias_t*ups_qd_2) - ups_omega_1_in_axes2_x*ups_omega_1_in_axes2_y;
+        const real ups_qdd_2 = v.inv_ups_q_3*(v.axis_y_ups_axes2_x*v.ups_S_ddot_x +
+            v.axis_y_ups_axes2_y*v.ups_S_ddot_y + v.axis_y_ups_axes2_z*v.ups_S_ddot_z -
+            v.ups_bias_t*v.ups_qd_2) - ups_omega_1_in_axes2_x*ups_omega_1_in_axes2_y;
         /* (ups-qdd_1) acceleration of joint 1 */
         o[0*count + k] = ups_qdd_1;
         /* (ups-qdd_2) acceleration of joint 2 */
@@ -9206,9 +7610,9 @@ INLINE void joint_accelerations_legs_ups(const prepared *m, size_t w, size_t leg
         /* (ups-qdd_3) acceleration of joint 3 */
         o[2*count + k] = ups_rel_in_axes2_x;
         o[4*count + k] = ups_qdd_1 + (ups_qdd_2 + ups_rel_in_axes2_x);
-        o[3*count + k] = UNLESS(magnitude(ups_rho2_1) > LEAST_1) + UNLESS(magnitude(ups_rho2_2) >
-            LEAST_1) + UNLESS(magnitude(ups_root_1) > LEAST_2) + UNLESS(magnitude(ups_root_2) >
-            LEAST_2);
+        o[3*count + k] = UNLESS(magnitude(v.ups_root_1_t) > LEAST_1) +
+            UNLESS(magnitude(v.ups_q_3_t) > LEAST_1) + UNLESS(magnitude(v.ups_root_1) > LEAST_2) +
+            UNLESS(magnitude(v.ups_q_3) > LEAST_2);
     }
 }
 
@@ -9225,456 +7629,65 @@ INLINE void joint_accelerations_place_ups(size_t w, size_t count, const real *o,
 }
 
 INLINE void joint_accelerations_legs_tube(const prepared *m, size_t w, size_t leg, size_t legs,
-    const real *s, size_t states, size_t count, real *o)
+    const real *s, size_t states, size_t count, const real *X, const real *V, const real *A, real
+    *o)
 {
     for (size_t k = 0; k < count; ++k) {
         const size_t i = leg + legs*k;
         const size_t j = states*k;
-        /* (tube-S) from the base point to the connection point */
-        const real R_xx = s[3*w + j];
-        const real R_xy = s[4*w + j];
-        const real R_xz = s[5*w + j];
-        const real tube_platform_point_x = m->tube_platform_point_x[i];
-        const real tube_platform_point_y = m->tube_platform_point_y[i];
-        const real tube_platform_point_z = m->tube_platform_point_z[i];
-        const real tube_q_x = R_xx*tube_platform_point_x + R_xy*tube_platform_point_y +
-            R_xz*tube_platform_point_z;
-        const real R_yx = s[6*w + j];
-        const real R_yy = s[7*w + j];
-        const real R_yz = s[8*w + j];
-        const real tube_q_y = R_yx*tube_platform_point_x + R_yy*tube_platform_point_y +
-            R_yz*tube_platform_point_z;
-        const real R_zx = s[9*w + j];
-        const real R_zy = s[10*w + j];
-        const real R_zz = s[11*w + j];
-        const real tube_q_z = R_zx*tube_platform_point_x + R_zy*tube_platform_point_y +
-            R_zz*tube_platform_point_z;
-        const real t_x = s[0*w + j];
-        const real tube_base_point_x = m->tube_base_point_x[i];
-        const real tube_S_x = t_x + tube_q_x - tube_base_point_x;
-        const real t_y = s[1*w + j];
-        const real tube_base_point_y = m->tube_base_point_y[i];
-        const real tube_S_y = t_y + tube_q_y - tube_base_point_y;
-        const real t_z = s[2*w + j];
-        const real tube_base_point_z = m->tube_base_point_z[i];
-        const real tube_S_z = t_z + tube_q_z - tube_base_point_z;
-        /* (tube-px_1) component along the reference direction */
-        const real tube_base_frame_xx = m->tube_base_frame_xx[i];
-        const real tube_base_frame_yx = m->tube_base_frame_yx[i];
-        const real tube_base_frame_zx = m->tube_base_frame_zx[i];
-        const real tube_px_1 = tube_S_x*tube_base_frame_xx + tube_S_y*tube_base_frame_yx +
-            tube_S_z*tube_base_frame_zx;
-        /* (tube-py_1) component across the reference direction */
-        const real tube_base_frame_xy = m->tube_base_frame_xy[i];
-        const real tube_base_frame_yy = m->tube_base_frame_yy[i];
-        const real tube_base_frame_zy = m->tube_base_frame_zy[i];
-        const real tube_py_1 = tube_S_x*tube_base_frame_xy + tube_S_y*tube_base_frame_yy +
-            tube_S_z*tube_base_frame_zy;
-        /* (tube-rho2_1) squared amplitude */
-        const real tube_rho2_1 = tube_px_1*tube_px_1 + tube_py_1*tube_py_1;
-        /* (tube-root_1) amplitude, with the sign of the branch */
-        const real tube_branch_1 = m->tube_branch_1[i];
-        const real tube_root_1 = tube_branch_1*root(tube_rho2_1);
-        /* (tube-c_1) cosine of the angle of joint 1 from its reference direction */
-        const real inv_tube_root_1 = 1/tube_root_1;
-        const real tube_c_1 = -inv_tube_root_1*tube_py_1;
-        /* (tube-s_1) sine of the angle of joint 1 from its reference direction */
-        const real tube_s_1 = inv_tube_root_1*tube_px_1;
-        /* (tube-xi_1) the vector from joint 1 to the connection point, resolved along link 1 */
-        const real tube_base_frame_xz = m->tube_base_frame_xz[i];
-        const real tube_base_frame_yz = m->tube_base_frame_yz[i];
-        const real tube_base_frame_zz = m->tube_base_frame_zz[i];
-        const real tube_xi_1_in_axes1_z = tube_S_x*tube_base_frame_xz +
-            tube_S_y*tube_base_frame_yz + tube_S_z*tube_base_frame_zz;
-        /* (tube-rho2_2) squared amplitude */
-        const real tube_rho2_2 = tube_rho2_1 + tube_xi_1_in_axes1_z*tube_xi_1_in_axes1_z;
-        /* (tube-root_2) amplitude, with the sign of the branch */
-        const real tube_branch_2 = m->tube_branch_2[i];
-        const real tube_root_2 = tube_branch_2*root(tube_rho2_2);
-        /* (tube-c_2) cosine of the angle of joint 2 from its reference direction */
-        const real inv_tube_root_2 = 1/tube_root_2;
-        const real tube_c_2 = -inv_tube_root_2*tube_root_1;
-        /* (tube-s_2) sine of the angle of joint 2 from its reference direction */
-        const real tube_s_2 = inv_tube_root_2*tube_xi_1_in_axes1_z;
-        /* (tube-S_dot) velocity of the connection point */
-        const real axis_z_tube_axes2_x = tube_base_frame_xx*tube_c_1 +
-            tube_base_frame_xy*tube_s_1;
-        const real axis_z_tube_axes2_y = tube_base_frame_yx*tube_c_1 +
-            tube_base_frame_yy*tube_s_1;
-        const real axis_z_tube_axes2_z = tube_base_frame_zx*tube_c_1 +
-            tube_base_frame_zy*tube_s_1;
-        const real tube_S_dot_t = tube_s_1*tube_s_2;
-        const real tube_S_dot_t_2 = tube_c_1*tube_s_2;
-        const real axis_y_tube_axes2_x = tube_S_dot_t*tube_base_frame_xx +
-            tube_base_frame_xz*tube_c_2 - tube_S_dot_t_2*tube_base_frame_xy;
-        const real axis_y_tube_axes2_y = tube_S_dot_t*tube_base_frame_yx +
-            tube_base_frame_yz*tube_c_2 - tube_S_dot_t_2*tube_base_frame_yy;
-        const real axis_y_tube_axes2_z = tube_S_dot_t*tube_base_frame_zx +
-            tube_base_frame_zz*tube_c_2 - tube_S_dot_t_2*tube_base_frame_zy;
-        const real axis_x_tube_axes2_x = axis_y_tube_axes2_y*axis_z_tube_axes2_z -
-            axis_y_tube_axes2_z*axis_z_tube_axes2_y;
-        const real axis_x_tube_axes2_y = axis_y_tube_axes2_z*axis_z_tube_axes2_x -
-            axis_y_tube_axes2_x*axis_z_tube_axes2_z;
-        const real axis_x_tube_axes2_z = axis_y_tube_axes2_x*axis_z_tube_axes2_y -
-            axis_y_tube_axes2_y*axis_z_tube_axes2_x;
-        const real omega_y = s[16*w + j];
-        const real omega_z = s[17*w + j];
-        const real tube_S_dot_t_3 = omega_y*tube_q_z - omega_z*tube_q_y;
-        const real omega_x = s[15*w + j];
-        const real tube_S_dot_t_4 = omega_z*tube_q_x - omega_x*tube_q_z;
-        const real tube_S_dot_t_5 = omega_x*tube_q_y - omega_y*tube_q_x;
-        const real t_dot_x = s[12*w + j];
-        const real tube_S_dot_x = t_dot_x + tube_S_dot_t_3;
-        const real t_dot_y = s[13*w + j];
-        const real tube_S_dot_y = t_dot_y + tube_S_dot_t_4;
-        const real t_dot_z = s[14*w + j];
-        const real tube_S_dot_z = t_dot_z + tube_S_dot_t_5;
-        const real tube_S_dot_in_axes2_x = axis_x_tube_axes2_x*tube_S_dot_x +
-            axis_x_tube_axes2_y*tube_S_dot_y + axis_x_tube_axes2_z*tube_S_dot_z;
-        const real tube_S_dot_in_axes2_y = axis_y_tube_axes2_x*tube_S_dot_x +
-            axis_y_tube_axes2_y*tube_S_dot_y + axis_y_tube_axes2_z*tube_S_dot_z;
-        const real tube_S_dot_in_axes2_z = axis_z_tube_axes2_x*tube_S_dot_x +
-            axis_z_tube_axes2_y*tube_S_dot_y + axis_z_tube_axes2_z*tube_S_dot_z;
-        /* (tube-n_m1) direction 1 of the moment that the platform joint transmits */
-        const real tube_n_m1_t = R_xx*tube_base_frame_xx + R_yx*tube_base_frame_yx +
-            R_zx*tube_base_frame_zx;
-        const real tube_n_m1_t_2 = R_xy*tube_base_frame_xx + R_yy*tube_base_frame_yx +
-            R_zy*tube_base_frame_zx;
-        const real tube_n_m1_t_3 = R_xz*tube_base_frame_xx + R_yz*tube_base_frame_yx +
-            R_zz*tube_base_frame_zx;
-        const real tube_n_m1_t_4 = R_xx*tube_base_frame_xy + R_yx*tube_base_frame_yy +
-            R_zx*tube_base_frame_zy;
-        const real tube_n_m1_t_5 = R_xy*tube_base_frame_xy + R_yy*tube_base_frame_yy +
-            R_zy*tube_base_frame_zy;
-        const real tube_n_m1_t_6 = R_xz*tube_base_frame_xy + R_yz*tube_base_frame_yy +
-            R_zz*tube_base_frame_zy;
-        const real tube_n_m1_t_7 = R_xx*tube_base_frame_xz + R_yx*tube_base_frame_yz +
-            R_zx*tube_base_frame_zz;
-        const real tube_n_m1_t_8 = R_xy*tube_base_frame_xz + R_yy*tube_base_frame_yz +
-            R_zy*tube_base_frame_zz;
-        const real tube_n_m1_t_9 = R_xz*tube_base_frame_xz + R_yz*tube_base_frame_yz +
-            R_zz*tube_base_frame_zz;
-        const real tube_platform_joint_rotation_yx = m->tube_platform_joint_rotation_yx[i];
-        const real tube_platform_joint_rotation_yy = m->tube_platform_joint_rotation_yy[i];
-        const real tube_platform_joint_rotation_yz = m->tube_platform_joint_rotation_yz[i];
-        const real tube_n_m1_t_10 = tube_n_m1_t*tube_platform_joint_rotation_yx +
-            tube_n_m1_t_2*tube_platform_joint_rotation_yy +
-            tube_n_m1_t_3*tube_platform_joint_rotation_yz;
-        const real tube_n_m1_t_11 = tube_n_m1_t_4*tube_platform_joint_rotation_yx +
-            tube_n_m1_t_5*tube_platform_joint_rotation_yy +
-            tube_n_m1_t_6*tube_platform_joint_rotation_yz;
-        const real tube_n_m1_t_12 = tube_n_m1_t_7*tube_platform_joint_rotation_yx +
-            tube_n_m1_t_8*tube_platform_joint_rotation_yy +
-            tube_n_m1_t_9*tube_platform_joint_rotation_yz;
-        const real tube_end_p1_in_axes2_z = tube_c_1*tube_n_m1_t_10 + tube_n_m1_t_11*tube_s_1;
-        const real tube_n_m1_t_13 = tube_n_m1_t_10*tube_s_1 - tube_c_1*tube_n_m1_t_11;
-        const real tube_n_m1_in_axes2_z = tube_c_2*tube_n_m1_t_12 + tube_n_m1_t_13*tube_s_2;
-        const real tube_n_m1_in_axes1_z = -tube_c_2*tube_end_p1_in_axes2_z;
-        /* (tube-n_m2) direction 2 of the moment that the platform joint transmits */
-        const real tube_platform_joint_rotation_zx = m->tube_platform_joint_rotation_zx[i];
-        const real tube_platform_joint_rotation_zy = m->tube_platform_joint_rotation_zy[i];
-        const real tube_platform_joint_rotation_zz = m->tube_platform_joint_rotation_zz[i];
-        const real tube_n_m2_t = tube_n_m1_t*tube_platform_joint_rotation_zx +
-            tube_n_m1_t_2*tube_platform_joint_rotation_zy +
-            tube_n_m1_t_3*tube_platform_joint_rotation_zz;
-        const real tube_n_m2_t_2 = tube_n_m1_t_4*tube_platform_joint_rotation_zx +
-            tube_n_m1_t_5*tube_platform_joint_rotation_zy +
-            tube_n_m1_t_6*tube_platform_joint_rotation_zz;
-        const real tube_n_m2_t_3 = tube_n_m1_t_7*tube_platform_joint_rotation_zx +
-            tube_n_m1_t_8*tube_platform_joint_rotation_zy +
-            tube_n_m1_t_9*tube_platform_joint_rotation_zz;
-        const real tube_n_m2_t_4 = tube_n_m2_t*tube_s_1 - tube_c_1*tube_n_m2_t_2;
-        const real tube_n_m2_in_axes2_y = tube_n_m2_t_3*tube_s_2 - tube_c_2*tube_n_m2_t_4;
-        const real tube_end_p2_in_axes2_y = tube_c_2*tube_n_m2_t_3 + tube_n_m2_t_4*tube_s_2;
-        const real tube_n_m2_in_axes1_z = tube_c_2*tube_n_m2_in_axes2_y -
-            tube_end_p2_in_axes2_y*tube_s_2;
-        /* (tube-n_m3) direction 3 of the moment that the platform joint transmits */
-        const real tube_platform_joint_rotation_xx = m->tube_platform_joint_rotation_xx[i];
-        const real tube_platform_joint_rotation_xy = m->tube_platform_joint_rotation_xy[i];
-        const real tube_platform_joint_rotation_xz = m->tube_platform_joint_rotation_xz[i];
-        const real tube_n_m3_t = tube_n_m1_t*tube_platform_joint_rotation_xx +
-            tube_n_m1_t_2*tube_platform_joint_rotation_xy +
-            tube_n_m1_t_3*tube_platform_joint_rotation_xz;
-        const real tube_n_m3_t_2 = tube_n_m1_t_4*tube_platform_joint_rotation_xx +
-            tube_n_m1_t_5*tube_platform_joint_rotation_xy +
-            tube_n_m1_t_6*tube_platform_joint_rotation_xz;
-        const real tube_n_m3_t_3 = tube_n_m1_t_7*tube_platform_joint_rotation_xx +
-            tube_n_m1_t_8*tube_platform_joint_rotation_xy +
-            tube_n_m1_t_9*tube_platform_joint_rotation_xz;
-        const real tube_end_p3_in_axes2_z = tube_c_1*tube_n_m3_t + tube_n_m3_t_2*tube_s_1;
-        const real tube_n_m3_t_4 = tube_n_m3_t*tube_s_1 - tube_c_1*tube_n_m3_t_2;
-        const real tube_n_m3_in_axes2_z = tube_n_m3_t_3*tube_s_2 - tube_c_2*tube_n_m3_t_4;
-        const real tube_n_m3_t_5 = tube_end_p3_in_axes2_z*tube_s_2;
-        /* (tube-f_c1) force part of constraint wrench 1 */
-        const real tube_f_c1_t = tube_n_m1_in_axes1_z*tube_n_m3_in_axes2_z +
-            tube_n_m1_in_axes2_z*tube_n_m3_t_5;
-        /* (tube-m1_c3) moment part 1 of constraint wrench 3 */
-        const real inv_tube_f_c1_t = 1/tube_f_c1_t;
-        const real tube_m1_c3_t = inv_tube_f_c1_t*tube_n_m2_in_axes1_z*tube_n_m3_in_axes2_z;
-        /* (tube-m3_c3) moment part 3 of constraint wrench 3 */
-        const real tube_m3_c3 = inv_tube_f_c1_t*tube_n_m1_in_axes2_z*tube_n_m2_in_axes1_z;
-        /* (tube-size_c3) size of the moment */
-        const real tube_size_c3 = root(1 + tube_m1_c3_t*tube_m1_c3_t + tube_m3_c3*tube_m3_c3);
-        /* (tube-mu2_c3) moment along direction 2 that goes with it */
-        const real tube_mu2_c3 = 1/tube_size_c3;
-        /* (tube-w_1) force part of reciprocal wrench 1 */
-        const real tube_w_1_t = R(1.35)*tube_n_m1_in_axes1_z;
-        const real tube_w_1_t_2 = R(1.35)*tube_n_m2_in_axes1_z;
-        const real tube_w_1_t_3 = R(1.35)*tube_n_m3_t_5;
-        const real tube_w_1_t_4 = R(1.35)*tube_n_m1_in_axes2_z;
-        const real tube_w_1_t_5 = R(1.35)*tube_n_m3_in_axes2_z;
-        const real tube_w_1_t_6 = R(1.35)*inv_tube_f_c1_t*tube_n_m3_t_5*tube_root_2;
-        const real tube_w_1_t_7 = R(1.35)*inv_tube_f_c1_t*tube_n_m1_in_axes1_z*tube_root_2;
-        const real tube_w_1_t_8 = R(1.35)*inv_tube_f_c1_t*tube_n_m3_in_axes2_z*tube_root_1;
-        const real tube_w_1_t_9 = R(1.35)*inv_tube_f_c1_t*tube_n_m1_in_axes2_z*tube_root_1;
-        const real tube_w_1_t_10 = R(1.35)*tube_m1_c3_t*tube_mu2_c3;
-        const real tube_w_1_t_11 = R(1.35)*tube_mu2_c3;
-        const real tube_w_1_t_12 = R(1.35)*tube_m3_c3*tube_mu2_c3;
-        const real tube_w_1_t_13 = root(tube_rho2_2 + tube_w_1_t_4*tube_w_1_t_4 +
-            tube_w_1_t_5*tube_w_1_t_5);
-        const real inv_tube_w_1_t_13 = 1/tube_w_1_t_13;
-        const real tube_w_1_t_14 = inv_tube_w_1_t_13*tube_root_2;
-        const real tube_w_1_t_15 = inv_tube_w_1_t_13*tube_w_1_t_4;
-        const real tube_w_1_t_16 = inv_tube_w_1_t_13*tube_w_1_t_5;
-        const real tube_w_1_t_17 = tube_w_1_t_15*tube_w_1_t_6 + tube_w_1_t_16*tube_w_1_t_7 -
-            tube_w_1_t_14;
-        const real tube_w_1_t_18 = 1 + tube_w_1_t_14*tube_w_1_t_17;
-        const real tube_w_1_t_19 = tube_w_1_t_15*tube_w_1_t_17 - tube_w_1_t_6;
-        const real tube_w_1_t_20 = tube_w_1_t_16*tube_w_1_t_17 - tube_w_1_t_7;
-        const real tube_w_1_t_21 = tube_w_1_t_15*tube_w_1_t_8 - tube_w_1_t_16*tube_w_1_t_9;
-        const real tube_w_1_t_22 = tube_w_1_t_14*tube_w_1_t_21;
-        const real tube_w_1_t_23 = tube_w_1_t_15*tube_w_1_t_21 - tube_w_1_t_8;
-        const real tube_w_1_t_24 = tube_w_1_t_9 + tube_w_1_t_16*tube_w_1_t_21;
-        const real tube_w_1_t_25 = tube_w_1_t_10*tube_w_1_t_15 - tube_w_1_t_12*tube_w_1_t_16;
-        const real tube_w_1_t_26 = tube_w_1_t_14*tube_w_1_t_25;
-        const real tube_w_1_t_27 = tube_w_1_t_10 - tube_w_1_t_15*tube_w_1_t_25;
-        const real tube_w_1_t_28 = tube_w_1_t_12 + tube_w_1_t_16*tube_w_1_t_25;
-        const real tube_w_1_t_29 = tube_w_1_t*tube_w_1_t_15 - tube_w_1_t_16*tube_w_1_t_3;
-        const real tube_w_1_t_30 = tube_w_1_t_14*tube_w_1_t_29;
-        const real tube_w_1_t_31 = tube_w_1_t - tube_w_1_t_15*tube_w_1_t_29;
-        const real tube_w_1_t_32 = tube_w_1_t_3 + tube_w_1_t_16*tube_w_1_t_29;
-        const real tube_w_1_t_33 = root(tube_w_1_t_18*tube_w_1_t_18 + tube_w_1_t_19*tube_w_1_t_19
-            + tube_w_1_t_20*tube_w_1_t_20);
-        const real inv_tube_w_1_t_33 = 1/tube_w_1_t_33;
-        const real tube_w_1_t_34 = inv_tube_w_1_t_33*tube_w_1_t_18;
-        const real tube_w_1_t_35 = inv_tube_w_1_t_33*tube_w_1_t_19;
-        const real tube_w_1_t_36 = inv_tube_w_1_t_33*tube_w_1_t_20;
-        const real tube_w_1_t_37 = tube_w_1_t_22*tube_w_1_t_34 + tube_w_1_t_23*tube_w_1_t_35 +
-            tube_w_1_t_24*tube_w_1_t_36;
-        const real tube_w_1_t_38 = tube_w_1_t_22 - tube_w_1_t_34*tube_w_1_t_37;
-        const real tube_w_1_t_39 = tube_w_1_t_23 - tube_w_1_t_35*tube_w_1_t_37;
-        const real tube_w_1_t_40 = tube_w_1_t_24 - tube_w_1_t_36*tube_w_1_t_37;
-        const real tube_w_1_t_41 = tube_w_1_t_26*tube_w_1_t_34 + tube_w_1_t_28*tube_w_1_t_36 -
-            tube_w_1_t_27*tube_w_1_t_35;
-        const real tube_w_1_t_42 = tube_w_1_t_26 - tube_w_1_t_34*tube_w_1_t_41;
-        const real tube_w_1_t_43 = tube_w_1_t_27 + tube_w_1_t_35*tube_w_1_t_41;
-        const real tube_w_1_t_44 = tube_w_1_t_28 - tube_w_1_t_36*tube_w_1_t_41;
-        const real tube_w_1_t_45 = tube_w_1_t_30*tube_w_1_t_34 + tube_w_1_t_32*tube_w_1_t_36 -
-            tube_w_1_t_31*tube_w_1_t_35;
-        const real tube_w_1_t_46 = tube_w_1_t_30 - tube_w_1_t_34*tube_w_1_t_45;
-        const real tube_w_1_t_47 = tube_w_1_t_31 + tube_w_1_t_35*tube_w_1_t_45;
-        const real tube_w_1_t_48 = tube_w_1_t_32 - tube_w_1_t_36*tube_w_1_t_45;
-        const real tube_w_1_t_49 = root(1 + tube_w_1_t_38*tube_w_1_t_38 +
-            tube_w_1_t_39*tube_w_1_t_39 + tube_w_1_t_40*tube_w_1_t_40);
-        const real inv_tube_w_1_t_49 = 1/tube_w_1_t_49;
-        const real tube_w_1_t_50 = inv_tube_w_1_t_49*tube_w_1_t_38;
-        const real tube_w_1_t_51 = inv_tube_w_1_t_49*tube_w_1_t_39;
-        const real tube_w_1_t_52 = inv_tube_w_1_t_49*tube_w_1_t_40;
-        const real tube_w_1_t_53 = tube_w_1_t_42*tube_w_1_t_50 + tube_w_1_t_44*tube_w_1_t_52 -
-            tube_w_1_t_43*tube_w_1_t_51;
-        const real tube_w_1_t_54 = tube_w_1_t_50*tube_w_1_t_53 - tube_w_1_t_42;
-        const real tube_w_1_t_55 = inv_tube_w_1_t_49*tube_w_1_t_53;
-        const real tube_w_1_t_56 = tube_w_1_t_43 + tube_w_1_t_51*tube_w_1_t_53;
-        const real tube_w_1_t_57 = tube_w_1_t_52*tube_w_1_t_53 - tube_w_1_t_44;
-        const real tube_w_1_t_58 = tube_w_1_t_46*tube_w_1_t_50 + tube_w_1_t_48*tube_w_1_t_52 -
-            inv_tube_w_1_t_49*tube_root_1 - tube_w_1_t_47*tube_w_1_t_51;
-        const real tube_w_1_t_59 = tube_w_1_t_50*tube_w_1_t_58 - tube_w_1_t_46;
-        const real tube_w_1_t_60 = tube_root_1 + inv_tube_w_1_t_49*tube_w_1_t_58;
-        const real tube_w_1_t_61 = tube_w_1_t_47 + tube_w_1_t_51*tube_w_1_t_58;
-        const real tube_w_1_t_62 = tube_w_1_t_52*tube_w_1_t_58 - tube_w_1_t_48;
-        const real tube_w_1_t_63 = root(tube_w_1_t_11*tube_w_1_t_11 + tube_w_1_t_54*tube_w_1_t_54
-            + tube_w_1_t_55*tube_w_1_t_55 + tube_w_1_t_56*tube_w_1_t_56 +
-            tube_w_1_t_57*tube_w_1_t_57);
-        const real inv_tube_w_1_t_63 = 1/tube_w_1_t_63;
-        const real tube_w_1_t_64 = inv_tube_w_1_t_63*tube_w_1_t_54;
-        const real tube_w_1_t_65 = inv_tube_w_1_t_63*tube_w_1_t_55;
-        const real tube_w_1_t_66 = inv_tube_w_1_t_63*tube_w_1_t_56;
-        const real tube_w_1_t_67 = inv_tube_w_1_t_63*tube_w_1_t_11;
-        const real tube_w_1_t_68 = inv_tube_w_1_t_63*tube_w_1_t_57;
-        const real tube_w_1_t_69 = tube_w_1_t_59*tube_w_1_t_64 + tube_w_1_t_60*tube_w_1_t_65 +
-            tube_w_1_t_61*tube_w_1_t_66 + tube_w_1_t_62*tube_w_1_t_68 -
-            tube_w_1_t_2*tube_w_1_t_67;
-        const real tube_w_1_t_70 = tube_w_1_t_59 - tube_w_1_t_64*tube_w_1_t_69;
-        const real tube_w_1_t_71 = tube_w_1_t_60 - tube_w_1_t_65*tube_w_1_t_69;
-        const real tube_w_1_t_72 = tube_w_1_t_61 - tube_w_1_t_66*tube_w_1_t_69;
-        const real tube_w_1_t_73 = tube_w_1_t_2 + tube_w_1_t_67*tube_w_1_t_69;
-        const real tube_w_1_t_74 = tube_w_1_t_62 - tube_w_1_t_68*tube_w_1_t_69;
-        const real tube_w_1_t_75 = root(tube_w_1_t_70*tube_w_1_t_70 + tube_w_1_t_71*tube_w_1_t_71
-            + tube_w_1_t_72*tube_w_1_t_72 + tube_w_1_t_73*tube_w_1_t_73 +
-            tube_w_1_t_74*tube_w_1_t_74);
-        /* (tube-eta_1) rate at which the joints turn along moment direction 1 */
-        const real tube_omega_in_axes2_y = axis_y_tube_axes2_x*omega_x +
-            axis_y_tube_axes2_y*omega_y + axis_y_tube_axes2_z*omega_z;
-        const real tube_omega_in_axes2_z = axis_z_tube_axes2_x*omega_x +
-            axis_z_tube_axes2_y*omega_y + axis_z_tube_axes2_z*omega_z;
-        const real tube_eta_1 = tube_n_m1_in_axes2_z*tube_omega_in_axes2_z -
-            tube_end_p1_in_axes2_z*tube_omega_in_axes2_y;
-        /* (tube-eta_2) rate at which the joints turn along moment direction 2 */
-        const real tube_omega_in_axes2_x = axis_x_tube_axes2_x*omega_x +
-            axis_x_tube_axes2_y*omega_y + axis_x_tube_axes2_z*omega_z;
-        const real tube_eta_2 = tube_n_m2_in_axes2_y*tube_omega_in_axes2_y -
-            tube_end_p2_in_axes2_y*tube_omega_in_axes2_x;
-        /* (tube-eta_3) rate at which the joints turn along moment direction 3 */
-        const real tube_eta_3 = tube_n_m3_in_axes2_z*tube_omega_in_axes2_z -
-            tube_end_p3_in_axes2_z*tube_omega_in_axes2_x;
-        /* (tube-qd_1) rate of joint 1 */
-        const real inv_tube_w_1_t_75 = 1/tube_w_1_t_75;
-        const real tube_qd_1_t = inv_tube_w_1_t_75*tube_w_1_t_70;
-        const real tube_qd_1_t_2 = inv_tube_w_1_t_75*tube_w_1_t_71;
-        const real tube_qd_1_t_3 = inv_tube_w_1_t_75*tube_w_1_t_72;
-        const real tube_qd_1_t_4 = inv_tube_w_1_t_75*tube_w_1_t_73;
-        const real tube_qd_1_t_5 = inv_tube_w_1_t_75*tube_w_1_t_74;
-        const real tube_qd_1_t_6 = R(1.35)*tube_eta_1;
-        const real tube_qd_1_t_7 = R(1.35)*tube_eta_2;
-        const real tube_qd_1_t_8 = R(1.35)*tube_eta_3;
-        const real tube_qd_1 = inv_tube_w_1_t_75*(tube_S_dot_in_axes2_y*tube_qd_1_t +
-            tube_S_dot_in_axes2_z*tube_qd_1_t_2 + tube_qd_1_t_3*tube_qd_1_t_6 +
-            tube_qd_1_t_4*tube_qd_1_t_7 + tube_qd_1_t_5*tube_qd_1_t_8);
-        /* (tube-qd_2) rate of joint 2 */
-        const real tube_qd_2_t = inv_tube_w_1_t_63*(tube_S_dot_in_axes2_y*tube_w_1_t_64 +
-            tube_S_dot_in_axes2_z*tube_w_1_t_65 + tube_qd_1_t_6*tube_w_1_t_66 +
-            tube_qd_1_t_8*tube_w_1_t_68 - tube_qd_1*tube_w_1_t_69 - tube_qd_1_t_7*tube_w_1_t_67);
-        const real tube_qd_2_t_2 = inv_tube_w_1_t_49*(inv_tube_w_1_t_49*tube_S_dot_in_axes2_z +
-            tube_S_dot_in_axes2_y*tube_w_1_t_50 + tube_qd_1*tube_w_1_t_58 +
-            tube_qd_1_t_6*tube_w_1_t_51 + tube_qd_1_t_8*tube_w_1_t_52 +
-            tube_qd_2_t*tube_w_1_t_53);
-        const real tube_qd_2_t_3 = tube_S_dot_in_axes2_y*tube_w_1_t_14 +
-            tube_qd_1_t_6*tube_w_1_t_15 + tube_qd_1_t_8*tube_w_1_t_16 +
-            tube_qd_2_t_2*tube_w_1_t_21 +
-            inv_tube_w_1_t_33*tube_w_1_t_17*(tube_S_dot_in_axes2_y*tube_w_1_t_34 +
-            tube_qd_1*tube_w_1_t_45 + tube_qd_1_t_6*tube_w_1_t_35 + tube_qd_1_t_8*tube_w_1_t_36 +
-            tube_qd_2_t*tube_w_1_t_41 - tube_qd_2_t_2*tube_w_1_t_37) - tube_qd_1*tube_w_1_t_29 -
-            tube_qd_2_t*tube_w_1_t_25;
-        const real tube_qd_2 = inv_tube_w_1_t_13*tube_qd_2_t_3;
-        /* (tube-omega_1) angular velocity of link 1 */
-        const real tube_omega_1_in_axes2_x = tube_qd_1*tube_s_2;
-        const real tube_omega_1_in_axes2_y = tube_c_2*tube_qd_1;
-        /* (tube-W_2) centripetal tensor of link 2 */
-        const real tube_W_2_in_axes2_yz = tube_omega_1_in_axes2_y*tube_qd_2;
-        const real tube_W_2_in_axes2_xz = tube_omega_1_in_axes2_x*tube_qd_2;
-        /* (tube-a_p) acceleration of the connection point without its centripetal part */
-        const real alpha_y = s[22*w + j];
-        const real alpha_z = s[23*w + j];
-        const real t_ddot_x = s[18*w + j];
-        const real tube_a_p_x = t_ddot_x + alpha_y*tube_q_z - alpha_z*tube_q_y;
-        const real alpha_x = s[21*w + j];
-        const real t_ddot_y = s[19*w + j];
-        const real tube_a_p_y = t_ddot_y + alpha_z*tube_q_x - alpha_x*tube_q_z;
-        const real t_ddot_z = s[20*w + j];
-        const real tube_a_p_z = t_ddot_z + alpha_x*tube_q_y - alpha_y*tube_q_x;
-        /* (tube-S_ddot) acceleration of the connection point */
-        const real tube_S_ddot_x = tube_a_p_x + omega_y*tube_S_dot_t_5 - omega_z*tube_S_dot_t_4;
-        const real tube_S_ddot_y = tube_a_p_y + omega_z*tube_S_dot_t_3 - omega_x*tube_S_dot_t_5;
-        const real tube_S_ddot_z = tube_a_p_z + omega_x*tube_S_dot_t_4 - omega_y*tube_S_dot_t_3;
+        values_tube v;
+        stage_tube_X(m, w, i, j, s, X, &v);
+        stage_tube_A_X(w, j, A, &v);
+        stage_tube_V_X(w, j, V, &v);
+        stage_tube_A_V_X(w, j, V, &v);
+        stage_tube_Z_joint_accelerations(&v);
         /* (tube-bias) acceleration of the connection point at zero joint accelerations */
-        const real tube_bias_t = 2*tube_S_dot_in_axes2_x;
-        const real tube_bias_in_axes2_y = tube_bias_t*tube_qd_2 +
-            tube_omega_1_in_axes2_x*tube_omega_1_in_axes2_y*tube_root_2;
-        const real tube_bias_in_axes2_z = 2*tube_W_2_in_axes2_xz*tube_root_2 -
-            tube_bias_t*tube_omega_1_in_axes2_y;
+        const real tube_bias_t = 2*v.tube_S_dot_in_axes2_x;
+        const real tube_bias_in_axes2_y = tube_bias_t*v.tube_qd_2 +
+            v.tube_omega_1_in_axes2_x*v.tube_omega_1_in_axes2_y*v.tube_q_3;
+        const real tube_bias_in_axes2_z = 2*v.tube_W_2_in_axes2_xz*v.tube_q_3 -
+            tube_bias_t*v.tube_omega_1_in_axes2_y;
         /* (tube-rel) acceleration of the connection point left to the joint accelerations */
-        const real tube_rel_in_axes2_x = axis_x_tube_axes2_x*tube_S_ddot_x +
-            axis_x_tube_axes2_y*tube_S_ddot_y + axis_x_tube_axes2_z*tube_S_ddot_z -
-            tube_root_2*(-tube_omega_1_in_axes2_y*tube_omega_1_in_axes2_y - tube_qd_2*tube_qd_2);
-        const real tube_rel_in_axes2_y = axis_y_tube_axes2_x*tube_S_ddot_x +
-            axis_y_tube_axes2_y*tube_S_ddot_y + axis_y_tube_axes2_z*tube_S_ddot_z -
+        const real tube_rel_in_axes2_x = v.axis_x_tube_axes2_x*v.tube_S_ddot_x +
+            v.axis_x_tube_axes2_y*v.tube_S_ddot_y + v.axis_x_tube_axes2_z*v.tube_S_ddot_z +
+            v.tube_q_3*(v.tube_omega_1_in_axes2_y*v.tube_omega_1_in_axes2_y +
+            v.tube_qd_2*v.tube_qd_2);
+        const real tube_rel_in_axes2_y = v.axis_y_tube_axes2_x*v.tube_S_ddot_x +
+            v.axis_y_tube_axes2_y*v.tube_S_ddot_y + v.axis_y_tube_axes2_z*v.tube_S_ddot_z -
             tube_bias_in_axes2_y;
-        const real tube_rel_in_axes2_z = axis_z_tube_axes2_x*tube_S_ddot_x +
-            axis_z_tube_axes2_y*tube_S_ddot_y + axis_z_tube_axes2_z*tube_S_ddot_z -
+        const real tube_rel_in_axes2_z = v.axis_z_tube_axes2_x*v.tube_S_ddot_x +
+            v.axis_z_tube_axes2_y*v.tube_S_ddot_y + v.axis_z_tube_axes2_z*v.tube_S_ddot_z -
             tube_bias_in_axes2_z;
-        /* (tube-nd_m1) rate of moment direction 1 */
-        const real tube_end_p1_in_axes2_x = tube_n_m1_t_12*tube_s_2 - tube_c_2*tube_n_m1_t_13;
-        const real tube_nd_m1_in_axes2_y = tube_end_p1_in_axes2_x*tube_omega_in_axes2_y -
-            tube_end_p1_in_axes2_x*tube_omega_1_in_axes2_y -
-            tube_n_m1_in_axes2_z*tube_omega_in_axes2_x;
-        const real tube_nd_m1_in_axes2_z = tube_end_p1_in_axes2_x*tube_omega_in_axes2_z -
-            tube_end_p1_in_axes2_x*tube_qd_2 - tube_end_p1_in_axes2_z*tube_omega_in_axes2_x;
-        /* (tube-nu_1) bias of the angular acceleration along moment direction 1 */
-        const real tube_nu_1_t = tube_omega_1_in_axes2_x - tube_omega_in_axes2_x;
-        const real tube_nu_1_t_2 = tube_omega_in_axes2_y - tube_omega_1_in_axes2_y;
-        const real tube_nu_1_t_3 = tube_omega_in_axes2_z - tube_qd_2;
-        const real tube_nu_1_t_4 = tube_nd_m1_in_axes2_y*tube_nu_1_t_2 +
-            tube_nd_m1_in_axes2_z*tube_nu_1_t_3 - tube_nu_1_t*(tube_end_p1_in_axes2_z*tube_qd_2 +
-            tube_n_m1_in_axes2_z*tube_omega_1_in_axes2_y);
-        const real tube_nu_1 = tube_nu_1_t_4 - tube_W_2_in_axes2_xz*tube_end_p1_in_axes2_z;
-        /* (tube-nd_m2) rate of moment direction 2 */
-        const real tube_end_p2_in_axes2_z = tube_c_1*tube_n_m2_t + tube_n_m2_t_2*tube_s_1;
-        const real tube_nd_m2_in_axes2_x = tube_end_p2_in_axes2_z*tube_omega_in_axes2_x -
-            tube_end_p2_in_axes2_z*tube_omega_1_in_axes2_x -
-            tube_n_m2_in_axes2_y*tube_omega_in_axes2_z;
-        const real tube_nd_m2_in_axes2_y = tube_end_p2_in_axes2_z*tube_omega_in_axes2_y -
-            tube_end_p2_in_axes2_y*tube_omega_in_axes2_z -
-            tube_end_p2_in_axes2_z*tube_omega_1_in_axes2_y;
-        /* (tube-nu_2) bias of the angular acceleration along moment direction 2 */
-        const real tube_nu_2_t = -tube_W_2_in_axes2_xz*tube_n_m2_in_axes2_y -
-            tube_W_2_in_axes2_yz*tube_end_p2_in_axes2_y;
-        const real tube_nu_2_t_2 = tube_nd_m2_in_axes2_x*tube_nu_1_t +
-            tube_nu_1_t_3*(-tube_end_p2_in_axes2_y*tube_omega_1_in_axes2_y -
-            tube_n_m2_in_axes2_y*tube_omega_1_in_axes2_x) - tube_nd_m2_in_axes2_y*tube_nu_1_t_2;
-        const real tube_nu_2 = -tube_nu_2_t - tube_nu_2_t_2;
-        /* (tube-nd_m3) rate of moment direction 3 */
-        const real tube_end_p3_in_axes2_y = tube_c_2*tube_n_m3_t_3 + tube_n_m3_t_4*tube_s_2;
-        const real tube_nd_m3_in_axes2_x = tube_end_p3_in_axes2_y*tube_omega_1_in_axes2_x +
-            tube_n_m3_in_axes2_z*tube_omega_in_axes2_y -
-            tube_end_p3_in_axes2_y*tube_omega_in_axes2_x;
-        const real tube_nd_m3_in_axes2_z = tube_end_p3_in_axes2_y*tube_qd_2 +
-            tube_end_p3_in_axes2_z*tube_omega_in_axes2_y -
-            tube_end_p3_in_axes2_y*tube_omega_in_axes2_z;
-        /* (tube-nu_3) bias of the angular acceleration along moment direction 3 */
-        const real tube_nu_3_t = tube_nd_m3_in_axes2_x*tube_nu_1_t +
-            tube_nu_1_t_2*(tube_end_p3_in_axes2_z*tube_qd_2 +
-            tube_n_m3_in_axes2_z*tube_omega_1_in_axes2_x) - tube_nd_m3_in_axes2_z*tube_nu_1_t_3;
-        const real tube_nu_3 = tube_W_2_in_axes2_yz*tube_end_p3_in_axes2_z - tube_nu_3_t;
         /* (tube-etad_1) acceleration with which the joints turn along moment direction 1 */
-        const real tube_alpha_in_axes2_y = alpha_x*axis_y_tube_axes2_x +
-            alpha_y*axis_y_tube_axes2_y + alpha_z*axis_y_tube_axes2_z;
-        const real tube_alpha_in_axes2_z = alpha_x*axis_z_tube_axes2_x +
-            alpha_y*axis_z_tube_axes2_y + alpha_z*axis_z_tube_axes2_z;
-        const real tube_etad_1_t = tube_alpha_in_axes2_y*tube_end_p1_in_axes2_z -
-            tube_alpha_in_axes2_z*tube_n_m1_in_axes2_z;
-        const real tube_etad_1 = tube_nu_1 - tube_etad_1_t;
+        const real tube_etad_1 = v.tube_nu_1 - v.tube_etad_1_t;
         /* (tube-etad_2) acceleration with which the joints turn along moment direction 2 */
-        const real tube_alpha_in_axes2_x = alpha_x*axis_x_tube_axes2_x +
-            alpha_y*axis_x_tube_axes2_y + alpha_z*axis_x_tube_axes2_z;
-        const real tube_etad_2_t = tube_alpha_in_axes2_x*tube_end_p2_in_axes2_y -
-            tube_alpha_in_axes2_y*tube_n_m2_in_axes2_y;
-        const real tube_etad_2 = tube_nu_2 - tube_etad_2_t;
+        const real tube_etad_2 = v.tube_nu_2 - v.tube_etad_2_t;
         /* (tube-etad_3) acceleration with which the joints turn along moment direction 3 */
-        const real tube_etad_3_t = tube_alpha_in_axes2_x*tube_end_p3_in_axes2_z -
-            tube_alpha_in_axes2_z*tube_n_m3_in_axes2_z;
-        const real tube_etad_3 = tube_nu_3 - tube_etad_3_t;
+        const real tube_etad_3 = v.tube_nu_3 - v.tube_etad_3_t;
         /* (tube-qdd_1) acceleration of joint 1 */
         const real tube_qdd_1_t = R(1.35)*tube_etad_1;
         const real tube_qdd_1_t_2 = R(1.35)*tube_etad_2;
         const real tube_qdd_1_t_3 = R(1.35)*tube_etad_3;
-        const real tube_qdd_1 = inv_tube_w_1_t_75*(tube_qd_1_t*tube_rel_in_axes2_y +
-            tube_qd_1_t_2*tube_rel_in_axes2_z + tube_qd_1_t_3*tube_qdd_1_t +
-            tube_qd_1_t_4*tube_qdd_1_t_2 + tube_qd_1_t_5*tube_qdd_1_t_3);
+        const real tube_qdd_1 = v.inv_tube_w_1_t_75*(v.tube_qd_1_t*tube_rel_in_axes2_y +
+            v.tube_qd_1_t_2*tube_rel_in_axes2_z + v.tube_qd_1_t_3*tube_qdd_1_t +
+            v.tube_qd_1_t_5*tube_qdd_1_t_3 - v.tube_qd_1_t_4*tube_qdd_1_t_2);
         /* (tube-qdd_2) acceleration of joint 2 */
-        const real tube_qdd_2_t = inv_tube_w_1_t_63*(tube_qdd_1_t*tube_w_1_t_66 +
-            tube_qdd_1_t_3*tube_w_1_t_68 + tube_rel_in_axes2_y*tube_w_1_t_64 +
-            tube_rel_in_axes2_z*tube_w_1_t_65 - tube_qdd_1*tube_w_1_t_69 -
-            tube_qdd_1_t_2*tube_w_1_t_67);
-        const real tube_qdd_2_t_2 = inv_tube_w_1_t_49*(inv_tube_w_1_t_49*tube_rel_in_axes2_z +
-            tube_qdd_1*tube_w_1_t_58 + tube_qdd_1_t*tube_w_1_t_51 + tube_qdd_1_t_3*tube_w_1_t_52 +
-            tube_qdd_2_t*tube_w_1_t_53 + tube_rel_in_axes2_y*tube_w_1_t_50);
-        const real tube_qdd_2_t_3 = tube_qdd_1_t*tube_w_1_t_15 + tube_qdd_1_t_3*tube_w_1_t_16 +
-            tube_qdd_2_t_2*tube_w_1_t_21 + tube_rel_in_axes2_y*tube_w_1_t_14 +
-            inv_tube_w_1_t_33*tube_w_1_t_17*(tube_qdd_1*tube_w_1_t_45 + tube_qdd_1_t*tube_w_1_t_35
-            + tube_qdd_1_t_3*tube_w_1_t_36 + tube_qdd_2_t*tube_w_1_t_41 +
-            tube_rel_in_axes2_y*tube_w_1_t_34 - tube_qdd_2_t_2*tube_w_1_t_37) -
-            tube_qdd_1*tube_w_1_t_29 - tube_qdd_2_t*tube_w_1_t_25;
-        const real tube_qdd_2 = inv_tube_w_1_t_13*tube_qdd_2_t_3;
+        const real tube_qdd_2_t = v.inv_tube_w_1_t_63*(tube_qdd_1_t*v.tube_w_1_t_66 +
+            tube_qdd_1_t_2*v.tube_w_1_t_67 + tube_qdd_1_t_3*v.tube_w_1_t_68 +
+            tube_rel_in_axes2_y*v.tube_w_1_t_64 + tube_rel_in_axes2_z*v.tube_w_1_t_65 -
+            tube_qdd_1*v.tube_w_1_t_69);
+        const real tube_qdd_2_t_2 = v.inv_tube_w_1_t_49*(v.inv_tube_w_1_t_49*tube_rel_in_axes2_z +
+            tube_qdd_1*v.tube_w_1_t_58 + tube_qdd_1_t*v.tube_w_1_t_51 +
+            tube_qdd_1_t_3*v.tube_w_1_t_52 + tube_qdd_2_t*v.tube_w_1_t_53 +
+            tube_rel_in_axes2_y*v.tube_w_1_t_50);
+        const real tube_qdd_2_t_3 = tube_qdd_1_t*v.tube_w_1_t_15 + tube_qdd_1_t_3*v.tube_w_1_t_16
+            + tube_qdd_2_t_2*v.tube_w_1_t_21 + tube_rel_in_axes2_y*v.tube_w_1_t_14 +
+            v.inv_tube_w_1_t_33*v.tube_w_1_t_17*(tube_qdd_1*v.tube_w_1_t_45 +
+            tube_qdd_1_t*v.tube_w_1_t_35 + tube_qdd_1_t_3*v.tube_w_1_t_36 +
+            tube_qdd_2_t*v.tube_w_1_t_41 + tube_rel_in_axes2_y*v.tube_w_1_t_34 -
+            tube_qdd_2_t_2*v.tube_w_1_t_37) - tube_qdd_1*v.tube_w_1_t_29 -
+            tube_qdd_2_t*v.tube_w_1_t_25;
+        const real tube_qdd_2 = v.inv_tube_w_1_t_13*tube_qdd_2_t_3;
         /* (tube-qdd_1) acceleration of joint 1 */
         o[0*count + k] = tube_qdd_1;
         /* (tube-qdd_2) acceleration of joint 2 */
@@ -9682,12 +7695,12 @@ INLINE void joint_accelerations_legs_tube(const prepared *m, size_t w, size_t le
         /* (tube-qdd_3) acceleration of joint 3 */
         o[2*count + k] = tube_rel_in_axes2_x;
         o[4*count + k] = tube_qdd_1 + (tube_qdd_2 + tube_rel_in_axes2_x);
-        o[3*count + k] = UNLESS(magnitude(tube_rho2_1) > LEAST_3) + UNLESS(magnitude(tube_rho2_2)
-            > LEAST_3) + UNLESS(magnitude(tube_f_c1_t) > LEAST_4) + UNLESS(magnitude(tube_size_c3)
-            > LEAST_4) + UNLESS(magnitude(tube_w_1_t_13) > LEAST_5) +
-            UNLESS(magnitude(tube_w_1_t_33) > LEAST_4) + UNLESS(magnitude(tube_w_1_t_49) >
-            LEAST_4) + UNLESS(magnitude(tube_w_1_t_63) > LEAST_5) +
-            UNLESS(magnitude(tube_w_1_t_75) > LEAST_5);
+        o[3*count + k] = UNLESS(magnitude(v.tube_root_1_t) > LEAST_3) +
+            UNLESS(magnitude(v.tube_q_3_t) > LEAST_3) + UNLESS(magnitude(v.tube_f_c1_t) > LEAST_4)
+            + UNLESS(magnitude(v.tube_size_c3) > LEAST_4) + UNLESS(magnitude(v.tube_w_1_t_13) >
+            LEAST_5) + UNLESS(magnitude(v.tube_w_1_t_33) > LEAST_4) +
+            UNLESS(magnitude(v.tube_w_1_t_49) > LEAST_4) + UNLESS(magnitude(v.tube_w_1_t_63) >
+            LEAST_5) + UNLESS(magnitude(v.tube_w_1_t_75) > LEAST_5);
     }
 }
 
@@ -9706,15 +7719,15 @@ INLINE void joint_accelerations_place_tube(size_t w, size_t count, const real *o
 INLINE void joint_accelerations_run(const prepared *m, const real *X, const real *V, const real
     *A, real *qdd, verdict *t)
 {
-    real s[24] = {0};
+    real s[9] = {0};
     real o_ups[5*LEGS(LEGS_OF_ups)] = {0};
     real o_tube[5*LEGS(LEGS_OF_tube)] = {0};
-    joint_accelerations_before(1, X, V, A, s, t);
-    joint_accelerations_legs_ups(m, 1, 0, 1, s, 0, LEGS(LEGS_OF_ups), o_ups);
+    joint_accelerations_before(m, 1, X, s, t);
+    joint_accelerations_legs_ups(m, 1, 0, 1, s, 0, LEGS(LEGS_OF_ups), X, V, A, o_ups);
+    joint_accelerations_legs_tube(m, 1, 0, 1, s, 0, LEGS(LEGS_OF_tube), X, V, A, o_tube);
     for (size_t leg = 0; leg < LEGS_OF_ups; ++leg) {
         joint_accelerations_place_ups(1, LEGS(LEGS_OF_ups), o_ups, leg, leg, qdd, t);
     }
-    joint_accelerations_legs_tube(m, 1, 0, 1, s, 0, LEGS(LEGS_OF_tube), o_tube);
     for (size_t leg = 0; leg < LEGS_OF_tube; ++leg) {
         joint_accelerations_place_tube(1, LEGS(LEGS_OF_tube), o_tube, leg, qdd, t);
     }
@@ -9723,235 +7736,149 @@ INLINE void joint_accelerations_run(const prepared *m, const real *X, const real
 INLINE void joint_accelerations_run_lanes(const prepared *m, const real *X, const real *V, const
     real *A, real *qdd, verdict *t)
 {
-    real s[24*LANES];
+    real s[9*LANES];
     real o_ups[5*LANES];
     real o_tube[5*LANES];
-    joint_accelerations_before(LANES, X, V, A, s, t);
+    joint_accelerations_before(m, LANES, X, s, t);
     for (size_t leg = 0; leg < LEGS_OF_ups; ++leg) {
-        joint_accelerations_legs_ups(m, LANES, leg, 0, s, 1, LANES, o_ups);
+        joint_accelerations_legs_ups(m, LANES, leg, 0, s, 1, LANES, X, V, A, o_ups);
         joint_accelerations_place_ups(LANES, LANES, o_ups, leg, 0, qdd, t);
     }
     for (size_t leg = 0; leg < LEGS_OF_tube; ++leg) {
-        joint_accelerations_legs_tube(m, LANES, leg, 0, s, 1, LANES, o_tube);
+        joint_accelerations_legs_tube(m, LANES, leg, 0, s, 1, LANES, X, V, A, o_tube);
         joint_accelerations_place_tube(LANES, LANES, o_tube, 0, qdd, t);
     }
 }
 
 /* ---- constraints ---- */
-INLINE void constraints_before(size_t w, const real *X, real *s, verdict *t)
+INLINE void constraints_before(const prepared *m, size_t w, const real *X, real *s, verdict *t)
 {
     for (size_t k = 0; k < w; ++k) {
-        /* X: named entries */
-        const real X_0 = X[0*w + k];
-        const real t_x = X_0;
-        const real X_1 = X[1*w + k];
-        const real t_y = X_1;
-        const real X_2 = X[2*w + k];
-        const real t_z = X_2;
-        const real X_3 = X[3*w + k];
-        const real X_4 = X[4*w + k];
-        const real X_5 = X[5*w + k];
-        const real X_6 = X[6*w + k];
-        const real quaternion_norm2 = X_3*X_3 + X_4*X_4 + X_5*X_5 + X_6*X_6;
-        const real quaternion_scale = 2/quaternion_norm2;
-        const real quaternion_sx = X_3*quaternion_scale;
-        const real quaternion_sy = X_4*quaternion_scale;
-        const real quaternion_sz = X_5*quaternion_scale;
-        const real quaternion_wx = X_6*quaternion_sx;
-        const real quaternion_wy = X_6*quaternion_sy;
-        const real quaternion_wz = X_6*quaternion_sz;
-        const real quaternion_xx = X_3*quaternion_sx;
-        const real quaternion_xy = X_3*quaternion_sy;
-        const real quaternion_xz = X_3*quaternion_sz;
-        const real quaternion_yy = X_4*quaternion_sy;
-        const real quaternion_yz = X_4*quaternion_sz;
-        const real quaternion_zz = X_5*quaternion_sz;
-        const real R_xx = 1 - quaternion_yy - quaternion_zz;
-        const real R_xy = quaternion_xy - quaternion_wz;
-        const real R_xz = quaternion_wy + quaternion_xz;
-        const real R_yx = quaternion_wz + quaternion_xy;
-        const real R_yy = 1 - quaternion_xx - quaternion_zz;
-        const real R_yz = quaternion_yz - quaternion_wx;
-        const real R_zx = quaternion_xz - quaternion_wy;
-        const real R_zy = quaternion_wx + quaternion_yz;
-        const real R_zz = 1 - quaternion_xx - quaternion_yy;
-        s[0*w + k] = t_x;
-        s[1*w + k] = t_y;
-        s[2*w + k] = t_z;
-        s[3*w + k] = R_xx;
-        s[4*w + k] = R_xy;
-        s[5*w + k] = R_xz;
-        s[6*w + k] = R_yx;
-        s[7*w + k] = R_yy;
-        s[8*w + k] = R_yz;
-        s[9*w + k] = R_zx;
-        s[10*w + k] = R_zy;
-        s[11*w + k] = R_zz;
-        t->invalid[k] += UNLESS(is_finite(quaternion_scale)) + UNLESS(quaternion_scale > 0);
+        values v;
+        stage_X(m, w, k, X, &v);
+        s[0*w + k] = v.R_xx;
+        s[1*w + k] = v.R_xy;
+        s[2*w + k] = v.R_xz;
+        s[3*w + k] = v.R_yx;
+        s[4*w + k] = v.R_yy;
+        s[5*w + k] = v.R_yz;
+        s[6*w + k] = v.R_zx;
+        s[7*w + k] = v.R_zy;
+        s[8*w + k] = v.R_zz;
+        t->invalid[k] += UNLESS(is_finite(v.quaternion_scale)) + UNLESS(v.quaternion_scale > 0);
     }
 }
 
 INLINE void constraints_legs_tube(const prepared *m, size_t w, size_t leg, size_t legs, const real
-    *s, size_t states, size_t count, real *o)
+    *s, size_t states, size_t count, const real *X, real *o)
 {
     for (size_t k = 0; k < count; ++k) {
         const size_t i = leg + legs*k;
         const size_t j = states*k;
+        values_tube v;
+        stage_tube_X(m, w, i, j, s, X, &v);
         /* (tube-S) from the base point to the connection point */
-        const real R_xx = s[3*w + j];
-        const real R_xy = s[4*w + j];
-        const real R_xz = s[5*w + j];
-        const real t_x = s[0*w + j];
+        const real R_xx = s[0*w + j];
+        const real R_xy = s[1*w + j];
+        const real R_xz = s[2*w + j];
+        const real t_x = X[0*w + j];
         const real tube_base_point_x = m->tube_base_point_x[i];
         const real tube_platform_point_x = m->tube_platform_point_x[i];
         const real tube_platform_point_y = m->tube_platform_point_y[i];
         const real tube_platform_point_z = m->tube_platform_point_z[i];
         const real tube_S_x = t_x + R_xx*tube_platform_point_x + R_xy*tube_platform_point_y +
             R_xz*tube_platform_point_z - tube_base_point_x;
-        const real R_yx = s[6*w + j];
-        const real R_yy = s[7*w + j];
-        const real R_yz = s[8*w + j];
-        const real t_y = s[1*w + j];
+        const real R_yx = s[3*w + j];
+        const real R_yy = s[4*w + j];
+        const real R_yz = s[5*w + j];
+        const real t_y = X[1*w + j];
         const real tube_base_point_y = m->tube_base_point_y[i];
         const real tube_S_y = t_y + R_yx*tube_platform_point_x + R_yy*tube_platform_point_y +
             R_yz*tube_platform_point_z - tube_base_point_y;
-        const real R_zx = s[9*w + j];
-        const real R_zy = s[10*w + j];
-        const real R_zz = s[11*w + j];
-        const real t_z = s[2*w + j];
+        const real R_zx = s[6*w + j];
+        const real R_zy = s[7*w + j];
+        const real R_zz = s[8*w + j];
+        const real t_z = X[2*w + j];
         const real tube_base_point_z = m->tube_base_point_z[i];
         const real tube_S_z = t_z + R_zx*tube_platform_point_x + R_zy*tube_platform_point_y +
             R_zz*tube_platform_point_z - tube_base_point_z;
-        /* (tube-px_1) component along the reference direction */
         const real tube_base_frame_xx = m->tube_base_frame_xx[i];
         const real tube_base_frame_yx = m->tube_base_frame_yx[i];
         const real tube_base_frame_zx = m->tube_base_frame_zx[i];
-        const real tube_px_1 = tube_S_x*tube_base_frame_xx + tube_S_y*tube_base_frame_yx +
+        const real tube_S_in_turn1_x = tube_S_x*tube_base_frame_xx + tube_S_y*tube_base_frame_yx +
             tube_S_z*tube_base_frame_zx;
-        /* (tube-py_1) component across the reference direction */
         const real tube_base_frame_xy = m->tube_base_frame_xy[i];
         const real tube_base_frame_yy = m->tube_base_frame_yy[i];
         const real tube_base_frame_zy = m->tube_base_frame_zy[i];
-        const real tube_py_1 = tube_S_x*tube_base_frame_xy + tube_S_y*tube_base_frame_yy +
+        const real tube_S_in_turn1_y = tube_S_x*tube_base_frame_xy + tube_S_y*tube_base_frame_yy +
             tube_S_z*tube_base_frame_zy;
-        /* (tube-rho2_1) squared amplitude */
-        const real tube_rho2_1 = tube_px_1*tube_px_1 + tube_py_1*tube_py_1;
-        /* (tube-root_1) amplitude, with the sign of the branch */
-        const real tube_branch_1 = m->tube_branch_1[i];
-        const real tube_root_1 = tube_branch_1*root(tube_rho2_1);
-        /* (tube-c_1) cosine of the angle of joint 1 from its reference direction */
-        const real inv_tube_root_1 = 1/tube_root_1;
-        const real tube_c_1 = -inv_tube_root_1*tube_py_1;
-        /* (tube-s_1) sine of the angle of joint 1 from its reference direction */
-        const real tube_s_1 = inv_tube_root_1*tube_px_1;
-        /* (tube-xi_1) the vector from joint 1 to the connection point, resolved along link 1 */
         const real tube_base_frame_xz = m->tube_base_frame_xz[i];
         const real tube_base_frame_yz = m->tube_base_frame_yz[i];
         const real tube_base_frame_zz = m->tube_base_frame_zz[i];
-        const real tube_xi_1_in_axes1_z = tube_S_x*tube_base_frame_xz +
-            tube_S_y*tube_base_frame_yz + tube_S_z*tube_base_frame_zz;
-        /* (tube-rho2_2) squared amplitude */
-        const real tube_rho2_2 = tube_rho2_1 + tube_xi_1_in_axes1_z*tube_xi_1_in_axes1_z;
-        /* (tube-root_2) amplitude, with the sign of the branch */
+        const real tube_S_in_turn1_z = tube_S_x*tube_base_frame_xz + tube_S_y*tube_base_frame_yz +
+            tube_S_z*tube_base_frame_zz;
+        /* (tube-root_1) amplitude, the length across axis 1, with the sign of the branch */
+        const real tube_root_1_t = tube_S_in_turn1_x*tube_S_in_turn1_x +
+            tube_S_in_turn1_y*tube_S_in_turn1_y;
+        const real tube_branch_1 = m->tube_branch_1[i];
+        const real tube_root_1 = tube_branch_1*root(tube_root_1_t);
+        /* (tube-c_1) cosine of the angle of joint 1 from its reference direction */
+        const real inv_tube_root_1 = 1/tube_root_1;
+        const real tube_c_1 = inv_tube_root_1*tube_S_in_turn1_x;
+        /* (tube-s_1) sine of the angle of joint 1 from its reference direction */
+        const real tube_s_1 = inv_tube_root_1*tube_S_in_turn1_y;
+        /* (tube-q_3) displacement of joint 3 */
+        const real tube_q_3_t = tube_S_in_turn1_z*tube_S_in_turn1_z + tube_root_1_t;
         const real tube_branch_2 = m->tube_branch_2[i];
-        const real tube_root_2 = tube_branch_2*root(tube_rho2_2);
+        const real tube_q_3 = tube_branch_2*root(tube_q_3_t);
         /* (tube-c_2) cosine of the angle of joint 2 from its reference direction */
-        const real inv_tube_root_2 = 1/tube_root_2;
-        const real tube_c_2 = -inv_tube_root_2*tube_root_1;
-        /* (tube-s_2) sine of the angle of joint 2 from its reference direction */
-        const real tube_s_2 = inv_tube_root_2*tube_xi_1_in_axes1_z;
+        const real inv_tube_q_3 = 1/tube_q_3;
+        const real tube_c_2 = inv_tube_q_3*tube_root_1;
         /* (tube-n_m1) direction 1 of the moment that the platform joint transmits */
-        const real tube_n_m1_t = R_xx*tube_base_frame_xx + R_yx*tube_base_frame_yx +
-            R_zx*tube_base_frame_zx;
-        const real tube_n_m1_t_2 = R_xy*tube_base_frame_xx + R_yy*tube_base_frame_yx +
-            R_zy*tube_base_frame_zx;
-        const real tube_n_m1_t_3 = R_xz*tube_base_frame_xx + R_yz*tube_base_frame_yx +
-            R_zz*tube_base_frame_zx;
-        const real tube_n_m1_t_4 = R_xx*tube_base_frame_xy + R_yx*tube_base_frame_yy +
-            R_zx*tube_base_frame_zy;
-        const real tube_n_m1_t_5 = R_xy*tube_base_frame_xy + R_yy*tube_base_frame_yy +
-            R_zy*tube_base_frame_zy;
-        const real tube_n_m1_t_6 = R_xz*tube_base_frame_xy + R_yz*tube_base_frame_yy +
-            R_zz*tube_base_frame_zy;
-        const real tube_n_m1_t_7 = R_xx*tube_base_frame_xz + R_yx*tube_base_frame_yz +
-            R_zx*tube_base_frame_zz;
-        const real tube_n_m1_t_8 = R_xy*tube_base_frame_xz + R_yy*tube_base_frame_yz +
-            R_zy*tube_base_frame_zz;
-        const real tube_n_m1_t_9 = R_xz*tube_base_frame_xz + R_yz*tube_base_frame_yz +
-            R_zz*tube_base_frame_zz;
-        const real tube_platform_joint_rotation_yx = m->tube_platform_joint_rotation_yx[i];
-        const real tube_platform_joint_rotation_yy = m->tube_platform_joint_rotation_yy[i];
-        const real tube_platform_joint_rotation_yz = m->tube_platform_joint_rotation_yz[i];
-        const real tube_n_m1_t_10 = tube_n_m1_t*tube_platform_joint_rotation_yx +
-            tube_n_m1_t_2*tube_platform_joint_rotation_yy +
-            tube_n_m1_t_3*tube_platform_joint_rotation_yz;
-        const real tube_n_m1_t_11 = tube_n_m1_t_4*tube_platform_joint_rotation_yx +
-            tube_n_m1_t_5*tube_platform_joint_rotation_yy +
-            tube_n_m1_t_6*tube_platform_joint_rotation_yz;
-        const real tube_n_m1_t_12 = tube_n_m1_t_7*tube_platform_joint_rotation_yx +
-            tube_n_m1_t_8*tube_platform_joint_rotation_yy +
-            tube_n_m1_t_9*tube_platform_joint_rotation_yz;
-        const real tube_n_m1_t_13 = tube_n_m1_t_10*tube_s_1 - tube_c_1*tube_n_m1_t_11;
-        const real tube_n_m1_in_axes2_z = tube_c_2*tube_n_m1_t_12 + tube_n_m1_t_13*tube_s_2;
-        const real tube_n_m1_in_axes1_z = -tube_c_2*(tube_c_1*tube_n_m1_t_10 +
-            tube_n_m1_t_11*tube_s_1);
+        const real tube_e_1_in_axes2_x = inv_tube_q_3*tube_S_in_turn1_z;
+        const real tube_n_m1_t_13 = tube_c_1*v.tube_n_m1_t_10 + v.tube_n_m1_t_11*tube_s_1;
+        const real tube_n_m1_in_axes2_z = tube_e_1_in_axes2_x*tube_n_m1_t_13 -
+            tube_c_2*v.tube_n_m1_t_12;
+        const real tube_n_m1_in_axes1_z = tube_c_2*(tube_c_1*v.tube_n_m1_t_11 -
+            v.tube_n_m1_t_10*tube_s_1);
         /* (tube-n_m2) direction 2 of the moment that the platform joint transmits */
-        const real tube_platform_joint_rotation_zx = m->tube_platform_joint_rotation_zx[i];
-        const real tube_platform_joint_rotation_zy = m->tube_platform_joint_rotation_zy[i];
-        const real tube_platform_joint_rotation_zz = m->tube_platform_joint_rotation_zz[i];
-        const real tube_n_m2_t = tube_n_m1_t*tube_platform_joint_rotation_zx +
-            tube_n_m1_t_2*tube_platform_joint_rotation_zy +
-            tube_n_m1_t_3*tube_platform_joint_rotation_zz;
-        const real tube_n_m2_t_2 = tube_n_m1_t_4*tube_platform_joint_rotation_zx +
-            tube_n_m1_t_5*tube_platform_joint_rotation_zy +
-            tube_n_m1_t_6*tube_platform_joint_rotation_zz;
-        const real tube_n_m2_t_3 = tube_n_m1_t_7*tube_platform_joint_rotation_zx +
-            tube_n_m1_t_8*tube_platform_joint_rotation_zy +
-            tube_n_m1_t_9*tube_platform_joint_rotation_zz;
-        const real tube_n_m2_t_4 = tube_n_m2_t*tube_s_1 - tube_c_1*tube_n_m2_t_2;
-        const real tube_n_m2_in_axes1_z = tube_c_2*(tube_n_m2_t_3*tube_s_2 -
-            tube_c_2*tube_n_m2_t_4) - tube_s_2*(tube_c_2*tube_n_m2_t_3 + tube_n_m2_t_4*tube_s_2);
+        const real tube_n_m2_t_4 = tube_c_1*v.tube_n_m2_t + v.tube_n_m2_t_2*tube_s_1;
+        const real tube_n_m2_t_5 = tube_c_2*(tube_c_2*tube_n_m2_t_4 +
+            tube_e_1_in_axes2_x*v.tube_n_m2_t_3) +
+            tube_e_1_in_axes2_x*(tube_e_1_in_axes2_x*tube_n_m2_t_4 - tube_c_2*v.tube_n_m2_t_3);
         /* (tube-n_m3) direction 3 of the moment that the platform joint transmits */
-        const real tube_platform_joint_rotation_xx = m->tube_platform_joint_rotation_xx[i];
-        const real tube_platform_joint_rotation_xy = m->tube_platform_joint_rotation_xy[i];
-        const real tube_platform_joint_rotation_xz = m->tube_platform_joint_rotation_xz[i];
-        const real tube_n_m3_t = tube_n_m1_t*tube_platform_joint_rotation_xx +
-            tube_n_m1_t_2*tube_platform_joint_rotation_xy +
-            tube_n_m1_t_3*tube_platform_joint_rotation_xz;
-        const real tube_n_m3_t_2 = tube_n_m1_t_4*tube_platform_joint_rotation_xx +
-            tube_n_m1_t_5*tube_platform_joint_rotation_xy +
-            tube_n_m1_t_6*tube_platform_joint_rotation_xz;
-        const real tube_n_m3_t_3 = tube_n_m1_t_7*tube_platform_joint_rotation_xx +
-            tube_n_m1_t_8*tube_platform_joint_rotation_xy +
-            tube_n_m1_t_9*tube_platform_joint_rotation_xz;
-        const real tube_n_m3_t_4 = tube_n_m3_t*tube_s_1 - tube_c_1*tube_n_m3_t_2;
-        const real tube_n_m3_in_axes2_z = tube_n_m3_t_3*tube_s_2 - tube_c_2*tube_n_m3_t_4;
-        const real tube_n_m3_t_5 = tube_s_2*(tube_c_1*tube_n_m3_t + tube_n_m3_t_2*tube_s_1);
+        const real tube_n_m3_t_4 = tube_c_1*v.tube_n_m3_t + v.tube_n_m3_t_2*tube_s_1;
+        const real tube_n_m3_in_axes2_z = tube_c_2*tube_n_m3_t_4 +
+            tube_e_1_in_axes2_x*v.tube_n_m3_t_3;
+        const real tube_n_m3_t_5 = tube_e_1_in_axes2_x*(tube_c_1*v.tube_n_m3_t_2 -
+            v.tube_n_m3_t*tube_s_1);
         /* (tube-f_c1) force part of constraint wrench 1 */
         const real tube_f_c1_t = tube_n_m1_in_axes1_z*tube_n_m3_in_axes2_z +
             tube_n_m1_in_axes2_z*tube_n_m3_t_5;
         /* (tube-m1_c3) moment part 1 of constraint wrench 3 */
         const real inv_tube_f_c1_t = 1/tube_f_c1_t;
-        const real tube_m1_c3_t = inv_tube_f_c1_t*tube_n_m2_in_axes1_z*tube_n_m3_in_axes2_z;
+        const real tube_m1_c3 = inv_tube_f_c1_t*tube_n_m2_t_5*tube_n_m3_in_axes2_z;
         /* (tube-m3_c3) moment part 3 of constraint wrench 3 */
-        const real tube_m3_c3 = inv_tube_f_c1_t*tube_n_m1_in_axes2_z*tube_n_m2_in_axes1_z;
+        const real tube_m3_c3_t = inv_tube_f_c1_t*tube_n_m1_in_axes2_z*tube_n_m2_t_5;
         /* (tube-size_c3) size of the moment */
-        const real tube_size_c3 = root(1 + tube_m1_c3_t*tube_m1_c3_t + tube_m3_c3*tube_m3_c3);
+        const real tube_size_c3 = root(1 + tube_m1_c3*tube_m1_c3 + tube_m3_c3_t*tube_m3_c3_t);
         /* (tube-mu2_c3) moment along direction 2 that goes with it */
         const real tube_mu2_c3 = 1/tube_size_c3;
         /* (tube-phi_c1) loop-closure residual along the constraint force */
-        const real tube_end_p1_in_axes2_x = tube_n_m1_t_12*tube_s_2 - tube_c_2*tube_n_m1_t_13;
-        const real tube_end_p3_in_axes2_y = tube_c_2*tube_n_m3_t_3 + tube_n_m3_t_4*tube_s_2;
-        const real tube_phi_c1 = inv_tube_f_c1_t*tube_end_p1_in_axes2_x*tube_n_m3_t_5*tube_root_2
-            - inv_tube_f_c1_t*tube_end_p3_in_axes2_y*tube_n_m1_in_axes1_z*tube_root_2;
+        const real tube_end_p1_in_axes2_x = tube_c_2*tube_n_m1_t_13 +
+            tube_e_1_in_axes2_x*v.tube_n_m1_t_12;
+        const real tube_end_p3_in_axes2_y = tube_e_1_in_axes2_x*tube_n_m3_t_4 -
+            tube_c_2*v.tube_n_m3_t_3;
+        const real tube_phi_c1 = inv_tube_f_c1_t*tube_end_p1_in_axes2_x*tube_n_m3_t_5*tube_q_3 -
+            inv_tube_f_c1_t*tube_end_p3_in_axes2_y*tube_n_m1_in_axes1_z*tube_q_3;
         /* (tube-phi_c2) loop-closure residual along the constraint force */
         const real tube_phi_c2 =
             inv_tube_f_c1_t*tube_end_p1_in_axes2_x*tube_n_m3_in_axes2_z*tube_root_1 +
             inv_tube_f_c1_t*tube_end_p3_in_axes2_y*tube_n_m1_in_axes2_z*tube_root_1;
         /* (tube-phi_c3) loop-closure residual about the constraint moment */
-        const real tube_phi_c3 = tube_end_p1_in_axes2_x*tube_m1_c3_t*tube_mu2_c3 +
-            tube_end_p3_in_axes2_y*tube_m3_c3*tube_mu2_c3 - tube_mu2_c3*(tube_c_1*tube_n_m2_t +
-            tube_n_m2_t_2*tube_s_1);
+        const real tube_phi_c3 = -tube_mu2_c3*(tube_c_1*v.tube_n_m2_t_2 - v.tube_n_m2_t*tube_s_1)
+            - tube_end_p1_in_axes2_x*tube_m1_c3*tube_mu2_c3 -
+            tube_end_p3_in_axes2_y*tube_m3_c3_t*tube_mu2_c3;
         /* (tube-phi_c1) loop-closure residual along the constraint force */
         o[0*count + k] = tube_phi_c1;
         /* (tube-phi_c2) loop-closure residual along the constraint force */
@@ -9959,7 +7886,7 @@ INLINE void constraints_legs_tube(const prepared *m, size_t w, size_t leg, size_
         /* (tube-phi_c3) loop-closure residual about the constraint moment */
         o[2*count + k] = tube_phi_c3;
         o[4*count + k] = tube_phi_c1 + (tube_phi_c2 + tube_phi_c3);
-        o[3*count + k] = UNLESS(magnitude(tube_rho2_1) > LEAST_3) + UNLESS(magnitude(tube_rho2_2)
+        o[3*count + k] = UNLESS(magnitude(tube_root_1_t) > LEAST_3) + UNLESS(magnitude(tube_q_3_t)
             > LEAST_3) + UNLESS(magnitude(tube_f_c1_t) > LEAST_4) + UNLESS(magnitude(tube_size_c3)
             > LEAST_4);
     }
@@ -9979,10 +7906,10 @@ INLINE void constraints_place_tube(size_t w, size_t count, const real *o, size_t
 
 INLINE void constraints_run(const prepared *m, const real *X, real *constraints, verdict *t)
 {
-    real s[12] = {0};
+    real s[9] = {0};
     real o_tube[5*LEGS(LEGS_OF_tube)] = {0};
-    constraints_before(1, X, s, t);
-    constraints_legs_tube(m, 1, 0, 1, s, 0, LEGS(LEGS_OF_tube), o_tube);
+    constraints_before(m, 1, X, s, t);
+    constraints_legs_tube(m, 1, 0, 1, s, 0, LEGS(LEGS_OF_tube), X, o_tube);
     for (size_t leg = 0; leg < LEGS_OF_tube; ++leg) {
         constraints_place_tube(1, LEGS(LEGS_OF_tube), o_tube, leg, constraints, t);
     }
@@ -9990,276 +7917,49 @@ INLINE void constraints_run(const prepared *m, const real *X, real *constraints,
 
 INLINE void constraints_run_lanes(const prepared *m, const real *X, real *constraints, verdict *t)
 {
-    real s[12*LANES];
+    real s[9*LANES];
     real o_tube[5*LANES];
-    constraints_before(LANES, X, s, t);
+    constraints_before(m, LANES, X, s, t);
     for (size_t leg = 0; leg < LEGS_OF_tube; ++leg) {
-        constraints_legs_tube(m, LANES, leg, 0, s, 1, LANES, o_tube);
+        constraints_legs_tube(m, LANES, leg, 0, s, 1, LANES, X, o_tube);
         constraints_place_tube(LANES, LANES, o_tube, 0, constraints, t);
     }
 }
 
 /* ---- legs ---- */
-INLINE void legs_before(size_t w, const real *X, const real *V, const real *A, real *s, verdict
-    *t)
+INLINE void legs_before(const prepared *m, size_t w, const real *X, real *s, verdict *t)
 {
     for (size_t k = 0; k < w; ++k) {
-        /* X: named entries */
-        const real X_0 = X[0*w + k];
-        const real t_x = X_0;
-        const real X_1 = X[1*w + k];
-        const real t_y = X_1;
-        const real X_2 = X[2*w + k];
-        const real t_z = X_2;
-        const real X_3 = X[3*w + k];
-        const real X_4 = X[4*w + k];
-        const real X_5 = X[5*w + k];
-        const real X_6 = X[6*w + k];
-        const real quaternion_norm2 = X_3*X_3 + X_4*X_4 + X_5*X_5 + X_6*X_6;
-        const real quaternion_scale = 2/quaternion_norm2;
-        const real quaternion_sx = X_3*quaternion_scale;
-        const real quaternion_sy = X_4*quaternion_scale;
-        const real quaternion_sz = X_5*quaternion_scale;
-        const real quaternion_wx = X_6*quaternion_sx;
-        const real quaternion_wy = X_6*quaternion_sy;
-        const real quaternion_wz = X_6*quaternion_sz;
-        const real quaternion_xx = X_3*quaternion_sx;
-        const real quaternion_xy = X_3*quaternion_sy;
-        const real quaternion_xz = X_3*quaternion_sz;
-        const real quaternion_yy = X_4*quaternion_sy;
-        const real quaternion_yz = X_4*quaternion_sz;
-        const real quaternion_zz = X_5*quaternion_sz;
-        const real R_xx = 1 - quaternion_yy - quaternion_zz;
-        const real R_xy = quaternion_xy - quaternion_wz;
-        const real R_xz = quaternion_wy + quaternion_xz;
-        const real R_yx = quaternion_wz + quaternion_xy;
-        const real R_yy = 1 - quaternion_xx - quaternion_zz;
-        const real R_yz = quaternion_yz - quaternion_wx;
-        const real R_zx = quaternion_xz - quaternion_wy;
-        const real R_zy = quaternion_wx + quaternion_yz;
-        const real R_zz = 1 - quaternion_xx - quaternion_yy;
-        /* V: named entries */
-        const real V_0 = V[0*w + k];
-        const real t_dot_x = V_0;
-        const real V_1 = V[1*w + k];
-        const real t_dot_y = V_1;
-        const real V_2 = V[2*w + k];
-        const real t_dot_z = V_2;
-        const real V_3 = V[3*w + k];
-        const real omega_x = V_3;
-        const real V_4 = V[4*w + k];
-        const real omega_y = V_4;
-        const real V_5 = V[5*w + k];
-        const real omega_z = V_5;
-        /* A: named entries */
-        const real A_0 = A[0*w + k];
-        const real t_ddot_x = A_0;
-        const real A_1 = A[1*w + k];
-        const real t_ddot_y = A_1;
-        const real A_2 = A[2*w + k];
-        const real t_ddot_z = A_2;
-        const real A_3 = A[3*w + k];
-        const real alpha_x = A_3;
-        const real A_4 = A[4*w + k];
-        const real alpha_y = A_4;
-        const real A_5 = A[5*w + k];
-        const real alpha_z = A_5;
-        s[0*w + k] = t_x;
-        s[1*w + k] = t_y;
-        s[2*w + k] = t_z;
-        s[3*w + k] = R_xx;
-        s[4*w + k] = R_xy;
-        s[5*w + k] = R_xz;
-        s[6*w + k] = R_yx;
-        s[7*w + k] = R_yy;
-        s[8*w + k] = R_yz;
-        s[9*w + k] = R_zx;
-        s[10*w + k] = R_zy;
-        s[11*w + k] = R_zz;
-        s[12*w + k] = t_dot_x;
-        s[13*w + k] = t_dot_y;
-        s[14*w + k] = t_dot_z;
-        s[15*w + k] = omega_x;
-        s[16*w + k] = omega_y;
-        s[17*w + k] = omega_z;
-        s[18*w + k] = t_ddot_x;
-        s[19*w + k] = t_ddot_y;
-        s[20*w + k] = t_ddot_z;
-        s[21*w + k] = alpha_x;
-        s[22*w + k] = alpha_y;
-        s[23*w + k] = alpha_z;
-        t->invalid[k] += UNLESS(is_finite(quaternion_scale)) + UNLESS(quaternion_scale > 0);
+        values v;
+        stage_X(m, w, k, X, &v);
+        s[0*w + k] = v.R_xx;
+        s[1*w + k] = v.R_xy;
+        s[2*w + k] = v.R_xz;
+        s[3*w + k] = v.R_yx;
+        s[4*w + k] = v.R_yy;
+        s[5*w + k] = v.R_yz;
+        s[6*w + k] = v.R_zx;
+        s[7*w + k] = v.R_zy;
+        s[8*w + k] = v.R_zz;
+        t->invalid[k] += UNLESS(is_finite(v.quaternion_scale)) + UNLESS(v.quaternion_scale > 0);
     }
 }
 
 INLINE void legs_legs_ups(const prepared *m, size_t w, size_t leg, size_t legs, const real *s,
-    size_t states, size_t count, real *o)
+    size_t states, size_t count, const real *X, const real *V, const real *A, real *o)
 {
     for (size_t k = 0; k < count; ++k) {
         const size_t i = leg + legs*k;
         const size_t j = states*k;
-        /* (ups-S) from the base point to the connection point */
-        const real R_xx = s[3*w + j];
-        const real R_xy = s[4*w + j];
-        const real R_xz = s[5*w + j];
-        const real ups_platform_point_x = m->ups_platform_point_x[i];
-        const real ups_platform_point_y = m->ups_platform_point_y[i];
-        const real ups_platform_point_z = m->ups_platform_point_z[i];
-        const real ups_q_x = R_xx*ups_platform_point_x + R_xy*ups_platform_point_y +
-            R_xz*ups_platform_point_z;
-        const real R_yx = s[6*w + j];
-        const real R_yy = s[7*w + j];
-        const real R_yz = s[8*w + j];
-        const real ups_q_y = R_yx*ups_platform_point_x + R_yy*ups_platform_point_y +
-            R_yz*ups_platform_point_z;
-        const real R_zx = s[9*w + j];
-        const real R_zy = s[10*w + j];
-        const real R_zz = s[11*w + j];
-        const real ups_q_z = R_zx*ups_platform_point_x + R_zy*ups_platform_point_y +
-            R_zz*ups_platform_point_z;
-        const real t_x = s[0*w + j];
-        const real ups_base_point_x = m->ups_base_point_x[i];
-        const real ups_S_x = t_x + ups_q_x - ups_base_point_x;
-        const real t_y = s[1*w + j];
-        const real ups_base_point_y = m->ups_base_point_y[i];
-        const real ups_S_y = t_y + ups_q_y - ups_base_point_y;
-        const real t_z = s[2*w + j];
-        const real ups_base_point_z = m->ups_base_point_z[i];
-        const real ups_S_z = t_z + ups_q_z - ups_base_point_z;
-        /* (ups-px_1) component along the reference direction */
-        const real ups_base_frame_xx = m->ups_base_frame_xx[i];
-        const real ups_base_frame_yx = m->ups_base_frame_yx[i];
-        const real ups_base_frame_zx = m->ups_base_frame_zx[i];
-        const real ups_px_1 = ups_S_x*ups_base_frame_xx + ups_S_y*ups_base_frame_yx +
-            ups_S_z*ups_base_frame_zx;
-        /* (ups-py_1) component across the reference direction */
-        const real ups_base_frame_xy = m->ups_base_frame_xy[i];
-        const real ups_base_frame_yy = m->ups_base_frame_yy[i];
-        const real ups_base_frame_zy = m->ups_base_frame_zy[i];
-        const real ups_py_1 = ups_S_x*ups_base_frame_xy + ups_S_y*ups_base_frame_yy +
-            ups_S_z*ups_base_frame_zy;
-        /* (ups-rho2_1) squared amplitude */
-        const real ups_rho2_1 = ups_px_1*ups_px_1 + ups_py_1*ups_py_1;
-        /* (ups-root_1) amplitude, with the sign of the branch */
-        const real ups_branch_1 = m->ups_branch_1[i];
-        const real ups_root_1 = ups_branch_1*root(ups_rho2_1);
-        /* (ups-c_1) cosine of the angle of joint 1 from its reference direction */
-        const real inv_ups_root_1 = 1/ups_root_1;
-        const real ups_c_1 = -inv_ups_root_1*ups_py_1;
-        /* (ups-s_1) sine of the angle of joint 1 from its reference direction */
-        const real ups_s_1 = inv_ups_root_1*ups_px_1;
-        /* (ups-xi_1) the vector from joint 1 to the connection point, resolved along link 1 */
-        const real ups_base_frame_xz = m->ups_base_frame_xz[i];
-        const real ups_base_frame_yz = m->ups_base_frame_yz[i];
-        const real ups_base_frame_zz = m->ups_base_frame_zz[i];
-        const real ups_xi_1_in_axes1_z = ups_S_x*ups_base_frame_xz + ups_S_y*ups_base_frame_yz +
-            ups_S_z*ups_base_frame_zz;
-        /* (ups-rho2_2) squared amplitude */
-        const real ups_rho2_2 = ups_rho2_1 + ups_xi_1_in_axes1_z*ups_xi_1_in_axes1_z;
-        /* (ups-root_2) amplitude, with the sign of the branch */
-        const real ups_branch_2 = m->ups_branch_2[i];
-        const real ups_root_2 = ups_branch_2*root(ups_rho2_2);
-        /* (ups-c_2) cosine of the angle of joint 2 from its reference direction */
-        const real inv_ups_root_2 = 1/ups_root_2;
-        const real ups_c_2 = -inv_ups_root_2*ups_root_1;
-        /* (ups-s_2) sine of the angle of joint 2 from its reference direction */
-        const real ups_s_2 = inv_ups_root_2*ups_xi_1_in_axes1_z;
-        /* (ups-S_dot) velocity of the connection point */
-        const real axis_x_ups_axes2_x = inv_ups_root_2*ups_S_x;
-        const real axis_x_ups_axes2_y = inv_ups_root_2*ups_S_y;
-        const real axis_x_ups_axes2_z = inv_ups_root_2*ups_S_z;
-        const real omega_y = s[16*w + j];
-        const real omega_z = s[17*w + j];
-        const real ups_S_dot_t = omega_y*ups_q_z - omega_z*ups_q_y;
-        const real omega_x = s[15*w + j];
-        const real ups_S_dot_t_2 = omega_z*ups_q_x - omega_x*ups_q_z;
-        const real ups_S_dot_t_3 = omega_x*ups_q_y - omega_y*ups_q_x;
-        const real t_dot_x = s[12*w + j];
-        const real ups_S_dot_x = t_dot_x + ups_S_dot_t;
-        const real t_dot_y = s[13*w + j];
-        const real ups_S_dot_y = t_dot_y + ups_S_dot_t_2;
-        const real t_dot_z = s[14*w + j];
-        const real ups_S_dot_z = t_dot_z + ups_S_dot_t_3;
-        const real ups_S_dot_in_axes2_x = axis_x_ups_axes2_x*ups_S_dot_x +
-            axis_x_ups_axes2_y*ups_S_dot_y + axis_x_ups_axes2_z*ups_S_dot_z;
-        /* (ups-qd_1) rate of joint 1 */
-        const real axis_z_ups_axes2_x = ups_base_frame_xx*ups_c_1 + ups_base_frame_xy*ups_s_1;
-        const real axis_z_ups_axes2_y = ups_base_frame_yx*ups_c_1 + ups_base_frame_yy*ups_s_1;
-        const real axis_z_ups_axes2_z = ups_base_frame_zx*ups_c_1 + ups_base_frame_zy*ups_s_1;
-        const real ups_qd_1 = inv_ups_root_1*(axis_z_ups_axes2_x*ups_S_dot_x +
-            axis_z_ups_axes2_y*ups_S_dot_y + axis_z_ups_axes2_z*ups_S_dot_z);
-        /* (ups-qd_2) rate of joint 2 */
-        const real axis_y_ups_axes2_x = axis_x_ups_axes2_z*axis_z_ups_axes2_y -
-            axis_x_ups_axes2_y*axis_z_ups_axes2_z;
-        const real axis_y_ups_axes2_y = axis_x_ups_axes2_x*axis_z_ups_axes2_z -
-            axis_x_ups_axes2_z*axis_z_ups_axes2_x;
-        const real axis_y_ups_axes2_z = axis_x_ups_axes2_y*axis_z_ups_axes2_x -
-            axis_x_ups_axes2_x*axis_z_ups_axes2_y;
-        const real ups_qd_2 = inv_ups_root_2*(axis_y_ups_axes2_x*ups_S_dot_x +
-            axis_y_ups_axes2_y*ups_S_dot_y + axis_y_ups_axes2_z*ups_S_dot_z);
-        /* (ups-omega_1) angular velocity of link 1 */
-        const real ups_omega_1_in_axes2_x = ups_qd_1*ups_s_2;
-        const real ups_omega_1_in_axes2_y = ups_c_2*ups_qd_1;
-        /* (ups-W_2) centripetal tensor of link 2 */
-        const real ups_W_2_in_axes2_yz = ups_omega_1_in_axes2_y*ups_qd_2;
-        const real ups_W_2_in_axes2_xz = ups_omega_1_in_axes2_x*ups_qd_2;
-        const real ups_W_2_in_axes2_xy = ups_omega_1_in_axes2_x*ups_omega_1_in_axes2_y;
-        /* (ups-a_p) acceleration of the connection point without its centripetal part */
-        const real alpha_y = s[22*w + j];
-        const real alpha_z = s[23*w + j];
-        const real t_ddot_x = s[18*w + j];
-        const real ups_a_p_x = t_ddot_x + alpha_y*ups_q_z - alpha_z*ups_q_y;
-        const real alpha_x = s[21*w + j];
-        const real t_ddot_y = s[19*w + j];
-        const real ups_a_p_y = t_ddot_y + alpha_z*ups_q_x - alpha_x*ups_q_z;
-        const real t_ddot_z = s[20*w + j];
-        const real ups_a_p_z = t_ddot_z + alpha_x*ups_q_y - alpha_y*ups_q_x;
-        /* (ups-S_ddot) acceleration of the connection point */
-        const real ups_S_ddot_x = ups_a_p_x + omega_y*ups_S_dot_t_3 - omega_z*ups_S_dot_t_2;
-        const real ups_S_ddot_y = ups_a_p_y + omega_z*ups_S_dot_t - omega_x*ups_S_dot_t_3;
-        const real ups_S_ddot_z = ups_a_p_z + omega_x*ups_S_dot_t_2 - omega_y*ups_S_dot_t;
-        const real ups_S_ddot_in_axes2_z = axis_z_ups_axes2_x*ups_S_ddot_x +
-            axis_z_ups_axes2_y*ups_S_ddot_y + axis_z_ups_axes2_z*ups_S_ddot_z;
-        /* (ups-bias) acceleration of the connection point at zero joint accelerations */
-        const real ups_bias_t = 2*ups_S_dot_in_axes2_x;
-        const real ups_bias_in_axes2_z = 2*ups_W_2_in_axes2_xz*ups_root_2 -
-            ups_bias_t*ups_omega_1_in_axes2_y;
-        /* (ups-rel) acceleration of the connection point left to the joint accelerations */
-        const real ups_rel_in_axes2_z = ups_S_ddot_in_axes2_z - ups_bias_in_axes2_z;
-        /* (ups-qdd_1) acceleration of joint 1 */
-        const real ups_qdd_1 = inv_ups_root_1*ups_rel_in_axes2_z;
-        /* (ups-alpha_1) angular acceleration of link 1 */
-        const real ups_alpha_1_in_axes2_x = ups_qdd_1*ups_s_2;
-        const real ups_alpha_1_in_axes2_y = ups_c_2*ups_qdd_1;
-        /* (ups-alpha_2) angular acceleration of link 2 */
-        const real ups_alpha_2_in_axes2_x = ups_W_2_in_axes2_yz + ups_alpha_1_in_axes2_x;
-        const real ups_alpha_2_in_axes2_y = ups_alpha_1_in_axes2_y - ups_W_2_in_axes2_xz;
-        /* (ups-B_2) acceleration tensor of link 2 */
-        const real ups_B_2_t = axis_y_ups_axes2_x*ups_S_ddot_x;
-        const real ups_B_2_t_2 = axis_y_ups_axes2_y*ups_S_ddot_y;
-        const real ups_B_2_t_3 = axis_y_ups_axes2_z*ups_S_ddot_z;
-        const real ups_B_2_in_axes2_yx = inv_ups_root_2*(ups_B_2_t + ups_B_2_t_2 + ups_B_2_t_3 -
-            ups_bias_t*ups_qd_2);
-        const real ups_B_2_in_axes2_xy = 2*ups_W_2_in_axes2_xy - ups_B_2_in_axes2_yx;
-        const real ups_B_2_in_axes2_zx = ups_W_2_in_axes2_xz - ups_alpha_2_in_axes2_y;
-        const real ups_B_2_in_axes2_zy = ups_W_2_in_axes2_yz + ups_alpha_2_in_axes2_x;
-        /* (ups-acc_3) acceleration of the reference point of link 3, less gravity */
-        const real ups_acc_3_t = m->ups_acc_3_t[i];
-        const real ups_acc_3_t_2 = m->ups_acc_3_t_2[i];
-        const real ups_g_in_axes2_z = ups_acc_3_t*ups_c_1 + ups_acc_3_t_2*ups_s_1;
-        const real ups_acc_3_t_4 = ups_acc_3_t_2*ups_c_1 - ups_acc_3_t*ups_s_1;
-        const real ups_acc_3_t_3 = m->ups_acc_3_t_3[i];
-        const real ups_g_in_axes2_x = ups_acc_3_t_3*ups_s_2 + ups_acc_3_t_4*ups_c_2;
-        const real ups_g_in_axes2_y = ups_acc_3_t_3*ups_c_2 - ups_acc_3_t_4*ups_s_2;
-        const real ups_acc_3_in_axes2_x = axis_x_ups_axes2_x*ups_S_ddot_x +
-            axis_x_ups_axes2_y*ups_S_ddot_y + axis_x_ups_axes2_z*ups_S_ddot_z - ups_g_in_axes2_x;
-        const real ups_acc_3_in_axes2_y = ups_B_2_t + ups_B_2_t_2 + ups_B_2_t_3 -
-            ups_g_in_axes2_y;
-        const real ups_acc_3_in_axes2_z = ups_S_ddot_in_axes2_z - ups_g_in_axes2_z;
+        values_ups v;
+        stage_ups_X(m, w, i, j, s, X, &v);
+        stage_ups_A_X(w, j, A, &v);
+        stage_ups_V_X(w, j, V, &v);
+        stage_ups_A_V_X(w, j, V, &v);
+        stage_ups_legs_required(m, i, &v);
         /* (ups-mu_2) inertia moment of the links that turn with link 2, about their reference points */
-        const real ups_mu_2_t = ups_omega_1_in_axes2_x*ups_omega_1_in_axes2_x;
-        const real ups_mu_2_t_2 = ups_omega_1_in_axes2_y*ups_omega_1_in_axes2_y;
-        const real ups_mu_2_t_3 = ups_qd_2*ups_qd_2;
+        const real ups_mu_2_t_2 = v.ups_omega_1_in_axes2_y*v.ups_omega_1_in_axes2_y;
+        const real ups_mu_2_t_3 = v.ups_qd_2*v.ups_qd_2;
         const real ups_J_group_2_in_axes2_xy = m->ups_J_group_2_in_axes2_xy[i];
         const real ups_J_group_2_in_axes2_xz = m->ups_J_group_2_in_axes2_xz[i];
         const real ups_J_group_2_in_axes2_yz = m->ups_J_group_2_in_axes2_yz[i];
@@ -10269,62 +7969,68 @@ INLINE void legs_legs_ups(const prepared *m, size_t w, size_t leg, size_t legs, 
         const real ups_h_2_in_spec2_z = m->ups_h_2_in_spec2_z[i];
         const real ups_h_3_in_spec2_y = m->ups_h_3_in_spec2_y[i];
         const real ups_h_3_in_spec2_z = m->ups_h_3_in_spec2_z[i];
-        const real ups_mu_2_in_axes2_x = ups_B_2_in_axes2_yx*ups_J_group_2_in_axes2_xz +
-            ups_B_2_in_axes2_zy*ups_Sigma_2_in_axes2_yy + ups_J_group_2_in_axes2_yz*(ups_mu_2_t_2
-            - ups_mu_2_t_3) + ups_Sigma_2_in_axes2_zz*ups_alpha_1_in_axes2_x +
-            ups_g_in_axes2_y*ups_h_2_in_spec2_y + ups_g_in_axes2_z*ups_h_2_in_spec2_z -
-            ups_B_2_in_axes2_zx*ups_J_group_2_in_axes2_xy -
-            ups_acc_3_in_axes2_y*ups_h_3_in_spec2_y - ups_acc_3_in_axes2_z*ups_h_3_in_spec2_z;
+        const real ups_mu_2_in_axes2_x = v.ups_B_2_in_axes2_yx*ups_J_group_2_in_axes2_xz +
+            v.ups_B_2_in_axes2_zy*ups_Sigma_2_in_axes2_yy +
+            ups_J_group_2_in_axes2_yz*(ups_mu_2_t_2 - ups_mu_2_t_3) +
+            ups_Sigma_2_in_axes2_zz*v.ups_alpha_1_in_axes2_x +
+            v.ups_g_in_axes2_y*ups_h_2_in_spec2_y + v.ups_g_in_axes2_z*ups_h_2_in_spec2_z -
+            v.ups_B_2_in_axes2_zx*ups_J_group_2_in_axes2_xy -
+            v.ups_acc_3_in_axes2_y*ups_h_3_in_spec2_y - v.ups_acc_3_in_axes2_z*ups_h_3_in_spec2_z;
         const real ups_Sigma_2_in_axes2_xx = m->ups_Sigma_2_in_axes2_xx[i];
         const real ups_h_2_in_spec2_x = m->ups_h_2_in_spec2_x[i];
         const real ups_h_3_in_spec2_x = m->ups_h_3_in_spec2_x[i];
-        const real ups_mu_2_in_axes2_y = ups_B_2_in_axes2_zy*ups_J_group_2_in_axes2_xy +
-            ups_Sigma_2_in_axes2_zz*ups_alpha_1_in_axes2_y +
-            ups_acc_3_in_axes2_x*ups_h_3_in_spec2_y + ups_g_in_axes2_z*ups_h_2_in_spec2_x -
-            ups_B_2_in_axes2_xy*ups_J_group_2_in_axes2_yz -
-            ups_B_2_in_axes2_zx*ups_Sigma_2_in_axes2_xx - ups_J_group_2_in_axes2_xz*(ups_mu_2_t -
-            ups_mu_2_t_3) - ups_acc_3_in_axes2_z*ups_h_3_in_spec2_x -
-            ups_g_in_axes2_x*ups_h_2_in_spec2_y;
-        const real ups_mu_2_in_axes2_z = ups_B_2_in_axes2_yx*ups_Sigma_2_in_axes2_xx +
-            ups_J_group_2_in_axes2_xy*(ups_mu_2_t - ups_mu_2_t_2) +
-            ups_J_group_2_in_axes2_xz*ups_alpha_1_in_axes2_x +
-            ups_J_group_2_in_axes2_yz*ups_alpha_1_in_axes2_y +
-            ups_acc_3_in_axes2_x*ups_h_3_in_spec2_z + ups_acc_3_in_axes2_y*ups_h_3_in_spec2_x -
-            ups_B_2_in_axes2_xy*ups_Sigma_2_in_axes2_yy - ups_g_in_axes2_x*ups_h_2_in_spec2_z -
-            ups_g_in_axes2_y*ups_h_2_in_spec2_x;
+        const real ups_mu_2_in_axes2_y = v.ups_B_2_in_axes2_zy*ups_J_group_2_in_axes2_xy +
+            ups_Sigma_2_in_axes2_zz*v.ups_alpha_1_in_axes2_y +
+            v.ups_acc_3_in_axes2_x*ups_h_3_in_spec2_y + v.ups_g_in_axes2_z*ups_h_2_in_spec2_x -
+            v.ups_B_2_in_axes2_xy*ups_J_group_2_in_axes2_yz -
+            v.ups_B_2_in_axes2_zx*ups_Sigma_2_in_axes2_xx -
+            ups_J_group_2_in_axes2_xz*(v.ups_mu_2_t - ups_mu_2_t_3) -
+            v.ups_acc_3_in_axes2_z*ups_h_3_in_spec2_x - v.ups_g_in_axes2_x*ups_h_2_in_spec2_y;
+        const real ups_mu_2_in_axes2_z = v.ups_B_2_in_axes2_yx*ups_Sigma_2_in_axes2_xx +
+            ups_J_group_2_in_axes2_xy*(v.ups_mu_2_t - ups_mu_2_t_2) +
+            ups_J_group_2_in_axes2_xz*v.ups_alpha_1_in_axes2_x +
+            ups_J_group_2_in_axes2_yz*v.ups_alpha_1_in_axes2_y +
+            v.ups_acc_3_in_axes2_x*ups_h_3_in_spec2_z + v.ups_acc_3_in_axes2_y*ups_h_3_in_spec2_x
+            - v.ups_B_2_in_axes2_xy*ups_Sigma_2_in_axes2_yy -
+            v.ups_g_in_axes2_x*ups_h_2_in_spec2_z - v.ups_g_in_axes2_y*ups_h_2_in_spec2_x;
         /* (ups-c) leg force on the platform without actuation and without the mass at the connection
            point */
-        const real ups_c_in_axes2_y = ups_alpha_1_in_axes2_x*ups_h_3_in_spec2_y -
-            inv_ups_root_2*ups_mu_2_in_axes2_z - ups_B_2_in_axes2_yx*ups_h_3_in_spec2_x -
-            ups_h_3_in_spec2_z*(ups_mu_2_t + ups_mu_2_t_3);
-        const real ups_c_in_axes2_z = ups_B_2_in_axes2_zy*ups_h_3_in_spec2_z +
-            ups_h_3_in_spec2_y*(ups_mu_2_t + ups_mu_2_t_2) -
-            inv_ups_root_1*(ups_c_2*ups_mu_2_in_axes2_y + ups_mu_2_in_axes2_x*ups_s_2) -
-            ups_B_2_in_axes2_zx*ups_h_3_in_spec2_x;
+        const real ups_c_in_axes2_y = v.ups_alpha_1_in_axes2_x*ups_h_3_in_spec2_y -
+            v.inv_ups_q_3*ups_mu_2_in_axes2_z - v.ups_B_2_in_axes2_yx*ups_h_3_in_spec2_x -
+            ups_h_3_in_spec2_z*(v.ups_mu_2_t + ups_mu_2_t_3);
+        const real ups_c_in_axes2_z = v.inv_ups_root_1*(v.ups_c_2*ups_mu_2_in_axes2_y -
+            v.ups_e_1_in_axes2_x*ups_mu_2_in_axes2_x) + v.ups_B_2_in_axes2_zy*ups_h_3_in_spec2_z +
+            ups_h_3_in_spec2_y*(v.ups_mu_2_t + ups_mu_2_t_2) -
+            v.ups_B_2_in_axes2_zx*ups_h_3_in_spec2_x;
         /* (ups-c_true) leg force on the platform without actuation, the last link's mass included */
         const real ups_link3_mass = m->ups_link3_mass[i];
-        const real ups_c_true_in_axes2_x = ups_B_2_in_axes2_xy*ups_h_3_in_spec2_z -
-            ups_acc_3_in_axes2_x*ups_link3_mass - ups_alpha_1_in_axes2_y*ups_h_3_in_spec2_y -
+        const real ups_c_true_in_axes2_x = v.ups_B_2_in_axes2_xy*ups_h_3_in_spec2_z -
+            v.ups_acc_3_in_axes2_x*ups_link3_mass - v.ups_alpha_1_in_axes2_y*ups_h_3_in_spec2_y -
             ups_h_3_in_spec2_x*(-ups_mu_2_t_2 - ups_mu_2_t_3);
-        const real ups_c_true_in_axes2_y = ups_c_in_axes2_y - ups_acc_3_in_axes2_y*ups_link3_mass;
-        const real ups_c_true_in_axes2_z = ups_c_in_axes2_z - ups_acc_3_in_axes2_z*ups_link3_mass;
-        const real ups_c_true_x = axis_x_ups_axes2_x*ups_c_true_in_axes2_x +
-            axis_y_ups_axes2_x*ups_c_true_in_axes2_y + axis_z_ups_axes2_x*ups_c_true_in_axes2_z;
-        const real ups_c_true_y = axis_x_ups_axes2_y*ups_c_true_in_axes2_x +
-            axis_y_ups_axes2_y*ups_c_true_in_axes2_y + axis_z_ups_axes2_y*ups_c_true_in_axes2_z;
-        const real ups_c_true_z = axis_x_ups_axes2_z*ups_c_true_in_axes2_x +
-            axis_y_ups_axes2_z*ups_c_true_in_axes2_y + axis_z_ups_axes2_z*ups_c_true_in_axes2_z;
+        const real ups_c_true_in_axes2_y = ups_c_in_axes2_y -
+            v.ups_acc_3_in_axes2_y*ups_link3_mass;
+        const real ups_c_true_in_axes2_z = ups_c_in_axes2_z -
+            v.ups_acc_3_in_axes2_z*ups_link3_mass;
+        const real ups_c_true_x = v.axis_x_ups_axes2_x*ups_c_true_in_axes2_x +
+            v.axis_y_ups_axes2_x*ups_c_true_in_axes2_y +
+            v.axis_z_ups_axes2_x*ups_c_true_in_axes2_z;
+        const real ups_c_true_y = v.axis_x_ups_axes2_y*ups_c_true_in_axes2_x +
+            v.axis_y_ups_axes2_y*ups_c_true_in_axes2_y +
+            v.axis_z_ups_axes2_y*ups_c_true_in_axes2_z;
+        const real ups_c_true_z = v.axis_x_ups_axes2_z*ups_c_true_in_axes2_x +
+            v.axis_y_ups_axes2_z*ups_c_true_in_axes2_y +
+            v.axis_z_ups_axes2_z*ups_c_true_in_axes2_z;
         /* (ups-c_true) leg force on the platform without actuation, the last link's mass included */
         o[0*count + k] = ups_c_true_x;
         o[1*count + k] = ups_c_true_y;
         o[2*count + k] = ups_c_true_z;
         /* (ups-w_3) reciprocal vector 3 */
-        o[3*count + k] = axis_x_ups_axes2_x;
-        o[4*count + k] = axis_x_ups_axes2_y;
-        o[5*count + k] = axis_x_ups_axes2_z;
-        o[6*count + k] = UNLESS(magnitude(ups_rho2_1) > LEAST_1) + UNLESS(magnitude(ups_rho2_2) >
-            LEAST_1) + UNLESS(magnitude(ups_root_1) > LEAST_2) + UNLESS(magnitude(ups_root_2) >
-            LEAST_2);
+        o[3*count + k] = v.axis_x_ups_axes2_x;
+        o[4*count + k] = v.axis_x_ups_axes2_y;
+        o[5*count + k] = v.axis_x_ups_axes2_z;
+        o[6*count + k] = UNLESS(magnitude(v.ups_root_1_t) > LEAST_1) +
+            UNLESS(magnitude(v.ups_q_3_t) > LEAST_1) + UNLESS(magnitude(v.ups_root_1) > LEAST_2) +
+            UNLESS(magnitude(v.ups_q_3) > LEAST_2);
     }
 }
 
@@ -10343,667 +8049,79 @@ INLINE void legs_place_ups(size_t w, size_t count, const real *o, size_t leg, si
 }
 
 INLINE void legs_legs_tube(const prepared *m, size_t w, size_t leg, size_t legs, const real *s,
-    size_t states, size_t count, real *o)
+    size_t states, size_t count, const real *X, const real *V, const real *A, real *o)
 {
     for (size_t k = 0; k < count; ++k) {
         const size_t i = leg + legs*k;
         const size_t j = states*k;
-        /* (tube-S) from the base point to the connection point */
-        const real R_xx = s[3*w + j];
-        const real R_xy = s[4*w + j];
-        const real R_xz = s[5*w + j];
-        const real tube_platform_point_x = m->tube_platform_point_x[i];
-        const real tube_platform_point_y = m->tube_platform_point_y[i];
-        const real tube_platform_point_z = m->tube_platform_point_z[i];
-        const real tube_q_x = R_xx*tube_platform_point_x + R_xy*tube_platform_point_y +
-            R_xz*tube_platform_point_z;
-        const real R_yx = s[6*w + j];
-        const real R_yy = s[7*w + j];
-        const real R_yz = s[8*w + j];
-        const real tube_q_y = R_yx*tube_platform_point_x + R_yy*tube_platform_point_y +
-            R_yz*tube_platform_point_z;
-        const real R_zx = s[9*w + j];
-        const real R_zy = s[10*w + j];
-        const real R_zz = s[11*w + j];
-        const real tube_q_z = R_zx*tube_platform_point_x + R_zy*tube_platform_point_y +
-            R_zz*tube_platform_point_z;
-        const real t_x = s[0*w + j];
-        const real tube_base_point_x = m->tube_base_point_x[i];
-        const real tube_S_x = t_x + tube_q_x - tube_base_point_x;
-        const real t_y = s[1*w + j];
-        const real tube_base_point_y = m->tube_base_point_y[i];
-        const real tube_S_y = t_y + tube_q_y - tube_base_point_y;
-        const real t_z = s[2*w + j];
-        const real tube_base_point_z = m->tube_base_point_z[i];
-        const real tube_S_z = t_z + tube_q_z - tube_base_point_z;
-        /* (tube-px_1) component along the reference direction */
-        const real tube_base_frame_xx = m->tube_base_frame_xx[i];
-        const real tube_base_frame_yx = m->tube_base_frame_yx[i];
-        const real tube_base_frame_zx = m->tube_base_frame_zx[i];
-        const real tube_px_1 = tube_S_x*tube_base_frame_xx + tube_S_y*tube_base_frame_yx +
-            tube_S_z*tube_base_frame_zx;
-        /* (tube-py_1) component across the reference direction */
-        const real tube_base_frame_xy = m->tube_base_frame_xy[i];
-        const real tube_base_frame_yy = m->tube_base_frame_yy[i];
-        const real tube_base_frame_zy = m->tube_base_frame_zy[i];
-        const real tube_py_1 = tube_S_x*tube_base_frame_xy + tube_S_y*tube_base_frame_yy +
-            tube_S_z*tube_base_frame_zy;
-        /* (tube-rho2_1) squared amplitude */
-        const real tube_rho2_1 = tube_px_1*tube_px_1 + tube_py_1*tube_py_1;
-        /* (tube-root_1) amplitude, with the sign of the branch */
-        const real tube_branch_1 = m->tube_branch_1[i];
-        const real tube_root_1 = tube_branch_1*root(tube_rho2_1);
-        /* (tube-c_1) cosine of the angle of joint 1 from its reference direction */
-        const real inv_tube_root_1 = 1/tube_root_1;
-        const real tube_c_1 = -inv_tube_root_1*tube_py_1;
-        /* (tube-s_1) sine of the angle of joint 1 from its reference direction */
-        const real tube_s_1 = inv_tube_root_1*tube_px_1;
-        /* (tube-xi_1) the vector from joint 1 to the connection point, resolved along link 1 */
-        const real tube_base_frame_xz = m->tube_base_frame_xz[i];
-        const real tube_base_frame_yz = m->tube_base_frame_yz[i];
-        const real tube_base_frame_zz = m->tube_base_frame_zz[i];
-        const real tube_xi_1_in_axes1_z = tube_S_x*tube_base_frame_xz +
-            tube_S_y*tube_base_frame_yz + tube_S_z*tube_base_frame_zz;
-        /* (tube-rho2_2) squared amplitude */
-        const real tube_rho2_2 = tube_rho2_1 + tube_xi_1_in_axes1_z*tube_xi_1_in_axes1_z;
-        /* (tube-root_2) amplitude, with the sign of the branch */
-        const real tube_branch_2 = m->tube_branch_2[i];
-        const real tube_root_2 = tube_branch_2*root(tube_rho2_2);
-        /* (tube-c_2) cosine of the angle of joint 2 from its reference direction */
-        const real inv_tube_root_2 = 1/tube_root_2;
-        const real tube_c_2 = -inv_tube_root_2*tube_root_1;
-        /* (tube-s_2) sine of the angle of joint 2 from its reference direction */
-        const real tube_s_2 = inv_tube_root_2*tube_xi_1_in_axes1_z;
-        /* (tube-S_dot) velocity of the connection point */
-        const real axis_z_tube_axes2_x = tube_base_frame_xx*tube_c_1 +
-            tube_base_frame_xy*tube_s_1;
-        const real axis_z_tube_axes2_y = tube_base_frame_yx*tube_c_1 +
-            tube_base_frame_yy*tube_s_1;
-        const real axis_z_tube_axes2_z = tube_base_frame_zx*tube_c_1 +
-            tube_base_frame_zy*tube_s_1;
-        const real tube_S_dot_t = tube_s_1*tube_s_2;
-        const real tube_S_dot_t_2 = tube_c_1*tube_s_2;
-        const real axis_y_tube_axes2_x = tube_S_dot_t*tube_base_frame_xx +
-            tube_base_frame_xz*tube_c_2 - tube_S_dot_t_2*tube_base_frame_xy;
-        const real axis_y_tube_axes2_y = tube_S_dot_t*tube_base_frame_yx +
-            tube_base_frame_yz*tube_c_2 - tube_S_dot_t_2*tube_base_frame_yy;
-        const real axis_y_tube_axes2_z = tube_S_dot_t*tube_base_frame_zx +
-            tube_base_frame_zz*tube_c_2 - tube_S_dot_t_2*tube_base_frame_zy;
-        const real axis_x_tube_axes2_x = axis_y_tube_axes2_y*axis_z_tube_axes2_z -
-            axis_y_tube_axes2_z*axis_z_tube_axes2_y;
-        const real axis_x_tube_axes2_y = axis_y_tube_axes2_z*axis_z_tube_axes2_x -
-            axis_y_tube_axes2_x*axis_z_tube_axes2_z;
-        const real axis_x_tube_axes2_z = axis_y_tube_axes2_x*axis_z_tube_axes2_y -
-            axis_y_tube_axes2_y*axis_z_tube_axes2_x;
-        const real omega_y = s[16*w + j];
-        const real omega_z = s[17*w + j];
-        const real tube_S_dot_t_3 = omega_y*tube_q_z - omega_z*tube_q_y;
-        const real omega_x = s[15*w + j];
-        const real tube_S_dot_t_4 = omega_z*tube_q_x - omega_x*tube_q_z;
-        const real tube_S_dot_t_5 = omega_x*tube_q_y - omega_y*tube_q_x;
-        const real t_dot_x = s[12*w + j];
-        const real tube_S_dot_x = t_dot_x + tube_S_dot_t_3;
-        const real t_dot_y = s[13*w + j];
-        const real tube_S_dot_y = t_dot_y + tube_S_dot_t_4;
-        const real t_dot_z = s[14*w + j];
-        const real tube_S_dot_z = t_dot_z + tube_S_dot_t_5;
-        const real tube_S_dot_in_axes2_x = axis_x_tube_axes2_x*tube_S_dot_x +
-            axis_x_tube_axes2_y*tube_S_dot_y + axis_x_tube_axes2_z*tube_S_dot_z;
-        const real tube_S_dot_in_axes2_y = axis_y_tube_axes2_x*tube_S_dot_x +
-            axis_y_tube_axes2_y*tube_S_dot_y + axis_y_tube_axes2_z*tube_S_dot_z;
-        const real tube_S_dot_in_axes2_z = axis_z_tube_axes2_x*tube_S_dot_x +
-            axis_z_tube_axes2_y*tube_S_dot_y + axis_z_tube_axes2_z*tube_S_dot_z;
-        /* (tube-n_m1) direction 1 of the moment that the platform joint transmits */
-        const real tube_n_m1_t = R_xx*tube_base_frame_xx + R_yx*tube_base_frame_yx +
-            R_zx*tube_base_frame_zx;
-        const real tube_n_m1_t_2 = R_xy*tube_base_frame_xx + R_yy*tube_base_frame_yx +
-            R_zy*tube_base_frame_zx;
-        const real tube_n_m1_t_3 = R_xz*tube_base_frame_xx + R_yz*tube_base_frame_yx +
-            R_zz*tube_base_frame_zx;
-        const real tube_n_m1_t_4 = R_xx*tube_base_frame_xy + R_yx*tube_base_frame_yy +
-            R_zx*tube_base_frame_zy;
-        const real tube_n_m1_t_5 = R_xy*tube_base_frame_xy + R_yy*tube_base_frame_yy +
-            R_zy*tube_base_frame_zy;
-        const real tube_n_m1_t_6 = R_xz*tube_base_frame_xy + R_yz*tube_base_frame_yy +
-            R_zz*tube_base_frame_zy;
-        const real tube_n_m1_t_7 = R_xx*tube_base_frame_xz + R_yx*tube_base_frame_yz +
-            R_zx*tube_base_frame_zz;
-        const real tube_n_m1_t_8 = R_xy*tube_base_frame_xz + R_yy*tube_base_frame_yz +
-            R_zy*tube_base_frame_zz;
-        const real tube_n_m1_t_9 = R_xz*tube_base_frame_xz + R_yz*tube_base_frame_yz +
-            R_zz*tube_base_frame_zz;
-        const real tube_platform_joint_rotation_yx = m->tube_platform_joint_rotation_yx[i];
-        const real tube_platform_joint_rotation_yy = m->tube_platform_joint_rotation_yy[i];
-        const real tube_platform_joint_rotation_yz = m->tube_platform_joint_rotation_yz[i];
-        const real tube_n_m1_t_10 = tube_n_m1_t*tube_platform_joint_rotation_yx +
-            tube_n_m1_t_2*tube_platform_joint_rotation_yy +
-            tube_n_m1_t_3*tube_platform_joint_rotation_yz;
-        const real tube_n_m1_t_11 = tube_n_m1_t_4*tube_platform_joint_rotation_yx +
-            tube_n_m1_t_5*tube_platform_joint_rotation_yy +
-            tube_n_m1_t_6*tube_platform_joint_rotation_yz;
-        const real tube_n_m1_t_12 = tube_n_m1_t_7*tube_platform_joint_rotation_yx +
-            tube_n_m1_t_8*tube_platform_joint_rotation_yy +
-            tube_n_m1_t_9*tube_platform_joint_rotation_yz;
-        const real tube_end_p1_in_axes2_z = tube_c_1*tube_n_m1_t_10 + tube_n_m1_t_11*tube_s_1;
-        const real tube_n_m1_t_13 = tube_n_m1_t_10*tube_s_1 - tube_c_1*tube_n_m1_t_11;
-        const real tube_n_m1_in_axes2_z = tube_c_2*tube_n_m1_t_12 + tube_n_m1_t_13*tube_s_2;
-        const real tube_n_m1_in_axes1_z = -tube_c_2*tube_end_p1_in_axes2_z;
-        /* (tube-n_m2) direction 2 of the moment that the platform joint transmits */
-        const real tube_platform_joint_rotation_zx = m->tube_platform_joint_rotation_zx[i];
-        const real tube_platform_joint_rotation_zy = m->tube_platform_joint_rotation_zy[i];
-        const real tube_platform_joint_rotation_zz = m->tube_platform_joint_rotation_zz[i];
-        const real tube_n_m2_t = tube_n_m1_t*tube_platform_joint_rotation_zx +
-            tube_n_m1_t_2*tube_platform_joint_rotation_zy +
-            tube_n_m1_t_3*tube_platform_joint_rotation_zz;
-        const real tube_n_m2_t_2 = tube_n_m1_t_4*tube_platform_joint_rotation_zx +
-            tube_n_m1_t_5*tube_platform_joint_rotation_zy +
-            tube_n_m1_t_6*tube_platform_joint_rotation_zz;
-        const real tube_n_m2_t_3 = tube_n_m1_t_7*tube_platform_joint_rotation_zx +
-            tube_n_m1_t_8*tube_platform_joint_rotation_zy +
-            tube_n_m1_t_9*tube_platform_joint_rotation_zz;
-        const real tube_n_m2_t_4 = tube_n_m2_t*tube_s_1 - tube_c_1*tube_n_m2_t_2;
-        const real tube_n_m2_in_axes2_y = tube_n_m2_t_3*tube_s_2 - tube_c_2*tube_n_m2_t_4;
-        const real tube_end_p2_in_axes2_y = tube_c_2*tube_n_m2_t_3 + tube_n_m2_t_4*tube_s_2;
-        const real tube_n_m2_in_axes1_z = tube_c_2*tube_n_m2_in_axes2_y -
-            tube_end_p2_in_axes2_y*tube_s_2;
-        /* (tube-n_m3) direction 3 of the moment that the platform joint transmits */
-        const real tube_platform_joint_rotation_xx = m->tube_platform_joint_rotation_xx[i];
-        const real tube_platform_joint_rotation_xy = m->tube_platform_joint_rotation_xy[i];
-        const real tube_platform_joint_rotation_xz = m->tube_platform_joint_rotation_xz[i];
-        const real tube_n_m3_t = tube_n_m1_t*tube_platform_joint_rotation_xx +
-            tube_n_m1_t_2*tube_platform_joint_rotation_xy +
-            tube_n_m1_t_3*tube_platform_joint_rotation_xz;
-        const real tube_n_m3_t_2 = tube_n_m1_t_4*tube_platform_joint_rotation_xx +
-            tube_n_m1_t_5*tube_platform_joint_rotation_xy +
-            tube_n_m1_t_6*tube_platform_joint_rotation_xz;
-        const real tube_n_m3_t_3 = tube_n_m1_t_7*tube_platform_joint_rotation_xx +
-            tube_n_m1_t_8*tube_platform_joint_rotation_xy +
-            tube_n_m1_t_9*tube_platform_joint_rotation_xz;
-        const real tube_end_p3_in_axes2_z = tube_c_1*tube_n_m3_t + tube_n_m3_t_2*tube_s_1;
-        const real tube_n_m3_t_4 = tube_n_m3_t*tube_s_1 - tube_c_1*tube_n_m3_t_2;
-        const real tube_n_m3_in_axes2_z = tube_n_m3_t_3*tube_s_2 - tube_c_2*tube_n_m3_t_4;
-        const real tube_n_m3_t_5 = tube_end_p3_in_axes2_z*tube_s_2;
-        /* (tube-f_c1) force part of constraint wrench 1 */
-        const real tube_f_c1_t = tube_n_m1_in_axes1_z*tube_n_m3_in_axes2_z +
-            tube_n_m1_in_axes2_z*tube_n_m3_t_5;
-        /* (tube-m1_c1) moment part 1 of constraint wrench 1 */
-        const real inv_tube_f_c1_t = 1/tube_f_c1_t;
-        const real tube_m1_c1_t = inv_tube_f_c1_t*tube_n_m3_t_5*tube_root_2;
-        /* (tube-m3_c1) moment part 3 of constraint wrench 1 */
-        const real tube_m3_c1_t = inv_tube_f_c1_t*tube_n_m1_in_axes1_z*tube_root_2;
-        /* (tube-m1_c2) moment part 1 of constraint wrench 2 */
-        const real tube_m1_c2_t = inv_tube_f_c1_t*tube_n_m3_in_axes2_z*tube_root_1;
-        /* (tube-m3_c2) moment part 3 of constraint wrench 2 */
-        const real tube_m3_c2 = inv_tube_f_c1_t*tube_n_m1_in_axes2_z*tube_root_1;
-        /* (tube-m1_c3) moment part 1 of constraint wrench 3 */
-        const real tube_m1_c3_t = inv_tube_f_c1_t*tube_n_m2_in_axes1_z*tube_n_m3_in_axes2_z;
-        /* (tube-m3_c3) moment part 3 of constraint wrench 3 */
-        const real tube_m3_c3 = inv_tube_f_c1_t*tube_n_m1_in_axes2_z*tube_n_m2_in_axes1_z;
+        values_tube v;
+        stage_tube_X(m, w, i, j, s, X, &v);
+        stage_tube_A_X(w, j, A, &v);
+        stage_tube_V_X(w, j, V, &v);
+        stage_tube_A_V_X(w, j, V, &v);
+        stage_tube_legs_required(m, i, &v);
         /* (tube-mu_c1) the moment that goes with it */
-        const real tube_mu_c1_in_axes2_y = tube_end_p1_in_axes2_z*tube_m1_c1_t;
-        const real tube_mu_c1_in_axes2_x = tube_end_p3_in_axes2_z*tube_m3_c1_t;
-        const real tube_mu_c1_in_axes2_z = -tube_m1_c1_t*tube_n_m1_in_axes2_z -
-            tube_m3_c1_t*tube_n_m3_in_axes2_z;
-        const real tube_mu_c1_x = axis_x_tube_axes2_x*tube_mu_c1_in_axes2_x +
-            axis_y_tube_axes2_x*tube_mu_c1_in_axes2_y + axis_z_tube_axes2_x*tube_mu_c1_in_axes2_z;
-        const real tube_mu_c1_y = axis_x_tube_axes2_y*tube_mu_c1_in_axes2_x +
-            axis_y_tube_axes2_y*tube_mu_c1_in_axes2_y + axis_z_tube_axes2_y*tube_mu_c1_in_axes2_z;
-        const real tube_mu_c1_z = axis_x_tube_axes2_z*tube_mu_c1_in_axes2_x +
-            axis_y_tube_axes2_z*tube_mu_c1_in_axes2_y + axis_z_tube_axes2_z*tube_mu_c1_in_axes2_z;
+        const real tube_mu_c1_x = v.axis_x_tube_axes2_x*v.tube_mu_c1_in_axes2_x +
+            v.axis_y_tube_axes2_x*v.tube_mu_c1_in_axes2_y +
+            v.axis_z_tube_axes2_x*v.tube_mu_c1_in_axes2_z;
+        const real tube_mu_c1_y = v.axis_x_tube_axes2_y*v.tube_mu_c1_in_axes2_x +
+            v.axis_y_tube_axes2_y*v.tube_mu_c1_in_axes2_y +
+            v.axis_z_tube_axes2_y*v.tube_mu_c1_in_axes2_z;
+        const real tube_mu_c1_z = v.axis_x_tube_axes2_z*v.tube_mu_c1_in_axes2_x +
+            v.axis_y_tube_axes2_z*v.tube_mu_c1_in_axes2_y +
+            v.axis_z_tube_axes2_z*v.tube_mu_c1_in_axes2_z;
         /* (tube-mu_c2) the moment that goes with it */
-        const real tube_mu_c2_in_axes2_y = tube_end_p1_in_axes2_z*tube_m1_c2_t;
-        const real tube_mu_c2_t = tube_end_p3_in_axes2_z*tube_m3_c2;
-        const real tube_mu_c2_in_axes2_z = tube_m3_c2*tube_n_m3_in_axes2_z -
-            tube_m1_c2_t*tube_n_m1_in_axes2_z;
-        const real tube_mu_c2_x = axis_y_tube_axes2_x*tube_mu_c2_in_axes2_y +
-            axis_z_tube_axes2_x*tube_mu_c2_in_axes2_z - axis_x_tube_axes2_x*tube_mu_c2_t;
-        const real tube_mu_c2_y = axis_y_tube_axes2_y*tube_mu_c2_in_axes2_y +
-            axis_z_tube_axes2_y*tube_mu_c2_in_axes2_z - axis_x_tube_axes2_y*tube_mu_c2_t;
-        const real tube_mu_c2_z = axis_y_tube_axes2_z*tube_mu_c2_in_axes2_y +
-            axis_z_tube_axes2_z*tube_mu_c2_in_axes2_z - axis_x_tube_axes2_z*tube_mu_c2_t;
-        /* (tube-size_c3) size of the moment */
-        const real tube_size_c3 = root(1 + tube_m1_c3_t*tube_m1_c3_t + tube_m3_c3*tube_m3_c3);
-        /* (tube-mu1_c3) moment along direction 1 that goes with it */
-        const real inv_tube_size_c3 = 1/tube_size_c3;
-        const real tube_mu1_c3_t = inv_tube_size_c3*tube_m1_c3_t;
-        /* (tube-mu3_c3) moment along direction 3 that goes with it */
-        const real tube_mu3_c3 = inv_tube_size_c3*tube_m3_c3;
-        /* (tube-mu_c3) the moment that goes with it */
-        const real tube_mu_c3_in_axes2_x = -inv_tube_size_c3*tube_end_p2_in_axes2_y -
-            tube_end_p3_in_axes2_z*tube_mu3_c3;
-        const real tube_mu_c3_in_axes2_y = inv_tube_size_c3*tube_n_m2_in_axes2_y +
-            tube_end_p1_in_axes2_z*tube_mu1_c3_t;
-        const real tube_mu_c3_in_axes2_z = tube_mu3_c3*tube_n_m3_in_axes2_z -
-            tube_mu1_c3_t*tube_n_m1_in_axes2_z;
-        const real tube_mu_c3_x = axis_x_tube_axes2_x*tube_mu_c3_in_axes2_x +
-            axis_y_tube_axes2_x*tube_mu_c3_in_axes2_y + axis_z_tube_axes2_x*tube_mu_c3_in_axes2_z;
-        const real tube_mu_c3_y = axis_x_tube_axes2_y*tube_mu_c3_in_axes2_x +
-            axis_y_tube_axes2_y*tube_mu_c3_in_axes2_y + axis_z_tube_axes2_y*tube_mu_c3_in_axes2_z;
-        const real tube_mu_c3_z = axis_x_tube_axes2_z*tube_mu_c3_in_axes2_x +
-            axis_y_tube_axes2_z*tube_mu_c3_in_axes2_y + axis_z_tube_axes2_z*tube_mu_c3_in_axes2_z;
-        /* (tube-w_1) force part of reciprocal wrench 1 */
-        const real tube_w_1_t = R(1.35)*tube_n_m1_in_axes1_z;
-        const real tube_w_1_t_2 = R(1.35)*tube_n_m2_in_axes1_z;
-        const real tube_w_1_t_3 = R(1.35)*tube_n_m3_t_5;
-        const real tube_w_1_t_4 = R(1.35)*tube_n_m1_in_axes2_z;
-        const real tube_w_1_t_5 = R(1.35)*tube_n_m3_in_axes2_z;
-        const real tube_w_1_t_6 = R(1.35)*tube_m1_c1_t;
-        const real tube_w_1_t_7 = R(1.35)*tube_m3_c1_t;
-        const real tube_w_1_t_8 = R(1.35)*tube_m1_c2_t;
-        const real tube_w_1_t_9 = R(1.35)*tube_m3_c2;
-        const real tube_w_1_t_10 = R(1.35)*tube_mu1_c3_t;
-        const real tube_w_1_t_11 = R(1.35)*inv_tube_size_c3;
-        const real tube_w_1_t_12 = R(1.35)*tube_mu3_c3;
-        const real tube_w_1_t_13 = root(tube_rho2_2 + tube_w_1_t_4*tube_w_1_t_4 +
-            tube_w_1_t_5*tube_w_1_t_5);
-        const real inv_tube_w_1_t_13 = 1/tube_w_1_t_13;
-        const real tube_w_1_t_14 = inv_tube_w_1_t_13*tube_root_2;
-        const real tube_w_1_t_15 = inv_tube_w_1_t_13*tube_w_1_t_4;
-        const real tube_w_1_t_16 = inv_tube_w_1_t_13*tube_w_1_t_5;
-        const real tube_w_1_t_17 = tube_w_1_t_15*tube_w_1_t_6 + tube_w_1_t_16*tube_w_1_t_7 -
-            tube_w_1_t_14;
-        const real tube_w_1_t_18 = 1 + tube_w_1_t_14*tube_w_1_t_17;
-        const real tube_w_1_t_19 = tube_w_1_t_15*tube_w_1_t_17 - tube_w_1_t_6;
-        const real tube_w_1_t_20 = tube_w_1_t_16*tube_w_1_t_17 - tube_w_1_t_7;
-        const real tube_w_1_t_21 = tube_w_1_t_15*tube_w_1_t_8 - tube_w_1_t_16*tube_w_1_t_9;
-        const real tube_w_1_t_22 = tube_w_1_t_14*tube_w_1_t_21;
-        const real tube_w_1_t_23 = tube_w_1_t_15*tube_w_1_t_21 - tube_w_1_t_8;
-        const real tube_w_1_t_24 = tube_w_1_t_9 + tube_w_1_t_16*tube_w_1_t_21;
-        const real tube_w_1_t_25 = tube_w_1_t_10*tube_w_1_t_15 - tube_w_1_t_12*tube_w_1_t_16;
-        const real tube_w_1_t_26 = tube_w_1_t_14*tube_w_1_t_25;
-        const real tube_w_1_t_27 = tube_w_1_t_10 - tube_w_1_t_15*tube_w_1_t_25;
-        const real tube_w_1_t_28 = tube_w_1_t_12 + tube_w_1_t_16*tube_w_1_t_25;
-        const real tube_w_1_t_29 = tube_w_1_t*tube_w_1_t_15 - tube_w_1_t_16*tube_w_1_t_3;
-        const real tube_w_1_t_30 = tube_w_1_t_14*tube_w_1_t_29;
-        const real tube_w_1_t_31 = tube_w_1_t - tube_w_1_t_15*tube_w_1_t_29;
-        const real tube_w_1_t_32 = tube_w_1_t_3 + tube_w_1_t_16*tube_w_1_t_29;
-        const real tube_w_1_t_33 = root(tube_w_1_t_18*tube_w_1_t_18 + tube_w_1_t_19*tube_w_1_t_19
-            + tube_w_1_t_20*tube_w_1_t_20);
-        const real inv_tube_w_1_t_33 = 1/tube_w_1_t_33;
-        const real tube_w_1_t_34 = inv_tube_w_1_t_33*tube_w_1_t_18;
-        const real tube_w_1_t_35 = inv_tube_w_1_t_33*tube_w_1_t_19;
-        const real tube_w_1_t_36 = inv_tube_w_1_t_33*tube_w_1_t_20;
-        const real tube_w_1_t_37 = tube_w_1_t_22*tube_w_1_t_34 + tube_w_1_t_23*tube_w_1_t_35 +
-            tube_w_1_t_24*tube_w_1_t_36;
-        const real tube_w_1_t_38 = tube_w_1_t_22 - tube_w_1_t_34*tube_w_1_t_37;
-        const real tube_w_1_t_39 = tube_w_1_t_23 - tube_w_1_t_35*tube_w_1_t_37;
-        const real tube_w_1_t_40 = tube_w_1_t_24 - tube_w_1_t_36*tube_w_1_t_37;
-        const real tube_w_1_t_41 = tube_w_1_t_26*tube_w_1_t_34 + tube_w_1_t_28*tube_w_1_t_36 -
-            tube_w_1_t_27*tube_w_1_t_35;
-        const real tube_w_1_t_42 = tube_w_1_t_26 - tube_w_1_t_34*tube_w_1_t_41;
-        const real tube_w_1_t_43 = tube_w_1_t_27 + tube_w_1_t_35*tube_w_1_t_41;
-        const real tube_w_1_t_44 = tube_w_1_t_28 - tube_w_1_t_36*tube_w_1_t_41;
-        const real tube_w_1_t_45 = tube_w_1_t_30*tube_w_1_t_34 + tube_w_1_t_32*tube_w_1_t_36 -
-            tube_w_1_t_31*tube_w_1_t_35;
-        const real tube_w_1_t_46 = tube_w_1_t_30 - tube_w_1_t_34*tube_w_1_t_45;
-        const real tube_w_1_t_47 = tube_w_1_t_31 + tube_w_1_t_35*tube_w_1_t_45;
-        const real tube_w_1_t_48 = tube_w_1_t_32 - tube_w_1_t_36*tube_w_1_t_45;
-        const real tube_w_1_t_49 = root(1 + tube_w_1_t_38*tube_w_1_t_38 +
-            tube_w_1_t_39*tube_w_1_t_39 + tube_w_1_t_40*tube_w_1_t_40);
-        const real inv_tube_w_1_t_49 = 1/tube_w_1_t_49;
-        const real tube_w_1_t_50 = inv_tube_w_1_t_49*tube_w_1_t_38;
-        const real tube_w_1_t_51 = inv_tube_w_1_t_49*tube_w_1_t_39;
-        const real tube_w_1_t_52 = inv_tube_w_1_t_49*tube_w_1_t_40;
-        const real tube_w_1_t_53 = tube_w_1_t_42*tube_w_1_t_50 + tube_w_1_t_44*tube_w_1_t_52 -
-            tube_w_1_t_43*tube_w_1_t_51;
-        const real tube_w_1_t_54 = tube_w_1_t_50*tube_w_1_t_53 - tube_w_1_t_42;
-        const real tube_w_1_t_55 = inv_tube_w_1_t_49*tube_w_1_t_53;
-        const real tube_w_1_t_56 = tube_w_1_t_43 + tube_w_1_t_51*tube_w_1_t_53;
-        const real tube_w_1_t_57 = tube_w_1_t_52*tube_w_1_t_53 - tube_w_1_t_44;
-        const real tube_w_1_t_58 = tube_w_1_t_46*tube_w_1_t_50 + tube_w_1_t_48*tube_w_1_t_52 -
-            inv_tube_w_1_t_49*tube_root_1 - tube_w_1_t_47*tube_w_1_t_51;
-        const real tube_w_1_t_59 = tube_w_1_t_50*tube_w_1_t_58 - tube_w_1_t_46;
-        const real tube_w_1_t_60 = tube_root_1 + inv_tube_w_1_t_49*tube_w_1_t_58;
-        const real tube_w_1_t_61 = tube_w_1_t_47 + tube_w_1_t_51*tube_w_1_t_58;
-        const real tube_w_1_t_62 = tube_w_1_t_52*tube_w_1_t_58 - tube_w_1_t_48;
-        const real tube_w_1_t_63 = root(tube_w_1_t_11*tube_w_1_t_11 + tube_w_1_t_54*tube_w_1_t_54
-            + tube_w_1_t_55*tube_w_1_t_55 + tube_w_1_t_56*tube_w_1_t_56 +
-            tube_w_1_t_57*tube_w_1_t_57);
-        const real inv_tube_w_1_t_63 = 1/tube_w_1_t_63;
-        const real tube_w_1_t_64 = inv_tube_w_1_t_63*tube_w_1_t_54;
-        const real tube_w_1_t_65 = inv_tube_w_1_t_63*tube_w_1_t_55;
-        const real tube_w_1_t_66 = inv_tube_w_1_t_63*tube_w_1_t_56;
-        const real tube_w_1_t_67 = inv_tube_w_1_t_63*tube_w_1_t_11;
-        const real tube_w_1_t_68 = inv_tube_w_1_t_63*tube_w_1_t_57;
-        const real tube_w_1_t_69 = tube_w_1_t_59*tube_w_1_t_64 + tube_w_1_t_60*tube_w_1_t_65 +
-            tube_w_1_t_61*tube_w_1_t_66 + tube_w_1_t_62*tube_w_1_t_68 -
-            tube_w_1_t_2*tube_w_1_t_67;
-        const real tube_w_1_t_70 = tube_w_1_t_59 - tube_w_1_t_64*tube_w_1_t_69;
-        const real tube_w_1_t_71 = tube_w_1_t_60 - tube_w_1_t_65*tube_w_1_t_69;
-        const real tube_w_1_t_72 = tube_w_1_t_61 - tube_w_1_t_66*tube_w_1_t_69;
-        const real tube_w_1_t_73 = tube_w_1_t_2 + tube_w_1_t_67*tube_w_1_t_69;
-        const real tube_w_1_t_74 = tube_w_1_t_62 - tube_w_1_t_68*tube_w_1_t_69;
-        const real tube_w_1_t_75 = root(tube_w_1_t_70*tube_w_1_t_70 + tube_w_1_t_71*tube_w_1_t_71
-            + tube_w_1_t_72*tube_w_1_t_72 + tube_w_1_t_73*tube_w_1_t_73 +
-            tube_w_1_t_74*tube_w_1_t_74);
-        /* (tube-eta_1) rate at which the joints turn along moment direction 1 */
-        const real tube_omega_in_axes2_y = axis_y_tube_axes2_x*omega_x +
-            axis_y_tube_axes2_y*omega_y + axis_y_tube_axes2_z*omega_z;
-        const real tube_omega_in_axes2_z = axis_z_tube_axes2_x*omega_x +
-            axis_z_tube_axes2_y*omega_y + axis_z_tube_axes2_z*omega_z;
-        const real tube_eta_1 = tube_n_m1_in_axes2_z*tube_omega_in_axes2_z -
-            tube_end_p1_in_axes2_z*tube_omega_in_axes2_y;
-        /* (tube-eta_2) rate at which the joints turn along moment direction 2 */
-        const real tube_omega_in_axes2_x = axis_x_tube_axes2_x*omega_x +
-            axis_x_tube_axes2_y*omega_y + axis_x_tube_axes2_z*omega_z;
-        const real tube_eta_2 = tube_n_m2_in_axes2_y*tube_omega_in_axes2_y -
-            tube_end_p2_in_axes2_y*tube_omega_in_axes2_x;
-        /* (tube-eta_3) rate at which the joints turn along moment direction 3 */
-        const real tube_eta_3 = tube_n_m3_in_axes2_z*tube_omega_in_axes2_z -
-            tube_end_p3_in_axes2_z*tube_omega_in_axes2_x;
-        /* (tube-qd_1) rate of joint 1 */
-        const real inv_tube_w_1_t_75 = 1/tube_w_1_t_75;
-        const real tube_qd_1_t = inv_tube_w_1_t_75*tube_w_1_t_70;
-        const real tube_qd_1_t_2 = inv_tube_w_1_t_75*tube_w_1_t_71;
-        const real tube_qd_1_t_3 = inv_tube_w_1_t_75*tube_w_1_t_72;
-        const real tube_qd_1_t_4 = inv_tube_w_1_t_75*tube_w_1_t_73;
-        const real tube_qd_1_t_5 = inv_tube_w_1_t_75*tube_w_1_t_74;
-        const real tube_qd_1_t_6 = R(1.35)*tube_eta_1;
-        const real tube_qd_1_t_7 = R(1.35)*tube_eta_2;
-        const real tube_qd_1_t_8 = R(1.35)*tube_eta_3;
-        const real tube_qd_1 = inv_tube_w_1_t_75*(tube_S_dot_in_axes2_y*tube_qd_1_t +
-            tube_S_dot_in_axes2_z*tube_qd_1_t_2 + tube_qd_1_t_3*tube_qd_1_t_6 +
-            tube_qd_1_t_4*tube_qd_1_t_7 + tube_qd_1_t_5*tube_qd_1_t_8);
-        /* (tube-qd_2) rate of joint 2 */
-        const real tube_qd_2_t = inv_tube_w_1_t_63*(tube_S_dot_in_axes2_y*tube_w_1_t_64 +
-            tube_S_dot_in_axes2_z*tube_w_1_t_65 + tube_qd_1_t_6*tube_w_1_t_66 +
-            tube_qd_1_t_8*tube_w_1_t_68 - tube_qd_1*tube_w_1_t_69 - tube_qd_1_t_7*tube_w_1_t_67);
-        const real tube_qd_2_t_2 = inv_tube_w_1_t_49*(inv_tube_w_1_t_49*tube_S_dot_in_axes2_z +
-            tube_S_dot_in_axes2_y*tube_w_1_t_50 + tube_qd_1*tube_w_1_t_58 +
-            tube_qd_1_t_6*tube_w_1_t_51 + tube_qd_1_t_8*tube_w_1_t_52 +
-            tube_qd_2_t*tube_w_1_t_53);
-        const real tube_qd_2_t_3 = tube_S_dot_in_axes2_y*tube_w_1_t_14 +
-            tube_qd_1_t_6*tube_w_1_t_15 + tube_qd_1_t_8*tube_w_1_t_16 +
-            tube_qd_2_t_2*tube_w_1_t_21 +
-            inv_tube_w_1_t_33*tube_w_1_t_17*(tube_S_dot_in_axes2_y*tube_w_1_t_34 +
-            tube_qd_1*tube_w_1_t_45 + tube_qd_1_t_6*tube_w_1_t_35 + tube_qd_1_t_8*tube_w_1_t_36 +
-            tube_qd_2_t*tube_w_1_t_41 - tube_qd_2_t_2*tube_w_1_t_37) - tube_qd_1*tube_w_1_t_29 -
-            tube_qd_2_t*tube_w_1_t_25;
-        const real tube_qd_2 = inv_tube_w_1_t_13*tube_qd_2_t_3;
-        /* (tube-omega_1) angular velocity of link 1 */
-        const real tube_omega_1_in_axes2_x = tube_qd_1*tube_s_2;
-        const real tube_omega_1_in_axes2_y = tube_c_2*tube_qd_1;
-        /* (tube-W_2) centripetal tensor of link 2 */
-        const real tube_W_2_in_axes2_yz = tube_omega_1_in_axes2_y*tube_qd_2;
-        const real tube_W_2_in_axes2_xz = tube_omega_1_in_axes2_x*tube_qd_2;
-        const real tube_W_2_in_axes2_xy = tube_omega_1_in_axes2_x*tube_omega_1_in_axes2_y;
-        /* (tube-a_p) acceleration of the connection point without its centripetal part */
-        const real alpha_y = s[22*w + j];
-        const real alpha_z = s[23*w + j];
-        const real t_ddot_x = s[18*w + j];
-        const real tube_a_p_x = t_ddot_x + alpha_y*tube_q_z - alpha_z*tube_q_y;
-        const real alpha_x = s[21*w + j];
-        const real t_ddot_y = s[19*w + j];
-        const real tube_a_p_y = t_ddot_y + alpha_z*tube_q_x - alpha_x*tube_q_z;
-        const real t_ddot_z = s[20*w + j];
-        const real tube_a_p_z = t_ddot_z + alpha_x*tube_q_y - alpha_y*tube_q_x;
-        /* (tube-S_ddot) acceleration of the connection point */
-        const real tube_S_ddot_x = tube_a_p_x + omega_y*tube_S_dot_t_5 - omega_z*tube_S_dot_t_4;
-        const real tube_S_ddot_y = tube_a_p_y + omega_z*tube_S_dot_t_3 - omega_x*tube_S_dot_t_5;
-        const real tube_S_ddot_z = tube_a_p_z + omega_x*tube_S_dot_t_4 - omega_y*tube_S_dot_t_3;
-        /* (tube-bias) acceleration of the connection point at zero joint accelerations */
-        const real tube_bias_t = tube_W_2_in_axes2_xz*tube_root_2;
-        const real tube_bias_t_2 = -tube_W_2_in_axes2_xy*tube_root_2;
-        const real tube_bias_t_3 = 2*tube_S_dot_in_axes2_x;
-        const real tube_bias_t_4 = tube_bias_t_3*tube_qd_2;
-        const real tube_bias_t_5 = -tube_bias_t_3*tube_omega_1_in_axes2_y;
-        const real tube_bias_in_axes2_y = tube_bias_t_4 - tube_bias_t_2;
-        const real tube_bias_in_axes2_z = 2*tube_bias_t + tube_bias_t_5;
-        /* (tube-rel) acceleration of the connection point left to the joint accelerations */
-        const real tube_rel_in_axes2_y = axis_y_tube_axes2_x*tube_S_ddot_x +
-            axis_y_tube_axes2_y*tube_S_ddot_y + axis_y_tube_axes2_z*tube_S_ddot_z -
-            tube_bias_in_axes2_y;
-        const real tube_rel_in_axes2_z = axis_z_tube_axes2_x*tube_S_ddot_x +
-            axis_z_tube_axes2_y*tube_S_ddot_y + axis_z_tube_axes2_z*tube_S_ddot_z -
-            tube_bias_in_axes2_z;
-        /* (tube-nd_m1) rate of moment direction 1 */
-        const real tube_end_p1_in_axes2_x = tube_n_m1_t_12*tube_s_2 - tube_c_2*tube_n_m1_t_13;
-        const real tube_nd_m1_in_axes2_y = tube_end_p1_in_axes2_x*tube_omega_in_axes2_y -
-            tube_end_p1_in_axes2_x*tube_omega_1_in_axes2_y -
-            tube_n_m1_in_axes2_z*tube_omega_in_axes2_x;
-        const real tube_nd_m1_in_axes2_z = tube_end_p1_in_axes2_x*tube_omega_in_axes2_z -
-            tube_end_p1_in_axes2_x*tube_qd_2 - tube_end_p1_in_axes2_z*tube_omega_in_axes2_x;
-        /* (tube-nu_1) bias of the angular acceleration along moment direction 1 */
-        const real tube_nu_1_t = tube_omega_1_in_axes2_x - tube_omega_in_axes2_x;
-        const real tube_nu_1_t_2 = tube_omega_in_axes2_y - tube_omega_1_in_axes2_y;
-        const real tube_nu_1_t_3 = tube_omega_in_axes2_z - tube_qd_2;
-        const real tube_nu_1_t_4 = tube_nd_m1_in_axes2_y*tube_nu_1_t_2 +
-            tube_nd_m1_in_axes2_z*tube_nu_1_t_3 - tube_nu_1_t*(tube_end_p1_in_axes2_z*tube_qd_2 +
-            tube_n_m1_in_axes2_z*tube_omega_1_in_axes2_y);
-        const real tube_nu_1 = tube_nu_1_t_4 - tube_W_2_in_axes2_xz*tube_end_p1_in_axes2_z;
-        /* (tube-nd_m2) rate of moment direction 2 */
-        const real tube_end_p2_in_axes2_z = tube_c_1*tube_n_m2_t + tube_n_m2_t_2*tube_s_1;
-        const real tube_nd_m2_in_axes2_x = tube_end_p2_in_axes2_z*tube_omega_in_axes2_x -
-            tube_end_p2_in_axes2_z*tube_omega_1_in_axes2_x -
-            tube_n_m2_in_axes2_y*tube_omega_in_axes2_z;
-        const real tube_nd_m2_in_axes2_y = tube_end_p2_in_axes2_z*tube_omega_in_axes2_y -
-            tube_end_p2_in_axes2_y*tube_omega_in_axes2_z -
-            tube_end_p2_in_axes2_z*tube_omega_1_in_axes2_y;
-        /* (tube-nu_2) bias of the angular acceleration along moment direction 2 */
-        const real tube_nu_2_t = -tube_W_2_in_axes2_xz*tube_n_m2_in_axes2_y -
-            tube_W_2_in_axes2_yz*tube_end_p2_in_axes2_y;
-        const real tube_nu_2_t_2 = tube_nd_m2_in_axes2_x*tube_nu_1_t +
-            tube_nu_1_t_3*(-tube_end_p2_in_axes2_y*tube_omega_1_in_axes2_y -
-            tube_n_m2_in_axes2_y*tube_omega_1_in_axes2_x) - tube_nd_m2_in_axes2_y*tube_nu_1_t_2;
-        const real tube_nu_2 = -tube_nu_2_t - tube_nu_2_t_2;
-        /* (tube-nd_m3) rate of moment direction 3 */
-        const real tube_end_p3_in_axes2_y = tube_c_2*tube_n_m3_t_3 + tube_n_m3_t_4*tube_s_2;
-        const real tube_nd_m3_in_axes2_x = tube_end_p3_in_axes2_y*tube_omega_1_in_axes2_x +
-            tube_n_m3_in_axes2_z*tube_omega_in_axes2_y -
-            tube_end_p3_in_axes2_y*tube_omega_in_axes2_x;
-        const real tube_nd_m3_in_axes2_z = tube_end_p3_in_axes2_y*tube_qd_2 +
-            tube_end_p3_in_axes2_z*tube_omega_in_axes2_y -
-            tube_end_p3_in_axes2_y*tube_omega_in_axes2_z;
-        /* (tube-nu_3) bias of the angular acceleration along moment direction 3 */
-        const real tube_nu_3_t = tube_nd_m3_in_axes2_x*tube_nu_1_t +
-            tube_nu_1_t_2*(tube_end_p3_in_axes2_z*tube_qd_2 +
-            tube_n_m3_in_axes2_z*tube_omega_1_in_axes2_x) - tube_nd_m3_in_axes2_z*tube_nu_1_t_3;
-        const real tube_nu_3 = tube_W_2_in_axes2_yz*tube_end_p3_in_axes2_z - tube_nu_3_t;
-        /* (tube-etad_1) acceleration with which the joints turn along moment direction 1 */
-        const real tube_alpha_in_axes2_y = alpha_x*axis_y_tube_axes2_x +
-            alpha_y*axis_y_tube_axes2_y + alpha_z*axis_y_tube_axes2_z;
-        const real tube_alpha_in_axes2_z = alpha_x*axis_z_tube_axes2_x +
-            alpha_y*axis_z_tube_axes2_y + alpha_z*axis_z_tube_axes2_z;
-        const real tube_etad_1_t = tube_alpha_in_axes2_y*tube_end_p1_in_axes2_z -
-            tube_alpha_in_axes2_z*tube_n_m1_in_axes2_z;
-        const real tube_etad_1 = tube_nu_1 - tube_etad_1_t;
-        /* (tube-etad_2) acceleration with which the joints turn along moment direction 2 */
-        const real tube_alpha_in_axes2_x = alpha_x*axis_x_tube_axes2_x +
-            alpha_y*axis_x_tube_axes2_y + alpha_z*axis_x_tube_axes2_z;
-        const real tube_etad_2_t = tube_alpha_in_axes2_x*tube_end_p2_in_axes2_y -
-            tube_alpha_in_axes2_y*tube_n_m2_in_axes2_y;
-        const real tube_etad_2 = tube_nu_2 - tube_etad_2_t;
-        /* (tube-etad_3) acceleration with which the joints turn along moment direction 3 */
-        const real tube_etad_3_t = tube_alpha_in_axes2_x*tube_end_p3_in_axes2_z -
-            tube_alpha_in_axes2_z*tube_n_m3_in_axes2_z;
-        const real tube_etad_3 = tube_nu_3 - tube_etad_3_t;
-        /* (tube-qdd_1) acceleration of joint 1 */
-        const real tube_qdd_1_t = R(1.35)*tube_etad_1;
-        const real tube_qdd_1_t_2 = R(1.35)*tube_etad_2;
-        const real tube_qdd_1_t_3 = R(1.35)*tube_etad_3;
-        const real tube_qdd_1 = inv_tube_w_1_t_75*(tube_qd_1_t*tube_rel_in_axes2_y +
-            tube_qd_1_t_2*tube_rel_in_axes2_z + tube_qd_1_t_3*tube_qdd_1_t +
-            tube_qd_1_t_4*tube_qdd_1_t_2 + tube_qd_1_t_5*tube_qdd_1_t_3);
-        /* (tube-qdd_2) acceleration of joint 2 */
-        const real tube_qdd_2_t = inv_tube_w_1_t_63*(tube_qdd_1_t*tube_w_1_t_66 +
-            tube_qdd_1_t_3*tube_w_1_t_68 + tube_rel_in_axes2_y*tube_w_1_t_64 +
-            tube_rel_in_axes2_z*tube_w_1_t_65 - tube_qdd_1*tube_w_1_t_69 -
-            tube_qdd_1_t_2*tube_w_1_t_67);
-        const real tube_qdd_2_t_2 = inv_tube_w_1_t_49*(inv_tube_w_1_t_49*tube_rel_in_axes2_z +
-            tube_qdd_1*tube_w_1_t_58 + tube_qdd_1_t*tube_w_1_t_51 + tube_qdd_1_t_3*tube_w_1_t_52 +
-            tube_qdd_2_t*tube_w_1_t_53 + tube_rel_in_axes2_y*tube_w_1_t_50);
-        const real tube_qdd_2_t_3 = tube_qdd_1_t*tube_w_1_t_15 + tube_qdd_1_t_3*tube_w_1_t_16 +
-            tube_qdd_2_t_2*tube_w_1_t_21 + tube_rel_in_axes2_y*tube_w_1_t_14 +
-            inv_tube_w_1_t_33*tube_w_1_t_17*(tube_qdd_1*tube_w_1_t_45 + tube_qdd_1_t*tube_w_1_t_35
-            + tube_qdd_1_t_3*tube_w_1_t_36 + tube_qdd_2_t*tube_w_1_t_41 +
-            tube_rel_in_axes2_y*tube_w_1_t_34 - tube_qdd_2_t_2*tube_w_1_t_37) -
-            tube_qdd_1*tube_w_1_t_29 - tube_qdd_2_t*tube_w_1_t_25;
-        const real tube_qdd_2 = inv_tube_w_1_t_13*tube_qdd_2_t_3;
-        /* (tube-alpha_1) angular acceleration of link 1 */
-        const real tube_alpha_1_in_axes2_x = tube_qdd_1*tube_s_2;
-        const real tube_alpha_1_in_axes2_y = tube_c_2*tube_qdd_1;
-        /* (tube-alpha_2) angular acceleration of link 2 */
-        const real tube_alpha_2_in_axes2_x = tube_W_2_in_axes2_yz + tube_alpha_1_in_axes2_x;
-        const real tube_alpha_2_in_axes2_y = tube_alpha_1_in_axes2_y - tube_W_2_in_axes2_xz;
-        /* (tube-B_2) acceleration tensor of link 2 */
-        const real tube_B_2_in_axes2_xy = tube_W_2_in_axes2_xy - tube_qdd_2;
-        const real tube_B_2_in_axes2_yx = tube_W_2_in_axes2_xy + tube_qdd_2;
-        const real tube_B_2_in_axes2_zx = tube_W_2_in_axes2_xz - tube_alpha_2_in_axes2_y;
-        const real tube_B_2_in_axes2_zy = tube_W_2_in_axes2_yz + tube_alpha_2_in_axes2_x;
-        /* (tube-acc_3) acceleration of the reference point of link 3, less gravity */
-        const real tube_acc_3_t = m->tube_acc_3_t[i];
-        const real tube_acc_3_t_2 = m->tube_acc_3_t_2[i];
-        const real tube_g_in_axes2_z = tube_acc_3_t*tube_c_1 + tube_acc_3_t_2*tube_s_1;
-        const real tube_acc_3_t_4 = tube_acc_3_t_2*tube_c_1 - tube_acc_3_t*tube_s_1;
-        const real tube_acc_3_t_3 = m->tube_acc_3_t_3[i];
-        const real tube_g_in_axes2_x = tube_acc_3_t_3*tube_s_2 + tube_acc_3_t_4*tube_c_2;
-        const real tube_g_in_axes2_y = tube_acc_3_t_3*tube_c_2 - tube_acc_3_t_4*tube_s_2;
-        const real tube_acc_3_in_axes2_x = axis_x_tube_axes2_x*tube_S_ddot_x +
-            axis_x_tube_axes2_y*tube_S_ddot_y + axis_x_tube_axes2_z*tube_S_ddot_z -
-            tube_g_in_axes2_x;
-        const real tube_acc_3_in_axes2_y = tube_bias_t_4 + tube_qdd_2*tube_root_2 - tube_bias_t_2
-            - tube_g_in_axes2_y;
-        const real tube_acc_3_in_axes2_z = tube_bias_t + tube_bias_t_5 - tube_g_in_axes2_z -
-            tube_alpha_2_in_axes2_y*tube_root_2;
-        /* (tube-f_3) inertia force of link 3 less its weight */
-        const real tube_f_3_t = tube_omega_1_in_axes2_x*tube_omega_1_in_axes2_x;
-        const real tube_f_3_t_2 = tube_omega_1_in_axes2_y*tube_omega_1_in_axes2_y;
-        const real tube_f_3_t_3 = tube_qd_2*tube_qd_2;
-        const real tube_h_3_in_spec2_x = m->tube_h_3_in_spec2_x[i];
-        const real tube_h_3_in_spec2_y = m->tube_h_3_in_spec2_y[i];
-        const real tube_h_3_in_spec2_z = m->tube_h_3_in_spec2_z[i];
-        const real tube_link3_mass = m->tube_link3_mass[i];
-        const real tube_f_3_in_axes2_x = tube_acc_3_in_axes2_x*tube_link3_mass +
-            tube_alpha_1_in_axes2_y*tube_h_3_in_spec2_y + tube_h_3_in_spec2_x*(-tube_f_3_t_2 -
-            tube_f_3_t_3) - tube_B_2_in_axes2_xy*tube_h_3_in_spec2_z;
-        const real tube_f_3_in_axes2_y = tube_B_2_in_axes2_yx*tube_h_3_in_spec2_x +
-            tube_acc_3_in_axes2_y*tube_link3_mass + tube_h_3_in_spec2_z*(tube_f_3_t +
-            tube_f_3_t_3) - tube_alpha_1_in_axes2_x*tube_h_3_in_spec2_y;
-        const real tube_f_3_in_axes2_z = tube_B_2_in_axes2_zx*tube_h_3_in_spec2_x +
-            tube_acc_3_in_axes2_z*tube_link3_mass - tube_B_2_in_axes2_zy*tube_h_3_in_spec2_z -
-            tube_h_3_in_spec2_y*(tube_f_3_t + tube_f_3_t_2);
-        /* (tube-mu_2) inertia moment of the links that turn with link 2, about their reference points */
-        const real tube_J_group_2_in_axes2_xy = m->tube_J_group_2_in_axes2_xy[i];
-        const real tube_J_group_2_in_axes2_xz = m->tube_J_group_2_in_axes2_xz[i];
-        const real tube_J_group_2_in_axes2_yz = m->tube_J_group_2_in_axes2_yz[i];
-        const real tube_Sigma_2_in_axes2_yy = m->tube_Sigma_2_in_axes2_yy[i];
-        const real tube_Sigma_2_in_axes2_zz = m->tube_Sigma_2_in_axes2_zz[i];
-        const real tube_h_2_in_spec2_y = m->tube_h_2_in_spec2_y[i];
-        const real tube_h_2_in_spec2_z = m->tube_h_2_in_spec2_z[i];
-        const real tube_mu_2_in_axes2_x = tube_B_2_in_axes2_yx*tube_J_group_2_in_axes2_xz +
-            tube_B_2_in_axes2_zy*tube_Sigma_2_in_axes2_yy +
-            tube_J_group_2_in_axes2_yz*(tube_f_3_t_2 - tube_f_3_t_3) +
-            tube_Sigma_2_in_axes2_zz*tube_alpha_1_in_axes2_x +
-            tube_g_in_axes2_y*tube_h_2_in_spec2_y + tube_g_in_axes2_z*tube_h_2_in_spec2_z -
-            tube_B_2_in_axes2_zx*tube_J_group_2_in_axes2_xy -
-            tube_acc_3_in_axes2_y*tube_h_3_in_spec2_y - tube_acc_3_in_axes2_z*tube_h_3_in_spec2_z;
-        const real tube_Sigma_2_in_axes2_xx = m->tube_Sigma_2_in_axes2_xx[i];
-        const real tube_h_2_in_spec2_x = m->tube_h_2_in_spec2_x[i];
-        const real tube_mu_2_in_axes2_y = tube_B_2_in_axes2_zy*tube_J_group_2_in_axes2_xy +
-            tube_Sigma_2_in_axes2_zz*tube_alpha_1_in_axes2_y +
-            tube_acc_3_in_axes2_x*tube_h_3_in_spec2_y + tube_g_in_axes2_z*tube_h_2_in_spec2_x -
-            tube_B_2_in_axes2_xy*tube_J_group_2_in_axes2_yz -
-            tube_B_2_in_axes2_zx*tube_Sigma_2_in_axes2_xx - tube_J_group_2_in_axes2_xz*(tube_f_3_t
-            - tube_f_3_t_3) - tube_acc_3_in_axes2_z*tube_h_3_in_spec2_x -
-            tube_g_in_axes2_x*tube_h_2_in_spec2_y;
-        const real tube_mu_2_in_axes2_z = tube_B_2_in_axes2_yx*tube_Sigma_2_in_axes2_xx +
-            tube_J_group_2_in_axes2_xy*(tube_f_3_t - tube_f_3_t_2) +
-            tube_J_group_2_in_axes2_xz*tube_alpha_1_in_axes2_x +
-            tube_J_group_2_in_axes2_yz*tube_alpha_1_in_axes2_y +
-            tube_acc_3_in_axes2_x*tube_h_3_in_spec2_z + tube_acc_3_in_axes2_y*tube_h_3_in_spec2_x
-            - tube_B_2_in_axes2_xy*tube_Sigma_2_in_axes2_yy -
-            tube_g_in_axes2_x*tube_h_2_in_spec2_z - tube_g_in_axes2_y*tube_h_2_in_spec2_x;
-        /* (tube-N_2) moment about joint 2 of the links from 2 outwards, the force at the connection point
-           left out */
-        const real tube_N_2_in_axes2_y = tube_mu_2_in_axes2_y - tube_f_3_in_axes2_z*tube_root_2;
-        const real tube_N_2_in_axes2_z = tube_mu_2_in_axes2_z + tube_f_3_in_axes2_y*tube_root_2;
-        /* (tube-G) force at the connection point that balances the leg's inertia and weight along all
-           degrees of freedom */
-        const real tube_G_t = inv_tube_w_1_t_13*tube_N_2_in_axes2_z;
-        const real tube_G_t_2 = inv_tube_w_1_t_33*tube_G_t*tube_w_1_t_17;
-        const real tube_G_t_3 = inv_tube_w_1_t_49*(tube_G_t*tube_w_1_t_21 -
-            tube_G_t_2*tube_w_1_t_37);
-        const real tube_G_t_4 = inv_tube_w_1_t_63*(tube_G_t_2*tube_w_1_t_41 +
-            tube_G_t_3*tube_w_1_t_53 - tube_G_t*tube_w_1_t_25);
-        const real tube_G_t_5 = inv_tube_w_1_t_75*(tube_G_t_2*tube_w_1_t_45 +
-            tube_G_t_3*tube_w_1_t_58 + tube_N_2_in_axes2_y*tube_c_2 +
-            tube_mu_2_in_axes2_x*tube_s_2 - tube_G_t*tube_w_1_t_29 - tube_G_t_4*tube_w_1_t_69);
-        const real tube_G_in_axes2_y = tube_G_t*tube_w_1_t_14 + tube_G_t_2*tube_w_1_t_34 +
-            tube_G_t_3*tube_w_1_t_50 + tube_G_t_4*tube_w_1_t_64 + tube_G_t_5*tube_qd_1_t;
-        const real tube_G_in_axes2_z = inv_tube_w_1_t_49*tube_G_t_3 + tube_G_t_4*tube_w_1_t_65 +
-            tube_G_t_5*tube_qd_1_t_2;
-        /* (tube-G_m1) moment along moment direction 1 that balances the leg's inertia and weight along
-           all degrees of freedom */
-        const real tube_G_m1_t = tube_G_t*tube_w_1_t_15 + tube_G_t_2*tube_w_1_t_35 +
-            tube_G_t_3*tube_w_1_t_51 + tube_G_t_4*tube_w_1_t_66 + tube_G_t_5*tube_qd_1_t_3;
-        const real tube_G_m1 = R(1.35)*tube_G_m1_t;
-        /* (tube-G_m2) moment along moment direction 2 that balances the leg's inertia and weight along
-           all degrees of freedom */
-        const real tube_G_m2_t = tube_G_t_4*tube_w_1_t_67 - tube_G_t_5*tube_qd_1_t_4;
-        const real tube_G_m2 = -R(1.35)*tube_G_m2_t;
-        /* (tube-G_m3) moment along moment direction 3 that balances the leg's inertia and weight along
-           all degrees of freedom */
-        const real tube_G_m3_t = tube_G_t*tube_w_1_t_16 + tube_G_t_2*tube_w_1_t_36 +
-            tube_G_t_3*tube_w_1_t_52 + tube_G_t_4*tube_w_1_t_68 + tube_G_t_5*tube_qd_1_t_5;
-        const real tube_G_m3 = R(1.35)*tube_G_m3_t;
-        /* (tube-G_m) moment at the connection point that balances the leg's inertia and weight along all
-           degrees of freedom */
-        const real tube_G_m_in_axes2_x = -tube_G_m2*tube_end_p2_in_axes2_y -
-            tube_G_m3*tube_end_p3_in_axes2_z;
-        const real tube_G_m_in_axes2_y = tube_G_m2*tube_n_m2_in_axes2_y -
-            tube_G_m1*tube_end_p1_in_axes2_z;
-        const real tube_G_m_in_axes2_z = tube_G_m1*tube_n_m1_in_axes2_z +
-            tube_G_m3*tube_n_m3_in_axes2_z;
-        /* (tube-c) leg force on the platform without actuation and without the mass at the connection
-           point */
-        const real tube_c_x = -axis_x_tube_axes2_x*tube_f_3_in_axes2_x -
-            axis_y_tube_axes2_x*tube_G_in_axes2_y - axis_z_tube_axes2_x*tube_G_in_axes2_z;
-        const real tube_c_y = -axis_x_tube_axes2_y*tube_f_3_in_axes2_x -
-            axis_y_tube_axes2_y*tube_G_in_axes2_y - axis_z_tube_axes2_y*tube_G_in_axes2_z;
-        const real tube_c_z = -axis_x_tube_axes2_z*tube_f_3_in_axes2_x -
-            axis_y_tube_axes2_z*tube_G_in_axes2_y - axis_z_tube_axes2_z*tube_G_in_axes2_z;
+        const real tube_mu_c2_x = v.axis_y_tube_axes2_x*v.tube_mu_c2_in_axes2_y +
+            v.axis_z_tube_axes2_x*v.tube_mu_c2_in_axes2_z - v.axis_x_tube_axes2_x*v.tube_mu_c2_t;
+        const real tube_mu_c2_y = v.axis_y_tube_axes2_y*v.tube_mu_c2_in_axes2_y +
+            v.axis_z_tube_axes2_y*v.tube_mu_c2_in_axes2_z - v.axis_x_tube_axes2_y*v.tube_mu_c2_t;
+        const real tube_mu_c2_z = v.axis_y_tube_axes2_z*v.tube_mu_c2_in_axes2_y +
+            v.axis_z_tube_axes2_z*v.tube_mu_c2_in_axes2_z - v.axis_x_tube_axes2_z*v.tube_mu_c2_t;
         /* (tube-c_m) moment of the leg on the platform without actuation */
-        const real tube_c_m_x = -axis_x_tube_axes2_x*tube_G_m_in_axes2_x -
-            axis_y_tube_axes2_x*tube_G_m_in_axes2_y - axis_z_tube_axes2_x*tube_G_m_in_axes2_z;
-        const real tube_c_m_y = -axis_x_tube_axes2_y*tube_G_m_in_axes2_x -
-            axis_y_tube_axes2_y*tube_G_m_in_axes2_y - axis_z_tube_axes2_y*tube_G_m_in_axes2_z;
-        const real tube_c_m_z = -axis_x_tube_axes2_z*tube_G_m_in_axes2_x -
-            axis_y_tube_axes2_z*tube_G_m_in_axes2_y - axis_z_tube_axes2_z*tube_G_m_in_axes2_z;
+        const real tube_c_m_x = -v.axis_x_tube_axes2_x*v.tube_G_m_in_axes2_x -
+            v.axis_y_tube_axes2_x*v.tube_G_m_in_axes2_y -
+            v.axis_z_tube_axes2_x*v.tube_G_m_in_axes2_z;
+        const real tube_c_m_y = -v.axis_x_tube_axes2_y*v.tube_G_m_in_axes2_x -
+            v.axis_y_tube_axes2_y*v.tube_G_m_in_axes2_y -
+            v.axis_z_tube_axes2_y*v.tube_G_m_in_axes2_z;
+        const real tube_c_m_z = -v.axis_x_tube_axes2_z*v.tube_G_m_in_axes2_x -
+            v.axis_y_tube_axes2_z*v.tube_G_m_in_axes2_y -
+            v.axis_z_tube_axes2_z*v.tube_G_m_in_axes2_z;
         /* (tube-c) leg force on the platform without actuation and without the mass at the connection
            point */
-        o[0*count + k] = tube_c_x;
-        o[1*count + k] = tube_c_y;
-        o[2*count + k] = tube_c_z;
+        o[0*count + k] = v.tube_c_x;
+        o[1*count + k] = v.tube_c_y;
+        o[2*count + k] = v.tube_c_z;
         /* (tube-c_m) moment of the leg on the platform without actuation */
         o[3*count + k] = tube_c_m_x;
         o[4*count + k] = tube_c_m_y;
         o[5*count + k] = tube_c_m_z;
         /* (tube-n_c1) unit force of the constraint wrench */
-        o[6*count + k] = axis_y_tube_axes2_x;
-        o[7*count + k] = axis_y_tube_axes2_y;
-        o[8*count + k] = axis_y_tube_axes2_z;
+        o[6*count + k] = v.axis_y_tube_axes2_x;
+        o[7*count + k] = v.axis_y_tube_axes2_y;
+        o[8*count + k] = v.axis_y_tube_axes2_z;
         /* (tube-mu_c1) the moment that goes with it */
         o[9*count + k] = tube_mu_c1_x;
         o[10*count + k] = tube_mu_c1_y;
         o[11*count + k] = tube_mu_c1_z;
         /* (tube-n_c2) unit force of the constraint wrench */
-        o[12*count + k] = axis_z_tube_axes2_x;
-        o[13*count + k] = axis_z_tube_axes2_y;
-        o[14*count + k] = axis_z_tube_axes2_z;
+        o[12*count + k] = v.axis_z_tube_axes2_x;
+        o[13*count + k] = v.axis_z_tube_axes2_y;
+        o[14*count + k] = v.axis_z_tube_axes2_z;
         /* (tube-mu_c2) the moment that goes with it */
         o[15*count + k] = tube_mu_c2_x;
         o[16*count + k] = tube_mu_c2_y;
         o[17*count + k] = tube_mu_c2_z;
         /* (tube-mu_c3) the moment that goes with it */
-        o[18*count + k] = tube_mu_c3_x;
-        o[19*count + k] = tube_mu_c3_y;
-        o[20*count + k] = tube_mu_c3_z;
-        o[21*count + k] = UNLESS(magnitude(tube_rho2_1) > LEAST_3) + UNLESS(magnitude(tube_rho2_2)
-            > LEAST_3) + UNLESS(magnitude(tube_f_c1_t) > LEAST_4) + UNLESS(magnitude(tube_size_c3)
-            > LEAST_4) + UNLESS(magnitude(tube_w_1_t_13) > LEAST_5) +
-            UNLESS(magnitude(tube_w_1_t_33) > LEAST_4) + UNLESS(magnitude(tube_w_1_t_49) >
-            LEAST_4) + UNLESS(magnitude(tube_w_1_t_63) > LEAST_5) +
-            UNLESS(magnitude(tube_w_1_t_75) > LEAST_5);
+        o[18*count + k] = v.tube_mu_c3_x;
+        o[19*count + k] = v.tube_mu_c3_y;
+        o[20*count + k] = v.tube_mu_c3_z;
+        o[21*count + k] = UNLESS(magnitude(v.tube_root_1_t) > LEAST_3) +
+            UNLESS(magnitude(v.tube_q_3_t) > LEAST_3) + UNLESS(magnitude(v.tube_f_c1_t) > LEAST_4)
+            + UNLESS(magnitude(v.tube_size_c3) > LEAST_4) + UNLESS(magnitude(v.tube_w_1_t_13) >
+            LEAST_5) + UNLESS(magnitude(v.tube_w_1_t_33) > LEAST_4) +
+            UNLESS(magnitude(v.tube_w_1_t_49) > LEAST_4) + UNLESS(magnitude(v.tube_w_1_t_63) >
+            LEAST_5) + UNLESS(magnitude(v.tube_w_1_t_75) > LEAST_5);
     }
 }
 
@@ -11039,18 +8157,18 @@ INLINE void legs_place_tube(size_t w, size_t count, const real *o, size_t first,
 INLINE void legs_run(const prepared *m, const real *X, const real *V, const real *A, real
     *leg_force, real *actuator, real *constraint_direction, verdict *t)
 {
-    real s[24] = {0};
+    real s[9] = {0};
     real o_ups[7*LEGS(LEGS_OF_ups)] = {0};
     real o_tube[22*LEGS(LEGS_OF_tube)] = {0};
     clear(leg_force, 6*NL);
     clear(actuator, 24);
     clear(constraint_direction, 6*NC);
-    legs_before(1, X, V, A, s, t);
-    legs_legs_ups(m, 1, 0, 1, s, 0, LEGS(LEGS_OF_ups), o_ups);
+    legs_before(m, 1, X, s, t);
+    legs_legs_ups(m, 1, 0, 1, s, 0, LEGS(LEGS_OF_ups), X, V, A, o_ups);
+    legs_legs_tube(m, 1, 0, 1, s, 0, LEGS(LEGS_OF_tube), X, V, A, o_tube);
     for (size_t leg = 0; leg < LEGS_OF_ups; ++leg) {
         legs_place_ups(1, LEGS(LEGS_OF_ups), o_ups, leg, leg, leg_force, actuator, t);
     }
-    legs_legs_tube(m, 1, 0, 1, s, 0, LEGS(LEGS_OF_tube), o_tube);
     for (size_t leg = 0; leg < LEGS_OF_tube; ++leg) {
         legs_place_tube(1, LEGS(LEGS_OF_tube), o_tube, leg, leg_force, constraint_direction, t);
     }
@@ -11060,40 +8178,8 @@ INLINE void legs_run(const prepared *m, const real *X, const real *V, const real
 INLINE void potential_before(const prepared *m, size_t w, const real *X, real *s, verdict *t)
 {
     for (size_t k = 0; k < w; ++k) {
-        /* X: named entries */
-        const real X_0 = X[0*w + k];
-        const real t_x = X_0;
-        const real X_1 = X[1*w + k];
-        const real t_y = X_1;
-        const real X_2 = X[2*w + k];
-        const real t_z = X_2;
-        const real X_3 = X[3*w + k];
-        const real X_4 = X[4*w + k];
-        const real X_5 = X[5*w + k];
-        const real X_6 = X[6*w + k];
-        const real quaternion_norm2 = X_3*X_3 + X_4*X_4 + X_5*X_5 + X_6*X_6;
-        const real quaternion_scale = 2/quaternion_norm2;
-        const real quaternion_sx = X_3*quaternion_scale;
-        const real quaternion_sy = X_4*quaternion_scale;
-        const real quaternion_sz = X_5*quaternion_scale;
-        const real quaternion_wx = X_6*quaternion_sx;
-        const real quaternion_wy = X_6*quaternion_sy;
-        const real quaternion_wz = X_6*quaternion_sz;
-        const real quaternion_xx = X_3*quaternion_sx;
-        const real quaternion_xy = X_3*quaternion_sy;
-        const real quaternion_xz = X_3*quaternion_sz;
-        const real quaternion_yy = X_4*quaternion_sy;
-        const real quaternion_yz = X_4*quaternion_sz;
-        const real quaternion_zz = X_5*quaternion_sz;
-        const real R_xx = 1 - quaternion_yy - quaternion_zz;
-        const real R_xy = quaternion_xy - quaternion_wz;
-        const real R_xz = quaternion_wy + quaternion_xz;
-        const real R_yx = quaternion_wz + quaternion_xy;
-        const real R_yy = 1 - quaternion_xx - quaternion_zz;
-        const real R_yz = quaternion_yz - quaternion_wx;
-        const real R_zx = quaternion_xz - quaternion_wy;
-        const real R_zy = quaternion_wx + quaternion_yz;
-        const real R_zz = 1 - quaternion_xx - quaternion_yy;
+        values v;
+        stage_X(m, w, k, X, &v);
         /* (potential) potential energy */
         const real gravity_x = m->gravity_x;
         const real gravity_y = m->gravity_y;
@@ -11102,104 +8188,50 @@ INLINE void potential_before(const prepared *m, size_t w, const real *X, real *s
         const real h_star_in_platform_y = m->h_star_in_platform_y;
         const real h_star_in_platform_z = m->h_star_in_platform_z;
         const real m_star = m->m_star;
-        const real potential_t = gravity_x*(R_xx*h_star_in_platform_x + R_xy*h_star_in_platform_y
-            + R_xz*h_star_in_platform_z + m_star*t_x) + gravity_y*(R_yx*h_star_in_platform_x +
-            R_yy*h_star_in_platform_y + R_yz*h_star_in_platform_z + m_star*t_y) +
-            gravity_z*(R_zx*h_star_in_platform_x + R_zy*h_star_in_platform_y +
-            R_zz*h_star_in_platform_z + m_star*t_z);
-        s[0*w + k] = t_x;
-        s[1*w + k] = t_y;
-        s[2*w + k] = t_z;
-        s[3*w + k] = R_xx;
-        s[4*w + k] = R_xy;
-        s[5*w + k] = R_xz;
-        s[6*w + k] = R_yx;
-        s[7*w + k] = R_yy;
-        s[8*w + k] = R_yz;
-        s[9*w + k] = R_zx;
-        s[10*w + k] = R_zy;
-        s[11*w + k] = R_zz;
-        s[12*w + k] = potential_t;
-        t->invalid[k] += UNLESS(is_finite(quaternion_scale)) + UNLESS(quaternion_scale > 0);
+        const real t_x = X[0*w + k];
+        const real t_y = X[1*w + k];
+        const real t_z = X[2*w + k];
+        const real potential_t = gravity_x*(v.R_xx*h_star_in_platform_x +
+            v.R_xy*h_star_in_platform_y + v.R_xz*h_star_in_platform_z + m_star*t_x) +
+            gravity_y*(v.R_yx*h_star_in_platform_x + v.R_yy*h_star_in_platform_y +
+            v.R_yz*h_star_in_platform_z + m_star*t_y) + gravity_z*(v.R_zx*h_star_in_platform_x +
+            v.R_zy*h_star_in_platform_y + v.R_zz*h_star_in_platform_z + m_star*t_z);
+        s[0*w + k] = v.R_xx;
+        s[1*w + k] = v.R_xy;
+        s[2*w + k] = v.R_xz;
+        s[3*w + k] = v.R_yx;
+        s[4*w + k] = v.R_yy;
+        s[5*w + k] = v.R_yz;
+        s[6*w + k] = v.R_zx;
+        s[7*w + k] = v.R_zy;
+        s[8*w + k] = v.R_zz;
+        s[9*w + k] = potential_t;
+        t->invalid[k] += UNLESS(is_finite(v.quaternion_scale)) + UNLESS(v.quaternion_scale > 0);
     }
 }
 
 INLINE void potential_legs_ups(const prepared *m, size_t w, size_t leg, size_t legs, const real
-    *s, size_t states, size_t count, int add, real *terms, real *o)
+    *s, size_t states, size_t count, int add, const real *X, real *terms, real *o)
 {
     for (size_t k = 0; k < count; ++k) {
         const size_t i = leg + legs*k;
         const size_t j = states*k;
-        /* (ups-S) from the base point to the connection point */
-        const real R_xx = s[3*w + j];
-        const real R_xy = s[4*w + j];
-        const real R_xz = s[5*w + j];
-        const real t_x = s[0*w + j];
-        const real ups_base_point_x = m->ups_base_point_x[i];
-        const real ups_platform_point_x = m->ups_platform_point_x[i];
-        const real ups_platform_point_y = m->ups_platform_point_y[i];
-        const real ups_platform_point_z = m->ups_platform_point_z[i];
-        const real ups_S_x = t_x + R_xx*ups_platform_point_x + R_xy*ups_platform_point_y +
-            R_xz*ups_platform_point_z - ups_base_point_x;
-        const real R_yx = s[6*w + j];
-        const real R_yy = s[7*w + j];
-        const real R_yz = s[8*w + j];
-        const real t_y = s[1*w + j];
-        const real ups_base_point_y = m->ups_base_point_y[i];
-        const real ups_S_y = t_y + R_yx*ups_platform_point_x + R_yy*ups_platform_point_y +
-            R_yz*ups_platform_point_z - ups_base_point_y;
-        const real R_zx = s[9*w + j];
-        const real R_zy = s[10*w + j];
-        const real R_zz = s[11*w + j];
-        const real t_z = s[2*w + j];
-        const real ups_base_point_z = m->ups_base_point_z[i];
-        const real ups_S_z = t_z + R_zx*ups_platform_point_x + R_zy*ups_platform_point_y +
-            R_zz*ups_platform_point_z - ups_base_point_z;
-        /* (ups-px_1) component along the reference direction */
-        const real ups_base_frame_xx = m->ups_base_frame_xx[i];
-        const real ups_base_frame_yx = m->ups_base_frame_yx[i];
-        const real ups_base_frame_zx = m->ups_base_frame_zx[i];
-        const real ups_px_1 = ups_S_x*ups_base_frame_xx + ups_S_y*ups_base_frame_yx +
-            ups_S_z*ups_base_frame_zx;
-        /* (ups-py_1) component across the reference direction */
-        const real ups_base_frame_xy = m->ups_base_frame_xy[i];
-        const real ups_base_frame_yy = m->ups_base_frame_yy[i];
-        const real ups_base_frame_zy = m->ups_base_frame_zy[i];
-        const real ups_py_1 = ups_S_x*ups_base_frame_xy + ups_S_y*ups_base_frame_yy +
-            ups_S_z*ups_base_frame_zy;
-        /* (ups-rho2_1) squared amplitude */
-        const real ups_rho2_1 = ups_px_1*ups_px_1 + ups_py_1*ups_py_1;
-        /* (ups-root_1) amplitude, with the sign of the branch */
-        const real ups_branch_1 = m->ups_branch_1[i];
-        const real ups_root_1 = ups_branch_1*root(ups_rho2_1);
+        values_ups v;
+        stage_ups_inverse_kinematics_potential(m, w, i, j, s, X, &v);
         /* (ups-c_1) cosine of the angle of joint 1 from its reference direction */
-        const real inv_ups_root_1 = 1/ups_root_1;
-        const real ups_c_1 = -inv_ups_root_1*ups_py_1;
+        const real ups_c_1 = v.inv_ups_root_1*v.ups_S_in_turn1_x;
         /* (ups-s_1) sine of the angle of joint 1 from its reference direction */
-        const real ups_s_1 = inv_ups_root_1*ups_px_1;
-        /* (ups-xi_1) the vector from joint 1 to the connection point, resolved along link 1 */
-        const real ups_base_frame_xz = m->ups_base_frame_xz[i];
-        const real ups_base_frame_yz = m->ups_base_frame_yz[i];
-        const real ups_base_frame_zz = m->ups_base_frame_zz[i];
-        const real ups_xi_1_in_axes1_z = ups_S_x*ups_base_frame_xz + ups_S_y*ups_base_frame_yz +
-            ups_S_z*ups_base_frame_zz;
-        /* (ups-rho2_2) squared amplitude */
-        const real ups_rho2_2 = ups_rho2_1 + ups_xi_1_in_axes1_z*ups_xi_1_in_axes1_z;
-        /* (ups-root_2) amplitude, with the sign of the branch */
-        const real ups_branch_2 = m->ups_branch_2[i];
-        const real ups_root_2 = ups_branch_2*root(ups_rho2_2);
+        const real ups_s_1 = v.inv_ups_root_1*v.ups_S_in_turn1_y;
         /* (ups-c_2) cosine of the angle of joint 2 from its reference direction */
-        const real inv_ups_root_2 = 1/ups_root_2;
-        const real ups_c_2 = -inv_ups_root_2*ups_root_1;
-        /* (ups-s_2) sine of the angle of joint 2 from its reference direction */
-        const real ups_s_2 = inv_ups_root_2*ups_xi_1_in_axes1_z;
+        const real ups_c_2 = v.inv_ups_q_3*v.ups_root_1;
         /* (potential) potential energy */
+        const real ups_e_1_in_axes2_x = v.inv_ups_q_3*v.ups_S_in_turn1_z;
         const real ups_acc_3_t = m->ups_acc_3_t[i];
         const real ups_acc_3_t_2 = m->ups_acc_3_t_2[i];
-        const real ups_potential_t_4 = ups_acc_3_t_2*ups_c_1 - ups_acc_3_t*ups_s_1;
+        const real ups_potential_t_4 = ups_acc_3_t*ups_c_1 + ups_acc_3_t_2*ups_s_1;
         const real ups_potential_t = m->ups_potential_t[i];
         const real ups_potential_t_2 = m->ups_potential_t_2[i];
-        const real ups_potential_t_5 = ups_c_1*ups_potential_t_2 - ups_potential_t*ups_s_1;
+        const real ups_potential_t_5 = ups_c_1*ups_potential_t + ups_potential_t_2*ups_s_1;
         const real ups_acc_3_t_3 = m->ups_acc_3_t_3[i];
         const real ups_h_2_in_spec2_x = m->ups_h_2_in_spec2_x[i];
         const real ups_h_2_in_spec2_y = m->ups_h_2_in_spec2_y[i];
@@ -11209,18 +8241,18 @@ INLINE void potential_legs_ups(const prepared *m, size_t w, size_t leg, size_t l
         const real ups_h_3_in_spec2_z = m->ups_h_3_in_spec2_z[i];
         const real ups_link2_mass = m->ups_link2_mass[i];
         const real ups_potential_t_3 = m->ups_potential_t_3[i];
-        const real ups_potential_t_6 = (ups_acc_3_t_3*ups_c_2 -
-            ups_potential_t_4*ups_s_2)*(ups_h_2_in_spec2_z + ups_h_3_in_spec2_z -
-            ups_link2_mass*(ups_c_2*ups_potential_t_3 - ups_potential_t_5*ups_s_2)) -
-            (ups_acc_3_t*ups_c_1 + ups_acc_3_t_2*ups_s_1)*(ups_h_2_in_spec2_y + ups_h_3_in_spec2_y
-            + ups_link2_mass*(ups_c_1*ups_potential_t + ups_potential_t_2*ups_s_1)) -
-            (ups_acc_3_t_3*ups_s_2 + ups_c_2*ups_potential_t_4)*(ups_h_2_in_spec2_x +
+        const real ups_potential_t_6 = (ups_e_1_in_axes2_x*ups_potential_t_4 -
+            ups_acc_3_t_3*ups_c_2)*(ups_h_2_in_spec2_z + ups_h_3_in_spec2_z -
+            ups_link2_mass*(ups_e_1_in_axes2_x*ups_potential_t_5 - ups_c_2*ups_potential_t_3)) -
+            (ups_acc_3_t_2*ups_c_1 - ups_acc_3_t*ups_s_1)*(ups_h_2_in_spec2_y + ups_h_3_in_spec2_y
+            + ups_link2_mass*(ups_c_1*ups_potential_t_2 - ups_potential_t*ups_s_1)) -
+            (ups_acc_3_t_3*ups_e_1_in_axes2_x + ups_c_2*ups_potential_t_4)*(ups_h_2_in_spec2_x +
             ups_h_3_in_spec2_x + ups_link2_mass*(ups_c_2*ups_potential_t_5 +
-            ups_potential_t_3*ups_s_2));
+            ups_e_1_in_axes2_x*ups_potential_t_3));
         /* (potential) potential energy */
         gather(&terms[0*count + k], add, ups_potential_t_6);  /* potential_of_legs */
-        o[0*count + k] = UNLESS(magnitude(ups_rho2_1) > LEAST_1) + UNLESS(magnitude(ups_rho2_2) >
-            LEAST_1);
+        o[0*count + k] = UNLESS(magnitude(v.ups_root_1_t) > LEAST_1) +
+            UNLESS(magnitude(v.ups_q_3_t) > LEAST_1);
     }
 }
 
@@ -11232,85 +8264,82 @@ INLINE void potential_place_ups(size_t w, size_t count, const real *o, size_t fi
 }
 
 INLINE void potential_legs_tube(const prepared *m, size_t w, size_t leg, size_t legs, const real
-    *s, size_t states, size_t count, int add, real *terms, real *o)
+    *s, size_t states, size_t count, int add, const real *X, real *terms, real *o)
 {
     for (size_t k = 0; k < count; ++k) {
         const size_t i = leg + legs*k;
         const size_t j = states*k;
         /* (tube-S) from the base point to the connection point */
-        const real R_xx = s[3*w + j];
-        const real R_xy = s[4*w + j];
-        const real R_xz = s[5*w + j];
-        const real t_x = s[0*w + j];
+        const real R_xx = s[0*w + j];
+        const real R_xy = s[1*w + j];
+        const real R_xz = s[2*w + j];
+        const real t_x = X[0*w + j];
         const real tube_base_point_x = m->tube_base_point_x[i];
         const real tube_platform_point_x = m->tube_platform_point_x[i];
         const real tube_platform_point_y = m->tube_platform_point_y[i];
         const real tube_platform_point_z = m->tube_platform_point_z[i];
         const real tube_S_x = t_x + R_xx*tube_platform_point_x + R_xy*tube_platform_point_y +
             R_xz*tube_platform_point_z - tube_base_point_x;
-        const real R_yx = s[6*w + j];
-        const real R_yy = s[7*w + j];
-        const real R_yz = s[8*w + j];
-        const real t_y = s[1*w + j];
+        const real R_yx = s[3*w + j];
+        const real R_yy = s[4*w + j];
+        const real R_yz = s[5*w + j];
+        const real t_y = X[1*w + j];
         const real tube_base_point_y = m->tube_base_point_y[i];
         const real tube_S_y = t_y + R_yx*tube_platform_point_x + R_yy*tube_platform_point_y +
             R_yz*tube_platform_point_z - tube_base_point_y;
-        const real R_zx = s[9*w + j];
-        const real R_zy = s[10*w + j];
-        const real R_zz = s[11*w + j];
-        const real t_z = s[2*w + j];
+        const real R_zx = s[6*w + j];
+        const real R_zy = s[7*w + j];
+        const real R_zz = s[8*w + j];
+        const real t_z = X[2*w + j];
         const real tube_base_point_z = m->tube_base_point_z[i];
         const real tube_S_z = t_z + R_zx*tube_platform_point_x + R_zy*tube_platform_point_y +
             R_zz*tube_platform_point_z - tube_base_point_z;
-        /* (tube-px_1) component along the reference direction */
         const real tube_base_frame_xx = m->tube_base_frame_xx[i];
         const real tube_base_frame_yx = m->tube_base_frame_yx[i];
         const real tube_base_frame_zx = m->tube_base_frame_zx[i];
-        const real tube_px_1 = tube_S_x*tube_base_frame_xx + tube_S_y*tube_base_frame_yx +
+        const real tube_S_in_turn1_x = tube_S_x*tube_base_frame_xx + tube_S_y*tube_base_frame_yx +
             tube_S_z*tube_base_frame_zx;
-        /* (tube-py_1) component across the reference direction */
         const real tube_base_frame_xy = m->tube_base_frame_xy[i];
         const real tube_base_frame_yy = m->tube_base_frame_yy[i];
         const real tube_base_frame_zy = m->tube_base_frame_zy[i];
-        const real tube_py_1 = tube_S_x*tube_base_frame_xy + tube_S_y*tube_base_frame_yy +
+        const real tube_S_in_turn1_y = tube_S_x*tube_base_frame_xy + tube_S_y*tube_base_frame_yy +
             tube_S_z*tube_base_frame_zy;
-        /* (tube-rho2_1) squared amplitude */
-        const real tube_rho2_1 = tube_px_1*tube_px_1 + tube_py_1*tube_py_1;
-        /* (tube-root_1) amplitude, with the sign of the branch */
-        const real tube_branch_1 = m->tube_branch_1[i];
-        const real tube_root_1 = tube_branch_1*root(tube_rho2_1);
-        /* (tube-c_1) cosine of the angle of joint 1 from its reference direction */
-        const real inv_tube_root_1 = 1/tube_root_1;
-        const real tube_c_1 = -inv_tube_root_1*tube_py_1;
-        /* (tube-s_1) sine of the angle of joint 1 from its reference direction */
-        const real tube_s_1 = inv_tube_root_1*tube_px_1;
-        /* (tube-xi_1) the vector from joint 1 to the connection point, resolved along link 1 */
         const real tube_base_frame_xz = m->tube_base_frame_xz[i];
         const real tube_base_frame_yz = m->tube_base_frame_yz[i];
         const real tube_base_frame_zz = m->tube_base_frame_zz[i];
-        const real tube_xi_1_in_axes1_z = tube_S_x*tube_base_frame_xz +
-            tube_S_y*tube_base_frame_yz + tube_S_z*tube_base_frame_zz;
-        /* (tube-rho2_2) squared amplitude */
-        const real tube_rho2_2 = tube_rho2_1 + tube_xi_1_in_axes1_z*tube_xi_1_in_axes1_z;
-        /* (tube-root_2) amplitude, with the sign of the branch */
+        const real tube_S_in_turn1_z = tube_S_x*tube_base_frame_xz + tube_S_y*tube_base_frame_yz +
+            tube_S_z*tube_base_frame_zz;
+        /* (tube-root_1) amplitude, the length across axis 1, with the sign of the branch */
+        const real tube_root_1_t = tube_S_in_turn1_x*tube_S_in_turn1_x +
+            tube_S_in_turn1_y*tube_S_in_turn1_y;
+        const real tube_branch_1 = m->tube_branch_1[i];
+        const real tube_root_1 = tube_branch_1*root(tube_root_1_t);
+        /* (tube-c_1) cosine of the angle of joint 1 from its reference direction */
+        const real inv_tube_root_1 = 1/tube_root_1;
+        const real tube_c_1 = inv_tube_root_1*tube_S_in_turn1_x;
+        /* (tube-s_1) sine of the angle of joint 1 from its reference direction */
+        const real tube_s_1 = inv_tube_root_1*tube_S_in_turn1_y;
+        /* (tube-q_3) displacement of joint 3 */
+        const real tube_q_3_t = tube_S_in_turn1_z*tube_S_in_turn1_z + tube_root_1_t;
         const real tube_branch_2 = m->tube_branch_2[i];
-        const real tube_root_2 = tube_branch_2*root(tube_rho2_2);
+        const real tube_q_3 = tube_branch_2*root(tube_q_3_t);
         /* (tube-c_2) cosine of the angle of joint 2 from its reference direction */
-        const real inv_tube_root_2 = 1/tube_root_2;
-        const real tube_c_2 = -inv_tube_root_2*tube_root_1;
-        /* (tube-s_2) sine of the angle of joint 2 from its reference direction */
-        const real tube_s_2 = inv_tube_root_2*tube_xi_1_in_axes1_z;
+        const real inv_tube_q_3 = 1/tube_q_3;
+        const real tube_c_2 = inv_tube_q_3*tube_root_1;
         /* (potential) potential energy */
+        const real tube_e_1_in_axes2_x = inv_tube_q_3*tube_S_in_turn1_z;
         const real tube_acc_3_t = m->tube_acc_3_t[i];
         const real tube_acc_3_t_2 = m->tube_acc_3_t_2[i];
-        const real tube_potential_t_4 = tube_acc_3_t_2*tube_c_1 - tube_acc_3_t*tube_s_1;
+        const real tube_potential_t_4 = tube_acc_3_t*tube_c_1 + tube_acc_3_t_2*tube_s_1;
         const real tube_potential_t = m->tube_potential_t[i];
         const real tube_potential_t_2 = m->tube_potential_t_2[i];
-        const real tube_b_in_spec2_y = tube_c_1*tube_potential_t + tube_potential_t_2*tube_s_1;
-        const real tube_potential_t_5 = tube_c_1*tube_potential_t_2 - tube_potential_t*tube_s_1;
+        const real tube_potential_t_5 = tube_c_1*tube_potential_t + tube_potential_t_2*tube_s_1;
+        const real tube_b_in_spec2_y = tube_c_1*tube_potential_t_2 - tube_potential_t*tube_s_1;
         const real tube_potential_t_3 = m->tube_potential_t_3[i];
-        const real tube_b_in_spec2_x = tube_c_2*tube_potential_t_5 + tube_potential_t_3*tube_s_2;
-        const real tube_b_in_spec2_z = tube_potential_t_5*tube_s_2 - tube_c_2*tube_potential_t_3;
+        const real tube_b_in_spec2_x = tube_c_2*tube_potential_t_5 +
+            tube_e_1_in_axes2_x*tube_potential_t_3;
+        const real tube_b_in_spec2_z = tube_c_2*tube_potential_t_3 -
+            tube_e_1_in_axes2_x*tube_potential_t_5;
         const real tube_acc_3_t_3 = m->tube_acc_3_t_3[i];
         const real tube_h_2_in_spec2_x = m->tube_h_2_in_spec2_x[i];
         const real tube_h_2_in_spec2_y = m->tube_h_2_in_spec2_y[i];
@@ -11320,18 +8349,17 @@ INLINE void potential_legs_tube(const prepared *m, size_t w, size_t leg, size_t 
         const real tube_h_3_in_spec2_z = m->tube_h_3_in_spec2_z[i];
         const real tube_link2_mass = m->tube_link2_mass[i];
         const real tube_link3_mass = m->tube_link3_mass[i];
-        const real tube_potential_t_6 = (tube_acc_3_t_3*tube_c_2 -
-            tube_potential_t_4*tube_s_2)*(tube_h_2_in_spec2_z + tube_h_3_in_spec2_z +
+        const real tube_potential_t_6 = (tube_e_1_in_axes2_x*tube_potential_t_4 -
+            tube_acc_3_t_3*tube_c_2)*(tube_h_2_in_spec2_z + tube_h_3_in_spec2_z +
             tube_b_in_spec2_z*tube_link2_mass + tube_b_in_spec2_z*tube_link3_mass) -
-            (tube_acc_3_t*tube_c_1 + tube_acc_3_t_2*tube_s_1)*(tube_h_2_in_spec2_y +
+            (tube_acc_3_t_2*tube_c_1 - tube_acc_3_t*tube_s_1)*(tube_h_2_in_spec2_y +
             tube_h_3_in_spec2_y + tube_b_in_spec2_y*tube_link2_mass +
-            tube_b_in_spec2_y*tube_link3_mass) - (tube_acc_3_t_3*tube_s_2 +
+            tube_b_in_spec2_y*tube_link3_mass) - (tube_acc_3_t_3*tube_e_1_in_axes2_x +
             tube_c_2*tube_potential_t_4)*(tube_h_2_in_spec2_x + tube_h_3_in_spec2_x +
-            tube_b_in_spec2_x*tube_link2_mass + tube_link3_mass*(tube_b_in_spec2_x +
-            tube_root_2));
+            tube_b_in_spec2_x*tube_link2_mass + tube_link3_mass*(tube_b_in_spec2_x + tube_q_3));
         /* (potential) potential energy */
         gather(&terms[0*count + k], add, tube_potential_t_6);  /* potential_of_legs */
-        o[0*count + k] = UNLESS(magnitude(tube_rho2_1) > LEAST_3) + UNLESS(magnitude(tube_rho2_2)
+        o[0*count + k] = UNLESS(magnitude(tube_root_1_t) > LEAST_3) + UNLESS(magnitude(tube_q_3_t)
             > LEAST_3);
     }
 }
@@ -11348,7 +8376,7 @@ INLINE void potential_after(size_t w, const real *s, const real *sums, real *pot
     for (size_t k = 0; k < w; ++k) {
         /* (potential) potential energy */
         const real potential_of_legs = sums[0*w + k];
-        const real potential_t = s[12*w + k];
+        const real potential_t = s[9*w + k];
         const real potential_ = potential_of_legs - potential_t;
         /* (potential) potential energy */
         potential[0*w + k] = potential_;
@@ -11357,21 +8385,18 @@ INLINE void potential_after(size_t w, const real *s, const real *sums, real *pot
 
 INLINE void potential_run(const prepared *m, const real *X, real *potential, verdict *t)
 {
-    real s[13] = {0};
-    real sums[1] = {0};
-    real terms_ups[LEGS(LEGS_OF_ups)] = {0};
-    real o_ups[LEGS(LEGS_OF_ups)] = {0};
-    real terms_tube[LEGS(LEGS_OF_tube)] = {0};
-    real o_tube[LEGS(LEGS_OF_tube)] = {0};
+    real s[10] = {0}, sums[1] = {0};
+    real terms_ups[LEGS(LEGS_OF_ups)] = {0}, o_ups[LEGS(LEGS_OF_ups)] = {0};
+    real terms_tube[LEGS(LEGS_OF_tube)] = {0}, o_tube[LEGS(LEGS_OF_tube)] = {0};
     potential_before(m, 1, X, s, t);
-    potential_legs_ups(m, 1, 0, 1, s, 0, LEGS(LEGS_OF_ups), 0, terms_ups, o_ups);
+    potential_legs_ups(m, 1, 0, 1, s, 0, LEGS(LEGS_OF_ups), 0, X, terms_ups, o_ups);
+    potential_legs_tube(m, 1, 0, 1, s, 0, LEGS(LEGS_OF_tube), 0, X, terms_tube, o_tube);
     for (size_t leg = 0; leg < LEGS_OF_ups; ++leg) {
         potential_place_ups(1, LEGS(LEGS_OF_ups), o_ups, leg, t);
     }
     for (size_t n = 0; n < 1; ++n) {
         sums[n] = total(terms_ups + n*LEGS(LEGS_OF_ups), LEGS_OF_ups);
     }
-    potential_legs_tube(m, 1, 0, 1, s, 0, LEGS(LEGS_OF_tube), 0, terms_tube, o_tube);
     for (size_t leg = 0; leg < LEGS_OF_tube; ++leg) {
         potential_place_tube(1, LEGS(LEGS_OF_tube), o_tube, leg, t);
     }
@@ -11382,159 +8407,68 @@ INLINE void potential_run(const prepared *m, const real *X, real *potential, ver
 }
 
 /* ---- condition ---- */
-INLINE void condition_before(size_t w, const real *X, real *s, real *lengths, verdict *t)
+INLINE void condition_before(const prepared *m, size_t w, const real *X, real *s, real *lengths,
+    verdict *t)
 {
     for (size_t k = 0; k < w; ++k) {
-        /* X: named entries */
-        const real X_0 = X[0*w + k];
-        const real t_x = X_0;
-        const real X_1 = X[1*w + k];
-        const real t_y = X_1;
-        const real X_2 = X[2*w + k];
-        const real t_z = X_2;
-        const real X_3 = X[3*w + k];
-        const real X_4 = X[4*w + k];
-        const real X_5 = X[5*w + k];
-        const real X_6 = X[6*w + k];
-        const real quaternion_norm2 = X_3*X_3 + X_4*X_4 + X_5*X_5 + X_6*X_6;
-        const real quaternion_scale = 2/quaternion_norm2;
-        const real quaternion_sx = X_3*quaternion_scale;
-        const real quaternion_sy = X_4*quaternion_scale;
-        const real quaternion_sz = X_5*quaternion_scale;
-        const real quaternion_wx = X_6*quaternion_sx;
-        const real quaternion_wy = X_6*quaternion_sy;
-        const real quaternion_wz = X_6*quaternion_sz;
-        const real quaternion_xx = X_3*quaternion_sx;
-        const real quaternion_xy = X_3*quaternion_sy;
-        const real quaternion_xz = X_3*quaternion_sz;
-        const real quaternion_yy = X_4*quaternion_sy;
-        const real quaternion_yz = X_4*quaternion_sz;
-        const real quaternion_zz = X_5*quaternion_sz;
-        const real R_xx = 1 - quaternion_yy - quaternion_zz;
-        const real R_xy = quaternion_xy - quaternion_wz;
-        const real R_xz = quaternion_wy + quaternion_xz;
-        const real R_yx = quaternion_wz + quaternion_xy;
-        const real R_yy = 1 - quaternion_xx - quaternion_zz;
-        const real R_yz = quaternion_yz - quaternion_wx;
-        const real R_zx = quaternion_xz - quaternion_wy;
-        const real R_zy = quaternion_wx + quaternion_yz;
-        const real R_zz = 1 - quaternion_xx - quaternion_yy;
-        s[0*w + k] = t_x;
-        s[1*w + k] = t_y;
-        s[2*w + k] = t_z;
-        s[3*w + k] = R_xx;
-        s[4*w + k] = R_xy;
-        s[5*w + k] = R_xz;
-        s[6*w + k] = R_yx;
-        s[7*w + k] = R_yy;
-        s[8*w + k] = R_yz;
-        s[9*w + k] = R_zx;
-        s[10*w + k] = R_zy;
-        s[11*w + k] = R_zz;
+        values v;
+        stage_X(m, w, k, X, &v);
+        s[0*w + k] = v.R_xx;
+        s[1*w + k] = v.R_xy;
+        s[2*w + k] = v.R_xz;
+        s[3*w + k] = v.R_yx;
+        s[4*w + k] = v.R_yy;
+        s[5*w + k] = v.R_yz;
+        s[6*w + k] = v.R_zx;
+        s[7*w + k] = v.R_zy;
+        s[8*w + k] = v.R_zz;
         /* (legs_size) rms size of the legs, taken where the platform points coincide */
         lengths[1*w + k] = R(1.3764070284330867);
         t->total[k] += 0;
-        t->invalid[k] += UNLESS(is_finite(quaternion_scale)) + UNLESS(quaternion_scale > 0);
+        t->invalid[k] += UNLESS(is_finite(v.quaternion_scale)) + UNLESS(v.quaternion_scale > 0);
     }
 }
 
 INLINE void condition_legs_ups(const prepared *m, size_t w, size_t leg, size_t legs, const real
-    *s, size_t states, size_t count, int add, real *terms, real *o)
+    *s, size_t states, size_t count, int add, const real *X, real *terms, real *o)
 {
     for (size_t k = 0; k < count; ++k) {
         const size_t i = leg + legs*k;
         const size_t j = states*k;
-        /* (ups-S) from the base point to the connection point */
-        const real R_xx = s[3*w + j];
-        const real R_xy = s[4*w + j];
-        const real R_xz = s[5*w + j];
-        const real ups_platform_point_x = m->ups_platform_point_x[i];
-        const real ups_platform_point_y = m->ups_platform_point_y[i];
-        const real ups_platform_point_z = m->ups_platform_point_z[i];
-        const real ups_q_x = R_xx*ups_platform_point_x + R_xy*ups_platform_point_y +
-            R_xz*ups_platform_point_z;
-        const real R_yx = s[6*w + j];
-        const real R_yy = s[7*w + j];
-        const real R_yz = s[8*w + j];
-        const real ups_q_y = R_yx*ups_platform_point_x + R_yy*ups_platform_point_y +
-            R_yz*ups_platform_point_z;
-        const real R_zx = s[9*w + j];
-        const real R_zy = s[10*w + j];
-        const real R_zz = s[11*w + j];
-        const real ups_q_z = R_zx*ups_platform_point_x + R_zy*ups_platform_point_y +
-            R_zz*ups_platform_point_z;
-        const real t_x = s[0*w + j];
-        const real ups_base_point_x = m->ups_base_point_x[i];
-        const real ups_S_x = t_x + ups_q_x - ups_base_point_x;
-        const real t_y = s[1*w + j];
-        const real ups_base_point_y = m->ups_base_point_y[i];
-        const real ups_S_y = t_y + ups_q_y - ups_base_point_y;
-        const real t_z = s[2*w + j];
-        const real ups_base_point_z = m->ups_base_point_z[i];
-        const real ups_S_z = t_z + ups_q_z - ups_base_point_z;
-        /* (ups-px_1) component along the reference direction */
-        const real ups_base_frame_xx = m->ups_base_frame_xx[i];
-        const real ups_base_frame_yx = m->ups_base_frame_yx[i];
-        const real ups_base_frame_zx = m->ups_base_frame_zx[i];
-        const real ups_px_1 = ups_S_x*ups_base_frame_xx + ups_S_y*ups_base_frame_yx +
-            ups_S_z*ups_base_frame_zx;
-        /* (ups-py_1) component across the reference direction */
-        const real ups_base_frame_xy = m->ups_base_frame_xy[i];
-        const real ups_base_frame_yy = m->ups_base_frame_yy[i];
-        const real ups_base_frame_zy = m->ups_base_frame_zy[i];
-        const real ups_py_1 = ups_S_x*ups_base_frame_xy + ups_S_y*ups_base_frame_yy +
-            ups_S_z*ups_base_frame_zy;
-        /* (ups-rho2_1) squared amplitude */
-        const real ups_rho2_1 = ups_px_1*ups_px_1 + ups_py_1*ups_py_1;
-        /* (ups-root_1) amplitude, with the sign of the branch */
-        const real ups_branch_1 = m->ups_branch_1[i];
-        const real ups_root_1 = ups_branch_1*root(ups_rho2_1);
-        /* (ups-xi_1) the vector from joint 1 to the connection point, resolved along link 1 */
-        const real ups_base_frame_xz = m->ups_base_frame_xz[i];
-        const real ups_base_frame_yz = m->ups_base_frame_yz[i];
-        const real ups_base_frame_zz = m->ups_base_frame_zz[i];
-        const real ups_xi_1_in_axes1_z = ups_S_x*ups_base_frame_xz + ups_S_y*ups_base_frame_yz +
-            ups_S_z*ups_base_frame_zz;
-        /* (ups-rho2_2) squared amplitude */
-        const real ups_rho2_2 = ups_rho2_1 + ups_xi_1_in_axes1_z*ups_xi_1_in_axes1_z;
-        /* (ups-root_2) amplitude, with the sign of the branch */
-        const real ups_branch_2 = m->ups_branch_2[i];
-        const real ups_root_2 = ups_branch_2*root(ups_rho2_2);
-        /* (ups-w_2) reciprocal vector 2 */
-        const real ups_w_2_in_axes2_y = 1/ups_root_2;
-        /* (ups-w_3) reciprocal vector 3 */
-        const real ups_w_3_x = ups_S_x*ups_w_2_in_axes2_y;
-        const real ups_w_3_y = ups_S_y*ups_w_2_in_axes2_y;
-        const real ups_w_3_z = ups_S_z*ups_w_2_in_axes2_y;
+        values_ups v;
+        stage_ups_X(m, w, i, j, s, X, &v);
         /* (ups-G) force at the connection point that balances the leg's inertia and weight along all
            degrees of freedom */
-        const real ups_pivot_size = magnitude(ups_rho2_1);
-        const real ups_pivot_size_2 = magnitude(ups_rho2_2);
-        const real ups_pivot_size_3 = magnitude(ups_root_1);
-        const real ups_pivot_size_4 = magnitude(ups_root_2);
+        const real ups_pivot_size = magnitude(v.ups_root_1_t);
+        const real ups_pivot_size_2 = magnitude(v.ups_q_3_t);
+        const real ups_pivot_size_3 = magnitude(v.ups_root_1);
+        const real ups_pivot_size_4 = magnitude(v.ups_q_3);
         const real ups_least_pivots =
             lesser(lesser(lesser(R(0.7231023985306559)*root(ups_pivot_size),
             R(0.7231023985306559)*root(ups_pivot_size_2)),
             R(0.7231023985306559)*ups_pivot_size_3), R(0.7231023985306559)*ups_pivot_size_4);
         /* (ups-H_a_3) moment of the column's unit force about the platform origin */
-        const real ups_H_a_3_x = ups_q_y*ups_w_3_z - ups_q_z*ups_w_3_y;
-        const real ups_H_a_3_y = ups_q_z*ups_w_3_x - ups_q_x*ups_w_3_z;
-        const real ups_H_a_3_z = ups_q_x*ups_w_3_y - ups_q_y*ups_w_3_x;
+        const real ups_H_a_3_x = v.ups_q_y*v.ups_w_3_z - v.ups_q_z*v.ups_w_3_y;
+        const real ups_H_a_3_y = v.ups_q_z*v.ups_w_3_x - v.ups_q_x*v.ups_w_3_z;
+        const real ups_H_a_3_z = v.ups_q_x*v.ups_w_3_y - v.ups_q_y*v.ups_w_3_x;
         /* (spread) rms distance of the platform points from their centroid */
         const real b_c_in_platform_x = m->b_c_in_platform_x;
+        const real ups_platform_point_x = m->ups_platform_point_x[i];
         const real ups_spread_t = b_c_in_platform_x - ups_platform_point_x;
         const real b_c_in_platform_y = m->b_c_in_platform_y;
+        const real ups_platform_point_y = m->ups_platform_point_y[i];
         const real ups_spread_t_2 = b_c_in_platform_y - ups_platform_point_y;
         const real b_c_in_platform_z = m->b_c_in_platform_z;
+        const real ups_platform_point_z = m->ups_platform_point_z[i];
         const real ups_spread_t_3 = b_c_in_platform_z - ups_platform_point_z;
         const real ups_spread_t_4 = ups_spread_t*ups_spread_t + ups_spread_t_2*ups_spread_t_2 +
             ups_spread_t_3*ups_spread_t_3;
         /* (spread) rms distance of the platform points from their centroid */
         gather(&terms[0*count + k], add, ups_spread_t_4);  /* spread_ups */
         /* (ups-w_3) reciprocal vector 3 */
-        o[0*count + k] = ups_w_3_x;
-        o[1*count + k] = ups_w_3_y;
-        o[2*count + k] = ups_w_3_z;
+        o[0*count + k] = v.ups_w_3_x;
+        o[1*count + k] = v.ups_w_3_y;
+        o[2*count + k] = v.ups_w_3_z;
         /* (ups-H_a_3) moment of the column's unit force about the platform origin */
         o[3*count + k] = ups_H_a_3_x;
         o[4*count + k] = ups_H_a_3_y;
@@ -11542,11 +8476,11 @@ INLINE void condition_legs_ups(const prepared *m, size_t w, size_t leg, size_t l
         /* (ups-G) force at the connection point that balances the leg's inertia and weight along all
            degrees of freedom */
         o[6*count + k] = ups_least_pivots;
-        o[8*count + k] = (ups_w_3_x + (ups_w_3_y + ups_w_3_z)) + ((ups_H_a_3_x + ups_H_a_3_y) +
-            (ups_H_a_3_z + ups_least_pivots));
-        o[7*count + k] = UNLESS(magnitude(ups_rho2_1) > LEAST_1) + UNLESS(magnitude(ups_rho2_2) >
-            LEAST_1) + UNLESS(magnitude(ups_root_1) > LEAST_2) + UNLESS(magnitude(ups_root_2) >
-            LEAST_2);
+        o[8*count + k] = (v.ups_w_3_x + (v.ups_w_3_y + v.ups_w_3_z)) + ((ups_H_a_3_x +
+            ups_H_a_3_y) + (ups_H_a_3_z + ups_least_pivots));
+        o[7*count + k] = UNLESS(magnitude(v.ups_root_1_t) > LEAST_1) +
+            UNLESS(magnitude(v.ups_q_3_t) > LEAST_1) + UNLESS(magnitude(v.ups_root_1) > LEAST_2) +
+            UNLESS(magnitude(v.ups_q_3) > LEAST_2);
     }
 }
 
@@ -11554,7 +8488,7 @@ INLINE void condition_place_ups(size_t w, size_t count, const real *o, size_t le
     real *H, real *pivots, verdict *t)
 {
     for (size_t k = 0; k < w; ++k) {
-        H[(0*NU + leg)*w + k] = o[0*count + first + k];
+        H[leg*w + k] = o[0*count + first + k];
         H[(NU + leg)*w + k] = o[1*count + first + k];
         H[(2*NU + leg)*w + k] = o[2*count + first + k];
         H[(3*NU + leg)*w + k] = o[3*count + first + k];
@@ -11567,209 +8501,105 @@ INLINE void condition_place_ups(size_t w, size_t count, const real *o, size_t le
 }
 
 INLINE void condition_legs_tube(const prepared *m, size_t w, size_t leg, size_t legs, const real
-    *s, size_t states, size_t count, int add, real *terms, real *o)
+    *s, size_t states, size_t count, int add, const real *X, real *terms, real *o)
 {
     for (size_t k = 0; k < count; ++k) {
         const size_t i = leg + legs*k;
         const size_t j = states*k;
-        /* (tube-S) from the base point to the connection point */
-        const real R_xx = s[3*w + j];
-        const real R_xy = s[4*w + j];
-        const real R_xz = s[5*w + j];
-        const real tube_platform_point_x = m->tube_platform_point_x[i];
-        const real tube_platform_point_y = m->tube_platform_point_y[i];
-        const real tube_platform_point_z = m->tube_platform_point_z[i];
-        const real tube_q_x = R_xx*tube_platform_point_x + R_xy*tube_platform_point_y +
-            R_xz*tube_platform_point_z;
-        const real R_yx = s[6*w + j];
-        const real R_yy = s[7*w + j];
-        const real R_yz = s[8*w + j];
-        const real tube_q_y = R_yx*tube_platform_point_x + R_yy*tube_platform_point_y +
-            R_yz*tube_platform_point_z;
-        const real R_zx = s[9*w + j];
-        const real R_zy = s[10*w + j];
-        const real R_zz = s[11*w + j];
-        const real tube_q_z = R_zx*tube_platform_point_x + R_zy*tube_platform_point_y +
-            R_zz*tube_platform_point_z;
-        const real t_x = s[0*w + j];
-        const real tube_base_point_x = m->tube_base_point_x[i];
-        const real tube_S_x = t_x + tube_q_x - tube_base_point_x;
-        const real t_y = s[1*w + j];
-        const real tube_base_point_y = m->tube_base_point_y[i];
-        const real tube_S_y = t_y + tube_q_y - tube_base_point_y;
-        const real t_z = s[2*w + j];
-        const real tube_base_point_z = m->tube_base_point_z[i];
-        const real tube_S_z = t_z + tube_q_z - tube_base_point_z;
-        /* (tube-px_1) component along the reference direction */
-        const real tube_base_frame_xx = m->tube_base_frame_xx[i];
-        const real tube_base_frame_yx = m->tube_base_frame_yx[i];
-        const real tube_base_frame_zx = m->tube_base_frame_zx[i];
-        const real tube_px_1 = tube_S_x*tube_base_frame_xx + tube_S_y*tube_base_frame_yx +
-            tube_S_z*tube_base_frame_zx;
-        /* (tube-py_1) component across the reference direction */
-        const real tube_base_frame_xy = m->tube_base_frame_xy[i];
-        const real tube_base_frame_yy = m->tube_base_frame_yy[i];
-        const real tube_base_frame_zy = m->tube_base_frame_zy[i];
-        const real tube_py_1 = tube_S_x*tube_base_frame_xy + tube_S_y*tube_base_frame_yy +
-            tube_S_z*tube_base_frame_zy;
-        /* (tube-rho2_1) squared amplitude */
-        const real tube_rho2_1 = tube_px_1*tube_px_1 + tube_py_1*tube_py_1;
-        /* (tube-root_1) amplitude, with the sign of the branch */
-        const real tube_branch_1 = m->tube_branch_1[i];
-        const real tube_root_1 = tube_branch_1*root(tube_rho2_1);
-        /* (tube-c_1) cosine of the angle of joint 1 from its reference direction */
-        const real inv_tube_root_1 = 1/tube_root_1;
-        const real tube_c_1 = -inv_tube_root_1*tube_py_1;
-        /* (tube-s_1) sine of the angle of joint 1 from its reference direction */
-        const real tube_s_1 = inv_tube_root_1*tube_px_1;
-        /* (tube-xi_1) the vector from joint 1 to the connection point, resolved along link 1 */
-        const real tube_base_frame_xz = m->tube_base_frame_xz[i];
-        const real tube_base_frame_yz = m->tube_base_frame_yz[i];
-        const real tube_base_frame_zz = m->tube_base_frame_zz[i];
-        const real tube_xi_1_in_axes1_z = tube_S_x*tube_base_frame_xz +
-            tube_S_y*tube_base_frame_yz + tube_S_z*tube_base_frame_zz;
-        /* (tube-rho2_2) squared amplitude */
-        const real tube_rho2_2 = tube_rho2_1 + tube_xi_1_in_axes1_z*tube_xi_1_in_axes1_z;
-        /* (tube-root_2) amplitude, with the sign of the branch */
-        const real tube_branch_2 = m->tube_branch_2[i];
-        const real tube_root_2 = tube_branch_2*root(tube_rho2_2);
-        /* (tube-c_2) cosine of the angle of joint 2 from its reference direction */
-        const real inv_tube_root_2 = 1/tube_root_2;
-        const real tube_c_2 = -inv_tube_root_2*tube_root_1;
-        /* (tube-s_2) sine of the angle of joint 2 from its reference direction */
-        const real tube_s_2 = inv_tube_root_2*tube_xi_1_in_axes1_z;
+        values_tube v;
+        stage_tube_X(m, w, i, j, s, X, &v);
         /* (tube-n_m1) direction 1 of the moment that the platform joint transmits */
-        const real tube_n_m1_t = R_xx*tube_base_frame_xx + R_yx*tube_base_frame_yx +
-            R_zx*tube_base_frame_zx;
-        const real tube_n_m1_t_2 = R_xy*tube_base_frame_xx + R_yy*tube_base_frame_yx +
-            R_zy*tube_base_frame_zx;
-        const real tube_n_m1_t_3 = R_xz*tube_base_frame_xx + R_yz*tube_base_frame_yx +
-            R_zz*tube_base_frame_zx;
-        const real tube_n_m1_t_4 = R_xx*tube_base_frame_xy + R_yx*tube_base_frame_yy +
-            R_zx*tube_base_frame_zy;
-        const real tube_n_m1_t_5 = R_xy*tube_base_frame_xy + R_yy*tube_base_frame_yy +
-            R_zy*tube_base_frame_zy;
-        const real tube_n_m1_t_6 = R_xz*tube_base_frame_xy + R_yz*tube_base_frame_yy +
-            R_zz*tube_base_frame_zy;
-        const real tube_n_m1_t_7 = R_xx*tube_base_frame_xz + R_yx*tube_base_frame_yz +
-            R_zx*tube_base_frame_zz;
-        const real tube_n_m1_t_8 = R_xy*tube_base_frame_xz + R_yy*tube_base_frame_yz +
-            R_zy*tube_base_frame_zz;
-        const real tube_n_m1_t_9 = R_xz*tube_base_frame_xz + R_yz*tube_base_frame_yz +
-            R_zz*tube_base_frame_zz;
         const real tube_platform_joint_rotation_yx = m->tube_platform_joint_rotation_yx[i];
         const real tube_platform_joint_rotation_yy = m->tube_platform_joint_rotation_yy[i];
         const real tube_platform_joint_rotation_yz = m->tube_platform_joint_rotation_yz[i];
-        const real tube_n_m1_t_10 = tube_n_m1_t*tube_platform_joint_rotation_yx +
-            tube_n_m1_t_2*tube_platform_joint_rotation_yy +
-            tube_n_m1_t_3*tube_platform_joint_rotation_yz;
-        const real tube_n_m1_t_11 = tube_n_m1_t_4*tube_platform_joint_rotation_yx +
-            tube_n_m1_t_5*tube_platform_joint_rotation_yy +
-            tube_n_m1_t_6*tube_platform_joint_rotation_yz;
-        const real tube_end_p1_in_axes2_z = tube_c_1*tube_n_m1_t_10 + tube_n_m1_t_11*tube_s_1;
-        const real tube_n_m1_in_axes2_z = tube_c_2*(tube_n_m1_t_7*tube_platform_joint_rotation_yx
-            + tube_n_m1_t_8*tube_platform_joint_rotation_yy +
-            tube_n_m1_t_9*tube_platform_joint_rotation_yz) + tube_s_2*(tube_n_m1_t_10*tube_s_1 -
-            tube_c_1*tube_n_m1_t_11);
-        const real tube_n_m1_in_axes1_z = -tube_c_2*tube_end_p1_in_axes2_z;
+        const real tube_n_m1_in_axes2_z = v.tube_e_1_in_axes2_x*(v.tube_c_1*v.tube_n_m1_t_10 +
+            v.tube_n_m1_t_11*v.tube_s_1) -
+            v.tube_c_2*(v.tube_n_m1_t_7*tube_platform_joint_rotation_yx +
+            v.tube_n_m1_t_8*tube_platform_joint_rotation_yy +
+            v.tube_n_m1_t_9*tube_platform_joint_rotation_yz);
         /* (tube-n_m2) direction 2 of the moment that the platform joint transmits */
         const real tube_platform_joint_rotation_zx = m->tube_platform_joint_rotation_zx[i];
         const real tube_platform_joint_rotation_zy = m->tube_platform_joint_rotation_zy[i];
         const real tube_platform_joint_rotation_zz = m->tube_platform_joint_rotation_zz[i];
-        const real tube_n_m2_t = tube_n_m1_t_7*tube_platform_joint_rotation_zx +
-            tube_n_m1_t_8*tube_platform_joint_rotation_zy +
-            tube_n_m1_t_9*tube_platform_joint_rotation_zz;
-        const real tube_n_m2_t_2 = tube_s_1*(tube_n_m1_t*tube_platform_joint_rotation_zx +
-            tube_n_m1_t_2*tube_platform_joint_rotation_zy +
-            tube_n_m1_t_3*tube_platform_joint_rotation_zz) -
-            tube_c_1*(tube_n_m1_t_4*tube_platform_joint_rotation_zx +
-            tube_n_m1_t_5*tube_platform_joint_rotation_zy +
-            tube_n_m1_t_6*tube_platform_joint_rotation_zz);
-        const real tube_n_m2_in_axes2_y = tube_n_m2_t*tube_s_2 - tube_c_2*tube_n_m2_t_2;
-        const real tube_end_p2_in_axes2_y = tube_c_2*tube_n_m2_t + tube_n_m2_t_2*tube_s_2;
-        const real tube_n_m2_in_axes1_z = tube_c_2*tube_n_m2_in_axes2_y -
-            tube_end_p2_in_axes2_y*tube_s_2;
+        const real tube_n_m2_t = v.tube_n_m1_t_7*tube_platform_joint_rotation_zx +
+            v.tube_n_m1_t_8*tube_platform_joint_rotation_zy +
+            v.tube_n_m1_t_9*tube_platform_joint_rotation_zz;
+        const real tube_n_m2_t_2 = v.tube_c_1*(v.tube_n_m1_t*tube_platform_joint_rotation_zx +
+            v.tube_n_m1_t_2*tube_platform_joint_rotation_zy +
+            v.tube_n_m1_t_3*tube_platform_joint_rotation_zz) +
+            v.tube_s_1*(v.tube_n_m1_t_4*tube_platform_joint_rotation_zx +
+            v.tube_n_m1_t_5*tube_platform_joint_rotation_zy +
+            v.tube_n_m1_t_6*tube_platform_joint_rotation_zz);
+        const real tube_n_m2_in_axes2_y = v.tube_c_2*tube_n_m2_t_2 +
+            v.tube_e_1_in_axes2_x*tube_n_m2_t;
+        const real tube_end_p2_in_axes2_y = v.tube_e_1_in_axes2_x*tube_n_m2_t_2 -
+            v.tube_c_2*tube_n_m2_t;
+        const real tube_n_m2_t_3 = v.tube_c_2*tube_n_m2_in_axes2_y +
+            v.tube_e_1_in_axes2_x*tube_end_p2_in_axes2_y;
         /* (tube-n_m3) direction 3 of the moment that the platform joint transmits */
         const real tube_platform_joint_rotation_xx = m->tube_platform_joint_rotation_xx[i];
         const real tube_platform_joint_rotation_xy = m->tube_platform_joint_rotation_xy[i];
         const real tube_platform_joint_rotation_xz = m->tube_platform_joint_rotation_xz[i];
-        const real tube_n_m3_t = tube_n_m1_t*tube_platform_joint_rotation_xx +
-            tube_n_m1_t_2*tube_platform_joint_rotation_xy +
-            tube_n_m1_t_3*tube_platform_joint_rotation_xz;
-        const real tube_n_m3_t_2 = tube_n_m1_t_4*tube_platform_joint_rotation_xx +
-            tube_n_m1_t_5*tube_platform_joint_rotation_xy +
-            tube_n_m1_t_6*tube_platform_joint_rotation_xz;
-        const real tube_end_p3_in_axes2_z = tube_c_1*tube_n_m3_t + tube_n_m3_t_2*tube_s_1;
-        const real tube_n_m3_in_axes2_z = tube_s_2*(tube_n_m1_t_7*tube_platform_joint_rotation_xx
-            + tube_n_m1_t_8*tube_platform_joint_rotation_xy +
-            tube_n_m1_t_9*tube_platform_joint_rotation_xz) - tube_c_2*(tube_n_m3_t*tube_s_1 -
-            tube_c_1*tube_n_m3_t_2);
-        const real tube_n_m3_t_3 = tube_end_p3_in_axes2_z*tube_s_2;
+        const real tube_n_m3_in_axes2_z = v.tube_c_2*(v.tube_c_1*v.tube_n_m3_t +
+            v.tube_n_m3_t_2*v.tube_s_1) +
+            v.tube_e_1_in_axes2_x*(v.tube_n_m1_t_7*tube_platform_joint_rotation_xx +
+            v.tube_n_m1_t_8*tube_platform_joint_rotation_xy +
+            v.tube_n_m1_t_9*tube_platform_joint_rotation_xz);
+        const real tube_n_m3_t_3 = v.tube_e_1_in_axes2_x*v.tube_end_p3_in_axes2_z;
         /* (tube-f_c1) force part of constraint wrench 1 */
-        const real tube_f_c1_t = tube_n_m1_in_axes1_z*tube_n_m3_in_axes2_z +
+        const real tube_f_c1_t = v.tube_n_m1_in_axes1_z*tube_n_m3_in_axes2_z +
             tube_n_m1_in_axes2_z*tube_n_m3_t_3;
         /* (tube-m1_c1) moment part 1 of constraint wrench 1 */
         const real inv_tube_f_c1_t = 1/tube_f_c1_t;
-        const real tube_m1_c1_t = inv_tube_f_c1_t*tube_n_m3_t_3*tube_root_2;
+        const real tube_m1_c1_t = inv_tube_f_c1_t*tube_n_m3_t_3*v.tube_q_3;
         /* (tube-m3_c1) moment part 3 of constraint wrench 1 */
-        const real tube_m3_c1_t = inv_tube_f_c1_t*tube_n_m1_in_axes1_z*tube_root_2;
+        const real tube_m3_c1_t = inv_tube_f_c1_t*v.tube_n_m1_in_axes1_z*v.tube_q_3;
         /* (tube-m1_c2) moment part 1 of constraint wrench 2 */
-        const real tube_m1_c2_t = inv_tube_f_c1_t*tube_n_m3_in_axes2_z*tube_root_1;
+        const real tube_m1_c2_t = inv_tube_f_c1_t*tube_n_m3_in_axes2_z*v.tube_root_1;
         /* (tube-m3_c2) moment part 3 of constraint wrench 2 */
-        const real tube_m3_c2 = inv_tube_f_c1_t*tube_n_m1_in_axes2_z*tube_root_1;
+        const real tube_m3_c2 = inv_tube_f_c1_t*tube_n_m1_in_axes2_z*v.tube_root_1;
         /* (tube-m1_c3) moment part 1 of constraint wrench 3 */
-        const real tube_m1_c3_t = inv_tube_f_c1_t*tube_n_m2_in_axes1_z*tube_n_m3_in_axes2_z;
+        const real tube_m1_c3 = inv_tube_f_c1_t*tube_n_m2_t_3*tube_n_m3_in_axes2_z;
         /* (tube-m3_c3) moment part 3 of constraint wrench 3 */
-        const real tube_m3_c3 = inv_tube_f_c1_t*tube_n_m1_in_axes2_z*tube_n_m2_in_axes1_z;
-        /* (tube-n_c1) unit force of the constraint wrench */
-        const real tube_n_c1_t = tube_s_1*tube_s_2;
-        const real tube_n_c1_t_2 = tube_c_1*tube_s_2;
-        const real tube_n_c1_x = tube_base_frame_xx*tube_n_c1_t + tube_base_frame_xz*tube_c_2 -
-            tube_base_frame_xy*tube_n_c1_t_2;
-        const real tube_n_c1_y = tube_base_frame_yx*tube_n_c1_t + tube_base_frame_yz*tube_c_2 -
-            tube_base_frame_yy*tube_n_c1_t_2;
-        const real tube_n_c1_z = tube_base_frame_zx*tube_n_c1_t + tube_base_frame_zz*tube_c_2 -
-            tube_base_frame_zy*tube_n_c1_t_2;
+        const real tube_m3_c3_t = inv_tube_f_c1_t*tube_n_m1_in_axes2_z*tube_n_m2_t_3;
         /* (tube-mu_c1) the moment that goes with it */
-        const real tube_mu_c1_in_axes2_y = tube_end_p1_in_axes2_z*tube_m1_c1_t;
-        const real tube_mu_c1_in_axes2_x = tube_end_p3_in_axes2_z*tube_m3_c1_t;
+        const real tube_mu_c1_in_axes2_y = v.tube_end_p1_in_axes2_z*tube_m1_c1_t;
+        const real tube_mu_c1_in_axes2_x = v.tube_end_p3_in_axes2_z*tube_m3_c1_t;
         const real tube_mu_c1_in_axes2_z = -tube_m1_c1_t*tube_n_m1_in_axes2_z -
             tube_m3_c1_t*tube_n_m3_in_axes2_z;
-        /* (tube-n_c2) unit force of the constraint wrench */
-        const real tube_n_c2_x = tube_base_frame_xx*tube_c_1 + tube_base_frame_xy*tube_s_1;
-        const real tube_n_c2_y = tube_base_frame_yx*tube_c_1 + tube_base_frame_yy*tube_s_1;
-        const real tube_n_c2_z = tube_base_frame_zx*tube_c_1 + tube_base_frame_zy*tube_s_1;
         /* (tube-mu_c2) the moment that goes with it */
-        const real tube_mu_c2_in_axes2_y = tube_end_p1_in_axes2_z*tube_m1_c2_t;
-        const real tube_mu_c2_t = tube_end_p3_in_axes2_z*tube_m3_c2;
+        const real tube_mu_c2_in_axes2_y = v.tube_end_p1_in_axes2_z*tube_m1_c2_t;
+        const real tube_mu_c2_t = v.tube_end_p3_in_axes2_z*tube_m3_c2;
         const real tube_mu_c2_in_axes2_z = tube_m3_c2*tube_n_m3_in_axes2_z -
             tube_m1_c2_t*tube_n_m1_in_axes2_z;
         /* (tube-size_c3) size of the moment */
-        const real tube_size_c3 = root(1 + tube_m1_c3_t*tube_m1_c3_t + tube_m3_c3*tube_m3_c3);
+        const real tube_size_c3 = root(1 + tube_m1_c3*tube_m1_c3 + tube_m3_c3_t*tube_m3_c3_t);
         /* (tube-mu1_c3) moment along direction 1 that goes with it */
         const real inv_tube_size_c3 = 1/tube_size_c3;
-        const real tube_mu1_c3_t = inv_tube_size_c3*tube_m1_c3_t;
+        const real tube_mu1_c3 = inv_tube_size_c3*tube_m1_c3;
         /* (tube-mu3_c3) moment along direction 3 that goes with it */
-        const real tube_mu3_c3 = inv_tube_size_c3*tube_m3_c3;
+        const real tube_mu3_c3_t = inv_tube_size_c3*tube_m3_c3_t;
         /* (tube-mu_c3) the moment that goes with it */
-        const real axis_x_tube_axes2_x = tube_n_c1_y*tube_n_c2_z - tube_n_c1_z*tube_n_c2_y;
-        const real axis_x_tube_axes2_y = tube_n_c1_z*tube_n_c2_x - tube_n_c1_x*tube_n_c2_z;
-        const real axis_x_tube_axes2_z = tube_n_c1_x*tube_n_c2_y - tube_n_c1_y*tube_n_c2_x;
-        const real tube_mu_c3_in_axes2_x = -inv_tube_size_c3*tube_end_p2_in_axes2_y -
-            tube_end_p3_in_axes2_z*tube_mu3_c3;
-        const real tube_mu_c3_in_axes2_y = inv_tube_size_c3*tube_n_m2_in_axes2_y +
-            tube_end_p1_in_axes2_z*tube_mu1_c3_t;
-        const real tube_mu_c3_in_axes2_z = tube_mu3_c3*tube_n_m3_in_axes2_z -
-            tube_mu1_c3_t*tube_n_m1_in_axes2_z;
+        const real axis_x_tube_axes2_x = v.tube_n_c1_y*v.tube_n_c2_z -
+            v.tube_n_c1_z*v.tube_n_c2_y;
+        const real axis_x_tube_axes2_y = v.tube_n_c1_z*v.tube_n_c2_x -
+            v.tube_n_c1_x*v.tube_n_c2_z;
+        const real axis_x_tube_axes2_z = v.tube_n_c1_x*v.tube_n_c2_y -
+            v.tube_n_c1_y*v.tube_n_c2_x;
+        const real tube_mu_c3_in_axes2_x = v.tube_end_p3_in_axes2_z*tube_mu3_c3_t -
+            inv_tube_size_c3*tube_end_p2_in_axes2_y;
+        const real tube_mu_c3_in_axes2_y = inv_tube_size_c3*tube_n_m2_in_axes2_y -
+            v.tube_end_p1_in_axes2_z*tube_mu1_c3;
+        const real tube_mu_c3_in_axes2_z = tube_mu1_c3*tube_n_m1_in_axes2_z -
+            tube_mu3_c3_t*tube_n_m3_in_axes2_z;
         const real tube_mu_c3_x = axis_x_tube_axes2_x*tube_mu_c3_in_axes2_x +
-            tube_mu_c3_in_axes2_y*tube_n_c1_x + tube_mu_c3_in_axes2_z*tube_n_c2_x;
+            tube_mu_c3_in_axes2_y*v.tube_n_c1_x + tube_mu_c3_in_axes2_z*v.tube_n_c2_x;
         const real tube_mu_c3_y = axis_x_tube_axes2_y*tube_mu_c3_in_axes2_x +
-            tube_mu_c3_in_axes2_y*tube_n_c1_y + tube_mu_c3_in_axes2_z*tube_n_c2_y;
+            tube_mu_c3_in_axes2_y*v.tube_n_c1_y + tube_mu_c3_in_axes2_z*v.tube_n_c2_y;
         const real tube_mu_c3_z = axis_x_tube_axes2_z*tube_mu_c3_in_axes2_x +
-            tube_mu_c3_in_axes2_y*tube_n_c1_z + tube_mu_c3_in_axes2_z*tube_n_c2_z;
+            tube_mu_c3_in_axes2_y*v.tube_n_c1_z + tube_mu_c3_in_axes2_z*v.tube_n_c2_z;
         /* (tube-w_1) force part of reciprocal wrench 1 */
-        const real tube_w_1_t = R(1.35)*tube_n_m1_in_axes1_z;
-        const real tube_w_1_t_2 = R(1.35)*tube_n_m2_in_axes1_z;
+        const real tube_w_1_t_2 = R(1.35)*tube_n_m2_t_3;
         const real tube_w_1_t_3 = R(1.35)*tube_n_m3_t_3;
         const real tube_w_1_t_4 = R(1.35)*tube_n_m1_in_axes2_z;
         const real tube_w_1_t_5 = R(1.35)*tube_n_m3_in_axes2_z;
@@ -11777,13 +8607,13 @@ INLINE void condition_legs_tube(const prepared *m, size_t w, size_t leg, size_t 
         const real tube_w_1_t_7 = R(1.35)*tube_m3_c1_t;
         const real tube_w_1_t_8 = R(1.35)*tube_m1_c2_t;
         const real tube_w_1_t_9 = R(1.35)*tube_m3_c2;
-        const real tube_w_1_t_10 = R(1.35)*tube_mu1_c3_t;
+        const real tube_w_1_t_10 = R(1.35)*tube_mu1_c3;
         const real tube_w_1_t_11 = R(1.35)*inv_tube_size_c3;
-        const real tube_w_1_t_12 = R(1.35)*tube_mu3_c3;
-        const real tube_w_1_t_13 = root(tube_rho2_2 + tube_w_1_t_4*tube_w_1_t_4 +
+        const real tube_w_1_t_12 = R(1.35)*tube_mu3_c3_t;
+        const real tube_w_1_t_13 = root(v.tube_q_3_t + tube_w_1_t_4*tube_w_1_t_4 +
             tube_w_1_t_5*tube_w_1_t_5);
         const real inv_tube_w_1_t_13 = 1/tube_w_1_t_13;
-        const real tube_w_1_t_14 = inv_tube_w_1_t_13*tube_root_2;
+        const real tube_w_1_t_14 = inv_tube_w_1_t_13*v.tube_q_3;
         const real tube_w_1_t_15 = inv_tube_w_1_t_13*tube_w_1_t_4;
         const real tube_w_1_t_16 = inv_tube_w_1_t_13*tube_w_1_t_5;
         const real tube_w_1_t_17 = tube_w_1_t_15*tube_w_1_t_6 + tube_w_1_t_16*tube_w_1_t_7 -
@@ -11799,9 +8629,9 @@ INLINE void condition_legs_tube(const prepared *m, size_t w, size_t leg, size_t 
         const real tube_w_1_t_26 = tube_w_1_t_14*tube_w_1_t_25;
         const real tube_w_1_t_27 = tube_w_1_t_10 - tube_w_1_t_15*tube_w_1_t_25;
         const real tube_w_1_t_28 = tube_w_1_t_12 + tube_w_1_t_16*tube_w_1_t_25;
-        const real tube_w_1_t_29 = tube_w_1_t*tube_w_1_t_15 - tube_w_1_t_16*tube_w_1_t_3;
+        const real tube_w_1_t_29 = v.tube_w_1_t*tube_w_1_t_15 - tube_w_1_t_16*tube_w_1_t_3;
         const real tube_w_1_t_30 = tube_w_1_t_14*tube_w_1_t_29;
-        const real tube_w_1_t_31 = tube_w_1_t - tube_w_1_t_15*tube_w_1_t_29;
+        const real tube_w_1_t_31 = v.tube_w_1_t - tube_w_1_t_15*tube_w_1_t_29;
         const real tube_w_1_t_32 = tube_w_1_t_3 + tube_w_1_t_16*tube_w_1_t_29;
         const real tube_w_1_t_33 = root(tube_w_1_t_18*tube_w_1_t_18 + tube_w_1_t_19*tube_w_1_t_19
             + tube_w_1_t_20*tube_w_1_t_20);
@@ -11837,9 +8667,9 @@ INLINE void condition_legs_tube(const prepared *m, size_t w, size_t leg, size_t 
         const real tube_w_1_t_56 = tube_w_1_t_43 + tube_w_1_t_51*tube_w_1_t_53;
         const real tube_w_1_t_57 = tube_w_1_t_52*tube_w_1_t_53 - tube_w_1_t_44;
         const real tube_w_1_t_58 = tube_w_1_t_46*tube_w_1_t_50 + tube_w_1_t_48*tube_w_1_t_52 -
-            inv_tube_w_1_t_49*tube_root_1 - tube_w_1_t_47*tube_w_1_t_51;
+            inv_tube_w_1_t_49*v.tube_root_1 - tube_w_1_t_47*tube_w_1_t_51;
         const real tube_w_1_t_59 = tube_w_1_t_50*tube_w_1_t_58 - tube_w_1_t_46;
-        const real tube_w_1_t_60 = tube_root_1 + inv_tube_w_1_t_49*tube_w_1_t_58;
+        const real tube_w_1_t_60 = v.tube_root_1 + inv_tube_w_1_t_49*tube_w_1_t_58;
         const real tube_w_1_t_61 = tube_w_1_t_47 + tube_w_1_t_51*tube_w_1_t_58;
         const real tube_w_1_t_62 = tube_w_1_t_52*tube_w_1_t_58 - tube_w_1_t_48;
         const real tube_w_1_t_63 = root(tube_w_1_t_11*tube_w_1_t_11 + tube_w_1_t_54*tube_w_1_t_54
@@ -11862,8 +8692,8 @@ INLINE void condition_legs_tube(const prepared *m, size_t w, size_t leg, size_t 
         const real tube_w_1_t_75 = root(tube_w_1_t_70*tube_w_1_t_70 + tube_w_1_t_71*tube_w_1_t_71
             + tube_w_1_t_72*tube_w_1_t_72 + tube_w_1_t_73*tube_w_1_t_73 +
             tube_w_1_t_74*tube_w_1_t_74);
-        const real tube_pivot_size = magnitude(tube_rho2_1);
-        const real tube_pivot_size_2 = magnitude(tube_rho2_2);
+        const real tube_pivot_size = magnitude(v.tube_root_1_t);
+        const real tube_pivot_size_2 = magnitude(v.tube_q_3_t);
         const real tube_pivot_size_3 = magnitude(tube_f_c1_t);
         const real tube_pivot_size_4 = magnitude(tube_size_c3);
         const real tube_pivot_size_5 = magnitude(tube_w_1_t_13);
@@ -11879,47 +8709,50 @@ INLINE void condition_legs_tube(const prepared *m, size_t w, size_t leg, size_t 
             R(0.7407407407407407)*tube_pivot_size_9);
         /* (tube-Hk_a_1) moment of the column's unit force about the platform origin */
         const real tube_Hk_a_1_x = axis_x_tube_axes2_x*tube_mu_c1_in_axes2_x +
-            tube_mu_c1_in_axes2_y*tube_n_c1_x + tube_mu_c1_in_axes2_z*tube_n_c2_x +
-            tube_n_c1_z*tube_q_y - tube_n_c1_y*tube_q_z;
+            tube_mu_c1_in_axes2_y*v.tube_n_c1_x + tube_mu_c1_in_axes2_z*v.tube_n_c2_x +
+            v.tube_n_c1_z*v.tube_q_y - v.tube_n_c1_y*v.tube_q_z;
         const real tube_Hk_a_1_y = axis_x_tube_axes2_y*tube_mu_c1_in_axes2_x +
-            tube_mu_c1_in_axes2_y*tube_n_c1_y + tube_mu_c1_in_axes2_z*tube_n_c2_y +
-            tube_n_c1_x*tube_q_z - tube_n_c1_z*tube_q_x;
+            tube_mu_c1_in_axes2_y*v.tube_n_c1_y + tube_mu_c1_in_axes2_z*v.tube_n_c2_y +
+            v.tube_n_c1_x*v.tube_q_z - v.tube_n_c1_z*v.tube_q_x;
         const real tube_Hk_a_1_z = axis_x_tube_axes2_z*tube_mu_c1_in_axes2_x +
-            tube_mu_c1_in_axes2_y*tube_n_c1_z + tube_mu_c1_in_axes2_z*tube_n_c2_z +
-            tube_n_c1_y*tube_q_x - tube_n_c1_x*tube_q_y;
+            tube_mu_c1_in_axes2_y*v.tube_n_c1_z + tube_mu_c1_in_axes2_z*v.tube_n_c2_z +
+            v.tube_n_c1_y*v.tube_q_x - v.tube_n_c1_x*v.tube_q_y;
         /* (tube-Hk_a_2) moment of the column's unit force about the platform origin */
-        const real tube_Hk_a_2_x = tube_mu_c2_in_axes2_y*tube_n_c1_x +
-            tube_mu_c2_in_axes2_z*tube_n_c2_x + tube_n_c2_z*tube_q_y -
-            axis_x_tube_axes2_x*tube_mu_c2_t - tube_n_c2_y*tube_q_z;
-        const real tube_Hk_a_2_y = tube_mu_c2_in_axes2_y*tube_n_c1_y +
-            tube_mu_c2_in_axes2_z*tube_n_c2_y + tube_n_c2_x*tube_q_z -
-            axis_x_tube_axes2_y*tube_mu_c2_t - tube_n_c2_z*tube_q_x;
-        const real tube_Hk_a_2_z = tube_mu_c2_in_axes2_y*tube_n_c1_z +
-            tube_mu_c2_in_axes2_z*tube_n_c2_z + tube_n_c2_y*tube_q_x -
-            axis_x_tube_axes2_z*tube_mu_c2_t - tube_n_c2_x*tube_q_y;
+        const real tube_Hk_a_2_x = tube_mu_c2_in_axes2_y*v.tube_n_c1_x +
+            tube_mu_c2_in_axes2_z*v.tube_n_c2_x + v.tube_n_c2_z*v.tube_q_y -
+            axis_x_tube_axes2_x*tube_mu_c2_t - v.tube_n_c2_y*v.tube_q_z;
+        const real tube_Hk_a_2_y = tube_mu_c2_in_axes2_y*v.tube_n_c1_y +
+            tube_mu_c2_in_axes2_z*v.tube_n_c2_y + v.tube_n_c2_x*v.tube_q_z -
+            axis_x_tube_axes2_y*tube_mu_c2_t - v.tube_n_c2_z*v.tube_q_x;
+        const real tube_Hk_a_2_z = tube_mu_c2_in_axes2_y*v.tube_n_c1_z +
+            tube_mu_c2_in_axes2_z*v.tube_n_c2_z + v.tube_n_c2_y*v.tube_q_x -
+            axis_x_tube_axes2_z*tube_mu_c2_t - v.tube_n_c2_x*v.tube_q_y;
         /* (spread) rms distance of the platform points from their centroid */
         const real b_c_in_platform_x = m->b_c_in_platform_x;
+        const real tube_platform_point_x = m->tube_platform_point_x[i];
         const real tube_spread_t = b_c_in_platform_x - tube_platform_point_x;
         const real b_c_in_platform_y = m->b_c_in_platform_y;
+        const real tube_platform_point_y = m->tube_platform_point_y[i];
         const real tube_spread_t_2 = b_c_in_platform_y - tube_platform_point_y;
         const real b_c_in_platform_z = m->b_c_in_platform_z;
+        const real tube_platform_point_z = m->tube_platform_point_z[i];
         const real tube_spread_t_3 = b_c_in_platform_z - tube_platform_point_z;
         const real tube_spread_t_4 = tube_spread_t*tube_spread_t + tube_spread_t_2*tube_spread_t_2
             + tube_spread_t_3*tube_spread_t_3;
         /* (spread) rms distance of the platform points from their centroid */
         gather(&terms[1*count + k], add, tube_spread_t_4);  /* spread_tube */
         /* (tube-n_c1) unit force of the constraint wrench */
-        o[0*count + k] = tube_n_c1_x;
-        o[1*count + k] = tube_n_c1_y;
-        o[2*count + k] = tube_n_c1_z;
+        o[0*count + k] = v.tube_n_c1_x;
+        o[1*count + k] = v.tube_n_c1_y;
+        o[2*count + k] = v.tube_n_c1_z;
         /* (tube-Hk_a_1) moment of the column's unit force about the platform origin */
         o[3*count + k] = tube_Hk_a_1_x;
         o[4*count + k] = tube_Hk_a_1_y;
         o[5*count + k] = tube_Hk_a_1_z;
         /* (tube-n_c2) unit force of the constraint wrench */
-        o[6*count + k] = tube_n_c2_x;
-        o[7*count + k] = tube_n_c2_y;
-        o[8*count + k] = tube_n_c2_z;
+        o[6*count + k] = v.tube_n_c2_x;
+        o[7*count + k] = v.tube_n_c2_y;
+        o[8*count + k] = v.tube_n_c2_z;
         /* (tube-Hk_a_2) moment of the column's unit force about the platform origin */
         o[9*count + k] = tube_Hk_a_2_x;
         o[10*count + k] = tube_Hk_a_2_y;
@@ -11930,14 +8763,14 @@ INLINE void condition_legs_tube(const prepared *m, size_t w, size_t leg, size_t 
         o[14*count + k] = tube_mu_c3_z;
         /* (tube-w_1) force part of reciprocal wrench 1 */
         o[15*count + k] = tube_least_pivots;
-        o[17*count + k] = (((tube_n_c1_x + tube_n_c1_y) + (tube_n_c1_z + tube_Hk_a_1_x)) +
-            ((tube_Hk_a_1_y + tube_Hk_a_1_z) + (tube_n_c2_x + tube_n_c2_y))) + (((tube_n_c2_z +
-            tube_Hk_a_2_x) + (tube_Hk_a_2_y + tube_Hk_a_2_z)) + ((tube_mu_c3_x + tube_mu_c3_y) +
-            (tube_mu_c3_z + tube_least_pivots)));
-        o[16*count + k] = UNLESS(magnitude(tube_rho2_1) > LEAST_3) + UNLESS(magnitude(tube_rho2_2)
-            > LEAST_3) + UNLESS(magnitude(tube_f_c1_t) > LEAST_4) + UNLESS(magnitude(tube_size_c3)
-            > LEAST_4) + UNLESS(magnitude(tube_w_1_t_13) > LEAST_5) +
-            UNLESS(magnitude(tube_w_1_t_33) > LEAST_4) + UNLESS(magnitude(tube_w_1_t_49) >
+        o[17*count + k] = (((v.tube_n_c1_x + v.tube_n_c1_y) + (v.tube_n_c1_z + tube_Hk_a_1_x)) +
+            ((tube_Hk_a_1_y + tube_Hk_a_1_z) + (v.tube_n_c2_x + v.tube_n_c2_y))) +
+            (((v.tube_n_c2_z + tube_Hk_a_2_x) + (tube_Hk_a_2_y + tube_Hk_a_2_z)) + ((tube_mu_c3_x
+            + tube_mu_c3_y) + (tube_mu_c3_z + tube_least_pivots)));
+        o[16*count + k] = UNLESS(magnitude(v.tube_root_1_t) > LEAST_3) +
+            UNLESS(magnitude(v.tube_q_3_t) > LEAST_3) + UNLESS(magnitude(tube_f_c1_t) > LEAST_4) +
+            UNLESS(magnitude(tube_size_c3) > LEAST_4) + UNLESS(magnitude(tube_w_1_t_13) > LEAST_5)
+            + UNLESS(magnitude(tube_w_1_t_33) > LEAST_4) + UNLESS(magnitude(tube_w_1_t_49) >
             LEAST_4) + UNLESS(magnitude(tube_w_1_t_63) > LEAST_5) +
             UNLESS(magnitude(tube_w_1_t_75) > LEAST_5);
     }
@@ -11947,13 +8780,13 @@ INLINE void condition_place_tube(size_t w, size_t count, const real *o, size_t f
     real *pivots, verdict *t)
 {
     for (size_t k = 0; k < w; ++k) {
-        Hk[0*NC*w + k] = o[0*count + first + k];
+        Hk[0*w + k] = o[0*count + first + k];
         Hk[NC*w + k] = o[1*count + first + k];
         Hk[2*NC*w + k] = o[2*count + first + k];
         Hk[3*NC*w + k] = o[3*count + first + k];
         Hk[4*NC*w + k] = o[4*count + first + k];
         Hk[5*NC*w + k] = o[5*count + first + k];
-        Hk[(0*NC + 1)*w + k] = o[6*count + first + k];
+        Hk[1*w + k] = o[6*count + first + k];
         Hk[(NC + 1)*w + k] = o[7*count + first + k];
         Hk[(2*NC + 1)*w + k] = o[8*count + first + k];
         Hk[(3*NC + 1)*w + k] = o[9*count + first + k];
@@ -11984,23 +8817,20 @@ INLINE void condition_after(size_t w, const real *sums, real *lengths, verdict *
 INLINE void condition_run(const prepared *m, const real *X, real *H, real *Hk, real *lengths, real
     *pivots, real *reach, verdict *t)
 {
-    real s[12] = {0};
-    real sums[2] = {0};
-    real terms_ups[2*LEGS(LEGS_OF_ups)] = {0};
-    real o_ups[9*LEGS(LEGS_OF_ups)] = {0};
-    real terms_tube[2*LEGS(LEGS_OF_tube)] = {0};
-    real o_tube[18*LEGS(LEGS_OF_tube)] = {0};
+    real s[9] = {0}, sums[2] = {0};
+    real terms_ups[2*LEGS(LEGS_OF_ups)] = {0}, o_ups[9*LEGS(LEGS_OF_ups)] = {0};
+    real terms_tube[2*LEGS(LEGS_OF_tube)] = {0}, o_tube[18*LEGS(LEGS_OF_tube)] = {0};
     clear(Hk, NV*NC);
     clear(reach, NL);
-    condition_before(1, X, s, lengths, t);
-    condition_legs_ups(m, 1, 0, 1, s, 0, LEGS(LEGS_OF_ups), 0, terms_ups, o_ups);
+    condition_before(m, 1, X, s, lengths, t);
+    condition_legs_ups(m, 1, 0, 1, s, 0, LEGS(LEGS_OF_ups), 0, X, terms_ups, o_ups);
+    condition_legs_tube(m, 1, 0, 1, s, 0, LEGS(LEGS_OF_tube), 0, X, terms_tube, o_tube);
     for (size_t leg = 0; leg < LEGS_OF_ups; ++leg) {
         condition_place_ups(1, LEGS(LEGS_OF_ups), o_ups, leg, leg, H, pivots, t);
     }
     for (size_t n = 0; n < 2; ++n) {
         sums[n] = total(terms_ups + n*LEGS(LEGS_OF_ups), LEGS_OF_ups);
     }
-    condition_legs_tube(m, 1, 0, 1, s, 0, LEGS(LEGS_OF_tube), 0, terms_tube, o_tube);
     for (size_t leg = 0; leg < LEGS_OF_tube; ++leg) {
         condition_place_tube(1, LEGS(LEGS_OF_tube), o_tube, leg, Hk, pivots, t);
     }
@@ -12676,11 +9506,162 @@ INLINE void condition_constrained_one(const prepared *m, const real *X, const re
     }
 }
 
+INLINE void manipulability_one(const prepared *m, const real *X, real *measure_out, real
+    *isotropy_out, int *code)
+{
+    static const size_t places_divide_rows_1[] = {3, 4, 5};
+    static const size_t places_divide_rows_2[] = {3, 4, 5};
+    real H[NV*NU] = {0}, Hk[NV*NC] = {0}, lengths[2] = {0}, pivots[NL] = {0}, reach[NL] = {0},
+        subtract_1[1] = {0}, choose_length_1[1] = {0}, divide_rows_1[NV*NU] = {0}, subtract_2[1] =
+        {0}, choose_length_2[1] = {0}, divide_rows_2[NV*NC] = {0}, transposed_1[NC*NV] = {0},
+        null_basis_1[NV*NC] = {0}, transposed_2[NC*NV] = {0}, product_1[NC*NU] = {0},
+        singular_values_1[NC] = {0}, measure[1] = {0}, isotropy[1] = {0};
+    verdict why;
+    start(1, &why);
+    check(NQ, 1, X, why.invalid);
+    condition_run(m, X, H, Hk, lengths, pivots, reach, &why);
+    const real *const entry_1 = lengths;
+    for (size_t i = 0; i < 1; ++i) {
+        subtract_1[i] = entry_1[i] - entry_1[i];
+    }
+    for (size_t i = 0; i < 1; ++i) {
+        choose_length_1[i] = subtract_1[i] > 0 ? subtract_1[i] : lengths[i] > TINY*lengths[1 + i]
+            ? lengths[i] : lengths[1 + i];
+    }
+    for (size_t i = 0; i < NV*NU; ++i) {
+        divide_rows_1[i] = H[i];
+    }
+    divide_rows(3, NU, 1, places_divide_rows_1, choose_length_1, divide_rows_1);
+    const real *const entry_2 = lengths;
+    for (size_t i = 0; i < 1; ++i) {
+        subtract_2[i] = entry_2[i] - entry_2[i];
+    }
+    for (size_t i = 0; i < 1; ++i) {
+        choose_length_2[i] = subtract_2[i] > 0 ? subtract_2[i] : lengths[i] > TINY*lengths[1 + i]
+            ? lengths[i] : lengths[1 + i];
+    }
+    for (size_t i = 0; i < NV*NC; ++i) {
+        divide_rows_2[i] = Hk[i];
+    }
+    divide_rows(NC, NC, 1, places_divide_rows_2, choose_length_2, divide_rows_2);
+    transpose(NV, NC, 1, divide_rows_2, transposed_1);
+    null_basis(NC, NV, NC, transposed_1, null_basis_1);
+    transpose(NV, NC, 1, null_basis_1, transposed_2);
+    product(NC, NV, NU, 1, transposed_2, divide_rows_1, product_1);
+    singular_values(NC, NU, product_1, singular_values_1);
+    spread(NC, singular_values_1, measure, isotropy);
+    check(1, 1, measure, why.overflow);
+    check(1, 1, isotropy, why.overflow);
+    judge(&why, code);
+    copy(1, measure, measure_out);
+    copy(1, isotropy, isotropy_out);
+    if (*code != OK) {
+        refuse(1, measure_out);
+        refuse(1, isotropy_out);
+    }
+}
+
+INLINE void singularity_distance_one(const prepared *m, const real *X, real *actuators_out, real
+    *legs_out, int *code)
+{
+    static const size_t places_divide_rows_1[] = {3, 4, 5};
+    real H[NV*NU] = {0}, Hk[NV*NC] = {0}, lengths[2] = {0}, pivots[NL] = {0}, reach[NL] = {0},
+        beside_1[NV*(NU + NC)] = {0}, subtract_1[1] = {0}, choose_length_1[1] = {0},
+        divide_rows_1[NV*(NU + NC)] = {0}, singular_values_1[NV] = {0}, spread_1[1] = {0},
+        actuators[1] = {0}, legs[1] = {0};
+    verdict why;
+    start(1, &why);
+    check(NQ, 1, X, why.invalid);
+    condition_run(m, X, H, Hk, lengths, pivots, reach, &why);
+    beside(NV, NU, NC, H, Hk, beside_1);
+    const real *const entry_1 = lengths;
+    for (size_t i = 0; i < 1; ++i) {
+        subtract_1[i] = entry_1[i] - entry_1[i];
+    }
+    for (size_t i = 0; i < 1; ++i) {
+        choose_length_1[i] = subtract_1[i] > 0 ? subtract_1[i] : lengths[i] > TINY*lengths[1 + i]
+            ? lengths[i] : lengths[1 + i];
+    }
+    for (size_t i = 0; i < NV*(NU + NC); ++i) {
+        divide_rows_1[i] = beside_1[i];
+    }
+    divide_rows(3, NU + NC, 1, places_divide_rows_1, choose_length_1, divide_rows_1);
+    singular_values(NV, NU + NC, divide_rows_1, singular_values_1);
+    spread(NV, singular_values_1, spread_1, actuators);
+    least_entry(NL, pivots, legs);
+    check(1, 1, actuators, why.overflow);
+    check(1, 1, legs, why.overflow);
+    judge(&why, code);
+    copy(1, actuators, actuators_out);
+    copy(1, legs, legs_out);
+    if (*code != OK) {
+        refuse(1, actuators_out);
+        refuse(1, legs_out);
+    }
+}
+
+INLINE void force_distribution_one(const prepared *m, const real *X, const real *V, const real *A,
+    const real *tau_min, const real *tau_max, const real *wrench, const real *reference, real
+    *tau_out, real *lambda_out, int *code)
+{
+    real wrench_in[NW], reference_in[NU], required[NV] = {0}, H[NV*NU] = {0}, Hk[NV*NC] = {0},
+        subtract_1[NV] = {0}, resolve_1[NC*NV] = {0}, resolve_2[NC*NV] = {0}, product_1[NC*NU] = {0},
+        times_1[NC] = {0}, least_norm_1[NU] = {0}, null_basis_1[NU] = {0}, transposed_1[NU] = {0},
+        product_2[NU*NU] = {0}, times_2[NU] = {0}, add_1[NU] = {0}, tau[NU] = {0}, times_3[NV] = {0},
+        subtract_2[NV] = {0}, product_3[NC*NC] = {0}, times_4[NC] = {0}, work[NC*PADDED(NC)];
+    verdict why;
+    start(1, &why);
+    const real total_in = total(X, NQ) + total(V, NV) + total(A, NV) + total(tau_min, NU) +
+        total(tau_max, NU);
+    if (!is_finite(total_in)) {
+        check(NQ, 1, X, why.invalid);
+        check(NV, 1, V, why.invalid);
+        check(NV, 1, A, why.invalid);
+        check(NU, 1, tau_min, why.invalid);
+        check(NU, 1, tau_max, why.invalid);
+    }
+    wrench = optional(NW, wrench, 0, wrench_in, why.invalid);
+    reference = optional(NU, reference, 0, reference_in, why.invalid);
+    required_run(m, X, V, A, required, H, Hk, &why);
+    const real *const extend_1 = wrench;
+    for (size_t i = 0; i < NV; ++i) {
+        subtract_1[i] = required[i] - extend_1[i];
+    }
+    resolve(NV, NC, NC, Hk, resolve_1, resolve_2, why.singular);
+    product(NC, NV, NU, 1, resolve_2, H, product_1);
+    product(NC, NV, 1, 1, resolve_2, subtract_1, times_1);
+    least_norm(NC, NU, product_1, times_1, least_norm_1, why.singular);
+    null_basis(NC, NU, NC, product_1, null_basis_1);
+    transpose(NU, 1, 1, null_basis_1, transposed_1);
+    product(NU, 1, NU, 1, null_basis_1, transposed_1, product_2);
+    product(NU, NU, 1, 1, product_2, reference, times_2);
+    for (size_t i = 0; i < NU; ++i) {
+        add_1[i] = least_norm_1[i] + times_2[i];
+    }
+    nearest_within(NU, add_1, product_2, tau_min, tau_max, tau, why.unreachable, why.overflow);
+    product(NV, NU, 1, 1, H, tau, times_3);
+    for (size_t i = 0; i < NV; ++i) {
+        subtract_2[i] = subtract_1[i] - times_3[i];
+    }
+    product(NC, NV, NC, 1, resolve_1, Hk, product_3);
+    product(NC, NV, 1, 1, resolve_1, subtract_2, times_4);
+    set_matrix(NC, 1, product_3, work);
+    solve_state(NC, times_4, work, lambda_out, why.singular);
+    check(NU, 1, tau, why.overflow);
+    check(NC, 1, lambda_out, why.overflow);
+    judge(&why, code);
+    copy(NU, tau, tau_out);
+    if (*code != OK) {
+        refuse(NU, tau_out);
+        refuse(NC, lambda_out);
+    }
+}
+
 static void mismatch_one(const prepared *m, const real *X, const real *q_actuated, real *gap_out,
     int *code)
 {
-    real q[NJ] = {0}, take_1[4] = {0}, subtract_1[NU] = {0}, constraints[3] = {0}, negative_1[3] =
-        {0}, gap[7] = {0};
+    real q[NJ] = {0}, q_of_inverse_kinematics_from_2[4] = {0}, subtract_1[NU] = {0}, constraints[3] =
+        {0}, negative_1[3] = {0}, gap[7] = {0};
     verdict why;
     start(1, &why);
     const real total_in = total(X, NQ) + total(q_actuated, NU);
@@ -12689,9 +9670,9 @@ static void mismatch_one(const prepared *m, const real *X, const real *q_actuate
         check(NU, 1, q_actuated, why.invalid);
     }
     inverse_kinematics_run(m, X, q, &why);
-    take(4, 1, quadrupod_ACTUATED, q, take_1);
+    take(4, 1, quadrupod_ACTUATED, q, q_of_inverse_kinematics_from_2);
     for (size_t i = 0; i < NU; ++i) {
-        subtract_1[i] = q_actuated[i] - take_1[i];
+        subtract_1[i] = q_actuated[i] - q_of_inverse_kinematics_from_2[i];
     }
     constraints_run(m, X, constraints, &why);
     for (size_t i = 0; i < 3; ++i) {
@@ -13156,8 +10137,8 @@ INLINE void rotation_one(const real *X, real *R_out, int *code)
     verdict why;
     start(1, &why);
     check(NQ, 1, X, why.invalid);
-    const real *const take_1 = X + 3;
-    rotation_of_quaternion(take_1, R);
+    const real *const X_from_3 = X + 3;
+    rotation_of_quaternion(X_from_3, R);
     check(9, 1, R, why.overflow);
     judge(&why, code);
     copy(9, R, R_out);
@@ -13197,11 +10178,11 @@ INLINE void X_dot_one(const real *X, const real *V, real *X_dot_out, int *code)
         check(NQ, 1, X, why.invalid);
         check(NV, 1, V, why.invalid);
     }
-    const real *const take_1 = V + 3;
-    const real *const take_2 = X + 3;
-    quaternion_rate(take_2, take_1, quaternion_rate_1);
-    const real *const take_3 = V;
-    beside(1, 3, 4, take_3, quaternion_rate_1, X_dot);
+    const real *const V_from_3 = V + 3;
+    const real *const X_from_3 = X + 3;
+    quaternion_rate(X_from_3, V_from_3, quaternion_rate_1);
+    const real *const V_from_0 = V;
+    beside(1, 3, 4, V_from_0, quaternion_rate_1, X_dot);
     check(NQ, 1, X_dot, why.overflow);
     judge(&why, code);
     copy(NQ, X_dot, X_dot_out);
@@ -13241,13 +10222,13 @@ INLINE void retract_one(const real *X, const real *step, real *X_moved_out, int 
         check(NQ, 1, X, why.invalid);
         check(NV, 1, step, why.invalid);
     }
-    const real *const take_1 = X;
-    const real *const take_2 = X + 3;
-    const real *const take_3 = step;
-    const real *const take_4 = step + 3;
-    turn_quaternion(take_2, take_4, turn_quaternion_1);
+    const real *const X_from_0 = X;
+    const real *const X_from_3 = X + 3;
+    const real *const step_from_0 = step;
+    const real *const step_from_3 = step + 3;
+    turn_quaternion(X_from_3, step_from_3, turn_quaternion_1);
     for (size_t i = 0; i < 3; ++i) {
-        add_1[i] = take_1[i] + take_3[i];
+        add_1[i] = X_from_0[i] + step_from_0[i];
     }
     beside(1, 3, 4, add_1, turn_quaternion_1, X_moved);
     check(NQ, 1, X_moved, why.overflow);
@@ -13268,13 +10249,13 @@ INLINE void difference_one(const real *X0, const real *X1, real *step_out, int *
         check(NQ, 1, X0, why.invalid);
         check(NQ, 1, X1, why.invalid);
     }
-    const real *const take_1 = X0;
-    const real *const take_2 = X0 + 3;
-    const real *const take_3 = X1;
-    const real *const take_4 = X1 + 3;
-    turn_between(take_2, take_4, turn_between_1);
+    const real *const X0_from_0 = X0;
+    const real *const X0_from_3 = X0 + 3;
+    const real *const X1_from_0 = X1;
+    const real *const X1_from_3 = X1 + 3;
+    turn_between(X0_from_3, X1_from_3, turn_between_1);
     for (size_t i = 0; i < 3; ++i) {
-        subtract_1[i] = take_3[i] - take_1[i];
+        subtract_1[i] = X1_from_0[i] - X0_from_0[i];
     }
     beside(1, 3, 3, subtract_1, turn_between_1, step);
     check(NV, 1, step, why.overflow);
@@ -13297,25 +10278,25 @@ INLINE void interpolate_one(const real *X0, const real *X1, const real *s, real 
         check(NQ, 1, X1, why.invalid);
         check(1, 1, s, why.invalid);
     }
-    const real *const take_1 = X0;
-    const real *const take_2 = X0 + 3;
-    const real *const take_3 = X1;
-    const real *const take_4 = X1 + 3;
-    turn_between(take_2, take_4, turn_between_1);
+    const real *const X0_from_0 = X0;
+    const real *const X0_from_3 = X0 + 3;
+    const real *const X1_from_0 = X1;
+    const real *const X1_from_3 = X1 + 3;
+    turn_between(X0_from_3, X1_from_3, turn_between_1);
     for (size_t i = 0; i < 3; ++i) {
-        subtract_1[i] = take_3[i] - take_1[i];
+        subtract_1[i] = X1_from_0[i] - X0_from_0[i];
     }
     beside(1, 3, 3, subtract_1, turn_between_1, join_1);
     for (size_t i = 0; i < 6; ++i) {
         scale_1[i] = join_1[i]*s[i%(1)];
     }
-    const real *const take_5 = X0;
-    const real *const take_6 = X0 + 3;
-    const real *const take_7 = scale_1;
-    const real *const take_8 = scale_1 + 3;
-    turn_quaternion(take_6, take_8, turn_quaternion_1);
+    const real *const X0_from_0_2 = X0;
+    const real *const X0_from_3_2 = X0 + 3;
+    const real *const scale_1_from_0 = scale_1;
+    const real *const scale_1_from_3 = scale_1 + 3;
+    turn_quaternion(X0_from_3_2, scale_1_from_3, turn_quaternion_1);
     for (size_t i = 0; i < 3; ++i) {
-        add_1[i] = take_5[i] + take_7[i];
+        add_1[i] = X0_from_0_2[i] + scale_1_from_0[i];
     }
     beside(1, 3, 4, add_1, turn_quaternion_1, X);
     check(NQ, 1, X, why.overflow);
@@ -13328,313 +10309,290 @@ INLINE void interpolate_one(const real *X0, const real *X1, const real *s, real 
 
 /* ---- one state, and batches ---- */
 
-int quadrupod_M(const quadrupod_model *model, const quadrupod_real *X, quadrupod_real *M)
+int quadrupod_M(const prepared *model, const real *X, real *M)
 {
     int code;
     M_one(model, X, M, &code);
     return code;
 }
 
-size_t quadrupod_M_batch(const quadrupod_model *model, size_t n, const quadrupod_real *X,
-    quadrupod_real *M, int *status)
+size_t quadrupod_M_batch(const prepared *model, size_t n, const real *X, real *M, int *status)
 {
-    size_t failed = 0, i = 0;
-    for (; LANES > 1 && i + LANES <= n; i += LANES) {
-        int codes[LANES];
-        M_lanes(model, X + NQ*i, M + NV*NV*i, codes);
-        for (size_t k = 0; k < LANES; ++k) {
+    size_t failed = 0, w;
+    for (size_t i = 0; i < n; i += w) {
+        int codes[LANES] = {INVALID};
+        w = LANES > 1 && i + LANES <= n ? LANES : 1;
+        if (w > 1) {
+            M_lanes(model, X + NQ*i, M + NV*NV*i, codes);
+        }
+        for (size_t k = 0; k < w; ++k) {
             if (codes[k] != OK) {
                 codes[k] = quadrupod_M(model, X + NQ*(i + k), M + NV*NV*(i + k));
             }
         }
-        failed += record(codes, LANES, status ? status + i : NULL);
-    }
-    for (; i < n; ++i) {
-        const int code = quadrupod_M(model, X + NQ*i, M + NV*NV*i);
-        failed += record(&code, 1, status ? status + i : NULL);
+        failed += record(codes, w, status ? status + i : NULL);
     }
     return failed;
 }
 
-int quadrupod_Z(const quadrupod_model *model, const quadrupod_real *X, const quadrupod_real *V,
-    quadrupod_real *Z)
+int quadrupod_Z(const prepared *model, const real *X, const real *V, real *Z)
 {
     int code;
     Z_one(model, X, V, Z, &code);
     return code;
 }
 
-size_t quadrupod_Z_batch(const quadrupod_model *model, size_t n, const quadrupod_real *X, const
-    quadrupod_real *V, quadrupod_real *Z, int *status)
+size_t quadrupod_Z_batch(const prepared *model, size_t n, const real *X, const real *V, real *Z,
+    int *status)
 {
-    size_t failed = 0, i = 0;
-    for (; LANES > 1 && i + LANES <= n; i += LANES) {
-        int codes[LANES];
-        Z_lanes(model, X + NQ*i, V + NV*i, Z + NV*i, codes);
-        for (size_t k = 0; k < LANES; ++k) {
+    size_t failed = 0, w;
+    for (size_t i = 0; i < n; i += w) {
+        int codes[LANES] = {INVALID};
+        w = LANES > 1 && i + LANES <= n ? LANES : 1;
+        if (w > 1) {
+            Z_lanes(model, X + NQ*i, V + NV*i, Z + NV*i, codes);
+        }
+        for (size_t k = 0; k < w; ++k) {
             if (codes[k] != OK) {
                 codes[k] = quadrupod_Z(model, X + NQ*(i + k), V + NV*(i + k), Z + NV*(i + k));
             }
         }
-        failed += record(codes, LANES, status ? status + i : NULL);
-    }
-    for (; i < n; ++i) {
-        const int code = quadrupod_Z(model, X + NQ*i, V + NV*i, Z + NV*i);
-        failed += record(&code, 1, status ? status + i : NULL);
+        failed += record(codes, w, status ? status + i : NULL);
     }
     return failed;
 }
 
-int quadrupod_H(const quadrupod_model *model, const quadrupod_real *X, quadrupod_real *H)
+int quadrupod_H(const prepared *model, const real *X, real *H)
 {
     int code;
     H_one(model, X, H, &code);
     return code;
 }
 
-size_t quadrupod_H_batch(const quadrupod_model *model, size_t n, const quadrupod_real *X,
-    quadrupod_real *H, int *status)
+size_t quadrupod_H_batch(const prepared *model, size_t n, const real *X, real *H, int *status)
 {
-    size_t failed = 0, i = 0;
-    for (; LANES > 1 && i + LANES <= n; i += LANES) {
-        int codes[LANES];
-        H_lanes(model, X + NQ*i, H + NV*NU*i, codes);
-        for (size_t k = 0; k < LANES; ++k) {
+    size_t failed = 0, w;
+    for (size_t i = 0; i < n; i += w) {
+        int codes[LANES] = {INVALID};
+        w = LANES > 1 && i + LANES <= n ? LANES : 1;
+        if (w > 1) {
+            H_lanes(model, X + NQ*i, H + NV*NU*i, codes);
+        }
+        for (size_t k = 0; k < w; ++k) {
             if (codes[k] != OK) {
                 codes[k] = quadrupod_H(model, X + NQ*(i + k), H + NV*NU*(i + k));
             }
         }
-        failed += record(codes, LANES, status ? status + i : NULL);
-    }
-    for (; i < n; ++i) {
-        const int code = quadrupod_H(model, X + NQ*i, H + NV*NU*i);
-        failed += record(&code, 1, status ? status + i : NULL);
+        failed += record(codes, w, status ? status + i : NULL);
     }
     return failed;
 }
 
-int quadrupod_Hk(const quadrupod_model *model, const quadrupod_real *X, quadrupod_real *Hk)
+int quadrupod_Hk(const prepared *model, const real *X, real *Hk)
 {
     int code;
     Hk_one(model, X, Hk, &code);
     return code;
 }
 
-size_t quadrupod_Hk_batch(const quadrupod_model *model, size_t n, const quadrupod_real *X,
-    quadrupod_real *Hk, int *status)
+size_t quadrupod_Hk_batch(const prepared *model, size_t n, const real *X, real *Hk, int *status)
 {
-    size_t failed = 0, i = 0;
-    for (; LANES > 1 && i + LANES <= n; i += LANES) {
-        int codes[LANES];
-        Hk_lanes(model, X + NQ*i, Hk + NV*NC*i, codes);
-        for (size_t k = 0; k < LANES; ++k) {
+    size_t failed = 0, w;
+    for (size_t i = 0; i < n; i += w) {
+        int codes[LANES] = {INVALID};
+        w = LANES > 1 && i + LANES <= n ? LANES : 1;
+        if (w > 1) {
+            Hk_lanes(model, X + NQ*i, Hk + NV*NC*i, codes);
+        }
+        for (size_t k = 0; k < w; ++k) {
             if (codes[k] != OK) {
                 codes[k] = quadrupod_Hk(model, X + NQ*(i + k), Hk + NV*NC*(i + k));
             }
         }
-        failed += record(codes, LANES, status ? status + i : NULL);
-    }
-    for (; i < n; ++i) {
-        const int code = quadrupod_Hk(model, X + NQ*i, Hk + NV*NC*i);
-        failed += record(&code, 1, status ? status + i : NULL);
+        failed += record(codes, w, status ? status + i : NULL);
     }
     return failed;
 }
 
-int quadrupod_constraints(const quadrupod_model *model, const quadrupod_real *X, quadrupod_real
-    *residual)
+int quadrupod_constraints(const prepared *model, const real *X, real *residual)
 {
     int code;
     constraints_one(model, X, residual, &code);
     return code;
 }
 
-size_t quadrupod_constraints_batch(const quadrupod_model *model, size_t n, const quadrupod_real
-    *X, quadrupod_real *residual, int *status)
+size_t quadrupod_constraints_batch(const prepared *model, size_t n, const real *X, real *residual,
+    int *status)
 {
-    size_t failed = 0, i = 0;
-    for (; LANES > 1 && i + LANES <= n; i += LANES) {
-        int codes[LANES];
-        constraints_lanes(model, X + NQ*i, residual + NC*i, codes);
-        for (size_t k = 0; k < LANES; ++k) {
+    size_t failed = 0, w;
+    for (size_t i = 0; i < n; i += w) {
+        int codes[LANES] = {INVALID};
+        w = LANES > 1 && i + LANES <= n ? LANES : 1;
+        if (w > 1) {
+            constraints_lanes(model, X + NQ*i, residual + NC*i, codes);
+        }
+        for (size_t k = 0; k < w; ++k) {
             if (codes[k] != OK) {
                 codes[k] = quadrupod_constraints(model, X + NQ*(i + k), residual + NC*(i + k));
             }
         }
-        failed += record(codes, LANES, status ? status + i : NULL);
-    }
-    for (; i < n; ++i) {
-        const int code = quadrupod_constraints(model, X + NQ*i, residual + NC*i);
-        failed += record(&code, 1, status ? status + i : NULL);
+        failed += record(codes, w, status ? status + i : NULL);
     }
     return failed;
 }
 
-int quadrupod_constraint_bias(const quadrupod_model *model, const quadrupod_real *X, const
-    quadrupod_real *V, quadrupod_real *bias)
+int quadrupod_constraint_bias(const prepared *model, const real *X, const real *V, real *bias)
 {
     int code;
     constraint_bias_one(model, X, V, bias, &code);
     return code;
 }
 
-size_t quadrupod_constraint_bias_batch(const quadrupod_model *model, size_t n, const
-    quadrupod_real *X, const quadrupod_real *V, quadrupod_real *bias, int *status)
+size_t quadrupod_constraint_bias_batch(const prepared *model, size_t n, const real *X, const real
+    *V, real *bias, int *status)
 {
-    size_t failed = 0, i = 0;
-    for (; LANES > 1 && i + LANES <= n; i += LANES) {
-        int codes[LANES];
-        constraint_bias_lanes(model, X + NQ*i, V + NV*i, bias + NC*i, codes);
-        for (size_t k = 0; k < LANES; ++k) {
+    size_t failed = 0, w;
+    for (size_t i = 0; i < n; i += w) {
+        int codes[LANES] = {INVALID};
+        w = LANES > 1 && i + LANES <= n ? LANES : 1;
+        if (w > 1) {
+            constraint_bias_lanes(model, X + NQ*i, V + NV*i, bias + NC*i, codes);
+        }
+        for (size_t k = 0; k < w; ++k) {
             if (codes[k] != OK) {
                 codes[k] = quadrupod_constraint_bias(model, X + NQ*(i + k), V + NV*(i + k), bias + NC*(i + k));
             }
         }
-        failed += record(codes, LANES, status ? status + i : NULL);
-    }
-    for (; i < n; ++i) {
-        const int code = quadrupod_constraint_bias(model, X + NQ*i, V + NV*i, bias + NC*i);
-        failed += record(&code, 1, status ? status + i : NULL);
+        failed += record(codes, w, status ? status + i : NULL);
     }
     return failed;
 }
 
-int quadrupod_inverse_kinematics(const quadrupod_model *model, const quadrupod_real *X,
-    quadrupod_real *q)
+int quadrupod_inverse_kinematics(const prepared *model, const real *X, real *q)
 {
     int code;
     inverse_kinematics_one(model, X, q, &code);
     return code;
 }
 
-size_t quadrupod_inverse_kinematics_batch(const quadrupod_model *model, size_t n, const
-    quadrupod_real *X, quadrupod_real *q, int *status)
+size_t quadrupod_inverse_kinematics_batch(const prepared *model, size_t n, const real *X, real *q,
+    int *status)
 {
-    size_t failed = 0, i = 0;
-    for (; LANES > 1 && i + LANES <= n; i += LANES) {
-        int codes[LANES];
-        inverse_kinematics_lanes(model, X + NQ*i, q + NJ*i, codes);
-        for (size_t k = 0; k < LANES; ++k) {
+    size_t failed = 0, w;
+    for (size_t i = 0; i < n; i += w) {
+        int codes[LANES] = {INVALID};
+        w = LANES > 1 && i + LANES <= n ? LANES : 1;
+        if (w > 1) {
+            inverse_kinematics_lanes(model, X + NQ*i, q + NJ*i, codes);
+        }
+        for (size_t k = 0; k < w; ++k) {
             if (codes[k] != OK) {
                 codes[k] = quadrupod_inverse_kinematics(model, X + NQ*(i + k), q + NJ*(i + k));
             }
         }
-        failed += record(codes, LANES, status ? status + i : NULL);
-    }
-    for (; i < n; ++i) {
-        const int code = quadrupod_inverse_kinematics(model, X + NQ*i, q + NJ*i);
-        failed += record(&code, 1, status ? status + i : NULL);
+        failed += record(codes, w, status ? status + i : NULL);
     }
     return failed;
 }
 
-int quadrupod_joint_rates(const quadrupod_model *model, const quadrupod_real *X, const
-    quadrupod_real *V, quadrupod_real *rates)
+int quadrupod_joint_rates(const prepared *model, const real *X, const real *V, real *rates)
 {
     int code;
     joint_rates_one(model, X, V, rates, &code);
     return code;
 }
 
-size_t quadrupod_joint_rates_batch(const quadrupod_model *model, size_t n, const quadrupod_real
-    *X, const quadrupod_real *V, quadrupod_real *rates, int *status)
+size_t quadrupod_joint_rates_batch(const prepared *model, size_t n, const real *X, const real *V,
+    real *rates, int *status)
 {
-    size_t failed = 0, i = 0;
-    for (; LANES > 1 && i + LANES <= n; i += LANES) {
-        int codes[LANES];
-        joint_rates_lanes(model, X + NQ*i, V + NV*i, rates + NJ*i, codes);
-        for (size_t k = 0; k < LANES; ++k) {
+    size_t failed = 0, w;
+    for (size_t i = 0; i < n; i += w) {
+        int codes[LANES] = {INVALID};
+        w = LANES > 1 && i + LANES <= n ? LANES : 1;
+        if (w > 1) {
+            joint_rates_lanes(model, X + NQ*i, V + NV*i, rates + NJ*i, codes);
+        }
+        for (size_t k = 0; k < w; ++k) {
             if (codes[k] != OK) {
                 codes[k] = quadrupod_joint_rates(model, X + NQ*(i + k), V + NV*(i + k), rates + NJ*(i + k));
             }
         }
-        failed += record(codes, LANES, status ? status + i : NULL);
-    }
-    for (; i < n; ++i) {
-        const int code = quadrupod_joint_rates(model, X + NQ*i, V + NV*i, rates + NJ*i);
-        failed += record(&code, 1, status ? status + i : NULL);
+        failed += record(codes, w, status ? status + i : NULL);
     }
     return failed;
 }
 
-int quadrupod_joint_accelerations(const quadrupod_model *model, const quadrupod_real *X, const
-    quadrupod_real *V, const quadrupod_real *A, quadrupod_real *accelerations)
+int quadrupod_joint_accelerations(const prepared *model, const real *X, const real *V, const real
+    *A, real *accelerations)
 {
     int code;
     joint_accelerations_one(model, X, V, A, accelerations, &code);
     return code;
 }
 
-size_t quadrupod_joint_accelerations_batch(const quadrupod_model *model, size_t n, const
-    quadrupod_real *X, const quadrupod_real *V, const quadrupod_real *A, quadrupod_real
-    *accelerations, int *status)
+size_t quadrupod_joint_accelerations_batch(const prepared *model, size_t n, const real *X, const
+    real *V, const real *A, real *accelerations, int *status)
 {
-    size_t failed = 0, i = 0;
-    for (; LANES > 1 && i + LANES <= n; i += LANES) {
-        int codes[LANES];
-        joint_accelerations_lanes(model, X + NQ*i, V + NV*i, A + NV*i, accelerations + NJ*i, codes);
-        for (size_t k = 0; k < LANES; ++k) {
+    size_t failed = 0, w;
+    for (size_t i = 0; i < n; i += w) {
+        int codes[LANES] = {INVALID};
+        w = LANES > 1 && i + LANES <= n ? LANES : 1;
+        if (w > 1) {
+            joint_accelerations_lanes(model, X + NQ*i, V + NV*i, A + NV*i, accelerations + NJ*i, codes);
+        }
+        for (size_t k = 0; k < w; ++k) {
             if (codes[k] != OK) {
                 codes[k] = quadrupod_joint_accelerations(model, X + NQ*(i + k), V + NV*(i + k), A + NV*(i + k),
                     accelerations + NJ*(i + k));
             }
         }
-        failed += record(codes, LANES, status ? status + i : NULL);
-    }
-    for (; i < n; ++i) {
-        const int code = quadrupod_joint_accelerations(model, X + NQ*i, V + NV*i, A + NV*i, accelerations
-            + NJ*i);
-        failed += record(&code, 1, status ? status + i : NULL);
+        failed += record(codes, w, status ? status + i : NULL);
     }
     return failed;
 }
 
-int quadrupod_dynamics(const quadrupod_model *model, const quadrupod_real *X, const quadrupod_real
-    *V, quadrupod_real *M, quadrupod_real *Z, quadrupod_real *H)
+int quadrupod_dynamics(const prepared *model, const real *X, const real *V, real *M, real *Z, real
+    *H)
 {
     int code;
     dynamics_one(model, X, V, M, Z, H, &code);
     return code;
 }
 
-size_t quadrupod_dynamics_batch(const quadrupod_model *model, size_t n, const quadrupod_real *X,
-    const quadrupod_real *V, quadrupod_real *M, quadrupod_real *Z, quadrupod_real *H, int *status)
+size_t quadrupod_dynamics_batch(const prepared *model, size_t n, const real *X, const real *V,
+    real *M, real *Z, real *H, int *status)
 {
-    size_t failed = 0, i = 0;
-    for (; LANES > 1 && i + LANES <= n; i += LANES) {
-        int codes[LANES];
-        dynamics_lanes(model, X + NQ*i, V + NV*i, M + NV*NV*i, Z + NV*i, H + NV*NU*i, codes);
-        for (size_t k = 0; k < LANES; ++k) {
+    size_t failed = 0, w;
+    for (size_t i = 0; i < n; i += w) {
+        int codes[LANES] = {INVALID};
+        w = LANES > 1 && i + LANES <= n ? LANES : 1;
+        if (w > 1) {
+            dynamics_lanes(model, X + NQ*i, V + NV*i, M + NV*NV*i, Z + NV*i, H + NV*NU*i, codes);
+        }
+        for (size_t k = 0; k < w; ++k) {
             if (codes[k] != OK) {
                 codes[k] = quadrupod_dynamics(model, X + NQ*(i + k), V + NV*(i + k), M + NV*NV*(i + k), Z + NV*(i
                     + k), H + NV*NU*(i + k));
             }
         }
-        failed += record(codes, LANES, status ? status + i : NULL);
-    }
-    for (; i < n; ++i) {
-        const int code = quadrupod_dynamics(model, X + NQ*i, V + NV*i, M + NV*NV*i, Z + NV*i, H +
-            NV*NU*i);
-        failed += record(&code, 1, status ? status + i : NULL);
+        failed += record(codes, w, status ? status + i : NULL);
     }
     return failed;
 }
 
-int quadrupod_inverse_dynamics(const quadrupod_model *model, const quadrupod_real *X, const
-    quadrupod_real *V, const quadrupod_real *A, const quadrupod_real *wrench, quadrupod_real *tau,
-    quadrupod_real *lambda)
+int quadrupod_inverse_dynamics(const prepared *model, const real *X, const real *V, const real *A,
+    const real *wrench, real *tau, real *lambda)
 {
     int code;
     inverse_dynamics_one(model, X, V, A, wrench, NULL, tau, lambda, &code);
     return code;
 }
 
-size_t quadrupod_inverse_dynamics_batch(const quadrupod_model *model, size_t n, const
-    quadrupod_real *X, const quadrupod_real *V, const quadrupod_real *A, const quadrupod_real
-    *wrench, quadrupod_real *tau, quadrupod_real *lambda, int *status)
+size_t quadrupod_inverse_dynamics_batch(const prepared *model, size_t n, const real *X, const real
+    *V, const real *A, const real *wrench, real *tau, real *lambda, int *status)
 {
-    size_t failed = 0, i = 0;
-    for (; i < n; ++i) {
+    size_t failed = 0;
+    for (size_t i = 0; i < n; ++i) {
         const int code = quadrupod_inverse_dynamics(model, X + NQ*i, V + NV*i, A + NV*i, wrench ? wrench +
             NW*i : NULL, tau + NU*i, lambda + NC*i);
         failed += record(&code, 1, status ? status + i : NULL);
@@ -13642,22 +10600,20 @@ size_t quadrupod_inverse_dynamics_batch(const quadrupod_model *model, size_t n, 
     return failed;
 }
 
-int quadrupod_inverse_dynamics_weighted(const quadrupod_model *model, const quadrupod_real *X,
-    const quadrupod_real *V, const quadrupod_real *A, const quadrupod_real *wrench, const
-    quadrupod_real *weights, quadrupod_real *tau, quadrupod_real *lambda)
+int quadrupod_inverse_dynamics_weighted(const prepared *model, const real *X, const real *V, const
+    real *A, const real *wrench, const real *weights, real *tau, real *lambda)
 {
     int code;
     inverse_dynamics_one(model, X, V, A, wrench, weights, tau, lambda, &code);
     return code;
 }
 
-size_t quadrupod_inverse_dynamics_weighted_batch(const quadrupod_model *model, size_t n, const
-    quadrupod_real *X, const quadrupod_real *V, const quadrupod_real *A, const quadrupod_real
-    *wrench, const quadrupod_real *weights, quadrupod_real *tau, quadrupod_real *lambda, int
-    *status)
+size_t quadrupod_inverse_dynamics_weighted_batch(const prepared *model, size_t n, const real *X,
+    const real *V, const real *A, const real *wrench, const real *weights, real *tau, real
+    *lambda, int *status)
 {
-    size_t failed = 0, i = 0;
-    for (; i < n; ++i) {
+    size_t failed = 0;
+    for (size_t i = 0; i < n; ++i) {
         const int code = quadrupod_inverse_dynamics_weighted(model, X + NQ*i, V + NV*i, A + NV*i, wrench ?
             wrench + NW*i : NULL, weights + NU*i, tau + NU*i, lambda + NC*i);
         failed += record(&code, 1, status ? status + i : NULL);
@@ -13665,43 +10621,38 @@ size_t quadrupod_inverse_dynamics_weighted_batch(const quadrupod_model *model, s
     return failed;
 }
 
-int quadrupod_forward_dynamics(const quadrupod_model *model, const quadrupod_real *X, const
-    quadrupod_real *V, const quadrupod_real *tau, const quadrupod_real *wrench, quadrupod_real *A,
-    quadrupod_real *lambda)
+int quadrupod_forward_dynamics(const prepared *model, const real *X, const real *V, const real
+    *tau, const real *wrench, real *A, real *lambda)
 {
     int code;
     forward_dynamics_one(model, X, V, tau, wrench, A, lambda, &code);
     return code;
 }
 
-size_t quadrupod_forward_dynamics_batch(const quadrupod_model *model, size_t n, const
-    quadrupod_real *X, const quadrupod_real *V, const quadrupod_real *tau, const quadrupod_real
-    *wrench, quadrupod_real *A, quadrupod_real *lambda, int *status)
+size_t quadrupod_forward_dynamics_batch(const prepared *model, size_t n, const real *X, const real
+    *V, const real *tau, const real *wrench, real *A, real *lambda, int *status)
 {
-    size_t failed = 0, i = 0;
-    for (; LANES > 1 && i + LANES <= n; i += LANES) {
-        int codes[LANES];
-        forward_dynamics_lanes(model, X + NQ*i, V + NV*i, tau + NU*i, wrench ? wrench + NW*i : NULL, A +
-            NV*i, lambda + NC*i, codes);
-        for (size_t k = 0; k < LANES; ++k) {
+    size_t failed = 0, w;
+    for (size_t i = 0; i < n; i += w) {
+        int codes[LANES] = {INVALID};
+        w = LANES > 1 && i + LANES <= n ? LANES : 1;
+        if (w > 1) {
+            forward_dynamics_lanes(model, X + NQ*i, V + NV*i, tau + NU*i, wrench ? wrench + NW*i : NULL, A +
+                NV*i, lambda + NC*i, codes);
+        }
+        for (size_t k = 0; k < w; ++k) {
             if (codes[k] != OK) {
                 codes[k] = quadrupod_forward_dynamics(model, X + NQ*(i + k), V + NV*(i + k), tau + NU*(i + k),
                     wrench ? wrench + NW*(i + k) : NULL, A + NV*(i + k), lambda + NC*(i + k));
             }
         }
-        failed += record(codes, LANES, status ? status + i : NULL);
-    }
-    for (; i < n; ++i) {
-        const int code = quadrupod_forward_dynamics(model, X + NQ*i, V + NV*i, tau + NU*i, wrench ? wrench
-            + NW*i : NULL, A + NV*i, lambda + NC*i);
-        failed += record(&code, 1, status ? status + i : NULL);
+        failed += record(codes, w, status ? status + i : NULL);
     }
     return failed;
 }
 
-int quadrupod_complete_acceleration(const quadrupod_model *model, const quadrupod_real *X, const
-    quadrupod_real *V, const quadrupod_real *A, const quadrupod_real *wrench, quadrupod_real
-    *completed)
+int quadrupod_complete_acceleration(const prepared *model, const real *X, const real *V, const
+    real *A, const real *wrench, real *completed)
 {
     int code;
     (void)model;
@@ -13712,12 +10663,11 @@ int quadrupod_complete_acceleration(const quadrupod_model *model, const quadrupo
     return code;
 }
 
-size_t quadrupod_complete_acceleration_batch(const quadrupod_model *model, size_t n, const
-    quadrupod_real *X, const quadrupod_real *V, const quadrupod_real *A, const quadrupod_real
-    *wrench, quadrupod_real *completed, int *status)
+size_t quadrupod_complete_acceleration_batch(const prepared *model, size_t n, const real *X, const
+    real *V, const real *A, const real *wrench, real *completed, int *status)
 {
-    size_t failed = 0, i = 0;
-    for (; i < n; ++i) {
+    size_t failed = 0;
+    for (size_t i = 0; i < n; ++i) {
         const int code = quadrupod_complete_acceleration(model, X + NQ*i, V + NV*i, A + NV*i, wrench ?
             wrench + NW*i : NULL, completed + NV*i);
         failed += record(&code, 1, status ? status + i : NULL);
@@ -13725,21 +10675,19 @@ size_t quadrupod_complete_acceleration_batch(const quadrupod_model *model, size_
     return failed;
 }
 
-int quadrupod_leg_reactions(const quadrupod_model *model, const quadrupod_real *X, const
-    quadrupod_real *V, const quadrupod_real *A, const quadrupod_real *wrench, quadrupod_real
-    *forces)
+int quadrupod_leg_reactions(const prepared *model, const real *X, const real *V, const real *A,
+    const real *wrench, real *forces)
 {
     int code;
     leg_reactions_one(model, X, V, A, wrench, forces, &code);
     return code;
 }
 
-size_t quadrupod_leg_reactions_batch(const quadrupod_model *model, size_t n, const quadrupod_real
-    *X, const quadrupod_real *V, const quadrupod_real *A, const quadrupod_real *wrench,
-    quadrupod_real *forces, int *status)
+size_t quadrupod_leg_reactions_batch(const prepared *model, size_t n, const real *X, const real
+    *V, const real *A, const real *wrench, real *forces, int *status)
 {
-    size_t failed = 0, i = 0;
-    for (; i < n; ++i) {
+    size_t failed = 0;
+    for (size_t i = 0; i < n; ++i) {
         const int code = quadrupod_leg_reactions(model, X + NQ*i, V + NV*i, A + NV*i, wrench ? wrench +
             NW*i : NULL, forces + 30*i);
         failed += record(&code, 1, status ? status + i : NULL);
@@ -13747,103 +10695,159 @@ size_t quadrupod_leg_reactions_batch(const quadrupod_model *model, size_t n, con
     return failed;
 }
 
-int quadrupod_energy(const quadrupod_model *model, const quadrupod_real *X, const quadrupod_real
-    *V, quadrupod_real *kinetic, quadrupod_real *potential)
+int quadrupod_energy(const prepared *model, const real *X, const real *V, real *kinetic, real
+    *potential)
 {
     int code;
     energy_one(model, X, V, kinetic, potential, &code);
     return code;
 }
 
-size_t quadrupod_energy_batch(const quadrupod_model *model, size_t n, const quadrupod_real *X,
-    const quadrupod_real *V, quadrupod_real *kinetic, quadrupod_real *potential, int *status)
+size_t quadrupod_energy_batch(const prepared *model, size_t n, const real *X, const real *V, real
+    *kinetic, real *potential, int *status)
 {
-    size_t failed = 0, i = 0;
-    for (; i < n; ++i) {
+    size_t failed = 0;
+    for (size_t i = 0; i < n; ++i) {
         const int code = quadrupod_energy(model, X + NQ*i, V + NV*i, kinetic + i, potential + i);
         failed += record(&code, 1, status ? status + i : NULL);
     }
     return failed;
 }
 
-int quadrupod_condition(const quadrupod_model *model, const quadrupod_real *X, quadrupod_real
-    *sigma, quadrupod_real *legs)
+int quadrupod_condition(const prepared *model, const real *X, real *sigma, real *legs)
 {
     int code;
     condition_one(model, X, NULL, sigma, legs, &code);
     return code;
 }
 
-size_t quadrupod_condition_batch(const quadrupod_model *model, size_t n, const quadrupod_real *X,
-    quadrupod_real *sigma, quadrupod_real *legs, int *status)
+size_t quadrupod_condition_batch(const prepared *model, size_t n, const real *X, real *sigma, real
+    *legs, int *status)
 {
-    size_t failed = 0, i = 0;
-    for (; i < n; ++i) {
+    size_t failed = 0;
+    for (size_t i = 0; i < n; ++i) {
         const int code = quadrupod_condition(model, X + NQ*i, sigma + 4*i, legs + 5*i);
         failed += record(&code, 1, status ? status + i : NULL);
     }
     return failed;
 }
 
-int quadrupod_condition_constrained(const quadrupod_model *model, const quadrupod_real *X,
-    quadrupod_real *sigma, quadrupod_real *legs)
+int quadrupod_condition_constrained(const prepared *model, const real *X, real *sigma, real *legs)
 {
     int code;
     condition_constrained_one(model, X, NULL, sigma, legs, &code);
     return code;
 }
 
-size_t quadrupod_condition_constrained_batch(const quadrupod_model *model, size_t n, const
-    quadrupod_real *X, quadrupod_real *sigma, quadrupod_real *legs, int *status)
+size_t quadrupod_condition_constrained_batch(const prepared *model, size_t n, const real *X, real
+    *sigma, real *legs, int *status)
 {
-    size_t failed = 0, i = 0;
-    for (; i < n; ++i) {
+    size_t failed = 0;
+    for (size_t i = 0; i < n; ++i) {
         const int code = quadrupod_condition_constrained(model, X + NQ*i, sigma + 6*i, legs + 5*i);
         failed += record(&code, 1, status ? status + i : NULL);
     }
     return failed;
 }
 
-int quadrupod_forward_kinematics(const quadrupod_model *model, const quadrupod_real *q_actuated,
-    const quadrupod_real *X0, quadrupod_real *X)
+int quadrupod_manipulability(const prepared *model, const real *X, real *measure, real *isotropy)
+{
+    int code;
+    manipulability_one(model, X, measure, isotropy, &code);
+    return code;
+}
+
+size_t quadrupod_manipulability_batch(const prepared *model, size_t n, const real *X, real
+    *measure, real *isotropy, int *status)
+{
+    size_t failed = 0;
+    for (size_t i = 0; i < n; ++i) {
+        const int code = quadrupod_manipulability(model, X + NQ*i, measure + i, isotropy + i);
+        failed += record(&code, 1, status ? status + i : NULL);
+    }
+    return failed;
+}
+
+int quadrupod_singularity_distance(const prepared *model, const real *X, real *actuators, real
+    *legs)
+{
+    int code;
+    singularity_distance_one(model, X, actuators, legs, &code);
+    return code;
+}
+
+size_t quadrupod_singularity_distance_batch(const prepared *model, size_t n, const real *X, real
+    *actuators, real *legs, int *status)
+{
+    size_t failed = 0;
+    for (size_t i = 0; i < n; ++i) {
+        const int code = quadrupod_singularity_distance(model, X + NQ*i, actuators + i, legs + i);
+        failed += record(&code, 1, status ? status + i : NULL);
+    }
+    return failed;
+}
+
+int quadrupod_force_distribution(const prepared *model, const real *X, const real *V, const real
+    *A, const real *tau_min, const real *tau_max, const real *wrench, const real *reference, real
+    *tau, real *lambda)
+{
+    int code;
+    force_distribution_one(model, X, V, A, tau_min, tau_max, wrench, reference, tau, lambda, &code);
+    return code;
+}
+
+size_t quadrupod_force_distribution_batch(const prepared *model, size_t n, const real *X, const
+    real *V, const real *A, const real *tau_min, const real *tau_max, const real *wrench, const
+    real *reference, real *tau, real *lambda, int *status)
+{
+    size_t failed = 0;
+    for (size_t i = 0; i < n; ++i) {
+        const int code = quadrupod_force_distribution(model, X + NQ*i, V + NV*i, A + NV*i, tau_min + NU*i,
+            tau_max + NU*i, wrench ? wrench + NW*i : NULL, reference ? reference + NU*i : NULL, tau +
+            NU*i, lambda + NC*i);
+        failed += record(&code, 1, status ? status + i : NULL);
+    }
+    return failed;
+}
+
+int quadrupod_forward_kinematics(const prepared *model, const real *q_actuated, const real *X0,
+    real *X)
 {
     int code;
     forward_kinematics_one(model, q_actuated, X0, X, &code);
     return code;
 }
 
-size_t quadrupod_forward_kinematics_batch(const quadrupod_model *model, size_t n, const
-    quadrupod_real *q_actuated, const quadrupod_real *X0, quadrupod_real *X, int *status)
+size_t quadrupod_forward_kinematics_batch(const prepared *model, size_t n, const real *q_actuated,
+    const real *X0, real *X, int *status)
 {
-    size_t failed = 0, i = 0;
-    for (; i < n; ++i) {
+    size_t failed = 0;
+    for (size_t i = 0; i < n; ++i) {
         const int code = quadrupod_forward_kinematics(model, q_actuated + NU*i, X0 + NQ*i, X + NQ*i);
         failed += record(&code, 1, status ? status + i : NULL);
     }
     return failed;
 }
 
-int quadrupod_project(const quadrupod_model *model, const quadrupod_real *X, quadrupod_real
-    *projected)
+int quadrupod_project(const prepared *model, const real *X, real *projected)
 {
     int code;
     project_one(model, X, projected, &code);
     return code;
 }
 
-size_t quadrupod_project_batch(const quadrupod_model *model, size_t n, const quadrupod_real *X,
-    quadrupod_real *projected, int *status)
+size_t quadrupod_project_batch(const prepared *model, size_t n, const real *X, real *projected,
+    int *status)
 {
-    size_t failed = 0, i = 0;
-    for (; i < n; ++i) {
+    size_t failed = 0;
+    for (size_t i = 0; i < n; ++i) {
         const int code = quadrupod_project(model, X + NQ*i, projected + NQ*i);
         failed += record(&code, 1, status ? status + i : NULL);
     }
     return failed;
 }
 
-int quadrupod_dissipation(const quadrupod_model *model, const quadrupod_real *X, const
-    quadrupod_real *V, quadrupod_real *dissipation)
+int quadrupod_dissipation(const prepared *model, const real *X, const real *V, real *dissipation)
 {
     int code;
     (void)model;
@@ -13852,345 +10856,327 @@ int quadrupod_dissipation(const quadrupod_model *model, const quadrupod_real *X,
     return code;
 }
 
-size_t quadrupod_dissipation_batch(const quadrupod_model *model, size_t n, const quadrupod_real
-    *X, const quadrupod_real *V, quadrupod_real *dissipation, int *status)
+size_t quadrupod_dissipation_batch(const prepared *model, size_t n, const real *X, const real *V,
+    real *dissipation, int *status)
 {
-    size_t failed = 0, i = 0;
-    for (; i < n; ++i) {
+    size_t failed = 0;
+    for (size_t i = 0; i < n; ++i) {
         const int code = quadrupod_dissipation(model, X + NQ*i, V + NV*i, dissipation + i);
         failed += record(&code, 1, status ? status + i : NULL);
     }
     return failed;
 }
 
-int quadrupod_momentum(const quadrupod_model *model, const quadrupod_real *X, const quadrupod_real
-    *V, quadrupod_real *momentum)
+int quadrupod_momentum(const prepared *model, const real *X, const real *V, real *momentum)
 {
     int code;
     momentum_one(model, X, V, momentum, &code);
     return code;
 }
 
-size_t quadrupod_momentum_batch(const quadrupod_model *model, size_t n, const quadrupod_real *X,
-    const quadrupod_real *V, quadrupod_real *momentum, int *status)
+size_t quadrupod_momentum_batch(const prepared *model, size_t n, const real *X, const real *V,
+    real *momentum, int *status)
 {
-    size_t failed = 0, i = 0;
-    for (; LANES > 1 && i + LANES <= n; i += LANES) {
-        int codes[LANES];
-        momentum_lanes(model, X + NQ*i, V + NV*i, momentum + NV*i, codes);
-        for (size_t k = 0; k < LANES; ++k) {
+    size_t failed = 0, w;
+    for (size_t i = 0; i < n; i += w) {
+        int codes[LANES] = {INVALID};
+        w = LANES > 1 && i + LANES <= n ? LANES : 1;
+        if (w > 1) {
+            momentum_lanes(model, X + NQ*i, V + NV*i, momentum + NV*i, codes);
+        }
+        for (size_t k = 0; k < w; ++k) {
             if (codes[k] != OK) {
                 codes[k] = quadrupod_momentum(model, X + NQ*(i + k), V + NV*(i + k), momentum + NV*(i + k));
             }
         }
-        failed += record(codes, LANES, status ? status + i : NULL);
-    }
-    for (; i < n; ++i) {
-        const int code = quadrupod_momentum(model, X + NQ*i, V + NV*i, momentum + NV*i);
-        failed += record(&code, 1, status ? status + i : NULL);
+        failed += record(codes, w, status ? status + i : NULL);
     }
     return failed;
 }
 
-int quadrupod_joint_margins(const quadrupod_model *model, const quadrupod_real *X, quadrupod_real
-    *margins)
+int quadrupod_joint_margins(const prepared *model, const real *X, real *margins)
 {
     int code;
     joint_margins_one(model, X, margins, &code);
     return code;
 }
 
-size_t quadrupod_joint_margins_batch(const quadrupod_model *model, size_t n, const quadrupod_real
-    *X, quadrupod_real *margins, int *status)
+size_t quadrupod_joint_margins_batch(const prepared *model, size_t n, const real *X, real
+    *margins, int *status)
 {
-    size_t failed = 0, i = 0;
-    for (; LANES > 1 && i + LANES <= n; i += LANES) {
-        int codes[LANES];
-        joint_margins_lanes(model, X + NQ*i, margins + NJ*i, codes);
-        for (size_t k = 0; k < LANES; ++k) {
+    size_t failed = 0, w;
+    for (size_t i = 0; i < n; i += w) {
+        int codes[LANES] = {INVALID};
+        w = LANES > 1 && i + LANES <= n ? LANES : 1;
+        if (w > 1) {
+            joint_margins_lanes(model, X + NQ*i, margins + NJ*i, codes);
+        }
+        for (size_t k = 0; k < w; ++k) {
             if (codes[k] != OK) {
                 codes[k] = quadrupod_joint_margins(model, X + NQ*(i + k), margins + NJ*(i + k));
             }
         }
-        failed += record(codes, LANES, status ? status + i : NULL);
-    }
-    for (; i < n; ++i) {
-        const int code = quadrupod_joint_margins(model, X + NQ*i, margins + NJ*i);
-        failed += record(&code, 1, status ? status + i : NULL);
+        failed += record(codes, w, status ? status + i : NULL);
     }
     return failed;
 }
 
-int quadrupod_within_limits(const quadrupod_model *model, const quadrupod_real *X, quadrupod_real
-    *within)
+int quadrupod_within_limits(const prepared *model, const real *X, real *within)
 {
     int code;
     within_limits_one(model, X, within, &code);
     return code;
 }
 
-size_t quadrupod_within_limits_batch(const quadrupod_model *model, size_t n, const quadrupod_real
-    *X, quadrupod_real *within, int *status)
+size_t quadrupod_within_limits_batch(const prepared *model, size_t n, const real *X, real *within,
+    int *status)
 {
-    size_t failed = 0, i = 0;
-    for (; LANES > 1 && i + LANES <= n; i += LANES) {
-        int codes[LANES];
-        within_limits_lanes(model, X + NQ*i, within + i, codes);
-        for (size_t k = 0; k < LANES; ++k) {
+    size_t failed = 0, w;
+    for (size_t i = 0; i < n; i += w) {
+        int codes[LANES] = {INVALID};
+        w = LANES > 1 && i + LANES <= n ? LANES : 1;
+        if (w > 1) {
+            within_limits_lanes(model, X + NQ*i, within + i, codes);
+        }
+        for (size_t k = 0; k < w; ++k) {
             if (codes[k] != OK) {
                 codes[k] = quadrupod_within_limits(model, X + NQ*(i + k), within + (i + k));
             }
         }
-        failed += record(codes, LANES, status ? status + i : NULL);
-    }
-    for (; i < n; ++i) {
-        const int code = quadrupod_within_limits(model, X + NQ*i, within + i);
-        failed += record(&code, 1, status ? status + i : NULL);
+        failed += record(codes, w, status ? status + i : NULL);
     }
     return failed;
 }
 
-int quadrupod_actuator_positions(const quadrupod_model *model, const quadrupod_real *X,
-    quadrupod_real *q)
+int quadrupod_actuator_positions(const prepared *model, const real *X, real *q)
 {
     int code;
     actuator_positions_one(model, X, q, &code);
     return code;
 }
 
-size_t quadrupod_actuator_positions_batch(const quadrupod_model *model, size_t n, const
-    quadrupod_real *X, quadrupod_real *q, int *status)
+size_t quadrupod_actuator_positions_batch(const prepared *model, size_t n, const real *X, real *q,
+    int *status)
 {
-    size_t failed = 0, i = 0;
-    for (; LANES > 1 && i + LANES <= n; i += LANES) {
-        int codes[LANES];
-        actuator_positions_lanes(model, X + NQ*i, q + NU*i, codes);
-        for (size_t k = 0; k < LANES; ++k) {
+    size_t failed = 0, w;
+    for (size_t i = 0; i < n; i += w) {
+        int codes[LANES] = {INVALID};
+        w = LANES > 1 && i + LANES <= n ? LANES : 1;
+        if (w > 1) {
+            actuator_positions_lanes(model, X + NQ*i, q + NU*i, codes);
+        }
+        for (size_t k = 0; k < w; ++k) {
             if (codes[k] != OK) {
                 codes[k] = quadrupod_actuator_positions(model, X + NQ*(i + k), q + NU*(i + k));
             }
         }
-        failed += record(codes, LANES, status ? status + i : NULL);
-    }
-    for (; i < n; ++i) {
-        const int code = quadrupod_actuator_positions(model, X + NQ*i, q + NU*i);
-        failed += record(&code, 1, status ? status + i : NULL);
+        failed += record(codes, w, status ? status + i : NULL);
     }
     return failed;
 }
 
-int quadrupod_actuator_rates(const quadrupod_model *model, const quadrupod_real *X, const
-    quadrupod_real *V, quadrupod_real *rates)
+int quadrupod_actuator_rates(const prepared *model, const real *X, const real *V, real *rates)
 {
     int code;
     actuator_rates_one(model, X, V, rates, &code);
     return code;
 }
 
-size_t quadrupod_actuator_rates_batch(const quadrupod_model *model, size_t n, const quadrupod_real
-    *X, const quadrupod_real *V, quadrupod_real *rates, int *status)
+size_t quadrupod_actuator_rates_batch(const prepared *model, size_t n, const real *X, const real
+    *V, real *rates, int *status)
 {
-    size_t failed = 0, i = 0;
-    for (; LANES > 1 && i + LANES <= n; i += LANES) {
-        int codes[LANES];
-        actuator_rates_lanes(model, X + NQ*i, V + NV*i, rates + NU*i, codes);
-        for (size_t k = 0; k < LANES; ++k) {
+    size_t failed = 0, w;
+    for (size_t i = 0; i < n; i += w) {
+        int codes[LANES] = {INVALID};
+        w = LANES > 1 && i + LANES <= n ? LANES : 1;
+        if (w > 1) {
+            actuator_rates_lanes(model, X + NQ*i, V + NV*i, rates + NU*i, codes);
+        }
+        for (size_t k = 0; k < w; ++k) {
             if (codes[k] != OK) {
                 codes[k] = quadrupod_actuator_rates(model, X + NQ*(i + k), V + NV*(i + k), rates + NU*(i + k));
             }
         }
-        failed += record(codes, LANES, status ? status + i : NULL);
-    }
-    for (; i < n; ++i) {
-        const int code = quadrupod_actuator_rates(model, X + NQ*i, V + NV*i, rates + NU*i);
-        failed += record(&code, 1, status ? status + i : NULL);
+        failed += record(codes, w, status ? status + i : NULL);
     }
     return failed;
 }
 
-int quadrupod_actuator_accelerations(const quadrupod_model *model, const quadrupod_real *X, const
-    quadrupod_real *V, const quadrupod_real *A, quadrupod_real *accelerations)
+int quadrupod_actuator_accelerations(const prepared *model, const real *X, const real *V, const
+    real *A, real *accelerations)
 {
     int code;
     actuator_accelerations_one(model, X, V, A, accelerations, &code);
     return code;
 }
 
-size_t quadrupod_actuator_accelerations_batch(const quadrupod_model *model, size_t n, const
-    quadrupod_real *X, const quadrupod_real *V, const quadrupod_real *A, quadrupod_real
-    *accelerations, int *status)
+size_t quadrupod_actuator_accelerations_batch(const prepared *model, size_t n, const real *X,
+    const real *V, const real *A, real *accelerations, int *status)
 {
-    size_t failed = 0, i = 0;
-    for (; LANES > 1 && i + LANES <= n; i += LANES) {
-        int codes[LANES];
-        actuator_accelerations_lanes(model, X + NQ*i, V + NV*i, A + NV*i, accelerations + NU*i, codes);
-        for (size_t k = 0; k < LANES; ++k) {
+    size_t failed = 0, w;
+    for (size_t i = 0; i < n; i += w) {
+        int codes[LANES] = {INVALID};
+        w = LANES > 1 && i + LANES <= n ? LANES : 1;
+        if (w > 1) {
+            actuator_accelerations_lanes(model, X + NQ*i, V + NV*i, A + NV*i, accelerations + NU*i, codes);
+        }
+        for (size_t k = 0; k < w; ++k) {
             if (codes[k] != OK) {
                 codes[k] = quadrupod_actuator_accelerations(model, X + NQ*(i + k), V + NV*(i + k), A + NV*(i + k),
                     accelerations + NU*(i + k));
             }
         }
-        failed += record(codes, LANES, status ? status + i : NULL);
-    }
-    for (; i < n; ++i) {
-        const int code = quadrupod_actuator_accelerations(model, X + NQ*i, V + NV*i, A + NV*i,
-            accelerations + NU*i);
-        failed += record(&code, 1, status ? status + i : NULL);
+        failed += record(codes, w, status ? status + i : NULL);
     }
     return failed;
 }
 
-int quadrupod_power(const quadrupod_model *model, const quadrupod_real *X, const quadrupod_real
-    *V, const quadrupod_real *tau, quadrupod_real *power)
+int quadrupod_power(const prepared *model, const real *X, const real *V, const real *tau, real
+    *power)
 {
     int code;
     power_one(model, X, V, tau, power, &code);
     return code;
 }
 
-size_t quadrupod_power_batch(const quadrupod_model *model, size_t n, const quadrupod_real *X,
-    const quadrupod_real *V, const quadrupod_real *tau, quadrupod_real *power, int *status)
+size_t quadrupod_power_batch(const prepared *model, size_t n, const real *X, const real *V, const
+    real *tau, real *power, int *status)
 {
-    size_t failed = 0, i = 0;
-    for (; LANES > 1 && i + LANES <= n; i += LANES) {
-        int codes[LANES];
-        power_lanes(model, X + NQ*i, V + NV*i, tau + NU*i, power + i, codes);
-        for (size_t k = 0; k < LANES; ++k) {
+    size_t failed = 0, w;
+    for (size_t i = 0; i < n; i += w) {
+        int codes[LANES] = {INVALID};
+        w = LANES > 1 && i + LANES <= n ? LANES : 1;
+        if (w > 1) {
+            power_lanes(model, X + NQ*i, V + NV*i, tau + NU*i, power + i, codes);
+        }
+        for (size_t k = 0; k < w; ++k) {
             if (codes[k] != OK) {
                 codes[k] = quadrupod_power(model, X + NQ*(i + k), V + NV*(i + k), tau + NU*(i + k), power + (i +
                     k));
             }
         }
-        failed += record(codes, LANES, status ? status + i : NULL);
-    }
-    for (; i < n; ++i) {
-        const int code = quadrupod_power(model, X + NQ*i, V + NV*i, tau + NU*i, power + i);
-        failed += record(&code, 1, status ? status + i : NULL);
+        failed += record(codes, w, status ? status + i : NULL);
     }
     return failed;
 }
 
-int quadrupod_rotation(const quadrupod_real *X, quadrupod_real *R)
+int quadrupod_rotation(const real *X, real *R)
 {
     int code;
     rotation_one(X, R, &code);
     return code;
 }
 
-size_t quadrupod_rotation_batch(size_t n, const quadrupod_real *X, quadrupod_real *R, int *status)
+size_t quadrupod_rotation_batch(size_t n, const real *X, real *R, int *status)
 {
-    size_t failed = 0, i = 0;
-    for (; i < n; ++i) {
+    size_t failed = 0;
+    for (size_t i = 0; i < n; ++i) {
         const int code = quadrupod_rotation(X + NQ*i, R + 9*i);
         failed += record(&code, 1, status ? status + i : NULL);
     }
     return failed;
 }
 
-int quadrupod_pose(const quadrupod_real *t, const quadrupod_real *R, quadrupod_real *X)
+int quadrupod_pose(const real *t, const real *R, real *X)
 {
     int code;
     pose_one(t, R, X, &code);
     return code;
 }
 
-size_t quadrupod_pose_batch(size_t n, const quadrupod_real *t, const quadrupod_real *R,
-    quadrupod_real *X, int *status)
+size_t quadrupod_pose_batch(size_t n, const real *t, const real *R, real *X, int *status)
 {
-    size_t failed = 0, i = 0;
-    for (; i < n; ++i) {
+    size_t failed = 0;
+    for (size_t i = 0; i < n; ++i) {
         const int code = quadrupod_pose(t + 3*i, R + 9*i, X + NQ*i);
         failed += record(&code, 1, status ? status + i : NULL);
     }
     return failed;
 }
 
-int quadrupod_X_dot(const quadrupod_real *X, const quadrupod_real *V, quadrupod_real *X_dot)
+int quadrupod_X_dot(const real *X, const real *V, real *X_dot)
 {
     int code;
     X_dot_one(X, V, X_dot, &code);
     return code;
 }
 
-size_t quadrupod_X_dot_batch(size_t n, const quadrupod_real *X, const quadrupod_real *V,
-    quadrupod_real *X_dot, int *status)
+size_t quadrupod_X_dot_batch(size_t n, const real *X, const real *V, real *X_dot, int *status)
 {
-    size_t failed = 0, i = 0;
-    for (; i < n; ++i) {
+    size_t failed = 0;
+    for (size_t i = 0; i < n; ++i) {
         const int code = quadrupod_X_dot(X + NQ*i, V + NV*i, X_dot + NQ*i);
         failed += record(&code, 1, status ? status + i : NULL);
     }
     return failed;
 }
 
-int quadrupod_pose_from_rpy(const quadrupod_real *t, const quadrupod_real *rpy, quadrupod_real *X)
+int quadrupod_pose_from_rpy(const real *t, const real *rpy, real *X)
 {
     int code;
     pose_from_rpy_one(t, rpy, X, &code);
     return code;
 }
 
-size_t quadrupod_pose_from_rpy_batch(size_t n, const quadrupod_real *t, const quadrupod_real *rpy,
-    quadrupod_real *X, int *status)
+size_t quadrupod_pose_from_rpy_batch(size_t n, const real *t, const real *rpy, real *X, int
+    *status)
 {
-    size_t failed = 0, i = 0;
-    for (; i < n; ++i) {
+    size_t failed = 0;
+    for (size_t i = 0; i < n; ++i) {
         const int code = quadrupod_pose_from_rpy(t + 3*i, rpy + 3*i, X + NQ*i);
         failed += record(&code, 1, status ? status + i : NULL);
     }
     return failed;
 }
 
-int quadrupod_retract(const quadrupod_real *X, const quadrupod_real *step, quadrupod_real
-    *X_moved)
+int quadrupod_retract(const real *X, const real *step, real *X_moved)
 {
     int code;
     retract_one(X, step, X_moved, &code);
     return code;
 }
 
-size_t quadrupod_retract_batch(size_t n, const quadrupod_real *X, const quadrupod_real *step,
-    quadrupod_real *X_moved, int *status)
+size_t quadrupod_retract_batch(size_t n, const real *X, const real *step, real *X_moved, int
+    *status)
 {
-    size_t failed = 0, i = 0;
-    for (; i < n; ++i) {
+    size_t failed = 0;
+    for (size_t i = 0; i < n; ++i) {
         const int code = quadrupod_retract(X + NQ*i, step + NV*i, X_moved + NQ*i);
         failed += record(&code, 1, status ? status + i : NULL);
     }
     return failed;
 }
 
-int quadrupod_difference(const quadrupod_real *X0, const quadrupod_real *X1, quadrupod_real *step)
+int quadrupod_difference(const real *X0, const real *X1, real *step)
 {
     int code;
     difference_one(X0, X1, step, &code);
     return code;
 }
 
-size_t quadrupod_difference_batch(size_t n, const quadrupod_real *X0, const quadrupod_real *X1,
-    quadrupod_real *step, int *status)
+size_t quadrupod_difference_batch(size_t n, const real *X0, const real *X1, real *step, int
+    *status)
 {
-    size_t failed = 0, i = 0;
-    for (; i < n; ++i) {
+    size_t failed = 0;
+    for (size_t i = 0; i < n; ++i) {
         const int code = quadrupod_difference(X0 + NQ*i, X1 + NQ*i, step + NV*i);
         failed += record(&code, 1, status ? status + i : NULL);
     }
     return failed;
 }
 
-int quadrupod_interpolate(const quadrupod_real *X0, const quadrupod_real *X1, const quadrupod_real
-    *s, quadrupod_real *X)
+int quadrupod_interpolate(const real *X0, const real *X1, const real *s, real *X)
 {
     int code;
     interpolate_one(X0, X1, s, X, &code);
     return code;
 }
 
-size_t quadrupod_interpolate_batch(size_t n, const quadrupod_real *X0, const quadrupod_real *X1,
-    const quadrupod_real *s, quadrupod_real *X, int *status)
+size_t quadrupod_interpolate_batch(size_t n, const real *X0, const real *X1, const real *s, real
+    *X, int *status)
 {
-    size_t failed = 0, i = 0;
-    for (; i < n; ++i) {
+    size_t failed = 0;
+    for (size_t i = 0; i < n; ++i) {
         const int code = quadrupod_interpolate(X0 + NQ*i, X1 + NQ*i, s + i, X + NQ*i);
         failed += record(&code, 1, status ? status + i : NULL);
     }

@@ -312,6 +312,38 @@ int quadrupod_condition_constrained(const quadrupod_model *model, const quadrupo
 size_t quadrupod_condition_constrained_batch(const quadrupod_model *model, size_t n, const
     quadrupod_real *X, quadrupod_real *sigma, quadrupod_real *legs, int *status);
 
+/* Manipulability of forces: the product of the singular values that condition has by default, and
+   the least over the largest of them. Of N^T H, N an orthonormal basis of the motions that
+   constraints leave. 470 mul, 324 add, 12 div, 27 sqrt, 0 trig; the singular values apart. In: X
+   (NQ). Out: measure (1), isotropy (1). */
+int quadrupod_manipulability(const quadrupod_model *model, const quadrupod_real *X, quadrupod_real
+    *measure, quadrupod_real *isotropy);
+size_t quadrupod_manipulability_batch(const quadrupod_model *model, size_t n, const quadrupod_real
+    *X, quadrupod_real *measure, quadrupod_real *isotropy, int *status);
+
+/* How near actuators and legs are to being singular: relative distances, 0 where they are. 470
+   mul, 324 add, 12 div, 27 sqrt, 0 trig; the singular values apart. In: X (NQ). Out: actuators
+   (1), legs (1). */
+int quadrupod_singularity_distance(const quadrupod_model *model, const quadrupod_real *X,
+    quadrupod_real *actuators, quadrupod_real *legs);
+size_t quadrupod_singularity_distance_batch(const quadrupod_model *model, size_t n, const
+    quadrupod_real *X, quadrupod_real *actuators, quadrupod_real *legs, int *status);
+
+/* Actuator forces from tau_min to tau_max for the acceleration A: the nearest to reference. By
+   the dual active-set method of Goldfarb and Idnani; continuous along a motion. Impossible
+   (UNREACHABLE) where no forces within the bounds give the acceleration. Cables pull with
+   negative forces: tau_max = -t keeps tensions of t at least. 1392 mul, 1032 add, 17 div, 16
+   sqrt, 0 trig; the search apart. In: X (NQ), V (NV), A (NV), tau_min (NU), tau_max (NU), wrench
+   (NW, or NULL), reference (NU, or NULL). Out: tau (NU), lambda (NC). */
+int quadrupod_force_distribution(const quadrupod_model *model, const quadrupod_real *X, const
+    quadrupod_real *V, const quadrupod_real *A, const quadrupod_real *tau_min, const
+    quadrupod_real *tau_max, const quadrupod_real *wrench, const quadrupod_real *reference,
+    quadrupod_real *tau, quadrupod_real *lambda);
+size_t quadrupod_force_distribution_batch(const quadrupod_model *model, size_t n, const
+    quadrupod_real *X, const quadrupod_real *V, const quadrupod_real *A, const quadrupod_real
+    *tau_min, const quadrupod_real *tau_max, const quadrupod_real *wrench, const quadrupod_real
+    *reference, quadrupod_real *tau, quadrupod_real *lambda, int *status);
+
 /* X at which the actuated joints stand at q_actuated, by Gauss-Newton from X0. Extra coordinates
    that actuators do not determine stay. Impossible where no pose is found. In: q_actuated (NU),
    X0 (NQ). Out: X (NQ). */

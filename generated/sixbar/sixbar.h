@@ -258,6 +258,22 @@ int sixbar_condition(const sixbar_model *model, const sixbar_real *X, sixbar_rea
 size_t sixbar_condition_batch(const sixbar_model *model, size_t n, const sixbar_real *X,
     sixbar_real *sigma, sixbar_real *legs, int *status);
 
+/* Manipulability of forces: the product of the singular values that condition has by default, and
+   the least over the largest of them. 114 mul, 61 add, 4 div, 5 sqrt, 0 trig; the singular values
+   apart. In: X (NQ). Out: measure (1), isotropy (1). */
+int sixbar_manipulability(const sixbar_model *model, const sixbar_real *X, sixbar_real *measure,
+    sixbar_real *isotropy);
+size_t sixbar_manipulability_batch(const sixbar_model *model, size_t n, const sixbar_real *X,
+    sixbar_real *measure, sixbar_real *isotropy, int *status);
+
+/* How near actuators and legs are to being singular: relative distances, 0 where they are. 114
+   mul, 61 add, 4 div, 5 sqrt, 0 trig; the singular values apart. In: X (NQ). Out: actuators (1),
+   legs (1). */
+int sixbar_singularity_distance(const sixbar_model *model, const sixbar_real *X, sixbar_real
+    *actuators, sixbar_real *legs);
+size_t sixbar_singularity_distance_batch(const sixbar_model *model, size_t n, const sixbar_real
+    *X, sixbar_real *actuators, sixbar_real *legs, int *status);
+
 /* X at which the actuated joints stand at q_actuated, by Gauss-Newton from X0. Extra coordinates
    that actuators do not determine stay. Impossible where no pose is found. In: q_actuated (NU),
    X0 (NQ). Out: X (NQ). */

@@ -241,6 +241,24 @@ int spherical_3ups_condition(const spherical_3ups_model *model, const spherical_
 size_t spherical_3ups_condition_batch(const spherical_3ups_model *model, size_t n, const
     spherical_3ups_real *X, spherical_3ups_real *sigma, spherical_3ups_real *legs, int *status);
 
+/* Manipulability of forces: the product of the singular values that condition has by default, and
+   the least over the largest of them. 118 mul, 96 add, 3 div, 13 sqrt, 0 trig; the singular
+   values apart. In: X (NQ). Out: measure (1), isotropy (1). */
+int spherical_3ups_manipulability(const spherical_3ups_model *model, const spherical_3ups_real *X,
+    spherical_3ups_real *measure, spherical_3ups_real *isotropy);
+size_t spherical_3ups_manipulability_batch(const spherical_3ups_model *model, size_t n, const
+    spherical_3ups_real *X, spherical_3ups_real *measure, spherical_3ups_real *isotropy, int
+    *status);
+
+/* How near actuators and legs are to being singular: relative distances, 0 where they are. 118
+   mul, 96 add, 3 div, 13 sqrt, 0 trig; the singular values apart. In: X (NQ). Out: actuators (1),
+   legs (1). */
+int spherical_3ups_singularity_distance(const spherical_3ups_model *model, const
+    spherical_3ups_real *X, spherical_3ups_real *actuators, spherical_3ups_real *legs);
+size_t spherical_3ups_singularity_distance_batch(const spherical_3ups_model *model, size_t n,
+    const spherical_3ups_real *X, spherical_3ups_real *actuators, spherical_3ups_real *legs, int
+    *status);
+
 /* X at which the actuated joints stand at q_actuated, by Gauss-Newton from X0. Extra coordinates
    that actuators do not determine stay. Impossible where no pose is found. In: q_actuated (NU),
    X0 (NQ). Out: X (NQ). */

@@ -636,13 +636,13 @@ int stewart_prepare(const stewart_params *params, stewart_model *model)
         const real ups_J_group_2_in_axes2_zz = ups_link2_inertia_yy + ups_link3_inertia_yy -
             ups_link2_mass*(ups_J_group_2_t_2 - ups_J_group_2_t_4) -
             ups_link3_mass*(ups_J_group_2_t_6 - ups_J_group_2_t_8);
-        /* (ups-trace_J_2) half the trace of that inertia tensor */
-        const real ups_trace_J_2 = R(0.5)*ups_J_group_2_in_axes2_xx +
-            R(0.5)*ups_J_group_2_in_axes2_yy + R(0.5)*ups_J_group_2_in_axes2_zz;
         /* (ups-Sigma_2) second moment of mass of the links that turn with link 2 */
-        const real ups_Sigma_2_in_axes2_xx = ups_trace_J_2 - ups_J_group_2_in_axes2_xx;
-        const real ups_Sigma_2_in_axes2_yy = ups_trace_J_2 - ups_J_group_2_in_axes2_yy;
-        const real ups_Sigma_2_in_axes2_zz = ups_trace_J_2 - ups_J_group_2_in_axes2_zz;
+        const real ups_Sigma_2_t = ups_J_group_2_in_axes2_xx + ups_J_group_2_in_axes2_yy +
+            ups_J_group_2_in_axes2_zz;
+        const real ups_Sigma_2_t_2 = R(0.5)*ups_Sigma_2_t;
+        const real ups_Sigma_2_in_axes2_xx = ups_Sigma_2_t_2 - ups_J_group_2_in_axes2_xx;
+        const real ups_Sigma_2_in_axes2_yy = ups_Sigma_2_t_2 - ups_J_group_2_in_axes2_yy;
+        const real ups_Sigma_2_in_axes2_zz = ups_Sigma_2_t_2 - ups_J_group_2_in_axes2_zz;
         /* (h_star) first moment about the platform origin */
         const real ups_h_star_t = ups_link3_mass*ups_platform_point_x;
         const real ups_h_star_t_2 = ups_link3_mass*ups_platform_point_y;
@@ -1107,6 +1107,24 @@ INLINE void unlimited(size_t rows, size_t size, size_t w, const size_t *places, 
     }
 }
 
+INLINE void least_entry(size_t n, const real *a, real *x)
+{
+    *x = a[0];
+    for (size_t e = 1; e < n; ++e) {
+        *x = lesser(*x, a[e]);
+    }
+}
+
+/* Of the first n entries the product, and the last over the first, 0 where that is 0. */
+INLINE void spread(size_t n, const real *a, real *product_of, real *ratio)
+{
+    *product_of = 1;
+    for (size_t e = 0; e < n; ++e) {
+        *product_of *= a[e];
+    }
+    *ratio = magnitude(a[0]) > 0 ? a[n - 1]/a[0] : a[0];
+}
+
 /* 1 where no entry is negative, else 0. */
 INLINE void not_negative(size_t size, size_t w, const real *a, real *x, real *flags)
 {
@@ -1281,6 +1299,643 @@ static void moved(const real *X, const real *step, real part, real *to)
     turn_quaternion(X + Q, turn, to + Q);
 }
 
+/* ---- what functions of the state share; v: values for others ---- */
+
+typedef struct {
+    real quaternion_scale, R_xx, R_xy, R_xz, R_yx, R_yy, R_yz, R_zx, R_zy, R_zz, h_star_x, h_star_y,
+        h_star_z, omega_in_platform_x, omega_in_platform_y, omega_in_platform_z, J_star_xx, J_star_xy,
+        J_star_xz, J_star_yy, J_star_yz, J_star_zz, Z_p_x, Z_p_y, Z_p_z, Z_q_x, Z_q_y, Z_q_z;
+} values;
+
+INLINE void stage_X(const prepared *m, size_t w, size_t k, const real *X, values *v)
+{
+    /* X: named entries */
+    const real X_3 = X[3*w + k];
+    const real X_4 = X[4*w + k];
+    const real X_5 = X[5*w + k];
+    const real X_6 = X[6*w + k];
+    const real quaternion_norm2 = X_3*X_3 + X_4*X_4 + X_5*X_5 + X_6*X_6;
+    const real quaternion_scale = 2/quaternion_norm2;
+    const real quaternion_sx = X_3*quaternion_scale;
+    const real quaternion_sy = X_4*quaternion_scale;
+    const real quaternion_sz = X_5*quaternion_scale;
+    const real quaternion_wx = X_6*quaternion_sx;
+    const real quaternion_wy = X_6*quaternion_sy;
+    const real quaternion_wz = X_6*quaternion_sz;
+    const real quaternion_xx = X_3*quaternion_sx;
+    const real quaternion_xy = X_3*quaternion_sy;
+    const real quaternion_xz = X_3*quaternion_sz;
+    const real quaternion_yy = X_4*quaternion_sy;
+    const real quaternion_yz = X_4*quaternion_sz;
+    const real quaternion_zz = X_5*quaternion_sz;
+    const real R_xx = 1 - quaternion_yy - quaternion_zz;
+    const real R_xy = quaternion_xy - quaternion_wz;
+    const real R_xz = quaternion_wy + quaternion_xz;
+    const real R_yx = quaternion_wz + quaternion_xy;
+    const real R_yy = 1 - quaternion_xx - quaternion_zz;
+    const real R_yz = quaternion_yz - quaternion_wx;
+    const real R_zx = quaternion_xz - quaternion_wy;
+    const real R_zy = quaternion_wx + quaternion_yz;
+    const real R_zz = 1 - quaternion_xx - quaternion_yy;
+    /* (h_star) first moment about the platform origin */
+    const real h_star_in_platform_x = m->h_star_in_platform_x;
+    const real h_star_in_platform_y = m->h_star_in_platform_y;
+    const real h_star_in_platform_z = m->h_star_in_platform_z;
+    const real h_star_x = R_xx*h_star_in_platform_x + R_xy*h_star_in_platform_y +
+        R_xz*h_star_in_platform_z;
+    const real h_star_y = R_yx*h_star_in_platform_x + R_yy*h_star_in_platform_y +
+        R_yz*h_star_in_platform_z;
+    const real h_star_z = R_zx*h_star_in_platform_x + R_zy*h_star_in_platform_y +
+        R_zz*h_star_in_platform_z;
+    v->quaternion_scale = quaternion_scale;
+    v->R_xx = R_xx;
+    v->R_xy = R_xy;
+    v->R_xz = R_xz;
+    v->R_yx = R_yx;
+    v->R_yy = R_yy;
+    v->R_yz = R_yz;
+    v->R_zx = R_zx;
+    v->R_zy = R_zy;
+    v->R_zz = R_zz;
+    v->h_star_x = h_star_x;
+    v->h_star_y = h_star_y;
+    v->h_star_z = h_star_z;
+}
+
+INLINE void stage_V_X(size_t w, size_t k, const real *V, values *v)
+{
+    /* (Z_q) gyroscopic moment and moment of the weight of the platform */
+    const real omega_x = V[3*w + k];
+    const real omega_y = V[4*w + k];
+    const real omega_z = V[5*w + k];
+    const real omega_in_platform_x = v->R_xx*omega_x + v->R_yx*omega_y + v->R_zx*omega_z;
+    const real omega_in_platform_y = v->R_xy*omega_x + v->R_yy*omega_y + v->R_zy*omega_z;
+    const real omega_in_platform_z = v->R_xz*omega_x + v->R_yz*omega_y + v->R_zz*omega_z;
+    v->omega_in_platform_x = omega_in_platform_x;
+    v->omega_in_platform_y = omega_in_platform_y;
+    v->omega_in_platform_z = omega_in_platform_z;
+}
+
+INLINE void stage_M_dynamics(const prepared *m, values *v)
+{
+    /* (J_star) inertia tensor about the platform origin */
+    const real J_star_in_platform_xy = m->J_star_in_platform_xy;
+    const real J_star_in_platform_yz = m->J_star_in_platform_yz;
+    const real J_star_t_12 = m->J_star_t_12;
+    const real J_star_t = J_star_in_platform_xy*v->R_xx + J_star_in_platform_yz*v->R_xz -
+        J_star_t_12*v->R_xy;
+    const real J_star_t_2 = J_star_in_platform_xy*v->R_yx + J_star_in_platform_yz*v->R_yz -
+        J_star_t_12*v->R_yy;
+    const real J_star_t_3 = J_star_in_platform_xy*v->R_zx + J_star_in_platform_yz*v->R_zz -
+        J_star_t_12*v->R_zy;
+    const real J_star_in_platform_xz = m->J_star_in_platform_xz;
+    const real J_star_t_14 = m->J_star_t_14;
+    const real J_star_t_4 = J_star_t_14*v->R_xz - J_star_in_platform_xz*v->R_xx;
+    const real J_star_t_5 = J_star_t_14*v->R_yz - J_star_in_platform_xz*v->R_yx;
+    const real J_star_t_6 = J_star_t_14*v->R_zz - J_star_in_platform_xz*v->R_zx;
+    const real J_star_t_7 = J_star_t*v->R_xy - J_star_t_4*v->R_xz;
+    const real J_star_in_platform_xx = m->J_star_in_platform_xx;
+    const real J_star_xx = J_star_in_platform_xx + 2*J_star_t_7;
+    const real J_star_xy = J_star_t*v->R_yy + J_star_t_2*v->R_xy - J_star_t_4*v->R_yz -
+        J_star_t_5*v->R_xz;
+    const real J_star_xz = J_star_t*v->R_zy + J_star_t_3*v->R_xy - J_star_t_4*v->R_zz -
+        J_star_t_6*v->R_xz;
+    const real J_star_t_8 = J_star_t_2*v->R_yy - J_star_t_5*v->R_yz;
+    const real J_star_yy = J_star_in_platform_xx + 2*J_star_t_8;
+    const real J_star_yz = J_star_t_2*v->R_zy + J_star_t_3*v->R_yy - J_star_t_5*v->R_zz -
+        J_star_t_6*v->R_yz;
+    const real J_star_t_9 = J_star_t_3*v->R_zy - J_star_t_6*v->R_zz;
+    const real J_star_zz = J_star_in_platform_xx + 2*J_star_t_9;
+    v->J_star_xx = J_star_xx;
+    v->J_star_xy = J_star_xy;
+    v->J_star_xz = J_star_xz;
+    v->J_star_yy = J_star_yy;
+    v->J_star_yz = J_star_yz;
+    v->J_star_zz = J_star_zz;
+}
+
+INLINE void stage_Z_dynamics(const prepared *m, size_t w, size_t k, const real *V, values *v)
+{
+    /* (Z_p) centripetal force and weight of the platform */
+    const real omega_y = V[4*w + k];
+    const real omega_z = V[5*w + k];
+    const real Z_p_t_4 = v->h_star_z*omega_y - v->h_star_y*omega_z;
+    const real omega_x = V[3*w + k];
+    const real Z_p_t_5 = v->h_star_x*omega_z - v->h_star_z*omega_x;
+    const real Z_p_t_6 = v->h_star_y*omega_x - v->h_star_x*omega_y;
+    const real Z_p_t = m->Z_p_t;
+    const real Z_p_x = Z_p_t_6*omega_y - Z_p_t - Z_p_t_5*omega_z;
+    const real Z_p_t_2 = m->Z_p_t_2;
+    const real Z_p_y = Z_p_t_4*omega_z - Z_p_t_2 - Z_p_t_6*omega_x;
+    const real Z_p_t_3 = m->Z_p_t_3;
+    const real Z_p_z = Z_p_t_5*omega_x - Z_p_t_3 - Z_p_t_4*omega_y;
+    /* (Z_q) gyroscopic moment and moment of the weight of the platform */
+    const real gravity_x = m->gravity_x;
+    const real gravity_y = m->gravity_y;
+    const real gravity_z = m->gravity_z;
+    const real g_in_platform_x = v->R_xx*gravity_x + v->R_yx*gravity_y + v->R_zx*gravity_z;
+    const real g_in_platform_y = v->R_xy*gravity_x + v->R_yy*gravity_y + v->R_zy*gravity_z;
+    const real g_in_platform_z = v->R_xz*gravity_x + v->R_yz*gravity_y + v->R_zz*gravity_z;
+    const real J_star_in_platform_xx = m->J_star_in_platform_xx;
+    const real J_star_in_platform_xy = m->J_star_in_platform_xy;
+    const real J_star_in_platform_xz = m->J_star_in_platform_xz;
+    const real Z_q_t = J_star_in_platform_xx*v->omega_in_platform_x +
+        J_star_in_platform_xy*v->omega_in_platform_y +
+        J_star_in_platform_xz*v->omega_in_platform_z;
+    const real J_star_in_platform_yy = m->J_star_in_platform_yy;
+    const real J_star_in_platform_yz = m->J_star_in_platform_yz;
+    const real Z_q_t_2 = J_star_in_platform_xy*v->omega_in_platform_x +
+        J_star_in_platform_yy*v->omega_in_platform_y +
+        J_star_in_platform_yz*v->omega_in_platform_z;
+    const real J_star_in_platform_zz = m->J_star_in_platform_zz;
+    const real Z_q_t_3 = J_star_in_platform_xz*v->omega_in_platform_x +
+        J_star_in_platform_yz*v->omega_in_platform_y +
+        J_star_in_platform_zz*v->omega_in_platform_z;
+    const real h_star_in_platform_y = m->h_star_in_platform_y;
+    const real h_star_in_platform_z = m->h_star_in_platform_z;
+    const real Z_q_in_platform_x = Z_q_t_3*v->omega_in_platform_y +
+        g_in_platform_y*h_star_in_platform_z - Z_q_t_2*v->omega_in_platform_z -
+        g_in_platform_z*h_star_in_platform_y;
+    const real h_star_in_platform_x = m->h_star_in_platform_x;
+    const real Z_q_in_platform_y = Z_q_t*v->omega_in_platform_z +
+        g_in_platform_z*h_star_in_platform_x - Z_q_t_3*v->omega_in_platform_x -
+        g_in_platform_x*h_star_in_platform_z;
+    const real Z_q_in_platform_z = Z_q_t_2*v->omega_in_platform_x +
+        g_in_platform_x*h_star_in_platform_y - Z_q_t*v->omega_in_platform_y -
+        g_in_platform_y*h_star_in_platform_x;
+    const real Z_q_x = v->R_xx*Z_q_in_platform_x + v->R_xy*Z_q_in_platform_y +
+        v->R_xz*Z_q_in_platform_z;
+    const real Z_q_y = v->R_yx*Z_q_in_platform_x + v->R_yy*Z_q_in_platform_y +
+        v->R_yz*Z_q_in_platform_z;
+    const real Z_q_z = v->R_zx*Z_q_in_platform_x + v->R_zy*Z_q_in_platform_y +
+        v->R_zz*Z_q_in_platform_z;
+    v->Z_p_x = Z_p_x;
+    v->Z_p_y = Z_p_y;
+    v->Z_p_z = Z_p_z;
+    v->Z_q_x = Z_q_x;
+    v->Z_q_y = Z_q_y;
+    v->Z_q_z = Z_q_z;
+}
+
+typedef struct {
+    real ups_q_x, ups_q_y, ups_q_z, ups_S_in_turn1_z, ups_root_1_t, ups_root_1, inv_ups_root_1,
+        ups_c_1, ups_s_1, ups_q_3_t, ups_q_3, inv_ups_q_3, ups_c_2, axis_x_ups_axes2_x,
+        axis_x_ups_axes2_y, axis_x_ups_axes2_z, axis_z_ups_axes2_x, axis_z_ups_axes2_y,
+        axis_z_ups_axes2_z, axis_y_ups_axes2_x, axis_y_ups_axes2_y, axis_y_ups_axes2_z,
+        ups_e_1_in_axes2_x, ups_g_in_axes2_z, ups_w_2_in_axes2_y, ups_w_3_x, ups_w_3_y, ups_w_3_z,
+        ups_a_p_x, ups_a_p_y, ups_a_p_z, ups_S_dot_t, ups_S_dot_t_2, ups_S_dot_t_3, ups_qd_1,
+        ups_qd_2, ups_omega_1_in_axes2_x, ups_omega_1_in_axes2_y, ups_W_2_in_axes2_yz,
+        ups_W_2_in_axes2_xz, ups_W_2_in_axes2_xy, ups_bias_t, ups_bias_in_axes2_z, ups_S_ddot_x,
+        ups_S_ddot_y, ups_S_ddot_z, ups_U_x, ups_U_y, ups_U_z, ups_Z_a_t, ups_Z_a_t_2, ups_Z_a_t_3,
+        ups_S_in_turn1_x, ups_S_in_turn1_y, ups_alpha_1_in_axes2_x, ups_alpha_1_in_axes2_y,
+        ups_B_2_in_axes2_yx, ups_B_2_in_axes2_xy, ups_B_2_in_axes2_zx, ups_B_2_in_axes2_zy,
+        ups_g_in_axes2_x, ups_g_in_axes2_y, ups_acc_3_in_axes2_x, ups_acc_3_in_axes2_y,
+        ups_acc_3_in_axes2_z, ups_mu_2_t;
+} values_ups;
+
+INLINE void stage_ups_X(const prepared *m, size_t w, size_t i, size_t j, const real *s, const real
+    *X, values_ups *v)
+{
+    /* (ups-S) from the base point to the connection point */
+    const real R_xx = s[0*w + j];
+    const real R_xy = s[1*w + j];
+    const real R_xz = s[2*w + j];
+    const real ups_platform_point_x = m->ups_platform_point_x[i];
+    const real ups_platform_point_y = m->ups_platform_point_y[i];
+    const real ups_platform_point_z = m->ups_platform_point_z[i];
+    const real ups_q_x = R_xx*ups_platform_point_x + R_xy*ups_platform_point_y +
+        R_xz*ups_platform_point_z;
+    const real R_yx = s[3*w + j];
+    const real R_yy = s[4*w + j];
+    const real R_yz = s[5*w + j];
+    const real ups_q_y = R_yx*ups_platform_point_x + R_yy*ups_platform_point_y +
+        R_yz*ups_platform_point_z;
+    const real R_zx = s[6*w + j];
+    const real R_zy = s[7*w + j];
+    const real R_zz = s[8*w + j];
+    const real ups_q_z = R_zx*ups_platform_point_x + R_zy*ups_platform_point_y +
+        R_zz*ups_platform_point_z;
+    const real t_x = X[0*w + j];
+    const real ups_base_point_x = m->ups_base_point_x[i];
+    const real ups_S_x = t_x + ups_q_x - ups_base_point_x;
+    const real t_y = X[1*w + j];
+    const real ups_base_point_y = m->ups_base_point_y[i];
+    const real ups_S_y = t_y + ups_q_y - ups_base_point_y;
+    const real t_z = X[2*w + j];
+    const real ups_base_point_z = m->ups_base_point_z[i];
+    const real ups_S_z = t_z + ups_q_z - ups_base_point_z;
+    const real ups_base_frame_xx = m->ups_base_frame_xx[i];
+    const real ups_base_frame_yx = m->ups_base_frame_yx[i];
+    const real ups_base_frame_zx = m->ups_base_frame_zx[i];
+    const real ups_S_in_turn1_x = ups_S_x*ups_base_frame_xx + ups_S_y*ups_base_frame_yx +
+        ups_S_z*ups_base_frame_zx;
+    const real ups_base_frame_xy = m->ups_base_frame_xy[i];
+    const real ups_base_frame_yy = m->ups_base_frame_yy[i];
+    const real ups_base_frame_zy = m->ups_base_frame_zy[i];
+    const real ups_S_in_turn1_y = ups_S_x*ups_base_frame_xy + ups_S_y*ups_base_frame_yy +
+        ups_S_z*ups_base_frame_zy;
+    const real ups_base_frame_xz = m->ups_base_frame_xz[i];
+    const real ups_base_frame_yz = m->ups_base_frame_yz[i];
+    const real ups_base_frame_zz = m->ups_base_frame_zz[i];
+    const real ups_S_in_turn1_z = ups_S_x*ups_base_frame_xz + ups_S_y*ups_base_frame_yz +
+        ups_S_z*ups_base_frame_zz;
+    /* (ups-root_1) amplitude, the length across axis 1, with the sign of the branch */
+    const real ups_root_1_t = ups_S_in_turn1_x*ups_S_in_turn1_x +
+        ups_S_in_turn1_y*ups_S_in_turn1_y;
+    const real ups_branch_1 = m->ups_branch_1[i];
+    const real ups_root_1 = ups_branch_1*root(ups_root_1_t);
+    /* (ups-c_1) cosine of the angle of joint 1 from its reference direction */
+    const real inv_ups_root_1 = 1/ups_root_1;
+    const real ups_c_1 = inv_ups_root_1*ups_S_in_turn1_x;
+    /* (ups-s_1) sine of the angle of joint 1 from its reference direction */
+    const real ups_s_1 = inv_ups_root_1*ups_S_in_turn1_y;
+    /* (ups-q_3) displacement of joint 3 */
+    const real ups_q_3_t = ups_S_in_turn1_z*ups_S_in_turn1_z + ups_root_1_t;
+    const real ups_branch_2 = m->ups_branch_2[i];
+    const real ups_q_3 = ups_branch_2*root(ups_q_3_t);
+    /* (ups-c_2) cosine of the angle of joint 2 from its reference direction */
+    const real inv_ups_q_3 = 1/ups_q_3;
+    const real ups_c_2 = inv_ups_q_3*ups_root_1;
+    /* (ups-S_dot) velocity of the connection point */
+    const real axis_x_ups_axes2_x = inv_ups_q_3*ups_S_x;
+    const real axis_x_ups_axes2_y = inv_ups_q_3*ups_S_y;
+    const real axis_x_ups_axes2_z = inv_ups_q_3*ups_S_z;
+    /* (ups-qd_1) rate of joint 1 */
+    const real axis_z_ups_axes2_x = ups_base_frame_xy*ups_c_1 - ups_base_frame_xx*ups_s_1;
+    const real axis_z_ups_axes2_y = ups_base_frame_yy*ups_c_1 - ups_base_frame_yx*ups_s_1;
+    const real axis_z_ups_axes2_z = ups_base_frame_zy*ups_c_1 - ups_base_frame_zx*ups_s_1;
+    /* (ups-qd_2) rate of joint 2 */
+    const real axis_y_ups_axes2_x = axis_x_ups_axes2_z*axis_z_ups_axes2_y -
+        axis_x_ups_axes2_y*axis_z_ups_axes2_z;
+    const real axis_y_ups_axes2_y = axis_x_ups_axes2_x*axis_z_ups_axes2_z -
+        axis_x_ups_axes2_z*axis_z_ups_axes2_x;
+    const real axis_y_ups_axes2_z = axis_x_ups_axes2_y*axis_z_ups_axes2_x -
+        axis_x_ups_axes2_x*axis_z_ups_axes2_y;
+    /* (ups-omega_1) angular velocity of link 1 */
+    const real ups_e_1_in_axes2_x = inv_ups_q_3*ups_S_in_turn1_z;
+    /* (ups-acc_3_o) remainder without the acceleration in: acceleration of the reference point of
+       link 3, less gravity */
+    const real ups_acc_3_t = m->ups_acc_3_t[i];
+    const real ups_acc_3_t_2 = m->ups_acc_3_t_2[i];
+    const real ups_g_in_axes2_z = ups_acc_3_t_2*ups_c_1 - ups_acc_3_t*ups_s_1;
+    /* (ups-w_2) reciprocal vector 2 */
+    const real ups_w_2_in_axes2_y = 1/ups_q_3;
+    /* (ups-w_3) reciprocal vector 3 */
+    const real ups_w_3_x = ups_S_x*ups_w_2_in_axes2_y;
+    const real ups_w_3_y = ups_S_y*ups_w_2_in_axes2_y;
+    const real ups_w_3_z = ups_S_z*ups_w_2_in_axes2_y;
+    v->ups_q_x = ups_q_x;
+    v->ups_q_y = ups_q_y;
+    v->ups_q_z = ups_q_z;
+    v->ups_S_in_turn1_z = ups_S_in_turn1_z;
+    v->ups_root_1_t = ups_root_1_t;
+    v->ups_root_1 = ups_root_1;
+    v->inv_ups_root_1 = inv_ups_root_1;
+    v->ups_c_1 = ups_c_1;
+    v->ups_s_1 = ups_s_1;
+    v->ups_q_3_t = ups_q_3_t;
+    v->ups_q_3 = ups_q_3;
+    v->inv_ups_q_3 = inv_ups_q_3;
+    v->ups_c_2 = ups_c_2;
+    v->axis_x_ups_axes2_x = axis_x_ups_axes2_x;
+    v->axis_x_ups_axes2_y = axis_x_ups_axes2_y;
+    v->axis_x_ups_axes2_z = axis_x_ups_axes2_z;
+    v->axis_z_ups_axes2_x = axis_z_ups_axes2_x;
+    v->axis_z_ups_axes2_y = axis_z_ups_axes2_y;
+    v->axis_z_ups_axes2_z = axis_z_ups_axes2_z;
+    v->axis_y_ups_axes2_x = axis_y_ups_axes2_x;
+    v->axis_y_ups_axes2_y = axis_y_ups_axes2_y;
+    v->axis_y_ups_axes2_z = axis_y_ups_axes2_z;
+    v->ups_e_1_in_axes2_x = ups_e_1_in_axes2_x;
+    v->ups_g_in_axes2_z = ups_g_in_axes2_z;
+    v->ups_w_2_in_axes2_y = ups_w_2_in_axes2_y;
+    v->ups_w_3_x = ups_w_3_x;
+    v->ups_w_3_y = ups_w_3_y;
+    v->ups_w_3_z = ups_w_3_z;
+}
+
+INLINE void stage_ups_A_X(size_t w, size_t j, const real *A, values_ups *v)
+{
+    /* (ups-a_p) acceleration of the connection point without its centripetal part */
+    const real alpha_y = A[4*w + j];
+    const real alpha_z = A[5*w + j];
+    const real t_ddot_x = A[0*w + j];
+    const real ups_a_p_x = t_ddot_x + alpha_y*v->ups_q_z - alpha_z*v->ups_q_y;
+    const real alpha_x = A[3*w + j];
+    const real t_ddot_y = A[1*w + j];
+    const real ups_a_p_y = t_ddot_y + alpha_z*v->ups_q_x - alpha_x*v->ups_q_z;
+    const real t_ddot_z = A[2*w + j];
+    const real ups_a_p_z = t_ddot_z + alpha_x*v->ups_q_y - alpha_y*v->ups_q_x;
+    v->ups_a_p_x = ups_a_p_x;
+    v->ups_a_p_y = ups_a_p_y;
+    v->ups_a_p_z = ups_a_p_z;
+}
+
+INLINE void stage_ups_V_X(size_t w, size_t j, const real *V, values_ups *v)
+{
+    /* (ups-S_dot) velocity of the connection point */
+    const real omega_y = V[4*w + j];
+    const real omega_z = V[5*w + j];
+    const real ups_S_dot_t = omega_y*v->ups_q_z - omega_z*v->ups_q_y;
+    const real omega_x = V[3*w + j];
+    const real ups_S_dot_t_2 = omega_z*v->ups_q_x - omega_x*v->ups_q_z;
+    const real ups_S_dot_t_3 = omega_x*v->ups_q_y - omega_y*v->ups_q_x;
+    const real t_dot_x = V[0*w + j];
+    const real ups_S_dot_x = t_dot_x + ups_S_dot_t;
+    const real t_dot_y = V[1*w + j];
+    const real ups_S_dot_y = t_dot_y + ups_S_dot_t_2;
+    const real t_dot_z = V[2*w + j];
+    const real ups_S_dot_z = t_dot_z + ups_S_dot_t_3;
+    const real ups_S_dot_in_axes2_x = v->axis_x_ups_axes2_x*ups_S_dot_x +
+        v->axis_x_ups_axes2_y*ups_S_dot_y + v->axis_x_ups_axes2_z*ups_S_dot_z;
+    /* (ups-qd_1) rate of joint 1 */
+    const real ups_qd_1 = v->inv_ups_root_1*(v->axis_z_ups_axes2_x*ups_S_dot_x +
+        v->axis_z_ups_axes2_y*ups_S_dot_y + v->axis_z_ups_axes2_z*ups_S_dot_z);
+    /* (ups-qd_2) rate of joint 2 */
+    const real ups_qd_2 = v->inv_ups_q_3*(v->axis_y_ups_axes2_x*ups_S_dot_x +
+        v->axis_y_ups_axes2_y*ups_S_dot_y + v->axis_y_ups_axes2_z*ups_S_dot_z);
+    /* (ups-omega_1) angular velocity of link 1 */
+    const real ups_omega_1_in_axes2_x = v->ups_e_1_in_axes2_x*ups_qd_1;
+    const real ups_omega_1_in_axes2_y = -v->ups_c_2*ups_qd_1;
+    /* (ups-W_2) centripetal tensor of link 2 */
+    const real ups_W_2_in_axes2_yz = ups_omega_1_in_axes2_y*ups_qd_2;
+    const real ups_W_2_in_axes2_xz = ups_omega_1_in_axes2_x*ups_qd_2;
+    const real ups_W_2_in_axes2_xy = ups_omega_1_in_axes2_x*ups_omega_1_in_axes2_y;
+    /* (ups-bias) acceleration of the connection point at zero joint accelerations */
+    const real ups_bias_t = 2*ups_S_dot_in_axes2_x;
+    const real ups_bias_in_axes2_z = 2*ups_W_2_in_axes2_xz*v->ups_q_3 -
+        ups_bias_t*ups_omega_1_in_axes2_y;
+    v->ups_S_dot_t = ups_S_dot_t;
+    v->ups_S_dot_t_2 = ups_S_dot_t_2;
+    v->ups_S_dot_t_3 = ups_S_dot_t_3;
+    v->ups_qd_1 = ups_qd_1;
+    v->ups_qd_2 = ups_qd_2;
+    v->ups_omega_1_in_axes2_x = ups_omega_1_in_axes2_x;
+    v->ups_omega_1_in_axes2_y = ups_omega_1_in_axes2_y;
+    v->ups_W_2_in_axes2_yz = ups_W_2_in_axes2_yz;
+    v->ups_W_2_in_axes2_xz = ups_W_2_in_axes2_xz;
+    v->ups_W_2_in_axes2_xy = ups_W_2_in_axes2_xy;
+    v->ups_bias_t = ups_bias_t;
+    v->ups_bias_in_axes2_z = ups_bias_in_axes2_z;
+}
+
+INLINE void stage_ups_A_V_X(size_t w, size_t j, const real *V, values_ups *v)
+{
+    /* (ups-S_ddot) acceleration of the connection point */
+    const real omega_y = V[4*w + j];
+    const real omega_z = V[5*w + j];
+    const real ups_S_ddot_x = v->ups_a_p_x + omega_y*v->ups_S_dot_t_3 -
+        omega_z*v->ups_S_dot_t_2;
+    const real omega_x = V[3*w + j];
+    const real ups_S_ddot_y = v->ups_a_p_y + omega_z*v->ups_S_dot_t -
+        omega_x*v->ups_S_dot_t_3;
+    const real ups_S_ddot_z = v->ups_a_p_z + omega_x*v->ups_S_dot_t_2 -
+        omega_y*v->ups_S_dot_t;
+    v->ups_S_ddot_x = ups_S_ddot_x;
+    v->ups_S_ddot_y = ups_S_ddot_y;
+    v->ups_S_ddot_z = ups_S_ddot_z;
+}
+
+INLINE void stage_ups_Z_dynamics(const prepared *m, size_t w, size_t i, size_t j, const real *V,
+    values_ups *v)
+{
+    /* (ups-u_1) centripetal acceleration of the connection point */
+    const real omega_y = V[4*w + j];
+    const real omega_z = V[5*w + j];
+    const real ups_u_1_x = omega_y*v->ups_S_dot_t_3 - omega_z*v->ups_S_dot_t_2;
+    const real omega_x = V[3*w + j];
+    const real ups_u_1_y = omega_z*v->ups_S_dot_t - omega_x*v->ups_S_dot_t_3;
+    const real ups_u_1_z = omega_x*v->ups_S_dot_t_2 - omega_y*v->ups_S_dot_t;
+    const real ups_u_1_in_axes2_z = v->axis_z_ups_axes2_x*ups_u_1_x +
+        v->axis_z_ups_axes2_y*ups_u_1_y + v->axis_z_ups_axes2_z*ups_u_1_z;
+    /* (ups-rel_o) remainder without the acceleration in: acceleration of the connection point left to
+       the joint accelerations */
+    const real ups_rel_o_in_axes2_z = ups_u_1_in_axes2_z - v->ups_bias_in_axes2_z;
+    /* (ups-qdd_1_o) remainder without the acceleration in: acceleration of joint 1 */
+    const real ups_qdd_1_o = v->inv_ups_root_1*ups_rel_o_in_axes2_z;
+    /* (ups-alpha_1_o) remainder without the acceleration in: angular acceleration of link 1 */
+    const real ups_alpha_1_o_in_axes2_x = v->ups_e_1_in_axes2_x*ups_qdd_1_o;
+    const real ups_alpha_1_o_in_axes2_y = -v->ups_c_2*ups_qdd_1_o;
+    /* (ups-alpha_2_o) remainder without the acceleration in: angular acceleration of link 2 */
+    const real ups_alpha_2_o_in_axes2_x = v->ups_W_2_in_axes2_yz + ups_alpha_1_o_in_axes2_x;
+    const real ups_alpha_2_o_in_axes2_y = ups_alpha_1_o_in_axes2_y - v->ups_W_2_in_axes2_xz;
+    /* (ups-B_2_o) remainder of the acceleration tensor of link 2 */
+    const real ups_B_2_o_t = v->axis_y_ups_axes2_x*ups_u_1_x;
+    const real ups_B_2_o_t_2 = v->axis_y_ups_axes2_y*ups_u_1_y;
+    const real ups_B_2_o_t_3 = v->axis_y_ups_axes2_z*ups_u_1_z;
+    const real ups_B_2_o_in_axes2_yx = v->inv_ups_q_3*(ups_B_2_o_t + ups_B_2_o_t_2 +
+        ups_B_2_o_t_3 - v->ups_bias_t*v->ups_qd_2);
+    const real ups_B_2_o_in_axes2_xy = 2*v->ups_W_2_in_axes2_xy - ups_B_2_o_in_axes2_yx;
+    const real ups_B_2_o_in_axes2_zx = v->ups_W_2_in_axes2_xz - ups_alpha_2_o_in_axes2_y;
+    const real ups_B_2_o_in_axes2_zy = v->ups_W_2_in_axes2_yz + ups_alpha_2_o_in_axes2_x;
+    /* (ups-acc_3_o) remainder without the acceleration in: acceleration of the reference point of
+       link 3, less gravity */
+    const real ups_acc_3_t = m->ups_acc_3_t[i];
+    const real ups_acc_3_t_2 = m->ups_acc_3_t_2[i];
+    const real ups_acc_3_o_t = ups_acc_3_t*v->ups_c_1 + ups_acc_3_t_2*v->ups_s_1;
+    const real ups_acc_3_t_3 = m->ups_acc_3_t_3[i];
+    const real ups_g_in_axes2_x = ups_acc_3_o_t*v->ups_c_2 +
+        ups_acc_3_t_3*v->ups_e_1_in_axes2_x;
+    const real ups_g_in_axes2_y = ups_acc_3_o_t*v->ups_e_1_in_axes2_x -
+        ups_acc_3_t_3*v->ups_c_2;
+    const real ups_acc_3_o_in_axes2_x = v->axis_x_ups_axes2_x*ups_u_1_x +
+        v->axis_x_ups_axes2_y*ups_u_1_y + v->axis_x_ups_axes2_z*ups_u_1_z - ups_g_in_axes2_x;
+    const real ups_acc_3_o_in_axes2_y = ups_B_2_o_t + ups_B_2_o_t_2 + ups_B_2_o_t_3 -
+        ups_g_in_axes2_y;
+    const real ups_acc_3_o_in_axes2_z = ups_u_1_in_axes2_z - v->ups_g_in_axes2_z;
+    /* (ups-phi_3_o) remainder without the acceleration in: inertia force of link 3 from its turning
+       about its reference point */
+    const real ups_phi_3_o_t = v->ups_omega_1_in_axes2_y*v->ups_omega_1_in_axes2_y;
+    const real ups_phi_3_o_t_2 = v->ups_qd_2*v->ups_qd_2;
+    const real ups_h_3_in_spec2_x = m->ups_h_3_in_spec2_x[i];
+    const real ups_h_3_in_spec2_y = m->ups_h_3_in_spec2_y[i];
+    const real ups_h_3_in_spec2_z = m->ups_h_3_in_spec2_z[i];
+    const real ups_phi_3_o_in_axes2_x = ups_alpha_1_o_in_axes2_y*ups_h_3_in_spec2_y +
+        ups_h_3_in_spec2_x*(-ups_phi_3_o_t - ups_phi_3_o_t_2) -
+        ups_B_2_o_in_axes2_xy*ups_h_3_in_spec2_z;
+    /* (ups-mu_2_o) remainder without the acceleration in: inertia moment of the links that turn with
+       link 2, about their reference points */
+    const real ups_mu_2_o_t = v->ups_omega_1_in_axes2_x*v->ups_omega_1_in_axes2_x;
+    const real ups_J_group_2_in_axes2_xy = m->ups_J_group_2_in_axes2_xy[i];
+    const real ups_J_group_2_in_axes2_xz = m->ups_J_group_2_in_axes2_xz[i];
+    const real ups_J_group_2_in_axes2_yz = m->ups_J_group_2_in_axes2_yz[i];
+    const real ups_Sigma_2_in_axes2_yy = m->ups_Sigma_2_in_axes2_yy[i];
+    const real ups_Sigma_2_in_axes2_zz = m->ups_Sigma_2_in_axes2_zz[i];
+    const real ups_h_2_in_spec2_y = m->ups_h_2_in_spec2_y[i];
+    const real ups_h_2_in_spec2_z = m->ups_h_2_in_spec2_z[i];
+    const real ups_mu_2_o_in_axes2_x = ups_B_2_o_in_axes2_yx*ups_J_group_2_in_axes2_xz +
+        ups_B_2_o_in_axes2_zy*ups_Sigma_2_in_axes2_yy +
+        ups_J_group_2_in_axes2_yz*(ups_phi_3_o_t - ups_phi_3_o_t_2) +
+        ups_Sigma_2_in_axes2_zz*ups_alpha_1_o_in_axes2_x + ups_g_in_axes2_y*ups_h_2_in_spec2_y
+        + v->ups_g_in_axes2_z*ups_h_2_in_spec2_z -
+        ups_B_2_o_in_axes2_zx*ups_J_group_2_in_axes2_xy -
+        ups_acc_3_o_in_axes2_y*ups_h_3_in_spec2_y - ups_acc_3_o_in_axes2_z*ups_h_3_in_spec2_z;
+    const real ups_Sigma_2_in_axes2_xx = m->ups_Sigma_2_in_axes2_xx[i];
+    const real ups_h_2_in_spec2_x = m->ups_h_2_in_spec2_x[i];
+    const real ups_mu_2_o_in_axes2_y = ups_B_2_o_in_axes2_zy*ups_J_group_2_in_axes2_xy +
+        ups_Sigma_2_in_axes2_zz*ups_alpha_1_o_in_axes2_y +
+        ups_acc_3_o_in_axes2_x*ups_h_3_in_spec2_y + v->ups_g_in_axes2_z*ups_h_2_in_spec2_x -
+        ups_B_2_o_in_axes2_xy*ups_J_group_2_in_axes2_yz -
+        ups_B_2_o_in_axes2_zx*ups_Sigma_2_in_axes2_xx -
+        ups_J_group_2_in_axes2_xz*(ups_mu_2_o_t - ups_phi_3_o_t_2) -
+        ups_acc_3_o_in_axes2_z*ups_h_3_in_spec2_x - ups_g_in_axes2_x*ups_h_2_in_spec2_y;
+    const real ups_mu_2_o_in_axes2_z = ups_B_2_o_in_axes2_yx*ups_Sigma_2_in_axes2_xx +
+        ups_J_group_2_in_axes2_xy*(ups_mu_2_o_t - ups_phi_3_o_t) +
+        ups_J_group_2_in_axes2_xz*ups_alpha_1_o_in_axes2_x +
+        ups_J_group_2_in_axes2_yz*ups_alpha_1_o_in_axes2_y +
+        ups_acc_3_o_in_axes2_x*ups_h_3_in_spec2_z + ups_acc_3_o_in_axes2_y*ups_h_3_in_spec2_x
+        - ups_B_2_o_in_axes2_xy*ups_Sigma_2_in_axes2_yy - ups_g_in_axes2_x*ups_h_2_in_spec2_z
+        - ups_g_in_axes2_y*ups_h_2_in_spec2_x;
+    /* (ups-c_o) remainder without the acceleration in: leg force on the platform without actuation
+       and without the mass at the connection point */
+    const real ups_c_o_in_axes2_y = ups_alpha_1_o_in_axes2_x*ups_h_3_in_spec2_y -
+        v->inv_ups_q_3*ups_mu_2_o_in_axes2_z - ups_B_2_o_in_axes2_yx*ups_h_3_in_spec2_x -
+        ups_h_3_in_spec2_z*(ups_mu_2_o_t + ups_phi_3_o_t_2);
+    const real ups_c_o_in_axes2_z = v->inv_ups_root_1*(v->ups_c_2*ups_mu_2_o_in_axes2_y -
+        v->ups_e_1_in_axes2_x*ups_mu_2_o_in_axes2_x) +
+        ups_B_2_o_in_axes2_zy*ups_h_3_in_spec2_z + ups_h_3_in_spec2_y*(ups_mu_2_o_t +
+        ups_phi_3_o_t) - ups_B_2_o_in_axes2_zx*ups_h_3_in_spec2_x;
+    /* (ups-U) velocity and gravity terms of the leg force */
+    const real ups_U_x = v->axis_x_ups_axes2_x*ups_phi_3_o_in_axes2_x -
+        v->axis_y_ups_axes2_x*ups_c_o_in_axes2_y - v->axis_z_ups_axes2_x*ups_c_o_in_axes2_z;
+    const real ups_U_y = v->axis_x_ups_axes2_y*ups_phi_3_o_in_axes2_x -
+        v->axis_y_ups_axes2_y*ups_c_o_in_axes2_y - v->axis_z_ups_axes2_y*ups_c_o_in_axes2_z;
+    const real ups_U_z = v->axis_x_ups_axes2_z*ups_phi_3_o_in_axes2_x -
+        v->axis_y_ups_axes2_z*ups_c_o_in_axes2_y - v->axis_z_ups_axes2_z*ups_c_o_in_axes2_z;
+    /* (Z_a) rotational part of Z */
+    const real ups_Z_a_t = ups_U_z*v->ups_q_y - ups_U_y*v->ups_q_z;
+    const real ups_Z_a_t_2 = ups_U_x*v->ups_q_z - ups_U_z*v->ups_q_x;
+    const real ups_Z_a_t_3 = ups_U_y*v->ups_q_x - ups_U_x*v->ups_q_y;
+    v->ups_U_x = ups_U_x;
+    v->ups_U_y = ups_U_y;
+    v->ups_U_z = ups_U_z;
+    v->ups_Z_a_t = ups_Z_a_t;
+    v->ups_Z_a_t_2 = ups_Z_a_t_2;
+    v->ups_Z_a_t_3 = ups_Z_a_t_3;
+}
+
+INLINE void stage_ups_inverse_kinematics_potential(const prepared *m, size_t w, size_t i, size_t
+    j, const real *s, const real *X, values_ups *v)
+{
+    /* (ups-S) from the base point to the connection point */
+    const real R_xx = s[0*w + j];
+    const real R_xy = s[1*w + j];
+    const real R_xz = s[2*w + j];
+    const real t_x = X[0*w + j];
+    const real ups_base_point_x = m->ups_base_point_x[i];
+    const real ups_platform_point_x = m->ups_platform_point_x[i];
+    const real ups_platform_point_y = m->ups_platform_point_y[i];
+    const real ups_platform_point_z = m->ups_platform_point_z[i];
+    const real ups_S_x = t_x + R_xx*ups_platform_point_x + R_xy*ups_platform_point_y +
+        R_xz*ups_platform_point_z - ups_base_point_x;
+    const real R_yx = s[3*w + j];
+    const real R_yy = s[4*w + j];
+    const real R_yz = s[5*w + j];
+    const real t_y = X[1*w + j];
+    const real ups_base_point_y = m->ups_base_point_y[i];
+    const real ups_S_y = t_y + R_yx*ups_platform_point_x + R_yy*ups_platform_point_y +
+        R_yz*ups_platform_point_z - ups_base_point_y;
+    const real R_zx = s[6*w + j];
+    const real R_zy = s[7*w + j];
+    const real R_zz = s[8*w + j];
+    const real t_z = X[2*w + j];
+    const real ups_base_point_z = m->ups_base_point_z[i];
+    const real ups_S_z = t_z + R_zx*ups_platform_point_x + R_zy*ups_platform_point_y +
+        R_zz*ups_platform_point_z - ups_base_point_z;
+    const real ups_base_frame_xx = m->ups_base_frame_xx[i];
+    const real ups_base_frame_yx = m->ups_base_frame_yx[i];
+    const real ups_base_frame_zx = m->ups_base_frame_zx[i];
+    const real ups_S_in_turn1_x = ups_S_x*ups_base_frame_xx + ups_S_y*ups_base_frame_yx +
+        ups_S_z*ups_base_frame_zx;
+    const real ups_base_frame_xy = m->ups_base_frame_xy[i];
+    const real ups_base_frame_yy = m->ups_base_frame_yy[i];
+    const real ups_base_frame_zy = m->ups_base_frame_zy[i];
+    const real ups_S_in_turn1_y = ups_S_x*ups_base_frame_xy + ups_S_y*ups_base_frame_yy +
+        ups_S_z*ups_base_frame_zy;
+    const real ups_base_frame_xz = m->ups_base_frame_xz[i];
+    const real ups_base_frame_yz = m->ups_base_frame_yz[i];
+    const real ups_base_frame_zz = m->ups_base_frame_zz[i];
+    const real ups_S_in_turn1_z = ups_S_x*ups_base_frame_xz + ups_S_y*ups_base_frame_yz +
+        ups_S_z*ups_base_frame_zz;
+    /* (ups-root_1) amplitude, the length across axis 1, with the sign of the branch */
+    const real ups_root_1_t = ups_S_in_turn1_x*ups_S_in_turn1_x +
+        ups_S_in_turn1_y*ups_S_in_turn1_y;
+    const real ups_branch_1 = m->ups_branch_1[i];
+    const real ups_root_1 = ups_branch_1*root(ups_root_1_t);
+    /* (ups-q_1) displacement of joint 1 */
+    const real inv_ups_root_1 = 1/ups_root_1;
+    /* (ups-q_3) displacement of joint 3 */
+    const real ups_q_3_t = ups_S_in_turn1_z*ups_S_in_turn1_z + ups_root_1_t;
+    const real ups_branch_2 = m->ups_branch_2[i];
+    const real ups_q_3 = ups_branch_2*root(ups_q_3_t);
+    /* (ups-q_2) displacement of joint 2 */
+    const real inv_ups_q_3 = 1/ups_q_3;
+    v->ups_S_in_turn1_x = ups_S_in_turn1_x;
+    v->ups_S_in_turn1_y = ups_S_in_turn1_y;
+    v->ups_S_in_turn1_z = ups_S_in_turn1_z;
+    v->ups_root_1_t = ups_root_1_t;
+    v->ups_root_1 = ups_root_1;
+    v->inv_ups_root_1 = inv_ups_root_1;
+    v->ups_q_3_t = ups_q_3_t;
+    v->ups_q_3 = ups_q_3;
+    v->inv_ups_q_3 = inv_ups_q_3;
+}
+
+INLINE void stage_ups_legs_required(const prepared *m, size_t i, values_ups *v)
+{
+    /* (ups-S_ddot) acceleration of the connection point */
+    const real ups_S_ddot_in_axes2_z = v->axis_z_ups_axes2_x*v->ups_S_ddot_x +
+        v->axis_z_ups_axes2_y*v->ups_S_ddot_y + v->axis_z_ups_axes2_z*v->ups_S_ddot_z;
+    /* (ups-rel) acceleration of the connection point left to the joint accelerations */
+    const real ups_rel_in_axes2_z = ups_S_ddot_in_axes2_z - v->ups_bias_in_axes2_z;
+    /* (ups-qdd_1) acceleration of joint 1 */
+    const real ups_qdd_1 = v->inv_ups_root_1*ups_rel_in_axes2_z;
+    /* (ups-alpha_1) angular acceleration of link 1 */
+    const real ups_alpha_1_in_axes2_x = v->ups_e_1_in_axes2_x*ups_qdd_1;
+    const real ups_alpha_1_in_axes2_y = -v->ups_c_2*ups_qdd_1;
+    /* (ups-alpha_2) angular acceleration of link 2 */
+    const real ups_alpha_2_in_axes2_x = v->ups_W_2_in_axes2_yz + ups_alpha_1_in_axes2_x;
+    const real ups_alpha_2_in_axes2_y = ups_alpha_1_in_axes2_y - v->ups_W_2_in_axes2_xz;
+    /* (ups-B_2) acceleration tensor of link 2 */
+    const real ups_B_2_t = v->axis_y_ups_axes2_x*v->ups_S_ddot_x;
+    const real ups_B_2_t_2 = v->axis_y_ups_axes2_y*v->ups_S_ddot_y;
+    const real ups_B_2_t_3 = v->axis_y_ups_axes2_z*v->ups_S_ddot_z;
+    const real ups_B_2_in_axes2_yx = v->inv_ups_q_3*(ups_B_2_t + ups_B_2_t_2 + ups_B_2_t_3 -
+        v->ups_bias_t*v->ups_qd_2);
+    const real ups_B_2_in_axes2_xy = 2*v->ups_W_2_in_axes2_xy - ups_B_2_in_axes2_yx;
+    const real ups_B_2_in_axes2_zx = v->ups_W_2_in_axes2_xz - ups_alpha_2_in_axes2_y;
+    const real ups_B_2_in_axes2_zy = v->ups_W_2_in_axes2_yz + ups_alpha_2_in_axes2_x;
+    /* (ups-acc_3) acceleration of the reference point of link 3, less gravity */
+    const real ups_acc_3_t = m->ups_acc_3_t[i];
+    const real ups_acc_3_t_2 = m->ups_acc_3_t_2[i];
+    const real ups_acc_3_t_4 = ups_acc_3_t*v->ups_c_1 + ups_acc_3_t_2*v->ups_s_1;
+    const real ups_acc_3_t_3 = m->ups_acc_3_t_3[i];
+    const real ups_g_in_axes2_x = ups_acc_3_t_3*v->ups_e_1_in_axes2_x +
+        ups_acc_3_t_4*v->ups_c_2;
+    const real ups_g_in_axes2_y = ups_acc_3_t_4*v->ups_e_1_in_axes2_x -
+        ups_acc_3_t_3*v->ups_c_2;
+    const real ups_acc_3_in_axes2_x = v->axis_x_ups_axes2_x*v->ups_S_ddot_x +
+        v->axis_x_ups_axes2_y*v->ups_S_ddot_y + v->axis_x_ups_axes2_z*v->ups_S_ddot_z -
+        ups_g_in_axes2_x;
+    const real ups_acc_3_in_axes2_y = ups_B_2_t + ups_B_2_t_2 + ups_B_2_t_3 -
+        ups_g_in_axes2_y;
+    const real ups_acc_3_in_axes2_z = ups_S_ddot_in_axes2_z - v->ups_g_in_axes2_z;
+    /* (ups-mu_2) inertia moment of the links that turn with link 2, about their reference points */
+    const real ups_mu_2_t = v->ups_omega_1_in_axes2_x*v->ups_omega_1_in_axes2_x;
+    v->ups_alpha_1_in_axes2_x = ups_alpha_1_in_axes2_x;
+    v->ups_alpha_1_in_axes2_y = ups_alpha_1_in_axes2_y;
+    v->ups_B_2_in_axes2_yx = ups_B_2_in_axes2_yx;
+    v->ups_B_2_in_axes2_xy = ups_B_2_in_axes2_xy;
+    v->ups_B_2_in_axes2_zx = ups_B_2_in_axes2_zx;
+    v->ups_B_2_in_axes2_zy = ups_B_2_in_axes2_zy;
+    v->ups_g_in_axes2_x = ups_g_in_axes2_x;
+    v->ups_g_in_axes2_y = ups_g_in_axes2_y;
+    v->ups_acc_3_in_axes2_x = ups_acc_3_in_axes2_x;
+    v->ups_acc_3_in_axes2_y = ups_acc_3_in_axes2_y;
+    v->ups_acc_3_in_axes2_z = ups_acc_3_in_axes2_z;
+    v->ups_mu_2_t = ups_mu_2_t;
+}
+
 /* ---- functions of the state: M, Z, H and the like ---- */
 
 /* ---- dynamics ---- */
@@ -1288,464 +1943,130 @@ INLINE void dynamics_before(const prepared *m, size_t w, const real *X, const re
     verdict *t)
 {
     for (size_t k = 0; k < w; ++k) {
-        /* X: named entries */
-        const real X_0 = X[0*w + k];
-        const real t_x = X_0;
-        const real X_1 = X[1*w + k];
-        const real t_y = X_1;
-        const real X_2 = X[2*w + k];
-        const real t_z = X_2;
-        const real X_3 = X[3*w + k];
-        const real X_4 = X[4*w + k];
-        const real X_5 = X[5*w + k];
-        const real X_6 = X[6*w + k];
-        const real quaternion_norm2 = X_3*X_3 + X_4*X_4 + X_5*X_5 + X_6*X_6;
-        const real quaternion_scale = 2/quaternion_norm2;
-        const real quaternion_sx = X_3*quaternion_scale;
-        const real quaternion_sy = X_4*quaternion_scale;
-        const real quaternion_sz = X_5*quaternion_scale;
-        const real quaternion_wx = X_6*quaternion_sx;
-        const real quaternion_wy = X_6*quaternion_sy;
-        const real quaternion_wz = X_6*quaternion_sz;
-        const real quaternion_xx = X_3*quaternion_sx;
-        const real quaternion_xy = X_3*quaternion_sy;
-        const real quaternion_xz = X_3*quaternion_sz;
-        const real quaternion_yy = X_4*quaternion_sy;
-        const real quaternion_yz = X_4*quaternion_sz;
-        const real quaternion_zz = X_5*quaternion_sz;
-        const real R_xx = 1 - quaternion_yy - quaternion_zz;
-        const real R_xy = quaternion_xy - quaternion_wz;
-        const real R_xz = quaternion_wy + quaternion_xz;
-        const real R_yx = quaternion_wz + quaternion_xy;
-        const real R_yy = 1 - quaternion_xx - quaternion_zz;
-        const real R_yz = quaternion_yz - quaternion_wx;
-        const real R_zx = quaternion_xz - quaternion_wy;
-        const real R_zy = quaternion_wx + quaternion_yz;
-        const real R_zz = 1 - quaternion_xx - quaternion_yy;
-        /* V: named entries */
-        const real V_0 = V[0*w + k];
-        const real t_dot_x = V_0;
-        const real V_1 = V[1*w + k];
-        const real t_dot_y = V_1;
-        const real V_2 = V[2*w + k];
-        const real t_dot_z = V_2;
-        const real V_3 = V[3*w + k];
-        const real omega_x = V_3;
-        const real V_4 = V[4*w + k];
-        const real omega_y = V_4;
-        const real V_5 = V[5*w + k];
-        const real omega_z = V_5;
-        /* (h_star) first moment about the platform origin */
-        const real h_star_in_platform_x = m->h_star_in_platform_x;
-        const real h_star_in_platform_y = m->h_star_in_platform_y;
-        const real h_star_in_platform_z = m->h_star_in_platform_z;
-        const real h_star_x = R_xx*h_star_in_platform_x + R_xy*h_star_in_platform_y +
-            R_xz*h_star_in_platform_z;
-        const real h_star_y = R_yx*h_star_in_platform_x + R_yy*h_star_in_platform_y +
-            R_yz*h_star_in_platform_z;
-        const real h_star_z = R_zx*h_star_in_platform_x + R_zy*h_star_in_platform_y +
-            R_zz*h_star_in_platform_z;
-        /* (J_star) inertia tensor about the platform origin */
-        const real J_star_in_platform_xy = m->J_star_in_platform_xy;
-        const real J_star_in_platform_yz = m->J_star_in_platform_yz;
-        const real J_star_t_12 = m->J_star_t_12;
-        const real J_star_t = J_star_in_platform_xy*R_xx + J_star_in_platform_yz*R_xz -
-            J_star_t_12*R_xy;
-        const real J_star_t_2 = J_star_in_platform_xy*R_yx + J_star_in_platform_yz*R_yz -
-            J_star_t_12*R_yy;
-        const real J_star_t_3 = J_star_in_platform_xy*R_zx + J_star_in_platform_yz*R_zz -
-            J_star_t_12*R_zy;
-        const real J_star_in_platform_xz = m->J_star_in_platform_xz;
-        const real J_star_t_14 = m->J_star_t_14;
-        const real J_star_t_4 = J_star_t_14*R_xz - J_star_in_platform_xz*R_xx;
-        const real J_star_t_5 = J_star_t_14*R_yz - J_star_in_platform_xz*R_yx;
-        const real J_star_t_6 = J_star_t_14*R_zz - J_star_in_platform_xz*R_zx;
-        const real J_star_t_7 = J_star_t*R_xy - J_star_t_4*R_xz;
-        const real J_star_in_platform_xx = m->J_star_in_platform_xx;
-        const real J_star_xx = J_star_in_platform_xx + 2*J_star_t_7;
-        const real J_star_xy = J_star_t*R_yy + J_star_t_2*R_xy - J_star_t_4*R_yz -
-            J_star_t_5*R_xz;
-        const real J_star_xz = J_star_t*R_zy + J_star_t_3*R_xy - J_star_t_4*R_zz -
-            J_star_t_6*R_xz;
-        const real J_star_t_8 = J_star_t_2*R_yy - J_star_t_5*R_yz;
-        const real J_star_yy = J_star_in_platform_xx + 2*J_star_t_8;
-        const real J_star_yz = J_star_t_2*R_zy + J_star_t_3*R_yy - J_star_t_5*R_zz -
-            J_star_t_6*R_yz;
-        const real J_star_t_9 = J_star_t_3*R_zy - J_star_t_6*R_zz;
-        const real J_star_zz = J_star_in_platform_xx + 2*J_star_t_9;
-        /* (Z_p) centripetal force and weight of the platform */
-        const real Z_p_t_4 = h_star_z*omega_y - h_star_y*omega_z;
-        const real Z_p_t_5 = h_star_x*omega_z - h_star_z*omega_x;
-        const real Z_p_t_6 = h_star_y*omega_x - h_star_x*omega_y;
-        const real Z_p_t = m->Z_p_t;
-        const real Z_p_x = Z_p_t_6*omega_y - Z_p_t - Z_p_t_5*omega_z;
-        const real Z_p_t_2 = m->Z_p_t_2;
-        const real Z_p_y = Z_p_t_4*omega_z - Z_p_t_2 - Z_p_t_6*omega_x;
-        const real Z_p_t_3 = m->Z_p_t_3;
-        const real Z_p_z = Z_p_t_5*omega_x - Z_p_t_3 - Z_p_t_4*omega_y;
-        /* (Z_q) gyroscopic moment and moment of the weight of the platform */
-        const real gravity_x = m->gravity_x;
-        const real gravity_y = m->gravity_y;
-        const real gravity_z = m->gravity_z;
-        const real g_in_platform_x = R_xx*gravity_x + R_yx*gravity_y + R_zx*gravity_z;
-        const real g_in_platform_y = R_xy*gravity_x + R_yy*gravity_y + R_zy*gravity_z;
-        const real g_in_platform_z = R_xz*gravity_x + R_yz*gravity_y + R_zz*gravity_z;
-        const real omega_in_platform_x = R_xx*omega_x + R_yx*omega_y + R_zx*omega_z;
-        const real omega_in_platform_y = R_xy*omega_x + R_yy*omega_y + R_zy*omega_z;
-        const real omega_in_platform_z = R_xz*omega_x + R_yz*omega_y + R_zz*omega_z;
-        const real Z_q_t = J_star_in_platform_xx*omega_in_platform_x +
-            J_star_in_platform_xy*omega_in_platform_y + J_star_in_platform_xz*omega_in_platform_z;
-        const real J_star_in_platform_yy = m->J_star_in_platform_yy;
-        const real Z_q_t_2 = J_star_in_platform_xy*omega_in_platform_x +
-            J_star_in_platform_yy*omega_in_platform_y + J_star_in_platform_yz*omega_in_platform_z;
-        const real J_star_in_platform_zz = m->J_star_in_platform_zz;
-        const real Z_q_t_3 = J_star_in_platform_xz*omega_in_platform_x +
-            J_star_in_platform_yz*omega_in_platform_y + J_star_in_platform_zz*omega_in_platform_z;
-        const real Z_q_in_platform_x = Z_q_t_3*omega_in_platform_y +
-            g_in_platform_y*h_star_in_platform_z - Z_q_t_2*omega_in_platform_z -
-            g_in_platform_z*h_star_in_platform_y;
-        const real Z_q_in_platform_y = Z_q_t*omega_in_platform_z +
-            g_in_platform_z*h_star_in_platform_x - Z_q_t_3*omega_in_platform_x -
-            g_in_platform_x*h_star_in_platform_z;
-        const real Z_q_in_platform_z = Z_q_t_2*omega_in_platform_x +
-            g_in_platform_x*h_star_in_platform_y - Z_q_t*omega_in_platform_y -
-            g_in_platform_y*h_star_in_platform_x;
-        const real Z_q_x = R_xx*Z_q_in_platform_x + R_xy*Z_q_in_platform_y +
-            R_xz*Z_q_in_platform_z;
-        const real Z_q_y = R_yx*Z_q_in_platform_x + R_yy*Z_q_in_platform_y +
-            R_yz*Z_q_in_platform_z;
-        const real Z_q_z = R_zx*Z_q_in_platform_x + R_zy*Z_q_in_platform_y +
-            R_zz*Z_q_in_platform_z;
-        s[0*w + k] = t_x;
-        s[1*w + k] = t_y;
-        s[2*w + k] = t_z;
-        s[3*w + k] = R_xx;
-        s[4*w + k] = R_xy;
-        s[5*w + k] = R_xz;
-        s[6*w + k] = R_yx;
-        s[7*w + k] = R_yy;
-        s[8*w + k] = R_yz;
-        s[9*w + k] = R_zx;
-        s[10*w + k] = R_zy;
-        s[11*w + k] = R_zz;
-        s[12*w + k] = t_dot_x;
-        s[13*w + k] = t_dot_y;
-        s[14*w + k] = t_dot_z;
-        s[15*w + k] = omega_x;
-        s[16*w + k] = omega_y;
-        s[17*w + k] = omega_z;
-        s[18*w + k] = h_star_x;
-        s[19*w + k] = h_star_y;
-        s[20*w + k] = h_star_z;
-        s[21*w + k] = J_star_xx;
-        s[22*w + k] = J_star_xy;
-        s[23*w + k] = J_star_xz;
-        s[24*w + k] = J_star_yy;
-        s[25*w + k] = J_star_yz;
-        s[26*w + k] = J_star_zz;
-        s[27*w + k] = Z_p_x;
-        s[28*w + k] = Z_p_y;
-        s[29*w + k] = Z_p_z;
-        s[30*w + k] = Z_q_x;
-        s[31*w + k] = Z_q_y;
-        s[32*w + k] = Z_q_z;
-        t->invalid[k] += UNLESS(is_finite(quaternion_scale)) + UNLESS(quaternion_scale > 0);
+        values v;
+        stage_X(m, w, k, X, &v);
+        stage_V_X(w, k, V, &v);
+        stage_M_dynamics(m, &v);
+        stage_Z_dynamics(m, w, k, V, &v);
+        s[0*w + k] = v.R_xx;
+        s[1*w + k] = v.R_xy;
+        s[2*w + k] = v.R_xz;
+        s[3*w + k] = v.R_yx;
+        s[4*w + k] = v.R_yy;
+        s[5*w + k] = v.R_yz;
+        s[6*w + k] = v.R_zx;
+        s[7*w + k] = v.R_zy;
+        s[8*w + k] = v.R_zz;
+        s[9*w + k] = v.h_star_x;
+        s[10*w + k] = v.h_star_y;
+        s[11*w + k] = v.h_star_z;
+        s[12*w + k] = v.J_star_xx;
+        s[13*w + k] = v.J_star_xy;
+        s[14*w + k] = v.J_star_xz;
+        s[15*w + k] = v.J_star_yy;
+        s[16*w + k] = v.J_star_yz;
+        s[17*w + k] = v.J_star_zz;
+        s[18*w + k] = v.Z_p_x;
+        s[19*w + k] = v.Z_p_y;
+        s[20*w + k] = v.Z_p_z;
+        s[21*w + k] = v.Z_q_x;
+        s[22*w + k] = v.Z_q_y;
+        s[23*w + k] = v.Z_q_z;
+        t->invalid[k] += UNLESS(is_finite(v.quaternion_scale)) + UNLESS(v.quaternion_scale > 0);
     }
 }
 
 INLINE void dynamics_legs_ups(const prepared *m, size_t w, size_t leg, size_t legs, const real *s,
-    size_t states, size_t count, int add, real *terms, real *o)
+    size_t states, size_t count, int add, const real *X, const real *V, real *terms, real *o)
 {
     for (size_t k = 0; k < count; ++k) {
         const size_t i = leg + legs*k;
         const size_t j = states*k;
-        /* (ups-S) from the base point to the connection point */
-        const real R_xx = s[3*w + j];
-        const real R_xy = s[4*w + j];
-        const real R_xz = s[5*w + j];
-        const real ups_platform_point_x = m->ups_platform_point_x[i];
-        const real ups_platform_point_y = m->ups_platform_point_y[i];
-        const real ups_platform_point_z = m->ups_platform_point_z[i];
-        const real ups_q_x = R_xx*ups_platform_point_x + R_xy*ups_platform_point_y +
-            R_xz*ups_platform_point_z;
-        const real R_yx = s[6*w + j];
-        const real R_yy = s[7*w + j];
-        const real R_yz = s[8*w + j];
-        const real ups_q_y = R_yx*ups_platform_point_x + R_yy*ups_platform_point_y +
-            R_yz*ups_platform_point_z;
-        const real R_zx = s[9*w + j];
-        const real R_zy = s[10*w + j];
-        const real R_zz = s[11*w + j];
-        const real ups_q_z = R_zx*ups_platform_point_x + R_zy*ups_platform_point_y +
-            R_zz*ups_platform_point_z;
-        const real t_x = s[0*w + j];
-        const real ups_base_point_x = m->ups_base_point_x[i];
-        const real ups_S_x = t_x + ups_q_x - ups_base_point_x;
-        const real t_y = s[1*w + j];
-        const real ups_base_point_y = m->ups_base_point_y[i];
-        const real ups_S_y = t_y + ups_q_y - ups_base_point_y;
-        const real t_z = s[2*w + j];
-        const real ups_base_point_z = m->ups_base_point_z[i];
-        const real ups_S_z = t_z + ups_q_z - ups_base_point_z;
-        /* (ups-px_1) component along the reference direction */
-        const real ups_base_frame_xx = m->ups_base_frame_xx[i];
-        const real ups_base_frame_yx = m->ups_base_frame_yx[i];
-        const real ups_base_frame_zx = m->ups_base_frame_zx[i];
-        const real ups_px_1 = ups_S_x*ups_base_frame_xx + ups_S_y*ups_base_frame_yx +
-            ups_S_z*ups_base_frame_zx;
-        /* (ups-py_1) component across the reference direction */
-        const real ups_base_frame_xy = m->ups_base_frame_xy[i];
-        const real ups_base_frame_yy = m->ups_base_frame_yy[i];
-        const real ups_base_frame_zy = m->ups_base_frame_zy[i];
-        const real ups_py_1 = ups_S_x*ups_base_frame_xy + ups_S_y*ups_base_frame_yy +
-            ups_S_z*ups_base_frame_zy;
-        /* (ups-rho2_1) squared amplitude */
-        const real ups_rho2_1 = ups_px_1*ups_px_1 + ups_py_1*ups_py_1;
-        /* (ups-root_1) amplitude, with the sign of the branch */
-        const real ups_branch_1 = m->ups_branch_1[i];
-        const real ups_root_1 = ups_branch_1*root(ups_rho2_1);
-        /* (ups-c_1) cosine of the angle of joint 1 from its reference direction */
-        const real inv_ups_root_1 = 1/ups_root_1;
-        const real ups_c_1 = -inv_ups_root_1*ups_py_1;
-        /* (ups-s_1) sine of the angle of joint 1 from its reference direction */
-        const real ups_s_1 = inv_ups_root_1*ups_px_1;
-        /* (ups-xi_1) the vector from joint 1 to the connection point, resolved along link 1 */
-        const real ups_base_frame_xz = m->ups_base_frame_xz[i];
-        const real ups_base_frame_yz = m->ups_base_frame_yz[i];
-        const real ups_base_frame_zz = m->ups_base_frame_zz[i];
-        const real ups_xi_1_in_axes1_z = ups_S_x*ups_base_frame_xz + ups_S_y*ups_base_frame_yz +
-            ups_S_z*ups_base_frame_zz;
-        /* (ups-rho2_2) squared amplitude */
-        const real ups_rho2_2 = ups_rho2_1 + ups_xi_1_in_axes1_z*ups_xi_1_in_axes1_z;
-        /* (ups-root_2) amplitude, with the sign of the branch */
-        const real ups_branch_2 = m->ups_branch_2[i];
-        const real ups_root_2 = ups_branch_2*root(ups_rho2_2);
-        /* (ups-c_2) cosine of the angle of joint 2 from its reference direction */
-        const real inv_ups_root_2 = 1/ups_root_2;
-        const real ups_c_2 = -inv_ups_root_2*ups_root_1;
-        /* (ups-s_2) sine of the angle of joint 2 from its reference direction */
-        const real ups_s_2 = inv_ups_root_2*ups_xi_1_in_axes1_z;
-        /* (ups-S_dot) velocity of the connection point */
-        const real axis_x_ups_axes2_x = inv_ups_root_2*ups_S_x;
-        const real axis_x_ups_axes2_y = inv_ups_root_2*ups_S_y;
-        const real axis_x_ups_axes2_z = inv_ups_root_2*ups_S_z;
-        const real omega_y = s[16*w + j];
-        const real omega_z = s[17*w + j];
-        const real ups_S_dot_t = omega_y*ups_q_z - omega_z*ups_q_y;
-        const real omega_x = s[15*w + j];
-        const real ups_S_dot_t_2 = omega_z*ups_q_x - omega_x*ups_q_z;
-        const real ups_S_dot_t_3 = omega_x*ups_q_y - omega_y*ups_q_x;
-        const real t_dot_x = s[12*w + j];
-        const real ups_S_dot_x = t_dot_x + ups_S_dot_t;
-        const real t_dot_y = s[13*w + j];
-        const real ups_S_dot_y = t_dot_y + ups_S_dot_t_2;
-        const real t_dot_z = s[14*w + j];
-        const real ups_S_dot_z = t_dot_z + ups_S_dot_t_3;
-        const real ups_S_dot_in_axes2_x = axis_x_ups_axes2_x*ups_S_dot_x +
-            axis_x_ups_axes2_y*ups_S_dot_y + axis_x_ups_axes2_z*ups_S_dot_z;
-        /* (ups-qd_1) rate of joint 1 */
-        const real axis_z_ups_axes2_x = ups_base_frame_xx*ups_c_1 + ups_base_frame_xy*ups_s_1;
-        const real axis_z_ups_axes2_y = ups_base_frame_yx*ups_c_1 + ups_base_frame_yy*ups_s_1;
-        const real axis_z_ups_axes2_z = ups_base_frame_zx*ups_c_1 + ups_base_frame_zy*ups_s_1;
-        const real ups_qd_1 = inv_ups_root_1*(axis_z_ups_axes2_x*ups_S_dot_x +
-            axis_z_ups_axes2_y*ups_S_dot_y + axis_z_ups_axes2_z*ups_S_dot_z);
-        /* (ups-qd_2) rate of joint 2 */
-        const real axis_y_ups_axes2_x = axis_x_ups_axes2_z*axis_z_ups_axes2_y -
-            axis_x_ups_axes2_y*axis_z_ups_axes2_z;
-        const real axis_y_ups_axes2_y = axis_x_ups_axes2_x*axis_z_ups_axes2_z -
-            axis_x_ups_axes2_z*axis_z_ups_axes2_x;
-        const real axis_y_ups_axes2_z = axis_x_ups_axes2_y*axis_z_ups_axes2_x -
-            axis_x_ups_axes2_x*axis_z_ups_axes2_y;
-        const real ups_qd_2 = inv_ups_root_2*(axis_y_ups_axes2_x*ups_S_dot_x +
-            axis_y_ups_axes2_y*ups_S_dot_y + axis_y_ups_axes2_z*ups_S_dot_z);
-        /* (ups-omega_1) angular velocity of link 1 */
-        const real ups_omega_1_in_axes2_x = ups_qd_1*ups_s_2;
-        const real ups_omega_1_in_axes2_y = ups_c_2*ups_qd_1;
-        /* (ups-W_2) centripetal tensor of link 2 */
-        const real ups_W_2_in_axes2_yz = ups_omega_1_in_axes2_y*ups_qd_2;
-        const real ups_W_2_in_axes2_xz = ups_omega_1_in_axes2_x*ups_qd_2;
-        const real ups_W_2_in_axes2_xy = ups_omega_1_in_axes2_x*ups_omega_1_in_axes2_y;
-        /* (ups-u_1) centripetal acceleration of the connection point */
-        const real ups_u_1_x = omega_y*ups_S_dot_t_3 - omega_z*ups_S_dot_t_2;
-        const real ups_u_1_y = omega_z*ups_S_dot_t - omega_x*ups_S_dot_t_3;
-        const real ups_u_1_z = omega_x*ups_S_dot_t_2 - omega_y*ups_S_dot_t;
-        const real ups_u_1_in_axes2_z = axis_z_ups_axes2_x*ups_u_1_x +
-            axis_z_ups_axes2_y*ups_u_1_y + axis_z_ups_axes2_z*ups_u_1_z;
-        /* (ups-bias) acceleration of the connection point at zero joint accelerations */
-        const real ups_bias_t = 2*ups_S_dot_in_axes2_x;
-        const real ups_bias_in_axes2_z = 2*ups_W_2_in_axes2_xz*ups_root_2 -
-            ups_bias_t*ups_omega_1_in_axes2_y;
-        /* (ups-rel_o) remainder without the acceleration in: acceleration of the connection point left to
-           the joint accelerations */
-        const real ups_rel_o_in_axes2_z = ups_u_1_in_axes2_z - ups_bias_in_axes2_z;
-        /* (ups-qdd_1_o) remainder without the acceleration in: acceleration of joint 1 */
-        const real ups_qdd_1_o = inv_ups_root_1*ups_rel_o_in_axes2_z;
+        values_ups v;
+        stage_ups_X(m, w, i, j, s, X, &v);
+        stage_ups_V_X(w, j, V, &v);
+        stage_ups_Z_dynamics(m, w, i, j, V, &v);
         /* (ups-d_alpha_1) coefficient of the acceleration in: angular acceleration of link 1 */
-        const real ups_d_alpha_1_in_axes2_xz = inv_ups_root_1*ups_s_2;
-        /* (ups-alpha_1_o) remainder without the acceleration in: angular acceleration of link 1 */
-        const real ups_alpha_1_o_in_axes2_x = ups_qdd_1_o*ups_s_2;
-        const real ups_alpha_1_o_in_axes2_y = ups_c_2*ups_qdd_1_o;
-        /* (ups-alpha_2_o) remainder without the acceleration in: angular acceleration of link 2 */
-        const real ups_alpha_2_o_in_axes2_x = ups_W_2_in_axes2_yz + ups_alpha_1_o_in_axes2_x;
-        const real ups_alpha_2_o_in_axes2_y = ups_alpha_1_o_in_axes2_y - ups_W_2_in_axes2_xz;
-        /* (ups-B_2_o) remainder of the acceleration tensor of link 2 */
-        const real ups_B_2_o_t = axis_y_ups_axes2_x*ups_u_1_x;
-        const real ups_B_2_o_t_2 = axis_y_ups_axes2_y*ups_u_1_y;
-        const real ups_B_2_o_t_3 = axis_y_ups_axes2_z*ups_u_1_z;
-        const real ups_B_2_o_in_axes2_yx = inv_ups_root_2*(ups_B_2_o_t + ups_B_2_o_t_2 +
-            ups_B_2_o_t_3 - ups_bias_t*ups_qd_2);
-        const real ups_B_2_o_in_axes2_xy = 2*ups_W_2_in_axes2_xy - ups_B_2_o_in_axes2_yx;
-        const real ups_B_2_o_in_axes2_zx = ups_W_2_in_axes2_xz - ups_alpha_2_o_in_axes2_y;
-        const real ups_B_2_o_in_axes2_zy = ups_W_2_in_axes2_yz + ups_alpha_2_o_in_axes2_x;
-        /* (ups-acc_3_o) remainder without the acceleration in: acceleration of the reference point of
-           link 3, less gravity */
-        const real ups_acc_3_t = m->ups_acc_3_t[i];
-        const real ups_acc_3_t_2 = m->ups_acc_3_t_2[i];
-        const real ups_g_in_axes2_z = ups_acc_3_t*ups_c_1 + ups_acc_3_t_2*ups_s_1;
-        const real ups_acc_3_o_t = ups_acc_3_t_2*ups_c_1 - ups_acc_3_t*ups_s_1;
-        const real ups_acc_3_t_3 = m->ups_acc_3_t_3[i];
-        const real ups_g_in_axes2_x = ups_acc_3_o_t*ups_c_2 + ups_acc_3_t_3*ups_s_2;
-        const real ups_g_in_axes2_y = ups_acc_3_t_3*ups_c_2 - ups_acc_3_o_t*ups_s_2;
-        const real ups_acc_3_o_in_axes2_x = axis_x_ups_axes2_x*ups_u_1_x +
-            axis_x_ups_axes2_y*ups_u_1_y + axis_x_ups_axes2_z*ups_u_1_z - ups_g_in_axes2_x;
-        const real ups_acc_3_o_in_axes2_y = ups_B_2_o_t + ups_B_2_o_t_2 + ups_B_2_o_t_3 -
-            ups_g_in_axes2_y;
-        const real ups_acc_3_o_in_axes2_z = ups_u_1_in_axes2_z - ups_g_in_axes2_z;
+        const real ups_d_alpha_1_in_axes2_xz = v.inv_ups_root_1*v.ups_e_1_in_axes2_x;
         /* (ups-d_phi_3) coefficient of the acceleration in: inertia force of link 3 from its turning
            about its reference point */
         const real ups_h_3_in_spec2_z = m->ups_h_3_in_spec2_z[i];
-        const real ups_d_phi_3_in_axes2_xy = inv_ups_root_2*ups_h_3_in_spec2_z;
+        const real ups_d_phi_3_in_axes2_xy = v.inv_ups_q_3*ups_h_3_in_spec2_z;
         const real ups_h_3_in_spec2_x = m->ups_h_3_in_spec2_x[i];
-        const real ups_d_phi_3_in_axes2_yy = inv_ups_root_2*ups_h_3_in_spec2_x;
-        /* (ups-phi_3_o) remainder without the acceleration in: inertia force of link 3 from its turning
-           about its reference point */
-        const real ups_phi_3_o_t = ups_omega_1_in_axes2_y*ups_omega_1_in_axes2_y;
-        const real ups_phi_3_o_t_2 = ups_qd_2*ups_qd_2;
-        const real ups_h_3_in_spec2_y = m->ups_h_3_in_spec2_y[i];
-        const real ups_phi_3_o_in_axes2_x = ups_alpha_1_o_in_axes2_y*ups_h_3_in_spec2_y +
-            ups_h_3_in_spec2_x*(-ups_phi_3_o_t - ups_phi_3_o_t_2) -
-            ups_B_2_o_in_axes2_xy*ups_h_3_in_spec2_z;
-        /* (ups-mu_2_o) remainder without the acceleration in: inertia moment of the links that turn with
-           link 2, about their reference points */
-        const real ups_mu_2_o_t = ups_omega_1_in_axes2_x*ups_omega_1_in_axes2_x;
-        const real ups_J_group_2_in_axes2_xy = m->ups_J_group_2_in_axes2_xy[i];
-        const real ups_J_group_2_in_axes2_xz = m->ups_J_group_2_in_axes2_xz[i];
-        const real ups_J_group_2_in_axes2_yz = m->ups_J_group_2_in_axes2_yz[i];
-        const real ups_Sigma_2_in_axes2_yy = m->ups_Sigma_2_in_axes2_yy[i];
-        const real ups_Sigma_2_in_axes2_zz = m->ups_Sigma_2_in_axes2_zz[i];
-        const real ups_h_2_in_spec2_y = m->ups_h_2_in_spec2_y[i];
-        const real ups_h_2_in_spec2_z = m->ups_h_2_in_spec2_z[i];
-        const real ups_mu_2_o_in_axes2_x = ups_B_2_o_in_axes2_yx*ups_J_group_2_in_axes2_xz +
-            ups_B_2_o_in_axes2_zy*ups_Sigma_2_in_axes2_yy +
-            ups_J_group_2_in_axes2_yz*(ups_phi_3_o_t - ups_phi_3_o_t_2) +
-            ups_Sigma_2_in_axes2_zz*ups_alpha_1_o_in_axes2_x + ups_g_in_axes2_y*ups_h_2_in_spec2_y
-            + ups_g_in_axes2_z*ups_h_2_in_spec2_z -
-            ups_B_2_o_in_axes2_zx*ups_J_group_2_in_axes2_xy -
-            ups_acc_3_o_in_axes2_y*ups_h_3_in_spec2_y - ups_acc_3_o_in_axes2_z*ups_h_3_in_spec2_z;
-        const real ups_Sigma_2_in_axes2_xx = m->ups_Sigma_2_in_axes2_xx[i];
-        const real ups_h_2_in_spec2_x = m->ups_h_2_in_spec2_x[i];
-        const real ups_mu_2_o_in_axes2_y = ups_B_2_o_in_axes2_zy*ups_J_group_2_in_axes2_xy +
-            ups_Sigma_2_in_axes2_zz*ups_alpha_1_o_in_axes2_y +
-            ups_acc_3_o_in_axes2_x*ups_h_3_in_spec2_y + ups_g_in_axes2_z*ups_h_2_in_spec2_x -
-            ups_B_2_o_in_axes2_xy*ups_J_group_2_in_axes2_yz -
-            ups_B_2_o_in_axes2_zx*ups_Sigma_2_in_axes2_xx -
-            ups_J_group_2_in_axes2_xz*(ups_mu_2_o_t - ups_phi_3_o_t_2) -
-            ups_acc_3_o_in_axes2_z*ups_h_3_in_spec2_x - ups_g_in_axes2_x*ups_h_2_in_spec2_y;
-        const real ups_mu_2_o_in_axes2_z = ups_B_2_o_in_axes2_yx*ups_Sigma_2_in_axes2_xx +
-            ups_J_group_2_in_axes2_xy*(ups_mu_2_o_t - ups_phi_3_o_t) +
-            ups_J_group_2_in_axes2_xz*ups_alpha_1_o_in_axes2_x +
-            ups_J_group_2_in_axes2_yz*ups_alpha_1_o_in_axes2_y +
-            ups_acc_3_o_in_axes2_x*ups_h_3_in_spec2_z + ups_acc_3_o_in_axes2_y*ups_h_3_in_spec2_x
-            - ups_B_2_o_in_axes2_xy*ups_Sigma_2_in_axes2_yy - ups_g_in_axes2_x*ups_h_2_in_spec2_z
-            - ups_g_in_axes2_y*ups_h_2_in_spec2_x;
+        const real ups_d_phi_3_in_axes2_yy = v.inv_ups_q_3*ups_h_3_in_spec2_x;
         /* (ups-d_c) coefficient of the acceleration in: leg force on the platform without actuation and
            without the mass at the connection point */
-        const real ups_d_c_in_axes2_xz = inv_ups_root_2*ups_h_3_in_spec2_y;
+        const real ups_h_3_in_spec2_y = m->ups_h_3_in_spec2_y[i];
+        const real ups_d_c_in_axes2_xz = v.inv_ups_q_3*ups_h_3_in_spec2_y;
         const real ups_J_group_2_in_axes2_zz = m->ups_J_group_2_in_axes2_zz[i];
         const real ups_d_c_in_axes2_yy = -ups_d_phi_3_in_axes2_yy -
-            inv_ups_root_2*(ups_h_3_in_spec2_x + inv_ups_root_2*ups_J_group_2_in_axes2_zz);
+            v.inv_ups_q_3*(ups_h_3_in_spec2_x + v.inv_ups_q_3*ups_J_group_2_in_axes2_zz);
+        const real ups_J_group_2_in_axes2_xz = m->ups_J_group_2_in_axes2_xz[i];
+        const real ups_J_group_2_in_axes2_yz = m->ups_J_group_2_in_axes2_yz[i];
         const real ups_d_c_in_axes2_yz = ups_d_alpha_1_in_axes2_xz*ups_h_3_in_spec2_y -
-            inv_ups_root_2*(ups_J_group_2_in_axes2_xz*ups_d_alpha_1_in_axes2_xz -
-            inv_ups_root_2*ups_J_group_2_in_axes2_yz);
+            v.inv_ups_q_3*(ups_J_group_2_in_axes2_xz*ups_d_alpha_1_in_axes2_xz -
+            v.inv_ups_q_3*ups_J_group_2_in_axes2_yz);
         const real ups_J_group_2_in_axes2_xx = m->ups_J_group_2_in_axes2_xx[i];
+        const real ups_J_group_2_in_axes2_xy = m->ups_J_group_2_in_axes2_xy[i];
         const real ups_J_group_2_in_axes2_yy = m->ups_J_group_2_in_axes2_yy[i];
         const real ups_d_c_in_axes2_zz = ups_d_alpha_1_in_axes2_xz*ups_h_3_in_spec2_z -
             ups_d_phi_3_in_axes2_yy -
-            inv_ups_root_1*(ups_c_2*(ups_J_group_2_in_axes2_xy*ups_d_alpha_1_in_axes2_xz -
-            ups_h_3_in_spec2_x - inv_ups_root_2*ups_J_group_2_in_axes2_yy) +
-            ups_s_2*(ups_J_group_2_in_axes2_xx*ups_d_alpha_1_in_axes2_xz - ups_h_3_in_spec2_z -
-            inv_ups_root_2*ups_J_group_2_in_axes2_xy));
-        /* (ups-c_o) remainder without the acceleration in: leg force on the platform without actuation
-           and without the mass at the connection point */
-        const real ups_c_o_in_axes2_y = ups_alpha_1_o_in_axes2_x*ups_h_3_in_spec2_y -
-            inv_ups_root_2*ups_mu_2_o_in_axes2_z - ups_B_2_o_in_axes2_yx*ups_h_3_in_spec2_x -
-            ups_h_3_in_spec2_z*(ups_mu_2_o_t + ups_phi_3_o_t_2);
-        const real ups_c_o_in_axes2_z = ups_B_2_o_in_axes2_zy*ups_h_3_in_spec2_z +
-            ups_h_3_in_spec2_y*(ups_mu_2_o_t + ups_phi_3_o_t) -
-            inv_ups_root_1*(ups_c_2*ups_mu_2_o_in_axes2_y + ups_mu_2_o_in_axes2_x*ups_s_2) -
-            ups_B_2_o_in_axes2_zx*ups_h_3_in_spec2_x;
+            v.inv_ups_root_1*(v.ups_e_1_in_axes2_x*(ups_J_group_2_in_axes2_xx*ups_d_alpha_1_in_axes2_xz
+            - ups_h_3_in_spec2_z - v.inv_ups_q_3*ups_J_group_2_in_axes2_xy) -
+            v.ups_c_2*(ups_J_group_2_in_axes2_xy*ups_d_alpha_1_in_axes2_xz - ups_h_3_in_spec2_x -
+            v.inv_ups_q_3*ups_J_group_2_in_axes2_yy));
         /* (ups-Q) inertia of the leg at the connection point, without the mass gathered there */
         const real ups_Q_t = R(0.5)*ups_d_c_in_axes2_yy;
         const real ups_Q_t_2 = R(0.5)*ups_d_c_in_axes2_zz;
-        const real ups_Q_t_3 = axis_x_ups_axes2_x*ups_d_phi_3_in_axes2_xy -
-            axis_y_ups_axes2_x*ups_Q_t - axis_z_ups_axes2_x*ups_d_c_in_axes2_yz;
-        const real ups_Q_t_4 = axis_x_ups_axes2_y*ups_d_phi_3_in_axes2_xy -
-            axis_y_ups_axes2_y*ups_Q_t - axis_z_ups_axes2_y*ups_d_c_in_axes2_yz;
-        const real ups_Q_t_5 = axis_y_ups_axes2_z*ups_Q_t + axis_z_ups_axes2_z*ups_d_c_in_axes2_yz
-            - axis_x_ups_axes2_z*ups_d_phi_3_in_axes2_xy;
-        const real ups_Q_t_6 = axis_x_ups_axes2_x*ups_d_c_in_axes2_xz +
-            axis_z_ups_axes2_x*ups_Q_t_2;
-        const real ups_Q_t_7 = axis_x_ups_axes2_y*ups_d_c_in_axes2_xz +
-            axis_z_ups_axes2_y*ups_Q_t_2;
-        const real ups_Q_t_8 = axis_x_ups_axes2_z*ups_d_c_in_axes2_xz +
-            axis_z_ups_axes2_z*ups_Q_t_2;
-        const real ups_Q_t_9 = axis_z_ups_axes2_x*ups_Q_t_6 - axis_y_ups_axes2_x*ups_Q_t_3;
+        const real ups_Q_t_3 = v.axis_x_ups_axes2_x*ups_d_phi_3_in_axes2_xy -
+            v.axis_y_ups_axes2_x*ups_Q_t - v.axis_z_ups_axes2_x*ups_d_c_in_axes2_yz;
+        const real ups_Q_t_4 = v.axis_x_ups_axes2_y*ups_d_phi_3_in_axes2_xy -
+            v.axis_y_ups_axes2_y*ups_Q_t - v.axis_z_ups_axes2_y*ups_d_c_in_axes2_yz;
+        const real ups_Q_t_5 = v.axis_y_ups_axes2_z*ups_Q_t +
+            v.axis_z_ups_axes2_z*ups_d_c_in_axes2_yz -
+            v.axis_x_ups_axes2_z*ups_d_phi_3_in_axes2_xy;
+        const real ups_Q_t_6 = v.axis_x_ups_axes2_x*ups_d_c_in_axes2_xz +
+            v.axis_z_ups_axes2_x*ups_Q_t_2;
+        const real ups_Q_t_7 = v.axis_x_ups_axes2_y*ups_d_c_in_axes2_xz +
+            v.axis_z_ups_axes2_y*ups_Q_t_2;
+        const real ups_Q_t_8 = v.axis_x_ups_axes2_z*ups_d_c_in_axes2_xz +
+            v.axis_z_ups_axes2_z*ups_Q_t_2;
+        const real ups_Q_t_9 = v.axis_z_ups_axes2_x*ups_Q_t_6 - v.axis_y_ups_axes2_x*ups_Q_t_3;
         const real ups_Q_xx = -2*ups_Q_t_9;
-        const real ups_Q_xy = axis_y_ups_axes2_x*ups_Q_t_4 + axis_y_ups_axes2_y*ups_Q_t_3 -
-            axis_z_ups_axes2_x*ups_Q_t_7 - axis_z_ups_axes2_y*ups_Q_t_6;
-        const real ups_Q_xz = axis_y_ups_axes2_z*ups_Q_t_3 - axis_y_ups_axes2_x*ups_Q_t_5 -
-            axis_z_ups_axes2_x*ups_Q_t_8 - axis_z_ups_axes2_z*ups_Q_t_6;
-        const real ups_Q_t_10 = axis_z_ups_axes2_y*ups_Q_t_7 - axis_y_ups_axes2_y*ups_Q_t_4;
+        const real ups_Q_xy = v.axis_y_ups_axes2_x*ups_Q_t_4 + v.axis_y_ups_axes2_y*ups_Q_t_3 -
+            v.axis_z_ups_axes2_x*ups_Q_t_7 - v.axis_z_ups_axes2_y*ups_Q_t_6;
+        const real ups_Q_xz = v.axis_y_ups_axes2_z*ups_Q_t_3 - v.axis_y_ups_axes2_x*ups_Q_t_5 -
+            v.axis_z_ups_axes2_x*ups_Q_t_8 - v.axis_z_ups_axes2_z*ups_Q_t_6;
+        const real ups_Q_t_10 = v.axis_z_ups_axes2_y*ups_Q_t_7 - v.axis_y_ups_axes2_y*ups_Q_t_4;
         const real ups_Q_yy = -2*ups_Q_t_10;
-        const real ups_Q_yz = axis_y_ups_axes2_z*ups_Q_t_4 - axis_y_ups_axes2_y*ups_Q_t_5 -
-            axis_z_ups_axes2_y*ups_Q_t_8 - axis_z_ups_axes2_z*ups_Q_t_7;
-        const real ups_Q_t_11 = axis_y_ups_axes2_z*ups_Q_t_5 + axis_z_ups_axes2_z*ups_Q_t_8;
+        const real ups_Q_yz = v.axis_y_ups_axes2_z*ups_Q_t_4 - v.axis_y_ups_axes2_y*ups_Q_t_5 -
+            v.axis_z_ups_axes2_y*ups_Q_t_8 - v.axis_z_ups_axes2_z*ups_Q_t_7;
+        const real ups_Q_t_11 = v.axis_y_ups_axes2_z*ups_Q_t_5 + v.axis_z_ups_axes2_z*ups_Q_t_8;
         const real ups_Q_zz = -2*ups_Q_t_11;
-        /* (ups-U) velocity and gravity terms of the leg force */
-        const real ups_U_x = axis_x_ups_axes2_x*ups_phi_3_o_in_axes2_x -
-            axis_y_ups_axes2_x*ups_c_o_in_axes2_y - axis_z_ups_axes2_x*ups_c_o_in_axes2_z;
-        const real ups_U_y = axis_x_ups_axes2_y*ups_phi_3_o_in_axes2_x -
-            axis_y_ups_axes2_y*ups_c_o_in_axes2_y - axis_z_ups_axes2_y*ups_c_o_in_axes2_z;
-        const real ups_U_z = axis_x_ups_axes2_z*ups_phi_3_o_in_axes2_x -
-            axis_y_ups_axes2_z*ups_c_o_in_axes2_y - axis_z_ups_axes2_z*ups_c_o_in_axes2_z;
         /* (M_ta) coupling block of M */
-        const real ups_M_ta_t = -ups_Q_xy*ups_q_z;
-        const real ups_M_ta_t_2 = ups_Q_xz*ups_q_y;
+        const real ups_M_ta_t = -ups_Q_xy*v.ups_q_z;
+        const real ups_M_ta_t_2 = ups_Q_xz*v.ups_q_y;
         const real ups_M_ta_t_3 = ups_M_ta_t + ups_M_ta_t_2;
-        const real ups_M_ta_t_4 = ups_Q_xx*ups_q_z - ups_Q_xz*ups_q_x;
-        const real ups_M_ta_t_5 = ups_Q_xy*ups_q_x - ups_Q_xx*ups_q_y;
-        const real ups_M_ta_t_6 = ups_Q_yz*ups_q_y - ups_Q_yy*ups_q_z;
-        const real ups_M_ta_t_7 = ups_Q_yz*ups_q_x;
+        const real ups_M_ta_t_4 = ups_Q_xx*v.ups_q_z - ups_Q_xz*v.ups_q_x;
+        const real ups_M_ta_t_5 = ups_Q_xy*v.ups_q_x - ups_Q_xx*v.ups_q_y;
+        const real ups_M_ta_t_6 = ups_Q_yz*v.ups_q_y - ups_Q_yy*v.ups_q_z;
+        const real ups_M_ta_t_7 = ups_Q_yz*v.ups_q_x;
         const real ups_M_ta_t_8 = ups_M_ta_t + ups_M_ta_t_7;
-        const real ups_M_ta_t_9 = ups_Q_yy*ups_q_x - ups_Q_xy*ups_q_y;
-        const real ups_M_ta_t_10 = ups_Q_zz*ups_q_y - ups_Q_yz*ups_q_z;
-        const real ups_M_ta_t_11 = ups_Q_xz*ups_q_z - ups_Q_zz*ups_q_x;
+        const real ups_M_ta_t_9 = ups_Q_yy*v.ups_q_x - ups_Q_xy*v.ups_q_y;
+        const real ups_M_ta_t_10 = ups_Q_zz*v.ups_q_y - ups_Q_yz*v.ups_q_z;
+        const real ups_M_ta_t_11 = ups_Q_xz*v.ups_q_z - ups_Q_zz*v.ups_q_x;
         const real ups_M_ta_t_12 = ups_M_ta_t_7 - ups_M_ta_t_2;
         /* (M_aa) rotational block of M */
-        const real ups_M_aa_t = ups_M_ta_t_10*ups_q_y - ups_M_ta_t_6*ups_q_z;
-        const real ups_M_aa_t_2 = ups_M_ta_t_11*ups_q_y + ups_M_ta_t_8*ups_q_z;
-        const real ups_M_aa_t_3 = ups_M_ta_t_12*ups_q_y - ups_M_ta_t_9*ups_q_z;
-        const real ups_M_aa_t_4 = ups_M_ta_t_4*ups_q_z - ups_M_ta_t_11*ups_q_x;
-        const real ups_M_aa_t_5 = ups_M_ta_t_5*ups_q_z - ups_M_ta_t_12*ups_q_x;
-        const real ups_M_aa_t_6 = ups_M_ta_t_9*ups_q_x - ups_M_ta_t_5*ups_q_y;
-        /* (Z_a) rotational part of Z */
-        const real ups_Z_a_t = ups_U_z*ups_q_y - ups_U_y*ups_q_z;
-        const real ups_Z_a_t_2 = ups_U_x*ups_q_z - ups_U_z*ups_q_x;
-        const real ups_Z_a_t_3 = ups_U_y*ups_q_x - ups_U_x*ups_q_y;
+        const real ups_M_aa_t = ups_M_ta_t_10*v.ups_q_y - ups_M_ta_t_6*v.ups_q_z;
+        const real ups_M_aa_t_2 = ups_M_ta_t_11*v.ups_q_y + ups_M_ta_t_8*v.ups_q_z;
+        const real ups_M_aa_t_3 = ups_M_ta_t_12*v.ups_q_y - ups_M_ta_t_9*v.ups_q_z;
+        const real ups_M_aa_t_4 = ups_M_ta_t_4*v.ups_q_z - ups_M_ta_t_11*v.ups_q_x;
+        const real ups_M_aa_t_5 = ups_M_ta_t_5*v.ups_q_z - ups_M_ta_t_12*v.ups_q_x;
+        const real ups_M_aa_t_6 = ups_M_ta_t_9*v.ups_q_x - ups_M_ta_t_5*v.ups_q_y;
         /* (ups-H_a_3) moment of the column's unit force about the platform origin */
-        const real ups_H_a_3_x = axis_x_ups_axes2_z*ups_q_y - axis_x_ups_axes2_y*ups_q_z;
-        const real ups_H_a_3_y = axis_x_ups_axes2_x*ups_q_z - axis_x_ups_axes2_z*ups_q_x;
-        const real ups_H_a_3_z = axis_x_ups_axes2_y*ups_q_x - axis_x_ups_axes2_x*ups_q_y;
+        const real ups_H_a_3_x = v.axis_x_ups_axes2_z*v.ups_q_y - v.axis_x_ups_axes2_y*v.ups_q_z;
+        const real ups_H_a_3_y = v.axis_x_ups_axes2_x*v.ups_q_z - v.axis_x_ups_axes2_z*v.ups_q_x;
+        const real ups_H_a_3_z = v.axis_x_ups_axes2_y*v.ups_q_x - v.axis_x_ups_axes2_x*v.ups_q_y;
         /* (M_tt) translational block of M */
         gather(&terms[0*count + k], add, ups_Q_xx);  /* M_tt_xx_of_legs */
         gather(&terms[1*count + k], add, ups_Q_xy);  /* M_tt_xy */
@@ -1771,26 +2092,26 @@ INLINE void dynamics_legs_ups(const prepared *m, size_t w, size_t leg, size_t le
         gather(&terms[19*count + k], add, ups_M_aa_t_5);  /* M_aa_yz_of_legs */
         gather(&terms[20*count + k], add, ups_M_aa_t_6);  /* M_aa_zz_of_legs */
         /* (Z_t) translational part of Z */
-        gather(&terms[21*count + k], add, ups_U_x);  /* Z_t_x_of_legs */
-        gather(&terms[22*count + k], add, ups_U_y);  /* Z_t_y_of_legs */
-        gather(&terms[23*count + k], add, ups_U_z);  /* Z_t_z_of_legs */
+        gather(&terms[21*count + k], add, v.ups_U_x);  /* Z_t_x_of_legs */
+        gather(&terms[22*count + k], add, v.ups_U_y);  /* Z_t_y_of_legs */
+        gather(&terms[23*count + k], add, v.ups_U_z);  /* Z_t_z_of_legs */
         /* (Z_a) rotational part of Z */
-        gather(&terms[24*count + k], add, ups_Z_a_t);  /* Z_a_x_of_legs */
-        gather(&terms[25*count + k], add, ups_Z_a_t_2);  /* Z_a_y_of_legs */
-        gather(&terms[26*count + k], add, ups_Z_a_t_3);  /* Z_a_z_of_legs */
+        gather(&terms[24*count + k], add, v.ups_Z_a_t);  /* Z_a_x_of_legs */
+        gather(&terms[25*count + k], add, v.ups_Z_a_t_2);  /* Z_a_y_of_legs */
+        gather(&terms[26*count + k], add, v.ups_Z_a_t_3);  /* Z_a_z_of_legs */
         /* (ups-w_3) reciprocal vector 3 */
-        o[0*count + k] = axis_x_ups_axes2_x;
-        o[1*count + k] = axis_x_ups_axes2_y;
-        o[2*count + k] = axis_x_ups_axes2_z;
+        o[0*count + k] = v.axis_x_ups_axes2_x;
+        o[1*count + k] = v.axis_x_ups_axes2_y;
+        o[2*count + k] = v.axis_x_ups_axes2_z;
         /* (ups-H_a_3) moment of the column's unit force about the platform origin */
         o[3*count + k] = ups_H_a_3_x;
         o[4*count + k] = ups_H_a_3_y;
         o[5*count + k] = ups_H_a_3_z;
-        o[7*count + k] = (axis_x_ups_axes2_x + (axis_x_ups_axes2_y + axis_x_ups_axes2_z)) +
+        o[7*count + k] = (v.axis_x_ups_axes2_x + (v.axis_x_ups_axes2_y + v.axis_x_ups_axes2_z)) +
             (ups_H_a_3_x + (ups_H_a_3_y + ups_H_a_3_z));
-        o[6*count + k] = UNLESS(magnitude(ups_rho2_1) > LEAST_1) + UNLESS(magnitude(ups_rho2_2) >
-            LEAST_1) + UNLESS(magnitude(ups_root_1) > LEAST_2) + UNLESS(magnitude(ups_root_2) >
-            LEAST_2);
+        o[6*count + k] = UNLESS(magnitude(v.ups_root_1_t) > LEAST_1) +
+            UNLESS(magnitude(v.ups_q_3_t) > LEAST_1) + UNLESS(magnitude(v.ups_root_1) > LEAST_2) +
+            UNLESS(magnitude(v.ups_q_3) > LEAST_2);
     }
 }
 
@@ -1798,7 +2119,7 @@ INLINE void dynamics_place_ups(size_t w, size_t count, const real *o, size_t leg
     real *H, verdict *t)
 {
     for (size_t k = 0; k < w; ++k) {
-        H[(0*NU + leg)*w + k] = o[0*count + first + k];
+        H[leg*w + k] = o[0*count + first + k];
         H[(NU + leg)*w + k] = o[1*count + first + k];
         H[(2*NU + leg)*w + k] = o[2*count + first + k];
         H[(3*NU + leg)*w + k] = o[3*count + first + k];
@@ -1823,66 +2144,66 @@ INLINE void dynamics_after(const prepared *m, size_t w, const real *s, const rea
         const real M_tt_zz = M_tt_zz_of_legs + m_star;
         /* (M_ta) coupling block of M */
         const real M_ta_xy_of_legs = sums[7*w + k];
-        const real h_star_z = s[20*w + k];
+        const real h_star_z = s[11*w + k];
         const real M_ta_xy = M_ta_xy_of_legs + h_star_z;
         const real M_ta_xz_of_legs = sums[8*w + k];
-        const real h_star_y = s[19*w + k];
+        const real h_star_y = s[10*w + k];
         const real M_ta_xz = M_ta_xz_of_legs - h_star_y;
         const real M_ta_yx_of_legs = sums[9*w + k];
         const real M_ta_yx = M_ta_yx_of_legs - h_star_z;
         const real M_ta_yz_of_legs = sums[11*w + k];
-        const real h_star_x = s[18*w + k];
+        const real h_star_x = s[9*w + k];
         const real M_ta_yz = M_ta_yz_of_legs + h_star_x;
         const real M_ta_zx_of_legs = sums[12*w + k];
         const real M_ta_zx = M_ta_zx_of_legs + h_star_y;
         const real M_ta_zy_of_legs = sums[13*w + k];
         const real M_ta_zy = M_ta_zy_of_legs - h_star_x;
         /* (M_aa) rotational block of M */
-        const real J_star_xx = s[21*w + k];
+        const real J_star_xx = s[12*w + k];
         const real M_aa_xx_of_legs = sums[15*w + k];
         const real M_aa_xx = J_star_xx + M_aa_xx_of_legs;
-        const real J_star_xy = s[22*w + k];
+        const real J_star_xy = s[13*w + k];
         const real M_aa_xy_of_legs = sums[16*w + k];
         const real M_aa_xy = J_star_xy + M_aa_xy_of_legs;
-        const real J_star_xz = s[23*w + k];
+        const real J_star_xz = s[14*w + k];
         const real M_aa_xz_of_legs = sums[17*w + k];
         const real M_aa_xz = J_star_xz + M_aa_xz_of_legs;
-        const real J_star_yy = s[24*w + k];
+        const real J_star_yy = s[15*w + k];
         const real M_aa_yy_of_legs = sums[18*w + k];
         const real M_aa_yy = J_star_yy + M_aa_yy_of_legs;
-        const real J_star_yz = s[25*w + k];
+        const real J_star_yz = s[16*w + k];
         const real M_aa_yz_of_legs = sums[19*w + k];
         const real M_aa_yz = J_star_yz + M_aa_yz_of_legs;
-        const real J_star_zz = s[26*w + k];
+        const real J_star_zz = s[17*w + k];
         const real M_aa_zz_of_legs = sums[20*w + k];
         const real M_aa_zz = J_star_zz + M_aa_zz_of_legs;
         /* (Z_t) translational part of Z */
-        const real Z_p_x = s[27*w + k];
+        const real Z_p_x = s[18*w + k];
         const real Z_t_x_of_legs = sums[21*w + k];
         const real Z_t_x = Z_p_x + Z_t_x_of_legs;
-        const real Z_p_y = s[28*w + k];
+        const real Z_p_y = s[19*w + k];
         const real Z_t_y_of_legs = sums[22*w + k];
         const real Z_t_y = Z_p_y + Z_t_y_of_legs;
-        const real Z_p_z = s[29*w + k];
+        const real Z_p_z = s[20*w + k];
         const real Z_t_z_of_legs = sums[23*w + k];
         const real Z_t_z = Z_p_z + Z_t_z_of_legs;
         /* (Z_a) rotational part of Z */
         const real Z_a_x_of_legs = sums[24*w + k];
-        const real Z_q_x = s[30*w + k];
+        const real Z_q_x = s[21*w + k];
         const real Z_a_x = Z_a_x_of_legs + Z_q_x;
         const real Z_a_y_of_legs = sums[25*w + k];
-        const real Z_q_y = s[31*w + k];
+        const real Z_q_y = s[22*w + k];
         const real Z_a_y = Z_a_y_of_legs + Z_q_y;
         const real Z_a_z_of_legs = sums[26*w + k];
-        const real Z_q_z = s[32*w + k];
+        const real Z_q_z = s[23*w + k];
         const real Z_a_z = Z_a_z_of_legs + Z_q_z;
         /* (M_tt) translational block of M */
-        M[0*NV*w + k] = M_tt_xx;
+        M[0*w + k] = M_tt_xx;
         const real M_tt_xy = sums[1*w + k];
-        M[(0*NV + 1)*w + k] = M_tt_xy;
+        M[1*w + k] = M_tt_xy;
         M[NV*w + k] = M_tt_xy;
         const real M_tt_xz = sums[2*w + k];
-        M[(0*NV + 2)*w + k] = M_tt_xz;
+        M[2*w + k] = M_tt_xz;
         M[2*NV*w + k] = M_tt_xz;
         M[(NV + 1)*w + k] = M_tt_yy;
         const real M_tt_yz = sums[4*w + k];
@@ -1891,11 +2212,11 @@ INLINE void dynamics_after(const prepared *m, size_t w, const real *s, const rea
         M[(2*NV + 2)*w + k] = M_tt_zz;
         /* (M_ta) coupling block of M */
         const real M_ta_xx = sums[6*w + k];
-        M[(0*NV + 3)*w + k] = M_ta_xx;
+        M[3*w + k] = M_ta_xx;
         M[3*NV*w + k] = M_ta_xx;
-        M[(0*NV + 4)*w + k] = M_ta_xy;
+        M[4*w + k] = M_ta_xy;
         M[4*NV*w + k] = M_ta_xy;
-        M[(0*NV + 5)*w + k] = M_ta_xz;
+        M[5*w + k] = M_ta_xz;
         M[5*NV*w + k] = M_ta_xz;
         M[(NV + 3)*w + k] = M_ta_yx;
         M[(3*NV + 1)*w + k] = M_ta_yx;
@@ -1939,12 +2260,10 @@ INLINE void dynamics_after(const prepared *m, size_t w, const real *s, const rea
 INLINE void dynamics_run(const prepared *m, const real *X, const real *V, real *M, real *Z, real
     *H, verdict *t)
 {
-    real s[33] = {0};
-    real sums[27] = {0};
-    real terms_ups[27*LEGS(LEGS_OF_ups)] = {0};
-    real o_ups[8*LEGS(LEGS_OF_ups)] = {0};
+    real s[24] = {0}, sums[27] = {0};
+    real terms_ups[27*LEGS(LEGS_OF_ups)] = {0}, o_ups[8*LEGS(LEGS_OF_ups)] = {0};
     dynamics_before(m, 1, X, V, s, t);
-    dynamics_legs_ups(m, 1, 0, 1, s, 0, LEGS(LEGS_OF_ups), 0, terms_ups, o_ups);
+    dynamics_legs_ups(m, 1, 0, 1, s, 0, LEGS(LEGS_OF_ups), 0, X, V, terms_ups, o_ups);
     for (size_t leg = 0; leg < LEGS_OF_ups; ++leg) {
         dynamics_place_ups(1, LEGS(LEGS_OF_ups), o_ups, leg, leg, H, t);
     }
@@ -1957,13 +2276,12 @@ INLINE void dynamics_run(const prepared *m, const real *X, const real *V, real *
 INLINE void dynamics_run_lanes(const prepared *m, const real *X, const real *V, real *M, real *Z,
     real *H, verdict *t)
 {
-    real s[33*LANES];
-    real sums[27*LANES];
+    real s[24*LANES], sums[27*LANES];
     real o_ups[8*LANES];
     dynamics_before(m, LANES, X, V, s, t);
     clear(sums, 27*LANES);
     for (size_t leg = 0; leg < LEGS_OF_ups; ++leg) {
-        dynamics_legs_ups(m, LANES, leg, 0, s, 1, LANES, 1, sums, o_ups);
+        dynamics_legs_ups(m, LANES, leg, 0, s, 1, LANES, 1, X, V, sums, o_ups);
         dynamics_place_ups(LANES, LANES, o_ups, leg, 0, H, t);
     }
     dynamics_after(m, LANES, s, sums, M, Z, t);
@@ -1973,259 +2291,120 @@ INLINE void dynamics_run_lanes(const prepared *m, const real *X, const real *V, 
 INLINE void M_before(const prepared *m, size_t w, const real *X, real *s, verdict *t)
 {
     for (size_t k = 0; k < w; ++k) {
-        /* X: named entries */
-        const real X_0 = X[0*w + k];
-        const real t_x = X_0;
-        const real X_1 = X[1*w + k];
-        const real t_y = X_1;
-        const real X_2 = X[2*w + k];
-        const real t_z = X_2;
-        const real X_3 = X[3*w + k];
-        const real X_4 = X[4*w + k];
-        const real X_5 = X[5*w + k];
-        const real X_6 = X[6*w + k];
-        const real quaternion_norm2 = X_3*X_3 + X_4*X_4 + X_5*X_5 + X_6*X_6;
-        const real quaternion_scale = 2/quaternion_norm2;
-        const real quaternion_sx = X_3*quaternion_scale;
-        const real quaternion_sy = X_4*quaternion_scale;
-        const real quaternion_sz = X_5*quaternion_scale;
-        const real quaternion_wx = X_6*quaternion_sx;
-        const real quaternion_wy = X_6*quaternion_sy;
-        const real quaternion_wz = X_6*quaternion_sz;
-        const real quaternion_xx = X_3*quaternion_sx;
-        const real quaternion_xy = X_3*quaternion_sy;
-        const real quaternion_xz = X_3*quaternion_sz;
-        const real quaternion_yy = X_4*quaternion_sy;
-        const real quaternion_yz = X_4*quaternion_sz;
-        const real quaternion_zz = X_5*quaternion_sz;
-        const real R_xx = 1 - quaternion_yy - quaternion_zz;
-        const real R_xy = quaternion_xy - quaternion_wz;
-        const real R_xz = quaternion_wy + quaternion_xz;
-        const real R_yx = quaternion_wz + quaternion_xy;
-        const real R_yy = 1 - quaternion_xx - quaternion_zz;
-        const real R_yz = quaternion_yz - quaternion_wx;
-        const real R_zx = quaternion_xz - quaternion_wy;
-        const real R_zy = quaternion_wx + quaternion_yz;
-        const real R_zz = 1 - quaternion_xx - quaternion_yy;
-        /* (h_star) first moment about the platform origin */
-        const real h_star_in_platform_x = m->h_star_in_platform_x;
-        const real h_star_in_platform_y = m->h_star_in_platform_y;
-        const real h_star_in_platform_z = m->h_star_in_platform_z;
-        const real h_star_x = R_xx*h_star_in_platform_x + R_xy*h_star_in_platform_y +
-            R_xz*h_star_in_platform_z;
-        const real h_star_y = R_yx*h_star_in_platform_x + R_yy*h_star_in_platform_y +
-            R_yz*h_star_in_platform_z;
-        const real h_star_z = R_zx*h_star_in_platform_x + R_zy*h_star_in_platform_y +
-            R_zz*h_star_in_platform_z;
-        /* (J_star) inertia tensor about the platform origin */
-        const real J_star_in_platform_xy = m->J_star_in_platform_xy;
-        const real J_star_in_platform_yz = m->J_star_in_platform_yz;
-        const real J_star_t_12 = m->J_star_t_12;
-        const real J_star_t = J_star_in_platform_xy*R_xx + J_star_in_platform_yz*R_xz -
-            J_star_t_12*R_xy;
-        const real J_star_t_2 = J_star_in_platform_xy*R_yx + J_star_in_platform_yz*R_yz -
-            J_star_t_12*R_yy;
-        const real J_star_t_3 = J_star_in_platform_xy*R_zx + J_star_in_platform_yz*R_zz -
-            J_star_t_12*R_zy;
-        const real J_star_in_platform_xz = m->J_star_in_platform_xz;
-        const real J_star_t_14 = m->J_star_t_14;
-        const real J_star_t_4 = J_star_t_14*R_xz - J_star_in_platform_xz*R_xx;
-        const real J_star_t_5 = J_star_t_14*R_yz - J_star_in_platform_xz*R_yx;
-        const real J_star_t_6 = J_star_t_14*R_zz - J_star_in_platform_xz*R_zx;
-        const real J_star_t_7 = J_star_t*R_xy - J_star_t_4*R_xz;
-        const real J_star_in_platform_xx = m->J_star_in_platform_xx;
-        const real J_star_xx = J_star_in_platform_xx + 2*J_star_t_7;
-        const real J_star_xy = J_star_t*R_yy + J_star_t_2*R_xy - J_star_t_4*R_yz -
-            J_star_t_5*R_xz;
-        const real J_star_xz = J_star_t*R_zy + J_star_t_3*R_xy - J_star_t_4*R_zz -
-            J_star_t_6*R_xz;
-        const real J_star_t_8 = J_star_t_2*R_yy - J_star_t_5*R_yz;
-        const real J_star_yy = J_star_in_platform_xx + 2*J_star_t_8;
-        const real J_star_yz = J_star_t_2*R_zy + J_star_t_3*R_yy - J_star_t_5*R_zz -
-            J_star_t_6*R_yz;
-        const real J_star_t_9 = J_star_t_3*R_zy - J_star_t_6*R_zz;
-        const real J_star_zz = J_star_in_platform_xx + 2*J_star_t_9;
-        s[0*w + k] = t_x;
-        s[1*w + k] = t_y;
-        s[2*w + k] = t_z;
-        s[3*w + k] = R_xx;
-        s[4*w + k] = R_xy;
-        s[5*w + k] = R_xz;
-        s[6*w + k] = R_yx;
-        s[7*w + k] = R_yy;
-        s[8*w + k] = R_yz;
-        s[9*w + k] = R_zx;
-        s[10*w + k] = R_zy;
-        s[11*w + k] = R_zz;
-        s[12*w + k] = h_star_x;
-        s[13*w + k] = h_star_y;
-        s[14*w + k] = h_star_z;
-        s[15*w + k] = J_star_xx;
-        s[16*w + k] = J_star_xy;
-        s[17*w + k] = J_star_xz;
-        s[18*w + k] = J_star_yy;
-        s[19*w + k] = J_star_yz;
-        s[20*w + k] = J_star_zz;
-        t->invalid[k] += UNLESS(is_finite(quaternion_scale)) + UNLESS(quaternion_scale > 0);
+        values v;
+        stage_X(m, w, k, X, &v);
+        stage_M_dynamics(m, &v);
+        s[0*w + k] = v.R_xx;
+        s[1*w + k] = v.R_xy;
+        s[2*w + k] = v.R_xz;
+        s[3*w + k] = v.R_yx;
+        s[4*w + k] = v.R_yy;
+        s[5*w + k] = v.R_yz;
+        s[6*w + k] = v.R_zx;
+        s[7*w + k] = v.R_zy;
+        s[8*w + k] = v.R_zz;
+        s[9*w + k] = v.h_star_x;
+        s[10*w + k] = v.h_star_y;
+        s[11*w + k] = v.h_star_z;
+        s[12*w + k] = v.J_star_xx;
+        s[13*w + k] = v.J_star_xy;
+        s[14*w + k] = v.J_star_xz;
+        s[15*w + k] = v.J_star_yy;
+        s[16*w + k] = v.J_star_yz;
+        s[17*w + k] = v.J_star_zz;
+        t->invalid[k] += UNLESS(is_finite(v.quaternion_scale)) + UNLESS(v.quaternion_scale > 0);
     }
 }
 
 INLINE void M_legs_ups(const prepared *m, size_t w, size_t leg, size_t legs, const real *s, size_t
-    states, size_t count, int add, real *terms, real *o)
+    states, size_t count, int add, const real *X, real *terms, real *o)
 {
     for (size_t k = 0; k < count; ++k) {
         const size_t i = leg + legs*k;
         const size_t j = states*k;
-        /* (ups-S) from the base point to the connection point */
-        const real R_xx = s[3*w + j];
-        const real R_xy = s[4*w + j];
-        const real R_xz = s[5*w + j];
-        const real ups_platform_point_x = m->ups_platform_point_x[i];
-        const real ups_platform_point_y = m->ups_platform_point_y[i];
-        const real ups_platform_point_z = m->ups_platform_point_z[i];
-        const real ups_q_x = R_xx*ups_platform_point_x + R_xy*ups_platform_point_y +
-            R_xz*ups_platform_point_z;
-        const real R_yx = s[6*w + j];
-        const real R_yy = s[7*w + j];
-        const real R_yz = s[8*w + j];
-        const real ups_q_y = R_yx*ups_platform_point_x + R_yy*ups_platform_point_y +
-            R_yz*ups_platform_point_z;
-        const real R_zx = s[9*w + j];
-        const real R_zy = s[10*w + j];
-        const real R_zz = s[11*w + j];
-        const real ups_q_z = R_zx*ups_platform_point_x + R_zy*ups_platform_point_y +
-            R_zz*ups_platform_point_z;
-        const real t_x = s[0*w + j];
-        const real ups_base_point_x = m->ups_base_point_x[i];
-        const real ups_S_x = t_x + ups_q_x - ups_base_point_x;
-        const real t_y = s[1*w + j];
-        const real ups_base_point_y = m->ups_base_point_y[i];
-        const real ups_S_y = t_y + ups_q_y - ups_base_point_y;
-        const real t_z = s[2*w + j];
-        const real ups_base_point_z = m->ups_base_point_z[i];
-        const real ups_S_z = t_z + ups_q_z - ups_base_point_z;
-        /* (ups-px_1) component along the reference direction */
-        const real ups_base_frame_xx = m->ups_base_frame_xx[i];
-        const real ups_base_frame_yx = m->ups_base_frame_yx[i];
-        const real ups_base_frame_zx = m->ups_base_frame_zx[i];
-        const real ups_px_1 = ups_S_x*ups_base_frame_xx + ups_S_y*ups_base_frame_yx +
-            ups_S_z*ups_base_frame_zx;
-        /* (ups-py_1) component across the reference direction */
-        const real ups_base_frame_xy = m->ups_base_frame_xy[i];
-        const real ups_base_frame_yy = m->ups_base_frame_yy[i];
-        const real ups_base_frame_zy = m->ups_base_frame_zy[i];
-        const real ups_py_1 = ups_S_x*ups_base_frame_xy + ups_S_y*ups_base_frame_yy +
-            ups_S_z*ups_base_frame_zy;
-        /* (ups-rho2_1) squared amplitude */
-        const real ups_rho2_1 = ups_px_1*ups_px_1 + ups_py_1*ups_py_1;
-        /* (ups-root_1) amplitude, with the sign of the branch */
-        const real ups_branch_1 = m->ups_branch_1[i];
-        const real ups_root_1 = ups_branch_1*root(ups_rho2_1);
-        /* (ups-c_1) cosine of the angle of joint 1 from its reference direction */
-        const real inv_ups_root_1 = 1/ups_root_1;
-        const real ups_c_1 = -inv_ups_root_1*ups_py_1;
-        /* (ups-s_1) sine of the angle of joint 1 from its reference direction */
-        const real ups_s_1 = inv_ups_root_1*ups_px_1;
-        /* (ups-xi_1) the vector from joint 1 to the connection point, resolved along link 1 */
-        const real ups_base_frame_xz = m->ups_base_frame_xz[i];
-        const real ups_base_frame_yz = m->ups_base_frame_yz[i];
-        const real ups_base_frame_zz = m->ups_base_frame_zz[i];
-        const real ups_xi_1_in_axes1_z = ups_S_x*ups_base_frame_xz + ups_S_y*ups_base_frame_yz +
-            ups_S_z*ups_base_frame_zz;
-        /* (ups-rho2_2) squared amplitude */
-        const real ups_rho2_2 = ups_rho2_1 + ups_xi_1_in_axes1_z*ups_xi_1_in_axes1_z;
-        /* (ups-root_2) amplitude, with the sign of the branch */
-        const real ups_branch_2 = m->ups_branch_2[i];
-        const real ups_root_2 = ups_branch_2*root(ups_rho2_2);
-        /* (ups-s_2) sine of the angle of joint 2 from its reference direction */
-        const real inv_ups_root_2 = 1/ups_root_2;
-        const real ups_s_2 = inv_ups_root_2*ups_xi_1_in_axes1_z;
-        /* (ups-w_3) reciprocal vector 3 */
-        const real ups_w_3_x = inv_ups_root_2*ups_S_x;
-        const real ups_w_3_y = inv_ups_root_2*ups_S_y;
-        const real ups_w_3_z = inv_ups_root_2*ups_S_z;
+        values_ups v;
+        stage_ups_X(m, w, i, j, s, X, &v);
         /* (ups-d_alpha_1) coefficient of the acceleration in: angular acceleration of link 1 */
-        const real ups_d_alpha_1_in_axes2_xz = inv_ups_root_1*ups_s_2;
+        const real ups_e_1_in_axes2_x = v.ups_S_in_turn1_z*v.ups_w_2_in_axes2_y;
+        const real ups_d_alpha_1_in_axes2_xz = v.inv_ups_root_1*ups_e_1_in_axes2_x;
         /* (ups-d_phi_3) coefficient of the acceleration in: inertia force of link 3 from its turning
            about its reference point */
         const real ups_h_3_in_spec2_z = m->ups_h_3_in_spec2_z[i];
-        const real ups_d_phi_3_in_axes2_xy = inv_ups_root_2*ups_h_3_in_spec2_z;
+        const real ups_d_phi_3_in_axes2_xy = ups_h_3_in_spec2_z*v.ups_w_2_in_axes2_y;
         const real ups_h_3_in_spec2_x = m->ups_h_3_in_spec2_x[i];
-        const real ups_d_phi_3_in_axes2_yy = inv_ups_root_2*ups_h_3_in_spec2_x;
+        const real ups_d_phi_3_in_axes2_yy = ups_h_3_in_spec2_x*v.ups_w_2_in_axes2_y;
         /* (ups-d_c) coefficient of the acceleration in: leg force on the platform without actuation and
            without the mass at the connection point */
         const real ups_h_3_in_spec2_y = m->ups_h_3_in_spec2_y[i];
-        const real ups_d_c_in_axes2_xz = inv_ups_root_2*ups_h_3_in_spec2_y;
+        const real ups_d_c_in_axes2_xz = ups_h_3_in_spec2_y*v.ups_w_2_in_axes2_y;
         const real ups_J_group_2_in_axes2_zz = m->ups_J_group_2_in_axes2_zz[i];
         const real ups_d_c_in_axes2_yy = -ups_d_phi_3_in_axes2_yy -
-            inv_ups_root_2*(ups_h_3_in_spec2_x + inv_ups_root_2*ups_J_group_2_in_axes2_zz);
+            v.ups_w_2_in_axes2_y*(ups_h_3_in_spec2_x +
+            ups_J_group_2_in_axes2_zz*v.ups_w_2_in_axes2_y);
         const real ups_J_group_2_in_axes2_xz = m->ups_J_group_2_in_axes2_xz[i];
         const real ups_J_group_2_in_axes2_yz = m->ups_J_group_2_in_axes2_yz[i];
         const real ups_d_c_in_axes2_yz = ups_d_alpha_1_in_axes2_xz*ups_h_3_in_spec2_y -
-            inv_ups_root_2*(ups_J_group_2_in_axes2_xz*ups_d_alpha_1_in_axes2_xz -
-            inv_ups_root_2*ups_J_group_2_in_axes2_yz);
+            v.ups_w_2_in_axes2_y*(ups_J_group_2_in_axes2_xz*ups_d_alpha_1_in_axes2_xz -
+            ups_J_group_2_in_axes2_yz*v.ups_w_2_in_axes2_y);
         const real ups_J_group_2_in_axes2_xx = m->ups_J_group_2_in_axes2_xx[i];
         const real ups_J_group_2_in_axes2_xy = m->ups_J_group_2_in_axes2_xy[i];
         const real ups_J_group_2_in_axes2_yy = m->ups_J_group_2_in_axes2_yy[i];
         const real ups_d_c_in_axes2_zz = ups_d_alpha_1_in_axes2_xz*ups_h_3_in_spec2_z -
             ups_d_phi_3_in_axes2_yy -
-            inv_ups_root_1*(ups_s_2*(ups_J_group_2_in_axes2_xx*ups_d_alpha_1_in_axes2_xz -
-            ups_h_3_in_spec2_z - inv_ups_root_2*ups_J_group_2_in_axes2_xy) -
-            inv_ups_root_2*ups_root_1*(ups_J_group_2_in_axes2_xy*ups_d_alpha_1_in_axes2_xz -
-            ups_h_3_in_spec2_x - inv_ups_root_2*ups_J_group_2_in_axes2_yy));
+            v.inv_ups_root_1*(ups_e_1_in_axes2_x*(ups_J_group_2_in_axes2_xx*ups_d_alpha_1_in_axes2_xz
+            - ups_h_3_in_spec2_z - ups_J_group_2_in_axes2_xy*v.ups_w_2_in_axes2_y) -
+            v.ups_root_1*v.ups_w_2_in_axes2_y*(ups_J_group_2_in_axes2_xy*ups_d_alpha_1_in_axes2_xz
+            - ups_h_3_in_spec2_x - ups_J_group_2_in_axes2_yy*v.ups_w_2_in_axes2_y));
         /* (ups-Q) inertia of the leg at the connection point, without the mass gathered there */
-        const real axis_z_ups_axes2_x = ups_base_frame_xx*ups_c_1 + ups_base_frame_xy*ups_s_1;
-        const real axis_z_ups_axes2_y = ups_base_frame_yx*ups_c_1 + ups_base_frame_yy*ups_s_1;
-        const real axis_z_ups_axes2_z = ups_base_frame_zx*ups_c_1 + ups_base_frame_zy*ups_s_1;
-        const real axis_y_ups_axes2_x = axis_z_ups_axes2_y*ups_w_3_z -
-            axis_z_ups_axes2_z*ups_w_3_y;
-        const real axis_y_ups_axes2_y = axis_z_ups_axes2_z*ups_w_3_x -
-            axis_z_ups_axes2_x*ups_w_3_z;
-        const real axis_y_ups_axes2_z = axis_z_ups_axes2_x*ups_w_3_y -
-            axis_z_ups_axes2_y*ups_w_3_x;
+        const real axis_y_ups_axes2_x = v.axis_z_ups_axes2_y*v.ups_w_3_z -
+            v.axis_z_ups_axes2_z*v.ups_w_3_y;
+        const real axis_y_ups_axes2_y = v.axis_z_ups_axes2_z*v.ups_w_3_x -
+            v.axis_z_ups_axes2_x*v.ups_w_3_z;
+        const real axis_y_ups_axes2_z = v.axis_z_ups_axes2_x*v.ups_w_3_y -
+            v.axis_z_ups_axes2_y*v.ups_w_3_x;
         const real ups_Q_t = R(0.5)*ups_d_c_in_axes2_yy;
         const real ups_Q_t_2 = R(0.5)*ups_d_c_in_axes2_zz;
-        const real ups_Q_t_3 = ups_d_phi_3_in_axes2_xy*ups_w_3_x - axis_y_ups_axes2_x*ups_Q_t -
-            axis_z_ups_axes2_x*ups_d_c_in_axes2_yz;
-        const real ups_Q_t_4 = ups_d_phi_3_in_axes2_xy*ups_w_3_y - axis_y_ups_axes2_y*ups_Q_t -
-            axis_z_ups_axes2_y*ups_d_c_in_axes2_yz;
-        const real ups_Q_t_5 = axis_y_ups_axes2_z*ups_Q_t + axis_z_ups_axes2_z*ups_d_c_in_axes2_yz
-            - ups_d_phi_3_in_axes2_xy*ups_w_3_z;
-        const real ups_Q_t_6 = axis_z_ups_axes2_x*ups_Q_t_2 + ups_d_c_in_axes2_xz*ups_w_3_x;
-        const real ups_Q_t_7 = axis_z_ups_axes2_y*ups_Q_t_2 + ups_d_c_in_axes2_xz*ups_w_3_y;
-        const real ups_Q_t_8 = axis_z_ups_axes2_z*ups_Q_t_2 + ups_d_c_in_axes2_xz*ups_w_3_z;
-        const real ups_Q_t_9 = axis_z_ups_axes2_x*ups_Q_t_6 - axis_y_ups_axes2_x*ups_Q_t_3;
+        const real ups_Q_t_3 = ups_d_phi_3_in_axes2_xy*v.ups_w_3_x - axis_y_ups_axes2_x*ups_Q_t -
+            v.axis_z_ups_axes2_x*ups_d_c_in_axes2_yz;
+        const real ups_Q_t_4 = ups_d_phi_3_in_axes2_xy*v.ups_w_3_y - axis_y_ups_axes2_y*ups_Q_t -
+            v.axis_z_ups_axes2_y*ups_d_c_in_axes2_yz;
+        const real ups_Q_t_5 = axis_y_ups_axes2_z*ups_Q_t +
+            v.axis_z_ups_axes2_z*ups_d_c_in_axes2_yz - ups_d_phi_3_in_axes2_xy*v.ups_w_3_z;
+        const real ups_Q_t_6 = v.axis_z_ups_axes2_x*ups_Q_t_2 + ups_d_c_in_axes2_xz*v.ups_w_3_x;
+        const real ups_Q_t_7 = v.axis_z_ups_axes2_y*ups_Q_t_2 + ups_d_c_in_axes2_xz*v.ups_w_3_y;
+        const real ups_Q_t_8 = v.axis_z_ups_axes2_z*ups_Q_t_2 + ups_d_c_in_axes2_xz*v.ups_w_3_z;
+        const real ups_Q_t_9 = v.axis_z_ups_axes2_x*ups_Q_t_6 - axis_y_ups_axes2_x*ups_Q_t_3;
         const real ups_Q_xx = -2*ups_Q_t_9;
         const real ups_Q_xy = axis_y_ups_axes2_x*ups_Q_t_4 + axis_y_ups_axes2_y*ups_Q_t_3 -
-            axis_z_ups_axes2_x*ups_Q_t_7 - axis_z_ups_axes2_y*ups_Q_t_6;
+            v.axis_z_ups_axes2_x*ups_Q_t_7 - v.axis_z_ups_axes2_y*ups_Q_t_6;
         const real ups_Q_xz = axis_y_ups_axes2_z*ups_Q_t_3 - axis_y_ups_axes2_x*ups_Q_t_5 -
-            axis_z_ups_axes2_x*ups_Q_t_8 - axis_z_ups_axes2_z*ups_Q_t_6;
-        const real ups_Q_t_10 = axis_z_ups_axes2_y*ups_Q_t_7 - axis_y_ups_axes2_y*ups_Q_t_4;
+            v.axis_z_ups_axes2_x*ups_Q_t_8 - v.axis_z_ups_axes2_z*ups_Q_t_6;
+        const real ups_Q_t_10 = v.axis_z_ups_axes2_y*ups_Q_t_7 - axis_y_ups_axes2_y*ups_Q_t_4;
         const real ups_Q_yy = -2*ups_Q_t_10;
         const real ups_Q_yz = axis_y_ups_axes2_z*ups_Q_t_4 - axis_y_ups_axes2_y*ups_Q_t_5 -
-            axis_z_ups_axes2_y*ups_Q_t_8 - axis_z_ups_axes2_z*ups_Q_t_7;
-        const real ups_Q_t_11 = axis_y_ups_axes2_z*ups_Q_t_5 + axis_z_ups_axes2_z*ups_Q_t_8;
+            v.axis_z_ups_axes2_y*ups_Q_t_8 - v.axis_z_ups_axes2_z*ups_Q_t_7;
+        const real ups_Q_t_11 = axis_y_ups_axes2_z*ups_Q_t_5 + v.axis_z_ups_axes2_z*ups_Q_t_8;
         const real ups_Q_zz = -2*ups_Q_t_11;
         /* (M_ta) coupling block of M */
-        const real ups_M_ta_t = -ups_Q_xy*ups_q_z;
-        const real ups_M_ta_t_2 = ups_Q_xz*ups_q_y;
+        const real ups_M_ta_t = -ups_Q_xy*v.ups_q_z;
+        const real ups_M_ta_t_2 = ups_Q_xz*v.ups_q_y;
         const real ups_M_ta_t_3 = ups_M_ta_t + ups_M_ta_t_2;
-        const real ups_M_ta_t_4 = ups_Q_xx*ups_q_z - ups_Q_xz*ups_q_x;
-        const real ups_M_ta_t_5 = ups_Q_xy*ups_q_x - ups_Q_xx*ups_q_y;
-        const real ups_M_ta_t_6 = ups_Q_yz*ups_q_y - ups_Q_yy*ups_q_z;
-        const real ups_M_ta_t_7 = ups_Q_yz*ups_q_x;
+        const real ups_M_ta_t_4 = ups_Q_xx*v.ups_q_z - ups_Q_xz*v.ups_q_x;
+        const real ups_M_ta_t_5 = ups_Q_xy*v.ups_q_x - ups_Q_xx*v.ups_q_y;
+        const real ups_M_ta_t_6 = ups_Q_yz*v.ups_q_y - ups_Q_yy*v.ups_q_z;
+        const real ups_M_ta_t_7 = ups_Q_yz*v.ups_q_x;
         const real ups_M_ta_t_8 = ups_M_ta_t + ups_M_ta_t_7;
-        const real ups_M_ta_t_9 = ups_Q_yy*ups_q_x - ups_Q_xy*ups_q_y;
-        const real ups_M_ta_t_10 = ups_Q_zz*ups_q_y - ups_Q_yz*ups_q_z;
-        const real ups_M_ta_t_11 = ups_Q_xz*ups_q_z - ups_Q_zz*ups_q_x;
+        const real ups_M_ta_t_9 = ups_Q_yy*v.ups_q_x - ups_Q_xy*v.ups_q_y;
+        const real ups_M_ta_t_10 = ups_Q_zz*v.ups_q_y - ups_Q_yz*v.ups_q_z;
+        const real ups_M_ta_t_11 = ups_Q_xz*v.ups_q_z - ups_Q_zz*v.ups_q_x;
         const real ups_M_ta_t_12 = ups_M_ta_t_7 - ups_M_ta_t_2;
         /* (M_aa) rotational block of M */
-        const real ups_M_aa_t = ups_M_ta_t_10*ups_q_y - ups_M_ta_t_6*ups_q_z;
-        const real ups_M_aa_t_2 = ups_M_ta_t_11*ups_q_y + ups_M_ta_t_8*ups_q_z;
-        const real ups_M_aa_t_3 = ups_M_ta_t_12*ups_q_y - ups_M_ta_t_9*ups_q_z;
-        const real ups_M_aa_t_4 = ups_M_ta_t_4*ups_q_z - ups_M_ta_t_11*ups_q_x;
-        const real ups_M_aa_t_5 = ups_M_ta_t_5*ups_q_z - ups_M_ta_t_12*ups_q_x;
-        const real ups_M_aa_t_6 = ups_M_ta_t_9*ups_q_x - ups_M_ta_t_5*ups_q_y;
+        const real ups_M_aa_t = ups_M_ta_t_10*v.ups_q_y - ups_M_ta_t_6*v.ups_q_z;
+        const real ups_M_aa_t_2 = ups_M_ta_t_11*v.ups_q_y + ups_M_ta_t_8*v.ups_q_z;
+        const real ups_M_aa_t_3 = ups_M_ta_t_12*v.ups_q_y - ups_M_ta_t_9*v.ups_q_z;
+        const real ups_M_aa_t_4 = ups_M_ta_t_4*v.ups_q_z - ups_M_ta_t_11*v.ups_q_x;
+        const real ups_M_aa_t_5 = ups_M_ta_t_5*v.ups_q_z - ups_M_ta_t_12*v.ups_q_x;
+        const real ups_M_aa_t_6 = ups_M_ta_t_9*v.ups_q_x - ups_M_ta_t_5*v.ups_q_y;
         /* (M_tt) translational block of M */
         gather(&terms[0*count + k], add, ups_Q_xx);  /* M_tt_xx_of_legs */
         gather(&terms[1*count + k], add, ups_Q_xy);  /* M_tt_xy */
@@ -2250,9 +2429,9 @@ INLINE void M_legs_ups(const prepared *m, size_t w, size_t leg, size_t legs, con
         gather(&terms[18*count + k], add, ups_M_aa_t_4);  /* M_aa_yy_of_legs */
         gather(&terms[19*count + k], add, ups_M_aa_t_5);  /* M_aa_yz_of_legs */
         gather(&terms[20*count + k], add, ups_M_aa_t_6);  /* M_aa_zz_of_legs */
-        o[0*count + k] = UNLESS(magnitude(ups_rho2_1) > LEAST_1) + UNLESS(magnitude(ups_rho2_2) >
-            LEAST_1) + UNLESS(magnitude(ups_root_1) > LEAST_2) + UNLESS(magnitude(ups_root_2) >
-            LEAST_2);
+        o[0*count + k] = UNLESS(magnitude(v.ups_root_1_t) > LEAST_1) +
+            UNLESS(magnitude(v.ups_q_3_t) > LEAST_1) + UNLESS(magnitude(v.ups_root_1) > LEAST_2) +
+            UNLESS(magnitude(v.ups_q_3) > LEAST_2);
     }
 }
 
@@ -2277,46 +2456,46 @@ INLINE void M_after(const prepared *m, size_t w, const real *s, const real *sums
         const real M_tt_zz = M_tt_zz_of_legs + m_star;
         /* (M_ta) coupling block of M */
         const real M_ta_xy_of_legs = sums[7*w + k];
-        const real h_star_z = s[14*w + k];
+        const real h_star_z = s[11*w + k];
         const real M_ta_xy = M_ta_xy_of_legs + h_star_z;
         const real M_ta_xz_of_legs = sums[8*w + k];
-        const real h_star_y = s[13*w + k];
+        const real h_star_y = s[10*w + k];
         const real M_ta_xz = M_ta_xz_of_legs - h_star_y;
         const real M_ta_yx_of_legs = sums[9*w + k];
         const real M_ta_yx = M_ta_yx_of_legs - h_star_z;
         const real M_ta_yz_of_legs = sums[11*w + k];
-        const real h_star_x = s[12*w + k];
+        const real h_star_x = s[9*w + k];
         const real M_ta_yz = M_ta_yz_of_legs + h_star_x;
         const real M_ta_zx_of_legs = sums[12*w + k];
         const real M_ta_zx = M_ta_zx_of_legs + h_star_y;
         const real M_ta_zy_of_legs = sums[13*w + k];
         const real M_ta_zy = M_ta_zy_of_legs - h_star_x;
         /* (M_aa) rotational block of M */
-        const real J_star_xx = s[15*w + k];
+        const real J_star_xx = s[12*w + k];
         const real M_aa_xx_of_legs = sums[15*w + k];
         const real M_aa_xx = J_star_xx + M_aa_xx_of_legs;
-        const real J_star_xy = s[16*w + k];
+        const real J_star_xy = s[13*w + k];
         const real M_aa_xy_of_legs = sums[16*w + k];
         const real M_aa_xy = J_star_xy + M_aa_xy_of_legs;
-        const real J_star_xz = s[17*w + k];
+        const real J_star_xz = s[14*w + k];
         const real M_aa_xz_of_legs = sums[17*w + k];
         const real M_aa_xz = J_star_xz + M_aa_xz_of_legs;
-        const real J_star_yy = s[18*w + k];
+        const real J_star_yy = s[15*w + k];
         const real M_aa_yy_of_legs = sums[18*w + k];
         const real M_aa_yy = J_star_yy + M_aa_yy_of_legs;
-        const real J_star_yz = s[19*w + k];
+        const real J_star_yz = s[16*w + k];
         const real M_aa_yz_of_legs = sums[19*w + k];
         const real M_aa_yz = J_star_yz + M_aa_yz_of_legs;
-        const real J_star_zz = s[20*w + k];
+        const real J_star_zz = s[17*w + k];
         const real M_aa_zz_of_legs = sums[20*w + k];
         const real M_aa_zz = J_star_zz + M_aa_zz_of_legs;
         /* (M_tt) translational block of M */
-        M[0*NV*w + k] = M_tt_xx;
+        M[0*w + k] = M_tt_xx;
         const real M_tt_xy = sums[1*w + k];
-        M[(0*NV + 1)*w + k] = M_tt_xy;
+        M[1*w + k] = M_tt_xy;
         M[NV*w + k] = M_tt_xy;
         const real M_tt_xz = sums[2*w + k];
-        M[(0*NV + 2)*w + k] = M_tt_xz;
+        M[2*w + k] = M_tt_xz;
         M[2*NV*w + k] = M_tt_xz;
         M[(NV + 1)*w + k] = M_tt_yy;
         const real M_tt_yz = sums[4*w + k];
@@ -2325,11 +2504,11 @@ INLINE void M_after(const prepared *m, size_t w, const real *s, const real *sums
         M[(2*NV + 2)*w + k] = M_tt_zz;
         /* (M_ta) coupling block of M */
         const real M_ta_xx = sums[6*w + k];
-        M[(0*NV + 3)*w + k] = M_ta_xx;
+        M[3*w + k] = M_ta_xx;
         M[3*NV*w + k] = M_ta_xx;
-        M[(0*NV + 4)*w + k] = M_ta_xy;
+        M[4*w + k] = M_ta_xy;
         M[4*NV*w + k] = M_ta_xy;
-        M[(0*NV + 5)*w + k] = M_ta_xz;
+        M[5*w + k] = M_ta_xz;
         M[5*NV*w + k] = M_ta_xz;
         M[(NV + 3)*w + k] = M_ta_yx;
         M[(3*NV + 1)*w + k] = M_ta_yx;
@@ -2364,12 +2543,10 @@ INLINE void M_after(const prepared *m, size_t w, const real *s, const real *sums
 
 INLINE void M_run(const prepared *m, const real *X, real *M, verdict *t)
 {
-    real s[21] = {0};
-    real sums[21] = {0};
-    real terms_ups[21*LEGS(LEGS_OF_ups)] = {0};
-    real o_ups[LEGS(LEGS_OF_ups)] = {0};
+    real s[18] = {0}, sums[21] = {0};
+    real terms_ups[21*LEGS(LEGS_OF_ups)] = {0}, o_ups[LEGS(LEGS_OF_ups)] = {0};
     M_before(m, 1, X, s, t);
-    M_legs_ups(m, 1, 0, 1, s, 0, LEGS(LEGS_OF_ups), 0, terms_ups, o_ups);
+    M_legs_ups(m, 1, 0, 1, s, 0, LEGS(LEGS_OF_ups), 0, X, terms_ups, o_ups);
     for (size_t leg = 0; leg < LEGS_OF_ups; ++leg) {
         M_place_ups(1, LEGS(LEGS_OF_ups), o_ups, leg, t);
     }
@@ -2381,13 +2558,12 @@ INLINE void M_run(const prepared *m, const real *X, real *M, verdict *t)
 
 INLINE void M_run_lanes(const prepared *m, const real *X, real *M, verdict *t)
 {
-    real s[21*LANES];
-    real sums[21*LANES];
+    real s[18*LANES], sums[21*LANES];
     real o_ups[LANES];
     M_before(m, LANES, X, s, t);
     clear(sums, 21*LANES);
     for (size_t leg = 0; leg < LEGS_OF_ups; ++leg) {
-        M_legs_ups(m, LANES, leg, 0, s, 1, LANES, 1, sums, o_ups);
+        M_legs_ups(m, LANES, leg, 0, s, 1, LANES, 1, X, sums, o_ups);
         M_place_ups(LANES, LANES, o_ups, 0, t);
     }
     M_after(m, LANES, s, sums, M, t);
@@ -2398,368 +2574,50 @@ INLINE void Z_before(const prepared *m, size_t w, const real *X, const real *V, 
     *t)
 {
     for (size_t k = 0; k < w; ++k) {
-        /* X: named entries */
-        const real X_0 = X[0*w + k];
-        const real t_x = X_0;
-        const real X_1 = X[1*w + k];
-        const real t_y = X_1;
-        const real X_2 = X[2*w + k];
-        const real t_z = X_2;
-        const real X_3 = X[3*w + k];
-        const real X_4 = X[4*w + k];
-        const real X_5 = X[5*w + k];
-        const real X_6 = X[6*w + k];
-        const real quaternion_norm2 = X_3*X_3 + X_4*X_4 + X_5*X_5 + X_6*X_6;
-        const real quaternion_scale = 2/quaternion_norm2;
-        const real quaternion_sx = X_3*quaternion_scale;
-        const real quaternion_sy = X_4*quaternion_scale;
-        const real quaternion_sz = X_5*quaternion_scale;
-        const real quaternion_wx = X_6*quaternion_sx;
-        const real quaternion_wy = X_6*quaternion_sy;
-        const real quaternion_wz = X_6*quaternion_sz;
-        const real quaternion_xx = X_3*quaternion_sx;
-        const real quaternion_xy = X_3*quaternion_sy;
-        const real quaternion_xz = X_3*quaternion_sz;
-        const real quaternion_yy = X_4*quaternion_sy;
-        const real quaternion_yz = X_4*quaternion_sz;
-        const real quaternion_zz = X_5*quaternion_sz;
-        const real R_xx = 1 - quaternion_yy - quaternion_zz;
-        const real R_xy = quaternion_xy - quaternion_wz;
-        const real R_xz = quaternion_wy + quaternion_xz;
-        const real R_yx = quaternion_wz + quaternion_xy;
-        const real R_yy = 1 - quaternion_xx - quaternion_zz;
-        const real R_yz = quaternion_yz - quaternion_wx;
-        const real R_zx = quaternion_xz - quaternion_wy;
-        const real R_zy = quaternion_wx + quaternion_yz;
-        const real R_zz = 1 - quaternion_xx - quaternion_yy;
-        /* V: named entries */
-        const real V_0 = V[0*w + k];
-        const real t_dot_x = V_0;
-        const real V_1 = V[1*w + k];
-        const real t_dot_y = V_1;
-        const real V_2 = V[2*w + k];
-        const real t_dot_z = V_2;
-        const real V_3 = V[3*w + k];
-        const real omega_x = V_3;
-        const real V_4 = V[4*w + k];
-        const real omega_y = V_4;
-        const real V_5 = V[5*w + k];
-        const real omega_z = V_5;
-        /* (h_star) first moment about the platform origin */
-        const real h_star_in_platform_x = m->h_star_in_platform_x;
-        const real h_star_in_platform_y = m->h_star_in_platform_y;
-        const real h_star_in_platform_z = m->h_star_in_platform_z;
-        const real h_star_x = R_xx*h_star_in_platform_x + R_xy*h_star_in_platform_y +
-            R_xz*h_star_in_platform_z;
-        const real h_star_y = R_yx*h_star_in_platform_x + R_yy*h_star_in_platform_y +
-            R_yz*h_star_in_platform_z;
-        const real h_star_z = R_zx*h_star_in_platform_x + R_zy*h_star_in_platform_y +
-            R_zz*h_star_in_platform_z;
-        /* (Z_p) centripetal force and weight of the platform */
-        const real Z_p_t_4 = h_star_z*omega_y - h_star_y*omega_z;
-        const real Z_p_t_5 = h_star_x*omega_z - h_star_z*omega_x;
-        const real Z_p_t_6 = h_star_y*omega_x - h_star_x*omega_y;
-        const real Z_p_t = m->Z_p_t;
-        const real Z_p_x = Z_p_t_6*omega_y - Z_p_t - Z_p_t_5*omega_z;
-        const real Z_p_t_2 = m->Z_p_t_2;
-        const real Z_p_y = Z_p_t_4*omega_z - Z_p_t_2 - Z_p_t_6*omega_x;
-        const real Z_p_t_3 = m->Z_p_t_3;
-        const real Z_p_z = Z_p_t_5*omega_x - Z_p_t_3 - Z_p_t_4*omega_y;
-        /* (Z_q) gyroscopic moment and moment of the weight of the platform */
-        const real gravity_x = m->gravity_x;
-        const real gravity_y = m->gravity_y;
-        const real gravity_z = m->gravity_z;
-        const real g_in_platform_x = R_xx*gravity_x + R_yx*gravity_y + R_zx*gravity_z;
-        const real g_in_platform_y = R_xy*gravity_x + R_yy*gravity_y + R_zy*gravity_z;
-        const real g_in_platform_z = R_xz*gravity_x + R_yz*gravity_y + R_zz*gravity_z;
-        const real omega_in_platform_x = R_xx*omega_x + R_yx*omega_y + R_zx*omega_z;
-        const real omega_in_platform_y = R_xy*omega_x + R_yy*omega_y + R_zy*omega_z;
-        const real omega_in_platform_z = R_xz*omega_x + R_yz*omega_y + R_zz*omega_z;
-        const real J_star_in_platform_xx = m->J_star_in_platform_xx;
-        const real J_star_in_platform_xy = m->J_star_in_platform_xy;
-        const real J_star_in_platform_xz = m->J_star_in_platform_xz;
-        const real Z_q_t = J_star_in_platform_xx*omega_in_platform_x +
-            J_star_in_platform_xy*omega_in_platform_y + J_star_in_platform_xz*omega_in_platform_z;
-        const real J_star_in_platform_yy = m->J_star_in_platform_yy;
-        const real J_star_in_platform_yz = m->J_star_in_platform_yz;
-        const real Z_q_t_2 = J_star_in_platform_xy*omega_in_platform_x +
-            J_star_in_platform_yy*omega_in_platform_y + J_star_in_platform_yz*omega_in_platform_z;
-        const real J_star_in_platform_zz = m->J_star_in_platform_zz;
-        const real Z_q_t_3 = J_star_in_platform_xz*omega_in_platform_x +
-            J_star_in_platform_yz*omega_in_platform_y + J_star_in_platform_zz*omega_in_platform_z;
-        const real Z_q_in_platform_x = Z_q_t_3*omega_in_platform_y +
-            g_in_platform_y*h_star_in_platform_z - Z_q_t_2*omega_in_platform_z -
-            g_in_platform_z*h_star_in_platform_y;
-        const real Z_q_in_platform_y = Z_q_t*omega_in_platform_z +
-            g_in_platform_z*h_star_in_platform_x - Z_q_t_3*omega_in_platform_x -
-            g_in_platform_x*h_star_in_platform_z;
-        const real Z_q_in_platform_z = Z_q_t_2*omega_in_platform_x +
-            g_in_platform_x*h_star_in_platform_y - Z_q_t*omega_in_platform_y -
-            g_in_platform_y*h_star_in_platform_x;
-        const real Z_q_x = R_xx*Z_q_in_platform_x + R_xy*Z_q_in_platform_y +
-            R_xz*Z_q_in_platform_z;
-        const real Z_q_y = R_yx*Z_q_in_platform_x + R_yy*Z_q_in_platform_y +
-            R_yz*Z_q_in_platform_z;
-        const real Z_q_z = R_zx*Z_q_in_platform_x + R_zy*Z_q_in_platform_y +
-            R_zz*Z_q_in_platform_z;
-        s[0*w + k] = t_x;
-        s[1*w + k] = t_y;
-        s[2*w + k] = t_z;
-        s[3*w + k] = R_xx;
-        s[4*w + k] = R_xy;
-        s[5*w + k] = R_xz;
-        s[6*w + k] = R_yx;
-        s[7*w + k] = R_yy;
-        s[8*w + k] = R_yz;
-        s[9*w + k] = R_zx;
-        s[10*w + k] = R_zy;
-        s[11*w + k] = R_zz;
-        s[12*w + k] = t_dot_x;
-        s[13*w + k] = t_dot_y;
-        s[14*w + k] = t_dot_z;
-        s[15*w + k] = omega_x;
-        s[16*w + k] = omega_y;
-        s[17*w + k] = omega_z;
-        s[18*w + k] = Z_p_x;
-        s[19*w + k] = Z_p_y;
-        s[20*w + k] = Z_p_z;
-        s[21*w + k] = Z_q_x;
-        s[22*w + k] = Z_q_y;
-        s[23*w + k] = Z_q_z;
-        t->invalid[k] += UNLESS(is_finite(quaternion_scale)) + UNLESS(quaternion_scale > 0);
+        values v;
+        stage_X(m, w, k, X, &v);
+        stage_V_X(w, k, V, &v);
+        stage_Z_dynamics(m, w, k, V, &v);
+        s[0*w + k] = v.R_xx;
+        s[1*w + k] = v.R_xy;
+        s[2*w + k] = v.R_xz;
+        s[3*w + k] = v.R_yx;
+        s[4*w + k] = v.R_yy;
+        s[5*w + k] = v.R_yz;
+        s[6*w + k] = v.R_zx;
+        s[7*w + k] = v.R_zy;
+        s[8*w + k] = v.R_zz;
+        s[9*w + k] = v.Z_p_x;
+        s[10*w + k] = v.Z_p_y;
+        s[11*w + k] = v.Z_p_z;
+        s[12*w + k] = v.Z_q_x;
+        s[13*w + k] = v.Z_q_y;
+        s[14*w + k] = v.Z_q_z;
+        t->invalid[k] += UNLESS(is_finite(v.quaternion_scale)) + UNLESS(v.quaternion_scale > 0);
     }
 }
 
 INLINE void Z_legs_ups(const prepared *m, size_t w, size_t leg, size_t legs, const real *s, size_t
-    states, size_t count, int add, real *terms, real *o)
+    states, size_t count, int add, const real *X, const real *V, real *terms, real *o)
 {
     for (size_t k = 0; k < count; ++k) {
         const size_t i = leg + legs*k;
         const size_t j = states*k;
-        /* (ups-S) from the base point to the connection point */
-        const real R_xx = s[3*w + j];
-        const real R_xy = s[4*w + j];
-        const real R_xz = s[5*w + j];
-        const real ups_platform_point_x = m->ups_platform_point_x[i];
-        const real ups_platform_point_y = m->ups_platform_point_y[i];
-        const real ups_platform_point_z = m->ups_platform_point_z[i];
-        const real ups_q_x = R_xx*ups_platform_point_x + R_xy*ups_platform_point_y +
-            R_xz*ups_platform_point_z;
-        const real R_yx = s[6*w + j];
-        const real R_yy = s[7*w + j];
-        const real R_yz = s[8*w + j];
-        const real ups_q_y = R_yx*ups_platform_point_x + R_yy*ups_platform_point_y +
-            R_yz*ups_platform_point_z;
-        const real R_zx = s[9*w + j];
-        const real R_zy = s[10*w + j];
-        const real R_zz = s[11*w + j];
-        const real ups_q_z = R_zx*ups_platform_point_x + R_zy*ups_platform_point_y +
-            R_zz*ups_platform_point_z;
-        const real t_x = s[0*w + j];
-        const real ups_base_point_x = m->ups_base_point_x[i];
-        const real ups_S_x = t_x + ups_q_x - ups_base_point_x;
-        const real t_y = s[1*w + j];
-        const real ups_base_point_y = m->ups_base_point_y[i];
-        const real ups_S_y = t_y + ups_q_y - ups_base_point_y;
-        const real t_z = s[2*w + j];
-        const real ups_base_point_z = m->ups_base_point_z[i];
-        const real ups_S_z = t_z + ups_q_z - ups_base_point_z;
-        /* (ups-px_1) component along the reference direction */
-        const real ups_base_frame_xx = m->ups_base_frame_xx[i];
-        const real ups_base_frame_yx = m->ups_base_frame_yx[i];
-        const real ups_base_frame_zx = m->ups_base_frame_zx[i];
-        const real ups_px_1 = ups_S_x*ups_base_frame_xx + ups_S_y*ups_base_frame_yx +
-            ups_S_z*ups_base_frame_zx;
-        /* (ups-py_1) component across the reference direction */
-        const real ups_base_frame_xy = m->ups_base_frame_xy[i];
-        const real ups_base_frame_yy = m->ups_base_frame_yy[i];
-        const real ups_base_frame_zy = m->ups_base_frame_zy[i];
-        const real ups_py_1 = ups_S_x*ups_base_frame_xy + ups_S_y*ups_base_frame_yy +
-            ups_S_z*ups_base_frame_zy;
-        /* (ups-rho2_1) squared amplitude */
-        const real ups_rho2_1 = ups_px_1*ups_px_1 + ups_py_1*ups_py_1;
-        /* (ups-root_1) amplitude, with the sign of the branch */
-        const real ups_branch_1 = m->ups_branch_1[i];
-        const real ups_root_1 = ups_branch_1*root(ups_rho2_1);
-        /* (ups-c_1) cosine of the angle of joint 1 from its reference direction */
-        const real inv_ups_root_1 = 1/ups_root_1;
-        const real ups_c_1 = -inv_ups_root_1*ups_py_1;
-        /* (ups-s_1) sine of the angle of joint 1 from its reference direction */
-        const real ups_s_1 = inv_ups_root_1*ups_px_1;
-        /* (ups-xi_1) the vector from joint 1 to the connection point, resolved along link 1 */
-        const real ups_base_frame_xz = m->ups_base_frame_xz[i];
-        const real ups_base_frame_yz = m->ups_base_frame_yz[i];
-        const real ups_base_frame_zz = m->ups_base_frame_zz[i];
-        const real ups_xi_1_in_axes1_z = ups_S_x*ups_base_frame_xz + ups_S_y*ups_base_frame_yz +
-            ups_S_z*ups_base_frame_zz;
-        /* (ups-rho2_2) squared amplitude */
-        const real ups_rho2_2 = ups_rho2_1 + ups_xi_1_in_axes1_z*ups_xi_1_in_axes1_z;
-        /* (ups-root_2) amplitude, with the sign of the branch */
-        const real ups_branch_2 = m->ups_branch_2[i];
-        const real ups_root_2 = ups_branch_2*root(ups_rho2_2);
-        /* (ups-c_2) cosine of the angle of joint 2 from its reference direction */
-        const real inv_ups_root_2 = 1/ups_root_2;
-        const real ups_c_2 = -inv_ups_root_2*ups_root_1;
-        /* (ups-s_2) sine of the angle of joint 2 from its reference direction */
-        const real ups_s_2 = inv_ups_root_2*ups_xi_1_in_axes1_z;
-        /* (ups-S_dot) velocity of the connection point */
-        const real axis_x_ups_axes2_x = inv_ups_root_2*ups_S_x;
-        const real axis_x_ups_axes2_y = inv_ups_root_2*ups_S_y;
-        const real axis_x_ups_axes2_z = inv_ups_root_2*ups_S_z;
-        const real omega_y = s[16*w + j];
-        const real omega_z = s[17*w + j];
-        const real ups_S_dot_t = omega_y*ups_q_z - omega_z*ups_q_y;
-        const real omega_x = s[15*w + j];
-        const real ups_S_dot_t_2 = omega_z*ups_q_x - omega_x*ups_q_z;
-        const real ups_S_dot_t_3 = omega_x*ups_q_y - omega_y*ups_q_x;
-        const real t_dot_x = s[12*w + j];
-        const real ups_S_dot_x = t_dot_x + ups_S_dot_t;
-        const real t_dot_y = s[13*w + j];
-        const real ups_S_dot_y = t_dot_y + ups_S_dot_t_2;
-        const real t_dot_z = s[14*w + j];
-        const real ups_S_dot_z = t_dot_z + ups_S_dot_t_3;
-        const real ups_S_dot_in_axes2_x = axis_x_ups_axes2_x*ups_S_dot_x +
-            axis_x_ups_axes2_y*ups_S_dot_y + axis_x_ups_axes2_z*ups_S_dot_z;
-        /* (ups-qd_1) rate of joint 1 */
-        const real axis_z_ups_axes2_x = ups_base_frame_xx*ups_c_1 + ups_base_frame_xy*ups_s_1;
-        const real axis_z_ups_axes2_y = ups_base_frame_yx*ups_c_1 + ups_base_frame_yy*ups_s_1;
-        const real axis_z_ups_axes2_z = ups_base_frame_zx*ups_c_1 + ups_base_frame_zy*ups_s_1;
-        const real ups_qd_1 = inv_ups_root_1*(axis_z_ups_axes2_x*ups_S_dot_x +
-            axis_z_ups_axes2_y*ups_S_dot_y + axis_z_ups_axes2_z*ups_S_dot_z);
-        /* (ups-qd_2) rate of joint 2 */
-        const real axis_y_ups_axes2_x = axis_x_ups_axes2_z*axis_z_ups_axes2_y -
-            axis_x_ups_axes2_y*axis_z_ups_axes2_z;
-        const real axis_y_ups_axes2_y = axis_x_ups_axes2_x*axis_z_ups_axes2_z -
-            axis_x_ups_axes2_z*axis_z_ups_axes2_x;
-        const real axis_y_ups_axes2_z = axis_x_ups_axes2_y*axis_z_ups_axes2_x -
-            axis_x_ups_axes2_x*axis_z_ups_axes2_y;
-        const real ups_qd_2 = inv_ups_root_2*(axis_y_ups_axes2_x*ups_S_dot_x +
-            axis_y_ups_axes2_y*ups_S_dot_y + axis_y_ups_axes2_z*ups_S_dot_z);
-        /* (ups-omega_1) angular velocity of link 1 */
-        const real ups_omega_1_in_axes2_x = ups_qd_1*ups_s_2;
-        const real ups_omega_1_in_axes2_y = ups_c_2*ups_qd_1;
-        /* (ups-W_2) centripetal tensor of link 2 */
-        const real ups_W_2_in_axes2_yz = ups_omega_1_in_axes2_y*ups_qd_2;
-        const real ups_W_2_in_axes2_xz = ups_omega_1_in_axes2_x*ups_qd_2;
-        const real ups_W_2_in_axes2_xy = ups_omega_1_in_axes2_x*ups_omega_1_in_axes2_y;
-        /* (ups-u_1) centripetal acceleration of the connection point */
-        const real ups_u_1_x = omega_y*ups_S_dot_t_3 - omega_z*ups_S_dot_t_2;
-        const real ups_u_1_y = omega_z*ups_S_dot_t - omega_x*ups_S_dot_t_3;
-        const real ups_u_1_z = omega_x*ups_S_dot_t_2 - omega_y*ups_S_dot_t;
-        const real ups_u_1_in_axes2_z = axis_z_ups_axes2_x*ups_u_1_x +
-            axis_z_ups_axes2_y*ups_u_1_y + axis_z_ups_axes2_z*ups_u_1_z;
-        /* (ups-bias) acceleration of the connection point at zero joint accelerations */
-        const real ups_bias_t = 2*ups_S_dot_in_axes2_x;
-        const real ups_bias_in_axes2_z = 2*ups_W_2_in_axes2_xz*ups_root_2 -
-            ups_bias_t*ups_omega_1_in_axes2_y;
-        /* (ups-rel_o) remainder without the acceleration in: acceleration of the connection point left to
-           the joint accelerations */
-        const real ups_rel_o_in_axes2_z = ups_u_1_in_axes2_z - ups_bias_in_axes2_z;
-        /* (ups-qdd_1_o) remainder without the acceleration in: acceleration of joint 1 */
-        const real ups_qdd_1_o = inv_ups_root_1*ups_rel_o_in_axes2_z;
-        /* (ups-alpha_1_o) remainder without the acceleration in: angular acceleration of link 1 */
-        const real ups_alpha_1_o_in_axes2_x = ups_qdd_1_o*ups_s_2;
-        const real ups_alpha_1_o_in_axes2_y = ups_c_2*ups_qdd_1_o;
-        /* (ups-alpha_2_o) remainder without the acceleration in: angular acceleration of link 2 */
-        const real ups_alpha_2_o_in_axes2_x = ups_W_2_in_axes2_yz + ups_alpha_1_o_in_axes2_x;
-        const real ups_alpha_2_o_in_axes2_y = ups_alpha_1_o_in_axes2_y - ups_W_2_in_axes2_xz;
-        /* (ups-B_2_o) remainder of the acceleration tensor of link 2 */
-        const real ups_B_2_o_t = axis_y_ups_axes2_x*ups_u_1_x;
-        const real ups_B_2_o_t_2 = axis_y_ups_axes2_y*ups_u_1_y;
-        const real ups_B_2_o_t_3 = axis_y_ups_axes2_z*ups_u_1_z;
-        const real ups_B_2_o_in_axes2_yx = inv_ups_root_2*(ups_B_2_o_t + ups_B_2_o_t_2 +
-            ups_B_2_o_t_3 - ups_bias_t*ups_qd_2);
-        const real ups_B_2_o_in_axes2_xy = 2*ups_W_2_in_axes2_xy - ups_B_2_o_in_axes2_yx;
-        const real ups_B_2_o_in_axes2_zx = ups_W_2_in_axes2_xz - ups_alpha_2_o_in_axes2_y;
-        const real ups_B_2_o_in_axes2_zy = ups_W_2_in_axes2_yz + ups_alpha_2_o_in_axes2_x;
-        /* (ups-acc_3_o) remainder without the acceleration in: acceleration of the reference point of
-           link 3, less gravity */
-        const real ups_acc_3_t = m->ups_acc_3_t[i];
-        const real ups_acc_3_t_2 = m->ups_acc_3_t_2[i];
-        const real ups_g_in_axes2_z = ups_acc_3_t*ups_c_1 + ups_acc_3_t_2*ups_s_1;
-        const real ups_acc_3_o_t = ups_acc_3_t_2*ups_c_1 - ups_acc_3_t*ups_s_1;
-        const real ups_acc_3_t_3 = m->ups_acc_3_t_3[i];
-        const real ups_g_in_axes2_x = ups_acc_3_o_t*ups_c_2 + ups_acc_3_t_3*ups_s_2;
-        const real ups_g_in_axes2_y = ups_acc_3_t_3*ups_c_2 - ups_acc_3_o_t*ups_s_2;
-        const real ups_acc_3_o_in_axes2_x = axis_x_ups_axes2_x*ups_u_1_x +
-            axis_x_ups_axes2_y*ups_u_1_y + axis_x_ups_axes2_z*ups_u_1_z - ups_g_in_axes2_x;
-        const real ups_acc_3_o_in_axes2_y = ups_B_2_o_t + ups_B_2_o_t_2 + ups_B_2_o_t_3 -
-            ups_g_in_axes2_y;
-        const real ups_acc_3_o_in_axes2_z = ups_u_1_in_axes2_z - ups_g_in_axes2_z;
-        /* (ups-phi_3_o) remainder without the acceleration in: inertia force of link 3 from its turning
-           about its reference point */
-        const real ups_phi_3_o_t = ups_omega_1_in_axes2_y*ups_omega_1_in_axes2_y;
-        const real ups_phi_3_o_t_2 = ups_qd_2*ups_qd_2;
-        const real ups_h_3_in_spec2_x = m->ups_h_3_in_spec2_x[i];
-        const real ups_h_3_in_spec2_y = m->ups_h_3_in_spec2_y[i];
-        const real ups_h_3_in_spec2_z = m->ups_h_3_in_spec2_z[i];
-        const real ups_phi_3_o_in_axes2_x = ups_alpha_1_o_in_axes2_y*ups_h_3_in_spec2_y +
-            ups_h_3_in_spec2_x*(-ups_phi_3_o_t - ups_phi_3_o_t_2) -
-            ups_B_2_o_in_axes2_xy*ups_h_3_in_spec2_z;
-        /* (ups-mu_2_o) remainder without the acceleration in: inertia moment of the links that turn with
-           link 2, about their reference points */
-        const real ups_mu_2_o_t = ups_omega_1_in_axes2_x*ups_omega_1_in_axes2_x;
-        const real ups_J_group_2_in_axes2_xy = m->ups_J_group_2_in_axes2_xy[i];
-        const real ups_J_group_2_in_axes2_xz = m->ups_J_group_2_in_axes2_xz[i];
-        const real ups_J_group_2_in_axes2_yz = m->ups_J_group_2_in_axes2_yz[i];
-        const real ups_Sigma_2_in_axes2_yy = m->ups_Sigma_2_in_axes2_yy[i];
-        const real ups_Sigma_2_in_axes2_zz = m->ups_Sigma_2_in_axes2_zz[i];
-        const real ups_h_2_in_spec2_y = m->ups_h_2_in_spec2_y[i];
-        const real ups_h_2_in_spec2_z = m->ups_h_2_in_spec2_z[i];
-        const real ups_mu_2_o_in_axes2_x = ups_B_2_o_in_axes2_yx*ups_J_group_2_in_axes2_xz +
-            ups_B_2_o_in_axes2_zy*ups_Sigma_2_in_axes2_yy +
-            ups_J_group_2_in_axes2_yz*(ups_phi_3_o_t - ups_phi_3_o_t_2) +
-            ups_Sigma_2_in_axes2_zz*ups_alpha_1_o_in_axes2_x + ups_g_in_axes2_y*ups_h_2_in_spec2_y
-            + ups_g_in_axes2_z*ups_h_2_in_spec2_z -
-            ups_B_2_o_in_axes2_zx*ups_J_group_2_in_axes2_xy -
-            ups_acc_3_o_in_axes2_y*ups_h_3_in_spec2_y - ups_acc_3_o_in_axes2_z*ups_h_3_in_spec2_z;
-        const real ups_Sigma_2_in_axes2_xx = m->ups_Sigma_2_in_axes2_xx[i];
-        const real ups_h_2_in_spec2_x = m->ups_h_2_in_spec2_x[i];
-        const real ups_mu_2_o_in_axes2_y = ups_B_2_o_in_axes2_zy*ups_J_group_2_in_axes2_xy +
-            ups_Sigma_2_in_axes2_zz*ups_alpha_1_o_in_axes2_y +
-            ups_acc_3_o_in_axes2_x*ups_h_3_in_spec2_y + ups_g_in_axes2_z*ups_h_2_in_spec2_x -
-            ups_B_2_o_in_axes2_xy*ups_J_group_2_in_axes2_yz -
-            ups_B_2_o_in_axes2_zx*ups_Sigma_2_in_axes2_xx -
-            ups_J_group_2_in_axes2_xz*(ups_mu_2_o_t - ups_phi_3_o_t_2) -
-            ups_acc_3_o_in_axes2_z*ups_h_3_in_spec2_x - ups_g_in_axes2_x*ups_h_2_in_spec2_y;
-        const real ups_mu_2_o_in_axes2_z = ups_B_2_o_in_axes2_yx*ups_Sigma_2_in_axes2_xx +
-            ups_J_group_2_in_axes2_xy*(ups_mu_2_o_t - ups_phi_3_o_t) +
-            ups_J_group_2_in_axes2_xz*ups_alpha_1_o_in_axes2_x +
-            ups_J_group_2_in_axes2_yz*ups_alpha_1_o_in_axes2_y +
-            ups_acc_3_o_in_axes2_x*ups_h_3_in_spec2_z + ups_acc_3_o_in_axes2_y*ups_h_3_in_spec2_x
-            - ups_B_2_o_in_axes2_xy*ups_Sigma_2_in_axes2_yy - ups_g_in_axes2_x*ups_h_2_in_spec2_z
-            - ups_g_in_axes2_y*ups_h_2_in_spec2_x;
-        /* (ups-c_o) remainder without the acceleration in: leg force on the platform without actuation
-           and without the mass at the connection point */
-        const real ups_c_o_in_axes2_y = ups_alpha_1_o_in_axes2_x*ups_h_3_in_spec2_y -
-            inv_ups_root_2*ups_mu_2_o_in_axes2_z - ups_B_2_o_in_axes2_yx*ups_h_3_in_spec2_x -
-            ups_h_3_in_spec2_z*(ups_mu_2_o_t + ups_phi_3_o_t_2);
-        const real ups_c_o_in_axes2_z = ups_B_2_o_in_axes2_zy*ups_h_3_in_spec2_z +
-            ups_h_3_in_spec2_y*(ups_mu_2_o_t + ups_phi_3_o_t) -
-            inv_ups_root_1*(ups_c_2*ups_mu_2_o_in_axes2_y + ups_mu_2_o_in_axes2_x*ups_s_2) -
-            ups_B_2_o_in_axes2_zx*ups_h_3_in_spec2_x;
-        /* (ups-U) velocity and gravity terms of the leg force */
-        const real ups_U_x = axis_x_ups_axes2_x*ups_phi_3_o_in_axes2_x -
-            axis_y_ups_axes2_x*ups_c_o_in_axes2_y - axis_z_ups_axes2_x*ups_c_o_in_axes2_z;
-        const real ups_U_y = axis_x_ups_axes2_y*ups_phi_3_o_in_axes2_x -
-            axis_y_ups_axes2_y*ups_c_o_in_axes2_y - axis_z_ups_axes2_y*ups_c_o_in_axes2_z;
-        const real ups_U_z = axis_x_ups_axes2_z*ups_phi_3_o_in_axes2_x -
-            axis_y_ups_axes2_z*ups_c_o_in_axes2_y - axis_z_ups_axes2_z*ups_c_o_in_axes2_z;
-        /* (Z_a) rotational part of Z */
-        const real ups_Z_a_t = ups_U_z*ups_q_y - ups_U_y*ups_q_z;
-        const real ups_Z_a_t_2 = ups_U_x*ups_q_z - ups_U_z*ups_q_x;
-        const real ups_Z_a_t_3 = ups_U_y*ups_q_x - ups_U_x*ups_q_y;
+        values_ups v;
+        stage_ups_X(m, w, i, j, s, X, &v);
+        stage_ups_V_X(w, j, V, &v);
+        stage_ups_Z_dynamics(m, w, i, j, V, &v);
         /* (Z_t) translational part of Z */
-        gather(&terms[0*count + k], add, ups_U_x);  /* Z_t_x_of_legs */
-        gather(&terms[1*count + k], add, ups_U_y);  /* Z_t_y_of_legs */
-        gather(&terms[2*count + k], add, ups_U_z);  /* Z_t_z_of_legs */
+        gather(&terms[0*count + k], add, v.ups_U_x);  /* Z_t_x_of_legs */
+        gather(&terms[1*count + k], add, v.ups_U_y);  /* Z_t_y_of_legs */
+        gather(&terms[2*count + k], add, v.ups_U_z);  /* Z_t_z_of_legs */
         /* (Z_a) rotational part of Z */
-        gather(&terms[3*count + k], add, ups_Z_a_t);  /* Z_a_x_of_legs */
-        gather(&terms[4*count + k], add, ups_Z_a_t_2);  /* Z_a_y_of_legs */
-        gather(&terms[5*count + k], add, ups_Z_a_t_3);  /* Z_a_z_of_legs */
-        o[0*count + k] = UNLESS(magnitude(ups_rho2_1) > LEAST_1) + UNLESS(magnitude(ups_rho2_2) >
-            LEAST_1) + UNLESS(magnitude(ups_root_1) > LEAST_2) + UNLESS(magnitude(ups_root_2) >
-            LEAST_2);
+        gather(&terms[3*count + k], add, v.ups_Z_a_t);  /* Z_a_x_of_legs */
+        gather(&terms[4*count + k], add, v.ups_Z_a_t_2);  /* Z_a_y_of_legs */
+        gather(&terms[5*count + k], add, v.ups_Z_a_t_3);  /* Z_a_z_of_legs */
+        o[0*count + k] = UNLESS(magnitude(v.ups_root_1_t) > LEAST_1) +
+            UNLESS(magnitude(v.ups_q_3_t) > LEAST_1) + UNLESS(magnitude(v.ups_root_1) > LEAST_2) +
+            UNLESS(magnitude(v.ups_q_3) > LEAST_2);
     }
 }
 
@@ -2774,24 +2632,24 @@ INLINE void Z_after(size_t w, const real *s, const real *sums, real *Z, verdict 
 {
     for (size_t k = 0; k < w; ++k) {
         /* (Z_t) translational part of Z */
-        const real Z_p_x = s[18*w + k];
+        const real Z_p_x = s[9*w + k];
         const real Z_t_x_of_legs = sums[0*w + k];
         const real Z_t_x = Z_p_x + Z_t_x_of_legs;
-        const real Z_p_y = s[19*w + k];
+        const real Z_p_y = s[10*w + k];
         const real Z_t_y_of_legs = sums[1*w + k];
         const real Z_t_y = Z_p_y + Z_t_y_of_legs;
-        const real Z_p_z = s[20*w + k];
+        const real Z_p_z = s[11*w + k];
         const real Z_t_z_of_legs = sums[2*w + k];
         const real Z_t_z = Z_p_z + Z_t_z_of_legs;
         /* (Z_a) rotational part of Z */
         const real Z_a_x_of_legs = sums[3*w + k];
-        const real Z_q_x = s[21*w + k];
+        const real Z_q_x = s[12*w + k];
         const real Z_a_x = Z_a_x_of_legs + Z_q_x;
         const real Z_a_y_of_legs = sums[4*w + k];
-        const real Z_q_y = s[22*w + k];
+        const real Z_q_y = s[13*w + k];
         const real Z_a_y = Z_a_y_of_legs + Z_q_y;
         const real Z_a_z_of_legs = sums[5*w + k];
-        const real Z_q_z = s[23*w + k];
+        const real Z_q_z = s[14*w + k];
         const real Z_a_z = Z_a_z_of_legs + Z_q_z;
         /* (Z_t) translational part of Z */
         Z[0*w + k] = Z_t_x;
@@ -2807,12 +2665,10 @@ INLINE void Z_after(size_t w, const real *s, const real *sums, real *Z, verdict 
 
 INLINE void Z_run(const prepared *m, const real *X, const real *V, real *Z, verdict *t)
 {
-    real s[24] = {0};
-    real sums[6] = {0};
-    real terms_ups[6*LEGS(LEGS_OF_ups)] = {0};
-    real o_ups[LEGS(LEGS_OF_ups)] = {0};
+    real s[15] = {0}, sums[6] = {0};
+    real terms_ups[6*LEGS(LEGS_OF_ups)] = {0}, o_ups[LEGS(LEGS_OF_ups)] = {0};
     Z_before(m, 1, X, V, s, t);
-    Z_legs_ups(m, 1, 0, 1, s, 0, LEGS(LEGS_OF_ups), 0, terms_ups, o_ups);
+    Z_legs_ups(m, 1, 0, 1, s, 0, LEGS(LEGS_OF_ups), 0, X, V, terms_ups, o_ups);
     for (size_t leg = 0; leg < LEGS_OF_ups; ++leg) {
         Z_place_ups(1, LEGS(LEGS_OF_ups), o_ups, leg, t);
     }
@@ -2824,153 +2680,60 @@ INLINE void Z_run(const prepared *m, const real *X, const real *V, real *Z, verd
 
 INLINE void Z_run_lanes(const prepared *m, const real *X, const real *V, real *Z, verdict *t)
 {
-    real s[24*LANES];
-    real sums[6*LANES];
+    real s[15*LANES], sums[6*LANES];
     real o_ups[LANES];
     Z_before(m, LANES, X, V, s, t);
     clear(sums, 6*LANES);
     for (size_t leg = 0; leg < LEGS_OF_ups; ++leg) {
-        Z_legs_ups(m, LANES, leg, 0, s, 1, LANES, 1, sums, o_ups);
+        Z_legs_ups(m, LANES, leg, 0, s, 1, LANES, 1, X, V, sums, o_ups);
         Z_place_ups(LANES, LANES, o_ups, 0, t);
     }
     Z_after(LANES, s, sums, Z, t);
 }
 
 /* ---- H ---- */
-INLINE void H_before(size_t w, const real *X, real *s, verdict *t)
+INLINE void H_before(const prepared *m, size_t w, const real *X, real *s, verdict *t)
 {
     for (size_t k = 0; k < w; ++k) {
-        /* X: named entries */
-        const real X_0 = X[0*w + k];
-        const real t_x = X_0;
-        const real X_1 = X[1*w + k];
-        const real t_y = X_1;
-        const real X_2 = X[2*w + k];
-        const real t_z = X_2;
-        const real X_3 = X[3*w + k];
-        const real X_4 = X[4*w + k];
-        const real X_5 = X[5*w + k];
-        const real X_6 = X[6*w + k];
-        const real quaternion_norm2 = X_3*X_3 + X_4*X_4 + X_5*X_5 + X_6*X_6;
-        const real quaternion_scale = 2/quaternion_norm2;
-        const real quaternion_sx = X_3*quaternion_scale;
-        const real quaternion_sy = X_4*quaternion_scale;
-        const real quaternion_sz = X_5*quaternion_scale;
-        const real quaternion_wx = X_6*quaternion_sx;
-        const real quaternion_wy = X_6*quaternion_sy;
-        const real quaternion_wz = X_6*quaternion_sz;
-        const real quaternion_xx = X_3*quaternion_sx;
-        const real quaternion_xy = X_3*quaternion_sy;
-        const real quaternion_xz = X_3*quaternion_sz;
-        const real quaternion_yy = X_4*quaternion_sy;
-        const real quaternion_yz = X_4*quaternion_sz;
-        const real quaternion_zz = X_5*quaternion_sz;
-        const real R_xx = 1 - quaternion_yy - quaternion_zz;
-        const real R_xy = quaternion_xy - quaternion_wz;
-        const real R_xz = quaternion_wy + quaternion_xz;
-        const real R_yx = quaternion_wz + quaternion_xy;
-        const real R_yy = 1 - quaternion_xx - quaternion_zz;
-        const real R_yz = quaternion_yz - quaternion_wx;
-        const real R_zx = quaternion_xz - quaternion_wy;
-        const real R_zy = quaternion_wx + quaternion_yz;
-        const real R_zz = 1 - quaternion_xx - quaternion_yy;
-        s[0*w + k] = t_x;
-        s[1*w + k] = t_y;
-        s[2*w + k] = t_z;
-        s[3*w + k] = R_xx;
-        s[4*w + k] = R_xy;
-        s[5*w + k] = R_xz;
-        s[6*w + k] = R_yx;
-        s[7*w + k] = R_yy;
-        s[8*w + k] = R_yz;
-        s[9*w + k] = R_zx;
-        s[10*w + k] = R_zy;
-        s[11*w + k] = R_zz;
-        t->invalid[k] += UNLESS(is_finite(quaternion_scale)) + UNLESS(quaternion_scale > 0);
+        values v;
+        stage_X(m, w, k, X, &v);
+        s[0*w + k] = v.R_xx;
+        s[1*w + k] = v.R_xy;
+        s[2*w + k] = v.R_xz;
+        s[3*w + k] = v.R_yx;
+        s[4*w + k] = v.R_yy;
+        s[5*w + k] = v.R_yz;
+        s[6*w + k] = v.R_zx;
+        s[7*w + k] = v.R_zy;
+        s[8*w + k] = v.R_zz;
+        t->invalid[k] += UNLESS(is_finite(v.quaternion_scale)) + UNLESS(v.quaternion_scale > 0);
     }
 }
 
 INLINE void H_legs_ups(const prepared *m, size_t w, size_t leg, size_t legs, const real *s, size_t
-    states, size_t count, real *o)
+    states, size_t count, const real *X, real *o)
 {
     for (size_t k = 0; k < count; ++k) {
         const size_t i = leg + legs*k;
         const size_t j = states*k;
-        /* (ups-S) from the base point to the connection point */
-        const real R_xx = s[3*w + j];
-        const real R_xy = s[4*w + j];
-        const real R_xz = s[5*w + j];
-        const real ups_platform_point_x = m->ups_platform_point_x[i];
-        const real ups_platform_point_y = m->ups_platform_point_y[i];
-        const real ups_platform_point_z = m->ups_platform_point_z[i];
-        const real ups_q_x = R_xx*ups_platform_point_x + R_xy*ups_platform_point_y +
-            R_xz*ups_platform_point_z;
-        const real R_yx = s[6*w + j];
-        const real R_yy = s[7*w + j];
-        const real R_yz = s[8*w + j];
-        const real ups_q_y = R_yx*ups_platform_point_x + R_yy*ups_platform_point_y +
-            R_yz*ups_platform_point_z;
-        const real R_zx = s[9*w + j];
-        const real R_zy = s[10*w + j];
-        const real R_zz = s[11*w + j];
-        const real ups_q_z = R_zx*ups_platform_point_x + R_zy*ups_platform_point_y +
-            R_zz*ups_platform_point_z;
-        const real t_x = s[0*w + j];
-        const real ups_base_point_x = m->ups_base_point_x[i];
-        const real ups_S_x = t_x + ups_q_x - ups_base_point_x;
-        const real t_y = s[1*w + j];
-        const real ups_base_point_y = m->ups_base_point_y[i];
-        const real ups_S_y = t_y + ups_q_y - ups_base_point_y;
-        const real t_z = s[2*w + j];
-        const real ups_base_point_z = m->ups_base_point_z[i];
-        const real ups_S_z = t_z + ups_q_z - ups_base_point_z;
-        /* (ups-px_1) component along the reference direction */
-        const real ups_base_frame_xx = m->ups_base_frame_xx[i];
-        const real ups_base_frame_yx = m->ups_base_frame_yx[i];
-        const real ups_base_frame_zx = m->ups_base_frame_zx[i];
-        const real ups_px_1 = ups_S_x*ups_base_frame_xx + ups_S_y*ups_base_frame_yx +
-            ups_S_z*ups_base_frame_zx;
-        /* (ups-py_1) component across the reference direction */
-        const real ups_base_frame_xy = m->ups_base_frame_xy[i];
-        const real ups_base_frame_yy = m->ups_base_frame_yy[i];
-        const real ups_base_frame_zy = m->ups_base_frame_zy[i];
-        const real ups_py_1 = ups_S_x*ups_base_frame_xy + ups_S_y*ups_base_frame_yy +
-            ups_S_z*ups_base_frame_zy;
-        /* (ups-rho2_1) squared amplitude */
-        const real ups_rho2_1 = ups_px_1*ups_px_1 + ups_py_1*ups_py_1;
-        /* (ups-xi_1) the vector from joint 1 to the connection point, resolved along link 1 */
-        const real ups_base_frame_xz = m->ups_base_frame_xz[i];
-        const real ups_base_frame_yz = m->ups_base_frame_yz[i];
-        const real ups_base_frame_zz = m->ups_base_frame_zz[i];
-        const real ups_xi_1_in_axes1_z = ups_S_x*ups_base_frame_xz + ups_S_y*ups_base_frame_yz +
-            ups_S_z*ups_base_frame_zz;
-        /* (ups-rho2_2) squared amplitude */
-        const real ups_rho2_2 = ups_rho2_1 + ups_xi_1_in_axes1_z*ups_xi_1_in_axes1_z;
-        /* (ups-root_2) amplitude, with the sign of the branch */
-        const real ups_branch_2 = m->ups_branch_2[i];
-        const real ups_root_2 = ups_branch_2*root(ups_rho2_2);
-        /* (ups-w_2) reciprocal vector 2 */
-        const real ups_w_2_in_axes2_y = 1/ups_root_2;
-        /* (ups-w_3) reciprocal vector 3 */
-        const real ups_w_3_x = ups_S_x*ups_w_2_in_axes2_y;
-        const real ups_w_3_y = ups_S_y*ups_w_2_in_axes2_y;
-        const real ups_w_3_z = ups_S_z*ups_w_2_in_axes2_y;
+        values_ups v;
+        stage_ups_X(m, w, i, j, s, X, &v);
         /* (ups-H_a_3) moment of the column's unit force about the platform origin */
-        const real ups_H_a_3_x = ups_q_y*ups_w_3_z - ups_q_z*ups_w_3_y;
-        const real ups_H_a_3_y = ups_q_z*ups_w_3_x - ups_q_x*ups_w_3_z;
-        const real ups_H_a_3_z = ups_q_x*ups_w_3_y - ups_q_y*ups_w_3_x;
+        const real ups_H_a_3_x = v.ups_q_y*v.ups_w_3_z - v.ups_q_z*v.ups_w_3_y;
+        const real ups_H_a_3_y = v.ups_q_z*v.ups_w_3_x - v.ups_q_x*v.ups_w_3_z;
+        const real ups_H_a_3_z = v.ups_q_x*v.ups_w_3_y - v.ups_q_y*v.ups_w_3_x;
         /* (ups-w_3) reciprocal vector 3 */
-        o[0*count + k] = ups_w_3_x;
-        o[1*count + k] = ups_w_3_y;
-        o[2*count + k] = ups_w_3_z;
+        o[0*count + k] = v.ups_w_3_x;
+        o[1*count + k] = v.ups_w_3_y;
+        o[2*count + k] = v.ups_w_3_z;
         /* (ups-H_a_3) moment of the column's unit force about the platform origin */
         o[3*count + k] = ups_H_a_3_x;
         o[4*count + k] = ups_H_a_3_y;
         o[5*count + k] = ups_H_a_3_z;
-        o[7*count + k] = (ups_w_3_x + (ups_w_3_y + ups_w_3_z)) + (ups_H_a_3_x + (ups_H_a_3_y +
-            ups_H_a_3_z));
-        o[6*count + k] = UNLESS(magnitude(ups_rho2_1) > LEAST_1) + UNLESS(magnitude(ups_rho2_2) >
-            LEAST_1) + UNLESS(magnitude(ups_root_2) > LEAST_2);
+        o[7*count + k] = (v.ups_w_3_x + (v.ups_w_3_y + v.ups_w_3_z)) + (ups_H_a_3_x + (ups_H_a_3_y
+            + ups_H_a_3_z));
+        o[6*count + k] = UNLESS(magnitude(v.ups_root_1_t) > LEAST_1) +
+            UNLESS(magnitude(v.ups_q_3_t) > LEAST_1) + UNLESS(magnitude(v.ups_q_3) > LEAST_2);
     }
 }
 
@@ -2978,7 +2741,7 @@ INLINE void H_place_ups(size_t w, size_t count, const real *o, size_t leg, size_
     verdict *t)
 {
     for (size_t k = 0; k < w; ++k) {
-        H[(0*NU + leg)*w + k] = o[0*count + first + k];
+        H[leg*w + k] = o[0*count + first + k];
         H[(NU + leg)*w + k] = o[1*count + first + k];
         H[(2*NU + leg)*w + k] = o[2*count + first + k];
         H[(3*NU + leg)*w + k] = o[3*count + first + k];
@@ -2991,10 +2754,10 @@ INLINE void H_place_ups(size_t w, size_t count, const real *o, size_t leg, size_
 
 INLINE void H_run(const prepared *m, const real *X, real *H, verdict *t)
 {
-    real s[12] = {0};
+    real s[9] = {0};
     real o_ups[8*LEGS(LEGS_OF_ups)] = {0};
-    H_before(1, X, s, t);
-    H_legs_ups(m, 1, 0, 1, s, 0, LEGS(LEGS_OF_ups), o_ups);
+    H_before(m, 1, X, s, t);
+    H_legs_ups(m, 1, 0, 1, s, 0, LEGS(LEGS_OF_ups), X, o_ups);
     for (size_t leg = 0; leg < LEGS_OF_ups; ++leg) {
         H_place_ups(1, LEGS(LEGS_OF_ups), o_ups, leg, leg, H, t);
     }
@@ -3002,11 +2765,11 @@ INLINE void H_run(const prepared *m, const real *X, real *H, verdict *t)
 
 INLINE void H_run_lanes(const prepared *m, const real *X, real *H, verdict *t)
 {
-    real s[12*LANES];
+    real s[9*LANES];
     real o_ups[8*LANES];
-    H_before(LANES, X, s, t);
+    H_before(m, LANES, X, s, t);
     for (size_t leg = 0; leg < LEGS_OF_ups; ++leg) {
-        H_legs_ups(m, LANES, leg, 0, s, 1, LANES, o_ups);
+        H_legs_ups(m, LANES, leg, 0, s, 1, LANES, X, o_ups);
         H_place_ups(LANES, LANES, o_ups, leg, 0, H, t);
     }
 }
@@ -3016,347 +2779,125 @@ INLINE void required_before(const prepared *m, size_t w, const real *X, const re
     *A, real *s, verdict *t)
 {
     for (size_t k = 0; k < w; ++k) {
-        /* X: named entries */
-        const real X_0 = X[0*w + k];
-        const real t_x = X_0;
-        const real X_1 = X[1*w + k];
-        const real t_y = X_1;
-        const real X_2 = X[2*w + k];
-        const real t_z = X_2;
-        const real X_3 = X[3*w + k];
-        const real X_4 = X[4*w + k];
-        const real X_5 = X[5*w + k];
-        const real X_6 = X[6*w + k];
-        const real quaternion_norm2 = X_3*X_3 + X_4*X_4 + X_5*X_5 + X_6*X_6;
-        const real quaternion_scale = 2/quaternion_norm2;
-        const real quaternion_sx = X_3*quaternion_scale;
-        const real quaternion_sy = X_4*quaternion_scale;
-        const real quaternion_sz = X_5*quaternion_scale;
-        const real quaternion_wx = X_6*quaternion_sx;
-        const real quaternion_wy = X_6*quaternion_sy;
-        const real quaternion_wz = X_6*quaternion_sz;
-        const real quaternion_xx = X_3*quaternion_sx;
-        const real quaternion_xy = X_3*quaternion_sy;
-        const real quaternion_xz = X_3*quaternion_sz;
-        const real quaternion_yy = X_4*quaternion_sy;
-        const real quaternion_yz = X_4*quaternion_sz;
-        const real quaternion_zz = X_5*quaternion_sz;
-        const real R_xx = 1 - quaternion_yy - quaternion_zz;
-        const real R_xy = quaternion_xy - quaternion_wz;
-        const real R_xz = quaternion_wy + quaternion_xz;
-        const real R_yx = quaternion_wz + quaternion_xy;
-        const real R_yy = 1 - quaternion_xx - quaternion_zz;
-        const real R_yz = quaternion_yz - quaternion_wx;
-        const real R_zx = quaternion_xz - quaternion_wy;
-        const real R_zy = quaternion_wx + quaternion_yz;
-        const real R_zz = 1 - quaternion_xx - quaternion_yy;
-        /* V: named entries */
-        const real V_0 = V[0*w + k];
-        const real t_dot_x = V_0;
-        const real V_1 = V[1*w + k];
-        const real t_dot_y = V_1;
-        const real V_2 = V[2*w + k];
-        const real t_dot_z = V_2;
-        const real V_3 = V[3*w + k];
-        const real omega_x = V_3;
-        const real V_4 = V[4*w + k];
-        const real omega_y = V_4;
-        const real V_5 = V[5*w + k];
-        const real omega_z = V_5;
-        /* A: named entries */
-        const real A_0 = A[0*w + k];
-        const real t_ddot_x = A_0;
-        const real A_1 = A[1*w + k];
-        const real t_ddot_y = A_1;
-        const real A_2 = A[2*w + k];
-        const real t_ddot_z = A_2;
-        const real A_3 = A[3*w + k];
-        const real alpha_x = A_3;
-        const real A_4 = A[4*w + k];
-        const real alpha_y = A_4;
-        const real A_5 = A[5*w + k];
-        const real alpha_z = A_5;
+        values v;
+        stage_X(m, w, k, X, &v);
+        stage_V_X(w, k, V, &v);
         /* (W_p) centripetal tensor of the platform */
+        const real omega_x = V[3*w + k];
+        const real omega_y = V[4*w + k];
         const real W_p_xy = omega_x*omega_y;
+        const real omega_z = V[5*w + k];
         const real W_p_xz = omega_x*omega_z;
         const real W_p_yz = omega_y*omega_z;
-        /* (h_star) first moment about the platform origin */
-        const real h_star_in_platform_x = m->h_star_in_platform_x;
-        const real h_star_in_platform_y = m->h_star_in_platform_y;
-        const real h_star_in_platform_z = m->h_star_in_platform_z;
-        const real h_star_x = R_xx*h_star_in_platform_x + R_xy*h_star_in_platform_y +
-            R_xz*h_star_in_platform_z;
-        const real h_star_y = R_yx*h_star_in_platform_x + R_yy*h_star_in_platform_y +
-            R_yz*h_star_in_platform_z;
-        const real h_star_z = R_zx*h_star_in_platform_x + R_zy*h_star_in_platform_y +
-            R_zz*h_star_in_platform_z;
         /* (a_t) acceleration of the platform origin, less gravity */
         const real gravity_x = m->gravity_x;
+        const real t_ddot_x = A[0*w + k];
         const real a_t_x = t_ddot_x - gravity_x;
         const real gravity_y = m->gravity_y;
+        const real t_ddot_y = A[1*w + k];
         const real a_t_y = t_ddot_y - gravity_y;
         const real gravity_z = m->gravity_z;
+        const real t_ddot_z = A[2*w + k];
         const real a_t_z = t_ddot_z - gravity_z;
-        const real a_t_in_platform_x = R_xx*a_t_x + R_yx*a_t_y + R_zx*a_t_z;
-        const real a_t_in_platform_y = R_xy*a_t_x + R_yy*a_t_y + R_zy*a_t_z;
-        const real a_t_in_platform_z = R_xz*a_t_x + R_yz*a_t_y + R_zz*a_t_z;
+        const real a_t_in_platform_x = v.R_xx*a_t_x + v.R_yx*a_t_y + v.R_zx*a_t_z;
+        const real a_t_in_platform_y = v.R_xy*a_t_x + v.R_yy*a_t_y + v.R_zy*a_t_z;
+        const real a_t_in_platform_z = v.R_xz*a_t_x + v.R_yz*a_t_y + v.R_zz*a_t_z;
         /* (f_p) inertia force of the platform less its weight */
         const real f_p_t = omega_x*omega_x;
         const real f_p_t_2 = omega_y*omega_y;
         const real f_p_t_3 = omega_z*omega_z;
+        const real alpha_y = A[4*w + k];
+        const real alpha_z = A[5*w + k];
         const real m_star = m->m_star;
-        const real f_p_x = a_t_x*m_star + h_star_y*(W_p_xy - alpha_z) + h_star_z*(W_p_xz +
-            alpha_y) - h_star_x*(f_p_t_2 + f_p_t_3);
-        const real f_p_y = a_t_y*m_star + h_star_x*(W_p_xy + alpha_z) + h_star_z*(W_p_yz -
-            alpha_x) - h_star_y*(f_p_t + f_p_t_3);
-        const real f_p_z = a_t_z*m_star + h_star_x*(W_p_xz - alpha_y) + h_star_y*(W_p_yz +
-            alpha_x) - h_star_z*(f_p_t + f_p_t_2);
+        const real f_p_x = a_t_x*m_star + v.h_star_y*(W_p_xy - alpha_z) + v.h_star_z*(W_p_xz +
+            alpha_y) - v.h_star_x*(f_p_t_2 + f_p_t_3);
+        const real alpha_x = A[3*w + k];
+        const real f_p_y = a_t_y*m_star + v.h_star_x*(W_p_xy + alpha_z) + v.h_star_z*(W_p_yz -
+            alpha_x) - v.h_star_y*(f_p_t + f_p_t_3);
+        const real f_p_z = a_t_z*m_star + v.h_star_x*(W_p_xz - alpha_y) + v.h_star_y*(W_p_yz +
+            alpha_x) - v.h_star_z*(f_p_t + f_p_t_2);
         /* (mu_p) inertia moment of the platform less that of its weight */
-        const real omega_in_platform_x = R_xx*omega_x + R_yx*omega_y + R_zx*omega_z;
-        const real omega_in_platform_y = R_xy*omega_x + R_yy*omega_y + R_zy*omega_z;
-        const real omega_in_platform_z = R_xz*omega_x + R_yz*omega_y + R_zz*omega_z;
         const real J_star_in_platform_xx = m->J_star_in_platform_xx;
         const real J_star_in_platform_xy = m->J_star_in_platform_xy;
         const real J_star_in_platform_xz = m->J_star_in_platform_xz;
-        const real mu_p_t = J_star_in_platform_xx*omega_in_platform_x +
-            J_star_in_platform_xy*omega_in_platform_y + J_star_in_platform_xz*omega_in_platform_z;
+        const real mu_p_t = J_star_in_platform_xx*v.omega_in_platform_x +
+            J_star_in_platform_xy*v.omega_in_platform_y +
+            J_star_in_platform_xz*v.omega_in_platform_z;
         const real J_star_in_platform_yy = m->J_star_in_platform_yy;
         const real J_star_in_platform_yz = m->J_star_in_platform_yz;
-        const real mu_p_t_2 = J_star_in_platform_xy*omega_in_platform_x +
-            J_star_in_platform_yy*omega_in_platform_y + J_star_in_platform_yz*omega_in_platform_z;
+        const real mu_p_t_2 = J_star_in_platform_xy*v.omega_in_platform_x +
+            J_star_in_platform_yy*v.omega_in_platform_y +
+            J_star_in_platform_yz*v.omega_in_platform_z;
         const real J_star_in_platform_zz = m->J_star_in_platform_zz;
-        const real mu_p_t_3 = J_star_in_platform_xz*omega_in_platform_x +
-            J_star_in_platform_yz*omega_in_platform_y + J_star_in_platform_zz*omega_in_platform_z;
-        const real alpha_in_platform_x = R_xx*alpha_x + R_yx*alpha_y + R_zx*alpha_z;
-        const real alpha_in_platform_y = R_xy*alpha_x + R_yy*alpha_y + R_zy*alpha_z;
-        const real alpha_in_platform_z = R_xz*alpha_x + R_yz*alpha_y + R_zz*alpha_z;
+        const real mu_p_t_3 = J_star_in_platform_xz*v.omega_in_platform_x +
+            J_star_in_platform_yz*v.omega_in_platform_y +
+            J_star_in_platform_zz*v.omega_in_platform_z;
+        const real alpha_in_platform_x = v.R_xx*alpha_x + v.R_yx*alpha_y + v.R_zx*alpha_z;
+        const real alpha_in_platform_y = v.R_xy*alpha_x + v.R_yy*alpha_y + v.R_zy*alpha_z;
+        const real alpha_in_platform_z = v.R_xz*alpha_x + v.R_yz*alpha_y + v.R_zz*alpha_z;
+        const real h_star_in_platform_y = m->h_star_in_platform_y;
+        const real h_star_in_platform_z = m->h_star_in_platform_z;
         const real mu_p_in_platform_x = J_star_in_platform_xx*alpha_in_platform_x +
             J_star_in_platform_xy*alpha_in_platform_y + J_star_in_platform_xz*alpha_in_platform_z
-            + a_t_in_platform_z*h_star_in_platform_y + mu_p_t_3*omega_in_platform_y -
-            a_t_in_platform_y*h_star_in_platform_z - mu_p_t_2*omega_in_platform_z;
+            + a_t_in_platform_z*h_star_in_platform_y + mu_p_t_3*v.omega_in_platform_y -
+            a_t_in_platform_y*h_star_in_platform_z - mu_p_t_2*v.omega_in_platform_z;
+        const real h_star_in_platform_x = m->h_star_in_platform_x;
         const real mu_p_in_platform_y = J_star_in_platform_xy*alpha_in_platform_x +
             J_star_in_platform_yy*alpha_in_platform_y + J_star_in_platform_yz*alpha_in_platform_z
-            + a_t_in_platform_x*h_star_in_platform_z + mu_p_t*omega_in_platform_z -
-            a_t_in_platform_z*h_star_in_platform_x - mu_p_t_3*omega_in_platform_x;
+            + a_t_in_platform_x*h_star_in_platform_z + mu_p_t*v.omega_in_platform_z -
+            a_t_in_platform_z*h_star_in_platform_x - mu_p_t_3*v.omega_in_platform_x;
         const real mu_p_in_platform_z = J_star_in_platform_xz*alpha_in_platform_x +
             J_star_in_platform_yz*alpha_in_platform_y + J_star_in_platform_zz*alpha_in_platform_z
-            + a_t_in_platform_y*h_star_in_platform_x + mu_p_t_2*omega_in_platform_x -
-            a_t_in_platform_x*h_star_in_platform_y - mu_p_t*omega_in_platform_y;
-        const real mu_p_x = R_xx*mu_p_in_platform_x + R_xy*mu_p_in_platform_y +
-            R_xz*mu_p_in_platform_z;
-        const real mu_p_y = R_yx*mu_p_in_platform_x + R_yy*mu_p_in_platform_y +
-            R_yz*mu_p_in_platform_z;
-        const real mu_p_z = R_zx*mu_p_in_platform_x + R_zy*mu_p_in_platform_y +
-            R_zz*mu_p_in_platform_z;
-        s[0*w + k] = t_x;
-        s[1*w + k] = t_y;
-        s[2*w + k] = t_z;
-        s[3*w + k] = R_xx;
-        s[4*w + k] = R_xy;
-        s[5*w + k] = R_xz;
-        s[6*w + k] = R_yx;
-        s[7*w + k] = R_yy;
-        s[8*w + k] = R_yz;
-        s[9*w + k] = R_zx;
-        s[10*w + k] = R_zy;
-        s[11*w + k] = R_zz;
-        s[12*w + k] = t_dot_x;
-        s[13*w + k] = t_dot_y;
-        s[14*w + k] = t_dot_z;
-        s[15*w + k] = omega_x;
-        s[16*w + k] = omega_y;
-        s[17*w + k] = omega_z;
-        s[18*w + k] = t_ddot_x;
-        s[19*w + k] = t_ddot_y;
-        s[20*w + k] = t_ddot_z;
-        s[21*w + k] = alpha_x;
-        s[22*w + k] = alpha_y;
-        s[23*w + k] = alpha_z;
-        s[24*w + k] = f_p_x;
-        s[25*w + k] = f_p_y;
-        s[26*w + k] = f_p_z;
-        s[27*w + k] = mu_p_x;
-        s[28*w + k] = mu_p_y;
-        s[29*w + k] = mu_p_z;
-        t->invalid[k] += UNLESS(is_finite(quaternion_scale)) + UNLESS(quaternion_scale > 0);
+            + a_t_in_platform_y*h_star_in_platform_x + mu_p_t_2*v.omega_in_platform_x -
+            a_t_in_platform_x*h_star_in_platform_y - mu_p_t*v.omega_in_platform_y;
+        const real mu_p_x = v.R_xx*mu_p_in_platform_x + v.R_xy*mu_p_in_platform_y +
+            v.R_xz*mu_p_in_platform_z;
+        const real mu_p_y = v.R_yx*mu_p_in_platform_x + v.R_yy*mu_p_in_platform_y +
+            v.R_yz*mu_p_in_platform_z;
+        const real mu_p_z = v.R_zx*mu_p_in_platform_x + v.R_zy*mu_p_in_platform_y +
+            v.R_zz*mu_p_in_platform_z;
+        s[0*w + k] = v.R_xx;
+        s[1*w + k] = v.R_xy;
+        s[2*w + k] = v.R_xz;
+        s[3*w + k] = v.R_yx;
+        s[4*w + k] = v.R_yy;
+        s[5*w + k] = v.R_yz;
+        s[6*w + k] = v.R_zx;
+        s[7*w + k] = v.R_zy;
+        s[8*w + k] = v.R_zz;
+        s[9*w + k] = f_p_x;
+        s[10*w + k] = f_p_y;
+        s[11*w + k] = f_p_z;
+        s[12*w + k] = mu_p_x;
+        s[13*w + k] = mu_p_y;
+        s[14*w + k] = mu_p_z;
+        t->invalid[k] += UNLESS(is_finite(v.quaternion_scale)) + UNLESS(v.quaternion_scale > 0);
     }
 }
 
 INLINE void required_legs_ups(const prepared *m, size_t w, size_t leg, size_t legs, const real *s,
-    size_t states, size_t count, int add, real *terms, real *o)
+    size_t states, size_t count, int add, const real *X, const real *V, const real *A, real
+    *terms, real *o)
 {
     for (size_t k = 0; k < count; ++k) {
         const size_t i = leg + legs*k;
         const size_t j = states*k;
-        /* (ups-S) from the base point to the connection point */
-        const real R_xx = s[3*w + j];
-        const real R_xy = s[4*w + j];
-        const real R_xz = s[5*w + j];
-        const real ups_platform_point_x = m->ups_platform_point_x[i];
-        const real ups_platform_point_y = m->ups_platform_point_y[i];
-        const real ups_platform_point_z = m->ups_platform_point_z[i];
-        const real ups_q_x = R_xx*ups_platform_point_x + R_xy*ups_platform_point_y +
-            R_xz*ups_platform_point_z;
-        const real R_yx = s[6*w + j];
-        const real R_yy = s[7*w + j];
-        const real R_yz = s[8*w + j];
-        const real ups_q_y = R_yx*ups_platform_point_x + R_yy*ups_platform_point_y +
-            R_yz*ups_platform_point_z;
-        const real R_zx = s[9*w + j];
-        const real R_zy = s[10*w + j];
-        const real R_zz = s[11*w + j];
-        const real ups_q_z = R_zx*ups_platform_point_x + R_zy*ups_platform_point_y +
-            R_zz*ups_platform_point_z;
-        const real t_x = s[0*w + j];
-        const real ups_base_point_x = m->ups_base_point_x[i];
-        const real ups_S_x = t_x + ups_q_x - ups_base_point_x;
-        const real t_y = s[1*w + j];
-        const real ups_base_point_y = m->ups_base_point_y[i];
-        const real ups_S_y = t_y + ups_q_y - ups_base_point_y;
-        const real t_z = s[2*w + j];
-        const real ups_base_point_z = m->ups_base_point_z[i];
-        const real ups_S_z = t_z + ups_q_z - ups_base_point_z;
-        /* (ups-px_1) component along the reference direction */
-        const real ups_base_frame_xx = m->ups_base_frame_xx[i];
-        const real ups_base_frame_yx = m->ups_base_frame_yx[i];
-        const real ups_base_frame_zx = m->ups_base_frame_zx[i];
-        const real ups_px_1 = ups_S_x*ups_base_frame_xx + ups_S_y*ups_base_frame_yx +
-            ups_S_z*ups_base_frame_zx;
-        /* (ups-py_1) component across the reference direction */
-        const real ups_base_frame_xy = m->ups_base_frame_xy[i];
-        const real ups_base_frame_yy = m->ups_base_frame_yy[i];
-        const real ups_base_frame_zy = m->ups_base_frame_zy[i];
-        const real ups_py_1 = ups_S_x*ups_base_frame_xy + ups_S_y*ups_base_frame_yy +
-            ups_S_z*ups_base_frame_zy;
-        /* (ups-rho2_1) squared amplitude */
-        const real ups_rho2_1 = ups_px_1*ups_px_1 + ups_py_1*ups_py_1;
-        /* (ups-root_1) amplitude, with the sign of the branch */
-        const real ups_branch_1 = m->ups_branch_1[i];
-        const real ups_root_1 = ups_branch_1*root(ups_rho2_1);
-        /* (ups-c_1) cosine of the angle of joint 1 from its reference direction */
-        const real inv_ups_root_1 = 1/ups_root_1;
-        const real ups_c_1 = -inv_ups_root_1*ups_py_1;
-        /* (ups-s_1) sine of the angle of joint 1 from its reference direction */
-        const real ups_s_1 = inv_ups_root_1*ups_px_1;
-        /* (ups-xi_1) the vector from joint 1 to the connection point, resolved along link 1 */
-        const real ups_base_frame_xz = m->ups_base_frame_xz[i];
-        const real ups_base_frame_yz = m->ups_base_frame_yz[i];
-        const real ups_base_frame_zz = m->ups_base_frame_zz[i];
-        const real ups_xi_1_in_axes1_z = ups_S_x*ups_base_frame_xz + ups_S_y*ups_base_frame_yz +
-            ups_S_z*ups_base_frame_zz;
-        /* (ups-rho2_2) squared amplitude */
-        const real ups_rho2_2 = ups_rho2_1 + ups_xi_1_in_axes1_z*ups_xi_1_in_axes1_z;
-        /* (ups-root_2) amplitude, with the sign of the branch */
-        const real ups_branch_2 = m->ups_branch_2[i];
-        const real ups_root_2 = ups_branch_2*root(ups_rho2_2);
-        /* (ups-c_2) cosine of the angle of joint 2 from its reference direction */
-        const real inv_ups_root_2 = 1/ups_root_2;
-        const real ups_c_2 = -inv_ups_root_2*ups_root_1;
-        /* (ups-s_2) sine of the angle of joint 2 from its reference direction */
-        const real ups_s_2 = inv_ups_root_2*ups_xi_1_in_axes1_z;
-        /* (ups-S_dot) velocity of the connection point */
-        const real axis_x_ups_axes2_x = inv_ups_root_2*ups_S_x;
-        const real axis_x_ups_axes2_y = inv_ups_root_2*ups_S_y;
-        const real axis_x_ups_axes2_z = inv_ups_root_2*ups_S_z;
-        const real omega_y = s[16*w + j];
-        const real omega_z = s[17*w + j];
-        const real ups_S_dot_t = omega_y*ups_q_z - omega_z*ups_q_y;
-        const real omega_x = s[15*w + j];
-        const real ups_S_dot_t_2 = omega_z*ups_q_x - omega_x*ups_q_z;
-        const real ups_S_dot_t_3 = omega_x*ups_q_y - omega_y*ups_q_x;
-        const real t_dot_x = s[12*w + j];
-        const real ups_S_dot_x = t_dot_x + ups_S_dot_t;
-        const real t_dot_y = s[13*w + j];
-        const real ups_S_dot_y = t_dot_y + ups_S_dot_t_2;
-        const real t_dot_z = s[14*w + j];
-        const real ups_S_dot_z = t_dot_z + ups_S_dot_t_3;
-        const real ups_S_dot_in_axes2_x = axis_x_ups_axes2_x*ups_S_dot_x +
-            axis_x_ups_axes2_y*ups_S_dot_y + axis_x_ups_axes2_z*ups_S_dot_z;
-        /* (ups-qd_1) rate of joint 1 */
-        const real axis_z_ups_axes2_x = ups_base_frame_xx*ups_c_1 + ups_base_frame_xy*ups_s_1;
-        const real axis_z_ups_axes2_y = ups_base_frame_yx*ups_c_1 + ups_base_frame_yy*ups_s_1;
-        const real axis_z_ups_axes2_z = ups_base_frame_zx*ups_c_1 + ups_base_frame_zy*ups_s_1;
-        const real ups_qd_1 = inv_ups_root_1*(axis_z_ups_axes2_x*ups_S_dot_x +
-            axis_z_ups_axes2_y*ups_S_dot_y + axis_z_ups_axes2_z*ups_S_dot_z);
-        /* (ups-qd_2) rate of joint 2 */
-        const real axis_y_ups_axes2_x = axis_x_ups_axes2_z*axis_z_ups_axes2_y -
-            axis_x_ups_axes2_y*axis_z_ups_axes2_z;
-        const real axis_y_ups_axes2_y = axis_x_ups_axes2_x*axis_z_ups_axes2_z -
-            axis_x_ups_axes2_z*axis_z_ups_axes2_x;
-        const real axis_y_ups_axes2_z = axis_x_ups_axes2_y*axis_z_ups_axes2_x -
-            axis_x_ups_axes2_x*axis_z_ups_axes2_y;
-        const real ups_qd_2 = inv_ups_root_2*(axis_y_ups_axes2_x*ups_S_dot_x +
-            axis_y_ups_axes2_y*ups_S_dot_y + axis_y_ups_axes2_z*ups_S_dot_z);
-        /* (ups-omega_1) angular velocity of link 1 */
-        const real ups_omega_1_in_axes2_x = ups_qd_1*ups_s_2;
-        const real ups_omega_1_in_axes2_y = ups_c_2*ups_qd_1;
-        /* (ups-W_2) centripetal tensor of link 2 */
-        const real ups_W_2_in_axes2_yz = ups_omega_1_in_axes2_y*ups_qd_2;
-        const real ups_W_2_in_axes2_xz = ups_omega_1_in_axes2_x*ups_qd_2;
-        const real ups_W_2_in_axes2_xy = ups_omega_1_in_axes2_x*ups_omega_1_in_axes2_y;
-        /* (ups-a_p) acceleration of the connection point without its centripetal part */
-        const real alpha_y = s[22*w + j];
-        const real alpha_z = s[23*w + j];
-        const real t_ddot_x = s[18*w + j];
-        const real ups_a_p_x = t_ddot_x + alpha_y*ups_q_z - alpha_z*ups_q_y;
-        const real alpha_x = s[21*w + j];
-        const real t_ddot_y = s[19*w + j];
-        const real ups_a_p_y = t_ddot_y + alpha_z*ups_q_x - alpha_x*ups_q_z;
-        const real t_ddot_z = s[20*w + j];
-        const real ups_a_p_z = t_ddot_z + alpha_x*ups_q_y - alpha_y*ups_q_x;
-        /* (ups-S_ddot) acceleration of the connection point */
-        const real ups_S_ddot_x = ups_a_p_x + omega_y*ups_S_dot_t_3 - omega_z*ups_S_dot_t_2;
-        const real ups_S_ddot_y = ups_a_p_y + omega_z*ups_S_dot_t - omega_x*ups_S_dot_t_3;
-        const real ups_S_ddot_z = ups_a_p_z + omega_x*ups_S_dot_t_2 - omega_y*ups_S_dot_t;
-        const real ups_S_ddot_in_axes2_z = axis_z_ups_axes2_x*ups_S_ddot_x +
-            axis_z_ups_axes2_y*ups_S_ddot_y + axis_z_ups_axes2_z*ups_S_ddot_z;
-        /* (ups-bias) acceleration of the connection point at zero joint accelerations */
-        const real ups_bias_t = 2*ups_S_dot_in_axes2_x;
-        const real ups_bias_in_axes2_z = 2*ups_W_2_in_axes2_xz*ups_root_2 -
-            ups_bias_t*ups_omega_1_in_axes2_y;
-        /* (ups-rel) acceleration of the connection point left to the joint accelerations */
-        const real ups_rel_in_axes2_z = ups_S_ddot_in_axes2_z - ups_bias_in_axes2_z;
-        /* (ups-qdd_1) acceleration of joint 1 */
-        const real ups_qdd_1 = inv_ups_root_1*ups_rel_in_axes2_z;
-        /* (ups-alpha_1) angular acceleration of link 1 */
-        const real ups_alpha_1_in_axes2_x = ups_qdd_1*ups_s_2;
-        const real ups_alpha_1_in_axes2_y = ups_c_2*ups_qdd_1;
-        /* (ups-alpha_2) angular acceleration of link 2 */
-        const real ups_alpha_2_in_axes2_x = ups_W_2_in_axes2_yz + ups_alpha_1_in_axes2_x;
-        const real ups_alpha_2_in_axes2_y = ups_alpha_1_in_axes2_y - ups_W_2_in_axes2_xz;
-        /* (ups-B_2) acceleration tensor of link 2 */
-        const real ups_B_2_t = axis_y_ups_axes2_x*ups_S_ddot_x;
-        const real ups_B_2_t_2 = axis_y_ups_axes2_y*ups_S_ddot_y;
-        const real ups_B_2_t_3 = axis_y_ups_axes2_z*ups_S_ddot_z;
-        const real ups_B_2_in_axes2_yx = inv_ups_root_2*(ups_B_2_t + ups_B_2_t_2 + ups_B_2_t_3 -
-            ups_bias_t*ups_qd_2);
-        const real ups_B_2_in_axes2_xy = 2*ups_W_2_in_axes2_xy - ups_B_2_in_axes2_yx;
-        const real ups_B_2_in_axes2_zx = ups_W_2_in_axes2_xz - ups_alpha_2_in_axes2_y;
-        const real ups_B_2_in_axes2_zy = ups_W_2_in_axes2_yz + ups_alpha_2_in_axes2_x;
-        /* (ups-acc_3) acceleration of the reference point of link 3, less gravity */
-        const real ups_acc_3_t = m->ups_acc_3_t[i];
-        const real ups_acc_3_t_2 = m->ups_acc_3_t_2[i];
-        const real ups_g_in_axes2_z = ups_acc_3_t*ups_c_1 + ups_acc_3_t_2*ups_s_1;
-        const real ups_acc_3_t_4 = ups_acc_3_t_2*ups_c_1 - ups_acc_3_t*ups_s_1;
-        const real ups_acc_3_t_3 = m->ups_acc_3_t_3[i];
-        const real ups_g_in_axes2_x = ups_acc_3_t_3*ups_s_2 + ups_acc_3_t_4*ups_c_2;
-        const real ups_g_in_axes2_y = ups_acc_3_t_3*ups_c_2 - ups_acc_3_t_4*ups_s_2;
-        const real ups_acc_3_in_axes2_x = axis_x_ups_axes2_x*ups_S_ddot_x +
-            axis_x_ups_axes2_y*ups_S_ddot_y + axis_x_ups_axes2_z*ups_S_ddot_z - ups_g_in_axes2_x;
-        const real ups_acc_3_in_axes2_y = ups_B_2_t + ups_B_2_t_2 + ups_B_2_t_3 -
-            ups_g_in_axes2_y;
-        const real ups_acc_3_in_axes2_z = ups_S_ddot_in_axes2_z - ups_g_in_axes2_z;
+        values_ups v;
+        stage_ups_X(m, w, i, j, s, X, &v);
+        stage_ups_A_X(w, j, A, &v);
+        stage_ups_V_X(w, j, V, &v);
+        stage_ups_A_V_X(w, j, V, &v);
+        stage_ups_legs_required(m, i, &v);
         /* (ups-phi_3) inertia force of link 3 from its turning about its reference point */
-        const real ups_phi_3_t = ups_omega_1_in_axes2_y*ups_omega_1_in_axes2_y;
-        const real ups_phi_3_t_2 = ups_qd_2*ups_qd_2;
+        const real ups_phi_3_t = v.ups_omega_1_in_axes2_y*v.ups_omega_1_in_axes2_y;
+        const real ups_phi_3_t_2 = v.ups_qd_2*v.ups_qd_2;
         const real ups_h_3_in_spec2_x = m->ups_h_3_in_spec2_x[i];
         const real ups_h_3_in_spec2_y = m->ups_h_3_in_spec2_y[i];
         const real ups_h_3_in_spec2_z = m->ups_h_3_in_spec2_z[i];
-        const real ups_phi_3_in_axes2_x = ups_alpha_1_in_axes2_y*ups_h_3_in_spec2_y +
+        const real ups_phi_3_in_axes2_x = v.ups_alpha_1_in_axes2_y*ups_h_3_in_spec2_y +
             ups_h_3_in_spec2_x*(-ups_phi_3_t - ups_phi_3_t_2) -
-            ups_B_2_in_axes2_xy*ups_h_3_in_spec2_z;
+            v.ups_B_2_in_axes2_xy*ups_h_3_in_spec2_z;
         /* (ups-mu_2) inertia moment of the links that turn with link 2, about their reference points */
-        const real ups_mu_2_t = ups_omega_1_in_axes2_x*ups_omega_1_in_axes2_x;
         const real ups_J_group_2_in_axes2_xy = m->ups_J_group_2_in_axes2_xy[i];
         const real ups_J_group_2_in_axes2_xz = m->ups_J_group_2_in_axes2_xz[i];
         const real ups_J_group_2_in_axes2_yz = m->ups_J_group_2_in_axes2_yz[i];
@@ -3364,51 +2905,51 @@ INLINE void required_legs_ups(const prepared *m, size_t w, size_t leg, size_t le
         const real ups_Sigma_2_in_axes2_zz = m->ups_Sigma_2_in_axes2_zz[i];
         const real ups_h_2_in_spec2_y = m->ups_h_2_in_spec2_y[i];
         const real ups_h_2_in_spec2_z = m->ups_h_2_in_spec2_z[i];
-        const real ups_mu_2_in_axes2_x = ups_B_2_in_axes2_yx*ups_J_group_2_in_axes2_xz +
-            ups_B_2_in_axes2_zy*ups_Sigma_2_in_axes2_yy + ups_J_group_2_in_axes2_yz*(ups_phi_3_t -
-            ups_phi_3_t_2) + ups_Sigma_2_in_axes2_zz*ups_alpha_1_in_axes2_x +
-            ups_g_in_axes2_y*ups_h_2_in_spec2_y + ups_g_in_axes2_z*ups_h_2_in_spec2_z -
-            ups_B_2_in_axes2_zx*ups_J_group_2_in_axes2_xy -
-            ups_acc_3_in_axes2_y*ups_h_3_in_spec2_y - ups_acc_3_in_axes2_z*ups_h_3_in_spec2_z;
+        const real ups_mu_2_in_axes2_x = v.ups_B_2_in_axes2_yx*ups_J_group_2_in_axes2_xz +
+            v.ups_B_2_in_axes2_zy*ups_Sigma_2_in_axes2_yy + ups_J_group_2_in_axes2_yz*(ups_phi_3_t
+            - ups_phi_3_t_2) + ups_Sigma_2_in_axes2_zz*v.ups_alpha_1_in_axes2_x +
+            v.ups_g_in_axes2_y*ups_h_2_in_spec2_y + v.ups_g_in_axes2_z*ups_h_2_in_spec2_z -
+            v.ups_B_2_in_axes2_zx*ups_J_group_2_in_axes2_xy -
+            v.ups_acc_3_in_axes2_y*ups_h_3_in_spec2_y - v.ups_acc_3_in_axes2_z*ups_h_3_in_spec2_z;
         const real ups_Sigma_2_in_axes2_xx = m->ups_Sigma_2_in_axes2_xx[i];
         const real ups_h_2_in_spec2_x = m->ups_h_2_in_spec2_x[i];
-        const real ups_mu_2_in_axes2_y = ups_B_2_in_axes2_zy*ups_J_group_2_in_axes2_xy +
-            ups_Sigma_2_in_axes2_zz*ups_alpha_1_in_axes2_y +
-            ups_acc_3_in_axes2_x*ups_h_3_in_spec2_y + ups_g_in_axes2_z*ups_h_2_in_spec2_x -
-            ups_B_2_in_axes2_xy*ups_J_group_2_in_axes2_yz -
-            ups_B_2_in_axes2_zx*ups_Sigma_2_in_axes2_xx - ups_J_group_2_in_axes2_xz*(ups_mu_2_t -
-            ups_phi_3_t_2) - ups_acc_3_in_axes2_z*ups_h_3_in_spec2_x -
-            ups_g_in_axes2_x*ups_h_2_in_spec2_y;
-        const real ups_mu_2_in_axes2_z = ups_B_2_in_axes2_yx*ups_Sigma_2_in_axes2_xx +
-            ups_J_group_2_in_axes2_xy*(ups_mu_2_t - ups_phi_3_t) +
-            ups_J_group_2_in_axes2_xz*ups_alpha_1_in_axes2_x +
-            ups_J_group_2_in_axes2_yz*ups_alpha_1_in_axes2_y +
-            ups_acc_3_in_axes2_x*ups_h_3_in_spec2_z + ups_acc_3_in_axes2_y*ups_h_3_in_spec2_x -
-            ups_B_2_in_axes2_xy*ups_Sigma_2_in_axes2_yy - ups_g_in_axes2_x*ups_h_2_in_spec2_z -
-            ups_g_in_axes2_y*ups_h_2_in_spec2_x;
+        const real ups_mu_2_in_axes2_y = v.ups_B_2_in_axes2_zy*ups_J_group_2_in_axes2_xy +
+            ups_Sigma_2_in_axes2_zz*v.ups_alpha_1_in_axes2_y +
+            v.ups_acc_3_in_axes2_x*ups_h_3_in_spec2_y + v.ups_g_in_axes2_z*ups_h_2_in_spec2_x -
+            v.ups_B_2_in_axes2_xy*ups_J_group_2_in_axes2_yz -
+            v.ups_B_2_in_axes2_zx*ups_Sigma_2_in_axes2_xx -
+            ups_J_group_2_in_axes2_xz*(v.ups_mu_2_t - ups_phi_3_t_2) -
+            v.ups_acc_3_in_axes2_z*ups_h_3_in_spec2_x - v.ups_g_in_axes2_x*ups_h_2_in_spec2_y;
+        const real ups_mu_2_in_axes2_z = v.ups_B_2_in_axes2_yx*ups_Sigma_2_in_axes2_xx +
+            ups_J_group_2_in_axes2_xy*(v.ups_mu_2_t - ups_phi_3_t) +
+            ups_J_group_2_in_axes2_xz*v.ups_alpha_1_in_axes2_x +
+            ups_J_group_2_in_axes2_yz*v.ups_alpha_1_in_axes2_y +
+            v.ups_acc_3_in_axes2_x*ups_h_3_in_spec2_z + v.ups_acc_3_in_axes2_y*ups_h_3_in_spec2_x
+            - v.ups_B_2_in_axes2_xy*ups_Sigma_2_in_axes2_yy -
+            v.ups_g_in_axes2_x*ups_h_2_in_spec2_z - v.ups_g_in_axes2_y*ups_h_2_in_spec2_x;
         /* (ups-c) leg force on the platform without actuation and without the mass at the connection
            point */
-        const real ups_c_in_axes2_y = ups_alpha_1_in_axes2_x*ups_h_3_in_spec2_y -
-            inv_ups_root_2*ups_mu_2_in_axes2_z - ups_B_2_in_axes2_yx*ups_h_3_in_spec2_x -
-            ups_h_3_in_spec2_z*(ups_mu_2_t + ups_phi_3_t_2);
-        const real ups_c_in_axes2_z = ups_B_2_in_axes2_zy*ups_h_3_in_spec2_z +
-            ups_h_3_in_spec2_y*(ups_mu_2_t + ups_phi_3_t) -
-            inv_ups_root_1*(ups_c_2*ups_mu_2_in_axes2_y + ups_mu_2_in_axes2_x*ups_s_2) -
-            ups_B_2_in_axes2_zx*ups_h_3_in_spec2_x;
-        const real ups_c_x = axis_y_ups_axes2_x*ups_c_in_axes2_y +
-            axis_z_ups_axes2_x*ups_c_in_axes2_z - axis_x_ups_axes2_x*ups_phi_3_in_axes2_x;
-        const real ups_c_y = axis_y_ups_axes2_y*ups_c_in_axes2_y +
-            axis_z_ups_axes2_y*ups_c_in_axes2_z - axis_x_ups_axes2_y*ups_phi_3_in_axes2_x;
-        const real ups_c_z = axis_y_ups_axes2_z*ups_c_in_axes2_y +
-            axis_z_ups_axes2_z*ups_c_in_axes2_z - axis_x_ups_axes2_z*ups_phi_3_in_axes2_x;
+        const real ups_c_in_axes2_y = v.ups_alpha_1_in_axes2_x*ups_h_3_in_spec2_y -
+            v.inv_ups_q_3*ups_mu_2_in_axes2_z - v.ups_B_2_in_axes2_yx*ups_h_3_in_spec2_x -
+            ups_h_3_in_spec2_z*(v.ups_mu_2_t + ups_phi_3_t_2);
+        const real ups_c_in_axes2_z = v.inv_ups_root_1*(v.ups_c_2*ups_mu_2_in_axes2_y -
+            v.ups_e_1_in_axes2_x*ups_mu_2_in_axes2_x) + v.ups_B_2_in_axes2_zy*ups_h_3_in_spec2_z +
+            ups_h_3_in_spec2_y*(v.ups_mu_2_t + ups_phi_3_t) -
+            v.ups_B_2_in_axes2_zx*ups_h_3_in_spec2_x;
+        const real ups_c_x = v.axis_y_ups_axes2_x*ups_c_in_axes2_y +
+            v.axis_z_ups_axes2_x*ups_c_in_axes2_z - v.axis_x_ups_axes2_x*ups_phi_3_in_axes2_x;
+        const real ups_c_y = v.axis_y_ups_axes2_y*ups_c_in_axes2_y +
+            v.axis_z_ups_axes2_y*ups_c_in_axes2_z - v.axis_x_ups_axes2_y*ups_phi_3_in_axes2_x;
+        const real ups_c_z = v.axis_y_ups_axes2_z*ups_c_in_axes2_y +
+            v.axis_z_ups_axes2_z*ups_c_in_axes2_z - v.axis_x_ups_axes2_z*ups_phi_3_in_axes2_x;
         /* (R_a) moment that actuators and external wrench must give */
-        const real ups_R_a_t = ups_c_y*ups_q_z - ups_c_z*ups_q_y;
-        const real ups_R_a_t_2 = ups_c_z*ups_q_x - ups_c_x*ups_q_z;
-        const real ups_R_a_t_3 = ups_c_x*ups_q_y - ups_c_y*ups_q_x;
+        const real ups_R_a_t = ups_c_y*v.ups_q_z - ups_c_z*v.ups_q_y;
+        const real ups_R_a_t_2 = ups_c_z*v.ups_q_x - ups_c_x*v.ups_q_z;
+        const real ups_R_a_t_3 = ups_c_x*v.ups_q_y - ups_c_y*v.ups_q_x;
         /* (ups-H_a_3) moment of the column's unit force about the platform origin */
-        const real ups_H_a_3_x = axis_x_ups_axes2_z*ups_q_y - axis_x_ups_axes2_y*ups_q_z;
-        const real ups_H_a_3_y = axis_x_ups_axes2_x*ups_q_z - axis_x_ups_axes2_z*ups_q_x;
-        const real ups_H_a_3_z = axis_x_ups_axes2_y*ups_q_x - axis_x_ups_axes2_x*ups_q_y;
+        const real ups_H_a_3_x = v.axis_x_ups_axes2_z*v.ups_q_y - v.axis_x_ups_axes2_y*v.ups_q_z;
+        const real ups_H_a_3_y = v.axis_x_ups_axes2_x*v.ups_q_z - v.axis_x_ups_axes2_z*v.ups_q_x;
+        const real ups_H_a_3_z = v.axis_x_ups_axes2_y*v.ups_q_x - v.axis_x_ups_axes2_x*v.ups_q_y;
         /* (R_t) force that actuators and external wrench must give */
         gather(&terms[0*count + k], add, ups_c_x);  /* R_t_x_of_legs */
         gather(&terms[1*count + k], add, ups_c_y);  /* R_t_y_of_legs */
@@ -3418,16 +2959,16 @@ INLINE void required_legs_ups(const prepared *m, size_t w, size_t leg, size_t le
         gather(&terms[4*count + k], add, ups_R_a_t_2);  /* R_a_y_of_legs */
         gather(&terms[5*count + k], add, ups_R_a_t_3);  /* R_a_z_of_legs */
         /* (ups-w_3) reciprocal vector 3 */
-        o[0*count + k] = axis_x_ups_axes2_x;
-        o[1*count + k] = axis_x_ups_axes2_y;
-        o[2*count + k] = axis_x_ups_axes2_z;
+        o[0*count + k] = v.axis_x_ups_axes2_x;
+        o[1*count + k] = v.axis_x_ups_axes2_y;
+        o[2*count + k] = v.axis_x_ups_axes2_z;
         /* (ups-H_a_3) moment of the column's unit force about the platform origin */
         o[3*count + k] = ups_H_a_3_x;
         o[4*count + k] = ups_H_a_3_y;
         o[5*count + k] = ups_H_a_3_z;
-        o[6*count + k] = UNLESS(magnitude(ups_rho2_1) > LEAST_1) + UNLESS(magnitude(ups_rho2_2) >
-            LEAST_1) + UNLESS(magnitude(ups_root_1) > LEAST_2) + UNLESS(magnitude(ups_root_2) >
-            LEAST_2);
+        o[6*count + k] = UNLESS(magnitude(v.ups_root_1_t) > LEAST_1) +
+            UNLESS(magnitude(v.ups_q_3_t) > LEAST_1) + UNLESS(magnitude(v.ups_root_1) > LEAST_2) +
+            UNLESS(magnitude(v.ups_q_3) > LEAST_2);
     }
 }
 
@@ -3435,7 +2976,7 @@ INLINE void required_place_ups(size_t w, size_t count, const real *o, size_t leg
     real *H, verdict *t)
 {
     for (size_t k = 0; k < w; ++k) {
-        H[(0*NU + leg)*w + k] = o[0*count + first + k];
+        H[leg*w + k] = o[0*count + first + k];
         H[(NU + leg)*w + k] = o[1*count + first + k];
         H[(2*NU + leg)*w + k] = o[2*count + first + k];
         H[(3*NU + leg)*w + k] = o[3*count + first + k];
@@ -3450,23 +2991,23 @@ INLINE void required_after(size_t w, const real *s, const real *sums, real *requ
     for (size_t k = 0; k < w; ++k) {
         /* (R_t) force that actuators and external wrench must give */
         const real R_t_x_of_legs = sums[0*w + k];
-        const real f_p_x = s[24*w + k];
+        const real f_p_x = s[9*w + k];
         const real R_t_x = f_p_x - R_t_x_of_legs;
         const real R_t_y_of_legs = sums[1*w + k];
-        const real f_p_y = s[25*w + k];
+        const real f_p_y = s[10*w + k];
         const real R_t_y = f_p_y - R_t_y_of_legs;
         const real R_t_z_of_legs = sums[2*w + k];
-        const real f_p_z = s[26*w + k];
+        const real f_p_z = s[11*w + k];
         const real R_t_z = f_p_z - R_t_z_of_legs;
         /* (R_a) moment that actuators and external wrench must give */
         const real R_a_x_of_legs = sums[3*w + k];
-        const real mu_p_x = s[27*w + k];
+        const real mu_p_x = s[12*w + k];
         const real R_a_x = R_a_x_of_legs + mu_p_x;
         const real R_a_y_of_legs = sums[4*w + k];
-        const real mu_p_y = s[28*w + k];
+        const real mu_p_y = s[13*w + k];
         const real R_a_y = R_a_y_of_legs + mu_p_y;
         const real R_a_z_of_legs = sums[5*w + k];
-        const real mu_p_z = s[29*w + k];
+        const real mu_p_z = s[14*w + k];
         const real R_a_z = R_a_z_of_legs + mu_p_z;
         /* (R_t) force that actuators and external wrench must give */
         required[0*w + k] = R_t_x;
@@ -3482,12 +3023,10 @@ INLINE void required_after(size_t w, const real *s, const real *sums, real *requ
 INLINE void required_run(const prepared *m, const real *X, const real *V, const real *A, real
     *required, real *H, verdict *t)
 {
-    real s[30] = {0};
-    real sums[6] = {0};
-    real terms_ups[6*LEGS(LEGS_OF_ups)] = {0};
-    real o_ups[7*LEGS(LEGS_OF_ups)] = {0};
+    real s[15] = {0}, sums[6] = {0};
+    real terms_ups[6*LEGS(LEGS_OF_ups)] = {0}, o_ups[7*LEGS(LEGS_OF_ups)] = {0};
     required_before(m, 1, X, V, A, s, t);
-    required_legs_ups(m, 1, 0, 1, s, 0, LEGS(LEGS_OF_ups), 0, terms_ups, o_ups);
+    required_legs_ups(m, 1, 0, 1, s, 0, LEGS(LEGS_OF_ups), 0, X, V, A, terms_ups, o_ups);
     for (size_t leg = 0; leg < LEGS_OF_ups; ++leg) {
         required_place_ups(1, LEGS(LEGS_OF_ups), o_ups, leg, leg, H, t);
     }
@@ -3500,147 +3039,59 @@ INLINE void required_run(const prepared *m, const real *X, const real *V, const 
 INLINE void required_run_lanes(const prepared *m, const real *X, const real *V, const real *A,
     real *required, real *H, verdict *t)
 {
-    real s[30*LANES];
-    real sums[6*LANES];
+    real s[15*LANES], sums[6*LANES];
     real o_ups[7*LANES];
     required_before(m, LANES, X, V, A, s, t);
     clear(sums, 6*LANES);
     for (size_t leg = 0; leg < LEGS_OF_ups; ++leg) {
-        required_legs_ups(m, LANES, leg, 0, s, 1, LANES, 1, sums, o_ups);
+        required_legs_ups(m, LANES, leg, 0, s, 1, LANES, 1, X, V, A, sums, o_ups);
         required_place_ups(LANES, LANES, o_ups, leg, 0, H, t);
     }
     required_after(LANES, s, sums, required);
 }
 
 /* ---- inverse_kinematics ---- */
-INLINE void inverse_kinematics_before(size_t w, const real *X, real *s, verdict *t)
+INLINE void inverse_kinematics_before(const prepared *m, size_t w, const real *X, real *s, verdict
+    *t)
 {
     for (size_t k = 0; k < w; ++k) {
-        /* X: named entries */
-        const real X_0 = X[0*w + k];
-        const real t_x = X_0;
-        const real X_1 = X[1*w + k];
-        const real t_y = X_1;
-        const real X_2 = X[2*w + k];
-        const real t_z = X_2;
-        const real X_3 = X[3*w + k];
-        const real X_4 = X[4*w + k];
-        const real X_5 = X[5*w + k];
-        const real X_6 = X[6*w + k];
-        const real quaternion_norm2 = X_3*X_3 + X_4*X_4 + X_5*X_5 + X_6*X_6;
-        const real quaternion_scale = 2/quaternion_norm2;
-        const real quaternion_sx = X_3*quaternion_scale;
-        const real quaternion_sy = X_4*quaternion_scale;
-        const real quaternion_sz = X_5*quaternion_scale;
-        const real quaternion_wx = X_6*quaternion_sx;
-        const real quaternion_wy = X_6*quaternion_sy;
-        const real quaternion_wz = X_6*quaternion_sz;
-        const real quaternion_xx = X_3*quaternion_sx;
-        const real quaternion_xy = X_3*quaternion_sy;
-        const real quaternion_xz = X_3*quaternion_sz;
-        const real quaternion_yy = X_4*quaternion_sy;
-        const real quaternion_yz = X_4*quaternion_sz;
-        const real quaternion_zz = X_5*quaternion_sz;
-        const real R_xx = 1 - quaternion_yy - quaternion_zz;
-        const real R_xy = quaternion_xy - quaternion_wz;
-        const real R_xz = quaternion_wy + quaternion_xz;
-        const real R_yx = quaternion_wz + quaternion_xy;
-        const real R_yy = 1 - quaternion_xx - quaternion_zz;
-        const real R_yz = quaternion_yz - quaternion_wx;
-        const real R_zx = quaternion_xz - quaternion_wy;
-        const real R_zy = quaternion_wx + quaternion_yz;
-        const real R_zz = 1 - quaternion_xx - quaternion_yy;
-        s[0*w + k] = t_x;
-        s[1*w + k] = t_y;
-        s[2*w + k] = t_z;
-        s[3*w + k] = R_xx;
-        s[4*w + k] = R_xy;
-        s[5*w + k] = R_xz;
-        s[6*w + k] = R_yx;
-        s[7*w + k] = R_yy;
-        s[8*w + k] = R_yz;
-        s[9*w + k] = R_zx;
-        s[10*w + k] = R_zy;
-        s[11*w + k] = R_zz;
-        t->invalid[k] += UNLESS(is_finite(quaternion_scale)) + UNLESS(quaternion_scale > 0);
+        values v;
+        stage_X(m, w, k, X, &v);
+        s[0*w + k] = v.R_xx;
+        s[1*w + k] = v.R_xy;
+        s[2*w + k] = v.R_xz;
+        s[3*w + k] = v.R_yx;
+        s[4*w + k] = v.R_yy;
+        s[5*w + k] = v.R_yz;
+        s[6*w + k] = v.R_zx;
+        s[7*w + k] = v.R_zy;
+        s[8*w + k] = v.R_zz;
+        t->invalid[k] += UNLESS(is_finite(v.quaternion_scale)) + UNLESS(v.quaternion_scale > 0);
     }
 }
 
 INLINE void inverse_kinematics_legs_ups(const prepared *m, size_t w, size_t leg, size_t legs,
-    const real *s, size_t states, size_t count, real *o)
+    const real *s, size_t states, size_t count, const real *X, real *o)
 {
     for (size_t k = 0; k < count; ++k) {
         const size_t i = leg + legs*k;
         const size_t j = states*k;
-        /* (ups-S) from the base point to the connection point */
-        const real R_xx = s[3*w + j];
-        const real R_xy = s[4*w + j];
-        const real R_xz = s[5*w + j];
-        const real t_x = s[0*w + j];
-        const real ups_base_point_x = m->ups_base_point_x[i];
-        const real ups_platform_point_x = m->ups_platform_point_x[i];
-        const real ups_platform_point_y = m->ups_platform_point_y[i];
-        const real ups_platform_point_z = m->ups_platform_point_z[i];
-        const real ups_S_x = t_x + R_xx*ups_platform_point_x + R_xy*ups_platform_point_y +
-            R_xz*ups_platform_point_z - ups_base_point_x;
-        const real R_yx = s[6*w + j];
-        const real R_yy = s[7*w + j];
-        const real R_yz = s[8*w + j];
-        const real t_y = s[1*w + j];
-        const real ups_base_point_y = m->ups_base_point_y[i];
-        const real ups_S_y = t_y + R_yx*ups_platform_point_x + R_yy*ups_platform_point_y +
-            R_yz*ups_platform_point_z - ups_base_point_y;
-        const real R_zx = s[9*w + j];
-        const real R_zy = s[10*w + j];
-        const real R_zz = s[11*w + j];
-        const real t_z = s[2*w + j];
-        const real ups_base_point_z = m->ups_base_point_z[i];
-        const real ups_S_z = t_z + R_zx*ups_platform_point_x + R_zy*ups_platform_point_y +
-            R_zz*ups_platform_point_z - ups_base_point_z;
-        /* (ups-px_1) component along the reference direction */
-        const real ups_base_frame_xx = m->ups_base_frame_xx[i];
-        const real ups_base_frame_yx = m->ups_base_frame_yx[i];
-        const real ups_base_frame_zx = m->ups_base_frame_zx[i];
-        const real ups_px_1 = ups_S_x*ups_base_frame_xx + ups_S_y*ups_base_frame_yx +
-            ups_S_z*ups_base_frame_zx;
-        /* (ups-py_1) component across the reference direction */
-        const real ups_base_frame_xy = m->ups_base_frame_xy[i];
-        const real ups_base_frame_yy = m->ups_base_frame_yy[i];
-        const real ups_base_frame_zy = m->ups_base_frame_zy[i];
-        const real ups_py_1 = ups_S_x*ups_base_frame_xy + ups_S_y*ups_base_frame_yy +
-            ups_S_z*ups_base_frame_zy;
-        /* (ups-rho2_1) squared amplitude */
-        const real ups_rho2_1 = ups_px_1*ups_px_1 + ups_py_1*ups_py_1;
-        /* (ups-root_1) amplitude, with the sign of the branch */
-        const real ups_branch_1 = m->ups_branch_1[i];
-        const real ups_root_1 = ups_branch_1*root(ups_rho2_1);
+        values_ups v;
+        stage_ups_inverse_kinematics_potential(m, w, i, j, s, X, &v);
         /* (ups-q_1) displacement of joint 1 */
-        const real inv_ups_root_1 = 1/ups_root_1;
-        const real ups_q_1 = angle(inv_ups_root_1*ups_py_1, inv_ups_root_1*ups_px_1);
-        /* (ups-xi_1) the vector from joint 1 to the connection point, resolved along link 1 */
-        const real ups_base_frame_xz = m->ups_base_frame_xz[i];
-        const real ups_base_frame_yz = m->ups_base_frame_yz[i];
-        const real ups_base_frame_zz = m->ups_base_frame_zz[i];
-        const real ups_xi_1_in_axes1_z = ups_S_x*ups_base_frame_xz + ups_S_y*ups_base_frame_yz +
-            ups_S_z*ups_base_frame_zz;
-        /* (ups-rho2_2) squared amplitude */
-        const real ups_rho2_2 = ups_rho2_1 + ups_xi_1_in_axes1_z*ups_xi_1_in_axes1_z;
-        /* (ups-root_2) amplitude, with the sign of the branch */
-        const real ups_branch_2 = m->ups_branch_2[i];
-        const real ups_root_2 = ups_branch_2*root(ups_rho2_2);
+        const real ups_q_1 = angle(v.inv_ups_root_1*v.ups_S_in_turn1_y,
+            v.inv_ups_root_1*v.ups_S_in_turn1_x);
         /* (ups-q_2) displacement of joint 2 */
-        const real inv_ups_root_2 = 1/ups_root_2;
-        const real ups_q_2 = angle(-inv_ups_root_2*ups_xi_1_in_axes1_z,
-            inv_ups_root_2*ups_root_1);
+        const real ups_q_2 = angle(-v.inv_ups_q_3*v.ups_S_in_turn1_z, v.inv_ups_q_3*v.ups_root_1);
         /* (ups-q_1) displacement of joint 1 */
         o[0*count + k] = ups_q_1;
         /* (ups-q_2) displacement of joint 2 */
         o[1*count + k] = ups_q_2;
         /* (ups-q_3) displacement of joint 3 */
-        o[2*count + k] = ups_root_2;
-        o[4*count + k] = ups_q_1 + (ups_q_2 + ups_root_2);
-        o[3*count + k] = UNLESS(magnitude(ups_rho2_1) > LEAST_1) + UNLESS(magnitude(ups_rho2_2) >
-            LEAST_1);
+        o[2*count + k] = v.ups_q_3;
+        o[4*count + k] = ups_q_1 + (ups_q_2 + v.ups_q_3);
+        o[3*count + k] = UNLESS(magnitude(v.ups_root_1_t) > LEAST_1) +
+            UNLESS(magnitude(v.ups_q_3_t) > LEAST_1);
     }
 }
 
@@ -3658,10 +3109,10 @@ INLINE void inverse_kinematics_place_ups(size_t w, size_t count, const real *o, 
 
 INLINE void inverse_kinematics_run(const prepared *m, const real *X, real *q, verdict *t)
 {
-    real s[12] = {0};
+    real s[9] = {0};
     real o_ups[5*LEGS(LEGS_OF_ups)] = {0};
-    inverse_kinematics_before(1, X, s, t);
-    inverse_kinematics_legs_ups(m, 1, 0, 1, s, 0, LEGS(LEGS_OF_ups), o_ups);
+    inverse_kinematics_before(m, 1, X, s, t);
+    inverse_kinematics_legs_ups(m, 1, 0, 1, s, 0, LEGS(LEGS_OF_ups), X, o_ups);
     for (size_t leg = 0; leg < LEGS_OF_ups; ++leg) {
         inverse_kinematics_place_ups(1, LEGS(LEGS_OF_ups), o_ups, leg, leg, q, t);
     }
@@ -3669,184 +3120,65 @@ INLINE void inverse_kinematics_run(const prepared *m, const real *X, real *q, ve
 
 INLINE void inverse_kinematics_run_lanes(const prepared *m, const real *X, real *q, verdict *t)
 {
-    real s[12*LANES];
+    real s[9*LANES];
     real o_ups[5*LANES];
-    inverse_kinematics_before(LANES, X, s, t);
+    inverse_kinematics_before(m, LANES, X, s, t);
     for (size_t leg = 0; leg < LEGS_OF_ups; ++leg) {
-        inverse_kinematics_legs_ups(m, LANES, leg, 0, s, 1, LANES, o_ups);
+        inverse_kinematics_legs_ups(m, LANES, leg, 0, s, 1, LANES, X, o_ups);
         inverse_kinematics_place_ups(LANES, LANES, o_ups, leg, 0, q, t);
     }
 }
 
 /* ---- joint_rates ---- */
-INLINE void joint_rates_before(size_t w, const real *X, const real *V, real *s, verdict *t)
+INLINE void joint_rates_before(const prepared *m, size_t w, const real *X, real *s, verdict *t)
 {
     for (size_t k = 0; k < w; ++k) {
-        /* X: named entries */
-        const real X_0 = X[0*w + k];
-        const real t_x = X_0;
-        const real X_1 = X[1*w + k];
-        const real t_y = X_1;
-        const real X_2 = X[2*w + k];
-        const real t_z = X_2;
-        const real X_3 = X[3*w + k];
-        const real X_4 = X[4*w + k];
-        const real X_5 = X[5*w + k];
-        const real X_6 = X[6*w + k];
-        const real quaternion_norm2 = X_3*X_3 + X_4*X_4 + X_5*X_5 + X_6*X_6;
-        const real quaternion_scale = 2/quaternion_norm2;
-        const real quaternion_sx = X_3*quaternion_scale;
-        const real quaternion_sy = X_4*quaternion_scale;
-        const real quaternion_sz = X_5*quaternion_scale;
-        const real quaternion_wx = X_6*quaternion_sx;
-        const real quaternion_wy = X_6*quaternion_sy;
-        const real quaternion_wz = X_6*quaternion_sz;
-        const real quaternion_xx = X_3*quaternion_sx;
-        const real quaternion_xy = X_3*quaternion_sy;
-        const real quaternion_xz = X_3*quaternion_sz;
-        const real quaternion_yy = X_4*quaternion_sy;
-        const real quaternion_yz = X_4*quaternion_sz;
-        const real quaternion_zz = X_5*quaternion_sz;
-        const real R_xx = 1 - quaternion_yy - quaternion_zz;
-        const real R_xy = quaternion_xy - quaternion_wz;
-        const real R_xz = quaternion_wy + quaternion_xz;
-        const real R_yx = quaternion_wz + quaternion_xy;
-        const real R_yy = 1 - quaternion_xx - quaternion_zz;
-        const real R_yz = quaternion_yz - quaternion_wx;
-        const real R_zx = quaternion_xz - quaternion_wy;
-        const real R_zy = quaternion_wx + quaternion_yz;
-        const real R_zz = 1 - quaternion_xx - quaternion_yy;
-        /* V: named entries */
-        const real V_0 = V[0*w + k];
-        const real t_dot_x = V_0;
-        const real V_1 = V[1*w + k];
-        const real t_dot_y = V_1;
-        const real V_2 = V[2*w + k];
-        const real t_dot_z = V_2;
-        const real V_3 = V[3*w + k];
-        const real omega_x = V_3;
-        const real V_4 = V[4*w + k];
-        const real omega_y = V_4;
-        const real V_5 = V[5*w + k];
-        const real omega_z = V_5;
-        s[0*w + k] = t_x;
-        s[1*w + k] = t_y;
-        s[2*w + k] = t_z;
-        s[3*w + k] = R_xx;
-        s[4*w + k] = R_xy;
-        s[5*w + k] = R_xz;
-        s[6*w + k] = R_yx;
-        s[7*w + k] = R_yy;
-        s[8*w + k] = R_yz;
-        s[9*w + k] = R_zx;
-        s[10*w + k] = R_zy;
-        s[11*w + k] = R_zz;
-        s[12*w + k] = t_dot_x;
-        s[13*w + k] = t_dot_y;
-        s[14*w + k] = t_dot_z;
-        s[15*w + k] = omega_x;
-        s[16*w + k] = omega_y;
-        s[17*w + k] = omega_z;
-        t->invalid[k] += UNLESS(is_finite(quaternion_scale)) + UNLESS(quaternion_scale > 0);
+        values v;
+        stage_X(m, w, k, X, &v);
+        s[0*w + k] = v.R_xx;
+        s[1*w + k] = v.R_xy;
+        s[2*w + k] = v.R_xz;
+        s[3*w + k] = v.R_yx;
+        s[4*w + k] = v.R_yy;
+        s[5*w + k] = v.R_yz;
+        s[6*w + k] = v.R_zx;
+        s[7*w + k] = v.R_zy;
+        s[8*w + k] = v.R_zz;
+        t->invalid[k] += UNLESS(is_finite(v.quaternion_scale)) + UNLESS(v.quaternion_scale > 0);
     }
 }
 
 INLINE void joint_rates_legs_ups(const prepared *m, size_t w, size_t leg, size_t legs, const real
-    *s, size_t states, size_t count, real *o)
+    *s, size_t states, size_t count, const real *X, const real *V, real *o)
 {
     for (size_t k = 0; k < count; ++k) {
         const size_t i = leg + legs*k;
         const size_t j = states*k;
-        /* (ups-S) from the base point to the connection point */
-        const real R_xx = s[3*w + j];
-        const real R_xy = s[4*w + j];
-        const real R_xz = s[5*w + j];
-        const real ups_platform_point_x = m->ups_platform_point_x[i];
-        const real ups_platform_point_y = m->ups_platform_point_y[i];
-        const real ups_platform_point_z = m->ups_platform_point_z[i];
-        const real ups_q_x = R_xx*ups_platform_point_x + R_xy*ups_platform_point_y +
-            R_xz*ups_platform_point_z;
-        const real R_yx = s[6*w + j];
-        const real R_yy = s[7*w + j];
-        const real R_yz = s[8*w + j];
-        const real ups_q_y = R_yx*ups_platform_point_x + R_yy*ups_platform_point_y +
-            R_yz*ups_platform_point_z;
-        const real R_zx = s[9*w + j];
-        const real R_zy = s[10*w + j];
-        const real R_zz = s[11*w + j];
-        const real ups_q_z = R_zx*ups_platform_point_x + R_zy*ups_platform_point_y +
-            R_zz*ups_platform_point_z;
-        const real t_x = s[0*w + j];
-        const real ups_base_point_x = m->ups_base_point_x[i];
-        const real ups_S_x = t_x + ups_q_x - ups_base_point_x;
-        const real t_y = s[1*w + j];
-        const real ups_base_point_y = m->ups_base_point_y[i];
-        const real ups_S_y = t_y + ups_q_y - ups_base_point_y;
-        const real t_z = s[2*w + j];
-        const real ups_base_point_z = m->ups_base_point_z[i];
-        const real ups_S_z = t_z + ups_q_z - ups_base_point_z;
-        /* (ups-px_1) component along the reference direction */
-        const real ups_base_frame_xx = m->ups_base_frame_xx[i];
-        const real ups_base_frame_yx = m->ups_base_frame_yx[i];
-        const real ups_base_frame_zx = m->ups_base_frame_zx[i];
-        const real ups_px_1 = ups_S_x*ups_base_frame_xx + ups_S_y*ups_base_frame_yx +
-            ups_S_z*ups_base_frame_zx;
-        /* (ups-py_1) component across the reference direction */
-        const real ups_base_frame_xy = m->ups_base_frame_xy[i];
-        const real ups_base_frame_yy = m->ups_base_frame_yy[i];
-        const real ups_base_frame_zy = m->ups_base_frame_zy[i];
-        const real ups_py_1 = ups_S_x*ups_base_frame_xy + ups_S_y*ups_base_frame_yy +
-            ups_S_z*ups_base_frame_zy;
-        /* (ups-rho2_1) squared amplitude */
-        const real ups_rho2_1 = ups_px_1*ups_px_1 + ups_py_1*ups_py_1;
-        /* (ups-root_1) amplitude, with the sign of the branch */
-        const real ups_branch_1 = m->ups_branch_1[i];
-        const real ups_root_1 = ups_branch_1*root(ups_rho2_1);
-        /* (ups-c_1) cosine of the angle of joint 1 from its reference direction */
-        const real inv_ups_root_1 = 1/ups_root_1;
-        const real ups_c_1 = -inv_ups_root_1*ups_py_1;
-        /* (ups-s_1) sine of the angle of joint 1 from its reference direction */
-        const real ups_s_1 = inv_ups_root_1*ups_px_1;
-        /* (ups-xi_1) the vector from joint 1 to the connection point, resolved along link 1 */
-        const real ups_base_frame_xz = m->ups_base_frame_xz[i];
-        const real ups_base_frame_yz = m->ups_base_frame_yz[i];
-        const real ups_base_frame_zz = m->ups_base_frame_zz[i];
-        const real ups_xi_1_in_axes1_z = ups_S_x*ups_base_frame_xz + ups_S_y*ups_base_frame_yz +
-            ups_S_z*ups_base_frame_zz;
-        /* (ups-rho2_2) squared amplitude */
-        const real ups_rho2_2 = ups_rho2_1 + ups_xi_1_in_axes1_z*ups_xi_1_in_axes1_z;
-        /* (ups-root_2) amplitude, with the sign of the branch */
-        const real ups_branch_2 = m->ups_branch_2[i];
-        const real ups_root_2 = ups_branch_2*root(ups_rho2_2);
+        values_ups v;
+        stage_ups_X(m, w, i, j, s, X, &v);
         /* (ups-S_dot) velocity of the connection point */
-        const real inv_ups_root_2 = 1/ups_root_2;
-        const real axis_x_ups_axes2_x = inv_ups_root_2*ups_S_x;
-        const real axis_x_ups_axes2_y = inv_ups_root_2*ups_S_y;
-        const real axis_x_ups_axes2_z = inv_ups_root_2*ups_S_z;
-        const real omega_y = s[16*w + j];
-        const real omega_z = s[17*w + j];
-        const real t_dot_x = s[12*w + j];
-        const real ups_S_dot_x = t_dot_x + omega_y*ups_q_z - omega_z*ups_q_y;
-        const real omega_x = s[15*w + j];
-        const real t_dot_y = s[13*w + j];
-        const real ups_S_dot_y = t_dot_y + omega_z*ups_q_x - omega_x*ups_q_z;
-        const real t_dot_z = s[14*w + j];
-        const real ups_S_dot_z = t_dot_z + omega_x*ups_q_y - omega_y*ups_q_x;
-        const real ups_S_dot_in_axes2_x = axis_x_ups_axes2_x*ups_S_dot_x +
-            axis_x_ups_axes2_y*ups_S_dot_y + axis_x_ups_axes2_z*ups_S_dot_z;
+        const real omega_y = V[4*w + j];
+        const real omega_z = V[5*w + j];
+        const real t_dot_x = V[0*w + j];
+        const real ups_S_dot_x = t_dot_x + omega_y*v.ups_q_z - omega_z*v.ups_q_y;
+        const real omega_x = V[3*w + j];
+        const real t_dot_y = V[1*w + j];
+        const real ups_S_dot_y = t_dot_y + omega_z*v.ups_q_x - omega_x*v.ups_q_z;
+        const real t_dot_z = V[2*w + j];
+        const real ups_S_dot_z = t_dot_z + omega_x*v.ups_q_y - omega_y*v.ups_q_x;
+        const real ups_S_dot_in_axes2_x = v.axis_x_ups_axes2_x*ups_S_dot_x +
+            v.axis_x_ups_axes2_y*ups_S_dot_y + v.axis_x_ups_axes2_z*ups_S_dot_z;
         /* (ups-qd_1) rate of joint 1 */
-        const real axis_z_ups_axes2_x = ups_base_frame_xx*ups_c_1 + ups_base_frame_xy*ups_s_1;
-        const real axis_z_ups_axes2_y = ups_base_frame_yx*ups_c_1 + ups_base_frame_yy*ups_s_1;
-        const real axis_z_ups_axes2_z = ups_base_frame_zx*ups_c_1 + ups_base_frame_zy*ups_s_1;
-        const real ups_qd_1 = inv_ups_root_1*(axis_z_ups_axes2_x*ups_S_dot_x +
-            axis_z_ups_axes2_y*ups_S_dot_y + axis_z_ups_axes2_z*ups_S_dot_z);
+        const real ups_qd_1 = v.inv_ups_root_1*(v.axis_z_ups_axes2_x*ups_S_dot_x +
+            v.axis_z_ups_axes2_y*ups_S_dot_y + v.axis_z_ups_axes2_z*ups_S_dot_z);
         /* (ups-qd_2) rate of joint 2 */
-        const real ups_qd_2 = inv_ups_root_2*(ups_S_dot_x*(axis_x_ups_axes2_z*axis_z_ups_axes2_y -
-            axis_x_ups_axes2_y*axis_z_ups_axes2_z) +
-            ups_S_dot_y*(axis_x_ups_axes2_x*axis_z_ups_axes2_z -
-            axis_x_ups_axes2_z*axis_z_ups_axes2_x) +
-            ups_S_dot_z*(axis_x_ups_axes2_y*axis_z_ups_axes2_x -
-            axis_x_ups_axes2_x*axis_z_ups_axes2_y));
+        const real ups_qd_2 =
+            v.inv_ups_q_3*(ups_S_dot_x*(v.axis_x_ups_axes2_z*v.axis_z_ups_axes2_y -
+            v.axis_x_ups_axes2_y*v.axis_z_ups_axes2_z) +
+            ups_S_dot_y*(v.axis_x_ups_axes2_x*v.axis_z_ups_axes2_z -
+            v.axis_x_ups_axes2_z*v.axis_z_ups_axes2_x) +
+            ups_S_dot_z*(v.axis_x_ups_axes2_y*v.axis_z_ups_axes2_x -
+            v.axis_x_ups_axes2_x*v.axis_z_ups_axes2_y));
         /* (ups-qd_1) rate of joint 1 */
         o[0*count + k] = ups_qd_1;
         /* (ups-qd_2) rate of joint 2 */
@@ -3854,9 +3186,9 @@ INLINE void joint_rates_legs_ups(const prepared *m, size_t w, size_t leg, size_t
         /* (ups-qd_3) rate of joint 3 */
         o[2*count + k] = ups_S_dot_in_axes2_x;
         o[4*count + k] = ups_qd_1 + (ups_qd_2 + ups_S_dot_in_axes2_x);
-        o[3*count + k] = UNLESS(magnitude(ups_rho2_1) > LEAST_1) + UNLESS(magnitude(ups_rho2_2) >
-            LEAST_1) + UNLESS(magnitude(ups_root_1) > LEAST_2) + UNLESS(magnitude(ups_root_2) >
-            LEAST_2);
+        o[3*count + k] = UNLESS(magnitude(v.ups_root_1_t) > LEAST_1) +
+            UNLESS(magnitude(v.ups_q_3_t) > LEAST_1) + UNLESS(magnitude(v.ups_root_1) > LEAST_2) +
+            UNLESS(magnitude(v.ups_q_3) > LEAST_2);
     }
 }
 
@@ -3874,10 +3206,10 @@ INLINE void joint_rates_place_ups(size_t w, size_t count, const real *o, size_t 
 
 INLINE void joint_rates_run(const prepared *m, const real *X, const real *V, real *qd, verdict *t)
 {
-    real s[18] = {0};
+    real s[9] = {0};
     real o_ups[5*LEGS(LEGS_OF_ups)] = {0};
-    joint_rates_before(1, X, V, s, t);
-    joint_rates_legs_ups(m, 1, 0, 1, s, 0, LEGS(LEGS_OF_ups), o_ups);
+    joint_rates_before(m, 1, X, s, t);
+    joint_rates_legs_ups(m, 1, 0, 1, s, 0, LEGS(LEGS_OF_ups), X, V, o_ups);
     for (size_t leg = 0; leg < LEGS_OF_ups; ++leg) {
         joint_rates_place_ups(1, LEGS(LEGS_OF_ups), o_ups, leg, leg, qd, t);
     }
@@ -3886,243 +3218,66 @@ INLINE void joint_rates_run(const prepared *m, const real *X, const real *V, rea
 INLINE void joint_rates_run_lanes(const prepared *m, const real *X, const real *V, real *qd,
     verdict *t)
 {
-    real s[18*LANES];
+    real s[9*LANES];
     real o_ups[5*LANES];
-    joint_rates_before(LANES, X, V, s, t);
+    joint_rates_before(m, LANES, X, s, t);
     for (size_t leg = 0; leg < LEGS_OF_ups; ++leg) {
-        joint_rates_legs_ups(m, LANES, leg, 0, s, 1, LANES, o_ups);
+        joint_rates_legs_ups(m, LANES, leg, 0, s, 1, LANES, X, V, o_ups);
         joint_rates_place_ups(LANES, LANES, o_ups, leg, 0, qd, t);
     }
 }
 
 /* ---- joint_accelerations ---- */
-INLINE void joint_accelerations_before(size_t w, const real *X, const real *V, const real *A, real
-    *s, verdict *t)
+INLINE void joint_accelerations_before(const prepared *m, size_t w, const real *X, real *s,
+    verdict *t)
 {
     for (size_t k = 0; k < w; ++k) {
-        /* X: named entries */
-        const real X_0 = X[0*w + k];
-        const real t_x = X_0;
-        const real X_1 = X[1*w + k];
-        const real t_y = X_1;
-        const real X_2 = X[2*w + k];
-        const real t_z = X_2;
-        const real X_3 = X[3*w + k];
-        const real X_4 = X[4*w + k];
-        const real X_5 = X[5*w + k];
-        const real X_6 = X[6*w + k];
-        const real quaternion_norm2 = X_3*X_3 + X_4*X_4 + X_5*X_5 + X_6*X_6;
-        const real quaternion_scale = 2/quaternion_norm2;
-        const real quaternion_sx = X_3*quaternion_scale;
-        const real quaternion_sy = X_4*quaternion_scale;
-        const real quaternion_sz = X_5*quaternion_scale;
-        const real quaternion_wx = X_6*quaternion_sx;
-        const real quaternion_wy = X_6*quaternion_sy;
-        const real quaternion_wz = X_6*quaternion_sz;
-        const real quaternion_xx = X_3*quaternion_sx;
-        const real quaternion_xy = X_3*quaternion_sy;
-        const real quaternion_xz = X_3*quaternion_sz;
-        const real quaternion_yy = X_4*quaternion_sy;
-        const real quaternion_yz = X_4*quaternion_sz;
-        const real quaternion_zz = X_5*quaternion_sz;
-        const real R_xx = 1 - quaternion_yy - quaternion_zz;
-        const real R_xy = quaternion_xy - quaternion_wz;
-        const real R_xz = quaternion_wy + quaternion_xz;
-        const real R_yx = quaternion_wz + quaternion_xy;
-        const real R_yy = 1 - quaternion_xx - quaternion_zz;
-        const real R_yz = quaternion_yz - quaternion_wx;
-        const real R_zx = quaternion_xz - quaternion_wy;
-        const real R_zy = quaternion_wx + quaternion_yz;
-        const real R_zz = 1 - quaternion_xx - quaternion_yy;
-        /* V: named entries */
-        const real V_0 = V[0*w + k];
-        const real t_dot_x = V_0;
-        const real V_1 = V[1*w + k];
-        const real t_dot_y = V_1;
-        const real V_2 = V[2*w + k];
-        const real t_dot_z = V_2;
-        const real V_3 = V[3*w + k];
-        const real omega_x = V_3;
-        const real V_4 = V[4*w + k];
-        const real omega_y = V_4;
-        const real V_5 = V[5*w + k];
-        const real omega_z = V_5;
-        /* A: named entries */
-        const real A_0 = A[0*w + k];
-        const real t_ddot_x = A_0;
-        const real A_1 = A[1*w + k];
-        const real t_ddot_y = A_1;
-        const real A_2 = A[2*w + k];
-        const real t_ddot_z = A_2;
-        const real A_3 = A[3*w + k];
-        const real alpha_x = A_3;
-        const real A_4 = A[4*w + k];
-        const real alpha_y = A_4;
-        const real A_5 = A[5*w + k];
-        const real alpha_z = A_5;
-        s[0*w + k] = t_x;
-        s[1*w + k] = t_y;
-        s[2*w + k] = t_z;
-        s[3*w + k] = R_xx;
-        s[4*w + k] = R_xy;
-        s[5*w + k] = R_xz;
-        s[6*w + k] = R_yx;
-        s[7*w + k] = R_yy;
-        s[8*w + k] = R_yz;
-        s[9*w + k] = R_zx;
-        s[10*w + k] = R_zy;
-        s[11*w + k] = R_zz;
-        s[12*w + k] = t_dot_x;
-        s[13*w + k] = t_dot_y;
-        s[14*w + k] = t_dot_z;
-        s[15*w + k] = omega_x;
-        s[16*w + k] = omega_y;
-        s[17*w + k] = omega_z;
-        s[18*w + k] = t_ddot_x;
-        s[19*w + k] = t_ddot_y;
-        s[20*w + k] = t_ddot_z;
-        s[21*w + k] = alpha_x;
-        s[22*w + k] = alpha_y;
-        s[23*w + k] = alpha_z;
-        t->invalid[k] += UNLESS(is_finite(quaternion_scale)) + UNLESS(quaternion_scale > 0);
+        values v;
+        stage_X(m, w, k, X, &v);
+        s[0*w + k] = v.R_xx;
+        s[1*w + k] = v.R_xy;
+        s[2*w + k] = v.R_xz;
+        s[3*w + k] = v.R_yx;
+        s[4*w + k] = v.R_yy;
+        s[5*w + k] = v.R_yz;
+        s[6*w + k] = v.R_zx;
+        s[7*w + k] = v.R_zy;
+        s[8*w + k] = v.R_zz;
+        t->invalid[k] += UNLESS(is_finite(v.quaternion_scale)) + UNLESS(v.quaternion_scale > 0);
     }
 }
 
 INLINE void joint_accelerations_legs_ups(const prepared *m, size_t w, size_t leg, size_t legs,
-    const real *s, size_t states, size_t count, real *o)
+    const real *s, size_t states, size_t count, const real *X, const real *V, const real *A, real
+    *o)
 {
     for (size_t k = 0; k < count; ++k) {
         const size_t i = leg + legs*k;
         const size_t j = states*k;
-        /* (ups-S) from the base point to the connection point */
-        const real R_xx = s[3*w + j];
-        const real R_xy = s[4*w + j];
-        const real R_xz = s[5*w + j];
-        const real ups_platform_point_x = m->ups_platform_point_x[i];
-        const real ups_platform_point_y = m->ups_platform_point_y[i];
-        const real ups_platform_point_z = m->ups_platform_point_z[i];
-        const real ups_q_x = R_xx*ups_platform_point_x + R_xy*ups_platform_point_y +
-            R_xz*ups_platform_point_z;
-        const real R_yx = s[6*w + j];
-        const real R_yy = s[7*w + j];
-        const real R_yz = s[8*w + j];
-        const real ups_q_y = R_yx*ups_platform_point_x + R_yy*ups_platform_point_y +
-            R_yz*ups_platform_point_z;
-        const real R_zx = s[9*w + j];
-        const real R_zy = s[10*w + j];
-        const real R_zz = s[11*w + j];
-        const real ups_q_z = R_zx*ups_platform_point_x + R_zy*ups_platform_point_y +
-            R_zz*ups_platform_point_z;
-        const real t_x = s[0*w + j];
-        const real ups_base_point_x = m->ups_base_point_x[i];
-        const real ups_S_x = t_x + ups_q_x - ups_base_point_x;
-        const real t_y = s[1*w + j];
-        const real ups_base_point_y = m->ups_base_point_y[i];
-        const real ups_S_y = t_y + ups_q_y - ups_base_point_y;
-        const real t_z = s[2*w + j];
-        const real ups_base_point_z = m->ups_base_point_z[i];
-        const real ups_S_z = t_z + ups_q_z - ups_base_point_z;
-        /* (ups-px_1) component along the reference direction */
-        const real ups_base_frame_xx = m->ups_base_frame_xx[i];
-        const real ups_base_frame_yx = m->ups_base_frame_yx[i];
-        const real ups_base_frame_zx = m->ups_base_frame_zx[i];
-        const real ups_px_1 = ups_S_x*ups_base_frame_xx + ups_S_y*ups_base_frame_yx +
-            ups_S_z*ups_base_frame_zx;
-        /* (ups-py_1) component across the reference direction */
-        const real ups_base_frame_xy = m->ups_base_frame_xy[i];
-        const real ups_base_frame_yy = m->ups_base_frame_yy[i];
-        const real ups_base_frame_zy = m->ups_base_frame_zy[i];
-        const real ups_py_1 = ups_S_x*ups_base_frame_xy + ups_S_y*ups_base_frame_yy +
-            ups_S_z*ups_base_frame_zy;
-        /* (ups-rho2_1) squared amplitude */
-        const real ups_rho2_1 = ups_px_1*ups_px_1 + ups_py_1*ups_py_1;
-        /* (ups-root_1) amplitude, with the sign of the branch */
-        const real ups_branch_1 = m->ups_branch_1[i];
-        const real ups_root_1 = ups_branch_1*root(ups_rho2_1);
-        /* (ups-c_1) cosine of the angle of joint 1 from its reference direction */
-        const real inv_ups_root_1 = 1/ups_root_1;
-        const real ups_c_1 = -inv_ups_root_1*ups_py_1;
-        /* (ups-s_1) sine of the angle of joint 1 from its reference direction */
-        const real ups_s_1 = inv_ups_root_1*ups_px_1;
-        /* (ups-xi_1) the vector from joint 1 to the connection point, resolved along link 1 */
-        const real ups_base_frame_xz = m->ups_base_frame_xz[i];
-        const real ups_base_frame_yz = m->ups_base_frame_yz[i];
-        const real ups_base_frame_zz = m->ups_base_frame_zz[i];
-        const real ups_xi_1_in_axes1_z = ups_S_x*ups_base_frame_xz + ups_S_y*ups_base_frame_yz +
-            ups_S_z*ups_base_frame_zz;
-        /* (ups-rho2_2) squared amplitude */
-        const real ups_rho2_2 = ups_rho2_1 + ups_xi_1_in_axes1_z*ups_xi_1_in_axes1_z;
-        /* (ups-root_2) amplitude, with the sign of the branch */
-        const real ups_branch_2 = m->ups_branch_2[i];
-        const real ups_root_2 = ups_branch_2*root(ups_rho2_2);
-        /* (ups-S_dot) velocity of the connection point */
-        const real inv_ups_root_2 = 1/ups_root_2;
-        const real axis_x_ups_axes2_x = inv_ups_root_2*ups_S_x;
-        const real axis_x_ups_axes2_y = inv_ups_root_2*ups_S_y;
-        const real axis_x_ups_axes2_z = inv_ups_root_2*ups_S_z;
-        const real omega_y = s[16*w + j];
-        const real omega_z = s[17*w + j];
-        const real ups_S_dot_t = omega_y*ups_q_z - omega_z*ups_q_y;
-        const real omega_x = s[15*w + j];
-        const real ups_S_dot_t_2 = omega_z*ups_q_x - omega_x*ups_q_z;
-        const real ups_S_dot_t_3 = omega_x*ups_q_y - omega_y*ups_q_x;
-        const real t_dot_x = s[12*w + j];
-        const real ups_S_dot_x = t_dot_x + ups_S_dot_t;
-        const real t_dot_y = s[13*w + j];
-        const real ups_S_dot_y = t_dot_y + ups_S_dot_t_2;
-        const real t_dot_z = s[14*w + j];
-        const real ups_S_dot_z = t_dot_z + ups_S_dot_t_3;
-        const real ups_S_dot_in_axes2_x = axis_x_ups_axes2_x*ups_S_dot_x +
-            axis_x_ups_axes2_y*ups_S_dot_y + axis_x_ups_axes2_z*ups_S_dot_z;
-        /* (ups-qd_1) rate of joint 1 */
-        const real axis_z_ups_axes2_x = ups_base_frame_xx*ups_c_1 + ups_base_frame_xy*ups_s_1;
-        const real axis_z_ups_axes2_y = ups_base_frame_yx*ups_c_1 + ups_base_frame_yy*ups_s_1;
-        const real axis_z_ups_axes2_z = ups_base_frame_zx*ups_c_1 + ups_base_frame_zy*ups_s_1;
-        const real ups_qd_1 = inv_ups_root_1*(axis_z_ups_axes2_x*ups_S_dot_x +
-            axis_z_ups_axes2_y*ups_S_dot_y + axis_z_ups_axes2_z*ups_S_dot_z);
-        /* (ups-qd_2) rate of joint 2 */
-        const real axis_y_ups_axes2_x = axis_x_ups_axes2_z*axis_z_ups_axes2_y -
-            axis_x_ups_axes2_y*axis_z_ups_axes2_z;
-        const real axis_y_ups_axes2_y = axis_x_ups_axes2_x*axis_z_ups_axes2_z -
-            axis_x_ups_axes2_z*axis_z_ups_axes2_x;
-        const real axis_y_ups_axes2_z = axis_x_ups_axes2_y*axis_z_ups_axes2_x -
-            axis_x_ups_axes2_x*axis_z_ups_axes2_y;
-        const real ups_qd_2 = inv_ups_root_2*(axis_y_ups_axes2_x*ups_S_dot_x +
-            axis_y_ups_axes2_y*ups_S_dot_y + axis_y_ups_axes2_z*ups_S_dot_z);
+        values_ups v;
+        stage_ups_X(m, w, i, j, s, X, &v);
+        stage_ups_A_X(w, j, A, &v);
+        stage_ups_V_X(w, j, V, &v);
+        stage_ups_A_V_X(w, j, V, &v);
         /* (ups-omega_1) angular velocity of link 1 */
-        const real ups_omega_1_in_axes2_x = inv_ups_root_2*ups_qd_1*ups_xi_1_in_axes1_z;
-        const real ups_omega_1_in_axes2_y = -inv_ups_root_2*ups_qd_1*ups_root_1;
-        /* (ups-a_p) acceleration of the connection point without its centripetal part */
-        const real alpha_y = s[22*w + j];
-        const real alpha_z = s[23*w + j];
-        const real t_ddot_x = s[18*w + j];
-        const real ups_a_p_x = t_ddot_x + alpha_y*ups_q_z - alpha_z*ups_q_y;
-        const real alpha_x = s[21*w + j];
-        const real t_ddot_y = s[19*w + j];
-        const real ups_a_p_y = t_ddot_y + alpha_z*ups_q_x - alpha_x*ups_q_z;
-        const real t_ddot_z = s[20*w + j];
-        const real ups_a_p_z = t_ddot_z + alpha_x*ups_q_y - alpha_y*ups_q_x;
-        /* (ups-S_ddot) acceleration of the connection point */
-        const real ups_S_ddot_x = ups_a_p_x + omega_y*ups_S_dot_t_3 - omega_z*ups_S_dot_t_2;
-        const real ups_S_ddot_y = ups_a_p_y + omega_z*ups_S_dot_t - omega_x*ups_S_dot_t_3;
-        const real ups_S_ddot_z = ups_a_p_z + omega_x*ups_S_dot_t_2 - omega_y*ups_S_dot_t;
+        const real ups_omega_1_in_axes2_x = v.inv_ups_q_3*v.ups_S_in_turn1_z*v.ups_qd_1;
+        const real ups_omega_1_in_axes2_y = -v.inv_ups_q_3*v.ups_qd_1*v.ups_root_1;
         /* (ups-bias) acceleration of the connection point at zero joint accelerations */
-        const real ups_bias_t = 2*ups_S_dot_in_axes2_x;
-        const real ups_bias_in_axes2_z = 2*ups_omega_1_in_axes2_x*ups_qd_2*ups_root_2 -
-            ups_bias_t*ups_omega_1_in_axes2_y;
+        const real ups_bias_in_axes2_z = 2*ups_omega_1_in_axes2_x*v.ups_q_3*v.ups_qd_2 -
+            v.ups_bias_t*ups_omega_1_in_axes2_y;
         /* (ups-rel) acceleration of the connection point left to the joint accelerations */
-        const real ups_rel_in_axes2_x = axis_x_ups_axes2_x*ups_S_ddot_x +
-            axis_x_ups_axes2_y*ups_S_ddot_y + axis_x_ups_axes2_z*ups_S_ddot_z -
-            ups_root_2*(-ups_omega_1_in_axes2_y*ups_omega_1_in_axes2_y - ups_qd_2*ups_qd_2);
-        const real ups_rel_in_axes2_z = axis_z_ups_axes2_x*ups_S_ddot_x +
-            axis_z_ups_axes2_y*ups_S_ddot_y + axis_z_ups_axes2_z*ups_S_ddot_z -
+        const real ups_rel_in_axes2_x = v.axis_x_ups_axes2_x*v.ups_S_ddot_x +
+            v.axis_x_ups_axes2_y*v.ups_S_ddot_y + v.axis_x_ups_axes2_z*v.ups_S_ddot_z -
+            v.ups_q_3*(-ups_omega_1_in_axes2_y*ups_omega_1_in_axes2_y - v.ups_qd_2*v.ups_qd_2);
+        const real ups_rel_in_axes2_z = v.axis_z_ups_axes2_x*v.ups_S_ddot_x +
+            v.axis_z_ups_axes2_y*v.ups_S_ddot_y + v.axis_z_ups_axes2_z*v.ups_S_ddot_z -
             ups_bias_in_axes2_z;
         /* (ups-qdd_1) acceleration of joint 1 */
-        const real ups_qdd_1 = inv_ups_root_1*ups_rel_in_axes2_z;
+        const real ups_qdd_1 = v.inv_ups_root_1*ups_rel_in_axes2_z;
         /* (ups-qdd_2) acceleration of joint 2 */
-        const real ups_qdd_2 = inv_ups_root_2*(axis_y_ups_axes2_x*ups_S_ddot_x +
-            axis_y_ups_axes2_y*ups_S_ddot_y + axis_y_ups_axes2_z*ups_S_ddot_z -
-            ups_bias_t*ups_qd_2) - ups_omega_1_in_axes2_x*ups_omega_1_in_axes2_y;
+        const real ups_qdd_2 = v.inv_ups_q_3*(v.axis_y_ups_axes2_x*v.ups_S_ddot_x +
+            v.axis_y_ups_axes2_y*v.ups_S_ddot_y + v.axis_y_ups_axes2_z*v.ups_S_ddot_z -
+            v.ups_bias_t*v.ups_qd_2) - ups_omega_1_in_axes2_x*ups_omega_1_in_axes2_y;
         /* (ups-qdd_1) acceleration of joint 1 */
         o[0*count + k] = ups_qdd_1;
         /* (ups-qdd_2) acceleration of joint 2 */
@@ -4130,9 +3285,9 @@ INLINE void joint_accelerations_legs_ups(const prepared *m, size_t w, size_t leg
         /* (ups-qdd_3) acceleration of joint 3 */
         o[2*count + k] = ups_rel_in_axes2_x;
         o[4*count + k] = ups_qdd_1 + (ups_qdd_2 + ups_rel_in_axes2_x);
-        o[3*count + k] = UNLESS(magnitude(ups_rho2_1) > LEAST_1) + UNLESS(magnitude(ups_rho2_2) >
-            LEAST_1) + UNLESS(magnitude(ups_root_1) > LEAST_2) + UNLESS(magnitude(ups_root_2) >
-            LEAST_2);
+        o[3*count + k] = UNLESS(magnitude(v.ups_root_1_t) > LEAST_1) +
+            UNLESS(magnitude(v.ups_q_3_t) > LEAST_1) + UNLESS(magnitude(v.ups_root_1) > LEAST_2) +
+            UNLESS(magnitude(v.ups_q_3) > LEAST_2);
     }
 }
 
@@ -4151,10 +3306,10 @@ INLINE void joint_accelerations_place_ups(size_t w, size_t count, const real *o,
 INLINE void joint_accelerations_run(const prepared *m, const real *X, const real *V, const real
     *A, real *qdd, verdict *t)
 {
-    real s[24] = {0};
+    real s[9] = {0};
     real o_ups[5*LEGS(LEGS_OF_ups)] = {0};
-    joint_accelerations_before(1, X, V, A, s, t);
-    joint_accelerations_legs_ups(m, 1, 0, 1, s, 0, LEGS(LEGS_OF_ups), o_ups);
+    joint_accelerations_before(m, 1, X, s, t);
+    joint_accelerations_legs_ups(m, 1, 0, 1, s, 0, LEGS(LEGS_OF_ups), X, V, A, o_ups);
     for (size_t leg = 0; leg < LEGS_OF_ups; ++leg) {
         joint_accelerations_place_ups(1, LEGS(LEGS_OF_ups), o_ups, leg, leg, qdd, t);
     }
@@ -4163,276 +3318,49 @@ INLINE void joint_accelerations_run(const prepared *m, const real *X, const real
 INLINE void joint_accelerations_run_lanes(const prepared *m, const real *X, const real *V, const
     real *A, real *qdd, verdict *t)
 {
-    real s[24*LANES];
+    real s[9*LANES];
     real o_ups[5*LANES];
-    joint_accelerations_before(LANES, X, V, A, s, t);
+    joint_accelerations_before(m, LANES, X, s, t);
     for (size_t leg = 0; leg < LEGS_OF_ups; ++leg) {
-        joint_accelerations_legs_ups(m, LANES, leg, 0, s, 1, LANES, o_ups);
+        joint_accelerations_legs_ups(m, LANES, leg, 0, s, 1, LANES, X, V, A, o_ups);
         joint_accelerations_place_ups(LANES, LANES, o_ups, leg, 0, qdd, t);
     }
 }
 
 /* ---- legs ---- */
-INLINE void legs_before(size_t w, const real *X, const real *V, const real *A, real *s, verdict
-    *t)
+INLINE void legs_before(const prepared *m, size_t w, const real *X, real *s, verdict *t)
 {
     for (size_t k = 0; k < w; ++k) {
-        /* X: named entries */
-        const real X_0 = X[0*w + k];
-        const real t_x = X_0;
-        const real X_1 = X[1*w + k];
-        const real t_y = X_1;
-        const real X_2 = X[2*w + k];
-        const real t_z = X_2;
-        const real X_3 = X[3*w + k];
-        const real X_4 = X[4*w + k];
-        const real X_5 = X[5*w + k];
-        const real X_6 = X[6*w + k];
-        const real quaternion_norm2 = X_3*X_3 + X_4*X_4 + X_5*X_5 + X_6*X_6;
-        const real quaternion_scale = 2/quaternion_norm2;
-        const real quaternion_sx = X_3*quaternion_scale;
-        const real quaternion_sy = X_4*quaternion_scale;
-        const real quaternion_sz = X_5*quaternion_scale;
-        const real quaternion_wx = X_6*quaternion_sx;
-        const real quaternion_wy = X_6*quaternion_sy;
-        const real quaternion_wz = X_6*quaternion_sz;
-        const real quaternion_xx = X_3*quaternion_sx;
-        const real quaternion_xy = X_3*quaternion_sy;
-        const real quaternion_xz = X_3*quaternion_sz;
-        const real quaternion_yy = X_4*quaternion_sy;
-        const real quaternion_yz = X_4*quaternion_sz;
-        const real quaternion_zz = X_5*quaternion_sz;
-        const real R_xx = 1 - quaternion_yy - quaternion_zz;
-        const real R_xy = quaternion_xy - quaternion_wz;
-        const real R_xz = quaternion_wy + quaternion_xz;
-        const real R_yx = quaternion_wz + quaternion_xy;
-        const real R_yy = 1 - quaternion_xx - quaternion_zz;
-        const real R_yz = quaternion_yz - quaternion_wx;
-        const real R_zx = quaternion_xz - quaternion_wy;
-        const real R_zy = quaternion_wx + quaternion_yz;
-        const real R_zz = 1 - quaternion_xx - quaternion_yy;
-        /* V: named entries */
-        const real V_0 = V[0*w + k];
-        const real t_dot_x = V_0;
-        const real V_1 = V[1*w + k];
-        const real t_dot_y = V_1;
-        const real V_2 = V[2*w + k];
-        const real t_dot_z = V_2;
-        const real V_3 = V[3*w + k];
-        const real omega_x = V_3;
-        const real V_4 = V[4*w + k];
-        const real omega_y = V_4;
-        const real V_5 = V[5*w + k];
-        const real omega_z = V_5;
-        /* A: named entries */
-        const real A_0 = A[0*w + k];
-        const real t_ddot_x = A_0;
-        const real A_1 = A[1*w + k];
-        const real t_ddot_y = A_1;
-        const real A_2 = A[2*w + k];
-        const real t_ddot_z = A_2;
-        const real A_3 = A[3*w + k];
-        const real alpha_x = A_3;
-        const real A_4 = A[4*w + k];
-        const real alpha_y = A_4;
-        const real A_5 = A[5*w + k];
-        const real alpha_z = A_5;
-        s[0*w + k] = t_x;
-        s[1*w + k] = t_y;
-        s[2*w + k] = t_z;
-        s[3*w + k] = R_xx;
-        s[4*w + k] = R_xy;
-        s[5*w + k] = R_xz;
-        s[6*w + k] = R_yx;
-        s[7*w + k] = R_yy;
-        s[8*w + k] = R_yz;
-        s[9*w + k] = R_zx;
-        s[10*w + k] = R_zy;
-        s[11*w + k] = R_zz;
-        s[12*w + k] = t_dot_x;
-        s[13*w + k] = t_dot_y;
-        s[14*w + k] = t_dot_z;
-        s[15*w + k] = omega_x;
-        s[16*w + k] = omega_y;
-        s[17*w + k] = omega_z;
-        s[18*w + k] = t_ddot_x;
-        s[19*w + k] = t_ddot_y;
-        s[20*w + k] = t_ddot_z;
-        s[21*w + k] = alpha_x;
-        s[22*w + k] = alpha_y;
-        s[23*w + k] = alpha_z;
-        t->invalid[k] += UNLESS(is_finite(quaternion_scale)) + UNLESS(quaternion_scale > 0);
+        values v;
+        stage_X(m, w, k, X, &v);
+        s[0*w + k] = v.R_xx;
+        s[1*w + k] = v.R_xy;
+        s[2*w + k] = v.R_xz;
+        s[3*w + k] = v.R_yx;
+        s[4*w + k] = v.R_yy;
+        s[5*w + k] = v.R_yz;
+        s[6*w + k] = v.R_zx;
+        s[7*w + k] = v.R_zy;
+        s[8*w + k] = v.R_zz;
+        t->invalid[k] += UNLESS(is_finite(v.quaternion_scale)) + UNLESS(v.quaternion_scale > 0);
     }
 }
 
 INLINE void legs_legs_ups(const prepared *m, size_t w, size_t leg, size_t legs, const real *s,
-    size_t states, size_t count, real *o)
+    size_t states, size_t count, const real *X, const real *V, const real *A, real *o)
 {
     for (size_t k = 0; k < count; ++k) {
         const size_t i = leg + legs*k;
         const size_t j = states*k;
-        /* (ups-S) from the base point to the connection point */
-        const real R_xx = s[3*w + j];
-        const real R_xy = s[4*w + j];
-        const real R_xz = s[5*w + j];
-        const real ups_platform_point_x = m->ups_platform_point_x[i];
-        const real ups_platform_point_y = m->ups_platform_point_y[i];
-        const real ups_platform_point_z = m->ups_platform_point_z[i];
-        const real ups_q_x = R_xx*ups_platform_point_x + R_xy*ups_platform_point_y +
-            R_xz*ups_platform_point_z;
-        const real R_yx = s[6*w + j];
-        const real R_yy = s[7*w + j];
-        const real R_yz = s[8*w + j];
-        const real ups_q_y = R_yx*ups_platform_point_x + R_yy*ups_platform_point_y +
-            R_yz*ups_platform_point_z;
-        const real R_zx = s[9*w + j];
-        const real R_zy = s[10*w + j];
-        const real R_zz = s[11*w + j];
-        const real ups_q_z = R_zx*ups_platform_point_x + R_zy*ups_platform_point_y +
-            R_zz*ups_platform_point_z;
-        const real t_x = s[0*w + j];
-        const real ups_base_point_x = m->ups_base_point_x[i];
-        const real ups_S_x = t_x + ups_q_x - ups_base_point_x;
-        const real t_y = s[1*w + j];
-        const real ups_base_point_y = m->ups_base_point_y[i];
-        const real ups_S_y = t_y + ups_q_y - ups_base_point_y;
-        const real t_z = s[2*w + j];
-        const real ups_base_point_z = m->ups_base_point_z[i];
-        const real ups_S_z = t_z + ups_q_z - ups_base_point_z;
-        /* (ups-px_1) component along the reference direction */
-        const real ups_base_frame_xx = m->ups_base_frame_xx[i];
-        const real ups_base_frame_yx = m->ups_base_frame_yx[i];
-        const real ups_base_frame_zx = m->ups_base_frame_zx[i];
-        const real ups_px_1 = ups_S_x*ups_base_frame_xx + ups_S_y*ups_base_frame_yx +
-            ups_S_z*ups_base_frame_zx;
-        /* (ups-py_1) component across the reference direction */
-        const real ups_base_frame_xy = m->ups_base_frame_xy[i];
-        const real ups_base_frame_yy = m->ups_base_frame_yy[i];
-        const real ups_base_frame_zy = m->ups_base_frame_zy[i];
-        const real ups_py_1 = ups_S_x*ups_base_frame_xy + ups_S_y*ups_base_frame_yy +
-            ups_S_z*ups_base_frame_zy;
-        /* (ups-rho2_1) squared amplitude */
-        const real ups_rho2_1 = ups_px_1*ups_px_1 + ups_py_1*ups_py_1;
-        /* (ups-root_1) amplitude, with the sign of the branch */
-        const real ups_branch_1 = m->ups_branch_1[i];
-        const real ups_root_1 = ups_branch_1*root(ups_rho2_1);
-        /* (ups-c_1) cosine of the angle of joint 1 from its reference direction */
-        const real inv_ups_root_1 = 1/ups_root_1;
-        const real ups_c_1 = -inv_ups_root_1*ups_py_1;
-        /* (ups-s_1) sine of the angle of joint 1 from its reference direction */
-        const real ups_s_1 = inv_ups_root_1*ups_px_1;
-        /* (ups-xi_1) the vector from joint 1 to the connection point, resolved along link 1 */
-        const real ups_base_frame_xz = m->ups_base_frame_xz[i];
-        const real ups_base_frame_yz = m->ups_base_frame_yz[i];
-        const real ups_base_frame_zz = m->ups_base_frame_zz[i];
-        const real ups_xi_1_in_axes1_z = ups_S_x*ups_base_frame_xz + ups_S_y*ups_base_frame_yz +
-            ups_S_z*ups_base_frame_zz;
-        /* (ups-rho2_2) squared amplitude */
-        const real ups_rho2_2 = ups_rho2_1 + ups_xi_1_in_axes1_z*ups_xi_1_in_axes1_z;
-        /* (ups-root_2) amplitude, with the sign of the branch */
-        const real ups_branch_2 = m->ups_branch_2[i];
-        const real ups_root_2 = ups_branch_2*root(ups_rho2_2);
-        /* (ups-c_2) cosine of the angle of joint 2 from its reference direction */
-        const real inv_ups_root_2 = 1/ups_root_2;
-        const real ups_c_2 = -inv_ups_root_2*ups_root_1;
-        /* (ups-s_2) sine of the angle of joint 2 from its reference direction */
-        const real ups_s_2 = inv_ups_root_2*ups_xi_1_in_axes1_z;
-        /* (ups-S_dot) velocity of the connection point */
-        const real axis_x_ups_axes2_x = inv_ups_root_2*ups_S_x;
-        const real axis_x_ups_axes2_y = inv_ups_root_2*ups_S_y;
-        const real axis_x_ups_axes2_z = inv_ups_root_2*ups_S_z;
-        const real omega_y = s[16*w + j];
-        const real omega_z = s[17*w + j];
-        const real ups_S_dot_t = omega_y*ups_q_z - omega_z*ups_q_y;
-        const real omega_x = s[15*w + j];
-        const real ups_S_dot_t_2 = omega_z*ups_q_x - omega_x*ups_q_z;
-        const real ups_S_dot_t_3 = omega_x*ups_q_y - omega_y*ups_q_x;
-        const real t_dot_x = s[12*w + j];
-        const real ups_S_dot_x = t_dot_x + ups_S_dot_t;
-        const real t_dot_y = s[13*w + j];
-        const real ups_S_dot_y = t_dot_y + ups_S_dot_t_2;
-        const real t_dot_z = s[14*w + j];
-        const real ups_S_dot_z = t_dot_z + ups_S_dot_t_3;
-        const real ups_S_dot_in_axes2_x = axis_x_ups_axes2_x*ups_S_dot_x +
-            axis_x_ups_axes2_y*ups_S_dot_y + axis_x_ups_axes2_z*ups_S_dot_z;
-        /* (ups-qd_1) rate of joint 1 */
-        const real axis_z_ups_axes2_x = ups_base_frame_xx*ups_c_1 + ups_base_frame_xy*ups_s_1;
-        const real axis_z_ups_axes2_y = ups_base_frame_yx*ups_c_1 + ups_base_frame_yy*ups_s_1;
-        const real axis_z_ups_axes2_z = ups_base_frame_zx*ups_c_1 + ups_base_frame_zy*ups_s_1;
-        const real ups_qd_1 = inv_ups_root_1*(axis_z_ups_axes2_x*ups_S_dot_x +
-            axis_z_ups_axes2_y*ups_S_dot_y + axis_z_ups_axes2_z*ups_S_dot_z);
-        /* (ups-qd_2) rate of joint 2 */
-        const real axis_y_ups_axes2_x = axis_x_ups_axes2_z*axis_z_ups_axes2_y -
-            axis_x_ups_axes2_y*axis_z_ups_axes2_z;
-        const real axis_y_ups_axes2_y = axis_x_ups_axes2_x*axis_z_ups_axes2_z -
-            axis_x_ups_axes2_z*axis_z_ups_axes2_x;
-        const real axis_y_ups_axes2_z = axis_x_ups_axes2_y*axis_z_ups_axes2_x -
-            axis_x_ups_axes2_x*axis_z_ups_axes2_y;
-        const real ups_qd_2 = inv_ups_root_2*(axis_y_ups_axes2_x*ups_S_dot_x +
-            axis_y_ups_axes2_y*ups_S_dot_y + axis_y_ups_axes2_z*ups_S_dot_z);
-        /* (ups-omega_1) angular velocity of link 1 */
-        const real ups_omega_1_in_axes2_x = ups_qd_1*ups_s_2;
-        const real ups_omega_1_in_axes2_y = ups_c_2*ups_qd_1;
-        /* (ups-W_2) centripetal tensor of link 2 */
-        const real ups_W_2_in_axes2_yz = ups_omega_1_in_axes2_y*ups_qd_2;
-        const real ups_W_2_in_axes2_xz = ups_omega_1_in_axes2_x*ups_qd_2;
-        const real ups_W_2_in_axes2_xy = ups_omega_1_in_axes2_x*ups_omega_1_in_axes2_y;
-        /* (ups-a_p) acceleration of the connection point without its centripetal part */
-        const real alpha_y = s[22*w + j];
-        const real alpha_z = s[23*w + j];
-        const real t_ddot_x = s[18*w + j];
-        const real ups_a_p_x = t_ddot_x + alpha_y*ups_q_z - alpha_z*ups_q_y;
-        const real alpha_x = s[21*w + j];
-        const real t_ddot_y = s[19*w + j];
-        const real ups_a_p_y = t_ddot_y + alpha_z*ups_q_x - alpha_x*ups_q_z;
-        const real t_ddot_z = s[20*w + j];
-        const real ups_a_p_z = t_ddot_z + alpha_x*ups_q_y - alpha_y*ups_q_x;
-        /* (ups-S_ddot) acceleration of the connection point */
-        const real ups_S_ddot_x = ups_a_p_x + omega_y*ups_S_dot_t_3 - omega_z*ups_S_dot_t_2;
-        const real ups_S_ddot_y = ups_a_p_y + omega_z*ups_S_dot_t - omega_x*ups_S_dot_t_3;
-        const real ups_S_ddot_z = ups_a_p_z + omega_x*ups_S_dot_t_2 - omega_y*ups_S_dot_t;
-        const real ups_S_ddot_in_axes2_z = axis_z_ups_axes2_x*ups_S_ddot_x +
-            axis_z_ups_axes2_y*ups_S_ddot_y + axis_z_ups_axes2_z*ups_S_ddot_z;
-        /* (ups-bias) acceleration of the connection point at zero joint accelerations */
-        const real ups_bias_t = 2*ups_S_dot_in_axes2_x;
-        const real ups_bias_in_axes2_z = 2*ups_W_2_in_axes2_xz*ups_root_2 -
-            ups_bias_t*ups_omega_1_in_axes2_y;
-        /* (ups-rel) acceleration of the connection point left to the joint accelerations */
-        const real ups_rel_in_axes2_z = ups_S_ddot_in_axes2_z - ups_bias_in_axes2_z;
-        /* (ups-qdd_1) acceleration of joint 1 */
-        const real ups_qdd_1 = inv_ups_root_1*ups_rel_in_axes2_z;
-        /* (ups-alpha_1) angular acceleration of link 1 */
-        const real ups_alpha_1_in_axes2_x = ups_qdd_1*ups_s_2;
-        const real ups_alpha_1_in_axes2_y = ups_c_2*ups_qdd_1;
-        /* (ups-alpha_2) angular acceleration of link 2 */
-        const real ups_alpha_2_in_axes2_x = ups_W_2_in_axes2_yz + ups_alpha_1_in_axes2_x;
-        const real ups_alpha_2_in_axes2_y = ups_alpha_1_in_axes2_y - ups_W_2_in_axes2_xz;
-        /* (ups-B_2) acceleration tensor of link 2 */
-        const real ups_B_2_t = axis_y_ups_axes2_x*ups_S_ddot_x;
-        const real ups_B_2_t_2 = axis_y_ups_axes2_y*ups_S_ddot_y;
-        const real ups_B_2_t_3 = axis_y_ups_axes2_z*ups_S_ddot_z;
-        const real ups_B_2_in_axes2_yx = inv_ups_root_2*(ups_B_2_t + ups_B_2_t_2 + ups_B_2_t_3 -
-            ups_bias_t*ups_qd_2);
-        const real ups_B_2_in_axes2_xy = 2*ups_W_2_in_axes2_xy - ups_B_2_in_axes2_yx;
-        const real ups_B_2_in_axes2_zx = ups_W_2_in_axes2_xz - ups_alpha_2_in_axes2_y;
-        const real ups_B_2_in_axes2_zy = ups_W_2_in_axes2_yz + ups_alpha_2_in_axes2_x;
-        /* (ups-acc_3) acceleration of the reference point of link 3, less gravity */
-        const real ups_acc_3_t = m->ups_acc_3_t[i];
-        const real ups_acc_3_t_2 = m->ups_acc_3_t_2[i];
-        const real ups_g_in_axes2_z = ups_acc_3_t*ups_c_1 + ups_acc_3_t_2*ups_s_1;
-        const real ups_acc_3_t_4 = ups_acc_3_t_2*ups_c_1 - ups_acc_3_t*ups_s_1;
-        const real ups_acc_3_t_3 = m->ups_acc_3_t_3[i];
-        const real ups_g_in_axes2_x = ups_acc_3_t_3*ups_s_2 + ups_acc_3_t_4*ups_c_2;
-        const real ups_g_in_axes2_y = ups_acc_3_t_3*ups_c_2 - ups_acc_3_t_4*ups_s_2;
-        const real ups_acc_3_in_axes2_x = axis_x_ups_axes2_x*ups_S_ddot_x +
-            axis_x_ups_axes2_y*ups_S_ddot_y + axis_x_ups_axes2_z*ups_S_ddot_z - ups_g_in_axes2_x;
-        const real ups_acc_3_in_axes2_y = ups_B_2_t + ups_B_2_t_2 + ups_B_2_t_3 -
-            ups_g_in_axes2_y;
-        const real ups_acc_3_in_axes2_z = ups_S_ddot_in_axes2_z - ups_g_in_axes2_z;
+        values_ups v;
+        stage_ups_X(m, w, i, j, s, X, &v);
+        stage_ups_A_X(w, j, A, &v);
+        stage_ups_V_X(w, j, V, &v);
+        stage_ups_A_V_X(w, j, V, &v);
+        stage_ups_legs_required(m, i, &v);
         /* (ups-mu_2) inertia moment of the links that turn with link 2, about their reference points */
-        const real ups_mu_2_t = ups_omega_1_in_axes2_x*ups_omega_1_in_axes2_x;
-        const real ups_mu_2_t_2 = ups_omega_1_in_axes2_y*ups_omega_1_in_axes2_y;
-        const real ups_mu_2_t_3 = ups_qd_2*ups_qd_2;
+        const real ups_mu_2_t_2 = v.ups_omega_1_in_axes2_y*v.ups_omega_1_in_axes2_y;
+        const real ups_mu_2_t_3 = v.ups_qd_2*v.ups_qd_2;
         const real ups_J_group_2_in_axes2_xy = m->ups_J_group_2_in_axes2_xy[i];
         const real ups_J_group_2_in_axes2_xz = m->ups_J_group_2_in_axes2_xz[i];
         const real ups_J_group_2_in_axes2_yz = m->ups_J_group_2_in_axes2_yz[i];
@@ -4442,62 +3370,68 @@ INLINE void legs_legs_ups(const prepared *m, size_t w, size_t leg, size_t legs, 
         const real ups_h_2_in_spec2_z = m->ups_h_2_in_spec2_z[i];
         const real ups_h_3_in_spec2_y = m->ups_h_3_in_spec2_y[i];
         const real ups_h_3_in_spec2_z = m->ups_h_3_in_spec2_z[i];
-        const real ups_mu_2_in_axes2_x = ups_B_2_in_axes2_yx*ups_J_group_2_in_axes2_xz +
-            ups_B_2_in_axes2_zy*ups_Sigma_2_in_axes2_yy + ups_J_group_2_in_axes2_yz*(ups_mu_2_t_2
-            - ups_mu_2_t_3) + ups_Sigma_2_in_axes2_zz*ups_alpha_1_in_axes2_x +
-            ups_g_in_axes2_y*ups_h_2_in_spec2_y + ups_g_in_axes2_z*ups_h_2_in_spec2_z -
-            ups_B_2_in_axes2_zx*ups_J_group_2_in_axes2_xy -
-            ups_acc_3_in_axes2_y*ups_h_3_in_spec2_y - ups_acc_3_in_axes2_z*ups_h_3_in_spec2_z;
+        const real ups_mu_2_in_axes2_x = v.ups_B_2_in_axes2_yx*ups_J_group_2_in_axes2_xz +
+            v.ups_B_2_in_axes2_zy*ups_Sigma_2_in_axes2_yy +
+            ups_J_group_2_in_axes2_yz*(ups_mu_2_t_2 - ups_mu_2_t_3) +
+            ups_Sigma_2_in_axes2_zz*v.ups_alpha_1_in_axes2_x +
+            v.ups_g_in_axes2_y*ups_h_2_in_spec2_y + v.ups_g_in_axes2_z*ups_h_2_in_spec2_z -
+            v.ups_B_2_in_axes2_zx*ups_J_group_2_in_axes2_xy -
+            v.ups_acc_3_in_axes2_y*ups_h_3_in_spec2_y - v.ups_acc_3_in_axes2_z*ups_h_3_in_spec2_z;
         const real ups_Sigma_2_in_axes2_xx = m->ups_Sigma_2_in_axes2_xx[i];
         const real ups_h_2_in_spec2_x = m->ups_h_2_in_spec2_x[i];
         const real ups_h_3_in_spec2_x = m->ups_h_3_in_spec2_x[i];
-        const real ups_mu_2_in_axes2_y = ups_B_2_in_axes2_zy*ups_J_group_2_in_axes2_xy +
-            ups_Sigma_2_in_axes2_zz*ups_alpha_1_in_axes2_y +
-            ups_acc_3_in_axes2_x*ups_h_3_in_spec2_y + ups_g_in_axes2_z*ups_h_2_in_spec2_x -
-            ups_B_2_in_axes2_xy*ups_J_group_2_in_axes2_yz -
-            ups_B_2_in_axes2_zx*ups_Sigma_2_in_axes2_xx - ups_J_group_2_in_axes2_xz*(ups_mu_2_t -
-            ups_mu_2_t_3) - ups_acc_3_in_axes2_z*ups_h_3_in_spec2_x -
-            ups_g_in_axes2_x*ups_h_2_in_spec2_y;
-        const real ups_mu_2_in_axes2_z = ups_B_2_in_axes2_yx*ups_Sigma_2_in_axes2_xx +
-            ups_J_group_2_in_axes2_xy*(ups_mu_2_t - ups_mu_2_t_2) +
-            ups_J_group_2_in_axes2_xz*ups_alpha_1_in_axes2_x +
-            ups_J_group_2_in_axes2_yz*ups_alpha_1_in_axes2_y +
-            ups_acc_3_in_axes2_x*ups_h_3_in_spec2_z + ups_acc_3_in_axes2_y*ups_h_3_in_spec2_x -
-            ups_B_2_in_axes2_xy*ups_Sigma_2_in_axes2_yy - ups_g_in_axes2_x*ups_h_2_in_spec2_z -
-            ups_g_in_axes2_y*ups_h_2_in_spec2_x;
+        const real ups_mu_2_in_axes2_y = v.ups_B_2_in_axes2_zy*ups_J_group_2_in_axes2_xy +
+            ups_Sigma_2_in_axes2_zz*v.ups_alpha_1_in_axes2_y +
+            v.ups_acc_3_in_axes2_x*ups_h_3_in_spec2_y + v.ups_g_in_axes2_z*ups_h_2_in_spec2_x -
+            v.ups_B_2_in_axes2_xy*ups_J_group_2_in_axes2_yz -
+            v.ups_B_2_in_axes2_zx*ups_Sigma_2_in_axes2_xx -
+            ups_J_group_2_in_axes2_xz*(v.ups_mu_2_t - ups_mu_2_t_3) -
+            v.ups_acc_3_in_axes2_z*ups_h_3_in_spec2_x - v.ups_g_in_axes2_x*ups_h_2_in_spec2_y;
+        const real ups_mu_2_in_axes2_z = v.ups_B_2_in_axes2_yx*ups_Sigma_2_in_axes2_xx +
+            ups_J_group_2_in_axes2_xy*(v.ups_mu_2_t - ups_mu_2_t_2) +
+            ups_J_group_2_in_axes2_xz*v.ups_alpha_1_in_axes2_x +
+            ups_J_group_2_in_axes2_yz*v.ups_alpha_1_in_axes2_y +
+            v.ups_acc_3_in_axes2_x*ups_h_3_in_spec2_z + v.ups_acc_3_in_axes2_y*ups_h_3_in_spec2_x
+            - v.ups_B_2_in_axes2_xy*ups_Sigma_2_in_axes2_yy -
+            v.ups_g_in_axes2_x*ups_h_2_in_spec2_z - v.ups_g_in_axes2_y*ups_h_2_in_spec2_x;
         /* (ups-c) leg force on the platform without actuation and without the mass at the connection
            point */
-        const real ups_c_in_axes2_y = ups_alpha_1_in_axes2_x*ups_h_3_in_spec2_y -
-            inv_ups_root_2*ups_mu_2_in_axes2_z - ups_B_2_in_axes2_yx*ups_h_3_in_spec2_x -
-            ups_h_3_in_spec2_z*(ups_mu_2_t + ups_mu_2_t_3);
-        const real ups_c_in_axes2_z = ups_B_2_in_axes2_zy*ups_h_3_in_spec2_z +
-            ups_h_3_in_spec2_y*(ups_mu_2_t + ups_mu_2_t_2) -
-            inv_ups_root_1*(ups_c_2*ups_mu_2_in_axes2_y + ups_mu_2_in_axes2_x*ups_s_2) -
-            ups_B_2_in_axes2_zx*ups_h_3_in_spec2_x;
+        const real ups_c_in_axes2_y = v.ups_alpha_1_in_axes2_x*ups_h_3_in_spec2_y -
+            v.inv_ups_q_3*ups_mu_2_in_axes2_z - v.ups_B_2_in_axes2_yx*ups_h_3_in_spec2_x -
+            ups_h_3_in_spec2_z*(v.ups_mu_2_t + ups_mu_2_t_3);
+        const real ups_c_in_axes2_z = v.inv_ups_root_1*(v.ups_c_2*ups_mu_2_in_axes2_y -
+            v.ups_e_1_in_axes2_x*ups_mu_2_in_axes2_x) + v.ups_B_2_in_axes2_zy*ups_h_3_in_spec2_z +
+            ups_h_3_in_spec2_y*(v.ups_mu_2_t + ups_mu_2_t_2) -
+            v.ups_B_2_in_axes2_zx*ups_h_3_in_spec2_x;
         /* (ups-c_true) leg force on the platform without actuation, the last link's mass included */
         const real ups_link3_mass = m->ups_link3_mass[i];
-        const real ups_c_true_in_axes2_x = ups_B_2_in_axes2_xy*ups_h_3_in_spec2_z -
-            ups_acc_3_in_axes2_x*ups_link3_mass - ups_alpha_1_in_axes2_y*ups_h_3_in_spec2_y -
+        const real ups_c_true_in_axes2_x = v.ups_B_2_in_axes2_xy*ups_h_3_in_spec2_z -
+            v.ups_acc_3_in_axes2_x*ups_link3_mass - v.ups_alpha_1_in_axes2_y*ups_h_3_in_spec2_y -
             ups_h_3_in_spec2_x*(-ups_mu_2_t_2 - ups_mu_2_t_3);
-        const real ups_c_true_in_axes2_y = ups_c_in_axes2_y - ups_acc_3_in_axes2_y*ups_link3_mass;
-        const real ups_c_true_in_axes2_z = ups_c_in_axes2_z - ups_acc_3_in_axes2_z*ups_link3_mass;
-        const real ups_c_true_x = axis_x_ups_axes2_x*ups_c_true_in_axes2_x +
-            axis_y_ups_axes2_x*ups_c_true_in_axes2_y + axis_z_ups_axes2_x*ups_c_true_in_axes2_z;
-        const real ups_c_true_y = axis_x_ups_axes2_y*ups_c_true_in_axes2_x +
-            axis_y_ups_axes2_y*ups_c_true_in_axes2_y + axis_z_ups_axes2_y*ups_c_true_in_axes2_z;
-        const real ups_c_true_z = axis_x_ups_axes2_z*ups_c_true_in_axes2_x +
-            axis_y_ups_axes2_z*ups_c_true_in_axes2_y + axis_z_ups_axes2_z*ups_c_true_in_axes2_z;
+        const real ups_c_true_in_axes2_y = ups_c_in_axes2_y -
+            v.ups_acc_3_in_axes2_y*ups_link3_mass;
+        const real ups_c_true_in_axes2_z = ups_c_in_axes2_z -
+            v.ups_acc_3_in_axes2_z*ups_link3_mass;
+        const real ups_c_true_x = v.axis_x_ups_axes2_x*ups_c_true_in_axes2_x +
+            v.axis_y_ups_axes2_x*ups_c_true_in_axes2_y +
+            v.axis_z_ups_axes2_x*ups_c_true_in_axes2_z;
+        const real ups_c_true_y = v.axis_x_ups_axes2_y*ups_c_true_in_axes2_x +
+            v.axis_y_ups_axes2_y*ups_c_true_in_axes2_y +
+            v.axis_z_ups_axes2_y*ups_c_true_in_axes2_z;
+        const real ups_c_true_z = v.axis_x_ups_axes2_z*ups_c_true_in_axes2_x +
+            v.axis_y_ups_axes2_z*ups_c_true_in_axes2_y +
+            v.axis_z_ups_axes2_z*ups_c_true_in_axes2_z;
         /* (ups-c_true) leg force on the platform without actuation, the last link's mass included */
         o[0*count + k] = ups_c_true_x;
         o[1*count + k] = ups_c_true_y;
         o[2*count + k] = ups_c_true_z;
         /* (ups-w_3) reciprocal vector 3 */
-        o[3*count + k] = axis_x_ups_axes2_x;
-        o[4*count + k] = axis_x_ups_axes2_y;
-        o[5*count + k] = axis_x_ups_axes2_z;
-        o[6*count + k] = UNLESS(magnitude(ups_rho2_1) > LEAST_1) + UNLESS(magnitude(ups_rho2_2) >
-            LEAST_1) + UNLESS(magnitude(ups_root_1) > LEAST_2) + UNLESS(magnitude(ups_root_2) >
-            LEAST_2);
+        o[3*count + k] = v.axis_x_ups_axes2_x;
+        o[4*count + k] = v.axis_x_ups_axes2_y;
+        o[5*count + k] = v.axis_x_ups_axes2_z;
+        o[6*count + k] = UNLESS(magnitude(v.ups_root_1_t) > LEAST_1) +
+            UNLESS(magnitude(v.ups_q_3_t) > LEAST_1) + UNLESS(magnitude(v.ups_root_1) > LEAST_2) +
+            UNLESS(magnitude(v.ups_q_3) > LEAST_2);
     }
 }
 
@@ -4518,10 +3452,10 @@ INLINE void legs_place_ups(size_t w, size_t count, const real *o, size_t leg, si
 INLINE void legs_run(const prepared *m, const real *X, const real *V, const real *A, real
     *leg_force, real *actuator, verdict *t)
 {
-    real s[24] = {0};
+    real s[9] = {0};
     real o_ups[7*LEGS(LEGS_OF_ups)] = {0};
-    legs_before(1, X, V, A, s, t);
-    legs_legs_ups(m, 1, 0, 1, s, 0, LEGS(LEGS_OF_ups), o_ups);
+    legs_before(m, 1, X, s, t);
+    legs_legs_ups(m, 1, 0, 1, s, 0, LEGS(LEGS_OF_ups), X, V, A, o_ups);
     for (size_t leg = 0; leg < LEGS_OF_ups; ++leg) {
         legs_place_ups(1, LEGS(LEGS_OF_ups), o_ups, leg, leg, leg_force, actuator, t);
     }
@@ -4531,40 +3465,8 @@ INLINE void legs_run(const prepared *m, const real *X, const real *V, const real
 INLINE void potential_before(const prepared *m, size_t w, const real *X, real *s, verdict *t)
 {
     for (size_t k = 0; k < w; ++k) {
-        /* X: named entries */
-        const real X_0 = X[0*w + k];
-        const real t_x = X_0;
-        const real X_1 = X[1*w + k];
-        const real t_y = X_1;
-        const real X_2 = X[2*w + k];
-        const real t_z = X_2;
-        const real X_3 = X[3*w + k];
-        const real X_4 = X[4*w + k];
-        const real X_5 = X[5*w + k];
-        const real X_6 = X[6*w + k];
-        const real quaternion_norm2 = X_3*X_3 + X_4*X_4 + X_5*X_5 + X_6*X_6;
-        const real quaternion_scale = 2/quaternion_norm2;
-        const real quaternion_sx = X_3*quaternion_scale;
-        const real quaternion_sy = X_4*quaternion_scale;
-        const real quaternion_sz = X_5*quaternion_scale;
-        const real quaternion_wx = X_6*quaternion_sx;
-        const real quaternion_wy = X_6*quaternion_sy;
-        const real quaternion_wz = X_6*quaternion_sz;
-        const real quaternion_xx = X_3*quaternion_sx;
-        const real quaternion_xy = X_3*quaternion_sy;
-        const real quaternion_xz = X_3*quaternion_sz;
-        const real quaternion_yy = X_4*quaternion_sy;
-        const real quaternion_yz = X_4*quaternion_sz;
-        const real quaternion_zz = X_5*quaternion_sz;
-        const real R_xx = 1 - quaternion_yy - quaternion_zz;
-        const real R_xy = quaternion_xy - quaternion_wz;
-        const real R_xz = quaternion_wy + quaternion_xz;
-        const real R_yx = quaternion_wz + quaternion_xy;
-        const real R_yy = 1 - quaternion_xx - quaternion_zz;
-        const real R_yz = quaternion_yz - quaternion_wx;
-        const real R_zx = quaternion_xz - quaternion_wy;
-        const real R_zy = quaternion_wx + quaternion_yz;
-        const real R_zz = 1 - quaternion_xx - quaternion_yy;
+        values v;
+        stage_X(m, w, k, X, &v);
         /* (potential) potential energy */
         const real gravity_x = m->gravity_x;
         const real gravity_y = m->gravity_y;
@@ -4573,104 +3475,50 @@ INLINE void potential_before(const prepared *m, size_t w, const real *X, real *s
         const real h_star_in_platform_y = m->h_star_in_platform_y;
         const real h_star_in_platform_z = m->h_star_in_platform_z;
         const real m_star = m->m_star;
-        const real potential_t = gravity_x*(R_xx*h_star_in_platform_x + R_xy*h_star_in_platform_y
-            + R_xz*h_star_in_platform_z + m_star*t_x) + gravity_y*(R_yx*h_star_in_platform_x +
-            R_yy*h_star_in_platform_y + R_yz*h_star_in_platform_z + m_star*t_y) +
-            gravity_z*(R_zx*h_star_in_platform_x + R_zy*h_star_in_platform_y +
-            R_zz*h_star_in_platform_z + m_star*t_z);
-        s[0*w + k] = t_x;
-        s[1*w + k] = t_y;
-        s[2*w + k] = t_z;
-        s[3*w + k] = R_xx;
-        s[4*w + k] = R_xy;
-        s[5*w + k] = R_xz;
-        s[6*w + k] = R_yx;
-        s[7*w + k] = R_yy;
-        s[8*w + k] = R_yz;
-        s[9*w + k] = R_zx;
-        s[10*w + k] = R_zy;
-        s[11*w + k] = R_zz;
-        s[12*w + k] = potential_t;
-        t->invalid[k] += UNLESS(is_finite(quaternion_scale)) + UNLESS(quaternion_scale > 0);
+        const real t_x = X[0*w + k];
+        const real t_y = X[1*w + k];
+        const real t_z = X[2*w + k];
+        const real potential_t = gravity_x*(v.R_xx*h_star_in_platform_x +
+            v.R_xy*h_star_in_platform_y + v.R_xz*h_star_in_platform_z + m_star*t_x) +
+            gravity_y*(v.R_yx*h_star_in_platform_x + v.R_yy*h_star_in_platform_y +
+            v.R_yz*h_star_in_platform_z + m_star*t_y) + gravity_z*(v.R_zx*h_star_in_platform_x +
+            v.R_zy*h_star_in_platform_y + v.R_zz*h_star_in_platform_z + m_star*t_z);
+        s[0*w + k] = v.R_xx;
+        s[1*w + k] = v.R_xy;
+        s[2*w + k] = v.R_xz;
+        s[3*w + k] = v.R_yx;
+        s[4*w + k] = v.R_yy;
+        s[5*w + k] = v.R_yz;
+        s[6*w + k] = v.R_zx;
+        s[7*w + k] = v.R_zy;
+        s[8*w + k] = v.R_zz;
+        s[9*w + k] = potential_t;
+        t->invalid[k] += UNLESS(is_finite(v.quaternion_scale)) + UNLESS(v.quaternion_scale > 0);
     }
 }
 
 INLINE void potential_legs_ups(const prepared *m, size_t w, size_t leg, size_t legs, const real
-    *s, size_t states, size_t count, int add, real *terms, real *o)
+    *s, size_t states, size_t count, int add, const real *X, real *terms, real *o)
 {
     for (size_t k = 0; k < count; ++k) {
         const size_t i = leg + legs*k;
         const size_t j = states*k;
-        /* (ups-S) from the base point to the connection point */
-        const real R_xx = s[3*w + j];
-        const real R_xy = s[4*w + j];
-        const real R_xz = s[5*w + j];
-        const real t_x = s[0*w + j];
-        const real ups_base_point_x = m->ups_base_point_x[i];
-        const real ups_platform_point_x = m->ups_platform_point_x[i];
-        const real ups_platform_point_y = m->ups_platform_point_y[i];
-        const real ups_platform_point_z = m->ups_platform_point_z[i];
-        const real ups_S_x = t_x + R_xx*ups_platform_point_x + R_xy*ups_platform_point_y +
-            R_xz*ups_platform_point_z - ups_base_point_x;
-        const real R_yx = s[6*w + j];
-        const real R_yy = s[7*w + j];
-        const real R_yz = s[8*w + j];
-        const real t_y = s[1*w + j];
-        const real ups_base_point_y = m->ups_base_point_y[i];
-        const real ups_S_y = t_y + R_yx*ups_platform_point_x + R_yy*ups_platform_point_y +
-            R_yz*ups_platform_point_z - ups_base_point_y;
-        const real R_zx = s[9*w + j];
-        const real R_zy = s[10*w + j];
-        const real R_zz = s[11*w + j];
-        const real t_z = s[2*w + j];
-        const real ups_base_point_z = m->ups_base_point_z[i];
-        const real ups_S_z = t_z + R_zx*ups_platform_point_x + R_zy*ups_platform_point_y +
-            R_zz*ups_platform_point_z - ups_base_point_z;
-        /* (ups-px_1) component along the reference direction */
-        const real ups_base_frame_xx = m->ups_base_frame_xx[i];
-        const real ups_base_frame_yx = m->ups_base_frame_yx[i];
-        const real ups_base_frame_zx = m->ups_base_frame_zx[i];
-        const real ups_px_1 = ups_S_x*ups_base_frame_xx + ups_S_y*ups_base_frame_yx +
-            ups_S_z*ups_base_frame_zx;
-        /* (ups-py_1) component across the reference direction */
-        const real ups_base_frame_xy = m->ups_base_frame_xy[i];
-        const real ups_base_frame_yy = m->ups_base_frame_yy[i];
-        const real ups_base_frame_zy = m->ups_base_frame_zy[i];
-        const real ups_py_1 = ups_S_x*ups_base_frame_xy + ups_S_y*ups_base_frame_yy +
-            ups_S_z*ups_base_frame_zy;
-        /* (ups-rho2_1) squared amplitude */
-        const real ups_rho2_1 = ups_px_1*ups_px_1 + ups_py_1*ups_py_1;
-        /* (ups-root_1) amplitude, with the sign of the branch */
-        const real ups_branch_1 = m->ups_branch_1[i];
-        const real ups_root_1 = ups_branch_1*root(ups_rho2_1);
+        values_ups v;
+        stage_ups_inverse_kinematics_potential(m, w, i, j, s, X, &v);
         /* (ups-c_1) cosine of the angle of joint 1 from its reference direction */
-        const real inv_ups_root_1 = 1/ups_root_1;
-        const real ups_c_1 = -inv_ups_root_1*ups_py_1;
+        const real ups_c_1 = v.inv_ups_root_1*v.ups_S_in_turn1_x;
         /* (ups-s_1) sine of the angle of joint 1 from its reference direction */
-        const real ups_s_1 = inv_ups_root_1*ups_px_1;
-        /* (ups-xi_1) the vector from joint 1 to the connection point, resolved along link 1 */
-        const real ups_base_frame_xz = m->ups_base_frame_xz[i];
-        const real ups_base_frame_yz = m->ups_base_frame_yz[i];
-        const real ups_base_frame_zz = m->ups_base_frame_zz[i];
-        const real ups_xi_1_in_axes1_z = ups_S_x*ups_base_frame_xz + ups_S_y*ups_base_frame_yz +
-            ups_S_z*ups_base_frame_zz;
-        /* (ups-rho2_2) squared amplitude */
-        const real ups_rho2_2 = ups_rho2_1 + ups_xi_1_in_axes1_z*ups_xi_1_in_axes1_z;
-        /* (ups-root_2) amplitude, with the sign of the branch */
-        const real ups_branch_2 = m->ups_branch_2[i];
-        const real ups_root_2 = ups_branch_2*root(ups_rho2_2);
+        const real ups_s_1 = v.inv_ups_root_1*v.ups_S_in_turn1_y;
         /* (ups-c_2) cosine of the angle of joint 2 from its reference direction */
-        const real inv_ups_root_2 = 1/ups_root_2;
-        const real ups_c_2 = -inv_ups_root_2*ups_root_1;
-        /* (ups-s_2) sine of the angle of joint 2 from its reference direction */
-        const real ups_s_2 = inv_ups_root_2*ups_xi_1_in_axes1_z;
+        const real ups_c_2 = v.inv_ups_q_3*v.ups_root_1;
         /* (potential) potential energy */
+        const real ups_e_1_in_axes2_x = v.inv_ups_q_3*v.ups_S_in_turn1_z;
         const real ups_acc_3_t = m->ups_acc_3_t[i];
         const real ups_acc_3_t_2 = m->ups_acc_3_t_2[i];
-        const real ups_potential_t_4 = ups_acc_3_t_2*ups_c_1 - ups_acc_3_t*ups_s_1;
+        const real ups_potential_t_4 = ups_acc_3_t*ups_c_1 + ups_acc_3_t_2*ups_s_1;
         const real ups_potential_t = m->ups_potential_t[i];
         const real ups_potential_t_2 = m->ups_potential_t_2[i];
-        const real ups_potential_t_5 = ups_c_1*ups_potential_t_2 - ups_potential_t*ups_s_1;
+        const real ups_potential_t_5 = ups_c_1*ups_potential_t + ups_potential_t_2*ups_s_1;
         const real ups_acc_3_t_3 = m->ups_acc_3_t_3[i];
         const real ups_h_2_in_spec2_x = m->ups_h_2_in_spec2_x[i];
         const real ups_h_2_in_spec2_y = m->ups_h_2_in_spec2_y[i];
@@ -4680,18 +3528,18 @@ INLINE void potential_legs_ups(const prepared *m, size_t w, size_t leg, size_t l
         const real ups_h_3_in_spec2_z = m->ups_h_3_in_spec2_z[i];
         const real ups_link2_mass = m->ups_link2_mass[i];
         const real ups_potential_t_3 = m->ups_potential_t_3[i];
-        const real ups_potential_t_6 = (ups_acc_3_t_3*ups_c_2 -
-            ups_potential_t_4*ups_s_2)*(ups_h_2_in_spec2_z + ups_h_3_in_spec2_z -
-            ups_link2_mass*(ups_c_2*ups_potential_t_3 - ups_potential_t_5*ups_s_2)) -
-            (ups_acc_3_t*ups_c_1 + ups_acc_3_t_2*ups_s_1)*(ups_h_2_in_spec2_y + ups_h_3_in_spec2_y
-            + ups_link2_mass*(ups_c_1*ups_potential_t + ups_potential_t_2*ups_s_1)) -
-            (ups_acc_3_t_3*ups_s_2 + ups_c_2*ups_potential_t_4)*(ups_h_2_in_spec2_x +
+        const real ups_potential_t_6 = (ups_e_1_in_axes2_x*ups_potential_t_4 -
+            ups_acc_3_t_3*ups_c_2)*(ups_h_2_in_spec2_z + ups_h_3_in_spec2_z -
+            ups_link2_mass*(ups_e_1_in_axes2_x*ups_potential_t_5 - ups_c_2*ups_potential_t_3)) -
+            (ups_acc_3_t_2*ups_c_1 - ups_acc_3_t*ups_s_1)*(ups_h_2_in_spec2_y + ups_h_3_in_spec2_y
+            + ups_link2_mass*(ups_c_1*ups_potential_t_2 - ups_potential_t*ups_s_1)) -
+            (ups_acc_3_t_3*ups_e_1_in_axes2_x + ups_c_2*ups_potential_t_4)*(ups_h_2_in_spec2_x +
             ups_h_3_in_spec2_x + ups_link2_mass*(ups_c_2*ups_potential_t_5 +
-            ups_potential_t_3*ups_s_2));
+            ups_e_1_in_axes2_x*ups_potential_t_3));
         /* (potential) potential energy */
         gather(&terms[0*count + k], add, ups_potential_t_6);  /* potential_of_legs */
-        o[0*count + k] = UNLESS(magnitude(ups_rho2_1) > LEAST_1) + UNLESS(magnitude(ups_rho2_2) >
-            LEAST_1);
+        o[0*count + k] = UNLESS(magnitude(v.ups_root_1_t) > LEAST_1) +
+            UNLESS(magnitude(v.ups_q_3_t) > LEAST_1);
     }
 }
 
@@ -4707,7 +3555,7 @@ INLINE void potential_after(size_t w, const real *s, const real *sums, real *pot
     for (size_t k = 0; k < w; ++k) {
         /* (potential) potential energy */
         const real potential_of_legs = sums[0*w + k];
-        const real potential_t = s[12*w + k];
+        const real potential_t = s[9*w + k];
         const real potential_ = potential_of_legs - potential_t;
         /* (potential) potential energy */
         potential[0*w + k] = potential_;
@@ -4716,12 +3564,10 @@ INLINE void potential_after(size_t w, const real *s, const real *sums, real *pot
 
 INLINE void potential_run(const prepared *m, const real *X, real *potential, verdict *t)
 {
-    real s[13] = {0};
-    real sums[1] = {0};
-    real terms_ups[LEGS(LEGS_OF_ups)] = {0};
-    real o_ups[LEGS(LEGS_OF_ups)] = {0};
+    real s[10] = {0}, sums[1] = {0};
+    real terms_ups[LEGS(LEGS_OF_ups)] = {0}, o_ups[LEGS(LEGS_OF_ups)] = {0};
     potential_before(m, 1, X, s, t);
-    potential_legs_ups(m, 1, 0, 1, s, 0, LEGS(LEGS_OF_ups), 0, terms_ups, o_ups);
+    potential_legs_ups(m, 1, 0, 1, s, 0, LEGS(LEGS_OF_ups), 0, X, terms_ups, o_ups);
     for (size_t leg = 0; leg < LEGS_OF_ups; ++leg) {
         potential_place_ups(1, LEGS(LEGS_OF_ups), o_ups, leg, t);
     }
@@ -4736,155 +3582,63 @@ INLINE void condition_before(const prepared *m, size_t w, const real *X, real *s
     verdict *t)
 {
     for (size_t k = 0; k < w; ++k) {
-        /* X: named entries */
-        const real X_0 = X[0*w + k];
-        const real t_x = X_0;
-        const real X_1 = X[1*w + k];
-        const real t_y = X_1;
-        const real X_2 = X[2*w + k];
-        const real t_z = X_2;
-        const real X_3 = X[3*w + k];
-        const real X_4 = X[4*w + k];
-        const real X_5 = X[5*w + k];
-        const real X_6 = X[6*w + k];
-        const real quaternion_norm2 = X_3*X_3 + X_4*X_4 + X_5*X_5 + X_6*X_6;
-        const real quaternion_scale = 2/quaternion_norm2;
-        const real quaternion_sx = X_3*quaternion_scale;
-        const real quaternion_sy = X_4*quaternion_scale;
-        const real quaternion_sz = X_5*quaternion_scale;
-        const real quaternion_wx = X_6*quaternion_sx;
-        const real quaternion_wy = X_6*quaternion_sy;
-        const real quaternion_wz = X_6*quaternion_sz;
-        const real quaternion_xx = X_3*quaternion_sx;
-        const real quaternion_xy = X_3*quaternion_sy;
-        const real quaternion_xz = X_3*quaternion_sz;
-        const real quaternion_yy = X_4*quaternion_sy;
-        const real quaternion_yz = X_4*quaternion_sz;
-        const real quaternion_zz = X_5*quaternion_sz;
-        const real R_xx = 1 - quaternion_yy - quaternion_zz;
-        const real R_xy = quaternion_xy - quaternion_wz;
-        const real R_xz = quaternion_wy + quaternion_xz;
-        const real R_yx = quaternion_wz + quaternion_xy;
-        const real R_yy = 1 - quaternion_xx - quaternion_zz;
-        const real R_yz = quaternion_yz - quaternion_wx;
-        const real R_zx = quaternion_xz - quaternion_wy;
-        const real R_zy = quaternion_wx + quaternion_yz;
-        const real R_zz = 1 - quaternion_xx - quaternion_yy;
-        s[0*w + k] = t_x;
-        s[1*w + k] = t_y;
-        s[2*w + k] = t_z;
-        s[3*w + k] = R_xx;
-        s[4*w + k] = R_xy;
-        s[5*w + k] = R_xz;
-        s[6*w + k] = R_yx;
-        s[7*w + k] = R_yy;
-        s[8*w + k] = R_yz;
-        s[9*w + k] = R_zx;
-        s[10*w + k] = R_zy;
-        s[11*w + k] = R_zz;
+        values v;
+        stage_X(m, w, k, X, &v);
+        s[0*w + k] = v.R_xx;
+        s[1*w + k] = v.R_xy;
+        s[2*w + k] = v.R_xz;
+        s[3*w + k] = v.R_yx;
+        s[4*w + k] = v.R_yy;
+        s[5*w + k] = v.R_yz;
+        s[6*w + k] = v.R_zx;
+        s[7*w + k] = v.R_zy;
+        s[8*w + k] = v.R_zz;
         /* (legs_size) rms size of the legs, taken where the platform points coincide */
         const real legs_size = m->legs_size;
         lengths[1*w + k] = legs_size;
         t->total[k] += legs_size;
-        t->invalid[k] += UNLESS(is_finite(quaternion_scale)) + UNLESS(quaternion_scale > 0);
+        t->invalid[k] += UNLESS(is_finite(v.quaternion_scale)) + UNLESS(v.quaternion_scale > 0);
     }
 }
 
 INLINE void condition_legs_ups(const prepared *m, size_t w, size_t leg, size_t legs, const real
-    *s, size_t states, size_t count, int add, real *terms, real *o)
+    *s, size_t states, size_t count, int add, const real *X, real *terms, real *o)
 {
     for (size_t k = 0; k < count; ++k) {
         const size_t i = leg + legs*k;
         const size_t j = states*k;
-        /* (ups-S) from the base point to the connection point */
-        const real R_xx = s[3*w + j];
-        const real R_xy = s[4*w + j];
-        const real R_xz = s[5*w + j];
-        const real ups_platform_point_x = m->ups_platform_point_x[i];
-        const real ups_platform_point_y = m->ups_platform_point_y[i];
-        const real ups_platform_point_z = m->ups_platform_point_z[i];
-        const real ups_q_x = R_xx*ups_platform_point_x + R_xy*ups_platform_point_y +
-            R_xz*ups_platform_point_z;
-        const real R_yx = s[6*w + j];
-        const real R_yy = s[7*w + j];
-        const real R_yz = s[8*w + j];
-        const real ups_q_y = R_yx*ups_platform_point_x + R_yy*ups_platform_point_y +
-            R_yz*ups_platform_point_z;
-        const real R_zx = s[9*w + j];
-        const real R_zy = s[10*w + j];
-        const real R_zz = s[11*w + j];
-        const real ups_q_z = R_zx*ups_platform_point_x + R_zy*ups_platform_point_y +
-            R_zz*ups_platform_point_z;
-        const real t_x = s[0*w + j];
-        const real ups_base_point_x = m->ups_base_point_x[i];
-        const real ups_S_x = t_x + ups_q_x - ups_base_point_x;
-        const real t_y = s[1*w + j];
-        const real ups_base_point_y = m->ups_base_point_y[i];
-        const real ups_S_y = t_y + ups_q_y - ups_base_point_y;
-        const real t_z = s[2*w + j];
-        const real ups_base_point_z = m->ups_base_point_z[i];
-        const real ups_S_z = t_z + ups_q_z - ups_base_point_z;
-        /* (ups-px_1) component along the reference direction */
-        const real ups_base_frame_xx = m->ups_base_frame_xx[i];
-        const real ups_base_frame_yx = m->ups_base_frame_yx[i];
-        const real ups_base_frame_zx = m->ups_base_frame_zx[i];
-        const real ups_px_1 = ups_S_x*ups_base_frame_xx + ups_S_y*ups_base_frame_yx +
-            ups_S_z*ups_base_frame_zx;
-        /* (ups-py_1) component across the reference direction */
-        const real ups_base_frame_xy = m->ups_base_frame_xy[i];
-        const real ups_base_frame_yy = m->ups_base_frame_yy[i];
-        const real ups_base_frame_zy = m->ups_base_frame_zy[i];
-        const real ups_py_1 = ups_S_x*ups_base_frame_xy + ups_S_y*ups_base_frame_yy +
-            ups_S_z*ups_base_frame_zy;
-        /* (ups-rho2_1) squared amplitude */
-        const real ups_rho2_1 = ups_px_1*ups_px_1 + ups_py_1*ups_py_1;
-        /* (ups-root_1) amplitude, with the sign of the branch */
-        const real ups_branch_1 = m->ups_branch_1[i];
-        const real ups_root_1 = ups_branch_1*root(ups_rho2_1);
-        /* (ups-xi_1) the vector from joint 1 to the connection point, resolved along link 1 */
-        const real ups_base_frame_xz = m->ups_base_frame_xz[i];
-        const real ups_base_frame_yz = m->ups_base_frame_yz[i];
-        const real ups_base_frame_zz = m->ups_base_frame_zz[i];
-        const real ups_xi_1_in_axes1_z = ups_S_x*ups_base_frame_xz + ups_S_y*ups_base_frame_yz +
-            ups_S_z*ups_base_frame_zz;
-        /* (ups-rho2_2) squared amplitude */
-        const real ups_rho2_2 = ups_rho2_1 + ups_xi_1_in_axes1_z*ups_xi_1_in_axes1_z;
-        /* (ups-root_2) amplitude, with the sign of the branch */
-        const real ups_branch_2 = m->ups_branch_2[i];
-        const real ups_root_2 = ups_branch_2*root(ups_rho2_2);
-        /* (ups-w_2) reciprocal vector 2 */
-        const real ups_w_2_in_axes2_y = 1/ups_root_2;
-        /* (ups-w_3) reciprocal vector 3 */
-        const real ups_w_3_x = ups_S_x*ups_w_2_in_axes2_y;
-        const real ups_w_3_y = ups_S_y*ups_w_2_in_axes2_y;
-        const real ups_w_3_z = ups_S_z*ups_w_2_in_axes2_y;
+        values_ups v;
+        stage_ups_X(m, w, i, j, s, X, &v);
         /* (ups-G) force at the connection point that balances the leg's inertia and weight along all
            degrees of freedom */
-        const real ups_pivot_size = magnitude(ups_rho2_1);
-        const real ups_pivot_size_2 = magnitude(ups_rho2_2);
-        const real ups_pivot_size_3 = magnitude(ups_root_1);
-        const real ups_pivot_size_4 = magnitude(ups_root_2);
+        const real ups_pivot_size = magnitude(v.ups_root_1_t);
+        const real ups_pivot_size_2 = magnitude(v.ups_q_3_t);
+        const real ups_pivot_size_3 = magnitude(v.ups_root_1);
+        const real ups_pivot_size_4 = magnitude(v.ups_q_3);
         const real ups_least_pivots = lesser(lesser(lesser(R(1.25)*root(ups_pivot_size),
             R(1.25)*root(ups_pivot_size_2)), R(1.25)*ups_pivot_size_3), R(1.25)*ups_pivot_size_4);
         /* (ups-H_a_3) moment of the column's unit force about the platform origin */
-        const real ups_H_a_3_x = ups_q_y*ups_w_3_z - ups_q_z*ups_w_3_y;
-        const real ups_H_a_3_y = ups_q_z*ups_w_3_x - ups_q_x*ups_w_3_z;
-        const real ups_H_a_3_z = ups_q_x*ups_w_3_y - ups_q_y*ups_w_3_x;
+        const real ups_H_a_3_x = v.ups_q_y*v.ups_w_3_z - v.ups_q_z*v.ups_w_3_y;
+        const real ups_H_a_3_y = v.ups_q_z*v.ups_w_3_x - v.ups_q_x*v.ups_w_3_z;
+        const real ups_H_a_3_z = v.ups_q_x*v.ups_w_3_y - v.ups_q_y*v.ups_w_3_x;
         /* (spread) rms distance of the platform points from their centroid */
         const real b_c_in_platform_x = m->b_c_in_platform_x;
+        const real ups_platform_point_x = m->ups_platform_point_x[i];
         const real ups_spread_t = b_c_in_platform_x - ups_platform_point_x;
         const real b_c_in_platform_y = m->b_c_in_platform_y;
+        const real ups_platform_point_y = m->ups_platform_point_y[i];
         const real ups_spread_t_2 = b_c_in_platform_y - ups_platform_point_y;
         const real b_c_in_platform_z = m->b_c_in_platform_z;
+        const real ups_platform_point_z = m->ups_platform_point_z[i];
         const real ups_spread_t_3 = b_c_in_platform_z - ups_platform_point_z;
         const real ups_spread_t_4 = ups_spread_t*ups_spread_t + ups_spread_t_2*ups_spread_t_2 +
             ups_spread_t_3*ups_spread_t_3;
         /* (spread) rms distance of the platform points from their centroid */
         gather(&terms[0*count + k], add, ups_spread_t_4);  /* spread_ups */
         /* (ups-w_3) reciprocal vector 3 */
-        o[0*count + k] = ups_w_3_x;
-        o[1*count + k] = ups_w_3_y;
-        o[2*count + k] = ups_w_3_z;
+        o[0*count + k] = v.ups_w_3_x;
+        o[1*count + k] = v.ups_w_3_y;
+        o[2*count + k] = v.ups_w_3_z;
         /* (ups-H_a_3) moment of the column's unit force about the platform origin */
         o[3*count + k] = ups_H_a_3_x;
         o[4*count + k] = ups_H_a_3_y;
@@ -4892,11 +3646,11 @@ INLINE void condition_legs_ups(const prepared *m, size_t w, size_t leg, size_t l
         /* (ups-G) force at the connection point that balances the leg's inertia and weight along all
            degrees of freedom */
         o[6*count + k] = ups_least_pivots;
-        o[8*count + k] = (ups_w_3_x + (ups_w_3_y + ups_w_3_z)) + ((ups_H_a_3_x + ups_H_a_3_y) +
-            (ups_H_a_3_z + ups_least_pivots));
-        o[7*count + k] = UNLESS(magnitude(ups_rho2_1) > LEAST_1) + UNLESS(magnitude(ups_rho2_2) >
-            LEAST_1) + UNLESS(magnitude(ups_root_1) > LEAST_2) + UNLESS(magnitude(ups_root_2) >
-            LEAST_2);
+        o[8*count + k] = (v.ups_w_3_x + (v.ups_w_3_y + v.ups_w_3_z)) + ((ups_H_a_3_x +
+            ups_H_a_3_y) + (ups_H_a_3_z + ups_least_pivots));
+        o[7*count + k] = UNLESS(magnitude(v.ups_root_1_t) > LEAST_1) +
+            UNLESS(magnitude(v.ups_q_3_t) > LEAST_1) + UNLESS(magnitude(v.ups_root_1) > LEAST_2) +
+            UNLESS(magnitude(v.ups_q_3) > LEAST_2);
     }
 }
 
@@ -4904,7 +3658,7 @@ INLINE void condition_place_ups(size_t w, size_t count, const real *o, size_t le
     real *H, real *pivots, verdict *t)
 {
     for (size_t k = 0; k < w; ++k) {
-        H[(0*NU + leg)*w + k] = o[0*count + first + k];
+        H[leg*w + k] = o[0*count + first + k];
         H[(NU + leg)*w + k] = o[1*count + first + k];
         H[(2*NU + leg)*w + k] = o[2*count + first + k];
         H[(3*NU + leg)*w + k] = o[3*count + first + k];
@@ -4933,13 +3687,11 @@ INLINE void condition_after(const prepared *m, size_t w, const real *sums, real 
 INLINE void condition_run(const prepared *m, const real *X, real *H, real *lengths, real *pivots,
     real *reach, verdict *t)
 {
-    real s[12] = {0};
-    real sums[1] = {0};
-    real terms_ups[LEGS(LEGS_OF_ups)] = {0};
-    real o_ups[9*LEGS(LEGS_OF_ups)] = {0};
+    real s[9] = {0}, sums[1] = {0};
+    real terms_ups[LEGS(LEGS_OF_ups)] = {0}, o_ups[9*LEGS(LEGS_OF_ups)] = {0};
     clear(reach, NL);
     condition_before(m, 1, X, s, lengths, t);
-    condition_legs_ups(m, 1, 0, 1, s, 0, LEGS(LEGS_OF_ups), 0, terms_ups, o_ups);
+    condition_legs_ups(m, 1, 0, 1, s, 0, LEGS(LEGS_OF_ups), 0, X, terms_ups, o_ups);
     for (size_t leg = 0; leg < LEGS_OF_ups; ++leg) {
         condition_place_ups(1, LEGS(LEGS_OF_ups), o_ups, leg, leg, H, pivots, t);
     }
@@ -5580,10 +4332,83 @@ INLINE void condition_one(const prepared *m, const real *X, const real *length, 
     }
 }
 
+INLINE void manipulability_one(const prepared *m, const real *X, real *measure_out, real
+    *isotropy_out, int *code)
+{
+    static const size_t places_divide_rows_1[] = {3, 4, 5};
+    real H[NV*NU] = {0}, lengths[2] = {0}, pivots[NL] = {0}, reach[NL] = {0}, subtract_1[1] = {0},
+        choose_length_1[1] = {0}, divide_rows_1[NV*NU] = {0}, singular_values_1[NV] = {0}, measure[1]
+        = {0}, isotropy[1] = {0};
+    verdict why;
+    start(1, &why);
+    check(NQ, 1, X, why.invalid);
+    condition_run(m, X, H, lengths, pivots, reach, &why);
+    const real *const entry_1 = lengths;
+    for (size_t i = 0; i < 1; ++i) {
+        subtract_1[i] = entry_1[i] - entry_1[i];
+    }
+    for (size_t i = 0; i < 1; ++i) {
+        choose_length_1[i] = subtract_1[i] > 0 ? subtract_1[i] : lengths[i] > TINY*lengths[1 + i]
+            ? lengths[i] : lengths[1 + i];
+    }
+    for (size_t i = 0; i < NV*NU; ++i) {
+        divide_rows_1[i] = H[i];
+    }
+    divide_rows(3, NU, 1, places_divide_rows_1, choose_length_1, divide_rows_1);
+    singular_values(NV, NU, divide_rows_1, singular_values_1);
+    spread(NV, singular_values_1, measure, isotropy);
+    check(1, 1, measure, why.overflow);
+    check(1, 1, isotropy, why.overflow);
+    judge(&why, code);
+    copy(1, measure, measure_out);
+    copy(1, isotropy, isotropy_out);
+    if (*code != OK) {
+        refuse(1, measure_out);
+        refuse(1, isotropy_out);
+    }
+}
+
+INLINE void singularity_distance_one(const prepared *m, const real *X, real *actuators_out, real
+    *legs_out, int *code)
+{
+    static const size_t places_divide_rows_1[] = {3, 4, 5};
+    real H[NV*NU] = {0}, lengths[2] = {0}, pivots[NL] = {0}, reach[NL] = {0}, subtract_1[1] = {0},
+        choose_length_1[1] = {0}, divide_rows_1[NV*NU] = {0}, singular_values_1[NV] = {0}, spread_1[1]
+        = {0}, actuators[1] = {0}, legs[1] = {0};
+    verdict why;
+    start(1, &why);
+    check(NQ, 1, X, why.invalid);
+    condition_run(m, X, H, lengths, pivots, reach, &why);
+    const real *const entry_1 = lengths;
+    for (size_t i = 0; i < 1; ++i) {
+        subtract_1[i] = entry_1[i] - entry_1[i];
+    }
+    for (size_t i = 0; i < 1; ++i) {
+        choose_length_1[i] = subtract_1[i] > 0 ? subtract_1[i] : lengths[i] > TINY*lengths[1 + i]
+            ? lengths[i] : lengths[1 + i];
+    }
+    for (size_t i = 0; i < NV*NU; ++i) {
+        divide_rows_1[i] = H[i];
+    }
+    divide_rows(3, NU, 1, places_divide_rows_1, choose_length_1, divide_rows_1);
+    singular_values(NV, NU, divide_rows_1, singular_values_1);
+    spread(NV, singular_values_1, spread_1, actuators);
+    least_entry(NL, pivots, legs);
+    check(1, 1, actuators, why.overflow);
+    check(1, 1, legs, why.overflow);
+    judge(&why, code);
+    copy(1, actuators, actuators_out);
+    copy(1, legs, legs_out);
+    if (*code != OK) {
+        refuse(1, actuators_out);
+        refuse(1, legs_out);
+    }
+}
+
 static void mismatch_one(const prepared *m, const real *X, const real *q_actuated, real *gap_out,
     int *code)
 {
-    real q[NJ] = {0}, take_1[6] = {0}, gap[NU] = {0};
+    real q[NJ] = {0}, q_of_inverse_kinematics_from_2[6] = {0}, gap[NU] = {0};
     verdict why;
     start(1, &why);
     const real total_in = total(X, NQ) + total(q_actuated, NU);
@@ -5592,9 +4417,9 @@ static void mismatch_one(const prepared *m, const real *X, const real *q_actuate
         check(NU, 1, q_actuated, why.invalid);
     }
     inverse_kinematics_run(m, X, q, &why);
-    take(6, 1, stewart_ACTUATED, q, take_1);
+    take(6, 1, stewart_ACTUATED, q, q_of_inverse_kinematics_from_2);
     for (size_t i = 0; i < NU; ++i) {
-        gap[i] = q_actuated[i] - take_1[i];
+        gap[i] = q_actuated[i] - q_of_inverse_kinematics_from_2[i];
     }
     check(NU, 1, gap, why.overflow);
     judge(&why, code);
@@ -5961,8 +4786,8 @@ INLINE void rotation_one(const real *X, real *R_out, int *code)
     verdict why;
     start(1, &why);
     check(NQ, 1, X, why.invalid);
-    const real *const take_1 = X + 3;
-    rotation_of_quaternion(take_1, R);
+    const real *const X_from_3 = X + 3;
+    rotation_of_quaternion(X_from_3, R);
     check(9, 1, R, why.overflow);
     judge(&why, code);
     copy(9, R, R_out);
@@ -6002,11 +4827,11 @@ INLINE void X_dot_one(const real *X, const real *V, real *X_dot_out, int *code)
         check(NQ, 1, X, why.invalid);
         check(NV, 1, V, why.invalid);
     }
-    const real *const take_1 = V + 3;
-    const real *const take_2 = X + 3;
-    quaternion_rate(take_2, take_1, quaternion_rate_1);
-    const real *const take_3 = V;
-    beside(1, 3, 4, take_3, quaternion_rate_1, X_dot);
+    const real *const V_from_3 = V + 3;
+    const real *const X_from_3 = X + 3;
+    quaternion_rate(X_from_3, V_from_3, quaternion_rate_1);
+    const real *const V_from_0 = V;
+    beside(1, 3, 4, V_from_0, quaternion_rate_1, X_dot);
     check(NQ, 1, X_dot, why.overflow);
     judge(&why, code);
     copy(NQ, X_dot, X_dot_out);
@@ -6046,13 +4871,13 @@ INLINE void retract_one(const real *X, const real *step, real *X_moved_out, int 
         check(NQ, 1, X, why.invalid);
         check(NV, 1, step, why.invalid);
     }
-    const real *const take_1 = X;
-    const real *const take_2 = X + 3;
-    const real *const take_3 = step;
-    const real *const take_4 = step + 3;
-    turn_quaternion(take_2, take_4, turn_quaternion_1);
+    const real *const X_from_0 = X;
+    const real *const X_from_3 = X + 3;
+    const real *const step_from_0 = step;
+    const real *const step_from_3 = step + 3;
+    turn_quaternion(X_from_3, step_from_3, turn_quaternion_1);
     for (size_t i = 0; i < 3; ++i) {
-        add_1[i] = take_1[i] + take_3[i];
+        add_1[i] = X_from_0[i] + step_from_0[i];
     }
     beside(1, 3, 4, add_1, turn_quaternion_1, X_moved);
     check(NQ, 1, X_moved, why.overflow);
@@ -6073,13 +4898,13 @@ INLINE void difference_one(const real *X0, const real *X1, real *step_out, int *
         check(NQ, 1, X0, why.invalid);
         check(NQ, 1, X1, why.invalid);
     }
-    const real *const take_1 = X0;
-    const real *const take_2 = X0 + 3;
-    const real *const take_3 = X1;
-    const real *const take_4 = X1 + 3;
-    turn_between(take_2, take_4, turn_between_1);
+    const real *const X0_from_0 = X0;
+    const real *const X0_from_3 = X0 + 3;
+    const real *const X1_from_0 = X1;
+    const real *const X1_from_3 = X1 + 3;
+    turn_between(X0_from_3, X1_from_3, turn_between_1);
     for (size_t i = 0; i < 3; ++i) {
-        subtract_1[i] = take_3[i] - take_1[i];
+        subtract_1[i] = X1_from_0[i] - X0_from_0[i];
     }
     beside(1, 3, 3, subtract_1, turn_between_1, step);
     check(NV, 1, step, why.overflow);
@@ -6102,25 +4927,25 @@ INLINE void interpolate_one(const real *X0, const real *X1, const real *s, real 
         check(NQ, 1, X1, why.invalid);
         check(1, 1, s, why.invalid);
     }
-    const real *const take_1 = X0;
-    const real *const take_2 = X0 + 3;
-    const real *const take_3 = X1;
-    const real *const take_4 = X1 + 3;
-    turn_between(take_2, take_4, turn_between_1);
+    const real *const X0_from_0 = X0;
+    const real *const X0_from_3 = X0 + 3;
+    const real *const X1_from_0 = X1;
+    const real *const X1_from_3 = X1 + 3;
+    turn_between(X0_from_3, X1_from_3, turn_between_1);
     for (size_t i = 0; i < 3; ++i) {
-        subtract_1[i] = take_3[i] - take_1[i];
+        subtract_1[i] = X1_from_0[i] - X0_from_0[i];
     }
     beside(1, 3, 3, subtract_1, turn_between_1, join_1);
     for (size_t i = 0; i < 6; ++i) {
         scale_1[i] = join_1[i]*s[i%(1)];
     }
-    const real *const take_5 = X0;
-    const real *const take_6 = X0 + 3;
-    const real *const take_7 = scale_1;
-    const real *const take_8 = scale_1 + 3;
-    turn_quaternion(take_6, take_8, turn_quaternion_1);
+    const real *const X0_from_0_2 = X0;
+    const real *const X0_from_3_2 = X0 + 3;
+    const real *const scale_1_from_0 = scale_1;
+    const real *const scale_1_from_3 = scale_1 + 3;
+    turn_quaternion(X0_from_3_2, scale_1_from_3, turn_quaternion_1);
     for (size_t i = 0; i < 3; ++i) {
-        add_1[i] = take_5[i] + take_7[i];
+        add_1[i] = X0_from_0_2[i] + scale_1_from_0[i];
     }
     beside(1, 3, 4, add_1, turn_quaternion_1, X);
     check(NQ, 1, X, why.overflow);
@@ -6133,277 +4958,259 @@ INLINE void interpolate_one(const real *X0, const real *X1, const real *s, real 
 
 /* ---- one state, and batches ---- */
 
-int stewart_M(const stewart_model *model, const stewart_real *X, stewart_real *M)
+int stewart_M(const prepared *model, const real *X, real *M)
 {
     int code;
     M_one(model, X, M, &code);
     return code;
 }
 
-size_t stewart_M_batch(const stewart_model *model, size_t n, const stewart_real *X, stewart_real
-    *M, int *status)
+size_t stewart_M_batch(const prepared *model, size_t n, const real *X, real *M, int *status)
 {
-    size_t failed = 0, i = 0;
-    for (; LANES > 1 && i + LANES <= n; i += LANES) {
-        int codes[LANES];
-        M_lanes(model, X + NQ*i, M + NV*NV*i, codes);
-        for (size_t k = 0; k < LANES; ++k) {
+    size_t failed = 0, w;
+    for (size_t i = 0; i < n; i += w) {
+        int codes[LANES] = {INVALID};
+        w = LANES > 1 && i + LANES <= n ? LANES : 1;
+        if (w > 1) {
+            M_lanes(model, X + NQ*i, M + NV*NV*i, codes);
+        }
+        for (size_t k = 0; k < w; ++k) {
             if (codes[k] != OK) {
                 codes[k] = stewart_M(model, X + NQ*(i + k), M + NV*NV*(i + k));
             }
         }
-        failed += record(codes, LANES, status ? status + i : NULL);
-    }
-    for (; i < n; ++i) {
-        const int code = stewart_M(model, X + NQ*i, M + NV*NV*i);
-        failed += record(&code, 1, status ? status + i : NULL);
+        failed += record(codes, w, status ? status + i : NULL);
     }
     return failed;
 }
 
-int stewart_Z(const stewart_model *model, const stewart_real *X, const stewart_real *V,
-    stewart_real *Z)
+int stewart_Z(const prepared *model, const real *X, const real *V, real *Z)
 {
     int code;
     Z_one(model, X, V, Z, &code);
     return code;
 }
 
-size_t stewart_Z_batch(const stewart_model *model, size_t n, const stewart_real *X, const
-    stewart_real *V, stewart_real *Z, int *status)
+size_t stewart_Z_batch(const prepared *model, size_t n, const real *X, const real *V, real *Z, int
+    *status)
 {
-    size_t failed = 0, i = 0;
-    for (; LANES > 1 && i + LANES <= n; i += LANES) {
-        int codes[LANES];
-        Z_lanes(model, X + NQ*i, V + NV*i, Z + NV*i, codes);
-        for (size_t k = 0; k < LANES; ++k) {
+    size_t failed = 0, w;
+    for (size_t i = 0; i < n; i += w) {
+        int codes[LANES] = {INVALID};
+        w = LANES > 1 && i + LANES <= n ? LANES : 1;
+        if (w > 1) {
+            Z_lanes(model, X + NQ*i, V + NV*i, Z + NV*i, codes);
+        }
+        for (size_t k = 0; k < w; ++k) {
             if (codes[k] != OK) {
                 codes[k] = stewart_Z(model, X + NQ*(i + k), V + NV*(i + k), Z + NV*(i + k));
             }
         }
-        failed += record(codes, LANES, status ? status + i : NULL);
-    }
-    for (; i < n; ++i) {
-        const int code = stewart_Z(model, X + NQ*i, V + NV*i, Z + NV*i);
-        failed += record(&code, 1, status ? status + i : NULL);
+        failed += record(codes, w, status ? status + i : NULL);
     }
     return failed;
 }
 
-int stewart_H(const stewart_model *model, const stewart_real *X, stewart_real *H)
+int stewart_H(const prepared *model, const real *X, real *H)
 {
     int code;
     H_one(model, X, H, &code);
     return code;
 }
 
-size_t stewart_H_batch(const stewart_model *model, size_t n, const stewart_real *X, stewart_real
-    *H, int *status)
+size_t stewart_H_batch(const prepared *model, size_t n, const real *X, real *H, int *status)
 {
-    size_t failed = 0, i = 0;
-    for (; LANES > 1 && i + LANES <= n; i += LANES) {
-        int codes[LANES];
-        H_lanes(model, X + NQ*i, H + NV*NU*i, codes);
-        for (size_t k = 0; k < LANES; ++k) {
+    size_t failed = 0, w;
+    for (size_t i = 0; i < n; i += w) {
+        int codes[LANES] = {INVALID};
+        w = LANES > 1 && i + LANES <= n ? LANES : 1;
+        if (w > 1) {
+            H_lanes(model, X + NQ*i, H + NV*NU*i, codes);
+        }
+        for (size_t k = 0; k < w; ++k) {
             if (codes[k] != OK) {
                 codes[k] = stewart_H(model, X + NQ*(i + k), H + NV*NU*(i + k));
             }
         }
-        failed += record(codes, LANES, status ? status + i : NULL);
-    }
-    for (; i < n; ++i) {
-        const int code = stewart_H(model, X + NQ*i, H + NV*NU*i);
-        failed += record(&code, 1, status ? status + i : NULL);
+        failed += record(codes, w, status ? status + i : NULL);
     }
     return failed;
 }
 
-int stewart_inverse_kinematics(const stewart_model *model, const stewart_real *X, stewart_real *q)
+int stewart_inverse_kinematics(const prepared *model, const real *X, real *q)
 {
     int code;
     inverse_kinematics_one(model, X, q, &code);
     return code;
 }
 
-size_t stewart_inverse_kinematics_batch(const stewart_model *model, size_t n, const stewart_real
-    *X, stewart_real *q, int *status)
+size_t stewart_inverse_kinematics_batch(const prepared *model, size_t n, const real *X, real *q,
+    int *status)
 {
-    size_t failed = 0, i = 0;
-    for (; LANES > 1 && i + LANES <= n; i += LANES) {
-        int codes[LANES];
-        inverse_kinematics_lanes(model, X + NQ*i, q + NJ*i, codes);
-        for (size_t k = 0; k < LANES; ++k) {
+    size_t failed = 0, w;
+    for (size_t i = 0; i < n; i += w) {
+        int codes[LANES] = {INVALID};
+        w = LANES > 1 && i + LANES <= n ? LANES : 1;
+        if (w > 1) {
+            inverse_kinematics_lanes(model, X + NQ*i, q + NJ*i, codes);
+        }
+        for (size_t k = 0; k < w; ++k) {
             if (codes[k] != OK) {
                 codes[k] = stewart_inverse_kinematics(model, X + NQ*(i + k), q + NJ*(i + k));
             }
         }
-        failed += record(codes, LANES, status ? status + i : NULL);
-    }
-    for (; i < n; ++i) {
-        const int code = stewart_inverse_kinematics(model, X + NQ*i, q + NJ*i);
-        failed += record(&code, 1, status ? status + i : NULL);
+        failed += record(codes, w, status ? status + i : NULL);
     }
     return failed;
 }
 
-int stewart_joint_rates(const stewart_model *model, const stewart_real *X, const stewart_real *V,
-    stewart_real *rates)
+int stewart_joint_rates(const prepared *model, const real *X, const real *V, real *rates)
 {
     int code;
     joint_rates_one(model, X, V, rates, &code);
     return code;
 }
 
-size_t stewart_joint_rates_batch(const stewart_model *model, size_t n, const stewart_real *X,
-    const stewart_real *V, stewart_real *rates, int *status)
+size_t stewart_joint_rates_batch(const prepared *model, size_t n, const real *X, const real *V,
+    real *rates, int *status)
 {
-    size_t failed = 0, i = 0;
-    for (; LANES > 1 && i + LANES <= n; i += LANES) {
-        int codes[LANES];
-        joint_rates_lanes(model, X + NQ*i, V + NV*i, rates + NJ*i, codes);
-        for (size_t k = 0; k < LANES; ++k) {
+    size_t failed = 0, w;
+    for (size_t i = 0; i < n; i += w) {
+        int codes[LANES] = {INVALID};
+        w = LANES > 1 && i + LANES <= n ? LANES : 1;
+        if (w > 1) {
+            joint_rates_lanes(model, X + NQ*i, V + NV*i, rates + NJ*i, codes);
+        }
+        for (size_t k = 0; k < w; ++k) {
             if (codes[k] != OK) {
                 codes[k] = stewart_joint_rates(model, X + NQ*(i + k), V + NV*(i + k), rates + NJ*(i + k));
             }
         }
-        failed += record(codes, LANES, status ? status + i : NULL);
-    }
-    for (; i < n; ++i) {
-        const int code = stewart_joint_rates(model, X + NQ*i, V + NV*i, rates + NJ*i);
-        failed += record(&code, 1, status ? status + i : NULL);
+        failed += record(codes, w, status ? status + i : NULL);
     }
     return failed;
 }
 
-int stewart_joint_accelerations(const stewart_model *model, const stewart_real *X, const
-    stewart_real *V, const stewart_real *A, stewart_real *accelerations)
+int stewart_joint_accelerations(const prepared *model, const real *X, const real *V, const real
+    *A, real *accelerations)
 {
     int code;
     joint_accelerations_one(model, X, V, A, accelerations, &code);
     return code;
 }
 
-size_t stewart_joint_accelerations_batch(const stewart_model *model, size_t n, const stewart_real
-    *X, const stewart_real *V, const stewart_real *A, stewart_real *accelerations, int *status)
+size_t stewart_joint_accelerations_batch(const prepared *model, size_t n, const real *X, const
+    real *V, const real *A, real *accelerations, int *status)
 {
-    size_t failed = 0, i = 0;
-    for (; LANES > 1 && i + LANES <= n; i += LANES) {
-        int codes[LANES];
-        joint_accelerations_lanes(model, X + NQ*i, V + NV*i, A + NV*i, accelerations + NJ*i, codes);
-        for (size_t k = 0; k < LANES; ++k) {
+    size_t failed = 0, w;
+    for (size_t i = 0; i < n; i += w) {
+        int codes[LANES] = {INVALID};
+        w = LANES > 1 && i + LANES <= n ? LANES : 1;
+        if (w > 1) {
+            joint_accelerations_lanes(model, X + NQ*i, V + NV*i, A + NV*i, accelerations + NJ*i, codes);
+        }
+        for (size_t k = 0; k < w; ++k) {
             if (codes[k] != OK) {
                 codes[k] = stewart_joint_accelerations(model, X + NQ*(i + k), V + NV*(i + k), A + NV*(i + k),
                     accelerations + NJ*(i + k));
             }
         }
-        failed += record(codes, LANES, status ? status + i : NULL);
-    }
-    for (; i < n; ++i) {
-        const int code = stewart_joint_accelerations(model, X + NQ*i, V + NV*i, A + NV*i, accelerations +
-            NJ*i);
-        failed += record(&code, 1, status ? status + i : NULL);
+        failed += record(codes, w, status ? status + i : NULL);
     }
     return failed;
 }
 
-int stewart_dynamics(const stewart_model *model, const stewart_real *X, const stewart_real *V,
-    stewart_real *M, stewart_real *Z, stewart_real *H)
+int stewart_dynamics(const prepared *model, const real *X, const real *V, real *M, real *Z, real
+    *H)
 {
     int code;
     dynamics_one(model, X, V, M, Z, H, &code);
     return code;
 }
 
-size_t stewart_dynamics_batch(const stewart_model *model, size_t n, const stewart_real *X, const
-    stewart_real *V, stewart_real *M, stewart_real *Z, stewart_real *H, int *status)
+size_t stewart_dynamics_batch(const prepared *model, size_t n, const real *X, const real *V, real
+    *M, real *Z, real *H, int *status)
 {
-    size_t failed = 0, i = 0;
-    for (; LANES > 1 && i + LANES <= n; i += LANES) {
-        int codes[LANES];
-        dynamics_lanes(model, X + NQ*i, V + NV*i, M + NV*NV*i, Z + NV*i, H + NV*NU*i, codes);
-        for (size_t k = 0; k < LANES; ++k) {
+    size_t failed = 0, w;
+    for (size_t i = 0; i < n; i += w) {
+        int codes[LANES] = {INVALID};
+        w = LANES > 1 && i + LANES <= n ? LANES : 1;
+        if (w > 1) {
+            dynamics_lanes(model, X + NQ*i, V + NV*i, M + NV*NV*i, Z + NV*i, H + NV*NU*i, codes);
+        }
+        for (size_t k = 0; k < w; ++k) {
             if (codes[k] != OK) {
                 codes[k] = stewart_dynamics(model, X + NQ*(i + k), V + NV*(i + k), M + NV*NV*(i + k), Z + NV*(i +
                     k), H + NV*NU*(i + k));
             }
         }
-        failed += record(codes, LANES, status ? status + i : NULL);
-    }
-    for (; i < n; ++i) {
-        const int code = stewart_dynamics(model, X + NQ*i, V + NV*i, M + NV*NV*i, Z + NV*i, H + NV*NU*i);
-        failed += record(&code, 1, status ? status + i : NULL);
+        failed += record(codes, w, status ? status + i : NULL);
     }
     return failed;
 }
 
-int stewart_inverse_dynamics(const stewart_model *model, const stewart_real *X, const stewart_real
-    *V, const stewart_real *A, const stewart_real *wrench, stewart_real *tau)
+int stewart_inverse_dynamics(const prepared *model, const real *X, const real *V, const real *A,
+    const real *wrench, real *tau)
 {
     int code;
     inverse_dynamics_one(model, X, V, A, wrench, tau, &code);
     return code;
 }
 
-size_t stewart_inverse_dynamics_batch(const stewart_model *model, size_t n, const stewart_real *X,
-    const stewart_real *V, const stewart_real *A, const stewart_real *wrench, stewart_real *tau,
-    int *status)
+size_t stewart_inverse_dynamics_batch(const prepared *model, size_t n, const real *X, const real
+    *V, const real *A, const real *wrench, real *tau, int *status)
 {
-    size_t failed = 0, i = 0;
-    for (; LANES > 1 && i + LANES <= n; i += LANES) {
-        int codes[LANES];
-        inverse_dynamics_lanes(model, X + NQ*i, V + NV*i, A + NV*i, wrench ? wrench + NW*i : NULL, tau +
-            NU*i, codes);
-        for (size_t k = 0; k < LANES; ++k) {
+    size_t failed = 0, w;
+    for (size_t i = 0; i < n; i += w) {
+        int codes[LANES] = {INVALID};
+        w = LANES > 1 && i + LANES <= n ? LANES : 1;
+        if (w > 1) {
+            inverse_dynamics_lanes(model, X + NQ*i, V + NV*i, A + NV*i, wrench ? wrench + NW*i : NULL, tau +
+                NU*i, codes);
+        }
+        for (size_t k = 0; k < w; ++k) {
             if (codes[k] != OK) {
                 codes[k] = stewart_inverse_dynamics(model, X + NQ*(i + k), V + NV*(i + k), A + NV*(i + k), wrench
                     ? wrench + NW*(i + k) : NULL, tau + NU*(i + k));
             }
         }
-        failed += record(codes, LANES, status ? status + i : NULL);
-    }
-    for (; i < n; ++i) {
-        const int code = stewart_inverse_dynamics(model, X + NQ*i, V + NV*i, A + NV*i, wrench ? wrench +
-            NW*i : NULL, tau + NU*i);
-        failed += record(&code, 1, status ? status + i : NULL);
+        failed += record(codes, w, status ? status + i : NULL);
     }
     return failed;
 }
 
-int stewart_forward_dynamics(const stewart_model *model, const stewart_real *X, const stewart_real
-    *V, const stewart_real *tau, const stewart_real *wrench, stewart_real *A)
+int stewart_forward_dynamics(const prepared *model, const real *X, const real *V, const real *tau,
+    const real *wrench, real *A)
 {
     int code;
     forward_dynamics_one(model, X, V, tau, wrench, A, &code);
     return code;
 }
 
-size_t stewart_forward_dynamics_batch(const stewart_model *model, size_t n, const stewart_real *X,
-    const stewart_real *V, const stewart_real *tau, const stewart_real *wrench, stewart_real *A,
-    int *status)
+size_t stewart_forward_dynamics_batch(const prepared *model, size_t n, const real *X, const real
+    *V, const real *tau, const real *wrench, real *A, int *status)
 {
-    size_t failed = 0, i = 0;
-    for (; LANES > 1 && i + LANES <= n; i += LANES) {
-        int codes[LANES];
-        forward_dynamics_lanes(model, X + NQ*i, V + NV*i, tau + NU*i, wrench ? wrench + NW*i : NULL, A +
-            NV*i, codes);
-        for (size_t k = 0; k < LANES; ++k) {
+    size_t failed = 0, w;
+    for (size_t i = 0; i < n; i += w) {
+        int codes[LANES] = {INVALID};
+        w = LANES > 1 && i + LANES <= n ? LANES : 1;
+        if (w > 1) {
+            forward_dynamics_lanes(model, X + NQ*i, V + NV*i, tau + NU*i, wrench ? wrench + NW*i : NULL, A +
+                NV*i, codes);
+        }
+        for (size_t k = 0; k < w; ++k) {
             if (codes[k] != OK) {
                 codes[k] = stewart_forward_dynamics(model, X + NQ*(i + k), V + NV*(i + k), tau + NU*(i + k),
                     wrench ? wrench + NW*(i + k) : NULL, A + NV*(i + k));
             }
         }
-        failed += record(codes, LANES, status ? status + i : NULL);
-    }
-    for (; i < n; ++i) {
-        const int code = stewart_forward_dynamics(model, X + NQ*i, V + NV*i, tau + NU*i, wrench ? wrench +
-            NW*i : NULL, A + NV*i);
-        failed += record(&code, 1, status ? status + i : NULL);
+        failed += record(codes, w, status ? status + i : NULL);
     }
     return failed;
 }
 
-int stewart_complete_acceleration(const stewart_model *model, const stewart_real *X, const
-    stewart_real *V, const stewart_real *A, const stewart_real *wrench, stewart_real *completed)
+int stewart_complete_acceleration(const prepared *model, const real *X, const real *V, const real
+    *A, const real *wrench, real *completed)
 {
     int code;
     (void)model;
@@ -6414,12 +5221,11 @@ int stewart_complete_acceleration(const stewart_model *model, const stewart_real
     return code;
 }
 
-size_t stewart_complete_acceleration_batch(const stewart_model *model, size_t n, const
-    stewart_real *X, const stewart_real *V, const stewart_real *A, const stewart_real *wrench,
-    stewart_real *completed, int *status)
+size_t stewart_complete_acceleration_batch(const prepared *model, size_t n, const real *X, const
+    real *V, const real *A, const real *wrench, real *completed, int *status)
 {
-    size_t failed = 0, i = 0;
-    for (; i < n; ++i) {
+    size_t failed = 0;
+    for (size_t i = 0; i < n; ++i) {
         const int code = stewart_complete_acceleration(model, X + NQ*i, V + NV*i, A + NV*i, wrench ?
             wrench + NW*i : NULL, completed + NV*i);
         failed += record(&code, 1, status ? status + i : NULL);
@@ -6427,20 +5233,19 @@ size_t stewart_complete_acceleration_batch(const stewart_model *model, size_t n,
     return failed;
 }
 
-int stewart_leg_reactions(const stewart_model *model, const stewart_real *X, const stewart_real
-    *V, const stewart_real *A, const stewart_real *wrench, stewart_real *forces)
+int stewart_leg_reactions(const prepared *model, const real *X, const real *V, const real *A,
+    const real *wrench, real *forces)
 {
     int code;
     leg_reactions_one(model, X, V, A, wrench, forces, &code);
     return code;
 }
 
-size_t stewart_leg_reactions_batch(const stewart_model *model, size_t n, const stewart_real *X,
-    const stewart_real *V, const stewart_real *A, const stewart_real *wrench, stewart_real
-    *forces, int *status)
+size_t stewart_leg_reactions_batch(const prepared *model, size_t n, const real *X, const real *V,
+    const real *A, const real *wrench, real *forces, int *status)
 {
-    size_t failed = 0, i = 0;
-    for (; i < n; ++i) {
+    size_t failed = 0;
+    for (size_t i = 0; i < n; ++i) {
         const int code = stewart_leg_reactions(model, X + NQ*i, V + NV*i, A + NV*i, wrench ? wrench + NW*i
             : NULL, forces + 18*i);
         failed += record(&code, 1, status ? status + i : NULL);
@@ -6448,65 +5253,100 @@ size_t stewart_leg_reactions_batch(const stewart_model *model, size_t n, const s
     return failed;
 }
 
-int stewart_energy(const stewart_model *model, const stewart_real *X, const stewart_real *V,
-    stewart_real *kinetic, stewart_real *potential)
+int stewart_energy(const prepared *model, const real *X, const real *V, real *kinetic, real
+    *potential)
 {
     int code;
     energy_one(model, X, V, kinetic, potential, &code);
     return code;
 }
 
-size_t stewart_energy_batch(const stewart_model *model, size_t n, const stewart_real *X, const
-    stewart_real *V, stewart_real *kinetic, stewart_real *potential, int *status)
+size_t stewart_energy_batch(const prepared *model, size_t n, const real *X, const real *V, real
+    *kinetic, real *potential, int *status)
 {
-    size_t failed = 0, i = 0;
-    for (; i < n; ++i) {
+    size_t failed = 0;
+    for (size_t i = 0; i < n; ++i) {
         const int code = stewart_energy(model, X + NQ*i, V + NV*i, kinetic + i, potential + i);
         failed += record(&code, 1, status ? status + i : NULL);
     }
     return failed;
 }
 
-int stewart_condition(const stewart_model *model, const stewart_real *X, stewart_real *sigma,
-    stewart_real *legs)
+int stewart_condition(const prepared *model, const real *X, real *sigma, real *legs)
 {
     int code;
     condition_one(model, X, NULL, sigma, legs, &code);
     return code;
 }
 
-size_t stewart_condition_batch(const stewart_model *model, size_t n, const stewart_real *X,
-    stewart_real *sigma, stewart_real *legs, int *status)
+size_t stewart_condition_batch(const prepared *model, size_t n, const real *X, real *sigma, real
+    *legs, int *status)
 {
-    size_t failed = 0, i = 0;
-    for (; i < n; ++i) {
+    size_t failed = 0;
+    for (size_t i = 0; i < n; ++i) {
         const int code = stewart_condition(model, X + NQ*i, sigma + 6*i, legs + 6*i);
         failed += record(&code, 1, status ? status + i : NULL);
     }
     return failed;
 }
 
-int stewart_forward_kinematics(const stewart_model *model, const stewart_real *q_actuated, const
-    stewart_real *X0, stewart_real *X)
+int stewart_manipulability(const prepared *model, const real *X, real *measure, real *isotropy)
+{
+    int code;
+    manipulability_one(model, X, measure, isotropy, &code);
+    return code;
+}
+
+size_t stewart_manipulability_batch(const prepared *model, size_t n, const real *X, real *measure,
+    real *isotropy, int *status)
+{
+    size_t failed = 0;
+    for (size_t i = 0; i < n; ++i) {
+        const int code = stewart_manipulability(model, X + NQ*i, measure + i, isotropy + i);
+        failed += record(&code, 1, status ? status + i : NULL);
+    }
+    return failed;
+}
+
+int stewart_singularity_distance(const prepared *model, const real *X, real *actuators, real
+    *legs)
+{
+    int code;
+    singularity_distance_one(model, X, actuators, legs, &code);
+    return code;
+}
+
+size_t stewart_singularity_distance_batch(const prepared *model, size_t n, const real *X, real
+    *actuators, real *legs, int *status)
+{
+    size_t failed = 0;
+    for (size_t i = 0; i < n; ++i) {
+        const int code = stewart_singularity_distance(model, X + NQ*i, actuators + i, legs + i);
+        failed += record(&code, 1, status ? status + i : NULL);
+    }
+    return failed;
+}
+
+int stewart_forward_kinematics(const prepared *model, const real *q_actuated, const real *X0, real
+    *X)
 {
     int code;
     forward_kinematics_one(model, q_actuated, X0, X, &code);
     return code;
 }
 
-size_t stewart_forward_kinematics_batch(const stewart_model *model, size_t n, const stewart_real
-    *q_actuated, const stewart_real *X0, stewart_real *X, int *status)
+size_t stewart_forward_kinematics_batch(const prepared *model, size_t n, const real *q_actuated,
+    const real *X0, real *X, int *status)
 {
-    size_t failed = 0, i = 0;
-    for (; i < n; ++i) {
+    size_t failed = 0;
+    for (size_t i = 0; i < n; ++i) {
         const int code = stewart_forward_kinematics(model, q_actuated + NU*i, X0 + NQ*i, X + NQ*i);
         failed += record(&code, 1, status ? status + i : NULL);
     }
     return failed;
 }
 
-int stewart_dissipation(const stewart_model *model, const stewart_real *X, const stewart_real *V,
-    stewart_real *dissipation)
+int stewart_dissipation(const prepared *model, const real *X, const real *V, real *dissipation)
 {
     int code;
     (void)model;
@@ -6515,342 +5355,325 @@ int stewart_dissipation(const stewart_model *model, const stewart_real *X, const
     return code;
 }
 
-size_t stewart_dissipation_batch(const stewart_model *model, size_t n, const stewart_real *X,
-    const stewart_real *V, stewart_real *dissipation, int *status)
+size_t stewart_dissipation_batch(const prepared *model, size_t n, const real *X, const real *V,
+    real *dissipation, int *status)
 {
-    size_t failed = 0, i = 0;
-    for (; i < n; ++i) {
+    size_t failed = 0;
+    for (size_t i = 0; i < n; ++i) {
         const int code = stewart_dissipation(model, X + NQ*i, V + NV*i, dissipation + i);
         failed += record(&code, 1, status ? status + i : NULL);
     }
     return failed;
 }
 
-int stewart_momentum(const stewart_model *model, const stewart_real *X, const stewart_real *V,
-    stewart_real *momentum)
+int stewart_momentum(const prepared *model, const real *X, const real *V, real *momentum)
 {
     int code;
     momentum_one(model, X, V, momentum, &code);
     return code;
 }
 
-size_t stewart_momentum_batch(const stewart_model *model, size_t n, const stewart_real *X, const
-    stewart_real *V, stewart_real *momentum, int *status)
+size_t stewart_momentum_batch(const prepared *model, size_t n, const real *X, const real *V, real
+    *momentum, int *status)
 {
-    size_t failed = 0, i = 0;
-    for (; LANES > 1 && i + LANES <= n; i += LANES) {
-        int codes[LANES];
-        momentum_lanes(model, X + NQ*i, V + NV*i, momentum + NV*i, codes);
-        for (size_t k = 0; k < LANES; ++k) {
+    size_t failed = 0, w;
+    for (size_t i = 0; i < n; i += w) {
+        int codes[LANES] = {INVALID};
+        w = LANES > 1 && i + LANES <= n ? LANES : 1;
+        if (w > 1) {
+            momentum_lanes(model, X + NQ*i, V + NV*i, momentum + NV*i, codes);
+        }
+        for (size_t k = 0; k < w; ++k) {
             if (codes[k] != OK) {
                 codes[k] = stewart_momentum(model, X + NQ*(i + k), V + NV*(i + k), momentum + NV*(i + k));
             }
         }
-        failed += record(codes, LANES, status ? status + i : NULL);
-    }
-    for (; i < n; ++i) {
-        const int code = stewart_momentum(model, X + NQ*i, V + NV*i, momentum + NV*i);
-        failed += record(&code, 1, status ? status + i : NULL);
+        failed += record(codes, w, status ? status + i : NULL);
     }
     return failed;
 }
 
-int stewart_joint_margins(const stewart_model *model, const stewart_real *X, stewart_real
-    *margins)
+int stewart_joint_margins(const prepared *model, const real *X, real *margins)
 {
     int code;
     joint_margins_one(model, X, margins, &code);
     return code;
 }
 
-size_t stewart_joint_margins_batch(const stewart_model *model, size_t n, const stewart_real *X,
-    stewart_real *margins, int *status)
+size_t stewart_joint_margins_batch(const prepared *model, size_t n, const real *X, real *margins,
+    int *status)
 {
-    size_t failed = 0, i = 0;
-    for (; LANES > 1 && i + LANES <= n; i += LANES) {
-        int codes[LANES];
-        joint_margins_lanes(model, X + NQ*i, margins + NJ*i, codes);
-        for (size_t k = 0; k < LANES; ++k) {
+    size_t failed = 0, w;
+    for (size_t i = 0; i < n; i += w) {
+        int codes[LANES] = {INVALID};
+        w = LANES > 1 && i + LANES <= n ? LANES : 1;
+        if (w > 1) {
+            joint_margins_lanes(model, X + NQ*i, margins + NJ*i, codes);
+        }
+        for (size_t k = 0; k < w; ++k) {
             if (codes[k] != OK) {
                 codes[k] = stewart_joint_margins(model, X + NQ*(i + k), margins + NJ*(i + k));
             }
         }
-        failed += record(codes, LANES, status ? status + i : NULL);
-    }
-    for (; i < n; ++i) {
-        const int code = stewart_joint_margins(model, X + NQ*i, margins + NJ*i);
-        failed += record(&code, 1, status ? status + i : NULL);
+        failed += record(codes, w, status ? status + i : NULL);
     }
     return failed;
 }
 
-int stewart_within_limits(const stewart_model *model, const stewart_real *X, stewart_real *within)
+int stewart_within_limits(const prepared *model, const real *X, real *within)
 {
     int code;
     within_limits_one(model, X, within, &code);
     return code;
 }
 
-size_t stewart_within_limits_batch(const stewart_model *model, size_t n, const stewart_real *X,
-    stewart_real *within, int *status)
+size_t stewart_within_limits_batch(const prepared *model, size_t n, const real *X, real *within,
+    int *status)
 {
-    size_t failed = 0, i = 0;
-    for (; LANES > 1 && i + LANES <= n; i += LANES) {
-        int codes[LANES];
-        within_limits_lanes(model, X + NQ*i, within + i, codes);
-        for (size_t k = 0; k < LANES; ++k) {
+    size_t failed = 0, w;
+    for (size_t i = 0; i < n; i += w) {
+        int codes[LANES] = {INVALID};
+        w = LANES > 1 && i + LANES <= n ? LANES : 1;
+        if (w > 1) {
+            within_limits_lanes(model, X + NQ*i, within + i, codes);
+        }
+        for (size_t k = 0; k < w; ++k) {
             if (codes[k] != OK) {
                 codes[k] = stewart_within_limits(model, X + NQ*(i + k), within + (i + k));
             }
         }
-        failed += record(codes, LANES, status ? status + i : NULL);
-    }
-    for (; i < n; ++i) {
-        const int code = stewart_within_limits(model, X + NQ*i, within + i);
-        failed += record(&code, 1, status ? status + i : NULL);
+        failed += record(codes, w, status ? status + i : NULL);
     }
     return failed;
 }
 
-int stewart_actuator_positions(const stewart_model *model, const stewart_real *X, stewart_real *q)
+int stewart_actuator_positions(const prepared *model, const real *X, real *q)
 {
     int code;
     actuator_positions_one(model, X, q, &code);
     return code;
 }
 
-size_t stewart_actuator_positions_batch(const stewart_model *model, size_t n, const stewart_real
-    *X, stewart_real *q, int *status)
+size_t stewart_actuator_positions_batch(const prepared *model, size_t n, const real *X, real *q,
+    int *status)
 {
-    size_t failed = 0, i = 0;
-    for (; LANES > 1 && i + LANES <= n; i += LANES) {
-        int codes[LANES];
-        actuator_positions_lanes(model, X + NQ*i, q + NU*i, codes);
-        for (size_t k = 0; k < LANES; ++k) {
+    size_t failed = 0, w;
+    for (size_t i = 0; i < n; i += w) {
+        int codes[LANES] = {INVALID};
+        w = LANES > 1 && i + LANES <= n ? LANES : 1;
+        if (w > 1) {
+            actuator_positions_lanes(model, X + NQ*i, q + NU*i, codes);
+        }
+        for (size_t k = 0; k < w; ++k) {
             if (codes[k] != OK) {
                 codes[k] = stewart_actuator_positions(model, X + NQ*(i + k), q + NU*(i + k));
             }
         }
-        failed += record(codes, LANES, status ? status + i : NULL);
-    }
-    for (; i < n; ++i) {
-        const int code = stewart_actuator_positions(model, X + NQ*i, q + NU*i);
-        failed += record(&code, 1, status ? status + i : NULL);
+        failed += record(codes, w, status ? status + i : NULL);
     }
     return failed;
 }
 
-int stewart_actuator_rates(const stewart_model *model, const stewart_real *X, const stewart_real
-    *V, stewart_real *rates)
+int stewart_actuator_rates(const prepared *model, const real *X, const real *V, real *rates)
 {
     int code;
     actuator_rates_one(model, X, V, rates, &code);
     return code;
 }
 
-size_t stewart_actuator_rates_batch(const stewart_model *model, size_t n, const stewart_real *X,
-    const stewart_real *V, stewart_real *rates, int *status)
+size_t stewart_actuator_rates_batch(const prepared *model, size_t n, const real *X, const real *V,
+    real *rates, int *status)
 {
-    size_t failed = 0, i = 0;
-    for (; LANES > 1 && i + LANES <= n; i += LANES) {
-        int codes[LANES];
-        actuator_rates_lanes(model, X + NQ*i, V + NV*i, rates + NU*i, codes);
-        for (size_t k = 0; k < LANES; ++k) {
+    size_t failed = 0, w;
+    for (size_t i = 0; i < n; i += w) {
+        int codes[LANES] = {INVALID};
+        w = LANES > 1 && i + LANES <= n ? LANES : 1;
+        if (w > 1) {
+            actuator_rates_lanes(model, X + NQ*i, V + NV*i, rates + NU*i, codes);
+        }
+        for (size_t k = 0; k < w; ++k) {
             if (codes[k] != OK) {
                 codes[k] = stewart_actuator_rates(model, X + NQ*(i + k), V + NV*(i + k), rates + NU*(i + k));
             }
         }
-        failed += record(codes, LANES, status ? status + i : NULL);
-    }
-    for (; i < n; ++i) {
-        const int code = stewart_actuator_rates(model, X + NQ*i, V + NV*i, rates + NU*i);
-        failed += record(&code, 1, status ? status + i : NULL);
+        failed += record(codes, w, status ? status + i : NULL);
     }
     return failed;
 }
 
-int stewart_actuator_accelerations(const stewart_model *model, const stewart_real *X, const
-    stewart_real *V, const stewart_real *A, stewart_real *accelerations)
+int stewart_actuator_accelerations(const prepared *model, const real *X, const real *V, const real
+    *A, real *accelerations)
 {
     int code;
     actuator_accelerations_one(model, X, V, A, accelerations, &code);
     return code;
 }
 
-size_t stewart_actuator_accelerations_batch(const stewart_model *model, size_t n, const
-    stewart_real *X, const stewart_real *V, const stewart_real *A, stewart_real *accelerations,
-    int *status)
+size_t stewart_actuator_accelerations_batch(const prepared *model, size_t n, const real *X, const
+    real *V, const real *A, real *accelerations, int *status)
 {
-    size_t failed = 0, i = 0;
-    for (; LANES > 1 && i + LANES <= n; i += LANES) {
-        int codes[LANES];
-        actuator_accelerations_lanes(model, X + NQ*i, V + NV*i, A + NV*i, accelerations + NU*i, codes);
-        for (size_t k = 0; k < LANES; ++k) {
+    size_t failed = 0, w;
+    for (size_t i = 0; i < n; i += w) {
+        int codes[LANES] = {INVALID};
+        w = LANES > 1 && i + LANES <= n ? LANES : 1;
+        if (w > 1) {
+            actuator_accelerations_lanes(model, X + NQ*i, V + NV*i, A + NV*i, accelerations + NU*i, codes);
+        }
+        for (size_t k = 0; k < w; ++k) {
             if (codes[k] != OK) {
                 codes[k] = stewart_actuator_accelerations(model, X + NQ*(i + k), V + NV*(i + k), A + NV*(i + k),
                     accelerations + NU*(i + k));
             }
         }
-        failed += record(codes, LANES, status ? status + i : NULL);
-    }
-    for (; i < n; ++i) {
-        const int code = stewart_actuator_accelerations(model, X + NQ*i, V + NV*i, A + NV*i, accelerations
-            + NU*i);
-        failed += record(&code, 1, status ? status + i : NULL);
+        failed += record(codes, w, status ? status + i : NULL);
     }
     return failed;
 }
 
-int stewart_power(const stewart_model *model, const stewart_real *X, const stewart_real *V, const
-    stewart_real *tau, stewart_real *power)
+int stewart_power(const prepared *model, const real *X, const real *V, const real *tau, real
+    *power)
 {
     int code;
     power_one(model, X, V, tau, power, &code);
     return code;
 }
 
-size_t stewart_power_batch(const stewart_model *model, size_t n, const stewart_real *X, const
-    stewart_real *V, const stewart_real *tau, stewart_real *power, int *status)
+size_t stewart_power_batch(const prepared *model, size_t n, const real *X, const real *V, const
+    real *tau, real *power, int *status)
 {
-    size_t failed = 0, i = 0;
-    for (; LANES > 1 && i + LANES <= n; i += LANES) {
-        int codes[LANES];
-        power_lanes(model, X + NQ*i, V + NV*i, tau + NU*i, power + i, codes);
-        for (size_t k = 0; k < LANES; ++k) {
+    size_t failed = 0, w;
+    for (size_t i = 0; i < n; i += w) {
+        int codes[LANES] = {INVALID};
+        w = LANES > 1 && i + LANES <= n ? LANES : 1;
+        if (w > 1) {
+            power_lanes(model, X + NQ*i, V + NV*i, tau + NU*i, power + i, codes);
+        }
+        for (size_t k = 0; k < w; ++k) {
             if (codes[k] != OK) {
                 codes[k] = stewart_power(model, X + NQ*(i + k), V + NV*(i + k), tau + NU*(i + k), power + (i +
                     k));
             }
         }
-        failed += record(codes, LANES, status ? status + i : NULL);
-    }
-    for (; i < n; ++i) {
-        const int code = stewart_power(model, X + NQ*i, V + NV*i, tau + NU*i, power + i);
-        failed += record(&code, 1, status ? status + i : NULL);
+        failed += record(codes, w, status ? status + i : NULL);
     }
     return failed;
 }
 
-int stewart_rotation(const stewart_real *X, stewart_real *R)
+int stewart_rotation(const real *X, real *R)
 {
     int code;
     rotation_one(X, R, &code);
     return code;
 }
 
-size_t stewart_rotation_batch(size_t n, const stewart_real *X, stewart_real *R, int *status)
+size_t stewart_rotation_batch(size_t n, const real *X, real *R, int *status)
 {
-    size_t failed = 0, i = 0;
-    for (; i < n; ++i) {
+    size_t failed = 0;
+    for (size_t i = 0; i < n; ++i) {
         const int code = stewart_rotation(X + NQ*i, R + 9*i);
         failed += record(&code, 1, status ? status + i : NULL);
     }
     return failed;
 }
 
-int stewart_pose(const stewart_real *t, const stewart_real *R, stewart_real *X)
+int stewart_pose(const real *t, const real *R, real *X)
 {
     int code;
     pose_one(t, R, X, &code);
     return code;
 }
 
-size_t stewart_pose_batch(size_t n, const stewart_real *t, const stewart_real *R, stewart_real *X,
-    int *status)
+size_t stewart_pose_batch(size_t n, const real *t, const real *R, real *X, int *status)
 {
-    size_t failed = 0, i = 0;
-    for (; i < n; ++i) {
+    size_t failed = 0;
+    for (size_t i = 0; i < n; ++i) {
         const int code = stewart_pose(t + 3*i, R + 9*i, X + NQ*i);
         failed += record(&code, 1, status ? status + i : NULL);
     }
     return failed;
 }
 
-int stewart_X_dot(const stewart_real *X, const stewart_real *V, stewart_real *X_dot)
+int stewart_X_dot(const real *X, const real *V, real *X_dot)
 {
     int code;
     X_dot_one(X, V, X_dot, &code);
     return code;
 }
 
-size_t stewart_X_dot_batch(size_t n, const stewart_real *X, const stewart_real *V, stewart_real
-    *X_dot, int *status)
+size_t stewart_X_dot_batch(size_t n, const real *X, const real *V, real *X_dot, int *status)
 {
-    size_t failed = 0, i = 0;
-    for (; i < n; ++i) {
+    size_t failed = 0;
+    for (size_t i = 0; i < n; ++i) {
         const int code = stewart_X_dot(X + NQ*i, V + NV*i, X_dot + NQ*i);
         failed += record(&code, 1, status ? status + i : NULL);
     }
     return failed;
 }
 
-int stewart_pose_from_rpy(const stewart_real *t, const stewart_real *rpy, stewart_real *X)
+int stewart_pose_from_rpy(const real *t, const real *rpy, real *X)
 {
     int code;
     pose_from_rpy_one(t, rpy, X, &code);
     return code;
 }
 
-size_t stewart_pose_from_rpy_batch(size_t n, const stewart_real *t, const stewart_real *rpy,
-    stewart_real *X, int *status)
+size_t stewart_pose_from_rpy_batch(size_t n, const real *t, const real *rpy, real *X, int *status)
 {
-    size_t failed = 0, i = 0;
-    for (; i < n; ++i) {
+    size_t failed = 0;
+    for (size_t i = 0; i < n; ++i) {
         const int code = stewart_pose_from_rpy(t + 3*i, rpy + 3*i, X + NQ*i);
         failed += record(&code, 1, status ? status + i : NULL);
     }
     return failed;
 }
 
-int stewart_retract(const stewart_real *X, const stewart_real *step, stewart_real *X_moved)
+int stewart_retract(const real *X, const real *step, real *X_moved)
 {
     int code;
     retract_one(X, step, X_moved, &code);
     return code;
 }
 
-size_t stewart_retract_batch(size_t n, const stewart_real *X, const stewart_real *step,
-    stewart_real *X_moved, int *status)
+size_t stewart_retract_batch(size_t n, const real *X, const real *step, real *X_moved, int
+    *status)
 {
-    size_t failed = 0, i = 0;
-    for (; i < n; ++i) {
+    size_t failed = 0;
+    for (size_t i = 0; i < n; ++i) {
         const int code = stewart_retract(X + NQ*i, step + NV*i, X_moved + NQ*i);
         failed += record(&code, 1, status ? status + i : NULL);
     }
     return failed;
 }
 
-int stewart_difference(const stewart_real *X0, const stewart_real *X1, stewart_real *step)
+int stewart_difference(const real *X0, const real *X1, real *step)
 {
     int code;
     difference_one(X0, X1, step, &code);
     return code;
 }
 
-size_t stewart_difference_batch(size_t n, const stewart_real *X0, const stewart_real *X1,
-    stewart_real *step, int *status)
+size_t stewart_difference_batch(size_t n, const real *X0, const real *X1, real *step, int *status)
 {
-    size_t failed = 0, i = 0;
-    for (; i < n; ++i) {
+    size_t failed = 0;
+    for (size_t i = 0; i < n; ++i) {
         const int code = stewart_difference(X0 + NQ*i, X1 + NQ*i, step + NV*i);
         failed += record(&code, 1, status ? status + i : NULL);
     }
     return failed;
 }
 
-int stewart_interpolate(const stewart_real *X0, const stewart_real *X1, const stewart_real *s,
-    stewart_real *X)
+int stewart_interpolate(const real *X0, const real *X1, const real *s, real *X)
 {
     int code;
     interpolate_one(X0, X1, s, X, &code);
     return code;
 }
 
-size_t stewart_interpolate_batch(size_t n, const stewart_real *X0, const stewart_real *X1, const
-    stewart_real *s, stewart_real *X, int *status)
+size_t stewart_interpolate_batch(size_t n, const real *X0, const real *X1, const real *s, real *X,
+    int *status)
 {
-    size_t failed = 0, i = 0;
-    for (; i < n; ++i) {
+    size_t failed = 0;
+    for (size_t i = 0; i < n; ++i) {
         const int code = stewart_interpolate(X0 + NQ*i, X1 + NQ*i, s + i, X + NQ*i);
         failed += record(&code, 1, status ? status + i : NULL);
     }

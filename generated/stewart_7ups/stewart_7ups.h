@@ -254,6 +254,37 @@ int stewart_7ups_condition(const stewart_7ups_model *model, const stewart_7ups_r
 size_t stewart_7ups_condition_batch(const stewart_7ups_model *model, size_t n, const
     stewart_7ups_real *X, stewart_7ups_real *sigma, stewart_7ups_real *legs, int *status);
 
+/* Manipulability of forces: the product of the singular values that condition has by default, and
+   the least over the largest of them. 274 mul, 224 add, 7 div, 29 sqrt, 0 trig; the singular
+   values apart. In: X (NQ). Out: measure (1), isotropy (1). */
+int stewart_7ups_manipulability(const stewart_7ups_model *model, const stewart_7ups_real *X,
+    stewart_7ups_real *measure, stewart_7ups_real *isotropy);
+size_t stewart_7ups_manipulability_batch(const stewart_7ups_model *model, size_t n, const
+    stewart_7ups_real *X, stewart_7ups_real *measure, stewart_7ups_real *isotropy, int *status);
+
+/* How near actuators and legs are to being singular: relative distances, 0 where they are. 274
+   mul, 224 add, 7 div, 29 sqrt, 0 trig; the singular values apart. In: X (NQ). Out: actuators
+   (1), legs (1). */
+int stewart_7ups_singularity_distance(const stewart_7ups_model *model, const stewart_7ups_real *X,
+    stewart_7ups_real *actuators, stewart_7ups_real *legs);
+size_t stewart_7ups_singularity_distance_batch(const stewart_7ups_model *model, size_t n, const
+    stewart_7ups_real *X, stewart_7ups_real *actuators, stewart_7ups_real *legs, int *status);
+
+/* Actuator forces from tau_min to tau_max for the acceleration A: the nearest to reference. By
+   the dual active-set method of Goldfarb and Idnani; continuous along a motion. Impossible
+   (UNREACHABLE) where no forces within the bounds give the acceleration. Cables pull with
+   negative forces: tau_max = -t keeps tensions of t at least. 1262 mul, 991 add, 14 div, 14 sqrt,
+   0 trig; the search apart. In: X (NQ), V (NV), A (NV), tau_min (NU), tau_max (NU), wrench (NW,
+   or NULL), reference (NU, or NULL). Out: tau (NU). */
+int stewart_7ups_force_distribution(const stewart_7ups_model *model, const stewart_7ups_real *X,
+    const stewart_7ups_real *V, const stewart_7ups_real *A, const stewart_7ups_real *tau_min,
+    const stewart_7ups_real *tau_max, const stewart_7ups_real *wrench, const stewart_7ups_real
+    *reference, stewart_7ups_real *tau);
+size_t stewart_7ups_force_distribution_batch(const stewart_7ups_model *model, size_t n, const
+    stewart_7ups_real *X, const stewart_7ups_real *V, const stewart_7ups_real *A, const
+    stewart_7ups_real *tau_min, const stewart_7ups_real *tau_max, const stewart_7ups_real *wrench,
+    const stewart_7ups_real *reference, stewart_7ups_real *tau, int *status);
+
 /* X at which the actuated joints stand at q_actuated, by Gauss-Newton from X0. Extra coordinates
    that actuators do not determine stay. Impossible where no pose is found. In: q_actuated (NU),
    X0 (NQ). Out: X (NQ). */

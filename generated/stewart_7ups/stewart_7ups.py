@@ -52,6 +52,7 @@ __all__ = [
     "dissipation",
     "dynamics",
     "energy",
+    "force_distribution",
     "forward_dynamics",
     "forward_kinematics",
     "interpolate",
@@ -61,6 +62,7 @@ __all__ = [
     "joint_margins",
     "joint_rates",
     "leg_reactions",
+    "manipulability",
     "momentum",
     "null_space",
     "pose",
@@ -68,6 +70,7 @@ __all__ = [
     "power",
     "retract",
     "rotation",
+    "singularity_distance",
     "within_limits",
 ]
 
@@ -610,14 +613,14 @@ def _prepare(p):
     ups_link2_inertia_yy + ups_link3_inertia_yy - ups_link2_mass*(ups_J_group_2_t_2 -
         ups_J_group_2_t_4) - ups_link3_mass*(ups_J_group_2_t_6 - ups_J_group_2_t_8)
     )
-    # (ups-trace_J_2) half the trace of that inertia tensor
-    ups_trace_J_2 = (
-    0.5*ups_J_group_2_in_axes2_xx + 0.5*ups_J_group_2_in_axes2_yy + 0.5*ups_J_group_2_in_axes2_zz
-    )
     # (ups-Sigma_2) second moment of mass of the links that turn with link 2
-    ups_Sigma_2_in_axes2_xx = ups_trace_J_2 - ups_J_group_2_in_axes2_xx
-    ups_Sigma_2_in_axes2_yy = ups_trace_J_2 - ups_J_group_2_in_axes2_yy
-    ups_Sigma_2_in_axes2_zz = ups_trace_J_2 - ups_J_group_2_in_axes2_zz
+    ups_Sigma_2_t = (
+    ups_J_group_2_in_axes2_xx + ups_J_group_2_in_axes2_yy + ups_J_group_2_in_axes2_zz
+    )
+    ups_Sigma_2_t_2 = 0.5*ups_Sigma_2_t
+    ups_Sigma_2_in_axes2_xx = ups_Sigma_2_t_2 - ups_J_group_2_in_axes2_xx
+    ups_Sigma_2_in_axes2_yy = ups_Sigma_2_t_2 - ups_J_group_2_in_axes2_yy
+    ups_Sigma_2_in_axes2_zz = ups_Sigma_2_t_2 - ups_J_group_2_in_axes2_zz
     # (h_star) first moment about the platform origin
     ups_h_star_t = ups_link3_mass*ups_platform_point_x
     ups_h_star_t_2 = ups_link3_mass*ups_platform_point_y
@@ -873,6 +876,24 @@ def _constants(p, name):
     return p._cache[name]
 
 
+class _Vector(list):
+    """A vector, or a matrix row by row, of a single state."""
+
+    def __add__(self, other):
+        return _Vector([a + b for a, b in zip(self, other)])
+
+    def __sub__(self, other):
+        return _Vector([a - b for a, b in zip(self, other)])
+
+    def __neg__(self):
+        return _Vector([-a for a in self])
+
+
+def _are_finite(rows):
+    """Whether lists of floats have finite entries alone."""
+    return math.isfinite(sum(map(sum, rows))) or all(all(map(math.isfinite, row)) for row in rows)
+
+
 class _Floats:
     """Functions of a state after another, in Python floats: the way for few states."""
 
@@ -902,11 +923,32 @@ class _Floats:
         """Lists that a function gives at a state."""
         try:
             ok, arrays = function(self, *given)
-        except (ZeroDivisionError, OverflowError, ValueError):
+        except (ArithmeticError, ValueError):
             ok = False
-        if ok and all(all(map(math.isfinite, array)) for array in arrays):
+        if ok and _are_finite(arrays):
             return arrays
         return [[np.nan] * math.prod(_SHAPES[n]) for n in names]
+
+    def solved(self, order, a, b):
+        """Solutions, straight through; and which are beyond doubt."""
+        sure, x = np.zeros(self.states, dtype=bool), np.full(b.shape, np.nan)
+        for k, given in enumerate(zip(a.T.tolist(), b.T.tolist())):
+            try:
+                sure[k], (x[:, k],) = order(self, *given)
+            except ZeroDivisionError:
+                pass
+        return sure, x
+
+
+class _Single(_Floats):
+    """A single state in lists of floats throughout."""
+
+    def run(self, function, names, *vectors):
+        """Arrays of a function, row by row; ArithmeticError or ValueError where the state is impossible."""
+        ok, arrays = function(self, *vectors)
+        if not (ok and _are_finite(arrays)):
+            raise ArithmeticError
+        return [_Vector(a) for a in arrays]
 
 
 class _Arrays:
@@ -936,20 +978,27 @@ class _Arrays:
     def zeros(self, name):
         return np.zeros((math.prod(_SHAPES[name]), self.states))
 
-    def computed(self, function, names, vectors):
-        """Flags and arrays (*shape, states) of a function."""
+    def computed(self, function, *vectors):
+        """Flags and arrays (entries, states) of a function."""
         if self.kept is None:
-            flags, arrays = function(self, *vectors)
-        else:
-            if self.done not in self.kept:
-                self.kept[self.done] = _Replay(self.p, function, [len(v) for v in vectors], self.states)
-            flags, arrays = self.kept[self.done].run(vectors)
-            self.done += 1
-        return flags, [a.reshape(*_SHAPES[n], self.states) for a, n in zip(arrays, names)]
+            return function(self, *vectors)
+        if self.done not in self.kept:
+            self.kept[self.done] = _Replay(self.p, function, [len(v) for v in vectors], self.states)
+        self.done += 1
+        return self.kept[self.done - 1].run(vectors)
+
+    def shaped(self, names, arrays):
+        return [a.reshape(*_SHAPES[n], self.states) for a, n in zip(arrays, names)]
+
+    def solved(self, order, a, b):
+        """Solutions, straight through; and which are beyond doubt."""
+        sure, (x,) = self.computed(order, a, b)
+        return sure, np.array(x)
 
     def run(self, function, names, *vectors):
         """Arrays (*shape, states) of a function; NaN where the state is impossible."""
-        ok, arrays = self.computed(function, names, vectors)
+        ok, arrays = self.computed(function, *vectors)
+        arrays = self.shaped(names, arrays)
         ok = np.logical_and(ok, _finite(arrays, self.states))
         if not np.all(ok):
             for a in arrays:
@@ -966,10 +1015,10 @@ class _Judged(_Arrays):
 
     def run(self, function, names, *vectors):
         """Arrays (*shape, states) of a function, also where they are nonsense."""
-        (valid, reached, clear), arrays = self.computed(function, names, vectors)
+        (valid, reached, clear), arrays = self.computed(function, *vectors)
         for code, good in ((3, valid), (1, reached), (2, clear)):
             self.failed[code] |= np.logical_not(good)
-        return arrays
+        return self.shaped(names, arrays)
 
     def closed(self, q):
         """q, noting where the iteration has not converged."""
@@ -981,26 +1030,90 @@ class _Judged(_Arrays):
         return np.select(list(self.failed.values()), list(self.failed), np.where(possible, 0, 3))
 
 
+_IN_ONE = {}  # by function
+
+
+def _in_one(function):
+    """A function that tells whether a state is possible, of one that tells why not."""
+
+    def run(m, *vectors):
+        (valid, reached, clear), arrays = function(m, *vectors)
+        return valid & reached & clear, arrays
+
+    return _IN_ONE.setdefault(function, run)
+
+
 def _mode(p, states, kept=None):
     """The faster way for so many states."""
     return (_Floats if 0 < states <= _FEW else _Arrays)(p, states, kept)
 
 
-def _call(function, steps, p, *arguments, mode=_mode, unbounded=False):
+def _call(function, steps, p, *arguments, mode=_mode, unbounded=False, plain=()):
     """What the steps give at arguments (name, value, shape of a state, default, rule).
 
-    Where that may be infinite only NaN makes a state impossible.
+    Where that may be infinite only NaN makes a state impossible.  `plain` has the shapes of results
+    where a single state needs no arrays.
     """
+    p, read = _given(p), [a[-1] != "unused" for a in arguments]
+    lists = plain and _lists(arguments)
+    if lists:
+        found = _state(_Single(p, 1), steps, lists, read)
+        results = [_result(a, shape) for a, shape in zip(found or plain, plain)]
+        return results[0] if len(results) == 1 else tuple(results)
     given = [_argument(function, *a) for a in arguments]
     shapes = [a[2] for a in arguments]
     leads = {a[0]: v.shape[: v.ndim - len(a[2])] for a, v in zip(arguments, given)}
-    lead, p = _lead(leads), _given(p)
-    read = [a[4:] != ("unused",) for a in arguments]
-    if lead or mode is _Judged:
+    lead = _lead(leads)
+    if plain and 0 < math.prod(lead) <= _FEW:
+        results = _few(steps, p, lead, given, shapes, read, plain)
+    elif lead or mode is _Judged:
         results = _many(steps, p, lead, given, shapes, read, mode, unbounded)
     else:
         results = _one(steps, p, given, shapes, read, unbounded)
     return results[0] if len(results) == 1 else tuple(results)
+
+
+def _lists(arguments):
+    """Arguments of a single state as lists, where they are such arrays as they mostly are."""
+    found = []
+    for row in arguments:
+        value, shape = row[1:3]
+        if type(value) is np.ndarray:
+            if value.shape != shape or value.dtype is not _REAL or row[-1] == "positive":
+                return None
+            found.append(_Vector(value.tolist()))
+        elif value is None and len(row) > 3 and row[3] is not None:
+            found.append(_Vector(row[3] if isinstance(row[3], tuple) else [row[3]] * shape[0]))
+        else:
+            return None
+    return found
+
+
+def _state(m, steps, given, read):
+    """Lists that the steps give at a state; None where it is impossible."""
+    try:
+        found = steps(m, *given)
+    except (ArithmeticError, ValueError):
+        return None
+    return found if _are_finite(list(compress(given, read))) and _are_finite(found) else None
+
+
+def _result(found, shape):
+    """The array of a list; of an impossible state, for which its shape is given, NaN."""
+    if found is shape:
+        return np.full(shape, np.nan)
+    return np.array(found) if len(shape) == 1 else np.array(found).reshape(shape)
+
+
+def _few(steps, p, lead, given, shapes, read, plain):
+    """Results at a few states, one after another."""
+    m, rows = _Single(p, 1), []
+    for v, shape in zip(given, shapes):
+        flat = np.broadcast_to(v, lead + shape).reshape(math.prod(lead), -1)
+        rows.append(map(_Vector, flat.tolist()))
+    impossible = [[np.nan] * math.prod(shape) for shape in plain]
+    found = [_state(m, steps, state, read) or impossible for state in zip(*rows)]
+    return [np.array(a).reshape(lead + shape) for a, shape in zip(zip(*found), plain)]
 
 
 def _one(steps, p, given, shapes, read, unbounded):
@@ -1019,7 +1132,11 @@ def _many(steps, p, lead, given, shapes, read, mode, unbounded):
     """Results at many states, block by block; the last block begins where it is as long as the others."""
     count = math.prod(lead)
     size, kept = min(count, _BLOCK), {} if count >= _MANY else None
-    flat = [np.broadcast_to(v, lead + s).reshape(count, *s) for v, s in zip(given, shapes)]
+    # one value for all states stands for itself
+    flat = [
+        np.broadcast_to(v, lead + s).reshape(count, *s) if v.ndim > len(s) else v
+        for v, s in zip(given, shapes)
+    ]
     possible, status, outputs = np.ones(count, dtype=bool), np.zeros(count, dtype=int), []
     if count > size:
         # Never touched, freed at once: the C library, which learns from it, then keeps the memory
@@ -1028,7 +1145,7 @@ def _many(steps, p, lead, given, shapes, read, mode, unbounded):
     with np.errstate(all="ignore"):
         for stop in (*range(size, count, max(size, 1)), count):
             block = slice(stop - size, stop)
-            states = [_states_last(v[block]) for v in flat]
+            states = [_states_last(v, s, block) for v, s in zip(flat, shapes)]
             m, good = mode(p, size, kept), possible[block]
             found = steps(m, *states)
             if not outputs:
@@ -1048,15 +1165,17 @@ def _many(steps, p, lead, given, shapes, read, mode, unbounded):
     return [a.reshape(lead + a.shape[1:])[()] for a in outputs]
 
 
-def _states_last(a):
-    """A contiguous array (*shape, states) of one (states, *shape)."""
-    return np.ascontiguousarray(a.transpose(*range(1, a.ndim), 0))
+def _states_last(a, shape, block):
+    """An array (*shape, states) of a block of one (states, *shape), or of a value for all."""
+    if a.ndim == len(shape):
+        return np.broadcast_to(a[..., None], (*shape, block.stop - block.start))
+    return np.ascontiguousarray(a[block].transpose(*range(1, a.ndim), 0))
 
 
 def _finite(arrays, states):
     """In which states all entries of arrays (*shape, states) are finite."""
     flat = [a.reshape(math.prod(a.shape[:-1]), states) for a in arrays]
-    good = np.isfinite(sum(np.add.reduce(a, axis=0) for a in flat))
+    good = np.isfinite(sum(np.einsum("es->s", a) for a in flat))
     if not np.all(good):  # or the sum is too large
         good = np.logical_and.reduce([np.isfinite(a).all(axis=0) for a in flat])
     return good
@@ -1165,6 +1284,8 @@ class _Record:
 
     def made(self, operation, *operands):
         """The result of an operation."""
+        if operation in _WITHOUT and operands[0] is _WITHOUT[operation]:
+            return operands[1]
         numbers = [self.number(operand) for operand in operands]
         if all(self.kinds[n] == "one" for n in numbers):
             kind = "one"
@@ -1201,6 +1322,7 @@ class _Record:
         return counts
 
 
+_WITHOUT = {np.logical_and: True}  # first operands that change nothing
 _OF_FLAGS = {np.logical_and, np.greater, np.greater_equal}
 _RECORDS = {}  # by function
 
@@ -1212,11 +1334,12 @@ class _Replay:
         if function not in _RECORDS:
             _RECORDS[function] = _Record(p, function, sizes)
         r = _RECORDS[function]
-        made = {kind: _rows(n, states, bool if kind == "flag" else float) for kind, n in r.counts.items()}
-        made["one"] = [np.empty(()) for _ in range(r.counts["one"])]
-        made["out"] = _rows(sum(r.sizes), states)
-        self.inputs = [_rows(size, states) for size in sizes]
-        self.arrays = np.split(made["out"], np.cumsum(r.sizes)[:-1])
+        rows = _rows(r.counts["state"] + sum(r.sizes) + sum(sizes), states)
+        given, out, state = np.split(rows, np.cumsum((sum(sizes), sum(r.sizes))))
+        made = {"state": state, "out": out, "one": [np.empty(()) for _ in range(r.counts["one"])]}
+        made["flag"] = np.empty((r.counts["flag"], states), dtype=bool)
+        self.inputs = np.split(given, np.cumsum(sizes)[:-1])
+        self.arrays = np.split(out, np.cumsum(r.sizes)[:-1])
         at = {number: np.array(value) for value, number in r.literals.items()}
         for values, given in zip(r.inputs, self.inputs):
             at |= {v.number: row for v, row in zip(values, given)}
@@ -1238,9 +1361,26 @@ class _Replay:
         return self.flags, self.arrays
 
 
-def _rows(count, states, kind=float):
-    """Rows of so many states, a cache line apart from each other."""
-    return np.empty((count, states + 8), dtype=kind)[:, :states]
+def _rows(count, states):
+    """Rows of so many states in one piece, which the system keeps in a few large pages if it is told.
+
+    NumPy tells it of pieces from 4 MB on.  It makes operations a third faster.
+    """
+    row = states + 8  # a cache line further: rows do not compete for the same places of the cache
+    piece = np.empty(max(count * row, 2 * _PAGE) + _PAGE)
+    start = -(piece.ctypes.data // piece.itemsize) % _PAGE
+    return piece[start : start + count * row].reshape(count, row)[:, :states]
+
+
+_PAGE = (2 << 20) // 8  # numbers in a large page
+
+
+def _times(a, b):
+    """Products of matrices (m, n, states) with vectors (n, states)."""
+    if isinstance(b, _Vector):
+        rows = (a[k : k + len(b)] for k in range(0, len(a), len(b)))
+        return _Vector([sum([x * y for x, y in zip(row, b)]) for row in rows])
+    return np.einsum("ijs,js->is", a, b)
 
 
 def _with_forces(a, amounts, directions, legs):
@@ -1361,8 +1501,10 @@ _CLEARLY = 2.0  # rows change places only for a pivot that is larger by this fac
 
 def _solve(a, b):
     """x with a x = b, a (n, n, states), b (n, states): rows scaled, partial pivoting; NaN if singular."""
+    if isinstance(b, _Vector):
+        return _Vector(_solve_one([a[k : k + len(b)] for k in range(0, len(a), len(b))], b))
     n, states = b.shape
-    if 0 < states <= _FEW:
+    if 0 < states <= 8:
         systems = zip(a.transpose(2, 0, 1).tolist(), b.T.tolist())
         return np.array([_solve_one(*each) for each in systems]).T.reshape(n, states)
     size = np.max(np.abs(a), axis=1, initial=0.0)
@@ -1387,6 +1529,38 @@ def _solve(a, b):
         known = np.einsum("js,js->s", rows[k, k + 1 : n], x[k + 1 :])
         x[k] = (rows[k, n] - known) / rows[k, k]
     x[:, ~(good & np.isfinite(x).all(axis=0))] = np.nan
+    return x
+
+
+class _Order:
+    """How a system is solved near home.
+
+    Args:
+        solve: the function for so many equations.
+        rows: in the order of their pivots.
+        limits: of multiples, column by column, and of 1/pivot.
+    """
+
+    def __init__(self, solve, rows, limits):
+        self.solve, self.rows, self.limits = solve, rows, limits
+
+    def __call__(self, m, a, b):
+        """Solutions of a x = b, and whether these are beyond doubt."""
+        return self.solve(a, b, self.rows, self.limits)
+
+
+def _straight(m, a, b, order):
+    """The same, in the order of rows at home; with a choice of rows only where that is in doubt."""
+    if isinstance(b, _Vector):
+        try:
+            sure, (x,) = order(m, a, b)
+        except ZeroDivisionError:
+            sure = False
+        return _Vector(x) if sure else _solve(a, b)
+    sure, x = m.solved(order, a.reshape(-1, m.states), b)
+    at = np.flatnonzero(np.logical_not(sure))
+    if at.size:
+        x[:, at] = _solve(a[..., at], b[:, at])
     return x
 
 
@@ -1460,6 +1634,94 @@ def _singular_values(a):
     values = np.linalg.svd(a, compute_uv=False).T.copy()
     values[:, bad] = np.nan
     return values
+
+
+_TURNS = 20  # steps of a search, for every bounded force
+
+
+def _least_entry(a):
+    """The least entry."""
+    return np.min(a, axis=0)
+
+
+def _spread(a, n):
+    """Of the first n entries the product, and the last over the first, 0 where that is 0."""
+    return np.prod(a[:n], axis=0), np.where(a[0] == 0.0, 0.0, a[n - 1] / a[0])
+
+
+def _missed_bound(start, t, bounds, side):
+    """The bound that is missed by most, and 1 for a lower, -1 for an upper one; None if none is."""
+    size, endless = np.max(np.abs(start), axis=0)
+    found = None
+    for sign, bound in zip((1.0, -1.0), bounds):
+        for k in np.flatnonzero(np.isfinite(bound) & (side == 0.0)).tolist():
+            gap, rate = sign * (bound[k] - t[k, 0]), -sign * t[k, 1]
+            rate = rate if abs(rate) > _PIVOT * endless else 0.0
+            if rate > 0.0 or (rate == 0.0 and gap > _PIVOT * (size + abs(bound[k]))):
+                if found is None or (rate, gap) > found[0]:
+                    found = (rate, gap), (k, sign)
+    return found and found[1]
+
+
+def _at_bounds(start, gram, bounds, side):
+    """The point nearest to the start at the bounds on these sides."""
+    kept = np.flatnonzero(side)
+    bound = np.where(side > 0.0, *bounds)[kept]
+    right = np.column_stack((bound, np.zeros(len(kept)))) - start[kept]
+    t = start + gram[:, kept] @ np.linalg.solve(gram[np.ix_(kept, kept)], right)
+    t[kept, 0] = bound
+    t[:, 0] = np.clip(t[:, 0], *bounds)
+    return t
+
+
+def _nearest_point(start, gram, *bounds):
+    """The point (n, 2) within the bounds that is nearest to the start; None if there is none."""
+    amounts, side, new = np.zeros_like(start), np.zeros(len(start)), None
+    for _ in range(_TURNS * len(start)):
+        t = start + gram @ amounts
+        new = new or _missed_bound(start, t, bounds, side)
+        if new is None:
+            return _at_bounds(start, gram, bounds, side)
+        p, sign = new
+        kept, without = np.flatnonzero(side), np.zeros(len(side))
+        without[kept] = np.linalg.solve(gram[np.ix_(kept, kept)], sign * gram[kept, p])
+        apart, clear = gram[p, p] - sign * gram[p] @ without, _PIVOT * (1.0 + without @ without)
+        leaving = [k for k in kept.tolist() if side[k] * without[k] > clear]
+        steps = [(*(amounts[k, ::-1] / without[k]).tolist(), k) for k in leaving]
+        if apart > clear:
+            gap = sign * (bounds[0 if sign > 0.0 else 1][p] - t[p, 0])
+            steps.append((-sign * t[p, 1] / apart, gap / apart, -1))
+        if not steps:
+            return None
+        *step, k = min(steps)
+        amounts -= np.outer(without, step[::-1])
+        amounts[p] += sign * np.array(step[::-1])
+        if k < 0:
+            side[p], new = sign, None
+        else:
+            side[k] = amounts[k] = 0.0
+    return None
+
+
+def _each_state(find, size, *operands):
+    """What is found at every state; NaN where that is None, or something is not finite."""
+    found = np.full((size, operands[0].shape[-1]), np.nan)
+    for k in range(found.shape[1]):
+        own = [a[..., k] for a in operands]
+        if all(np.isfinite(a).all() for a in own):
+            made = find(*own)
+            found[:, k] = np.nan if made is None else made
+    return found
+
+
+def _nearest_within(a, b, c, d):
+    """Of the a + b y with entries from c to d the one nearest to a; NaN if there is none."""
+
+    def find(a, b, c, d):
+        t = _nearest_point(np.column_stack((a, np.zeros(len(a)))), b, c, d)
+        return None if t is None else t[:, 0]
+
+    return _each_state(find, len(a), a, b, c, d)
 
 
 def _least_squares(a, b, least):
@@ -1698,40 +1960,33 @@ def _run_dynamics(m, X, V):
         ups_S_x = t_x + ups_q_x - ups_base_point_x
         ups_S_y = t_y + ups_q_y - ups_base_point_y
         ups_S_z = t_z + ups_q_z - ups_base_point_z
-        # (ups-px_1) component along the reference direction
-        ups_px_1 = (
+        ups_S_in_turn1_x = (
         ups_S_x*ups_base_frame_xx + ups_S_y*ups_base_frame_yx + ups_S_z*ups_base_frame_zx
         )
-        # (ups-py_1) component across the reference direction
-        ups_py_1 = (
+        ups_S_in_turn1_y = (
         ups_S_x*ups_base_frame_xy + ups_S_y*ups_base_frame_yy + ups_S_z*ups_base_frame_zy
         )
-        # (ups-rho2_1) squared amplitude
-        ups_rho2_1 = ups_px_1*ups_px_1 + ups_py_1*ups_py_1
-        # (ups-root_1) amplitude, with the sign of the branch
-        ups_root_1 = ups_branch_1*sqrt(ups_rho2_1)
-        # (ups-c_1) cosine of the angle of joint 1 from its reference direction
-        inv_ups_root_1 = 1.0/ups_root_1
-        ups_c_1 = -inv_ups_root_1*ups_py_1
-        # (ups-s_1) sine of the angle of joint 1 from its reference direction
-        ups_s_1 = inv_ups_root_1*ups_px_1
-        # (ups-xi_1) the vector from joint 1 to the connection point, resolved along link 1
-        ups_xi_1_in_axes1_z = (
+        ups_S_in_turn1_z = (
         ups_S_x*ups_base_frame_xz + ups_S_y*ups_base_frame_yz + ups_S_z*ups_base_frame_zz
         )
-        # (ups-rho2_2) squared amplitude
-        ups_rho2_2 = ups_rho2_1 + ups_xi_1_in_axes1_z*ups_xi_1_in_axes1_z
-        # (ups-root_2) amplitude, with the sign of the branch
-        ups_root_2 = ups_branch_2*sqrt(ups_rho2_2)
+        # (ups-root_1) amplitude, the length across axis 1, with the sign of the branch
+        ups_root_1_t = ups_S_in_turn1_x*ups_S_in_turn1_x + ups_S_in_turn1_y*ups_S_in_turn1_y
+        ups_root_1 = ups_branch_1*sqrt(ups_root_1_t)
+        # (ups-c_1) cosine of the angle of joint 1 from its reference direction
+        inv_ups_root_1 = 1.0/ups_root_1
+        ups_c_1 = inv_ups_root_1*ups_S_in_turn1_x
+        # (ups-s_1) sine of the angle of joint 1 from its reference direction
+        ups_s_1 = inv_ups_root_1*ups_S_in_turn1_y
+        # (ups-q_3) displacement of joint 3
+        ups_q_3_t = ups_S_in_turn1_z*ups_S_in_turn1_z + ups_root_1_t
+        ups_q_3 = ups_branch_2*sqrt(ups_q_3_t)
         # (ups-c_2) cosine of the angle of joint 2 from its reference direction
-        inv_ups_root_2 = 1.0/ups_root_2
-        ups_c_2 = -inv_ups_root_2*ups_root_1
-        # (ups-s_2) sine of the angle of joint 2 from its reference direction
-        ups_s_2 = inv_ups_root_2*ups_xi_1_in_axes1_z
+        inv_ups_q_3 = 1.0/ups_q_3
+        ups_c_2 = inv_ups_q_3*ups_root_1
         # (ups-S_dot) velocity of the connection point
-        axis_x_ups_axes2_x = inv_ups_root_2*ups_S_x
-        axis_x_ups_axes2_y = inv_ups_root_2*ups_S_y
-        axis_x_ups_axes2_z = inv_ups_root_2*ups_S_z
+        axis_x_ups_axes2_x = inv_ups_q_3*ups_S_x
+        axis_x_ups_axes2_y = inv_ups_q_3*ups_S_y
+        axis_x_ups_axes2_z = inv_ups_q_3*ups_S_z
         ups_S_dot_t = omega_y*ups_q_z - omega_z*ups_q_y
         ups_S_dot_t_2 = omega_z*ups_q_x - omega_x*ups_q_z
         ups_S_dot_t_3 = omega_x*ups_q_y - omega_y*ups_q_x
@@ -1743,9 +1998,9 @@ def _run_dynamics(m, X, V):
             axis_x_ups_axes2_z*ups_S_dot_z
         )
         # (ups-qd_1) rate of joint 1
-        axis_z_ups_axes2_x = ups_base_frame_xx*ups_c_1 + ups_base_frame_xy*ups_s_1
-        axis_z_ups_axes2_y = ups_base_frame_yx*ups_c_1 + ups_base_frame_yy*ups_s_1
-        axis_z_ups_axes2_z = ups_base_frame_zx*ups_c_1 + ups_base_frame_zy*ups_s_1
+        axis_z_ups_axes2_x = ups_base_frame_xy*ups_c_1 - ups_base_frame_xx*ups_s_1
+        axis_z_ups_axes2_y = ups_base_frame_yy*ups_c_1 - ups_base_frame_yx*ups_s_1
+        axis_z_ups_axes2_z = ups_base_frame_zy*ups_c_1 - ups_base_frame_zx*ups_s_1
         ups_qd_1 = (
         inv_ups_root_1*(axis_z_ups_axes2_x*ups_S_dot_x + axis_z_ups_axes2_y*ups_S_dot_y +
             axis_z_ups_axes2_z*ups_S_dot_z)
@@ -1761,12 +2016,13 @@ def _run_dynamics(m, X, V):
         axis_x_ups_axes2_y*axis_z_ups_axes2_x - axis_x_ups_axes2_x*axis_z_ups_axes2_y
         )
         ups_qd_2 = (
-        inv_ups_root_2*(axis_y_ups_axes2_x*ups_S_dot_x + axis_y_ups_axes2_y*ups_S_dot_y +
+        inv_ups_q_3*(axis_y_ups_axes2_x*ups_S_dot_x + axis_y_ups_axes2_y*ups_S_dot_y +
             axis_y_ups_axes2_z*ups_S_dot_z)
         )
         # (ups-omega_1) angular velocity of link 1
-        ups_omega_1_in_axes2_x = ups_qd_1*ups_s_2
-        ups_omega_1_in_axes2_y = ups_c_2*ups_qd_1
+        ups_e_1_in_axes2_x = inv_ups_q_3*ups_S_in_turn1_z
+        ups_omega_1_in_axes2_x = ups_e_1_in_axes2_x*ups_qd_1
+        ups_omega_1_in_axes2_y = -ups_c_2*ups_qd_1
         # (ups-W_2) centripetal tensor of link 2
         ups_W_2_in_axes2_yz = ups_omega_1_in_axes2_y*ups_qd_2
         ups_W_2_in_axes2_xz = ups_omega_1_in_axes2_x*ups_qd_2
@@ -1780,18 +2036,16 @@ def _run_dynamics(m, X, V):
         )
         # (ups-bias) acceleration of the connection point at zero joint accelerations
         ups_bias_t = 2.0*ups_S_dot_in_axes2_x
-        ups_bias_in_axes2_z = (
-        2.0*ups_W_2_in_axes2_xz*ups_root_2 - ups_bias_t*ups_omega_1_in_axes2_y
-        )
+        ups_bias_in_axes2_z = 2.0*ups_W_2_in_axes2_xz*ups_q_3 - ups_bias_t*ups_omega_1_in_axes2_y
         # (ups-rel_o) remainder without the acceleration in: acceleration of the connection point left to the joint accelerations
         ups_rel_o_in_axes2_z = ups_u_1_in_axes2_z - ups_bias_in_axes2_z
         # (ups-qdd_1_o) remainder without the acceleration in: acceleration of joint 1
         ups_qdd_1_o = inv_ups_root_1*ups_rel_o_in_axes2_z
         # (ups-d_alpha_1) coefficient of the acceleration in: angular acceleration of link 1
-        ups_d_alpha_1_in_axes2_xz = inv_ups_root_1*ups_s_2
+        ups_d_alpha_1_in_axes2_xz = inv_ups_root_1*ups_e_1_in_axes2_x
         # (ups-alpha_1_o) remainder without the acceleration in: angular acceleration of link 1
-        ups_alpha_1_o_in_axes2_x = ups_qdd_1_o*ups_s_2
-        ups_alpha_1_o_in_axes2_y = ups_c_2*ups_qdd_1_o
+        ups_alpha_1_o_in_axes2_x = ups_e_1_in_axes2_x*ups_qdd_1_o
+        ups_alpha_1_o_in_axes2_y = -ups_c_2*ups_qdd_1_o
         # (ups-alpha_2_o) remainder without the acceleration in: angular acceleration of link 2
         ups_alpha_2_o_in_axes2_x = ups_W_2_in_axes2_yz + ups_alpha_1_o_in_axes2_x
         ups_alpha_2_o_in_axes2_y = ups_alpha_1_o_in_axes2_y - ups_W_2_in_axes2_xz
@@ -1800,16 +2054,16 @@ def _run_dynamics(m, X, V):
         ups_B_2_o_t_2 = axis_y_ups_axes2_y*ups_u_1_y
         ups_B_2_o_t_3 = axis_y_ups_axes2_z*ups_u_1_z
         ups_B_2_o_in_axes2_yx = (
-        inv_ups_root_2*(ups_B_2_o_t + ups_B_2_o_t_2 + ups_B_2_o_t_3 - ups_bias_t*ups_qd_2)
+        inv_ups_q_3*(ups_B_2_o_t + ups_B_2_o_t_2 + ups_B_2_o_t_3 - ups_bias_t*ups_qd_2)
         )
         ups_B_2_o_in_axes2_xy = 2.0*ups_W_2_in_axes2_xy - ups_B_2_o_in_axes2_yx
         ups_B_2_o_in_axes2_zx = ups_W_2_in_axes2_xz - ups_alpha_2_o_in_axes2_y
         ups_B_2_o_in_axes2_zy = ups_W_2_in_axes2_yz + ups_alpha_2_o_in_axes2_x
         # (ups-acc_3_o) remainder without the acceleration in: acceleration of the reference point of link 3, less gravity
-        ups_g_in_axes2_z = ups_acc_3_t*ups_c_1 + ups_acc_3_t_2*ups_s_1
-        ups_acc_3_o_t = ups_acc_3_t_2*ups_c_1 - ups_acc_3_t*ups_s_1
-        ups_g_in_axes2_x = ups_acc_3_o_t*ups_c_2 + ups_acc_3_t_3*ups_s_2
-        ups_g_in_axes2_y = ups_acc_3_t_3*ups_c_2 - ups_acc_3_o_t*ups_s_2
+        ups_acc_3_o_t = ups_acc_3_t*ups_c_1 + ups_acc_3_t_2*ups_s_1
+        ups_g_in_axes2_z = ups_acc_3_t_2*ups_c_1 - ups_acc_3_t*ups_s_1
+        ups_g_in_axes2_x = ups_acc_3_o_t*ups_c_2 + ups_acc_3_t_3*ups_e_1_in_axes2_x
+        ups_g_in_axes2_y = ups_acc_3_o_t*ups_e_1_in_axes2_x - ups_acc_3_t_3*ups_c_2
         ups_acc_3_o_in_axes2_x = (
         axis_x_ups_axes2_x*ups_u_1_x + axis_x_ups_axes2_y*ups_u_1_y + axis_x_ups_axes2_z*ups_u_1_z
             - ups_g_in_axes2_x
@@ -1817,8 +2071,8 @@ def _run_dynamics(m, X, V):
         ups_acc_3_o_in_axes2_y = ups_B_2_o_t + ups_B_2_o_t_2 + ups_B_2_o_t_3 - ups_g_in_axes2_y
         ups_acc_3_o_in_axes2_z = ups_u_1_in_axes2_z - ups_g_in_axes2_z
         # (ups-d_phi_3) coefficient of the acceleration in: inertia force of link 3 from its turning about its reference point
-        ups_d_phi_3_in_axes2_xy = inv_ups_root_2*ups_h_3_in_spec2_z
-        ups_d_phi_3_in_axes2_yy = inv_ups_root_2*ups_h_3_in_spec2_x
+        ups_d_phi_3_in_axes2_xy = inv_ups_q_3*ups_h_3_in_spec2_z
+        ups_d_phi_3_in_axes2_yy = inv_ups_q_3*ups_h_3_in_spec2_x
         # (ups-phi_3_o) remainder without the acceleration in: inertia force of link 3 from its turning about its reference point
         ups_phi_3_o_t = ups_omega_1_in_axes2_y*ups_omega_1_in_axes2_y
         ups_phi_3_o_t_2 = ups_qd_2*ups_qd_2
@@ -1855,33 +2109,33 @@ def _run_dynamics(m, X, V):
             - ups_g_in_axes2_y*ups_h_2_in_spec2_x
         )
         # (ups-d_c) coefficient of the acceleration in: leg force on the platform without actuation and without the mass at the connection point
-        ups_d_c_in_axes2_xz = inv_ups_root_2*ups_h_3_in_spec2_y
+        ups_d_c_in_axes2_xz = inv_ups_q_3*ups_h_3_in_spec2_y
         ups_d_c_in_axes2_yy = (
-        -ups_d_phi_3_in_axes2_yy - inv_ups_root_2*(ups_h_3_in_spec2_x +
-            inv_ups_root_2*ups_J_group_2_in_axes2_zz)
+        -ups_d_phi_3_in_axes2_yy - inv_ups_q_3*(ups_h_3_in_spec2_x +
+            inv_ups_q_3*ups_J_group_2_in_axes2_zz)
         )
         ups_d_c_in_axes2_yz = (
         ups_d_alpha_1_in_axes2_xz*ups_h_3_in_spec2_y -
-            inv_ups_root_2*(ups_J_group_2_in_axes2_xz*ups_d_alpha_1_in_axes2_xz -
-            inv_ups_root_2*ups_J_group_2_in_axes2_yz)
+            inv_ups_q_3*(ups_J_group_2_in_axes2_xz*ups_d_alpha_1_in_axes2_xz -
+            inv_ups_q_3*ups_J_group_2_in_axes2_yz)
         )
         ups_d_c_in_axes2_zz = (
         ups_d_alpha_1_in_axes2_xz*ups_h_3_in_spec2_z - ups_d_phi_3_in_axes2_yy -
-            inv_ups_root_1*(ups_c_2*(ups_J_group_2_in_axes2_xy*ups_d_alpha_1_in_axes2_xz -
-            ups_h_3_in_spec2_x - inv_ups_root_2*ups_J_group_2_in_axes2_yy) +
-            ups_s_2*(ups_J_group_2_in_axes2_xx*ups_d_alpha_1_in_axes2_xz - ups_h_3_in_spec2_z -
-            inv_ups_root_2*ups_J_group_2_in_axes2_xy))
+            inv_ups_root_1*(ups_e_1_in_axes2_x*(ups_J_group_2_in_axes2_xx*ups_d_alpha_1_in_axes2_xz
+            - ups_h_3_in_spec2_z - inv_ups_q_3*ups_J_group_2_in_axes2_xy) -
+            ups_c_2*(ups_J_group_2_in_axes2_xy*ups_d_alpha_1_in_axes2_xz - ups_h_3_in_spec2_x -
+            inv_ups_q_3*ups_J_group_2_in_axes2_yy))
         )
         # (ups-c_o) remainder without the acceleration in: leg force on the platform without actuation and without the mass at the connection point
         ups_c_o_in_axes2_y = (
-        ups_alpha_1_o_in_axes2_x*ups_h_3_in_spec2_y - inv_ups_root_2*ups_mu_2_o_in_axes2_z -
+        ups_alpha_1_o_in_axes2_x*ups_h_3_in_spec2_y - inv_ups_q_3*ups_mu_2_o_in_axes2_z -
             ups_B_2_o_in_axes2_yx*ups_h_3_in_spec2_x - ups_h_3_in_spec2_z*(ups_mu_2_o_t +
             ups_phi_3_o_t_2)
         )
         ups_c_o_in_axes2_z = (
-        ups_B_2_o_in_axes2_zy*ups_h_3_in_spec2_z + ups_h_3_in_spec2_y*(ups_mu_2_o_t +
-            ups_phi_3_o_t) - inv_ups_root_1*(ups_c_2*ups_mu_2_o_in_axes2_y +
-            ups_mu_2_o_in_axes2_x*ups_s_2) - ups_B_2_o_in_axes2_zx*ups_h_3_in_spec2_x
+        inv_ups_root_1*(ups_c_2*ups_mu_2_o_in_axes2_y - ups_e_1_in_axes2_x*ups_mu_2_o_in_axes2_x)
+            + ups_B_2_o_in_axes2_zy*ups_h_3_in_spec2_z + ups_h_3_in_spec2_y*(ups_mu_2_o_t +
+            ups_phi_3_o_t) - ups_B_2_o_in_axes2_zx*ups_h_3_in_spec2_x
         )
         # (ups-Q) inertia of the leg at the connection point, without the mass gathered there
         ups_Q_t = 0.5*ups_d_c_in_axes2_yy
@@ -1961,9 +2215,9 @@ def _run_dynamics(m, X, V):
         ups_H_a_3_y = axis_x_ups_axes2_x*ups_q_z - axis_x_ups_axes2_z*ups_q_x
         ups_H_a_3_z = axis_x_ups_axes2_y*ups_q_x - axis_x_ups_axes2_x*ups_q_y
         ok = (
-        ok & (abs(ups_rho2_1) > _TOLERANCE * _TOLERANCE * 0.6400000000000001) & (abs(ups_rho2_2) >
-            _TOLERANCE * _TOLERANCE * 0.6400000000000001) & (abs(ups_root_1) > _TOLERANCE * 0.8) &
-            (abs(ups_root_2) > _TOLERANCE * 0.8)
+        ok & (abs(ups_root_1_t) > _TOLERANCE * _TOLERANCE * 0.6400000000000001) & (abs(ups_q_3_t)
+            > _TOLERANCE * _TOLERANCE * 0.6400000000000001) & (abs(ups_root_1) > _TOLERANCE * 0.8)
+            & (abs(ups_q_3) > _TOLERANCE * 0.8)
         )
         # (M_tt) translational block of M
         M_tt_ups_xx += ups_Q_xx
@@ -2175,65 +2429,60 @@ def _run_M(m, X):
         ups_S_x = t_x + ups_q_x - ups_base_point_x
         ups_S_y = t_y + ups_q_y - ups_base_point_y
         ups_S_z = t_z + ups_q_z - ups_base_point_z
-        # (ups-px_1) component along the reference direction
-        ups_px_1 = (
+        ups_S_in_turn1_x = (
         ups_S_x*ups_base_frame_xx + ups_S_y*ups_base_frame_yx + ups_S_z*ups_base_frame_zx
         )
-        # (ups-py_1) component across the reference direction
-        ups_py_1 = (
+        ups_S_in_turn1_y = (
         ups_S_x*ups_base_frame_xy + ups_S_y*ups_base_frame_yy + ups_S_z*ups_base_frame_zy
         )
-        # (ups-rho2_1) squared amplitude
-        ups_rho2_1 = ups_px_1*ups_px_1 + ups_py_1*ups_py_1
-        # (ups-root_1) amplitude, with the sign of the branch
-        ups_root_1 = ups_branch_1*sqrt(ups_rho2_1)
-        # (ups-c_1) cosine of the angle of joint 1 from its reference direction
-        inv_ups_root_1 = 1.0/ups_root_1
-        ups_c_1 = -inv_ups_root_1*ups_py_1
-        # (ups-s_1) sine of the angle of joint 1 from its reference direction
-        ups_s_1 = inv_ups_root_1*ups_px_1
-        # (ups-xi_1) the vector from joint 1 to the connection point, resolved along link 1
-        ups_xi_1_in_axes1_z = (
+        ups_S_in_turn1_z = (
         ups_S_x*ups_base_frame_xz + ups_S_y*ups_base_frame_yz + ups_S_z*ups_base_frame_zz
         )
-        # (ups-rho2_2) squared amplitude
-        ups_rho2_2 = ups_rho2_1 + ups_xi_1_in_axes1_z*ups_xi_1_in_axes1_z
-        # (ups-root_2) amplitude, with the sign of the branch
-        ups_root_2 = ups_branch_2*sqrt(ups_rho2_2)
-        # (ups-s_2) sine of the angle of joint 2 from its reference direction
-        inv_ups_root_2 = 1.0/ups_root_2
-        ups_s_2 = inv_ups_root_2*ups_xi_1_in_axes1_z
+        # (ups-root_1) amplitude, the length across axis 1, with the sign of the branch
+        ups_root_1_t = ups_S_in_turn1_x*ups_S_in_turn1_x + ups_S_in_turn1_y*ups_S_in_turn1_y
+        ups_root_1 = ups_branch_1*sqrt(ups_root_1_t)
+        # (ups-c_1) cosine of the angle of joint 1 from its reference direction
+        inv_ups_root_1 = 1.0/ups_root_1
+        ups_c_1 = inv_ups_root_1*ups_S_in_turn1_x
+        # (ups-s_1) sine of the angle of joint 1 from its reference direction
+        ups_s_1 = inv_ups_root_1*ups_S_in_turn1_y
+        # (ups-q_3) displacement of joint 3
+        ups_q_3_t = ups_S_in_turn1_z*ups_S_in_turn1_z + ups_root_1_t
+        ups_q_3 = ups_branch_2*sqrt(ups_q_3_t)
+        # (ups-w_2) reciprocal vector 2
+        ups_w_2_in_axes2_y = 1.0/ups_q_3
         # (ups-w_3) reciprocal vector 3
-        ups_w_3_x = inv_ups_root_2*ups_S_x
-        ups_w_3_y = inv_ups_root_2*ups_S_y
-        ups_w_3_z = inv_ups_root_2*ups_S_z
+        ups_w_3_x = ups_S_x*ups_w_2_in_axes2_y
+        ups_w_3_y = ups_S_y*ups_w_2_in_axes2_y
+        ups_w_3_z = ups_S_z*ups_w_2_in_axes2_y
         # (ups-d_alpha_1) coefficient of the acceleration in: angular acceleration of link 1
-        ups_d_alpha_1_in_axes2_xz = inv_ups_root_1*ups_s_2
+        ups_e_1_in_axes2_x = ups_S_in_turn1_z*ups_w_2_in_axes2_y
+        ups_d_alpha_1_in_axes2_xz = inv_ups_root_1*ups_e_1_in_axes2_x
         # (ups-d_phi_3) coefficient of the acceleration in: inertia force of link 3 from its turning about its reference point
-        ups_d_phi_3_in_axes2_xy = inv_ups_root_2*ups_h_3_in_spec2_z
-        ups_d_phi_3_in_axes2_yy = inv_ups_root_2*ups_h_3_in_spec2_x
+        ups_d_phi_3_in_axes2_xy = ups_h_3_in_spec2_z*ups_w_2_in_axes2_y
+        ups_d_phi_3_in_axes2_yy = ups_h_3_in_spec2_x*ups_w_2_in_axes2_y
         # (ups-d_c) coefficient of the acceleration in: leg force on the platform without actuation and without the mass at the connection point
-        ups_d_c_in_axes2_xz = inv_ups_root_2*ups_h_3_in_spec2_y
+        ups_d_c_in_axes2_xz = ups_h_3_in_spec2_y*ups_w_2_in_axes2_y
         ups_d_c_in_axes2_yy = (
-        -ups_d_phi_3_in_axes2_yy - inv_ups_root_2*(ups_h_3_in_spec2_x +
-            inv_ups_root_2*ups_J_group_2_in_axes2_zz)
+        -ups_d_phi_3_in_axes2_yy - ups_w_2_in_axes2_y*(ups_h_3_in_spec2_x +
+            ups_J_group_2_in_axes2_zz*ups_w_2_in_axes2_y)
         )
         ups_d_c_in_axes2_yz = (
         ups_d_alpha_1_in_axes2_xz*ups_h_3_in_spec2_y -
-            inv_ups_root_2*(ups_J_group_2_in_axes2_xz*ups_d_alpha_1_in_axes2_xz -
-            inv_ups_root_2*ups_J_group_2_in_axes2_yz)
+            ups_w_2_in_axes2_y*(ups_J_group_2_in_axes2_xz*ups_d_alpha_1_in_axes2_xz -
+            ups_J_group_2_in_axes2_yz*ups_w_2_in_axes2_y)
         )
         ups_d_c_in_axes2_zz = (
         ups_d_alpha_1_in_axes2_xz*ups_h_3_in_spec2_z - ups_d_phi_3_in_axes2_yy -
-            inv_ups_root_1*(ups_s_2*(ups_J_group_2_in_axes2_xx*ups_d_alpha_1_in_axes2_xz -
-            ups_h_3_in_spec2_z - inv_ups_root_2*ups_J_group_2_in_axes2_xy) -
-            inv_ups_root_2*ups_root_1*(ups_J_group_2_in_axes2_xy*ups_d_alpha_1_in_axes2_xz -
-            ups_h_3_in_spec2_x - inv_ups_root_2*ups_J_group_2_in_axes2_yy))
+            inv_ups_root_1*(ups_e_1_in_axes2_x*(ups_J_group_2_in_axes2_xx*ups_d_alpha_1_in_axes2_xz
+            - ups_h_3_in_spec2_z - ups_J_group_2_in_axes2_xy*ups_w_2_in_axes2_y) -
+            ups_root_1*ups_w_2_in_axes2_y*(ups_J_group_2_in_axes2_xy*ups_d_alpha_1_in_axes2_xz -
+            ups_h_3_in_spec2_x - ups_J_group_2_in_axes2_yy*ups_w_2_in_axes2_y))
         )
         # (ups-Q) inertia of the leg at the connection point, without the mass gathered there
-        axis_z_ups_axes2_x = ups_base_frame_xx*ups_c_1 + ups_base_frame_xy*ups_s_1
-        axis_z_ups_axes2_y = ups_base_frame_yx*ups_c_1 + ups_base_frame_yy*ups_s_1
-        axis_z_ups_axes2_z = ups_base_frame_zx*ups_c_1 + ups_base_frame_zy*ups_s_1
+        axis_z_ups_axes2_x = ups_base_frame_xy*ups_c_1 - ups_base_frame_xx*ups_s_1
+        axis_z_ups_axes2_y = ups_base_frame_yy*ups_c_1 - ups_base_frame_yx*ups_s_1
+        axis_z_ups_axes2_z = ups_base_frame_zy*ups_c_1 - ups_base_frame_zx*ups_s_1
         axis_y_ups_axes2_x = axis_z_ups_axes2_y*ups_w_3_z - axis_z_ups_axes2_z*ups_w_3_y
         axis_y_ups_axes2_y = axis_z_ups_axes2_z*ups_w_3_x - axis_z_ups_axes2_x*ups_w_3_z
         axis_y_ups_axes2_z = axis_z_ups_axes2_x*ups_w_3_y - axis_z_ups_axes2_y*ups_w_3_x
@@ -2293,9 +2542,9 @@ def _run_M(m, X):
         ups_M_aa_t_5 = ups_M_ta_t_5*ups_q_z - ups_M_ta_t_12*ups_q_x
         ups_M_aa_t_6 = ups_M_ta_t_9*ups_q_x - ups_M_ta_t_5*ups_q_y
         ok = (
-        ok & (abs(ups_rho2_1) > _TOLERANCE * _TOLERANCE * 0.6400000000000001) & (abs(ups_rho2_2) >
-            _TOLERANCE * _TOLERANCE * 0.6400000000000001) & (abs(ups_root_1) > _TOLERANCE * 0.8) &
-            (abs(ups_root_2) > _TOLERANCE * 0.8)
+        ok & (abs(ups_root_1_t) > _TOLERANCE * _TOLERANCE * 0.6400000000000001) & (abs(ups_q_3_t)
+            > _TOLERANCE * _TOLERANCE * 0.6400000000000001) & (abs(ups_root_1) > _TOLERANCE * 0.8)
+            & (abs(ups_q_3) > _TOLERANCE * 0.8)
         )
         # (M_tt) translational block of M
         M_tt_ups_xx += ups_Q_xx
@@ -2510,40 +2759,33 @@ def _run_Z(m, X, V):
         ups_S_x = t_x + ups_q_x - ups_base_point_x
         ups_S_y = t_y + ups_q_y - ups_base_point_y
         ups_S_z = t_z + ups_q_z - ups_base_point_z
-        # (ups-px_1) component along the reference direction
-        ups_px_1 = (
+        ups_S_in_turn1_x = (
         ups_S_x*ups_base_frame_xx + ups_S_y*ups_base_frame_yx + ups_S_z*ups_base_frame_zx
         )
-        # (ups-py_1) component across the reference direction
-        ups_py_1 = (
+        ups_S_in_turn1_y = (
         ups_S_x*ups_base_frame_xy + ups_S_y*ups_base_frame_yy + ups_S_z*ups_base_frame_zy
         )
-        # (ups-rho2_1) squared amplitude
-        ups_rho2_1 = ups_px_1*ups_px_1 + ups_py_1*ups_py_1
-        # (ups-root_1) amplitude, with the sign of the branch
-        ups_root_1 = ups_branch_1*sqrt(ups_rho2_1)
-        # (ups-c_1) cosine of the angle of joint 1 from its reference direction
-        inv_ups_root_1 = 1.0/ups_root_1
-        ups_c_1 = -inv_ups_root_1*ups_py_1
-        # (ups-s_1) sine of the angle of joint 1 from its reference direction
-        ups_s_1 = inv_ups_root_1*ups_px_1
-        # (ups-xi_1) the vector from joint 1 to the connection point, resolved along link 1
-        ups_xi_1_in_axes1_z = (
+        ups_S_in_turn1_z = (
         ups_S_x*ups_base_frame_xz + ups_S_y*ups_base_frame_yz + ups_S_z*ups_base_frame_zz
         )
-        # (ups-rho2_2) squared amplitude
-        ups_rho2_2 = ups_rho2_1 + ups_xi_1_in_axes1_z*ups_xi_1_in_axes1_z
-        # (ups-root_2) amplitude, with the sign of the branch
-        ups_root_2 = ups_branch_2*sqrt(ups_rho2_2)
+        # (ups-root_1) amplitude, the length across axis 1, with the sign of the branch
+        ups_root_1_t = ups_S_in_turn1_x*ups_S_in_turn1_x + ups_S_in_turn1_y*ups_S_in_turn1_y
+        ups_root_1 = ups_branch_1*sqrt(ups_root_1_t)
+        # (ups-c_1) cosine of the angle of joint 1 from its reference direction
+        inv_ups_root_1 = 1.0/ups_root_1
+        ups_c_1 = inv_ups_root_1*ups_S_in_turn1_x
+        # (ups-s_1) sine of the angle of joint 1 from its reference direction
+        ups_s_1 = inv_ups_root_1*ups_S_in_turn1_y
+        # (ups-q_3) displacement of joint 3
+        ups_q_3_t = ups_S_in_turn1_z*ups_S_in_turn1_z + ups_root_1_t
+        ups_q_3 = ups_branch_2*sqrt(ups_q_3_t)
         # (ups-c_2) cosine of the angle of joint 2 from its reference direction
-        inv_ups_root_2 = 1.0/ups_root_2
-        ups_c_2 = -inv_ups_root_2*ups_root_1
-        # (ups-s_2) sine of the angle of joint 2 from its reference direction
-        ups_s_2 = inv_ups_root_2*ups_xi_1_in_axes1_z
+        inv_ups_q_3 = 1.0/ups_q_3
+        ups_c_2 = inv_ups_q_3*ups_root_1
         # (ups-S_dot) velocity of the connection point
-        axis_x_ups_axes2_x = inv_ups_root_2*ups_S_x
-        axis_x_ups_axes2_y = inv_ups_root_2*ups_S_y
-        axis_x_ups_axes2_z = inv_ups_root_2*ups_S_z
+        axis_x_ups_axes2_x = inv_ups_q_3*ups_S_x
+        axis_x_ups_axes2_y = inv_ups_q_3*ups_S_y
+        axis_x_ups_axes2_z = inv_ups_q_3*ups_S_z
         ups_S_dot_t = omega_y*ups_q_z - omega_z*ups_q_y
         ups_S_dot_t_2 = omega_z*ups_q_x - omega_x*ups_q_z
         ups_S_dot_t_3 = omega_x*ups_q_y - omega_y*ups_q_x
@@ -2555,9 +2797,9 @@ def _run_Z(m, X, V):
             axis_x_ups_axes2_z*ups_S_dot_z
         )
         # (ups-qd_1) rate of joint 1
-        axis_z_ups_axes2_x = ups_base_frame_xx*ups_c_1 + ups_base_frame_xy*ups_s_1
-        axis_z_ups_axes2_y = ups_base_frame_yx*ups_c_1 + ups_base_frame_yy*ups_s_1
-        axis_z_ups_axes2_z = ups_base_frame_zx*ups_c_1 + ups_base_frame_zy*ups_s_1
+        axis_z_ups_axes2_x = ups_base_frame_xy*ups_c_1 - ups_base_frame_xx*ups_s_1
+        axis_z_ups_axes2_y = ups_base_frame_yy*ups_c_1 - ups_base_frame_yx*ups_s_1
+        axis_z_ups_axes2_z = ups_base_frame_zy*ups_c_1 - ups_base_frame_zx*ups_s_1
         ups_qd_1 = (
         inv_ups_root_1*(axis_z_ups_axes2_x*ups_S_dot_x + axis_z_ups_axes2_y*ups_S_dot_y +
             axis_z_ups_axes2_z*ups_S_dot_z)
@@ -2573,12 +2815,13 @@ def _run_Z(m, X, V):
         axis_x_ups_axes2_y*axis_z_ups_axes2_x - axis_x_ups_axes2_x*axis_z_ups_axes2_y
         )
         ups_qd_2 = (
-        inv_ups_root_2*(axis_y_ups_axes2_x*ups_S_dot_x + axis_y_ups_axes2_y*ups_S_dot_y +
+        inv_ups_q_3*(axis_y_ups_axes2_x*ups_S_dot_x + axis_y_ups_axes2_y*ups_S_dot_y +
             axis_y_ups_axes2_z*ups_S_dot_z)
         )
         # (ups-omega_1) angular velocity of link 1
-        ups_omega_1_in_axes2_x = ups_qd_1*ups_s_2
-        ups_omega_1_in_axes2_y = ups_c_2*ups_qd_1
+        ups_e_1_in_axes2_x = inv_ups_q_3*ups_S_in_turn1_z
+        ups_omega_1_in_axes2_x = ups_e_1_in_axes2_x*ups_qd_1
+        ups_omega_1_in_axes2_y = -ups_c_2*ups_qd_1
         # (ups-W_2) centripetal tensor of link 2
         ups_W_2_in_axes2_yz = ups_omega_1_in_axes2_y*ups_qd_2
         ups_W_2_in_axes2_xz = ups_omega_1_in_axes2_x*ups_qd_2
@@ -2592,16 +2835,14 @@ def _run_Z(m, X, V):
         )
         # (ups-bias) acceleration of the connection point at zero joint accelerations
         ups_bias_t = 2.0*ups_S_dot_in_axes2_x
-        ups_bias_in_axes2_z = (
-        2.0*ups_W_2_in_axes2_xz*ups_root_2 - ups_bias_t*ups_omega_1_in_axes2_y
-        )
+        ups_bias_in_axes2_z = 2.0*ups_W_2_in_axes2_xz*ups_q_3 - ups_bias_t*ups_omega_1_in_axes2_y
         # (ups-rel_o) remainder without the acceleration in: acceleration of the connection point left to the joint accelerations
         ups_rel_o_in_axes2_z = ups_u_1_in_axes2_z - ups_bias_in_axes2_z
         # (ups-qdd_1_o) remainder without the acceleration in: acceleration of joint 1
         ups_qdd_1_o = inv_ups_root_1*ups_rel_o_in_axes2_z
         # (ups-alpha_1_o) remainder without the acceleration in: angular acceleration of link 1
-        ups_alpha_1_o_in_axes2_x = ups_qdd_1_o*ups_s_2
-        ups_alpha_1_o_in_axes2_y = ups_c_2*ups_qdd_1_o
+        ups_alpha_1_o_in_axes2_x = ups_e_1_in_axes2_x*ups_qdd_1_o
+        ups_alpha_1_o_in_axes2_y = -ups_c_2*ups_qdd_1_o
         # (ups-alpha_2_o) remainder without the acceleration in: angular acceleration of link 2
         ups_alpha_2_o_in_axes2_x = ups_W_2_in_axes2_yz + ups_alpha_1_o_in_axes2_x
         ups_alpha_2_o_in_axes2_y = ups_alpha_1_o_in_axes2_y - ups_W_2_in_axes2_xz
@@ -2610,16 +2851,16 @@ def _run_Z(m, X, V):
         ups_B_2_o_t_2 = axis_y_ups_axes2_y*ups_u_1_y
         ups_B_2_o_t_3 = axis_y_ups_axes2_z*ups_u_1_z
         ups_B_2_o_in_axes2_yx = (
-        inv_ups_root_2*(ups_B_2_o_t + ups_B_2_o_t_2 + ups_B_2_o_t_3 - ups_bias_t*ups_qd_2)
+        inv_ups_q_3*(ups_B_2_o_t + ups_B_2_o_t_2 + ups_B_2_o_t_3 - ups_bias_t*ups_qd_2)
         )
         ups_B_2_o_in_axes2_xy = 2.0*ups_W_2_in_axes2_xy - ups_B_2_o_in_axes2_yx
         ups_B_2_o_in_axes2_zx = ups_W_2_in_axes2_xz - ups_alpha_2_o_in_axes2_y
         ups_B_2_o_in_axes2_zy = ups_W_2_in_axes2_yz + ups_alpha_2_o_in_axes2_x
         # (ups-acc_3_o) remainder without the acceleration in: acceleration of the reference point of link 3, less gravity
-        ups_g_in_axes2_z = ups_acc_3_t*ups_c_1 + ups_acc_3_t_2*ups_s_1
-        ups_acc_3_o_t = ups_acc_3_t_2*ups_c_1 - ups_acc_3_t*ups_s_1
-        ups_g_in_axes2_x = ups_acc_3_o_t*ups_c_2 + ups_acc_3_t_3*ups_s_2
-        ups_g_in_axes2_y = ups_acc_3_t_3*ups_c_2 - ups_acc_3_o_t*ups_s_2
+        ups_acc_3_o_t = ups_acc_3_t*ups_c_1 + ups_acc_3_t_2*ups_s_1
+        ups_g_in_axes2_z = ups_acc_3_t_2*ups_c_1 - ups_acc_3_t*ups_s_1
+        ups_g_in_axes2_x = ups_acc_3_o_t*ups_c_2 + ups_acc_3_t_3*ups_e_1_in_axes2_x
+        ups_g_in_axes2_y = ups_acc_3_o_t*ups_e_1_in_axes2_x - ups_acc_3_t_3*ups_c_2
         ups_acc_3_o_in_axes2_x = (
         axis_x_ups_axes2_x*ups_u_1_x + axis_x_ups_axes2_y*ups_u_1_y + axis_x_ups_axes2_z*ups_u_1_z
             - ups_g_in_axes2_x
@@ -2663,14 +2904,14 @@ def _run_Z(m, X, V):
         )
         # (ups-c_o) remainder without the acceleration in: leg force on the platform without actuation and without the mass at the connection point
         ups_c_o_in_axes2_y = (
-        ups_alpha_1_o_in_axes2_x*ups_h_3_in_spec2_y - inv_ups_root_2*ups_mu_2_o_in_axes2_z -
+        ups_alpha_1_o_in_axes2_x*ups_h_3_in_spec2_y - inv_ups_q_3*ups_mu_2_o_in_axes2_z -
             ups_B_2_o_in_axes2_yx*ups_h_3_in_spec2_x - ups_h_3_in_spec2_z*(ups_mu_2_o_t +
             ups_phi_3_o_t_2)
         )
         ups_c_o_in_axes2_z = (
-        ups_B_2_o_in_axes2_zy*ups_h_3_in_spec2_z + ups_h_3_in_spec2_y*(ups_mu_2_o_t +
-            ups_phi_3_o_t) - inv_ups_root_1*(ups_c_2*ups_mu_2_o_in_axes2_y +
-            ups_mu_2_o_in_axes2_x*ups_s_2) - ups_B_2_o_in_axes2_zx*ups_h_3_in_spec2_x
+        inv_ups_root_1*(ups_c_2*ups_mu_2_o_in_axes2_y - ups_e_1_in_axes2_x*ups_mu_2_o_in_axes2_x)
+            + ups_B_2_o_in_axes2_zy*ups_h_3_in_spec2_z + ups_h_3_in_spec2_y*(ups_mu_2_o_t +
+            ups_phi_3_o_t) - ups_B_2_o_in_axes2_zx*ups_h_3_in_spec2_x
         )
         # (ups-U) velocity and gravity terms of the leg force
         ups_U_x = (
@@ -2690,9 +2931,9 @@ def _run_Z(m, X, V):
         ups_Z_a_t_2 = ups_U_x*ups_q_z - ups_U_z*ups_q_x
         ups_Z_a_t_3 = ups_U_y*ups_q_x - ups_U_x*ups_q_y
         ok = (
-        ok & (abs(ups_rho2_1) > _TOLERANCE * _TOLERANCE * 0.6400000000000001) & (abs(ups_rho2_2) >
-            _TOLERANCE * _TOLERANCE * 0.6400000000000001) & (abs(ups_root_1) > _TOLERANCE * 0.8) &
-            (abs(ups_root_2) > _TOLERANCE * 0.8)
+        ok & (abs(ups_root_1_t) > _TOLERANCE * _TOLERANCE * 0.6400000000000001) & (abs(ups_q_3_t)
+            > _TOLERANCE * _TOLERANCE * 0.6400000000000001) & (abs(ups_root_1) > _TOLERANCE * 0.8)
+            & (abs(ups_q_3) > _TOLERANCE * 0.8)
         )
         # (Z_t) translational part of Z
         Z_t_ups_x += ups_U_x
@@ -2782,26 +3023,22 @@ def _run_H(m, X):
         ups_S_x = t_x + ups_q_x - ups_base_point_x
         ups_S_y = t_y + ups_q_y - ups_base_point_y
         ups_S_z = t_z + ups_q_z - ups_base_point_z
-        # (ups-px_1) component along the reference direction
-        ups_px_1 = (
+        ups_S_in_turn1_x = (
         ups_S_x*ups_base_frame_xx + ups_S_y*ups_base_frame_yx + ups_S_z*ups_base_frame_zx
         )
-        # (ups-py_1) component across the reference direction
-        ups_py_1 = (
+        ups_S_in_turn1_y = (
         ups_S_x*ups_base_frame_xy + ups_S_y*ups_base_frame_yy + ups_S_z*ups_base_frame_zy
         )
-        # (ups-rho2_1) squared amplitude
-        ups_rho2_1 = ups_px_1*ups_px_1 + ups_py_1*ups_py_1
-        # (ups-xi_1) the vector from joint 1 to the connection point, resolved along link 1
-        ups_xi_1_in_axes1_z = (
+        ups_S_in_turn1_z = (
         ups_S_x*ups_base_frame_xz + ups_S_y*ups_base_frame_yz + ups_S_z*ups_base_frame_zz
         )
-        # (ups-rho2_2) squared amplitude
-        ups_rho2_2 = ups_rho2_1 + ups_xi_1_in_axes1_z*ups_xi_1_in_axes1_z
-        # (ups-root_2) amplitude, with the sign of the branch
-        ups_root_2 = ups_branch_2*sqrt(ups_rho2_2)
+        # (ups-root_1) amplitude, the length across axis 1, with the sign of the branch
+        ups_root_1_t = ups_S_in_turn1_x*ups_S_in_turn1_x + ups_S_in_turn1_y*ups_S_in_turn1_y
+        # (ups-q_3) displacement of joint 3
+        ups_q_3_t = ups_S_in_turn1_z*ups_S_in_turn1_z + ups_root_1_t
+        ups_q_3 = ups_branch_2*sqrt(ups_q_3_t)
         # (ups-w_2) reciprocal vector 2
-        ups_w_2_in_axes2_y = 1.0/ups_root_2
+        ups_w_2_in_axes2_y = 1.0/ups_q_3
         # (ups-w_3) reciprocal vector 3
         ups_w_3_x = ups_S_x*ups_w_2_in_axes2_y
         ups_w_3_y = ups_S_y*ups_w_2_in_axes2_y
@@ -2811,8 +3048,8 @@ def _run_H(m, X):
         ups_H_a_3_y = ups_q_z*ups_w_3_x - ups_q_x*ups_w_3_z
         ups_H_a_3_z = ups_q_x*ups_w_3_y - ups_q_y*ups_w_3_x
         ok = (
-        ok & (abs(ups_rho2_1) > _TOLERANCE * _TOLERANCE * 0.6400000000000001) & (abs(ups_rho2_2) >
-            _TOLERANCE * _TOLERANCE * 0.6400000000000001) & (abs(ups_root_2) > _TOLERANCE * 0.8)
+        ok & (abs(ups_root_1_t) > _TOLERANCE * _TOLERANCE * 0.6400000000000001) & (abs(ups_q_3_t)
+            > _TOLERANCE * _TOLERANCE * 0.6400000000000001) & (abs(ups_q_3) > _TOLERANCE * 0.8)
         )
         # (ups-w_3) reciprocal vector 3
         out_H[_H_ups[0][leg]] = ups_w_3_x
@@ -2994,40 +3231,33 @@ def _run_required(m, X, V, A):
         ups_S_x = t_x + ups_q_x - ups_base_point_x
         ups_S_y = t_y + ups_q_y - ups_base_point_y
         ups_S_z = t_z + ups_q_z - ups_base_point_z
-        # (ups-px_1) component along the reference direction
-        ups_px_1 = (
+        ups_S_in_turn1_x = (
         ups_S_x*ups_base_frame_xx + ups_S_y*ups_base_frame_yx + ups_S_z*ups_base_frame_zx
         )
-        # (ups-py_1) component across the reference direction
-        ups_py_1 = (
+        ups_S_in_turn1_y = (
         ups_S_x*ups_base_frame_xy + ups_S_y*ups_base_frame_yy + ups_S_z*ups_base_frame_zy
         )
-        # (ups-rho2_1) squared amplitude
-        ups_rho2_1 = ups_px_1*ups_px_1 + ups_py_1*ups_py_1
-        # (ups-root_1) amplitude, with the sign of the branch
-        ups_root_1 = ups_branch_1*sqrt(ups_rho2_1)
-        # (ups-c_1) cosine of the angle of joint 1 from its reference direction
-        inv_ups_root_1 = 1.0/ups_root_1
-        ups_c_1 = -inv_ups_root_1*ups_py_1
-        # (ups-s_1) sine of the angle of joint 1 from its reference direction
-        ups_s_1 = inv_ups_root_1*ups_px_1
-        # (ups-xi_1) the vector from joint 1 to the connection point, resolved along link 1
-        ups_xi_1_in_axes1_z = (
+        ups_S_in_turn1_z = (
         ups_S_x*ups_base_frame_xz + ups_S_y*ups_base_frame_yz + ups_S_z*ups_base_frame_zz
         )
-        # (ups-rho2_2) squared amplitude
-        ups_rho2_2 = ups_rho2_1 + ups_xi_1_in_axes1_z*ups_xi_1_in_axes1_z
-        # (ups-root_2) amplitude, with the sign of the branch
-        ups_root_2 = ups_branch_2*sqrt(ups_rho2_2)
+        # (ups-root_1) amplitude, the length across axis 1, with the sign of the branch
+        ups_root_1_t = ups_S_in_turn1_x*ups_S_in_turn1_x + ups_S_in_turn1_y*ups_S_in_turn1_y
+        ups_root_1 = ups_branch_1*sqrt(ups_root_1_t)
+        # (ups-c_1) cosine of the angle of joint 1 from its reference direction
+        inv_ups_root_1 = 1.0/ups_root_1
+        ups_c_1 = inv_ups_root_1*ups_S_in_turn1_x
+        # (ups-s_1) sine of the angle of joint 1 from its reference direction
+        ups_s_1 = inv_ups_root_1*ups_S_in_turn1_y
+        # (ups-q_3) displacement of joint 3
+        ups_q_3_t = ups_S_in_turn1_z*ups_S_in_turn1_z + ups_root_1_t
+        ups_q_3 = ups_branch_2*sqrt(ups_q_3_t)
         # (ups-c_2) cosine of the angle of joint 2 from its reference direction
-        inv_ups_root_2 = 1.0/ups_root_2
-        ups_c_2 = -inv_ups_root_2*ups_root_1
-        # (ups-s_2) sine of the angle of joint 2 from its reference direction
-        ups_s_2 = inv_ups_root_2*ups_xi_1_in_axes1_z
+        inv_ups_q_3 = 1.0/ups_q_3
+        ups_c_2 = inv_ups_q_3*ups_root_1
         # (ups-S_dot) velocity of the connection point
-        axis_x_ups_axes2_x = inv_ups_root_2*ups_S_x
-        axis_x_ups_axes2_y = inv_ups_root_2*ups_S_y
-        axis_x_ups_axes2_z = inv_ups_root_2*ups_S_z
+        axis_x_ups_axes2_x = inv_ups_q_3*ups_S_x
+        axis_x_ups_axes2_y = inv_ups_q_3*ups_S_y
+        axis_x_ups_axes2_z = inv_ups_q_3*ups_S_z
         ups_S_dot_t = omega_y*ups_q_z - omega_z*ups_q_y
         ups_S_dot_t_2 = omega_z*ups_q_x - omega_x*ups_q_z
         ups_S_dot_t_3 = omega_x*ups_q_y - omega_y*ups_q_x
@@ -3039,9 +3269,9 @@ def _run_required(m, X, V, A):
             axis_x_ups_axes2_z*ups_S_dot_z
         )
         # (ups-qd_1) rate of joint 1
-        axis_z_ups_axes2_x = ups_base_frame_xx*ups_c_1 + ups_base_frame_xy*ups_s_1
-        axis_z_ups_axes2_y = ups_base_frame_yx*ups_c_1 + ups_base_frame_yy*ups_s_1
-        axis_z_ups_axes2_z = ups_base_frame_zx*ups_c_1 + ups_base_frame_zy*ups_s_1
+        axis_z_ups_axes2_x = ups_base_frame_xy*ups_c_1 - ups_base_frame_xx*ups_s_1
+        axis_z_ups_axes2_y = ups_base_frame_yy*ups_c_1 - ups_base_frame_yx*ups_s_1
+        axis_z_ups_axes2_z = ups_base_frame_zy*ups_c_1 - ups_base_frame_zx*ups_s_1
         ups_qd_1 = (
         inv_ups_root_1*(axis_z_ups_axes2_x*ups_S_dot_x + axis_z_ups_axes2_y*ups_S_dot_y +
             axis_z_ups_axes2_z*ups_S_dot_z)
@@ -3057,12 +3287,13 @@ def _run_required(m, X, V, A):
         axis_x_ups_axes2_y*axis_z_ups_axes2_x - axis_x_ups_axes2_x*axis_z_ups_axes2_y
         )
         ups_qd_2 = (
-        inv_ups_root_2*(axis_y_ups_axes2_x*ups_S_dot_x + axis_y_ups_axes2_y*ups_S_dot_y +
+        inv_ups_q_3*(axis_y_ups_axes2_x*ups_S_dot_x + axis_y_ups_axes2_y*ups_S_dot_y +
             axis_y_ups_axes2_z*ups_S_dot_z)
         )
         # (ups-omega_1) angular velocity of link 1
-        ups_omega_1_in_axes2_x = ups_qd_1*ups_s_2
-        ups_omega_1_in_axes2_y = ups_c_2*ups_qd_1
+        ups_e_1_in_axes2_x = inv_ups_q_3*ups_S_in_turn1_z
+        ups_omega_1_in_axes2_x = ups_e_1_in_axes2_x*ups_qd_1
+        ups_omega_1_in_axes2_y = -ups_c_2*ups_qd_1
         # (ups-W_2) centripetal tensor of link 2
         ups_W_2_in_axes2_yz = ups_omega_1_in_axes2_y*ups_qd_2
         ups_W_2_in_axes2_xz = ups_omega_1_in_axes2_x*ups_qd_2
@@ -3081,16 +3312,14 @@ def _run_required(m, X, V, A):
         )
         # (ups-bias) acceleration of the connection point at zero joint accelerations
         ups_bias_t = 2.0*ups_S_dot_in_axes2_x
-        ups_bias_in_axes2_z = (
-        2.0*ups_W_2_in_axes2_xz*ups_root_2 - ups_bias_t*ups_omega_1_in_axes2_y
-        )
+        ups_bias_in_axes2_z = 2.0*ups_W_2_in_axes2_xz*ups_q_3 - ups_bias_t*ups_omega_1_in_axes2_y
         # (ups-rel) acceleration of the connection point left to the joint accelerations
         ups_rel_in_axes2_z = ups_S_ddot_in_axes2_z - ups_bias_in_axes2_z
         # (ups-qdd_1) acceleration of joint 1
         ups_qdd_1 = inv_ups_root_1*ups_rel_in_axes2_z
         # (ups-alpha_1) angular acceleration of link 1
-        ups_alpha_1_in_axes2_x = ups_qdd_1*ups_s_2
-        ups_alpha_1_in_axes2_y = ups_c_2*ups_qdd_1
+        ups_alpha_1_in_axes2_x = ups_e_1_in_axes2_x*ups_qdd_1
+        ups_alpha_1_in_axes2_y = -ups_c_2*ups_qdd_1
         # (ups-alpha_2) angular acceleration of link 2
         ups_alpha_2_in_axes2_x = ups_W_2_in_axes2_yz + ups_alpha_1_in_axes2_x
         ups_alpha_2_in_axes2_y = ups_alpha_1_in_axes2_y - ups_W_2_in_axes2_xz
@@ -3099,16 +3328,16 @@ def _run_required(m, X, V, A):
         ups_B_2_t_2 = axis_y_ups_axes2_y*ups_S_ddot_y
         ups_B_2_t_3 = axis_y_ups_axes2_z*ups_S_ddot_z
         ups_B_2_in_axes2_yx = (
-        inv_ups_root_2*(ups_B_2_t + ups_B_2_t_2 + ups_B_2_t_3 - ups_bias_t*ups_qd_2)
+        inv_ups_q_3*(ups_B_2_t + ups_B_2_t_2 + ups_B_2_t_3 - ups_bias_t*ups_qd_2)
         )
         ups_B_2_in_axes2_xy = 2.0*ups_W_2_in_axes2_xy - ups_B_2_in_axes2_yx
         ups_B_2_in_axes2_zx = ups_W_2_in_axes2_xz - ups_alpha_2_in_axes2_y
         ups_B_2_in_axes2_zy = ups_W_2_in_axes2_yz + ups_alpha_2_in_axes2_x
         # (ups-acc_3) acceleration of the reference point of link 3, less gravity
-        ups_g_in_axes2_z = ups_acc_3_t*ups_c_1 + ups_acc_3_t_2*ups_s_1
-        ups_acc_3_t_4 = ups_acc_3_t_2*ups_c_1 - ups_acc_3_t*ups_s_1
-        ups_g_in_axes2_x = ups_acc_3_t_3*ups_s_2 + ups_acc_3_t_4*ups_c_2
-        ups_g_in_axes2_y = ups_acc_3_t_3*ups_c_2 - ups_acc_3_t_4*ups_s_2
+        ups_acc_3_t_4 = ups_acc_3_t*ups_c_1 + ups_acc_3_t_2*ups_s_1
+        ups_g_in_axes2_z = ups_acc_3_t_2*ups_c_1 - ups_acc_3_t*ups_s_1
+        ups_g_in_axes2_x = ups_acc_3_t_3*ups_e_1_in_axes2_x + ups_acc_3_t_4*ups_c_2
+        ups_g_in_axes2_y = ups_acc_3_t_4*ups_e_1_in_axes2_x - ups_acc_3_t_3*ups_c_2
         ups_acc_3_in_axes2_x = (
         axis_x_ups_axes2_x*ups_S_ddot_x + axis_x_ups_axes2_y*ups_S_ddot_y +
             axis_x_ups_axes2_z*ups_S_ddot_z - ups_g_in_axes2_x
@@ -3151,14 +3380,14 @@ def _run_required(m, X, V, A):
         )
         # (ups-c) leg force on the platform without actuation and without the mass at the connection point
         ups_c_in_axes2_y = (
-        ups_alpha_1_in_axes2_x*ups_h_3_in_spec2_y - inv_ups_root_2*ups_mu_2_in_axes2_z -
+        ups_alpha_1_in_axes2_x*ups_h_3_in_spec2_y - inv_ups_q_3*ups_mu_2_in_axes2_z -
             ups_B_2_in_axes2_yx*ups_h_3_in_spec2_x - ups_h_3_in_spec2_z*(ups_mu_2_t +
             ups_phi_3_t_2)
         )
         ups_c_in_axes2_z = (
-        ups_B_2_in_axes2_zy*ups_h_3_in_spec2_z + ups_h_3_in_spec2_y*(ups_mu_2_t + ups_phi_3_t) -
-            inv_ups_root_1*(ups_c_2*ups_mu_2_in_axes2_y + ups_mu_2_in_axes2_x*ups_s_2) -
-            ups_B_2_in_axes2_zx*ups_h_3_in_spec2_x
+        inv_ups_root_1*(ups_c_2*ups_mu_2_in_axes2_y - ups_e_1_in_axes2_x*ups_mu_2_in_axes2_x) +
+            ups_B_2_in_axes2_zy*ups_h_3_in_spec2_z + ups_h_3_in_spec2_y*(ups_mu_2_t + ups_phi_3_t)
+            - ups_B_2_in_axes2_zx*ups_h_3_in_spec2_x
         )
         ups_c_x = (
         axis_y_ups_axes2_x*ups_c_in_axes2_y + axis_z_ups_axes2_x*ups_c_in_axes2_z -
@@ -3181,9 +3410,9 @@ def _run_required(m, X, V, A):
         ups_H_a_3_y = axis_x_ups_axes2_x*ups_q_z - axis_x_ups_axes2_z*ups_q_x
         ups_H_a_3_z = axis_x_ups_axes2_y*ups_q_x - axis_x_ups_axes2_x*ups_q_y
         ok = (
-        ok & (abs(ups_rho2_1) > _TOLERANCE * _TOLERANCE * 0.6400000000000001) & (abs(ups_rho2_2) >
-            _TOLERANCE * _TOLERANCE * 0.6400000000000001) & (abs(ups_root_1) > _TOLERANCE * 0.8) &
-            (abs(ups_root_2) > _TOLERANCE * 0.8)
+        ok & (abs(ups_root_1_t) > _TOLERANCE * _TOLERANCE * 0.6400000000000001) & (abs(ups_q_3_t)
+            > _TOLERANCE * _TOLERANCE * 0.6400000000000001) & (abs(ups_root_1) > _TOLERANCE * 0.8)
+            & (abs(ups_q_3) > _TOLERANCE * 0.8)
         )
         # (R_t) force that actuators and external wrench must give
         R_t_t += ups_c_x
@@ -3282,42 +3511,37 @@ def _run_inverse_kinematics(m, X):
         t_z + R_zx*ups_platform_point_x + R_zy*ups_platform_point_y + R_zz*ups_platform_point_z -
             ups_base_point_z
         )
-        # (ups-px_1) component along the reference direction
-        ups_px_1 = (
+        ups_S_in_turn1_x = (
         ups_S_x*ups_base_frame_xx + ups_S_y*ups_base_frame_yx + ups_S_z*ups_base_frame_zx
         )
-        # (ups-py_1) component across the reference direction
-        ups_py_1 = (
+        ups_S_in_turn1_y = (
         ups_S_x*ups_base_frame_xy + ups_S_y*ups_base_frame_yy + ups_S_z*ups_base_frame_zy
         )
-        # (ups-rho2_1) squared amplitude
-        ups_rho2_1 = ups_px_1*ups_px_1 + ups_py_1*ups_py_1
-        # (ups-root_1) amplitude, with the sign of the branch
-        ups_root_1 = ups_branch_1*sqrt(ups_rho2_1)
-        # (ups-q_1) displacement of joint 1
-        inv_ups_root_1 = 1.0/ups_root_1
-        ups_q_1 = atan2(inv_ups_root_1*ups_py_1, inv_ups_root_1*ups_px_1)
-        # (ups-xi_1) the vector from joint 1 to the connection point, resolved along link 1
-        ups_xi_1_in_axes1_z = (
+        ups_S_in_turn1_z = (
         ups_S_x*ups_base_frame_xz + ups_S_y*ups_base_frame_yz + ups_S_z*ups_base_frame_zz
         )
-        # (ups-rho2_2) squared amplitude
-        ups_rho2_2 = ups_rho2_1 + ups_xi_1_in_axes1_z*ups_xi_1_in_axes1_z
-        # (ups-root_2) amplitude, with the sign of the branch
-        ups_root_2 = ups_branch_2*sqrt(ups_rho2_2)
+        # (ups-root_1) amplitude, the length across axis 1, with the sign of the branch
+        ups_root_1_t = ups_S_in_turn1_x*ups_S_in_turn1_x + ups_S_in_turn1_y*ups_S_in_turn1_y
+        ups_root_1 = ups_branch_1*sqrt(ups_root_1_t)
+        # (ups-q_1) displacement of joint 1
+        inv_ups_root_1 = 1.0/ups_root_1
+        ups_q_1 = atan2(inv_ups_root_1*ups_S_in_turn1_y, inv_ups_root_1*ups_S_in_turn1_x)
+        # (ups-q_3) displacement of joint 3
+        ups_q_3_t = ups_S_in_turn1_z*ups_S_in_turn1_z + ups_root_1_t
+        ups_q_3 = ups_branch_2*sqrt(ups_q_3_t)
         # (ups-q_2) displacement of joint 2
-        inv_ups_root_2 = 1.0/ups_root_2
-        ups_q_2 = atan2(-inv_ups_root_2*ups_xi_1_in_axes1_z, inv_ups_root_2*ups_root_1)
+        inv_ups_q_3 = 1.0/ups_q_3
+        ups_q_2 = atan2(-inv_ups_q_3*ups_S_in_turn1_z, inv_ups_q_3*ups_root_1)
         ok = (
-        ok & (abs(ups_rho2_1) > _TOLERANCE * _TOLERANCE * 0.6400000000000001) & (abs(ups_rho2_2) >
-            _TOLERANCE * _TOLERANCE * 0.6400000000000001)
+        ok & (abs(ups_root_1_t) > _TOLERANCE * _TOLERANCE * 0.6400000000000001) & (abs(ups_q_3_t)
+            > _TOLERANCE * _TOLERANCE * 0.6400000000000001)
         )
         # (ups-q_1) displacement of joint 1
         out_q[_q_ups[0][leg]] = ups_q_1
         # (ups-q_2) displacement of joint 2
         out_q[_q_ups[1][leg]] = ups_q_2
         # (ups-q_3) displacement of joint 3
-        out_q[_q_ups[2][leg]] = ups_root_2
+        out_q[_q_ups[2][leg]] = ups_q_3
     return ok, (out_q,)
 
 
@@ -3395,36 +3619,31 @@ def _run_joint_rates(m, X, V):
         ups_S_x = t_x + ups_q_x - ups_base_point_x
         ups_S_y = t_y + ups_q_y - ups_base_point_y
         ups_S_z = t_z + ups_q_z - ups_base_point_z
-        # (ups-px_1) component along the reference direction
-        ups_px_1 = (
+        ups_S_in_turn1_x = (
         ups_S_x*ups_base_frame_xx + ups_S_y*ups_base_frame_yx + ups_S_z*ups_base_frame_zx
         )
-        # (ups-py_1) component across the reference direction
-        ups_py_1 = (
+        ups_S_in_turn1_y = (
         ups_S_x*ups_base_frame_xy + ups_S_y*ups_base_frame_yy + ups_S_z*ups_base_frame_zy
         )
-        # (ups-rho2_1) squared amplitude
-        ups_rho2_1 = ups_px_1*ups_px_1 + ups_py_1*ups_py_1
-        # (ups-root_1) amplitude, with the sign of the branch
-        ups_root_1 = ups_branch_1*sqrt(ups_rho2_1)
-        # (ups-c_1) cosine of the angle of joint 1 from its reference direction
-        inv_ups_root_1 = 1.0/ups_root_1
-        ups_c_1 = -inv_ups_root_1*ups_py_1
-        # (ups-s_1) sine of the angle of joint 1 from its reference direction
-        ups_s_1 = inv_ups_root_1*ups_px_1
-        # (ups-xi_1) the vector from joint 1 to the connection point, resolved along link 1
-        ups_xi_1_in_axes1_z = (
+        ups_S_in_turn1_z = (
         ups_S_x*ups_base_frame_xz + ups_S_y*ups_base_frame_yz + ups_S_z*ups_base_frame_zz
         )
-        # (ups-rho2_2) squared amplitude
-        ups_rho2_2 = ups_rho2_1 + ups_xi_1_in_axes1_z*ups_xi_1_in_axes1_z
-        # (ups-root_2) amplitude, with the sign of the branch
-        ups_root_2 = ups_branch_2*sqrt(ups_rho2_2)
+        # (ups-root_1) amplitude, the length across axis 1, with the sign of the branch
+        ups_root_1_t = ups_S_in_turn1_x*ups_S_in_turn1_x + ups_S_in_turn1_y*ups_S_in_turn1_y
+        ups_root_1 = ups_branch_1*sqrt(ups_root_1_t)
+        # (ups-c_1) cosine of the angle of joint 1 from its reference direction
+        inv_ups_root_1 = 1.0/ups_root_1
+        ups_c_1 = inv_ups_root_1*ups_S_in_turn1_x
+        # (ups-s_1) sine of the angle of joint 1 from its reference direction
+        ups_s_1 = inv_ups_root_1*ups_S_in_turn1_y
+        # (ups-q_3) displacement of joint 3
+        ups_q_3_t = ups_S_in_turn1_z*ups_S_in_turn1_z + ups_root_1_t
+        ups_q_3 = ups_branch_2*sqrt(ups_q_3_t)
         # (ups-S_dot) velocity of the connection point
-        inv_ups_root_2 = 1.0/ups_root_2
-        axis_x_ups_axes2_x = inv_ups_root_2*ups_S_x
-        axis_x_ups_axes2_y = inv_ups_root_2*ups_S_y
-        axis_x_ups_axes2_z = inv_ups_root_2*ups_S_z
+        inv_ups_q_3 = 1.0/ups_q_3
+        axis_x_ups_axes2_x = inv_ups_q_3*ups_S_x
+        axis_x_ups_axes2_y = inv_ups_q_3*ups_S_y
+        axis_x_ups_axes2_z = inv_ups_q_3*ups_S_z
         ups_S_dot_x = t_dot_x + omega_y*ups_q_z - omega_z*ups_q_y
         ups_S_dot_y = t_dot_y + omega_z*ups_q_x - omega_x*ups_q_z
         ups_S_dot_z = t_dot_z + omega_x*ups_q_y - omega_y*ups_q_x
@@ -3433,16 +3652,16 @@ def _run_joint_rates(m, X, V):
             axis_x_ups_axes2_z*ups_S_dot_z
         )
         # (ups-qd_1) rate of joint 1
-        axis_z_ups_axes2_x = ups_base_frame_xx*ups_c_1 + ups_base_frame_xy*ups_s_1
-        axis_z_ups_axes2_y = ups_base_frame_yx*ups_c_1 + ups_base_frame_yy*ups_s_1
-        axis_z_ups_axes2_z = ups_base_frame_zx*ups_c_1 + ups_base_frame_zy*ups_s_1
+        axis_z_ups_axes2_x = ups_base_frame_xy*ups_c_1 - ups_base_frame_xx*ups_s_1
+        axis_z_ups_axes2_y = ups_base_frame_yy*ups_c_1 - ups_base_frame_yx*ups_s_1
+        axis_z_ups_axes2_z = ups_base_frame_zy*ups_c_1 - ups_base_frame_zx*ups_s_1
         ups_qd_1 = (
         inv_ups_root_1*(axis_z_ups_axes2_x*ups_S_dot_x + axis_z_ups_axes2_y*ups_S_dot_y +
             axis_z_ups_axes2_z*ups_S_dot_z)
         )
         # (ups-qd_2) rate of joint 2
         ups_qd_2 = (
-        inv_ups_root_2*(ups_S_dot_x*(axis_x_ups_axes2_z*axis_z_ups_axes2_y -
+        inv_ups_q_3*(ups_S_dot_x*(axis_x_ups_axes2_z*axis_z_ups_axes2_y -
             axis_x_ups_axes2_y*axis_z_ups_axes2_z) +
             ups_S_dot_y*(axis_x_ups_axes2_x*axis_z_ups_axes2_z -
             axis_x_ups_axes2_z*axis_z_ups_axes2_x) +
@@ -3450,9 +3669,9 @@ def _run_joint_rates(m, X, V):
             axis_x_ups_axes2_x*axis_z_ups_axes2_y))
         )
         ok = (
-        ok & (abs(ups_rho2_1) > _TOLERANCE * _TOLERANCE * 0.6400000000000001) & (abs(ups_rho2_2) >
-            _TOLERANCE * _TOLERANCE * 0.6400000000000001) & (abs(ups_root_1) > _TOLERANCE * 0.8) &
-            (abs(ups_root_2) > _TOLERANCE * 0.8)
+        ok & (abs(ups_root_1_t) > _TOLERANCE * _TOLERANCE * 0.6400000000000001) & (abs(ups_q_3_t)
+            > _TOLERANCE * _TOLERANCE * 0.6400000000000001) & (abs(ups_root_1) > _TOLERANCE * 0.8)
+            & (abs(ups_q_3) > _TOLERANCE * 0.8)
         )
         # (ups-qd_1) rate of joint 1
         out_qd[_qd_ups[0][leg]] = ups_qd_1
@@ -3550,36 +3769,31 @@ def _run_joint_accelerations(m, X, V, A):
         ups_S_x = t_x + ups_q_x - ups_base_point_x
         ups_S_y = t_y + ups_q_y - ups_base_point_y
         ups_S_z = t_z + ups_q_z - ups_base_point_z
-        # (ups-px_1) component along the reference direction
-        ups_px_1 = (
+        ups_S_in_turn1_x = (
         ups_S_x*ups_base_frame_xx + ups_S_y*ups_base_frame_yx + ups_S_z*ups_base_frame_zx
         )
-        # (ups-py_1) component across the reference direction
-        ups_py_1 = (
+        ups_S_in_turn1_y = (
         ups_S_x*ups_base_frame_xy + ups_S_y*ups_base_frame_yy + ups_S_z*ups_base_frame_zy
         )
-        # (ups-rho2_1) squared amplitude
-        ups_rho2_1 = ups_px_1*ups_px_1 + ups_py_1*ups_py_1
-        # (ups-root_1) amplitude, with the sign of the branch
-        ups_root_1 = ups_branch_1*sqrt(ups_rho2_1)
-        # (ups-c_1) cosine of the angle of joint 1 from its reference direction
-        inv_ups_root_1 = 1.0/ups_root_1
-        ups_c_1 = -inv_ups_root_1*ups_py_1
-        # (ups-s_1) sine of the angle of joint 1 from its reference direction
-        ups_s_1 = inv_ups_root_1*ups_px_1
-        # (ups-xi_1) the vector from joint 1 to the connection point, resolved along link 1
-        ups_xi_1_in_axes1_z = (
+        ups_S_in_turn1_z = (
         ups_S_x*ups_base_frame_xz + ups_S_y*ups_base_frame_yz + ups_S_z*ups_base_frame_zz
         )
-        # (ups-rho2_2) squared amplitude
-        ups_rho2_2 = ups_rho2_1 + ups_xi_1_in_axes1_z*ups_xi_1_in_axes1_z
-        # (ups-root_2) amplitude, with the sign of the branch
-        ups_root_2 = ups_branch_2*sqrt(ups_rho2_2)
+        # (ups-root_1) amplitude, the length across axis 1, with the sign of the branch
+        ups_root_1_t = ups_S_in_turn1_x*ups_S_in_turn1_x + ups_S_in_turn1_y*ups_S_in_turn1_y
+        ups_root_1 = ups_branch_1*sqrt(ups_root_1_t)
+        # (ups-c_1) cosine of the angle of joint 1 from its reference direction
+        inv_ups_root_1 = 1.0/ups_root_1
+        ups_c_1 = inv_ups_root_1*ups_S_in_turn1_x
+        # (ups-s_1) sine of the angle of joint 1 from its reference direction
+        ups_s_1 = inv_ups_root_1*ups_S_in_turn1_y
+        # (ups-q_3) displacement of joint 3
+        ups_q_3_t = ups_S_in_turn1_z*ups_S_in_turn1_z + ups_root_1_t
+        ups_q_3 = ups_branch_2*sqrt(ups_q_3_t)
         # (ups-S_dot) velocity of the connection point
-        inv_ups_root_2 = 1.0/ups_root_2
-        axis_x_ups_axes2_x = inv_ups_root_2*ups_S_x
-        axis_x_ups_axes2_y = inv_ups_root_2*ups_S_y
-        axis_x_ups_axes2_z = inv_ups_root_2*ups_S_z
+        inv_ups_q_3 = 1.0/ups_q_3
+        axis_x_ups_axes2_x = inv_ups_q_3*ups_S_x
+        axis_x_ups_axes2_y = inv_ups_q_3*ups_S_y
+        axis_x_ups_axes2_z = inv_ups_q_3*ups_S_z
         ups_S_dot_t = omega_y*ups_q_z - omega_z*ups_q_y
         ups_S_dot_t_2 = omega_z*ups_q_x - omega_x*ups_q_z
         ups_S_dot_t_3 = omega_x*ups_q_y - omega_y*ups_q_x
@@ -3591,9 +3805,9 @@ def _run_joint_accelerations(m, X, V, A):
             axis_x_ups_axes2_z*ups_S_dot_z
         )
         # (ups-qd_1) rate of joint 1
-        axis_z_ups_axes2_x = ups_base_frame_xx*ups_c_1 + ups_base_frame_xy*ups_s_1
-        axis_z_ups_axes2_y = ups_base_frame_yx*ups_c_1 + ups_base_frame_yy*ups_s_1
-        axis_z_ups_axes2_z = ups_base_frame_zx*ups_c_1 + ups_base_frame_zy*ups_s_1
+        axis_z_ups_axes2_x = ups_base_frame_xy*ups_c_1 - ups_base_frame_xx*ups_s_1
+        axis_z_ups_axes2_y = ups_base_frame_yy*ups_c_1 - ups_base_frame_yx*ups_s_1
+        axis_z_ups_axes2_z = ups_base_frame_zy*ups_c_1 - ups_base_frame_zx*ups_s_1
         ups_qd_1 = (
         inv_ups_root_1*(axis_z_ups_axes2_x*ups_S_dot_x + axis_z_ups_axes2_y*ups_S_dot_y +
             axis_z_ups_axes2_z*ups_S_dot_z)
@@ -3609,12 +3823,12 @@ def _run_joint_accelerations(m, X, V, A):
         axis_x_ups_axes2_y*axis_z_ups_axes2_x - axis_x_ups_axes2_x*axis_z_ups_axes2_y
         )
         ups_qd_2 = (
-        inv_ups_root_2*(axis_y_ups_axes2_x*ups_S_dot_x + axis_y_ups_axes2_y*ups_S_dot_y +
+        inv_ups_q_3*(axis_y_ups_axes2_x*ups_S_dot_x + axis_y_ups_axes2_y*ups_S_dot_y +
             axis_y_ups_axes2_z*ups_S_dot_z)
         )
         # (ups-omega_1) angular velocity of link 1
-        ups_omega_1_in_axes2_x = inv_ups_root_2*ups_qd_1*ups_xi_1_in_axes1_z
-        ups_omega_1_in_axes2_y = -inv_ups_root_2*ups_qd_1*ups_root_1
+        ups_omega_1_in_axes2_x = inv_ups_q_3*ups_S_in_turn1_z*ups_qd_1
+        ups_omega_1_in_axes2_y = -inv_ups_q_3*ups_qd_1*ups_root_1
         # (ups-a_p) acceleration of the connection point without its centripetal part
         ups_a_p_x = t_ddot_x + alpha_y*ups_q_z - alpha_z*ups_q_y
         ups_a_p_y = t_ddot_y + alpha_z*ups_q_x - alpha_x*ups_q_z
@@ -3626,13 +3840,13 @@ def _run_joint_accelerations(m, X, V, A):
         # (ups-bias) acceleration of the connection point at zero joint accelerations
         ups_bias_t = 2.0*ups_S_dot_in_axes2_x
         ups_bias_in_axes2_z = (
-        2.0*ups_omega_1_in_axes2_x*ups_qd_2*ups_root_2 - ups_bias_t*ups_omega_1_in_axes2_y
+        2.0*ups_omega_1_in_axes2_x*ups_q_3*ups_qd_2 - ups_bias_t*ups_omega_1_in_axes2_y
         )
         # (ups-rel) acceleration of the connection point left to the joint accelerations
         ups_rel_in_axes2_x = (
         axis_x_ups_axes2_x*ups_S_ddot_x + axis_x_ups_axes2_y*ups_S_ddot_y +
             axis_x_ups_axes2_z*ups_S_ddot_z -
-            ups_root_2*(-ups_omega_1_in_axes2_y*ups_omega_1_in_axes2_y - ups_qd_2*ups_qd_2)
+            ups_q_3*(-ups_omega_1_in_axes2_y*ups_omega_1_in_axes2_y - ups_qd_2*ups_qd_2)
         )
         ups_rel_in_axes2_z = (
         axis_z_ups_axes2_x*ups_S_ddot_x + axis_z_ups_axes2_y*ups_S_ddot_y +
@@ -3642,14 +3856,14 @@ def _run_joint_accelerations(m, X, V, A):
         ups_qdd_1 = inv_ups_root_1*ups_rel_in_axes2_z
         # (ups-qdd_2) acceleration of joint 2
         ups_qdd_2 = (
-        inv_ups_root_2*(axis_y_ups_axes2_x*ups_S_ddot_x + axis_y_ups_axes2_y*ups_S_ddot_y +
+        inv_ups_q_3*(axis_y_ups_axes2_x*ups_S_ddot_x + axis_y_ups_axes2_y*ups_S_ddot_y +
             axis_y_ups_axes2_z*ups_S_ddot_z - ups_bias_t*ups_qd_2) -
             ups_omega_1_in_axes2_x*ups_omega_1_in_axes2_y
         )
         ok = (
-        ok & (abs(ups_rho2_1) > _TOLERANCE * _TOLERANCE * 0.6400000000000001) & (abs(ups_rho2_2) >
-            _TOLERANCE * _TOLERANCE * 0.6400000000000001) & (abs(ups_root_1) > _TOLERANCE * 0.8) &
-            (abs(ups_root_2) > _TOLERANCE * 0.8)
+        ok & (abs(ups_root_1_t) > _TOLERANCE * _TOLERANCE * 0.6400000000000001) & (abs(ups_q_3_t)
+            > _TOLERANCE * _TOLERANCE * 0.6400000000000001) & (abs(ups_root_1) > _TOLERANCE * 0.8)
+            & (abs(ups_q_3) > _TOLERANCE * 0.8)
         )
         # (ups-qdd_1) acceleration of joint 1
         out_qdd[_qdd_ups[0][leg]] = ups_qdd_1
@@ -3753,40 +3967,33 @@ def _run_legs(m, X, V, A):
         ups_S_x = t_x + ups_q_x - ups_base_point_x
         ups_S_y = t_y + ups_q_y - ups_base_point_y
         ups_S_z = t_z + ups_q_z - ups_base_point_z
-        # (ups-px_1) component along the reference direction
-        ups_px_1 = (
+        ups_S_in_turn1_x = (
         ups_S_x*ups_base_frame_xx + ups_S_y*ups_base_frame_yx + ups_S_z*ups_base_frame_zx
         )
-        # (ups-py_1) component across the reference direction
-        ups_py_1 = (
+        ups_S_in_turn1_y = (
         ups_S_x*ups_base_frame_xy + ups_S_y*ups_base_frame_yy + ups_S_z*ups_base_frame_zy
         )
-        # (ups-rho2_1) squared amplitude
-        ups_rho2_1 = ups_px_1*ups_px_1 + ups_py_1*ups_py_1
-        # (ups-root_1) amplitude, with the sign of the branch
-        ups_root_1 = ups_branch_1*sqrt(ups_rho2_1)
-        # (ups-c_1) cosine of the angle of joint 1 from its reference direction
-        inv_ups_root_1 = 1.0/ups_root_1
-        ups_c_1 = -inv_ups_root_1*ups_py_1
-        # (ups-s_1) sine of the angle of joint 1 from its reference direction
-        ups_s_1 = inv_ups_root_1*ups_px_1
-        # (ups-xi_1) the vector from joint 1 to the connection point, resolved along link 1
-        ups_xi_1_in_axes1_z = (
+        ups_S_in_turn1_z = (
         ups_S_x*ups_base_frame_xz + ups_S_y*ups_base_frame_yz + ups_S_z*ups_base_frame_zz
         )
-        # (ups-rho2_2) squared amplitude
-        ups_rho2_2 = ups_rho2_1 + ups_xi_1_in_axes1_z*ups_xi_1_in_axes1_z
-        # (ups-root_2) amplitude, with the sign of the branch
-        ups_root_2 = ups_branch_2*sqrt(ups_rho2_2)
+        # (ups-root_1) amplitude, the length across axis 1, with the sign of the branch
+        ups_root_1_t = ups_S_in_turn1_x*ups_S_in_turn1_x + ups_S_in_turn1_y*ups_S_in_turn1_y
+        ups_root_1 = ups_branch_1*sqrt(ups_root_1_t)
+        # (ups-c_1) cosine of the angle of joint 1 from its reference direction
+        inv_ups_root_1 = 1.0/ups_root_1
+        ups_c_1 = inv_ups_root_1*ups_S_in_turn1_x
+        # (ups-s_1) sine of the angle of joint 1 from its reference direction
+        ups_s_1 = inv_ups_root_1*ups_S_in_turn1_y
+        # (ups-q_3) displacement of joint 3
+        ups_q_3_t = ups_S_in_turn1_z*ups_S_in_turn1_z + ups_root_1_t
+        ups_q_3 = ups_branch_2*sqrt(ups_q_3_t)
         # (ups-c_2) cosine of the angle of joint 2 from its reference direction
-        inv_ups_root_2 = 1.0/ups_root_2
-        ups_c_2 = -inv_ups_root_2*ups_root_1
-        # (ups-s_2) sine of the angle of joint 2 from its reference direction
-        ups_s_2 = inv_ups_root_2*ups_xi_1_in_axes1_z
+        inv_ups_q_3 = 1.0/ups_q_3
+        ups_c_2 = inv_ups_q_3*ups_root_1
         # (ups-S_dot) velocity of the connection point
-        axis_x_ups_axes2_x = inv_ups_root_2*ups_S_x
-        axis_x_ups_axes2_y = inv_ups_root_2*ups_S_y
-        axis_x_ups_axes2_z = inv_ups_root_2*ups_S_z
+        axis_x_ups_axes2_x = inv_ups_q_3*ups_S_x
+        axis_x_ups_axes2_y = inv_ups_q_3*ups_S_y
+        axis_x_ups_axes2_z = inv_ups_q_3*ups_S_z
         ups_S_dot_t = omega_y*ups_q_z - omega_z*ups_q_y
         ups_S_dot_t_2 = omega_z*ups_q_x - omega_x*ups_q_z
         ups_S_dot_t_3 = omega_x*ups_q_y - omega_y*ups_q_x
@@ -3798,9 +4005,9 @@ def _run_legs(m, X, V, A):
             axis_x_ups_axes2_z*ups_S_dot_z
         )
         # (ups-qd_1) rate of joint 1
-        axis_z_ups_axes2_x = ups_base_frame_xx*ups_c_1 + ups_base_frame_xy*ups_s_1
-        axis_z_ups_axes2_y = ups_base_frame_yx*ups_c_1 + ups_base_frame_yy*ups_s_1
-        axis_z_ups_axes2_z = ups_base_frame_zx*ups_c_1 + ups_base_frame_zy*ups_s_1
+        axis_z_ups_axes2_x = ups_base_frame_xy*ups_c_1 - ups_base_frame_xx*ups_s_1
+        axis_z_ups_axes2_y = ups_base_frame_yy*ups_c_1 - ups_base_frame_yx*ups_s_1
+        axis_z_ups_axes2_z = ups_base_frame_zy*ups_c_1 - ups_base_frame_zx*ups_s_1
         ups_qd_1 = (
         inv_ups_root_1*(axis_z_ups_axes2_x*ups_S_dot_x + axis_z_ups_axes2_y*ups_S_dot_y +
             axis_z_ups_axes2_z*ups_S_dot_z)
@@ -3816,12 +4023,13 @@ def _run_legs(m, X, V, A):
         axis_x_ups_axes2_y*axis_z_ups_axes2_x - axis_x_ups_axes2_x*axis_z_ups_axes2_y
         )
         ups_qd_2 = (
-        inv_ups_root_2*(axis_y_ups_axes2_x*ups_S_dot_x + axis_y_ups_axes2_y*ups_S_dot_y +
+        inv_ups_q_3*(axis_y_ups_axes2_x*ups_S_dot_x + axis_y_ups_axes2_y*ups_S_dot_y +
             axis_y_ups_axes2_z*ups_S_dot_z)
         )
         # (ups-omega_1) angular velocity of link 1
-        ups_omega_1_in_axes2_x = ups_qd_1*ups_s_2
-        ups_omega_1_in_axes2_y = ups_c_2*ups_qd_1
+        ups_e_1_in_axes2_x = inv_ups_q_3*ups_S_in_turn1_z
+        ups_omega_1_in_axes2_x = ups_e_1_in_axes2_x*ups_qd_1
+        ups_omega_1_in_axes2_y = -ups_c_2*ups_qd_1
         # (ups-W_2) centripetal tensor of link 2
         ups_W_2_in_axes2_yz = ups_omega_1_in_axes2_y*ups_qd_2
         ups_W_2_in_axes2_xz = ups_omega_1_in_axes2_x*ups_qd_2
@@ -3840,16 +4048,14 @@ def _run_legs(m, X, V, A):
         )
         # (ups-bias) acceleration of the connection point at zero joint accelerations
         ups_bias_t = 2.0*ups_S_dot_in_axes2_x
-        ups_bias_in_axes2_z = (
-        2.0*ups_W_2_in_axes2_xz*ups_root_2 - ups_bias_t*ups_omega_1_in_axes2_y
-        )
+        ups_bias_in_axes2_z = 2.0*ups_W_2_in_axes2_xz*ups_q_3 - ups_bias_t*ups_omega_1_in_axes2_y
         # (ups-rel) acceleration of the connection point left to the joint accelerations
         ups_rel_in_axes2_z = ups_S_ddot_in_axes2_z - ups_bias_in_axes2_z
         # (ups-qdd_1) acceleration of joint 1
         ups_qdd_1 = inv_ups_root_1*ups_rel_in_axes2_z
         # (ups-alpha_1) angular acceleration of link 1
-        ups_alpha_1_in_axes2_x = ups_qdd_1*ups_s_2
-        ups_alpha_1_in_axes2_y = ups_c_2*ups_qdd_1
+        ups_alpha_1_in_axes2_x = ups_e_1_in_axes2_x*ups_qdd_1
+        ups_alpha_1_in_axes2_y = -ups_c_2*ups_qdd_1
         # (ups-alpha_2) angular acceleration of link 2
         ups_alpha_2_in_axes2_x = ups_W_2_in_axes2_yz + ups_alpha_1_in_axes2_x
         ups_alpha_2_in_axes2_y = ups_alpha_1_in_axes2_y - ups_W_2_in_axes2_xz
@@ -3858,16 +4064,16 @@ def _run_legs(m, X, V, A):
         ups_B_2_t_2 = axis_y_ups_axes2_y*ups_S_ddot_y
         ups_B_2_t_3 = axis_y_ups_axes2_z*ups_S_ddot_z
         ups_B_2_in_axes2_yx = (
-        inv_ups_root_2*(ups_B_2_t + ups_B_2_t_2 + ups_B_2_t_3 - ups_bias_t*ups_qd_2)
+        inv_ups_q_3*(ups_B_2_t + ups_B_2_t_2 + ups_B_2_t_3 - ups_bias_t*ups_qd_2)
         )
         ups_B_2_in_axes2_xy = 2.0*ups_W_2_in_axes2_xy - ups_B_2_in_axes2_yx
         ups_B_2_in_axes2_zx = ups_W_2_in_axes2_xz - ups_alpha_2_in_axes2_y
         ups_B_2_in_axes2_zy = ups_W_2_in_axes2_yz + ups_alpha_2_in_axes2_x
         # (ups-acc_3) acceleration of the reference point of link 3, less gravity
-        ups_g_in_axes2_z = ups_acc_3_t*ups_c_1 + ups_acc_3_t_2*ups_s_1
-        ups_acc_3_t_4 = ups_acc_3_t_2*ups_c_1 - ups_acc_3_t*ups_s_1
-        ups_g_in_axes2_x = ups_acc_3_t_3*ups_s_2 + ups_acc_3_t_4*ups_c_2
-        ups_g_in_axes2_y = ups_acc_3_t_3*ups_c_2 - ups_acc_3_t_4*ups_s_2
+        ups_acc_3_t_4 = ups_acc_3_t*ups_c_1 + ups_acc_3_t_2*ups_s_1
+        ups_g_in_axes2_z = ups_acc_3_t_2*ups_c_1 - ups_acc_3_t*ups_s_1
+        ups_g_in_axes2_x = ups_acc_3_t_3*ups_e_1_in_axes2_x + ups_acc_3_t_4*ups_c_2
+        ups_g_in_axes2_y = ups_acc_3_t_4*ups_e_1_in_axes2_x - ups_acc_3_t_3*ups_c_2
         ups_acc_3_in_axes2_x = (
         axis_x_ups_axes2_x*ups_S_ddot_x + axis_x_ups_axes2_y*ups_S_ddot_y +
             axis_x_ups_axes2_z*ups_S_ddot_z - ups_g_in_axes2_x
@@ -3905,14 +4111,14 @@ def _run_legs(m, X, V, A):
         )
         # (ups-c) leg force on the platform without actuation and without the mass at the connection point
         ups_c_in_axes2_y = (
-        ups_alpha_1_in_axes2_x*ups_h_3_in_spec2_y - inv_ups_root_2*ups_mu_2_in_axes2_z -
+        ups_alpha_1_in_axes2_x*ups_h_3_in_spec2_y - inv_ups_q_3*ups_mu_2_in_axes2_z -
             ups_B_2_in_axes2_yx*ups_h_3_in_spec2_x - ups_h_3_in_spec2_z*(ups_mu_2_t +
             ups_mu_2_t_3)
         )
         ups_c_in_axes2_z = (
-        ups_B_2_in_axes2_zy*ups_h_3_in_spec2_z + ups_h_3_in_spec2_y*(ups_mu_2_t + ups_mu_2_t_2) -
-            inv_ups_root_1*(ups_c_2*ups_mu_2_in_axes2_y + ups_mu_2_in_axes2_x*ups_s_2) -
-            ups_B_2_in_axes2_zx*ups_h_3_in_spec2_x
+        inv_ups_root_1*(ups_c_2*ups_mu_2_in_axes2_y - ups_e_1_in_axes2_x*ups_mu_2_in_axes2_x) +
+            ups_B_2_in_axes2_zy*ups_h_3_in_spec2_z + ups_h_3_in_spec2_y*(ups_mu_2_t +
+            ups_mu_2_t_2) - ups_B_2_in_axes2_zx*ups_h_3_in_spec2_x
         )
         # (ups-c_true) leg force on the platform without actuation, the last link's mass included
         ups_c_true_in_axes2_x = (
@@ -3935,9 +4141,9 @@ def _run_legs(m, X, V, A):
             axis_z_ups_axes2_z*ups_c_true_in_axes2_z
         )
         ok = (
-        ok & (abs(ups_rho2_1) > _TOLERANCE * _TOLERANCE * 0.6400000000000001) & (abs(ups_rho2_2) >
-            _TOLERANCE * _TOLERANCE * 0.6400000000000001) & (abs(ups_root_1) > _TOLERANCE * 0.8) &
-            (abs(ups_root_2) > _TOLERANCE * 0.8)
+        ok & (abs(ups_root_1_t) > _TOLERANCE * _TOLERANCE * 0.6400000000000001) & (abs(ups_q_3_t)
+            > _TOLERANCE * _TOLERANCE * 0.6400000000000001) & (abs(ups_root_1) > _TOLERANCE * 0.8)
+            & (abs(ups_q_3) > _TOLERANCE * 0.8)
         )
         # (ups-c_true) leg force on the platform without actuation, the last link's mass included
         out_leg_force[_leg_force_ups[0][leg]] = ups_c_true_x
@@ -4026,52 +4232,46 @@ def _run_potential(m, X):
         t_z + R_zx*ups_platform_point_x + R_zy*ups_platform_point_y + R_zz*ups_platform_point_z -
             ups_base_point_z
         )
-        # (ups-px_1) component along the reference direction
-        ups_px_1 = (
+        ups_S_in_turn1_x = (
         ups_S_x*ups_base_frame_xx + ups_S_y*ups_base_frame_yx + ups_S_z*ups_base_frame_zx
         )
-        # (ups-py_1) component across the reference direction
-        ups_py_1 = (
+        ups_S_in_turn1_y = (
         ups_S_x*ups_base_frame_xy + ups_S_y*ups_base_frame_yy + ups_S_z*ups_base_frame_zy
         )
-        # (ups-rho2_1) squared amplitude
-        ups_rho2_1 = ups_px_1*ups_px_1 + ups_py_1*ups_py_1
-        # (ups-root_1) amplitude, with the sign of the branch
-        ups_root_1 = ups_branch_1*sqrt(ups_rho2_1)
-        # (ups-c_1) cosine of the angle of joint 1 from its reference direction
-        inv_ups_root_1 = 1.0/ups_root_1
-        ups_c_1 = -inv_ups_root_1*ups_py_1
-        # (ups-s_1) sine of the angle of joint 1 from its reference direction
-        ups_s_1 = inv_ups_root_1*ups_px_1
-        # (ups-xi_1) the vector from joint 1 to the connection point, resolved along link 1
-        ups_xi_1_in_axes1_z = (
+        ups_S_in_turn1_z = (
         ups_S_x*ups_base_frame_xz + ups_S_y*ups_base_frame_yz + ups_S_z*ups_base_frame_zz
         )
-        # (ups-rho2_2) squared amplitude
-        ups_rho2_2 = ups_rho2_1 + ups_xi_1_in_axes1_z*ups_xi_1_in_axes1_z
-        # (ups-root_2) amplitude, with the sign of the branch
-        ups_root_2 = ups_branch_2*sqrt(ups_rho2_2)
+        # (ups-root_1) amplitude, the length across axis 1, with the sign of the branch
+        ups_root_1_t = ups_S_in_turn1_x*ups_S_in_turn1_x + ups_S_in_turn1_y*ups_S_in_turn1_y
+        ups_root_1 = ups_branch_1*sqrt(ups_root_1_t)
+        # (ups-c_1) cosine of the angle of joint 1 from its reference direction
+        inv_ups_root_1 = 1.0/ups_root_1
+        ups_c_1 = inv_ups_root_1*ups_S_in_turn1_x
+        # (ups-s_1) sine of the angle of joint 1 from its reference direction
+        ups_s_1 = inv_ups_root_1*ups_S_in_turn1_y
+        # (ups-q_3) displacement of joint 3
+        ups_q_3_t = ups_S_in_turn1_z*ups_S_in_turn1_z + ups_root_1_t
+        ups_q_3 = ups_branch_2*sqrt(ups_q_3_t)
         # (ups-c_2) cosine of the angle of joint 2 from its reference direction
-        inv_ups_root_2 = 1.0/ups_root_2
-        ups_c_2 = -inv_ups_root_2*ups_root_1
-        # (ups-s_2) sine of the angle of joint 2 from its reference direction
-        ups_s_2 = inv_ups_root_2*ups_xi_1_in_axes1_z
+        inv_ups_q_3 = 1.0/ups_q_3
+        ups_c_2 = inv_ups_q_3*ups_root_1
         # (potential) potential energy
-        ups_potential_t_4 = ups_acc_3_t_2*ups_c_1 - ups_acc_3_t*ups_s_1
-        ups_potential_t_5 = ups_c_1*ups_potential_t_2 - ups_potential_t*ups_s_1
+        ups_e_1_in_axes2_x = inv_ups_q_3*ups_S_in_turn1_z
+        ups_potential_t_4 = ups_acc_3_t*ups_c_1 + ups_acc_3_t_2*ups_s_1
+        ups_potential_t_5 = ups_c_1*ups_potential_t + ups_potential_t_2*ups_s_1
         ups_potential_t_6 = (
-        (ups_acc_3_t_3*ups_c_2 - ups_potential_t_4*ups_s_2)*(ups_h_2_in_spec2_z +
-            ups_h_3_in_spec2_z - ups_link2_mass*(ups_c_2*ups_potential_t_3 -
-            ups_potential_t_5*ups_s_2)) - (ups_acc_3_t*ups_c_1 +
-            ups_acc_3_t_2*ups_s_1)*(ups_h_2_in_spec2_y + ups_h_3_in_spec2_y +
-            ups_link2_mass*(ups_c_1*ups_potential_t + ups_potential_t_2*ups_s_1)) -
-            (ups_acc_3_t_3*ups_s_2 + ups_c_2*ups_potential_t_4)*(ups_h_2_in_spec2_x +
+        (ups_e_1_in_axes2_x*ups_potential_t_4 - ups_acc_3_t_3*ups_c_2)*(ups_h_2_in_spec2_z +
+            ups_h_3_in_spec2_z - ups_link2_mass*(ups_e_1_in_axes2_x*ups_potential_t_5 -
+            ups_c_2*ups_potential_t_3)) - (ups_acc_3_t_2*ups_c_1 -
+            ups_acc_3_t*ups_s_1)*(ups_h_2_in_spec2_y + ups_h_3_in_spec2_y +
+            ups_link2_mass*(ups_c_1*ups_potential_t_2 - ups_potential_t*ups_s_1)) -
+            (ups_acc_3_t_3*ups_e_1_in_axes2_x + ups_c_2*ups_potential_t_4)*(ups_h_2_in_spec2_x +
             ups_h_3_in_spec2_x + ups_link2_mass*(ups_c_2*ups_potential_t_5 +
-            ups_potential_t_3*ups_s_2))
+            ups_e_1_in_axes2_x*ups_potential_t_3))
         )
         ok = (
-        ok & (abs(ups_rho2_1) > _TOLERANCE * _TOLERANCE * 0.6400000000000001) & (abs(ups_rho2_2) >
-            _TOLERANCE * _TOLERANCE * 0.6400000000000001)
+        ok & (abs(ups_root_1_t) > _TOLERANCE * _TOLERANCE * 0.6400000000000001) & (abs(ups_q_3_t)
+            > _TOLERANCE * _TOLERANCE * 0.6400000000000001)
         )
         # (potential) potential energy
         potential_ups += ups_potential_t_6
@@ -4153,37 +4353,32 @@ def _run_condition(m, X):
         ups_S_x = t_x + ups_q_x - ups_base_point_x
         ups_S_y = t_y + ups_q_y - ups_base_point_y
         ups_S_z = t_z + ups_q_z - ups_base_point_z
-        # (ups-px_1) component along the reference direction
-        ups_px_1 = (
+        ups_S_in_turn1_x = (
         ups_S_x*ups_base_frame_xx + ups_S_y*ups_base_frame_yx + ups_S_z*ups_base_frame_zx
         )
-        # (ups-py_1) component across the reference direction
-        ups_py_1 = (
+        ups_S_in_turn1_y = (
         ups_S_x*ups_base_frame_xy + ups_S_y*ups_base_frame_yy + ups_S_z*ups_base_frame_zy
         )
-        # (ups-rho2_1) squared amplitude
-        ups_rho2_1 = ups_px_1*ups_px_1 + ups_py_1*ups_py_1
-        # (ups-root_1) amplitude, with the sign of the branch
-        ups_root_1 = ups_branch_1*sqrt(ups_rho2_1)
-        # (ups-xi_1) the vector from joint 1 to the connection point, resolved along link 1
-        ups_xi_1_in_axes1_z = (
+        ups_S_in_turn1_z = (
         ups_S_x*ups_base_frame_xz + ups_S_y*ups_base_frame_yz + ups_S_z*ups_base_frame_zz
         )
-        # (ups-rho2_2) squared amplitude
-        ups_rho2_2 = ups_rho2_1 + ups_xi_1_in_axes1_z*ups_xi_1_in_axes1_z
-        # (ups-root_2) amplitude, with the sign of the branch
-        ups_root_2 = ups_branch_2*sqrt(ups_rho2_2)
+        # (ups-root_1) amplitude, the length across axis 1, with the sign of the branch
+        ups_root_1_t = ups_S_in_turn1_x*ups_S_in_turn1_x + ups_S_in_turn1_y*ups_S_in_turn1_y
+        ups_root_1 = ups_branch_1*sqrt(ups_root_1_t)
+        # (ups-q_3) displacement of joint 3
+        ups_q_3_t = ups_S_in_turn1_z*ups_S_in_turn1_z + ups_root_1_t
+        ups_q_3 = ups_branch_2*sqrt(ups_q_3_t)
         # (ups-w_2) reciprocal vector 2
-        ups_w_2_in_axes2_y = 1.0/ups_root_2
+        ups_w_2_in_axes2_y = 1.0/ups_q_3
         # (ups-w_3) reciprocal vector 3
         ups_w_3_x = ups_S_x*ups_w_2_in_axes2_y
         ups_w_3_y = ups_S_y*ups_w_2_in_axes2_y
         ups_w_3_z = ups_S_z*ups_w_2_in_axes2_y
         # (ups-G) force at the connection point that balances the leg's inertia and weight along all degrees of freedom
-        ups_pivot_size = abs(ups_rho2_1)
-        ups_pivot_size_2 = abs(ups_rho2_2)
+        ups_pivot_size = abs(ups_root_1_t)
+        ups_pivot_size_2 = abs(ups_q_3_t)
         ups_pivot_size_3 = abs(ups_root_1)
-        ups_pivot_size_4 = abs(ups_root_2)
+        ups_pivot_size_4 = abs(ups_q_3)
         ups_least_pivots = (
         least(least(least(1.25*sqrt(ups_pivot_size), 1.25*sqrt(ups_pivot_size_2)),
             1.25*ups_pivot_size_3), 1.25*ups_pivot_size_4)
@@ -4200,9 +4395,9 @@ def _run_condition(m, X):
         ups_spread_t*ups_spread_t + ups_spread_t_2*ups_spread_t_2 + ups_spread_t_3*ups_spread_t_3
         )
         clear = (
-        clear & (abs(ups_rho2_1) > _TOLERANCE * _TOLERANCE * 0.6400000000000001) &
-            (abs(ups_rho2_2) > _TOLERANCE * _TOLERANCE * 0.6400000000000001) & (abs(ups_root_1) >
-            _TOLERANCE * 0.8) & (abs(ups_root_2) > _TOLERANCE * 0.8)
+        clear & (abs(ups_root_1_t) > _TOLERANCE * _TOLERANCE * 0.6400000000000001) &
+            (abs(ups_q_3_t) > _TOLERANCE * _TOLERANCE * 0.6400000000000001) & (abs(ups_root_1) >
+            _TOLERANCE * 0.8) & (abs(ups_q_3) > _TOLERANCE * 0.8)
         )
         # (spread) rms distance of the platform points from their centroid
         spread_ups += ups_spread_t_4
@@ -4223,6 +4418,129 @@ def _run_condition(m, X):
     return (valid, reached, clear), (out_H, out_lengths, out_pivots, out_reach,)
 
 
+def _straight_6(a, b, rows, limits):
+    """Solve 6 equations a x = b straight through; and whether that is beyond doubt."""
+    (
+    (a00, a01, a02, a03, a04, a05,), (a10, a11, a12, a13, a14, a15,), (a20, a21, a22, a23, a24,
+        a25,), (a30, a31, a32, a33, a34, a35,), (a40, a41, a42, a43, a44, a45,), (a50, a51, a52,
+        a53, a54, a55,),
+    ) = [a[6 * k : 6 * k + 6] for k in rows]
+    b0, b1, b2, b3, b4, b5, = [b[k] for k in rows]
+    (
+    l10, l20, l30, l40, l50, l21, l31, l41, l51, l32, l42, l52, l43, l53, l54, l0, l1, l2, l3, l4,
+        l5,
+    ) = limits
+    f0 = 1.0/a00
+    g10 = a10*f0
+    a11 = a11 - g10*a01
+    a12 = a12 - g10*a02
+    a13 = a13 - g10*a03
+    a14 = a14 - g10*a04
+    a15 = a15 - g10*a05
+    b1 = b1 - g10*b0
+    g20 = a20*f0
+    a21 = a21 - g20*a01
+    a22 = a22 - g20*a02
+    a23 = a23 - g20*a03
+    a24 = a24 - g20*a04
+    a25 = a25 - g20*a05
+    b2 = b2 - g20*b0
+    g30 = a30*f0
+    a31 = a31 - g30*a01
+    a32 = a32 - g30*a02
+    a33 = a33 - g30*a03
+    a34 = a34 - g30*a04
+    a35 = a35 - g30*a05
+    b3 = b3 - g30*b0
+    g40 = a40*f0
+    a41 = a41 - g40*a01
+    a42 = a42 - g40*a02
+    a43 = a43 - g40*a03
+    a44 = a44 - g40*a04
+    a45 = a45 - g40*a05
+    b4 = b4 - g40*b0
+    g50 = a50*f0
+    a51 = a51 - g50*a01
+    a52 = a52 - g50*a02
+    a53 = a53 - g50*a03
+    a54 = a54 - g50*a04
+    a55 = a55 - g50*a05
+    b5 = b5 - g50*b0
+    f1 = 1.0/a11
+    g21 = a21*f1
+    a22 = a22 - g21*a12
+    a23 = a23 - g21*a13
+    a24 = a24 - g21*a14
+    a25 = a25 - g21*a15
+    b2 = b2 - g21*b1
+    g31 = a31*f1
+    a32 = a32 - g31*a12
+    a33 = a33 - g31*a13
+    a34 = a34 - g31*a14
+    a35 = a35 - g31*a15
+    b3 = b3 - g31*b1
+    g41 = a41*f1
+    a42 = a42 - g41*a12
+    a43 = a43 - g41*a13
+    a44 = a44 - g41*a14
+    a45 = a45 - g41*a15
+    b4 = b4 - g41*b1
+    g51 = a51*f1
+    a52 = a52 - g51*a12
+    a53 = a53 - g51*a13
+    a54 = a54 - g51*a14
+    a55 = a55 - g51*a15
+    b5 = b5 - g51*b1
+    f2 = 1.0/a22
+    g32 = a32*f2
+    a33 = a33 - g32*a23
+    a34 = a34 - g32*a24
+    a35 = a35 - g32*a25
+    b3 = b3 - g32*b2
+    g42 = a42*f2
+    a43 = a43 - g42*a23
+    a44 = a44 - g42*a24
+    a45 = a45 - g42*a25
+    b4 = b4 - g42*b2
+    g52 = a52*f2
+    a53 = a53 - g52*a23
+    a54 = a54 - g52*a24
+    a55 = a55 - g52*a25
+    b5 = b5 - g52*b2
+    f3 = 1.0/a33
+    g43 = a43*f3
+    a44 = a44 - g43*a34
+    a45 = a45 - g43*a35
+    b4 = b4 - g43*b3
+    g53 = a53*f3
+    a54 = a54 - g53*a34
+    a55 = a55 - g53*a35
+    b5 = b5 - g53*b3
+    f4 = 1.0/a44
+    g54 = a54*f4
+    a55 = a55 - g54*a45
+    b5 = b5 - g54*b4
+    f5 = 1.0/a55
+    x5 = b5*f5
+    x4 = (b4 - a45*x5)*f4
+    x3 = (b3 - a35*x5 - a34*x4)*f3
+    x2 = (b2 - a25*x5 - a24*x4 - a23*x3)*f2
+    x1 = (b1 - a15*x5 - a14*x4 - a13*x3 - a12*x2)*f1
+    x0 = (b0 - a05*x5 - a04*x4 - a03*x3 - a02*x2 - a01*x1)*f0
+    sure = (
+    (abs(g10) <= l10) & (abs(g20) <= l20) & (abs(g30) <= l30) & (abs(g40) <= l40) & (abs(g50) <=
+        l50) & (abs(g21) <= l21) & (abs(g31) <= l31) & (abs(g41) <= l41) & (abs(g51) <= l51) &
+        (abs(g32) <= l32) & (abs(g42) <= l42) & (abs(g52) <= l52) & (abs(g43) <= l43) & (abs(g53)
+        <= l53) & (abs(g54) <= l54) & (abs(f0) <= l0) & (abs(f1) <= l1) & (abs(f2) <= l2) &
+        (abs(f3) <= l3) & (abs(f4) <= l4) & (abs(f5) <= l5) & (abs(x0 + x1 + x2 + x3 + x4 + x5 +
+        a00 + a11 + a22 + a33 + a44 + a55) < math.inf)
+    )
+    return sure, ([x0, x1, x2, x3, x4, x5],)
+
+
+_ORDERS = (  # how systems are solved near home
+    _Order(_straight_6, (0, 1, 2, 3, 4, 5), (10, 10, 0.625, 0.625, 0.625, 10, 0.625, 0.625, 0.625, 0.625, 0.625, 0.625, 10, 10, 10, 62.5, 62.5, 62.5, 1000, 1000, 1000,)),
+)
 _Q = 3  # where a quaternion begins in X
 _DEFAULT = Parameters()
 
@@ -4275,11 +4593,11 @@ def _steps_inverse_dynamics(m, X, V, A, wrench, weights):
 
 def _steps_forward_dynamics(m, X, V, tau, wrench):
     M, Z, H = m.run(_run_dynamics, ("M", "Z", "H"), X, V)
-    times_1 = np.einsum("ijs,js->is", H, tau)
+    times_1 = _times(H, tau)
     extend_1 = wrench
     add_1 = times_1 + extend_1
     subtract_1 = add_1 - Z
-    A = _solve(M, subtract_1)
+    A = _straight(m, M, subtract_1, _ORDERS[0])
     return (A,)
 
 
@@ -4320,10 +4638,51 @@ def _steps_condition(m, X, length):
     return (sigma, legs,)
 
 
+def _steps_manipulability(m, X):
+    (
+    H, lengths, pivots, reach,
+    ) = m.run(_in_one(_run_condition), ("H", "lengths", "pivots", "reach"), X)
+    entry_1 = lengths[0]
+    subtract_1 = entry_1 - entry_1
+    choose_length_1 = _chosen_length(lengths, subtract_1)
+    divide_rows_1 = _rows_divided(H, choose_length_1, [3, 4, 5])
+    singular_values_1 = _singular_values(divide_rows_1)
+    measure, isotropy = _spread(singular_values_1, 6)
+    return (measure, isotropy,)
+
+
+def _steps_singularity_distance(m, X):
+    (
+    H, lengths, pivots, reach,
+    ) = m.run(_in_one(_run_condition), ("H", "lengths", "pivots", "reach"), X)
+    entry_1 = lengths[0]
+    subtract_1 = entry_1 - entry_1
+    choose_length_1 = _chosen_length(lengths, subtract_1)
+    divide_rows_1 = _rows_divided(H, choose_length_1, [3, 4, 5])
+    singular_values_1 = _singular_values(divide_rows_1)
+    spread_1, actuators = _spread(singular_values_1, 6)
+    legs = _least_entry(pivots)
+    return (actuators, legs,)
+
+
+def _steps_force_distribution(m, X, V, A, tau_min, tau_max, wrench, reference):
+    required, H = m.run(_run_required, ("required", "H"), X, V, A)
+    extend_1 = wrench
+    subtract_1 = required - extend_1
+    least_norm_1 = _least_norm(H, subtract_1)
+    null_basis_1 = _null_basis(H, 6)
+    transposed_1 = np.swapaxes(null_basis_1, 0, 1)
+    product_1 = np.einsum("iks,kjs->ijs", null_basis_1, transposed_1)
+    times_1 = _times(product_1, reference)
+    add_1 = least_norm_1 + times_1
+    tau = _nearest_within(add_1, product_1, tau_min, tau_max)
+    return (tau,)
+
+
 def _steps_mismatch(m, X, q_actuated):
     q, = m.run(_run_inverse_kinematics, ("q",), X)
-    take_1 = q[[2, 5, 8, 11, 14, 17, 20]]
-    gap = q_actuated - take_1
+    q_of_inverse_kinematics_from_2 = q[[2, 5, 8, 11, 14, 17, 20]]
+    gap = q_actuated - q_of_inverse_kinematics_from_2
     return (gap,)
 
 
@@ -4345,7 +4704,7 @@ def _steps_dissipation(m, X, V):
 
 def _steps_momentum(m, X, V):
     M, = m.run(_run_M, ("M",), X)
-    momentum = np.einsum("ijs,js->is", M, V)
+    momentum = _times(M, V)
     return (momentum,)
 
 
@@ -4383,14 +4742,14 @@ def _steps_actuator_accelerations(m, X, V, A):
 
 def _steps_power(m, X, V, tau):
     H, = m.run(_run_H, ("H",), X)
-    times_1 = np.einsum("ijs,js->is", H, tau)
+    times_1 = _times(H, tau)
     power = np.sum(times_1 * V, axis=0)
     return (power,)
 
 
 def _steps_rotation(m, X):
-    take_1 = X[3:7]
-    R = _rotation_of_quaternion(take_1)
+    X_from_3 = X[3:7]
+    R = _rotation_of_quaternion(X_from_3)
     return (R,)
 
 
@@ -4402,11 +4761,11 @@ def _steps_pose(m, t, R):
 
 
 def _steps_X_dot(m, X, V):
-    take_1 = V[3:6]
-    take_2 = X[3:7]
-    quaternion_rate_1 = _quaternion_rate(take_2, take_1)
-    take_3 = V[0:3]
-    X_dot = np.concatenate((take_3, quaternion_rate_1))
+    V_from_3 = V[3:6]
+    X_from_3 = X[3:7]
+    quaternion_rate_1 = _quaternion_rate(X_from_3, V_from_3)
+    V_from_0 = V[0:3]
+    X_dot = np.concatenate((V_from_0, quaternion_rate_1))
     return (X_dot,)
 
 
@@ -4418,42 +4777,42 @@ def _steps_pose_from_rpy(m, t, rpy):
 
 
 def _steps_retract(m, X, step):
-    take_1 = X[0:3]
-    take_2 = X[3:7]
-    take_3 = step[0:3]
-    take_4 = step[3:6]
-    turn_quaternion_1 = _turned(take_2, take_4)
-    add_1 = take_1 + take_3
+    X_from_0 = X[0:3]
+    X_from_3 = X[3:7]
+    step_from_0 = step[0:3]
+    step_from_3 = step[3:6]
+    turn_quaternion_1 = _turned(X_from_3, step_from_3)
+    add_1 = X_from_0 + step_from_0
     X_moved = np.concatenate((add_1, turn_quaternion_1))
     return (X_moved,)
 
 
 def _steps_difference(m, X0, X1):
-    take_1 = X0[0:3]
-    take_2 = X0[3:7]
-    take_3 = X1[0:3]
-    take_4 = X1[3:7]
-    turn_between_1 = _turn_between(take_2, take_4)
-    subtract_1 = take_3 - take_1
+    X0_from_0 = X0[0:3]
+    X0_from_3 = X0[3:7]
+    X1_from_0 = X1[0:3]
+    X1_from_3 = X1[3:7]
+    turn_between_1 = _turn_between(X0_from_3, X1_from_3)
+    subtract_1 = X1_from_0 - X0_from_0
     step = np.concatenate((subtract_1, turn_between_1))
     return (step,)
 
 
 def _steps_interpolate(m, X0, X1, s):
-    take_1 = X0[0:3]
-    take_2 = X0[3:7]
-    take_3 = X1[0:3]
-    take_4 = X1[3:7]
-    turn_between_1 = _turn_between(take_2, take_4)
-    subtract_1 = take_3 - take_1
+    X0_from_0 = X0[0:3]
+    X0_from_3 = X0[3:7]
+    X1_from_0 = X1[0:3]
+    X1_from_3 = X1[3:7]
+    turn_between_1 = _turn_between(X0_from_3, X1_from_3)
+    subtract_1 = X1_from_0 - X0_from_0
     join_1 = np.concatenate((subtract_1, turn_between_1))
     scale_1 = join_1 * s
-    take_5 = X0[0:3]
-    take_6 = X0[3:7]
-    take_7 = scale_1[0:3]
-    take_8 = scale_1[3:6]
-    turn_quaternion_1 = _turned(take_6, take_8)
-    add_1 = take_5 + take_7
+    X0_from_0_2 = X0[0:3]
+    X0_from_3_2 = X0[3:7]
+    scale_1_from_0 = scale_1[0:3]
+    scale_1_from_3 = scale_1[3:6]
+    turn_quaternion_1 = _turned(X0_from_3_2, scale_1_from_3)
+    add_1 = X0_from_0_2 + scale_1_from_0
     X = np.concatenate((add_1, turn_quaternion_1))
     return (X,)
 
@@ -4471,6 +4830,7 @@ def M(X, p=None):
     return _call(
         "M", _steps_M, p,
         ("X", X, (NQ,)),
+        plain=((NV, NV,),),
     )
 
 
@@ -4489,6 +4849,7 @@ def Z(X, V, p=None):
         "Z", _steps_Z, p,
         ("X", X, (NQ,)),
         ("V", V, (NV,)),
+        plain=((NV,),),
     )
 
 
@@ -4505,6 +4866,7 @@ def H(X, p=None):
     return _call(
         "H", _steps_H, p,
         ("X", X, (NQ,)),
+        plain=((NV, NU,),),
     )
 
 
@@ -4523,6 +4885,7 @@ def inverse_kinematics(X, p=None):
     return _call(
         "inverse_kinematics", _steps_inverse_kinematics, p,
         ("X", X, (NQ,)),
+        plain=((NJ,),),
     )
 
 
@@ -4541,6 +4904,7 @@ def joint_rates(X, V, p=None):
         "joint_rates", _steps_joint_rates, p,
         ("X", X, (NQ,)),
         ("V", V, (NV,)),
+        plain=((NJ,),),
     )
 
 
@@ -4561,6 +4925,7 @@ def joint_accelerations(X, V, A, p=None):
         ("X", X, (NQ,)),
         ("V", V, (NV,)),
         ("A", A, (NV,)),
+        plain=((NJ,),),
     )
 
 
@@ -4581,6 +4946,7 @@ def dynamics(X, V, p=None):
         "dynamics", _steps_dynamics, p,
         ("X", X, (NQ,)),
         ("V", V, (NV,)),
+        plain=((NV, NV,), (NV,), (NV, NU,),),
     )
 
 
@@ -4628,6 +4994,7 @@ def forward_dynamics(X, V, tau, p=None, *, wrench=None):
         ("V", V, (NV,)),
         ("tau", tau, (NU,)),
         ("wrench", wrench, (NW,), 0.0),
+        plain=((NV,),),
     )
 
 
@@ -4652,6 +5019,7 @@ def complete_acceleration(X, V, A, p=None, *, wrench=None):
         ("V", V, (NV,), None, "unused"),
         ("A", A, (NV,)),
         ("wrench", wrench, (NW,), 0.0, "unused"),
+        plain=((NV,),),
     )
 
 
@@ -4738,6 +5106,74 @@ def condition(X, p=None, *, length=None):
     )
 
 
+def manipulability(X, p=None):
+    """Manipulability of forces: the product of the singular values that `condition` has by
+    default, and the least over the largest of them.
+
+    Args:
+        X: pose, and extra coordinates (..., NQ).
+        p: parameters, by default those of the specification.
+
+    Returns:
+        measure: product of the singular values (...,).
+        isotropy: least over largest value, 1 where H is isotropic (...,).
+    """
+    return _call(
+        "manipulability", _steps_manipulability, p,
+        ("X", X, (NQ,)),
+    )
+
+
+def singularity_distance(X, p=None):
+    """How near actuators and legs are to being singular: relative distances, 0 where they are.
+
+    Args:
+        X: pose, and extra coordinates (..., NQ).
+        p: parameters, by default those of the specification.
+
+    Returns:
+        actuators: of H from matrices of lower rank, over its norm (...,).
+        legs: least pivot of all legs (...,).
+    """
+    return _call(
+        "singularity_distance", _steps_singularity_distance, p,
+        ("X", X, (NQ,)),
+    )
+
+
+def force_distribution(X, V, A, tau_min, tau_max, p=None, *, wrench=None, reference=None):
+    """Actuator forces from tau_min to tau_max for the acceleration A: the nearest to reference.
+
+    By the dual active-set method of Goldfarb and Idnani; continuous along a motion.
+
+    Impossible (UNREACHABLE) where no forces within the bounds give the acceleration. Cables pull
+    with negative forces: tau_max = -t keeps tensions of t at least.
+
+    Args:
+        X: pose, and extra coordinates (..., NQ).
+        V: velocity (..., NV).
+        A: acceleration (..., NV).
+        tau_min: least actuator forces [N or N m] (..., NU).
+        tau_max: largest actuator forces [N or N m] (..., NU).
+        wrench: external wrench on the platform, by default zero (..., NW).
+        reference: actuator forces to be near to [N or N m], by default zero (..., NU).
+        p: parameters, by default those of the specification.
+
+    Returns:
+        tau: actuator forces [N or N m] (..., NU).
+    """
+    return _call(
+        "force_distribution", _steps_force_distribution, p,
+        ("X", X, (NQ,)),
+        ("V", V, (NV,)),
+        ("A", A, (NV,)),
+        ("tau_min", tau_min, (NU,)),
+        ("tau_max", tau_max, (NU,)),
+        ("wrench", wrench, (NW,), 0.0),
+        ("reference", reference, (NU,), 0.0),
+    )
+
+
 def forward_kinematics(q_actuated, X0, p=None):
     """X at which the actuated joints stand at q_actuated, by Gauss-Newton from X0.
 
@@ -4793,6 +5229,7 @@ def momentum(X, V, p=None):
         "momentum", _steps_momentum, p,
         ("X", X, (NQ,)),
         ("V", V, (NV,)),
+        plain=((NV,),),
     )
 
 

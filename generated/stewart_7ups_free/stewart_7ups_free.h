@@ -277,6 +277,24 @@ size_t stewart_7ups_free_condition_batch(const stewart_7ups_free_model *model, s
     stewart_7ups_free_real *X, stewart_7ups_free_real *sigma, stewart_7ups_free_real *legs, int
     *status);
 
+/* Manipulability of forces: the product of the singular values that condition has by default, and
+   the least over the largest of them. 266 mul, 222 add, 6 div, 29 sqrt, 0 trig; the singular
+   values apart. In: X (NQ). Out: measure (1), isotropy (1). */
+int stewart_7ups_free_manipulability(const stewart_7ups_free_model *model, const
+    stewart_7ups_free_real *X, stewart_7ups_free_real *measure, stewart_7ups_free_real *isotropy);
+size_t stewart_7ups_free_manipulability_batch(const stewart_7ups_free_model *model, size_t n,
+    const stewart_7ups_free_real *X, stewart_7ups_free_real *measure, stewart_7ups_free_real
+    *isotropy, int *status);
+
+/* How near actuators and legs are to being singular: relative distances, 0 where they are. 266
+   mul, 222 add, 6 div, 29 sqrt, 0 trig; the singular values apart. In: X (NQ). Out: actuators
+   (1), legs (1). */
+int stewart_7ups_free_singularity_distance(const stewart_7ups_free_model *model, const
+    stewart_7ups_free_real *X, stewart_7ups_free_real *actuators, stewart_7ups_free_real *legs);
+size_t stewart_7ups_free_singularity_distance_batch(const stewart_7ups_free_model *model, size_t
+    n, const stewart_7ups_free_real *X, stewart_7ups_free_real *actuators, stewart_7ups_free_real
+    *legs, int *status);
+
 /* X at which the actuated joints stand at q_actuated, by Gauss-Newton from X0. Extra coordinates
    that actuators do not determine stay. Impossible where no pose is found. In: q_actuated (NU),
    X0 (NQ). Out: X (NQ). */

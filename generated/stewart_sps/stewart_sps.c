@@ -627,13 +627,13 @@ int stewart_sps_prepare(const stewart_sps_params *params, stewart_sps_model *mod
         const real sps_J_group_3_in_axes3_zz = sps_link3_inertia_xx + sps_link4_inertia_xx -
             sps_link3_mass*(sps_J_group_3_t - sps_J_group_3_t_4) -
             sps_link4_mass*(sps_J_group_3_t_5 - sps_J_group_3_t_8);
-        /* (sps-trace_J_3) half the trace of that inertia tensor */
-        const real sps_trace_J_3 = R(0.5)*sps_J_group_3_in_axes3_xx +
-            R(0.5)*sps_J_group_3_in_axes3_yy + R(0.5)*sps_J_group_3_in_axes3_zz;
         /* (sps-Sigma_3) second moment of mass of the links that turn with link 3 */
-        const real sps_Sigma_3_in_axes3_xx = sps_trace_J_3 - sps_J_group_3_in_axes3_xx;
-        const real sps_Sigma_3_in_axes3_yy = sps_trace_J_3 - sps_J_group_3_in_axes3_yy;
-        const real sps_Sigma_3_in_axes3_zz = sps_trace_J_3 - sps_J_group_3_in_axes3_zz;
+        const real sps_Sigma_3_t = sps_J_group_3_in_axes3_xx + sps_J_group_3_in_axes3_yy +
+            sps_J_group_3_in_axes3_zz;
+        const real sps_Sigma_3_t_2 = R(0.5)*sps_Sigma_3_t;
+        const real sps_Sigma_3_in_axes3_xx = sps_Sigma_3_t_2 - sps_J_group_3_in_axes3_xx;
+        const real sps_Sigma_3_in_axes3_yy = sps_Sigma_3_t_2 - sps_J_group_3_in_axes3_yy;
+        const real sps_Sigma_3_in_axes3_zz = sps_Sigma_3_t_2 - sps_J_group_3_in_axes3_zz;
         /* (h_star) first moment about the platform origin */
         const real sps_h_star_t = sps_link4_mass*sps_platform_point_x;
         const real sps_h_star_t_2 = sps_link4_mass*sps_platform_point_y;
@@ -1230,6 +1230,24 @@ INLINE void unlimited(size_t rows, size_t size, size_t w, const size_t *places, 
     }
 }
 
+INLINE void least_entry(size_t n, const real *a, real *x)
+{
+    *x = a[0];
+    for (size_t e = 1; e < n; ++e) {
+        *x = lesser(*x, a[e]);
+    }
+}
+
+/* Of the first n entries the product, and the last over the first, 0 where that is 0. */
+INLINE void spread(size_t n, const real *a, real *product_of, real *ratio)
+{
+    *product_of = 1;
+    for (size_t e = 0; e < n; ++e) {
+        *product_of *= a[e];
+    }
+    *ratio = magnitude(a[0]) > 0 ? a[n - 1]/a[0] : a[0];
+}
+
 /* 1 where no entry is negative, else 0. */
 INLINE void not_negative(size_t size, size_t w, const real *a, real *x, real *flags)
 {
@@ -1404,6 +1422,815 @@ static void moved(const real *X, const real *step, real part, real *to)
     turn_quaternion(X + Q, turn, to + Q);
 }
 
+/* ---- what functions of the state share; v: values for others ---- */
+
+typedef struct {
+    real quaternion_scale, R_xx, R_xy, R_xz, R_yx, R_yy, R_yz, R_zx, R_zy, R_zz, h_star_x, h_star_y,
+        h_star_z, omega_in_platform_x, omega_in_platform_y, omega_in_platform_z, J_star_xx, J_star_xy,
+        J_star_xz, J_star_yy, J_star_yz, J_star_zz, Z_p_x, Z_p_y, Z_p_z, Z_q_x, Z_q_y, Z_q_z;
+} values;
+
+INLINE void stage_X(const prepared *m, size_t w, size_t k, const real *X, values *v)
+{
+    /* X: named entries */
+    const real X_3 = X[3*w + k];
+    const real X_4 = X[4*w + k];
+    const real X_5 = X[5*w + k];
+    const real X_6 = X[6*w + k];
+    const real quaternion_norm2 = X_3*X_3 + X_4*X_4 + X_5*X_5 + X_6*X_6;
+    const real quaternion_scale = 2/quaternion_norm2;
+    const real quaternion_sx = X_3*quaternion_scale;
+    const real quaternion_sy = X_4*quaternion_scale;
+    const real quaternion_sz = X_5*quaternion_scale;
+    const real quaternion_wx = X_6*quaternion_sx;
+    const real quaternion_wy = X_6*quaternion_sy;
+    const real quaternion_wz = X_6*quaternion_sz;
+    const real quaternion_xx = X_3*quaternion_sx;
+    const real quaternion_xy = X_3*quaternion_sy;
+    const real quaternion_xz = X_3*quaternion_sz;
+    const real quaternion_yy = X_4*quaternion_sy;
+    const real quaternion_yz = X_4*quaternion_sz;
+    const real quaternion_zz = X_5*quaternion_sz;
+    const real R_xx = 1 - quaternion_yy - quaternion_zz;
+    const real R_xy = quaternion_xy - quaternion_wz;
+    const real R_xz = quaternion_wy + quaternion_xz;
+    const real R_yx = quaternion_wz + quaternion_xy;
+    const real R_yy = 1 - quaternion_xx - quaternion_zz;
+    const real R_yz = quaternion_yz - quaternion_wx;
+    const real R_zx = quaternion_xz - quaternion_wy;
+    const real R_zy = quaternion_wx + quaternion_yz;
+    const real R_zz = 1 - quaternion_xx - quaternion_yy;
+    /* (h_star) first moment about the platform origin */
+    const real h_star_in_platform_x = m->h_star_in_platform_x;
+    const real h_star_in_platform_y = m->h_star_in_platform_y;
+    const real h_star_in_platform_z = m->h_star_in_platform_z;
+    const real h_star_x = R_xx*h_star_in_platform_x + R_xy*h_star_in_platform_y +
+        R_xz*h_star_in_platform_z;
+    const real h_star_y = R_yx*h_star_in_platform_x + R_yy*h_star_in_platform_y +
+        R_yz*h_star_in_platform_z;
+    const real h_star_z = R_zx*h_star_in_platform_x + R_zy*h_star_in_platform_y +
+        R_zz*h_star_in_platform_z;
+    v->quaternion_scale = quaternion_scale;
+    v->R_xx = R_xx;
+    v->R_xy = R_xy;
+    v->R_xz = R_xz;
+    v->R_yx = R_yx;
+    v->R_yy = R_yy;
+    v->R_yz = R_yz;
+    v->R_zx = R_zx;
+    v->R_zy = R_zy;
+    v->R_zz = R_zz;
+    v->h_star_x = h_star_x;
+    v->h_star_y = h_star_y;
+    v->h_star_z = h_star_z;
+}
+
+INLINE void stage_V_X(size_t w, size_t k, const real *V, values *v)
+{
+    /* (Z_q) gyroscopic moment and moment of the weight of the platform */
+    const real omega_x = V[3*w + k];
+    const real omega_y = V[4*w + k];
+    const real omega_z = V[5*w + k];
+    const real omega_in_platform_x = v->R_xx*omega_x + v->R_yx*omega_y + v->R_zx*omega_z;
+    const real omega_in_platform_y = v->R_xy*omega_x + v->R_yy*omega_y + v->R_zy*omega_z;
+    const real omega_in_platform_z = v->R_xz*omega_x + v->R_yz*omega_y + v->R_zz*omega_z;
+    v->omega_in_platform_x = omega_in_platform_x;
+    v->omega_in_platform_y = omega_in_platform_y;
+    v->omega_in_platform_z = omega_in_platform_z;
+}
+
+INLINE void stage_M_dynamics(const prepared *m, values *v)
+{
+    /* (J_star) inertia tensor about the platform origin */
+    const real J_star_in_platform_xy = m->J_star_in_platform_xy;
+    const real J_star_in_platform_yz = m->J_star_in_platform_yz;
+    const real J_star_t_12 = m->J_star_t_12;
+    const real J_star_t = J_star_in_platform_xy*v->R_xx + J_star_in_platform_yz*v->R_xz -
+        J_star_t_12*v->R_xy;
+    const real J_star_t_2 = J_star_in_platform_xy*v->R_yx + J_star_in_platform_yz*v->R_yz -
+        J_star_t_12*v->R_yy;
+    const real J_star_t_3 = J_star_in_platform_xy*v->R_zx + J_star_in_platform_yz*v->R_zz -
+        J_star_t_12*v->R_zy;
+    const real J_star_in_platform_xz = m->J_star_in_platform_xz;
+    const real J_star_t_14 = m->J_star_t_14;
+    const real J_star_t_4 = J_star_t_14*v->R_xz - J_star_in_platform_xz*v->R_xx;
+    const real J_star_t_5 = J_star_t_14*v->R_yz - J_star_in_platform_xz*v->R_yx;
+    const real J_star_t_6 = J_star_t_14*v->R_zz - J_star_in_platform_xz*v->R_zx;
+    const real J_star_t_7 = J_star_t*v->R_xy - J_star_t_4*v->R_xz;
+    const real J_star_in_platform_xx = m->J_star_in_platform_xx;
+    const real J_star_xx = J_star_in_platform_xx + 2*J_star_t_7;
+    const real J_star_xy = J_star_t*v->R_yy + J_star_t_2*v->R_xy - J_star_t_4*v->R_yz -
+        J_star_t_5*v->R_xz;
+    const real J_star_xz = J_star_t*v->R_zy + J_star_t_3*v->R_xy - J_star_t_4*v->R_zz -
+        J_star_t_6*v->R_xz;
+    const real J_star_t_8 = J_star_t_2*v->R_yy - J_star_t_5*v->R_yz;
+    const real J_star_yy = J_star_in_platform_xx + 2*J_star_t_8;
+    const real J_star_yz = J_star_t_2*v->R_zy + J_star_t_3*v->R_yy - J_star_t_5*v->R_zz -
+        J_star_t_6*v->R_yz;
+    const real J_star_t_9 = J_star_t_3*v->R_zy - J_star_t_6*v->R_zz;
+    const real J_star_zz = J_star_in_platform_xx + 2*J_star_t_9;
+    v->J_star_xx = J_star_xx;
+    v->J_star_xy = J_star_xy;
+    v->J_star_xz = J_star_xz;
+    v->J_star_yy = J_star_yy;
+    v->J_star_yz = J_star_yz;
+    v->J_star_zz = J_star_zz;
+}
+
+INLINE void stage_Z_dynamics(const prepared *m, size_t w, size_t k, const real *V, values *v)
+{
+    /* (Z_p) centripetal force and weight of the platform */
+    const real omega_y = V[4*w + k];
+    const real omega_z = V[5*w + k];
+    const real Z_p_t_4 = v->h_star_z*omega_y - v->h_star_y*omega_z;
+    const real omega_x = V[3*w + k];
+    const real Z_p_t_5 = v->h_star_x*omega_z - v->h_star_z*omega_x;
+    const real Z_p_t_6 = v->h_star_y*omega_x - v->h_star_x*omega_y;
+    const real Z_p_t = m->Z_p_t;
+    const real Z_p_x = Z_p_t_6*omega_y - Z_p_t - Z_p_t_5*omega_z;
+    const real Z_p_t_2 = m->Z_p_t_2;
+    const real Z_p_y = Z_p_t_4*omega_z - Z_p_t_2 - Z_p_t_6*omega_x;
+    const real Z_p_t_3 = m->Z_p_t_3;
+    const real Z_p_z = Z_p_t_5*omega_x - Z_p_t_3 - Z_p_t_4*omega_y;
+    /* (Z_q) gyroscopic moment and moment of the weight of the platform */
+    const real gravity_x = m->gravity_x;
+    const real gravity_y = m->gravity_y;
+    const real gravity_z = m->gravity_z;
+    const real g_in_platform_x = v->R_xx*gravity_x + v->R_yx*gravity_y + v->R_zx*gravity_z;
+    const real g_in_platform_y = v->R_xy*gravity_x + v->R_yy*gravity_y + v->R_zy*gravity_z;
+    const real g_in_platform_z = v->R_xz*gravity_x + v->R_yz*gravity_y + v->R_zz*gravity_z;
+    const real J_star_in_platform_xx = m->J_star_in_platform_xx;
+    const real J_star_in_platform_xy = m->J_star_in_platform_xy;
+    const real J_star_in_platform_xz = m->J_star_in_platform_xz;
+    const real Z_q_t = J_star_in_platform_xx*v->omega_in_platform_x +
+        J_star_in_platform_xy*v->omega_in_platform_y +
+        J_star_in_platform_xz*v->omega_in_platform_z;
+    const real J_star_in_platform_yy = m->J_star_in_platform_yy;
+    const real J_star_in_platform_yz = m->J_star_in_platform_yz;
+    const real Z_q_t_2 = J_star_in_platform_xy*v->omega_in_platform_x +
+        J_star_in_platform_yy*v->omega_in_platform_y +
+        J_star_in_platform_yz*v->omega_in_platform_z;
+    const real J_star_in_platform_zz = m->J_star_in_platform_zz;
+    const real Z_q_t_3 = J_star_in_platform_xz*v->omega_in_platform_x +
+        J_star_in_platform_yz*v->omega_in_platform_y +
+        J_star_in_platform_zz*v->omega_in_platform_z;
+    const real h_star_in_platform_y = m->h_star_in_platform_y;
+    const real h_star_in_platform_z = m->h_star_in_platform_z;
+    const real Z_q_in_platform_x = Z_q_t_3*v->omega_in_platform_y +
+        g_in_platform_y*h_star_in_platform_z - Z_q_t_2*v->omega_in_platform_z -
+        g_in_platform_z*h_star_in_platform_y;
+    const real h_star_in_platform_x = m->h_star_in_platform_x;
+    const real Z_q_in_platform_y = Z_q_t*v->omega_in_platform_z +
+        g_in_platform_z*h_star_in_platform_x - Z_q_t_3*v->omega_in_platform_x -
+        g_in_platform_x*h_star_in_platform_z;
+    const real Z_q_in_platform_z = Z_q_t_2*v->omega_in_platform_x +
+        g_in_platform_x*h_star_in_platform_y - Z_q_t*v->omega_in_platform_y -
+        g_in_platform_y*h_star_in_platform_x;
+    const real Z_q_x = v->R_xx*Z_q_in_platform_x + v->R_xy*Z_q_in_platform_y +
+        v->R_xz*Z_q_in_platform_z;
+    const real Z_q_y = v->R_yx*Z_q_in_platform_x + v->R_yy*Z_q_in_platform_y +
+        v->R_yz*Z_q_in_platform_z;
+    const real Z_q_z = v->R_zx*Z_q_in_platform_x + v->R_zy*Z_q_in_platform_y +
+        v->R_zz*Z_q_in_platform_z;
+    v->Z_p_x = Z_p_x;
+    v->Z_p_y = Z_p_y;
+    v->Z_p_z = Z_p_z;
+    v->Z_q_x = Z_q_x;
+    v->Z_q_y = Z_q_y;
+    v->Z_q_z = Z_q_z;
+}
+
+typedef struct {
+    real sps_q_x, sps_q_y, sps_q_z, sps_S_in_turn1_z, sps_c_3, sps_s_3, sps_root_1_t, sps_c_1,
+        sps_s_1, sps_root_2_t, sps_root_2, inv_sps_root_2, sps_c_2, sps_e_1_in_axes3_x,
+        sps_e_1_in_axes3_y, sps_v_1_in_axes3_x, sps_v_1_in_axes3_y, sps_v_2_in_axes3_x, sps_v_2_t,
+        sps_w_1_t, inv_sps_w_1_t, sps_w_4_x, sps_w_4_y, sps_w_4_z, sps_e_1_in_axes2_y,
+        axis_y_sps_axes3_x, axis_y_sps_axes3_y, axis_y_sps_axes3_z, axis_x_sps_axes3_x,
+        axis_x_sps_axes3_y, axis_x_sps_axes3_z, sps_g_in_axes3_x, sps_g_in_axes3_y, sps_g_in_axes3_z,
+        sps_H_a_4_x, sps_H_a_4_y, sps_H_a_4_z, sps_a_p_x, sps_a_p_y, sps_a_p_z, sps_S_dot_t,
+        sps_S_dot_t_2, sps_S_dot_t_3, sps_S_dot_rest_in_axes3_x, sps_S_dot_rest_in_axes3_y,
+        sps_qd_2_t, sps_omega_1_in_axes2_x, sps_omega_2_in_axes3_x, sps_omega_2_in_axes3_y,
+        sps_omega_3_in_axes3_z, sps_W_3_in_axes3_xy, sps_W_3_in_axes3_xz, sps_W_3_in_axes3_yz,
+        sps_zeta_2_t, sps_zeta_3_in_axes3_x, sps_zeta_3_in_axes3_y, sps_bias_t, sps_bias_in_axes3_x,
+        sps_bias_in_axes3_y, sps_S_ddot_x, sps_S_ddot_y, sps_S_ddot_z, sps_d_mu_3_in_axes3_zx,
+        sps_d_mu_3_in_axes3_zy, sps_d_G_in_axes3_xz, sps_d_G_in_axes3_yz, sps_d_c_in_axes3_xx,
+        sps_d_c_in_axes3_xy, sps_d_c_in_axes3_yy, sps_mu_3_o_in_axes3_z, sps_U_x, sps_U_y, sps_U_z,
+        sps_Z_a_t, sps_Z_a_t_2, sps_Z_a_t_3, sps_S_in_turn1_x, sps_S_in_turn1_y, sps_root_1,
+        inv_sps_root_1, sps_B_3_in_axes3_xy, sps_B_3_in_axes3_xz, sps_B_3_in_axes3_yx,
+        sps_B_3_in_axes3_yz, sps_B_3_in_axes3_zx, sps_B_3_in_axes3_zy, sps_acc_4_in_axes3_x,
+        sps_acc_4_in_axes3_y, sps_acc_4_in_axes3_z;
+} values_sps;
+
+INLINE void stage_sps_X(const prepared *m, size_t w, size_t i, size_t j, const real *s, const real
+    *X, values_sps *v)
+{
+    static const size_t place_sps_y_3_extra[] = {7, 8, 9, 10, 11, 12, 7, 7};
+    /* (sps-S) from the base point to the connection point */
+    const real R_xx = s[0*w + j];
+    const real R_xy = s[1*w + j];
+    const real R_xz = s[2*w + j];
+    const real sps_platform_point_x = m->sps_platform_point_x[i];
+    const real sps_platform_point_y = m->sps_platform_point_y[i];
+    const real sps_platform_point_z = m->sps_platform_point_z[i];
+    const real sps_q_x = R_xx*sps_platform_point_x + R_xy*sps_platform_point_y +
+        R_xz*sps_platform_point_z;
+    const real R_yx = s[3*w + j];
+    const real R_yy = s[4*w + j];
+    const real R_yz = s[5*w + j];
+    const real sps_q_y = R_yx*sps_platform_point_x + R_yy*sps_platform_point_y +
+        R_yz*sps_platform_point_z;
+    const real R_zx = s[6*w + j];
+    const real R_zy = s[7*w + j];
+    const real R_zz = s[8*w + j];
+    const real sps_q_z = R_zx*sps_platform_point_x + R_zy*sps_platform_point_y +
+        R_zz*sps_platform_point_z;
+    const real sps_base_point_x = m->sps_base_point_x[i];
+    const real t_x = X[0*w + j];
+    const real sps_S_x = sps_q_x + t_x - sps_base_point_x;
+    const real sps_base_point_y = m->sps_base_point_y[i];
+    const real t_y = X[1*w + j];
+    const real sps_S_y = sps_q_y + t_y - sps_base_point_y;
+    const real sps_base_point_z = m->sps_base_point_z[i];
+    const real t_z = X[2*w + j];
+    const real sps_S_z = sps_q_z + t_z - sps_base_point_z;
+    const real sps_base_frame_xx = m->sps_base_frame_xx[i];
+    const real sps_base_frame_yx = m->sps_base_frame_yx[i];
+    const real sps_base_frame_zx = m->sps_base_frame_zx[i];
+    const real sps_S_in_turn1_x = sps_S_x*sps_base_frame_xx + sps_S_y*sps_base_frame_yx +
+        sps_S_z*sps_base_frame_zx;
+    const real sps_base_frame_xy = m->sps_base_frame_xy[i];
+    const real sps_base_frame_yy = m->sps_base_frame_yy[i];
+    const real sps_base_frame_zy = m->sps_base_frame_zy[i];
+    const real sps_S_in_turn1_y = sps_S_x*sps_base_frame_xy + sps_S_y*sps_base_frame_yy +
+        sps_S_z*sps_base_frame_zy;
+    const real sps_base_frame_xz = m->sps_base_frame_xz[i];
+    const real sps_base_frame_yz = m->sps_base_frame_yz[i];
+    const real sps_base_frame_zz = m->sps_base_frame_zz[i];
+    const real sps_S_in_turn1_z = sps_S_x*sps_base_frame_xz + sps_S_y*sps_base_frame_yz +
+        sps_S_z*sps_base_frame_zz;
+    /* (sps-c_3) cosine of the angle of joint 3 from its reference direction */
+    const real sps_y_3_extra = X[place_sps_y_3_extra[i]*w + j];
+    const real sps_c_3 = cosine(sps_y_3_extra);
+    /* (sps-s_3) sine of the angle of joint 3 from its reference direction */
+    const real sps_s_3 = sine(sps_y_3_extra);
+    /* (sps-root_1) amplitude, the length across axis 1, with the sign of the branch */
+    const real sps_root_1_t = sps_S_in_turn1_x*sps_S_in_turn1_x +
+        sps_S_in_turn1_y*sps_S_in_turn1_y;
+    const real sps_branch_1 = m->sps_branch_1[i];
+    const real sps_root_1 = sps_branch_1*root(sps_root_1_t);
+    /* (sps-c_1) cosine of the angle of joint 1 from its reference direction */
+    const real inv_sps_root_1 = 1/sps_root_1;
+    const real sps_c_1 = inv_sps_root_1*sps_S_in_turn1_x;
+    /* (sps-s_1) sine of the angle of joint 1 from its reference direction */
+    const real sps_s_1 = inv_sps_root_1*sps_S_in_turn1_y;
+    /* (sps-root_2) amplitude, the length across axis 2, with the sign of the branch */
+    const real sps_root_2_t = sps_S_in_turn1_z*sps_S_in_turn1_z + sps_root_1_t;
+    const real sps_branch_2 = m->sps_branch_2[i];
+    const real sps_root_2 = sps_branch_2*root(sps_root_2_t);
+    /* (sps-c_2) cosine of the angle of joint 2 from its reference direction */
+    const real inv_sps_root_2 = 1/sps_root_2;
+    const real sps_c_2 = inv_sps_root_2*sps_root_1;
+    /* (sps-v_1) velocity of the connection point per rate of joint 1 */
+    const real sps_e_1_in_axes3_x = sps_c_2*sps_s_3;
+    const real sps_e_1_in_axes3_y = sps_c_2*sps_c_3;
+    const real sps_v_1_in_axes3_x = sps_e_1_in_axes3_y*sps_root_2;
+    const real sps_v_1_in_axes3_y = -sps_e_1_in_axes3_x*sps_root_2;
+    /* (sps-v_2) velocity of the connection point per rate of joint 2 */
+    const real sps_v_2_in_axes3_x = -sps_root_2*sps_s_3;
+    const real sps_v_2_t = sps_c_3*sps_root_2;
+    /* (sps-w_1) reciprocal vector 1 */
+    const real sps_w_1_t = sps_v_1_in_axes3_x*sps_v_2_t +
+        sps_v_1_in_axes3_y*sps_v_2_in_axes3_x;
+    const real inv_sps_w_1_t = 1/sps_w_1_t;
+    /* (sps-w_4) reciprocal vector 3 */
+    const real sps_w_4_x = inv_sps_root_2*sps_S_x;
+    const real sps_w_4_y = inv_sps_root_2*sps_S_y;
+    const real sps_w_4_z = inv_sps_root_2*sps_S_z;
+    /* (sps-S_dot_rest) velocity of the connection point left to the joints that are not extra */
+    const real sps_e_1_in_axes2_y = inv_sps_root_2*sps_S_in_turn1_z;
+    const real sps_S_dot_rest_t = sps_c_3*sps_e_1_in_axes2_y;
+    const real sps_S_dot_rest_t_2 = sps_s_1*sps_s_3 - sps_S_dot_rest_t*sps_c_1;
+    const real sps_S_dot_rest_t_3 = -sps_S_dot_rest_t*sps_s_1 - sps_c_1*sps_s_3;
+    const real axis_y_sps_axes3_x = sps_S_dot_rest_t_2*sps_base_frame_xx +
+        sps_S_dot_rest_t_3*sps_base_frame_xy + sps_base_frame_xz*sps_e_1_in_axes3_y;
+    const real axis_y_sps_axes3_y = sps_S_dot_rest_t_2*sps_base_frame_yx +
+        sps_S_dot_rest_t_3*sps_base_frame_yy + sps_base_frame_yz*sps_e_1_in_axes3_y;
+    const real axis_y_sps_axes3_z = sps_S_dot_rest_t_2*sps_base_frame_zx +
+        sps_S_dot_rest_t_3*sps_base_frame_zy + sps_base_frame_zz*sps_e_1_in_axes3_y;
+    const real axis_x_sps_axes3_x = axis_y_sps_axes3_y*sps_w_4_z -
+        axis_y_sps_axes3_z*sps_w_4_y;
+    const real axis_x_sps_axes3_y = axis_y_sps_axes3_z*sps_w_4_x -
+        axis_y_sps_axes3_x*sps_w_4_z;
+    const real axis_x_sps_axes3_z = axis_y_sps_axes3_x*sps_w_4_y -
+        axis_y_sps_axes3_y*sps_w_4_x;
+    /* (sps-acc_4_o) remainder without the acceleration in: acceleration of the reference point of
+       link 4, less gravity */
+    const real gravity_x = m->gravity_x;
+    const real gravity_y = m->gravity_y;
+    const real gravity_z = m->gravity_z;
+    const real sps_g_in_axes3_x = axis_x_sps_axes3_x*gravity_x + axis_x_sps_axes3_y*gravity_y
+        + axis_x_sps_axes3_z*gravity_z;
+    const real sps_g_in_axes3_y = axis_y_sps_axes3_x*gravity_x + axis_y_sps_axes3_y*gravity_y
+        + axis_y_sps_axes3_z*gravity_z;
+    const real sps_g_in_axes3_z = gravity_x*sps_w_4_x + gravity_y*sps_w_4_y +
+        gravity_z*sps_w_4_z;
+    /* (sps-H_a_4) moment of the column's unit force about the platform origin */
+    const real sps_H_a_4_x = sps_q_y*sps_w_4_z - sps_q_z*sps_w_4_y;
+    const real sps_H_a_4_y = sps_q_z*sps_w_4_x - sps_q_x*sps_w_4_z;
+    const real sps_H_a_4_z = sps_q_x*sps_w_4_y - sps_q_y*sps_w_4_x;
+    v->sps_q_x = sps_q_x;
+    v->sps_q_y = sps_q_y;
+    v->sps_q_z = sps_q_z;
+    v->sps_S_in_turn1_z = sps_S_in_turn1_z;
+    v->sps_c_3 = sps_c_3;
+    v->sps_s_3 = sps_s_3;
+    v->sps_root_1_t = sps_root_1_t;
+    v->sps_c_1 = sps_c_1;
+    v->sps_s_1 = sps_s_1;
+    v->sps_root_2_t = sps_root_2_t;
+    v->sps_root_2 = sps_root_2;
+    v->inv_sps_root_2 = inv_sps_root_2;
+    v->sps_c_2 = sps_c_2;
+    v->sps_e_1_in_axes3_x = sps_e_1_in_axes3_x;
+    v->sps_e_1_in_axes3_y = sps_e_1_in_axes3_y;
+    v->sps_v_1_in_axes3_x = sps_v_1_in_axes3_x;
+    v->sps_v_1_in_axes3_y = sps_v_1_in_axes3_y;
+    v->sps_v_2_in_axes3_x = sps_v_2_in_axes3_x;
+    v->sps_v_2_t = sps_v_2_t;
+    v->sps_w_1_t = sps_w_1_t;
+    v->inv_sps_w_1_t = inv_sps_w_1_t;
+    v->sps_w_4_x = sps_w_4_x;
+    v->sps_w_4_y = sps_w_4_y;
+    v->sps_w_4_z = sps_w_4_z;
+    v->sps_e_1_in_axes2_y = sps_e_1_in_axes2_y;
+    v->axis_y_sps_axes3_x = axis_y_sps_axes3_x;
+    v->axis_y_sps_axes3_y = axis_y_sps_axes3_y;
+    v->axis_y_sps_axes3_z = axis_y_sps_axes3_z;
+    v->axis_x_sps_axes3_x = axis_x_sps_axes3_x;
+    v->axis_x_sps_axes3_y = axis_x_sps_axes3_y;
+    v->axis_x_sps_axes3_z = axis_x_sps_axes3_z;
+    v->sps_g_in_axes3_x = sps_g_in_axes3_x;
+    v->sps_g_in_axes3_y = sps_g_in_axes3_y;
+    v->sps_g_in_axes3_z = sps_g_in_axes3_z;
+    v->sps_H_a_4_x = sps_H_a_4_x;
+    v->sps_H_a_4_y = sps_H_a_4_y;
+    v->sps_H_a_4_z = sps_H_a_4_z;
+}
+
+INLINE void stage_sps_A_X(size_t w, size_t j, const real *A, values_sps *v)
+{
+    /* (sps-a_p) acceleration of the connection point without its centripetal part */
+    const real alpha_y = A[4*w + j];
+    const real alpha_z = A[5*w + j];
+    const real t_ddot_x = A[0*w + j];
+    const real sps_a_p_x = t_ddot_x + alpha_y*v->sps_q_z - alpha_z*v->sps_q_y;
+    const real alpha_x = A[3*w + j];
+    const real t_ddot_y = A[1*w + j];
+    const real sps_a_p_y = t_ddot_y + alpha_z*v->sps_q_x - alpha_x*v->sps_q_z;
+    const real t_ddot_z = A[2*w + j];
+    const real sps_a_p_z = t_ddot_z + alpha_x*v->sps_q_y - alpha_y*v->sps_q_x;
+    v->sps_a_p_x = sps_a_p_x;
+    v->sps_a_p_y = sps_a_p_y;
+    v->sps_a_p_z = sps_a_p_z;
+}
+
+INLINE void stage_sps_V_X(size_t w, size_t i, size_t j, const real *V, values_sps *v)
+{
+    static const size_t place_sps_yd_3[] = {6, 7, 8, 9, 10, 11, 6, 6};
+    /* (sps-S_dot) velocity of the connection point */
+    const real omega_y = V[4*w + j];
+    const real omega_z = V[5*w + j];
+    const real sps_S_dot_t = omega_y*v->sps_q_z - omega_z*v->sps_q_y;
+    const real omega_x = V[3*w + j];
+    const real sps_S_dot_t_2 = omega_z*v->sps_q_x - omega_x*v->sps_q_z;
+    const real sps_S_dot_t_3 = omega_x*v->sps_q_y - omega_y*v->sps_q_x;
+    const real t_dot_x = V[0*w + j];
+    const real sps_S_dot_x = sps_S_dot_t + t_dot_x;
+    const real t_dot_y = V[1*w + j];
+    const real sps_S_dot_y = sps_S_dot_t_2 + t_dot_y;
+    const real t_dot_z = V[2*w + j];
+    const real sps_S_dot_z = sps_S_dot_t_3 + t_dot_z;
+    /* (sps-S_dot_rest) velocity of the connection point left to the joints that are not extra */
+    const real sps_S_dot_rest_in_axes3_x = v->axis_x_sps_axes3_x*sps_S_dot_x +
+        v->axis_x_sps_axes3_y*sps_S_dot_y + v->axis_x_sps_axes3_z*sps_S_dot_z;
+    const real sps_S_dot_rest_in_axes3_y = v->axis_y_sps_axes3_x*sps_S_dot_x +
+        v->axis_y_sps_axes3_y*sps_S_dot_y + v->axis_y_sps_axes3_z*sps_S_dot_z;
+    const real sps_S_dot_rest_in_axes3_z = sps_S_dot_x*v->sps_w_4_x + sps_S_dot_y*v->sps_w_4_y
+        + sps_S_dot_z*v->sps_w_4_z;
+    /* (sps-qd_1) rate of joint 1 */
+    const real sps_qd_1 = v->inv_sps_w_1_t*(sps_S_dot_rest_in_axes3_x*v->sps_v_2_t +
+        sps_S_dot_rest_in_axes3_y*v->sps_v_2_in_axes3_x);
+    /* (sps-qd_2) rate of joint 2 */
+    const real sps_qd_2_t = v->inv_sps_w_1_t*(sps_S_dot_rest_in_axes3_y*v->sps_v_1_in_axes3_x
+        - sps_S_dot_rest_in_axes3_x*v->sps_v_1_in_axes3_y);
+    /* (sps-omega_1) angular velocity of link 1 */
+    const real sps_omega_1_in_axes2_x = v->sps_c_2*sps_qd_1;
+    const real sps_omega_1_in_axes2_y = v->sps_e_1_in_axes2_y*sps_qd_1;
+    /* (sps-omega_2) angular velocity of link 2 */
+    const real sps_omega_2_in_axes3_x = sps_omega_1_in_axes2_x*v->sps_s_3 -
+        v->sps_c_3*sps_qd_2_t;
+    const real sps_omega_2_in_axes3_y = v->sps_c_3*sps_omega_1_in_axes2_x +
+        sps_qd_2_t*v->sps_s_3;
+    /* (sps-omega_3) angular velocity of link 3 */
+    const real sps_yd_3 = V[place_sps_yd_3[i]*w + j];
+    const real sps_omega_3_in_axes3_z = sps_omega_1_in_axes2_y + sps_yd_3;
+    /* (sps-W_3) centripetal tensor of link 3 */
+    const real sps_W_3_in_axes3_xy = sps_omega_2_in_axes3_x*sps_omega_2_in_axes3_y;
+    const real sps_W_3_in_axes3_xz = sps_omega_2_in_axes3_x*sps_omega_3_in_axes3_z;
+    const real sps_W_3_in_axes3_yz = sps_omega_2_in_axes3_y*sps_omega_3_in_axes3_z;
+    /* (sps-zeta_2) angular acceleration of link 2 from the turning of axis 2 */
+    const real sps_zeta_2_t = sps_omega_1_in_axes2_y*sps_qd_2_t;
+    /* (sps-zeta_3) angular acceleration of link 3 from the turning of axis 3 */
+    const real sps_zeta_3_in_axes3_x = sps_omega_2_in_axes3_y*sps_yd_3;
+    const real sps_zeta_3_in_axes3_y = -sps_omega_2_in_axes3_x*sps_yd_3;
+    /* (sps-beta_3) angular acceleration of link 3 at zero joint accelerations */
+    const real sps_beta_3_in_axes3_x = sps_zeta_3_in_axes3_x - v->sps_s_3*sps_zeta_2_t;
+    const real sps_beta_3_in_axes3_y = sps_zeta_3_in_axes3_y - v->sps_c_3*sps_zeta_2_t;
+    /* (sps-bias) acceleration of the connection point at zero joint accelerations */
+    const real sps_bias_t = 2*sps_S_dot_rest_in_axes3_z;
+    const real sps_bias_in_axes3_x = sps_bias_t*sps_omega_2_in_axes3_y +
+        v->sps_root_2*(sps_W_3_in_axes3_xz + sps_beta_3_in_axes3_y);
+    const real sps_bias_in_axes3_y = v->sps_root_2*(sps_W_3_in_axes3_yz -
+        sps_beta_3_in_axes3_x) - sps_bias_t*sps_omega_2_in_axes3_x;
+    v->sps_S_dot_t = sps_S_dot_t;
+    v->sps_S_dot_t_2 = sps_S_dot_t_2;
+    v->sps_S_dot_t_3 = sps_S_dot_t_3;
+    v->sps_S_dot_rest_in_axes3_x = sps_S_dot_rest_in_axes3_x;
+    v->sps_S_dot_rest_in_axes3_y = sps_S_dot_rest_in_axes3_y;
+    v->sps_qd_2_t = sps_qd_2_t;
+    v->sps_omega_1_in_axes2_x = sps_omega_1_in_axes2_x;
+    v->sps_omega_2_in_axes3_x = sps_omega_2_in_axes3_x;
+    v->sps_omega_2_in_axes3_y = sps_omega_2_in_axes3_y;
+    v->sps_omega_3_in_axes3_z = sps_omega_3_in_axes3_z;
+    v->sps_W_3_in_axes3_xy = sps_W_3_in_axes3_xy;
+    v->sps_W_3_in_axes3_xz = sps_W_3_in_axes3_xz;
+    v->sps_W_3_in_axes3_yz = sps_W_3_in_axes3_yz;
+    v->sps_zeta_2_t = sps_zeta_2_t;
+    v->sps_zeta_3_in_axes3_x = sps_zeta_3_in_axes3_x;
+    v->sps_zeta_3_in_axes3_y = sps_zeta_3_in_axes3_y;
+    v->sps_bias_t = sps_bias_t;
+    v->sps_bias_in_axes3_x = sps_bias_in_axes3_x;
+    v->sps_bias_in_axes3_y = sps_bias_in_axes3_y;
+}
+
+INLINE void stage_sps_A_V_X(size_t w, size_t j, const real *V, values_sps *v)
+{
+    /* (sps-S_ddot) acceleration of the connection point */
+    const real omega_y = V[4*w + j];
+    const real omega_z = V[5*w + j];
+    const real sps_S_ddot_x = v->sps_a_p_x + omega_y*v->sps_S_dot_t_3 -
+        omega_z*v->sps_S_dot_t_2;
+    const real omega_x = V[3*w + j];
+    const real sps_S_ddot_y = v->sps_a_p_y + omega_z*v->sps_S_dot_t -
+        omega_x*v->sps_S_dot_t_3;
+    const real sps_S_ddot_z = v->sps_a_p_z + omega_x*v->sps_S_dot_t_2 -
+        omega_y*v->sps_S_dot_t;
+    v->sps_S_ddot_x = sps_S_ddot_x;
+    v->sps_S_ddot_y = sps_S_ddot_y;
+    v->sps_S_ddot_z = sps_S_ddot_z;
+}
+
+INLINE void stage_sps_M_dynamics(const prepared *m, size_t i, values_sps *v)
+{
+    /* (sps-w_1) reciprocal vector 1 */
+    const real sps_w_1_in_axes3_x = v->inv_sps_w_1_t*v->sps_v_2_t;
+    const real sps_w_1_in_axes3_y = v->inv_sps_w_1_t*v->sps_v_2_in_axes3_x;
+    /* (sps-w_2) reciprocal vector 2 */
+    const real sps_w_2_in_axes3_x = v->inv_sps_w_1_t*v->sps_v_1_in_axes3_y;
+    const real sps_w_2_t = v->inv_sps_w_1_t*v->sps_v_1_in_axes3_x;
+    /* (sps-d_alpha_1) coefficient of the acceleration in: angular acceleration of link 1 */
+    const real sps_d_alpha_1_in_axes3_zx = v->sps_e_1_in_axes2_y*sps_w_1_in_axes3_x;
+    const real sps_d_alpha_1_in_axes3_zy = v->sps_e_1_in_axes2_y*sps_w_1_in_axes3_y;
+    /* (sps-d_alpha_2) coefficient of the acceleration in: angular acceleration of link 2 */
+    const real sps_d_alpha_2_in_axes3_xx = v->sps_c_3*sps_w_2_in_axes3_x +
+        v->sps_e_1_in_axes3_x*sps_w_1_in_axes3_x;
+    const real sps_d_alpha_2_in_axes3_xy = v->sps_e_1_in_axes3_x*sps_w_1_in_axes3_y -
+        v->sps_c_3*sps_w_2_t;
+    const real sps_d_alpha_2_in_axes3_yx = v->sps_e_1_in_axes3_y*sps_w_1_in_axes3_x -
+        v->sps_s_3*sps_w_2_in_axes3_x;
+    const real sps_d_alpha_2_in_axes3_yy = v->sps_e_1_in_axes3_y*sps_w_1_in_axes3_y +
+        v->sps_s_3*sps_w_2_t;
+    /* (sps-d_mu_3) coefficient of the acceleration in: inertia moment of the links that turn with
+       link 3, about their reference points */
+    const real sps_J_group_3_in_axes3_xx = m->sps_J_group_3_in_axes3_xx[i];
+    const real sps_J_group_3_in_axes3_xy = m->sps_J_group_3_in_axes3_xy[i];
+    const real sps_J_group_3_in_axes3_xz = m->sps_J_group_3_in_axes3_xz[i];
+    const real sps_d_mu_3_in_axes3_xx = sps_J_group_3_in_axes3_xx*sps_d_alpha_2_in_axes3_xx +
+        sps_J_group_3_in_axes3_xy*sps_d_alpha_2_in_axes3_yx +
+        sps_J_group_3_in_axes3_xz*sps_d_alpha_1_in_axes3_zx;
+    const real sps_J_group_3_in_axes3_yy = m->sps_J_group_3_in_axes3_yy[i];
+    const real sps_J_group_3_in_axes3_yz = m->sps_J_group_3_in_axes3_yz[i];
+    const real sps_d_mu_3_in_axes3_yy = sps_J_group_3_in_axes3_xy*sps_d_alpha_2_in_axes3_xy +
+        sps_J_group_3_in_axes3_yy*sps_d_alpha_2_in_axes3_yy +
+        sps_J_group_3_in_axes3_yz*sps_d_alpha_1_in_axes3_zy;
+    const real sps_h_4_in_spec3_x = m->sps_h_4_in_spec3_x[i];
+    const real sps_d_mu_3_in_axes3_xy = sps_J_group_3_in_axes3_xx*sps_d_alpha_2_in_axes3_xy +
+        sps_J_group_3_in_axes3_xy*sps_d_alpha_2_in_axes3_yy +
+        sps_J_group_3_in_axes3_xz*sps_d_alpha_1_in_axes3_zy - sps_h_4_in_spec3_x;
+    const real sps_d_mu_3_in_axes3_yx = sps_h_4_in_spec3_x +
+        sps_J_group_3_in_axes3_xy*sps_d_alpha_2_in_axes3_xx +
+        sps_J_group_3_in_axes3_yy*sps_d_alpha_2_in_axes3_yx +
+        sps_J_group_3_in_axes3_yz*sps_d_alpha_1_in_axes3_zx;
+    const real sps_J_group_3_in_axes3_zz = m->sps_J_group_3_in_axes3_zz[i];
+    const real sps_h_4_in_spec3_z = m->sps_h_4_in_spec3_z[i];
+    const real sps_d_mu_3_in_axes3_zx = sps_J_group_3_in_axes3_xz*sps_d_alpha_2_in_axes3_xx +
+        sps_J_group_3_in_axes3_yz*sps_d_alpha_2_in_axes3_yx +
+        sps_J_group_3_in_axes3_zz*sps_d_alpha_1_in_axes3_zx - sps_h_4_in_spec3_z;
+    const real sps_h_4_in_spec3_y = m->sps_h_4_in_spec3_y[i];
+    const real sps_d_mu_3_in_axes3_zy = sps_h_4_in_spec3_y +
+        sps_J_group_3_in_axes3_xz*sps_d_alpha_2_in_axes3_xy +
+        sps_J_group_3_in_axes3_yz*sps_d_alpha_2_in_axes3_yy +
+        sps_J_group_3_in_axes3_zz*sps_d_alpha_1_in_axes3_zy;
+    /* (sps-d_Gamma_2) coefficient of the acceleration in: moment about axis 2 of the distal links'
+       inertia and weight */
+    const real sps_d_Gamma_2_in_axes3_y = v->sps_c_3*sps_d_mu_3_in_axes3_xy -
+        sps_d_mu_3_in_axes3_yy*v->sps_s_3;
+    const real sps_d_Gamma_2_in_axes3_z = v->sps_c_3*sps_h_4_in_spec3_z +
+        sps_h_4_in_spec3_y*v->sps_s_3;
+    /* (sps-d_Gamma_1) coefficient of the acceleration in: moment about axis 1 of the distal links'
+       inertia and weight */
+    const real sps_d_Gamma_1_in_axes3_y = sps_d_mu_3_in_axes3_xy*v->sps_e_1_in_axes3_x +
+        sps_d_mu_3_in_axes3_yy*v->sps_e_1_in_axes3_y +
+        sps_d_mu_3_in_axes3_zy*v->sps_e_1_in_axes2_y;
+    const real sps_d_Gamma_1_in_axes3_z = v->sps_e_1_in_axes3_x*sps_h_4_in_spec3_z -
+        v->sps_e_1_in_axes3_y*sps_h_4_in_spec3_y;
+    /* (sps-d_G) coefficient of the acceleration in: force at the connection point that balances the
+       leg's inertia and weight along all degrees of freedom */
+    const real sps_d_G_in_axes3_xz = sps_d_Gamma_1_in_axes3_z*sps_w_1_in_axes3_x +
+        sps_d_Gamma_2_in_axes3_z*sps_w_2_in_axes3_x;
+    const real sps_d_G_in_axes3_yz = sps_d_Gamma_1_in_axes3_z*sps_w_1_in_axes3_y -
+        sps_d_Gamma_2_in_axes3_z*sps_w_2_t;
+    /* (sps-d_c) coefficient of the acceleration in: leg force on the platform without actuation and
+       without the mass at the connection point */
+    const real sps_d_c_in_axes3_xx = sps_d_alpha_1_in_axes3_zx*sps_h_4_in_spec3_z -
+        sps_d_alpha_2_in_axes3_yx*sps_h_4_in_spec3_x -
+        sps_w_1_in_axes3_x*(sps_d_mu_3_in_axes3_xx*v->sps_e_1_in_axes3_x +
+        sps_d_mu_3_in_axes3_yx*v->sps_e_1_in_axes3_y +
+        sps_d_mu_3_in_axes3_zx*v->sps_e_1_in_axes2_y) -
+        sps_w_2_in_axes3_x*(v->sps_c_3*sps_d_mu_3_in_axes3_xx -
+        sps_d_mu_3_in_axes3_yx*v->sps_s_3);
+    const real sps_d_c_in_axes3_xy = sps_d_alpha_1_in_axes3_zy*sps_h_4_in_spec3_z -
+        sps_d_Gamma_1_in_axes3_y*sps_w_1_in_axes3_x -
+        sps_d_Gamma_2_in_axes3_y*sps_w_2_in_axes3_x -
+        sps_d_alpha_2_in_axes3_yy*sps_h_4_in_spec3_x;
+    const real sps_d_c_in_axes3_yy = sps_d_Gamma_2_in_axes3_y*sps_w_2_t +
+        sps_d_alpha_2_in_axes3_xy*sps_h_4_in_spec3_x -
+        sps_d_Gamma_1_in_axes3_y*sps_w_1_in_axes3_y -
+        sps_d_alpha_1_in_axes3_zy*sps_h_4_in_spec3_y;
+    v->sps_d_mu_3_in_axes3_zx = sps_d_mu_3_in_axes3_zx;
+    v->sps_d_mu_3_in_axes3_zy = sps_d_mu_3_in_axes3_zy;
+    v->sps_d_G_in_axes3_xz = sps_d_G_in_axes3_xz;
+    v->sps_d_G_in_axes3_yz = sps_d_G_in_axes3_yz;
+    v->sps_d_c_in_axes3_xx = sps_d_c_in_axes3_xx;
+    v->sps_d_c_in_axes3_xy = sps_d_c_in_axes3_xy;
+    v->sps_d_c_in_axes3_yy = sps_d_c_in_axes3_yy;
+}
+
+INLINE void stage_sps_Z_dynamics(const prepared *m, size_t w, size_t i, size_t j, const real *V,
+    values_sps *v)
+{
+    /* (sps-u_1) centripetal acceleration of the connection point */
+    const real omega_y = V[4*w + j];
+    const real omega_z = V[5*w + j];
+    const real sps_u_1_x = omega_y*v->sps_S_dot_t_3 - omega_z*v->sps_S_dot_t_2;
+    const real omega_x = V[3*w + j];
+    const real sps_u_1_y = omega_z*v->sps_S_dot_t - omega_x*v->sps_S_dot_t_3;
+    const real sps_u_1_z = omega_x*v->sps_S_dot_t_2 - omega_y*v->sps_S_dot_t;
+    const real sps_u_1_in_axes3_x = v->axis_x_sps_axes3_x*sps_u_1_x +
+        v->axis_x_sps_axes3_y*sps_u_1_y + v->axis_x_sps_axes3_z*sps_u_1_z;
+    const real sps_u_1_in_axes3_y = v->axis_y_sps_axes3_x*sps_u_1_x +
+        v->axis_y_sps_axes3_y*sps_u_1_y + v->axis_y_sps_axes3_z*sps_u_1_z;
+    /* (sps-rel_o) remainder without the acceleration in: acceleration of the connection point left to
+       the joint accelerations */
+    const real sps_rel_o_in_axes3_x = sps_u_1_in_axes3_x - v->sps_bias_in_axes3_x;
+    const real sps_rel_o_in_axes3_y = sps_u_1_in_axes3_y - v->sps_bias_in_axes3_y;
+    /* (sps-qdd_1_o) remainder without the acceleration in: acceleration of joint 1 */
+    const real sps_qdd_1_o = v->inv_sps_w_1_t*(sps_rel_o_in_axes3_x*v->sps_v_2_t +
+        sps_rel_o_in_axes3_y*v->sps_v_2_in_axes3_x);
+    /* (sps-qdd_2_o) remainder without the acceleration in: acceleration of joint 2 */
+    const real sps_qdd_2_o_t = v->inv_sps_w_1_t*(sps_rel_o_in_axes3_y*v->sps_v_1_in_axes3_x -
+        sps_rel_o_in_axes3_x*v->sps_v_1_in_axes3_y);
+    /* (sps-alpha_2_o) remainder without the acceleration in: angular acceleration of link 2 */
+    const real sps_alpha_2_o_in_axes2_x = v->sps_c_2*sps_qdd_1_o - v->sps_zeta_2_t;
+    const real sps_alpha_2_o_in_axes2_y = v->sps_e_1_in_axes2_y*sps_qdd_1_o +
+        v->sps_omega_1_in_axes2_x*v->sps_qd_2_t;
+    /* (sps-alpha_3_o) remainder without the acceleration in: angular acceleration of link 3 */
+    const real sps_alpha_3_o_in_axes3_x = v->sps_zeta_3_in_axes3_x +
+        sps_alpha_2_o_in_axes2_x*v->sps_s_3 - v->sps_c_3*sps_qdd_2_o_t;
+    const real sps_alpha_3_o_in_axes3_y = v->sps_zeta_3_in_axes3_y +
+        sps_alpha_2_o_in_axes2_x*v->sps_c_3 + sps_qdd_2_o_t*v->sps_s_3;
+    /* (sps-B_3_o) remainder of the acceleration tensor of link 3 */
+    const real sps_B_3_o_in_axes3_xy = v->sps_W_3_in_axes3_xy - sps_alpha_2_o_in_axes2_y;
+    const real sps_B_3_o_in_axes3_xz = v->sps_W_3_in_axes3_xz + sps_alpha_3_o_in_axes3_y;
+    const real sps_B_3_o_in_axes3_yx = v->sps_W_3_in_axes3_xy + sps_alpha_2_o_in_axes2_y;
+    const real sps_B_3_o_in_axes3_yz = v->sps_W_3_in_axes3_yz - sps_alpha_3_o_in_axes3_x;
+    const real sps_B_3_o_in_axes3_zx = v->sps_W_3_in_axes3_xz - sps_alpha_3_o_in_axes3_y;
+    const real sps_B_3_o_in_axes3_zy = v->sps_W_3_in_axes3_yz + sps_alpha_3_o_in_axes3_x;
+    /* (sps-acc_4_o) remainder without the acceleration in: acceleration of the reference point of
+       link 4, less gravity */
+    const real sps_acc_4_o_in_axes3_x = sps_u_1_in_axes3_x - v->sps_g_in_axes3_x;
+    const real sps_acc_4_o_in_axes3_y = sps_u_1_in_axes3_y - v->sps_g_in_axes3_y;
+    const real sps_acc_4_o_in_axes3_z = sps_u_1_x*v->sps_w_4_x + sps_u_1_y*v->sps_w_4_y +
+        sps_u_1_z*v->sps_w_4_z - v->sps_g_in_axes3_z;
+    /* (sps-phi_4_o) remainder without the acceleration in: inertia force of link 4 from its turning
+       about its reference point */
+    const real sps_phi_4_o_t = v->sps_omega_2_in_axes3_x*v->sps_omega_2_in_axes3_x;
+    const real sps_phi_4_o_t_2 = v->sps_omega_2_in_axes3_y*v->sps_omega_2_in_axes3_y;
+    const real sps_h_4_in_spec3_x = m->sps_h_4_in_spec3_x[i];
+    const real sps_h_4_in_spec3_y = m->sps_h_4_in_spec3_y[i];
+    const real sps_h_4_in_spec3_z = m->sps_h_4_in_spec3_z[i];
+    const real sps_phi_4_o_in_axes3_z = sps_B_3_o_in_axes3_zx*sps_h_4_in_spec3_y +
+        sps_B_3_o_in_axes3_zy*sps_h_4_in_spec3_z - sps_h_4_in_spec3_x*(sps_phi_4_o_t +
+        sps_phi_4_o_t_2);
+    /* (sps-mu_3_o) remainder without the acceleration in: inertia moment of the links that turn with
+       link 3, about their reference points */
+    const real sps_mu_3_o_t = v->sps_omega_3_in_axes3_z*v->sps_omega_3_in_axes3_z;
+    const real sps_J_group_3_in_axes3_xy = m->sps_J_group_3_in_axes3_xy[i];
+    const real sps_J_group_3_in_axes3_xz = m->sps_J_group_3_in_axes3_xz[i];
+    const real sps_J_group_3_in_axes3_yz = m->sps_J_group_3_in_axes3_yz[i];
+    const real sps_Sigma_3_in_axes3_yy = m->sps_Sigma_3_in_axes3_yy[i];
+    const real sps_Sigma_3_in_axes3_zz = m->sps_Sigma_3_in_axes3_zz[i];
+    const real sps_h_3_in_spec3_x = m->sps_h_3_in_spec3_x[i];
+    const real sps_h_3_in_spec3_z = m->sps_h_3_in_spec3_z[i];
+    const real sps_mu_3_o_in_axes3_x = sps_B_3_o_in_axes3_yx*sps_J_group_3_in_axes3_xz +
+        sps_B_3_o_in_axes3_zy*sps_Sigma_3_in_axes3_yy +
+        sps_J_group_3_in_axes3_yz*(sps_phi_4_o_t_2 - sps_mu_3_o_t) +
+        sps_acc_4_o_in_axes3_z*sps_h_4_in_spec3_z + v->sps_g_in_axes3_y*sps_h_3_in_spec3_x -
+        sps_B_3_o_in_axes3_yz*sps_Sigma_3_in_axes3_zz -
+        sps_B_3_o_in_axes3_zx*sps_J_group_3_in_axes3_xy -
+        sps_acc_4_o_in_axes3_y*sps_h_4_in_spec3_x - v->sps_g_in_axes3_z*sps_h_3_in_spec3_z;
+    const real sps_Sigma_3_in_axes3_xx = m->sps_Sigma_3_in_axes3_xx[i];
+    const real sps_h_3_in_spec3_y = m->sps_h_3_in_spec3_y[i];
+    const real sps_mu_3_o_in_axes3_y = sps_B_3_o_in_axes3_xz*sps_Sigma_3_in_axes3_zz +
+        sps_B_3_o_in_axes3_zy*sps_J_group_3_in_axes3_xy +
+        sps_acc_4_o_in_axes3_x*sps_h_4_in_spec3_x + v->sps_g_in_axes3_z*sps_h_3_in_spec3_y -
+        sps_B_3_o_in_axes3_xy*sps_J_group_3_in_axes3_yz -
+        sps_B_3_o_in_axes3_zx*sps_Sigma_3_in_axes3_xx -
+        sps_J_group_3_in_axes3_xz*(sps_phi_4_o_t - sps_mu_3_o_t) -
+        sps_acc_4_o_in_axes3_z*sps_h_4_in_spec3_y - v->sps_g_in_axes3_x*sps_h_3_in_spec3_x;
+    const real sps_mu_3_o_in_axes3_z = sps_B_3_o_in_axes3_xz*sps_J_group_3_in_axes3_yz +
+        sps_B_3_o_in_axes3_yx*sps_Sigma_3_in_axes3_xx +
+        sps_J_group_3_in_axes3_xy*(sps_phi_4_o_t - sps_phi_4_o_t_2) +
+        sps_acc_4_o_in_axes3_y*sps_h_4_in_spec3_y + v->sps_g_in_axes3_x*sps_h_3_in_spec3_z -
+        sps_B_3_o_in_axes3_xy*sps_Sigma_3_in_axes3_yy -
+        sps_B_3_o_in_axes3_yz*sps_J_group_3_in_axes3_xz -
+        sps_acc_4_o_in_axes3_x*sps_h_4_in_spec3_z - v->sps_g_in_axes3_y*sps_h_3_in_spec3_y;
+    const real sps_mu_3_o_in_axes2_z = v->sps_c_3*sps_mu_3_o_in_axes3_x -
+        sps_mu_3_o_in_axes3_y*v->sps_s_3;
+    /* (sps-Gamma_1_o) remainder without the acceleration in: moment about axis 1 of the distal links'
+       inertia and weight */
+    const real sps_Gamma_1_o = v->sps_e_1_in_axes2_y*sps_mu_3_o_in_axes3_z +
+        v->sps_e_1_in_axes3_x*sps_mu_3_o_in_axes3_x +
+        v->sps_e_1_in_axes3_y*sps_mu_3_o_in_axes3_y;
+    /* (sps-c_o) remainder without the acceleration in: leg force on the platform without actuation
+       and without the mass at the connection point */
+    const real sps_c_o_in_axes3_x = sps_h_4_in_spec3_y*(sps_mu_3_o_t + sps_phi_4_o_t_2) -
+        v->inv_sps_w_1_t*(sps_Gamma_1_o*v->sps_v_2_t +
+        sps_mu_3_o_in_axes2_z*v->sps_v_1_in_axes3_y) -
+        sps_B_3_o_in_axes3_xy*sps_h_4_in_spec3_z - sps_B_3_o_in_axes3_xz*sps_h_4_in_spec3_x;
+    const real sps_c_o_in_axes3_y =
+        v->inv_sps_w_1_t*(sps_mu_3_o_in_axes2_z*v->sps_v_1_in_axes3_x -
+        sps_Gamma_1_o*v->sps_v_2_in_axes3_x) + sps_h_4_in_spec3_z*(sps_mu_3_o_t +
+        sps_phi_4_o_t) - sps_B_3_o_in_axes3_yx*sps_h_4_in_spec3_y -
+        sps_B_3_o_in_axes3_yz*sps_h_4_in_spec3_x;
+    /* (sps-U) velocity and gravity terms of the leg force */
+    const real sps_U_x = sps_phi_4_o_in_axes3_z*v->sps_w_4_x -
+        v->axis_x_sps_axes3_x*sps_c_o_in_axes3_x - v->axis_y_sps_axes3_x*sps_c_o_in_axes3_y;
+    const real sps_U_y = sps_phi_4_o_in_axes3_z*v->sps_w_4_y -
+        v->axis_x_sps_axes3_y*sps_c_o_in_axes3_x - v->axis_y_sps_axes3_y*sps_c_o_in_axes3_y;
+    const real sps_U_z = sps_phi_4_o_in_axes3_z*v->sps_w_4_z -
+        v->axis_x_sps_axes3_z*sps_c_o_in_axes3_x - v->axis_y_sps_axes3_z*sps_c_o_in_axes3_y;
+    /* (Z_a) rotational part of Z */
+    const real sps_Z_a_t = sps_U_z*v->sps_q_y - sps_U_y*v->sps_q_z;
+    const real sps_Z_a_t_2 = sps_U_x*v->sps_q_z - sps_U_z*v->sps_q_x;
+    const real sps_Z_a_t_3 = sps_U_y*v->sps_q_x - sps_U_x*v->sps_q_y;
+    v->sps_mu_3_o_in_axes3_z = sps_mu_3_o_in_axes3_z;
+    v->sps_U_x = sps_U_x;
+    v->sps_U_y = sps_U_y;
+    v->sps_U_z = sps_U_z;
+    v->sps_Z_a_t = sps_Z_a_t;
+    v->sps_Z_a_t_2 = sps_Z_a_t_2;
+    v->sps_Z_a_t_3 = sps_Z_a_t_3;
+}
+
+INLINE void stage_sps_inverse_kinematics_potential(const prepared *m, size_t w, size_t i, size_t
+    j, const real *s, const real *X, values_sps *v)
+{
+    /* (sps-S) from the base point to the connection point */
+    const real R_xx = s[0*w + j];
+    const real R_xy = s[1*w + j];
+    const real R_xz = s[2*w + j];
+    const real sps_base_point_x = m->sps_base_point_x[i];
+    const real sps_platform_point_x = m->sps_platform_point_x[i];
+    const real sps_platform_point_y = m->sps_platform_point_y[i];
+    const real sps_platform_point_z = m->sps_platform_point_z[i];
+    const real t_x = X[0*w + j];
+    const real sps_S_x = t_x + R_xx*sps_platform_point_x + R_xy*sps_platform_point_y +
+        R_xz*sps_platform_point_z - sps_base_point_x;
+    const real R_yx = s[3*w + j];
+    const real R_yy = s[4*w + j];
+    const real R_yz = s[5*w + j];
+    const real sps_base_point_y = m->sps_base_point_y[i];
+    const real t_y = X[1*w + j];
+    const real sps_S_y = t_y + R_yx*sps_platform_point_x + R_yy*sps_platform_point_y +
+        R_yz*sps_platform_point_z - sps_base_point_y;
+    const real R_zx = s[6*w + j];
+    const real R_zy = s[7*w + j];
+    const real R_zz = s[8*w + j];
+    const real sps_base_point_z = m->sps_base_point_z[i];
+    const real t_z = X[2*w + j];
+    const real sps_S_z = t_z + R_zx*sps_platform_point_x + R_zy*sps_platform_point_y +
+        R_zz*sps_platform_point_z - sps_base_point_z;
+    const real sps_base_frame_xx = m->sps_base_frame_xx[i];
+    const real sps_base_frame_yx = m->sps_base_frame_yx[i];
+    const real sps_base_frame_zx = m->sps_base_frame_zx[i];
+    const real sps_S_in_turn1_x = sps_S_x*sps_base_frame_xx + sps_S_y*sps_base_frame_yx +
+        sps_S_z*sps_base_frame_zx;
+    const real sps_base_frame_xy = m->sps_base_frame_xy[i];
+    const real sps_base_frame_yy = m->sps_base_frame_yy[i];
+    const real sps_base_frame_zy = m->sps_base_frame_zy[i];
+    const real sps_S_in_turn1_y = sps_S_x*sps_base_frame_xy + sps_S_y*sps_base_frame_yy +
+        sps_S_z*sps_base_frame_zy;
+    const real sps_base_frame_xz = m->sps_base_frame_xz[i];
+    const real sps_base_frame_yz = m->sps_base_frame_yz[i];
+    const real sps_base_frame_zz = m->sps_base_frame_zz[i];
+    const real sps_S_in_turn1_z = sps_S_x*sps_base_frame_xz + sps_S_y*sps_base_frame_yz +
+        sps_S_z*sps_base_frame_zz;
+    /* (sps-root_1) amplitude, the length across axis 1, with the sign of the branch */
+    const real sps_root_1_t = sps_S_in_turn1_x*sps_S_in_turn1_x +
+        sps_S_in_turn1_y*sps_S_in_turn1_y;
+    const real sps_branch_1 = m->sps_branch_1[i];
+    const real sps_root_1 = sps_branch_1*root(sps_root_1_t);
+    /* (sps-q_1) displacement of joint 1 */
+    const real inv_sps_root_1 = 1/sps_root_1;
+    /* (sps-root_2) amplitude, the length across axis 2, with the sign of the branch */
+    const real sps_root_2_t = sps_S_in_turn1_z*sps_S_in_turn1_z + sps_root_1_t;
+    const real sps_branch_2 = m->sps_branch_2[i];
+    const real sps_root_2 = sps_branch_2*root(sps_root_2_t);
+    /* (sps-q_2) displacement of joint 2 */
+    const real inv_sps_root_2 = 1/sps_root_2;
+    v->sps_S_in_turn1_x = sps_S_in_turn1_x;
+    v->sps_S_in_turn1_y = sps_S_in_turn1_y;
+    v->sps_S_in_turn1_z = sps_S_in_turn1_z;
+    v->sps_root_1_t = sps_root_1_t;
+    v->sps_root_1 = sps_root_1;
+    v->inv_sps_root_1 = inv_sps_root_1;
+    v->sps_root_2_t = sps_root_2_t;
+    v->sps_root_2 = sps_root_2;
+    v->inv_sps_root_2 = inv_sps_root_2;
+}
+
+INLINE void stage_sps_legs_required(size_t w, size_t i, size_t j, const real *A, values_sps *v)
+{
+    static const size_t place_sps_ydd_3[] = {6, 7, 8, 9, 10, 11, 6, 6};
+    /* (sps-S_ddot) acceleration of the connection point */
+    const real sps_S_ddot_in_axes3_x = v->axis_x_sps_axes3_x*v->sps_S_ddot_x +
+        v->axis_x_sps_axes3_y*v->sps_S_ddot_y + v->axis_x_sps_axes3_z*v->sps_S_ddot_z;
+    const real sps_S_ddot_in_axes3_y = v->axis_y_sps_axes3_x*v->sps_S_ddot_x +
+        v->axis_y_sps_axes3_y*v->sps_S_ddot_y + v->axis_y_sps_axes3_z*v->sps_S_ddot_z;
+    /* (sps-rel) acceleration of the connection point left to the joint accelerations */
+    const real sps_rel_in_axes3_x = sps_S_ddot_in_axes3_x - v->sps_bias_in_axes3_x;
+    const real sps_rel_in_axes3_y = sps_S_ddot_in_axes3_y - v->sps_bias_in_axes3_y;
+    /* (sps-qdd_1) acceleration of joint 1 */
+    const real sps_qdd_1 = v->inv_sps_w_1_t*(sps_rel_in_axes3_x*v->sps_v_2_t +
+        sps_rel_in_axes3_y*v->sps_v_2_in_axes3_x);
+    /* (sps-qdd_2) acceleration of joint 2 */
+    const real sps_qdd_2_t = v->inv_sps_w_1_t*(sps_rel_in_axes3_y*v->sps_v_1_in_axes3_x -
+        sps_rel_in_axes3_x*v->sps_v_1_in_axes3_y);
+    /* (sps-alpha_2) angular acceleration of link 2 */
+    const real sps_alpha_2_in_axes2_x = v->sps_c_2*sps_qdd_1 - v->sps_zeta_2_t;
+    const real sps_alpha_2_in_axes2_y = v->sps_e_1_in_axes2_y*sps_qdd_1 +
+        v->sps_omega_1_in_axes2_x*v->sps_qd_2_t;
+    /* (sps-alpha_3) angular acceleration of link 3 */
+    const real sps_alpha_3_in_axes3_x = v->sps_zeta_3_in_axes3_x +
+        sps_alpha_2_in_axes2_x*v->sps_s_3 - v->sps_c_3*sps_qdd_2_t;
+    const real sps_alpha_3_in_axes3_y = v->sps_zeta_3_in_axes3_y +
+        sps_alpha_2_in_axes2_x*v->sps_c_3 + sps_qdd_2_t*v->sps_s_3;
+    const real sps_ydd_3 = A[place_sps_ydd_3[i]*w + j];
+    const real sps_alpha_3_in_axes3_z = sps_alpha_2_in_axes2_y + sps_ydd_3;
+    /* (sps-B_3) acceleration tensor of link 3 */
+    const real sps_B_3_in_axes3_xy = v->sps_W_3_in_axes3_xy - sps_alpha_3_in_axes3_z;
+    const real sps_B_3_in_axes3_xz = v->sps_W_3_in_axes3_xz + sps_alpha_3_in_axes3_y;
+    const real sps_B_3_in_axes3_yx = v->sps_W_3_in_axes3_xy + sps_alpha_3_in_axes3_z;
+    const real sps_B_3_in_axes3_yz = v->sps_W_3_in_axes3_yz - sps_alpha_3_in_axes3_x;
+    const real sps_B_3_in_axes3_zx = v->sps_W_3_in_axes3_xz - sps_alpha_3_in_axes3_y;
+    const real sps_B_3_in_axes3_zy = v->sps_W_3_in_axes3_yz + sps_alpha_3_in_axes3_x;
+    /* (sps-acc_4) acceleration of the reference point of link 4, less gravity */
+    const real sps_acc_4_in_axes3_x = sps_S_ddot_in_axes3_x - v->sps_g_in_axes3_x;
+    const real sps_acc_4_in_axes3_y = sps_S_ddot_in_axes3_y - v->sps_g_in_axes3_y;
+    const real sps_acc_4_in_axes3_z = v->sps_S_ddot_x*v->sps_w_4_x +
+        v->sps_S_ddot_y*v->sps_w_4_y + v->sps_S_ddot_z*v->sps_w_4_z - v->sps_g_in_axes3_z;
+    v->sps_B_3_in_axes3_xy = sps_B_3_in_axes3_xy;
+    v->sps_B_3_in_axes3_xz = sps_B_3_in_axes3_xz;
+    v->sps_B_3_in_axes3_yx = sps_B_3_in_axes3_yx;
+    v->sps_B_3_in_axes3_yz = sps_B_3_in_axes3_yz;
+    v->sps_B_3_in_axes3_zx = sps_B_3_in_axes3_zx;
+    v->sps_B_3_in_axes3_zy = sps_B_3_in_axes3_zy;
+    v->sps_acc_4_in_axes3_x = sps_acc_4_in_axes3_x;
+    v->sps_acc_4_in_axes3_y = sps_acc_4_in_axes3_y;
+    v->sps_acc_4_in_axes3_z = sps_acc_4_in_axes3_z;
+}
+
 /* ---- functions of the state: M, Z, H and the like ---- */
 
 /* ---- dynamics ---- */
@@ -1411,585 +2238,106 @@ INLINE void dynamics_before(const prepared *m, size_t w, const real *X, const re
     verdict *t)
 {
     for (size_t k = 0; k < w; ++k) {
-        /* X: named entries */
-        const real X_0 = X[0*w + k];
-        const real t_x = X_0;
-        const real X_1 = X[1*w + k];
-        const real t_y = X_1;
-        const real X_2 = X[2*w + k];
-        const real t_z = X_2;
-        const real X_3 = X[3*w + k];
-        const real X_4 = X[4*w + k];
-        const real X_5 = X[5*w + k];
-        const real X_6 = X[6*w + k];
-        const real quaternion_norm2 = X_3*X_3 + X_4*X_4 + X_5*X_5 + X_6*X_6;
-        const real quaternion_scale = 2/quaternion_norm2;
-        const real quaternion_sx = X_3*quaternion_scale;
-        const real quaternion_sy = X_4*quaternion_scale;
-        const real quaternion_sz = X_5*quaternion_scale;
-        const real quaternion_wx = X_6*quaternion_sx;
-        const real quaternion_wy = X_6*quaternion_sy;
-        const real quaternion_wz = X_6*quaternion_sz;
-        const real quaternion_xx = X_3*quaternion_sx;
-        const real quaternion_xy = X_3*quaternion_sy;
-        const real quaternion_xz = X_3*quaternion_sz;
-        const real quaternion_yy = X_4*quaternion_sy;
-        const real quaternion_yz = X_4*quaternion_sz;
-        const real quaternion_zz = X_5*quaternion_sz;
-        const real R_xx = 1 - quaternion_yy - quaternion_zz;
-        const real R_xy = quaternion_xy - quaternion_wz;
-        const real R_xz = quaternion_wy + quaternion_xz;
-        const real R_yx = quaternion_wz + quaternion_xy;
-        const real R_yy = 1 - quaternion_xx - quaternion_zz;
-        const real R_yz = quaternion_yz - quaternion_wx;
-        const real R_zx = quaternion_xz - quaternion_wy;
-        const real R_zy = quaternion_wx + quaternion_yz;
-        const real R_zz = 1 - quaternion_xx - quaternion_yy;
-        /* V: named entries */
-        const real V_0 = V[0*w + k];
-        const real t_dot_x = V_0;
-        const real V_1 = V[1*w + k];
-        const real t_dot_y = V_1;
-        const real V_2 = V[2*w + k];
-        const real t_dot_z = V_2;
-        const real V_3 = V[3*w + k];
-        const real omega_x = V_3;
-        const real V_4 = V[4*w + k];
-        const real omega_y = V_4;
-        const real V_5 = V[5*w + k];
-        const real omega_z = V_5;
-        /* (h_star) first moment about the platform origin */
-        const real h_star_in_platform_x = m->h_star_in_platform_x;
-        const real h_star_in_platform_y = m->h_star_in_platform_y;
-        const real h_star_in_platform_z = m->h_star_in_platform_z;
-        const real h_star_x = R_xx*h_star_in_platform_x + R_xy*h_star_in_platform_y +
-            R_xz*h_star_in_platform_z;
-        const real h_star_y = R_yx*h_star_in_platform_x + R_yy*h_star_in_platform_y +
-            R_yz*h_star_in_platform_z;
-        const real h_star_z = R_zx*h_star_in_platform_x + R_zy*h_star_in_platform_y +
-            R_zz*h_star_in_platform_z;
-        /* (J_star) inertia tensor about the platform origin */
-        const real J_star_in_platform_xy = m->J_star_in_platform_xy;
-        const real J_star_in_platform_yz = m->J_star_in_platform_yz;
-        const real J_star_t_12 = m->J_star_t_12;
-        const real J_star_t = J_star_in_platform_xy*R_xx + J_star_in_platform_yz*R_xz -
-            J_star_t_12*R_xy;
-        const real J_star_t_2 = J_star_in_platform_xy*R_yx + J_star_in_platform_yz*R_yz -
-            J_star_t_12*R_yy;
-        const real J_star_t_3 = J_star_in_platform_xy*R_zx + J_star_in_platform_yz*R_zz -
-            J_star_t_12*R_zy;
-        const real J_star_in_platform_xz = m->J_star_in_platform_xz;
-        const real J_star_t_14 = m->J_star_t_14;
-        const real J_star_t_4 = J_star_t_14*R_xz - J_star_in_platform_xz*R_xx;
-        const real J_star_t_5 = J_star_t_14*R_yz - J_star_in_platform_xz*R_yx;
-        const real J_star_t_6 = J_star_t_14*R_zz - J_star_in_platform_xz*R_zx;
-        const real J_star_t_7 = J_star_t*R_xy - J_star_t_4*R_xz;
-        const real J_star_in_platform_xx = m->J_star_in_platform_xx;
-        const real J_star_xx = J_star_in_platform_xx + 2*J_star_t_7;
-        const real J_star_xy = J_star_t*R_yy + J_star_t_2*R_xy - J_star_t_4*R_yz -
-            J_star_t_5*R_xz;
-        const real J_star_xz = J_star_t*R_zy + J_star_t_3*R_xy - J_star_t_4*R_zz -
-            J_star_t_6*R_xz;
-        const real J_star_t_8 = J_star_t_2*R_yy - J_star_t_5*R_yz;
-        const real J_star_yy = J_star_in_platform_xx + 2*J_star_t_8;
-        const real J_star_yz = J_star_t_2*R_zy + J_star_t_3*R_yy - J_star_t_5*R_zz -
-            J_star_t_6*R_yz;
-        const real J_star_t_9 = J_star_t_3*R_zy - J_star_t_6*R_zz;
-        const real J_star_zz = J_star_in_platform_xx + 2*J_star_t_9;
-        /* (Z_p) centripetal force and weight of the platform */
-        const real Z_p_t_4 = h_star_z*omega_y - h_star_y*omega_z;
-        const real Z_p_t_5 = h_star_x*omega_z - h_star_z*omega_x;
-        const real Z_p_t_6 = h_star_y*omega_x - h_star_x*omega_y;
-        const real Z_p_t = m->Z_p_t;
-        const real Z_p_x = Z_p_t_6*omega_y - Z_p_t - Z_p_t_5*omega_z;
-        const real Z_p_t_2 = m->Z_p_t_2;
-        const real Z_p_y = Z_p_t_4*omega_z - Z_p_t_2 - Z_p_t_6*omega_x;
-        const real Z_p_t_3 = m->Z_p_t_3;
-        const real Z_p_z = Z_p_t_5*omega_x - Z_p_t_3 - Z_p_t_4*omega_y;
-        /* (Z_q) gyroscopic moment and moment of the weight of the platform */
-        const real gravity_x = m->gravity_x;
-        const real gravity_y = m->gravity_y;
-        const real gravity_z = m->gravity_z;
-        const real g_in_platform_x = R_xx*gravity_x + R_yx*gravity_y + R_zx*gravity_z;
-        const real g_in_platform_y = R_xy*gravity_x + R_yy*gravity_y + R_zy*gravity_z;
-        const real g_in_platform_z = R_xz*gravity_x + R_yz*gravity_y + R_zz*gravity_z;
-        const real omega_in_platform_x = R_xx*omega_x + R_yx*omega_y + R_zx*omega_z;
-        const real omega_in_platform_y = R_xy*omega_x + R_yy*omega_y + R_zy*omega_z;
-        const real omega_in_platform_z = R_xz*omega_x + R_yz*omega_y + R_zz*omega_z;
-        const real Z_q_t = J_star_in_platform_xx*omega_in_platform_x +
-            J_star_in_platform_xy*omega_in_platform_y + J_star_in_platform_xz*omega_in_platform_z;
-        const real J_star_in_platform_yy = m->J_star_in_platform_yy;
-        const real Z_q_t_2 = J_star_in_platform_xy*omega_in_platform_x +
-            J_star_in_platform_yy*omega_in_platform_y + J_star_in_platform_yz*omega_in_platform_z;
-        const real J_star_in_platform_zz = m->J_star_in_platform_zz;
-        const real Z_q_t_3 = J_star_in_platform_xz*omega_in_platform_x +
-            J_star_in_platform_yz*omega_in_platform_y + J_star_in_platform_zz*omega_in_platform_z;
-        const real Z_q_in_platform_x = Z_q_t_3*omega_in_platform_y +
-            g_in_platform_y*h_star_in_platform_z - Z_q_t_2*omega_in_platform_z -
-            g_in_platform_z*h_star_in_platform_y;
-        const real Z_q_in_platform_y = Z_q_t*omega_in_platform_z +
-            g_in_platform_z*h_star_in_platform_x - Z_q_t_3*omega_in_platform_x -
-            g_in_platform_x*h_star_in_platform_z;
-        const real Z_q_in_platform_z = Z_q_t_2*omega_in_platform_x +
-            g_in_platform_x*h_star_in_platform_y - Z_q_t*omega_in_platform_y -
-            g_in_platform_y*h_star_in_platform_x;
-        const real Z_q_x = R_xx*Z_q_in_platform_x + R_xy*Z_q_in_platform_y +
-            R_xz*Z_q_in_platform_z;
-        const real Z_q_y = R_yx*Z_q_in_platform_x + R_yy*Z_q_in_platform_y +
-            R_yz*Z_q_in_platform_z;
-        const real Z_q_z = R_zx*Z_q_in_platform_x + R_zy*Z_q_in_platform_y +
-            R_zz*Z_q_in_platform_z;
-        s[0*w + k] = t_x;
-        s[1*w + k] = t_y;
-        s[2*w + k] = t_z;
-        s[3*w + k] = R_xx;
-        s[4*w + k] = R_xy;
-        s[5*w + k] = R_xz;
-        s[6*w + k] = R_yx;
-        s[7*w + k] = R_yy;
-        s[8*w + k] = R_yz;
-        s[9*w + k] = R_zx;
-        s[10*w + k] = R_zy;
-        s[11*w + k] = R_zz;
-        s[12*w + k] = t_dot_x;
-        s[13*w + k] = t_dot_y;
-        s[14*w + k] = t_dot_z;
-        s[15*w + k] = omega_x;
-        s[16*w + k] = omega_y;
-        s[17*w + k] = omega_z;
-        s[18*w + k] = h_star_x;
-        s[19*w + k] = h_star_y;
-        s[20*w + k] = h_star_z;
-        s[21*w + k] = J_star_xx;
-        s[22*w + k] = J_star_xy;
-        s[23*w + k] = J_star_xz;
-        s[24*w + k] = J_star_yy;
-        s[25*w + k] = J_star_yz;
-        s[26*w + k] = J_star_zz;
-        s[27*w + k] = Z_p_x;
-        s[28*w + k] = Z_p_y;
-        s[29*w + k] = Z_p_z;
-        s[30*w + k] = Z_q_x;
-        s[31*w + k] = Z_q_y;
-        s[32*w + k] = Z_q_z;
-        t->invalid[k] += UNLESS(is_finite(quaternion_scale)) + UNLESS(quaternion_scale > 0);
+        values v;
+        stage_X(m, w, k, X, &v);
+        stage_V_X(w, k, V, &v);
+        stage_M_dynamics(m, &v);
+        stage_Z_dynamics(m, w, k, V, &v);
+        s[0*w + k] = v.R_xx;
+        s[1*w + k] = v.R_xy;
+        s[2*w + k] = v.R_xz;
+        s[3*w + k] = v.R_yx;
+        s[4*w + k] = v.R_yy;
+        s[5*w + k] = v.R_yz;
+        s[6*w + k] = v.R_zx;
+        s[7*w + k] = v.R_zy;
+        s[8*w + k] = v.R_zz;
+        s[9*w + k] = v.h_star_x;
+        s[10*w + k] = v.h_star_y;
+        s[11*w + k] = v.h_star_z;
+        s[12*w + k] = v.J_star_xx;
+        s[13*w + k] = v.J_star_xy;
+        s[14*w + k] = v.J_star_xz;
+        s[15*w + k] = v.J_star_yy;
+        s[16*w + k] = v.J_star_yz;
+        s[17*w + k] = v.J_star_zz;
+        s[18*w + k] = v.Z_p_x;
+        s[19*w + k] = v.Z_p_y;
+        s[20*w + k] = v.Z_p_z;
+        s[21*w + k] = v.Z_q_x;
+        s[22*w + k] = v.Z_q_y;
+        s[23*w + k] = v.Z_q_z;
+        t->invalid[k] += UNLESS(is_finite(v.quaternion_scale)) + UNLESS(v.quaternion_scale > 0);
     }
 }
 
 INLINE void dynamics_legs_sps(const prepared *m, size_t w, size_t leg, size_t legs, const real *s,
     size_t states, size_t count, int add, const real *X, const real *V, real *terms, real *o)
 {
-    static const size_t place_sps_y_3_extra[] = {7, 8, 9, 10, 11, 12, 7, 7};
-    static const size_t place_sps_yd_3[] = {6, 7, 8, 9, 10, 11, 6, 6};
     for (size_t k = 0; k < count; ++k) {
         const size_t i = leg + legs*k;
         const size_t j = states*k;
-        /* (sps-S) from the base point to the connection point */
-        const real R_xx = s[3*w + j];
-        const real R_xy = s[4*w + j];
-        const real R_xz = s[5*w + j];
-        const real sps_platform_point_x = m->sps_platform_point_x[i];
-        const real sps_platform_point_y = m->sps_platform_point_y[i];
-        const real sps_platform_point_z = m->sps_platform_point_z[i];
-        const real sps_q_x = R_xx*sps_platform_point_x + R_xy*sps_platform_point_y +
-            R_xz*sps_platform_point_z;
-        const real R_yx = s[6*w + j];
-        const real R_yy = s[7*w + j];
-        const real R_yz = s[8*w + j];
-        const real sps_q_y = R_yx*sps_platform_point_x + R_yy*sps_platform_point_y +
-            R_yz*sps_platform_point_z;
-        const real R_zx = s[9*w + j];
-        const real R_zy = s[10*w + j];
-        const real R_zz = s[11*w + j];
-        const real sps_q_z = R_zx*sps_platform_point_x + R_zy*sps_platform_point_y +
-            R_zz*sps_platform_point_z;
-        const real sps_base_point_x = m->sps_base_point_x[i];
-        const real t_x = s[0*w + j];
-        const real sps_S_x = sps_q_x + t_x - sps_base_point_x;
-        const real sps_base_point_y = m->sps_base_point_y[i];
-        const real t_y = s[1*w + j];
-        const real sps_S_y = sps_q_y + t_y - sps_base_point_y;
-        const real sps_base_point_z = m->sps_base_point_z[i];
-        const real t_z = s[2*w + j];
-        const real sps_S_z = sps_q_z + t_z - sps_base_point_z;
-        /* (sps-c_3) cosine of the angle of joint 3 from its reference direction */
-        const real sps_y_3_extra = X[place_sps_y_3_extra[i]*w + j];
-        const real sps_c_3 = -sine(sps_y_3_extra);
-        /* (sps-s_3) sine of the angle of joint 3 from its reference direction */
-        const real sps_s_3 = cosine(sps_y_3_extra);
-        /* (sps-px_1) component along the reference direction */
-        const real sps_base_frame_xx = m->sps_base_frame_xx[i];
-        const real sps_base_frame_yx = m->sps_base_frame_yx[i];
-        const real sps_base_frame_zx = m->sps_base_frame_zx[i];
-        const real sps_px_1 = sps_S_x*sps_base_frame_xx + sps_S_y*sps_base_frame_yx +
-            sps_S_z*sps_base_frame_zx;
-        /* (sps-py_1) component across the reference direction */
-        const real sps_base_frame_xy = m->sps_base_frame_xy[i];
-        const real sps_base_frame_yy = m->sps_base_frame_yy[i];
-        const real sps_base_frame_zy = m->sps_base_frame_zy[i];
-        const real sps_py_1 = sps_S_x*sps_base_frame_xy + sps_S_y*sps_base_frame_yy +
-            sps_S_z*sps_base_frame_zy;
-        /* (sps-rho2_1) squared amplitude */
-        const real sps_rho2_1 = sps_px_1*sps_px_1 + sps_py_1*sps_py_1;
-        /* (sps-root_1) amplitude, with the sign of the branch */
-        const real sps_branch_1 = m->sps_branch_1[i];
-        const real sps_root_1 = sps_branch_1*root(sps_rho2_1);
-        /* (sps-c_1) cosine of the angle of joint 1 from its reference direction */
-        const real inv_sps_root_1 = 1/sps_root_1;
-        const real sps_c_1 = -inv_sps_root_1*sps_py_1;
-        /* (sps-s_1) sine of the angle of joint 1 from its reference direction */
-        const real sps_s_1 = inv_sps_root_1*sps_px_1;
-        /* (sps-xi_1) the vector from joint 1 to the connection point, resolved along link 1 */
-        const real sps_base_frame_xz = m->sps_base_frame_xz[i];
-        const real sps_base_frame_yz = m->sps_base_frame_yz[i];
-        const real sps_base_frame_zz = m->sps_base_frame_zz[i];
-        const real sps_xi_1_in_axes1_z = sps_S_x*sps_base_frame_xz + sps_S_y*sps_base_frame_yz +
-            sps_S_z*sps_base_frame_zz;
-        /* (sps-rho2_2) squared amplitude */
-        const real sps_rho2_2 = sps_rho2_1 + sps_xi_1_in_axes1_z*sps_xi_1_in_axes1_z;
-        /* (sps-root_2) amplitude, with the sign of the branch */
-        const real sps_branch_2 = m->sps_branch_2[i];
-        const real sps_root_2 = sps_branch_2*root(sps_rho2_2);
-        /* (sps-c_2) cosine of the angle of joint 2 from its reference direction */
-        const real inv_sps_root_2 = 1/sps_root_2;
-        const real sps_c_2_t = inv_sps_root_2*sps_root_1;
-        /* (sps-s_2) sine of the angle of joint 2 from its reference direction */
-        const real sps_s_2 = inv_sps_root_2*sps_xi_1_in_axes1_z;
-        /* (sps-S_dot) velocity of the connection point */
-        const real omega_y = s[16*w + j];
-        const real omega_z = s[17*w + j];
-        const real sps_S_dot_t = omega_y*sps_q_z - omega_z*sps_q_y;
-        const real omega_x = s[15*w + j];
-        const real sps_S_dot_t_2 = omega_z*sps_q_x - omega_x*sps_q_z;
-        const real sps_S_dot_t_3 = omega_x*sps_q_y - omega_y*sps_q_x;
-        const real t_dot_x = s[12*w + j];
-        const real sps_S_dot_x = sps_S_dot_t + t_dot_x;
-        const real t_dot_y = s[13*w + j];
-        const real sps_S_dot_y = sps_S_dot_t_2 + t_dot_y;
-        const real t_dot_z = s[14*w + j];
-        const real sps_S_dot_z = sps_S_dot_t_3 + t_dot_z;
-        /* (sps-v_1) velocity of the connection point per rate of joint 1 */
-        const real sps_e_1_in_axes3_x = -sps_c_2_t*sps_c_3;
-        const real sps_e_1_in_axes3_y = sps_c_2_t*sps_s_3;
-        const real sps_v_1_in_axes3_x = sps_e_1_in_axes3_y*sps_root_2;
-        const real sps_v_1_in_axes3_y = -sps_e_1_in_axes3_x*sps_root_2;
-        /* (sps-v_2) velocity of the connection point per rate of joint 2 */
-        const real sps_v_2_in_axes3_x = sps_c_3*sps_root_2;
-        const real sps_v_2_t = sps_root_2*sps_s_3;
-        /* (sps-w_1) reciprocal vector 1 */
-        const real sps_w_1_t = sps_v_1_in_axes3_x*sps_v_2_t +
-            sps_v_1_in_axes3_y*sps_v_2_in_axes3_x;
-        const real inv_sps_w_1_t = 1/sps_w_1_t;
-        const real sps_w_1_in_axes3_x = inv_sps_w_1_t*sps_v_2_t;
-        const real sps_w_1_in_axes3_y = inv_sps_w_1_t*sps_v_2_in_axes3_x;
-        /* (sps-w_2) reciprocal vector 2 */
-        const real sps_w_2_in_axes3_x = inv_sps_w_1_t*sps_v_1_in_axes3_y;
-        const real sps_w_2_t = inv_sps_w_1_t*sps_v_1_in_axes3_x;
-        /* (sps-w_4) reciprocal vector 3 */
-        const real sps_w_4_x = inv_sps_root_2*sps_S_x;
-        const real sps_w_4_y = inv_sps_root_2*sps_S_y;
-        const real sps_w_4_z = inv_sps_root_2*sps_S_z;
-        /* (sps-S_dot_rest) velocity of the connection point left to the joints that are not extra */
-        const real sps_S_dot_rest_t = sps_s_2*sps_s_3;
-        const real sps_S_dot_rest_t_2 = sps_S_dot_rest_t*sps_s_1 - sps_c_1*sps_c_3;
-        const real sps_S_dot_rest_t_3 = sps_S_dot_rest_t*sps_c_1 + sps_c_3*sps_s_1;
-        const real axis_y_sps_axes3_x = sps_S_dot_rest_t_3*sps_base_frame_xy +
-            sps_base_frame_xz*sps_e_1_in_axes3_y - sps_S_dot_rest_t_2*sps_base_frame_xx;
-        const real axis_y_sps_axes3_y = sps_S_dot_rest_t_3*sps_base_frame_yy +
-            sps_base_frame_yz*sps_e_1_in_axes3_y - sps_S_dot_rest_t_2*sps_base_frame_yx;
-        const real axis_y_sps_axes3_z = sps_S_dot_rest_t_3*sps_base_frame_zy +
-            sps_base_frame_zz*sps_e_1_in_axes3_y - sps_S_dot_rest_t_2*sps_base_frame_zx;
-        const real axis_x_sps_axes3_x = axis_y_sps_axes3_y*sps_w_4_z -
-            axis_y_sps_axes3_z*sps_w_4_y;
-        const real axis_x_sps_axes3_y = axis_y_sps_axes3_z*sps_w_4_x -
-            axis_y_sps_axes3_x*sps_w_4_z;
-        const real axis_x_sps_axes3_z = axis_y_sps_axes3_x*sps_w_4_y -
-            axis_y_sps_axes3_y*sps_w_4_x;
-        const real sps_S_dot_rest_in_axes3_x = axis_x_sps_axes3_x*sps_S_dot_x +
-            axis_x_sps_axes3_y*sps_S_dot_y + axis_x_sps_axes3_z*sps_S_dot_z;
-        const real sps_S_dot_rest_in_axes3_y = axis_y_sps_axes3_x*sps_S_dot_x +
-            axis_y_sps_axes3_y*sps_S_dot_y + axis_y_sps_axes3_z*sps_S_dot_z;
-        const real sps_S_dot_rest_in_axes3_z = sps_S_dot_x*sps_w_4_x + sps_S_dot_y*sps_w_4_y +
-            sps_S_dot_z*sps_w_4_z;
-        /* (sps-qd_1) rate of joint 1 */
-        const real sps_qd_1 = inv_sps_w_1_t*(sps_S_dot_rest_in_axes3_x*sps_v_2_t +
-            sps_S_dot_rest_in_axes3_y*sps_v_2_in_axes3_x);
-        /* (sps-qd_2) rate of joint 2 */
-        const real sps_qd_2_t = inv_sps_w_1_t*(sps_S_dot_rest_in_axes3_y*sps_v_1_in_axes3_x -
-            sps_S_dot_rest_in_axes3_x*sps_v_1_in_axes3_y);
-        /* (sps-omega_1) angular velocity of link 1 */
-        const real sps_omega_1_in_axes2_x = sps_qd_1*sps_s_2;
-        const real sps_omega_1_t = sps_c_2_t*sps_qd_1;
-        /* (sps-omega_2) angular velocity of link 2 */
-        const real sps_omega_2_in_axes3_x = -sps_c_3*sps_omega_1_t - sps_qd_2_t*sps_s_3;
-        const real sps_omega_2_in_axes3_y = sps_omega_1_t*sps_s_3 - sps_c_3*sps_qd_2_t;
-        /* (sps-omega_3) angular velocity of link 3 */
-        const real sps_yd_3 = V[place_sps_yd_3[i]*w + j];
-        const real sps_omega_3_in_axes3_z = sps_omega_1_in_axes2_x + sps_yd_3;
-        /* (sps-W_3) centripetal tensor of link 3 */
-        const real sps_W_3_in_axes3_xy = sps_omega_2_in_axes3_x*sps_omega_2_in_axes3_y;
-        const real sps_W_3_in_axes3_xz = sps_omega_2_in_axes3_x*sps_omega_3_in_axes3_z;
-        const real sps_W_3_in_axes3_yz = sps_omega_2_in_axes3_y*sps_omega_3_in_axes3_z;
-        /* (sps-u_1) centripetal acceleration of the connection point */
-        const real sps_u_1_x = omega_y*sps_S_dot_t_3 - omega_z*sps_S_dot_t_2;
-        const real sps_u_1_y = omega_z*sps_S_dot_t - omega_x*sps_S_dot_t_3;
-        const real sps_u_1_z = omega_x*sps_S_dot_t_2 - omega_y*sps_S_dot_t;
-        const real sps_u_1_in_axes3_x = axis_x_sps_axes3_x*sps_u_1_x +
-            axis_x_sps_axes3_y*sps_u_1_y + axis_x_sps_axes3_z*sps_u_1_z;
-        const real sps_u_1_in_axes3_y = axis_y_sps_axes3_x*sps_u_1_x +
-            axis_y_sps_axes3_y*sps_u_1_y + axis_y_sps_axes3_z*sps_u_1_z;
-        /* (sps-zeta_2) angular acceleration of link 2 from the turning of axis 2 */
-        const real sps_zeta_2_in_axes2_y = sps_omega_1_in_axes2_x*sps_qd_2_t;
-        /* (sps-zeta_3) angular acceleration of link 3 from the turning of axis 3 */
-        const real sps_zeta_3_in_axes3_x = sps_omega_2_in_axes3_y*sps_yd_3;
-        const real sps_zeta_3_in_axes3_y = -sps_omega_2_in_axes3_x*sps_yd_3;
-        /* (sps-beta_3) angular acceleration of link 3 at zero joint accelerations */
-        const real sps_beta_3_in_axes3_x = sps_zeta_3_in_axes3_x + sps_c_3*sps_zeta_2_in_axes2_y;
-        const real sps_beta_3_in_axes3_y = sps_zeta_3_in_axes3_y - sps_s_3*sps_zeta_2_in_axes2_y;
-        /* (sps-bias) acceleration of the connection point at zero joint accelerations */
-        const real sps_bias_t = 2*sps_S_dot_rest_in_axes3_z;
-        const real sps_bias_in_axes3_x = sps_bias_t*sps_omega_2_in_axes3_y +
-            sps_root_2*(sps_W_3_in_axes3_xz + sps_beta_3_in_axes3_y);
-        const real sps_bias_in_axes3_y = sps_root_2*(sps_W_3_in_axes3_yz - sps_beta_3_in_axes3_x)
-            - sps_bias_t*sps_omega_2_in_axes3_x;
-        /* (sps-rel_o) remainder without the acceleration in: acceleration of the connection point left to
-           the joint accelerations */
-        const real sps_rel_o_in_axes3_x = sps_u_1_in_axes3_x - sps_bias_in_axes3_x;
-        const real sps_rel_o_in_axes3_y = sps_u_1_in_axes3_y - sps_bias_in_axes3_y;
-        /* (sps-qdd_1_o) remainder without the acceleration in: acceleration of joint 1 */
-        const real sps_qdd_1_o = inv_sps_w_1_t*(sps_rel_o_in_axes3_x*sps_v_2_t +
-            sps_rel_o_in_axes3_y*sps_v_2_in_axes3_x);
-        /* (sps-qdd_2_o) remainder without the acceleration in: acceleration of joint 2 */
-        const real sps_qdd_2_o = -inv_sps_w_1_t*(sps_rel_o_in_axes3_y*sps_v_1_in_axes3_x -
-            sps_rel_o_in_axes3_x*sps_v_1_in_axes3_y);
-        /* (sps-d_alpha_1) coefficient of the acceleration in: angular acceleration of link 1 */
-        const real sps_d_alpha_1_in_axes3_zx = sps_s_2*sps_w_1_in_axes3_x;
-        const real sps_d_alpha_1_in_axes3_zy = sps_s_2*sps_w_1_in_axes3_y;
-        /* (sps-d_alpha_2) coefficient of the acceleration in: angular acceleration of link 2 */
-        const real sps_d_alpha_2_in_axes3_xx = sps_e_1_in_axes3_x*sps_w_1_in_axes3_x +
-            sps_s_3*sps_w_2_in_axes3_x;
-        const real sps_d_alpha_2_in_axes3_xy = sps_e_1_in_axes3_x*sps_w_1_in_axes3_y -
-            sps_s_3*sps_w_2_t;
-        const real sps_d_alpha_2_in_axes3_yx = sps_c_3*sps_w_2_in_axes3_x +
-            sps_e_1_in_axes3_y*sps_w_1_in_axes3_x;
-        const real sps_d_alpha_2_in_axes3_yy = sps_e_1_in_axes3_y*sps_w_1_in_axes3_y -
-            sps_c_3*sps_w_2_t;
-        /* (sps-alpha_2_o) remainder without the acceleration in: angular acceleration of link 2 */
-        const real sps_alpha_2_o_in_axes2_x = sps_omega_1_t*sps_qd_2_t + sps_qdd_1_o*sps_s_2;
-        const real sps_alpha_2_o_in_axes2_y = sps_zeta_2_in_axes2_y - sps_c_2_t*sps_qdd_1_o;
-        /* (sps-alpha_3_o) remainder without the acceleration in: angular acceleration of link 3 */
-        const real sps_alpha_3_o_in_axes3_x = sps_zeta_3_in_axes3_x +
-            sps_alpha_2_o_in_axes2_y*sps_c_3 + sps_qdd_2_o*sps_s_3;
-        const real sps_alpha_3_o_in_axes3_y = sps_zeta_3_in_axes3_y + sps_c_3*sps_qdd_2_o -
-            sps_alpha_2_o_in_axes2_y*sps_s_3;
-        /* (sps-B_3_o) remainder of the acceleration tensor of link 3 */
-        const real sps_B_3_o_in_axes3_xy = sps_W_3_in_axes3_xy - sps_alpha_2_o_in_axes2_x;
-        const real sps_B_3_o_in_axes3_xz = sps_W_3_in_axes3_xz + sps_alpha_3_o_in_axes3_y;
-        const real sps_B_3_o_in_axes3_yx = sps_W_3_in_axes3_xy + sps_alpha_2_o_in_axes2_x;
-        const real sps_B_3_o_in_axes3_yz = sps_W_3_in_axes3_yz - sps_alpha_3_o_in_axes3_x;
-        const real sps_B_3_o_in_axes3_zx = sps_W_3_in_axes3_xz - sps_alpha_3_o_in_axes3_y;
-        const real sps_B_3_o_in_axes3_zy = sps_W_3_in_axes3_yz + sps_alpha_3_o_in_axes3_x;
-        /* (sps-acc_4_o) remainder without the acceleration in: acceleration of the reference point of
-           link 4, less gravity */
-        const real gravity_x = m->gravity_x;
-        const real gravity_y = m->gravity_y;
-        const real gravity_z = m->gravity_z;
-        const real sps_g_in_axes3_x = axis_x_sps_axes3_x*gravity_x + axis_x_sps_axes3_y*gravity_y
-            + axis_x_sps_axes3_z*gravity_z;
-        const real sps_g_in_axes3_y = axis_y_sps_axes3_x*gravity_x + axis_y_sps_axes3_y*gravity_y
-            + axis_y_sps_axes3_z*gravity_z;
-        const real sps_g_in_axes3_z = gravity_x*sps_w_4_x + gravity_y*sps_w_4_y +
-            gravity_z*sps_w_4_z;
-        const real sps_acc_4_o_in_axes3_x = sps_u_1_in_axes3_x - sps_g_in_axes3_x;
-        const real sps_acc_4_o_in_axes3_y = sps_u_1_in_axes3_y - sps_g_in_axes3_y;
-        const real sps_acc_4_o_in_axes3_z = sps_u_1_x*sps_w_4_x + sps_u_1_y*sps_w_4_y +
-            sps_u_1_z*sps_w_4_z - sps_g_in_axes3_z;
-        /* (sps-phi_4_o) remainder without the acceleration in: inertia force of link 4 from its turning
-           about its reference point */
-        const real sps_phi_4_o_t = sps_omega_2_in_axes3_x*sps_omega_2_in_axes3_x;
-        const real sps_phi_4_o_t_2 = sps_omega_2_in_axes3_y*sps_omega_2_in_axes3_y;
-        const real sps_h_4_in_spec3_x = m->sps_h_4_in_spec3_x[i];
-        const real sps_h_4_in_spec3_y = m->sps_h_4_in_spec3_y[i];
-        const real sps_h_4_in_spec3_z = m->sps_h_4_in_spec3_z[i];
-        const real sps_phi_4_o_in_axes3_z = sps_B_3_o_in_axes3_zx*sps_h_4_in_spec3_y +
-            sps_B_3_o_in_axes3_zy*sps_h_4_in_spec3_z - sps_h_4_in_spec3_x*(sps_phi_4_o_t +
-            sps_phi_4_o_t_2);
-        /* (sps-d_mu_3) coefficient of the acceleration in: inertia moment of the links that turn with
-           link 3, about their reference points */
-        const real sps_J_group_3_in_axes3_xx = m->sps_J_group_3_in_axes3_xx[i];
-        const real sps_J_group_3_in_axes3_xy = m->sps_J_group_3_in_axes3_xy[i];
-        const real sps_J_group_3_in_axes3_xz = m->sps_J_group_3_in_axes3_xz[i];
-        const real sps_d_mu_3_in_axes3_xx = sps_J_group_3_in_axes3_xx*sps_d_alpha_2_in_axes3_xx +
-            sps_J_group_3_in_axes3_xy*sps_d_alpha_2_in_axes3_yx +
-            sps_J_group_3_in_axes3_xz*sps_d_alpha_1_in_axes3_zx;
-        const real sps_J_group_3_in_axes3_yy = m->sps_J_group_3_in_axes3_yy[i];
-        const real sps_J_group_3_in_axes3_yz = m->sps_J_group_3_in_axes3_yz[i];
-        const real sps_d_mu_3_in_axes3_yy = sps_J_group_3_in_axes3_xy*sps_d_alpha_2_in_axes3_xy +
-            sps_J_group_3_in_axes3_yy*sps_d_alpha_2_in_axes3_yy +
-            sps_J_group_3_in_axes3_yz*sps_d_alpha_1_in_axes3_zy;
-        const real sps_d_mu_3_in_axes3_xy = sps_J_group_3_in_axes3_xx*sps_d_alpha_2_in_axes3_xy +
-            sps_J_group_3_in_axes3_xy*sps_d_alpha_2_in_axes3_yy +
-            sps_J_group_3_in_axes3_xz*sps_d_alpha_1_in_axes3_zy - sps_h_4_in_spec3_x;
-        const real sps_d_mu_3_in_axes3_yx = sps_h_4_in_spec3_x +
-            sps_J_group_3_in_axes3_xy*sps_d_alpha_2_in_axes3_xx +
-            sps_J_group_3_in_axes3_yy*sps_d_alpha_2_in_axes3_yx +
-            sps_J_group_3_in_axes3_yz*sps_d_alpha_1_in_axes3_zx;
-        const real sps_J_group_3_in_axes3_zz = m->sps_J_group_3_in_axes3_zz[i];
-        const real sps_d_mu_3_in_axes3_zx = sps_J_group_3_in_axes3_xz*sps_d_alpha_2_in_axes3_xx +
-            sps_J_group_3_in_axes3_yz*sps_d_alpha_2_in_axes3_yx +
-            sps_J_group_3_in_axes3_zz*sps_d_alpha_1_in_axes3_zx - sps_h_4_in_spec3_z;
-        const real sps_d_mu_3_in_axes3_zy = sps_h_4_in_spec3_y +
-            sps_J_group_3_in_axes3_xz*sps_d_alpha_2_in_axes3_xy +
-            sps_J_group_3_in_axes3_yz*sps_d_alpha_2_in_axes3_yy +
-            sps_J_group_3_in_axes3_zz*sps_d_alpha_1_in_axes3_zy;
-        /* (sps-mu_3_o) remainder without the acceleration in: inertia moment of the links that turn with
-           link 3, about their reference points */
-        const real sps_mu_3_o_t = sps_omega_3_in_axes3_z*sps_omega_3_in_axes3_z;
-        const real sps_Sigma_3_in_axes3_yy = m->sps_Sigma_3_in_axes3_yy[i];
-        const real sps_Sigma_3_in_axes3_zz = m->sps_Sigma_3_in_axes3_zz[i];
-        const real sps_h_3_in_spec3_x = m->sps_h_3_in_spec3_x[i];
-        const real sps_h_3_in_spec3_z = m->sps_h_3_in_spec3_z[i];
-        const real sps_mu_3_o_in_axes3_x = sps_B_3_o_in_axes3_yx*sps_J_group_3_in_axes3_xz +
-            sps_B_3_o_in_axes3_zy*sps_Sigma_3_in_axes3_yy +
-            sps_J_group_3_in_axes3_yz*(sps_phi_4_o_t_2 - sps_mu_3_o_t) +
-            sps_acc_4_o_in_axes3_z*sps_h_4_in_spec3_z + sps_g_in_axes3_y*sps_h_3_in_spec3_x -
-            sps_B_3_o_in_axes3_yz*sps_Sigma_3_in_axes3_zz -
-            sps_B_3_o_in_axes3_zx*sps_J_group_3_in_axes3_xy -
-            sps_acc_4_o_in_axes3_y*sps_h_4_in_spec3_x - sps_g_in_axes3_z*sps_h_3_in_spec3_z;
-        const real sps_Sigma_3_in_axes3_xx = m->sps_Sigma_3_in_axes3_xx[i];
-        const real sps_h_3_in_spec3_y = m->sps_h_3_in_spec3_y[i];
-        const real sps_mu_3_o_in_axes3_y = sps_B_3_o_in_axes3_xz*sps_Sigma_3_in_axes3_zz +
-            sps_B_3_o_in_axes3_zy*sps_J_group_3_in_axes3_xy +
-            sps_acc_4_o_in_axes3_x*sps_h_4_in_spec3_x + sps_g_in_axes3_z*sps_h_3_in_spec3_y -
-            sps_B_3_o_in_axes3_xy*sps_J_group_3_in_axes3_yz -
-            sps_B_3_o_in_axes3_zx*sps_Sigma_3_in_axes3_xx -
-            sps_J_group_3_in_axes3_xz*(sps_phi_4_o_t - sps_mu_3_o_t) -
-            sps_acc_4_o_in_axes3_z*sps_h_4_in_spec3_y - sps_g_in_axes3_x*sps_h_3_in_spec3_x;
-        const real sps_mu_3_o_in_axes3_z = sps_B_3_o_in_axes3_xz*sps_J_group_3_in_axes3_yz +
-            sps_B_3_o_in_axes3_yx*sps_Sigma_3_in_axes3_xx +
-            sps_J_group_3_in_axes3_xy*(sps_phi_4_o_t - sps_phi_4_o_t_2) +
-            sps_acc_4_o_in_axes3_y*sps_h_4_in_spec3_y + sps_g_in_axes3_x*sps_h_3_in_spec3_z -
-            sps_B_3_o_in_axes3_xy*sps_Sigma_3_in_axes3_yy -
-            sps_B_3_o_in_axes3_yz*sps_J_group_3_in_axes3_xz -
-            sps_acc_4_o_in_axes3_x*sps_h_4_in_spec3_z - sps_g_in_axes3_y*sps_h_3_in_spec3_y;
-        const real sps_mu_3_o_in_axes2_z = sps_c_3*sps_mu_3_o_in_axes3_y +
-            sps_mu_3_o_in_axes3_x*sps_s_3;
-        /* (sps-d_Gamma_2) coefficient of the acceleration in: moment about axis 2 of the distal links'
-           inertia and weight */
-        const real sps_d_Gamma_2_in_axes3_y = sps_c_3*sps_d_mu_3_in_axes3_yy +
-            sps_d_mu_3_in_axes3_xy*sps_s_3;
-        const real sps_d_Gamma_2_in_axes3_z = sps_h_4_in_spec3_z*sps_s_3 -
-            sps_c_3*sps_h_4_in_spec3_y;
-        /* (sps-d_Gamma_1) coefficient of the acceleration in: moment about axis 1 of the distal links'
-           inertia and weight */
-        const real sps_d_Gamma_1_in_axes3_y = sps_d_mu_3_in_axes3_xy*sps_e_1_in_axes3_x +
-            sps_d_mu_3_in_axes3_yy*sps_e_1_in_axes3_y + sps_d_mu_3_in_axes3_zy*sps_s_2;
-        const real sps_d_Gamma_1_in_axes3_z = sps_e_1_in_axes3_x*sps_h_4_in_spec3_z -
-            sps_e_1_in_axes3_y*sps_h_4_in_spec3_y;
-        /* (sps-Gamma_1_o) remainder without the acceleration in: moment about axis 1 of the distal links'
-           inertia and weight */
-        const real sps_Gamma_1_o = sps_e_1_in_axes3_x*sps_mu_3_o_in_axes3_x +
-            sps_e_1_in_axes3_y*sps_mu_3_o_in_axes3_y + sps_mu_3_o_in_axes3_z*sps_s_2;
-        /* (sps-d_G) coefficient of the acceleration in: force at the connection point that balances the
-           leg's inertia and weight along all degrees of freedom */
-        const real sps_d_G_in_axes3_xz = sps_d_Gamma_1_in_axes3_z*sps_w_1_in_axes3_x +
-            sps_d_Gamma_2_in_axes3_z*sps_w_2_in_axes3_x;
-        const real sps_d_G_in_axes3_yz = sps_d_Gamma_1_in_axes3_z*sps_w_1_in_axes3_y -
-            sps_d_Gamma_2_in_axes3_z*sps_w_2_t;
-        /* (sps-d_c) coefficient of the acceleration in: leg force on the platform without actuation and
-           without the mass at the connection point */
-        const real sps_d_c_in_axes3_xx = sps_d_alpha_1_in_axes3_zx*sps_h_4_in_spec3_z -
-            sps_d_alpha_2_in_axes3_yx*sps_h_4_in_spec3_x -
-            sps_w_1_in_axes3_x*(sps_d_mu_3_in_axes3_xx*sps_e_1_in_axes3_x +
-            sps_d_mu_3_in_axes3_yx*sps_e_1_in_axes3_y + sps_d_mu_3_in_axes3_zx*sps_s_2) -
-            sps_w_2_in_axes3_x*(sps_c_3*sps_d_mu_3_in_axes3_yx + sps_d_mu_3_in_axes3_xx*sps_s_3);
-        const real sps_d_c_in_axes3_xy = sps_d_alpha_1_in_axes3_zy*sps_h_4_in_spec3_z -
-            sps_d_Gamma_1_in_axes3_y*sps_w_1_in_axes3_x -
-            sps_d_Gamma_2_in_axes3_y*sps_w_2_in_axes3_x -
-            sps_d_alpha_2_in_axes3_yy*sps_h_4_in_spec3_x;
-        const real sps_d_c_in_axes3_yy = sps_d_Gamma_2_in_axes3_y*sps_w_2_t +
-            sps_d_alpha_2_in_axes3_xy*sps_h_4_in_spec3_x -
-            sps_d_Gamma_1_in_axes3_y*sps_w_1_in_axes3_y -
-            sps_d_alpha_1_in_axes3_zy*sps_h_4_in_spec3_y;
-        /* (sps-c_o) remainder without the acceleration in: leg force on the platform without actuation
-           and without the mass at the connection point */
-        const real sps_c_o_in_axes3_x = sps_h_4_in_spec3_y*(sps_mu_3_o_t + sps_phi_4_o_t_2) -
-            inv_sps_w_1_t*(sps_Gamma_1_o*sps_v_2_t + sps_mu_3_o_in_axes2_z*sps_v_1_in_axes3_y) -
-            sps_B_3_o_in_axes3_xy*sps_h_4_in_spec3_z - sps_B_3_o_in_axes3_xz*sps_h_4_in_spec3_x;
-        const real sps_c_o_in_axes3_y = inv_sps_w_1_t*(sps_mu_3_o_in_axes2_z*sps_v_1_in_axes3_x -
-            sps_Gamma_1_o*sps_v_2_in_axes3_x) + sps_h_4_in_spec3_z*(sps_mu_3_o_t + sps_phi_4_o_t)
-            - sps_B_3_o_in_axes3_yx*sps_h_4_in_spec3_y - sps_B_3_o_in_axes3_yz*sps_h_4_in_spec3_x;
+        values_sps v;
+        stage_sps_X(m, w, i, j, s, X, &v);
+        stage_sps_V_X(w, i, j, V, &v);
+        stage_sps_M_dynamics(m, i, &v);
+        stage_sps_Z_dynamics(m, w, i, j, V, &v);
         /* (sps-Q) inertia of the leg at the connection point, without the mass gathered there */
-        const real sps_Q_t = R(0.5)*sps_d_c_in_axes3_xx;
-        const real sps_Q_t_2 = R(0.5)*sps_d_c_in_axes3_yy;
-        const real sps_Q_t_3 = axis_x_sps_axes3_x*sps_Q_t + axis_y_sps_axes3_x*sps_d_c_in_axes3_xy
-            - sps_d_G_in_axes3_xz*sps_w_4_x;
-        const real sps_Q_t_4 = sps_d_G_in_axes3_xz*sps_w_4_y - axis_x_sps_axes3_y*sps_Q_t -
-            axis_y_sps_axes3_y*sps_d_c_in_axes3_xy;
-        const real sps_Q_t_5 = axis_x_sps_axes3_z*sps_Q_t + axis_y_sps_axes3_z*sps_d_c_in_axes3_xy
-            - sps_d_G_in_axes3_xz*sps_w_4_z;
-        const real sps_Q_t_6 = sps_d_G_in_axes3_yz*sps_w_4_x - axis_y_sps_axes3_x*sps_Q_t_2;
-        const real sps_Q_t_7 = axis_y_sps_axes3_y*sps_Q_t_2 - sps_d_G_in_axes3_yz*sps_w_4_y;
-        const real sps_Q_t_8 = axis_y_sps_axes3_z*sps_Q_t_2 - sps_d_G_in_axes3_yz*sps_w_4_z;
-        const real sps_Q_t_9 = axis_x_sps_axes3_x*sps_Q_t_3 - axis_y_sps_axes3_x*sps_Q_t_6;
+        const real sps_Q_t = R(0.5)*v.sps_d_c_in_axes3_xx;
+        const real sps_Q_t_2 = R(0.5)*v.sps_d_c_in_axes3_yy;
+        const real sps_Q_t_3 = v.axis_x_sps_axes3_x*sps_Q_t +
+            v.axis_y_sps_axes3_x*v.sps_d_c_in_axes3_xy - v.sps_d_G_in_axes3_xz*v.sps_w_4_x;
+        const real sps_Q_t_4 = v.sps_d_G_in_axes3_xz*v.sps_w_4_y - v.axis_x_sps_axes3_y*sps_Q_t -
+            v.axis_y_sps_axes3_y*v.sps_d_c_in_axes3_xy;
+        const real sps_Q_t_5 = v.axis_x_sps_axes3_z*sps_Q_t +
+            v.axis_y_sps_axes3_z*v.sps_d_c_in_axes3_xy - v.sps_d_G_in_axes3_xz*v.sps_w_4_z;
+        const real sps_Q_t_6 = v.sps_d_G_in_axes3_yz*v.sps_w_4_x - v.axis_y_sps_axes3_x*sps_Q_t_2;
+        const real sps_Q_t_7 = v.axis_y_sps_axes3_y*sps_Q_t_2 - v.sps_d_G_in_axes3_yz*v.sps_w_4_y;
+        const real sps_Q_t_8 = v.axis_y_sps_axes3_z*sps_Q_t_2 - v.sps_d_G_in_axes3_yz*v.sps_w_4_z;
+        const real sps_Q_t_9 = v.axis_x_sps_axes3_x*sps_Q_t_3 - v.axis_y_sps_axes3_x*sps_Q_t_6;
         const real sps_Q_xx = -2*sps_Q_t_9;
-        const real sps_Q_xy = axis_x_sps_axes3_x*sps_Q_t_4 + axis_y_sps_axes3_y*sps_Q_t_6 -
-            axis_x_sps_axes3_y*sps_Q_t_3 - axis_y_sps_axes3_x*sps_Q_t_7;
-        const real sps_Q_xz = axis_y_sps_axes3_z*sps_Q_t_6 - axis_x_sps_axes3_x*sps_Q_t_5 -
-            axis_x_sps_axes3_z*sps_Q_t_3 - axis_y_sps_axes3_x*sps_Q_t_8;
-        const real sps_Q_t_10 = axis_y_sps_axes3_y*sps_Q_t_7 - axis_x_sps_axes3_y*sps_Q_t_4;
+        const real sps_Q_xy = v.axis_x_sps_axes3_x*sps_Q_t_4 + v.axis_y_sps_axes3_y*sps_Q_t_6 -
+            v.axis_x_sps_axes3_y*sps_Q_t_3 - v.axis_y_sps_axes3_x*sps_Q_t_7;
+        const real sps_Q_xz = v.axis_y_sps_axes3_z*sps_Q_t_6 - v.axis_x_sps_axes3_x*sps_Q_t_5 -
+            v.axis_x_sps_axes3_z*sps_Q_t_3 - v.axis_y_sps_axes3_x*sps_Q_t_8;
+        const real sps_Q_t_10 = v.axis_y_sps_axes3_y*sps_Q_t_7 - v.axis_x_sps_axes3_y*sps_Q_t_4;
         const real sps_Q_yy = -2*sps_Q_t_10;
-        const real sps_Q_yz = axis_x_sps_axes3_z*sps_Q_t_4 - axis_x_sps_axes3_y*sps_Q_t_5 -
-            axis_y_sps_axes3_y*sps_Q_t_8 - axis_y_sps_axes3_z*sps_Q_t_7;
-        const real sps_Q_t_11 = axis_x_sps_axes3_z*sps_Q_t_5 + axis_y_sps_axes3_z*sps_Q_t_8;
+        const real sps_Q_yz = v.axis_x_sps_axes3_z*sps_Q_t_4 - v.axis_x_sps_axes3_y*sps_Q_t_5 -
+            v.axis_y_sps_axes3_y*sps_Q_t_8 - v.axis_y_sps_axes3_z*sps_Q_t_7;
+        const real sps_Q_t_11 = v.axis_x_sps_axes3_z*sps_Q_t_5 + v.axis_y_sps_axes3_z*sps_Q_t_8;
         const real sps_Q_zz = -2*sps_Q_t_11;
-        /* (sps-U) velocity and gravity terms of the leg force */
-        const real sps_U_x = sps_phi_4_o_in_axes3_z*sps_w_4_x -
-            axis_x_sps_axes3_x*sps_c_o_in_axes3_x - axis_y_sps_axes3_x*sps_c_o_in_axes3_y;
-        const real sps_U_y = sps_phi_4_o_in_axes3_z*sps_w_4_y -
-            axis_x_sps_axes3_y*sps_c_o_in_axes3_x - axis_y_sps_axes3_y*sps_c_o_in_axes3_y;
-        const real sps_U_z = sps_phi_4_o_in_axes3_z*sps_w_4_z -
-            axis_x_sps_axes3_z*sps_c_o_in_axes3_x - axis_y_sps_axes3_z*sps_c_o_in_axes3_y;
         /* (sps-d_P_3) coefficient of the acceleration in: inertia and weight of the leg along the extra
            degree of freedom of joint 3 */
-        const real sps_d_P_3_x = axis_x_sps_axes3_x*sps_d_mu_3_in_axes3_zx +
-            axis_y_sps_axes3_x*sps_d_mu_3_in_axes3_zy;
-        const real sps_d_P_3_y = axis_x_sps_axes3_y*sps_d_mu_3_in_axes3_zx +
-            axis_y_sps_axes3_y*sps_d_mu_3_in_axes3_zy;
-        const real sps_d_P_3_z = axis_x_sps_axes3_z*sps_d_mu_3_in_axes3_zx +
-            axis_y_sps_axes3_z*sps_d_mu_3_in_axes3_zy;
+        const real sps_d_P_3_x = v.axis_x_sps_axes3_x*v.sps_d_mu_3_in_axes3_zx +
+            v.axis_y_sps_axes3_x*v.sps_d_mu_3_in_axes3_zy;
+        const real sps_d_P_3_y = v.axis_x_sps_axes3_y*v.sps_d_mu_3_in_axes3_zx +
+            v.axis_y_sps_axes3_y*v.sps_d_mu_3_in_axes3_zy;
+        const real sps_d_P_3_z = v.axis_x_sps_axes3_z*v.sps_d_mu_3_in_axes3_zx +
+            v.axis_y_sps_axes3_z*v.sps_d_mu_3_in_axes3_zy;
         /* (M_ta) coupling block of M */
-        const real sps_M_ta_t = -sps_Q_xy*sps_q_z;
-        const real sps_M_ta_t_2 = sps_Q_xz*sps_q_y;
+        const real sps_M_ta_t = -sps_Q_xy*v.sps_q_z;
+        const real sps_M_ta_t_2 = sps_Q_xz*v.sps_q_y;
         const real sps_M_ta_t_3 = sps_M_ta_t + sps_M_ta_t_2;
-        const real sps_M_ta_t_4 = sps_Q_xx*sps_q_z - sps_Q_xz*sps_q_x;
-        const real sps_M_ta_t_5 = sps_Q_xy*sps_q_x - sps_Q_xx*sps_q_y;
-        const real sps_M_ta_t_6 = sps_Q_yz*sps_q_y - sps_Q_yy*sps_q_z;
-        const real sps_M_ta_t_7 = sps_Q_yz*sps_q_x;
+        const real sps_M_ta_t_4 = sps_Q_xx*v.sps_q_z - sps_Q_xz*v.sps_q_x;
+        const real sps_M_ta_t_5 = sps_Q_xy*v.sps_q_x - sps_Q_xx*v.sps_q_y;
+        const real sps_M_ta_t_6 = sps_Q_yz*v.sps_q_y - sps_Q_yy*v.sps_q_z;
+        const real sps_M_ta_t_7 = sps_Q_yz*v.sps_q_x;
         const real sps_M_ta_t_8 = sps_M_ta_t + sps_M_ta_t_7;
-        const real sps_M_ta_t_9 = sps_Q_yy*sps_q_x - sps_Q_xy*sps_q_y;
-        const real sps_M_ta_t_10 = sps_Q_zz*sps_q_y - sps_Q_yz*sps_q_z;
-        const real sps_M_ta_t_11 = sps_Q_xz*sps_q_z - sps_Q_zz*sps_q_x;
+        const real sps_M_ta_t_9 = sps_Q_yy*v.sps_q_x - sps_Q_xy*v.sps_q_y;
+        const real sps_M_ta_t_10 = sps_Q_zz*v.sps_q_y - sps_Q_yz*v.sps_q_z;
+        const real sps_M_ta_t_11 = sps_Q_xz*v.sps_q_z - sps_Q_zz*v.sps_q_x;
         const real sps_M_ta_t_12 = sps_M_ta_t_7 - sps_M_ta_t_2;
         /* (M_aa) rotational block of M */
-        const real sps_M_aa_t = sps_M_ta_t_10*sps_q_y - sps_M_ta_t_6*sps_q_z;
-        const real sps_M_aa_t_2 = sps_M_ta_t_11*sps_q_y + sps_M_ta_t_8*sps_q_z;
-        const real sps_M_aa_t_3 = sps_M_ta_t_12*sps_q_y - sps_M_ta_t_9*sps_q_z;
-        const real sps_M_aa_t_4 = sps_M_ta_t_4*sps_q_z - sps_M_ta_t_11*sps_q_x;
-        const real sps_M_aa_t_5 = sps_M_ta_t_5*sps_q_z - sps_M_ta_t_12*sps_q_x;
-        const real sps_M_aa_t_6 = sps_M_ta_t_9*sps_q_x - sps_M_ta_t_5*sps_q_y;
-        /* (Z_a) rotational part of Z */
-        const real sps_Z_a_t = sps_U_z*sps_q_y - sps_U_y*sps_q_z;
-        const real sps_Z_a_t_2 = sps_U_x*sps_q_z - sps_U_z*sps_q_x;
-        const real sps_Z_a_t_3 = sps_U_y*sps_q_x - sps_U_x*sps_q_y;
+        const real sps_M_aa_t = sps_M_ta_t_10*v.sps_q_y - sps_M_ta_t_6*v.sps_q_z;
+        const real sps_M_aa_t_2 = sps_M_ta_t_11*v.sps_q_y + sps_M_ta_t_8*v.sps_q_z;
+        const real sps_M_aa_t_3 = sps_M_ta_t_12*v.sps_q_y - sps_M_ta_t_9*v.sps_q_z;
+        const real sps_M_aa_t_4 = sps_M_ta_t_4*v.sps_q_z - sps_M_ta_t_11*v.sps_q_x;
+        const real sps_M_aa_t_5 = sps_M_ta_t_5*v.sps_q_z - sps_M_ta_t_12*v.sps_q_x;
+        const real sps_M_aa_t_6 = sps_M_ta_t_9*v.sps_q_x - sps_M_ta_t_5*v.sps_q_y;
         /* (sps-M_ya_3) coupling of extra joint 3 with the rotation of the platform */
-        const real sps_M_ya_3_x = sps_d_P_3_z*sps_q_y - sps_d_P_3_y*sps_q_z;
-        const real sps_M_ya_3_y = sps_d_P_3_x*sps_q_z - sps_d_P_3_z*sps_q_x;
-        const real sps_M_ya_3_z = sps_d_P_3_y*sps_q_x - sps_d_P_3_x*sps_q_y;
-        /* (sps-H_a_4) moment of the column's unit force about the platform origin */
-        const real sps_H_a_4_x = sps_q_y*sps_w_4_z - sps_q_z*sps_w_4_y;
-        const real sps_H_a_4_y = sps_q_z*sps_w_4_x - sps_q_x*sps_w_4_z;
-        const real sps_H_a_4_z = sps_q_x*sps_w_4_y - sps_q_y*sps_w_4_x;
+        const real sps_M_ya_3_x = sps_d_P_3_z*v.sps_q_y - sps_d_P_3_y*v.sps_q_z;
+        const real sps_M_ya_3_y = sps_d_P_3_x*v.sps_q_z - sps_d_P_3_z*v.sps_q_x;
+        const real sps_M_ya_3_z = sps_d_P_3_y*v.sps_q_x - sps_d_P_3_x*v.sps_q_y;
         /* (M_tt) translational block of M */
         gather(&terms[0*count + k], add, sps_Q_xx);  /* M_tt_xx_of_legs */
         gather(&terms[1*count + k], add, sps_Q_xy);  /* M_tt_xy */
@@ -2015,16 +2363,16 @@ INLINE void dynamics_legs_sps(const prepared *m, size_t w, size_t leg, size_t le
         gather(&terms[19*count + k], add, sps_M_aa_t_5);  /* M_aa_yz_of_legs */
         gather(&terms[20*count + k], add, sps_M_aa_t_6);  /* M_aa_zz_of_legs */
         /* (Z_t) translational part of Z */
-        gather(&terms[21*count + k], add, sps_U_x);  /* Z_t_x_of_legs */
-        gather(&terms[22*count + k], add, sps_U_y);  /* Z_t_y_of_legs */
-        gather(&terms[23*count + k], add, sps_U_z);  /* Z_t_z_of_legs */
+        gather(&terms[21*count + k], add, v.sps_U_x);  /* Z_t_x_of_legs */
+        gather(&terms[22*count + k], add, v.sps_U_y);  /* Z_t_y_of_legs */
+        gather(&terms[23*count + k], add, v.sps_U_z);  /* Z_t_z_of_legs */
         /* (Z_a) rotational part of Z */
-        gather(&terms[24*count + k], add, sps_Z_a_t);  /* Z_a_x_of_legs */
-        gather(&terms[25*count + k], add, sps_Z_a_t_2);  /* Z_a_y_of_legs */
-        gather(&terms[26*count + k], add, sps_Z_a_t_3);  /* Z_a_z_of_legs */
+        gather(&terms[24*count + k], add, v.sps_Z_a_t);  /* Z_a_x_of_legs */
+        gather(&terms[25*count + k], add, v.sps_Z_a_t_2);  /* Z_a_y_of_legs */
+        gather(&terms[26*count + k], add, v.sps_Z_a_t_3);  /* Z_a_z_of_legs */
         /* (sps-P_3_o) remainder without the acceleration in: inertia and weight of the leg along the
            extra degree of freedom of joint 3 */
-        o[0*count + k] = sps_mu_3_o_in_axes3_z;
+        o[0*count + k] = v.sps_mu_3_o_in_axes3_z;
         /* (sps-d_P_3) coefficient of the acceleration in: inertia and weight of the leg along the extra
            degree of freedom of joint 3 */
         o[1*count + k] = sps_d_P_3_x;
@@ -2042,20 +2390,23 @@ INLINE void dynamics_legs_sps(const prepared *m, size_t w, size_t leg, size_t le
         o[12*count + k] = sps_M_ya_3_z;
         /* (sps-dy_3_P_3) coefficient of the acceleration in: inertia and weight of the leg along the
            extra degree of freedom of joint 3 */
+        const real sps_J_group_3_in_axes3_zz = m->sps_J_group_3_in_axes3_zz[i];
         o[13*count + k] = sps_J_group_3_in_axes3_zz;
         /* (sps-w_4) reciprocal vector 3 */
-        o[14*count + k] = sps_w_4_x;
-        o[15*count + k] = sps_w_4_y;
-        o[16*count + k] = sps_w_4_z;
+        o[14*count + k] = v.sps_w_4_x;
+        o[15*count + k] = v.sps_w_4_y;
+        o[16*count + k] = v.sps_w_4_z;
         /* (sps-H_a_4) moment of the column's unit force about the platform origin */
-        o[17*count + k] = sps_H_a_4_x;
-        o[18*count + k] = sps_H_a_4_y;
-        o[19*count + k] = sps_H_a_4_z;
-        o[21*count + k] = ((sps_mu_3_o_in_axes3_z + (sps_d_P_3_x + sps_d_P_3_y)) + ((sps_d_P_3_z +
-            sps_M_ya_3_x) + (sps_M_ya_3_y + sps_M_ya_3_z))) + ((sps_J_group_3_in_axes3_zz +
-            (sps_w_4_x + sps_w_4_y)) + ((sps_w_4_z + sps_H_a_4_x) + (sps_H_a_4_y + sps_H_a_4_z)));
-        o[20*count + k] = UNLESS(magnitude(sps_rho2_1) > LEAST_1) + UNLESS(magnitude(sps_rho2_2) >
-            LEAST_1) + UNLESS(magnitude(sps_w_1_t) > LEAST_2);
+        o[17*count + k] = v.sps_H_a_4_x;
+        o[18*count + k] = v.sps_H_a_4_y;
+        o[19*count + k] = v.sps_H_a_4_z;
+        o[21*count + k] = ((v.sps_mu_3_o_in_axes3_z + (sps_d_P_3_x + sps_d_P_3_y)) + ((sps_d_P_3_z
+            + sps_M_ya_3_x) + (sps_M_ya_3_y + sps_M_ya_3_z))) + ((sps_J_group_3_in_axes3_zz +
+            (v.sps_w_4_x + v.sps_w_4_y)) + ((v.sps_w_4_z + v.sps_H_a_4_x) + (v.sps_H_a_4_y +
+            v.sps_H_a_4_z)));
+        o[20*count + k] = UNLESS(magnitude(v.sps_root_1_t) > LEAST_1) +
+            UNLESS(magnitude(v.sps_root_2_t) > LEAST_1) + UNLESS(magnitude(v.sps_w_1_t) >
+            LEAST_2);
     }
 }
 
@@ -2065,7 +2416,7 @@ INLINE void dynamics_place_sps(size_t w, size_t count, const real *o, size_t leg
     for (size_t k = 0; k < w; ++k) {
         Z[(6 + leg)*w + k] = o[0*count + first + k];
         M[((6 + leg)*NV)*w + k] = o[1*count + first + k];
-        M[(0*NV + 6 + leg)*w + k] = o[2*count + first + k];
+        M[(6 + leg)*w + k] = o[2*count + first + k];
         M[((6 + leg)*NV + 1)*w + k] = o[3*count + first + k];
         M[(NV + 6 + leg)*w + k] = o[4*count + first + k];
         M[((6 + leg)*NV + 2)*w + k] = o[5*count + first + k];
@@ -2077,7 +2428,7 @@ INLINE void dynamics_place_sps(size_t w, size_t count, const real *o, size_t leg
         M[((6 + leg)*NV + 5)*w + k] = o[11*count + first + k];
         M[(5*NV + 6 + leg)*w + k] = o[12*count + first + k];
         M[((6 + leg)*NV + 6 + leg)*w + k] = o[13*count + first + k];
-        H[(0*NU + leg)*w + k] = o[14*count + first + k];
+        H[leg*w + k] = o[14*count + first + k];
         H[(NU + leg)*w + k] = o[15*count + first + k];
         H[(2*NU + leg)*w + k] = o[16*count + first + k];
         H[(3*NU + leg)*w + k] = o[17*count + first + k];
@@ -2102,66 +2453,66 @@ INLINE void dynamics_after(const prepared *m, size_t w, const real *s, const rea
         const real M_tt_zz = M_tt_zz_of_legs + m_star;
         /* (M_ta) coupling block of M */
         const real M_ta_xy_of_legs = sums[7*w + k];
-        const real h_star_z = s[20*w + k];
+        const real h_star_z = s[11*w + k];
         const real M_ta_xy = M_ta_xy_of_legs + h_star_z;
         const real M_ta_xz_of_legs = sums[8*w + k];
-        const real h_star_y = s[19*w + k];
+        const real h_star_y = s[10*w + k];
         const real M_ta_xz = M_ta_xz_of_legs - h_star_y;
         const real M_ta_yx_of_legs = sums[9*w + k];
         const real M_ta_yx = M_ta_yx_of_legs - h_star_z;
         const real M_ta_yz_of_legs = sums[11*w + k];
-        const real h_star_x = s[18*w + k];
+        const real h_star_x = s[9*w + k];
         const real M_ta_yz = M_ta_yz_of_legs + h_star_x;
         const real M_ta_zx_of_legs = sums[12*w + k];
         const real M_ta_zx = M_ta_zx_of_legs + h_star_y;
         const real M_ta_zy_of_legs = sums[13*w + k];
         const real M_ta_zy = M_ta_zy_of_legs - h_star_x;
         /* (M_aa) rotational block of M */
-        const real J_star_xx = s[21*w + k];
+        const real J_star_xx = s[12*w + k];
         const real M_aa_xx_of_legs = sums[15*w + k];
         const real M_aa_xx = J_star_xx + M_aa_xx_of_legs;
-        const real J_star_xy = s[22*w + k];
+        const real J_star_xy = s[13*w + k];
         const real M_aa_xy_of_legs = sums[16*w + k];
         const real M_aa_xy = J_star_xy + M_aa_xy_of_legs;
-        const real J_star_xz = s[23*w + k];
+        const real J_star_xz = s[14*w + k];
         const real M_aa_xz_of_legs = sums[17*w + k];
         const real M_aa_xz = J_star_xz + M_aa_xz_of_legs;
-        const real J_star_yy = s[24*w + k];
+        const real J_star_yy = s[15*w + k];
         const real M_aa_yy_of_legs = sums[18*w + k];
         const real M_aa_yy = J_star_yy + M_aa_yy_of_legs;
-        const real J_star_yz = s[25*w + k];
+        const real J_star_yz = s[16*w + k];
         const real M_aa_yz_of_legs = sums[19*w + k];
         const real M_aa_yz = J_star_yz + M_aa_yz_of_legs;
-        const real J_star_zz = s[26*w + k];
+        const real J_star_zz = s[17*w + k];
         const real M_aa_zz_of_legs = sums[20*w + k];
         const real M_aa_zz = J_star_zz + M_aa_zz_of_legs;
         /* (Z_t) translational part of Z */
-        const real Z_p_x = s[27*w + k];
+        const real Z_p_x = s[18*w + k];
         const real Z_t_x_of_legs = sums[21*w + k];
         const real Z_t_x = Z_p_x + Z_t_x_of_legs;
-        const real Z_p_y = s[28*w + k];
+        const real Z_p_y = s[19*w + k];
         const real Z_t_y_of_legs = sums[22*w + k];
         const real Z_t_y = Z_p_y + Z_t_y_of_legs;
-        const real Z_p_z = s[29*w + k];
+        const real Z_p_z = s[20*w + k];
         const real Z_t_z_of_legs = sums[23*w + k];
         const real Z_t_z = Z_p_z + Z_t_z_of_legs;
         /* (Z_a) rotational part of Z */
         const real Z_a_x_of_legs = sums[24*w + k];
-        const real Z_q_x = s[30*w + k];
+        const real Z_q_x = s[21*w + k];
         const real Z_a_x = Z_a_x_of_legs + Z_q_x;
         const real Z_a_y_of_legs = sums[25*w + k];
-        const real Z_q_y = s[31*w + k];
+        const real Z_q_y = s[22*w + k];
         const real Z_a_y = Z_a_y_of_legs + Z_q_y;
         const real Z_a_z_of_legs = sums[26*w + k];
-        const real Z_q_z = s[32*w + k];
+        const real Z_q_z = s[23*w + k];
         const real Z_a_z = Z_a_z_of_legs + Z_q_z;
         /* (M_tt) translational block of M */
-        M[0*NV*w + k] = M_tt_xx;
+        M[0*w + k] = M_tt_xx;
         const real M_tt_xy = sums[1*w + k];
-        M[(0*NV + 1)*w + k] = M_tt_xy;
+        M[1*w + k] = M_tt_xy;
         M[NV*w + k] = M_tt_xy;
         const real M_tt_xz = sums[2*w + k];
-        M[(0*NV + 2)*w + k] = M_tt_xz;
+        M[2*w + k] = M_tt_xz;
         M[2*NV*w + k] = M_tt_xz;
         M[(NV + 1)*w + k] = M_tt_yy;
         const real M_tt_yz = sums[4*w + k];
@@ -2170,11 +2521,11 @@ INLINE void dynamics_after(const prepared *m, size_t w, const real *s, const rea
         M[(2*NV + 2)*w + k] = M_tt_zz;
         /* (M_ta) coupling block of M */
         const real M_ta_xx = sums[6*w + k];
-        M[(0*NV + 3)*w + k] = M_ta_xx;
+        M[3*w + k] = M_ta_xx;
         M[3*NV*w + k] = M_ta_xx;
-        M[(0*NV + 4)*w + k] = M_ta_xy;
+        M[4*w + k] = M_ta_xy;
         M[4*NV*w + k] = M_ta_xy;
-        M[(0*NV + 5)*w + k] = M_ta_xz;
+        M[5*w + k] = M_ta_xz;
         M[5*NV*w + k] = M_ta_xz;
         M[(NV + 3)*w + k] = M_ta_yx;
         M[(3*NV + 1)*w + k] = M_ta_yx;
@@ -2218,10 +2569,8 @@ INLINE void dynamics_after(const prepared *m, size_t w, const real *s, const rea
 INLINE void dynamics_run(const prepared *m, const real *X, const real *V, real *M, real *Z, real
     *H, verdict *t)
 {
-    real s[33] = {0};
-    real sums[27] = {0};
-    real terms_sps[27*LEGS(LEGS_OF_sps)] = {0};
-    real o_sps[22*LEGS(LEGS_OF_sps)] = {0};
+    real s[24] = {0}, sums[27] = {0};
+    real terms_sps[27*LEGS(LEGS_OF_sps)] = {0}, o_sps[22*LEGS(LEGS_OF_sps)] = {0};
     clear(M, NV*NV);
     clear(H, NV*NU);
     dynamics_before(m, 1, X, V, s, t);
@@ -2238,8 +2587,7 @@ INLINE void dynamics_run(const prepared *m, const real *X, const real *V, real *
 INLINE void dynamics_run_lanes(const prepared *m, const real *X, const real *V, real *M, real *Z,
     real *H, verdict *t)
 {
-    real s[33*LANES];
-    real sums[27*LANES];
+    real s[24*LANES], sums[27*LANES];
     real o_sps[22*LANES];
     clear(M, NV*NV*LANES);
     clear(H, NV*NU*LANES);
@@ -2256,305 +2604,76 @@ INLINE void dynamics_run_lanes(const prepared *m, const real *X, const real *V, 
 INLINE void M_before(const prepared *m, size_t w, const real *X, real *s, verdict *t)
 {
     for (size_t k = 0; k < w; ++k) {
-        /* X: named entries */
-        const real X_0 = X[0*w + k];
-        const real t_x = X_0;
-        const real X_1 = X[1*w + k];
-        const real t_y = X_1;
-        const real X_2 = X[2*w + k];
-        const real t_z = X_2;
-        const real X_3 = X[3*w + k];
-        const real X_4 = X[4*w + k];
-        const real X_5 = X[5*w + k];
-        const real X_6 = X[6*w + k];
-        const real quaternion_norm2 = X_3*X_3 + X_4*X_4 + X_5*X_5 + X_6*X_6;
-        const real quaternion_scale = 2/quaternion_norm2;
-        const real quaternion_sx = X_3*quaternion_scale;
-        const real quaternion_sy = X_4*quaternion_scale;
-        const real quaternion_sz = X_5*quaternion_scale;
-        const real quaternion_wx = X_6*quaternion_sx;
-        const real quaternion_wy = X_6*quaternion_sy;
-        const real quaternion_wz = X_6*quaternion_sz;
-        const real quaternion_xx = X_3*quaternion_sx;
-        const real quaternion_xy = X_3*quaternion_sy;
-        const real quaternion_xz = X_3*quaternion_sz;
-        const real quaternion_yy = X_4*quaternion_sy;
-        const real quaternion_yz = X_4*quaternion_sz;
-        const real quaternion_zz = X_5*quaternion_sz;
-        const real R_xx = 1 - quaternion_yy - quaternion_zz;
-        const real R_xy = quaternion_xy - quaternion_wz;
-        const real R_xz = quaternion_wy + quaternion_xz;
-        const real R_yx = quaternion_wz + quaternion_xy;
-        const real R_yy = 1 - quaternion_xx - quaternion_zz;
-        const real R_yz = quaternion_yz - quaternion_wx;
-        const real R_zx = quaternion_xz - quaternion_wy;
-        const real R_zy = quaternion_wx + quaternion_yz;
-        const real R_zz = 1 - quaternion_xx - quaternion_yy;
-        /* (h_star) first moment about the platform origin */
-        const real h_star_in_platform_x = m->h_star_in_platform_x;
-        const real h_star_in_platform_y = m->h_star_in_platform_y;
-        const real h_star_in_platform_z = m->h_star_in_platform_z;
-        const real h_star_x = R_xx*h_star_in_platform_x + R_xy*h_star_in_platform_y +
-            R_xz*h_star_in_platform_z;
-        const real h_star_y = R_yx*h_star_in_platform_x + R_yy*h_star_in_platform_y +
-            R_yz*h_star_in_platform_z;
-        const real h_star_z = R_zx*h_star_in_platform_x + R_zy*h_star_in_platform_y +
-            R_zz*h_star_in_platform_z;
-        /* (J_star) inertia tensor about the platform origin */
-        const real J_star_in_platform_xy = m->J_star_in_platform_xy;
-        const real J_star_in_platform_yz = m->J_star_in_platform_yz;
-        const real J_star_t_12 = m->J_star_t_12;
-        const real J_star_t = J_star_in_platform_xy*R_xx + J_star_in_platform_yz*R_xz -
-            J_star_t_12*R_xy;
-        const real J_star_t_2 = J_star_in_platform_xy*R_yx + J_star_in_platform_yz*R_yz -
-            J_star_t_12*R_yy;
-        const real J_star_t_3 = J_star_in_platform_xy*R_zx + J_star_in_platform_yz*R_zz -
-            J_star_t_12*R_zy;
-        const real J_star_in_platform_xz = m->J_star_in_platform_xz;
-        const real J_star_t_14 = m->J_star_t_14;
-        const real J_star_t_4 = J_star_t_14*R_xz - J_star_in_platform_xz*R_xx;
-        const real J_star_t_5 = J_star_t_14*R_yz - J_star_in_platform_xz*R_yx;
-        const real J_star_t_6 = J_star_t_14*R_zz - J_star_in_platform_xz*R_zx;
-        const real J_star_t_7 = J_star_t*R_xy - J_star_t_4*R_xz;
-        const real J_star_in_platform_xx = m->J_star_in_platform_xx;
-        const real J_star_xx = J_star_in_platform_xx + 2*J_star_t_7;
-        const real J_star_xy = J_star_t*R_yy + J_star_t_2*R_xy - J_star_t_4*R_yz -
-            J_star_t_5*R_xz;
-        const real J_star_xz = J_star_t*R_zy + J_star_t_3*R_xy - J_star_t_4*R_zz -
-            J_star_t_6*R_xz;
-        const real J_star_t_8 = J_star_t_2*R_yy - J_star_t_5*R_yz;
-        const real J_star_yy = J_star_in_platform_xx + 2*J_star_t_8;
-        const real J_star_yz = J_star_t_2*R_zy + J_star_t_3*R_yy - J_star_t_5*R_zz -
-            J_star_t_6*R_yz;
-        const real J_star_t_9 = J_star_t_3*R_zy - J_star_t_6*R_zz;
-        const real J_star_zz = J_star_in_platform_xx + 2*J_star_t_9;
-        s[0*w + k] = t_x;
-        s[1*w + k] = t_y;
-        s[2*w + k] = t_z;
-        s[3*w + k] = R_xx;
-        s[4*w + k] = R_xy;
-        s[5*w + k] = R_xz;
-        s[6*w + k] = R_yx;
-        s[7*w + k] = R_yy;
-        s[8*w + k] = R_yz;
-        s[9*w + k] = R_zx;
-        s[10*w + k] = R_zy;
-        s[11*w + k] = R_zz;
-        s[12*w + k] = h_star_x;
-        s[13*w + k] = h_star_y;
-        s[14*w + k] = h_star_z;
-        s[15*w + k] = J_star_xx;
-        s[16*w + k] = J_star_xy;
-        s[17*w + k] = J_star_xz;
-        s[18*w + k] = J_star_yy;
-        s[19*w + k] = J_star_yz;
-        s[20*w + k] = J_star_zz;
-        t->invalid[k] += UNLESS(is_finite(quaternion_scale)) + UNLESS(quaternion_scale > 0);
+        values v;
+        stage_X(m, w, k, X, &v);
+        stage_M_dynamics(m, &v);
+        s[0*w + k] = v.R_xx;
+        s[1*w + k] = v.R_xy;
+        s[2*w + k] = v.R_xz;
+        s[3*w + k] = v.R_yx;
+        s[4*w + k] = v.R_yy;
+        s[5*w + k] = v.R_yz;
+        s[6*w + k] = v.R_zx;
+        s[7*w + k] = v.R_zy;
+        s[8*w + k] = v.R_zz;
+        s[9*w + k] = v.h_star_x;
+        s[10*w + k] = v.h_star_y;
+        s[11*w + k] = v.h_star_z;
+        s[12*w + k] = v.J_star_xx;
+        s[13*w + k] = v.J_star_xy;
+        s[14*w + k] = v.J_star_xz;
+        s[15*w + k] = v.J_star_yy;
+        s[16*w + k] = v.J_star_yz;
+        s[17*w + k] = v.J_star_zz;
+        t->invalid[k] += UNLESS(is_finite(v.quaternion_scale)) + UNLESS(v.quaternion_scale > 0);
     }
 }
 
 INLINE void M_legs_sps(const prepared *m, size_t w, size_t leg, size_t legs, const real *s, size_t
     states, size_t count, int add, const real *X, real *terms, real *o)
 {
-    static const size_t place_sps_y_3_extra[] = {7, 8, 9, 10, 11, 12, 7, 7};
     for (size_t k = 0; k < count; ++k) {
         const size_t i = leg + legs*k;
         const size_t j = states*k;
-        /* (sps-S) from the base point to the connection point */
-        const real R_xx = s[3*w + j];
-        const real R_xy = s[4*w + j];
-        const real R_xz = s[5*w + j];
-        const real sps_platform_point_x = m->sps_platform_point_x[i];
-        const real sps_platform_point_y = m->sps_platform_point_y[i];
-        const real sps_platform_point_z = m->sps_platform_point_z[i];
-        const real sps_q_x = R_xx*sps_platform_point_x + R_xy*sps_platform_point_y +
-            R_xz*sps_platform_point_z;
-        const real R_yx = s[6*w + j];
-        const real R_yy = s[7*w + j];
-        const real R_yz = s[8*w + j];
-        const real sps_q_y = R_yx*sps_platform_point_x + R_yy*sps_platform_point_y +
-            R_yz*sps_platform_point_z;
-        const real R_zx = s[9*w + j];
-        const real R_zy = s[10*w + j];
-        const real R_zz = s[11*w + j];
-        const real sps_q_z = R_zx*sps_platform_point_x + R_zy*sps_platform_point_y +
-            R_zz*sps_platform_point_z;
-        const real sps_base_point_x = m->sps_base_point_x[i];
-        const real t_x = s[0*w + j];
-        const real sps_S_x = sps_q_x + t_x - sps_base_point_x;
-        const real sps_base_point_y = m->sps_base_point_y[i];
-        const real t_y = s[1*w + j];
-        const real sps_S_y = sps_q_y + t_y - sps_base_point_y;
-        const real sps_base_point_z = m->sps_base_point_z[i];
-        const real t_z = s[2*w + j];
-        const real sps_S_z = sps_q_z + t_z - sps_base_point_z;
-        /* (sps-c_3) cosine of the angle of joint 3 from its reference direction */
-        const real sps_y_3_extra = X[place_sps_y_3_extra[i]*w + j];
-        const real sps_c_3 = -sine(sps_y_3_extra);
-        /* (sps-s_3) sine of the angle of joint 3 from its reference direction */
-        const real sps_s_3 = cosine(sps_y_3_extra);
-        /* (sps-px_1) component along the reference direction */
-        const real sps_base_frame_xx = m->sps_base_frame_xx[i];
-        const real sps_base_frame_yx = m->sps_base_frame_yx[i];
-        const real sps_base_frame_zx = m->sps_base_frame_zx[i];
-        const real sps_px_1 = sps_S_x*sps_base_frame_xx + sps_S_y*sps_base_frame_yx +
-            sps_S_z*sps_base_frame_zx;
-        /* (sps-py_1) component across the reference direction */
-        const real sps_base_frame_xy = m->sps_base_frame_xy[i];
-        const real sps_base_frame_yy = m->sps_base_frame_yy[i];
-        const real sps_base_frame_zy = m->sps_base_frame_zy[i];
-        const real sps_py_1 = sps_S_x*sps_base_frame_xy + sps_S_y*sps_base_frame_yy +
-            sps_S_z*sps_base_frame_zy;
-        /* (sps-rho2_1) squared amplitude */
-        const real sps_rho2_1 = sps_px_1*sps_px_1 + sps_py_1*sps_py_1;
-        /* (sps-root_1) amplitude, with the sign of the branch */
-        const real sps_branch_1 = m->sps_branch_1[i];
-        const real sps_root_1 = sps_branch_1*root(sps_rho2_1);
-        /* (sps-c_1) cosine of the angle of joint 1 from its reference direction */
-        const real inv_sps_root_1 = 1/sps_root_1;
-        const real sps_c_1 = -inv_sps_root_1*sps_py_1;
-        /* (sps-s_1) sine of the angle of joint 1 from its reference direction */
-        const real sps_s_1 = inv_sps_root_1*sps_px_1;
-        /* (sps-xi_1) the vector from joint 1 to the connection point, resolved along link 1 */
-        const real sps_base_frame_xz = m->sps_base_frame_xz[i];
-        const real sps_base_frame_yz = m->sps_base_frame_yz[i];
-        const real sps_base_frame_zz = m->sps_base_frame_zz[i];
-        const real sps_xi_1_in_axes1_z = sps_S_x*sps_base_frame_xz + sps_S_y*sps_base_frame_yz +
-            sps_S_z*sps_base_frame_zz;
-        /* (sps-rho2_2) squared amplitude */
-        const real sps_rho2_2 = sps_rho2_1 + sps_xi_1_in_axes1_z*sps_xi_1_in_axes1_z;
-        /* (sps-root_2) amplitude, with the sign of the branch */
-        const real sps_branch_2 = m->sps_branch_2[i];
-        const real sps_root_2 = sps_branch_2*root(sps_rho2_2);
-        /* (sps-c_2) cosine of the angle of joint 2 from its reference direction */
-        const real inv_sps_root_2 = 1/sps_root_2;
-        const real sps_c_2_t = inv_sps_root_2*sps_root_1;
-        /* (sps-s_2) sine of the angle of joint 2 from its reference direction */
-        const real sps_s_2 = inv_sps_root_2*sps_xi_1_in_axes1_z;
-        /* (sps-v_1) velocity of the connection point per rate of joint 1 */
-        const real sps_e_1_in_axes3_x = -sps_c_2_t*sps_c_3;
-        const real sps_e_1_in_axes3_y = sps_c_2_t*sps_s_3;
-        const real sps_v_1_in_axes3_x = sps_e_1_in_axes3_y*sps_root_2;
-        const real sps_v_1_in_axes3_y = -sps_e_1_in_axes3_x*sps_root_2;
-        /* (sps-v_2) velocity of the connection point per rate of joint 2 */
-        const real sps_v_2_in_axes3_x = sps_c_3*sps_root_2;
-        const real sps_v_2_t = sps_root_2*sps_s_3;
-        /* (sps-w_1) reciprocal vector 1 */
-        const real sps_w_1_t = sps_v_1_in_axes3_x*sps_v_2_t +
-            sps_v_1_in_axes3_y*sps_v_2_in_axes3_x;
-        const real inv_sps_w_1_t = 1/sps_w_1_t;
-        const real sps_w_1_in_axes3_x = inv_sps_w_1_t*sps_v_2_t;
-        const real sps_w_1_in_axes3_y = inv_sps_w_1_t*sps_v_2_in_axes3_x;
-        /* (sps-w_2) reciprocal vector 2 */
-        const real sps_w_2_in_axes3_x = inv_sps_w_1_t*sps_v_1_in_axes3_y;
-        const real sps_w_2_t = inv_sps_w_1_t*sps_v_1_in_axes3_x;
-        /* (sps-w_4) reciprocal vector 3 */
-        const real sps_w_4_x = inv_sps_root_2*sps_S_x;
-        const real sps_w_4_y = inv_sps_root_2*sps_S_y;
-        const real sps_w_4_z = inv_sps_root_2*sps_S_z;
-        /* (sps-d_alpha_1) coefficient of the acceleration in: angular acceleration of link 1 */
-        const real sps_d_alpha_1_in_axes3_zx = sps_s_2*sps_w_1_in_axes3_x;
-        const real sps_d_alpha_1_in_axes3_zy = sps_s_2*sps_w_1_in_axes3_y;
-        /* (sps-d_alpha_2) coefficient of the acceleration in: angular acceleration of link 2 */
-        const real sps_d_alpha_2_in_axes3_xx = sps_e_1_in_axes3_x*sps_w_1_in_axes3_x +
-            sps_s_3*sps_w_2_in_axes3_x;
-        const real sps_d_alpha_2_in_axes3_xy = sps_e_1_in_axes3_x*sps_w_1_in_axes3_y -
-            sps_s_3*sps_w_2_t;
-        const real sps_d_alpha_2_in_axes3_yx = sps_c_3*sps_w_2_in_axes3_x +
-            sps_e_1_in_axes3_y*sps_w_1_in_axes3_x;
-        const real sps_d_alpha_2_in_axes3_yy = sps_e_1_in_axes3_y*sps_w_1_in_axes3_y -
-            sps_c_3*sps_w_2_t;
-        /* (sps-d_mu_3) coefficient of the acceleration in: inertia moment of the links that turn with
-           link 3, about their reference points */
-        const real sps_J_group_3_in_axes3_xx = m->sps_J_group_3_in_axes3_xx[i];
-        const real sps_J_group_3_in_axes3_xy = m->sps_J_group_3_in_axes3_xy[i];
-        const real sps_J_group_3_in_axes3_xz = m->sps_J_group_3_in_axes3_xz[i];
-        const real sps_d_mu_3_in_axes3_xx = sps_J_group_3_in_axes3_xx*sps_d_alpha_2_in_axes3_xx +
-            sps_J_group_3_in_axes3_xy*sps_d_alpha_2_in_axes3_yx +
-            sps_J_group_3_in_axes3_xz*sps_d_alpha_1_in_axes3_zx;
-        const real sps_J_group_3_in_axes3_yy = m->sps_J_group_3_in_axes3_yy[i];
-        const real sps_J_group_3_in_axes3_yz = m->sps_J_group_3_in_axes3_yz[i];
-        const real sps_d_mu_3_in_axes3_yy = sps_J_group_3_in_axes3_xy*sps_d_alpha_2_in_axes3_xy +
-            sps_J_group_3_in_axes3_yy*sps_d_alpha_2_in_axes3_yy +
-            sps_J_group_3_in_axes3_yz*sps_d_alpha_1_in_axes3_zy;
-        const real sps_h_4_in_spec3_x = m->sps_h_4_in_spec3_x[i];
-        const real sps_d_mu_3_in_axes3_xy = sps_J_group_3_in_axes3_xx*sps_d_alpha_2_in_axes3_xy +
-            sps_J_group_3_in_axes3_xy*sps_d_alpha_2_in_axes3_yy +
-            sps_J_group_3_in_axes3_xz*sps_d_alpha_1_in_axes3_zy - sps_h_4_in_spec3_x;
-        const real sps_d_mu_3_in_axes3_yx = sps_h_4_in_spec3_x +
-            sps_J_group_3_in_axes3_xy*sps_d_alpha_2_in_axes3_xx +
-            sps_J_group_3_in_axes3_yy*sps_d_alpha_2_in_axes3_yx +
-            sps_J_group_3_in_axes3_yz*sps_d_alpha_1_in_axes3_zx;
-        const real sps_J_group_3_in_axes3_zz = m->sps_J_group_3_in_axes3_zz[i];
-        const real sps_h_4_in_spec3_z = m->sps_h_4_in_spec3_z[i];
-        const real sps_d_mu_3_in_axes3_zx = sps_J_group_3_in_axes3_xz*sps_d_alpha_2_in_axes3_xx +
-            sps_J_group_3_in_axes3_yz*sps_d_alpha_2_in_axes3_yx +
-            sps_J_group_3_in_axes3_zz*sps_d_alpha_1_in_axes3_zx - sps_h_4_in_spec3_z;
-        const real sps_h_4_in_spec3_y = m->sps_h_4_in_spec3_y[i];
-        const real sps_d_mu_3_in_axes3_zy = sps_h_4_in_spec3_y +
-            sps_J_group_3_in_axes3_xz*sps_d_alpha_2_in_axes3_xy +
-            sps_J_group_3_in_axes3_yz*sps_d_alpha_2_in_axes3_yy +
-            sps_J_group_3_in_axes3_zz*sps_d_alpha_1_in_axes3_zy;
-        /* (sps-d_Gamma_2) coefficient of the acceleration in: moment about axis 2 of the distal links'
-           inertia and weight */
-        const real sps_d_Gamma_2_in_axes3_y = sps_c_3*sps_d_mu_3_in_axes3_yy +
-            sps_d_mu_3_in_axes3_xy*sps_s_3;
-        const real sps_d_Gamma_2_in_axes3_z = sps_h_4_in_spec3_z*sps_s_3 -
-            sps_c_3*sps_h_4_in_spec3_y;
-        /* (sps-d_Gamma_1) coefficient of the acceleration in: moment about axis 1 of the distal links'
-           inertia and weight */
-        const real sps_d_Gamma_1_in_axes3_y = sps_d_mu_3_in_axes3_xy*sps_e_1_in_axes3_x +
-            sps_d_mu_3_in_axes3_yy*sps_e_1_in_axes3_y + sps_d_mu_3_in_axes3_zy*sps_s_2;
-        const real sps_d_Gamma_1_in_axes3_z = sps_e_1_in_axes3_x*sps_h_4_in_spec3_z -
-            sps_e_1_in_axes3_y*sps_h_4_in_spec3_y;
-        /* (sps-d_G) coefficient of the acceleration in: force at the connection point that balances the
-           leg's inertia and weight along all degrees of freedom */
-        const real sps_d_G_in_axes3_xz = sps_d_Gamma_1_in_axes3_z*sps_w_1_in_axes3_x +
-            sps_d_Gamma_2_in_axes3_z*sps_w_2_in_axes3_x;
-        const real sps_d_G_in_axes3_yz = sps_d_Gamma_1_in_axes3_z*sps_w_1_in_axes3_y -
-            sps_d_Gamma_2_in_axes3_z*sps_w_2_t;
-        /* (sps-d_c) coefficient of the acceleration in: leg force on the platform without actuation and
-           without the mass at the connection point */
-        const real sps_d_c_in_axes3_xx = sps_d_alpha_1_in_axes3_zx*sps_h_4_in_spec3_z -
-            sps_d_alpha_2_in_axes3_yx*sps_h_4_in_spec3_x -
-            sps_w_1_in_axes3_x*(sps_d_mu_3_in_axes3_xx*sps_e_1_in_axes3_x +
-            sps_d_mu_3_in_axes3_yx*sps_e_1_in_axes3_y + sps_d_mu_3_in_axes3_zx*sps_s_2) -
-            sps_w_2_in_axes3_x*(sps_c_3*sps_d_mu_3_in_axes3_yx + sps_d_mu_3_in_axes3_xx*sps_s_3);
-        const real sps_d_c_in_axes3_xy = sps_d_alpha_1_in_axes3_zy*sps_h_4_in_spec3_z -
-            sps_d_Gamma_1_in_axes3_y*sps_w_1_in_axes3_x -
-            sps_d_Gamma_2_in_axes3_y*sps_w_2_in_axes3_x -
-            sps_d_alpha_2_in_axes3_yy*sps_h_4_in_spec3_x;
-        const real sps_d_c_in_axes3_yy = sps_d_Gamma_2_in_axes3_y*sps_w_2_t +
-            sps_d_alpha_2_in_axes3_xy*sps_h_4_in_spec3_x -
-            sps_d_Gamma_1_in_axes3_y*sps_w_1_in_axes3_y -
-            sps_d_alpha_1_in_axes3_zy*sps_h_4_in_spec3_y;
+        values_sps v;
+        stage_sps_X(m, w, i, j, s, X, &v);
+        stage_sps_M_dynamics(m, i, &v);
         /* (sps-Q) inertia of the leg at the connection point, without the mass gathered there */
-        const real sps_Q_t = sps_s_2*sps_s_3;
-        const real sps_Q_t_2 = sps_Q_t*sps_s_1 - sps_c_1*sps_c_3;
-        const real sps_Q_t_3 = sps_Q_t*sps_c_1 + sps_c_3*sps_s_1;
-        const real axis_y_sps_axes3_x = sps_Q_t_3*sps_base_frame_xy +
-            sps_base_frame_xz*sps_e_1_in_axes3_y - sps_Q_t_2*sps_base_frame_xx;
-        const real axis_y_sps_axes3_y = sps_Q_t_3*sps_base_frame_yy +
-            sps_base_frame_yz*sps_e_1_in_axes3_y - sps_Q_t_2*sps_base_frame_yx;
-        const real axis_y_sps_axes3_z = sps_Q_t_3*sps_base_frame_zy +
-            sps_base_frame_zz*sps_e_1_in_axes3_y - sps_Q_t_2*sps_base_frame_zx;
-        const real axis_x_sps_axes3_x = axis_y_sps_axes3_y*sps_w_4_z -
-            axis_y_sps_axes3_z*sps_w_4_y;
-        const real axis_x_sps_axes3_y = axis_y_sps_axes3_z*sps_w_4_x -
-            axis_y_sps_axes3_x*sps_w_4_z;
-        const real axis_x_sps_axes3_z = axis_y_sps_axes3_x*sps_w_4_y -
-            axis_y_sps_axes3_y*sps_w_4_x;
-        const real sps_Q_t_4 = R(0.5)*sps_d_c_in_axes3_xx;
-        const real sps_Q_t_5 = R(0.5)*sps_d_c_in_axes3_yy;
+        const real sps_Q_t = v.sps_c_3*v.sps_e_1_in_axes2_y;
+        const real sps_Q_t_2 = v.sps_s_1*v.sps_s_3 - sps_Q_t*v.sps_c_1;
+        const real sps_Q_t_3 = -sps_Q_t*v.sps_s_1 - v.sps_c_1*v.sps_s_3;
+        const real sps_base_frame_xx = m->sps_base_frame_xx[i];
+        const real sps_base_frame_xy = m->sps_base_frame_xy[i];
+        const real sps_base_frame_xz = m->sps_base_frame_xz[i];
+        const real axis_y_sps_axes3_x = sps_Q_t_2*sps_base_frame_xx + sps_Q_t_3*sps_base_frame_xy
+            + sps_base_frame_xz*v.sps_e_1_in_axes3_y;
+        const real sps_base_frame_yx = m->sps_base_frame_yx[i];
+        const real sps_base_frame_yy = m->sps_base_frame_yy[i];
+        const real sps_base_frame_yz = m->sps_base_frame_yz[i];
+        const real axis_y_sps_axes3_y = sps_Q_t_2*sps_base_frame_yx + sps_Q_t_3*sps_base_frame_yy
+            + sps_base_frame_yz*v.sps_e_1_in_axes3_y;
+        const real sps_base_frame_zx = m->sps_base_frame_zx[i];
+        const real sps_base_frame_zy = m->sps_base_frame_zy[i];
+        const real sps_base_frame_zz = m->sps_base_frame_zz[i];
+        const real axis_y_sps_axes3_z = sps_Q_t_2*sps_base_frame_zx + sps_Q_t_3*sps_base_frame_zy
+            + sps_base_frame_zz*v.sps_e_1_in_axes3_y;
+        const real axis_x_sps_axes3_x = axis_y_sps_axes3_y*v.sps_w_4_z -
+            axis_y_sps_axes3_z*v.sps_w_4_y;
+        const real axis_x_sps_axes3_y = axis_y_sps_axes3_z*v.sps_w_4_x -
+            axis_y_sps_axes3_x*v.sps_w_4_z;
+        const real axis_x_sps_axes3_z = axis_y_sps_axes3_x*v.sps_w_4_y -
+            axis_y_sps_axes3_y*v.sps_w_4_x;
+        const real sps_Q_t_4 = R(0.5)*v.sps_d_c_in_axes3_xx;
+        const real sps_Q_t_5 = R(0.5)*v.sps_d_c_in_axes3_yy;
         const real sps_Q_t_6 = axis_x_sps_axes3_x*sps_Q_t_4 +
-            axis_y_sps_axes3_x*sps_d_c_in_axes3_xy - sps_d_G_in_axes3_xz*sps_w_4_x;
-        const real sps_Q_t_7 = sps_d_G_in_axes3_xz*sps_w_4_y - axis_x_sps_axes3_y*sps_Q_t_4 -
-            axis_y_sps_axes3_y*sps_d_c_in_axes3_xy;
+            axis_y_sps_axes3_x*v.sps_d_c_in_axes3_xy - v.sps_d_G_in_axes3_xz*v.sps_w_4_x;
+        const real sps_Q_t_7 = v.sps_d_G_in_axes3_xz*v.sps_w_4_y - axis_x_sps_axes3_y*sps_Q_t_4 -
+            axis_y_sps_axes3_y*v.sps_d_c_in_axes3_xy;
         const real sps_Q_t_8 = axis_x_sps_axes3_z*sps_Q_t_4 +
-            axis_y_sps_axes3_z*sps_d_c_in_axes3_xy - sps_d_G_in_axes3_xz*sps_w_4_z;
-        const real sps_Q_t_9 = sps_d_G_in_axes3_yz*sps_w_4_x - axis_y_sps_axes3_x*sps_Q_t_5;
-        const real sps_Q_t_10 = axis_y_sps_axes3_y*sps_Q_t_5 - sps_d_G_in_axes3_yz*sps_w_4_y;
-        const real sps_Q_t_11 = axis_y_sps_axes3_z*sps_Q_t_5 - sps_d_G_in_axes3_yz*sps_w_4_z;
+            axis_y_sps_axes3_z*v.sps_d_c_in_axes3_xy - v.sps_d_G_in_axes3_xz*v.sps_w_4_z;
+        const real sps_Q_t_9 = v.sps_d_G_in_axes3_yz*v.sps_w_4_x - axis_y_sps_axes3_x*sps_Q_t_5;
+        const real sps_Q_t_10 = axis_y_sps_axes3_y*sps_Q_t_5 - v.sps_d_G_in_axes3_yz*v.sps_w_4_y;
+        const real sps_Q_t_11 = axis_y_sps_axes3_z*sps_Q_t_5 - v.sps_d_G_in_axes3_yz*v.sps_w_4_z;
         const real sps_Q_t_12 = axis_x_sps_axes3_x*sps_Q_t_6 - axis_y_sps_axes3_x*sps_Q_t_9;
         const real sps_Q_xx = -2*sps_Q_t_12;
         const real sps_Q_xy = axis_x_sps_axes3_x*sps_Q_t_7 + axis_y_sps_axes3_y*sps_Q_t_9 -
@@ -2569,36 +2688,36 @@ INLINE void M_legs_sps(const prepared *m, size_t w, size_t leg, size_t legs, con
         const real sps_Q_zz = -2*sps_Q_t_14;
         /* (sps-d_P_3) coefficient of the acceleration in: inertia and weight of the leg along the extra
            degree of freedom of joint 3 */
-        const real sps_d_P_3_x = axis_x_sps_axes3_x*sps_d_mu_3_in_axes3_zx +
-            axis_y_sps_axes3_x*sps_d_mu_3_in_axes3_zy;
-        const real sps_d_P_3_y = axis_x_sps_axes3_y*sps_d_mu_3_in_axes3_zx +
-            axis_y_sps_axes3_y*sps_d_mu_3_in_axes3_zy;
-        const real sps_d_P_3_z = axis_x_sps_axes3_z*sps_d_mu_3_in_axes3_zx +
-            axis_y_sps_axes3_z*sps_d_mu_3_in_axes3_zy;
+        const real sps_d_P_3_x = axis_x_sps_axes3_x*v.sps_d_mu_3_in_axes3_zx +
+            axis_y_sps_axes3_x*v.sps_d_mu_3_in_axes3_zy;
+        const real sps_d_P_3_y = axis_x_sps_axes3_y*v.sps_d_mu_3_in_axes3_zx +
+            axis_y_sps_axes3_y*v.sps_d_mu_3_in_axes3_zy;
+        const real sps_d_P_3_z = axis_x_sps_axes3_z*v.sps_d_mu_3_in_axes3_zx +
+            axis_y_sps_axes3_z*v.sps_d_mu_3_in_axes3_zy;
         /* (M_ta) coupling block of M */
-        const real sps_M_ta_t = -sps_Q_xy*sps_q_z;
-        const real sps_M_ta_t_2 = sps_Q_xz*sps_q_y;
+        const real sps_M_ta_t = -sps_Q_xy*v.sps_q_z;
+        const real sps_M_ta_t_2 = sps_Q_xz*v.sps_q_y;
         const real sps_M_ta_t_3 = sps_M_ta_t + sps_M_ta_t_2;
-        const real sps_M_ta_t_4 = sps_Q_xx*sps_q_z - sps_Q_xz*sps_q_x;
-        const real sps_M_ta_t_5 = sps_Q_xy*sps_q_x - sps_Q_xx*sps_q_y;
-        const real sps_M_ta_t_6 = sps_Q_yz*sps_q_y - sps_Q_yy*sps_q_z;
-        const real sps_M_ta_t_7 = sps_Q_yz*sps_q_x;
+        const real sps_M_ta_t_4 = sps_Q_xx*v.sps_q_z - sps_Q_xz*v.sps_q_x;
+        const real sps_M_ta_t_5 = sps_Q_xy*v.sps_q_x - sps_Q_xx*v.sps_q_y;
+        const real sps_M_ta_t_6 = sps_Q_yz*v.sps_q_y - sps_Q_yy*v.sps_q_z;
+        const real sps_M_ta_t_7 = sps_Q_yz*v.sps_q_x;
         const real sps_M_ta_t_8 = sps_M_ta_t + sps_M_ta_t_7;
-        const real sps_M_ta_t_9 = sps_Q_yy*sps_q_x - sps_Q_xy*sps_q_y;
-        const real sps_M_ta_t_10 = sps_Q_zz*sps_q_y - sps_Q_yz*sps_q_z;
-        const real sps_M_ta_t_11 = sps_Q_xz*sps_q_z - sps_Q_zz*sps_q_x;
+        const real sps_M_ta_t_9 = sps_Q_yy*v.sps_q_x - sps_Q_xy*v.sps_q_y;
+        const real sps_M_ta_t_10 = sps_Q_zz*v.sps_q_y - sps_Q_yz*v.sps_q_z;
+        const real sps_M_ta_t_11 = sps_Q_xz*v.sps_q_z - sps_Q_zz*v.sps_q_x;
         const real sps_M_ta_t_12 = sps_M_ta_t_7 - sps_M_ta_t_2;
         /* (M_aa) rotational block of M */
-        const real sps_M_aa_t = sps_M_ta_t_10*sps_q_y - sps_M_ta_t_6*sps_q_z;
-        const real sps_M_aa_t_2 = sps_M_ta_t_11*sps_q_y + sps_M_ta_t_8*sps_q_z;
-        const real sps_M_aa_t_3 = sps_M_ta_t_12*sps_q_y - sps_M_ta_t_9*sps_q_z;
-        const real sps_M_aa_t_4 = sps_M_ta_t_4*sps_q_z - sps_M_ta_t_11*sps_q_x;
-        const real sps_M_aa_t_5 = sps_M_ta_t_5*sps_q_z - sps_M_ta_t_12*sps_q_x;
-        const real sps_M_aa_t_6 = sps_M_ta_t_9*sps_q_x - sps_M_ta_t_5*sps_q_y;
+        const real sps_M_aa_t = sps_M_ta_t_10*v.sps_q_y - sps_M_ta_t_6*v.sps_q_z;
+        const real sps_M_aa_t_2 = sps_M_ta_t_11*v.sps_q_y + sps_M_ta_t_8*v.sps_q_z;
+        const real sps_M_aa_t_3 = sps_M_ta_t_12*v.sps_q_y - sps_M_ta_t_9*v.sps_q_z;
+        const real sps_M_aa_t_4 = sps_M_ta_t_4*v.sps_q_z - sps_M_ta_t_11*v.sps_q_x;
+        const real sps_M_aa_t_5 = sps_M_ta_t_5*v.sps_q_z - sps_M_ta_t_12*v.sps_q_x;
+        const real sps_M_aa_t_6 = sps_M_ta_t_9*v.sps_q_x - sps_M_ta_t_5*v.sps_q_y;
         /* (sps-M_ya_3) coupling of extra joint 3 with the rotation of the platform */
-        const real sps_M_ya_3_x = sps_d_P_3_z*sps_q_y - sps_d_P_3_y*sps_q_z;
-        const real sps_M_ya_3_y = sps_d_P_3_x*sps_q_z - sps_d_P_3_z*sps_q_x;
-        const real sps_M_ya_3_z = sps_d_P_3_y*sps_q_x - sps_d_P_3_x*sps_q_y;
+        const real sps_M_ya_3_x = sps_d_P_3_z*v.sps_q_y - sps_d_P_3_y*v.sps_q_z;
+        const real sps_M_ya_3_y = sps_d_P_3_x*v.sps_q_z - sps_d_P_3_z*v.sps_q_x;
+        const real sps_M_ya_3_z = sps_d_P_3_y*v.sps_q_x - sps_d_P_3_x*v.sps_q_y;
         /* (M_tt) translational block of M */
         gather(&terms[0*count + k], add, sps_Q_xx);  /* M_tt_xx_of_legs */
         gather(&terms[1*count + k], add, sps_Q_xy);  /* M_tt_xy */
@@ -2640,11 +2759,13 @@ INLINE void M_legs_sps(const prepared *m, size_t w, size_t leg, size_t legs, con
         o[11*count + k] = sps_M_ya_3_z;
         /* (sps-dy_3_P_3) coefficient of the acceleration in: inertia and weight of the leg along the
            extra degree of freedom of joint 3 */
+        const real sps_J_group_3_in_axes3_zz = m->sps_J_group_3_in_axes3_zz[i];
         o[12*count + k] = sps_J_group_3_in_axes3_zz;
         o[14*count + k] = (sps_d_P_3_x + (sps_d_P_3_y + sps_d_P_3_z)) + ((sps_M_ya_3_x +
             sps_M_ya_3_y) + (sps_M_ya_3_z + sps_J_group_3_in_axes3_zz));
-        o[13*count + k] = UNLESS(magnitude(sps_rho2_1) > LEAST_1) + UNLESS(magnitude(sps_rho2_2) >
-            LEAST_1) + UNLESS(magnitude(sps_w_1_t) > LEAST_2);
+        o[13*count + k] = UNLESS(magnitude(v.sps_root_1_t) > LEAST_1) +
+            UNLESS(magnitude(v.sps_root_2_t) > LEAST_1) + UNLESS(magnitude(v.sps_w_1_t) >
+            LEAST_2);
     }
 }
 
@@ -2653,7 +2774,7 @@ INLINE void M_place_sps(size_t w, size_t count, const real *o, size_t leg, size_
 {
     for (size_t k = 0; k < w; ++k) {
         M[((6 + leg)*NV)*w + k] = o[0*count + first + k];
-        M[(0*NV + 6 + leg)*w + k] = o[1*count + first + k];
+        M[(6 + leg)*w + k] = o[1*count + first + k];
         M[((6 + leg)*NV + 1)*w + k] = o[2*count + first + k];
         M[(NV + 6 + leg)*w + k] = o[3*count + first + k];
         M[((6 + leg)*NV + 2)*w + k] = o[4*count + first + k];
@@ -2684,46 +2805,46 @@ INLINE void M_after(const prepared *m, size_t w, const real *s, const real *sums
         const real M_tt_zz = M_tt_zz_of_legs + m_star;
         /* (M_ta) coupling block of M */
         const real M_ta_xy_of_legs = sums[7*w + k];
-        const real h_star_z = s[14*w + k];
+        const real h_star_z = s[11*w + k];
         const real M_ta_xy = M_ta_xy_of_legs + h_star_z;
         const real M_ta_xz_of_legs = sums[8*w + k];
-        const real h_star_y = s[13*w + k];
+        const real h_star_y = s[10*w + k];
         const real M_ta_xz = M_ta_xz_of_legs - h_star_y;
         const real M_ta_yx_of_legs = sums[9*w + k];
         const real M_ta_yx = M_ta_yx_of_legs - h_star_z;
         const real M_ta_yz_of_legs = sums[11*w + k];
-        const real h_star_x = s[12*w + k];
+        const real h_star_x = s[9*w + k];
         const real M_ta_yz = M_ta_yz_of_legs + h_star_x;
         const real M_ta_zx_of_legs = sums[12*w + k];
         const real M_ta_zx = M_ta_zx_of_legs + h_star_y;
         const real M_ta_zy_of_legs = sums[13*w + k];
         const real M_ta_zy = M_ta_zy_of_legs - h_star_x;
         /* (M_aa) rotational block of M */
-        const real J_star_xx = s[15*w + k];
+        const real J_star_xx = s[12*w + k];
         const real M_aa_xx_of_legs = sums[15*w + k];
         const real M_aa_xx = J_star_xx + M_aa_xx_of_legs;
-        const real J_star_xy = s[16*w + k];
+        const real J_star_xy = s[13*w + k];
         const real M_aa_xy_of_legs = sums[16*w + k];
         const real M_aa_xy = J_star_xy + M_aa_xy_of_legs;
-        const real J_star_xz = s[17*w + k];
+        const real J_star_xz = s[14*w + k];
         const real M_aa_xz_of_legs = sums[17*w + k];
         const real M_aa_xz = J_star_xz + M_aa_xz_of_legs;
-        const real J_star_yy = s[18*w + k];
+        const real J_star_yy = s[15*w + k];
         const real M_aa_yy_of_legs = sums[18*w + k];
         const real M_aa_yy = J_star_yy + M_aa_yy_of_legs;
-        const real J_star_yz = s[19*w + k];
+        const real J_star_yz = s[16*w + k];
         const real M_aa_yz_of_legs = sums[19*w + k];
         const real M_aa_yz = J_star_yz + M_aa_yz_of_legs;
-        const real J_star_zz = s[20*w + k];
+        const real J_star_zz = s[17*w + k];
         const real M_aa_zz_of_legs = sums[20*w + k];
         const real M_aa_zz = J_star_zz + M_aa_zz_of_legs;
         /* (M_tt) translational block of M */
-        M[0*NV*w + k] = M_tt_xx;
+        M[0*w + k] = M_tt_xx;
         const real M_tt_xy = sums[1*w + k];
-        M[(0*NV + 1)*w + k] = M_tt_xy;
+        M[1*w + k] = M_tt_xy;
         M[NV*w + k] = M_tt_xy;
         const real M_tt_xz = sums[2*w + k];
-        M[(0*NV + 2)*w + k] = M_tt_xz;
+        M[2*w + k] = M_tt_xz;
         M[2*NV*w + k] = M_tt_xz;
         M[(NV + 1)*w + k] = M_tt_yy;
         const real M_tt_yz = sums[4*w + k];
@@ -2732,11 +2853,11 @@ INLINE void M_after(const prepared *m, size_t w, const real *s, const real *sums
         M[(2*NV + 2)*w + k] = M_tt_zz;
         /* (M_ta) coupling block of M */
         const real M_ta_xx = sums[6*w + k];
-        M[(0*NV + 3)*w + k] = M_ta_xx;
+        M[3*w + k] = M_ta_xx;
         M[3*NV*w + k] = M_ta_xx;
-        M[(0*NV + 4)*w + k] = M_ta_xy;
+        M[4*w + k] = M_ta_xy;
         M[4*NV*w + k] = M_ta_xy;
-        M[(0*NV + 5)*w + k] = M_ta_xz;
+        M[5*w + k] = M_ta_xz;
         M[5*NV*w + k] = M_ta_xz;
         M[(NV + 3)*w + k] = M_ta_yx;
         M[(3*NV + 1)*w + k] = M_ta_yx;
@@ -2771,10 +2892,8 @@ INLINE void M_after(const prepared *m, size_t w, const real *s, const real *sums
 
 INLINE void M_run(const prepared *m, const real *X, real *M, verdict *t)
 {
-    real s[21] = {0};
-    real sums[21] = {0};
-    real terms_sps[21*LEGS(LEGS_OF_sps)] = {0};
-    real o_sps[15*LEGS(LEGS_OF_sps)] = {0};
+    real s[18] = {0}, sums[21] = {0};
+    real terms_sps[21*LEGS(LEGS_OF_sps)] = {0}, o_sps[15*LEGS(LEGS_OF_sps)] = {0};
     clear(M, NV*NV);
     M_before(m, 1, X, s, t);
     M_legs_sps(m, 1, 0, 1, s, 0, LEGS(LEGS_OF_sps), 0, X, terms_sps, o_sps);
@@ -2789,8 +2908,7 @@ INLINE void M_run(const prepared *m, const real *X, real *M, verdict *t)
 
 INLINE void M_run_lanes(const prepared *m, const real *X, real *M, verdict *t)
 {
-    real s[21*LANES];
-    real sums[21*LANES];
+    real s[18*LANES], sums[21*LANES];
     real o_sps[15*LANES];
     clear(M, NV*NV*LANES);
     M_before(m, LANES, X, s, t);
@@ -2807,431 +2925,54 @@ INLINE void Z_before(const prepared *m, size_t w, const real *X, const real *V, 
     *t)
 {
     for (size_t k = 0; k < w; ++k) {
-        /* X: named entries */
-        const real X_0 = X[0*w + k];
-        const real t_x = X_0;
-        const real X_1 = X[1*w + k];
-        const real t_y = X_1;
-        const real X_2 = X[2*w + k];
-        const real t_z = X_2;
-        const real X_3 = X[3*w + k];
-        const real X_4 = X[4*w + k];
-        const real X_5 = X[5*w + k];
-        const real X_6 = X[6*w + k];
-        const real quaternion_norm2 = X_3*X_3 + X_4*X_4 + X_5*X_5 + X_6*X_6;
-        const real quaternion_scale = 2/quaternion_norm2;
-        const real quaternion_sx = X_3*quaternion_scale;
-        const real quaternion_sy = X_4*quaternion_scale;
-        const real quaternion_sz = X_5*quaternion_scale;
-        const real quaternion_wx = X_6*quaternion_sx;
-        const real quaternion_wy = X_6*quaternion_sy;
-        const real quaternion_wz = X_6*quaternion_sz;
-        const real quaternion_xx = X_3*quaternion_sx;
-        const real quaternion_xy = X_3*quaternion_sy;
-        const real quaternion_xz = X_3*quaternion_sz;
-        const real quaternion_yy = X_4*quaternion_sy;
-        const real quaternion_yz = X_4*quaternion_sz;
-        const real quaternion_zz = X_5*quaternion_sz;
-        const real R_xx = 1 - quaternion_yy - quaternion_zz;
-        const real R_xy = quaternion_xy - quaternion_wz;
-        const real R_xz = quaternion_wy + quaternion_xz;
-        const real R_yx = quaternion_wz + quaternion_xy;
-        const real R_yy = 1 - quaternion_xx - quaternion_zz;
-        const real R_yz = quaternion_yz - quaternion_wx;
-        const real R_zx = quaternion_xz - quaternion_wy;
-        const real R_zy = quaternion_wx + quaternion_yz;
-        const real R_zz = 1 - quaternion_xx - quaternion_yy;
-        /* V: named entries */
-        const real V_0 = V[0*w + k];
-        const real t_dot_x = V_0;
-        const real V_1 = V[1*w + k];
-        const real t_dot_y = V_1;
-        const real V_2 = V[2*w + k];
-        const real t_dot_z = V_2;
-        const real V_3 = V[3*w + k];
-        const real omega_x = V_3;
-        const real V_4 = V[4*w + k];
-        const real omega_y = V_4;
-        const real V_5 = V[5*w + k];
-        const real omega_z = V_5;
-        /* (h_star) first moment about the platform origin */
-        const real h_star_in_platform_x = m->h_star_in_platform_x;
-        const real h_star_in_platform_y = m->h_star_in_platform_y;
-        const real h_star_in_platform_z = m->h_star_in_platform_z;
-        const real h_star_x = R_xx*h_star_in_platform_x + R_xy*h_star_in_platform_y +
-            R_xz*h_star_in_platform_z;
-        const real h_star_y = R_yx*h_star_in_platform_x + R_yy*h_star_in_platform_y +
-            R_yz*h_star_in_platform_z;
-        const real h_star_z = R_zx*h_star_in_platform_x + R_zy*h_star_in_platform_y +
-            R_zz*h_star_in_platform_z;
-        /* (Z_p) centripetal force and weight of the platform */
-        const real Z_p_t_4 = h_star_z*omega_y - h_star_y*omega_z;
-        const real Z_p_t_5 = h_star_x*omega_z - h_star_z*omega_x;
-        const real Z_p_t_6 = h_star_y*omega_x - h_star_x*omega_y;
-        const real Z_p_t = m->Z_p_t;
-        const real Z_p_x = Z_p_t_6*omega_y - Z_p_t - Z_p_t_5*omega_z;
-        const real Z_p_t_2 = m->Z_p_t_2;
-        const real Z_p_y = Z_p_t_4*omega_z - Z_p_t_2 - Z_p_t_6*omega_x;
-        const real Z_p_t_3 = m->Z_p_t_3;
-        const real Z_p_z = Z_p_t_5*omega_x - Z_p_t_3 - Z_p_t_4*omega_y;
-        /* (Z_q) gyroscopic moment and moment of the weight of the platform */
-        const real gravity_x = m->gravity_x;
-        const real gravity_y = m->gravity_y;
-        const real gravity_z = m->gravity_z;
-        const real g_in_platform_x = R_xx*gravity_x + R_yx*gravity_y + R_zx*gravity_z;
-        const real g_in_platform_y = R_xy*gravity_x + R_yy*gravity_y + R_zy*gravity_z;
-        const real g_in_platform_z = R_xz*gravity_x + R_yz*gravity_y + R_zz*gravity_z;
-        const real omega_in_platform_x = R_xx*omega_x + R_yx*omega_y + R_zx*omega_z;
-        const real omega_in_platform_y = R_xy*omega_x + R_yy*omega_y + R_zy*omega_z;
-        const real omega_in_platform_z = R_xz*omega_x + R_yz*omega_y + R_zz*omega_z;
-        const real J_star_in_platform_xx = m->J_star_in_platform_xx;
-        const real J_star_in_platform_xy = m->J_star_in_platform_xy;
-        const real J_star_in_platform_xz = m->J_star_in_platform_xz;
-        const real Z_q_t = J_star_in_platform_xx*omega_in_platform_x +
-            J_star_in_platform_xy*omega_in_platform_y + J_star_in_platform_xz*omega_in_platform_z;
-        const real J_star_in_platform_yy = m->J_star_in_platform_yy;
-        const real J_star_in_platform_yz = m->J_star_in_platform_yz;
-        const real Z_q_t_2 = J_star_in_platform_xy*omega_in_platform_x +
-            J_star_in_platform_yy*omega_in_platform_y + J_star_in_platform_yz*omega_in_platform_z;
-        const real J_star_in_platform_zz = m->J_star_in_platform_zz;
-        const real Z_q_t_3 = J_star_in_platform_xz*omega_in_platform_x +
-            J_star_in_platform_yz*omega_in_platform_y + J_star_in_platform_zz*omega_in_platform_z;
-        const real Z_q_in_platform_x = Z_q_t_3*omega_in_platform_y +
-            g_in_platform_y*h_star_in_platform_z - Z_q_t_2*omega_in_platform_z -
-            g_in_platform_z*h_star_in_platform_y;
-        const real Z_q_in_platform_y = Z_q_t*omega_in_platform_z +
-            g_in_platform_z*h_star_in_platform_x - Z_q_t_3*omega_in_platform_x -
-            g_in_platform_x*h_star_in_platform_z;
-        const real Z_q_in_platform_z = Z_q_t_2*omega_in_platform_x +
-            g_in_platform_x*h_star_in_platform_y - Z_q_t*omega_in_platform_y -
-            g_in_platform_y*h_star_in_platform_x;
-        const real Z_q_x = R_xx*Z_q_in_platform_x + R_xy*Z_q_in_platform_y +
-            R_xz*Z_q_in_platform_z;
-        const real Z_q_y = R_yx*Z_q_in_platform_x + R_yy*Z_q_in_platform_y +
-            R_yz*Z_q_in_platform_z;
-        const real Z_q_z = R_zx*Z_q_in_platform_x + R_zy*Z_q_in_platform_y +
-            R_zz*Z_q_in_platform_z;
-        s[0*w + k] = t_x;
-        s[1*w + k] = t_y;
-        s[2*w + k] = t_z;
-        s[3*w + k] = R_xx;
-        s[4*w + k] = R_xy;
-        s[5*w + k] = R_xz;
-        s[6*w + k] = R_yx;
-        s[7*w + k] = R_yy;
-        s[8*w + k] = R_yz;
-        s[9*w + k] = R_zx;
-        s[10*w + k] = R_zy;
-        s[11*w + k] = R_zz;
-        s[12*w + k] = t_dot_x;
-        s[13*w + k] = t_dot_y;
-        s[14*w + k] = t_dot_z;
-        s[15*w + k] = omega_x;
-        s[16*w + k] = omega_y;
-        s[17*w + k] = omega_z;
-        s[18*w + k] = Z_p_x;
-        s[19*w + k] = Z_p_y;
-        s[20*w + k] = Z_p_z;
-        s[21*w + k] = Z_q_x;
-        s[22*w + k] = Z_q_y;
-        s[23*w + k] = Z_q_z;
-        t->invalid[k] += UNLESS(is_finite(quaternion_scale)) + UNLESS(quaternion_scale > 0);
+        values v;
+        stage_X(m, w, k, X, &v);
+        stage_V_X(w, k, V, &v);
+        stage_Z_dynamics(m, w, k, V, &v);
+        s[0*w + k] = v.R_xx;
+        s[1*w + k] = v.R_xy;
+        s[2*w + k] = v.R_xz;
+        s[3*w + k] = v.R_yx;
+        s[4*w + k] = v.R_yy;
+        s[5*w + k] = v.R_yz;
+        s[6*w + k] = v.R_zx;
+        s[7*w + k] = v.R_zy;
+        s[8*w + k] = v.R_zz;
+        s[9*w + k] = v.Z_p_x;
+        s[10*w + k] = v.Z_p_y;
+        s[11*w + k] = v.Z_p_z;
+        s[12*w + k] = v.Z_q_x;
+        s[13*w + k] = v.Z_q_y;
+        s[14*w + k] = v.Z_q_z;
+        t->invalid[k] += UNLESS(is_finite(v.quaternion_scale)) + UNLESS(v.quaternion_scale > 0);
     }
 }
 
 INLINE void Z_legs_sps(const prepared *m, size_t w, size_t leg, size_t legs, const real *s, size_t
     states, size_t count, int add, const real *X, const real *V, real *terms, real *o)
 {
-    static const size_t place_sps_y_3_extra[] = {7, 8, 9, 10, 11, 12, 7, 7};
-    static const size_t place_sps_yd_3[] = {6, 7, 8, 9, 10, 11, 6, 6};
     for (size_t k = 0; k < count; ++k) {
         const size_t i = leg + legs*k;
         const size_t j = states*k;
-        /* (sps-S) from the base point to the connection point */
-        const real R_xx = s[3*w + j];
-        const real R_xy = s[4*w + j];
-        const real R_xz = s[5*w + j];
-        const real sps_platform_point_x = m->sps_platform_point_x[i];
-        const real sps_platform_point_y = m->sps_platform_point_y[i];
-        const real sps_platform_point_z = m->sps_platform_point_z[i];
-        const real sps_q_x = R_xx*sps_platform_point_x + R_xy*sps_platform_point_y +
-            R_xz*sps_platform_point_z;
-        const real R_yx = s[6*w + j];
-        const real R_yy = s[7*w + j];
-        const real R_yz = s[8*w + j];
-        const real sps_q_y = R_yx*sps_platform_point_x + R_yy*sps_platform_point_y +
-            R_yz*sps_platform_point_z;
-        const real R_zx = s[9*w + j];
-        const real R_zy = s[10*w + j];
-        const real R_zz = s[11*w + j];
-        const real sps_q_z = R_zx*sps_platform_point_x + R_zy*sps_platform_point_y +
-            R_zz*sps_platform_point_z;
-        const real sps_base_point_x = m->sps_base_point_x[i];
-        const real t_x = s[0*w + j];
-        const real sps_S_x = sps_q_x + t_x - sps_base_point_x;
-        const real sps_base_point_y = m->sps_base_point_y[i];
-        const real t_y = s[1*w + j];
-        const real sps_S_y = sps_q_y + t_y - sps_base_point_y;
-        const real sps_base_point_z = m->sps_base_point_z[i];
-        const real t_z = s[2*w + j];
-        const real sps_S_z = sps_q_z + t_z - sps_base_point_z;
-        /* (sps-c_3) cosine of the angle of joint 3 from its reference direction */
-        const real sps_y_3_extra = X[place_sps_y_3_extra[i]*w + j];
-        const real sps_c_3 = -sine(sps_y_3_extra);
-        /* (sps-s_3) sine of the angle of joint 3 from its reference direction */
-        const real sps_s_3 = cosine(sps_y_3_extra);
-        /* (sps-px_1) component along the reference direction */
-        const real sps_base_frame_xx = m->sps_base_frame_xx[i];
-        const real sps_base_frame_yx = m->sps_base_frame_yx[i];
-        const real sps_base_frame_zx = m->sps_base_frame_zx[i];
-        const real sps_px_1 = sps_S_x*sps_base_frame_xx + sps_S_y*sps_base_frame_yx +
-            sps_S_z*sps_base_frame_zx;
-        /* (sps-py_1) component across the reference direction */
-        const real sps_base_frame_xy = m->sps_base_frame_xy[i];
-        const real sps_base_frame_yy = m->sps_base_frame_yy[i];
-        const real sps_base_frame_zy = m->sps_base_frame_zy[i];
-        const real sps_py_1 = sps_S_x*sps_base_frame_xy + sps_S_y*sps_base_frame_yy +
-            sps_S_z*sps_base_frame_zy;
-        /* (sps-rho2_1) squared amplitude */
-        const real sps_rho2_1 = sps_px_1*sps_px_1 + sps_py_1*sps_py_1;
-        /* (sps-root_1) amplitude, with the sign of the branch */
-        const real sps_branch_1 = m->sps_branch_1[i];
-        const real sps_root_1 = sps_branch_1*root(sps_rho2_1);
-        /* (sps-c_1) cosine of the angle of joint 1 from its reference direction */
-        const real inv_sps_root_1 = 1/sps_root_1;
-        const real sps_c_1 = -inv_sps_root_1*sps_py_1;
-        /* (sps-s_1) sine of the angle of joint 1 from its reference direction */
-        const real sps_s_1 = inv_sps_root_1*sps_px_1;
-        /* (sps-xi_1) the vector from joint 1 to the connection point, resolved along link 1 */
-        const real sps_base_frame_xz = m->sps_base_frame_xz[i];
-        const real sps_base_frame_yz = m->sps_base_frame_yz[i];
-        const real sps_base_frame_zz = m->sps_base_frame_zz[i];
-        const real sps_xi_1_in_axes1_z = sps_S_x*sps_base_frame_xz + sps_S_y*sps_base_frame_yz +
-            sps_S_z*sps_base_frame_zz;
-        /* (sps-rho2_2) squared amplitude */
-        const real sps_rho2_2 = sps_rho2_1 + sps_xi_1_in_axes1_z*sps_xi_1_in_axes1_z;
-        /* (sps-root_2) amplitude, with the sign of the branch */
-        const real sps_branch_2 = m->sps_branch_2[i];
-        const real sps_root_2 = sps_branch_2*root(sps_rho2_2);
-        /* (sps-c_2) cosine of the angle of joint 2 from its reference direction */
-        const real inv_sps_root_2 = 1/sps_root_2;
-        const real sps_c_2_t = inv_sps_root_2*sps_root_1;
-        /* (sps-s_2) sine of the angle of joint 2 from its reference direction */
-        const real sps_s_2 = inv_sps_root_2*sps_xi_1_in_axes1_z;
-        /* (sps-S_dot) velocity of the connection point */
-        const real omega_y = s[16*w + j];
-        const real omega_z = s[17*w + j];
-        const real sps_S_dot_t = omega_y*sps_q_z - omega_z*sps_q_y;
-        const real omega_x = s[15*w + j];
-        const real sps_S_dot_t_2 = omega_z*sps_q_x - omega_x*sps_q_z;
-        const real sps_S_dot_t_3 = omega_x*sps_q_y - omega_y*sps_q_x;
-        const real t_dot_x = s[12*w + j];
-        const real sps_S_dot_x = sps_S_dot_t + t_dot_x;
-        const real t_dot_y = s[13*w + j];
-        const real sps_S_dot_y = sps_S_dot_t_2 + t_dot_y;
-        const real t_dot_z = s[14*w + j];
-        const real sps_S_dot_z = sps_S_dot_t_3 + t_dot_z;
-        /* (sps-v_1) velocity of the connection point per rate of joint 1 */
-        const real sps_e_1_in_axes3_x = -sps_c_2_t*sps_c_3;
-        const real sps_e_1_in_axes3_y = sps_c_2_t*sps_s_3;
-        const real sps_v_1_in_axes3_x = sps_e_1_in_axes3_y*sps_root_2;
-        const real sps_v_1_in_axes3_y = -sps_e_1_in_axes3_x*sps_root_2;
-        /* (sps-v_2) velocity of the connection point per rate of joint 2 */
-        const real sps_v_2_in_axes3_x = sps_c_3*sps_root_2;
-        const real sps_v_2_t = sps_root_2*sps_s_3;
-        /* (sps-w_1) reciprocal vector 1 */
-        const real sps_w_1_t = sps_v_1_in_axes3_x*sps_v_2_t +
-            sps_v_1_in_axes3_y*sps_v_2_in_axes3_x;
-        /* (sps-w_4) reciprocal vector 3 */
-        const real sps_w_4_x = inv_sps_root_2*sps_S_x;
-        const real sps_w_4_y = inv_sps_root_2*sps_S_y;
-        const real sps_w_4_z = inv_sps_root_2*sps_S_z;
-        /* (sps-S_dot_rest) velocity of the connection point left to the joints that are not extra */
-        const real sps_S_dot_rest_t = sps_s_2*sps_s_3;
-        const real sps_S_dot_rest_t_2 = sps_S_dot_rest_t*sps_s_1 - sps_c_1*sps_c_3;
-        const real sps_S_dot_rest_t_3 = sps_S_dot_rest_t*sps_c_1 + sps_c_3*sps_s_1;
-        const real axis_y_sps_axes3_x = sps_S_dot_rest_t_3*sps_base_frame_xy +
-            sps_base_frame_xz*sps_e_1_in_axes3_y - sps_S_dot_rest_t_2*sps_base_frame_xx;
-        const real axis_y_sps_axes3_y = sps_S_dot_rest_t_3*sps_base_frame_yy +
-            sps_base_frame_yz*sps_e_1_in_axes3_y - sps_S_dot_rest_t_2*sps_base_frame_yx;
-        const real axis_y_sps_axes3_z = sps_S_dot_rest_t_3*sps_base_frame_zy +
-            sps_base_frame_zz*sps_e_1_in_axes3_y - sps_S_dot_rest_t_2*sps_base_frame_zx;
-        const real axis_x_sps_axes3_x = axis_y_sps_axes3_y*sps_w_4_z -
-            axis_y_sps_axes3_z*sps_w_4_y;
-        const real axis_x_sps_axes3_y = axis_y_sps_axes3_z*sps_w_4_x -
-            axis_y_sps_axes3_x*sps_w_4_z;
-        const real axis_x_sps_axes3_z = axis_y_sps_axes3_x*sps_w_4_y -
-            axis_y_sps_axes3_y*sps_w_4_x;
-        const real sps_S_dot_rest_in_axes3_x = axis_x_sps_axes3_x*sps_S_dot_x +
-            axis_x_sps_axes3_y*sps_S_dot_y + axis_x_sps_axes3_z*sps_S_dot_z;
-        const real sps_S_dot_rest_in_axes3_y = axis_y_sps_axes3_x*sps_S_dot_x +
-            axis_y_sps_axes3_y*sps_S_dot_y + axis_y_sps_axes3_z*sps_S_dot_z;
-        const real sps_S_dot_rest_in_axes3_z = sps_S_dot_x*sps_w_4_x + sps_S_dot_y*sps_w_4_y +
-            sps_S_dot_z*sps_w_4_z;
-        /* (sps-qd_1) rate of joint 1 */
-        const real inv_sps_w_1_t = 1/sps_w_1_t;
-        const real sps_qd_1 = inv_sps_w_1_t*(sps_S_dot_rest_in_axes3_x*sps_v_2_t +
-            sps_S_dot_rest_in_axes3_y*sps_v_2_in_axes3_x);
-        /* (sps-qd_2) rate of joint 2 */
-        const real sps_qd_2_t = inv_sps_w_1_t*(sps_S_dot_rest_in_axes3_y*sps_v_1_in_axes3_x -
-            sps_S_dot_rest_in_axes3_x*sps_v_1_in_axes3_y);
-        /* (sps-omega_1) angular velocity of link 1 */
-        const real sps_omega_1_in_axes2_x = sps_qd_1*sps_s_2;
-        const real sps_omega_1_t = sps_c_2_t*sps_qd_1;
-        /* (sps-omega_2) angular velocity of link 2 */
-        const real sps_omega_2_in_axes3_x = -sps_c_3*sps_omega_1_t - sps_qd_2_t*sps_s_3;
-        const real sps_omega_2_in_axes3_y = sps_omega_1_t*sps_s_3 - sps_c_3*sps_qd_2_t;
-        /* (sps-omega_3) angular velocity of link 3 */
-        const real sps_yd_3 = V[place_sps_yd_3[i]*w + j];
-        const real sps_omega_3_in_axes3_z = sps_omega_1_in_axes2_x + sps_yd_3;
-        /* (sps-W_3) centripetal tensor of link 3 */
-        const real sps_W_3_in_axes3_xy = sps_omega_2_in_axes3_x*sps_omega_2_in_axes3_y;
-        const real sps_W_3_in_axes3_xz = sps_omega_2_in_axes3_x*sps_omega_3_in_axes3_z;
-        const real sps_W_3_in_axes3_yz = sps_omega_2_in_axes3_y*sps_omega_3_in_axes3_z;
-        /* (sps-u_1) centripetal acceleration of the connection point */
-        const real sps_u_1_x = omega_y*sps_S_dot_t_3 - omega_z*sps_S_dot_t_2;
-        const real sps_u_1_y = omega_z*sps_S_dot_t - omega_x*sps_S_dot_t_3;
-        const real sps_u_1_z = omega_x*sps_S_dot_t_2 - omega_y*sps_S_dot_t;
-        const real sps_u_1_in_axes3_x = axis_x_sps_axes3_x*sps_u_1_x +
-            axis_x_sps_axes3_y*sps_u_1_y + axis_x_sps_axes3_z*sps_u_1_z;
-        const real sps_u_1_in_axes3_y = axis_y_sps_axes3_x*sps_u_1_x +
-            axis_y_sps_axes3_y*sps_u_1_y + axis_y_sps_axes3_z*sps_u_1_z;
-        /* (sps-zeta_2) angular acceleration of link 2 from the turning of axis 2 */
-        const real sps_zeta_2_in_axes2_y = sps_omega_1_in_axes2_x*sps_qd_2_t;
-        /* (sps-zeta_3) angular acceleration of link 3 from the turning of axis 3 */
-        const real sps_zeta_3_in_axes3_x = sps_omega_2_in_axes3_y*sps_yd_3;
-        const real sps_zeta_3_in_axes3_y = -sps_omega_2_in_axes3_x*sps_yd_3;
-        /* (sps-beta_3) angular acceleration of link 3 at zero joint accelerations */
-        const real sps_beta_3_in_axes3_x = sps_zeta_3_in_axes3_x + sps_c_3*sps_zeta_2_in_axes2_y;
-        const real sps_beta_3_in_axes3_y = sps_zeta_3_in_axes3_y - sps_s_3*sps_zeta_2_in_axes2_y;
-        /* (sps-bias) acceleration of the connection point at zero joint accelerations */
-        const real sps_bias_t = 2*sps_S_dot_rest_in_axes3_z;
-        const real sps_bias_in_axes3_x = sps_bias_t*sps_omega_2_in_axes3_y +
-            sps_root_2*(sps_W_3_in_axes3_xz + sps_beta_3_in_axes3_y);
-        const real sps_bias_in_axes3_y = sps_root_2*(sps_W_3_in_axes3_yz - sps_beta_3_in_axes3_x)
-            - sps_bias_t*sps_omega_2_in_axes3_x;
-        /* (sps-rel_o) remainder without the acceleration in: acceleration of the connection point left to
-           the joint accelerations */
-        const real sps_rel_o_in_axes3_x = sps_u_1_in_axes3_x - sps_bias_in_axes3_x;
-        const real sps_rel_o_in_axes3_y = sps_u_1_in_axes3_y - sps_bias_in_axes3_y;
-        /* (sps-qdd_1_o) remainder without the acceleration in: acceleration of joint 1 */
-        const real sps_qdd_1_o = inv_sps_w_1_t*(sps_rel_o_in_axes3_x*sps_v_2_t +
-            sps_rel_o_in_axes3_y*sps_v_2_in_axes3_x);
-        /* (sps-qdd_2_o) remainder without the acceleration in: acceleration of joint 2 */
-        const real sps_qdd_2_o = -inv_sps_w_1_t*(sps_rel_o_in_axes3_y*sps_v_1_in_axes3_x -
-            sps_rel_o_in_axes3_x*sps_v_1_in_axes3_y);
-        /* (sps-alpha_2_o) remainder without the acceleration in: angular acceleration of link 2 */
-        const real sps_alpha_2_o_in_axes2_x = sps_omega_1_t*sps_qd_2_t + sps_qdd_1_o*sps_s_2;
-        const real sps_alpha_2_o_in_axes2_y = sps_zeta_2_in_axes2_y - sps_c_2_t*sps_qdd_1_o;
-        /* (sps-alpha_3_o) remainder without the acceleration in: angular acceleration of link 3 */
-        const real sps_alpha_3_o_in_axes3_x = sps_zeta_3_in_axes3_x +
-            sps_alpha_2_o_in_axes2_y*sps_c_3 + sps_qdd_2_o*sps_s_3;
-        const real sps_alpha_3_o_in_axes3_y = sps_zeta_3_in_axes3_y + sps_c_3*sps_qdd_2_o -
-            sps_alpha_2_o_in_axes2_y*sps_s_3;
-        /* (sps-B_3_o) remainder of the acceleration tensor of link 3 */
-        const real sps_B_3_o_in_axes3_xy = sps_W_3_in_axes3_xy - sps_alpha_2_o_in_axes2_x;
-        const real sps_B_3_o_in_axes3_xz = sps_W_3_in_axes3_xz + sps_alpha_3_o_in_axes3_y;
-        const real sps_B_3_o_in_axes3_yx = sps_W_3_in_axes3_xy + sps_alpha_2_o_in_axes2_x;
-        const real sps_B_3_o_in_axes3_yz = sps_W_3_in_axes3_yz - sps_alpha_3_o_in_axes3_x;
-        const real sps_B_3_o_in_axes3_zx = sps_W_3_in_axes3_xz - sps_alpha_3_o_in_axes3_y;
-        const real sps_B_3_o_in_axes3_zy = sps_W_3_in_axes3_yz + sps_alpha_3_o_in_axes3_x;
-        /* (sps-acc_4_o) remainder without the acceleration in: acceleration of the reference point of
-           link 4, less gravity */
-        const real gravity_x = m->gravity_x;
-        const real gravity_y = m->gravity_y;
-        const real gravity_z = m->gravity_z;
-        const real sps_g_in_axes3_x = axis_x_sps_axes3_x*gravity_x + axis_x_sps_axes3_y*gravity_y
-            + axis_x_sps_axes3_z*gravity_z;
-        const real sps_g_in_axes3_y = axis_y_sps_axes3_x*gravity_x + axis_y_sps_axes3_y*gravity_y
-            + axis_y_sps_axes3_z*gravity_z;
-        const real sps_g_in_axes3_z = gravity_x*sps_w_4_x + gravity_y*sps_w_4_y +
-            gravity_z*sps_w_4_z;
-        const real sps_acc_4_o_in_axes3_x = sps_u_1_in_axes3_x - sps_g_in_axes3_x;
-        const real sps_acc_4_o_in_axes3_y = sps_u_1_in_axes3_y - sps_g_in_axes3_y;
-        const real sps_acc_4_o_in_axes3_z = sps_u_1_x*sps_w_4_x + sps_u_1_y*sps_w_4_y +
-            sps_u_1_z*sps_w_4_z - sps_g_in_axes3_z;
-        /* (sps-phi_4_o) remainder without the acceleration in: inertia force of link 4 from its turning
-           about its reference point */
-        const real sps_phi_4_o_t = sps_omega_2_in_axes3_x*sps_omega_2_in_axes3_x;
-        const real sps_phi_4_o_t_2 = sps_omega_2_in_axes3_y*sps_omega_2_in_axes3_y;
-        const real sps_h_4_in_spec3_x = m->sps_h_4_in_spec3_x[i];
-        const real sps_h_4_in_spec3_y = m->sps_h_4_in_spec3_y[i];
-        const real sps_h_4_in_spec3_z = m->sps_h_4_in_spec3_z[i];
-        const real sps_phi_4_o_in_axes3_z = sps_B_3_o_in_axes3_zx*sps_h_4_in_spec3_y +
-            sps_B_3_o_in_axes3_zy*sps_h_4_in_spec3_z - sps_h_4_in_spec3_x*(sps_phi_4_o_t +
-            sps_phi_4_o_t_2);
-        /* (sps-mu_3_o) remainder without the acceleration in: inertia moment of the links that turn with
-           link 3, about their reference points */
-        const real sps_mu_3_o_t = sps_omega_3_in_axes3_z*sps_omega_3_in_axes3_z;
-        const real sps_J_group_3_in_axes3_xy = m->sps_J_group_3_in_axes3_xy[i];
-        const real sps_J_group_3_in_axes3_xz = m->sps_J_group_3_in_axes3_xz[i];
-        const real sps_J_group_3_in_axes3_yz = m->sps_J_group_3_in_axes3_yz[i];
-        const real sps_Sigma_3_in_axes3_yy = m->sps_Sigma_3_in_axes3_yy[i];
-        const real sps_Sigma_3_in_axes3_zz = m->sps_Sigma_3_in_axes3_zz[i];
-        const real sps_h_3_in_spec3_x = m->sps_h_3_in_spec3_x[i];
-        const real sps_h_3_in_spec3_z = m->sps_h_3_in_spec3_z[i];
-        const real sps_mu_3_o_in_axes3_x = sps_B_3_o_in_axes3_yx*sps_J_group_3_in_axes3_xz +
-            sps_B_3_o_in_axes3_zy*sps_Sigma_3_in_axes3_yy +
-            sps_J_group_3_in_axes3_yz*(sps_phi_4_o_t_2 - sps_mu_3_o_t) +
-            sps_acc_4_o_in_axes3_z*sps_h_4_in_spec3_z + sps_g_in_axes3_y*sps_h_3_in_spec3_x -
-            sps_B_3_o_in_axes3_yz*sps_Sigma_3_in_axes3_zz -
-            sps_B_3_o_in_axes3_zx*sps_J_group_3_in_axes3_xy -
-            sps_acc_4_o_in_axes3_y*sps_h_4_in_spec3_x - sps_g_in_axes3_z*sps_h_3_in_spec3_z;
-        const real sps_Sigma_3_in_axes3_xx = m->sps_Sigma_3_in_axes3_xx[i];
-        const real sps_h_3_in_spec3_y = m->sps_h_3_in_spec3_y[i];
-        const real sps_mu_3_o_in_axes3_y = sps_B_3_o_in_axes3_xz*sps_Sigma_3_in_axes3_zz +
-            sps_B_3_o_in_axes3_zy*sps_J_group_3_in_axes3_xy +
-            sps_acc_4_o_in_axes3_x*sps_h_4_in_spec3_x + sps_g_in_axes3_z*sps_h_3_in_spec3_y -
-            sps_B_3_o_in_axes3_xy*sps_J_group_3_in_axes3_yz -
-            sps_B_3_o_in_axes3_zx*sps_Sigma_3_in_axes3_xx -
-            sps_J_group_3_in_axes3_xz*(sps_phi_4_o_t - sps_mu_3_o_t) -
-            sps_acc_4_o_in_axes3_z*sps_h_4_in_spec3_y - sps_g_in_axes3_x*sps_h_3_in_spec3_x;
-        const real sps_mu_3_o_in_axes3_z = sps_B_3_o_in_axes3_xz*sps_J_group_3_in_axes3_yz +
-            sps_B_3_o_in_axes3_yx*sps_Sigma_3_in_axes3_xx +
-            sps_J_group_3_in_axes3_xy*(sps_phi_4_o_t - sps_phi_4_o_t_2) +
-            sps_acc_4_o_in_axes3_y*sps_h_4_in_spec3_y + sps_g_in_axes3_x*sps_h_3_in_spec3_z -
-            sps_B_3_o_in_axes3_xy*sps_Sigma_3_in_axes3_yy -
-            sps_B_3_o_in_axes3_yz*sps_J_group_3_in_axes3_xz -
-            sps_acc_4_o_in_axes3_x*sps_h_4_in_spec3_z - sps_g_in_axes3_y*sps_h_3_in_spec3_y;
-        const real sps_mu_3_o_in_axes2_z = sps_c_3*sps_mu_3_o_in_axes3_y +
-            sps_mu_3_o_in_axes3_x*sps_s_3;
-        /* (sps-Gamma_1_o) remainder without the acceleration in: moment about axis 1 of the distal links'
-           inertia and weight */
-        const real sps_Gamma_1_o = sps_e_1_in_axes3_x*sps_mu_3_o_in_axes3_x +
-            sps_e_1_in_axes3_y*sps_mu_3_o_in_axes3_y + sps_mu_3_o_in_axes3_z*sps_s_2;
-        /* (sps-c_o) remainder without the acceleration in: leg force on the platform without actuation
-           and without the mass at the connection point */
-        const real sps_c_o_in_axes3_x = sps_h_4_in_spec3_y*(sps_mu_3_o_t + sps_phi_4_o_t_2) -
-            inv_sps_w_1_t*(sps_Gamma_1_o*sps_v_2_t + sps_mu_3_o_in_axes2_z*sps_v_1_in_axes3_y) -
-            sps_B_3_o_in_axes3_xy*sps_h_4_in_spec3_z - sps_B_3_o_in_axes3_xz*sps_h_4_in_spec3_x;
-        const real sps_c_o_in_axes3_y = inv_sps_w_1_t*(sps_mu_3_o_in_axes2_z*sps_v_1_in_axes3_x -
-            sps_Gamma_1_o*sps_v_2_in_axes3_x) + sps_h_4_in_spec3_z*(sps_mu_3_o_t + sps_phi_4_o_t)
-            - sps_B_3_o_in_axes3_yx*sps_h_4_in_spec3_y - sps_B_3_o_in_axes3_yz*sps_h_4_in_spec3_x;
-        /* (sps-U) velocity and gravity terms of the leg force */
-        const real sps_U_x = sps_phi_4_o_in_axes3_z*sps_w_4_x -
-            axis_x_sps_axes3_x*sps_c_o_in_axes3_x - axis_y_sps_axes3_x*sps_c_o_in_axes3_y;
-        const real sps_U_y = sps_phi_4_o_in_axes3_z*sps_w_4_y -
-            axis_x_sps_axes3_y*sps_c_o_in_axes3_x - axis_y_sps_axes3_y*sps_c_o_in_axes3_y;
-        const real sps_U_z = sps_phi_4_o_in_axes3_z*sps_w_4_z -
-            axis_x_sps_axes3_z*sps_c_o_in_axes3_x - axis_y_sps_axes3_z*sps_c_o_in_axes3_y;
-        /* (Z_a) rotational part of Z */
-        const real sps_Z_a_t = sps_U_z*sps_q_y - sps_U_y*sps_q_z;
-        const real sps_Z_a_t_2 = sps_U_x*sps_q_z - sps_U_z*sps_q_x;
-        const real sps_Z_a_t_3 = sps_U_y*sps_q_x - sps_U_x*sps_q_y;
+        values_sps v;
+        stage_sps_X(m, w, i, j, s, X, &v);
+        stage_sps_V_X(w, i, j, V, &v);
+        stage_sps_Z_dynamics(m, w, i, j, V, &v);
         /* (Z_t) translational part of Z */
-        gather(&terms[0*count + k], add, sps_U_x);  /* Z_t_x_of_legs */
-        gather(&terms[1*count + k], add, sps_U_y);  /* Z_t_y_of_legs */
-        gather(&terms[2*count + k], add, sps_U_z);  /* Z_t_z_of_legs */
+        gather(&terms[0*count + k], add, v.sps_U_x);  /* Z_t_x_of_legs */
+        gather(&terms[1*count + k], add, v.sps_U_y);  /* Z_t_y_of_legs */
+        gather(&terms[2*count + k], add, v.sps_U_z);  /* Z_t_z_of_legs */
         /* (Z_a) rotational part of Z */
-        gather(&terms[3*count + k], add, sps_Z_a_t);  /* Z_a_x_of_legs */
-        gather(&terms[4*count + k], add, sps_Z_a_t_2);  /* Z_a_y_of_legs */
-        gather(&terms[5*count + k], add, sps_Z_a_t_3);  /* Z_a_z_of_legs */
+        gather(&terms[3*count + k], add, v.sps_Z_a_t);  /* Z_a_x_of_legs */
+        gather(&terms[4*count + k], add, v.sps_Z_a_t_2);  /* Z_a_y_of_legs */
+        gather(&terms[5*count + k], add, v.sps_Z_a_t_3);  /* Z_a_z_of_legs */
         /* (sps-P_3_o) remainder without the acceleration in: inertia and weight of the leg along the
            extra degree of freedom of joint 3 */
-        o[0*count + k] = sps_mu_3_o_in_axes3_z;
-        o[2*count + k] = sps_mu_3_o_in_axes3_z;
-        o[1*count + k] = UNLESS(magnitude(sps_rho2_1) > LEAST_1) + UNLESS(magnitude(sps_rho2_2) >
-            LEAST_1) + UNLESS(magnitude(sps_w_1_t) > LEAST_2);
+        o[0*count + k] = v.sps_mu_3_o_in_axes3_z;
+        o[2*count + k] = v.sps_mu_3_o_in_axes3_z;
+        o[1*count + k] = UNLESS(magnitude(v.sps_root_1_t) > LEAST_1) +
+            UNLESS(magnitude(v.sps_root_2_t) > LEAST_1) + UNLESS(magnitude(v.sps_w_1_t) >
+            LEAST_2);
     }
 }
 
@@ -3249,24 +2990,24 @@ INLINE void Z_after(size_t w, const real *s, const real *sums, real *Z, verdict 
 {
     for (size_t k = 0; k < w; ++k) {
         /* (Z_t) translational part of Z */
-        const real Z_p_x = s[18*w + k];
+        const real Z_p_x = s[9*w + k];
         const real Z_t_x_of_legs = sums[0*w + k];
         const real Z_t_x = Z_p_x + Z_t_x_of_legs;
-        const real Z_p_y = s[19*w + k];
+        const real Z_p_y = s[10*w + k];
         const real Z_t_y_of_legs = sums[1*w + k];
         const real Z_t_y = Z_p_y + Z_t_y_of_legs;
-        const real Z_p_z = s[20*w + k];
+        const real Z_p_z = s[11*w + k];
         const real Z_t_z_of_legs = sums[2*w + k];
         const real Z_t_z = Z_p_z + Z_t_z_of_legs;
         /* (Z_a) rotational part of Z */
         const real Z_a_x_of_legs = sums[3*w + k];
-        const real Z_q_x = s[21*w + k];
+        const real Z_q_x = s[12*w + k];
         const real Z_a_x = Z_a_x_of_legs + Z_q_x;
         const real Z_a_y_of_legs = sums[4*w + k];
-        const real Z_q_y = s[22*w + k];
+        const real Z_q_y = s[13*w + k];
         const real Z_a_y = Z_a_y_of_legs + Z_q_y;
         const real Z_a_z_of_legs = sums[5*w + k];
-        const real Z_q_z = s[23*w + k];
+        const real Z_q_z = s[14*w + k];
         const real Z_a_z = Z_a_z_of_legs + Z_q_z;
         /* (Z_t) translational part of Z */
         Z[0*w + k] = Z_t_x;
@@ -3282,10 +3023,8 @@ INLINE void Z_after(size_t w, const real *s, const real *sums, real *Z, verdict 
 
 INLINE void Z_run(const prepared *m, const real *X, const real *V, real *Z, verdict *t)
 {
-    real s[24] = {0};
-    real sums[6] = {0};
-    real terms_sps[6*LEGS(LEGS_OF_sps)] = {0};
-    real o_sps[3*LEGS(LEGS_OF_sps)] = {0};
+    real s[15] = {0}, sums[6] = {0};
+    real terms_sps[6*LEGS(LEGS_OF_sps)] = {0}, o_sps[3*LEGS(LEGS_OF_sps)] = {0};
     Z_before(m, 1, X, V, s, t);
     Z_legs_sps(m, 1, 0, 1, s, 0, LEGS(LEGS_OF_sps), 0, X, V, terms_sps, o_sps);
     for (size_t leg = 0; leg < LEGS_OF_sps; ++leg) {
@@ -3299,8 +3038,7 @@ INLINE void Z_run(const prepared *m, const real *X, const real *V, real *Z, verd
 
 INLINE void Z_run_lanes(const prepared *m, const real *X, const real *V, real *Z, verdict *t)
 {
-    real s[24*LANES];
-    real sums[6*LANES];
+    real s[15*LANES], sums[6*LANES];
     real o_sps[3*LANES];
     Z_before(m, LANES, X, V, s, t);
     clear(sums, 6*LANES);
@@ -3312,139 +3050,44 @@ INLINE void Z_run_lanes(const prepared *m, const real *X, const real *V, real *Z
 }
 
 /* ---- H ---- */
-INLINE void H_before(size_t w, const real *X, real *s, verdict *t)
+INLINE void H_before(const prepared *m, size_t w, const real *X, real *s, verdict *t)
 {
     for (size_t k = 0; k < w; ++k) {
-        /* X: named entries */
-        const real X_0 = X[0*w + k];
-        const real t_x = X_0;
-        const real X_1 = X[1*w + k];
-        const real t_y = X_1;
-        const real X_2 = X[2*w + k];
-        const real t_z = X_2;
-        const real X_3 = X[3*w + k];
-        const real X_4 = X[4*w + k];
-        const real X_5 = X[5*w + k];
-        const real X_6 = X[6*w + k];
-        const real quaternion_norm2 = X_3*X_3 + X_4*X_4 + X_5*X_5 + X_6*X_6;
-        const real quaternion_scale = 2/quaternion_norm2;
-        const real quaternion_sx = X_3*quaternion_scale;
-        const real quaternion_sy = X_4*quaternion_scale;
-        const real quaternion_sz = X_5*quaternion_scale;
-        const real quaternion_wx = X_6*quaternion_sx;
-        const real quaternion_wy = X_6*quaternion_sy;
-        const real quaternion_wz = X_6*quaternion_sz;
-        const real quaternion_xx = X_3*quaternion_sx;
-        const real quaternion_xy = X_3*quaternion_sy;
-        const real quaternion_xz = X_3*quaternion_sz;
-        const real quaternion_yy = X_4*quaternion_sy;
-        const real quaternion_yz = X_4*quaternion_sz;
-        const real quaternion_zz = X_5*quaternion_sz;
-        const real R_xx = 1 - quaternion_yy - quaternion_zz;
-        const real R_xy = quaternion_xy - quaternion_wz;
-        const real R_xz = quaternion_wy + quaternion_xz;
-        const real R_yx = quaternion_wz + quaternion_xy;
-        const real R_yy = 1 - quaternion_xx - quaternion_zz;
-        const real R_yz = quaternion_yz - quaternion_wx;
-        const real R_zx = quaternion_xz - quaternion_wy;
-        const real R_zy = quaternion_wx + quaternion_yz;
-        const real R_zz = 1 - quaternion_xx - quaternion_yy;
-        s[0*w + k] = t_x;
-        s[1*w + k] = t_y;
-        s[2*w + k] = t_z;
-        s[3*w + k] = R_xx;
-        s[4*w + k] = R_xy;
-        s[5*w + k] = R_xz;
-        s[6*w + k] = R_yx;
-        s[7*w + k] = R_yy;
-        s[8*w + k] = R_yz;
-        s[9*w + k] = R_zx;
-        s[10*w + k] = R_zy;
-        s[11*w + k] = R_zz;
-        t->invalid[k] += UNLESS(is_finite(quaternion_scale)) + UNLESS(quaternion_scale > 0);
+        values v;
+        stage_X(m, w, k, X, &v);
+        s[0*w + k] = v.R_xx;
+        s[1*w + k] = v.R_xy;
+        s[2*w + k] = v.R_xz;
+        s[3*w + k] = v.R_yx;
+        s[4*w + k] = v.R_yy;
+        s[5*w + k] = v.R_yz;
+        s[6*w + k] = v.R_zx;
+        s[7*w + k] = v.R_zy;
+        s[8*w + k] = v.R_zz;
+        t->invalid[k] += UNLESS(is_finite(v.quaternion_scale)) + UNLESS(v.quaternion_scale > 0);
     }
 }
 
 INLINE void H_legs_sps(const prepared *m, size_t w, size_t leg, size_t legs, const real *s, size_t
-    states, size_t count, real *o)
+    states, size_t count, const real *X, real *o)
 {
     for (size_t k = 0; k < count; ++k) {
         const size_t i = leg + legs*k;
         const size_t j = states*k;
-        /* (sps-S) from the base point to the connection point */
-        const real R_xx = s[3*w + j];
-        const real R_xy = s[4*w + j];
-        const real R_xz = s[5*w + j];
-        const real sps_platform_point_x = m->sps_platform_point_x[i];
-        const real sps_platform_point_y = m->sps_platform_point_y[i];
-        const real sps_platform_point_z = m->sps_platform_point_z[i];
-        const real sps_q_x = R_xx*sps_platform_point_x + R_xy*sps_platform_point_y +
-            R_xz*sps_platform_point_z;
-        const real R_yx = s[6*w + j];
-        const real R_yy = s[7*w + j];
-        const real R_yz = s[8*w + j];
-        const real sps_q_y = R_yx*sps_platform_point_x + R_yy*sps_platform_point_y +
-            R_yz*sps_platform_point_z;
-        const real R_zx = s[9*w + j];
-        const real R_zy = s[10*w + j];
-        const real R_zz = s[11*w + j];
-        const real sps_q_z = R_zx*sps_platform_point_x + R_zy*sps_platform_point_y +
-            R_zz*sps_platform_point_z;
-        const real sps_base_point_x = m->sps_base_point_x[i];
-        const real t_x = s[0*w + j];
-        const real sps_S_x = sps_q_x + t_x - sps_base_point_x;
-        const real sps_base_point_y = m->sps_base_point_y[i];
-        const real t_y = s[1*w + j];
-        const real sps_S_y = sps_q_y + t_y - sps_base_point_y;
-        const real sps_base_point_z = m->sps_base_point_z[i];
-        const real t_z = s[2*w + j];
-        const real sps_S_z = sps_q_z + t_z - sps_base_point_z;
-        /* (sps-px_1) component along the reference direction */
-        const real sps_base_frame_xx = m->sps_base_frame_xx[i];
-        const real sps_base_frame_yx = m->sps_base_frame_yx[i];
-        const real sps_base_frame_zx = m->sps_base_frame_zx[i];
-        const real sps_px_1 = sps_S_x*sps_base_frame_xx + sps_S_y*sps_base_frame_yx +
-            sps_S_z*sps_base_frame_zx;
-        /* (sps-py_1) component across the reference direction */
-        const real sps_base_frame_xy = m->sps_base_frame_xy[i];
-        const real sps_base_frame_yy = m->sps_base_frame_yy[i];
-        const real sps_base_frame_zy = m->sps_base_frame_zy[i];
-        const real sps_py_1 = sps_S_x*sps_base_frame_xy + sps_S_y*sps_base_frame_yy +
-            sps_S_z*sps_base_frame_zy;
-        /* (sps-rho2_1) squared amplitude */
-        const real sps_rho2_1 = sps_px_1*sps_px_1 + sps_py_1*sps_py_1;
-        /* (sps-xi_1) the vector from joint 1 to the connection point, resolved along link 1 */
-        const real sps_base_frame_xz = m->sps_base_frame_xz[i];
-        const real sps_base_frame_yz = m->sps_base_frame_yz[i];
-        const real sps_base_frame_zz = m->sps_base_frame_zz[i];
-        const real sps_xi_1_in_axes1_z = sps_S_x*sps_base_frame_xz + sps_S_y*sps_base_frame_yz +
-            sps_S_z*sps_base_frame_zz;
-        /* (sps-rho2_2) squared amplitude */
-        const real sps_rho2_2 = sps_rho2_1 + sps_xi_1_in_axes1_z*sps_xi_1_in_axes1_z;
-        /* (sps-root_2) amplitude, with the sign of the branch */
-        const real sps_branch_2 = m->sps_branch_2[i];
-        const real sps_root_2 = sps_branch_2*root(sps_rho2_2);
+        values_sps v;
+        stage_sps_X(m, w, i, j, s, X, &v);
         /* (sps-w_4) reciprocal vector 3 */
-        const real inv_sps_root_2 = 1/sps_root_2;
-        const real sps_w_4_x = inv_sps_root_2*sps_S_x;
-        const real sps_w_4_y = inv_sps_root_2*sps_S_y;
-        const real sps_w_4_z = inv_sps_root_2*sps_S_z;
+        o[0*count + k] = v.sps_w_4_x;
+        o[1*count + k] = v.sps_w_4_y;
+        o[2*count + k] = v.sps_w_4_z;
         /* (sps-H_a_4) moment of the column's unit force about the platform origin */
-        const real sps_H_a_4_x = sps_q_y*sps_w_4_z - sps_q_z*sps_w_4_y;
-        const real sps_H_a_4_y = sps_q_z*sps_w_4_x - sps_q_x*sps_w_4_z;
-        const real sps_H_a_4_z = sps_q_x*sps_w_4_y - sps_q_y*sps_w_4_x;
-        /* (sps-w_4) reciprocal vector 3 */
-        o[0*count + k] = sps_w_4_x;
-        o[1*count + k] = sps_w_4_y;
-        o[2*count + k] = sps_w_4_z;
-        /* (sps-H_a_4) moment of the column's unit force about the platform origin */
-        o[3*count + k] = sps_H_a_4_x;
-        o[4*count + k] = sps_H_a_4_y;
-        o[5*count + k] = sps_H_a_4_z;
-        o[7*count + k] = (sps_w_4_x + (sps_w_4_y + sps_w_4_z)) + (sps_H_a_4_x + (sps_H_a_4_y +
-            sps_H_a_4_z));
-        o[6*count + k] = UNLESS(magnitude(sps_rho2_1) > LEAST_1) + UNLESS(magnitude(sps_rho2_2) >
-            LEAST_1);
+        o[3*count + k] = v.sps_H_a_4_x;
+        o[4*count + k] = v.sps_H_a_4_y;
+        o[5*count + k] = v.sps_H_a_4_z;
+        o[7*count + k] = (v.sps_w_4_x + (v.sps_w_4_y + v.sps_w_4_z)) + (v.sps_H_a_4_x +
+            (v.sps_H_a_4_y + v.sps_H_a_4_z));
+        o[6*count + k] = UNLESS(magnitude(v.sps_root_1_t) > LEAST_1) +
+            UNLESS(magnitude(v.sps_root_2_t) > LEAST_1);
     }
 }
 
@@ -3452,7 +3095,7 @@ INLINE void H_place_sps(size_t w, size_t count, const real *o, size_t leg, size_
     verdict *t)
 {
     for (size_t k = 0; k < w; ++k) {
-        H[(0*NU + leg)*w + k] = o[0*count + first + k];
+        H[leg*w + k] = o[0*count + first + k];
         H[(NU + leg)*w + k] = o[1*count + first + k];
         H[(2*NU + leg)*w + k] = o[2*count + first + k];
         H[(3*NU + leg)*w + k] = o[3*count + first + k];
@@ -3465,11 +3108,11 @@ INLINE void H_place_sps(size_t w, size_t count, const real *o, size_t leg, size_
 
 INLINE void H_run(const prepared *m, const real *X, real *H, verdict *t)
 {
-    real s[12] = {0};
+    real s[9] = {0};
     real o_sps[8*LEGS(LEGS_OF_sps)] = {0};
     clear(H, NV*NU);
-    H_before(1, X, s, t);
-    H_legs_sps(m, 1, 0, 1, s, 0, LEGS(LEGS_OF_sps), o_sps);
+    H_before(m, 1, X, s, t);
+    H_legs_sps(m, 1, 0, 1, s, 0, LEGS(LEGS_OF_sps), X, o_sps);
     for (size_t leg = 0; leg < LEGS_OF_sps; ++leg) {
         H_place_sps(1, LEGS(LEGS_OF_sps), o_sps, leg, leg, H, t);
     }
@@ -3477,12 +3120,12 @@ INLINE void H_run(const prepared *m, const real *X, real *H, verdict *t)
 
 INLINE void H_run_lanes(const prepared *m, const real *X, real *H, verdict *t)
 {
-    real s[12*LANES];
+    real s[9*LANES];
     real o_sps[8*LANES];
     clear(H, NV*NU*LANES);
-    H_before(LANES, X, s, t);
+    H_before(m, LANES, X, s, t);
     for (size_t leg = 0; leg < LEGS_OF_sps; ++leg) {
-        H_legs_sps(m, LANES, leg, 0, s, 1, LANES, o_sps);
+        H_legs_sps(m, LANES, leg, 0, s, 1, LANES, X, o_sps);
         H_place_sps(LANES, LANES, o_sps, leg, 0, H, t);
     }
 }
@@ -3492,169 +3135,99 @@ INLINE void required_before(const prepared *m, size_t w, const real *X, const re
     *A, real *s, verdict *t)
 {
     for (size_t k = 0; k < w; ++k) {
-        /* X: named entries */
-        const real X_0 = X[0*w + k];
-        const real t_x = X_0;
-        const real X_1 = X[1*w + k];
-        const real t_y = X_1;
-        const real X_2 = X[2*w + k];
-        const real t_z = X_2;
-        const real X_3 = X[3*w + k];
-        const real X_4 = X[4*w + k];
-        const real X_5 = X[5*w + k];
-        const real X_6 = X[6*w + k];
-        const real quaternion_norm2 = X_3*X_3 + X_4*X_4 + X_5*X_5 + X_6*X_6;
-        const real quaternion_scale = 2/quaternion_norm2;
-        const real quaternion_sx = X_3*quaternion_scale;
-        const real quaternion_sy = X_4*quaternion_scale;
-        const real quaternion_sz = X_5*quaternion_scale;
-        const real quaternion_wx = X_6*quaternion_sx;
-        const real quaternion_wy = X_6*quaternion_sy;
-        const real quaternion_wz = X_6*quaternion_sz;
-        const real quaternion_xx = X_3*quaternion_sx;
-        const real quaternion_xy = X_3*quaternion_sy;
-        const real quaternion_xz = X_3*quaternion_sz;
-        const real quaternion_yy = X_4*quaternion_sy;
-        const real quaternion_yz = X_4*quaternion_sz;
-        const real quaternion_zz = X_5*quaternion_sz;
-        const real R_xx = 1 - quaternion_yy - quaternion_zz;
-        const real R_xy = quaternion_xy - quaternion_wz;
-        const real R_xz = quaternion_wy + quaternion_xz;
-        const real R_yx = quaternion_wz + quaternion_xy;
-        const real R_yy = 1 - quaternion_xx - quaternion_zz;
-        const real R_yz = quaternion_yz - quaternion_wx;
-        const real R_zx = quaternion_xz - quaternion_wy;
-        const real R_zy = quaternion_wx + quaternion_yz;
-        const real R_zz = 1 - quaternion_xx - quaternion_yy;
-        /* V: named entries */
-        const real V_0 = V[0*w + k];
-        const real t_dot_x = V_0;
-        const real V_1 = V[1*w + k];
-        const real t_dot_y = V_1;
-        const real V_2 = V[2*w + k];
-        const real t_dot_z = V_2;
-        const real V_3 = V[3*w + k];
-        const real omega_x = V_3;
-        const real V_4 = V[4*w + k];
-        const real omega_y = V_4;
-        const real V_5 = V[5*w + k];
-        const real omega_z = V_5;
-        /* A: named entries */
-        const real A_0 = A[0*w + k];
-        const real t_ddot_x = A_0;
-        const real A_1 = A[1*w + k];
-        const real t_ddot_y = A_1;
-        const real A_2 = A[2*w + k];
-        const real t_ddot_z = A_2;
-        const real A_3 = A[3*w + k];
-        const real alpha_x = A_3;
-        const real A_4 = A[4*w + k];
-        const real alpha_y = A_4;
-        const real A_5 = A[5*w + k];
-        const real alpha_z = A_5;
+        values v;
+        stage_X(m, w, k, X, &v);
+        stage_V_X(w, k, V, &v);
         /* (W_p) centripetal tensor of the platform */
+        const real omega_x = V[3*w + k];
+        const real omega_y = V[4*w + k];
         const real W_p_xy = omega_x*omega_y;
+        const real omega_z = V[5*w + k];
         const real W_p_xz = omega_x*omega_z;
         const real W_p_yz = omega_y*omega_z;
-        /* (h_star) first moment about the platform origin */
-        const real h_star_in_platform_x = m->h_star_in_platform_x;
-        const real h_star_in_platform_y = m->h_star_in_platform_y;
-        const real h_star_in_platform_z = m->h_star_in_platform_z;
-        const real h_star_x = R_xx*h_star_in_platform_x + R_xy*h_star_in_platform_y +
-            R_xz*h_star_in_platform_z;
-        const real h_star_y = R_yx*h_star_in_platform_x + R_yy*h_star_in_platform_y +
-            R_yz*h_star_in_platform_z;
-        const real h_star_z = R_zx*h_star_in_platform_x + R_zy*h_star_in_platform_y +
-            R_zz*h_star_in_platform_z;
         /* (a_t) acceleration of the platform origin, less gravity */
         const real gravity_x = m->gravity_x;
+        const real t_ddot_x = A[0*w + k];
         const real a_t_x = t_ddot_x - gravity_x;
         const real gravity_y = m->gravity_y;
+        const real t_ddot_y = A[1*w + k];
         const real a_t_y = t_ddot_y - gravity_y;
         const real gravity_z = m->gravity_z;
+        const real t_ddot_z = A[2*w + k];
         const real a_t_z = t_ddot_z - gravity_z;
-        const real a_t_in_platform_x = R_xx*a_t_x + R_yx*a_t_y + R_zx*a_t_z;
-        const real a_t_in_platform_y = R_xy*a_t_x + R_yy*a_t_y + R_zy*a_t_z;
-        const real a_t_in_platform_z = R_xz*a_t_x + R_yz*a_t_y + R_zz*a_t_z;
+        const real a_t_in_platform_x = v.R_xx*a_t_x + v.R_yx*a_t_y + v.R_zx*a_t_z;
+        const real a_t_in_platform_y = v.R_xy*a_t_x + v.R_yy*a_t_y + v.R_zy*a_t_z;
+        const real a_t_in_platform_z = v.R_xz*a_t_x + v.R_yz*a_t_y + v.R_zz*a_t_z;
         /* (f_p) inertia force of the platform less its weight */
         const real f_p_t = omega_x*omega_x;
         const real f_p_t_2 = omega_y*omega_y;
         const real f_p_t_3 = omega_z*omega_z;
+        const real alpha_y = A[4*w + k];
+        const real alpha_z = A[5*w + k];
         const real m_star = m->m_star;
-        const real f_p_x = a_t_x*m_star + h_star_y*(W_p_xy - alpha_z) + h_star_z*(W_p_xz +
-            alpha_y) - h_star_x*(f_p_t_2 + f_p_t_3);
-        const real f_p_y = a_t_y*m_star + h_star_x*(W_p_xy + alpha_z) + h_star_z*(W_p_yz -
-            alpha_x) - h_star_y*(f_p_t + f_p_t_3);
-        const real f_p_z = a_t_z*m_star + h_star_x*(W_p_xz - alpha_y) + h_star_y*(W_p_yz +
-            alpha_x) - h_star_z*(f_p_t + f_p_t_2);
+        const real f_p_x = a_t_x*m_star + v.h_star_y*(W_p_xy - alpha_z) + v.h_star_z*(W_p_xz +
+            alpha_y) - v.h_star_x*(f_p_t_2 + f_p_t_3);
+        const real alpha_x = A[3*w + k];
+        const real f_p_y = a_t_y*m_star + v.h_star_x*(W_p_xy + alpha_z) + v.h_star_z*(W_p_yz -
+            alpha_x) - v.h_star_y*(f_p_t + f_p_t_3);
+        const real f_p_z = a_t_z*m_star + v.h_star_x*(W_p_xz - alpha_y) + v.h_star_y*(W_p_yz +
+            alpha_x) - v.h_star_z*(f_p_t + f_p_t_2);
         /* (mu_p) inertia moment of the platform less that of its weight */
-        const real omega_in_platform_x = R_xx*omega_x + R_yx*omega_y + R_zx*omega_z;
-        const real omega_in_platform_y = R_xy*omega_x + R_yy*omega_y + R_zy*omega_z;
-        const real omega_in_platform_z = R_xz*omega_x + R_yz*omega_y + R_zz*omega_z;
         const real J_star_in_platform_xx = m->J_star_in_platform_xx;
         const real J_star_in_platform_xy = m->J_star_in_platform_xy;
         const real J_star_in_platform_xz = m->J_star_in_platform_xz;
-        const real mu_p_t = J_star_in_platform_xx*omega_in_platform_x +
-            J_star_in_platform_xy*omega_in_platform_y + J_star_in_platform_xz*omega_in_platform_z;
+        const real mu_p_t = J_star_in_platform_xx*v.omega_in_platform_x +
+            J_star_in_platform_xy*v.omega_in_platform_y +
+            J_star_in_platform_xz*v.omega_in_platform_z;
         const real J_star_in_platform_yy = m->J_star_in_platform_yy;
         const real J_star_in_platform_yz = m->J_star_in_platform_yz;
-        const real mu_p_t_2 = J_star_in_platform_xy*omega_in_platform_x +
-            J_star_in_platform_yy*omega_in_platform_y + J_star_in_platform_yz*omega_in_platform_z;
+        const real mu_p_t_2 = J_star_in_platform_xy*v.omega_in_platform_x +
+            J_star_in_platform_yy*v.omega_in_platform_y +
+            J_star_in_platform_yz*v.omega_in_platform_z;
         const real J_star_in_platform_zz = m->J_star_in_platform_zz;
-        const real mu_p_t_3 = J_star_in_platform_xz*omega_in_platform_x +
-            J_star_in_platform_yz*omega_in_platform_y + J_star_in_platform_zz*omega_in_platform_z;
-        const real alpha_in_platform_x = R_xx*alpha_x + R_yx*alpha_y + R_zx*alpha_z;
-        const real alpha_in_platform_y = R_xy*alpha_x + R_yy*alpha_y + R_zy*alpha_z;
-        const real alpha_in_platform_z = R_xz*alpha_x + R_yz*alpha_y + R_zz*alpha_z;
+        const real mu_p_t_3 = J_star_in_platform_xz*v.omega_in_platform_x +
+            J_star_in_platform_yz*v.omega_in_platform_y +
+            J_star_in_platform_zz*v.omega_in_platform_z;
+        const real alpha_in_platform_x = v.R_xx*alpha_x + v.R_yx*alpha_y + v.R_zx*alpha_z;
+        const real alpha_in_platform_y = v.R_xy*alpha_x + v.R_yy*alpha_y + v.R_zy*alpha_z;
+        const real alpha_in_platform_z = v.R_xz*alpha_x + v.R_yz*alpha_y + v.R_zz*alpha_z;
+        const real h_star_in_platform_y = m->h_star_in_platform_y;
+        const real h_star_in_platform_z = m->h_star_in_platform_z;
         const real mu_p_in_platform_x = J_star_in_platform_xx*alpha_in_platform_x +
             J_star_in_platform_xy*alpha_in_platform_y + J_star_in_platform_xz*alpha_in_platform_z
-            + a_t_in_platform_z*h_star_in_platform_y + mu_p_t_3*omega_in_platform_y -
-            a_t_in_platform_y*h_star_in_platform_z - mu_p_t_2*omega_in_platform_z;
+            + a_t_in_platform_z*h_star_in_platform_y + mu_p_t_3*v.omega_in_platform_y -
+            a_t_in_platform_y*h_star_in_platform_z - mu_p_t_2*v.omega_in_platform_z;
+        const real h_star_in_platform_x = m->h_star_in_platform_x;
         const real mu_p_in_platform_y = J_star_in_platform_xy*alpha_in_platform_x +
             J_star_in_platform_yy*alpha_in_platform_y + J_star_in_platform_yz*alpha_in_platform_z
-            + a_t_in_platform_x*h_star_in_platform_z + mu_p_t*omega_in_platform_z -
-            a_t_in_platform_z*h_star_in_platform_x - mu_p_t_3*omega_in_platform_x;
+            + a_t_in_platform_x*h_star_in_platform_z + mu_p_t*v.omega_in_platform_z -
+            a_t_in_platform_z*h_star_in_platform_x - mu_p_t_3*v.omega_in_platform_x;
         const real mu_p_in_platform_z = J_star_in_platform_xz*alpha_in_platform_x +
             J_star_in_platform_yz*alpha_in_platform_y + J_star_in_platform_zz*alpha_in_platform_z
-            + a_t_in_platform_y*h_star_in_platform_x + mu_p_t_2*omega_in_platform_x -
-            a_t_in_platform_x*h_star_in_platform_y - mu_p_t*omega_in_platform_y;
-        const real mu_p_x = R_xx*mu_p_in_platform_x + R_xy*mu_p_in_platform_y +
-            R_xz*mu_p_in_platform_z;
-        const real mu_p_y = R_yx*mu_p_in_platform_x + R_yy*mu_p_in_platform_y +
-            R_yz*mu_p_in_platform_z;
-        const real mu_p_z = R_zx*mu_p_in_platform_x + R_zy*mu_p_in_platform_y +
-            R_zz*mu_p_in_platform_z;
-        s[0*w + k] = t_x;
-        s[1*w + k] = t_y;
-        s[2*w + k] = t_z;
-        s[3*w + k] = R_xx;
-        s[4*w + k] = R_xy;
-        s[5*w + k] = R_xz;
-        s[6*w + k] = R_yx;
-        s[7*w + k] = R_yy;
-        s[8*w + k] = R_yz;
-        s[9*w + k] = R_zx;
-        s[10*w + k] = R_zy;
-        s[11*w + k] = R_zz;
-        s[12*w + k] = t_dot_x;
-        s[13*w + k] = t_dot_y;
-        s[14*w + k] = t_dot_z;
-        s[15*w + k] = omega_x;
-        s[16*w + k] = omega_y;
-        s[17*w + k] = omega_z;
-        s[18*w + k] = t_ddot_x;
-        s[19*w + k] = t_ddot_y;
-        s[20*w + k] = t_ddot_z;
-        s[21*w + k] = alpha_x;
-        s[22*w + k] = alpha_y;
-        s[23*w + k] = alpha_z;
-        s[24*w + k] = f_p_x;
-        s[25*w + k] = f_p_y;
-        s[26*w + k] = f_p_z;
-        s[27*w + k] = mu_p_x;
-        s[28*w + k] = mu_p_y;
-        s[29*w + k] = mu_p_z;
-        t->invalid[k] += UNLESS(is_finite(quaternion_scale)) + UNLESS(quaternion_scale > 0);
+            + a_t_in_platform_y*h_star_in_platform_x + mu_p_t_2*v.omega_in_platform_x -
+            a_t_in_platform_x*h_star_in_platform_y - mu_p_t*v.omega_in_platform_y;
+        const real mu_p_x = v.R_xx*mu_p_in_platform_x + v.R_xy*mu_p_in_platform_y +
+            v.R_xz*mu_p_in_platform_z;
+        const real mu_p_y = v.R_yx*mu_p_in_platform_x + v.R_yy*mu_p_in_platform_y +
+            v.R_yz*mu_p_in_platform_z;
+        const real mu_p_z = v.R_zx*mu_p_in_platform_x + v.R_zy*mu_p_in_platform_y +
+            v.R_zz*mu_p_in_platform_z;
+        s[0*w + k] = v.R_xx;
+        s[1*w + k] = v.R_xy;
+        s[2*w + k] = v.R_xz;
+        s[3*w + k] = v.R_yx;
+        s[4*w + k] = v.R_yy;
+        s[5*w + k] = v.R_yz;
+        s[6*w + k] = v.R_zx;
+        s[7*w + k] = v.R_zy;
+        s[8*w + k] = v.R_zz;
+        s[9*w + k] = f_p_x;
+        s[10*w + k] = f_p_y;
+        s[11*w + k] = f_p_z;
+        s[12*w + k] = mu_p_x;
+        s[13*w + k] = mu_p_y;
+        s[14*w + k] = mu_p_z;
+        t->invalid[k] += UNLESS(is_finite(v.quaternion_scale)) + UNLESS(v.quaternion_scale > 0);
     }
 }
 
@@ -3662,236 +3235,26 @@ INLINE void required_legs_sps(const prepared *m, size_t w, size_t leg, size_t le
     size_t states, size_t count, int add, const real *X, const real *V, const real *A, real
     *terms, real *o)
 {
-    static const size_t place_sps_y_3_extra[] = {7, 8, 9, 10, 11, 12, 7, 7};
-    static const size_t place_sps_yd_3[] = {6, 7, 8, 9, 10, 11, 6, 6};
-    static const size_t place_sps_ydd_3[] = {6, 7, 8, 9, 10, 11, 6, 6};
     for (size_t k = 0; k < count; ++k) {
         const size_t i = leg + legs*k;
         const size_t j = states*k;
-        /* (sps-S) from the base point to the connection point */
-        const real R_xx = s[3*w + j];
-        const real R_xy = s[4*w + j];
-        const real R_xz = s[5*w + j];
-        const real sps_platform_point_x = m->sps_platform_point_x[i];
-        const real sps_platform_point_y = m->sps_platform_point_y[i];
-        const real sps_platform_point_z = m->sps_platform_point_z[i];
-        const real sps_q_x = R_xx*sps_platform_point_x + R_xy*sps_platform_point_y +
-            R_xz*sps_platform_point_z;
-        const real R_yx = s[6*w + j];
-        const real R_yy = s[7*w + j];
-        const real R_yz = s[8*w + j];
-        const real sps_q_y = R_yx*sps_platform_point_x + R_yy*sps_platform_point_y +
-            R_yz*sps_platform_point_z;
-        const real R_zx = s[9*w + j];
-        const real R_zy = s[10*w + j];
-        const real R_zz = s[11*w + j];
-        const real sps_q_z = R_zx*sps_platform_point_x + R_zy*sps_platform_point_y +
-            R_zz*sps_platform_point_z;
-        const real sps_base_point_x = m->sps_base_point_x[i];
-        const real t_x = s[0*w + j];
-        const real sps_S_x = sps_q_x + t_x - sps_base_point_x;
-        const real sps_base_point_y = m->sps_base_point_y[i];
-        const real t_y = s[1*w + j];
-        const real sps_S_y = sps_q_y + t_y - sps_base_point_y;
-        const real sps_base_point_z = m->sps_base_point_z[i];
-        const real t_z = s[2*w + j];
-        const real sps_S_z = sps_q_z + t_z - sps_base_point_z;
-        /* (sps-c_3) cosine of the angle of joint 3 from its reference direction */
-        const real sps_y_3_extra = X[place_sps_y_3_extra[i]*w + j];
-        const real sps_c_3 = -sine(sps_y_3_extra);
-        /* (sps-s_3) sine of the angle of joint 3 from its reference direction */
-        const real sps_s_3 = cosine(sps_y_3_extra);
-        /* (sps-px_1) component along the reference direction */
-        const real sps_base_frame_xx = m->sps_base_frame_xx[i];
-        const real sps_base_frame_yx = m->sps_base_frame_yx[i];
-        const real sps_base_frame_zx = m->sps_base_frame_zx[i];
-        const real sps_px_1 = sps_S_x*sps_base_frame_xx + sps_S_y*sps_base_frame_yx +
-            sps_S_z*sps_base_frame_zx;
-        /* (sps-py_1) component across the reference direction */
-        const real sps_base_frame_xy = m->sps_base_frame_xy[i];
-        const real sps_base_frame_yy = m->sps_base_frame_yy[i];
-        const real sps_base_frame_zy = m->sps_base_frame_zy[i];
-        const real sps_py_1 = sps_S_x*sps_base_frame_xy + sps_S_y*sps_base_frame_yy +
-            sps_S_z*sps_base_frame_zy;
-        /* (sps-rho2_1) squared amplitude */
-        const real sps_rho2_1 = sps_px_1*sps_px_1 + sps_py_1*sps_py_1;
-        /* (sps-root_1) amplitude, with the sign of the branch */
-        const real sps_branch_1 = m->sps_branch_1[i];
-        const real sps_root_1 = sps_branch_1*root(sps_rho2_1);
-        /* (sps-c_1) cosine of the angle of joint 1 from its reference direction */
-        const real inv_sps_root_1 = 1/sps_root_1;
-        const real sps_c_1 = -inv_sps_root_1*sps_py_1;
-        /* (sps-s_1) sine of the angle of joint 1 from its reference direction */
-        const real sps_s_1 = inv_sps_root_1*sps_px_1;
-        /* (sps-xi_1) the vector from joint 1 to the connection point, resolved along link 1 */
-        const real sps_base_frame_xz = m->sps_base_frame_xz[i];
-        const real sps_base_frame_yz = m->sps_base_frame_yz[i];
-        const real sps_base_frame_zz = m->sps_base_frame_zz[i];
-        const real sps_xi_1_in_axes1_z = sps_S_x*sps_base_frame_xz + sps_S_y*sps_base_frame_yz +
-            sps_S_z*sps_base_frame_zz;
-        /* (sps-rho2_2) squared amplitude */
-        const real sps_rho2_2 = sps_rho2_1 + sps_xi_1_in_axes1_z*sps_xi_1_in_axes1_z;
-        /* (sps-root_2) amplitude, with the sign of the branch */
-        const real sps_branch_2 = m->sps_branch_2[i];
-        const real sps_root_2 = sps_branch_2*root(sps_rho2_2);
-        /* (sps-c_2) cosine of the angle of joint 2 from its reference direction */
-        const real inv_sps_root_2 = 1/sps_root_2;
-        const real sps_c_2_t = inv_sps_root_2*sps_root_1;
-        /* (sps-s_2) sine of the angle of joint 2 from its reference direction */
-        const real sps_s_2 = inv_sps_root_2*sps_xi_1_in_axes1_z;
-        /* (sps-S_dot) velocity of the connection point */
-        const real omega_y = s[16*w + j];
-        const real omega_z = s[17*w + j];
-        const real sps_S_dot_t = omega_y*sps_q_z - omega_z*sps_q_y;
-        const real omega_x = s[15*w + j];
-        const real sps_S_dot_t_2 = omega_z*sps_q_x - omega_x*sps_q_z;
-        const real sps_S_dot_t_3 = omega_x*sps_q_y - omega_y*sps_q_x;
-        const real t_dot_x = s[12*w + j];
-        const real sps_S_dot_x = sps_S_dot_t + t_dot_x;
-        const real t_dot_y = s[13*w + j];
-        const real sps_S_dot_y = sps_S_dot_t_2 + t_dot_y;
-        const real t_dot_z = s[14*w + j];
-        const real sps_S_dot_z = sps_S_dot_t_3 + t_dot_z;
-        /* (sps-v_1) velocity of the connection point per rate of joint 1 */
-        const real sps_e_1_in_axes3_x = -sps_c_2_t*sps_c_3;
-        const real sps_e_1_in_axes3_y = sps_c_2_t*sps_s_3;
-        const real sps_v_1_in_axes3_x = sps_e_1_in_axes3_y*sps_root_2;
-        const real sps_v_1_in_axes3_y = -sps_e_1_in_axes3_x*sps_root_2;
-        /* (sps-v_2) velocity of the connection point per rate of joint 2 */
-        const real sps_v_2_in_axes3_x = sps_c_3*sps_root_2;
-        const real sps_v_2_t = sps_root_2*sps_s_3;
-        /* (sps-w_1) reciprocal vector 1 */
-        const real sps_w_1_t = sps_v_1_in_axes3_x*sps_v_2_t +
-            sps_v_1_in_axes3_y*sps_v_2_in_axes3_x;
-        /* (sps-w_4) reciprocal vector 3 */
-        const real sps_w_4_x = inv_sps_root_2*sps_S_x;
-        const real sps_w_4_y = inv_sps_root_2*sps_S_y;
-        const real sps_w_4_z = inv_sps_root_2*sps_S_z;
-        /* (sps-S_dot_rest) velocity of the connection point left to the joints that are not extra */
-        const real sps_S_dot_rest_t = sps_s_2*sps_s_3;
-        const real sps_S_dot_rest_t_2 = sps_S_dot_rest_t*sps_s_1 - sps_c_1*sps_c_3;
-        const real sps_S_dot_rest_t_3 = sps_S_dot_rest_t*sps_c_1 + sps_c_3*sps_s_1;
-        const real axis_y_sps_axes3_x = sps_S_dot_rest_t_3*sps_base_frame_xy +
-            sps_base_frame_xz*sps_e_1_in_axes3_y - sps_S_dot_rest_t_2*sps_base_frame_xx;
-        const real axis_y_sps_axes3_y = sps_S_dot_rest_t_3*sps_base_frame_yy +
-            sps_base_frame_yz*sps_e_1_in_axes3_y - sps_S_dot_rest_t_2*sps_base_frame_yx;
-        const real axis_y_sps_axes3_z = sps_S_dot_rest_t_3*sps_base_frame_zy +
-            sps_base_frame_zz*sps_e_1_in_axes3_y - sps_S_dot_rest_t_2*sps_base_frame_zx;
-        const real axis_x_sps_axes3_x = axis_y_sps_axes3_y*sps_w_4_z -
-            axis_y_sps_axes3_z*sps_w_4_y;
-        const real axis_x_sps_axes3_y = axis_y_sps_axes3_z*sps_w_4_x -
-            axis_y_sps_axes3_x*sps_w_4_z;
-        const real axis_x_sps_axes3_z = axis_y_sps_axes3_x*sps_w_4_y -
-            axis_y_sps_axes3_y*sps_w_4_x;
-        const real sps_S_dot_rest_in_axes3_x = axis_x_sps_axes3_x*sps_S_dot_x +
-            axis_x_sps_axes3_y*sps_S_dot_y + axis_x_sps_axes3_z*sps_S_dot_z;
-        const real sps_S_dot_rest_in_axes3_y = axis_y_sps_axes3_x*sps_S_dot_x +
-            axis_y_sps_axes3_y*sps_S_dot_y + axis_y_sps_axes3_z*sps_S_dot_z;
-        const real sps_S_dot_rest_in_axes3_z = sps_S_dot_x*sps_w_4_x + sps_S_dot_y*sps_w_4_y +
-            sps_S_dot_z*sps_w_4_z;
-        /* (sps-qd_1) rate of joint 1 */
-        const real inv_sps_w_1_t = 1/sps_w_1_t;
-        const real sps_qd_1 = inv_sps_w_1_t*(sps_S_dot_rest_in_axes3_x*sps_v_2_t +
-            sps_S_dot_rest_in_axes3_y*sps_v_2_in_axes3_x);
-        /* (sps-qd_2) rate of joint 2 */
-        const real sps_qd_2_t = inv_sps_w_1_t*(sps_S_dot_rest_in_axes3_y*sps_v_1_in_axes3_x -
-            sps_S_dot_rest_in_axes3_x*sps_v_1_in_axes3_y);
-        /* (sps-omega_1) angular velocity of link 1 */
-        const real sps_omega_1_in_axes2_x = sps_qd_1*sps_s_2;
-        const real sps_omega_1_t = sps_c_2_t*sps_qd_1;
-        /* (sps-omega_2) angular velocity of link 2 */
-        const real sps_omega_2_in_axes3_x = -sps_c_3*sps_omega_1_t - sps_qd_2_t*sps_s_3;
-        const real sps_omega_2_in_axes3_y = sps_omega_1_t*sps_s_3 - sps_c_3*sps_qd_2_t;
-        /* (sps-omega_3) angular velocity of link 3 */
-        const real sps_yd_3 = V[place_sps_yd_3[i]*w + j];
-        const real sps_omega_3_in_axes3_z = sps_omega_1_in_axes2_x + sps_yd_3;
-        /* (sps-W_3) centripetal tensor of link 3 */
-        const real sps_W_3_in_axes3_xy = sps_omega_2_in_axes3_x*sps_omega_2_in_axes3_y;
-        const real sps_W_3_in_axes3_xz = sps_omega_2_in_axes3_x*sps_omega_3_in_axes3_z;
-        const real sps_W_3_in_axes3_yz = sps_omega_2_in_axes3_y*sps_omega_3_in_axes3_z;
-        /* (sps-a_p) acceleration of the connection point without its centripetal part */
-        const real alpha_y = s[22*w + j];
-        const real alpha_z = s[23*w + j];
-        const real t_ddot_x = s[18*w + j];
-        const real sps_a_p_x = t_ddot_x + alpha_y*sps_q_z - alpha_z*sps_q_y;
-        const real alpha_x = s[21*w + j];
-        const real t_ddot_y = s[19*w + j];
-        const real sps_a_p_y = t_ddot_y + alpha_z*sps_q_x - alpha_x*sps_q_z;
-        const real t_ddot_z = s[20*w + j];
-        const real sps_a_p_z = t_ddot_z + alpha_x*sps_q_y - alpha_y*sps_q_x;
-        /* (sps-S_ddot) acceleration of the connection point */
-        const real sps_S_ddot_x = sps_a_p_x + omega_y*sps_S_dot_t_3 - omega_z*sps_S_dot_t_2;
-        const real sps_S_ddot_y = sps_a_p_y + omega_z*sps_S_dot_t - omega_x*sps_S_dot_t_3;
-        const real sps_S_ddot_z = sps_a_p_z + omega_x*sps_S_dot_t_2 - omega_y*sps_S_dot_t;
-        const real sps_S_ddot_in_axes3_x = axis_x_sps_axes3_x*sps_S_ddot_x +
-            axis_x_sps_axes3_y*sps_S_ddot_y + axis_x_sps_axes3_z*sps_S_ddot_z;
-        const real sps_S_ddot_in_axes3_y = axis_y_sps_axes3_x*sps_S_ddot_x +
-            axis_y_sps_axes3_y*sps_S_ddot_y + axis_y_sps_axes3_z*sps_S_ddot_z;
-        /* (sps-zeta_2) angular acceleration of link 2 from the turning of axis 2 */
-        const real sps_zeta_2_in_axes2_y = sps_omega_1_in_axes2_x*sps_qd_2_t;
-        /* (sps-zeta_3) angular acceleration of link 3 from the turning of axis 3 */
-        const real sps_zeta_3_in_axes3_x = sps_omega_2_in_axes3_y*sps_yd_3;
-        const real sps_zeta_3_in_axes3_y = -sps_omega_2_in_axes3_x*sps_yd_3;
-        /* (sps-beta_3) angular acceleration of link 3 at zero joint accelerations */
-        const real sps_beta_3_in_axes3_x = sps_zeta_3_in_axes3_x + sps_c_3*sps_zeta_2_in_axes2_y;
-        const real sps_beta_3_in_axes3_y = sps_zeta_3_in_axes3_y - sps_s_3*sps_zeta_2_in_axes2_y;
-        /* (sps-bias) acceleration of the connection point at zero joint accelerations */
-        const real sps_bias_t = 2*sps_S_dot_rest_in_axes3_z;
-        const real sps_bias_in_axes3_x = sps_bias_t*sps_omega_2_in_axes3_y +
-            sps_root_2*(sps_W_3_in_axes3_xz + sps_beta_3_in_axes3_y);
-        const real sps_bias_in_axes3_y = sps_root_2*(sps_W_3_in_axes3_yz - sps_beta_3_in_axes3_x)
-            - sps_bias_t*sps_omega_2_in_axes3_x;
-        /* (sps-rel) acceleration of the connection point left to the joint accelerations */
-        const real sps_rel_in_axes3_x = sps_S_ddot_in_axes3_x - sps_bias_in_axes3_x;
-        const real sps_rel_in_axes3_y = sps_S_ddot_in_axes3_y - sps_bias_in_axes3_y;
-        /* (sps-qdd_1) acceleration of joint 1 */
-        const real sps_qdd_1 = inv_sps_w_1_t*(sps_rel_in_axes3_x*sps_v_2_t +
-            sps_rel_in_axes3_y*sps_v_2_in_axes3_x);
-        /* (sps-qdd_2) acceleration of joint 2 */
-        const real sps_qdd_2_t = inv_sps_w_1_t*(sps_rel_in_axes3_y*sps_v_1_in_axes3_x -
-            sps_rel_in_axes3_x*sps_v_1_in_axes3_y);
-        /* (sps-alpha_2) angular acceleration of link 2 */
-        const real sps_alpha_2_in_axes2_x = sps_omega_1_t*sps_qd_2_t + sps_qdd_1*sps_s_2;
-        const real sps_alpha_2_in_axes2_y = sps_zeta_2_in_axes2_y - sps_c_2_t*sps_qdd_1;
-        /* (sps-alpha_3) angular acceleration of link 3 */
-        const real sps_alpha_3_in_axes3_x = sps_zeta_3_in_axes3_x + sps_alpha_2_in_axes2_y*sps_c_3
-            - sps_qdd_2_t*sps_s_3;
-        const real sps_alpha_3_in_axes3_y = sps_zeta_3_in_axes3_y - sps_alpha_2_in_axes2_y*sps_s_3
-            - sps_c_3*sps_qdd_2_t;
-        const real sps_ydd_3 = A[place_sps_ydd_3[i]*w + j];
-        const real sps_alpha_3_in_axes3_z = sps_alpha_2_in_axes2_x + sps_ydd_3;
-        /* (sps-B_3) acceleration tensor of link 3 */
-        const real sps_B_3_in_axes3_xy = sps_W_3_in_axes3_xy - sps_alpha_3_in_axes3_z;
-        const real sps_B_3_in_axes3_xz = sps_W_3_in_axes3_xz + sps_alpha_3_in_axes3_y;
-        const real sps_B_3_in_axes3_yx = sps_W_3_in_axes3_xy + sps_alpha_3_in_axes3_z;
-        const real sps_B_3_in_axes3_yz = sps_W_3_in_axes3_yz - sps_alpha_3_in_axes3_x;
-        const real sps_B_3_in_axes3_zx = sps_W_3_in_axes3_xz - sps_alpha_3_in_axes3_y;
-        const real sps_B_3_in_axes3_zy = sps_W_3_in_axes3_yz + sps_alpha_3_in_axes3_x;
-        /* (sps-acc_4) acceleration of the reference point of link 4, less gravity */
-        const real gravity_x = m->gravity_x;
-        const real gravity_y = m->gravity_y;
-        const real gravity_z = m->gravity_z;
-        const real sps_g_in_axes3_x = axis_x_sps_axes3_x*gravity_x + axis_x_sps_axes3_y*gravity_y
-            + axis_x_sps_axes3_z*gravity_z;
-        const real sps_g_in_axes3_y = axis_y_sps_axes3_x*gravity_x + axis_y_sps_axes3_y*gravity_y
-            + axis_y_sps_axes3_z*gravity_z;
-        const real sps_g_in_axes3_z = gravity_x*sps_w_4_x + gravity_y*sps_w_4_y +
-            gravity_z*sps_w_4_z;
-        const real sps_acc_4_in_axes3_x = sps_S_ddot_in_axes3_x - sps_g_in_axes3_x;
-        const real sps_acc_4_in_axes3_y = sps_S_ddot_in_axes3_y - sps_g_in_axes3_y;
-        const real sps_acc_4_in_axes3_z = sps_S_ddot_x*sps_w_4_x + sps_S_ddot_y*sps_w_4_y +
-            sps_S_ddot_z*sps_w_4_z - sps_g_in_axes3_z;
+        values_sps v;
+        stage_sps_X(m, w, i, j, s, X, &v);
+        stage_sps_A_X(w, j, A, &v);
+        stage_sps_V_X(w, i, j, V, &v);
+        stage_sps_A_V_X(w, j, V, &v);
+        stage_sps_legs_required(w, i, j, A, &v);
         /* (sps-phi_4) inertia force of link 4 from its turning about its reference point */
-        const real sps_phi_4_t = sps_omega_2_in_axes3_x*sps_omega_2_in_axes3_x;
-        const real sps_phi_4_t_2 = sps_omega_2_in_axes3_y*sps_omega_2_in_axes3_y;
+        const real sps_phi_4_t = v.sps_omega_2_in_axes3_x*v.sps_omega_2_in_axes3_x;
+        const real sps_phi_4_t_2 = v.sps_omega_2_in_axes3_y*v.sps_omega_2_in_axes3_y;
         const real sps_h_4_in_spec3_x = m->sps_h_4_in_spec3_x[i];
         const real sps_h_4_in_spec3_y = m->sps_h_4_in_spec3_y[i];
         const real sps_h_4_in_spec3_z = m->sps_h_4_in_spec3_z[i];
-        const real sps_phi_4_in_axes3_z = sps_B_3_in_axes3_zx*sps_h_4_in_spec3_y +
-            sps_B_3_in_axes3_zy*sps_h_4_in_spec3_z - sps_h_4_in_spec3_x*(sps_phi_4_t +
+        const real sps_phi_4_in_axes3_z = v.sps_B_3_in_axes3_zx*sps_h_4_in_spec3_y +
+            v.sps_B_3_in_axes3_zy*sps_h_4_in_spec3_z - sps_h_4_in_spec3_x*(sps_phi_4_t +
             sps_phi_4_t_2);
         /* (sps-mu_3) inertia moment of the links that turn with link 3, about their reference points */
-        const real sps_mu_3_t = sps_omega_3_in_axes3_z*sps_omega_3_in_axes3_z;
+        const real sps_mu_3_t = v.sps_omega_3_in_axes3_z*v.sps_omega_3_in_axes3_z;
         const real sps_J_group_3_in_axes3_xy = m->sps_J_group_3_in_axes3_xy[i];
         const real sps_J_group_3_in_axes3_xz = m->sps_J_group_3_in_axes3_xz[i];
         const real sps_J_group_3_in_axes3_yz = m->sps_J_group_3_in_axes3_yz[i];
@@ -3899,54 +3262,51 @@ INLINE void required_legs_sps(const prepared *m, size_t w, size_t leg, size_t le
         const real sps_Sigma_3_in_axes3_zz = m->sps_Sigma_3_in_axes3_zz[i];
         const real sps_h_3_in_spec3_x = m->sps_h_3_in_spec3_x[i];
         const real sps_h_3_in_spec3_z = m->sps_h_3_in_spec3_z[i];
-        const real sps_mu_3_in_axes3_x = sps_B_3_in_axes3_yx*sps_J_group_3_in_axes3_xz +
-            sps_B_3_in_axes3_zy*sps_Sigma_3_in_axes3_yy + sps_J_group_3_in_axes3_yz*(sps_phi_4_t_2
-            - sps_mu_3_t) + sps_acc_4_in_axes3_z*sps_h_4_in_spec3_z +
-            sps_g_in_axes3_y*sps_h_3_in_spec3_x - sps_B_3_in_axes3_yz*sps_Sigma_3_in_axes3_zz -
-            sps_B_3_in_axes3_zx*sps_J_group_3_in_axes3_xy -
-            sps_acc_4_in_axes3_y*sps_h_4_in_spec3_x - sps_g_in_axes3_z*sps_h_3_in_spec3_z;
+        const real sps_mu_3_in_axes3_x = v.sps_B_3_in_axes3_yx*sps_J_group_3_in_axes3_xz +
+            v.sps_B_3_in_axes3_zy*sps_Sigma_3_in_axes3_yy +
+            sps_J_group_3_in_axes3_yz*(sps_phi_4_t_2 - sps_mu_3_t) +
+            v.sps_acc_4_in_axes3_z*sps_h_4_in_spec3_z + v.sps_g_in_axes3_y*sps_h_3_in_spec3_x -
+            v.sps_B_3_in_axes3_yz*sps_Sigma_3_in_axes3_zz -
+            v.sps_B_3_in_axes3_zx*sps_J_group_3_in_axes3_xy -
+            v.sps_acc_4_in_axes3_y*sps_h_4_in_spec3_x - v.sps_g_in_axes3_z*sps_h_3_in_spec3_z;
         const real sps_Sigma_3_in_axes3_xx = m->sps_Sigma_3_in_axes3_xx[i];
         const real sps_h_3_in_spec3_y = m->sps_h_3_in_spec3_y[i];
-        const real sps_mu_3_in_axes3_y = sps_B_3_in_axes3_xz*sps_Sigma_3_in_axes3_zz +
-            sps_B_3_in_axes3_zy*sps_J_group_3_in_axes3_xy +
-            sps_acc_4_in_axes3_x*sps_h_4_in_spec3_x + sps_g_in_axes3_z*sps_h_3_in_spec3_y -
-            sps_B_3_in_axes3_xy*sps_J_group_3_in_axes3_yz -
-            sps_B_3_in_axes3_zx*sps_Sigma_3_in_axes3_xx - sps_J_group_3_in_axes3_xz*(sps_phi_4_t -
-            sps_mu_3_t) - sps_acc_4_in_axes3_z*sps_h_4_in_spec3_y -
-            sps_g_in_axes3_x*sps_h_3_in_spec3_x;
-        const real sps_mu_3_in_axes3_z = sps_B_3_in_axes3_xz*sps_J_group_3_in_axes3_yz +
-            sps_B_3_in_axes3_yx*sps_Sigma_3_in_axes3_xx + sps_J_group_3_in_axes3_xy*(sps_phi_4_t -
-            sps_phi_4_t_2) + sps_acc_4_in_axes3_y*sps_h_4_in_spec3_y +
-            sps_g_in_axes3_x*sps_h_3_in_spec3_z - sps_B_3_in_axes3_xy*sps_Sigma_3_in_axes3_yy -
-            sps_B_3_in_axes3_yz*sps_J_group_3_in_axes3_xz -
-            sps_acc_4_in_axes3_x*sps_h_4_in_spec3_z - sps_g_in_axes3_y*sps_h_3_in_spec3_y;
-        const real sps_mu_3_in_axes2_z = sps_c_3*sps_mu_3_in_axes3_y +
-            sps_mu_3_in_axes3_x*sps_s_3;
+        const real sps_mu_3_in_axes3_y = v.sps_B_3_in_axes3_xz*sps_Sigma_3_in_axes3_zz +
+            v.sps_B_3_in_axes3_zy*sps_J_group_3_in_axes3_xy +
+            v.sps_acc_4_in_axes3_x*sps_h_4_in_spec3_x + v.sps_g_in_axes3_z*sps_h_3_in_spec3_y -
+            v.sps_B_3_in_axes3_xy*sps_J_group_3_in_axes3_yz -
+            v.sps_B_3_in_axes3_zx*sps_Sigma_3_in_axes3_xx - sps_J_group_3_in_axes3_xz*(sps_phi_4_t
+            - sps_mu_3_t) - v.sps_acc_4_in_axes3_z*sps_h_4_in_spec3_y -
+            v.sps_g_in_axes3_x*sps_h_3_in_spec3_x;
+        const real sps_mu_3_in_axes3_z = v.sps_B_3_in_axes3_xz*sps_J_group_3_in_axes3_yz +
+            v.sps_B_3_in_axes3_yx*sps_Sigma_3_in_axes3_xx + sps_J_group_3_in_axes3_xy*(sps_phi_4_t
+            - sps_phi_4_t_2) + v.sps_acc_4_in_axes3_y*sps_h_4_in_spec3_y +
+            v.sps_g_in_axes3_x*sps_h_3_in_spec3_z - v.sps_B_3_in_axes3_xy*sps_Sigma_3_in_axes3_yy
+            - v.sps_B_3_in_axes3_yz*sps_J_group_3_in_axes3_xz -
+            v.sps_acc_4_in_axes3_x*sps_h_4_in_spec3_z - v.sps_g_in_axes3_y*sps_h_3_in_spec3_y;
+        const real sps_mu_3_in_axes2_z = v.sps_c_3*sps_mu_3_in_axes3_x -
+            sps_mu_3_in_axes3_y*v.sps_s_3;
         /* (sps-Gamma_1) moment about axis 1 of the distal links' inertia and weight */
-        const real sps_Gamma_1 = sps_e_1_in_axes3_x*sps_mu_3_in_axes3_x +
-            sps_e_1_in_axes3_y*sps_mu_3_in_axes3_y + sps_mu_3_in_axes3_z*sps_s_2;
+        const real sps_Gamma_1 = v.sps_e_1_in_axes2_y*sps_mu_3_in_axes3_z +
+            v.sps_e_1_in_axes3_x*sps_mu_3_in_axes3_x + v.sps_e_1_in_axes3_y*sps_mu_3_in_axes3_y;
         /* (sps-c) leg force on the platform without actuation and without the mass at the connection
            point */
         const real sps_c_in_axes3_x = sps_h_4_in_spec3_y*(sps_mu_3_t + sps_phi_4_t_2) -
-            inv_sps_w_1_t*(sps_Gamma_1*sps_v_2_t + sps_mu_3_in_axes2_z*sps_v_1_in_axes3_y) -
-            sps_B_3_in_axes3_xy*sps_h_4_in_spec3_z - sps_B_3_in_axes3_xz*sps_h_4_in_spec3_x;
-        const real sps_c_in_axes3_y = inv_sps_w_1_t*(sps_mu_3_in_axes2_z*sps_v_1_in_axes3_x -
-            sps_Gamma_1*sps_v_2_in_axes3_x) + sps_h_4_in_spec3_z*(sps_mu_3_t + sps_phi_4_t) -
-            sps_B_3_in_axes3_yx*sps_h_4_in_spec3_y - sps_B_3_in_axes3_yz*sps_h_4_in_spec3_x;
-        const real sps_c_x = axis_x_sps_axes3_x*sps_c_in_axes3_x +
-            axis_y_sps_axes3_x*sps_c_in_axes3_y - sps_phi_4_in_axes3_z*sps_w_4_x;
-        const real sps_c_y = axis_x_sps_axes3_y*sps_c_in_axes3_x +
-            axis_y_sps_axes3_y*sps_c_in_axes3_y - sps_phi_4_in_axes3_z*sps_w_4_y;
-        const real sps_c_z = axis_x_sps_axes3_z*sps_c_in_axes3_x +
-            axis_y_sps_axes3_z*sps_c_in_axes3_y - sps_phi_4_in_axes3_z*sps_w_4_z;
+            v.inv_sps_w_1_t*(sps_Gamma_1*v.sps_v_2_t + sps_mu_3_in_axes2_z*v.sps_v_1_in_axes3_y) -
+            v.sps_B_3_in_axes3_xy*sps_h_4_in_spec3_z - v.sps_B_3_in_axes3_xz*sps_h_4_in_spec3_x;
+        const real sps_c_in_axes3_y = v.inv_sps_w_1_t*(sps_mu_3_in_axes2_z*v.sps_v_1_in_axes3_x -
+            sps_Gamma_1*v.sps_v_2_in_axes3_x) + sps_h_4_in_spec3_z*(sps_mu_3_t + sps_phi_4_t) -
+            v.sps_B_3_in_axes3_yx*sps_h_4_in_spec3_y - v.sps_B_3_in_axes3_yz*sps_h_4_in_spec3_x;
+        const real sps_c_x = v.axis_x_sps_axes3_x*sps_c_in_axes3_x +
+            v.axis_y_sps_axes3_x*sps_c_in_axes3_y - sps_phi_4_in_axes3_z*v.sps_w_4_x;
+        const real sps_c_y = v.axis_x_sps_axes3_y*sps_c_in_axes3_x +
+            v.axis_y_sps_axes3_y*sps_c_in_axes3_y - sps_phi_4_in_axes3_z*v.sps_w_4_y;
+        const real sps_c_z = v.axis_x_sps_axes3_z*sps_c_in_axes3_x +
+            v.axis_y_sps_axes3_z*sps_c_in_axes3_y - sps_phi_4_in_axes3_z*v.sps_w_4_z;
         /* (R_a) moment that actuators and external wrench must give */
-        const real sps_R_a_t = sps_c_y*sps_q_z - sps_c_z*sps_q_y;
-        const real sps_R_a_t_2 = sps_c_z*sps_q_x - sps_c_x*sps_q_z;
-        const real sps_R_a_t_3 = sps_c_x*sps_q_y - sps_c_y*sps_q_x;
-        /* (sps-H_a_4) moment of the column's unit force about the platform origin */
-        const real sps_H_a_4_x = sps_q_y*sps_w_4_z - sps_q_z*sps_w_4_y;
-        const real sps_H_a_4_y = sps_q_z*sps_w_4_x - sps_q_x*sps_w_4_z;
-        const real sps_H_a_4_z = sps_q_x*sps_w_4_y - sps_q_y*sps_w_4_x;
+        const real sps_R_a_t = sps_c_y*v.sps_q_z - sps_c_z*v.sps_q_y;
+        const real sps_R_a_t_2 = sps_c_z*v.sps_q_x - sps_c_x*v.sps_q_z;
+        const real sps_R_a_t_3 = sps_c_x*v.sps_q_y - sps_c_y*v.sps_q_x;
         /* (R_t) force that actuators and external wrench must give */
         gather(&terms[0*count + k], add, sps_c_x);  /* R_t_x_of_legs */
         gather(&terms[1*count + k], add, sps_c_y);  /* R_t_y_of_legs */
@@ -3958,15 +3318,16 @@ INLINE void required_legs_sps(const prepared *m, size_t w, size_t leg, size_t le
         /* (sps-P_3) inertia and weight of the leg along the extra degree of freedom of joint 3 */
         o[0*count + k] = sps_mu_3_in_axes3_z;
         /* (sps-w_4) reciprocal vector 3 */
-        o[1*count + k] = sps_w_4_x;
-        o[2*count + k] = sps_w_4_y;
-        o[3*count + k] = sps_w_4_z;
+        o[1*count + k] = v.sps_w_4_x;
+        o[2*count + k] = v.sps_w_4_y;
+        o[3*count + k] = v.sps_w_4_z;
         /* (sps-H_a_4) moment of the column's unit force about the platform origin */
-        o[4*count + k] = sps_H_a_4_x;
-        o[5*count + k] = sps_H_a_4_y;
-        o[6*count + k] = sps_H_a_4_z;
-        o[7*count + k] = UNLESS(magnitude(sps_rho2_1) > LEAST_1) + UNLESS(magnitude(sps_rho2_2) >
-            LEAST_1) + UNLESS(magnitude(sps_w_1_t) > LEAST_2);
+        o[4*count + k] = v.sps_H_a_4_x;
+        o[5*count + k] = v.sps_H_a_4_y;
+        o[6*count + k] = v.sps_H_a_4_z;
+        o[7*count + k] = UNLESS(magnitude(v.sps_root_1_t) > LEAST_1) +
+            UNLESS(magnitude(v.sps_root_2_t) > LEAST_1) + UNLESS(magnitude(v.sps_w_1_t) >
+            LEAST_2);
     }
 }
 
@@ -3975,7 +3336,7 @@ INLINE void required_place_sps(size_t w, size_t count, const real *o, size_t leg
 {
     for (size_t k = 0; k < w; ++k) {
         required[(6 + leg)*w + k] = o[0*count + first + k];
-        H[(0*NU + leg)*w + k] = o[1*count + first + k];
+        H[leg*w + k] = o[1*count + first + k];
         H[(NU + leg)*w + k] = o[2*count + first + k];
         H[(2*NU + leg)*w + k] = o[3*count + first + k];
         H[(3*NU + leg)*w + k] = o[4*count + first + k];
@@ -3990,23 +3351,23 @@ INLINE void required_after(size_t w, const real *s, const real *sums, real *requ
     for (size_t k = 0; k < w; ++k) {
         /* (R_t) force that actuators and external wrench must give */
         const real R_t_x_of_legs = sums[0*w + k];
-        const real f_p_x = s[24*w + k];
+        const real f_p_x = s[9*w + k];
         const real R_t_x = f_p_x - R_t_x_of_legs;
         const real R_t_y_of_legs = sums[1*w + k];
-        const real f_p_y = s[25*w + k];
+        const real f_p_y = s[10*w + k];
         const real R_t_y = f_p_y - R_t_y_of_legs;
         const real R_t_z_of_legs = sums[2*w + k];
-        const real f_p_z = s[26*w + k];
+        const real f_p_z = s[11*w + k];
         const real R_t_z = f_p_z - R_t_z_of_legs;
         /* (R_a) moment that actuators and external wrench must give */
         const real R_a_x_of_legs = sums[3*w + k];
-        const real mu_p_x = s[27*w + k];
+        const real mu_p_x = s[12*w + k];
         const real R_a_x = R_a_x_of_legs + mu_p_x;
         const real R_a_y_of_legs = sums[4*w + k];
-        const real mu_p_y = s[28*w + k];
+        const real mu_p_y = s[13*w + k];
         const real R_a_y = R_a_y_of_legs + mu_p_y;
         const real R_a_z_of_legs = sums[5*w + k];
-        const real mu_p_z = s[29*w + k];
+        const real mu_p_z = s[14*w + k];
         const real R_a_z = R_a_z_of_legs + mu_p_z;
         /* (R_t) force that actuators and external wrench must give */
         required[0*w + k] = R_t_x;
@@ -4022,10 +3383,8 @@ INLINE void required_after(size_t w, const real *s, const real *sums, real *requ
 INLINE void required_run(const prepared *m, const real *X, const real *V, const real *A, real
     *required, real *H, verdict *t)
 {
-    real s[30] = {0};
-    real sums[6] = {0};
-    real terms_sps[6*LEGS(LEGS_OF_sps)] = {0};
-    real o_sps[8*LEGS(LEGS_OF_sps)] = {0};
+    real s[15] = {0}, sums[6] = {0};
+    real terms_sps[6*LEGS(LEGS_OF_sps)] = {0}, o_sps[8*LEGS(LEGS_OF_sps)] = {0};
     clear(H, NV*NU);
     required_before(m, 1, X, V, A, s, t);
     required_legs_sps(m, 1, 0, 1, s, 0, LEGS(LEGS_OF_sps), 0, X, V, A, terms_sps, o_sps);
@@ -4041,8 +3400,7 @@ INLINE void required_run(const prepared *m, const real *X, const real *V, const 
 INLINE void required_run_lanes(const prepared *m, const real *X, const real *V, const real *A,
     real *required, real *H, verdict *t)
 {
-    real s[30*LANES];
-    real sums[6*LANES];
+    real s[15*LANES], sums[6*LANES];
     real o_sps[8*LANES];
     clear(H, NV*NU*LANES);
     required_before(m, LANES, X, V, A, s, t);
@@ -4055,56 +3413,22 @@ INLINE void required_run_lanes(const prepared *m, const real *X, const real *V, 
 }
 
 /* ---- inverse_kinematics ---- */
-INLINE void inverse_kinematics_before(size_t w, const real *X, real *s, verdict *t)
+INLINE void inverse_kinematics_before(const prepared *m, size_t w, const real *X, real *s, verdict
+    *t)
 {
     for (size_t k = 0; k < w; ++k) {
-        /* X: named entries */
-        const real X_0 = X[0*w + k];
-        const real t_x = X_0;
-        const real X_1 = X[1*w + k];
-        const real t_y = X_1;
-        const real X_2 = X[2*w + k];
-        const real t_z = X_2;
-        const real X_3 = X[3*w + k];
-        const real X_4 = X[4*w + k];
-        const real X_5 = X[5*w + k];
-        const real X_6 = X[6*w + k];
-        const real quaternion_norm2 = X_3*X_3 + X_4*X_4 + X_5*X_5 + X_6*X_6;
-        const real quaternion_scale = 2/quaternion_norm2;
-        const real quaternion_sx = X_3*quaternion_scale;
-        const real quaternion_sy = X_4*quaternion_scale;
-        const real quaternion_sz = X_5*quaternion_scale;
-        const real quaternion_wx = X_6*quaternion_sx;
-        const real quaternion_wy = X_6*quaternion_sy;
-        const real quaternion_wz = X_6*quaternion_sz;
-        const real quaternion_xx = X_3*quaternion_sx;
-        const real quaternion_xy = X_3*quaternion_sy;
-        const real quaternion_xz = X_3*quaternion_sz;
-        const real quaternion_yy = X_4*quaternion_sy;
-        const real quaternion_yz = X_4*quaternion_sz;
-        const real quaternion_zz = X_5*quaternion_sz;
-        const real R_xx = 1 - quaternion_yy - quaternion_zz;
-        const real R_xy = quaternion_xy - quaternion_wz;
-        const real R_xz = quaternion_wy + quaternion_xz;
-        const real R_yx = quaternion_wz + quaternion_xy;
-        const real R_yy = 1 - quaternion_xx - quaternion_zz;
-        const real R_yz = quaternion_yz - quaternion_wx;
-        const real R_zx = quaternion_xz - quaternion_wy;
-        const real R_zy = quaternion_wx + quaternion_yz;
-        const real R_zz = 1 - quaternion_xx - quaternion_yy;
-        s[0*w + k] = t_x;
-        s[1*w + k] = t_y;
-        s[2*w + k] = t_z;
-        s[3*w + k] = R_xx;
-        s[4*w + k] = R_xy;
-        s[5*w + k] = R_xz;
-        s[6*w + k] = R_yx;
-        s[7*w + k] = R_yy;
-        s[8*w + k] = R_yz;
-        s[9*w + k] = R_zx;
-        s[10*w + k] = R_zy;
-        s[11*w + k] = R_zz;
-        t->invalid[k] += UNLESS(is_finite(quaternion_scale)) + UNLESS(quaternion_scale > 0);
+        values v;
+        stage_X(m, w, k, X, &v);
+        s[0*w + k] = v.R_xx;
+        s[1*w + k] = v.R_xy;
+        s[2*w + k] = v.R_xz;
+        s[3*w + k] = v.R_yx;
+        s[4*w + k] = v.R_yy;
+        s[5*w + k] = v.R_yz;
+        s[6*w + k] = v.R_zx;
+        s[7*w + k] = v.R_zy;
+        s[8*w + k] = v.R_zz;
+        t->invalid[k] += UNLESS(is_finite(v.quaternion_scale)) + UNLESS(v.quaternion_scale > 0);
     }
 }
 
@@ -4115,66 +3439,14 @@ INLINE void inverse_kinematics_legs_sps(const prepared *m, size_t w, size_t leg,
     for (size_t k = 0; k < count; ++k) {
         const size_t i = leg + legs*k;
         const size_t j = states*k;
-        /* (sps-S) from the base point to the connection point */
-        const real R_xx = s[3*w + j];
-        const real R_xy = s[4*w + j];
-        const real R_xz = s[5*w + j];
-        const real sps_base_point_x = m->sps_base_point_x[i];
-        const real sps_platform_point_x = m->sps_platform_point_x[i];
-        const real sps_platform_point_y = m->sps_platform_point_y[i];
-        const real sps_platform_point_z = m->sps_platform_point_z[i];
-        const real t_x = s[0*w + j];
-        const real sps_S_x = t_x + R_xx*sps_platform_point_x + R_xy*sps_platform_point_y +
-            R_xz*sps_platform_point_z - sps_base_point_x;
-        const real R_yx = s[6*w + j];
-        const real R_yy = s[7*w + j];
-        const real R_yz = s[8*w + j];
-        const real sps_base_point_y = m->sps_base_point_y[i];
-        const real t_y = s[1*w + j];
-        const real sps_S_y = t_y + R_yx*sps_platform_point_x + R_yy*sps_platform_point_y +
-            R_yz*sps_platform_point_z - sps_base_point_y;
-        const real R_zx = s[9*w + j];
-        const real R_zy = s[10*w + j];
-        const real R_zz = s[11*w + j];
-        const real sps_base_point_z = m->sps_base_point_z[i];
-        const real t_z = s[2*w + j];
-        const real sps_S_z = t_z + R_zx*sps_platform_point_x + R_zy*sps_platform_point_y +
-            R_zz*sps_platform_point_z - sps_base_point_z;
-        /* (sps-px_1) component along the reference direction */
-        const real sps_base_frame_xx = m->sps_base_frame_xx[i];
-        const real sps_base_frame_yx = m->sps_base_frame_yx[i];
-        const real sps_base_frame_zx = m->sps_base_frame_zx[i];
-        const real sps_px_1 = sps_S_x*sps_base_frame_xx + sps_S_y*sps_base_frame_yx +
-            sps_S_z*sps_base_frame_zx;
-        /* (sps-py_1) component across the reference direction */
-        const real sps_base_frame_xy = m->sps_base_frame_xy[i];
-        const real sps_base_frame_yy = m->sps_base_frame_yy[i];
-        const real sps_base_frame_zy = m->sps_base_frame_zy[i];
-        const real sps_py_1 = sps_S_x*sps_base_frame_xy + sps_S_y*sps_base_frame_yy +
-            sps_S_z*sps_base_frame_zy;
-        /* (sps-rho2_1) squared amplitude */
-        const real sps_rho2_1 = sps_px_1*sps_px_1 + sps_py_1*sps_py_1;
-        /* (sps-root_1) amplitude, with the sign of the branch */
-        const real sps_branch_1 = m->sps_branch_1[i];
-        const real sps_root_1 = sps_branch_1*root(sps_rho2_1);
+        values_sps v;
+        stage_sps_inverse_kinematics_potential(m, w, i, j, s, X, &v);
         /* (sps-q_1) displacement of joint 1 */
-        const real inv_sps_root_1 = 1/sps_root_1;
-        const real sps_q_1 = angle(inv_sps_root_1*sps_py_1, inv_sps_root_1*sps_px_1);
-        /* (sps-xi_1) the vector from joint 1 to the connection point, resolved along link 1 */
-        const real sps_base_frame_xz = m->sps_base_frame_xz[i];
-        const real sps_base_frame_yz = m->sps_base_frame_yz[i];
-        const real sps_base_frame_zz = m->sps_base_frame_zz[i];
-        const real sps_xi_1_in_axes1_z = sps_S_x*sps_base_frame_xz + sps_S_y*sps_base_frame_yz +
-            sps_S_z*sps_base_frame_zz;
-        /* (sps-rho2_2) squared amplitude */
-        const real sps_rho2_2 = sps_rho2_1 + sps_xi_1_in_axes1_z*sps_xi_1_in_axes1_z;
-        /* (sps-root_2) amplitude, with the sign of the branch */
-        const real sps_branch_2 = m->sps_branch_2[i];
-        const real sps_root_2 = sps_branch_2*root(sps_rho2_2);
+        const real sps_q_1 = angle(v.inv_sps_root_1*v.sps_S_in_turn1_y,
+            v.inv_sps_root_1*v.sps_S_in_turn1_x);
         /* (sps-q_2) displacement of joint 2 */
-        const real inv_sps_root_2 = 1/sps_root_2;
-        const real sps_q_2 = angle(-inv_sps_root_2*sps_xi_1_in_axes1_z,
-            inv_sps_root_2*sps_root_1);
+        const real sps_q_2 = angle(-v.inv_sps_root_2*v.sps_S_in_turn1_z,
+            v.inv_sps_root_2*v.sps_root_1);
         /* (sps-q_1) displacement of joint 1 */
         o[0*count + k] = sps_q_1;
         /* (sps-q_2) displacement of joint 2 */
@@ -4183,10 +3455,10 @@ INLINE void inverse_kinematics_legs_sps(const prepared *m, size_t w, size_t leg,
         const real sps_y_3_extra = X[place_sps_y_3_extra[i]*w + j];
         o[2*count + k] = sps_y_3_extra;
         /* (sps-q_4) displacement of joint 4 */
-        o[3*count + k] = sps_root_2;
-        o[5*count + k] = (sps_q_1 + sps_q_2) + (sps_y_3_extra + sps_root_2);
-        o[4*count + k] = UNLESS(magnitude(sps_rho2_1) > LEAST_1) + UNLESS(magnitude(sps_rho2_2) >
-            LEAST_1);
+        o[3*count + k] = v.sps_root_2;
+        o[5*count + k] = (sps_q_1 + sps_q_2) + (sps_y_3_extra + v.sps_root_2);
+        o[4*count + k] = UNLESS(magnitude(v.sps_root_1_t) > LEAST_1) +
+            UNLESS(magnitude(v.sps_root_2_t) > LEAST_1);
     }
 }
 
@@ -4205,9 +3477,9 @@ INLINE void inverse_kinematics_place_sps(size_t w, size_t count, const real *o, 
 
 INLINE void inverse_kinematics_run(const prepared *m, const real *X, real *q, verdict *t)
 {
-    real s[12] = {0};
+    real s[9] = {0};
     real o_sps[6*LEGS(LEGS_OF_sps)] = {0};
-    inverse_kinematics_before(1, X, s, t);
+    inverse_kinematics_before(m, 1, X, s, t);
     inverse_kinematics_legs_sps(m, 1, 0, 1, s, 0, LEGS(LEGS_OF_sps), X, o_sps);
     for (size_t leg = 0; leg < LEGS_OF_sps; ++leg) {
         inverse_kinematics_place_sps(1, LEGS(LEGS_OF_sps), o_sps, leg, leg, q, t);
@@ -4216,9 +3488,9 @@ INLINE void inverse_kinematics_run(const prepared *m, const real *X, real *q, ve
 
 INLINE void inverse_kinematics_run_lanes(const prepared *m, const real *X, real *q, verdict *t)
 {
-    real s[12*LANES];
+    real s[9*LANES];
     real o_sps[6*LANES];
-    inverse_kinematics_before(LANES, X, s, t);
+    inverse_kinematics_before(m, LANES, X, s, t);
     for (size_t leg = 0; leg < LEGS_OF_sps; ++leg) {
         inverse_kinematics_legs_sps(m, LANES, leg, 0, s, 1, LANES, X, o_sps);
         inverse_kinematics_place_sps(LANES, LANES, o_sps, leg, 0, q, t);
@@ -4226,203 +3498,81 @@ INLINE void inverse_kinematics_run_lanes(const prepared *m, const real *X, real 
 }
 
 /* ---- joint_rates ---- */
-INLINE void joint_rates_before(size_t w, const real *X, const real *V, real *s, verdict *t)
+INLINE void joint_rates_before(const prepared *m, size_t w, const real *X, real *s, verdict *t)
 {
     for (size_t k = 0; k < w; ++k) {
-        /* X: named entries */
-        const real X_0 = X[0*w + k];
-        const real t_x = X_0;
-        const real X_1 = X[1*w + k];
-        const real t_y = X_1;
-        const real X_2 = X[2*w + k];
-        const real t_z = X_2;
-        const real X_3 = X[3*w + k];
-        const real X_4 = X[4*w + k];
-        const real X_5 = X[5*w + k];
-        const real X_6 = X[6*w + k];
-        const real quaternion_norm2 = X_3*X_3 + X_4*X_4 + X_5*X_5 + X_6*X_6;
-        const real quaternion_scale = 2/quaternion_norm2;
-        const real quaternion_sx = X_3*quaternion_scale;
-        const real quaternion_sy = X_4*quaternion_scale;
-        const real quaternion_sz = X_5*quaternion_scale;
-        const real quaternion_wx = X_6*quaternion_sx;
-        const real quaternion_wy = X_6*quaternion_sy;
-        const real quaternion_wz = X_6*quaternion_sz;
-        const real quaternion_xx = X_3*quaternion_sx;
-        const real quaternion_xy = X_3*quaternion_sy;
-        const real quaternion_xz = X_3*quaternion_sz;
-        const real quaternion_yy = X_4*quaternion_sy;
-        const real quaternion_yz = X_4*quaternion_sz;
-        const real quaternion_zz = X_5*quaternion_sz;
-        const real R_xx = 1 - quaternion_yy - quaternion_zz;
-        const real R_xy = quaternion_xy - quaternion_wz;
-        const real R_xz = quaternion_wy + quaternion_xz;
-        const real R_yx = quaternion_wz + quaternion_xy;
-        const real R_yy = 1 - quaternion_xx - quaternion_zz;
-        const real R_yz = quaternion_yz - quaternion_wx;
-        const real R_zx = quaternion_xz - quaternion_wy;
-        const real R_zy = quaternion_wx + quaternion_yz;
-        const real R_zz = 1 - quaternion_xx - quaternion_yy;
-        /* V: named entries */
-        const real V_0 = V[0*w + k];
-        const real t_dot_x = V_0;
-        const real V_1 = V[1*w + k];
-        const real t_dot_y = V_1;
-        const real V_2 = V[2*w + k];
-        const real t_dot_z = V_2;
-        const real V_3 = V[3*w + k];
-        const real omega_x = V_3;
-        const real V_4 = V[4*w + k];
-        const real omega_y = V_4;
-        const real V_5 = V[5*w + k];
-        const real omega_z = V_5;
-        s[0*w + k] = t_x;
-        s[1*w + k] = t_y;
-        s[2*w + k] = t_z;
-        s[3*w + k] = R_xx;
-        s[4*w + k] = R_xy;
-        s[5*w + k] = R_xz;
-        s[6*w + k] = R_yx;
-        s[7*w + k] = R_yy;
-        s[8*w + k] = R_yz;
-        s[9*w + k] = R_zx;
-        s[10*w + k] = R_zy;
-        s[11*w + k] = R_zz;
-        s[12*w + k] = t_dot_x;
-        s[13*w + k] = t_dot_y;
-        s[14*w + k] = t_dot_z;
-        s[15*w + k] = omega_x;
-        s[16*w + k] = omega_y;
-        s[17*w + k] = omega_z;
-        t->invalid[k] += UNLESS(is_finite(quaternion_scale)) + UNLESS(quaternion_scale > 0);
+        values v;
+        stage_X(m, w, k, X, &v);
+        s[0*w + k] = v.R_xx;
+        s[1*w + k] = v.R_xy;
+        s[2*w + k] = v.R_xz;
+        s[3*w + k] = v.R_yx;
+        s[4*w + k] = v.R_yy;
+        s[5*w + k] = v.R_yz;
+        s[6*w + k] = v.R_zx;
+        s[7*w + k] = v.R_zy;
+        s[8*w + k] = v.R_zz;
+        t->invalid[k] += UNLESS(is_finite(v.quaternion_scale)) + UNLESS(v.quaternion_scale > 0);
     }
 }
 
 INLINE void joint_rates_legs_sps(const prepared *m, size_t w, size_t leg, size_t legs, const real
     *s, size_t states, size_t count, const real *X, const real *V, real *o)
 {
-    static const size_t place_sps_y_3_extra[] = {7, 8, 9, 10, 11, 12, 7, 7};
     static const size_t place_sps_yd_3[] = {6, 7, 8, 9, 10, 11, 6, 6};
     for (size_t k = 0; k < count; ++k) {
         const size_t i = leg + legs*k;
         const size_t j = states*k;
-        /* (sps-S) from the base point to the connection point */
-        const real R_xx = s[3*w + j];
-        const real R_xy = s[4*w + j];
-        const real R_xz = s[5*w + j];
-        const real sps_platform_point_x = m->sps_platform_point_x[i];
-        const real sps_platform_point_y = m->sps_platform_point_y[i];
-        const real sps_platform_point_z = m->sps_platform_point_z[i];
-        const real sps_q_x = R_xx*sps_platform_point_x + R_xy*sps_platform_point_y +
-            R_xz*sps_platform_point_z;
-        const real R_yx = s[6*w + j];
-        const real R_yy = s[7*w + j];
-        const real R_yz = s[8*w + j];
-        const real sps_q_y = R_yx*sps_platform_point_x + R_yy*sps_platform_point_y +
-            R_yz*sps_platform_point_z;
-        const real R_zx = s[9*w + j];
-        const real R_zy = s[10*w + j];
-        const real R_zz = s[11*w + j];
-        const real sps_q_z = R_zx*sps_platform_point_x + R_zy*sps_platform_point_y +
-            R_zz*sps_platform_point_z;
-        const real sps_base_point_x = m->sps_base_point_x[i];
-        const real t_x = s[0*w + j];
-        const real sps_S_x = sps_q_x + t_x - sps_base_point_x;
-        const real sps_base_point_y = m->sps_base_point_y[i];
-        const real t_y = s[1*w + j];
-        const real sps_S_y = sps_q_y + t_y - sps_base_point_y;
-        const real sps_base_point_z = m->sps_base_point_z[i];
-        const real t_z = s[2*w + j];
-        const real sps_S_z = sps_q_z + t_z - sps_base_point_z;
-        /* (sps-c_3) cosine of the angle of joint 3 from its reference direction */
-        const real sps_y_3_extra = X[place_sps_y_3_extra[i]*w + j];
-        const real sps_c_3 = -sine(sps_y_3_extra);
-        /* (sps-s_3) sine of the angle of joint 3 from its reference direction */
-        const real sps_s_3 = cosine(sps_y_3_extra);
-        /* (sps-px_1) component along the reference direction */
-        const real sps_base_frame_xx = m->sps_base_frame_xx[i];
-        const real sps_base_frame_yx = m->sps_base_frame_yx[i];
-        const real sps_base_frame_zx = m->sps_base_frame_zx[i];
-        const real sps_px_1 = sps_S_x*sps_base_frame_xx + sps_S_y*sps_base_frame_yx +
-            sps_S_z*sps_base_frame_zx;
-        /* (sps-py_1) component across the reference direction */
-        const real sps_base_frame_xy = m->sps_base_frame_xy[i];
-        const real sps_base_frame_yy = m->sps_base_frame_yy[i];
-        const real sps_base_frame_zy = m->sps_base_frame_zy[i];
-        const real sps_py_1 = sps_S_x*sps_base_frame_xy + sps_S_y*sps_base_frame_yy +
-            sps_S_z*sps_base_frame_zy;
-        /* (sps-rho2_1) squared amplitude */
-        const real sps_rho2_1 = sps_px_1*sps_px_1 + sps_py_1*sps_py_1;
-        /* (sps-root_1) amplitude, with the sign of the branch */
-        const real sps_branch_1 = m->sps_branch_1[i];
-        const real sps_root_1 = sps_branch_1*root(sps_rho2_1);
-        /* (sps-c_1) cosine of the angle of joint 1 from its reference direction */
-        const real inv_sps_root_1 = 1/sps_root_1;
-        const real sps_c_1 = -inv_sps_root_1*sps_py_1;
-        /* (sps-s_1) sine of the angle of joint 1 from its reference direction */
-        const real sps_s_1 = inv_sps_root_1*sps_px_1;
-        /* (sps-xi_1) the vector from joint 1 to the connection point, resolved along link 1 */
-        const real sps_base_frame_xz = m->sps_base_frame_xz[i];
-        const real sps_base_frame_yz = m->sps_base_frame_yz[i];
-        const real sps_base_frame_zz = m->sps_base_frame_zz[i];
-        const real sps_xi_1_in_axes1_z = sps_S_x*sps_base_frame_xz + sps_S_y*sps_base_frame_yz +
-            sps_S_z*sps_base_frame_zz;
-        /* (sps-rho2_2) squared amplitude */
-        const real sps_rho2_2 = sps_rho2_1 + sps_xi_1_in_axes1_z*sps_xi_1_in_axes1_z;
-        /* (sps-root_2) amplitude, with the sign of the branch */
-        const real sps_branch_2 = m->sps_branch_2[i];
-        const real sps_root_2 = sps_branch_2*root(sps_rho2_2);
-        /* (sps-c_2) cosine of the angle of joint 2 from its reference direction */
-        const real inv_sps_root_2 = 1/sps_root_2;
-        const real sps_c_2_t = inv_sps_root_2*sps_root_1;
+        values_sps v;
+        stage_sps_X(m, w, i, j, s, X, &v);
         /* (sps-S_dot) velocity of the connection point */
-        const real omega_y = s[16*w + j];
-        const real omega_z = s[17*w + j];
-        const real t_dot_x = s[12*w + j];
-        const real sps_S_dot_x = t_dot_x + omega_y*sps_q_z - omega_z*sps_q_y;
-        const real omega_x = s[15*w + j];
-        const real t_dot_y = s[13*w + j];
-        const real sps_S_dot_y = t_dot_y + omega_z*sps_q_x - omega_x*sps_q_z;
-        const real t_dot_z = s[14*w + j];
-        const real sps_S_dot_z = t_dot_z + omega_x*sps_q_y - omega_y*sps_q_x;
+        const real omega_y = V[4*w + j];
+        const real omega_z = V[5*w + j];
+        const real t_dot_x = V[0*w + j];
+        const real sps_S_dot_x = t_dot_x + omega_y*v.sps_q_z - omega_z*v.sps_q_y;
+        const real omega_x = V[3*w + j];
+        const real t_dot_y = V[1*w + j];
+        const real sps_S_dot_y = t_dot_y + omega_z*v.sps_q_x - omega_x*v.sps_q_z;
+        const real t_dot_z = V[2*w + j];
+        const real sps_S_dot_z = t_dot_z + omega_x*v.sps_q_y - omega_y*v.sps_q_x;
         /* (sps-v_1) velocity of the connection point per rate of joint 1 */
-        const real sps_e_1_in_axes3_y = sps_c_2_t*sps_s_3;
-        const real sps_v_1_in_axes3_x = sps_e_1_in_axes3_y*sps_root_2;
-        const real sps_v_1_in_axes3_y = sps_c_2_t*sps_c_3*sps_root_2;
-        /* (sps-v_2) velocity of the connection point per rate of joint 2 */
-        const real sps_v_2_in_axes3_x = sps_c_3*sps_root_2;
-        const real sps_v_2_t = sps_root_2*sps_s_3;
+        const real sps_v_1_in_axes3_y = -v.sps_c_2*v.sps_root_2*v.sps_s_3;
         /* (sps-w_1) reciprocal vector 1 */
-        const real sps_w_1_t = sps_v_1_in_axes3_x*sps_v_2_t +
-            sps_v_1_in_axes3_y*sps_v_2_in_axes3_x;
-        /* (sps-w_4) reciprocal vector 3 */
-        const real sps_w_4_x = inv_sps_root_2*sps_S_x;
-        const real sps_w_4_y = inv_sps_root_2*sps_S_y;
-        const real sps_w_4_z = inv_sps_root_2*sps_S_z;
+        const real sps_w_1_t = v.sps_v_1_in_axes3_x*v.sps_v_2_t +
+            sps_v_1_in_axes3_y*v.sps_v_2_in_axes3_x;
         /* (sps-S_dot_rest) velocity of the connection point left to the joints that are not extra */
-        const real sps_S_dot_rest_t = inv_sps_root_2*sps_s_3*sps_xi_1_in_axes1_z;
-        const real sps_S_dot_rest_t_2 = sps_S_dot_rest_t*sps_s_1 - sps_c_1*sps_c_3;
-        const real sps_S_dot_rest_t_3 = sps_S_dot_rest_t*sps_c_1 + sps_c_3*sps_s_1;
-        const real axis_y_sps_axes3_x = sps_S_dot_rest_t_3*sps_base_frame_xy +
-            sps_base_frame_xz*sps_e_1_in_axes3_y - sps_S_dot_rest_t_2*sps_base_frame_xx;
-        const real axis_y_sps_axes3_y = sps_S_dot_rest_t_3*sps_base_frame_yy +
-            sps_base_frame_yz*sps_e_1_in_axes3_y - sps_S_dot_rest_t_2*sps_base_frame_yx;
-        const real axis_y_sps_axes3_z = sps_S_dot_rest_t_3*sps_base_frame_zy +
-            sps_base_frame_zz*sps_e_1_in_axes3_y - sps_S_dot_rest_t_2*sps_base_frame_zx;
-        const real sps_S_dot_rest_in_axes3_x = sps_S_dot_x*(axis_y_sps_axes3_y*sps_w_4_z -
-            axis_y_sps_axes3_z*sps_w_4_y) + sps_S_dot_y*(axis_y_sps_axes3_z*sps_w_4_x -
-            axis_y_sps_axes3_x*sps_w_4_z) + sps_S_dot_z*(axis_y_sps_axes3_x*sps_w_4_y -
-            axis_y_sps_axes3_y*sps_w_4_x);
+        const real sps_S_dot_rest_t = v.inv_sps_root_2*v.sps_S_in_turn1_z*v.sps_c_3;
+        const real sps_S_dot_rest_t_2 = v.sps_s_1*v.sps_s_3 - sps_S_dot_rest_t*v.sps_c_1;
+        const real sps_S_dot_rest_t_3 = -sps_S_dot_rest_t*v.sps_s_1 - v.sps_c_1*v.sps_s_3;
+        const real sps_base_frame_xx = m->sps_base_frame_xx[i];
+        const real sps_base_frame_xy = m->sps_base_frame_xy[i];
+        const real sps_base_frame_xz = m->sps_base_frame_xz[i];
+        const real axis_y_sps_axes3_x = sps_S_dot_rest_t_2*sps_base_frame_xx +
+            sps_S_dot_rest_t_3*sps_base_frame_xy + sps_base_frame_xz*v.sps_e_1_in_axes3_y;
+        const real sps_base_frame_yx = m->sps_base_frame_yx[i];
+        const real sps_base_frame_yy = m->sps_base_frame_yy[i];
+        const real sps_base_frame_yz = m->sps_base_frame_yz[i];
+        const real axis_y_sps_axes3_y = sps_S_dot_rest_t_2*sps_base_frame_yx +
+            sps_S_dot_rest_t_3*sps_base_frame_yy + sps_base_frame_yz*v.sps_e_1_in_axes3_y;
+        const real sps_base_frame_zx = m->sps_base_frame_zx[i];
+        const real sps_base_frame_zy = m->sps_base_frame_zy[i];
+        const real sps_base_frame_zz = m->sps_base_frame_zz[i];
+        const real axis_y_sps_axes3_z = sps_S_dot_rest_t_2*sps_base_frame_zx +
+            sps_S_dot_rest_t_3*sps_base_frame_zy + sps_base_frame_zz*v.sps_e_1_in_axes3_y;
+        const real sps_S_dot_rest_in_axes3_x = sps_S_dot_x*(axis_y_sps_axes3_y*v.sps_w_4_z -
+            axis_y_sps_axes3_z*v.sps_w_4_y) + sps_S_dot_y*(axis_y_sps_axes3_z*v.sps_w_4_x -
+            axis_y_sps_axes3_x*v.sps_w_4_z) + sps_S_dot_z*(axis_y_sps_axes3_x*v.sps_w_4_y -
+            axis_y_sps_axes3_y*v.sps_w_4_x);
         const real sps_S_dot_rest_in_axes3_y = axis_y_sps_axes3_x*sps_S_dot_x +
             axis_y_sps_axes3_y*sps_S_dot_y + axis_y_sps_axes3_z*sps_S_dot_z;
-        const real sps_S_dot_rest_in_axes3_z = sps_S_dot_x*sps_w_4_x + sps_S_dot_y*sps_w_4_y +
-            sps_S_dot_z*sps_w_4_z;
+        const real sps_S_dot_rest_in_axes3_z = sps_S_dot_x*v.sps_w_4_x + sps_S_dot_y*v.sps_w_4_y +
+            sps_S_dot_z*v.sps_w_4_z;
         /* (sps-qd_1) rate of joint 1 */
         const real inv_sps_w_1_t = 1/sps_w_1_t;
-        const real sps_qd_1 = inv_sps_w_1_t*(sps_S_dot_rest_in_axes3_x*sps_v_2_t +
-            sps_S_dot_rest_in_axes3_y*sps_v_2_in_axes3_x);
+        const real sps_qd_1 = inv_sps_w_1_t*(sps_S_dot_rest_in_axes3_x*v.sps_v_2_t +
+            sps_S_dot_rest_in_axes3_y*v.sps_v_2_in_axes3_x);
         /* (sps-qd_2) rate of joint 2 */
-        const real sps_qd_2_t = inv_sps_w_1_t*(sps_S_dot_rest_in_axes3_y*sps_v_1_in_axes3_x -
+        const real sps_qd_2_t = inv_sps_w_1_t*(sps_S_dot_rest_in_axes3_y*v.sps_v_1_in_axes3_x -
             sps_S_dot_rest_in_axes3_x*sps_v_1_in_axes3_y);
         /* (sps-qd_1) rate of joint 1 */
         o[0*count + k] = sps_qd_1;
@@ -4434,8 +3584,8 @@ INLINE void joint_rates_legs_sps(const prepared *m, size_t w, size_t leg, size_t
         /* (sps-qd_4) rate of joint 4 */
         o[3*count + k] = sps_S_dot_rest_in_axes3_z;
         o[5*count + k] = (sps_qd_1 + sps_qd_2_t) + (sps_yd_3 + sps_S_dot_rest_in_axes3_z);
-        o[4*count + k] = UNLESS(magnitude(sps_rho2_1) > LEAST_1) + UNLESS(magnitude(sps_rho2_2) >
-            LEAST_1) + UNLESS(magnitude(sps_w_1_t) > LEAST_2);
+        o[4*count + k] = UNLESS(magnitude(v.sps_root_1_t) > LEAST_1) +
+            UNLESS(magnitude(v.sps_root_2_t) > LEAST_1) + UNLESS(magnitude(sps_w_1_t) > LEAST_2);
     }
 }
 
@@ -4454,9 +3604,9 @@ INLINE void joint_rates_place_sps(size_t w, size_t count, const real *o, size_t 
 
 INLINE void joint_rates_run(const prepared *m, const real *X, const real *V, real *qd, verdict *t)
 {
-    real s[18] = {0};
+    real s[9] = {0};
     real o_sps[6*LEGS(LEGS_OF_sps)] = {0};
-    joint_rates_before(1, X, V, s, t);
+    joint_rates_before(m, 1, X, s, t);
     joint_rates_legs_sps(m, 1, 0, 1, s, 0, LEGS(LEGS_OF_sps), X, V, o_sps);
     for (size_t leg = 0; leg < LEGS_OF_sps; ++leg) {
         joint_rates_place_sps(1, LEGS(LEGS_OF_sps), o_sps, leg, leg, qd, t);
@@ -4466,9 +3616,9 @@ INLINE void joint_rates_run(const prepared *m, const real *X, const real *V, rea
 INLINE void joint_rates_run_lanes(const prepared *m, const real *X, const real *V, real *qd,
     verdict *t)
 {
-    real s[18*LANES];
+    real s[9*LANES];
     real o_sps[6*LANES];
-    joint_rates_before(LANES, X, V, s, t);
+    joint_rates_before(m, LANES, X, s, t);
     for (size_t leg = 0; leg < LEGS_OF_sps; ++leg) {
         joint_rates_legs_sps(m, LANES, leg, 0, s, 1, LANES, X, V, o_sps);
         joint_rates_place_sps(LANES, LANES, o_sps, leg, 0, qd, t);
@@ -4476,95 +3626,22 @@ INLINE void joint_rates_run_lanes(const prepared *m, const real *X, const real *
 }
 
 /* ---- joint_accelerations ---- */
-INLINE void joint_accelerations_before(size_t w, const real *X, const real *V, const real *A, real
-    *s, verdict *t)
+INLINE void joint_accelerations_before(const prepared *m, size_t w, const real *X, real *s,
+    verdict *t)
 {
     for (size_t k = 0; k < w; ++k) {
-        /* X: named entries */
-        const real X_0 = X[0*w + k];
-        const real t_x = X_0;
-        const real X_1 = X[1*w + k];
-        const real t_y = X_1;
-        const real X_2 = X[2*w + k];
-        const real t_z = X_2;
-        const real X_3 = X[3*w + k];
-        const real X_4 = X[4*w + k];
-        const real X_5 = X[5*w + k];
-        const real X_6 = X[6*w + k];
-        const real quaternion_norm2 = X_3*X_3 + X_4*X_4 + X_5*X_5 + X_6*X_6;
-        const real quaternion_scale = 2/quaternion_norm2;
-        const real quaternion_sx = X_3*quaternion_scale;
-        const real quaternion_sy = X_4*quaternion_scale;
-        const real quaternion_sz = X_5*quaternion_scale;
-        const real quaternion_wx = X_6*quaternion_sx;
-        const real quaternion_wy = X_6*quaternion_sy;
-        const real quaternion_wz = X_6*quaternion_sz;
-        const real quaternion_xx = X_3*quaternion_sx;
-        const real quaternion_xy = X_3*quaternion_sy;
-        const real quaternion_xz = X_3*quaternion_sz;
-        const real quaternion_yy = X_4*quaternion_sy;
-        const real quaternion_yz = X_4*quaternion_sz;
-        const real quaternion_zz = X_5*quaternion_sz;
-        const real R_xx = 1 - quaternion_yy - quaternion_zz;
-        const real R_xy = quaternion_xy - quaternion_wz;
-        const real R_xz = quaternion_wy + quaternion_xz;
-        const real R_yx = quaternion_wz + quaternion_xy;
-        const real R_yy = 1 - quaternion_xx - quaternion_zz;
-        const real R_yz = quaternion_yz - quaternion_wx;
-        const real R_zx = quaternion_xz - quaternion_wy;
-        const real R_zy = quaternion_wx + quaternion_yz;
-        const real R_zz = 1 - quaternion_xx - quaternion_yy;
-        /* V: named entries */
-        const real V_0 = V[0*w + k];
-        const real t_dot_x = V_0;
-        const real V_1 = V[1*w + k];
-        const real t_dot_y = V_1;
-        const real V_2 = V[2*w + k];
-        const real t_dot_z = V_2;
-        const real V_3 = V[3*w + k];
-        const real omega_x = V_3;
-        const real V_4 = V[4*w + k];
-        const real omega_y = V_4;
-        const real V_5 = V[5*w + k];
-        const real omega_z = V_5;
-        /* A: named entries */
-        const real A_0 = A[0*w + k];
-        const real t_ddot_x = A_0;
-        const real A_1 = A[1*w + k];
-        const real t_ddot_y = A_1;
-        const real A_2 = A[2*w + k];
-        const real t_ddot_z = A_2;
-        const real A_3 = A[3*w + k];
-        const real alpha_x = A_3;
-        const real A_4 = A[4*w + k];
-        const real alpha_y = A_4;
-        const real A_5 = A[5*w + k];
-        const real alpha_z = A_5;
-        s[0*w + k] = t_x;
-        s[1*w + k] = t_y;
-        s[2*w + k] = t_z;
-        s[3*w + k] = R_xx;
-        s[4*w + k] = R_xy;
-        s[5*w + k] = R_xz;
-        s[6*w + k] = R_yx;
-        s[7*w + k] = R_yy;
-        s[8*w + k] = R_yz;
-        s[9*w + k] = R_zx;
-        s[10*w + k] = R_zy;
-        s[11*w + k] = R_zz;
-        s[12*w + k] = t_dot_x;
-        s[13*w + k] = t_dot_y;
-        s[14*w + k] = t_dot_z;
-        s[15*w + k] = omega_x;
-        s[16*w + k] = omega_y;
-        s[17*w + k] = omega_z;
-        s[18*w + k] = t_ddot_x;
-        s[19*w + k] = t_ddot_y;
-        s[20*w + k] = t_ddot_z;
-        s[21*w + k] = alpha_x;
-        s[22*w + k] = alpha_y;
-        s[23*w + k] = alpha_z;
-        t->invalid[k] += UNLESS(is_finite(quaternion_scale)) + UNLESS(quaternion_scale > 0);
+        values v;
+        stage_X(m, w, k, X, &v);
+        s[0*w + k] = v.R_xx;
+        s[1*w + k] = v.R_xy;
+        s[2*w + k] = v.R_xz;
+        s[3*w + k] = v.R_yx;
+        s[4*w + k] = v.R_yy;
+        s[5*w + k] = v.R_yz;
+        s[6*w + k] = v.R_zx;
+        s[7*w + k] = v.R_zy;
+        s[8*w + k] = v.R_zz;
+        t->invalid[k] += UNLESS(is_finite(v.quaternion_scale)) + UNLESS(v.quaternion_scale > 0);
     }
 }
 
@@ -4572,190 +3649,68 @@ INLINE void joint_accelerations_legs_sps(const prepared *m, size_t w, size_t leg
     const real *s, size_t states, size_t count, const real *X, const real *V, const real *A, real
     *o)
 {
-    static const size_t place_sps_y_3_extra[] = {7, 8, 9, 10, 11, 12, 7, 7};
     static const size_t place_sps_yd_3[] = {6, 7, 8, 9, 10, 11, 6, 6};
     static const size_t place_sps_ydd_3[] = {6, 7, 8, 9, 10, 11, 6, 6};
     for (size_t k = 0; k < count; ++k) {
         const size_t i = leg + legs*k;
         const size_t j = states*k;
-        /* (sps-S) from the base point to the connection point */
-        const real R_xx = s[3*w + j];
-        const real R_xy = s[4*w + j];
-        const real R_xz = s[5*w + j];
-        const real sps_platform_point_x = m->sps_platform_point_x[i];
-        const real sps_platform_point_y = m->sps_platform_point_y[i];
-        const real sps_platform_point_z = m->sps_platform_point_z[i];
-        const real sps_q_x = R_xx*sps_platform_point_x + R_xy*sps_platform_point_y +
-            R_xz*sps_platform_point_z;
-        const real R_yx = s[6*w + j];
-        const real R_yy = s[7*w + j];
-        const real R_yz = s[8*w + j];
-        const real sps_q_y = R_yx*sps_platform_point_x + R_yy*sps_platform_point_y +
-            R_yz*sps_platform_point_z;
-        const real R_zx = s[9*w + j];
-        const real R_zy = s[10*w + j];
-        const real R_zz = s[11*w + j];
-        const real sps_q_z = R_zx*sps_platform_point_x + R_zy*sps_platform_point_y +
-            R_zz*sps_platform_point_z;
-        const real sps_base_point_x = m->sps_base_point_x[i];
-        const real t_x = s[0*w + j];
-        const real sps_S_x = sps_q_x + t_x - sps_base_point_x;
-        const real sps_base_point_y = m->sps_base_point_y[i];
-        const real t_y = s[1*w + j];
-        const real sps_S_y = sps_q_y + t_y - sps_base_point_y;
-        const real sps_base_point_z = m->sps_base_point_z[i];
-        const real t_z = s[2*w + j];
-        const real sps_S_z = sps_q_z + t_z - sps_base_point_z;
-        /* (sps-c_3) cosine of the angle of joint 3 from its reference direction */
-        const real sps_y_3_extra = X[place_sps_y_3_extra[i]*w + j];
-        const real sps_c_3 = -sine(sps_y_3_extra);
-        /* (sps-s_3) sine of the angle of joint 3 from its reference direction */
-        const real sps_s_3 = cosine(sps_y_3_extra);
-        /* (sps-px_1) component along the reference direction */
-        const real sps_base_frame_xx = m->sps_base_frame_xx[i];
-        const real sps_base_frame_yx = m->sps_base_frame_yx[i];
-        const real sps_base_frame_zx = m->sps_base_frame_zx[i];
-        const real sps_px_1 = sps_S_x*sps_base_frame_xx + sps_S_y*sps_base_frame_yx +
-            sps_S_z*sps_base_frame_zx;
-        /* (sps-py_1) component across the reference direction */
-        const real sps_base_frame_xy = m->sps_base_frame_xy[i];
-        const real sps_base_frame_yy = m->sps_base_frame_yy[i];
-        const real sps_base_frame_zy = m->sps_base_frame_zy[i];
-        const real sps_py_1 = sps_S_x*sps_base_frame_xy + sps_S_y*sps_base_frame_yy +
-            sps_S_z*sps_base_frame_zy;
-        /* (sps-rho2_1) squared amplitude */
-        const real sps_rho2_1 = sps_px_1*sps_px_1 + sps_py_1*sps_py_1;
-        /* (sps-root_1) amplitude, with the sign of the branch */
-        const real sps_branch_1 = m->sps_branch_1[i];
-        const real sps_root_1 = sps_branch_1*root(sps_rho2_1);
-        /* (sps-c_1) cosine of the angle of joint 1 from its reference direction */
-        const real inv_sps_root_1 = 1/sps_root_1;
-        const real sps_c_1 = -inv_sps_root_1*sps_py_1;
-        /* (sps-s_1) sine of the angle of joint 1 from its reference direction */
-        const real sps_s_1 = inv_sps_root_1*sps_px_1;
-        /* (sps-xi_1) the vector from joint 1 to the connection point, resolved along link 1 */
-        const real sps_base_frame_xz = m->sps_base_frame_xz[i];
-        const real sps_base_frame_yz = m->sps_base_frame_yz[i];
-        const real sps_base_frame_zz = m->sps_base_frame_zz[i];
-        const real sps_xi_1_in_axes1_z = sps_S_x*sps_base_frame_xz + sps_S_y*sps_base_frame_yz +
-            sps_S_z*sps_base_frame_zz;
-        /* (sps-rho2_2) squared amplitude */
-        const real sps_rho2_2 = sps_rho2_1 + sps_xi_1_in_axes1_z*sps_xi_1_in_axes1_z;
-        /* (sps-root_2) amplitude, with the sign of the branch */
-        const real sps_branch_2 = m->sps_branch_2[i];
-        const real sps_root_2 = sps_branch_2*root(sps_rho2_2);
-        /* (sps-c_2) cosine of the angle of joint 2 from its reference direction */
-        const real inv_sps_root_2 = 1/sps_root_2;
-        const real sps_c_2_t = inv_sps_root_2*sps_root_1;
-        /* (sps-s_2) sine of the angle of joint 2 from its reference direction */
-        const real sps_s_2 = inv_sps_root_2*sps_xi_1_in_axes1_z;
-        /* (sps-S_dot) velocity of the connection point */
-        const real omega_y = s[16*w + j];
-        const real omega_z = s[17*w + j];
-        const real sps_S_dot_t = omega_y*sps_q_z - omega_z*sps_q_y;
-        const real omega_x = s[15*w + j];
-        const real sps_S_dot_t_2 = omega_z*sps_q_x - omega_x*sps_q_z;
-        const real sps_S_dot_t_3 = omega_x*sps_q_y - omega_y*sps_q_x;
-        const real t_dot_x = s[12*w + j];
-        const real sps_S_dot_x = sps_S_dot_t + t_dot_x;
-        const real t_dot_y = s[13*w + j];
-        const real sps_S_dot_y = sps_S_dot_t_2 + t_dot_y;
-        const real t_dot_z = s[14*w + j];
-        const real sps_S_dot_z = sps_S_dot_t_3 + t_dot_z;
+        values_sps v;
+        stage_sps_X(m, w, i, j, s, X, &v);
+        stage_sps_A_X(w, j, A, &v);
+        stage_sps_V_X(w, i, j, V, &v);
+        stage_sps_A_V_X(w, j, V, &v);
         /* (sps-v_1) velocity of the connection point per rate of joint 1 */
-        const real sps_e_1_in_axes3_y = sps_c_2_t*sps_s_3;
-        const real sps_v_1_in_axes3_x = sps_e_1_in_axes3_y*sps_root_2;
-        const real sps_v_1_in_axes3_y = sps_c_2_t*sps_c_3*sps_root_2;
-        /* (sps-v_2) velocity of the connection point per rate of joint 2 */
-        const real sps_v_2_in_axes3_x = sps_c_3*sps_root_2;
-        const real sps_v_2_t = sps_root_2*sps_s_3;
+        const real sps_v_1_in_axes3_y = -v.sps_c_2*v.sps_root_2*v.sps_s_3;
         /* (sps-w_1) reciprocal vector 1 */
-        const real sps_w_1_t = sps_v_1_in_axes3_x*sps_v_2_t +
-            sps_v_1_in_axes3_y*sps_v_2_in_axes3_x;
-        /* (sps-w_4) reciprocal vector 3 */
-        const real sps_w_4_x = inv_sps_root_2*sps_S_x;
-        const real sps_w_4_y = inv_sps_root_2*sps_S_y;
-        const real sps_w_4_z = inv_sps_root_2*sps_S_z;
-        /* (sps-S_dot_rest) velocity of the connection point left to the joints that are not extra */
-        const real sps_S_dot_rest_t = sps_s_2*sps_s_3;
-        const real sps_S_dot_rest_t_2 = sps_S_dot_rest_t*sps_s_1 - sps_c_1*sps_c_3;
-        const real sps_S_dot_rest_t_3 = sps_S_dot_rest_t*sps_c_1 + sps_c_3*sps_s_1;
-        const real axis_y_sps_axes3_x = sps_S_dot_rest_t_3*sps_base_frame_xy +
-            sps_base_frame_xz*sps_e_1_in_axes3_y - sps_S_dot_rest_t_2*sps_base_frame_xx;
-        const real axis_y_sps_axes3_y = sps_S_dot_rest_t_3*sps_base_frame_yy +
-            sps_base_frame_yz*sps_e_1_in_axes3_y - sps_S_dot_rest_t_2*sps_base_frame_yx;
-        const real axis_y_sps_axes3_z = sps_S_dot_rest_t_3*sps_base_frame_zy +
-            sps_base_frame_zz*sps_e_1_in_axes3_y - sps_S_dot_rest_t_2*sps_base_frame_zx;
-        const real axis_x_sps_axes3_x = axis_y_sps_axes3_y*sps_w_4_z -
-            axis_y_sps_axes3_z*sps_w_4_y;
-        const real axis_x_sps_axes3_y = axis_y_sps_axes3_z*sps_w_4_x -
-            axis_y_sps_axes3_x*sps_w_4_z;
-        const real axis_x_sps_axes3_z = axis_y_sps_axes3_x*sps_w_4_y -
-            axis_y_sps_axes3_y*sps_w_4_x;
-        const real sps_S_dot_rest_in_axes3_x = axis_x_sps_axes3_x*sps_S_dot_x +
-            axis_x_sps_axes3_y*sps_S_dot_y + axis_x_sps_axes3_z*sps_S_dot_z;
-        const real sps_S_dot_rest_in_axes3_y = axis_y_sps_axes3_x*sps_S_dot_x +
-            axis_y_sps_axes3_y*sps_S_dot_y + axis_y_sps_axes3_z*sps_S_dot_z;
-        const real sps_S_dot_rest_in_axes3_z = sps_S_dot_x*sps_w_4_x + sps_S_dot_y*sps_w_4_y +
-            sps_S_dot_z*sps_w_4_z;
+        const real sps_w_1_t = v.sps_v_1_in_axes3_x*v.sps_v_2_t +
+            sps_v_1_in_axes3_y*v.sps_v_2_in_axes3_x;
         /* (sps-qd_1) rate of joint 1 */
         const real inv_sps_w_1_t = 1/sps_w_1_t;
-        const real sps_qd_1 = inv_sps_w_1_t*(sps_S_dot_rest_in_axes3_x*sps_v_2_t +
-            sps_S_dot_rest_in_axes3_y*sps_v_2_in_axes3_x);
+        const real sps_qd_1 = inv_sps_w_1_t*(v.sps_S_dot_rest_in_axes3_x*v.sps_v_2_t +
+            v.sps_S_dot_rest_in_axes3_y*v.sps_v_2_in_axes3_x);
         /* (sps-qd_2) rate of joint 2 */
-        const real sps_qd_2_t = inv_sps_w_1_t*(sps_S_dot_rest_in_axes3_y*sps_v_1_in_axes3_x -
-            sps_S_dot_rest_in_axes3_x*sps_v_1_in_axes3_y);
+        const real sps_qd_2_t = inv_sps_w_1_t*(v.sps_S_dot_rest_in_axes3_y*v.sps_v_1_in_axes3_x -
+            v.sps_S_dot_rest_in_axes3_x*sps_v_1_in_axes3_y);
         /* (sps-omega_1) angular velocity of link 1 */
-        const real sps_omega_1_in_axes2_x = sps_qd_1*sps_s_2;
-        const real sps_omega_1_t = sps_c_2_t*sps_qd_1;
+        const real sps_omega_1_in_axes2_x = v.sps_c_2*sps_qd_1;
+        const real sps_omega_1_in_axes2_y = v.sps_e_1_in_axes2_y*sps_qd_1;
         /* (sps-omega_2) angular velocity of link 2 */
-        const real sps_omega_2_in_axes3_x = -sps_c_3*sps_omega_1_t - sps_qd_2_t*sps_s_3;
-        const real sps_omega_2_in_axes3_y = sps_omega_1_t*sps_s_3 - sps_c_3*sps_qd_2_t;
+        const real sps_omega_2_in_axes3_x = sps_omega_1_in_axes2_x*v.sps_s_3 -
+            v.sps_c_3*sps_qd_2_t;
+        const real sps_omega_2_in_axes3_y = v.sps_c_3*sps_omega_1_in_axes2_x +
+            sps_qd_2_t*v.sps_s_3;
         /* (sps-omega_3) angular velocity of link 3 */
         const real sps_yd_3 = V[place_sps_yd_3[i]*w + j];
-        const real sps_omega_3_in_axes3_z = sps_omega_1_in_axes2_x + sps_yd_3;
-        /* (sps-a_p) acceleration of the connection point without its centripetal part */
-        const real alpha_y = s[22*w + j];
-        const real alpha_z = s[23*w + j];
-        const real t_ddot_x = s[18*w + j];
-        const real sps_a_p_x = t_ddot_x + alpha_y*sps_q_z - alpha_z*sps_q_y;
-        const real alpha_x = s[21*w + j];
-        const real t_ddot_y = s[19*w + j];
-        const real sps_a_p_y = t_ddot_y + alpha_z*sps_q_x - alpha_x*sps_q_z;
-        const real t_ddot_z = s[20*w + j];
-        const real sps_a_p_z = t_ddot_z + alpha_x*sps_q_y - alpha_y*sps_q_x;
-        /* (sps-S_ddot) acceleration of the connection point */
-        const real sps_S_ddot_x = sps_a_p_x + omega_y*sps_S_dot_t_3 - omega_z*sps_S_dot_t_2;
-        const real sps_S_ddot_y = sps_a_p_y + omega_z*sps_S_dot_t - omega_x*sps_S_dot_t_3;
-        const real sps_S_ddot_z = sps_a_p_z + omega_x*sps_S_dot_t_2 - omega_y*sps_S_dot_t;
+        const real sps_omega_3_in_axes3_z = sps_omega_1_in_axes2_y + sps_yd_3;
         /* (sps-zeta_2) angular acceleration of link 2 from the turning of axis 2 */
-        const real sps_zeta_2_in_axes2_y = sps_omega_1_in_axes2_x*sps_qd_2_t;
+        const real sps_zeta_2_t = sps_omega_1_in_axes2_y*sps_qd_2_t;
         /* (sps-beta_3) angular acceleration of link 3 at zero joint accelerations */
-        const real sps_beta_3_in_axes3_x = sps_c_3*sps_zeta_2_in_axes2_y +
-            sps_omega_2_in_axes3_y*sps_yd_3;
-        const real sps_beta_3_in_axes3_y = -sps_omega_2_in_axes3_x*sps_yd_3 -
-            sps_s_3*sps_zeta_2_in_axes2_y;
+        const real sps_beta_3_in_axes3_x = sps_omega_2_in_axes3_y*sps_yd_3 -
+            v.sps_s_3*sps_zeta_2_t;
+        const real sps_beta_3_in_axes3_y = -v.sps_c_3*sps_zeta_2_t -
+            sps_omega_2_in_axes3_x*sps_yd_3;
         /* (sps-bias) acceleration of the connection point at zero joint accelerations */
-        const real sps_bias_t = 2*sps_S_dot_rest_in_axes3_z;
-        const real sps_bias_in_axes3_x = sps_bias_t*sps_omega_2_in_axes3_y +
-            sps_root_2*(sps_beta_3_in_axes3_y + sps_omega_2_in_axes3_x*sps_omega_3_in_axes3_z);
-        const real sps_bias_in_axes3_y = sps_root_2*(sps_omega_2_in_axes3_y*sps_omega_3_in_axes3_z
-            - sps_beta_3_in_axes3_x) - sps_bias_t*sps_omega_2_in_axes3_x;
+        const real sps_bias_in_axes3_x = v.sps_bias_t*sps_omega_2_in_axes3_y +
+            v.sps_root_2*(sps_beta_3_in_axes3_y + sps_omega_2_in_axes3_x*sps_omega_3_in_axes3_z);
+        const real sps_bias_in_axes3_y =
+            v.sps_root_2*(sps_omega_2_in_axes3_y*sps_omega_3_in_axes3_z - sps_beta_3_in_axes3_x) -
+            v.sps_bias_t*sps_omega_2_in_axes3_x;
         /* (sps-rel) acceleration of the connection point left to the joint accelerations */
-        const real sps_rel_in_axes3_x = axis_x_sps_axes3_x*sps_S_ddot_x +
-            axis_x_sps_axes3_y*sps_S_ddot_y + axis_x_sps_axes3_z*sps_S_ddot_z -
+        const real sps_rel_in_axes3_x = v.axis_x_sps_axes3_x*v.sps_S_ddot_x +
+            v.axis_x_sps_axes3_y*v.sps_S_ddot_y + v.axis_x_sps_axes3_z*v.sps_S_ddot_z -
             sps_bias_in_axes3_x;
-        const real sps_rel_in_axes3_y = axis_y_sps_axes3_x*sps_S_ddot_x +
-            axis_y_sps_axes3_y*sps_S_ddot_y + axis_y_sps_axes3_z*sps_S_ddot_z -
+        const real sps_rel_in_axes3_y = v.axis_y_sps_axes3_x*v.sps_S_ddot_x +
+            v.axis_y_sps_axes3_y*v.sps_S_ddot_y + v.axis_y_sps_axes3_z*v.sps_S_ddot_z -
             sps_bias_in_axes3_y;
-        const real sps_rel_in_axes3_z = sps_S_ddot_x*sps_w_4_x + sps_S_ddot_y*sps_w_4_y +
-            sps_S_ddot_z*sps_w_4_z + sps_root_2*(sps_omega_2_in_axes3_x*sps_omega_2_in_axes3_x +
+        const real sps_rel_in_axes3_z = v.sps_S_ddot_x*v.sps_w_4_x + v.sps_S_ddot_y*v.sps_w_4_y +
+            v.sps_S_ddot_z*v.sps_w_4_z +
+            v.sps_root_2*(sps_omega_2_in_axes3_x*sps_omega_2_in_axes3_x +
             sps_omega_2_in_axes3_y*sps_omega_2_in_axes3_y);
         /* (sps-qdd_1) acceleration of joint 1 */
-        const real sps_qdd_1 = inv_sps_w_1_t*(sps_rel_in_axes3_x*sps_v_2_t +
-            sps_rel_in_axes3_y*sps_v_2_in_axes3_x);
+        const real sps_qdd_1 = inv_sps_w_1_t*(sps_rel_in_axes3_x*v.sps_v_2_t +
+            sps_rel_in_axes3_y*v.sps_v_2_in_axes3_x);
         /* (sps-qdd_2) acceleration of joint 2 */
-        const real sps_qdd_2_t = inv_sps_w_1_t*(sps_rel_in_axes3_y*sps_v_1_in_axes3_x -
+        const real sps_qdd_2_t = inv_sps_w_1_t*(sps_rel_in_axes3_y*v.sps_v_1_in_axes3_x -
             sps_rel_in_axes3_x*sps_v_1_in_axes3_y);
         /* (sps-qdd_1) acceleration of joint 1 */
         o[0*count + k] = sps_qdd_1;
@@ -4767,8 +3722,8 @@ INLINE void joint_accelerations_legs_sps(const prepared *m, size_t w, size_t leg
         /* (sps-qdd_4) acceleration of joint 4 */
         o[3*count + k] = sps_rel_in_axes3_z;
         o[5*count + k] = (sps_qdd_1 + sps_qdd_2_t) + (sps_ydd_3 + sps_rel_in_axes3_z);
-        o[4*count + k] = UNLESS(magnitude(sps_rho2_1) > LEAST_1) + UNLESS(magnitude(sps_rho2_2) >
-            LEAST_1) + UNLESS(magnitude(sps_w_1_t) > LEAST_2);
+        o[4*count + k] = UNLESS(magnitude(v.sps_root_1_t) > LEAST_1) +
+            UNLESS(magnitude(v.sps_root_2_t) > LEAST_1) + UNLESS(magnitude(sps_w_1_t) > LEAST_2);
     }
 }
 
@@ -4788,9 +3743,9 @@ INLINE void joint_accelerations_place_sps(size_t w, size_t count, const real *o,
 INLINE void joint_accelerations_run(const prepared *m, const real *X, const real *V, const real
     *A, real *qdd, verdict *t)
 {
-    real s[24] = {0};
+    real s[9] = {0};
     real o_sps[6*LEGS(LEGS_OF_sps)] = {0};
-    joint_accelerations_before(1, X, V, A, s, t);
+    joint_accelerations_before(m, 1, X, s, t);
     joint_accelerations_legs_sps(m, 1, 0, 1, s, 0, LEGS(LEGS_OF_sps), X, V, A, o_sps);
     for (size_t leg = 0; leg < LEGS_OF_sps; ++leg) {
         joint_accelerations_place_sps(1, LEGS(LEGS_OF_sps), o_sps, leg, leg, qdd, t);
@@ -4800,9 +3755,9 @@ INLINE void joint_accelerations_run(const prepared *m, const real *X, const real
 INLINE void joint_accelerations_run_lanes(const prepared *m, const real *X, const real *V, const
     real *A, real *qdd, verdict *t)
 {
-    real s[24*LANES];
+    real s[9*LANES];
     real o_sps[6*LANES];
-    joint_accelerations_before(LANES, X, V, A, s, t);
+    joint_accelerations_before(m, LANES, X, s, t);
     for (size_t leg = 0; leg < LEGS_OF_sps; ++leg) {
         joint_accelerations_legs_sps(m, LANES, leg, 0, s, 1, LANES, X, V, A, o_sps);
         joint_accelerations_place_sps(LANES, LANES, o_sps, leg, 0, qdd, t);
@@ -4810,324 +3765,40 @@ INLINE void joint_accelerations_run_lanes(const prepared *m, const real *X, cons
 }
 
 /* ---- legs ---- */
-INLINE void legs_before(size_t w, const real *X, const real *V, const real *A, real *s, verdict
-    *t)
+INLINE void legs_before(const prepared *m, size_t w, const real *X, real *s, verdict *t)
 {
     for (size_t k = 0; k < w; ++k) {
-        /* X: named entries */
-        const real X_0 = X[0*w + k];
-        const real t_x = X_0;
-        const real X_1 = X[1*w + k];
-        const real t_y = X_1;
-        const real X_2 = X[2*w + k];
-        const real t_z = X_2;
-        const real X_3 = X[3*w + k];
-        const real X_4 = X[4*w + k];
-        const real X_5 = X[5*w + k];
-        const real X_6 = X[6*w + k];
-        const real quaternion_norm2 = X_3*X_3 + X_4*X_4 + X_5*X_5 + X_6*X_6;
-        const real quaternion_scale = 2/quaternion_norm2;
-        const real quaternion_sx = X_3*quaternion_scale;
-        const real quaternion_sy = X_4*quaternion_scale;
-        const real quaternion_sz = X_5*quaternion_scale;
-        const real quaternion_wx = X_6*quaternion_sx;
-        const real quaternion_wy = X_6*quaternion_sy;
-        const real quaternion_wz = X_6*quaternion_sz;
-        const real quaternion_xx = X_3*quaternion_sx;
-        const real quaternion_xy = X_3*quaternion_sy;
-        const real quaternion_xz = X_3*quaternion_sz;
-        const real quaternion_yy = X_4*quaternion_sy;
-        const real quaternion_yz = X_4*quaternion_sz;
-        const real quaternion_zz = X_5*quaternion_sz;
-        const real R_xx = 1 - quaternion_yy - quaternion_zz;
-        const real R_xy = quaternion_xy - quaternion_wz;
-        const real R_xz = quaternion_wy + quaternion_xz;
-        const real R_yx = quaternion_wz + quaternion_xy;
-        const real R_yy = 1 - quaternion_xx - quaternion_zz;
-        const real R_yz = quaternion_yz - quaternion_wx;
-        const real R_zx = quaternion_xz - quaternion_wy;
-        const real R_zy = quaternion_wx + quaternion_yz;
-        const real R_zz = 1 - quaternion_xx - quaternion_yy;
-        /* V: named entries */
-        const real V_0 = V[0*w + k];
-        const real t_dot_x = V_0;
-        const real V_1 = V[1*w + k];
-        const real t_dot_y = V_1;
-        const real V_2 = V[2*w + k];
-        const real t_dot_z = V_2;
-        const real V_3 = V[3*w + k];
-        const real omega_x = V_3;
-        const real V_4 = V[4*w + k];
-        const real omega_y = V_4;
-        const real V_5 = V[5*w + k];
-        const real omega_z = V_5;
-        /* A: named entries */
-        const real A_0 = A[0*w + k];
-        const real t_ddot_x = A_0;
-        const real A_1 = A[1*w + k];
-        const real t_ddot_y = A_1;
-        const real A_2 = A[2*w + k];
-        const real t_ddot_z = A_2;
-        const real A_3 = A[3*w + k];
-        const real alpha_x = A_3;
-        const real A_4 = A[4*w + k];
-        const real alpha_y = A_4;
-        const real A_5 = A[5*w + k];
-        const real alpha_z = A_5;
-        s[0*w + k] = t_x;
-        s[1*w + k] = t_y;
-        s[2*w + k] = t_z;
-        s[3*w + k] = R_xx;
-        s[4*w + k] = R_xy;
-        s[5*w + k] = R_xz;
-        s[6*w + k] = R_yx;
-        s[7*w + k] = R_yy;
-        s[8*w + k] = R_yz;
-        s[9*w + k] = R_zx;
-        s[10*w + k] = R_zy;
-        s[11*w + k] = R_zz;
-        s[12*w + k] = t_dot_x;
-        s[13*w + k] = t_dot_y;
-        s[14*w + k] = t_dot_z;
-        s[15*w + k] = omega_x;
-        s[16*w + k] = omega_y;
-        s[17*w + k] = omega_z;
-        s[18*w + k] = t_ddot_x;
-        s[19*w + k] = t_ddot_y;
-        s[20*w + k] = t_ddot_z;
-        s[21*w + k] = alpha_x;
-        s[22*w + k] = alpha_y;
-        s[23*w + k] = alpha_z;
-        t->invalid[k] += UNLESS(is_finite(quaternion_scale)) + UNLESS(quaternion_scale > 0);
+        values v;
+        stage_X(m, w, k, X, &v);
+        s[0*w + k] = v.R_xx;
+        s[1*w + k] = v.R_xy;
+        s[2*w + k] = v.R_xz;
+        s[3*w + k] = v.R_yx;
+        s[4*w + k] = v.R_yy;
+        s[5*w + k] = v.R_yz;
+        s[6*w + k] = v.R_zx;
+        s[7*w + k] = v.R_zy;
+        s[8*w + k] = v.R_zz;
+        t->invalid[k] += UNLESS(is_finite(v.quaternion_scale)) + UNLESS(v.quaternion_scale > 0);
     }
 }
 
 INLINE void legs_legs_sps(const prepared *m, size_t w, size_t leg, size_t legs, const real *s,
     size_t states, size_t count, const real *X, const real *V, const real *A, real *o)
 {
-    static const size_t place_sps_y_3_extra[] = {7, 8, 9, 10, 11, 12, 7, 7};
-    static const size_t place_sps_yd_3[] = {6, 7, 8, 9, 10, 11, 6, 6};
-    static const size_t place_sps_ydd_3[] = {6, 7, 8, 9, 10, 11, 6, 6};
     for (size_t k = 0; k < count; ++k) {
         const size_t i = leg + legs*k;
         const size_t j = states*k;
-        /* (sps-S) from the base point to the connection point */
-        const real R_xx = s[3*w + j];
-        const real R_xy = s[4*w + j];
-        const real R_xz = s[5*w + j];
-        const real sps_platform_point_x = m->sps_platform_point_x[i];
-        const real sps_platform_point_y = m->sps_platform_point_y[i];
-        const real sps_platform_point_z = m->sps_platform_point_z[i];
-        const real sps_q_x = R_xx*sps_platform_point_x + R_xy*sps_platform_point_y +
-            R_xz*sps_platform_point_z;
-        const real R_yx = s[6*w + j];
-        const real R_yy = s[7*w + j];
-        const real R_yz = s[8*w + j];
-        const real sps_q_y = R_yx*sps_platform_point_x + R_yy*sps_platform_point_y +
-            R_yz*sps_platform_point_z;
-        const real R_zx = s[9*w + j];
-        const real R_zy = s[10*w + j];
-        const real R_zz = s[11*w + j];
-        const real sps_q_z = R_zx*sps_platform_point_x + R_zy*sps_platform_point_y +
-            R_zz*sps_platform_point_z;
-        const real sps_base_point_x = m->sps_base_point_x[i];
-        const real t_x = s[0*w + j];
-        const real sps_S_x = sps_q_x + t_x - sps_base_point_x;
-        const real sps_base_point_y = m->sps_base_point_y[i];
-        const real t_y = s[1*w + j];
-        const real sps_S_y = sps_q_y + t_y - sps_base_point_y;
-        const real sps_base_point_z = m->sps_base_point_z[i];
-        const real t_z = s[2*w + j];
-        const real sps_S_z = sps_q_z + t_z - sps_base_point_z;
-        /* (sps-c_3) cosine of the angle of joint 3 from its reference direction */
-        const real sps_y_3_extra = X[place_sps_y_3_extra[i]*w + j];
-        const real sps_c_3 = -sine(sps_y_3_extra);
-        /* (sps-s_3) sine of the angle of joint 3 from its reference direction */
-        const real sps_s_3 = cosine(sps_y_3_extra);
-        /* (sps-px_1) component along the reference direction */
-        const real sps_base_frame_xx = m->sps_base_frame_xx[i];
-        const real sps_base_frame_yx = m->sps_base_frame_yx[i];
-        const real sps_base_frame_zx = m->sps_base_frame_zx[i];
-        const real sps_px_1 = sps_S_x*sps_base_frame_xx + sps_S_y*sps_base_frame_yx +
-            sps_S_z*sps_base_frame_zx;
-        /* (sps-py_1) component across the reference direction */
-        const real sps_base_frame_xy = m->sps_base_frame_xy[i];
-        const real sps_base_frame_yy = m->sps_base_frame_yy[i];
-        const real sps_base_frame_zy = m->sps_base_frame_zy[i];
-        const real sps_py_1 = sps_S_x*sps_base_frame_xy + sps_S_y*sps_base_frame_yy +
-            sps_S_z*sps_base_frame_zy;
-        /* (sps-rho2_1) squared amplitude */
-        const real sps_rho2_1 = sps_px_1*sps_px_1 + sps_py_1*sps_py_1;
-        /* (sps-root_1) amplitude, with the sign of the branch */
-        const real sps_branch_1 = m->sps_branch_1[i];
-        const real sps_root_1 = sps_branch_1*root(sps_rho2_1);
-        /* (sps-c_1) cosine of the angle of joint 1 from its reference direction */
-        const real inv_sps_root_1 = 1/sps_root_1;
-        const real sps_c_1 = -inv_sps_root_1*sps_py_1;
-        /* (sps-s_1) sine of the angle of joint 1 from its reference direction */
-        const real sps_s_1 = inv_sps_root_1*sps_px_1;
-        /* (sps-xi_1) the vector from joint 1 to the connection point, resolved along link 1 */
-        const real sps_base_frame_xz = m->sps_base_frame_xz[i];
-        const real sps_base_frame_yz = m->sps_base_frame_yz[i];
-        const real sps_base_frame_zz = m->sps_base_frame_zz[i];
-        const real sps_xi_1_in_axes1_z = sps_S_x*sps_base_frame_xz + sps_S_y*sps_base_frame_yz +
-            sps_S_z*sps_base_frame_zz;
-        /* (sps-rho2_2) squared amplitude */
-        const real sps_rho2_2 = sps_rho2_1 + sps_xi_1_in_axes1_z*sps_xi_1_in_axes1_z;
-        /* (sps-root_2) amplitude, with the sign of the branch */
-        const real sps_branch_2 = m->sps_branch_2[i];
-        const real sps_root_2 = sps_branch_2*root(sps_rho2_2);
-        /* (sps-c_2) cosine of the angle of joint 2 from its reference direction */
-        const real inv_sps_root_2 = 1/sps_root_2;
-        const real sps_c_2_t = inv_sps_root_2*sps_root_1;
-        /* (sps-s_2) sine of the angle of joint 2 from its reference direction */
-        const real sps_s_2 = inv_sps_root_2*sps_xi_1_in_axes1_z;
-        /* (sps-S_dot) velocity of the connection point */
-        const real omega_y = s[16*w + j];
-        const real omega_z = s[17*w + j];
-        const real sps_S_dot_t = omega_y*sps_q_z - omega_z*sps_q_y;
-        const real omega_x = s[15*w + j];
-        const real sps_S_dot_t_2 = omega_z*sps_q_x - omega_x*sps_q_z;
-        const real sps_S_dot_t_3 = omega_x*sps_q_y - omega_y*sps_q_x;
-        const real t_dot_x = s[12*w + j];
-        const real sps_S_dot_x = sps_S_dot_t + t_dot_x;
-        const real t_dot_y = s[13*w + j];
-        const real sps_S_dot_y = sps_S_dot_t_2 + t_dot_y;
-        const real t_dot_z = s[14*w + j];
-        const real sps_S_dot_z = sps_S_dot_t_3 + t_dot_z;
-        /* (sps-v_1) velocity of the connection point per rate of joint 1 */
-        const real sps_e_1_in_axes3_x = -sps_c_2_t*sps_c_3;
-        const real sps_e_1_in_axes3_y = sps_c_2_t*sps_s_3;
-        const real sps_v_1_in_axes3_x = sps_e_1_in_axes3_y*sps_root_2;
-        const real sps_v_1_in_axes3_y = -sps_e_1_in_axes3_x*sps_root_2;
-        /* (sps-v_2) velocity of the connection point per rate of joint 2 */
-        const real sps_v_2_in_axes3_x = sps_c_3*sps_root_2;
-        const real sps_v_2_t = sps_root_2*sps_s_3;
-        /* (sps-w_1) reciprocal vector 1 */
-        const real sps_w_1_t = sps_v_1_in_axes3_x*sps_v_2_t +
-            sps_v_1_in_axes3_y*sps_v_2_in_axes3_x;
-        /* (sps-w_4) reciprocal vector 3 */
-        const real sps_w_4_x = inv_sps_root_2*sps_S_x;
-        const real sps_w_4_y = inv_sps_root_2*sps_S_y;
-        const real sps_w_4_z = inv_sps_root_2*sps_S_z;
-        /* (sps-S_dot_rest) velocity of the connection point left to the joints that are not extra */
-        const real sps_S_dot_rest_t = sps_s_2*sps_s_3;
-        const real sps_S_dot_rest_t_2 = sps_S_dot_rest_t*sps_s_1 - sps_c_1*sps_c_3;
-        const real sps_S_dot_rest_t_3 = sps_S_dot_rest_t*sps_c_1 + sps_c_3*sps_s_1;
-        const real axis_y_sps_axes3_x = sps_S_dot_rest_t_3*sps_base_frame_xy +
-            sps_base_frame_xz*sps_e_1_in_axes3_y - sps_S_dot_rest_t_2*sps_base_frame_xx;
-        const real axis_y_sps_axes3_y = sps_S_dot_rest_t_3*sps_base_frame_yy +
-            sps_base_frame_yz*sps_e_1_in_axes3_y - sps_S_dot_rest_t_2*sps_base_frame_yx;
-        const real axis_y_sps_axes3_z = sps_S_dot_rest_t_3*sps_base_frame_zy +
-            sps_base_frame_zz*sps_e_1_in_axes3_y - sps_S_dot_rest_t_2*sps_base_frame_zx;
-        const real axis_x_sps_axes3_x = axis_y_sps_axes3_y*sps_w_4_z -
-            axis_y_sps_axes3_z*sps_w_4_y;
-        const real axis_x_sps_axes3_y = axis_y_sps_axes3_z*sps_w_4_x -
-            axis_y_sps_axes3_x*sps_w_4_z;
-        const real axis_x_sps_axes3_z = axis_y_sps_axes3_x*sps_w_4_y -
-            axis_y_sps_axes3_y*sps_w_4_x;
-        const real sps_S_dot_rest_in_axes3_x = axis_x_sps_axes3_x*sps_S_dot_x +
-            axis_x_sps_axes3_y*sps_S_dot_y + axis_x_sps_axes3_z*sps_S_dot_z;
-        const real sps_S_dot_rest_in_axes3_y = axis_y_sps_axes3_x*sps_S_dot_x +
-            axis_y_sps_axes3_y*sps_S_dot_y + axis_y_sps_axes3_z*sps_S_dot_z;
-        const real sps_S_dot_rest_in_axes3_z = sps_S_dot_x*sps_w_4_x + sps_S_dot_y*sps_w_4_y +
-            sps_S_dot_z*sps_w_4_z;
-        /* (sps-qd_1) rate of joint 1 */
-        const real inv_sps_w_1_t = 1/sps_w_1_t;
-        const real sps_qd_1 = inv_sps_w_1_t*(sps_S_dot_rest_in_axes3_x*sps_v_2_t +
-            sps_S_dot_rest_in_axes3_y*sps_v_2_in_axes3_x);
-        /* (sps-qd_2) rate of joint 2 */
-        const real sps_qd_2_t = inv_sps_w_1_t*(sps_S_dot_rest_in_axes3_y*sps_v_1_in_axes3_x -
-            sps_S_dot_rest_in_axes3_x*sps_v_1_in_axes3_y);
-        /* (sps-omega_1) angular velocity of link 1 */
-        const real sps_omega_1_in_axes2_x = sps_qd_1*sps_s_2;
-        const real sps_omega_1_t = sps_c_2_t*sps_qd_1;
-        /* (sps-omega_2) angular velocity of link 2 */
-        const real sps_omega_2_in_axes3_x = -sps_c_3*sps_omega_1_t - sps_qd_2_t*sps_s_3;
-        const real sps_omega_2_in_axes3_y = sps_omega_1_t*sps_s_3 - sps_c_3*sps_qd_2_t;
-        /* (sps-omega_3) angular velocity of link 3 */
-        const real sps_yd_3 = V[place_sps_yd_3[i]*w + j];
-        const real sps_omega_3_in_axes3_z = sps_omega_1_in_axes2_x + sps_yd_3;
-        /* (sps-W_3) centripetal tensor of link 3 */
-        const real sps_W_3_in_axes3_xy = sps_omega_2_in_axes3_x*sps_omega_2_in_axes3_y;
-        const real sps_W_3_in_axes3_xz = sps_omega_2_in_axes3_x*sps_omega_3_in_axes3_z;
-        const real sps_W_3_in_axes3_yz = sps_omega_2_in_axes3_y*sps_omega_3_in_axes3_z;
-        /* (sps-a_p) acceleration of the connection point without its centripetal part */
-        const real alpha_y = s[22*w + j];
-        const real alpha_z = s[23*w + j];
-        const real t_ddot_x = s[18*w + j];
-        const real sps_a_p_x = t_ddot_x + alpha_y*sps_q_z - alpha_z*sps_q_y;
-        const real alpha_x = s[21*w + j];
-        const real t_ddot_y = s[19*w + j];
-        const real sps_a_p_y = t_ddot_y + alpha_z*sps_q_x - alpha_x*sps_q_z;
-        const real t_ddot_z = s[20*w + j];
-        const real sps_a_p_z = t_ddot_z + alpha_x*sps_q_y - alpha_y*sps_q_x;
-        /* (sps-S_ddot) acceleration of the connection point */
-        const real sps_S_ddot_x = sps_a_p_x + omega_y*sps_S_dot_t_3 - omega_z*sps_S_dot_t_2;
-        const real sps_S_ddot_y = sps_a_p_y + omega_z*sps_S_dot_t - omega_x*sps_S_dot_t_3;
-        const real sps_S_ddot_z = sps_a_p_z + omega_x*sps_S_dot_t_2 - omega_y*sps_S_dot_t;
-        const real sps_S_ddot_in_axes3_x = axis_x_sps_axes3_x*sps_S_ddot_x +
-            axis_x_sps_axes3_y*sps_S_ddot_y + axis_x_sps_axes3_z*sps_S_ddot_z;
-        const real sps_S_ddot_in_axes3_y = axis_y_sps_axes3_x*sps_S_ddot_x +
-            axis_y_sps_axes3_y*sps_S_ddot_y + axis_y_sps_axes3_z*sps_S_ddot_z;
-        /* (sps-zeta_2) angular acceleration of link 2 from the turning of axis 2 */
-        const real sps_zeta_2_in_axes2_y = sps_omega_1_in_axes2_x*sps_qd_2_t;
-        /* (sps-zeta_3) angular acceleration of link 3 from the turning of axis 3 */
-        const real sps_zeta_3_in_axes3_x = sps_omega_2_in_axes3_y*sps_yd_3;
-        const real sps_zeta_3_in_axes3_y = -sps_omega_2_in_axes3_x*sps_yd_3;
-        /* (sps-beta_3) angular acceleration of link 3 at zero joint accelerations */
-        const real sps_beta_3_in_axes3_x = sps_zeta_3_in_axes3_x + sps_c_3*sps_zeta_2_in_axes2_y;
-        const real sps_beta_3_in_axes3_y = sps_zeta_3_in_axes3_y - sps_s_3*sps_zeta_2_in_axes2_y;
-        /* (sps-bias) acceleration of the connection point at zero joint accelerations */
-        const real sps_bias_t = 2*sps_S_dot_rest_in_axes3_z;
-        const real sps_bias_in_axes3_x = sps_bias_t*sps_omega_2_in_axes3_y +
-            sps_root_2*(sps_W_3_in_axes3_xz + sps_beta_3_in_axes3_y);
-        const real sps_bias_in_axes3_y = sps_root_2*(sps_W_3_in_axes3_yz - sps_beta_3_in_axes3_x)
-            - sps_bias_t*sps_omega_2_in_axes3_x;
-        /* (sps-rel) acceleration of the connection point left to the joint accelerations */
-        const real sps_rel_in_axes3_x = sps_S_ddot_in_axes3_x - sps_bias_in_axes3_x;
-        const real sps_rel_in_axes3_y = sps_S_ddot_in_axes3_y - sps_bias_in_axes3_y;
-        /* (sps-qdd_1) acceleration of joint 1 */
-        const real sps_qdd_1 = inv_sps_w_1_t*(sps_rel_in_axes3_x*sps_v_2_t +
-            sps_rel_in_axes3_y*sps_v_2_in_axes3_x);
-        /* (sps-qdd_2) acceleration of joint 2 */
-        const real sps_qdd_2_t = inv_sps_w_1_t*(sps_rel_in_axes3_y*sps_v_1_in_axes3_x -
-            sps_rel_in_axes3_x*sps_v_1_in_axes3_y);
-        /* (sps-alpha_2) angular acceleration of link 2 */
-        const real sps_alpha_2_in_axes2_x = sps_omega_1_t*sps_qd_2_t + sps_qdd_1*sps_s_2;
-        const real sps_alpha_2_in_axes2_y = sps_zeta_2_in_axes2_y - sps_c_2_t*sps_qdd_1;
-        /* (sps-alpha_3) angular acceleration of link 3 */
-        const real sps_alpha_3_in_axes3_x = sps_zeta_3_in_axes3_x + sps_alpha_2_in_axes2_y*sps_c_3
-            - sps_qdd_2_t*sps_s_3;
-        const real sps_alpha_3_in_axes3_y = sps_zeta_3_in_axes3_y - sps_alpha_2_in_axes2_y*sps_s_3
-            - sps_c_3*sps_qdd_2_t;
-        const real sps_ydd_3 = A[place_sps_ydd_3[i]*w + j];
-        const real sps_alpha_3_in_axes3_z = sps_alpha_2_in_axes2_x + sps_ydd_3;
-        /* (sps-B_3) acceleration tensor of link 3 */
-        const real sps_B_3_in_axes3_xy = sps_W_3_in_axes3_xy - sps_alpha_3_in_axes3_z;
-        const real sps_B_3_in_axes3_xz = sps_W_3_in_axes3_xz + sps_alpha_3_in_axes3_y;
-        const real sps_B_3_in_axes3_yx = sps_W_3_in_axes3_xy + sps_alpha_3_in_axes3_z;
-        const real sps_B_3_in_axes3_yz = sps_W_3_in_axes3_yz - sps_alpha_3_in_axes3_x;
-        const real sps_B_3_in_axes3_zx = sps_W_3_in_axes3_xz - sps_alpha_3_in_axes3_y;
-        const real sps_B_3_in_axes3_zy = sps_W_3_in_axes3_yz + sps_alpha_3_in_axes3_x;
-        /* (sps-acc_4) acceleration of the reference point of link 4, less gravity */
-        const real gravity_x = m->gravity_x;
-        const real gravity_y = m->gravity_y;
-        const real gravity_z = m->gravity_z;
-        const real sps_g_in_axes3_x = axis_x_sps_axes3_x*gravity_x + axis_x_sps_axes3_y*gravity_y
-            + axis_x_sps_axes3_z*gravity_z;
-        const real sps_g_in_axes3_y = axis_y_sps_axes3_x*gravity_x + axis_y_sps_axes3_y*gravity_y
-            + axis_y_sps_axes3_z*gravity_z;
-        const real sps_g_in_axes3_z = gravity_x*sps_w_4_x + gravity_y*sps_w_4_y +
-            gravity_z*sps_w_4_z;
-        const real sps_acc_4_in_axes3_x = sps_S_ddot_in_axes3_x - sps_g_in_axes3_x;
-        const real sps_acc_4_in_axes3_y = sps_S_ddot_in_axes3_y - sps_g_in_axes3_y;
-        const real sps_acc_4_in_axes3_z = sps_S_ddot_x*sps_w_4_x + sps_S_ddot_y*sps_w_4_y +
-            sps_S_ddot_z*sps_w_4_z - sps_g_in_axes3_z;
+        values_sps v;
+        stage_sps_X(m, w, i, j, s, X, &v);
+        stage_sps_A_X(w, j, A, &v);
+        stage_sps_V_X(w, i, j, V, &v);
+        stage_sps_A_V_X(w, j, V, &v);
+        stage_sps_legs_required(w, i, j, A, &v);
         /* (sps-mu_3) inertia moment of the links that turn with link 3, about their reference points */
-        const real sps_mu_3_t = sps_omega_2_in_axes3_x*sps_omega_2_in_axes3_x;
-        const real sps_mu_3_t_2 = sps_omega_2_in_axes3_y*sps_omega_2_in_axes3_y;
-        const real sps_mu_3_t_3 = sps_omega_3_in_axes3_z*sps_omega_3_in_axes3_z;
+        const real sps_mu_3_t = v.sps_omega_2_in_axes3_x*v.sps_omega_2_in_axes3_x;
+        const real sps_mu_3_t_2 = v.sps_omega_2_in_axes3_y*v.sps_omega_2_in_axes3_y;
+        const real sps_mu_3_t_3 = v.sps_omega_3_in_axes3_z*v.sps_omega_3_in_axes3_z;
         const real sps_J_group_3_in_axes3_xy = m->sps_J_group_3_in_axes3_xy[i];
         const real sps_J_group_3_in_axes3_xz = m->sps_J_group_3_in_axes3_xz[i];
         const real sps_J_group_3_in_axes3_yz = m->sps_J_group_3_in_axes3_yz[i];
@@ -5137,64 +3808,68 @@ INLINE void legs_legs_sps(const prepared *m, size_t w, size_t leg, size_t legs, 
         const real sps_h_3_in_spec3_z = m->sps_h_3_in_spec3_z[i];
         const real sps_h_4_in_spec3_x = m->sps_h_4_in_spec3_x[i];
         const real sps_h_4_in_spec3_z = m->sps_h_4_in_spec3_z[i];
-        const real sps_mu_3_in_axes3_x = sps_B_3_in_axes3_yx*sps_J_group_3_in_axes3_xz +
-            sps_B_3_in_axes3_zy*sps_Sigma_3_in_axes3_yy + sps_J_group_3_in_axes3_yz*(sps_mu_3_t_2
-            - sps_mu_3_t_3) + sps_acc_4_in_axes3_z*sps_h_4_in_spec3_z +
-            sps_g_in_axes3_y*sps_h_3_in_spec3_x - sps_B_3_in_axes3_yz*sps_Sigma_3_in_axes3_zz -
-            sps_B_3_in_axes3_zx*sps_J_group_3_in_axes3_xy -
-            sps_acc_4_in_axes3_y*sps_h_4_in_spec3_x - sps_g_in_axes3_z*sps_h_3_in_spec3_z;
+        const real sps_mu_3_in_axes3_x = v.sps_B_3_in_axes3_yx*sps_J_group_3_in_axes3_xz +
+            v.sps_B_3_in_axes3_zy*sps_Sigma_3_in_axes3_yy +
+            sps_J_group_3_in_axes3_yz*(sps_mu_3_t_2 - sps_mu_3_t_3) +
+            v.sps_acc_4_in_axes3_z*sps_h_4_in_spec3_z + v.sps_g_in_axes3_y*sps_h_3_in_spec3_x -
+            v.sps_B_3_in_axes3_yz*sps_Sigma_3_in_axes3_zz -
+            v.sps_B_3_in_axes3_zx*sps_J_group_3_in_axes3_xy -
+            v.sps_acc_4_in_axes3_y*sps_h_4_in_spec3_x - v.sps_g_in_axes3_z*sps_h_3_in_spec3_z;
         const real sps_Sigma_3_in_axes3_xx = m->sps_Sigma_3_in_axes3_xx[i];
         const real sps_h_3_in_spec3_y = m->sps_h_3_in_spec3_y[i];
         const real sps_h_4_in_spec3_y = m->sps_h_4_in_spec3_y[i];
-        const real sps_mu_3_in_axes3_y = sps_B_3_in_axes3_xz*sps_Sigma_3_in_axes3_zz +
-            sps_B_3_in_axes3_zy*sps_J_group_3_in_axes3_xy +
-            sps_acc_4_in_axes3_x*sps_h_4_in_spec3_x + sps_g_in_axes3_z*sps_h_3_in_spec3_y -
-            sps_B_3_in_axes3_xy*sps_J_group_3_in_axes3_yz -
-            sps_B_3_in_axes3_zx*sps_Sigma_3_in_axes3_xx - sps_J_group_3_in_axes3_xz*(sps_mu_3_t -
-            sps_mu_3_t_3) - sps_acc_4_in_axes3_z*sps_h_4_in_spec3_y -
-            sps_g_in_axes3_x*sps_h_3_in_spec3_x;
-        const real sps_mu_3_in_axes3_z = sps_B_3_in_axes3_xz*sps_J_group_3_in_axes3_yz +
-            sps_B_3_in_axes3_yx*sps_Sigma_3_in_axes3_xx + sps_J_group_3_in_axes3_xy*(sps_mu_3_t -
-            sps_mu_3_t_2) + sps_acc_4_in_axes3_y*sps_h_4_in_spec3_y +
-            sps_g_in_axes3_x*sps_h_3_in_spec3_z - sps_B_3_in_axes3_xy*sps_Sigma_3_in_axes3_yy -
-            sps_B_3_in_axes3_yz*sps_J_group_3_in_axes3_xz -
-            sps_acc_4_in_axes3_x*sps_h_4_in_spec3_z - sps_g_in_axes3_y*sps_h_3_in_spec3_y;
-        const real sps_mu_3_in_axes2_z = sps_c_3*sps_mu_3_in_axes3_y +
-            sps_mu_3_in_axes3_x*sps_s_3;
+        const real sps_mu_3_in_axes3_y = v.sps_B_3_in_axes3_xz*sps_Sigma_3_in_axes3_zz +
+            v.sps_B_3_in_axes3_zy*sps_J_group_3_in_axes3_xy +
+            v.sps_acc_4_in_axes3_x*sps_h_4_in_spec3_x + v.sps_g_in_axes3_z*sps_h_3_in_spec3_y -
+            v.sps_B_3_in_axes3_xy*sps_J_group_3_in_axes3_yz -
+            v.sps_B_3_in_axes3_zx*sps_Sigma_3_in_axes3_xx - sps_J_group_3_in_axes3_xz*(sps_mu_3_t
+            - sps_mu_3_t_3) - v.sps_acc_4_in_axes3_z*sps_h_4_in_spec3_y -
+            v.sps_g_in_axes3_x*sps_h_3_in_spec3_x;
+        const real sps_mu_3_in_axes3_z = v.sps_B_3_in_axes3_xz*sps_J_group_3_in_axes3_yz +
+            v.sps_B_3_in_axes3_yx*sps_Sigma_3_in_axes3_xx + sps_J_group_3_in_axes3_xy*(sps_mu_3_t
+            - sps_mu_3_t_2) + v.sps_acc_4_in_axes3_y*sps_h_4_in_spec3_y +
+            v.sps_g_in_axes3_x*sps_h_3_in_spec3_z - v.sps_B_3_in_axes3_xy*sps_Sigma_3_in_axes3_yy
+            - v.sps_B_3_in_axes3_yz*sps_J_group_3_in_axes3_xz -
+            v.sps_acc_4_in_axes3_x*sps_h_4_in_spec3_z - v.sps_g_in_axes3_y*sps_h_3_in_spec3_y;
+        const real sps_mu_3_in_axes2_z = v.sps_c_3*sps_mu_3_in_axes3_x -
+            sps_mu_3_in_axes3_y*v.sps_s_3;
         /* (sps-Gamma_1) moment about axis 1 of the distal links' inertia and weight */
-        const real sps_Gamma_1 = sps_e_1_in_axes3_x*sps_mu_3_in_axes3_x +
-            sps_e_1_in_axes3_y*sps_mu_3_in_axes3_y + sps_mu_3_in_axes3_z*sps_s_2;
+        const real sps_Gamma_1 = v.sps_e_1_in_axes2_y*sps_mu_3_in_axes3_z +
+            v.sps_e_1_in_axes3_x*sps_mu_3_in_axes3_x + v.sps_e_1_in_axes3_y*sps_mu_3_in_axes3_y;
         /* (sps-c) leg force on the platform without actuation and without the mass at the connection
            point */
         const real sps_c_in_axes3_x = sps_h_4_in_spec3_y*(sps_mu_3_t_2 + sps_mu_3_t_3) -
-            inv_sps_w_1_t*(sps_Gamma_1*sps_v_2_t + sps_mu_3_in_axes2_z*sps_v_1_in_axes3_y) -
-            sps_B_3_in_axes3_xy*sps_h_4_in_spec3_z - sps_B_3_in_axes3_xz*sps_h_4_in_spec3_x;
-        const real sps_c_in_axes3_y = inv_sps_w_1_t*(sps_mu_3_in_axes2_z*sps_v_1_in_axes3_x -
-            sps_Gamma_1*sps_v_2_in_axes3_x) + sps_h_4_in_spec3_z*(sps_mu_3_t + sps_mu_3_t_3) -
-            sps_B_3_in_axes3_yx*sps_h_4_in_spec3_y - sps_B_3_in_axes3_yz*sps_h_4_in_spec3_x;
+            v.inv_sps_w_1_t*(sps_Gamma_1*v.sps_v_2_t + sps_mu_3_in_axes2_z*v.sps_v_1_in_axes3_y) -
+            v.sps_B_3_in_axes3_xy*sps_h_4_in_spec3_z - v.sps_B_3_in_axes3_xz*sps_h_4_in_spec3_x;
+        const real sps_c_in_axes3_y = v.inv_sps_w_1_t*(sps_mu_3_in_axes2_z*v.sps_v_1_in_axes3_x -
+            sps_Gamma_1*v.sps_v_2_in_axes3_x) + sps_h_4_in_spec3_z*(sps_mu_3_t + sps_mu_3_t_3) -
+            v.sps_B_3_in_axes3_yx*sps_h_4_in_spec3_y - v.sps_B_3_in_axes3_yz*sps_h_4_in_spec3_x;
         /* (sps-c_true) leg force on the platform without actuation, the last link's mass included */
         const real sps_link4_mass = m->sps_link4_mass[i];
-        const real sps_c_true_in_axes3_x = sps_c_in_axes3_x - sps_acc_4_in_axes3_x*sps_link4_mass;
-        const real sps_c_true_in_axes3_y = sps_c_in_axes3_y - sps_acc_4_in_axes3_y*sps_link4_mass;
+        const real sps_c_true_in_axes3_x = sps_c_in_axes3_x -
+            v.sps_acc_4_in_axes3_x*sps_link4_mass;
+        const real sps_c_true_in_axes3_y = sps_c_in_axes3_y -
+            v.sps_acc_4_in_axes3_y*sps_link4_mass;
         const real sps_c_true_in_axes3_z = sps_h_4_in_spec3_x*(sps_mu_3_t + sps_mu_3_t_2) -
-            sps_B_3_in_axes3_zx*sps_h_4_in_spec3_y - sps_B_3_in_axes3_zy*sps_h_4_in_spec3_z -
-            sps_acc_4_in_axes3_z*sps_link4_mass;
-        const real sps_c_true_x = axis_x_sps_axes3_x*sps_c_true_in_axes3_x +
-            axis_y_sps_axes3_x*sps_c_true_in_axes3_y + sps_c_true_in_axes3_z*sps_w_4_x;
-        const real sps_c_true_y = axis_x_sps_axes3_y*sps_c_true_in_axes3_x +
-            axis_y_sps_axes3_y*sps_c_true_in_axes3_y + sps_c_true_in_axes3_z*sps_w_4_y;
-        const real sps_c_true_z = axis_x_sps_axes3_z*sps_c_true_in_axes3_x +
-            axis_y_sps_axes3_z*sps_c_true_in_axes3_y + sps_c_true_in_axes3_z*sps_w_4_z;
+            v.sps_B_3_in_axes3_zx*sps_h_4_in_spec3_y - v.sps_B_3_in_axes3_zy*sps_h_4_in_spec3_z -
+            v.sps_acc_4_in_axes3_z*sps_link4_mass;
+        const real sps_c_true_x = v.axis_x_sps_axes3_x*sps_c_true_in_axes3_x +
+            v.axis_y_sps_axes3_x*sps_c_true_in_axes3_y + sps_c_true_in_axes3_z*v.sps_w_4_x;
+        const real sps_c_true_y = v.axis_x_sps_axes3_y*sps_c_true_in_axes3_x +
+            v.axis_y_sps_axes3_y*sps_c_true_in_axes3_y + sps_c_true_in_axes3_z*v.sps_w_4_y;
+        const real sps_c_true_z = v.axis_x_sps_axes3_z*sps_c_true_in_axes3_x +
+            v.axis_y_sps_axes3_z*sps_c_true_in_axes3_y + sps_c_true_in_axes3_z*v.sps_w_4_z;
         /* (sps-c_true) leg force on the platform without actuation, the last link's mass included */
         o[0*count + k] = sps_c_true_x;
         o[1*count + k] = sps_c_true_y;
         o[2*count + k] = sps_c_true_z;
         /* (sps-w_4) reciprocal vector 3 */
-        o[3*count + k] = sps_w_4_x;
-        o[4*count + k] = sps_w_4_y;
-        o[5*count + k] = sps_w_4_z;
-        o[6*count + k] = UNLESS(magnitude(sps_rho2_1) > LEAST_1) + UNLESS(magnitude(sps_rho2_2) >
-            LEAST_1) + UNLESS(magnitude(sps_w_1_t) > LEAST_2);
+        o[3*count + k] = v.sps_w_4_x;
+        o[4*count + k] = v.sps_w_4_y;
+        o[5*count + k] = v.sps_w_4_z;
+        o[6*count + k] = UNLESS(magnitude(v.sps_root_1_t) > LEAST_1) +
+            UNLESS(magnitude(v.sps_root_2_t) > LEAST_1) + UNLESS(magnitude(v.sps_w_1_t) >
+            LEAST_2);
     }
 }
 
@@ -5215,9 +3890,9 @@ INLINE void legs_place_sps(size_t w, size_t count, const real *o, size_t leg, si
 INLINE void legs_run(const prepared *m, const real *X, const real *V, const real *A, real
     *leg_force, real *actuator, verdict *t)
 {
-    real s[24] = {0};
+    real s[9] = {0};
     real o_sps[7*LEGS(LEGS_OF_sps)] = {0};
-    legs_before(1, X, V, A, s, t);
+    legs_before(m, 1, X, s, t);
     legs_legs_sps(m, 1, 0, 1, s, 0, LEGS(LEGS_OF_sps), X, V, A, o_sps);
     for (size_t leg = 0; leg < LEGS_OF_sps; ++leg) {
         legs_place_sps(1, LEGS(LEGS_OF_sps), o_sps, leg, leg, leg_force, actuator, t);
@@ -5228,40 +3903,8 @@ INLINE void legs_run(const prepared *m, const real *X, const real *V, const real
 INLINE void potential_before(const prepared *m, size_t w, const real *X, real *s, verdict *t)
 {
     for (size_t k = 0; k < w; ++k) {
-        /* X: named entries */
-        const real X_0 = X[0*w + k];
-        const real t_x = X_0;
-        const real X_1 = X[1*w + k];
-        const real t_y = X_1;
-        const real X_2 = X[2*w + k];
-        const real t_z = X_2;
-        const real X_3 = X[3*w + k];
-        const real X_4 = X[4*w + k];
-        const real X_5 = X[5*w + k];
-        const real X_6 = X[6*w + k];
-        const real quaternion_norm2 = X_3*X_3 + X_4*X_4 + X_5*X_5 + X_6*X_6;
-        const real quaternion_scale = 2/quaternion_norm2;
-        const real quaternion_sx = X_3*quaternion_scale;
-        const real quaternion_sy = X_4*quaternion_scale;
-        const real quaternion_sz = X_5*quaternion_scale;
-        const real quaternion_wx = X_6*quaternion_sx;
-        const real quaternion_wy = X_6*quaternion_sy;
-        const real quaternion_wz = X_6*quaternion_sz;
-        const real quaternion_xx = X_3*quaternion_sx;
-        const real quaternion_xy = X_3*quaternion_sy;
-        const real quaternion_xz = X_3*quaternion_sz;
-        const real quaternion_yy = X_4*quaternion_sy;
-        const real quaternion_yz = X_4*quaternion_sz;
-        const real quaternion_zz = X_5*quaternion_sz;
-        const real R_xx = 1 - quaternion_yy - quaternion_zz;
-        const real R_xy = quaternion_xy - quaternion_wz;
-        const real R_xz = quaternion_wy + quaternion_xz;
-        const real R_yx = quaternion_wz + quaternion_xy;
-        const real R_yy = 1 - quaternion_xx - quaternion_zz;
-        const real R_yz = quaternion_yz - quaternion_wx;
-        const real R_zx = quaternion_xz - quaternion_wy;
-        const real R_zy = quaternion_wx + quaternion_yz;
-        const real R_zz = 1 - quaternion_xx - quaternion_yy;
+        values v;
+        stage_X(m, w, k, X, &v);
         /* (potential) potential energy */
         const real gravity_x = m->gravity_x;
         const real gravity_y = m->gravity_y;
@@ -5270,116 +3913,59 @@ INLINE void potential_before(const prepared *m, size_t w, const real *X, real *s
         const real h_star_in_platform_y = m->h_star_in_platform_y;
         const real h_star_in_platform_z = m->h_star_in_platform_z;
         const real m_star = m->m_star;
-        const real potential_t = gravity_x*(R_xx*h_star_in_platform_x + R_xy*h_star_in_platform_y
-            + R_xz*h_star_in_platform_z + m_star*t_x) + gravity_y*(R_yx*h_star_in_platform_x +
-            R_yy*h_star_in_platform_y + R_yz*h_star_in_platform_z + m_star*t_y) +
-            gravity_z*(R_zx*h_star_in_platform_x + R_zy*h_star_in_platform_y +
-            R_zz*h_star_in_platform_z + m_star*t_z);
-        s[0*w + k] = t_x;
-        s[1*w + k] = t_y;
-        s[2*w + k] = t_z;
-        s[3*w + k] = R_xx;
-        s[4*w + k] = R_xy;
-        s[5*w + k] = R_xz;
-        s[6*w + k] = R_yx;
-        s[7*w + k] = R_yy;
-        s[8*w + k] = R_yz;
-        s[9*w + k] = R_zx;
-        s[10*w + k] = R_zy;
-        s[11*w + k] = R_zz;
-        s[12*w + k] = potential_t;
-        t->invalid[k] += UNLESS(is_finite(quaternion_scale)) + UNLESS(quaternion_scale > 0);
+        const real t_x = X[0*w + k];
+        const real t_y = X[1*w + k];
+        const real t_z = X[2*w + k];
+        const real potential_t = gravity_x*(v.R_xx*h_star_in_platform_x +
+            v.R_xy*h_star_in_platform_y + v.R_xz*h_star_in_platform_z + m_star*t_x) +
+            gravity_y*(v.R_yx*h_star_in_platform_x + v.R_yy*h_star_in_platform_y +
+            v.R_yz*h_star_in_platform_z + m_star*t_y) + gravity_z*(v.R_zx*h_star_in_platform_x +
+            v.R_zy*h_star_in_platform_y + v.R_zz*h_star_in_platform_z + m_star*t_z);
+        s[0*w + k] = v.R_xx;
+        s[1*w + k] = v.R_xy;
+        s[2*w + k] = v.R_xz;
+        s[3*w + k] = v.R_yx;
+        s[4*w + k] = v.R_yy;
+        s[5*w + k] = v.R_yz;
+        s[6*w + k] = v.R_zx;
+        s[7*w + k] = v.R_zy;
+        s[8*w + k] = v.R_zz;
+        s[9*w + k] = potential_t;
+        t->invalid[k] += UNLESS(is_finite(v.quaternion_scale)) + UNLESS(v.quaternion_scale > 0);
     }
 }
 
 INLINE void potential_legs_sps(const prepared *m, size_t w, size_t leg, size_t legs, const real
     *s, size_t states, size_t count, int add, const real *X, real *terms, real *o)
 {
-    static const size_t place_sps_y_3_extra[] = {7, 8, 9, 10, 11, 12, 7, 7};
     for (size_t k = 0; k < count; ++k) {
         const size_t i = leg + legs*k;
         const size_t j = states*k;
-        /* (sps-S) from the base point to the connection point */
-        const real R_xx = s[3*w + j];
-        const real R_xy = s[4*w + j];
-        const real R_xz = s[5*w + j];
-        const real sps_base_point_x = m->sps_base_point_x[i];
-        const real sps_platform_point_x = m->sps_platform_point_x[i];
-        const real sps_platform_point_y = m->sps_platform_point_y[i];
-        const real sps_platform_point_z = m->sps_platform_point_z[i];
-        const real t_x = s[0*w + j];
-        const real sps_S_x = t_x + R_xx*sps_platform_point_x + R_xy*sps_platform_point_y +
-            R_xz*sps_platform_point_z - sps_base_point_x;
-        const real R_yx = s[6*w + j];
-        const real R_yy = s[7*w + j];
-        const real R_yz = s[8*w + j];
-        const real sps_base_point_y = m->sps_base_point_y[i];
-        const real t_y = s[1*w + j];
-        const real sps_S_y = t_y + R_yx*sps_platform_point_x + R_yy*sps_platform_point_y +
-            R_yz*sps_platform_point_z - sps_base_point_y;
-        const real R_zx = s[9*w + j];
-        const real R_zy = s[10*w + j];
-        const real R_zz = s[11*w + j];
-        const real sps_base_point_z = m->sps_base_point_z[i];
-        const real t_z = s[2*w + j];
-        const real sps_S_z = t_z + R_zx*sps_platform_point_x + R_zy*sps_platform_point_y +
-            R_zz*sps_platform_point_z - sps_base_point_z;
-        /* (sps-c_3) cosine of the angle of joint 3 from its reference direction */
-        const real sps_y_3_extra = X[place_sps_y_3_extra[i]*w + j];
-        const real sps_c_3 = -sine(sps_y_3_extra);
-        /* (sps-s_3) sine of the angle of joint 3 from its reference direction */
-        const real sps_s_3 = cosine(sps_y_3_extra);
-        /* (sps-px_1) component along the reference direction */
-        const real sps_base_frame_xx = m->sps_base_frame_xx[i];
-        const real sps_base_frame_yx = m->sps_base_frame_yx[i];
-        const real sps_base_frame_zx = m->sps_base_frame_zx[i];
-        const real sps_px_1 = sps_S_x*sps_base_frame_xx + sps_S_y*sps_base_frame_yx +
-            sps_S_z*sps_base_frame_zx;
-        /* (sps-py_1) component across the reference direction */
-        const real sps_base_frame_xy = m->sps_base_frame_xy[i];
-        const real sps_base_frame_yy = m->sps_base_frame_yy[i];
-        const real sps_base_frame_zy = m->sps_base_frame_zy[i];
-        const real sps_py_1 = sps_S_x*sps_base_frame_xy + sps_S_y*sps_base_frame_yy +
-            sps_S_z*sps_base_frame_zy;
-        /* (sps-rho2_1) squared amplitude */
-        const real sps_rho2_1 = sps_px_1*sps_px_1 + sps_py_1*sps_py_1;
-        /* (sps-root_1) amplitude, with the sign of the branch */
-        const real sps_branch_1 = m->sps_branch_1[i];
-        const real sps_root_1 = sps_branch_1*root(sps_rho2_1);
+        values_sps v;
+        stage_sps_X(m, w, i, j, s, X, &v);
+        stage_sps_inverse_kinematics_potential(m, w, i, j, s, X, &v);
         /* (sps-c_1) cosine of the angle of joint 1 from its reference direction */
-        const real inv_sps_root_1 = 1/sps_root_1;
-        const real sps_c_1 = -inv_sps_root_1*sps_py_1;
+        const real sps_c_1 = v.inv_sps_root_1*v.sps_S_in_turn1_x;
         /* (sps-s_1) sine of the angle of joint 1 from its reference direction */
-        const real sps_s_1 = inv_sps_root_1*sps_px_1;
-        /* (sps-xi_1) the vector from joint 1 to the connection point, resolved along link 1 */
-        const real sps_base_frame_xz = m->sps_base_frame_xz[i];
-        const real sps_base_frame_yz = m->sps_base_frame_yz[i];
-        const real sps_base_frame_zz = m->sps_base_frame_zz[i];
-        const real sps_xi_1_in_axes1_z = sps_S_x*sps_base_frame_xz + sps_S_y*sps_base_frame_yz +
-            sps_S_z*sps_base_frame_zz;
-        /* (sps-rho2_2) squared amplitude */
-        const real sps_rho2_2 = sps_rho2_1 + sps_xi_1_in_axes1_z*sps_xi_1_in_axes1_z;
-        /* (sps-root_2) amplitude, with the sign of the branch */
-        const real sps_branch_2 = m->sps_branch_2[i];
-        const real sps_root_2 = sps_branch_2*root(sps_rho2_2);
+        const real sps_s_1 = v.inv_sps_root_1*v.sps_S_in_turn1_y;
         /* (sps-c_2) cosine of the angle of joint 2 from its reference direction */
-        const real inv_sps_root_2 = 1/sps_root_2;
-        const real sps_c_2_t = inv_sps_root_2*sps_root_1;
-        /* (sps-s_2) sine of the angle of joint 2 from its reference direction */
-        const real sps_s_2 = inv_sps_root_2*sps_xi_1_in_axes1_z;
+        const real sps_c_2 = v.inv_sps_root_2*v.sps_root_1;
         /* (potential) potential energy */
+        const real sps_e_1_in_axes2_y = v.inv_sps_root_2*v.sps_S_in_turn1_z;
         const real sps_potential_t = m->sps_potential_t[i];
         const real sps_potential_t_2 = m->sps_potential_t_2[i];
         const real sps_potential_t_7 = sps_c_1*sps_potential_t + sps_potential_t_2*sps_s_1;
         const real sps_potential_t_8 = sps_c_1*sps_potential_t_2 - sps_potential_t*sps_s_1;
         const real sps_potential_t_3 = m->sps_potential_t_3[i];
-        const real sps_potential_t_9 = -sps_c_2_t*sps_potential_t_3 - sps_potential_t_8*sps_s_2;
+        const real sps_potential_t_9 = sps_c_2*sps_potential_t_3 -
+            sps_e_1_in_axes2_y*sps_potential_t_7;
         const real sps_potential_t_4 = m->sps_potential_t_4[i];
         const real sps_potential_t_5 = m->sps_potential_t_5[i];
         const real sps_potential_t_10 = sps_c_1*sps_potential_t_4 + sps_potential_t_5*sps_s_1;
         const real sps_potential_t_11 = sps_c_1*sps_potential_t_5 - sps_potential_t_4*sps_s_1;
         const real sps_potential_t_6 = m->sps_potential_t_6[i];
-        const real sps_potential_t_12 = -sps_c_2_t*sps_potential_t_6 - sps_potential_t_11*sps_s_2;
+        const real sps_potential_t_12 = sps_c_2*sps_potential_t_6 -
+            sps_e_1_in_axes2_y*sps_potential_t_10;
         const real sps_h_3_in_spec3_x = m->sps_h_3_in_spec3_x[i];
         const real sps_h_3_in_spec3_y = m->sps_h_3_in_spec3_y[i];
         const real sps_h_3_in_spec3_z = m->sps_h_3_in_spec3_z[i];
@@ -5387,18 +3973,18 @@ INLINE void potential_legs_sps(const prepared *m, size_t w, size_t leg, size_t l
         const real sps_h_4_in_spec3_y = m->sps_h_4_in_spec3_y[i];
         const real sps_h_4_in_spec3_z = m->sps_h_4_in_spec3_z[i];
         const real sps_link3_mass = m->sps_link3_mass[i];
-        const real sps_potential_t_13 = (sps_potential_t_3*sps_s_2 -
-            sps_c_2_t*sps_potential_t_8)*(sps_h_3_in_spec3_x + sps_h_4_in_spec3_x +
-            sps_link3_mass*(sps_potential_t_6*sps_s_2 - sps_c_2_t*sps_potential_t_11)) +
-            (sps_c_3*sps_potential_t_7 - sps_potential_t_9*sps_s_3)*(sps_h_3_in_spec3_z +
-            sps_h_4_in_spec3_z + sps_link3_mass*(sps_c_3*sps_potential_t_10 -
-            sps_potential_t_12*sps_s_3)) + (sps_c_3*sps_potential_t_9 +
-            sps_potential_t_7*sps_s_3)*(sps_h_3_in_spec3_y + sps_h_4_in_spec3_y +
-            sps_link3_mass*(sps_c_3*sps_potential_t_12 + sps_potential_t_10*sps_s_3));
+        const real sps_potential_t_13 = (sps_c_2*sps_potential_t_7 +
+            sps_e_1_in_axes2_y*sps_potential_t_3)*(sps_h_3_in_spec3_x + sps_h_4_in_spec3_x +
+            sps_link3_mass*(sps_c_2*sps_potential_t_10 + sps_e_1_in_axes2_y*sps_potential_t_6)) +
+            (v.sps_c_3*sps_potential_t_8 + sps_potential_t_9*v.sps_s_3)*(sps_h_3_in_spec3_y +
+            sps_h_4_in_spec3_y + sps_link3_mass*(v.sps_c_3*sps_potential_t_11 +
+            sps_potential_t_12*v.sps_s_3)) + (v.sps_c_3*sps_potential_t_9 -
+            sps_potential_t_8*v.sps_s_3)*(sps_h_3_in_spec3_z + sps_h_4_in_spec3_z +
+            sps_link3_mass*(v.sps_c_3*sps_potential_t_12 - sps_potential_t_11*v.sps_s_3));
         /* (potential) potential energy */
         gather(&terms[0*count + k], add, sps_potential_t_13);  /* potential_of_legs */
-        o[0*count + k] = UNLESS(magnitude(sps_rho2_1) > LEAST_1) + UNLESS(magnitude(sps_rho2_2) >
-            LEAST_1);
+        o[0*count + k] = UNLESS(magnitude(v.sps_root_1_t) > LEAST_1) +
+            UNLESS(magnitude(v.sps_root_2_t) > LEAST_1);
     }
 }
 
@@ -5414,7 +4000,7 @@ INLINE void potential_after(size_t w, const real *s, const real *sums, real *pot
     for (size_t k = 0; k < w; ++k) {
         /* (potential) potential energy */
         const real potential_of_legs = sums[0*w + k];
-        const real potential_t = s[12*w + k];
+        const real potential_t = s[9*w + k];
         const real potential_ = -potential_of_legs - potential_t;
         /* (potential) potential energy */
         potential[0*w + k] = potential_;
@@ -5423,10 +4009,8 @@ INLINE void potential_after(size_t w, const real *s, const real *sums, real *pot
 
 INLINE void potential_run(const prepared *m, const real *X, real *potential, verdict *t)
 {
-    real s[13] = {0};
-    real sums[1] = {0};
-    real terms_sps[LEGS(LEGS_OF_sps)] = {0};
-    real o_sps[LEGS(LEGS_OF_sps)] = {0};
+    real s[10] = {0}, sums[1] = {0};
+    real terms_sps[LEGS(LEGS_OF_sps)] = {0}, o_sps[LEGS(LEGS_OF_sps)] = {0};
     potential_before(m, 1, X, s, t);
     potential_legs_sps(m, 1, 0, 1, s, 0, LEGS(LEGS_OF_sps), 0, X, terms_sps, o_sps);
     for (size_t leg = 0; leg < LEGS_OF_sps; ++leg) {
@@ -5443,173 +4027,75 @@ INLINE void condition_before(const prepared *m, size_t w, const real *X, real *s
     verdict *t)
 {
     for (size_t k = 0; k < w; ++k) {
-        /* X: named entries */
-        const real X_0 = X[0*w + k];
-        const real t_x = X_0;
-        const real X_1 = X[1*w + k];
-        const real t_y = X_1;
-        const real X_2 = X[2*w + k];
-        const real t_z = X_2;
-        const real X_3 = X[3*w + k];
-        const real X_4 = X[4*w + k];
-        const real X_5 = X[5*w + k];
-        const real X_6 = X[6*w + k];
-        const real quaternion_norm2 = X_3*X_3 + X_4*X_4 + X_5*X_5 + X_6*X_6;
-        const real quaternion_scale = 2/quaternion_norm2;
-        const real quaternion_sx = X_3*quaternion_scale;
-        const real quaternion_sy = X_4*quaternion_scale;
-        const real quaternion_sz = X_5*quaternion_scale;
-        const real quaternion_wx = X_6*quaternion_sx;
-        const real quaternion_wy = X_6*quaternion_sy;
-        const real quaternion_wz = X_6*quaternion_sz;
-        const real quaternion_xx = X_3*quaternion_sx;
-        const real quaternion_xy = X_3*quaternion_sy;
-        const real quaternion_xz = X_3*quaternion_sz;
-        const real quaternion_yy = X_4*quaternion_sy;
-        const real quaternion_yz = X_4*quaternion_sz;
-        const real quaternion_zz = X_5*quaternion_sz;
-        const real R_xx = 1 - quaternion_yy - quaternion_zz;
-        const real R_xy = quaternion_xy - quaternion_wz;
-        const real R_xz = quaternion_wy + quaternion_xz;
-        const real R_yx = quaternion_wz + quaternion_xy;
-        const real R_yy = 1 - quaternion_xx - quaternion_zz;
-        const real R_yz = quaternion_yz - quaternion_wx;
-        const real R_zx = quaternion_xz - quaternion_wy;
-        const real R_zy = quaternion_wx + quaternion_yz;
-        const real R_zz = 1 - quaternion_xx - quaternion_yy;
-        s[0*w + k] = t_x;
-        s[1*w + k] = t_y;
-        s[2*w + k] = t_z;
-        s[3*w + k] = R_xx;
-        s[4*w + k] = R_xy;
-        s[5*w + k] = R_xz;
-        s[6*w + k] = R_yx;
-        s[7*w + k] = R_yy;
-        s[8*w + k] = R_yz;
-        s[9*w + k] = R_zx;
-        s[10*w + k] = R_zy;
-        s[11*w + k] = R_zz;
+        values v;
+        stage_X(m, w, k, X, &v);
+        s[0*w + k] = v.R_xx;
+        s[1*w + k] = v.R_xy;
+        s[2*w + k] = v.R_xz;
+        s[3*w + k] = v.R_yx;
+        s[4*w + k] = v.R_yy;
+        s[5*w + k] = v.R_yz;
+        s[6*w + k] = v.R_zx;
+        s[7*w + k] = v.R_zy;
+        s[8*w + k] = v.R_zz;
         /* (legs_size) rms size of the legs, taken where the platform points coincide */
         const real legs_size = m->legs_size;
         lengths[1*w + k] = legs_size;
         t->total[k] += legs_size;
-        t->invalid[k] += UNLESS(is_finite(quaternion_scale)) + UNLESS(quaternion_scale > 0);
+        t->invalid[k] += UNLESS(is_finite(v.quaternion_scale)) + UNLESS(v.quaternion_scale > 0);
     }
 }
 
 INLINE void condition_legs_sps(const prepared *m, size_t w, size_t leg, size_t legs, const real
     *s, size_t states, size_t count, int add, const real *X, real *terms, real *o)
 {
-    static const size_t place_sps_y_3_extra[] = {7, 8, 9, 10, 11, 12, 7, 7};
     for (size_t k = 0; k < count; ++k) {
         const size_t i = leg + legs*k;
         const size_t j = states*k;
-        /* (sps-S) from the base point to the connection point */
-        const real R_xx = s[3*w + j];
-        const real R_xy = s[4*w + j];
-        const real R_xz = s[5*w + j];
-        const real sps_platform_point_x = m->sps_platform_point_x[i];
-        const real sps_platform_point_y = m->sps_platform_point_y[i];
-        const real sps_platform_point_z = m->sps_platform_point_z[i];
-        const real sps_q_x = R_xx*sps_platform_point_x + R_xy*sps_platform_point_y +
-            R_xz*sps_platform_point_z;
-        const real R_yx = s[6*w + j];
-        const real R_yy = s[7*w + j];
-        const real R_yz = s[8*w + j];
-        const real sps_q_y = R_yx*sps_platform_point_x + R_yy*sps_platform_point_y +
-            R_yz*sps_platform_point_z;
-        const real R_zx = s[9*w + j];
-        const real R_zy = s[10*w + j];
-        const real R_zz = s[11*w + j];
-        const real sps_q_z = R_zx*sps_platform_point_x + R_zy*sps_platform_point_y +
-            R_zz*sps_platform_point_z;
-        const real sps_base_point_x = m->sps_base_point_x[i];
-        const real t_x = s[0*w + j];
-        const real sps_S_x = sps_q_x + t_x - sps_base_point_x;
-        const real sps_base_point_y = m->sps_base_point_y[i];
-        const real t_y = s[1*w + j];
-        const real sps_S_y = sps_q_y + t_y - sps_base_point_y;
-        const real sps_base_point_z = m->sps_base_point_z[i];
-        const real t_z = s[2*w + j];
-        const real sps_S_z = sps_q_z + t_z - sps_base_point_z;
-        /* (sps-c_3) cosine of the angle of joint 3 from its reference direction */
-        const real sps_y_3_extra = X[place_sps_y_3_extra[i]*w + j];
-        const real sps_c_3 = -sine(sps_y_3_extra);
-        /* (sps-s_3) sine of the angle of joint 3 from its reference direction */
-        const real sps_s_3 = cosine(sps_y_3_extra);
-        /* (sps-px_1) component along the reference direction */
-        const real sps_base_frame_xx = m->sps_base_frame_xx[i];
-        const real sps_base_frame_yx = m->sps_base_frame_yx[i];
-        const real sps_base_frame_zx = m->sps_base_frame_zx[i];
-        const real sps_px_1 = sps_S_x*sps_base_frame_xx + sps_S_y*sps_base_frame_yx +
-            sps_S_z*sps_base_frame_zx;
-        /* (sps-py_1) component across the reference direction */
-        const real sps_base_frame_xy = m->sps_base_frame_xy[i];
-        const real sps_base_frame_yy = m->sps_base_frame_yy[i];
-        const real sps_base_frame_zy = m->sps_base_frame_zy[i];
-        const real sps_py_1 = sps_S_x*sps_base_frame_xy + sps_S_y*sps_base_frame_yy +
-            sps_S_z*sps_base_frame_zy;
-        /* (sps-rho2_1) squared amplitude */
-        const real sps_rho2_1 = sps_px_1*sps_px_1 + sps_py_1*sps_py_1;
-        /* (sps-xi_1) the vector from joint 1 to the connection point, resolved along link 1 */
-        const real sps_base_frame_xz = m->sps_base_frame_xz[i];
-        const real sps_base_frame_yz = m->sps_base_frame_yz[i];
-        const real sps_base_frame_zz = m->sps_base_frame_zz[i];
-        const real sps_xi_1_in_axes1_z = sps_S_x*sps_base_frame_xz + sps_S_y*sps_base_frame_yz +
-            sps_S_z*sps_base_frame_zz;
-        /* (sps-rho2_2) squared amplitude */
-        const real sps_rho2_2 = sps_rho2_1 + sps_xi_1_in_axes1_z*sps_xi_1_in_axes1_z;
-        /* (sps-root_2) amplitude, with the sign of the branch */
-        const real sps_branch_2 = m->sps_branch_2[i];
-        const real sps_root_2 = sps_branch_2*root(sps_rho2_2);
+        values_sps v;
+        stage_sps_X(m, w, i, j, s, X, &v);
         /* (sps-c_2) cosine of the angle of joint 2 from its reference direction */
-        const real inv_sps_root_2 = 1/sps_root_2;
         const real sps_branch_1 = m->sps_branch_1[i];
-        const real sps_c_2_t = inv_sps_root_2*sps_branch_1*root(sps_rho2_1);
+        const real sps_c_2 = v.inv_sps_root_2*sps_branch_1*root(v.sps_root_1_t);
         /* (sps-w_1) reciprocal vector 1 */
-        const real sps_w_1_t = sps_c_2_t*sps_c_3*sps_c_3*sps_root_2*sps_root_2 +
-            sps_c_2_t*sps_root_2*sps_root_2*sps_s_3*sps_s_3;
-        /* (sps-w_4) reciprocal vector 3 */
-        const real sps_w_4_x = inv_sps_root_2*sps_S_x;
-        const real sps_w_4_y = inv_sps_root_2*sps_S_y;
-        const real sps_w_4_z = inv_sps_root_2*sps_S_z;
+        const real sps_w_1_t = sps_c_2*v.sps_c_3*v.sps_c_3*v.sps_root_2*v.sps_root_2 +
+            sps_c_2*v.sps_root_2*v.sps_root_2*v.sps_s_3*v.sps_s_3;
         /* (sps-G) force at the connection point that balances the leg's inertia and weight along all
            degrees of freedom */
-        const real sps_pivot_size = magnitude(sps_rho2_1);
-        const real sps_pivot_size_2 = magnitude(sps_rho2_2);
+        const real sps_pivot_size = magnitude(v.sps_root_1_t);
+        const real sps_pivot_size_2 = magnitude(v.sps_root_2_t);
         const real sps_pivot_size_3 = magnitude(sps_w_1_t);
         const real sps_least_pivots = lesser(lesser(R(1.25)*root(sps_pivot_size),
             R(1.25)*root(sps_pivot_size_2)), R(1.5624999999999998)*sps_pivot_size_3);
-        /* (sps-H_a_4) moment of the column's unit force about the platform origin */
-        const real sps_H_a_4_x = sps_q_y*sps_w_4_z - sps_q_z*sps_w_4_y;
-        const real sps_H_a_4_y = sps_q_z*sps_w_4_x - sps_q_x*sps_w_4_z;
-        const real sps_H_a_4_z = sps_q_x*sps_w_4_y - sps_q_y*sps_w_4_x;
         /* (spread) rms distance of the platform points from their centroid */
         const real b_c_in_platform_x = m->b_c_in_platform_x;
+        const real sps_platform_point_x = m->sps_platform_point_x[i];
         const real sps_spread_t = b_c_in_platform_x - sps_platform_point_x;
         const real b_c_in_platform_y = m->b_c_in_platform_y;
+        const real sps_platform_point_y = m->sps_platform_point_y[i];
         const real sps_spread_t_2 = b_c_in_platform_y - sps_platform_point_y;
         const real b_c_in_platform_z = m->b_c_in_platform_z;
+        const real sps_platform_point_z = m->sps_platform_point_z[i];
         const real sps_spread_t_3 = b_c_in_platform_z - sps_platform_point_z;
         const real sps_spread_t_4 = sps_spread_t*sps_spread_t + sps_spread_t_2*sps_spread_t_2 +
             sps_spread_t_3*sps_spread_t_3;
         /* (spread) rms distance of the platform points from their centroid */
         gather(&terms[0*count + k], add, sps_spread_t_4);  /* spread_sps */
         /* (sps-w_4) reciprocal vector 3 */
-        o[0*count + k] = sps_w_4_x;
-        o[1*count + k] = sps_w_4_y;
-        o[2*count + k] = sps_w_4_z;
+        o[0*count + k] = v.sps_w_4_x;
+        o[1*count + k] = v.sps_w_4_y;
+        o[2*count + k] = v.sps_w_4_z;
         /* (sps-H_a_4) moment of the column's unit force about the platform origin */
-        o[3*count + k] = sps_H_a_4_x;
-        o[4*count + k] = sps_H_a_4_y;
-        o[5*count + k] = sps_H_a_4_z;
+        o[3*count + k] = v.sps_H_a_4_x;
+        o[4*count + k] = v.sps_H_a_4_y;
+        o[5*count + k] = v.sps_H_a_4_z;
         /* (sps-G) force at the connection point that balances the leg's inertia and weight along all
            degrees of freedom */
         o[6*count + k] = sps_least_pivots;
-        o[8*count + k] = (sps_w_4_x + (sps_w_4_y + sps_w_4_z)) + ((sps_H_a_4_x + sps_H_a_4_y) +
-            (sps_H_a_4_z + sps_least_pivots));
-        o[7*count + k] = UNLESS(magnitude(sps_rho2_1) > LEAST_1) + UNLESS(magnitude(sps_rho2_2) >
-            LEAST_1) + UNLESS(magnitude(sps_w_1_t) > LEAST_2);
+        o[8*count + k] = (v.sps_w_4_x + (v.sps_w_4_y + v.sps_w_4_z)) + ((v.sps_H_a_4_x +
+            v.sps_H_a_4_y) + (v.sps_H_a_4_z + sps_least_pivots));
+        o[7*count + k] = UNLESS(magnitude(v.sps_root_1_t) > LEAST_1) +
+            UNLESS(magnitude(v.sps_root_2_t) > LEAST_1) + UNLESS(magnitude(sps_w_1_t) > LEAST_2);
     }
 }
 
@@ -5617,7 +4103,7 @@ INLINE void condition_place_sps(size_t w, size_t count, const real *o, size_t le
     real *H, real *pivots, verdict *t)
 {
     for (size_t k = 0; k < w; ++k) {
-        H[(0*NU + leg)*w + k] = o[0*count + first + k];
+        H[leg*w + k] = o[0*count + first + k];
         H[(NU + leg)*w + k] = o[1*count + first + k];
         H[(2*NU + leg)*w + k] = o[2*count + first + k];
         H[(3*NU + leg)*w + k] = o[3*count + first + k];
@@ -5646,10 +4132,8 @@ INLINE void condition_after(const prepared *m, size_t w, const real *sums, real 
 INLINE void condition_run(const prepared *m, const real *X, real *H, real *lengths, real *pivots,
     real *reach, verdict *t)
 {
-    real s[12] = {0};
-    real sums[1] = {0};
-    real terms_sps[LEGS(LEGS_OF_sps)] = {0};
-    real o_sps[9*LEGS(LEGS_OF_sps)] = {0};
+    real s[9] = {0}, sums[1] = {0};
+    real terms_sps[LEGS(LEGS_OF_sps)] = {0}, o_sps[9*LEGS(LEGS_OF_sps)] = {0};
     clear(H, NV*NU);
     clear(reach, NL);
     condition_before(m, 1, X, s, lengths, t);
@@ -6089,11 +4573,11 @@ INLINE void inverse_dynamics_one(const prepared *m, const real *X, const real *V
         subtract_1[i] = required[i] - extend_1[i];
     }
     const real *const take_1 = H;
-    const real *const take_2 = subtract_1;
-    eliminate_6(1, NU, order_tau, sizes_tau, take_1, take_2, tau_out, unsure_tau, why.total);
+    const real *const subtract_1_from_0 = subtract_1;
+    eliminate_6(1, NU, order_tau, sizes_tau, take_1, subtract_1_from_0, tau_out, unsure_tau, why.total);
     if (unsure_tau[0] > 0) {
         set_matrix(NU, 1, take_1, work);
-        solve_apart(NU, take_2, work, tau_out, why.singular);
+        solve_apart(NU, subtract_1_from_0, work, tau_out, why.singular);
         check(NU, 1, tau_out, why.overflow);
     }
     if (!is_finite(why.total[0])) {
@@ -6126,8 +4610,8 @@ INLINE void inverse_dynamics_lanes(const prepared *m, const real *X, const real 
         subtract_1[i] = required[i] - extend_1[i];
     }
     const real *const take_1 = H;
-    const real *const take_2 = subtract_1;
-    eliminate_6(LANES, NU, order_tau, sizes_tau, take_1, take_2, tau, why.singular, why.total);
+    const real *const subtract_1_from_0 = subtract_1;
+    eliminate_6(LANES, NU, order_tau, sizes_tau, take_1, subtract_1_from_0, tau, why.singular, why.total);
     suspect(&why, code);
     deliver(NU, tau, tau_out);
 }
@@ -6235,9 +4719,9 @@ INLINE void complete_acceleration_one(const prepared *m, const real *X, const re
     }
     take_columns(NV, NV, 6, 1, places_take_columns_1, M, take_columns_1);
     const real *const take_1 = take_columns_1 + 36;
-    const real *const take_2 = subtract_1 + 6;
+    const real *const subtract_1_from_6 = subtract_1 + 6;
     for (size_t i = 0; i < 6; ++i) {
-        negative_1[i] = -take_2[i];
+        negative_1[i] = -subtract_1_from_6[i];
     }
     eliminate_6(1, 6, order_solve_1, sizes_solve_1, take_1, negative_1, solve_1, unsure_solve_1, why.total);
     if (unsure_solve_1[0] > 0) {
@@ -6293,9 +4777,9 @@ INLINE void complete_acceleration_lanes(const prepared *m, const real *X, const 
     }
     take_columns(NV, NV, 6, LANES, places_take_columns_1, M, take_columns_1);
     const real *const take_1 = take_columns_1 + 36*LANES;
-    const real *const take_2 = subtract_1 + 6*LANES;
+    const real *const subtract_1_from_6 = subtract_1 + 6*LANES;
     for (size_t i = 0; i < 6*LANES; ++i) {
-        negative_1[i] = -take_2[i];
+        negative_1[i] = -subtract_1_from_6[i];
     }
     eliminate_6(LANES, 6, order_solve_1, sizes_solve_1, take_1, negative_1, solve_1, why.singular, why.total);
     for (size_t i = 0; i < NV*LANES; ++i) {
@@ -6333,11 +4817,11 @@ INLINE void leg_reactions_one(const prepared *m, const real *X, const real *V, c
         subtract_1[i] = required[i] - extend_1[i];
     }
     const real *const take_1 = H;
-    const real *const take_2 = subtract_1;
-    eliminate_6(1, NU, order_solve_1, sizes_solve_1, take_1, take_2, solve_1, unsure_solve_1, why.total);
+    const real *const subtract_1_from_0 = subtract_1;
+    eliminate_6(1, NU, order_solve_1, sizes_solve_1, take_1, subtract_1_from_0, solve_1, unsure_solve_1, why.total);
     if (unsure_solve_1[0] > 0) {
         set_matrix(NU, 1, take_1, work);
-        solve_apart(NU, take_2, work, solve_1, why.singular);
+        solve_apart(NU, subtract_1_from_0, work, solve_1, why.singular);
         check(NU, 1, solve_1, why.overflow);
     }
     legs_run(m, X, V, A, leg_force, actuator, &why);
@@ -6413,10 +4897,83 @@ INLINE void condition_one(const prepared *m, const real *X, const real *length, 
     }
 }
 
+INLINE void manipulability_one(const prepared *m, const real *X, real *measure_out, real
+    *isotropy_out, int *code)
+{
+    static const size_t places_divide_rows_1[] = {3, 4, 5, 6, 7, 8, 9, 10, 11};
+    real H[NV*NU] = {0}, lengths[2] = {0}, pivots[NL] = {0}, reach[NL] = {0}, subtract_1[1] = {0},
+        choose_length_1[1] = {0}, divide_rows_1[NV*NU] = {0}, singular_values_1[NU] = {0}, measure[1]
+        = {0}, isotropy[1] = {0};
+    verdict why;
+    start(1, &why);
+    check(NQ, 1, X, why.invalid);
+    condition_run(m, X, H, lengths, pivots, reach, &why);
+    const real *const entry_1 = lengths;
+    for (size_t i = 0; i < 1; ++i) {
+        subtract_1[i] = entry_1[i] - entry_1[i];
+    }
+    for (size_t i = 0; i < 1; ++i) {
+        choose_length_1[i] = subtract_1[i] > 0 ? subtract_1[i] : lengths[i] > TINY*lengths[1 + i]
+            ? lengths[i] : lengths[1 + i];
+    }
+    for (size_t i = 0; i < NV*NU; ++i) {
+        divide_rows_1[i] = H[i];
+    }
+    divide_rows(9, NU, 1, places_divide_rows_1, choose_length_1, divide_rows_1);
+    singular_values(NV, NU, divide_rows_1, singular_values_1);
+    spread(NU, singular_values_1, measure, isotropy);
+    check(1, 1, measure, why.overflow);
+    check(1, 1, isotropy, why.overflow);
+    judge(&why, code);
+    copy(1, measure, measure_out);
+    copy(1, isotropy, isotropy_out);
+    if (*code != OK) {
+        refuse(1, measure_out);
+        refuse(1, isotropy_out);
+    }
+}
+
+INLINE void singularity_distance_one(const prepared *m, const real *X, real *actuators_out, real
+    *legs_out, int *code)
+{
+    static const size_t places_divide_rows_1[] = {3, 4, 5, 6, 7, 8, 9, 10, 11};
+    real H[NV*NU] = {0}, lengths[2] = {0}, pivots[NL] = {0}, reach[NL] = {0}, subtract_1[1] = {0},
+        choose_length_1[1] = {0}, divide_rows_1[NV*NU] = {0}, singular_values_1[NU] = {0}, spread_1[1]
+        = {0}, actuators[1] = {0}, legs[1] = {0};
+    verdict why;
+    start(1, &why);
+    check(NQ, 1, X, why.invalid);
+    condition_run(m, X, H, lengths, pivots, reach, &why);
+    const real *const entry_1 = lengths;
+    for (size_t i = 0; i < 1; ++i) {
+        subtract_1[i] = entry_1[i] - entry_1[i];
+    }
+    for (size_t i = 0; i < 1; ++i) {
+        choose_length_1[i] = subtract_1[i] > 0 ? subtract_1[i] : lengths[i] > TINY*lengths[1 + i]
+            ? lengths[i] : lengths[1 + i];
+    }
+    for (size_t i = 0; i < NV*NU; ++i) {
+        divide_rows_1[i] = H[i];
+    }
+    divide_rows(9, NU, 1, places_divide_rows_1, choose_length_1, divide_rows_1);
+    singular_values(NV, NU, divide_rows_1, singular_values_1);
+    spread(NU, singular_values_1, spread_1, actuators);
+    least_entry(NL, pivots, legs);
+    check(1, 1, actuators, why.overflow);
+    check(1, 1, legs, why.overflow);
+    judge(&why, code);
+    copy(1, actuators, actuators_out);
+    copy(1, legs, legs_out);
+    if (*code != OK) {
+        refuse(1, actuators_out);
+        refuse(1, legs_out);
+    }
+}
+
 static void mismatch_one(const prepared *m, const real *X, const real *q_actuated, real *gap_out,
     int *code)
 {
-    real q[NJ] = {0}, take_1[6] = {0}, gap[NU] = {0};
+    real q[NJ] = {0}, q_of_inverse_kinematics_from_3[6] = {0}, gap[NU] = {0};
     verdict why;
     start(1, &why);
     const real total_in = total(X, NQ) + total(q_actuated, NU);
@@ -6425,9 +4982,9 @@ static void mismatch_one(const prepared *m, const real *X, const real *q_actuate
         check(NU, 1, q_actuated, why.invalid);
     }
     inverse_kinematics_run(m, X, q, &why);
-    take(6, 1, stewart_sps_ACTUATED, q, take_1);
+    take(6, 1, stewart_sps_ACTUATED, q, q_of_inverse_kinematics_from_3);
     for (size_t i = 0; i < NU; ++i) {
-        gap[i] = q_actuated[i] - take_1[i];
+        gap[i] = q_actuated[i] - q_of_inverse_kinematics_from_3[i];
     }
     check(NU, 1, gap, why.overflow);
     judge(&why, code);
@@ -6794,8 +5351,8 @@ INLINE void rotation_one(const real *X, real *R_out, int *code)
     verdict why;
     start(1, &why);
     check(NQ, 1, X, why.invalid);
-    const real *const take_1 = X + 3;
-    rotation_of_quaternion(take_1, R);
+    const real *const X_from_3 = X + 3;
+    rotation_of_quaternion(X_from_3, R);
     check(9, 1, R, why.overflow);
     judge(&why, code);
     copy(9, R, R_out);
@@ -6837,13 +5394,13 @@ INLINE void X_dot_one(const real *X, const real *V, real *X_dot_out, int *code)
         check(NQ, 1, X, why.invalid);
         check(NV, 1, V, why.invalid);
     }
-    const real *const take_1 = V + 3;
-    const real *const take_2 = X + 3;
-    quaternion_rate(take_2, take_1, quaternion_rate_1);
-    const real *const take_3 = V;
-    beside(1, 3, 4, take_3, quaternion_rate_1, join_1);
-    const real *const take_4 = V + 6;
-    beside(1, 7, 6, join_1, take_4, X_dot);
+    const real *const V_from_3 = V + 3;
+    const real *const X_from_3 = X + 3;
+    quaternion_rate(X_from_3, V_from_3, quaternion_rate_1);
+    const real *const V_from_0 = V;
+    beside(1, 3, 4, V_from_0, quaternion_rate_1, join_1);
+    const real *const V_from_6 = V + 6;
+    beside(1, 7, 6, join_1, V_from_6, X_dot);
     check(NQ, 1, X_dot, why.overflow);
     judge(&why, code);
     copy(NQ, X_dot, X_dot_out);
@@ -6886,18 +5443,18 @@ INLINE void retract_one(const real *X, const real *step, real *X_moved_out, int 
         check(NQ, 1, X, why.invalid);
         check(NV, 1, step, why.invalid);
     }
-    const real *const take_1 = X;
-    const real *const take_2 = X + 3;
-    const real *const take_3 = X + 7;
-    const real *const take_4 = step;
-    const real *const take_5 = step + 3;
-    const real *const take_6 = step + 6;
-    turn_quaternion(take_2, take_5, turn_quaternion_1);
+    const real *const X_from_0 = X;
+    const real *const X_from_3 = X + 3;
+    const real *const X_from_7 = X + 7;
+    const real *const step_from_0 = step;
+    const real *const step_from_3 = step + 3;
+    const real *const step_from_6 = step + 6;
+    turn_quaternion(X_from_3, step_from_3, turn_quaternion_1);
     for (size_t i = 0; i < 3; ++i) {
-        add_1[i] = take_1[i] + take_4[i];
+        add_1[i] = X_from_0[i] + step_from_0[i];
     }
     for (size_t i = 0; i < 6; ++i) {
-        add_2[i] = take_3[i] + take_6[i];
+        add_2[i] = X_from_7[i] + step_from_6[i];
     }
     beside(1, 3, 4, add_1, turn_quaternion_1, join_1);
     beside(1, 7, 6, join_1, add_2, X_moved);
@@ -6920,18 +5477,18 @@ INLINE void difference_one(const real *X0, const real *X1, real *step_out, int *
         check(NQ, 1, X0, why.invalid);
         check(NQ, 1, X1, why.invalid);
     }
-    const real *const take_1 = X0;
-    const real *const take_2 = X0 + 3;
-    const real *const take_3 = X0 + 7;
-    const real *const take_4 = X1;
-    const real *const take_5 = X1 + 3;
-    const real *const take_6 = X1 + 7;
-    turn_between(take_2, take_5, turn_between_1);
+    const real *const X0_from_0 = X0;
+    const real *const X0_from_3 = X0 + 3;
+    const real *const X0_from_7 = X0 + 7;
+    const real *const X1_from_0 = X1;
+    const real *const X1_from_3 = X1 + 3;
+    const real *const X1_from_7 = X1 + 7;
+    turn_between(X0_from_3, X1_from_3, turn_between_1);
     for (size_t i = 0; i < 3; ++i) {
-        subtract_1[i] = take_4[i] - take_1[i];
+        subtract_1[i] = X1_from_0[i] - X0_from_0[i];
     }
     for (size_t i = 0; i < 6; ++i) {
-        subtract_2[i] = take_6[i] - take_3[i];
+        subtract_2[i] = X1_from_7[i] - X0_from_7[i];
     }
     beside(1, 3, 3, subtract_1, turn_between_1, join_1);
     beside(1, 6, 6, join_1, subtract_2, step);
@@ -6956,36 +5513,36 @@ INLINE void interpolate_one(const real *X0, const real *X1, const real *s, real 
         check(NQ, 1, X1, why.invalid);
         check(1, 1, s, why.invalid);
     }
-    const real *const take_1 = X0;
-    const real *const take_2 = X0 + 3;
-    const real *const take_3 = X0 + 7;
-    const real *const take_4 = X1;
-    const real *const take_5 = X1 + 3;
-    const real *const take_6 = X1 + 7;
-    turn_between(take_2, take_5, turn_between_1);
+    const real *const X0_from_0 = X0;
+    const real *const X0_from_3 = X0 + 3;
+    const real *const X0_from_7 = X0 + 7;
+    const real *const X1_from_0 = X1;
+    const real *const X1_from_3 = X1 + 3;
+    const real *const X1_from_7 = X1 + 7;
+    turn_between(X0_from_3, X1_from_3, turn_between_1);
     for (size_t i = 0; i < 3; ++i) {
-        subtract_1[i] = take_4[i] - take_1[i];
+        subtract_1[i] = X1_from_0[i] - X0_from_0[i];
     }
     for (size_t i = 0; i < 6; ++i) {
-        subtract_2[i] = take_6[i] - take_3[i];
+        subtract_2[i] = X1_from_7[i] - X0_from_7[i];
     }
     beside(1, 3, 3, subtract_1, turn_between_1, join_1);
     beside(1, 6, 6, join_1, subtract_2, join_2);
     for (size_t i = 0; i < 12; ++i) {
         scale_1[i] = join_2[i]*s[i%(1)];
     }
-    const real *const take_7 = X0;
-    const real *const take_8 = X0 + 3;
-    const real *const take_9 = X0 + 7;
-    const real *const take_10 = scale_1;
-    const real *const take_11 = scale_1 + 3;
-    const real *const take_12 = scale_1 + 6;
-    turn_quaternion(take_8, take_11, turn_quaternion_1);
+    const real *const X0_from_0_2 = X0;
+    const real *const X0_from_3_2 = X0 + 3;
+    const real *const X0_from_7_2 = X0 + 7;
+    const real *const scale_1_from_0 = scale_1;
+    const real *const scale_1_from_3 = scale_1 + 3;
+    const real *const scale_1_from_6 = scale_1 + 6;
+    turn_quaternion(X0_from_3_2, scale_1_from_3, turn_quaternion_1);
     for (size_t i = 0; i < 3; ++i) {
-        add_1[i] = take_7[i] + take_10[i];
+        add_1[i] = X0_from_0_2[i] + scale_1_from_0[i];
     }
     for (size_t i = 0; i < 6; ++i) {
-        add_2[i] = take_9[i] + take_12[i];
+        add_2[i] = X0_from_7_2[i] + scale_1_from_6[i];
     }
     beside(1, 3, 4, add_1, turn_quaternion_1, join_3);
     beside(1, 7, 6, join_3, add_2, X);
@@ -6999,330 +5556,300 @@ INLINE void interpolate_one(const real *X0, const real *X1, const real *s, real 
 
 /* ---- one state, and batches ---- */
 
-int stewart_sps_M(const stewart_sps_model *model, const stewart_sps_real *X, stewart_sps_real *M)
+int stewart_sps_M(const prepared *model, const real *X, real *M)
 {
     int code;
     M_one(model, X, M, &code);
     return code;
 }
 
-size_t stewart_sps_M_batch(const stewart_sps_model *model, size_t n, const stewart_sps_real *X,
-    stewart_sps_real *M, int *status)
+size_t stewart_sps_M_batch(const prepared *model, size_t n, const real *X, real *M, int *status)
 {
-    size_t failed = 0, i = 0;
-    for (; LANES > 1 && i + LANES <= n; i += LANES) {
-        int codes[LANES];
-        M_lanes(model, X + NQ*i, M + NV*NV*i, codes);
-        for (size_t k = 0; k < LANES; ++k) {
+    size_t failed = 0, w;
+    for (size_t i = 0; i < n; i += w) {
+        int codes[LANES] = {INVALID};
+        w = LANES > 1 && i + LANES <= n ? LANES : 1;
+        if (w > 1) {
+            M_lanes(model, X + NQ*i, M + NV*NV*i, codes);
+        }
+        for (size_t k = 0; k < w; ++k) {
             if (codes[k] != OK) {
                 codes[k] = stewart_sps_M(model, X + NQ*(i + k), M + NV*NV*(i + k));
             }
         }
-        failed += record(codes, LANES, status ? status + i : NULL);
-    }
-    for (; i < n; ++i) {
-        const int code = stewart_sps_M(model, X + NQ*i, M + NV*NV*i);
-        failed += record(&code, 1, status ? status + i : NULL);
+        failed += record(codes, w, status ? status + i : NULL);
     }
     return failed;
 }
 
-int stewart_sps_Z(const stewart_sps_model *model, const stewart_sps_real *X, const
-    stewart_sps_real *V, stewart_sps_real *Z)
+int stewart_sps_Z(const prepared *model, const real *X, const real *V, real *Z)
 {
     int code;
     Z_one(model, X, V, Z, &code);
     return code;
 }
 
-size_t stewart_sps_Z_batch(const stewart_sps_model *model, size_t n, const stewart_sps_real *X,
-    const stewart_sps_real *V, stewart_sps_real *Z, int *status)
+size_t stewart_sps_Z_batch(const prepared *model, size_t n, const real *X, const real *V, real *Z,
+    int *status)
 {
-    size_t failed = 0, i = 0;
-    for (; LANES > 1 && i + LANES <= n; i += LANES) {
-        int codes[LANES];
-        Z_lanes(model, X + NQ*i, V + NV*i, Z + NV*i, codes);
-        for (size_t k = 0; k < LANES; ++k) {
+    size_t failed = 0, w;
+    for (size_t i = 0; i < n; i += w) {
+        int codes[LANES] = {INVALID};
+        w = LANES > 1 && i + LANES <= n ? LANES : 1;
+        if (w > 1) {
+            Z_lanes(model, X + NQ*i, V + NV*i, Z + NV*i, codes);
+        }
+        for (size_t k = 0; k < w; ++k) {
             if (codes[k] != OK) {
                 codes[k] = stewart_sps_Z(model, X + NQ*(i + k), V + NV*(i + k), Z + NV*(i + k));
             }
         }
-        failed += record(codes, LANES, status ? status + i : NULL);
-    }
-    for (; i < n; ++i) {
-        const int code = stewart_sps_Z(model, X + NQ*i, V + NV*i, Z + NV*i);
-        failed += record(&code, 1, status ? status + i : NULL);
+        failed += record(codes, w, status ? status + i : NULL);
     }
     return failed;
 }
 
-int stewart_sps_H(const stewart_sps_model *model, const stewart_sps_real *X, stewart_sps_real *H)
+int stewart_sps_H(const prepared *model, const real *X, real *H)
 {
     int code;
     H_one(model, X, H, &code);
     return code;
 }
 
-size_t stewart_sps_H_batch(const stewart_sps_model *model, size_t n, const stewart_sps_real *X,
-    stewart_sps_real *H, int *status)
+size_t stewart_sps_H_batch(const prepared *model, size_t n, const real *X, real *H, int *status)
 {
-    size_t failed = 0, i = 0;
-    for (; LANES > 1 && i + LANES <= n; i += LANES) {
-        int codes[LANES];
-        H_lanes(model, X + NQ*i, H + NV*NU*i, codes);
-        for (size_t k = 0; k < LANES; ++k) {
+    size_t failed = 0, w;
+    for (size_t i = 0; i < n; i += w) {
+        int codes[LANES] = {INVALID};
+        w = LANES > 1 && i + LANES <= n ? LANES : 1;
+        if (w > 1) {
+            H_lanes(model, X + NQ*i, H + NV*NU*i, codes);
+        }
+        for (size_t k = 0; k < w; ++k) {
             if (codes[k] != OK) {
                 codes[k] = stewart_sps_H(model, X + NQ*(i + k), H + NV*NU*(i + k));
             }
         }
-        failed += record(codes, LANES, status ? status + i : NULL);
-    }
-    for (; i < n; ++i) {
-        const int code = stewart_sps_H(model, X + NQ*i, H + NV*NU*i);
-        failed += record(&code, 1, status ? status + i : NULL);
+        failed += record(codes, w, status ? status + i : NULL);
     }
     return failed;
 }
 
-int stewart_sps_inverse_kinematics(const stewart_sps_model *model, const stewart_sps_real *X,
-    stewart_sps_real *q)
+int stewart_sps_inverse_kinematics(const prepared *model, const real *X, real *q)
 {
     int code;
     inverse_kinematics_one(model, X, q, &code);
     return code;
 }
 
-size_t stewart_sps_inverse_kinematics_batch(const stewart_sps_model *model, size_t n, const
-    stewart_sps_real *X, stewart_sps_real *q, int *status)
+size_t stewart_sps_inverse_kinematics_batch(const prepared *model, size_t n, const real *X, real
+    *q, int *status)
 {
-    size_t failed = 0, i = 0;
-    for (; LANES > 1 && i + LANES <= n; i += LANES) {
-        int codes[LANES];
-        inverse_kinematics_lanes(model, X + NQ*i, q + NJ*i, codes);
-        for (size_t k = 0; k < LANES; ++k) {
+    size_t failed = 0, w;
+    for (size_t i = 0; i < n; i += w) {
+        int codes[LANES] = {INVALID};
+        w = LANES > 1 && i + LANES <= n ? LANES : 1;
+        if (w > 1) {
+            inverse_kinematics_lanes(model, X + NQ*i, q + NJ*i, codes);
+        }
+        for (size_t k = 0; k < w; ++k) {
             if (codes[k] != OK) {
                 codes[k] = stewart_sps_inverse_kinematics(model, X + NQ*(i + k), q + NJ*(i + k));
             }
         }
-        failed += record(codes, LANES, status ? status + i : NULL);
-    }
-    for (; i < n; ++i) {
-        const int code = stewart_sps_inverse_kinematics(model, X + NQ*i, q + NJ*i);
-        failed += record(&code, 1, status ? status + i : NULL);
+        failed += record(codes, w, status ? status + i : NULL);
     }
     return failed;
 }
 
-int stewart_sps_joint_rates(const stewart_sps_model *model, const stewart_sps_real *X, const
-    stewart_sps_real *V, stewart_sps_real *rates)
+int stewart_sps_joint_rates(const prepared *model, const real *X, const real *V, real *rates)
 {
     int code;
     joint_rates_one(model, X, V, rates, &code);
     return code;
 }
 
-size_t stewart_sps_joint_rates_batch(const stewart_sps_model *model, size_t n, const
-    stewart_sps_real *X, const stewart_sps_real *V, stewart_sps_real *rates, int *status)
+size_t stewart_sps_joint_rates_batch(const prepared *model, size_t n, const real *X, const real
+    *V, real *rates, int *status)
 {
-    size_t failed = 0, i = 0;
-    for (; LANES > 1 && i + LANES <= n; i += LANES) {
-        int codes[LANES];
-        joint_rates_lanes(model, X + NQ*i, V + NV*i, rates + NJ*i, codes);
-        for (size_t k = 0; k < LANES; ++k) {
+    size_t failed = 0, w;
+    for (size_t i = 0; i < n; i += w) {
+        int codes[LANES] = {INVALID};
+        w = LANES > 1 && i + LANES <= n ? LANES : 1;
+        if (w > 1) {
+            joint_rates_lanes(model, X + NQ*i, V + NV*i, rates + NJ*i, codes);
+        }
+        for (size_t k = 0; k < w; ++k) {
             if (codes[k] != OK) {
                 codes[k] = stewart_sps_joint_rates(model, X + NQ*(i + k), V + NV*(i + k), rates + NJ*(i + k));
             }
         }
-        failed += record(codes, LANES, status ? status + i : NULL);
-    }
-    for (; i < n; ++i) {
-        const int code = stewart_sps_joint_rates(model, X + NQ*i, V + NV*i, rates + NJ*i);
-        failed += record(&code, 1, status ? status + i : NULL);
+        failed += record(codes, w, status ? status + i : NULL);
     }
     return failed;
 }
 
-int stewart_sps_joint_accelerations(const stewart_sps_model *model, const stewart_sps_real *X,
-    const stewart_sps_real *V, const stewart_sps_real *A, stewart_sps_real *accelerations)
+int stewart_sps_joint_accelerations(const prepared *model, const real *X, const real *V, const
+    real *A, real *accelerations)
 {
     int code;
     joint_accelerations_one(model, X, V, A, accelerations, &code);
     return code;
 }
 
-size_t stewart_sps_joint_accelerations_batch(const stewart_sps_model *model, size_t n, const
-    stewart_sps_real *X, const stewart_sps_real *V, const stewart_sps_real *A, stewart_sps_real
-    *accelerations, int *status)
+size_t stewart_sps_joint_accelerations_batch(const prepared *model, size_t n, const real *X, const
+    real *V, const real *A, real *accelerations, int *status)
 {
-    size_t failed = 0, i = 0;
-    for (; LANES > 1 && i + LANES <= n; i += LANES) {
-        int codes[LANES];
-        joint_accelerations_lanes(model, X + NQ*i, V + NV*i, A + NV*i, accelerations + NJ*i, codes);
-        for (size_t k = 0; k < LANES; ++k) {
+    size_t failed = 0, w;
+    for (size_t i = 0; i < n; i += w) {
+        int codes[LANES] = {INVALID};
+        w = LANES > 1 && i + LANES <= n ? LANES : 1;
+        if (w > 1) {
+            joint_accelerations_lanes(model, X + NQ*i, V + NV*i, A + NV*i, accelerations + NJ*i, codes);
+        }
+        for (size_t k = 0; k < w; ++k) {
             if (codes[k] != OK) {
                 codes[k] = stewart_sps_joint_accelerations(model, X + NQ*(i + k), V + NV*(i + k), A + NV*(i + k),
                     accelerations + NJ*(i + k));
             }
         }
-        failed += record(codes, LANES, status ? status + i : NULL);
-    }
-    for (; i < n; ++i) {
-        const int code = stewart_sps_joint_accelerations(model, X + NQ*i, V + NV*i, A + NV*i,
-            accelerations + NJ*i);
-        failed += record(&code, 1, status ? status + i : NULL);
+        failed += record(codes, w, status ? status + i : NULL);
     }
     return failed;
 }
 
-int stewart_sps_dynamics(const stewart_sps_model *model, const stewart_sps_real *X, const
-    stewart_sps_real *V, stewart_sps_real *M, stewart_sps_real *Z, stewart_sps_real *H)
+int stewart_sps_dynamics(const prepared *model, const real *X, const real *V, real *M, real *Z,
+    real *H)
 {
     int code;
     dynamics_one(model, X, V, M, Z, H, &code);
     return code;
 }
 
-size_t stewart_sps_dynamics_batch(const stewart_sps_model *model, size_t n, const stewart_sps_real
-    *X, const stewart_sps_real *V, stewart_sps_real *M, stewart_sps_real *Z, stewart_sps_real *H,
-    int *status)
+size_t stewart_sps_dynamics_batch(const prepared *model, size_t n, const real *X, const real *V,
+    real *M, real *Z, real *H, int *status)
 {
-    size_t failed = 0, i = 0;
-    for (; LANES > 1 && i + LANES <= n; i += LANES) {
-        int codes[LANES];
-        dynamics_lanes(model, X + NQ*i, V + NV*i, M + NV*NV*i, Z + NV*i, H + NV*NU*i, codes);
-        for (size_t k = 0; k < LANES; ++k) {
+    size_t failed = 0, w;
+    for (size_t i = 0; i < n; i += w) {
+        int codes[LANES] = {INVALID};
+        w = LANES > 1 && i + LANES <= n ? LANES : 1;
+        if (w > 1) {
+            dynamics_lanes(model, X + NQ*i, V + NV*i, M + NV*NV*i, Z + NV*i, H + NV*NU*i, codes);
+        }
+        for (size_t k = 0; k < w; ++k) {
             if (codes[k] != OK) {
                 codes[k] = stewart_sps_dynamics(model, X + NQ*(i + k), V + NV*(i + k), M + NV*NV*(i + k), Z +
                     NV*(i + k), H + NV*NU*(i + k));
             }
         }
-        failed += record(codes, LANES, status ? status + i : NULL);
-    }
-    for (; i < n; ++i) {
-        const int code = stewart_sps_dynamics(model, X + NQ*i, V + NV*i, M + NV*NV*i, Z + NV*i, H +
-            NV*NU*i);
-        failed += record(&code, 1, status ? status + i : NULL);
+        failed += record(codes, w, status ? status + i : NULL);
     }
     return failed;
 }
 
-int stewart_sps_inverse_dynamics(const stewart_sps_model *model, const stewart_sps_real *X, const
-    stewart_sps_real *V, const stewart_sps_real *A, const stewart_sps_real *wrench,
-    stewart_sps_real *tau)
+int stewart_sps_inverse_dynamics(const prepared *model, const real *X, const real *V, const real
+    *A, const real *wrench, real *tau)
 {
     int code;
     inverse_dynamics_one(model, X, V, A, wrench, tau, &code);
     return code;
 }
 
-size_t stewart_sps_inverse_dynamics_batch(const stewart_sps_model *model, size_t n, const
-    stewart_sps_real *X, const stewart_sps_real *V, const stewart_sps_real *A, const
-    stewart_sps_real *wrench, stewart_sps_real *tau, int *status)
+size_t stewart_sps_inverse_dynamics_batch(const prepared *model, size_t n, const real *X, const
+    real *V, const real *A, const real *wrench, real *tau, int *status)
 {
-    size_t failed = 0, i = 0;
-    for (; LANES > 1 && i + LANES <= n; i += LANES) {
-        int codes[LANES];
-        inverse_dynamics_lanes(model, X + NQ*i, V + NV*i, A + NV*i, wrench ? wrench + NW*i : NULL, tau +
-            NU*i, codes);
-        for (size_t k = 0; k < LANES; ++k) {
+    size_t failed = 0, w;
+    for (size_t i = 0; i < n; i += w) {
+        int codes[LANES] = {INVALID};
+        w = LANES > 1 && i + LANES <= n ? LANES : 1;
+        if (w > 1) {
+            inverse_dynamics_lanes(model, X + NQ*i, V + NV*i, A + NV*i, wrench ? wrench + NW*i : NULL, tau +
+                NU*i, codes);
+        }
+        for (size_t k = 0; k < w; ++k) {
             if (codes[k] != OK) {
                 codes[k] = stewart_sps_inverse_dynamics(model, X + NQ*(i + k), V + NV*(i + k), A + NV*(i + k),
                     wrench ? wrench + NW*(i + k) : NULL, tau + NU*(i + k));
             }
         }
-        failed += record(codes, LANES, status ? status + i : NULL);
-    }
-    for (; i < n; ++i) {
-        const int code = stewart_sps_inverse_dynamics(model, X + NQ*i, V + NV*i, A + NV*i, wrench ? wrench
-            + NW*i : NULL, tau + NU*i);
-        failed += record(&code, 1, status ? status + i : NULL);
+        failed += record(codes, w, status ? status + i : NULL);
     }
     return failed;
 }
 
-int stewart_sps_forward_dynamics(const stewart_sps_model *model, const stewart_sps_real *X, const
-    stewart_sps_real *V, const stewart_sps_real *tau, const stewart_sps_real *wrench,
-    stewart_sps_real *A)
+int stewart_sps_forward_dynamics(const prepared *model, const real *X, const real *V, const real
+    *tau, const real *wrench, real *A)
 {
     int code;
     forward_dynamics_one(model, X, V, tau, wrench, A, &code);
     return code;
 }
 
-size_t stewart_sps_forward_dynamics_batch(const stewart_sps_model *model, size_t n, const
-    stewart_sps_real *X, const stewart_sps_real *V, const stewart_sps_real *tau, const
-    stewart_sps_real *wrench, stewart_sps_real *A, int *status)
+size_t stewart_sps_forward_dynamics_batch(const prepared *model, size_t n, const real *X, const
+    real *V, const real *tau, const real *wrench, real *A, int *status)
 {
-    size_t failed = 0, i = 0;
-    for (; LANES > 1 && i + LANES <= n; i += LANES) {
-        int codes[LANES];
-        forward_dynamics_lanes(model, X + NQ*i, V + NV*i, tau + NU*i, wrench ? wrench + NW*i : NULL, A +
-            NV*i, codes);
-        for (size_t k = 0; k < LANES; ++k) {
+    size_t failed = 0, w;
+    for (size_t i = 0; i < n; i += w) {
+        int codes[LANES] = {INVALID};
+        w = LANES > 1 && i + LANES <= n ? LANES : 1;
+        if (w > 1) {
+            forward_dynamics_lanes(model, X + NQ*i, V + NV*i, tau + NU*i, wrench ? wrench + NW*i : NULL, A +
+                NV*i, codes);
+        }
+        for (size_t k = 0; k < w; ++k) {
             if (codes[k] != OK) {
                 codes[k] = stewart_sps_forward_dynamics(model, X + NQ*(i + k), V + NV*(i + k), tau + NU*(i + k),
                     wrench ? wrench + NW*(i + k) : NULL, A + NV*(i + k));
             }
         }
-        failed += record(codes, LANES, status ? status + i : NULL);
-    }
-    for (; i < n; ++i) {
-        const int code = stewart_sps_forward_dynamics(model, X + NQ*i, V + NV*i, tau + NU*i, wrench ?
-            wrench + NW*i : NULL, A + NV*i);
-        failed += record(&code, 1, status ? status + i : NULL);
+        failed += record(codes, w, status ? status + i : NULL);
     }
     return failed;
 }
 
-int stewart_sps_complete_acceleration(const stewart_sps_model *model, const stewart_sps_real *X,
-    const stewart_sps_real *V, const stewart_sps_real *A, const stewart_sps_real *wrench,
-    stewart_sps_real *completed)
+int stewart_sps_complete_acceleration(const prepared *model, const real *X, const real *V, const
+    real *A, const real *wrench, real *completed)
 {
     int code;
     complete_acceleration_one(model, X, V, A, wrench, completed, &code);
     return code;
 }
 
-size_t stewart_sps_complete_acceleration_batch(const stewart_sps_model *model, size_t n, const
-    stewart_sps_real *X, const stewart_sps_real *V, const stewart_sps_real *A, const
-    stewart_sps_real *wrench, stewart_sps_real *completed, int *status)
+size_t stewart_sps_complete_acceleration_batch(const prepared *model, size_t n, const real *X,
+    const real *V, const real *A, const real *wrench, real *completed, int *status)
 {
-    size_t failed = 0, i = 0;
-    for (; LANES > 1 && i + LANES <= n; i += LANES) {
-        int codes[LANES];
-        complete_acceleration_lanes(model, X + NQ*i, V + NV*i, A + NV*i, wrench ? wrench + NW*i : NULL,
-            completed + NV*i, codes);
-        for (size_t k = 0; k < LANES; ++k) {
+    size_t failed = 0, w;
+    for (size_t i = 0; i < n; i += w) {
+        int codes[LANES] = {INVALID};
+        w = LANES > 1 && i + LANES <= n ? LANES : 1;
+        if (w > 1) {
+            complete_acceleration_lanes(model, X + NQ*i, V + NV*i, A + NV*i, wrench ? wrench + NW*i : NULL,
+                completed + NV*i, codes);
+        }
+        for (size_t k = 0; k < w; ++k) {
             if (codes[k] != OK) {
                 codes[k] = stewart_sps_complete_acceleration(model, X + NQ*(i + k), V + NV*(i + k), A + NV*(i +
                     k), wrench ? wrench + NW*(i + k) : NULL, completed + NV*(i + k));
             }
         }
-        failed += record(codes, LANES, status ? status + i : NULL);
-    }
-    for (; i < n; ++i) {
-        const int code = stewart_sps_complete_acceleration(model, X + NQ*i, V + NV*i, A + NV*i, wrench ?
-            wrench + NW*i : NULL, completed + NV*i);
-        failed += record(&code, 1, status ? status + i : NULL);
+        failed += record(codes, w, status ? status + i : NULL);
     }
     return failed;
 }
 
-int stewart_sps_leg_reactions(const stewart_sps_model *model, const stewart_sps_real *X, const
-    stewart_sps_real *V, const stewart_sps_real *A, const stewart_sps_real *wrench,
-    stewart_sps_real *forces)
+int stewart_sps_leg_reactions(const prepared *model, const real *X, const real *V, const real *A,
+    const real *wrench, real *forces)
 {
     int code;
     leg_reactions_one(model, X, V, A, wrench, forces, &code);
     return code;
 }
 
-size_t stewart_sps_leg_reactions_batch(const stewart_sps_model *model, size_t n, const
-    stewart_sps_real *X, const stewart_sps_real *V, const stewart_sps_real *A, const
-    stewart_sps_real *wrench, stewart_sps_real *forces, int *status)
+size_t stewart_sps_leg_reactions_batch(const prepared *model, size_t n, const real *X, const real
+    *V, const real *A, const real *wrench, real *forces, int *status)
 {
-    size_t failed = 0, i = 0;
-    for (; i < n; ++i) {
+    size_t failed = 0;
+    for (size_t i = 0; i < n; ++i) {
         const int code = stewart_sps_leg_reactions(model, X + NQ*i, V + NV*i, A + NV*i, wrench ? wrench +
             NW*i : NULL, forces + 18*i);
         failed += record(&code, 1, status ? status + i : NULL);
@@ -7330,66 +5857,102 @@ size_t stewart_sps_leg_reactions_batch(const stewart_sps_model *model, size_t n,
     return failed;
 }
 
-int stewart_sps_energy(const stewart_sps_model *model, const stewart_sps_real *X, const
-    stewart_sps_real *V, stewart_sps_real *kinetic, stewart_sps_real *potential)
+int stewart_sps_energy(const prepared *model, const real *X, const real *V, real *kinetic, real
+    *potential)
 {
     int code;
     energy_one(model, X, V, kinetic, potential, &code);
     return code;
 }
 
-size_t stewart_sps_energy_batch(const stewart_sps_model *model, size_t n, const stewart_sps_real
-    *X, const stewart_sps_real *V, stewart_sps_real *kinetic, stewart_sps_real *potential, int
-    *status)
+size_t stewart_sps_energy_batch(const prepared *model, size_t n, const real *X, const real *V,
+    real *kinetic, real *potential, int *status)
 {
-    size_t failed = 0, i = 0;
-    for (; i < n; ++i) {
+    size_t failed = 0;
+    for (size_t i = 0; i < n; ++i) {
         const int code = stewart_sps_energy(model, X + NQ*i, V + NV*i, kinetic + i, potential + i);
         failed += record(&code, 1, status ? status + i : NULL);
     }
     return failed;
 }
 
-int stewart_sps_condition(const stewart_sps_model *model, const stewart_sps_real *X,
-    stewart_sps_real *sigma, stewart_sps_real *legs)
+int stewart_sps_condition(const prepared *model, const real *X, real *sigma, real *legs)
 {
     int code;
     condition_one(model, X, NULL, sigma, legs, &code);
     return code;
 }
 
-size_t stewart_sps_condition_batch(const stewart_sps_model *model, size_t n, const
-    stewart_sps_real *X, stewart_sps_real *sigma, stewart_sps_real *legs, int *status)
+size_t stewart_sps_condition_batch(const prepared *model, size_t n, const real *X, real *sigma,
+    real *legs, int *status)
 {
-    size_t failed = 0, i = 0;
-    for (; i < n; ++i) {
+    size_t failed = 0;
+    for (size_t i = 0; i < n; ++i) {
         const int code = stewart_sps_condition(model, X + NQ*i, sigma + 6*i, legs + 6*i);
         failed += record(&code, 1, status ? status + i : NULL);
     }
     return failed;
 }
 
-int stewart_sps_forward_kinematics(const stewart_sps_model *model, const stewart_sps_real
-    *q_actuated, const stewart_sps_real *X0, stewart_sps_real *X)
+int stewart_sps_manipulability(const prepared *model, const real *X, real *measure, real
+    *isotropy)
+{
+    int code;
+    manipulability_one(model, X, measure, isotropy, &code);
+    return code;
+}
+
+size_t stewart_sps_manipulability_batch(const prepared *model, size_t n, const real *X, real
+    *measure, real *isotropy, int *status)
+{
+    size_t failed = 0;
+    for (size_t i = 0; i < n; ++i) {
+        const int code = stewart_sps_manipulability(model, X + NQ*i, measure + i, isotropy + i);
+        failed += record(&code, 1, status ? status + i : NULL);
+    }
+    return failed;
+}
+
+int stewart_sps_singularity_distance(const prepared *model, const real *X, real *actuators, real
+    *legs)
+{
+    int code;
+    singularity_distance_one(model, X, actuators, legs, &code);
+    return code;
+}
+
+size_t stewart_sps_singularity_distance_batch(const prepared *model, size_t n, const real *X, real
+    *actuators, real *legs, int *status)
+{
+    size_t failed = 0;
+    for (size_t i = 0; i < n; ++i) {
+        const int code = stewart_sps_singularity_distance(model, X + NQ*i, actuators + i, legs + i);
+        failed += record(&code, 1, status ? status + i : NULL);
+    }
+    return failed;
+}
+
+int stewart_sps_forward_kinematics(const prepared *model, const real *q_actuated, const real *X0,
+    real *X)
 {
     int code;
     forward_kinematics_one(model, q_actuated, X0, X, &code);
     return code;
 }
 
-size_t stewart_sps_forward_kinematics_batch(const stewart_sps_model *model, size_t n, const
-    stewart_sps_real *q_actuated, const stewart_sps_real *X0, stewart_sps_real *X, int *status)
+size_t stewart_sps_forward_kinematics_batch(const prepared *model, size_t n, const real
+    *q_actuated, const real *X0, real *X, int *status)
 {
-    size_t failed = 0, i = 0;
-    for (; i < n; ++i) {
+    size_t failed = 0;
+    for (size_t i = 0; i < n; ++i) {
         const int code = stewart_sps_forward_kinematics(model, q_actuated + NU*i, X0 + NQ*i, X + NQ*i);
         failed += record(&code, 1, status ? status + i : NULL);
     }
     return failed;
 }
 
-int stewart_sps_dissipation(const stewart_sps_model *model, const stewart_sps_real *X, const
-    stewart_sps_real *V, stewart_sps_real *dissipation)
+int stewart_sps_dissipation(const prepared *model, const real *X, const real *V, real
+    *dissipation)
 {
     int code;
     (void)model;
@@ -7398,350 +5961,327 @@ int stewart_sps_dissipation(const stewart_sps_model *model, const stewart_sps_re
     return code;
 }
 
-size_t stewart_sps_dissipation_batch(const stewart_sps_model *model, size_t n, const
-    stewart_sps_real *X, const stewart_sps_real *V, stewart_sps_real *dissipation, int *status)
+size_t stewart_sps_dissipation_batch(const prepared *model, size_t n, const real *X, const real
+    *V, real *dissipation, int *status)
 {
-    size_t failed = 0, i = 0;
-    for (; i < n; ++i) {
+    size_t failed = 0;
+    for (size_t i = 0; i < n; ++i) {
         const int code = stewart_sps_dissipation(model, X + NQ*i, V + NV*i, dissipation + i);
         failed += record(&code, 1, status ? status + i : NULL);
     }
     return failed;
 }
 
-int stewart_sps_momentum(const stewart_sps_model *model, const stewart_sps_real *X, const
-    stewart_sps_real *V, stewart_sps_real *momentum)
+int stewart_sps_momentum(const prepared *model, const real *X, const real *V, real *momentum)
 {
     int code;
     momentum_one(model, X, V, momentum, &code);
     return code;
 }
 
-size_t stewart_sps_momentum_batch(const stewart_sps_model *model, size_t n, const stewart_sps_real
-    *X, const stewart_sps_real *V, stewart_sps_real *momentum, int *status)
+size_t stewart_sps_momentum_batch(const prepared *model, size_t n, const real *X, const real *V,
+    real *momentum, int *status)
 {
-    size_t failed = 0, i = 0;
-    for (; LANES > 1 && i + LANES <= n; i += LANES) {
-        int codes[LANES];
-        momentum_lanes(model, X + NQ*i, V + NV*i, momentum + NV*i, codes);
-        for (size_t k = 0; k < LANES; ++k) {
+    size_t failed = 0, w;
+    for (size_t i = 0; i < n; i += w) {
+        int codes[LANES] = {INVALID};
+        w = LANES > 1 && i + LANES <= n ? LANES : 1;
+        if (w > 1) {
+            momentum_lanes(model, X + NQ*i, V + NV*i, momentum + NV*i, codes);
+        }
+        for (size_t k = 0; k < w; ++k) {
             if (codes[k] != OK) {
                 codes[k] = stewart_sps_momentum(model, X + NQ*(i + k), V + NV*(i + k), momentum + NV*(i + k));
             }
         }
-        failed += record(codes, LANES, status ? status + i : NULL);
-    }
-    for (; i < n; ++i) {
-        const int code = stewart_sps_momentum(model, X + NQ*i, V + NV*i, momentum + NV*i);
-        failed += record(&code, 1, status ? status + i : NULL);
+        failed += record(codes, w, status ? status + i : NULL);
     }
     return failed;
 }
 
-int stewart_sps_joint_margins(const stewart_sps_model *model, const stewart_sps_real *X,
-    stewart_sps_real *margins)
+int stewart_sps_joint_margins(const prepared *model, const real *X, real *margins)
 {
     int code;
     joint_margins_one(model, X, margins, &code);
     return code;
 }
 
-size_t stewart_sps_joint_margins_batch(const stewart_sps_model *model, size_t n, const
-    stewart_sps_real *X, stewart_sps_real *margins, int *status)
+size_t stewart_sps_joint_margins_batch(const prepared *model, size_t n, const real *X, real
+    *margins, int *status)
 {
-    size_t failed = 0, i = 0;
-    for (; LANES > 1 && i + LANES <= n; i += LANES) {
-        int codes[LANES];
-        joint_margins_lanes(model, X + NQ*i, margins + NJ*i, codes);
-        for (size_t k = 0; k < LANES; ++k) {
+    size_t failed = 0, w;
+    for (size_t i = 0; i < n; i += w) {
+        int codes[LANES] = {INVALID};
+        w = LANES > 1 && i + LANES <= n ? LANES : 1;
+        if (w > 1) {
+            joint_margins_lanes(model, X + NQ*i, margins + NJ*i, codes);
+        }
+        for (size_t k = 0; k < w; ++k) {
             if (codes[k] != OK) {
                 codes[k] = stewart_sps_joint_margins(model, X + NQ*(i + k), margins + NJ*(i + k));
             }
         }
-        failed += record(codes, LANES, status ? status + i : NULL);
-    }
-    for (; i < n; ++i) {
-        const int code = stewart_sps_joint_margins(model, X + NQ*i, margins + NJ*i);
-        failed += record(&code, 1, status ? status + i : NULL);
+        failed += record(codes, w, status ? status + i : NULL);
     }
     return failed;
 }
 
-int stewart_sps_within_limits(const stewart_sps_model *model, const stewart_sps_real *X,
-    stewart_sps_real *within)
+int stewart_sps_within_limits(const prepared *model, const real *X, real *within)
 {
     int code;
     within_limits_one(model, X, within, &code);
     return code;
 }
 
-size_t stewart_sps_within_limits_batch(const stewart_sps_model *model, size_t n, const
-    stewart_sps_real *X, stewart_sps_real *within, int *status)
+size_t stewart_sps_within_limits_batch(const prepared *model, size_t n, const real *X, real
+    *within, int *status)
 {
-    size_t failed = 0, i = 0;
-    for (; LANES > 1 && i + LANES <= n; i += LANES) {
-        int codes[LANES];
-        within_limits_lanes(model, X + NQ*i, within + i, codes);
-        for (size_t k = 0; k < LANES; ++k) {
+    size_t failed = 0, w;
+    for (size_t i = 0; i < n; i += w) {
+        int codes[LANES] = {INVALID};
+        w = LANES > 1 && i + LANES <= n ? LANES : 1;
+        if (w > 1) {
+            within_limits_lanes(model, X + NQ*i, within + i, codes);
+        }
+        for (size_t k = 0; k < w; ++k) {
             if (codes[k] != OK) {
                 codes[k] = stewart_sps_within_limits(model, X + NQ*(i + k), within + (i + k));
             }
         }
-        failed += record(codes, LANES, status ? status + i : NULL);
-    }
-    for (; i < n; ++i) {
-        const int code = stewart_sps_within_limits(model, X + NQ*i, within + i);
-        failed += record(&code, 1, status ? status + i : NULL);
+        failed += record(codes, w, status ? status + i : NULL);
     }
     return failed;
 }
 
-int stewart_sps_actuator_positions(const stewart_sps_model *model, const stewart_sps_real *X,
-    stewart_sps_real *q)
+int stewart_sps_actuator_positions(const prepared *model, const real *X, real *q)
 {
     int code;
     actuator_positions_one(model, X, q, &code);
     return code;
 }
 
-size_t stewart_sps_actuator_positions_batch(const stewart_sps_model *model, size_t n, const
-    stewart_sps_real *X, stewart_sps_real *q, int *status)
+size_t stewart_sps_actuator_positions_batch(const prepared *model, size_t n, const real *X, real
+    *q, int *status)
 {
-    size_t failed = 0, i = 0;
-    for (; LANES > 1 && i + LANES <= n; i += LANES) {
-        int codes[LANES];
-        actuator_positions_lanes(model, X + NQ*i, q + NU*i, codes);
-        for (size_t k = 0; k < LANES; ++k) {
+    size_t failed = 0, w;
+    for (size_t i = 0; i < n; i += w) {
+        int codes[LANES] = {INVALID};
+        w = LANES > 1 && i + LANES <= n ? LANES : 1;
+        if (w > 1) {
+            actuator_positions_lanes(model, X + NQ*i, q + NU*i, codes);
+        }
+        for (size_t k = 0; k < w; ++k) {
             if (codes[k] != OK) {
                 codes[k] = stewart_sps_actuator_positions(model, X + NQ*(i + k), q + NU*(i + k));
             }
         }
-        failed += record(codes, LANES, status ? status + i : NULL);
-    }
-    for (; i < n; ++i) {
-        const int code = stewart_sps_actuator_positions(model, X + NQ*i, q + NU*i);
-        failed += record(&code, 1, status ? status + i : NULL);
+        failed += record(codes, w, status ? status + i : NULL);
     }
     return failed;
 }
 
-int stewart_sps_actuator_rates(const stewart_sps_model *model, const stewart_sps_real *X, const
-    stewart_sps_real *V, stewart_sps_real *rates)
+int stewart_sps_actuator_rates(const prepared *model, const real *X, const real *V, real *rates)
 {
     int code;
     actuator_rates_one(model, X, V, rates, &code);
     return code;
 }
 
-size_t stewart_sps_actuator_rates_batch(const stewart_sps_model *model, size_t n, const
-    stewart_sps_real *X, const stewart_sps_real *V, stewart_sps_real *rates, int *status)
+size_t stewart_sps_actuator_rates_batch(const prepared *model, size_t n, const real *X, const real
+    *V, real *rates, int *status)
 {
-    size_t failed = 0, i = 0;
-    for (; LANES > 1 && i + LANES <= n; i += LANES) {
-        int codes[LANES];
-        actuator_rates_lanes(model, X + NQ*i, V + NV*i, rates + NU*i, codes);
-        for (size_t k = 0; k < LANES; ++k) {
+    size_t failed = 0, w;
+    for (size_t i = 0; i < n; i += w) {
+        int codes[LANES] = {INVALID};
+        w = LANES > 1 && i + LANES <= n ? LANES : 1;
+        if (w > 1) {
+            actuator_rates_lanes(model, X + NQ*i, V + NV*i, rates + NU*i, codes);
+        }
+        for (size_t k = 0; k < w; ++k) {
             if (codes[k] != OK) {
                 codes[k] = stewart_sps_actuator_rates(model, X + NQ*(i + k), V + NV*(i + k), rates + NU*(i + k));
             }
         }
-        failed += record(codes, LANES, status ? status + i : NULL);
-    }
-    for (; i < n; ++i) {
-        const int code = stewart_sps_actuator_rates(model, X + NQ*i, V + NV*i, rates + NU*i);
-        failed += record(&code, 1, status ? status + i : NULL);
+        failed += record(codes, w, status ? status + i : NULL);
     }
     return failed;
 }
 
-int stewart_sps_actuator_accelerations(const stewart_sps_model *model, const stewart_sps_real *X,
-    const stewart_sps_real *V, const stewart_sps_real *A, stewart_sps_real *accelerations)
+int stewart_sps_actuator_accelerations(const prepared *model, const real *X, const real *V, const
+    real *A, real *accelerations)
 {
     int code;
     actuator_accelerations_one(model, X, V, A, accelerations, &code);
     return code;
 }
 
-size_t stewart_sps_actuator_accelerations_batch(const stewart_sps_model *model, size_t n, const
-    stewart_sps_real *X, const stewart_sps_real *V, const stewart_sps_real *A, stewart_sps_real
-    *accelerations, int *status)
+size_t stewart_sps_actuator_accelerations_batch(const prepared *model, size_t n, const real *X,
+    const real *V, const real *A, real *accelerations, int *status)
 {
-    size_t failed = 0, i = 0;
-    for (; LANES > 1 && i + LANES <= n; i += LANES) {
-        int codes[LANES];
-        actuator_accelerations_lanes(model, X + NQ*i, V + NV*i, A + NV*i, accelerations + NU*i, codes);
-        for (size_t k = 0; k < LANES; ++k) {
+    size_t failed = 0, w;
+    for (size_t i = 0; i < n; i += w) {
+        int codes[LANES] = {INVALID};
+        w = LANES > 1 && i + LANES <= n ? LANES : 1;
+        if (w > 1) {
+            actuator_accelerations_lanes(model, X + NQ*i, V + NV*i, A + NV*i, accelerations + NU*i, codes);
+        }
+        for (size_t k = 0; k < w; ++k) {
             if (codes[k] != OK) {
                 codes[k] = stewart_sps_actuator_accelerations(model, X + NQ*(i + k), V + NV*(i + k), A + NV*(i +
                     k), accelerations + NU*(i + k));
             }
         }
-        failed += record(codes, LANES, status ? status + i : NULL);
-    }
-    for (; i < n; ++i) {
-        const int code = stewart_sps_actuator_accelerations(model, X + NQ*i, V + NV*i, A + NV*i,
-            accelerations + NU*i);
-        failed += record(&code, 1, status ? status + i : NULL);
+        failed += record(codes, w, status ? status + i : NULL);
     }
     return failed;
 }
 
-int stewart_sps_power(const stewart_sps_model *model, const stewart_sps_real *X, const
-    stewart_sps_real *V, const stewart_sps_real *tau, stewart_sps_real *power)
+int stewart_sps_power(const prepared *model, const real *X, const real *V, const real *tau, real
+    *power)
 {
     int code;
     power_one(model, X, V, tau, power, &code);
     return code;
 }
 
-size_t stewart_sps_power_batch(const stewart_sps_model *model, size_t n, const stewart_sps_real
-    *X, const stewart_sps_real *V, const stewart_sps_real *tau, stewart_sps_real *power, int
-    *status)
+size_t stewart_sps_power_batch(const prepared *model, size_t n, const real *X, const real *V,
+    const real *tau, real *power, int *status)
 {
-    size_t failed = 0, i = 0;
-    for (; LANES > 1 && i + LANES <= n; i += LANES) {
-        int codes[LANES];
-        power_lanes(model, X + NQ*i, V + NV*i, tau + NU*i, power + i, codes);
-        for (size_t k = 0; k < LANES; ++k) {
+    size_t failed = 0, w;
+    for (size_t i = 0; i < n; i += w) {
+        int codes[LANES] = {INVALID};
+        w = LANES > 1 && i + LANES <= n ? LANES : 1;
+        if (w > 1) {
+            power_lanes(model, X + NQ*i, V + NV*i, tau + NU*i, power + i, codes);
+        }
+        for (size_t k = 0; k < w; ++k) {
             if (codes[k] != OK) {
                 codes[k] = stewart_sps_power(model, X + NQ*(i + k), V + NV*(i + k), tau + NU*(i + k), power + (i +
                     k));
             }
         }
-        failed += record(codes, LANES, status ? status + i : NULL);
-    }
-    for (; i < n; ++i) {
-        const int code = stewart_sps_power(model, X + NQ*i, V + NV*i, tau + NU*i, power + i);
-        failed += record(&code, 1, status ? status + i : NULL);
+        failed += record(codes, w, status ? status + i : NULL);
     }
     return failed;
 }
 
-int stewart_sps_rotation(const stewart_sps_real *X, stewart_sps_real *R)
+int stewart_sps_rotation(const real *X, real *R)
 {
     int code;
     rotation_one(X, R, &code);
     return code;
 }
 
-size_t stewart_sps_rotation_batch(size_t n, const stewart_sps_real *X, stewart_sps_real *R, int
-    *status)
+size_t stewart_sps_rotation_batch(size_t n, const real *X, real *R, int *status)
 {
-    size_t failed = 0, i = 0;
-    for (; i < n; ++i) {
+    size_t failed = 0;
+    for (size_t i = 0; i < n; ++i) {
         const int code = stewart_sps_rotation(X + NQ*i, R + 9*i);
         failed += record(&code, 1, status ? status + i : NULL);
     }
     return failed;
 }
 
-int stewart_sps_pose(const stewart_sps_real *t, const stewart_sps_real *R, stewart_sps_real *X)
+int stewart_sps_pose(const real *t, const real *R, real *X)
 {
     int code;
     pose_one(t, R, X, &code);
     return code;
 }
 
-size_t stewart_sps_pose_batch(size_t n, const stewart_sps_real *t, const stewart_sps_real *R,
-    stewart_sps_real *X, int *status)
+size_t stewart_sps_pose_batch(size_t n, const real *t, const real *R, real *X, int *status)
 {
-    size_t failed = 0, i = 0;
-    for (; i < n; ++i) {
+    size_t failed = 0;
+    for (size_t i = 0; i < n; ++i) {
         const int code = stewart_sps_pose(t + 3*i, R + 9*i, X + NQ*i);
         failed += record(&code, 1, status ? status + i : NULL);
     }
     return failed;
 }
 
-int stewart_sps_X_dot(const stewart_sps_real *X, const stewart_sps_real *V, stewart_sps_real
-    *X_dot)
+int stewart_sps_X_dot(const real *X, const real *V, real *X_dot)
 {
     int code;
     X_dot_one(X, V, X_dot, &code);
     return code;
 }
 
-size_t stewart_sps_X_dot_batch(size_t n, const stewart_sps_real *X, const stewart_sps_real *V,
-    stewart_sps_real *X_dot, int *status)
+size_t stewart_sps_X_dot_batch(size_t n, const real *X, const real *V, real *X_dot, int *status)
 {
-    size_t failed = 0, i = 0;
-    for (; i < n; ++i) {
+    size_t failed = 0;
+    for (size_t i = 0; i < n; ++i) {
         const int code = stewart_sps_X_dot(X + NQ*i, V + NV*i, X_dot + NQ*i);
         failed += record(&code, 1, status ? status + i : NULL);
     }
     return failed;
 }
 
-int stewart_sps_pose_from_rpy(const stewart_sps_real *t, const stewart_sps_real *rpy,
-    stewart_sps_real *X)
+int stewart_sps_pose_from_rpy(const real *t, const real *rpy, real *X)
 {
     int code;
     pose_from_rpy_one(t, rpy, X, &code);
     return code;
 }
 
-size_t stewart_sps_pose_from_rpy_batch(size_t n, const stewart_sps_real *t, const stewart_sps_real
-    *rpy, stewart_sps_real *X, int *status)
+size_t stewart_sps_pose_from_rpy_batch(size_t n, const real *t, const real *rpy, real *X, int
+    *status)
 {
-    size_t failed = 0, i = 0;
-    for (; i < n; ++i) {
+    size_t failed = 0;
+    for (size_t i = 0; i < n; ++i) {
         const int code = stewart_sps_pose_from_rpy(t + 3*i, rpy + 3*i, X + NQ*i);
         failed += record(&code, 1, status ? status + i : NULL);
     }
     return failed;
 }
 
-int stewart_sps_retract(const stewart_sps_real *X, const stewart_sps_real *step, stewart_sps_real
-    *X_moved)
+int stewart_sps_retract(const real *X, const real *step, real *X_moved)
 {
     int code;
     retract_one(X, step, X_moved, &code);
     return code;
 }
 
-size_t stewart_sps_retract_batch(size_t n, const stewart_sps_real *X, const stewart_sps_real
-    *step, stewart_sps_real *X_moved, int *status)
+size_t stewart_sps_retract_batch(size_t n, const real *X, const real *step, real *X_moved, int
+    *status)
 {
-    size_t failed = 0, i = 0;
-    for (; i < n; ++i) {
+    size_t failed = 0;
+    for (size_t i = 0; i < n; ++i) {
         const int code = stewart_sps_retract(X + NQ*i, step + NV*i, X_moved + NQ*i);
         failed += record(&code, 1, status ? status + i : NULL);
     }
     return failed;
 }
 
-int stewart_sps_difference(const stewart_sps_real *X0, const stewart_sps_real *X1,
-    stewart_sps_real *step)
+int stewart_sps_difference(const real *X0, const real *X1, real *step)
 {
     int code;
     difference_one(X0, X1, step, &code);
     return code;
 }
 
-size_t stewart_sps_difference_batch(size_t n, const stewart_sps_real *X0, const stewart_sps_real
-    *X1, stewart_sps_real *step, int *status)
+size_t stewart_sps_difference_batch(size_t n, const real *X0, const real *X1, real *step, int
+    *status)
 {
-    size_t failed = 0, i = 0;
-    for (; i < n; ++i) {
+    size_t failed = 0;
+    for (size_t i = 0; i < n; ++i) {
         const int code = stewart_sps_difference(X0 + NQ*i, X1 + NQ*i, step + NV*i);
         failed += record(&code, 1, status ? status + i : NULL);
     }
     return failed;
 }
 
-int stewart_sps_interpolate(const stewart_sps_real *X0, const stewart_sps_real *X1, const
-    stewart_sps_real *s, stewart_sps_real *X)
+int stewart_sps_interpolate(const real *X0, const real *X1, const real *s, real *X)
 {
     int code;
     interpolate_one(X0, X1, s, X, &code);
     return code;
 }
 
-size_t stewart_sps_interpolate_batch(size_t n, const stewart_sps_real *X0, const stewart_sps_real
-    *X1, const stewart_sps_real *s, stewart_sps_real *X, int *status)
+size_t stewart_sps_interpolate_batch(size_t n, const real *X0, const real *X1, const real *s, real
+    *X, int *status)
 {
-    size_t failed = 0, i = 0;
-    for (; i < n; ++i) {
+    size_t failed = 0;
+    for (size_t i = 0; i < n; ++i) {
         const int code = stewart_sps_interpolate(X0 + NQ*i, X1 + NQ*i, s + i, X + NQ*i);
         failed += record(&code, 1, status ? status + i : NULL);
     }

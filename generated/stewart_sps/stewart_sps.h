@@ -237,6 +237,22 @@ int stewart_sps_condition(const stewart_sps_model *model, const stewart_sps_real
 size_t stewart_sps_condition_batch(const stewart_sps_model *model, size_t n, const
     stewart_sps_real *X, stewart_sps_real *sigma, stewart_sps_real *legs, int *status);
 
+/* Manipulability of forces: the product of the singular values that condition has by default, and
+   the least over the largest of them. 283 mul, 192 add, 6 div, 25 sqrt, 12 trig; the singular
+   values apart. In: X (NQ). Out: measure (1), isotropy (1). */
+int stewart_sps_manipulability(const stewart_sps_model *model, const stewart_sps_real *X,
+    stewart_sps_real *measure, stewart_sps_real *isotropy);
+size_t stewart_sps_manipulability_batch(const stewart_sps_model *model, size_t n, const
+    stewart_sps_real *X, stewart_sps_real *measure, stewart_sps_real *isotropy, int *status);
+
+/* How near actuators and legs are to being singular: relative distances, 0 where they are. 283
+   mul, 192 add, 6 div, 25 sqrt, 12 trig; the singular values apart. In: X (NQ). Out: actuators
+   (1), legs (1). */
+int stewart_sps_singularity_distance(const stewart_sps_model *model, const stewart_sps_real *X,
+    stewart_sps_real *actuators, stewart_sps_real *legs);
+size_t stewart_sps_singularity_distance_batch(const stewart_sps_model *model, size_t n, const
+    stewart_sps_real *X, stewart_sps_real *actuators, stewart_sps_real *legs, int *status);
+
 /* X at which the actuated joints stand at q_actuated, by Gauss-Newton from X0. Extra coordinates
    that actuators do not determine stay. Impossible where no pose is found. In: q_actuated (NU),
    X0 (NQ). Out: X (NQ). */

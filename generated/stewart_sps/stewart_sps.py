@@ -61,6 +61,7 @@ __all__ = [
     "joint_margins",
     "joint_rates",
     "leg_reactions",
+    "manipulability",
     "momentum",
     "null_space",
     "pose",
@@ -68,6 +69,7 @@ __all__ = [
     "power",
     "retract",
     "rotation",
+    "singularity_distance",
     "within_limits",
 ]
 
@@ -615,14 +617,14 @@ def _prepare(p):
     sps_link3_inertia_xx + sps_link4_inertia_xx - sps_link3_mass*(sps_J_group_3_t -
         sps_J_group_3_t_4) - sps_link4_mass*(sps_J_group_3_t_5 - sps_J_group_3_t_8)
     )
-    # (sps-trace_J_3) half the trace of that inertia tensor
-    sps_trace_J_3 = (
-    0.5*sps_J_group_3_in_axes3_xx + 0.5*sps_J_group_3_in_axes3_yy + 0.5*sps_J_group_3_in_axes3_zz
-    )
     # (sps-Sigma_3) second moment of mass of the links that turn with link 3
-    sps_Sigma_3_in_axes3_xx = sps_trace_J_3 - sps_J_group_3_in_axes3_xx
-    sps_Sigma_3_in_axes3_yy = sps_trace_J_3 - sps_J_group_3_in_axes3_yy
-    sps_Sigma_3_in_axes3_zz = sps_trace_J_3 - sps_J_group_3_in_axes3_zz
+    sps_Sigma_3_t = (
+    sps_J_group_3_in_axes3_xx + sps_J_group_3_in_axes3_yy + sps_J_group_3_in_axes3_zz
+    )
+    sps_Sigma_3_t_2 = 0.5*sps_Sigma_3_t
+    sps_Sigma_3_in_axes3_xx = sps_Sigma_3_t_2 - sps_J_group_3_in_axes3_xx
+    sps_Sigma_3_in_axes3_yy = sps_Sigma_3_t_2 - sps_J_group_3_in_axes3_yy
+    sps_Sigma_3_in_axes3_zz = sps_Sigma_3_t_2 - sps_J_group_3_in_axes3_zz
     # (h_star) first moment about the platform origin
     sps_h_star_t = sps_link4_mass*sps_platform_point_x
     sps_h_star_t_2 = sps_link4_mass*sps_platform_point_y
@@ -887,6 +889,24 @@ def _constants(p, name):
     return p._cache[name]
 
 
+class _Vector(list):
+    """A vector, or a matrix row by row, of a single state."""
+
+    def __add__(self, other):
+        return _Vector([a + b for a, b in zip(self, other)])
+
+    def __sub__(self, other):
+        return _Vector([a - b for a, b in zip(self, other)])
+
+    def __neg__(self):
+        return _Vector([-a for a in self])
+
+
+def _are_finite(rows):
+    """Whether lists of floats have finite entries alone."""
+    return math.isfinite(sum(map(sum, rows))) or all(all(map(math.isfinite, row)) for row in rows)
+
+
 class _Floats:
     """Functions of a state after another, in Python floats: the way for few states."""
 
@@ -916,11 +936,32 @@ class _Floats:
         """Lists that a function gives at a state."""
         try:
             ok, arrays = function(self, *given)
-        except (ZeroDivisionError, OverflowError, ValueError):
+        except (ArithmeticError, ValueError):
             ok = False
-        if ok and all(all(map(math.isfinite, array)) for array in arrays):
+        if ok and _are_finite(arrays):
             return arrays
         return [[np.nan] * math.prod(_SHAPES[n]) for n in names]
+
+    def solved(self, order, a, b):
+        """Solutions, straight through; and which are beyond doubt."""
+        sure, x = np.zeros(self.states, dtype=bool), np.full(b.shape, np.nan)
+        for k, given in enumerate(zip(a.T.tolist(), b.T.tolist())):
+            try:
+                sure[k], (x[:, k],) = order(self, *given)
+            except ZeroDivisionError:
+                pass
+        return sure, x
+
+
+class _Single(_Floats):
+    """A single state in lists of floats throughout."""
+
+    def run(self, function, names, *vectors):
+        """Arrays of a function, row by row; ArithmeticError or ValueError where the state is impossible."""
+        ok, arrays = function(self, *vectors)
+        if not (ok and _are_finite(arrays)):
+            raise ArithmeticError
+        return [_Vector(a) for a in arrays]
 
 
 class _Arrays:
@@ -950,20 +991,27 @@ class _Arrays:
     def zeros(self, name):
         return np.zeros((math.prod(_SHAPES[name]), self.states))
 
-    def computed(self, function, names, vectors):
-        """Flags and arrays (*shape, states) of a function."""
+    def computed(self, function, *vectors):
+        """Flags and arrays (entries, states) of a function."""
         if self.kept is None:
-            flags, arrays = function(self, *vectors)
-        else:
-            if self.done not in self.kept:
-                self.kept[self.done] = _Replay(self.p, function, [len(v) for v in vectors], self.states)
-            flags, arrays = self.kept[self.done].run(vectors)
-            self.done += 1
-        return flags, [a.reshape(*_SHAPES[n], self.states) for a, n in zip(arrays, names)]
+            return function(self, *vectors)
+        if self.done not in self.kept:
+            self.kept[self.done] = _Replay(self.p, function, [len(v) for v in vectors], self.states)
+        self.done += 1
+        return self.kept[self.done - 1].run(vectors)
+
+    def shaped(self, names, arrays):
+        return [a.reshape(*_SHAPES[n], self.states) for a, n in zip(arrays, names)]
+
+    def solved(self, order, a, b):
+        """Solutions, straight through; and which are beyond doubt."""
+        sure, (x,) = self.computed(order, a, b)
+        return sure, np.array(x)
 
     def run(self, function, names, *vectors):
         """Arrays (*shape, states) of a function; NaN where the state is impossible."""
-        ok, arrays = self.computed(function, names, vectors)
+        ok, arrays = self.computed(function, *vectors)
+        arrays = self.shaped(names, arrays)
         ok = np.logical_and(ok, _finite(arrays, self.states))
         if not np.all(ok):
             for a in arrays:
@@ -980,10 +1028,10 @@ class _Judged(_Arrays):
 
     def run(self, function, names, *vectors):
         """Arrays (*shape, states) of a function, also where they are nonsense."""
-        (valid, reached, clear), arrays = self.computed(function, names, vectors)
+        (valid, reached, clear), arrays = self.computed(function, *vectors)
         for code, good in ((3, valid), (1, reached), (2, clear)):
             self.failed[code] |= np.logical_not(good)
-        return arrays
+        return self.shaped(names, arrays)
 
     def closed(self, q):
         """q, noting where the iteration has not converged."""
@@ -995,26 +1043,90 @@ class _Judged(_Arrays):
         return np.select(list(self.failed.values()), list(self.failed), np.where(possible, 0, 3))
 
 
+_IN_ONE = {}  # by function
+
+
+def _in_one(function):
+    """A function that tells whether a state is possible, of one that tells why not."""
+
+    def run(m, *vectors):
+        (valid, reached, clear), arrays = function(m, *vectors)
+        return valid & reached & clear, arrays
+
+    return _IN_ONE.setdefault(function, run)
+
+
 def _mode(p, states, kept=None):
     """The faster way for so many states."""
     return (_Floats if 0 < states <= _FEW else _Arrays)(p, states, kept)
 
 
-def _call(function, steps, p, *arguments, mode=_mode, unbounded=False):
+def _call(function, steps, p, *arguments, mode=_mode, unbounded=False, plain=()):
     """What the steps give at arguments (name, value, shape of a state, default, rule).
 
-    Where that may be infinite only NaN makes a state impossible.
+    Where that may be infinite only NaN makes a state impossible.  `plain` has the shapes of results
+    where a single state needs no arrays.
     """
+    p, read = _given(p), [a[-1] != "unused" for a in arguments]
+    lists = plain and _lists(arguments)
+    if lists:
+        found = _state(_Single(p, 1), steps, lists, read)
+        results = [_result(a, shape) for a, shape in zip(found or plain, plain)]
+        return results[0] if len(results) == 1 else tuple(results)
     given = [_argument(function, *a) for a in arguments]
     shapes = [a[2] for a in arguments]
     leads = {a[0]: v.shape[: v.ndim - len(a[2])] for a, v in zip(arguments, given)}
-    lead, p = _lead(leads), _given(p)
-    read = [a[4:] != ("unused",) for a in arguments]
-    if lead or mode is _Judged:
+    lead = _lead(leads)
+    if plain and 0 < math.prod(lead) <= _FEW:
+        results = _few(steps, p, lead, given, shapes, read, plain)
+    elif lead or mode is _Judged:
         results = _many(steps, p, lead, given, shapes, read, mode, unbounded)
     else:
         results = _one(steps, p, given, shapes, read, unbounded)
     return results[0] if len(results) == 1 else tuple(results)
+
+
+def _lists(arguments):
+    """Arguments of a single state as lists, where they are such arrays as they mostly are."""
+    found = []
+    for row in arguments:
+        value, shape = row[1:3]
+        if type(value) is np.ndarray:
+            if value.shape != shape or value.dtype is not _REAL or row[-1] == "positive":
+                return None
+            found.append(_Vector(value.tolist()))
+        elif value is None and len(row) > 3 and row[3] is not None:
+            found.append(_Vector(row[3] if isinstance(row[3], tuple) else [row[3]] * shape[0]))
+        else:
+            return None
+    return found
+
+
+def _state(m, steps, given, read):
+    """Lists that the steps give at a state; None where it is impossible."""
+    try:
+        found = steps(m, *given)
+    except (ArithmeticError, ValueError):
+        return None
+    return found if _are_finite(list(compress(given, read))) and _are_finite(found) else None
+
+
+def _result(found, shape):
+    """The array of a list; of an impossible state, for which its shape is given, NaN."""
+    if found is shape:
+        return np.full(shape, np.nan)
+    return np.array(found) if len(shape) == 1 else np.array(found).reshape(shape)
+
+
+def _few(steps, p, lead, given, shapes, read, plain):
+    """Results at a few states, one after another."""
+    m, rows = _Single(p, 1), []
+    for v, shape in zip(given, shapes):
+        flat = np.broadcast_to(v, lead + shape).reshape(math.prod(lead), -1)
+        rows.append(map(_Vector, flat.tolist()))
+    impossible = [[np.nan] * math.prod(shape) for shape in plain]
+    found = [_state(m, steps, state, read) or impossible for state in zip(*rows)]
+    return [np.array(a).reshape(lead + shape) for a, shape in zip(zip(*found), plain)]
 
 
 def _one(steps, p, given, shapes, read, unbounded):
@@ -1033,7 +1145,11 @@ def _many(steps, p, lead, given, shapes, read, mode, unbounded):
     """Results at many states, block by block; the last block begins where it is as long as the others."""
     count = math.prod(lead)
     size, kept = min(count, _BLOCK), {} if count >= _MANY else None
-    flat = [np.broadcast_to(v, lead + s).reshape(count, *s) for v, s in zip(given, shapes)]
+    # one value for all states stands for itself
+    flat = [
+        np.broadcast_to(v, lead + s).reshape(count, *s) if v.ndim > len(s) else v
+        for v, s in zip(given, shapes)
+    ]
     possible, status, outputs = np.ones(count, dtype=bool), np.zeros(count, dtype=int), []
     if count > size:
         # Never touched, freed at once: the C library, which learns from it, then keeps the memory
@@ -1042,7 +1158,7 @@ def _many(steps, p, lead, given, shapes, read, mode, unbounded):
     with np.errstate(all="ignore"):
         for stop in (*range(size, count, max(size, 1)), count):
             block = slice(stop - size, stop)
-            states = [_states_last(v[block]) for v in flat]
+            states = [_states_last(v, s, block) for v, s in zip(flat, shapes)]
             m, good = mode(p, size, kept), possible[block]
             found = steps(m, *states)
             if not outputs:
@@ -1062,15 +1178,17 @@ def _many(steps, p, lead, given, shapes, read, mode, unbounded):
     return [a.reshape(lead + a.shape[1:])[()] for a in outputs]
 
 
-def _states_last(a):
-    """A contiguous array (*shape, states) of one (states, *shape)."""
-    return np.ascontiguousarray(a.transpose(*range(1, a.ndim), 0))
+def _states_last(a, shape, block):
+    """An array (*shape, states) of a block of one (states, *shape), or of a value for all."""
+    if a.ndim == len(shape):
+        return np.broadcast_to(a[..., None], (*shape, block.stop - block.start))
+    return np.ascontiguousarray(a[block].transpose(*range(1, a.ndim), 0))
 
 
 def _finite(arrays, states):
     """In which states all entries of arrays (*shape, states) are finite."""
     flat = [a.reshape(math.prod(a.shape[:-1]), states) for a in arrays]
-    good = np.isfinite(sum(np.add.reduce(a, axis=0) for a in flat))
+    good = np.isfinite(sum(np.einsum("es->s", a) for a in flat))
     if not np.all(good):  # or the sum is too large
         good = np.logical_and.reduce([np.isfinite(a).all(axis=0) for a in flat])
     return good
@@ -1179,6 +1297,8 @@ class _Record:
 
     def made(self, operation, *operands):
         """The result of an operation."""
+        if operation in _WITHOUT and operands[0] is _WITHOUT[operation]:
+            return operands[1]
         numbers = [self.number(operand) for operand in operands]
         if all(self.kinds[n] == "one" for n in numbers):
             kind = "one"
@@ -1215,6 +1335,7 @@ class _Record:
         return counts
 
 
+_WITHOUT = {np.logical_and: True}  # first operands that change nothing
 _OF_FLAGS = {np.logical_and, np.greater, np.greater_equal}
 _RECORDS = {}  # by function
 
@@ -1226,11 +1347,12 @@ class _Replay:
         if function not in _RECORDS:
             _RECORDS[function] = _Record(p, function, sizes)
         r = _RECORDS[function]
-        made = {kind: _rows(n, states, bool if kind == "flag" else float) for kind, n in r.counts.items()}
-        made["one"] = [np.empty(()) for _ in range(r.counts["one"])]
-        made["out"] = _rows(sum(r.sizes), states)
-        self.inputs = [_rows(size, states) for size in sizes]
-        self.arrays = np.split(made["out"], np.cumsum(r.sizes)[:-1])
+        rows = _rows(r.counts["state"] + sum(r.sizes) + sum(sizes), states)
+        given, out, state = np.split(rows, np.cumsum((sum(sizes), sum(r.sizes))))
+        made = {"state": state, "out": out, "one": [np.empty(()) for _ in range(r.counts["one"])]}
+        made["flag"] = np.empty((r.counts["flag"], states), dtype=bool)
+        self.inputs = np.split(given, np.cumsum(sizes)[:-1])
+        self.arrays = np.split(out, np.cumsum(r.sizes)[:-1])
         at = {number: np.array(value) for value, number in r.literals.items()}
         for values, given in zip(r.inputs, self.inputs):
             at |= {v.number: row for v, row in zip(values, given)}
@@ -1252,9 +1374,26 @@ class _Replay:
         return self.flags, self.arrays
 
 
-def _rows(count, states, kind=float):
-    """Rows of so many states, a cache line apart from each other."""
-    return np.empty((count, states + 8), dtype=kind)[:, :states]
+def _rows(count, states):
+    """Rows of so many states in one piece, which the system keeps in a few large pages if it is told.
+
+    NumPy tells it of pieces from 4 MB on.  It makes operations a third faster.
+    """
+    row = states + 8  # a cache line further: rows do not compete for the same places of the cache
+    piece = np.empty(max(count * row, 2 * _PAGE) + _PAGE)
+    start = -(piece.ctypes.data // piece.itemsize) % _PAGE
+    return piece[start : start + count * row].reshape(count, row)[:, :states]
+
+
+_PAGE = (2 << 20) // 8  # numbers in a large page
+
+
+def _times(a, b):
+    """Products of matrices (m, n, states) with vectors (n, states)."""
+    if isinstance(b, _Vector):
+        rows = (a[k : k + len(b)] for k in range(0, len(a), len(b)))
+        return _Vector([sum([x * y for x, y in zip(row, b)]) for row in rows])
+    return np.einsum("ijs,js->is", a, b)
 
 
 def _extended(a, size):
@@ -1394,8 +1533,10 @@ _CLEARLY = 2.0  # rows change places only for a pivot that is larger by this fac
 
 def _solve(a, b):
     """x with a x = b, a (n, n, states), b (n, states): rows scaled, partial pivoting; NaN if singular."""
+    if isinstance(b, _Vector):
+        return _Vector(_solve_one([a[k : k + len(b)] for k in range(0, len(a), len(b))], b))
     n, states = b.shape
-    if 0 < states <= _FEW:
+    if 0 < states <= 8:
         systems = zip(a.transpose(2, 0, 1).tolist(), b.T.tolist())
         return np.array([_solve_one(*each) for each in systems]).T.reshape(n, states)
     size = np.max(np.abs(a), axis=1, initial=0.0)
@@ -1420,6 +1561,38 @@ def _solve(a, b):
         known = np.einsum("js,js->s", rows[k, k + 1 : n], x[k + 1 :])
         x[k] = (rows[k, n] - known) / rows[k, k]
     x[:, ~(good & np.isfinite(x).all(axis=0))] = np.nan
+    return x
+
+
+class _Order:
+    """How a system is solved near home.
+
+    Args:
+        solve: the function for so many equations.
+        rows: in the order of their pivots.
+        limits: of multiples, column by column, and of 1/pivot.
+    """
+
+    def __init__(self, solve, rows, limits):
+        self.solve, self.rows, self.limits = solve, rows, limits
+
+    def __call__(self, m, a, b):
+        """Solutions of a x = b, and whether these are beyond doubt."""
+        return self.solve(a, b, self.rows, self.limits)
+
+
+def _straight(m, a, b, order):
+    """The same, in the order of rows at home; with a choice of rows only where that is in doubt."""
+    if isinstance(b, _Vector):
+        try:
+            sure, (x,) = order(m, a, b)
+        except ZeroDivisionError:
+            sure = False
+        return _Vector(x) if sure else _solve(a, b)
+    sure, x = m.solved(order, a.reshape(-1, m.states), b)
+    at = np.flatnonzero(np.logical_not(sure))
+    if at.size:
+        x[:, at] = _solve(a[..., at], b[:, at])
     return x
 
 
@@ -1476,6 +1649,16 @@ def _singular_values(a):
     values = np.linalg.svd(a, compute_uv=False).T.copy()
     values[:, bad] = np.nan
     return values
+
+
+def _least_entry(a):
+    """The least entry."""
+    return np.min(a, axis=0)
+
+
+def _spread(a, n):
+    """Of the first n entries the product, and the last over the first, 0 where that is 0."""
+    return np.prod(a[:n], axis=0), np.where(a[0] == 0.0, 0.0, a[n - 1] / a[0])
 
 
 def _least_squares(a, b, least):
@@ -1718,40 +1901,33 @@ def _run_dynamics(m, X, V):
         sps_S_x = sps_q_x + t_x - sps_base_point_x
         sps_S_y = sps_q_y + t_y - sps_base_point_y
         sps_S_z = sps_q_z + t_z - sps_base_point_z
-        # (sps-c_3) cosine of the angle of joint 3 from its reference direction
-        sps_c_3 = -sin(sps_y_3_extra)
-        # (sps-s_3) sine of the angle of joint 3 from its reference direction
-        sps_s_3 = cos(sps_y_3_extra)
-        # (sps-px_1) component along the reference direction
-        sps_px_1 = (
+        sps_S_in_turn1_x = (
         sps_S_x*sps_base_frame_xx + sps_S_y*sps_base_frame_yx + sps_S_z*sps_base_frame_zx
         )
-        # (sps-py_1) component across the reference direction
-        sps_py_1 = (
+        sps_S_in_turn1_y = (
         sps_S_x*sps_base_frame_xy + sps_S_y*sps_base_frame_yy + sps_S_z*sps_base_frame_zy
         )
-        # (sps-rho2_1) squared amplitude
-        sps_rho2_1 = sps_px_1*sps_px_1 + sps_py_1*sps_py_1
-        # (sps-root_1) amplitude, with the sign of the branch
-        sps_root_1 = sps_branch_1*sqrt(sps_rho2_1)
-        # (sps-c_1) cosine of the angle of joint 1 from its reference direction
-        inv_sps_root_1 = 1.0/sps_root_1
-        sps_c_1 = -inv_sps_root_1*sps_py_1
-        # (sps-s_1) sine of the angle of joint 1 from its reference direction
-        sps_s_1 = inv_sps_root_1*sps_px_1
-        # (sps-xi_1) the vector from joint 1 to the connection point, resolved along link 1
-        sps_xi_1_in_axes1_z = (
+        sps_S_in_turn1_z = (
         sps_S_x*sps_base_frame_xz + sps_S_y*sps_base_frame_yz + sps_S_z*sps_base_frame_zz
         )
-        # (sps-rho2_2) squared amplitude
-        sps_rho2_2 = sps_rho2_1 + sps_xi_1_in_axes1_z*sps_xi_1_in_axes1_z
-        # (sps-root_2) amplitude, with the sign of the branch
-        sps_root_2 = sps_branch_2*sqrt(sps_rho2_2)
+        # (sps-c_3) cosine of the angle of joint 3 from its reference direction
+        sps_c_3 = cos(sps_y_3_extra)
+        # (sps-s_3) sine of the angle of joint 3 from its reference direction
+        sps_s_3 = sin(sps_y_3_extra)
+        # (sps-root_1) amplitude, the length across axis 1, with the sign of the branch
+        sps_root_1_t = sps_S_in_turn1_x*sps_S_in_turn1_x + sps_S_in_turn1_y*sps_S_in_turn1_y
+        sps_root_1 = sps_branch_1*sqrt(sps_root_1_t)
+        # (sps-c_1) cosine of the angle of joint 1 from its reference direction
+        inv_sps_root_1 = 1.0/sps_root_1
+        sps_c_1 = inv_sps_root_1*sps_S_in_turn1_x
+        # (sps-s_1) sine of the angle of joint 1 from its reference direction
+        sps_s_1 = inv_sps_root_1*sps_S_in_turn1_y
+        # (sps-root_2) amplitude, the length across axis 2, with the sign of the branch
+        sps_root_2_t = sps_S_in_turn1_z*sps_S_in_turn1_z + sps_root_1_t
+        sps_root_2 = sps_branch_2*sqrt(sps_root_2_t)
         # (sps-c_2) cosine of the angle of joint 2 from its reference direction
         inv_sps_root_2 = 1.0/sps_root_2
-        sps_c_2_t = inv_sps_root_2*sps_root_1
-        # (sps-s_2) sine of the angle of joint 2 from its reference direction
-        sps_s_2 = inv_sps_root_2*sps_xi_1_in_axes1_z
+        sps_c_2 = inv_sps_root_2*sps_root_1
         # (sps-S_dot) velocity of the connection point
         sps_S_dot_t = omega_y*sps_q_z - omega_z*sps_q_y
         sps_S_dot_t_2 = omega_z*sps_q_x - omega_x*sps_q_z
@@ -1760,13 +1936,13 @@ def _run_dynamics(m, X, V):
         sps_S_dot_y = sps_S_dot_t_2 + t_dot_y
         sps_S_dot_z = sps_S_dot_t_3 + t_dot_z
         # (sps-v_1) velocity of the connection point per rate of joint 1
-        sps_e_1_in_axes3_x = -sps_c_2_t*sps_c_3
-        sps_e_1_in_axes3_y = sps_c_2_t*sps_s_3
+        sps_e_1_in_axes3_x = sps_c_2*sps_s_3
+        sps_e_1_in_axes3_y = sps_c_2*sps_c_3
         sps_v_1_in_axes3_x = sps_e_1_in_axes3_y*sps_root_2
         sps_v_1_in_axes3_y = -sps_e_1_in_axes3_x*sps_root_2
         # (sps-v_2) velocity of the connection point per rate of joint 2
-        sps_v_2_in_axes3_x = sps_c_3*sps_root_2
-        sps_v_2_t = sps_root_2*sps_s_3
+        sps_v_2_in_axes3_x = -sps_root_2*sps_s_3
+        sps_v_2_t = sps_c_3*sps_root_2
         # (sps-w_1) reciprocal vector 1
         sps_w_1_t = sps_v_1_in_axes3_x*sps_v_2_t + sps_v_1_in_axes3_y*sps_v_2_in_axes3_x
         inv_sps_w_1_t = 1.0/sps_w_1_t
@@ -1780,20 +1956,21 @@ def _run_dynamics(m, X, V):
         sps_w_4_y = inv_sps_root_2*sps_S_y
         sps_w_4_z = inv_sps_root_2*sps_S_z
         # (sps-S_dot_rest) velocity of the connection point left to the joints that are not extra
-        sps_S_dot_rest_t = sps_s_2*sps_s_3
-        sps_S_dot_rest_t_2 = sps_S_dot_rest_t*sps_s_1 - sps_c_1*sps_c_3
-        sps_S_dot_rest_t_3 = sps_S_dot_rest_t*sps_c_1 + sps_c_3*sps_s_1
+        sps_e_1_in_axes2_y = inv_sps_root_2*sps_S_in_turn1_z
+        sps_S_dot_rest_t = sps_c_3*sps_e_1_in_axes2_y
+        sps_S_dot_rest_t_2 = sps_s_1*sps_s_3 - sps_S_dot_rest_t*sps_c_1
+        sps_S_dot_rest_t_3 = -sps_S_dot_rest_t*sps_s_1 - sps_c_1*sps_s_3
         axis_y_sps_axes3_x = (
-        sps_S_dot_rest_t_3*sps_base_frame_xy + sps_base_frame_xz*sps_e_1_in_axes3_y -
-            sps_S_dot_rest_t_2*sps_base_frame_xx
+        sps_S_dot_rest_t_2*sps_base_frame_xx + sps_S_dot_rest_t_3*sps_base_frame_xy +
+            sps_base_frame_xz*sps_e_1_in_axes3_y
         )
         axis_y_sps_axes3_y = (
-        sps_S_dot_rest_t_3*sps_base_frame_yy + sps_base_frame_yz*sps_e_1_in_axes3_y -
-            sps_S_dot_rest_t_2*sps_base_frame_yx
+        sps_S_dot_rest_t_2*sps_base_frame_yx + sps_S_dot_rest_t_3*sps_base_frame_yy +
+            sps_base_frame_yz*sps_e_1_in_axes3_y
         )
         axis_y_sps_axes3_z = (
-        sps_S_dot_rest_t_3*sps_base_frame_zy + sps_base_frame_zz*sps_e_1_in_axes3_y -
-            sps_S_dot_rest_t_2*sps_base_frame_zx
+        sps_S_dot_rest_t_2*sps_base_frame_zx + sps_S_dot_rest_t_3*sps_base_frame_zy +
+            sps_base_frame_zz*sps_e_1_in_axes3_y
         )
         axis_x_sps_axes3_x = axis_y_sps_axes3_y*sps_w_4_z - axis_y_sps_axes3_z*sps_w_4_y
         axis_x_sps_axes3_y = axis_y_sps_axes3_z*sps_w_4_x - axis_y_sps_axes3_x*sps_w_4_z
@@ -1820,13 +1997,13 @@ def _run_dynamics(m, X, V):
             sps_S_dot_rest_in_axes3_x*sps_v_1_in_axes3_y)
         )
         # (sps-omega_1) angular velocity of link 1
-        sps_omega_1_in_axes2_x = sps_qd_1*sps_s_2
-        sps_omega_1_t = sps_c_2_t*sps_qd_1
+        sps_omega_1_in_axes2_x = sps_c_2*sps_qd_1
+        sps_omega_1_in_axes2_y = sps_e_1_in_axes2_y*sps_qd_1
         # (sps-omega_2) angular velocity of link 2
-        sps_omega_2_in_axes3_x = -sps_c_3*sps_omega_1_t - sps_qd_2_t*sps_s_3
-        sps_omega_2_in_axes3_y = sps_omega_1_t*sps_s_3 - sps_c_3*sps_qd_2_t
+        sps_omega_2_in_axes3_x = sps_omega_1_in_axes2_x*sps_s_3 - sps_c_3*sps_qd_2_t
+        sps_omega_2_in_axes3_y = sps_c_3*sps_omega_1_in_axes2_x + sps_qd_2_t*sps_s_3
         # (sps-omega_3) angular velocity of link 3
-        sps_omega_3_in_axes3_z = sps_omega_1_in_axes2_x + sps_yd_3
+        sps_omega_3_in_axes3_z = sps_omega_1_in_axes2_y + sps_yd_3
         # (sps-W_3) centripetal tensor of link 3
         sps_W_3_in_axes3_xy = sps_omega_2_in_axes3_x*sps_omega_2_in_axes3_y
         sps_W_3_in_axes3_xz = sps_omega_2_in_axes3_x*sps_omega_3_in_axes3_z
@@ -1842,13 +2019,13 @@ def _run_dynamics(m, X, V):
         axis_y_sps_axes3_x*sps_u_1_x + axis_y_sps_axes3_y*sps_u_1_y + axis_y_sps_axes3_z*sps_u_1_z
         )
         # (sps-zeta_2) angular acceleration of link 2 from the turning of axis 2
-        sps_zeta_2_in_axes2_y = sps_omega_1_in_axes2_x*sps_qd_2_t
+        sps_zeta_2_t = sps_omega_1_in_axes2_y*sps_qd_2_t
         # (sps-zeta_3) angular acceleration of link 3 from the turning of axis 3
         sps_zeta_3_in_axes3_x = sps_omega_2_in_axes3_y*sps_yd_3
         sps_zeta_3_in_axes3_y = -sps_omega_2_in_axes3_x*sps_yd_3
         # (sps-beta_3) angular acceleration of link 3 at zero joint accelerations
-        sps_beta_3_in_axes3_x = sps_zeta_3_in_axes3_x + sps_c_3*sps_zeta_2_in_axes2_y
-        sps_beta_3_in_axes3_y = sps_zeta_3_in_axes3_y - sps_s_3*sps_zeta_2_in_axes2_y
+        sps_beta_3_in_axes3_x = sps_zeta_3_in_axes3_x - sps_s_3*sps_zeta_2_t
+        sps_beta_3_in_axes3_y = sps_zeta_3_in_axes3_y - sps_c_3*sps_zeta_2_t
         # (sps-bias) acceleration of the connection point at zero joint accelerations
         sps_bias_t = 2.0*sps_S_dot_rest_in_axes3_z
         sps_bias_in_axes3_x = (
@@ -1867,36 +2044,38 @@ def _run_dynamics(m, X, V):
         inv_sps_w_1_t*(sps_rel_o_in_axes3_x*sps_v_2_t + sps_rel_o_in_axes3_y*sps_v_2_in_axes3_x)
         )
         # (sps-qdd_2_o) remainder without the acceleration in: acceleration of joint 2
-        sps_qdd_2_o = (
-        -inv_sps_w_1_t*(sps_rel_o_in_axes3_y*sps_v_1_in_axes3_x -
+        sps_qdd_2_o_t = (
+        inv_sps_w_1_t*(sps_rel_o_in_axes3_y*sps_v_1_in_axes3_x -
             sps_rel_o_in_axes3_x*sps_v_1_in_axes3_y)
         )
         # (sps-d_alpha_1) coefficient of the acceleration in: angular acceleration of link 1
-        sps_d_alpha_1_in_axes3_zx = sps_s_2*sps_w_1_in_axes3_x
-        sps_d_alpha_1_in_axes3_zy = sps_s_2*sps_w_1_in_axes3_y
+        sps_d_alpha_1_in_axes3_zx = sps_e_1_in_axes2_y*sps_w_1_in_axes3_x
+        sps_d_alpha_1_in_axes3_zy = sps_e_1_in_axes2_y*sps_w_1_in_axes3_y
         # (sps-d_alpha_2) coefficient of the acceleration in: angular acceleration of link 2
         sps_d_alpha_2_in_axes3_xx = (
-        sps_e_1_in_axes3_x*sps_w_1_in_axes3_x + sps_s_3*sps_w_2_in_axes3_x
+        sps_c_3*sps_w_2_in_axes3_x + sps_e_1_in_axes3_x*sps_w_1_in_axes3_x
         )
-        sps_d_alpha_2_in_axes3_xy = sps_e_1_in_axes3_x*sps_w_1_in_axes3_y - sps_s_3*sps_w_2_t
+        sps_d_alpha_2_in_axes3_xy = sps_e_1_in_axes3_x*sps_w_1_in_axes3_y - sps_c_3*sps_w_2_t
         sps_d_alpha_2_in_axes3_yx = (
-        sps_c_3*sps_w_2_in_axes3_x + sps_e_1_in_axes3_y*sps_w_1_in_axes3_x
+        sps_e_1_in_axes3_y*sps_w_1_in_axes3_x - sps_s_3*sps_w_2_in_axes3_x
         )
-        sps_d_alpha_2_in_axes3_yy = sps_e_1_in_axes3_y*sps_w_1_in_axes3_y - sps_c_3*sps_w_2_t
+        sps_d_alpha_2_in_axes3_yy = sps_e_1_in_axes3_y*sps_w_1_in_axes3_y + sps_s_3*sps_w_2_t
         # (sps-alpha_2_o) remainder without the acceleration in: angular acceleration of link 2
-        sps_alpha_2_o_in_axes2_x = sps_omega_1_t*sps_qd_2_t + sps_qdd_1_o*sps_s_2
-        sps_alpha_2_o_in_axes2_y = sps_zeta_2_in_axes2_y - sps_c_2_t*sps_qdd_1_o
+        sps_alpha_2_o_in_axes2_x = sps_c_2*sps_qdd_1_o - sps_zeta_2_t
+        sps_alpha_2_o_in_axes2_y = (
+        sps_e_1_in_axes2_y*sps_qdd_1_o + sps_omega_1_in_axes2_x*sps_qd_2_t
+        )
         # (sps-alpha_3_o) remainder without the acceleration in: angular acceleration of link 3
         sps_alpha_3_o_in_axes3_x = (
-        sps_zeta_3_in_axes3_x + sps_alpha_2_o_in_axes2_y*sps_c_3 + sps_qdd_2_o*sps_s_3
+        sps_zeta_3_in_axes3_x + sps_alpha_2_o_in_axes2_x*sps_s_3 - sps_c_3*sps_qdd_2_o_t
         )
         sps_alpha_3_o_in_axes3_y = (
-        sps_zeta_3_in_axes3_y + sps_c_3*sps_qdd_2_o - sps_alpha_2_o_in_axes2_y*sps_s_3
+        sps_zeta_3_in_axes3_y + sps_alpha_2_o_in_axes2_x*sps_c_3 + sps_qdd_2_o_t*sps_s_3
         )
         # (sps-B_3_o) remainder of the acceleration tensor of link 3
-        sps_B_3_o_in_axes3_xy = sps_W_3_in_axes3_xy - sps_alpha_2_o_in_axes2_x
+        sps_B_3_o_in_axes3_xy = sps_W_3_in_axes3_xy - sps_alpha_2_o_in_axes2_y
         sps_B_3_o_in_axes3_xz = sps_W_3_in_axes3_xz + sps_alpha_3_o_in_axes3_y
-        sps_B_3_o_in_axes3_yx = sps_W_3_in_axes3_xy + sps_alpha_2_o_in_axes2_x
+        sps_B_3_o_in_axes3_yx = sps_W_3_in_axes3_xy + sps_alpha_2_o_in_axes2_y
         sps_B_3_o_in_axes3_yz = sps_W_3_in_axes3_yz - sps_alpha_3_o_in_axes3_x
         sps_B_3_o_in_axes3_zx = sps_W_3_in_axes3_xz - sps_alpha_3_o_in_axes3_y
         sps_B_3_o_in_axes3_zy = sps_W_3_in_axes3_yz + sps_alpha_3_o_in_axes3_x
@@ -1980,22 +2159,22 @@ def _run_dynamics(m, X, V):
             sps_B_3_o_in_axes3_yz*sps_J_group_3_in_axes3_xz -
             sps_acc_4_o_in_axes3_x*sps_h_4_in_spec3_z - sps_g_in_axes3_y*sps_h_3_in_spec3_y
         )
-        sps_mu_3_o_in_axes2_z = sps_c_3*sps_mu_3_o_in_axes3_y + sps_mu_3_o_in_axes3_x*sps_s_3
+        sps_mu_3_o_in_axes2_z = sps_c_3*sps_mu_3_o_in_axes3_x - sps_mu_3_o_in_axes3_y*sps_s_3
         # (sps-d_Gamma_2) coefficient of the acceleration in: moment about axis 2 of the distal links' inertia and weight
-        sps_d_Gamma_2_in_axes3_y = sps_c_3*sps_d_mu_3_in_axes3_yy + sps_d_mu_3_in_axes3_xy*sps_s_3
-        sps_d_Gamma_2_in_axes3_z = sps_h_4_in_spec3_z*sps_s_3 - sps_c_3*sps_h_4_in_spec3_y
+        sps_d_Gamma_2_in_axes3_y = sps_c_3*sps_d_mu_3_in_axes3_xy - sps_d_mu_3_in_axes3_yy*sps_s_3
+        sps_d_Gamma_2_in_axes3_z = sps_c_3*sps_h_4_in_spec3_z + sps_h_4_in_spec3_y*sps_s_3
         # (sps-d_Gamma_1) coefficient of the acceleration in: moment about axis 1 of the distal links' inertia and weight
         sps_d_Gamma_1_in_axes3_y = (
         sps_d_mu_3_in_axes3_xy*sps_e_1_in_axes3_x + sps_d_mu_3_in_axes3_yy*sps_e_1_in_axes3_y +
-            sps_d_mu_3_in_axes3_zy*sps_s_2
+            sps_d_mu_3_in_axes3_zy*sps_e_1_in_axes2_y
         )
         sps_d_Gamma_1_in_axes3_z = (
         sps_e_1_in_axes3_x*sps_h_4_in_spec3_z - sps_e_1_in_axes3_y*sps_h_4_in_spec3_y
         )
         # (sps-Gamma_1_o) remainder without the acceleration in: moment about axis 1 of the distal links' inertia and weight
         sps_Gamma_1_o = (
-        sps_e_1_in_axes3_x*sps_mu_3_o_in_axes3_x + sps_e_1_in_axes3_y*sps_mu_3_o_in_axes3_y +
-            sps_mu_3_o_in_axes3_z*sps_s_2
+        sps_e_1_in_axes2_y*sps_mu_3_o_in_axes3_z + sps_e_1_in_axes3_x*sps_mu_3_o_in_axes3_x +
+            sps_e_1_in_axes3_y*sps_mu_3_o_in_axes3_y
         )
         # (sps-d_G) coefficient of the acceleration in: force at the connection point that balances the leg's inertia and weight along all degrees of freedom
         sps_d_G_in_axes3_xz = (
@@ -2009,8 +2188,8 @@ def _run_dynamics(m, X, V):
         sps_d_alpha_1_in_axes3_zx*sps_h_4_in_spec3_z -
             sps_d_alpha_2_in_axes3_yx*sps_h_4_in_spec3_x -
             sps_w_1_in_axes3_x*(sps_d_mu_3_in_axes3_xx*sps_e_1_in_axes3_x +
-            sps_d_mu_3_in_axes3_yx*sps_e_1_in_axes3_y + sps_d_mu_3_in_axes3_zx*sps_s_2) -
-            sps_w_2_in_axes3_x*(sps_c_3*sps_d_mu_3_in_axes3_yx + sps_d_mu_3_in_axes3_xx*sps_s_3)
+            sps_d_mu_3_in_axes3_yx*sps_e_1_in_axes3_y + sps_d_mu_3_in_axes3_zx*sps_e_1_in_axes2_y)
+            - sps_w_2_in_axes3_x*(sps_c_3*sps_d_mu_3_in_axes3_xx - sps_d_mu_3_in_axes3_yx*sps_s_3)
         )
         sps_d_c_in_axes3_xy = (
         sps_d_alpha_1_in_axes3_zy*sps_h_4_in_spec3_z - sps_d_Gamma_1_in_axes3_y*sps_w_1_in_axes3_x
@@ -2125,9 +2304,9 @@ def _run_dynamics(m, X, V):
         sps_H_a_4_y = sps_q_z*sps_w_4_x - sps_q_x*sps_w_4_z
         sps_H_a_4_z = sps_q_x*sps_w_4_y - sps_q_y*sps_w_4_x
         ok = (
-        ok & (abs(sps_rho2_1) > _TOLERANCE * _TOLERANCE * 0.6400000000000001) & (abs(sps_rho2_2) >
-            _TOLERANCE * _TOLERANCE * 0.6400000000000001) & (abs(sps_w_1_t) > _TOLERANCE *
-            0.6400000000000001)
+        ok & (abs(sps_root_1_t) > _TOLERANCE * _TOLERANCE * 0.6400000000000001) &
+            (abs(sps_root_2_t) > _TOLERANCE * _TOLERANCE * 0.6400000000000001) & (abs(sps_w_1_t) >
+            _TOLERANCE * 0.6400000000000001)
         )
         # (M_tt) translational block of M
         M_tt_sps_xx += sps_Q_xx
@@ -2360,48 +2539,41 @@ def _run_M(m, X):
         sps_S_x = sps_q_x + t_x - sps_base_point_x
         sps_S_y = sps_q_y + t_y - sps_base_point_y
         sps_S_z = sps_q_z + t_z - sps_base_point_z
-        # (sps-c_3) cosine of the angle of joint 3 from its reference direction
-        sps_c_3 = -sin(sps_y_3_extra)
-        # (sps-s_3) sine of the angle of joint 3 from its reference direction
-        sps_s_3 = cos(sps_y_3_extra)
-        # (sps-px_1) component along the reference direction
-        sps_px_1 = (
+        sps_S_in_turn1_x = (
         sps_S_x*sps_base_frame_xx + sps_S_y*sps_base_frame_yx + sps_S_z*sps_base_frame_zx
         )
-        # (sps-py_1) component across the reference direction
-        sps_py_1 = (
+        sps_S_in_turn1_y = (
         sps_S_x*sps_base_frame_xy + sps_S_y*sps_base_frame_yy + sps_S_z*sps_base_frame_zy
         )
-        # (sps-rho2_1) squared amplitude
-        sps_rho2_1 = sps_px_1*sps_px_1 + sps_py_1*sps_py_1
-        # (sps-root_1) amplitude, with the sign of the branch
-        sps_root_1 = sps_branch_1*sqrt(sps_rho2_1)
-        # (sps-c_1) cosine of the angle of joint 1 from its reference direction
-        inv_sps_root_1 = 1.0/sps_root_1
-        sps_c_1 = -inv_sps_root_1*sps_py_1
-        # (sps-s_1) sine of the angle of joint 1 from its reference direction
-        sps_s_1 = inv_sps_root_1*sps_px_1
-        # (sps-xi_1) the vector from joint 1 to the connection point, resolved along link 1
-        sps_xi_1_in_axes1_z = (
+        sps_S_in_turn1_z = (
         sps_S_x*sps_base_frame_xz + sps_S_y*sps_base_frame_yz + sps_S_z*sps_base_frame_zz
         )
-        # (sps-rho2_2) squared amplitude
-        sps_rho2_2 = sps_rho2_1 + sps_xi_1_in_axes1_z*sps_xi_1_in_axes1_z
-        # (sps-root_2) amplitude, with the sign of the branch
-        sps_root_2 = sps_branch_2*sqrt(sps_rho2_2)
+        # (sps-c_3) cosine of the angle of joint 3 from its reference direction
+        sps_c_3 = cos(sps_y_3_extra)
+        # (sps-s_3) sine of the angle of joint 3 from its reference direction
+        sps_s_3 = sin(sps_y_3_extra)
+        # (sps-root_1) amplitude, the length across axis 1, with the sign of the branch
+        sps_root_1_t = sps_S_in_turn1_x*sps_S_in_turn1_x + sps_S_in_turn1_y*sps_S_in_turn1_y
+        sps_root_1 = sps_branch_1*sqrt(sps_root_1_t)
+        # (sps-c_1) cosine of the angle of joint 1 from its reference direction
+        inv_sps_root_1 = 1.0/sps_root_1
+        sps_c_1 = inv_sps_root_1*sps_S_in_turn1_x
+        # (sps-s_1) sine of the angle of joint 1 from its reference direction
+        sps_s_1 = inv_sps_root_1*sps_S_in_turn1_y
+        # (sps-root_2) amplitude, the length across axis 2, with the sign of the branch
+        sps_root_2_t = sps_S_in_turn1_z*sps_S_in_turn1_z + sps_root_1_t
+        sps_root_2 = sps_branch_2*sqrt(sps_root_2_t)
         # (sps-c_2) cosine of the angle of joint 2 from its reference direction
         inv_sps_root_2 = 1.0/sps_root_2
-        sps_c_2_t = inv_sps_root_2*sps_root_1
-        # (sps-s_2) sine of the angle of joint 2 from its reference direction
-        sps_s_2 = inv_sps_root_2*sps_xi_1_in_axes1_z
+        sps_c_2 = inv_sps_root_2*sps_root_1
         # (sps-v_1) velocity of the connection point per rate of joint 1
-        sps_e_1_in_axes3_x = -sps_c_2_t*sps_c_3
-        sps_e_1_in_axes3_y = sps_c_2_t*sps_s_3
+        sps_e_1_in_axes3_x = sps_c_2*sps_s_3
+        sps_e_1_in_axes3_y = sps_c_2*sps_c_3
         sps_v_1_in_axes3_x = sps_e_1_in_axes3_y*sps_root_2
         sps_v_1_in_axes3_y = -sps_e_1_in_axes3_x*sps_root_2
         # (sps-v_2) velocity of the connection point per rate of joint 2
-        sps_v_2_in_axes3_x = sps_c_3*sps_root_2
-        sps_v_2_t = sps_root_2*sps_s_3
+        sps_v_2_in_axes3_x = -sps_root_2*sps_s_3
+        sps_v_2_t = sps_c_3*sps_root_2
         # (sps-w_1) reciprocal vector 1
         sps_w_1_t = sps_v_1_in_axes3_x*sps_v_2_t + sps_v_1_in_axes3_y*sps_v_2_in_axes3_x
         inv_sps_w_1_t = 1.0/sps_w_1_t
@@ -2415,17 +2587,18 @@ def _run_M(m, X):
         sps_w_4_y = inv_sps_root_2*sps_S_y
         sps_w_4_z = inv_sps_root_2*sps_S_z
         # (sps-d_alpha_1) coefficient of the acceleration in: angular acceleration of link 1
-        sps_d_alpha_1_in_axes3_zx = sps_s_2*sps_w_1_in_axes3_x
-        sps_d_alpha_1_in_axes3_zy = sps_s_2*sps_w_1_in_axes3_y
+        sps_e_1_in_axes2_y = inv_sps_root_2*sps_S_in_turn1_z
+        sps_d_alpha_1_in_axes3_zx = sps_e_1_in_axes2_y*sps_w_1_in_axes3_x
+        sps_d_alpha_1_in_axes3_zy = sps_e_1_in_axes2_y*sps_w_1_in_axes3_y
         # (sps-d_alpha_2) coefficient of the acceleration in: angular acceleration of link 2
         sps_d_alpha_2_in_axes3_xx = (
-        sps_e_1_in_axes3_x*sps_w_1_in_axes3_x + sps_s_3*sps_w_2_in_axes3_x
+        sps_c_3*sps_w_2_in_axes3_x + sps_e_1_in_axes3_x*sps_w_1_in_axes3_x
         )
-        sps_d_alpha_2_in_axes3_xy = sps_e_1_in_axes3_x*sps_w_1_in_axes3_y - sps_s_3*sps_w_2_t
+        sps_d_alpha_2_in_axes3_xy = sps_e_1_in_axes3_x*sps_w_1_in_axes3_y - sps_c_3*sps_w_2_t
         sps_d_alpha_2_in_axes3_yx = (
-        sps_c_3*sps_w_2_in_axes3_x + sps_e_1_in_axes3_y*sps_w_1_in_axes3_x
+        sps_e_1_in_axes3_y*sps_w_1_in_axes3_x - sps_s_3*sps_w_2_in_axes3_x
         )
-        sps_d_alpha_2_in_axes3_yy = sps_e_1_in_axes3_y*sps_w_1_in_axes3_y - sps_c_3*sps_w_2_t
+        sps_d_alpha_2_in_axes3_yy = sps_e_1_in_axes3_y*sps_w_1_in_axes3_y + sps_s_3*sps_w_2_t
         # (sps-d_mu_3) coefficient of the acceleration in: inertia moment of the links that turn with link 3, about their reference points
         sps_d_mu_3_in_axes3_xx = (
         sps_J_group_3_in_axes3_xx*sps_d_alpha_2_in_axes3_xx +
@@ -2458,12 +2631,12 @@ def _run_M(m, X):
             sps_J_group_3_in_axes3_zz*sps_d_alpha_1_in_axes3_zy
         )
         # (sps-d_Gamma_2) coefficient of the acceleration in: moment about axis 2 of the distal links' inertia and weight
-        sps_d_Gamma_2_in_axes3_y = sps_c_3*sps_d_mu_3_in_axes3_yy + sps_d_mu_3_in_axes3_xy*sps_s_3
-        sps_d_Gamma_2_in_axes3_z = sps_h_4_in_spec3_z*sps_s_3 - sps_c_3*sps_h_4_in_spec3_y
+        sps_d_Gamma_2_in_axes3_y = sps_c_3*sps_d_mu_3_in_axes3_xy - sps_d_mu_3_in_axes3_yy*sps_s_3
+        sps_d_Gamma_2_in_axes3_z = sps_c_3*sps_h_4_in_spec3_z + sps_h_4_in_spec3_y*sps_s_3
         # (sps-d_Gamma_1) coefficient of the acceleration in: moment about axis 1 of the distal links' inertia and weight
         sps_d_Gamma_1_in_axes3_y = (
         sps_d_mu_3_in_axes3_xy*sps_e_1_in_axes3_x + sps_d_mu_3_in_axes3_yy*sps_e_1_in_axes3_y +
-            sps_d_mu_3_in_axes3_zy*sps_s_2
+            sps_d_mu_3_in_axes3_zy*sps_e_1_in_axes2_y
         )
         sps_d_Gamma_1_in_axes3_z = (
         sps_e_1_in_axes3_x*sps_h_4_in_spec3_z - sps_e_1_in_axes3_y*sps_h_4_in_spec3_y
@@ -2480,8 +2653,8 @@ def _run_M(m, X):
         sps_d_alpha_1_in_axes3_zx*sps_h_4_in_spec3_z -
             sps_d_alpha_2_in_axes3_yx*sps_h_4_in_spec3_x -
             sps_w_1_in_axes3_x*(sps_d_mu_3_in_axes3_xx*sps_e_1_in_axes3_x +
-            sps_d_mu_3_in_axes3_yx*sps_e_1_in_axes3_y + sps_d_mu_3_in_axes3_zx*sps_s_2) -
-            sps_w_2_in_axes3_x*(sps_c_3*sps_d_mu_3_in_axes3_yx + sps_d_mu_3_in_axes3_xx*sps_s_3)
+            sps_d_mu_3_in_axes3_yx*sps_e_1_in_axes3_y + sps_d_mu_3_in_axes3_zx*sps_e_1_in_axes2_y)
+            - sps_w_2_in_axes3_x*(sps_c_3*sps_d_mu_3_in_axes3_xx - sps_d_mu_3_in_axes3_yx*sps_s_3)
         )
         sps_d_c_in_axes3_xy = (
         sps_d_alpha_1_in_axes3_zy*sps_h_4_in_spec3_z - sps_d_Gamma_1_in_axes3_y*sps_w_1_in_axes3_x
@@ -2494,20 +2667,20 @@ def _run_M(m, X):
             sps_d_alpha_1_in_axes3_zy*sps_h_4_in_spec3_y
         )
         # (sps-Q) inertia of the leg at the connection point, without the mass gathered there
-        sps_Q_t = sps_s_2*sps_s_3
-        sps_Q_t_2 = sps_Q_t*sps_s_1 - sps_c_1*sps_c_3
-        sps_Q_t_3 = sps_Q_t*sps_c_1 + sps_c_3*sps_s_1
+        sps_Q_t = sps_c_3*sps_e_1_in_axes2_y
+        sps_Q_t_2 = sps_s_1*sps_s_3 - sps_Q_t*sps_c_1
+        sps_Q_t_3 = -sps_Q_t*sps_s_1 - sps_c_1*sps_s_3
         axis_y_sps_axes3_x = (
-        sps_Q_t_3*sps_base_frame_xy + sps_base_frame_xz*sps_e_1_in_axes3_y -
-            sps_Q_t_2*sps_base_frame_xx
+        sps_Q_t_2*sps_base_frame_xx + sps_Q_t_3*sps_base_frame_xy +
+            sps_base_frame_xz*sps_e_1_in_axes3_y
         )
         axis_y_sps_axes3_y = (
-        sps_Q_t_3*sps_base_frame_yy + sps_base_frame_yz*sps_e_1_in_axes3_y -
-            sps_Q_t_2*sps_base_frame_yx
+        sps_Q_t_2*sps_base_frame_yx + sps_Q_t_3*sps_base_frame_yy +
+            sps_base_frame_yz*sps_e_1_in_axes3_y
         )
         axis_y_sps_axes3_z = (
-        sps_Q_t_3*sps_base_frame_zy + sps_base_frame_zz*sps_e_1_in_axes3_y -
-            sps_Q_t_2*sps_base_frame_zx
+        sps_Q_t_2*sps_base_frame_zx + sps_Q_t_3*sps_base_frame_zy +
+            sps_base_frame_zz*sps_e_1_in_axes3_y
         )
         axis_x_sps_axes3_x = axis_y_sps_axes3_y*sps_w_4_z - axis_y_sps_axes3_z*sps_w_4_y
         axis_x_sps_axes3_y = axis_y_sps_axes3_z*sps_w_4_x - axis_y_sps_axes3_x*sps_w_4_z
@@ -2582,9 +2755,9 @@ def _run_M(m, X):
         sps_M_ya_3_y = sps_d_P_3_x*sps_q_z - sps_d_P_3_z*sps_q_x
         sps_M_ya_3_z = sps_d_P_3_y*sps_q_x - sps_d_P_3_x*sps_q_y
         ok = (
-        ok & (abs(sps_rho2_1) > _TOLERANCE * _TOLERANCE * 0.6400000000000001) & (abs(sps_rho2_2) >
-            _TOLERANCE * _TOLERANCE * 0.6400000000000001) & (abs(sps_w_1_t) > _TOLERANCE *
-            0.6400000000000001)
+        ok & (abs(sps_root_1_t) > _TOLERANCE * _TOLERANCE * 0.6400000000000001) &
+            (abs(sps_root_2_t) > _TOLERANCE * _TOLERANCE * 0.6400000000000001) & (abs(sps_w_1_t) >
+            _TOLERANCE * 0.6400000000000001)
         )
         # (M_tt) translational block of M
         M_tt_sps_xx += sps_Q_xx
@@ -2819,40 +2992,33 @@ def _run_Z(m, X, V):
         sps_S_x = sps_q_x + t_x - sps_base_point_x
         sps_S_y = sps_q_y + t_y - sps_base_point_y
         sps_S_z = sps_q_z + t_z - sps_base_point_z
-        # (sps-c_3) cosine of the angle of joint 3 from its reference direction
-        sps_c_3 = -sin(sps_y_3_extra)
-        # (sps-s_3) sine of the angle of joint 3 from its reference direction
-        sps_s_3 = cos(sps_y_3_extra)
-        # (sps-px_1) component along the reference direction
-        sps_px_1 = (
+        sps_S_in_turn1_x = (
         sps_S_x*sps_base_frame_xx + sps_S_y*sps_base_frame_yx + sps_S_z*sps_base_frame_zx
         )
-        # (sps-py_1) component across the reference direction
-        sps_py_1 = (
+        sps_S_in_turn1_y = (
         sps_S_x*sps_base_frame_xy + sps_S_y*sps_base_frame_yy + sps_S_z*sps_base_frame_zy
         )
-        # (sps-rho2_1) squared amplitude
-        sps_rho2_1 = sps_px_1*sps_px_1 + sps_py_1*sps_py_1
-        # (sps-root_1) amplitude, with the sign of the branch
-        sps_root_1 = sps_branch_1*sqrt(sps_rho2_1)
-        # (sps-c_1) cosine of the angle of joint 1 from its reference direction
-        inv_sps_root_1 = 1.0/sps_root_1
-        sps_c_1 = -inv_sps_root_1*sps_py_1
-        # (sps-s_1) sine of the angle of joint 1 from its reference direction
-        sps_s_1 = inv_sps_root_1*sps_px_1
-        # (sps-xi_1) the vector from joint 1 to the connection point, resolved along link 1
-        sps_xi_1_in_axes1_z = (
+        sps_S_in_turn1_z = (
         sps_S_x*sps_base_frame_xz + sps_S_y*sps_base_frame_yz + sps_S_z*sps_base_frame_zz
         )
-        # (sps-rho2_2) squared amplitude
-        sps_rho2_2 = sps_rho2_1 + sps_xi_1_in_axes1_z*sps_xi_1_in_axes1_z
-        # (sps-root_2) amplitude, with the sign of the branch
-        sps_root_2 = sps_branch_2*sqrt(sps_rho2_2)
+        # (sps-c_3) cosine of the angle of joint 3 from its reference direction
+        sps_c_3 = cos(sps_y_3_extra)
+        # (sps-s_3) sine of the angle of joint 3 from its reference direction
+        sps_s_3 = sin(sps_y_3_extra)
+        # (sps-root_1) amplitude, the length across axis 1, with the sign of the branch
+        sps_root_1_t = sps_S_in_turn1_x*sps_S_in_turn1_x + sps_S_in_turn1_y*sps_S_in_turn1_y
+        sps_root_1 = sps_branch_1*sqrt(sps_root_1_t)
+        # (sps-c_1) cosine of the angle of joint 1 from its reference direction
+        inv_sps_root_1 = 1.0/sps_root_1
+        sps_c_1 = inv_sps_root_1*sps_S_in_turn1_x
+        # (sps-s_1) sine of the angle of joint 1 from its reference direction
+        sps_s_1 = inv_sps_root_1*sps_S_in_turn1_y
+        # (sps-root_2) amplitude, the length across axis 2, with the sign of the branch
+        sps_root_2_t = sps_S_in_turn1_z*sps_S_in_turn1_z + sps_root_1_t
+        sps_root_2 = sps_branch_2*sqrt(sps_root_2_t)
         # (sps-c_2) cosine of the angle of joint 2 from its reference direction
         inv_sps_root_2 = 1.0/sps_root_2
-        sps_c_2_t = inv_sps_root_2*sps_root_1
-        # (sps-s_2) sine of the angle of joint 2 from its reference direction
-        sps_s_2 = inv_sps_root_2*sps_xi_1_in_axes1_z
+        sps_c_2 = inv_sps_root_2*sps_root_1
         # (sps-S_dot) velocity of the connection point
         sps_S_dot_t = omega_y*sps_q_z - omega_z*sps_q_y
         sps_S_dot_t_2 = omega_z*sps_q_x - omega_x*sps_q_z
@@ -2861,13 +3027,13 @@ def _run_Z(m, X, V):
         sps_S_dot_y = sps_S_dot_t_2 + t_dot_y
         sps_S_dot_z = sps_S_dot_t_3 + t_dot_z
         # (sps-v_1) velocity of the connection point per rate of joint 1
-        sps_e_1_in_axes3_x = -sps_c_2_t*sps_c_3
-        sps_e_1_in_axes3_y = sps_c_2_t*sps_s_3
+        sps_e_1_in_axes3_x = sps_c_2*sps_s_3
+        sps_e_1_in_axes3_y = sps_c_2*sps_c_3
         sps_v_1_in_axes3_x = sps_e_1_in_axes3_y*sps_root_2
         sps_v_1_in_axes3_y = -sps_e_1_in_axes3_x*sps_root_2
         # (sps-v_2) velocity of the connection point per rate of joint 2
-        sps_v_2_in_axes3_x = sps_c_3*sps_root_2
-        sps_v_2_t = sps_root_2*sps_s_3
+        sps_v_2_in_axes3_x = -sps_root_2*sps_s_3
+        sps_v_2_t = sps_c_3*sps_root_2
         # (sps-w_1) reciprocal vector 1
         sps_w_1_t = sps_v_1_in_axes3_x*sps_v_2_t + sps_v_1_in_axes3_y*sps_v_2_in_axes3_x
         # (sps-w_4) reciprocal vector 3
@@ -2875,20 +3041,21 @@ def _run_Z(m, X, V):
         sps_w_4_y = inv_sps_root_2*sps_S_y
         sps_w_4_z = inv_sps_root_2*sps_S_z
         # (sps-S_dot_rest) velocity of the connection point left to the joints that are not extra
-        sps_S_dot_rest_t = sps_s_2*sps_s_3
-        sps_S_dot_rest_t_2 = sps_S_dot_rest_t*sps_s_1 - sps_c_1*sps_c_3
-        sps_S_dot_rest_t_3 = sps_S_dot_rest_t*sps_c_1 + sps_c_3*sps_s_1
+        sps_e_1_in_axes2_y = inv_sps_root_2*sps_S_in_turn1_z
+        sps_S_dot_rest_t = sps_c_3*sps_e_1_in_axes2_y
+        sps_S_dot_rest_t_2 = sps_s_1*sps_s_3 - sps_S_dot_rest_t*sps_c_1
+        sps_S_dot_rest_t_3 = -sps_S_dot_rest_t*sps_s_1 - sps_c_1*sps_s_3
         axis_y_sps_axes3_x = (
-        sps_S_dot_rest_t_3*sps_base_frame_xy + sps_base_frame_xz*sps_e_1_in_axes3_y -
-            sps_S_dot_rest_t_2*sps_base_frame_xx
+        sps_S_dot_rest_t_2*sps_base_frame_xx + sps_S_dot_rest_t_3*sps_base_frame_xy +
+            sps_base_frame_xz*sps_e_1_in_axes3_y
         )
         axis_y_sps_axes3_y = (
-        sps_S_dot_rest_t_3*sps_base_frame_yy + sps_base_frame_yz*sps_e_1_in_axes3_y -
-            sps_S_dot_rest_t_2*sps_base_frame_yx
+        sps_S_dot_rest_t_2*sps_base_frame_yx + sps_S_dot_rest_t_3*sps_base_frame_yy +
+            sps_base_frame_yz*sps_e_1_in_axes3_y
         )
         axis_y_sps_axes3_z = (
-        sps_S_dot_rest_t_3*sps_base_frame_zy + sps_base_frame_zz*sps_e_1_in_axes3_y -
-            sps_S_dot_rest_t_2*sps_base_frame_zx
+        sps_S_dot_rest_t_2*sps_base_frame_zx + sps_S_dot_rest_t_3*sps_base_frame_zy +
+            sps_base_frame_zz*sps_e_1_in_axes3_y
         )
         axis_x_sps_axes3_x = axis_y_sps_axes3_y*sps_w_4_z - axis_y_sps_axes3_z*sps_w_4_y
         axis_x_sps_axes3_y = axis_y_sps_axes3_z*sps_w_4_x - axis_y_sps_axes3_x*sps_w_4_z
@@ -2916,13 +3083,13 @@ def _run_Z(m, X, V):
             sps_S_dot_rest_in_axes3_x*sps_v_1_in_axes3_y)
         )
         # (sps-omega_1) angular velocity of link 1
-        sps_omega_1_in_axes2_x = sps_qd_1*sps_s_2
-        sps_omega_1_t = sps_c_2_t*sps_qd_1
+        sps_omega_1_in_axes2_x = sps_c_2*sps_qd_1
+        sps_omega_1_in_axes2_y = sps_e_1_in_axes2_y*sps_qd_1
         # (sps-omega_2) angular velocity of link 2
-        sps_omega_2_in_axes3_x = -sps_c_3*sps_omega_1_t - sps_qd_2_t*sps_s_3
-        sps_omega_2_in_axes3_y = sps_omega_1_t*sps_s_3 - sps_c_3*sps_qd_2_t
+        sps_omega_2_in_axes3_x = sps_omega_1_in_axes2_x*sps_s_3 - sps_c_3*sps_qd_2_t
+        sps_omega_2_in_axes3_y = sps_c_3*sps_omega_1_in_axes2_x + sps_qd_2_t*sps_s_3
         # (sps-omega_3) angular velocity of link 3
-        sps_omega_3_in_axes3_z = sps_omega_1_in_axes2_x + sps_yd_3
+        sps_omega_3_in_axes3_z = sps_omega_1_in_axes2_y + sps_yd_3
         # (sps-W_3) centripetal tensor of link 3
         sps_W_3_in_axes3_xy = sps_omega_2_in_axes3_x*sps_omega_2_in_axes3_y
         sps_W_3_in_axes3_xz = sps_omega_2_in_axes3_x*sps_omega_3_in_axes3_z
@@ -2938,13 +3105,13 @@ def _run_Z(m, X, V):
         axis_y_sps_axes3_x*sps_u_1_x + axis_y_sps_axes3_y*sps_u_1_y + axis_y_sps_axes3_z*sps_u_1_z
         )
         # (sps-zeta_2) angular acceleration of link 2 from the turning of axis 2
-        sps_zeta_2_in_axes2_y = sps_omega_1_in_axes2_x*sps_qd_2_t
+        sps_zeta_2_t = sps_omega_1_in_axes2_y*sps_qd_2_t
         # (sps-zeta_3) angular acceleration of link 3 from the turning of axis 3
         sps_zeta_3_in_axes3_x = sps_omega_2_in_axes3_y*sps_yd_3
         sps_zeta_3_in_axes3_y = -sps_omega_2_in_axes3_x*sps_yd_3
         # (sps-beta_3) angular acceleration of link 3 at zero joint accelerations
-        sps_beta_3_in_axes3_x = sps_zeta_3_in_axes3_x + sps_c_3*sps_zeta_2_in_axes2_y
-        sps_beta_3_in_axes3_y = sps_zeta_3_in_axes3_y - sps_s_3*sps_zeta_2_in_axes2_y
+        sps_beta_3_in_axes3_x = sps_zeta_3_in_axes3_x - sps_s_3*sps_zeta_2_t
+        sps_beta_3_in_axes3_y = sps_zeta_3_in_axes3_y - sps_c_3*sps_zeta_2_t
         # (sps-bias) acceleration of the connection point at zero joint accelerations
         sps_bias_t = 2.0*sps_S_dot_rest_in_axes3_z
         sps_bias_in_axes3_x = (
@@ -2963,24 +3130,26 @@ def _run_Z(m, X, V):
         inv_sps_w_1_t*(sps_rel_o_in_axes3_x*sps_v_2_t + sps_rel_o_in_axes3_y*sps_v_2_in_axes3_x)
         )
         # (sps-qdd_2_o) remainder without the acceleration in: acceleration of joint 2
-        sps_qdd_2_o = (
-        -inv_sps_w_1_t*(sps_rel_o_in_axes3_y*sps_v_1_in_axes3_x -
+        sps_qdd_2_o_t = (
+        inv_sps_w_1_t*(sps_rel_o_in_axes3_y*sps_v_1_in_axes3_x -
             sps_rel_o_in_axes3_x*sps_v_1_in_axes3_y)
         )
         # (sps-alpha_2_o) remainder without the acceleration in: angular acceleration of link 2
-        sps_alpha_2_o_in_axes2_x = sps_omega_1_t*sps_qd_2_t + sps_qdd_1_o*sps_s_2
-        sps_alpha_2_o_in_axes2_y = sps_zeta_2_in_axes2_y - sps_c_2_t*sps_qdd_1_o
+        sps_alpha_2_o_in_axes2_x = sps_c_2*sps_qdd_1_o - sps_zeta_2_t
+        sps_alpha_2_o_in_axes2_y = (
+        sps_e_1_in_axes2_y*sps_qdd_1_o + sps_omega_1_in_axes2_x*sps_qd_2_t
+        )
         # (sps-alpha_3_o) remainder without the acceleration in: angular acceleration of link 3
         sps_alpha_3_o_in_axes3_x = (
-        sps_zeta_3_in_axes3_x + sps_alpha_2_o_in_axes2_y*sps_c_3 + sps_qdd_2_o*sps_s_3
+        sps_zeta_3_in_axes3_x + sps_alpha_2_o_in_axes2_x*sps_s_3 - sps_c_3*sps_qdd_2_o_t
         )
         sps_alpha_3_o_in_axes3_y = (
-        sps_zeta_3_in_axes3_y + sps_c_3*sps_qdd_2_o - sps_alpha_2_o_in_axes2_y*sps_s_3
+        sps_zeta_3_in_axes3_y + sps_alpha_2_o_in_axes2_x*sps_c_3 + sps_qdd_2_o_t*sps_s_3
         )
         # (sps-B_3_o) remainder of the acceleration tensor of link 3
-        sps_B_3_o_in_axes3_xy = sps_W_3_in_axes3_xy - sps_alpha_2_o_in_axes2_x
+        sps_B_3_o_in_axes3_xy = sps_W_3_in_axes3_xy - sps_alpha_2_o_in_axes2_y
         sps_B_3_o_in_axes3_xz = sps_W_3_in_axes3_xz + sps_alpha_3_o_in_axes3_y
-        sps_B_3_o_in_axes3_yx = sps_W_3_in_axes3_xy + sps_alpha_2_o_in_axes2_x
+        sps_B_3_o_in_axes3_yx = sps_W_3_in_axes3_xy + sps_alpha_2_o_in_axes2_y
         sps_B_3_o_in_axes3_yz = sps_W_3_in_axes3_yz - sps_alpha_3_o_in_axes3_x
         sps_B_3_o_in_axes3_zx = sps_W_3_in_axes3_xz - sps_alpha_3_o_in_axes3_y
         sps_B_3_o_in_axes3_zy = sps_W_3_in_axes3_yz + sps_alpha_3_o_in_axes3_x
@@ -3033,11 +3202,11 @@ def _run_Z(m, X, V):
             sps_B_3_o_in_axes3_yz*sps_J_group_3_in_axes3_xz -
             sps_acc_4_o_in_axes3_x*sps_h_4_in_spec3_z - sps_g_in_axes3_y*sps_h_3_in_spec3_y
         )
-        sps_mu_3_o_in_axes2_z = sps_c_3*sps_mu_3_o_in_axes3_y + sps_mu_3_o_in_axes3_x*sps_s_3
+        sps_mu_3_o_in_axes2_z = sps_c_3*sps_mu_3_o_in_axes3_x - sps_mu_3_o_in_axes3_y*sps_s_3
         # (sps-Gamma_1_o) remainder without the acceleration in: moment about axis 1 of the distal links' inertia and weight
         sps_Gamma_1_o = (
-        sps_e_1_in_axes3_x*sps_mu_3_o_in_axes3_x + sps_e_1_in_axes3_y*sps_mu_3_o_in_axes3_y +
-            sps_mu_3_o_in_axes3_z*sps_s_2
+        sps_e_1_in_axes2_y*sps_mu_3_o_in_axes3_z + sps_e_1_in_axes3_x*sps_mu_3_o_in_axes3_x +
+            sps_e_1_in_axes3_y*sps_mu_3_o_in_axes3_y
         )
         # (sps-c_o) remainder without the acceleration in: leg force on the platform without actuation and without the mass at the connection point
         sps_c_o_in_axes3_x = (
@@ -3068,9 +3237,9 @@ def _run_Z(m, X, V):
         sps_Z_a_t_2 = sps_U_x*sps_q_z - sps_U_z*sps_q_x
         sps_Z_a_t_3 = sps_U_y*sps_q_x - sps_U_x*sps_q_y
         ok = (
-        ok & (abs(sps_rho2_1) > _TOLERANCE * _TOLERANCE * 0.6400000000000001) & (abs(sps_rho2_2) >
-            _TOLERANCE * _TOLERANCE * 0.6400000000000001) & (abs(sps_w_1_t) > _TOLERANCE *
-            0.6400000000000001)
+        ok & (abs(sps_root_1_t) > _TOLERANCE * _TOLERANCE * 0.6400000000000001) &
+            (abs(sps_root_2_t) > _TOLERANCE * _TOLERANCE * 0.6400000000000001) & (abs(sps_w_1_t) >
+            _TOLERANCE * 0.6400000000000001)
         )
         # (Z_t) translational part of Z
         Z_t_sps_x += sps_U_x
@@ -3162,24 +3331,20 @@ def _run_H(m, X):
         sps_S_x = sps_q_x + t_x - sps_base_point_x
         sps_S_y = sps_q_y + t_y - sps_base_point_y
         sps_S_z = sps_q_z + t_z - sps_base_point_z
-        # (sps-px_1) component along the reference direction
-        sps_px_1 = (
+        sps_S_in_turn1_x = (
         sps_S_x*sps_base_frame_xx + sps_S_y*sps_base_frame_yx + sps_S_z*sps_base_frame_zx
         )
-        # (sps-py_1) component across the reference direction
-        sps_py_1 = (
+        sps_S_in_turn1_y = (
         sps_S_x*sps_base_frame_xy + sps_S_y*sps_base_frame_yy + sps_S_z*sps_base_frame_zy
         )
-        # (sps-rho2_1) squared amplitude
-        sps_rho2_1 = sps_px_1*sps_px_1 + sps_py_1*sps_py_1
-        # (sps-xi_1) the vector from joint 1 to the connection point, resolved along link 1
-        sps_xi_1_in_axes1_z = (
+        sps_S_in_turn1_z = (
         sps_S_x*sps_base_frame_xz + sps_S_y*sps_base_frame_yz + sps_S_z*sps_base_frame_zz
         )
-        # (sps-rho2_2) squared amplitude
-        sps_rho2_2 = sps_rho2_1 + sps_xi_1_in_axes1_z*sps_xi_1_in_axes1_z
-        # (sps-root_2) amplitude, with the sign of the branch
-        sps_root_2 = sps_branch_2*sqrt(sps_rho2_2)
+        # (sps-root_1) amplitude, the length across axis 1, with the sign of the branch
+        sps_root_1_t = sps_S_in_turn1_x*sps_S_in_turn1_x + sps_S_in_turn1_y*sps_S_in_turn1_y
+        # (sps-root_2) amplitude, the length across axis 2, with the sign of the branch
+        sps_root_2_t = sps_S_in_turn1_z*sps_S_in_turn1_z + sps_root_1_t
+        sps_root_2 = sps_branch_2*sqrt(sps_root_2_t)
         # (sps-w_4) reciprocal vector 3
         inv_sps_root_2 = 1.0/sps_root_2
         sps_w_4_x = inv_sps_root_2*sps_S_x
@@ -3190,8 +3355,8 @@ def _run_H(m, X):
         sps_H_a_4_y = sps_q_z*sps_w_4_x - sps_q_x*sps_w_4_z
         sps_H_a_4_z = sps_q_x*sps_w_4_y - sps_q_y*sps_w_4_x
         ok = (
-        ok & (abs(sps_rho2_1) > _TOLERANCE * _TOLERANCE * 0.6400000000000001) & (abs(sps_rho2_2) >
-            _TOLERANCE * _TOLERANCE * 0.6400000000000001)
+        ok & (abs(sps_root_1_t) > _TOLERANCE * _TOLERANCE * 0.6400000000000001) &
+            (abs(sps_root_2_t) > _TOLERANCE * _TOLERANCE * 0.6400000000000001)
         )
         # (sps-w_4) reciprocal vector 3
         out_H[_H_sps[0][leg]] = sps_w_4_x
@@ -3378,40 +3543,33 @@ def _run_required(m, X, V, A):
         sps_S_x = sps_q_x + t_x - sps_base_point_x
         sps_S_y = sps_q_y + t_y - sps_base_point_y
         sps_S_z = sps_q_z + t_z - sps_base_point_z
-        # (sps-c_3) cosine of the angle of joint 3 from its reference direction
-        sps_c_3 = -sin(sps_y_3_extra)
-        # (sps-s_3) sine of the angle of joint 3 from its reference direction
-        sps_s_3 = cos(sps_y_3_extra)
-        # (sps-px_1) component along the reference direction
-        sps_px_1 = (
+        sps_S_in_turn1_x = (
         sps_S_x*sps_base_frame_xx + sps_S_y*sps_base_frame_yx + sps_S_z*sps_base_frame_zx
         )
-        # (sps-py_1) component across the reference direction
-        sps_py_1 = (
+        sps_S_in_turn1_y = (
         sps_S_x*sps_base_frame_xy + sps_S_y*sps_base_frame_yy + sps_S_z*sps_base_frame_zy
         )
-        # (sps-rho2_1) squared amplitude
-        sps_rho2_1 = sps_px_1*sps_px_1 + sps_py_1*sps_py_1
-        # (sps-root_1) amplitude, with the sign of the branch
-        sps_root_1 = sps_branch_1*sqrt(sps_rho2_1)
-        # (sps-c_1) cosine of the angle of joint 1 from its reference direction
-        inv_sps_root_1 = 1.0/sps_root_1
-        sps_c_1 = -inv_sps_root_1*sps_py_1
-        # (sps-s_1) sine of the angle of joint 1 from its reference direction
-        sps_s_1 = inv_sps_root_1*sps_px_1
-        # (sps-xi_1) the vector from joint 1 to the connection point, resolved along link 1
-        sps_xi_1_in_axes1_z = (
+        sps_S_in_turn1_z = (
         sps_S_x*sps_base_frame_xz + sps_S_y*sps_base_frame_yz + sps_S_z*sps_base_frame_zz
         )
-        # (sps-rho2_2) squared amplitude
-        sps_rho2_2 = sps_rho2_1 + sps_xi_1_in_axes1_z*sps_xi_1_in_axes1_z
-        # (sps-root_2) amplitude, with the sign of the branch
-        sps_root_2 = sps_branch_2*sqrt(sps_rho2_2)
+        # (sps-c_3) cosine of the angle of joint 3 from its reference direction
+        sps_c_3 = cos(sps_y_3_extra)
+        # (sps-s_3) sine of the angle of joint 3 from its reference direction
+        sps_s_3 = sin(sps_y_3_extra)
+        # (sps-root_1) amplitude, the length across axis 1, with the sign of the branch
+        sps_root_1_t = sps_S_in_turn1_x*sps_S_in_turn1_x + sps_S_in_turn1_y*sps_S_in_turn1_y
+        sps_root_1 = sps_branch_1*sqrt(sps_root_1_t)
+        # (sps-c_1) cosine of the angle of joint 1 from its reference direction
+        inv_sps_root_1 = 1.0/sps_root_1
+        sps_c_1 = inv_sps_root_1*sps_S_in_turn1_x
+        # (sps-s_1) sine of the angle of joint 1 from its reference direction
+        sps_s_1 = inv_sps_root_1*sps_S_in_turn1_y
+        # (sps-root_2) amplitude, the length across axis 2, with the sign of the branch
+        sps_root_2_t = sps_S_in_turn1_z*sps_S_in_turn1_z + sps_root_1_t
+        sps_root_2 = sps_branch_2*sqrt(sps_root_2_t)
         # (sps-c_2) cosine of the angle of joint 2 from its reference direction
         inv_sps_root_2 = 1.0/sps_root_2
-        sps_c_2_t = inv_sps_root_2*sps_root_1
-        # (sps-s_2) sine of the angle of joint 2 from its reference direction
-        sps_s_2 = inv_sps_root_2*sps_xi_1_in_axes1_z
+        sps_c_2 = inv_sps_root_2*sps_root_1
         # (sps-S_dot) velocity of the connection point
         sps_S_dot_t = omega_y*sps_q_z - omega_z*sps_q_y
         sps_S_dot_t_2 = omega_z*sps_q_x - omega_x*sps_q_z
@@ -3420,13 +3578,13 @@ def _run_required(m, X, V, A):
         sps_S_dot_y = sps_S_dot_t_2 + t_dot_y
         sps_S_dot_z = sps_S_dot_t_3 + t_dot_z
         # (sps-v_1) velocity of the connection point per rate of joint 1
-        sps_e_1_in_axes3_x = -sps_c_2_t*sps_c_3
-        sps_e_1_in_axes3_y = sps_c_2_t*sps_s_3
+        sps_e_1_in_axes3_x = sps_c_2*sps_s_3
+        sps_e_1_in_axes3_y = sps_c_2*sps_c_3
         sps_v_1_in_axes3_x = sps_e_1_in_axes3_y*sps_root_2
         sps_v_1_in_axes3_y = -sps_e_1_in_axes3_x*sps_root_2
         # (sps-v_2) velocity of the connection point per rate of joint 2
-        sps_v_2_in_axes3_x = sps_c_3*sps_root_2
-        sps_v_2_t = sps_root_2*sps_s_3
+        sps_v_2_in_axes3_x = -sps_root_2*sps_s_3
+        sps_v_2_t = sps_c_3*sps_root_2
         # (sps-w_1) reciprocal vector 1
         sps_w_1_t = sps_v_1_in_axes3_x*sps_v_2_t + sps_v_1_in_axes3_y*sps_v_2_in_axes3_x
         # (sps-w_4) reciprocal vector 3
@@ -3434,20 +3592,21 @@ def _run_required(m, X, V, A):
         sps_w_4_y = inv_sps_root_2*sps_S_y
         sps_w_4_z = inv_sps_root_2*sps_S_z
         # (sps-S_dot_rest) velocity of the connection point left to the joints that are not extra
-        sps_S_dot_rest_t = sps_s_2*sps_s_3
-        sps_S_dot_rest_t_2 = sps_S_dot_rest_t*sps_s_1 - sps_c_1*sps_c_3
-        sps_S_dot_rest_t_3 = sps_S_dot_rest_t*sps_c_1 + sps_c_3*sps_s_1
+        sps_e_1_in_axes2_y = inv_sps_root_2*sps_S_in_turn1_z
+        sps_S_dot_rest_t = sps_c_3*sps_e_1_in_axes2_y
+        sps_S_dot_rest_t_2 = sps_s_1*sps_s_3 - sps_S_dot_rest_t*sps_c_1
+        sps_S_dot_rest_t_3 = -sps_S_dot_rest_t*sps_s_1 - sps_c_1*sps_s_3
         axis_y_sps_axes3_x = (
-        sps_S_dot_rest_t_3*sps_base_frame_xy + sps_base_frame_xz*sps_e_1_in_axes3_y -
-            sps_S_dot_rest_t_2*sps_base_frame_xx
+        sps_S_dot_rest_t_2*sps_base_frame_xx + sps_S_dot_rest_t_3*sps_base_frame_xy +
+            sps_base_frame_xz*sps_e_1_in_axes3_y
         )
         axis_y_sps_axes3_y = (
-        sps_S_dot_rest_t_3*sps_base_frame_yy + sps_base_frame_yz*sps_e_1_in_axes3_y -
-            sps_S_dot_rest_t_2*sps_base_frame_yx
+        sps_S_dot_rest_t_2*sps_base_frame_yx + sps_S_dot_rest_t_3*sps_base_frame_yy +
+            sps_base_frame_yz*sps_e_1_in_axes3_y
         )
         axis_y_sps_axes3_z = (
-        sps_S_dot_rest_t_3*sps_base_frame_zy + sps_base_frame_zz*sps_e_1_in_axes3_y -
-            sps_S_dot_rest_t_2*sps_base_frame_zx
+        sps_S_dot_rest_t_2*sps_base_frame_zx + sps_S_dot_rest_t_3*sps_base_frame_zy +
+            sps_base_frame_zz*sps_e_1_in_axes3_y
         )
         axis_x_sps_axes3_x = axis_y_sps_axes3_y*sps_w_4_z - axis_y_sps_axes3_z*sps_w_4_y
         axis_x_sps_axes3_y = axis_y_sps_axes3_z*sps_w_4_x - axis_y_sps_axes3_x*sps_w_4_z
@@ -3475,13 +3634,13 @@ def _run_required(m, X, V, A):
             sps_S_dot_rest_in_axes3_x*sps_v_1_in_axes3_y)
         )
         # (sps-omega_1) angular velocity of link 1
-        sps_omega_1_in_axes2_x = sps_qd_1*sps_s_2
-        sps_omega_1_t = sps_c_2_t*sps_qd_1
+        sps_omega_1_in_axes2_x = sps_c_2*sps_qd_1
+        sps_omega_1_in_axes2_y = sps_e_1_in_axes2_y*sps_qd_1
         # (sps-omega_2) angular velocity of link 2
-        sps_omega_2_in_axes3_x = -sps_c_3*sps_omega_1_t - sps_qd_2_t*sps_s_3
-        sps_omega_2_in_axes3_y = sps_omega_1_t*sps_s_3 - sps_c_3*sps_qd_2_t
+        sps_omega_2_in_axes3_x = sps_omega_1_in_axes2_x*sps_s_3 - sps_c_3*sps_qd_2_t
+        sps_omega_2_in_axes3_y = sps_c_3*sps_omega_1_in_axes2_x + sps_qd_2_t*sps_s_3
         # (sps-omega_3) angular velocity of link 3
-        sps_omega_3_in_axes3_z = sps_omega_1_in_axes2_x + sps_yd_3
+        sps_omega_3_in_axes3_z = sps_omega_1_in_axes2_y + sps_yd_3
         # (sps-W_3) centripetal tensor of link 3
         sps_W_3_in_axes3_xy = sps_omega_2_in_axes3_x*sps_omega_2_in_axes3_y
         sps_W_3_in_axes3_xz = sps_omega_2_in_axes3_x*sps_omega_3_in_axes3_z
@@ -3503,13 +3662,13 @@ def _run_required(m, X, V, A):
             axis_y_sps_axes3_z*sps_S_ddot_z
         )
         # (sps-zeta_2) angular acceleration of link 2 from the turning of axis 2
-        sps_zeta_2_in_axes2_y = sps_omega_1_in_axes2_x*sps_qd_2_t
+        sps_zeta_2_t = sps_omega_1_in_axes2_y*sps_qd_2_t
         # (sps-zeta_3) angular acceleration of link 3 from the turning of axis 3
         sps_zeta_3_in_axes3_x = sps_omega_2_in_axes3_y*sps_yd_3
         sps_zeta_3_in_axes3_y = -sps_omega_2_in_axes3_x*sps_yd_3
         # (sps-beta_3) angular acceleration of link 3 at zero joint accelerations
-        sps_beta_3_in_axes3_x = sps_zeta_3_in_axes3_x + sps_c_3*sps_zeta_2_in_axes2_y
-        sps_beta_3_in_axes3_y = sps_zeta_3_in_axes3_y - sps_s_3*sps_zeta_2_in_axes2_y
+        sps_beta_3_in_axes3_x = sps_zeta_3_in_axes3_x - sps_s_3*sps_zeta_2_t
+        sps_beta_3_in_axes3_y = sps_zeta_3_in_axes3_y - sps_c_3*sps_zeta_2_t
         # (sps-bias) acceleration of the connection point at zero joint accelerations
         sps_bias_t = 2.0*sps_S_dot_rest_in_axes3_z
         sps_bias_in_axes3_x = (
@@ -3533,16 +3692,16 @@ def _run_required(m, X, V, A):
             sps_rel_in_axes3_x*sps_v_1_in_axes3_y)
         )
         # (sps-alpha_2) angular acceleration of link 2
-        sps_alpha_2_in_axes2_x = sps_omega_1_t*sps_qd_2_t + sps_qdd_1*sps_s_2
-        sps_alpha_2_in_axes2_y = sps_zeta_2_in_axes2_y - sps_c_2_t*sps_qdd_1
+        sps_alpha_2_in_axes2_x = sps_c_2*sps_qdd_1 - sps_zeta_2_t
+        sps_alpha_2_in_axes2_y = sps_e_1_in_axes2_y*sps_qdd_1 + sps_omega_1_in_axes2_x*sps_qd_2_t
         # (sps-alpha_3) angular acceleration of link 3
         sps_alpha_3_in_axes3_x = (
-        sps_zeta_3_in_axes3_x + sps_alpha_2_in_axes2_y*sps_c_3 - sps_qdd_2_t*sps_s_3
+        sps_zeta_3_in_axes3_x + sps_alpha_2_in_axes2_x*sps_s_3 - sps_c_3*sps_qdd_2_t
         )
         sps_alpha_3_in_axes3_y = (
-        sps_zeta_3_in_axes3_y - sps_alpha_2_in_axes2_y*sps_s_3 - sps_c_3*sps_qdd_2_t
+        sps_zeta_3_in_axes3_y + sps_alpha_2_in_axes2_x*sps_c_3 + sps_qdd_2_t*sps_s_3
         )
-        sps_alpha_3_in_axes3_z = sps_alpha_2_in_axes2_x + sps_ydd_3
+        sps_alpha_3_in_axes3_z = sps_alpha_2_in_axes2_y + sps_ydd_3
         # (sps-B_3) acceleration tensor of link 3
         sps_B_3_in_axes3_xy = sps_W_3_in_axes3_xy - sps_alpha_3_in_axes3_z
         sps_B_3_in_axes3_xz = sps_W_3_in_axes3_xz + sps_alpha_3_in_axes3_y
@@ -3598,11 +3757,11 @@ def _run_required(m, X, V, A):
             sps_B_3_in_axes3_yz*sps_J_group_3_in_axes3_xz -
             sps_acc_4_in_axes3_x*sps_h_4_in_spec3_z - sps_g_in_axes3_y*sps_h_3_in_spec3_y
         )
-        sps_mu_3_in_axes2_z = sps_c_3*sps_mu_3_in_axes3_y + sps_mu_3_in_axes3_x*sps_s_3
+        sps_mu_3_in_axes2_z = sps_c_3*sps_mu_3_in_axes3_x - sps_mu_3_in_axes3_y*sps_s_3
         # (sps-Gamma_1) moment about axis 1 of the distal links' inertia and weight
         sps_Gamma_1 = (
-        sps_e_1_in_axes3_x*sps_mu_3_in_axes3_x + sps_e_1_in_axes3_y*sps_mu_3_in_axes3_y +
-            sps_mu_3_in_axes3_z*sps_s_2
+        sps_e_1_in_axes2_y*sps_mu_3_in_axes3_z + sps_e_1_in_axes3_x*sps_mu_3_in_axes3_x +
+            sps_e_1_in_axes3_y*sps_mu_3_in_axes3_y
         )
         # (sps-c) leg force on the platform without actuation and without the mass at the connection point
         sps_c_in_axes3_x = (
@@ -3636,9 +3795,9 @@ def _run_required(m, X, V, A):
         sps_H_a_4_y = sps_q_z*sps_w_4_x - sps_q_x*sps_w_4_z
         sps_H_a_4_z = sps_q_x*sps_w_4_y - sps_q_y*sps_w_4_x
         ok = (
-        ok & (abs(sps_rho2_1) > _TOLERANCE * _TOLERANCE * 0.6400000000000001) & (abs(sps_rho2_2) >
-            _TOLERANCE * _TOLERANCE * 0.6400000000000001) & (abs(sps_w_1_t) > _TOLERANCE *
-            0.6400000000000001)
+        ok & (abs(sps_root_1_t) > _TOLERANCE * _TOLERANCE * 0.6400000000000001) &
+            (abs(sps_root_2_t) > _TOLERANCE * _TOLERANCE * 0.6400000000000001) & (abs(sps_w_1_t) >
+            _TOLERANCE * 0.6400000000000001)
         )
         # (R_t) force that actuators and external wrench must give
         R_t_t += sps_c_x
@@ -3740,35 +3899,30 @@ def _run_inverse_kinematics(m, X):
         t_z + R_zx*sps_platform_point_x + R_zy*sps_platform_point_y + R_zz*sps_platform_point_z -
             sps_base_point_z
         )
-        # (sps-px_1) component along the reference direction
-        sps_px_1 = (
+        sps_S_in_turn1_x = (
         sps_S_x*sps_base_frame_xx + sps_S_y*sps_base_frame_yx + sps_S_z*sps_base_frame_zx
         )
-        # (sps-py_1) component across the reference direction
-        sps_py_1 = (
+        sps_S_in_turn1_y = (
         sps_S_x*sps_base_frame_xy + sps_S_y*sps_base_frame_yy + sps_S_z*sps_base_frame_zy
         )
-        # (sps-rho2_1) squared amplitude
-        sps_rho2_1 = sps_px_1*sps_px_1 + sps_py_1*sps_py_1
-        # (sps-root_1) amplitude, with the sign of the branch
-        sps_root_1 = sps_branch_1*sqrt(sps_rho2_1)
-        # (sps-q_1) displacement of joint 1
-        inv_sps_root_1 = 1.0/sps_root_1
-        sps_q_1 = atan2(inv_sps_root_1*sps_py_1, inv_sps_root_1*sps_px_1)
-        # (sps-xi_1) the vector from joint 1 to the connection point, resolved along link 1
-        sps_xi_1_in_axes1_z = (
+        sps_S_in_turn1_z = (
         sps_S_x*sps_base_frame_xz + sps_S_y*sps_base_frame_yz + sps_S_z*sps_base_frame_zz
         )
-        # (sps-rho2_2) squared amplitude
-        sps_rho2_2 = sps_rho2_1 + sps_xi_1_in_axes1_z*sps_xi_1_in_axes1_z
-        # (sps-root_2) amplitude, with the sign of the branch
-        sps_root_2 = sps_branch_2*sqrt(sps_rho2_2)
+        # (sps-root_1) amplitude, the length across axis 1, with the sign of the branch
+        sps_root_1_t = sps_S_in_turn1_x*sps_S_in_turn1_x + sps_S_in_turn1_y*sps_S_in_turn1_y
+        sps_root_1 = sps_branch_1*sqrt(sps_root_1_t)
+        # (sps-q_1) displacement of joint 1
+        inv_sps_root_1 = 1.0/sps_root_1
+        sps_q_1 = atan2(inv_sps_root_1*sps_S_in_turn1_y, inv_sps_root_1*sps_S_in_turn1_x)
+        # (sps-root_2) amplitude, the length across axis 2, with the sign of the branch
+        sps_root_2_t = sps_S_in_turn1_z*sps_S_in_turn1_z + sps_root_1_t
+        sps_root_2 = sps_branch_2*sqrt(sps_root_2_t)
         # (sps-q_2) displacement of joint 2
         inv_sps_root_2 = 1.0/sps_root_2
-        sps_q_2 = atan2(-inv_sps_root_2*sps_xi_1_in_axes1_z, inv_sps_root_2*sps_root_1)
+        sps_q_2 = atan2(-inv_sps_root_2*sps_S_in_turn1_z, inv_sps_root_2*sps_root_1)
         ok = (
-        ok & (abs(sps_rho2_1) > _TOLERANCE * _TOLERANCE * 0.6400000000000001) & (abs(sps_rho2_2) >
-            _TOLERANCE * _TOLERANCE * 0.6400000000000001)
+        ok & (abs(sps_root_1_t) > _TOLERANCE * _TOLERANCE * 0.6400000000000001) &
+            (abs(sps_root_2_t) > _TOLERANCE * _TOLERANCE * 0.6400000000000001)
         )
         # (sps-q_1) displacement of joint 1
         out_q[_q_sps[0][leg]] = sps_q_1
@@ -3859,49 +4013,44 @@ def _run_joint_rates(m, X, V):
         sps_S_x = sps_q_x + t_x - sps_base_point_x
         sps_S_y = sps_q_y + t_y - sps_base_point_y
         sps_S_z = sps_q_z + t_z - sps_base_point_z
-        # (sps-c_3) cosine of the angle of joint 3 from its reference direction
-        sps_c_3 = -sin(sps_y_3_extra)
-        # (sps-s_3) sine of the angle of joint 3 from its reference direction
-        sps_s_3 = cos(sps_y_3_extra)
-        # (sps-px_1) component along the reference direction
-        sps_px_1 = (
+        sps_S_in_turn1_x = (
         sps_S_x*sps_base_frame_xx + sps_S_y*sps_base_frame_yx + sps_S_z*sps_base_frame_zx
         )
-        # (sps-py_1) component across the reference direction
-        sps_py_1 = (
+        sps_S_in_turn1_y = (
         sps_S_x*sps_base_frame_xy + sps_S_y*sps_base_frame_yy + sps_S_z*sps_base_frame_zy
         )
-        # (sps-rho2_1) squared amplitude
-        sps_rho2_1 = sps_px_1*sps_px_1 + sps_py_1*sps_py_1
-        # (sps-root_1) amplitude, with the sign of the branch
-        sps_root_1 = sps_branch_1*sqrt(sps_rho2_1)
-        # (sps-c_1) cosine of the angle of joint 1 from its reference direction
-        inv_sps_root_1 = 1.0/sps_root_1
-        sps_c_1 = -inv_sps_root_1*sps_py_1
-        # (sps-s_1) sine of the angle of joint 1 from its reference direction
-        sps_s_1 = inv_sps_root_1*sps_px_1
-        # (sps-xi_1) the vector from joint 1 to the connection point, resolved along link 1
-        sps_xi_1_in_axes1_z = (
+        sps_S_in_turn1_z = (
         sps_S_x*sps_base_frame_xz + sps_S_y*sps_base_frame_yz + sps_S_z*sps_base_frame_zz
         )
-        # (sps-rho2_2) squared amplitude
-        sps_rho2_2 = sps_rho2_1 + sps_xi_1_in_axes1_z*sps_xi_1_in_axes1_z
-        # (sps-root_2) amplitude, with the sign of the branch
-        sps_root_2 = sps_branch_2*sqrt(sps_rho2_2)
+        # (sps-c_3) cosine of the angle of joint 3 from its reference direction
+        sps_c_3 = cos(sps_y_3_extra)
+        # (sps-s_3) sine of the angle of joint 3 from its reference direction
+        sps_s_3 = sin(sps_y_3_extra)
+        # (sps-root_1) amplitude, the length across axis 1, with the sign of the branch
+        sps_root_1_t = sps_S_in_turn1_x*sps_S_in_turn1_x + sps_S_in_turn1_y*sps_S_in_turn1_y
+        sps_root_1 = sps_branch_1*sqrt(sps_root_1_t)
+        # (sps-c_1) cosine of the angle of joint 1 from its reference direction
+        inv_sps_root_1 = 1.0/sps_root_1
+        sps_c_1 = inv_sps_root_1*sps_S_in_turn1_x
+        # (sps-s_1) sine of the angle of joint 1 from its reference direction
+        sps_s_1 = inv_sps_root_1*sps_S_in_turn1_y
+        # (sps-root_2) amplitude, the length across axis 2, with the sign of the branch
+        sps_root_2_t = sps_S_in_turn1_z*sps_S_in_turn1_z + sps_root_1_t
+        sps_root_2 = sps_branch_2*sqrt(sps_root_2_t)
         # (sps-c_2) cosine of the angle of joint 2 from its reference direction
         inv_sps_root_2 = 1.0/sps_root_2
-        sps_c_2_t = inv_sps_root_2*sps_root_1
+        sps_c_2 = inv_sps_root_2*sps_root_1
         # (sps-S_dot) velocity of the connection point
         sps_S_dot_x = t_dot_x + omega_y*sps_q_z - omega_z*sps_q_y
         sps_S_dot_y = t_dot_y + omega_z*sps_q_x - omega_x*sps_q_z
         sps_S_dot_z = t_dot_z + omega_x*sps_q_y - omega_y*sps_q_x
         # (sps-v_1) velocity of the connection point per rate of joint 1
-        sps_e_1_in_axes3_y = sps_c_2_t*sps_s_3
+        sps_e_1_in_axes3_y = sps_c_2*sps_c_3
         sps_v_1_in_axes3_x = sps_e_1_in_axes3_y*sps_root_2
-        sps_v_1_in_axes3_y = sps_c_2_t*sps_c_3*sps_root_2
+        sps_v_1_in_axes3_y = -sps_c_2*sps_root_2*sps_s_3
         # (sps-v_2) velocity of the connection point per rate of joint 2
-        sps_v_2_in_axes3_x = sps_c_3*sps_root_2
-        sps_v_2_t = sps_root_2*sps_s_3
+        sps_v_2_in_axes3_x = -sps_root_2*sps_s_3
+        sps_v_2_t = sps_c_3*sps_root_2
         # (sps-w_1) reciprocal vector 1
         sps_w_1_t = sps_v_1_in_axes3_x*sps_v_2_t + sps_v_1_in_axes3_y*sps_v_2_in_axes3_x
         # (sps-w_4) reciprocal vector 3
@@ -3909,20 +4058,20 @@ def _run_joint_rates(m, X, V):
         sps_w_4_y = inv_sps_root_2*sps_S_y
         sps_w_4_z = inv_sps_root_2*sps_S_z
         # (sps-S_dot_rest) velocity of the connection point left to the joints that are not extra
-        sps_S_dot_rest_t = inv_sps_root_2*sps_s_3*sps_xi_1_in_axes1_z
-        sps_S_dot_rest_t_2 = sps_S_dot_rest_t*sps_s_1 - sps_c_1*sps_c_3
-        sps_S_dot_rest_t_3 = sps_S_dot_rest_t*sps_c_1 + sps_c_3*sps_s_1
+        sps_S_dot_rest_t = inv_sps_root_2*sps_S_in_turn1_z*sps_c_3
+        sps_S_dot_rest_t_2 = sps_s_1*sps_s_3 - sps_S_dot_rest_t*sps_c_1
+        sps_S_dot_rest_t_3 = -sps_S_dot_rest_t*sps_s_1 - sps_c_1*sps_s_3
         axis_y_sps_axes3_x = (
-        sps_S_dot_rest_t_3*sps_base_frame_xy + sps_base_frame_xz*sps_e_1_in_axes3_y -
-            sps_S_dot_rest_t_2*sps_base_frame_xx
+        sps_S_dot_rest_t_2*sps_base_frame_xx + sps_S_dot_rest_t_3*sps_base_frame_xy +
+            sps_base_frame_xz*sps_e_1_in_axes3_y
         )
         axis_y_sps_axes3_y = (
-        sps_S_dot_rest_t_3*sps_base_frame_yy + sps_base_frame_yz*sps_e_1_in_axes3_y -
-            sps_S_dot_rest_t_2*sps_base_frame_yx
+        sps_S_dot_rest_t_2*sps_base_frame_yx + sps_S_dot_rest_t_3*sps_base_frame_yy +
+            sps_base_frame_yz*sps_e_1_in_axes3_y
         )
         axis_y_sps_axes3_z = (
-        sps_S_dot_rest_t_3*sps_base_frame_zy + sps_base_frame_zz*sps_e_1_in_axes3_y -
-            sps_S_dot_rest_t_2*sps_base_frame_zx
+        sps_S_dot_rest_t_2*sps_base_frame_zx + sps_S_dot_rest_t_3*sps_base_frame_zy +
+            sps_base_frame_zz*sps_e_1_in_axes3_y
         )
         sps_S_dot_rest_in_axes3_x = (
         sps_S_dot_x*(axis_y_sps_axes3_y*sps_w_4_z - axis_y_sps_axes3_z*sps_w_4_y) +
@@ -3948,9 +4097,9 @@ def _run_joint_rates(m, X, V):
             sps_S_dot_rest_in_axes3_x*sps_v_1_in_axes3_y)
         )
         ok = (
-        ok & (abs(sps_rho2_1) > _TOLERANCE * _TOLERANCE * 0.6400000000000001) & (abs(sps_rho2_2) >
-            _TOLERANCE * _TOLERANCE * 0.6400000000000001) & (abs(sps_w_1_t) > _TOLERANCE *
-            0.6400000000000001)
+        ok & (abs(sps_root_1_t) > _TOLERANCE * _TOLERANCE * 0.6400000000000001) &
+            (abs(sps_root_2_t) > _TOLERANCE * _TOLERANCE * 0.6400000000000001) & (abs(sps_w_1_t) >
+            _TOLERANCE * 0.6400000000000001)
         )
         # (sps-qd_1) rate of joint 1
         out_qd[_qd_sps[0][leg]] = sps_qd_1
@@ -4055,40 +4204,33 @@ def _run_joint_accelerations(m, X, V, A):
         sps_S_x = sps_q_x + t_x - sps_base_point_x
         sps_S_y = sps_q_y + t_y - sps_base_point_y
         sps_S_z = sps_q_z + t_z - sps_base_point_z
-        # (sps-c_3) cosine of the angle of joint 3 from its reference direction
-        sps_c_3 = -sin(sps_y_3_extra)
-        # (sps-s_3) sine of the angle of joint 3 from its reference direction
-        sps_s_3 = cos(sps_y_3_extra)
-        # (sps-px_1) component along the reference direction
-        sps_px_1 = (
+        sps_S_in_turn1_x = (
         sps_S_x*sps_base_frame_xx + sps_S_y*sps_base_frame_yx + sps_S_z*sps_base_frame_zx
         )
-        # (sps-py_1) component across the reference direction
-        sps_py_1 = (
+        sps_S_in_turn1_y = (
         sps_S_x*sps_base_frame_xy + sps_S_y*sps_base_frame_yy + sps_S_z*sps_base_frame_zy
         )
-        # (sps-rho2_1) squared amplitude
-        sps_rho2_1 = sps_px_1*sps_px_1 + sps_py_1*sps_py_1
-        # (sps-root_1) amplitude, with the sign of the branch
-        sps_root_1 = sps_branch_1*sqrt(sps_rho2_1)
-        # (sps-c_1) cosine of the angle of joint 1 from its reference direction
-        inv_sps_root_1 = 1.0/sps_root_1
-        sps_c_1 = -inv_sps_root_1*sps_py_1
-        # (sps-s_1) sine of the angle of joint 1 from its reference direction
-        sps_s_1 = inv_sps_root_1*sps_px_1
-        # (sps-xi_1) the vector from joint 1 to the connection point, resolved along link 1
-        sps_xi_1_in_axes1_z = (
+        sps_S_in_turn1_z = (
         sps_S_x*sps_base_frame_xz + sps_S_y*sps_base_frame_yz + sps_S_z*sps_base_frame_zz
         )
-        # (sps-rho2_2) squared amplitude
-        sps_rho2_2 = sps_rho2_1 + sps_xi_1_in_axes1_z*sps_xi_1_in_axes1_z
-        # (sps-root_2) amplitude, with the sign of the branch
-        sps_root_2 = sps_branch_2*sqrt(sps_rho2_2)
+        # (sps-c_3) cosine of the angle of joint 3 from its reference direction
+        sps_c_3 = cos(sps_y_3_extra)
+        # (sps-s_3) sine of the angle of joint 3 from its reference direction
+        sps_s_3 = sin(sps_y_3_extra)
+        # (sps-root_1) amplitude, the length across axis 1, with the sign of the branch
+        sps_root_1_t = sps_S_in_turn1_x*sps_S_in_turn1_x + sps_S_in_turn1_y*sps_S_in_turn1_y
+        sps_root_1 = sps_branch_1*sqrt(sps_root_1_t)
+        # (sps-c_1) cosine of the angle of joint 1 from its reference direction
+        inv_sps_root_1 = 1.0/sps_root_1
+        sps_c_1 = inv_sps_root_1*sps_S_in_turn1_x
+        # (sps-s_1) sine of the angle of joint 1 from its reference direction
+        sps_s_1 = inv_sps_root_1*sps_S_in_turn1_y
+        # (sps-root_2) amplitude, the length across axis 2, with the sign of the branch
+        sps_root_2_t = sps_S_in_turn1_z*sps_S_in_turn1_z + sps_root_1_t
+        sps_root_2 = sps_branch_2*sqrt(sps_root_2_t)
         # (sps-c_2) cosine of the angle of joint 2 from its reference direction
         inv_sps_root_2 = 1.0/sps_root_2
-        sps_c_2_t = inv_sps_root_2*sps_root_1
-        # (sps-s_2) sine of the angle of joint 2 from its reference direction
-        sps_s_2 = inv_sps_root_2*sps_xi_1_in_axes1_z
+        sps_c_2 = inv_sps_root_2*sps_root_1
         # (sps-S_dot) velocity of the connection point
         sps_S_dot_t = omega_y*sps_q_z - omega_z*sps_q_y
         sps_S_dot_t_2 = omega_z*sps_q_x - omega_x*sps_q_z
@@ -4097,12 +4239,12 @@ def _run_joint_accelerations(m, X, V, A):
         sps_S_dot_y = sps_S_dot_t_2 + t_dot_y
         sps_S_dot_z = sps_S_dot_t_3 + t_dot_z
         # (sps-v_1) velocity of the connection point per rate of joint 1
-        sps_e_1_in_axes3_y = sps_c_2_t*sps_s_3
+        sps_e_1_in_axes3_y = sps_c_2*sps_c_3
         sps_v_1_in_axes3_x = sps_e_1_in_axes3_y*sps_root_2
-        sps_v_1_in_axes3_y = sps_c_2_t*sps_c_3*sps_root_2
+        sps_v_1_in_axes3_y = -sps_c_2*sps_root_2*sps_s_3
         # (sps-v_2) velocity of the connection point per rate of joint 2
-        sps_v_2_in_axes3_x = sps_c_3*sps_root_2
-        sps_v_2_t = sps_root_2*sps_s_3
+        sps_v_2_in_axes3_x = -sps_root_2*sps_s_3
+        sps_v_2_t = sps_c_3*sps_root_2
         # (sps-w_1) reciprocal vector 1
         sps_w_1_t = sps_v_1_in_axes3_x*sps_v_2_t + sps_v_1_in_axes3_y*sps_v_2_in_axes3_x
         # (sps-w_4) reciprocal vector 3
@@ -4110,20 +4252,21 @@ def _run_joint_accelerations(m, X, V, A):
         sps_w_4_y = inv_sps_root_2*sps_S_y
         sps_w_4_z = inv_sps_root_2*sps_S_z
         # (sps-S_dot_rest) velocity of the connection point left to the joints that are not extra
-        sps_S_dot_rest_t = sps_s_2*sps_s_3
-        sps_S_dot_rest_t_2 = sps_S_dot_rest_t*sps_s_1 - sps_c_1*sps_c_3
-        sps_S_dot_rest_t_3 = sps_S_dot_rest_t*sps_c_1 + sps_c_3*sps_s_1
+        sps_e_1_in_axes2_y = inv_sps_root_2*sps_S_in_turn1_z
+        sps_S_dot_rest_t = sps_c_3*sps_e_1_in_axes2_y
+        sps_S_dot_rest_t_2 = sps_s_1*sps_s_3 - sps_S_dot_rest_t*sps_c_1
+        sps_S_dot_rest_t_3 = -sps_S_dot_rest_t*sps_s_1 - sps_c_1*sps_s_3
         axis_y_sps_axes3_x = (
-        sps_S_dot_rest_t_3*sps_base_frame_xy + sps_base_frame_xz*sps_e_1_in_axes3_y -
-            sps_S_dot_rest_t_2*sps_base_frame_xx
+        sps_S_dot_rest_t_2*sps_base_frame_xx + sps_S_dot_rest_t_3*sps_base_frame_xy +
+            sps_base_frame_xz*sps_e_1_in_axes3_y
         )
         axis_y_sps_axes3_y = (
-        sps_S_dot_rest_t_3*sps_base_frame_yy + sps_base_frame_yz*sps_e_1_in_axes3_y -
-            sps_S_dot_rest_t_2*sps_base_frame_yx
+        sps_S_dot_rest_t_2*sps_base_frame_yx + sps_S_dot_rest_t_3*sps_base_frame_yy +
+            sps_base_frame_yz*sps_e_1_in_axes3_y
         )
         axis_y_sps_axes3_z = (
-        sps_S_dot_rest_t_3*sps_base_frame_zy + sps_base_frame_zz*sps_e_1_in_axes3_y -
-            sps_S_dot_rest_t_2*sps_base_frame_zx
+        sps_S_dot_rest_t_2*sps_base_frame_zx + sps_S_dot_rest_t_3*sps_base_frame_zy +
+            sps_base_frame_zz*sps_e_1_in_axes3_y
         )
         axis_x_sps_axes3_x = axis_y_sps_axes3_y*sps_w_4_z - axis_y_sps_axes3_z*sps_w_4_y
         axis_x_sps_axes3_y = axis_y_sps_axes3_z*sps_w_4_x - axis_y_sps_axes3_x*sps_w_4_z
@@ -4151,13 +4294,13 @@ def _run_joint_accelerations(m, X, V, A):
             sps_S_dot_rest_in_axes3_x*sps_v_1_in_axes3_y)
         )
         # (sps-omega_1) angular velocity of link 1
-        sps_omega_1_in_axes2_x = sps_qd_1*sps_s_2
-        sps_omega_1_t = sps_c_2_t*sps_qd_1
+        sps_omega_1_in_axes2_x = sps_c_2*sps_qd_1
+        sps_omega_1_in_axes2_y = sps_e_1_in_axes2_y*sps_qd_1
         # (sps-omega_2) angular velocity of link 2
-        sps_omega_2_in_axes3_x = -sps_c_3*sps_omega_1_t - sps_qd_2_t*sps_s_3
-        sps_omega_2_in_axes3_y = sps_omega_1_t*sps_s_3 - sps_c_3*sps_qd_2_t
+        sps_omega_2_in_axes3_x = sps_omega_1_in_axes2_x*sps_s_3 - sps_c_3*sps_qd_2_t
+        sps_omega_2_in_axes3_y = sps_c_3*sps_omega_1_in_axes2_x + sps_qd_2_t*sps_s_3
         # (sps-omega_3) angular velocity of link 3
-        sps_omega_3_in_axes3_z = sps_omega_1_in_axes2_x + sps_yd_3
+        sps_omega_3_in_axes3_z = sps_omega_1_in_axes2_y + sps_yd_3
         # (sps-a_p) acceleration of the connection point without its centripetal part
         sps_a_p_x = t_ddot_x + alpha_y*sps_q_z - alpha_z*sps_q_y
         sps_a_p_y = t_ddot_y + alpha_z*sps_q_x - alpha_x*sps_q_z
@@ -4167,10 +4310,10 @@ def _run_joint_accelerations(m, X, V, A):
         sps_S_ddot_y = sps_a_p_y + omega_z*sps_S_dot_t - omega_x*sps_S_dot_t_3
         sps_S_ddot_z = sps_a_p_z + omega_x*sps_S_dot_t_2 - omega_y*sps_S_dot_t
         # (sps-zeta_2) angular acceleration of link 2 from the turning of axis 2
-        sps_zeta_2_in_axes2_y = sps_omega_1_in_axes2_x*sps_qd_2_t
+        sps_zeta_2_t = sps_omega_1_in_axes2_y*sps_qd_2_t
         # (sps-beta_3) angular acceleration of link 3 at zero joint accelerations
-        sps_beta_3_in_axes3_x = sps_c_3*sps_zeta_2_in_axes2_y + sps_omega_2_in_axes3_y*sps_yd_3
-        sps_beta_3_in_axes3_y = -sps_omega_2_in_axes3_x*sps_yd_3 - sps_s_3*sps_zeta_2_in_axes2_y
+        sps_beta_3_in_axes3_x = sps_omega_2_in_axes3_y*sps_yd_3 - sps_s_3*sps_zeta_2_t
+        sps_beta_3_in_axes3_y = -sps_c_3*sps_zeta_2_t - sps_omega_2_in_axes3_x*sps_yd_3
         # (sps-bias) acceleration of the connection point at zero joint accelerations
         sps_bias_t = 2.0*sps_S_dot_rest_in_axes3_z
         sps_bias_in_axes3_x = (
@@ -4205,9 +4348,9 @@ def _run_joint_accelerations(m, X, V, A):
             sps_rel_in_axes3_x*sps_v_1_in_axes3_y)
         )
         ok = (
-        ok & (abs(sps_rho2_1) > _TOLERANCE * _TOLERANCE * 0.6400000000000001) & (abs(sps_rho2_2) >
-            _TOLERANCE * _TOLERANCE * 0.6400000000000001) & (abs(sps_w_1_t) > _TOLERANCE *
-            0.6400000000000001)
+        ok & (abs(sps_root_1_t) > _TOLERANCE * _TOLERANCE * 0.6400000000000001) &
+            (abs(sps_root_2_t) > _TOLERANCE * _TOLERANCE * 0.6400000000000001) & (abs(sps_w_1_t) >
+            _TOLERANCE * 0.6400000000000001)
         )
         # (sps-qdd_1) acceleration of joint 1
         out_qdd[_qdd_sps[0][leg]] = sps_qdd_1
@@ -4318,40 +4461,33 @@ def _run_legs(m, X, V, A):
         sps_S_x = sps_q_x + t_x - sps_base_point_x
         sps_S_y = sps_q_y + t_y - sps_base_point_y
         sps_S_z = sps_q_z + t_z - sps_base_point_z
-        # (sps-c_3) cosine of the angle of joint 3 from its reference direction
-        sps_c_3 = -sin(sps_y_3_extra)
-        # (sps-s_3) sine of the angle of joint 3 from its reference direction
-        sps_s_3 = cos(sps_y_3_extra)
-        # (sps-px_1) component along the reference direction
-        sps_px_1 = (
+        sps_S_in_turn1_x = (
         sps_S_x*sps_base_frame_xx + sps_S_y*sps_base_frame_yx + sps_S_z*sps_base_frame_zx
         )
-        # (sps-py_1) component across the reference direction
-        sps_py_1 = (
+        sps_S_in_turn1_y = (
         sps_S_x*sps_base_frame_xy + sps_S_y*sps_base_frame_yy + sps_S_z*sps_base_frame_zy
         )
-        # (sps-rho2_1) squared amplitude
-        sps_rho2_1 = sps_px_1*sps_px_1 + sps_py_1*sps_py_1
-        # (sps-root_1) amplitude, with the sign of the branch
-        sps_root_1 = sps_branch_1*sqrt(sps_rho2_1)
-        # (sps-c_1) cosine of the angle of joint 1 from its reference direction
-        inv_sps_root_1 = 1.0/sps_root_1
-        sps_c_1 = -inv_sps_root_1*sps_py_1
-        # (sps-s_1) sine of the angle of joint 1 from its reference direction
-        sps_s_1 = inv_sps_root_1*sps_px_1
-        # (sps-xi_1) the vector from joint 1 to the connection point, resolved along link 1
-        sps_xi_1_in_axes1_z = (
+        sps_S_in_turn1_z = (
         sps_S_x*sps_base_frame_xz + sps_S_y*sps_base_frame_yz + sps_S_z*sps_base_frame_zz
         )
-        # (sps-rho2_2) squared amplitude
-        sps_rho2_2 = sps_rho2_1 + sps_xi_1_in_axes1_z*sps_xi_1_in_axes1_z
-        # (sps-root_2) amplitude, with the sign of the branch
-        sps_root_2 = sps_branch_2*sqrt(sps_rho2_2)
+        # (sps-c_3) cosine of the angle of joint 3 from its reference direction
+        sps_c_3 = cos(sps_y_3_extra)
+        # (sps-s_3) sine of the angle of joint 3 from its reference direction
+        sps_s_3 = sin(sps_y_3_extra)
+        # (sps-root_1) amplitude, the length across axis 1, with the sign of the branch
+        sps_root_1_t = sps_S_in_turn1_x*sps_S_in_turn1_x + sps_S_in_turn1_y*sps_S_in_turn1_y
+        sps_root_1 = sps_branch_1*sqrt(sps_root_1_t)
+        # (sps-c_1) cosine of the angle of joint 1 from its reference direction
+        inv_sps_root_1 = 1.0/sps_root_1
+        sps_c_1 = inv_sps_root_1*sps_S_in_turn1_x
+        # (sps-s_1) sine of the angle of joint 1 from its reference direction
+        sps_s_1 = inv_sps_root_1*sps_S_in_turn1_y
+        # (sps-root_2) amplitude, the length across axis 2, with the sign of the branch
+        sps_root_2_t = sps_S_in_turn1_z*sps_S_in_turn1_z + sps_root_1_t
+        sps_root_2 = sps_branch_2*sqrt(sps_root_2_t)
         # (sps-c_2) cosine of the angle of joint 2 from its reference direction
         inv_sps_root_2 = 1.0/sps_root_2
-        sps_c_2_t = inv_sps_root_2*sps_root_1
-        # (sps-s_2) sine of the angle of joint 2 from its reference direction
-        sps_s_2 = inv_sps_root_2*sps_xi_1_in_axes1_z
+        sps_c_2 = inv_sps_root_2*sps_root_1
         # (sps-S_dot) velocity of the connection point
         sps_S_dot_t = omega_y*sps_q_z - omega_z*sps_q_y
         sps_S_dot_t_2 = omega_z*sps_q_x - omega_x*sps_q_z
@@ -4360,13 +4496,13 @@ def _run_legs(m, X, V, A):
         sps_S_dot_y = sps_S_dot_t_2 + t_dot_y
         sps_S_dot_z = sps_S_dot_t_3 + t_dot_z
         # (sps-v_1) velocity of the connection point per rate of joint 1
-        sps_e_1_in_axes3_x = -sps_c_2_t*sps_c_3
-        sps_e_1_in_axes3_y = sps_c_2_t*sps_s_3
+        sps_e_1_in_axes3_x = sps_c_2*sps_s_3
+        sps_e_1_in_axes3_y = sps_c_2*sps_c_3
         sps_v_1_in_axes3_x = sps_e_1_in_axes3_y*sps_root_2
         sps_v_1_in_axes3_y = -sps_e_1_in_axes3_x*sps_root_2
         # (sps-v_2) velocity of the connection point per rate of joint 2
-        sps_v_2_in_axes3_x = sps_c_3*sps_root_2
-        sps_v_2_t = sps_root_2*sps_s_3
+        sps_v_2_in_axes3_x = -sps_root_2*sps_s_3
+        sps_v_2_t = sps_c_3*sps_root_2
         # (sps-w_1) reciprocal vector 1
         sps_w_1_t = sps_v_1_in_axes3_x*sps_v_2_t + sps_v_1_in_axes3_y*sps_v_2_in_axes3_x
         # (sps-w_4) reciprocal vector 3
@@ -4374,20 +4510,21 @@ def _run_legs(m, X, V, A):
         sps_w_4_y = inv_sps_root_2*sps_S_y
         sps_w_4_z = inv_sps_root_2*sps_S_z
         # (sps-S_dot_rest) velocity of the connection point left to the joints that are not extra
-        sps_S_dot_rest_t = sps_s_2*sps_s_3
-        sps_S_dot_rest_t_2 = sps_S_dot_rest_t*sps_s_1 - sps_c_1*sps_c_3
-        sps_S_dot_rest_t_3 = sps_S_dot_rest_t*sps_c_1 + sps_c_3*sps_s_1
+        sps_e_1_in_axes2_y = inv_sps_root_2*sps_S_in_turn1_z
+        sps_S_dot_rest_t = sps_c_3*sps_e_1_in_axes2_y
+        sps_S_dot_rest_t_2 = sps_s_1*sps_s_3 - sps_S_dot_rest_t*sps_c_1
+        sps_S_dot_rest_t_3 = -sps_S_dot_rest_t*sps_s_1 - sps_c_1*sps_s_3
         axis_y_sps_axes3_x = (
-        sps_S_dot_rest_t_3*sps_base_frame_xy + sps_base_frame_xz*sps_e_1_in_axes3_y -
-            sps_S_dot_rest_t_2*sps_base_frame_xx
+        sps_S_dot_rest_t_2*sps_base_frame_xx + sps_S_dot_rest_t_3*sps_base_frame_xy +
+            sps_base_frame_xz*sps_e_1_in_axes3_y
         )
         axis_y_sps_axes3_y = (
-        sps_S_dot_rest_t_3*sps_base_frame_yy + sps_base_frame_yz*sps_e_1_in_axes3_y -
-            sps_S_dot_rest_t_2*sps_base_frame_yx
+        sps_S_dot_rest_t_2*sps_base_frame_yx + sps_S_dot_rest_t_3*sps_base_frame_yy +
+            sps_base_frame_yz*sps_e_1_in_axes3_y
         )
         axis_y_sps_axes3_z = (
-        sps_S_dot_rest_t_3*sps_base_frame_zy + sps_base_frame_zz*sps_e_1_in_axes3_y -
-            sps_S_dot_rest_t_2*sps_base_frame_zx
+        sps_S_dot_rest_t_2*sps_base_frame_zx + sps_S_dot_rest_t_3*sps_base_frame_zy +
+            sps_base_frame_zz*sps_e_1_in_axes3_y
         )
         axis_x_sps_axes3_x = axis_y_sps_axes3_y*sps_w_4_z - axis_y_sps_axes3_z*sps_w_4_y
         axis_x_sps_axes3_y = axis_y_sps_axes3_z*sps_w_4_x - axis_y_sps_axes3_x*sps_w_4_z
@@ -4415,13 +4552,13 @@ def _run_legs(m, X, V, A):
             sps_S_dot_rest_in_axes3_x*sps_v_1_in_axes3_y)
         )
         # (sps-omega_1) angular velocity of link 1
-        sps_omega_1_in_axes2_x = sps_qd_1*sps_s_2
-        sps_omega_1_t = sps_c_2_t*sps_qd_1
+        sps_omega_1_in_axes2_x = sps_c_2*sps_qd_1
+        sps_omega_1_in_axes2_y = sps_e_1_in_axes2_y*sps_qd_1
         # (sps-omega_2) angular velocity of link 2
-        sps_omega_2_in_axes3_x = -sps_c_3*sps_omega_1_t - sps_qd_2_t*sps_s_3
-        sps_omega_2_in_axes3_y = sps_omega_1_t*sps_s_3 - sps_c_3*sps_qd_2_t
+        sps_omega_2_in_axes3_x = sps_omega_1_in_axes2_x*sps_s_3 - sps_c_3*sps_qd_2_t
+        sps_omega_2_in_axes3_y = sps_c_3*sps_omega_1_in_axes2_x + sps_qd_2_t*sps_s_3
         # (sps-omega_3) angular velocity of link 3
-        sps_omega_3_in_axes3_z = sps_omega_1_in_axes2_x + sps_yd_3
+        sps_omega_3_in_axes3_z = sps_omega_1_in_axes2_y + sps_yd_3
         # (sps-W_3) centripetal tensor of link 3
         sps_W_3_in_axes3_xy = sps_omega_2_in_axes3_x*sps_omega_2_in_axes3_y
         sps_W_3_in_axes3_xz = sps_omega_2_in_axes3_x*sps_omega_3_in_axes3_z
@@ -4443,13 +4580,13 @@ def _run_legs(m, X, V, A):
             axis_y_sps_axes3_z*sps_S_ddot_z
         )
         # (sps-zeta_2) angular acceleration of link 2 from the turning of axis 2
-        sps_zeta_2_in_axes2_y = sps_omega_1_in_axes2_x*sps_qd_2_t
+        sps_zeta_2_t = sps_omega_1_in_axes2_y*sps_qd_2_t
         # (sps-zeta_3) angular acceleration of link 3 from the turning of axis 3
         sps_zeta_3_in_axes3_x = sps_omega_2_in_axes3_y*sps_yd_3
         sps_zeta_3_in_axes3_y = -sps_omega_2_in_axes3_x*sps_yd_3
         # (sps-beta_3) angular acceleration of link 3 at zero joint accelerations
-        sps_beta_3_in_axes3_x = sps_zeta_3_in_axes3_x + sps_c_3*sps_zeta_2_in_axes2_y
-        sps_beta_3_in_axes3_y = sps_zeta_3_in_axes3_y - sps_s_3*sps_zeta_2_in_axes2_y
+        sps_beta_3_in_axes3_x = sps_zeta_3_in_axes3_x - sps_s_3*sps_zeta_2_t
+        sps_beta_3_in_axes3_y = sps_zeta_3_in_axes3_y - sps_c_3*sps_zeta_2_t
         # (sps-bias) acceleration of the connection point at zero joint accelerations
         sps_bias_t = 2.0*sps_S_dot_rest_in_axes3_z
         sps_bias_in_axes3_x = (
@@ -4473,16 +4610,16 @@ def _run_legs(m, X, V, A):
             sps_rel_in_axes3_x*sps_v_1_in_axes3_y)
         )
         # (sps-alpha_2) angular acceleration of link 2
-        sps_alpha_2_in_axes2_x = sps_omega_1_t*sps_qd_2_t + sps_qdd_1*sps_s_2
-        sps_alpha_2_in_axes2_y = sps_zeta_2_in_axes2_y - sps_c_2_t*sps_qdd_1
+        sps_alpha_2_in_axes2_x = sps_c_2*sps_qdd_1 - sps_zeta_2_t
+        sps_alpha_2_in_axes2_y = sps_e_1_in_axes2_y*sps_qdd_1 + sps_omega_1_in_axes2_x*sps_qd_2_t
         # (sps-alpha_3) angular acceleration of link 3
         sps_alpha_3_in_axes3_x = (
-        sps_zeta_3_in_axes3_x + sps_alpha_2_in_axes2_y*sps_c_3 - sps_qdd_2_t*sps_s_3
+        sps_zeta_3_in_axes3_x + sps_alpha_2_in_axes2_x*sps_s_3 - sps_c_3*sps_qdd_2_t
         )
         sps_alpha_3_in_axes3_y = (
-        sps_zeta_3_in_axes3_y - sps_alpha_2_in_axes2_y*sps_s_3 - sps_c_3*sps_qdd_2_t
+        sps_zeta_3_in_axes3_y + sps_alpha_2_in_axes2_x*sps_c_3 + sps_qdd_2_t*sps_s_3
         )
-        sps_alpha_3_in_axes3_z = sps_alpha_2_in_axes2_x + sps_ydd_3
+        sps_alpha_3_in_axes3_z = sps_alpha_2_in_axes2_y + sps_ydd_3
         # (sps-B_3) acceleration tensor of link 3
         sps_B_3_in_axes3_xy = sps_W_3_in_axes3_xy - sps_alpha_3_in_axes3_z
         sps_B_3_in_axes3_xz = sps_W_3_in_axes3_xz + sps_alpha_3_in_axes3_y
@@ -4533,11 +4670,11 @@ def _run_legs(m, X, V, A):
             sps_B_3_in_axes3_yz*sps_J_group_3_in_axes3_xz -
             sps_acc_4_in_axes3_x*sps_h_4_in_spec3_z - sps_g_in_axes3_y*sps_h_3_in_spec3_y
         )
-        sps_mu_3_in_axes2_z = sps_c_3*sps_mu_3_in_axes3_y + sps_mu_3_in_axes3_x*sps_s_3
+        sps_mu_3_in_axes2_z = sps_c_3*sps_mu_3_in_axes3_x - sps_mu_3_in_axes3_y*sps_s_3
         # (sps-Gamma_1) moment about axis 1 of the distal links' inertia and weight
         sps_Gamma_1 = (
-        sps_e_1_in_axes3_x*sps_mu_3_in_axes3_x + sps_e_1_in_axes3_y*sps_mu_3_in_axes3_y +
-            sps_mu_3_in_axes3_z*sps_s_2
+        sps_e_1_in_axes2_y*sps_mu_3_in_axes3_z + sps_e_1_in_axes3_x*sps_mu_3_in_axes3_x +
+            sps_e_1_in_axes3_y*sps_mu_3_in_axes3_y
         )
         # (sps-c) leg force on the platform without actuation and without the mass at the connection point
         sps_c_in_axes3_x = (
@@ -4570,9 +4707,9 @@ def _run_legs(m, X, V, A):
             sps_c_true_in_axes3_z*sps_w_4_z
         )
         ok = (
-        ok & (abs(sps_rho2_1) > _TOLERANCE * _TOLERANCE * 0.6400000000000001) & (abs(sps_rho2_2) >
-            _TOLERANCE * _TOLERANCE * 0.6400000000000001) & (abs(sps_w_1_t) > _TOLERANCE *
-            0.6400000000000001)
+        ok & (abs(sps_root_1_t) > _TOLERANCE * _TOLERANCE * 0.6400000000000001) &
+            (abs(sps_root_2_t) > _TOLERANCE * _TOLERANCE * 0.6400000000000001) & (abs(sps_w_1_t) >
+            _TOLERANCE * 0.6400000000000001)
         )
         # (sps-c_true) leg force on the platform without actuation, the last link's mass included
         out_leg_force[_leg_force_sps[0][leg]] = sps_c_true_x
@@ -4665,60 +4802,54 @@ def _run_potential(m, X):
         t_z + R_zx*sps_platform_point_x + R_zy*sps_platform_point_y + R_zz*sps_platform_point_z -
             sps_base_point_z
         )
-        # (sps-c_3) cosine of the angle of joint 3 from its reference direction
-        sps_c_3 = -sin(sps_y_3_extra)
-        # (sps-s_3) sine of the angle of joint 3 from its reference direction
-        sps_s_3 = cos(sps_y_3_extra)
-        # (sps-px_1) component along the reference direction
-        sps_px_1 = (
+        sps_S_in_turn1_x = (
         sps_S_x*sps_base_frame_xx + sps_S_y*sps_base_frame_yx + sps_S_z*sps_base_frame_zx
         )
-        # (sps-py_1) component across the reference direction
-        sps_py_1 = (
+        sps_S_in_turn1_y = (
         sps_S_x*sps_base_frame_xy + sps_S_y*sps_base_frame_yy + sps_S_z*sps_base_frame_zy
         )
-        # (sps-rho2_1) squared amplitude
-        sps_rho2_1 = sps_px_1*sps_px_1 + sps_py_1*sps_py_1
-        # (sps-root_1) amplitude, with the sign of the branch
-        sps_root_1 = sps_branch_1*sqrt(sps_rho2_1)
-        # (sps-c_1) cosine of the angle of joint 1 from its reference direction
-        inv_sps_root_1 = 1.0/sps_root_1
-        sps_c_1 = -inv_sps_root_1*sps_py_1
-        # (sps-s_1) sine of the angle of joint 1 from its reference direction
-        sps_s_1 = inv_sps_root_1*sps_px_1
-        # (sps-xi_1) the vector from joint 1 to the connection point, resolved along link 1
-        sps_xi_1_in_axes1_z = (
+        sps_S_in_turn1_z = (
         sps_S_x*sps_base_frame_xz + sps_S_y*sps_base_frame_yz + sps_S_z*sps_base_frame_zz
         )
-        # (sps-rho2_2) squared amplitude
-        sps_rho2_2 = sps_rho2_1 + sps_xi_1_in_axes1_z*sps_xi_1_in_axes1_z
-        # (sps-root_2) amplitude, with the sign of the branch
-        sps_root_2 = sps_branch_2*sqrt(sps_rho2_2)
+        # (sps-c_3) cosine of the angle of joint 3 from its reference direction
+        sps_c_3 = cos(sps_y_3_extra)
+        # (sps-s_3) sine of the angle of joint 3 from its reference direction
+        sps_s_3 = sin(sps_y_3_extra)
+        # (sps-root_1) amplitude, the length across axis 1, with the sign of the branch
+        sps_root_1_t = sps_S_in_turn1_x*sps_S_in_turn1_x + sps_S_in_turn1_y*sps_S_in_turn1_y
+        sps_root_1 = sps_branch_1*sqrt(sps_root_1_t)
+        # (sps-c_1) cosine of the angle of joint 1 from its reference direction
+        inv_sps_root_1 = 1.0/sps_root_1
+        sps_c_1 = inv_sps_root_1*sps_S_in_turn1_x
+        # (sps-s_1) sine of the angle of joint 1 from its reference direction
+        sps_s_1 = inv_sps_root_1*sps_S_in_turn1_y
+        # (sps-root_2) amplitude, the length across axis 2, with the sign of the branch
+        sps_root_2_t = sps_S_in_turn1_z*sps_S_in_turn1_z + sps_root_1_t
+        sps_root_2 = sps_branch_2*sqrt(sps_root_2_t)
         # (sps-c_2) cosine of the angle of joint 2 from its reference direction
         inv_sps_root_2 = 1.0/sps_root_2
-        sps_c_2_t = inv_sps_root_2*sps_root_1
-        # (sps-s_2) sine of the angle of joint 2 from its reference direction
-        sps_s_2 = inv_sps_root_2*sps_xi_1_in_axes1_z
+        sps_c_2 = inv_sps_root_2*sps_root_1
         # (potential) potential energy
+        sps_e_1_in_axes2_y = inv_sps_root_2*sps_S_in_turn1_z
         sps_potential_t_7 = sps_c_1*sps_potential_t + sps_potential_t_2*sps_s_1
         sps_potential_t_8 = sps_c_1*sps_potential_t_2 - sps_potential_t*sps_s_1
-        sps_potential_t_9 = -sps_c_2_t*sps_potential_t_3 - sps_potential_t_8*sps_s_2
+        sps_potential_t_9 = sps_c_2*sps_potential_t_3 - sps_e_1_in_axes2_y*sps_potential_t_7
         sps_potential_t_10 = sps_c_1*sps_potential_t_4 + sps_potential_t_5*sps_s_1
         sps_potential_t_11 = sps_c_1*sps_potential_t_5 - sps_potential_t_4*sps_s_1
-        sps_potential_t_12 = -sps_c_2_t*sps_potential_t_6 - sps_potential_t_11*sps_s_2
+        sps_potential_t_12 = sps_c_2*sps_potential_t_6 - sps_e_1_in_axes2_y*sps_potential_t_10
         sps_potential_t_13 = (
-        (sps_potential_t_3*sps_s_2 - sps_c_2_t*sps_potential_t_8)*(sps_h_3_in_spec3_x +
-            sps_h_4_in_spec3_x + sps_link3_mass*(sps_potential_t_6*sps_s_2 -
-            sps_c_2_t*sps_potential_t_11)) + (sps_c_3*sps_potential_t_7 -
-            sps_potential_t_9*sps_s_3)*(sps_h_3_in_spec3_z + sps_h_4_in_spec3_z +
-            sps_link3_mass*(sps_c_3*sps_potential_t_10 - sps_potential_t_12*sps_s_3)) +
-            (sps_c_3*sps_potential_t_9 + sps_potential_t_7*sps_s_3)*(sps_h_3_in_spec3_y +
-            sps_h_4_in_spec3_y + sps_link3_mass*(sps_c_3*sps_potential_t_12 +
-            sps_potential_t_10*sps_s_3))
+        (sps_c_2*sps_potential_t_7 + sps_e_1_in_axes2_y*sps_potential_t_3)*(sps_h_3_in_spec3_x +
+            sps_h_4_in_spec3_x + sps_link3_mass*(sps_c_2*sps_potential_t_10 +
+            sps_e_1_in_axes2_y*sps_potential_t_6)) + (sps_c_3*sps_potential_t_8 +
+            sps_potential_t_9*sps_s_3)*(sps_h_3_in_spec3_y + sps_h_4_in_spec3_y +
+            sps_link3_mass*(sps_c_3*sps_potential_t_11 + sps_potential_t_12*sps_s_3)) +
+            (sps_c_3*sps_potential_t_9 - sps_potential_t_8*sps_s_3)*(sps_h_3_in_spec3_z +
+            sps_h_4_in_spec3_z + sps_link3_mass*(sps_c_3*sps_potential_t_12 -
+            sps_potential_t_11*sps_s_3))
         )
         ok = (
-        ok & (abs(sps_rho2_1) > _TOLERANCE * _TOLERANCE * 0.6400000000000001) & (abs(sps_rho2_2) >
-            _TOLERANCE * _TOLERANCE * 0.6400000000000001)
+        ok & (abs(sps_root_1_t) > _TOLERANCE * _TOLERANCE * 0.6400000000000001) &
+            (abs(sps_root_2_t) > _TOLERANCE * _TOLERANCE * 0.6400000000000001)
         )
         # (potential) potential energy
         potential_t_2 += sps_potential_t_13
@@ -4803,43 +4934,39 @@ def _run_condition(m, X):
         sps_S_x = sps_q_x + t_x - sps_base_point_x
         sps_S_y = sps_q_y + t_y - sps_base_point_y
         sps_S_z = sps_q_z + t_z - sps_base_point_z
-        # (sps-c_3) cosine of the angle of joint 3 from its reference direction
-        sps_c_3 = -sin(sps_y_3_extra)
-        # (sps-s_3) sine of the angle of joint 3 from its reference direction
-        sps_s_3 = cos(sps_y_3_extra)
-        # (sps-px_1) component along the reference direction
-        sps_px_1 = (
+        sps_S_in_turn1_x = (
         sps_S_x*sps_base_frame_xx + sps_S_y*sps_base_frame_yx + sps_S_z*sps_base_frame_zx
         )
-        # (sps-py_1) component across the reference direction
-        sps_py_1 = (
+        sps_S_in_turn1_y = (
         sps_S_x*sps_base_frame_xy + sps_S_y*sps_base_frame_yy + sps_S_z*sps_base_frame_zy
         )
-        # (sps-rho2_1) squared amplitude
-        sps_rho2_1 = sps_px_1*sps_px_1 + sps_py_1*sps_py_1
-        # (sps-xi_1) the vector from joint 1 to the connection point, resolved along link 1
-        sps_xi_1_in_axes1_z = (
+        sps_S_in_turn1_z = (
         sps_S_x*sps_base_frame_xz + sps_S_y*sps_base_frame_yz + sps_S_z*sps_base_frame_zz
         )
-        # (sps-rho2_2) squared amplitude
-        sps_rho2_2 = sps_rho2_1 + sps_xi_1_in_axes1_z*sps_xi_1_in_axes1_z
-        # (sps-root_2) amplitude, with the sign of the branch
-        sps_root_2 = sps_branch_2*sqrt(sps_rho2_2)
+        # (sps-c_3) cosine of the angle of joint 3 from its reference direction
+        sps_c_3 = cos(sps_y_3_extra)
+        # (sps-s_3) sine of the angle of joint 3 from its reference direction
+        sps_s_3 = sin(sps_y_3_extra)
+        # (sps-root_1) amplitude, the length across axis 1, with the sign of the branch
+        sps_root_1_t = sps_S_in_turn1_x*sps_S_in_turn1_x + sps_S_in_turn1_y*sps_S_in_turn1_y
+        # (sps-root_2) amplitude, the length across axis 2, with the sign of the branch
+        sps_root_2_t = sps_S_in_turn1_z*sps_S_in_turn1_z + sps_root_1_t
+        sps_root_2 = sps_branch_2*sqrt(sps_root_2_t)
         # (sps-c_2) cosine of the angle of joint 2 from its reference direction
         inv_sps_root_2 = 1.0/sps_root_2
-        sps_c_2_t = inv_sps_root_2*sps_branch_1*sqrt(sps_rho2_1)
+        sps_c_2 = inv_sps_root_2*sps_branch_1*sqrt(sps_root_1_t)
         # (sps-w_1) reciprocal vector 1
         sps_w_1_t = (
-        sps_c_2_t*sps_c_3*sps_c_3*sps_root_2*sps_root_2 +
-            sps_c_2_t*sps_root_2*sps_root_2*sps_s_3*sps_s_3
+        sps_c_2*sps_c_3*sps_c_3*sps_root_2*sps_root_2 +
+            sps_c_2*sps_root_2*sps_root_2*sps_s_3*sps_s_3
         )
         # (sps-w_4) reciprocal vector 3
         sps_w_4_x = inv_sps_root_2*sps_S_x
         sps_w_4_y = inv_sps_root_2*sps_S_y
         sps_w_4_z = inv_sps_root_2*sps_S_z
         # (sps-G) force at the connection point that balances the leg's inertia and weight along all degrees of freedom
-        sps_pivot_size = abs(sps_rho2_1)
-        sps_pivot_size_2 = abs(sps_rho2_2)
+        sps_pivot_size = abs(sps_root_1_t)
+        sps_pivot_size_2 = abs(sps_root_2_t)
         sps_pivot_size_3 = abs(sps_w_1_t)
         sps_least_pivots = (
         least(least(1.25*sqrt(sps_pivot_size), 1.25*sqrt(sps_pivot_size_2)),
@@ -4857,8 +4984,8 @@ def _run_condition(m, X):
         sps_spread_t*sps_spread_t + sps_spread_t_2*sps_spread_t_2 + sps_spread_t_3*sps_spread_t_3
         )
         clear = (
-        clear & (abs(sps_rho2_1) > _TOLERANCE * _TOLERANCE * 0.6400000000000001) &
-            (abs(sps_rho2_2) > _TOLERANCE * _TOLERANCE * 0.6400000000000001) & (abs(sps_w_1_t) >
+        clear & (abs(sps_root_1_t) > _TOLERANCE * _TOLERANCE * 0.6400000000000001) &
+            (abs(sps_root_2_t) > _TOLERANCE * _TOLERANCE * 0.6400000000000001) & (abs(sps_w_1_t) >
             _TOLERANCE * 0.6400000000000001)
         )
         # (spread) rms distance of the platform points from their centroid
@@ -4880,6 +5007,130 @@ def _run_condition(m, X):
     return (valid, reached, clear), (out_H, out_lengths, out_pivots, out_reach,)
 
 
+def _straight_6(a, b, rows, limits):
+    """Solve 6 equations a x = b straight through; and whether that is beyond doubt."""
+    (
+    (a00, a01, a02, a03, a04, a05,), (a10, a11, a12, a13, a14, a15,), (a20, a21, a22, a23, a24,
+        a25,), (a30, a31, a32, a33, a34, a35,), (a40, a41, a42, a43, a44, a45,), (a50, a51, a52,
+        a53, a54, a55,),
+    ) = [a[6 * k : 6 * k + 6] for k in rows]
+    b0, b1, b2, b3, b4, b5, = [b[k] for k in rows]
+    (
+    l10, l20, l30, l40, l50, l21, l31, l41, l51, l32, l42, l52, l43, l53, l54, l0, l1, l2, l3, l4,
+        l5,
+    ) = limits
+    f0 = 1.0/a00
+    g10 = a10*f0
+    a11 = a11 - g10*a01
+    a12 = a12 - g10*a02
+    a13 = a13 - g10*a03
+    a14 = a14 - g10*a04
+    a15 = a15 - g10*a05
+    b1 = b1 - g10*b0
+    g20 = a20*f0
+    a21 = a21 - g20*a01
+    a22 = a22 - g20*a02
+    a23 = a23 - g20*a03
+    a24 = a24 - g20*a04
+    a25 = a25 - g20*a05
+    b2 = b2 - g20*b0
+    g30 = a30*f0
+    a31 = a31 - g30*a01
+    a32 = a32 - g30*a02
+    a33 = a33 - g30*a03
+    a34 = a34 - g30*a04
+    a35 = a35 - g30*a05
+    b3 = b3 - g30*b0
+    g40 = a40*f0
+    a41 = a41 - g40*a01
+    a42 = a42 - g40*a02
+    a43 = a43 - g40*a03
+    a44 = a44 - g40*a04
+    a45 = a45 - g40*a05
+    b4 = b4 - g40*b0
+    g50 = a50*f0
+    a51 = a51 - g50*a01
+    a52 = a52 - g50*a02
+    a53 = a53 - g50*a03
+    a54 = a54 - g50*a04
+    a55 = a55 - g50*a05
+    b5 = b5 - g50*b0
+    f1 = 1.0/a11
+    g21 = a21*f1
+    a22 = a22 - g21*a12
+    a23 = a23 - g21*a13
+    a24 = a24 - g21*a14
+    a25 = a25 - g21*a15
+    b2 = b2 - g21*b1
+    g31 = a31*f1
+    a32 = a32 - g31*a12
+    a33 = a33 - g31*a13
+    a34 = a34 - g31*a14
+    a35 = a35 - g31*a15
+    b3 = b3 - g31*b1
+    g41 = a41*f1
+    a42 = a42 - g41*a12
+    a43 = a43 - g41*a13
+    a44 = a44 - g41*a14
+    a45 = a45 - g41*a15
+    b4 = b4 - g41*b1
+    g51 = a51*f1
+    a52 = a52 - g51*a12
+    a53 = a53 - g51*a13
+    a54 = a54 - g51*a14
+    a55 = a55 - g51*a15
+    b5 = b5 - g51*b1
+    f2 = 1.0/a22
+    g32 = a32*f2
+    a33 = a33 - g32*a23
+    a34 = a34 - g32*a24
+    a35 = a35 - g32*a25
+    b3 = b3 - g32*b2
+    g42 = a42*f2
+    a43 = a43 - g42*a23
+    a44 = a44 - g42*a24
+    a45 = a45 - g42*a25
+    b4 = b4 - g42*b2
+    g52 = a52*f2
+    a53 = a53 - g52*a23
+    a54 = a54 - g52*a24
+    a55 = a55 - g52*a25
+    b5 = b5 - g52*b2
+    f3 = 1.0/a33
+    g43 = a43*f3
+    a44 = a44 - g43*a34
+    a45 = a45 - g43*a35
+    b4 = b4 - g43*b3
+    g53 = a53*f3
+    a54 = a54 - g53*a34
+    a55 = a55 - g53*a35
+    b5 = b5 - g53*b3
+    f4 = 1.0/a44
+    g54 = a54*f4
+    a55 = a55 - g54*a45
+    b5 = b5 - g54*b4
+    f5 = 1.0/a55
+    x5 = b5*f5
+    x4 = (b4 - a45*x5)*f4
+    x3 = (b3 - a35*x5 - a34*x4)*f3
+    x2 = (b2 - a25*x5 - a24*x4 - a23*x3)*f2
+    x1 = (b1 - a15*x5 - a14*x4 - a13*x3 - a12*x2)*f1
+    x0 = (b0 - a05*x5 - a04*x4 - a03*x3 - a02*x2 - a01*x1)*f0
+    sure = (
+    (abs(g10) <= l10) & (abs(g20) <= l20) & (abs(g30) <= l30) & (abs(g40) <= l40) & (abs(g50) <=
+        l50) & (abs(g21) <= l21) & (abs(g31) <= l31) & (abs(g41) <= l41) & (abs(g51) <= l51) &
+        (abs(g32) <= l32) & (abs(g42) <= l42) & (abs(g52) <= l52) & (abs(g43) <= l43) & (abs(g53)
+        <= l53) & (abs(g54) <= l54) & (abs(f0) <= l0) & (abs(f1) <= l1) & (abs(f2) <= l2) &
+        (abs(f3) <= l3) & (abs(f4) <= l4) & (abs(f5) <= l5) & (abs(x0 + x1 + x2 + x3 + x4 + x5 +
+        a00 + a11 + a22 + a33 + a44 + a55) < math.inf)
+    )
+    return sure, ([x0, x1, x2, x3, x4, x5],)
+
+
+_ORDERS = (  # how systems are solved near home
+    _Order(_straight_6, (0, 2, 1, 3, 4, 5), (40, 10, 10, 10, 10, 2.5, 2.5, 2.5, 2.5, 10, 10, 10, 10, 10, 10, 4000, 1000, 4000, 4000, 4000, 4000,)),
+    _Order(_straight_6, (0, 1, 2, 3, 4, 5), (10, 10, 10, 10, 10, 10, 10, 10, 10, 10, 10, 10, 10, 10, 10, 1024000, 1024000, 1024000, 1024000, 1024000, 1024000,)),
+)
 _Q = 3  # where a quaternion begins in X
 _DEFAULT = Parameters()
 
@@ -4924,14 +5175,14 @@ def _steps_inverse_dynamics(m, X, V, A, wrench, weights):
     extend_1 = _extended(wrench, 12)
     subtract_1 = required - extend_1
     take_1 = H[0:6]
-    take_2 = subtract_1[0:6]
-    tau = _solve(take_1, take_2)
+    subtract_1_from_0 = subtract_1[0:6]
+    tau = _straight(m, take_1, subtract_1_from_0, _ORDERS[0])
     return (tau,)
 
 
 def _steps_forward_dynamics(m, X, V, tau, wrench):
     M, Z, H = m.run(_run_dynamics, ("M", "Z", "H"), X, V)
-    times_1 = np.einsum("ijs,js->is", H, tau)
+    times_1 = _times(H, tau)
     extend_1 = _extended(wrench, 12)
     add_1 = times_1 + extend_1
     subtract_1 = add_1 - Z
@@ -4942,15 +5193,15 @@ def _steps_forward_dynamics(m, X, V, tau, wrench):
 def _steps_complete_acceleration(m, X, V, A, wrench):
     clear_at_1 = _cleared_at(A, [6, 7, 8, 9, 10, 11])
     M, Z, H = m.run(_run_dynamics, ("M", "Z", "H"), X, V)
-    times_1 = np.einsum("ijs,js->is", M, clear_at_1)
+    times_1 = _times(M, clear_at_1)
     add_1 = times_1 + Z
     extend_1 = _extended(wrench, 12)
     subtract_1 = add_1 - extend_1
     take_columns_1 = M[:, 6:12]
     take_1 = take_columns_1[6:12]
-    take_2 = subtract_1[6:12]
-    negative_1 = -take_2
-    solve_1 = _solve(take_1, negative_1)
+    subtract_1_from_6 = subtract_1[6:12]
+    negative_1 = -subtract_1_from_6
+    solve_1 = _straight(m, take_1, negative_1, _ORDERS[1])
     completed = _added_at(clear_at_1, solve_1, [6, 7, 8, 9, 10, 11])
     return (completed,)
 
@@ -4960,8 +5211,8 @@ def _steps_leg_reactions(m, X, V, A, wrench):
     extend_1 = _extended(wrench, 12)
     subtract_1 = required - extend_1
     take_1 = H[0:6]
-    take_2 = subtract_1[0:6]
-    solve_1 = _solve(take_1, take_2)
+    subtract_1_from_0 = subtract_1[0:6]
+    solve_1 = _straight(m, take_1, subtract_1_from_0, _ORDERS[0])
     leg_force, actuator = m.run(_run_legs, ("leg_force", "actuator"), X, V, A)
     forces = _with_forces(leg_force, solve_1, actuator, [0, 1, 2, 3, 4, 5])
     return (forces,)
@@ -4989,10 +5240,37 @@ def _steps_condition(m, X, length):
     return (sigma, legs,)
 
 
+def _steps_manipulability(m, X):
+    (
+    H, lengths, pivots, reach,
+    ) = m.run(_in_one(_run_condition), ("H", "lengths", "pivots", "reach"), X)
+    entry_1 = lengths[0]
+    subtract_1 = entry_1 - entry_1
+    choose_length_1 = _chosen_length(lengths, subtract_1)
+    divide_rows_1 = _rows_divided(H, choose_length_1, [3, 4, 5, 6, 7, 8, 9, 10, 11])
+    singular_values_1 = _singular_values(divide_rows_1)
+    measure, isotropy = _spread(singular_values_1, 6)
+    return (measure, isotropy,)
+
+
+def _steps_singularity_distance(m, X):
+    (
+    H, lengths, pivots, reach,
+    ) = m.run(_in_one(_run_condition), ("H", "lengths", "pivots", "reach"), X)
+    entry_1 = lengths[0]
+    subtract_1 = entry_1 - entry_1
+    choose_length_1 = _chosen_length(lengths, subtract_1)
+    divide_rows_1 = _rows_divided(H, choose_length_1, [3, 4, 5, 6, 7, 8, 9, 10, 11])
+    singular_values_1 = _singular_values(divide_rows_1)
+    spread_1, actuators = _spread(singular_values_1, 6)
+    legs = _least_entry(pivots)
+    return (actuators, legs,)
+
+
 def _steps_mismatch(m, X, q_actuated):
     q, = m.run(_run_inverse_kinematics, ("q",), X)
-    take_1 = q[[3, 7, 11, 15, 19, 23]]
-    gap = q_actuated - take_1
+    q_of_inverse_kinematics_from_3 = q[[3, 7, 11, 15, 19, 23]]
+    gap = q_actuated - q_of_inverse_kinematics_from_3
     return (gap,)
 
 
@@ -5014,7 +5292,7 @@ def _steps_dissipation(m, X, V):
 
 def _steps_momentum(m, X, V):
     M, = m.run(_run_M, ("M",), X)
-    momentum = np.einsum("ijs,js->is", M, V)
+    momentum = _times(M, V)
     return (momentum,)
 
 
@@ -5052,14 +5330,14 @@ def _steps_actuator_accelerations(m, X, V, A):
 
 def _steps_power(m, X, V, tau):
     H, = m.run(_run_H, ("H",), X)
-    times_1 = np.einsum("ijs,js->is", H, tau)
+    times_1 = _times(H, tau)
     power = np.sum(times_1 * V, axis=0)
     return (power,)
 
 
 def _steps_rotation(m, X):
-    take_1 = X[3:7]
-    R = _rotation_of_quaternion(take_1)
+    X_from_3 = X[3:7]
+    R = _rotation_of_quaternion(X_from_3)
     return (R,)
 
 
@@ -5071,13 +5349,13 @@ def _steps_pose(m, t, R):
 
 
 def _steps_X_dot(m, X, V):
-    take_1 = V[3:6]
-    take_2 = X[3:7]
-    quaternion_rate_1 = _quaternion_rate(take_2, take_1)
-    take_3 = V[0:3]
-    join_1 = np.concatenate((take_3, quaternion_rate_1))
-    take_4 = V[6:12]
-    X_dot = np.concatenate((join_1, take_4))
+    V_from_3 = V[3:6]
+    X_from_3 = X[3:7]
+    quaternion_rate_1 = _quaternion_rate(X_from_3, V_from_3)
+    V_from_0 = V[0:3]
+    join_1 = np.concatenate((V_from_0, quaternion_rate_1))
+    V_from_6 = V[6:12]
+    X_dot = np.concatenate((join_1, V_from_6))
     return (X_dot,)
 
 
@@ -5089,57 +5367,57 @@ def _steps_pose_from_rpy(m, t, rpy):
 
 
 def _steps_retract(m, X, step):
-    take_1 = X[0:3]
-    take_2 = X[3:7]
-    take_3 = X[7:13]
-    take_4 = step[0:3]
-    take_5 = step[3:6]
-    take_6 = step[6:12]
-    turn_quaternion_1 = _turned(take_2, take_5)
-    add_1 = take_1 + take_4
-    add_2 = take_3 + take_6
+    X_from_0 = X[0:3]
+    X_from_3 = X[3:7]
+    X_from_7 = X[7:13]
+    step_from_0 = step[0:3]
+    step_from_3 = step[3:6]
+    step_from_6 = step[6:12]
+    turn_quaternion_1 = _turned(X_from_3, step_from_3)
+    add_1 = X_from_0 + step_from_0
+    add_2 = X_from_7 + step_from_6
     join_1 = np.concatenate((add_1, turn_quaternion_1))
     X_moved = np.concatenate((join_1, add_2))
     return (X_moved,)
 
 
 def _steps_difference(m, X0, X1):
-    take_1 = X0[0:3]
-    take_2 = X0[3:7]
-    take_3 = X0[7:13]
-    take_4 = X1[0:3]
-    take_5 = X1[3:7]
-    take_6 = X1[7:13]
-    turn_between_1 = _turn_between(take_2, take_5)
-    subtract_1 = take_4 - take_1
-    subtract_2 = take_6 - take_3
+    X0_from_0 = X0[0:3]
+    X0_from_3 = X0[3:7]
+    X0_from_7 = X0[7:13]
+    X1_from_0 = X1[0:3]
+    X1_from_3 = X1[3:7]
+    X1_from_7 = X1[7:13]
+    turn_between_1 = _turn_between(X0_from_3, X1_from_3)
+    subtract_1 = X1_from_0 - X0_from_0
+    subtract_2 = X1_from_7 - X0_from_7
     join_1 = np.concatenate((subtract_1, turn_between_1))
     step = np.concatenate((join_1, subtract_2))
     return (step,)
 
 
 def _steps_interpolate(m, X0, X1, s):
-    take_1 = X0[0:3]
-    take_2 = X0[3:7]
-    take_3 = X0[7:13]
-    take_4 = X1[0:3]
-    take_5 = X1[3:7]
-    take_6 = X1[7:13]
-    turn_between_1 = _turn_between(take_2, take_5)
-    subtract_1 = take_4 - take_1
-    subtract_2 = take_6 - take_3
+    X0_from_0 = X0[0:3]
+    X0_from_3 = X0[3:7]
+    X0_from_7 = X0[7:13]
+    X1_from_0 = X1[0:3]
+    X1_from_3 = X1[3:7]
+    X1_from_7 = X1[7:13]
+    turn_between_1 = _turn_between(X0_from_3, X1_from_3)
+    subtract_1 = X1_from_0 - X0_from_0
+    subtract_2 = X1_from_7 - X0_from_7
     join_1 = np.concatenate((subtract_1, turn_between_1))
     join_2 = np.concatenate((join_1, subtract_2))
     scale_1 = join_2 * s
-    take_7 = X0[0:3]
-    take_8 = X0[3:7]
-    take_9 = X0[7:13]
-    take_10 = scale_1[0:3]
-    take_11 = scale_1[3:6]
-    take_12 = scale_1[6:12]
-    turn_quaternion_1 = _turned(take_8, take_11)
-    add_1 = take_7 + take_10
-    add_2 = take_9 + take_12
+    X0_from_0_2 = X0[0:3]
+    X0_from_3_2 = X0[3:7]
+    X0_from_7_2 = X0[7:13]
+    scale_1_from_0 = scale_1[0:3]
+    scale_1_from_3 = scale_1[3:6]
+    scale_1_from_6 = scale_1[6:12]
+    turn_quaternion_1 = _turned(X0_from_3_2, scale_1_from_3)
+    add_1 = X0_from_0_2 + scale_1_from_0
+    add_2 = X0_from_7_2 + scale_1_from_6
     join_3 = np.concatenate((add_1, turn_quaternion_1))
     X = np.concatenate((join_3, add_2))
     return (X,)
@@ -5158,6 +5436,7 @@ def M(X, p=None):
     return _call(
         "M", _steps_M, p,
         ("X", X, (NQ,)),
+        plain=((NV, NV,),),
     )
 
 
@@ -5176,6 +5455,7 @@ def Z(X, V, p=None):
         "Z", _steps_Z, p,
         ("X", X, (NQ,)),
         ("V", V, (NV,)),
+        plain=((NV,),),
     )
 
 
@@ -5192,6 +5472,7 @@ def H(X, p=None):
     return _call(
         "H", _steps_H, p,
         ("X", X, (NQ,)),
+        plain=((NV, NU,),),
     )
 
 
@@ -5210,6 +5491,7 @@ def inverse_kinematics(X, p=None):
     return _call(
         "inverse_kinematics", _steps_inverse_kinematics, p,
         ("X", X, (NQ,)),
+        plain=((NJ,),),
     )
 
 
@@ -5228,6 +5510,7 @@ def joint_rates(X, V, p=None):
         "joint_rates", _steps_joint_rates, p,
         ("X", X, (NQ,)),
         ("V", V, (NV,)),
+        plain=((NJ,),),
     )
 
 
@@ -5248,6 +5531,7 @@ def joint_accelerations(X, V, A, p=None):
         ("X", X, (NQ,)),
         ("V", V, (NV,)),
         ("A", A, (NV,)),
+        plain=((NJ,),),
     )
 
 
@@ -5268,6 +5552,7 @@ def dynamics(X, V, p=None):
         "dynamics", _steps_dynamics, p,
         ("X", X, (NQ,)),
         ("V", V, (NV,)),
+        plain=((NV, NV,), (NV,), (NV, NU,),),
     )
 
 
@@ -5431,6 +5716,41 @@ def condition(X, p=None, *, length=None):
     )
 
 
+def manipulability(X, p=None):
+    """Manipulability of forces: the product of the singular values that `condition` has by
+    default, and the least over the largest of them.
+
+    Args:
+        X: pose, and extra coordinates (..., NQ).
+        p: parameters, by default those of the specification.
+
+    Returns:
+        measure: product of the singular values (...,).
+        isotropy: least over largest value, 1 where H is isotropic (...,).
+    """
+    return _call(
+        "manipulability", _steps_manipulability, p,
+        ("X", X, (NQ,)),
+    )
+
+
+def singularity_distance(X, p=None):
+    """How near actuators and legs are to being singular: relative distances, 0 where they are.
+
+    Args:
+        X: pose, and extra coordinates (..., NQ).
+        p: parameters, by default those of the specification.
+
+    Returns:
+        actuators: of H from matrices of lower rank, over its norm (...,).
+        legs: least pivot of all legs (...,).
+    """
+    return _call(
+        "singularity_distance", _steps_singularity_distance, p,
+        ("X", X, (NQ,)),
+    )
+
+
 def forward_kinematics(q_actuated, X0, p=None):
     """X at which the actuated joints stand at q_actuated, by Gauss-Newton from X0.
 
@@ -5486,6 +5806,7 @@ def momentum(X, V, p=None):
         "momentum", _steps_momentum, p,
         ("X", X, (NQ,)),
         ("V", V, (NV,)),
+        plain=((NV,),),
     )
 
 

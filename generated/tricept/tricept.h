@@ -295,6 +295,23 @@ int tricept_condition_constrained(const tricept_model *model, const tricept_real
 size_t tricept_condition_constrained_batch(const tricept_model *model, size_t n, const
     tricept_real *X, tricept_real *sigma, tricept_real *legs, int *status);
 
+/* Manipulability of forces: the product of the singular values that condition has by default, and
+   the least over the largest of them. Of N^T H, N an orthonormal basis of the motions that
+   constraints leave. 431 mul, 292 add, 11 div, 23 sqrt, 0 trig; the singular values apart. In: X
+   (NQ). Out: measure (1), isotropy (1). */
+int tricept_manipulability(const tricept_model *model, const tricept_real *X, tricept_real
+    *measure, tricept_real *isotropy);
+size_t tricept_manipulability_batch(const tricept_model *model, size_t n, const tricept_real *X,
+    tricept_real *measure, tricept_real *isotropy, int *status);
+
+/* How near actuators and legs are to being singular: relative distances, 0 where they are. 431
+   mul, 292 add, 11 div, 23 sqrt, 0 trig; the singular values apart. In: X (NQ). Out: actuators
+   (1), legs (1). */
+int tricept_singularity_distance(const tricept_model *model, const tricept_real *X, tricept_real
+    *actuators, tricept_real *legs);
+size_t tricept_singularity_distance_batch(const tricept_model *model, size_t n, const tricept_real
+    *X, tricept_real *actuators, tricept_real *legs, int *status);
+
 /* X at which the actuated joints stand at q_actuated, by Gauss-Newton from X0. Extra coordinates
    that actuators do not determine stay. Impossible where no pose is found. In: q_actuated (NU),
    X0 (NQ). Out: X (NQ). */

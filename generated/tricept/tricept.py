@@ -65,6 +65,7 @@ __all__ = [
     "joint_margins",
     "joint_rates",
     "leg_reactions",
+    "manipulability",
     "momentum",
     "null_space",
     "pose",
@@ -73,6 +74,7 @@ __all__ = [
     "project",
     "retract",
     "rotation",
+    "singularity_distance",
     "within_limits",
 ]
 
@@ -748,14 +750,14 @@ def _prepare(p):
     ups_link2_inertia_yy + ups_link3_inertia_yy - ups_link2_mass*(ups_J_group_2_t_2 -
         ups_J_group_2_t_4) - ups_link3_mass*(ups_J_group_2_t_6 - ups_J_group_2_t_8)
     )
-    # (ups-trace_J_2) half the trace of that inertia tensor
-    ups_trace_J_2 = (
-    0.5*ups_J_group_2_in_axes2_xx + 0.5*ups_J_group_2_in_axes2_yy + 0.5*ups_J_group_2_in_axes2_zz
-    )
     # (ups-Sigma_2) second moment of mass of the links that turn with link 2
-    ups_Sigma_2_in_axes2_xx = ups_trace_J_2 - ups_J_group_2_in_axes2_xx
-    ups_Sigma_2_in_axes2_yy = ups_trace_J_2 - ups_J_group_2_in_axes2_yy
-    ups_Sigma_2_in_axes2_zz = ups_trace_J_2 - ups_J_group_2_in_axes2_zz
+    ups_Sigma_2_t = (
+    ups_J_group_2_in_axes2_xx + ups_J_group_2_in_axes2_yy + ups_J_group_2_in_axes2_zz
+    )
+    ups_Sigma_2_t_2 = 0.5*ups_Sigma_2_t
+    ups_Sigma_2_in_axes2_xx = ups_Sigma_2_t_2 - ups_J_group_2_in_axes2_xx
+    ups_Sigma_2_in_axes2_yy = ups_Sigma_2_t_2 - ups_J_group_2_in_axes2_yy
+    ups_Sigma_2_in_axes2_zz = ups_Sigma_2_t_2 - ups_J_group_2_in_axes2_zz
     # (h_star) first moment about the platform origin
     ups_h_star_t = ups_link3_mass*ups_platform_point_x
     ups_h_star_t_2 = ups_link3_mass*ups_platform_point_y
@@ -851,15 +853,14 @@ def _prepare(p):
     tube_link2_inertia_yy + tube_link3_inertia_yy - tube_link2_mass*(tube_J_group_2_t_2 -
         tube_J_group_2_t_4) - tube_link3_mass*(tube_J_group_2_t_6 - tube_J_group_2_t_8)
     )
-    # (tube-trace_J_2) half the trace of that inertia tensor
-    tube_trace_J_2 = (
-    0.5*tube_J_group_2_in_axes2_xx + 0.5*tube_J_group_2_in_axes2_yy +
-        0.5*tube_J_group_2_in_axes2_zz
-    )
     # (tube-Sigma_2) second moment of mass of the links that turn with link 2
-    tube_Sigma_2_in_axes2_xx = tube_trace_J_2 - tube_J_group_2_in_axes2_xx
-    tube_Sigma_2_in_axes2_yy = tube_trace_J_2 - tube_J_group_2_in_axes2_yy
-    tube_Sigma_2_in_axes2_zz = tube_trace_J_2 - tube_J_group_2_in_axes2_zz
+    tube_Sigma_2_t = (
+    tube_J_group_2_in_axes2_xx + tube_J_group_2_in_axes2_yy + tube_J_group_2_in_axes2_zz
+    )
+    tube_Sigma_2_t_2 = 0.5*tube_Sigma_2_t
+    tube_Sigma_2_in_axes2_xx = tube_Sigma_2_t_2 - tube_J_group_2_in_axes2_xx
+    tube_Sigma_2_in_axes2_yy = tube_Sigma_2_t_2 - tube_J_group_2_in_axes2_yy
+    tube_Sigma_2_in_axes2_zz = tube_Sigma_2_t_2 - tube_J_group_2_in_axes2_zz
     # (potential) potential energy
     tube_potential_t = (
     tube_base_frame_xx*tube_base_point_x + tube_base_frame_yx*tube_base_point_y +
@@ -1279,6 +1280,24 @@ def _constants(p, name):
     return p._cache[name]
 
 
+class _Vector(list):
+    """A vector, or a matrix row by row, of a single state."""
+
+    def __add__(self, other):
+        return _Vector([a + b for a, b in zip(self, other)])
+
+    def __sub__(self, other):
+        return _Vector([a - b for a, b in zip(self, other)])
+
+    def __neg__(self):
+        return _Vector([-a for a in self])
+
+
+def _are_finite(rows):
+    """Whether lists of floats have finite entries alone."""
+    return math.isfinite(sum(map(sum, rows))) or all(all(map(math.isfinite, row)) for row in rows)
+
+
 class _Floats:
     """Functions of a state after another, in Python floats: the way for few states."""
 
@@ -1308,11 +1327,32 @@ class _Floats:
         """Lists that a function gives at a state."""
         try:
             ok, arrays = function(self, *given)
-        except (ZeroDivisionError, OverflowError, ValueError):
+        except (ArithmeticError, ValueError):
             ok = False
-        if ok and all(all(map(math.isfinite, array)) for array in arrays):
+        if ok and _are_finite(arrays):
             return arrays
         return [[np.nan] * math.prod(_SHAPES[n]) for n in names]
+
+    def solved(self, order, a, b):
+        """Solutions, straight through; and which are beyond doubt."""
+        sure, x = np.zeros(self.states, dtype=bool), np.full(b.shape, np.nan)
+        for k, given in enumerate(zip(a.T.tolist(), b.T.tolist())):
+            try:
+                sure[k], (x[:, k],) = order(self, *given)
+            except ZeroDivisionError:
+                pass
+        return sure, x
+
+
+class _Single(_Floats):
+    """A single state in lists of floats throughout."""
+
+    def run(self, function, names, *vectors):
+        """Arrays of a function, row by row; ArithmeticError or ValueError where the state is impossible."""
+        ok, arrays = function(self, *vectors)
+        if not (ok and _are_finite(arrays)):
+            raise ArithmeticError
+        return [_Vector(a) for a in arrays]
 
 
 class _Arrays:
@@ -1342,20 +1382,27 @@ class _Arrays:
     def zeros(self, name):
         return np.zeros((math.prod(_SHAPES[name]), self.states))
 
-    def computed(self, function, names, vectors):
-        """Flags and arrays (*shape, states) of a function."""
+    def computed(self, function, *vectors):
+        """Flags and arrays (entries, states) of a function."""
         if self.kept is None:
-            flags, arrays = function(self, *vectors)
-        else:
-            if self.done not in self.kept:
-                self.kept[self.done] = _Replay(self.p, function, [len(v) for v in vectors], self.states)
-            flags, arrays = self.kept[self.done].run(vectors)
-            self.done += 1
-        return flags, [a.reshape(*_SHAPES[n], self.states) for a, n in zip(arrays, names)]
+            return function(self, *vectors)
+        if self.done not in self.kept:
+            self.kept[self.done] = _Replay(self.p, function, [len(v) for v in vectors], self.states)
+        self.done += 1
+        return self.kept[self.done - 1].run(vectors)
+
+    def shaped(self, names, arrays):
+        return [a.reshape(*_SHAPES[n], self.states) for a, n in zip(arrays, names)]
+
+    def solved(self, order, a, b):
+        """Solutions, straight through; and which are beyond doubt."""
+        sure, (x,) = self.computed(order, a, b)
+        return sure, np.array(x)
 
     def run(self, function, names, *vectors):
         """Arrays (*shape, states) of a function; NaN where the state is impossible."""
-        ok, arrays = self.computed(function, names, vectors)
+        ok, arrays = self.computed(function, *vectors)
+        arrays = self.shaped(names, arrays)
         ok = np.logical_and(ok, _finite(arrays, self.states))
         if not np.all(ok):
             for a in arrays:
@@ -1372,10 +1419,10 @@ class _Judged(_Arrays):
 
     def run(self, function, names, *vectors):
         """Arrays (*shape, states) of a function, also where they are nonsense."""
-        (valid, reached, clear), arrays = self.computed(function, names, vectors)
+        (valid, reached, clear), arrays = self.computed(function, *vectors)
         for code, good in ((3, valid), (1, reached), (2, clear)):
             self.failed[code] |= np.logical_not(good)
-        return arrays
+        return self.shaped(names, arrays)
 
     def closed(self, q):
         """q, noting where the iteration has not converged."""
@@ -1387,26 +1434,90 @@ class _Judged(_Arrays):
         return np.select(list(self.failed.values()), list(self.failed), np.where(possible, 0, 3))
 
 
+_IN_ONE = {}  # by function
+
+
+def _in_one(function):
+    """A function that tells whether a state is possible, of one that tells why not."""
+
+    def run(m, *vectors):
+        (valid, reached, clear), arrays = function(m, *vectors)
+        return valid & reached & clear, arrays
+
+    return _IN_ONE.setdefault(function, run)
+
+
 def _mode(p, states, kept=None):
     """The faster way for so many states."""
     return (_Floats if 0 < states <= _FEW else _Arrays)(p, states, kept)
 
 
-def _call(function, steps, p, *arguments, mode=_mode, unbounded=False):
+def _call(function, steps, p, *arguments, mode=_mode, unbounded=False, plain=()):
     """What the steps give at arguments (name, value, shape of a state, default, rule).
 
-    Where that may be infinite only NaN makes a state impossible.
+    Where that may be infinite only NaN makes a state impossible.  `plain` has the shapes of results
+    where a single state needs no arrays.
     """
+    p, read = _given(p), [a[-1] != "unused" for a in arguments]
+    lists = plain and _lists(arguments)
+    if lists:
+        found = _state(_Single(p, 1), steps, lists, read)
+        results = [_result(a, shape) for a, shape in zip(found or plain, plain)]
+        return results[0] if len(results) == 1 else tuple(results)
     given = [_argument(function, *a) for a in arguments]
     shapes = [a[2] for a in arguments]
     leads = {a[0]: v.shape[: v.ndim - len(a[2])] for a, v in zip(arguments, given)}
-    lead, p = _lead(leads), _given(p)
-    read = [a[4:] != ("unused",) for a in arguments]
-    if lead or mode is _Judged:
+    lead = _lead(leads)
+    if plain and 0 < math.prod(lead) <= _FEW:
+        results = _few(steps, p, lead, given, shapes, read, plain)
+    elif lead or mode is _Judged:
         results = _many(steps, p, lead, given, shapes, read, mode, unbounded)
     else:
         results = _one(steps, p, given, shapes, read, unbounded)
     return results[0] if len(results) == 1 else tuple(results)
+
+
+def _lists(arguments):
+    """Arguments of a single state as lists, where they are such arrays as they mostly are."""
+    found = []
+    for row in arguments:
+        value, shape = row[1:3]
+        if type(value) is np.ndarray:
+            if value.shape != shape or value.dtype is not _REAL or row[-1] == "positive":
+                return None
+            found.append(_Vector(value.tolist()))
+        elif value is None and len(row) > 3 and row[3] is not None:
+            found.append(_Vector(row[3] if isinstance(row[3], tuple) else [row[3]] * shape[0]))
+        else:
+            return None
+    return found
+
+
+def _state(m, steps, given, read):
+    """Lists that the steps give at a state; None where it is impossible."""
+    try:
+        found = steps(m, *given)
+    except (ArithmeticError, ValueError):
+        return None
+    return found if _are_finite(list(compress(given, read))) and _are_finite(found) else None
+
+
+def _result(found, shape):
+    """The array of a list; of an impossible state, for which its shape is given, NaN."""
+    if found is shape:
+        return np.full(shape, np.nan)
+    return np.array(found) if len(shape) == 1 else np.array(found).reshape(shape)
+
+
+def _few(steps, p, lead, given, shapes, read, plain):
+    """Results at a few states, one after another."""
+    m, rows = _Single(p, 1), []
+    for v, shape in zip(given, shapes):
+        flat = np.broadcast_to(v, lead + shape).reshape(math.prod(lead), -1)
+        rows.append(map(_Vector, flat.tolist()))
+    impossible = [[np.nan] * math.prod(shape) for shape in plain]
+    found = [_state(m, steps, state, read) or impossible for state in zip(*rows)]
+    return [np.array(a).reshape(lead + shape) for a, shape in zip(zip(*found), plain)]
 
 
 def _one(steps, p, given, shapes, read, unbounded):
@@ -1425,7 +1536,11 @@ def _many(steps, p, lead, given, shapes, read, mode, unbounded):
     """Results at many states, block by block; the last block begins where it is as long as the others."""
     count = math.prod(lead)
     size, kept = min(count, _BLOCK), {} if count >= _MANY else None
-    flat = [np.broadcast_to(v, lead + s).reshape(count, *s) for v, s in zip(given, shapes)]
+    # one value for all states stands for itself
+    flat = [
+        np.broadcast_to(v, lead + s).reshape(count, *s) if v.ndim > len(s) else v
+        for v, s in zip(given, shapes)
+    ]
     possible, status, outputs = np.ones(count, dtype=bool), np.zeros(count, dtype=int), []
     if count > size:
         # Never touched, freed at once: the C library, which learns from it, then keeps the memory
@@ -1434,7 +1549,7 @@ def _many(steps, p, lead, given, shapes, read, mode, unbounded):
     with np.errstate(all="ignore"):
         for stop in (*range(size, count, max(size, 1)), count):
             block = slice(stop - size, stop)
-            states = [_states_last(v[block]) for v in flat]
+            states = [_states_last(v, s, block) for v, s in zip(flat, shapes)]
             m, good = mode(p, size, kept), possible[block]
             found = steps(m, *states)
             if not outputs:
@@ -1454,15 +1569,17 @@ def _many(steps, p, lead, given, shapes, read, mode, unbounded):
     return [a.reshape(lead + a.shape[1:])[()] for a in outputs]
 
 
-def _states_last(a):
-    """A contiguous array (*shape, states) of one (states, *shape)."""
-    return np.ascontiguousarray(a.transpose(*range(1, a.ndim), 0))
+def _states_last(a, shape, block):
+    """An array (*shape, states) of a block of one (states, *shape), or of a value for all."""
+    if a.ndim == len(shape):
+        return np.broadcast_to(a[..., None], (*shape, block.stop - block.start))
+    return np.ascontiguousarray(a[block].transpose(*range(1, a.ndim), 0))
 
 
 def _finite(arrays, states):
     """In which states all entries of arrays (*shape, states) are finite."""
     flat = [a.reshape(math.prod(a.shape[:-1]), states) for a in arrays]
-    good = np.isfinite(sum(np.add.reduce(a, axis=0) for a in flat))
+    good = np.isfinite(sum(np.einsum("es->s", a) for a in flat))
     if not np.all(good):  # or the sum is too large
         good = np.logical_and.reduce([np.isfinite(a).all(axis=0) for a in flat])
     return good
@@ -1571,6 +1688,8 @@ class _Record:
 
     def made(self, operation, *operands):
         """The result of an operation."""
+        if operation in _WITHOUT and operands[0] is _WITHOUT[operation]:
+            return operands[1]
         numbers = [self.number(operand) for operand in operands]
         if all(self.kinds[n] == "one" for n in numbers):
             kind = "one"
@@ -1607,6 +1726,7 @@ class _Record:
         return counts
 
 
+_WITHOUT = {np.logical_and: True}  # first operands that change nothing
 _OF_FLAGS = {np.logical_and, np.greater, np.greater_equal}
 _RECORDS = {}  # by function
 
@@ -1618,11 +1738,12 @@ class _Replay:
         if function not in _RECORDS:
             _RECORDS[function] = _Record(p, function, sizes)
         r = _RECORDS[function]
-        made = {kind: _rows(n, states, bool if kind == "flag" else float) for kind, n in r.counts.items()}
-        made["one"] = [np.empty(()) for _ in range(r.counts["one"])]
-        made["out"] = _rows(sum(r.sizes), states)
-        self.inputs = [_rows(size, states) for size in sizes]
-        self.arrays = np.split(made["out"], np.cumsum(r.sizes)[:-1])
+        rows = _rows(r.counts["state"] + sum(r.sizes) + sum(sizes), states)
+        given, out, state = np.split(rows, np.cumsum((sum(sizes), sum(r.sizes))))
+        made = {"state": state, "out": out, "one": [np.empty(()) for _ in range(r.counts["one"])]}
+        made["flag"] = np.empty((r.counts["flag"], states), dtype=bool)
+        self.inputs = np.split(given, np.cumsum(sizes)[:-1])
+        self.arrays = np.split(out, np.cumsum(r.sizes)[:-1])
         at = {number: np.array(value) for value, number in r.literals.items()}
         for values, given in zip(r.inputs, self.inputs):
             at |= {v.number: row for v, row in zip(values, given)}
@@ -1644,9 +1765,26 @@ class _Replay:
         return self.flags, self.arrays
 
 
-def _rows(count, states, kind=float):
-    """Rows of so many states, a cache line apart from each other."""
-    return np.empty((count, states + 8), dtype=kind)[:, :states]
+def _rows(count, states):
+    """Rows of so many states in one piece, which the system keeps in a few large pages if it is told.
+
+    NumPy tells it of pieces from 4 MB on.  It makes operations a third faster.
+    """
+    row = states + 8  # a cache line further: rows do not compete for the same places of the cache
+    piece = np.empty(max(count * row, 2 * _PAGE) + _PAGE)
+    start = -(piece.ctypes.data // piece.itemsize) % _PAGE
+    return piece[start : start + count * row].reshape(count, row)[:, :states]
+
+
+_PAGE = (2 << 20) // 8  # numbers in a large page
+
+
+def _times(a, b):
+    """Products of matrices (m, n, states) with vectors (n, states)."""
+    if isinstance(b, _Vector):
+        rows = (a[k : k + len(b)] for k in range(0, len(a), len(b)))
+        return _Vector([sum([x * y for x, y in zip(row, b)]) for row in rows])
+    return np.einsum("ijs,js->is", a, b)
 
 
 def _with_forces(a, amounts, directions, legs):
@@ -1767,8 +1905,10 @@ _CLEARLY = 2.0  # rows change places only for a pivot that is larger by this fac
 
 def _solve(a, b):
     """x with a x = b, a (n, n, states), b (n, states): rows scaled, partial pivoting; NaN if singular."""
+    if isinstance(b, _Vector):
+        return _Vector(_solve_one([a[k : k + len(b)] for k in range(0, len(a), len(b))], b))
     n, states = b.shape
-    if 0 < states <= _FEW:
+    if 0 < states <= 8:
         systems = zip(a.transpose(2, 0, 1).tolist(), b.T.tolist())
         return np.array([_solve_one(*each) for each in systems]).T.reshape(n, states)
     size = np.max(np.abs(a), axis=1, initial=0.0)
@@ -1793,6 +1933,38 @@ def _solve(a, b):
         known = np.einsum("js,js->s", rows[k, k + 1 : n], x[k + 1 :])
         x[k] = (rows[k, n] - known) / rows[k, k]
     x[:, ~(good & np.isfinite(x).all(axis=0))] = np.nan
+    return x
+
+
+class _Order:
+    """How a system is solved near home.
+
+    Args:
+        solve: the function for so many equations.
+        rows: in the order of their pivots.
+        limits: of multiples, column by column, and of 1/pivot.
+    """
+
+    def __init__(self, solve, rows, limits):
+        self.solve, self.rows, self.limits = solve, rows, limits
+
+    def __call__(self, m, a, b):
+        """Solutions of a x = b, and whether these are beyond doubt."""
+        return self.solve(a, b, self.rows, self.limits)
+
+
+def _straight(m, a, b, order):
+    """The same, in the order of rows at home; with a choice of rows only where that is in doubt."""
+    if isinstance(b, _Vector):
+        try:
+            sure, (x,) = order(m, a, b)
+        except ZeroDivisionError:
+            sure = False
+        return _Vector(x) if sure else _solve(a, b)
+    sure, x = m.solved(order, a.reshape(-1, m.states), b)
+    at = np.flatnonzero(np.logical_not(sure))
+    if at.size:
+        x[:, at] = _solve(a[..., at], b[:, at])
     return x
 
 
@@ -1857,6 +2029,16 @@ def _singular_values(a):
     values = np.linalg.svd(a, compute_uv=False).T.copy()
     values[:, bad] = np.nan
     return values
+
+
+def _least_entry(a):
+    """The least entry."""
+    return np.min(a, axis=0)
+
+
+def _spread(a, n):
+    """Of the first n entries the product, and the last over the first, 0 where that is 0."""
+    return np.prod(a[:n], axis=0), np.where(a[0] == 0.0, 0.0, a[n - 1] / a[0])
 
 
 def _least_squares(a, b, least):
@@ -2097,40 +2279,33 @@ def _run_dynamics(m, X, V):
         ups_S_x = t_x + ups_q_x - ups_base_point_x
         ups_S_y = t_y + ups_q_y - ups_base_point_y
         ups_S_z = t_z + ups_q_z - ups_base_point_z
-        # (ups-px_1) component along the reference direction
-        ups_px_1 = (
+        ups_S_in_turn1_x = (
         ups_S_x*ups_base_frame_xx + ups_S_y*ups_base_frame_yx + ups_S_z*ups_base_frame_zx
         )
-        # (ups-py_1) component across the reference direction
-        ups_py_1 = (
+        ups_S_in_turn1_y = (
         ups_S_x*ups_base_frame_xy + ups_S_y*ups_base_frame_yy + ups_S_z*ups_base_frame_zy
         )
-        # (ups-rho2_1) squared amplitude
-        ups_rho2_1 = ups_px_1*ups_px_1 + ups_py_1*ups_py_1
-        # (ups-root_1) amplitude, with the sign of the branch
-        ups_root_1 = ups_branch_1*sqrt(ups_rho2_1)
-        # (ups-c_1) cosine of the angle of joint 1 from its reference direction
-        inv_ups_root_1 = 1.0/ups_root_1
-        ups_c_1 = -inv_ups_root_1*ups_py_1
-        # (ups-s_1) sine of the angle of joint 1 from its reference direction
-        ups_s_1 = inv_ups_root_1*ups_px_1
-        # (ups-xi_1) the vector from joint 1 to the connection point, resolved along link 1
-        ups_xi_1_in_axes1_z = (
+        ups_S_in_turn1_z = (
         ups_S_x*ups_base_frame_xz + ups_S_y*ups_base_frame_yz + ups_S_z*ups_base_frame_zz
         )
-        # (ups-rho2_2) squared amplitude
-        ups_rho2_2 = ups_rho2_1 + ups_xi_1_in_axes1_z*ups_xi_1_in_axes1_z
-        # (ups-root_2) amplitude, with the sign of the branch
-        ups_root_2 = ups_branch_2*sqrt(ups_rho2_2)
+        # (ups-root_1) amplitude, the length across axis 1, with the sign of the branch
+        ups_root_1_t = ups_S_in_turn1_x*ups_S_in_turn1_x + ups_S_in_turn1_y*ups_S_in_turn1_y
+        ups_root_1 = ups_branch_1*sqrt(ups_root_1_t)
+        # (ups-c_1) cosine of the angle of joint 1 from its reference direction
+        inv_ups_root_1 = 1.0/ups_root_1
+        ups_c_1 = inv_ups_root_1*ups_S_in_turn1_x
+        # (ups-s_1) sine of the angle of joint 1 from its reference direction
+        ups_s_1 = inv_ups_root_1*ups_S_in_turn1_y
+        # (ups-q_3) displacement of joint 3
+        ups_q_3_t = ups_S_in_turn1_z*ups_S_in_turn1_z + ups_root_1_t
+        ups_q_3 = ups_branch_2*sqrt(ups_q_3_t)
         # (ups-c_2) cosine of the angle of joint 2 from its reference direction
-        inv_ups_root_2 = 1.0/ups_root_2
-        ups_c_2 = -inv_ups_root_2*ups_root_1
-        # (ups-s_2) sine of the angle of joint 2 from its reference direction
-        ups_s_2 = inv_ups_root_2*ups_xi_1_in_axes1_z
+        inv_ups_q_3 = 1.0/ups_q_3
+        ups_c_2 = inv_ups_q_3*ups_root_1
         # (ups-S_dot) velocity of the connection point
-        axis_x_ups_axes2_x = inv_ups_root_2*ups_S_x
-        axis_x_ups_axes2_y = inv_ups_root_2*ups_S_y
-        axis_x_ups_axes2_z = inv_ups_root_2*ups_S_z
+        axis_x_ups_axes2_x = inv_ups_q_3*ups_S_x
+        axis_x_ups_axes2_y = inv_ups_q_3*ups_S_y
+        axis_x_ups_axes2_z = inv_ups_q_3*ups_S_z
         ups_S_dot_t = omega_y*ups_q_z - omega_z*ups_q_y
         ups_S_dot_t_2 = omega_z*ups_q_x - omega_x*ups_q_z
         ups_S_dot_t_3 = omega_x*ups_q_y - omega_y*ups_q_x
@@ -2142,9 +2317,9 @@ def _run_dynamics(m, X, V):
             axis_x_ups_axes2_z*ups_S_dot_z
         )
         # (ups-qd_1) rate of joint 1
-        axis_z_ups_axes2_x = ups_base_frame_xx*ups_c_1 + ups_base_frame_xy*ups_s_1
-        axis_z_ups_axes2_y = ups_base_frame_yx*ups_c_1 + ups_base_frame_yy*ups_s_1
-        axis_z_ups_axes2_z = ups_base_frame_zx*ups_c_1 + ups_base_frame_zy*ups_s_1
+        axis_z_ups_axes2_x = ups_base_frame_xy*ups_c_1 - ups_base_frame_xx*ups_s_1
+        axis_z_ups_axes2_y = ups_base_frame_yy*ups_c_1 - ups_base_frame_yx*ups_s_1
+        axis_z_ups_axes2_z = ups_base_frame_zy*ups_c_1 - ups_base_frame_zx*ups_s_1
         ups_qd_1 = (
         inv_ups_root_1*(axis_z_ups_axes2_x*ups_S_dot_x + axis_z_ups_axes2_y*ups_S_dot_y +
             axis_z_ups_axes2_z*ups_S_dot_z)
@@ -2160,12 +2335,13 @@ def _run_dynamics(m, X, V):
         axis_x_ups_axes2_y*axis_z_ups_axes2_x - axis_x_ups_axes2_x*axis_z_ups_axes2_y
         )
         ups_qd_2 = (
-        inv_ups_root_2*(axis_y_ups_axes2_x*ups_S_dot_x + axis_y_ups_axes2_y*ups_S_dot_y +
+        inv_ups_q_3*(axis_y_ups_axes2_x*ups_S_dot_x + axis_y_ups_axes2_y*ups_S_dot_y +
             axis_y_ups_axes2_z*ups_S_dot_z)
         )
         # (ups-omega_1) angular velocity of link 1
-        ups_omega_1_in_axes2_x = ups_qd_1*ups_s_2
-        ups_omega_1_in_axes2_y = ups_c_2*ups_qd_1
+        ups_e_1_in_axes2_x = inv_ups_q_3*ups_S_in_turn1_z
+        ups_omega_1_in_axes2_x = ups_e_1_in_axes2_x*ups_qd_1
+        ups_omega_1_in_axes2_y = -ups_c_2*ups_qd_1
         # (ups-W_2) centripetal tensor of link 2
         ups_W_2_in_axes2_yz = ups_omega_1_in_axes2_y*ups_qd_2
         ups_W_2_in_axes2_xz = ups_omega_1_in_axes2_x*ups_qd_2
@@ -2179,18 +2355,16 @@ def _run_dynamics(m, X, V):
         )
         # (ups-bias) acceleration of the connection point at zero joint accelerations
         ups_bias_t = 2.0*ups_S_dot_in_axes2_x
-        ups_bias_in_axes2_z = (
-        2.0*ups_W_2_in_axes2_xz*ups_root_2 - ups_bias_t*ups_omega_1_in_axes2_y
-        )
+        ups_bias_in_axes2_z = 2.0*ups_W_2_in_axes2_xz*ups_q_3 - ups_bias_t*ups_omega_1_in_axes2_y
         # (ups-rel_o) remainder without the acceleration in: acceleration of the connection point left to the joint accelerations
         ups_rel_o_in_axes2_z = ups_u_1_in_axes2_z - ups_bias_in_axes2_z
         # (ups-qdd_1_o) remainder without the acceleration in: acceleration of joint 1
         ups_qdd_1_o = inv_ups_root_1*ups_rel_o_in_axes2_z
         # (ups-d_alpha_1) coefficient of the acceleration in: angular acceleration of link 1
-        ups_d_alpha_1_in_axes2_xz = inv_ups_root_1*ups_s_2
+        ups_d_alpha_1_in_axes2_xz = inv_ups_root_1*ups_e_1_in_axes2_x
         # (ups-alpha_1_o) remainder without the acceleration in: angular acceleration of link 1
-        ups_alpha_1_o_in_axes2_x = ups_qdd_1_o*ups_s_2
-        ups_alpha_1_o_in_axes2_y = ups_c_2*ups_qdd_1_o
+        ups_alpha_1_o_in_axes2_x = ups_e_1_in_axes2_x*ups_qdd_1_o
+        ups_alpha_1_o_in_axes2_y = -ups_c_2*ups_qdd_1_o
         # (ups-alpha_2_o) remainder without the acceleration in: angular acceleration of link 2
         ups_alpha_2_o_in_axes2_x = ups_W_2_in_axes2_yz + ups_alpha_1_o_in_axes2_x
         ups_alpha_2_o_in_axes2_y = ups_alpha_1_o_in_axes2_y - ups_W_2_in_axes2_xz
@@ -2199,16 +2373,16 @@ def _run_dynamics(m, X, V):
         ups_B_2_o_t_2 = axis_y_ups_axes2_y*ups_u_1_y
         ups_B_2_o_t_3 = axis_y_ups_axes2_z*ups_u_1_z
         ups_B_2_o_in_axes2_yx = (
-        inv_ups_root_2*(ups_B_2_o_t + ups_B_2_o_t_2 + ups_B_2_o_t_3 - ups_bias_t*ups_qd_2)
+        inv_ups_q_3*(ups_B_2_o_t + ups_B_2_o_t_2 + ups_B_2_o_t_3 - ups_bias_t*ups_qd_2)
         )
         ups_B_2_o_in_axes2_xy = 2.0*ups_W_2_in_axes2_xy - ups_B_2_o_in_axes2_yx
         ups_B_2_o_in_axes2_zx = ups_W_2_in_axes2_xz - ups_alpha_2_o_in_axes2_y
         ups_B_2_o_in_axes2_zy = ups_W_2_in_axes2_yz + ups_alpha_2_o_in_axes2_x
         # (ups-acc_3_o) remainder without the acceleration in: acceleration of the reference point of link 3, less gravity
-        ups_g_in_axes2_z = ups_acc_3_t*ups_c_1 + ups_acc_3_t_2*ups_s_1
-        ups_acc_3_o_t = ups_acc_3_t_2*ups_c_1 - ups_acc_3_t*ups_s_1
-        ups_g_in_axes2_x = ups_acc_3_o_t*ups_c_2 + ups_acc_3_t_3*ups_s_2
-        ups_g_in_axes2_y = ups_acc_3_t_3*ups_c_2 - ups_acc_3_o_t*ups_s_2
+        ups_acc_3_o_t = ups_acc_3_t*ups_c_1 + ups_acc_3_t_2*ups_s_1
+        ups_g_in_axes2_z = ups_acc_3_t_2*ups_c_1 - ups_acc_3_t*ups_s_1
+        ups_g_in_axes2_x = ups_acc_3_o_t*ups_c_2 + ups_acc_3_t_3*ups_e_1_in_axes2_x
+        ups_g_in_axes2_y = ups_acc_3_o_t*ups_e_1_in_axes2_x - ups_acc_3_t_3*ups_c_2
         ups_acc_3_o_in_axes2_x = (
         axis_x_ups_axes2_x*ups_u_1_x + axis_x_ups_axes2_y*ups_u_1_y + axis_x_ups_axes2_z*ups_u_1_z
             - ups_g_in_axes2_x
@@ -2216,8 +2390,8 @@ def _run_dynamics(m, X, V):
         ups_acc_3_o_in_axes2_y = ups_B_2_o_t + ups_B_2_o_t_2 + ups_B_2_o_t_3 - ups_g_in_axes2_y
         ups_acc_3_o_in_axes2_z = ups_u_1_in_axes2_z - ups_g_in_axes2_z
         # (ups-d_phi_3) coefficient of the acceleration in: inertia force of link 3 from its turning about its reference point
-        ups_d_phi_3_in_axes2_xy = inv_ups_root_2*ups_h_3_in_spec2_z
-        ups_d_phi_3_in_axes2_yy = inv_ups_root_2*ups_h_3_in_spec2_x
+        ups_d_phi_3_in_axes2_xy = inv_ups_q_3*ups_h_3_in_spec2_z
+        ups_d_phi_3_in_axes2_yy = inv_ups_q_3*ups_h_3_in_spec2_x
         # (ups-phi_3_o) remainder without the acceleration in: inertia force of link 3 from its turning about its reference point
         ups_phi_3_o_t = ups_omega_1_in_axes2_y*ups_omega_1_in_axes2_y
         ups_phi_3_o_t_2 = ups_qd_2*ups_qd_2
@@ -2254,33 +2428,33 @@ def _run_dynamics(m, X, V):
             - ups_g_in_axes2_y*ups_h_2_in_spec2_x
         )
         # (ups-d_c) coefficient of the acceleration in: leg force on the platform without actuation and without the mass at the connection point
-        ups_d_c_in_axes2_xz = inv_ups_root_2*ups_h_3_in_spec2_y
+        ups_d_c_in_axes2_xz = inv_ups_q_3*ups_h_3_in_spec2_y
         ups_d_c_in_axes2_yy = (
-        -ups_d_phi_3_in_axes2_yy - inv_ups_root_2*(ups_h_3_in_spec2_x +
-            inv_ups_root_2*ups_J_group_2_in_axes2_zz)
+        -ups_d_phi_3_in_axes2_yy - inv_ups_q_3*(ups_h_3_in_spec2_x +
+            inv_ups_q_3*ups_J_group_2_in_axes2_zz)
         )
         ups_d_c_in_axes2_yz = (
         ups_d_alpha_1_in_axes2_xz*ups_h_3_in_spec2_y -
-            inv_ups_root_2*(ups_J_group_2_in_axes2_xz*ups_d_alpha_1_in_axes2_xz -
-            inv_ups_root_2*ups_J_group_2_in_axes2_yz)
+            inv_ups_q_3*(ups_J_group_2_in_axes2_xz*ups_d_alpha_1_in_axes2_xz -
+            inv_ups_q_3*ups_J_group_2_in_axes2_yz)
         )
         ups_d_c_in_axes2_zz = (
         ups_d_alpha_1_in_axes2_xz*ups_h_3_in_spec2_z - ups_d_phi_3_in_axes2_yy -
-            inv_ups_root_1*(ups_c_2*(ups_J_group_2_in_axes2_xy*ups_d_alpha_1_in_axes2_xz -
-            ups_h_3_in_spec2_x - inv_ups_root_2*ups_J_group_2_in_axes2_yy) +
-            ups_s_2*(ups_J_group_2_in_axes2_xx*ups_d_alpha_1_in_axes2_xz - ups_h_3_in_spec2_z -
-            inv_ups_root_2*ups_J_group_2_in_axes2_xy))
+            inv_ups_root_1*(ups_e_1_in_axes2_x*(ups_J_group_2_in_axes2_xx*ups_d_alpha_1_in_axes2_xz
+            - ups_h_3_in_spec2_z - inv_ups_q_3*ups_J_group_2_in_axes2_xy) -
+            ups_c_2*(ups_J_group_2_in_axes2_xy*ups_d_alpha_1_in_axes2_xz - ups_h_3_in_spec2_x -
+            inv_ups_q_3*ups_J_group_2_in_axes2_yy))
         )
         # (ups-c_o) remainder without the acceleration in: leg force on the platform without actuation and without the mass at the connection point
         ups_c_o_in_axes2_y = (
-        ups_alpha_1_o_in_axes2_x*ups_h_3_in_spec2_y - inv_ups_root_2*ups_mu_2_o_in_axes2_z -
+        ups_alpha_1_o_in_axes2_x*ups_h_3_in_spec2_y - inv_ups_q_3*ups_mu_2_o_in_axes2_z -
             ups_B_2_o_in_axes2_yx*ups_h_3_in_spec2_x - ups_h_3_in_spec2_z*(ups_mu_2_o_t +
             ups_phi_3_o_t_2)
         )
         ups_c_o_in_axes2_z = (
-        ups_B_2_o_in_axes2_zy*ups_h_3_in_spec2_z + ups_h_3_in_spec2_y*(ups_mu_2_o_t +
-            ups_phi_3_o_t) - inv_ups_root_1*(ups_c_2*ups_mu_2_o_in_axes2_y +
-            ups_mu_2_o_in_axes2_x*ups_s_2) - ups_B_2_o_in_axes2_zx*ups_h_3_in_spec2_x
+        inv_ups_root_1*(ups_c_2*ups_mu_2_o_in_axes2_y - ups_e_1_in_axes2_x*ups_mu_2_o_in_axes2_x)
+            + ups_B_2_o_in_axes2_zy*ups_h_3_in_spec2_z + ups_h_3_in_spec2_y*(ups_mu_2_o_t +
+            ups_phi_3_o_t) - ups_B_2_o_in_axes2_zx*ups_h_3_in_spec2_x
         )
         # (ups-Q) inertia of the leg at the connection point, without the mass gathered there
         ups_Q_t = 0.5*ups_d_c_in_axes2_yy
@@ -2360,9 +2534,9 @@ def _run_dynamics(m, X, V):
         ups_H_a_3_y = axis_x_ups_axes2_x*ups_q_z - axis_x_ups_axes2_z*ups_q_x
         ups_H_a_3_z = axis_x_ups_axes2_y*ups_q_x - axis_x_ups_axes2_x*ups_q_y
         ok = (
-        ok & (abs(ups_rho2_1) > _TOLERANCE * _TOLERANCE * 1.9124953849) & (abs(ups_rho2_2) >
+        ok & (abs(ups_root_1_t) > _TOLERANCE * _TOLERANCE * 1.9124953849) & (abs(ups_q_3_t) >
             _TOLERANCE * _TOLERANCE * 1.9124953849) & (abs(ups_root_1) > _TOLERANCE * 1.38293) &
-            (abs(ups_root_2) > _TOLERANCE * 1.38293)
+            (abs(ups_q_3) > _TOLERANCE * 1.38293)
         )
         # (M_tt) translational block of M
         M_tt_ups_xx += ups_Q_xx
@@ -2442,53 +2616,47 @@ def _run_dynamics(m, X, V):
         tube_S_x = t_x + tube_q_x - tube_base_point_x
         tube_S_y = t_y + tube_q_y - tube_base_point_y
         tube_S_z = t_z + tube_q_z - tube_base_point_z
-        # (tube-px_1) component along the reference direction
-        tube_px_1 = (
+        tube_S_in_turn1_x = (
         tube_S_x*tube_base_frame_xx + tube_S_y*tube_base_frame_yx + tube_S_z*tube_base_frame_zx
         )
-        # (tube-py_1) component across the reference direction
-        tube_py_1 = (
+        tube_S_in_turn1_y = (
         tube_S_x*tube_base_frame_xy + tube_S_y*tube_base_frame_yy + tube_S_z*tube_base_frame_zy
         )
-        # (tube-rho2_1) squared amplitude
-        tube_rho2_1 = tube_px_1*tube_px_1 + tube_py_1*tube_py_1
-        # (tube-root_1) amplitude, with the sign of the branch
-        tube_root_1 = tube_branch_1*sqrt(tube_rho2_1)
-        # (tube-c_1) cosine of the angle of joint 1 from its reference direction
-        inv_tube_root_1 = 1.0/tube_root_1
-        tube_c_1 = -inv_tube_root_1*tube_py_1
-        # (tube-s_1) sine of the angle of joint 1 from its reference direction
-        tube_s_1 = inv_tube_root_1*tube_px_1
-        # (tube-xi_1) the vector from joint 1 to the connection point, resolved along link 1
-        tube_xi_1_in_axes1_z = (
+        tube_S_in_turn1_z = (
         tube_S_x*tube_base_frame_xz + tube_S_y*tube_base_frame_yz + tube_S_z*tube_base_frame_zz
         )
-        # (tube-rho2_2) squared amplitude
-        tube_rho2_2 = tube_rho2_1 + tube_xi_1_in_axes1_z*tube_xi_1_in_axes1_z
-        # (tube-root_2) amplitude, with the sign of the branch
-        tube_root_2 = tube_branch_2*sqrt(tube_rho2_2)
+        # (tube-root_1) amplitude, the length across axis 1, with the sign of the branch
+        tube_root_1_t = tube_S_in_turn1_x*tube_S_in_turn1_x + tube_S_in_turn1_y*tube_S_in_turn1_y
+        tube_root_1 = tube_branch_1*sqrt(tube_root_1_t)
+        # (tube-c_1) cosine of the angle of joint 1 from its reference direction
+        inv_tube_root_1 = 1.0/tube_root_1
+        tube_c_1 = inv_tube_root_1*tube_S_in_turn1_x
+        # (tube-s_1) sine of the angle of joint 1 from its reference direction
+        tube_s_1 = inv_tube_root_1*tube_S_in_turn1_y
+        # (tube-q_3) displacement of joint 3
+        tube_q_3_t = tube_S_in_turn1_z*tube_S_in_turn1_z + tube_root_1_t
+        tube_q_3 = tube_branch_2*sqrt(tube_q_3_t)
         # (tube-c_2) cosine of the angle of joint 2 from its reference direction
-        inv_tube_root_2 = 1.0/tube_root_2
-        tube_c_2 = -inv_tube_root_2*tube_root_1
-        # (tube-s_2) sine of the angle of joint 2 from its reference direction
-        tube_s_2 = inv_tube_root_2*tube_xi_1_in_axes1_z
+        inv_tube_q_3 = 1.0/tube_q_3
+        tube_c_2 = inv_tube_q_3*tube_root_1
         # (tube-S_dot) velocity of the connection point
-        axis_z_tube_axes2_x = tube_base_frame_xx*tube_c_1 + tube_base_frame_xy*tube_s_1
-        axis_z_tube_axes2_y = tube_base_frame_yx*tube_c_1 + tube_base_frame_yy*tube_s_1
-        axis_z_tube_axes2_z = tube_base_frame_zx*tube_c_1 + tube_base_frame_zy*tube_s_1
-        tube_S_dot_t = tube_s_1*tube_s_2
-        tube_S_dot_t_2 = tube_c_1*tube_s_2
+        tube_e_1_in_axes2_x = inv_tube_q_3*tube_S_in_turn1_z
+        axis_z_tube_axes2_x = tube_base_frame_xy*tube_c_1 - tube_base_frame_xx*tube_s_1
+        axis_z_tube_axes2_y = tube_base_frame_yy*tube_c_1 - tube_base_frame_yx*tube_s_1
+        axis_z_tube_axes2_z = tube_base_frame_zy*tube_c_1 - tube_base_frame_zx*tube_s_1
+        tube_S_dot_t = tube_c_1*tube_e_1_in_axes2_x
+        tube_S_dot_t_2 = tube_e_1_in_axes2_x*tube_s_1
         axis_y_tube_axes2_x = (
-        tube_S_dot_t*tube_base_frame_xx + tube_base_frame_xz*tube_c_2 -
-            tube_S_dot_t_2*tube_base_frame_xy
+        tube_S_dot_t*tube_base_frame_xx + tube_S_dot_t_2*tube_base_frame_xy -
+            tube_base_frame_xz*tube_c_2
         )
         axis_y_tube_axes2_y = (
-        tube_S_dot_t*tube_base_frame_yx + tube_base_frame_yz*tube_c_2 -
-            tube_S_dot_t_2*tube_base_frame_yy
+        tube_S_dot_t*tube_base_frame_yx + tube_S_dot_t_2*tube_base_frame_yy -
+            tube_base_frame_yz*tube_c_2
         )
         axis_y_tube_axes2_z = (
-        tube_S_dot_t*tube_base_frame_zx + tube_base_frame_zz*tube_c_2 -
-            tube_S_dot_t_2*tube_base_frame_zy
+        tube_S_dot_t*tube_base_frame_zx + tube_S_dot_t_2*tube_base_frame_zy -
+            tube_base_frame_zz*tube_c_2
         )
         axis_x_tube_axes2_x = (
         axis_y_tube_axes2_y*axis_z_tube_axes2_z - axis_y_tube_axes2_z*axis_z_tube_axes2_y
@@ -2558,10 +2726,10 @@ def _run_dynamics(m, X, V):
             tube_n_m1_t_8*tube_platform_joint_rotation_yy +
             tube_n_m1_t_9*tube_platform_joint_rotation_yz
         )
-        tube_end_p1_in_axes2_z = tube_c_1*tube_n_m1_t_10 + tube_n_m1_t_11*tube_s_1
-        tube_n_m1_t_13 = tube_n_m1_t_10*tube_s_1 - tube_c_1*tube_n_m1_t_11
-        tube_n_m1_in_axes2_z = tube_c_2*tube_n_m1_t_12 + tube_n_m1_t_13*tube_s_2
-        tube_n_m1_in_axes1_z = -tube_c_2*tube_end_p1_in_axes2_z
+        tube_n_m1_t_13 = tube_c_1*tube_n_m1_t_10 + tube_n_m1_t_11*tube_s_1
+        tube_end_p1_in_axes2_z = tube_c_1*tube_n_m1_t_11 - tube_n_m1_t_10*tube_s_1
+        tube_n_m1_in_axes2_z = tube_e_1_in_axes2_x*tube_n_m1_t_13 - tube_c_2*tube_n_m1_t_12
+        tube_n_m1_in_axes1_z = tube_c_2*tube_end_p1_in_axes2_z
         # (tube-n_m2) direction 2 of the moment that the platform joint transmits
         tube_n_m2_t = (
         tube_n_m1_t*tube_platform_joint_rotation_zx +
@@ -2578,10 +2746,10 @@ def _run_dynamics(m, X, V):
             tube_n_m1_t_8*tube_platform_joint_rotation_zy +
             tube_n_m1_t_9*tube_platform_joint_rotation_zz
         )
-        tube_n_m2_t_4 = tube_n_m2_t*tube_s_1 - tube_c_1*tube_n_m2_t_2
-        tube_n_m2_in_axes2_y = tube_n_m2_t_3*tube_s_2 - tube_c_2*tube_n_m2_t_4
-        tube_end_p2_in_axes2_y = tube_c_2*tube_n_m2_t_3 + tube_n_m2_t_4*tube_s_2
-        tube_n_m2_in_axes1_z = tube_c_2*tube_n_m2_in_axes2_y - tube_end_p2_in_axes2_y*tube_s_2
+        tube_n_m2_t_4 = tube_c_1*tube_n_m2_t + tube_n_m2_t_2*tube_s_1
+        tube_n_m2_in_axes2_y = tube_c_2*tube_n_m2_t_4 + tube_e_1_in_axes2_x*tube_n_m2_t_3
+        tube_end_p2_in_axes2_y = tube_e_1_in_axes2_x*tube_n_m2_t_4 - tube_c_2*tube_n_m2_t_3
+        tube_n_m2_t_5 = tube_c_2*tube_n_m2_in_axes2_y + tube_e_1_in_axes2_x*tube_end_p2_in_axes2_y
         # (tube-n_m3) direction 3 of the moment that the platform joint transmits
         tube_n_m3_t = (
         tube_n_m1_t*tube_platform_joint_rotation_xx +
@@ -2598,27 +2766,27 @@ def _run_dynamics(m, X, V):
             tube_n_m1_t_8*tube_platform_joint_rotation_xy +
             tube_n_m1_t_9*tube_platform_joint_rotation_xz
         )
-        tube_end_p3_in_axes2_z = tube_c_1*tube_n_m3_t + tube_n_m3_t_2*tube_s_1
-        tube_n_m3_t_4 = tube_n_m3_t*tube_s_1 - tube_c_1*tube_n_m3_t_2
-        tube_n_m3_in_axes2_z = tube_n_m3_t_3*tube_s_2 - tube_c_2*tube_n_m3_t_4
-        tube_n_m3_t_5 = tube_end_p3_in_axes2_z*tube_s_2
+        tube_n_m3_t_4 = tube_c_1*tube_n_m3_t + tube_n_m3_t_2*tube_s_1
+        tube_end_p3_in_axes2_z = tube_c_1*tube_n_m3_t_2 - tube_n_m3_t*tube_s_1
+        tube_n_m3_in_axes2_z = tube_c_2*tube_n_m3_t_4 + tube_e_1_in_axes2_x*tube_n_m3_t_3
+        tube_n_m3_t_5 = tube_e_1_in_axes2_x*tube_end_p3_in_axes2_z
         # (tube-f_c1) force part of constraint wrench 1
         tube_f_c1_t = (
         tube_n_m1_in_axes1_z*tube_n_m3_in_axes2_z + tube_n_m1_in_axes2_z*tube_n_m3_t_5
         )
         # (tube-m1_c1) moment part 1 of constraint wrench 1
         inv_tube_f_c1_t = 1.0/tube_f_c1_t
-        tube_m1_c1_t = inv_tube_f_c1_t*tube_n_m3_t_5*tube_root_2
+        tube_m1_c1_t = inv_tube_f_c1_t*tube_n_m3_t_5*tube_q_3
         # (tube-m3_c1) moment part 3 of constraint wrench 1
-        tube_m3_c1_t = inv_tube_f_c1_t*tube_n_m1_in_axes1_z*tube_root_2
+        tube_m3_c1_t = inv_tube_f_c1_t*tube_n_m1_in_axes1_z*tube_q_3
         # (tube-m1_c2) moment part 1 of constraint wrench 2
         tube_m1_c2_t = inv_tube_f_c1_t*tube_n_m3_in_axes2_z*tube_root_1
         # (tube-m3_c2) moment part 3 of constraint wrench 2
         tube_m3_c2 = inv_tube_f_c1_t*tube_n_m1_in_axes2_z*tube_root_1
         # (tube-m1_c3) moment part 1 of constraint wrench 3
-        tube_m1_c3_t = inv_tube_f_c1_t*tube_n_m2_in_axes1_z*tube_n_m3_in_axes2_z
+        tube_m1_c3 = inv_tube_f_c1_t*tube_n_m2_t_5*tube_n_m3_in_axes2_z
         # (tube-m3_c3) moment part 3 of constraint wrench 3
-        tube_m3_c3 = inv_tube_f_c1_t*tube_n_m1_in_axes2_z*tube_n_m2_in_axes1_z
+        tube_m3_c3_t = inv_tube_f_c1_t*tube_n_m1_in_axes2_z*tube_n_m2_t_5
         # (tube-mu_c1) the moment that goes with it
         tube_mu_c1_in_axes2_y = tube_end_p1_in_axes2_z*tube_m1_c1_t
         tube_mu_c1_in_axes2_x = tube_end_p3_in_axes2_z*tube_m3_c1_t
@@ -2632,21 +2800,21 @@ def _run_dynamics(m, X, V):
         tube_m3_c2*tube_n_m3_in_axes2_z - tube_m1_c2_t*tube_n_m1_in_axes2_z
         )
         # (tube-size_c3) size of the moment
-        tube_size_c3 = sqrt(1.0 + tube_m1_c3_t*tube_m1_c3_t + tube_m3_c3*tube_m3_c3)
+        tube_size_c3 = sqrt(1.0 + tube_m1_c3*tube_m1_c3 + tube_m3_c3_t*tube_m3_c3_t)
         # (tube-mu1_c3) moment along direction 1 that goes with it
         inv_tube_size_c3 = 1.0/tube_size_c3
-        tube_mu1_c3_t = inv_tube_size_c3*tube_m1_c3_t
+        tube_mu1_c3 = inv_tube_size_c3*tube_m1_c3
         # (tube-mu3_c3) moment along direction 3 that goes with it
-        tube_mu3_c3 = inv_tube_size_c3*tube_m3_c3
+        tube_mu3_c3_t = inv_tube_size_c3*tube_m3_c3_t
         # (tube-mu_c3) the moment that goes with it
         tube_mu_c3_in_axes2_x = (
-        -inv_tube_size_c3*tube_end_p2_in_axes2_y - tube_end_p3_in_axes2_z*tube_mu3_c3
+        tube_end_p3_in_axes2_z*tube_mu3_c3_t - inv_tube_size_c3*tube_end_p2_in_axes2_y
         )
         tube_mu_c3_in_axes2_y = (
-        inv_tube_size_c3*tube_n_m2_in_axes2_y + tube_end_p1_in_axes2_z*tube_mu1_c3_t
+        inv_tube_size_c3*tube_n_m2_in_axes2_y - tube_end_p1_in_axes2_z*tube_mu1_c3
         )
         tube_mu_c3_in_axes2_z = (
-        tube_mu3_c3*tube_n_m3_in_axes2_z - tube_mu1_c3_t*tube_n_m1_in_axes2_z
+        tube_mu1_c3*tube_n_m1_in_axes2_z - tube_mu3_c3_t*tube_n_m3_in_axes2_z
         )
         tube_mu_c3_x = (
         axis_x_tube_axes2_x*tube_mu_c3_in_axes2_x + axis_y_tube_axes2_x*tube_mu_c3_in_axes2_y +
@@ -2662,7 +2830,7 @@ def _run_dynamics(m, X, V):
         )
         # (tube-w_1) force part of reciprocal wrench 1
         tube_w_1_t = 1.35*tube_n_m1_in_axes1_z
-        tube_w_1_t_2 = 1.35*tube_n_m2_in_axes1_z
+        tube_w_1_t_2 = 1.35*tube_n_m2_t_5
         tube_w_1_t_3 = 1.35*tube_n_m3_t_5
         tube_w_1_t_4 = 1.35*tube_n_m1_in_axes2_z
         tube_w_1_t_5 = 1.35*tube_n_m3_in_axes2_z
@@ -2670,12 +2838,12 @@ def _run_dynamics(m, X, V):
         tube_w_1_t_7 = 1.35*tube_m3_c1_t
         tube_w_1_t_8 = 1.35*tube_m1_c2_t
         tube_w_1_t_9 = 1.35*tube_m3_c2
-        tube_w_1_t_10 = 1.35*tube_mu1_c3_t
+        tube_w_1_t_10 = 1.35*tube_mu1_c3
         tube_w_1_t_11 = 1.35*inv_tube_size_c3
-        tube_w_1_t_12 = 1.35*tube_mu3_c3
-        tube_w_1_t_13 = sqrt(tube_rho2_2 + tube_w_1_t_4*tube_w_1_t_4 + tube_w_1_t_5*tube_w_1_t_5)
+        tube_w_1_t_12 = 1.35*tube_mu3_c3_t
+        tube_w_1_t_13 = sqrt(tube_q_3_t + tube_w_1_t_4*tube_w_1_t_4 + tube_w_1_t_5*tube_w_1_t_5)
         inv_tube_w_1_t_13 = 1.0/tube_w_1_t_13
-        tube_w_1_t_14 = inv_tube_w_1_t_13*tube_root_2
+        tube_w_1_t_14 = inv_tube_w_1_t_13*tube_q_3
         tube_w_1_t_15 = inv_tube_w_1_t_13*tube_w_1_t_4
         tube_w_1_t_16 = inv_tube_w_1_t_13*tube_w_1_t_5
         tube_w_1_t_17 = tube_w_1_t_15*tube_w_1_t_6 + tube_w_1_t_16*tube_w_1_t_7 - tube_w_1_t_14
@@ -2773,13 +2941,14 @@ def _run_dynamics(m, X, V):
         tube_w_1_t_77 = inv_tube_w_1_t_75*tube_w_1_t_71
         tube_w_1_in_axes2_y = inv_tube_w_1_t_75*tube_w_1_t_76
         tube_w_1_in_axes2_z = inv_tube_w_1_t_75*tube_w_1_t_77
-        tube_w_1_t_78 = -tube_c_2*tube_w_1_in_axes2_y
+        tube_w_1_in_axes1_x = tube_e_1_in_axes2_x*tube_w_1_in_axes2_y
+        tube_w_1_t_78 = tube_c_2*tube_w_1_in_axes2_y
         # (tube-m1_w_1) moment part 1 of reciprocal wrench 1
         tube_m1_w_1_t = inv_tube_w_1_t_75*tube_w_1_t_72
         tube_m1_w_1 = 1.35*inv_tube_w_1_t_75*tube_m1_w_1_t
         # (tube-m2_w_1) moment part 2 of reciprocal wrench 1
         tube_m2_w_1_t = inv_tube_w_1_t_75*tube_w_1_t_73
-        tube_m2_w_1 = 1.35*inv_tube_w_1_t_75*tube_m2_w_1_t
+        tube_m2_w_1 = -1.35*inv_tube_w_1_t_75*tube_m2_w_1_t
         # (tube-m3_w_1) moment part 3 of reciprocal wrench 1
         tube_m3_w_1_t = inv_tube_w_1_t_75*tube_w_1_t_74
         tube_m3_w_1 = 1.35*inv_tube_w_1_t_75*tube_m3_w_1_t
@@ -2811,7 +2980,7 @@ def _run_dynamics(m, X, V):
         tube_m1_w_2 = 1.35*tube_m1_w_2_t
         # (tube-m2_w_2) moment part 2 of reciprocal wrench 2
         tube_m2_w_2_t = tube_m2_w_1_t*tube_w_2_t_4 + tube_w_1_t_67*tube_w_2_t_3
-        tube_m2_w_2 = -1.35*tube_m2_w_2_t
+        tube_m2_w_2 = 1.35*tube_m2_w_2_t
         # (tube-m3_w_2) moment part 3 of reciprocal wrench 2
         tube_m3_w_2_t = (
         inv_tube_w_1_t_13*tube_w_1_t_16 + tube_w_1_t_36*tube_w_2_t + tube_w_1_t_52*tube_w_2_t_2 +
@@ -2862,13 +3031,13 @@ def _run_dynamics(m, X, V):
         tube_qd_1 = (
         inv_tube_w_1_t_75*(tube_S_dot_in_axes2_y*tube_w_1_t_76 +
             tube_S_dot_in_axes2_z*tube_w_1_t_77 + tube_m1_w_1_t*tube_qd_1_t +
-            tube_m2_w_1_t*tube_qd_1_t_2 + tube_m3_w_1_t*tube_qd_1_t_3)
+            tube_m3_w_1_t*tube_qd_1_t_3 - tube_m2_w_1_t*tube_qd_1_t_2)
         )
         # (tube-qd_2) rate of joint 2
         tube_qd_2_t = (
         inv_tube_w_1_t_63*(tube_S_dot_in_axes2_y*tube_w_1_t_64 +
             tube_S_dot_in_axes2_z*tube_w_1_t_65 + tube_qd_1_t*tube_w_1_t_66 +
-            tube_qd_1_t_3*tube_w_1_t_68 - tube_qd_1*tube_w_1_t_69 - tube_qd_1_t_2*tube_w_1_t_67)
+            tube_qd_1_t_2*tube_w_1_t_67 + tube_qd_1_t_3*tube_w_1_t_68 - tube_qd_1*tube_w_1_t_69)
         )
         tube_qd_2_t_2 = (
         inv_tube_w_1_t_49*(inv_tube_w_1_t_49*tube_S_dot_in_axes2_z +
@@ -2885,8 +3054,8 @@ def _run_dynamics(m, X, V):
         )
         tube_qd_2 = inv_tube_w_1_t_13*tube_qd_2_t_3
         # (tube-omega_1) angular velocity of link 1
-        tube_omega_1_in_axes2_x = tube_qd_1*tube_s_2
-        tube_omega_1_in_axes2_y = tube_c_2*tube_qd_1
+        tube_omega_1_in_axes2_x = tube_e_1_in_axes2_x*tube_qd_1
+        tube_omega_1_in_axes2_y = -tube_c_2*tube_qd_1
         # (tube-W_2) centripetal tensor of link 2
         tube_W_2_in_axes2_yz = tube_omega_1_in_axes2_y*tube_qd_2
         tube_W_2_in_axes2_xz = tube_omega_1_in_axes2_x*tube_qd_2
@@ -2896,13 +3065,13 @@ def _run_dynamics(m, X, V):
         tube_u_1_y = omega_z*tube_S_dot_t_3 - omega_x*tube_S_dot_t_5
         tube_u_1_z = omega_x*tube_S_dot_t_4 - omega_y*tube_S_dot_t_3
         # (tube-bias) acceleration of the connection point at zero joint accelerations
-        tube_bias_t = tube_W_2_in_axes2_xz*tube_root_2
-        tube_bias_t_2 = -tube_W_2_in_axes2_xy*tube_root_2
+        tube_bias_t = tube_W_2_in_axes2_xz*tube_q_3
+        tube_bias_t_2 = -tube_W_2_in_axes2_xy*tube_q_3
         tube_bias_t_3 = 2.0*tube_S_dot_in_axes2_x
         tube_bias_t_4 = tube_bias_t_3*tube_qd_2
-        tube_bias_t_5 = -tube_bias_t_3*tube_omega_1_in_axes2_y
+        tube_bias_t_5 = tube_bias_t_3*tube_omega_1_in_axes2_y
         tube_bias_in_axes2_y = tube_bias_t_4 - tube_bias_t_2
-        tube_bias_in_axes2_z = 2.0*tube_bias_t + tube_bias_t_5
+        tube_bias_in_axes2_z = 2.0*tube_bias_t - tube_bias_t_5
         # (tube-rel_o) remainder without the acceleration in: acceleration of the connection point left to the joint accelerations
         tube_rel_o_in_axes2_y = (
         axis_y_tube_axes2_x*tube_u_1_x + axis_y_tube_axes2_y*tube_u_1_y +
@@ -2913,7 +3082,7 @@ def _run_dynamics(m, X, V):
             axis_z_tube_axes2_z*tube_u_1_z - tube_bias_in_axes2_z
         )
         # (tube-nd_m1) rate of moment direction 1
-        tube_end_p1_in_axes2_x = tube_n_m1_t_12*tube_s_2 - tube_c_2*tube_n_m1_t_13
+        tube_end_p1_in_axes2_x = tube_c_2*tube_n_m1_t_13 + tube_e_1_in_axes2_x*tube_n_m1_t_12
         tube_nd_m1_in_axes2_y = (
         tube_end_p1_in_axes2_x*tube_omega_in_axes2_y -
             tube_end_p1_in_axes2_x*tube_omega_1_in_axes2_y -
@@ -2934,7 +3103,7 @@ def _run_dynamics(m, X, V):
         )
         tube_nu_1 = tube_nu_1_t_4 - tube_W_2_in_axes2_xz*tube_end_p1_in_axes2_z
         # (tube-nd_m2) rate of moment direction 2
-        tube_end_p2_in_axes2_z = tube_c_1*tube_n_m2_t + tube_n_m2_t_2*tube_s_1
+        tube_end_p2_in_axes2_z = tube_c_1*tube_n_m2_t_2 - tube_n_m2_t*tube_s_1
         tube_nd_m2_in_axes2_x = (
         tube_end_p2_in_axes2_z*tube_omega_in_axes2_x -
             tube_end_p2_in_axes2_z*tube_omega_1_in_axes2_x -
@@ -2950,13 +3119,13 @@ def _run_dynamics(m, X, V):
         -tube_W_2_in_axes2_xz*tube_n_m2_in_axes2_y - tube_W_2_in_axes2_yz*tube_end_p2_in_axes2_y
         )
         tube_nu_2_t_2 = (
-        tube_nd_m2_in_axes2_x*tube_nu_1_t +
+        tube_nd_m2_in_axes2_y*tube_nu_1_t_2 - tube_nd_m2_in_axes2_x*tube_nu_1_t -
             tube_nu_1_t_3*(-tube_end_p2_in_axes2_y*tube_omega_1_in_axes2_y -
-            tube_n_m2_in_axes2_y*tube_omega_1_in_axes2_x) - tube_nd_m2_in_axes2_y*tube_nu_1_t_2
+            tube_n_m2_in_axes2_y*tube_omega_1_in_axes2_x)
         )
-        tube_nu_2 = -tube_nu_2_t - tube_nu_2_t_2
+        tube_nu_2 = tube_nu_2_t_2 - tube_nu_2_t
         # (tube-nd_m3) rate of moment direction 3
-        tube_end_p3_in_axes2_y = tube_c_2*tube_n_m3_t_3 + tube_n_m3_t_4*tube_s_2
+        tube_end_p3_in_axes2_y = tube_e_1_in_axes2_x*tube_n_m3_t_4 - tube_c_2*tube_n_m3_t_3
         tube_nd_m3_in_axes2_x = (
         tube_end_p3_in_axes2_y*tube_omega_1_in_axes2_x +
             tube_n_m3_in_axes2_z*tube_omega_in_axes2_y -
@@ -2977,15 +3146,15 @@ def _run_dynamics(m, X, V):
         tube_qdd_1_o_t_2 = 1.35*tube_nu_2
         tube_qdd_1_o_t_3 = 1.35*tube_nu_3
         tube_qdd_1_o = (
-        inv_tube_w_1_t_75*(tube_m1_w_1_t*tube_qdd_1_o_t + tube_m2_w_1_t*tube_qdd_1_o_t_2 +
-            tube_m3_w_1_t*tube_qdd_1_o_t_3 + tube_rel_o_in_axes2_y*tube_w_1_t_76 +
-            tube_rel_o_in_axes2_z*tube_w_1_t_77)
+        inv_tube_w_1_t_75*(tube_m1_w_1_t*tube_qdd_1_o_t + tube_m3_w_1_t*tube_qdd_1_o_t_3 +
+            tube_rel_o_in_axes2_y*tube_w_1_t_76 + tube_rel_o_in_axes2_z*tube_w_1_t_77 -
+            tube_m2_w_1_t*tube_qdd_1_o_t_2)
         )
         # (tube-qdd_2_o) remainder without the acceleration in: acceleration of joint 2
         tube_qdd_2_o_t = (
-        inv_tube_w_1_t_63*(tube_qdd_1_o_t*tube_w_1_t_66 + tube_qdd_1_o_t_3*tube_w_1_t_68 +
-            tube_rel_o_in_axes2_y*tube_w_1_t_64 + tube_rel_o_in_axes2_z*tube_w_1_t_65 -
-            tube_qdd_1_o*tube_w_1_t_69 - tube_qdd_1_o_t_2*tube_w_1_t_67)
+        inv_tube_w_1_t_63*(tube_qdd_1_o_t*tube_w_1_t_66 + tube_qdd_1_o_t_2*tube_w_1_t_67 +
+            tube_qdd_1_o_t_3*tube_w_1_t_68 + tube_rel_o_in_axes2_y*tube_w_1_t_64 +
+            tube_rel_o_in_axes2_z*tube_w_1_t_65 - tube_qdd_1_o*tube_w_1_t_69)
         )
         tube_qdd_2_o_t_2 = (
         inv_tube_w_1_t_49*(inv_tube_w_1_t_49*tube_rel_o_in_axes2_z + tube_qdd_1_o*tube_w_1_t_58 +
@@ -3003,19 +3172,18 @@ def _run_dynamics(m, X, V):
         )
         tube_qdd_2_o = inv_tube_w_1_t_13*tube_qdd_2_o_t_3
         # (tube-dalpha_alpha_1) coefficient of the acceleration in: angular acceleration of link 1
-        tube_dalpha_alpha_1_t = -tube_c_2*tube_o_1_in_axes2_x
-        tube_dalpha_alpha_1_in_axes2_xy = tube_o_1_in_axes2_y*tube_s_2
-        tube_dalpha_alpha_1_t_2 = -tube_c_2*tube_o_1_in_axes2_y
-        tube_dalpha_alpha_1_in_axes2_xx = tube_o_1_in_axes2_x*tube_s_2
-        tube_dalpha_alpha_1_in_axes2_xz = tube_o_1_in_axes2_z*tube_s_2
-        tube_dalpha_alpha_1_t_3 = -tube_c_2*tube_o_1_in_axes2_z
+        tube_dalpha_alpha_1_t = tube_c_2*tube_o_1_in_axes2_x
+        tube_dalpha_alpha_1_in_axes2_xy = tube_e_1_in_axes2_x*tube_o_1_in_axes2_y
+        tube_dalpha_alpha_1_t_2 = tube_c_2*tube_o_1_in_axes2_y
+        tube_dalpha_alpha_1_in_axes2_xx = tube_e_1_in_axes2_x*tube_o_1_in_axes2_x
+        tube_dalpha_alpha_1_in_axes2_xz = tube_e_1_in_axes2_x*tube_o_1_in_axes2_z
+        tube_dalpha_alpha_1_t_3 = tube_c_2*tube_o_1_in_axes2_z
         # (tube-d_alpha_1) coefficient of the acceleration in: angular acceleration of link 1
-        tube_d_alpha_1_in_axes2_xy = tube_s_2*tube_w_1_in_axes2_y
-        tube_d_alpha_1_in_axes2_xz = tube_s_2*tube_w_1_in_axes2_z
-        tube_d_alpha_1_t = -tube_c_2*tube_w_1_in_axes2_z
+        tube_d_alpha_1_in_axes2_xz = tube_e_1_in_axes2_x*tube_w_1_in_axes2_z
+        tube_d_alpha_1_t = tube_c_2*tube_w_1_in_axes2_z
         # (tube-alpha_1_o) remainder without the acceleration in: angular acceleration of link 1
-        tube_alpha_1_o_in_axes2_x = tube_qdd_1_o*tube_s_2
-        tube_alpha_1_o_in_axes2_y = tube_c_2*tube_qdd_1_o
+        tube_alpha_1_o_in_axes2_x = tube_e_1_in_axes2_x*tube_qdd_1_o
+        tube_alpha_1_o_in_axes2_y = -tube_c_2*tube_qdd_1_o
         # (tube-alpha_2_o) remainder without the acceleration in: angular acceleration of link 2
         tube_alpha_2_o_in_axes2_x = tube_W_2_in_axes2_yz + tube_alpha_1_o_in_axes2_x
         tube_alpha_2_o_in_axes2_y = tube_alpha_1_o_in_axes2_y - tube_W_2_in_axes2_xz
@@ -3025,40 +3193,40 @@ def _run_dynamics(m, X, V):
         tube_B_2_o_in_axes2_zx = tube_W_2_in_axes2_xz - tube_alpha_2_o_in_axes2_y
         tube_B_2_o_in_axes2_zy = tube_W_2_in_axes2_yz + tube_alpha_2_o_in_axes2_x
         # (tube-dalpha_acc_3) coefficient of the acceleration in: acceleration of the reference point of link 3, less gravity
-        tube_dalpha_acc_3_in_axes2_yx = tube_o_2_in_axes2_x*tube_root_2
-        tube_dalpha_acc_3_in_axes2_yy = tube_o_2_in_axes2_y*tube_root_2
-        tube_dalpha_acc_3_in_axes2_yz = tube_o_2_in_axes2_z*tube_root_2
-        tube_dalpha_acc_3_in_axes2_zx = tube_dalpha_alpha_1_t*tube_root_2
-        tube_dalpha_acc_3_in_axes2_zy = tube_dalpha_alpha_1_t_2*tube_root_2
-        tube_dalpha_acc_3_in_axes2_zz = tube_dalpha_alpha_1_t_3*tube_root_2
+        tube_dalpha_acc_3_in_axes2_yx = tube_o_2_in_axes2_x*tube_q_3
+        tube_dalpha_acc_3_in_axes2_yy = tube_o_2_in_axes2_y*tube_q_3
+        tube_dalpha_acc_3_in_axes2_yz = tube_o_2_in_axes2_z*tube_q_3
+        tube_dalpha_acc_3_in_axes2_zx = tube_dalpha_alpha_1_t*tube_q_3
+        tube_dalpha_acc_3_in_axes2_zy = tube_dalpha_alpha_1_t_2*tube_q_3
+        tube_dalpha_acc_3_in_axes2_zz = tube_dalpha_alpha_1_t_3*tube_q_3
         # (tube-d_acc_3) coefficient of the acceleration in: acceleration of the reference point of link 3, less gravity
-        tube_d_acc_3_in_axes2_yy = tube_root_2*tube_w_2_in_axes2_y
-        tube_d_acc_3_in_axes2_yz = tube_root_2*tube_w_2_in_axes2_z
-        tube_d_acc_3_in_axes2_zy = tube_root_2*tube_w_1_t_78
-        tube_d_acc_3_in_axes2_zz = tube_d_alpha_1_t*tube_root_2
+        tube_d_acc_3_in_axes2_yy = tube_q_3*tube_w_2_in_axes2_y
+        tube_d_acc_3_in_axes2_yz = tube_q_3*tube_w_2_in_axes2_z
+        tube_d_acc_3_in_axes2_zy = tube_q_3*tube_w_1_t_78
+        tube_d_acc_3_in_axes2_zz = tube_d_alpha_1_t*tube_q_3
         # (tube-acc_3_o) remainder without the acceleration in: acceleration of the reference point of link 3, less gravity
-        tube_g_in_axes2_z = tube_acc_3_t*tube_c_1 + tube_acc_3_t_2*tube_s_1
-        tube_acc_3_o_t = tube_acc_3_t_2*tube_c_1 - tube_acc_3_t*tube_s_1
-        tube_g_in_axes2_x = tube_acc_3_o_t*tube_c_2 + tube_acc_3_t_3*tube_s_2
-        tube_g_in_axes2_y = tube_acc_3_t_3*tube_c_2 - tube_acc_3_o_t*tube_s_2
+        tube_acc_3_o_t = tube_acc_3_t*tube_c_1 + tube_acc_3_t_2*tube_s_1
+        tube_g_in_axes2_z = tube_acc_3_t_2*tube_c_1 - tube_acc_3_t*tube_s_1
+        tube_g_in_axes2_x = tube_acc_3_o_t*tube_c_2 + tube_acc_3_t_3*tube_e_1_in_axes2_x
+        tube_g_in_axes2_y = tube_acc_3_o_t*tube_e_1_in_axes2_x - tube_acc_3_t_3*tube_c_2
         tube_acc_3_o_in_axes2_x = (
         axis_x_tube_axes2_x*tube_u_1_x + axis_x_tube_axes2_y*tube_u_1_y +
             axis_x_tube_axes2_z*tube_u_1_z - tube_g_in_axes2_x
         )
         tube_acc_3_o_in_axes2_y = (
-        tube_bias_t_4 + tube_qdd_2_o*tube_root_2 - tube_bias_t_2 - tube_g_in_axes2_y
+        tube_bias_t_4 + tube_q_3*tube_qdd_2_o - tube_bias_t_2 - tube_g_in_axes2_y
         )
         tube_acc_3_o_in_axes2_z = (
-        tube_bias_t + tube_bias_t_5 - tube_g_in_axes2_z - tube_alpha_2_o_in_axes2_y*tube_root_2
+        tube_bias_t - tube_bias_t_5 - tube_g_in_axes2_z - tube_alpha_2_o_in_axes2_y*tube_q_3
         )
         # (tube-f_3_o) remainder without the acceleration in: inertia force of link 3 less its weight
         tube_f_3_o_t = tube_omega_1_in_axes2_x*tube_omega_1_in_axes2_x
         tube_f_3_o_t_2 = tube_omega_1_in_axes2_y*tube_omega_1_in_axes2_y
         tube_f_3_o_t_3 = tube_qd_2*tube_qd_2
         tube_f_3_o_in_axes2_x = (
-        tube_acc_3_o_in_axes2_x*tube_link3_mass + tube_alpha_1_o_in_axes2_y*tube_h_3_in_spec2_y +
-            tube_h_3_in_spec2_x*(-tube_f_3_o_t_2 - tube_f_3_o_t_3) -
-            tube_B_2_o_in_axes2_xy*tube_h_3_in_spec2_z
+        tube_acc_3_o_in_axes2_x*tube_link3_mass + tube_alpha_1_o_in_axes2_y*tube_h_3_in_spec2_y -
+            tube_B_2_o_in_axes2_xy*tube_h_3_in_spec2_z - tube_h_3_in_spec2_x*(tube_f_3_o_t_2 +
+            tube_f_3_o_t_3)
         )
         tube_f_3_o_in_axes2_y = (
         tube_B_2_o_in_axes2_yx*tube_h_3_in_spec2_x + tube_acc_3_o_in_axes2_y*tube_link3_mass +
@@ -3104,7 +3272,7 @@ def _run_dynamics(m, X, V):
         tube_J_group_2_in_axes2_xz*tube_dalpha_alpha_1_in_axes2_xx +
             tube_J_group_2_in_axes2_zz*tube_o_2_in_axes2_x +
             tube_dalpha_acc_3_in_axes2_yx*tube_h_3_in_spec2_x +
-            tube_root_2*(tube_dalpha_acc_3_in_axes2_yx*tube_link3_mass +
+            tube_q_3*(tube_dalpha_acc_3_in_axes2_yx*tube_link3_mass +
             tube_h_3_in_spec2_x*tube_o_2_in_axes2_x -
             tube_dalpha_alpha_1_in_axes2_xx*tube_h_3_in_spec2_y) -
             tube_J_group_2_in_axes2_yz*tube_dalpha_alpha_1_t
@@ -3113,7 +3281,7 @@ def _run_dynamics(m, X, V):
         tube_J_group_2_in_axes2_xz*tube_dalpha_alpha_1_in_axes2_xy +
             tube_J_group_2_in_axes2_zz*tube_o_2_in_axes2_y +
             tube_dalpha_acc_3_in_axes2_yy*tube_h_3_in_spec2_x +
-            tube_root_2*(tube_dalpha_acc_3_in_axes2_yy*tube_link3_mass +
+            tube_q_3*(tube_dalpha_acc_3_in_axes2_yy*tube_link3_mass +
             tube_h_3_in_spec2_x*tube_o_2_in_axes2_y -
             tube_dalpha_alpha_1_in_axes2_xy*tube_h_3_in_spec2_y) -
             tube_J_group_2_in_axes2_yz*tube_dalpha_alpha_1_t_2
@@ -3122,117 +3290,113 @@ def _run_dynamics(m, X, V):
         tube_J_group_2_in_axes2_xz*tube_dalpha_alpha_1_in_axes2_xz +
             tube_J_group_2_in_axes2_zz*tube_o_2_in_axes2_z +
             tube_dalpha_acc_3_in_axes2_yz*tube_h_3_in_spec2_x +
-            tube_root_2*(tube_dalpha_acc_3_in_axes2_yz*tube_link3_mass +
+            tube_q_3*(tube_dalpha_acc_3_in_axes2_yz*tube_link3_mass +
             tube_h_3_in_spec2_x*tube_o_2_in_axes2_z -
             tube_dalpha_alpha_1_in_axes2_xz*tube_h_3_in_spec2_y) -
             tube_J_group_2_in_axes2_yz*tube_dalpha_alpha_1_t_3
         )
         # (tube-d_N_2) coefficient of the acceleration in: moment about joint 2 of the links from 2 outwards, the force at the connection point left out
         tube_d_N_2_in_axes2_zy = (
-        tube_J_group_2_in_axes2_xz*tube_d_alpha_1_in_axes2_xy +
+        tube_J_group_2_in_axes2_xz*tube_w_1_in_axes1_x +
             tube_J_group_2_in_axes2_zz*tube_w_2_in_axes2_y +
             tube_d_acc_3_in_axes2_yy*tube_h_3_in_spec2_x +
-            tube_root_2*(tube_d_acc_3_in_axes2_yy*tube_link3_mass +
-            tube_h_3_in_spec2_x*tube_w_2_in_axes2_y -
-            tube_d_alpha_1_in_axes2_xy*tube_h_3_in_spec2_y) -
+            tube_q_3*(tube_d_acc_3_in_axes2_yy*tube_link3_mass +
+            tube_h_3_in_spec2_x*tube_w_2_in_axes2_y - tube_h_3_in_spec2_y*tube_w_1_in_axes1_x) -
             tube_J_group_2_in_axes2_yz*tube_w_1_t_78
         )
         tube_d_N_2_in_axes2_zz = (
         tube_J_group_2_in_axes2_xz*tube_d_alpha_1_in_axes2_xz +
             tube_J_group_2_in_axes2_zz*tube_w_2_in_axes2_z +
             tube_d_acc_3_in_axes2_yz*tube_h_3_in_spec2_x +
-            tube_root_2*(tube_d_acc_3_in_axes2_yz*tube_link3_mass +
+            tube_q_3*(tube_d_acc_3_in_axes2_yz*tube_link3_mass +
             tube_h_3_in_spec2_x*tube_w_2_in_axes2_z -
             tube_d_alpha_1_in_axes2_xz*tube_h_3_in_spec2_y) -
             tube_J_group_2_in_axes2_yz*tube_d_alpha_1_t
         )
         # (tube-N_2_o) remainder without the acceleration in: moment about joint 2 of the links from 2 outwards, the force at the connection point left out
-        tube_N_2_o_in_axes2_y = tube_mu_2_o_in_axes2_y - tube_f_3_o_in_axes2_z*tube_root_2
-        tube_N_2_o_in_axes2_z = tube_mu_2_o_in_axes2_z + tube_f_3_o_in_axes2_y*tube_root_2
+        tube_N_2_o_in_axes2_y = tube_mu_2_o_in_axes2_y - tube_f_3_o_in_axes2_z*tube_q_3
+        tube_N_2_o_in_axes2_z = tube_mu_2_o_in_axes2_z + tube_f_3_o_in_axes2_y*tube_q_3
         # (tube-dalpha_Gamma_1) coefficient of the acceleration in: moment about axis 1 of the distal links' inertia and weight
         tube_dalpha_Gamma_1_t = (
         tube_c_2*(tube_J_group_2_in_axes2_xy*tube_dalpha_alpha_1_in_axes2_xx +
             tube_J_group_2_in_axes2_yz*tube_o_2_in_axes2_x -
             tube_J_group_2_in_axes2_yy*tube_dalpha_alpha_1_t -
             tube_dalpha_acc_3_in_axes2_zx*tube_h_3_in_spec2_x -
-            tube_root_2*(tube_dalpha_acc_3_in_axes2_zx*tube_link3_mass +
+            tube_q_3*(tube_dalpha_acc_3_in_axes2_zx*tube_link3_mass +
             tube_dalpha_alpha_1_t*tube_h_3_in_spec2_x -
             tube_dalpha_alpha_1_in_axes2_xx*tube_h_3_in_spec2_z))
         )
         tube_dalpha_Gamma_1_in_axes2_x = (
-        tube_dalpha_Gamma_1_t +
-            tube_s_2*(tube_J_group_2_in_axes2_xx*tube_dalpha_alpha_1_in_axes2_xx +
+        tube_e_1_in_axes2_x*(tube_J_group_2_in_axes2_xx*tube_dalpha_alpha_1_in_axes2_xx +
             tube_J_group_2_in_axes2_xz*tube_o_2_in_axes2_x -
             tube_J_group_2_in_axes2_xy*tube_dalpha_alpha_1_t -
             tube_dalpha_acc_3_in_axes2_yx*tube_h_3_in_spec2_y -
-            tube_dalpha_acc_3_in_axes2_zx*tube_h_3_in_spec2_z)
+            tube_dalpha_acc_3_in_axes2_zx*tube_h_3_in_spec2_z) - tube_dalpha_Gamma_1_t
         )
         tube_dalpha_Gamma_1_t_2 = (
         tube_c_2*(tube_J_group_2_in_axes2_xy*tube_dalpha_alpha_1_in_axes2_xy +
             tube_J_group_2_in_axes2_yz*tube_o_2_in_axes2_y -
             tube_J_group_2_in_axes2_yy*tube_dalpha_alpha_1_t_2 -
             tube_dalpha_acc_3_in_axes2_zy*tube_h_3_in_spec2_x -
-            tube_root_2*(tube_dalpha_acc_3_in_axes2_zy*tube_link3_mass +
+            tube_q_3*(tube_dalpha_acc_3_in_axes2_zy*tube_link3_mass +
             tube_dalpha_alpha_1_t_2*tube_h_3_in_spec2_x -
             tube_dalpha_alpha_1_in_axes2_xy*tube_h_3_in_spec2_z))
         )
         tube_dalpha_Gamma_1_in_axes2_y = (
-        tube_dalpha_Gamma_1_t_2 +
-            tube_s_2*(tube_J_group_2_in_axes2_xx*tube_dalpha_alpha_1_in_axes2_xy +
+        tube_e_1_in_axes2_x*(tube_J_group_2_in_axes2_xx*tube_dalpha_alpha_1_in_axes2_xy +
             tube_J_group_2_in_axes2_xz*tube_o_2_in_axes2_y -
             tube_J_group_2_in_axes2_xy*tube_dalpha_alpha_1_t_2 -
             tube_dalpha_acc_3_in_axes2_yy*tube_h_3_in_spec2_y -
-            tube_dalpha_acc_3_in_axes2_zy*tube_h_3_in_spec2_z)
+            tube_dalpha_acc_3_in_axes2_zy*tube_h_3_in_spec2_z) - tube_dalpha_Gamma_1_t_2
         )
         tube_dalpha_Gamma_1_t_3 = (
         tube_c_2*(tube_J_group_2_in_axes2_xy*tube_dalpha_alpha_1_in_axes2_xz +
             tube_J_group_2_in_axes2_yz*tube_o_2_in_axes2_z -
             tube_J_group_2_in_axes2_yy*tube_dalpha_alpha_1_t_3 -
             tube_dalpha_acc_3_in_axes2_zz*tube_h_3_in_spec2_x -
-            tube_root_2*(tube_dalpha_acc_3_in_axes2_zz*tube_link3_mass +
+            tube_q_3*(tube_dalpha_acc_3_in_axes2_zz*tube_link3_mass +
             tube_dalpha_alpha_1_t_3*tube_h_3_in_spec2_x -
             tube_dalpha_alpha_1_in_axes2_xz*tube_h_3_in_spec2_z))
         )
         tube_dalpha_Gamma_1_in_axes2_z = (
-        tube_dalpha_Gamma_1_t_3 +
-            tube_s_2*(tube_J_group_2_in_axes2_xx*tube_dalpha_alpha_1_in_axes2_xz +
+        tube_e_1_in_axes2_x*(tube_J_group_2_in_axes2_xx*tube_dalpha_alpha_1_in_axes2_xz +
             tube_J_group_2_in_axes2_xz*tube_o_2_in_axes2_z -
             tube_J_group_2_in_axes2_xy*tube_dalpha_alpha_1_t_3 -
             tube_dalpha_acc_3_in_axes2_yz*tube_h_3_in_spec2_y -
-            tube_dalpha_acc_3_in_axes2_zz*tube_h_3_in_spec2_z)
+            tube_dalpha_acc_3_in_axes2_zz*tube_h_3_in_spec2_z) - tube_dalpha_Gamma_1_t_3
         )
         # (tube-d_Gamma_1) coefficient of the acceleration in: moment about axis 1 of the distal links' inertia and weight
-        tube_d_Gamma_1_in_axes2_x = tube_c_2*tube_h_3_in_spec2_y
-        tube_d_Gamma_1_t = (
-        tube_c_2*(tube_J_group_2_in_axes2_xy*tube_d_alpha_1_in_axes2_xy +
+        tube_d_Gamma_1_t = tube_c_2*tube_h_3_in_spec2_y
+        tube_d_Gamma_1_t_2 = (
+        tube_c_2*(tube_J_group_2_in_axes2_xy*tube_w_1_in_axes1_x +
             tube_J_group_2_in_axes2_yz*tube_w_2_in_axes2_y -
             tube_J_group_2_in_axes2_yy*tube_w_1_t_78 -
             tube_d_acc_3_in_axes2_zy*tube_h_3_in_spec2_x -
-            tube_root_2*(tube_d_acc_3_in_axes2_zy*tube_link3_mass +
-            tube_h_3_in_spec2_x*tube_w_1_t_78 - tube_d_alpha_1_in_axes2_xy*tube_h_3_in_spec2_z))
+            tube_q_3*(tube_d_acc_3_in_axes2_zy*tube_link3_mass + tube_h_3_in_spec2_x*tube_w_1_t_78
+            - tube_h_3_in_spec2_z*tube_w_1_in_axes1_x))
         )
         tube_d_Gamma_1_in_axes2_y = (
-        tube_d_Gamma_1_t + tube_s_2*(tube_J_group_2_in_axes2_xx*tube_d_alpha_1_in_axes2_xy +
+        tube_e_1_in_axes2_x*(tube_J_group_2_in_axes2_xx*tube_w_1_in_axes1_x +
             tube_J_group_2_in_axes2_xz*tube_w_2_in_axes2_y -
             tube_J_group_2_in_axes2_xy*tube_w_1_t_78 -
             tube_d_acc_3_in_axes2_yy*tube_h_3_in_spec2_y -
-            tube_d_acc_3_in_axes2_zy*tube_h_3_in_spec2_z)
+            tube_d_acc_3_in_axes2_zy*tube_h_3_in_spec2_z) - tube_d_Gamma_1_t_2
         )
-        tube_d_Gamma_1_t_2 = (
+        tube_d_Gamma_1_t_3 = (
         tube_c_2*(tube_J_group_2_in_axes2_xy*tube_d_alpha_1_in_axes2_xz +
             tube_J_group_2_in_axes2_yz*tube_w_2_in_axes2_z -
             tube_J_group_2_in_axes2_yy*tube_d_alpha_1_t -
             tube_d_acc_3_in_axes2_zz*tube_h_3_in_spec2_x -
-            tube_root_2*(tube_d_acc_3_in_axes2_zz*tube_link3_mass +
+            tube_q_3*(tube_d_acc_3_in_axes2_zz*tube_link3_mass +
             tube_d_alpha_1_t*tube_h_3_in_spec2_x -
             tube_d_alpha_1_in_axes2_xz*tube_h_3_in_spec2_z))
         )
         tube_d_Gamma_1_in_axes2_z = (
-        tube_d_Gamma_1_t_2 + tube_s_2*(tube_J_group_2_in_axes2_xx*tube_d_alpha_1_in_axes2_xz +
+        tube_e_1_in_axes2_x*(tube_J_group_2_in_axes2_xx*tube_d_alpha_1_in_axes2_xz +
             tube_J_group_2_in_axes2_xz*tube_w_2_in_axes2_z -
             tube_J_group_2_in_axes2_xy*tube_d_alpha_1_t -
             tube_d_acc_3_in_axes2_yz*tube_h_3_in_spec2_y -
-            tube_d_acc_3_in_axes2_zz*tube_h_3_in_spec2_z)
+            tube_d_acc_3_in_axes2_zz*tube_h_3_in_spec2_z) - tube_d_Gamma_1_t_3
         )
         # (tube-dalpha_G) coefficient of the acceleration in: force at the connection point that balances the leg's inertia and weight along all degrees of freedom
         tube_dalpha_G_in_axes2_yx = (
@@ -3272,16 +3436,16 @@ def _run_dynamics(m, X, V):
             tube_G_o_t*tube_w_1_t_25)
         )
         tube_G_o_t_5 = (
-        inv_tube_w_1_t_75*(tube_G_o_t_2*tube_w_1_t_45 + tube_G_o_t_3*tube_w_1_t_58 +
-            tube_N_2_o_in_axes2_y*tube_c_2 + tube_mu_2_o_in_axes2_x*tube_s_2 -
-            tube_G_o_t*tube_w_1_t_29 - tube_G_o_t_4*tube_w_1_t_69)
+        inv_tube_w_1_t_75*(tube_G_o_t*tube_w_1_t_29 + tube_G_o_t_4*tube_w_1_t_69 +
+            tube_N_2_o_in_axes2_y*tube_c_2 - tube_G_o_t_2*tube_w_1_t_45 -
+            tube_G_o_t_3*tube_w_1_t_58 - tube_e_1_in_axes2_x*tube_mu_2_o_in_axes2_x)
         )
         tube_G_o_in_axes2_y = (
         tube_G_o_t*tube_w_1_t_14 + tube_G_o_t_2*tube_w_1_t_34 + tube_G_o_t_3*tube_w_1_t_50 +
-            tube_G_o_t_4*tube_w_1_t_64 + tube_G_o_t_5*tube_w_1_t_76
+            tube_G_o_t_4*tube_w_1_t_64 - tube_G_o_t_5*tube_w_1_t_76
         )
         tube_G_o_in_axes2_z = (
-        inv_tube_w_1_t_49*tube_G_o_t_3 + tube_G_o_t_4*tube_w_1_t_65 + tube_G_o_t_5*tube_w_1_t_77
+        inv_tube_w_1_t_49*tube_G_o_t_3 + tube_G_o_t_4*tube_w_1_t_65 - tube_G_o_t_5*tube_w_1_t_77
         )
         # (tube-dalpha_G_m1) coefficient of the acceleration in: moment along moment direction 1 that balances the leg's inertia and weight along all degrees of freedom
         tube_dalpha_G_m1_in_axes2_x = (
@@ -3294,9 +3458,7 @@ def _run_dynamics(m, X, V):
         tube_dalpha_Gamma_1_in_axes2_z*tube_m1_w_1 + tube_dalpha_N_2_in_axes2_zz*tube_m1_w_2
         )
         # (tube-d_G_m1) coefficient of the acceleration in: moment along moment direction 1 that balances the leg's inertia and weight along all degrees of freedom
-        tube_d_G_m1_in_axes2_x = (
-        tube_d_Gamma_1_in_axes2_x*tube_m1_w_1 + tube_h_3_in_spec2_z*tube_m1_w_2
-        )
+        tube_d_G_m1_in_axes2_x = tube_h_3_in_spec2_z*tube_m1_w_2 - tube_d_Gamma_1_t*tube_m1_w_1
         tube_d_G_m1_in_axes2_y = (
         tube_d_Gamma_1_in_axes2_y*tube_m1_w_1 + tube_d_N_2_in_axes2_zy*tube_m1_w_2
         )
@@ -3306,7 +3468,7 @@ def _run_dynamics(m, X, V):
         # (tube-G_m1_o) remainder without the acceleration in: moment along moment direction 1 that balances the leg's inertia and weight along all degrees of freedom
         tube_G_m1_o_t = (
         tube_G_o_t*tube_w_1_t_15 + tube_G_o_t_2*tube_w_1_t_35 + tube_G_o_t_3*tube_w_1_t_51 +
-            tube_G_o_t_4*tube_w_1_t_66 + tube_G_o_t_5*tube_m1_w_1_t
+            tube_G_o_t_4*tube_w_1_t_66 - tube_G_o_t_5*tube_m1_w_1_t
         )
         tube_G_m1_o = 1.35*tube_G_m1_o_t
         # (tube-dalpha_G_m2) coefficient of the acceleration in: moment along moment direction 2 that balances the leg's inertia and weight along all degrees of freedom
@@ -3320,9 +3482,7 @@ def _run_dynamics(m, X, V):
         tube_dalpha_Gamma_1_in_axes2_z*tube_m2_w_1 + tube_dalpha_N_2_in_axes2_zz*tube_m2_w_2
         )
         # (tube-d_G_m2) coefficient of the acceleration in: moment along moment direction 2 that balances the leg's inertia and weight along all degrees of freedom
-        tube_d_G_m2_in_axes2_x = (
-        tube_d_Gamma_1_in_axes2_x*tube_m2_w_1 + tube_h_3_in_spec2_z*tube_m2_w_2
-        )
+        tube_d_G_m2_in_axes2_x = tube_h_3_in_spec2_z*tube_m2_w_2 - tube_d_Gamma_1_t*tube_m2_w_1
         tube_d_G_m2_in_axes2_y = (
         tube_d_Gamma_1_in_axes2_y*tube_m2_w_1 + tube_d_N_2_in_axes2_zy*tube_m2_w_2
         )
@@ -3330,8 +3490,8 @@ def _run_dynamics(m, X, V):
         tube_d_Gamma_1_in_axes2_z*tube_m2_w_1 + tube_d_N_2_in_axes2_zz*tube_m2_w_2
         )
         # (tube-G_m2_o) remainder without the acceleration in: moment along moment direction 2 that balances the leg's inertia and weight along all degrees of freedom
-        tube_G_m2_o_t = tube_G_o_t_4*tube_w_1_t_67 - tube_G_o_t_5*tube_m2_w_1_t
-        tube_G_m2_o = -1.35*tube_G_m2_o_t
+        tube_G_m2_o_t = tube_G_o_t_4*tube_w_1_t_67 + tube_G_o_t_5*tube_m2_w_1_t
+        tube_G_m2_o = 1.35*tube_G_m2_o_t
         # (tube-dalpha_G_m3) coefficient of the acceleration in: moment along moment direction 3 that balances the leg's inertia and weight along all degrees of freedom
         tube_dalpha_G_m3_in_axes2_x = (
         tube_dalpha_Gamma_1_in_axes2_x*tube_m3_w_1 + tube_dalpha_N_2_in_axes2_zx*tube_m3_w_2
@@ -3343,9 +3503,7 @@ def _run_dynamics(m, X, V):
         tube_dalpha_Gamma_1_in_axes2_z*tube_m3_w_1 + tube_dalpha_N_2_in_axes2_zz*tube_m3_w_2
         )
         # (tube-d_G_m3) coefficient of the acceleration in: moment along moment direction 3 that balances the leg's inertia and weight along all degrees of freedom
-        tube_d_G_m3_in_axes2_x = (
-        tube_d_Gamma_1_in_axes2_x*tube_m3_w_1 + tube_h_3_in_spec2_z*tube_m3_w_2
-        )
+        tube_d_G_m3_in_axes2_x = tube_h_3_in_spec2_z*tube_m3_w_2 - tube_d_Gamma_1_t*tube_m3_w_1
         tube_d_G_m3_in_axes2_y = (
         tube_d_Gamma_1_in_axes2_y*tube_m3_w_1 + tube_d_N_2_in_axes2_zy*tube_m3_w_2
         )
@@ -3355,7 +3513,7 @@ def _run_dynamics(m, X, V):
         # (tube-G_m3_o) remainder without the acceleration in: moment along moment direction 3 that balances the leg's inertia and weight along all degrees of freedom
         tube_G_m3_o_t = (
         tube_G_o_t*tube_w_1_t_16 + tube_G_o_t_2*tube_w_1_t_36 + tube_G_o_t_3*tube_w_1_t_52 +
-            tube_G_o_t_4*tube_w_1_t_68 + tube_G_o_t_5*tube_m3_w_1_t
+            tube_G_o_t_4*tube_w_1_t_68 - tube_G_o_t_5*tube_m3_w_1_t
         )
         tube_G_m3_o = 1.35*tube_G_m3_o_t
         # (tube-dalpha_G_m) coefficient of the acceleration in: moment at the connection point that balances the leg's inertia and weight along all degrees of freedom
@@ -3779,15 +3937,15 @@ def _run_dynamics(m, X, V):
         tube_gamma_c2 = tube_rel_o_in_axes2_z + tube_m3_c2*tube_nu_3 - tube_m1_c2_t*tube_nu_1
         # (tube-gamma_c3) part of the constraint's second derivative that does not hold the acceleration
         tube_gamma_c3 = (
-        inv_tube_size_c3*tube_nu_2 + tube_mu3_c3*tube_nu_3 - tube_mu1_c3_t*tube_nu_1
+        inv_tube_size_c3*tube_nu_2 + tube_mu1_c3*tube_nu_1 - tube_mu3_c3_t*tube_nu_3
         )
         ok = (
-        ok & (abs(tube_rho2_1) > _TOLERANCE * _TOLERANCE * 1.8225000000000002) & (abs(tube_rho2_2)
-            > _TOLERANCE * _TOLERANCE * 1.8225000000000002) & (abs(tube_f_c1_t) > _TOLERANCE *
-            1.0) & (abs(tube_size_c3) > _TOLERANCE * 1.0) & (abs(tube_w_1_t_13) > _TOLERANCE *
-            1.35) & (abs(tube_w_1_t_33) > _TOLERANCE * 1.0) & (abs(tube_w_1_t_49) > _TOLERANCE *
-            1.0) & (abs(tube_w_1_t_63) > _TOLERANCE * 1.35) & (abs(tube_w_1_t_75) > _TOLERANCE *
-            1.35)
+        ok & (abs(tube_root_1_t) > _TOLERANCE * _TOLERANCE * 1.8225000000000002) &
+            (abs(tube_q_3_t) > _TOLERANCE * _TOLERANCE * 1.8225000000000002) & (abs(tube_f_c1_t) >
+            _TOLERANCE * 1.0) & (abs(tube_size_c3) > _TOLERANCE * 1.0) & (abs(tube_w_1_t_13) >
+            _TOLERANCE * 1.35) & (abs(tube_w_1_t_33) > _TOLERANCE * 1.0) & (abs(tube_w_1_t_49) >
+            _TOLERANCE * 1.0) & (abs(tube_w_1_t_63) > _TOLERANCE * 1.35) & (abs(tube_w_1_t_75) >
+            _TOLERANCE * 1.35)
         )
         # (M_tt) translational block of M
         M_tt_tube_xx += tube_Q_xx
@@ -4023,65 +4181,60 @@ def _run_M(m, X):
         ups_S_x = t_x + ups_q_x - ups_base_point_x
         ups_S_y = t_y + ups_q_y - ups_base_point_y
         ups_S_z = t_z + ups_q_z - ups_base_point_z
-        # (ups-px_1) component along the reference direction
-        ups_px_1 = (
+        ups_S_in_turn1_x = (
         ups_S_x*ups_base_frame_xx + ups_S_y*ups_base_frame_yx + ups_S_z*ups_base_frame_zx
         )
-        # (ups-py_1) component across the reference direction
-        ups_py_1 = (
+        ups_S_in_turn1_y = (
         ups_S_x*ups_base_frame_xy + ups_S_y*ups_base_frame_yy + ups_S_z*ups_base_frame_zy
         )
-        # (ups-rho2_1) squared amplitude
-        ups_rho2_1 = ups_px_1*ups_px_1 + ups_py_1*ups_py_1
-        # (ups-root_1) amplitude, with the sign of the branch
-        ups_root_1 = ups_branch_1*sqrt(ups_rho2_1)
-        # (ups-c_1) cosine of the angle of joint 1 from its reference direction
-        inv_ups_root_1 = 1.0/ups_root_1
-        ups_c_1 = -inv_ups_root_1*ups_py_1
-        # (ups-s_1) sine of the angle of joint 1 from its reference direction
-        ups_s_1 = inv_ups_root_1*ups_px_1
-        # (ups-xi_1) the vector from joint 1 to the connection point, resolved along link 1
-        ups_xi_1_in_axes1_z = (
+        ups_S_in_turn1_z = (
         ups_S_x*ups_base_frame_xz + ups_S_y*ups_base_frame_yz + ups_S_z*ups_base_frame_zz
         )
-        # (ups-rho2_2) squared amplitude
-        ups_rho2_2 = ups_rho2_1 + ups_xi_1_in_axes1_z*ups_xi_1_in_axes1_z
-        # (ups-root_2) amplitude, with the sign of the branch
-        ups_root_2 = ups_branch_2*sqrt(ups_rho2_2)
-        # (ups-s_2) sine of the angle of joint 2 from its reference direction
-        inv_ups_root_2 = 1.0/ups_root_2
-        ups_s_2 = inv_ups_root_2*ups_xi_1_in_axes1_z
+        # (ups-root_1) amplitude, the length across axis 1, with the sign of the branch
+        ups_root_1_t = ups_S_in_turn1_x*ups_S_in_turn1_x + ups_S_in_turn1_y*ups_S_in_turn1_y
+        ups_root_1 = ups_branch_1*sqrt(ups_root_1_t)
+        # (ups-c_1) cosine of the angle of joint 1 from its reference direction
+        inv_ups_root_1 = 1.0/ups_root_1
+        ups_c_1 = inv_ups_root_1*ups_S_in_turn1_x
+        # (ups-s_1) sine of the angle of joint 1 from its reference direction
+        ups_s_1 = inv_ups_root_1*ups_S_in_turn1_y
+        # (ups-q_3) displacement of joint 3
+        ups_q_3_t = ups_S_in_turn1_z*ups_S_in_turn1_z + ups_root_1_t
+        ups_q_3 = ups_branch_2*sqrt(ups_q_3_t)
+        # (ups-w_2) reciprocal vector 2
+        ups_w_2_in_axes2_y = 1.0/ups_q_3
         # (ups-w_3) reciprocal vector 3
-        ups_w_3_x = inv_ups_root_2*ups_S_x
-        ups_w_3_y = inv_ups_root_2*ups_S_y
-        ups_w_3_z = inv_ups_root_2*ups_S_z
+        ups_w_3_x = ups_S_x*ups_w_2_in_axes2_y
+        ups_w_3_y = ups_S_y*ups_w_2_in_axes2_y
+        ups_w_3_z = ups_S_z*ups_w_2_in_axes2_y
         # (ups-d_alpha_1) coefficient of the acceleration in: angular acceleration of link 1
-        ups_d_alpha_1_in_axes2_xz = inv_ups_root_1*ups_s_2
+        ups_e_1_in_axes2_x = ups_S_in_turn1_z*ups_w_2_in_axes2_y
+        ups_d_alpha_1_in_axes2_xz = inv_ups_root_1*ups_e_1_in_axes2_x
         # (ups-d_phi_3) coefficient of the acceleration in: inertia force of link 3 from its turning about its reference point
-        ups_d_phi_3_in_axes2_xy = inv_ups_root_2*ups_h_3_in_spec2_z
-        ups_d_phi_3_in_axes2_yy = inv_ups_root_2*ups_h_3_in_spec2_x
+        ups_d_phi_3_in_axes2_xy = ups_h_3_in_spec2_z*ups_w_2_in_axes2_y
+        ups_d_phi_3_in_axes2_yy = ups_h_3_in_spec2_x*ups_w_2_in_axes2_y
         # (ups-d_c) coefficient of the acceleration in: leg force on the platform without actuation and without the mass at the connection point
-        ups_d_c_in_axes2_xz = inv_ups_root_2*ups_h_3_in_spec2_y
+        ups_d_c_in_axes2_xz = ups_h_3_in_spec2_y*ups_w_2_in_axes2_y
         ups_d_c_in_axes2_yy = (
-        -ups_d_phi_3_in_axes2_yy - inv_ups_root_2*(ups_h_3_in_spec2_x +
-            inv_ups_root_2*ups_J_group_2_in_axes2_zz)
+        -ups_d_phi_3_in_axes2_yy - ups_w_2_in_axes2_y*(ups_h_3_in_spec2_x +
+            ups_J_group_2_in_axes2_zz*ups_w_2_in_axes2_y)
         )
         ups_d_c_in_axes2_yz = (
         ups_d_alpha_1_in_axes2_xz*ups_h_3_in_spec2_y -
-            inv_ups_root_2*(ups_J_group_2_in_axes2_xz*ups_d_alpha_1_in_axes2_xz -
-            inv_ups_root_2*ups_J_group_2_in_axes2_yz)
+            ups_w_2_in_axes2_y*(ups_J_group_2_in_axes2_xz*ups_d_alpha_1_in_axes2_xz -
+            ups_J_group_2_in_axes2_yz*ups_w_2_in_axes2_y)
         )
         ups_d_c_in_axes2_zz = (
         ups_d_alpha_1_in_axes2_xz*ups_h_3_in_spec2_z - ups_d_phi_3_in_axes2_yy -
-            inv_ups_root_1*(ups_s_2*(ups_J_group_2_in_axes2_xx*ups_d_alpha_1_in_axes2_xz -
-            ups_h_3_in_spec2_z - inv_ups_root_2*ups_J_group_2_in_axes2_xy) -
-            inv_ups_root_2*ups_root_1*(ups_J_group_2_in_axes2_xy*ups_d_alpha_1_in_axes2_xz -
-            ups_h_3_in_spec2_x - inv_ups_root_2*ups_J_group_2_in_axes2_yy))
+            inv_ups_root_1*(ups_e_1_in_axes2_x*(ups_J_group_2_in_axes2_xx*ups_d_alpha_1_in_axes2_xz
+            - ups_h_3_in_spec2_z - ups_J_group_2_in_axes2_xy*ups_w_2_in_axes2_y) -
+            ups_root_1*ups_w_2_in_axes2_y*(ups_J_group_2_in_axes2_xy*ups_d_alpha_1_in_axes2_xz -
+            ups_h_3_in_spec2_x - ups_J_group_2_in_axes2_yy*ups_w_2_in_axes2_y))
         )
         # (ups-Q) inertia of the leg at the connection point, without the mass gathered there
-        axis_z_ups_axes2_x = ups_base_frame_xx*ups_c_1 + ups_base_frame_xy*ups_s_1
-        axis_z_ups_axes2_y = ups_base_frame_yx*ups_c_1 + ups_base_frame_yy*ups_s_1
-        axis_z_ups_axes2_z = ups_base_frame_zx*ups_c_1 + ups_base_frame_zy*ups_s_1
+        axis_z_ups_axes2_x = ups_base_frame_xy*ups_c_1 - ups_base_frame_xx*ups_s_1
+        axis_z_ups_axes2_y = ups_base_frame_yy*ups_c_1 - ups_base_frame_yx*ups_s_1
+        axis_z_ups_axes2_z = ups_base_frame_zy*ups_c_1 - ups_base_frame_zx*ups_s_1
         axis_y_ups_axes2_x = axis_z_ups_axes2_y*ups_w_3_z - axis_z_ups_axes2_z*ups_w_3_y
         axis_y_ups_axes2_y = axis_z_ups_axes2_z*ups_w_3_x - axis_z_ups_axes2_x*ups_w_3_z
         axis_y_ups_axes2_z = axis_z_ups_axes2_x*ups_w_3_y - axis_z_ups_axes2_y*ups_w_3_x
@@ -4141,9 +4294,9 @@ def _run_M(m, X):
         ups_M_aa_t_5 = ups_M_ta_t_5*ups_q_z - ups_M_ta_t_12*ups_q_x
         ups_M_aa_t_6 = ups_M_ta_t_9*ups_q_x - ups_M_ta_t_5*ups_q_y
         ok = (
-        ok & (abs(ups_rho2_1) > _TOLERANCE * _TOLERANCE * 1.9124953849) & (abs(ups_rho2_2) >
+        ok & (abs(ups_root_1_t) > _TOLERANCE * _TOLERANCE * 1.9124953849) & (abs(ups_q_3_t) >
             _TOLERANCE * _TOLERANCE * 1.9124953849) & (abs(ups_root_1) > _TOLERANCE * 1.38293) &
-            (abs(ups_root_2) > _TOLERANCE * 1.38293)
+            (abs(ups_q_3) > _TOLERANCE * 1.38293)
         )
         # (M_tt) translational block of M
         M_tt_ups_xx += ups_Q_xx
@@ -4203,37 +4356,31 @@ def _run_M(m, X):
         tube_S_x = t_x + tube_q_x - tube_base_point_x
         tube_S_y = t_y + tube_q_y - tube_base_point_y
         tube_S_z = t_z + tube_q_z - tube_base_point_z
-        # (tube-px_1) component along the reference direction
-        tube_px_1 = (
+        tube_S_in_turn1_x = (
         tube_S_x*tube_base_frame_xx + tube_S_y*tube_base_frame_yx + tube_S_z*tube_base_frame_zx
         )
-        # (tube-py_1) component across the reference direction
-        tube_py_1 = (
+        tube_S_in_turn1_y = (
         tube_S_x*tube_base_frame_xy + tube_S_y*tube_base_frame_yy + tube_S_z*tube_base_frame_zy
         )
-        # (tube-rho2_1) squared amplitude
-        tube_rho2_1 = tube_px_1*tube_px_1 + tube_py_1*tube_py_1
-        # (tube-root_1) amplitude, with the sign of the branch
-        tube_root_1 = tube_branch_1*sqrt(tube_rho2_1)
-        # (tube-c_1) cosine of the angle of joint 1 from its reference direction
-        inv_tube_root_1 = 1.0/tube_root_1
-        tube_c_1 = -inv_tube_root_1*tube_py_1
-        # (tube-s_1) sine of the angle of joint 1 from its reference direction
-        tube_s_1 = inv_tube_root_1*tube_px_1
-        # (tube-xi_1) the vector from joint 1 to the connection point, resolved along link 1
-        tube_xi_1_in_axes1_z = (
+        tube_S_in_turn1_z = (
         tube_S_x*tube_base_frame_xz + tube_S_y*tube_base_frame_yz + tube_S_z*tube_base_frame_zz
         )
-        # (tube-rho2_2) squared amplitude
-        tube_rho2_2 = tube_rho2_1 + tube_xi_1_in_axes1_z*tube_xi_1_in_axes1_z
-        # (tube-root_2) amplitude, with the sign of the branch
-        tube_root_2 = tube_branch_2*sqrt(tube_rho2_2)
+        # (tube-root_1) amplitude, the length across axis 1, with the sign of the branch
+        tube_root_1_t = tube_S_in_turn1_x*tube_S_in_turn1_x + tube_S_in_turn1_y*tube_S_in_turn1_y
+        tube_root_1 = tube_branch_1*sqrt(tube_root_1_t)
+        # (tube-c_1) cosine of the angle of joint 1 from its reference direction
+        inv_tube_root_1 = 1.0/tube_root_1
+        tube_c_1 = inv_tube_root_1*tube_S_in_turn1_x
+        # (tube-s_1) sine of the angle of joint 1 from its reference direction
+        tube_s_1 = inv_tube_root_1*tube_S_in_turn1_y
+        # (tube-q_3) displacement of joint 3
+        tube_q_3_t = tube_S_in_turn1_z*tube_S_in_turn1_z + tube_root_1_t
+        tube_q_3 = tube_branch_2*sqrt(tube_q_3_t)
         # (tube-c_2) cosine of the angle of joint 2 from its reference direction
-        inv_tube_root_2 = 1.0/tube_root_2
-        tube_c_2 = -inv_tube_root_2*tube_root_1
-        # (tube-s_2) sine of the angle of joint 2 from its reference direction
-        tube_s_2 = inv_tube_root_2*tube_xi_1_in_axes1_z
+        inv_tube_q_3 = 1.0/tube_q_3
+        tube_c_2 = inv_tube_q_3*tube_root_1
         # (tube-n_m1) direction 1 of the moment that the platform joint transmits
+        tube_e_1_in_axes2_x = inv_tube_q_3*tube_S_in_turn1_z
         tube_n_m1_t = R_xx*tube_base_frame_xx + R_yx*tube_base_frame_yx + R_zx*tube_base_frame_zx
         tube_n_m1_t_2 = (
         R_xy*tube_base_frame_xx + R_yy*tube_base_frame_yx + R_zy*tube_base_frame_zx
@@ -4269,14 +4416,14 @@ def _run_M(m, X):
             tube_n_m1_t_5*tube_platform_joint_rotation_yy +
             tube_n_m1_t_6*tube_platform_joint_rotation_yz
         )
-        tube_end_p1_in_axes2_z = tube_c_1*tube_n_m1_t_10 + tube_n_m1_t_11*tube_s_1
+        tube_end_p1_in_axes2_z = tube_c_1*tube_n_m1_t_11 - tube_n_m1_t_10*tube_s_1
         tube_n_m1_in_axes2_z = (
-        tube_c_2*(tube_n_m1_t_7*tube_platform_joint_rotation_yx +
+        tube_e_1_in_axes2_x*(tube_c_1*tube_n_m1_t_10 + tube_n_m1_t_11*tube_s_1) -
+            tube_c_2*(tube_n_m1_t_7*tube_platform_joint_rotation_yx +
             tube_n_m1_t_8*tube_platform_joint_rotation_yy +
-            tube_n_m1_t_9*tube_platform_joint_rotation_yz) + tube_s_2*(tube_n_m1_t_10*tube_s_1 -
-            tube_c_1*tube_n_m1_t_11)
+            tube_n_m1_t_9*tube_platform_joint_rotation_yz)
         )
-        tube_n_m1_in_axes1_z = -tube_c_2*tube_end_p1_in_axes2_z
+        tube_n_m1_in_axes1_z = tube_c_2*tube_end_p1_in_axes2_z
         # (tube-n_m2) direction 2 of the moment that the platform joint transmits
         tube_n_m2_t = (
         tube_n_m1_t_7*tube_platform_joint_rotation_zx +
@@ -4284,16 +4431,16 @@ def _run_M(m, X):
             tube_n_m1_t_9*tube_platform_joint_rotation_zz
         )
         tube_n_m2_t_2 = (
-        tube_s_1*(tube_n_m1_t*tube_platform_joint_rotation_zx +
+        tube_c_1*(tube_n_m1_t*tube_platform_joint_rotation_zx +
             tube_n_m1_t_2*tube_platform_joint_rotation_zy +
-            tube_n_m1_t_3*tube_platform_joint_rotation_zz) -
-            tube_c_1*(tube_n_m1_t_4*tube_platform_joint_rotation_zx +
+            tube_n_m1_t_3*tube_platform_joint_rotation_zz) +
+            tube_s_1*(tube_n_m1_t_4*tube_platform_joint_rotation_zx +
             tube_n_m1_t_5*tube_platform_joint_rotation_zy +
             tube_n_m1_t_6*tube_platform_joint_rotation_zz)
         )
-        tube_n_m2_in_axes2_y = tube_n_m2_t*tube_s_2 - tube_c_2*tube_n_m2_t_2
-        tube_end_p2_in_axes2_y = tube_c_2*tube_n_m2_t + tube_n_m2_t_2*tube_s_2
-        tube_n_m2_in_axes1_z = tube_c_2*tube_n_m2_in_axes2_y - tube_end_p2_in_axes2_y*tube_s_2
+        tube_n_m2_in_axes2_y = tube_c_2*tube_n_m2_t_2 + tube_e_1_in_axes2_x*tube_n_m2_t
+        tube_end_p2_in_axes2_y = tube_e_1_in_axes2_x*tube_n_m2_t_2 - tube_c_2*tube_n_m2_t
+        tube_n_m2_t_3 = tube_c_2*tube_n_m2_in_axes2_y + tube_e_1_in_axes2_x*tube_end_p2_in_axes2_y
         # (tube-n_m3) direction 3 of the moment that the platform joint transmits
         tube_n_m3_t = (
         tube_n_m1_t*tube_platform_joint_rotation_xx +
@@ -4305,62 +4452,62 @@ def _run_M(m, X):
             tube_n_m1_t_5*tube_platform_joint_rotation_xy +
             tube_n_m1_t_6*tube_platform_joint_rotation_xz
         )
-        tube_end_p3_in_axes2_z = tube_c_1*tube_n_m3_t + tube_n_m3_t_2*tube_s_1
+        tube_end_p3_in_axes2_z = tube_c_1*tube_n_m3_t_2 - tube_n_m3_t*tube_s_1
         tube_n_m3_in_axes2_z = (
-        tube_s_2*(tube_n_m1_t_7*tube_platform_joint_rotation_xx +
+        tube_c_2*(tube_c_1*tube_n_m3_t + tube_n_m3_t_2*tube_s_1) +
+            tube_e_1_in_axes2_x*(tube_n_m1_t_7*tube_platform_joint_rotation_xx +
             tube_n_m1_t_8*tube_platform_joint_rotation_xy +
-            tube_n_m1_t_9*tube_platform_joint_rotation_xz) - tube_c_2*(tube_n_m3_t*tube_s_1 -
-            tube_c_1*tube_n_m3_t_2)
+            tube_n_m1_t_9*tube_platform_joint_rotation_xz)
         )
-        tube_n_m3_t_3 = tube_end_p3_in_axes2_z*tube_s_2
+        tube_n_m3_t_3 = tube_e_1_in_axes2_x*tube_end_p3_in_axes2_z
         # (tube-f_c1) force part of constraint wrench 1
         tube_f_c1_t = (
         tube_n_m1_in_axes1_z*tube_n_m3_in_axes2_z + tube_n_m1_in_axes2_z*tube_n_m3_t_3
         )
         # (tube-m1_c3) moment part 1 of constraint wrench 3
         inv_tube_f_c1_t = 1.0/tube_f_c1_t
-        tube_m1_c3_t = inv_tube_f_c1_t*tube_n_m2_in_axes1_z*tube_n_m3_in_axes2_z
+        tube_m1_c3 = inv_tube_f_c1_t*tube_n_m2_t_3*tube_n_m3_in_axes2_z
         # (tube-m3_c3) moment part 3 of constraint wrench 3
-        tube_m3_c3 = inv_tube_f_c1_t*tube_n_m1_in_axes2_z*tube_n_m2_in_axes1_z
+        tube_m3_c3_t = inv_tube_f_c1_t*tube_n_m1_in_axes2_z*tube_n_m2_t_3
         # (tube-n_c1) unit force of the constraint wrench
-        tube_n_c1_t = tube_s_1*tube_s_2
-        tube_n_c1_t_2 = tube_c_1*tube_s_2
+        tube_n_c1_t = tube_c_1*tube_e_1_in_axes2_x
+        tube_n_c1_t_2 = tube_e_1_in_axes2_x*tube_s_1
         tube_n_c1_x = (
-        tube_base_frame_xx*tube_n_c1_t + tube_base_frame_xz*tube_c_2 -
-            tube_base_frame_xy*tube_n_c1_t_2
+        tube_base_frame_xx*tube_n_c1_t + tube_base_frame_xy*tube_n_c1_t_2 -
+            tube_base_frame_xz*tube_c_2
         )
         tube_n_c1_y = (
-        tube_base_frame_yx*tube_n_c1_t + tube_base_frame_yz*tube_c_2 -
-            tube_base_frame_yy*tube_n_c1_t_2
+        tube_base_frame_yx*tube_n_c1_t + tube_base_frame_yy*tube_n_c1_t_2 -
+            tube_base_frame_yz*tube_c_2
         )
         tube_n_c1_z = (
-        tube_base_frame_zx*tube_n_c1_t + tube_base_frame_zz*tube_c_2 -
-            tube_base_frame_zy*tube_n_c1_t_2
+        tube_base_frame_zx*tube_n_c1_t + tube_base_frame_zy*tube_n_c1_t_2 -
+            tube_base_frame_zz*tube_c_2
         )
         # (tube-n_c2) unit force of the constraint wrench
-        tube_n_c2_x = tube_base_frame_xx*tube_c_1 + tube_base_frame_xy*tube_s_1
-        tube_n_c2_y = tube_base_frame_yx*tube_c_1 + tube_base_frame_yy*tube_s_1
-        tube_n_c2_z = tube_base_frame_zx*tube_c_1 + tube_base_frame_zy*tube_s_1
+        tube_n_c2_x = tube_base_frame_xy*tube_c_1 - tube_base_frame_xx*tube_s_1
+        tube_n_c2_y = tube_base_frame_yy*tube_c_1 - tube_base_frame_yx*tube_s_1
+        tube_n_c2_z = tube_base_frame_zy*tube_c_1 - tube_base_frame_zx*tube_s_1
         # (tube-size_c3) size of the moment
-        tube_size_c3 = sqrt(1.0 + tube_m1_c3_t*tube_m1_c3_t + tube_m3_c3*tube_m3_c3)
+        tube_size_c3 = sqrt(1.0 + tube_m1_c3*tube_m1_c3 + tube_m3_c3_t*tube_m3_c3_t)
         # (tube-mu2_c3) moment along direction 2 that goes with it
         tube_mu2_c3 = 1.0/tube_size_c3
         # (tube-w_1) force part of reciprocal wrench 1
         tube_w_1_t = 1.35*tube_n_m1_in_axes1_z
-        tube_w_1_t_2 = 1.35*tube_n_m2_in_axes1_z
+        tube_w_1_t_2 = 1.35*tube_n_m2_t_3
         tube_w_1_t_3 = 1.35*tube_n_m3_t_3
         tube_w_1_t_4 = 1.35*tube_n_m1_in_axes2_z
         tube_w_1_t_5 = 1.35*tube_n_m3_in_axes2_z
-        tube_w_1_t_6 = 1.35*inv_tube_f_c1_t*tube_n_m3_t_3*tube_root_2
-        tube_w_1_t_7 = 1.35*inv_tube_f_c1_t*tube_n_m1_in_axes1_z*tube_root_2
+        tube_w_1_t_6 = 1.35*inv_tube_f_c1_t*tube_n_m3_t_3*tube_q_3
+        tube_w_1_t_7 = 1.35*inv_tube_f_c1_t*tube_n_m1_in_axes1_z*tube_q_3
         tube_w_1_t_8 = 1.35*inv_tube_f_c1_t*tube_n_m3_in_axes2_z*tube_root_1
         tube_w_1_t_9 = 1.35*inv_tube_f_c1_t*tube_n_m1_in_axes2_z*tube_root_1
-        tube_w_1_t_10 = 1.35*tube_m1_c3_t*tube_mu2_c3
+        tube_w_1_t_10 = 1.35*tube_m1_c3*tube_mu2_c3
         tube_w_1_t_11 = 1.35*tube_mu2_c3
-        tube_w_1_t_12 = 1.35*tube_m3_c3*tube_mu2_c3
-        tube_w_1_t_13 = sqrt(tube_rho2_2 + tube_w_1_t_4*tube_w_1_t_4 + tube_w_1_t_5*tube_w_1_t_5)
+        tube_w_1_t_12 = 1.35*tube_m3_c3_t*tube_mu2_c3
+        tube_w_1_t_13 = sqrt(tube_q_3_t + tube_w_1_t_4*tube_w_1_t_4 + tube_w_1_t_5*tube_w_1_t_5)
         inv_tube_w_1_t_13 = 1.0/tube_w_1_t_13
-        tube_w_1_t_14 = inv_tube_w_1_t_13*tube_root_2
+        tube_w_1_t_14 = inv_tube_w_1_t_13*tube_q_3
         tube_w_1_t_15 = inv_tube_w_1_t_13*tube_w_1_t_4
         tube_w_1_t_16 = inv_tube_w_1_t_13*tube_w_1_t_5
         tube_w_1_t_17 = tube_w_1_t_15*tube_w_1_t_6 + tube_w_1_t_16*tube_w_1_t_7 - tube_w_1_t_14
@@ -4458,13 +4605,14 @@ def _run_M(m, X):
         tube_w_1_t_77 = inv_tube_w_1_t_75*tube_w_1_t_71
         tube_w_1_in_axes2_y = inv_tube_w_1_t_75*tube_w_1_t_76
         tube_w_1_in_axes2_z = inv_tube_w_1_t_75*tube_w_1_t_77
-        tube_w_1_t_78 = -tube_c_2*tube_w_1_in_axes2_y
+        tube_w_1_in_axes1_x = tube_e_1_in_axes2_x*tube_w_1_in_axes2_y
+        tube_w_1_t_78 = tube_c_2*tube_w_1_in_axes2_y
         # (tube-m1_w_1) moment part 1 of reciprocal wrench 1
         tube_m1_w_1_t = inv_tube_w_1_t_75*tube_w_1_t_72
         tube_m1_w_1 = 1.35*inv_tube_w_1_t_75*tube_m1_w_1_t
         # (tube-m2_w_1) moment part 2 of reciprocal wrench 1
         tube_m2_w_1_t = inv_tube_w_1_t_75*tube_w_1_t_73
-        tube_m2_w_1 = 1.35*inv_tube_w_1_t_75*tube_m2_w_1_t
+        tube_m2_w_1 = -1.35*inv_tube_w_1_t_75*tube_m2_w_1_t
         # (tube-m3_w_1) moment part 3 of reciprocal wrench 1
         tube_m3_w_1_t = inv_tube_w_1_t_75*tube_w_1_t_74
         tube_m3_w_1 = 1.35*inv_tube_w_1_t_75*tube_m3_w_1_t
@@ -4496,7 +4644,7 @@ def _run_M(m, X):
         tube_m1_w_2 = 1.35*tube_m1_w_2_t
         # (tube-m2_w_2) moment part 2 of reciprocal wrench 2
         tube_m2_w_2_t = tube_m2_w_1_t*tube_w_2_t_4 + tube_w_1_t_67*tube_w_2_t_3
-        tube_m2_w_2 = -1.35*tube_m2_w_2_t
+        tube_m2_w_2 = 1.35*tube_m2_w_2_t
         # (tube-m3_w_2) moment part 3 of reciprocal wrench 2
         tube_m3_w_2_t = (
         inv_tube_w_1_t_13*tube_w_1_t_16 + tube_w_1_t_36*tube_w_2_t + tube_w_1_t_52*tube_w_2_t_2 +
@@ -4520,34 +4668,33 @@ def _run_M(m, X):
         )
         tube_o_2_in_axes2_z = tube_m1_w_2*tube_n_m1_in_axes2_z + tube_m3_w_2*tube_n_m3_in_axes2_z
         # (tube-dalpha_alpha_1) coefficient of the acceleration in: angular acceleration of link 1
-        tube_dalpha_alpha_1_t = -tube_c_2*tube_o_1_in_axes2_x
-        tube_dalpha_alpha_1_in_axes2_xy = tube_o_1_in_axes2_y*tube_s_2
-        tube_dalpha_alpha_1_t_2 = -tube_c_2*tube_o_1_in_axes2_y
-        tube_dalpha_alpha_1_in_axes2_xx = tube_o_1_in_axes2_x*tube_s_2
-        tube_dalpha_alpha_1_in_axes2_xz = tube_o_1_in_axes2_z*tube_s_2
-        tube_dalpha_alpha_1_t_3 = -tube_c_2*tube_o_1_in_axes2_z
+        tube_dalpha_alpha_1_t = tube_c_2*tube_o_1_in_axes2_x
+        tube_dalpha_alpha_1_in_axes2_xy = tube_e_1_in_axes2_x*tube_o_1_in_axes2_y
+        tube_dalpha_alpha_1_t_2 = tube_c_2*tube_o_1_in_axes2_y
+        tube_dalpha_alpha_1_in_axes2_xx = tube_e_1_in_axes2_x*tube_o_1_in_axes2_x
+        tube_dalpha_alpha_1_in_axes2_xz = tube_e_1_in_axes2_x*tube_o_1_in_axes2_z
+        tube_dalpha_alpha_1_t_3 = tube_c_2*tube_o_1_in_axes2_z
         # (tube-d_alpha_1) coefficient of the acceleration in: angular acceleration of link 1
-        tube_d_alpha_1_in_axes2_xy = tube_s_2*tube_w_1_in_axes2_y
-        tube_d_alpha_1_in_axes2_xz = tube_s_2*tube_w_1_in_axes2_z
-        tube_d_alpha_1_t = -tube_c_2*tube_w_1_in_axes2_z
+        tube_d_alpha_1_in_axes2_xz = tube_e_1_in_axes2_x*tube_w_1_in_axes2_z
+        tube_d_alpha_1_t = tube_c_2*tube_w_1_in_axes2_z
         # (tube-dalpha_acc_3) coefficient of the acceleration in: acceleration of the reference point of link 3, less gravity
-        tube_dalpha_acc_3_in_axes2_yx = tube_o_2_in_axes2_x*tube_root_2
-        tube_dalpha_acc_3_in_axes2_yy = tube_o_2_in_axes2_y*tube_root_2
-        tube_dalpha_acc_3_in_axes2_yz = tube_o_2_in_axes2_z*tube_root_2
-        tube_dalpha_acc_3_in_axes2_zx = tube_dalpha_alpha_1_t*tube_root_2
-        tube_dalpha_acc_3_in_axes2_zy = tube_dalpha_alpha_1_t_2*tube_root_2
-        tube_dalpha_acc_3_in_axes2_zz = tube_dalpha_alpha_1_t_3*tube_root_2
+        tube_dalpha_acc_3_in_axes2_yx = tube_o_2_in_axes2_x*tube_q_3
+        tube_dalpha_acc_3_in_axes2_yy = tube_o_2_in_axes2_y*tube_q_3
+        tube_dalpha_acc_3_in_axes2_yz = tube_o_2_in_axes2_z*tube_q_3
+        tube_dalpha_acc_3_in_axes2_zx = tube_dalpha_alpha_1_t*tube_q_3
+        tube_dalpha_acc_3_in_axes2_zy = tube_dalpha_alpha_1_t_2*tube_q_3
+        tube_dalpha_acc_3_in_axes2_zz = tube_dalpha_alpha_1_t_3*tube_q_3
         # (tube-d_acc_3) coefficient of the acceleration in: acceleration of the reference point of link 3, less gravity
-        tube_d_acc_3_in_axes2_yy = tube_root_2*tube_w_2_in_axes2_y
-        tube_d_acc_3_in_axes2_yz = tube_root_2*tube_w_2_in_axes2_z
-        tube_d_acc_3_in_axes2_zy = tube_root_2*tube_w_1_t_78
-        tube_d_acc_3_in_axes2_zz = tube_d_alpha_1_t*tube_root_2
+        tube_d_acc_3_in_axes2_yy = tube_q_3*tube_w_2_in_axes2_y
+        tube_d_acc_3_in_axes2_yz = tube_q_3*tube_w_2_in_axes2_z
+        tube_d_acc_3_in_axes2_zy = tube_q_3*tube_w_1_t_78
+        tube_d_acc_3_in_axes2_zz = tube_d_alpha_1_t*tube_q_3
         # (tube-dalpha_N_2) coefficient of the acceleration in: moment about joint 2 of the links from 2 outwards, the force at the connection point left out
         tube_dalpha_N_2_in_axes2_zx = (
         tube_J_group_2_in_axes2_xz*tube_dalpha_alpha_1_in_axes2_xx +
             tube_J_group_2_in_axes2_zz*tube_o_2_in_axes2_x +
             tube_dalpha_acc_3_in_axes2_yx*tube_h_3_in_spec2_x +
-            tube_root_2*(tube_dalpha_acc_3_in_axes2_yx*tube_link3_mass +
+            tube_q_3*(tube_dalpha_acc_3_in_axes2_yx*tube_link3_mass +
             tube_h_3_in_spec2_x*tube_o_2_in_axes2_x -
             tube_dalpha_alpha_1_in_axes2_xx*tube_h_3_in_spec2_y) -
             tube_J_group_2_in_axes2_yz*tube_dalpha_alpha_1_t
@@ -4556,7 +4703,7 @@ def _run_M(m, X):
         tube_J_group_2_in_axes2_xz*tube_dalpha_alpha_1_in_axes2_xy +
             tube_J_group_2_in_axes2_zz*tube_o_2_in_axes2_y +
             tube_dalpha_acc_3_in_axes2_yy*tube_h_3_in_spec2_x +
-            tube_root_2*(tube_dalpha_acc_3_in_axes2_yy*tube_link3_mass +
+            tube_q_3*(tube_dalpha_acc_3_in_axes2_yy*tube_link3_mass +
             tube_h_3_in_spec2_x*tube_o_2_in_axes2_y -
             tube_dalpha_alpha_1_in_axes2_xy*tube_h_3_in_spec2_y) -
             tube_J_group_2_in_axes2_yz*tube_dalpha_alpha_1_t_2
@@ -4565,26 +4712,25 @@ def _run_M(m, X):
         tube_J_group_2_in_axes2_xz*tube_dalpha_alpha_1_in_axes2_xz +
             tube_J_group_2_in_axes2_zz*tube_o_2_in_axes2_z +
             tube_dalpha_acc_3_in_axes2_yz*tube_h_3_in_spec2_x +
-            tube_root_2*(tube_dalpha_acc_3_in_axes2_yz*tube_link3_mass +
+            tube_q_3*(tube_dalpha_acc_3_in_axes2_yz*tube_link3_mass +
             tube_h_3_in_spec2_x*tube_o_2_in_axes2_z -
             tube_dalpha_alpha_1_in_axes2_xz*tube_h_3_in_spec2_y) -
             tube_J_group_2_in_axes2_yz*tube_dalpha_alpha_1_t_3
         )
         # (tube-d_N_2) coefficient of the acceleration in: moment about joint 2 of the links from 2 outwards, the force at the connection point left out
         tube_d_N_2_in_axes2_zy = (
-        tube_J_group_2_in_axes2_xz*tube_d_alpha_1_in_axes2_xy +
+        tube_J_group_2_in_axes2_xz*tube_w_1_in_axes1_x +
             tube_J_group_2_in_axes2_zz*tube_w_2_in_axes2_y +
             tube_d_acc_3_in_axes2_yy*tube_h_3_in_spec2_x +
-            tube_root_2*(tube_d_acc_3_in_axes2_yy*tube_link3_mass +
-            tube_h_3_in_spec2_x*tube_w_2_in_axes2_y -
-            tube_d_alpha_1_in_axes2_xy*tube_h_3_in_spec2_y) -
+            tube_q_3*(tube_d_acc_3_in_axes2_yy*tube_link3_mass +
+            tube_h_3_in_spec2_x*tube_w_2_in_axes2_y - tube_h_3_in_spec2_y*tube_w_1_in_axes1_x) -
             tube_J_group_2_in_axes2_yz*tube_w_1_t_78
         )
         tube_d_N_2_in_axes2_zz = (
         tube_J_group_2_in_axes2_xz*tube_d_alpha_1_in_axes2_xz +
             tube_J_group_2_in_axes2_zz*tube_w_2_in_axes2_z +
             tube_d_acc_3_in_axes2_yz*tube_h_3_in_spec2_x +
-            tube_root_2*(tube_d_acc_3_in_axes2_yz*tube_link3_mass +
+            tube_q_3*(tube_d_acc_3_in_axes2_yz*tube_link3_mass +
             tube_h_3_in_spec2_x*tube_w_2_in_axes2_z -
             tube_d_alpha_1_in_axes2_xz*tube_h_3_in_spec2_y) -
             tube_J_group_2_in_axes2_yz*tube_d_alpha_1_t
@@ -4595,84 +4741,81 @@ def _run_M(m, X):
             tube_J_group_2_in_axes2_yz*tube_o_2_in_axes2_x -
             tube_J_group_2_in_axes2_yy*tube_dalpha_alpha_1_t -
             tube_dalpha_acc_3_in_axes2_zx*tube_h_3_in_spec2_x -
-            tube_root_2*(tube_dalpha_acc_3_in_axes2_zx*tube_link3_mass +
+            tube_q_3*(tube_dalpha_acc_3_in_axes2_zx*tube_link3_mass +
             tube_dalpha_alpha_1_t*tube_h_3_in_spec2_x -
             tube_dalpha_alpha_1_in_axes2_xx*tube_h_3_in_spec2_z))
         )
         tube_dalpha_Gamma_1_in_axes2_x = (
-        tube_dalpha_Gamma_1_t +
-            tube_s_2*(tube_J_group_2_in_axes2_xx*tube_dalpha_alpha_1_in_axes2_xx +
+        tube_e_1_in_axes2_x*(tube_J_group_2_in_axes2_xx*tube_dalpha_alpha_1_in_axes2_xx +
             tube_J_group_2_in_axes2_xz*tube_o_2_in_axes2_x -
             tube_J_group_2_in_axes2_xy*tube_dalpha_alpha_1_t -
             tube_dalpha_acc_3_in_axes2_yx*tube_h_3_in_spec2_y -
-            tube_dalpha_acc_3_in_axes2_zx*tube_h_3_in_spec2_z)
+            tube_dalpha_acc_3_in_axes2_zx*tube_h_3_in_spec2_z) - tube_dalpha_Gamma_1_t
         )
         tube_dalpha_Gamma_1_t_2 = (
         tube_c_2*(tube_J_group_2_in_axes2_xy*tube_dalpha_alpha_1_in_axes2_xy +
             tube_J_group_2_in_axes2_yz*tube_o_2_in_axes2_y -
             tube_J_group_2_in_axes2_yy*tube_dalpha_alpha_1_t_2 -
             tube_dalpha_acc_3_in_axes2_zy*tube_h_3_in_spec2_x -
-            tube_root_2*(tube_dalpha_acc_3_in_axes2_zy*tube_link3_mass +
+            tube_q_3*(tube_dalpha_acc_3_in_axes2_zy*tube_link3_mass +
             tube_dalpha_alpha_1_t_2*tube_h_3_in_spec2_x -
             tube_dalpha_alpha_1_in_axes2_xy*tube_h_3_in_spec2_z))
         )
         tube_dalpha_Gamma_1_in_axes2_y = (
-        tube_dalpha_Gamma_1_t_2 +
-            tube_s_2*(tube_J_group_2_in_axes2_xx*tube_dalpha_alpha_1_in_axes2_xy +
+        tube_e_1_in_axes2_x*(tube_J_group_2_in_axes2_xx*tube_dalpha_alpha_1_in_axes2_xy +
             tube_J_group_2_in_axes2_xz*tube_o_2_in_axes2_y -
             tube_J_group_2_in_axes2_xy*tube_dalpha_alpha_1_t_2 -
             tube_dalpha_acc_3_in_axes2_yy*tube_h_3_in_spec2_y -
-            tube_dalpha_acc_3_in_axes2_zy*tube_h_3_in_spec2_z)
+            tube_dalpha_acc_3_in_axes2_zy*tube_h_3_in_spec2_z) - tube_dalpha_Gamma_1_t_2
         )
         tube_dalpha_Gamma_1_t_3 = (
         tube_c_2*(tube_J_group_2_in_axes2_xy*tube_dalpha_alpha_1_in_axes2_xz +
             tube_J_group_2_in_axes2_yz*tube_o_2_in_axes2_z -
             tube_J_group_2_in_axes2_yy*tube_dalpha_alpha_1_t_3 -
             tube_dalpha_acc_3_in_axes2_zz*tube_h_3_in_spec2_x -
-            tube_root_2*(tube_dalpha_acc_3_in_axes2_zz*tube_link3_mass +
+            tube_q_3*(tube_dalpha_acc_3_in_axes2_zz*tube_link3_mass +
             tube_dalpha_alpha_1_t_3*tube_h_3_in_spec2_x -
             tube_dalpha_alpha_1_in_axes2_xz*tube_h_3_in_spec2_z))
         )
         tube_dalpha_Gamma_1_in_axes2_z = (
-        tube_dalpha_Gamma_1_t_3 +
-            tube_s_2*(tube_J_group_2_in_axes2_xx*tube_dalpha_alpha_1_in_axes2_xz +
+        tube_e_1_in_axes2_x*(tube_J_group_2_in_axes2_xx*tube_dalpha_alpha_1_in_axes2_xz +
             tube_J_group_2_in_axes2_xz*tube_o_2_in_axes2_z -
             tube_J_group_2_in_axes2_xy*tube_dalpha_alpha_1_t_3 -
             tube_dalpha_acc_3_in_axes2_yz*tube_h_3_in_spec2_y -
-            tube_dalpha_acc_3_in_axes2_zz*tube_h_3_in_spec2_z)
+            tube_dalpha_acc_3_in_axes2_zz*tube_h_3_in_spec2_z) - tube_dalpha_Gamma_1_t_3
         )
         # (tube-d_Gamma_1) coefficient of the acceleration in: moment about axis 1 of the distal links' inertia and weight
-        tube_d_Gamma_1_in_axes2_x = tube_c_2*tube_h_3_in_spec2_y
-        tube_d_Gamma_1_t = (
-        tube_c_2*(tube_J_group_2_in_axes2_xy*tube_d_alpha_1_in_axes2_xy +
+        tube_d_Gamma_1_t = tube_c_2*tube_h_3_in_spec2_y
+        tube_d_Gamma_1_t_2 = (
+        tube_c_2*(tube_J_group_2_in_axes2_xy*tube_w_1_in_axes1_x +
             tube_J_group_2_in_axes2_yz*tube_w_2_in_axes2_y -
             tube_J_group_2_in_axes2_yy*tube_w_1_t_78 -
             tube_d_acc_3_in_axes2_zy*tube_h_3_in_spec2_x -
-            tube_root_2*(tube_d_acc_3_in_axes2_zy*tube_link3_mass +
-            tube_h_3_in_spec2_x*tube_w_1_t_78 - tube_d_alpha_1_in_axes2_xy*tube_h_3_in_spec2_z))
+            tube_q_3*(tube_d_acc_3_in_axes2_zy*tube_link3_mass + tube_h_3_in_spec2_x*tube_w_1_t_78
+            - tube_h_3_in_spec2_z*tube_w_1_in_axes1_x))
         )
         tube_d_Gamma_1_in_axes2_y = (
-        tube_d_Gamma_1_t + tube_s_2*(tube_J_group_2_in_axes2_xx*tube_d_alpha_1_in_axes2_xy +
+        tube_e_1_in_axes2_x*(tube_J_group_2_in_axes2_xx*tube_w_1_in_axes1_x +
             tube_J_group_2_in_axes2_xz*tube_w_2_in_axes2_y -
             tube_J_group_2_in_axes2_xy*tube_w_1_t_78 -
             tube_d_acc_3_in_axes2_yy*tube_h_3_in_spec2_y -
-            tube_d_acc_3_in_axes2_zy*tube_h_3_in_spec2_z)
+            tube_d_acc_3_in_axes2_zy*tube_h_3_in_spec2_z) - tube_d_Gamma_1_t_2
         )
-        tube_d_Gamma_1_t_2 = (
+        tube_d_Gamma_1_t_3 = (
         tube_c_2*(tube_J_group_2_in_axes2_xy*tube_d_alpha_1_in_axes2_xz +
             tube_J_group_2_in_axes2_yz*tube_w_2_in_axes2_z -
             tube_J_group_2_in_axes2_yy*tube_d_alpha_1_t -
             tube_d_acc_3_in_axes2_zz*tube_h_3_in_spec2_x -
-            tube_root_2*(tube_d_acc_3_in_axes2_zz*tube_link3_mass +
+            tube_q_3*(tube_d_acc_3_in_axes2_zz*tube_link3_mass +
             tube_d_alpha_1_t*tube_h_3_in_spec2_x -
             tube_d_alpha_1_in_axes2_xz*tube_h_3_in_spec2_z))
         )
         tube_d_Gamma_1_in_axes2_z = (
-        tube_d_Gamma_1_t_2 + tube_s_2*(tube_J_group_2_in_axes2_xx*tube_d_alpha_1_in_axes2_xz +
+        tube_e_1_in_axes2_x*(tube_J_group_2_in_axes2_xx*tube_d_alpha_1_in_axes2_xz +
             tube_J_group_2_in_axes2_xz*tube_w_2_in_axes2_z -
             tube_J_group_2_in_axes2_xy*tube_d_alpha_1_t -
             tube_d_acc_3_in_axes2_yz*tube_h_3_in_spec2_y -
-            tube_d_acc_3_in_axes2_zz*tube_h_3_in_spec2_z)
+            tube_d_acc_3_in_axes2_zz*tube_h_3_in_spec2_z) - tube_d_Gamma_1_t_3
         )
         # (tube-dalpha_G) coefficient of the acceleration in: force at the connection point that balances the leg's inertia and weight along all degrees of freedom
         tube_dalpha_G_in_axes2_yx = (
@@ -4714,9 +4857,7 @@ def _run_M(m, X):
         tube_dalpha_Gamma_1_in_axes2_z*tube_m1_w_1 + tube_dalpha_N_2_in_axes2_zz*tube_m1_w_2
         )
         # (tube-d_G_m1) coefficient of the acceleration in: moment along moment direction 1 that balances the leg's inertia and weight along all degrees of freedom
-        tube_d_G_m1_in_axes2_x = (
-        tube_d_Gamma_1_in_axes2_x*tube_m1_w_1 + tube_h_3_in_spec2_z*tube_m1_w_2
-        )
+        tube_d_G_m1_in_axes2_x = tube_h_3_in_spec2_z*tube_m1_w_2 - tube_d_Gamma_1_t*tube_m1_w_1
         tube_d_G_m1_in_axes2_y = (
         tube_d_Gamma_1_in_axes2_y*tube_m1_w_1 + tube_d_N_2_in_axes2_zy*tube_m1_w_2
         )
@@ -4734,9 +4875,7 @@ def _run_M(m, X):
         tube_dalpha_Gamma_1_in_axes2_z*tube_m2_w_1 + tube_dalpha_N_2_in_axes2_zz*tube_m2_w_2
         )
         # (tube-d_G_m2) coefficient of the acceleration in: moment along moment direction 2 that balances the leg's inertia and weight along all degrees of freedom
-        tube_d_G_m2_in_axes2_x = (
-        tube_d_Gamma_1_in_axes2_x*tube_m2_w_1 + tube_h_3_in_spec2_z*tube_m2_w_2
-        )
+        tube_d_G_m2_in_axes2_x = tube_h_3_in_spec2_z*tube_m2_w_2 - tube_d_Gamma_1_t*tube_m2_w_1
         tube_d_G_m2_in_axes2_y = (
         tube_d_Gamma_1_in_axes2_y*tube_m2_w_1 + tube_d_N_2_in_axes2_zy*tube_m2_w_2
         )
@@ -4754,9 +4893,7 @@ def _run_M(m, X):
         tube_dalpha_Gamma_1_in_axes2_z*tube_m3_w_1 + tube_dalpha_N_2_in_axes2_zz*tube_m3_w_2
         )
         # (tube-d_G_m3) coefficient of the acceleration in: moment along moment direction 3 that balances the leg's inertia and weight along all degrees of freedom
-        tube_d_G_m3_in_axes2_x = (
-        tube_d_Gamma_1_in_axes2_x*tube_m3_w_1 + tube_h_3_in_spec2_z*tube_m3_w_2
-        )
+        tube_d_G_m3_in_axes2_x = tube_h_3_in_spec2_z*tube_m3_w_2 - tube_d_Gamma_1_t*tube_m3_w_1
         tube_d_G_m3_in_axes2_y = (
         tube_d_Gamma_1_in_axes2_y*tube_m3_w_1 + tube_d_N_2_in_axes2_zy*tube_m3_w_2
         )
@@ -5092,12 +5229,12 @@ def _run_M(m, X):
             tube_M_aa_t_8*tube_n_c1_y + tube_M_aa_t_9*tube_n_c2_y)
         )
         ok = (
-        ok & (abs(tube_rho2_1) > _TOLERANCE * _TOLERANCE * 1.8225000000000002) & (abs(tube_rho2_2)
-            > _TOLERANCE * _TOLERANCE * 1.8225000000000002) & (abs(tube_f_c1_t) > _TOLERANCE *
-            1.0) & (abs(tube_size_c3) > _TOLERANCE * 1.0) & (abs(tube_w_1_t_13) > _TOLERANCE *
-            1.35) & (abs(tube_w_1_t_33) > _TOLERANCE * 1.0) & (abs(tube_w_1_t_49) > _TOLERANCE *
-            1.0) & (abs(tube_w_1_t_63) > _TOLERANCE * 1.35) & (abs(tube_w_1_t_75) > _TOLERANCE *
-            1.35)
+        ok & (abs(tube_root_1_t) > _TOLERANCE * _TOLERANCE * 1.8225000000000002) &
+            (abs(tube_q_3_t) > _TOLERANCE * _TOLERANCE * 1.8225000000000002) & (abs(tube_f_c1_t) >
+            _TOLERANCE * 1.0) & (abs(tube_size_c3) > _TOLERANCE * 1.0) & (abs(tube_w_1_t_13) >
+            _TOLERANCE * 1.35) & (abs(tube_w_1_t_33) > _TOLERANCE * 1.0) & (abs(tube_w_1_t_49) >
+            _TOLERANCE * 1.0) & (abs(tube_w_1_t_63) > _TOLERANCE * 1.35) & (abs(tube_w_1_t_75) >
+            _TOLERANCE * 1.35)
         )
         # (M_tt) translational block of M
         M_tt_tube_xx += tube_Q_xx
@@ -5318,40 +5455,33 @@ def _run_Z(m, X, V):
         ups_S_x = t_x + ups_q_x - ups_base_point_x
         ups_S_y = t_y + ups_q_y - ups_base_point_y
         ups_S_z = t_z + ups_q_z - ups_base_point_z
-        # (ups-px_1) component along the reference direction
-        ups_px_1 = (
+        ups_S_in_turn1_x = (
         ups_S_x*ups_base_frame_xx + ups_S_y*ups_base_frame_yx + ups_S_z*ups_base_frame_zx
         )
-        # (ups-py_1) component across the reference direction
-        ups_py_1 = (
+        ups_S_in_turn1_y = (
         ups_S_x*ups_base_frame_xy + ups_S_y*ups_base_frame_yy + ups_S_z*ups_base_frame_zy
         )
-        # (ups-rho2_1) squared amplitude
-        ups_rho2_1 = ups_px_1*ups_px_1 + ups_py_1*ups_py_1
-        # (ups-root_1) amplitude, with the sign of the branch
-        ups_root_1 = ups_branch_1*sqrt(ups_rho2_1)
-        # (ups-c_1) cosine of the angle of joint 1 from its reference direction
-        inv_ups_root_1 = 1.0/ups_root_1
-        ups_c_1 = -inv_ups_root_1*ups_py_1
-        # (ups-s_1) sine of the angle of joint 1 from its reference direction
-        ups_s_1 = inv_ups_root_1*ups_px_1
-        # (ups-xi_1) the vector from joint 1 to the connection point, resolved along link 1
-        ups_xi_1_in_axes1_z = (
+        ups_S_in_turn1_z = (
         ups_S_x*ups_base_frame_xz + ups_S_y*ups_base_frame_yz + ups_S_z*ups_base_frame_zz
         )
-        # (ups-rho2_2) squared amplitude
-        ups_rho2_2 = ups_rho2_1 + ups_xi_1_in_axes1_z*ups_xi_1_in_axes1_z
-        # (ups-root_2) amplitude, with the sign of the branch
-        ups_root_2 = ups_branch_2*sqrt(ups_rho2_2)
+        # (ups-root_1) amplitude, the length across axis 1, with the sign of the branch
+        ups_root_1_t = ups_S_in_turn1_x*ups_S_in_turn1_x + ups_S_in_turn1_y*ups_S_in_turn1_y
+        ups_root_1 = ups_branch_1*sqrt(ups_root_1_t)
+        # (ups-c_1) cosine of the angle of joint 1 from its reference direction
+        inv_ups_root_1 = 1.0/ups_root_1
+        ups_c_1 = inv_ups_root_1*ups_S_in_turn1_x
+        # (ups-s_1) sine of the angle of joint 1 from its reference direction
+        ups_s_1 = inv_ups_root_1*ups_S_in_turn1_y
+        # (ups-q_3) displacement of joint 3
+        ups_q_3_t = ups_S_in_turn1_z*ups_S_in_turn1_z + ups_root_1_t
+        ups_q_3 = ups_branch_2*sqrt(ups_q_3_t)
         # (ups-c_2) cosine of the angle of joint 2 from its reference direction
-        inv_ups_root_2 = 1.0/ups_root_2
-        ups_c_2 = -inv_ups_root_2*ups_root_1
-        # (ups-s_2) sine of the angle of joint 2 from its reference direction
-        ups_s_2 = inv_ups_root_2*ups_xi_1_in_axes1_z
+        inv_ups_q_3 = 1.0/ups_q_3
+        ups_c_2 = inv_ups_q_3*ups_root_1
         # (ups-S_dot) velocity of the connection point
-        axis_x_ups_axes2_x = inv_ups_root_2*ups_S_x
-        axis_x_ups_axes2_y = inv_ups_root_2*ups_S_y
-        axis_x_ups_axes2_z = inv_ups_root_2*ups_S_z
+        axis_x_ups_axes2_x = inv_ups_q_3*ups_S_x
+        axis_x_ups_axes2_y = inv_ups_q_3*ups_S_y
+        axis_x_ups_axes2_z = inv_ups_q_3*ups_S_z
         ups_S_dot_t = omega_y*ups_q_z - omega_z*ups_q_y
         ups_S_dot_t_2 = omega_z*ups_q_x - omega_x*ups_q_z
         ups_S_dot_t_3 = omega_x*ups_q_y - omega_y*ups_q_x
@@ -5363,9 +5493,9 @@ def _run_Z(m, X, V):
             axis_x_ups_axes2_z*ups_S_dot_z
         )
         # (ups-qd_1) rate of joint 1
-        axis_z_ups_axes2_x = ups_base_frame_xx*ups_c_1 + ups_base_frame_xy*ups_s_1
-        axis_z_ups_axes2_y = ups_base_frame_yx*ups_c_1 + ups_base_frame_yy*ups_s_1
-        axis_z_ups_axes2_z = ups_base_frame_zx*ups_c_1 + ups_base_frame_zy*ups_s_1
+        axis_z_ups_axes2_x = ups_base_frame_xy*ups_c_1 - ups_base_frame_xx*ups_s_1
+        axis_z_ups_axes2_y = ups_base_frame_yy*ups_c_1 - ups_base_frame_yx*ups_s_1
+        axis_z_ups_axes2_z = ups_base_frame_zy*ups_c_1 - ups_base_frame_zx*ups_s_1
         ups_qd_1 = (
         inv_ups_root_1*(axis_z_ups_axes2_x*ups_S_dot_x + axis_z_ups_axes2_y*ups_S_dot_y +
             axis_z_ups_axes2_z*ups_S_dot_z)
@@ -5381,12 +5511,13 @@ def _run_Z(m, X, V):
         axis_x_ups_axes2_y*axis_z_ups_axes2_x - axis_x_ups_axes2_x*axis_z_ups_axes2_y
         )
         ups_qd_2 = (
-        inv_ups_root_2*(axis_y_ups_axes2_x*ups_S_dot_x + axis_y_ups_axes2_y*ups_S_dot_y +
+        inv_ups_q_3*(axis_y_ups_axes2_x*ups_S_dot_x + axis_y_ups_axes2_y*ups_S_dot_y +
             axis_y_ups_axes2_z*ups_S_dot_z)
         )
         # (ups-omega_1) angular velocity of link 1
-        ups_omega_1_in_axes2_x = ups_qd_1*ups_s_2
-        ups_omega_1_in_axes2_y = ups_c_2*ups_qd_1
+        ups_e_1_in_axes2_x = inv_ups_q_3*ups_S_in_turn1_z
+        ups_omega_1_in_axes2_x = ups_e_1_in_axes2_x*ups_qd_1
+        ups_omega_1_in_axes2_y = -ups_c_2*ups_qd_1
         # (ups-W_2) centripetal tensor of link 2
         ups_W_2_in_axes2_yz = ups_omega_1_in_axes2_y*ups_qd_2
         ups_W_2_in_axes2_xz = ups_omega_1_in_axes2_x*ups_qd_2
@@ -5400,16 +5531,14 @@ def _run_Z(m, X, V):
         )
         # (ups-bias) acceleration of the connection point at zero joint accelerations
         ups_bias_t = 2.0*ups_S_dot_in_axes2_x
-        ups_bias_in_axes2_z = (
-        2.0*ups_W_2_in_axes2_xz*ups_root_2 - ups_bias_t*ups_omega_1_in_axes2_y
-        )
+        ups_bias_in_axes2_z = 2.0*ups_W_2_in_axes2_xz*ups_q_3 - ups_bias_t*ups_omega_1_in_axes2_y
         # (ups-rel_o) remainder without the acceleration in: acceleration of the connection point left to the joint accelerations
         ups_rel_o_in_axes2_z = ups_u_1_in_axes2_z - ups_bias_in_axes2_z
         # (ups-qdd_1_o) remainder without the acceleration in: acceleration of joint 1
         ups_qdd_1_o = inv_ups_root_1*ups_rel_o_in_axes2_z
         # (ups-alpha_1_o) remainder without the acceleration in: angular acceleration of link 1
-        ups_alpha_1_o_in_axes2_x = ups_qdd_1_o*ups_s_2
-        ups_alpha_1_o_in_axes2_y = ups_c_2*ups_qdd_1_o
+        ups_alpha_1_o_in_axes2_x = ups_e_1_in_axes2_x*ups_qdd_1_o
+        ups_alpha_1_o_in_axes2_y = -ups_c_2*ups_qdd_1_o
         # (ups-alpha_2_o) remainder without the acceleration in: angular acceleration of link 2
         ups_alpha_2_o_in_axes2_x = ups_W_2_in_axes2_yz + ups_alpha_1_o_in_axes2_x
         ups_alpha_2_o_in_axes2_y = ups_alpha_1_o_in_axes2_y - ups_W_2_in_axes2_xz
@@ -5418,16 +5547,16 @@ def _run_Z(m, X, V):
         ups_B_2_o_t_2 = axis_y_ups_axes2_y*ups_u_1_y
         ups_B_2_o_t_3 = axis_y_ups_axes2_z*ups_u_1_z
         ups_B_2_o_in_axes2_yx = (
-        inv_ups_root_2*(ups_B_2_o_t + ups_B_2_o_t_2 + ups_B_2_o_t_3 - ups_bias_t*ups_qd_2)
+        inv_ups_q_3*(ups_B_2_o_t + ups_B_2_o_t_2 + ups_B_2_o_t_3 - ups_bias_t*ups_qd_2)
         )
         ups_B_2_o_in_axes2_xy = 2.0*ups_W_2_in_axes2_xy - ups_B_2_o_in_axes2_yx
         ups_B_2_o_in_axes2_zx = ups_W_2_in_axes2_xz - ups_alpha_2_o_in_axes2_y
         ups_B_2_o_in_axes2_zy = ups_W_2_in_axes2_yz + ups_alpha_2_o_in_axes2_x
         # (ups-acc_3_o) remainder without the acceleration in: acceleration of the reference point of link 3, less gravity
-        ups_g_in_axes2_z = ups_acc_3_t*ups_c_1 + ups_acc_3_t_2*ups_s_1
-        ups_acc_3_o_t = ups_acc_3_t_2*ups_c_1 - ups_acc_3_t*ups_s_1
-        ups_g_in_axes2_x = ups_acc_3_o_t*ups_c_2 + ups_acc_3_t_3*ups_s_2
-        ups_g_in_axes2_y = ups_acc_3_t_3*ups_c_2 - ups_acc_3_o_t*ups_s_2
+        ups_acc_3_o_t = ups_acc_3_t*ups_c_1 + ups_acc_3_t_2*ups_s_1
+        ups_g_in_axes2_z = ups_acc_3_t_2*ups_c_1 - ups_acc_3_t*ups_s_1
+        ups_g_in_axes2_x = ups_acc_3_o_t*ups_c_2 + ups_acc_3_t_3*ups_e_1_in_axes2_x
+        ups_g_in_axes2_y = ups_acc_3_o_t*ups_e_1_in_axes2_x - ups_acc_3_t_3*ups_c_2
         ups_acc_3_o_in_axes2_x = (
         axis_x_ups_axes2_x*ups_u_1_x + axis_x_ups_axes2_y*ups_u_1_y + axis_x_ups_axes2_z*ups_u_1_z
             - ups_g_in_axes2_x
@@ -5471,14 +5600,14 @@ def _run_Z(m, X, V):
         )
         # (ups-c_o) remainder without the acceleration in: leg force on the platform without actuation and without the mass at the connection point
         ups_c_o_in_axes2_y = (
-        ups_alpha_1_o_in_axes2_x*ups_h_3_in_spec2_y - inv_ups_root_2*ups_mu_2_o_in_axes2_z -
+        ups_alpha_1_o_in_axes2_x*ups_h_3_in_spec2_y - inv_ups_q_3*ups_mu_2_o_in_axes2_z -
             ups_B_2_o_in_axes2_yx*ups_h_3_in_spec2_x - ups_h_3_in_spec2_z*(ups_mu_2_o_t +
             ups_phi_3_o_t_2)
         )
         ups_c_o_in_axes2_z = (
-        ups_B_2_o_in_axes2_zy*ups_h_3_in_spec2_z + ups_h_3_in_spec2_y*(ups_mu_2_o_t +
-            ups_phi_3_o_t) - inv_ups_root_1*(ups_c_2*ups_mu_2_o_in_axes2_y +
-            ups_mu_2_o_in_axes2_x*ups_s_2) - ups_B_2_o_in_axes2_zx*ups_h_3_in_spec2_x
+        inv_ups_root_1*(ups_c_2*ups_mu_2_o_in_axes2_y - ups_e_1_in_axes2_x*ups_mu_2_o_in_axes2_x)
+            + ups_B_2_o_in_axes2_zy*ups_h_3_in_spec2_z + ups_h_3_in_spec2_y*(ups_mu_2_o_t +
+            ups_phi_3_o_t) - ups_B_2_o_in_axes2_zx*ups_h_3_in_spec2_x
         )
         # (ups-U) velocity and gravity terms of the leg force
         ups_U_x = (
@@ -5498,9 +5627,9 @@ def _run_Z(m, X, V):
         ups_Z_a_t_2 = ups_U_x*ups_q_z - ups_U_z*ups_q_x
         ups_Z_a_t_3 = ups_U_y*ups_q_x - ups_U_x*ups_q_y
         ok = (
-        ok & (abs(ups_rho2_1) > _TOLERANCE * _TOLERANCE * 1.9124953849) & (abs(ups_rho2_2) >
+        ok & (abs(ups_root_1_t) > _TOLERANCE * _TOLERANCE * 1.9124953849) & (abs(ups_q_3_t) >
             _TOLERANCE * _TOLERANCE * 1.9124953849) & (abs(ups_root_1) > _TOLERANCE * 1.38293) &
-            (abs(ups_root_2) > _TOLERANCE * 1.38293)
+            (abs(ups_q_3) > _TOLERANCE * 1.38293)
         )
         # (Z_t) translational part of Z
         Z_t_ups_x += ups_U_x
@@ -5541,53 +5670,47 @@ def _run_Z(m, X, V):
         tube_S_x = t_x + tube_q_x - tube_base_point_x
         tube_S_y = t_y + tube_q_y - tube_base_point_y
         tube_S_z = t_z + tube_q_z - tube_base_point_z
-        # (tube-px_1) component along the reference direction
-        tube_px_1 = (
+        tube_S_in_turn1_x = (
         tube_S_x*tube_base_frame_xx + tube_S_y*tube_base_frame_yx + tube_S_z*tube_base_frame_zx
         )
-        # (tube-py_1) component across the reference direction
-        tube_py_1 = (
+        tube_S_in_turn1_y = (
         tube_S_x*tube_base_frame_xy + tube_S_y*tube_base_frame_yy + tube_S_z*tube_base_frame_zy
         )
-        # (tube-rho2_1) squared amplitude
-        tube_rho2_1 = tube_px_1*tube_px_1 + tube_py_1*tube_py_1
-        # (tube-root_1) amplitude, with the sign of the branch
-        tube_root_1 = tube_branch_1*sqrt(tube_rho2_1)
-        # (tube-c_1) cosine of the angle of joint 1 from its reference direction
-        inv_tube_root_1 = 1.0/tube_root_1
-        tube_c_1 = -inv_tube_root_1*tube_py_1
-        # (tube-s_1) sine of the angle of joint 1 from its reference direction
-        tube_s_1 = inv_tube_root_1*tube_px_1
-        # (tube-xi_1) the vector from joint 1 to the connection point, resolved along link 1
-        tube_xi_1_in_axes1_z = (
+        tube_S_in_turn1_z = (
         tube_S_x*tube_base_frame_xz + tube_S_y*tube_base_frame_yz + tube_S_z*tube_base_frame_zz
         )
-        # (tube-rho2_2) squared amplitude
-        tube_rho2_2 = tube_rho2_1 + tube_xi_1_in_axes1_z*tube_xi_1_in_axes1_z
-        # (tube-root_2) amplitude, with the sign of the branch
-        tube_root_2 = tube_branch_2*sqrt(tube_rho2_2)
+        # (tube-root_1) amplitude, the length across axis 1, with the sign of the branch
+        tube_root_1_t = tube_S_in_turn1_x*tube_S_in_turn1_x + tube_S_in_turn1_y*tube_S_in_turn1_y
+        tube_root_1 = tube_branch_1*sqrt(tube_root_1_t)
+        # (tube-c_1) cosine of the angle of joint 1 from its reference direction
+        inv_tube_root_1 = 1.0/tube_root_1
+        tube_c_1 = inv_tube_root_1*tube_S_in_turn1_x
+        # (tube-s_1) sine of the angle of joint 1 from its reference direction
+        tube_s_1 = inv_tube_root_1*tube_S_in_turn1_y
+        # (tube-q_3) displacement of joint 3
+        tube_q_3_t = tube_S_in_turn1_z*tube_S_in_turn1_z + tube_root_1_t
+        tube_q_3 = tube_branch_2*sqrt(tube_q_3_t)
         # (tube-c_2) cosine of the angle of joint 2 from its reference direction
-        inv_tube_root_2 = 1.0/tube_root_2
-        tube_c_2 = -inv_tube_root_2*tube_root_1
-        # (tube-s_2) sine of the angle of joint 2 from its reference direction
-        tube_s_2 = inv_tube_root_2*tube_xi_1_in_axes1_z
+        inv_tube_q_3 = 1.0/tube_q_3
+        tube_c_2 = inv_tube_q_3*tube_root_1
         # (tube-S_dot) velocity of the connection point
-        axis_z_tube_axes2_x = tube_base_frame_xx*tube_c_1 + tube_base_frame_xy*tube_s_1
-        axis_z_tube_axes2_y = tube_base_frame_yx*tube_c_1 + tube_base_frame_yy*tube_s_1
-        axis_z_tube_axes2_z = tube_base_frame_zx*tube_c_1 + tube_base_frame_zy*tube_s_1
-        tube_S_dot_t = tube_s_1*tube_s_2
-        tube_S_dot_t_2 = tube_c_1*tube_s_2
+        tube_e_1_in_axes2_x = inv_tube_q_3*tube_S_in_turn1_z
+        axis_z_tube_axes2_x = tube_base_frame_xy*tube_c_1 - tube_base_frame_xx*tube_s_1
+        axis_z_tube_axes2_y = tube_base_frame_yy*tube_c_1 - tube_base_frame_yx*tube_s_1
+        axis_z_tube_axes2_z = tube_base_frame_zy*tube_c_1 - tube_base_frame_zx*tube_s_1
+        tube_S_dot_t = tube_c_1*tube_e_1_in_axes2_x
+        tube_S_dot_t_2 = tube_e_1_in_axes2_x*tube_s_1
         axis_y_tube_axes2_x = (
-        tube_S_dot_t*tube_base_frame_xx + tube_base_frame_xz*tube_c_2 -
-            tube_S_dot_t_2*tube_base_frame_xy
+        tube_S_dot_t*tube_base_frame_xx + tube_S_dot_t_2*tube_base_frame_xy -
+            tube_base_frame_xz*tube_c_2
         )
         axis_y_tube_axes2_y = (
-        tube_S_dot_t*tube_base_frame_yx + tube_base_frame_yz*tube_c_2 -
-            tube_S_dot_t_2*tube_base_frame_yy
+        tube_S_dot_t*tube_base_frame_yx + tube_S_dot_t_2*tube_base_frame_yy -
+            tube_base_frame_yz*tube_c_2
         )
         axis_y_tube_axes2_z = (
-        tube_S_dot_t*tube_base_frame_zx + tube_base_frame_zz*tube_c_2 -
-            tube_S_dot_t_2*tube_base_frame_zy
+        tube_S_dot_t*tube_base_frame_zx + tube_S_dot_t_2*tube_base_frame_zy -
+            tube_base_frame_zz*tube_c_2
         )
         axis_x_tube_axes2_x = (
         axis_y_tube_axes2_y*axis_z_tube_axes2_z - axis_y_tube_axes2_z*axis_z_tube_axes2_y
@@ -5657,10 +5780,10 @@ def _run_Z(m, X, V):
             tube_n_m1_t_8*tube_platform_joint_rotation_yy +
             tube_n_m1_t_9*tube_platform_joint_rotation_yz
         )
-        tube_end_p1_in_axes2_z = tube_c_1*tube_n_m1_t_10 + tube_n_m1_t_11*tube_s_1
-        tube_n_m1_t_13 = tube_n_m1_t_10*tube_s_1 - tube_c_1*tube_n_m1_t_11
-        tube_n_m1_in_axes2_z = tube_c_2*tube_n_m1_t_12 + tube_n_m1_t_13*tube_s_2
-        tube_n_m1_in_axes1_z = -tube_c_2*tube_end_p1_in_axes2_z
+        tube_n_m1_t_13 = tube_c_1*tube_n_m1_t_10 + tube_n_m1_t_11*tube_s_1
+        tube_end_p1_in_axes2_z = tube_c_1*tube_n_m1_t_11 - tube_n_m1_t_10*tube_s_1
+        tube_n_m1_in_axes2_z = tube_e_1_in_axes2_x*tube_n_m1_t_13 - tube_c_2*tube_n_m1_t_12
+        tube_n_m1_in_axes1_z = tube_c_2*tube_end_p1_in_axes2_z
         # (tube-n_m2) direction 2 of the moment that the platform joint transmits
         tube_n_m2_t = (
         tube_n_m1_t*tube_platform_joint_rotation_zx +
@@ -5677,10 +5800,10 @@ def _run_Z(m, X, V):
             tube_n_m1_t_8*tube_platform_joint_rotation_zy +
             tube_n_m1_t_9*tube_platform_joint_rotation_zz
         )
-        tube_n_m2_t_4 = tube_n_m2_t*tube_s_1 - tube_c_1*tube_n_m2_t_2
-        tube_n_m2_in_axes2_y = tube_n_m2_t_3*tube_s_2 - tube_c_2*tube_n_m2_t_4
-        tube_end_p2_in_axes2_y = tube_c_2*tube_n_m2_t_3 + tube_n_m2_t_4*tube_s_2
-        tube_n_m2_in_axes1_z = tube_c_2*tube_n_m2_in_axes2_y - tube_end_p2_in_axes2_y*tube_s_2
+        tube_n_m2_t_4 = tube_c_1*tube_n_m2_t + tube_n_m2_t_2*tube_s_1
+        tube_n_m2_in_axes2_y = tube_c_2*tube_n_m2_t_4 + tube_e_1_in_axes2_x*tube_n_m2_t_3
+        tube_end_p2_in_axes2_y = tube_e_1_in_axes2_x*tube_n_m2_t_4 - tube_c_2*tube_n_m2_t_3
+        tube_n_m2_t_5 = tube_c_2*tube_n_m2_in_axes2_y + tube_e_1_in_axes2_x*tube_end_p2_in_axes2_y
         # (tube-n_m3) direction 3 of the moment that the platform joint transmits
         tube_n_m3_t = (
         tube_n_m1_t*tube_platform_joint_rotation_xx +
@@ -5697,39 +5820,39 @@ def _run_Z(m, X, V):
             tube_n_m1_t_8*tube_platform_joint_rotation_xy +
             tube_n_m1_t_9*tube_platform_joint_rotation_xz
         )
-        tube_end_p3_in_axes2_z = tube_c_1*tube_n_m3_t + tube_n_m3_t_2*tube_s_1
-        tube_n_m3_t_4 = tube_n_m3_t*tube_s_1 - tube_c_1*tube_n_m3_t_2
-        tube_n_m3_in_axes2_z = tube_n_m3_t_3*tube_s_2 - tube_c_2*tube_n_m3_t_4
-        tube_n_m3_t_5 = tube_end_p3_in_axes2_z*tube_s_2
+        tube_n_m3_t_4 = tube_c_1*tube_n_m3_t + tube_n_m3_t_2*tube_s_1
+        tube_end_p3_in_axes2_z = tube_c_1*tube_n_m3_t_2 - tube_n_m3_t*tube_s_1
+        tube_n_m3_in_axes2_z = tube_c_2*tube_n_m3_t_4 + tube_e_1_in_axes2_x*tube_n_m3_t_3
+        tube_n_m3_t_5 = tube_e_1_in_axes2_x*tube_end_p3_in_axes2_z
         # (tube-f_c1) force part of constraint wrench 1
         tube_f_c1_t = (
         tube_n_m1_in_axes1_z*tube_n_m3_in_axes2_z + tube_n_m1_in_axes2_z*tube_n_m3_t_5
         )
         # (tube-m1_c3) moment part 1 of constraint wrench 3
         inv_tube_f_c1_t = 1.0/tube_f_c1_t
-        tube_m1_c3_t = inv_tube_f_c1_t*tube_n_m2_in_axes1_z*tube_n_m3_in_axes2_z
+        tube_m1_c3 = inv_tube_f_c1_t*tube_n_m2_t_5*tube_n_m3_in_axes2_z
         # (tube-m3_c3) moment part 3 of constraint wrench 3
-        tube_m3_c3 = inv_tube_f_c1_t*tube_n_m1_in_axes2_z*tube_n_m2_in_axes1_z
+        tube_m3_c3_t = inv_tube_f_c1_t*tube_n_m1_in_axes2_z*tube_n_m2_t_5
         # (tube-size_c3) size of the moment
-        tube_size_c3 = sqrt(1.0 + tube_m1_c3_t*tube_m1_c3_t + tube_m3_c3*tube_m3_c3)
+        tube_size_c3 = sqrt(1.0 + tube_m1_c3*tube_m1_c3 + tube_m3_c3_t*tube_m3_c3_t)
         # (tube-mu2_c3) moment along direction 2 that goes with it
         tube_mu2_c3 = 1.0/tube_size_c3
         # (tube-w_1) force part of reciprocal wrench 1
         tube_w_1_t = 1.35*tube_n_m1_in_axes1_z
-        tube_w_1_t_2 = 1.35*tube_n_m2_in_axes1_z
+        tube_w_1_t_2 = 1.35*tube_n_m2_t_5
         tube_w_1_t_3 = 1.35*tube_n_m3_t_5
         tube_w_1_t_4 = 1.35*tube_n_m1_in_axes2_z
         tube_w_1_t_5 = 1.35*tube_n_m3_in_axes2_z
-        tube_w_1_t_6 = 1.35*inv_tube_f_c1_t*tube_n_m3_t_5*tube_root_2
-        tube_w_1_t_7 = 1.35*inv_tube_f_c1_t*tube_n_m1_in_axes1_z*tube_root_2
+        tube_w_1_t_6 = 1.35*inv_tube_f_c1_t*tube_n_m3_t_5*tube_q_3
+        tube_w_1_t_7 = 1.35*inv_tube_f_c1_t*tube_n_m1_in_axes1_z*tube_q_3
         tube_w_1_t_8 = 1.35*inv_tube_f_c1_t*tube_n_m3_in_axes2_z*tube_root_1
         tube_w_1_t_9 = 1.35*inv_tube_f_c1_t*tube_n_m1_in_axes2_z*tube_root_1
-        tube_w_1_t_10 = 1.35*tube_m1_c3_t*tube_mu2_c3
+        tube_w_1_t_10 = 1.35*tube_m1_c3*tube_mu2_c3
         tube_w_1_t_11 = 1.35*tube_mu2_c3
-        tube_w_1_t_12 = 1.35*tube_m3_c3*tube_mu2_c3
-        tube_w_1_t_13 = sqrt(tube_rho2_2 + tube_w_1_t_4*tube_w_1_t_4 + tube_w_1_t_5*tube_w_1_t_5)
+        tube_w_1_t_12 = 1.35*tube_m3_c3_t*tube_mu2_c3
+        tube_w_1_t_13 = sqrt(tube_q_3_t + tube_w_1_t_4*tube_w_1_t_4 + tube_w_1_t_5*tube_w_1_t_5)
         inv_tube_w_1_t_13 = 1.0/tube_w_1_t_13
-        tube_w_1_t_14 = inv_tube_w_1_t_13*tube_root_2
+        tube_w_1_t_14 = inv_tube_w_1_t_13*tube_q_3
         tube_w_1_t_15 = inv_tube_w_1_t_13*tube_w_1_t_4
         tube_w_1_t_16 = inv_tube_w_1_t_13*tube_w_1_t_5
         tube_w_1_t_17 = tube_w_1_t_15*tube_w_1_t_6 + tube_w_1_t_16*tube_w_1_t_7 - tube_w_1_t_14
@@ -5855,14 +5978,14 @@ def _run_Z(m, X, V):
         tube_qd_1_t_8 = 1.35*tube_eta_3
         tube_qd_1 = (
         inv_tube_w_1_t_75*(tube_S_dot_in_axes2_y*tube_qd_1_t + tube_S_dot_in_axes2_z*tube_qd_1_t_2
-            + tube_qd_1_t_3*tube_qd_1_t_6 + tube_qd_1_t_4*tube_qd_1_t_7 +
-            tube_qd_1_t_5*tube_qd_1_t_8)
+            + tube_qd_1_t_3*tube_qd_1_t_6 + tube_qd_1_t_5*tube_qd_1_t_8 -
+            tube_qd_1_t_4*tube_qd_1_t_7)
         )
         # (tube-qd_2) rate of joint 2
         tube_qd_2_t = (
         inv_tube_w_1_t_63*(tube_S_dot_in_axes2_y*tube_w_1_t_64 +
             tube_S_dot_in_axes2_z*tube_w_1_t_65 + tube_qd_1_t_6*tube_w_1_t_66 +
-            tube_qd_1_t_8*tube_w_1_t_68 - tube_qd_1*tube_w_1_t_69 - tube_qd_1_t_7*tube_w_1_t_67)
+            tube_qd_1_t_7*tube_w_1_t_67 + tube_qd_1_t_8*tube_w_1_t_68 - tube_qd_1*tube_w_1_t_69)
         )
         tube_qd_2_t_2 = (
         inv_tube_w_1_t_49*(inv_tube_w_1_t_49*tube_S_dot_in_axes2_z +
@@ -5879,8 +6002,8 @@ def _run_Z(m, X, V):
         )
         tube_qd_2 = inv_tube_w_1_t_13*tube_qd_2_t_3
         # (tube-omega_1) angular velocity of link 1
-        tube_omega_1_in_axes2_x = tube_qd_1*tube_s_2
-        tube_omega_1_in_axes2_y = tube_c_2*tube_qd_1
+        tube_omega_1_in_axes2_x = tube_e_1_in_axes2_x*tube_qd_1
+        tube_omega_1_in_axes2_y = -tube_c_2*tube_qd_1
         # (tube-W_2) centripetal tensor of link 2
         tube_W_2_in_axes2_yz = tube_omega_1_in_axes2_y*tube_qd_2
         tube_W_2_in_axes2_xz = tube_omega_1_in_axes2_x*tube_qd_2
@@ -5890,13 +6013,13 @@ def _run_Z(m, X, V):
         tube_u_1_y = omega_z*tube_S_dot_t_3 - omega_x*tube_S_dot_t_5
         tube_u_1_z = omega_x*tube_S_dot_t_4 - omega_y*tube_S_dot_t_3
         # (tube-bias) acceleration of the connection point at zero joint accelerations
-        tube_bias_t = tube_W_2_in_axes2_xz*tube_root_2
-        tube_bias_t_2 = -tube_W_2_in_axes2_xy*tube_root_2
+        tube_bias_t = tube_W_2_in_axes2_xz*tube_q_3
+        tube_bias_t_2 = -tube_W_2_in_axes2_xy*tube_q_3
         tube_bias_t_3 = 2.0*tube_S_dot_in_axes2_x
         tube_bias_t_4 = tube_bias_t_3*tube_qd_2
-        tube_bias_t_5 = -tube_bias_t_3*tube_omega_1_in_axes2_y
+        tube_bias_t_5 = tube_bias_t_3*tube_omega_1_in_axes2_y
         tube_bias_in_axes2_y = tube_bias_t_4 - tube_bias_t_2
-        tube_bias_in_axes2_z = 2.0*tube_bias_t + tube_bias_t_5
+        tube_bias_in_axes2_z = 2.0*tube_bias_t - tube_bias_t_5
         # (tube-rel_o) remainder without the acceleration in: acceleration of the connection point left to the joint accelerations
         tube_rel_o_in_axes2_y = (
         axis_y_tube_axes2_x*tube_u_1_x + axis_y_tube_axes2_y*tube_u_1_y +
@@ -5907,7 +6030,7 @@ def _run_Z(m, X, V):
             axis_z_tube_axes2_z*tube_u_1_z - tube_bias_in_axes2_z
         )
         # (tube-nd_m1) rate of moment direction 1
-        tube_end_p1_in_axes2_x = tube_n_m1_t_12*tube_s_2 - tube_c_2*tube_n_m1_t_13
+        tube_end_p1_in_axes2_x = tube_c_2*tube_n_m1_t_13 + tube_e_1_in_axes2_x*tube_n_m1_t_12
         tube_nd_m1_in_axes2_y = (
         tube_end_p1_in_axes2_x*tube_omega_in_axes2_y -
             tube_end_p1_in_axes2_x*tube_omega_1_in_axes2_y -
@@ -5928,7 +6051,7 @@ def _run_Z(m, X, V):
         )
         tube_nu_1 = tube_nu_1_t_4 - tube_W_2_in_axes2_xz*tube_end_p1_in_axes2_z
         # (tube-nd_m2) rate of moment direction 2
-        tube_end_p2_in_axes2_z = tube_c_1*tube_n_m2_t + tube_n_m2_t_2*tube_s_1
+        tube_end_p2_in_axes2_z = tube_c_1*tube_n_m2_t_2 - tube_n_m2_t*tube_s_1
         tube_nd_m2_in_axes2_x = (
         tube_end_p2_in_axes2_z*tube_omega_in_axes2_x -
             tube_end_p2_in_axes2_z*tube_omega_1_in_axes2_x -
@@ -5944,13 +6067,13 @@ def _run_Z(m, X, V):
         -tube_W_2_in_axes2_xz*tube_n_m2_in_axes2_y - tube_W_2_in_axes2_yz*tube_end_p2_in_axes2_y
         )
         tube_nu_2_t_2 = (
-        tube_nd_m2_in_axes2_x*tube_nu_1_t +
+        tube_nd_m2_in_axes2_y*tube_nu_1_t_2 - tube_nd_m2_in_axes2_x*tube_nu_1_t -
             tube_nu_1_t_3*(-tube_end_p2_in_axes2_y*tube_omega_1_in_axes2_y -
-            tube_n_m2_in_axes2_y*tube_omega_1_in_axes2_x) - tube_nd_m2_in_axes2_y*tube_nu_1_t_2
+            tube_n_m2_in_axes2_y*tube_omega_1_in_axes2_x)
         )
-        tube_nu_2 = -tube_nu_2_t - tube_nu_2_t_2
+        tube_nu_2 = tube_nu_2_t_2 - tube_nu_2_t
         # (tube-nd_m3) rate of moment direction 3
-        tube_end_p3_in_axes2_y = tube_c_2*tube_n_m3_t_3 + tube_n_m3_t_4*tube_s_2
+        tube_end_p3_in_axes2_y = tube_e_1_in_axes2_x*tube_n_m3_t_4 - tube_c_2*tube_n_m3_t_3
         tube_nd_m3_in_axes2_x = (
         tube_end_p3_in_axes2_y*tube_omega_1_in_axes2_x +
             tube_n_m3_in_axes2_z*tube_omega_in_axes2_y -
@@ -5972,14 +6095,14 @@ def _run_Z(m, X, V):
         tube_qdd_1_o_t_3 = 1.35*tube_nu_3
         tube_qdd_1_o = (
         inv_tube_w_1_t_75*(tube_qd_1_t*tube_rel_o_in_axes2_y + tube_qd_1_t_2*tube_rel_o_in_axes2_z
-            + tube_qd_1_t_3*tube_qdd_1_o_t + tube_qd_1_t_4*tube_qdd_1_o_t_2 +
-            tube_qd_1_t_5*tube_qdd_1_o_t_3)
+            + tube_qd_1_t_3*tube_qdd_1_o_t + tube_qd_1_t_5*tube_qdd_1_o_t_3 -
+            tube_qd_1_t_4*tube_qdd_1_o_t_2)
         )
         # (tube-qdd_2_o) remainder without the acceleration in: acceleration of joint 2
         tube_qdd_2_o_t = (
-        inv_tube_w_1_t_63*(tube_qdd_1_o_t*tube_w_1_t_66 + tube_qdd_1_o_t_3*tube_w_1_t_68 +
-            tube_rel_o_in_axes2_y*tube_w_1_t_64 + tube_rel_o_in_axes2_z*tube_w_1_t_65 -
-            tube_qdd_1_o*tube_w_1_t_69 - tube_qdd_1_o_t_2*tube_w_1_t_67)
+        inv_tube_w_1_t_63*(tube_qdd_1_o_t*tube_w_1_t_66 + tube_qdd_1_o_t_2*tube_w_1_t_67 +
+            tube_qdd_1_o_t_3*tube_w_1_t_68 + tube_rel_o_in_axes2_y*tube_w_1_t_64 +
+            tube_rel_o_in_axes2_z*tube_w_1_t_65 - tube_qdd_1_o*tube_w_1_t_69)
         )
         tube_qdd_2_o_t_2 = (
         inv_tube_w_1_t_49*(inv_tube_w_1_t_49*tube_rel_o_in_axes2_z + tube_qdd_1_o*tube_w_1_t_58 +
@@ -5997,8 +6120,8 @@ def _run_Z(m, X, V):
         )
         tube_qdd_2_o = inv_tube_w_1_t_13*tube_qdd_2_o_t_3
         # (tube-alpha_1_o) remainder without the acceleration in: angular acceleration of link 1
-        tube_alpha_1_o_in_axes2_x = tube_qdd_1_o*tube_s_2
-        tube_alpha_1_o_in_axes2_y = tube_c_2*tube_qdd_1_o
+        tube_alpha_1_o_in_axes2_x = tube_e_1_in_axes2_x*tube_qdd_1_o
+        tube_alpha_1_o_in_axes2_y = -tube_c_2*tube_qdd_1_o
         # (tube-alpha_2_o) remainder without the acceleration in: angular acceleration of link 2
         tube_alpha_2_o_in_axes2_x = tube_W_2_in_axes2_yz + tube_alpha_1_o_in_axes2_x
         tube_alpha_2_o_in_axes2_y = tube_alpha_1_o_in_axes2_y - tube_W_2_in_axes2_xz
@@ -6008,28 +6131,28 @@ def _run_Z(m, X, V):
         tube_B_2_o_in_axes2_zx = tube_W_2_in_axes2_xz - tube_alpha_2_o_in_axes2_y
         tube_B_2_o_in_axes2_zy = tube_W_2_in_axes2_yz + tube_alpha_2_o_in_axes2_x
         # (tube-acc_3_o) remainder without the acceleration in: acceleration of the reference point of link 3, less gravity
-        tube_g_in_axes2_z = tube_acc_3_t*tube_c_1 + tube_acc_3_t_2*tube_s_1
-        tube_acc_3_o_t = tube_acc_3_t_2*tube_c_1 - tube_acc_3_t*tube_s_1
-        tube_g_in_axes2_x = tube_acc_3_o_t*tube_c_2 + tube_acc_3_t_3*tube_s_2
-        tube_g_in_axes2_y = tube_acc_3_t_3*tube_c_2 - tube_acc_3_o_t*tube_s_2
+        tube_acc_3_o_t = tube_acc_3_t*tube_c_1 + tube_acc_3_t_2*tube_s_1
+        tube_g_in_axes2_z = tube_acc_3_t_2*tube_c_1 - tube_acc_3_t*tube_s_1
+        tube_g_in_axes2_x = tube_acc_3_o_t*tube_c_2 + tube_acc_3_t_3*tube_e_1_in_axes2_x
+        tube_g_in_axes2_y = tube_acc_3_o_t*tube_e_1_in_axes2_x - tube_acc_3_t_3*tube_c_2
         tube_acc_3_o_in_axes2_x = (
         axis_x_tube_axes2_x*tube_u_1_x + axis_x_tube_axes2_y*tube_u_1_y +
             axis_x_tube_axes2_z*tube_u_1_z - tube_g_in_axes2_x
         )
         tube_acc_3_o_in_axes2_y = (
-        tube_bias_t_4 + tube_qdd_2_o*tube_root_2 - tube_bias_t_2 - tube_g_in_axes2_y
+        tube_bias_t_4 + tube_q_3*tube_qdd_2_o - tube_bias_t_2 - tube_g_in_axes2_y
         )
         tube_acc_3_o_in_axes2_z = (
-        tube_bias_t + tube_bias_t_5 - tube_g_in_axes2_z - tube_alpha_2_o_in_axes2_y*tube_root_2
+        tube_bias_t - tube_bias_t_5 - tube_g_in_axes2_z - tube_alpha_2_o_in_axes2_y*tube_q_3
         )
         # (tube-f_3_o) remainder without the acceleration in: inertia force of link 3 less its weight
         tube_f_3_o_t = tube_omega_1_in_axes2_x*tube_omega_1_in_axes2_x
         tube_f_3_o_t_2 = tube_omega_1_in_axes2_y*tube_omega_1_in_axes2_y
         tube_f_3_o_t_3 = tube_qd_2*tube_qd_2
         tube_f_3_o_in_axes2_x = (
-        tube_acc_3_o_in_axes2_x*tube_link3_mass + tube_alpha_1_o_in_axes2_y*tube_h_3_in_spec2_y +
-            tube_h_3_in_spec2_x*(-tube_f_3_o_t_2 - tube_f_3_o_t_3) -
-            tube_B_2_o_in_axes2_xy*tube_h_3_in_spec2_z
+        tube_acc_3_o_in_axes2_x*tube_link3_mass + tube_alpha_1_o_in_axes2_y*tube_h_3_in_spec2_y -
+            tube_B_2_o_in_axes2_xy*tube_h_3_in_spec2_z - tube_h_3_in_spec2_x*(tube_f_3_o_t_2 +
+            tube_f_3_o_t_3)
         )
         tube_f_3_o_in_axes2_y = (
         tube_B_2_o_in_axes2_yx*tube_h_3_in_spec2_x + tube_acc_3_o_in_axes2_y*tube_link3_mass +
@@ -6071,8 +6194,8 @@ def _run_Z(m, X, V):
             tube_g_in_axes2_x*tube_h_2_in_spec2_z - tube_g_in_axes2_y*tube_h_2_in_spec2_x
         )
         # (tube-N_2_o) remainder without the acceleration in: moment about joint 2 of the links from 2 outwards, the force at the connection point left out
-        tube_N_2_o_in_axes2_y = tube_mu_2_o_in_axes2_y - tube_f_3_o_in_axes2_z*tube_root_2
-        tube_N_2_o_in_axes2_z = tube_mu_2_o_in_axes2_z + tube_f_3_o_in_axes2_y*tube_root_2
+        tube_N_2_o_in_axes2_y = tube_mu_2_o_in_axes2_y - tube_f_3_o_in_axes2_z*tube_q_3
+        tube_N_2_o_in_axes2_z = tube_mu_2_o_in_axes2_z + tube_f_3_o_in_axes2_y*tube_q_3
         # (tube-G_o) remainder without the acceleration in: force at the connection point that balances the leg's inertia and weight along all degrees of freedom
         tube_G_o_t = inv_tube_w_1_t_13*tube_N_2_o_in_axes2_z
         tube_G_o_t_2 = inv_tube_w_1_t_33*tube_G_o_t*tube_w_1_t_17
@@ -6082,30 +6205,30 @@ def _run_Z(m, X, V):
             tube_G_o_t*tube_w_1_t_25)
         )
         tube_G_o_t_5 = (
-        inv_tube_w_1_t_75*(tube_G_o_t_2*tube_w_1_t_45 + tube_G_o_t_3*tube_w_1_t_58 +
-            tube_N_2_o_in_axes2_y*tube_c_2 + tube_mu_2_o_in_axes2_x*tube_s_2 -
-            tube_G_o_t*tube_w_1_t_29 - tube_G_o_t_4*tube_w_1_t_69)
+        inv_tube_w_1_t_75*(tube_G_o_t*tube_w_1_t_29 + tube_G_o_t_4*tube_w_1_t_69 +
+            tube_N_2_o_in_axes2_y*tube_c_2 - tube_G_o_t_2*tube_w_1_t_45 -
+            tube_G_o_t_3*tube_w_1_t_58 - tube_e_1_in_axes2_x*tube_mu_2_o_in_axes2_x)
         )
         tube_G_o_in_axes2_y = (
         tube_G_o_t*tube_w_1_t_14 + tube_G_o_t_2*tube_w_1_t_34 + tube_G_o_t_3*tube_w_1_t_50 +
-            tube_G_o_t_4*tube_w_1_t_64 + tube_G_o_t_5*tube_qd_1_t
+            tube_G_o_t_4*tube_w_1_t_64 - tube_G_o_t_5*tube_qd_1_t
         )
         tube_G_o_in_axes2_z = (
-        inv_tube_w_1_t_49*tube_G_o_t_3 + tube_G_o_t_4*tube_w_1_t_65 + tube_G_o_t_5*tube_qd_1_t_2
+        inv_tube_w_1_t_49*tube_G_o_t_3 + tube_G_o_t_4*tube_w_1_t_65 - tube_G_o_t_5*tube_qd_1_t_2
         )
         # (tube-G_m1_o) remainder without the acceleration in: moment along moment direction 1 that balances the leg's inertia and weight along all degrees of freedom
         tube_G_m1_o_t = (
         tube_G_o_t*tube_w_1_t_15 + tube_G_o_t_2*tube_w_1_t_35 + tube_G_o_t_3*tube_w_1_t_51 +
-            tube_G_o_t_4*tube_w_1_t_66 + tube_G_o_t_5*tube_qd_1_t_3
+            tube_G_o_t_4*tube_w_1_t_66 - tube_G_o_t_5*tube_qd_1_t_3
         )
         tube_G_m1_o = 1.35*tube_G_m1_o_t
         # (tube-G_m2_o) remainder without the acceleration in: moment along moment direction 2 that balances the leg's inertia and weight along all degrees of freedom
-        tube_G_m2_o_t = tube_G_o_t_4*tube_w_1_t_67 - tube_G_o_t_5*tube_qd_1_t_4
-        tube_G_m2_o = -1.35*tube_G_m2_o_t
+        tube_G_m2_o_t = tube_G_o_t_4*tube_w_1_t_67 + tube_G_o_t_5*tube_qd_1_t_4
+        tube_G_m2_o = 1.35*tube_G_m2_o_t
         # (tube-G_m3_o) remainder without the acceleration in: moment along moment direction 3 that balances the leg's inertia and weight along all degrees of freedom
         tube_G_m3_o_t = (
         tube_G_o_t*tube_w_1_t_16 + tube_G_o_t_2*tube_w_1_t_36 + tube_G_o_t_3*tube_w_1_t_52 +
-            tube_G_o_t_4*tube_w_1_t_68 + tube_G_o_t_5*tube_qd_1_t_5
+            tube_G_o_t_4*tube_w_1_t_68 - tube_G_o_t_5*tube_qd_1_t_5
         )
         tube_G_m3_o = 1.35*tube_G_m3_o_t
         # (tube-G_m_o) remainder without the acceleration in: moment at the connection point that balances the leg's inertia and weight along all degrees of freedom
@@ -6145,12 +6268,12 @@ def _run_Z(m, X, V):
             axis_z_tube_axes2_z*tube_G_m_o_in_axes2_z + tube_U_y*tube_q_x - tube_U_x*tube_q_y
         )
         ok = (
-        ok & (abs(tube_rho2_1) > _TOLERANCE * _TOLERANCE * 1.8225000000000002) & (abs(tube_rho2_2)
-            > _TOLERANCE * _TOLERANCE * 1.8225000000000002) & (abs(tube_f_c1_t) > _TOLERANCE *
-            1.0) & (abs(tube_size_c3) > _TOLERANCE * 1.0) & (abs(tube_w_1_t_13) > _TOLERANCE *
-            1.35) & (abs(tube_w_1_t_33) > _TOLERANCE * 1.0) & (abs(tube_w_1_t_49) > _TOLERANCE *
-            1.0) & (abs(tube_w_1_t_63) > _TOLERANCE * 1.35) & (abs(tube_w_1_t_75) > _TOLERANCE *
-            1.35)
+        ok & (abs(tube_root_1_t) > _TOLERANCE * _TOLERANCE * 1.8225000000000002) &
+            (abs(tube_q_3_t) > _TOLERANCE * _TOLERANCE * 1.8225000000000002) & (abs(tube_f_c1_t) >
+            _TOLERANCE * 1.0) & (abs(tube_size_c3) > _TOLERANCE * 1.0) & (abs(tube_w_1_t_13) >
+            _TOLERANCE * 1.35) & (abs(tube_w_1_t_33) > _TOLERANCE * 1.0) & (abs(tube_w_1_t_49) >
+            _TOLERANCE * 1.0) & (abs(tube_w_1_t_63) > _TOLERANCE * 1.35) & (abs(tube_w_1_t_75) >
+            _TOLERANCE * 1.35)
         )
         # (Z_t) translational part of Z
         Z_t_tube_x += tube_U_x
@@ -6240,26 +6363,22 @@ def _run_H(m, X):
         ups_S_x = t_x + ups_q_x - ups_base_point_x
         ups_S_y = t_y + ups_q_y - ups_base_point_y
         ups_S_z = t_z + ups_q_z - ups_base_point_z
-        # (ups-px_1) component along the reference direction
-        ups_px_1 = (
+        ups_S_in_turn1_x = (
         ups_S_x*ups_base_frame_xx + ups_S_y*ups_base_frame_yx + ups_S_z*ups_base_frame_zx
         )
-        # (ups-py_1) component across the reference direction
-        ups_py_1 = (
+        ups_S_in_turn1_y = (
         ups_S_x*ups_base_frame_xy + ups_S_y*ups_base_frame_yy + ups_S_z*ups_base_frame_zy
         )
-        # (ups-rho2_1) squared amplitude
-        ups_rho2_1 = ups_px_1*ups_px_1 + ups_py_1*ups_py_1
-        # (ups-xi_1) the vector from joint 1 to the connection point, resolved along link 1
-        ups_xi_1_in_axes1_z = (
+        ups_S_in_turn1_z = (
         ups_S_x*ups_base_frame_xz + ups_S_y*ups_base_frame_yz + ups_S_z*ups_base_frame_zz
         )
-        # (ups-rho2_2) squared amplitude
-        ups_rho2_2 = ups_rho2_1 + ups_xi_1_in_axes1_z*ups_xi_1_in_axes1_z
-        # (ups-root_2) amplitude, with the sign of the branch
-        ups_root_2 = ups_branch_2*sqrt(ups_rho2_2)
+        # (ups-root_1) amplitude, the length across axis 1, with the sign of the branch
+        ups_root_1_t = ups_S_in_turn1_x*ups_S_in_turn1_x + ups_S_in_turn1_y*ups_S_in_turn1_y
+        # (ups-q_3) displacement of joint 3
+        ups_q_3_t = ups_S_in_turn1_z*ups_S_in_turn1_z + ups_root_1_t
+        ups_q_3 = ups_branch_2*sqrt(ups_q_3_t)
         # (ups-w_2) reciprocal vector 2
-        ups_w_2_in_axes2_y = 1.0/ups_root_2
+        ups_w_2_in_axes2_y = 1.0/ups_q_3
         # (ups-w_3) reciprocal vector 3
         ups_w_3_x = ups_S_x*ups_w_2_in_axes2_y
         ups_w_3_y = ups_S_y*ups_w_2_in_axes2_y
@@ -6269,8 +6388,8 @@ def _run_H(m, X):
         ups_H_a_3_y = ups_q_z*ups_w_3_x - ups_q_x*ups_w_3_z
         ups_H_a_3_z = ups_q_x*ups_w_3_y - ups_q_y*ups_w_3_x
         ok = (
-        ok & (abs(ups_rho2_1) > _TOLERANCE * _TOLERANCE * 1.9124953849) & (abs(ups_rho2_2) >
-            _TOLERANCE * _TOLERANCE * 1.9124953849) & (abs(ups_root_2) > _TOLERANCE * 1.38293)
+        ok & (abs(ups_root_1_t) > _TOLERANCE * _TOLERANCE * 1.9124953849) & (abs(ups_q_3_t) >
+            _TOLERANCE * _TOLERANCE * 1.9124953849) & (abs(ups_q_3) > _TOLERANCE * 1.38293)
         )
         # (ups-w_3) reciprocal vector 3
         out_H[_H_ups[0][leg]] = ups_w_3_x
@@ -6349,37 +6468,31 @@ def _run_Hk(m, X):
         tube_S_x = t_x + tube_q_x - tube_base_point_x
         tube_S_y = t_y + tube_q_y - tube_base_point_y
         tube_S_z = t_z + tube_q_z - tube_base_point_z
-        # (tube-px_1) component along the reference direction
-        tube_px_1 = (
+        tube_S_in_turn1_x = (
         tube_S_x*tube_base_frame_xx + tube_S_y*tube_base_frame_yx + tube_S_z*tube_base_frame_zx
         )
-        # (tube-py_1) component across the reference direction
-        tube_py_1 = (
+        tube_S_in_turn1_y = (
         tube_S_x*tube_base_frame_xy + tube_S_y*tube_base_frame_yy + tube_S_z*tube_base_frame_zy
         )
-        # (tube-rho2_1) squared amplitude
-        tube_rho2_1 = tube_px_1*tube_px_1 + tube_py_1*tube_py_1
-        # (tube-root_1) amplitude, with the sign of the branch
-        tube_root_1 = tube_branch_1*sqrt(tube_rho2_1)
-        # (tube-c_1) cosine of the angle of joint 1 from its reference direction
-        inv_tube_root_1 = 1.0/tube_root_1
-        tube_c_1 = -inv_tube_root_1*tube_py_1
-        # (tube-s_1) sine of the angle of joint 1 from its reference direction
-        tube_s_1 = inv_tube_root_1*tube_px_1
-        # (tube-xi_1) the vector from joint 1 to the connection point, resolved along link 1
-        tube_xi_1_in_axes1_z = (
+        tube_S_in_turn1_z = (
         tube_S_x*tube_base_frame_xz + tube_S_y*tube_base_frame_yz + tube_S_z*tube_base_frame_zz
         )
-        # (tube-rho2_2) squared amplitude
-        tube_rho2_2 = tube_rho2_1 + tube_xi_1_in_axes1_z*tube_xi_1_in_axes1_z
-        # (tube-root_2) amplitude, with the sign of the branch
-        tube_root_2 = tube_branch_2*sqrt(tube_rho2_2)
+        # (tube-root_1) amplitude, the length across axis 1, with the sign of the branch
+        tube_root_1_t = tube_S_in_turn1_x*tube_S_in_turn1_x + tube_S_in_turn1_y*tube_S_in_turn1_y
+        tube_root_1 = tube_branch_1*sqrt(tube_root_1_t)
+        # (tube-c_1) cosine of the angle of joint 1 from its reference direction
+        inv_tube_root_1 = 1.0/tube_root_1
+        tube_c_1 = inv_tube_root_1*tube_S_in_turn1_x
+        # (tube-s_1) sine of the angle of joint 1 from its reference direction
+        tube_s_1 = inv_tube_root_1*tube_S_in_turn1_y
+        # (tube-q_3) displacement of joint 3
+        tube_q_3_t = tube_S_in_turn1_z*tube_S_in_turn1_z + tube_root_1_t
+        tube_q_3 = tube_branch_2*sqrt(tube_q_3_t)
         # (tube-c_2) cosine of the angle of joint 2 from its reference direction
-        inv_tube_root_2 = 1.0/tube_root_2
-        tube_c_2 = -inv_tube_root_2*tube_root_1
-        # (tube-s_2) sine of the angle of joint 2 from its reference direction
-        tube_s_2 = inv_tube_root_2*tube_xi_1_in_axes1_z
+        inv_tube_q_3 = 1.0/tube_q_3
+        tube_c_2 = inv_tube_q_3*tube_root_1
         # (tube-n_m1) direction 1 of the moment that the platform joint transmits
+        tube_e_1_in_axes2_x = inv_tube_q_3*tube_S_in_turn1_z
         tube_n_m1_t = R_xx*tube_base_frame_xx + R_yx*tube_base_frame_yx + R_zx*tube_base_frame_zx
         tube_n_m1_t_2 = (
         R_xy*tube_base_frame_xx + R_yy*tube_base_frame_yx + R_zy*tube_base_frame_zx
@@ -6415,14 +6528,14 @@ def _run_Hk(m, X):
             tube_n_m1_t_5*tube_platform_joint_rotation_yy +
             tube_n_m1_t_6*tube_platform_joint_rotation_yz
         )
-        tube_end_p1_in_axes2_z = tube_c_1*tube_n_m1_t_10 + tube_n_m1_t_11*tube_s_1
+        tube_end_p1_in_axes2_z = tube_c_1*tube_n_m1_t_11 - tube_n_m1_t_10*tube_s_1
         tube_n_m1_in_axes2_z = (
-        tube_c_2*(tube_n_m1_t_7*tube_platform_joint_rotation_yx +
+        tube_e_1_in_axes2_x*(tube_c_1*tube_n_m1_t_10 + tube_n_m1_t_11*tube_s_1) -
+            tube_c_2*(tube_n_m1_t_7*tube_platform_joint_rotation_yx +
             tube_n_m1_t_8*tube_platform_joint_rotation_yy +
-            tube_n_m1_t_9*tube_platform_joint_rotation_yz) + tube_s_2*(tube_n_m1_t_10*tube_s_1 -
-            tube_c_1*tube_n_m1_t_11)
+            tube_n_m1_t_9*tube_platform_joint_rotation_yz)
         )
-        tube_n_m1_in_axes1_z = -tube_c_2*tube_end_p1_in_axes2_z
+        tube_n_m1_in_axes1_z = tube_c_2*tube_end_p1_in_axes2_z
         # (tube-n_m2) direction 2 of the moment that the platform joint transmits
         tube_n_m2_t = (
         tube_n_m1_t_7*tube_platform_joint_rotation_zx +
@@ -6430,16 +6543,16 @@ def _run_Hk(m, X):
             tube_n_m1_t_9*tube_platform_joint_rotation_zz
         )
         tube_n_m2_t_2 = (
-        tube_s_1*(tube_n_m1_t*tube_platform_joint_rotation_zx +
+        tube_c_1*(tube_n_m1_t*tube_platform_joint_rotation_zx +
             tube_n_m1_t_2*tube_platform_joint_rotation_zy +
-            tube_n_m1_t_3*tube_platform_joint_rotation_zz) -
-            tube_c_1*(tube_n_m1_t_4*tube_platform_joint_rotation_zx +
+            tube_n_m1_t_3*tube_platform_joint_rotation_zz) +
+            tube_s_1*(tube_n_m1_t_4*tube_platform_joint_rotation_zx +
             tube_n_m1_t_5*tube_platform_joint_rotation_zy +
             tube_n_m1_t_6*tube_platform_joint_rotation_zz)
         )
-        tube_n_m2_in_axes2_y = tube_n_m2_t*tube_s_2 - tube_c_2*tube_n_m2_t_2
-        tube_end_p2_in_axes2_y = tube_c_2*tube_n_m2_t + tube_n_m2_t_2*tube_s_2
-        tube_n_m2_in_axes1_z = tube_c_2*tube_n_m2_in_axes2_y - tube_end_p2_in_axes2_y*tube_s_2
+        tube_n_m2_in_axes2_y = tube_c_2*tube_n_m2_t_2 + tube_e_1_in_axes2_x*tube_n_m2_t
+        tube_end_p2_in_axes2_y = tube_e_1_in_axes2_x*tube_n_m2_t_2 - tube_c_2*tube_n_m2_t
+        tube_n_m2_t_3 = tube_c_2*tube_n_m2_in_axes2_y + tube_e_1_in_axes2_x*tube_end_p2_in_axes2_y
         # (tube-n_m3) direction 3 of the moment that the platform joint transmits
         tube_n_m3_t = (
         tube_n_m1_t*tube_platform_joint_rotation_xx +
@@ -6451,45 +6564,45 @@ def _run_Hk(m, X):
             tube_n_m1_t_5*tube_platform_joint_rotation_xy +
             tube_n_m1_t_6*tube_platform_joint_rotation_xz
         )
-        tube_end_p3_in_axes2_z = tube_c_1*tube_n_m3_t + tube_n_m3_t_2*tube_s_1
+        tube_end_p3_in_axes2_z = tube_c_1*tube_n_m3_t_2 - tube_n_m3_t*tube_s_1
         tube_n_m3_in_axes2_z = (
-        tube_s_2*(tube_n_m1_t_7*tube_platform_joint_rotation_xx +
+        tube_c_2*(tube_c_1*tube_n_m3_t + tube_n_m3_t_2*tube_s_1) +
+            tube_e_1_in_axes2_x*(tube_n_m1_t_7*tube_platform_joint_rotation_xx +
             tube_n_m1_t_8*tube_platform_joint_rotation_xy +
-            tube_n_m1_t_9*tube_platform_joint_rotation_xz) - tube_c_2*(tube_n_m3_t*tube_s_1 -
-            tube_c_1*tube_n_m3_t_2)
+            tube_n_m1_t_9*tube_platform_joint_rotation_xz)
         )
-        tube_n_m3_t_3 = tube_end_p3_in_axes2_z*tube_s_2
+        tube_n_m3_t_3 = tube_e_1_in_axes2_x*tube_end_p3_in_axes2_z
         # (tube-f_c1) force part of constraint wrench 1
         tube_f_c1_t = (
         tube_n_m1_in_axes1_z*tube_n_m3_in_axes2_z + tube_n_m1_in_axes2_z*tube_n_m3_t_3
         )
         # (tube-m1_c1) moment part 1 of constraint wrench 1
         inv_tube_f_c1_t = 1.0/tube_f_c1_t
-        tube_m1_c1_t = inv_tube_f_c1_t*tube_n_m3_t_3*tube_root_2
+        tube_m1_c1_t = inv_tube_f_c1_t*tube_n_m3_t_3*tube_q_3
         # (tube-m3_c1) moment part 3 of constraint wrench 1
-        tube_m3_c1_t = inv_tube_f_c1_t*tube_n_m1_in_axes1_z*tube_root_2
+        tube_m3_c1_t = inv_tube_f_c1_t*tube_n_m1_in_axes1_z*tube_q_3
         # (tube-m1_c2) moment part 1 of constraint wrench 2
         tube_m1_c2_t = inv_tube_f_c1_t*tube_n_m3_in_axes2_z*tube_root_1
         # (tube-m3_c2) moment part 3 of constraint wrench 2
         tube_m3_c2 = inv_tube_f_c1_t*tube_n_m1_in_axes2_z*tube_root_1
         # (tube-m1_c3) moment part 1 of constraint wrench 3
-        tube_m1_c3_t = inv_tube_f_c1_t*tube_n_m2_in_axes1_z*tube_n_m3_in_axes2_z
+        tube_m1_c3 = inv_tube_f_c1_t*tube_n_m2_t_3*tube_n_m3_in_axes2_z
         # (tube-m3_c3) moment part 3 of constraint wrench 3
-        tube_m3_c3 = inv_tube_f_c1_t*tube_n_m1_in_axes2_z*tube_n_m2_in_axes1_z
+        tube_m3_c3_t = inv_tube_f_c1_t*tube_n_m1_in_axes2_z*tube_n_m2_t_3
         # (tube-n_c1) unit force of the constraint wrench
-        tube_n_c1_t = tube_s_1*tube_s_2
-        tube_n_c1_t_2 = tube_c_1*tube_s_2
+        tube_n_c1_t = tube_c_1*tube_e_1_in_axes2_x
+        tube_n_c1_t_2 = tube_e_1_in_axes2_x*tube_s_1
         tube_n_c1_x = (
-        tube_base_frame_xx*tube_n_c1_t + tube_base_frame_xz*tube_c_2 -
-            tube_base_frame_xy*tube_n_c1_t_2
+        tube_base_frame_xx*tube_n_c1_t + tube_base_frame_xy*tube_n_c1_t_2 -
+            tube_base_frame_xz*tube_c_2
         )
         tube_n_c1_y = (
-        tube_base_frame_yx*tube_n_c1_t + tube_base_frame_yz*tube_c_2 -
-            tube_base_frame_yy*tube_n_c1_t_2
+        tube_base_frame_yx*tube_n_c1_t + tube_base_frame_yy*tube_n_c1_t_2 -
+            tube_base_frame_yz*tube_c_2
         )
         tube_n_c1_z = (
-        tube_base_frame_zx*tube_n_c1_t + tube_base_frame_zz*tube_c_2 -
-            tube_base_frame_zy*tube_n_c1_t_2
+        tube_base_frame_zx*tube_n_c1_t + tube_base_frame_zy*tube_n_c1_t_2 -
+            tube_base_frame_zz*tube_c_2
         )
         # (tube-mu_c1) the moment that goes with it
         tube_mu_c1_in_axes2_y = tube_end_p1_in_axes2_z*tube_m1_c1_t
@@ -6498,9 +6611,9 @@ def _run_Hk(m, X):
         -tube_m1_c1_t*tube_n_m1_in_axes2_z - tube_m3_c1_t*tube_n_m3_in_axes2_z
         )
         # (tube-n_c2) unit force of the constraint wrench
-        tube_n_c2_x = tube_base_frame_xx*tube_c_1 + tube_base_frame_xy*tube_s_1
-        tube_n_c2_y = tube_base_frame_yx*tube_c_1 + tube_base_frame_yy*tube_s_1
-        tube_n_c2_z = tube_base_frame_zx*tube_c_1 + tube_base_frame_zy*tube_s_1
+        tube_n_c2_x = tube_base_frame_xy*tube_c_1 - tube_base_frame_xx*tube_s_1
+        tube_n_c2_y = tube_base_frame_yy*tube_c_1 - tube_base_frame_yx*tube_s_1
+        tube_n_c2_z = tube_base_frame_zy*tube_c_1 - tube_base_frame_zx*tube_s_1
         # (tube-mu_c2) the moment that goes with it
         tube_mu_c2_in_axes2_y = tube_end_p1_in_axes2_z*tube_m1_c2_t
         tube_mu_c2_t = tube_end_p3_in_axes2_z*tube_m3_c2
@@ -6508,24 +6621,24 @@ def _run_Hk(m, X):
         tube_m3_c2*tube_n_m3_in_axes2_z - tube_m1_c2_t*tube_n_m1_in_axes2_z
         )
         # (tube-size_c3) size of the moment
-        tube_size_c3 = sqrt(1.0 + tube_m1_c3_t*tube_m1_c3_t + tube_m3_c3*tube_m3_c3)
+        tube_size_c3 = sqrt(1.0 + tube_m1_c3*tube_m1_c3 + tube_m3_c3_t*tube_m3_c3_t)
         # (tube-mu1_c3) moment along direction 1 that goes with it
         inv_tube_size_c3 = 1.0/tube_size_c3
-        tube_mu1_c3_t = inv_tube_size_c3*tube_m1_c3_t
+        tube_mu1_c3 = inv_tube_size_c3*tube_m1_c3
         # (tube-mu3_c3) moment along direction 3 that goes with it
-        tube_mu3_c3 = inv_tube_size_c3*tube_m3_c3
+        tube_mu3_c3_t = inv_tube_size_c3*tube_m3_c3_t
         # (tube-mu_c3) the moment that goes with it
         axis_x_tube_axes2_x = tube_n_c1_y*tube_n_c2_z - tube_n_c1_z*tube_n_c2_y
         axis_x_tube_axes2_y = tube_n_c1_z*tube_n_c2_x - tube_n_c1_x*tube_n_c2_z
         axis_x_tube_axes2_z = tube_n_c1_x*tube_n_c2_y - tube_n_c1_y*tube_n_c2_x
         tube_mu_c3_in_axes2_x = (
-        -inv_tube_size_c3*tube_end_p2_in_axes2_y - tube_end_p3_in_axes2_z*tube_mu3_c3
+        tube_end_p3_in_axes2_z*tube_mu3_c3_t - inv_tube_size_c3*tube_end_p2_in_axes2_y
         )
         tube_mu_c3_in_axes2_y = (
-        inv_tube_size_c3*tube_n_m2_in_axes2_y + tube_end_p1_in_axes2_z*tube_mu1_c3_t
+        inv_tube_size_c3*tube_n_m2_in_axes2_y - tube_end_p1_in_axes2_z*tube_mu1_c3
         )
         tube_mu_c3_in_axes2_z = (
-        tube_mu3_c3*tube_n_m3_in_axes2_z - tube_mu1_c3_t*tube_n_m1_in_axes2_z
+        tube_mu1_c3*tube_n_m1_in_axes2_z - tube_mu3_c3_t*tube_n_m3_in_axes2_z
         )
         tube_mu_c3_x = (
         axis_x_tube_axes2_x*tube_mu_c3_in_axes2_x + tube_mu_c3_in_axes2_y*tube_n_c1_x +
@@ -6566,9 +6679,9 @@ def _run_Hk(m, X):
             tube_n_c2_y*tube_q_x - axis_x_tube_axes2_z*tube_mu_c2_t - tube_n_c2_x*tube_q_y
         )
         ok = (
-        ok & (abs(tube_rho2_1) > _TOLERANCE * _TOLERANCE * 1.8225000000000002) & (abs(tube_rho2_2)
-            > _TOLERANCE * _TOLERANCE * 1.8225000000000002) & (abs(tube_f_c1_t) > _TOLERANCE *
-            1.0) & (abs(tube_size_c3) > _TOLERANCE * 1.0)
+        ok & (abs(tube_root_1_t) > _TOLERANCE * _TOLERANCE * 1.8225000000000002) &
+            (abs(tube_q_3_t) > _TOLERANCE * _TOLERANCE * 1.8225000000000002) & (abs(tube_f_c1_t) >
+            _TOLERANCE * 1.0) & (abs(tube_size_c3) > _TOLERANCE * 1.0)
         )
         # (tube-n_c1) unit force of the constraint wrench
         out_Hk[_Hk_tube[0][leg]] = tube_n_c1_x
@@ -6672,53 +6785,47 @@ def _run_constraint_bias(m, X, V):
         tube_S_x = t_x + tube_q_x - tube_base_point_x
         tube_S_y = t_y + tube_q_y - tube_base_point_y
         tube_S_z = t_z + tube_q_z - tube_base_point_z
-        # (tube-px_1) component along the reference direction
-        tube_px_1 = (
+        tube_S_in_turn1_x = (
         tube_S_x*tube_base_frame_xx + tube_S_y*tube_base_frame_yx + tube_S_z*tube_base_frame_zx
         )
-        # (tube-py_1) component across the reference direction
-        tube_py_1 = (
+        tube_S_in_turn1_y = (
         tube_S_x*tube_base_frame_xy + tube_S_y*tube_base_frame_yy + tube_S_z*tube_base_frame_zy
         )
-        # (tube-rho2_1) squared amplitude
-        tube_rho2_1 = tube_px_1*tube_px_1 + tube_py_1*tube_py_1
-        # (tube-root_1) amplitude, with the sign of the branch
-        tube_root_1 = tube_branch_1*sqrt(tube_rho2_1)
-        # (tube-c_1) cosine of the angle of joint 1 from its reference direction
-        inv_tube_root_1 = 1.0/tube_root_1
-        tube_c_1 = -inv_tube_root_1*tube_py_1
-        # (tube-s_1) sine of the angle of joint 1 from its reference direction
-        tube_s_1 = inv_tube_root_1*tube_px_1
-        # (tube-xi_1) the vector from joint 1 to the connection point, resolved along link 1
-        tube_xi_1_in_axes1_z = (
+        tube_S_in_turn1_z = (
         tube_S_x*tube_base_frame_xz + tube_S_y*tube_base_frame_yz + tube_S_z*tube_base_frame_zz
         )
-        # (tube-rho2_2) squared amplitude
-        tube_rho2_2 = tube_rho2_1 + tube_xi_1_in_axes1_z*tube_xi_1_in_axes1_z
-        # (tube-root_2) amplitude, with the sign of the branch
-        tube_root_2 = tube_branch_2*sqrt(tube_rho2_2)
+        # (tube-root_1) amplitude, the length across axis 1, with the sign of the branch
+        tube_root_1_t = tube_S_in_turn1_x*tube_S_in_turn1_x + tube_S_in_turn1_y*tube_S_in_turn1_y
+        tube_root_1 = tube_branch_1*sqrt(tube_root_1_t)
+        # (tube-c_1) cosine of the angle of joint 1 from its reference direction
+        inv_tube_root_1 = 1.0/tube_root_1
+        tube_c_1 = inv_tube_root_1*tube_S_in_turn1_x
+        # (tube-s_1) sine of the angle of joint 1 from its reference direction
+        tube_s_1 = inv_tube_root_1*tube_S_in_turn1_y
+        # (tube-q_3) displacement of joint 3
+        tube_q_3_t = tube_S_in_turn1_z*tube_S_in_turn1_z + tube_root_1_t
+        tube_q_3 = tube_branch_2*sqrt(tube_q_3_t)
         # (tube-c_2) cosine of the angle of joint 2 from its reference direction
-        inv_tube_root_2 = 1.0/tube_root_2
-        tube_c_2 = -inv_tube_root_2*tube_root_1
-        # (tube-s_2) sine of the angle of joint 2 from its reference direction
-        tube_s_2 = inv_tube_root_2*tube_xi_1_in_axes1_z
+        inv_tube_q_3 = 1.0/tube_q_3
+        tube_c_2 = inv_tube_q_3*tube_root_1
         # (tube-S_dot) velocity of the connection point
-        axis_z_tube_axes2_x = tube_base_frame_xx*tube_c_1 + tube_base_frame_xy*tube_s_1
-        axis_z_tube_axes2_y = tube_base_frame_yx*tube_c_1 + tube_base_frame_yy*tube_s_1
-        axis_z_tube_axes2_z = tube_base_frame_zx*tube_c_1 + tube_base_frame_zy*tube_s_1
-        tube_S_dot_t = tube_s_1*tube_s_2
-        tube_S_dot_t_2 = tube_c_1*tube_s_2
+        tube_e_1_in_axes2_x = inv_tube_q_3*tube_S_in_turn1_z
+        axis_z_tube_axes2_x = tube_base_frame_xy*tube_c_1 - tube_base_frame_xx*tube_s_1
+        axis_z_tube_axes2_y = tube_base_frame_yy*tube_c_1 - tube_base_frame_yx*tube_s_1
+        axis_z_tube_axes2_z = tube_base_frame_zy*tube_c_1 - tube_base_frame_zx*tube_s_1
+        tube_S_dot_t = tube_c_1*tube_e_1_in_axes2_x
+        tube_S_dot_t_2 = tube_e_1_in_axes2_x*tube_s_1
         axis_y_tube_axes2_x = (
-        tube_S_dot_t*tube_base_frame_xx + tube_base_frame_xz*tube_c_2 -
-            tube_S_dot_t_2*tube_base_frame_xy
+        tube_S_dot_t*tube_base_frame_xx + tube_S_dot_t_2*tube_base_frame_xy -
+            tube_base_frame_xz*tube_c_2
         )
         axis_y_tube_axes2_y = (
-        tube_S_dot_t*tube_base_frame_yx + tube_base_frame_yz*tube_c_2 -
-            tube_S_dot_t_2*tube_base_frame_yy
+        tube_S_dot_t*tube_base_frame_yx + tube_S_dot_t_2*tube_base_frame_yy -
+            tube_base_frame_yz*tube_c_2
         )
         axis_y_tube_axes2_z = (
-        tube_S_dot_t*tube_base_frame_zx + tube_base_frame_zz*tube_c_2 -
-            tube_S_dot_t_2*tube_base_frame_zy
+        tube_S_dot_t*tube_base_frame_zx + tube_S_dot_t_2*tube_base_frame_zy -
+            tube_base_frame_zz*tube_c_2
         )
         axis_x_tube_axes2_x = (
         axis_y_tube_axes2_y*axis_z_tube_axes2_z - axis_y_tube_axes2_z*axis_z_tube_axes2_y
@@ -6788,10 +6895,10 @@ def _run_constraint_bias(m, X, V):
             tube_n_m1_t_8*tube_platform_joint_rotation_yy +
             tube_n_m1_t_9*tube_platform_joint_rotation_yz
         )
-        tube_end_p1_in_axes2_z = tube_c_1*tube_n_m1_t_10 + tube_n_m1_t_11*tube_s_1
-        tube_n_m1_t_13 = tube_n_m1_t_10*tube_s_1 - tube_c_1*tube_n_m1_t_11
-        tube_n_m1_in_axes2_z = tube_c_2*tube_n_m1_t_12 + tube_n_m1_t_13*tube_s_2
-        tube_n_m1_in_axes1_z = -tube_c_2*tube_end_p1_in_axes2_z
+        tube_n_m1_t_13 = tube_c_1*tube_n_m1_t_10 + tube_n_m1_t_11*tube_s_1
+        tube_end_p1_in_axes2_z = tube_c_1*tube_n_m1_t_11 - tube_n_m1_t_10*tube_s_1
+        tube_n_m1_in_axes2_z = tube_e_1_in_axes2_x*tube_n_m1_t_13 - tube_c_2*tube_n_m1_t_12
+        tube_n_m1_in_axes1_z = tube_c_2*tube_end_p1_in_axes2_z
         # (tube-n_m2) direction 2 of the moment that the platform joint transmits
         tube_n_m2_t = (
         tube_n_m1_t*tube_platform_joint_rotation_zx +
@@ -6808,10 +6915,10 @@ def _run_constraint_bias(m, X, V):
             tube_n_m1_t_8*tube_platform_joint_rotation_zy +
             tube_n_m1_t_9*tube_platform_joint_rotation_zz
         )
-        tube_n_m2_t_4 = tube_n_m2_t*tube_s_1 - tube_c_1*tube_n_m2_t_2
-        tube_n_m2_in_axes2_y = tube_n_m2_t_3*tube_s_2 - tube_c_2*tube_n_m2_t_4
-        tube_end_p2_in_axes2_y = tube_c_2*tube_n_m2_t_3 + tube_n_m2_t_4*tube_s_2
-        tube_n_m2_in_axes1_z = tube_c_2*tube_n_m2_in_axes2_y - tube_end_p2_in_axes2_y*tube_s_2
+        tube_n_m2_t_4 = tube_c_1*tube_n_m2_t + tube_n_m2_t_2*tube_s_1
+        tube_n_m2_in_axes2_y = tube_c_2*tube_n_m2_t_4 + tube_e_1_in_axes2_x*tube_n_m2_t_3
+        tube_end_p2_in_axes2_y = tube_e_1_in_axes2_x*tube_n_m2_t_4 - tube_c_2*tube_n_m2_t_3
+        tube_n_m2_t_5 = tube_c_2*tube_n_m2_in_axes2_y + tube_e_1_in_axes2_x*tube_end_p2_in_axes2_y
         # (tube-n_m3) direction 3 of the moment that the platform joint transmits
         tube_n_m3_t = (
         tube_n_m1_t*tube_platform_joint_rotation_xx +
@@ -6828,37 +6935,37 @@ def _run_constraint_bias(m, X, V):
             tube_n_m1_t_8*tube_platform_joint_rotation_xy +
             tube_n_m1_t_9*tube_platform_joint_rotation_xz
         )
-        tube_end_p3_in_axes2_z = tube_c_1*tube_n_m3_t + tube_n_m3_t_2*tube_s_1
-        tube_n_m3_t_4 = tube_n_m3_t*tube_s_1 - tube_c_1*tube_n_m3_t_2
-        tube_n_m3_in_axes2_z = tube_n_m3_t_3*tube_s_2 - tube_c_2*tube_n_m3_t_4
-        tube_n_m3_t_5 = tube_end_p3_in_axes2_z*tube_s_2
+        tube_n_m3_t_4 = tube_c_1*tube_n_m3_t + tube_n_m3_t_2*tube_s_1
+        tube_end_p3_in_axes2_z = tube_c_1*tube_n_m3_t_2 - tube_n_m3_t*tube_s_1
+        tube_n_m3_in_axes2_z = tube_c_2*tube_n_m3_t_4 + tube_e_1_in_axes2_x*tube_n_m3_t_3
+        tube_n_m3_t_5 = tube_e_1_in_axes2_x*tube_end_p3_in_axes2_z
         # (tube-f_c1) force part of constraint wrench 1
         tube_f_c1_t = (
         tube_n_m1_in_axes1_z*tube_n_m3_in_axes2_z + tube_n_m1_in_axes2_z*tube_n_m3_t_5
         )
         # (tube-m1_c1) moment part 1 of constraint wrench 1
         inv_tube_f_c1_t = 1.0/tube_f_c1_t
-        tube_m1_c1_t = inv_tube_f_c1_t*tube_n_m3_t_5*tube_root_2
+        tube_m1_c1_t = inv_tube_f_c1_t*tube_n_m3_t_5*tube_q_3
         # (tube-m3_c1) moment part 3 of constraint wrench 1
-        tube_m3_c1_t = inv_tube_f_c1_t*tube_n_m1_in_axes1_z*tube_root_2
+        tube_m3_c1_t = inv_tube_f_c1_t*tube_n_m1_in_axes1_z*tube_q_3
         # (tube-m1_c2) moment part 1 of constraint wrench 2
         tube_m1_c2_t = inv_tube_f_c1_t*tube_n_m3_in_axes2_z*tube_root_1
         # (tube-m3_c2) moment part 3 of constraint wrench 2
         tube_m3_c2 = inv_tube_f_c1_t*tube_n_m1_in_axes2_z*tube_root_1
         # (tube-m1_c3) moment part 1 of constraint wrench 3
-        tube_m1_c3_t = inv_tube_f_c1_t*tube_n_m2_in_axes1_z*tube_n_m3_in_axes2_z
+        tube_m1_c3 = inv_tube_f_c1_t*tube_n_m2_t_5*tube_n_m3_in_axes2_z
         # (tube-m3_c3) moment part 3 of constraint wrench 3
-        tube_m3_c3 = inv_tube_f_c1_t*tube_n_m1_in_axes2_z*tube_n_m2_in_axes1_z
+        tube_m3_c3_t = inv_tube_f_c1_t*tube_n_m1_in_axes2_z*tube_n_m2_t_5
         # (tube-size_c3) size of the moment
-        tube_size_c3 = sqrt(1.0 + tube_m1_c3_t*tube_m1_c3_t + tube_m3_c3*tube_m3_c3)
+        tube_size_c3 = sqrt(1.0 + tube_m1_c3*tube_m1_c3 + tube_m3_c3_t*tube_m3_c3_t)
         # (tube-mu1_c3) moment along direction 1 that goes with it
         inv_tube_size_c3 = 1.0/tube_size_c3
-        tube_mu1_c3_t = inv_tube_size_c3*tube_m1_c3_t
+        tube_mu1_c3 = inv_tube_size_c3*tube_m1_c3
         # (tube-mu3_c3) moment along direction 3 that goes with it
-        tube_mu3_c3 = inv_tube_size_c3*tube_m3_c3
+        tube_mu3_c3_t = inv_tube_size_c3*tube_m3_c3_t
         # (tube-w_1) force part of reciprocal wrench 1
         tube_w_1_t = 1.35*tube_n_m1_in_axes1_z
-        tube_w_1_t_2 = 1.35*tube_n_m2_in_axes1_z
+        tube_w_1_t_2 = 1.35*tube_n_m2_t_5
         tube_w_1_t_3 = 1.35*tube_n_m3_t_5
         tube_w_1_t_4 = 1.35*tube_n_m1_in_axes2_z
         tube_w_1_t_5 = 1.35*tube_n_m3_in_axes2_z
@@ -6866,12 +6973,12 @@ def _run_constraint_bias(m, X, V):
         tube_w_1_t_7 = 1.35*tube_m3_c1_t
         tube_w_1_t_8 = 1.35*tube_m1_c2_t
         tube_w_1_t_9 = 1.35*tube_m3_c2
-        tube_w_1_t_10 = 1.35*tube_mu1_c3_t
+        tube_w_1_t_10 = 1.35*tube_mu1_c3
         tube_w_1_t_11 = 1.35*inv_tube_size_c3
-        tube_w_1_t_12 = 1.35*tube_mu3_c3
-        tube_w_1_t_13 = sqrt(tube_rho2_2 + tube_w_1_t_4*tube_w_1_t_4 + tube_w_1_t_5*tube_w_1_t_5)
+        tube_w_1_t_12 = 1.35*tube_mu3_c3_t
+        tube_w_1_t_13 = sqrt(tube_q_3_t + tube_w_1_t_4*tube_w_1_t_4 + tube_w_1_t_5*tube_w_1_t_5)
         inv_tube_w_1_t_13 = 1.0/tube_w_1_t_13
-        tube_w_1_t_14 = inv_tube_w_1_t_13*tube_root_2
+        tube_w_1_t_14 = inv_tube_w_1_t_13*tube_q_3
         tube_w_1_t_15 = inv_tube_w_1_t_13*tube_w_1_t_4
         tube_w_1_t_16 = inv_tube_w_1_t_13*tube_w_1_t_5
         tube_w_1_t_17 = tube_w_1_t_15*tube_w_1_t_6 + tube_w_1_t_16*tube_w_1_t_7 - tube_w_1_t_14
@@ -6994,14 +7101,14 @@ def _run_constraint_bias(m, X, V):
         inv_tube_w_1_t_75*(inv_tube_w_1_t_75*tube_S_dot_in_axes2_y*tube_w_1_t_70 +
             inv_tube_w_1_t_75*tube_S_dot_in_axes2_z*tube_w_1_t_71 +
             inv_tube_w_1_t_75*tube_qd_1_t*tube_w_1_t_72 +
-            inv_tube_w_1_t_75*tube_qd_1_t_2*tube_w_1_t_73 +
-            inv_tube_w_1_t_75*tube_qd_1_t_3*tube_w_1_t_74)
+            inv_tube_w_1_t_75*tube_qd_1_t_3*tube_w_1_t_74 -
+            inv_tube_w_1_t_75*tube_qd_1_t_2*tube_w_1_t_73)
         )
         # (tube-qd_2) rate of joint 2
         tube_qd_2_t = (
         inv_tube_w_1_t_63*(tube_S_dot_in_axes2_y*tube_w_1_t_64 +
             tube_S_dot_in_axes2_z*tube_w_1_t_65 + tube_qd_1_t*tube_w_1_t_66 +
-            tube_qd_1_t_3*tube_w_1_t_68 - tube_qd_1*tube_w_1_t_69 - tube_qd_1_t_2*tube_w_1_t_67)
+            tube_qd_1_t_2*tube_w_1_t_67 + tube_qd_1_t_3*tube_w_1_t_68 - tube_qd_1*tube_w_1_t_69)
         )
         tube_qd_2_t_2 = (
         inv_tube_w_1_t_49*(inv_tube_w_1_t_49*tube_S_dot_in_axes2_z +
@@ -7018,8 +7125,8 @@ def _run_constraint_bias(m, X, V):
         )
         tube_qd_2 = inv_tube_w_1_t_13*tube_qd_2_t_3
         # (tube-omega_1) angular velocity of link 1
-        tube_omega_1_in_axes2_x = tube_qd_1*tube_s_2
-        tube_omega_1_in_axes2_y = tube_c_2*tube_qd_1
+        tube_omega_1_in_axes2_x = tube_e_1_in_axes2_x*tube_qd_1
+        tube_omega_1_in_axes2_y = -tube_c_2*tube_qd_1
         # (tube-W_2) centripetal tensor of link 2
         tube_W_2_in_axes2_yz = tube_omega_1_in_axes2_y*tube_qd_2
         tube_W_2_in_axes2_xz = tube_omega_1_in_axes2_x*tube_qd_2
@@ -7030,10 +7137,10 @@ def _run_constraint_bias(m, X, V):
         # (tube-bias) acceleration of the connection point at zero joint accelerations
         tube_bias_t = 2.0*tube_S_dot_in_axes2_x
         tube_bias_in_axes2_y = (
-        tube_bias_t*tube_qd_2 + tube_omega_1_in_axes2_x*tube_omega_1_in_axes2_y*tube_root_2
+        tube_bias_t*tube_qd_2 + tube_omega_1_in_axes2_x*tube_omega_1_in_axes2_y*tube_q_3
         )
         tube_bias_in_axes2_z = (
-        2.0*tube_W_2_in_axes2_xz*tube_root_2 - tube_bias_t*tube_omega_1_in_axes2_y
+        2.0*tube_W_2_in_axes2_xz*tube_q_3 - tube_bias_t*tube_omega_1_in_axes2_y
         )
         # (tube-rel_o) remainder without the acceleration in: acceleration of the connection point left to the joint accelerations
         tube_rel_o_in_axes2_y = (
@@ -7045,7 +7152,7 @@ def _run_constraint_bias(m, X, V):
             axis_z_tube_axes2_z*tube_u_1_z - tube_bias_in_axes2_z
         )
         # (tube-nd_m1) rate of moment direction 1
-        tube_end_p1_in_axes2_x = tube_n_m1_t_12*tube_s_2 - tube_c_2*tube_n_m1_t_13
+        tube_end_p1_in_axes2_x = tube_c_2*tube_n_m1_t_13 + tube_e_1_in_axes2_x*tube_n_m1_t_12
         tube_nd_m1_in_axes2_y = (
         tube_end_p1_in_axes2_x*tube_omega_in_axes2_y -
             tube_end_p1_in_axes2_x*tube_omega_1_in_axes2_y -
@@ -7066,7 +7173,7 @@ def _run_constraint_bias(m, X, V):
         )
         tube_nu_1 = tube_nu_1_t_4 - tube_W_2_in_axes2_xz*tube_end_p1_in_axes2_z
         # (tube-nd_m2) rate of moment direction 2
-        tube_end_p2_in_axes2_z = tube_c_1*tube_n_m2_t + tube_n_m2_t_2*tube_s_1
+        tube_end_p2_in_axes2_z = tube_c_1*tube_n_m2_t_2 - tube_n_m2_t*tube_s_1
         tube_nd_m2_in_axes2_x = (
         tube_end_p2_in_axes2_z*tube_omega_in_axes2_x -
             tube_end_p2_in_axes2_z*tube_omega_1_in_axes2_x -
@@ -7082,13 +7189,13 @@ def _run_constraint_bias(m, X, V):
         -tube_W_2_in_axes2_xz*tube_n_m2_in_axes2_y - tube_W_2_in_axes2_yz*tube_end_p2_in_axes2_y
         )
         tube_nu_2_t_2 = (
-        tube_nd_m2_in_axes2_x*tube_nu_1_t +
+        tube_nd_m2_in_axes2_y*tube_nu_1_t_2 - tube_nd_m2_in_axes2_x*tube_nu_1_t -
             tube_nu_1_t_3*(-tube_end_p2_in_axes2_y*tube_omega_1_in_axes2_y -
-            tube_n_m2_in_axes2_y*tube_omega_1_in_axes2_x) - tube_nd_m2_in_axes2_y*tube_nu_1_t_2
+            tube_n_m2_in_axes2_y*tube_omega_1_in_axes2_x)
         )
-        tube_nu_2 = -tube_nu_2_t - tube_nu_2_t_2
+        tube_nu_2 = tube_nu_2_t_2 - tube_nu_2_t
         # (tube-nd_m3) rate of moment direction 3
-        tube_end_p3_in_axes2_y = tube_c_2*tube_n_m3_t_3 + tube_n_m3_t_4*tube_s_2
+        tube_end_p3_in_axes2_y = tube_e_1_in_axes2_x*tube_n_m3_t_4 - tube_c_2*tube_n_m3_t_3
         tube_nd_m3_in_axes2_x = (
         tube_end_p3_in_axes2_y*tube_omega_1_in_axes2_x +
             tube_n_m3_in_axes2_z*tube_omega_in_axes2_y -
@@ -7110,15 +7217,15 @@ def _run_constraint_bias(m, X, V):
         tube_gamma_c2 = tube_rel_o_in_axes2_z + tube_m3_c2*tube_nu_3 - tube_m1_c2_t*tube_nu_1
         # (tube-gamma_c3) part of the constraint's second derivative that does not hold the acceleration
         tube_gamma_c3 = (
-        inv_tube_size_c3*tube_nu_2 + tube_mu3_c3*tube_nu_3 - tube_mu1_c3_t*tube_nu_1
+        inv_tube_size_c3*tube_nu_2 + tube_mu1_c3*tube_nu_1 - tube_mu3_c3_t*tube_nu_3
         )
         ok = (
-        ok & (abs(tube_rho2_1) > _TOLERANCE * _TOLERANCE * 1.8225000000000002) & (abs(tube_rho2_2)
-            > _TOLERANCE * _TOLERANCE * 1.8225000000000002) & (abs(tube_f_c1_t) > _TOLERANCE *
-            1.0) & (abs(tube_size_c3) > _TOLERANCE * 1.0) & (abs(tube_w_1_t_13) > _TOLERANCE *
-            1.35) & (abs(tube_w_1_t_33) > _TOLERANCE * 1.0) & (abs(tube_w_1_t_49) > _TOLERANCE *
-            1.0) & (abs(tube_w_1_t_63) > _TOLERANCE * 1.35) & (abs(tube_w_1_t_75) > _TOLERANCE *
-            1.35)
+        ok & (abs(tube_root_1_t) > _TOLERANCE * _TOLERANCE * 1.8225000000000002) &
+            (abs(tube_q_3_t) > _TOLERANCE * _TOLERANCE * 1.8225000000000002) & (abs(tube_f_c1_t) >
+            _TOLERANCE * 1.0) & (abs(tube_size_c3) > _TOLERANCE * 1.0) & (abs(tube_w_1_t_13) >
+            _TOLERANCE * 1.35) & (abs(tube_w_1_t_33) > _TOLERANCE * 1.0) & (abs(tube_w_1_t_49) >
+            _TOLERANCE * 1.0) & (abs(tube_w_1_t_63) > _TOLERANCE * 1.35) & (abs(tube_w_1_t_75) >
+            _TOLERANCE * 1.35)
         )
         # (tube-gamma_c1) part of the constraint's second derivative that does not hold the acceleration
         out_constraint_bias[_constraint_bias_tube[0][leg]] = tube_gamma_c1
@@ -7299,40 +7406,33 @@ def _run_required(m, X, V, A):
         ups_S_x = t_x + ups_q_x - ups_base_point_x
         ups_S_y = t_y + ups_q_y - ups_base_point_y
         ups_S_z = t_z + ups_q_z - ups_base_point_z
-        # (ups-px_1) component along the reference direction
-        ups_px_1 = (
+        ups_S_in_turn1_x = (
         ups_S_x*ups_base_frame_xx + ups_S_y*ups_base_frame_yx + ups_S_z*ups_base_frame_zx
         )
-        # (ups-py_1) component across the reference direction
-        ups_py_1 = (
+        ups_S_in_turn1_y = (
         ups_S_x*ups_base_frame_xy + ups_S_y*ups_base_frame_yy + ups_S_z*ups_base_frame_zy
         )
-        # (ups-rho2_1) squared amplitude
-        ups_rho2_1 = ups_px_1*ups_px_1 + ups_py_1*ups_py_1
-        # (ups-root_1) amplitude, with the sign of the branch
-        ups_root_1 = ups_branch_1*sqrt(ups_rho2_1)
-        # (ups-c_1) cosine of the angle of joint 1 from its reference direction
-        inv_ups_root_1 = 1.0/ups_root_1
-        ups_c_1 = -inv_ups_root_1*ups_py_1
-        # (ups-s_1) sine of the angle of joint 1 from its reference direction
-        ups_s_1 = inv_ups_root_1*ups_px_1
-        # (ups-xi_1) the vector from joint 1 to the connection point, resolved along link 1
-        ups_xi_1_in_axes1_z = (
+        ups_S_in_turn1_z = (
         ups_S_x*ups_base_frame_xz + ups_S_y*ups_base_frame_yz + ups_S_z*ups_base_frame_zz
         )
-        # (ups-rho2_2) squared amplitude
-        ups_rho2_2 = ups_rho2_1 + ups_xi_1_in_axes1_z*ups_xi_1_in_axes1_z
-        # (ups-root_2) amplitude, with the sign of the branch
-        ups_root_2 = ups_branch_2*sqrt(ups_rho2_2)
+        # (ups-root_1) amplitude, the length across axis 1, with the sign of the branch
+        ups_root_1_t = ups_S_in_turn1_x*ups_S_in_turn1_x + ups_S_in_turn1_y*ups_S_in_turn1_y
+        ups_root_1 = ups_branch_1*sqrt(ups_root_1_t)
+        # (ups-c_1) cosine of the angle of joint 1 from its reference direction
+        inv_ups_root_1 = 1.0/ups_root_1
+        ups_c_1 = inv_ups_root_1*ups_S_in_turn1_x
+        # (ups-s_1) sine of the angle of joint 1 from its reference direction
+        ups_s_1 = inv_ups_root_1*ups_S_in_turn1_y
+        # (ups-q_3) displacement of joint 3
+        ups_q_3_t = ups_S_in_turn1_z*ups_S_in_turn1_z + ups_root_1_t
+        ups_q_3 = ups_branch_2*sqrt(ups_q_3_t)
         # (ups-c_2) cosine of the angle of joint 2 from its reference direction
-        inv_ups_root_2 = 1.0/ups_root_2
-        ups_c_2 = -inv_ups_root_2*ups_root_1
-        # (ups-s_2) sine of the angle of joint 2 from its reference direction
-        ups_s_2 = inv_ups_root_2*ups_xi_1_in_axes1_z
+        inv_ups_q_3 = 1.0/ups_q_3
+        ups_c_2 = inv_ups_q_3*ups_root_1
         # (ups-S_dot) velocity of the connection point
-        axis_x_ups_axes2_x = inv_ups_root_2*ups_S_x
-        axis_x_ups_axes2_y = inv_ups_root_2*ups_S_y
-        axis_x_ups_axes2_z = inv_ups_root_2*ups_S_z
+        axis_x_ups_axes2_x = inv_ups_q_3*ups_S_x
+        axis_x_ups_axes2_y = inv_ups_q_3*ups_S_y
+        axis_x_ups_axes2_z = inv_ups_q_3*ups_S_z
         ups_S_dot_t = omega_y*ups_q_z - omega_z*ups_q_y
         ups_S_dot_t_2 = omega_z*ups_q_x - omega_x*ups_q_z
         ups_S_dot_t_3 = omega_x*ups_q_y - omega_y*ups_q_x
@@ -7344,9 +7444,9 @@ def _run_required(m, X, V, A):
             axis_x_ups_axes2_z*ups_S_dot_z
         )
         # (ups-qd_1) rate of joint 1
-        axis_z_ups_axes2_x = ups_base_frame_xx*ups_c_1 + ups_base_frame_xy*ups_s_1
-        axis_z_ups_axes2_y = ups_base_frame_yx*ups_c_1 + ups_base_frame_yy*ups_s_1
-        axis_z_ups_axes2_z = ups_base_frame_zx*ups_c_1 + ups_base_frame_zy*ups_s_1
+        axis_z_ups_axes2_x = ups_base_frame_xy*ups_c_1 - ups_base_frame_xx*ups_s_1
+        axis_z_ups_axes2_y = ups_base_frame_yy*ups_c_1 - ups_base_frame_yx*ups_s_1
+        axis_z_ups_axes2_z = ups_base_frame_zy*ups_c_1 - ups_base_frame_zx*ups_s_1
         ups_qd_1 = (
         inv_ups_root_1*(axis_z_ups_axes2_x*ups_S_dot_x + axis_z_ups_axes2_y*ups_S_dot_y +
             axis_z_ups_axes2_z*ups_S_dot_z)
@@ -7362,12 +7462,13 @@ def _run_required(m, X, V, A):
         axis_x_ups_axes2_y*axis_z_ups_axes2_x - axis_x_ups_axes2_x*axis_z_ups_axes2_y
         )
         ups_qd_2 = (
-        inv_ups_root_2*(axis_y_ups_axes2_x*ups_S_dot_x + axis_y_ups_axes2_y*ups_S_dot_y +
+        inv_ups_q_3*(axis_y_ups_axes2_x*ups_S_dot_x + axis_y_ups_axes2_y*ups_S_dot_y +
             axis_y_ups_axes2_z*ups_S_dot_z)
         )
         # (ups-omega_1) angular velocity of link 1
-        ups_omega_1_in_axes2_x = ups_qd_1*ups_s_2
-        ups_omega_1_in_axes2_y = ups_c_2*ups_qd_1
+        ups_e_1_in_axes2_x = inv_ups_q_3*ups_S_in_turn1_z
+        ups_omega_1_in_axes2_x = ups_e_1_in_axes2_x*ups_qd_1
+        ups_omega_1_in_axes2_y = -ups_c_2*ups_qd_1
         # (ups-W_2) centripetal tensor of link 2
         ups_W_2_in_axes2_yz = ups_omega_1_in_axes2_y*ups_qd_2
         ups_W_2_in_axes2_xz = ups_omega_1_in_axes2_x*ups_qd_2
@@ -7386,16 +7487,14 @@ def _run_required(m, X, V, A):
         )
         # (ups-bias) acceleration of the connection point at zero joint accelerations
         ups_bias_t = 2.0*ups_S_dot_in_axes2_x
-        ups_bias_in_axes2_z = (
-        2.0*ups_W_2_in_axes2_xz*ups_root_2 - ups_bias_t*ups_omega_1_in_axes2_y
-        )
+        ups_bias_in_axes2_z = 2.0*ups_W_2_in_axes2_xz*ups_q_3 - ups_bias_t*ups_omega_1_in_axes2_y
         # (ups-rel) acceleration of the connection point left to the joint accelerations
         ups_rel_in_axes2_z = ups_S_ddot_in_axes2_z - ups_bias_in_axes2_z
         # (ups-qdd_1) acceleration of joint 1
         ups_qdd_1 = inv_ups_root_1*ups_rel_in_axes2_z
         # (ups-alpha_1) angular acceleration of link 1
-        ups_alpha_1_in_axes2_x = ups_qdd_1*ups_s_2
-        ups_alpha_1_in_axes2_y = ups_c_2*ups_qdd_1
+        ups_alpha_1_in_axes2_x = ups_e_1_in_axes2_x*ups_qdd_1
+        ups_alpha_1_in_axes2_y = -ups_c_2*ups_qdd_1
         # (ups-alpha_2) angular acceleration of link 2
         ups_alpha_2_in_axes2_x = ups_W_2_in_axes2_yz + ups_alpha_1_in_axes2_x
         ups_alpha_2_in_axes2_y = ups_alpha_1_in_axes2_y - ups_W_2_in_axes2_xz
@@ -7404,16 +7503,16 @@ def _run_required(m, X, V, A):
         ups_B_2_t_2 = axis_y_ups_axes2_y*ups_S_ddot_y
         ups_B_2_t_3 = axis_y_ups_axes2_z*ups_S_ddot_z
         ups_B_2_in_axes2_yx = (
-        inv_ups_root_2*(ups_B_2_t + ups_B_2_t_2 + ups_B_2_t_3 - ups_bias_t*ups_qd_2)
+        inv_ups_q_3*(ups_B_2_t + ups_B_2_t_2 + ups_B_2_t_3 - ups_bias_t*ups_qd_2)
         )
         ups_B_2_in_axes2_xy = 2.0*ups_W_2_in_axes2_xy - ups_B_2_in_axes2_yx
         ups_B_2_in_axes2_zx = ups_W_2_in_axes2_xz - ups_alpha_2_in_axes2_y
         ups_B_2_in_axes2_zy = ups_W_2_in_axes2_yz + ups_alpha_2_in_axes2_x
         # (ups-acc_3) acceleration of the reference point of link 3, less gravity
-        ups_g_in_axes2_z = ups_acc_3_t*ups_c_1 + ups_acc_3_t_2*ups_s_1
-        ups_acc_3_t_4 = ups_acc_3_t_2*ups_c_1 - ups_acc_3_t*ups_s_1
-        ups_g_in_axes2_x = ups_acc_3_t_3*ups_s_2 + ups_acc_3_t_4*ups_c_2
-        ups_g_in_axes2_y = ups_acc_3_t_3*ups_c_2 - ups_acc_3_t_4*ups_s_2
+        ups_acc_3_t_4 = ups_acc_3_t*ups_c_1 + ups_acc_3_t_2*ups_s_1
+        ups_g_in_axes2_z = ups_acc_3_t_2*ups_c_1 - ups_acc_3_t*ups_s_1
+        ups_g_in_axes2_x = ups_acc_3_t_3*ups_e_1_in_axes2_x + ups_acc_3_t_4*ups_c_2
+        ups_g_in_axes2_y = ups_acc_3_t_4*ups_e_1_in_axes2_x - ups_acc_3_t_3*ups_c_2
         ups_acc_3_in_axes2_x = (
         axis_x_ups_axes2_x*ups_S_ddot_x + axis_x_ups_axes2_y*ups_S_ddot_y +
             axis_x_ups_axes2_z*ups_S_ddot_z - ups_g_in_axes2_x
@@ -7456,14 +7555,14 @@ def _run_required(m, X, V, A):
         )
         # (ups-c) leg force on the platform without actuation and without the mass at the connection point
         ups_c_in_axes2_y = (
-        ups_alpha_1_in_axes2_x*ups_h_3_in_spec2_y - inv_ups_root_2*ups_mu_2_in_axes2_z -
+        ups_alpha_1_in_axes2_x*ups_h_3_in_spec2_y - inv_ups_q_3*ups_mu_2_in_axes2_z -
             ups_B_2_in_axes2_yx*ups_h_3_in_spec2_x - ups_h_3_in_spec2_z*(ups_mu_2_t +
             ups_phi_3_t_2)
         )
         ups_c_in_axes2_z = (
-        ups_B_2_in_axes2_zy*ups_h_3_in_spec2_z + ups_h_3_in_spec2_y*(ups_mu_2_t + ups_phi_3_t) -
-            inv_ups_root_1*(ups_c_2*ups_mu_2_in_axes2_y + ups_mu_2_in_axes2_x*ups_s_2) -
-            ups_B_2_in_axes2_zx*ups_h_3_in_spec2_x
+        inv_ups_root_1*(ups_c_2*ups_mu_2_in_axes2_y - ups_e_1_in_axes2_x*ups_mu_2_in_axes2_x) +
+            ups_B_2_in_axes2_zy*ups_h_3_in_spec2_z + ups_h_3_in_spec2_y*(ups_mu_2_t + ups_phi_3_t)
+            - ups_B_2_in_axes2_zx*ups_h_3_in_spec2_x
         )
         ups_c_x = (
         axis_y_ups_axes2_x*ups_c_in_axes2_y + axis_z_ups_axes2_x*ups_c_in_axes2_z -
@@ -7486,9 +7585,9 @@ def _run_required(m, X, V, A):
         ups_H_a_3_y = axis_x_ups_axes2_x*ups_q_z - axis_x_ups_axes2_z*ups_q_x
         ups_H_a_3_z = axis_x_ups_axes2_y*ups_q_x - axis_x_ups_axes2_x*ups_q_y
         ok = (
-        ok & (abs(ups_rho2_1) > _TOLERANCE * _TOLERANCE * 1.9124953849) & (abs(ups_rho2_2) >
+        ok & (abs(ups_root_1_t) > _TOLERANCE * _TOLERANCE * 1.9124953849) & (abs(ups_q_3_t) >
             _TOLERANCE * _TOLERANCE * 1.9124953849) & (abs(ups_root_1) > _TOLERANCE * 1.38293) &
-            (abs(ups_root_2) > _TOLERANCE * 1.38293)
+            (abs(ups_q_3) > _TOLERANCE * 1.38293)
         )
         # (R_t) force that actuators and external wrench must give
         R_t_t += ups_c_x
@@ -7537,53 +7636,47 @@ def _run_required(m, X, V, A):
         tube_S_x = t_x + tube_q_x - tube_base_point_x
         tube_S_y = t_y + tube_q_y - tube_base_point_y
         tube_S_z = t_z + tube_q_z - tube_base_point_z
-        # (tube-px_1) component along the reference direction
-        tube_px_1 = (
+        tube_S_in_turn1_x = (
         tube_S_x*tube_base_frame_xx + tube_S_y*tube_base_frame_yx + tube_S_z*tube_base_frame_zx
         )
-        # (tube-py_1) component across the reference direction
-        tube_py_1 = (
+        tube_S_in_turn1_y = (
         tube_S_x*tube_base_frame_xy + tube_S_y*tube_base_frame_yy + tube_S_z*tube_base_frame_zy
         )
-        # (tube-rho2_1) squared amplitude
-        tube_rho2_1 = tube_px_1*tube_px_1 + tube_py_1*tube_py_1
-        # (tube-root_1) amplitude, with the sign of the branch
-        tube_root_1 = tube_branch_1*sqrt(tube_rho2_1)
-        # (tube-c_1) cosine of the angle of joint 1 from its reference direction
-        inv_tube_root_1 = 1.0/tube_root_1
-        tube_c_1 = -inv_tube_root_1*tube_py_1
-        # (tube-s_1) sine of the angle of joint 1 from its reference direction
-        tube_s_1 = inv_tube_root_1*tube_px_1
-        # (tube-xi_1) the vector from joint 1 to the connection point, resolved along link 1
-        tube_xi_1_in_axes1_z = (
+        tube_S_in_turn1_z = (
         tube_S_x*tube_base_frame_xz + tube_S_y*tube_base_frame_yz + tube_S_z*tube_base_frame_zz
         )
-        # (tube-rho2_2) squared amplitude
-        tube_rho2_2 = tube_rho2_1 + tube_xi_1_in_axes1_z*tube_xi_1_in_axes1_z
-        # (tube-root_2) amplitude, with the sign of the branch
-        tube_root_2 = tube_branch_2*sqrt(tube_rho2_2)
+        # (tube-root_1) amplitude, the length across axis 1, with the sign of the branch
+        tube_root_1_t = tube_S_in_turn1_x*tube_S_in_turn1_x + tube_S_in_turn1_y*tube_S_in_turn1_y
+        tube_root_1 = tube_branch_1*sqrt(tube_root_1_t)
+        # (tube-c_1) cosine of the angle of joint 1 from its reference direction
+        inv_tube_root_1 = 1.0/tube_root_1
+        tube_c_1 = inv_tube_root_1*tube_S_in_turn1_x
+        # (tube-s_1) sine of the angle of joint 1 from its reference direction
+        tube_s_1 = inv_tube_root_1*tube_S_in_turn1_y
+        # (tube-q_3) displacement of joint 3
+        tube_q_3_t = tube_S_in_turn1_z*tube_S_in_turn1_z + tube_root_1_t
+        tube_q_3 = tube_branch_2*sqrt(tube_q_3_t)
         # (tube-c_2) cosine of the angle of joint 2 from its reference direction
-        inv_tube_root_2 = 1.0/tube_root_2
-        tube_c_2 = -inv_tube_root_2*tube_root_1
-        # (tube-s_2) sine of the angle of joint 2 from its reference direction
-        tube_s_2 = inv_tube_root_2*tube_xi_1_in_axes1_z
+        inv_tube_q_3 = 1.0/tube_q_3
+        tube_c_2 = inv_tube_q_3*tube_root_1
         # (tube-S_dot) velocity of the connection point
-        axis_z_tube_axes2_x = tube_base_frame_xx*tube_c_1 + tube_base_frame_xy*tube_s_1
-        axis_z_tube_axes2_y = tube_base_frame_yx*tube_c_1 + tube_base_frame_yy*tube_s_1
-        axis_z_tube_axes2_z = tube_base_frame_zx*tube_c_1 + tube_base_frame_zy*tube_s_1
-        tube_S_dot_t = tube_s_1*tube_s_2
-        tube_S_dot_t_2 = tube_c_1*tube_s_2
+        tube_e_1_in_axes2_x = inv_tube_q_3*tube_S_in_turn1_z
+        axis_z_tube_axes2_x = tube_base_frame_xy*tube_c_1 - tube_base_frame_xx*tube_s_1
+        axis_z_tube_axes2_y = tube_base_frame_yy*tube_c_1 - tube_base_frame_yx*tube_s_1
+        axis_z_tube_axes2_z = tube_base_frame_zy*tube_c_1 - tube_base_frame_zx*tube_s_1
+        tube_S_dot_t = tube_c_1*tube_e_1_in_axes2_x
+        tube_S_dot_t_2 = tube_e_1_in_axes2_x*tube_s_1
         axis_y_tube_axes2_x = (
-        tube_S_dot_t*tube_base_frame_xx + tube_base_frame_xz*tube_c_2 -
-            tube_S_dot_t_2*tube_base_frame_xy
+        tube_S_dot_t*tube_base_frame_xx + tube_S_dot_t_2*tube_base_frame_xy -
+            tube_base_frame_xz*tube_c_2
         )
         axis_y_tube_axes2_y = (
-        tube_S_dot_t*tube_base_frame_yx + tube_base_frame_yz*tube_c_2 -
-            tube_S_dot_t_2*tube_base_frame_yy
+        tube_S_dot_t*tube_base_frame_yx + tube_S_dot_t_2*tube_base_frame_yy -
+            tube_base_frame_yz*tube_c_2
         )
         axis_y_tube_axes2_z = (
-        tube_S_dot_t*tube_base_frame_zx + tube_base_frame_zz*tube_c_2 -
-            tube_S_dot_t_2*tube_base_frame_zy
+        tube_S_dot_t*tube_base_frame_zx + tube_S_dot_t_2*tube_base_frame_zy -
+            tube_base_frame_zz*tube_c_2
         )
         axis_x_tube_axes2_x = (
         axis_y_tube_axes2_y*axis_z_tube_axes2_z - axis_y_tube_axes2_z*axis_z_tube_axes2_y
@@ -7653,10 +7746,10 @@ def _run_required(m, X, V, A):
             tube_n_m1_t_8*tube_platform_joint_rotation_yy +
             tube_n_m1_t_9*tube_platform_joint_rotation_yz
         )
-        tube_end_p1_in_axes2_z = tube_c_1*tube_n_m1_t_10 + tube_n_m1_t_11*tube_s_1
-        tube_n_m1_t_13 = tube_n_m1_t_10*tube_s_1 - tube_c_1*tube_n_m1_t_11
-        tube_n_m1_in_axes2_z = tube_c_2*tube_n_m1_t_12 + tube_n_m1_t_13*tube_s_2
-        tube_n_m1_in_axes1_z = -tube_c_2*tube_end_p1_in_axes2_z
+        tube_n_m1_t_13 = tube_c_1*tube_n_m1_t_10 + tube_n_m1_t_11*tube_s_1
+        tube_end_p1_in_axes2_z = tube_c_1*tube_n_m1_t_11 - tube_n_m1_t_10*tube_s_1
+        tube_n_m1_in_axes2_z = tube_e_1_in_axes2_x*tube_n_m1_t_13 - tube_c_2*tube_n_m1_t_12
+        tube_n_m1_in_axes1_z = tube_c_2*tube_end_p1_in_axes2_z
         # (tube-n_m2) direction 2 of the moment that the platform joint transmits
         tube_n_m2_t = (
         tube_n_m1_t*tube_platform_joint_rotation_zx +
@@ -7673,10 +7766,10 @@ def _run_required(m, X, V, A):
             tube_n_m1_t_8*tube_platform_joint_rotation_zy +
             tube_n_m1_t_9*tube_platform_joint_rotation_zz
         )
-        tube_n_m2_t_4 = tube_n_m2_t*tube_s_1 - tube_c_1*tube_n_m2_t_2
-        tube_n_m2_in_axes2_y = tube_n_m2_t_3*tube_s_2 - tube_c_2*tube_n_m2_t_4
-        tube_end_p2_in_axes2_y = tube_c_2*tube_n_m2_t_3 + tube_n_m2_t_4*tube_s_2
-        tube_n_m2_in_axes1_z = tube_c_2*tube_n_m2_in_axes2_y - tube_end_p2_in_axes2_y*tube_s_2
+        tube_n_m2_t_4 = tube_c_1*tube_n_m2_t + tube_n_m2_t_2*tube_s_1
+        tube_n_m2_in_axes2_y = tube_c_2*tube_n_m2_t_4 + tube_e_1_in_axes2_x*tube_n_m2_t_3
+        tube_end_p2_in_axes2_y = tube_e_1_in_axes2_x*tube_n_m2_t_4 - tube_c_2*tube_n_m2_t_3
+        tube_n_m2_t_5 = tube_c_2*tube_n_m2_in_axes2_y + tube_e_1_in_axes2_x*tube_end_p2_in_axes2_y
         # (tube-n_m3) direction 3 of the moment that the platform joint transmits
         tube_n_m3_t = (
         tube_n_m1_t*tube_platform_joint_rotation_xx +
@@ -7693,27 +7786,27 @@ def _run_required(m, X, V, A):
             tube_n_m1_t_8*tube_platform_joint_rotation_xy +
             tube_n_m1_t_9*tube_platform_joint_rotation_xz
         )
-        tube_end_p3_in_axes2_z = tube_c_1*tube_n_m3_t + tube_n_m3_t_2*tube_s_1
-        tube_n_m3_t_4 = tube_n_m3_t*tube_s_1 - tube_c_1*tube_n_m3_t_2
-        tube_n_m3_in_axes2_z = tube_n_m3_t_3*tube_s_2 - tube_c_2*tube_n_m3_t_4
-        tube_n_m3_t_5 = tube_end_p3_in_axes2_z*tube_s_2
+        tube_n_m3_t_4 = tube_c_1*tube_n_m3_t + tube_n_m3_t_2*tube_s_1
+        tube_end_p3_in_axes2_z = tube_c_1*tube_n_m3_t_2 - tube_n_m3_t*tube_s_1
+        tube_n_m3_in_axes2_z = tube_c_2*tube_n_m3_t_4 + tube_e_1_in_axes2_x*tube_n_m3_t_3
+        tube_n_m3_t_5 = tube_e_1_in_axes2_x*tube_end_p3_in_axes2_z
         # (tube-f_c1) force part of constraint wrench 1
         tube_f_c1_t = (
         tube_n_m1_in_axes1_z*tube_n_m3_in_axes2_z + tube_n_m1_in_axes2_z*tube_n_m3_t_5
         )
         # (tube-m1_c1) moment part 1 of constraint wrench 1
         inv_tube_f_c1_t = 1.0/tube_f_c1_t
-        tube_m1_c1_t = inv_tube_f_c1_t*tube_n_m3_t_5*tube_root_2
+        tube_m1_c1_t = inv_tube_f_c1_t*tube_n_m3_t_5*tube_q_3
         # (tube-m3_c1) moment part 3 of constraint wrench 1
-        tube_m3_c1_t = inv_tube_f_c1_t*tube_n_m1_in_axes1_z*tube_root_2
+        tube_m3_c1_t = inv_tube_f_c1_t*tube_n_m1_in_axes1_z*tube_q_3
         # (tube-m1_c2) moment part 1 of constraint wrench 2
         tube_m1_c2_t = inv_tube_f_c1_t*tube_n_m3_in_axes2_z*tube_root_1
         # (tube-m3_c2) moment part 3 of constraint wrench 2
         tube_m3_c2 = inv_tube_f_c1_t*tube_n_m1_in_axes2_z*tube_root_1
         # (tube-m1_c3) moment part 1 of constraint wrench 3
-        tube_m1_c3_t = inv_tube_f_c1_t*tube_n_m2_in_axes1_z*tube_n_m3_in_axes2_z
+        tube_m1_c3 = inv_tube_f_c1_t*tube_n_m2_t_5*tube_n_m3_in_axes2_z
         # (tube-m3_c3) moment part 3 of constraint wrench 3
-        tube_m3_c3 = inv_tube_f_c1_t*tube_n_m1_in_axes2_z*tube_n_m2_in_axes1_z
+        tube_m3_c3_t = inv_tube_f_c1_t*tube_n_m1_in_axes2_z*tube_n_m2_t_5
         # (tube-mu_c1) the moment that goes with it
         tube_mu_c1_in_axes2_y = tube_end_p1_in_axes2_z*tube_m1_c1_t
         tube_mu_c1_in_axes2_x = tube_end_p3_in_axes2_z*tube_m3_c1_t
@@ -7727,21 +7820,21 @@ def _run_required(m, X, V, A):
         tube_m3_c2*tube_n_m3_in_axes2_z - tube_m1_c2_t*tube_n_m1_in_axes2_z
         )
         # (tube-size_c3) size of the moment
-        tube_size_c3 = sqrt(1.0 + tube_m1_c3_t*tube_m1_c3_t + tube_m3_c3*tube_m3_c3)
+        tube_size_c3 = sqrt(1.0 + tube_m1_c3*tube_m1_c3 + tube_m3_c3_t*tube_m3_c3_t)
         # (tube-mu1_c3) moment along direction 1 that goes with it
         inv_tube_size_c3 = 1.0/tube_size_c3
-        tube_mu1_c3_t = inv_tube_size_c3*tube_m1_c3_t
+        tube_mu1_c3 = inv_tube_size_c3*tube_m1_c3
         # (tube-mu3_c3) moment along direction 3 that goes with it
-        tube_mu3_c3 = inv_tube_size_c3*tube_m3_c3
+        tube_mu3_c3_t = inv_tube_size_c3*tube_m3_c3_t
         # (tube-mu_c3) the moment that goes with it
         tube_mu_c3_in_axes2_x = (
-        -inv_tube_size_c3*tube_end_p2_in_axes2_y - tube_end_p3_in_axes2_z*tube_mu3_c3
+        tube_end_p3_in_axes2_z*tube_mu3_c3_t - inv_tube_size_c3*tube_end_p2_in_axes2_y
         )
         tube_mu_c3_in_axes2_y = (
-        inv_tube_size_c3*tube_n_m2_in_axes2_y + tube_end_p1_in_axes2_z*tube_mu1_c3_t
+        inv_tube_size_c3*tube_n_m2_in_axes2_y - tube_end_p1_in_axes2_z*tube_mu1_c3
         )
         tube_mu_c3_in_axes2_z = (
-        tube_mu3_c3*tube_n_m3_in_axes2_z - tube_mu1_c3_t*tube_n_m1_in_axes2_z
+        tube_mu1_c3*tube_n_m1_in_axes2_z - tube_mu3_c3_t*tube_n_m3_in_axes2_z
         )
         tube_mu_c3_x = (
         axis_x_tube_axes2_x*tube_mu_c3_in_axes2_x + axis_y_tube_axes2_x*tube_mu_c3_in_axes2_y +
@@ -7757,7 +7850,7 @@ def _run_required(m, X, V, A):
         )
         # (tube-w_1) force part of reciprocal wrench 1
         tube_w_1_t = 1.35*tube_n_m1_in_axes1_z
-        tube_w_1_t_2 = 1.35*tube_n_m2_in_axes1_z
+        tube_w_1_t_2 = 1.35*tube_n_m2_t_5
         tube_w_1_t_3 = 1.35*tube_n_m3_t_5
         tube_w_1_t_4 = 1.35*tube_n_m1_in_axes2_z
         tube_w_1_t_5 = 1.35*tube_n_m3_in_axes2_z
@@ -7765,12 +7858,12 @@ def _run_required(m, X, V, A):
         tube_w_1_t_7 = 1.35*tube_m3_c1_t
         tube_w_1_t_8 = 1.35*tube_m1_c2_t
         tube_w_1_t_9 = 1.35*tube_m3_c2
-        tube_w_1_t_10 = 1.35*tube_mu1_c3_t
+        tube_w_1_t_10 = 1.35*tube_mu1_c3
         tube_w_1_t_11 = 1.35*inv_tube_size_c3
-        tube_w_1_t_12 = 1.35*tube_mu3_c3
-        tube_w_1_t_13 = sqrt(tube_rho2_2 + tube_w_1_t_4*tube_w_1_t_4 + tube_w_1_t_5*tube_w_1_t_5)
+        tube_w_1_t_12 = 1.35*tube_mu3_c3_t
+        tube_w_1_t_13 = sqrt(tube_q_3_t + tube_w_1_t_4*tube_w_1_t_4 + tube_w_1_t_5*tube_w_1_t_5)
         inv_tube_w_1_t_13 = 1.0/tube_w_1_t_13
-        tube_w_1_t_14 = inv_tube_w_1_t_13*tube_root_2
+        tube_w_1_t_14 = inv_tube_w_1_t_13*tube_q_3
         tube_w_1_t_15 = inv_tube_w_1_t_13*tube_w_1_t_4
         tube_w_1_t_16 = inv_tube_w_1_t_13*tube_w_1_t_5
         tube_w_1_t_17 = tube_w_1_t_15*tube_w_1_t_6 + tube_w_1_t_16*tube_w_1_t_7 - tube_w_1_t_14
@@ -7896,14 +7989,14 @@ def _run_required(m, X, V, A):
         tube_qd_1_t_8 = 1.35*tube_eta_3
         tube_qd_1 = (
         inv_tube_w_1_t_75*(tube_S_dot_in_axes2_y*tube_qd_1_t + tube_S_dot_in_axes2_z*tube_qd_1_t_2
-            + tube_qd_1_t_3*tube_qd_1_t_6 + tube_qd_1_t_4*tube_qd_1_t_7 +
-            tube_qd_1_t_5*tube_qd_1_t_8)
+            + tube_qd_1_t_3*tube_qd_1_t_6 + tube_qd_1_t_5*tube_qd_1_t_8 -
+            tube_qd_1_t_4*tube_qd_1_t_7)
         )
         # (tube-qd_2) rate of joint 2
         tube_qd_2_t = (
         inv_tube_w_1_t_63*(tube_S_dot_in_axes2_y*tube_w_1_t_64 +
             tube_S_dot_in_axes2_z*tube_w_1_t_65 + tube_qd_1_t_6*tube_w_1_t_66 +
-            tube_qd_1_t_8*tube_w_1_t_68 - tube_qd_1*tube_w_1_t_69 - tube_qd_1_t_7*tube_w_1_t_67)
+            tube_qd_1_t_7*tube_w_1_t_67 + tube_qd_1_t_8*tube_w_1_t_68 - tube_qd_1*tube_w_1_t_69)
         )
         tube_qd_2_t_2 = (
         inv_tube_w_1_t_49*(inv_tube_w_1_t_49*tube_S_dot_in_axes2_z +
@@ -7920,8 +8013,8 @@ def _run_required(m, X, V, A):
         )
         tube_qd_2 = inv_tube_w_1_t_13*tube_qd_2_t_3
         # (tube-omega_1) angular velocity of link 1
-        tube_omega_1_in_axes2_x = tube_qd_1*tube_s_2
-        tube_omega_1_in_axes2_y = tube_c_2*tube_qd_1
+        tube_omega_1_in_axes2_x = tube_e_1_in_axes2_x*tube_qd_1
+        tube_omega_1_in_axes2_y = -tube_c_2*tube_qd_1
         # (tube-W_2) centripetal tensor of link 2
         tube_W_2_in_axes2_yz = tube_omega_1_in_axes2_y*tube_qd_2
         tube_W_2_in_axes2_xz = tube_omega_1_in_axes2_x*tube_qd_2
@@ -7935,13 +8028,13 @@ def _run_required(m, X, V, A):
         tube_S_ddot_y = tube_a_p_y + omega_z*tube_S_dot_t_3 - omega_x*tube_S_dot_t_5
         tube_S_ddot_z = tube_a_p_z + omega_x*tube_S_dot_t_4 - omega_y*tube_S_dot_t_3
         # (tube-bias) acceleration of the connection point at zero joint accelerations
-        tube_bias_t = tube_W_2_in_axes2_xz*tube_root_2
-        tube_bias_t_2 = -tube_W_2_in_axes2_xy*tube_root_2
+        tube_bias_t = tube_W_2_in_axes2_xz*tube_q_3
+        tube_bias_t_2 = -tube_W_2_in_axes2_xy*tube_q_3
         tube_bias_t_3 = 2.0*tube_S_dot_in_axes2_x
         tube_bias_t_4 = tube_bias_t_3*tube_qd_2
-        tube_bias_t_5 = -tube_bias_t_3*tube_omega_1_in_axes2_y
+        tube_bias_t_5 = tube_bias_t_3*tube_omega_1_in_axes2_y
         tube_bias_in_axes2_y = tube_bias_t_4 - tube_bias_t_2
-        tube_bias_in_axes2_z = 2.0*tube_bias_t + tube_bias_t_5
+        tube_bias_in_axes2_z = 2.0*tube_bias_t - tube_bias_t_5
         # (tube-rel) acceleration of the connection point left to the joint accelerations
         tube_rel_in_axes2_y = (
         axis_y_tube_axes2_x*tube_S_ddot_x + axis_y_tube_axes2_y*tube_S_ddot_y +
@@ -7952,7 +8045,7 @@ def _run_required(m, X, V, A):
             axis_z_tube_axes2_z*tube_S_ddot_z - tube_bias_in_axes2_z
         )
         # (tube-nd_m1) rate of moment direction 1
-        tube_end_p1_in_axes2_x = tube_n_m1_t_12*tube_s_2 - tube_c_2*tube_n_m1_t_13
+        tube_end_p1_in_axes2_x = tube_c_2*tube_n_m1_t_13 + tube_e_1_in_axes2_x*tube_n_m1_t_12
         tube_nd_m1_in_axes2_y = (
         tube_end_p1_in_axes2_x*tube_omega_in_axes2_y -
             tube_end_p1_in_axes2_x*tube_omega_1_in_axes2_y -
@@ -7973,7 +8066,7 @@ def _run_required(m, X, V, A):
         )
         tube_nu_1 = tube_nu_1_t_4 - tube_W_2_in_axes2_xz*tube_end_p1_in_axes2_z
         # (tube-nd_m2) rate of moment direction 2
-        tube_end_p2_in_axes2_z = tube_c_1*tube_n_m2_t + tube_n_m2_t_2*tube_s_1
+        tube_end_p2_in_axes2_z = tube_c_1*tube_n_m2_t_2 - tube_n_m2_t*tube_s_1
         tube_nd_m2_in_axes2_x = (
         tube_end_p2_in_axes2_z*tube_omega_in_axes2_x -
             tube_end_p2_in_axes2_z*tube_omega_1_in_axes2_x -
@@ -7989,13 +8082,13 @@ def _run_required(m, X, V, A):
         -tube_W_2_in_axes2_xz*tube_n_m2_in_axes2_y - tube_W_2_in_axes2_yz*tube_end_p2_in_axes2_y
         )
         tube_nu_2_t_2 = (
-        tube_nd_m2_in_axes2_x*tube_nu_1_t +
+        tube_nd_m2_in_axes2_y*tube_nu_1_t_2 - tube_nd_m2_in_axes2_x*tube_nu_1_t -
             tube_nu_1_t_3*(-tube_end_p2_in_axes2_y*tube_omega_1_in_axes2_y -
-            tube_n_m2_in_axes2_y*tube_omega_1_in_axes2_x) - tube_nd_m2_in_axes2_y*tube_nu_1_t_2
+            tube_n_m2_in_axes2_y*tube_omega_1_in_axes2_x)
         )
-        tube_nu_2 = -tube_nu_2_t - tube_nu_2_t_2
+        tube_nu_2 = tube_nu_2_t_2 - tube_nu_2_t
         # (tube-nd_m3) rate of moment direction 3
-        tube_end_p3_in_axes2_y = tube_c_2*tube_n_m3_t_3 + tube_n_m3_t_4*tube_s_2
+        tube_end_p3_in_axes2_y = tube_e_1_in_axes2_x*tube_n_m3_t_4 - tube_c_2*tube_n_m3_t_3
         tube_nd_m3_in_axes2_x = (
         tube_end_p3_in_axes2_y*tube_omega_1_in_axes2_x +
             tube_n_m3_in_axes2_z*tube_omega_in_axes2_y -
@@ -8041,14 +8134,14 @@ def _run_required(m, X, V, A):
         tube_qdd_1_t_3 = 1.35*tube_etad_3
         tube_qdd_1 = (
         inv_tube_w_1_t_75*(tube_qd_1_t*tube_rel_in_axes2_y + tube_qd_1_t_2*tube_rel_in_axes2_z +
-            tube_qd_1_t_3*tube_qdd_1_t + tube_qd_1_t_4*tube_qdd_1_t_2 +
-            tube_qd_1_t_5*tube_qdd_1_t_3)
+            tube_qd_1_t_3*tube_qdd_1_t + tube_qd_1_t_5*tube_qdd_1_t_3 -
+            tube_qd_1_t_4*tube_qdd_1_t_2)
         )
         # (tube-qdd_2) acceleration of joint 2
         tube_qdd_2_t = (
-        inv_tube_w_1_t_63*(tube_qdd_1_t*tube_w_1_t_66 + tube_qdd_1_t_3*tube_w_1_t_68 +
-            tube_rel_in_axes2_y*tube_w_1_t_64 + tube_rel_in_axes2_z*tube_w_1_t_65 -
-            tube_qdd_1*tube_w_1_t_69 - tube_qdd_1_t_2*tube_w_1_t_67)
+        inv_tube_w_1_t_63*(tube_qdd_1_t*tube_w_1_t_66 + tube_qdd_1_t_2*tube_w_1_t_67 +
+            tube_qdd_1_t_3*tube_w_1_t_68 + tube_rel_in_axes2_y*tube_w_1_t_64 +
+            tube_rel_in_axes2_z*tube_w_1_t_65 - tube_qdd_1*tube_w_1_t_69)
         )
         tube_qdd_2_t_2 = (
         inv_tube_w_1_t_49*(inv_tube_w_1_t_49*tube_rel_in_axes2_z + tube_qdd_1*tube_w_1_t_58 +
@@ -8065,8 +8158,8 @@ def _run_required(m, X, V, A):
         )
         tube_qdd_2 = inv_tube_w_1_t_13*tube_qdd_2_t_3
         # (tube-alpha_1) angular acceleration of link 1
-        tube_alpha_1_in_axes2_x = tube_qdd_1*tube_s_2
-        tube_alpha_1_in_axes2_y = tube_c_2*tube_qdd_1
+        tube_alpha_1_in_axes2_x = tube_e_1_in_axes2_x*tube_qdd_1
+        tube_alpha_1_in_axes2_y = -tube_c_2*tube_qdd_1
         # (tube-alpha_2) angular acceleration of link 2
         tube_alpha_2_in_axes2_x = tube_W_2_in_axes2_yz + tube_alpha_1_in_axes2_x
         tube_alpha_2_in_axes2_y = tube_alpha_1_in_axes2_y - tube_W_2_in_axes2_xz
@@ -8076,28 +8169,28 @@ def _run_required(m, X, V, A):
         tube_B_2_in_axes2_zx = tube_W_2_in_axes2_xz - tube_alpha_2_in_axes2_y
         tube_B_2_in_axes2_zy = tube_W_2_in_axes2_yz + tube_alpha_2_in_axes2_x
         # (tube-acc_3) acceleration of the reference point of link 3, less gravity
-        tube_g_in_axes2_z = tube_acc_3_t*tube_c_1 + tube_acc_3_t_2*tube_s_1
-        tube_acc_3_t_4 = tube_acc_3_t_2*tube_c_1 - tube_acc_3_t*tube_s_1
-        tube_g_in_axes2_x = tube_acc_3_t_3*tube_s_2 + tube_acc_3_t_4*tube_c_2
-        tube_g_in_axes2_y = tube_acc_3_t_3*tube_c_2 - tube_acc_3_t_4*tube_s_2
+        tube_acc_3_t_4 = tube_acc_3_t*tube_c_1 + tube_acc_3_t_2*tube_s_1
+        tube_g_in_axes2_z = tube_acc_3_t_2*tube_c_1 - tube_acc_3_t*tube_s_1
+        tube_g_in_axes2_x = tube_acc_3_t_3*tube_e_1_in_axes2_x + tube_acc_3_t_4*tube_c_2
+        tube_g_in_axes2_y = tube_acc_3_t_4*tube_e_1_in_axes2_x - tube_acc_3_t_3*tube_c_2
         tube_acc_3_in_axes2_x = (
         axis_x_tube_axes2_x*tube_S_ddot_x + axis_x_tube_axes2_y*tube_S_ddot_y +
             axis_x_tube_axes2_z*tube_S_ddot_z - tube_g_in_axes2_x
         )
         tube_acc_3_in_axes2_y = (
-        tube_bias_t_4 + tube_qdd_2*tube_root_2 - tube_bias_t_2 - tube_g_in_axes2_y
+        tube_bias_t_4 + tube_q_3*tube_qdd_2 - tube_bias_t_2 - tube_g_in_axes2_y
         )
         tube_acc_3_in_axes2_z = (
-        tube_bias_t + tube_bias_t_5 - tube_g_in_axes2_z - tube_alpha_2_in_axes2_y*tube_root_2
+        tube_bias_t - tube_bias_t_5 - tube_g_in_axes2_z - tube_alpha_2_in_axes2_y*tube_q_3
         )
         # (tube-f_3) inertia force of link 3 less its weight
         tube_f_3_t = tube_omega_1_in_axes2_x*tube_omega_1_in_axes2_x
         tube_f_3_t_2 = tube_omega_1_in_axes2_y*tube_omega_1_in_axes2_y
         tube_f_3_t_3 = tube_qd_2*tube_qd_2
         tube_f_3_in_axes2_x = (
-        tube_acc_3_in_axes2_x*tube_link3_mass + tube_alpha_1_in_axes2_y*tube_h_3_in_spec2_y +
-            tube_h_3_in_spec2_x*(-tube_f_3_t_2 - tube_f_3_t_3) -
-            tube_B_2_in_axes2_xy*tube_h_3_in_spec2_z
+        tube_acc_3_in_axes2_x*tube_link3_mass + tube_alpha_1_in_axes2_y*tube_h_3_in_spec2_y -
+            tube_B_2_in_axes2_xy*tube_h_3_in_spec2_z - tube_h_3_in_spec2_x*(tube_f_3_t_2 +
+            tube_f_3_t_3)
         )
         tube_f_3_in_axes2_y = (
         tube_B_2_in_axes2_yx*tube_h_3_in_spec2_x + tube_acc_3_in_axes2_y*tube_link3_mass +
@@ -8137,8 +8230,8 @@ def _run_required(m, X, V, A):
             tube_g_in_axes2_x*tube_h_2_in_spec2_z - tube_g_in_axes2_y*tube_h_2_in_spec2_x
         )
         # (tube-N_2) moment about joint 2 of the links from 2 outwards, the force at the connection point left out
-        tube_N_2_in_axes2_y = tube_mu_2_in_axes2_y - tube_f_3_in_axes2_z*tube_root_2
-        tube_N_2_in_axes2_z = tube_mu_2_in_axes2_z + tube_f_3_in_axes2_y*tube_root_2
+        tube_N_2_in_axes2_y = tube_mu_2_in_axes2_y - tube_f_3_in_axes2_z*tube_q_3
+        tube_N_2_in_axes2_z = tube_mu_2_in_axes2_z + tube_f_3_in_axes2_y*tube_q_3
         # (tube-G) force at the connection point that balances the leg's inertia and weight along all degrees of freedom
         tube_G_t = inv_tube_w_1_t_13*tube_N_2_in_axes2_z
         tube_G_t_2 = inv_tube_w_1_t_33*tube_G_t*tube_w_1_t_17
@@ -8148,30 +8241,30 @@ def _run_required(m, X, V, A):
             tube_G_t*tube_w_1_t_25)
         )
         tube_G_t_5 = (
-        inv_tube_w_1_t_75*(tube_G_t_2*tube_w_1_t_45 + tube_G_t_3*tube_w_1_t_58 +
-            tube_N_2_in_axes2_y*tube_c_2 + tube_mu_2_in_axes2_x*tube_s_2 - tube_G_t*tube_w_1_t_29
-            - tube_G_t_4*tube_w_1_t_69)
+        inv_tube_w_1_t_75*(tube_G_t*tube_w_1_t_29 + tube_G_t_4*tube_w_1_t_69 +
+            tube_N_2_in_axes2_y*tube_c_2 - tube_G_t_2*tube_w_1_t_45 - tube_G_t_3*tube_w_1_t_58 -
+            tube_e_1_in_axes2_x*tube_mu_2_in_axes2_x)
         )
         tube_G_in_axes2_y = (
         tube_G_t*tube_w_1_t_14 + tube_G_t_2*tube_w_1_t_34 + tube_G_t_3*tube_w_1_t_50 +
-            tube_G_t_4*tube_w_1_t_64 + tube_G_t_5*tube_qd_1_t
+            tube_G_t_4*tube_w_1_t_64 - tube_G_t_5*tube_qd_1_t
         )
         tube_G_in_axes2_z = (
-        inv_tube_w_1_t_49*tube_G_t_3 + tube_G_t_4*tube_w_1_t_65 + tube_G_t_5*tube_qd_1_t_2
+        inv_tube_w_1_t_49*tube_G_t_3 + tube_G_t_4*tube_w_1_t_65 - tube_G_t_5*tube_qd_1_t_2
         )
         # (tube-G_m1) moment along moment direction 1 that balances the leg's inertia and weight along all degrees of freedom
         tube_G_m1_t = (
         tube_G_t*tube_w_1_t_15 + tube_G_t_2*tube_w_1_t_35 + tube_G_t_3*tube_w_1_t_51 +
-            tube_G_t_4*tube_w_1_t_66 + tube_G_t_5*tube_qd_1_t_3
+            tube_G_t_4*tube_w_1_t_66 - tube_G_t_5*tube_qd_1_t_3
         )
         tube_G_m1 = 1.35*tube_G_m1_t
         # (tube-G_m2) moment along moment direction 2 that balances the leg's inertia and weight along all degrees of freedom
-        tube_G_m2_t = tube_G_t_4*tube_w_1_t_67 - tube_G_t_5*tube_qd_1_t_4
-        tube_G_m2 = -1.35*tube_G_m2_t
+        tube_G_m2_t = tube_G_t_4*tube_w_1_t_67 + tube_G_t_5*tube_qd_1_t_4
+        tube_G_m2 = 1.35*tube_G_m2_t
         # (tube-G_m3) moment along moment direction 3 that balances the leg's inertia and weight along all degrees of freedom
         tube_G_m3_t = (
         tube_G_t*tube_w_1_t_16 + tube_G_t_2*tube_w_1_t_36 + tube_G_t_3*tube_w_1_t_52 +
-            tube_G_t_4*tube_w_1_t_68 + tube_G_t_5*tube_qd_1_t_5
+            tube_G_t_4*tube_w_1_t_68 - tube_G_t_5*tube_qd_1_t_5
         )
         tube_G_m3 = 1.35*tube_G_m3_t
         # (tube-G_m) moment at the connection point that balances the leg's inertia and weight along all degrees of freedom
@@ -8237,12 +8330,12 @@ def _run_required(m, X, V, A):
             axis_z_tube_axes2_x*tube_q_y
         )
         ok = (
-        ok & (abs(tube_rho2_1) > _TOLERANCE * _TOLERANCE * 1.8225000000000002) & (abs(tube_rho2_2)
-            > _TOLERANCE * _TOLERANCE * 1.8225000000000002) & (abs(tube_f_c1_t) > _TOLERANCE *
-            1.0) & (abs(tube_size_c3) > _TOLERANCE * 1.0) & (abs(tube_w_1_t_13) > _TOLERANCE *
-            1.35) & (abs(tube_w_1_t_33) > _TOLERANCE * 1.0) & (abs(tube_w_1_t_49) > _TOLERANCE *
-            1.0) & (abs(tube_w_1_t_63) > _TOLERANCE * 1.35) & (abs(tube_w_1_t_75) > _TOLERANCE *
-            1.35)
+        ok & (abs(tube_root_1_t) > _TOLERANCE * _TOLERANCE * 1.8225000000000002) &
+            (abs(tube_q_3_t) > _TOLERANCE * _TOLERANCE * 1.8225000000000002) & (abs(tube_f_c1_t) >
+            _TOLERANCE * 1.0) & (abs(tube_size_c3) > _TOLERANCE * 1.0) & (abs(tube_w_1_t_13) >
+            _TOLERANCE * 1.35) & (abs(tube_w_1_t_33) > _TOLERANCE * 1.0) & (abs(tube_w_1_t_49) >
+            _TOLERANCE * 1.0) & (abs(tube_w_1_t_63) > _TOLERANCE * 1.35) & (abs(tube_w_1_t_75) >
+            _TOLERANCE * 1.35)
         )
         # (R_t) force that actuators and external wrench must give
         R_t_t_4 += tube_c_x
@@ -8353,34 +8446,29 @@ def _run_inverse_kinematics(m, X):
         t_z + R_zx*ups_platform_point_x + R_zy*ups_platform_point_y + R_zz*ups_platform_point_z -
             ups_base_point_z
         )
-        # (ups-px_1) component along the reference direction
-        ups_px_1 = (
+        ups_S_in_turn1_x = (
         ups_S_x*ups_base_frame_xx + ups_S_y*ups_base_frame_yx + ups_S_z*ups_base_frame_zx
         )
-        # (ups-py_1) component across the reference direction
-        ups_py_1 = (
+        ups_S_in_turn1_y = (
         ups_S_x*ups_base_frame_xy + ups_S_y*ups_base_frame_yy + ups_S_z*ups_base_frame_zy
         )
-        # (ups-rho2_1) squared amplitude
-        ups_rho2_1 = ups_px_1*ups_px_1 + ups_py_1*ups_py_1
-        # (ups-root_1) amplitude, with the sign of the branch
-        ups_root_1 = ups_branch_1*sqrt(ups_rho2_1)
-        # (ups-q_1) displacement of joint 1
-        inv_ups_root_1 = 1.0/ups_root_1
-        ups_q_1 = atan2(inv_ups_root_1*ups_py_1, inv_ups_root_1*ups_px_1)
-        # (ups-xi_1) the vector from joint 1 to the connection point, resolved along link 1
-        ups_xi_1_in_axes1_z = (
+        ups_S_in_turn1_z = (
         ups_S_x*ups_base_frame_xz + ups_S_y*ups_base_frame_yz + ups_S_z*ups_base_frame_zz
         )
-        # (ups-rho2_2) squared amplitude
-        ups_rho2_2 = ups_rho2_1 + ups_xi_1_in_axes1_z*ups_xi_1_in_axes1_z
-        # (ups-root_2) amplitude, with the sign of the branch
-        ups_root_2 = ups_branch_2*sqrt(ups_rho2_2)
+        # (ups-root_1) amplitude, the length across axis 1, with the sign of the branch
+        ups_root_1_t = ups_S_in_turn1_x*ups_S_in_turn1_x + ups_S_in_turn1_y*ups_S_in_turn1_y
+        ups_root_1 = ups_branch_1*sqrt(ups_root_1_t)
+        # (ups-q_1) displacement of joint 1
+        inv_ups_root_1 = 1.0/ups_root_1
+        ups_q_1 = atan2(inv_ups_root_1*ups_S_in_turn1_y, inv_ups_root_1*ups_S_in_turn1_x)
+        # (ups-q_3) displacement of joint 3
+        ups_q_3_t = ups_S_in_turn1_z*ups_S_in_turn1_z + ups_root_1_t
+        ups_q_3 = ups_branch_2*sqrt(ups_q_3_t)
         # (ups-q_2) displacement of joint 2
-        inv_ups_root_2 = 1.0/ups_root_2
-        ups_q_2 = atan2(-inv_ups_root_2*ups_xi_1_in_axes1_z, inv_ups_root_2*ups_root_1)
+        inv_ups_q_3 = 1.0/ups_q_3
+        ups_q_2 = atan2(-inv_ups_q_3*ups_S_in_turn1_z, inv_ups_q_3*ups_root_1)
         ok = (
-        ok & (abs(ups_rho2_1) > _TOLERANCE * _TOLERANCE * 1.9124953849) & (abs(ups_rho2_2) >
+        ok & (abs(ups_root_1_t) > _TOLERANCE * _TOLERANCE * 1.9124953849) & (abs(ups_q_3_t) >
             _TOLERANCE * _TOLERANCE * 1.9124953849)
         )
         # (ups-q_1) displacement of joint 1
@@ -8388,7 +8476,7 @@ def _run_inverse_kinematics(m, X):
         # (ups-q_2) displacement of joint 2
         out_q[_q_ups[1][leg]] = ups_q_2
         # (ups-q_3) displacement of joint 3
-        out_q[_q_ups[2][leg]] = ups_root_2
+        out_q[_q_ups[2][leg]] = ups_q_3
     for leg, k in legs[1]:
         (
         tube_base_frame_xx, tube_base_frame_xy, tube_base_frame_xz, tube_base_frame_yx,
@@ -8410,42 +8498,37 @@ def _run_inverse_kinematics(m, X):
         t_z + R_zx*tube_platform_point_x + R_zy*tube_platform_point_y + R_zz*tube_platform_point_z
             - tube_base_point_z
         )
-        # (tube-px_1) component along the reference direction
-        tube_px_1 = (
+        tube_S_in_turn1_x = (
         tube_S_x*tube_base_frame_xx + tube_S_y*tube_base_frame_yx + tube_S_z*tube_base_frame_zx
         )
-        # (tube-py_1) component across the reference direction
-        tube_py_1 = (
+        tube_S_in_turn1_y = (
         tube_S_x*tube_base_frame_xy + tube_S_y*tube_base_frame_yy + tube_S_z*tube_base_frame_zy
         )
-        # (tube-rho2_1) squared amplitude
-        tube_rho2_1 = tube_px_1*tube_px_1 + tube_py_1*tube_py_1
-        # (tube-root_1) amplitude, with the sign of the branch
-        tube_root_1 = tube_branch_1*sqrt(tube_rho2_1)
-        # (tube-q_1) displacement of joint 1
-        inv_tube_root_1 = 1.0/tube_root_1
-        tube_q_1 = atan2(inv_tube_root_1*tube_py_1, inv_tube_root_1*tube_px_1)
-        # (tube-xi_1) the vector from joint 1 to the connection point, resolved along link 1
-        tube_xi_1_in_axes1_z = (
+        tube_S_in_turn1_z = (
         tube_S_x*tube_base_frame_xz + tube_S_y*tube_base_frame_yz + tube_S_z*tube_base_frame_zz
         )
-        # (tube-rho2_2) squared amplitude
-        tube_rho2_2 = tube_rho2_1 + tube_xi_1_in_axes1_z*tube_xi_1_in_axes1_z
-        # (tube-root_2) amplitude, with the sign of the branch
-        tube_root_2 = tube_branch_2*sqrt(tube_rho2_2)
+        # (tube-root_1) amplitude, the length across axis 1, with the sign of the branch
+        tube_root_1_t = tube_S_in_turn1_x*tube_S_in_turn1_x + tube_S_in_turn1_y*tube_S_in_turn1_y
+        tube_root_1 = tube_branch_1*sqrt(tube_root_1_t)
+        # (tube-q_1) displacement of joint 1
+        inv_tube_root_1 = 1.0/tube_root_1
+        tube_q_1 = atan2(inv_tube_root_1*tube_S_in_turn1_y, inv_tube_root_1*tube_S_in_turn1_x)
+        # (tube-q_3) displacement of joint 3
+        tube_q_3_t = tube_S_in_turn1_z*tube_S_in_turn1_z + tube_root_1_t
+        tube_q_3 = tube_branch_2*sqrt(tube_q_3_t)
         # (tube-q_2) displacement of joint 2
-        inv_tube_root_2 = 1.0/tube_root_2
-        tube_q_2 = atan2(-inv_tube_root_2*tube_xi_1_in_axes1_z, inv_tube_root_2*tube_root_1)
+        inv_tube_q_3 = 1.0/tube_q_3
+        tube_q_2 = atan2(-inv_tube_q_3*tube_S_in_turn1_z, inv_tube_q_3*tube_root_1)
         ok = (
-        ok & (abs(tube_rho2_1) > _TOLERANCE * _TOLERANCE * 1.8225000000000002) & (abs(tube_rho2_2)
-            > _TOLERANCE * _TOLERANCE * 1.8225000000000002)
+        ok & (abs(tube_root_1_t) > _TOLERANCE * _TOLERANCE * 1.8225000000000002) &
+            (abs(tube_q_3_t) > _TOLERANCE * _TOLERANCE * 1.8225000000000002)
         )
         # (tube-q_1) displacement of joint 1
         out_q[_q_tube[0][leg]] = tube_q_1
         # (tube-q_2) displacement of joint 2
         out_q[_q_tube[1][leg]] = tube_q_2
         # (tube-q_3) displacement of joint 3
-        out_q[_q_tube[2][leg]] = tube_root_2
+        out_q[_q_tube[2][leg]] = tube_q_3
     return ok, (out_q,)
 
 
@@ -8523,36 +8606,31 @@ def _run_joint_rates(m, X, V):
         ups_S_x = t_x + ups_q_x - ups_base_point_x
         ups_S_y = t_y + ups_q_y - ups_base_point_y
         ups_S_z = t_z + ups_q_z - ups_base_point_z
-        # (ups-px_1) component along the reference direction
-        ups_px_1 = (
+        ups_S_in_turn1_x = (
         ups_S_x*ups_base_frame_xx + ups_S_y*ups_base_frame_yx + ups_S_z*ups_base_frame_zx
         )
-        # (ups-py_1) component across the reference direction
-        ups_py_1 = (
+        ups_S_in_turn1_y = (
         ups_S_x*ups_base_frame_xy + ups_S_y*ups_base_frame_yy + ups_S_z*ups_base_frame_zy
         )
-        # (ups-rho2_1) squared amplitude
-        ups_rho2_1 = ups_px_1*ups_px_1 + ups_py_1*ups_py_1
-        # (ups-root_1) amplitude, with the sign of the branch
-        ups_root_1 = ups_branch_1*sqrt(ups_rho2_1)
-        # (ups-c_1) cosine of the angle of joint 1 from its reference direction
-        inv_ups_root_1 = 1.0/ups_root_1
-        ups_c_1 = -inv_ups_root_1*ups_py_1
-        # (ups-s_1) sine of the angle of joint 1 from its reference direction
-        ups_s_1 = inv_ups_root_1*ups_px_1
-        # (ups-xi_1) the vector from joint 1 to the connection point, resolved along link 1
-        ups_xi_1_in_axes1_z = (
+        ups_S_in_turn1_z = (
         ups_S_x*ups_base_frame_xz + ups_S_y*ups_base_frame_yz + ups_S_z*ups_base_frame_zz
         )
-        # (ups-rho2_2) squared amplitude
-        ups_rho2_2 = ups_rho2_1 + ups_xi_1_in_axes1_z*ups_xi_1_in_axes1_z
-        # (ups-root_2) amplitude, with the sign of the branch
-        ups_root_2 = ups_branch_2*sqrt(ups_rho2_2)
+        # (ups-root_1) amplitude, the length across axis 1, with the sign of the branch
+        ups_root_1_t = ups_S_in_turn1_x*ups_S_in_turn1_x + ups_S_in_turn1_y*ups_S_in_turn1_y
+        ups_root_1 = ups_branch_1*sqrt(ups_root_1_t)
+        # (ups-c_1) cosine of the angle of joint 1 from its reference direction
+        inv_ups_root_1 = 1.0/ups_root_1
+        ups_c_1 = inv_ups_root_1*ups_S_in_turn1_x
+        # (ups-s_1) sine of the angle of joint 1 from its reference direction
+        ups_s_1 = inv_ups_root_1*ups_S_in_turn1_y
+        # (ups-q_3) displacement of joint 3
+        ups_q_3_t = ups_S_in_turn1_z*ups_S_in_turn1_z + ups_root_1_t
+        ups_q_3 = ups_branch_2*sqrt(ups_q_3_t)
         # (ups-S_dot) velocity of the connection point
-        inv_ups_root_2 = 1.0/ups_root_2
-        axis_x_ups_axes2_x = inv_ups_root_2*ups_S_x
-        axis_x_ups_axes2_y = inv_ups_root_2*ups_S_y
-        axis_x_ups_axes2_z = inv_ups_root_2*ups_S_z
+        inv_ups_q_3 = 1.0/ups_q_3
+        axis_x_ups_axes2_x = inv_ups_q_3*ups_S_x
+        axis_x_ups_axes2_y = inv_ups_q_3*ups_S_y
+        axis_x_ups_axes2_z = inv_ups_q_3*ups_S_z
         ups_S_dot_x = t_dot_x + omega_y*ups_q_z - omega_z*ups_q_y
         ups_S_dot_y = t_dot_y + omega_z*ups_q_x - omega_x*ups_q_z
         ups_S_dot_z = t_dot_z + omega_x*ups_q_y - omega_y*ups_q_x
@@ -8561,16 +8639,16 @@ def _run_joint_rates(m, X, V):
             axis_x_ups_axes2_z*ups_S_dot_z
         )
         # (ups-qd_1) rate of joint 1
-        axis_z_ups_axes2_x = ups_base_frame_xx*ups_c_1 + ups_base_frame_xy*ups_s_1
-        axis_z_ups_axes2_y = ups_base_frame_yx*ups_c_1 + ups_base_frame_yy*ups_s_1
-        axis_z_ups_axes2_z = ups_base_frame_zx*ups_c_1 + ups_base_frame_zy*ups_s_1
+        axis_z_ups_axes2_x = ups_base_frame_xy*ups_c_1 - ups_base_frame_xx*ups_s_1
+        axis_z_ups_axes2_y = ups_base_frame_yy*ups_c_1 - ups_base_frame_yx*ups_s_1
+        axis_z_ups_axes2_z = ups_base_frame_zy*ups_c_1 - ups_base_frame_zx*ups_s_1
         ups_qd_1 = (
         inv_ups_root_1*(axis_z_ups_axes2_x*ups_S_dot_x + axis_z_ups_axes2_y*ups_S_dot_y +
             axis_z_ups_axes2_z*ups_S_dot_z)
         )
         # (ups-qd_2) rate of joint 2
         ups_qd_2 = (
-        inv_ups_root_2*(ups_S_dot_x*(axis_x_ups_axes2_z*axis_z_ups_axes2_y -
+        inv_ups_q_3*(ups_S_dot_x*(axis_x_ups_axes2_z*axis_z_ups_axes2_y -
             axis_x_ups_axes2_y*axis_z_ups_axes2_z) +
             ups_S_dot_y*(axis_x_ups_axes2_x*axis_z_ups_axes2_z -
             axis_x_ups_axes2_z*axis_z_ups_axes2_x) +
@@ -8578,9 +8656,9 @@ def _run_joint_rates(m, X, V):
             axis_x_ups_axes2_x*axis_z_ups_axes2_y))
         )
         ok = (
-        ok & (abs(ups_rho2_1) > _TOLERANCE * _TOLERANCE * 1.9124953849) & (abs(ups_rho2_2) >
+        ok & (abs(ups_root_1_t) > _TOLERANCE * _TOLERANCE * 1.9124953849) & (abs(ups_q_3_t) >
             _TOLERANCE * _TOLERANCE * 1.9124953849) & (abs(ups_root_1) > _TOLERANCE * 1.38293) &
-            (abs(ups_root_2) > _TOLERANCE * 1.38293)
+            (abs(ups_q_3) > _TOLERANCE * 1.38293)
         )
         # (ups-qd_1) rate of joint 1
         out_qd[_qd_ups[0][leg]] = ups_qd_1
@@ -8613,53 +8691,47 @@ def _run_joint_rates(m, X, V):
         tube_S_x = t_x + tube_q_x - tube_base_point_x
         tube_S_y = t_y + tube_q_y - tube_base_point_y
         tube_S_z = t_z + tube_q_z - tube_base_point_z
-        # (tube-px_1) component along the reference direction
-        tube_px_1 = (
+        tube_S_in_turn1_x = (
         tube_S_x*tube_base_frame_xx + tube_S_y*tube_base_frame_yx + tube_S_z*tube_base_frame_zx
         )
-        # (tube-py_1) component across the reference direction
-        tube_py_1 = (
+        tube_S_in_turn1_y = (
         tube_S_x*tube_base_frame_xy + tube_S_y*tube_base_frame_yy + tube_S_z*tube_base_frame_zy
         )
-        # (tube-rho2_1) squared amplitude
-        tube_rho2_1 = tube_px_1*tube_px_1 + tube_py_1*tube_py_1
-        # (tube-root_1) amplitude, with the sign of the branch
-        tube_root_1 = tube_branch_1*sqrt(tube_rho2_1)
-        # (tube-c_1) cosine of the angle of joint 1 from its reference direction
-        inv_tube_root_1 = 1.0/tube_root_1
-        tube_c_1 = -inv_tube_root_1*tube_py_1
-        # (tube-s_1) sine of the angle of joint 1 from its reference direction
-        tube_s_1 = inv_tube_root_1*tube_px_1
-        # (tube-xi_1) the vector from joint 1 to the connection point, resolved along link 1
-        tube_xi_1_in_axes1_z = (
+        tube_S_in_turn1_z = (
         tube_S_x*tube_base_frame_xz + tube_S_y*tube_base_frame_yz + tube_S_z*tube_base_frame_zz
         )
-        # (tube-rho2_2) squared amplitude
-        tube_rho2_2 = tube_rho2_1 + tube_xi_1_in_axes1_z*tube_xi_1_in_axes1_z
-        # (tube-root_2) amplitude, with the sign of the branch
-        tube_root_2 = tube_branch_2*sqrt(tube_rho2_2)
+        # (tube-root_1) amplitude, the length across axis 1, with the sign of the branch
+        tube_root_1_t = tube_S_in_turn1_x*tube_S_in_turn1_x + tube_S_in_turn1_y*tube_S_in_turn1_y
+        tube_root_1 = tube_branch_1*sqrt(tube_root_1_t)
+        # (tube-c_1) cosine of the angle of joint 1 from its reference direction
+        inv_tube_root_1 = 1.0/tube_root_1
+        tube_c_1 = inv_tube_root_1*tube_S_in_turn1_x
+        # (tube-s_1) sine of the angle of joint 1 from its reference direction
+        tube_s_1 = inv_tube_root_1*tube_S_in_turn1_y
+        # (tube-q_3) displacement of joint 3
+        tube_q_3_t = tube_S_in_turn1_z*tube_S_in_turn1_z + tube_root_1_t
+        tube_q_3 = tube_branch_2*sqrt(tube_q_3_t)
         # (tube-c_2) cosine of the angle of joint 2 from its reference direction
-        inv_tube_root_2 = 1.0/tube_root_2
-        tube_c_2 = -inv_tube_root_2*tube_root_1
-        # (tube-s_2) sine of the angle of joint 2 from its reference direction
-        tube_s_2 = inv_tube_root_2*tube_xi_1_in_axes1_z
+        inv_tube_q_3 = 1.0/tube_q_3
+        tube_c_2 = inv_tube_q_3*tube_root_1
         # (tube-S_dot) velocity of the connection point
-        axis_z_tube_axes2_x = tube_base_frame_xx*tube_c_1 + tube_base_frame_xy*tube_s_1
-        axis_z_tube_axes2_y = tube_base_frame_yx*tube_c_1 + tube_base_frame_yy*tube_s_1
-        axis_z_tube_axes2_z = tube_base_frame_zx*tube_c_1 + tube_base_frame_zy*tube_s_1
-        tube_S_dot_t = tube_s_1*tube_s_2
-        tube_S_dot_t_2 = tube_c_1*tube_s_2
+        tube_e_1_in_axes2_x = inv_tube_q_3*tube_S_in_turn1_z
+        axis_z_tube_axes2_x = tube_base_frame_xy*tube_c_1 - tube_base_frame_xx*tube_s_1
+        axis_z_tube_axes2_y = tube_base_frame_yy*tube_c_1 - tube_base_frame_yx*tube_s_1
+        axis_z_tube_axes2_z = tube_base_frame_zy*tube_c_1 - tube_base_frame_zx*tube_s_1
+        tube_S_dot_t = tube_c_1*tube_e_1_in_axes2_x
+        tube_S_dot_t_2 = tube_e_1_in_axes2_x*tube_s_1
         axis_y_tube_axes2_x = (
-        tube_S_dot_t*tube_base_frame_xx + tube_base_frame_xz*tube_c_2 -
-            tube_S_dot_t_2*tube_base_frame_xy
+        tube_S_dot_t*tube_base_frame_xx + tube_S_dot_t_2*tube_base_frame_xy -
+            tube_base_frame_xz*tube_c_2
         )
         axis_y_tube_axes2_y = (
-        tube_S_dot_t*tube_base_frame_yx + tube_base_frame_yz*tube_c_2 -
-            tube_S_dot_t_2*tube_base_frame_yy
+        tube_S_dot_t*tube_base_frame_yx + tube_S_dot_t_2*tube_base_frame_yy -
+            tube_base_frame_yz*tube_c_2
         )
         axis_y_tube_axes2_z = (
-        tube_S_dot_t*tube_base_frame_zx + tube_base_frame_zz*tube_c_2 -
-            tube_S_dot_t_2*tube_base_frame_zy
+        tube_S_dot_t*tube_base_frame_zx + tube_S_dot_t_2*tube_base_frame_zy -
+            tube_base_frame_zz*tube_c_2
         )
         axis_x_tube_axes2_x = (
         axis_y_tube_axes2_y*axis_z_tube_axes2_z - axis_y_tube_axes2_z*axis_z_tube_axes2_y
@@ -8721,14 +8793,14 @@ def _run_joint_rates(m, X, V):
             tube_n_m1_t_5*tube_platform_joint_rotation_yy +
             tube_n_m1_t_6*tube_platform_joint_rotation_yz
         )
-        tube_end_p1_in_axes2_z = tube_c_1*tube_n_m1_t_10 + tube_n_m1_t_11*tube_s_1
+        tube_end_p1_in_axes2_z = tube_c_1*tube_n_m1_t_11 - tube_n_m1_t_10*tube_s_1
         tube_n_m1_in_axes2_z = (
-        tube_c_2*(tube_n_m1_t_7*tube_platform_joint_rotation_yx +
+        tube_e_1_in_axes2_x*(tube_c_1*tube_n_m1_t_10 + tube_n_m1_t_11*tube_s_1) -
+            tube_c_2*(tube_n_m1_t_7*tube_platform_joint_rotation_yx +
             tube_n_m1_t_8*tube_platform_joint_rotation_yy +
-            tube_n_m1_t_9*tube_platform_joint_rotation_yz) + tube_s_2*(tube_n_m1_t_10*tube_s_1 -
-            tube_c_1*tube_n_m1_t_11)
+            tube_n_m1_t_9*tube_platform_joint_rotation_yz)
         )
-        tube_n_m1_in_axes1_z = -tube_c_2*tube_end_p1_in_axes2_z
+        tube_n_m1_in_axes1_z = tube_c_2*tube_end_p1_in_axes2_z
         # (tube-n_m2) direction 2 of the moment that the platform joint transmits
         tube_n_m2_t = (
         tube_n_m1_t_7*tube_platform_joint_rotation_zx +
@@ -8736,16 +8808,16 @@ def _run_joint_rates(m, X, V):
             tube_n_m1_t_9*tube_platform_joint_rotation_zz
         )
         tube_n_m2_t_2 = (
-        tube_s_1*(tube_n_m1_t*tube_platform_joint_rotation_zx +
+        tube_c_1*(tube_n_m1_t*tube_platform_joint_rotation_zx +
             tube_n_m1_t_2*tube_platform_joint_rotation_zy +
-            tube_n_m1_t_3*tube_platform_joint_rotation_zz) -
-            tube_c_1*(tube_n_m1_t_4*tube_platform_joint_rotation_zx +
+            tube_n_m1_t_3*tube_platform_joint_rotation_zz) +
+            tube_s_1*(tube_n_m1_t_4*tube_platform_joint_rotation_zx +
             tube_n_m1_t_5*tube_platform_joint_rotation_zy +
             tube_n_m1_t_6*tube_platform_joint_rotation_zz)
         )
-        tube_n_m2_in_axes2_y = tube_n_m2_t*tube_s_2 - tube_c_2*tube_n_m2_t_2
-        tube_end_p2_in_axes2_y = tube_c_2*tube_n_m2_t + tube_n_m2_t_2*tube_s_2
-        tube_n_m2_in_axes1_z = tube_c_2*tube_n_m2_in_axes2_y - tube_end_p2_in_axes2_y*tube_s_2
+        tube_n_m2_in_axes2_y = tube_c_2*tube_n_m2_t_2 + tube_e_1_in_axes2_x*tube_n_m2_t
+        tube_end_p2_in_axes2_y = tube_e_1_in_axes2_x*tube_n_m2_t_2 - tube_c_2*tube_n_m2_t
+        tube_n_m2_t_3 = tube_c_2*tube_n_m2_in_axes2_y + tube_e_1_in_axes2_x*tube_end_p2_in_axes2_y
         # (tube-n_m3) direction 3 of the moment that the platform joint transmits
         tube_n_m3_t = (
         tube_n_m1_t*tube_platform_joint_rotation_xx +
@@ -8757,43 +8829,43 @@ def _run_joint_rates(m, X, V):
             tube_n_m1_t_5*tube_platform_joint_rotation_xy +
             tube_n_m1_t_6*tube_platform_joint_rotation_xz
         )
-        tube_end_p3_in_axes2_z = tube_c_1*tube_n_m3_t + tube_n_m3_t_2*tube_s_1
+        tube_end_p3_in_axes2_z = tube_c_1*tube_n_m3_t_2 - tube_n_m3_t*tube_s_1
         tube_n_m3_in_axes2_z = (
-        tube_s_2*(tube_n_m1_t_7*tube_platform_joint_rotation_xx +
+        tube_c_2*(tube_c_1*tube_n_m3_t + tube_n_m3_t_2*tube_s_1) +
+            tube_e_1_in_axes2_x*(tube_n_m1_t_7*tube_platform_joint_rotation_xx +
             tube_n_m1_t_8*tube_platform_joint_rotation_xy +
-            tube_n_m1_t_9*tube_platform_joint_rotation_xz) - tube_c_2*(tube_n_m3_t*tube_s_1 -
-            tube_c_1*tube_n_m3_t_2)
+            tube_n_m1_t_9*tube_platform_joint_rotation_xz)
         )
-        tube_n_m3_t_3 = tube_end_p3_in_axes2_z*tube_s_2
+        tube_n_m3_t_3 = tube_e_1_in_axes2_x*tube_end_p3_in_axes2_z
         # (tube-f_c1) force part of constraint wrench 1
         tube_f_c1_t = (
         tube_n_m1_in_axes1_z*tube_n_m3_in_axes2_z + tube_n_m1_in_axes2_z*tube_n_m3_t_3
         )
         # (tube-m1_c3) moment part 1 of constraint wrench 3
         inv_tube_f_c1_t = 1.0/tube_f_c1_t
-        tube_m1_c3_t = inv_tube_f_c1_t*tube_n_m2_in_axes1_z*tube_n_m3_in_axes2_z
+        tube_m1_c3 = inv_tube_f_c1_t*tube_n_m2_t_3*tube_n_m3_in_axes2_z
         # (tube-m3_c3) moment part 3 of constraint wrench 3
-        tube_m3_c3 = inv_tube_f_c1_t*tube_n_m1_in_axes2_z*tube_n_m2_in_axes1_z
+        tube_m3_c3_t = inv_tube_f_c1_t*tube_n_m1_in_axes2_z*tube_n_m2_t_3
         # (tube-size_c3) size of the moment
-        tube_size_c3 = sqrt(1.0 + tube_m1_c3_t*tube_m1_c3_t + tube_m3_c3*tube_m3_c3)
+        tube_size_c3 = sqrt(1.0 + tube_m1_c3*tube_m1_c3 + tube_m3_c3_t*tube_m3_c3_t)
         # (tube-mu2_c3) moment along direction 2 that goes with it
         tube_mu2_c3 = 1.0/tube_size_c3
         # (tube-w_1) force part of reciprocal wrench 1
         tube_w_1_t = 1.35*tube_n_m1_in_axes1_z
-        tube_w_1_t_2 = 1.35*tube_n_m2_in_axes1_z
+        tube_w_1_t_2 = 1.35*tube_n_m2_t_3
         tube_w_1_t_3 = 1.35*tube_n_m3_t_3
         tube_w_1_t_4 = 1.35*tube_n_m1_in_axes2_z
         tube_w_1_t_5 = 1.35*tube_n_m3_in_axes2_z
-        tube_w_1_t_6 = 1.35*inv_tube_f_c1_t*tube_n_m3_t_3*tube_root_2
-        tube_w_1_t_7 = 1.35*inv_tube_f_c1_t*tube_n_m1_in_axes1_z*tube_root_2
+        tube_w_1_t_6 = 1.35*inv_tube_f_c1_t*tube_n_m3_t_3*tube_q_3
+        tube_w_1_t_7 = 1.35*inv_tube_f_c1_t*tube_n_m1_in_axes1_z*tube_q_3
         tube_w_1_t_8 = 1.35*inv_tube_f_c1_t*tube_n_m3_in_axes2_z*tube_root_1
         tube_w_1_t_9 = 1.35*inv_tube_f_c1_t*tube_n_m1_in_axes2_z*tube_root_1
-        tube_w_1_t_10 = 1.35*tube_m1_c3_t*tube_mu2_c3
+        tube_w_1_t_10 = 1.35*tube_m1_c3*tube_mu2_c3
         tube_w_1_t_11 = 1.35*tube_mu2_c3
-        tube_w_1_t_12 = 1.35*tube_m3_c3*tube_mu2_c3
-        tube_w_1_t_13 = sqrt(tube_rho2_2 + tube_w_1_t_4*tube_w_1_t_4 + tube_w_1_t_5*tube_w_1_t_5)
+        tube_w_1_t_12 = 1.35*tube_m3_c3_t*tube_mu2_c3
+        tube_w_1_t_13 = sqrt(tube_q_3_t + tube_w_1_t_4*tube_w_1_t_4 + tube_w_1_t_5*tube_w_1_t_5)
         inv_tube_w_1_t_13 = 1.0/tube_w_1_t_13
-        tube_w_1_t_14 = inv_tube_w_1_t_13*tube_root_2
+        tube_w_1_t_14 = inv_tube_w_1_t_13*tube_q_3
         tube_w_1_t_15 = inv_tube_w_1_t_13*tube_w_1_t_4
         tube_w_1_t_16 = inv_tube_w_1_t_13*tube_w_1_t_5
         tube_w_1_t_17 = tube_w_1_t_15*tube_w_1_t_6 + tube_w_1_t_16*tube_w_1_t_7 - tube_w_1_t_14
@@ -8916,14 +8988,14 @@ def _run_joint_rates(m, X, V):
         inv_tube_w_1_t_75*(inv_tube_w_1_t_75*tube_S_dot_in_axes2_y*tube_w_1_t_70 +
             inv_tube_w_1_t_75*tube_S_dot_in_axes2_z*tube_w_1_t_71 +
             inv_tube_w_1_t_75*tube_qd_1_t*tube_w_1_t_72 +
-            inv_tube_w_1_t_75*tube_qd_1_t_2*tube_w_1_t_73 +
-            inv_tube_w_1_t_75*tube_qd_1_t_3*tube_w_1_t_74)
+            inv_tube_w_1_t_75*tube_qd_1_t_3*tube_w_1_t_74 -
+            inv_tube_w_1_t_75*tube_qd_1_t_2*tube_w_1_t_73)
         )
         # (tube-qd_2) rate of joint 2
         tube_qd_2_t = (
         inv_tube_w_1_t_63*(tube_S_dot_in_axes2_y*tube_w_1_t_64 +
             tube_S_dot_in_axes2_z*tube_w_1_t_65 + tube_qd_1_t*tube_w_1_t_66 +
-            tube_qd_1_t_3*tube_w_1_t_68 - tube_qd_1*tube_w_1_t_69 - tube_qd_1_t_2*tube_w_1_t_67)
+            tube_qd_1_t_2*tube_w_1_t_67 + tube_qd_1_t_3*tube_w_1_t_68 - tube_qd_1*tube_w_1_t_69)
         )
         tube_qd_2_t_2 = (
         inv_tube_w_1_t_49*(inv_tube_w_1_t_49*tube_S_dot_in_axes2_z +
@@ -8940,12 +9012,12 @@ def _run_joint_rates(m, X, V):
         )
         tube_qd_2 = inv_tube_w_1_t_13*tube_qd_2_t_3
         ok = (
-        ok & (abs(tube_rho2_1) > _TOLERANCE * _TOLERANCE * 1.8225000000000002) & (abs(tube_rho2_2)
-            > _TOLERANCE * _TOLERANCE * 1.8225000000000002) & (abs(tube_f_c1_t) > _TOLERANCE *
-            1.0) & (abs(tube_size_c3) > _TOLERANCE * 1.0) & (abs(tube_w_1_t_13) > _TOLERANCE *
-            1.35) & (abs(tube_w_1_t_33) > _TOLERANCE * 1.0) & (abs(tube_w_1_t_49) > _TOLERANCE *
-            1.0) & (abs(tube_w_1_t_63) > _TOLERANCE * 1.35) & (abs(tube_w_1_t_75) > _TOLERANCE *
-            1.35)
+        ok & (abs(tube_root_1_t) > _TOLERANCE * _TOLERANCE * 1.8225000000000002) &
+            (abs(tube_q_3_t) > _TOLERANCE * _TOLERANCE * 1.8225000000000002) & (abs(tube_f_c1_t) >
+            _TOLERANCE * 1.0) & (abs(tube_size_c3) > _TOLERANCE * 1.0) & (abs(tube_w_1_t_13) >
+            _TOLERANCE * 1.35) & (abs(tube_w_1_t_33) > _TOLERANCE * 1.0) & (abs(tube_w_1_t_49) >
+            _TOLERANCE * 1.0) & (abs(tube_w_1_t_63) > _TOLERANCE * 1.35) & (abs(tube_w_1_t_75) >
+            _TOLERANCE * 1.35)
         )
         # (tube-qd_1) rate of joint 1
         out_qd[_qd_tube[0][leg]] = tube_qd_1
@@ -9043,36 +9115,31 @@ def _run_joint_accelerations(m, X, V, A):
         ups_S_x = t_x + ups_q_x - ups_base_point_x
         ups_S_y = t_y + ups_q_y - ups_base_point_y
         ups_S_z = t_z + ups_q_z - ups_base_point_z
-        # (ups-px_1) component along the reference direction
-        ups_px_1 = (
+        ups_S_in_turn1_x = (
         ups_S_x*ups_base_frame_xx + ups_S_y*ups_base_frame_yx + ups_S_z*ups_base_frame_zx
         )
-        # (ups-py_1) component across the reference direction
-        ups_py_1 = (
+        ups_S_in_turn1_y = (
         ups_S_x*ups_base_frame_xy + ups_S_y*ups_base_frame_yy + ups_S_z*ups_base_frame_zy
         )
-        # (ups-rho2_1) squared amplitude
-        ups_rho2_1 = ups_px_1*ups_px_1 + ups_py_1*ups_py_1
-        # (ups-root_1) amplitude, with the sign of the branch
-        ups_root_1 = ups_branch_1*sqrt(ups_rho2_1)
-        # (ups-c_1) cosine of the angle of joint 1 from its reference direction
-        inv_ups_root_1 = 1.0/ups_root_1
-        ups_c_1 = -inv_ups_root_1*ups_py_1
-        # (ups-s_1) sine of the angle of joint 1 from its reference direction
-        ups_s_1 = inv_ups_root_1*ups_px_1
-        # (ups-xi_1) the vector from joint 1 to the connection point, resolved along link 1
-        ups_xi_1_in_axes1_z = (
+        ups_S_in_turn1_z = (
         ups_S_x*ups_base_frame_xz + ups_S_y*ups_base_frame_yz + ups_S_z*ups_base_frame_zz
         )
-        # (ups-rho2_2) squared amplitude
-        ups_rho2_2 = ups_rho2_1 + ups_xi_1_in_axes1_z*ups_xi_1_in_axes1_z
-        # (ups-root_2) amplitude, with the sign of the branch
-        ups_root_2 = ups_branch_2*sqrt(ups_rho2_2)
+        # (ups-root_1) amplitude, the length across axis 1, with the sign of the branch
+        ups_root_1_t = ups_S_in_turn1_x*ups_S_in_turn1_x + ups_S_in_turn1_y*ups_S_in_turn1_y
+        ups_root_1 = ups_branch_1*sqrt(ups_root_1_t)
+        # (ups-c_1) cosine of the angle of joint 1 from its reference direction
+        inv_ups_root_1 = 1.0/ups_root_1
+        ups_c_1 = inv_ups_root_1*ups_S_in_turn1_x
+        # (ups-s_1) sine of the angle of joint 1 from its reference direction
+        ups_s_1 = inv_ups_root_1*ups_S_in_turn1_y
+        # (ups-q_3) displacement of joint 3
+        ups_q_3_t = ups_S_in_turn1_z*ups_S_in_turn1_z + ups_root_1_t
+        ups_q_3 = ups_branch_2*sqrt(ups_q_3_t)
         # (ups-S_dot) velocity of the connection point
-        inv_ups_root_2 = 1.0/ups_root_2
-        axis_x_ups_axes2_x = inv_ups_root_2*ups_S_x
-        axis_x_ups_axes2_y = inv_ups_root_2*ups_S_y
-        axis_x_ups_axes2_z = inv_ups_root_2*ups_S_z
+        inv_ups_q_3 = 1.0/ups_q_3
+        axis_x_ups_axes2_x = inv_ups_q_3*ups_S_x
+        axis_x_ups_axes2_y = inv_ups_q_3*ups_S_y
+        axis_x_ups_axes2_z = inv_ups_q_3*ups_S_z
         ups_S_dot_t = omega_y*ups_q_z - omega_z*ups_q_y
         ups_S_dot_t_2 = omega_z*ups_q_x - omega_x*ups_q_z
         ups_S_dot_t_3 = omega_x*ups_q_y - omega_y*ups_q_x
@@ -9084,9 +9151,9 @@ def _run_joint_accelerations(m, X, V, A):
             axis_x_ups_axes2_z*ups_S_dot_z
         )
         # (ups-qd_1) rate of joint 1
-        axis_z_ups_axes2_x = ups_base_frame_xx*ups_c_1 + ups_base_frame_xy*ups_s_1
-        axis_z_ups_axes2_y = ups_base_frame_yx*ups_c_1 + ups_base_frame_yy*ups_s_1
-        axis_z_ups_axes2_z = ups_base_frame_zx*ups_c_1 + ups_base_frame_zy*ups_s_1
+        axis_z_ups_axes2_x = ups_base_frame_xy*ups_c_1 - ups_base_frame_xx*ups_s_1
+        axis_z_ups_axes2_y = ups_base_frame_yy*ups_c_1 - ups_base_frame_yx*ups_s_1
+        axis_z_ups_axes2_z = ups_base_frame_zy*ups_c_1 - ups_base_frame_zx*ups_s_1
         ups_qd_1 = (
         inv_ups_root_1*(axis_z_ups_axes2_x*ups_S_dot_x + axis_z_ups_axes2_y*ups_S_dot_y +
             axis_z_ups_axes2_z*ups_S_dot_z)
@@ -9102,12 +9169,12 @@ def _run_joint_accelerations(m, X, V, A):
         axis_x_ups_axes2_y*axis_z_ups_axes2_x - axis_x_ups_axes2_x*axis_z_ups_axes2_y
         )
         ups_qd_2 = (
-        inv_ups_root_2*(axis_y_ups_axes2_x*ups_S_dot_x + axis_y_ups_axes2_y*ups_S_dot_y +
+        inv_ups_q_3*(axis_y_ups_axes2_x*ups_S_dot_x + axis_y_ups_axes2_y*ups_S_dot_y +
             axis_y_ups_axes2_z*ups_S_dot_z)
         )
         # (ups-omega_1) angular velocity of link 1
-        ups_omega_1_in_axes2_x = inv_ups_root_2*ups_qd_1*ups_xi_1_in_axes1_z
-        ups_omega_1_in_axes2_y = -inv_ups_root_2*ups_qd_1*ups_root_1
+        ups_omega_1_in_axes2_x = inv_ups_q_3*ups_S_in_turn1_z*ups_qd_1
+        ups_omega_1_in_axes2_y = -inv_ups_q_3*ups_qd_1*ups_root_1
         # (ups-a_p) acceleration of the connection point without its centripetal part
         ups_a_p_x = t_ddot_x + alpha_y*ups_q_z - alpha_z*ups_q_y
         ups_a_p_y = t_ddot_y + alpha_z*ups_q_x - alpha_x*ups_q_z
@@ -9119,13 +9186,13 @@ def _run_joint_accelerations(m, X, V, A):
         # (ups-bias) acceleration of the connection point at zero joint accelerations
         ups_bias_t = 2.0*ups_S_dot_in_axes2_x
         ups_bias_in_axes2_z = (
-        2.0*ups_omega_1_in_axes2_x*ups_qd_2*ups_root_2 - ups_bias_t*ups_omega_1_in_axes2_y
+        2.0*ups_omega_1_in_axes2_x*ups_q_3*ups_qd_2 - ups_bias_t*ups_omega_1_in_axes2_y
         )
         # (ups-rel) acceleration of the connection point left to the joint accelerations
         ups_rel_in_axes2_x = (
         axis_x_ups_axes2_x*ups_S_ddot_x + axis_x_ups_axes2_y*ups_S_ddot_y +
             axis_x_ups_axes2_z*ups_S_ddot_z -
-            ups_root_2*(-ups_omega_1_in_axes2_y*ups_omega_1_in_axes2_y - ups_qd_2*ups_qd_2)
+            ups_q_3*(-ups_omega_1_in_axes2_y*ups_omega_1_in_axes2_y - ups_qd_2*ups_qd_2)
         )
         ups_rel_in_axes2_z = (
         axis_z_ups_axes2_x*ups_S_ddot_x + axis_z_ups_axes2_y*ups_S_ddot_y +
@@ -9135,14 +9202,14 @@ def _run_joint_accelerations(m, X, V, A):
         ups_qdd_1 = inv_ups_root_1*ups_rel_in_axes2_z
         # (ups-qdd_2) acceleration of joint 2
         ups_qdd_2 = (
-        inv_ups_root_2*(axis_y_ups_axes2_x*ups_S_ddot_x + axis_y_ups_axes2_y*ups_S_ddot_y +
+        inv_ups_q_3*(axis_y_ups_axes2_x*ups_S_ddot_x + axis_y_ups_axes2_y*ups_S_ddot_y +
             axis_y_ups_axes2_z*ups_S_ddot_z - ups_bias_t*ups_qd_2) -
             ups_omega_1_in_axes2_x*ups_omega_1_in_axes2_y
         )
         ok = (
-        ok & (abs(ups_rho2_1) > _TOLERANCE * _TOLERANCE * 1.9124953849) & (abs(ups_rho2_2) >
+        ok & (abs(ups_root_1_t) > _TOLERANCE * _TOLERANCE * 1.9124953849) & (abs(ups_q_3_t) >
             _TOLERANCE * _TOLERANCE * 1.9124953849) & (abs(ups_root_1) > _TOLERANCE * 1.38293) &
-            (abs(ups_root_2) > _TOLERANCE * 1.38293)
+            (abs(ups_q_3) > _TOLERANCE * 1.38293)
         )
         # (ups-qdd_1) acceleration of joint 1
         out_qdd[_qdd_ups[0][leg]] = ups_qdd_1
@@ -9175,53 +9242,47 @@ def _run_joint_accelerations(m, X, V, A):
         tube_S_x = t_x + tube_q_x - tube_base_point_x
         tube_S_y = t_y + tube_q_y - tube_base_point_y
         tube_S_z = t_z + tube_q_z - tube_base_point_z
-        # (tube-px_1) component along the reference direction
-        tube_px_1 = (
+        tube_S_in_turn1_x = (
         tube_S_x*tube_base_frame_xx + tube_S_y*tube_base_frame_yx + tube_S_z*tube_base_frame_zx
         )
-        # (tube-py_1) component across the reference direction
-        tube_py_1 = (
+        tube_S_in_turn1_y = (
         tube_S_x*tube_base_frame_xy + tube_S_y*tube_base_frame_yy + tube_S_z*tube_base_frame_zy
         )
-        # (tube-rho2_1) squared amplitude
-        tube_rho2_1 = tube_px_1*tube_px_1 + tube_py_1*tube_py_1
-        # (tube-root_1) amplitude, with the sign of the branch
-        tube_root_1 = tube_branch_1*sqrt(tube_rho2_1)
-        # (tube-c_1) cosine of the angle of joint 1 from its reference direction
-        inv_tube_root_1 = 1.0/tube_root_1
-        tube_c_1 = -inv_tube_root_1*tube_py_1
-        # (tube-s_1) sine of the angle of joint 1 from its reference direction
-        tube_s_1 = inv_tube_root_1*tube_px_1
-        # (tube-xi_1) the vector from joint 1 to the connection point, resolved along link 1
-        tube_xi_1_in_axes1_z = (
+        tube_S_in_turn1_z = (
         tube_S_x*tube_base_frame_xz + tube_S_y*tube_base_frame_yz + tube_S_z*tube_base_frame_zz
         )
-        # (tube-rho2_2) squared amplitude
-        tube_rho2_2 = tube_rho2_1 + tube_xi_1_in_axes1_z*tube_xi_1_in_axes1_z
-        # (tube-root_2) amplitude, with the sign of the branch
-        tube_root_2 = tube_branch_2*sqrt(tube_rho2_2)
+        # (tube-root_1) amplitude, the length across axis 1, with the sign of the branch
+        tube_root_1_t = tube_S_in_turn1_x*tube_S_in_turn1_x + tube_S_in_turn1_y*tube_S_in_turn1_y
+        tube_root_1 = tube_branch_1*sqrt(tube_root_1_t)
+        # (tube-c_1) cosine of the angle of joint 1 from its reference direction
+        inv_tube_root_1 = 1.0/tube_root_1
+        tube_c_1 = inv_tube_root_1*tube_S_in_turn1_x
+        # (tube-s_1) sine of the angle of joint 1 from its reference direction
+        tube_s_1 = inv_tube_root_1*tube_S_in_turn1_y
+        # (tube-q_3) displacement of joint 3
+        tube_q_3_t = tube_S_in_turn1_z*tube_S_in_turn1_z + tube_root_1_t
+        tube_q_3 = tube_branch_2*sqrt(tube_q_3_t)
         # (tube-c_2) cosine of the angle of joint 2 from its reference direction
-        inv_tube_root_2 = 1.0/tube_root_2
-        tube_c_2 = -inv_tube_root_2*tube_root_1
-        # (tube-s_2) sine of the angle of joint 2 from its reference direction
-        tube_s_2 = inv_tube_root_2*tube_xi_1_in_axes1_z
+        inv_tube_q_3 = 1.0/tube_q_3
+        tube_c_2 = inv_tube_q_3*tube_root_1
         # (tube-S_dot) velocity of the connection point
-        axis_z_tube_axes2_x = tube_base_frame_xx*tube_c_1 + tube_base_frame_xy*tube_s_1
-        axis_z_tube_axes2_y = tube_base_frame_yx*tube_c_1 + tube_base_frame_yy*tube_s_1
-        axis_z_tube_axes2_z = tube_base_frame_zx*tube_c_1 + tube_base_frame_zy*tube_s_1
-        tube_S_dot_t = tube_s_1*tube_s_2
-        tube_S_dot_t_2 = tube_c_1*tube_s_2
+        tube_e_1_in_axes2_x = inv_tube_q_3*tube_S_in_turn1_z
+        axis_z_tube_axes2_x = tube_base_frame_xy*tube_c_1 - tube_base_frame_xx*tube_s_1
+        axis_z_tube_axes2_y = tube_base_frame_yy*tube_c_1 - tube_base_frame_yx*tube_s_1
+        axis_z_tube_axes2_z = tube_base_frame_zy*tube_c_1 - tube_base_frame_zx*tube_s_1
+        tube_S_dot_t = tube_c_1*tube_e_1_in_axes2_x
+        tube_S_dot_t_2 = tube_e_1_in_axes2_x*tube_s_1
         axis_y_tube_axes2_x = (
-        tube_S_dot_t*tube_base_frame_xx + tube_base_frame_xz*tube_c_2 -
-            tube_S_dot_t_2*tube_base_frame_xy
+        tube_S_dot_t*tube_base_frame_xx + tube_S_dot_t_2*tube_base_frame_xy -
+            tube_base_frame_xz*tube_c_2
         )
         axis_y_tube_axes2_y = (
-        tube_S_dot_t*tube_base_frame_yx + tube_base_frame_yz*tube_c_2 -
-            tube_S_dot_t_2*tube_base_frame_yy
+        tube_S_dot_t*tube_base_frame_yx + tube_S_dot_t_2*tube_base_frame_yy -
+            tube_base_frame_yz*tube_c_2
         )
         axis_y_tube_axes2_z = (
-        tube_S_dot_t*tube_base_frame_zx + tube_base_frame_zz*tube_c_2 -
-            tube_S_dot_t_2*tube_base_frame_zy
+        tube_S_dot_t*tube_base_frame_zx + tube_S_dot_t_2*tube_base_frame_zy -
+            tube_base_frame_zz*tube_c_2
         )
         axis_x_tube_axes2_x = (
         axis_y_tube_axes2_y*axis_z_tube_axes2_z - axis_y_tube_axes2_z*axis_z_tube_axes2_y
@@ -9291,10 +9352,10 @@ def _run_joint_accelerations(m, X, V, A):
             tube_n_m1_t_8*tube_platform_joint_rotation_yy +
             tube_n_m1_t_9*tube_platform_joint_rotation_yz
         )
-        tube_end_p1_in_axes2_z = tube_c_1*tube_n_m1_t_10 + tube_n_m1_t_11*tube_s_1
-        tube_n_m1_t_13 = tube_n_m1_t_10*tube_s_1 - tube_c_1*tube_n_m1_t_11
-        tube_n_m1_in_axes2_z = tube_c_2*tube_n_m1_t_12 + tube_n_m1_t_13*tube_s_2
-        tube_n_m1_in_axes1_z = -tube_c_2*tube_end_p1_in_axes2_z
+        tube_n_m1_t_13 = tube_c_1*tube_n_m1_t_10 + tube_n_m1_t_11*tube_s_1
+        tube_end_p1_in_axes2_z = tube_c_1*tube_n_m1_t_11 - tube_n_m1_t_10*tube_s_1
+        tube_n_m1_in_axes2_z = tube_e_1_in_axes2_x*tube_n_m1_t_13 - tube_c_2*tube_n_m1_t_12
+        tube_n_m1_in_axes1_z = tube_c_2*tube_end_p1_in_axes2_z
         # (tube-n_m2) direction 2 of the moment that the platform joint transmits
         tube_n_m2_t = (
         tube_n_m1_t*tube_platform_joint_rotation_zx +
@@ -9311,10 +9372,10 @@ def _run_joint_accelerations(m, X, V, A):
             tube_n_m1_t_8*tube_platform_joint_rotation_zy +
             tube_n_m1_t_9*tube_platform_joint_rotation_zz
         )
-        tube_n_m2_t_4 = tube_n_m2_t*tube_s_1 - tube_c_1*tube_n_m2_t_2
-        tube_n_m2_in_axes2_y = tube_n_m2_t_3*tube_s_2 - tube_c_2*tube_n_m2_t_4
-        tube_end_p2_in_axes2_y = tube_c_2*tube_n_m2_t_3 + tube_n_m2_t_4*tube_s_2
-        tube_n_m2_in_axes1_z = tube_c_2*tube_n_m2_in_axes2_y - tube_end_p2_in_axes2_y*tube_s_2
+        tube_n_m2_t_4 = tube_c_1*tube_n_m2_t + tube_n_m2_t_2*tube_s_1
+        tube_n_m2_in_axes2_y = tube_c_2*tube_n_m2_t_4 + tube_e_1_in_axes2_x*tube_n_m2_t_3
+        tube_end_p2_in_axes2_y = tube_e_1_in_axes2_x*tube_n_m2_t_4 - tube_c_2*tube_n_m2_t_3
+        tube_n_m2_t_5 = tube_c_2*tube_n_m2_in_axes2_y + tube_e_1_in_axes2_x*tube_end_p2_in_axes2_y
         # (tube-n_m3) direction 3 of the moment that the platform joint transmits
         tube_n_m3_t = (
         tube_n_m1_t*tube_platform_joint_rotation_xx +
@@ -9331,39 +9392,39 @@ def _run_joint_accelerations(m, X, V, A):
             tube_n_m1_t_8*tube_platform_joint_rotation_xy +
             tube_n_m1_t_9*tube_platform_joint_rotation_xz
         )
-        tube_end_p3_in_axes2_z = tube_c_1*tube_n_m3_t + tube_n_m3_t_2*tube_s_1
-        tube_n_m3_t_4 = tube_n_m3_t*tube_s_1 - tube_c_1*tube_n_m3_t_2
-        tube_n_m3_in_axes2_z = tube_n_m3_t_3*tube_s_2 - tube_c_2*tube_n_m3_t_4
-        tube_n_m3_t_5 = tube_end_p3_in_axes2_z*tube_s_2
+        tube_n_m3_t_4 = tube_c_1*tube_n_m3_t + tube_n_m3_t_2*tube_s_1
+        tube_end_p3_in_axes2_z = tube_c_1*tube_n_m3_t_2 - tube_n_m3_t*tube_s_1
+        tube_n_m3_in_axes2_z = tube_c_2*tube_n_m3_t_4 + tube_e_1_in_axes2_x*tube_n_m3_t_3
+        tube_n_m3_t_5 = tube_e_1_in_axes2_x*tube_end_p3_in_axes2_z
         # (tube-f_c1) force part of constraint wrench 1
         tube_f_c1_t = (
         tube_n_m1_in_axes1_z*tube_n_m3_in_axes2_z + tube_n_m1_in_axes2_z*tube_n_m3_t_5
         )
         # (tube-m1_c3) moment part 1 of constraint wrench 3
         inv_tube_f_c1_t = 1.0/tube_f_c1_t
-        tube_m1_c3_t = inv_tube_f_c1_t*tube_n_m2_in_axes1_z*tube_n_m3_in_axes2_z
+        tube_m1_c3 = inv_tube_f_c1_t*tube_n_m2_t_5*tube_n_m3_in_axes2_z
         # (tube-m3_c3) moment part 3 of constraint wrench 3
-        tube_m3_c3 = inv_tube_f_c1_t*tube_n_m1_in_axes2_z*tube_n_m2_in_axes1_z
+        tube_m3_c3_t = inv_tube_f_c1_t*tube_n_m1_in_axes2_z*tube_n_m2_t_5
         # (tube-size_c3) size of the moment
-        tube_size_c3 = sqrt(1.0 + tube_m1_c3_t*tube_m1_c3_t + tube_m3_c3*tube_m3_c3)
+        tube_size_c3 = sqrt(1.0 + tube_m1_c3*tube_m1_c3 + tube_m3_c3_t*tube_m3_c3_t)
         # (tube-mu2_c3) moment along direction 2 that goes with it
         tube_mu2_c3 = 1.0/tube_size_c3
         # (tube-w_1) force part of reciprocal wrench 1
         tube_w_1_t = 1.35*tube_n_m1_in_axes1_z
-        tube_w_1_t_2 = 1.35*tube_n_m2_in_axes1_z
+        tube_w_1_t_2 = 1.35*tube_n_m2_t_5
         tube_w_1_t_3 = 1.35*tube_n_m3_t_5
         tube_w_1_t_4 = 1.35*tube_n_m1_in_axes2_z
         tube_w_1_t_5 = 1.35*tube_n_m3_in_axes2_z
-        tube_w_1_t_6 = 1.35*inv_tube_f_c1_t*tube_n_m3_t_5*tube_root_2
-        tube_w_1_t_7 = 1.35*inv_tube_f_c1_t*tube_n_m1_in_axes1_z*tube_root_2
+        tube_w_1_t_6 = 1.35*inv_tube_f_c1_t*tube_n_m3_t_5*tube_q_3
+        tube_w_1_t_7 = 1.35*inv_tube_f_c1_t*tube_n_m1_in_axes1_z*tube_q_3
         tube_w_1_t_8 = 1.35*inv_tube_f_c1_t*tube_n_m3_in_axes2_z*tube_root_1
         tube_w_1_t_9 = 1.35*inv_tube_f_c1_t*tube_n_m1_in_axes2_z*tube_root_1
-        tube_w_1_t_10 = 1.35*tube_m1_c3_t*tube_mu2_c3
+        tube_w_1_t_10 = 1.35*tube_m1_c3*tube_mu2_c3
         tube_w_1_t_11 = 1.35*tube_mu2_c3
-        tube_w_1_t_12 = 1.35*tube_m3_c3*tube_mu2_c3
-        tube_w_1_t_13 = sqrt(tube_rho2_2 + tube_w_1_t_4*tube_w_1_t_4 + tube_w_1_t_5*tube_w_1_t_5)
+        tube_w_1_t_12 = 1.35*tube_m3_c3_t*tube_mu2_c3
+        tube_w_1_t_13 = sqrt(tube_q_3_t + tube_w_1_t_4*tube_w_1_t_4 + tube_w_1_t_5*tube_w_1_t_5)
         inv_tube_w_1_t_13 = 1.0/tube_w_1_t_13
-        tube_w_1_t_14 = inv_tube_w_1_t_13*tube_root_2
+        tube_w_1_t_14 = inv_tube_w_1_t_13*tube_q_3
         tube_w_1_t_15 = inv_tube_w_1_t_13*tube_w_1_t_4
         tube_w_1_t_16 = inv_tube_w_1_t_13*tube_w_1_t_5
         tube_w_1_t_17 = tube_w_1_t_15*tube_w_1_t_6 + tube_w_1_t_16*tube_w_1_t_7 - tube_w_1_t_14
@@ -9489,14 +9550,14 @@ def _run_joint_accelerations(m, X, V, A):
         tube_qd_1_t_8 = 1.35*tube_eta_3
         tube_qd_1 = (
         inv_tube_w_1_t_75*(tube_S_dot_in_axes2_y*tube_qd_1_t + tube_S_dot_in_axes2_z*tube_qd_1_t_2
-            + tube_qd_1_t_3*tube_qd_1_t_6 + tube_qd_1_t_4*tube_qd_1_t_7 +
-            tube_qd_1_t_5*tube_qd_1_t_8)
+            + tube_qd_1_t_3*tube_qd_1_t_6 + tube_qd_1_t_5*tube_qd_1_t_8 -
+            tube_qd_1_t_4*tube_qd_1_t_7)
         )
         # (tube-qd_2) rate of joint 2
         tube_qd_2_t = (
         inv_tube_w_1_t_63*(tube_S_dot_in_axes2_y*tube_w_1_t_64 +
             tube_S_dot_in_axes2_z*tube_w_1_t_65 + tube_qd_1_t_6*tube_w_1_t_66 +
-            tube_qd_1_t_8*tube_w_1_t_68 - tube_qd_1*tube_w_1_t_69 - tube_qd_1_t_7*tube_w_1_t_67)
+            tube_qd_1_t_7*tube_w_1_t_67 + tube_qd_1_t_8*tube_w_1_t_68 - tube_qd_1*tube_w_1_t_69)
         )
         tube_qd_2_t_2 = (
         inv_tube_w_1_t_49*(inv_tube_w_1_t_49*tube_S_dot_in_axes2_z +
@@ -9513,8 +9574,8 @@ def _run_joint_accelerations(m, X, V, A):
         )
         tube_qd_2 = inv_tube_w_1_t_13*tube_qd_2_t_3
         # (tube-omega_1) angular velocity of link 1
-        tube_omega_1_in_axes2_x = tube_qd_1*tube_s_2
-        tube_omega_1_in_axes2_y = tube_c_2*tube_qd_1
+        tube_omega_1_in_axes2_x = tube_e_1_in_axes2_x*tube_qd_1
+        tube_omega_1_in_axes2_y = -tube_c_2*tube_qd_1
         # (tube-W_2) centripetal tensor of link 2
         tube_W_2_in_axes2_yz = tube_omega_1_in_axes2_y*tube_qd_2
         tube_W_2_in_axes2_xz = tube_omega_1_in_axes2_x*tube_qd_2
@@ -9529,16 +9590,16 @@ def _run_joint_accelerations(m, X, V, A):
         # (tube-bias) acceleration of the connection point at zero joint accelerations
         tube_bias_t = 2.0*tube_S_dot_in_axes2_x
         tube_bias_in_axes2_y = (
-        tube_bias_t*tube_qd_2 + tube_omega_1_in_axes2_x*tube_omega_1_in_axes2_y*tube_root_2
+        tube_bias_t*tube_qd_2 + tube_omega_1_in_axes2_x*tube_omega_1_in_axes2_y*tube_q_3
         )
         tube_bias_in_axes2_z = (
-        2.0*tube_W_2_in_axes2_xz*tube_root_2 - tube_bias_t*tube_omega_1_in_axes2_y
+        2.0*tube_W_2_in_axes2_xz*tube_q_3 - tube_bias_t*tube_omega_1_in_axes2_y
         )
         # (tube-rel) acceleration of the connection point left to the joint accelerations
         tube_rel_in_axes2_x = (
         axis_x_tube_axes2_x*tube_S_ddot_x + axis_x_tube_axes2_y*tube_S_ddot_y +
-            axis_x_tube_axes2_z*tube_S_ddot_z -
-            tube_root_2*(-tube_omega_1_in_axes2_y*tube_omega_1_in_axes2_y - tube_qd_2*tube_qd_2)
+            axis_x_tube_axes2_z*tube_S_ddot_z +
+            tube_q_3*(tube_omega_1_in_axes2_y*tube_omega_1_in_axes2_y + tube_qd_2*tube_qd_2)
         )
         tube_rel_in_axes2_y = (
         axis_y_tube_axes2_x*tube_S_ddot_x + axis_y_tube_axes2_y*tube_S_ddot_y +
@@ -9549,7 +9610,7 @@ def _run_joint_accelerations(m, X, V, A):
             axis_z_tube_axes2_z*tube_S_ddot_z - tube_bias_in_axes2_z
         )
         # (tube-nd_m1) rate of moment direction 1
-        tube_end_p1_in_axes2_x = tube_n_m1_t_12*tube_s_2 - tube_c_2*tube_n_m1_t_13
+        tube_end_p1_in_axes2_x = tube_c_2*tube_n_m1_t_13 + tube_e_1_in_axes2_x*tube_n_m1_t_12
         tube_nd_m1_in_axes2_y = (
         tube_end_p1_in_axes2_x*tube_omega_in_axes2_y -
             tube_end_p1_in_axes2_x*tube_omega_1_in_axes2_y -
@@ -9570,7 +9631,7 @@ def _run_joint_accelerations(m, X, V, A):
         )
         tube_nu_1 = tube_nu_1_t_4 - tube_W_2_in_axes2_xz*tube_end_p1_in_axes2_z
         # (tube-nd_m2) rate of moment direction 2
-        tube_end_p2_in_axes2_z = tube_c_1*tube_n_m2_t + tube_n_m2_t_2*tube_s_1
+        tube_end_p2_in_axes2_z = tube_c_1*tube_n_m2_t_2 - tube_n_m2_t*tube_s_1
         tube_nd_m2_in_axes2_x = (
         tube_end_p2_in_axes2_z*tube_omega_in_axes2_x -
             tube_end_p2_in_axes2_z*tube_omega_1_in_axes2_x -
@@ -9586,13 +9647,13 @@ def _run_joint_accelerations(m, X, V, A):
         -tube_W_2_in_axes2_xz*tube_n_m2_in_axes2_y - tube_W_2_in_axes2_yz*tube_end_p2_in_axes2_y
         )
         tube_nu_2_t_2 = (
-        tube_nd_m2_in_axes2_x*tube_nu_1_t +
+        tube_nd_m2_in_axes2_y*tube_nu_1_t_2 - tube_nd_m2_in_axes2_x*tube_nu_1_t -
             tube_nu_1_t_3*(-tube_end_p2_in_axes2_y*tube_omega_1_in_axes2_y -
-            tube_n_m2_in_axes2_y*tube_omega_1_in_axes2_x) - tube_nd_m2_in_axes2_y*tube_nu_1_t_2
+            tube_n_m2_in_axes2_y*tube_omega_1_in_axes2_x)
         )
-        tube_nu_2 = -tube_nu_2_t - tube_nu_2_t_2
+        tube_nu_2 = tube_nu_2_t_2 - tube_nu_2_t
         # (tube-nd_m3) rate of moment direction 3
-        tube_end_p3_in_axes2_y = tube_c_2*tube_n_m3_t_3 + tube_n_m3_t_4*tube_s_2
+        tube_end_p3_in_axes2_y = tube_e_1_in_axes2_x*tube_n_m3_t_4 - tube_c_2*tube_n_m3_t_3
         tube_nd_m3_in_axes2_x = (
         tube_end_p3_in_axes2_y*tube_omega_1_in_axes2_x +
             tube_n_m3_in_axes2_z*tube_omega_in_axes2_y -
@@ -9638,14 +9699,14 @@ def _run_joint_accelerations(m, X, V, A):
         tube_qdd_1_t_3 = 1.35*tube_etad_3
         tube_qdd_1 = (
         inv_tube_w_1_t_75*(tube_qd_1_t*tube_rel_in_axes2_y + tube_qd_1_t_2*tube_rel_in_axes2_z +
-            tube_qd_1_t_3*tube_qdd_1_t + tube_qd_1_t_4*tube_qdd_1_t_2 +
-            tube_qd_1_t_5*tube_qdd_1_t_3)
+            tube_qd_1_t_3*tube_qdd_1_t + tube_qd_1_t_5*tube_qdd_1_t_3 -
+            tube_qd_1_t_4*tube_qdd_1_t_2)
         )
         # (tube-qdd_2) acceleration of joint 2
         tube_qdd_2_t = (
-        inv_tube_w_1_t_63*(tube_qdd_1_t*tube_w_1_t_66 + tube_qdd_1_t_3*tube_w_1_t_68 +
-            tube_rel_in_axes2_y*tube_w_1_t_64 + tube_rel_in_axes2_z*tube_w_1_t_65 -
-            tube_qdd_1*tube_w_1_t_69 - tube_qdd_1_t_2*tube_w_1_t_67)
+        inv_tube_w_1_t_63*(tube_qdd_1_t*tube_w_1_t_66 + tube_qdd_1_t_2*tube_w_1_t_67 +
+            tube_qdd_1_t_3*tube_w_1_t_68 + tube_rel_in_axes2_y*tube_w_1_t_64 +
+            tube_rel_in_axes2_z*tube_w_1_t_65 - tube_qdd_1*tube_w_1_t_69)
         )
         tube_qdd_2_t_2 = (
         inv_tube_w_1_t_49*(inv_tube_w_1_t_49*tube_rel_in_axes2_z + tube_qdd_1*tube_w_1_t_58 +
@@ -9662,12 +9723,12 @@ def _run_joint_accelerations(m, X, V, A):
         )
         tube_qdd_2 = inv_tube_w_1_t_13*tube_qdd_2_t_3
         ok = (
-        ok & (abs(tube_rho2_1) > _TOLERANCE * _TOLERANCE * 1.8225000000000002) & (abs(tube_rho2_2)
-            > _TOLERANCE * _TOLERANCE * 1.8225000000000002) & (abs(tube_f_c1_t) > _TOLERANCE *
-            1.0) & (abs(tube_size_c3) > _TOLERANCE * 1.0) & (abs(tube_w_1_t_13) > _TOLERANCE *
-            1.35) & (abs(tube_w_1_t_33) > _TOLERANCE * 1.0) & (abs(tube_w_1_t_49) > _TOLERANCE *
-            1.0) & (abs(tube_w_1_t_63) > _TOLERANCE * 1.35) & (abs(tube_w_1_t_75) > _TOLERANCE *
-            1.35)
+        ok & (abs(tube_root_1_t) > _TOLERANCE * _TOLERANCE * 1.8225000000000002) &
+            (abs(tube_q_3_t) > _TOLERANCE * _TOLERANCE * 1.8225000000000002) & (abs(tube_f_c1_t) >
+            _TOLERANCE * 1.0) & (abs(tube_size_c3) > _TOLERANCE * 1.0) & (abs(tube_w_1_t_13) >
+            _TOLERANCE * 1.35) & (abs(tube_w_1_t_33) > _TOLERANCE * 1.0) & (abs(tube_w_1_t_49) >
+            _TOLERANCE * 1.0) & (abs(tube_w_1_t_63) > _TOLERANCE * 1.35) & (abs(tube_w_1_t_75) >
+            _TOLERANCE * 1.35)
         )
         # (tube-qdd_1) acceleration of joint 1
         out_qdd[_qdd_tube[0][leg]] = tube_qdd_1
@@ -9744,37 +9805,31 @@ def _run_constraints(m, X):
         t_z + R_zx*tube_platform_point_x + R_zy*tube_platform_point_y + R_zz*tube_platform_point_z
             - tube_base_point_z
         )
-        # (tube-px_1) component along the reference direction
-        tube_px_1 = (
+        tube_S_in_turn1_x = (
         tube_S_x*tube_base_frame_xx + tube_S_y*tube_base_frame_yx + tube_S_z*tube_base_frame_zx
         )
-        # (tube-py_1) component across the reference direction
-        tube_py_1 = (
+        tube_S_in_turn1_y = (
         tube_S_x*tube_base_frame_xy + tube_S_y*tube_base_frame_yy + tube_S_z*tube_base_frame_zy
         )
-        # (tube-rho2_1) squared amplitude
-        tube_rho2_1 = tube_px_1*tube_px_1 + tube_py_1*tube_py_1
-        # (tube-root_1) amplitude, with the sign of the branch
-        tube_root_1 = tube_branch_1*sqrt(tube_rho2_1)
-        # (tube-c_1) cosine of the angle of joint 1 from its reference direction
-        inv_tube_root_1 = 1.0/tube_root_1
-        tube_c_1 = -inv_tube_root_1*tube_py_1
-        # (tube-s_1) sine of the angle of joint 1 from its reference direction
-        tube_s_1 = inv_tube_root_1*tube_px_1
-        # (tube-xi_1) the vector from joint 1 to the connection point, resolved along link 1
-        tube_xi_1_in_axes1_z = (
+        tube_S_in_turn1_z = (
         tube_S_x*tube_base_frame_xz + tube_S_y*tube_base_frame_yz + tube_S_z*tube_base_frame_zz
         )
-        # (tube-rho2_2) squared amplitude
-        tube_rho2_2 = tube_rho2_1 + tube_xi_1_in_axes1_z*tube_xi_1_in_axes1_z
-        # (tube-root_2) amplitude, with the sign of the branch
-        tube_root_2 = tube_branch_2*sqrt(tube_rho2_2)
+        # (tube-root_1) amplitude, the length across axis 1, with the sign of the branch
+        tube_root_1_t = tube_S_in_turn1_x*tube_S_in_turn1_x + tube_S_in_turn1_y*tube_S_in_turn1_y
+        tube_root_1 = tube_branch_1*sqrt(tube_root_1_t)
+        # (tube-c_1) cosine of the angle of joint 1 from its reference direction
+        inv_tube_root_1 = 1.0/tube_root_1
+        tube_c_1 = inv_tube_root_1*tube_S_in_turn1_x
+        # (tube-s_1) sine of the angle of joint 1 from its reference direction
+        tube_s_1 = inv_tube_root_1*tube_S_in_turn1_y
+        # (tube-q_3) displacement of joint 3
+        tube_q_3_t = tube_S_in_turn1_z*tube_S_in_turn1_z + tube_root_1_t
+        tube_q_3 = tube_branch_2*sqrt(tube_q_3_t)
         # (tube-c_2) cosine of the angle of joint 2 from its reference direction
-        inv_tube_root_2 = 1.0/tube_root_2
-        tube_c_2 = -inv_tube_root_2*tube_root_1
-        # (tube-s_2) sine of the angle of joint 2 from its reference direction
-        tube_s_2 = inv_tube_root_2*tube_xi_1_in_axes1_z
+        inv_tube_q_3 = 1.0/tube_q_3
+        tube_c_2 = inv_tube_q_3*tube_root_1
         # (tube-n_m1) direction 1 of the moment that the platform joint transmits
+        tube_e_1_in_axes2_x = inv_tube_q_3*tube_S_in_turn1_z
         tube_n_m1_t = R_xx*tube_base_frame_xx + R_yx*tube_base_frame_yx + R_zx*tube_base_frame_zx
         tube_n_m1_t_2 = (
         R_xy*tube_base_frame_xx + R_yy*tube_base_frame_yx + R_zy*tube_base_frame_zx
@@ -9815,9 +9870,9 @@ def _run_constraints(m, X):
             tube_n_m1_t_8*tube_platform_joint_rotation_yy +
             tube_n_m1_t_9*tube_platform_joint_rotation_yz
         )
-        tube_n_m1_t_13 = tube_n_m1_t_10*tube_s_1 - tube_c_1*tube_n_m1_t_11
-        tube_n_m1_in_axes2_z = tube_c_2*tube_n_m1_t_12 + tube_n_m1_t_13*tube_s_2
-        tube_n_m1_in_axes1_z = -tube_c_2*(tube_c_1*tube_n_m1_t_10 + tube_n_m1_t_11*tube_s_1)
+        tube_n_m1_t_13 = tube_c_1*tube_n_m1_t_10 + tube_n_m1_t_11*tube_s_1
+        tube_n_m1_in_axes2_z = tube_e_1_in_axes2_x*tube_n_m1_t_13 - tube_c_2*tube_n_m1_t_12
+        tube_n_m1_in_axes1_z = tube_c_2*(tube_c_1*tube_n_m1_t_11 - tube_n_m1_t_10*tube_s_1)
         # (tube-n_m2) direction 2 of the moment that the platform joint transmits
         tube_n_m2_t = (
         tube_n_m1_t*tube_platform_joint_rotation_zx +
@@ -9834,10 +9889,10 @@ def _run_constraints(m, X):
             tube_n_m1_t_8*tube_platform_joint_rotation_zy +
             tube_n_m1_t_9*tube_platform_joint_rotation_zz
         )
-        tube_n_m2_t_4 = tube_n_m2_t*tube_s_1 - tube_c_1*tube_n_m2_t_2
-        tube_n_m2_in_axes1_z = (
-        tube_c_2*(tube_n_m2_t_3*tube_s_2 - tube_c_2*tube_n_m2_t_4) -
-            tube_s_2*(tube_c_2*tube_n_m2_t_3 + tube_n_m2_t_4*tube_s_2)
+        tube_n_m2_t_4 = tube_c_1*tube_n_m2_t + tube_n_m2_t_2*tube_s_1
+        tube_n_m2_t_5 = (
+        tube_c_2*(tube_c_2*tube_n_m2_t_4 + tube_e_1_in_axes2_x*tube_n_m2_t_3) +
+            tube_e_1_in_axes2_x*(tube_e_1_in_axes2_x*tube_n_m2_t_4 - tube_c_2*tube_n_m2_t_3)
         )
         # (tube-n_m3) direction 3 of the moment that the platform joint transmits
         tube_n_m3_t = (
@@ -9855,28 +9910,28 @@ def _run_constraints(m, X):
             tube_n_m1_t_8*tube_platform_joint_rotation_xy +
             tube_n_m1_t_9*tube_platform_joint_rotation_xz
         )
-        tube_n_m3_t_4 = tube_n_m3_t*tube_s_1 - tube_c_1*tube_n_m3_t_2
-        tube_n_m3_in_axes2_z = tube_n_m3_t_3*tube_s_2 - tube_c_2*tube_n_m3_t_4
-        tube_n_m3_t_5 = tube_s_2*(tube_c_1*tube_n_m3_t + tube_n_m3_t_2*tube_s_1)
+        tube_n_m3_t_4 = tube_c_1*tube_n_m3_t + tube_n_m3_t_2*tube_s_1
+        tube_n_m3_in_axes2_z = tube_c_2*tube_n_m3_t_4 + tube_e_1_in_axes2_x*tube_n_m3_t_3
+        tube_n_m3_t_5 = tube_e_1_in_axes2_x*(tube_c_1*tube_n_m3_t_2 - tube_n_m3_t*tube_s_1)
         # (tube-f_c1) force part of constraint wrench 1
         tube_f_c1_t = (
         tube_n_m1_in_axes1_z*tube_n_m3_in_axes2_z + tube_n_m1_in_axes2_z*tube_n_m3_t_5
         )
         # (tube-m1_c3) moment part 1 of constraint wrench 3
         inv_tube_f_c1_t = 1.0/tube_f_c1_t
-        tube_m1_c3_t = inv_tube_f_c1_t*tube_n_m2_in_axes1_z*tube_n_m3_in_axes2_z
+        tube_m1_c3 = inv_tube_f_c1_t*tube_n_m2_t_5*tube_n_m3_in_axes2_z
         # (tube-m3_c3) moment part 3 of constraint wrench 3
-        tube_m3_c3 = inv_tube_f_c1_t*tube_n_m1_in_axes2_z*tube_n_m2_in_axes1_z
+        tube_m3_c3_t = inv_tube_f_c1_t*tube_n_m1_in_axes2_z*tube_n_m2_t_5
         # (tube-size_c3) size of the moment
-        tube_size_c3 = sqrt(1.0 + tube_m1_c3_t*tube_m1_c3_t + tube_m3_c3*tube_m3_c3)
+        tube_size_c3 = sqrt(1.0 + tube_m1_c3*tube_m1_c3 + tube_m3_c3_t*tube_m3_c3_t)
         # (tube-mu2_c3) moment along direction 2 that goes with it
         tube_mu2_c3 = 1.0/tube_size_c3
         # (tube-phi_c1) loop-closure residual along the constraint force
-        tube_end_p1_in_axes2_x = tube_n_m1_t_12*tube_s_2 - tube_c_2*tube_n_m1_t_13
-        tube_end_p3_in_axes2_y = tube_c_2*tube_n_m3_t_3 + tube_n_m3_t_4*tube_s_2
+        tube_end_p1_in_axes2_x = tube_c_2*tube_n_m1_t_13 + tube_e_1_in_axes2_x*tube_n_m1_t_12
+        tube_end_p3_in_axes2_y = tube_e_1_in_axes2_x*tube_n_m3_t_4 - tube_c_2*tube_n_m3_t_3
         tube_phi_c1 = (
-        inv_tube_f_c1_t*tube_end_p1_in_axes2_x*tube_n_m3_t_5*tube_root_2 -
-            inv_tube_f_c1_t*tube_end_p3_in_axes2_y*tube_n_m1_in_axes1_z*tube_root_2
+        inv_tube_f_c1_t*tube_end_p1_in_axes2_x*tube_n_m3_t_5*tube_q_3 -
+            inv_tube_f_c1_t*tube_end_p3_in_axes2_y*tube_n_m1_in_axes1_z*tube_q_3
         )
         # (tube-phi_c2) loop-closure residual along the constraint force
         tube_phi_c2 = (
@@ -9885,14 +9940,14 @@ def _run_constraints(m, X):
         )
         # (tube-phi_c3) loop-closure residual about the constraint moment
         tube_phi_c3 = (
-        tube_end_p1_in_axes2_x*tube_m1_c3_t*tube_mu2_c3 +
-            tube_end_p3_in_axes2_y*tube_m3_c3*tube_mu2_c3 - tube_mu2_c3*(tube_c_1*tube_n_m2_t +
-            tube_n_m2_t_2*tube_s_1)
+        -tube_mu2_c3*(tube_c_1*tube_n_m2_t_2 - tube_n_m2_t*tube_s_1) -
+            tube_end_p1_in_axes2_x*tube_m1_c3*tube_mu2_c3 -
+            tube_end_p3_in_axes2_y*tube_m3_c3_t*tube_mu2_c3
         )
         ok = (
-        ok & (abs(tube_rho2_1) > _TOLERANCE * _TOLERANCE * 1.8225000000000002) & (abs(tube_rho2_2)
-            > _TOLERANCE * _TOLERANCE * 1.8225000000000002) & (abs(tube_f_c1_t) > _TOLERANCE *
-            1.0) & (abs(tube_size_c3) > _TOLERANCE * 1.0)
+        ok & (abs(tube_root_1_t) > _TOLERANCE * _TOLERANCE * 1.8225000000000002) &
+            (abs(tube_q_3_t) > _TOLERANCE * _TOLERANCE * 1.8225000000000002) & (abs(tube_f_c1_t) >
+            _TOLERANCE * 1.0) & (abs(tube_size_c3) > _TOLERANCE * 1.0)
         )
         # (tube-phi_c1) loop-closure residual along the constraint force
         out_constraints[_constraints_tube[0][leg]] = tube_phi_c1
@@ -9997,40 +10052,33 @@ def _run_legs(m, X, V, A):
         ups_S_x = t_x + ups_q_x - ups_base_point_x
         ups_S_y = t_y + ups_q_y - ups_base_point_y
         ups_S_z = t_z + ups_q_z - ups_base_point_z
-        # (ups-px_1) component along the reference direction
-        ups_px_1 = (
+        ups_S_in_turn1_x = (
         ups_S_x*ups_base_frame_xx + ups_S_y*ups_base_frame_yx + ups_S_z*ups_base_frame_zx
         )
-        # (ups-py_1) component across the reference direction
-        ups_py_1 = (
+        ups_S_in_turn1_y = (
         ups_S_x*ups_base_frame_xy + ups_S_y*ups_base_frame_yy + ups_S_z*ups_base_frame_zy
         )
-        # (ups-rho2_1) squared amplitude
-        ups_rho2_1 = ups_px_1*ups_px_1 + ups_py_1*ups_py_1
-        # (ups-root_1) amplitude, with the sign of the branch
-        ups_root_1 = ups_branch_1*sqrt(ups_rho2_1)
-        # (ups-c_1) cosine of the angle of joint 1 from its reference direction
-        inv_ups_root_1 = 1.0/ups_root_1
-        ups_c_1 = -inv_ups_root_1*ups_py_1
-        # (ups-s_1) sine of the angle of joint 1 from its reference direction
-        ups_s_1 = inv_ups_root_1*ups_px_1
-        # (ups-xi_1) the vector from joint 1 to the connection point, resolved along link 1
-        ups_xi_1_in_axes1_z = (
+        ups_S_in_turn1_z = (
         ups_S_x*ups_base_frame_xz + ups_S_y*ups_base_frame_yz + ups_S_z*ups_base_frame_zz
         )
-        # (ups-rho2_2) squared amplitude
-        ups_rho2_2 = ups_rho2_1 + ups_xi_1_in_axes1_z*ups_xi_1_in_axes1_z
-        # (ups-root_2) amplitude, with the sign of the branch
-        ups_root_2 = ups_branch_2*sqrt(ups_rho2_2)
+        # (ups-root_1) amplitude, the length across axis 1, with the sign of the branch
+        ups_root_1_t = ups_S_in_turn1_x*ups_S_in_turn1_x + ups_S_in_turn1_y*ups_S_in_turn1_y
+        ups_root_1 = ups_branch_1*sqrt(ups_root_1_t)
+        # (ups-c_1) cosine of the angle of joint 1 from its reference direction
+        inv_ups_root_1 = 1.0/ups_root_1
+        ups_c_1 = inv_ups_root_1*ups_S_in_turn1_x
+        # (ups-s_1) sine of the angle of joint 1 from its reference direction
+        ups_s_1 = inv_ups_root_1*ups_S_in_turn1_y
+        # (ups-q_3) displacement of joint 3
+        ups_q_3_t = ups_S_in_turn1_z*ups_S_in_turn1_z + ups_root_1_t
+        ups_q_3 = ups_branch_2*sqrt(ups_q_3_t)
         # (ups-c_2) cosine of the angle of joint 2 from its reference direction
-        inv_ups_root_2 = 1.0/ups_root_2
-        ups_c_2 = -inv_ups_root_2*ups_root_1
-        # (ups-s_2) sine of the angle of joint 2 from its reference direction
-        ups_s_2 = inv_ups_root_2*ups_xi_1_in_axes1_z
+        inv_ups_q_3 = 1.0/ups_q_3
+        ups_c_2 = inv_ups_q_3*ups_root_1
         # (ups-S_dot) velocity of the connection point
-        axis_x_ups_axes2_x = inv_ups_root_2*ups_S_x
-        axis_x_ups_axes2_y = inv_ups_root_2*ups_S_y
-        axis_x_ups_axes2_z = inv_ups_root_2*ups_S_z
+        axis_x_ups_axes2_x = inv_ups_q_3*ups_S_x
+        axis_x_ups_axes2_y = inv_ups_q_3*ups_S_y
+        axis_x_ups_axes2_z = inv_ups_q_3*ups_S_z
         ups_S_dot_t = omega_y*ups_q_z - omega_z*ups_q_y
         ups_S_dot_t_2 = omega_z*ups_q_x - omega_x*ups_q_z
         ups_S_dot_t_3 = omega_x*ups_q_y - omega_y*ups_q_x
@@ -10042,9 +10090,9 @@ def _run_legs(m, X, V, A):
             axis_x_ups_axes2_z*ups_S_dot_z
         )
         # (ups-qd_1) rate of joint 1
-        axis_z_ups_axes2_x = ups_base_frame_xx*ups_c_1 + ups_base_frame_xy*ups_s_1
-        axis_z_ups_axes2_y = ups_base_frame_yx*ups_c_1 + ups_base_frame_yy*ups_s_1
-        axis_z_ups_axes2_z = ups_base_frame_zx*ups_c_1 + ups_base_frame_zy*ups_s_1
+        axis_z_ups_axes2_x = ups_base_frame_xy*ups_c_1 - ups_base_frame_xx*ups_s_1
+        axis_z_ups_axes2_y = ups_base_frame_yy*ups_c_1 - ups_base_frame_yx*ups_s_1
+        axis_z_ups_axes2_z = ups_base_frame_zy*ups_c_1 - ups_base_frame_zx*ups_s_1
         ups_qd_1 = (
         inv_ups_root_1*(axis_z_ups_axes2_x*ups_S_dot_x + axis_z_ups_axes2_y*ups_S_dot_y +
             axis_z_ups_axes2_z*ups_S_dot_z)
@@ -10060,12 +10108,13 @@ def _run_legs(m, X, V, A):
         axis_x_ups_axes2_y*axis_z_ups_axes2_x - axis_x_ups_axes2_x*axis_z_ups_axes2_y
         )
         ups_qd_2 = (
-        inv_ups_root_2*(axis_y_ups_axes2_x*ups_S_dot_x + axis_y_ups_axes2_y*ups_S_dot_y +
+        inv_ups_q_3*(axis_y_ups_axes2_x*ups_S_dot_x + axis_y_ups_axes2_y*ups_S_dot_y +
             axis_y_ups_axes2_z*ups_S_dot_z)
         )
         # (ups-omega_1) angular velocity of link 1
-        ups_omega_1_in_axes2_x = ups_qd_1*ups_s_2
-        ups_omega_1_in_axes2_y = ups_c_2*ups_qd_1
+        ups_e_1_in_axes2_x = inv_ups_q_3*ups_S_in_turn1_z
+        ups_omega_1_in_axes2_x = ups_e_1_in_axes2_x*ups_qd_1
+        ups_omega_1_in_axes2_y = -ups_c_2*ups_qd_1
         # (ups-W_2) centripetal tensor of link 2
         ups_W_2_in_axes2_yz = ups_omega_1_in_axes2_y*ups_qd_2
         ups_W_2_in_axes2_xz = ups_omega_1_in_axes2_x*ups_qd_2
@@ -10084,16 +10133,14 @@ def _run_legs(m, X, V, A):
         )
         # (ups-bias) acceleration of the connection point at zero joint accelerations
         ups_bias_t = 2.0*ups_S_dot_in_axes2_x
-        ups_bias_in_axes2_z = (
-        2.0*ups_W_2_in_axes2_xz*ups_root_2 - ups_bias_t*ups_omega_1_in_axes2_y
-        )
+        ups_bias_in_axes2_z = 2.0*ups_W_2_in_axes2_xz*ups_q_3 - ups_bias_t*ups_omega_1_in_axes2_y
         # (ups-rel) acceleration of the connection point left to the joint accelerations
         ups_rel_in_axes2_z = ups_S_ddot_in_axes2_z - ups_bias_in_axes2_z
         # (ups-qdd_1) acceleration of joint 1
         ups_qdd_1 = inv_ups_root_1*ups_rel_in_axes2_z
         # (ups-alpha_1) angular acceleration of link 1
-        ups_alpha_1_in_axes2_x = ups_qdd_1*ups_s_2
-        ups_alpha_1_in_axes2_y = ups_c_2*ups_qdd_1
+        ups_alpha_1_in_axes2_x = ups_e_1_in_axes2_x*ups_qdd_1
+        ups_alpha_1_in_axes2_y = -ups_c_2*ups_qdd_1
         # (ups-alpha_2) angular acceleration of link 2
         ups_alpha_2_in_axes2_x = ups_W_2_in_axes2_yz + ups_alpha_1_in_axes2_x
         ups_alpha_2_in_axes2_y = ups_alpha_1_in_axes2_y - ups_W_2_in_axes2_xz
@@ -10102,16 +10149,16 @@ def _run_legs(m, X, V, A):
         ups_B_2_t_2 = axis_y_ups_axes2_y*ups_S_ddot_y
         ups_B_2_t_3 = axis_y_ups_axes2_z*ups_S_ddot_z
         ups_B_2_in_axes2_yx = (
-        inv_ups_root_2*(ups_B_2_t + ups_B_2_t_2 + ups_B_2_t_3 - ups_bias_t*ups_qd_2)
+        inv_ups_q_3*(ups_B_2_t + ups_B_2_t_2 + ups_B_2_t_3 - ups_bias_t*ups_qd_2)
         )
         ups_B_2_in_axes2_xy = 2.0*ups_W_2_in_axes2_xy - ups_B_2_in_axes2_yx
         ups_B_2_in_axes2_zx = ups_W_2_in_axes2_xz - ups_alpha_2_in_axes2_y
         ups_B_2_in_axes2_zy = ups_W_2_in_axes2_yz + ups_alpha_2_in_axes2_x
         # (ups-acc_3) acceleration of the reference point of link 3, less gravity
-        ups_g_in_axes2_z = ups_acc_3_t*ups_c_1 + ups_acc_3_t_2*ups_s_1
-        ups_acc_3_t_4 = ups_acc_3_t_2*ups_c_1 - ups_acc_3_t*ups_s_1
-        ups_g_in_axes2_x = ups_acc_3_t_3*ups_s_2 + ups_acc_3_t_4*ups_c_2
-        ups_g_in_axes2_y = ups_acc_3_t_3*ups_c_2 - ups_acc_3_t_4*ups_s_2
+        ups_acc_3_t_4 = ups_acc_3_t*ups_c_1 + ups_acc_3_t_2*ups_s_1
+        ups_g_in_axes2_z = ups_acc_3_t_2*ups_c_1 - ups_acc_3_t*ups_s_1
+        ups_g_in_axes2_x = ups_acc_3_t_3*ups_e_1_in_axes2_x + ups_acc_3_t_4*ups_c_2
+        ups_g_in_axes2_y = ups_acc_3_t_4*ups_e_1_in_axes2_x - ups_acc_3_t_3*ups_c_2
         ups_acc_3_in_axes2_x = (
         axis_x_ups_axes2_x*ups_S_ddot_x + axis_x_ups_axes2_y*ups_S_ddot_y +
             axis_x_ups_axes2_z*ups_S_ddot_z - ups_g_in_axes2_x
@@ -10149,14 +10196,14 @@ def _run_legs(m, X, V, A):
         )
         # (ups-c) leg force on the platform without actuation and without the mass at the connection point
         ups_c_in_axes2_y = (
-        ups_alpha_1_in_axes2_x*ups_h_3_in_spec2_y - inv_ups_root_2*ups_mu_2_in_axes2_z -
+        ups_alpha_1_in_axes2_x*ups_h_3_in_spec2_y - inv_ups_q_3*ups_mu_2_in_axes2_z -
             ups_B_2_in_axes2_yx*ups_h_3_in_spec2_x - ups_h_3_in_spec2_z*(ups_mu_2_t +
             ups_mu_2_t_3)
         )
         ups_c_in_axes2_z = (
-        ups_B_2_in_axes2_zy*ups_h_3_in_spec2_z + ups_h_3_in_spec2_y*(ups_mu_2_t + ups_mu_2_t_2) -
-            inv_ups_root_1*(ups_c_2*ups_mu_2_in_axes2_y + ups_mu_2_in_axes2_x*ups_s_2) -
-            ups_B_2_in_axes2_zx*ups_h_3_in_spec2_x
+        inv_ups_root_1*(ups_c_2*ups_mu_2_in_axes2_y - ups_e_1_in_axes2_x*ups_mu_2_in_axes2_x) +
+            ups_B_2_in_axes2_zy*ups_h_3_in_spec2_z + ups_h_3_in_spec2_y*(ups_mu_2_t +
+            ups_mu_2_t_2) - ups_B_2_in_axes2_zx*ups_h_3_in_spec2_x
         )
         # (ups-c_true) leg force on the platform without actuation, the last link's mass included
         ups_c_true_in_axes2_x = (
@@ -10179,9 +10226,9 @@ def _run_legs(m, X, V, A):
             axis_z_ups_axes2_z*ups_c_true_in_axes2_z
         )
         ok = (
-        ok & (abs(ups_rho2_1) > _TOLERANCE * _TOLERANCE * 1.9124953849) & (abs(ups_rho2_2) >
+        ok & (abs(ups_root_1_t) > _TOLERANCE * _TOLERANCE * 1.9124953849) & (abs(ups_q_3_t) >
             _TOLERANCE * _TOLERANCE * 1.9124953849) & (abs(ups_root_1) > _TOLERANCE * 1.38293) &
-            (abs(ups_root_2) > _TOLERANCE * 1.38293)
+            (abs(ups_q_3) > _TOLERANCE * 1.38293)
         )
         # (ups-c_true) leg force on the platform without actuation, the last link's mass included
         out_leg_force[_leg_force_ups[0][leg]] = ups_c_true_x
@@ -10221,53 +10268,47 @@ def _run_legs(m, X, V, A):
         tube_S_x = t_x + tube_q_x - tube_base_point_x
         tube_S_y = t_y + tube_q_y - tube_base_point_y
         tube_S_z = t_z + tube_q_z - tube_base_point_z
-        # (tube-px_1) component along the reference direction
-        tube_px_1 = (
+        tube_S_in_turn1_x = (
         tube_S_x*tube_base_frame_xx + tube_S_y*tube_base_frame_yx + tube_S_z*tube_base_frame_zx
         )
-        # (tube-py_1) component across the reference direction
-        tube_py_1 = (
+        tube_S_in_turn1_y = (
         tube_S_x*tube_base_frame_xy + tube_S_y*tube_base_frame_yy + tube_S_z*tube_base_frame_zy
         )
-        # (tube-rho2_1) squared amplitude
-        tube_rho2_1 = tube_px_1*tube_px_1 + tube_py_1*tube_py_1
-        # (tube-root_1) amplitude, with the sign of the branch
-        tube_root_1 = tube_branch_1*sqrt(tube_rho2_1)
-        # (tube-c_1) cosine of the angle of joint 1 from its reference direction
-        inv_tube_root_1 = 1.0/tube_root_1
-        tube_c_1 = -inv_tube_root_1*tube_py_1
-        # (tube-s_1) sine of the angle of joint 1 from its reference direction
-        tube_s_1 = inv_tube_root_1*tube_px_1
-        # (tube-xi_1) the vector from joint 1 to the connection point, resolved along link 1
-        tube_xi_1_in_axes1_z = (
+        tube_S_in_turn1_z = (
         tube_S_x*tube_base_frame_xz + tube_S_y*tube_base_frame_yz + tube_S_z*tube_base_frame_zz
         )
-        # (tube-rho2_2) squared amplitude
-        tube_rho2_2 = tube_rho2_1 + tube_xi_1_in_axes1_z*tube_xi_1_in_axes1_z
-        # (tube-root_2) amplitude, with the sign of the branch
-        tube_root_2 = tube_branch_2*sqrt(tube_rho2_2)
+        # (tube-root_1) amplitude, the length across axis 1, with the sign of the branch
+        tube_root_1_t = tube_S_in_turn1_x*tube_S_in_turn1_x + tube_S_in_turn1_y*tube_S_in_turn1_y
+        tube_root_1 = tube_branch_1*sqrt(tube_root_1_t)
+        # (tube-c_1) cosine of the angle of joint 1 from its reference direction
+        inv_tube_root_1 = 1.0/tube_root_1
+        tube_c_1 = inv_tube_root_1*tube_S_in_turn1_x
+        # (tube-s_1) sine of the angle of joint 1 from its reference direction
+        tube_s_1 = inv_tube_root_1*tube_S_in_turn1_y
+        # (tube-q_3) displacement of joint 3
+        tube_q_3_t = tube_S_in_turn1_z*tube_S_in_turn1_z + tube_root_1_t
+        tube_q_3 = tube_branch_2*sqrt(tube_q_3_t)
         # (tube-c_2) cosine of the angle of joint 2 from its reference direction
-        inv_tube_root_2 = 1.0/tube_root_2
-        tube_c_2 = -inv_tube_root_2*tube_root_1
-        # (tube-s_2) sine of the angle of joint 2 from its reference direction
-        tube_s_2 = inv_tube_root_2*tube_xi_1_in_axes1_z
+        inv_tube_q_3 = 1.0/tube_q_3
+        tube_c_2 = inv_tube_q_3*tube_root_1
         # (tube-S_dot) velocity of the connection point
-        axis_z_tube_axes2_x = tube_base_frame_xx*tube_c_1 + tube_base_frame_xy*tube_s_1
-        axis_z_tube_axes2_y = tube_base_frame_yx*tube_c_1 + tube_base_frame_yy*tube_s_1
-        axis_z_tube_axes2_z = tube_base_frame_zx*tube_c_1 + tube_base_frame_zy*tube_s_1
-        tube_S_dot_t = tube_s_1*tube_s_2
-        tube_S_dot_t_2 = tube_c_1*tube_s_2
+        tube_e_1_in_axes2_x = inv_tube_q_3*tube_S_in_turn1_z
+        axis_z_tube_axes2_x = tube_base_frame_xy*tube_c_1 - tube_base_frame_xx*tube_s_1
+        axis_z_tube_axes2_y = tube_base_frame_yy*tube_c_1 - tube_base_frame_yx*tube_s_1
+        axis_z_tube_axes2_z = tube_base_frame_zy*tube_c_1 - tube_base_frame_zx*tube_s_1
+        tube_S_dot_t = tube_c_1*tube_e_1_in_axes2_x
+        tube_S_dot_t_2 = tube_e_1_in_axes2_x*tube_s_1
         axis_y_tube_axes2_x = (
-        tube_S_dot_t*tube_base_frame_xx + tube_base_frame_xz*tube_c_2 -
-            tube_S_dot_t_2*tube_base_frame_xy
+        tube_S_dot_t*tube_base_frame_xx + tube_S_dot_t_2*tube_base_frame_xy -
+            tube_base_frame_xz*tube_c_2
         )
         axis_y_tube_axes2_y = (
-        tube_S_dot_t*tube_base_frame_yx + tube_base_frame_yz*tube_c_2 -
-            tube_S_dot_t_2*tube_base_frame_yy
+        tube_S_dot_t*tube_base_frame_yx + tube_S_dot_t_2*tube_base_frame_yy -
+            tube_base_frame_yz*tube_c_2
         )
         axis_y_tube_axes2_z = (
-        tube_S_dot_t*tube_base_frame_zx + tube_base_frame_zz*tube_c_2 -
-            tube_S_dot_t_2*tube_base_frame_zy
+        tube_S_dot_t*tube_base_frame_zx + tube_S_dot_t_2*tube_base_frame_zy -
+            tube_base_frame_zz*tube_c_2
         )
         axis_x_tube_axes2_x = (
         axis_y_tube_axes2_y*axis_z_tube_axes2_z - axis_y_tube_axes2_z*axis_z_tube_axes2_y
@@ -10337,10 +10378,10 @@ def _run_legs(m, X, V, A):
             tube_n_m1_t_8*tube_platform_joint_rotation_yy +
             tube_n_m1_t_9*tube_platform_joint_rotation_yz
         )
-        tube_end_p1_in_axes2_z = tube_c_1*tube_n_m1_t_10 + tube_n_m1_t_11*tube_s_1
-        tube_n_m1_t_13 = tube_n_m1_t_10*tube_s_1 - tube_c_1*tube_n_m1_t_11
-        tube_n_m1_in_axes2_z = tube_c_2*tube_n_m1_t_12 + tube_n_m1_t_13*tube_s_2
-        tube_n_m1_in_axes1_z = -tube_c_2*tube_end_p1_in_axes2_z
+        tube_n_m1_t_13 = tube_c_1*tube_n_m1_t_10 + tube_n_m1_t_11*tube_s_1
+        tube_end_p1_in_axes2_z = tube_c_1*tube_n_m1_t_11 - tube_n_m1_t_10*tube_s_1
+        tube_n_m1_in_axes2_z = tube_e_1_in_axes2_x*tube_n_m1_t_13 - tube_c_2*tube_n_m1_t_12
+        tube_n_m1_in_axes1_z = tube_c_2*tube_end_p1_in_axes2_z
         # (tube-n_m2) direction 2 of the moment that the platform joint transmits
         tube_n_m2_t = (
         tube_n_m1_t*tube_platform_joint_rotation_zx +
@@ -10357,10 +10398,10 @@ def _run_legs(m, X, V, A):
             tube_n_m1_t_8*tube_platform_joint_rotation_zy +
             tube_n_m1_t_9*tube_platform_joint_rotation_zz
         )
-        tube_n_m2_t_4 = tube_n_m2_t*tube_s_1 - tube_c_1*tube_n_m2_t_2
-        tube_n_m2_in_axes2_y = tube_n_m2_t_3*tube_s_2 - tube_c_2*tube_n_m2_t_4
-        tube_end_p2_in_axes2_y = tube_c_2*tube_n_m2_t_3 + tube_n_m2_t_4*tube_s_2
-        tube_n_m2_in_axes1_z = tube_c_2*tube_n_m2_in_axes2_y - tube_end_p2_in_axes2_y*tube_s_2
+        tube_n_m2_t_4 = tube_c_1*tube_n_m2_t + tube_n_m2_t_2*tube_s_1
+        tube_n_m2_in_axes2_y = tube_c_2*tube_n_m2_t_4 + tube_e_1_in_axes2_x*tube_n_m2_t_3
+        tube_end_p2_in_axes2_y = tube_e_1_in_axes2_x*tube_n_m2_t_4 - tube_c_2*tube_n_m2_t_3
+        tube_n_m2_t_5 = tube_c_2*tube_n_m2_in_axes2_y + tube_e_1_in_axes2_x*tube_end_p2_in_axes2_y
         # (tube-n_m3) direction 3 of the moment that the platform joint transmits
         tube_n_m3_t = (
         tube_n_m1_t*tube_platform_joint_rotation_xx +
@@ -10377,27 +10418,27 @@ def _run_legs(m, X, V, A):
             tube_n_m1_t_8*tube_platform_joint_rotation_xy +
             tube_n_m1_t_9*tube_platform_joint_rotation_xz
         )
-        tube_end_p3_in_axes2_z = tube_c_1*tube_n_m3_t + tube_n_m3_t_2*tube_s_1
-        tube_n_m3_t_4 = tube_n_m3_t*tube_s_1 - tube_c_1*tube_n_m3_t_2
-        tube_n_m3_in_axes2_z = tube_n_m3_t_3*tube_s_2 - tube_c_2*tube_n_m3_t_4
-        tube_n_m3_t_5 = tube_end_p3_in_axes2_z*tube_s_2
+        tube_n_m3_t_4 = tube_c_1*tube_n_m3_t + tube_n_m3_t_2*tube_s_1
+        tube_end_p3_in_axes2_z = tube_c_1*tube_n_m3_t_2 - tube_n_m3_t*tube_s_1
+        tube_n_m3_in_axes2_z = tube_c_2*tube_n_m3_t_4 + tube_e_1_in_axes2_x*tube_n_m3_t_3
+        tube_n_m3_t_5 = tube_e_1_in_axes2_x*tube_end_p3_in_axes2_z
         # (tube-f_c1) force part of constraint wrench 1
         tube_f_c1_t = (
         tube_n_m1_in_axes1_z*tube_n_m3_in_axes2_z + tube_n_m1_in_axes2_z*tube_n_m3_t_5
         )
         # (tube-m1_c1) moment part 1 of constraint wrench 1
         inv_tube_f_c1_t = 1.0/tube_f_c1_t
-        tube_m1_c1_t = inv_tube_f_c1_t*tube_n_m3_t_5*tube_root_2
+        tube_m1_c1_t = inv_tube_f_c1_t*tube_n_m3_t_5*tube_q_3
         # (tube-m3_c1) moment part 3 of constraint wrench 1
-        tube_m3_c1_t = inv_tube_f_c1_t*tube_n_m1_in_axes1_z*tube_root_2
+        tube_m3_c1_t = inv_tube_f_c1_t*tube_n_m1_in_axes1_z*tube_q_3
         # (tube-m1_c2) moment part 1 of constraint wrench 2
         tube_m1_c2_t = inv_tube_f_c1_t*tube_n_m3_in_axes2_z*tube_root_1
         # (tube-m3_c2) moment part 3 of constraint wrench 2
         tube_m3_c2 = inv_tube_f_c1_t*tube_n_m1_in_axes2_z*tube_root_1
         # (tube-m1_c3) moment part 1 of constraint wrench 3
-        tube_m1_c3_t = inv_tube_f_c1_t*tube_n_m2_in_axes1_z*tube_n_m3_in_axes2_z
+        tube_m1_c3 = inv_tube_f_c1_t*tube_n_m2_t_5*tube_n_m3_in_axes2_z
         # (tube-m3_c3) moment part 3 of constraint wrench 3
-        tube_m3_c3 = inv_tube_f_c1_t*tube_n_m1_in_axes2_z*tube_n_m2_in_axes1_z
+        tube_m3_c3_t = inv_tube_f_c1_t*tube_n_m1_in_axes2_z*tube_n_m2_t_5
         # (tube-mu_c1) the moment that goes with it
         tube_mu_c1_in_axes2_y = tube_end_p1_in_axes2_z*tube_m1_c1_t
         tube_mu_c1_in_axes2_x = tube_end_p3_in_axes2_z*tube_m3_c1_t
@@ -10435,21 +10476,21 @@ def _run_legs(m, X, V, A):
             axis_x_tube_axes2_z*tube_mu_c2_t
         )
         # (tube-size_c3) size of the moment
-        tube_size_c3 = sqrt(1.0 + tube_m1_c3_t*tube_m1_c3_t + tube_m3_c3*tube_m3_c3)
+        tube_size_c3 = sqrt(1.0 + tube_m1_c3*tube_m1_c3 + tube_m3_c3_t*tube_m3_c3_t)
         # (tube-mu1_c3) moment along direction 1 that goes with it
         inv_tube_size_c3 = 1.0/tube_size_c3
-        tube_mu1_c3_t = inv_tube_size_c3*tube_m1_c3_t
+        tube_mu1_c3 = inv_tube_size_c3*tube_m1_c3
         # (tube-mu3_c3) moment along direction 3 that goes with it
-        tube_mu3_c3 = inv_tube_size_c3*tube_m3_c3
+        tube_mu3_c3_t = inv_tube_size_c3*tube_m3_c3_t
         # (tube-mu_c3) the moment that goes with it
         tube_mu_c3_in_axes2_x = (
-        -inv_tube_size_c3*tube_end_p2_in_axes2_y - tube_end_p3_in_axes2_z*tube_mu3_c3
+        tube_end_p3_in_axes2_z*tube_mu3_c3_t - inv_tube_size_c3*tube_end_p2_in_axes2_y
         )
         tube_mu_c3_in_axes2_y = (
-        inv_tube_size_c3*tube_n_m2_in_axes2_y + tube_end_p1_in_axes2_z*tube_mu1_c3_t
+        inv_tube_size_c3*tube_n_m2_in_axes2_y - tube_end_p1_in_axes2_z*tube_mu1_c3
         )
         tube_mu_c3_in_axes2_z = (
-        tube_mu3_c3*tube_n_m3_in_axes2_z - tube_mu1_c3_t*tube_n_m1_in_axes2_z
+        tube_mu1_c3*tube_n_m1_in_axes2_z - tube_mu3_c3_t*tube_n_m3_in_axes2_z
         )
         tube_mu_c3_x = (
         axis_x_tube_axes2_x*tube_mu_c3_in_axes2_x + axis_y_tube_axes2_x*tube_mu_c3_in_axes2_y +
@@ -10465,7 +10506,7 @@ def _run_legs(m, X, V, A):
         )
         # (tube-w_1) force part of reciprocal wrench 1
         tube_w_1_t = 1.35*tube_n_m1_in_axes1_z
-        tube_w_1_t_2 = 1.35*tube_n_m2_in_axes1_z
+        tube_w_1_t_2 = 1.35*tube_n_m2_t_5
         tube_w_1_t_3 = 1.35*tube_n_m3_t_5
         tube_w_1_t_4 = 1.35*tube_n_m1_in_axes2_z
         tube_w_1_t_5 = 1.35*tube_n_m3_in_axes2_z
@@ -10473,12 +10514,12 @@ def _run_legs(m, X, V, A):
         tube_w_1_t_7 = 1.35*tube_m3_c1_t
         tube_w_1_t_8 = 1.35*tube_m1_c2_t
         tube_w_1_t_9 = 1.35*tube_m3_c2
-        tube_w_1_t_10 = 1.35*tube_mu1_c3_t
+        tube_w_1_t_10 = 1.35*tube_mu1_c3
         tube_w_1_t_11 = 1.35*inv_tube_size_c3
-        tube_w_1_t_12 = 1.35*tube_mu3_c3
-        tube_w_1_t_13 = sqrt(tube_rho2_2 + tube_w_1_t_4*tube_w_1_t_4 + tube_w_1_t_5*tube_w_1_t_5)
+        tube_w_1_t_12 = 1.35*tube_mu3_c3_t
+        tube_w_1_t_13 = sqrt(tube_q_3_t + tube_w_1_t_4*tube_w_1_t_4 + tube_w_1_t_5*tube_w_1_t_5)
         inv_tube_w_1_t_13 = 1.0/tube_w_1_t_13
-        tube_w_1_t_14 = inv_tube_w_1_t_13*tube_root_2
+        tube_w_1_t_14 = inv_tube_w_1_t_13*tube_q_3
         tube_w_1_t_15 = inv_tube_w_1_t_13*tube_w_1_t_4
         tube_w_1_t_16 = inv_tube_w_1_t_13*tube_w_1_t_5
         tube_w_1_t_17 = tube_w_1_t_15*tube_w_1_t_6 + tube_w_1_t_16*tube_w_1_t_7 - tube_w_1_t_14
@@ -10604,14 +10645,14 @@ def _run_legs(m, X, V, A):
         tube_qd_1_t_8 = 1.35*tube_eta_3
         tube_qd_1 = (
         inv_tube_w_1_t_75*(tube_S_dot_in_axes2_y*tube_qd_1_t + tube_S_dot_in_axes2_z*tube_qd_1_t_2
-            + tube_qd_1_t_3*tube_qd_1_t_6 + tube_qd_1_t_4*tube_qd_1_t_7 +
-            tube_qd_1_t_5*tube_qd_1_t_8)
+            + tube_qd_1_t_3*tube_qd_1_t_6 + tube_qd_1_t_5*tube_qd_1_t_8 -
+            tube_qd_1_t_4*tube_qd_1_t_7)
         )
         # (tube-qd_2) rate of joint 2
         tube_qd_2_t = (
         inv_tube_w_1_t_63*(tube_S_dot_in_axes2_y*tube_w_1_t_64 +
             tube_S_dot_in_axes2_z*tube_w_1_t_65 + tube_qd_1_t_6*tube_w_1_t_66 +
-            tube_qd_1_t_8*tube_w_1_t_68 - tube_qd_1*tube_w_1_t_69 - tube_qd_1_t_7*tube_w_1_t_67)
+            tube_qd_1_t_7*tube_w_1_t_67 + tube_qd_1_t_8*tube_w_1_t_68 - tube_qd_1*tube_w_1_t_69)
         )
         tube_qd_2_t_2 = (
         inv_tube_w_1_t_49*(inv_tube_w_1_t_49*tube_S_dot_in_axes2_z +
@@ -10628,8 +10669,8 @@ def _run_legs(m, X, V, A):
         )
         tube_qd_2 = inv_tube_w_1_t_13*tube_qd_2_t_3
         # (tube-omega_1) angular velocity of link 1
-        tube_omega_1_in_axes2_x = tube_qd_1*tube_s_2
-        tube_omega_1_in_axes2_y = tube_c_2*tube_qd_1
+        tube_omega_1_in_axes2_x = tube_e_1_in_axes2_x*tube_qd_1
+        tube_omega_1_in_axes2_y = -tube_c_2*tube_qd_1
         # (tube-W_2) centripetal tensor of link 2
         tube_W_2_in_axes2_yz = tube_omega_1_in_axes2_y*tube_qd_2
         tube_W_2_in_axes2_xz = tube_omega_1_in_axes2_x*tube_qd_2
@@ -10643,13 +10684,13 @@ def _run_legs(m, X, V, A):
         tube_S_ddot_y = tube_a_p_y + omega_z*tube_S_dot_t_3 - omega_x*tube_S_dot_t_5
         tube_S_ddot_z = tube_a_p_z + omega_x*tube_S_dot_t_4 - omega_y*tube_S_dot_t_3
         # (tube-bias) acceleration of the connection point at zero joint accelerations
-        tube_bias_t = tube_W_2_in_axes2_xz*tube_root_2
-        tube_bias_t_2 = -tube_W_2_in_axes2_xy*tube_root_2
+        tube_bias_t = tube_W_2_in_axes2_xz*tube_q_3
+        tube_bias_t_2 = -tube_W_2_in_axes2_xy*tube_q_3
         tube_bias_t_3 = 2.0*tube_S_dot_in_axes2_x
         tube_bias_t_4 = tube_bias_t_3*tube_qd_2
-        tube_bias_t_5 = -tube_bias_t_3*tube_omega_1_in_axes2_y
+        tube_bias_t_5 = tube_bias_t_3*tube_omega_1_in_axes2_y
         tube_bias_in_axes2_y = tube_bias_t_4 - tube_bias_t_2
-        tube_bias_in_axes2_z = 2.0*tube_bias_t + tube_bias_t_5
+        tube_bias_in_axes2_z = 2.0*tube_bias_t - tube_bias_t_5
         # (tube-rel) acceleration of the connection point left to the joint accelerations
         tube_rel_in_axes2_y = (
         axis_y_tube_axes2_x*tube_S_ddot_x + axis_y_tube_axes2_y*tube_S_ddot_y +
@@ -10660,7 +10701,7 @@ def _run_legs(m, X, V, A):
             axis_z_tube_axes2_z*tube_S_ddot_z - tube_bias_in_axes2_z
         )
         # (tube-nd_m1) rate of moment direction 1
-        tube_end_p1_in_axes2_x = tube_n_m1_t_12*tube_s_2 - tube_c_2*tube_n_m1_t_13
+        tube_end_p1_in_axes2_x = tube_c_2*tube_n_m1_t_13 + tube_e_1_in_axes2_x*tube_n_m1_t_12
         tube_nd_m1_in_axes2_y = (
         tube_end_p1_in_axes2_x*tube_omega_in_axes2_y -
             tube_end_p1_in_axes2_x*tube_omega_1_in_axes2_y -
@@ -10681,7 +10722,7 @@ def _run_legs(m, X, V, A):
         )
         tube_nu_1 = tube_nu_1_t_4 - tube_W_2_in_axes2_xz*tube_end_p1_in_axes2_z
         # (tube-nd_m2) rate of moment direction 2
-        tube_end_p2_in_axes2_z = tube_c_1*tube_n_m2_t + tube_n_m2_t_2*tube_s_1
+        tube_end_p2_in_axes2_z = tube_c_1*tube_n_m2_t_2 - tube_n_m2_t*tube_s_1
         tube_nd_m2_in_axes2_x = (
         tube_end_p2_in_axes2_z*tube_omega_in_axes2_x -
             tube_end_p2_in_axes2_z*tube_omega_1_in_axes2_x -
@@ -10697,13 +10738,13 @@ def _run_legs(m, X, V, A):
         -tube_W_2_in_axes2_xz*tube_n_m2_in_axes2_y - tube_W_2_in_axes2_yz*tube_end_p2_in_axes2_y
         )
         tube_nu_2_t_2 = (
-        tube_nd_m2_in_axes2_x*tube_nu_1_t +
+        tube_nd_m2_in_axes2_y*tube_nu_1_t_2 - tube_nd_m2_in_axes2_x*tube_nu_1_t -
             tube_nu_1_t_3*(-tube_end_p2_in_axes2_y*tube_omega_1_in_axes2_y -
-            tube_n_m2_in_axes2_y*tube_omega_1_in_axes2_x) - tube_nd_m2_in_axes2_y*tube_nu_1_t_2
+            tube_n_m2_in_axes2_y*tube_omega_1_in_axes2_x)
         )
-        tube_nu_2 = -tube_nu_2_t - tube_nu_2_t_2
+        tube_nu_2 = tube_nu_2_t_2 - tube_nu_2_t
         # (tube-nd_m3) rate of moment direction 3
-        tube_end_p3_in_axes2_y = tube_c_2*tube_n_m3_t_3 + tube_n_m3_t_4*tube_s_2
+        tube_end_p3_in_axes2_y = tube_e_1_in_axes2_x*tube_n_m3_t_4 - tube_c_2*tube_n_m3_t_3
         tube_nd_m3_in_axes2_x = (
         tube_end_p3_in_axes2_y*tube_omega_1_in_axes2_x +
             tube_n_m3_in_axes2_z*tube_omega_in_axes2_y -
@@ -10749,14 +10790,14 @@ def _run_legs(m, X, V, A):
         tube_qdd_1_t_3 = 1.35*tube_etad_3
         tube_qdd_1 = (
         inv_tube_w_1_t_75*(tube_qd_1_t*tube_rel_in_axes2_y + tube_qd_1_t_2*tube_rel_in_axes2_z +
-            tube_qd_1_t_3*tube_qdd_1_t + tube_qd_1_t_4*tube_qdd_1_t_2 +
-            tube_qd_1_t_5*tube_qdd_1_t_3)
+            tube_qd_1_t_3*tube_qdd_1_t + tube_qd_1_t_5*tube_qdd_1_t_3 -
+            tube_qd_1_t_4*tube_qdd_1_t_2)
         )
         # (tube-qdd_2) acceleration of joint 2
         tube_qdd_2_t = (
-        inv_tube_w_1_t_63*(tube_qdd_1_t*tube_w_1_t_66 + tube_qdd_1_t_3*tube_w_1_t_68 +
-            tube_rel_in_axes2_y*tube_w_1_t_64 + tube_rel_in_axes2_z*tube_w_1_t_65 -
-            tube_qdd_1*tube_w_1_t_69 - tube_qdd_1_t_2*tube_w_1_t_67)
+        inv_tube_w_1_t_63*(tube_qdd_1_t*tube_w_1_t_66 + tube_qdd_1_t_2*tube_w_1_t_67 +
+            tube_qdd_1_t_3*tube_w_1_t_68 + tube_rel_in_axes2_y*tube_w_1_t_64 +
+            tube_rel_in_axes2_z*tube_w_1_t_65 - tube_qdd_1*tube_w_1_t_69)
         )
         tube_qdd_2_t_2 = (
         inv_tube_w_1_t_49*(inv_tube_w_1_t_49*tube_rel_in_axes2_z + tube_qdd_1*tube_w_1_t_58 +
@@ -10773,8 +10814,8 @@ def _run_legs(m, X, V, A):
         )
         tube_qdd_2 = inv_tube_w_1_t_13*tube_qdd_2_t_3
         # (tube-alpha_1) angular acceleration of link 1
-        tube_alpha_1_in_axes2_x = tube_qdd_1*tube_s_2
-        tube_alpha_1_in_axes2_y = tube_c_2*tube_qdd_1
+        tube_alpha_1_in_axes2_x = tube_e_1_in_axes2_x*tube_qdd_1
+        tube_alpha_1_in_axes2_y = -tube_c_2*tube_qdd_1
         # (tube-alpha_2) angular acceleration of link 2
         tube_alpha_2_in_axes2_x = tube_W_2_in_axes2_yz + tube_alpha_1_in_axes2_x
         tube_alpha_2_in_axes2_y = tube_alpha_1_in_axes2_y - tube_W_2_in_axes2_xz
@@ -10784,28 +10825,28 @@ def _run_legs(m, X, V, A):
         tube_B_2_in_axes2_zx = tube_W_2_in_axes2_xz - tube_alpha_2_in_axes2_y
         tube_B_2_in_axes2_zy = tube_W_2_in_axes2_yz + tube_alpha_2_in_axes2_x
         # (tube-acc_3) acceleration of the reference point of link 3, less gravity
-        tube_g_in_axes2_z = tube_acc_3_t*tube_c_1 + tube_acc_3_t_2*tube_s_1
-        tube_acc_3_t_4 = tube_acc_3_t_2*tube_c_1 - tube_acc_3_t*tube_s_1
-        tube_g_in_axes2_x = tube_acc_3_t_3*tube_s_2 + tube_acc_3_t_4*tube_c_2
-        tube_g_in_axes2_y = tube_acc_3_t_3*tube_c_2 - tube_acc_3_t_4*tube_s_2
+        tube_acc_3_t_4 = tube_acc_3_t*tube_c_1 + tube_acc_3_t_2*tube_s_1
+        tube_g_in_axes2_z = tube_acc_3_t_2*tube_c_1 - tube_acc_3_t*tube_s_1
+        tube_g_in_axes2_x = tube_acc_3_t_3*tube_e_1_in_axes2_x + tube_acc_3_t_4*tube_c_2
+        tube_g_in_axes2_y = tube_acc_3_t_4*tube_e_1_in_axes2_x - tube_acc_3_t_3*tube_c_2
         tube_acc_3_in_axes2_x = (
         axis_x_tube_axes2_x*tube_S_ddot_x + axis_x_tube_axes2_y*tube_S_ddot_y +
             axis_x_tube_axes2_z*tube_S_ddot_z - tube_g_in_axes2_x
         )
         tube_acc_3_in_axes2_y = (
-        tube_bias_t_4 + tube_qdd_2*tube_root_2 - tube_bias_t_2 - tube_g_in_axes2_y
+        tube_bias_t_4 + tube_q_3*tube_qdd_2 - tube_bias_t_2 - tube_g_in_axes2_y
         )
         tube_acc_3_in_axes2_z = (
-        tube_bias_t + tube_bias_t_5 - tube_g_in_axes2_z - tube_alpha_2_in_axes2_y*tube_root_2
+        tube_bias_t - tube_bias_t_5 - tube_g_in_axes2_z - tube_alpha_2_in_axes2_y*tube_q_3
         )
         # (tube-f_3) inertia force of link 3 less its weight
         tube_f_3_t = tube_omega_1_in_axes2_x*tube_omega_1_in_axes2_x
         tube_f_3_t_2 = tube_omega_1_in_axes2_y*tube_omega_1_in_axes2_y
         tube_f_3_t_3 = tube_qd_2*tube_qd_2
         tube_f_3_in_axes2_x = (
-        tube_acc_3_in_axes2_x*tube_link3_mass + tube_alpha_1_in_axes2_y*tube_h_3_in_spec2_y +
-            tube_h_3_in_spec2_x*(-tube_f_3_t_2 - tube_f_3_t_3) -
-            tube_B_2_in_axes2_xy*tube_h_3_in_spec2_z
+        tube_acc_3_in_axes2_x*tube_link3_mass + tube_alpha_1_in_axes2_y*tube_h_3_in_spec2_y -
+            tube_B_2_in_axes2_xy*tube_h_3_in_spec2_z - tube_h_3_in_spec2_x*(tube_f_3_t_2 +
+            tube_f_3_t_3)
         )
         tube_f_3_in_axes2_y = (
         tube_B_2_in_axes2_yx*tube_h_3_in_spec2_x + tube_acc_3_in_axes2_y*tube_link3_mass +
@@ -10845,8 +10886,8 @@ def _run_legs(m, X, V, A):
             tube_g_in_axes2_x*tube_h_2_in_spec2_z - tube_g_in_axes2_y*tube_h_2_in_spec2_x
         )
         # (tube-N_2) moment about joint 2 of the links from 2 outwards, the force at the connection point left out
-        tube_N_2_in_axes2_y = tube_mu_2_in_axes2_y - tube_f_3_in_axes2_z*tube_root_2
-        tube_N_2_in_axes2_z = tube_mu_2_in_axes2_z + tube_f_3_in_axes2_y*tube_root_2
+        tube_N_2_in_axes2_y = tube_mu_2_in_axes2_y - tube_f_3_in_axes2_z*tube_q_3
+        tube_N_2_in_axes2_z = tube_mu_2_in_axes2_z + tube_f_3_in_axes2_y*tube_q_3
         # (tube-G) force at the connection point that balances the leg's inertia and weight along all degrees of freedom
         tube_G_t = inv_tube_w_1_t_13*tube_N_2_in_axes2_z
         tube_G_t_2 = inv_tube_w_1_t_33*tube_G_t*tube_w_1_t_17
@@ -10856,30 +10897,30 @@ def _run_legs(m, X, V, A):
             tube_G_t*tube_w_1_t_25)
         )
         tube_G_t_5 = (
-        inv_tube_w_1_t_75*(tube_G_t_2*tube_w_1_t_45 + tube_G_t_3*tube_w_1_t_58 +
-            tube_N_2_in_axes2_y*tube_c_2 + tube_mu_2_in_axes2_x*tube_s_2 - tube_G_t*tube_w_1_t_29
-            - tube_G_t_4*tube_w_1_t_69)
+        inv_tube_w_1_t_75*(tube_G_t*tube_w_1_t_29 + tube_G_t_4*tube_w_1_t_69 +
+            tube_N_2_in_axes2_y*tube_c_2 - tube_G_t_2*tube_w_1_t_45 - tube_G_t_3*tube_w_1_t_58 -
+            tube_e_1_in_axes2_x*tube_mu_2_in_axes2_x)
         )
         tube_G_in_axes2_y = (
         tube_G_t*tube_w_1_t_14 + tube_G_t_2*tube_w_1_t_34 + tube_G_t_3*tube_w_1_t_50 +
-            tube_G_t_4*tube_w_1_t_64 + tube_G_t_5*tube_qd_1_t
+            tube_G_t_4*tube_w_1_t_64 - tube_G_t_5*tube_qd_1_t
         )
         tube_G_in_axes2_z = (
-        inv_tube_w_1_t_49*tube_G_t_3 + tube_G_t_4*tube_w_1_t_65 + tube_G_t_5*tube_qd_1_t_2
+        inv_tube_w_1_t_49*tube_G_t_3 + tube_G_t_4*tube_w_1_t_65 - tube_G_t_5*tube_qd_1_t_2
         )
         # (tube-G_m1) moment along moment direction 1 that balances the leg's inertia and weight along all degrees of freedom
         tube_G_m1_t = (
         tube_G_t*tube_w_1_t_15 + tube_G_t_2*tube_w_1_t_35 + tube_G_t_3*tube_w_1_t_51 +
-            tube_G_t_4*tube_w_1_t_66 + tube_G_t_5*tube_qd_1_t_3
+            tube_G_t_4*tube_w_1_t_66 - tube_G_t_5*tube_qd_1_t_3
         )
         tube_G_m1 = 1.35*tube_G_m1_t
         # (tube-G_m2) moment along moment direction 2 that balances the leg's inertia and weight along all degrees of freedom
-        tube_G_m2_t = tube_G_t_4*tube_w_1_t_67 - tube_G_t_5*tube_qd_1_t_4
-        tube_G_m2 = -1.35*tube_G_m2_t
+        tube_G_m2_t = tube_G_t_4*tube_w_1_t_67 + tube_G_t_5*tube_qd_1_t_4
+        tube_G_m2 = 1.35*tube_G_m2_t
         # (tube-G_m3) moment along moment direction 3 that balances the leg's inertia and weight along all degrees of freedom
         tube_G_m3_t = (
         tube_G_t*tube_w_1_t_16 + tube_G_t_2*tube_w_1_t_36 + tube_G_t_3*tube_w_1_t_52 +
-            tube_G_t_4*tube_w_1_t_68 + tube_G_t_5*tube_qd_1_t_5
+            tube_G_t_4*tube_w_1_t_68 - tube_G_t_5*tube_qd_1_t_5
         )
         tube_G_m3 = 1.35*tube_G_m3_t
         # (tube-G_m) moment at the connection point that balances the leg's inertia and weight along all degrees of freedom
@@ -10913,12 +10954,12 @@ def _run_legs(m, X, V, A):
             axis_z_tube_axes2_z*tube_G_m_in_axes2_z
         )
         ok = (
-        ok & (abs(tube_rho2_1) > _TOLERANCE * _TOLERANCE * 1.8225000000000002) & (abs(tube_rho2_2)
-            > _TOLERANCE * _TOLERANCE * 1.8225000000000002) & (abs(tube_f_c1_t) > _TOLERANCE *
-            1.0) & (abs(tube_size_c3) > _TOLERANCE * 1.0) & (abs(tube_w_1_t_13) > _TOLERANCE *
-            1.35) & (abs(tube_w_1_t_33) > _TOLERANCE * 1.0) & (abs(tube_w_1_t_49) > _TOLERANCE *
-            1.0) & (abs(tube_w_1_t_63) > _TOLERANCE * 1.35) & (abs(tube_w_1_t_75) > _TOLERANCE *
-            1.35)
+        ok & (abs(tube_root_1_t) > _TOLERANCE * _TOLERANCE * 1.8225000000000002) &
+            (abs(tube_q_3_t) > _TOLERANCE * _TOLERANCE * 1.8225000000000002) & (abs(tube_f_c1_t) >
+            _TOLERANCE * 1.0) & (abs(tube_size_c3) > _TOLERANCE * 1.0) & (abs(tube_w_1_t_13) >
+            _TOLERANCE * 1.35) & (abs(tube_w_1_t_33) > _TOLERANCE * 1.0) & (abs(tube_w_1_t_49) >
+            _TOLERANCE * 1.0) & (abs(tube_w_1_t_63) > _TOLERANCE * 1.35) & (abs(tube_w_1_t_75) >
+            _TOLERANCE * 1.35)
         )
         # (tube-c) leg force on the platform without actuation and without the mass at the connection point
         out_leg_force[_leg_force_tube[0][leg]] = tube_c_x
@@ -11027,51 +11068,45 @@ def _run_potential(m, X):
         t_z + R_zx*ups_platform_point_x + R_zy*ups_platform_point_y + R_zz*ups_platform_point_z -
             ups_base_point_z
         )
-        # (ups-px_1) component along the reference direction
-        ups_px_1 = (
+        ups_S_in_turn1_x = (
         ups_S_x*ups_base_frame_xx + ups_S_y*ups_base_frame_yx + ups_S_z*ups_base_frame_zx
         )
-        # (ups-py_1) component across the reference direction
-        ups_py_1 = (
+        ups_S_in_turn1_y = (
         ups_S_x*ups_base_frame_xy + ups_S_y*ups_base_frame_yy + ups_S_z*ups_base_frame_zy
         )
-        # (ups-rho2_1) squared amplitude
-        ups_rho2_1 = ups_px_1*ups_px_1 + ups_py_1*ups_py_1
-        # (ups-root_1) amplitude, with the sign of the branch
-        ups_root_1 = ups_branch_1*sqrt(ups_rho2_1)
-        # (ups-c_1) cosine of the angle of joint 1 from its reference direction
-        inv_ups_root_1 = 1.0/ups_root_1
-        ups_c_1 = -inv_ups_root_1*ups_py_1
-        # (ups-s_1) sine of the angle of joint 1 from its reference direction
-        ups_s_1 = inv_ups_root_1*ups_px_1
-        # (ups-xi_1) the vector from joint 1 to the connection point, resolved along link 1
-        ups_xi_1_in_axes1_z = (
+        ups_S_in_turn1_z = (
         ups_S_x*ups_base_frame_xz + ups_S_y*ups_base_frame_yz + ups_S_z*ups_base_frame_zz
         )
-        # (ups-rho2_2) squared amplitude
-        ups_rho2_2 = ups_rho2_1 + ups_xi_1_in_axes1_z*ups_xi_1_in_axes1_z
-        # (ups-root_2) amplitude, with the sign of the branch
-        ups_root_2 = ups_branch_2*sqrt(ups_rho2_2)
+        # (ups-root_1) amplitude, the length across axis 1, with the sign of the branch
+        ups_root_1_t = ups_S_in_turn1_x*ups_S_in_turn1_x + ups_S_in_turn1_y*ups_S_in_turn1_y
+        ups_root_1 = ups_branch_1*sqrt(ups_root_1_t)
+        # (ups-c_1) cosine of the angle of joint 1 from its reference direction
+        inv_ups_root_1 = 1.0/ups_root_1
+        ups_c_1 = inv_ups_root_1*ups_S_in_turn1_x
+        # (ups-s_1) sine of the angle of joint 1 from its reference direction
+        ups_s_1 = inv_ups_root_1*ups_S_in_turn1_y
+        # (ups-q_3) displacement of joint 3
+        ups_q_3_t = ups_S_in_turn1_z*ups_S_in_turn1_z + ups_root_1_t
+        ups_q_3 = ups_branch_2*sqrt(ups_q_3_t)
         # (ups-c_2) cosine of the angle of joint 2 from its reference direction
-        inv_ups_root_2 = 1.0/ups_root_2
-        ups_c_2 = -inv_ups_root_2*ups_root_1
-        # (ups-s_2) sine of the angle of joint 2 from its reference direction
-        ups_s_2 = inv_ups_root_2*ups_xi_1_in_axes1_z
+        inv_ups_q_3 = 1.0/ups_q_3
+        ups_c_2 = inv_ups_q_3*ups_root_1
         # (potential) potential energy
-        ups_potential_t_4 = ups_acc_3_t_2*ups_c_1 - ups_acc_3_t*ups_s_1
-        ups_potential_t_5 = ups_c_1*ups_potential_t_2 - ups_potential_t*ups_s_1
+        ups_e_1_in_axes2_x = inv_ups_q_3*ups_S_in_turn1_z
+        ups_potential_t_4 = ups_acc_3_t*ups_c_1 + ups_acc_3_t_2*ups_s_1
+        ups_potential_t_5 = ups_c_1*ups_potential_t + ups_potential_t_2*ups_s_1
         ups_potential_t_6 = (
-        (ups_acc_3_t_3*ups_c_2 - ups_potential_t_4*ups_s_2)*(ups_h_2_in_spec2_z +
-            ups_h_3_in_spec2_z - ups_link2_mass*(ups_c_2*ups_potential_t_3 -
-            ups_potential_t_5*ups_s_2)) - (ups_acc_3_t*ups_c_1 +
-            ups_acc_3_t_2*ups_s_1)*(ups_h_2_in_spec2_y + ups_h_3_in_spec2_y +
-            ups_link2_mass*(ups_c_1*ups_potential_t + ups_potential_t_2*ups_s_1)) -
-            (ups_acc_3_t_3*ups_s_2 + ups_c_2*ups_potential_t_4)*(ups_h_2_in_spec2_x +
+        (ups_e_1_in_axes2_x*ups_potential_t_4 - ups_acc_3_t_3*ups_c_2)*(ups_h_2_in_spec2_z +
+            ups_h_3_in_spec2_z - ups_link2_mass*(ups_e_1_in_axes2_x*ups_potential_t_5 -
+            ups_c_2*ups_potential_t_3)) - (ups_acc_3_t_2*ups_c_1 -
+            ups_acc_3_t*ups_s_1)*(ups_h_2_in_spec2_y + ups_h_3_in_spec2_y +
+            ups_link2_mass*(ups_c_1*ups_potential_t_2 - ups_potential_t*ups_s_1)) -
+            (ups_acc_3_t_3*ups_e_1_in_axes2_x + ups_c_2*ups_potential_t_4)*(ups_h_2_in_spec2_x +
             ups_h_3_in_spec2_x + ups_link2_mass*(ups_c_2*ups_potential_t_5 +
-            ups_potential_t_3*ups_s_2))
+            ups_e_1_in_axes2_x*ups_potential_t_3))
         )
         ok = (
-        ok & (abs(ups_rho2_1) > _TOLERANCE * _TOLERANCE * 1.9124953849) & (abs(ups_rho2_2) >
+        ok & (abs(ups_root_1_t) > _TOLERANCE * _TOLERANCE * 1.9124953849) & (abs(ups_q_3_t) >
             _TOLERANCE * _TOLERANCE * 1.9124953849)
         )
         # (potential) potential energy
@@ -11101,55 +11136,49 @@ def _run_potential(m, X):
         t_z + R_zx*tube_platform_point_x + R_zy*tube_platform_point_y + R_zz*tube_platform_point_z
             - tube_base_point_z
         )
-        # (tube-px_1) component along the reference direction
-        tube_px_1 = (
+        tube_S_in_turn1_x = (
         tube_S_x*tube_base_frame_xx + tube_S_y*tube_base_frame_yx + tube_S_z*tube_base_frame_zx
         )
-        # (tube-py_1) component across the reference direction
-        tube_py_1 = (
+        tube_S_in_turn1_y = (
         tube_S_x*tube_base_frame_xy + tube_S_y*tube_base_frame_yy + tube_S_z*tube_base_frame_zy
         )
-        # (tube-rho2_1) squared amplitude
-        tube_rho2_1 = tube_px_1*tube_px_1 + tube_py_1*tube_py_1
-        # (tube-root_1) amplitude, with the sign of the branch
-        tube_root_1 = tube_branch_1*sqrt(tube_rho2_1)
-        # (tube-c_1) cosine of the angle of joint 1 from its reference direction
-        inv_tube_root_1 = 1.0/tube_root_1
-        tube_c_1 = -inv_tube_root_1*tube_py_1
-        # (tube-s_1) sine of the angle of joint 1 from its reference direction
-        tube_s_1 = inv_tube_root_1*tube_px_1
-        # (tube-xi_1) the vector from joint 1 to the connection point, resolved along link 1
-        tube_xi_1_in_axes1_z = (
+        tube_S_in_turn1_z = (
         tube_S_x*tube_base_frame_xz + tube_S_y*tube_base_frame_yz + tube_S_z*tube_base_frame_zz
         )
-        # (tube-rho2_2) squared amplitude
-        tube_rho2_2 = tube_rho2_1 + tube_xi_1_in_axes1_z*tube_xi_1_in_axes1_z
-        # (tube-root_2) amplitude, with the sign of the branch
-        tube_root_2 = tube_branch_2*sqrt(tube_rho2_2)
+        # (tube-root_1) amplitude, the length across axis 1, with the sign of the branch
+        tube_root_1_t = tube_S_in_turn1_x*tube_S_in_turn1_x + tube_S_in_turn1_y*tube_S_in_turn1_y
+        tube_root_1 = tube_branch_1*sqrt(tube_root_1_t)
+        # (tube-c_1) cosine of the angle of joint 1 from its reference direction
+        inv_tube_root_1 = 1.0/tube_root_1
+        tube_c_1 = inv_tube_root_1*tube_S_in_turn1_x
+        # (tube-s_1) sine of the angle of joint 1 from its reference direction
+        tube_s_1 = inv_tube_root_1*tube_S_in_turn1_y
+        # (tube-q_3) displacement of joint 3
+        tube_q_3_t = tube_S_in_turn1_z*tube_S_in_turn1_z + tube_root_1_t
+        tube_q_3 = tube_branch_2*sqrt(tube_q_3_t)
         # (tube-c_2) cosine of the angle of joint 2 from its reference direction
-        inv_tube_root_2 = 1.0/tube_root_2
-        tube_c_2 = -inv_tube_root_2*tube_root_1
-        # (tube-s_2) sine of the angle of joint 2 from its reference direction
-        tube_s_2 = inv_tube_root_2*tube_xi_1_in_axes1_z
+        inv_tube_q_3 = 1.0/tube_q_3
+        tube_c_2 = inv_tube_q_3*tube_root_1
         # (potential) potential energy
-        tube_potential_t_4 = tube_acc_3_t_2*tube_c_1 - tube_acc_3_t*tube_s_1
-        tube_b_in_spec2_y = tube_c_1*tube_potential_t + tube_potential_t_2*tube_s_1
-        tube_potential_t_5 = tube_c_1*tube_potential_t_2 - tube_potential_t*tube_s_1
-        tube_b_in_spec2_x = tube_c_2*tube_potential_t_5 + tube_potential_t_3*tube_s_2
-        tube_b_in_spec2_z = tube_potential_t_5*tube_s_2 - tube_c_2*tube_potential_t_3
+        tube_e_1_in_axes2_x = inv_tube_q_3*tube_S_in_turn1_z
+        tube_potential_t_4 = tube_acc_3_t*tube_c_1 + tube_acc_3_t_2*tube_s_1
+        tube_potential_t_5 = tube_c_1*tube_potential_t + tube_potential_t_2*tube_s_1
+        tube_b_in_spec2_y = tube_c_1*tube_potential_t_2 - tube_potential_t*tube_s_1
+        tube_b_in_spec2_x = tube_c_2*tube_potential_t_5 + tube_e_1_in_axes2_x*tube_potential_t_3
+        tube_b_in_spec2_z = tube_c_2*tube_potential_t_3 - tube_e_1_in_axes2_x*tube_potential_t_5
         tube_potential_t_6 = (
-        (tube_acc_3_t_3*tube_c_2 - tube_potential_t_4*tube_s_2)*(tube_h_2_in_spec2_z +
+        (tube_e_1_in_axes2_x*tube_potential_t_4 - tube_acc_3_t_3*tube_c_2)*(tube_h_2_in_spec2_z +
             tube_h_3_in_spec2_z + tube_b_in_spec2_z*tube_link2_mass +
-            tube_b_in_spec2_z*tube_link3_mass) - (tube_acc_3_t*tube_c_1 +
-            tube_acc_3_t_2*tube_s_1)*(tube_h_2_in_spec2_y + tube_h_3_in_spec2_y +
+            tube_b_in_spec2_z*tube_link3_mass) - (tube_acc_3_t_2*tube_c_1 -
+            tube_acc_3_t*tube_s_1)*(tube_h_2_in_spec2_y + tube_h_3_in_spec2_y +
             tube_b_in_spec2_y*tube_link2_mass + tube_b_in_spec2_y*tube_link3_mass) -
-            (tube_acc_3_t_3*tube_s_2 + tube_c_2*tube_potential_t_4)*(tube_h_2_in_spec2_x +
-            tube_h_3_in_spec2_x + tube_b_in_spec2_x*tube_link2_mass +
-            tube_link3_mass*(tube_b_in_spec2_x + tube_root_2))
+            (tube_acc_3_t_3*tube_e_1_in_axes2_x +
+            tube_c_2*tube_potential_t_4)*(tube_h_2_in_spec2_x + tube_h_3_in_spec2_x +
+            tube_b_in_spec2_x*tube_link2_mass + tube_link3_mass*(tube_b_in_spec2_x + tube_q_3))
         )
         ok = (
-        ok & (abs(tube_rho2_1) > _TOLERANCE * _TOLERANCE * 1.8225000000000002) & (abs(tube_rho2_2)
-            > _TOLERANCE * _TOLERANCE * 1.8225000000000002)
+        ok & (abs(tube_root_1_t) > _TOLERANCE * _TOLERANCE * 1.8225000000000002) &
+            (abs(tube_q_3_t) > _TOLERANCE * _TOLERANCE * 1.8225000000000002)
         )
         # (potential) potential energy
         potential_tube += tube_potential_t_6
@@ -11232,37 +11261,32 @@ def _run_condition(m, X):
         ups_S_x = t_x + ups_q_x - ups_base_point_x
         ups_S_y = t_y + ups_q_y - ups_base_point_y
         ups_S_z = t_z + ups_q_z - ups_base_point_z
-        # (ups-px_1) component along the reference direction
-        ups_px_1 = (
+        ups_S_in_turn1_x = (
         ups_S_x*ups_base_frame_xx + ups_S_y*ups_base_frame_yx + ups_S_z*ups_base_frame_zx
         )
-        # (ups-py_1) component across the reference direction
-        ups_py_1 = (
+        ups_S_in_turn1_y = (
         ups_S_x*ups_base_frame_xy + ups_S_y*ups_base_frame_yy + ups_S_z*ups_base_frame_zy
         )
-        # (ups-rho2_1) squared amplitude
-        ups_rho2_1 = ups_px_1*ups_px_1 + ups_py_1*ups_py_1
-        # (ups-root_1) amplitude, with the sign of the branch
-        ups_root_1 = ups_branch_1*sqrt(ups_rho2_1)
-        # (ups-xi_1) the vector from joint 1 to the connection point, resolved along link 1
-        ups_xi_1_in_axes1_z = (
+        ups_S_in_turn1_z = (
         ups_S_x*ups_base_frame_xz + ups_S_y*ups_base_frame_yz + ups_S_z*ups_base_frame_zz
         )
-        # (ups-rho2_2) squared amplitude
-        ups_rho2_2 = ups_rho2_1 + ups_xi_1_in_axes1_z*ups_xi_1_in_axes1_z
-        # (ups-root_2) amplitude, with the sign of the branch
-        ups_root_2 = ups_branch_2*sqrt(ups_rho2_2)
+        # (ups-root_1) amplitude, the length across axis 1, with the sign of the branch
+        ups_root_1_t = ups_S_in_turn1_x*ups_S_in_turn1_x + ups_S_in_turn1_y*ups_S_in_turn1_y
+        ups_root_1 = ups_branch_1*sqrt(ups_root_1_t)
+        # (ups-q_3) displacement of joint 3
+        ups_q_3_t = ups_S_in_turn1_z*ups_S_in_turn1_z + ups_root_1_t
+        ups_q_3 = ups_branch_2*sqrt(ups_q_3_t)
         # (ups-w_2) reciprocal vector 2
-        ups_w_2_in_axes2_y = 1.0/ups_root_2
+        ups_w_2_in_axes2_y = 1.0/ups_q_3
         # (ups-w_3) reciprocal vector 3
         ups_w_3_x = ups_S_x*ups_w_2_in_axes2_y
         ups_w_3_y = ups_S_y*ups_w_2_in_axes2_y
         ups_w_3_z = ups_S_z*ups_w_2_in_axes2_y
         # (ups-G) force at the connection point that balances the leg's inertia and weight along all degrees of freedom
-        ups_pivot_size = abs(ups_rho2_1)
-        ups_pivot_size_2 = abs(ups_rho2_2)
+        ups_pivot_size = abs(ups_root_1_t)
+        ups_pivot_size_2 = abs(ups_q_3_t)
         ups_pivot_size_3 = abs(ups_root_1)
-        ups_pivot_size_4 = abs(ups_root_2)
+        ups_pivot_size_4 = abs(ups_q_3)
         ups_least_pivots = (
         least(least(least(0.7231023985306559*sqrt(ups_pivot_size),
             0.7231023985306559*sqrt(ups_pivot_size_2)), 0.7231023985306559*ups_pivot_size_3),
@@ -11280,9 +11304,9 @@ def _run_condition(m, X):
         ups_spread_t*ups_spread_t + ups_spread_t_2*ups_spread_t_2 + ups_spread_t_3*ups_spread_t_3
         )
         clear = (
-        clear & (abs(ups_rho2_1) > _TOLERANCE * _TOLERANCE * 1.9124953849) & (abs(ups_rho2_2) >
+        clear & (abs(ups_root_1_t) > _TOLERANCE * _TOLERANCE * 1.9124953849) & (abs(ups_q_3_t) >
             _TOLERANCE * _TOLERANCE * 1.9124953849) & (abs(ups_root_1) > _TOLERANCE * 1.38293) &
-            (abs(ups_root_2) > _TOLERANCE * 1.38293)
+            (abs(ups_q_3) > _TOLERANCE * 1.38293)
         )
         # (spread) rms distance of the platform points from their centroid
         spread_ups += ups_spread_t_4
@@ -11322,37 +11346,31 @@ def _run_condition(m, X):
         tube_S_x = t_x + tube_q_x - tube_base_point_x
         tube_S_y = t_y + tube_q_y - tube_base_point_y
         tube_S_z = t_z + tube_q_z - tube_base_point_z
-        # (tube-px_1) component along the reference direction
-        tube_px_1 = (
+        tube_S_in_turn1_x = (
         tube_S_x*tube_base_frame_xx + tube_S_y*tube_base_frame_yx + tube_S_z*tube_base_frame_zx
         )
-        # (tube-py_1) component across the reference direction
-        tube_py_1 = (
+        tube_S_in_turn1_y = (
         tube_S_x*tube_base_frame_xy + tube_S_y*tube_base_frame_yy + tube_S_z*tube_base_frame_zy
         )
-        # (tube-rho2_1) squared amplitude
-        tube_rho2_1 = tube_px_1*tube_px_1 + tube_py_1*tube_py_1
-        # (tube-root_1) amplitude, with the sign of the branch
-        tube_root_1 = tube_branch_1*sqrt(tube_rho2_1)
-        # (tube-c_1) cosine of the angle of joint 1 from its reference direction
-        inv_tube_root_1 = 1.0/tube_root_1
-        tube_c_1 = -inv_tube_root_1*tube_py_1
-        # (tube-s_1) sine of the angle of joint 1 from its reference direction
-        tube_s_1 = inv_tube_root_1*tube_px_1
-        # (tube-xi_1) the vector from joint 1 to the connection point, resolved along link 1
-        tube_xi_1_in_axes1_z = (
+        tube_S_in_turn1_z = (
         tube_S_x*tube_base_frame_xz + tube_S_y*tube_base_frame_yz + tube_S_z*tube_base_frame_zz
         )
-        # (tube-rho2_2) squared amplitude
-        tube_rho2_2 = tube_rho2_1 + tube_xi_1_in_axes1_z*tube_xi_1_in_axes1_z
-        # (tube-root_2) amplitude, with the sign of the branch
-        tube_root_2 = tube_branch_2*sqrt(tube_rho2_2)
+        # (tube-root_1) amplitude, the length across axis 1, with the sign of the branch
+        tube_root_1_t = tube_S_in_turn1_x*tube_S_in_turn1_x + tube_S_in_turn1_y*tube_S_in_turn1_y
+        tube_root_1 = tube_branch_1*sqrt(tube_root_1_t)
+        # (tube-c_1) cosine of the angle of joint 1 from its reference direction
+        inv_tube_root_1 = 1.0/tube_root_1
+        tube_c_1 = inv_tube_root_1*tube_S_in_turn1_x
+        # (tube-s_1) sine of the angle of joint 1 from its reference direction
+        tube_s_1 = inv_tube_root_1*tube_S_in_turn1_y
+        # (tube-q_3) displacement of joint 3
+        tube_q_3_t = tube_S_in_turn1_z*tube_S_in_turn1_z + tube_root_1_t
+        tube_q_3 = tube_branch_2*sqrt(tube_q_3_t)
         # (tube-c_2) cosine of the angle of joint 2 from its reference direction
-        inv_tube_root_2 = 1.0/tube_root_2
-        tube_c_2 = -inv_tube_root_2*tube_root_1
-        # (tube-s_2) sine of the angle of joint 2 from its reference direction
-        tube_s_2 = inv_tube_root_2*tube_xi_1_in_axes1_z
+        inv_tube_q_3 = 1.0/tube_q_3
+        tube_c_2 = inv_tube_q_3*tube_root_1
         # (tube-n_m1) direction 1 of the moment that the platform joint transmits
+        tube_e_1_in_axes2_x = inv_tube_q_3*tube_S_in_turn1_z
         tube_n_m1_t = R_xx*tube_base_frame_xx + R_yx*tube_base_frame_yx + R_zx*tube_base_frame_zx
         tube_n_m1_t_2 = (
         R_xy*tube_base_frame_xx + R_yy*tube_base_frame_yx + R_zy*tube_base_frame_zx
@@ -11388,14 +11406,14 @@ def _run_condition(m, X):
             tube_n_m1_t_5*tube_platform_joint_rotation_yy +
             tube_n_m1_t_6*tube_platform_joint_rotation_yz
         )
-        tube_end_p1_in_axes2_z = tube_c_1*tube_n_m1_t_10 + tube_n_m1_t_11*tube_s_1
+        tube_end_p1_in_axes2_z = tube_c_1*tube_n_m1_t_11 - tube_n_m1_t_10*tube_s_1
         tube_n_m1_in_axes2_z = (
-        tube_c_2*(tube_n_m1_t_7*tube_platform_joint_rotation_yx +
+        tube_e_1_in_axes2_x*(tube_c_1*tube_n_m1_t_10 + tube_n_m1_t_11*tube_s_1) -
+            tube_c_2*(tube_n_m1_t_7*tube_platform_joint_rotation_yx +
             tube_n_m1_t_8*tube_platform_joint_rotation_yy +
-            tube_n_m1_t_9*tube_platform_joint_rotation_yz) + tube_s_2*(tube_n_m1_t_10*tube_s_1 -
-            tube_c_1*tube_n_m1_t_11)
+            tube_n_m1_t_9*tube_platform_joint_rotation_yz)
         )
-        tube_n_m1_in_axes1_z = -tube_c_2*tube_end_p1_in_axes2_z
+        tube_n_m1_in_axes1_z = tube_c_2*tube_end_p1_in_axes2_z
         # (tube-n_m2) direction 2 of the moment that the platform joint transmits
         tube_n_m2_t = (
         tube_n_m1_t_7*tube_platform_joint_rotation_zx +
@@ -11403,16 +11421,16 @@ def _run_condition(m, X):
             tube_n_m1_t_9*tube_platform_joint_rotation_zz
         )
         tube_n_m2_t_2 = (
-        tube_s_1*(tube_n_m1_t*tube_platform_joint_rotation_zx +
+        tube_c_1*(tube_n_m1_t*tube_platform_joint_rotation_zx +
             tube_n_m1_t_2*tube_platform_joint_rotation_zy +
-            tube_n_m1_t_3*tube_platform_joint_rotation_zz) -
-            tube_c_1*(tube_n_m1_t_4*tube_platform_joint_rotation_zx +
+            tube_n_m1_t_3*tube_platform_joint_rotation_zz) +
+            tube_s_1*(tube_n_m1_t_4*tube_platform_joint_rotation_zx +
             tube_n_m1_t_5*tube_platform_joint_rotation_zy +
             tube_n_m1_t_6*tube_platform_joint_rotation_zz)
         )
-        tube_n_m2_in_axes2_y = tube_n_m2_t*tube_s_2 - tube_c_2*tube_n_m2_t_2
-        tube_end_p2_in_axes2_y = tube_c_2*tube_n_m2_t + tube_n_m2_t_2*tube_s_2
-        tube_n_m2_in_axes1_z = tube_c_2*tube_n_m2_in_axes2_y - tube_end_p2_in_axes2_y*tube_s_2
+        tube_n_m2_in_axes2_y = tube_c_2*tube_n_m2_t_2 + tube_e_1_in_axes2_x*tube_n_m2_t
+        tube_end_p2_in_axes2_y = tube_e_1_in_axes2_x*tube_n_m2_t_2 - tube_c_2*tube_n_m2_t
+        tube_n_m2_t_3 = tube_c_2*tube_n_m2_in_axes2_y + tube_e_1_in_axes2_x*tube_end_p2_in_axes2_y
         # (tube-n_m3) direction 3 of the moment that the platform joint transmits
         tube_n_m3_t = (
         tube_n_m1_t*tube_platform_joint_rotation_xx +
@@ -11424,45 +11442,45 @@ def _run_condition(m, X):
             tube_n_m1_t_5*tube_platform_joint_rotation_xy +
             tube_n_m1_t_6*tube_platform_joint_rotation_xz
         )
-        tube_end_p3_in_axes2_z = tube_c_1*tube_n_m3_t + tube_n_m3_t_2*tube_s_1
+        tube_end_p3_in_axes2_z = tube_c_1*tube_n_m3_t_2 - tube_n_m3_t*tube_s_1
         tube_n_m3_in_axes2_z = (
-        tube_s_2*(tube_n_m1_t_7*tube_platform_joint_rotation_xx +
+        tube_c_2*(tube_c_1*tube_n_m3_t + tube_n_m3_t_2*tube_s_1) +
+            tube_e_1_in_axes2_x*(tube_n_m1_t_7*tube_platform_joint_rotation_xx +
             tube_n_m1_t_8*tube_platform_joint_rotation_xy +
-            tube_n_m1_t_9*tube_platform_joint_rotation_xz) - tube_c_2*(tube_n_m3_t*tube_s_1 -
-            tube_c_1*tube_n_m3_t_2)
+            tube_n_m1_t_9*tube_platform_joint_rotation_xz)
         )
-        tube_n_m3_t_3 = tube_end_p3_in_axes2_z*tube_s_2
+        tube_n_m3_t_3 = tube_e_1_in_axes2_x*tube_end_p3_in_axes2_z
         # (tube-f_c1) force part of constraint wrench 1
         tube_f_c1_t = (
         tube_n_m1_in_axes1_z*tube_n_m3_in_axes2_z + tube_n_m1_in_axes2_z*tube_n_m3_t_3
         )
         # (tube-m1_c1) moment part 1 of constraint wrench 1
         inv_tube_f_c1_t = 1.0/tube_f_c1_t
-        tube_m1_c1_t = inv_tube_f_c1_t*tube_n_m3_t_3*tube_root_2
+        tube_m1_c1_t = inv_tube_f_c1_t*tube_n_m3_t_3*tube_q_3
         # (tube-m3_c1) moment part 3 of constraint wrench 1
-        tube_m3_c1_t = inv_tube_f_c1_t*tube_n_m1_in_axes1_z*tube_root_2
+        tube_m3_c1_t = inv_tube_f_c1_t*tube_n_m1_in_axes1_z*tube_q_3
         # (tube-m1_c2) moment part 1 of constraint wrench 2
         tube_m1_c2_t = inv_tube_f_c1_t*tube_n_m3_in_axes2_z*tube_root_1
         # (tube-m3_c2) moment part 3 of constraint wrench 2
         tube_m3_c2 = inv_tube_f_c1_t*tube_n_m1_in_axes2_z*tube_root_1
         # (tube-m1_c3) moment part 1 of constraint wrench 3
-        tube_m1_c3_t = inv_tube_f_c1_t*tube_n_m2_in_axes1_z*tube_n_m3_in_axes2_z
+        tube_m1_c3 = inv_tube_f_c1_t*tube_n_m2_t_3*tube_n_m3_in_axes2_z
         # (tube-m3_c3) moment part 3 of constraint wrench 3
-        tube_m3_c3 = inv_tube_f_c1_t*tube_n_m1_in_axes2_z*tube_n_m2_in_axes1_z
+        tube_m3_c3_t = inv_tube_f_c1_t*tube_n_m1_in_axes2_z*tube_n_m2_t_3
         # (tube-n_c1) unit force of the constraint wrench
-        tube_n_c1_t = tube_s_1*tube_s_2
-        tube_n_c1_t_2 = tube_c_1*tube_s_2
+        tube_n_c1_t = tube_c_1*tube_e_1_in_axes2_x
+        tube_n_c1_t_2 = tube_e_1_in_axes2_x*tube_s_1
         tube_n_c1_x = (
-        tube_base_frame_xx*tube_n_c1_t + tube_base_frame_xz*tube_c_2 -
-            tube_base_frame_xy*tube_n_c1_t_2
+        tube_base_frame_xx*tube_n_c1_t + tube_base_frame_xy*tube_n_c1_t_2 -
+            tube_base_frame_xz*tube_c_2
         )
         tube_n_c1_y = (
-        tube_base_frame_yx*tube_n_c1_t + tube_base_frame_yz*tube_c_2 -
-            tube_base_frame_yy*tube_n_c1_t_2
+        tube_base_frame_yx*tube_n_c1_t + tube_base_frame_yy*tube_n_c1_t_2 -
+            tube_base_frame_yz*tube_c_2
         )
         tube_n_c1_z = (
-        tube_base_frame_zx*tube_n_c1_t + tube_base_frame_zz*tube_c_2 -
-            tube_base_frame_zy*tube_n_c1_t_2
+        tube_base_frame_zx*tube_n_c1_t + tube_base_frame_zy*tube_n_c1_t_2 -
+            tube_base_frame_zz*tube_c_2
         )
         # (tube-mu_c1) the moment that goes with it
         tube_mu_c1_in_axes2_y = tube_end_p1_in_axes2_z*tube_m1_c1_t
@@ -11471,9 +11489,9 @@ def _run_condition(m, X):
         -tube_m1_c1_t*tube_n_m1_in_axes2_z - tube_m3_c1_t*tube_n_m3_in_axes2_z
         )
         # (tube-n_c2) unit force of the constraint wrench
-        tube_n_c2_x = tube_base_frame_xx*tube_c_1 + tube_base_frame_xy*tube_s_1
-        tube_n_c2_y = tube_base_frame_yx*tube_c_1 + tube_base_frame_yy*tube_s_1
-        tube_n_c2_z = tube_base_frame_zx*tube_c_1 + tube_base_frame_zy*tube_s_1
+        tube_n_c2_x = tube_base_frame_xy*tube_c_1 - tube_base_frame_xx*tube_s_1
+        tube_n_c2_y = tube_base_frame_yy*tube_c_1 - tube_base_frame_yx*tube_s_1
+        tube_n_c2_z = tube_base_frame_zy*tube_c_1 - tube_base_frame_zx*tube_s_1
         # (tube-mu_c2) the moment that goes with it
         tube_mu_c2_in_axes2_y = tube_end_p1_in_axes2_z*tube_m1_c2_t
         tube_mu_c2_t = tube_end_p3_in_axes2_z*tube_m3_c2
@@ -11481,24 +11499,24 @@ def _run_condition(m, X):
         tube_m3_c2*tube_n_m3_in_axes2_z - tube_m1_c2_t*tube_n_m1_in_axes2_z
         )
         # (tube-size_c3) size of the moment
-        tube_size_c3 = sqrt(1.0 + tube_m1_c3_t*tube_m1_c3_t + tube_m3_c3*tube_m3_c3)
+        tube_size_c3 = sqrt(1.0 + tube_m1_c3*tube_m1_c3 + tube_m3_c3_t*tube_m3_c3_t)
         # (tube-mu1_c3) moment along direction 1 that goes with it
         inv_tube_size_c3 = 1.0/tube_size_c3
-        tube_mu1_c3_t = inv_tube_size_c3*tube_m1_c3_t
+        tube_mu1_c3 = inv_tube_size_c3*tube_m1_c3
         # (tube-mu3_c3) moment along direction 3 that goes with it
-        tube_mu3_c3 = inv_tube_size_c3*tube_m3_c3
+        tube_mu3_c3_t = inv_tube_size_c3*tube_m3_c3_t
         # (tube-mu_c3) the moment that goes with it
         axis_x_tube_axes2_x = tube_n_c1_y*tube_n_c2_z - tube_n_c1_z*tube_n_c2_y
         axis_x_tube_axes2_y = tube_n_c1_z*tube_n_c2_x - tube_n_c1_x*tube_n_c2_z
         axis_x_tube_axes2_z = tube_n_c1_x*tube_n_c2_y - tube_n_c1_y*tube_n_c2_x
         tube_mu_c3_in_axes2_x = (
-        -inv_tube_size_c3*tube_end_p2_in_axes2_y - tube_end_p3_in_axes2_z*tube_mu3_c3
+        tube_end_p3_in_axes2_z*tube_mu3_c3_t - inv_tube_size_c3*tube_end_p2_in_axes2_y
         )
         tube_mu_c3_in_axes2_y = (
-        inv_tube_size_c3*tube_n_m2_in_axes2_y + tube_end_p1_in_axes2_z*tube_mu1_c3_t
+        inv_tube_size_c3*tube_n_m2_in_axes2_y - tube_end_p1_in_axes2_z*tube_mu1_c3
         )
         tube_mu_c3_in_axes2_z = (
-        tube_mu3_c3*tube_n_m3_in_axes2_z - tube_mu1_c3_t*tube_n_m1_in_axes2_z
+        tube_mu1_c3*tube_n_m1_in_axes2_z - tube_mu3_c3_t*tube_n_m3_in_axes2_z
         )
         tube_mu_c3_x = (
         axis_x_tube_axes2_x*tube_mu_c3_in_axes2_x + tube_mu_c3_in_axes2_y*tube_n_c1_x +
@@ -11514,7 +11532,7 @@ def _run_condition(m, X):
         )
         # (tube-w_1) force part of reciprocal wrench 1
         tube_w_1_t = 1.35*tube_n_m1_in_axes1_z
-        tube_w_1_t_2 = 1.35*tube_n_m2_in_axes1_z
+        tube_w_1_t_2 = 1.35*tube_n_m2_t_3
         tube_w_1_t_3 = 1.35*tube_n_m3_t_3
         tube_w_1_t_4 = 1.35*tube_n_m1_in_axes2_z
         tube_w_1_t_5 = 1.35*tube_n_m3_in_axes2_z
@@ -11522,12 +11540,12 @@ def _run_condition(m, X):
         tube_w_1_t_7 = 1.35*tube_m3_c1_t
         tube_w_1_t_8 = 1.35*tube_m1_c2_t
         tube_w_1_t_9 = 1.35*tube_m3_c2
-        tube_w_1_t_10 = 1.35*tube_mu1_c3_t
+        tube_w_1_t_10 = 1.35*tube_mu1_c3
         tube_w_1_t_11 = 1.35*inv_tube_size_c3
-        tube_w_1_t_12 = 1.35*tube_mu3_c3
-        tube_w_1_t_13 = sqrt(tube_rho2_2 + tube_w_1_t_4*tube_w_1_t_4 + tube_w_1_t_5*tube_w_1_t_5)
+        tube_w_1_t_12 = 1.35*tube_mu3_c3_t
+        tube_w_1_t_13 = sqrt(tube_q_3_t + tube_w_1_t_4*tube_w_1_t_4 + tube_w_1_t_5*tube_w_1_t_5)
         inv_tube_w_1_t_13 = 1.0/tube_w_1_t_13
-        tube_w_1_t_14 = inv_tube_w_1_t_13*tube_root_2
+        tube_w_1_t_14 = inv_tube_w_1_t_13*tube_q_3
         tube_w_1_t_15 = inv_tube_w_1_t_13*tube_w_1_t_4
         tube_w_1_t_16 = inv_tube_w_1_t_13*tube_w_1_t_5
         tube_w_1_t_17 = tube_w_1_t_15*tube_w_1_t_6 + tube_w_1_t_16*tube_w_1_t_7 - tube_w_1_t_14
@@ -11620,8 +11638,8 @@ def _run_condition(m, X):
             tube_w_1_t_72*tube_w_1_t_72 + tube_w_1_t_73*tube_w_1_t_73 +
             tube_w_1_t_74*tube_w_1_t_74)
         )
-        tube_pivot_size = abs(tube_rho2_1)
-        tube_pivot_size_2 = abs(tube_rho2_2)
+        tube_pivot_size = abs(tube_root_1_t)
+        tube_pivot_size_2 = abs(tube_q_3_t)
         tube_pivot_size_3 = abs(tube_f_c1_t)
         tube_pivot_size_4 = abs(tube_size_c3)
         tube_pivot_size_5 = abs(tube_w_1_t_13)
@@ -11670,9 +11688,9 @@ def _run_condition(m, X):
             tube_spread_t_3*tube_spread_t_3
         )
         clear = (
-        clear & (abs(tube_rho2_1) > _TOLERANCE * _TOLERANCE * 1.8225000000000002) &
-            (abs(tube_rho2_2) > _TOLERANCE * _TOLERANCE * 1.8225000000000002) & (abs(tube_f_c1_t)
-            > _TOLERANCE * 1.0) & (abs(tube_size_c3) > _TOLERANCE * 1.0) & (abs(tube_w_1_t_13) >
+        clear & (abs(tube_root_1_t) > _TOLERANCE * _TOLERANCE * 1.8225000000000002) &
+            (abs(tube_q_3_t) > _TOLERANCE * _TOLERANCE * 1.8225000000000002) & (abs(tube_f_c1_t) >
+            _TOLERANCE * 1.0) & (abs(tube_size_c3) > _TOLERANCE * 1.0) & (abs(tube_w_1_t_13) >
             _TOLERANCE * 1.35) & (abs(tube_w_1_t_33) > _TOLERANCE * 1.0) & (abs(tube_w_1_t_49) >
             _TOLERANCE * 1.0) & (abs(tube_w_1_t_63) > _TOLERANCE * 1.35) & (abs(tube_w_1_t_75) >
             _TOLERANCE * 1.35)
@@ -11708,6 +11726,129 @@ def _run_condition(m, X):
     return (valid, reached, clear), (out_H, out_Hk, out_lengths, out_pivots, out_reach,)
 
 
+def _straight_6(a, b, rows, limits):
+    """Solve 6 equations a x = b straight through; and whether that is beyond doubt."""
+    (
+    (a00, a01, a02, a03, a04, a05,), (a10, a11, a12, a13, a14, a15,), (a20, a21, a22, a23, a24,
+        a25,), (a30, a31, a32, a33, a34, a35,), (a40, a41, a42, a43, a44, a45,), (a50, a51, a52,
+        a53, a54, a55,),
+    ) = [a[6 * k : 6 * k + 6] for k in rows]
+    b0, b1, b2, b3, b4, b5, = [b[k] for k in rows]
+    (
+    l10, l20, l30, l40, l50, l21, l31, l41, l51, l32, l42, l52, l43, l53, l54, l0, l1, l2, l3, l4,
+        l5,
+    ) = limits
+    f0 = 1.0/a00
+    g10 = a10*f0
+    a11 = a11 - g10*a01
+    a12 = a12 - g10*a02
+    a13 = a13 - g10*a03
+    a14 = a14 - g10*a04
+    a15 = a15 - g10*a05
+    b1 = b1 - g10*b0
+    g20 = a20*f0
+    a21 = a21 - g20*a01
+    a22 = a22 - g20*a02
+    a23 = a23 - g20*a03
+    a24 = a24 - g20*a04
+    a25 = a25 - g20*a05
+    b2 = b2 - g20*b0
+    g30 = a30*f0
+    a31 = a31 - g30*a01
+    a32 = a32 - g30*a02
+    a33 = a33 - g30*a03
+    a34 = a34 - g30*a04
+    a35 = a35 - g30*a05
+    b3 = b3 - g30*b0
+    g40 = a40*f0
+    a41 = a41 - g40*a01
+    a42 = a42 - g40*a02
+    a43 = a43 - g40*a03
+    a44 = a44 - g40*a04
+    a45 = a45 - g40*a05
+    b4 = b4 - g40*b0
+    g50 = a50*f0
+    a51 = a51 - g50*a01
+    a52 = a52 - g50*a02
+    a53 = a53 - g50*a03
+    a54 = a54 - g50*a04
+    a55 = a55 - g50*a05
+    b5 = b5 - g50*b0
+    f1 = 1.0/a11
+    g21 = a21*f1
+    a22 = a22 - g21*a12
+    a23 = a23 - g21*a13
+    a24 = a24 - g21*a14
+    a25 = a25 - g21*a15
+    b2 = b2 - g21*b1
+    g31 = a31*f1
+    a32 = a32 - g31*a12
+    a33 = a33 - g31*a13
+    a34 = a34 - g31*a14
+    a35 = a35 - g31*a15
+    b3 = b3 - g31*b1
+    g41 = a41*f1
+    a42 = a42 - g41*a12
+    a43 = a43 - g41*a13
+    a44 = a44 - g41*a14
+    a45 = a45 - g41*a15
+    b4 = b4 - g41*b1
+    g51 = a51*f1
+    a52 = a52 - g51*a12
+    a53 = a53 - g51*a13
+    a54 = a54 - g51*a14
+    a55 = a55 - g51*a15
+    b5 = b5 - g51*b1
+    f2 = 1.0/a22
+    g32 = a32*f2
+    a33 = a33 - g32*a23
+    a34 = a34 - g32*a24
+    a35 = a35 - g32*a25
+    b3 = b3 - g32*b2
+    g42 = a42*f2
+    a43 = a43 - g42*a23
+    a44 = a44 - g42*a24
+    a45 = a45 - g42*a25
+    b4 = b4 - g42*b2
+    g52 = a52*f2
+    a53 = a53 - g52*a23
+    a54 = a54 - g52*a24
+    a55 = a55 - g52*a25
+    b5 = b5 - g52*b2
+    f3 = 1.0/a33
+    g43 = a43*f3
+    a44 = a44 - g43*a34
+    a45 = a45 - g43*a35
+    b4 = b4 - g43*b3
+    g53 = a53*f3
+    a54 = a54 - g53*a34
+    a55 = a55 - g53*a35
+    b5 = b5 - g53*b3
+    f4 = 1.0/a44
+    g54 = a54*f4
+    a55 = a55 - g54*a45
+    b5 = b5 - g54*b4
+    f5 = 1.0/a55
+    x5 = b5*f5
+    x4 = (b4 - a45*x5)*f4
+    x3 = (b3 - a35*x5 - a34*x4)*f3
+    x2 = (b2 - a25*x5 - a24*x4 - a23*x3)*f2
+    x1 = (b1 - a15*x5 - a14*x4 - a13*x3 - a12*x2)*f1
+    x0 = (b0 - a05*x5 - a04*x4 - a03*x3 - a02*x2 - a01*x1)*f0
+    sure = (
+    (abs(g10) <= l10) & (abs(g20) <= l20) & (abs(g30) <= l30) & (abs(g40) <= l40) & (abs(g50) <=
+        l50) & (abs(g21) <= l21) & (abs(g31) <= l31) & (abs(g41) <= l41) & (abs(g51) <= l51) &
+        (abs(g32) <= l32) & (abs(g42) <= l42) & (abs(g52) <= l52) & (abs(g43) <= l43) & (abs(g53)
+        <= l53) & (abs(g54) <= l54) & (abs(f0) <= l0) & (abs(f1) <= l1) & (abs(f2) <= l2) &
+        (abs(f3) <= l3) & (abs(f4) <= l4) & (abs(f5) <= l5) & (abs(x0 + x1 + x2 + x3 + x4 + x5 +
+        a00 + a11 + a22 + a33 + a44 + a55) < math.inf)
+    )
+    return sure, ([x0, x1, x2, x3, x4, x5],)
+
+
+_ORDERS = (  # how systems are solved near home
+    _Order(_straight_6, (2, 0, 1, 4, 3, 5), (10, 10, 10, 10, 10, 10, 10, 10, 10, 10, 10, 10, 10, 10, 10, 1000, 1000, 1000, 1000, 1000, 1000,)),
+)
 _Q = 3  # where a quaternion begins in X
 _DEFAULT = Parameters()
 
@@ -11769,7 +11910,7 @@ def _steps_inverse_dynamics(m, X, V, A, wrench, weights):
     extend_1 = wrench
     subtract_1 = required - extend_1
     beside_1 = np.concatenate((H, Hk), axis=1)
-    solve_1 = _solve(beside_1, subtract_1)
+    solve_1 = _straight(m, beside_1, subtract_1, _ORDERS[0])
     tau, lambda_ = solve_1[:3], solve_1[3:]
     return (tau, lambda_,)
 
@@ -11778,7 +11919,7 @@ def _steps_forward_dynamics(m, X, V, tau, wrench):
     (
     M, Z, H, Hk, constraint_bias,
     ) = m.run(_run_dynamics, ("M", "Z", "H", "Hk", "constraint_bias"), X, V)
-    times_1 = np.einsum("ijs,js->is", H, tau)
+    times_1 = _times(H, tau)
     extend_1 = wrench
     add_1 = times_1 + extend_1
     subtract_1 = add_1 - Z
@@ -11800,7 +11941,7 @@ def _steps_leg_reactions(m, X, V, A, wrench):
     extend_1 = wrench
     subtract_1 = required - extend_1
     beside_1 = np.concatenate((H, Hk), axis=1)
-    solve_1 = _solve(beside_1, subtract_1)
+    solve_1 = _straight(m, beside_1, subtract_1, _ORDERS[0])
     split_1, split_2 = solve_1[:3], solve_1[3:]
     (
     leg_force, actuator, constraint_direction,
@@ -11845,10 +11986,46 @@ def _steps_condition_constrained(m, X, length):
     return (sigma, legs,)
 
 
+def _steps_manipulability(m, X):
+    (
+    H, Hk, lengths, pivots, reach,
+    ) = m.run(_in_one(_run_condition), ("H", "Hk", "lengths", "pivots", "reach"), X)
+    entry_1 = lengths[0]
+    subtract_1 = entry_1 - entry_1
+    choose_length_1 = _chosen_length(lengths, subtract_1)
+    divide_rows_1 = _rows_divided(H, choose_length_1, [3, 4, 5])
+    entry_2 = lengths[0]
+    subtract_2 = entry_2 - entry_2
+    choose_length_2 = _chosen_length(lengths, subtract_2)
+    divide_rows_2 = _rows_divided(Hk, choose_length_2, [3, 4, 5])
+    transposed_1 = np.swapaxes(divide_rows_2, 0, 1)
+    null_basis_1 = _null_basis(transposed_1, 3)
+    transposed_2 = np.swapaxes(null_basis_1, 0, 1)
+    product_1 = np.einsum("iks,kjs->ijs", transposed_2, divide_rows_1)
+    singular_values_1 = _singular_values(product_1)
+    measure, isotropy = _spread(singular_values_1, 3)
+    return (measure, isotropy,)
+
+
+def _steps_singularity_distance(m, X):
+    (
+    H, Hk, lengths, pivots, reach,
+    ) = m.run(_in_one(_run_condition), ("H", "Hk", "lengths", "pivots", "reach"), X)
+    beside_1 = np.concatenate((H, Hk), axis=1)
+    entry_1 = lengths[0]
+    subtract_1 = entry_1 - entry_1
+    choose_length_1 = _chosen_length(lengths, subtract_1)
+    divide_rows_1 = _rows_divided(beside_1, choose_length_1, [3, 4, 5])
+    singular_values_1 = _singular_values(divide_rows_1)
+    spread_1, actuators = _spread(singular_values_1, 6)
+    legs = _least_entry(pivots)
+    return (actuators, legs,)
+
+
 def _steps_mismatch(m, X, q_actuated):
     q, = m.run(_run_inverse_kinematics, ("q",), X)
-    take_1 = q[[2, 5, 8]]
-    subtract_1 = q_actuated - take_1
+    q_of_inverse_kinematics_from_2 = q[[2, 5, 8]]
+    subtract_1 = q_actuated - q_of_inverse_kinematics_from_2
     constraints, = m.run(_run_constraints, ("constraints",), X)
     negative_1 = -constraints
     gap = np.concatenate((subtract_1, negative_1))
@@ -11891,7 +12068,7 @@ def _steps_dissipation(m, X, V):
 
 def _steps_momentum(m, X, V):
     M, = m.run(_run_M, ("M",), X)
-    momentum = np.einsum("ijs,js->is", M, V)
+    momentum = _times(M, V)
     return (momentum,)
 
 
@@ -11928,14 +12105,14 @@ def _steps_actuator_accelerations(m, X, V, A):
 
 def _steps_power(m, X, V, tau):
     H, = m.run(_run_H, ("H",), X)
-    times_1 = np.einsum("ijs,js->is", H, tau)
+    times_1 = _times(H, tau)
     power = np.sum(times_1 * V, axis=0)
     return (power,)
 
 
 def _steps_rotation(m, X):
-    take_1 = X[3:7]
-    R = _rotation_of_quaternion(take_1)
+    X_from_3 = X[3:7]
+    R = _rotation_of_quaternion(X_from_3)
     return (R,)
 
 
@@ -11947,11 +12124,11 @@ def _steps_pose(m, t, R):
 
 
 def _steps_X_dot(m, X, V):
-    take_1 = V[3:6]
-    take_2 = X[3:7]
-    quaternion_rate_1 = _quaternion_rate(take_2, take_1)
-    take_3 = V[0:3]
-    X_dot = np.concatenate((take_3, quaternion_rate_1))
+    V_from_3 = V[3:6]
+    X_from_3 = X[3:7]
+    quaternion_rate_1 = _quaternion_rate(X_from_3, V_from_3)
+    V_from_0 = V[0:3]
+    X_dot = np.concatenate((V_from_0, quaternion_rate_1))
     return (X_dot,)
 
 
@@ -11963,42 +12140,42 @@ def _steps_pose_from_rpy(m, t, rpy):
 
 
 def _steps_retract(m, X, step):
-    take_1 = X[0:3]
-    take_2 = X[3:7]
-    take_3 = step[0:3]
-    take_4 = step[3:6]
-    turn_quaternion_1 = _turned(take_2, take_4)
-    add_1 = take_1 + take_3
+    X_from_0 = X[0:3]
+    X_from_3 = X[3:7]
+    step_from_0 = step[0:3]
+    step_from_3 = step[3:6]
+    turn_quaternion_1 = _turned(X_from_3, step_from_3)
+    add_1 = X_from_0 + step_from_0
     X_moved = np.concatenate((add_1, turn_quaternion_1))
     return (X_moved,)
 
 
 def _steps_difference(m, X0, X1):
-    take_1 = X0[0:3]
-    take_2 = X0[3:7]
-    take_3 = X1[0:3]
-    take_4 = X1[3:7]
-    turn_between_1 = _turn_between(take_2, take_4)
-    subtract_1 = take_3 - take_1
+    X0_from_0 = X0[0:3]
+    X0_from_3 = X0[3:7]
+    X1_from_0 = X1[0:3]
+    X1_from_3 = X1[3:7]
+    turn_between_1 = _turn_between(X0_from_3, X1_from_3)
+    subtract_1 = X1_from_0 - X0_from_0
     step = np.concatenate((subtract_1, turn_between_1))
     return (step,)
 
 
 def _steps_interpolate(m, X0, X1, s):
-    take_1 = X0[0:3]
-    take_2 = X0[3:7]
-    take_3 = X1[0:3]
-    take_4 = X1[3:7]
-    turn_between_1 = _turn_between(take_2, take_4)
-    subtract_1 = take_3 - take_1
+    X0_from_0 = X0[0:3]
+    X0_from_3 = X0[3:7]
+    X1_from_0 = X1[0:3]
+    X1_from_3 = X1[3:7]
+    turn_between_1 = _turn_between(X0_from_3, X1_from_3)
+    subtract_1 = X1_from_0 - X0_from_0
     join_1 = np.concatenate((subtract_1, turn_between_1))
     scale_1 = join_1 * s
-    take_5 = X0[0:3]
-    take_6 = X0[3:7]
-    take_7 = scale_1[0:3]
-    take_8 = scale_1[3:6]
-    turn_quaternion_1 = _turned(take_6, take_8)
-    add_1 = take_5 + take_7
+    X0_from_0_2 = X0[0:3]
+    X0_from_3_2 = X0[3:7]
+    scale_1_from_0 = scale_1[0:3]
+    scale_1_from_3 = scale_1[3:6]
+    turn_quaternion_1 = _turned(X0_from_3_2, scale_1_from_3)
+    add_1 = X0_from_0_2 + scale_1_from_0
     X = np.concatenate((add_1, turn_quaternion_1))
     return (X,)
 
@@ -12016,6 +12193,7 @@ def M(X, p=None):
     return _call(
         "M", _steps_M, p,
         ("X", X, (NQ,)),
+        plain=((NV, NV,),),
     )
 
 
@@ -12034,6 +12212,7 @@ def Z(X, V, p=None):
         "Z", _steps_Z, p,
         ("X", X, (NQ,)),
         ("V", V, (NV,)),
+        plain=((NV,),),
     )
 
 
@@ -12050,6 +12229,7 @@ def H(X, p=None):
     return _call(
         "H", _steps_H, p,
         ("X", X, (NQ,)),
+        plain=((NV, NU,),),
     )
 
 
@@ -12066,6 +12246,7 @@ def Hk(X, p=None):
     return _call(
         "Hk", _steps_Hk, p,
         ("X", X, (NQ,)),
+        plain=((NV, NC,),),
     )
 
 
@@ -12083,6 +12264,7 @@ def constraints(X, p=None):
     return _call(
         "constraints", _steps_constraints, p,
         ("X", X, (NQ,)),
+        plain=((NC,),),
     )
 
 
@@ -12101,6 +12283,7 @@ def constraint_bias(X, V, p=None):
         "constraint_bias", _steps_constraint_bias, p,
         ("X", X, (NQ,)),
         ("V", V, (NV,)),
+        plain=((NC,),),
     )
 
 
@@ -12119,6 +12302,7 @@ def inverse_kinematics(X, p=None):
     return _call(
         "inverse_kinematics", _steps_inverse_kinematics, p,
         ("X", X, (NQ,)),
+        plain=((NJ,),),
     )
 
 
@@ -12137,6 +12321,7 @@ def joint_rates(X, V, p=None):
         "joint_rates", _steps_joint_rates, p,
         ("X", X, (NQ,)),
         ("V", V, (NV,)),
+        plain=((NJ,),),
     )
 
 
@@ -12157,6 +12342,7 @@ def joint_accelerations(X, V, A, p=None):
         ("X", X, (NQ,)),
         ("V", V, (NV,)),
         ("A", A, (NV,)),
+        plain=((NJ,),),
     )
 
 
@@ -12177,6 +12363,7 @@ def dynamics(X, V, p=None):
         "dynamics", _steps_dynamics, p,
         ("X", X, (NQ,)),
         ("V", V, (NV,)),
+        plain=((NV, NV,), (NV,), (NV, NU,),),
     )
 
 
@@ -12252,6 +12439,7 @@ def complete_acceleration(X, V, A, p=None, *, wrench=None):
         ("V", V, (NV,), None, "unused"),
         ("A", A, (NV,)),
         ("wrench", wrench, (NW,), 0.0, "unused"),
+        plain=((NV,),),
     )
 
 
@@ -12363,6 +12551,43 @@ def condition_constrained(X, p=None, *, length=None):
     )
 
 
+def manipulability(X, p=None):
+    """Manipulability of forces: the product of the singular values that `condition` has by
+    default, and the least over the largest of them.
+
+    Of N^T H, N an orthonormal basis of the motions that constraints leave.
+
+    Args:
+        X: pose, and extra coordinates (..., NQ).
+        p: parameters, by default those of the specification.
+
+    Returns:
+        measure: product of the singular values (...,).
+        isotropy: least over largest value, 1 where H is isotropic (...,).
+    """
+    return _call(
+        "manipulability", _steps_manipulability, p,
+        ("X", X, (NQ,)),
+    )
+
+
+def singularity_distance(X, p=None):
+    """How near actuators and legs are to being singular: relative distances, 0 where they are.
+
+    Args:
+        X: pose, and extra coordinates (..., NQ).
+        p: parameters, by default those of the specification.
+
+    Returns:
+        actuators: of [H Hk] from matrices of lower rank, over its norm (...,).
+        legs: least pivot of all legs (...,).
+    """
+    return _call(
+        "singularity_distance", _steps_singularity_distance, p,
+        ("X", X, (NQ,)),
+    )
+
+
 def forward_kinematics(q_actuated, X0, p=None):
     """X at which the actuated joints stand at q_actuated, by Gauss-Newton from X0.
 
@@ -12436,6 +12661,7 @@ def momentum(X, V, p=None):
         "momentum", _steps_momentum, p,
         ("X", X, (NQ,)),
         ("V", V, (NV,)),
+        plain=((NV,),),
     )
 
 

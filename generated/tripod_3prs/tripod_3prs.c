@@ -996,6 +996,61 @@ static void least_squares(size_t rows, size_t n, real *a, real *x)
     }
 }
 
+/* Turn the rows of a[rows][stride] among themselves, so that columns 0 to n - 1 are zero from row
+   `rank` on; columns beyond go along.  Returns the last diagonal entry as a fraction of the first: of a matrix of
+   this rank it is not small. */
+static real rotate(size_t rows, size_t stride, size_t n, size_t rank, real *a)
+{
+    real v[BIG] = {0}, first = 0, last = 0;
+    for (size_t p = 0; p < rank; ++p) {
+        size_t best = 0;
+        real most = 0;
+        for (size_t j = 0; j < n; ++j) {
+            real square = 0;
+            for (size_t i = p; i < rows; ++i) {
+                square += a[i*stride + j]*a[i*stride + j];
+            }
+            best = square > most ? j : best;
+            most = square > most ? square : most;
+        }
+        const real size = a[p*stride + best] > 0 ? -root(most) : root(most);
+        for (size_t i = p; i < rows; ++i) {
+            v[i] = a[i*stride + best];
+        }
+        v[p] -= size;
+        for (size_t j = 0; j < stride && most > 0; ++j) {
+            real sum = 0;
+            for (size_t i = p; i < rows; ++i) {
+                sum += v[i]*a[i*stride + j];
+            }
+            for (size_t i = p; i < rows; ++i) {
+                a[i*stride + j] += sum/(v[p]*size)*v[i];
+            }
+        }
+        last = magnitude(size);
+        first = p == 0 ? last : first;
+    }
+    return last/first;
+}
+
+/* Orthonormal columns x[n][n - rank] with a x = 0, for a[m][n] of this rank. */
+static void null_basis(size_t m, size_t n, size_t rank, const real *a, real *x)
+{
+    real t[2*BIG*BIG] = {0};
+    for (size_t j = 0; j < n; ++j) {
+        for (size_t i = 0; i < m; ++i) {
+            t[j*(m + n) + i] = a[i*n + j];
+        }
+        t[j*(m + n) + m + j] = 1;
+    }
+    rotate(n, m + n, m, rank, t);
+    for (size_t j = 0; j < n; ++j) {
+        for (size_t c = rank; c < n; ++c) {
+            x[j*(n - rank) + c - rank] = t[c*(m + n) + m + j];
+        }
+    }
+}
+
 /* Turn columns p and q of a[rows][columns] until they are perpendicular; returns whether they were
    not, to rounding. */
 static int turn_columns(size_t rows, size_t columns, size_t p, size_t q, real *a)
@@ -1070,6 +1125,15 @@ INLINE void product(size_t m, size_t n, size_t p, size_t w, const real *a, const
     }
 }
 
+INLINE void transpose(size_t m, size_t n, size_t w, const real *a, real *x)
+{
+    for (size_t e = 0; e < m*n; ++e) {
+        for (size_t k = 0; k < w; ++k) {
+            x[((e%n)*m + e/n)*w + k] = a[e*w + k];
+        }
+    }
+}
+
 /* a . b */
 INLINE void inner(size_t n, size_t w, const real *a, const real *b, real *x)
 {
@@ -1114,6 +1178,24 @@ INLINE void unlimited(size_t rows, size_t size, size_t w, const size_t *places, 
             x[places[i]*w + k] = R(INFINITY);
         }
     }
+}
+
+INLINE void least_entry(size_t n, const real *a, real *x)
+{
+    *x = a[0];
+    for (size_t e = 1; e < n; ++e) {
+        *x = lesser(*x, a[e]);
+    }
+}
+
+/* Of the first n entries the product, and the last over the first, 0 where that is 0. */
+INLINE void spread(size_t n, const real *a, real *product_of, real *ratio)
+{
+    *product_of = 1;
+    for (size_t e = 0; e < n; ++e) {
+        *product_of *= a[e];
+    }
+    *ratio = magnitude(a[0]) > 0 ? a[n - 1]/a[0] : a[0];
 }
 
 /* 1 where no entry is negative, else 0. */
@@ -1312,6 +1394,607 @@ static void moved(const real *X, const real *step, real part, real *to)
     turn_quaternion(X + Q, turn, to + Q);
 }
 
+/* ---- what functions of the state share; v: values for others ---- */
+
+typedef struct {
+    real quaternion_scale, R_xx, R_xy, R_xz, R_yx, R_yy, R_yz, R_zx, R_zy, R_zz, h_star_x, h_star_y,
+        h_star_z, omega_in_platform_x, omega_in_platform_y, omega_in_platform_z, J_star_xx, J_star_xy,
+        J_star_xz, J_star_yy, J_star_yz, J_star_zz, Z_p_x, Z_p_y, Z_p_z, Z_q_x, Z_q_y, Z_q_z;
+} values;
+
+INLINE void stage_X(const prepared *m, size_t w, size_t k, const real *X, values *v)
+{
+    /* X: named entries */
+    const real X_3 = X[3*w + k];
+    const real X_4 = X[4*w + k];
+    const real X_5 = X[5*w + k];
+    const real X_6 = X[6*w + k];
+    const real quaternion_norm2 = X_3*X_3 + X_4*X_4 + X_5*X_5 + X_6*X_6;
+    const real quaternion_scale = 2/quaternion_norm2;
+    const real quaternion_sx = X_3*quaternion_scale;
+    const real quaternion_sy = X_4*quaternion_scale;
+    const real quaternion_sz = X_5*quaternion_scale;
+    const real quaternion_wx = X_6*quaternion_sx;
+    const real quaternion_wy = X_6*quaternion_sy;
+    const real quaternion_wz = X_6*quaternion_sz;
+    const real quaternion_xx = X_3*quaternion_sx;
+    const real quaternion_xy = X_3*quaternion_sy;
+    const real quaternion_xz = X_3*quaternion_sz;
+    const real quaternion_yy = X_4*quaternion_sy;
+    const real quaternion_yz = X_4*quaternion_sz;
+    const real quaternion_zz = X_5*quaternion_sz;
+    const real R_xx = 1 - quaternion_yy - quaternion_zz;
+    const real R_xy = quaternion_xy - quaternion_wz;
+    const real R_xz = quaternion_wy + quaternion_xz;
+    const real R_yx = quaternion_wz + quaternion_xy;
+    const real R_yy = 1 - quaternion_xx - quaternion_zz;
+    const real R_yz = quaternion_yz - quaternion_wx;
+    const real R_zx = quaternion_xz - quaternion_wy;
+    const real R_zy = quaternion_wx + quaternion_yz;
+    const real R_zz = 1 - quaternion_xx - quaternion_yy;
+    /* (h_star) first moment about the platform origin */
+    const real h_star_in_platform_x = m->h_star_in_platform_x;
+    const real h_star_in_platform_y = m->h_star_in_platform_y;
+    const real h_star_in_platform_z = m->h_star_in_platform_z;
+    const real h_star_x = R_xx*h_star_in_platform_x + R_xy*h_star_in_platform_y +
+        R_xz*h_star_in_platform_z;
+    const real h_star_y = R_yx*h_star_in_platform_x + R_yy*h_star_in_platform_y +
+        R_yz*h_star_in_platform_z;
+    const real h_star_z = R_zx*h_star_in_platform_x + R_zy*h_star_in_platform_y +
+        R_zz*h_star_in_platform_z;
+    v->quaternion_scale = quaternion_scale;
+    v->R_xx = R_xx;
+    v->R_xy = R_xy;
+    v->R_xz = R_xz;
+    v->R_yx = R_yx;
+    v->R_yy = R_yy;
+    v->R_yz = R_yz;
+    v->R_zx = R_zx;
+    v->R_zy = R_zy;
+    v->R_zz = R_zz;
+    v->h_star_x = h_star_x;
+    v->h_star_y = h_star_y;
+    v->h_star_z = h_star_z;
+}
+
+INLINE void stage_V_X(size_t w, size_t k, const real *V, values *v)
+{
+    /* (Z_q) gyroscopic moment and moment of the weight of the platform */
+    const real omega_x = V[3*w + k];
+    const real omega_y = V[4*w + k];
+    const real omega_z = V[5*w + k];
+    const real omega_in_platform_x = v->R_xx*omega_x + v->R_yx*omega_y + v->R_zx*omega_z;
+    const real omega_in_platform_y = v->R_xy*omega_x + v->R_yy*omega_y + v->R_zy*omega_z;
+    const real omega_in_platform_z = v->R_xz*omega_x + v->R_yz*omega_y + v->R_zz*omega_z;
+    v->omega_in_platform_x = omega_in_platform_x;
+    v->omega_in_platform_y = omega_in_platform_y;
+    v->omega_in_platform_z = omega_in_platform_z;
+}
+
+INLINE void stage_M_dynamics(const prepared *m, values *v)
+{
+    /* (J_star) inertia tensor about the platform origin */
+    const real J_star_in_platform_xy = m->J_star_in_platform_xy;
+    const real J_star_in_platform_yz = m->J_star_in_platform_yz;
+    const real J_star_t_6 = m->J_star_t_6;
+    const real J_star_t = J_star_in_platform_xy*v->R_xx + J_star_in_platform_yz*v->R_xz -
+        J_star_t_6*v->R_xy;
+    const real J_star_t_2 = J_star_in_platform_xy*v->R_yx + J_star_in_platform_yz*v->R_yz -
+        J_star_t_6*v->R_yy;
+    const real J_star_t_3 = J_star_in_platform_xy*v->R_zx + J_star_in_platform_yz*v->R_zz -
+        J_star_t_6*v->R_zy;
+    const real J_star_in_platform_xz = m->J_star_in_platform_xz;
+    const real J_star_t_8 = m->J_star_t_8;
+    const real J_star_t_4 = J_star_t_8*v->R_xz - J_star_in_platform_xz*v->R_xx;
+    const real J_star_t_5 = J_star_t_8*v->R_yz - J_star_in_platform_xz*v->R_yx;
+    const real J_star_t_7 = J_star_t_8*v->R_zz - J_star_in_platform_xz*v->R_zx;
+    const real J_star_t_9 = J_star_t*v->R_xy - J_star_t_4*v->R_xz;
+    const real J_star_in_platform_xx = m->J_star_in_platform_xx;
+    const real J_star_xx = J_star_in_platform_xx + 2*J_star_t_9;
+    const real J_star_xy = J_star_t*v->R_yy + J_star_t_2*v->R_xy - J_star_t_4*v->R_yz -
+        J_star_t_5*v->R_xz;
+    const real J_star_xz = J_star_t*v->R_zy + J_star_t_3*v->R_xy - J_star_t_4*v->R_zz -
+        J_star_t_7*v->R_xz;
+    const real J_star_t_10 = J_star_t_2*v->R_yy - J_star_t_5*v->R_yz;
+    const real J_star_yy = J_star_in_platform_xx + 2*J_star_t_10;
+    const real J_star_yz = J_star_t_2*v->R_zy + J_star_t_3*v->R_yy - J_star_t_5*v->R_zz -
+        J_star_t_7*v->R_yz;
+    const real J_star_t_11 = J_star_t_3*v->R_zy - J_star_t_7*v->R_zz;
+    const real J_star_zz = J_star_in_platform_xx + 2*J_star_t_11;
+    v->J_star_xx = J_star_xx;
+    v->J_star_xy = J_star_xy;
+    v->J_star_xz = J_star_xz;
+    v->J_star_yy = J_star_yy;
+    v->J_star_yz = J_star_yz;
+    v->J_star_zz = J_star_zz;
+}
+
+INLINE void stage_Z_dynamics(const prepared *m, size_t w, size_t k, const real *V, values *v)
+{
+    /* (Z_p) centripetal force and weight of the platform */
+    const real omega_y = V[4*w + k];
+    const real omega_z = V[5*w + k];
+    const real Z_p_t_4 = v->h_star_z*omega_y - v->h_star_y*omega_z;
+    const real omega_x = V[3*w + k];
+    const real Z_p_t_5 = v->h_star_x*omega_z - v->h_star_z*omega_x;
+    const real Z_p_t_6 = v->h_star_y*omega_x - v->h_star_x*omega_y;
+    const real Z_p_t = m->Z_p_t;
+    const real Z_p_x = Z_p_t_6*omega_y - Z_p_t - Z_p_t_5*omega_z;
+    const real Z_p_t_2 = m->Z_p_t_2;
+    const real Z_p_y = Z_p_t_4*omega_z - Z_p_t_2 - Z_p_t_6*omega_x;
+    const real Z_p_t_3 = m->Z_p_t_3;
+    const real Z_p_z = Z_p_t_5*omega_x - Z_p_t_3 - Z_p_t_4*omega_y;
+    /* (Z_q) gyroscopic moment and moment of the weight of the platform */
+    const real gravity_x = m->gravity_x;
+    const real gravity_y = m->gravity_y;
+    const real gravity_z = m->gravity_z;
+    const real g_in_platform_x = v->R_xx*gravity_x + v->R_yx*gravity_y + v->R_zx*gravity_z;
+    const real g_in_platform_y = v->R_xy*gravity_x + v->R_yy*gravity_y + v->R_zy*gravity_z;
+    const real g_in_platform_z = v->R_xz*gravity_x + v->R_yz*gravity_y + v->R_zz*gravity_z;
+    const real J_star_in_platform_xx = m->J_star_in_platform_xx;
+    const real J_star_in_platform_xy = m->J_star_in_platform_xy;
+    const real J_star_in_platform_xz = m->J_star_in_platform_xz;
+    const real Z_q_t = J_star_in_platform_xx*v->omega_in_platform_x +
+        J_star_in_platform_xy*v->omega_in_platform_y +
+        J_star_in_platform_xz*v->omega_in_platform_z;
+    const real J_star_in_platform_yy = m->J_star_in_platform_yy;
+    const real J_star_in_platform_yz = m->J_star_in_platform_yz;
+    const real Z_q_t_2 = J_star_in_platform_xy*v->omega_in_platform_x +
+        J_star_in_platform_yy*v->omega_in_platform_y +
+        J_star_in_platform_yz*v->omega_in_platform_z;
+    const real J_star_in_platform_zz = m->J_star_in_platform_zz;
+    const real Z_q_t_3 = J_star_in_platform_xz*v->omega_in_platform_x +
+        J_star_in_platform_yz*v->omega_in_platform_y +
+        J_star_in_platform_zz*v->omega_in_platform_z;
+    const real h_star_in_platform_y = m->h_star_in_platform_y;
+    const real h_star_in_platform_z = m->h_star_in_platform_z;
+    const real Z_q_in_platform_x = Z_q_t_3*v->omega_in_platform_y +
+        g_in_platform_y*h_star_in_platform_z - Z_q_t_2*v->omega_in_platform_z -
+        g_in_platform_z*h_star_in_platform_y;
+    const real h_star_in_platform_x = m->h_star_in_platform_x;
+    const real Z_q_in_platform_y = Z_q_t*v->omega_in_platform_z +
+        g_in_platform_z*h_star_in_platform_x - Z_q_t_3*v->omega_in_platform_x -
+        g_in_platform_x*h_star_in_platform_z;
+    const real Z_q_in_platform_z = Z_q_t_2*v->omega_in_platform_x +
+        g_in_platform_x*h_star_in_platform_y - Z_q_t*v->omega_in_platform_y -
+        g_in_platform_y*h_star_in_platform_x;
+    const real Z_q_x = v->R_xx*Z_q_in_platform_x + v->R_xy*Z_q_in_platform_y +
+        v->R_xz*Z_q_in_platform_z;
+    const real Z_q_y = v->R_yx*Z_q_in_platform_x + v->R_yy*Z_q_in_platform_y +
+        v->R_yz*Z_q_in_platform_z;
+    const real Z_q_z = v->R_zx*Z_q_in_platform_x + v->R_zy*Z_q_in_platform_y +
+        v->R_zz*Z_q_in_platform_z;
+    v->Z_p_x = Z_p_x;
+    v->Z_p_y = Z_p_y;
+    v->Z_p_z = Z_p_z;
+    v->Z_q_x = Z_q_x;
+    v->Z_q_y = Z_q_y;
+    v->Z_q_z = Z_q_z;
+}
+
+typedef struct {
+    real prs_q_x, prs_q_y, prs_q_z, prs_S_in_axes0_y, prs_disc_1, prs_rho2_2, prs_c_2, prs_s_2,
+        prs_v_2_in_axes0_x, prs_v_2_in_axes0_y, axis_y_prs_axes2_x, axis_y_prs_axes2_y,
+        axis_y_prs_axes2_z, axis_x_prs_axes2_x, axis_x_prs_axes2_y, axis_x_prs_axes2_z, prs_w_1_t,
+        prs_w_1_in_axes2_x, prs_w_1_in_axes2_y, prs_Hk_a_1_x, prs_Hk_a_1_y, prs_Hk_a_1_z, prs_a_p_x,
+        prs_a_p_y, prs_a_p_z, prs_S_dot_t, prs_S_dot_t_2, prs_S_dot_t_3, prs_S_dot_x, prs_S_dot_y,
+        prs_S_dot_z, prs_qd_2_t, prs_W_2_t, prs_S_ddot_t, prs_S_ddot_t_2, prs_S_ddot_in_axes2_y,
+        prs_w_1_x, prs_w_1_y, prs_w_1_z, prs_H_a_1_x, prs_H_a_1_y, prs_H_a_1_z, prs_d_c_xx,
+        prs_d_c_xy, prs_d_c_xz, prs_d_c_yy, prs_d_c_yz, prs_d_c_zz, prs_M_ta_t_3, prs_M_ta_t_4,
+        prs_M_ta_t_5, prs_M_ta_t_6, prs_M_ta_t_8, prs_M_ta_t_9, prs_M_ta_t_10, prs_M_ta_t_11,
+        prs_M_ta_t_12, prs_M_aa_t, prs_M_aa_t_2, prs_M_aa_t_3, prs_M_aa_t_4, prs_M_aa_t_5,
+        prs_M_aa_t_6, prs_u_1_x, prs_u_1_y, prs_u_1_z, prs_u_1_in_axes2_y, prs_c_x, prs_c_y, prs_c_z;
+} values_prs;
+
+INLINE void stage_prs_X(const prepared *m, size_t w, size_t i, size_t j, const real *s, const real
+    *X, values_prs *v)
+{
+    /* (prs-S) from the base point to the connection point */
+    const real R_xx = s[0*w + j];
+    const real R_xy = s[1*w + j];
+    const real R_xz = s[2*w + j];
+    const real prs_platform_point_x = m->prs_platform_point_x[i];
+    const real prs_platform_point_y = m->prs_platform_point_y[i];
+    const real prs_platform_point_z = m->prs_platform_point_z[i];
+    const real prs_q_x = R_xx*prs_platform_point_x + R_xy*prs_platform_point_y +
+        R_xz*prs_platform_point_z;
+    const real R_yx = s[3*w + j];
+    const real R_yy = s[4*w + j];
+    const real R_yz = s[5*w + j];
+    const real prs_q_y = R_yx*prs_platform_point_x + R_yy*prs_platform_point_y +
+        R_yz*prs_platform_point_z;
+    const real R_zx = s[6*w + j];
+    const real R_zy = s[7*w + j];
+    const real R_zz = s[8*w + j];
+    const real prs_q_z = R_zx*prs_platform_point_x + R_zy*prs_platform_point_y +
+        R_zz*prs_platform_point_z;
+    const real prs_base_point_x = m->prs_base_point_x[i];
+    const real t_x = X[0*w + j];
+    const real prs_S_x = prs_q_x + t_x - prs_base_point_x;
+    const real prs_base_point_y = m->prs_base_point_y[i];
+    const real t_y = X[1*w + j];
+    const real prs_S_y = prs_q_y + t_y - prs_base_point_y;
+    const real prs_base_point_z = m->prs_base_point_z[i];
+    const real t_z = X[2*w + j];
+    const real prs_S_z = prs_q_z + t_z - prs_base_point_z;
+    const real prs_base_frame_xx = m->prs_base_frame_xx[i];
+    const real prs_base_frame_yx = m->prs_base_frame_yx[i];
+    const real prs_base_frame_zx = m->prs_base_frame_zx[i];
+    const real prs_S_in_axes0_x = prs_S_x*prs_base_frame_xx + prs_S_y*prs_base_frame_yx +
+        prs_S_z*prs_base_frame_zx;
+    const real prs_base_frame_xy = m->prs_base_frame_xy[i];
+    const real prs_base_frame_yy = m->prs_base_frame_yy[i];
+    const real prs_base_frame_zy = m->prs_base_frame_zy[i];
+    const real prs_S_in_axes0_y = prs_S_x*prs_base_frame_xy + prs_S_y*prs_base_frame_yy +
+        prs_S_z*prs_base_frame_zy;
+    const real prs_base_frame_xz = m->prs_base_frame_xz[i];
+    const real prs_base_frame_yz = m->prs_base_frame_yz[i];
+    const real prs_base_frame_zz = m->prs_base_frame_zz[i];
+    const real prs_S_in_axes0_z = prs_S_x*prs_base_frame_xz + prs_S_y*prs_base_frame_yz +
+        prs_S_z*prs_base_frame_zz;
+    /* (prs-disc_1) discriminant of the distance equation */
+    const real prs_disc_1_t = prs_S_x*prs_S_x + prs_S_y*prs_S_y + prs_S_z*prs_S_z;
+    const real prs_size_t = m->prs_size_t[i];
+    const real prs_disc_1 = prs_S_in_axes0_x*prs_S_in_axes0_x +
+        prs_S_in_axes0_z*prs_S_in_axes0_z + prs_size_t - prs_disc_1_t;
+    /* (prs-rho2_2) squared amplitude */
+    const real prs_rho2_2 = prs_size_t*(prs_S_in_axes0_y*prs_S_in_axes0_y + prs_disc_1);
+    /* (prs-c_2) cosine of the angle of joint 2 from its reference direction */
+    const real prs_c_2_t = 1/(root(prs_rho2_2));
+    const real prs_branch_1 = m->prs_branch_1[i];
+    const real prs_platform_joint_offset_x = m->prs_platform_joint_offset_x[i];
+    const real prs_c_2 = -prs_branch_1*prs_c_2_t*root(prs_disc_1)*prs_platform_joint_offset_x;
+    /* (prs-s_2) sine of the angle of joint 2 from its reference direction */
+    const real prs_s_2 = prs_S_in_axes0_y*prs_c_2_t*prs_platform_joint_offset_x;
+    /* (prs-v_2) velocity of the connection point per rate of joint 2 */
+    const real prs_v_2_in_axes0_x = -prs_platform_joint_offset_x*prs_s_2;
+    const real prs_v_2_in_axes0_y = prs_c_2*prs_platform_joint_offset_x;
+    /* (prs-w_1) reciprocal vector 1 */
+    const real axis_y_prs_axes2_x = prs_base_frame_xy*prs_c_2 - prs_base_frame_xx*prs_s_2;
+    const real axis_y_prs_axes2_y = prs_base_frame_yy*prs_c_2 - prs_base_frame_yx*prs_s_2;
+    const real axis_y_prs_axes2_z = prs_base_frame_zy*prs_c_2 - prs_base_frame_zx*prs_s_2;
+    const real axis_x_prs_axes2_x = prs_base_frame_xx*prs_c_2 + prs_base_frame_xy*prs_s_2;
+    const real axis_x_prs_axes2_y = prs_base_frame_yx*prs_c_2 + prs_base_frame_yy*prs_s_2;
+    const real axis_x_prs_axes2_z = prs_base_frame_zx*prs_c_2 + prs_base_frame_zy*prs_s_2;
+    const real prs_w_1_t = -1/prs_v_2_in_axes0_y;
+    const real prs_w_1_t_2 = prs_v_2_in_axes0_x*prs_w_1_t;
+    const real prs_w_1_in_axes2_x = prs_c_2 + prs_s_2*prs_w_1_t_2;
+    const real prs_w_1_in_axes2_y = prs_c_2*prs_w_1_t_2 - prs_s_2;
+    /* (prs-Hk_a_1) moment of the column's unit force about the platform origin */
+    const real prs_Hk_a_1_x = prs_base_frame_zz*prs_q_y - prs_base_frame_yz*prs_q_z;
+    const real prs_Hk_a_1_y = prs_base_frame_xz*prs_q_z - prs_base_frame_zz*prs_q_x;
+    const real prs_Hk_a_1_z = prs_base_frame_yz*prs_q_x - prs_base_frame_xz*prs_q_y;
+    v->prs_q_x = prs_q_x;
+    v->prs_q_y = prs_q_y;
+    v->prs_q_z = prs_q_z;
+    v->prs_S_in_axes0_y = prs_S_in_axes0_y;
+    v->prs_disc_1 = prs_disc_1;
+    v->prs_rho2_2 = prs_rho2_2;
+    v->prs_c_2 = prs_c_2;
+    v->prs_s_2 = prs_s_2;
+    v->prs_v_2_in_axes0_x = prs_v_2_in_axes0_x;
+    v->prs_v_2_in_axes0_y = prs_v_2_in_axes0_y;
+    v->axis_y_prs_axes2_x = axis_y_prs_axes2_x;
+    v->axis_y_prs_axes2_y = axis_y_prs_axes2_y;
+    v->axis_y_prs_axes2_z = axis_y_prs_axes2_z;
+    v->axis_x_prs_axes2_x = axis_x_prs_axes2_x;
+    v->axis_x_prs_axes2_y = axis_x_prs_axes2_y;
+    v->axis_x_prs_axes2_z = axis_x_prs_axes2_z;
+    v->prs_w_1_t = prs_w_1_t;
+    v->prs_w_1_in_axes2_x = prs_w_1_in_axes2_x;
+    v->prs_w_1_in_axes2_y = prs_w_1_in_axes2_y;
+    v->prs_Hk_a_1_x = prs_Hk_a_1_x;
+    v->prs_Hk_a_1_y = prs_Hk_a_1_y;
+    v->prs_Hk_a_1_z = prs_Hk_a_1_z;
+}
+
+INLINE void stage_prs_A_X(size_t w, size_t j, const real *A, values_prs *v)
+{
+    /* (prs-a_p) acceleration of the connection point without its centripetal part */
+    const real alpha_y = A[4*w + j];
+    const real alpha_z = A[5*w + j];
+    const real t_ddot_x = A[0*w + j];
+    const real prs_a_p_x = t_ddot_x + alpha_y*v->prs_q_z - alpha_z*v->prs_q_y;
+    const real alpha_x = A[3*w + j];
+    const real t_ddot_y = A[1*w + j];
+    const real prs_a_p_y = t_ddot_y + alpha_z*v->prs_q_x - alpha_x*v->prs_q_z;
+    const real t_ddot_z = A[2*w + j];
+    const real prs_a_p_z = t_ddot_z + alpha_x*v->prs_q_y - alpha_y*v->prs_q_x;
+    v->prs_a_p_x = prs_a_p_x;
+    v->prs_a_p_y = prs_a_p_y;
+    v->prs_a_p_z = prs_a_p_z;
+}
+
+INLINE void stage_prs_V_X(const prepared *m, size_t w, size_t i, size_t j, const real *V,
+    values_prs *v)
+{
+    /* (prs-S_dot) velocity of the connection point */
+    const real omega_y = V[4*w + j];
+    const real omega_z = V[5*w + j];
+    const real prs_S_dot_t = omega_y*v->prs_q_z - omega_z*v->prs_q_y;
+    const real omega_x = V[3*w + j];
+    const real prs_S_dot_t_2 = omega_z*v->prs_q_x - omega_x*v->prs_q_z;
+    const real prs_S_dot_t_3 = omega_x*v->prs_q_y - omega_y*v->prs_q_x;
+    const real t_dot_x = V[0*w + j];
+    const real prs_S_dot_x = prs_S_dot_t + t_dot_x;
+    const real t_dot_y = V[1*w + j];
+    const real prs_S_dot_y = prs_S_dot_t_2 + t_dot_y;
+    const real t_dot_z = V[2*w + j];
+    const real prs_S_dot_z = prs_S_dot_t_3 + t_dot_z;
+    /* (prs-qd_2) rate of joint 2 */
+    const real prs_base_frame_xy = m->prs_base_frame_xy[i];
+    const real prs_base_frame_yy = m->prs_base_frame_yy[i];
+    const real prs_base_frame_zy = m->prs_base_frame_zy[i];
+    const real prs_qd_2_t = v->prs_w_1_t*(prs_S_dot_x*prs_base_frame_xy +
+        prs_S_dot_y*prs_base_frame_yy + prs_S_dot_z*prs_base_frame_zy);
+    /* (prs-W_2) centripetal tensor of link 2 */
+    const real prs_W_2_t = prs_qd_2_t*prs_qd_2_t;
+    v->prs_S_dot_t = prs_S_dot_t;
+    v->prs_S_dot_t_2 = prs_S_dot_t_2;
+    v->prs_S_dot_t_3 = prs_S_dot_t_3;
+    v->prs_S_dot_x = prs_S_dot_x;
+    v->prs_S_dot_y = prs_S_dot_y;
+    v->prs_S_dot_z = prs_S_dot_z;
+    v->prs_qd_2_t = prs_qd_2_t;
+    v->prs_W_2_t = prs_W_2_t;
+}
+
+INLINE void stage_prs_A_V_X(const prepared *m, size_t w, size_t i, size_t j, const real *V,
+    values_prs *v)
+{
+    /* (prs-S_ddot) acceleration of the connection point */
+    const real omega_y = V[4*w + j];
+    const real omega_z = V[5*w + j];
+    const real prs_S_ddot_x = v->prs_a_p_x + omega_y*v->prs_S_dot_t_3 -
+        omega_z*v->prs_S_dot_t_2;
+    const real omega_x = V[3*w + j];
+    const real prs_S_ddot_y = v->prs_a_p_y + omega_z*v->prs_S_dot_t -
+        omega_x*v->prs_S_dot_t_3;
+    const real prs_S_ddot_z = v->prs_a_p_z + omega_x*v->prs_S_dot_t_2 -
+        omega_y*v->prs_S_dot_t;
+    const real prs_base_frame_xx = m->prs_base_frame_xx[i];
+    const real prs_base_frame_yx = m->prs_base_frame_yx[i];
+    const real prs_base_frame_zx = m->prs_base_frame_zx[i];
+    const real prs_S_ddot_t = prs_S_ddot_x*prs_base_frame_xx + prs_S_ddot_y*prs_base_frame_yx
+        + prs_S_ddot_z*prs_base_frame_zx;
+    const real prs_base_frame_xy = m->prs_base_frame_xy[i];
+    const real prs_base_frame_yy = m->prs_base_frame_yy[i];
+    const real prs_base_frame_zy = m->prs_base_frame_zy[i];
+    const real prs_S_ddot_t_2 = prs_S_ddot_x*prs_base_frame_xy +
+        prs_S_ddot_y*prs_base_frame_yy + prs_S_ddot_z*prs_base_frame_zy;
+    const real prs_S_ddot_in_axes2_y = prs_S_ddot_t_2*v->prs_c_2 - prs_S_ddot_t*v->prs_s_2;
+    v->prs_S_ddot_t = prs_S_ddot_t;
+    v->prs_S_ddot_t_2 = prs_S_ddot_t_2;
+    v->prs_S_ddot_in_axes2_y = prs_S_ddot_in_axes2_y;
+}
+
+INLINE void stage_prs_H_condition(const prepared *m, size_t i, values_prs *v)
+{
+    /* (prs-w_1) reciprocal vector 1 */
+    const real prs_platform_joint_offset_x = m->prs_platform_joint_offset_x[i];
+    const real prs_w_1_t = prs_platform_joint_offset_x*v->prs_s_2/v->prs_v_2_in_axes0_y;
+    const real prs_w_1_in_axes2_x = v->prs_c_2 + v->prs_s_2*prs_w_1_t;
+    const real prs_w_1_in_axes2_y = v->prs_c_2*prs_w_1_t - v->prs_s_2;
+    const real prs_base_frame_xx = m->prs_base_frame_xx[i];
+    const real prs_base_frame_xy = m->prs_base_frame_xy[i];
+    const real prs_w_1_x = prs_w_1_in_axes2_x*(prs_base_frame_xx*v->prs_c_2 +
+        prs_base_frame_xy*v->prs_s_2) + prs_w_1_in_axes2_y*(prs_base_frame_xy*v->prs_c_2 -
+        prs_base_frame_xx*v->prs_s_2);
+    const real prs_base_frame_yx = m->prs_base_frame_yx[i];
+    const real prs_base_frame_yy = m->prs_base_frame_yy[i];
+    const real prs_w_1_y = prs_w_1_in_axes2_x*(prs_base_frame_yx*v->prs_c_2 +
+        prs_base_frame_yy*v->prs_s_2) + prs_w_1_in_axes2_y*(prs_base_frame_yy*v->prs_c_2 -
+        prs_base_frame_yx*v->prs_s_2);
+    const real prs_base_frame_zx = m->prs_base_frame_zx[i];
+    const real prs_base_frame_zy = m->prs_base_frame_zy[i];
+    const real prs_w_1_z = prs_w_1_in_axes2_x*(prs_base_frame_zx*v->prs_c_2 +
+        prs_base_frame_zy*v->prs_s_2) + prs_w_1_in_axes2_y*(prs_base_frame_zy*v->prs_c_2 -
+        prs_base_frame_zx*v->prs_s_2);
+    /* (prs-H_a_1) moment of the column's unit force about the platform origin */
+    const real prs_H_a_1_x = v->prs_q_y*prs_w_1_z - v->prs_q_z*prs_w_1_y;
+    const real prs_H_a_1_y = v->prs_q_z*prs_w_1_x - v->prs_q_x*prs_w_1_z;
+    const real prs_H_a_1_z = v->prs_q_x*prs_w_1_y - v->prs_q_y*prs_w_1_x;
+    v->prs_w_1_x = prs_w_1_x;
+    v->prs_w_1_y = prs_w_1_y;
+    v->prs_w_1_z = prs_w_1_z;
+    v->prs_H_a_1_x = prs_H_a_1_x;
+    v->prs_H_a_1_y = prs_H_a_1_y;
+    v->prs_H_a_1_z = prs_H_a_1_z;
+}
+
+INLINE void stage_prs_M_dynamics(const prepared *m, size_t i, values_prs *v)
+{
+    /* (prs-w_2) reciprocal vector 2 */
+    const real prs_w_2_t = v->prs_s_2*v->prs_w_1_t;
+    const real prs_w_2_in_axes2_y = -v->prs_c_2*v->prs_w_1_t;
+    /* (prs-P_c_2) force that accelerates joint 2, per unit */
+    const real prs_h_2_in_spec2_x = m->prs_h_2_in_spec2_x[i];
+    const real prs_h_2_in_spec2_y = m->prs_h_2_in_spec2_y[i];
+    const real prs_P_c_2_in_axes0_x = -v->prs_c_2*prs_h_2_in_spec2_y -
+        prs_h_2_in_spec2_x*v->prs_s_2;
+    /* (prs-d_Gamma_2) coefficient of the acceleration in: moment about axis 2 of the distal links'
+       inertia and weight */
+    const real prs_J_2_in_spec2_zz = m->prs_J_2_in_spec2_zz[i];
+    const real prs_d_Gamma_2_t = v->prs_w_1_t*(prs_J_2_in_spec2_zz -
+        prs_P_c_2_in_axes0_x*v->prs_v_2_in_axes0_x);
+    const real prs_d_Gamma_2_in_axes2_x = prs_P_c_2_in_axes0_x*v->prs_c_2 -
+        prs_d_Gamma_2_t*v->prs_s_2;
+    const real prs_d_Gamma_2_in_axes2_y = -prs_P_c_2_in_axes0_x*v->prs_s_2 -
+        v->prs_c_2*prs_d_Gamma_2_t;
+    /* (prs-d_Gamma_1) coefficient of the acceleration in: force along axis 1 of the distal links'
+       inertia and weight */
+    const real prs_P_c_1_in_axes0_x = m->prs_P_c_1_in_axes0_x[i];
+    const real prs_d_Gamma_1_t = v->prs_w_1_t*(prs_P_c_2_in_axes0_x -
+        prs_P_c_1_in_axes0_x*v->prs_v_2_in_axes0_x);
+    const real prs_d_Gamma_1_in_axes2_x = prs_P_c_1_in_axes0_x*v->prs_c_2 -
+        prs_d_Gamma_1_t*v->prs_s_2;
+    const real prs_d_Gamma_1_in_axes2_y = -prs_P_c_1_in_axes0_x*v->prs_s_2 -
+        v->prs_c_2*prs_d_Gamma_1_t;
+    /* (prs-d_G) coefficient of the acceleration in: force at the connection point that balances the
+       leg's inertia and weight along all degrees of freedom */
+    const real prs_d_G_in_axes2_xx = prs_d_Gamma_1_in_axes2_x*v->prs_w_1_in_axes2_x -
+        prs_d_Gamma_2_in_axes2_x*prs_w_2_t;
+    const real prs_d_G_in_axes2_xy = prs_d_Gamma_1_in_axes2_y*v->prs_w_1_in_axes2_x -
+        prs_d_Gamma_2_in_axes2_y*prs_w_2_t;
+    const real prs_d_G_in_axes2_yx = prs_d_Gamma_1_in_axes2_x*v->prs_w_1_in_axes2_y +
+        prs_d_Gamma_2_in_axes2_x*prs_w_2_in_axes2_y;
+    const real prs_d_G_in_axes2_yy = prs_d_Gamma_1_in_axes2_y*v->prs_w_1_in_axes2_y +
+        prs_d_Gamma_2_in_axes2_y*prs_w_2_in_axes2_y;
+    /* (prs-d_c) coefficient of the acceleration in: leg force on the platform without actuation and
+       without the mass at the connection point */
+    const real prs_d_c_t = -v->axis_x_prs_axes2_x*prs_d_G_in_axes2_xx -
+        v->axis_y_prs_axes2_x*prs_d_G_in_axes2_yx;
+    const real prs_d_c_t_2 = -v->axis_x_prs_axes2_y*prs_d_G_in_axes2_xx -
+        v->axis_y_prs_axes2_y*prs_d_G_in_axes2_yx;
+    const real prs_d_c_t_3 = -v->axis_x_prs_axes2_x*prs_d_G_in_axes2_xy -
+        v->axis_y_prs_axes2_x*prs_d_G_in_axes2_yy;
+    const real prs_d_c_t_4 = -v->axis_x_prs_axes2_y*prs_d_G_in_axes2_xy -
+        v->axis_y_prs_axes2_y*prs_d_G_in_axes2_yy;
+    const real prs_d_c_xx = v->axis_x_prs_axes2_x*prs_d_c_t +
+        v->axis_y_prs_axes2_x*prs_d_c_t_3;
+    const real prs_d_c_xy = v->axis_x_prs_axes2_y*prs_d_c_t +
+        v->axis_y_prs_axes2_y*prs_d_c_t_3;
+    const real prs_d_c_xz = v->axis_x_prs_axes2_z*prs_d_c_t +
+        v->axis_y_prs_axes2_z*prs_d_c_t_3;
+    const real prs_d_c_yy = v->axis_x_prs_axes2_y*prs_d_c_t_2 +
+        v->axis_y_prs_axes2_y*prs_d_c_t_4;
+    const real prs_d_c_yz = v->axis_x_prs_axes2_z*prs_d_c_t_2 +
+        v->axis_y_prs_axes2_z*prs_d_c_t_4;
+    const real prs_d_c_zz = v->axis_x_prs_axes2_z*(-v->axis_x_prs_axes2_z*prs_d_G_in_axes2_xx
+        - v->axis_y_prs_axes2_z*prs_d_G_in_axes2_yx) +
+        v->axis_y_prs_axes2_z*(-v->axis_x_prs_axes2_z*prs_d_G_in_axes2_xy -
+        v->axis_y_prs_axes2_z*prs_d_G_in_axes2_yy);
+    /* (M_ta) coupling block of M */
+    const real prs_M_ta_t = prs_d_c_xy*v->prs_q_z;
+    const real prs_M_ta_t_2 = prs_d_c_xz*v->prs_q_y;
+    const real prs_M_ta_t_3 = prs_M_ta_t - prs_M_ta_t_2;
+    const real prs_M_ta_t_4 = prs_d_c_xx*v->prs_q_z - prs_d_c_xz*v->prs_q_x;
+    const real prs_M_ta_t_5 = prs_d_c_xx*v->prs_q_y - prs_d_c_xy*v->prs_q_x;
+    const real prs_M_ta_t_6 = prs_d_c_yy*v->prs_q_z - prs_d_c_yz*v->prs_q_y;
+    const real prs_M_ta_t_7 = prs_d_c_yz*v->prs_q_x;
+    const real prs_M_ta_t_8 = prs_M_ta_t_7 - prs_M_ta_t;
+    const real prs_M_ta_t_9 = prs_d_c_xy*v->prs_q_y - prs_d_c_yy*v->prs_q_x;
+    const real prs_M_ta_t_10 = prs_d_c_yz*v->prs_q_z - prs_d_c_zz*v->prs_q_y;
+    const real prs_M_ta_t_11 = prs_d_c_zz*v->prs_q_x - prs_d_c_xz*v->prs_q_z;
+    const real prs_M_ta_t_12 = prs_M_ta_t_2 - prs_M_ta_t_7;
+    /* (M_aa) rotational block of M */
+    const real prs_M_aa_t = prs_M_ta_t_10*v->prs_q_y - prs_M_ta_t_6*v->prs_q_z;
+    const real prs_M_aa_t_2 = prs_M_ta_t_11*v->prs_q_y - prs_M_ta_t_8*v->prs_q_z;
+    const real prs_M_aa_t_3 = prs_M_ta_t_12*v->prs_q_y - prs_M_ta_t_9*v->prs_q_z;
+    const real prs_M_aa_t_4 = prs_M_ta_t_11*v->prs_q_x + prs_M_ta_t_4*v->prs_q_z;
+    const real prs_M_aa_t_5 = prs_M_ta_t_5*v->prs_q_z - prs_M_ta_t_12*v->prs_q_x;
+    const real prs_M_aa_t_6 = prs_M_ta_t_9*v->prs_q_x - prs_M_ta_t_5*v->prs_q_y;
+    v->prs_d_c_xx = prs_d_c_xx;
+    v->prs_d_c_xy = prs_d_c_xy;
+    v->prs_d_c_xz = prs_d_c_xz;
+    v->prs_d_c_yy = prs_d_c_yy;
+    v->prs_d_c_yz = prs_d_c_yz;
+    v->prs_d_c_zz = prs_d_c_zz;
+    v->prs_M_ta_t_3 = prs_M_ta_t_3;
+    v->prs_M_ta_t_4 = prs_M_ta_t_4;
+    v->prs_M_ta_t_5 = prs_M_ta_t_5;
+    v->prs_M_ta_t_6 = prs_M_ta_t_6;
+    v->prs_M_ta_t_8 = prs_M_ta_t_8;
+    v->prs_M_ta_t_9 = prs_M_ta_t_9;
+    v->prs_M_ta_t_10 = prs_M_ta_t_10;
+    v->prs_M_ta_t_11 = prs_M_ta_t_11;
+    v->prs_M_ta_t_12 = prs_M_ta_t_12;
+    v->prs_M_aa_t = prs_M_aa_t;
+    v->prs_M_aa_t_2 = prs_M_aa_t_2;
+    v->prs_M_aa_t_3 = prs_M_aa_t_3;
+    v->prs_M_aa_t_4 = prs_M_aa_t_4;
+    v->prs_M_aa_t_5 = prs_M_aa_t_5;
+    v->prs_M_aa_t_6 = prs_M_aa_t_6;
+}
+
+INLINE void stage_prs_Z_dynamics(size_t w, size_t j, const real *V, values_prs *v)
+{
+    /* (prs-u_1) centripetal acceleration of the connection point */
+    const real omega_y = V[4*w + j];
+    const real omega_z = V[5*w + j];
+    const real prs_u_1_x = omega_y*v->prs_S_dot_t_3 - omega_z*v->prs_S_dot_t_2;
+    const real omega_x = V[3*w + j];
+    const real prs_u_1_y = omega_z*v->prs_S_dot_t - omega_x*v->prs_S_dot_t_3;
+    const real prs_u_1_z = omega_x*v->prs_S_dot_t_2 - omega_y*v->prs_S_dot_t;
+    const real prs_u_1_in_axes2_y = v->axis_y_prs_axes2_x*prs_u_1_x +
+        v->axis_y_prs_axes2_y*prs_u_1_y + v->axis_y_prs_axes2_z*prs_u_1_z;
+    v->prs_u_1_x = prs_u_1_x;
+    v->prs_u_1_y = prs_u_1_y;
+    v->prs_u_1_z = prs_u_1_z;
+    v->prs_u_1_in_axes2_y = prs_u_1_in_axes2_y;
+}
+
+INLINE void stage_prs_legs_required(const prepared *m, size_t i, values_prs *v)
+{
+    /* (prs-w_1) reciprocal vector 1 */
+    const real prs_w_1_t_3 = v->prs_c_2*v->prs_w_1_in_axes2_x -
+        v->prs_s_2*v->prs_w_1_in_axes2_y;
+    const real prs_w_1_t_4 = v->prs_c_2*v->prs_w_1_in_axes2_y +
+        v->prs_s_2*v->prs_w_1_in_axes2_x;
+    const real prs_base_frame_xx = m->prs_base_frame_xx[i];
+    const real prs_base_frame_xy = m->prs_base_frame_xy[i];
+    const real prs_w_1_x = prs_base_frame_xx*prs_w_1_t_3 + prs_base_frame_xy*prs_w_1_t_4;
+    const real prs_base_frame_yx = m->prs_base_frame_yx[i];
+    const real prs_base_frame_yy = m->prs_base_frame_yy[i];
+    const real prs_w_1_y = prs_base_frame_yx*prs_w_1_t_3 + prs_base_frame_yy*prs_w_1_t_4;
+    const real prs_base_frame_zx = m->prs_base_frame_zx[i];
+    const real prs_base_frame_zy = m->prs_base_frame_zy[i];
+    const real prs_w_1_z = prs_base_frame_zx*prs_w_1_t_3 + prs_base_frame_zy*prs_w_1_t_4;
+    /* (prs-rel) acceleration of the connection point left to the joint accelerations */
+    const real prs_platform_joint_offset_x = m->prs_platform_joint_offset_x[i];
+    const real prs_rel_in_axes2_x = v->prs_S_ddot_t*v->prs_c_2 + v->prs_S_ddot_t_2*v->prs_s_2
+        + prs_platform_joint_offset_x*v->prs_qd_2_t*v->prs_qd_2_t;
+    /* (prs-qdd_1) acceleration of joint 1 */
+    const real prs_qdd_1_t = v->prs_w_1_t*(v->prs_S_ddot_in_axes2_y*v->prs_c_2 +
+        prs_rel_in_axes2_x*v->prs_s_2);
+    const real prs_qdd_1 = v->prs_c_2*prs_rel_in_axes2_x + prs_qdd_1_t*v->prs_v_2_in_axes0_x -
+        v->prs_S_ddot_in_axes2_y*v->prs_s_2;
+    /* (prs-acc_1) acceleration of the reference point of link 1, less gravity */
+    const real prs_g_in_axes0_x = m->prs_g_in_axes0_x[i];
+    const real prs_acc_1_in_axes0_x = prs_qdd_1 - prs_g_in_axes0_x;
+    /* (prs-acc_2) acceleration of the reference point of link 2, less gravity */
+    const real prs_g_in_axes0_y = m->prs_g_in_axes0_y[i];
+    const real prs_acc_2_in_axes2_x = v->prs_c_2*prs_qdd_1 - v->prs_c_2*prs_g_in_axes0_x -
+        prs_g_in_axes0_y*v->prs_s_2;
+    const real prs_acc_2_in_axes2_y = prs_g_in_axes0_x*v->prs_s_2 -
+        v->prs_c_2*prs_g_in_axes0_y - prs_qdd_1*v->prs_s_2;
+    /* (prs-f_2) inertia force of link 2 less its weight */
+    const real prs_h_2_in_spec2_x = m->prs_h_2_in_spec2_x[i];
+    const real prs_h_2_in_spec2_y = m->prs_h_2_in_spec2_y[i];
+    const real prs_link2_mass = m->prs_link2_mass[i];
+    const real prs_f_2_in_axes2_x = prs_acc_2_in_axes2_x*prs_link2_mass +
+        prs_h_2_in_spec2_y*prs_qdd_1_t - v->prs_W_2_t*prs_h_2_in_spec2_x;
+    const real prs_f_2_in_axes2_y = prs_acc_2_in_axes2_y*prs_link2_mass -
+        v->prs_W_2_t*prs_h_2_in_spec2_y - prs_h_2_in_spec2_x*prs_qdd_1_t;
+    /* (prs-mu_2) inertia moment of the links that turn with link 2, about their reference points */
+    const real prs_J_2_in_spec2_zz = m->prs_J_2_in_spec2_zz[i];
+    const real prs_mu_2_in_axes2_z = prs_acc_2_in_axes2_y*prs_h_2_in_spec2_x -
+        prs_J_2_in_spec2_zz*prs_qdd_1_t - prs_acc_2_in_axes2_x*prs_h_2_in_spec2_y;
+    /* (prs-T_1) inertia force of the links from 1 outwards, the last link left out */
+    const real prs_link1_mass = m->prs_link1_mass[i];
+    const real prs_T_1_in_axes0_x = prs_acc_1_in_axes0_x*prs_link1_mass +
+        v->prs_c_2*prs_f_2_in_axes2_x - prs_f_2_in_axes2_y*v->prs_s_2;
+    /* (prs-G) force at the connection point that balances the leg's inertia and weight along all
+       degrees of freedom */
+    const real prs_G_t = v->prs_w_1_t*(prs_mu_2_in_axes2_z -
+        prs_T_1_in_axes0_x*v->prs_v_2_in_axes0_x);
+    const real prs_G_in_axes2_x = prs_T_1_in_axes0_x*v->prs_c_2 - prs_G_t*v->prs_s_2;
+    const real prs_G_in_axes2_y = -prs_G_t*v->prs_c_2 - prs_T_1_in_axes0_x*v->prs_s_2;
+    /* (prs-c) leg force on the platform without actuation and without the mass at the connection
+       point */
+    const real prs_c_t = prs_G_in_axes2_y*v->prs_s_2 - prs_G_in_axes2_x*v->prs_c_2;
+    const real prs_c_t_2 = -prs_G_in_axes2_x*v->prs_s_2 - prs_G_in_axes2_y*v->prs_c_2;
+    const real prs_c_x = prs_base_frame_xx*prs_c_t + prs_base_frame_xy*prs_c_t_2;
+    const real prs_c_y = prs_base_frame_yx*prs_c_t + prs_base_frame_yy*prs_c_t_2;
+    const real prs_c_z = prs_base_frame_zx*prs_c_t + prs_base_frame_zy*prs_c_t_2;
+    v->prs_w_1_x = prs_w_1_x;
+    v->prs_w_1_y = prs_w_1_y;
+    v->prs_w_1_z = prs_w_1_z;
+    v->prs_c_x = prs_c_x;
+    v->prs_c_y = prs_c_y;
+    v->prs_c_z = prs_c_z;
+}
+
 /* ---- functions of the state: M, Z, H and the like ---- */
 
 /* ---- dynamics ---- */
@@ -1319,296 +2002,74 @@ INLINE void dynamics_before(const prepared *m, size_t w, const real *X, const re
     verdict *t)
 {
     for (size_t k = 0; k < w; ++k) {
-        /* X: named entries */
-        const real X_0 = X[0*w + k];
-        const real t_x = X_0;
-        const real X_1 = X[1*w + k];
-        const real t_y = X_1;
-        const real X_2 = X[2*w + k];
-        const real t_z = X_2;
-        const real X_3 = X[3*w + k];
-        const real X_4 = X[4*w + k];
-        const real X_5 = X[5*w + k];
-        const real X_6 = X[6*w + k];
-        const real quaternion_norm2 = X_3*X_3 + X_4*X_4 + X_5*X_5 + X_6*X_6;
-        const real quaternion_scale = 2/quaternion_norm2;
-        const real quaternion_sx = X_3*quaternion_scale;
-        const real quaternion_sy = X_4*quaternion_scale;
-        const real quaternion_sz = X_5*quaternion_scale;
-        const real quaternion_wx = X_6*quaternion_sx;
-        const real quaternion_wy = X_6*quaternion_sy;
-        const real quaternion_wz = X_6*quaternion_sz;
-        const real quaternion_xx = X_3*quaternion_sx;
-        const real quaternion_xy = X_3*quaternion_sy;
-        const real quaternion_xz = X_3*quaternion_sz;
-        const real quaternion_yy = X_4*quaternion_sy;
-        const real quaternion_yz = X_4*quaternion_sz;
-        const real quaternion_zz = X_5*quaternion_sz;
-        const real R_xx = 1 - quaternion_yy - quaternion_zz;
-        const real R_xy = quaternion_xy - quaternion_wz;
-        const real R_xz = quaternion_wy + quaternion_xz;
-        const real R_yx = quaternion_wz + quaternion_xy;
-        const real R_yy = 1 - quaternion_xx - quaternion_zz;
-        const real R_yz = quaternion_yz - quaternion_wx;
-        const real R_zx = quaternion_xz - quaternion_wy;
-        const real R_zy = quaternion_wx + quaternion_yz;
-        const real R_zz = 1 - quaternion_xx - quaternion_yy;
-        /* V: named entries */
-        const real V_0 = V[0*w + k];
-        const real t_dot_x = V_0;
-        const real V_1 = V[1*w + k];
-        const real t_dot_y = V_1;
-        const real V_2 = V[2*w + k];
-        const real t_dot_z = V_2;
-        const real V_3 = V[3*w + k];
-        const real omega_x = V_3;
-        const real V_4 = V[4*w + k];
-        const real omega_y = V_4;
-        const real V_5 = V[5*w + k];
-        const real omega_z = V_5;
-        /* (h_star) first moment about the platform origin */
-        const real h_star_in_platform_x = m->h_star_in_platform_x;
-        const real h_star_in_platform_y = m->h_star_in_platform_y;
-        const real h_star_in_platform_z = m->h_star_in_platform_z;
-        const real h_star_x = R_xx*h_star_in_platform_x + R_xy*h_star_in_platform_y +
-            R_xz*h_star_in_platform_z;
-        const real h_star_y = R_yx*h_star_in_platform_x + R_yy*h_star_in_platform_y +
-            R_yz*h_star_in_platform_z;
-        const real h_star_z = R_zx*h_star_in_platform_x + R_zy*h_star_in_platform_y +
-            R_zz*h_star_in_platform_z;
-        /* (J_star) inertia tensor about the platform origin */
-        const real J_star_in_platform_xy = m->J_star_in_platform_xy;
-        const real J_star_in_platform_yz = m->J_star_in_platform_yz;
-        const real J_star_t_6 = m->J_star_t_6;
-        const real J_star_t = J_star_in_platform_xy*R_xx + J_star_in_platform_yz*R_xz -
-            J_star_t_6*R_xy;
-        const real J_star_t_2 = J_star_in_platform_xy*R_yx + J_star_in_platform_yz*R_yz -
-            J_star_t_6*R_yy;
-        const real J_star_t_3 = J_star_in_platform_xy*R_zx + J_star_in_platform_yz*R_zz -
-            J_star_t_6*R_zy;
-        const real J_star_in_platform_xz = m->J_star_in_platform_xz;
-        const real J_star_t_8 = m->J_star_t_8;
-        const real J_star_t_4 = J_star_t_8*R_xz - J_star_in_platform_xz*R_xx;
-        const real J_star_t_5 = J_star_t_8*R_yz - J_star_in_platform_xz*R_yx;
-        const real J_star_t_7 = J_star_t_8*R_zz - J_star_in_platform_xz*R_zx;
-        const real J_star_t_9 = J_star_t*R_xy - J_star_t_4*R_xz;
-        const real J_star_in_platform_xx = m->J_star_in_platform_xx;
-        const real J_star_xx = J_star_in_platform_xx + 2*J_star_t_9;
-        const real J_star_xy = J_star_t*R_yy + J_star_t_2*R_xy - J_star_t_4*R_yz -
-            J_star_t_5*R_xz;
-        const real J_star_xz = J_star_t*R_zy + J_star_t_3*R_xy - J_star_t_4*R_zz -
-            J_star_t_7*R_xz;
-        const real J_star_t_10 = J_star_t_2*R_yy - J_star_t_5*R_yz;
-        const real J_star_yy = J_star_in_platform_xx + 2*J_star_t_10;
-        const real J_star_yz = J_star_t_2*R_zy + J_star_t_3*R_yy - J_star_t_5*R_zz -
-            J_star_t_7*R_yz;
-        const real J_star_t_11 = J_star_t_3*R_zy - J_star_t_7*R_zz;
-        const real J_star_zz = J_star_in_platform_xx + 2*J_star_t_11;
-        /* (Z_p) centripetal force and weight of the platform */
-        const real Z_p_t_4 = h_star_z*omega_y - h_star_y*omega_z;
-        const real Z_p_t_5 = h_star_x*omega_z - h_star_z*omega_x;
-        const real Z_p_t_6 = h_star_y*omega_x - h_star_x*omega_y;
-        const real Z_p_t = m->Z_p_t;
-        const real Z_p_x = Z_p_t_6*omega_y - Z_p_t - Z_p_t_5*omega_z;
-        const real Z_p_t_2 = m->Z_p_t_2;
-        const real Z_p_y = Z_p_t_4*omega_z - Z_p_t_2 - Z_p_t_6*omega_x;
-        const real Z_p_t_3 = m->Z_p_t_3;
-        const real Z_p_z = Z_p_t_5*omega_x - Z_p_t_3 - Z_p_t_4*omega_y;
-        /* (Z_q) gyroscopic moment and moment of the weight of the platform */
-        const real gravity_x = m->gravity_x;
-        const real gravity_y = m->gravity_y;
-        const real gravity_z = m->gravity_z;
-        const real g_in_platform_x = R_xx*gravity_x + R_yx*gravity_y + R_zx*gravity_z;
-        const real g_in_platform_y = R_xy*gravity_x + R_yy*gravity_y + R_zy*gravity_z;
-        const real g_in_platform_z = R_xz*gravity_x + R_yz*gravity_y + R_zz*gravity_z;
-        const real omega_in_platform_x = R_xx*omega_x + R_yx*omega_y + R_zx*omega_z;
-        const real omega_in_platform_y = R_xy*omega_x + R_yy*omega_y + R_zy*omega_z;
-        const real omega_in_platform_z = R_xz*omega_x + R_yz*omega_y + R_zz*omega_z;
-        const real Z_q_t = J_star_in_platform_xx*omega_in_platform_x +
-            J_star_in_platform_xy*omega_in_platform_y + J_star_in_platform_xz*omega_in_platform_z;
-        const real J_star_in_platform_yy = m->J_star_in_platform_yy;
-        const real Z_q_t_2 = J_star_in_platform_xy*omega_in_platform_x +
-            J_star_in_platform_yy*omega_in_platform_y + J_star_in_platform_yz*omega_in_platform_z;
-        const real J_star_in_platform_zz = m->J_star_in_platform_zz;
-        const real Z_q_t_3 = J_star_in_platform_xz*omega_in_platform_x +
-            J_star_in_platform_yz*omega_in_platform_y + J_star_in_platform_zz*omega_in_platform_z;
-        const real Z_q_in_platform_x = Z_q_t_3*omega_in_platform_y +
-            g_in_platform_y*h_star_in_platform_z - Z_q_t_2*omega_in_platform_z -
-            g_in_platform_z*h_star_in_platform_y;
-        const real Z_q_in_platform_y = Z_q_t*omega_in_platform_z +
-            g_in_platform_z*h_star_in_platform_x - Z_q_t_3*omega_in_platform_x -
-            g_in_platform_x*h_star_in_platform_z;
-        const real Z_q_in_platform_z = Z_q_t_2*omega_in_platform_x +
-            g_in_platform_x*h_star_in_platform_y - Z_q_t*omega_in_platform_y -
-            g_in_platform_y*h_star_in_platform_x;
-        const real Z_q_x = R_xx*Z_q_in_platform_x + R_xy*Z_q_in_platform_y +
-            R_xz*Z_q_in_platform_z;
-        const real Z_q_y = R_yx*Z_q_in_platform_x + R_yy*Z_q_in_platform_y +
-            R_yz*Z_q_in_platform_z;
-        const real Z_q_z = R_zx*Z_q_in_platform_x + R_zy*Z_q_in_platform_y +
-            R_zz*Z_q_in_platform_z;
-        s[0*w + k] = t_x;
-        s[1*w + k] = t_y;
-        s[2*w + k] = t_z;
-        s[3*w + k] = R_xx;
-        s[4*w + k] = R_xy;
-        s[5*w + k] = R_xz;
-        s[6*w + k] = R_yx;
-        s[7*w + k] = R_yy;
-        s[8*w + k] = R_yz;
-        s[9*w + k] = R_zx;
-        s[10*w + k] = R_zy;
-        s[11*w + k] = R_zz;
-        s[12*w + k] = t_dot_x;
-        s[13*w + k] = t_dot_y;
-        s[14*w + k] = t_dot_z;
-        s[15*w + k] = omega_x;
-        s[16*w + k] = omega_y;
-        s[17*w + k] = omega_z;
-        s[18*w + k] = h_star_x;
-        s[19*w + k] = h_star_y;
-        s[20*w + k] = h_star_z;
-        s[21*w + k] = J_star_xx;
-        s[22*w + k] = J_star_xy;
-        s[23*w + k] = J_star_xz;
-        s[24*w + k] = J_star_yy;
-        s[25*w + k] = J_star_yz;
-        s[26*w + k] = J_star_zz;
-        s[27*w + k] = Z_p_x;
-        s[28*w + k] = Z_p_y;
-        s[29*w + k] = Z_p_z;
-        s[30*w + k] = Z_q_x;
-        s[31*w + k] = Z_q_y;
-        s[32*w + k] = Z_q_z;
-        t->invalid[k] += UNLESS(is_finite(quaternion_scale)) + UNLESS(quaternion_scale > 0);
+        values v;
+        stage_X(m, w, k, X, &v);
+        stage_V_X(w, k, V, &v);
+        stage_M_dynamics(m, &v);
+        stage_Z_dynamics(m, w, k, V, &v);
+        s[0*w + k] = v.R_xx;
+        s[1*w + k] = v.R_xy;
+        s[2*w + k] = v.R_xz;
+        s[3*w + k] = v.R_yx;
+        s[4*w + k] = v.R_yy;
+        s[5*w + k] = v.R_yz;
+        s[6*w + k] = v.R_zx;
+        s[7*w + k] = v.R_zy;
+        s[8*w + k] = v.R_zz;
+        s[9*w + k] = v.h_star_x;
+        s[10*w + k] = v.h_star_y;
+        s[11*w + k] = v.h_star_z;
+        s[12*w + k] = v.J_star_xx;
+        s[13*w + k] = v.J_star_xy;
+        s[14*w + k] = v.J_star_xz;
+        s[15*w + k] = v.J_star_yy;
+        s[16*w + k] = v.J_star_yz;
+        s[17*w + k] = v.J_star_zz;
+        s[18*w + k] = v.Z_p_x;
+        s[19*w + k] = v.Z_p_y;
+        s[20*w + k] = v.Z_p_z;
+        s[21*w + k] = v.Z_q_x;
+        s[22*w + k] = v.Z_q_y;
+        s[23*w + k] = v.Z_q_z;
+        t->invalid[k] += UNLESS(is_finite(v.quaternion_scale)) + UNLESS(v.quaternion_scale > 0);
     }
 }
 
 INLINE void dynamics_legs_prs(const prepared *m, size_t w, size_t leg, size_t legs, const real *s,
-    size_t states, size_t count, int add, real *terms, real *o)
+    size_t states, size_t count, int add, const real *X, const real *V, real *terms, real *o)
 {
     for (size_t k = 0; k < count; ++k) {
         const size_t i = leg + legs*k;
         const size_t j = states*k;
-        /* (prs-S) from the base point to the connection point */
-        const real R_xx = s[3*w + j];
-        const real R_xy = s[4*w + j];
-        const real R_xz = s[5*w + j];
-        const real prs_platform_point_x = m->prs_platform_point_x[i];
-        const real prs_platform_point_y = m->prs_platform_point_y[i];
-        const real prs_platform_point_z = m->prs_platform_point_z[i];
-        const real prs_q_x = R_xx*prs_platform_point_x + R_xy*prs_platform_point_y +
-            R_xz*prs_platform_point_z;
-        const real R_yx = s[6*w + j];
-        const real R_yy = s[7*w + j];
-        const real R_yz = s[8*w + j];
-        const real prs_q_y = R_yx*prs_platform_point_x + R_yy*prs_platform_point_y +
-            R_yz*prs_platform_point_z;
-        const real R_zx = s[9*w + j];
-        const real R_zy = s[10*w + j];
-        const real R_zz = s[11*w + j];
-        const real prs_q_z = R_zx*prs_platform_point_x + R_zy*prs_platform_point_y +
-            R_zz*prs_platform_point_z;
-        const real prs_base_point_x = m->prs_base_point_x[i];
-        const real t_x = s[0*w + j];
-        const real prs_S_x = prs_q_x + t_x - prs_base_point_x;
-        const real prs_base_point_y = m->prs_base_point_y[i];
-        const real t_y = s[1*w + j];
-        const real prs_S_y = prs_q_y + t_y - prs_base_point_y;
-        const real prs_base_point_z = m->prs_base_point_z[i];
-        const real t_z = s[2*w + j];
-        const real prs_S_z = prs_q_z + t_z - prs_base_point_z;
-        const real prs_base_frame_xx = m->prs_base_frame_xx[i];
-        const real prs_base_frame_yx = m->prs_base_frame_yx[i];
-        const real prs_base_frame_zx = m->prs_base_frame_zx[i];
-        const real prs_S_in_axes0_x = prs_S_x*prs_base_frame_xx + prs_S_y*prs_base_frame_yx +
-            prs_S_z*prs_base_frame_zx;
+        values_prs v;
+        stage_prs_X(m, w, i, j, s, X, &v);
+        stage_prs_V_X(m, w, i, j, V, &v);
+        stage_prs_M_dynamics(m, i, &v);
+        stage_prs_Z_dynamics(w, j, V, &v);
+        /* (prs-w_1) reciprocal vector 1 */
+        const real prs_w_1_x = v.axis_x_prs_axes2_x*v.prs_w_1_in_axes2_x +
+            v.axis_y_prs_axes2_x*v.prs_w_1_in_axes2_y;
+        const real prs_w_1_y = v.axis_x_prs_axes2_y*v.prs_w_1_in_axes2_x +
+            v.axis_y_prs_axes2_y*v.prs_w_1_in_axes2_y;
+        const real prs_w_1_z = v.axis_x_prs_axes2_z*v.prs_w_1_in_axes2_x +
+            v.axis_y_prs_axes2_z*v.prs_w_1_in_axes2_y;
+        /* (prs-u_1) centripetal acceleration of the connection point */
         const real prs_base_frame_xz = m->prs_base_frame_xz[i];
         const real prs_base_frame_yz = m->prs_base_frame_yz[i];
         const real prs_base_frame_zz = m->prs_base_frame_zz[i];
-        const real prs_S_in_axes0_z = prs_S_x*prs_base_frame_xz + prs_S_y*prs_base_frame_yz +
-            prs_S_z*prs_base_frame_zz;
-        const real prs_base_frame_xy = m->prs_base_frame_xy[i];
-        const real prs_base_frame_yy = m->prs_base_frame_yy[i];
-        const real prs_base_frame_zy = m->prs_base_frame_zy[i];
-        const real prs_S_in_axes0_y = prs_S_x*prs_base_frame_xy + prs_S_y*prs_base_frame_yy +
-            prs_S_z*prs_base_frame_zy;
-        /* (prs-disc_1) discriminant of the distance equation */
-        const real prs_disc_1_t = prs_S_x*prs_S_x + prs_S_y*prs_S_y + prs_S_z*prs_S_z;
-        const real prs_size_t = m->prs_size_t[i];
-        const real prs_disc_1 = prs_S_in_axes0_x*prs_S_in_axes0_x +
-            prs_S_in_axes0_z*prs_S_in_axes0_z + prs_size_t - prs_disc_1_t;
-        /* (prs-x_2) from the origin of joint 2 to the connection point */
-        const real prs_branch_1 = m->prs_branch_1[i];
-        const real prs_x_2_in_axes0_x = -prs_branch_1*root(prs_disc_1);
-        /* (prs-rho2_2) squared amplitude */
-        const real prs_rho2_2 = prs_size_t*(prs_S_in_axes0_y*prs_S_in_axes0_y +
-            prs_x_2_in_axes0_x*prs_x_2_in_axes0_x);
-        /* (prs-c_2) cosine of the angle of joint 2 from its reference direction */
-        const real prs_c_2_t = 1/(root(prs_rho2_2));
-        const real prs_platform_joint_offset_x = m->prs_platform_joint_offset_x[i];
-        const real prs_c_2 = prs_c_2_t*prs_platform_joint_offset_x*prs_x_2_in_axes0_x;
-        /* (prs-s_2) sine of the angle of joint 2 from its reference direction */
-        const real prs_s_2 = prs_S_in_axes0_y*prs_c_2_t*prs_platform_joint_offset_x;
-        /* (prs-S_dot) velocity of the connection point */
-        const real omega_y = s[16*w + j];
-        const real omega_z = s[17*w + j];
-        const real prs_S_dot_t = omega_y*prs_q_z - omega_z*prs_q_y;
-        const real omega_x = s[15*w + j];
-        const real prs_S_dot_t_2 = omega_z*prs_q_x - omega_x*prs_q_z;
-        const real prs_S_dot_t_3 = omega_x*prs_q_y - omega_y*prs_q_x;
-        const real t_dot_x = s[12*w + j];
-        const real prs_S_dot_x = prs_S_dot_t + t_dot_x;
-        const real t_dot_y = s[13*w + j];
-        const real prs_S_dot_y = prs_S_dot_t_2 + t_dot_y;
-        const real t_dot_z = s[14*w + j];
-        const real prs_S_dot_z = prs_S_dot_t_3 + t_dot_z;
-        /* (prs-v_2) velocity of the connection point per rate of joint 2 */
-        const real prs_v_2_t = -prs_c_2*prs_platform_joint_offset_x;
-        /* (prs-w_1) reciprocal vector 1 */
-        const real axis_y_prs_axes2_x = prs_base_frame_xy*prs_c_2 - prs_base_frame_xx*prs_s_2;
-        const real axis_y_prs_axes2_y = prs_base_frame_yy*prs_c_2 - prs_base_frame_yx*prs_s_2;
-        const real axis_y_prs_axes2_z = prs_base_frame_zy*prs_c_2 - prs_base_frame_zx*prs_s_2;
-        const real axis_x_prs_axes2_x = prs_base_frame_xx*prs_c_2 + prs_base_frame_xy*prs_s_2;
-        const real axis_x_prs_axes2_y = prs_base_frame_yx*prs_c_2 + prs_base_frame_yy*prs_s_2;
-        const real axis_x_prs_axes2_z = prs_base_frame_zx*prs_c_2 + prs_base_frame_zy*prs_s_2;
-        const real prs_d_3_in_axes0_y = prs_platform_joint_offset_x*prs_s_2;
-        const real inv_prs_v_2_t = 1/prs_v_2_t;
-        const real prs_w_1_t = inv_prs_v_2_t*prs_d_3_in_axes0_y;
-        const real prs_w_1_in_axes2_x = prs_c_2 - prs_s_2*prs_w_1_t;
-        const real prs_w_1_in_axes2_y = -prs_s_2 - prs_c_2*prs_w_1_t;
-        const real prs_w_1_x = axis_x_prs_axes2_x*prs_w_1_in_axes2_x +
-            axis_y_prs_axes2_x*prs_w_1_in_axes2_y;
-        const real prs_w_1_y = axis_x_prs_axes2_y*prs_w_1_in_axes2_x +
-            axis_y_prs_axes2_y*prs_w_1_in_axes2_y;
-        const real prs_w_1_z = axis_x_prs_axes2_z*prs_w_1_in_axes2_x +
-            axis_y_prs_axes2_z*prs_w_1_in_axes2_y;
-        /* (prs-w_2) reciprocal vector 2 */
-        const real prs_w_2_t = inv_prs_v_2_t*prs_s_2;
-        const real prs_w_2_in_axes2_y = -inv_prs_v_2_t*prs_c_2;
-        /* (prs-qd_2) rate of joint 2 */
-        const real prs_qd_2_t = inv_prs_v_2_t*(prs_S_dot_x*prs_base_frame_xy +
-            prs_S_dot_y*prs_base_frame_yy + prs_S_dot_z*prs_base_frame_zy);
-        /* (prs-W_2) centripetal tensor of link 2 */
-        const real prs_W_2_t = prs_qd_2_t*prs_qd_2_t;
-        /* (prs-u_1) centripetal acceleration of the connection point */
-        const real prs_u_1_x = omega_y*prs_S_dot_t_3 - omega_z*prs_S_dot_t_2;
-        const real prs_u_1_y = omega_z*prs_S_dot_t - omega_x*prs_S_dot_t_3;
-        const real prs_u_1_z = omega_x*prs_S_dot_t_2 - omega_y*prs_S_dot_t;
-        const real prs_u_1_in_axes2_y = axis_y_prs_axes2_x*prs_u_1_x +
-            axis_y_prs_axes2_y*prs_u_1_y + axis_y_prs_axes2_z*prs_u_1_z;
-        const real prs_u_1_in_axes2_z = prs_base_frame_xz*prs_u_1_x + prs_base_frame_yz*prs_u_1_y
-            + prs_base_frame_zz*prs_u_1_z;
+        const real prs_u_1_in_axes2_z = prs_base_frame_xz*v.prs_u_1_x +
+            prs_base_frame_yz*v.prs_u_1_y + prs_base_frame_zz*v.prs_u_1_z;
         /* (prs-rel_o) remainder without the acceleration in: acceleration of the connection point left to
            the joint accelerations */
-        const real prs_rel_o_in_axes2_x = axis_x_prs_axes2_x*prs_u_1_x +
-            axis_x_prs_axes2_y*prs_u_1_y + axis_x_prs_axes2_z*prs_u_1_z +
-            prs_platform_joint_offset_x*prs_qd_2_t*prs_qd_2_t;
+        const real prs_platform_joint_offset_x = m->prs_platform_joint_offset_x[i];
+        const real prs_rel_o_in_axes2_x = v.axis_x_prs_axes2_x*v.prs_u_1_x +
+            v.axis_x_prs_axes2_y*v.prs_u_1_y + v.axis_x_prs_axes2_z*v.prs_u_1_z +
+            prs_platform_joint_offset_x*v.prs_qd_2_t*v.prs_qd_2_t;
         /* (prs-qdd_1_o) remainder without the acceleration in: acceleration of joint 1 */
-        const real prs_qdd_1_o_t = inv_prs_v_2_t*(prs_c_2*prs_u_1_in_axes2_y +
-            prs_rel_o_in_axes2_x*prs_s_2);
-        const real prs_qdd_1_o = prs_c_2*prs_rel_o_in_axes2_x - prs_d_3_in_axes0_y*prs_qdd_1_o_t -
-            prs_s_2*prs_u_1_in_axes2_y;
+        const real prs_qdd_1_o_t = v.prs_w_1_t*(v.prs_c_2*v.prs_u_1_in_axes2_y +
+            prs_rel_o_in_axes2_x*v.prs_s_2);
+        const real prs_qdd_1_o = v.prs_c_2*prs_rel_o_in_axes2_x +
+            prs_qdd_1_o_t*v.prs_v_2_in_axes0_x - v.prs_s_2*v.prs_u_1_in_axes2_y;
         /* (prs-acc_1_o) remainder without the acceleration in: acceleration of the reference point of
            link 1, less gravity */
         const real prs_g_in_axes0_x = m->prs_g_in_axes0_x[i];
@@ -1616,146 +2077,73 @@ INLINE void dynamics_legs_prs(const prepared *m, size_t w, size_t leg, size_t le
         /* (prs-acc_2_o) remainder without the acceleration in: acceleration of the reference point of
            link 2, less gravity */
         const real prs_g_in_axes0_y = m->prs_g_in_axes0_y[i];
-        const real prs_acc_2_o_in_axes2_x = prs_c_2*prs_qdd_1_o - prs_c_2*prs_g_in_axes0_x -
-            prs_g_in_axes0_y*prs_s_2;
-        const real prs_acc_2_o_in_axes2_y = prs_g_in_axes0_x*prs_s_2 - prs_c_2*prs_g_in_axes0_y -
-            prs_qdd_1_o*prs_s_2;
+        const real prs_acc_2_o_in_axes2_x = v.prs_c_2*prs_qdd_1_o - v.prs_c_2*prs_g_in_axes0_x -
+            prs_g_in_axes0_y*v.prs_s_2;
+        const real prs_acc_2_o_in_axes2_y = prs_g_in_axes0_x*v.prs_s_2 -
+            v.prs_c_2*prs_g_in_axes0_y - prs_qdd_1_o*v.prs_s_2;
         /* (prs-f_2_o) remainder without the acceleration in: inertia force of link 2 less its weight */
         const real prs_h_2_in_spec2_x = m->prs_h_2_in_spec2_x[i];
         const real prs_h_2_in_spec2_y = m->prs_h_2_in_spec2_y[i];
         const real prs_link2_mass = m->prs_link2_mass[i];
         const real prs_f_2_o_in_axes2_x = prs_acc_2_o_in_axes2_x*prs_link2_mass +
-            prs_h_2_in_spec2_y*prs_qdd_1_o_t - prs_W_2_t*prs_h_2_in_spec2_x;
+            prs_h_2_in_spec2_y*prs_qdd_1_o_t - v.prs_W_2_t*prs_h_2_in_spec2_x;
         const real prs_f_2_o_in_axes2_y = prs_acc_2_o_in_axes2_y*prs_link2_mass -
-            prs_W_2_t*prs_h_2_in_spec2_y - prs_h_2_in_spec2_x*prs_qdd_1_o_t;
-        /* (prs-P_c_2) force that accelerates joint 2, per unit */
-        const real prs_P_c_2_in_axes0_x = -prs_c_2*prs_h_2_in_spec2_y -
-            prs_h_2_in_spec2_x*prs_s_2;
+            v.prs_W_2_t*prs_h_2_in_spec2_y - prs_h_2_in_spec2_x*prs_qdd_1_o_t;
         /* (prs-mu_2_o) remainder without the acceleration in: inertia moment of the links that turn with
            link 2, about their reference points */
         const real prs_J_2_in_spec2_zz = m->prs_J_2_in_spec2_zz[i];
         const real prs_mu_2_o_in_axes2_z = prs_acc_2_o_in_axes2_y*prs_h_2_in_spec2_x -
             prs_J_2_in_spec2_zz*prs_qdd_1_o_t - prs_acc_2_o_in_axes2_x*prs_h_2_in_spec2_y;
-        /* (prs-d_Gamma_2) coefficient of the acceleration in: moment about axis 2 of the distal links'
-           inertia and weight */
-        const real prs_d_Gamma_2_t = inv_prs_v_2_t*(prs_J_2_in_spec2_zz +
-            prs_P_c_2_in_axes0_x*prs_d_3_in_axes0_y);
-        const real prs_d_Gamma_2_in_axes2_x = prs_P_c_2_in_axes0_x*prs_c_2 -
-            prs_d_Gamma_2_t*prs_s_2;
-        const real prs_d_Gamma_2_in_axes2_y = -prs_P_c_2_in_axes0_x*prs_s_2 -
-            prs_c_2*prs_d_Gamma_2_t;
         /* (prs-T_1_o) remainder without the acceleration in: inertia force of the links from 1 outwards,
            the last link left out */
         const real prs_link1_mass = m->prs_link1_mass[i];
         const real prs_T_1_o_in_axes0_x = prs_acc_1_o_in_axes0_x*prs_link1_mass +
-            prs_c_2*prs_f_2_o_in_axes2_x - prs_f_2_o_in_axes2_y*prs_s_2;
-        /* (prs-d_Gamma_1) coefficient of the acceleration in: force along axis 1 of the distal links'
-           inertia and weight */
-        const real prs_P_c_1_in_axes0_x = m->prs_P_c_1_in_axes0_x[i];
-        const real prs_d_Gamma_1_t = inv_prs_v_2_t*(prs_P_c_2_in_axes0_x +
-            prs_P_c_1_in_axes0_x*prs_d_3_in_axes0_y);
-        const real prs_d_Gamma_1_in_axes2_x = prs_P_c_1_in_axes0_x*prs_c_2 -
-            prs_d_Gamma_1_t*prs_s_2;
-        const real prs_d_Gamma_1_in_axes2_y = -prs_P_c_1_in_axes0_x*prs_s_2 -
-            prs_c_2*prs_d_Gamma_1_t;
-        /* (prs-d_G) coefficient of the acceleration in: force at the connection point that balances the
-           leg's inertia and weight along all degrees of freedom */
-        const real prs_d_G_in_axes2_xx = prs_d_Gamma_1_in_axes2_x*prs_w_1_in_axes2_x -
-            prs_d_Gamma_2_in_axes2_x*prs_w_2_t;
-        const real prs_d_G_in_axes2_xy = prs_d_Gamma_1_in_axes2_y*prs_w_1_in_axes2_x -
-            prs_d_Gamma_2_in_axes2_y*prs_w_2_t;
-        const real prs_d_G_in_axes2_yx = prs_d_Gamma_1_in_axes2_x*prs_w_1_in_axes2_y +
-            prs_d_Gamma_2_in_axes2_x*prs_w_2_in_axes2_y;
-        const real prs_d_G_in_axes2_yy = prs_d_Gamma_1_in_axes2_y*prs_w_1_in_axes2_y +
-            prs_d_Gamma_2_in_axes2_y*prs_w_2_in_axes2_y;
+            v.prs_c_2*prs_f_2_o_in_axes2_x - prs_f_2_o_in_axes2_y*v.prs_s_2;
         /* (prs-G_o) remainder without the acceleration in: force at the connection point that balances
            the leg's inertia and weight along all degrees of freedom */
-        const real prs_G_o_t = inv_prs_v_2_t*(prs_mu_2_o_in_axes2_z +
-            prs_T_1_o_in_axes0_x*prs_d_3_in_axes0_y);
-        const real prs_G_o_in_axes2_x = prs_T_1_o_in_axes0_x*prs_c_2 - prs_G_o_t*prs_s_2;
-        const real prs_G_o_in_axes2_y = -prs_G_o_t*prs_c_2 - prs_T_1_o_in_axes0_x*prs_s_2;
-        /* (prs-d_c) coefficient of the acceleration in: leg force on the platform without actuation and
-           without the mass at the connection point */
-        const real prs_d_c_t = -axis_x_prs_axes2_x*prs_d_G_in_axes2_xx -
-            axis_y_prs_axes2_x*prs_d_G_in_axes2_yx;
-        const real prs_d_c_t_2 = -axis_x_prs_axes2_y*prs_d_G_in_axes2_xx -
-            axis_y_prs_axes2_y*prs_d_G_in_axes2_yx;
-        const real prs_d_c_t_3 = -axis_x_prs_axes2_x*prs_d_G_in_axes2_xy -
-            axis_y_prs_axes2_x*prs_d_G_in_axes2_yy;
-        const real prs_d_c_t_4 = -axis_x_prs_axes2_y*prs_d_G_in_axes2_xy -
-            axis_y_prs_axes2_y*prs_d_G_in_axes2_yy;
-        const real prs_d_c_xx = axis_x_prs_axes2_x*prs_d_c_t + axis_y_prs_axes2_x*prs_d_c_t_3;
-        const real prs_d_c_xy = axis_x_prs_axes2_y*prs_d_c_t + axis_y_prs_axes2_y*prs_d_c_t_3;
-        const real prs_d_c_xz = axis_x_prs_axes2_z*prs_d_c_t + axis_y_prs_axes2_z*prs_d_c_t_3;
-        const real prs_d_c_yy = axis_x_prs_axes2_y*prs_d_c_t_2 + axis_y_prs_axes2_y*prs_d_c_t_4;
-        const real prs_d_c_yz = axis_x_prs_axes2_z*prs_d_c_t_2 + axis_y_prs_axes2_z*prs_d_c_t_4;
-        const real prs_d_c_zz = axis_x_prs_axes2_z*(-axis_x_prs_axes2_z*prs_d_G_in_axes2_xx -
-            axis_y_prs_axes2_z*prs_d_G_in_axes2_yx) +
-            axis_y_prs_axes2_z*(-axis_x_prs_axes2_z*prs_d_G_in_axes2_xy -
-            axis_y_prs_axes2_z*prs_d_G_in_axes2_yy);
+        const real prs_G_o_t = v.prs_w_1_t*(prs_mu_2_o_in_axes2_z -
+            prs_T_1_o_in_axes0_x*v.prs_v_2_in_axes0_x);
+        const real prs_G_o_in_axes2_x = prs_T_1_o_in_axes0_x*v.prs_c_2 - prs_G_o_t*v.prs_s_2;
+        const real prs_G_o_in_axes2_y = -prs_G_o_t*v.prs_c_2 - prs_T_1_o_in_axes0_x*v.prs_s_2;
         /* (prs-U) velocity and gravity terms of the leg force */
-        const real prs_U_x = axis_x_prs_axes2_x*prs_G_o_in_axes2_x +
-            axis_y_prs_axes2_x*prs_G_o_in_axes2_y;
-        const real prs_U_y = axis_x_prs_axes2_y*prs_G_o_in_axes2_x +
-            axis_y_prs_axes2_y*prs_G_o_in_axes2_y;
-        const real prs_U_z = axis_x_prs_axes2_z*prs_G_o_in_axes2_x +
-            axis_y_prs_axes2_z*prs_G_o_in_axes2_y;
-        /* (M_ta) coupling block of M */
-        const real prs_M_ta_t = prs_d_c_xy*prs_q_z;
-        const real prs_M_ta_t_2 = prs_d_c_xz*prs_q_y;
-        const real prs_M_ta_t_3 = prs_M_ta_t - prs_M_ta_t_2;
-        const real prs_M_ta_t_4 = prs_d_c_xx*prs_q_z - prs_d_c_xz*prs_q_x;
-        const real prs_M_ta_t_5 = prs_d_c_xx*prs_q_y - prs_d_c_xy*prs_q_x;
-        const real prs_M_ta_t_6 = prs_d_c_yy*prs_q_z - prs_d_c_yz*prs_q_y;
-        const real prs_M_ta_t_7 = prs_d_c_yz*prs_q_x;
-        const real prs_M_ta_t_8 = prs_M_ta_t_7 - prs_M_ta_t;
-        const real prs_M_ta_t_9 = prs_d_c_xy*prs_q_y - prs_d_c_yy*prs_q_x;
-        const real prs_M_ta_t_10 = prs_d_c_yz*prs_q_z - prs_d_c_zz*prs_q_y;
-        const real prs_M_ta_t_11 = prs_d_c_zz*prs_q_x - prs_d_c_xz*prs_q_z;
-        const real prs_M_ta_t_12 = prs_M_ta_t_2 - prs_M_ta_t_7;
-        /* (M_aa) rotational block of M */
-        const real prs_M_aa_t = prs_M_ta_t_10*prs_q_y - prs_M_ta_t_6*prs_q_z;
-        const real prs_M_aa_t_2 = prs_M_ta_t_11*prs_q_y - prs_M_ta_t_8*prs_q_z;
-        const real prs_M_aa_t_3 = prs_M_ta_t_12*prs_q_y - prs_M_ta_t_9*prs_q_z;
-        const real prs_M_aa_t_4 = prs_M_ta_t_11*prs_q_x + prs_M_ta_t_4*prs_q_z;
-        const real prs_M_aa_t_5 = prs_M_ta_t_5*prs_q_z - prs_M_ta_t_12*prs_q_x;
-        const real prs_M_aa_t_6 = prs_M_ta_t_9*prs_q_x - prs_M_ta_t_5*prs_q_y;
+        const real prs_U_x = v.axis_x_prs_axes2_x*prs_G_o_in_axes2_x +
+            v.axis_y_prs_axes2_x*prs_G_o_in_axes2_y;
+        const real prs_U_y = v.axis_x_prs_axes2_y*prs_G_o_in_axes2_x +
+            v.axis_y_prs_axes2_y*prs_G_o_in_axes2_y;
+        const real prs_U_z = v.axis_x_prs_axes2_z*prs_G_o_in_axes2_x +
+            v.axis_y_prs_axes2_z*prs_G_o_in_axes2_y;
         /* (Z_a) rotational part of Z */
-        const real prs_Z_a_t = prs_U_z*prs_q_y - prs_U_y*prs_q_z;
-        const real prs_Z_a_t_2 = prs_U_x*prs_q_z - prs_U_z*prs_q_x;
-        const real prs_Z_a_t_3 = prs_U_y*prs_q_x - prs_U_x*prs_q_y;
+        const real prs_Z_a_t = prs_U_z*v.prs_q_y - prs_U_y*v.prs_q_z;
+        const real prs_Z_a_t_2 = prs_U_x*v.prs_q_z - prs_U_z*v.prs_q_x;
+        const real prs_Z_a_t_3 = prs_U_y*v.prs_q_x - prs_U_x*v.prs_q_y;
         /* (prs-H_a_1) moment of the column's unit force about the platform origin */
-        const real prs_H_a_1_x = prs_q_y*prs_w_1_z - prs_q_z*prs_w_1_y;
-        const real prs_H_a_1_y = prs_q_z*prs_w_1_x - prs_q_x*prs_w_1_z;
-        const real prs_H_a_1_z = prs_q_x*prs_w_1_y - prs_q_y*prs_w_1_x;
-        /* (prs-Hk_a_1) moment of the column's unit force about the platform origin */
-        const real prs_Hk_a_1_x = prs_base_frame_zz*prs_q_y - prs_base_frame_yz*prs_q_z;
-        const real prs_Hk_a_1_y = prs_base_frame_xz*prs_q_z - prs_base_frame_zz*prs_q_x;
-        const real prs_Hk_a_1_z = prs_base_frame_yz*prs_q_x - prs_base_frame_xz*prs_q_y;
+        const real prs_H_a_1_x = v.prs_q_y*prs_w_1_z - v.prs_q_z*prs_w_1_y;
+        const real prs_H_a_1_y = v.prs_q_z*prs_w_1_x - v.prs_q_x*prs_w_1_z;
+        const real prs_H_a_1_z = v.prs_q_x*prs_w_1_y - v.prs_q_y*prs_w_1_x;
         /* (M_tt) translational block of M */
-        gather(&terms[0*count + k], add, prs_d_c_xx);  /* M_tt_xx_of_legs */
-        gather(&terms[1*count + k], add, prs_d_c_xy);  /* M_tt_t_2 */
-        gather(&terms[2*count + k], add, prs_d_c_xz);  /* M_tt_t_3 */
-        gather(&terms[3*count + k], add, prs_d_c_yy);  /* M_tt_yy_of_legs */
-        gather(&terms[4*count + k], add, prs_d_c_yz);  /* M_tt_t_5 */
-        gather(&terms[5*count + k], add, prs_d_c_zz);  /* M_tt_zz_of_legs */
+        gather(&terms[0*count + k], add, v.prs_d_c_xx);  /* M_tt_xx_of_legs */
+        gather(&terms[1*count + k], add, v.prs_d_c_xy);  /* M_tt_t_2 */
+        gather(&terms[2*count + k], add, v.prs_d_c_xz);  /* M_tt_t_3 */
+        gather(&terms[3*count + k], add, v.prs_d_c_yy);  /* M_tt_yy_of_legs */
+        gather(&terms[4*count + k], add, v.prs_d_c_yz);  /* M_tt_t_5 */
+        gather(&terms[5*count + k], add, v.prs_d_c_zz);  /* M_tt_zz_of_legs */
         /* (M_ta) coupling block of M */
-        gather(&terms[6*count + k], add, prs_M_ta_t_3);  /* M_ta_xx */
-        gather(&terms[7*count + k], add, -prs_M_ta_t_4);  /* M_ta_xy_of_legs */
-        gather(&terms[8*count + k], add, prs_M_ta_t_5);  /* M_ta_xz_of_legs */
-        gather(&terms[9*count + k], add, prs_M_ta_t_6);  /* M_ta_yx_of_legs */
-        gather(&terms[10*count + k], add, prs_M_ta_t_8);  /* M_ta_yy */
-        gather(&terms[11*count + k], add, prs_M_ta_t_9);  /* M_ta_yz_of_legs */
-        gather(&terms[12*count + k], add, prs_M_ta_t_10);  /* M_ta_zx_of_legs */
-        gather(&terms[13*count + k], add, prs_M_ta_t_11);  /* M_ta_zy_of_legs */
-        gather(&terms[14*count + k], add, prs_M_ta_t_12);  /* M_ta_zz */
+        gather(&terms[6*count + k], add, v.prs_M_ta_t_3);  /* M_ta_xx */
+        gather(&terms[7*count + k], add, -v.prs_M_ta_t_4);  /* M_ta_xy_of_legs */
+        gather(&terms[8*count + k], add, v.prs_M_ta_t_5);  /* M_ta_xz_of_legs */
+        gather(&terms[9*count + k], add, v.prs_M_ta_t_6);  /* M_ta_yx_of_legs */
+        gather(&terms[10*count + k], add, v.prs_M_ta_t_8);  /* M_ta_yy */
+        gather(&terms[11*count + k], add, v.prs_M_ta_t_9);  /* M_ta_yz_of_legs */
+        gather(&terms[12*count + k], add, v.prs_M_ta_t_10);  /* M_ta_zx_of_legs */
+        gather(&terms[13*count + k], add, v.prs_M_ta_t_11);  /* M_ta_zy_of_legs */
+        gather(&terms[14*count + k], add, v.prs_M_ta_t_12);  /* M_ta_zz */
         /* (M_aa) rotational block of M */
-        gather(&terms[15*count + k], add, prs_M_aa_t);  /* M_aa_xx_of_legs */
-        gather(&terms[16*count + k], add, prs_M_aa_t_2);  /* M_aa_xy_of_legs */
-        gather(&terms[17*count + k], add, prs_M_aa_t_3);  /* M_aa_xz_of_legs */
-        gather(&terms[18*count + k], add, prs_M_aa_t_4);  /* M_aa_yy_of_legs */
-        gather(&terms[19*count + k], add, prs_M_aa_t_5);  /* M_aa_yz_of_legs */
-        gather(&terms[20*count + k], add, prs_M_aa_t_6);  /* M_aa_zz_of_legs */
+        gather(&terms[15*count + k], add, v.prs_M_aa_t);  /* M_aa_xx_of_legs */
+        gather(&terms[16*count + k], add, v.prs_M_aa_t_2);  /* M_aa_xy_of_legs */
+        gather(&terms[17*count + k], add, v.prs_M_aa_t_3);  /* M_aa_xz_of_legs */
+        gather(&terms[18*count + k], add, v.prs_M_aa_t_4);  /* M_aa_yy_of_legs */
+        gather(&terms[19*count + k], add, v.prs_M_aa_t_5);  /* M_aa_yz_of_legs */
+        gather(&terms[20*count + k], add, v.prs_M_aa_t_6);  /* M_aa_zz_of_legs */
         /* (Z_t) translational part of Z */
         gather(&terms[21*count + k], add, prs_U_x);  /* Z_t_x_of_legs */
         gather(&terms[22*count + k], add, prs_U_y);  /* Z_t_y_of_legs */
@@ -1777,20 +2165,20 @@ INLINE void dynamics_legs_prs(const prepared *m, size_t w, size_t leg, size_t le
         o[7*count + k] = prs_base_frame_yz;
         o[8*count + k] = prs_base_frame_zz;
         /* (prs-Hk_a_1) moment of the column's unit force about the platform origin */
-        o[9*count + k] = prs_Hk_a_1_x;
-        o[10*count + k] = prs_Hk_a_1_y;
-        o[11*count + k] = prs_Hk_a_1_z;
+        o[9*count + k] = v.prs_Hk_a_1_x;
+        o[10*count + k] = v.prs_Hk_a_1_y;
+        o[11*count + k] = v.prs_Hk_a_1_z;
         /* (prs-gamma_c1) part of the constraint's second derivative that does not hold the acceleration
            */
         o[12*count + k] = prs_u_1_in_axes2_z;
         o[15*count + k] = ((prs_w_1_x + (prs_w_1_y + prs_w_1_z)) + (prs_H_a_1_x + (prs_H_a_1_y +
             prs_H_a_1_z))) + ((prs_base_frame_xz + (prs_base_frame_yz + prs_base_frame_zz)) +
-            ((prs_Hk_a_1_x + prs_Hk_a_1_y) + (prs_Hk_a_1_z + prs_u_1_in_axes2_z)));
+            ((v.prs_Hk_a_1_x + v.prs_Hk_a_1_y) + (v.prs_Hk_a_1_z + prs_u_1_in_axes2_z)));
         const real prs_root_2_t = m->prs_root_2_t[i];
         const real prs_size = m->prs_size[i];
-        o[13*count + k] = UNLESS(prs_disc_1 >= 0);
-        o[14*count + k] = UNLESS(magnitude(prs_rho2_2) > TOLERANCE*TOLERANCE*prs_root_2_t) +
-            UNLESS(magnitude(prs_v_2_t) > TOLERANCE*prs_size);
+        o[13*count + k] = UNLESS(v.prs_disc_1 >= 0);
+        o[14*count + k] = UNLESS(magnitude(v.prs_rho2_2) > TOLERANCE*TOLERANCE*prs_root_2_t) +
+            UNLESS(magnitude(v.prs_v_2_in_axes0_y) > TOLERANCE*prs_size);
     }
 }
 
@@ -1798,13 +2186,13 @@ INLINE void dynamics_place_prs(size_t w, size_t count, const real *o, size_t leg
     real *H, real *Hk, real *constraint_bias, verdict *t)
 {
     for (size_t k = 0; k < w; ++k) {
-        H[(0*NU + leg)*w + k] = o[0*count + first + k];
+        H[leg*w + k] = o[0*count + first + k];
         H[(NU + leg)*w + k] = o[1*count + first + k];
         H[(2*NU + leg)*w + k] = o[2*count + first + k];
         H[(3*NU + leg)*w + k] = o[3*count + first + k];
         H[(4*NU + leg)*w + k] = o[4*count + first + k];
         H[(5*NU + leg)*w + k] = o[5*count + first + k];
-        Hk[(0*NC + leg)*w + k] = o[6*count + first + k];
+        Hk[leg*w + k] = o[6*count + first + k];
         Hk[(NC + leg)*w + k] = o[7*count + first + k];
         Hk[(2*NC + leg)*w + k] = o[8*count + first + k];
         Hk[(3*NC + leg)*w + k] = o[9*count + first + k];
@@ -1831,66 +2219,66 @@ INLINE void dynamics_after(const prepared *m, size_t w, const real *s, const rea
         const real M_tt_zz = platform_mass - M_tt_zz_of_legs;
         /* (M_ta) coupling block of M */
         const real M_ta_xy_of_legs = sums[7*w + k];
-        const real h_star_z = s[20*w + k];
+        const real h_star_z = s[11*w + k];
         const real M_ta_xy = M_ta_xy_of_legs + h_star_z;
         const real M_ta_xz_of_legs = sums[8*w + k];
-        const real h_star_y = s[19*w + k];
+        const real h_star_y = s[10*w + k];
         const real M_ta_xz = M_ta_xz_of_legs - h_star_y;
         const real M_ta_yx_of_legs = sums[9*w + k];
         const real M_ta_yx = M_ta_yx_of_legs - h_star_z;
         const real M_ta_yz_of_legs = sums[11*w + k];
-        const real h_star_x = s[18*w + k];
+        const real h_star_x = s[9*w + k];
         const real M_ta_yz = M_ta_yz_of_legs + h_star_x;
         const real M_ta_zx_of_legs = sums[12*w + k];
         const real M_ta_zx = M_ta_zx_of_legs + h_star_y;
         const real M_ta_zy_of_legs = sums[13*w + k];
         const real M_ta_zy = M_ta_zy_of_legs - h_star_x;
         /* (M_aa) rotational block of M */
-        const real J_star_xx = s[21*w + k];
+        const real J_star_xx = s[12*w + k];
         const real M_aa_xx_of_legs = sums[15*w + k];
         const real M_aa_xx = J_star_xx + M_aa_xx_of_legs;
-        const real J_star_xy = s[22*w + k];
+        const real J_star_xy = s[13*w + k];
         const real M_aa_xy_of_legs = sums[16*w + k];
         const real M_aa_xy = J_star_xy + M_aa_xy_of_legs;
-        const real J_star_xz = s[23*w + k];
+        const real J_star_xz = s[14*w + k];
         const real M_aa_xz_of_legs = sums[17*w + k];
         const real M_aa_xz = J_star_xz + M_aa_xz_of_legs;
-        const real J_star_yy = s[24*w + k];
+        const real J_star_yy = s[15*w + k];
         const real M_aa_yy_of_legs = sums[18*w + k];
         const real M_aa_yy = J_star_yy - M_aa_yy_of_legs;
-        const real J_star_yz = s[25*w + k];
+        const real J_star_yz = s[16*w + k];
         const real M_aa_yz_of_legs = sums[19*w + k];
         const real M_aa_yz = J_star_yz + M_aa_yz_of_legs;
-        const real J_star_zz = s[26*w + k];
+        const real J_star_zz = s[17*w + k];
         const real M_aa_zz_of_legs = sums[20*w + k];
         const real M_aa_zz = J_star_zz + M_aa_zz_of_legs;
         /* (Z_t) translational part of Z */
-        const real Z_p_x = s[27*w + k];
+        const real Z_p_x = s[18*w + k];
         const real Z_t_x_of_legs = sums[21*w + k];
         const real Z_t_x = Z_p_x + Z_t_x_of_legs;
-        const real Z_p_y = s[28*w + k];
+        const real Z_p_y = s[19*w + k];
         const real Z_t_y_of_legs = sums[22*w + k];
         const real Z_t_y = Z_p_y + Z_t_y_of_legs;
-        const real Z_p_z = s[29*w + k];
+        const real Z_p_z = s[20*w + k];
         const real Z_t_z_of_legs = sums[23*w + k];
         const real Z_t_z = Z_p_z + Z_t_z_of_legs;
         /* (Z_a) rotational part of Z */
         const real Z_a_x_of_legs = sums[24*w + k];
-        const real Z_q_x = s[30*w + k];
+        const real Z_q_x = s[21*w + k];
         const real Z_a_x = Z_a_x_of_legs + Z_q_x;
         const real Z_a_y_of_legs = sums[25*w + k];
-        const real Z_q_y = s[31*w + k];
+        const real Z_q_y = s[22*w + k];
         const real Z_a_y = Z_a_y_of_legs + Z_q_y;
         const real Z_a_z_of_legs = sums[26*w + k];
-        const real Z_q_z = s[32*w + k];
+        const real Z_q_z = s[23*w + k];
         const real Z_a_z = Z_a_z_of_legs + Z_q_z;
         /* (M_tt) translational block of M */
-        M[0*NV*w + k] = M_tt_xx;
+        M[0*w + k] = M_tt_xx;
         const real M_tt_t_2 = sums[1*w + k];
-        M[(0*NV + 1)*w + k] = -M_tt_t_2;
+        M[1*w + k] = -M_tt_t_2;
         M[NV*w + k] = -M_tt_t_2;
         const real M_tt_t_3 = sums[2*w + k];
-        M[(0*NV + 2)*w + k] = -M_tt_t_3;
+        M[2*w + k] = -M_tt_t_3;
         M[2*NV*w + k] = -M_tt_t_3;
         M[(NV + 1)*w + k] = M_tt_yy;
         const real M_tt_t_5 = sums[4*w + k];
@@ -1899,11 +2287,11 @@ INLINE void dynamics_after(const prepared *m, size_t w, const real *s, const rea
         M[(2*NV + 2)*w + k] = M_tt_zz;
         /* (M_ta) coupling block of M */
         const real M_ta_xx = sums[6*w + k];
-        M[(0*NV + 3)*w + k] = M_ta_xx;
+        M[3*w + k] = M_ta_xx;
         M[3*NV*w + k] = M_ta_xx;
-        M[(0*NV + 4)*w + k] = M_ta_xy;
+        M[4*w + k] = M_ta_xy;
         M[4*NV*w + k] = M_ta_xy;
-        M[(0*NV + 5)*w + k] = M_ta_xz;
+        M[5*w + k] = M_ta_xz;
         M[5*NV*w + k] = M_ta_xz;
         M[(NV + 3)*w + k] = M_ta_yx;
         M[(3*NV + 1)*w + k] = M_ta_yx;
@@ -1947,12 +2335,10 @@ INLINE void dynamics_after(const prepared *m, size_t w, const real *s, const rea
 INLINE void dynamics_run(const prepared *m, const real *X, const real *V, real *M, real *Z, real
     *H, real *Hk, real *constraint_bias, verdict *t)
 {
-    real s[33] = {0};
-    real sums[27] = {0};
-    real terms_prs[27*LEGS(LEGS_OF_prs)] = {0};
-    real o_prs[16*LEGS(LEGS_OF_prs)] = {0};
+    real s[24] = {0}, sums[27] = {0};
+    real terms_prs[27*LEGS(LEGS_OF_prs)] = {0}, o_prs[16*LEGS(LEGS_OF_prs)] = {0};
     dynamics_before(m, 1, X, V, s, t);
-    dynamics_legs_prs(m, 1, 0, 1, s, 0, LEGS(LEGS_OF_prs), 0, terms_prs, o_prs);
+    dynamics_legs_prs(m, 1, 0, 1, s, 0, LEGS(LEGS_OF_prs), 0, X, V, terms_prs, o_prs);
     for (size_t leg = 0; leg < LEGS_OF_prs; ++leg) {
         dynamics_place_prs(1, LEGS(LEGS_OF_prs), o_prs, leg, leg, H, Hk, constraint_bias, t);
     }
@@ -1965,13 +2351,12 @@ INLINE void dynamics_run(const prepared *m, const real *X, const real *V, real *
 INLINE void dynamics_run_lanes(const prepared *m, const real *X, const real *V, real *M, real *Z,
     real *H, real *Hk, real *constraint_bias, verdict *t)
 {
-    real s[33*LANES];
-    real sums[27*LANES];
+    real s[24*LANES], sums[27*LANES];
     real o_prs[16*LANES];
     dynamics_before(m, LANES, X, V, s, t);
     clear(sums, 27*LANES);
     for (size_t leg = 0; leg < LEGS_OF_prs; ++leg) {
-        dynamics_legs_prs(m, LANES, leg, 0, s, 1, LANES, 1, sums, o_prs);
+        dynamics_legs_prs(m, LANES, leg, 0, s, 1, LANES, 1, X, V, sums, o_prs);
         dynamics_place_prs(LANES, LANES, o_prs, leg, 0, H, Hk, constraint_bias, t);
     }
     dynamics_after(m, LANES, s, sums, M, Z, t);
@@ -1981,287 +2366,69 @@ INLINE void dynamics_run_lanes(const prepared *m, const real *X, const real *V, 
 INLINE void M_before(const prepared *m, size_t w, const real *X, real *s, verdict *t)
 {
     for (size_t k = 0; k < w; ++k) {
-        /* X: named entries */
-        const real X_0 = X[0*w + k];
-        const real t_x = X_0;
-        const real X_1 = X[1*w + k];
-        const real t_y = X_1;
-        const real X_2 = X[2*w + k];
-        const real t_z = X_2;
-        const real X_3 = X[3*w + k];
-        const real X_4 = X[4*w + k];
-        const real X_5 = X[5*w + k];
-        const real X_6 = X[6*w + k];
-        const real quaternion_norm2 = X_3*X_3 + X_4*X_4 + X_5*X_5 + X_6*X_6;
-        const real quaternion_scale = 2/quaternion_norm2;
-        const real quaternion_sx = X_3*quaternion_scale;
-        const real quaternion_sy = X_4*quaternion_scale;
-        const real quaternion_sz = X_5*quaternion_scale;
-        const real quaternion_wx = X_6*quaternion_sx;
-        const real quaternion_wy = X_6*quaternion_sy;
-        const real quaternion_wz = X_6*quaternion_sz;
-        const real quaternion_xx = X_3*quaternion_sx;
-        const real quaternion_xy = X_3*quaternion_sy;
-        const real quaternion_xz = X_3*quaternion_sz;
-        const real quaternion_yy = X_4*quaternion_sy;
-        const real quaternion_yz = X_4*quaternion_sz;
-        const real quaternion_zz = X_5*quaternion_sz;
-        const real R_xx = 1 - quaternion_yy - quaternion_zz;
-        const real R_xy = quaternion_xy - quaternion_wz;
-        const real R_xz = quaternion_wy + quaternion_xz;
-        const real R_yx = quaternion_wz + quaternion_xy;
-        const real R_yy = 1 - quaternion_xx - quaternion_zz;
-        const real R_yz = quaternion_yz - quaternion_wx;
-        const real R_zx = quaternion_xz - quaternion_wy;
-        const real R_zy = quaternion_wx + quaternion_yz;
-        const real R_zz = 1 - quaternion_xx - quaternion_yy;
-        /* (h_star) first moment about the platform origin */
-        const real h_star_in_platform_x = m->h_star_in_platform_x;
-        const real h_star_in_platform_y = m->h_star_in_platform_y;
-        const real h_star_in_platform_z = m->h_star_in_platform_z;
-        const real h_star_x = R_xx*h_star_in_platform_x + R_xy*h_star_in_platform_y +
-            R_xz*h_star_in_platform_z;
-        const real h_star_y = R_yx*h_star_in_platform_x + R_yy*h_star_in_platform_y +
-            R_yz*h_star_in_platform_z;
-        const real h_star_z = R_zx*h_star_in_platform_x + R_zy*h_star_in_platform_y +
-            R_zz*h_star_in_platform_z;
-        /* (J_star) inertia tensor about the platform origin */
-        const real J_star_in_platform_xy = m->J_star_in_platform_xy;
-        const real J_star_in_platform_yz = m->J_star_in_platform_yz;
-        const real J_star_t_6 = m->J_star_t_6;
-        const real J_star_t = J_star_in_platform_xy*R_xx + J_star_in_platform_yz*R_xz -
-            J_star_t_6*R_xy;
-        const real J_star_t_2 = J_star_in_platform_xy*R_yx + J_star_in_platform_yz*R_yz -
-            J_star_t_6*R_yy;
-        const real J_star_t_3 = J_star_in_platform_xy*R_zx + J_star_in_platform_yz*R_zz -
-            J_star_t_6*R_zy;
-        const real J_star_in_platform_xz = m->J_star_in_platform_xz;
-        const real J_star_t_8 = m->J_star_t_8;
-        const real J_star_t_4 = J_star_t_8*R_xz - J_star_in_platform_xz*R_xx;
-        const real J_star_t_5 = J_star_t_8*R_yz - J_star_in_platform_xz*R_yx;
-        const real J_star_t_7 = J_star_t_8*R_zz - J_star_in_platform_xz*R_zx;
-        const real J_star_t_9 = J_star_t*R_xy - J_star_t_4*R_xz;
-        const real J_star_in_platform_xx = m->J_star_in_platform_xx;
-        const real J_star_xx = J_star_in_platform_xx + 2*J_star_t_9;
-        const real J_star_xy = J_star_t*R_yy + J_star_t_2*R_xy - J_star_t_4*R_yz -
-            J_star_t_5*R_xz;
-        const real J_star_xz = J_star_t*R_zy + J_star_t_3*R_xy - J_star_t_4*R_zz -
-            J_star_t_7*R_xz;
-        const real J_star_t_10 = J_star_t_2*R_yy - J_star_t_5*R_yz;
-        const real J_star_yy = J_star_in_platform_xx + 2*J_star_t_10;
-        const real J_star_yz = J_star_t_2*R_zy + J_star_t_3*R_yy - J_star_t_5*R_zz -
-            J_star_t_7*R_yz;
-        const real J_star_t_11 = J_star_t_3*R_zy - J_star_t_7*R_zz;
-        const real J_star_zz = J_star_in_platform_xx + 2*J_star_t_11;
-        s[0*w + k] = t_x;
-        s[1*w + k] = t_y;
-        s[2*w + k] = t_z;
-        s[3*w + k] = R_xx;
-        s[4*w + k] = R_xy;
-        s[5*w + k] = R_xz;
-        s[6*w + k] = R_yx;
-        s[7*w + k] = R_yy;
-        s[8*w + k] = R_yz;
-        s[9*w + k] = R_zx;
-        s[10*w + k] = R_zy;
-        s[11*w + k] = R_zz;
-        s[12*w + k] = h_star_x;
-        s[13*w + k] = h_star_y;
-        s[14*w + k] = h_star_z;
-        s[15*w + k] = J_star_xx;
-        s[16*w + k] = J_star_xy;
-        s[17*w + k] = J_star_xz;
-        s[18*w + k] = J_star_yy;
-        s[19*w + k] = J_star_yz;
-        s[20*w + k] = J_star_zz;
-        t->invalid[k] += UNLESS(is_finite(quaternion_scale)) + UNLESS(quaternion_scale > 0);
+        values v;
+        stage_X(m, w, k, X, &v);
+        stage_M_dynamics(m, &v);
+        s[0*w + k] = v.R_xx;
+        s[1*w + k] = v.R_xy;
+        s[2*w + k] = v.R_xz;
+        s[3*w + k] = v.R_yx;
+        s[4*w + k] = v.R_yy;
+        s[5*w + k] = v.R_yz;
+        s[6*w + k] = v.R_zx;
+        s[7*w + k] = v.R_zy;
+        s[8*w + k] = v.R_zz;
+        s[9*w + k] = v.h_star_x;
+        s[10*w + k] = v.h_star_y;
+        s[11*w + k] = v.h_star_z;
+        s[12*w + k] = v.J_star_xx;
+        s[13*w + k] = v.J_star_xy;
+        s[14*w + k] = v.J_star_xz;
+        s[15*w + k] = v.J_star_yy;
+        s[16*w + k] = v.J_star_yz;
+        s[17*w + k] = v.J_star_zz;
+        t->invalid[k] += UNLESS(is_finite(v.quaternion_scale)) + UNLESS(v.quaternion_scale > 0);
     }
 }
 
 INLINE void M_legs_prs(const prepared *m, size_t w, size_t leg, size_t legs, const real *s, size_t
-    states, size_t count, int add, real *terms, real *o)
+    states, size_t count, int add, const real *X, real *terms, real *o)
 {
     for (size_t k = 0; k < count; ++k) {
         const size_t i = leg + legs*k;
         const size_t j = states*k;
-        /* (prs-S) from the base point to the connection point */
-        const real R_xx = s[3*w + j];
-        const real R_xy = s[4*w + j];
-        const real R_xz = s[5*w + j];
-        const real prs_platform_point_x = m->prs_platform_point_x[i];
-        const real prs_platform_point_y = m->prs_platform_point_y[i];
-        const real prs_platform_point_z = m->prs_platform_point_z[i];
-        const real prs_q_x = R_xx*prs_platform_point_x + R_xy*prs_platform_point_y +
-            R_xz*prs_platform_point_z;
-        const real R_yx = s[6*w + j];
-        const real R_yy = s[7*w + j];
-        const real R_yz = s[8*w + j];
-        const real prs_q_y = R_yx*prs_platform_point_x + R_yy*prs_platform_point_y +
-            R_yz*prs_platform_point_z;
-        const real R_zx = s[9*w + j];
-        const real R_zy = s[10*w + j];
-        const real R_zz = s[11*w + j];
-        const real prs_q_z = R_zx*prs_platform_point_x + R_zy*prs_platform_point_y +
-            R_zz*prs_platform_point_z;
-        const real prs_base_point_x = m->prs_base_point_x[i];
-        const real t_x = s[0*w + j];
-        const real prs_S_x = prs_q_x + t_x - prs_base_point_x;
-        const real prs_base_point_y = m->prs_base_point_y[i];
-        const real t_y = s[1*w + j];
-        const real prs_S_y = prs_q_y + t_y - prs_base_point_y;
-        const real prs_base_point_z = m->prs_base_point_z[i];
-        const real t_z = s[2*w + j];
-        const real prs_S_z = prs_q_z + t_z - prs_base_point_z;
-        const real prs_base_frame_xx = m->prs_base_frame_xx[i];
-        const real prs_base_frame_yx = m->prs_base_frame_yx[i];
-        const real prs_base_frame_zx = m->prs_base_frame_zx[i];
-        const real prs_S_in_axes0_x = prs_S_x*prs_base_frame_xx + prs_S_y*prs_base_frame_yx +
-            prs_S_z*prs_base_frame_zx;
-        const real prs_base_frame_xz = m->prs_base_frame_xz[i];
-        const real prs_base_frame_yz = m->prs_base_frame_yz[i];
-        const real prs_base_frame_zz = m->prs_base_frame_zz[i];
-        const real prs_S_in_axes0_z = prs_S_x*prs_base_frame_xz + prs_S_y*prs_base_frame_yz +
-            prs_S_z*prs_base_frame_zz;
-        const real prs_base_frame_xy = m->prs_base_frame_xy[i];
-        const real prs_base_frame_yy = m->prs_base_frame_yy[i];
-        const real prs_base_frame_zy = m->prs_base_frame_zy[i];
-        const real prs_S_in_axes0_y = prs_S_x*prs_base_frame_xy + prs_S_y*prs_base_frame_yy +
-            prs_S_z*prs_base_frame_zy;
-        /* (prs-disc_1) discriminant of the distance equation */
-        const real prs_disc_1_t = prs_S_x*prs_S_x + prs_S_y*prs_S_y + prs_S_z*prs_S_z;
-        const real prs_size_t = m->prs_size_t[i];
-        const real prs_disc_1 = prs_S_in_axes0_x*prs_S_in_axes0_x +
-            prs_S_in_axes0_z*prs_S_in_axes0_z + prs_size_t - prs_disc_1_t;
-        /* (prs-x_2) from the origin of joint 2 to the connection point */
-        const real prs_branch_1 = m->prs_branch_1[i];
-        const real prs_x_2_in_axes0_x = -prs_branch_1*root(prs_disc_1);
-        /* (prs-rho2_2) squared amplitude */
-        const real prs_rho2_2 = prs_size_t*(prs_S_in_axes0_y*prs_S_in_axes0_y +
-            prs_x_2_in_axes0_x*prs_x_2_in_axes0_x);
-        /* (prs-c_2) cosine of the angle of joint 2 from its reference direction */
-        const real prs_c_2_t = 1/(root(prs_rho2_2));
-        const real prs_platform_joint_offset_x = m->prs_platform_joint_offset_x[i];
-        const real prs_c_2 = prs_c_2_t*prs_platform_joint_offset_x*prs_x_2_in_axes0_x;
-        /* (prs-s_2) sine of the angle of joint 2 from its reference direction */
-        const real prs_s_2 = prs_S_in_axes0_y*prs_c_2_t*prs_platform_joint_offset_x;
-        /* (prs-v_2) velocity of the connection point per rate of joint 2 */
-        const real prs_v_2_t = -prs_c_2*prs_platform_joint_offset_x;
-        /* (prs-w_1) reciprocal vector 1 */
-        const real prs_d_3_in_axes0_y = prs_platform_joint_offset_x*prs_s_2;
-        const real inv_prs_v_2_t = 1/prs_v_2_t;
-        const real prs_w_1_t = inv_prs_v_2_t*prs_d_3_in_axes0_y;
-        const real prs_w_1_in_axes2_x = prs_c_2 - prs_s_2*prs_w_1_t;
-        const real prs_w_1_in_axes2_y = -prs_s_2 - prs_c_2*prs_w_1_t;
-        /* (prs-w_2) reciprocal vector 2 */
-        const real prs_w_2_t = inv_prs_v_2_t*prs_s_2;
-        const real prs_w_2_in_axes2_y = -inv_prs_v_2_t*prs_c_2;
-        /* (prs-P_c_2) force that accelerates joint 2, per unit */
-        const real prs_h_2_in_spec2_x = m->prs_h_2_in_spec2_x[i];
-        const real prs_h_2_in_spec2_y = m->prs_h_2_in_spec2_y[i];
-        const real prs_P_c_2_in_axes0_x = -prs_c_2*prs_h_2_in_spec2_y -
-            prs_h_2_in_spec2_x*prs_s_2;
-        /* (prs-d_Gamma_2) coefficient of the acceleration in: moment about axis 2 of the distal links'
-           inertia and weight */
-        const real prs_J_2_in_spec2_zz = m->prs_J_2_in_spec2_zz[i];
-        const real prs_d_Gamma_2_t = inv_prs_v_2_t*(prs_J_2_in_spec2_zz +
-            prs_P_c_2_in_axes0_x*prs_d_3_in_axes0_y);
-        const real prs_d_Gamma_2_in_axes2_x = prs_P_c_2_in_axes0_x*prs_c_2 -
-            prs_d_Gamma_2_t*prs_s_2;
-        const real prs_d_Gamma_2_in_axes2_y = -prs_P_c_2_in_axes0_x*prs_s_2 -
-            prs_c_2*prs_d_Gamma_2_t;
-        /* (prs-d_Gamma_1) coefficient of the acceleration in: force along axis 1 of the distal links'
-           inertia and weight */
-        const real prs_P_c_1_in_axes0_x = m->prs_P_c_1_in_axes0_x[i];
-        const real prs_d_Gamma_1_t = inv_prs_v_2_t*(prs_P_c_2_in_axes0_x +
-            prs_P_c_1_in_axes0_x*prs_d_3_in_axes0_y);
-        const real prs_d_Gamma_1_in_axes2_x = prs_P_c_1_in_axes0_x*prs_c_2 -
-            prs_d_Gamma_1_t*prs_s_2;
-        const real prs_d_Gamma_1_in_axes2_y = -prs_P_c_1_in_axes0_x*prs_s_2 -
-            prs_c_2*prs_d_Gamma_1_t;
-        /* (prs-d_G) coefficient of the acceleration in: force at the connection point that balances the
-           leg's inertia and weight along all degrees of freedom */
-        const real prs_d_G_in_axes2_xx = prs_d_Gamma_1_in_axes2_x*prs_w_1_in_axes2_x -
-            prs_d_Gamma_2_in_axes2_x*prs_w_2_t;
-        const real prs_d_G_in_axes2_xy = prs_d_Gamma_1_in_axes2_y*prs_w_1_in_axes2_x -
-            prs_d_Gamma_2_in_axes2_y*prs_w_2_t;
-        const real prs_d_G_in_axes2_yx = prs_d_Gamma_1_in_axes2_x*prs_w_1_in_axes2_y +
-            prs_d_Gamma_2_in_axes2_x*prs_w_2_in_axes2_y;
-        const real prs_d_G_in_axes2_yy = prs_d_Gamma_1_in_axes2_y*prs_w_1_in_axes2_y +
-            prs_d_Gamma_2_in_axes2_y*prs_w_2_in_axes2_y;
-        /* (prs-d_c) coefficient of the acceleration in: leg force on the platform without actuation and
-           without the mass at the connection point */
-        const real axis_y_prs_axes2_x = prs_base_frame_xy*prs_c_2 - prs_base_frame_xx*prs_s_2;
-        const real axis_y_prs_axes2_y = prs_base_frame_yy*prs_c_2 - prs_base_frame_yx*prs_s_2;
-        const real axis_y_prs_axes2_z = prs_base_frame_zy*prs_c_2 - prs_base_frame_zx*prs_s_2;
-        const real axis_x_prs_axes2_x = prs_base_frame_xx*prs_c_2 + prs_base_frame_xy*prs_s_2;
-        const real axis_x_prs_axes2_y = prs_base_frame_yx*prs_c_2 + prs_base_frame_yy*prs_s_2;
-        const real axis_x_prs_axes2_z = prs_base_frame_zx*prs_c_2 + prs_base_frame_zy*prs_s_2;
-        const real prs_d_c_t = -axis_x_prs_axes2_x*prs_d_G_in_axes2_xx -
-            axis_y_prs_axes2_x*prs_d_G_in_axes2_yx;
-        const real prs_d_c_t_2 = -axis_x_prs_axes2_y*prs_d_G_in_axes2_xx -
-            axis_y_prs_axes2_y*prs_d_G_in_axes2_yx;
-        const real prs_d_c_t_3 = -axis_x_prs_axes2_x*prs_d_G_in_axes2_xy -
-            axis_y_prs_axes2_x*prs_d_G_in_axes2_yy;
-        const real prs_d_c_t_4 = -axis_x_prs_axes2_y*prs_d_G_in_axes2_xy -
-            axis_y_prs_axes2_y*prs_d_G_in_axes2_yy;
-        const real prs_d_c_xx = axis_x_prs_axes2_x*prs_d_c_t + axis_y_prs_axes2_x*prs_d_c_t_3;
-        const real prs_d_c_xy = axis_x_prs_axes2_y*prs_d_c_t + axis_y_prs_axes2_y*prs_d_c_t_3;
-        const real prs_d_c_xz = axis_x_prs_axes2_z*prs_d_c_t + axis_y_prs_axes2_z*prs_d_c_t_3;
-        const real prs_d_c_yy = axis_x_prs_axes2_y*prs_d_c_t_2 + axis_y_prs_axes2_y*prs_d_c_t_4;
-        const real prs_d_c_yz = axis_x_prs_axes2_z*prs_d_c_t_2 + axis_y_prs_axes2_z*prs_d_c_t_4;
-        const real prs_d_c_zz = axis_x_prs_axes2_z*(-axis_x_prs_axes2_z*prs_d_G_in_axes2_xx -
-            axis_y_prs_axes2_z*prs_d_G_in_axes2_yx) +
-            axis_y_prs_axes2_z*(-axis_x_prs_axes2_z*prs_d_G_in_axes2_xy -
-            axis_y_prs_axes2_z*prs_d_G_in_axes2_yy);
-        /* (M_ta) coupling block of M */
-        const real prs_M_ta_t = prs_d_c_xy*prs_q_z;
-        const real prs_M_ta_t_2 = prs_d_c_xz*prs_q_y;
-        const real prs_M_ta_t_3 = prs_M_ta_t - prs_M_ta_t_2;
-        const real prs_M_ta_t_4 = prs_d_c_xx*prs_q_z - prs_d_c_xz*prs_q_x;
-        const real prs_M_ta_t_5 = prs_d_c_xx*prs_q_y - prs_d_c_xy*prs_q_x;
-        const real prs_M_ta_t_6 = prs_d_c_yy*prs_q_z - prs_d_c_yz*prs_q_y;
-        const real prs_M_ta_t_7 = prs_d_c_yz*prs_q_x;
-        const real prs_M_ta_t_8 = prs_M_ta_t_7 - prs_M_ta_t;
-        const real prs_M_ta_t_9 = prs_d_c_xy*prs_q_y - prs_d_c_yy*prs_q_x;
-        const real prs_M_ta_t_10 = prs_d_c_yz*prs_q_z - prs_d_c_zz*prs_q_y;
-        const real prs_M_ta_t_11 = prs_d_c_zz*prs_q_x - prs_d_c_xz*prs_q_z;
-        const real prs_M_ta_t_12 = prs_M_ta_t_2 - prs_M_ta_t_7;
-        /* (M_aa) rotational block of M */
-        const real prs_M_aa_t = prs_M_ta_t_10*prs_q_y - prs_M_ta_t_6*prs_q_z;
-        const real prs_M_aa_t_2 = prs_M_ta_t_11*prs_q_y - prs_M_ta_t_8*prs_q_z;
-        const real prs_M_aa_t_3 = prs_M_ta_t_12*prs_q_y - prs_M_ta_t_9*prs_q_z;
-        const real prs_M_aa_t_4 = prs_M_ta_t_11*prs_q_x + prs_M_ta_t_4*prs_q_z;
-        const real prs_M_aa_t_5 = prs_M_ta_t_5*prs_q_z - prs_M_ta_t_12*prs_q_x;
-        const real prs_M_aa_t_6 = prs_M_ta_t_9*prs_q_x - prs_M_ta_t_5*prs_q_y;
+        values_prs v;
+        stage_prs_X(m, w, i, j, s, X, &v);
+        stage_prs_M_dynamics(m, i, &v);
         /* (M_tt) translational block of M */
-        gather(&terms[0*count + k], add, prs_d_c_xx);  /* M_tt_xx_of_legs */
-        gather(&terms[1*count + k], add, prs_d_c_xy);  /* M_tt_t_2 */
-        gather(&terms[2*count + k], add, prs_d_c_xz);  /* M_tt_t_3 */
-        gather(&terms[3*count + k], add, prs_d_c_yy);  /* M_tt_yy_of_legs */
-        gather(&terms[4*count + k], add, prs_d_c_yz);  /* M_tt_t_5 */
-        gather(&terms[5*count + k], add, prs_d_c_zz);  /* M_tt_zz_of_legs */
+        gather(&terms[0*count + k], add, v.prs_d_c_xx);  /* M_tt_xx_of_legs */
+        gather(&terms[1*count + k], add, v.prs_d_c_xy);  /* M_tt_t_2 */
+        gather(&terms[2*count + k], add, v.prs_d_c_xz);  /* M_tt_t_3 */
+        gather(&terms[3*count + k], add, v.prs_d_c_yy);  /* M_tt_yy_of_legs */
+        gather(&terms[4*count + k], add, v.prs_d_c_yz);  /* M_tt_t_5 */
+        gather(&terms[5*count + k], add, v.prs_d_c_zz);  /* M_tt_zz_of_legs */
         /* (M_ta) coupling block of M */
-        gather(&terms[6*count + k], add, prs_M_ta_t_3);  /* M_ta_xx */
-        gather(&terms[7*count + k], add, -prs_M_ta_t_4);  /* M_ta_xy_of_legs */
-        gather(&terms[8*count + k], add, prs_M_ta_t_5);  /* M_ta_xz_of_legs */
-        gather(&terms[9*count + k], add, prs_M_ta_t_6);  /* M_ta_yx_of_legs */
-        gather(&terms[10*count + k], add, prs_M_ta_t_8);  /* M_ta_yy */
-        gather(&terms[11*count + k], add, prs_M_ta_t_9);  /* M_ta_yz_of_legs */
-        gather(&terms[12*count + k], add, prs_M_ta_t_10);  /* M_ta_zx_of_legs */
-        gather(&terms[13*count + k], add, prs_M_ta_t_11);  /* M_ta_zy_of_legs */
-        gather(&terms[14*count + k], add, prs_M_ta_t_12);  /* M_ta_zz */
+        gather(&terms[6*count + k], add, v.prs_M_ta_t_3);  /* M_ta_xx */
+        gather(&terms[7*count + k], add, -v.prs_M_ta_t_4);  /* M_ta_xy_of_legs */
+        gather(&terms[8*count + k], add, v.prs_M_ta_t_5);  /* M_ta_xz_of_legs */
+        gather(&terms[9*count + k], add, v.prs_M_ta_t_6);  /* M_ta_yx_of_legs */
+        gather(&terms[10*count + k], add, v.prs_M_ta_t_8);  /* M_ta_yy */
+        gather(&terms[11*count + k], add, v.prs_M_ta_t_9);  /* M_ta_yz_of_legs */
+        gather(&terms[12*count + k], add, v.prs_M_ta_t_10);  /* M_ta_zx_of_legs */
+        gather(&terms[13*count + k], add, v.prs_M_ta_t_11);  /* M_ta_zy_of_legs */
+        gather(&terms[14*count + k], add, v.prs_M_ta_t_12);  /* M_ta_zz */
         /* (M_aa) rotational block of M */
-        gather(&terms[15*count + k], add, prs_M_aa_t);  /* M_aa_xx_of_legs */
-        gather(&terms[16*count + k], add, prs_M_aa_t_2);  /* M_aa_xy_of_legs */
-        gather(&terms[17*count + k], add, prs_M_aa_t_3);  /* M_aa_xz_of_legs */
-        gather(&terms[18*count + k], add, prs_M_aa_t_4);  /* M_aa_yy_of_legs */
-        gather(&terms[19*count + k], add, prs_M_aa_t_5);  /* M_aa_yz_of_legs */
-        gather(&terms[20*count + k], add, prs_M_aa_t_6);  /* M_aa_zz_of_legs */
+        gather(&terms[15*count + k], add, v.prs_M_aa_t);  /* M_aa_xx_of_legs */
+        gather(&terms[16*count + k], add, v.prs_M_aa_t_2);  /* M_aa_xy_of_legs */
+        gather(&terms[17*count + k], add, v.prs_M_aa_t_3);  /* M_aa_xz_of_legs */
+        gather(&terms[18*count + k], add, v.prs_M_aa_t_4);  /* M_aa_yy_of_legs */
+        gather(&terms[19*count + k], add, v.prs_M_aa_t_5);  /* M_aa_yz_of_legs */
+        gather(&terms[20*count + k], add, v.prs_M_aa_t_6);  /* M_aa_zz_of_legs */
         const real prs_root_2_t = m->prs_root_2_t[i];
         const real prs_size = m->prs_size[i];
-        o[0*count + k] = UNLESS(prs_disc_1 >= 0);
-        o[1*count + k] = UNLESS(magnitude(prs_rho2_2) > TOLERANCE*TOLERANCE*prs_root_2_t) +
-            UNLESS(magnitude(prs_v_2_t) > TOLERANCE*prs_size);
+        o[0*count + k] = UNLESS(v.prs_disc_1 >= 0);
+        o[1*count + k] = UNLESS(magnitude(v.prs_rho2_2) > TOLERANCE*TOLERANCE*prs_root_2_t) +
+            UNLESS(magnitude(v.prs_v_2_in_axes0_y) > TOLERANCE*prs_size);
     }
 }
 
@@ -2287,46 +2454,46 @@ INLINE void M_after(const prepared *m, size_t w, const real *s, const real *sums
         const real M_tt_zz = platform_mass - M_tt_zz_of_legs;
         /* (M_ta) coupling block of M */
         const real M_ta_xy_of_legs = sums[7*w + k];
-        const real h_star_z = s[14*w + k];
+        const real h_star_z = s[11*w + k];
         const real M_ta_xy = M_ta_xy_of_legs + h_star_z;
         const real M_ta_xz_of_legs = sums[8*w + k];
-        const real h_star_y = s[13*w + k];
+        const real h_star_y = s[10*w + k];
         const real M_ta_xz = M_ta_xz_of_legs - h_star_y;
         const real M_ta_yx_of_legs = sums[9*w + k];
         const real M_ta_yx = M_ta_yx_of_legs - h_star_z;
         const real M_ta_yz_of_legs = sums[11*w + k];
-        const real h_star_x = s[12*w + k];
+        const real h_star_x = s[9*w + k];
         const real M_ta_yz = M_ta_yz_of_legs + h_star_x;
         const real M_ta_zx_of_legs = sums[12*w + k];
         const real M_ta_zx = M_ta_zx_of_legs + h_star_y;
         const real M_ta_zy_of_legs = sums[13*w + k];
         const real M_ta_zy = M_ta_zy_of_legs - h_star_x;
         /* (M_aa) rotational block of M */
-        const real J_star_xx = s[15*w + k];
+        const real J_star_xx = s[12*w + k];
         const real M_aa_xx_of_legs = sums[15*w + k];
         const real M_aa_xx = J_star_xx + M_aa_xx_of_legs;
-        const real J_star_xy = s[16*w + k];
+        const real J_star_xy = s[13*w + k];
         const real M_aa_xy_of_legs = sums[16*w + k];
         const real M_aa_xy = J_star_xy + M_aa_xy_of_legs;
-        const real J_star_xz = s[17*w + k];
+        const real J_star_xz = s[14*w + k];
         const real M_aa_xz_of_legs = sums[17*w + k];
         const real M_aa_xz = J_star_xz + M_aa_xz_of_legs;
-        const real J_star_yy = s[18*w + k];
+        const real J_star_yy = s[15*w + k];
         const real M_aa_yy_of_legs = sums[18*w + k];
         const real M_aa_yy = J_star_yy - M_aa_yy_of_legs;
-        const real J_star_yz = s[19*w + k];
+        const real J_star_yz = s[16*w + k];
         const real M_aa_yz_of_legs = sums[19*w + k];
         const real M_aa_yz = J_star_yz + M_aa_yz_of_legs;
-        const real J_star_zz = s[20*w + k];
+        const real J_star_zz = s[17*w + k];
         const real M_aa_zz_of_legs = sums[20*w + k];
         const real M_aa_zz = J_star_zz + M_aa_zz_of_legs;
         /* (M_tt) translational block of M */
-        M[0*NV*w + k] = M_tt_xx;
+        M[0*w + k] = M_tt_xx;
         const real M_tt_t_2 = sums[1*w + k];
-        M[(0*NV + 1)*w + k] = -M_tt_t_2;
+        M[1*w + k] = -M_tt_t_2;
         M[NV*w + k] = -M_tt_t_2;
         const real M_tt_t_3 = sums[2*w + k];
-        M[(0*NV + 2)*w + k] = -M_tt_t_3;
+        M[2*w + k] = -M_tt_t_3;
         M[2*NV*w + k] = -M_tt_t_3;
         M[(NV + 1)*w + k] = M_tt_yy;
         const real M_tt_t_5 = sums[4*w + k];
@@ -2335,11 +2502,11 @@ INLINE void M_after(const prepared *m, size_t w, const real *s, const real *sums
         M[(2*NV + 2)*w + k] = M_tt_zz;
         /* (M_ta) coupling block of M */
         const real M_ta_xx = sums[6*w + k];
-        M[(0*NV + 3)*w + k] = M_ta_xx;
+        M[3*w + k] = M_ta_xx;
         M[3*NV*w + k] = M_ta_xx;
-        M[(0*NV + 4)*w + k] = M_ta_xy;
+        M[4*w + k] = M_ta_xy;
         M[4*NV*w + k] = M_ta_xy;
-        M[(0*NV + 5)*w + k] = M_ta_xz;
+        M[5*w + k] = M_ta_xz;
         M[5*NV*w + k] = M_ta_xz;
         M[(NV + 3)*w + k] = M_ta_yx;
         M[(3*NV + 1)*w + k] = M_ta_yx;
@@ -2374,12 +2541,10 @@ INLINE void M_after(const prepared *m, size_t w, const real *s, const real *sums
 
 INLINE void M_run(const prepared *m, const real *X, real *M, verdict *t)
 {
-    real s[21] = {0};
-    real sums[21] = {0};
-    real terms_prs[21*LEGS(LEGS_OF_prs)] = {0};
-    real o_prs[2*LEGS(LEGS_OF_prs)] = {0};
+    real s[18] = {0}, sums[21] = {0};
+    real terms_prs[21*LEGS(LEGS_OF_prs)] = {0}, o_prs[2*LEGS(LEGS_OF_prs)] = {0};
     M_before(m, 1, X, s, t);
-    M_legs_prs(m, 1, 0, 1, s, 0, LEGS(LEGS_OF_prs), 0, terms_prs, o_prs);
+    M_legs_prs(m, 1, 0, 1, s, 0, LEGS(LEGS_OF_prs), 0, X, terms_prs, o_prs);
     for (size_t leg = 0; leg < LEGS_OF_prs; ++leg) {
         M_place_prs(1, LEGS(LEGS_OF_prs), o_prs, leg, t);
     }
@@ -2391,13 +2556,12 @@ INLINE void M_run(const prepared *m, const real *X, real *M, verdict *t)
 
 INLINE void M_run_lanes(const prepared *m, const real *X, real *M, verdict *t)
 {
-    real s[21*LANES];
-    real sums[21*LANES];
+    real s[18*LANES], sums[21*LANES];
     real o_prs[2*LANES];
     M_before(m, LANES, X, s, t);
     clear(sums, 21*LANES);
     for (size_t leg = 0; leg < LEGS_OF_prs; ++leg) {
-        M_legs_prs(m, LANES, leg, 0, s, 1, LANES, 1, sums, o_prs);
+        M_legs_prs(m, LANES, leg, 0, s, 1, LANES, 1, X, sums, o_prs);
         M_place_prs(LANES, LANES, o_prs, 0, t);
     }
     M_after(m, LANES, s, sums, M, t);
@@ -2408,248 +2572,59 @@ INLINE void Z_before(const prepared *m, size_t w, const real *X, const real *V, 
     *t)
 {
     for (size_t k = 0; k < w; ++k) {
-        /* X: named entries */
-        const real X_0 = X[0*w + k];
-        const real t_x = X_0;
-        const real X_1 = X[1*w + k];
-        const real t_y = X_1;
-        const real X_2 = X[2*w + k];
-        const real t_z = X_2;
-        const real X_3 = X[3*w + k];
-        const real X_4 = X[4*w + k];
-        const real X_5 = X[5*w + k];
-        const real X_6 = X[6*w + k];
-        const real quaternion_norm2 = X_3*X_3 + X_4*X_4 + X_5*X_5 + X_6*X_6;
-        const real quaternion_scale = 2/quaternion_norm2;
-        const real quaternion_sx = X_3*quaternion_scale;
-        const real quaternion_sy = X_4*quaternion_scale;
-        const real quaternion_sz = X_5*quaternion_scale;
-        const real quaternion_wx = X_6*quaternion_sx;
-        const real quaternion_wy = X_6*quaternion_sy;
-        const real quaternion_wz = X_6*quaternion_sz;
-        const real quaternion_xx = X_3*quaternion_sx;
-        const real quaternion_xy = X_3*quaternion_sy;
-        const real quaternion_xz = X_3*quaternion_sz;
-        const real quaternion_yy = X_4*quaternion_sy;
-        const real quaternion_yz = X_4*quaternion_sz;
-        const real quaternion_zz = X_5*quaternion_sz;
-        const real R_xx = 1 - quaternion_yy - quaternion_zz;
-        const real R_xy = quaternion_xy - quaternion_wz;
-        const real R_xz = quaternion_wy + quaternion_xz;
-        const real R_yx = quaternion_wz + quaternion_xy;
-        const real R_yy = 1 - quaternion_xx - quaternion_zz;
-        const real R_yz = quaternion_yz - quaternion_wx;
-        const real R_zx = quaternion_xz - quaternion_wy;
-        const real R_zy = quaternion_wx + quaternion_yz;
-        const real R_zz = 1 - quaternion_xx - quaternion_yy;
-        /* V: named entries */
-        const real V_0 = V[0*w + k];
-        const real t_dot_x = V_0;
-        const real V_1 = V[1*w + k];
-        const real t_dot_y = V_1;
-        const real V_2 = V[2*w + k];
-        const real t_dot_z = V_2;
-        const real V_3 = V[3*w + k];
-        const real omega_x = V_3;
-        const real V_4 = V[4*w + k];
-        const real omega_y = V_4;
-        const real V_5 = V[5*w + k];
-        const real omega_z = V_5;
-        /* (h_star) first moment about the platform origin */
-        const real h_star_in_platform_x = m->h_star_in_platform_x;
-        const real h_star_in_platform_y = m->h_star_in_platform_y;
-        const real h_star_in_platform_z = m->h_star_in_platform_z;
-        const real h_star_x = R_xx*h_star_in_platform_x + R_xy*h_star_in_platform_y +
-            R_xz*h_star_in_platform_z;
-        const real h_star_y = R_yx*h_star_in_platform_x + R_yy*h_star_in_platform_y +
-            R_yz*h_star_in_platform_z;
-        const real h_star_z = R_zx*h_star_in_platform_x + R_zy*h_star_in_platform_y +
-            R_zz*h_star_in_platform_z;
-        /* (Z_p) centripetal force and weight of the platform */
-        const real Z_p_t_4 = h_star_z*omega_y - h_star_y*omega_z;
-        const real Z_p_t_5 = h_star_x*omega_z - h_star_z*omega_x;
-        const real Z_p_t_6 = h_star_y*omega_x - h_star_x*omega_y;
-        const real Z_p_t = m->Z_p_t;
-        const real Z_p_x = Z_p_t_6*omega_y - Z_p_t - Z_p_t_5*omega_z;
-        const real Z_p_t_2 = m->Z_p_t_2;
-        const real Z_p_y = Z_p_t_4*omega_z - Z_p_t_2 - Z_p_t_6*omega_x;
-        const real Z_p_t_3 = m->Z_p_t_3;
-        const real Z_p_z = Z_p_t_5*omega_x - Z_p_t_3 - Z_p_t_4*omega_y;
-        /* (Z_q) gyroscopic moment and moment of the weight of the platform */
-        const real gravity_x = m->gravity_x;
-        const real gravity_y = m->gravity_y;
-        const real gravity_z = m->gravity_z;
-        const real g_in_platform_x = R_xx*gravity_x + R_yx*gravity_y + R_zx*gravity_z;
-        const real g_in_platform_y = R_xy*gravity_x + R_yy*gravity_y + R_zy*gravity_z;
-        const real g_in_platform_z = R_xz*gravity_x + R_yz*gravity_y + R_zz*gravity_z;
-        const real omega_in_platform_x = R_xx*omega_x + R_yx*omega_y + R_zx*omega_z;
-        const real omega_in_platform_y = R_xy*omega_x + R_yy*omega_y + R_zy*omega_z;
-        const real omega_in_platform_z = R_xz*omega_x + R_yz*omega_y + R_zz*omega_z;
-        const real J_star_in_platform_xx = m->J_star_in_platform_xx;
-        const real J_star_in_platform_xy = m->J_star_in_platform_xy;
-        const real J_star_in_platform_xz = m->J_star_in_platform_xz;
-        const real Z_q_t = J_star_in_platform_xx*omega_in_platform_x +
-            J_star_in_platform_xy*omega_in_platform_y + J_star_in_platform_xz*omega_in_platform_z;
-        const real J_star_in_platform_yy = m->J_star_in_platform_yy;
-        const real J_star_in_platform_yz = m->J_star_in_platform_yz;
-        const real Z_q_t_2 = J_star_in_platform_xy*omega_in_platform_x +
-            J_star_in_platform_yy*omega_in_platform_y + J_star_in_platform_yz*omega_in_platform_z;
-        const real J_star_in_platform_zz = m->J_star_in_platform_zz;
-        const real Z_q_t_3 = J_star_in_platform_xz*omega_in_platform_x +
-            J_star_in_platform_yz*omega_in_platform_y + J_star_in_platform_zz*omega_in_platform_z;
-        const real Z_q_in_platform_x = Z_q_t_3*omega_in_platform_y +
-            g_in_platform_y*h_star_in_platform_z - Z_q_t_2*omega_in_platform_z -
-            g_in_platform_z*h_star_in_platform_y;
-        const real Z_q_in_platform_y = Z_q_t*omega_in_platform_z +
-            g_in_platform_z*h_star_in_platform_x - Z_q_t_3*omega_in_platform_x -
-            g_in_platform_x*h_star_in_platform_z;
-        const real Z_q_in_platform_z = Z_q_t_2*omega_in_platform_x +
-            g_in_platform_x*h_star_in_platform_y - Z_q_t*omega_in_platform_y -
-            g_in_platform_y*h_star_in_platform_x;
-        const real Z_q_x = R_xx*Z_q_in_platform_x + R_xy*Z_q_in_platform_y +
-            R_xz*Z_q_in_platform_z;
-        const real Z_q_y = R_yx*Z_q_in_platform_x + R_yy*Z_q_in_platform_y +
-            R_yz*Z_q_in_platform_z;
-        const real Z_q_z = R_zx*Z_q_in_platform_x + R_zy*Z_q_in_platform_y +
-            R_zz*Z_q_in_platform_z;
-        s[0*w + k] = t_x;
-        s[1*w + k] = t_y;
-        s[2*w + k] = t_z;
-        s[3*w + k] = R_xx;
-        s[4*w + k] = R_xy;
-        s[5*w + k] = R_xz;
-        s[6*w + k] = R_yx;
-        s[7*w + k] = R_yy;
-        s[8*w + k] = R_yz;
-        s[9*w + k] = R_zx;
-        s[10*w + k] = R_zy;
-        s[11*w + k] = R_zz;
-        s[12*w + k] = t_dot_x;
-        s[13*w + k] = t_dot_y;
-        s[14*w + k] = t_dot_z;
-        s[15*w + k] = omega_x;
-        s[16*w + k] = omega_y;
-        s[17*w + k] = omega_z;
-        s[18*w + k] = Z_p_x;
-        s[19*w + k] = Z_p_y;
-        s[20*w + k] = Z_p_z;
-        s[21*w + k] = Z_q_x;
-        s[22*w + k] = Z_q_y;
-        s[23*w + k] = Z_q_z;
-        t->invalid[k] += UNLESS(is_finite(quaternion_scale)) + UNLESS(quaternion_scale > 0);
+        values v;
+        stage_X(m, w, k, X, &v);
+        stage_V_X(w, k, V, &v);
+        stage_Z_dynamics(m, w, k, V, &v);
+        s[0*w + k] = v.R_xx;
+        s[1*w + k] = v.R_xy;
+        s[2*w + k] = v.R_xz;
+        s[3*w + k] = v.R_yx;
+        s[4*w + k] = v.R_yy;
+        s[5*w + k] = v.R_yz;
+        s[6*w + k] = v.R_zx;
+        s[7*w + k] = v.R_zy;
+        s[8*w + k] = v.R_zz;
+        s[9*w + k] = v.Z_p_x;
+        s[10*w + k] = v.Z_p_y;
+        s[11*w + k] = v.Z_p_z;
+        s[12*w + k] = v.Z_q_x;
+        s[13*w + k] = v.Z_q_y;
+        s[14*w + k] = v.Z_q_z;
+        t->invalid[k] += UNLESS(is_finite(v.quaternion_scale)) + UNLESS(v.quaternion_scale > 0);
     }
 }
 
 INLINE void Z_legs_prs(const prepared *m, size_t w, size_t leg, size_t legs, const real *s, size_t
-    states, size_t count, int add, real *terms, real *o)
+    states, size_t count, int add, const real *X, const real *V, real *terms, real *o)
 {
     for (size_t k = 0; k < count; ++k) {
         const size_t i = leg + legs*k;
         const size_t j = states*k;
-        /* (prs-S) from the base point to the connection point */
-        const real R_xx = s[3*w + j];
-        const real R_xy = s[4*w + j];
-        const real R_xz = s[5*w + j];
-        const real prs_platform_point_x = m->prs_platform_point_x[i];
-        const real prs_platform_point_y = m->prs_platform_point_y[i];
-        const real prs_platform_point_z = m->prs_platform_point_z[i];
-        const real prs_q_x = R_xx*prs_platform_point_x + R_xy*prs_platform_point_y +
-            R_xz*prs_platform_point_z;
-        const real R_yx = s[6*w + j];
-        const real R_yy = s[7*w + j];
-        const real R_yz = s[8*w + j];
-        const real prs_q_y = R_yx*prs_platform_point_x + R_yy*prs_platform_point_y +
-            R_yz*prs_platform_point_z;
-        const real R_zx = s[9*w + j];
-        const real R_zy = s[10*w + j];
-        const real R_zz = s[11*w + j];
-        const real prs_q_z = R_zx*prs_platform_point_x + R_zy*prs_platform_point_y +
-            R_zz*prs_platform_point_z;
-        const real prs_base_point_x = m->prs_base_point_x[i];
-        const real t_x = s[0*w + j];
-        const real prs_S_x = prs_q_x + t_x - prs_base_point_x;
-        const real prs_base_point_y = m->prs_base_point_y[i];
-        const real t_y = s[1*w + j];
-        const real prs_S_y = prs_q_y + t_y - prs_base_point_y;
-        const real prs_base_point_z = m->prs_base_point_z[i];
-        const real t_z = s[2*w + j];
-        const real prs_S_z = prs_q_z + t_z - prs_base_point_z;
-        const real prs_base_frame_xx = m->prs_base_frame_xx[i];
-        const real prs_base_frame_yx = m->prs_base_frame_yx[i];
-        const real prs_base_frame_zx = m->prs_base_frame_zx[i];
-        const real prs_S_in_axes0_x = prs_S_x*prs_base_frame_xx + prs_S_y*prs_base_frame_yx +
-            prs_S_z*prs_base_frame_zx;
-        const real prs_base_frame_xz = m->prs_base_frame_xz[i];
-        const real prs_base_frame_yz = m->prs_base_frame_yz[i];
-        const real prs_base_frame_zz = m->prs_base_frame_zz[i];
-        const real prs_S_in_axes0_z = prs_S_x*prs_base_frame_xz + prs_S_y*prs_base_frame_yz +
-            prs_S_z*prs_base_frame_zz;
+        values_prs v;
+        stage_prs_X(m, w, i, j, s, X, &v);
+        stage_prs_V_X(m, w, i, j, V, &v);
+        stage_prs_Z_dynamics(w, j, V, &v);
+        /* (prs-qd_2) rate of joint 2 */
+        const real prs_qd_2_t = -1/v.prs_v_2_in_axes0_y;
         const real prs_base_frame_xy = m->prs_base_frame_xy[i];
         const real prs_base_frame_yy = m->prs_base_frame_yy[i];
         const real prs_base_frame_zy = m->prs_base_frame_zy[i];
-        const real prs_S_in_axes0_y = prs_S_x*prs_base_frame_xy + prs_S_y*prs_base_frame_yy +
-            prs_S_z*prs_base_frame_zy;
-        /* (prs-disc_1) discriminant of the distance equation */
-        const real prs_disc_1_t = prs_S_x*prs_S_x + prs_S_y*prs_S_y + prs_S_z*prs_S_z;
-        const real prs_size_t = m->prs_size_t[i];
-        const real prs_disc_1 = prs_S_in_axes0_x*prs_S_in_axes0_x +
-            prs_S_in_axes0_z*prs_S_in_axes0_z + prs_size_t - prs_disc_1_t;
-        /* (prs-x_2) from the origin of joint 2 to the connection point */
-        const real prs_branch_1 = m->prs_branch_1[i];
-        const real prs_x_2_in_axes0_x = -prs_branch_1*root(prs_disc_1);
-        /* (prs-rho2_2) squared amplitude */
-        const real prs_rho2_2 = prs_size_t*(prs_S_in_axes0_y*prs_S_in_axes0_y +
-            prs_x_2_in_axes0_x*prs_x_2_in_axes0_x);
-        /* (prs-c_2) cosine of the angle of joint 2 from its reference direction */
-        const real prs_c_2_t = 1/(root(prs_rho2_2));
-        const real prs_platform_joint_offset_x = m->prs_platform_joint_offset_x[i];
-        const real prs_c_2 = prs_c_2_t*prs_platform_joint_offset_x*prs_x_2_in_axes0_x;
-        /* (prs-s_2) sine of the angle of joint 2 from its reference direction */
-        const real prs_s_2 = prs_S_in_axes0_y*prs_c_2_t*prs_platform_joint_offset_x;
-        /* (prs-S_dot) velocity of the connection point */
-        const real omega_y = s[16*w + j];
-        const real omega_z = s[17*w + j];
-        const real prs_S_dot_t = omega_y*prs_q_z - omega_z*prs_q_y;
-        const real omega_x = s[15*w + j];
-        const real prs_S_dot_t_2 = omega_z*prs_q_x - omega_x*prs_q_z;
-        const real prs_S_dot_t_3 = omega_x*prs_q_y - omega_y*prs_q_x;
-        const real t_dot_x = s[12*w + j];
-        const real prs_S_dot_x = prs_S_dot_t + t_dot_x;
-        const real t_dot_y = s[13*w + j];
-        const real prs_S_dot_y = prs_S_dot_t_2 + t_dot_y;
-        const real t_dot_z = s[14*w + j];
-        const real prs_S_dot_z = prs_S_dot_t_3 + t_dot_z;
-        /* (prs-v_2) velocity of the connection point per rate of joint 2 */
-        const real prs_v_2_t = -prs_c_2*prs_platform_joint_offset_x;
-        /* (prs-qd_2) rate of joint 2 */
-        const real inv_prs_v_2_t = 1/prs_v_2_t;
-        const real prs_qd_2_t = inv_prs_v_2_t*(prs_S_dot_x*prs_base_frame_xy +
-            prs_S_dot_y*prs_base_frame_yy + prs_S_dot_z*prs_base_frame_zy);
+        const real prs_qd_2_t_2 = prs_qd_2_t*(v.prs_S_dot_x*prs_base_frame_xy +
+            v.prs_S_dot_y*prs_base_frame_yy + v.prs_S_dot_z*prs_base_frame_zy);
         /* (prs-W_2) centripetal tensor of link 2 */
-        const real prs_W_2_t = prs_qd_2_t*prs_qd_2_t;
-        /* (prs-u_1) centripetal acceleration of the connection point */
-        const real axis_y_prs_axes2_x = prs_base_frame_xy*prs_c_2 - prs_base_frame_xx*prs_s_2;
-        const real axis_y_prs_axes2_y = prs_base_frame_yy*prs_c_2 - prs_base_frame_yx*prs_s_2;
-        const real axis_y_prs_axes2_z = prs_base_frame_zy*prs_c_2 - prs_base_frame_zx*prs_s_2;
-        const real prs_u_1_x = omega_y*prs_S_dot_t_3 - omega_z*prs_S_dot_t_2;
-        const real prs_u_1_y = omega_z*prs_S_dot_t - omega_x*prs_S_dot_t_3;
-        const real prs_u_1_z = omega_x*prs_S_dot_t_2 - omega_y*prs_S_dot_t;
-        const real prs_u_1_in_axes2_y = axis_y_prs_axes2_x*prs_u_1_x +
-            axis_y_prs_axes2_y*prs_u_1_y + axis_y_prs_axes2_z*prs_u_1_z;
+        const real prs_W_2_t = prs_qd_2_t_2*prs_qd_2_t_2;
         /* (prs-rel_o) remainder without the acceleration in: acceleration of the connection point left to
            the joint accelerations */
-        const real axis_x_prs_axes2_x = prs_base_frame_xx*prs_c_2 + prs_base_frame_xy*prs_s_2;
-        const real axis_x_prs_axes2_y = prs_base_frame_yx*prs_c_2 + prs_base_frame_yy*prs_s_2;
-        const real axis_x_prs_axes2_z = prs_base_frame_zx*prs_c_2 + prs_base_frame_zy*prs_s_2;
-        const real prs_rel_o_in_axes2_x = axis_x_prs_axes2_x*prs_u_1_x +
-            axis_x_prs_axes2_y*prs_u_1_y + axis_x_prs_axes2_z*prs_u_1_z +
-            prs_platform_joint_offset_x*prs_qd_2_t*prs_qd_2_t;
+        const real prs_platform_joint_offset_x = m->prs_platform_joint_offset_x[i];
+        const real prs_rel_o_in_axes2_x = v.axis_x_prs_axes2_x*v.prs_u_1_x +
+            v.axis_x_prs_axes2_y*v.prs_u_1_y + v.axis_x_prs_axes2_z*v.prs_u_1_z +
+            prs_platform_joint_offset_x*prs_qd_2_t_2*prs_qd_2_t_2;
         /* (prs-qdd_1_o) remainder without the acceleration in: acceleration of joint 1 */
-        const real prs_d_3_in_axes0_y = prs_platform_joint_offset_x*prs_s_2;
-        const real prs_qdd_1_o_t = inv_prs_v_2_t*(prs_c_2*prs_u_1_in_axes2_y +
-            prs_rel_o_in_axes2_x*prs_s_2);
-        const real prs_qdd_1_o = prs_c_2*prs_rel_o_in_axes2_x - prs_d_3_in_axes0_y*prs_qdd_1_o_t -
-            prs_s_2*prs_u_1_in_axes2_y;
+        const real prs_qdd_1_o_t = prs_qd_2_t*(v.prs_c_2*v.prs_u_1_in_axes2_y +
+            prs_rel_o_in_axes2_x*v.prs_s_2);
+        const real prs_qdd_1_o = v.prs_c_2*prs_rel_o_in_axes2_x +
+            prs_qdd_1_o_t*v.prs_v_2_in_axes0_x - v.prs_s_2*v.prs_u_1_in_axes2_y;
         /* (prs-acc_1_o) remainder without the acceleration in: acceleration of the reference point of
            link 1, less gravity */
         const real prs_g_in_axes0_x = m->prs_g_in_axes0_x[i];
@@ -2657,10 +2632,10 @@ INLINE void Z_legs_prs(const prepared *m, size_t w, size_t leg, size_t legs, con
         /* (prs-acc_2_o) remainder without the acceleration in: acceleration of the reference point of
            link 2, less gravity */
         const real prs_g_in_axes0_y = m->prs_g_in_axes0_y[i];
-        const real prs_acc_2_o_in_axes2_x = prs_c_2*prs_qdd_1_o - prs_c_2*prs_g_in_axes0_x -
-            prs_g_in_axes0_y*prs_s_2;
-        const real prs_acc_2_o_in_axes2_y = prs_g_in_axes0_x*prs_s_2 - prs_c_2*prs_g_in_axes0_y -
-            prs_qdd_1_o*prs_s_2;
+        const real prs_acc_2_o_in_axes2_x = v.prs_c_2*prs_qdd_1_o - v.prs_c_2*prs_g_in_axes0_x -
+            prs_g_in_axes0_y*v.prs_s_2;
+        const real prs_acc_2_o_in_axes2_y = prs_g_in_axes0_x*v.prs_s_2 -
+            v.prs_c_2*prs_g_in_axes0_y - prs_qdd_1_o*v.prs_s_2;
         /* (prs-f_2_o) remainder without the acceleration in: inertia force of link 2 less its weight */
         const real prs_h_2_in_spec2_x = m->prs_h_2_in_spec2_x[i];
         const real prs_h_2_in_spec2_y = m->prs_h_2_in_spec2_y[i];
@@ -2678,24 +2653,24 @@ INLINE void Z_legs_prs(const prepared *m, size_t w, size_t leg, size_t legs, con
            the last link left out */
         const real prs_link1_mass = m->prs_link1_mass[i];
         const real prs_T_1_o_in_axes0_x = prs_acc_1_o_in_axes0_x*prs_link1_mass +
-            prs_c_2*prs_f_2_o_in_axes2_x - prs_f_2_o_in_axes2_y*prs_s_2;
+            v.prs_c_2*prs_f_2_o_in_axes2_x - prs_f_2_o_in_axes2_y*v.prs_s_2;
         /* (prs-G_o) remainder without the acceleration in: force at the connection point that balances
            the leg's inertia and weight along all degrees of freedom */
-        const real prs_G_o_t = inv_prs_v_2_t*(prs_mu_2_o_in_axes2_z +
-            prs_T_1_o_in_axes0_x*prs_d_3_in_axes0_y);
-        const real prs_G_o_in_axes2_x = prs_T_1_o_in_axes0_x*prs_c_2 - prs_G_o_t*prs_s_2;
-        const real prs_G_o_in_axes2_y = -prs_G_o_t*prs_c_2 - prs_T_1_o_in_axes0_x*prs_s_2;
+        const real prs_G_o_t = prs_qd_2_t*(prs_mu_2_o_in_axes2_z -
+            prs_T_1_o_in_axes0_x*v.prs_v_2_in_axes0_x);
+        const real prs_G_o_in_axes2_x = prs_T_1_o_in_axes0_x*v.prs_c_2 - prs_G_o_t*v.prs_s_2;
+        const real prs_G_o_in_axes2_y = -prs_G_o_t*v.prs_c_2 - prs_T_1_o_in_axes0_x*v.prs_s_2;
         /* (prs-U) velocity and gravity terms of the leg force */
-        const real prs_U_x = axis_x_prs_axes2_x*prs_G_o_in_axes2_x +
-            axis_y_prs_axes2_x*prs_G_o_in_axes2_y;
-        const real prs_U_y = axis_x_prs_axes2_y*prs_G_o_in_axes2_x +
-            axis_y_prs_axes2_y*prs_G_o_in_axes2_y;
-        const real prs_U_z = axis_x_prs_axes2_z*prs_G_o_in_axes2_x +
-            axis_y_prs_axes2_z*prs_G_o_in_axes2_y;
+        const real prs_U_x = v.axis_x_prs_axes2_x*prs_G_o_in_axes2_x +
+            v.axis_y_prs_axes2_x*prs_G_o_in_axes2_y;
+        const real prs_U_y = v.axis_x_prs_axes2_y*prs_G_o_in_axes2_x +
+            v.axis_y_prs_axes2_y*prs_G_o_in_axes2_y;
+        const real prs_U_z = v.axis_x_prs_axes2_z*prs_G_o_in_axes2_x +
+            v.axis_y_prs_axes2_z*prs_G_o_in_axes2_y;
         /* (Z_a) rotational part of Z */
-        const real prs_Z_a_t = prs_U_z*prs_q_y - prs_U_y*prs_q_z;
-        const real prs_Z_a_t_2 = prs_U_x*prs_q_z - prs_U_z*prs_q_x;
-        const real prs_Z_a_t_3 = prs_U_y*prs_q_x - prs_U_x*prs_q_y;
+        const real prs_Z_a_t = prs_U_z*v.prs_q_y - prs_U_y*v.prs_q_z;
+        const real prs_Z_a_t_2 = prs_U_x*v.prs_q_z - prs_U_z*v.prs_q_x;
+        const real prs_Z_a_t_3 = prs_U_y*v.prs_q_x - prs_U_x*v.prs_q_y;
         /* (Z_t) translational part of Z */
         gather(&terms[0*count + k], add, prs_U_x);  /* Z_t_x_of_legs */
         gather(&terms[1*count + k], add, prs_U_y);  /* Z_t_y_of_legs */
@@ -2706,9 +2681,9 @@ INLINE void Z_legs_prs(const prepared *m, size_t w, size_t leg, size_t legs, con
         gather(&terms[5*count + k], add, prs_Z_a_t_3);  /* Z_a_z_of_legs */
         const real prs_root_2_t = m->prs_root_2_t[i];
         const real prs_size = m->prs_size[i];
-        o[0*count + k] = UNLESS(prs_disc_1 >= 0);
-        o[1*count + k] = UNLESS(magnitude(prs_rho2_2) > TOLERANCE*TOLERANCE*prs_root_2_t) +
-            UNLESS(magnitude(prs_v_2_t) > TOLERANCE*prs_size);
+        o[0*count + k] = UNLESS(v.prs_disc_1 >= 0);
+        o[1*count + k] = UNLESS(magnitude(v.prs_rho2_2) > TOLERANCE*TOLERANCE*prs_root_2_t) +
+            UNLESS(magnitude(v.prs_v_2_in_axes0_y) > TOLERANCE*prs_size);
     }
 }
 
@@ -2724,24 +2699,24 @@ INLINE void Z_after(size_t w, const real *s, const real *sums, real *Z, verdict 
 {
     for (size_t k = 0; k < w; ++k) {
         /* (Z_t) translational part of Z */
-        const real Z_p_x = s[18*w + k];
+        const real Z_p_x = s[9*w + k];
         const real Z_t_x_of_legs = sums[0*w + k];
         const real Z_t_x = Z_p_x + Z_t_x_of_legs;
-        const real Z_p_y = s[19*w + k];
+        const real Z_p_y = s[10*w + k];
         const real Z_t_y_of_legs = sums[1*w + k];
         const real Z_t_y = Z_p_y + Z_t_y_of_legs;
-        const real Z_p_z = s[20*w + k];
+        const real Z_p_z = s[11*w + k];
         const real Z_t_z_of_legs = sums[2*w + k];
         const real Z_t_z = Z_p_z + Z_t_z_of_legs;
         /* (Z_a) rotational part of Z */
         const real Z_a_x_of_legs = sums[3*w + k];
-        const real Z_q_x = s[21*w + k];
+        const real Z_q_x = s[12*w + k];
         const real Z_a_x = Z_a_x_of_legs + Z_q_x;
         const real Z_a_y_of_legs = sums[4*w + k];
-        const real Z_q_y = s[22*w + k];
+        const real Z_q_y = s[13*w + k];
         const real Z_a_y = Z_a_y_of_legs + Z_q_y;
         const real Z_a_z_of_legs = sums[5*w + k];
-        const real Z_q_z = s[23*w + k];
+        const real Z_q_z = s[14*w + k];
         const real Z_a_z = Z_a_z_of_legs + Z_q_z;
         /* (Z_t) translational part of Z */
         Z[0*w + k] = Z_t_x;
@@ -2757,12 +2732,10 @@ INLINE void Z_after(size_t w, const real *s, const real *sums, real *Z, verdict 
 
 INLINE void Z_run(const prepared *m, const real *X, const real *V, real *Z, verdict *t)
 {
-    real s[24] = {0};
-    real sums[6] = {0};
-    real terms_prs[6*LEGS(LEGS_OF_prs)] = {0};
-    real o_prs[2*LEGS(LEGS_OF_prs)] = {0};
+    real s[15] = {0}, sums[6] = {0};
+    real terms_prs[6*LEGS(LEGS_OF_prs)] = {0}, o_prs[2*LEGS(LEGS_OF_prs)] = {0};
     Z_before(m, 1, X, V, s, t);
-    Z_legs_prs(m, 1, 0, 1, s, 0, LEGS(LEGS_OF_prs), 0, terms_prs, o_prs);
+    Z_legs_prs(m, 1, 0, 1, s, 0, LEGS(LEGS_OF_prs), 0, X, V, terms_prs, o_prs);
     for (size_t leg = 0; leg < LEGS_OF_prs; ++leg) {
         Z_place_prs(1, LEGS(LEGS_OF_prs), o_prs, leg, t);
     }
@@ -2774,172 +2747,60 @@ INLINE void Z_run(const prepared *m, const real *X, const real *V, real *Z, verd
 
 INLINE void Z_run_lanes(const prepared *m, const real *X, const real *V, real *Z, verdict *t)
 {
-    real s[24*LANES];
-    real sums[6*LANES];
+    real s[15*LANES], sums[6*LANES];
     real o_prs[2*LANES];
     Z_before(m, LANES, X, V, s, t);
     clear(sums, 6*LANES);
     for (size_t leg = 0; leg < LEGS_OF_prs; ++leg) {
-        Z_legs_prs(m, LANES, leg, 0, s, 1, LANES, 1, sums, o_prs);
+        Z_legs_prs(m, LANES, leg, 0, s, 1, LANES, 1, X, V, sums, o_prs);
         Z_place_prs(LANES, LANES, o_prs, 0, t);
     }
     Z_after(LANES, s, sums, Z, t);
 }
 
 /* ---- H ---- */
-INLINE void H_before(size_t w, const real *X, real *s, verdict *t)
+INLINE void H_before(const prepared *m, size_t w, const real *X, real *s, verdict *t)
 {
     for (size_t k = 0; k < w; ++k) {
-        /* X: named entries */
-        const real X_0 = X[0*w + k];
-        const real t_x = X_0;
-        const real X_1 = X[1*w + k];
-        const real t_y = X_1;
-        const real X_2 = X[2*w + k];
-        const real t_z = X_2;
-        const real X_3 = X[3*w + k];
-        const real X_4 = X[4*w + k];
-        const real X_5 = X[5*w + k];
-        const real X_6 = X[6*w + k];
-        const real quaternion_norm2 = X_3*X_3 + X_4*X_4 + X_5*X_5 + X_6*X_6;
-        const real quaternion_scale = 2/quaternion_norm2;
-        const real quaternion_sx = X_3*quaternion_scale;
-        const real quaternion_sy = X_4*quaternion_scale;
-        const real quaternion_sz = X_5*quaternion_scale;
-        const real quaternion_wx = X_6*quaternion_sx;
-        const real quaternion_wy = X_6*quaternion_sy;
-        const real quaternion_wz = X_6*quaternion_sz;
-        const real quaternion_xx = X_3*quaternion_sx;
-        const real quaternion_xy = X_3*quaternion_sy;
-        const real quaternion_xz = X_3*quaternion_sz;
-        const real quaternion_yy = X_4*quaternion_sy;
-        const real quaternion_yz = X_4*quaternion_sz;
-        const real quaternion_zz = X_5*quaternion_sz;
-        const real R_xx = 1 - quaternion_yy - quaternion_zz;
-        const real R_xy = quaternion_xy - quaternion_wz;
-        const real R_xz = quaternion_wy + quaternion_xz;
-        const real R_yx = quaternion_wz + quaternion_xy;
-        const real R_yy = 1 - quaternion_xx - quaternion_zz;
-        const real R_yz = quaternion_yz - quaternion_wx;
-        const real R_zx = quaternion_xz - quaternion_wy;
-        const real R_zy = quaternion_wx + quaternion_yz;
-        const real R_zz = 1 - quaternion_xx - quaternion_yy;
-        s[0*w + k] = t_x;
-        s[1*w + k] = t_y;
-        s[2*w + k] = t_z;
-        s[3*w + k] = R_xx;
-        s[4*w + k] = R_xy;
-        s[5*w + k] = R_xz;
-        s[6*w + k] = R_yx;
-        s[7*w + k] = R_yy;
-        s[8*w + k] = R_yz;
-        s[9*w + k] = R_zx;
-        s[10*w + k] = R_zy;
-        s[11*w + k] = R_zz;
-        t->invalid[k] += UNLESS(is_finite(quaternion_scale)) + UNLESS(quaternion_scale > 0);
+        values v;
+        stage_X(m, w, k, X, &v);
+        s[0*w + k] = v.R_xx;
+        s[1*w + k] = v.R_xy;
+        s[2*w + k] = v.R_xz;
+        s[3*w + k] = v.R_yx;
+        s[4*w + k] = v.R_yy;
+        s[5*w + k] = v.R_yz;
+        s[6*w + k] = v.R_zx;
+        s[7*w + k] = v.R_zy;
+        s[8*w + k] = v.R_zz;
+        t->invalid[k] += UNLESS(is_finite(v.quaternion_scale)) + UNLESS(v.quaternion_scale > 0);
     }
 }
 
 INLINE void H_legs_prs(const prepared *m, size_t w, size_t leg, size_t legs, const real *s, size_t
-    states, size_t count, real *o)
+    states, size_t count, const real *X, real *o)
 {
     for (size_t k = 0; k < count; ++k) {
         const size_t i = leg + legs*k;
         const size_t j = states*k;
-        /* (prs-S) from the base point to the connection point */
-        const real R_xx = s[3*w + j];
-        const real R_xy = s[4*w + j];
-        const real R_xz = s[5*w + j];
-        const real prs_platform_point_x = m->prs_platform_point_x[i];
-        const real prs_platform_point_y = m->prs_platform_point_y[i];
-        const real prs_platform_point_z = m->prs_platform_point_z[i];
-        const real prs_q_x = R_xx*prs_platform_point_x + R_xy*prs_platform_point_y +
-            R_xz*prs_platform_point_z;
-        const real R_yx = s[6*w + j];
-        const real R_yy = s[7*w + j];
-        const real R_yz = s[8*w + j];
-        const real prs_q_y = R_yx*prs_platform_point_x + R_yy*prs_platform_point_y +
-            R_yz*prs_platform_point_z;
-        const real R_zx = s[9*w + j];
-        const real R_zy = s[10*w + j];
-        const real R_zz = s[11*w + j];
-        const real prs_q_z = R_zx*prs_platform_point_x + R_zy*prs_platform_point_y +
-            R_zz*prs_platform_point_z;
-        const real prs_base_point_x = m->prs_base_point_x[i];
-        const real t_x = s[0*w + j];
-        const real prs_S_x = prs_q_x + t_x - prs_base_point_x;
-        const real prs_base_point_y = m->prs_base_point_y[i];
-        const real t_y = s[1*w + j];
-        const real prs_S_y = prs_q_y + t_y - prs_base_point_y;
-        const real prs_base_point_z = m->prs_base_point_z[i];
-        const real t_z = s[2*w + j];
-        const real prs_S_z = prs_q_z + t_z - prs_base_point_z;
-        const real prs_base_frame_xx = m->prs_base_frame_xx[i];
-        const real prs_base_frame_yx = m->prs_base_frame_yx[i];
-        const real prs_base_frame_zx = m->prs_base_frame_zx[i];
-        const real prs_S_in_axes0_x = prs_S_x*prs_base_frame_xx + prs_S_y*prs_base_frame_yx +
-            prs_S_z*prs_base_frame_zx;
-        const real prs_base_frame_xz = m->prs_base_frame_xz[i];
-        const real prs_base_frame_yz = m->prs_base_frame_yz[i];
-        const real prs_base_frame_zz = m->prs_base_frame_zz[i];
-        const real prs_S_in_axes0_z = prs_S_x*prs_base_frame_xz + prs_S_y*prs_base_frame_yz +
-            prs_S_z*prs_base_frame_zz;
-        const real prs_base_frame_xy = m->prs_base_frame_xy[i];
-        const real prs_base_frame_yy = m->prs_base_frame_yy[i];
-        const real prs_base_frame_zy = m->prs_base_frame_zy[i];
-        const real prs_S_in_axes0_y = prs_S_x*prs_base_frame_xy + prs_S_y*prs_base_frame_yy +
-            prs_S_z*prs_base_frame_zy;
-        /* (prs-disc_1) discriminant of the distance equation */
-        const real prs_disc_1_t = prs_S_x*prs_S_x + prs_S_y*prs_S_y + prs_S_z*prs_S_z;
-        const real prs_size_t = m->prs_size_t[i];
-        const real prs_disc_1 = prs_S_in_axes0_x*prs_S_in_axes0_x +
-            prs_S_in_axes0_z*prs_S_in_axes0_z + prs_size_t - prs_disc_1_t;
-        /* (prs-x_2) from the origin of joint 2 to the connection point */
-        const real prs_branch_1 = m->prs_branch_1[i];
-        const real prs_x_2_in_axes0_x = -prs_branch_1*root(prs_disc_1);
-        /* (prs-rho2_2) squared amplitude */
-        const real prs_rho2_2 = prs_size_t*(prs_S_in_axes0_y*prs_S_in_axes0_y +
-            prs_x_2_in_axes0_x*prs_x_2_in_axes0_x);
-        /* (prs-c_2) cosine of the angle of joint 2 from its reference direction */
-        const real prs_c_2_t = 1/(root(prs_rho2_2));
-        const real prs_platform_joint_offset_x = m->prs_platform_joint_offset_x[i];
-        const real prs_c_2 = prs_c_2_t*prs_platform_joint_offset_x*prs_x_2_in_axes0_x;
-        /* (prs-s_2) sine of the angle of joint 2 from its reference direction */
-        const real prs_s_2 = prs_S_in_axes0_y*prs_c_2_t*prs_platform_joint_offset_x;
-        /* (prs-v_2) velocity of the connection point per rate of joint 2 */
-        const real prs_v_2_t = -prs_c_2*prs_platform_joint_offset_x;
+        values_prs v;
+        stage_prs_X(m, w, i, j, s, X, &v);
+        stage_prs_H_condition(m, i, &v);
         /* (prs-w_1) reciprocal vector 1 */
-        const real prs_w_1_t = prs_platform_joint_offset_x*prs_s_2/prs_v_2_t;
-        const real prs_w_1_in_axes2_x = prs_c_2 - prs_s_2*prs_w_1_t;
-        const real prs_w_1_in_axes2_y = -prs_s_2 - prs_c_2*prs_w_1_t;
-        const real prs_w_1_x = prs_w_1_in_axes2_x*(prs_base_frame_xx*prs_c_2 +
-            prs_base_frame_xy*prs_s_2) + prs_w_1_in_axes2_y*(prs_base_frame_xy*prs_c_2 -
-            prs_base_frame_xx*prs_s_2);
-        const real prs_w_1_y = prs_w_1_in_axes2_x*(prs_base_frame_yx*prs_c_2 +
-            prs_base_frame_yy*prs_s_2) + prs_w_1_in_axes2_y*(prs_base_frame_yy*prs_c_2 -
-            prs_base_frame_yx*prs_s_2);
-        const real prs_w_1_z = prs_w_1_in_axes2_x*(prs_base_frame_zx*prs_c_2 +
-            prs_base_frame_zy*prs_s_2) + prs_w_1_in_axes2_y*(prs_base_frame_zy*prs_c_2 -
-            prs_base_frame_zx*prs_s_2);
+        o[0*count + k] = v.prs_w_1_x;
+        o[1*count + k] = v.prs_w_1_y;
+        o[2*count + k] = v.prs_w_1_z;
         /* (prs-H_a_1) moment of the column's unit force about the platform origin */
-        const real prs_H_a_1_x = prs_q_y*prs_w_1_z - prs_q_z*prs_w_1_y;
-        const real prs_H_a_1_y = prs_q_z*prs_w_1_x - prs_q_x*prs_w_1_z;
-        const real prs_H_a_1_z = prs_q_x*prs_w_1_y - prs_q_y*prs_w_1_x;
-        /* (prs-w_1) reciprocal vector 1 */
-        o[0*count + k] = prs_w_1_x;
-        o[1*count + k] = prs_w_1_y;
-        o[2*count + k] = prs_w_1_z;
-        /* (prs-H_a_1) moment of the column's unit force about the platform origin */
-        o[3*count + k] = prs_H_a_1_x;
-        o[4*count + k] = prs_H_a_1_y;
-        o[5*count + k] = prs_H_a_1_z;
-        o[8*count + k] = (prs_w_1_x + (prs_w_1_y + prs_w_1_z)) + (prs_H_a_1_x + (prs_H_a_1_y +
-            prs_H_a_1_z));
+        o[3*count + k] = v.prs_H_a_1_x;
+        o[4*count + k] = v.prs_H_a_1_y;
+        o[5*count + k] = v.prs_H_a_1_z;
+        o[8*count + k] = (v.prs_w_1_x + (v.prs_w_1_y + v.prs_w_1_z)) + (v.prs_H_a_1_x +
+            (v.prs_H_a_1_y + v.prs_H_a_1_z));
         const real prs_root_2_t = m->prs_root_2_t[i];
         const real prs_size = m->prs_size[i];
-        o[6*count + k] = UNLESS(prs_disc_1 >= 0);
-        o[7*count + k] = UNLESS(magnitude(prs_rho2_2) > TOLERANCE*TOLERANCE*prs_root_2_t) +
-            UNLESS(magnitude(prs_v_2_t) > TOLERANCE*prs_size);
+        o[6*count + k] = UNLESS(v.prs_disc_1 >= 0);
+        o[7*count + k] = UNLESS(magnitude(v.prs_rho2_2) > TOLERANCE*TOLERANCE*prs_root_2_t) +
+            UNLESS(magnitude(v.prs_v_2_in_axes0_y) > TOLERANCE*prs_size);
     }
 }
 
@@ -2947,7 +2808,7 @@ INLINE void H_place_prs(size_t w, size_t count, const real *o, size_t leg, size_
     verdict *t)
 {
     for (size_t k = 0; k < w; ++k) {
-        H[(0*NU + leg)*w + k] = o[0*count + first + k];
+        H[leg*w + k] = o[0*count + first + k];
         H[(NU + leg)*w + k] = o[1*count + first + k];
         H[(2*NU + leg)*w + k] = o[2*count + first + k];
         H[(3*NU + leg)*w + k] = o[3*count + first + k];
@@ -2961,10 +2822,10 @@ INLINE void H_place_prs(size_t w, size_t count, const real *o, size_t leg, size_
 
 INLINE void H_run(const prepared *m, const real *X, real *H, verdict *t)
 {
-    real s[12] = {0};
+    real s[9] = {0};
     real o_prs[9*LEGS(LEGS_OF_prs)] = {0};
-    H_before(1, X, s, t);
-    H_legs_prs(m, 1, 0, 1, s, 0, LEGS(LEGS_OF_prs), o_prs);
+    H_before(m, 1, X, s, t);
+    H_legs_prs(m, 1, 0, 1, s, 0, LEGS(LEGS_OF_prs), X, o_prs);
     for (size_t leg = 0; leg < LEGS_OF_prs; ++leg) {
         H_place_prs(1, LEGS(LEGS_OF_prs), o_prs, leg, leg, H, t);
     }
@@ -2972,101 +2833,55 @@ INLINE void H_run(const prepared *m, const real *X, real *H, verdict *t)
 
 INLINE void H_run_lanes(const prepared *m, const real *X, real *H, verdict *t)
 {
-    real s[12*LANES];
+    real s[9*LANES];
     real o_prs[9*LANES];
-    H_before(LANES, X, s, t);
+    H_before(m, LANES, X, s, t);
     for (size_t leg = 0; leg < LEGS_OF_prs; ++leg) {
-        H_legs_prs(m, LANES, leg, 0, s, 1, LANES, o_prs);
+        H_legs_prs(m, LANES, leg, 0, s, 1, LANES, X, o_prs);
         H_place_prs(LANES, LANES, o_prs, leg, 0, H, t);
     }
 }
 
 /* ---- Hk ---- */
-INLINE void Hk_before(size_t w, const real *X, real *s, verdict *t)
+INLINE void Hk_before(const prepared *m, size_t w, const real *X, real *s, verdict *t)
 {
     for (size_t k = 0; k < w; ++k) {
-        /* X: named entries */
-        const real X_3 = X[3*w + k];
-        const real X_4 = X[4*w + k];
-        const real X_5 = X[5*w + k];
-        const real X_6 = X[6*w + k];
-        const real quaternion_norm2 = X_3*X_3 + X_4*X_4 + X_5*X_5 + X_6*X_6;
-        const real quaternion_scale = 2/quaternion_norm2;
-        const real quaternion_sx = X_3*quaternion_scale;
-        const real quaternion_sy = X_4*quaternion_scale;
-        const real quaternion_sz = X_5*quaternion_scale;
-        const real quaternion_wx = X_6*quaternion_sx;
-        const real quaternion_wy = X_6*quaternion_sy;
-        const real quaternion_wz = X_6*quaternion_sz;
-        const real quaternion_xx = X_3*quaternion_sx;
-        const real quaternion_xy = X_3*quaternion_sy;
-        const real quaternion_xz = X_3*quaternion_sz;
-        const real quaternion_yy = X_4*quaternion_sy;
-        const real quaternion_yz = X_4*quaternion_sz;
-        const real quaternion_zz = X_5*quaternion_sz;
-        const real R_xx = 1 - quaternion_yy - quaternion_zz;
-        const real R_xy = quaternion_xy - quaternion_wz;
-        const real R_xz = quaternion_wy + quaternion_xz;
-        const real R_yx = quaternion_wz + quaternion_xy;
-        const real R_yy = 1 - quaternion_xx - quaternion_zz;
-        const real R_yz = quaternion_yz - quaternion_wx;
-        const real R_zx = quaternion_xz - quaternion_wy;
-        const real R_zy = quaternion_wx + quaternion_yz;
-        const real R_zz = 1 - quaternion_xx - quaternion_yy;
-        s[0*w + k] = R_xx;
-        s[1*w + k] = R_xy;
-        s[2*w + k] = R_xz;
-        s[3*w + k] = R_yx;
-        s[4*w + k] = R_yy;
-        s[5*w + k] = R_yz;
-        s[6*w + k] = R_zx;
-        s[7*w + k] = R_zy;
-        s[8*w + k] = R_zz;
-        t->invalid[k] += UNLESS(is_finite(quaternion_scale)) + UNLESS(quaternion_scale > 0);
+        values v;
+        stage_X(m, w, k, X, &v);
+        s[0*w + k] = v.R_xx;
+        s[1*w + k] = v.R_xy;
+        s[2*w + k] = v.R_xz;
+        s[3*w + k] = v.R_yx;
+        s[4*w + k] = v.R_yy;
+        s[5*w + k] = v.R_yz;
+        s[6*w + k] = v.R_zx;
+        s[7*w + k] = v.R_zy;
+        s[8*w + k] = v.R_zz;
+        t->invalid[k] += UNLESS(is_finite(v.quaternion_scale)) + UNLESS(v.quaternion_scale > 0);
     }
 }
 
 INLINE void Hk_legs_prs(const prepared *m, size_t w, size_t leg, size_t legs, const real *s,
-    size_t states, size_t count, real *o)
+    size_t states, size_t count, const real *X, real *o)
 {
     for (size_t k = 0; k < count; ++k) {
         const size_t i = leg + legs*k;
         const size_t j = states*k;
-        /* (prs-Hk_a_1) moment of the column's unit force about the platform origin */
-        const real R_xx = s[0*w + j];
-        const real R_xy = s[1*w + j];
-        const real R_xz = s[2*w + j];
-        const real prs_platform_point_x = m->prs_platform_point_x[i];
-        const real prs_platform_point_y = m->prs_platform_point_y[i];
-        const real prs_platform_point_z = m->prs_platform_point_z[i];
-        const real prs_q_x = R_xx*prs_platform_point_x + R_xy*prs_platform_point_y +
-            R_xz*prs_platform_point_z;
-        const real R_yx = s[3*w + j];
-        const real R_yy = s[4*w + j];
-        const real R_yz = s[5*w + j];
-        const real prs_q_y = R_yx*prs_platform_point_x + R_yy*prs_platform_point_y +
-            R_yz*prs_platform_point_z;
-        const real R_zx = s[6*w + j];
-        const real R_zy = s[7*w + j];
-        const real R_zz = s[8*w + j];
-        const real prs_q_z = R_zx*prs_platform_point_x + R_zy*prs_platform_point_y +
-            R_zz*prs_platform_point_z;
-        const real prs_base_frame_yz = m->prs_base_frame_yz[i];
-        const real prs_base_frame_zz = m->prs_base_frame_zz[i];
-        const real prs_Hk_a_1_x = prs_base_frame_zz*prs_q_y - prs_base_frame_yz*prs_q_z;
-        const real prs_base_frame_xz = m->prs_base_frame_xz[i];
-        const real prs_Hk_a_1_y = prs_base_frame_xz*prs_q_z - prs_base_frame_zz*prs_q_x;
-        const real prs_Hk_a_1_z = prs_base_frame_yz*prs_q_x - prs_base_frame_xz*prs_q_y;
+        values_prs v;
+        stage_prs_X(m, w, i, j, s, X, &v);
         /* (legs_size) rms size of the legs, taken where the platform points coincide */
+        const real prs_base_frame_xz = m->prs_base_frame_xz[i];
         o[0*count + k] = prs_base_frame_xz;
+        const real prs_base_frame_yz = m->prs_base_frame_yz[i];
         o[1*count + k] = prs_base_frame_yz;
+        const real prs_base_frame_zz = m->prs_base_frame_zz[i];
         o[2*count + k] = prs_base_frame_zz;
         /* (prs-Hk_a_1) moment of the column's unit force about the platform origin */
-        o[3*count + k] = prs_Hk_a_1_x;
-        o[4*count + k] = prs_Hk_a_1_y;
-        o[5*count + k] = prs_Hk_a_1_z;
+        o[3*count + k] = v.prs_Hk_a_1_x;
+        o[4*count + k] = v.prs_Hk_a_1_y;
+        o[5*count + k] = v.prs_Hk_a_1_z;
         o[6*count + k] = (prs_base_frame_xz + (prs_base_frame_yz + prs_base_frame_zz)) +
-            (prs_Hk_a_1_x + (prs_Hk_a_1_y + prs_Hk_a_1_z));
+            (v.prs_Hk_a_1_x + (v.prs_Hk_a_1_y + v.prs_Hk_a_1_z));
     }
 }
 
@@ -3074,7 +2889,7 @@ INLINE void Hk_place_prs(size_t w, size_t count, const real *o, size_t leg, size
     *Hk, verdict *t)
 {
     for (size_t k = 0; k < w; ++k) {
-        Hk[(0*NC + leg)*w + k] = o[0*count + first + k];
+        Hk[leg*w + k] = o[0*count + first + k];
         Hk[(NC + leg)*w + k] = o[1*count + first + k];
         Hk[(2*NC + leg)*w + k] = o[2*count + first + k];
         Hk[(3*NC + leg)*w + k] = o[3*count + first + k];
@@ -3088,8 +2903,8 @@ INLINE void Hk_run(const prepared *m, const real *X, real *Hk, verdict *t)
 {
     real s[9] = {0};
     real o_prs[7*LEGS(LEGS_OF_prs)] = {0};
-    Hk_before(1, X, s, t);
-    Hk_legs_prs(m, 1, 0, 1, s, 0, LEGS(LEGS_OF_prs), o_prs);
+    Hk_before(m, 1, X, s, t);
+    Hk_legs_prs(m, 1, 0, 1, s, 0, LEGS(LEGS_OF_prs), X, o_prs);
     for (size_t leg = 0; leg < LEGS_OF_prs; ++leg) {
         Hk_place_prs(1, LEGS(LEGS_OF_prs), o_prs, leg, leg, Hk, t);
     }
@@ -3099,99 +2914,48 @@ INLINE void Hk_run_lanes(const prepared *m, const real *X, real *Hk, verdict *t)
 {
     real s[9*LANES];
     real o_prs[7*LANES];
-    Hk_before(LANES, X, s, t);
+    Hk_before(m, LANES, X, s, t);
     for (size_t leg = 0; leg < LEGS_OF_prs; ++leg) {
-        Hk_legs_prs(m, LANES, leg, 0, s, 1, LANES, o_prs);
+        Hk_legs_prs(m, LANES, leg, 0, s, 1, LANES, X, o_prs);
         Hk_place_prs(LANES, LANES, o_prs, leg, 0, Hk, t);
     }
 }
 
 /* ---- constraint_bias ---- */
-INLINE void constraint_bias_before(size_t w, const real *X, const real *V, real *s, verdict *t)
+INLINE void constraint_bias_before(const prepared *m, size_t w, const real *X, real *s, verdict
+    *t)
 {
     for (size_t k = 0; k < w; ++k) {
-        /* X: named entries */
-        const real X_3 = X[3*w + k];
-        const real X_4 = X[4*w + k];
-        const real X_5 = X[5*w + k];
-        const real X_6 = X[6*w + k];
-        const real quaternion_norm2 = X_3*X_3 + X_4*X_4 + X_5*X_5 + X_6*X_6;
-        const real quaternion_scale = 2/quaternion_norm2;
-        const real quaternion_sx = X_3*quaternion_scale;
-        const real quaternion_sy = X_4*quaternion_scale;
-        const real quaternion_sz = X_5*quaternion_scale;
-        const real quaternion_wx = X_6*quaternion_sx;
-        const real quaternion_wy = X_6*quaternion_sy;
-        const real quaternion_wz = X_6*quaternion_sz;
-        const real quaternion_xx = X_3*quaternion_sx;
-        const real quaternion_xy = X_3*quaternion_sy;
-        const real quaternion_xz = X_3*quaternion_sz;
-        const real quaternion_yy = X_4*quaternion_sy;
-        const real quaternion_yz = X_4*quaternion_sz;
-        const real quaternion_zz = X_5*quaternion_sz;
-        const real R_xx = 1 - quaternion_yy - quaternion_zz;
-        const real R_xy = quaternion_xy - quaternion_wz;
-        const real R_xz = quaternion_wy + quaternion_xz;
-        const real R_yx = quaternion_wz + quaternion_xy;
-        const real R_yy = 1 - quaternion_xx - quaternion_zz;
-        const real R_yz = quaternion_yz - quaternion_wx;
-        const real R_zx = quaternion_xz - quaternion_wy;
-        const real R_zy = quaternion_wx + quaternion_yz;
-        const real R_zz = 1 - quaternion_xx - quaternion_yy;
-        /* V: named entries */
-        const real V_3 = V[3*w + k];
-        const real omega_x = V_3;
-        const real V_4 = V[4*w + k];
-        const real omega_y = V_4;
-        const real V_5 = V[5*w + k];
-        const real omega_z = V_5;
-        s[0*w + k] = R_xx;
-        s[1*w + k] = R_xy;
-        s[2*w + k] = R_xz;
-        s[3*w + k] = R_yx;
-        s[4*w + k] = R_yy;
-        s[5*w + k] = R_yz;
-        s[6*w + k] = R_zx;
-        s[7*w + k] = R_zy;
-        s[8*w + k] = R_zz;
-        s[9*w + k] = omega_x;
-        s[10*w + k] = omega_y;
-        s[11*w + k] = omega_z;
-        t->invalid[k] += UNLESS(is_finite(quaternion_scale)) + UNLESS(quaternion_scale > 0);
+        values v;
+        stage_X(m, w, k, X, &v);
+        s[0*w + k] = v.R_xx;
+        s[1*w + k] = v.R_xy;
+        s[2*w + k] = v.R_xz;
+        s[3*w + k] = v.R_yx;
+        s[4*w + k] = v.R_yy;
+        s[5*w + k] = v.R_yz;
+        s[6*w + k] = v.R_zx;
+        s[7*w + k] = v.R_zy;
+        s[8*w + k] = v.R_zz;
+        t->invalid[k] += UNLESS(is_finite(v.quaternion_scale)) + UNLESS(v.quaternion_scale > 0);
     }
 }
 
 INLINE void constraint_bias_legs_prs(const prepared *m, size_t w, size_t leg, size_t legs, const
-    real *s, size_t states, size_t count, real *o)
+    real *s, size_t states, size_t count, const real *X, const real *V, real *o)
 {
     for (size_t k = 0; k < count; ++k) {
         const size_t i = leg + legs*k;
         const size_t j = states*k;
+        values_prs v;
+        stage_prs_X(m, w, i, j, s, X, &v);
         /* (prs-u_1) centripetal acceleration of the connection point */
-        const real R_xx = s[0*w + j];
-        const real R_xy = s[1*w + j];
-        const real R_xz = s[2*w + j];
-        const real prs_platform_point_x = m->prs_platform_point_x[i];
-        const real prs_platform_point_y = m->prs_platform_point_y[i];
-        const real prs_platform_point_z = m->prs_platform_point_z[i];
-        const real prs_q_x = R_xx*prs_platform_point_x + R_xy*prs_platform_point_y +
-            R_xz*prs_platform_point_z;
-        const real R_yx = s[3*w + j];
-        const real R_yy = s[4*w + j];
-        const real R_yz = s[5*w + j];
-        const real prs_q_y = R_yx*prs_platform_point_x + R_yy*prs_platform_point_y +
-            R_yz*prs_platform_point_z;
-        const real R_zx = s[6*w + j];
-        const real R_zy = s[7*w + j];
-        const real R_zz = s[8*w + j];
-        const real prs_q_z = R_zx*prs_platform_point_x + R_zy*prs_platform_point_y +
-            R_zz*prs_platform_point_z;
-        const real omega_y = s[10*w + j];
-        const real omega_z = s[11*w + j];
-        const real prs_u_1_t = omega_y*prs_q_z - omega_z*prs_q_y;
-        const real omega_x = s[9*w + j];
-        const real prs_u_1_t_2 = omega_z*prs_q_x - omega_x*prs_q_z;
-        const real prs_u_1_t_3 = omega_x*prs_q_y - omega_y*prs_q_x;
+        const real omega_y = V[4*w + j];
+        const real omega_z = V[5*w + j];
+        const real prs_u_1_t = omega_y*v.prs_q_z - omega_z*v.prs_q_y;
+        const real omega_x = V[3*w + j];
+        const real prs_u_1_t_2 = omega_z*v.prs_q_x - omega_x*v.prs_q_z;
+        const real prs_u_1_t_3 = omega_x*v.prs_q_y - omega_y*v.prs_q_x;
         const real prs_base_frame_xz = m->prs_base_frame_xz[i];
         const real prs_base_frame_yz = m->prs_base_frame_yz[i];
         const real prs_base_frame_zz = m->prs_base_frame_zz[i];
@@ -3217,10 +2981,10 @@ INLINE void constraint_bias_place_prs(size_t w, size_t count, const real *o, siz
 INLINE void constraint_bias_run(const prepared *m, const real *X, const real *V, real
     *constraint_bias, verdict *t)
 {
-    real s[12] = {0};
+    real s[9] = {0};
     real o_prs[2*LEGS(LEGS_OF_prs)] = {0};
-    constraint_bias_before(1, X, V, s, t);
-    constraint_bias_legs_prs(m, 1, 0, 1, s, 0, LEGS(LEGS_OF_prs), o_prs);
+    constraint_bias_before(m, 1, X, s, t);
+    constraint_bias_legs_prs(m, 1, 0, 1, s, 0, LEGS(LEGS_OF_prs), X, V, o_prs);
     for (size_t leg = 0; leg < LEGS_OF_prs; ++leg) {
         constraint_bias_place_prs(1, LEGS(LEGS_OF_prs), o_prs, leg, leg, constraint_bias, t);
     }
@@ -3229,11 +2993,11 @@ INLINE void constraint_bias_run(const prepared *m, const real *X, const real *V,
 INLINE void constraint_bias_run_lanes(const prepared *m, const real *X, const real *V, real
     *constraint_bias, verdict *t)
 {
-    real s[12*LANES];
+    real s[9*LANES];
     real o_prs[2*LANES];
-    constraint_bias_before(LANES, X, V, s, t);
+    constraint_bias_before(m, LANES, X, s, t);
     for (size_t leg = 0; leg < LEGS_OF_prs; ++leg) {
-        constraint_bias_legs_prs(m, LANES, leg, 0, s, 1, LANES, o_prs);
+        constraint_bias_legs_prs(m, LANES, leg, 0, s, 1, LANES, X, V, o_prs);
         constraint_bias_place_prs(LANES, LANES, o_prs, leg, 0, constraint_bias, t);
     }
 }
@@ -3243,375 +3007,155 @@ INLINE void required_before(const prepared *m, size_t w, const real *X, const re
     *A, real *s, verdict *t)
 {
     for (size_t k = 0; k < w; ++k) {
-        /* X: named entries */
-        const real X_0 = X[0*w + k];
-        const real t_x = X_0;
-        const real X_1 = X[1*w + k];
-        const real t_y = X_1;
-        const real X_2 = X[2*w + k];
-        const real t_z = X_2;
-        const real X_3 = X[3*w + k];
-        const real X_4 = X[4*w + k];
-        const real X_5 = X[5*w + k];
-        const real X_6 = X[6*w + k];
-        const real quaternion_norm2 = X_3*X_3 + X_4*X_4 + X_5*X_5 + X_6*X_6;
-        const real quaternion_scale = 2/quaternion_norm2;
-        const real quaternion_sx = X_3*quaternion_scale;
-        const real quaternion_sy = X_4*quaternion_scale;
-        const real quaternion_sz = X_5*quaternion_scale;
-        const real quaternion_wx = X_6*quaternion_sx;
-        const real quaternion_wy = X_6*quaternion_sy;
-        const real quaternion_wz = X_6*quaternion_sz;
-        const real quaternion_xx = X_3*quaternion_sx;
-        const real quaternion_xy = X_3*quaternion_sy;
-        const real quaternion_xz = X_3*quaternion_sz;
-        const real quaternion_yy = X_4*quaternion_sy;
-        const real quaternion_yz = X_4*quaternion_sz;
-        const real quaternion_zz = X_5*quaternion_sz;
-        const real R_xx = 1 - quaternion_yy - quaternion_zz;
-        const real R_xy = quaternion_xy - quaternion_wz;
-        const real R_xz = quaternion_wy + quaternion_xz;
-        const real R_yx = quaternion_wz + quaternion_xy;
-        const real R_yy = 1 - quaternion_xx - quaternion_zz;
-        const real R_yz = quaternion_yz - quaternion_wx;
-        const real R_zx = quaternion_xz - quaternion_wy;
-        const real R_zy = quaternion_wx + quaternion_yz;
-        const real R_zz = 1 - quaternion_xx - quaternion_yy;
-        /* V: named entries */
-        const real V_0 = V[0*w + k];
-        const real t_dot_x = V_0;
-        const real V_1 = V[1*w + k];
-        const real t_dot_y = V_1;
-        const real V_2 = V[2*w + k];
-        const real t_dot_z = V_2;
-        const real V_3 = V[3*w + k];
-        const real omega_x = V_3;
-        const real V_4 = V[4*w + k];
-        const real omega_y = V_4;
-        const real V_5 = V[5*w + k];
-        const real omega_z = V_5;
-        /* A: named entries */
-        const real A_0 = A[0*w + k];
-        const real t_ddot_x = A_0;
-        const real A_1 = A[1*w + k];
-        const real t_ddot_y = A_1;
-        const real A_2 = A[2*w + k];
-        const real t_ddot_z = A_2;
-        const real A_3 = A[3*w + k];
-        const real alpha_x = A_3;
-        const real A_4 = A[4*w + k];
-        const real alpha_y = A_4;
-        const real A_5 = A[5*w + k];
-        const real alpha_z = A_5;
+        values v;
+        stage_X(m, w, k, X, &v);
+        stage_V_X(w, k, V, &v);
         /* (W_p) centripetal tensor of the platform */
+        const real omega_x = V[3*w + k];
+        const real omega_y = V[4*w + k];
         const real W_p_xy = omega_x*omega_y;
+        const real omega_z = V[5*w + k];
         const real W_p_xz = omega_x*omega_z;
         const real W_p_yz = omega_y*omega_z;
-        /* (h_star) first moment about the platform origin */
-        const real h_star_in_platform_x = m->h_star_in_platform_x;
-        const real h_star_in_platform_y = m->h_star_in_platform_y;
-        const real h_star_in_platform_z = m->h_star_in_platform_z;
-        const real h_star_x = R_xx*h_star_in_platform_x + R_xy*h_star_in_platform_y +
-            R_xz*h_star_in_platform_z;
-        const real h_star_y = R_yx*h_star_in_platform_x + R_yy*h_star_in_platform_y +
-            R_yz*h_star_in_platform_z;
-        const real h_star_z = R_zx*h_star_in_platform_x + R_zy*h_star_in_platform_y +
-            R_zz*h_star_in_platform_z;
         /* (a_t) acceleration of the platform origin, less gravity */
         const real gravity_x = m->gravity_x;
+        const real t_ddot_x = A[0*w + k];
         const real a_t_x = t_ddot_x - gravity_x;
         const real gravity_y = m->gravity_y;
+        const real t_ddot_y = A[1*w + k];
         const real a_t_y = t_ddot_y - gravity_y;
         const real gravity_z = m->gravity_z;
+        const real t_ddot_z = A[2*w + k];
         const real a_t_z = t_ddot_z - gravity_z;
-        const real a_t_in_platform_x = R_xx*a_t_x + R_yx*a_t_y + R_zx*a_t_z;
-        const real a_t_in_platform_y = R_xy*a_t_x + R_yy*a_t_y + R_zy*a_t_z;
-        const real a_t_in_platform_z = R_xz*a_t_x + R_yz*a_t_y + R_zz*a_t_z;
+        const real a_t_in_platform_x = v.R_xx*a_t_x + v.R_yx*a_t_y + v.R_zx*a_t_z;
+        const real a_t_in_platform_y = v.R_xy*a_t_x + v.R_yy*a_t_y + v.R_zy*a_t_z;
+        const real a_t_in_platform_z = v.R_xz*a_t_x + v.R_yz*a_t_y + v.R_zz*a_t_z;
         /* (f_p) inertia force of the platform less its weight */
         const real f_p_t = omega_x*omega_x;
         const real f_p_t_2 = omega_y*omega_y;
         const real f_p_t_3 = omega_z*omega_z;
+        const real alpha_y = A[4*w + k];
+        const real alpha_z = A[5*w + k];
         const real platform_mass = m->platform_mass;
-        const real f_p_x = a_t_x*platform_mass + h_star_y*(W_p_xy - alpha_z) + h_star_z*(W_p_xz +
-            alpha_y) - h_star_x*(f_p_t_2 + f_p_t_3);
-        const real f_p_y = a_t_y*platform_mass + h_star_x*(W_p_xy + alpha_z) + h_star_z*(W_p_yz -
-            alpha_x) - h_star_y*(f_p_t + f_p_t_3);
-        const real f_p_z = a_t_z*platform_mass + h_star_x*(W_p_xz - alpha_y) + h_star_y*(W_p_yz +
-            alpha_x) - h_star_z*(f_p_t + f_p_t_2);
+        const real f_p_x = a_t_x*platform_mass + v.h_star_y*(W_p_xy - alpha_z) +
+            v.h_star_z*(W_p_xz + alpha_y) - v.h_star_x*(f_p_t_2 + f_p_t_3);
+        const real alpha_x = A[3*w + k];
+        const real f_p_y = a_t_y*platform_mass + v.h_star_x*(W_p_xy + alpha_z) +
+            v.h_star_z*(W_p_yz - alpha_x) - v.h_star_y*(f_p_t + f_p_t_3);
+        const real f_p_z = a_t_z*platform_mass + v.h_star_x*(W_p_xz - alpha_y) +
+            v.h_star_y*(W_p_yz + alpha_x) - v.h_star_z*(f_p_t + f_p_t_2);
         /* (mu_p) inertia moment of the platform less that of its weight */
-        const real omega_in_platform_x = R_xx*omega_x + R_yx*omega_y + R_zx*omega_z;
-        const real omega_in_platform_y = R_xy*omega_x + R_yy*omega_y + R_zy*omega_z;
-        const real omega_in_platform_z = R_xz*omega_x + R_yz*omega_y + R_zz*omega_z;
         const real J_star_in_platform_xx = m->J_star_in_platform_xx;
         const real J_star_in_platform_xy = m->J_star_in_platform_xy;
         const real J_star_in_platform_xz = m->J_star_in_platform_xz;
-        const real mu_p_t = J_star_in_platform_xx*omega_in_platform_x +
-            J_star_in_platform_xy*omega_in_platform_y + J_star_in_platform_xz*omega_in_platform_z;
+        const real mu_p_t = J_star_in_platform_xx*v.omega_in_platform_x +
+            J_star_in_platform_xy*v.omega_in_platform_y +
+            J_star_in_platform_xz*v.omega_in_platform_z;
         const real J_star_in_platform_yy = m->J_star_in_platform_yy;
         const real J_star_in_platform_yz = m->J_star_in_platform_yz;
-        const real mu_p_t_2 = J_star_in_platform_xy*omega_in_platform_x +
-            J_star_in_platform_yy*omega_in_platform_y + J_star_in_platform_yz*omega_in_platform_z;
+        const real mu_p_t_2 = J_star_in_platform_xy*v.omega_in_platform_x +
+            J_star_in_platform_yy*v.omega_in_platform_y +
+            J_star_in_platform_yz*v.omega_in_platform_z;
         const real J_star_in_platform_zz = m->J_star_in_platform_zz;
-        const real mu_p_t_3 = J_star_in_platform_xz*omega_in_platform_x +
-            J_star_in_platform_yz*omega_in_platform_y + J_star_in_platform_zz*omega_in_platform_z;
-        const real alpha_in_platform_x = R_xx*alpha_x + R_yx*alpha_y + R_zx*alpha_z;
-        const real alpha_in_platform_y = R_xy*alpha_x + R_yy*alpha_y + R_zy*alpha_z;
-        const real alpha_in_platform_z = R_xz*alpha_x + R_yz*alpha_y + R_zz*alpha_z;
+        const real mu_p_t_3 = J_star_in_platform_xz*v.omega_in_platform_x +
+            J_star_in_platform_yz*v.omega_in_platform_y +
+            J_star_in_platform_zz*v.omega_in_platform_z;
+        const real alpha_in_platform_x = v.R_xx*alpha_x + v.R_yx*alpha_y + v.R_zx*alpha_z;
+        const real alpha_in_platform_y = v.R_xy*alpha_x + v.R_yy*alpha_y + v.R_zy*alpha_z;
+        const real alpha_in_platform_z = v.R_xz*alpha_x + v.R_yz*alpha_y + v.R_zz*alpha_z;
+        const real h_star_in_platform_y = m->h_star_in_platform_y;
+        const real h_star_in_platform_z = m->h_star_in_platform_z;
         const real mu_p_in_platform_x = J_star_in_platform_xx*alpha_in_platform_x +
             J_star_in_platform_xy*alpha_in_platform_y + J_star_in_platform_xz*alpha_in_platform_z
-            + a_t_in_platform_z*h_star_in_platform_y + mu_p_t_3*omega_in_platform_y -
-            a_t_in_platform_y*h_star_in_platform_z - mu_p_t_2*omega_in_platform_z;
+            + a_t_in_platform_z*h_star_in_platform_y + mu_p_t_3*v.omega_in_platform_y -
+            a_t_in_platform_y*h_star_in_platform_z - mu_p_t_2*v.omega_in_platform_z;
+        const real h_star_in_platform_x = m->h_star_in_platform_x;
         const real mu_p_in_platform_y = J_star_in_platform_xy*alpha_in_platform_x +
             J_star_in_platform_yy*alpha_in_platform_y + J_star_in_platform_yz*alpha_in_platform_z
-            + a_t_in_platform_x*h_star_in_platform_z + mu_p_t*omega_in_platform_z -
-            a_t_in_platform_z*h_star_in_platform_x - mu_p_t_3*omega_in_platform_x;
+            + a_t_in_platform_x*h_star_in_platform_z + mu_p_t*v.omega_in_platform_z -
+            a_t_in_platform_z*h_star_in_platform_x - mu_p_t_3*v.omega_in_platform_x;
         const real mu_p_in_platform_z = J_star_in_platform_xz*alpha_in_platform_x +
             J_star_in_platform_yz*alpha_in_platform_y + J_star_in_platform_zz*alpha_in_platform_z
-            + a_t_in_platform_y*h_star_in_platform_x + mu_p_t_2*omega_in_platform_x -
-            a_t_in_platform_x*h_star_in_platform_y - mu_p_t*omega_in_platform_y;
-        const real mu_p_x = R_xx*mu_p_in_platform_x + R_xy*mu_p_in_platform_y +
-            R_xz*mu_p_in_platform_z;
-        const real mu_p_y = R_yx*mu_p_in_platform_x + R_yy*mu_p_in_platform_y +
-            R_yz*mu_p_in_platform_z;
-        const real mu_p_z = R_zx*mu_p_in_platform_x + R_zy*mu_p_in_platform_y +
-            R_zz*mu_p_in_platform_z;
-        s[0*w + k] = t_x;
-        s[1*w + k] = t_y;
-        s[2*w + k] = t_z;
-        s[3*w + k] = R_xx;
-        s[4*w + k] = R_xy;
-        s[5*w + k] = R_xz;
-        s[6*w + k] = R_yx;
-        s[7*w + k] = R_yy;
-        s[8*w + k] = R_yz;
-        s[9*w + k] = R_zx;
-        s[10*w + k] = R_zy;
-        s[11*w + k] = R_zz;
-        s[12*w + k] = t_dot_x;
-        s[13*w + k] = t_dot_y;
-        s[14*w + k] = t_dot_z;
-        s[15*w + k] = omega_x;
-        s[16*w + k] = omega_y;
-        s[17*w + k] = omega_z;
-        s[18*w + k] = t_ddot_x;
-        s[19*w + k] = t_ddot_y;
-        s[20*w + k] = t_ddot_z;
-        s[21*w + k] = alpha_x;
-        s[22*w + k] = alpha_y;
-        s[23*w + k] = alpha_z;
-        s[24*w + k] = f_p_x;
-        s[25*w + k] = f_p_y;
-        s[26*w + k] = f_p_z;
-        s[27*w + k] = mu_p_x;
-        s[28*w + k] = mu_p_y;
-        s[29*w + k] = mu_p_z;
-        t->invalid[k] += UNLESS(is_finite(quaternion_scale)) + UNLESS(quaternion_scale > 0);
+            + a_t_in_platform_y*h_star_in_platform_x + mu_p_t_2*v.omega_in_platform_x -
+            a_t_in_platform_x*h_star_in_platform_y - mu_p_t*v.omega_in_platform_y;
+        const real mu_p_x = v.R_xx*mu_p_in_platform_x + v.R_xy*mu_p_in_platform_y +
+            v.R_xz*mu_p_in_platform_z;
+        const real mu_p_y = v.R_yx*mu_p_in_platform_x + v.R_yy*mu_p_in_platform_y +
+            v.R_yz*mu_p_in_platform_z;
+        const real mu_p_z = v.R_zx*mu_p_in_platform_x + v.R_zy*mu_p_in_platform_y +
+            v.R_zz*mu_p_in_platform_z;
+        s[0*w + k] = v.R_xx;
+        s[1*w + k] = v.R_xy;
+        s[2*w + k] = v.R_xz;
+        s[3*w + k] = v.R_yx;
+        s[4*w + k] = v.R_yy;
+        s[5*w + k] = v.R_yz;
+        s[6*w + k] = v.R_zx;
+        s[7*w + k] = v.R_zy;
+        s[8*w + k] = v.R_zz;
+        s[9*w + k] = f_p_x;
+        s[10*w + k] = f_p_y;
+        s[11*w + k] = f_p_z;
+        s[12*w + k] = mu_p_x;
+        s[13*w + k] = mu_p_y;
+        s[14*w + k] = mu_p_z;
+        t->invalid[k] += UNLESS(is_finite(v.quaternion_scale)) + UNLESS(v.quaternion_scale > 0);
     }
 }
 
 INLINE void required_legs_prs(const prepared *m, size_t w, size_t leg, size_t legs, const real *s,
-    size_t states, size_t count, int add, real *terms, real *o)
+    size_t states, size_t count, int add, const real *X, const real *V, const real *A, real
+    *terms, real *o)
 {
     for (size_t k = 0; k < count; ++k) {
         const size_t i = leg + legs*k;
         const size_t j = states*k;
-        /* (prs-S) from the base point to the connection point */
-        const real R_xx = s[3*w + j];
-        const real R_xy = s[4*w + j];
-        const real R_xz = s[5*w + j];
-        const real prs_platform_point_x = m->prs_platform_point_x[i];
-        const real prs_platform_point_y = m->prs_platform_point_y[i];
-        const real prs_platform_point_z = m->prs_platform_point_z[i];
-        const real prs_q_x = R_xx*prs_platform_point_x + R_xy*prs_platform_point_y +
-            R_xz*prs_platform_point_z;
-        const real R_yx = s[6*w + j];
-        const real R_yy = s[7*w + j];
-        const real R_yz = s[8*w + j];
-        const real prs_q_y = R_yx*prs_platform_point_x + R_yy*prs_platform_point_y +
-            R_yz*prs_platform_point_z;
-        const real R_zx = s[9*w + j];
-        const real R_zy = s[10*w + j];
-        const real R_zz = s[11*w + j];
-        const real prs_q_z = R_zx*prs_platform_point_x + R_zy*prs_platform_point_y +
-            R_zz*prs_platform_point_z;
-        const real prs_base_point_x = m->prs_base_point_x[i];
-        const real t_x = s[0*w + j];
-        const real prs_S_x = prs_q_x + t_x - prs_base_point_x;
-        const real prs_base_point_y = m->prs_base_point_y[i];
-        const real t_y = s[1*w + j];
-        const real prs_S_y = prs_q_y + t_y - prs_base_point_y;
-        const real prs_base_point_z = m->prs_base_point_z[i];
-        const real t_z = s[2*w + j];
-        const real prs_S_z = prs_q_z + t_z - prs_base_point_z;
-        const real prs_base_frame_xx = m->prs_base_frame_xx[i];
-        const real prs_base_frame_yx = m->prs_base_frame_yx[i];
-        const real prs_base_frame_zx = m->prs_base_frame_zx[i];
-        const real prs_S_in_axes0_x = prs_S_x*prs_base_frame_xx + prs_S_y*prs_base_frame_yx +
-            prs_S_z*prs_base_frame_zx;
-        const real prs_base_frame_xz = m->prs_base_frame_xz[i];
-        const real prs_base_frame_yz = m->prs_base_frame_yz[i];
-        const real prs_base_frame_zz = m->prs_base_frame_zz[i];
-        const real prs_S_in_axes0_z = prs_S_x*prs_base_frame_xz + prs_S_y*prs_base_frame_yz +
-            prs_S_z*prs_base_frame_zz;
-        const real prs_base_frame_xy = m->prs_base_frame_xy[i];
-        const real prs_base_frame_yy = m->prs_base_frame_yy[i];
-        const real prs_base_frame_zy = m->prs_base_frame_zy[i];
-        const real prs_S_in_axes0_y = prs_S_x*prs_base_frame_xy + prs_S_y*prs_base_frame_yy +
-            prs_S_z*prs_base_frame_zy;
-        /* (prs-disc_1) discriminant of the distance equation */
-        const real prs_disc_1_t = prs_S_x*prs_S_x + prs_S_y*prs_S_y + prs_S_z*prs_S_z;
-        const real prs_size_t = m->prs_size_t[i];
-        const real prs_disc_1 = prs_S_in_axes0_x*prs_S_in_axes0_x +
-            prs_S_in_axes0_z*prs_S_in_axes0_z + prs_size_t - prs_disc_1_t;
-        /* (prs-x_2) from the origin of joint 2 to the connection point */
-        const real prs_branch_1 = m->prs_branch_1[i];
-        const real prs_x_2_in_axes0_x = -prs_branch_1*root(prs_disc_1);
-        /* (prs-rho2_2) squared amplitude */
-        const real prs_rho2_2 = prs_size_t*(prs_S_in_axes0_y*prs_S_in_axes0_y +
-            prs_x_2_in_axes0_x*prs_x_2_in_axes0_x);
-        /* (prs-c_2) cosine of the angle of joint 2 from its reference direction */
-        const real prs_c_2_t = 1/(root(prs_rho2_2));
-        const real prs_platform_joint_offset_x = m->prs_platform_joint_offset_x[i];
-        const real prs_c_2 = prs_c_2_t*prs_platform_joint_offset_x*prs_x_2_in_axes0_x;
-        /* (prs-s_2) sine of the angle of joint 2 from its reference direction */
-        const real prs_s_2 = prs_S_in_axes0_y*prs_c_2_t*prs_platform_joint_offset_x;
-        /* (prs-S_dot) velocity of the connection point */
-        const real omega_y = s[16*w + j];
-        const real omega_z = s[17*w + j];
-        const real prs_S_dot_t = omega_y*prs_q_z - omega_z*prs_q_y;
-        const real omega_x = s[15*w + j];
-        const real prs_S_dot_t_2 = omega_z*prs_q_x - omega_x*prs_q_z;
-        const real prs_S_dot_t_3 = omega_x*prs_q_y - omega_y*prs_q_x;
-        const real t_dot_x = s[12*w + j];
-        const real prs_S_dot_x = prs_S_dot_t + t_dot_x;
-        const real t_dot_y = s[13*w + j];
-        const real prs_S_dot_y = prs_S_dot_t_2 + t_dot_y;
-        const real t_dot_z = s[14*w + j];
-        const real prs_S_dot_z = prs_S_dot_t_3 + t_dot_z;
-        /* (prs-v_2) velocity of the connection point per rate of joint 2 */
-        const real prs_v_2_t = -prs_c_2*prs_platform_joint_offset_x;
-        /* (prs-w_1) reciprocal vector 1 */
-        const real prs_d_3_in_axes0_y = prs_platform_joint_offset_x*prs_s_2;
-        const real inv_prs_v_2_t = 1/prs_v_2_t;
-        const real prs_w_1_t = inv_prs_v_2_t*prs_d_3_in_axes0_y;
-        const real prs_w_1_in_axes2_x = prs_c_2 - prs_s_2*prs_w_1_t;
-        const real prs_w_1_in_axes2_y = -prs_s_2 - prs_c_2*prs_w_1_t;
-        const real prs_w_1_t_2 = prs_c_2*prs_w_1_in_axes2_x - prs_s_2*prs_w_1_in_axes2_y;
-        const real prs_w_1_t_3 = prs_c_2*prs_w_1_in_axes2_y + prs_s_2*prs_w_1_in_axes2_x;
-        const real prs_w_1_x = prs_base_frame_xx*prs_w_1_t_2 + prs_base_frame_xy*prs_w_1_t_3;
-        const real prs_w_1_y = prs_base_frame_yx*prs_w_1_t_2 + prs_base_frame_yy*prs_w_1_t_3;
-        const real prs_w_1_z = prs_base_frame_zx*prs_w_1_t_2 + prs_base_frame_zy*prs_w_1_t_3;
-        /* (prs-qd_2) rate of joint 2 */
-        const real prs_qd_2_t = inv_prs_v_2_t*(prs_S_dot_x*prs_base_frame_xy +
-            prs_S_dot_y*prs_base_frame_yy + prs_S_dot_z*prs_base_frame_zy);
-        /* (prs-W_2) centripetal tensor of link 2 */
-        const real prs_W_2_t = prs_qd_2_t*prs_qd_2_t;
-        /* (prs-a_p) acceleration of the connection point without its centripetal part */
-        const real alpha_y = s[22*w + j];
-        const real alpha_z = s[23*w + j];
-        const real t_ddot_x = s[18*w + j];
-        const real prs_a_p_x = t_ddot_x + alpha_y*prs_q_z - alpha_z*prs_q_y;
-        const real alpha_x = s[21*w + j];
-        const real t_ddot_y = s[19*w + j];
-        const real prs_a_p_y = t_ddot_y + alpha_z*prs_q_x - alpha_x*prs_q_z;
-        const real t_ddot_z = s[20*w + j];
-        const real prs_a_p_z = t_ddot_z + alpha_x*prs_q_y - alpha_y*prs_q_x;
-        /* (prs-S_ddot) acceleration of the connection point */
-        const real prs_S_ddot_x = prs_a_p_x + omega_y*prs_S_dot_t_3 - omega_z*prs_S_dot_t_2;
-        const real prs_S_ddot_y = prs_a_p_y + omega_z*prs_S_dot_t - omega_x*prs_S_dot_t_3;
-        const real prs_S_ddot_z = prs_a_p_z + omega_x*prs_S_dot_t_2 - omega_y*prs_S_dot_t;
-        const real prs_S_ddot_t = prs_S_ddot_x*prs_base_frame_xx + prs_S_ddot_y*prs_base_frame_yx
-            + prs_S_ddot_z*prs_base_frame_zx;
-        const real prs_S_ddot_t_2 = prs_S_ddot_x*prs_base_frame_xy +
-            prs_S_ddot_y*prs_base_frame_yy + prs_S_ddot_z*prs_base_frame_zy;
-        const real prs_S_ddot_in_axes2_y = prs_S_ddot_t_2*prs_c_2 - prs_S_ddot_t*prs_s_2;
-        /* (prs-rel) acceleration of the connection point left to the joint accelerations */
-        const real prs_rel_in_axes2_x = prs_S_ddot_t*prs_c_2 + prs_S_ddot_t_2*prs_s_2 +
-            prs_platform_joint_offset_x*prs_qd_2_t*prs_qd_2_t;
-        /* (prs-qdd_1) acceleration of joint 1 */
-        const real prs_qdd_1_t = inv_prs_v_2_t*(prs_S_ddot_in_axes2_y*prs_c_2 +
-            prs_rel_in_axes2_x*prs_s_2);
-        const real prs_qdd_1 = prs_c_2*prs_rel_in_axes2_x - prs_S_ddot_in_axes2_y*prs_s_2 -
-            prs_d_3_in_axes0_y*prs_qdd_1_t;
-        /* (prs-acc_1) acceleration of the reference point of link 1, less gravity */
-        const real prs_g_in_axes0_x = m->prs_g_in_axes0_x[i];
-        const real prs_acc_1_in_axes0_x = prs_qdd_1 - prs_g_in_axes0_x;
-        /* (prs-acc_2) acceleration of the reference point of link 2, less gravity */
-        const real prs_g_in_axes0_y = m->prs_g_in_axes0_y[i];
-        const real prs_acc_2_in_axes2_x = prs_c_2*prs_qdd_1 - prs_c_2*prs_g_in_axes0_x -
-            prs_g_in_axes0_y*prs_s_2;
-        const real prs_acc_2_in_axes2_y = prs_g_in_axes0_x*prs_s_2 - prs_c_2*prs_g_in_axes0_y -
-            prs_qdd_1*prs_s_2;
-        /* (prs-f_2) inertia force of link 2 less its weight */
-        const real prs_h_2_in_spec2_x = m->prs_h_2_in_spec2_x[i];
-        const real prs_h_2_in_spec2_y = m->prs_h_2_in_spec2_y[i];
-        const real prs_link2_mass = m->prs_link2_mass[i];
-        const real prs_f_2_in_axes2_x = prs_acc_2_in_axes2_x*prs_link2_mass +
-            prs_h_2_in_spec2_y*prs_qdd_1_t - prs_W_2_t*prs_h_2_in_spec2_x;
-        const real prs_f_2_in_axes2_y = prs_acc_2_in_axes2_y*prs_link2_mass -
-            prs_W_2_t*prs_h_2_in_spec2_y - prs_h_2_in_spec2_x*prs_qdd_1_t;
-        /* (prs-mu_2) inertia moment of the links that turn with link 2, about their reference points */
-        const real prs_J_2_in_spec2_zz = m->prs_J_2_in_spec2_zz[i];
-        const real prs_mu_2_in_axes2_z = prs_acc_2_in_axes2_y*prs_h_2_in_spec2_x -
-            prs_J_2_in_spec2_zz*prs_qdd_1_t - prs_acc_2_in_axes2_x*prs_h_2_in_spec2_y;
-        /* (prs-T_1) inertia force of the links from 1 outwards, the last link left out */
-        const real prs_link1_mass = m->prs_link1_mass[i];
-        const real prs_T_1_in_axes0_x = prs_acc_1_in_axes0_x*prs_link1_mass +
-            prs_c_2*prs_f_2_in_axes2_x - prs_f_2_in_axes2_y*prs_s_2;
-        /* (prs-G) force at the connection point that balances the leg's inertia and weight along all
-           degrees of freedom */
-        const real prs_G_t = inv_prs_v_2_t*(prs_mu_2_in_axes2_z +
-            prs_T_1_in_axes0_x*prs_d_3_in_axes0_y);
-        const real prs_G_in_axes2_x = prs_T_1_in_axes0_x*prs_c_2 - prs_G_t*prs_s_2;
-        const real prs_G_in_axes2_y = -prs_G_t*prs_c_2 - prs_T_1_in_axes0_x*prs_s_2;
-        /* (prs-c) leg force on the platform without actuation and without the mass at the connection
-           point */
-        const real prs_c_t = prs_G_in_axes2_y*prs_s_2 - prs_G_in_axes2_x*prs_c_2;
-        const real prs_c_t_2 = -prs_G_in_axes2_x*prs_s_2 - prs_G_in_axes2_y*prs_c_2;
-        const real prs_c_x = prs_base_frame_xx*prs_c_t + prs_base_frame_xy*prs_c_t_2;
-        const real prs_c_y = prs_base_frame_yx*prs_c_t + prs_base_frame_yy*prs_c_t_2;
-        const real prs_c_z = prs_base_frame_zx*prs_c_t + prs_base_frame_zy*prs_c_t_2;
+        values_prs v;
+        stage_prs_X(m, w, i, j, s, X, &v);
+        stage_prs_A_X(w, j, A, &v);
+        stage_prs_V_X(m, w, i, j, V, &v);
+        stage_prs_A_V_X(m, w, i, j, V, &v);
+        stage_prs_legs_required(m, i, &v);
         /* (R_a) moment that actuators and external wrench must give */
-        const real prs_R_a_t = prs_c_y*prs_q_z - prs_c_z*prs_q_y;
-        const real prs_R_a_t_2 = prs_c_z*prs_q_x - prs_c_x*prs_q_z;
-        const real prs_R_a_t_3 = prs_c_x*prs_q_y - prs_c_y*prs_q_x;
+        const real prs_R_a_t = v.prs_c_y*v.prs_q_z - v.prs_c_z*v.prs_q_y;
+        const real prs_R_a_t_2 = v.prs_c_z*v.prs_q_x - v.prs_c_x*v.prs_q_z;
+        const real prs_R_a_t_3 = v.prs_c_x*v.prs_q_y - v.prs_c_y*v.prs_q_x;
         /* (prs-H_a_1) moment of the column's unit force about the platform origin */
-        const real prs_H_a_1_x = prs_q_y*prs_w_1_z - prs_q_z*prs_w_1_y;
-        const real prs_H_a_1_y = prs_q_z*prs_w_1_x - prs_q_x*prs_w_1_z;
-        const real prs_H_a_1_z = prs_q_x*prs_w_1_y - prs_q_y*prs_w_1_x;
-        /* (prs-Hk_a_1) moment of the column's unit force about the platform origin */
-        const real prs_Hk_a_1_x = prs_base_frame_zz*prs_q_y - prs_base_frame_yz*prs_q_z;
-        const real prs_Hk_a_1_y = prs_base_frame_xz*prs_q_z - prs_base_frame_zz*prs_q_x;
-        const real prs_Hk_a_1_z = prs_base_frame_yz*prs_q_x - prs_base_frame_xz*prs_q_y;
+        const real prs_H_a_1_x = v.prs_q_y*v.prs_w_1_z - v.prs_q_z*v.prs_w_1_y;
+        const real prs_H_a_1_y = v.prs_q_z*v.prs_w_1_x - v.prs_q_x*v.prs_w_1_z;
+        const real prs_H_a_1_z = v.prs_q_x*v.prs_w_1_y - v.prs_q_y*v.prs_w_1_x;
         /* (R_t) force that actuators and external wrench must give */
-        gather(&terms[0*count + k], add, prs_c_x);  /* R_t_x_of_legs */
-        gather(&terms[1*count + k], add, prs_c_y);  /* R_t_y_of_legs */
-        gather(&terms[2*count + k], add, prs_c_z);  /* R_t_z_of_legs */
+        gather(&terms[0*count + k], add, v.prs_c_x);  /* R_t_x_of_legs */
+        gather(&terms[1*count + k], add, v.prs_c_y);  /* R_t_y_of_legs */
+        gather(&terms[2*count + k], add, v.prs_c_z);  /* R_t_z_of_legs */
         /* (R_a) moment that actuators and external wrench must give */
         gather(&terms[3*count + k], add, prs_R_a_t);  /* R_a_x_of_legs */
         gather(&terms[4*count + k], add, prs_R_a_t_2);  /* R_a_y_of_legs */
         gather(&terms[5*count + k], add, prs_R_a_t_3);  /* R_a_z_of_legs */
         /* (prs-w_1) reciprocal vector 1 */
-        o[0*count + k] = prs_w_1_x;
-        o[1*count + k] = prs_w_1_y;
-        o[2*count + k] = prs_w_1_z;
+        o[0*count + k] = v.prs_w_1_x;
+        o[1*count + k] = v.prs_w_1_y;
+        o[2*count + k] = v.prs_w_1_z;
         /* (prs-H_a_1) moment of the column's unit force about the platform origin */
         o[3*count + k] = prs_H_a_1_x;
         o[4*count + k] = prs_H_a_1_y;
         o[5*count + k] = prs_H_a_1_z;
         /* (legs_size) rms size of the legs, taken where the platform points coincide */
+        const real prs_base_frame_xz = m->prs_base_frame_xz[i];
         o[6*count + k] = prs_base_frame_xz;
+        const real prs_base_frame_yz = m->prs_base_frame_yz[i];
         o[7*count + k] = prs_base_frame_yz;
+        const real prs_base_frame_zz = m->prs_base_frame_zz[i];
         o[8*count + k] = prs_base_frame_zz;
         /* (prs-Hk_a_1) moment of the column's unit force about the platform origin */
-        o[9*count + k] = prs_Hk_a_1_x;
-        o[10*count + k] = prs_Hk_a_1_y;
-        o[11*count + k] = prs_Hk_a_1_z;
+        o[9*count + k] = v.prs_Hk_a_1_x;
+        o[10*count + k] = v.prs_Hk_a_1_y;
+        o[11*count + k] = v.prs_Hk_a_1_z;
         const real prs_root_2_t = m->prs_root_2_t[i];
         const real prs_size = m->prs_size[i];
-        o[12*count + k] = UNLESS(prs_disc_1 >= 0);
-        o[13*count + k] = UNLESS(magnitude(prs_rho2_2) > TOLERANCE*TOLERANCE*prs_root_2_t) +
-            UNLESS(magnitude(prs_v_2_t) > TOLERANCE*prs_size);
+        o[12*count + k] = UNLESS(v.prs_disc_1 >= 0);
+        o[13*count + k] = UNLESS(magnitude(v.prs_rho2_2) > TOLERANCE*TOLERANCE*prs_root_2_t) +
+            UNLESS(magnitude(v.prs_v_2_in_axes0_y) > TOLERANCE*prs_size);
     }
 }
 
@@ -3619,13 +3163,13 @@ INLINE void required_place_prs(size_t w, size_t count, const real *o, size_t leg
     real *H, real *Hk, verdict *t)
 {
     for (size_t k = 0; k < w; ++k) {
-        H[(0*NU + leg)*w + k] = o[0*count + first + k];
+        H[leg*w + k] = o[0*count + first + k];
         H[(NU + leg)*w + k] = o[1*count + first + k];
         H[(2*NU + leg)*w + k] = o[2*count + first + k];
         H[(3*NU + leg)*w + k] = o[3*count + first + k];
         H[(4*NU + leg)*w + k] = o[4*count + first + k];
         H[(5*NU + leg)*w + k] = o[5*count + first + k];
-        Hk[(0*NC + leg)*w + k] = o[6*count + first + k];
+        Hk[leg*w + k] = o[6*count + first + k];
         Hk[(NC + leg)*w + k] = o[7*count + first + k];
         Hk[(2*NC + leg)*w + k] = o[8*count + first + k];
         Hk[(3*NC + leg)*w + k] = o[9*count + first + k];
@@ -3641,23 +3185,23 @@ INLINE void required_after(size_t w, const real *s, const real *sums, real *requ
     for (size_t k = 0; k < w; ++k) {
         /* (R_t) force that actuators and external wrench must give */
         const real R_t_x_of_legs = sums[0*w + k];
-        const real f_p_x = s[24*w + k];
+        const real f_p_x = s[9*w + k];
         const real R_t_x = f_p_x - R_t_x_of_legs;
         const real R_t_y_of_legs = sums[1*w + k];
-        const real f_p_y = s[25*w + k];
+        const real f_p_y = s[10*w + k];
         const real R_t_y = f_p_y - R_t_y_of_legs;
         const real R_t_z_of_legs = sums[2*w + k];
-        const real f_p_z = s[26*w + k];
+        const real f_p_z = s[11*w + k];
         const real R_t_z = f_p_z - R_t_z_of_legs;
         /* (R_a) moment that actuators and external wrench must give */
         const real R_a_x_of_legs = sums[3*w + k];
-        const real mu_p_x = s[27*w + k];
+        const real mu_p_x = s[12*w + k];
         const real R_a_x = R_a_x_of_legs + mu_p_x;
         const real R_a_y_of_legs = sums[4*w + k];
-        const real mu_p_y = s[28*w + k];
+        const real mu_p_y = s[13*w + k];
         const real R_a_y = R_a_y_of_legs + mu_p_y;
         const real R_a_z_of_legs = sums[5*w + k];
-        const real mu_p_z = s[29*w + k];
+        const real mu_p_z = s[14*w + k];
         const real R_a_z = R_a_z_of_legs + mu_p_z;
         /* (R_t) force that actuators and external wrench must give */
         required[0*w + k] = R_t_x;
@@ -3673,12 +3217,10 @@ INLINE void required_after(size_t w, const real *s, const real *sums, real *requ
 INLINE void required_run(const prepared *m, const real *X, const real *V, const real *A, real
     *required, real *H, real *Hk, verdict *t)
 {
-    real s[30] = {0};
-    real sums[6] = {0};
-    real terms_prs[6*LEGS(LEGS_OF_prs)] = {0};
-    real o_prs[14*LEGS(LEGS_OF_prs)] = {0};
+    real s[15] = {0}, sums[6] = {0};
+    real terms_prs[6*LEGS(LEGS_OF_prs)] = {0}, o_prs[14*LEGS(LEGS_OF_prs)] = {0};
     required_before(m, 1, X, V, A, s, t);
-    required_legs_prs(m, 1, 0, 1, s, 0, LEGS(LEGS_OF_prs), 0, terms_prs, o_prs);
+    required_legs_prs(m, 1, 0, 1, s, 0, LEGS(LEGS_OF_prs), 0, X, V, A, terms_prs, o_prs);
     for (size_t leg = 0; leg < LEGS_OF_prs; ++leg) {
         required_place_prs(1, LEGS(LEGS_OF_prs), o_prs, leg, leg, H, Hk, t);
     }
@@ -3691,101 +3233,66 @@ INLINE void required_run(const prepared *m, const real *X, const real *V, const 
 INLINE void required_run_lanes(const prepared *m, const real *X, const real *V, const real *A,
     real *required, real *H, real *Hk, verdict *t)
 {
-    real s[30*LANES];
-    real sums[6*LANES];
+    real s[15*LANES], sums[6*LANES];
     real o_prs[14*LANES];
     required_before(m, LANES, X, V, A, s, t);
     clear(sums, 6*LANES);
     for (size_t leg = 0; leg < LEGS_OF_prs; ++leg) {
-        required_legs_prs(m, LANES, leg, 0, s, 1, LANES, 1, sums, o_prs);
+        required_legs_prs(m, LANES, leg, 0, s, 1, LANES, 1, X, V, A, sums, o_prs);
         required_place_prs(LANES, LANES, o_prs, leg, 0, H, Hk, t);
     }
     required_after(LANES, s, sums, required);
 }
 
 /* ---- inverse_kinematics ---- */
-INLINE void inverse_kinematics_before(size_t w, const real *X, real *s, verdict *t)
+INLINE void inverse_kinematics_before(const prepared *m, size_t w, const real *X, real *s, verdict
+    *t)
 {
     for (size_t k = 0; k < w; ++k) {
-        /* X: named entries */
-        const real X_0 = X[0*w + k];
-        const real t_x = X_0;
-        const real X_1 = X[1*w + k];
-        const real t_y = X_1;
-        const real X_2 = X[2*w + k];
-        const real t_z = X_2;
-        const real X_3 = X[3*w + k];
-        const real X_4 = X[4*w + k];
-        const real X_5 = X[5*w + k];
-        const real X_6 = X[6*w + k];
-        const real quaternion_norm2 = X_3*X_3 + X_4*X_4 + X_5*X_5 + X_6*X_6;
-        const real quaternion_scale = 2/quaternion_norm2;
-        const real quaternion_sx = X_3*quaternion_scale;
-        const real quaternion_sy = X_4*quaternion_scale;
-        const real quaternion_sz = X_5*quaternion_scale;
-        const real quaternion_wx = X_6*quaternion_sx;
-        const real quaternion_wy = X_6*quaternion_sy;
-        const real quaternion_wz = X_6*quaternion_sz;
-        const real quaternion_xx = X_3*quaternion_sx;
-        const real quaternion_xy = X_3*quaternion_sy;
-        const real quaternion_xz = X_3*quaternion_sz;
-        const real quaternion_yy = X_4*quaternion_sy;
-        const real quaternion_yz = X_4*quaternion_sz;
-        const real quaternion_zz = X_5*quaternion_sz;
-        const real R_xx = 1 - quaternion_yy - quaternion_zz;
-        const real R_xy = quaternion_xy - quaternion_wz;
-        const real R_xz = quaternion_wy + quaternion_xz;
-        const real R_yx = quaternion_wz + quaternion_xy;
-        const real R_yy = 1 - quaternion_xx - quaternion_zz;
-        const real R_yz = quaternion_yz - quaternion_wx;
-        const real R_zx = quaternion_xz - quaternion_wy;
-        const real R_zy = quaternion_wx + quaternion_yz;
-        const real R_zz = 1 - quaternion_xx - quaternion_yy;
-        s[0*w + k] = t_x;
-        s[1*w + k] = t_y;
-        s[2*w + k] = t_z;
-        s[3*w + k] = R_xx;
-        s[4*w + k] = R_xy;
-        s[5*w + k] = R_xz;
-        s[6*w + k] = R_yx;
-        s[7*w + k] = R_yy;
-        s[8*w + k] = R_yz;
-        s[9*w + k] = R_zx;
-        s[10*w + k] = R_zy;
-        s[11*w + k] = R_zz;
-        t->invalid[k] += UNLESS(is_finite(quaternion_scale)) + UNLESS(quaternion_scale > 0);
+        values v;
+        stage_X(m, w, k, X, &v);
+        s[0*w + k] = v.R_xx;
+        s[1*w + k] = v.R_xy;
+        s[2*w + k] = v.R_xz;
+        s[3*w + k] = v.R_yx;
+        s[4*w + k] = v.R_yy;
+        s[5*w + k] = v.R_yz;
+        s[6*w + k] = v.R_zx;
+        s[7*w + k] = v.R_zy;
+        s[8*w + k] = v.R_zz;
+        t->invalid[k] += UNLESS(is_finite(v.quaternion_scale)) + UNLESS(v.quaternion_scale > 0);
     }
 }
 
 INLINE void inverse_kinematics_legs_prs(const prepared *m, size_t w, size_t leg, size_t legs,
-    const real *s, size_t states, size_t count, real *o)
+    const real *s, size_t states, size_t count, const real *X, real *o)
 {
     for (size_t k = 0; k < count; ++k) {
         const size_t i = leg + legs*k;
         const size_t j = states*k;
         /* (prs-S) from the base point to the connection point */
-        const real R_xx = s[3*w + j];
-        const real R_xy = s[4*w + j];
-        const real R_xz = s[5*w + j];
+        const real R_xx = s[0*w + j];
+        const real R_xy = s[1*w + j];
+        const real R_xz = s[2*w + j];
         const real prs_base_point_x = m->prs_base_point_x[i];
         const real prs_platform_point_x = m->prs_platform_point_x[i];
         const real prs_platform_point_y = m->prs_platform_point_y[i];
         const real prs_platform_point_z = m->prs_platform_point_z[i];
-        const real t_x = s[0*w + j];
+        const real t_x = X[0*w + j];
         const real prs_S_x = t_x + R_xx*prs_platform_point_x + R_xy*prs_platform_point_y +
             R_xz*prs_platform_point_z - prs_base_point_x;
-        const real R_yx = s[6*w + j];
-        const real R_yy = s[7*w + j];
-        const real R_yz = s[8*w + j];
+        const real R_yx = s[3*w + j];
+        const real R_yy = s[4*w + j];
+        const real R_yz = s[5*w + j];
         const real prs_base_point_y = m->prs_base_point_y[i];
-        const real t_y = s[1*w + j];
+        const real t_y = X[1*w + j];
         const real prs_S_y = t_y + R_yx*prs_platform_point_x + R_yy*prs_platform_point_y +
             R_yz*prs_platform_point_z - prs_base_point_y;
-        const real R_zx = s[9*w + j];
-        const real R_zy = s[10*w + j];
-        const real R_zz = s[11*w + j];
+        const real R_zx = s[6*w + j];
+        const real R_zy = s[7*w + j];
+        const real R_zz = s[8*w + j];
         const real prs_base_point_z = m->prs_base_point_z[i];
-        const real t_z = s[2*w + j];
+        const real t_z = X[2*w + j];
         const real prs_S_z = t_z + R_zx*prs_platform_point_x + R_zy*prs_platform_point_y +
             R_zz*prs_platform_point_z - prs_base_point_z;
         const real prs_base_frame_xx = m->prs_base_frame_xx[i];
@@ -3793,16 +3300,16 @@ INLINE void inverse_kinematics_legs_prs(const prepared *m, size_t w, size_t leg,
         const real prs_base_frame_zx = m->prs_base_frame_zx[i];
         const real prs_S_in_axes0_x = prs_S_x*prs_base_frame_xx + prs_S_y*prs_base_frame_yx +
             prs_S_z*prs_base_frame_zx;
-        const real prs_base_frame_xz = m->prs_base_frame_xz[i];
-        const real prs_base_frame_yz = m->prs_base_frame_yz[i];
-        const real prs_base_frame_zz = m->prs_base_frame_zz[i];
-        const real prs_S_in_axes0_z = prs_S_x*prs_base_frame_xz + prs_S_y*prs_base_frame_yz +
-            prs_S_z*prs_base_frame_zz;
         const real prs_base_frame_xy = m->prs_base_frame_xy[i];
         const real prs_base_frame_yy = m->prs_base_frame_yy[i];
         const real prs_base_frame_zy = m->prs_base_frame_zy[i];
         const real prs_S_in_axes0_y = prs_S_x*prs_base_frame_xy + prs_S_y*prs_base_frame_yy +
             prs_S_z*prs_base_frame_zy;
+        const real prs_base_frame_xz = m->prs_base_frame_xz[i];
+        const real prs_base_frame_yz = m->prs_base_frame_yz[i];
+        const real prs_base_frame_zz = m->prs_base_frame_zz[i];
+        const real prs_S_in_axes0_z = prs_S_x*prs_base_frame_xz + prs_S_y*prs_base_frame_yz +
+            prs_S_z*prs_base_frame_zz;
         /* (prs-disc_1) discriminant of the distance equation */
         const real prs_disc_1_t = prs_S_x*prs_S_x + prs_S_y*prs_S_y + prs_S_z*prs_S_z;
         const real prs_size_t = m->prs_size_t[i];
@@ -3813,8 +3320,7 @@ INLINE void inverse_kinematics_legs_prs(const prepared *m, size_t w, size_t leg,
         const real prs_q_1_t = -prs_branch_1*root(prs_disc_1);
         const real prs_q_1 = prs_S_in_axes0_x - prs_q_1_t;
         /* (prs-rho2_2) squared amplitude */
-        const real prs_rho2_2 = prs_size_t*(prs_S_in_axes0_y*prs_S_in_axes0_y +
-            prs_q_1_t*prs_q_1_t);
+        const real prs_rho2_2 = prs_size_t*(prs_S_in_axes0_y*prs_S_in_axes0_y + prs_disc_1);
         /* (prs-q_2) displacement of joint 2 */
         const real prs_q_2_t = 1/(root(prs_rho2_2));
         const real prs_platform_joint_offset_x = m->prs_platform_joint_offset_x[i];
@@ -3845,10 +3351,10 @@ INLINE void inverse_kinematics_place_prs(size_t w, size_t count, const real *o, 
 
 INLINE void inverse_kinematics_run(const prepared *m, const real *X, real *q, verdict *t)
 {
-    real s[12] = {0};
+    real s[9] = {0};
     real o_prs[5*LEGS(LEGS_OF_prs)] = {0};
-    inverse_kinematics_before(1, X, s, t);
-    inverse_kinematics_legs_prs(m, 1, 0, 1, s, 0, LEGS(LEGS_OF_prs), o_prs);
+    inverse_kinematics_before(m, 1, X, s, t);
+    inverse_kinematics_legs_prs(m, 1, 0, 1, s, 0, LEGS(LEGS_OF_prs), X, o_prs);
     for (size_t leg = 0; leg < LEGS_OF_prs; ++leg) {
         inverse_kinematics_place_prs(1, LEGS(LEGS_OF_prs), o_prs, leg, leg, q, t);
     }
@@ -3856,169 +3362,70 @@ INLINE void inverse_kinematics_run(const prepared *m, const real *X, real *q, ve
 
 INLINE void inverse_kinematics_run_lanes(const prepared *m, const real *X, real *q, verdict *t)
 {
-    real s[12*LANES];
+    real s[9*LANES];
     real o_prs[5*LANES];
-    inverse_kinematics_before(LANES, X, s, t);
+    inverse_kinematics_before(m, LANES, X, s, t);
     for (size_t leg = 0; leg < LEGS_OF_prs; ++leg) {
-        inverse_kinematics_legs_prs(m, LANES, leg, 0, s, 1, LANES, o_prs);
+        inverse_kinematics_legs_prs(m, LANES, leg, 0, s, 1, LANES, X, o_prs);
         inverse_kinematics_place_prs(LANES, LANES, o_prs, leg, 0, q, t);
     }
 }
 
 /* ---- joint_rates ---- */
-INLINE void joint_rates_before(size_t w, const real *X, const real *V, real *s, verdict *t)
+INLINE void joint_rates_before(const prepared *m, size_t w, const real *X, real *s, verdict *t)
 {
     for (size_t k = 0; k < w; ++k) {
-        /* X: named entries */
-        const real X_0 = X[0*w + k];
-        const real t_x = X_0;
-        const real X_1 = X[1*w + k];
-        const real t_y = X_1;
-        const real X_2 = X[2*w + k];
-        const real t_z = X_2;
-        const real X_3 = X[3*w + k];
-        const real X_4 = X[4*w + k];
-        const real X_5 = X[5*w + k];
-        const real X_6 = X[6*w + k];
-        const real quaternion_norm2 = X_3*X_3 + X_4*X_4 + X_5*X_5 + X_6*X_6;
-        const real quaternion_scale = 2/quaternion_norm2;
-        const real quaternion_sx = X_3*quaternion_scale;
-        const real quaternion_sy = X_4*quaternion_scale;
-        const real quaternion_sz = X_5*quaternion_scale;
-        const real quaternion_wx = X_6*quaternion_sx;
-        const real quaternion_wy = X_6*quaternion_sy;
-        const real quaternion_wz = X_6*quaternion_sz;
-        const real quaternion_xx = X_3*quaternion_sx;
-        const real quaternion_xy = X_3*quaternion_sy;
-        const real quaternion_xz = X_3*quaternion_sz;
-        const real quaternion_yy = X_4*quaternion_sy;
-        const real quaternion_yz = X_4*quaternion_sz;
-        const real quaternion_zz = X_5*quaternion_sz;
-        const real R_xx = 1 - quaternion_yy - quaternion_zz;
-        const real R_xy = quaternion_xy - quaternion_wz;
-        const real R_xz = quaternion_wy + quaternion_xz;
-        const real R_yx = quaternion_wz + quaternion_xy;
-        const real R_yy = 1 - quaternion_xx - quaternion_zz;
-        const real R_yz = quaternion_yz - quaternion_wx;
-        const real R_zx = quaternion_xz - quaternion_wy;
-        const real R_zy = quaternion_wx + quaternion_yz;
-        const real R_zz = 1 - quaternion_xx - quaternion_yy;
-        /* V: named entries */
-        const real V_0 = V[0*w + k];
-        const real t_dot_x = V_0;
-        const real V_1 = V[1*w + k];
-        const real t_dot_y = V_1;
-        const real V_2 = V[2*w + k];
-        const real t_dot_z = V_2;
-        const real V_3 = V[3*w + k];
-        const real omega_x = V_3;
-        const real V_4 = V[4*w + k];
-        const real omega_y = V_4;
-        const real V_5 = V[5*w + k];
-        const real omega_z = V_5;
-        s[0*w + k] = t_x;
-        s[1*w + k] = t_y;
-        s[2*w + k] = t_z;
-        s[3*w + k] = R_xx;
-        s[4*w + k] = R_xy;
-        s[5*w + k] = R_xz;
-        s[6*w + k] = R_yx;
-        s[7*w + k] = R_yy;
-        s[8*w + k] = R_yz;
-        s[9*w + k] = R_zx;
-        s[10*w + k] = R_zy;
-        s[11*w + k] = R_zz;
-        s[12*w + k] = t_dot_x;
-        s[13*w + k] = t_dot_y;
-        s[14*w + k] = t_dot_z;
-        s[15*w + k] = omega_x;
-        s[16*w + k] = omega_y;
-        s[17*w + k] = omega_z;
-        t->invalid[k] += UNLESS(is_finite(quaternion_scale)) + UNLESS(quaternion_scale > 0);
+        values v;
+        stage_X(m, w, k, X, &v);
+        s[0*w + k] = v.R_xx;
+        s[1*w + k] = v.R_xy;
+        s[2*w + k] = v.R_xz;
+        s[3*w + k] = v.R_yx;
+        s[4*w + k] = v.R_yy;
+        s[5*w + k] = v.R_yz;
+        s[6*w + k] = v.R_zx;
+        s[7*w + k] = v.R_zy;
+        s[8*w + k] = v.R_zz;
+        t->invalid[k] += UNLESS(is_finite(v.quaternion_scale)) + UNLESS(v.quaternion_scale > 0);
     }
 }
 
 INLINE void joint_rates_legs_prs(const prepared *m, size_t w, size_t leg, size_t legs, const real
-    *s, size_t states, size_t count, real *o)
+    *s, size_t states, size_t count, const real *X, const real *V, real *o)
 {
     for (size_t k = 0; k < count; ++k) {
         const size_t i = leg + legs*k;
         const size_t j = states*k;
-        /* (prs-S) from the base point to the connection point */
-        const real R_xx = s[3*w + j];
-        const real R_xy = s[4*w + j];
-        const real R_xz = s[5*w + j];
-        const real prs_platform_point_x = m->prs_platform_point_x[i];
-        const real prs_platform_point_y = m->prs_platform_point_y[i];
-        const real prs_platform_point_z = m->prs_platform_point_z[i];
-        const real prs_q_x = R_xx*prs_platform_point_x + R_xy*prs_platform_point_y +
-            R_xz*prs_platform_point_z;
-        const real R_yx = s[6*w + j];
-        const real R_yy = s[7*w + j];
-        const real R_yz = s[8*w + j];
-        const real prs_q_y = R_yx*prs_platform_point_x + R_yy*prs_platform_point_y +
-            R_yz*prs_platform_point_z;
-        const real R_zx = s[9*w + j];
-        const real R_zy = s[10*w + j];
-        const real R_zz = s[11*w + j];
-        const real prs_q_z = R_zx*prs_platform_point_x + R_zy*prs_platform_point_y +
-            R_zz*prs_platform_point_z;
-        const real prs_base_point_x = m->prs_base_point_x[i];
-        const real t_x = s[0*w + j];
-        const real prs_S_x = prs_q_x + t_x - prs_base_point_x;
-        const real prs_base_point_y = m->prs_base_point_y[i];
-        const real t_y = s[1*w + j];
-        const real prs_S_y = prs_q_y + t_y - prs_base_point_y;
-        const real prs_base_point_z = m->prs_base_point_z[i];
-        const real t_z = s[2*w + j];
-        const real prs_S_z = prs_q_z + t_z - prs_base_point_z;
-        const real prs_base_frame_xx = m->prs_base_frame_xx[i];
-        const real prs_base_frame_yx = m->prs_base_frame_yx[i];
-        const real prs_base_frame_zx = m->prs_base_frame_zx[i];
-        const real prs_S_in_axes0_x = prs_S_x*prs_base_frame_xx + prs_S_y*prs_base_frame_yx +
-            prs_S_z*prs_base_frame_zx;
-        const real prs_base_frame_xz = m->prs_base_frame_xz[i];
-        const real prs_base_frame_yz = m->prs_base_frame_yz[i];
-        const real prs_base_frame_zz = m->prs_base_frame_zz[i];
-        const real prs_S_in_axes0_z = prs_S_x*prs_base_frame_xz + prs_S_y*prs_base_frame_yz +
-            prs_S_z*prs_base_frame_zz;
+        values_prs v;
+        stage_prs_X(m, w, i, j, s, X, &v);
+        /* (prs-S_dot) velocity of the connection point */
+        const real omega_y = V[4*w + j];
+        const real omega_z = V[5*w + j];
+        const real t_dot_x = V[0*w + j];
+        const real prs_S_dot_x = t_dot_x + omega_y*v.prs_q_z - omega_z*v.prs_q_y;
+        const real omega_x = V[3*w + j];
+        const real t_dot_y = V[1*w + j];
+        const real prs_S_dot_y = t_dot_y + omega_z*v.prs_q_x - omega_x*v.prs_q_z;
+        const real t_dot_z = V[2*w + j];
+        const real prs_S_dot_z = t_dot_z + omega_x*v.prs_q_y - omega_y*v.prs_q_x;
+        /* (prs-v_2) velocity of the connection point per rate of joint 2 */
+        const real prs_v_2_t = 1/(root(v.prs_rho2_2));
+        const real prs_branch_1 = m->prs_branch_1[i];
+        const real prs_platform_joint_offset_x = m->prs_platform_joint_offset_x[i];
+        const real prs_v_2_in_axes0_y =
+            -prs_branch_1*root(v.prs_disc_1)*prs_platform_joint_offset_x*prs_platform_joint_offset_x*prs_v_2_t;
+        /* (prs-qd_1) rate of joint 1 */
         const real prs_base_frame_xy = m->prs_base_frame_xy[i];
         const real prs_base_frame_yy = m->prs_base_frame_yy[i];
         const real prs_base_frame_zy = m->prs_base_frame_zy[i];
-        const real prs_S_in_axes0_y = prs_S_x*prs_base_frame_xy + prs_S_y*prs_base_frame_yy +
-            prs_S_z*prs_base_frame_zy;
-        /* (prs-disc_1) discriminant of the distance equation */
-        const real prs_disc_1_t = prs_S_x*prs_S_x + prs_S_y*prs_S_y + prs_S_z*prs_S_z;
-        const real prs_size_t = m->prs_size_t[i];
-        const real prs_disc_1 = prs_S_in_axes0_x*prs_S_in_axes0_x +
-            prs_S_in_axes0_z*prs_S_in_axes0_z + prs_size_t - prs_disc_1_t;
-        /* (prs-x_2) from the origin of joint 2 to the connection point */
-        const real prs_branch_1 = m->prs_branch_1[i];
-        const real prs_x_2_in_axes0_x = -prs_branch_1*root(prs_disc_1);
-        /* (prs-rho2_2) squared amplitude */
-        const real prs_rho2_2 = prs_size_t*(prs_S_in_axes0_y*prs_S_in_axes0_y +
-            prs_x_2_in_axes0_x*prs_x_2_in_axes0_x);
-        /* (prs-S_dot) velocity of the connection point */
-        const real omega_y = s[16*w + j];
-        const real omega_z = s[17*w + j];
-        const real t_dot_x = s[12*w + j];
-        const real prs_S_dot_x = t_dot_x + omega_y*prs_q_z - omega_z*prs_q_y;
-        const real omega_x = s[15*w + j];
-        const real t_dot_y = s[13*w + j];
-        const real prs_S_dot_y = t_dot_y + omega_z*prs_q_x - omega_x*prs_q_z;
-        const real t_dot_z = s[14*w + j];
-        const real prs_S_dot_z = t_dot_z + omega_x*prs_q_y - omega_y*prs_q_x;
-        /* (prs-v_2) velocity of the connection point per rate of joint 2 */
-        const real prs_v_2_t = 1/(root(prs_rho2_2));
-        const real prs_platform_joint_offset_x = m->prs_platform_joint_offset_x[i];
-        const real prs_v_2_t_2 =
-            -prs_platform_joint_offset_x*prs_platform_joint_offset_x*prs_v_2_t*prs_x_2_in_axes0_x;
-        /* (prs-qd_1) rate of joint 1 */
-        const real prs_qd_1_t = (prs_S_dot_x*prs_base_frame_xy + prs_S_dot_y*prs_base_frame_yy +
-            prs_S_dot_z*prs_base_frame_zy)/prs_v_2_t_2;
+        const real prs_qd_1_t = -(prs_S_dot_x*prs_base_frame_xy + prs_S_dot_y*prs_base_frame_yy +
+            prs_S_dot_z*prs_base_frame_zy)/prs_v_2_in_axes0_y;
+        const real prs_base_frame_xx = m->prs_base_frame_xx[i];
+        const real prs_base_frame_yx = m->prs_base_frame_yx[i];
+        const real prs_base_frame_zx = m->prs_base_frame_zx[i];
         const real prs_qd_1 = prs_S_dot_x*prs_base_frame_xx + prs_S_dot_y*prs_base_frame_yx +
             prs_S_dot_z*prs_base_frame_zx -
-            prs_S_in_axes0_y*prs_platform_joint_offset_x*prs_platform_joint_offset_x*prs_qd_1_t*prs_v_2_t;
+            v.prs_S_in_axes0_y*prs_platform_joint_offset_x*prs_platform_joint_offset_x*prs_qd_1_t*prs_v_2_t;
         /* (prs-qd_1) rate of joint 1 */
         o[0*count + k] = prs_qd_1;
         /* (prs-qd_2) rate of joint 2 */
@@ -4026,9 +3433,9 @@ INLINE void joint_rates_legs_prs(const prepared *m, size_t w, size_t leg, size_t
         o[4*count + k] = prs_qd_1 + prs_qd_1_t;
         const real prs_root_2_t = m->prs_root_2_t[i];
         const real prs_size = m->prs_size[i];
-        o[2*count + k] = UNLESS(prs_disc_1 >= 0);
-        o[3*count + k] = UNLESS(magnitude(prs_rho2_2) > TOLERANCE*TOLERANCE*prs_root_2_t) +
-            UNLESS(magnitude(prs_v_2_t_2) > TOLERANCE*prs_size);
+        o[2*count + k] = UNLESS(v.prs_disc_1 >= 0);
+        o[3*count + k] = UNLESS(magnitude(v.prs_rho2_2) > TOLERANCE*TOLERANCE*prs_root_2_t) +
+            UNLESS(magnitude(prs_v_2_in_axes0_y) > TOLERANCE*prs_size);
     }
 }
 
@@ -4046,10 +3453,10 @@ INLINE void joint_rates_place_prs(size_t w, size_t count, const real *o, size_t 
 
 INLINE void joint_rates_run(const prepared *m, const real *X, const real *V, real *qd, verdict *t)
 {
-    real s[18] = {0};
+    real s[9] = {0};
     real o_prs[5*LEGS(LEGS_OF_prs)] = {0};
-    joint_rates_before(1, X, V, s, t);
-    joint_rates_legs_prs(m, 1, 0, 1, s, 0, LEGS(LEGS_OF_prs), o_prs);
+    joint_rates_before(m, 1, X, s, t);
+    joint_rates_legs_prs(m, 1, 0, 1, s, 0, LEGS(LEGS_OF_prs), X, V, o_prs);
     for (size_t leg = 0; leg < LEGS_OF_prs; ++leg) {
         joint_rates_place_prs(1, LEGS(LEGS_OF_prs), o_prs, leg, leg, qd, t);
     }
@@ -4058,220 +3465,63 @@ INLINE void joint_rates_run(const prepared *m, const real *X, const real *V, rea
 INLINE void joint_rates_run_lanes(const prepared *m, const real *X, const real *V, real *qd,
     verdict *t)
 {
-    real s[18*LANES];
+    real s[9*LANES];
     real o_prs[5*LANES];
-    joint_rates_before(LANES, X, V, s, t);
+    joint_rates_before(m, LANES, X, s, t);
     for (size_t leg = 0; leg < LEGS_OF_prs; ++leg) {
-        joint_rates_legs_prs(m, LANES, leg, 0, s, 1, LANES, o_prs);
+        joint_rates_legs_prs(m, LANES, leg, 0, s, 1, LANES, X, V, o_prs);
         joint_rates_place_prs(LANES, LANES, o_prs, leg, 0, qd, t);
     }
 }
 
 /* ---- joint_accelerations ---- */
-INLINE void joint_accelerations_before(size_t w, const real *X, const real *V, const real *A, real
-    *s, verdict *t)
+INLINE void joint_accelerations_before(const prepared *m, size_t w, const real *X, real *s,
+    verdict *t)
 {
     for (size_t k = 0; k < w; ++k) {
-        /* X: named entries */
-        const real X_0 = X[0*w + k];
-        const real t_x = X_0;
-        const real X_1 = X[1*w + k];
-        const real t_y = X_1;
-        const real X_2 = X[2*w + k];
-        const real t_z = X_2;
-        const real X_3 = X[3*w + k];
-        const real X_4 = X[4*w + k];
-        const real X_5 = X[5*w + k];
-        const real X_6 = X[6*w + k];
-        const real quaternion_norm2 = X_3*X_3 + X_4*X_4 + X_5*X_5 + X_6*X_6;
-        const real quaternion_scale = 2/quaternion_norm2;
-        const real quaternion_sx = X_3*quaternion_scale;
-        const real quaternion_sy = X_4*quaternion_scale;
-        const real quaternion_sz = X_5*quaternion_scale;
-        const real quaternion_wx = X_6*quaternion_sx;
-        const real quaternion_wy = X_6*quaternion_sy;
-        const real quaternion_wz = X_6*quaternion_sz;
-        const real quaternion_xx = X_3*quaternion_sx;
-        const real quaternion_xy = X_3*quaternion_sy;
-        const real quaternion_xz = X_3*quaternion_sz;
-        const real quaternion_yy = X_4*quaternion_sy;
-        const real quaternion_yz = X_4*quaternion_sz;
-        const real quaternion_zz = X_5*quaternion_sz;
-        const real R_xx = 1 - quaternion_yy - quaternion_zz;
-        const real R_xy = quaternion_xy - quaternion_wz;
-        const real R_xz = quaternion_wy + quaternion_xz;
-        const real R_yx = quaternion_wz + quaternion_xy;
-        const real R_yy = 1 - quaternion_xx - quaternion_zz;
-        const real R_yz = quaternion_yz - quaternion_wx;
-        const real R_zx = quaternion_xz - quaternion_wy;
-        const real R_zy = quaternion_wx + quaternion_yz;
-        const real R_zz = 1 - quaternion_xx - quaternion_yy;
-        /* V: named entries */
-        const real V_0 = V[0*w + k];
-        const real t_dot_x = V_0;
-        const real V_1 = V[1*w + k];
-        const real t_dot_y = V_1;
-        const real V_2 = V[2*w + k];
-        const real t_dot_z = V_2;
-        const real V_3 = V[3*w + k];
-        const real omega_x = V_3;
-        const real V_4 = V[4*w + k];
-        const real omega_y = V_4;
-        const real V_5 = V[5*w + k];
-        const real omega_z = V_5;
-        /* A: named entries */
-        const real A_0 = A[0*w + k];
-        const real t_ddot_x = A_0;
-        const real A_1 = A[1*w + k];
-        const real t_ddot_y = A_1;
-        const real A_2 = A[2*w + k];
-        const real t_ddot_z = A_2;
-        const real A_3 = A[3*w + k];
-        const real alpha_x = A_3;
-        const real A_4 = A[4*w + k];
-        const real alpha_y = A_4;
-        const real A_5 = A[5*w + k];
-        const real alpha_z = A_5;
-        s[0*w + k] = t_x;
-        s[1*w + k] = t_y;
-        s[2*w + k] = t_z;
-        s[3*w + k] = R_xx;
-        s[4*w + k] = R_xy;
-        s[5*w + k] = R_xz;
-        s[6*w + k] = R_yx;
-        s[7*w + k] = R_yy;
-        s[8*w + k] = R_yz;
-        s[9*w + k] = R_zx;
-        s[10*w + k] = R_zy;
-        s[11*w + k] = R_zz;
-        s[12*w + k] = t_dot_x;
-        s[13*w + k] = t_dot_y;
-        s[14*w + k] = t_dot_z;
-        s[15*w + k] = omega_x;
-        s[16*w + k] = omega_y;
-        s[17*w + k] = omega_z;
-        s[18*w + k] = t_ddot_x;
-        s[19*w + k] = t_ddot_y;
-        s[20*w + k] = t_ddot_z;
-        s[21*w + k] = alpha_x;
-        s[22*w + k] = alpha_y;
-        s[23*w + k] = alpha_z;
-        t->invalid[k] += UNLESS(is_finite(quaternion_scale)) + UNLESS(quaternion_scale > 0);
+        values v;
+        stage_X(m, w, k, X, &v);
+        s[0*w + k] = v.R_xx;
+        s[1*w + k] = v.R_xy;
+        s[2*w + k] = v.R_xz;
+        s[3*w + k] = v.R_yx;
+        s[4*w + k] = v.R_yy;
+        s[5*w + k] = v.R_yz;
+        s[6*w + k] = v.R_zx;
+        s[7*w + k] = v.R_zy;
+        s[8*w + k] = v.R_zz;
+        t->invalid[k] += UNLESS(is_finite(v.quaternion_scale)) + UNLESS(v.quaternion_scale > 0);
     }
 }
 
 INLINE void joint_accelerations_legs_prs(const prepared *m, size_t w, size_t leg, size_t legs,
-    const real *s, size_t states, size_t count, real *o)
+    const real *s, size_t states, size_t count, const real *X, const real *V, const real *A, real
+    *o)
 {
     for (size_t k = 0; k < count; ++k) {
         const size_t i = leg + legs*k;
         const size_t j = states*k;
-        /* (prs-S) from the base point to the connection point */
-        const real R_xx = s[3*w + j];
-        const real R_xy = s[4*w + j];
-        const real R_xz = s[5*w + j];
-        const real prs_platform_point_x = m->prs_platform_point_x[i];
-        const real prs_platform_point_y = m->prs_platform_point_y[i];
-        const real prs_platform_point_z = m->prs_platform_point_z[i];
-        const real prs_q_x = R_xx*prs_platform_point_x + R_xy*prs_platform_point_y +
-            R_xz*prs_platform_point_z;
-        const real R_yx = s[6*w + j];
-        const real R_yy = s[7*w + j];
-        const real R_yz = s[8*w + j];
-        const real prs_q_y = R_yx*prs_platform_point_x + R_yy*prs_platform_point_y +
-            R_yz*prs_platform_point_z;
-        const real R_zx = s[9*w + j];
-        const real R_zy = s[10*w + j];
-        const real R_zz = s[11*w + j];
-        const real prs_q_z = R_zx*prs_platform_point_x + R_zy*prs_platform_point_y +
-            R_zz*prs_platform_point_z;
-        const real prs_base_point_x = m->prs_base_point_x[i];
-        const real t_x = s[0*w + j];
-        const real prs_S_x = prs_q_x + t_x - prs_base_point_x;
-        const real prs_base_point_y = m->prs_base_point_y[i];
-        const real t_y = s[1*w + j];
-        const real prs_S_y = prs_q_y + t_y - prs_base_point_y;
-        const real prs_base_point_z = m->prs_base_point_z[i];
-        const real t_z = s[2*w + j];
-        const real prs_S_z = prs_q_z + t_z - prs_base_point_z;
-        const real prs_base_frame_xx = m->prs_base_frame_xx[i];
-        const real prs_base_frame_yx = m->prs_base_frame_yx[i];
-        const real prs_base_frame_zx = m->prs_base_frame_zx[i];
-        const real prs_S_in_axes0_x = prs_S_x*prs_base_frame_xx + prs_S_y*prs_base_frame_yx +
-            prs_S_z*prs_base_frame_zx;
-        const real prs_base_frame_xz = m->prs_base_frame_xz[i];
-        const real prs_base_frame_yz = m->prs_base_frame_yz[i];
-        const real prs_base_frame_zz = m->prs_base_frame_zz[i];
-        const real prs_S_in_axes0_z = prs_S_x*prs_base_frame_xz + prs_S_y*prs_base_frame_yz +
-            prs_S_z*prs_base_frame_zz;
+        values_prs v;
+        stage_prs_X(m, w, i, j, s, X, &v);
+        stage_prs_A_X(w, j, A, &v);
+        stage_prs_V_X(m, w, i, j, V, &v);
+        stage_prs_A_V_X(m, w, i, j, V, &v);
+        /* (prs-qd_2) rate of joint 2 */
+        const real prs_qd_2_t = -1/v.prs_v_2_in_axes0_y;
         const real prs_base_frame_xy = m->prs_base_frame_xy[i];
         const real prs_base_frame_yy = m->prs_base_frame_yy[i];
         const real prs_base_frame_zy = m->prs_base_frame_zy[i];
-        const real prs_S_in_axes0_y = prs_S_x*prs_base_frame_xy + prs_S_y*prs_base_frame_yy +
-            prs_S_z*prs_base_frame_zy;
-        /* (prs-disc_1) discriminant of the distance equation */
-        const real prs_disc_1_t = prs_S_x*prs_S_x + prs_S_y*prs_S_y + prs_S_z*prs_S_z;
-        const real prs_size_t = m->prs_size_t[i];
-        const real prs_disc_1 = prs_S_in_axes0_x*prs_S_in_axes0_x +
-            prs_S_in_axes0_z*prs_S_in_axes0_z + prs_size_t - prs_disc_1_t;
-        /* (prs-x_2) from the origin of joint 2 to the connection point */
-        const real prs_branch_1 = m->prs_branch_1[i];
-        const real prs_x_2_in_axes0_x = -prs_branch_1*root(prs_disc_1);
-        /* (prs-rho2_2) squared amplitude */
-        const real prs_rho2_2 = prs_size_t*(prs_S_in_axes0_y*prs_S_in_axes0_y +
-            prs_x_2_in_axes0_x*prs_x_2_in_axes0_x);
-        /* (prs-c_2) cosine of the angle of joint 2 from its reference direction */
-        const real prs_c_2_t = 1/(root(prs_rho2_2));
-        const real prs_platform_joint_offset_x = m->prs_platform_joint_offset_x[i];
-        const real prs_c_2 = prs_c_2_t*prs_platform_joint_offset_x*prs_x_2_in_axes0_x;
-        /* (prs-s_2) sine of the angle of joint 2 from its reference direction */
-        const real prs_s_2 = prs_S_in_axes0_y*prs_c_2_t*prs_platform_joint_offset_x;
-        /* (prs-S_dot) velocity of the connection point */
-        const real omega_y = s[16*w + j];
-        const real omega_z = s[17*w + j];
-        const real prs_S_dot_t = omega_y*prs_q_z - omega_z*prs_q_y;
-        const real omega_x = s[15*w + j];
-        const real prs_S_dot_t_2 = omega_z*prs_q_x - omega_x*prs_q_z;
-        const real prs_S_dot_t_3 = omega_x*prs_q_y - omega_y*prs_q_x;
-        const real t_dot_x = s[12*w + j];
-        const real prs_S_dot_x = prs_S_dot_t + t_dot_x;
-        const real t_dot_y = s[13*w + j];
-        const real prs_S_dot_y = prs_S_dot_t_2 + t_dot_y;
-        const real t_dot_z = s[14*w + j];
-        const real prs_S_dot_z = prs_S_dot_t_3 + t_dot_z;
-        /* (prs-v_2) velocity of the connection point per rate of joint 2 */
-        const real prs_v_2_t = -prs_c_2*prs_platform_joint_offset_x;
-        /* (prs-qd_2) rate of joint 2 */
-        const real inv_prs_v_2_t = 1/prs_v_2_t;
-        const real prs_qd_2_t = inv_prs_v_2_t*(prs_S_dot_x*prs_base_frame_xy +
-            prs_S_dot_y*prs_base_frame_yy + prs_S_dot_z*prs_base_frame_zy);
-        /* (prs-a_p) acceleration of the connection point without its centripetal part */
-        const real alpha_y = s[22*w + j];
-        const real alpha_z = s[23*w + j];
-        const real t_ddot_x = s[18*w + j];
-        const real prs_a_p_x = t_ddot_x + alpha_y*prs_q_z - alpha_z*prs_q_y;
-        const real alpha_x = s[21*w + j];
-        const real t_ddot_y = s[19*w + j];
-        const real prs_a_p_y = t_ddot_y + alpha_z*prs_q_x - alpha_x*prs_q_z;
-        const real t_ddot_z = s[20*w + j];
-        const real prs_a_p_z = t_ddot_z + alpha_x*prs_q_y - alpha_y*prs_q_x;
-        /* (prs-S_ddot) acceleration of the connection point */
-        const real prs_S_ddot_x = prs_a_p_x + omega_y*prs_S_dot_t_3 - omega_z*prs_S_dot_t_2;
-        const real prs_S_ddot_y = prs_a_p_y + omega_z*prs_S_dot_t - omega_x*prs_S_dot_t_3;
-        const real prs_S_ddot_z = prs_a_p_z + omega_x*prs_S_dot_t_2 - omega_y*prs_S_dot_t;
-        const real prs_S_ddot_t = prs_S_ddot_x*prs_base_frame_xx + prs_S_ddot_y*prs_base_frame_yx
-            + prs_S_ddot_z*prs_base_frame_zx;
-        const real prs_S_ddot_t_2 = prs_S_ddot_x*prs_base_frame_xy +
-            prs_S_ddot_y*prs_base_frame_yy + prs_S_ddot_z*prs_base_frame_zy;
-        const real prs_S_ddot_in_axes2_y = prs_S_ddot_t_2*prs_c_2 - prs_S_ddot_t*prs_s_2;
+        const real prs_qd_2_t_2 = prs_qd_2_t*(v.prs_S_dot_x*prs_base_frame_xy +
+            v.prs_S_dot_y*prs_base_frame_yy + v.prs_S_dot_z*prs_base_frame_zy);
         /* (prs-rel) acceleration of the connection point left to the joint accelerations */
-        const real prs_rel_in_axes2_x = prs_S_ddot_t*prs_c_2 + prs_S_ddot_t_2*prs_s_2 +
-            prs_platform_joint_offset_x*prs_qd_2_t*prs_qd_2_t;
+        const real prs_platform_joint_offset_x = m->prs_platform_joint_offset_x[i];
+        const real prs_rel_in_axes2_x = v.prs_S_ddot_t*v.prs_c_2 + v.prs_S_ddot_t_2*v.prs_s_2 +
+            prs_platform_joint_offset_x*prs_qd_2_t_2*prs_qd_2_t_2;
         /* (prs-qdd_1) acceleration of joint 1 */
-        const real prs_qdd_1_t = inv_prs_v_2_t*(prs_S_ddot_in_axes2_y*prs_c_2 +
-            prs_rel_in_axes2_x*prs_s_2);
-        const real prs_qdd_1 = prs_c_2*prs_rel_in_axes2_x - prs_S_ddot_in_axes2_y*prs_s_2 -
-            prs_platform_joint_offset_x*prs_qdd_1_t*prs_s_2;
+        const real prs_qdd_1_t = prs_qd_2_t*(v.prs_S_ddot_in_axes2_y*v.prs_c_2 +
+            prs_rel_in_axes2_x*v.prs_s_2);
+        const real prs_qdd_1 = v.prs_c_2*prs_rel_in_axes2_x - v.prs_S_ddot_in_axes2_y*v.prs_s_2 -
+            prs_platform_joint_offset_x*prs_qdd_1_t*v.prs_s_2;
         /* (prs-qdd_1) acceleration of joint 1 */
         o[0*count + k] = prs_qdd_1;
         /* (prs-qdd_2) acceleration of joint 2 */
@@ -4279,9 +3529,9 @@ INLINE void joint_accelerations_legs_prs(const prepared *m, size_t w, size_t leg
         o[4*count + k] = prs_qdd_1 + prs_qdd_1_t;
         const real prs_root_2_t = m->prs_root_2_t[i];
         const real prs_size = m->prs_size[i];
-        o[2*count + k] = UNLESS(prs_disc_1 >= 0);
-        o[3*count + k] = UNLESS(magnitude(prs_rho2_2) > TOLERANCE*TOLERANCE*prs_root_2_t) +
-            UNLESS(magnitude(prs_v_2_t) > TOLERANCE*prs_size);
+        o[2*count + k] = UNLESS(v.prs_disc_1 >= 0);
+        o[3*count + k] = UNLESS(magnitude(v.prs_rho2_2) > TOLERANCE*TOLERANCE*prs_root_2_t) +
+            UNLESS(magnitude(v.prs_v_2_in_axes0_y) > TOLERANCE*prs_size);
     }
 }
 
@@ -4300,10 +3550,10 @@ INLINE void joint_accelerations_place_prs(size_t w, size_t count, const real *o,
 INLINE void joint_accelerations_run(const prepared *m, const real *X, const real *V, const real
     *A, real *qdd, verdict *t)
 {
-    real s[24] = {0};
+    real s[9] = {0};
     real o_prs[5*LEGS(LEGS_OF_prs)] = {0};
-    joint_accelerations_before(1, X, V, A, s, t);
-    joint_accelerations_legs_prs(m, 1, 0, 1, s, 0, LEGS(LEGS_OF_prs), o_prs);
+    joint_accelerations_before(m, 1, X, s, t);
+    joint_accelerations_legs_prs(m, 1, 0, 1, s, 0, LEGS(LEGS_OF_prs), X, V, A, o_prs);
     for (size_t leg = 0; leg < LEGS_OF_prs; ++leg) {
         joint_accelerations_place_prs(1, LEGS(LEGS_OF_prs), o_prs, leg, leg, qdd, t);
     }
@@ -4312,98 +3562,63 @@ INLINE void joint_accelerations_run(const prepared *m, const real *X, const real
 INLINE void joint_accelerations_run_lanes(const prepared *m, const real *X, const real *V, const
     real *A, real *qdd, verdict *t)
 {
-    real s[24*LANES];
+    real s[9*LANES];
     real o_prs[5*LANES];
-    joint_accelerations_before(LANES, X, V, A, s, t);
+    joint_accelerations_before(m, LANES, X, s, t);
     for (size_t leg = 0; leg < LEGS_OF_prs; ++leg) {
-        joint_accelerations_legs_prs(m, LANES, leg, 0, s, 1, LANES, o_prs);
+        joint_accelerations_legs_prs(m, LANES, leg, 0, s, 1, LANES, X, V, A, o_prs);
         joint_accelerations_place_prs(LANES, LANES, o_prs, leg, 0, qdd, t);
     }
 }
 
 /* ---- constraints ---- */
-INLINE void constraints_before(size_t w, const real *X, real *s, verdict *t)
+INLINE void constraints_before(const prepared *m, size_t w, const real *X, real *s, verdict *t)
 {
     for (size_t k = 0; k < w; ++k) {
-        /* X: named entries */
-        const real X_0 = X[0*w + k];
-        const real t_x = X_0;
-        const real X_1 = X[1*w + k];
-        const real t_y = X_1;
-        const real X_2 = X[2*w + k];
-        const real t_z = X_2;
-        const real X_3 = X[3*w + k];
-        const real X_4 = X[4*w + k];
-        const real X_5 = X[5*w + k];
-        const real X_6 = X[6*w + k];
-        const real quaternion_norm2 = X_3*X_3 + X_4*X_4 + X_5*X_5 + X_6*X_6;
-        const real quaternion_scale = 2/quaternion_norm2;
-        const real quaternion_sx = X_3*quaternion_scale;
-        const real quaternion_sy = X_4*quaternion_scale;
-        const real quaternion_sz = X_5*quaternion_scale;
-        const real quaternion_wx = X_6*quaternion_sx;
-        const real quaternion_wy = X_6*quaternion_sy;
-        const real quaternion_wz = X_6*quaternion_sz;
-        const real quaternion_xx = X_3*quaternion_sx;
-        const real quaternion_xy = X_3*quaternion_sy;
-        const real quaternion_xz = X_3*quaternion_sz;
-        const real quaternion_yy = X_4*quaternion_sy;
-        const real quaternion_yz = X_4*quaternion_sz;
-        const real quaternion_zz = X_5*quaternion_sz;
-        const real R_xx = 1 - quaternion_yy - quaternion_zz;
-        const real R_xy = quaternion_xy - quaternion_wz;
-        const real R_xz = quaternion_wy + quaternion_xz;
-        const real R_yx = quaternion_wz + quaternion_xy;
-        const real R_yy = 1 - quaternion_xx - quaternion_zz;
-        const real R_yz = quaternion_yz - quaternion_wx;
-        const real R_zx = quaternion_xz - quaternion_wy;
-        const real R_zy = quaternion_wx + quaternion_yz;
-        const real R_zz = 1 - quaternion_xx - quaternion_yy;
-        s[0*w + k] = t_x;
-        s[1*w + k] = t_y;
-        s[2*w + k] = t_z;
-        s[3*w + k] = R_xx;
-        s[4*w + k] = R_xy;
-        s[5*w + k] = R_xz;
-        s[6*w + k] = R_yx;
-        s[7*w + k] = R_yy;
-        s[8*w + k] = R_yz;
-        s[9*w + k] = R_zx;
-        s[10*w + k] = R_zy;
-        s[11*w + k] = R_zz;
-        t->invalid[k] += UNLESS(is_finite(quaternion_scale)) + UNLESS(quaternion_scale > 0);
+        values v;
+        stage_X(m, w, k, X, &v);
+        s[0*w + k] = v.R_xx;
+        s[1*w + k] = v.R_xy;
+        s[2*w + k] = v.R_xz;
+        s[3*w + k] = v.R_yx;
+        s[4*w + k] = v.R_yy;
+        s[5*w + k] = v.R_yz;
+        s[6*w + k] = v.R_zx;
+        s[7*w + k] = v.R_zy;
+        s[8*w + k] = v.R_zz;
+        t->invalid[k] += UNLESS(is_finite(v.quaternion_scale)) + UNLESS(v.quaternion_scale > 0);
     }
 }
 
 INLINE void constraints_legs_prs(const prepared *m, size_t w, size_t leg, size_t legs, const real
-    *s, size_t states, size_t count, real *o)
+    *s, size_t states, size_t count, const real *X, real *o)
 {
     for (size_t k = 0; k < count; ++k) {
         const size_t i = leg + legs*k;
         const size_t j = states*k;
         /* (prs-S) from the base point to the connection point */
-        const real R_xx = s[3*w + j];
-        const real R_xy = s[4*w + j];
-        const real R_xz = s[5*w + j];
+        const real R_xx = s[0*w + j];
+        const real R_xy = s[1*w + j];
+        const real R_xz = s[2*w + j];
         const real prs_base_point_x = m->prs_base_point_x[i];
         const real prs_platform_point_x = m->prs_platform_point_x[i];
         const real prs_platform_point_y = m->prs_platform_point_y[i];
         const real prs_platform_point_z = m->prs_platform_point_z[i];
-        const real t_x = s[0*w + j];
+        const real t_x = X[0*w + j];
         const real prs_S_x = t_x + R_xx*prs_platform_point_x + R_xy*prs_platform_point_y +
             R_xz*prs_platform_point_z - prs_base_point_x;
-        const real R_yx = s[6*w + j];
-        const real R_yy = s[7*w + j];
-        const real R_yz = s[8*w + j];
+        const real R_yx = s[3*w + j];
+        const real R_yy = s[4*w + j];
+        const real R_yz = s[5*w + j];
         const real prs_base_point_y = m->prs_base_point_y[i];
-        const real t_y = s[1*w + j];
+        const real t_y = X[1*w + j];
         const real prs_S_y = t_y + R_yx*prs_platform_point_x + R_yy*prs_platform_point_y +
             R_yz*prs_platform_point_z - prs_base_point_y;
-        const real R_zx = s[9*w + j];
-        const real R_zy = s[10*w + j];
-        const real R_zz = s[11*w + j];
+        const real R_zx = s[6*w + j];
+        const real R_zy = s[7*w + j];
+        const real R_zz = s[8*w + j];
         const real prs_base_point_z = m->prs_base_point_z[i];
-        const real t_z = s[2*w + j];
+        const real t_z = X[2*w + j];
         const real prs_S_z = t_z + R_zx*prs_platform_point_x + R_zy*prs_platform_point_y +
             R_zz*prs_platform_point_z - prs_base_point_z;
         const real prs_base_frame_xz = m->prs_base_frame_xz[i];
@@ -4428,10 +3643,10 @@ INLINE void constraints_place_prs(size_t w, size_t count, const real *o, size_t 
 
 INLINE void constraints_run(const prepared *m, const real *X, real *constraints, verdict *t)
 {
-    real s[12] = {0};
+    real s[9] = {0};
     real o_prs[2*LEGS(LEGS_OF_prs)] = {0};
-    constraints_before(1, X, s, t);
-    constraints_legs_prs(m, 1, 0, 1, s, 0, LEGS(LEGS_OF_prs), o_prs);
+    constraints_before(m, 1, X, s, t);
+    constraints_legs_prs(m, 1, 0, 1, s, 0, LEGS(LEGS_OF_prs), X, o_prs);
     for (size_t leg = 0; leg < LEGS_OF_prs; ++leg) {
         constraints_place_prs(1, LEGS(LEGS_OF_prs), o_prs, leg, leg, constraints, t);
     }
@@ -4439,288 +3654,67 @@ INLINE void constraints_run(const prepared *m, const real *X, real *constraints,
 
 INLINE void constraints_run_lanes(const prepared *m, const real *X, real *constraints, verdict *t)
 {
-    real s[12*LANES];
+    real s[9*LANES];
     real o_prs[2*LANES];
-    constraints_before(LANES, X, s, t);
+    constraints_before(m, LANES, X, s, t);
     for (size_t leg = 0; leg < LEGS_OF_prs; ++leg) {
-        constraints_legs_prs(m, LANES, leg, 0, s, 1, LANES, o_prs);
+        constraints_legs_prs(m, LANES, leg, 0, s, 1, LANES, X, o_prs);
         constraints_place_prs(LANES, LANES, o_prs, leg, 0, constraints, t);
     }
 }
 
 /* ---- legs ---- */
-INLINE void legs_before(size_t w, const real *X, const real *V, const real *A, real *s, verdict
-    *t)
+INLINE void legs_before(const prepared *m, size_t w, const real *X, real *s, verdict *t)
 {
     for (size_t k = 0; k < w; ++k) {
-        /* X: named entries */
-        const real X_0 = X[0*w + k];
-        const real t_x = X_0;
-        const real X_1 = X[1*w + k];
-        const real t_y = X_1;
-        const real X_2 = X[2*w + k];
-        const real t_z = X_2;
-        const real X_3 = X[3*w + k];
-        const real X_4 = X[4*w + k];
-        const real X_5 = X[5*w + k];
-        const real X_6 = X[6*w + k];
-        const real quaternion_norm2 = X_3*X_3 + X_4*X_4 + X_5*X_5 + X_6*X_6;
-        const real quaternion_scale = 2/quaternion_norm2;
-        const real quaternion_sx = X_3*quaternion_scale;
-        const real quaternion_sy = X_4*quaternion_scale;
-        const real quaternion_sz = X_5*quaternion_scale;
-        const real quaternion_wx = X_6*quaternion_sx;
-        const real quaternion_wy = X_6*quaternion_sy;
-        const real quaternion_wz = X_6*quaternion_sz;
-        const real quaternion_xx = X_3*quaternion_sx;
-        const real quaternion_xy = X_3*quaternion_sy;
-        const real quaternion_xz = X_3*quaternion_sz;
-        const real quaternion_yy = X_4*quaternion_sy;
-        const real quaternion_yz = X_4*quaternion_sz;
-        const real quaternion_zz = X_5*quaternion_sz;
-        const real R_xx = 1 - quaternion_yy - quaternion_zz;
-        const real R_xy = quaternion_xy - quaternion_wz;
-        const real R_xz = quaternion_wy + quaternion_xz;
-        const real R_yx = quaternion_wz + quaternion_xy;
-        const real R_yy = 1 - quaternion_xx - quaternion_zz;
-        const real R_yz = quaternion_yz - quaternion_wx;
-        const real R_zx = quaternion_xz - quaternion_wy;
-        const real R_zy = quaternion_wx + quaternion_yz;
-        const real R_zz = 1 - quaternion_xx - quaternion_yy;
-        /* V: named entries */
-        const real V_0 = V[0*w + k];
-        const real t_dot_x = V_0;
-        const real V_1 = V[1*w + k];
-        const real t_dot_y = V_1;
-        const real V_2 = V[2*w + k];
-        const real t_dot_z = V_2;
-        const real V_3 = V[3*w + k];
-        const real omega_x = V_3;
-        const real V_4 = V[4*w + k];
-        const real omega_y = V_4;
-        const real V_5 = V[5*w + k];
-        const real omega_z = V_5;
-        /* A: named entries */
-        const real A_0 = A[0*w + k];
-        const real t_ddot_x = A_0;
-        const real A_1 = A[1*w + k];
-        const real t_ddot_y = A_1;
-        const real A_2 = A[2*w + k];
-        const real t_ddot_z = A_2;
-        const real A_3 = A[3*w + k];
-        const real alpha_x = A_3;
-        const real A_4 = A[4*w + k];
-        const real alpha_y = A_4;
-        const real A_5 = A[5*w + k];
-        const real alpha_z = A_5;
-        s[0*w + k] = t_x;
-        s[1*w + k] = t_y;
-        s[2*w + k] = t_z;
-        s[3*w + k] = R_xx;
-        s[4*w + k] = R_xy;
-        s[5*w + k] = R_xz;
-        s[6*w + k] = R_yx;
-        s[7*w + k] = R_yy;
-        s[8*w + k] = R_yz;
-        s[9*w + k] = R_zx;
-        s[10*w + k] = R_zy;
-        s[11*w + k] = R_zz;
-        s[12*w + k] = t_dot_x;
-        s[13*w + k] = t_dot_y;
-        s[14*w + k] = t_dot_z;
-        s[15*w + k] = omega_x;
-        s[16*w + k] = omega_y;
-        s[17*w + k] = omega_z;
-        s[18*w + k] = t_ddot_x;
-        s[19*w + k] = t_ddot_y;
-        s[20*w + k] = t_ddot_z;
-        s[21*w + k] = alpha_x;
-        s[22*w + k] = alpha_y;
-        s[23*w + k] = alpha_z;
-        t->invalid[k] += UNLESS(is_finite(quaternion_scale)) + UNLESS(quaternion_scale > 0);
+        values v;
+        stage_X(m, w, k, X, &v);
+        s[0*w + k] = v.R_xx;
+        s[1*w + k] = v.R_xy;
+        s[2*w + k] = v.R_xz;
+        s[3*w + k] = v.R_yx;
+        s[4*w + k] = v.R_yy;
+        s[5*w + k] = v.R_yz;
+        s[6*w + k] = v.R_zx;
+        s[7*w + k] = v.R_zy;
+        s[8*w + k] = v.R_zz;
+        t->invalid[k] += UNLESS(is_finite(v.quaternion_scale)) + UNLESS(v.quaternion_scale > 0);
     }
 }
 
 INLINE void legs_legs_prs(const prepared *m, size_t w, size_t leg, size_t legs, const real *s,
-    size_t states, size_t count, real *o)
+    size_t states, size_t count, const real *X, const real *V, const real *A, real *o)
 {
     for (size_t k = 0; k < count; ++k) {
         const size_t i = leg + legs*k;
         const size_t j = states*k;
-        /* (prs-S) from the base point to the connection point */
-        const real R_xx = s[3*w + j];
-        const real R_xy = s[4*w + j];
-        const real R_xz = s[5*w + j];
-        const real prs_platform_point_x = m->prs_platform_point_x[i];
-        const real prs_platform_point_y = m->prs_platform_point_y[i];
-        const real prs_platform_point_z = m->prs_platform_point_z[i];
-        const real prs_q_x = R_xx*prs_platform_point_x + R_xy*prs_platform_point_y +
-            R_xz*prs_platform_point_z;
-        const real R_yx = s[6*w + j];
-        const real R_yy = s[7*w + j];
-        const real R_yz = s[8*w + j];
-        const real prs_q_y = R_yx*prs_platform_point_x + R_yy*prs_platform_point_y +
-            R_yz*prs_platform_point_z;
-        const real R_zx = s[9*w + j];
-        const real R_zy = s[10*w + j];
-        const real R_zz = s[11*w + j];
-        const real prs_q_z = R_zx*prs_platform_point_x + R_zy*prs_platform_point_y +
-            R_zz*prs_platform_point_z;
-        const real prs_base_point_x = m->prs_base_point_x[i];
-        const real t_x = s[0*w + j];
-        const real prs_S_x = prs_q_x + t_x - prs_base_point_x;
-        const real prs_base_point_y = m->prs_base_point_y[i];
-        const real t_y = s[1*w + j];
-        const real prs_S_y = prs_q_y + t_y - prs_base_point_y;
-        const real prs_base_point_z = m->prs_base_point_z[i];
-        const real t_z = s[2*w + j];
-        const real prs_S_z = prs_q_z + t_z - prs_base_point_z;
-        const real prs_base_frame_xx = m->prs_base_frame_xx[i];
-        const real prs_base_frame_yx = m->prs_base_frame_yx[i];
-        const real prs_base_frame_zx = m->prs_base_frame_zx[i];
-        const real prs_S_in_axes0_x = prs_S_x*prs_base_frame_xx + prs_S_y*prs_base_frame_yx +
-            prs_S_z*prs_base_frame_zx;
-        const real prs_base_frame_xz = m->prs_base_frame_xz[i];
-        const real prs_base_frame_yz = m->prs_base_frame_yz[i];
-        const real prs_base_frame_zz = m->prs_base_frame_zz[i];
-        const real prs_S_in_axes0_z = prs_S_x*prs_base_frame_xz + prs_S_y*prs_base_frame_yz +
-            prs_S_z*prs_base_frame_zz;
-        const real prs_base_frame_xy = m->prs_base_frame_xy[i];
-        const real prs_base_frame_yy = m->prs_base_frame_yy[i];
-        const real prs_base_frame_zy = m->prs_base_frame_zy[i];
-        const real prs_S_in_axes0_y = prs_S_x*prs_base_frame_xy + prs_S_y*prs_base_frame_yy +
-            prs_S_z*prs_base_frame_zy;
-        /* (prs-disc_1) discriminant of the distance equation */
-        const real prs_disc_1_t = prs_S_x*prs_S_x + prs_S_y*prs_S_y + prs_S_z*prs_S_z;
-        const real prs_size_t = m->prs_size_t[i];
-        const real prs_disc_1 = prs_S_in_axes0_x*prs_S_in_axes0_x +
-            prs_S_in_axes0_z*prs_S_in_axes0_z + prs_size_t - prs_disc_1_t;
-        /* (prs-x_2) from the origin of joint 2 to the connection point */
-        const real prs_branch_1 = m->prs_branch_1[i];
-        const real prs_x_2_in_axes0_x = -prs_branch_1*root(prs_disc_1);
-        /* (prs-rho2_2) squared amplitude */
-        const real prs_rho2_2 = prs_size_t*(prs_S_in_axes0_y*prs_S_in_axes0_y +
-            prs_x_2_in_axes0_x*prs_x_2_in_axes0_x);
-        /* (prs-c_2) cosine of the angle of joint 2 from its reference direction */
-        const real prs_c_2_t = 1/(root(prs_rho2_2));
-        const real prs_platform_joint_offset_x = m->prs_platform_joint_offset_x[i];
-        const real prs_c_2 = prs_c_2_t*prs_platform_joint_offset_x*prs_x_2_in_axes0_x;
-        /* (prs-s_2) sine of the angle of joint 2 from its reference direction */
-        const real prs_s_2 = prs_S_in_axes0_y*prs_c_2_t*prs_platform_joint_offset_x;
-        /* (prs-S_dot) velocity of the connection point */
-        const real omega_y = s[16*w + j];
-        const real omega_z = s[17*w + j];
-        const real prs_S_dot_t = omega_y*prs_q_z - omega_z*prs_q_y;
-        const real omega_x = s[15*w + j];
-        const real prs_S_dot_t_2 = omega_z*prs_q_x - omega_x*prs_q_z;
-        const real prs_S_dot_t_3 = omega_x*prs_q_y - omega_y*prs_q_x;
-        const real t_dot_x = s[12*w + j];
-        const real prs_S_dot_x = prs_S_dot_t + t_dot_x;
-        const real t_dot_y = s[13*w + j];
-        const real prs_S_dot_y = prs_S_dot_t_2 + t_dot_y;
-        const real t_dot_z = s[14*w + j];
-        const real prs_S_dot_z = prs_S_dot_t_3 + t_dot_z;
-        /* (prs-v_2) velocity of the connection point per rate of joint 2 */
-        const real prs_v_2_t = -prs_c_2*prs_platform_joint_offset_x;
-        /* (prs-w_1) reciprocal vector 1 */
-        const real prs_d_3_in_axes0_y = prs_platform_joint_offset_x*prs_s_2;
-        const real inv_prs_v_2_t = 1/prs_v_2_t;
-        const real prs_w_1_t = inv_prs_v_2_t*prs_d_3_in_axes0_y;
-        const real prs_w_1_in_axes2_x = prs_c_2 - prs_s_2*prs_w_1_t;
-        const real prs_w_1_in_axes2_y = -prs_s_2 - prs_c_2*prs_w_1_t;
-        const real prs_w_1_t_2 = prs_c_2*prs_w_1_in_axes2_x - prs_s_2*prs_w_1_in_axes2_y;
-        const real prs_w_1_t_3 = prs_c_2*prs_w_1_in_axes2_y + prs_s_2*prs_w_1_in_axes2_x;
-        const real prs_w_1_x = prs_base_frame_xx*prs_w_1_t_2 + prs_base_frame_xy*prs_w_1_t_3;
-        const real prs_w_1_y = prs_base_frame_yx*prs_w_1_t_2 + prs_base_frame_yy*prs_w_1_t_3;
-        const real prs_w_1_z = prs_base_frame_zx*prs_w_1_t_2 + prs_base_frame_zy*prs_w_1_t_3;
-        /* (prs-qd_2) rate of joint 2 */
-        const real prs_qd_2_t = inv_prs_v_2_t*(prs_S_dot_x*prs_base_frame_xy +
-            prs_S_dot_y*prs_base_frame_yy + prs_S_dot_z*prs_base_frame_zy);
-        /* (prs-W_2) centripetal tensor of link 2 */
-        const real prs_W_2_t = prs_qd_2_t*prs_qd_2_t;
-        /* (prs-a_p) acceleration of the connection point without its centripetal part */
-        const real alpha_y = s[22*w + j];
-        const real alpha_z = s[23*w + j];
-        const real t_ddot_x = s[18*w + j];
-        const real prs_a_p_x = t_ddot_x + alpha_y*prs_q_z - alpha_z*prs_q_y;
-        const real alpha_x = s[21*w + j];
-        const real t_ddot_y = s[19*w + j];
-        const real prs_a_p_y = t_ddot_y + alpha_z*prs_q_x - alpha_x*prs_q_z;
-        const real t_ddot_z = s[20*w + j];
-        const real prs_a_p_z = t_ddot_z + alpha_x*prs_q_y - alpha_y*prs_q_x;
-        /* (prs-S_ddot) acceleration of the connection point */
-        const real prs_S_ddot_x = prs_a_p_x + omega_y*prs_S_dot_t_3 - omega_z*prs_S_dot_t_2;
-        const real prs_S_ddot_y = prs_a_p_y + omega_z*prs_S_dot_t - omega_x*prs_S_dot_t_3;
-        const real prs_S_ddot_z = prs_a_p_z + omega_x*prs_S_dot_t_2 - omega_y*prs_S_dot_t;
-        const real prs_S_ddot_t = prs_S_ddot_x*prs_base_frame_xx + prs_S_ddot_y*prs_base_frame_yx
-            + prs_S_ddot_z*prs_base_frame_zx;
-        const real prs_S_ddot_t_2 = prs_S_ddot_x*prs_base_frame_xy +
-            prs_S_ddot_y*prs_base_frame_yy + prs_S_ddot_z*prs_base_frame_zy;
-        const real prs_S_ddot_in_axes2_y = prs_S_ddot_t_2*prs_c_2 - prs_S_ddot_t*prs_s_2;
-        /* (prs-rel) acceleration of the connection point left to the joint accelerations */
-        const real prs_rel_in_axes2_x = prs_S_ddot_t*prs_c_2 + prs_S_ddot_t_2*prs_s_2 +
-            prs_platform_joint_offset_x*prs_qd_2_t*prs_qd_2_t;
-        /* (prs-qdd_1) acceleration of joint 1 */
-        const real prs_qdd_1_t = inv_prs_v_2_t*(prs_S_ddot_in_axes2_y*prs_c_2 +
-            prs_rel_in_axes2_x*prs_s_2);
-        const real prs_qdd_1 = prs_c_2*prs_rel_in_axes2_x - prs_S_ddot_in_axes2_y*prs_s_2 -
-            prs_d_3_in_axes0_y*prs_qdd_1_t;
-        /* (prs-acc_1) acceleration of the reference point of link 1, less gravity */
-        const real prs_g_in_axes0_x = m->prs_g_in_axes0_x[i];
-        const real prs_acc_1_in_axes0_x = prs_qdd_1 - prs_g_in_axes0_x;
-        /* (prs-acc_2) acceleration of the reference point of link 2, less gravity */
-        const real prs_g_in_axes0_y = m->prs_g_in_axes0_y[i];
-        const real prs_acc_2_in_axes2_x = prs_c_2*prs_qdd_1 - prs_c_2*prs_g_in_axes0_x -
-            prs_g_in_axes0_y*prs_s_2;
-        const real prs_acc_2_in_axes2_y = prs_g_in_axes0_x*prs_s_2 - prs_c_2*prs_g_in_axes0_y -
-            prs_qdd_1*prs_s_2;
-        /* (prs-f_2) inertia force of link 2 less its weight */
-        const real prs_h_2_in_spec2_x = m->prs_h_2_in_spec2_x[i];
-        const real prs_h_2_in_spec2_y = m->prs_h_2_in_spec2_y[i];
-        const real prs_link2_mass = m->prs_link2_mass[i];
-        const real prs_f_2_in_axes2_x = prs_acc_2_in_axes2_x*prs_link2_mass +
-            prs_h_2_in_spec2_y*prs_qdd_1_t - prs_W_2_t*prs_h_2_in_spec2_x;
-        const real prs_f_2_in_axes2_y = prs_acc_2_in_axes2_y*prs_link2_mass -
-            prs_W_2_t*prs_h_2_in_spec2_y - prs_h_2_in_spec2_x*prs_qdd_1_t;
-        /* (prs-mu_2) inertia moment of the links that turn with link 2, about their reference points */
-        const real prs_J_2_in_spec2_zz = m->prs_J_2_in_spec2_zz[i];
-        const real prs_mu_2_in_axes2_z = prs_acc_2_in_axes2_y*prs_h_2_in_spec2_x -
-            prs_J_2_in_spec2_zz*prs_qdd_1_t - prs_acc_2_in_axes2_x*prs_h_2_in_spec2_y;
-        /* (prs-T_1) inertia force of the links from 1 outwards, the last link left out */
-        const real prs_link1_mass = m->prs_link1_mass[i];
-        const real prs_T_1_in_axes0_x = prs_acc_1_in_axes0_x*prs_link1_mass +
-            prs_c_2*prs_f_2_in_axes2_x - prs_f_2_in_axes2_y*prs_s_2;
-        /* (prs-G) force at the connection point that balances the leg's inertia and weight along all
-           degrees of freedom */
-        const real prs_G_t = inv_prs_v_2_t*(prs_mu_2_in_axes2_z +
-            prs_T_1_in_axes0_x*prs_d_3_in_axes0_y);
-        const real prs_G_in_axes2_x = prs_T_1_in_axes0_x*prs_c_2 - prs_G_t*prs_s_2;
-        const real prs_G_in_axes2_y = -prs_G_t*prs_c_2 - prs_T_1_in_axes0_x*prs_s_2;
+        values_prs v;
+        stage_prs_X(m, w, i, j, s, X, &v);
+        stage_prs_A_X(w, j, A, &v);
+        stage_prs_V_X(m, w, i, j, V, &v);
+        stage_prs_A_V_X(m, w, i, j, V, &v);
+        stage_prs_legs_required(m, i, &v);
         /* (prs-c) leg force on the platform without actuation and without the mass at the connection
            point */
-        const real prs_c_t = prs_G_in_axes2_y*prs_s_2 - prs_G_in_axes2_x*prs_c_2;
-        const real prs_c_t_2 = -prs_G_in_axes2_x*prs_s_2 - prs_G_in_axes2_y*prs_c_2;
-        const real prs_c_x = prs_base_frame_xx*prs_c_t + prs_base_frame_xy*prs_c_t_2;
-        const real prs_c_y = prs_base_frame_yx*prs_c_t + prs_base_frame_yy*prs_c_t_2;
-        const real prs_c_z = prs_base_frame_zx*prs_c_t + prs_base_frame_zy*prs_c_t_2;
-        /* (prs-c) leg force on the platform without actuation and without the mass at the connection
-           point */
-        o[0*count + k] = prs_c_x;
-        o[1*count + k] = prs_c_y;
-        o[2*count + k] = prs_c_z;
+        o[0*count + k] = v.prs_c_x;
+        o[1*count + k] = v.prs_c_y;
+        o[2*count + k] = v.prs_c_z;
         /* (prs-w_1) reciprocal vector 1 */
-        o[3*count + k] = prs_w_1_x;
-        o[4*count + k] = prs_w_1_y;
-        o[5*count + k] = prs_w_1_z;
+        o[3*count + k] = v.prs_w_1_x;
+        o[4*count + k] = v.prs_w_1_y;
+        o[5*count + k] = v.prs_w_1_z;
         /* (legs_size) rms size of the legs, taken where the platform points coincide */
+        const real prs_base_frame_xz = m->prs_base_frame_xz[i];
         o[6*count + k] = prs_base_frame_xz;
+        const real prs_base_frame_yz = m->prs_base_frame_yz[i];
         o[7*count + k] = prs_base_frame_yz;
+        const real prs_base_frame_zz = m->prs_base_frame_zz[i];
         o[8*count + k] = prs_base_frame_zz;
         const real prs_root_2_t = m->prs_root_2_t[i];
         const real prs_size = m->prs_size[i];
-        o[9*count + k] = UNLESS(prs_disc_1 >= 0);
-        o[10*count + k] = UNLESS(magnitude(prs_rho2_2) > TOLERANCE*TOLERANCE*prs_root_2_t) +
-            UNLESS(magnitude(prs_v_2_t) > TOLERANCE*prs_size);
+        o[9*count + k] = UNLESS(v.prs_disc_1 >= 0);
+        o[10*count + k] = UNLESS(magnitude(v.prs_rho2_2) > TOLERANCE*TOLERANCE*prs_root_2_t) +
+            UNLESS(magnitude(v.prs_v_2_in_axes0_y) > TOLERANCE*prs_size);
     }
 }
 
@@ -4745,10 +3739,10 @@ INLINE void legs_place_prs(size_t w, size_t count, const real *o, size_t leg, si
 INLINE void legs_run(const prepared *m, const real *X, const real *V, const real *A, real
     *leg_force, real *actuator, real *constraint_direction, verdict *t)
 {
-    real s[24] = {0};
+    real s[9] = {0};
     real o_prs[11*LEGS(LEGS_OF_prs)] = {0};
-    legs_before(1, X, V, A, s, t);
-    legs_legs_prs(m, 1, 0, 1, s, 0, LEGS(LEGS_OF_prs), o_prs);
+    legs_before(m, 1, X, s, t);
+    legs_legs_prs(m, 1, 0, 1, s, 0, LEGS(LEGS_OF_prs), X, V, A, o_prs);
     for (size_t leg = 0; leg < LEGS_OF_prs; ++leg) {
         legs_place_prs(1, LEGS(LEGS_OF_prs), o_prs, leg, leg, leg_force, actuator, constraint_direction, t);
     }
@@ -4758,40 +3752,8 @@ INLINE void legs_run(const prepared *m, const real *X, const real *V, const real
 INLINE void potential_before(const prepared *m, size_t w, const real *X, real *s, verdict *t)
 {
     for (size_t k = 0; k < w; ++k) {
-        /* X: named entries */
-        const real X_0 = X[0*w + k];
-        const real t_x = X_0;
-        const real X_1 = X[1*w + k];
-        const real t_y = X_1;
-        const real X_2 = X[2*w + k];
-        const real t_z = X_2;
-        const real X_3 = X[3*w + k];
-        const real X_4 = X[4*w + k];
-        const real X_5 = X[5*w + k];
-        const real X_6 = X[6*w + k];
-        const real quaternion_norm2 = X_3*X_3 + X_4*X_4 + X_5*X_5 + X_6*X_6;
-        const real quaternion_scale = 2/quaternion_norm2;
-        const real quaternion_sx = X_3*quaternion_scale;
-        const real quaternion_sy = X_4*quaternion_scale;
-        const real quaternion_sz = X_5*quaternion_scale;
-        const real quaternion_wx = X_6*quaternion_sx;
-        const real quaternion_wy = X_6*quaternion_sy;
-        const real quaternion_wz = X_6*quaternion_sz;
-        const real quaternion_xx = X_3*quaternion_sx;
-        const real quaternion_xy = X_3*quaternion_sy;
-        const real quaternion_xz = X_3*quaternion_sz;
-        const real quaternion_yy = X_4*quaternion_sy;
-        const real quaternion_yz = X_4*quaternion_sz;
-        const real quaternion_zz = X_5*quaternion_sz;
-        const real R_xx = 1 - quaternion_yy - quaternion_zz;
-        const real R_xy = quaternion_xy - quaternion_wz;
-        const real R_xz = quaternion_wy + quaternion_xz;
-        const real R_yx = quaternion_wz + quaternion_xy;
-        const real R_yy = 1 - quaternion_xx - quaternion_zz;
-        const real R_yz = quaternion_yz - quaternion_wx;
-        const real R_zx = quaternion_xz - quaternion_wy;
-        const real R_zy = quaternion_wx + quaternion_yz;
-        const real R_zz = 1 - quaternion_xx - quaternion_yy;
+        values v;
+        stage_X(m, w, k, X, &v);
         /* (potential) potential energy */
         const real gravity_x = m->gravity_x;
         const real gravity_y = m->gravity_y;
@@ -4800,57 +3762,58 @@ INLINE void potential_before(const prepared *m, size_t w, const real *X, real *s
         const real h_star_in_platform_y = m->h_star_in_platform_y;
         const real h_star_in_platform_z = m->h_star_in_platform_z;
         const real platform_mass = m->platform_mass;
-        const real potential_t = gravity_x*(R_xx*h_star_in_platform_x + R_xy*h_star_in_platform_y
-            + R_xz*h_star_in_platform_z + platform_mass*t_x) +
-            gravity_y*(R_yx*h_star_in_platform_x + R_yy*h_star_in_platform_y +
-            R_yz*h_star_in_platform_z + platform_mass*t_y) + gravity_z*(R_zx*h_star_in_platform_x
-            + R_zy*h_star_in_platform_y + R_zz*h_star_in_platform_z + platform_mass*t_z);
-        s[0*w + k] = t_x;
-        s[1*w + k] = t_y;
-        s[2*w + k] = t_z;
-        s[3*w + k] = R_xx;
-        s[4*w + k] = R_xy;
-        s[5*w + k] = R_xz;
-        s[6*w + k] = R_yx;
-        s[7*w + k] = R_yy;
-        s[8*w + k] = R_yz;
-        s[9*w + k] = R_zx;
-        s[10*w + k] = R_zy;
-        s[11*w + k] = R_zz;
-        s[12*w + k] = potential_t;
-        t->invalid[k] += UNLESS(is_finite(quaternion_scale)) + UNLESS(quaternion_scale > 0);
+        const real t_x = X[0*w + k];
+        const real t_y = X[1*w + k];
+        const real t_z = X[2*w + k];
+        const real potential_t = gravity_x*(v.R_xx*h_star_in_platform_x +
+            v.R_xy*h_star_in_platform_y + v.R_xz*h_star_in_platform_z + platform_mass*t_x) +
+            gravity_y*(v.R_yx*h_star_in_platform_x + v.R_yy*h_star_in_platform_y +
+            v.R_yz*h_star_in_platform_z + platform_mass*t_y) +
+            gravity_z*(v.R_zx*h_star_in_platform_x + v.R_zy*h_star_in_platform_y +
+            v.R_zz*h_star_in_platform_z + platform_mass*t_z);
+        s[0*w + k] = v.R_xx;
+        s[1*w + k] = v.R_xy;
+        s[2*w + k] = v.R_xz;
+        s[3*w + k] = v.R_yx;
+        s[4*w + k] = v.R_yy;
+        s[5*w + k] = v.R_yz;
+        s[6*w + k] = v.R_zx;
+        s[7*w + k] = v.R_zy;
+        s[8*w + k] = v.R_zz;
+        s[9*w + k] = potential_t;
+        t->invalid[k] += UNLESS(is_finite(v.quaternion_scale)) + UNLESS(v.quaternion_scale > 0);
     }
 }
 
 INLINE void potential_legs_prs(const prepared *m, size_t w, size_t leg, size_t legs, const real
-    *s, size_t states, size_t count, int add, real *terms, real *o)
+    *s, size_t states, size_t count, int add, const real *X, real *terms, real *o)
 {
     for (size_t k = 0; k < count; ++k) {
         const size_t i = leg + legs*k;
         const size_t j = states*k;
         /* (prs-S) from the base point to the connection point */
-        const real R_xx = s[3*w + j];
-        const real R_xy = s[4*w + j];
-        const real R_xz = s[5*w + j];
+        const real R_xx = s[0*w + j];
+        const real R_xy = s[1*w + j];
+        const real R_xz = s[2*w + j];
         const real prs_base_point_x = m->prs_base_point_x[i];
         const real prs_platform_point_x = m->prs_platform_point_x[i];
         const real prs_platform_point_y = m->prs_platform_point_y[i];
         const real prs_platform_point_z = m->prs_platform_point_z[i];
-        const real t_x = s[0*w + j];
+        const real t_x = X[0*w + j];
         const real prs_S_x = t_x + R_xx*prs_platform_point_x + R_xy*prs_platform_point_y +
             R_xz*prs_platform_point_z - prs_base_point_x;
-        const real R_yx = s[6*w + j];
-        const real R_yy = s[7*w + j];
-        const real R_yz = s[8*w + j];
+        const real R_yx = s[3*w + j];
+        const real R_yy = s[4*w + j];
+        const real R_yz = s[5*w + j];
         const real prs_base_point_y = m->prs_base_point_y[i];
-        const real t_y = s[1*w + j];
+        const real t_y = X[1*w + j];
         const real prs_S_y = t_y + R_yx*prs_platform_point_x + R_yy*prs_platform_point_y +
             R_yz*prs_platform_point_z - prs_base_point_y;
-        const real R_zx = s[9*w + j];
-        const real R_zy = s[10*w + j];
-        const real R_zz = s[11*w + j];
+        const real R_zx = s[6*w + j];
+        const real R_zy = s[7*w + j];
+        const real R_zz = s[8*w + j];
         const real prs_base_point_z = m->prs_base_point_z[i];
-        const real t_z = s[2*w + j];
+        const real t_z = X[2*w + j];
         const real prs_S_z = t_z + R_zx*prs_platform_point_x + R_zy*prs_platform_point_y +
             R_zz*prs_platform_point_z - prs_base_point_z;
         const real prs_base_frame_xx = m->prs_base_frame_xx[i];
@@ -4858,16 +3821,16 @@ INLINE void potential_legs_prs(const prepared *m, size_t w, size_t leg, size_t l
         const real prs_base_frame_zx = m->prs_base_frame_zx[i];
         const real prs_S_in_axes0_x = prs_S_x*prs_base_frame_xx + prs_S_y*prs_base_frame_yx +
             prs_S_z*prs_base_frame_zx;
-        const real prs_base_frame_xz = m->prs_base_frame_xz[i];
-        const real prs_base_frame_yz = m->prs_base_frame_yz[i];
-        const real prs_base_frame_zz = m->prs_base_frame_zz[i];
-        const real prs_S_in_axes0_z = prs_S_x*prs_base_frame_xz + prs_S_y*prs_base_frame_yz +
-            prs_S_z*prs_base_frame_zz;
         const real prs_base_frame_xy = m->prs_base_frame_xy[i];
         const real prs_base_frame_yy = m->prs_base_frame_yy[i];
         const real prs_base_frame_zy = m->prs_base_frame_zy[i];
         const real prs_S_in_axes0_y = prs_S_x*prs_base_frame_xy + prs_S_y*prs_base_frame_yy +
             prs_S_z*prs_base_frame_zy;
+        const real prs_base_frame_xz = m->prs_base_frame_xz[i];
+        const real prs_base_frame_yz = m->prs_base_frame_yz[i];
+        const real prs_base_frame_zz = m->prs_base_frame_zz[i];
+        const real prs_S_in_axes0_z = prs_S_x*prs_base_frame_xz + prs_S_y*prs_base_frame_yz +
+            prs_S_z*prs_base_frame_zz;
         /* (prs-disc_1) discriminant of the distance equation */
         const real prs_disc_1_t = prs_S_x*prs_S_x + prs_S_y*prs_S_y + prs_S_z*prs_S_z;
         const real prs_size_t = m->prs_size_t[i];
@@ -4878,8 +3841,7 @@ INLINE void potential_legs_prs(const prepared *m, size_t w, size_t leg, size_t l
         const real prs_q_1_t = -prs_branch_1*root(prs_disc_1);
         const real prs_q_1 = prs_S_in_axes0_x - prs_q_1_t;
         /* (prs-rho2_2) squared amplitude */
-        const real prs_rho2_2 = prs_size_t*(prs_S_in_axes0_y*prs_S_in_axes0_y +
-            prs_q_1_t*prs_q_1_t);
+        const real prs_rho2_2 = prs_size_t*(prs_S_in_axes0_y*prs_S_in_axes0_y + prs_disc_1);
         /* (prs-c_2) cosine of the angle of joint 2 from its reference direction */
         const real prs_c_2_t = 1/(root(prs_rho2_2));
         const real prs_platform_joint_offset_x = m->prs_platform_joint_offset_x[i];
@@ -4926,7 +3888,7 @@ INLINE void potential_after(size_t w, const real *s, const real *sums, real *pot
     for (size_t k = 0; k < w; ++k) {
         /* (potential) potential energy */
         const real potential_of_legs = sums[0*w + k];
-        const real potential_t = s[12*w + k];
+        const real potential_t = s[9*w + k];
         const real potential_ = -potential_of_legs - potential_t;
         /* (potential) potential energy */
         potential[0*w + k] = potential_;
@@ -4935,12 +3897,10 @@ INLINE void potential_after(size_t w, const real *s, const real *sums, real *pot
 
 INLINE void potential_run(const prepared *m, const real *X, real *potential, verdict *t)
 {
-    real s[13] = {0};
-    real sums[1] = {0};
-    real terms_prs[LEGS(LEGS_OF_prs)] = {0};
-    real o_prs[2*LEGS(LEGS_OF_prs)] = {0};
+    real s[10] = {0}, sums[1] = {0};
+    real terms_prs[LEGS(LEGS_OF_prs)] = {0}, o_prs[2*LEGS(LEGS_OF_prs)] = {0};
     potential_before(m, 1, X, s, t);
-    potential_legs_prs(m, 1, 0, 1, s, 0, LEGS(LEGS_OF_prs), 0, terms_prs, o_prs);
+    potential_legs_prs(m, 1, 0, 1, s, 0, LEGS(LEGS_OF_prs), 0, X, terms_prs, o_prs);
     for (size_t leg = 0; leg < LEGS_OF_prs; ++leg) {
         potential_place_prs(1, LEGS(LEGS_OF_prs), o_prs, leg, t);
     }
@@ -4955,196 +3915,88 @@ INLINE void condition_before(const prepared *m, size_t w, const real *X, real *s
     verdict *t)
 {
     for (size_t k = 0; k < w; ++k) {
-        /* X: named entries */
-        const real X_0 = X[0*w + k];
-        const real t_x = X_0;
-        const real X_1 = X[1*w + k];
-        const real t_y = X_1;
-        const real X_2 = X[2*w + k];
-        const real t_z = X_2;
-        const real X_3 = X[3*w + k];
-        const real X_4 = X[4*w + k];
-        const real X_5 = X[5*w + k];
-        const real X_6 = X[6*w + k];
-        const real quaternion_norm2 = X_3*X_3 + X_4*X_4 + X_5*X_5 + X_6*X_6;
-        const real quaternion_scale = 2/quaternion_norm2;
-        const real quaternion_sx = X_3*quaternion_scale;
-        const real quaternion_sy = X_4*quaternion_scale;
-        const real quaternion_sz = X_5*quaternion_scale;
-        const real quaternion_wx = X_6*quaternion_sx;
-        const real quaternion_wy = X_6*quaternion_sy;
-        const real quaternion_wz = X_6*quaternion_sz;
-        const real quaternion_xx = X_3*quaternion_sx;
-        const real quaternion_xy = X_3*quaternion_sy;
-        const real quaternion_xz = X_3*quaternion_sz;
-        const real quaternion_yy = X_4*quaternion_sy;
-        const real quaternion_yz = X_4*quaternion_sz;
-        const real quaternion_zz = X_5*quaternion_sz;
-        const real R_xx = 1 - quaternion_yy - quaternion_zz;
-        const real R_xy = quaternion_xy - quaternion_wz;
-        const real R_xz = quaternion_wy + quaternion_xz;
-        const real R_yx = quaternion_wz + quaternion_xy;
-        const real R_yy = 1 - quaternion_xx - quaternion_zz;
-        const real R_yz = quaternion_yz - quaternion_wx;
-        const real R_zx = quaternion_xz - quaternion_wy;
-        const real R_zy = quaternion_wx + quaternion_yz;
-        const real R_zz = 1 - quaternion_xx - quaternion_yy;
-        s[0*w + k] = t_x;
-        s[1*w + k] = t_y;
-        s[2*w + k] = t_z;
-        s[3*w + k] = R_xx;
-        s[4*w + k] = R_xy;
-        s[5*w + k] = R_xz;
-        s[6*w + k] = R_yx;
-        s[7*w + k] = R_yy;
-        s[8*w + k] = R_yz;
-        s[9*w + k] = R_zx;
-        s[10*w + k] = R_zy;
-        s[11*w + k] = R_zz;
+        values v;
+        stage_X(m, w, k, X, &v);
+        s[0*w + k] = v.R_xx;
+        s[1*w + k] = v.R_xy;
+        s[2*w + k] = v.R_xz;
+        s[3*w + k] = v.R_yx;
+        s[4*w + k] = v.R_yy;
+        s[5*w + k] = v.R_yz;
+        s[6*w + k] = v.R_zx;
+        s[7*w + k] = v.R_zy;
+        s[8*w + k] = v.R_zz;
         /* (legs_size) rms size of the legs, taken where the platform points coincide */
         const real legs_size = m->legs_size;
         lengths[1*w + k] = legs_size;
         t->total[k] += legs_size;
-        t->invalid[k] += UNLESS(is_finite(quaternion_scale)) + UNLESS(quaternion_scale > 0);
+        t->invalid[k] += UNLESS(is_finite(v.quaternion_scale)) + UNLESS(v.quaternion_scale > 0);
     }
 }
 
 INLINE void condition_legs_prs(const prepared *m, size_t w, size_t leg, size_t legs, const real
-    *s, size_t states, size_t count, int add, real *terms, real *o)
+    *s, size_t states, size_t count, int add, const real *X, real *terms, real *o)
 {
     for (size_t k = 0; k < count; ++k) {
         const size_t i = leg + legs*k;
         const size_t j = states*k;
-        /* (prs-S) from the base point to the connection point */
-        const real R_xx = s[3*w + j];
-        const real R_xy = s[4*w + j];
-        const real R_xz = s[5*w + j];
-        const real prs_platform_point_x = m->prs_platform_point_x[i];
-        const real prs_platform_point_y = m->prs_platform_point_y[i];
-        const real prs_platform_point_z = m->prs_platform_point_z[i];
-        const real prs_q_x = R_xx*prs_platform_point_x + R_xy*prs_platform_point_y +
-            R_xz*prs_platform_point_z;
-        const real R_yx = s[6*w + j];
-        const real R_yy = s[7*w + j];
-        const real R_yz = s[8*w + j];
-        const real prs_q_y = R_yx*prs_platform_point_x + R_yy*prs_platform_point_y +
-            R_yz*prs_platform_point_z;
-        const real R_zx = s[9*w + j];
-        const real R_zy = s[10*w + j];
-        const real R_zz = s[11*w + j];
-        const real prs_q_z = R_zx*prs_platform_point_x + R_zy*prs_platform_point_y +
-            R_zz*prs_platform_point_z;
-        const real prs_base_point_x = m->prs_base_point_x[i];
-        const real t_x = s[0*w + j];
-        const real prs_S_x = prs_q_x + t_x - prs_base_point_x;
-        const real prs_base_point_y = m->prs_base_point_y[i];
-        const real t_y = s[1*w + j];
-        const real prs_S_y = prs_q_y + t_y - prs_base_point_y;
-        const real prs_base_point_z = m->prs_base_point_z[i];
-        const real t_z = s[2*w + j];
-        const real prs_S_z = prs_q_z + t_z - prs_base_point_z;
-        const real prs_base_frame_xx = m->prs_base_frame_xx[i];
-        const real prs_base_frame_yx = m->prs_base_frame_yx[i];
-        const real prs_base_frame_zx = m->prs_base_frame_zx[i];
-        const real prs_S_in_axes0_x = prs_S_x*prs_base_frame_xx + prs_S_y*prs_base_frame_yx +
-            prs_S_z*prs_base_frame_zx;
-        const real prs_base_frame_xz = m->prs_base_frame_xz[i];
-        const real prs_base_frame_yz = m->prs_base_frame_yz[i];
-        const real prs_base_frame_zz = m->prs_base_frame_zz[i];
-        const real prs_S_in_axes0_z = prs_S_x*prs_base_frame_xz + prs_S_y*prs_base_frame_yz +
-            prs_S_z*prs_base_frame_zz;
-        const real prs_base_frame_xy = m->prs_base_frame_xy[i];
-        const real prs_base_frame_yy = m->prs_base_frame_yy[i];
-        const real prs_base_frame_zy = m->prs_base_frame_zy[i];
-        const real prs_S_in_axes0_y = prs_S_x*prs_base_frame_xy + prs_S_y*prs_base_frame_yy +
-            prs_S_z*prs_base_frame_zy;
-        /* (prs-disc_1) discriminant of the distance equation */
-        const real prs_disc_1_t = prs_S_x*prs_S_x + prs_S_y*prs_S_y + prs_S_z*prs_S_z;
-        const real prs_size_t = m->prs_size_t[i];
-        const real prs_disc_1 = prs_S_in_axes0_x*prs_S_in_axes0_x +
-            prs_S_in_axes0_z*prs_S_in_axes0_z + prs_size_t - prs_disc_1_t;
-        /* (prs-x_2) from the origin of joint 2 to the connection point */
-        const real prs_branch_1 = m->prs_branch_1[i];
-        const real prs_x_2_in_axes0_x = -prs_branch_1*root(prs_disc_1);
-        /* (prs-rho2_2) squared amplitude */
-        const real prs_rho2_2 = prs_size_t*(prs_S_in_axes0_y*prs_S_in_axes0_y +
-            prs_x_2_in_axes0_x*prs_x_2_in_axes0_x);
-        /* (prs-c_2) cosine of the angle of joint 2 from its reference direction */
-        const real prs_c_2_t = 1/(root(prs_rho2_2));
-        const real prs_platform_joint_offset_x = m->prs_platform_joint_offset_x[i];
-        const real prs_c_2 = prs_c_2_t*prs_platform_joint_offset_x*prs_x_2_in_axes0_x;
-        /* (prs-s_2) sine of the angle of joint 2 from its reference direction */
-        const real prs_s_2 = prs_S_in_axes0_y*prs_c_2_t*prs_platform_joint_offset_x;
-        /* (prs-v_2) velocity of the connection point per rate of joint 2 */
-        const real prs_v_2_t = -prs_c_2*prs_platform_joint_offset_x;
-        /* (prs-w_1) reciprocal vector 1 */
-        const real prs_w_1_t = prs_platform_joint_offset_x*prs_s_2/prs_v_2_t;
-        const real prs_w_1_in_axes2_x = prs_c_2 - prs_s_2*prs_w_1_t;
-        const real prs_w_1_in_axes2_y = -prs_s_2 - prs_c_2*prs_w_1_t;
-        const real prs_w_1_x = prs_w_1_in_axes2_x*(prs_base_frame_xx*prs_c_2 +
-            prs_base_frame_xy*prs_s_2) + prs_w_1_in_axes2_y*(prs_base_frame_xy*prs_c_2 -
-            prs_base_frame_xx*prs_s_2);
-        const real prs_w_1_y = prs_w_1_in_axes2_x*(prs_base_frame_yx*prs_c_2 +
-            prs_base_frame_yy*prs_s_2) + prs_w_1_in_axes2_y*(prs_base_frame_yy*prs_c_2 -
-            prs_base_frame_yx*prs_s_2);
-        const real prs_w_1_z = prs_w_1_in_axes2_x*(prs_base_frame_zx*prs_c_2 +
-            prs_base_frame_zy*prs_s_2) + prs_w_1_in_axes2_y*(prs_base_frame_zy*prs_c_2 -
-            prs_base_frame_zx*prs_s_2);
+        values_prs v;
+        stage_prs_X(m, w, i, j, s, X, &v);
+        stage_prs_H_condition(m, i, &v);
         /* (prs-G) force at the connection point that balances the leg's inertia and weight along all
            degrees of freedom */
-        const real prs_pivot_size = magnitude(prs_rho2_2);
-        const real prs_pivot_size_2 = magnitude(prs_v_2_t);
+        const real prs_pivot_size = magnitude(v.prs_rho2_2);
+        const real prs_pivot_size_2 = magnitude(v.prs_v_2_in_axes0_y);
         const real inv_prs_root_2_t = m->inv_prs_root_2_t[i];
         const real inv_prs_size = m->inv_prs_size[i];
         const real prs_least_pivots = lesser(root(inv_prs_root_2_t*prs_pivot_size),
             inv_prs_size*prs_pivot_size_2);
-        /* (prs-H_a_1) moment of the column's unit force about the platform origin */
-        const real prs_H_a_1_x = prs_q_y*prs_w_1_z - prs_q_z*prs_w_1_y;
-        const real prs_H_a_1_y = prs_q_z*prs_w_1_x - prs_q_x*prs_w_1_z;
-        const real prs_H_a_1_z = prs_q_x*prs_w_1_y - prs_q_y*prs_w_1_x;
-        /* (prs-Hk_a_1) moment of the column's unit force about the platform origin */
-        const real prs_Hk_a_1_x = prs_base_frame_zz*prs_q_y - prs_base_frame_yz*prs_q_z;
-        const real prs_Hk_a_1_y = prs_base_frame_xz*prs_q_z - prs_base_frame_zz*prs_q_x;
-        const real prs_Hk_a_1_z = prs_base_frame_yz*prs_q_x - prs_base_frame_xz*prs_q_y;
         /* (spread) rms distance of the platform points from their centroid */
         const real b_c_in_platform_x = m->b_c_in_platform_x;
+        const real prs_platform_point_x = m->prs_platform_point_x[i];
         const real prs_spread_t = b_c_in_platform_x - prs_platform_point_x;
         const real b_c_in_platform_y = m->b_c_in_platform_y;
+        const real prs_platform_point_y = m->prs_platform_point_y[i];
         const real prs_spread_t_2 = b_c_in_platform_y - prs_platform_point_y;
         const real b_c_in_platform_z = m->b_c_in_platform_z;
+        const real prs_platform_point_z = m->prs_platform_point_z[i];
         const real prs_spread_t_3 = b_c_in_platform_z - prs_platform_point_z;
         const real prs_spread_t_4 = prs_spread_t*prs_spread_t + prs_spread_t_2*prs_spread_t_2 +
             prs_spread_t_3*prs_spread_t_3;
         /* (spread) rms distance of the platform points from their centroid */
         gather(&terms[0*count + k], add, prs_spread_t_4);  /* spread_prs */
         /* (prs-w_1) reciprocal vector 1 */
-        o[0*count + k] = prs_w_1_x;
-        o[1*count + k] = prs_w_1_y;
-        o[2*count + k] = prs_w_1_z;
+        o[0*count + k] = v.prs_w_1_x;
+        o[1*count + k] = v.prs_w_1_y;
+        o[2*count + k] = v.prs_w_1_z;
         /* (prs-H_a_1) moment of the column's unit force about the platform origin */
-        o[3*count + k] = prs_H_a_1_x;
-        o[4*count + k] = prs_H_a_1_y;
-        o[5*count + k] = prs_H_a_1_z;
+        o[3*count + k] = v.prs_H_a_1_x;
+        o[4*count + k] = v.prs_H_a_1_y;
+        o[5*count + k] = v.prs_H_a_1_z;
         /* (legs_size) rms size of the legs, taken where the platform points coincide */
+        const real prs_base_frame_xz = m->prs_base_frame_xz[i];
         o[6*count + k] = prs_base_frame_xz;
+        const real prs_base_frame_yz = m->prs_base_frame_yz[i];
         o[7*count + k] = prs_base_frame_yz;
+        const real prs_base_frame_zz = m->prs_base_frame_zz[i];
         o[8*count + k] = prs_base_frame_zz;
         /* (prs-Hk_a_1) moment of the column's unit force about the platform origin */
-        o[9*count + k] = prs_Hk_a_1_x;
-        o[10*count + k] = prs_Hk_a_1_y;
-        o[11*count + k] = prs_Hk_a_1_z;
+        o[9*count + k] = v.prs_Hk_a_1_x;
+        o[10*count + k] = v.prs_Hk_a_1_y;
+        o[11*count + k] = v.prs_Hk_a_1_z;
         /* (prs-G) force at the connection point that balances the leg's inertia and weight along all
            degrees of freedom */
         o[12*count + k] = prs_least_pivots;
-        o[13*count + k] = prs_disc_1;
-        o[16*count + k] = ((prs_w_1_x + (prs_w_1_y + prs_w_1_z)) + ((prs_H_a_1_x + prs_H_a_1_y) +
-            (prs_H_a_1_z + prs_base_frame_xz))) + ((prs_base_frame_yz + (prs_base_frame_zz +
-            prs_Hk_a_1_x)) + ((prs_Hk_a_1_y + prs_Hk_a_1_z) + (prs_least_pivots + prs_disc_1)));
+        o[13*count + k] = v.prs_disc_1;
+        o[16*count + k] = ((v.prs_w_1_x + (v.prs_w_1_y + v.prs_w_1_z)) + ((v.prs_H_a_1_x +
+            v.prs_H_a_1_y) + (v.prs_H_a_1_z + prs_base_frame_xz))) + ((prs_base_frame_yz +
+            (prs_base_frame_zz + v.prs_Hk_a_1_x)) + ((v.prs_Hk_a_1_y + v.prs_Hk_a_1_z) +
+            (prs_least_pivots + v.prs_disc_1)));
         const real prs_root_2_t = m->prs_root_2_t[i];
         const real prs_size = m->prs_size[i];
-        o[14*count + k] = UNLESS(prs_disc_1 >= 0);
-        o[15*count + k] = UNLESS(magnitude(prs_rho2_2) > TOLERANCE*TOLERANCE*prs_root_2_t) +
-            UNLESS(magnitude(prs_v_2_t) > TOLERANCE*prs_size);
+        o[14*count + k] = UNLESS(v.prs_disc_1 >= 0);
+        o[15*count + k] = UNLESS(magnitude(v.prs_rho2_2) > TOLERANCE*TOLERANCE*prs_root_2_t) +
+            UNLESS(magnitude(v.prs_v_2_in_axes0_y) > TOLERANCE*prs_size);
     }
 }
 
@@ -5152,13 +4004,13 @@ INLINE void condition_place_prs(size_t w, size_t count, const real *o, size_t le
     real *H, real *Hk, real *pivots, real *reach, verdict *t)
 {
     for (size_t k = 0; k < w; ++k) {
-        H[(0*NU + leg)*w + k] = o[0*count + first + k];
+        H[leg*w + k] = o[0*count + first + k];
         H[(NU + leg)*w + k] = o[1*count + first + k];
         H[(2*NU + leg)*w + k] = o[2*count + first + k];
         H[(3*NU + leg)*w + k] = o[3*count + first + k];
         H[(4*NU + leg)*w + k] = o[4*count + first + k];
         H[(5*NU + leg)*w + k] = o[5*count + first + k];
-        Hk[(0*NC + leg)*w + k] = o[6*count + first + k];
+        Hk[leg*w + k] = o[6*count + first + k];
         Hk[(NC + leg)*w + k] = o[7*count + first + k];
         Hk[(2*NC + leg)*w + k] = o[8*count + first + k];
         Hk[(3*NC + leg)*w + k] = o[9*count + first + k];
@@ -5189,12 +4041,10 @@ INLINE void condition_after(const prepared *m, size_t w, const real *sums, real 
 INLINE void condition_run(const prepared *m, const real *X, real *H, real *Hk, real *lengths, real
     *pivots, real *reach, verdict *t)
 {
-    real s[12] = {0};
-    real sums[1] = {0};
-    real terms_prs[LEGS(LEGS_OF_prs)] = {0};
-    real o_prs[17*LEGS(LEGS_OF_prs)] = {0};
+    real s[9] = {0}, sums[1] = {0};
+    real terms_prs[LEGS(LEGS_OF_prs)] = {0}, o_prs[17*LEGS(LEGS_OF_prs)] = {0};
     condition_before(m, 1, X, s, lengths, t);
-    condition_legs_prs(m, 1, 0, 1, s, 0, LEGS(LEGS_OF_prs), 0, terms_prs, o_prs);
+    condition_legs_prs(m, 1, 0, 1, s, 0, LEGS(LEGS_OF_prs), 0, X, terms_prs, o_prs);
     for (size_t leg = 0; leg < LEGS_OF_prs; ++leg) {
         condition_place_prs(1, LEGS(LEGS_OF_prs), o_prs, leg, leg, H, Hk, pivots, reach, t);
     }
@@ -5992,11 +4842,104 @@ INLINE void condition_constrained_one(const prepared *m, const real *X, const re
     }
 }
 
+INLINE void manipulability_one(const prepared *m, const real *X, real *measure_out, real
+    *isotropy_out, int *code)
+{
+    static const size_t places_divide_rows_1[] = {3, 4, 5};
+    static const size_t places_divide_rows_2[] = {3, 4, 5};
+    real H[NV*NU] = {0}, Hk[NV*NC] = {0}, lengths[2] = {0}, pivots[NL] = {0}, reach[NL] = {0},
+        subtract_1[1] = {0}, choose_length_1[1] = {0}, divide_rows_1[NV*NU] = {0}, subtract_2[1] =
+        {0}, choose_length_2[1] = {0}, divide_rows_2[NV*NC] = {0}, transposed_1[NC*NV] = {0},
+        null_basis_1[NV*NC] = {0}, transposed_2[NC*NV] = {0}, product_1[NC*NU] = {0},
+        singular_values_1[NC] = {0}, measure[1] = {0}, isotropy[1] = {0};
+    verdict why;
+    start(1, &why);
+    check(NQ, 1, X, why.invalid);
+    condition_run(m, X, H, Hk, lengths, pivots, reach, &why);
+    const real *const entry_1 = lengths;
+    for (size_t i = 0; i < 1; ++i) {
+        subtract_1[i] = entry_1[i] - entry_1[i];
+    }
+    for (size_t i = 0; i < 1; ++i) {
+        choose_length_1[i] = subtract_1[i] > 0 ? subtract_1[i] : lengths[i] > TINY*lengths[1 + i]
+            ? lengths[i] : lengths[1 + i];
+    }
+    for (size_t i = 0; i < NV*NU; ++i) {
+        divide_rows_1[i] = H[i];
+    }
+    divide_rows(NU, NU, 1, places_divide_rows_1, choose_length_1, divide_rows_1);
+    const real *const entry_2 = lengths;
+    for (size_t i = 0; i < 1; ++i) {
+        subtract_2[i] = entry_2[i] - entry_2[i];
+    }
+    for (size_t i = 0; i < 1; ++i) {
+        choose_length_2[i] = subtract_2[i] > 0 ? subtract_2[i] : lengths[i] > TINY*lengths[1 + i]
+            ? lengths[i] : lengths[1 + i];
+    }
+    for (size_t i = 0; i < NV*NC; ++i) {
+        divide_rows_2[i] = Hk[i];
+    }
+    divide_rows(NC, NC, 1, places_divide_rows_2, choose_length_2, divide_rows_2);
+    transpose(NV, NC, 1, divide_rows_2, transposed_1);
+    null_basis(NC, NV, NC, transposed_1, null_basis_1);
+    transpose(NV, NC, 1, null_basis_1, transposed_2);
+    product(NC, NV, NU, 1, transposed_2, divide_rows_1, product_1);
+    singular_values(NC, NU, product_1, singular_values_1);
+    spread(NC, singular_values_1, measure, isotropy);
+    check(1, 1, measure, why.overflow);
+    check(1, 1, isotropy, why.overflow);
+    judge(&why, code);
+    copy(1, measure, measure_out);
+    copy(1, isotropy, isotropy_out);
+    if (*code != OK) {
+        refuse(1, measure_out);
+        refuse(1, isotropy_out);
+    }
+}
+
+INLINE void singularity_distance_one(const prepared *m, const real *X, real *actuators_out, real
+    *legs_out, int *code)
+{
+    static const size_t places_divide_rows_1[] = {3, 4, 5};
+    real H[NV*NU] = {0}, Hk[NV*NC] = {0}, lengths[2] = {0}, pivots[NL] = {0}, reach[NL] = {0},
+        beside_1[NV*NV] = {0}, subtract_1[1] = {0}, choose_length_1[1] = {0}, divide_rows_1[NV*NV] =
+        {0}, singular_values_1[NV] = {0}, spread_1[1] = {0}, actuators[1] = {0}, legs[1] = {0};
+    verdict why;
+    start(1, &why);
+    check(NQ, 1, X, why.invalid);
+    condition_run(m, X, H, Hk, lengths, pivots, reach, &why);
+    beside(NV, NU, NC, H, Hk, beside_1);
+    const real *const entry_1 = lengths;
+    for (size_t i = 0; i < 1; ++i) {
+        subtract_1[i] = entry_1[i] - entry_1[i];
+    }
+    for (size_t i = 0; i < 1; ++i) {
+        choose_length_1[i] = subtract_1[i] > 0 ? subtract_1[i] : lengths[i] > TINY*lengths[1 + i]
+            ? lengths[i] : lengths[1 + i];
+    }
+    for (size_t i = 0; i < NV*NV; ++i) {
+        divide_rows_1[i] = beside_1[i];
+    }
+    divide_rows(3, NV, 1, places_divide_rows_1, choose_length_1, divide_rows_1);
+    singular_values(NV, NV, divide_rows_1, singular_values_1);
+    spread(NV, singular_values_1, spread_1, actuators);
+    least_entry(NL, pivots, legs);
+    check(1, 1, actuators, why.overflow);
+    check(1, 1, legs, why.overflow);
+    judge(&why, code);
+    copy(1, actuators, actuators_out);
+    copy(1, legs, legs_out);
+    if (*code != OK) {
+        refuse(1, actuators_out);
+        refuse(1, legs_out);
+    }
+}
+
 static void mismatch_one(const prepared *m, const real *X, const real *q_actuated, real *gap_out,
     int *code)
 {
-    real q[NJ] = {0}, take_1[3] = {0}, subtract_1[NU] = {0}, constraints[3] = {0}, negative_1[3] =
-        {0}, gap[6] = {0};
+    real q[NJ] = {0}, q_of_inverse_kinematics_from_0[3] = {0}, subtract_1[NU] = {0}, constraints[3] =
+        {0}, negative_1[3] = {0}, gap[6] = {0};
     verdict why;
     start(1, &why);
     const real total_in = total(X, NQ) + total(q_actuated, NU);
@@ -6005,9 +4948,9 @@ static void mismatch_one(const prepared *m, const real *X, const real *q_actuate
         check(NU, 1, q_actuated, why.invalid);
     }
     inverse_kinematics_run(m, X, q, &why);
-    take(3, 1, tripod_3prs_ACTUATED, q, take_1);
+    take(3, 1, tripod_3prs_ACTUATED, q, q_of_inverse_kinematics_from_0);
     for (size_t i = 0; i < NU; ++i) {
-        subtract_1[i] = q_actuated[i] - take_1[i];
+        subtract_1[i] = q_actuated[i] - q_of_inverse_kinematics_from_0[i];
     }
     constraints_run(m, X, constraints, &why);
     for (size_t i = 0; i < 3; ++i) {
@@ -6472,8 +5415,8 @@ INLINE void rotation_one(const real *X, real *R_out, int *code)
     verdict why;
     start(1, &why);
     check(NQ, 1, X, why.invalid);
-    const real *const take_1 = X + 3;
-    rotation_of_quaternion(take_1, R);
+    const real *const X_from_3 = X + 3;
+    rotation_of_quaternion(X_from_3, R);
     check(9, 1, R, why.overflow);
     judge(&why, code);
     copy(9, R, R_out);
@@ -6513,11 +5456,11 @@ INLINE void X_dot_one(const real *X, const real *V, real *X_dot_out, int *code)
         check(NQ, 1, X, why.invalid);
         check(NV, 1, V, why.invalid);
     }
-    const real *const take_1 = V + 3;
-    const real *const take_2 = X + 3;
-    quaternion_rate(take_2, take_1, quaternion_rate_1);
-    const real *const take_3 = V;
-    beside(1, 3, 4, take_3, quaternion_rate_1, X_dot);
+    const real *const V_from_3 = V + 3;
+    const real *const X_from_3 = X + 3;
+    quaternion_rate(X_from_3, V_from_3, quaternion_rate_1);
+    const real *const V_from_0 = V;
+    beside(1, 3, 4, V_from_0, quaternion_rate_1, X_dot);
     check(NQ, 1, X_dot, why.overflow);
     judge(&why, code);
     copy(NQ, X_dot, X_dot_out);
@@ -6557,13 +5500,13 @@ INLINE void retract_one(const real *X, const real *step, real *X_moved_out, int 
         check(NQ, 1, X, why.invalid);
         check(NV, 1, step, why.invalid);
     }
-    const real *const take_1 = X;
-    const real *const take_2 = X + 3;
-    const real *const take_3 = step;
-    const real *const take_4 = step + 3;
-    turn_quaternion(take_2, take_4, turn_quaternion_1);
+    const real *const X_from_0 = X;
+    const real *const X_from_3 = X + 3;
+    const real *const step_from_0 = step;
+    const real *const step_from_3 = step + 3;
+    turn_quaternion(X_from_3, step_from_3, turn_quaternion_1);
     for (size_t i = 0; i < 3; ++i) {
-        add_1[i] = take_1[i] + take_3[i];
+        add_1[i] = X_from_0[i] + step_from_0[i];
     }
     beside(1, 3, 4, add_1, turn_quaternion_1, X_moved);
     check(NQ, 1, X_moved, why.overflow);
@@ -6584,13 +5527,13 @@ INLINE void difference_one(const real *X0, const real *X1, real *step_out, int *
         check(NQ, 1, X0, why.invalid);
         check(NQ, 1, X1, why.invalid);
     }
-    const real *const take_1 = X0;
-    const real *const take_2 = X0 + 3;
-    const real *const take_3 = X1;
-    const real *const take_4 = X1 + 3;
-    turn_between(take_2, take_4, turn_between_1);
+    const real *const X0_from_0 = X0;
+    const real *const X0_from_3 = X0 + 3;
+    const real *const X1_from_0 = X1;
+    const real *const X1_from_3 = X1 + 3;
+    turn_between(X0_from_3, X1_from_3, turn_between_1);
     for (size_t i = 0; i < 3; ++i) {
-        subtract_1[i] = take_3[i] - take_1[i];
+        subtract_1[i] = X1_from_0[i] - X0_from_0[i];
     }
     beside(1, 3, 3, subtract_1, turn_between_1, step);
     check(NV, 1, step, why.overflow);
@@ -6613,25 +5556,25 @@ INLINE void interpolate_one(const real *X0, const real *X1, const real *s, real 
         check(NQ, 1, X1, why.invalid);
         check(1, 1, s, why.invalid);
     }
-    const real *const take_1 = X0;
-    const real *const take_2 = X0 + 3;
-    const real *const take_3 = X1;
-    const real *const take_4 = X1 + 3;
-    turn_between(take_2, take_4, turn_between_1);
+    const real *const X0_from_0 = X0;
+    const real *const X0_from_3 = X0 + 3;
+    const real *const X1_from_0 = X1;
+    const real *const X1_from_3 = X1 + 3;
+    turn_between(X0_from_3, X1_from_3, turn_between_1);
     for (size_t i = 0; i < 3; ++i) {
-        subtract_1[i] = take_3[i] - take_1[i];
+        subtract_1[i] = X1_from_0[i] - X0_from_0[i];
     }
     beside(1, 3, 3, subtract_1, turn_between_1, join_1);
     for (size_t i = 0; i < 6; ++i) {
         scale_1[i] = join_1[i]*s[i%(1)];
     }
-    const real *const take_5 = X0;
-    const real *const take_6 = X0 + 3;
-    const real *const take_7 = scale_1;
-    const real *const take_8 = scale_1 + 3;
-    turn_quaternion(take_6, take_8, turn_quaternion_1);
+    const real *const X0_from_0_2 = X0;
+    const real *const X0_from_3_2 = X0 + 3;
+    const real *const scale_1_from_0 = scale_1;
+    const real *const scale_1_from_3 = scale_1 + 3;
+    turn_quaternion(X0_from_3_2, scale_1_from_3, turn_quaternion_1);
     for (size_t i = 0; i < 3; ++i) {
-        add_1[i] = take_5[i] + take_7[i];
+        add_1[i] = X0_from_0_2[i] + scale_1_from_0[i];
     }
     beside(1, 3, 4, add_1, turn_quaternion_1, X);
     check(NQ, 1, X, why.overflow);
@@ -6644,371 +5587,339 @@ INLINE void interpolate_one(const real *X0, const real *X1, const real *s, real 
 
 /* ---- one state, and batches ---- */
 
-int tripod_3prs_M(const tripod_3prs_model *model, const tripod_3prs_real *X, tripod_3prs_real *M)
+int tripod_3prs_M(const prepared *model, const real *X, real *M)
 {
     int code;
     M_one(model, X, M, &code);
     return code;
 }
 
-size_t tripod_3prs_M_batch(const tripod_3prs_model *model, size_t n, const tripod_3prs_real *X,
-    tripod_3prs_real *M, int *status)
+size_t tripod_3prs_M_batch(const prepared *model, size_t n, const real *X, real *M, int *status)
 {
-    size_t failed = 0, i = 0;
-    for (; LANES > 1 && i + LANES <= n; i += LANES) {
-        int codes[LANES];
-        M_lanes(model, X + NQ*i, M + NV*NV*i, codes);
-        for (size_t k = 0; k < LANES; ++k) {
+    size_t failed = 0, w;
+    for (size_t i = 0; i < n; i += w) {
+        int codes[LANES] = {INVALID};
+        w = LANES > 1 && i + LANES <= n ? LANES : 1;
+        if (w > 1) {
+            M_lanes(model, X + NQ*i, M + NV*NV*i, codes);
+        }
+        for (size_t k = 0; k < w; ++k) {
             if (codes[k] != OK) {
                 codes[k] = tripod_3prs_M(model, X + NQ*(i + k), M + NV*NV*(i + k));
             }
         }
-        failed += record(codes, LANES, status ? status + i : NULL);
-    }
-    for (; i < n; ++i) {
-        const int code = tripod_3prs_M(model, X + NQ*i, M + NV*NV*i);
-        failed += record(&code, 1, status ? status + i : NULL);
+        failed += record(codes, w, status ? status + i : NULL);
     }
     return failed;
 }
 
-int tripod_3prs_Z(const tripod_3prs_model *model, const tripod_3prs_real *X, const
-    tripod_3prs_real *V, tripod_3prs_real *Z)
+int tripod_3prs_Z(const prepared *model, const real *X, const real *V, real *Z)
 {
     int code;
     Z_one(model, X, V, Z, &code);
     return code;
 }
 
-size_t tripod_3prs_Z_batch(const tripod_3prs_model *model, size_t n, const tripod_3prs_real *X,
-    const tripod_3prs_real *V, tripod_3prs_real *Z, int *status)
+size_t tripod_3prs_Z_batch(const prepared *model, size_t n, const real *X, const real *V, real *Z,
+    int *status)
 {
-    size_t failed = 0, i = 0;
-    for (; LANES > 1 && i + LANES <= n; i += LANES) {
-        int codes[LANES];
-        Z_lanes(model, X + NQ*i, V + NV*i, Z + NV*i, codes);
-        for (size_t k = 0; k < LANES; ++k) {
+    size_t failed = 0, w;
+    for (size_t i = 0; i < n; i += w) {
+        int codes[LANES] = {INVALID};
+        w = LANES > 1 && i + LANES <= n ? LANES : 1;
+        if (w > 1) {
+            Z_lanes(model, X + NQ*i, V + NV*i, Z + NV*i, codes);
+        }
+        for (size_t k = 0; k < w; ++k) {
             if (codes[k] != OK) {
                 codes[k] = tripod_3prs_Z(model, X + NQ*(i + k), V + NV*(i + k), Z + NV*(i + k));
             }
         }
-        failed += record(codes, LANES, status ? status + i : NULL);
-    }
-    for (; i < n; ++i) {
-        const int code = tripod_3prs_Z(model, X + NQ*i, V + NV*i, Z + NV*i);
-        failed += record(&code, 1, status ? status + i : NULL);
+        failed += record(codes, w, status ? status + i : NULL);
     }
     return failed;
 }
 
-int tripod_3prs_H(const tripod_3prs_model *model, const tripod_3prs_real *X, tripod_3prs_real *H)
+int tripod_3prs_H(const prepared *model, const real *X, real *H)
 {
     int code;
     H_one(model, X, H, &code);
     return code;
 }
 
-size_t tripod_3prs_H_batch(const tripod_3prs_model *model, size_t n, const tripod_3prs_real *X,
-    tripod_3prs_real *H, int *status)
+size_t tripod_3prs_H_batch(const prepared *model, size_t n, const real *X, real *H, int *status)
 {
-    size_t failed = 0, i = 0;
-    for (; LANES > 1 && i + LANES <= n; i += LANES) {
-        int codes[LANES];
-        H_lanes(model, X + NQ*i, H + NV*NU*i, codes);
-        for (size_t k = 0; k < LANES; ++k) {
+    size_t failed = 0, w;
+    for (size_t i = 0; i < n; i += w) {
+        int codes[LANES] = {INVALID};
+        w = LANES > 1 && i + LANES <= n ? LANES : 1;
+        if (w > 1) {
+            H_lanes(model, X + NQ*i, H + NV*NU*i, codes);
+        }
+        for (size_t k = 0; k < w; ++k) {
             if (codes[k] != OK) {
                 codes[k] = tripod_3prs_H(model, X + NQ*(i + k), H + NV*NU*(i + k));
             }
         }
-        failed += record(codes, LANES, status ? status + i : NULL);
-    }
-    for (; i < n; ++i) {
-        const int code = tripod_3prs_H(model, X + NQ*i, H + NV*NU*i);
-        failed += record(&code, 1, status ? status + i : NULL);
+        failed += record(codes, w, status ? status + i : NULL);
     }
     return failed;
 }
 
-int tripod_3prs_Hk(const tripod_3prs_model *model, const tripod_3prs_real *X, tripod_3prs_real
-    *Hk)
+int tripod_3prs_Hk(const prepared *model, const real *X, real *Hk)
 {
     int code;
     Hk_one(model, X, Hk, &code);
     return code;
 }
 
-size_t tripod_3prs_Hk_batch(const tripod_3prs_model *model, size_t n, const tripod_3prs_real *X,
-    tripod_3prs_real *Hk, int *status)
+size_t tripod_3prs_Hk_batch(const prepared *model, size_t n, const real *X, real *Hk, int *status)
 {
-    size_t failed = 0, i = 0;
-    for (; LANES > 1 && i + LANES <= n; i += LANES) {
-        int codes[LANES];
-        Hk_lanes(model, X + NQ*i, Hk + NV*NC*i, codes);
-        for (size_t k = 0; k < LANES; ++k) {
+    size_t failed = 0, w;
+    for (size_t i = 0; i < n; i += w) {
+        int codes[LANES] = {INVALID};
+        w = LANES > 1 && i + LANES <= n ? LANES : 1;
+        if (w > 1) {
+            Hk_lanes(model, X + NQ*i, Hk + NV*NC*i, codes);
+        }
+        for (size_t k = 0; k < w; ++k) {
             if (codes[k] != OK) {
                 codes[k] = tripod_3prs_Hk(model, X + NQ*(i + k), Hk + NV*NC*(i + k));
             }
         }
-        failed += record(codes, LANES, status ? status + i : NULL);
-    }
-    for (; i < n; ++i) {
-        const int code = tripod_3prs_Hk(model, X + NQ*i, Hk + NV*NC*i);
-        failed += record(&code, 1, status ? status + i : NULL);
+        failed += record(codes, w, status ? status + i : NULL);
     }
     return failed;
 }
 
-int tripod_3prs_constraints(const tripod_3prs_model *model, const tripod_3prs_real *X,
-    tripod_3prs_real *residual)
+int tripod_3prs_constraints(const prepared *model, const real *X, real *residual)
 {
     int code;
     constraints_one(model, X, residual, &code);
     return code;
 }
 
-size_t tripod_3prs_constraints_batch(const tripod_3prs_model *model, size_t n, const
-    tripod_3prs_real *X, tripod_3prs_real *residual, int *status)
+size_t tripod_3prs_constraints_batch(const prepared *model, size_t n, const real *X, real
+    *residual, int *status)
 {
-    size_t failed = 0, i = 0;
-    for (; LANES > 1 && i + LANES <= n; i += LANES) {
-        int codes[LANES];
-        constraints_lanes(model, X + NQ*i, residual + NC*i, codes);
-        for (size_t k = 0; k < LANES; ++k) {
+    size_t failed = 0, w;
+    for (size_t i = 0; i < n; i += w) {
+        int codes[LANES] = {INVALID};
+        w = LANES > 1 && i + LANES <= n ? LANES : 1;
+        if (w > 1) {
+            constraints_lanes(model, X + NQ*i, residual + NC*i, codes);
+        }
+        for (size_t k = 0; k < w; ++k) {
             if (codes[k] != OK) {
                 codes[k] = tripod_3prs_constraints(model, X + NQ*(i + k), residual + NC*(i + k));
             }
         }
-        failed += record(codes, LANES, status ? status + i : NULL);
-    }
-    for (; i < n; ++i) {
-        const int code = tripod_3prs_constraints(model, X + NQ*i, residual + NC*i);
-        failed += record(&code, 1, status ? status + i : NULL);
+        failed += record(codes, w, status ? status + i : NULL);
     }
     return failed;
 }
 
-int tripod_3prs_constraint_bias(const tripod_3prs_model *model, const tripod_3prs_real *X, const
-    tripod_3prs_real *V, tripod_3prs_real *bias)
+int tripod_3prs_constraint_bias(const prepared *model, const real *X, const real *V, real *bias)
 {
     int code;
     constraint_bias_one(model, X, V, bias, &code);
     return code;
 }
 
-size_t tripod_3prs_constraint_bias_batch(const tripod_3prs_model *model, size_t n, const
-    tripod_3prs_real *X, const tripod_3prs_real *V, tripod_3prs_real *bias, int *status)
+size_t tripod_3prs_constraint_bias_batch(const prepared *model, size_t n, const real *X, const
+    real *V, real *bias, int *status)
 {
-    size_t failed = 0, i = 0;
-    for (; LANES > 1 && i + LANES <= n; i += LANES) {
-        int codes[LANES];
-        constraint_bias_lanes(model, X + NQ*i, V + NV*i, bias + NC*i, codes);
-        for (size_t k = 0; k < LANES; ++k) {
+    size_t failed = 0, w;
+    for (size_t i = 0; i < n; i += w) {
+        int codes[LANES] = {INVALID};
+        w = LANES > 1 && i + LANES <= n ? LANES : 1;
+        if (w > 1) {
+            constraint_bias_lanes(model, X + NQ*i, V + NV*i, bias + NC*i, codes);
+        }
+        for (size_t k = 0; k < w; ++k) {
             if (codes[k] != OK) {
                 codes[k] = tripod_3prs_constraint_bias(model, X + NQ*(i + k), V + NV*(i + k), bias + NC*(i + k));
             }
         }
-        failed += record(codes, LANES, status ? status + i : NULL);
-    }
-    for (; i < n; ++i) {
-        const int code = tripod_3prs_constraint_bias(model, X + NQ*i, V + NV*i, bias + NC*i);
-        failed += record(&code, 1, status ? status + i : NULL);
+        failed += record(codes, w, status ? status + i : NULL);
     }
     return failed;
 }
 
-int tripod_3prs_inverse_kinematics(const tripod_3prs_model *model, const tripod_3prs_real *X,
-    tripod_3prs_real *q)
+int tripod_3prs_inverse_kinematics(const prepared *model, const real *X, real *q)
 {
     int code;
     inverse_kinematics_one(model, X, q, &code);
     return code;
 }
 
-size_t tripod_3prs_inverse_kinematics_batch(const tripod_3prs_model *model, size_t n, const
-    tripod_3prs_real *X, tripod_3prs_real *q, int *status)
+size_t tripod_3prs_inverse_kinematics_batch(const prepared *model, size_t n, const real *X, real
+    *q, int *status)
 {
-    size_t failed = 0, i = 0;
-    for (; LANES > 1 && i + LANES <= n; i += LANES) {
-        int codes[LANES];
-        inverse_kinematics_lanes(model, X + NQ*i, q + NJ*i, codes);
-        for (size_t k = 0; k < LANES; ++k) {
+    size_t failed = 0, w;
+    for (size_t i = 0; i < n; i += w) {
+        int codes[LANES] = {INVALID};
+        w = LANES > 1 && i + LANES <= n ? LANES : 1;
+        if (w > 1) {
+            inverse_kinematics_lanes(model, X + NQ*i, q + NJ*i, codes);
+        }
+        for (size_t k = 0; k < w; ++k) {
             if (codes[k] != OK) {
                 codes[k] = tripod_3prs_inverse_kinematics(model, X + NQ*(i + k), q + NJ*(i + k));
             }
         }
-        failed += record(codes, LANES, status ? status + i : NULL);
-    }
-    for (; i < n; ++i) {
-        const int code = tripod_3prs_inverse_kinematics(model, X + NQ*i, q + NJ*i);
-        failed += record(&code, 1, status ? status + i : NULL);
+        failed += record(codes, w, status ? status + i : NULL);
     }
     return failed;
 }
 
-int tripod_3prs_joint_rates(const tripod_3prs_model *model, const tripod_3prs_real *X, const
-    tripod_3prs_real *V, tripod_3prs_real *rates)
+int tripod_3prs_joint_rates(const prepared *model, const real *X, const real *V, real *rates)
 {
     int code;
     joint_rates_one(model, X, V, rates, &code);
     return code;
 }
 
-size_t tripod_3prs_joint_rates_batch(const tripod_3prs_model *model, size_t n, const
-    tripod_3prs_real *X, const tripod_3prs_real *V, tripod_3prs_real *rates, int *status)
+size_t tripod_3prs_joint_rates_batch(const prepared *model, size_t n, const real *X, const real
+    *V, real *rates, int *status)
 {
-    size_t failed = 0, i = 0;
-    for (; LANES > 1 && i + LANES <= n; i += LANES) {
-        int codes[LANES];
-        joint_rates_lanes(model, X + NQ*i, V + NV*i, rates + NJ*i, codes);
-        for (size_t k = 0; k < LANES; ++k) {
+    size_t failed = 0, w;
+    for (size_t i = 0; i < n; i += w) {
+        int codes[LANES] = {INVALID};
+        w = LANES > 1 && i + LANES <= n ? LANES : 1;
+        if (w > 1) {
+            joint_rates_lanes(model, X + NQ*i, V + NV*i, rates + NJ*i, codes);
+        }
+        for (size_t k = 0; k < w; ++k) {
             if (codes[k] != OK) {
                 codes[k] = tripod_3prs_joint_rates(model, X + NQ*(i + k), V + NV*(i + k), rates + NJ*(i + k));
             }
         }
-        failed += record(codes, LANES, status ? status + i : NULL);
-    }
-    for (; i < n; ++i) {
-        const int code = tripod_3prs_joint_rates(model, X + NQ*i, V + NV*i, rates + NJ*i);
-        failed += record(&code, 1, status ? status + i : NULL);
+        failed += record(codes, w, status ? status + i : NULL);
     }
     return failed;
 }
 
-int tripod_3prs_joint_accelerations(const tripod_3prs_model *model, const tripod_3prs_real *X,
-    const tripod_3prs_real *V, const tripod_3prs_real *A, tripod_3prs_real *accelerations)
+int tripod_3prs_joint_accelerations(const prepared *model, const real *X, const real *V, const
+    real *A, real *accelerations)
 {
     int code;
     joint_accelerations_one(model, X, V, A, accelerations, &code);
     return code;
 }
 
-size_t tripod_3prs_joint_accelerations_batch(const tripod_3prs_model *model, size_t n, const
-    tripod_3prs_real *X, const tripod_3prs_real *V, const tripod_3prs_real *A, tripod_3prs_real
-    *accelerations, int *status)
+size_t tripod_3prs_joint_accelerations_batch(const prepared *model, size_t n, const real *X, const
+    real *V, const real *A, real *accelerations, int *status)
 {
-    size_t failed = 0, i = 0;
-    for (; LANES > 1 && i + LANES <= n; i += LANES) {
-        int codes[LANES];
-        joint_accelerations_lanes(model, X + NQ*i, V + NV*i, A + NV*i, accelerations + NJ*i, codes);
-        for (size_t k = 0; k < LANES; ++k) {
+    size_t failed = 0, w;
+    for (size_t i = 0; i < n; i += w) {
+        int codes[LANES] = {INVALID};
+        w = LANES > 1 && i + LANES <= n ? LANES : 1;
+        if (w > 1) {
+            joint_accelerations_lanes(model, X + NQ*i, V + NV*i, A + NV*i, accelerations + NJ*i, codes);
+        }
+        for (size_t k = 0; k < w; ++k) {
             if (codes[k] != OK) {
                 codes[k] = tripod_3prs_joint_accelerations(model, X + NQ*(i + k), V + NV*(i + k), A + NV*(i + k),
                     accelerations + NJ*(i + k));
             }
         }
-        failed += record(codes, LANES, status ? status + i : NULL);
-    }
-    for (; i < n; ++i) {
-        const int code = tripod_3prs_joint_accelerations(model, X + NQ*i, V + NV*i, A + NV*i,
-            accelerations + NJ*i);
-        failed += record(&code, 1, status ? status + i : NULL);
+        failed += record(codes, w, status ? status + i : NULL);
     }
     return failed;
 }
 
-int tripod_3prs_dynamics(const tripod_3prs_model *model, const tripod_3prs_real *X, const
-    tripod_3prs_real *V, tripod_3prs_real *M, tripod_3prs_real *Z, tripod_3prs_real *H)
+int tripod_3prs_dynamics(const prepared *model, const real *X, const real *V, real *M, real *Z,
+    real *H)
 {
     int code;
     dynamics_one(model, X, V, M, Z, H, &code);
     return code;
 }
 
-size_t tripod_3prs_dynamics_batch(const tripod_3prs_model *model, size_t n, const tripod_3prs_real
-    *X, const tripod_3prs_real *V, tripod_3prs_real *M, tripod_3prs_real *Z, tripod_3prs_real *H,
-    int *status)
+size_t tripod_3prs_dynamics_batch(const prepared *model, size_t n, const real *X, const real *V,
+    real *M, real *Z, real *H, int *status)
 {
-    size_t failed = 0, i = 0;
-    for (; LANES > 1 && i + LANES <= n; i += LANES) {
-        int codes[LANES];
-        dynamics_lanes(model, X + NQ*i, V + NV*i, M + NV*NV*i, Z + NV*i, H + NV*NU*i, codes);
-        for (size_t k = 0; k < LANES; ++k) {
+    size_t failed = 0, w;
+    for (size_t i = 0; i < n; i += w) {
+        int codes[LANES] = {INVALID};
+        w = LANES > 1 && i + LANES <= n ? LANES : 1;
+        if (w > 1) {
+            dynamics_lanes(model, X + NQ*i, V + NV*i, M + NV*NV*i, Z + NV*i, H + NV*NU*i, codes);
+        }
+        for (size_t k = 0; k < w; ++k) {
             if (codes[k] != OK) {
                 codes[k] = tripod_3prs_dynamics(model, X + NQ*(i + k), V + NV*(i + k), M + NV*NV*(i + k), Z +
                     NV*(i + k), H + NV*NU*(i + k));
             }
         }
-        failed += record(codes, LANES, status ? status + i : NULL);
-    }
-    for (; i < n; ++i) {
-        const int code = tripod_3prs_dynamics(model, X + NQ*i, V + NV*i, M + NV*NV*i, Z + NV*i, H +
-            NV*NU*i);
-        failed += record(&code, 1, status ? status + i : NULL);
+        failed += record(codes, w, status ? status + i : NULL);
     }
     return failed;
 }
 
-int tripod_3prs_inverse_dynamics(const tripod_3prs_model *model, const tripod_3prs_real *X, const
-    tripod_3prs_real *V, const tripod_3prs_real *A, const tripod_3prs_real *wrench,
-    tripod_3prs_real *tau, tripod_3prs_real *lambda)
+int tripod_3prs_inverse_dynamics(const prepared *model, const real *X, const real *V, const real
+    *A, const real *wrench, real *tau, real *lambda)
 {
     int code;
     inverse_dynamics_one(model, X, V, A, wrench, tau, lambda, &code);
     return code;
 }
 
-size_t tripod_3prs_inverse_dynamics_batch(const tripod_3prs_model *model, size_t n, const
-    tripod_3prs_real *X, const tripod_3prs_real *V, const tripod_3prs_real *A, const
-    tripod_3prs_real *wrench, tripod_3prs_real *tau, tripod_3prs_real *lambda, int *status)
+size_t tripod_3prs_inverse_dynamics_batch(const prepared *model, size_t n, const real *X, const
+    real *V, const real *A, const real *wrench, real *tau, real *lambda, int *status)
 {
-    size_t failed = 0, i = 0;
-    for (; LANES > 1 && i + LANES <= n; i += LANES) {
-        int codes[LANES];
-        inverse_dynamics_lanes(model, X + NQ*i, V + NV*i, A + NV*i, wrench ? wrench + NW*i : NULL, tau +
-            NU*i, lambda + NC*i, codes);
-        for (size_t k = 0; k < LANES; ++k) {
+    size_t failed = 0, w;
+    for (size_t i = 0; i < n; i += w) {
+        int codes[LANES] = {INVALID};
+        w = LANES > 1 && i + LANES <= n ? LANES : 1;
+        if (w > 1) {
+            inverse_dynamics_lanes(model, X + NQ*i, V + NV*i, A + NV*i, wrench ? wrench + NW*i : NULL, tau +
+                NU*i, lambda + NC*i, codes);
+        }
+        for (size_t k = 0; k < w; ++k) {
             if (codes[k] != OK) {
                 codes[k] = tripod_3prs_inverse_dynamics(model, X + NQ*(i + k), V + NV*(i + k), A + NV*(i + k),
                     wrench ? wrench + NW*(i + k) : NULL, tau + NU*(i + k), lambda + NC*(i + k));
             }
         }
-        failed += record(codes, LANES, status ? status + i : NULL);
-    }
-    for (; i < n; ++i) {
-        const int code = tripod_3prs_inverse_dynamics(model, X + NQ*i, V + NV*i, A + NV*i, wrench ? wrench
-            + NW*i : NULL, tau + NU*i, lambda + NC*i);
-        failed += record(&code, 1, status ? status + i : NULL);
+        failed += record(codes, w, status ? status + i : NULL);
     }
     return failed;
 }
 
-int tripod_3prs_forward_dynamics(const tripod_3prs_model *model, const tripod_3prs_real *X, const
-    tripod_3prs_real *V, const tripod_3prs_real *tau, const tripod_3prs_real *wrench,
-    tripod_3prs_real *A, tripod_3prs_real *lambda)
+int tripod_3prs_forward_dynamics(const prepared *model, const real *X, const real *V, const real
+    *tau, const real *wrench, real *A, real *lambda)
 {
     int code;
     forward_dynamics_one(model, X, V, tau, wrench, A, lambda, &code);
     return code;
 }
 
-size_t tripod_3prs_forward_dynamics_batch(const tripod_3prs_model *model, size_t n, const
-    tripod_3prs_real *X, const tripod_3prs_real *V, const tripod_3prs_real *tau, const
-    tripod_3prs_real *wrench, tripod_3prs_real *A, tripod_3prs_real *lambda, int *status)
+size_t tripod_3prs_forward_dynamics_batch(const prepared *model, size_t n, const real *X, const
+    real *V, const real *tau, const real *wrench, real *A, real *lambda, int *status)
 {
-    size_t failed = 0, i = 0;
-    for (; LANES > 1 && i + LANES <= n; i += LANES) {
-        int codes[LANES];
-        forward_dynamics_lanes(model, X + NQ*i, V + NV*i, tau + NU*i, wrench ? wrench + NW*i : NULL, A +
-            NV*i, lambda + NC*i, codes);
-        for (size_t k = 0; k < LANES; ++k) {
+    size_t failed = 0, w;
+    for (size_t i = 0; i < n; i += w) {
+        int codes[LANES] = {INVALID};
+        w = LANES > 1 && i + LANES <= n ? LANES : 1;
+        if (w > 1) {
+            forward_dynamics_lanes(model, X + NQ*i, V + NV*i, tau + NU*i, wrench ? wrench + NW*i : NULL, A +
+                NV*i, lambda + NC*i, codes);
+        }
+        for (size_t k = 0; k < w; ++k) {
             if (codes[k] != OK) {
                 codes[k] = tripod_3prs_forward_dynamics(model, X + NQ*(i + k), V + NV*(i + k), tau + NU*(i + k),
                     wrench ? wrench + NW*(i + k) : NULL, A + NV*(i + k), lambda + NC*(i + k));
             }
         }
-        failed += record(codes, LANES, status ? status + i : NULL);
-    }
-    for (; i < n; ++i) {
-        const int code = tripod_3prs_forward_dynamics(model, X + NQ*i, V + NV*i, tau + NU*i, wrench ?
-            wrench + NW*i : NULL, A + NV*i, lambda + NC*i);
-        failed += record(&code, 1, status ? status + i : NULL);
+        failed += record(codes, w, status ? status + i : NULL);
     }
     return failed;
 }
 
-int tripod_3prs_complete_acceleration(const tripod_3prs_model *model, const tripod_3prs_real *X,
-    const tripod_3prs_real *V, const tripod_3prs_real *A, const tripod_3prs_real *wrench,
-    tripod_3prs_real *completed)
+int tripod_3prs_complete_acceleration(const prepared *model, const real *X, const real *V, const
+    real *A, const real *wrench, real *completed)
 {
     int code;
     (void)model;
@@ -7019,12 +5930,11 @@ int tripod_3prs_complete_acceleration(const tripod_3prs_model *model, const trip
     return code;
 }
 
-size_t tripod_3prs_complete_acceleration_batch(const tripod_3prs_model *model, size_t n, const
-    tripod_3prs_real *X, const tripod_3prs_real *V, const tripod_3prs_real *A, const
-    tripod_3prs_real *wrench, tripod_3prs_real *completed, int *status)
+size_t tripod_3prs_complete_acceleration_batch(const prepared *model, size_t n, const real *X,
+    const real *V, const real *A, const real *wrench, real *completed, int *status)
 {
-    size_t failed = 0, i = 0;
-    for (; i < n; ++i) {
+    size_t failed = 0;
+    for (size_t i = 0; i < n; ++i) {
         const int code = tripod_3prs_complete_acceleration(model, X + NQ*i, V + NV*i, A + NV*i, wrench ?
             wrench + NW*i : NULL, completed + NV*i);
         failed += record(&code, 1, status ? status + i : NULL);
@@ -7032,21 +5942,19 @@ size_t tripod_3prs_complete_acceleration_batch(const tripod_3prs_model *model, s
     return failed;
 }
 
-int tripod_3prs_leg_reactions(const tripod_3prs_model *model, const tripod_3prs_real *X, const
-    tripod_3prs_real *V, const tripod_3prs_real *A, const tripod_3prs_real *wrench,
-    tripod_3prs_real *forces)
+int tripod_3prs_leg_reactions(const prepared *model, const real *X, const real *V, const real *A,
+    const real *wrench, real *forces)
 {
     int code;
     leg_reactions_one(model, X, V, A, wrench, forces, &code);
     return code;
 }
 
-size_t tripod_3prs_leg_reactions_batch(const tripod_3prs_model *model, size_t n, const
-    tripod_3prs_real *X, const tripod_3prs_real *V, const tripod_3prs_real *A, const
-    tripod_3prs_real *wrench, tripod_3prs_real *forces, int *status)
+size_t tripod_3prs_leg_reactions_batch(const prepared *model, size_t n, const real *X, const real
+    *V, const real *A, const real *wrench, real *forces, int *status)
 {
-    size_t failed = 0, i = 0;
-    for (; i < n; ++i) {
+    size_t failed = 0;
+    for (size_t i = 0; i < n; ++i) {
         const int code = tripod_3prs_leg_reactions(model, X + NQ*i, V + NV*i, A + NV*i, wrench ? wrench +
             NW*i : NULL, forces + 9*i);
         failed += record(&code, 1, status ? status + i : NULL);
@@ -7054,104 +5962,139 @@ size_t tripod_3prs_leg_reactions_batch(const tripod_3prs_model *model, size_t n,
     return failed;
 }
 
-int tripod_3prs_energy(const tripod_3prs_model *model, const tripod_3prs_real *X, const
-    tripod_3prs_real *V, tripod_3prs_real *kinetic, tripod_3prs_real *potential)
+int tripod_3prs_energy(const prepared *model, const real *X, const real *V, real *kinetic, real
+    *potential)
 {
     int code;
     energy_one(model, X, V, kinetic, potential, &code);
     return code;
 }
 
-size_t tripod_3prs_energy_batch(const tripod_3prs_model *model, size_t n, const tripod_3prs_real
-    *X, const tripod_3prs_real *V, tripod_3prs_real *kinetic, tripod_3prs_real *potential, int
-    *status)
+size_t tripod_3prs_energy_batch(const prepared *model, size_t n, const real *X, const real *V,
+    real *kinetic, real *potential, int *status)
 {
-    size_t failed = 0, i = 0;
-    for (; i < n; ++i) {
+    size_t failed = 0;
+    for (size_t i = 0; i < n; ++i) {
         const int code = tripod_3prs_energy(model, X + NQ*i, V + NV*i, kinetic + i, potential + i);
         failed += record(&code, 1, status ? status + i : NULL);
     }
     return failed;
 }
 
-int tripod_3prs_condition(const tripod_3prs_model *model, const tripod_3prs_real *X,
-    tripod_3prs_real *sigma, tripod_3prs_real *legs)
+int tripod_3prs_condition(const prepared *model, const real *X, real *sigma, real *legs)
 {
     int code;
     condition_one(model, X, NULL, sigma, legs, &code);
     return code;
 }
 
-size_t tripod_3prs_condition_batch(const tripod_3prs_model *model, size_t n, const
-    tripod_3prs_real *X, tripod_3prs_real *sigma, tripod_3prs_real *legs, int *status)
+size_t tripod_3prs_condition_batch(const prepared *model, size_t n, const real *X, real *sigma,
+    real *legs, int *status)
 {
-    size_t failed = 0, i = 0;
-    for (; i < n; ++i) {
+    size_t failed = 0;
+    for (size_t i = 0; i < n; ++i) {
         const int code = tripod_3prs_condition(model, X + NQ*i, sigma + 3*i, legs + 3*i);
         failed += record(&code, 1, status ? status + i : NULL);
     }
     return failed;
 }
 
-int tripod_3prs_condition_constrained(const tripod_3prs_model *model, const tripod_3prs_real *X,
-    tripod_3prs_real *sigma, tripod_3prs_real *legs)
+int tripod_3prs_condition_constrained(const prepared *model, const real *X, real *sigma, real
+    *legs)
 {
     int code;
     condition_constrained_one(model, X, NULL, sigma, legs, &code);
     return code;
 }
 
-size_t tripod_3prs_condition_constrained_batch(const tripod_3prs_model *model, size_t n, const
-    tripod_3prs_real *X, tripod_3prs_real *sigma, tripod_3prs_real *legs, int *status)
+size_t tripod_3prs_condition_constrained_batch(const prepared *model, size_t n, const real *X,
+    real *sigma, real *legs, int *status)
 {
-    size_t failed = 0, i = 0;
-    for (; i < n; ++i) {
+    size_t failed = 0;
+    for (size_t i = 0; i < n; ++i) {
         const int code = tripod_3prs_condition_constrained(model, X + NQ*i, sigma + 6*i, legs + 3*i);
         failed += record(&code, 1, status ? status + i : NULL);
     }
     return failed;
 }
 
-int tripod_3prs_forward_kinematics(const tripod_3prs_model *model, const tripod_3prs_real
-    *q_actuated, const tripod_3prs_real *X0, tripod_3prs_real *X)
+int tripod_3prs_manipulability(const prepared *model, const real *X, real *measure, real
+    *isotropy)
+{
+    int code;
+    manipulability_one(model, X, measure, isotropy, &code);
+    return code;
+}
+
+size_t tripod_3prs_manipulability_batch(const prepared *model, size_t n, const real *X, real
+    *measure, real *isotropy, int *status)
+{
+    size_t failed = 0;
+    for (size_t i = 0; i < n; ++i) {
+        const int code = tripod_3prs_manipulability(model, X + NQ*i, measure + i, isotropy + i);
+        failed += record(&code, 1, status ? status + i : NULL);
+    }
+    return failed;
+}
+
+int tripod_3prs_singularity_distance(const prepared *model, const real *X, real *actuators, real
+    *legs)
+{
+    int code;
+    singularity_distance_one(model, X, actuators, legs, &code);
+    return code;
+}
+
+size_t tripod_3prs_singularity_distance_batch(const prepared *model, size_t n, const real *X, real
+    *actuators, real *legs, int *status)
+{
+    size_t failed = 0;
+    for (size_t i = 0; i < n; ++i) {
+        const int code = tripod_3prs_singularity_distance(model, X + NQ*i, actuators + i, legs + i);
+        failed += record(&code, 1, status ? status + i : NULL);
+    }
+    return failed;
+}
+
+int tripod_3prs_forward_kinematics(const prepared *model, const real *q_actuated, const real *X0,
+    real *X)
 {
     int code;
     forward_kinematics_one(model, q_actuated, X0, X, &code);
     return code;
 }
 
-size_t tripod_3prs_forward_kinematics_batch(const tripod_3prs_model *model, size_t n, const
-    tripod_3prs_real *q_actuated, const tripod_3prs_real *X0, tripod_3prs_real *X, int *status)
+size_t tripod_3prs_forward_kinematics_batch(const prepared *model, size_t n, const real
+    *q_actuated, const real *X0, real *X, int *status)
 {
-    size_t failed = 0, i = 0;
-    for (; i < n; ++i) {
+    size_t failed = 0;
+    for (size_t i = 0; i < n; ++i) {
         const int code = tripod_3prs_forward_kinematics(model, q_actuated + NU*i, X0 + NQ*i, X + NQ*i);
         failed += record(&code, 1, status ? status + i : NULL);
     }
     return failed;
 }
 
-int tripod_3prs_project(const tripod_3prs_model *model, const tripod_3prs_real *X,
-    tripod_3prs_real *projected)
+int tripod_3prs_project(const prepared *model, const real *X, real *projected)
 {
     int code;
     project_one(model, X, projected, &code);
     return code;
 }
 
-size_t tripod_3prs_project_batch(const tripod_3prs_model *model, size_t n, const tripod_3prs_real
-    *X, tripod_3prs_real *projected, int *status)
+size_t tripod_3prs_project_batch(const prepared *model, size_t n, const real *X, real *projected,
+    int *status)
 {
-    size_t failed = 0, i = 0;
-    for (; i < n; ++i) {
+    size_t failed = 0;
+    for (size_t i = 0; i < n; ++i) {
         const int code = tripod_3prs_project(model, X + NQ*i, projected + NQ*i);
         failed += record(&code, 1, status ? status + i : NULL);
     }
     return failed;
 }
 
-int tripod_3prs_dissipation(const tripod_3prs_model *model, const tripod_3prs_real *X, const
-    tripod_3prs_real *V, tripod_3prs_real *dissipation)
+int tripod_3prs_dissipation(const prepared *model, const real *X, const real *V, real
+    *dissipation)
 {
     int code;
     (void)model;
@@ -7160,350 +6103,327 @@ int tripod_3prs_dissipation(const tripod_3prs_model *model, const tripod_3prs_re
     return code;
 }
 
-size_t tripod_3prs_dissipation_batch(const tripod_3prs_model *model, size_t n, const
-    tripod_3prs_real *X, const tripod_3prs_real *V, tripod_3prs_real *dissipation, int *status)
+size_t tripod_3prs_dissipation_batch(const prepared *model, size_t n, const real *X, const real
+    *V, real *dissipation, int *status)
 {
-    size_t failed = 0, i = 0;
-    for (; i < n; ++i) {
+    size_t failed = 0;
+    for (size_t i = 0; i < n; ++i) {
         const int code = tripod_3prs_dissipation(model, X + NQ*i, V + NV*i, dissipation + i);
         failed += record(&code, 1, status ? status + i : NULL);
     }
     return failed;
 }
 
-int tripod_3prs_momentum(const tripod_3prs_model *model, const tripod_3prs_real *X, const
-    tripod_3prs_real *V, tripod_3prs_real *momentum)
+int tripod_3prs_momentum(const prepared *model, const real *X, const real *V, real *momentum)
 {
     int code;
     momentum_one(model, X, V, momentum, &code);
     return code;
 }
 
-size_t tripod_3prs_momentum_batch(const tripod_3prs_model *model, size_t n, const tripod_3prs_real
-    *X, const tripod_3prs_real *V, tripod_3prs_real *momentum, int *status)
+size_t tripod_3prs_momentum_batch(const prepared *model, size_t n, const real *X, const real *V,
+    real *momentum, int *status)
 {
-    size_t failed = 0, i = 0;
-    for (; LANES > 1 && i + LANES <= n; i += LANES) {
-        int codes[LANES];
-        momentum_lanes(model, X + NQ*i, V + NV*i, momentum + NV*i, codes);
-        for (size_t k = 0; k < LANES; ++k) {
+    size_t failed = 0, w;
+    for (size_t i = 0; i < n; i += w) {
+        int codes[LANES] = {INVALID};
+        w = LANES > 1 && i + LANES <= n ? LANES : 1;
+        if (w > 1) {
+            momentum_lanes(model, X + NQ*i, V + NV*i, momentum + NV*i, codes);
+        }
+        for (size_t k = 0; k < w; ++k) {
             if (codes[k] != OK) {
                 codes[k] = tripod_3prs_momentum(model, X + NQ*(i + k), V + NV*(i + k), momentum + NV*(i + k));
             }
         }
-        failed += record(codes, LANES, status ? status + i : NULL);
-    }
-    for (; i < n; ++i) {
-        const int code = tripod_3prs_momentum(model, X + NQ*i, V + NV*i, momentum + NV*i);
-        failed += record(&code, 1, status ? status + i : NULL);
+        failed += record(codes, w, status ? status + i : NULL);
     }
     return failed;
 }
 
-int tripod_3prs_joint_margins(const tripod_3prs_model *model, const tripod_3prs_real *X,
-    tripod_3prs_real *margins)
+int tripod_3prs_joint_margins(const prepared *model, const real *X, real *margins)
 {
     int code;
     joint_margins_one(model, X, margins, &code);
     return code;
 }
 
-size_t tripod_3prs_joint_margins_batch(const tripod_3prs_model *model, size_t n, const
-    tripod_3prs_real *X, tripod_3prs_real *margins, int *status)
+size_t tripod_3prs_joint_margins_batch(const prepared *model, size_t n, const real *X, real
+    *margins, int *status)
 {
-    size_t failed = 0, i = 0;
-    for (; LANES > 1 && i + LANES <= n; i += LANES) {
-        int codes[LANES];
-        joint_margins_lanes(model, X + NQ*i, margins + NJ*i, codes);
-        for (size_t k = 0; k < LANES; ++k) {
+    size_t failed = 0, w;
+    for (size_t i = 0; i < n; i += w) {
+        int codes[LANES] = {INVALID};
+        w = LANES > 1 && i + LANES <= n ? LANES : 1;
+        if (w > 1) {
+            joint_margins_lanes(model, X + NQ*i, margins + NJ*i, codes);
+        }
+        for (size_t k = 0; k < w; ++k) {
             if (codes[k] != OK) {
                 codes[k] = tripod_3prs_joint_margins(model, X + NQ*(i + k), margins + NJ*(i + k));
             }
         }
-        failed += record(codes, LANES, status ? status + i : NULL);
-    }
-    for (; i < n; ++i) {
-        const int code = tripod_3prs_joint_margins(model, X + NQ*i, margins + NJ*i);
-        failed += record(&code, 1, status ? status + i : NULL);
+        failed += record(codes, w, status ? status + i : NULL);
     }
     return failed;
 }
 
-int tripod_3prs_within_limits(const tripod_3prs_model *model, const tripod_3prs_real *X,
-    tripod_3prs_real *within)
+int tripod_3prs_within_limits(const prepared *model, const real *X, real *within)
 {
     int code;
     within_limits_one(model, X, within, &code);
     return code;
 }
 
-size_t tripod_3prs_within_limits_batch(const tripod_3prs_model *model, size_t n, const
-    tripod_3prs_real *X, tripod_3prs_real *within, int *status)
+size_t tripod_3prs_within_limits_batch(const prepared *model, size_t n, const real *X, real
+    *within, int *status)
 {
-    size_t failed = 0, i = 0;
-    for (; LANES > 1 && i + LANES <= n; i += LANES) {
-        int codes[LANES];
-        within_limits_lanes(model, X + NQ*i, within + i, codes);
-        for (size_t k = 0; k < LANES; ++k) {
+    size_t failed = 0, w;
+    for (size_t i = 0; i < n; i += w) {
+        int codes[LANES] = {INVALID};
+        w = LANES > 1 && i + LANES <= n ? LANES : 1;
+        if (w > 1) {
+            within_limits_lanes(model, X + NQ*i, within + i, codes);
+        }
+        for (size_t k = 0; k < w; ++k) {
             if (codes[k] != OK) {
                 codes[k] = tripod_3prs_within_limits(model, X + NQ*(i + k), within + (i + k));
             }
         }
-        failed += record(codes, LANES, status ? status + i : NULL);
-    }
-    for (; i < n; ++i) {
-        const int code = tripod_3prs_within_limits(model, X + NQ*i, within + i);
-        failed += record(&code, 1, status ? status + i : NULL);
+        failed += record(codes, w, status ? status + i : NULL);
     }
     return failed;
 }
 
-int tripod_3prs_actuator_positions(const tripod_3prs_model *model, const tripod_3prs_real *X,
-    tripod_3prs_real *q)
+int tripod_3prs_actuator_positions(const prepared *model, const real *X, real *q)
 {
     int code;
     actuator_positions_one(model, X, q, &code);
     return code;
 }
 
-size_t tripod_3prs_actuator_positions_batch(const tripod_3prs_model *model, size_t n, const
-    tripod_3prs_real *X, tripod_3prs_real *q, int *status)
+size_t tripod_3prs_actuator_positions_batch(const prepared *model, size_t n, const real *X, real
+    *q, int *status)
 {
-    size_t failed = 0, i = 0;
-    for (; LANES > 1 && i + LANES <= n; i += LANES) {
-        int codes[LANES];
-        actuator_positions_lanes(model, X + NQ*i, q + NU*i, codes);
-        for (size_t k = 0; k < LANES; ++k) {
+    size_t failed = 0, w;
+    for (size_t i = 0; i < n; i += w) {
+        int codes[LANES] = {INVALID};
+        w = LANES > 1 && i + LANES <= n ? LANES : 1;
+        if (w > 1) {
+            actuator_positions_lanes(model, X + NQ*i, q + NU*i, codes);
+        }
+        for (size_t k = 0; k < w; ++k) {
             if (codes[k] != OK) {
                 codes[k] = tripod_3prs_actuator_positions(model, X + NQ*(i + k), q + NU*(i + k));
             }
         }
-        failed += record(codes, LANES, status ? status + i : NULL);
-    }
-    for (; i < n; ++i) {
-        const int code = tripod_3prs_actuator_positions(model, X + NQ*i, q + NU*i);
-        failed += record(&code, 1, status ? status + i : NULL);
+        failed += record(codes, w, status ? status + i : NULL);
     }
     return failed;
 }
 
-int tripod_3prs_actuator_rates(const tripod_3prs_model *model, const tripod_3prs_real *X, const
-    tripod_3prs_real *V, tripod_3prs_real *rates)
+int tripod_3prs_actuator_rates(const prepared *model, const real *X, const real *V, real *rates)
 {
     int code;
     actuator_rates_one(model, X, V, rates, &code);
     return code;
 }
 
-size_t tripod_3prs_actuator_rates_batch(const tripod_3prs_model *model, size_t n, const
-    tripod_3prs_real *X, const tripod_3prs_real *V, tripod_3prs_real *rates, int *status)
+size_t tripod_3prs_actuator_rates_batch(const prepared *model, size_t n, const real *X, const real
+    *V, real *rates, int *status)
 {
-    size_t failed = 0, i = 0;
-    for (; LANES > 1 && i + LANES <= n; i += LANES) {
-        int codes[LANES];
-        actuator_rates_lanes(model, X + NQ*i, V + NV*i, rates + NU*i, codes);
-        for (size_t k = 0; k < LANES; ++k) {
+    size_t failed = 0, w;
+    for (size_t i = 0; i < n; i += w) {
+        int codes[LANES] = {INVALID};
+        w = LANES > 1 && i + LANES <= n ? LANES : 1;
+        if (w > 1) {
+            actuator_rates_lanes(model, X + NQ*i, V + NV*i, rates + NU*i, codes);
+        }
+        for (size_t k = 0; k < w; ++k) {
             if (codes[k] != OK) {
                 codes[k] = tripod_3prs_actuator_rates(model, X + NQ*(i + k), V + NV*(i + k), rates + NU*(i + k));
             }
         }
-        failed += record(codes, LANES, status ? status + i : NULL);
-    }
-    for (; i < n; ++i) {
-        const int code = tripod_3prs_actuator_rates(model, X + NQ*i, V + NV*i, rates + NU*i);
-        failed += record(&code, 1, status ? status + i : NULL);
+        failed += record(codes, w, status ? status + i : NULL);
     }
     return failed;
 }
 
-int tripod_3prs_actuator_accelerations(const tripod_3prs_model *model, const tripod_3prs_real *X,
-    const tripod_3prs_real *V, const tripod_3prs_real *A, tripod_3prs_real *accelerations)
+int tripod_3prs_actuator_accelerations(const prepared *model, const real *X, const real *V, const
+    real *A, real *accelerations)
 {
     int code;
     actuator_accelerations_one(model, X, V, A, accelerations, &code);
     return code;
 }
 
-size_t tripod_3prs_actuator_accelerations_batch(const tripod_3prs_model *model, size_t n, const
-    tripod_3prs_real *X, const tripod_3prs_real *V, const tripod_3prs_real *A, tripod_3prs_real
-    *accelerations, int *status)
+size_t tripod_3prs_actuator_accelerations_batch(const prepared *model, size_t n, const real *X,
+    const real *V, const real *A, real *accelerations, int *status)
 {
-    size_t failed = 0, i = 0;
-    for (; LANES > 1 && i + LANES <= n; i += LANES) {
-        int codes[LANES];
-        actuator_accelerations_lanes(model, X + NQ*i, V + NV*i, A + NV*i, accelerations + NU*i, codes);
-        for (size_t k = 0; k < LANES; ++k) {
+    size_t failed = 0, w;
+    for (size_t i = 0; i < n; i += w) {
+        int codes[LANES] = {INVALID};
+        w = LANES > 1 && i + LANES <= n ? LANES : 1;
+        if (w > 1) {
+            actuator_accelerations_lanes(model, X + NQ*i, V + NV*i, A + NV*i, accelerations + NU*i, codes);
+        }
+        for (size_t k = 0; k < w; ++k) {
             if (codes[k] != OK) {
                 codes[k] = tripod_3prs_actuator_accelerations(model, X + NQ*(i + k), V + NV*(i + k), A + NV*(i +
                     k), accelerations + NU*(i + k));
             }
         }
-        failed += record(codes, LANES, status ? status + i : NULL);
-    }
-    for (; i < n; ++i) {
-        const int code = tripod_3prs_actuator_accelerations(model, X + NQ*i, V + NV*i, A + NV*i,
-            accelerations + NU*i);
-        failed += record(&code, 1, status ? status + i : NULL);
+        failed += record(codes, w, status ? status + i : NULL);
     }
     return failed;
 }
 
-int tripod_3prs_power(const tripod_3prs_model *model, const tripod_3prs_real *X, const
-    tripod_3prs_real *V, const tripod_3prs_real *tau, tripod_3prs_real *power)
+int tripod_3prs_power(const prepared *model, const real *X, const real *V, const real *tau, real
+    *power)
 {
     int code;
     power_one(model, X, V, tau, power, &code);
     return code;
 }
 
-size_t tripod_3prs_power_batch(const tripod_3prs_model *model, size_t n, const tripod_3prs_real
-    *X, const tripod_3prs_real *V, const tripod_3prs_real *tau, tripod_3prs_real *power, int
-    *status)
+size_t tripod_3prs_power_batch(const prepared *model, size_t n, const real *X, const real *V,
+    const real *tau, real *power, int *status)
 {
-    size_t failed = 0, i = 0;
-    for (; LANES > 1 && i + LANES <= n; i += LANES) {
-        int codes[LANES];
-        power_lanes(model, X + NQ*i, V + NV*i, tau + NU*i, power + i, codes);
-        for (size_t k = 0; k < LANES; ++k) {
+    size_t failed = 0, w;
+    for (size_t i = 0; i < n; i += w) {
+        int codes[LANES] = {INVALID};
+        w = LANES > 1 && i + LANES <= n ? LANES : 1;
+        if (w > 1) {
+            power_lanes(model, X + NQ*i, V + NV*i, tau + NU*i, power + i, codes);
+        }
+        for (size_t k = 0; k < w; ++k) {
             if (codes[k] != OK) {
                 codes[k] = tripod_3prs_power(model, X + NQ*(i + k), V + NV*(i + k), tau + NU*(i + k), power + (i +
                     k));
             }
         }
-        failed += record(codes, LANES, status ? status + i : NULL);
-    }
-    for (; i < n; ++i) {
-        const int code = tripod_3prs_power(model, X + NQ*i, V + NV*i, tau + NU*i, power + i);
-        failed += record(&code, 1, status ? status + i : NULL);
+        failed += record(codes, w, status ? status + i : NULL);
     }
     return failed;
 }
 
-int tripod_3prs_rotation(const tripod_3prs_real *X, tripod_3prs_real *R)
+int tripod_3prs_rotation(const real *X, real *R)
 {
     int code;
     rotation_one(X, R, &code);
     return code;
 }
 
-size_t tripod_3prs_rotation_batch(size_t n, const tripod_3prs_real *X, tripod_3prs_real *R, int
-    *status)
+size_t tripod_3prs_rotation_batch(size_t n, const real *X, real *R, int *status)
 {
-    size_t failed = 0, i = 0;
-    for (; i < n; ++i) {
+    size_t failed = 0;
+    for (size_t i = 0; i < n; ++i) {
         const int code = tripod_3prs_rotation(X + NQ*i, R + 9*i);
         failed += record(&code, 1, status ? status + i : NULL);
     }
     return failed;
 }
 
-int tripod_3prs_pose(const tripod_3prs_real *t, const tripod_3prs_real *R, tripod_3prs_real *X)
+int tripod_3prs_pose(const real *t, const real *R, real *X)
 {
     int code;
     pose_one(t, R, X, &code);
     return code;
 }
 
-size_t tripod_3prs_pose_batch(size_t n, const tripod_3prs_real *t, const tripod_3prs_real *R,
-    tripod_3prs_real *X, int *status)
+size_t tripod_3prs_pose_batch(size_t n, const real *t, const real *R, real *X, int *status)
 {
-    size_t failed = 0, i = 0;
-    for (; i < n; ++i) {
+    size_t failed = 0;
+    for (size_t i = 0; i < n; ++i) {
         const int code = tripod_3prs_pose(t + 3*i, R + 9*i, X + NQ*i);
         failed += record(&code, 1, status ? status + i : NULL);
     }
     return failed;
 }
 
-int tripod_3prs_X_dot(const tripod_3prs_real *X, const tripod_3prs_real *V, tripod_3prs_real
-    *X_dot)
+int tripod_3prs_X_dot(const real *X, const real *V, real *X_dot)
 {
     int code;
     X_dot_one(X, V, X_dot, &code);
     return code;
 }
 
-size_t tripod_3prs_X_dot_batch(size_t n, const tripod_3prs_real *X, const tripod_3prs_real *V,
-    tripod_3prs_real *X_dot, int *status)
+size_t tripod_3prs_X_dot_batch(size_t n, const real *X, const real *V, real *X_dot, int *status)
 {
-    size_t failed = 0, i = 0;
-    for (; i < n; ++i) {
+    size_t failed = 0;
+    for (size_t i = 0; i < n; ++i) {
         const int code = tripod_3prs_X_dot(X + NQ*i, V + NV*i, X_dot + NQ*i);
         failed += record(&code, 1, status ? status + i : NULL);
     }
     return failed;
 }
 
-int tripod_3prs_pose_from_rpy(const tripod_3prs_real *t, const tripod_3prs_real *rpy,
-    tripod_3prs_real *X)
+int tripod_3prs_pose_from_rpy(const real *t, const real *rpy, real *X)
 {
     int code;
     pose_from_rpy_one(t, rpy, X, &code);
     return code;
 }
 
-size_t tripod_3prs_pose_from_rpy_batch(size_t n, const tripod_3prs_real *t, const tripod_3prs_real
-    *rpy, tripod_3prs_real *X, int *status)
+size_t tripod_3prs_pose_from_rpy_batch(size_t n, const real *t, const real *rpy, real *X, int
+    *status)
 {
-    size_t failed = 0, i = 0;
-    for (; i < n; ++i) {
+    size_t failed = 0;
+    for (size_t i = 0; i < n; ++i) {
         const int code = tripod_3prs_pose_from_rpy(t + 3*i, rpy + 3*i, X + NQ*i);
         failed += record(&code, 1, status ? status + i : NULL);
     }
     return failed;
 }
 
-int tripod_3prs_retract(const tripod_3prs_real *X, const tripod_3prs_real *step, tripod_3prs_real
-    *X_moved)
+int tripod_3prs_retract(const real *X, const real *step, real *X_moved)
 {
     int code;
     retract_one(X, step, X_moved, &code);
     return code;
 }
 
-size_t tripod_3prs_retract_batch(size_t n, const tripod_3prs_real *X, const tripod_3prs_real
-    *step, tripod_3prs_real *X_moved, int *status)
+size_t tripod_3prs_retract_batch(size_t n, const real *X, const real *step, real *X_moved, int
+    *status)
 {
-    size_t failed = 0, i = 0;
-    for (; i < n; ++i) {
+    size_t failed = 0;
+    for (size_t i = 0; i < n; ++i) {
         const int code = tripod_3prs_retract(X + NQ*i, step + NV*i, X_moved + NQ*i);
         failed += record(&code, 1, status ? status + i : NULL);
     }
     return failed;
 }
 
-int tripod_3prs_difference(const tripod_3prs_real *X0, const tripod_3prs_real *X1,
-    tripod_3prs_real *step)
+int tripod_3prs_difference(const real *X0, const real *X1, real *step)
 {
     int code;
     difference_one(X0, X1, step, &code);
     return code;
 }
 
-size_t tripod_3prs_difference_batch(size_t n, const tripod_3prs_real *X0, const tripod_3prs_real
-    *X1, tripod_3prs_real *step, int *status)
+size_t tripod_3prs_difference_batch(size_t n, const real *X0, const real *X1, real *step, int
+    *status)
 {
-    size_t failed = 0, i = 0;
-    for (; i < n; ++i) {
+    size_t failed = 0;
+    for (size_t i = 0; i < n; ++i) {
         const int code = tripod_3prs_difference(X0 + NQ*i, X1 + NQ*i, step + NV*i);
         failed += record(&code, 1, status ? status + i : NULL);
     }
     return failed;
 }
 
-int tripod_3prs_interpolate(const tripod_3prs_real *X0, const tripod_3prs_real *X1, const
-    tripod_3prs_real *s, tripod_3prs_real *X)
+int tripod_3prs_interpolate(const real *X0, const real *X1, const real *s, real *X)
 {
     int code;
     interpolate_one(X0, X1, s, X, &code);
     return code;
 }
 
-size_t tripod_3prs_interpolate_batch(size_t n, const tripod_3prs_real *X0, const tripod_3prs_real
-    *X1, const tripod_3prs_real *s, tripod_3prs_real *X, int *status)
+size_t tripod_3prs_interpolate_batch(size_t n, const real *X0, const real *X1, const real *s, real
+    *X, int *status)
 {
-    size_t failed = 0, i = 0;
-    for (; i < n; ++i) {
+    size_t failed = 0;
+    for (size_t i = 0; i < n; ++i) {
         const int code = tripod_3prs_interpolate(X0 + NQ*i, X1 + NQ*i, s + i, X + NQ*i);
         failed += record(&code, 1, status ? status + i : NULL);
     }

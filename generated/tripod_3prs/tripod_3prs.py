@@ -65,6 +65,7 @@ __all__ = [
     "joint_margins",
     "joint_rates",
     "leg_reactions",
+    "manipulability",
     "momentum",
     "null_space",
     "pose",
@@ -73,6 +74,7 @@ __all__ = [
     "project",
     "retract",
     "rotation",
+    "singularity_distance",
     "within_limits",
 ]
 
@@ -830,6 +832,24 @@ def _constants(p, name):
     return p._cache[name]
 
 
+class _Vector(list):
+    """A vector, or a matrix row by row, of a single state."""
+
+    def __add__(self, other):
+        return _Vector([a + b for a, b in zip(self, other)])
+
+    def __sub__(self, other):
+        return _Vector([a - b for a, b in zip(self, other)])
+
+    def __neg__(self):
+        return _Vector([-a for a in self])
+
+
+def _are_finite(rows):
+    """Whether lists of floats have finite entries alone."""
+    return math.isfinite(sum(map(sum, rows))) or all(all(map(math.isfinite, row)) for row in rows)
+
+
 class _Floats:
     """Functions of a state after another, in Python floats: the way for few states."""
 
@@ -859,11 +879,32 @@ class _Floats:
         """Lists that a function gives at a state."""
         try:
             ok, arrays = function(self, *given)
-        except (ZeroDivisionError, OverflowError, ValueError):
+        except (ArithmeticError, ValueError):
             ok = False
-        if ok and all(all(map(math.isfinite, array)) for array in arrays):
+        if ok and _are_finite(arrays):
             return arrays
         return [[np.nan] * math.prod(_SHAPES[n]) for n in names]
+
+    def solved(self, order, a, b):
+        """Solutions, straight through; and which are beyond doubt."""
+        sure, x = np.zeros(self.states, dtype=bool), np.full(b.shape, np.nan)
+        for k, given in enumerate(zip(a.T.tolist(), b.T.tolist())):
+            try:
+                sure[k], (x[:, k],) = order(self, *given)
+            except ZeroDivisionError:
+                pass
+        return sure, x
+
+
+class _Single(_Floats):
+    """A single state in lists of floats throughout."""
+
+    def run(self, function, names, *vectors):
+        """Arrays of a function, row by row; ArithmeticError or ValueError where the state is impossible."""
+        ok, arrays = function(self, *vectors)
+        if not (ok and _are_finite(arrays)):
+            raise ArithmeticError
+        return [_Vector(a) for a in arrays]
 
 
 class _Arrays:
@@ -893,20 +934,27 @@ class _Arrays:
     def zeros(self, name):
         return np.zeros((math.prod(_SHAPES[name]), self.states))
 
-    def computed(self, function, names, vectors):
-        """Flags and arrays (*shape, states) of a function."""
+    def computed(self, function, *vectors):
+        """Flags and arrays (entries, states) of a function."""
         if self.kept is None:
-            flags, arrays = function(self, *vectors)
-        else:
-            if self.done not in self.kept:
-                self.kept[self.done] = _Replay(self.p, function, [len(v) for v in vectors], self.states)
-            flags, arrays = self.kept[self.done].run(vectors)
-            self.done += 1
-        return flags, [a.reshape(*_SHAPES[n], self.states) for a, n in zip(arrays, names)]
+            return function(self, *vectors)
+        if self.done not in self.kept:
+            self.kept[self.done] = _Replay(self.p, function, [len(v) for v in vectors], self.states)
+        self.done += 1
+        return self.kept[self.done - 1].run(vectors)
+
+    def shaped(self, names, arrays):
+        return [a.reshape(*_SHAPES[n], self.states) for a, n in zip(arrays, names)]
+
+    def solved(self, order, a, b):
+        """Solutions, straight through; and which are beyond doubt."""
+        sure, (x,) = self.computed(order, a, b)
+        return sure, np.array(x)
 
     def run(self, function, names, *vectors):
         """Arrays (*shape, states) of a function; NaN where the state is impossible."""
-        ok, arrays = self.computed(function, names, vectors)
+        ok, arrays = self.computed(function, *vectors)
+        arrays = self.shaped(names, arrays)
         ok = np.logical_and(ok, _finite(arrays, self.states))
         if not np.all(ok):
             for a in arrays:
@@ -923,10 +971,10 @@ class _Judged(_Arrays):
 
     def run(self, function, names, *vectors):
         """Arrays (*shape, states) of a function, also where they are nonsense."""
-        (valid, reached, clear), arrays = self.computed(function, names, vectors)
+        (valid, reached, clear), arrays = self.computed(function, *vectors)
         for code, good in ((3, valid), (1, reached), (2, clear)):
             self.failed[code] |= np.logical_not(good)
-        return arrays
+        return self.shaped(names, arrays)
 
     def closed(self, q):
         """q, noting where the iteration has not converged."""
@@ -938,26 +986,90 @@ class _Judged(_Arrays):
         return np.select(list(self.failed.values()), list(self.failed), np.where(possible, 0, 3))
 
 
+_IN_ONE = {}  # by function
+
+
+def _in_one(function):
+    """A function that tells whether a state is possible, of one that tells why not."""
+
+    def run(m, *vectors):
+        (valid, reached, clear), arrays = function(m, *vectors)
+        return valid & reached & clear, arrays
+
+    return _IN_ONE.setdefault(function, run)
+
+
 def _mode(p, states, kept=None):
     """The faster way for so many states."""
     return (_Floats if 0 < states <= _FEW else _Arrays)(p, states, kept)
 
 
-def _call(function, steps, p, *arguments, mode=_mode, unbounded=False):
+def _call(function, steps, p, *arguments, mode=_mode, unbounded=False, plain=()):
     """What the steps give at arguments (name, value, shape of a state, default, rule).
 
-    Where that may be infinite only NaN makes a state impossible.
+    Where that may be infinite only NaN makes a state impossible.  `plain` has the shapes of results
+    where a single state needs no arrays.
     """
+    p, read = _given(p), [a[-1] != "unused" for a in arguments]
+    lists = plain and _lists(arguments)
+    if lists:
+        found = _state(_Single(p, 1), steps, lists, read)
+        results = [_result(a, shape) for a, shape in zip(found or plain, plain)]
+        return results[0] if len(results) == 1 else tuple(results)
     given = [_argument(function, *a) for a in arguments]
     shapes = [a[2] for a in arguments]
     leads = {a[0]: v.shape[: v.ndim - len(a[2])] for a, v in zip(arguments, given)}
-    lead, p = _lead(leads), _given(p)
-    read = [a[4:] != ("unused",) for a in arguments]
-    if lead or mode is _Judged:
+    lead = _lead(leads)
+    if plain and 0 < math.prod(lead) <= _FEW:
+        results = _few(steps, p, lead, given, shapes, read, plain)
+    elif lead or mode is _Judged:
         results = _many(steps, p, lead, given, shapes, read, mode, unbounded)
     else:
         results = _one(steps, p, given, shapes, read, unbounded)
     return results[0] if len(results) == 1 else tuple(results)
+
+
+def _lists(arguments):
+    """Arguments of a single state as lists, where they are such arrays as they mostly are."""
+    found = []
+    for row in arguments:
+        value, shape = row[1:3]
+        if type(value) is np.ndarray:
+            if value.shape != shape or value.dtype is not _REAL or row[-1] == "positive":
+                return None
+            found.append(_Vector(value.tolist()))
+        elif value is None and len(row) > 3 and row[3] is not None:
+            found.append(_Vector(row[3] if isinstance(row[3], tuple) else [row[3]] * shape[0]))
+        else:
+            return None
+    return found
+
+
+def _state(m, steps, given, read):
+    """Lists that the steps give at a state; None where it is impossible."""
+    try:
+        found = steps(m, *given)
+    except (ArithmeticError, ValueError):
+        return None
+    return found if _are_finite(list(compress(given, read))) and _are_finite(found) else None
+
+
+def _result(found, shape):
+    """The array of a list; of an impossible state, for which its shape is given, NaN."""
+    if found is shape:
+        return np.full(shape, np.nan)
+    return np.array(found) if len(shape) == 1 else np.array(found).reshape(shape)
+
+
+def _few(steps, p, lead, given, shapes, read, plain):
+    """Results at a few states, one after another."""
+    m, rows = _Single(p, 1), []
+    for v, shape in zip(given, shapes):
+        flat = np.broadcast_to(v, lead + shape).reshape(math.prod(lead), -1)
+        rows.append(map(_Vector, flat.tolist()))
+    impossible = [[np.nan] * math.prod(shape) for shape in plain]
+    found = [_state(m, steps, state, read) or impossible for state in zip(*rows)]
+    return [np.array(a).reshape(lead + shape) for a, shape in zip(zip(*found), plain)]
 
 
 def _one(steps, p, given, shapes, read, unbounded):
@@ -976,7 +1088,11 @@ def _many(steps, p, lead, given, shapes, read, mode, unbounded):
     """Results at many states, block by block; the last block begins where it is as long as the others."""
     count = math.prod(lead)
     size, kept = min(count, _BLOCK), {} if count >= _MANY else None
-    flat = [np.broadcast_to(v, lead + s).reshape(count, *s) for v, s in zip(given, shapes)]
+    # one value for all states stands for itself
+    flat = [
+        np.broadcast_to(v, lead + s).reshape(count, *s) if v.ndim > len(s) else v
+        for v, s in zip(given, shapes)
+    ]
     possible, status, outputs = np.ones(count, dtype=bool), np.zeros(count, dtype=int), []
     if count > size:
         # Never touched, freed at once: the C library, which learns from it, then keeps the memory
@@ -985,7 +1101,7 @@ def _many(steps, p, lead, given, shapes, read, mode, unbounded):
     with np.errstate(all="ignore"):
         for stop in (*range(size, count, max(size, 1)), count):
             block = slice(stop - size, stop)
-            states = [_states_last(v[block]) for v in flat]
+            states = [_states_last(v, s, block) for v, s in zip(flat, shapes)]
             m, good = mode(p, size, kept), possible[block]
             found = steps(m, *states)
             if not outputs:
@@ -1005,15 +1121,17 @@ def _many(steps, p, lead, given, shapes, read, mode, unbounded):
     return [a.reshape(lead + a.shape[1:])[()] for a in outputs]
 
 
-def _states_last(a):
-    """A contiguous array (*shape, states) of one (states, *shape)."""
-    return np.ascontiguousarray(a.transpose(*range(1, a.ndim), 0))
+def _states_last(a, shape, block):
+    """An array (*shape, states) of a block of one (states, *shape), or of a value for all."""
+    if a.ndim == len(shape):
+        return np.broadcast_to(a[..., None], (*shape, block.stop - block.start))
+    return np.ascontiguousarray(a[block].transpose(*range(1, a.ndim), 0))
 
 
 def _finite(arrays, states):
     """In which states all entries of arrays (*shape, states) are finite."""
     flat = [a.reshape(math.prod(a.shape[:-1]), states) for a in arrays]
-    good = np.isfinite(sum(np.add.reduce(a, axis=0) for a in flat))
+    good = np.isfinite(sum(np.einsum("es->s", a) for a in flat))
     if not np.all(good):  # or the sum is too large
         good = np.logical_and.reduce([np.isfinite(a).all(axis=0) for a in flat])
     return good
@@ -1122,6 +1240,8 @@ class _Record:
 
     def made(self, operation, *operands):
         """The result of an operation."""
+        if operation in _WITHOUT and operands[0] is _WITHOUT[operation]:
+            return operands[1]
         numbers = [self.number(operand) for operand in operands]
         if all(self.kinds[n] == "one" for n in numbers):
             kind = "one"
@@ -1158,6 +1278,7 @@ class _Record:
         return counts
 
 
+_WITHOUT = {np.logical_and: True}  # first operands that change nothing
 _OF_FLAGS = {np.logical_and, np.greater, np.greater_equal}
 _RECORDS = {}  # by function
 
@@ -1169,11 +1290,12 @@ class _Replay:
         if function not in _RECORDS:
             _RECORDS[function] = _Record(p, function, sizes)
         r = _RECORDS[function]
-        made = {kind: _rows(n, states, bool if kind == "flag" else float) for kind, n in r.counts.items()}
-        made["one"] = [np.empty(()) for _ in range(r.counts["one"])]
-        made["out"] = _rows(sum(r.sizes), states)
-        self.inputs = [_rows(size, states) for size in sizes]
-        self.arrays = np.split(made["out"], np.cumsum(r.sizes)[:-1])
+        rows = _rows(r.counts["state"] + sum(r.sizes) + sum(sizes), states)
+        given, out, state = np.split(rows, np.cumsum((sum(sizes), sum(r.sizes))))
+        made = {"state": state, "out": out, "one": [np.empty(()) for _ in range(r.counts["one"])]}
+        made["flag"] = np.empty((r.counts["flag"], states), dtype=bool)
+        self.inputs = np.split(given, np.cumsum(sizes)[:-1])
+        self.arrays = np.split(out, np.cumsum(r.sizes)[:-1])
         at = {number: np.array(value) for value, number in r.literals.items()}
         for values, given in zip(r.inputs, self.inputs):
             at |= {v.number: row for v, row in zip(values, given)}
@@ -1195,9 +1317,26 @@ class _Replay:
         return self.flags, self.arrays
 
 
-def _rows(count, states, kind=float):
-    """Rows of so many states, a cache line apart from each other."""
-    return np.empty((count, states + 8), dtype=kind)[:, :states]
+def _rows(count, states):
+    """Rows of so many states in one piece, which the system keeps in a few large pages if it is told.
+
+    NumPy tells it of pieces from 4 MB on.  It makes operations a third faster.
+    """
+    row = states + 8  # a cache line further: rows do not compete for the same places of the cache
+    piece = np.empty(max(count * row, 2 * _PAGE) + _PAGE)
+    start = -(piece.ctypes.data // piece.itemsize) % _PAGE
+    return piece[start : start + count * row].reshape(count, row)[:, :states]
+
+
+_PAGE = (2 << 20) // 8  # numbers in a large page
+
+
+def _times(a, b):
+    """Products of matrices (m, n, states) with vectors (n, states)."""
+    if isinstance(b, _Vector):
+        rows = (a[k : k + len(b)] for k in range(0, len(a), len(b)))
+        return _Vector([sum([x * y for x, y in zip(row, b)]) for row in rows])
+    return np.einsum("ijs,js->is", a, b)
 
 
 def _with_forces(a, amounts, directions, legs):
@@ -1318,8 +1457,10 @@ _CLEARLY = 2.0  # rows change places only for a pivot that is larger by this fac
 
 def _solve(a, b):
     """x with a x = b, a (n, n, states), b (n, states): rows scaled, partial pivoting; NaN if singular."""
+    if isinstance(b, _Vector):
+        return _Vector(_solve_one([a[k : k + len(b)] for k in range(0, len(a), len(b))], b))
     n, states = b.shape
-    if 0 < states <= _FEW:
+    if 0 < states <= 8:
         systems = zip(a.transpose(2, 0, 1).tolist(), b.T.tolist())
         return np.array([_solve_one(*each) for each in systems]).T.reshape(n, states)
     size = np.max(np.abs(a), axis=1, initial=0.0)
@@ -1344,6 +1485,38 @@ def _solve(a, b):
         known = np.einsum("js,js->s", rows[k, k + 1 : n], x[k + 1 :])
         x[k] = (rows[k, n] - known) / rows[k, k]
     x[:, ~(good & np.isfinite(x).all(axis=0))] = np.nan
+    return x
+
+
+class _Order:
+    """How a system is solved near home.
+
+    Args:
+        solve: the function for so many equations.
+        rows: in the order of their pivots.
+        limits: of multiples, column by column, and of 1/pivot.
+    """
+
+    def __init__(self, solve, rows, limits):
+        self.solve, self.rows, self.limits = solve, rows, limits
+
+    def __call__(self, m, a, b):
+        """Solutions of a x = b, and whether these are beyond doubt."""
+        return self.solve(a, b, self.rows, self.limits)
+
+
+def _straight(m, a, b, order):
+    """The same, in the order of rows at home; with a choice of rows only where that is in doubt."""
+    if isinstance(b, _Vector):
+        try:
+            sure, (x,) = order(m, a, b)
+        except ZeroDivisionError:
+            sure = False
+        return _Vector(x) if sure else _solve(a, b)
+    sure, x = m.solved(order, a.reshape(-1, m.states), b)
+    at = np.flatnonzero(np.logical_not(sure))
+    if at.size:
+        x[:, at] = _solve(a[..., at], b[:, at])
     return x
 
 
@@ -1408,6 +1581,16 @@ def _singular_values(a):
     values = np.linalg.svd(a, compute_uv=False).T.copy()
     values[:, bad] = np.nan
     return values
+
+
+def _least_entry(a):
+    """The least entry."""
+    return np.min(a, axis=0)
+
+
+def _spread(a, n):
+    """Of the first n entries the product, and the last over the first, 0 where that is 0."""
+    return np.prod(a[:n], axis=0), np.where(a[0] == 0.0, 0.0, a[n - 1] / a[0])
 
 
 def _least_squares(a, b, least):
@@ -1492,7 +1675,7 @@ def _nearest(R):
     return u @ vt
 
 
-# dynamics: 738 mul, 540 add, 6 div, 6 sqrt, 0 trig
+# dynamics: 735 mul, 540 add, 6 div, 6 sqrt, 0 trig
 def _run_dynamics(m, X, V):
     sqrt = m.sqrt
     shared, legs = m.constants("dynamics")
@@ -1649,11 +1832,11 @@ def _run_dynamics(m, X, V):
         prs_S_in_axes0_x = (
         prs_S_x*prs_base_frame_xx + prs_S_y*prs_base_frame_yx + prs_S_z*prs_base_frame_zx
         )
-        prs_S_in_axes0_z = (
-        prs_S_x*prs_base_frame_xz + prs_S_y*prs_base_frame_yz + prs_S_z*prs_base_frame_zz
-        )
         prs_S_in_axes0_y = (
         prs_S_x*prs_base_frame_xy + prs_S_y*prs_base_frame_yy + prs_S_z*prs_base_frame_zy
+        )
+        prs_S_in_axes0_z = (
+        prs_S_x*prs_base_frame_xz + prs_S_y*prs_base_frame_yz + prs_S_z*prs_base_frame_zz
         )
         # (prs-disc_1) discriminant of the distance equation
         prs_disc_1_t = prs_S_x*prs_S_x + prs_S_y*prs_S_y + prs_S_z*prs_S_z
@@ -1661,15 +1844,11 @@ def _run_dynamics(m, X, V):
         prs_S_in_axes0_x*prs_S_in_axes0_x + prs_S_in_axes0_z*prs_S_in_axes0_z + prs_size_t -
             prs_disc_1_t
         )
-        # (prs-x_2) from the origin of joint 2 to the connection point
-        prs_x_2_in_axes0_x = -prs_branch_1*sqrt(prs_disc_1)
         # (prs-rho2_2) squared amplitude
-        prs_rho2_2 = (
-        prs_size_t*(prs_S_in_axes0_y*prs_S_in_axes0_y + prs_x_2_in_axes0_x*prs_x_2_in_axes0_x)
-        )
+        prs_rho2_2 = prs_size_t*(prs_S_in_axes0_y*prs_S_in_axes0_y + prs_disc_1)
         # (prs-c_2) cosine of the angle of joint 2 from its reference direction
         prs_c_2_t = 1.0/(sqrt(prs_rho2_2))
-        prs_c_2 = prs_c_2_t*prs_platform_joint_offset_x*prs_x_2_in_axes0_x
+        prs_c_2 = -prs_branch_1*prs_c_2_t*sqrt(prs_disc_1)*prs_platform_joint_offset_x
         # (prs-s_2) sine of the angle of joint 2 from its reference direction
         prs_s_2 = prs_S_in_axes0_y*prs_c_2_t*prs_platform_joint_offset_x
         # (prs-S_dot) velocity of the connection point
@@ -1680,7 +1859,8 @@ def _run_dynamics(m, X, V):
         prs_S_dot_y = prs_S_dot_t_2 + t_dot_y
         prs_S_dot_z = prs_S_dot_t_3 + t_dot_z
         # (prs-v_2) velocity of the connection point per rate of joint 2
-        prs_v_2_t = -prs_c_2*prs_platform_joint_offset_x
+        prs_v_2_in_axes0_x = -prs_platform_joint_offset_x*prs_s_2
+        prs_v_2_in_axes0_y = prs_c_2*prs_platform_joint_offset_x
         # (prs-w_1) reciprocal vector 1
         axis_y_prs_axes2_x = prs_base_frame_xy*prs_c_2 - prs_base_frame_xx*prs_s_2
         axis_y_prs_axes2_y = prs_base_frame_yy*prs_c_2 - prs_base_frame_yx*prs_s_2
@@ -1688,20 +1868,19 @@ def _run_dynamics(m, X, V):
         axis_x_prs_axes2_x = prs_base_frame_xx*prs_c_2 + prs_base_frame_xy*prs_s_2
         axis_x_prs_axes2_y = prs_base_frame_yx*prs_c_2 + prs_base_frame_yy*prs_s_2
         axis_x_prs_axes2_z = prs_base_frame_zx*prs_c_2 + prs_base_frame_zy*prs_s_2
-        prs_d_3_in_axes0_y = prs_platform_joint_offset_x*prs_s_2
-        inv_prs_v_2_t = 1.0/prs_v_2_t
-        prs_w_1_t = inv_prs_v_2_t*prs_d_3_in_axes0_y
-        prs_w_1_in_axes2_x = prs_c_2 - prs_s_2*prs_w_1_t
-        prs_w_1_in_axes2_y = -prs_s_2 - prs_c_2*prs_w_1_t
+        prs_w_1_t = -1.0/prs_v_2_in_axes0_y
+        prs_w_1_t_2 = prs_v_2_in_axes0_x*prs_w_1_t
+        prs_w_1_in_axes2_x = prs_c_2 + prs_s_2*prs_w_1_t_2
+        prs_w_1_in_axes2_y = prs_c_2*prs_w_1_t_2 - prs_s_2
         prs_w_1_x = axis_x_prs_axes2_x*prs_w_1_in_axes2_x + axis_y_prs_axes2_x*prs_w_1_in_axes2_y
         prs_w_1_y = axis_x_prs_axes2_y*prs_w_1_in_axes2_x + axis_y_prs_axes2_y*prs_w_1_in_axes2_y
         prs_w_1_z = axis_x_prs_axes2_z*prs_w_1_in_axes2_x + axis_y_prs_axes2_z*prs_w_1_in_axes2_y
         # (prs-w_2) reciprocal vector 2
-        prs_w_2_t = inv_prs_v_2_t*prs_s_2
-        prs_w_2_in_axes2_y = -inv_prs_v_2_t*prs_c_2
+        prs_w_2_t = prs_s_2*prs_w_1_t
+        prs_w_2_in_axes2_y = -prs_c_2*prs_w_1_t
         # (prs-qd_2) rate of joint 2
         prs_qd_2_t = (
-        inv_prs_v_2_t*(prs_S_dot_x*prs_base_frame_xy + prs_S_dot_y*prs_base_frame_yy +
+        prs_w_1_t*(prs_S_dot_x*prs_base_frame_xy + prs_S_dot_y*prs_base_frame_yy +
             prs_S_dot_z*prs_base_frame_zy)
         )
         # (prs-W_2) centripetal tensor of link 2
@@ -1722,9 +1901,9 @@ def _run_dynamics(m, X, V):
             + prs_platform_joint_offset_x*prs_qd_2_t*prs_qd_2_t
         )
         # (prs-qdd_1_o) remainder without the acceleration in: acceleration of joint 1
-        prs_qdd_1_o_t = inv_prs_v_2_t*(prs_c_2*prs_u_1_in_axes2_y + prs_rel_o_in_axes2_x*prs_s_2)
+        prs_qdd_1_o_t = prs_w_1_t*(prs_c_2*prs_u_1_in_axes2_y + prs_rel_o_in_axes2_x*prs_s_2)
         prs_qdd_1_o = (
-        prs_c_2*prs_rel_o_in_axes2_x - prs_d_3_in_axes0_y*prs_qdd_1_o_t -
+        prs_c_2*prs_rel_o_in_axes2_x + prs_qdd_1_o_t*prs_v_2_in_axes0_x -
             prs_s_2*prs_u_1_in_axes2_y
         )
         # (prs-acc_1_o) remainder without the acceleration in: acceleration of the reference point of link 1, less gravity
@@ -1754,7 +1933,7 @@ def _run_dynamics(m, X, V):
         )
         # (prs-d_Gamma_2) coefficient of the acceleration in: moment about axis 2 of the distal links' inertia and weight
         prs_d_Gamma_2_t = (
-        inv_prs_v_2_t*(prs_J_2_in_spec2_zz + prs_P_c_2_in_axes0_x*prs_d_3_in_axes0_y)
+        prs_w_1_t*(prs_J_2_in_spec2_zz - prs_P_c_2_in_axes0_x*prs_v_2_in_axes0_x)
         )
         prs_d_Gamma_2_in_axes2_x = prs_P_c_2_in_axes0_x*prs_c_2 - prs_d_Gamma_2_t*prs_s_2
         prs_d_Gamma_2_in_axes2_y = -prs_P_c_2_in_axes0_x*prs_s_2 - prs_c_2*prs_d_Gamma_2_t
@@ -1765,7 +1944,7 @@ def _run_dynamics(m, X, V):
         )
         # (prs-d_Gamma_1) coefficient of the acceleration in: force along axis 1 of the distal links' inertia and weight
         prs_d_Gamma_1_t = (
-        inv_prs_v_2_t*(prs_P_c_2_in_axes0_x + prs_P_c_1_in_axes0_x*prs_d_3_in_axes0_y)
+        prs_w_1_t*(prs_P_c_2_in_axes0_x - prs_P_c_1_in_axes0_x*prs_v_2_in_axes0_x)
         )
         prs_d_Gamma_1_in_axes2_x = prs_P_c_1_in_axes0_x*prs_c_2 - prs_d_Gamma_1_t*prs_s_2
         prs_d_Gamma_1_in_axes2_y = -prs_P_c_1_in_axes0_x*prs_s_2 - prs_c_2*prs_d_Gamma_1_t
@@ -1783,9 +1962,7 @@ def _run_dynamics(m, X, V):
         prs_d_Gamma_1_in_axes2_y*prs_w_1_in_axes2_y + prs_d_Gamma_2_in_axes2_y*prs_w_2_in_axes2_y
         )
         # (prs-G_o) remainder without the acceleration in: force at the connection point that balances the leg's inertia and weight along all degrees of freedom
-        prs_G_o_t = (
-        inv_prs_v_2_t*(prs_mu_2_o_in_axes2_z + prs_T_1_o_in_axes0_x*prs_d_3_in_axes0_y)
-        )
+        prs_G_o_t = prs_w_1_t*(prs_mu_2_o_in_axes2_z - prs_T_1_o_in_axes0_x*prs_v_2_in_axes0_x)
         prs_G_o_in_axes2_x = prs_T_1_o_in_axes0_x*prs_c_2 - prs_G_o_t*prs_s_2
         prs_G_o_in_axes2_y = -prs_G_o_t*prs_c_2 - prs_T_1_o_in_axes0_x*prs_s_2
         # (prs-d_c) coefficient of the acceleration in: leg force on the platform without actuation and without the mass at the connection point
@@ -1850,7 +2027,7 @@ def _run_dynamics(m, X, V):
         prs_Hk_a_1_z = prs_base_frame_yz*prs_q_x - prs_base_frame_xz*prs_q_y
         ok = (
         ok & (prs_disc_1 >= 0.0) & (abs(prs_rho2_2) > _TOLERANCE * _TOLERANCE * prs_root_2_t) &
-            (abs(prs_v_2_t) > _TOLERANCE * prs_size)
+            (abs(prs_v_2_in_axes0_y) > _TOLERANCE * prs_size)
         )
         # (M_tt) translational block of M
         M_tt_t += prs_d_c_xx
@@ -1978,7 +2155,7 @@ def _run_dynamics(m, X, V):
     return ok, (out_M, out_Z, out_H, out_Hk, out_constraint_bias,)
 
 
-# M: 414 mul, 318 add, 6 div, 6 sqrt, 0 trig
+# M: 411 mul, 318 add, 6 div, 6 sqrt, 0 trig
 def _run_M(m, X):
     sqrt = m.sqrt
     shared, legs = m.constants("M")
@@ -2074,11 +2251,11 @@ def _run_M(m, X):
         prs_S_in_axes0_x = (
         prs_S_x*prs_base_frame_xx + prs_S_y*prs_base_frame_yx + prs_S_z*prs_base_frame_zx
         )
-        prs_S_in_axes0_z = (
-        prs_S_x*prs_base_frame_xz + prs_S_y*prs_base_frame_yz + prs_S_z*prs_base_frame_zz
-        )
         prs_S_in_axes0_y = (
         prs_S_x*prs_base_frame_xy + prs_S_y*prs_base_frame_yy + prs_S_z*prs_base_frame_zy
+        )
+        prs_S_in_axes0_z = (
+        prs_S_x*prs_base_frame_xz + prs_S_y*prs_base_frame_yz + prs_S_z*prs_base_frame_zz
         )
         # (prs-disc_1) discriminant of the distance equation
         prs_disc_1_t = prs_S_x*prs_S_x + prs_S_y*prs_S_y + prs_S_z*prs_S_z
@@ -2086,39 +2263,35 @@ def _run_M(m, X):
         prs_S_in_axes0_x*prs_S_in_axes0_x + prs_S_in_axes0_z*prs_S_in_axes0_z + prs_size_t -
             prs_disc_1_t
         )
-        # (prs-x_2) from the origin of joint 2 to the connection point
-        prs_x_2_in_axes0_x = -prs_branch_1*sqrt(prs_disc_1)
         # (prs-rho2_2) squared amplitude
-        prs_rho2_2 = (
-        prs_size_t*(prs_S_in_axes0_y*prs_S_in_axes0_y + prs_x_2_in_axes0_x*prs_x_2_in_axes0_x)
-        )
+        prs_rho2_2 = prs_size_t*(prs_S_in_axes0_y*prs_S_in_axes0_y + prs_disc_1)
         # (prs-c_2) cosine of the angle of joint 2 from its reference direction
         prs_c_2_t = 1.0/(sqrt(prs_rho2_2))
-        prs_c_2 = prs_c_2_t*prs_platform_joint_offset_x*prs_x_2_in_axes0_x
+        prs_c_2 = -prs_branch_1*prs_c_2_t*sqrt(prs_disc_1)*prs_platform_joint_offset_x
         # (prs-s_2) sine of the angle of joint 2 from its reference direction
         prs_s_2 = prs_S_in_axes0_y*prs_c_2_t*prs_platform_joint_offset_x
         # (prs-v_2) velocity of the connection point per rate of joint 2
-        prs_v_2_t = -prs_c_2*prs_platform_joint_offset_x
+        prs_v_2_in_axes0_x = -prs_platform_joint_offset_x*prs_s_2
+        prs_v_2_in_axes0_y = prs_c_2*prs_platform_joint_offset_x
         # (prs-w_1) reciprocal vector 1
-        prs_d_3_in_axes0_y = prs_platform_joint_offset_x*prs_s_2
-        inv_prs_v_2_t = 1.0/prs_v_2_t
-        prs_w_1_t = inv_prs_v_2_t*prs_d_3_in_axes0_y
-        prs_w_1_in_axes2_x = prs_c_2 - prs_s_2*prs_w_1_t
-        prs_w_1_in_axes2_y = -prs_s_2 - prs_c_2*prs_w_1_t
+        prs_w_1_t = -1.0/prs_v_2_in_axes0_y
+        prs_w_1_t_2 = prs_v_2_in_axes0_x*prs_w_1_t
+        prs_w_1_in_axes2_x = prs_c_2 + prs_s_2*prs_w_1_t_2
+        prs_w_1_in_axes2_y = prs_c_2*prs_w_1_t_2 - prs_s_2
         # (prs-w_2) reciprocal vector 2
-        prs_w_2_t = inv_prs_v_2_t*prs_s_2
-        prs_w_2_in_axes2_y = -inv_prs_v_2_t*prs_c_2
+        prs_w_2_t = prs_s_2*prs_w_1_t
+        prs_w_2_in_axes2_y = -prs_c_2*prs_w_1_t
         # (prs-P_c_2) force that accelerates joint 2, per unit
         prs_P_c_2_in_axes0_x = -prs_c_2*prs_h_2_in_spec2_y - prs_h_2_in_spec2_x*prs_s_2
         # (prs-d_Gamma_2) coefficient of the acceleration in: moment about axis 2 of the distal links' inertia and weight
         prs_d_Gamma_2_t = (
-        inv_prs_v_2_t*(prs_J_2_in_spec2_zz + prs_P_c_2_in_axes0_x*prs_d_3_in_axes0_y)
+        prs_w_1_t*(prs_J_2_in_spec2_zz - prs_P_c_2_in_axes0_x*prs_v_2_in_axes0_x)
         )
         prs_d_Gamma_2_in_axes2_x = prs_P_c_2_in_axes0_x*prs_c_2 - prs_d_Gamma_2_t*prs_s_2
         prs_d_Gamma_2_in_axes2_y = -prs_P_c_2_in_axes0_x*prs_s_2 - prs_c_2*prs_d_Gamma_2_t
         # (prs-d_Gamma_1) coefficient of the acceleration in: force along axis 1 of the distal links' inertia and weight
         prs_d_Gamma_1_t = (
-        inv_prs_v_2_t*(prs_P_c_2_in_axes0_x + prs_P_c_1_in_axes0_x*prs_d_3_in_axes0_y)
+        prs_w_1_t*(prs_P_c_2_in_axes0_x - prs_P_c_1_in_axes0_x*prs_v_2_in_axes0_x)
         )
         prs_d_Gamma_1_in_axes2_x = prs_P_c_1_in_axes0_x*prs_c_2 - prs_d_Gamma_1_t*prs_s_2
         prs_d_Gamma_1_in_axes2_y = -prs_P_c_1_in_axes0_x*prs_s_2 - prs_c_2*prs_d_Gamma_1_t
@@ -2187,7 +2360,7 @@ def _run_M(m, X):
         prs_M_aa_t_6 = prs_M_ta_t_9*prs_q_x - prs_M_ta_t_5*prs_q_y
         ok = (
         ok & (prs_disc_1 >= 0.0) & (abs(prs_rho2_2) > _TOLERANCE * _TOLERANCE * prs_root_2_t) &
-            (abs(prs_v_2_t) > _TOLERANCE * prs_size)
+            (abs(prs_v_2_in_axes0_y) > _TOLERANCE * prs_size)
         )
         # (M_tt) translational block of M
         M_tt_t += prs_d_c_xx
@@ -2273,7 +2446,7 @@ def _run_M(m, X):
     return ok, (out_M,)
 
 
-# Z: 405 mul, 285 add, 6 div, 6 sqrt, 0 trig
+# Z: 402 mul, 285 add, 6 div, 6 sqrt, 0 trig
 def _run_Z(m, X, V):
     sqrt = m.sqrt
     shared, legs = m.constants("Z")
@@ -2404,11 +2577,11 @@ def _run_Z(m, X, V):
         prs_S_in_axes0_x = (
         prs_S_x*prs_base_frame_xx + prs_S_y*prs_base_frame_yx + prs_S_z*prs_base_frame_zx
         )
-        prs_S_in_axes0_z = (
-        prs_S_x*prs_base_frame_xz + prs_S_y*prs_base_frame_yz + prs_S_z*prs_base_frame_zz
-        )
         prs_S_in_axes0_y = (
         prs_S_x*prs_base_frame_xy + prs_S_y*prs_base_frame_yy + prs_S_z*prs_base_frame_zy
+        )
+        prs_S_in_axes0_z = (
+        prs_S_x*prs_base_frame_xz + prs_S_y*prs_base_frame_yz + prs_S_z*prs_base_frame_zz
         )
         # (prs-disc_1) discriminant of the distance equation
         prs_disc_1_t = prs_S_x*prs_S_x + prs_S_y*prs_S_y + prs_S_z*prs_S_z
@@ -2416,15 +2589,11 @@ def _run_Z(m, X, V):
         prs_S_in_axes0_x*prs_S_in_axes0_x + prs_S_in_axes0_z*prs_S_in_axes0_z + prs_size_t -
             prs_disc_1_t
         )
-        # (prs-x_2) from the origin of joint 2 to the connection point
-        prs_x_2_in_axes0_x = -prs_branch_1*sqrt(prs_disc_1)
         # (prs-rho2_2) squared amplitude
-        prs_rho2_2 = (
-        prs_size_t*(prs_S_in_axes0_y*prs_S_in_axes0_y + prs_x_2_in_axes0_x*prs_x_2_in_axes0_x)
-        )
+        prs_rho2_2 = prs_size_t*(prs_S_in_axes0_y*prs_S_in_axes0_y + prs_disc_1)
         # (prs-c_2) cosine of the angle of joint 2 from its reference direction
         prs_c_2_t = 1.0/(sqrt(prs_rho2_2))
-        prs_c_2 = prs_c_2_t*prs_platform_joint_offset_x*prs_x_2_in_axes0_x
+        prs_c_2 = -prs_branch_1*prs_c_2_t*sqrt(prs_disc_1)*prs_platform_joint_offset_x
         # (prs-s_2) sine of the angle of joint 2 from its reference direction
         prs_s_2 = prs_S_in_axes0_y*prs_c_2_t*prs_platform_joint_offset_x
         # (prs-S_dot) velocity of the connection point
@@ -2435,15 +2604,16 @@ def _run_Z(m, X, V):
         prs_S_dot_y = prs_S_dot_t_2 + t_dot_y
         prs_S_dot_z = prs_S_dot_t_3 + t_dot_z
         # (prs-v_2) velocity of the connection point per rate of joint 2
-        prs_v_2_t = -prs_c_2*prs_platform_joint_offset_x
+        prs_v_2_in_axes0_x = -prs_platform_joint_offset_x*prs_s_2
+        prs_v_2_in_axes0_y = prs_c_2*prs_platform_joint_offset_x
         # (prs-qd_2) rate of joint 2
-        inv_prs_v_2_t = 1.0/prs_v_2_t
-        prs_qd_2_t = (
-        inv_prs_v_2_t*(prs_S_dot_x*prs_base_frame_xy + prs_S_dot_y*prs_base_frame_yy +
+        prs_qd_2_t = -1.0/prs_v_2_in_axes0_y
+        prs_qd_2_t_2 = (
+        prs_qd_2_t*(prs_S_dot_x*prs_base_frame_xy + prs_S_dot_y*prs_base_frame_yy +
             prs_S_dot_z*prs_base_frame_zy)
         )
         # (prs-W_2) centripetal tensor of link 2
-        prs_W_2_t = prs_qd_2_t*prs_qd_2_t
+        prs_W_2_t = prs_qd_2_t_2*prs_qd_2_t_2
         # (prs-u_1) centripetal acceleration of the connection point
         axis_y_prs_axes2_x = prs_base_frame_xy*prs_c_2 - prs_base_frame_xx*prs_s_2
         axis_y_prs_axes2_y = prs_base_frame_yy*prs_c_2 - prs_base_frame_yx*prs_s_2
@@ -2460,13 +2630,12 @@ def _run_Z(m, X, V):
         axis_x_prs_axes2_z = prs_base_frame_zx*prs_c_2 + prs_base_frame_zy*prs_s_2
         prs_rel_o_in_axes2_x = (
         axis_x_prs_axes2_x*prs_u_1_x + axis_x_prs_axes2_y*prs_u_1_y + axis_x_prs_axes2_z*prs_u_1_z
-            + prs_platform_joint_offset_x*prs_qd_2_t*prs_qd_2_t
+            + prs_platform_joint_offset_x*prs_qd_2_t_2*prs_qd_2_t_2
         )
         # (prs-qdd_1_o) remainder without the acceleration in: acceleration of joint 1
-        prs_d_3_in_axes0_y = prs_platform_joint_offset_x*prs_s_2
-        prs_qdd_1_o_t = inv_prs_v_2_t*(prs_c_2*prs_u_1_in_axes2_y + prs_rel_o_in_axes2_x*prs_s_2)
+        prs_qdd_1_o_t = prs_qd_2_t*(prs_c_2*prs_u_1_in_axes2_y + prs_rel_o_in_axes2_x*prs_s_2)
         prs_qdd_1_o = (
-        prs_c_2*prs_rel_o_in_axes2_x - prs_d_3_in_axes0_y*prs_qdd_1_o_t -
+        prs_c_2*prs_rel_o_in_axes2_x + prs_qdd_1_o_t*prs_v_2_in_axes0_x -
             prs_s_2*prs_u_1_in_axes2_y
         )
         # (prs-acc_1_o) remainder without the acceleration in: acceleration of the reference point of link 1, less gravity
@@ -2498,9 +2667,7 @@ def _run_Z(m, X, V):
             prs_f_2_o_in_axes2_y*prs_s_2
         )
         # (prs-G_o) remainder without the acceleration in: force at the connection point that balances the leg's inertia and weight along all degrees of freedom
-        prs_G_o_t = (
-        inv_prs_v_2_t*(prs_mu_2_o_in_axes2_z + prs_T_1_o_in_axes0_x*prs_d_3_in_axes0_y)
-        )
+        prs_G_o_t = prs_qd_2_t*(prs_mu_2_o_in_axes2_z - prs_T_1_o_in_axes0_x*prs_v_2_in_axes0_x)
         prs_G_o_in_axes2_x = prs_T_1_o_in_axes0_x*prs_c_2 - prs_G_o_t*prs_s_2
         prs_G_o_in_axes2_y = -prs_G_o_t*prs_c_2 - prs_T_1_o_in_axes0_x*prs_s_2
         # (prs-U) velocity and gravity terms of the leg force
@@ -2513,7 +2680,7 @@ def _run_Z(m, X, V):
         prs_Z_a_t_3 = prs_U_y*prs_q_x - prs_U_x*prs_q_y
         ok = (
         ok & (prs_disc_1 >= 0.0) & (abs(prs_rho2_2) > _TOLERANCE * _TOLERANCE * prs_root_2_t) &
-            (abs(prs_v_2_t) > _TOLERANCE * prs_size)
+            (abs(prs_v_2_in_axes0_y) > _TOLERANCE * prs_size)
         )
         # (Z_t) translational part of Z
         Z_t_prs_x += prs_U_x
@@ -2542,7 +2709,7 @@ def _run_Z(m, X, V):
     return ok, (out_Z,)
 
 
-# H: 177 mul, 114 add, 6 div, 6 sqrt, 0 trig
+# H: 174 mul, 114 add, 6 div, 6 sqrt, 0 trig
 def _run_H(m, X):
     sqrt = m.sqrt
     shared, legs = m.constants("H")
@@ -2607,11 +2774,11 @@ def _run_H(m, X):
         prs_S_in_axes0_x = (
         prs_S_x*prs_base_frame_xx + prs_S_y*prs_base_frame_yx + prs_S_z*prs_base_frame_zx
         )
-        prs_S_in_axes0_z = (
-        prs_S_x*prs_base_frame_xz + prs_S_y*prs_base_frame_yz + prs_S_z*prs_base_frame_zz
-        )
         prs_S_in_axes0_y = (
         prs_S_x*prs_base_frame_xy + prs_S_y*prs_base_frame_yy + prs_S_z*prs_base_frame_zy
+        )
+        prs_S_in_axes0_z = (
+        prs_S_x*prs_base_frame_xz + prs_S_y*prs_base_frame_yz + prs_S_z*prs_base_frame_zz
         )
         # (prs-disc_1) discriminant of the distance equation
         prs_disc_1_t = prs_S_x*prs_S_x + prs_S_y*prs_S_y + prs_S_z*prs_S_z
@@ -2619,23 +2786,19 @@ def _run_H(m, X):
         prs_S_in_axes0_x*prs_S_in_axes0_x + prs_S_in_axes0_z*prs_S_in_axes0_z + prs_size_t -
             prs_disc_1_t
         )
-        # (prs-x_2) from the origin of joint 2 to the connection point
-        prs_x_2_in_axes0_x = -prs_branch_1*sqrt(prs_disc_1)
         # (prs-rho2_2) squared amplitude
-        prs_rho2_2 = (
-        prs_size_t*(prs_S_in_axes0_y*prs_S_in_axes0_y + prs_x_2_in_axes0_x*prs_x_2_in_axes0_x)
-        )
+        prs_rho2_2 = prs_size_t*(prs_S_in_axes0_y*prs_S_in_axes0_y + prs_disc_1)
         # (prs-c_2) cosine of the angle of joint 2 from its reference direction
         prs_c_2_t = 1.0/(sqrt(prs_rho2_2))
-        prs_c_2 = prs_c_2_t*prs_platform_joint_offset_x*prs_x_2_in_axes0_x
+        prs_c_2 = -prs_branch_1*prs_c_2_t*sqrt(prs_disc_1)*prs_platform_joint_offset_x
         # (prs-s_2) sine of the angle of joint 2 from its reference direction
         prs_s_2 = prs_S_in_axes0_y*prs_c_2_t*prs_platform_joint_offset_x
         # (prs-v_2) velocity of the connection point per rate of joint 2
-        prs_v_2_t = -prs_c_2*prs_platform_joint_offset_x
+        prs_v_2_in_axes0_y = prs_c_2*prs_platform_joint_offset_x
         # (prs-w_1) reciprocal vector 1
-        prs_w_1_t = prs_platform_joint_offset_x*prs_s_2/prs_v_2_t
-        prs_w_1_in_axes2_x = prs_c_2 - prs_s_2*prs_w_1_t
-        prs_w_1_in_axes2_y = -prs_s_2 - prs_c_2*prs_w_1_t
+        prs_w_1_t = prs_platform_joint_offset_x*prs_s_2/prs_v_2_in_axes0_y
+        prs_w_1_in_axes2_x = prs_c_2 + prs_s_2*prs_w_1_t
+        prs_w_1_in_axes2_y = prs_c_2*prs_w_1_t - prs_s_2
         prs_w_1_x = (
         prs_w_1_in_axes2_x*(prs_base_frame_xx*prs_c_2 + prs_base_frame_xy*prs_s_2) +
             prs_w_1_in_axes2_y*(prs_base_frame_xy*prs_c_2 - prs_base_frame_xx*prs_s_2)
@@ -2654,7 +2817,7 @@ def _run_H(m, X):
         prs_H_a_1_z = prs_q_x*prs_w_1_y - prs_q_y*prs_w_1_x
         ok = (
         ok & (prs_disc_1 >= 0.0) & (abs(prs_rho2_2) > _TOLERANCE * _TOLERANCE * prs_root_2_t) &
-            (abs(prs_v_2_t) > _TOLERANCE * prs_size)
+            (abs(prs_v_2_in_axes0_y) > _TOLERANCE * prs_size)
         )
         # (prs-w_1) reciprocal vector 1
         out_H[_H_prs[0][leg]] = prs_w_1_x
@@ -2799,7 +2962,7 @@ def _run_constraint_bias(m, X, V):
     return ok, (out_constraint_bias,)
 
 
-# required: 510 mul, 372 add, 6 div, 6 sqrt, 0 trig
+# required: 507 mul, 372 add, 6 div, 6 sqrt, 0 trig
 def _run_required(m, X, V, A):
     sqrt = m.sqrt
     shared, legs = m.constants("required")
@@ -2971,11 +3134,11 @@ def _run_required(m, X, V, A):
         prs_S_in_axes0_x = (
         prs_S_x*prs_base_frame_xx + prs_S_y*prs_base_frame_yx + prs_S_z*prs_base_frame_zx
         )
-        prs_S_in_axes0_z = (
-        prs_S_x*prs_base_frame_xz + prs_S_y*prs_base_frame_yz + prs_S_z*prs_base_frame_zz
-        )
         prs_S_in_axes0_y = (
         prs_S_x*prs_base_frame_xy + prs_S_y*prs_base_frame_yy + prs_S_z*prs_base_frame_zy
+        )
+        prs_S_in_axes0_z = (
+        prs_S_x*prs_base_frame_xz + prs_S_y*prs_base_frame_yz + prs_S_z*prs_base_frame_zz
         )
         # (prs-disc_1) discriminant of the distance equation
         prs_disc_1_t = prs_S_x*prs_S_x + prs_S_y*prs_S_y + prs_S_z*prs_S_z
@@ -2983,15 +3146,11 @@ def _run_required(m, X, V, A):
         prs_S_in_axes0_x*prs_S_in_axes0_x + prs_S_in_axes0_z*prs_S_in_axes0_z + prs_size_t -
             prs_disc_1_t
         )
-        # (prs-x_2) from the origin of joint 2 to the connection point
-        prs_x_2_in_axes0_x = -prs_branch_1*sqrt(prs_disc_1)
         # (prs-rho2_2) squared amplitude
-        prs_rho2_2 = (
-        prs_size_t*(prs_S_in_axes0_y*prs_S_in_axes0_y + prs_x_2_in_axes0_x*prs_x_2_in_axes0_x)
-        )
+        prs_rho2_2 = prs_size_t*(prs_S_in_axes0_y*prs_S_in_axes0_y + prs_disc_1)
         # (prs-c_2) cosine of the angle of joint 2 from its reference direction
         prs_c_2_t = 1.0/(sqrt(prs_rho2_2))
-        prs_c_2 = prs_c_2_t*prs_platform_joint_offset_x*prs_x_2_in_axes0_x
+        prs_c_2 = -prs_branch_1*prs_c_2_t*sqrt(prs_disc_1)*prs_platform_joint_offset_x
         # (prs-s_2) sine of the angle of joint 2 from its reference direction
         prs_s_2 = prs_S_in_axes0_y*prs_c_2_t*prs_platform_joint_offset_x
         # (prs-S_dot) velocity of the connection point
@@ -3002,21 +3161,21 @@ def _run_required(m, X, V, A):
         prs_S_dot_y = prs_S_dot_t_2 + t_dot_y
         prs_S_dot_z = prs_S_dot_t_3 + t_dot_z
         # (prs-v_2) velocity of the connection point per rate of joint 2
-        prs_v_2_t = -prs_c_2*prs_platform_joint_offset_x
+        prs_v_2_in_axes0_x = -prs_platform_joint_offset_x*prs_s_2
+        prs_v_2_in_axes0_y = prs_c_2*prs_platform_joint_offset_x
         # (prs-w_1) reciprocal vector 1
-        prs_d_3_in_axes0_y = prs_platform_joint_offset_x*prs_s_2
-        inv_prs_v_2_t = 1.0/prs_v_2_t
-        prs_w_1_t = inv_prs_v_2_t*prs_d_3_in_axes0_y
-        prs_w_1_in_axes2_x = prs_c_2 - prs_s_2*prs_w_1_t
-        prs_w_1_in_axes2_y = -prs_s_2 - prs_c_2*prs_w_1_t
-        prs_w_1_t_2 = prs_c_2*prs_w_1_in_axes2_x - prs_s_2*prs_w_1_in_axes2_y
-        prs_w_1_t_3 = prs_c_2*prs_w_1_in_axes2_y + prs_s_2*prs_w_1_in_axes2_x
-        prs_w_1_x = prs_base_frame_xx*prs_w_1_t_2 + prs_base_frame_xy*prs_w_1_t_3
-        prs_w_1_y = prs_base_frame_yx*prs_w_1_t_2 + prs_base_frame_yy*prs_w_1_t_3
-        prs_w_1_z = prs_base_frame_zx*prs_w_1_t_2 + prs_base_frame_zy*prs_w_1_t_3
+        prs_w_1_t = -1.0/prs_v_2_in_axes0_y
+        prs_w_1_t_2 = prs_v_2_in_axes0_x*prs_w_1_t
+        prs_w_1_in_axes2_x = prs_c_2 + prs_s_2*prs_w_1_t_2
+        prs_w_1_in_axes2_y = prs_c_2*prs_w_1_t_2 - prs_s_2
+        prs_w_1_t_3 = prs_c_2*prs_w_1_in_axes2_x - prs_s_2*prs_w_1_in_axes2_y
+        prs_w_1_t_4 = prs_c_2*prs_w_1_in_axes2_y + prs_s_2*prs_w_1_in_axes2_x
+        prs_w_1_x = prs_base_frame_xx*prs_w_1_t_3 + prs_base_frame_xy*prs_w_1_t_4
+        prs_w_1_y = prs_base_frame_yx*prs_w_1_t_3 + prs_base_frame_yy*prs_w_1_t_4
+        prs_w_1_z = prs_base_frame_zx*prs_w_1_t_3 + prs_base_frame_zy*prs_w_1_t_4
         # (prs-qd_2) rate of joint 2
         prs_qd_2_t = (
-        inv_prs_v_2_t*(prs_S_dot_x*prs_base_frame_xy + prs_S_dot_y*prs_base_frame_yy +
+        prs_w_1_t*(prs_S_dot_x*prs_base_frame_xy + prs_S_dot_y*prs_base_frame_yy +
             prs_S_dot_z*prs_base_frame_zy)
         )
         # (prs-W_2) centripetal tensor of link 2
@@ -3044,10 +3203,10 @@ def _run_required(m, X, V, A):
             prs_platform_joint_offset_x*prs_qd_2_t*prs_qd_2_t
         )
         # (prs-qdd_1) acceleration of joint 1
-        prs_qdd_1_t = inv_prs_v_2_t*(prs_S_ddot_in_axes2_y*prs_c_2 + prs_rel_in_axes2_x*prs_s_2)
+        prs_qdd_1_t = prs_w_1_t*(prs_S_ddot_in_axes2_y*prs_c_2 + prs_rel_in_axes2_x*prs_s_2)
         prs_qdd_1 = (
-        prs_c_2*prs_rel_in_axes2_x - prs_S_ddot_in_axes2_y*prs_s_2 -
-            prs_d_3_in_axes0_y*prs_qdd_1_t
+        prs_c_2*prs_rel_in_axes2_x + prs_qdd_1_t*prs_v_2_in_axes0_x -
+            prs_S_ddot_in_axes2_y*prs_s_2
         )
         # (prs-acc_1) acceleration of the reference point of link 1, less gravity
         prs_acc_1_in_axes0_x = prs_qdd_1 - prs_g_in_axes0_x
@@ -3078,7 +3237,7 @@ def _run_required(m, X, V, A):
             prs_f_2_in_axes2_y*prs_s_2
         )
         # (prs-G) force at the connection point that balances the leg's inertia and weight along all degrees of freedom
-        prs_G_t = inv_prs_v_2_t*(prs_mu_2_in_axes2_z + prs_T_1_in_axes0_x*prs_d_3_in_axes0_y)
+        prs_G_t = prs_w_1_t*(prs_mu_2_in_axes2_z - prs_T_1_in_axes0_x*prs_v_2_in_axes0_x)
         prs_G_in_axes2_x = prs_T_1_in_axes0_x*prs_c_2 - prs_G_t*prs_s_2
         prs_G_in_axes2_y = -prs_G_t*prs_c_2 - prs_T_1_in_axes0_x*prs_s_2
         # (prs-c) leg force on the platform without actuation and without the mass at the connection point
@@ -3101,7 +3260,7 @@ def _run_required(m, X, V, A):
         prs_Hk_a_1_z = prs_base_frame_yz*prs_q_x - prs_base_frame_xz*prs_q_y
         ok = (
         ok & (prs_disc_1 >= 0.0) & (abs(prs_rho2_2) > _TOLERANCE * _TOLERANCE * prs_root_2_t) &
-            (abs(prs_v_2_t) > _TOLERANCE * prs_size)
+            (abs(prs_v_2_in_axes0_y) > _TOLERANCE * prs_size)
         )
         # (R_t) force that actuators and external wrench must give
         R_t_t += prs_c_x
@@ -3146,7 +3305,7 @@ def _run_required(m, X, V, A):
     return ok, (out_required, out_H, out_Hk,)
 
 
-# inverse_kinematics: 93 mul, 75 add, 3 div, 6 sqrt, 3 trig
+# inverse_kinematics: 90 mul, 75 add, 3 div, 6 sqrt, 3 trig
 def _run_inverse_kinematics(m, X):
     sqrt = m.sqrt
     atan2 = m.atan2
@@ -3212,11 +3371,11 @@ def _run_inverse_kinematics(m, X):
         prs_S_in_axes0_x = (
         prs_S_x*prs_base_frame_xx + prs_S_y*prs_base_frame_yx + prs_S_z*prs_base_frame_zx
         )
-        prs_S_in_axes0_z = (
-        prs_S_x*prs_base_frame_xz + prs_S_y*prs_base_frame_yz + prs_S_z*prs_base_frame_zz
-        )
         prs_S_in_axes0_y = (
         prs_S_x*prs_base_frame_xy + prs_S_y*prs_base_frame_yy + prs_S_z*prs_base_frame_zy
+        )
+        prs_S_in_axes0_z = (
+        prs_S_x*prs_base_frame_xz + prs_S_y*prs_base_frame_yz + prs_S_z*prs_base_frame_zz
         )
         # (prs-disc_1) discriminant of the distance equation
         prs_disc_1_t = prs_S_x*prs_S_x + prs_S_y*prs_S_y + prs_S_z*prs_S_z
@@ -3228,7 +3387,7 @@ def _run_inverse_kinematics(m, X):
         prs_q_1_t = -prs_branch_1*sqrt(prs_disc_1)
         prs_q_1 = prs_S_in_axes0_x - prs_q_1_t
         # (prs-rho2_2) squared amplitude
-        prs_rho2_2 = prs_size_t*(prs_S_in_axes0_y*prs_S_in_axes0_y + prs_q_1_t*prs_q_1_t)
+        prs_rho2_2 = prs_size_t*(prs_S_in_axes0_y*prs_S_in_axes0_y + prs_disc_1)
         # (prs-q_2) displacement of joint 2
         prs_q_2_t = 1.0/(sqrt(prs_rho2_2))
         prs_q_2 = (
@@ -3243,7 +3402,7 @@ def _run_inverse_kinematics(m, X):
     return ok, (out_q,)
 
 
-# joint_rates: 138 mul, 105 add, 6 div, 6 sqrt, 0 trig
+# joint_rates: 135 mul, 105 add, 6 div, 6 sqrt, 0 trig
 def _run_joint_rates(m, X, V):
     sqrt = m.sqrt
     shared, legs = m.constants("joint_rates")
@@ -3321,11 +3480,11 @@ def _run_joint_rates(m, X, V):
         prs_S_in_axes0_x = (
         prs_S_x*prs_base_frame_xx + prs_S_y*prs_base_frame_yx + prs_S_z*prs_base_frame_zx
         )
-        prs_S_in_axes0_z = (
-        prs_S_x*prs_base_frame_xz + prs_S_y*prs_base_frame_yz + prs_S_z*prs_base_frame_zz
-        )
         prs_S_in_axes0_y = (
         prs_S_x*prs_base_frame_xy + prs_S_y*prs_base_frame_yy + prs_S_z*prs_base_frame_zy
+        )
+        prs_S_in_axes0_z = (
+        prs_S_x*prs_base_frame_xz + prs_S_y*prs_base_frame_yz + prs_S_z*prs_base_frame_zz
         )
         # (prs-disc_1) discriminant of the distance equation
         prs_disc_1_t = prs_S_x*prs_S_x + prs_S_y*prs_S_y + prs_S_z*prs_S_z
@@ -3333,25 +3492,21 @@ def _run_joint_rates(m, X, V):
         prs_S_in_axes0_x*prs_S_in_axes0_x + prs_S_in_axes0_z*prs_S_in_axes0_z + prs_size_t -
             prs_disc_1_t
         )
-        # (prs-x_2) from the origin of joint 2 to the connection point
-        prs_x_2_in_axes0_x = -prs_branch_1*sqrt(prs_disc_1)
         # (prs-rho2_2) squared amplitude
-        prs_rho2_2 = (
-        prs_size_t*(prs_S_in_axes0_y*prs_S_in_axes0_y + prs_x_2_in_axes0_x*prs_x_2_in_axes0_x)
-        )
+        prs_rho2_2 = prs_size_t*(prs_S_in_axes0_y*prs_S_in_axes0_y + prs_disc_1)
         # (prs-S_dot) velocity of the connection point
         prs_S_dot_x = t_dot_x + omega_y*prs_q_z - omega_z*prs_q_y
         prs_S_dot_y = t_dot_y + omega_z*prs_q_x - omega_x*prs_q_z
         prs_S_dot_z = t_dot_z + omega_x*prs_q_y - omega_y*prs_q_x
         # (prs-v_2) velocity of the connection point per rate of joint 2
         prs_v_2_t = 1.0/(sqrt(prs_rho2_2))
-        prs_v_2_t_2 = (
-        -prs_platform_joint_offset_x*prs_platform_joint_offset_x*prs_v_2_t*prs_x_2_in_axes0_x
+        prs_v_2_in_axes0_y = (
+        -prs_branch_1*sqrt(prs_disc_1)*prs_platform_joint_offset_x*prs_platform_joint_offset_x*prs_v_2_t
         )
         # (prs-qd_1) rate of joint 1
         prs_qd_1_t = (
-        (prs_S_dot_x*prs_base_frame_xy + prs_S_dot_y*prs_base_frame_yy +
-            prs_S_dot_z*prs_base_frame_zy)/prs_v_2_t_2
+        -(prs_S_dot_x*prs_base_frame_xy + prs_S_dot_y*prs_base_frame_yy +
+            prs_S_dot_z*prs_base_frame_zy)/prs_v_2_in_axes0_y
         )
         prs_qd_1 = (
         prs_S_dot_x*prs_base_frame_xx + prs_S_dot_y*prs_base_frame_yx +
@@ -3360,7 +3515,7 @@ def _run_joint_rates(m, X, V):
         )
         ok = (
         ok & (prs_disc_1 >= 0.0) & (abs(prs_rho2_2) > _TOLERANCE * _TOLERANCE * prs_root_2_t) &
-            (abs(prs_v_2_t_2) > _TOLERANCE * prs_size)
+            (abs(prs_v_2_in_axes0_y) > _TOLERANCE * prs_size)
         )
         # (prs-qd_1) rate of joint 1
         out_qd[_qd_prs[0][leg]] = prs_qd_1
@@ -3369,7 +3524,7 @@ def _run_joint_rates(m, X, V):
     return ok, (out_qd,)
 
 
-# joint_accelerations: 219 mul, 162 add, 6 div, 6 sqrt, 0 trig
+# joint_accelerations: 216 mul, 162 add, 6 div, 6 sqrt, 0 trig
 def _run_joint_accelerations(m, X, V, A):
     sqrt = m.sqrt
     shared, legs = m.constants("joint_accelerations")
@@ -3460,11 +3615,11 @@ def _run_joint_accelerations(m, X, V, A):
         prs_S_in_axes0_x = (
         prs_S_x*prs_base_frame_xx + prs_S_y*prs_base_frame_yx + prs_S_z*prs_base_frame_zx
         )
-        prs_S_in_axes0_z = (
-        prs_S_x*prs_base_frame_xz + prs_S_y*prs_base_frame_yz + prs_S_z*prs_base_frame_zz
-        )
         prs_S_in_axes0_y = (
         prs_S_x*prs_base_frame_xy + prs_S_y*prs_base_frame_yy + prs_S_z*prs_base_frame_zy
+        )
+        prs_S_in_axes0_z = (
+        prs_S_x*prs_base_frame_xz + prs_S_y*prs_base_frame_yz + prs_S_z*prs_base_frame_zz
         )
         # (prs-disc_1) discriminant of the distance equation
         prs_disc_1_t = prs_S_x*prs_S_x + prs_S_y*prs_S_y + prs_S_z*prs_S_z
@@ -3472,15 +3627,11 @@ def _run_joint_accelerations(m, X, V, A):
         prs_S_in_axes0_x*prs_S_in_axes0_x + prs_S_in_axes0_z*prs_S_in_axes0_z + prs_size_t -
             prs_disc_1_t
         )
-        # (prs-x_2) from the origin of joint 2 to the connection point
-        prs_x_2_in_axes0_x = -prs_branch_1*sqrt(prs_disc_1)
         # (prs-rho2_2) squared amplitude
-        prs_rho2_2 = (
-        prs_size_t*(prs_S_in_axes0_y*prs_S_in_axes0_y + prs_x_2_in_axes0_x*prs_x_2_in_axes0_x)
-        )
+        prs_rho2_2 = prs_size_t*(prs_S_in_axes0_y*prs_S_in_axes0_y + prs_disc_1)
         # (prs-c_2) cosine of the angle of joint 2 from its reference direction
         prs_c_2_t = 1.0/(sqrt(prs_rho2_2))
-        prs_c_2 = prs_c_2_t*prs_platform_joint_offset_x*prs_x_2_in_axes0_x
+        prs_c_2 = -prs_branch_1*prs_c_2_t*sqrt(prs_disc_1)*prs_platform_joint_offset_x
         # (prs-s_2) sine of the angle of joint 2 from its reference direction
         prs_s_2 = prs_S_in_axes0_y*prs_c_2_t*prs_platform_joint_offset_x
         # (prs-S_dot) velocity of the connection point
@@ -3491,11 +3642,11 @@ def _run_joint_accelerations(m, X, V, A):
         prs_S_dot_y = prs_S_dot_t_2 + t_dot_y
         prs_S_dot_z = prs_S_dot_t_3 + t_dot_z
         # (prs-v_2) velocity of the connection point per rate of joint 2
-        prs_v_2_t = -prs_c_2*prs_platform_joint_offset_x
+        prs_v_2_in_axes0_y = prs_c_2*prs_platform_joint_offset_x
         # (prs-qd_2) rate of joint 2
-        inv_prs_v_2_t = 1.0/prs_v_2_t
-        prs_qd_2_t = (
-        inv_prs_v_2_t*(prs_S_dot_x*prs_base_frame_xy + prs_S_dot_y*prs_base_frame_yy +
+        prs_qd_2_t = -1.0/prs_v_2_in_axes0_y
+        prs_qd_2_t_2 = (
+        prs_qd_2_t*(prs_S_dot_x*prs_base_frame_xy + prs_S_dot_y*prs_base_frame_yy +
             prs_S_dot_z*prs_base_frame_zy)
         )
         # (prs-a_p) acceleration of the connection point without its centripetal part
@@ -3518,17 +3669,17 @@ def _run_joint_accelerations(m, X, V, A):
         # (prs-rel) acceleration of the connection point left to the joint accelerations
         prs_rel_in_axes2_x = (
         prs_S_ddot_t*prs_c_2 + prs_S_ddot_t_2*prs_s_2 +
-            prs_platform_joint_offset_x*prs_qd_2_t*prs_qd_2_t
+            prs_platform_joint_offset_x*prs_qd_2_t_2*prs_qd_2_t_2
         )
         # (prs-qdd_1) acceleration of joint 1
-        prs_qdd_1_t = inv_prs_v_2_t*(prs_S_ddot_in_axes2_y*prs_c_2 + prs_rel_in_axes2_x*prs_s_2)
+        prs_qdd_1_t = prs_qd_2_t*(prs_S_ddot_in_axes2_y*prs_c_2 + prs_rel_in_axes2_x*prs_s_2)
         prs_qdd_1 = (
         prs_c_2*prs_rel_in_axes2_x - prs_S_ddot_in_axes2_y*prs_s_2 -
             prs_platform_joint_offset_x*prs_qdd_1_t*prs_s_2
         )
         ok = (
         ok & (prs_disc_1 >= 0.0) & (abs(prs_rho2_2) > _TOLERANCE * _TOLERANCE * prs_root_2_t) &
-            (abs(prs_v_2_t) > _TOLERANCE * prs_size)
+            (abs(prs_v_2_in_axes0_y) > _TOLERANCE * prs_size)
         )
         # (prs-qdd_1) acceleration of joint 1
         out_qdd[_qdd_prs[0][leg]] = prs_qdd_1
@@ -3604,7 +3755,7 @@ def _run_constraints(m, X):
     return ok, (out_constraints,)
 
 
-# legs: 363 mul, 246 add, 6 div, 6 sqrt, 0 trig
+# legs: 360 mul, 246 add, 6 div, 6 sqrt, 0 trig
 def _run_legs(m, X, V, A):
     sqrt = m.sqrt
     shared, legs = m.constants("legs")
@@ -3699,11 +3850,11 @@ def _run_legs(m, X, V, A):
         prs_S_in_axes0_x = (
         prs_S_x*prs_base_frame_xx + prs_S_y*prs_base_frame_yx + prs_S_z*prs_base_frame_zx
         )
-        prs_S_in_axes0_z = (
-        prs_S_x*prs_base_frame_xz + prs_S_y*prs_base_frame_yz + prs_S_z*prs_base_frame_zz
-        )
         prs_S_in_axes0_y = (
         prs_S_x*prs_base_frame_xy + prs_S_y*prs_base_frame_yy + prs_S_z*prs_base_frame_zy
+        )
+        prs_S_in_axes0_z = (
+        prs_S_x*prs_base_frame_xz + prs_S_y*prs_base_frame_yz + prs_S_z*prs_base_frame_zz
         )
         # (prs-disc_1) discriminant of the distance equation
         prs_disc_1_t = prs_S_x*prs_S_x + prs_S_y*prs_S_y + prs_S_z*prs_S_z
@@ -3711,15 +3862,11 @@ def _run_legs(m, X, V, A):
         prs_S_in_axes0_x*prs_S_in_axes0_x + prs_S_in_axes0_z*prs_S_in_axes0_z + prs_size_t -
             prs_disc_1_t
         )
-        # (prs-x_2) from the origin of joint 2 to the connection point
-        prs_x_2_in_axes0_x = -prs_branch_1*sqrt(prs_disc_1)
         # (prs-rho2_2) squared amplitude
-        prs_rho2_2 = (
-        prs_size_t*(prs_S_in_axes0_y*prs_S_in_axes0_y + prs_x_2_in_axes0_x*prs_x_2_in_axes0_x)
-        )
+        prs_rho2_2 = prs_size_t*(prs_S_in_axes0_y*prs_S_in_axes0_y + prs_disc_1)
         # (prs-c_2) cosine of the angle of joint 2 from its reference direction
         prs_c_2_t = 1.0/(sqrt(prs_rho2_2))
-        prs_c_2 = prs_c_2_t*prs_platform_joint_offset_x*prs_x_2_in_axes0_x
+        prs_c_2 = -prs_branch_1*prs_c_2_t*sqrt(prs_disc_1)*prs_platform_joint_offset_x
         # (prs-s_2) sine of the angle of joint 2 from its reference direction
         prs_s_2 = prs_S_in_axes0_y*prs_c_2_t*prs_platform_joint_offset_x
         # (prs-S_dot) velocity of the connection point
@@ -3730,21 +3877,21 @@ def _run_legs(m, X, V, A):
         prs_S_dot_y = prs_S_dot_t_2 + t_dot_y
         prs_S_dot_z = prs_S_dot_t_3 + t_dot_z
         # (prs-v_2) velocity of the connection point per rate of joint 2
-        prs_v_2_t = -prs_c_2*prs_platform_joint_offset_x
+        prs_v_2_in_axes0_x = -prs_platform_joint_offset_x*prs_s_2
+        prs_v_2_in_axes0_y = prs_c_2*prs_platform_joint_offset_x
         # (prs-w_1) reciprocal vector 1
-        prs_d_3_in_axes0_y = prs_platform_joint_offset_x*prs_s_2
-        inv_prs_v_2_t = 1.0/prs_v_2_t
-        prs_w_1_t = inv_prs_v_2_t*prs_d_3_in_axes0_y
-        prs_w_1_in_axes2_x = prs_c_2 - prs_s_2*prs_w_1_t
-        prs_w_1_in_axes2_y = -prs_s_2 - prs_c_2*prs_w_1_t
-        prs_w_1_t_2 = prs_c_2*prs_w_1_in_axes2_x - prs_s_2*prs_w_1_in_axes2_y
-        prs_w_1_t_3 = prs_c_2*prs_w_1_in_axes2_y + prs_s_2*prs_w_1_in_axes2_x
-        prs_w_1_x = prs_base_frame_xx*prs_w_1_t_2 + prs_base_frame_xy*prs_w_1_t_3
-        prs_w_1_y = prs_base_frame_yx*prs_w_1_t_2 + prs_base_frame_yy*prs_w_1_t_3
-        prs_w_1_z = prs_base_frame_zx*prs_w_1_t_2 + prs_base_frame_zy*prs_w_1_t_3
+        prs_w_1_t = -1.0/prs_v_2_in_axes0_y
+        prs_w_1_t_2 = prs_v_2_in_axes0_x*prs_w_1_t
+        prs_w_1_in_axes2_x = prs_c_2 + prs_s_2*prs_w_1_t_2
+        prs_w_1_in_axes2_y = prs_c_2*prs_w_1_t_2 - prs_s_2
+        prs_w_1_t_3 = prs_c_2*prs_w_1_in_axes2_x - prs_s_2*prs_w_1_in_axes2_y
+        prs_w_1_t_4 = prs_c_2*prs_w_1_in_axes2_y + prs_s_2*prs_w_1_in_axes2_x
+        prs_w_1_x = prs_base_frame_xx*prs_w_1_t_3 + prs_base_frame_xy*prs_w_1_t_4
+        prs_w_1_y = prs_base_frame_yx*prs_w_1_t_3 + prs_base_frame_yy*prs_w_1_t_4
+        prs_w_1_z = prs_base_frame_zx*prs_w_1_t_3 + prs_base_frame_zy*prs_w_1_t_4
         # (prs-qd_2) rate of joint 2
         prs_qd_2_t = (
-        inv_prs_v_2_t*(prs_S_dot_x*prs_base_frame_xy + prs_S_dot_y*prs_base_frame_yy +
+        prs_w_1_t*(prs_S_dot_x*prs_base_frame_xy + prs_S_dot_y*prs_base_frame_yy +
             prs_S_dot_z*prs_base_frame_zy)
         )
         # (prs-W_2) centripetal tensor of link 2
@@ -3772,10 +3919,10 @@ def _run_legs(m, X, V, A):
             prs_platform_joint_offset_x*prs_qd_2_t*prs_qd_2_t
         )
         # (prs-qdd_1) acceleration of joint 1
-        prs_qdd_1_t = inv_prs_v_2_t*(prs_S_ddot_in_axes2_y*prs_c_2 + prs_rel_in_axes2_x*prs_s_2)
+        prs_qdd_1_t = prs_w_1_t*(prs_S_ddot_in_axes2_y*prs_c_2 + prs_rel_in_axes2_x*prs_s_2)
         prs_qdd_1 = (
-        prs_c_2*prs_rel_in_axes2_x - prs_S_ddot_in_axes2_y*prs_s_2 -
-            prs_d_3_in_axes0_y*prs_qdd_1_t
+        prs_c_2*prs_rel_in_axes2_x + prs_qdd_1_t*prs_v_2_in_axes0_x -
+            prs_S_ddot_in_axes2_y*prs_s_2
         )
         # (prs-acc_1) acceleration of the reference point of link 1, less gravity
         prs_acc_1_in_axes0_x = prs_qdd_1 - prs_g_in_axes0_x
@@ -3806,7 +3953,7 @@ def _run_legs(m, X, V, A):
             prs_f_2_in_axes2_y*prs_s_2
         )
         # (prs-G) force at the connection point that balances the leg's inertia and weight along all degrees of freedom
-        prs_G_t = inv_prs_v_2_t*(prs_mu_2_in_axes2_z + prs_T_1_in_axes0_x*prs_d_3_in_axes0_y)
+        prs_G_t = prs_w_1_t*(prs_mu_2_in_axes2_z - prs_T_1_in_axes0_x*prs_v_2_in_axes0_x)
         prs_G_in_axes2_x = prs_T_1_in_axes0_x*prs_c_2 - prs_G_t*prs_s_2
         prs_G_in_axes2_y = -prs_G_t*prs_c_2 - prs_T_1_in_axes0_x*prs_s_2
         # (prs-c) leg force on the platform without actuation and without the mass at the connection point
@@ -3817,7 +3964,7 @@ def _run_legs(m, X, V, A):
         prs_c_z = prs_base_frame_zx*prs_c_t + prs_base_frame_zy*prs_c_t_2
         ok = (
         ok & (prs_disc_1 >= 0.0) & (abs(prs_rho2_2) > _TOLERANCE * _TOLERANCE * prs_root_2_t) &
-            (abs(prs_v_2_t) > _TOLERANCE * prs_size)
+            (abs(prs_v_2_in_axes0_y) > _TOLERANCE * prs_size)
         )
         # (prs-c) leg force on the platform without actuation and without the mass at the connection point
         out_leg_force[_leg_force_prs[0][leg]] = prs_c_x
@@ -3834,7 +3981,7 @@ def _run_legs(m, X, V, A):
     return ok, (out_leg_force, out_actuator, out_constraint_direction,)
 
 
-# potential: 132 mul, 123 add, 3 div, 6 sqrt, 0 trig
+# potential: 129 mul, 123 add, 3 div, 6 sqrt, 0 trig
 def _run_potential(m, X):
     sqrt = m.sqrt
     shared, legs = m.constants("potential")
@@ -3914,11 +4061,11 @@ def _run_potential(m, X):
         prs_S_in_axes0_x = (
         prs_S_x*prs_base_frame_xx + prs_S_y*prs_base_frame_yx + prs_S_z*prs_base_frame_zx
         )
-        prs_S_in_axes0_z = (
-        prs_S_x*prs_base_frame_xz + prs_S_y*prs_base_frame_yz + prs_S_z*prs_base_frame_zz
-        )
         prs_S_in_axes0_y = (
         prs_S_x*prs_base_frame_xy + prs_S_y*prs_base_frame_yy + prs_S_z*prs_base_frame_zy
+        )
+        prs_S_in_axes0_z = (
+        prs_S_x*prs_base_frame_xz + prs_S_y*prs_base_frame_yz + prs_S_z*prs_base_frame_zz
         )
         # (prs-disc_1) discriminant of the distance equation
         prs_disc_1_t = prs_S_x*prs_S_x + prs_S_y*prs_S_y + prs_S_z*prs_S_z
@@ -3930,7 +4077,7 @@ def _run_potential(m, X):
         prs_q_1_t = -prs_branch_1*sqrt(prs_disc_1)
         prs_q_1 = prs_S_in_axes0_x - prs_q_1_t
         # (prs-rho2_2) squared amplitude
-        prs_rho2_2 = prs_size_t*(prs_S_in_axes0_y*prs_S_in_axes0_y + prs_q_1_t*prs_q_1_t)
+        prs_rho2_2 = prs_size_t*(prs_S_in_axes0_y*prs_S_in_axes0_y + prs_disc_1)
         # (prs-c_2) cosine of the angle of joint 2 from its reference direction
         prs_c_2_t = 1.0/(sqrt(prs_rho2_2))
         prs_c_2 = prs_c_2_t*prs_platform_joint_offset_x*prs_q_1_t
@@ -3954,7 +4101,7 @@ def _run_potential(m, X):
     return ok, (out_potential,)
 
 
-# condition: 211 mul, 144 add, 6 div, 10 sqrt, 0 trig
+# condition: 208 mul, 144 add, 6 div, 10 sqrt, 0 trig
 def _run_condition(m, X):
     sqrt = m.sqrt
     least = m.least
@@ -4030,11 +4177,11 @@ def _run_condition(m, X):
         prs_S_in_axes0_x = (
         prs_S_x*prs_base_frame_xx + prs_S_y*prs_base_frame_yx + prs_S_z*prs_base_frame_zx
         )
-        prs_S_in_axes0_z = (
-        prs_S_x*prs_base_frame_xz + prs_S_y*prs_base_frame_yz + prs_S_z*prs_base_frame_zz
-        )
         prs_S_in_axes0_y = (
         prs_S_x*prs_base_frame_xy + prs_S_y*prs_base_frame_yy + prs_S_z*prs_base_frame_zy
+        )
+        prs_S_in_axes0_z = (
+        prs_S_x*prs_base_frame_xz + prs_S_y*prs_base_frame_yz + prs_S_z*prs_base_frame_zz
         )
         # (prs-disc_1) discriminant of the distance equation
         prs_disc_1_t = prs_S_x*prs_S_x + prs_S_y*prs_S_y + prs_S_z*prs_S_z
@@ -4042,23 +4189,19 @@ def _run_condition(m, X):
         prs_S_in_axes0_x*prs_S_in_axes0_x + prs_S_in_axes0_z*prs_S_in_axes0_z + prs_size_t -
             prs_disc_1_t
         )
-        # (prs-x_2) from the origin of joint 2 to the connection point
-        prs_x_2_in_axes0_x = -prs_branch_1*sqrt(prs_disc_1)
         # (prs-rho2_2) squared amplitude
-        prs_rho2_2 = (
-        prs_size_t*(prs_S_in_axes0_y*prs_S_in_axes0_y + prs_x_2_in_axes0_x*prs_x_2_in_axes0_x)
-        )
+        prs_rho2_2 = prs_size_t*(prs_S_in_axes0_y*prs_S_in_axes0_y + prs_disc_1)
         # (prs-c_2) cosine of the angle of joint 2 from its reference direction
         prs_c_2_t = 1.0/(sqrt(prs_rho2_2))
-        prs_c_2 = prs_c_2_t*prs_platform_joint_offset_x*prs_x_2_in_axes0_x
+        prs_c_2 = -prs_branch_1*prs_c_2_t*sqrt(prs_disc_1)*prs_platform_joint_offset_x
         # (prs-s_2) sine of the angle of joint 2 from its reference direction
         prs_s_2 = prs_S_in_axes0_y*prs_c_2_t*prs_platform_joint_offset_x
         # (prs-v_2) velocity of the connection point per rate of joint 2
-        prs_v_2_t = -prs_c_2*prs_platform_joint_offset_x
+        prs_v_2_in_axes0_y = prs_c_2*prs_platform_joint_offset_x
         # (prs-w_1) reciprocal vector 1
-        prs_w_1_t = prs_platform_joint_offset_x*prs_s_2/prs_v_2_t
-        prs_w_1_in_axes2_x = prs_c_2 - prs_s_2*prs_w_1_t
-        prs_w_1_in_axes2_y = -prs_s_2 - prs_c_2*prs_w_1_t
+        prs_w_1_t = prs_platform_joint_offset_x*prs_s_2/prs_v_2_in_axes0_y
+        prs_w_1_in_axes2_x = prs_c_2 + prs_s_2*prs_w_1_t
+        prs_w_1_in_axes2_y = prs_c_2*prs_w_1_t - prs_s_2
         prs_w_1_x = (
         prs_w_1_in_axes2_x*(prs_base_frame_xx*prs_c_2 + prs_base_frame_xy*prs_s_2) +
             prs_w_1_in_axes2_y*(prs_base_frame_xy*prs_c_2 - prs_base_frame_xx*prs_s_2)
@@ -4073,7 +4216,7 @@ def _run_condition(m, X):
         )
         # (prs-G) force at the connection point that balances the leg's inertia and weight along all degrees of freedom
         prs_pivot_size = abs(prs_rho2_2)
-        prs_pivot_size_2 = abs(prs_v_2_t)
+        prs_pivot_size_2 = abs(prs_v_2_in_axes0_y)
         prs_least_pivots = (
         least(sqrt(inv_prs_root_2_t*prs_pivot_size), inv_prs_size*prs_pivot_size_2)
         )
@@ -4094,8 +4237,8 @@ def _run_condition(m, X):
         )
         reached = reached & (prs_disc_1 >= 0.0)
         clear = (
-        clear & (abs(prs_rho2_2) > _TOLERANCE * _TOLERANCE * prs_root_2_t) & (abs(prs_v_2_t) >
-            _TOLERANCE * prs_size)
+        clear & (abs(prs_rho2_2) > _TOLERANCE * _TOLERANCE * prs_root_2_t) &
+            (abs(prs_v_2_in_axes0_y) > _TOLERANCE * prs_size)
         )
         # (spread) rms distance of the platform points from their centroid
         spread_prs += prs_spread_t_4
@@ -4125,6 +4268,129 @@ def _run_condition(m, X):
     return (valid, reached, clear), (out_H, out_Hk, out_lengths, out_pivots, out_reach,)
 
 
+def _straight_6(a, b, rows, limits):
+    """Solve 6 equations a x = b straight through; and whether that is beyond doubt."""
+    (
+    (a00, a01, a02, a03, a04, a05,), (a10, a11, a12, a13, a14, a15,), (a20, a21, a22, a23, a24,
+        a25,), (a30, a31, a32, a33, a34, a35,), (a40, a41, a42, a43, a44, a45,), (a50, a51, a52,
+        a53, a54, a55,),
+    ) = [a[6 * k : 6 * k + 6] for k in rows]
+    b0, b1, b2, b3, b4, b5, = [b[k] for k in rows]
+    (
+    l10, l20, l30, l40, l50, l21, l31, l41, l51, l32, l42, l52, l43, l53, l54, l0, l1, l2, l3, l4,
+        l5,
+    ) = limits
+    f0 = 1.0/a00
+    g10 = a10*f0
+    a11 = a11 - g10*a01
+    a12 = a12 - g10*a02
+    a13 = a13 - g10*a03
+    a14 = a14 - g10*a04
+    a15 = a15 - g10*a05
+    b1 = b1 - g10*b0
+    g20 = a20*f0
+    a21 = a21 - g20*a01
+    a22 = a22 - g20*a02
+    a23 = a23 - g20*a03
+    a24 = a24 - g20*a04
+    a25 = a25 - g20*a05
+    b2 = b2 - g20*b0
+    g30 = a30*f0
+    a31 = a31 - g30*a01
+    a32 = a32 - g30*a02
+    a33 = a33 - g30*a03
+    a34 = a34 - g30*a04
+    a35 = a35 - g30*a05
+    b3 = b3 - g30*b0
+    g40 = a40*f0
+    a41 = a41 - g40*a01
+    a42 = a42 - g40*a02
+    a43 = a43 - g40*a03
+    a44 = a44 - g40*a04
+    a45 = a45 - g40*a05
+    b4 = b4 - g40*b0
+    g50 = a50*f0
+    a51 = a51 - g50*a01
+    a52 = a52 - g50*a02
+    a53 = a53 - g50*a03
+    a54 = a54 - g50*a04
+    a55 = a55 - g50*a05
+    b5 = b5 - g50*b0
+    f1 = 1.0/a11
+    g21 = a21*f1
+    a22 = a22 - g21*a12
+    a23 = a23 - g21*a13
+    a24 = a24 - g21*a14
+    a25 = a25 - g21*a15
+    b2 = b2 - g21*b1
+    g31 = a31*f1
+    a32 = a32 - g31*a12
+    a33 = a33 - g31*a13
+    a34 = a34 - g31*a14
+    a35 = a35 - g31*a15
+    b3 = b3 - g31*b1
+    g41 = a41*f1
+    a42 = a42 - g41*a12
+    a43 = a43 - g41*a13
+    a44 = a44 - g41*a14
+    a45 = a45 - g41*a15
+    b4 = b4 - g41*b1
+    g51 = a51*f1
+    a52 = a52 - g51*a12
+    a53 = a53 - g51*a13
+    a54 = a54 - g51*a14
+    a55 = a55 - g51*a15
+    b5 = b5 - g51*b1
+    f2 = 1.0/a22
+    g32 = a32*f2
+    a33 = a33 - g32*a23
+    a34 = a34 - g32*a24
+    a35 = a35 - g32*a25
+    b3 = b3 - g32*b2
+    g42 = a42*f2
+    a43 = a43 - g42*a23
+    a44 = a44 - g42*a24
+    a45 = a45 - g42*a25
+    b4 = b4 - g42*b2
+    g52 = a52*f2
+    a53 = a53 - g52*a23
+    a54 = a54 - g52*a24
+    a55 = a55 - g52*a25
+    b5 = b5 - g52*b2
+    f3 = 1.0/a33
+    g43 = a43*f3
+    a44 = a44 - g43*a34
+    a45 = a45 - g43*a35
+    b4 = b4 - g43*b3
+    g53 = a53*f3
+    a54 = a54 - g53*a34
+    a55 = a55 - g53*a35
+    b5 = b5 - g53*b3
+    f4 = 1.0/a44
+    g54 = a54*f4
+    a55 = a55 - g54*a45
+    b5 = b5 - g54*b4
+    f5 = 1.0/a55
+    x5 = b5*f5
+    x4 = (b4 - a45*x5)*f4
+    x3 = (b3 - a35*x5 - a34*x4)*f3
+    x2 = (b2 - a25*x5 - a24*x4 - a23*x3)*f2
+    x1 = (b1 - a15*x5 - a14*x4 - a13*x3 - a12*x2)*f1
+    x0 = (b0 - a05*x5 - a04*x4 - a03*x3 - a02*x2 - a01*x1)*f0
+    sure = (
+    (abs(g10) <= l10) & (abs(g20) <= l20) & (abs(g30) <= l30) & (abs(g40) <= l40) & (abs(g50) <=
+        l50) & (abs(g21) <= l21) & (abs(g31) <= l31) & (abs(g41) <= l41) & (abs(g51) <= l51) &
+        (abs(g32) <= l32) & (abs(g42) <= l42) & (abs(g52) <= l52) & (abs(g43) <= l43) & (abs(g53)
+        <= l53) & (abs(g54) <= l54) & (abs(f0) <= l0) & (abs(f1) <= l1) & (abs(f2) <= l2) &
+        (abs(f3) <= l3) & (abs(f4) <= l4) & (abs(f5) <= l5) & (abs(x0 + x1 + x2 + x3 + x4 + x5 +
+        a00 + a11 + a22 + a33 + a44 + a55) < math.inf)
+    )
+    return sure, ([x0, x1, x2, x3, x4, x5],)
+
+
+_ORDERS = (  # how systems are solved near home
+    _Order(_straight_6, (2, 4, 3, 5, 1, 0), (2.5, 2.5, 2.5, 10, 10, 10, 10, 40, 40, 10, 40, 40, 40, 40, 10, 1000, 4000, 4000, 4000, 1000, 1000,)),
+)
 _Q = 3  # where a quaternion begins in X
 _DEFAULT = Parameters()
 
@@ -4186,7 +4452,7 @@ def _steps_inverse_dynamics(m, X, V, A, wrench, weights):
     extend_1 = wrench
     subtract_1 = required - extend_1
     beside_1 = np.concatenate((H, Hk), axis=1)
-    solve_1 = _solve(beside_1, subtract_1)
+    solve_1 = _straight(m, beside_1, subtract_1, _ORDERS[0])
     tau, lambda_ = solve_1[:3], solve_1[3:]
     return (tau, lambda_,)
 
@@ -4195,7 +4461,7 @@ def _steps_forward_dynamics(m, X, V, tau, wrench):
     (
     M, Z, H, Hk, constraint_bias,
     ) = m.run(_run_dynamics, ("M", "Z", "H", "Hk", "constraint_bias"), X, V)
-    times_1 = np.einsum("ijs,js->is", H, tau)
+    times_1 = _times(H, tau)
     extend_1 = wrench
     add_1 = times_1 + extend_1
     subtract_1 = add_1 - Z
@@ -4217,7 +4483,7 @@ def _steps_leg_reactions(m, X, V, A, wrench):
     extend_1 = wrench
     subtract_1 = required - extend_1
     beside_1 = np.concatenate((H, Hk), axis=1)
-    solve_1 = _solve(beside_1, subtract_1)
+    solve_1 = _straight(m, beside_1, subtract_1, _ORDERS[0])
     split_1, split_2 = solve_1[:3], solve_1[3:]
     (
     leg_force, actuator, constraint_direction,
@@ -4262,10 +4528,46 @@ def _steps_condition_constrained(m, X, length):
     return (sigma, legs,)
 
 
+def _steps_manipulability(m, X):
+    (
+    H, Hk, lengths, pivots, reach,
+    ) = m.run(_in_one(_run_condition), ("H", "Hk", "lengths", "pivots", "reach"), X)
+    entry_1 = lengths[0]
+    subtract_1 = entry_1 - entry_1
+    choose_length_1 = _chosen_length(lengths, subtract_1)
+    divide_rows_1 = _rows_divided(H, choose_length_1, [3, 4, 5])
+    entry_2 = lengths[0]
+    subtract_2 = entry_2 - entry_2
+    choose_length_2 = _chosen_length(lengths, subtract_2)
+    divide_rows_2 = _rows_divided(Hk, choose_length_2, [3, 4, 5])
+    transposed_1 = np.swapaxes(divide_rows_2, 0, 1)
+    null_basis_1 = _null_basis(transposed_1, 3)
+    transposed_2 = np.swapaxes(null_basis_1, 0, 1)
+    product_1 = np.einsum("iks,kjs->ijs", transposed_2, divide_rows_1)
+    singular_values_1 = _singular_values(product_1)
+    measure, isotropy = _spread(singular_values_1, 3)
+    return (measure, isotropy,)
+
+
+def _steps_singularity_distance(m, X):
+    (
+    H, Hk, lengths, pivots, reach,
+    ) = m.run(_in_one(_run_condition), ("H", "Hk", "lengths", "pivots", "reach"), X)
+    beside_1 = np.concatenate((H, Hk), axis=1)
+    entry_1 = lengths[0]
+    subtract_1 = entry_1 - entry_1
+    choose_length_1 = _chosen_length(lengths, subtract_1)
+    divide_rows_1 = _rows_divided(beside_1, choose_length_1, [3, 4, 5])
+    singular_values_1 = _singular_values(divide_rows_1)
+    spread_1, actuators = _spread(singular_values_1, 6)
+    legs = _least_entry(pivots)
+    return (actuators, legs,)
+
+
 def _steps_mismatch(m, X, q_actuated):
     q, = m.run(_run_inverse_kinematics, ("q",), X)
-    take_1 = q[[0, 2, 4]]
-    subtract_1 = q_actuated - take_1
+    q_of_inverse_kinematics_from_0 = q[[0, 2, 4]]
+    subtract_1 = q_actuated - q_of_inverse_kinematics_from_0
     constraints, = m.run(_run_constraints, ("constraints",), X)
     negative_1 = -constraints
     gap = np.concatenate((subtract_1, negative_1))
@@ -4308,7 +4610,7 @@ def _steps_dissipation(m, X, V):
 
 def _steps_momentum(m, X, V):
     M, = m.run(_run_M, ("M",), X)
-    momentum = np.einsum("ijs,js->is", M, V)
+    momentum = _times(M, V)
     return (momentum,)
 
 
@@ -4345,14 +4647,14 @@ def _steps_actuator_accelerations(m, X, V, A):
 
 def _steps_power(m, X, V, tau):
     H, = m.run(_run_H, ("H",), X)
-    times_1 = np.einsum("ijs,js->is", H, tau)
+    times_1 = _times(H, tau)
     power = np.sum(times_1 * V, axis=0)
     return (power,)
 
 
 def _steps_rotation(m, X):
-    take_1 = X[3:7]
-    R = _rotation_of_quaternion(take_1)
+    X_from_3 = X[3:7]
+    R = _rotation_of_quaternion(X_from_3)
     return (R,)
 
 
@@ -4364,11 +4666,11 @@ def _steps_pose(m, t, R):
 
 
 def _steps_X_dot(m, X, V):
-    take_1 = V[3:6]
-    take_2 = X[3:7]
-    quaternion_rate_1 = _quaternion_rate(take_2, take_1)
-    take_3 = V[0:3]
-    X_dot = np.concatenate((take_3, quaternion_rate_1))
+    V_from_3 = V[3:6]
+    X_from_3 = X[3:7]
+    quaternion_rate_1 = _quaternion_rate(X_from_3, V_from_3)
+    V_from_0 = V[0:3]
+    X_dot = np.concatenate((V_from_0, quaternion_rate_1))
     return (X_dot,)
 
 
@@ -4380,42 +4682,42 @@ def _steps_pose_from_rpy(m, t, rpy):
 
 
 def _steps_retract(m, X, step):
-    take_1 = X[0:3]
-    take_2 = X[3:7]
-    take_3 = step[0:3]
-    take_4 = step[3:6]
-    turn_quaternion_1 = _turned(take_2, take_4)
-    add_1 = take_1 + take_3
+    X_from_0 = X[0:3]
+    X_from_3 = X[3:7]
+    step_from_0 = step[0:3]
+    step_from_3 = step[3:6]
+    turn_quaternion_1 = _turned(X_from_3, step_from_3)
+    add_1 = X_from_0 + step_from_0
     X_moved = np.concatenate((add_1, turn_quaternion_1))
     return (X_moved,)
 
 
 def _steps_difference(m, X0, X1):
-    take_1 = X0[0:3]
-    take_2 = X0[3:7]
-    take_3 = X1[0:3]
-    take_4 = X1[3:7]
-    turn_between_1 = _turn_between(take_2, take_4)
-    subtract_1 = take_3 - take_1
+    X0_from_0 = X0[0:3]
+    X0_from_3 = X0[3:7]
+    X1_from_0 = X1[0:3]
+    X1_from_3 = X1[3:7]
+    turn_between_1 = _turn_between(X0_from_3, X1_from_3)
+    subtract_1 = X1_from_0 - X0_from_0
     step = np.concatenate((subtract_1, turn_between_1))
     return (step,)
 
 
 def _steps_interpolate(m, X0, X1, s):
-    take_1 = X0[0:3]
-    take_2 = X0[3:7]
-    take_3 = X1[0:3]
-    take_4 = X1[3:7]
-    turn_between_1 = _turn_between(take_2, take_4)
-    subtract_1 = take_3 - take_1
+    X0_from_0 = X0[0:3]
+    X0_from_3 = X0[3:7]
+    X1_from_0 = X1[0:3]
+    X1_from_3 = X1[3:7]
+    turn_between_1 = _turn_between(X0_from_3, X1_from_3)
+    subtract_1 = X1_from_0 - X0_from_0
     join_1 = np.concatenate((subtract_1, turn_between_1))
     scale_1 = join_1 * s
-    take_5 = X0[0:3]
-    take_6 = X0[3:7]
-    take_7 = scale_1[0:3]
-    take_8 = scale_1[3:6]
-    turn_quaternion_1 = _turned(take_6, take_8)
-    add_1 = take_5 + take_7
+    X0_from_0_2 = X0[0:3]
+    X0_from_3_2 = X0[3:7]
+    scale_1_from_0 = scale_1[0:3]
+    scale_1_from_3 = scale_1[3:6]
+    turn_quaternion_1 = _turned(X0_from_3_2, scale_1_from_3)
+    add_1 = X0_from_0_2 + scale_1_from_0
     X = np.concatenate((add_1, turn_quaternion_1))
     return (X,)
 
@@ -4433,6 +4735,7 @@ def M(X, p=None):
     return _call(
         "M", _steps_M, p,
         ("X", X, (NQ,)),
+        plain=((NV, NV,),),
     )
 
 
@@ -4451,6 +4754,7 @@ def Z(X, V, p=None):
         "Z", _steps_Z, p,
         ("X", X, (NQ,)),
         ("V", V, (NV,)),
+        plain=((NV,),),
     )
 
 
@@ -4467,6 +4771,7 @@ def H(X, p=None):
     return _call(
         "H", _steps_H, p,
         ("X", X, (NQ,)),
+        plain=((NV, NU,),),
     )
 
 
@@ -4483,6 +4788,7 @@ def Hk(X, p=None):
     return _call(
         "Hk", _steps_Hk, p,
         ("X", X, (NQ,)),
+        plain=((NV, NC,),),
     )
 
 
@@ -4500,6 +4806,7 @@ def constraints(X, p=None):
     return _call(
         "constraints", _steps_constraints, p,
         ("X", X, (NQ,)),
+        plain=((NC,),),
     )
 
 
@@ -4518,6 +4825,7 @@ def constraint_bias(X, V, p=None):
         "constraint_bias", _steps_constraint_bias, p,
         ("X", X, (NQ,)),
         ("V", V, (NV,)),
+        plain=((NC,),),
     )
 
 
@@ -4536,6 +4844,7 @@ def inverse_kinematics(X, p=None):
     return _call(
         "inverse_kinematics", _steps_inverse_kinematics, p,
         ("X", X, (NQ,)),
+        plain=((NJ,),),
     )
 
 
@@ -4554,6 +4863,7 @@ def joint_rates(X, V, p=None):
         "joint_rates", _steps_joint_rates, p,
         ("X", X, (NQ,)),
         ("V", V, (NV,)),
+        plain=((NJ,),),
     )
 
 
@@ -4574,6 +4884,7 @@ def joint_accelerations(X, V, A, p=None):
         ("X", X, (NQ,)),
         ("V", V, (NV,)),
         ("A", A, (NV,)),
+        plain=((NJ,),),
     )
 
 
@@ -4594,6 +4905,7 @@ def dynamics(X, V, p=None):
         "dynamics", _steps_dynamics, p,
         ("X", X, (NQ,)),
         ("V", V, (NV,)),
+        plain=((NV, NV,), (NV,), (NV, NU,),),
     )
 
 
@@ -4669,6 +4981,7 @@ def complete_acceleration(X, V, A, p=None, *, wrench=None):
         ("V", V, (NV,), None, "unused"),
         ("A", A, (NV,)),
         ("wrench", wrench, (NW,), 0.0, "unused"),
+        plain=((NV,),),
     )
 
 
@@ -4780,6 +5093,43 @@ def condition_constrained(X, p=None, *, length=None):
     )
 
 
+def manipulability(X, p=None):
+    """Manipulability of forces: the product of the singular values that `condition` has by
+    default, and the least over the largest of them.
+
+    Of N^T H, N an orthonormal basis of the motions that constraints leave.
+
+    Args:
+        X: pose, and extra coordinates (..., NQ).
+        p: parameters, by default those of the specification.
+
+    Returns:
+        measure: product of the singular values (...,).
+        isotropy: least over largest value, 1 where H is isotropic (...,).
+    """
+    return _call(
+        "manipulability", _steps_manipulability, p,
+        ("X", X, (NQ,)),
+    )
+
+
+def singularity_distance(X, p=None):
+    """How near actuators and legs are to being singular: relative distances, 0 where they are.
+
+    Args:
+        X: pose, and extra coordinates (..., NQ).
+        p: parameters, by default those of the specification.
+
+    Returns:
+        actuators: of [H Hk] from matrices of lower rank, over its norm (...,).
+        legs: least pivot of all legs (...,).
+    """
+    return _call(
+        "singularity_distance", _steps_singularity_distance, p,
+        ("X", X, (NQ,)),
+    )
+
+
 def forward_kinematics(q_actuated, X0, p=None):
     """X at which the actuated joints stand at q_actuated, by Gauss-Newton from X0.
 
@@ -4853,6 +5203,7 @@ def momentum(X, V, p=None):
         "momentum", _steps_momentum, p,
         ("X", X, (NQ,)),
         ("V", V, (NV,)),
+        plain=((NV,),),
     )
 
 

@@ -963,6 +963,61 @@ static void least_squares(size_t rows, size_t n, real *a, real *x)
     }
 }
 
+/* Turn the rows of a[rows][stride] among themselves, so that columns 0 to n - 1 are zero from row
+   `rank` on; columns beyond go along.  Returns the last diagonal entry as a fraction of the first: of a matrix of
+   this rank it is not small. */
+static real rotate(size_t rows, size_t stride, size_t n, size_t rank, real *a)
+{
+    real v[BIG] = {0}, first = 0, last = 0;
+    for (size_t p = 0; p < rank; ++p) {
+        size_t best = 0;
+        real most = 0;
+        for (size_t j = 0; j < n; ++j) {
+            real square = 0;
+            for (size_t i = p; i < rows; ++i) {
+                square += a[i*stride + j]*a[i*stride + j];
+            }
+            best = square > most ? j : best;
+            most = square > most ? square : most;
+        }
+        const real size = a[p*stride + best] > 0 ? -root(most) : root(most);
+        for (size_t i = p; i < rows; ++i) {
+            v[i] = a[i*stride + best];
+        }
+        v[p] -= size;
+        for (size_t j = 0; j < stride && most > 0; ++j) {
+            real sum = 0;
+            for (size_t i = p; i < rows; ++i) {
+                sum += v[i]*a[i*stride + j];
+            }
+            for (size_t i = p; i < rows; ++i) {
+                a[i*stride + j] += sum/(v[p]*size)*v[i];
+            }
+        }
+        last = magnitude(size);
+        first = p == 0 ? last : first;
+    }
+    return last/first;
+}
+
+/* Orthonormal columns x[n][n - rank] with a x = 0, for a[m][n] of this rank. */
+static void null_basis(size_t m, size_t n, size_t rank, const real *a, real *x)
+{
+    real t[2*BIG*BIG] = {0};
+    for (size_t j = 0; j < n; ++j) {
+        for (size_t i = 0; i < m; ++i) {
+            t[j*(m + n) + i] = a[i*n + j];
+        }
+        t[j*(m + n) + m + j] = 1;
+    }
+    rotate(n, m + n, m, rank, t);
+    for (size_t j = 0; j < n; ++j) {
+        for (size_t c = rank; c < n; ++c) {
+            x[j*(n - rank) + c - rank] = t[c*(m + n) + m + j];
+        }
+    }
+}
+
 /* Turn columns p and q of a[rows][columns] until they are perpendicular; returns whether they were
    not, to rounding. */
 static int turn_columns(size_t rows, size_t columns, size_t p, size_t q, real *a)
@@ -1037,6 +1092,15 @@ INLINE void product(size_t m, size_t n, size_t p, size_t w, const real *a, const
     }
 }
 
+INLINE void transpose(size_t m, size_t n, size_t w, const real *a, real *x)
+{
+    for (size_t e = 0; e < m*n; ++e) {
+        for (size_t k = 0; k < w; ++k) {
+            x[((e%n)*m + e/n)*w + k] = a[e*w + k];
+        }
+    }
+}
+
 /* a . b */
 INLINE void inner(size_t n, size_t w, const real *a, const real *b, real *x)
 {
@@ -1081,6 +1145,24 @@ INLINE void unlimited(size_t rows, size_t size, size_t w, const size_t *places, 
             x[places[i]*w + k] = R(INFINITY);
         }
     }
+}
+
+INLINE void least_entry(size_t n, const real *a, real *x)
+{
+    *x = a[0];
+    for (size_t e = 1; e < n; ++e) {
+        *x = lesser(*x, a[e]);
+    }
+}
+
+/* Of the first n entries the product, and the last over the first, 0 where that is 0. */
+INLINE void spread(size_t n, const real *a, real *product_of, real *ratio)
+{
+    *product_of = 1;
+    for (size_t e = 0; e < n; ++e) {
+        *product_of *= a[e];
+    }
+    *ratio = magnitude(a[0]) > 0 ? a[n - 1]/a[0] : a[0];
 }
 
 /* 1 where no entry is negative, else 0. */
@@ -1279,6 +1361,470 @@ static void moved(const real *X, const real *step, real part, real *to)
     turn_quaternion(X + Q, turn, to + Q);
 }
 
+/* ---- what functions of the state share; v: values for others ---- */
+
+typedef struct {
+    real quaternion_scale, R_xx, R_xy, R_xz, R_yx, R_yy, R_yz, R_zx, R_zy, R_zz, h_star_x, h_star_y,
+        h_star_z, omega_in_platform_x, omega_in_platform_y, omega_in_platform_z, J_star_xx, J_star_xy,
+        J_star_xz, J_star_yy, J_star_yz, J_star_zz, Z_p_x, Z_p_y, Z_p_z, Z_q_x, Z_q_y, Z_q_z;
+} values;
+
+INLINE void stage_X(const prepared *m, size_t w, size_t k, const real *X, values *v)
+{
+    /* X: named entries */
+    const real X_3 = X[3*w + k];
+    const real X_4 = X[4*w + k];
+    const real X_5 = X[5*w + k];
+    const real X_6 = X[6*w + k];
+    const real quaternion_norm2 = X_3*X_3 + X_4*X_4 + X_5*X_5 + X_6*X_6;
+    const real quaternion_scale = 2/quaternion_norm2;
+    const real quaternion_sx = X_3*quaternion_scale;
+    const real quaternion_sy = X_4*quaternion_scale;
+    const real quaternion_sz = X_5*quaternion_scale;
+    const real quaternion_wx = X_6*quaternion_sx;
+    const real quaternion_wy = X_6*quaternion_sy;
+    const real quaternion_wz = X_6*quaternion_sz;
+    const real quaternion_xx = X_3*quaternion_sx;
+    const real quaternion_xy = X_3*quaternion_sy;
+    const real quaternion_xz = X_3*quaternion_sz;
+    const real quaternion_yy = X_4*quaternion_sy;
+    const real quaternion_yz = X_4*quaternion_sz;
+    const real quaternion_zz = X_5*quaternion_sz;
+    const real R_xx = 1 - quaternion_yy - quaternion_zz;
+    const real R_xy = quaternion_xy - quaternion_wz;
+    const real R_xz = quaternion_wy + quaternion_xz;
+    const real R_yx = quaternion_wz + quaternion_xy;
+    const real R_yy = 1 - quaternion_xx - quaternion_zz;
+    const real R_yz = quaternion_yz - quaternion_wx;
+    const real R_zx = quaternion_xz - quaternion_wy;
+    const real R_zy = quaternion_wx + quaternion_yz;
+    const real R_zz = 1 - quaternion_xx - quaternion_yy;
+    /* (h_star) first moment about the platform origin */
+    const real h_star_in_platform_x = m->h_star_in_platform_x;
+    const real h_star_in_platform_y = m->h_star_in_platform_y;
+    const real h_star_in_platform_z = m->h_star_in_platform_z;
+    const real h_star_x = R_xx*h_star_in_platform_x + R_xy*h_star_in_platform_y +
+        R_xz*h_star_in_platform_z;
+    const real h_star_y = R_yx*h_star_in_platform_x + R_yy*h_star_in_platform_y +
+        R_yz*h_star_in_platform_z;
+    const real h_star_z = R_zx*h_star_in_platform_x + R_zy*h_star_in_platform_y +
+        R_zz*h_star_in_platform_z;
+    v->quaternion_scale = quaternion_scale;
+    v->R_xx = R_xx;
+    v->R_xy = R_xy;
+    v->R_xz = R_xz;
+    v->R_yx = R_yx;
+    v->R_yy = R_yy;
+    v->R_yz = R_yz;
+    v->R_zx = R_zx;
+    v->R_zy = R_zy;
+    v->R_zz = R_zz;
+    v->h_star_x = h_star_x;
+    v->h_star_y = h_star_y;
+    v->h_star_z = h_star_z;
+}
+
+INLINE void stage_V_X(size_t w, size_t k, const real *V, values *v)
+{
+    /* (Z_q) gyroscopic moment and moment of the weight of the platform */
+    const real omega_x = V[3*w + k];
+    const real omega_y = V[4*w + k];
+    const real omega_z = V[5*w + k];
+    const real omega_in_platform_x = v->R_xx*omega_x + v->R_yx*omega_y + v->R_zx*omega_z;
+    const real omega_in_platform_y = v->R_xy*omega_x + v->R_yy*omega_y + v->R_zy*omega_z;
+    const real omega_in_platform_z = v->R_xz*omega_x + v->R_yz*omega_y + v->R_zz*omega_z;
+    v->omega_in_platform_x = omega_in_platform_x;
+    v->omega_in_platform_y = omega_in_platform_y;
+    v->omega_in_platform_z = omega_in_platform_z;
+}
+
+INLINE void stage_M_dynamics(const prepared *m, values *v)
+{
+    /* (J_star) inertia tensor about the platform origin */
+    const real J_star_in_platform_xy = m->J_star_in_platform_xy;
+    const real J_star_in_platform_yz = m->J_star_in_platform_yz;
+    const real J_star_t_6 = m->J_star_t_6;
+    const real J_star_t = J_star_in_platform_xy*v->R_xx + J_star_in_platform_yz*v->R_xz -
+        J_star_t_6*v->R_xy;
+    const real J_star_t_2 = J_star_in_platform_xy*v->R_yx + J_star_in_platform_yz*v->R_yz -
+        J_star_t_6*v->R_yy;
+    const real J_star_t_3 = J_star_in_platform_xy*v->R_zx + J_star_in_platform_yz*v->R_zz -
+        J_star_t_6*v->R_zy;
+    const real J_star_in_platform_xz = m->J_star_in_platform_xz;
+    const real J_star_t_8 = m->J_star_t_8;
+    const real J_star_t_4 = J_star_t_8*v->R_xz - J_star_in_platform_xz*v->R_xx;
+    const real J_star_t_5 = J_star_t_8*v->R_yz - J_star_in_platform_xz*v->R_yx;
+    const real J_star_t_7 = J_star_t_8*v->R_zz - J_star_in_platform_xz*v->R_zx;
+    const real J_star_t_9 = J_star_t*v->R_xy - J_star_t_4*v->R_xz;
+    const real J_star_in_platform_xx = m->J_star_in_platform_xx;
+    const real J_star_xx = J_star_in_platform_xx + 2*J_star_t_9;
+    const real J_star_xy = J_star_t*v->R_yy + J_star_t_2*v->R_xy - J_star_t_4*v->R_yz -
+        J_star_t_5*v->R_xz;
+    const real J_star_xz = J_star_t*v->R_zy + J_star_t_3*v->R_xy - J_star_t_4*v->R_zz -
+        J_star_t_7*v->R_xz;
+    const real J_star_t_10 = J_star_t_2*v->R_yy - J_star_t_5*v->R_yz;
+    const real J_star_yy = J_star_in_platform_xx + 2*J_star_t_10;
+    const real J_star_yz = J_star_t_2*v->R_zy + J_star_t_3*v->R_yy - J_star_t_5*v->R_zz -
+        J_star_t_7*v->R_yz;
+    const real J_star_t_11 = J_star_t_3*v->R_zy - J_star_t_7*v->R_zz;
+    const real J_star_zz = J_star_in_platform_xx + 2*J_star_t_11;
+    v->J_star_xx = J_star_xx;
+    v->J_star_xy = J_star_xy;
+    v->J_star_xz = J_star_xz;
+    v->J_star_yy = J_star_yy;
+    v->J_star_yz = J_star_yz;
+    v->J_star_zz = J_star_zz;
+}
+
+INLINE void stage_Z_dynamics(const prepared *m, size_t w, size_t k, const real *V, values *v)
+{
+    /* (Z_p) centripetal force and weight of the platform */
+    const real omega_y = V[4*w + k];
+    const real omega_z = V[5*w + k];
+    const real Z_p_t_4 = v->h_star_z*omega_y - v->h_star_y*omega_z;
+    const real omega_x = V[3*w + k];
+    const real Z_p_t_5 = v->h_star_x*omega_z - v->h_star_z*omega_x;
+    const real Z_p_t_6 = v->h_star_y*omega_x - v->h_star_x*omega_y;
+    const real Z_p_t = m->Z_p_t;
+    const real Z_p_x = Z_p_t_6*omega_y - Z_p_t - Z_p_t_5*omega_z;
+    const real Z_p_t_2 = m->Z_p_t_2;
+    const real Z_p_y = Z_p_t_4*omega_z - Z_p_t_2 - Z_p_t_6*omega_x;
+    const real Z_p_t_3 = m->Z_p_t_3;
+    const real Z_p_z = Z_p_t_5*omega_x - Z_p_t_3 - Z_p_t_4*omega_y;
+    /* (Z_q) gyroscopic moment and moment of the weight of the platform */
+    const real gravity_x = m->gravity_x;
+    const real gravity_y = m->gravity_y;
+    const real gravity_z = m->gravity_z;
+    const real g_in_platform_x = v->R_xx*gravity_x + v->R_yx*gravity_y + v->R_zx*gravity_z;
+    const real g_in_platform_y = v->R_xy*gravity_x + v->R_yy*gravity_y + v->R_zy*gravity_z;
+    const real g_in_platform_z = v->R_xz*gravity_x + v->R_yz*gravity_y + v->R_zz*gravity_z;
+    const real J_star_in_platform_xx = m->J_star_in_platform_xx;
+    const real J_star_in_platform_xy = m->J_star_in_platform_xy;
+    const real J_star_in_platform_xz = m->J_star_in_platform_xz;
+    const real Z_q_t = J_star_in_platform_xx*v->omega_in_platform_x +
+        J_star_in_platform_xy*v->omega_in_platform_y +
+        J_star_in_platform_xz*v->omega_in_platform_z;
+    const real J_star_in_platform_yy = m->J_star_in_platform_yy;
+    const real J_star_in_platform_yz = m->J_star_in_platform_yz;
+    const real Z_q_t_2 = J_star_in_platform_xy*v->omega_in_platform_x +
+        J_star_in_platform_yy*v->omega_in_platform_y +
+        J_star_in_platform_yz*v->omega_in_platform_z;
+    const real J_star_in_platform_zz = m->J_star_in_platform_zz;
+    const real Z_q_t_3 = J_star_in_platform_xz*v->omega_in_platform_x +
+        J_star_in_platform_yz*v->omega_in_platform_y +
+        J_star_in_platform_zz*v->omega_in_platform_z;
+    const real h_star_in_platform_y = m->h_star_in_platform_y;
+    const real h_star_in_platform_z = m->h_star_in_platform_z;
+    const real Z_q_in_platform_x = Z_q_t_3*v->omega_in_platform_y +
+        g_in_platform_y*h_star_in_platform_z - Z_q_t_2*v->omega_in_platform_z -
+        g_in_platform_z*h_star_in_platform_y;
+    const real h_star_in_platform_x = m->h_star_in_platform_x;
+    const real Z_q_in_platform_y = Z_q_t*v->omega_in_platform_z +
+        g_in_platform_z*h_star_in_platform_x - Z_q_t_3*v->omega_in_platform_x -
+        g_in_platform_x*h_star_in_platform_z;
+    const real Z_q_in_platform_z = Z_q_t_2*v->omega_in_platform_x +
+        g_in_platform_x*h_star_in_platform_y - Z_q_t*v->omega_in_platform_y -
+        g_in_platform_y*h_star_in_platform_x;
+    const real Z_q_x = v->R_xx*Z_q_in_platform_x + v->R_xy*Z_q_in_platform_y +
+        v->R_xz*Z_q_in_platform_z;
+    const real Z_q_y = v->R_yx*Z_q_in_platform_x + v->R_yy*Z_q_in_platform_y +
+        v->R_yz*Z_q_in_platform_z;
+    const real Z_q_z = v->R_zx*Z_q_in_platform_x + v->R_zy*Z_q_in_platform_y +
+        v->R_zz*Z_q_in_platform_z;
+    v->Z_p_x = Z_p_x;
+    v->Z_p_y = Z_p_y;
+    v->Z_p_z = Z_p_z;
+    v->Z_q_x = Z_q_x;
+    v->Z_q_y = Z_q_y;
+    v->Z_q_z = Z_q_z;
+}
+
+typedef struct {
+    real rps_q_x, rps_q_y, rps_q_z, rps_q_2_t, rps_q_2, inv_rps_q_2, rps_c_1, rps_s_1,
+        axis_x_rps_axes1_x, axis_x_rps_axes1_y, axis_x_rps_axes1_z, axis_y_rps_axes1_x,
+        axis_y_rps_axes1_y, axis_y_rps_axes1_z, rps_g_in_axes1_x, rps_g_in_axes1_y, rps_Hk_a_1_x,
+        rps_Hk_a_1_y, rps_Hk_a_1_z, rps_w_2_x, rps_w_2_y, rps_w_2_z, rps_a_p_x, rps_a_p_y, rps_a_p_z,
+        rps_S_dot_t, rps_S_dot_t_2, rps_S_dot_t_3, rps_S_dot_in_axes1_x, rps_qd_1, rps_W_1_t,
+        rps_S_ddot_x, rps_S_ddot_y, rps_S_ddot_z, rps_u_1_x, rps_u_1_y, rps_u_1_z, rps_U_x, rps_U_y,
+        rps_U_z, rps_Z_a_t, rps_Z_a_t_2, rps_Z_a_t_3, rps_c_x, rps_c_y, rps_c_z;
+} values_rps;
+
+INLINE void stage_rps_X(const prepared *m, size_t w, size_t i, size_t j, const real *s, const real
+    *X, values_rps *v)
+{
+    /* (rps-S) from the base point to the connection point */
+    const real R_xx = s[0*w + j];
+    const real R_xy = s[1*w + j];
+    const real R_xz = s[2*w + j];
+    const real rps_platform_point_x = m->rps_platform_point_x[i];
+    const real rps_platform_point_y = m->rps_platform_point_y[i];
+    const real rps_platform_point_z = m->rps_platform_point_z[i];
+    const real rps_q_x = R_xx*rps_platform_point_x + R_xy*rps_platform_point_y +
+        R_xz*rps_platform_point_z;
+    const real R_yx = s[3*w + j];
+    const real R_yy = s[4*w + j];
+    const real R_yz = s[5*w + j];
+    const real rps_q_y = R_yx*rps_platform_point_x + R_yy*rps_platform_point_y +
+        R_yz*rps_platform_point_z;
+    const real R_zx = s[6*w + j];
+    const real R_zy = s[7*w + j];
+    const real R_zz = s[8*w + j];
+    const real rps_q_z = R_zx*rps_platform_point_x + R_zy*rps_platform_point_y +
+        R_zz*rps_platform_point_z;
+    const real rps_base_point_x = m->rps_base_point_x[i];
+    const real t_x = X[0*w + j];
+    const real rps_S_x = rps_q_x + t_x - rps_base_point_x;
+    const real rps_base_point_y = m->rps_base_point_y[i];
+    const real t_y = X[1*w + j];
+    const real rps_S_y = rps_q_y + t_y - rps_base_point_y;
+    const real rps_base_point_z = m->rps_base_point_z[i];
+    const real t_z = X[2*w + j];
+    const real rps_S_z = rps_q_z + t_z - rps_base_point_z;
+    const real rps_base_frame_xx = m->rps_base_frame_xx[i];
+    const real rps_base_frame_yx = m->rps_base_frame_yx[i];
+    const real rps_base_frame_zx = m->rps_base_frame_zx[i];
+    const real rps_S_in_turn1_x = rps_S_x*rps_base_frame_xx + rps_S_y*rps_base_frame_yx +
+        rps_S_z*rps_base_frame_zx;
+    const real rps_base_frame_xy = m->rps_base_frame_xy[i];
+    const real rps_base_frame_yy = m->rps_base_frame_yy[i];
+    const real rps_base_frame_zy = m->rps_base_frame_zy[i];
+    const real rps_S_in_turn1_y = rps_S_x*rps_base_frame_xy + rps_S_y*rps_base_frame_yy +
+        rps_S_z*rps_base_frame_zy;
+    /* (rps-q_2) displacement of joint 2 */
+    const real rps_q_2_t = rps_S_in_turn1_x*rps_S_in_turn1_x +
+        rps_S_in_turn1_y*rps_S_in_turn1_y;
+    const real rps_branch_1 = m->rps_branch_1[i];
+    const real rps_q_2 = rps_branch_1*root(rps_q_2_t);
+    /* (rps-c_1) cosine of the angle of joint 1 from its reference direction */
+    const real inv_rps_q_2 = 1/rps_q_2;
+    const real rps_c_1 = inv_rps_q_2*rps_S_in_turn1_x;
+    /* (rps-s_1) sine of the angle of joint 1 from its reference direction */
+    const real rps_s_1 = inv_rps_q_2*rps_S_in_turn1_y;
+    /* (rps-S_dot) velocity of the connection point */
+    const real axis_x_rps_axes1_x = rps_base_frame_xx*rps_c_1 + rps_base_frame_xy*rps_s_1;
+    const real axis_x_rps_axes1_y = rps_base_frame_yx*rps_c_1 + rps_base_frame_yy*rps_s_1;
+    const real axis_x_rps_axes1_z = rps_base_frame_zx*rps_c_1 + rps_base_frame_zy*rps_s_1;
+    /* (rps-qd_1) rate of joint 1 */
+    const real axis_y_rps_axes1_x = rps_base_frame_xy*rps_c_1 - rps_base_frame_xx*rps_s_1;
+    const real axis_y_rps_axes1_y = rps_base_frame_yy*rps_c_1 - rps_base_frame_yx*rps_s_1;
+    const real axis_y_rps_axes1_z = rps_base_frame_zy*rps_c_1 - rps_base_frame_zx*rps_s_1;
+    /* (rps-acc_2_o) remainder without the acceleration in: acceleration of the reference point of
+       link 2, less gravity */
+    const real rps_acc_2_t = m->rps_acc_2_t[i];
+    const real rps_acc_2_t_2 = m->rps_acc_2_t_2[i];
+    const real rps_g_in_axes1_x = rps_acc_2_t*rps_c_1 + rps_acc_2_t_2*rps_s_1;
+    const real rps_g_in_axes1_y = rps_acc_2_t_2*rps_c_1 - rps_acc_2_t*rps_s_1;
+    /* (rps-Hk_a_1) moment of the column's unit force about the platform origin */
+    const real rps_base_frame_yz = m->rps_base_frame_yz[i];
+    const real rps_base_frame_zz = m->rps_base_frame_zz[i];
+    const real rps_Hk_a_1_x = rps_base_frame_zz*rps_q_y - rps_base_frame_yz*rps_q_z;
+    const real rps_base_frame_xz = m->rps_base_frame_xz[i];
+    const real rps_Hk_a_1_y = rps_base_frame_xz*rps_q_z - rps_base_frame_zz*rps_q_x;
+    const real rps_Hk_a_1_z = rps_base_frame_yz*rps_q_x - rps_base_frame_xz*rps_q_y;
+    /* (rps-w_2) reciprocal vector 2 */
+    const real rps_w_2_x = rps_base_frame_xx*rps_c_1 + rps_base_frame_xy*rps_s_1;
+    const real rps_w_2_y = rps_base_frame_yx*rps_c_1 + rps_base_frame_yy*rps_s_1;
+    const real rps_w_2_z = rps_base_frame_zx*rps_c_1 + rps_base_frame_zy*rps_s_1;
+    v->rps_q_x = rps_q_x;
+    v->rps_q_y = rps_q_y;
+    v->rps_q_z = rps_q_z;
+    v->rps_q_2_t = rps_q_2_t;
+    v->rps_q_2 = rps_q_2;
+    v->inv_rps_q_2 = inv_rps_q_2;
+    v->rps_c_1 = rps_c_1;
+    v->rps_s_1 = rps_s_1;
+    v->axis_x_rps_axes1_x = axis_x_rps_axes1_x;
+    v->axis_x_rps_axes1_y = axis_x_rps_axes1_y;
+    v->axis_x_rps_axes1_z = axis_x_rps_axes1_z;
+    v->axis_y_rps_axes1_x = axis_y_rps_axes1_x;
+    v->axis_y_rps_axes1_y = axis_y_rps_axes1_y;
+    v->axis_y_rps_axes1_z = axis_y_rps_axes1_z;
+    v->rps_g_in_axes1_x = rps_g_in_axes1_x;
+    v->rps_g_in_axes1_y = rps_g_in_axes1_y;
+    v->rps_Hk_a_1_x = rps_Hk_a_1_x;
+    v->rps_Hk_a_1_y = rps_Hk_a_1_y;
+    v->rps_Hk_a_1_z = rps_Hk_a_1_z;
+    v->rps_w_2_x = rps_w_2_x;
+    v->rps_w_2_y = rps_w_2_y;
+    v->rps_w_2_z = rps_w_2_z;
+}
+
+INLINE void stage_rps_A_X(size_t w, size_t j, const real *A, values_rps *v)
+{
+    /* (rps-a_p) acceleration of the connection point without its centripetal part */
+    const real alpha_y = A[4*w + j];
+    const real alpha_z = A[5*w + j];
+    const real t_ddot_x = A[0*w + j];
+    const real rps_a_p_x = t_ddot_x + alpha_y*v->rps_q_z - alpha_z*v->rps_q_y;
+    const real alpha_x = A[3*w + j];
+    const real t_ddot_y = A[1*w + j];
+    const real rps_a_p_y = t_ddot_y + alpha_z*v->rps_q_x - alpha_x*v->rps_q_z;
+    const real t_ddot_z = A[2*w + j];
+    const real rps_a_p_z = t_ddot_z + alpha_x*v->rps_q_y - alpha_y*v->rps_q_x;
+    v->rps_a_p_x = rps_a_p_x;
+    v->rps_a_p_y = rps_a_p_y;
+    v->rps_a_p_z = rps_a_p_z;
+}
+
+INLINE void stage_rps_V_X(size_t w, size_t j, const real *V, values_rps *v)
+{
+    /* (rps-S_dot) velocity of the connection point */
+    const real omega_y = V[4*w + j];
+    const real omega_z = V[5*w + j];
+    const real rps_S_dot_t = omega_y*v->rps_q_z - omega_z*v->rps_q_y;
+    const real omega_x = V[3*w + j];
+    const real rps_S_dot_t_2 = omega_z*v->rps_q_x - omega_x*v->rps_q_z;
+    const real rps_S_dot_t_3 = omega_x*v->rps_q_y - omega_y*v->rps_q_x;
+    const real t_dot_x = V[0*w + j];
+    const real rps_S_dot_x = rps_S_dot_t + t_dot_x;
+    const real t_dot_y = V[1*w + j];
+    const real rps_S_dot_y = rps_S_dot_t_2 + t_dot_y;
+    const real t_dot_z = V[2*w + j];
+    const real rps_S_dot_z = rps_S_dot_t_3 + t_dot_z;
+    const real rps_S_dot_in_axes1_x = v->axis_x_rps_axes1_x*rps_S_dot_x +
+        v->axis_x_rps_axes1_y*rps_S_dot_y + v->axis_x_rps_axes1_z*rps_S_dot_z;
+    /* (rps-qd_1) rate of joint 1 */
+    const real rps_qd_1 = v->inv_rps_q_2*(v->axis_y_rps_axes1_x*rps_S_dot_x +
+        v->axis_y_rps_axes1_y*rps_S_dot_y + v->axis_y_rps_axes1_z*rps_S_dot_z);
+    /* (rps-W_1) centripetal tensor of link 1 */
+    const real rps_W_1_t = rps_qd_1*rps_qd_1;
+    v->rps_S_dot_t = rps_S_dot_t;
+    v->rps_S_dot_t_2 = rps_S_dot_t_2;
+    v->rps_S_dot_t_3 = rps_S_dot_t_3;
+    v->rps_S_dot_in_axes1_x = rps_S_dot_in_axes1_x;
+    v->rps_qd_1 = rps_qd_1;
+    v->rps_W_1_t = rps_W_1_t;
+}
+
+INLINE void stage_rps_A_V_X(size_t w, size_t j, const real *V, values_rps *v)
+{
+    /* (rps-S_ddot) acceleration of the connection point */
+    const real omega_y = V[4*w + j];
+    const real omega_z = V[5*w + j];
+    const real rps_S_ddot_x = v->rps_a_p_x + omega_y*v->rps_S_dot_t_3 -
+        omega_z*v->rps_S_dot_t_2;
+    const real omega_x = V[3*w + j];
+    const real rps_S_ddot_y = v->rps_a_p_y + omega_z*v->rps_S_dot_t -
+        omega_x*v->rps_S_dot_t_3;
+    const real rps_S_ddot_z = v->rps_a_p_z + omega_x*v->rps_S_dot_t_2 -
+        omega_y*v->rps_S_dot_t;
+    v->rps_S_ddot_x = rps_S_ddot_x;
+    v->rps_S_ddot_y = rps_S_ddot_y;
+    v->rps_S_ddot_z = rps_S_ddot_z;
+}
+
+INLINE void stage_rps_Z_dynamics(const prepared *m, size_t w, size_t i, size_t j, const real *V,
+    values_rps *v)
+{
+    /* (rps-u_1) centripetal acceleration of the connection point */
+    const real omega_y = V[4*w + j];
+    const real omega_z = V[5*w + j];
+    const real rps_u_1_x = omega_y*v->rps_S_dot_t_3 - omega_z*v->rps_S_dot_t_2;
+    const real omega_x = V[3*w + j];
+    const real rps_u_1_y = omega_z*v->rps_S_dot_t - omega_x*v->rps_S_dot_t_3;
+    const real rps_u_1_z = omega_x*v->rps_S_dot_t_2 - omega_y*v->rps_S_dot_t;
+    const real rps_u_1_in_axes1_y = v->axis_y_rps_axes1_x*rps_u_1_x +
+        v->axis_y_rps_axes1_y*rps_u_1_y + v->axis_y_rps_axes1_z*rps_u_1_z;
+    /* (rps-rel_o) remainder without the acceleration in: acceleration of the connection point left to
+       the joint accelerations */
+    const real rps_rel_o_in_axes1_y = rps_u_1_in_axes1_y -
+        2*v->rps_S_dot_in_axes1_x*v->rps_qd_1;
+    /* (rps-qdd_1_o) remainder without the acceleration in: acceleration of joint 1 */
+    const real rps_qdd_1_o = v->inv_rps_q_2*rps_rel_o_in_axes1_y;
+    /* (rps-acc_2_o) remainder without the acceleration in: acceleration of the reference point of
+       link 2, less gravity */
+    const real rps_acc_2_o_in_axes1_x = v->axis_x_rps_axes1_x*rps_u_1_x +
+        v->axis_x_rps_axes1_y*rps_u_1_y + v->axis_x_rps_axes1_z*rps_u_1_z -
+        v->rps_g_in_axes1_x;
+    const real rps_acc_2_o_in_axes1_y = rps_u_1_in_axes1_y - v->rps_g_in_axes1_y;
+    /* (rps-f_2_o) remainder without the acceleration in: inertia force of link 2 less its weight */
+    const real rps_h_2_in_spec1_x = m->rps_h_2_in_spec1_x[i];
+    const real rps_h_2_in_spec1_y = m->rps_h_2_in_spec1_y[i];
+    const real rps_link2_mass = m->rps_link2_mass[i];
+    const real rps_f_2_o_in_axes1_x = rps_acc_2_o_in_axes1_x*rps_link2_mass -
+        v->rps_W_1_t*rps_h_2_in_spec1_x - rps_h_2_in_spec1_y*rps_qdd_1_o;
+    const real rps_f_2_o_in_axes1_y = rps_acc_2_o_in_axes1_y*rps_link2_mass +
+        rps_h_2_in_spec1_x*rps_qdd_1_o - v->rps_W_1_t*rps_h_2_in_spec1_y;
+    /* (rps-mu_1_o) remainder without the acceleration in: inertia moment of the links that turn with
+       link 1, about their reference points */
+    const real rps_J_group_1_in_axes1_zz = m->rps_J_group_1_in_axes1_zz[i];
+    const real rps_h_1_in_spec1_x = m->rps_h_1_in_spec1_x[i];
+    const real rps_h_1_in_spec1_y = m->rps_h_1_in_spec1_y[i];
+    const real rps_mu_1_o_in_axes1_z = rps_J_group_1_in_axes1_zz*rps_qdd_1_o +
+        rps_acc_2_o_in_axes1_y*rps_h_2_in_spec1_x + v->rps_g_in_axes1_x*rps_h_1_in_spec1_y -
+        rps_acc_2_o_in_axes1_x*rps_h_2_in_spec1_y - v->rps_g_in_axes1_y*rps_h_1_in_spec1_x;
+    /* (rps-G_o) remainder without the acceleration in: force at the connection point that balances
+       the leg's inertia and weight along all degrees of freedom */
+    const real rps_G_o_in_axes1_y = rps_f_2_o_in_axes1_y +
+        v->inv_rps_q_2*rps_mu_1_o_in_axes1_z;
+    /* (rps-U) velocity and gravity terms of the leg force */
+    const real rps_U_x = v->axis_x_rps_axes1_x*rps_f_2_o_in_axes1_x +
+        v->axis_y_rps_axes1_x*rps_G_o_in_axes1_y;
+    const real rps_U_y = v->axis_x_rps_axes1_y*rps_f_2_o_in_axes1_x +
+        v->axis_y_rps_axes1_y*rps_G_o_in_axes1_y;
+    const real rps_U_z = v->axis_x_rps_axes1_z*rps_f_2_o_in_axes1_x +
+        v->axis_y_rps_axes1_z*rps_G_o_in_axes1_y;
+    /* (Z_a) rotational part of Z */
+    const real rps_Z_a_t = rps_U_z*v->rps_q_y - rps_U_y*v->rps_q_z;
+    const real rps_Z_a_t_2 = rps_U_x*v->rps_q_z - rps_U_z*v->rps_q_x;
+    const real rps_Z_a_t_3 = rps_U_y*v->rps_q_x - rps_U_x*v->rps_q_y;
+    v->rps_u_1_x = rps_u_1_x;
+    v->rps_u_1_y = rps_u_1_y;
+    v->rps_u_1_z = rps_u_1_z;
+    v->rps_U_x = rps_U_x;
+    v->rps_U_y = rps_U_y;
+    v->rps_U_z = rps_U_z;
+    v->rps_Z_a_t = rps_Z_a_t;
+    v->rps_Z_a_t_2 = rps_Z_a_t_2;
+    v->rps_Z_a_t_3 = rps_Z_a_t_3;
+}
+
+INLINE void stage_rps_legs_required(const prepared *m, size_t i, values_rps *v)
+{
+    /* (rps-S_ddot) acceleration of the connection point */
+    const real rps_S_ddot_in_axes1_y = v->axis_y_rps_axes1_x*v->rps_S_ddot_x +
+        v->axis_y_rps_axes1_y*v->rps_S_ddot_y + v->axis_y_rps_axes1_z*v->rps_S_ddot_z;
+    /* (rps-rel) acceleration of the connection point left to the joint accelerations */
+    const real rps_rel_in_axes1_y = rps_S_ddot_in_axes1_y -
+        2*v->rps_S_dot_in_axes1_x*v->rps_qd_1;
+    /* (rps-qdd_1) acceleration of joint 1 */
+    const real rps_qdd_1 = v->inv_rps_q_2*rps_rel_in_axes1_y;
+    /* (rps-acc_2) acceleration of the reference point of link 2, less gravity */
+    const real rps_acc_2_in_axes1_x = v->axis_x_rps_axes1_x*v->rps_S_ddot_x +
+        v->axis_x_rps_axes1_y*v->rps_S_ddot_y + v->axis_x_rps_axes1_z*v->rps_S_ddot_z -
+        v->rps_g_in_axes1_x;
+    const real rps_acc_2_in_axes1_y = rps_S_ddot_in_axes1_y - v->rps_g_in_axes1_y;
+    /* (rps-f_2) inertia force of link 2 less its weight */
+    const real rps_h_2_in_spec1_x = m->rps_h_2_in_spec1_x[i];
+    const real rps_h_2_in_spec1_y = m->rps_h_2_in_spec1_y[i];
+    const real rps_link2_mass = m->rps_link2_mass[i];
+    const real rps_f_2_in_axes1_x = rps_acc_2_in_axes1_x*rps_link2_mass -
+        v->rps_W_1_t*rps_h_2_in_spec1_x - rps_h_2_in_spec1_y*rps_qdd_1;
+    const real rps_f_2_in_axes1_y = rps_acc_2_in_axes1_y*rps_link2_mass +
+        rps_h_2_in_spec1_x*rps_qdd_1 - v->rps_W_1_t*rps_h_2_in_spec1_y;
+    /* (rps-mu_1) inertia moment of the links that turn with link 1, about their reference points */
+    const real rps_J_group_1_in_axes1_zz = m->rps_J_group_1_in_axes1_zz[i];
+    const real rps_h_1_in_spec1_x = m->rps_h_1_in_spec1_x[i];
+    const real rps_h_1_in_spec1_y = m->rps_h_1_in_spec1_y[i];
+    const real rps_mu_1_in_axes1_z = rps_J_group_1_in_axes1_zz*rps_qdd_1 +
+        rps_acc_2_in_axes1_y*rps_h_2_in_spec1_x + v->rps_g_in_axes1_x*rps_h_1_in_spec1_y -
+        rps_acc_2_in_axes1_x*rps_h_2_in_spec1_y - v->rps_g_in_axes1_y*rps_h_1_in_spec1_x;
+    /* (rps-G) force at the connection point that balances the leg's inertia and weight along all
+       degrees of freedom */
+    const real rps_G_in_axes1_y = rps_f_2_in_axes1_y + v->inv_rps_q_2*rps_mu_1_in_axes1_z;
+    /* (rps-c) leg force on the platform without actuation and without the mass at the connection
+       point */
+    const real rps_c_x = -v->axis_x_rps_axes1_x*rps_f_2_in_axes1_x -
+        v->axis_y_rps_axes1_x*rps_G_in_axes1_y;
+    const real rps_c_y = -v->axis_x_rps_axes1_y*rps_f_2_in_axes1_x -
+        v->axis_y_rps_axes1_y*rps_G_in_axes1_y;
+    const real rps_c_z = -v->axis_x_rps_axes1_z*rps_f_2_in_axes1_x -
+        v->axis_y_rps_axes1_z*rps_G_in_axes1_y;
+    v->rps_c_x = rps_c_x;
+    v->rps_c_y = rps_c_y;
+    v->rps_c_z = rps_c_z;
+}
+
 /* ---- functions of the state: M, Z, H and the like ---- */
 
 /* ---- dynamics ---- */
@@ -1286,362 +1832,110 @@ INLINE void dynamics_before(const prepared *m, size_t w, const real *X, const re
     verdict *t)
 {
     for (size_t k = 0; k < w; ++k) {
-        /* X: named entries */
-        const real X_0 = X[0*w + k];
-        const real t_x = X_0;
-        const real X_1 = X[1*w + k];
-        const real t_y = X_1;
-        const real X_2 = X[2*w + k];
-        const real t_z = X_2;
-        const real X_3 = X[3*w + k];
-        const real X_4 = X[4*w + k];
-        const real X_5 = X[5*w + k];
-        const real X_6 = X[6*w + k];
-        const real quaternion_norm2 = X_3*X_3 + X_4*X_4 + X_5*X_5 + X_6*X_6;
-        const real quaternion_scale = 2/quaternion_norm2;
-        const real quaternion_sx = X_3*quaternion_scale;
-        const real quaternion_sy = X_4*quaternion_scale;
-        const real quaternion_sz = X_5*quaternion_scale;
-        const real quaternion_wx = X_6*quaternion_sx;
-        const real quaternion_wy = X_6*quaternion_sy;
-        const real quaternion_wz = X_6*quaternion_sz;
-        const real quaternion_xx = X_3*quaternion_sx;
-        const real quaternion_xy = X_3*quaternion_sy;
-        const real quaternion_xz = X_3*quaternion_sz;
-        const real quaternion_yy = X_4*quaternion_sy;
-        const real quaternion_yz = X_4*quaternion_sz;
-        const real quaternion_zz = X_5*quaternion_sz;
-        const real R_xx = 1 - quaternion_yy - quaternion_zz;
-        const real R_xy = quaternion_xy - quaternion_wz;
-        const real R_xz = quaternion_wy + quaternion_xz;
-        const real R_yx = quaternion_wz + quaternion_xy;
-        const real R_yy = 1 - quaternion_xx - quaternion_zz;
-        const real R_yz = quaternion_yz - quaternion_wx;
-        const real R_zx = quaternion_xz - quaternion_wy;
-        const real R_zy = quaternion_wx + quaternion_yz;
-        const real R_zz = 1 - quaternion_xx - quaternion_yy;
-        /* V: named entries */
-        const real V_0 = V[0*w + k];
-        const real t_dot_x = V_0;
-        const real V_1 = V[1*w + k];
-        const real t_dot_y = V_1;
-        const real V_2 = V[2*w + k];
-        const real t_dot_z = V_2;
-        const real V_3 = V[3*w + k];
-        const real omega_x = V_3;
-        const real V_4 = V[4*w + k];
-        const real omega_y = V_4;
-        const real V_5 = V[5*w + k];
-        const real omega_z = V_5;
-        /* (h_star) first moment about the platform origin */
-        const real h_star_in_platform_x = m->h_star_in_platform_x;
-        const real h_star_in_platform_y = m->h_star_in_platform_y;
-        const real h_star_in_platform_z = m->h_star_in_platform_z;
-        const real h_star_x = R_xx*h_star_in_platform_x + R_xy*h_star_in_platform_y +
-            R_xz*h_star_in_platform_z;
-        const real h_star_y = R_yx*h_star_in_platform_x + R_yy*h_star_in_platform_y +
-            R_yz*h_star_in_platform_z;
-        const real h_star_z = R_zx*h_star_in_platform_x + R_zy*h_star_in_platform_y +
-            R_zz*h_star_in_platform_z;
-        /* (J_star) inertia tensor about the platform origin */
-        const real J_star_in_platform_xy = m->J_star_in_platform_xy;
-        const real J_star_in_platform_yz = m->J_star_in_platform_yz;
-        const real J_star_t_6 = m->J_star_t_6;
-        const real J_star_t = J_star_in_platform_xy*R_xx + J_star_in_platform_yz*R_xz -
-            J_star_t_6*R_xy;
-        const real J_star_t_2 = J_star_in_platform_xy*R_yx + J_star_in_platform_yz*R_yz -
-            J_star_t_6*R_yy;
-        const real J_star_t_3 = J_star_in_platform_xy*R_zx + J_star_in_platform_yz*R_zz -
-            J_star_t_6*R_zy;
-        const real J_star_in_platform_xz = m->J_star_in_platform_xz;
-        const real J_star_t_8 = m->J_star_t_8;
-        const real J_star_t_4 = J_star_t_8*R_xz - J_star_in_platform_xz*R_xx;
-        const real J_star_t_5 = J_star_t_8*R_yz - J_star_in_platform_xz*R_yx;
-        const real J_star_t_7 = J_star_t_8*R_zz - J_star_in_platform_xz*R_zx;
-        const real J_star_t_9 = J_star_t*R_xy - J_star_t_4*R_xz;
-        const real J_star_in_platform_xx = m->J_star_in_platform_xx;
-        const real J_star_xx = J_star_in_platform_xx + 2*J_star_t_9;
-        const real J_star_xy = J_star_t*R_yy + J_star_t_2*R_xy - J_star_t_4*R_yz -
-            J_star_t_5*R_xz;
-        const real J_star_xz = J_star_t*R_zy + J_star_t_3*R_xy - J_star_t_4*R_zz -
-            J_star_t_7*R_xz;
-        const real J_star_t_10 = J_star_t_2*R_yy - J_star_t_5*R_yz;
-        const real J_star_yy = J_star_in_platform_xx + 2*J_star_t_10;
-        const real J_star_yz = J_star_t_2*R_zy + J_star_t_3*R_yy - J_star_t_5*R_zz -
-            J_star_t_7*R_yz;
-        const real J_star_t_11 = J_star_t_3*R_zy - J_star_t_7*R_zz;
-        const real J_star_zz = J_star_in_platform_xx + 2*J_star_t_11;
-        /* (Z_p) centripetal force and weight of the platform */
-        const real Z_p_t_4 = h_star_z*omega_y - h_star_y*omega_z;
-        const real Z_p_t_5 = h_star_x*omega_z - h_star_z*omega_x;
-        const real Z_p_t_6 = h_star_y*omega_x - h_star_x*omega_y;
-        const real Z_p_t = m->Z_p_t;
-        const real Z_p_x = Z_p_t_6*omega_y - Z_p_t - Z_p_t_5*omega_z;
-        const real Z_p_t_2 = m->Z_p_t_2;
-        const real Z_p_y = Z_p_t_4*omega_z - Z_p_t_2 - Z_p_t_6*omega_x;
-        const real Z_p_t_3 = m->Z_p_t_3;
-        const real Z_p_z = Z_p_t_5*omega_x - Z_p_t_3 - Z_p_t_4*omega_y;
-        /* (Z_q) gyroscopic moment and moment of the weight of the platform */
-        const real gravity_x = m->gravity_x;
-        const real gravity_y = m->gravity_y;
-        const real gravity_z = m->gravity_z;
-        const real g_in_platform_x = R_xx*gravity_x + R_yx*gravity_y + R_zx*gravity_z;
-        const real g_in_platform_y = R_xy*gravity_x + R_yy*gravity_y + R_zy*gravity_z;
-        const real g_in_platform_z = R_xz*gravity_x + R_yz*gravity_y + R_zz*gravity_z;
-        const real omega_in_platform_x = R_xx*omega_x + R_yx*omega_y + R_zx*omega_z;
-        const real omega_in_platform_y = R_xy*omega_x + R_yy*omega_y + R_zy*omega_z;
-        const real omega_in_platform_z = R_xz*omega_x + R_yz*omega_y + R_zz*omega_z;
-        const real Z_q_t = J_star_in_platform_xx*omega_in_platform_x +
-            J_star_in_platform_xy*omega_in_platform_y + J_star_in_platform_xz*omega_in_platform_z;
-        const real J_star_in_platform_yy = m->J_star_in_platform_yy;
-        const real Z_q_t_2 = J_star_in_platform_xy*omega_in_platform_x +
-            J_star_in_platform_yy*omega_in_platform_y + J_star_in_platform_yz*omega_in_platform_z;
-        const real J_star_in_platform_zz = m->J_star_in_platform_zz;
-        const real Z_q_t_3 = J_star_in_platform_xz*omega_in_platform_x +
-            J_star_in_platform_yz*omega_in_platform_y + J_star_in_platform_zz*omega_in_platform_z;
-        const real Z_q_in_platform_x = Z_q_t_3*omega_in_platform_y +
-            g_in_platform_y*h_star_in_platform_z - Z_q_t_2*omega_in_platform_z -
-            g_in_platform_z*h_star_in_platform_y;
-        const real Z_q_in_platform_y = Z_q_t*omega_in_platform_z +
-            g_in_platform_z*h_star_in_platform_x - Z_q_t_3*omega_in_platform_x -
-            g_in_platform_x*h_star_in_platform_z;
-        const real Z_q_in_platform_z = Z_q_t_2*omega_in_platform_x +
-            g_in_platform_x*h_star_in_platform_y - Z_q_t*omega_in_platform_y -
-            g_in_platform_y*h_star_in_platform_x;
-        const real Z_q_x = R_xx*Z_q_in_platform_x + R_xy*Z_q_in_platform_y +
-            R_xz*Z_q_in_platform_z;
-        const real Z_q_y = R_yx*Z_q_in_platform_x + R_yy*Z_q_in_platform_y +
-            R_yz*Z_q_in_platform_z;
-        const real Z_q_z = R_zx*Z_q_in_platform_x + R_zy*Z_q_in_platform_y +
-            R_zz*Z_q_in_platform_z;
-        s[0*w + k] = t_x;
-        s[1*w + k] = t_y;
-        s[2*w + k] = t_z;
-        s[3*w + k] = R_xx;
-        s[4*w + k] = R_xy;
-        s[5*w + k] = R_xz;
-        s[6*w + k] = R_yx;
-        s[7*w + k] = R_yy;
-        s[8*w + k] = R_yz;
-        s[9*w + k] = R_zx;
-        s[10*w + k] = R_zy;
-        s[11*w + k] = R_zz;
-        s[12*w + k] = t_dot_x;
-        s[13*w + k] = t_dot_y;
-        s[14*w + k] = t_dot_z;
-        s[15*w + k] = omega_x;
-        s[16*w + k] = omega_y;
-        s[17*w + k] = omega_z;
-        s[18*w + k] = h_star_x;
-        s[19*w + k] = h_star_y;
-        s[20*w + k] = h_star_z;
-        s[21*w + k] = J_star_xx;
-        s[22*w + k] = J_star_xy;
-        s[23*w + k] = J_star_xz;
-        s[24*w + k] = J_star_yy;
-        s[25*w + k] = J_star_yz;
-        s[26*w + k] = J_star_zz;
-        s[27*w + k] = Z_p_x;
-        s[28*w + k] = Z_p_y;
-        s[29*w + k] = Z_p_z;
-        s[30*w + k] = Z_q_x;
-        s[31*w + k] = Z_q_y;
-        s[32*w + k] = Z_q_z;
-        t->invalid[k] += UNLESS(is_finite(quaternion_scale)) + UNLESS(quaternion_scale > 0);
+        values v;
+        stage_X(m, w, k, X, &v);
+        stage_V_X(w, k, V, &v);
+        stage_M_dynamics(m, &v);
+        stage_Z_dynamics(m, w, k, V, &v);
+        s[0*w + k] = v.R_xx;
+        s[1*w + k] = v.R_xy;
+        s[2*w + k] = v.R_xz;
+        s[3*w + k] = v.R_yx;
+        s[4*w + k] = v.R_yy;
+        s[5*w + k] = v.R_yz;
+        s[6*w + k] = v.R_zx;
+        s[7*w + k] = v.R_zy;
+        s[8*w + k] = v.R_zz;
+        s[9*w + k] = v.h_star_x;
+        s[10*w + k] = v.h_star_y;
+        s[11*w + k] = v.h_star_z;
+        s[12*w + k] = v.J_star_xx;
+        s[13*w + k] = v.J_star_xy;
+        s[14*w + k] = v.J_star_xz;
+        s[15*w + k] = v.J_star_yy;
+        s[16*w + k] = v.J_star_yz;
+        s[17*w + k] = v.J_star_zz;
+        s[18*w + k] = v.Z_p_x;
+        s[19*w + k] = v.Z_p_y;
+        s[20*w + k] = v.Z_p_z;
+        s[21*w + k] = v.Z_q_x;
+        s[22*w + k] = v.Z_q_y;
+        s[23*w + k] = v.Z_q_z;
+        t->invalid[k] += UNLESS(is_finite(v.quaternion_scale)) + UNLESS(v.quaternion_scale > 0);
     }
 }
 
 INLINE void dynamics_legs_rps(const prepared *m, size_t w, size_t leg, size_t legs, const real *s,
-    size_t states, size_t count, int add, real *terms, real *o)
+    size_t states, size_t count, int add, const real *X, const real *V, real *terms, real *o)
 {
     for (size_t k = 0; k < count; ++k) {
         const size_t i = leg + legs*k;
         const size_t j = states*k;
-        /* (rps-S) from the base point to the connection point */
-        const real R_xx = s[3*w + j];
-        const real R_xy = s[4*w + j];
-        const real R_xz = s[5*w + j];
-        const real rps_platform_point_x = m->rps_platform_point_x[i];
-        const real rps_platform_point_y = m->rps_platform_point_y[i];
-        const real rps_platform_point_z = m->rps_platform_point_z[i];
-        const real rps_q_x = R_xx*rps_platform_point_x + R_xy*rps_platform_point_y +
-            R_xz*rps_platform_point_z;
-        const real R_yx = s[6*w + j];
-        const real R_yy = s[7*w + j];
-        const real R_yz = s[8*w + j];
-        const real rps_q_y = R_yx*rps_platform_point_x + R_yy*rps_platform_point_y +
-            R_yz*rps_platform_point_z;
-        const real R_zx = s[9*w + j];
-        const real R_zy = s[10*w + j];
-        const real R_zz = s[11*w + j];
-        const real rps_q_z = R_zx*rps_platform_point_x + R_zy*rps_platform_point_y +
-            R_zz*rps_platform_point_z;
-        const real rps_base_point_x = m->rps_base_point_x[i];
-        const real t_x = s[0*w + j];
-        const real rps_S_x = rps_q_x + t_x - rps_base_point_x;
-        const real rps_base_point_y = m->rps_base_point_y[i];
-        const real t_y = s[1*w + j];
-        const real rps_S_y = rps_q_y + t_y - rps_base_point_y;
-        const real rps_base_point_z = m->rps_base_point_z[i];
-        const real t_z = s[2*w + j];
-        const real rps_S_z = rps_q_z + t_z - rps_base_point_z;
-        /* (rps-px_1) component along the reference direction */
-        const real rps_base_frame_xx = m->rps_base_frame_xx[i];
-        const real rps_base_frame_yx = m->rps_base_frame_yx[i];
-        const real rps_base_frame_zx = m->rps_base_frame_zx[i];
-        const real rps_px_1 = rps_S_x*rps_base_frame_xx + rps_S_y*rps_base_frame_yx +
-            rps_S_z*rps_base_frame_zx;
-        /* (rps-py_1) component across the reference direction */
-        const real rps_base_frame_xy = m->rps_base_frame_xy[i];
-        const real rps_base_frame_yy = m->rps_base_frame_yy[i];
-        const real rps_base_frame_zy = m->rps_base_frame_zy[i];
-        const real rps_py_1 = rps_S_x*rps_base_frame_xy + rps_S_y*rps_base_frame_yy +
-            rps_S_z*rps_base_frame_zy;
-        /* (rps-rho2_1) squared amplitude */
-        const real rps_rho2_1 = rps_px_1*rps_px_1 + rps_py_1*rps_py_1;
-        /* (rps-root_1) amplitude, with the sign of the branch */
-        const real rps_branch_1 = m->rps_branch_1[i];
-        const real rps_root_1 = rps_branch_1*root(rps_rho2_1);
-        /* (rps-c_1) cosine of the angle of joint 1 from its reference direction */
-        const real inv_rps_root_1 = 1/rps_root_1;
-        const real rps_c_1 = inv_rps_root_1*rps_px_1;
-        /* (rps-s_1) sine of the angle of joint 1 from its reference direction */
-        const real rps_s_1 = inv_rps_root_1*rps_py_1;
-        /* (rps-S_dot) velocity of the connection point */
-        const real axis_x_rps_axes1_x = rps_base_frame_xx*rps_c_1 + rps_base_frame_xy*rps_s_1;
-        const real axis_x_rps_axes1_y = rps_base_frame_yx*rps_c_1 + rps_base_frame_yy*rps_s_1;
-        const real axis_x_rps_axes1_z = rps_base_frame_zx*rps_c_1 + rps_base_frame_zy*rps_s_1;
-        const real omega_y = s[16*w + j];
-        const real omega_z = s[17*w + j];
-        const real rps_S_dot_t = omega_y*rps_q_z - omega_z*rps_q_y;
-        const real omega_x = s[15*w + j];
-        const real rps_S_dot_t_2 = omega_z*rps_q_x - omega_x*rps_q_z;
-        const real rps_S_dot_t_3 = omega_x*rps_q_y - omega_y*rps_q_x;
-        const real t_dot_x = s[12*w + j];
-        const real rps_S_dot_x = rps_S_dot_t + t_dot_x;
-        const real t_dot_y = s[13*w + j];
-        const real rps_S_dot_y = rps_S_dot_t_2 + t_dot_y;
-        const real t_dot_z = s[14*w + j];
-        const real rps_S_dot_z = rps_S_dot_t_3 + t_dot_z;
-        const real rps_S_dot_in_axes1_x = axis_x_rps_axes1_x*rps_S_dot_x +
-            axis_x_rps_axes1_y*rps_S_dot_y + axis_x_rps_axes1_z*rps_S_dot_z;
-        /* (rps-qd_1) rate of joint 1 */
-        const real axis_y_rps_axes1_x = rps_base_frame_xy*rps_c_1 - rps_base_frame_xx*rps_s_1;
-        const real axis_y_rps_axes1_y = rps_base_frame_yy*rps_c_1 - rps_base_frame_yx*rps_s_1;
-        const real axis_y_rps_axes1_z = rps_base_frame_zy*rps_c_1 - rps_base_frame_zx*rps_s_1;
-        const real rps_qd_1 = inv_rps_root_1*(axis_y_rps_axes1_x*rps_S_dot_x +
-            axis_y_rps_axes1_y*rps_S_dot_y + axis_y_rps_axes1_z*rps_S_dot_z);
-        /* (rps-W_1) centripetal tensor of link 1 */
-        const real rps_W_1_t = rps_qd_1*rps_qd_1;
+        values_rps v;
+        stage_rps_X(m, w, i, j, s, X, &v);
+        stage_rps_V_X(w, j, V, &v);
+        stage_rps_Z_dynamics(m, w, i, j, V, &v);
         /* (rps-u_1) centripetal acceleration of the connection point */
-        const real rps_u_1_x = omega_y*rps_S_dot_t_3 - omega_z*rps_S_dot_t_2;
-        const real rps_u_1_y = omega_z*rps_S_dot_t - omega_x*rps_S_dot_t_3;
-        const real rps_u_1_z = omega_x*rps_S_dot_t_2 - omega_y*rps_S_dot_t;
-        const real rps_u_1_in_axes1_y = axis_y_rps_axes1_x*rps_u_1_x +
-            axis_y_rps_axes1_y*rps_u_1_y + axis_y_rps_axes1_z*rps_u_1_z;
         const real rps_base_frame_xz = m->rps_base_frame_xz[i];
         const real rps_base_frame_yz = m->rps_base_frame_yz[i];
         const real rps_base_frame_zz = m->rps_base_frame_zz[i];
-        const real rps_u_1_in_axes1_z = rps_base_frame_xz*rps_u_1_x + rps_base_frame_yz*rps_u_1_y
-            + rps_base_frame_zz*rps_u_1_z;
-        /* (rps-rel_o) remainder without the acceleration in: acceleration of the connection point left to
-           the joint accelerations */
-        const real rps_rel_o_in_axes1_y = rps_u_1_in_axes1_y - 2*rps_S_dot_in_axes1_x*rps_qd_1;
-        /* (rps-qdd_1_o) remainder without the acceleration in: acceleration of joint 1 */
-        const real rps_qdd_1_o = inv_rps_root_1*rps_rel_o_in_axes1_y;
-        /* (rps-acc_2_o) remainder without the acceleration in: acceleration of the reference point of
-           link 2, less gravity */
-        const real rps_acc_2_t = m->rps_acc_2_t[i];
-        const real rps_acc_2_t_2 = m->rps_acc_2_t_2[i];
-        const real rps_g_in_axes1_x = rps_acc_2_t*rps_c_1 + rps_acc_2_t_2*rps_s_1;
-        const real rps_g_in_axes1_y = rps_acc_2_t_2*rps_c_1 - rps_acc_2_t*rps_s_1;
-        const real rps_acc_2_o_in_axes1_x = axis_x_rps_axes1_x*rps_u_1_x +
-            axis_x_rps_axes1_y*rps_u_1_y + axis_x_rps_axes1_z*rps_u_1_z - rps_g_in_axes1_x;
-        const real rps_acc_2_o_in_axes1_y = rps_u_1_in_axes1_y - rps_g_in_axes1_y;
-        /* (rps-f_2_o) remainder without the acceleration in: inertia force of link 2 less its weight */
-        const real rps_h_2_in_spec1_x = m->rps_h_2_in_spec1_x[i];
-        const real rps_h_2_in_spec1_y = m->rps_h_2_in_spec1_y[i];
-        const real rps_link2_mass = m->rps_link2_mass[i];
-        const real rps_f_2_o_in_axes1_x = rps_acc_2_o_in_axes1_x*rps_link2_mass -
-            rps_W_1_t*rps_h_2_in_spec1_x - rps_h_2_in_spec1_y*rps_qdd_1_o;
-        const real rps_f_2_o_in_axes1_y = rps_acc_2_o_in_axes1_y*rps_link2_mass +
-            rps_h_2_in_spec1_x*rps_qdd_1_o - rps_W_1_t*rps_h_2_in_spec1_y;
-        /* (rps-mu_1_o) remainder without the acceleration in: inertia moment of the links that turn with
-           link 1, about their reference points */
-        const real rps_J_group_1_in_axes1_zz = m->rps_J_group_1_in_axes1_zz[i];
-        const real rps_h_1_in_spec1_x = m->rps_h_1_in_spec1_x[i];
-        const real rps_h_1_in_spec1_y = m->rps_h_1_in_spec1_y[i];
-        const real rps_mu_1_o_in_axes1_z = rps_J_group_1_in_axes1_zz*rps_qdd_1_o +
-            rps_acc_2_o_in_axes1_y*rps_h_2_in_spec1_x + rps_g_in_axes1_x*rps_h_1_in_spec1_y -
-            rps_acc_2_o_in_axes1_x*rps_h_2_in_spec1_y - rps_g_in_axes1_y*rps_h_1_in_spec1_x;
+        const real rps_u_1_in_axes1_z = rps_base_frame_xz*v.rps_u_1_x +
+            rps_base_frame_yz*v.rps_u_1_y + rps_base_frame_zz*v.rps_u_1_z;
         /* (rps-d_G) coefficient of the acceleration in: force at the connection point that balances the
            leg's inertia and weight along all degrees of freedom */
-        const real rps_d_G_in_axes1_yy = inv_rps_root_1*(rps_h_2_in_spec1_x +
-            inv_rps_root_1*rps_J_group_1_in_axes1_zz + rps_root_1*(rps_link2_mass +
-            inv_rps_root_1*rps_h_2_in_spec1_x));
-        /* (rps-G_o) remainder without the acceleration in: force at the connection point that balances
-           the leg's inertia and weight along all degrees of freedom */
-        const real rps_G_o_in_axes1_y = rps_f_2_o_in_axes1_y +
-            inv_rps_root_1*rps_mu_1_o_in_axes1_z;
+        const real rps_J_group_1_in_axes1_zz = m->rps_J_group_1_in_axes1_zz[i];
+        const real rps_h_2_in_spec1_x = m->rps_h_2_in_spec1_x[i];
+        const real rps_link2_mass = m->rps_link2_mass[i];
+        const real rps_d_G_in_axes1_yy = v.inv_rps_q_2*(rps_h_2_in_spec1_x +
+            v.inv_rps_q_2*rps_J_group_1_in_axes1_zz + v.rps_q_2*(rps_link2_mass +
+            v.inv_rps_q_2*rps_h_2_in_spec1_x));
         /* (rps-d_c) coefficient of the acceleration in: leg force on the platform without actuation and
            without the mass at the connection point */
-        const real rps_d_c_in_axes1_xy = inv_rps_root_1*rps_h_2_in_spec1_y;
-        const real rps_d_c_t = axis_y_rps_axes1_x*rps_d_c_in_axes1_xy -
-            axis_x_rps_axes1_x*rps_link2_mass;
-        const real rps_d_c_t_2 = axis_y_rps_axes1_y*rps_d_c_in_axes1_xy -
-            axis_x_rps_axes1_y*rps_link2_mass;
-        const real rps_d_c_t_3 = axis_x_rps_axes1_x*rps_d_c_in_axes1_xy -
-            axis_y_rps_axes1_x*rps_d_G_in_axes1_yy;
-        const real rps_d_c_t_4 = axis_x_rps_axes1_y*rps_d_c_in_axes1_xy -
-            axis_y_rps_axes1_y*rps_d_G_in_axes1_yy;
-        const real rps_d_c_xx = axis_x_rps_axes1_x*rps_d_c_t + axis_y_rps_axes1_x*rps_d_c_t_3;
-        const real rps_d_c_xy = axis_x_rps_axes1_y*rps_d_c_t + axis_y_rps_axes1_y*rps_d_c_t_3;
-        const real rps_d_c_xz = axis_x_rps_axes1_z*rps_d_c_t + axis_y_rps_axes1_z*rps_d_c_t_3;
-        const real rps_d_c_yy = axis_x_rps_axes1_y*rps_d_c_t_2 + axis_y_rps_axes1_y*rps_d_c_t_4;
-        const real rps_d_c_yz = axis_x_rps_axes1_z*rps_d_c_t_2 + axis_y_rps_axes1_z*rps_d_c_t_4;
-        const real rps_d_c_zz = axis_x_rps_axes1_z*(axis_y_rps_axes1_z*rps_d_c_in_axes1_xy -
-            axis_x_rps_axes1_z*rps_link2_mass) +
-            axis_y_rps_axes1_z*(axis_x_rps_axes1_z*rps_d_c_in_axes1_xy -
-            axis_y_rps_axes1_z*rps_d_G_in_axes1_yy);
-        /* (rps-U) velocity and gravity terms of the leg force */
-        const real rps_U_x = axis_x_rps_axes1_x*rps_f_2_o_in_axes1_x +
-            axis_y_rps_axes1_x*rps_G_o_in_axes1_y;
-        const real rps_U_y = axis_x_rps_axes1_y*rps_f_2_o_in_axes1_x +
-            axis_y_rps_axes1_y*rps_G_o_in_axes1_y;
-        const real rps_U_z = axis_x_rps_axes1_z*rps_f_2_o_in_axes1_x +
-            axis_y_rps_axes1_z*rps_G_o_in_axes1_y;
+        const real rps_h_2_in_spec1_y = m->rps_h_2_in_spec1_y[i];
+        const real rps_d_c_in_axes1_xy = v.inv_rps_q_2*rps_h_2_in_spec1_y;
+        const real rps_d_c_t = v.axis_y_rps_axes1_x*rps_d_c_in_axes1_xy -
+            v.axis_x_rps_axes1_x*rps_link2_mass;
+        const real rps_d_c_t_2 = v.axis_y_rps_axes1_y*rps_d_c_in_axes1_xy -
+            v.axis_x_rps_axes1_y*rps_link2_mass;
+        const real rps_d_c_t_3 = v.axis_x_rps_axes1_x*rps_d_c_in_axes1_xy -
+            v.axis_y_rps_axes1_x*rps_d_G_in_axes1_yy;
+        const real rps_d_c_t_4 = v.axis_x_rps_axes1_y*rps_d_c_in_axes1_xy -
+            v.axis_y_rps_axes1_y*rps_d_G_in_axes1_yy;
+        const real rps_d_c_xx = v.axis_x_rps_axes1_x*rps_d_c_t + v.axis_y_rps_axes1_x*rps_d_c_t_3;
+        const real rps_d_c_xy = v.axis_x_rps_axes1_y*rps_d_c_t + v.axis_y_rps_axes1_y*rps_d_c_t_3;
+        const real rps_d_c_xz = v.axis_x_rps_axes1_z*rps_d_c_t + v.axis_y_rps_axes1_z*rps_d_c_t_3;
+        const real rps_d_c_yy = v.axis_x_rps_axes1_y*rps_d_c_t_2 +
+            v.axis_y_rps_axes1_y*rps_d_c_t_4;
+        const real rps_d_c_yz = v.axis_x_rps_axes1_z*rps_d_c_t_2 +
+            v.axis_y_rps_axes1_z*rps_d_c_t_4;
+        const real rps_d_c_zz = v.axis_x_rps_axes1_z*(v.axis_y_rps_axes1_z*rps_d_c_in_axes1_xy -
+            v.axis_x_rps_axes1_z*rps_link2_mass) +
+            v.axis_y_rps_axes1_z*(v.axis_x_rps_axes1_z*rps_d_c_in_axes1_xy -
+            v.axis_y_rps_axes1_z*rps_d_G_in_axes1_yy);
         /* (M_ta) coupling block of M */
-        const real rps_M_ta_t = rps_d_c_xy*rps_q_z;
-        const real rps_M_ta_t_2 = rps_d_c_xz*rps_q_y;
+        const real rps_M_ta_t = rps_d_c_xy*v.rps_q_z;
+        const real rps_M_ta_t_2 = rps_d_c_xz*v.rps_q_y;
         const real rps_M_ta_t_3 = rps_M_ta_t - rps_M_ta_t_2;
-        const real rps_M_ta_t_4 = rps_d_c_xx*rps_q_z - rps_d_c_xz*rps_q_x;
-        const real rps_M_ta_t_5 = rps_d_c_xx*rps_q_y - rps_d_c_xy*rps_q_x;
-        const real rps_M_ta_t_6 = rps_d_c_yy*rps_q_z - rps_d_c_yz*rps_q_y;
-        const real rps_M_ta_t_7 = rps_d_c_yz*rps_q_x;
+        const real rps_M_ta_t_4 = rps_d_c_xx*v.rps_q_z - rps_d_c_xz*v.rps_q_x;
+        const real rps_M_ta_t_5 = rps_d_c_xx*v.rps_q_y - rps_d_c_xy*v.rps_q_x;
+        const real rps_M_ta_t_6 = rps_d_c_yy*v.rps_q_z - rps_d_c_yz*v.rps_q_y;
+        const real rps_M_ta_t_7 = rps_d_c_yz*v.rps_q_x;
         const real rps_M_ta_t_8 = rps_M_ta_t_7 - rps_M_ta_t;
-        const real rps_M_ta_t_9 = rps_d_c_xy*rps_q_y - rps_d_c_yy*rps_q_x;
-        const real rps_M_ta_t_10 = rps_d_c_yz*rps_q_z - rps_d_c_zz*rps_q_y;
-        const real rps_M_ta_t_11 = rps_d_c_zz*rps_q_x - rps_d_c_xz*rps_q_z;
+        const real rps_M_ta_t_9 = rps_d_c_xy*v.rps_q_y - rps_d_c_yy*v.rps_q_x;
+        const real rps_M_ta_t_10 = rps_d_c_yz*v.rps_q_z - rps_d_c_zz*v.rps_q_y;
+        const real rps_M_ta_t_11 = rps_d_c_zz*v.rps_q_x - rps_d_c_xz*v.rps_q_z;
         const real rps_M_ta_t_12 = rps_M_ta_t_2 - rps_M_ta_t_7;
         /* (M_aa) rotational block of M */
-        const real rps_M_aa_t = rps_M_ta_t_10*rps_q_y - rps_M_ta_t_6*rps_q_z;
-        const real rps_M_aa_t_2 = rps_M_ta_t_11*rps_q_y - rps_M_ta_t_8*rps_q_z;
-        const real rps_M_aa_t_3 = rps_M_ta_t_12*rps_q_y - rps_M_ta_t_9*rps_q_z;
-        const real rps_M_aa_t_4 = rps_M_ta_t_11*rps_q_x + rps_M_ta_t_4*rps_q_z;
-        const real rps_M_aa_t_5 = rps_M_ta_t_5*rps_q_z - rps_M_ta_t_12*rps_q_x;
-        const real rps_M_aa_t_6 = rps_M_ta_t_9*rps_q_x - rps_M_ta_t_5*rps_q_y;
-        /* (Z_a) rotational part of Z */
-        const real rps_Z_a_t = rps_U_z*rps_q_y - rps_U_y*rps_q_z;
-        const real rps_Z_a_t_2 = rps_U_x*rps_q_z - rps_U_z*rps_q_x;
-        const real rps_Z_a_t_3 = rps_U_y*rps_q_x - rps_U_x*rps_q_y;
+        const real rps_M_aa_t = rps_M_ta_t_10*v.rps_q_y - rps_M_ta_t_6*v.rps_q_z;
+        const real rps_M_aa_t_2 = rps_M_ta_t_11*v.rps_q_y - rps_M_ta_t_8*v.rps_q_z;
+        const real rps_M_aa_t_3 = rps_M_ta_t_12*v.rps_q_y - rps_M_ta_t_9*v.rps_q_z;
+        const real rps_M_aa_t_4 = rps_M_ta_t_11*v.rps_q_x + rps_M_ta_t_4*v.rps_q_z;
+        const real rps_M_aa_t_5 = rps_M_ta_t_5*v.rps_q_z - rps_M_ta_t_12*v.rps_q_x;
+        const real rps_M_aa_t_6 = rps_M_ta_t_9*v.rps_q_x - rps_M_ta_t_5*v.rps_q_y;
         /* (rps-H_a_2) moment of the column's unit force about the platform origin */
-        const real rps_H_a_2_x = axis_x_rps_axes1_z*rps_q_y - axis_x_rps_axes1_y*rps_q_z;
-        const real rps_H_a_2_y = axis_x_rps_axes1_x*rps_q_z - axis_x_rps_axes1_z*rps_q_x;
-        const real rps_H_a_2_z = axis_x_rps_axes1_y*rps_q_x - axis_x_rps_axes1_x*rps_q_y;
-        /* (rps-Hk_a_1) moment of the column's unit force about the platform origin */
-        const real rps_Hk_a_1_x = rps_base_frame_zz*rps_q_y - rps_base_frame_yz*rps_q_z;
-        const real rps_Hk_a_1_y = rps_base_frame_xz*rps_q_z - rps_base_frame_zz*rps_q_x;
-        const real rps_Hk_a_1_z = rps_base_frame_yz*rps_q_x - rps_base_frame_xz*rps_q_y;
+        const real rps_H_a_2_x = v.axis_x_rps_axes1_z*v.rps_q_y - v.axis_x_rps_axes1_y*v.rps_q_z;
+        const real rps_H_a_2_y = v.axis_x_rps_axes1_x*v.rps_q_z - v.axis_x_rps_axes1_z*v.rps_q_x;
+        const real rps_H_a_2_z = v.axis_x_rps_axes1_y*v.rps_q_x - v.axis_x_rps_axes1_x*v.rps_q_y;
         /* (M_tt) translational block of M */
         gather(&terms[0*count + k], add, rps_d_c_xx);  /* M_tt_xx_of_legs */
         gather(&terms[1*count + k], add, rps_d_c_xy);  /* M_tt_t_2 */
@@ -1667,17 +1961,17 @@ INLINE void dynamics_legs_rps(const prepared *m, size_t w, size_t leg, size_t le
         gather(&terms[19*count + k], add, rps_M_aa_t_5);  /* M_aa_yz_of_legs */
         gather(&terms[20*count + k], add, rps_M_aa_t_6);  /* M_aa_zz_of_legs */
         /* (Z_t) translational part of Z */
-        gather(&terms[21*count + k], add, rps_U_x);  /* Z_t_x_of_legs */
-        gather(&terms[22*count + k], add, rps_U_y);  /* Z_t_y_of_legs */
-        gather(&terms[23*count + k], add, rps_U_z);  /* Z_t_z_of_legs */
+        gather(&terms[21*count + k], add, v.rps_U_x);  /* Z_t_x_of_legs */
+        gather(&terms[22*count + k], add, v.rps_U_y);  /* Z_t_y_of_legs */
+        gather(&terms[23*count + k], add, v.rps_U_z);  /* Z_t_z_of_legs */
         /* (Z_a) rotational part of Z */
-        gather(&terms[24*count + k], add, rps_Z_a_t);  /* Z_a_x_of_legs */
-        gather(&terms[25*count + k], add, rps_Z_a_t_2);  /* Z_a_y_of_legs */
-        gather(&terms[26*count + k], add, rps_Z_a_t_3);  /* Z_a_z_of_legs */
+        gather(&terms[24*count + k], add, v.rps_Z_a_t);  /* Z_a_x_of_legs */
+        gather(&terms[25*count + k], add, v.rps_Z_a_t_2);  /* Z_a_y_of_legs */
+        gather(&terms[26*count + k], add, v.rps_Z_a_t_3);  /* Z_a_z_of_legs */
         /* (rps-w_2) reciprocal vector 2 */
-        o[0*count + k] = axis_x_rps_axes1_x;
-        o[1*count + k] = axis_x_rps_axes1_y;
-        o[2*count + k] = axis_x_rps_axes1_z;
+        o[0*count + k] = v.axis_x_rps_axes1_x;
+        o[1*count + k] = v.axis_x_rps_axes1_y;
+        o[2*count + k] = v.axis_x_rps_axes1_z;
         /* (rps-H_a_2) moment of the column's unit force about the platform origin */
         o[3*count + k] = rps_H_a_2_x;
         o[4*count + k] = rps_H_a_2_y;
@@ -1687,17 +1981,17 @@ INLINE void dynamics_legs_rps(const prepared *m, size_t w, size_t leg, size_t le
         o[7*count + k] = rps_base_frame_yz;
         o[8*count + k] = rps_base_frame_zz;
         /* (rps-Hk_a_1) moment of the column's unit force about the platform origin */
-        o[9*count + k] = rps_Hk_a_1_x;
-        o[10*count + k] = rps_Hk_a_1_y;
-        o[11*count + k] = rps_Hk_a_1_z;
+        o[9*count + k] = v.rps_Hk_a_1_x;
+        o[10*count + k] = v.rps_Hk_a_1_y;
+        o[11*count + k] = v.rps_Hk_a_1_z;
         /* (rps-gamma_c1) part of the constraint's second derivative that does not hold the acceleration
            */
         o[12*count + k] = rps_u_1_in_axes1_z;
-        o[14*count + k] = ((axis_x_rps_axes1_x + (axis_x_rps_axes1_y + axis_x_rps_axes1_z)) +
-            (rps_H_a_2_x + (rps_H_a_2_y + rps_H_a_2_z))) + ((rps_base_frame_xz +
-            (rps_base_frame_yz + rps_base_frame_zz)) + ((rps_Hk_a_1_x + rps_Hk_a_1_y) +
-            (rps_Hk_a_1_z + rps_u_1_in_axes1_z)));
-        o[13*count + k] = UNLESS(magnitude(rps_rho2_1) > LEAST_1) + UNLESS(magnitude(rps_root_1) >
+        o[14*count + k] = ((v.axis_x_rps_axes1_x + (v.axis_x_rps_axes1_y + v.axis_x_rps_axes1_z))
+            + (rps_H_a_2_x + (rps_H_a_2_y + rps_H_a_2_z))) + ((rps_base_frame_xz +
+            (rps_base_frame_yz + rps_base_frame_zz)) + ((v.rps_Hk_a_1_x + v.rps_Hk_a_1_y) +
+            (v.rps_Hk_a_1_z + rps_u_1_in_axes1_z)));
+        o[13*count + k] = UNLESS(magnitude(v.rps_q_2_t) > LEAST_1) + UNLESS(magnitude(v.rps_q_2) >
             LEAST_2);
     }
 }
@@ -1706,13 +2000,13 @@ INLINE void dynamics_place_rps(size_t w, size_t count, const real *o, size_t leg
     real *H, real *Hk, real *constraint_bias, verdict *t)
 {
     for (size_t k = 0; k < w; ++k) {
-        H[(0*NU + leg)*w + k] = o[0*count + first + k];
+        H[leg*w + k] = o[0*count + first + k];
         H[(NU + leg)*w + k] = o[1*count + first + k];
         H[(2*NU + leg)*w + k] = o[2*count + first + k];
         H[(3*NU + leg)*w + k] = o[3*count + first + k];
         H[(4*NU + leg)*w + k] = o[4*count + first + k];
         H[(5*NU + leg)*w + k] = o[5*count + first + k];
-        Hk[(0*NC + leg)*w + k] = o[6*count + first + k];
+        Hk[leg*w + k] = o[6*count + first + k];
         Hk[(NC + leg)*w + k] = o[7*count + first + k];
         Hk[(2*NC + leg)*w + k] = o[8*count + first + k];
         Hk[(3*NC + leg)*w + k] = o[9*count + first + k];
@@ -1738,66 +2032,66 @@ INLINE void dynamics_after(const prepared *m, size_t w, const real *s, const rea
         const real M_tt_zz = platform_mass - M_tt_zz_of_legs;
         /* (M_ta) coupling block of M */
         const real M_ta_xy_of_legs = sums[7*w + k];
-        const real h_star_z = s[20*w + k];
+        const real h_star_z = s[11*w + k];
         const real M_ta_xy = M_ta_xy_of_legs + h_star_z;
         const real M_ta_xz_of_legs = sums[8*w + k];
-        const real h_star_y = s[19*w + k];
+        const real h_star_y = s[10*w + k];
         const real M_ta_xz = M_ta_xz_of_legs - h_star_y;
         const real M_ta_yx_of_legs = sums[9*w + k];
         const real M_ta_yx = M_ta_yx_of_legs - h_star_z;
         const real M_ta_yz_of_legs = sums[11*w + k];
-        const real h_star_x = s[18*w + k];
+        const real h_star_x = s[9*w + k];
         const real M_ta_yz = M_ta_yz_of_legs + h_star_x;
         const real M_ta_zx_of_legs = sums[12*w + k];
         const real M_ta_zx = M_ta_zx_of_legs + h_star_y;
         const real M_ta_zy_of_legs = sums[13*w + k];
         const real M_ta_zy = M_ta_zy_of_legs - h_star_x;
         /* (M_aa) rotational block of M */
-        const real J_star_xx = s[21*w + k];
+        const real J_star_xx = s[12*w + k];
         const real M_aa_xx_of_legs = sums[15*w + k];
         const real M_aa_xx = J_star_xx + M_aa_xx_of_legs;
-        const real J_star_xy = s[22*w + k];
+        const real J_star_xy = s[13*w + k];
         const real M_aa_xy_of_legs = sums[16*w + k];
         const real M_aa_xy = J_star_xy + M_aa_xy_of_legs;
-        const real J_star_xz = s[23*w + k];
+        const real J_star_xz = s[14*w + k];
         const real M_aa_xz_of_legs = sums[17*w + k];
         const real M_aa_xz = J_star_xz + M_aa_xz_of_legs;
-        const real J_star_yy = s[24*w + k];
+        const real J_star_yy = s[15*w + k];
         const real M_aa_yy_of_legs = sums[18*w + k];
         const real M_aa_yy = J_star_yy - M_aa_yy_of_legs;
-        const real J_star_yz = s[25*w + k];
+        const real J_star_yz = s[16*w + k];
         const real M_aa_yz_of_legs = sums[19*w + k];
         const real M_aa_yz = J_star_yz + M_aa_yz_of_legs;
-        const real J_star_zz = s[26*w + k];
+        const real J_star_zz = s[17*w + k];
         const real M_aa_zz_of_legs = sums[20*w + k];
         const real M_aa_zz = J_star_zz + M_aa_zz_of_legs;
         /* (Z_t) translational part of Z */
-        const real Z_p_x = s[27*w + k];
+        const real Z_p_x = s[18*w + k];
         const real Z_t_x_of_legs = sums[21*w + k];
         const real Z_t_x = Z_p_x + Z_t_x_of_legs;
-        const real Z_p_y = s[28*w + k];
+        const real Z_p_y = s[19*w + k];
         const real Z_t_y_of_legs = sums[22*w + k];
         const real Z_t_y = Z_p_y + Z_t_y_of_legs;
-        const real Z_p_z = s[29*w + k];
+        const real Z_p_z = s[20*w + k];
         const real Z_t_z_of_legs = sums[23*w + k];
         const real Z_t_z = Z_p_z + Z_t_z_of_legs;
         /* (Z_a) rotational part of Z */
         const real Z_a_x_of_legs = sums[24*w + k];
-        const real Z_q_x = s[30*w + k];
+        const real Z_q_x = s[21*w + k];
         const real Z_a_x = Z_a_x_of_legs + Z_q_x;
         const real Z_a_y_of_legs = sums[25*w + k];
-        const real Z_q_y = s[31*w + k];
+        const real Z_q_y = s[22*w + k];
         const real Z_a_y = Z_a_y_of_legs + Z_q_y;
         const real Z_a_z_of_legs = sums[26*w + k];
-        const real Z_q_z = s[32*w + k];
+        const real Z_q_z = s[23*w + k];
         const real Z_a_z = Z_a_z_of_legs + Z_q_z;
         /* (M_tt) translational block of M */
-        M[0*NV*w + k] = M_tt_xx;
+        M[0*w + k] = M_tt_xx;
         const real M_tt_t_2 = sums[1*w + k];
-        M[(0*NV + 1)*w + k] = -M_tt_t_2;
+        M[1*w + k] = -M_tt_t_2;
         M[NV*w + k] = -M_tt_t_2;
         const real M_tt_t_3 = sums[2*w + k];
-        M[(0*NV + 2)*w + k] = -M_tt_t_3;
+        M[2*w + k] = -M_tt_t_3;
         M[2*NV*w + k] = -M_tt_t_3;
         M[(NV + 1)*w + k] = M_tt_yy;
         const real M_tt_t_5 = sums[4*w + k];
@@ -1806,11 +2100,11 @@ INLINE void dynamics_after(const prepared *m, size_t w, const real *s, const rea
         M[(2*NV + 2)*w + k] = M_tt_zz;
         /* (M_ta) coupling block of M */
         const real M_ta_xx = sums[6*w + k];
-        M[(0*NV + 3)*w + k] = M_ta_xx;
+        M[3*w + k] = M_ta_xx;
         M[3*NV*w + k] = M_ta_xx;
-        M[(0*NV + 4)*w + k] = M_ta_xy;
+        M[4*w + k] = M_ta_xy;
         M[4*NV*w + k] = M_ta_xy;
-        M[(0*NV + 5)*w + k] = M_ta_xz;
+        M[5*w + k] = M_ta_xz;
         M[5*NV*w + k] = M_ta_xz;
         M[(NV + 3)*w + k] = M_ta_yx;
         M[(3*NV + 1)*w + k] = M_ta_yx;
@@ -1854,12 +2148,10 @@ INLINE void dynamics_after(const prepared *m, size_t w, const real *s, const rea
 INLINE void dynamics_run(const prepared *m, const real *X, const real *V, real *M, real *Z, real
     *H, real *Hk, real *constraint_bias, verdict *t)
 {
-    real s[33] = {0};
-    real sums[27] = {0};
-    real terms_rps[27*LEGS(LEGS_OF_rps)] = {0};
-    real o_rps[15*LEGS(LEGS_OF_rps)] = {0};
+    real s[24] = {0}, sums[27] = {0};
+    real terms_rps[27*LEGS(LEGS_OF_rps)] = {0}, o_rps[15*LEGS(LEGS_OF_rps)] = {0};
     dynamics_before(m, 1, X, V, s, t);
-    dynamics_legs_rps(m, 1, 0, 1, s, 0, LEGS(LEGS_OF_rps), 0, terms_rps, o_rps);
+    dynamics_legs_rps(m, 1, 0, 1, s, 0, LEGS(LEGS_OF_rps), 0, X, V, terms_rps, o_rps);
     for (size_t leg = 0; leg < LEGS_OF_rps; ++leg) {
         dynamics_place_rps(1, LEGS(LEGS_OF_rps), o_rps, leg, leg, H, Hk, constraint_bias, t);
     }
@@ -1872,13 +2164,12 @@ INLINE void dynamics_run(const prepared *m, const real *X, const real *V, real *
 INLINE void dynamics_run_lanes(const prepared *m, const real *X, const real *V, real *M, real *Z,
     real *H, real *Hk, real *constraint_bias, verdict *t)
 {
-    real s[33*LANES];
-    real sums[27*LANES];
+    real s[24*LANES], sums[27*LANES];
     real o_rps[15*LANES];
     dynamics_before(m, LANES, X, V, s, t);
     clear(sums, 27*LANES);
     for (size_t leg = 0; leg < LEGS_OF_rps; ++leg) {
-        dynamics_legs_rps(m, LANES, leg, 0, s, 1, LANES, 1, sums, o_rps);
+        dynamics_legs_rps(m, LANES, leg, 0, s, 1, LANES, 1, X, V, sums, o_rps);
         dynamics_place_rps(LANES, LANES, o_rps, leg, 0, H, Hk, constraint_bias, t);
     }
     dynamics_after(m, LANES, s, sums, M, Z, t);
@@ -1888,213 +2179,87 @@ INLINE void dynamics_run_lanes(const prepared *m, const real *X, const real *V, 
 INLINE void M_before(const prepared *m, size_t w, const real *X, real *s, verdict *t)
 {
     for (size_t k = 0; k < w; ++k) {
-        /* X: named entries */
-        const real X_0 = X[0*w + k];
-        const real t_x = X_0;
-        const real X_1 = X[1*w + k];
-        const real t_y = X_1;
-        const real X_2 = X[2*w + k];
-        const real t_z = X_2;
-        const real X_3 = X[3*w + k];
-        const real X_4 = X[4*w + k];
-        const real X_5 = X[5*w + k];
-        const real X_6 = X[6*w + k];
-        const real quaternion_norm2 = X_3*X_3 + X_4*X_4 + X_5*X_5 + X_6*X_6;
-        const real quaternion_scale = 2/quaternion_norm2;
-        const real quaternion_sx = X_3*quaternion_scale;
-        const real quaternion_sy = X_4*quaternion_scale;
-        const real quaternion_sz = X_5*quaternion_scale;
-        const real quaternion_wx = X_6*quaternion_sx;
-        const real quaternion_wy = X_6*quaternion_sy;
-        const real quaternion_wz = X_6*quaternion_sz;
-        const real quaternion_xx = X_3*quaternion_sx;
-        const real quaternion_xy = X_3*quaternion_sy;
-        const real quaternion_xz = X_3*quaternion_sz;
-        const real quaternion_yy = X_4*quaternion_sy;
-        const real quaternion_yz = X_4*quaternion_sz;
-        const real quaternion_zz = X_5*quaternion_sz;
-        const real R_xx = 1 - quaternion_yy - quaternion_zz;
-        const real R_xy = quaternion_xy - quaternion_wz;
-        const real R_xz = quaternion_wy + quaternion_xz;
-        const real R_yx = quaternion_wz + quaternion_xy;
-        const real R_yy = 1 - quaternion_xx - quaternion_zz;
-        const real R_yz = quaternion_yz - quaternion_wx;
-        const real R_zx = quaternion_xz - quaternion_wy;
-        const real R_zy = quaternion_wx + quaternion_yz;
-        const real R_zz = 1 - quaternion_xx - quaternion_yy;
-        /* (h_star) first moment about the platform origin */
-        const real h_star_in_platform_x = m->h_star_in_platform_x;
-        const real h_star_in_platform_y = m->h_star_in_platform_y;
-        const real h_star_in_platform_z = m->h_star_in_platform_z;
-        const real h_star_x = R_xx*h_star_in_platform_x + R_xy*h_star_in_platform_y +
-            R_xz*h_star_in_platform_z;
-        const real h_star_y = R_yx*h_star_in_platform_x + R_yy*h_star_in_platform_y +
-            R_yz*h_star_in_platform_z;
-        const real h_star_z = R_zx*h_star_in_platform_x + R_zy*h_star_in_platform_y +
-            R_zz*h_star_in_platform_z;
-        /* (J_star) inertia tensor about the platform origin */
-        const real J_star_in_platform_xy = m->J_star_in_platform_xy;
-        const real J_star_in_platform_yz = m->J_star_in_platform_yz;
-        const real J_star_t_6 = m->J_star_t_6;
-        const real J_star_t = J_star_in_platform_xy*R_xx + J_star_in_platform_yz*R_xz -
-            J_star_t_6*R_xy;
-        const real J_star_t_2 = J_star_in_platform_xy*R_yx + J_star_in_platform_yz*R_yz -
-            J_star_t_6*R_yy;
-        const real J_star_t_3 = J_star_in_platform_xy*R_zx + J_star_in_platform_yz*R_zz -
-            J_star_t_6*R_zy;
-        const real J_star_in_platform_xz = m->J_star_in_platform_xz;
-        const real J_star_t_8 = m->J_star_t_8;
-        const real J_star_t_4 = J_star_t_8*R_xz - J_star_in_platform_xz*R_xx;
-        const real J_star_t_5 = J_star_t_8*R_yz - J_star_in_platform_xz*R_yx;
-        const real J_star_t_7 = J_star_t_8*R_zz - J_star_in_platform_xz*R_zx;
-        const real J_star_t_9 = J_star_t*R_xy - J_star_t_4*R_xz;
-        const real J_star_in_platform_xx = m->J_star_in_platform_xx;
-        const real J_star_xx = J_star_in_platform_xx + 2*J_star_t_9;
-        const real J_star_xy = J_star_t*R_yy + J_star_t_2*R_xy - J_star_t_4*R_yz -
-            J_star_t_5*R_xz;
-        const real J_star_xz = J_star_t*R_zy + J_star_t_3*R_xy - J_star_t_4*R_zz -
-            J_star_t_7*R_xz;
-        const real J_star_t_10 = J_star_t_2*R_yy - J_star_t_5*R_yz;
-        const real J_star_yy = J_star_in_platform_xx + 2*J_star_t_10;
-        const real J_star_yz = J_star_t_2*R_zy + J_star_t_3*R_yy - J_star_t_5*R_zz -
-            J_star_t_7*R_yz;
-        const real J_star_t_11 = J_star_t_3*R_zy - J_star_t_7*R_zz;
-        const real J_star_zz = J_star_in_platform_xx + 2*J_star_t_11;
-        s[0*w + k] = t_x;
-        s[1*w + k] = t_y;
-        s[2*w + k] = t_z;
-        s[3*w + k] = R_xx;
-        s[4*w + k] = R_xy;
-        s[5*w + k] = R_xz;
-        s[6*w + k] = R_yx;
-        s[7*w + k] = R_yy;
-        s[8*w + k] = R_yz;
-        s[9*w + k] = R_zx;
-        s[10*w + k] = R_zy;
-        s[11*w + k] = R_zz;
-        s[12*w + k] = h_star_x;
-        s[13*w + k] = h_star_y;
-        s[14*w + k] = h_star_z;
-        s[15*w + k] = J_star_xx;
-        s[16*w + k] = J_star_xy;
-        s[17*w + k] = J_star_xz;
-        s[18*w + k] = J_star_yy;
-        s[19*w + k] = J_star_yz;
-        s[20*w + k] = J_star_zz;
-        t->invalid[k] += UNLESS(is_finite(quaternion_scale)) + UNLESS(quaternion_scale > 0);
+        values v;
+        stage_X(m, w, k, X, &v);
+        stage_M_dynamics(m, &v);
+        s[0*w + k] = v.R_xx;
+        s[1*w + k] = v.R_xy;
+        s[2*w + k] = v.R_xz;
+        s[3*w + k] = v.R_yx;
+        s[4*w + k] = v.R_yy;
+        s[5*w + k] = v.R_yz;
+        s[6*w + k] = v.R_zx;
+        s[7*w + k] = v.R_zy;
+        s[8*w + k] = v.R_zz;
+        s[9*w + k] = v.h_star_x;
+        s[10*w + k] = v.h_star_y;
+        s[11*w + k] = v.h_star_z;
+        s[12*w + k] = v.J_star_xx;
+        s[13*w + k] = v.J_star_xy;
+        s[14*w + k] = v.J_star_xz;
+        s[15*w + k] = v.J_star_yy;
+        s[16*w + k] = v.J_star_yz;
+        s[17*w + k] = v.J_star_zz;
+        t->invalid[k] += UNLESS(is_finite(v.quaternion_scale)) + UNLESS(v.quaternion_scale > 0);
     }
 }
 
 INLINE void M_legs_rps(const prepared *m, size_t w, size_t leg, size_t legs, const real *s, size_t
-    states, size_t count, int add, real *terms, real *o)
+    states, size_t count, int add, const real *X, real *terms, real *o)
 {
     for (size_t k = 0; k < count; ++k) {
         const size_t i = leg + legs*k;
         const size_t j = states*k;
-        /* (rps-S) from the base point to the connection point */
-        const real R_xx = s[3*w + j];
-        const real R_xy = s[4*w + j];
-        const real R_xz = s[5*w + j];
-        const real rps_platform_point_x = m->rps_platform_point_x[i];
-        const real rps_platform_point_y = m->rps_platform_point_y[i];
-        const real rps_platform_point_z = m->rps_platform_point_z[i];
-        const real rps_q_x = R_xx*rps_platform_point_x + R_xy*rps_platform_point_y +
-            R_xz*rps_platform_point_z;
-        const real R_yx = s[6*w + j];
-        const real R_yy = s[7*w + j];
-        const real R_yz = s[8*w + j];
-        const real rps_q_y = R_yx*rps_platform_point_x + R_yy*rps_platform_point_y +
-            R_yz*rps_platform_point_z;
-        const real R_zx = s[9*w + j];
-        const real R_zy = s[10*w + j];
-        const real R_zz = s[11*w + j];
-        const real rps_q_z = R_zx*rps_platform_point_x + R_zy*rps_platform_point_y +
-            R_zz*rps_platform_point_z;
-        const real rps_base_point_x = m->rps_base_point_x[i];
-        const real t_x = s[0*w + j];
-        const real rps_S_x = rps_q_x + t_x - rps_base_point_x;
-        const real rps_base_point_y = m->rps_base_point_y[i];
-        const real t_y = s[1*w + j];
-        const real rps_S_y = rps_q_y + t_y - rps_base_point_y;
-        const real rps_base_point_z = m->rps_base_point_z[i];
-        const real t_z = s[2*w + j];
-        const real rps_S_z = rps_q_z + t_z - rps_base_point_z;
-        /* (rps-px_1) component along the reference direction */
-        const real rps_base_frame_xx = m->rps_base_frame_xx[i];
-        const real rps_base_frame_yx = m->rps_base_frame_yx[i];
-        const real rps_base_frame_zx = m->rps_base_frame_zx[i];
-        const real rps_px_1 = rps_S_x*rps_base_frame_xx + rps_S_y*rps_base_frame_yx +
-            rps_S_z*rps_base_frame_zx;
-        /* (rps-py_1) component across the reference direction */
-        const real rps_base_frame_xy = m->rps_base_frame_xy[i];
-        const real rps_base_frame_yy = m->rps_base_frame_yy[i];
-        const real rps_base_frame_zy = m->rps_base_frame_zy[i];
-        const real rps_py_1 = rps_S_x*rps_base_frame_xy + rps_S_y*rps_base_frame_yy +
-            rps_S_z*rps_base_frame_zy;
-        /* (rps-rho2_1) squared amplitude */
-        const real rps_rho2_1 = rps_px_1*rps_px_1 + rps_py_1*rps_py_1;
-        /* (rps-root_1) amplitude, with the sign of the branch */
-        const real rps_branch_1 = m->rps_branch_1[i];
-        const real rps_root_1 = rps_branch_1*root(rps_rho2_1);
-        /* (rps-c_1) cosine of the angle of joint 1 from its reference direction */
-        const real inv_rps_root_1 = 1/rps_root_1;
-        const real rps_c_1 = inv_rps_root_1*rps_px_1;
-        /* (rps-s_1) sine of the angle of joint 1 from its reference direction */
-        const real rps_s_1 = inv_rps_root_1*rps_py_1;
-        /* (rps-w_2) reciprocal vector 2 */
-        const real rps_w_2_x = rps_base_frame_xx*rps_c_1 + rps_base_frame_xy*rps_s_1;
-        const real rps_w_2_y = rps_base_frame_yx*rps_c_1 + rps_base_frame_yy*rps_s_1;
-        const real rps_w_2_z = rps_base_frame_zx*rps_c_1 + rps_base_frame_zy*rps_s_1;
+        values_rps v;
+        stage_rps_X(m, w, i, j, s, X, &v);
         /* (rps-d_G) coefficient of the acceleration in: force at the connection point that balances the
            leg's inertia and weight along all degrees of freedom */
         const real rps_J_group_1_in_axes1_zz = m->rps_J_group_1_in_axes1_zz[i];
         const real rps_h_2_in_spec1_x = m->rps_h_2_in_spec1_x[i];
         const real rps_link2_mass = m->rps_link2_mass[i];
-        const real rps_d_G_in_axes1_yy = inv_rps_root_1*(rps_h_2_in_spec1_x +
-            inv_rps_root_1*rps_J_group_1_in_axes1_zz + rps_root_1*(rps_link2_mass +
-            inv_rps_root_1*rps_h_2_in_spec1_x));
+        const real rps_d_G_in_axes1_yy = v.inv_rps_q_2*(rps_h_2_in_spec1_x +
+            v.inv_rps_q_2*rps_J_group_1_in_axes1_zz + v.rps_q_2*(rps_link2_mass +
+            v.inv_rps_q_2*rps_h_2_in_spec1_x));
         /* (rps-d_c) coefficient of the acceleration in: leg force on the platform without actuation and
            without the mass at the connection point */
-        const real axis_y_rps_axes1_x = rps_base_frame_xy*rps_c_1 - rps_base_frame_xx*rps_s_1;
-        const real axis_y_rps_axes1_y = rps_base_frame_yy*rps_c_1 - rps_base_frame_yx*rps_s_1;
-        const real axis_y_rps_axes1_z = rps_base_frame_zy*rps_c_1 - rps_base_frame_zx*rps_s_1;
         const real rps_h_2_in_spec1_y = m->rps_h_2_in_spec1_y[i];
-        const real rps_d_c_in_axes1_xy = inv_rps_root_1*rps_h_2_in_spec1_y;
-        const real rps_d_c_t = axis_y_rps_axes1_x*rps_d_c_in_axes1_xy - rps_link2_mass*rps_w_2_x;
-        const real rps_d_c_t_2 = axis_y_rps_axes1_y*rps_d_c_in_axes1_xy -
-            rps_link2_mass*rps_w_2_y;
-        const real rps_d_c_t_3 = rps_d_c_in_axes1_xy*rps_w_2_x -
-            axis_y_rps_axes1_x*rps_d_G_in_axes1_yy;
-        const real rps_d_c_t_4 = rps_d_c_in_axes1_xy*rps_w_2_y -
-            axis_y_rps_axes1_y*rps_d_G_in_axes1_yy;
-        const real rps_d_c_xx = axis_y_rps_axes1_x*rps_d_c_t_3 + rps_d_c_t*rps_w_2_x;
-        const real rps_d_c_xy = axis_y_rps_axes1_y*rps_d_c_t_3 + rps_d_c_t*rps_w_2_y;
-        const real rps_d_c_xz = axis_y_rps_axes1_z*rps_d_c_t_3 + rps_d_c_t*rps_w_2_z;
-        const real rps_d_c_yy = axis_y_rps_axes1_y*rps_d_c_t_4 + rps_d_c_t_2*rps_w_2_y;
-        const real rps_d_c_yz = axis_y_rps_axes1_z*rps_d_c_t_4 + rps_d_c_t_2*rps_w_2_z;
-        const real rps_d_c_zz = axis_y_rps_axes1_z*(rps_d_c_in_axes1_xy*rps_w_2_z -
-            axis_y_rps_axes1_z*rps_d_G_in_axes1_yy) +
-            rps_w_2_z*(axis_y_rps_axes1_z*rps_d_c_in_axes1_xy - rps_link2_mass*rps_w_2_z);
+        const real rps_d_c_in_axes1_xy = v.inv_rps_q_2*rps_h_2_in_spec1_y;
+        const real rps_d_c_t = v.axis_y_rps_axes1_x*rps_d_c_in_axes1_xy -
+            rps_link2_mass*v.rps_w_2_x;
+        const real rps_d_c_t_2 = v.axis_y_rps_axes1_y*rps_d_c_in_axes1_xy -
+            rps_link2_mass*v.rps_w_2_y;
+        const real rps_d_c_t_3 = rps_d_c_in_axes1_xy*v.rps_w_2_x -
+            v.axis_y_rps_axes1_x*rps_d_G_in_axes1_yy;
+        const real rps_d_c_t_4 = rps_d_c_in_axes1_xy*v.rps_w_2_y -
+            v.axis_y_rps_axes1_y*rps_d_G_in_axes1_yy;
+        const real rps_d_c_xx = v.axis_y_rps_axes1_x*rps_d_c_t_3 + rps_d_c_t*v.rps_w_2_x;
+        const real rps_d_c_xy = v.axis_y_rps_axes1_y*rps_d_c_t_3 + rps_d_c_t*v.rps_w_2_y;
+        const real rps_d_c_xz = v.axis_y_rps_axes1_z*rps_d_c_t_3 + rps_d_c_t*v.rps_w_2_z;
+        const real rps_d_c_yy = v.axis_y_rps_axes1_y*rps_d_c_t_4 + rps_d_c_t_2*v.rps_w_2_y;
+        const real rps_d_c_yz = v.axis_y_rps_axes1_z*rps_d_c_t_4 + rps_d_c_t_2*v.rps_w_2_z;
+        const real rps_d_c_zz = v.axis_y_rps_axes1_z*(rps_d_c_in_axes1_xy*v.rps_w_2_z -
+            v.axis_y_rps_axes1_z*rps_d_G_in_axes1_yy) +
+            v.rps_w_2_z*(v.axis_y_rps_axes1_z*rps_d_c_in_axes1_xy - rps_link2_mass*v.rps_w_2_z);
         /* (M_ta) coupling block of M */
-        const real rps_M_ta_t = rps_d_c_xy*rps_q_z;
-        const real rps_M_ta_t_2 = rps_d_c_xz*rps_q_y;
+        const real rps_M_ta_t = rps_d_c_xy*v.rps_q_z;
+        const real rps_M_ta_t_2 = rps_d_c_xz*v.rps_q_y;
         const real rps_M_ta_t_3 = rps_M_ta_t - rps_M_ta_t_2;
-        const real rps_M_ta_t_4 = rps_d_c_xx*rps_q_z - rps_d_c_xz*rps_q_x;
-        const real rps_M_ta_t_5 = rps_d_c_xx*rps_q_y - rps_d_c_xy*rps_q_x;
-        const real rps_M_ta_t_6 = rps_d_c_yy*rps_q_z - rps_d_c_yz*rps_q_y;
-        const real rps_M_ta_t_7 = rps_d_c_yz*rps_q_x;
+        const real rps_M_ta_t_4 = rps_d_c_xx*v.rps_q_z - rps_d_c_xz*v.rps_q_x;
+        const real rps_M_ta_t_5 = rps_d_c_xx*v.rps_q_y - rps_d_c_xy*v.rps_q_x;
+        const real rps_M_ta_t_6 = rps_d_c_yy*v.rps_q_z - rps_d_c_yz*v.rps_q_y;
+        const real rps_M_ta_t_7 = rps_d_c_yz*v.rps_q_x;
         const real rps_M_ta_t_8 = rps_M_ta_t_7 - rps_M_ta_t;
-        const real rps_M_ta_t_9 = rps_d_c_xy*rps_q_y - rps_d_c_yy*rps_q_x;
-        const real rps_M_ta_t_10 = rps_d_c_yz*rps_q_z - rps_d_c_zz*rps_q_y;
-        const real rps_M_ta_t_11 = rps_d_c_zz*rps_q_x - rps_d_c_xz*rps_q_z;
+        const real rps_M_ta_t_9 = rps_d_c_xy*v.rps_q_y - rps_d_c_yy*v.rps_q_x;
+        const real rps_M_ta_t_10 = rps_d_c_yz*v.rps_q_z - rps_d_c_zz*v.rps_q_y;
+        const real rps_M_ta_t_11 = rps_d_c_zz*v.rps_q_x - rps_d_c_xz*v.rps_q_z;
         const real rps_M_ta_t_12 = rps_M_ta_t_2 - rps_M_ta_t_7;
         /* (M_aa) rotational block of M */
-        const real rps_M_aa_t = rps_M_ta_t_10*rps_q_y - rps_M_ta_t_6*rps_q_z;
-        const real rps_M_aa_t_2 = rps_M_ta_t_11*rps_q_y - rps_M_ta_t_8*rps_q_z;
-        const real rps_M_aa_t_3 = rps_M_ta_t_12*rps_q_y - rps_M_ta_t_9*rps_q_z;
-        const real rps_M_aa_t_4 = rps_M_ta_t_11*rps_q_x + rps_M_ta_t_4*rps_q_z;
-        const real rps_M_aa_t_5 = rps_M_ta_t_5*rps_q_z - rps_M_ta_t_12*rps_q_x;
-        const real rps_M_aa_t_6 = rps_M_ta_t_9*rps_q_x - rps_M_ta_t_5*rps_q_y;
+        const real rps_M_aa_t = rps_M_ta_t_10*v.rps_q_y - rps_M_ta_t_6*v.rps_q_z;
+        const real rps_M_aa_t_2 = rps_M_ta_t_11*v.rps_q_y - rps_M_ta_t_8*v.rps_q_z;
+        const real rps_M_aa_t_3 = rps_M_ta_t_12*v.rps_q_y - rps_M_ta_t_9*v.rps_q_z;
+        const real rps_M_aa_t_4 = rps_M_ta_t_11*v.rps_q_x + rps_M_ta_t_4*v.rps_q_z;
+        const real rps_M_aa_t_5 = rps_M_ta_t_5*v.rps_q_z - rps_M_ta_t_12*v.rps_q_x;
+        const real rps_M_aa_t_6 = rps_M_ta_t_9*v.rps_q_x - rps_M_ta_t_5*v.rps_q_y;
         /* (M_tt) translational block of M */
         gather(&terms[0*count + k], add, rps_d_c_xx);  /* M_tt_xx_of_legs */
         gather(&terms[1*count + k], add, rps_d_c_xy);  /* M_tt_t_2 */
@@ -2119,7 +2284,7 @@ INLINE void M_legs_rps(const prepared *m, size_t w, size_t leg, size_t legs, con
         gather(&terms[18*count + k], add, rps_M_aa_t_4);  /* M_aa_yy_of_legs */
         gather(&terms[19*count + k], add, rps_M_aa_t_5);  /* M_aa_yz_of_legs */
         gather(&terms[20*count + k], add, rps_M_aa_t_6);  /* M_aa_zz_of_legs */
-        o[0*count + k] = UNLESS(magnitude(rps_rho2_1) > LEAST_1) + UNLESS(magnitude(rps_root_1) >
+        o[0*count + k] = UNLESS(magnitude(v.rps_q_2_t) > LEAST_1) + UNLESS(magnitude(v.rps_q_2) >
             LEAST_2);
     }
 }
@@ -2145,46 +2310,46 @@ INLINE void M_after(const prepared *m, size_t w, const real *s, const real *sums
         const real M_tt_zz = platform_mass - M_tt_zz_of_legs;
         /* (M_ta) coupling block of M */
         const real M_ta_xy_of_legs = sums[7*w + k];
-        const real h_star_z = s[14*w + k];
+        const real h_star_z = s[11*w + k];
         const real M_ta_xy = M_ta_xy_of_legs + h_star_z;
         const real M_ta_xz_of_legs = sums[8*w + k];
-        const real h_star_y = s[13*w + k];
+        const real h_star_y = s[10*w + k];
         const real M_ta_xz = M_ta_xz_of_legs - h_star_y;
         const real M_ta_yx_of_legs = sums[9*w + k];
         const real M_ta_yx = M_ta_yx_of_legs - h_star_z;
         const real M_ta_yz_of_legs = sums[11*w + k];
-        const real h_star_x = s[12*w + k];
+        const real h_star_x = s[9*w + k];
         const real M_ta_yz = M_ta_yz_of_legs + h_star_x;
         const real M_ta_zx_of_legs = sums[12*w + k];
         const real M_ta_zx = M_ta_zx_of_legs + h_star_y;
         const real M_ta_zy_of_legs = sums[13*w + k];
         const real M_ta_zy = M_ta_zy_of_legs - h_star_x;
         /* (M_aa) rotational block of M */
-        const real J_star_xx = s[15*w + k];
+        const real J_star_xx = s[12*w + k];
         const real M_aa_xx_of_legs = sums[15*w + k];
         const real M_aa_xx = J_star_xx + M_aa_xx_of_legs;
-        const real J_star_xy = s[16*w + k];
+        const real J_star_xy = s[13*w + k];
         const real M_aa_xy_of_legs = sums[16*w + k];
         const real M_aa_xy = J_star_xy + M_aa_xy_of_legs;
-        const real J_star_xz = s[17*w + k];
+        const real J_star_xz = s[14*w + k];
         const real M_aa_xz_of_legs = sums[17*w + k];
         const real M_aa_xz = J_star_xz + M_aa_xz_of_legs;
-        const real J_star_yy = s[18*w + k];
+        const real J_star_yy = s[15*w + k];
         const real M_aa_yy_of_legs = sums[18*w + k];
         const real M_aa_yy = J_star_yy - M_aa_yy_of_legs;
-        const real J_star_yz = s[19*w + k];
+        const real J_star_yz = s[16*w + k];
         const real M_aa_yz_of_legs = sums[19*w + k];
         const real M_aa_yz = J_star_yz + M_aa_yz_of_legs;
-        const real J_star_zz = s[20*w + k];
+        const real J_star_zz = s[17*w + k];
         const real M_aa_zz_of_legs = sums[20*w + k];
         const real M_aa_zz = J_star_zz + M_aa_zz_of_legs;
         /* (M_tt) translational block of M */
-        M[0*NV*w + k] = M_tt_xx;
+        M[0*w + k] = M_tt_xx;
         const real M_tt_t_2 = sums[1*w + k];
-        M[(0*NV + 1)*w + k] = -M_tt_t_2;
+        M[1*w + k] = -M_tt_t_2;
         M[NV*w + k] = -M_tt_t_2;
         const real M_tt_t_3 = sums[2*w + k];
-        M[(0*NV + 2)*w + k] = -M_tt_t_3;
+        M[2*w + k] = -M_tt_t_3;
         M[2*NV*w + k] = -M_tt_t_3;
         M[(NV + 1)*w + k] = M_tt_yy;
         const real M_tt_t_5 = sums[4*w + k];
@@ -2193,11 +2358,11 @@ INLINE void M_after(const prepared *m, size_t w, const real *s, const real *sums
         M[(2*NV + 2)*w + k] = M_tt_zz;
         /* (M_ta) coupling block of M */
         const real M_ta_xx = sums[6*w + k];
-        M[(0*NV + 3)*w + k] = M_ta_xx;
+        M[3*w + k] = M_ta_xx;
         M[3*NV*w + k] = M_ta_xx;
-        M[(0*NV + 4)*w + k] = M_ta_xy;
+        M[4*w + k] = M_ta_xy;
         M[4*NV*w + k] = M_ta_xy;
-        M[(0*NV + 5)*w + k] = M_ta_xz;
+        M[5*w + k] = M_ta_xz;
         M[5*NV*w + k] = M_ta_xz;
         M[(NV + 3)*w + k] = M_ta_yx;
         M[(3*NV + 1)*w + k] = M_ta_yx;
@@ -2232,12 +2397,10 @@ INLINE void M_after(const prepared *m, size_t w, const real *s, const real *sums
 
 INLINE void M_run(const prepared *m, const real *X, real *M, verdict *t)
 {
-    real s[21] = {0};
-    real sums[21] = {0};
-    real terms_rps[21*LEGS(LEGS_OF_rps)] = {0};
-    real o_rps[LEGS(LEGS_OF_rps)] = {0};
+    real s[18] = {0}, sums[21] = {0};
+    real terms_rps[21*LEGS(LEGS_OF_rps)] = {0}, o_rps[LEGS(LEGS_OF_rps)] = {0};
     M_before(m, 1, X, s, t);
-    M_legs_rps(m, 1, 0, 1, s, 0, LEGS(LEGS_OF_rps), 0, terms_rps, o_rps);
+    M_legs_rps(m, 1, 0, 1, s, 0, LEGS(LEGS_OF_rps), 0, X, terms_rps, o_rps);
     for (size_t leg = 0; leg < LEGS_OF_rps; ++leg) {
         M_place_rps(1, LEGS(LEGS_OF_rps), o_rps, leg, t);
     }
@@ -2249,13 +2412,12 @@ INLINE void M_run(const prepared *m, const real *X, real *M, verdict *t)
 
 INLINE void M_run_lanes(const prepared *m, const real *X, real *M, verdict *t)
 {
-    real s[21*LANES];
-    real sums[21*LANES];
+    real s[18*LANES], sums[21*LANES];
     real o_rps[LANES];
     M_before(m, LANES, X, s, t);
     clear(sums, 21*LANES);
     for (size_t leg = 0; leg < LEGS_OF_rps; ++leg) {
-        M_legs_rps(m, LANES, leg, 0, s, 1, LANES, 1, sums, o_rps);
+        M_legs_rps(m, LANES, leg, 0, s, 1, LANES, 1, X, sums, o_rps);
         M_place_rps(LANES, LANES, o_rps, 0, t);
     }
     M_after(m, LANES, s, sums, M, t);
@@ -2266,280 +2428,48 @@ INLINE void Z_before(const prepared *m, size_t w, const real *X, const real *V, 
     *t)
 {
     for (size_t k = 0; k < w; ++k) {
-        /* X: named entries */
-        const real X_0 = X[0*w + k];
-        const real t_x = X_0;
-        const real X_1 = X[1*w + k];
-        const real t_y = X_1;
-        const real X_2 = X[2*w + k];
-        const real t_z = X_2;
-        const real X_3 = X[3*w + k];
-        const real X_4 = X[4*w + k];
-        const real X_5 = X[5*w + k];
-        const real X_6 = X[6*w + k];
-        const real quaternion_norm2 = X_3*X_3 + X_4*X_4 + X_5*X_5 + X_6*X_6;
-        const real quaternion_scale = 2/quaternion_norm2;
-        const real quaternion_sx = X_3*quaternion_scale;
-        const real quaternion_sy = X_4*quaternion_scale;
-        const real quaternion_sz = X_5*quaternion_scale;
-        const real quaternion_wx = X_6*quaternion_sx;
-        const real quaternion_wy = X_6*quaternion_sy;
-        const real quaternion_wz = X_6*quaternion_sz;
-        const real quaternion_xx = X_3*quaternion_sx;
-        const real quaternion_xy = X_3*quaternion_sy;
-        const real quaternion_xz = X_3*quaternion_sz;
-        const real quaternion_yy = X_4*quaternion_sy;
-        const real quaternion_yz = X_4*quaternion_sz;
-        const real quaternion_zz = X_5*quaternion_sz;
-        const real R_xx = 1 - quaternion_yy - quaternion_zz;
-        const real R_xy = quaternion_xy - quaternion_wz;
-        const real R_xz = quaternion_wy + quaternion_xz;
-        const real R_yx = quaternion_wz + quaternion_xy;
-        const real R_yy = 1 - quaternion_xx - quaternion_zz;
-        const real R_yz = quaternion_yz - quaternion_wx;
-        const real R_zx = quaternion_xz - quaternion_wy;
-        const real R_zy = quaternion_wx + quaternion_yz;
-        const real R_zz = 1 - quaternion_xx - quaternion_yy;
-        /* V: named entries */
-        const real V_0 = V[0*w + k];
-        const real t_dot_x = V_0;
-        const real V_1 = V[1*w + k];
-        const real t_dot_y = V_1;
-        const real V_2 = V[2*w + k];
-        const real t_dot_z = V_2;
-        const real V_3 = V[3*w + k];
-        const real omega_x = V_3;
-        const real V_4 = V[4*w + k];
-        const real omega_y = V_4;
-        const real V_5 = V[5*w + k];
-        const real omega_z = V_5;
-        /* (h_star) first moment about the platform origin */
-        const real h_star_in_platform_x = m->h_star_in_platform_x;
-        const real h_star_in_platform_y = m->h_star_in_platform_y;
-        const real h_star_in_platform_z = m->h_star_in_platform_z;
-        const real h_star_x = R_xx*h_star_in_platform_x + R_xy*h_star_in_platform_y +
-            R_xz*h_star_in_platform_z;
-        const real h_star_y = R_yx*h_star_in_platform_x + R_yy*h_star_in_platform_y +
-            R_yz*h_star_in_platform_z;
-        const real h_star_z = R_zx*h_star_in_platform_x + R_zy*h_star_in_platform_y +
-            R_zz*h_star_in_platform_z;
-        /* (Z_p) centripetal force and weight of the platform */
-        const real Z_p_t_4 = h_star_z*omega_y - h_star_y*omega_z;
-        const real Z_p_t_5 = h_star_x*omega_z - h_star_z*omega_x;
-        const real Z_p_t_6 = h_star_y*omega_x - h_star_x*omega_y;
-        const real Z_p_t = m->Z_p_t;
-        const real Z_p_x = Z_p_t_6*omega_y - Z_p_t - Z_p_t_5*omega_z;
-        const real Z_p_t_2 = m->Z_p_t_2;
-        const real Z_p_y = Z_p_t_4*omega_z - Z_p_t_2 - Z_p_t_6*omega_x;
-        const real Z_p_t_3 = m->Z_p_t_3;
-        const real Z_p_z = Z_p_t_5*omega_x - Z_p_t_3 - Z_p_t_4*omega_y;
-        /* (Z_q) gyroscopic moment and moment of the weight of the platform */
-        const real gravity_x = m->gravity_x;
-        const real gravity_y = m->gravity_y;
-        const real gravity_z = m->gravity_z;
-        const real g_in_platform_x = R_xx*gravity_x + R_yx*gravity_y + R_zx*gravity_z;
-        const real g_in_platform_y = R_xy*gravity_x + R_yy*gravity_y + R_zy*gravity_z;
-        const real g_in_platform_z = R_xz*gravity_x + R_yz*gravity_y + R_zz*gravity_z;
-        const real omega_in_platform_x = R_xx*omega_x + R_yx*omega_y + R_zx*omega_z;
-        const real omega_in_platform_y = R_xy*omega_x + R_yy*omega_y + R_zy*omega_z;
-        const real omega_in_platform_z = R_xz*omega_x + R_yz*omega_y + R_zz*omega_z;
-        const real J_star_in_platform_xx = m->J_star_in_platform_xx;
-        const real J_star_in_platform_xy = m->J_star_in_platform_xy;
-        const real J_star_in_platform_xz = m->J_star_in_platform_xz;
-        const real Z_q_t = J_star_in_platform_xx*omega_in_platform_x +
-            J_star_in_platform_xy*omega_in_platform_y + J_star_in_platform_xz*omega_in_platform_z;
-        const real J_star_in_platform_yy = m->J_star_in_platform_yy;
-        const real J_star_in_platform_yz = m->J_star_in_platform_yz;
-        const real Z_q_t_2 = J_star_in_platform_xy*omega_in_platform_x +
-            J_star_in_platform_yy*omega_in_platform_y + J_star_in_platform_yz*omega_in_platform_z;
-        const real J_star_in_platform_zz = m->J_star_in_platform_zz;
-        const real Z_q_t_3 = J_star_in_platform_xz*omega_in_platform_x +
-            J_star_in_platform_yz*omega_in_platform_y + J_star_in_platform_zz*omega_in_platform_z;
-        const real Z_q_in_platform_x = Z_q_t_3*omega_in_platform_y +
-            g_in_platform_y*h_star_in_platform_z - Z_q_t_2*omega_in_platform_z -
-            g_in_platform_z*h_star_in_platform_y;
-        const real Z_q_in_platform_y = Z_q_t*omega_in_platform_z +
-            g_in_platform_z*h_star_in_platform_x - Z_q_t_3*omega_in_platform_x -
-            g_in_platform_x*h_star_in_platform_z;
-        const real Z_q_in_platform_z = Z_q_t_2*omega_in_platform_x +
-            g_in_platform_x*h_star_in_platform_y - Z_q_t*omega_in_platform_y -
-            g_in_platform_y*h_star_in_platform_x;
-        const real Z_q_x = R_xx*Z_q_in_platform_x + R_xy*Z_q_in_platform_y +
-            R_xz*Z_q_in_platform_z;
-        const real Z_q_y = R_yx*Z_q_in_platform_x + R_yy*Z_q_in_platform_y +
-            R_yz*Z_q_in_platform_z;
-        const real Z_q_z = R_zx*Z_q_in_platform_x + R_zy*Z_q_in_platform_y +
-            R_zz*Z_q_in_platform_z;
-        s[0*w + k] = t_x;
-        s[1*w + k] = t_y;
-        s[2*w + k] = t_z;
-        s[3*w + k] = R_xx;
-        s[4*w + k] = R_xy;
-        s[5*w + k] = R_xz;
-        s[6*w + k] = R_yx;
-        s[7*w + k] = R_yy;
-        s[8*w + k] = R_yz;
-        s[9*w + k] = R_zx;
-        s[10*w + k] = R_zy;
-        s[11*w + k] = R_zz;
-        s[12*w + k] = t_dot_x;
-        s[13*w + k] = t_dot_y;
-        s[14*w + k] = t_dot_z;
-        s[15*w + k] = omega_x;
-        s[16*w + k] = omega_y;
-        s[17*w + k] = omega_z;
-        s[18*w + k] = Z_p_x;
-        s[19*w + k] = Z_p_y;
-        s[20*w + k] = Z_p_z;
-        s[21*w + k] = Z_q_x;
-        s[22*w + k] = Z_q_y;
-        s[23*w + k] = Z_q_z;
-        t->invalid[k] += UNLESS(is_finite(quaternion_scale)) + UNLESS(quaternion_scale > 0);
+        values v;
+        stage_X(m, w, k, X, &v);
+        stage_V_X(w, k, V, &v);
+        stage_Z_dynamics(m, w, k, V, &v);
+        s[0*w + k] = v.R_xx;
+        s[1*w + k] = v.R_xy;
+        s[2*w + k] = v.R_xz;
+        s[3*w + k] = v.R_yx;
+        s[4*w + k] = v.R_yy;
+        s[5*w + k] = v.R_yz;
+        s[6*w + k] = v.R_zx;
+        s[7*w + k] = v.R_zy;
+        s[8*w + k] = v.R_zz;
+        s[9*w + k] = v.Z_p_x;
+        s[10*w + k] = v.Z_p_y;
+        s[11*w + k] = v.Z_p_z;
+        s[12*w + k] = v.Z_q_x;
+        s[13*w + k] = v.Z_q_y;
+        s[14*w + k] = v.Z_q_z;
+        t->invalid[k] += UNLESS(is_finite(v.quaternion_scale)) + UNLESS(v.quaternion_scale > 0);
     }
 }
 
 INLINE void Z_legs_rps(const prepared *m, size_t w, size_t leg, size_t legs, const real *s, size_t
-    states, size_t count, int add, real *terms, real *o)
+    states, size_t count, int add, const real *X, const real *V, real *terms, real *o)
 {
     for (size_t k = 0; k < count; ++k) {
         const size_t i = leg + legs*k;
         const size_t j = states*k;
-        /* (rps-S) from the base point to the connection point */
-        const real R_xx = s[3*w + j];
-        const real R_xy = s[4*w + j];
-        const real R_xz = s[5*w + j];
-        const real rps_platform_point_x = m->rps_platform_point_x[i];
-        const real rps_platform_point_y = m->rps_platform_point_y[i];
-        const real rps_platform_point_z = m->rps_platform_point_z[i];
-        const real rps_q_x = R_xx*rps_platform_point_x + R_xy*rps_platform_point_y +
-            R_xz*rps_platform_point_z;
-        const real R_yx = s[6*w + j];
-        const real R_yy = s[7*w + j];
-        const real R_yz = s[8*w + j];
-        const real rps_q_y = R_yx*rps_platform_point_x + R_yy*rps_platform_point_y +
-            R_yz*rps_platform_point_z;
-        const real R_zx = s[9*w + j];
-        const real R_zy = s[10*w + j];
-        const real R_zz = s[11*w + j];
-        const real rps_q_z = R_zx*rps_platform_point_x + R_zy*rps_platform_point_y +
-            R_zz*rps_platform_point_z;
-        const real rps_base_point_x = m->rps_base_point_x[i];
-        const real t_x = s[0*w + j];
-        const real rps_S_x = rps_q_x + t_x - rps_base_point_x;
-        const real rps_base_point_y = m->rps_base_point_y[i];
-        const real t_y = s[1*w + j];
-        const real rps_S_y = rps_q_y + t_y - rps_base_point_y;
-        const real rps_base_point_z = m->rps_base_point_z[i];
-        const real t_z = s[2*w + j];
-        const real rps_S_z = rps_q_z + t_z - rps_base_point_z;
-        /* (rps-px_1) component along the reference direction */
-        const real rps_base_frame_xx = m->rps_base_frame_xx[i];
-        const real rps_base_frame_yx = m->rps_base_frame_yx[i];
-        const real rps_base_frame_zx = m->rps_base_frame_zx[i];
-        const real rps_px_1 = rps_S_x*rps_base_frame_xx + rps_S_y*rps_base_frame_yx +
-            rps_S_z*rps_base_frame_zx;
-        /* (rps-py_1) component across the reference direction */
-        const real rps_base_frame_xy = m->rps_base_frame_xy[i];
-        const real rps_base_frame_yy = m->rps_base_frame_yy[i];
-        const real rps_base_frame_zy = m->rps_base_frame_zy[i];
-        const real rps_py_1 = rps_S_x*rps_base_frame_xy + rps_S_y*rps_base_frame_yy +
-            rps_S_z*rps_base_frame_zy;
-        /* (rps-rho2_1) squared amplitude */
-        const real rps_rho2_1 = rps_px_1*rps_px_1 + rps_py_1*rps_py_1;
-        /* (rps-root_1) amplitude, with the sign of the branch */
-        const real rps_branch_1 = m->rps_branch_1[i];
-        const real rps_root_1 = rps_branch_1*root(rps_rho2_1);
-        /* (rps-c_1) cosine of the angle of joint 1 from its reference direction */
-        const real inv_rps_root_1 = 1/rps_root_1;
-        const real rps_c_1 = inv_rps_root_1*rps_px_1;
-        /* (rps-s_1) sine of the angle of joint 1 from its reference direction */
-        const real rps_s_1 = inv_rps_root_1*rps_py_1;
-        /* (rps-S_dot) velocity of the connection point */
-        const real axis_x_rps_axes1_x = rps_base_frame_xx*rps_c_1 + rps_base_frame_xy*rps_s_1;
-        const real axis_x_rps_axes1_y = rps_base_frame_yx*rps_c_1 + rps_base_frame_yy*rps_s_1;
-        const real axis_x_rps_axes1_z = rps_base_frame_zx*rps_c_1 + rps_base_frame_zy*rps_s_1;
-        const real omega_y = s[16*w + j];
-        const real omega_z = s[17*w + j];
-        const real rps_S_dot_t = omega_y*rps_q_z - omega_z*rps_q_y;
-        const real omega_x = s[15*w + j];
-        const real rps_S_dot_t_2 = omega_z*rps_q_x - omega_x*rps_q_z;
-        const real rps_S_dot_t_3 = omega_x*rps_q_y - omega_y*rps_q_x;
-        const real t_dot_x = s[12*w + j];
-        const real rps_S_dot_x = rps_S_dot_t + t_dot_x;
-        const real t_dot_y = s[13*w + j];
-        const real rps_S_dot_y = rps_S_dot_t_2 + t_dot_y;
-        const real t_dot_z = s[14*w + j];
-        const real rps_S_dot_z = rps_S_dot_t_3 + t_dot_z;
-        const real rps_S_dot_in_axes1_x = axis_x_rps_axes1_x*rps_S_dot_x +
-            axis_x_rps_axes1_y*rps_S_dot_y + axis_x_rps_axes1_z*rps_S_dot_z;
-        /* (rps-qd_1) rate of joint 1 */
-        const real axis_y_rps_axes1_x = rps_base_frame_xy*rps_c_1 - rps_base_frame_xx*rps_s_1;
-        const real axis_y_rps_axes1_y = rps_base_frame_yy*rps_c_1 - rps_base_frame_yx*rps_s_1;
-        const real axis_y_rps_axes1_z = rps_base_frame_zy*rps_c_1 - rps_base_frame_zx*rps_s_1;
-        const real rps_qd_1 = inv_rps_root_1*(axis_y_rps_axes1_x*rps_S_dot_x +
-            axis_y_rps_axes1_y*rps_S_dot_y + axis_y_rps_axes1_z*rps_S_dot_z);
-        /* (rps-W_1) centripetal tensor of link 1 */
-        const real rps_W_1_t = rps_qd_1*rps_qd_1;
-        /* (rps-u_1) centripetal acceleration of the connection point */
-        const real rps_u_1_x = omega_y*rps_S_dot_t_3 - omega_z*rps_S_dot_t_2;
-        const real rps_u_1_y = omega_z*rps_S_dot_t - omega_x*rps_S_dot_t_3;
-        const real rps_u_1_z = omega_x*rps_S_dot_t_2 - omega_y*rps_S_dot_t;
-        const real rps_u_1_in_axes1_y = axis_y_rps_axes1_x*rps_u_1_x +
-            axis_y_rps_axes1_y*rps_u_1_y + axis_y_rps_axes1_z*rps_u_1_z;
-        /* (rps-rel_o) remainder without the acceleration in: acceleration of the connection point left to
-           the joint accelerations */
-        const real rps_rel_o_in_axes1_y = rps_u_1_in_axes1_y - 2*rps_S_dot_in_axes1_x*rps_qd_1;
-        /* (rps-qdd_1_o) remainder without the acceleration in: acceleration of joint 1 */
-        const real rps_qdd_1_o = inv_rps_root_1*rps_rel_o_in_axes1_y;
-        /* (rps-acc_2_o) remainder without the acceleration in: acceleration of the reference point of
-           link 2, less gravity */
-        const real rps_acc_2_t = m->rps_acc_2_t[i];
-        const real rps_acc_2_t_2 = m->rps_acc_2_t_2[i];
-        const real rps_g_in_axes1_x = rps_acc_2_t*rps_c_1 + rps_acc_2_t_2*rps_s_1;
-        const real rps_g_in_axes1_y = rps_acc_2_t_2*rps_c_1 - rps_acc_2_t*rps_s_1;
-        const real rps_acc_2_o_in_axes1_x = axis_x_rps_axes1_x*rps_u_1_x +
-            axis_x_rps_axes1_y*rps_u_1_y + axis_x_rps_axes1_z*rps_u_1_z - rps_g_in_axes1_x;
-        const real rps_acc_2_o_in_axes1_y = rps_u_1_in_axes1_y - rps_g_in_axes1_y;
-        /* (rps-f_2_o) remainder without the acceleration in: inertia force of link 2 less its weight */
-        const real rps_h_2_in_spec1_x = m->rps_h_2_in_spec1_x[i];
-        const real rps_h_2_in_spec1_y = m->rps_h_2_in_spec1_y[i];
-        const real rps_link2_mass = m->rps_link2_mass[i];
-        const real rps_f_2_o_in_axes1_x = rps_acc_2_o_in_axes1_x*rps_link2_mass -
-            rps_W_1_t*rps_h_2_in_spec1_x - rps_h_2_in_spec1_y*rps_qdd_1_o;
-        const real rps_f_2_o_in_axes1_y = rps_acc_2_o_in_axes1_y*rps_link2_mass +
-            rps_h_2_in_spec1_x*rps_qdd_1_o - rps_W_1_t*rps_h_2_in_spec1_y;
-        /* (rps-mu_1_o) remainder without the acceleration in: inertia moment of the links that turn with
-           link 1, about their reference points */
-        const real rps_J_group_1_in_axes1_zz = m->rps_J_group_1_in_axes1_zz[i];
-        const real rps_h_1_in_spec1_x = m->rps_h_1_in_spec1_x[i];
-        const real rps_h_1_in_spec1_y = m->rps_h_1_in_spec1_y[i];
-        const real rps_mu_1_o_in_axes1_z = rps_J_group_1_in_axes1_zz*rps_qdd_1_o +
-            rps_acc_2_o_in_axes1_y*rps_h_2_in_spec1_x + rps_g_in_axes1_x*rps_h_1_in_spec1_y -
-            rps_acc_2_o_in_axes1_x*rps_h_2_in_spec1_y - rps_g_in_axes1_y*rps_h_1_in_spec1_x;
-        /* (rps-G_o) remainder without the acceleration in: force at the connection point that balances
-           the leg's inertia and weight along all degrees of freedom */
-        const real rps_G_o_in_axes1_y = rps_f_2_o_in_axes1_y +
-            inv_rps_root_1*rps_mu_1_o_in_axes1_z;
-        /* (rps-U) velocity and gravity terms of the leg force */
-        const real rps_U_x = axis_x_rps_axes1_x*rps_f_2_o_in_axes1_x +
-            axis_y_rps_axes1_x*rps_G_o_in_axes1_y;
-        const real rps_U_y = axis_x_rps_axes1_y*rps_f_2_o_in_axes1_x +
-            axis_y_rps_axes1_y*rps_G_o_in_axes1_y;
-        const real rps_U_z = axis_x_rps_axes1_z*rps_f_2_o_in_axes1_x +
-            axis_y_rps_axes1_z*rps_G_o_in_axes1_y;
-        /* (Z_a) rotational part of Z */
-        const real rps_Z_a_t = rps_U_z*rps_q_y - rps_U_y*rps_q_z;
-        const real rps_Z_a_t_2 = rps_U_x*rps_q_z - rps_U_z*rps_q_x;
-        const real rps_Z_a_t_3 = rps_U_y*rps_q_x - rps_U_x*rps_q_y;
+        values_rps v;
+        stage_rps_X(m, w, i, j, s, X, &v);
+        stage_rps_V_X(w, j, V, &v);
+        stage_rps_Z_dynamics(m, w, i, j, V, &v);
         /* (Z_t) translational part of Z */
-        gather(&terms[0*count + k], add, rps_U_x);  /* Z_t_x_of_legs */
-        gather(&terms[1*count + k], add, rps_U_y);  /* Z_t_y_of_legs */
-        gather(&terms[2*count + k], add, rps_U_z);  /* Z_t_z_of_legs */
+        gather(&terms[0*count + k], add, v.rps_U_x);  /* Z_t_x_of_legs */
+        gather(&terms[1*count + k], add, v.rps_U_y);  /* Z_t_y_of_legs */
+        gather(&terms[2*count + k], add, v.rps_U_z);  /* Z_t_z_of_legs */
         /* (Z_a) rotational part of Z */
-        gather(&terms[3*count + k], add, rps_Z_a_t);  /* Z_a_x_of_legs */
-        gather(&terms[4*count + k], add, rps_Z_a_t_2);  /* Z_a_y_of_legs */
-        gather(&terms[5*count + k], add, rps_Z_a_t_3);  /* Z_a_z_of_legs */
-        o[0*count + k] = UNLESS(magnitude(rps_rho2_1) > LEAST_1) + UNLESS(magnitude(rps_root_1) >
+        gather(&terms[3*count + k], add, v.rps_Z_a_t);  /* Z_a_x_of_legs */
+        gather(&terms[4*count + k], add, v.rps_Z_a_t_2);  /* Z_a_y_of_legs */
+        gather(&terms[5*count + k], add, v.rps_Z_a_t_3);  /* Z_a_z_of_legs */
+        o[0*count + k] = UNLESS(magnitude(v.rps_q_2_t) > LEAST_1) + UNLESS(magnitude(v.rps_q_2) >
             LEAST_2);
     }
 }
@@ -2555,24 +2485,24 @@ INLINE void Z_after(size_t w, const real *s, const real *sums, real *Z, verdict 
 {
     for (size_t k = 0; k < w; ++k) {
         /* (Z_t) translational part of Z */
-        const real Z_p_x = s[18*w + k];
+        const real Z_p_x = s[9*w + k];
         const real Z_t_x_of_legs = sums[0*w + k];
         const real Z_t_x = Z_p_x + Z_t_x_of_legs;
-        const real Z_p_y = s[19*w + k];
+        const real Z_p_y = s[10*w + k];
         const real Z_t_y_of_legs = sums[1*w + k];
         const real Z_t_y = Z_p_y + Z_t_y_of_legs;
-        const real Z_p_z = s[20*w + k];
+        const real Z_p_z = s[11*w + k];
         const real Z_t_z_of_legs = sums[2*w + k];
         const real Z_t_z = Z_p_z + Z_t_z_of_legs;
         /* (Z_a) rotational part of Z */
         const real Z_a_x_of_legs = sums[3*w + k];
-        const real Z_q_x = s[21*w + k];
+        const real Z_q_x = s[12*w + k];
         const real Z_a_x = Z_a_x_of_legs + Z_q_x;
         const real Z_a_y_of_legs = sums[4*w + k];
-        const real Z_q_y = s[22*w + k];
+        const real Z_q_y = s[13*w + k];
         const real Z_a_y = Z_a_y_of_legs + Z_q_y;
         const real Z_a_z_of_legs = sums[5*w + k];
-        const real Z_q_z = s[23*w + k];
+        const real Z_q_z = s[14*w + k];
         const real Z_a_z = Z_a_z_of_legs + Z_q_z;
         /* (Z_t) translational part of Z */
         Z[0*w + k] = Z_t_x;
@@ -2588,12 +2518,10 @@ INLINE void Z_after(size_t w, const real *s, const real *sums, real *Z, verdict 
 
 INLINE void Z_run(const prepared *m, const real *X, const real *V, real *Z, verdict *t)
 {
-    real s[24] = {0};
-    real sums[6] = {0};
-    real terms_rps[6*LEGS(LEGS_OF_rps)] = {0};
-    real o_rps[LEGS(LEGS_OF_rps)] = {0};
+    real s[15] = {0}, sums[6] = {0};
+    real terms_rps[6*LEGS(LEGS_OF_rps)] = {0}, o_rps[LEGS(LEGS_OF_rps)] = {0};
     Z_before(m, 1, X, V, s, t);
-    Z_legs_rps(m, 1, 0, 1, s, 0, LEGS(LEGS_OF_rps), 0, terms_rps, o_rps);
+    Z_legs_rps(m, 1, 0, 1, s, 0, LEGS(LEGS_OF_rps), 0, X, V, terms_rps, o_rps);
     for (size_t leg = 0; leg < LEGS_OF_rps; ++leg) {
         Z_place_rps(1, LEGS(LEGS_OF_rps), o_rps, leg, t);
     }
@@ -2605,147 +2533,59 @@ INLINE void Z_run(const prepared *m, const real *X, const real *V, real *Z, verd
 
 INLINE void Z_run_lanes(const prepared *m, const real *X, const real *V, real *Z, verdict *t)
 {
-    real s[24*LANES];
-    real sums[6*LANES];
+    real s[15*LANES], sums[6*LANES];
     real o_rps[LANES];
     Z_before(m, LANES, X, V, s, t);
     clear(sums, 6*LANES);
     for (size_t leg = 0; leg < LEGS_OF_rps; ++leg) {
-        Z_legs_rps(m, LANES, leg, 0, s, 1, LANES, 1, sums, o_rps);
+        Z_legs_rps(m, LANES, leg, 0, s, 1, LANES, 1, X, V, sums, o_rps);
         Z_place_rps(LANES, LANES, o_rps, 0, t);
     }
     Z_after(LANES, s, sums, Z, t);
 }
 
 /* ---- H ---- */
-INLINE void H_before(size_t w, const real *X, real *s, verdict *t)
+INLINE void H_before(const prepared *m, size_t w, const real *X, real *s, verdict *t)
 {
     for (size_t k = 0; k < w; ++k) {
-        /* X: named entries */
-        const real X_0 = X[0*w + k];
-        const real t_x = X_0;
-        const real X_1 = X[1*w + k];
-        const real t_y = X_1;
-        const real X_2 = X[2*w + k];
-        const real t_z = X_2;
-        const real X_3 = X[3*w + k];
-        const real X_4 = X[4*w + k];
-        const real X_5 = X[5*w + k];
-        const real X_6 = X[6*w + k];
-        const real quaternion_norm2 = X_3*X_3 + X_4*X_4 + X_5*X_5 + X_6*X_6;
-        const real quaternion_scale = 2/quaternion_norm2;
-        const real quaternion_sx = X_3*quaternion_scale;
-        const real quaternion_sy = X_4*quaternion_scale;
-        const real quaternion_sz = X_5*quaternion_scale;
-        const real quaternion_wx = X_6*quaternion_sx;
-        const real quaternion_wy = X_6*quaternion_sy;
-        const real quaternion_wz = X_6*quaternion_sz;
-        const real quaternion_xx = X_3*quaternion_sx;
-        const real quaternion_xy = X_3*quaternion_sy;
-        const real quaternion_xz = X_3*quaternion_sz;
-        const real quaternion_yy = X_4*quaternion_sy;
-        const real quaternion_yz = X_4*quaternion_sz;
-        const real quaternion_zz = X_5*quaternion_sz;
-        const real R_xx = 1 - quaternion_yy - quaternion_zz;
-        const real R_xy = quaternion_xy - quaternion_wz;
-        const real R_xz = quaternion_wy + quaternion_xz;
-        const real R_yx = quaternion_wz + quaternion_xy;
-        const real R_yy = 1 - quaternion_xx - quaternion_zz;
-        const real R_yz = quaternion_yz - quaternion_wx;
-        const real R_zx = quaternion_xz - quaternion_wy;
-        const real R_zy = quaternion_wx + quaternion_yz;
-        const real R_zz = 1 - quaternion_xx - quaternion_yy;
-        s[0*w + k] = t_x;
-        s[1*w + k] = t_y;
-        s[2*w + k] = t_z;
-        s[3*w + k] = R_xx;
-        s[4*w + k] = R_xy;
-        s[5*w + k] = R_xz;
-        s[6*w + k] = R_yx;
-        s[7*w + k] = R_yy;
-        s[8*w + k] = R_yz;
-        s[9*w + k] = R_zx;
-        s[10*w + k] = R_zy;
-        s[11*w + k] = R_zz;
-        t->invalid[k] += UNLESS(is_finite(quaternion_scale)) + UNLESS(quaternion_scale > 0);
+        values v;
+        stage_X(m, w, k, X, &v);
+        s[0*w + k] = v.R_xx;
+        s[1*w + k] = v.R_xy;
+        s[2*w + k] = v.R_xz;
+        s[3*w + k] = v.R_yx;
+        s[4*w + k] = v.R_yy;
+        s[5*w + k] = v.R_yz;
+        s[6*w + k] = v.R_zx;
+        s[7*w + k] = v.R_zy;
+        s[8*w + k] = v.R_zz;
+        t->invalid[k] += UNLESS(is_finite(v.quaternion_scale)) + UNLESS(v.quaternion_scale > 0);
     }
 }
 
 INLINE void H_legs_rps(const prepared *m, size_t w, size_t leg, size_t legs, const real *s, size_t
-    states, size_t count, real *o)
+    states, size_t count, const real *X, real *o)
 {
     for (size_t k = 0; k < count; ++k) {
         const size_t i = leg + legs*k;
         const size_t j = states*k;
-        /* (rps-S) from the base point to the connection point */
-        const real R_xx = s[3*w + j];
-        const real R_xy = s[4*w + j];
-        const real R_xz = s[5*w + j];
-        const real rps_platform_point_x = m->rps_platform_point_x[i];
-        const real rps_platform_point_y = m->rps_platform_point_y[i];
-        const real rps_platform_point_z = m->rps_platform_point_z[i];
-        const real rps_q_x = R_xx*rps_platform_point_x + R_xy*rps_platform_point_y +
-            R_xz*rps_platform_point_z;
-        const real R_yx = s[6*w + j];
-        const real R_yy = s[7*w + j];
-        const real R_yz = s[8*w + j];
-        const real rps_q_y = R_yx*rps_platform_point_x + R_yy*rps_platform_point_y +
-            R_yz*rps_platform_point_z;
-        const real R_zx = s[9*w + j];
-        const real R_zy = s[10*w + j];
-        const real R_zz = s[11*w + j];
-        const real rps_q_z = R_zx*rps_platform_point_x + R_zy*rps_platform_point_y +
-            R_zz*rps_platform_point_z;
-        const real rps_base_point_x = m->rps_base_point_x[i];
-        const real t_x = s[0*w + j];
-        const real rps_S_x = rps_q_x + t_x - rps_base_point_x;
-        const real rps_base_point_y = m->rps_base_point_y[i];
-        const real t_y = s[1*w + j];
-        const real rps_S_y = rps_q_y + t_y - rps_base_point_y;
-        const real rps_base_point_z = m->rps_base_point_z[i];
-        const real t_z = s[2*w + j];
-        const real rps_S_z = rps_q_z + t_z - rps_base_point_z;
-        /* (rps-px_1) component along the reference direction */
-        const real rps_base_frame_xx = m->rps_base_frame_xx[i];
-        const real rps_base_frame_yx = m->rps_base_frame_yx[i];
-        const real rps_base_frame_zx = m->rps_base_frame_zx[i];
-        const real rps_px_1 = rps_S_x*rps_base_frame_xx + rps_S_y*rps_base_frame_yx +
-            rps_S_z*rps_base_frame_zx;
-        /* (rps-py_1) component across the reference direction */
-        const real rps_base_frame_xy = m->rps_base_frame_xy[i];
-        const real rps_base_frame_yy = m->rps_base_frame_yy[i];
-        const real rps_base_frame_zy = m->rps_base_frame_zy[i];
-        const real rps_py_1 = rps_S_x*rps_base_frame_xy + rps_S_y*rps_base_frame_yy +
-            rps_S_z*rps_base_frame_zy;
-        /* (rps-rho2_1) squared amplitude */
-        const real rps_rho2_1 = rps_px_1*rps_px_1 + rps_py_1*rps_py_1;
-        /* (rps-root_1) amplitude, with the sign of the branch */
-        const real rps_branch_1 = m->rps_branch_1[i];
-        const real rps_root_1 = rps_branch_1*root(rps_rho2_1);
-        /* (rps-c_1) cosine of the angle of joint 1 from its reference direction */
-        const real inv_rps_root_1 = 1/rps_root_1;
-        const real rps_c_1 = inv_rps_root_1*rps_px_1;
-        /* (rps-s_1) sine of the angle of joint 1 from its reference direction */
-        const real rps_s_1 = inv_rps_root_1*rps_py_1;
-        /* (rps-w_2) reciprocal vector 2 */
-        const real rps_w_2_x = rps_base_frame_xx*rps_c_1 + rps_base_frame_xy*rps_s_1;
-        const real rps_w_2_y = rps_base_frame_yx*rps_c_1 + rps_base_frame_yy*rps_s_1;
-        const real rps_w_2_z = rps_base_frame_zx*rps_c_1 + rps_base_frame_zy*rps_s_1;
+        values_rps v;
+        stage_rps_X(m, w, i, j, s, X, &v);
         /* (rps-H_a_2) moment of the column's unit force about the platform origin */
-        const real rps_H_a_2_x = rps_q_y*rps_w_2_z - rps_q_z*rps_w_2_y;
-        const real rps_H_a_2_y = rps_q_z*rps_w_2_x - rps_q_x*rps_w_2_z;
-        const real rps_H_a_2_z = rps_q_x*rps_w_2_y - rps_q_y*rps_w_2_x;
+        const real rps_H_a_2_x = v.rps_q_y*v.rps_w_2_z - v.rps_q_z*v.rps_w_2_y;
+        const real rps_H_a_2_y = v.rps_q_z*v.rps_w_2_x - v.rps_q_x*v.rps_w_2_z;
+        const real rps_H_a_2_z = v.rps_q_x*v.rps_w_2_y - v.rps_q_y*v.rps_w_2_x;
         /* (rps-w_2) reciprocal vector 2 */
-        o[0*count + k] = rps_w_2_x;
-        o[1*count + k] = rps_w_2_y;
-        o[2*count + k] = rps_w_2_z;
+        o[0*count + k] = v.rps_w_2_x;
+        o[1*count + k] = v.rps_w_2_y;
+        o[2*count + k] = v.rps_w_2_z;
         /* (rps-H_a_2) moment of the column's unit force about the platform origin */
         o[3*count + k] = rps_H_a_2_x;
         o[4*count + k] = rps_H_a_2_y;
         o[5*count + k] = rps_H_a_2_z;
-        o[7*count + k] = (rps_w_2_x + (rps_w_2_y + rps_w_2_z)) + (rps_H_a_2_x + (rps_H_a_2_y +
-            rps_H_a_2_z));
-        o[6*count + k] = UNLESS(magnitude(rps_rho2_1) > LEAST_1) + UNLESS(magnitude(rps_root_1) >
+        o[7*count + k] = (v.rps_w_2_x + (v.rps_w_2_y + v.rps_w_2_z)) + (rps_H_a_2_x + (rps_H_a_2_y
+            + rps_H_a_2_z));
+        o[6*count + k] = UNLESS(magnitude(v.rps_q_2_t) > LEAST_1) + UNLESS(magnitude(v.rps_q_2) >
             LEAST_2);
     }
 }
@@ -2754,7 +2594,7 @@ INLINE void H_place_rps(size_t w, size_t count, const real *o, size_t leg, size_
     verdict *t)
 {
     for (size_t k = 0; k < w; ++k) {
-        H[(0*NU + leg)*w + k] = o[0*count + first + k];
+        H[leg*w + k] = o[0*count + first + k];
         H[(NU + leg)*w + k] = o[1*count + first + k];
         H[(2*NU + leg)*w + k] = o[2*count + first + k];
         H[(3*NU + leg)*w + k] = o[3*count + first + k];
@@ -2767,10 +2607,10 @@ INLINE void H_place_rps(size_t w, size_t count, const real *o, size_t leg, size_
 
 INLINE void H_run(const prepared *m, const real *X, real *H, verdict *t)
 {
-    real s[12] = {0};
+    real s[9] = {0};
     real o_rps[8*LEGS(LEGS_OF_rps)] = {0};
-    H_before(1, X, s, t);
-    H_legs_rps(m, 1, 0, 1, s, 0, LEGS(LEGS_OF_rps), o_rps);
+    H_before(m, 1, X, s, t);
+    H_legs_rps(m, 1, 0, 1, s, 0, LEGS(LEGS_OF_rps), X, o_rps);
     for (size_t leg = 0; leg < LEGS_OF_rps; ++leg) {
         H_place_rps(1, LEGS(LEGS_OF_rps), o_rps, leg, leg, H, t);
     }
@@ -2778,101 +2618,55 @@ INLINE void H_run(const prepared *m, const real *X, real *H, verdict *t)
 
 INLINE void H_run_lanes(const prepared *m, const real *X, real *H, verdict *t)
 {
-    real s[12*LANES];
+    real s[9*LANES];
     real o_rps[8*LANES];
-    H_before(LANES, X, s, t);
+    H_before(m, LANES, X, s, t);
     for (size_t leg = 0; leg < LEGS_OF_rps; ++leg) {
-        H_legs_rps(m, LANES, leg, 0, s, 1, LANES, o_rps);
+        H_legs_rps(m, LANES, leg, 0, s, 1, LANES, X, o_rps);
         H_place_rps(LANES, LANES, o_rps, leg, 0, H, t);
     }
 }
 
 /* ---- Hk ---- */
-INLINE void Hk_before(size_t w, const real *X, real *s, verdict *t)
+INLINE void Hk_before(const prepared *m, size_t w, const real *X, real *s, verdict *t)
 {
     for (size_t k = 0; k < w; ++k) {
-        /* X: named entries */
-        const real X_3 = X[3*w + k];
-        const real X_4 = X[4*w + k];
-        const real X_5 = X[5*w + k];
-        const real X_6 = X[6*w + k];
-        const real quaternion_norm2 = X_3*X_3 + X_4*X_4 + X_5*X_5 + X_6*X_6;
-        const real quaternion_scale = 2/quaternion_norm2;
-        const real quaternion_sx = X_3*quaternion_scale;
-        const real quaternion_sy = X_4*quaternion_scale;
-        const real quaternion_sz = X_5*quaternion_scale;
-        const real quaternion_wx = X_6*quaternion_sx;
-        const real quaternion_wy = X_6*quaternion_sy;
-        const real quaternion_wz = X_6*quaternion_sz;
-        const real quaternion_xx = X_3*quaternion_sx;
-        const real quaternion_xy = X_3*quaternion_sy;
-        const real quaternion_xz = X_3*quaternion_sz;
-        const real quaternion_yy = X_4*quaternion_sy;
-        const real quaternion_yz = X_4*quaternion_sz;
-        const real quaternion_zz = X_5*quaternion_sz;
-        const real R_xx = 1 - quaternion_yy - quaternion_zz;
-        const real R_xy = quaternion_xy - quaternion_wz;
-        const real R_xz = quaternion_wy + quaternion_xz;
-        const real R_yx = quaternion_wz + quaternion_xy;
-        const real R_yy = 1 - quaternion_xx - quaternion_zz;
-        const real R_yz = quaternion_yz - quaternion_wx;
-        const real R_zx = quaternion_xz - quaternion_wy;
-        const real R_zy = quaternion_wx + quaternion_yz;
-        const real R_zz = 1 - quaternion_xx - quaternion_yy;
-        s[0*w + k] = R_xx;
-        s[1*w + k] = R_xy;
-        s[2*w + k] = R_xz;
-        s[3*w + k] = R_yx;
-        s[4*w + k] = R_yy;
-        s[5*w + k] = R_yz;
-        s[6*w + k] = R_zx;
-        s[7*w + k] = R_zy;
-        s[8*w + k] = R_zz;
-        t->invalid[k] += UNLESS(is_finite(quaternion_scale)) + UNLESS(quaternion_scale > 0);
+        values v;
+        stage_X(m, w, k, X, &v);
+        s[0*w + k] = v.R_xx;
+        s[1*w + k] = v.R_xy;
+        s[2*w + k] = v.R_xz;
+        s[3*w + k] = v.R_yx;
+        s[4*w + k] = v.R_yy;
+        s[5*w + k] = v.R_yz;
+        s[6*w + k] = v.R_zx;
+        s[7*w + k] = v.R_zy;
+        s[8*w + k] = v.R_zz;
+        t->invalid[k] += UNLESS(is_finite(v.quaternion_scale)) + UNLESS(v.quaternion_scale > 0);
     }
 }
 
 INLINE void Hk_legs_rps(const prepared *m, size_t w, size_t leg, size_t legs, const real *s,
-    size_t states, size_t count, real *o)
+    size_t states, size_t count, const real *X, real *o)
 {
     for (size_t k = 0; k < count; ++k) {
         const size_t i = leg + legs*k;
         const size_t j = states*k;
-        /* (rps-Hk_a_1) moment of the column's unit force about the platform origin */
-        const real R_xx = s[0*w + j];
-        const real R_xy = s[1*w + j];
-        const real R_xz = s[2*w + j];
-        const real rps_platform_point_x = m->rps_platform_point_x[i];
-        const real rps_platform_point_y = m->rps_platform_point_y[i];
-        const real rps_platform_point_z = m->rps_platform_point_z[i];
-        const real rps_q_x = R_xx*rps_platform_point_x + R_xy*rps_platform_point_y +
-            R_xz*rps_platform_point_z;
-        const real R_yx = s[3*w + j];
-        const real R_yy = s[4*w + j];
-        const real R_yz = s[5*w + j];
-        const real rps_q_y = R_yx*rps_platform_point_x + R_yy*rps_platform_point_y +
-            R_yz*rps_platform_point_z;
-        const real R_zx = s[6*w + j];
-        const real R_zy = s[7*w + j];
-        const real R_zz = s[8*w + j];
-        const real rps_q_z = R_zx*rps_platform_point_x + R_zy*rps_platform_point_y +
-            R_zz*rps_platform_point_z;
-        const real rps_base_frame_yz = m->rps_base_frame_yz[i];
-        const real rps_base_frame_zz = m->rps_base_frame_zz[i];
-        const real rps_Hk_a_1_x = rps_base_frame_zz*rps_q_y - rps_base_frame_yz*rps_q_z;
-        const real rps_base_frame_xz = m->rps_base_frame_xz[i];
-        const real rps_Hk_a_1_y = rps_base_frame_xz*rps_q_z - rps_base_frame_zz*rps_q_x;
-        const real rps_Hk_a_1_z = rps_base_frame_yz*rps_q_x - rps_base_frame_xz*rps_q_y;
+        values_rps v;
+        stage_rps_X(m, w, i, j, s, X, &v);
         /* (legs_size) rms size of the legs, taken where the platform points coincide */
+        const real rps_base_frame_xz = m->rps_base_frame_xz[i];
         o[0*count + k] = rps_base_frame_xz;
+        const real rps_base_frame_yz = m->rps_base_frame_yz[i];
         o[1*count + k] = rps_base_frame_yz;
+        const real rps_base_frame_zz = m->rps_base_frame_zz[i];
         o[2*count + k] = rps_base_frame_zz;
         /* (rps-Hk_a_1) moment of the column's unit force about the platform origin */
-        o[3*count + k] = rps_Hk_a_1_x;
-        o[4*count + k] = rps_Hk_a_1_y;
-        o[5*count + k] = rps_Hk_a_1_z;
+        o[3*count + k] = v.rps_Hk_a_1_x;
+        o[4*count + k] = v.rps_Hk_a_1_y;
+        o[5*count + k] = v.rps_Hk_a_1_z;
         o[6*count + k] = (rps_base_frame_xz + (rps_base_frame_yz + rps_base_frame_zz)) +
-            (rps_Hk_a_1_x + (rps_Hk_a_1_y + rps_Hk_a_1_z));
+            (v.rps_Hk_a_1_x + (v.rps_Hk_a_1_y + v.rps_Hk_a_1_z));
     }
 }
 
@@ -2880,7 +2674,7 @@ INLINE void Hk_place_rps(size_t w, size_t count, const real *o, size_t leg, size
     *Hk, verdict *t)
 {
     for (size_t k = 0; k < w; ++k) {
-        Hk[(0*NC + leg)*w + k] = o[0*count + first + k];
+        Hk[leg*w + k] = o[0*count + first + k];
         Hk[(NC + leg)*w + k] = o[1*count + first + k];
         Hk[(2*NC + leg)*w + k] = o[2*count + first + k];
         Hk[(3*NC + leg)*w + k] = o[3*count + first + k];
@@ -2894,8 +2688,8 @@ INLINE void Hk_run(const prepared *m, const real *X, real *Hk, verdict *t)
 {
     real s[9] = {0};
     real o_rps[7*LEGS(LEGS_OF_rps)] = {0};
-    Hk_before(1, X, s, t);
-    Hk_legs_rps(m, 1, 0, 1, s, 0, LEGS(LEGS_OF_rps), o_rps);
+    Hk_before(m, 1, X, s, t);
+    Hk_legs_rps(m, 1, 0, 1, s, 0, LEGS(LEGS_OF_rps), X, o_rps);
     for (size_t leg = 0; leg < LEGS_OF_rps; ++leg) {
         Hk_place_rps(1, LEGS(LEGS_OF_rps), o_rps, leg, leg, Hk, t);
     }
@@ -2905,99 +2699,48 @@ INLINE void Hk_run_lanes(const prepared *m, const real *X, real *Hk, verdict *t)
 {
     real s[9*LANES];
     real o_rps[7*LANES];
-    Hk_before(LANES, X, s, t);
+    Hk_before(m, LANES, X, s, t);
     for (size_t leg = 0; leg < LEGS_OF_rps; ++leg) {
-        Hk_legs_rps(m, LANES, leg, 0, s, 1, LANES, o_rps);
+        Hk_legs_rps(m, LANES, leg, 0, s, 1, LANES, X, o_rps);
         Hk_place_rps(LANES, LANES, o_rps, leg, 0, Hk, t);
     }
 }
 
 /* ---- constraint_bias ---- */
-INLINE void constraint_bias_before(size_t w, const real *X, const real *V, real *s, verdict *t)
+INLINE void constraint_bias_before(const prepared *m, size_t w, const real *X, real *s, verdict
+    *t)
 {
     for (size_t k = 0; k < w; ++k) {
-        /* X: named entries */
-        const real X_3 = X[3*w + k];
-        const real X_4 = X[4*w + k];
-        const real X_5 = X[5*w + k];
-        const real X_6 = X[6*w + k];
-        const real quaternion_norm2 = X_3*X_3 + X_4*X_4 + X_5*X_5 + X_6*X_6;
-        const real quaternion_scale = 2/quaternion_norm2;
-        const real quaternion_sx = X_3*quaternion_scale;
-        const real quaternion_sy = X_4*quaternion_scale;
-        const real quaternion_sz = X_5*quaternion_scale;
-        const real quaternion_wx = X_6*quaternion_sx;
-        const real quaternion_wy = X_6*quaternion_sy;
-        const real quaternion_wz = X_6*quaternion_sz;
-        const real quaternion_xx = X_3*quaternion_sx;
-        const real quaternion_xy = X_3*quaternion_sy;
-        const real quaternion_xz = X_3*quaternion_sz;
-        const real quaternion_yy = X_4*quaternion_sy;
-        const real quaternion_yz = X_4*quaternion_sz;
-        const real quaternion_zz = X_5*quaternion_sz;
-        const real R_xx = 1 - quaternion_yy - quaternion_zz;
-        const real R_xy = quaternion_xy - quaternion_wz;
-        const real R_xz = quaternion_wy + quaternion_xz;
-        const real R_yx = quaternion_wz + quaternion_xy;
-        const real R_yy = 1 - quaternion_xx - quaternion_zz;
-        const real R_yz = quaternion_yz - quaternion_wx;
-        const real R_zx = quaternion_xz - quaternion_wy;
-        const real R_zy = quaternion_wx + quaternion_yz;
-        const real R_zz = 1 - quaternion_xx - quaternion_yy;
-        /* V: named entries */
-        const real V_3 = V[3*w + k];
-        const real omega_x = V_3;
-        const real V_4 = V[4*w + k];
-        const real omega_y = V_4;
-        const real V_5 = V[5*w + k];
-        const real omega_z = V_5;
-        s[0*w + k] = R_xx;
-        s[1*w + k] = R_xy;
-        s[2*w + k] = R_xz;
-        s[3*w + k] = R_yx;
-        s[4*w + k] = R_yy;
-        s[5*w + k] = R_yz;
-        s[6*w + k] = R_zx;
-        s[7*w + k] = R_zy;
-        s[8*w + k] = R_zz;
-        s[9*w + k] = omega_x;
-        s[10*w + k] = omega_y;
-        s[11*w + k] = omega_z;
-        t->invalid[k] += UNLESS(is_finite(quaternion_scale)) + UNLESS(quaternion_scale > 0);
+        values v;
+        stage_X(m, w, k, X, &v);
+        s[0*w + k] = v.R_xx;
+        s[1*w + k] = v.R_xy;
+        s[2*w + k] = v.R_xz;
+        s[3*w + k] = v.R_yx;
+        s[4*w + k] = v.R_yy;
+        s[5*w + k] = v.R_yz;
+        s[6*w + k] = v.R_zx;
+        s[7*w + k] = v.R_zy;
+        s[8*w + k] = v.R_zz;
+        t->invalid[k] += UNLESS(is_finite(v.quaternion_scale)) + UNLESS(v.quaternion_scale > 0);
     }
 }
 
 INLINE void constraint_bias_legs_rps(const prepared *m, size_t w, size_t leg, size_t legs, const
-    real *s, size_t states, size_t count, real *o)
+    real *s, size_t states, size_t count, const real *X, const real *V, real *o)
 {
     for (size_t k = 0; k < count; ++k) {
         const size_t i = leg + legs*k;
         const size_t j = states*k;
+        values_rps v;
+        stage_rps_X(m, w, i, j, s, X, &v);
         /* (rps-u_1) centripetal acceleration of the connection point */
-        const real R_xx = s[0*w + j];
-        const real R_xy = s[1*w + j];
-        const real R_xz = s[2*w + j];
-        const real rps_platform_point_x = m->rps_platform_point_x[i];
-        const real rps_platform_point_y = m->rps_platform_point_y[i];
-        const real rps_platform_point_z = m->rps_platform_point_z[i];
-        const real rps_q_x = R_xx*rps_platform_point_x + R_xy*rps_platform_point_y +
-            R_xz*rps_platform_point_z;
-        const real R_yx = s[3*w + j];
-        const real R_yy = s[4*w + j];
-        const real R_yz = s[5*w + j];
-        const real rps_q_y = R_yx*rps_platform_point_x + R_yy*rps_platform_point_y +
-            R_yz*rps_platform_point_z;
-        const real R_zx = s[6*w + j];
-        const real R_zy = s[7*w + j];
-        const real R_zz = s[8*w + j];
-        const real rps_q_z = R_zx*rps_platform_point_x + R_zy*rps_platform_point_y +
-            R_zz*rps_platform_point_z;
-        const real omega_y = s[10*w + j];
-        const real omega_z = s[11*w + j];
-        const real rps_u_1_t = omega_y*rps_q_z - omega_z*rps_q_y;
-        const real omega_x = s[9*w + j];
-        const real rps_u_1_t_2 = omega_z*rps_q_x - omega_x*rps_q_z;
-        const real rps_u_1_t_3 = omega_x*rps_q_y - omega_y*rps_q_x;
+        const real omega_y = V[4*w + j];
+        const real omega_z = V[5*w + j];
+        const real rps_u_1_t = omega_y*v.rps_q_z - omega_z*v.rps_q_y;
+        const real omega_x = V[3*w + j];
+        const real rps_u_1_t_2 = omega_z*v.rps_q_x - omega_x*v.rps_q_z;
+        const real rps_u_1_t_3 = omega_x*v.rps_q_y - omega_y*v.rps_q_x;
         const real rps_base_frame_xz = m->rps_base_frame_xz[i];
         const real rps_base_frame_yz = m->rps_base_frame_yz[i];
         const real rps_base_frame_zz = m->rps_base_frame_zz[i];
@@ -3023,10 +2766,10 @@ INLINE void constraint_bias_place_rps(size_t w, size_t count, const real *o, siz
 INLINE void constraint_bias_run(const prepared *m, const real *X, const real *V, real
     *constraint_bias, verdict *t)
 {
-    real s[12] = {0};
+    real s[9] = {0};
     real o_rps[2*LEGS(LEGS_OF_rps)] = {0};
-    constraint_bias_before(1, X, V, s, t);
-    constraint_bias_legs_rps(m, 1, 0, 1, s, 0, LEGS(LEGS_OF_rps), o_rps);
+    constraint_bias_before(m, 1, X, s, t);
+    constraint_bias_legs_rps(m, 1, 0, 1, s, 0, LEGS(LEGS_OF_rps), X, V, o_rps);
     for (size_t leg = 0; leg < LEGS_OF_rps; ++leg) {
         constraint_bias_place_rps(1, LEGS(LEGS_OF_rps), o_rps, leg, leg, constraint_bias, t);
     }
@@ -3035,11 +2778,11 @@ INLINE void constraint_bias_run(const prepared *m, const real *X, const real *V,
 INLINE void constraint_bias_run_lanes(const prepared *m, const real *X, const real *V, real
     *constraint_bias, verdict *t)
 {
-    real s[12*LANES];
+    real s[9*LANES];
     real o_rps[2*LANES];
-    constraint_bias_before(LANES, X, V, s, t);
+    constraint_bias_before(m, LANES, X, s, t);
     for (size_t leg = 0; leg < LEGS_OF_rps; ++leg) {
-        constraint_bias_legs_rps(m, LANES, leg, 0, s, 1, LANES, o_rps);
+        constraint_bias_legs_rps(m, LANES, leg, 0, s, 1, LANES, X, V, o_rps);
         constraint_bias_place_rps(LANES, LANES, o_rps, leg, 0, constraint_bias, t);
     }
 }
@@ -3049,348 +2792,151 @@ INLINE void required_before(const prepared *m, size_t w, const real *X, const re
     *A, real *s, verdict *t)
 {
     for (size_t k = 0; k < w; ++k) {
-        /* X: named entries */
-        const real X_0 = X[0*w + k];
-        const real t_x = X_0;
-        const real X_1 = X[1*w + k];
-        const real t_y = X_1;
-        const real X_2 = X[2*w + k];
-        const real t_z = X_2;
-        const real X_3 = X[3*w + k];
-        const real X_4 = X[4*w + k];
-        const real X_5 = X[5*w + k];
-        const real X_6 = X[6*w + k];
-        const real quaternion_norm2 = X_3*X_3 + X_4*X_4 + X_5*X_5 + X_6*X_6;
-        const real quaternion_scale = 2/quaternion_norm2;
-        const real quaternion_sx = X_3*quaternion_scale;
-        const real quaternion_sy = X_4*quaternion_scale;
-        const real quaternion_sz = X_5*quaternion_scale;
-        const real quaternion_wx = X_6*quaternion_sx;
-        const real quaternion_wy = X_6*quaternion_sy;
-        const real quaternion_wz = X_6*quaternion_sz;
-        const real quaternion_xx = X_3*quaternion_sx;
-        const real quaternion_xy = X_3*quaternion_sy;
-        const real quaternion_xz = X_3*quaternion_sz;
-        const real quaternion_yy = X_4*quaternion_sy;
-        const real quaternion_yz = X_4*quaternion_sz;
-        const real quaternion_zz = X_5*quaternion_sz;
-        const real R_xx = 1 - quaternion_yy - quaternion_zz;
-        const real R_xy = quaternion_xy - quaternion_wz;
-        const real R_xz = quaternion_wy + quaternion_xz;
-        const real R_yx = quaternion_wz + quaternion_xy;
-        const real R_yy = 1 - quaternion_xx - quaternion_zz;
-        const real R_yz = quaternion_yz - quaternion_wx;
-        const real R_zx = quaternion_xz - quaternion_wy;
-        const real R_zy = quaternion_wx + quaternion_yz;
-        const real R_zz = 1 - quaternion_xx - quaternion_yy;
-        /* V: named entries */
-        const real V_0 = V[0*w + k];
-        const real t_dot_x = V_0;
-        const real V_1 = V[1*w + k];
-        const real t_dot_y = V_1;
-        const real V_2 = V[2*w + k];
-        const real t_dot_z = V_2;
-        const real V_3 = V[3*w + k];
-        const real omega_x = V_3;
-        const real V_4 = V[4*w + k];
-        const real omega_y = V_4;
-        const real V_5 = V[5*w + k];
-        const real omega_z = V_5;
-        /* A: named entries */
-        const real A_0 = A[0*w + k];
-        const real t_ddot_x = A_0;
-        const real A_1 = A[1*w + k];
-        const real t_ddot_y = A_1;
-        const real A_2 = A[2*w + k];
-        const real t_ddot_z = A_2;
-        const real A_3 = A[3*w + k];
-        const real alpha_x = A_3;
-        const real A_4 = A[4*w + k];
-        const real alpha_y = A_4;
-        const real A_5 = A[5*w + k];
-        const real alpha_z = A_5;
+        values v;
+        stage_X(m, w, k, X, &v);
+        stage_V_X(w, k, V, &v);
         /* (W_p) centripetal tensor of the platform */
+        const real omega_x = V[3*w + k];
+        const real omega_y = V[4*w + k];
         const real W_p_xy = omega_x*omega_y;
+        const real omega_z = V[5*w + k];
         const real W_p_xz = omega_x*omega_z;
         const real W_p_yz = omega_y*omega_z;
-        /* (h_star) first moment about the platform origin */
-        const real h_star_in_platform_x = m->h_star_in_platform_x;
-        const real h_star_in_platform_y = m->h_star_in_platform_y;
-        const real h_star_in_platform_z = m->h_star_in_platform_z;
-        const real h_star_x = R_xx*h_star_in_platform_x + R_xy*h_star_in_platform_y +
-            R_xz*h_star_in_platform_z;
-        const real h_star_y = R_yx*h_star_in_platform_x + R_yy*h_star_in_platform_y +
-            R_yz*h_star_in_platform_z;
-        const real h_star_z = R_zx*h_star_in_platform_x + R_zy*h_star_in_platform_y +
-            R_zz*h_star_in_platform_z;
         /* (a_t) acceleration of the platform origin, less gravity */
         const real gravity_x = m->gravity_x;
+        const real t_ddot_x = A[0*w + k];
         const real a_t_x = t_ddot_x - gravity_x;
         const real gravity_y = m->gravity_y;
+        const real t_ddot_y = A[1*w + k];
         const real a_t_y = t_ddot_y - gravity_y;
         const real gravity_z = m->gravity_z;
+        const real t_ddot_z = A[2*w + k];
         const real a_t_z = t_ddot_z - gravity_z;
-        const real a_t_in_platform_x = R_xx*a_t_x + R_yx*a_t_y + R_zx*a_t_z;
-        const real a_t_in_platform_y = R_xy*a_t_x + R_yy*a_t_y + R_zy*a_t_z;
-        const real a_t_in_platform_z = R_xz*a_t_x + R_yz*a_t_y + R_zz*a_t_z;
+        const real a_t_in_platform_x = v.R_xx*a_t_x + v.R_yx*a_t_y + v.R_zx*a_t_z;
+        const real a_t_in_platform_y = v.R_xy*a_t_x + v.R_yy*a_t_y + v.R_zy*a_t_z;
+        const real a_t_in_platform_z = v.R_xz*a_t_x + v.R_yz*a_t_y + v.R_zz*a_t_z;
         /* (f_p) inertia force of the platform less its weight */
         const real f_p_t = omega_x*omega_x;
         const real f_p_t_2 = omega_y*omega_y;
         const real f_p_t_3 = omega_z*omega_z;
+        const real alpha_y = A[4*w + k];
+        const real alpha_z = A[5*w + k];
         const real platform_mass = m->platform_mass;
-        const real f_p_x = a_t_x*platform_mass + h_star_y*(W_p_xy - alpha_z) + h_star_z*(W_p_xz +
-            alpha_y) - h_star_x*(f_p_t_2 + f_p_t_3);
-        const real f_p_y = a_t_y*platform_mass + h_star_x*(W_p_xy + alpha_z) + h_star_z*(W_p_yz -
-            alpha_x) - h_star_y*(f_p_t + f_p_t_3);
-        const real f_p_z = a_t_z*platform_mass + h_star_x*(W_p_xz - alpha_y) + h_star_y*(W_p_yz +
-            alpha_x) - h_star_z*(f_p_t + f_p_t_2);
+        const real f_p_x = a_t_x*platform_mass + v.h_star_y*(W_p_xy - alpha_z) +
+            v.h_star_z*(W_p_xz + alpha_y) - v.h_star_x*(f_p_t_2 + f_p_t_3);
+        const real alpha_x = A[3*w + k];
+        const real f_p_y = a_t_y*platform_mass + v.h_star_x*(W_p_xy + alpha_z) +
+            v.h_star_z*(W_p_yz - alpha_x) - v.h_star_y*(f_p_t + f_p_t_3);
+        const real f_p_z = a_t_z*platform_mass + v.h_star_x*(W_p_xz - alpha_y) +
+            v.h_star_y*(W_p_yz + alpha_x) - v.h_star_z*(f_p_t + f_p_t_2);
         /* (mu_p) inertia moment of the platform less that of its weight */
-        const real omega_in_platform_x = R_xx*omega_x + R_yx*omega_y + R_zx*omega_z;
-        const real omega_in_platform_y = R_xy*omega_x + R_yy*omega_y + R_zy*omega_z;
-        const real omega_in_platform_z = R_xz*omega_x + R_yz*omega_y + R_zz*omega_z;
         const real J_star_in_platform_xx = m->J_star_in_platform_xx;
         const real J_star_in_platform_xy = m->J_star_in_platform_xy;
         const real J_star_in_platform_xz = m->J_star_in_platform_xz;
-        const real mu_p_t = J_star_in_platform_xx*omega_in_platform_x +
-            J_star_in_platform_xy*omega_in_platform_y + J_star_in_platform_xz*omega_in_platform_z;
+        const real mu_p_t = J_star_in_platform_xx*v.omega_in_platform_x +
+            J_star_in_platform_xy*v.omega_in_platform_y +
+            J_star_in_platform_xz*v.omega_in_platform_z;
         const real J_star_in_platform_yy = m->J_star_in_platform_yy;
         const real J_star_in_platform_yz = m->J_star_in_platform_yz;
-        const real mu_p_t_2 = J_star_in_platform_xy*omega_in_platform_x +
-            J_star_in_platform_yy*omega_in_platform_y + J_star_in_platform_yz*omega_in_platform_z;
+        const real mu_p_t_2 = J_star_in_platform_xy*v.omega_in_platform_x +
+            J_star_in_platform_yy*v.omega_in_platform_y +
+            J_star_in_platform_yz*v.omega_in_platform_z;
         const real J_star_in_platform_zz = m->J_star_in_platform_zz;
-        const real mu_p_t_3 = J_star_in_platform_xz*omega_in_platform_x +
-            J_star_in_platform_yz*omega_in_platform_y + J_star_in_platform_zz*omega_in_platform_z;
-        const real alpha_in_platform_x = R_xx*alpha_x + R_yx*alpha_y + R_zx*alpha_z;
-        const real alpha_in_platform_y = R_xy*alpha_x + R_yy*alpha_y + R_zy*alpha_z;
-        const real alpha_in_platform_z = R_xz*alpha_x + R_yz*alpha_y + R_zz*alpha_z;
+        const real mu_p_t_3 = J_star_in_platform_xz*v.omega_in_platform_x +
+            J_star_in_platform_yz*v.omega_in_platform_y +
+            J_star_in_platform_zz*v.omega_in_platform_z;
+        const real alpha_in_platform_x = v.R_xx*alpha_x + v.R_yx*alpha_y + v.R_zx*alpha_z;
+        const real alpha_in_platform_y = v.R_xy*alpha_x + v.R_yy*alpha_y + v.R_zy*alpha_z;
+        const real alpha_in_platform_z = v.R_xz*alpha_x + v.R_yz*alpha_y + v.R_zz*alpha_z;
+        const real h_star_in_platform_y = m->h_star_in_platform_y;
+        const real h_star_in_platform_z = m->h_star_in_platform_z;
         const real mu_p_in_platform_x = J_star_in_platform_xx*alpha_in_platform_x +
             J_star_in_platform_xy*alpha_in_platform_y + J_star_in_platform_xz*alpha_in_platform_z
-            + a_t_in_platform_z*h_star_in_platform_y + mu_p_t_3*omega_in_platform_y -
-            a_t_in_platform_y*h_star_in_platform_z - mu_p_t_2*omega_in_platform_z;
+            + a_t_in_platform_z*h_star_in_platform_y + mu_p_t_3*v.omega_in_platform_y -
+            a_t_in_platform_y*h_star_in_platform_z - mu_p_t_2*v.omega_in_platform_z;
+        const real h_star_in_platform_x = m->h_star_in_platform_x;
         const real mu_p_in_platform_y = J_star_in_platform_xy*alpha_in_platform_x +
             J_star_in_platform_yy*alpha_in_platform_y + J_star_in_platform_yz*alpha_in_platform_z
-            + a_t_in_platform_x*h_star_in_platform_z + mu_p_t*omega_in_platform_z -
-            a_t_in_platform_z*h_star_in_platform_x - mu_p_t_3*omega_in_platform_x;
+            + a_t_in_platform_x*h_star_in_platform_z + mu_p_t*v.omega_in_platform_z -
+            a_t_in_platform_z*h_star_in_platform_x - mu_p_t_3*v.omega_in_platform_x;
         const real mu_p_in_platform_z = J_star_in_platform_xz*alpha_in_platform_x +
             J_star_in_platform_yz*alpha_in_platform_y + J_star_in_platform_zz*alpha_in_platform_z
-            + a_t_in_platform_y*h_star_in_platform_x + mu_p_t_2*omega_in_platform_x -
-            a_t_in_platform_x*h_star_in_platform_y - mu_p_t*omega_in_platform_y;
-        const real mu_p_x = R_xx*mu_p_in_platform_x + R_xy*mu_p_in_platform_y +
-            R_xz*mu_p_in_platform_z;
-        const real mu_p_y = R_yx*mu_p_in_platform_x + R_yy*mu_p_in_platform_y +
-            R_yz*mu_p_in_platform_z;
-        const real mu_p_z = R_zx*mu_p_in_platform_x + R_zy*mu_p_in_platform_y +
-            R_zz*mu_p_in_platform_z;
-        s[0*w + k] = t_x;
-        s[1*w + k] = t_y;
-        s[2*w + k] = t_z;
-        s[3*w + k] = R_xx;
-        s[4*w + k] = R_xy;
-        s[5*w + k] = R_xz;
-        s[6*w + k] = R_yx;
-        s[7*w + k] = R_yy;
-        s[8*w + k] = R_yz;
-        s[9*w + k] = R_zx;
-        s[10*w + k] = R_zy;
-        s[11*w + k] = R_zz;
-        s[12*w + k] = t_dot_x;
-        s[13*w + k] = t_dot_y;
-        s[14*w + k] = t_dot_z;
-        s[15*w + k] = omega_x;
-        s[16*w + k] = omega_y;
-        s[17*w + k] = omega_z;
-        s[18*w + k] = t_ddot_x;
-        s[19*w + k] = t_ddot_y;
-        s[20*w + k] = t_ddot_z;
-        s[21*w + k] = alpha_x;
-        s[22*w + k] = alpha_y;
-        s[23*w + k] = alpha_z;
-        s[24*w + k] = f_p_x;
-        s[25*w + k] = f_p_y;
-        s[26*w + k] = f_p_z;
-        s[27*w + k] = mu_p_x;
-        s[28*w + k] = mu_p_y;
-        s[29*w + k] = mu_p_z;
-        t->invalid[k] += UNLESS(is_finite(quaternion_scale)) + UNLESS(quaternion_scale > 0);
+            + a_t_in_platform_y*h_star_in_platform_x + mu_p_t_2*v.omega_in_platform_x -
+            a_t_in_platform_x*h_star_in_platform_y - mu_p_t*v.omega_in_platform_y;
+        const real mu_p_x = v.R_xx*mu_p_in_platform_x + v.R_xy*mu_p_in_platform_y +
+            v.R_xz*mu_p_in_platform_z;
+        const real mu_p_y = v.R_yx*mu_p_in_platform_x + v.R_yy*mu_p_in_platform_y +
+            v.R_yz*mu_p_in_platform_z;
+        const real mu_p_z = v.R_zx*mu_p_in_platform_x + v.R_zy*mu_p_in_platform_y +
+            v.R_zz*mu_p_in_platform_z;
+        s[0*w + k] = v.R_xx;
+        s[1*w + k] = v.R_xy;
+        s[2*w + k] = v.R_xz;
+        s[3*w + k] = v.R_yx;
+        s[4*w + k] = v.R_yy;
+        s[5*w + k] = v.R_yz;
+        s[6*w + k] = v.R_zx;
+        s[7*w + k] = v.R_zy;
+        s[8*w + k] = v.R_zz;
+        s[9*w + k] = f_p_x;
+        s[10*w + k] = f_p_y;
+        s[11*w + k] = f_p_z;
+        s[12*w + k] = mu_p_x;
+        s[13*w + k] = mu_p_y;
+        s[14*w + k] = mu_p_z;
+        t->invalid[k] += UNLESS(is_finite(v.quaternion_scale)) + UNLESS(v.quaternion_scale > 0);
     }
 }
 
 INLINE void required_legs_rps(const prepared *m, size_t w, size_t leg, size_t legs, const real *s,
-    size_t states, size_t count, int add, real *terms, real *o)
+    size_t states, size_t count, int add, const real *X, const real *V, const real *A, real
+    *terms, real *o)
 {
     for (size_t k = 0; k < count; ++k) {
         const size_t i = leg + legs*k;
         const size_t j = states*k;
-        /* (rps-S) from the base point to the connection point */
-        const real R_xx = s[3*w + j];
-        const real R_xy = s[4*w + j];
-        const real R_xz = s[5*w + j];
-        const real rps_platform_point_x = m->rps_platform_point_x[i];
-        const real rps_platform_point_y = m->rps_platform_point_y[i];
-        const real rps_platform_point_z = m->rps_platform_point_z[i];
-        const real rps_q_x = R_xx*rps_platform_point_x + R_xy*rps_platform_point_y +
-            R_xz*rps_platform_point_z;
-        const real R_yx = s[6*w + j];
-        const real R_yy = s[7*w + j];
-        const real R_yz = s[8*w + j];
-        const real rps_q_y = R_yx*rps_platform_point_x + R_yy*rps_platform_point_y +
-            R_yz*rps_platform_point_z;
-        const real R_zx = s[9*w + j];
-        const real R_zy = s[10*w + j];
-        const real R_zz = s[11*w + j];
-        const real rps_q_z = R_zx*rps_platform_point_x + R_zy*rps_platform_point_y +
-            R_zz*rps_platform_point_z;
-        const real rps_base_point_x = m->rps_base_point_x[i];
-        const real t_x = s[0*w + j];
-        const real rps_S_x = rps_q_x + t_x - rps_base_point_x;
-        const real rps_base_point_y = m->rps_base_point_y[i];
-        const real t_y = s[1*w + j];
-        const real rps_S_y = rps_q_y + t_y - rps_base_point_y;
-        const real rps_base_point_z = m->rps_base_point_z[i];
-        const real t_z = s[2*w + j];
-        const real rps_S_z = rps_q_z + t_z - rps_base_point_z;
-        /* (rps-px_1) component along the reference direction */
-        const real rps_base_frame_xx = m->rps_base_frame_xx[i];
-        const real rps_base_frame_yx = m->rps_base_frame_yx[i];
-        const real rps_base_frame_zx = m->rps_base_frame_zx[i];
-        const real rps_px_1 = rps_S_x*rps_base_frame_xx + rps_S_y*rps_base_frame_yx +
-            rps_S_z*rps_base_frame_zx;
-        /* (rps-py_1) component across the reference direction */
-        const real rps_base_frame_xy = m->rps_base_frame_xy[i];
-        const real rps_base_frame_yy = m->rps_base_frame_yy[i];
-        const real rps_base_frame_zy = m->rps_base_frame_zy[i];
-        const real rps_py_1 = rps_S_x*rps_base_frame_xy + rps_S_y*rps_base_frame_yy +
-            rps_S_z*rps_base_frame_zy;
-        /* (rps-rho2_1) squared amplitude */
-        const real rps_rho2_1 = rps_px_1*rps_px_1 + rps_py_1*rps_py_1;
-        /* (rps-root_1) amplitude, with the sign of the branch */
-        const real rps_branch_1 = m->rps_branch_1[i];
-        const real rps_root_1 = rps_branch_1*root(rps_rho2_1);
-        /* (rps-c_1) cosine of the angle of joint 1 from its reference direction */
-        const real inv_rps_root_1 = 1/rps_root_1;
-        const real rps_c_1 = inv_rps_root_1*rps_px_1;
-        /* (rps-s_1) sine of the angle of joint 1 from its reference direction */
-        const real rps_s_1 = inv_rps_root_1*rps_py_1;
-        /* (rps-S_dot) velocity of the connection point */
-        const real axis_x_rps_axes1_x = rps_base_frame_xx*rps_c_1 + rps_base_frame_xy*rps_s_1;
-        const real axis_x_rps_axes1_y = rps_base_frame_yx*rps_c_1 + rps_base_frame_yy*rps_s_1;
-        const real axis_x_rps_axes1_z = rps_base_frame_zx*rps_c_1 + rps_base_frame_zy*rps_s_1;
-        const real omega_y = s[16*w + j];
-        const real omega_z = s[17*w + j];
-        const real rps_S_dot_t = omega_y*rps_q_z - omega_z*rps_q_y;
-        const real omega_x = s[15*w + j];
-        const real rps_S_dot_t_2 = omega_z*rps_q_x - omega_x*rps_q_z;
-        const real rps_S_dot_t_3 = omega_x*rps_q_y - omega_y*rps_q_x;
-        const real t_dot_x = s[12*w + j];
-        const real rps_S_dot_x = rps_S_dot_t + t_dot_x;
-        const real t_dot_y = s[13*w + j];
-        const real rps_S_dot_y = rps_S_dot_t_2 + t_dot_y;
-        const real t_dot_z = s[14*w + j];
-        const real rps_S_dot_z = rps_S_dot_t_3 + t_dot_z;
-        const real rps_S_dot_in_axes1_x = axis_x_rps_axes1_x*rps_S_dot_x +
-            axis_x_rps_axes1_y*rps_S_dot_y + axis_x_rps_axes1_z*rps_S_dot_z;
-        /* (rps-qd_1) rate of joint 1 */
-        const real axis_y_rps_axes1_x = rps_base_frame_xy*rps_c_1 - rps_base_frame_xx*rps_s_1;
-        const real axis_y_rps_axes1_y = rps_base_frame_yy*rps_c_1 - rps_base_frame_yx*rps_s_1;
-        const real axis_y_rps_axes1_z = rps_base_frame_zy*rps_c_1 - rps_base_frame_zx*rps_s_1;
-        const real rps_qd_1 = inv_rps_root_1*(axis_y_rps_axes1_x*rps_S_dot_x +
-            axis_y_rps_axes1_y*rps_S_dot_y + axis_y_rps_axes1_z*rps_S_dot_z);
-        /* (rps-W_1) centripetal tensor of link 1 */
-        const real rps_W_1_t = rps_qd_1*rps_qd_1;
-        /* (rps-a_p) acceleration of the connection point without its centripetal part */
-        const real alpha_y = s[22*w + j];
-        const real alpha_z = s[23*w + j];
-        const real t_ddot_x = s[18*w + j];
-        const real rps_a_p_x = t_ddot_x + alpha_y*rps_q_z - alpha_z*rps_q_y;
-        const real alpha_x = s[21*w + j];
-        const real t_ddot_y = s[19*w + j];
-        const real rps_a_p_y = t_ddot_y + alpha_z*rps_q_x - alpha_x*rps_q_z;
-        const real t_ddot_z = s[20*w + j];
-        const real rps_a_p_z = t_ddot_z + alpha_x*rps_q_y - alpha_y*rps_q_x;
-        /* (rps-S_ddot) acceleration of the connection point */
-        const real rps_S_ddot_x = rps_a_p_x + omega_y*rps_S_dot_t_3 - omega_z*rps_S_dot_t_2;
-        const real rps_S_ddot_y = rps_a_p_y + omega_z*rps_S_dot_t - omega_x*rps_S_dot_t_3;
-        const real rps_S_ddot_z = rps_a_p_z + omega_x*rps_S_dot_t_2 - omega_y*rps_S_dot_t;
-        const real rps_S_ddot_in_axes1_y = axis_y_rps_axes1_x*rps_S_ddot_x +
-            axis_y_rps_axes1_y*rps_S_ddot_y + axis_y_rps_axes1_z*rps_S_ddot_z;
-        /* (rps-rel) acceleration of the connection point left to the joint accelerations */
-        const real rps_rel_in_axes1_y = rps_S_ddot_in_axes1_y - 2*rps_S_dot_in_axes1_x*rps_qd_1;
-        /* (rps-qdd_1) acceleration of joint 1 */
-        const real rps_qdd_1 = inv_rps_root_1*rps_rel_in_axes1_y;
-        /* (rps-acc_2) acceleration of the reference point of link 2, less gravity */
-        const real rps_acc_2_t = m->rps_acc_2_t[i];
-        const real rps_acc_2_t_2 = m->rps_acc_2_t_2[i];
-        const real rps_g_in_axes1_x = rps_acc_2_t*rps_c_1 + rps_acc_2_t_2*rps_s_1;
-        const real rps_g_in_axes1_y = rps_acc_2_t_2*rps_c_1 - rps_acc_2_t*rps_s_1;
-        const real rps_acc_2_in_axes1_x = axis_x_rps_axes1_x*rps_S_ddot_x +
-            axis_x_rps_axes1_y*rps_S_ddot_y + axis_x_rps_axes1_z*rps_S_ddot_z - rps_g_in_axes1_x;
-        const real rps_acc_2_in_axes1_y = rps_S_ddot_in_axes1_y - rps_g_in_axes1_y;
-        /* (rps-f_2) inertia force of link 2 less its weight */
-        const real rps_h_2_in_spec1_x = m->rps_h_2_in_spec1_x[i];
-        const real rps_h_2_in_spec1_y = m->rps_h_2_in_spec1_y[i];
-        const real rps_link2_mass = m->rps_link2_mass[i];
-        const real rps_f_2_in_axes1_x = rps_acc_2_in_axes1_x*rps_link2_mass -
-            rps_W_1_t*rps_h_2_in_spec1_x - rps_h_2_in_spec1_y*rps_qdd_1;
-        const real rps_f_2_in_axes1_y = rps_acc_2_in_axes1_y*rps_link2_mass +
-            rps_h_2_in_spec1_x*rps_qdd_1 - rps_W_1_t*rps_h_2_in_spec1_y;
-        /* (rps-mu_1) inertia moment of the links that turn with link 1, about their reference points */
-        const real rps_J_group_1_in_axes1_zz = m->rps_J_group_1_in_axes1_zz[i];
-        const real rps_h_1_in_spec1_x = m->rps_h_1_in_spec1_x[i];
-        const real rps_h_1_in_spec1_y = m->rps_h_1_in_spec1_y[i];
-        const real rps_mu_1_in_axes1_z = rps_J_group_1_in_axes1_zz*rps_qdd_1 +
-            rps_acc_2_in_axes1_y*rps_h_2_in_spec1_x + rps_g_in_axes1_x*rps_h_1_in_spec1_y -
-            rps_acc_2_in_axes1_x*rps_h_2_in_spec1_y - rps_g_in_axes1_y*rps_h_1_in_spec1_x;
-        /* (rps-G) force at the connection point that balances the leg's inertia and weight along all
-           degrees of freedom */
-        const real rps_G_in_axes1_y = rps_f_2_in_axes1_y + inv_rps_root_1*rps_mu_1_in_axes1_z;
-        /* (rps-c) leg force on the platform without actuation and without the mass at the connection
-           point */
-        const real rps_c_x = -axis_x_rps_axes1_x*rps_f_2_in_axes1_x -
-            axis_y_rps_axes1_x*rps_G_in_axes1_y;
-        const real rps_c_y = -axis_x_rps_axes1_y*rps_f_2_in_axes1_x -
-            axis_y_rps_axes1_y*rps_G_in_axes1_y;
-        const real rps_c_z = -axis_x_rps_axes1_z*rps_f_2_in_axes1_x -
-            axis_y_rps_axes1_z*rps_G_in_axes1_y;
+        values_rps v;
+        stage_rps_X(m, w, i, j, s, X, &v);
+        stage_rps_A_X(w, j, A, &v);
+        stage_rps_V_X(w, j, V, &v);
+        stage_rps_A_V_X(w, j, V, &v);
+        stage_rps_legs_required(m, i, &v);
         /* (R_a) moment that actuators and external wrench must give */
-        const real rps_R_a_t = rps_c_y*rps_q_z - rps_c_z*rps_q_y;
-        const real rps_R_a_t_2 = rps_c_z*rps_q_x - rps_c_x*rps_q_z;
-        const real rps_R_a_t_3 = rps_c_x*rps_q_y - rps_c_y*rps_q_x;
+        const real rps_R_a_t = v.rps_c_y*v.rps_q_z - v.rps_c_z*v.rps_q_y;
+        const real rps_R_a_t_2 = v.rps_c_z*v.rps_q_x - v.rps_c_x*v.rps_q_z;
+        const real rps_R_a_t_3 = v.rps_c_x*v.rps_q_y - v.rps_c_y*v.rps_q_x;
         /* (rps-H_a_2) moment of the column's unit force about the platform origin */
-        const real rps_H_a_2_x = axis_x_rps_axes1_z*rps_q_y - axis_x_rps_axes1_y*rps_q_z;
-        const real rps_H_a_2_y = axis_x_rps_axes1_x*rps_q_z - axis_x_rps_axes1_z*rps_q_x;
-        const real rps_H_a_2_z = axis_x_rps_axes1_y*rps_q_x - axis_x_rps_axes1_x*rps_q_y;
-        /* (rps-Hk_a_1) moment of the column's unit force about the platform origin */
-        const real rps_base_frame_yz = m->rps_base_frame_yz[i];
-        const real rps_base_frame_zz = m->rps_base_frame_zz[i];
-        const real rps_Hk_a_1_x = rps_base_frame_zz*rps_q_y - rps_base_frame_yz*rps_q_z;
-        const real rps_base_frame_xz = m->rps_base_frame_xz[i];
-        const real rps_Hk_a_1_y = rps_base_frame_xz*rps_q_z - rps_base_frame_zz*rps_q_x;
-        const real rps_Hk_a_1_z = rps_base_frame_yz*rps_q_x - rps_base_frame_xz*rps_q_y;
+        const real rps_H_a_2_x = v.axis_x_rps_axes1_z*v.rps_q_y - v.axis_x_rps_axes1_y*v.rps_q_z;
+        const real rps_H_a_2_y = v.axis_x_rps_axes1_x*v.rps_q_z - v.axis_x_rps_axes1_z*v.rps_q_x;
+        const real rps_H_a_2_z = v.axis_x_rps_axes1_y*v.rps_q_x - v.axis_x_rps_axes1_x*v.rps_q_y;
         /* (R_t) force that actuators and external wrench must give */
-        gather(&terms[0*count + k], add, rps_c_x);  /* R_t_x_of_legs */
-        gather(&terms[1*count + k], add, rps_c_y);  /* R_t_y_of_legs */
-        gather(&terms[2*count + k], add, rps_c_z);  /* R_t_z_of_legs */
+        gather(&terms[0*count + k], add, v.rps_c_x);  /* R_t_x_of_legs */
+        gather(&terms[1*count + k], add, v.rps_c_y);  /* R_t_y_of_legs */
+        gather(&terms[2*count + k], add, v.rps_c_z);  /* R_t_z_of_legs */
         /* (R_a) moment that actuators and external wrench must give */
         gather(&terms[3*count + k], add, rps_R_a_t);  /* R_a_x_of_legs */
         gather(&terms[4*count + k], add, rps_R_a_t_2);  /* R_a_y_of_legs */
         gather(&terms[5*count + k], add, rps_R_a_t_3);  /* R_a_z_of_legs */
         /* (rps-w_2) reciprocal vector 2 */
-        o[0*count + k] = axis_x_rps_axes1_x;
-        o[1*count + k] = axis_x_rps_axes1_y;
-        o[2*count + k] = axis_x_rps_axes1_z;
+        o[0*count + k] = v.axis_x_rps_axes1_x;
+        o[1*count + k] = v.axis_x_rps_axes1_y;
+        o[2*count + k] = v.axis_x_rps_axes1_z;
         /* (rps-H_a_2) moment of the column's unit force about the platform origin */
         o[3*count + k] = rps_H_a_2_x;
         o[4*count + k] = rps_H_a_2_y;
         o[5*count + k] = rps_H_a_2_z;
         /* (legs_size) rms size of the legs, taken where the platform points coincide */
+        const real rps_base_frame_xz = m->rps_base_frame_xz[i];
         o[6*count + k] = rps_base_frame_xz;
+        const real rps_base_frame_yz = m->rps_base_frame_yz[i];
         o[7*count + k] = rps_base_frame_yz;
+        const real rps_base_frame_zz = m->rps_base_frame_zz[i];
         o[8*count + k] = rps_base_frame_zz;
         /* (rps-Hk_a_1) moment of the column's unit force about the platform origin */
-        o[9*count + k] = rps_Hk_a_1_x;
-        o[10*count + k] = rps_Hk_a_1_y;
-        o[11*count + k] = rps_Hk_a_1_z;
-        o[12*count + k] = UNLESS(magnitude(rps_rho2_1) > LEAST_1) + UNLESS(magnitude(rps_root_1) >
+        o[9*count + k] = v.rps_Hk_a_1_x;
+        o[10*count + k] = v.rps_Hk_a_1_y;
+        o[11*count + k] = v.rps_Hk_a_1_z;
+        o[12*count + k] = UNLESS(magnitude(v.rps_q_2_t) > LEAST_1) + UNLESS(magnitude(v.rps_q_2) >
             LEAST_2);
     }
 }
@@ -3399,13 +2945,13 @@ INLINE void required_place_rps(size_t w, size_t count, const real *o, size_t leg
     real *H, real *Hk, verdict *t)
 {
     for (size_t k = 0; k < w; ++k) {
-        H[(0*NU + leg)*w + k] = o[0*count + first + k];
+        H[leg*w + k] = o[0*count + first + k];
         H[(NU + leg)*w + k] = o[1*count + first + k];
         H[(2*NU + leg)*w + k] = o[2*count + first + k];
         H[(3*NU + leg)*w + k] = o[3*count + first + k];
         H[(4*NU + leg)*w + k] = o[4*count + first + k];
         H[(5*NU + leg)*w + k] = o[5*count + first + k];
-        Hk[(0*NC + leg)*w + k] = o[6*count + first + k];
+        Hk[leg*w + k] = o[6*count + first + k];
         Hk[(NC + leg)*w + k] = o[7*count + first + k];
         Hk[(2*NC + leg)*w + k] = o[8*count + first + k];
         Hk[(3*NC + leg)*w + k] = o[9*count + first + k];
@@ -3420,23 +2966,23 @@ INLINE void required_after(size_t w, const real *s, const real *sums, real *requ
     for (size_t k = 0; k < w; ++k) {
         /* (R_t) force that actuators and external wrench must give */
         const real R_t_x_of_legs = sums[0*w + k];
-        const real f_p_x = s[24*w + k];
+        const real f_p_x = s[9*w + k];
         const real R_t_x = f_p_x - R_t_x_of_legs;
         const real R_t_y_of_legs = sums[1*w + k];
-        const real f_p_y = s[25*w + k];
+        const real f_p_y = s[10*w + k];
         const real R_t_y = f_p_y - R_t_y_of_legs;
         const real R_t_z_of_legs = sums[2*w + k];
-        const real f_p_z = s[26*w + k];
+        const real f_p_z = s[11*w + k];
         const real R_t_z = f_p_z - R_t_z_of_legs;
         /* (R_a) moment that actuators and external wrench must give */
         const real R_a_x_of_legs = sums[3*w + k];
-        const real mu_p_x = s[27*w + k];
+        const real mu_p_x = s[12*w + k];
         const real R_a_x = R_a_x_of_legs + mu_p_x;
         const real R_a_y_of_legs = sums[4*w + k];
-        const real mu_p_y = s[28*w + k];
+        const real mu_p_y = s[13*w + k];
         const real R_a_y = R_a_y_of_legs + mu_p_y;
         const real R_a_z_of_legs = sums[5*w + k];
-        const real mu_p_z = s[29*w + k];
+        const real mu_p_z = s[14*w + k];
         const real R_a_z = R_a_z_of_legs + mu_p_z;
         /* (R_t) force that actuators and external wrench must give */
         required[0*w + k] = R_t_x;
@@ -3452,12 +2998,10 @@ INLINE void required_after(size_t w, const real *s, const real *sums, real *requ
 INLINE void required_run(const prepared *m, const real *X, const real *V, const real *A, real
     *required, real *H, real *Hk, verdict *t)
 {
-    real s[30] = {0};
-    real sums[6] = {0};
-    real terms_rps[6*LEGS(LEGS_OF_rps)] = {0};
-    real o_rps[13*LEGS(LEGS_OF_rps)] = {0};
+    real s[15] = {0}, sums[6] = {0};
+    real terms_rps[6*LEGS(LEGS_OF_rps)] = {0}, o_rps[13*LEGS(LEGS_OF_rps)] = {0};
     required_before(m, 1, X, V, A, s, t);
-    required_legs_rps(m, 1, 0, 1, s, 0, LEGS(LEGS_OF_rps), 0, terms_rps, o_rps);
+    required_legs_rps(m, 1, 0, 1, s, 0, LEGS(LEGS_OF_rps), 0, X, V, A, terms_rps, o_rps);
     for (size_t leg = 0; leg < LEGS_OF_rps; ++leg) {
         required_place_rps(1, LEGS(LEGS_OF_rps), o_rps, leg, leg, H, Hk, t);
     }
@@ -3470,129 +3014,92 @@ INLINE void required_run(const prepared *m, const real *X, const real *V, const 
 INLINE void required_run_lanes(const prepared *m, const real *X, const real *V, const real *A,
     real *required, real *H, real *Hk, verdict *t)
 {
-    real s[30*LANES];
-    real sums[6*LANES];
+    real s[15*LANES], sums[6*LANES];
     real o_rps[13*LANES];
     required_before(m, LANES, X, V, A, s, t);
     clear(sums, 6*LANES);
     for (size_t leg = 0; leg < LEGS_OF_rps; ++leg) {
-        required_legs_rps(m, LANES, leg, 0, s, 1, LANES, 1, sums, o_rps);
+        required_legs_rps(m, LANES, leg, 0, s, 1, LANES, 1, X, V, A, sums, o_rps);
         required_place_rps(LANES, LANES, o_rps, leg, 0, H, Hk, t);
     }
     required_after(LANES, s, sums, required);
 }
 
 /* ---- inverse_kinematics ---- */
-INLINE void inverse_kinematics_before(size_t w, const real *X, real *s, verdict *t)
+INLINE void inverse_kinematics_before(const prepared *m, size_t w, const real *X, real *s, verdict
+    *t)
 {
     for (size_t k = 0; k < w; ++k) {
-        /* X: named entries */
-        const real X_0 = X[0*w + k];
-        const real t_x = X_0;
-        const real X_1 = X[1*w + k];
-        const real t_y = X_1;
-        const real X_2 = X[2*w + k];
-        const real t_z = X_2;
-        const real X_3 = X[3*w + k];
-        const real X_4 = X[4*w + k];
-        const real X_5 = X[5*w + k];
-        const real X_6 = X[6*w + k];
-        const real quaternion_norm2 = X_3*X_3 + X_4*X_4 + X_5*X_5 + X_6*X_6;
-        const real quaternion_scale = 2/quaternion_norm2;
-        const real quaternion_sx = X_3*quaternion_scale;
-        const real quaternion_sy = X_4*quaternion_scale;
-        const real quaternion_sz = X_5*quaternion_scale;
-        const real quaternion_wx = X_6*quaternion_sx;
-        const real quaternion_wy = X_6*quaternion_sy;
-        const real quaternion_wz = X_6*quaternion_sz;
-        const real quaternion_xx = X_3*quaternion_sx;
-        const real quaternion_xy = X_3*quaternion_sy;
-        const real quaternion_xz = X_3*quaternion_sz;
-        const real quaternion_yy = X_4*quaternion_sy;
-        const real quaternion_yz = X_4*quaternion_sz;
-        const real quaternion_zz = X_5*quaternion_sz;
-        const real R_xx = 1 - quaternion_yy - quaternion_zz;
-        const real R_xy = quaternion_xy - quaternion_wz;
-        const real R_xz = quaternion_wy + quaternion_xz;
-        const real R_yx = quaternion_wz + quaternion_xy;
-        const real R_yy = 1 - quaternion_xx - quaternion_zz;
-        const real R_yz = quaternion_yz - quaternion_wx;
-        const real R_zx = quaternion_xz - quaternion_wy;
-        const real R_zy = quaternion_wx + quaternion_yz;
-        const real R_zz = 1 - quaternion_xx - quaternion_yy;
-        s[0*w + k] = t_x;
-        s[1*w + k] = t_y;
-        s[2*w + k] = t_z;
-        s[3*w + k] = R_xx;
-        s[4*w + k] = R_xy;
-        s[5*w + k] = R_xz;
-        s[6*w + k] = R_yx;
-        s[7*w + k] = R_yy;
-        s[8*w + k] = R_yz;
-        s[9*w + k] = R_zx;
-        s[10*w + k] = R_zy;
-        s[11*w + k] = R_zz;
-        t->invalid[k] += UNLESS(is_finite(quaternion_scale)) + UNLESS(quaternion_scale > 0);
+        values v;
+        stage_X(m, w, k, X, &v);
+        s[0*w + k] = v.R_xx;
+        s[1*w + k] = v.R_xy;
+        s[2*w + k] = v.R_xz;
+        s[3*w + k] = v.R_yx;
+        s[4*w + k] = v.R_yy;
+        s[5*w + k] = v.R_yz;
+        s[6*w + k] = v.R_zx;
+        s[7*w + k] = v.R_zy;
+        s[8*w + k] = v.R_zz;
+        t->invalid[k] += UNLESS(is_finite(v.quaternion_scale)) + UNLESS(v.quaternion_scale > 0);
     }
 }
 
 INLINE void inverse_kinematics_legs_rps(const prepared *m, size_t w, size_t leg, size_t legs,
-    const real *s, size_t states, size_t count, real *o)
+    const real *s, size_t states, size_t count, const real *X, real *o)
 {
     for (size_t k = 0; k < count; ++k) {
         const size_t i = leg + legs*k;
         const size_t j = states*k;
         /* (rps-S) from the base point to the connection point */
-        const real R_xx = s[3*w + j];
-        const real R_xy = s[4*w + j];
-        const real R_xz = s[5*w + j];
+        const real R_xx = s[0*w + j];
+        const real R_xy = s[1*w + j];
+        const real R_xz = s[2*w + j];
         const real rps_base_point_x = m->rps_base_point_x[i];
         const real rps_platform_point_x = m->rps_platform_point_x[i];
         const real rps_platform_point_y = m->rps_platform_point_y[i];
         const real rps_platform_point_z = m->rps_platform_point_z[i];
-        const real t_x = s[0*w + j];
+        const real t_x = X[0*w + j];
         const real rps_S_x = t_x + R_xx*rps_platform_point_x + R_xy*rps_platform_point_y +
             R_xz*rps_platform_point_z - rps_base_point_x;
-        const real R_yx = s[6*w + j];
-        const real R_yy = s[7*w + j];
-        const real R_yz = s[8*w + j];
+        const real R_yx = s[3*w + j];
+        const real R_yy = s[4*w + j];
+        const real R_yz = s[5*w + j];
         const real rps_base_point_y = m->rps_base_point_y[i];
-        const real t_y = s[1*w + j];
+        const real t_y = X[1*w + j];
         const real rps_S_y = t_y + R_yx*rps_platform_point_x + R_yy*rps_platform_point_y +
             R_yz*rps_platform_point_z - rps_base_point_y;
-        const real R_zx = s[9*w + j];
-        const real R_zy = s[10*w + j];
-        const real R_zz = s[11*w + j];
+        const real R_zx = s[6*w + j];
+        const real R_zy = s[7*w + j];
+        const real R_zz = s[8*w + j];
         const real rps_base_point_z = m->rps_base_point_z[i];
-        const real t_z = s[2*w + j];
+        const real t_z = X[2*w + j];
         const real rps_S_z = t_z + R_zx*rps_platform_point_x + R_zy*rps_platform_point_y +
             R_zz*rps_platform_point_z - rps_base_point_z;
-        /* (rps-px_1) component along the reference direction */
         const real rps_base_frame_xx = m->rps_base_frame_xx[i];
         const real rps_base_frame_yx = m->rps_base_frame_yx[i];
         const real rps_base_frame_zx = m->rps_base_frame_zx[i];
-        const real rps_px_1 = rps_S_x*rps_base_frame_xx + rps_S_y*rps_base_frame_yx +
+        const real rps_S_in_turn1_x = rps_S_x*rps_base_frame_xx + rps_S_y*rps_base_frame_yx +
             rps_S_z*rps_base_frame_zx;
-        /* (rps-py_1) component across the reference direction */
         const real rps_base_frame_xy = m->rps_base_frame_xy[i];
         const real rps_base_frame_yy = m->rps_base_frame_yy[i];
         const real rps_base_frame_zy = m->rps_base_frame_zy[i];
-        const real rps_py_1 = rps_S_x*rps_base_frame_xy + rps_S_y*rps_base_frame_yy +
+        const real rps_S_in_turn1_y = rps_S_x*rps_base_frame_xy + rps_S_y*rps_base_frame_yy +
             rps_S_z*rps_base_frame_zy;
-        /* (rps-rho2_1) squared amplitude */
-        const real rps_rho2_1 = rps_px_1*rps_px_1 + rps_py_1*rps_py_1;
-        /* (rps-root_1) amplitude, with the sign of the branch */
+        /* (rps-q_2) displacement of joint 2 */
+        const real rps_q_2_t = rps_S_in_turn1_x*rps_S_in_turn1_x +
+            rps_S_in_turn1_y*rps_S_in_turn1_y;
         const real rps_branch_1 = m->rps_branch_1[i];
-        const real rps_root_1 = rps_branch_1*root(rps_rho2_1);
+        const real rps_q_2 = rps_branch_1*root(rps_q_2_t);
         /* (rps-q_1) displacement of joint 1 */
-        const real inv_rps_root_1 = 1/rps_root_1;
-        const real rps_q_1 = angle(inv_rps_root_1*rps_py_1, inv_rps_root_1*rps_px_1);
+        const real inv_rps_q_2 = 1/rps_q_2;
+        const real rps_q_1 = angle(inv_rps_q_2*rps_S_in_turn1_y, inv_rps_q_2*rps_S_in_turn1_x);
         /* (rps-q_1) displacement of joint 1 */
         o[0*count + k] = rps_q_1;
         /* (rps-q_2) displacement of joint 2 */
-        o[1*count + k] = rps_root_1;
-        o[3*count + k] = rps_q_1 + rps_root_1;
-        o[2*count + k] = UNLESS(magnitude(rps_rho2_1) > LEAST_1);
+        o[1*count + k] = rps_q_2;
+        o[3*count + k] = rps_q_1 + rps_q_2;
+        o[2*count + k] = UNLESS(magnitude(rps_q_2_t) > LEAST_1);
     }
 }
 
@@ -3609,10 +3116,10 @@ INLINE void inverse_kinematics_place_rps(size_t w, size_t count, const real *o, 
 
 INLINE void inverse_kinematics_run(const prepared *m, const real *X, real *q, verdict *t)
 {
-    real s[12] = {0};
+    real s[9] = {0};
     real o_rps[4*LEGS(LEGS_OF_rps)] = {0};
-    inverse_kinematics_before(1, X, s, t);
-    inverse_kinematics_legs_rps(m, 1, 0, 1, s, 0, LEGS(LEGS_OF_rps), o_rps);
+    inverse_kinematics_before(m, 1, X, s, t);
+    inverse_kinematics_legs_rps(m, 1, 0, 1, s, 0, LEGS(LEGS_OF_rps), X, o_rps);
     for (size_t leg = 0; leg < LEGS_OF_rps; ++leg) {
         inverse_kinematics_place_rps(1, LEGS(LEGS_OF_rps), o_rps, leg, leg, q, t);
     }
@@ -3620,169 +3127,73 @@ INLINE void inverse_kinematics_run(const prepared *m, const real *X, real *q, ve
 
 INLINE void inverse_kinematics_run_lanes(const prepared *m, const real *X, real *q, verdict *t)
 {
-    real s[12*LANES];
+    real s[9*LANES];
     real o_rps[4*LANES];
-    inverse_kinematics_before(LANES, X, s, t);
+    inverse_kinematics_before(m, LANES, X, s, t);
     for (size_t leg = 0; leg < LEGS_OF_rps; ++leg) {
-        inverse_kinematics_legs_rps(m, LANES, leg, 0, s, 1, LANES, o_rps);
+        inverse_kinematics_legs_rps(m, LANES, leg, 0, s, 1, LANES, X, o_rps);
         inverse_kinematics_place_rps(LANES, LANES, o_rps, leg, 0, q, t);
     }
 }
 
 /* ---- joint_rates ---- */
-INLINE void joint_rates_before(size_t w, const real *X, const real *V, real *s, verdict *t)
+INLINE void joint_rates_before(const prepared *m, size_t w, const real *X, real *s, verdict *t)
 {
     for (size_t k = 0; k < w; ++k) {
-        /* X: named entries */
-        const real X_0 = X[0*w + k];
-        const real t_x = X_0;
-        const real X_1 = X[1*w + k];
-        const real t_y = X_1;
-        const real X_2 = X[2*w + k];
-        const real t_z = X_2;
-        const real X_3 = X[3*w + k];
-        const real X_4 = X[4*w + k];
-        const real X_5 = X[5*w + k];
-        const real X_6 = X[6*w + k];
-        const real quaternion_norm2 = X_3*X_3 + X_4*X_4 + X_5*X_5 + X_6*X_6;
-        const real quaternion_scale = 2/quaternion_norm2;
-        const real quaternion_sx = X_3*quaternion_scale;
-        const real quaternion_sy = X_4*quaternion_scale;
-        const real quaternion_sz = X_5*quaternion_scale;
-        const real quaternion_wx = X_6*quaternion_sx;
-        const real quaternion_wy = X_6*quaternion_sy;
-        const real quaternion_wz = X_6*quaternion_sz;
-        const real quaternion_xx = X_3*quaternion_sx;
-        const real quaternion_xy = X_3*quaternion_sy;
-        const real quaternion_xz = X_3*quaternion_sz;
-        const real quaternion_yy = X_4*quaternion_sy;
-        const real quaternion_yz = X_4*quaternion_sz;
-        const real quaternion_zz = X_5*quaternion_sz;
-        const real R_xx = 1 - quaternion_yy - quaternion_zz;
-        const real R_xy = quaternion_xy - quaternion_wz;
-        const real R_xz = quaternion_wy + quaternion_xz;
-        const real R_yx = quaternion_wz + quaternion_xy;
-        const real R_yy = 1 - quaternion_xx - quaternion_zz;
-        const real R_yz = quaternion_yz - quaternion_wx;
-        const real R_zx = quaternion_xz - quaternion_wy;
-        const real R_zy = quaternion_wx + quaternion_yz;
-        const real R_zz = 1 - quaternion_xx - quaternion_yy;
-        /* V: named entries */
-        const real V_0 = V[0*w + k];
-        const real t_dot_x = V_0;
-        const real V_1 = V[1*w + k];
-        const real t_dot_y = V_1;
-        const real V_2 = V[2*w + k];
-        const real t_dot_z = V_2;
-        const real V_3 = V[3*w + k];
-        const real omega_x = V_3;
-        const real V_4 = V[4*w + k];
-        const real omega_y = V_4;
-        const real V_5 = V[5*w + k];
-        const real omega_z = V_5;
-        s[0*w + k] = t_x;
-        s[1*w + k] = t_y;
-        s[2*w + k] = t_z;
-        s[3*w + k] = R_xx;
-        s[4*w + k] = R_xy;
-        s[5*w + k] = R_xz;
-        s[6*w + k] = R_yx;
-        s[7*w + k] = R_yy;
-        s[8*w + k] = R_yz;
-        s[9*w + k] = R_zx;
-        s[10*w + k] = R_zy;
-        s[11*w + k] = R_zz;
-        s[12*w + k] = t_dot_x;
-        s[13*w + k] = t_dot_y;
-        s[14*w + k] = t_dot_z;
-        s[15*w + k] = omega_x;
-        s[16*w + k] = omega_y;
-        s[17*w + k] = omega_z;
-        t->invalid[k] += UNLESS(is_finite(quaternion_scale)) + UNLESS(quaternion_scale > 0);
+        values v;
+        stage_X(m, w, k, X, &v);
+        s[0*w + k] = v.R_xx;
+        s[1*w + k] = v.R_xy;
+        s[2*w + k] = v.R_xz;
+        s[3*w + k] = v.R_yx;
+        s[4*w + k] = v.R_yy;
+        s[5*w + k] = v.R_yz;
+        s[6*w + k] = v.R_zx;
+        s[7*w + k] = v.R_zy;
+        s[8*w + k] = v.R_zz;
+        t->invalid[k] += UNLESS(is_finite(v.quaternion_scale)) + UNLESS(v.quaternion_scale > 0);
     }
 }
 
 INLINE void joint_rates_legs_rps(const prepared *m, size_t w, size_t leg, size_t legs, const real
-    *s, size_t states, size_t count, real *o)
+    *s, size_t states, size_t count, const real *X, const real *V, real *o)
 {
     for (size_t k = 0; k < count; ++k) {
         const size_t i = leg + legs*k;
         const size_t j = states*k;
-        /* (rps-S) from the base point to the connection point */
-        const real R_xx = s[3*w + j];
-        const real R_xy = s[4*w + j];
-        const real R_xz = s[5*w + j];
-        const real rps_platform_point_x = m->rps_platform_point_x[i];
-        const real rps_platform_point_y = m->rps_platform_point_y[i];
-        const real rps_platform_point_z = m->rps_platform_point_z[i];
-        const real rps_q_x = R_xx*rps_platform_point_x + R_xy*rps_platform_point_y +
-            R_xz*rps_platform_point_z;
-        const real R_yx = s[6*w + j];
-        const real R_yy = s[7*w + j];
-        const real R_yz = s[8*w + j];
-        const real rps_q_y = R_yx*rps_platform_point_x + R_yy*rps_platform_point_y +
-            R_yz*rps_platform_point_z;
-        const real R_zx = s[9*w + j];
-        const real R_zy = s[10*w + j];
-        const real R_zz = s[11*w + j];
-        const real rps_q_z = R_zx*rps_platform_point_x + R_zy*rps_platform_point_y +
-            R_zz*rps_platform_point_z;
-        const real rps_base_point_x = m->rps_base_point_x[i];
-        const real t_x = s[0*w + j];
-        const real rps_S_x = rps_q_x + t_x - rps_base_point_x;
-        const real rps_base_point_y = m->rps_base_point_y[i];
-        const real t_y = s[1*w + j];
-        const real rps_S_y = rps_q_y + t_y - rps_base_point_y;
-        const real rps_base_point_z = m->rps_base_point_z[i];
-        const real t_z = s[2*w + j];
-        const real rps_S_z = rps_q_z + t_z - rps_base_point_z;
-        /* (rps-px_1) component along the reference direction */
-        const real rps_base_frame_xx = m->rps_base_frame_xx[i];
-        const real rps_base_frame_yx = m->rps_base_frame_yx[i];
-        const real rps_base_frame_zx = m->rps_base_frame_zx[i];
-        const real rps_px_1 = rps_S_x*rps_base_frame_xx + rps_S_y*rps_base_frame_yx +
-            rps_S_z*rps_base_frame_zx;
-        /* (rps-py_1) component across the reference direction */
-        const real rps_base_frame_xy = m->rps_base_frame_xy[i];
-        const real rps_base_frame_yy = m->rps_base_frame_yy[i];
-        const real rps_base_frame_zy = m->rps_base_frame_zy[i];
-        const real rps_py_1 = rps_S_x*rps_base_frame_xy + rps_S_y*rps_base_frame_yy +
-            rps_S_z*rps_base_frame_zy;
-        /* (rps-rho2_1) squared amplitude */
-        const real rps_rho2_1 = rps_px_1*rps_px_1 + rps_py_1*rps_py_1;
-        /* (rps-root_1) amplitude, with the sign of the branch */
-        const real rps_branch_1 = m->rps_branch_1[i];
-        const real rps_root_1 = rps_branch_1*root(rps_rho2_1);
-        /* (rps-c_1) cosine of the angle of joint 1 from its reference direction */
-        const real inv_rps_root_1 = 1/rps_root_1;
-        const real rps_c_1 = inv_rps_root_1*rps_px_1;
-        /* (rps-s_1) sine of the angle of joint 1 from its reference direction */
-        const real rps_s_1 = inv_rps_root_1*rps_py_1;
+        values_rps v;
+        stage_rps_X(m, w, i, j, s, X, &v);
         /* (rps-S_dot) velocity of the connection point */
-        const real omega_y = s[16*w + j];
-        const real omega_z = s[17*w + j];
-        const real t_dot_x = s[12*w + j];
-        const real rps_S_dot_x = t_dot_x + omega_y*rps_q_z - omega_z*rps_q_y;
-        const real omega_x = s[15*w + j];
-        const real t_dot_y = s[13*w + j];
-        const real rps_S_dot_y = t_dot_y + omega_z*rps_q_x - omega_x*rps_q_z;
-        const real t_dot_z = s[14*w + j];
-        const real rps_S_dot_z = t_dot_z + omega_x*rps_q_y - omega_y*rps_q_x;
-        const real rps_S_dot_in_axes1_x = rps_S_dot_x*(rps_base_frame_xx*rps_c_1 +
-            rps_base_frame_xy*rps_s_1) + rps_S_dot_y*(rps_base_frame_yx*rps_c_1 +
-            rps_base_frame_yy*rps_s_1) + rps_S_dot_z*(rps_base_frame_zx*rps_c_1 +
-            rps_base_frame_zy*rps_s_1);
+        const real omega_y = V[4*w + j];
+        const real omega_z = V[5*w + j];
+        const real t_dot_x = V[0*w + j];
+        const real rps_S_dot_x = t_dot_x + omega_y*v.rps_q_z - omega_z*v.rps_q_y;
+        const real omega_x = V[3*w + j];
+        const real t_dot_y = V[1*w + j];
+        const real rps_S_dot_y = t_dot_y + omega_z*v.rps_q_x - omega_x*v.rps_q_z;
+        const real t_dot_z = V[2*w + j];
+        const real rps_S_dot_z = t_dot_z + omega_x*v.rps_q_y - omega_y*v.rps_q_x;
+        const real rps_base_frame_xx = m->rps_base_frame_xx[i];
+        const real rps_base_frame_xy = m->rps_base_frame_xy[i];
+        const real rps_base_frame_yx = m->rps_base_frame_yx[i];
+        const real rps_base_frame_yy = m->rps_base_frame_yy[i];
+        const real rps_base_frame_zx = m->rps_base_frame_zx[i];
+        const real rps_base_frame_zy = m->rps_base_frame_zy[i];
+        const real rps_S_dot_in_axes1_x = rps_S_dot_x*(rps_base_frame_xx*v.rps_c_1 +
+            rps_base_frame_xy*v.rps_s_1) + rps_S_dot_y*(rps_base_frame_yx*v.rps_c_1 +
+            rps_base_frame_yy*v.rps_s_1) + rps_S_dot_z*(rps_base_frame_zx*v.rps_c_1 +
+            rps_base_frame_zy*v.rps_s_1);
         /* (rps-qd_1) rate of joint 1 */
-        const real rps_qd_1 = inv_rps_root_1*(rps_S_dot_x*(rps_base_frame_xy*rps_c_1 -
-            rps_base_frame_xx*rps_s_1) + rps_S_dot_y*(rps_base_frame_yy*rps_c_1 -
-            rps_base_frame_yx*rps_s_1) + rps_S_dot_z*(rps_base_frame_zy*rps_c_1 -
-            rps_base_frame_zx*rps_s_1));
+        const real rps_qd_1 = v.inv_rps_q_2*(rps_S_dot_x*(rps_base_frame_xy*v.rps_c_1 -
+            rps_base_frame_xx*v.rps_s_1) + rps_S_dot_y*(rps_base_frame_yy*v.rps_c_1 -
+            rps_base_frame_yx*v.rps_s_1) + rps_S_dot_z*(rps_base_frame_zy*v.rps_c_1 -
+            rps_base_frame_zx*v.rps_s_1));
         /* (rps-qd_1) rate of joint 1 */
         o[0*count + k] = rps_qd_1;
         /* (rps-qd_2) rate of joint 2 */
         o[1*count + k] = rps_S_dot_in_axes1_x;
         o[3*count + k] = rps_qd_1 + rps_S_dot_in_axes1_x;
-        o[2*count + k] = UNLESS(magnitude(rps_rho2_1) > LEAST_1) + UNLESS(magnitude(rps_root_1) >
+        o[2*count + k] = UNLESS(magnitude(v.rps_q_2_t) > LEAST_1) + UNLESS(magnitude(v.rps_q_2) >
             LEAST_2);
     }
 }
@@ -3800,10 +3211,10 @@ INLINE void joint_rates_place_rps(size_t w, size_t count, const real *o, size_t 
 
 INLINE void joint_rates_run(const prepared *m, const real *X, const real *V, real *qd, verdict *t)
 {
-    real s[18] = {0};
+    real s[9] = {0};
     real o_rps[4*LEGS(LEGS_OF_rps)] = {0};
-    joint_rates_before(1, X, V, s, t);
-    joint_rates_legs_rps(m, 1, 0, 1, s, 0, LEGS(LEGS_OF_rps), o_rps);
+    joint_rates_before(m, 1, X, s, t);
+    joint_rates_legs_rps(m, 1, 0, 1, s, 0, LEGS(LEGS_OF_rps), X, V, o_rps);
     for (size_t leg = 0; leg < LEGS_OF_rps; ++leg) {
         joint_rates_place_rps(1, LEGS(LEGS_OF_rps), o_rps, leg, leg, qd, t);
     }
@@ -3812,217 +3223,62 @@ INLINE void joint_rates_run(const prepared *m, const real *X, const real *V, rea
 INLINE void joint_rates_run_lanes(const prepared *m, const real *X, const real *V, real *qd,
     verdict *t)
 {
-    real s[18*LANES];
+    real s[9*LANES];
     real o_rps[4*LANES];
-    joint_rates_before(LANES, X, V, s, t);
+    joint_rates_before(m, LANES, X, s, t);
     for (size_t leg = 0; leg < LEGS_OF_rps; ++leg) {
-        joint_rates_legs_rps(m, LANES, leg, 0, s, 1, LANES, o_rps);
+        joint_rates_legs_rps(m, LANES, leg, 0, s, 1, LANES, X, V, o_rps);
         joint_rates_place_rps(LANES, LANES, o_rps, leg, 0, qd, t);
     }
 }
 
 /* ---- joint_accelerations ---- */
-INLINE void joint_accelerations_before(size_t w, const real *X, const real *V, const real *A, real
-    *s, verdict *t)
+INLINE void joint_accelerations_before(const prepared *m, size_t w, const real *X, real *s,
+    verdict *t)
 {
     for (size_t k = 0; k < w; ++k) {
-        /* X: named entries */
-        const real X_0 = X[0*w + k];
-        const real t_x = X_0;
-        const real X_1 = X[1*w + k];
-        const real t_y = X_1;
-        const real X_2 = X[2*w + k];
-        const real t_z = X_2;
-        const real X_3 = X[3*w + k];
-        const real X_4 = X[4*w + k];
-        const real X_5 = X[5*w + k];
-        const real X_6 = X[6*w + k];
-        const real quaternion_norm2 = X_3*X_3 + X_4*X_4 + X_5*X_5 + X_6*X_6;
-        const real quaternion_scale = 2/quaternion_norm2;
-        const real quaternion_sx = X_3*quaternion_scale;
-        const real quaternion_sy = X_4*quaternion_scale;
-        const real quaternion_sz = X_5*quaternion_scale;
-        const real quaternion_wx = X_6*quaternion_sx;
-        const real quaternion_wy = X_6*quaternion_sy;
-        const real quaternion_wz = X_6*quaternion_sz;
-        const real quaternion_xx = X_3*quaternion_sx;
-        const real quaternion_xy = X_3*quaternion_sy;
-        const real quaternion_xz = X_3*quaternion_sz;
-        const real quaternion_yy = X_4*quaternion_sy;
-        const real quaternion_yz = X_4*quaternion_sz;
-        const real quaternion_zz = X_5*quaternion_sz;
-        const real R_xx = 1 - quaternion_yy - quaternion_zz;
-        const real R_xy = quaternion_xy - quaternion_wz;
-        const real R_xz = quaternion_wy + quaternion_xz;
-        const real R_yx = quaternion_wz + quaternion_xy;
-        const real R_yy = 1 - quaternion_xx - quaternion_zz;
-        const real R_yz = quaternion_yz - quaternion_wx;
-        const real R_zx = quaternion_xz - quaternion_wy;
-        const real R_zy = quaternion_wx + quaternion_yz;
-        const real R_zz = 1 - quaternion_xx - quaternion_yy;
-        /* V: named entries */
-        const real V_0 = V[0*w + k];
-        const real t_dot_x = V_0;
-        const real V_1 = V[1*w + k];
-        const real t_dot_y = V_1;
-        const real V_2 = V[2*w + k];
-        const real t_dot_z = V_2;
-        const real V_3 = V[3*w + k];
-        const real omega_x = V_3;
-        const real V_4 = V[4*w + k];
-        const real omega_y = V_4;
-        const real V_5 = V[5*w + k];
-        const real omega_z = V_5;
-        /* A: named entries */
-        const real A_0 = A[0*w + k];
-        const real t_ddot_x = A_0;
-        const real A_1 = A[1*w + k];
-        const real t_ddot_y = A_1;
-        const real A_2 = A[2*w + k];
-        const real t_ddot_z = A_2;
-        const real A_3 = A[3*w + k];
-        const real alpha_x = A_3;
-        const real A_4 = A[4*w + k];
-        const real alpha_y = A_4;
-        const real A_5 = A[5*w + k];
-        const real alpha_z = A_5;
-        s[0*w + k] = t_x;
-        s[1*w + k] = t_y;
-        s[2*w + k] = t_z;
-        s[3*w + k] = R_xx;
-        s[4*w + k] = R_xy;
-        s[5*w + k] = R_xz;
-        s[6*w + k] = R_yx;
-        s[7*w + k] = R_yy;
-        s[8*w + k] = R_yz;
-        s[9*w + k] = R_zx;
-        s[10*w + k] = R_zy;
-        s[11*w + k] = R_zz;
-        s[12*w + k] = t_dot_x;
-        s[13*w + k] = t_dot_y;
-        s[14*w + k] = t_dot_z;
-        s[15*w + k] = omega_x;
-        s[16*w + k] = omega_y;
-        s[17*w + k] = omega_z;
-        s[18*w + k] = t_ddot_x;
-        s[19*w + k] = t_ddot_y;
-        s[20*w + k] = t_ddot_z;
-        s[21*w + k] = alpha_x;
-        s[22*w + k] = alpha_y;
-        s[23*w + k] = alpha_z;
-        t->invalid[k] += UNLESS(is_finite(quaternion_scale)) + UNLESS(quaternion_scale > 0);
+        values v;
+        stage_X(m, w, k, X, &v);
+        s[0*w + k] = v.R_xx;
+        s[1*w + k] = v.R_xy;
+        s[2*w + k] = v.R_xz;
+        s[3*w + k] = v.R_yx;
+        s[4*w + k] = v.R_yy;
+        s[5*w + k] = v.R_yz;
+        s[6*w + k] = v.R_zx;
+        s[7*w + k] = v.R_zy;
+        s[8*w + k] = v.R_zz;
+        t->invalid[k] += UNLESS(is_finite(v.quaternion_scale)) + UNLESS(v.quaternion_scale > 0);
     }
 }
 
 INLINE void joint_accelerations_legs_rps(const prepared *m, size_t w, size_t leg, size_t legs,
-    const real *s, size_t states, size_t count, real *o)
+    const real *s, size_t states, size_t count, const real *X, const real *V, const real *A, real
+    *o)
 {
     for (size_t k = 0; k < count; ++k) {
         const size_t i = leg + legs*k;
         const size_t j = states*k;
-        /* (rps-S) from the base point to the connection point */
-        const real R_xx = s[3*w + j];
-        const real R_xy = s[4*w + j];
-        const real R_xz = s[5*w + j];
-        const real rps_platform_point_x = m->rps_platform_point_x[i];
-        const real rps_platform_point_y = m->rps_platform_point_y[i];
-        const real rps_platform_point_z = m->rps_platform_point_z[i];
-        const real rps_q_x = R_xx*rps_platform_point_x + R_xy*rps_platform_point_y +
-            R_xz*rps_platform_point_z;
-        const real R_yx = s[6*w + j];
-        const real R_yy = s[7*w + j];
-        const real R_yz = s[8*w + j];
-        const real rps_q_y = R_yx*rps_platform_point_x + R_yy*rps_platform_point_y +
-            R_yz*rps_platform_point_z;
-        const real R_zx = s[9*w + j];
-        const real R_zy = s[10*w + j];
-        const real R_zz = s[11*w + j];
-        const real rps_q_z = R_zx*rps_platform_point_x + R_zy*rps_platform_point_y +
-            R_zz*rps_platform_point_z;
-        const real rps_base_point_x = m->rps_base_point_x[i];
-        const real t_x = s[0*w + j];
-        const real rps_S_x = rps_q_x + t_x - rps_base_point_x;
-        const real rps_base_point_y = m->rps_base_point_y[i];
-        const real t_y = s[1*w + j];
-        const real rps_S_y = rps_q_y + t_y - rps_base_point_y;
-        const real rps_base_point_z = m->rps_base_point_z[i];
-        const real t_z = s[2*w + j];
-        const real rps_S_z = rps_q_z + t_z - rps_base_point_z;
-        /* (rps-px_1) component along the reference direction */
-        const real rps_base_frame_xx = m->rps_base_frame_xx[i];
-        const real rps_base_frame_yx = m->rps_base_frame_yx[i];
-        const real rps_base_frame_zx = m->rps_base_frame_zx[i];
-        const real rps_px_1 = rps_S_x*rps_base_frame_xx + rps_S_y*rps_base_frame_yx +
-            rps_S_z*rps_base_frame_zx;
-        /* (rps-py_1) component across the reference direction */
-        const real rps_base_frame_xy = m->rps_base_frame_xy[i];
-        const real rps_base_frame_yy = m->rps_base_frame_yy[i];
-        const real rps_base_frame_zy = m->rps_base_frame_zy[i];
-        const real rps_py_1 = rps_S_x*rps_base_frame_xy + rps_S_y*rps_base_frame_yy +
-            rps_S_z*rps_base_frame_zy;
-        /* (rps-rho2_1) squared amplitude */
-        const real rps_rho2_1 = rps_px_1*rps_px_1 + rps_py_1*rps_py_1;
-        /* (rps-root_1) amplitude, with the sign of the branch */
-        const real rps_branch_1 = m->rps_branch_1[i];
-        const real rps_root_1 = rps_branch_1*root(rps_rho2_1);
-        /* (rps-c_1) cosine of the angle of joint 1 from its reference direction */
-        const real inv_rps_root_1 = 1/rps_root_1;
-        const real rps_c_1 = inv_rps_root_1*rps_px_1;
-        /* (rps-s_1) sine of the angle of joint 1 from its reference direction */
-        const real rps_s_1 = inv_rps_root_1*rps_py_1;
-        /* (rps-S_dot) velocity of the connection point */
-        const real axis_x_rps_axes1_x = rps_base_frame_xx*rps_c_1 + rps_base_frame_xy*rps_s_1;
-        const real axis_x_rps_axes1_y = rps_base_frame_yx*rps_c_1 + rps_base_frame_yy*rps_s_1;
-        const real axis_x_rps_axes1_z = rps_base_frame_zx*rps_c_1 + rps_base_frame_zy*rps_s_1;
-        const real omega_y = s[16*w + j];
-        const real omega_z = s[17*w + j];
-        const real rps_S_dot_t = omega_y*rps_q_z - omega_z*rps_q_y;
-        const real omega_x = s[15*w + j];
-        const real rps_S_dot_t_2 = omega_z*rps_q_x - omega_x*rps_q_z;
-        const real rps_S_dot_t_3 = omega_x*rps_q_y - omega_y*rps_q_x;
-        const real t_dot_x = s[12*w + j];
-        const real rps_S_dot_x = rps_S_dot_t + t_dot_x;
-        const real t_dot_y = s[13*w + j];
-        const real rps_S_dot_y = rps_S_dot_t_2 + t_dot_y;
-        const real t_dot_z = s[14*w + j];
-        const real rps_S_dot_z = rps_S_dot_t_3 + t_dot_z;
-        const real rps_S_dot_in_axes1_x = axis_x_rps_axes1_x*rps_S_dot_x +
-            axis_x_rps_axes1_y*rps_S_dot_y + axis_x_rps_axes1_z*rps_S_dot_z;
-        /* (rps-qd_1) rate of joint 1 */
-        const real axis_y_rps_axes1_x = rps_base_frame_xy*rps_c_1 - rps_base_frame_xx*rps_s_1;
-        const real axis_y_rps_axes1_y = rps_base_frame_yy*rps_c_1 - rps_base_frame_yx*rps_s_1;
-        const real axis_y_rps_axes1_z = rps_base_frame_zy*rps_c_1 - rps_base_frame_zx*rps_s_1;
-        const real rps_qd_1 = inv_rps_root_1*(axis_y_rps_axes1_x*rps_S_dot_x +
-            axis_y_rps_axes1_y*rps_S_dot_y + axis_y_rps_axes1_z*rps_S_dot_z);
-        /* (rps-a_p) acceleration of the connection point without its centripetal part */
-        const real alpha_y = s[22*w + j];
-        const real alpha_z = s[23*w + j];
-        const real t_ddot_x = s[18*w + j];
-        const real rps_a_p_x = t_ddot_x + alpha_y*rps_q_z - alpha_z*rps_q_y;
-        const real alpha_x = s[21*w + j];
-        const real t_ddot_y = s[19*w + j];
-        const real rps_a_p_y = t_ddot_y + alpha_z*rps_q_x - alpha_x*rps_q_z;
-        const real t_ddot_z = s[20*w + j];
-        const real rps_a_p_z = t_ddot_z + alpha_x*rps_q_y - alpha_y*rps_q_x;
-        /* (rps-S_ddot) acceleration of the connection point */
-        const real rps_S_ddot_x = rps_a_p_x + omega_y*rps_S_dot_t_3 - omega_z*rps_S_dot_t_2;
-        const real rps_S_ddot_y = rps_a_p_y + omega_z*rps_S_dot_t - omega_x*rps_S_dot_t_3;
-        const real rps_S_ddot_z = rps_a_p_z + omega_x*rps_S_dot_t_2 - omega_y*rps_S_dot_t;
+        values_rps v;
+        stage_rps_X(m, w, i, j, s, X, &v);
+        stage_rps_A_X(w, j, A, &v);
+        stage_rps_V_X(w, j, V, &v);
+        stage_rps_A_V_X(w, j, V, &v);
         /* (rps-rel) acceleration of the connection point left to the joint accelerations */
-        const real rps_rel_in_axes1_x = axis_x_rps_axes1_x*rps_S_ddot_x +
-            axis_x_rps_axes1_y*rps_S_ddot_y + axis_x_rps_axes1_z*rps_S_ddot_z +
-            rps_qd_1*rps_qd_1*rps_root_1;
-        const real rps_rel_in_axes1_y = axis_y_rps_axes1_x*rps_S_ddot_x +
-            axis_y_rps_axes1_y*rps_S_ddot_y + axis_y_rps_axes1_z*rps_S_ddot_z -
-            2*rps_S_dot_in_axes1_x*rps_qd_1;
+        const real rps_rel_in_axes1_x = v.axis_x_rps_axes1_x*v.rps_S_ddot_x +
+            v.axis_x_rps_axes1_y*v.rps_S_ddot_y + v.axis_x_rps_axes1_z*v.rps_S_ddot_z +
+            v.rps_q_2*v.rps_qd_1*v.rps_qd_1;
+        const real rps_rel_in_axes1_y = v.axis_y_rps_axes1_x*v.rps_S_ddot_x +
+            v.axis_y_rps_axes1_y*v.rps_S_ddot_y + v.axis_y_rps_axes1_z*v.rps_S_ddot_z -
+            2*v.rps_S_dot_in_axes1_x*v.rps_qd_1;
         /* (rps-qdd_1) acceleration of joint 1 */
-        const real rps_qdd_1 = inv_rps_root_1*rps_rel_in_axes1_y;
+        const real rps_qdd_1 = v.inv_rps_q_2*rps_rel_in_axes1_y;
         /* (rps-qdd_1) acceleration of joint 1 */
         o[0*count + k] = rps_qdd_1;
         /* (rps-qdd_2) acceleration of joint 2 */
         o[1*count + k] = rps_rel_in_axes1_x;
         o[3*count + k] = rps_qdd_1 + rps_rel_in_axes1_x;
-        o[2*count + k] = UNLESS(magnitude(rps_rho2_1) > LEAST_1) + UNLESS(magnitude(rps_root_1) >
+        o[2*count + k] = UNLESS(magnitude(v.rps_q_2_t) > LEAST_1) + UNLESS(magnitude(v.rps_q_2) >
             LEAST_2);
     }
 }
@@ -4041,10 +3297,10 @@ INLINE void joint_accelerations_place_rps(size_t w, size_t count, const real *o,
 INLINE void joint_accelerations_run(const prepared *m, const real *X, const real *V, const real
     *A, real *qdd, verdict *t)
 {
-    real s[24] = {0};
+    real s[9] = {0};
     real o_rps[4*LEGS(LEGS_OF_rps)] = {0};
-    joint_accelerations_before(1, X, V, A, s, t);
-    joint_accelerations_legs_rps(m, 1, 0, 1, s, 0, LEGS(LEGS_OF_rps), o_rps);
+    joint_accelerations_before(m, 1, X, s, t);
+    joint_accelerations_legs_rps(m, 1, 0, 1, s, 0, LEGS(LEGS_OF_rps), X, V, A, o_rps);
     for (size_t leg = 0; leg < LEGS_OF_rps; ++leg) {
         joint_accelerations_place_rps(1, LEGS(LEGS_OF_rps), o_rps, leg, leg, qdd, t);
     }
@@ -4053,108 +3309,73 @@ INLINE void joint_accelerations_run(const prepared *m, const real *X, const real
 INLINE void joint_accelerations_run_lanes(const prepared *m, const real *X, const real *V, const
     real *A, real *qdd, verdict *t)
 {
-    real s[24*LANES];
+    real s[9*LANES];
     real o_rps[4*LANES];
-    joint_accelerations_before(LANES, X, V, A, s, t);
+    joint_accelerations_before(m, LANES, X, s, t);
     for (size_t leg = 0; leg < LEGS_OF_rps; ++leg) {
-        joint_accelerations_legs_rps(m, LANES, leg, 0, s, 1, LANES, o_rps);
+        joint_accelerations_legs_rps(m, LANES, leg, 0, s, 1, LANES, X, V, A, o_rps);
         joint_accelerations_place_rps(LANES, LANES, o_rps, leg, 0, qdd, t);
     }
 }
 
 /* ---- constraints ---- */
-INLINE void constraints_before(size_t w, const real *X, real *s, verdict *t)
+INLINE void constraints_before(const prepared *m, size_t w, const real *X, real *s, verdict *t)
 {
     for (size_t k = 0; k < w; ++k) {
-        /* X: named entries */
-        const real X_0 = X[0*w + k];
-        const real t_x = X_0;
-        const real X_1 = X[1*w + k];
-        const real t_y = X_1;
-        const real X_2 = X[2*w + k];
-        const real t_z = X_2;
-        const real X_3 = X[3*w + k];
-        const real X_4 = X[4*w + k];
-        const real X_5 = X[5*w + k];
-        const real X_6 = X[6*w + k];
-        const real quaternion_norm2 = X_3*X_3 + X_4*X_4 + X_5*X_5 + X_6*X_6;
-        const real quaternion_scale = 2/quaternion_norm2;
-        const real quaternion_sx = X_3*quaternion_scale;
-        const real quaternion_sy = X_4*quaternion_scale;
-        const real quaternion_sz = X_5*quaternion_scale;
-        const real quaternion_wx = X_6*quaternion_sx;
-        const real quaternion_wy = X_6*quaternion_sy;
-        const real quaternion_wz = X_6*quaternion_sz;
-        const real quaternion_xx = X_3*quaternion_sx;
-        const real quaternion_xy = X_3*quaternion_sy;
-        const real quaternion_xz = X_3*quaternion_sz;
-        const real quaternion_yy = X_4*quaternion_sy;
-        const real quaternion_yz = X_4*quaternion_sz;
-        const real quaternion_zz = X_5*quaternion_sz;
-        const real R_xx = 1 - quaternion_yy - quaternion_zz;
-        const real R_xy = quaternion_xy - quaternion_wz;
-        const real R_xz = quaternion_wy + quaternion_xz;
-        const real R_yx = quaternion_wz + quaternion_xy;
-        const real R_yy = 1 - quaternion_xx - quaternion_zz;
-        const real R_yz = quaternion_yz - quaternion_wx;
-        const real R_zx = quaternion_xz - quaternion_wy;
-        const real R_zy = quaternion_wx + quaternion_yz;
-        const real R_zz = 1 - quaternion_xx - quaternion_yy;
-        s[0*w + k] = t_x;
-        s[1*w + k] = t_y;
-        s[2*w + k] = t_z;
-        s[3*w + k] = R_xx;
-        s[4*w + k] = R_xy;
-        s[5*w + k] = R_xz;
-        s[6*w + k] = R_yx;
-        s[7*w + k] = R_yy;
-        s[8*w + k] = R_yz;
-        s[9*w + k] = R_zx;
-        s[10*w + k] = R_zy;
-        s[11*w + k] = R_zz;
-        t->invalid[k] += UNLESS(is_finite(quaternion_scale)) + UNLESS(quaternion_scale > 0);
+        values v;
+        stage_X(m, w, k, X, &v);
+        s[0*w + k] = v.R_xx;
+        s[1*w + k] = v.R_xy;
+        s[2*w + k] = v.R_xz;
+        s[3*w + k] = v.R_yx;
+        s[4*w + k] = v.R_yy;
+        s[5*w + k] = v.R_yz;
+        s[6*w + k] = v.R_zx;
+        s[7*w + k] = v.R_zy;
+        s[8*w + k] = v.R_zz;
+        t->invalid[k] += UNLESS(is_finite(v.quaternion_scale)) + UNLESS(v.quaternion_scale > 0);
     }
 }
 
 INLINE void constraints_legs_rps(const prepared *m, size_t w, size_t leg, size_t legs, const real
-    *s, size_t states, size_t count, real *o)
+    *s, size_t states, size_t count, const real *X, real *o)
 {
     for (size_t k = 0; k < count; ++k) {
         const size_t i = leg + legs*k;
         const size_t j = states*k;
         /* (rps-S) from the base point to the connection point */
-        const real R_xx = s[3*w + j];
-        const real R_xy = s[4*w + j];
-        const real R_xz = s[5*w + j];
+        const real R_xx = s[0*w + j];
+        const real R_xy = s[1*w + j];
+        const real R_xz = s[2*w + j];
         const real rps_base_point_x = m->rps_base_point_x[i];
         const real rps_platform_point_x = m->rps_platform_point_x[i];
         const real rps_platform_point_y = m->rps_platform_point_y[i];
         const real rps_platform_point_z = m->rps_platform_point_z[i];
-        const real t_x = s[0*w + j];
+        const real t_x = X[0*w + j];
         const real rps_S_x = t_x + R_xx*rps_platform_point_x + R_xy*rps_platform_point_y +
             R_xz*rps_platform_point_z - rps_base_point_x;
-        const real R_yx = s[6*w + j];
-        const real R_yy = s[7*w + j];
-        const real R_yz = s[8*w + j];
+        const real R_yx = s[3*w + j];
+        const real R_yy = s[4*w + j];
+        const real R_yz = s[5*w + j];
         const real rps_base_point_y = m->rps_base_point_y[i];
-        const real t_y = s[1*w + j];
+        const real t_y = X[1*w + j];
         const real rps_S_y = t_y + R_yx*rps_platform_point_x + R_yy*rps_platform_point_y +
             R_yz*rps_platform_point_z - rps_base_point_y;
-        const real R_zx = s[9*w + j];
-        const real R_zy = s[10*w + j];
-        const real R_zz = s[11*w + j];
+        const real R_zx = s[6*w + j];
+        const real R_zy = s[7*w + j];
+        const real R_zz = s[8*w + j];
         const real rps_base_point_z = m->rps_base_point_z[i];
-        const real t_z = s[2*w + j];
+        const real t_z = X[2*w + j];
         const real rps_S_z = t_z + R_zx*rps_platform_point_x + R_zy*rps_platform_point_y +
             R_zz*rps_platform_point_z - rps_base_point_z;
         const real rps_base_frame_xz = m->rps_base_frame_xz[i];
         const real rps_base_frame_yz = m->rps_base_frame_yz[i];
         const real rps_base_frame_zz = m->rps_base_frame_zz[i];
-        const real rps_S_in_axes1_z = rps_S_x*rps_base_frame_xz + rps_S_y*rps_base_frame_yz +
+        const real rps_S_in_turn1_z = rps_S_x*rps_base_frame_xz + rps_S_y*rps_base_frame_yz +
             rps_S_z*rps_base_frame_zz;
         /* (rps-phi_c1) loop-closure residual along the constraint force */
-        o[0*count + k] = rps_S_in_axes1_z;
-        o[1*count + k] = rps_S_in_axes1_z;
+        o[0*count + k] = rps_S_in_turn1_z;
+        o[1*count + k] = rps_S_in_turn1_z;
     }
 }
 
@@ -4169,10 +3390,10 @@ INLINE void constraints_place_rps(size_t w, size_t count, const real *o, size_t 
 
 INLINE void constraints_run(const prepared *m, const real *X, real *constraints, verdict *t)
 {
-    real s[12] = {0};
+    real s[9] = {0};
     real o_rps[2*LEGS(LEGS_OF_rps)] = {0};
-    constraints_before(1, X, s, t);
-    constraints_legs_rps(m, 1, 0, 1, s, 0, LEGS(LEGS_OF_rps), o_rps);
+    constraints_before(m, 1, X, s, t);
+    constraints_legs_rps(m, 1, 0, 1, s, 0, LEGS(LEGS_OF_rps), X, o_rps);
     for (size_t leg = 0; leg < LEGS_OF_rps; ++leg) {
         constraints_place_rps(1, LEGS(LEGS_OF_rps), o_rps, leg, leg, constraints, t);
     }
@@ -4180,253 +3401,55 @@ INLINE void constraints_run(const prepared *m, const real *X, real *constraints,
 
 INLINE void constraints_run_lanes(const prepared *m, const real *X, real *constraints, verdict *t)
 {
-    real s[12*LANES];
+    real s[9*LANES];
     real o_rps[2*LANES];
-    constraints_before(LANES, X, s, t);
+    constraints_before(m, LANES, X, s, t);
     for (size_t leg = 0; leg < LEGS_OF_rps; ++leg) {
-        constraints_legs_rps(m, LANES, leg, 0, s, 1, LANES, o_rps);
+        constraints_legs_rps(m, LANES, leg, 0, s, 1, LANES, X, o_rps);
         constraints_place_rps(LANES, LANES, o_rps, leg, 0, constraints, t);
     }
 }
 
 /* ---- legs ---- */
-INLINE void legs_before(size_t w, const real *X, const real *V, const real *A, real *s, verdict
-    *t)
+INLINE void legs_before(const prepared *m, size_t w, const real *X, real *s, verdict *t)
 {
     for (size_t k = 0; k < w; ++k) {
-        /* X: named entries */
-        const real X_0 = X[0*w + k];
-        const real t_x = X_0;
-        const real X_1 = X[1*w + k];
-        const real t_y = X_1;
-        const real X_2 = X[2*w + k];
-        const real t_z = X_2;
-        const real X_3 = X[3*w + k];
-        const real X_4 = X[4*w + k];
-        const real X_5 = X[5*w + k];
-        const real X_6 = X[6*w + k];
-        const real quaternion_norm2 = X_3*X_3 + X_4*X_4 + X_5*X_5 + X_6*X_6;
-        const real quaternion_scale = 2/quaternion_norm2;
-        const real quaternion_sx = X_3*quaternion_scale;
-        const real quaternion_sy = X_4*quaternion_scale;
-        const real quaternion_sz = X_5*quaternion_scale;
-        const real quaternion_wx = X_6*quaternion_sx;
-        const real quaternion_wy = X_6*quaternion_sy;
-        const real quaternion_wz = X_6*quaternion_sz;
-        const real quaternion_xx = X_3*quaternion_sx;
-        const real quaternion_xy = X_3*quaternion_sy;
-        const real quaternion_xz = X_3*quaternion_sz;
-        const real quaternion_yy = X_4*quaternion_sy;
-        const real quaternion_yz = X_4*quaternion_sz;
-        const real quaternion_zz = X_5*quaternion_sz;
-        const real R_xx = 1 - quaternion_yy - quaternion_zz;
-        const real R_xy = quaternion_xy - quaternion_wz;
-        const real R_xz = quaternion_wy + quaternion_xz;
-        const real R_yx = quaternion_wz + quaternion_xy;
-        const real R_yy = 1 - quaternion_xx - quaternion_zz;
-        const real R_yz = quaternion_yz - quaternion_wx;
-        const real R_zx = quaternion_xz - quaternion_wy;
-        const real R_zy = quaternion_wx + quaternion_yz;
-        const real R_zz = 1 - quaternion_xx - quaternion_yy;
-        /* V: named entries */
-        const real V_0 = V[0*w + k];
-        const real t_dot_x = V_0;
-        const real V_1 = V[1*w + k];
-        const real t_dot_y = V_1;
-        const real V_2 = V[2*w + k];
-        const real t_dot_z = V_2;
-        const real V_3 = V[3*w + k];
-        const real omega_x = V_3;
-        const real V_4 = V[4*w + k];
-        const real omega_y = V_4;
-        const real V_5 = V[5*w + k];
-        const real omega_z = V_5;
-        /* A: named entries */
-        const real A_0 = A[0*w + k];
-        const real t_ddot_x = A_0;
-        const real A_1 = A[1*w + k];
-        const real t_ddot_y = A_1;
-        const real A_2 = A[2*w + k];
-        const real t_ddot_z = A_2;
-        const real A_3 = A[3*w + k];
-        const real alpha_x = A_3;
-        const real A_4 = A[4*w + k];
-        const real alpha_y = A_4;
-        const real A_5 = A[5*w + k];
-        const real alpha_z = A_5;
-        s[0*w + k] = t_x;
-        s[1*w + k] = t_y;
-        s[2*w + k] = t_z;
-        s[3*w + k] = R_xx;
-        s[4*w + k] = R_xy;
-        s[5*w + k] = R_xz;
-        s[6*w + k] = R_yx;
-        s[7*w + k] = R_yy;
-        s[8*w + k] = R_yz;
-        s[9*w + k] = R_zx;
-        s[10*w + k] = R_zy;
-        s[11*w + k] = R_zz;
-        s[12*w + k] = t_dot_x;
-        s[13*w + k] = t_dot_y;
-        s[14*w + k] = t_dot_z;
-        s[15*w + k] = omega_x;
-        s[16*w + k] = omega_y;
-        s[17*w + k] = omega_z;
-        s[18*w + k] = t_ddot_x;
-        s[19*w + k] = t_ddot_y;
-        s[20*w + k] = t_ddot_z;
-        s[21*w + k] = alpha_x;
-        s[22*w + k] = alpha_y;
-        s[23*w + k] = alpha_z;
-        t->invalid[k] += UNLESS(is_finite(quaternion_scale)) + UNLESS(quaternion_scale > 0);
+        values v;
+        stage_X(m, w, k, X, &v);
+        s[0*w + k] = v.R_xx;
+        s[1*w + k] = v.R_xy;
+        s[2*w + k] = v.R_xz;
+        s[3*w + k] = v.R_yx;
+        s[4*w + k] = v.R_yy;
+        s[5*w + k] = v.R_yz;
+        s[6*w + k] = v.R_zx;
+        s[7*w + k] = v.R_zy;
+        s[8*w + k] = v.R_zz;
+        t->invalid[k] += UNLESS(is_finite(v.quaternion_scale)) + UNLESS(v.quaternion_scale > 0);
     }
 }
 
 INLINE void legs_legs_rps(const prepared *m, size_t w, size_t leg, size_t legs, const real *s,
-    size_t states, size_t count, real *o)
+    size_t states, size_t count, const real *X, const real *V, const real *A, real *o)
 {
     for (size_t k = 0; k < count; ++k) {
         const size_t i = leg + legs*k;
         const size_t j = states*k;
-        /* (rps-S) from the base point to the connection point */
-        const real R_xx = s[3*w + j];
-        const real R_xy = s[4*w + j];
-        const real R_xz = s[5*w + j];
-        const real rps_platform_point_x = m->rps_platform_point_x[i];
-        const real rps_platform_point_y = m->rps_platform_point_y[i];
-        const real rps_platform_point_z = m->rps_platform_point_z[i];
-        const real rps_q_x = R_xx*rps_platform_point_x + R_xy*rps_platform_point_y +
-            R_xz*rps_platform_point_z;
-        const real R_yx = s[6*w + j];
-        const real R_yy = s[7*w + j];
-        const real R_yz = s[8*w + j];
-        const real rps_q_y = R_yx*rps_platform_point_x + R_yy*rps_platform_point_y +
-            R_yz*rps_platform_point_z;
-        const real R_zx = s[9*w + j];
-        const real R_zy = s[10*w + j];
-        const real R_zz = s[11*w + j];
-        const real rps_q_z = R_zx*rps_platform_point_x + R_zy*rps_platform_point_y +
-            R_zz*rps_platform_point_z;
-        const real rps_base_point_x = m->rps_base_point_x[i];
-        const real t_x = s[0*w + j];
-        const real rps_S_x = rps_q_x + t_x - rps_base_point_x;
-        const real rps_base_point_y = m->rps_base_point_y[i];
-        const real t_y = s[1*w + j];
-        const real rps_S_y = rps_q_y + t_y - rps_base_point_y;
-        const real rps_base_point_z = m->rps_base_point_z[i];
-        const real t_z = s[2*w + j];
-        const real rps_S_z = rps_q_z + t_z - rps_base_point_z;
-        /* (rps-px_1) component along the reference direction */
-        const real rps_base_frame_xx = m->rps_base_frame_xx[i];
-        const real rps_base_frame_yx = m->rps_base_frame_yx[i];
-        const real rps_base_frame_zx = m->rps_base_frame_zx[i];
-        const real rps_px_1 = rps_S_x*rps_base_frame_xx + rps_S_y*rps_base_frame_yx +
-            rps_S_z*rps_base_frame_zx;
-        /* (rps-py_1) component across the reference direction */
-        const real rps_base_frame_xy = m->rps_base_frame_xy[i];
-        const real rps_base_frame_yy = m->rps_base_frame_yy[i];
-        const real rps_base_frame_zy = m->rps_base_frame_zy[i];
-        const real rps_py_1 = rps_S_x*rps_base_frame_xy + rps_S_y*rps_base_frame_yy +
-            rps_S_z*rps_base_frame_zy;
-        /* (rps-rho2_1) squared amplitude */
-        const real rps_rho2_1 = rps_px_1*rps_px_1 + rps_py_1*rps_py_1;
-        /* (rps-root_1) amplitude, with the sign of the branch */
-        const real rps_branch_1 = m->rps_branch_1[i];
-        const real rps_root_1 = rps_branch_1*root(rps_rho2_1);
-        /* (rps-c_1) cosine of the angle of joint 1 from its reference direction */
-        const real inv_rps_root_1 = 1/rps_root_1;
-        const real rps_c_1 = inv_rps_root_1*rps_px_1;
-        /* (rps-s_1) sine of the angle of joint 1 from its reference direction */
-        const real rps_s_1 = inv_rps_root_1*rps_py_1;
-        /* (rps-S_dot) velocity of the connection point */
-        const real axis_x_rps_axes1_x = rps_base_frame_xx*rps_c_1 + rps_base_frame_xy*rps_s_1;
-        const real axis_x_rps_axes1_y = rps_base_frame_yx*rps_c_1 + rps_base_frame_yy*rps_s_1;
-        const real axis_x_rps_axes1_z = rps_base_frame_zx*rps_c_1 + rps_base_frame_zy*rps_s_1;
-        const real omega_y = s[16*w + j];
-        const real omega_z = s[17*w + j];
-        const real rps_S_dot_t = omega_y*rps_q_z - omega_z*rps_q_y;
-        const real omega_x = s[15*w + j];
-        const real rps_S_dot_t_2 = omega_z*rps_q_x - omega_x*rps_q_z;
-        const real rps_S_dot_t_3 = omega_x*rps_q_y - omega_y*rps_q_x;
-        const real t_dot_x = s[12*w + j];
-        const real rps_S_dot_x = rps_S_dot_t + t_dot_x;
-        const real t_dot_y = s[13*w + j];
-        const real rps_S_dot_y = rps_S_dot_t_2 + t_dot_y;
-        const real t_dot_z = s[14*w + j];
-        const real rps_S_dot_z = rps_S_dot_t_3 + t_dot_z;
-        const real rps_S_dot_in_axes1_x = axis_x_rps_axes1_x*rps_S_dot_x +
-            axis_x_rps_axes1_y*rps_S_dot_y + axis_x_rps_axes1_z*rps_S_dot_z;
-        /* (rps-qd_1) rate of joint 1 */
-        const real axis_y_rps_axes1_x = rps_base_frame_xy*rps_c_1 - rps_base_frame_xx*rps_s_1;
-        const real axis_y_rps_axes1_y = rps_base_frame_yy*rps_c_1 - rps_base_frame_yx*rps_s_1;
-        const real axis_y_rps_axes1_z = rps_base_frame_zy*rps_c_1 - rps_base_frame_zx*rps_s_1;
-        const real rps_qd_1 = inv_rps_root_1*(axis_y_rps_axes1_x*rps_S_dot_x +
-            axis_y_rps_axes1_y*rps_S_dot_y + axis_y_rps_axes1_z*rps_S_dot_z);
-        /* (rps-W_1) centripetal tensor of link 1 */
-        const real rps_W_1_t = rps_qd_1*rps_qd_1;
-        /* (rps-a_p) acceleration of the connection point without its centripetal part */
-        const real alpha_y = s[22*w + j];
-        const real alpha_z = s[23*w + j];
-        const real t_ddot_x = s[18*w + j];
-        const real rps_a_p_x = t_ddot_x + alpha_y*rps_q_z - alpha_z*rps_q_y;
-        const real alpha_x = s[21*w + j];
-        const real t_ddot_y = s[19*w + j];
-        const real rps_a_p_y = t_ddot_y + alpha_z*rps_q_x - alpha_x*rps_q_z;
-        const real t_ddot_z = s[20*w + j];
-        const real rps_a_p_z = t_ddot_z + alpha_x*rps_q_y - alpha_y*rps_q_x;
-        /* (rps-S_ddot) acceleration of the connection point */
-        const real rps_S_ddot_x = rps_a_p_x + omega_y*rps_S_dot_t_3 - omega_z*rps_S_dot_t_2;
-        const real rps_S_ddot_y = rps_a_p_y + omega_z*rps_S_dot_t - omega_x*rps_S_dot_t_3;
-        const real rps_S_ddot_z = rps_a_p_z + omega_x*rps_S_dot_t_2 - omega_y*rps_S_dot_t;
-        const real rps_S_ddot_in_axes1_y = axis_y_rps_axes1_x*rps_S_ddot_x +
-            axis_y_rps_axes1_y*rps_S_ddot_y + axis_y_rps_axes1_z*rps_S_ddot_z;
-        /* (rps-rel) acceleration of the connection point left to the joint accelerations */
-        const real rps_rel_in_axes1_y = rps_S_ddot_in_axes1_y - 2*rps_S_dot_in_axes1_x*rps_qd_1;
-        /* (rps-qdd_1) acceleration of joint 1 */
-        const real rps_qdd_1 = inv_rps_root_1*rps_rel_in_axes1_y;
-        /* (rps-acc_2) acceleration of the reference point of link 2, less gravity */
-        const real rps_acc_2_t = m->rps_acc_2_t[i];
-        const real rps_acc_2_t_2 = m->rps_acc_2_t_2[i];
-        const real rps_g_in_axes1_x = rps_acc_2_t*rps_c_1 + rps_acc_2_t_2*rps_s_1;
-        const real rps_g_in_axes1_y = rps_acc_2_t_2*rps_c_1 - rps_acc_2_t*rps_s_1;
-        const real rps_acc_2_in_axes1_x = axis_x_rps_axes1_x*rps_S_ddot_x +
-            axis_x_rps_axes1_y*rps_S_ddot_y + axis_x_rps_axes1_z*rps_S_ddot_z - rps_g_in_axes1_x;
-        const real rps_acc_2_in_axes1_y = rps_S_ddot_in_axes1_y - rps_g_in_axes1_y;
-        /* (rps-f_2) inertia force of link 2 less its weight */
-        const real rps_h_2_in_spec1_x = m->rps_h_2_in_spec1_x[i];
-        const real rps_h_2_in_spec1_y = m->rps_h_2_in_spec1_y[i];
-        const real rps_link2_mass = m->rps_link2_mass[i];
-        const real rps_f_2_in_axes1_x = rps_acc_2_in_axes1_x*rps_link2_mass -
-            rps_W_1_t*rps_h_2_in_spec1_x - rps_h_2_in_spec1_y*rps_qdd_1;
-        const real rps_f_2_in_axes1_y = rps_acc_2_in_axes1_y*rps_link2_mass +
-            rps_h_2_in_spec1_x*rps_qdd_1 - rps_W_1_t*rps_h_2_in_spec1_y;
-        /* (rps-mu_1) inertia moment of the links that turn with link 1, about their reference points */
-        const real rps_J_group_1_in_axes1_zz = m->rps_J_group_1_in_axes1_zz[i];
-        const real rps_h_1_in_spec1_x = m->rps_h_1_in_spec1_x[i];
-        const real rps_h_1_in_spec1_y = m->rps_h_1_in_spec1_y[i];
-        const real rps_mu_1_in_axes1_z = rps_J_group_1_in_axes1_zz*rps_qdd_1 +
-            rps_acc_2_in_axes1_y*rps_h_2_in_spec1_x + rps_g_in_axes1_x*rps_h_1_in_spec1_y -
-            rps_acc_2_in_axes1_x*rps_h_2_in_spec1_y - rps_g_in_axes1_y*rps_h_1_in_spec1_x;
-        /* (rps-G) force at the connection point that balances the leg's inertia and weight along all
-           degrees of freedom */
-        const real rps_G_in_axes1_y = rps_f_2_in_axes1_y + inv_rps_root_1*rps_mu_1_in_axes1_z;
+        values_rps v;
+        stage_rps_X(m, w, i, j, s, X, &v);
+        stage_rps_A_X(w, j, A, &v);
+        stage_rps_V_X(w, j, V, &v);
+        stage_rps_A_V_X(w, j, V, &v);
+        stage_rps_legs_required(m, i, &v);
         /* (rps-c) leg force on the platform without actuation and without the mass at the connection
            point */
-        const real rps_c_x = -axis_x_rps_axes1_x*rps_f_2_in_axes1_x -
-            axis_y_rps_axes1_x*rps_G_in_axes1_y;
-        const real rps_c_y = -axis_x_rps_axes1_y*rps_f_2_in_axes1_x -
-            axis_y_rps_axes1_y*rps_G_in_axes1_y;
-        const real rps_c_z = -axis_x_rps_axes1_z*rps_f_2_in_axes1_x -
-            axis_y_rps_axes1_z*rps_G_in_axes1_y;
-        /* (rps-c) leg force on the platform without actuation and without the mass at the connection
-           point */
-        o[0*count + k] = rps_c_x;
-        o[1*count + k] = rps_c_y;
-        o[2*count + k] = rps_c_z;
+        o[0*count + k] = v.rps_c_x;
+        o[1*count + k] = v.rps_c_y;
+        o[2*count + k] = v.rps_c_z;
         /* (rps-w_2) reciprocal vector 2 */
-        o[3*count + k] = axis_x_rps_axes1_x;
-        o[4*count + k] = axis_x_rps_axes1_y;
-        o[5*count + k] = axis_x_rps_axes1_z;
+        o[3*count + k] = v.axis_x_rps_axes1_x;
+        o[4*count + k] = v.axis_x_rps_axes1_y;
+        o[5*count + k] = v.axis_x_rps_axes1_z;
         /* (legs_size) rms size of the legs, taken where the platform points coincide */
         const real rps_base_frame_xz = m->rps_base_frame_xz[i];
         o[6*count + k] = rps_base_frame_xz;
@@ -4434,7 +3457,7 @@ INLINE void legs_legs_rps(const prepared *m, size_t w, size_t leg, size_t legs, 
         o[7*count + k] = rps_base_frame_yz;
         const real rps_base_frame_zz = m->rps_base_frame_zz[i];
         o[8*count + k] = rps_base_frame_zz;
-        o[9*count + k] = UNLESS(magnitude(rps_rho2_1) > LEAST_1) + UNLESS(magnitude(rps_root_1) >
+        o[9*count + k] = UNLESS(magnitude(v.rps_q_2_t) > LEAST_1) + UNLESS(magnitude(v.rps_q_2) >
             LEAST_2);
     }
 }
@@ -4459,10 +3482,10 @@ INLINE void legs_place_rps(size_t w, size_t count, const real *o, size_t leg, si
 INLINE void legs_run(const prepared *m, const real *X, const real *V, const real *A, real
     *leg_force, real *actuator, real *constraint_direction, verdict *t)
 {
-    real s[24] = {0};
+    real s[9] = {0};
     real o_rps[10*LEGS(LEGS_OF_rps)] = {0};
-    legs_before(1, X, V, A, s, t);
-    legs_legs_rps(m, 1, 0, 1, s, 0, LEGS(LEGS_OF_rps), o_rps);
+    legs_before(m, 1, X, s, t);
+    legs_legs_rps(m, 1, 0, 1, s, 0, LEGS(LEGS_OF_rps), X, V, A, o_rps);
     for (size_t leg = 0; leg < LEGS_OF_rps; ++leg) {
         legs_place_rps(1, LEGS(LEGS_OF_rps), o_rps, leg, leg, leg_force, actuator, constraint_direction, t);
     }
@@ -4472,40 +3495,8 @@ INLINE void legs_run(const prepared *m, const real *X, const real *V, const real
 INLINE void potential_before(const prepared *m, size_t w, const real *X, real *s, verdict *t)
 {
     for (size_t k = 0; k < w; ++k) {
-        /* X: named entries */
-        const real X_0 = X[0*w + k];
-        const real t_x = X_0;
-        const real X_1 = X[1*w + k];
-        const real t_y = X_1;
-        const real X_2 = X[2*w + k];
-        const real t_z = X_2;
-        const real X_3 = X[3*w + k];
-        const real X_4 = X[4*w + k];
-        const real X_5 = X[5*w + k];
-        const real X_6 = X[6*w + k];
-        const real quaternion_norm2 = X_3*X_3 + X_4*X_4 + X_5*X_5 + X_6*X_6;
-        const real quaternion_scale = 2/quaternion_norm2;
-        const real quaternion_sx = X_3*quaternion_scale;
-        const real quaternion_sy = X_4*quaternion_scale;
-        const real quaternion_sz = X_5*quaternion_scale;
-        const real quaternion_wx = X_6*quaternion_sx;
-        const real quaternion_wy = X_6*quaternion_sy;
-        const real quaternion_wz = X_6*quaternion_sz;
-        const real quaternion_xx = X_3*quaternion_sx;
-        const real quaternion_xy = X_3*quaternion_sy;
-        const real quaternion_xz = X_3*quaternion_sz;
-        const real quaternion_yy = X_4*quaternion_sy;
-        const real quaternion_yz = X_4*quaternion_sz;
-        const real quaternion_zz = X_5*quaternion_sz;
-        const real R_xx = 1 - quaternion_yy - quaternion_zz;
-        const real R_xy = quaternion_xy - quaternion_wz;
-        const real R_xz = quaternion_wy + quaternion_xz;
-        const real R_yx = quaternion_wz + quaternion_xy;
-        const real R_yy = 1 - quaternion_xx - quaternion_zz;
-        const real R_yz = quaternion_yz - quaternion_wx;
-        const real R_zx = quaternion_xz - quaternion_wy;
-        const real R_zy = quaternion_wx + quaternion_yz;
-        const real R_zz = 1 - quaternion_xx - quaternion_yy;
+        values v;
+        stage_X(m, w, k, X, &v);
         /* (potential) potential energy */
         const real gravity_x = m->gravity_x;
         const real gravity_y = m->gravity_y;
@@ -4514,81 +3505,80 @@ INLINE void potential_before(const prepared *m, size_t w, const real *X, real *s
         const real h_star_in_platform_y = m->h_star_in_platform_y;
         const real h_star_in_platform_z = m->h_star_in_platform_z;
         const real platform_mass = m->platform_mass;
-        const real potential_t = gravity_x*(R_xx*h_star_in_platform_x + R_xy*h_star_in_platform_y
-            + R_xz*h_star_in_platform_z + platform_mass*t_x) +
-            gravity_y*(R_yx*h_star_in_platform_x + R_yy*h_star_in_platform_y +
-            R_yz*h_star_in_platform_z + platform_mass*t_y) + gravity_z*(R_zx*h_star_in_platform_x
-            + R_zy*h_star_in_platform_y + R_zz*h_star_in_platform_z + platform_mass*t_z);
-        s[0*w + k] = t_x;
-        s[1*w + k] = t_y;
-        s[2*w + k] = t_z;
-        s[3*w + k] = R_xx;
-        s[4*w + k] = R_xy;
-        s[5*w + k] = R_xz;
-        s[6*w + k] = R_yx;
-        s[7*w + k] = R_yy;
-        s[8*w + k] = R_yz;
-        s[9*w + k] = R_zx;
-        s[10*w + k] = R_zy;
-        s[11*w + k] = R_zz;
-        s[12*w + k] = potential_t;
-        t->invalid[k] += UNLESS(is_finite(quaternion_scale)) + UNLESS(quaternion_scale > 0);
+        const real t_x = X[0*w + k];
+        const real t_y = X[1*w + k];
+        const real t_z = X[2*w + k];
+        const real potential_t = gravity_x*(v.R_xx*h_star_in_platform_x +
+            v.R_xy*h_star_in_platform_y + v.R_xz*h_star_in_platform_z + platform_mass*t_x) +
+            gravity_y*(v.R_yx*h_star_in_platform_x + v.R_yy*h_star_in_platform_y +
+            v.R_yz*h_star_in_platform_z + platform_mass*t_y) +
+            gravity_z*(v.R_zx*h_star_in_platform_x + v.R_zy*h_star_in_platform_y +
+            v.R_zz*h_star_in_platform_z + platform_mass*t_z);
+        s[0*w + k] = v.R_xx;
+        s[1*w + k] = v.R_xy;
+        s[2*w + k] = v.R_xz;
+        s[3*w + k] = v.R_yx;
+        s[4*w + k] = v.R_yy;
+        s[5*w + k] = v.R_yz;
+        s[6*w + k] = v.R_zx;
+        s[7*w + k] = v.R_zy;
+        s[8*w + k] = v.R_zz;
+        s[9*w + k] = potential_t;
+        t->invalid[k] += UNLESS(is_finite(v.quaternion_scale)) + UNLESS(v.quaternion_scale > 0);
     }
 }
 
 INLINE void potential_legs_rps(const prepared *m, size_t w, size_t leg, size_t legs, const real
-    *s, size_t states, size_t count, int add, real *terms, real *o)
+    *s, size_t states, size_t count, int add, const real *X, real *terms, real *o)
 {
     for (size_t k = 0; k < count; ++k) {
         const size_t i = leg + legs*k;
         const size_t j = states*k;
         /* (rps-S) from the base point to the connection point */
-        const real R_xx = s[3*w + j];
-        const real R_xy = s[4*w + j];
-        const real R_xz = s[5*w + j];
+        const real R_xx = s[0*w + j];
+        const real R_xy = s[1*w + j];
+        const real R_xz = s[2*w + j];
         const real rps_base_point_x = m->rps_base_point_x[i];
         const real rps_platform_point_x = m->rps_platform_point_x[i];
         const real rps_platform_point_y = m->rps_platform_point_y[i];
         const real rps_platform_point_z = m->rps_platform_point_z[i];
-        const real t_x = s[0*w + j];
+        const real t_x = X[0*w + j];
         const real rps_S_x = t_x + R_xx*rps_platform_point_x + R_xy*rps_platform_point_y +
             R_xz*rps_platform_point_z - rps_base_point_x;
-        const real R_yx = s[6*w + j];
-        const real R_yy = s[7*w + j];
-        const real R_yz = s[8*w + j];
+        const real R_yx = s[3*w + j];
+        const real R_yy = s[4*w + j];
+        const real R_yz = s[5*w + j];
         const real rps_base_point_y = m->rps_base_point_y[i];
-        const real t_y = s[1*w + j];
+        const real t_y = X[1*w + j];
         const real rps_S_y = t_y + R_yx*rps_platform_point_x + R_yy*rps_platform_point_y +
             R_yz*rps_platform_point_z - rps_base_point_y;
-        const real R_zx = s[9*w + j];
-        const real R_zy = s[10*w + j];
-        const real R_zz = s[11*w + j];
+        const real R_zx = s[6*w + j];
+        const real R_zy = s[7*w + j];
+        const real R_zz = s[8*w + j];
         const real rps_base_point_z = m->rps_base_point_z[i];
-        const real t_z = s[2*w + j];
+        const real t_z = X[2*w + j];
         const real rps_S_z = t_z + R_zx*rps_platform_point_x + R_zy*rps_platform_point_y +
             R_zz*rps_platform_point_z - rps_base_point_z;
-        /* (rps-px_1) component along the reference direction */
         const real rps_base_frame_xx = m->rps_base_frame_xx[i];
         const real rps_base_frame_yx = m->rps_base_frame_yx[i];
         const real rps_base_frame_zx = m->rps_base_frame_zx[i];
-        const real rps_px_1 = rps_S_x*rps_base_frame_xx + rps_S_y*rps_base_frame_yx +
+        const real rps_S_in_turn1_x = rps_S_x*rps_base_frame_xx + rps_S_y*rps_base_frame_yx +
             rps_S_z*rps_base_frame_zx;
-        /* (rps-py_1) component across the reference direction */
         const real rps_base_frame_xy = m->rps_base_frame_xy[i];
         const real rps_base_frame_yy = m->rps_base_frame_yy[i];
         const real rps_base_frame_zy = m->rps_base_frame_zy[i];
-        const real rps_py_1 = rps_S_x*rps_base_frame_xy + rps_S_y*rps_base_frame_yy +
+        const real rps_S_in_turn1_y = rps_S_x*rps_base_frame_xy + rps_S_y*rps_base_frame_yy +
             rps_S_z*rps_base_frame_zy;
-        /* (rps-rho2_1) squared amplitude */
-        const real rps_rho2_1 = rps_px_1*rps_px_1 + rps_py_1*rps_py_1;
-        /* (rps-root_1) amplitude, with the sign of the branch */
+        /* (rps-q_2) displacement of joint 2 */
+        const real rps_q_2_t = rps_S_in_turn1_x*rps_S_in_turn1_x +
+            rps_S_in_turn1_y*rps_S_in_turn1_y;
         const real rps_branch_1 = m->rps_branch_1[i];
-        const real rps_root_1 = rps_branch_1*root(rps_rho2_1);
+        const real rps_q_2 = rps_branch_1*root(rps_q_2_t);
         /* (rps-c_1) cosine of the angle of joint 1 from its reference direction */
-        const real inv_rps_root_1 = 1/rps_root_1;
-        const real rps_c_1 = inv_rps_root_1*rps_px_1;
+        const real inv_rps_q_2 = 1/rps_q_2;
+        const real rps_c_1 = inv_rps_q_2*rps_S_in_turn1_x;
         /* (rps-s_1) sine of the angle of joint 1 from its reference direction */
-        const real rps_s_1 = inv_rps_root_1*rps_py_1;
+        const real rps_s_1 = inv_rps_q_2*rps_S_in_turn1_y;
         /* (potential) potential energy */
         const real rps_potential_t = m->rps_potential_t[i];
         const real rps_potential_t_2 = m->rps_potential_t_2[i];
@@ -4605,12 +3595,12 @@ INLINE void potential_legs_rps(const prepared *m, size_t w, size_t leg, size_t l
         const real rps_potential_t_3 = m->rps_potential_t_3[i];
         const real rps_potential_t_4 = rps_potential_t_3 + (rps_acc_2_t*rps_c_1 +
             rps_acc_2_t_2*rps_s_1)*(rps_h_1_in_spec1_x + rps_h_2_in_spec1_x +
-            rps_b_in_spec1_x*rps_link1_mass + rps_link2_mass*(rps_b_in_spec1_x + rps_root_1)) +
+            rps_b_in_spec1_x*rps_link1_mass + rps_link2_mass*(rps_b_in_spec1_x + rps_q_2)) +
             (rps_acc_2_t_2*rps_c_1 - rps_acc_2_t*rps_s_1)*(rps_h_1_in_spec1_y + rps_h_2_in_spec1_y
             + rps_b_in_spec1_y*rps_link1_mass + rps_b_in_spec1_y*rps_link2_mass);
         /* (potential) potential energy */
         gather(&terms[0*count + k], add, rps_potential_t_4);  /* potential_of_legs */
-        o[0*count + k] = UNLESS(magnitude(rps_rho2_1) > LEAST_1);
+        o[0*count + k] = UNLESS(magnitude(rps_q_2_t) > LEAST_1);
     }
 }
 
@@ -4626,7 +3616,7 @@ INLINE void potential_after(size_t w, const real *s, const real *sums, real *pot
     for (size_t k = 0; k < w; ++k) {
         /* (potential) potential energy */
         const real potential_of_legs = sums[0*w + k];
-        const real potential_t = s[12*w + k];
+        const real potential_t = s[9*w + k];
         const real potential_ = -potential_of_legs - potential_t;
         /* (potential) potential energy */
         potential[0*w + k] = potential_;
@@ -4635,12 +3625,10 @@ INLINE void potential_after(size_t w, const real *s, const real *sums, real *pot
 
 INLINE void potential_run(const prepared *m, const real *X, real *potential, verdict *t)
 {
-    real s[13] = {0};
-    real sums[1] = {0};
-    real terms_rps[LEGS(LEGS_OF_rps)] = {0};
-    real o_rps[LEGS(LEGS_OF_rps)] = {0};
+    real s[10] = {0}, sums[1] = {0};
+    real terms_rps[LEGS(LEGS_OF_rps)] = {0}, o_rps[LEGS(LEGS_OF_rps)] = {0};
     potential_before(m, 1, X, s, t);
-    potential_legs_rps(m, 1, 0, 1, s, 0, LEGS(LEGS_OF_rps), 0, terms_rps, o_rps);
+    potential_legs_rps(m, 1, 0, 1, s, 0, LEGS(LEGS_OF_rps), 0, X, terms_rps, o_rps);
     for (size_t leg = 0; leg < LEGS_OF_rps; ++leg) {
         potential_place_rps(1, LEGS(LEGS_OF_rps), o_rps, leg, t);
     }
@@ -4655,171 +3643,84 @@ INLINE void condition_before(const prepared *m, size_t w, const real *X, real *s
     verdict *t)
 {
     for (size_t k = 0; k < w; ++k) {
-        /* X: named entries */
-        const real X_0 = X[0*w + k];
-        const real t_x = X_0;
-        const real X_1 = X[1*w + k];
-        const real t_y = X_1;
-        const real X_2 = X[2*w + k];
-        const real t_z = X_2;
-        const real X_3 = X[3*w + k];
-        const real X_4 = X[4*w + k];
-        const real X_5 = X[5*w + k];
-        const real X_6 = X[6*w + k];
-        const real quaternion_norm2 = X_3*X_3 + X_4*X_4 + X_5*X_5 + X_6*X_6;
-        const real quaternion_scale = 2/quaternion_norm2;
-        const real quaternion_sx = X_3*quaternion_scale;
-        const real quaternion_sy = X_4*quaternion_scale;
-        const real quaternion_sz = X_5*quaternion_scale;
-        const real quaternion_wx = X_6*quaternion_sx;
-        const real quaternion_wy = X_6*quaternion_sy;
-        const real quaternion_wz = X_6*quaternion_sz;
-        const real quaternion_xx = X_3*quaternion_sx;
-        const real quaternion_xy = X_3*quaternion_sy;
-        const real quaternion_xz = X_3*quaternion_sz;
-        const real quaternion_yy = X_4*quaternion_sy;
-        const real quaternion_yz = X_4*quaternion_sz;
-        const real quaternion_zz = X_5*quaternion_sz;
-        const real R_xx = 1 - quaternion_yy - quaternion_zz;
-        const real R_xy = quaternion_xy - quaternion_wz;
-        const real R_xz = quaternion_wy + quaternion_xz;
-        const real R_yx = quaternion_wz + quaternion_xy;
-        const real R_yy = 1 - quaternion_xx - quaternion_zz;
-        const real R_yz = quaternion_yz - quaternion_wx;
-        const real R_zx = quaternion_xz - quaternion_wy;
-        const real R_zy = quaternion_wx + quaternion_yz;
-        const real R_zz = 1 - quaternion_xx - quaternion_yy;
-        s[0*w + k] = t_x;
-        s[1*w + k] = t_y;
-        s[2*w + k] = t_z;
-        s[3*w + k] = R_xx;
-        s[4*w + k] = R_xy;
-        s[5*w + k] = R_xz;
-        s[6*w + k] = R_yx;
-        s[7*w + k] = R_yy;
-        s[8*w + k] = R_yz;
-        s[9*w + k] = R_zx;
-        s[10*w + k] = R_zy;
-        s[11*w + k] = R_zz;
+        values v;
+        stage_X(m, w, k, X, &v);
+        s[0*w + k] = v.R_xx;
+        s[1*w + k] = v.R_xy;
+        s[2*w + k] = v.R_xz;
+        s[3*w + k] = v.R_yx;
+        s[4*w + k] = v.R_yy;
+        s[5*w + k] = v.R_yz;
+        s[6*w + k] = v.R_zx;
+        s[7*w + k] = v.R_zy;
+        s[8*w + k] = v.R_zz;
         /* (legs_size) rms size of the legs, taken where the platform points coincide */
         const real legs_size = m->legs_size;
         lengths[1*w + k] = legs_size;
         t->total[k] += legs_size;
-        t->invalid[k] += UNLESS(is_finite(quaternion_scale)) + UNLESS(quaternion_scale > 0);
+        t->invalid[k] += UNLESS(is_finite(v.quaternion_scale)) + UNLESS(v.quaternion_scale > 0);
     }
 }
 
 INLINE void condition_legs_rps(const prepared *m, size_t w, size_t leg, size_t legs, const real
-    *s, size_t states, size_t count, int add, real *terms, real *o)
+    *s, size_t states, size_t count, int add, const real *X, real *terms, real *o)
 {
     for (size_t k = 0; k < count; ++k) {
         const size_t i = leg + legs*k;
         const size_t j = states*k;
-        /* (rps-S) from the base point to the connection point */
-        const real R_xx = s[3*w + j];
-        const real R_xy = s[4*w + j];
-        const real R_xz = s[5*w + j];
-        const real rps_platform_point_x = m->rps_platform_point_x[i];
-        const real rps_platform_point_y = m->rps_platform_point_y[i];
-        const real rps_platform_point_z = m->rps_platform_point_z[i];
-        const real rps_q_x = R_xx*rps_platform_point_x + R_xy*rps_platform_point_y +
-            R_xz*rps_platform_point_z;
-        const real R_yx = s[6*w + j];
-        const real R_yy = s[7*w + j];
-        const real R_yz = s[8*w + j];
-        const real rps_q_y = R_yx*rps_platform_point_x + R_yy*rps_platform_point_y +
-            R_yz*rps_platform_point_z;
-        const real R_zx = s[9*w + j];
-        const real R_zy = s[10*w + j];
-        const real R_zz = s[11*w + j];
-        const real rps_q_z = R_zx*rps_platform_point_x + R_zy*rps_platform_point_y +
-            R_zz*rps_platform_point_z;
-        const real rps_base_point_x = m->rps_base_point_x[i];
-        const real t_x = s[0*w + j];
-        const real rps_S_x = rps_q_x + t_x - rps_base_point_x;
-        const real rps_base_point_y = m->rps_base_point_y[i];
-        const real t_y = s[1*w + j];
-        const real rps_S_y = rps_q_y + t_y - rps_base_point_y;
-        const real rps_base_point_z = m->rps_base_point_z[i];
-        const real t_z = s[2*w + j];
-        const real rps_S_z = rps_q_z + t_z - rps_base_point_z;
-        /* (rps-px_1) component along the reference direction */
-        const real rps_base_frame_xx = m->rps_base_frame_xx[i];
-        const real rps_base_frame_yx = m->rps_base_frame_yx[i];
-        const real rps_base_frame_zx = m->rps_base_frame_zx[i];
-        const real rps_px_1 = rps_S_x*rps_base_frame_xx + rps_S_y*rps_base_frame_yx +
-            rps_S_z*rps_base_frame_zx;
-        /* (rps-py_1) component across the reference direction */
-        const real rps_base_frame_xy = m->rps_base_frame_xy[i];
-        const real rps_base_frame_yy = m->rps_base_frame_yy[i];
-        const real rps_base_frame_zy = m->rps_base_frame_zy[i];
-        const real rps_py_1 = rps_S_x*rps_base_frame_xy + rps_S_y*rps_base_frame_yy +
-            rps_S_z*rps_base_frame_zy;
-        /* (rps-rho2_1) squared amplitude */
-        const real rps_rho2_1 = rps_px_1*rps_px_1 + rps_py_1*rps_py_1;
-        /* (rps-root_1) amplitude, with the sign of the branch */
-        const real rps_branch_1 = m->rps_branch_1[i];
-        const real rps_root_1 = rps_branch_1*root(rps_rho2_1);
-        /* (rps-c_1) cosine of the angle of joint 1 from its reference direction */
-        const real inv_rps_root_1 = 1/rps_root_1;
-        const real rps_c_1 = inv_rps_root_1*rps_px_1;
-        /* (rps-s_1) sine of the angle of joint 1 from its reference direction */
-        const real rps_s_1 = inv_rps_root_1*rps_py_1;
-        /* (rps-w_2) reciprocal vector 2 */
-        const real rps_w_2_x = rps_base_frame_xx*rps_c_1 + rps_base_frame_xy*rps_s_1;
-        const real rps_w_2_y = rps_base_frame_yx*rps_c_1 + rps_base_frame_yy*rps_s_1;
-        const real rps_w_2_z = rps_base_frame_zx*rps_c_1 + rps_base_frame_zy*rps_s_1;
+        values_rps v;
+        stage_rps_X(m, w, i, j, s, X, &v);
         /* (rps-G) force at the connection point that balances the leg's inertia and weight along all
            degrees of freedom */
-        const real rps_pivot_size = magnitude(rps_rho2_1);
-        const real rps_pivot_size_2 = magnitude(rps_root_1);
+        const real rps_pivot_size = magnitude(v.rps_q_2_t);
+        const real rps_pivot_size_2 = magnitude(v.rps_q_2);
         const real rps_least_pivots = lesser(R(1.3333333333333333)*root(rps_pivot_size),
             R(1.3333333333333333)*rps_pivot_size_2);
         /* (rps-H_a_2) moment of the column's unit force about the platform origin */
-        const real rps_H_a_2_x = rps_q_y*rps_w_2_z - rps_q_z*rps_w_2_y;
-        const real rps_H_a_2_y = rps_q_z*rps_w_2_x - rps_q_x*rps_w_2_z;
-        const real rps_H_a_2_z = rps_q_x*rps_w_2_y - rps_q_y*rps_w_2_x;
-        /* (rps-Hk_a_1) moment of the column's unit force about the platform origin */
-        const real rps_base_frame_yz = m->rps_base_frame_yz[i];
-        const real rps_base_frame_zz = m->rps_base_frame_zz[i];
-        const real rps_Hk_a_1_x = rps_base_frame_zz*rps_q_y - rps_base_frame_yz*rps_q_z;
-        const real rps_base_frame_xz = m->rps_base_frame_xz[i];
-        const real rps_Hk_a_1_y = rps_base_frame_xz*rps_q_z - rps_base_frame_zz*rps_q_x;
-        const real rps_Hk_a_1_z = rps_base_frame_yz*rps_q_x - rps_base_frame_xz*rps_q_y;
+        const real rps_H_a_2_x = v.rps_q_y*v.rps_w_2_z - v.rps_q_z*v.rps_w_2_y;
+        const real rps_H_a_2_y = v.rps_q_z*v.rps_w_2_x - v.rps_q_x*v.rps_w_2_z;
+        const real rps_H_a_2_z = v.rps_q_x*v.rps_w_2_y - v.rps_q_y*v.rps_w_2_x;
         /* (spread) rms distance of the platform points from their centroid */
         const real b_c_in_platform_x = m->b_c_in_platform_x;
+        const real rps_platform_point_x = m->rps_platform_point_x[i];
         const real rps_spread_t = b_c_in_platform_x - rps_platform_point_x;
         const real b_c_in_platform_y = m->b_c_in_platform_y;
+        const real rps_platform_point_y = m->rps_platform_point_y[i];
         const real rps_spread_t_2 = b_c_in_platform_y - rps_platform_point_y;
         const real b_c_in_platform_z = m->b_c_in_platform_z;
+        const real rps_platform_point_z = m->rps_platform_point_z[i];
         const real rps_spread_t_3 = b_c_in_platform_z - rps_platform_point_z;
         const real rps_spread_t_4 = rps_spread_t*rps_spread_t + rps_spread_t_2*rps_spread_t_2 +
             rps_spread_t_3*rps_spread_t_3;
         /* (spread) rms distance of the platform points from their centroid */
         gather(&terms[0*count + k], add, rps_spread_t_4);  /* spread_rps */
         /* (rps-w_2) reciprocal vector 2 */
-        o[0*count + k] = rps_w_2_x;
-        o[1*count + k] = rps_w_2_y;
-        o[2*count + k] = rps_w_2_z;
+        o[0*count + k] = v.rps_w_2_x;
+        o[1*count + k] = v.rps_w_2_y;
+        o[2*count + k] = v.rps_w_2_z;
         /* (rps-H_a_2) moment of the column's unit force about the platform origin */
         o[3*count + k] = rps_H_a_2_x;
         o[4*count + k] = rps_H_a_2_y;
         o[5*count + k] = rps_H_a_2_z;
         /* (legs_size) rms size of the legs, taken where the platform points coincide */
+        const real rps_base_frame_xz = m->rps_base_frame_xz[i];
         o[6*count + k] = rps_base_frame_xz;
+        const real rps_base_frame_yz = m->rps_base_frame_yz[i];
         o[7*count + k] = rps_base_frame_yz;
+        const real rps_base_frame_zz = m->rps_base_frame_zz[i];
         o[8*count + k] = rps_base_frame_zz;
         /* (rps-Hk_a_1) moment of the column's unit force about the platform origin */
-        o[9*count + k] = rps_Hk_a_1_x;
-        o[10*count + k] = rps_Hk_a_1_y;
-        o[11*count + k] = rps_Hk_a_1_z;
+        o[9*count + k] = v.rps_Hk_a_1_x;
+        o[10*count + k] = v.rps_Hk_a_1_y;
+        o[11*count + k] = v.rps_Hk_a_1_z;
         /* (rps-G) force at the connection point that balances the leg's inertia and weight along all
            degrees of freedom */
         o[12*count + k] = rps_least_pivots;
-        o[14*count + k] = ((rps_w_2_x + (rps_w_2_y + rps_w_2_z)) + (rps_H_a_2_x + (rps_H_a_2_y +
-            rps_H_a_2_z))) + ((rps_base_frame_xz + (rps_base_frame_yz + rps_base_frame_zz)) +
-            ((rps_Hk_a_1_x + rps_Hk_a_1_y) + (rps_Hk_a_1_z + rps_least_pivots)));
-        o[13*count + k] = UNLESS(magnitude(rps_rho2_1) > LEAST_1) + UNLESS(magnitude(rps_root_1) >
+        o[14*count + k] = ((v.rps_w_2_x + (v.rps_w_2_y + v.rps_w_2_z)) + (rps_H_a_2_x +
+            (rps_H_a_2_y + rps_H_a_2_z))) + ((rps_base_frame_xz + (rps_base_frame_yz +
+            rps_base_frame_zz)) + ((v.rps_Hk_a_1_x + v.rps_Hk_a_1_y) + (v.rps_Hk_a_1_z +
+            rps_least_pivots)));
+        o[13*count + k] = UNLESS(magnitude(v.rps_q_2_t) > LEAST_1) + UNLESS(magnitude(v.rps_q_2) >
             LEAST_2);
     }
 }
@@ -4828,13 +3729,13 @@ INLINE void condition_place_rps(size_t w, size_t count, const real *o, size_t le
     real *H, real *Hk, real *pivots, verdict *t)
 {
     for (size_t k = 0; k < w; ++k) {
-        H[(0*NU + leg)*w + k] = o[0*count + first + k];
+        H[leg*w + k] = o[0*count + first + k];
         H[(NU + leg)*w + k] = o[1*count + first + k];
         H[(2*NU + leg)*w + k] = o[2*count + first + k];
         H[(3*NU + leg)*w + k] = o[3*count + first + k];
         H[(4*NU + leg)*w + k] = o[4*count + first + k];
         H[(5*NU + leg)*w + k] = o[5*count + first + k];
-        Hk[(0*NC + leg)*w + k] = o[6*count + first + k];
+        Hk[leg*w + k] = o[6*count + first + k];
         Hk[(NC + leg)*w + k] = o[7*count + first + k];
         Hk[(2*NC + leg)*w + k] = o[8*count + first + k];
         Hk[(3*NC + leg)*w + k] = o[9*count + first + k];
@@ -4863,13 +3764,11 @@ INLINE void condition_after(const prepared *m, size_t w, const real *sums, real 
 INLINE void condition_run(const prepared *m, const real *X, real *H, real *Hk, real *lengths, real
     *pivots, real *reach, verdict *t)
 {
-    real s[12] = {0};
-    real sums[1] = {0};
-    real terms_rps[LEGS(LEGS_OF_rps)] = {0};
-    real o_rps[15*LEGS(LEGS_OF_rps)] = {0};
+    real s[9] = {0}, sums[1] = {0};
+    real terms_rps[LEGS(LEGS_OF_rps)] = {0}, o_rps[15*LEGS(LEGS_OF_rps)] = {0};
     clear(reach, NL);
     condition_before(m, 1, X, s, lengths, t);
-    condition_legs_rps(m, 1, 0, 1, s, 0, LEGS(LEGS_OF_rps), 0, terms_rps, o_rps);
+    condition_legs_rps(m, 1, 0, 1, s, 0, LEGS(LEGS_OF_rps), 0, X, terms_rps, o_rps);
     for (size_t leg = 0; leg < LEGS_OF_rps; ++leg) {
         condition_place_rps(1, LEGS(LEGS_OF_rps), o_rps, leg, leg, H, Hk, pivots, t);
     }
@@ -5667,11 +4566,104 @@ INLINE void condition_constrained_one(const prepared *m, const real *X, const re
     }
 }
 
+INLINE void manipulability_one(const prepared *m, const real *X, real *measure_out, real
+    *isotropy_out, int *code)
+{
+    static const size_t places_divide_rows_1[] = {3, 4, 5};
+    static const size_t places_divide_rows_2[] = {3, 4, 5};
+    real H[NV*NU] = {0}, Hk[NV*NC] = {0}, lengths[2] = {0}, pivots[NL] = {0}, reach[NL] = {0},
+        subtract_1[1] = {0}, choose_length_1[1] = {0}, divide_rows_1[NV*NU] = {0}, subtract_2[1] =
+        {0}, choose_length_2[1] = {0}, divide_rows_2[NV*NC] = {0}, transposed_1[NC*NV] = {0},
+        null_basis_1[NV*NC] = {0}, transposed_2[NC*NV] = {0}, product_1[NC*NU] = {0},
+        singular_values_1[NC] = {0}, measure[1] = {0}, isotropy[1] = {0};
+    verdict why;
+    start(1, &why);
+    check(NQ, 1, X, why.invalid);
+    condition_run(m, X, H, Hk, lengths, pivots, reach, &why);
+    const real *const entry_1 = lengths;
+    for (size_t i = 0; i < 1; ++i) {
+        subtract_1[i] = entry_1[i] - entry_1[i];
+    }
+    for (size_t i = 0; i < 1; ++i) {
+        choose_length_1[i] = subtract_1[i] > 0 ? subtract_1[i] : lengths[i] > TINY*lengths[1 + i]
+            ? lengths[i] : lengths[1 + i];
+    }
+    for (size_t i = 0; i < NV*NU; ++i) {
+        divide_rows_1[i] = H[i];
+    }
+    divide_rows(NU, NU, 1, places_divide_rows_1, choose_length_1, divide_rows_1);
+    const real *const entry_2 = lengths;
+    for (size_t i = 0; i < 1; ++i) {
+        subtract_2[i] = entry_2[i] - entry_2[i];
+    }
+    for (size_t i = 0; i < 1; ++i) {
+        choose_length_2[i] = subtract_2[i] > 0 ? subtract_2[i] : lengths[i] > TINY*lengths[1 + i]
+            ? lengths[i] : lengths[1 + i];
+    }
+    for (size_t i = 0; i < NV*NC; ++i) {
+        divide_rows_2[i] = Hk[i];
+    }
+    divide_rows(NC, NC, 1, places_divide_rows_2, choose_length_2, divide_rows_2);
+    transpose(NV, NC, 1, divide_rows_2, transposed_1);
+    null_basis(NC, NV, NC, transposed_1, null_basis_1);
+    transpose(NV, NC, 1, null_basis_1, transposed_2);
+    product(NC, NV, NU, 1, transposed_2, divide_rows_1, product_1);
+    singular_values(NC, NU, product_1, singular_values_1);
+    spread(NC, singular_values_1, measure, isotropy);
+    check(1, 1, measure, why.overflow);
+    check(1, 1, isotropy, why.overflow);
+    judge(&why, code);
+    copy(1, measure, measure_out);
+    copy(1, isotropy, isotropy_out);
+    if (*code != OK) {
+        refuse(1, measure_out);
+        refuse(1, isotropy_out);
+    }
+}
+
+INLINE void singularity_distance_one(const prepared *m, const real *X, real *actuators_out, real
+    *legs_out, int *code)
+{
+    static const size_t places_divide_rows_1[] = {3, 4, 5};
+    real H[NV*NU] = {0}, Hk[NV*NC] = {0}, lengths[2] = {0}, pivots[NL] = {0}, reach[NL] = {0},
+        beside_1[NV*NV] = {0}, subtract_1[1] = {0}, choose_length_1[1] = {0}, divide_rows_1[NV*NV] =
+        {0}, singular_values_1[NV] = {0}, spread_1[1] = {0}, actuators[1] = {0}, legs[1] = {0};
+    verdict why;
+    start(1, &why);
+    check(NQ, 1, X, why.invalid);
+    condition_run(m, X, H, Hk, lengths, pivots, reach, &why);
+    beside(NV, NU, NC, H, Hk, beside_1);
+    const real *const entry_1 = lengths;
+    for (size_t i = 0; i < 1; ++i) {
+        subtract_1[i] = entry_1[i] - entry_1[i];
+    }
+    for (size_t i = 0; i < 1; ++i) {
+        choose_length_1[i] = subtract_1[i] > 0 ? subtract_1[i] : lengths[i] > TINY*lengths[1 + i]
+            ? lengths[i] : lengths[1 + i];
+    }
+    for (size_t i = 0; i < NV*NV; ++i) {
+        divide_rows_1[i] = beside_1[i];
+    }
+    divide_rows(3, NV, 1, places_divide_rows_1, choose_length_1, divide_rows_1);
+    singular_values(NV, NV, divide_rows_1, singular_values_1);
+    spread(NV, singular_values_1, spread_1, actuators);
+    least_entry(NL, pivots, legs);
+    check(1, 1, actuators, why.overflow);
+    check(1, 1, legs, why.overflow);
+    judge(&why, code);
+    copy(1, actuators, actuators_out);
+    copy(1, legs, legs_out);
+    if (*code != OK) {
+        refuse(1, actuators_out);
+        refuse(1, legs_out);
+    }
+}
+
 static void mismatch_one(const prepared *m, const real *X, const real *q_actuated, real *gap_out,
     int *code)
 {
-    real q[NJ] = {0}, take_1[3] = {0}, subtract_1[NU] = {0}, constraints[3] = {0}, negative_1[3] =
-        {0}, gap[6] = {0};
+    real q[NJ] = {0}, q_of_inverse_kinematics_from_1[3] = {0}, subtract_1[NU] = {0}, constraints[3] =
+        {0}, negative_1[3] = {0}, gap[6] = {0};
     verdict why;
     start(1, &why);
     const real total_in = total(X, NQ) + total(q_actuated, NU);
@@ -5680,9 +4672,9 @@ static void mismatch_one(const prepared *m, const real *X, const real *q_actuate
         check(NU, 1, q_actuated, why.invalid);
     }
     inverse_kinematics_run(m, X, q, &why);
-    take(3, 1, tripod_3rps_ACTUATED, q, take_1);
+    take(3, 1, tripod_3rps_ACTUATED, q, q_of_inverse_kinematics_from_1);
     for (size_t i = 0; i < NU; ++i) {
-        subtract_1[i] = q_actuated[i] - take_1[i];
+        subtract_1[i] = q_actuated[i] - q_of_inverse_kinematics_from_1[i];
     }
     constraints_run(m, X, constraints, &why);
     for (size_t i = 0; i < 3; ++i) {
@@ -6147,8 +5139,8 @@ INLINE void rotation_one(const real *X, real *R_out, int *code)
     verdict why;
     start(1, &why);
     check(NQ, 1, X, why.invalid);
-    const real *const take_1 = X + 3;
-    rotation_of_quaternion(take_1, R);
+    const real *const X_from_3 = X + 3;
+    rotation_of_quaternion(X_from_3, R);
     check(9, 1, R, why.overflow);
     judge(&why, code);
     copy(9, R, R_out);
@@ -6188,11 +5180,11 @@ INLINE void X_dot_one(const real *X, const real *V, real *X_dot_out, int *code)
         check(NQ, 1, X, why.invalid);
         check(NV, 1, V, why.invalid);
     }
-    const real *const take_1 = V + 3;
-    const real *const take_2 = X + 3;
-    quaternion_rate(take_2, take_1, quaternion_rate_1);
-    const real *const take_3 = V;
-    beside(1, 3, 4, take_3, quaternion_rate_1, X_dot);
+    const real *const V_from_3 = V + 3;
+    const real *const X_from_3 = X + 3;
+    quaternion_rate(X_from_3, V_from_3, quaternion_rate_1);
+    const real *const V_from_0 = V;
+    beside(1, 3, 4, V_from_0, quaternion_rate_1, X_dot);
     check(NQ, 1, X_dot, why.overflow);
     judge(&why, code);
     copy(NQ, X_dot, X_dot_out);
@@ -6232,13 +5224,13 @@ INLINE void retract_one(const real *X, const real *step, real *X_moved_out, int 
         check(NQ, 1, X, why.invalid);
         check(NV, 1, step, why.invalid);
     }
-    const real *const take_1 = X;
-    const real *const take_2 = X + 3;
-    const real *const take_3 = step;
-    const real *const take_4 = step + 3;
-    turn_quaternion(take_2, take_4, turn_quaternion_1);
+    const real *const X_from_0 = X;
+    const real *const X_from_3 = X + 3;
+    const real *const step_from_0 = step;
+    const real *const step_from_3 = step + 3;
+    turn_quaternion(X_from_3, step_from_3, turn_quaternion_1);
     for (size_t i = 0; i < 3; ++i) {
-        add_1[i] = take_1[i] + take_3[i];
+        add_1[i] = X_from_0[i] + step_from_0[i];
     }
     beside(1, 3, 4, add_1, turn_quaternion_1, X_moved);
     check(NQ, 1, X_moved, why.overflow);
@@ -6259,13 +5251,13 @@ INLINE void difference_one(const real *X0, const real *X1, real *step_out, int *
         check(NQ, 1, X0, why.invalid);
         check(NQ, 1, X1, why.invalid);
     }
-    const real *const take_1 = X0;
-    const real *const take_2 = X0 + 3;
-    const real *const take_3 = X1;
-    const real *const take_4 = X1 + 3;
-    turn_between(take_2, take_4, turn_between_1);
+    const real *const X0_from_0 = X0;
+    const real *const X0_from_3 = X0 + 3;
+    const real *const X1_from_0 = X1;
+    const real *const X1_from_3 = X1 + 3;
+    turn_between(X0_from_3, X1_from_3, turn_between_1);
     for (size_t i = 0; i < 3; ++i) {
-        subtract_1[i] = take_3[i] - take_1[i];
+        subtract_1[i] = X1_from_0[i] - X0_from_0[i];
     }
     beside(1, 3, 3, subtract_1, turn_between_1, step);
     check(NV, 1, step, why.overflow);
@@ -6288,25 +5280,25 @@ INLINE void interpolate_one(const real *X0, const real *X1, const real *s, real 
         check(NQ, 1, X1, why.invalid);
         check(1, 1, s, why.invalid);
     }
-    const real *const take_1 = X0;
-    const real *const take_2 = X0 + 3;
-    const real *const take_3 = X1;
-    const real *const take_4 = X1 + 3;
-    turn_between(take_2, take_4, turn_between_1);
+    const real *const X0_from_0 = X0;
+    const real *const X0_from_3 = X0 + 3;
+    const real *const X1_from_0 = X1;
+    const real *const X1_from_3 = X1 + 3;
+    turn_between(X0_from_3, X1_from_3, turn_between_1);
     for (size_t i = 0; i < 3; ++i) {
-        subtract_1[i] = take_3[i] - take_1[i];
+        subtract_1[i] = X1_from_0[i] - X0_from_0[i];
     }
     beside(1, 3, 3, subtract_1, turn_between_1, join_1);
     for (size_t i = 0; i < 6; ++i) {
         scale_1[i] = join_1[i]*s[i%(1)];
     }
-    const real *const take_5 = X0;
-    const real *const take_6 = X0 + 3;
-    const real *const take_7 = scale_1;
-    const real *const take_8 = scale_1 + 3;
-    turn_quaternion(take_6, take_8, turn_quaternion_1);
+    const real *const X0_from_0_2 = X0;
+    const real *const X0_from_3_2 = X0 + 3;
+    const real *const scale_1_from_0 = scale_1;
+    const real *const scale_1_from_3 = scale_1 + 3;
+    turn_quaternion(X0_from_3_2, scale_1_from_3, turn_quaternion_1);
     for (size_t i = 0; i < 3; ++i) {
-        add_1[i] = take_5[i] + take_7[i];
+        add_1[i] = X0_from_0_2[i] + scale_1_from_0[i];
     }
     beside(1, 3, 4, add_1, turn_quaternion_1, X);
     check(NQ, 1, X, why.overflow);
@@ -6319,371 +5311,339 @@ INLINE void interpolate_one(const real *X0, const real *X1, const real *s, real 
 
 /* ---- one state, and batches ---- */
 
-int tripod_3rps_M(const tripod_3rps_model *model, const tripod_3rps_real *X, tripod_3rps_real *M)
+int tripod_3rps_M(const prepared *model, const real *X, real *M)
 {
     int code;
     M_one(model, X, M, &code);
     return code;
 }
 
-size_t tripod_3rps_M_batch(const tripod_3rps_model *model, size_t n, const tripod_3rps_real *X,
-    tripod_3rps_real *M, int *status)
+size_t tripod_3rps_M_batch(const prepared *model, size_t n, const real *X, real *M, int *status)
 {
-    size_t failed = 0, i = 0;
-    for (; LANES > 1 && i + LANES <= n; i += LANES) {
-        int codes[LANES];
-        M_lanes(model, X + NQ*i, M + NV*NV*i, codes);
-        for (size_t k = 0; k < LANES; ++k) {
+    size_t failed = 0, w;
+    for (size_t i = 0; i < n; i += w) {
+        int codes[LANES] = {INVALID};
+        w = LANES > 1 && i + LANES <= n ? LANES : 1;
+        if (w > 1) {
+            M_lanes(model, X + NQ*i, M + NV*NV*i, codes);
+        }
+        for (size_t k = 0; k < w; ++k) {
             if (codes[k] != OK) {
                 codes[k] = tripod_3rps_M(model, X + NQ*(i + k), M + NV*NV*(i + k));
             }
         }
-        failed += record(codes, LANES, status ? status + i : NULL);
-    }
-    for (; i < n; ++i) {
-        const int code = tripod_3rps_M(model, X + NQ*i, M + NV*NV*i);
-        failed += record(&code, 1, status ? status + i : NULL);
+        failed += record(codes, w, status ? status + i : NULL);
     }
     return failed;
 }
 
-int tripod_3rps_Z(const tripod_3rps_model *model, const tripod_3rps_real *X, const
-    tripod_3rps_real *V, tripod_3rps_real *Z)
+int tripod_3rps_Z(const prepared *model, const real *X, const real *V, real *Z)
 {
     int code;
     Z_one(model, X, V, Z, &code);
     return code;
 }
 
-size_t tripod_3rps_Z_batch(const tripod_3rps_model *model, size_t n, const tripod_3rps_real *X,
-    const tripod_3rps_real *V, tripod_3rps_real *Z, int *status)
+size_t tripod_3rps_Z_batch(const prepared *model, size_t n, const real *X, const real *V, real *Z,
+    int *status)
 {
-    size_t failed = 0, i = 0;
-    for (; LANES > 1 && i + LANES <= n; i += LANES) {
-        int codes[LANES];
-        Z_lanes(model, X + NQ*i, V + NV*i, Z + NV*i, codes);
-        for (size_t k = 0; k < LANES; ++k) {
+    size_t failed = 0, w;
+    for (size_t i = 0; i < n; i += w) {
+        int codes[LANES] = {INVALID};
+        w = LANES > 1 && i + LANES <= n ? LANES : 1;
+        if (w > 1) {
+            Z_lanes(model, X + NQ*i, V + NV*i, Z + NV*i, codes);
+        }
+        for (size_t k = 0; k < w; ++k) {
             if (codes[k] != OK) {
                 codes[k] = tripod_3rps_Z(model, X + NQ*(i + k), V + NV*(i + k), Z + NV*(i + k));
             }
         }
-        failed += record(codes, LANES, status ? status + i : NULL);
-    }
-    for (; i < n; ++i) {
-        const int code = tripod_3rps_Z(model, X + NQ*i, V + NV*i, Z + NV*i);
-        failed += record(&code, 1, status ? status + i : NULL);
+        failed += record(codes, w, status ? status + i : NULL);
     }
     return failed;
 }
 
-int tripod_3rps_H(const tripod_3rps_model *model, const tripod_3rps_real *X, tripod_3rps_real *H)
+int tripod_3rps_H(const prepared *model, const real *X, real *H)
 {
     int code;
     H_one(model, X, H, &code);
     return code;
 }
 
-size_t tripod_3rps_H_batch(const tripod_3rps_model *model, size_t n, const tripod_3rps_real *X,
-    tripod_3rps_real *H, int *status)
+size_t tripod_3rps_H_batch(const prepared *model, size_t n, const real *X, real *H, int *status)
 {
-    size_t failed = 0, i = 0;
-    for (; LANES > 1 && i + LANES <= n; i += LANES) {
-        int codes[LANES];
-        H_lanes(model, X + NQ*i, H + NV*NU*i, codes);
-        for (size_t k = 0; k < LANES; ++k) {
+    size_t failed = 0, w;
+    for (size_t i = 0; i < n; i += w) {
+        int codes[LANES] = {INVALID};
+        w = LANES > 1 && i + LANES <= n ? LANES : 1;
+        if (w > 1) {
+            H_lanes(model, X + NQ*i, H + NV*NU*i, codes);
+        }
+        for (size_t k = 0; k < w; ++k) {
             if (codes[k] != OK) {
                 codes[k] = tripod_3rps_H(model, X + NQ*(i + k), H + NV*NU*(i + k));
             }
         }
-        failed += record(codes, LANES, status ? status + i : NULL);
-    }
-    for (; i < n; ++i) {
-        const int code = tripod_3rps_H(model, X + NQ*i, H + NV*NU*i);
-        failed += record(&code, 1, status ? status + i : NULL);
+        failed += record(codes, w, status ? status + i : NULL);
     }
     return failed;
 }
 
-int tripod_3rps_Hk(const tripod_3rps_model *model, const tripod_3rps_real *X, tripod_3rps_real
-    *Hk)
+int tripod_3rps_Hk(const prepared *model, const real *X, real *Hk)
 {
     int code;
     Hk_one(model, X, Hk, &code);
     return code;
 }
 
-size_t tripod_3rps_Hk_batch(const tripod_3rps_model *model, size_t n, const tripod_3rps_real *X,
-    tripod_3rps_real *Hk, int *status)
+size_t tripod_3rps_Hk_batch(const prepared *model, size_t n, const real *X, real *Hk, int *status)
 {
-    size_t failed = 0, i = 0;
-    for (; LANES > 1 && i + LANES <= n; i += LANES) {
-        int codes[LANES];
-        Hk_lanes(model, X + NQ*i, Hk + NV*NC*i, codes);
-        for (size_t k = 0; k < LANES; ++k) {
+    size_t failed = 0, w;
+    for (size_t i = 0; i < n; i += w) {
+        int codes[LANES] = {INVALID};
+        w = LANES > 1 && i + LANES <= n ? LANES : 1;
+        if (w > 1) {
+            Hk_lanes(model, X + NQ*i, Hk + NV*NC*i, codes);
+        }
+        for (size_t k = 0; k < w; ++k) {
             if (codes[k] != OK) {
                 codes[k] = tripod_3rps_Hk(model, X + NQ*(i + k), Hk + NV*NC*(i + k));
             }
         }
-        failed += record(codes, LANES, status ? status + i : NULL);
-    }
-    for (; i < n; ++i) {
-        const int code = tripod_3rps_Hk(model, X + NQ*i, Hk + NV*NC*i);
-        failed += record(&code, 1, status ? status + i : NULL);
+        failed += record(codes, w, status ? status + i : NULL);
     }
     return failed;
 }
 
-int tripod_3rps_constraints(const tripod_3rps_model *model, const tripod_3rps_real *X,
-    tripod_3rps_real *residual)
+int tripod_3rps_constraints(const prepared *model, const real *X, real *residual)
 {
     int code;
     constraints_one(model, X, residual, &code);
     return code;
 }
 
-size_t tripod_3rps_constraints_batch(const tripod_3rps_model *model, size_t n, const
-    tripod_3rps_real *X, tripod_3rps_real *residual, int *status)
+size_t tripod_3rps_constraints_batch(const prepared *model, size_t n, const real *X, real
+    *residual, int *status)
 {
-    size_t failed = 0, i = 0;
-    for (; LANES > 1 && i + LANES <= n; i += LANES) {
-        int codes[LANES];
-        constraints_lanes(model, X + NQ*i, residual + NC*i, codes);
-        for (size_t k = 0; k < LANES; ++k) {
+    size_t failed = 0, w;
+    for (size_t i = 0; i < n; i += w) {
+        int codes[LANES] = {INVALID};
+        w = LANES > 1 && i + LANES <= n ? LANES : 1;
+        if (w > 1) {
+            constraints_lanes(model, X + NQ*i, residual + NC*i, codes);
+        }
+        for (size_t k = 0; k < w; ++k) {
             if (codes[k] != OK) {
                 codes[k] = tripod_3rps_constraints(model, X + NQ*(i + k), residual + NC*(i + k));
             }
         }
-        failed += record(codes, LANES, status ? status + i : NULL);
-    }
-    for (; i < n; ++i) {
-        const int code = tripod_3rps_constraints(model, X + NQ*i, residual + NC*i);
-        failed += record(&code, 1, status ? status + i : NULL);
+        failed += record(codes, w, status ? status + i : NULL);
     }
     return failed;
 }
 
-int tripod_3rps_constraint_bias(const tripod_3rps_model *model, const tripod_3rps_real *X, const
-    tripod_3rps_real *V, tripod_3rps_real *bias)
+int tripod_3rps_constraint_bias(const prepared *model, const real *X, const real *V, real *bias)
 {
     int code;
     constraint_bias_one(model, X, V, bias, &code);
     return code;
 }
 
-size_t tripod_3rps_constraint_bias_batch(const tripod_3rps_model *model, size_t n, const
-    tripod_3rps_real *X, const tripod_3rps_real *V, tripod_3rps_real *bias, int *status)
+size_t tripod_3rps_constraint_bias_batch(const prepared *model, size_t n, const real *X, const
+    real *V, real *bias, int *status)
 {
-    size_t failed = 0, i = 0;
-    for (; LANES > 1 && i + LANES <= n; i += LANES) {
-        int codes[LANES];
-        constraint_bias_lanes(model, X + NQ*i, V + NV*i, bias + NC*i, codes);
-        for (size_t k = 0; k < LANES; ++k) {
+    size_t failed = 0, w;
+    for (size_t i = 0; i < n; i += w) {
+        int codes[LANES] = {INVALID};
+        w = LANES > 1 && i + LANES <= n ? LANES : 1;
+        if (w > 1) {
+            constraint_bias_lanes(model, X + NQ*i, V + NV*i, bias + NC*i, codes);
+        }
+        for (size_t k = 0; k < w; ++k) {
             if (codes[k] != OK) {
                 codes[k] = tripod_3rps_constraint_bias(model, X + NQ*(i + k), V + NV*(i + k), bias + NC*(i + k));
             }
         }
-        failed += record(codes, LANES, status ? status + i : NULL);
-    }
-    for (; i < n; ++i) {
-        const int code = tripod_3rps_constraint_bias(model, X + NQ*i, V + NV*i, bias + NC*i);
-        failed += record(&code, 1, status ? status + i : NULL);
+        failed += record(codes, w, status ? status + i : NULL);
     }
     return failed;
 }
 
-int tripod_3rps_inverse_kinematics(const tripod_3rps_model *model, const tripod_3rps_real *X,
-    tripod_3rps_real *q)
+int tripod_3rps_inverse_kinematics(const prepared *model, const real *X, real *q)
 {
     int code;
     inverse_kinematics_one(model, X, q, &code);
     return code;
 }
 
-size_t tripod_3rps_inverse_kinematics_batch(const tripod_3rps_model *model, size_t n, const
-    tripod_3rps_real *X, tripod_3rps_real *q, int *status)
+size_t tripod_3rps_inverse_kinematics_batch(const prepared *model, size_t n, const real *X, real
+    *q, int *status)
 {
-    size_t failed = 0, i = 0;
-    for (; LANES > 1 && i + LANES <= n; i += LANES) {
-        int codes[LANES];
-        inverse_kinematics_lanes(model, X + NQ*i, q + NJ*i, codes);
-        for (size_t k = 0; k < LANES; ++k) {
+    size_t failed = 0, w;
+    for (size_t i = 0; i < n; i += w) {
+        int codes[LANES] = {INVALID};
+        w = LANES > 1 && i + LANES <= n ? LANES : 1;
+        if (w > 1) {
+            inverse_kinematics_lanes(model, X + NQ*i, q + NJ*i, codes);
+        }
+        for (size_t k = 0; k < w; ++k) {
             if (codes[k] != OK) {
                 codes[k] = tripod_3rps_inverse_kinematics(model, X + NQ*(i + k), q + NJ*(i + k));
             }
         }
-        failed += record(codes, LANES, status ? status + i : NULL);
-    }
-    for (; i < n; ++i) {
-        const int code = tripod_3rps_inverse_kinematics(model, X + NQ*i, q + NJ*i);
-        failed += record(&code, 1, status ? status + i : NULL);
+        failed += record(codes, w, status ? status + i : NULL);
     }
     return failed;
 }
 
-int tripod_3rps_joint_rates(const tripod_3rps_model *model, const tripod_3rps_real *X, const
-    tripod_3rps_real *V, tripod_3rps_real *rates)
+int tripod_3rps_joint_rates(const prepared *model, const real *X, const real *V, real *rates)
 {
     int code;
     joint_rates_one(model, X, V, rates, &code);
     return code;
 }
 
-size_t tripod_3rps_joint_rates_batch(const tripod_3rps_model *model, size_t n, const
-    tripod_3rps_real *X, const tripod_3rps_real *V, tripod_3rps_real *rates, int *status)
+size_t tripod_3rps_joint_rates_batch(const prepared *model, size_t n, const real *X, const real
+    *V, real *rates, int *status)
 {
-    size_t failed = 0, i = 0;
-    for (; LANES > 1 && i + LANES <= n; i += LANES) {
-        int codes[LANES];
-        joint_rates_lanes(model, X + NQ*i, V + NV*i, rates + NJ*i, codes);
-        for (size_t k = 0; k < LANES; ++k) {
+    size_t failed = 0, w;
+    for (size_t i = 0; i < n; i += w) {
+        int codes[LANES] = {INVALID};
+        w = LANES > 1 && i + LANES <= n ? LANES : 1;
+        if (w > 1) {
+            joint_rates_lanes(model, X + NQ*i, V + NV*i, rates + NJ*i, codes);
+        }
+        for (size_t k = 0; k < w; ++k) {
             if (codes[k] != OK) {
                 codes[k] = tripod_3rps_joint_rates(model, X + NQ*(i + k), V + NV*(i + k), rates + NJ*(i + k));
             }
         }
-        failed += record(codes, LANES, status ? status + i : NULL);
-    }
-    for (; i < n; ++i) {
-        const int code = tripod_3rps_joint_rates(model, X + NQ*i, V + NV*i, rates + NJ*i);
-        failed += record(&code, 1, status ? status + i : NULL);
+        failed += record(codes, w, status ? status + i : NULL);
     }
     return failed;
 }
 
-int tripod_3rps_joint_accelerations(const tripod_3rps_model *model, const tripod_3rps_real *X,
-    const tripod_3rps_real *V, const tripod_3rps_real *A, tripod_3rps_real *accelerations)
+int tripod_3rps_joint_accelerations(const prepared *model, const real *X, const real *V, const
+    real *A, real *accelerations)
 {
     int code;
     joint_accelerations_one(model, X, V, A, accelerations, &code);
     return code;
 }
 
-size_t tripod_3rps_joint_accelerations_batch(const tripod_3rps_model *model, size_t n, const
-    tripod_3rps_real *X, const tripod_3rps_real *V, const tripod_3rps_real *A, tripod_3rps_real
-    *accelerations, int *status)
+size_t tripod_3rps_joint_accelerations_batch(const prepared *model, size_t n, const real *X, const
+    real *V, const real *A, real *accelerations, int *status)
 {
-    size_t failed = 0, i = 0;
-    for (; LANES > 1 && i + LANES <= n; i += LANES) {
-        int codes[LANES];
-        joint_accelerations_lanes(model, X + NQ*i, V + NV*i, A + NV*i, accelerations + NJ*i, codes);
-        for (size_t k = 0; k < LANES; ++k) {
+    size_t failed = 0, w;
+    for (size_t i = 0; i < n; i += w) {
+        int codes[LANES] = {INVALID};
+        w = LANES > 1 && i + LANES <= n ? LANES : 1;
+        if (w > 1) {
+            joint_accelerations_lanes(model, X + NQ*i, V + NV*i, A + NV*i, accelerations + NJ*i, codes);
+        }
+        for (size_t k = 0; k < w; ++k) {
             if (codes[k] != OK) {
                 codes[k] = tripod_3rps_joint_accelerations(model, X + NQ*(i + k), V + NV*(i + k), A + NV*(i + k),
                     accelerations + NJ*(i + k));
             }
         }
-        failed += record(codes, LANES, status ? status + i : NULL);
-    }
-    for (; i < n; ++i) {
-        const int code = tripod_3rps_joint_accelerations(model, X + NQ*i, V + NV*i, A + NV*i,
-            accelerations + NJ*i);
-        failed += record(&code, 1, status ? status + i : NULL);
+        failed += record(codes, w, status ? status + i : NULL);
     }
     return failed;
 }
 
-int tripod_3rps_dynamics(const tripod_3rps_model *model, const tripod_3rps_real *X, const
-    tripod_3rps_real *V, tripod_3rps_real *M, tripod_3rps_real *Z, tripod_3rps_real *H)
+int tripod_3rps_dynamics(const prepared *model, const real *X, const real *V, real *M, real *Z,
+    real *H)
 {
     int code;
     dynamics_one(model, X, V, M, Z, H, &code);
     return code;
 }
 
-size_t tripod_3rps_dynamics_batch(const tripod_3rps_model *model, size_t n, const tripod_3rps_real
-    *X, const tripod_3rps_real *V, tripod_3rps_real *M, tripod_3rps_real *Z, tripod_3rps_real *H,
-    int *status)
+size_t tripod_3rps_dynamics_batch(const prepared *model, size_t n, const real *X, const real *V,
+    real *M, real *Z, real *H, int *status)
 {
-    size_t failed = 0, i = 0;
-    for (; LANES > 1 && i + LANES <= n; i += LANES) {
-        int codes[LANES];
-        dynamics_lanes(model, X + NQ*i, V + NV*i, M + NV*NV*i, Z + NV*i, H + NV*NU*i, codes);
-        for (size_t k = 0; k < LANES; ++k) {
+    size_t failed = 0, w;
+    for (size_t i = 0; i < n; i += w) {
+        int codes[LANES] = {INVALID};
+        w = LANES > 1 && i + LANES <= n ? LANES : 1;
+        if (w > 1) {
+            dynamics_lanes(model, X + NQ*i, V + NV*i, M + NV*NV*i, Z + NV*i, H + NV*NU*i, codes);
+        }
+        for (size_t k = 0; k < w; ++k) {
             if (codes[k] != OK) {
                 codes[k] = tripod_3rps_dynamics(model, X + NQ*(i + k), V + NV*(i + k), M + NV*NV*(i + k), Z +
                     NV*(i + k), H + NV*NU*(i + k));
             }
         }
-        failed += record(codes, LANES, status ? status + i : NULL);
-    }
-    for (; i < n; ++i) {
-        const int code = tripod_3rps_dynamics(model, X + NQ*i, V + NV*i, M + NV*NV*i, Z + NV*i, H +
-            NV*NU*i);
-        failed += record(&code, 1, status ? status + i : NULL);
+        failed += record(codes, w, status ? status + i : NULL);
     }
     return failed;
 }
 
-int tripod_3rps_inverse_dynamics(const tripod_3rps_model *model, const tripod_3rps_real *X, const
-    tripod_3rps_real *V, const tripod_3rps_real *A, const tripod_3rps_real *wrench,
-    tripod_3rps_real *tau, tripod_3rps_real *lambda)
+int tripod_3rps_inverse_dynamics(const prepared *model, const real *X, const real *V, const real
+    *A, const real *wrench, real *tau, real *lambda)
 {
     int code;
     inverse_dynamics_one(model, X, V, A, wrench, tau, lambda, &code);
     return code;
 }
 
-size_t tripod_3rps_inverse_dynamics_batch(const tripod_3rps_model *model, size_t n, const
-    tripod_3rps_real *X, const tripod_3rps_real *V, const tripod_3rps_real *A, const
-    tripod_3rps_real *wrench, tripod_3rps_real *tau, tripod_3rps_real *lambda, int *status)
+size_t tripod_3rps_inverse_dynamics_batch(const prepared *model, size_t n, const real *X, const
+    real *V, const real *A, const real *wrench, real *tau, real *lambda, int *status)
 {
-    size_t failed = 0, i = 0;
-    for (; LANES > 1 && i + LANES <= n; i += LANES) {
-        int codes[LANES];
-        inverse_dynamics_lanes(model, X + NQ*i, V + NV*i, A + NV*i, wrench ? wrench + NW*i : NULL, tau +
-            NU*i, lambda + NC*i, codes);
-        for (size_t k = 0; k < LANES; ++k) {
+    size_t failed = 0, w;
+    for (size_t i = 0; i < n; i += w) {
+        int codes[LANES] = {INVALID};
+        w = LANES > 1 && i + LANES <= n ? LANES : 1;
+        if (w > 1) {
+            inverse_dynamics_lanes(model, X + NQ*i, V + NV*i, A + NV*i, wrench ? wrench + NW*i : NULL, tau +
+                NU*i, lambda + NC*i, codes);
+        }
+        for (size_t k = 0; k < w; ++k) {
             if (codes[k] != OK) {
                 codes[k] = tripod_3rps_inverse_dynamics(model, X + NQ*(i + k), V + NV*(i + k), A + NV*(i + k),
                     wrench ? wrench + NW*(i + k) : NULL, tau + NU*(i + k), lambda + NC*(i + k));
             }
         }
-        failed += record(codes, LANES, status ? status + i : NULL);
-    }
-    for (; i < n; ++i) {
-        const int code = tripod_3rps_inverse_dynamics(model, X + NQ*i, V + NV*i, A + NV*i, wrench ? wrench
-            + NW*i : NULL, tau + NU*i, lambda + NC*i);
-        failed += record(&code, 1, status ? status + i : NULL);
+        failed += record(codes, w, status ? status + i : NULL);
     }
     return failed;
 }
 
-int tripod_3rps_forward_dynamics(const tripod_3rps_model *model, const tripod_3rps_real *X, const
-    tripod_3rps_real *V, const tripod_3rps_real *tau, const tripod_3rps_real *wrench,
-    tripod_3rps_real *A, tripod_3rps_real *lambda)
+int tripod_3rps_forward_dynamics(const prepared *model, const real *X, const real *V, const real
+    *tau, const real *wrench, real *A, real *lambda)
 {
     int code;
     forward_dynamics_one(model, X, V, tau, wrench, A, lambda, &code);
     return code;
 }
 
-size_t tripod_3rps_forward_dynamics_batch(const tripod_3rps_model *model, size_t n, const
-    tripod_3rps_real *X, const tripod_3rps_real *V, const tripod_3rps_real *tau, const
-    tripod_3rps_real *wrench, tripod_3rps_real *A, tripod_3rps_real *lambda, int *status)
+size_t tripod_3rps_forward_dynamics_batch(const prepared *model, size_t n, const real *X, const
+    real *V, const real *tau, const real *wrench, real *A, real *lambda, int *status)
 {
-    size_t failed = 0, i = 0;
-    for (; LANES > 1 && i + LANES <= n; i += LANES) {
-        int codes[LANES];
-        forward_dynamics_lanes(model, X + NQ*i, V + NV*i, tau + NU*i, wrench ? wrench + NW*i : NULL, A +
-            NV*i, lambda + NC*i, codes);
-        for (size_t k = 0; k < LANES; ++k) {
+    size_t failed = 0, w;
+    for (size_t i = 0; i < n; i += w) {
+        int codes[LANES] = {INVALID};
+        w = LANES > 1 && i + LANES <= n ? LANES : 1;
+        if (w > 1) {
+            forward_dynamics_lanes(model, X + NQ*i, V + NV*i, tau + NU*i, wrench ? wrench + NW*i : NULL, A +
+                NV*i, lambda + NC*i, codes);
+        }
+        for (size_t k = 0; k < w; ++k) {
             if (codes[k] != OK) {
                 codes[k] = tripod_3rps_forward_dynamics(model, X + NQ*(i + k), V + NV*(i + k), tau + NU*(i + k),
                     wrench ? wrench + NW*(i + k) : NULL, A + NV*(i + k), lambda + NC*(i + k));
             }
         }
-        failed += record(codes, LANES, status ? status + i : NULL);
-    }
-    for (; i < n; ++i) {
-        const int code = tripod_3rps_forward_dynamics(model, X + NQ*i, V + NV*i, tau + NU*i, wrench ?
-            wrench + NW*i : NULL, A + NV*i, lambda + NC*i);
-        failed += record(&code, 1, status ? status + i : NULL);
+        failed += record(codes, w, status ? status + i : NULL);
     }
     return failed;
 }
 
-int tripod_3rps_complete_acceleration(const tripod_3rps_model *model, const tripod_3rps_real *X,
-    const tripod_3rps_real *V, const tripod_3rps_real *A, const tripod_3rps_real *wrench,
-    tripod_3rps_real *completed)
+int tripod_3rps_complete_acceleration(const prepared *model, const real *X, const real *V, const
+    real *A, const real *wrench, real *completed)
 {
     int code;
     (void)model;
@@ -6694,12 +5654,11 @@ int tripod_3rps_complete_acceleration(const tripod_3rps_model *model, const trip
     return code;
 }
 
-size_t tripod_3rps_complete_acceleration_batch(const tripod_3rps_model *model, size_t n, const
-    tripod_3rps_real *X, const tripod_3rps_real *V, const tripod_3rps_real *A, const
-    tripod_3rps_real *wrench, tripod_3rps_real *completed, int *status)
+size_t tripod_3rps_complete_acceleration_batch(const prepared *model, size_t n, const real *X,
+    const real *V, const real *A, const real *wrench, real *completed, int *status)
 {
-    size_t failed = 0, i = 0;
-    for (; i < n; ++i) {
+    size_t failed = 0;
+    for (size_t i = 0; i < n; ++i) {
         const int code = tripod_3rps_complete_acceleration(model, X + NQ*i, V + NV*i, A + NV*i, wrench ?
             wrench + NW*i : NULL, completed + NV*i);
         failed += record(&code, 1, status ? status + i : NULL);
@@ -6707,21 +5666,19 @@ size_t tripod_3rps_complete_acceleration_batch(const tripod_3rps_model *model, s
     return failed;
 }
 
-int tripod_3rps_leg_reactions(const tripod_3rps_model *model, const tripod_3rps_real *X, const
-    tripod_3rps_real *V, const tripod_3rps_real *A, const tripod_3rps_real *wrench,
-    tripod_3rps_real *forces)
+int tripod_3rps_leg_reactions(const prepared *model, const real *X, const real *V, const real *A,
+    const real *wrench, real *forces)
 {
     int code;
     leg_reactions_one(model, X, V, A, wrench, forces, &code);
     return code;
 }
 
-size_t tripod_3rps_leg_reactions_batch(const tripod_3rps_model *model, size_t n, const
-    tripod_3rps_real *X, const tripod_3rps_real *V, const tripod_3rps_real *A, const
-    tripod_3rps_real *wrench, tripod_3rps_real *forces, int *status)
+size_t tripod_3rps_leg_reactions_batch(const prepared *model, size_t n, const real *X, const real
+    *V, const real *A, const real *wrench, real *forces, int *status)
 {
-    size_t failed = 0, i = 0;
-    for (; i < n; ++i) {
+    size_t failed = 0;
+    for (size_t i = 0; i < n; ++i) {
         const int code = tripod_3rps_leg_reactions(model, X + NQ*i, V + NV*i, A + NV*i, wrench ? wrench +
             NW*i : NULL, forces + 9*i);
         failed += record(&code, 1, status ? status + i : NULL);
@@ -6729,104 +5686,139 @@ size_t tripod_3rps_leg_reactions_batch(const tripod_3rps_model *model, size_t n,
     return failed;
 }
 
-int tripod_3rps_energy(const tripod_3rps_model *model, const tripod_3rps_real *X, const
-    tripod_3rps_real *V, tripod_3rps_real *kinetic, tripod_3rps_real *potential)
+int tripod_3rps_energy(const prepared *model, const real *X, const real *V, real *kinetic, real
+    *potential)
 {
     int code;
     energy_one(model, X, V, kinetic, potential, &code);
     return code;
 }
 
-size_t tripod_3rps_energy_batch(const tripod_3rps_model *model, size_t n, const tripod_3rps_real
-    *X, const tripod_3rps_real *V, tripod_3rps_real *kinetic, tripod_3rps_real *potential, int
-    *status)
+size_t tripod_3rps_energy_batch(const prepared *model, size_t n, const real *X, const real *V,
+    real *kinetic, real *potential, int *status)
 {
-    size_t failed = 0, i = 0;
-    for (; i < n; ++i) {
+    size_t failed = 0;
+    for (size_t i = 0; i < n; ++i) {
         const int code = tripod_3rps_energy(model, X + NQ*i, V + NV*i, kinetic + i, potential + i);
         failed += record(&code, 1, status ? status + i : NULL);
     }
     return failed;
 }
 
-int tripod_3rps_condition(const tripod_3rps_model *model, const tripod_3rps_real *X,
-    tripod_3rps_real *sigma, tripod_3rps_real *legs)
+int tripod_3rps_condition(const prepared *model, const real *X, real *sigma, real *legs)
 {
     int code;
     condition_one(model, X, NULL, sigma, legs, &code);
     return code;
 }
 
-size_t tripod_3rps_condition_batch(const tripod_3rps_model *model, size_t n, const
-    tripod_3rps_real *X, tripod_3rps_real *sigma, tripod_3rps_real *legs, int *status)
+size_t tripod_3rps_condition_batch(const prepared *model, size_t n, const real *X, real *sigma,
+    real *legs, int *status)
 {
-    size_t failed = 0, i = 0;
-    for (; i < n; ++i) {
+    size_t failed = 0;
+    for (size_t i = 0; i < n; ++i) {
         const int code = tripod_3rps_condition(model, X + NQ*i, sigma + 3*i, legs + 3*i);
         failed += record(&code, 1, status ? status + i : NULL);
     }
     return failed;
 }
 
-int tripod_3rps_condition_constrained(const tripod_3rps_model *model, const tripod_3rps_real *X,
-    tripod_3rps_real *sigma, tripod_3rps_real *legs)
+int tripod_3rps_condition_constrained(const prepared *model, const real *X, real *sigma, real
+    *legs)
 {
     int code;
     condition_constrained_one(model, X, NULL, sigma, legs, &code);
     return code;
 }
 
-size_t tripod_3rps_condition_constrained_batch(const tripod_3rps_model *model, size_t n, const
-    tripod_3rps_real *X, tripod_3rps_real *sigma, tripod_3rps_real *legs, int *status)
+size_t tripod_3rps_condition_constrained_batch(const prepared *model, size_t n, const real *X,
+    real *sigma, real *legs, int *status)
 {
-    size_t failed = 0, i = 0;
-    for (; i < n; ++i) {
+    size_t failed = 0;
+    for (size_t i = 0; i < n; ++i) {
         const int code = tripod_3rps_condition_constrained(model, X + NQ*i, sigma + 6*i, legs + 3*i);
         failed += record(&code, 1, status ? status + i : NULL);
     }
     return failed;
 }
 
-int tripod_3rps_forward_kinematics(const tripod_3rps_model *model, const tripod_3rps_real
-    *q_actuated, const tripod_3rps_real *X0, tripod_3rps_real *X)
+int tripod_3rps_manipulability(const prepared *model, const real *X, real *measure, real
+    *isotropy)
+{
+    int code;
+    manipulability_one(model, X, measure, isotropy, &code);
+    return code;
+}
+
+size_t tripod_3rps_manipulability_batch(const prepared *model, size_t n, const real *X, real
+    *measure, real *isotropy, int *status)
+{
+    size_t failed = 0;
+    for (size_t i = 0; i < n; ++i) {
+        const int code = tripod_3rps_manipulability(model, X + NQ*i, measure + i, isotropy + i);
+        failed += record(&code, 1, status ? status + i : NULL);
+    }
+    return failed;
+}
+
+int tripod_3rps_singularity_distance(const prepared *model, const real *X, real *actuators, real
+    *legs)
+{
+    int code;
+    singularity_distance_one(model, X, actuators, legs, &code);
+    return code;
+}
+
+size_t tripod_3rps_singularity_distance_batch(const prepared *model, size_t n, const real *X, real
+    *actuators, real *legs, int *status)
+{
+    size_t failed = 0;
+    for (size_t i = 0; i < n; ++i) {
+        const int code = tripod_3rps_singularity_distance(model, X + NQ*i, actuators + i, legs + i);
+        failed += record(&code, 1, status ? status + i : NULL);
+    }
+    return failed;
+}
+
+int tripod_3rps_forward_kinematics(const prepared *model, const real *q_actuated, const real *X0,
+    real *X)
 {
     int code;
     forward_kinematics_one(model, q_actuated, X0, X, &code);
     return code;
 }
 
-size_t tripod_3rps_forward_kinematics_batch(const tripod_3rps_model *model, size_t n, const
-    tripod_3rps_real *q_actuated, const tripod_3rps_real *X0, tripod_3rps_real *X, int *status)
+size_t tripod_3rps_forward_kinematics_batch(const prepared *model, size_t n, const real
+    *q_actuated, const real *X0, real *X, int *status)
 {
-    size_t failed = 0, i = 0;
-    for (; i < n; ++i) {
+    size_t failed = 0;
+    for (size_t i = 0; i < n; ++i) {
         const int code = tripod_3rps_forward_kinematics(model, q_actuated + NU*i, X0 + NQ*i, X + NQ*i);
         failed += record(&code, 1, status ? status + i : NULL);
     }
     return failed;
 }
 
-int tripod_3rps_project(const tripod_3rps_model *model, const tripod_3rps_real *X,
-    tripod_3rps_real *projected)
+int tripod_3rps_project(const prepared *model, const real *X, real *projected)
 {
     int code;
     project_one(model, X, projected, &code);
     return code;
 }
 
-size_t tripod_3rps_project_batch(const tripod_3rps_model *model, size_t n, const tripod_3rps_real
-    *X, tripod_3rps_real *projected, int *status)
+size_t tripod_3rps_project_batch(const prepared *model, size_t n, const real *X, real *projected,
+    int *status)
 {
-    size_t failed = 0, i = 0;
-    for (; i < n; ++i) {
+    size_t failed = 0;
+    for (size_t i = 0; i < n; ++i) {
         const int code = tripod_3rps_project(model, X + NQ*i, projected + NQ*i);
         failed += record(&code, 1, status ? status + i : NULL);
     }
     return failed;
 }
 
-int tripod_3rps_dissipation(const tripod_3rps_model *model, const tripod_3rps_real *X, const
-    tripod_3rps_real *V, tripod_3rps_real *dissipation)
+int tripod_3rps_dissipation(const prepared *model, const real *X, const real *V, real
+    *dissipation)
 {
     int code;
     (void)model;
@@ -6835,350 +5827,327 @@ int tripod_3rps_dissipation(const tripod_3rps_model *model, const tripod_3rps_re
     return code;
 }
 
-size_t tripod_3rps_dissipation_batch(const tripod_3rps_model *model, size_t n, const
-    tripod_3rps_real *X, const tripod_3rps_real *V, tripod_3rps_real *dissipation, int *status)
+size_t tripod_3rps_dissipation_batch(const prepared *model, size_t n, const real *X, const real
+    *V, real *dissipation, int *status)
 {
-    size_t failed = 0, i = 0;
-    for (; i < n; ++i) {
+    size_t failed = 0;
+    for (size_t i = 0; i < n; ++i) {
         const int code = tripod_3rps_dissipation(model, X + NQ*i, V + NV*i, dissipation + i);
         failed += record(&code, 1, status ? status + i : NULL);
     }
     return failed;
 }
 
-int tripod_3rps_momentum(const tripod_3rps_model *model, const tripod_3rps_real *X, const
-    tripod_3rps_real *V, tripod_3rps_real *momentum)
+int tripod_3rps_momentum(const prepared *model, const real *X, const real *V, real *momentum)
 {
     int code;
     momentum_one(model, X, V, momentum, &code);
     return code;
 }
 
-size_t tripod_3rps_momentum_batch(const tripod_3rps_model *model, size_t n, const tripod_3rps_real
-    *X, const tripod_3rps_real *V, tripod_3rps_real *momentum, int *status)
+size_t tripod_3rps_momentum_batch(const prepared *model, size_t n, const real *X, const real *V,
+    real *momentum, int *status)
 {
-    size_t failed = 0, i = 0;
-    for (; LANES > 1 && i + LANES <= n; i += LANES) {
-        int codes[LANES];
-        momentum_lanes(model, X + NQ*i, V + NV*i, momentum + NV*i, codes);
-        for (size_t k = 0; k < LANES; ++k) {
+    size_t failed = 0, w;
+    for (size_t i = 0; i < n; i += w) {
+        int codes[LANES] = {INVALID};
+        w = LANES > 1 && i + LANES <= n ? LANES : 1;
+        if (w > 1) {
+            momentum_lanes(model, X + NQ*i, V + NV*i, momentum + NV*i, codes);
+        }
+        for (size_t k = 0; k < w; ++k) {
             if (codes[k] != OK) {
                 codes[k] = tripod_3rps_momentum(model, X + NQ*(i + k), V + NV*(i + k), momentum + NV*(i + k));
             }
         }
-        failed += record(codes, LANES, status ? status + i : NULL);
-    }
-    for (; i < n; ++i) {
-        const int code = tripod_3rps_momentum(model, X + NQ*i, V + NV*i, momentum + NV*i);
-        failed += record(&code, 1, status ? status + i : NULL);
+        failed += record(codes, w, status ? status + i : NULL);
     }
     return failed;
 }
 
-int tripod_3rps_joint_margins(const tripod_3rps_model *model, const tripod_3rps_real *X,
-    tripod_3rps_real *margins)
+int tripod_3rps_joint_margins(const prepared *model, const real *X, real *margins)
 {
     int code;
     joint_margins_one(model, X, margins, &code);
     return code;
 }
 
-size_t tripod_3rps_joint_margins_batch(const tripod_3rps_model *model, size_t n, const
-    tripod_3rps_real *X, tripod_3rps_real *margins, int *status)
+size_t tripod_3rps_joint_margins_batch(const prepared *model, size_t n, const real *X, real
+    *margins, int *status)
 {
-    size_t failed = 0, i = 0;
-    for (; LANES > 1 && i + LANES <= n; i += LANES) {
-        int codes[LANES];
-        joint_margins_lanes(model, X + NQ*i, margins + NJ*i, codes);
-        for (size_t k = 0; k < LANES; ++k) {
+    size_t failed = 0, w;
+    for (size_t i = 0; i < n; i += w) {
+        int codes[LANES] = {INVALID};
+        w = LANES > 1 && i + LANES <= n ? LANES : 1;
+        if (w > 1) {
+            joint_margins_lanes(model, X + NQ*i, margins + NJ*i, codes);
+        }
+        for (size_t k = 0; k < w; ++k) {
             if (codes[k] != OK) {
                 codes[k] = tripod_3rps_joint_margins(model, X + NQ*(i + k), margins + NJ*(i + k));
             }
         }
-        failed += record(codes, LANES, status ? status + i : NULL);
-    }
-    for (; i < n; ++i) {
-        const int code = tripod_3rps_joint_margins(model, X + NQ*i, margins + NJ*i);
-        failed += record(&code, 1, status ? status + i : NULL);
+        failed += record(codes, w, status ? status + i : NULL);
     }
     return failed;
 }
 
-int tripod_3rps_within_limits(const tripod_3rps_model *model, const tripod_3rps_real *X,
-    tripod_3rps_real *within)
+int tripod_3rps_within_limits(const prepared *model, const real *X, real *within)
 {
     int code;
     within_limits_one(model, X, within, &code);
     return code;
 }
 
-size_t tripod_3rps_within_limits_batch(const tripod_3rps_model *model, size_t n, const
-    tripod_3rps_real *X, tripod_3rps_real *within, int *status)
+size_t tripod_3rps_within_limits_batch(const prepared *model, size_t n, const real *X, real
+    *within, int *status)
 {
-    size_t failed = 0, i = 0;
-    for (; LANES > 1 && i + LANES <= n; i += LANES) {
-        int codes[LANES];
-        within_limits_lanes(model, X + NQ*i, within + i, codes);
-        for (size_t k = 0; k < LANES; ++k) {
+    size_t failed = 0, w;
+    for (size_t i = 0; i < n; i += w) {
+        int codes[LANES] = {INVALID};
+        w = LANES > 1 && i + LANES <= n ? LANES : 1;
+        if (w > 1) {
+            within_limits_lanes(model, X + NQ*i, within + i, codes);
+        }
+        for (size_t k = 0; k < w; ++k) {
             if (codes[k] != OK) {
                 codes[k] = tripod_3rps_within_limits(model, X + NQ*(i + k), within + (i + k));
             }
         }
-        failed += record(codes, LANES, status ? status + i : NULL);
-    }
-    for (; i < n; ++i) {
-        const int code = tripod_3rps_within_limits(model, X + NQ*i, within + i);
-        failed += record(&code, 1, status ? status + i : NULL);
+        failed += record(codes, w, status ? status + i : NULL);
     }
     return failed;
 }
 
-int tripod_3rps_actuator_positions(const tripod_3rps_model *model, const tripod_3rps_real *X,
-    tripod_3rps_real *q)
+int tripod_3rps_actuator_positions(const prepared *model, const real *X, real *q)
 {
     int code;
     actuator_positions_one(model, X, q, &code);
     return code;
 }
 
-size_t tripod_3rps_actuator_positions_batch(const tripod_3rps_model *model, size_t n, const
-    tripod_3rps_real *X, tripod_3rps_real *q, int *status)
+size_t tripod_3rps_actuator_positions_batch(const prepared *model, size_t n, const real *X, real
+    *q, int *status)
 {
-    size_t failed = 0, i = 0;
-    for (; LANES > 1 && i + LANES <= n; i += LANES) {
-        int codes[LANES];
-        actuator_positions_lanes(model, X + NQ*i, q + NU*i, codes);
-        for (size_t k = 0; k < LANES; ++k) {
+    size_t failed = 0, w;
+    for (size_t i = 0; i < n; i += w) {
+        int codes[LANES] = {INVALID};
+        w = LANES > 1 && i + LANES <= n ? LANES : 1;
+        if (w > 1) {
+            actuator_positions_lanes(model, X + NQ*i, q + NU*i, codes);
+        }
+        for (size_t k = 0; k < w; ++k) {
             if (codes[k] != OK) {
                 codes[k] = tripod_3rps_actuator_positions(model, X + NQ*(i + k), q + NU*(i + k));
             }
         }
-        failed += record(codes, LANES, status ? status + i : NULL);
-    }
-    for (; i < n; ++i) {
-        const int code = tripod_3rps_actuator_positions(model, X + NQ*i, q + NU*i);
-        failed += record(&code, 1, status ? status + i : NULL);
+        failed += record(codes, w, status ? status + i : NULL);
     }
     return failed;
 }
 
-int tripod_3rps_actuator_rates(const tripod_3rps_model *model, const tripod_3rps_real *X, const
-    tripod_3rps_real *V, tripod_3rps_real *rates)
+int tripod_3rps_actuator_rates(const prepared *model, const real *X, const real *V, real *rates)
 {
     int code;
     actuator_rates_one(model, X, V, rates, &code);
     return code;
 }
 
-size_t tripod_3rps_actuator_rates_batch(const tripod_3rps_model *model, size_t n, const
-    tripod_3rps_real *X, const tripod_3rps_real *V, tripod_3rps_real *rates, int *status)
+size_t tripod_3rps_actuator_rates_batch(const prepared *model, size_t n, const real *X, const real
+    *V, real *rates, int *status)
 {
-    size_t failed = 0, i = 0;
-    for (; LANES > 1 && i + LANES <= n; i += LANES) {
-        int codes[LANES];
-        actuator_rates_lanes(model, X + NQ*i, V + NV*i, rates + NU*i, codes);
-        for (size_t k = 0; k < LANES; ++k) {
+    size_t failed = 0, w;
+    for (size_t i = 0; i < n; i += w) {
+        int codes[LANES] = {INVALID};
+        w = LANES > 1 && i + LANES <= n ? LANES : 1;
+        if (w > 1) {
+            actuator_rates_lanes(model, X + NQ*i, V + NV*i, rates + NU*i, codes);
+        }
+        for (size_t k = 0; k < w; ++k) {
             if (codes[k] != OK) {
                 codes[k] = tripod_3rps_actuator_rates(model, X + NQ*(i + k), V + NV*(i + k), rates + NU*(i + k));
             }
         }
-        failed += record(codes, LANES, status ? status + i : NULL);
-    }
-    for (; i < n; ++i) {
-        const int code = tripod_3rps_actuator_rates(model, X + NQ*i, V + NV*i, rates + NU*i);
-        failed += record(&code, 1, status ? status + i : NULL);
+        failed += record(codes, w, status ? status + i : NULL);
     }
     return failed;
 }
 
-int tripod_3rps_actuator_accelerations(const tripod_3rps_model *model, const tripod_3rps_real *X,
-    const tripod_3rps_real *V, const tripod_3rps_real *A, tripod_3rps_real *accelerations)
+int tripod_3rps_actuator_accelerations(const prepared *model, const real *X, const real *V, const
+    real *A, real *accelerations)
 {
     int code;
     actuator_accelerations_one(model, X, V, A, accelerations, &code);
     return code;
 }
 
-size_t tripod_3rps_actuator_accelerations_batch(const tripod_3rps_model *model, size_t n, const
-    tripod_3rps_real *X, const tripod_3rps_real *V, const tripod_3rps_real *A, tripod_3rps_real
-    *accelerations, int *status)
+size_t tripod_3rps_actuator_accelerations_batch(const prepared *model, size_t n, const real *X,
+    const real *V, const real *A, real *accelerations, int *status)
 {
-    size_t failed = 0, i = 0;
-    for (; LANES > 1 && i + LANES <= n; i += LANES) {
-        int codes[LANES];
-        actuator_accelerations_lanes(model, X + NQ*i, V + NV*i, A + NV*i, accelerations + NU*i, codes);
-        for (size_t k = 0; k < LANES; ++k) {
+    size_t failed = 0, w;
+    for (size_t i = 0; i < n; i += w) {
+        int codes[LANES] = {INVALID};
+        w = LANES > 1 && i + LANES <= n ? LANES : 1;
+        if (w > 1) {
+            actuator_accelerations_lanes(model, X + NQ*i, V + NV*i, A + NV*i, accelerations + NU*i, codes);
+        }
+        for (size_t k = 0; k < w; ++k) {
             if (codes[k] != OK) {
                 codes[k] = tripod_3rps_actuator_accelerations(model, X + NQ*(i + k), V + NV*(i + k), A + NV*(i +
                     k), accelerations + NU*(i + k));
             }
         }
-        failed += record(codes, LANES, status ? status + i : NULL);
-    }
-    for (; i < n; ++i) {
-        const int code = tripod_3rps_actuator_accelerations(model, X + NQ*i, V + NV*i, A + NV*i,
-            accelerations + NU*i);
-        failed += record(&code, 1, status ? status + i : NULL);
+        failed += record(codes, w, status ? status + i : NULL);
     }
     return failed;
 }
 
-int tripod_3rps_power(const tripod_3rps_model *model, const tripod_3rps_real *X, const
-    tripod_3rps_real *V, const tripod_3rps_real *tau, tripod_3rps_real *power)
+int tripod_3rps_power(const prepared *model, const real *X, const real *V, const real *tau, real
+    *power)
 {
     int code;
     power_one(model, X, V, tau, power, &code);
     return code;
 }
 
-size_t tripod_3rps_power_batch(const tripod_3rps_model *model, size_t n, const tripod_3rps_real
-    *X, const tripod_3rps_real *V, const tripod_3rps_real *tau, tripod_3rps_real *power, int
-    *status)
+size_t tripod_3rps_power_batch(const prepared *model, size_t n, const real *X, const real *V,
+    const real *tau, real *power, int *status)
 {
-    size_t failed = 0, i = 0;
-    for (; LANES > 1 && i + LANES <= n; i += LANES) {
-        int codes[LANES];
-        power_lanes(model, X + NQ*i, V + NV*i, tau + NU*i, power + i, codes);
-        for (size_t k = 0; k < LANES; ++k) {
+    size_t failed = 0, w;
+    for (size_t i = 0; i < n; i += w) {
+        int codes[LANES] = {INVALID};
+        w = LANES > 1 && i + LANES <= n ? LANES : 1;
+        if (w > 1) {
+            power_lanes(model, X + NQ*i, V + NV*i, tau + NU*i, power + i, codes);
+        }
+        for (size_t k = 0; k < w; ++k) {
             if (codes[k] != OK) {
                 codes[k] = tripod_3rps_power(model, X + NQ*(i + k), V + NV*(i + k), tau + NU*(i + k), power + (i +
                     k));
             }
         }
-        failed += record(codes, LANES, status ? status + i : NULL);
-    }
-    for (; i < n; ++i) {
-        const int code = tripod_3rps_power(model, X + NQ*i, V + NV*i, tau + NU*i, power + i);
-        failed += record(&code, 1, status ? status + i : NULL);
+        failed += record(codes, w, status ? status + i : NULL);
     }
     return failed;
 }
 
-int tripod_3rps_rotation(const tripod_3rps_real *X, tripod_3rps_real *R)
+int tripod_3rps_rotation(const real *X, real *R)
 {
     int code;
     rotation_one(X, R, &code);
     return code;
 }
 
-size_t tripod_3rps_rotation_batch(size_t n, const tripod_3rps_real *X, tripod_3rps_real *R, int
-    *status)
+size_t tripod_3rps_rotation_batch(size_t n, const real *X, real *R, int *status)
 {
-    size_t failed = 0, i = 0;
-    for (; i < n; ++i) {
+    size_t failed = 0;
+    for (size_t i = 0; i < n; ++i) {
         const int code = tripod_3rps_rotation(X + NQ*i, R + 9*i);
         failed += record(&code, 1, status ? status + i : NULL);
     }
     return failed;
 }
 
-int tripod_3rps_pose(const tripod_3rps_real *t, const tripod_3rps_real *R, tripod_3rps_real *X)
+int tripod_3rps_pose(const real *t, const real *R, real *X)
 {
     int code;
     pose_one(t, R, X, &code);
     return code;
 }
 
-size_t tripod_3rps_pose_batch(size_t n, const tripod_3rps_real *t, const tripod_3rps_real *R,
-    tripod_3rps_real *X, int *status)
+size_t tripod_3rps_pose_batch(size_t n, const real *t, const real *R, real *X, int *status)
 {
-    size_t failed = 0, i = 0;
-    for (; i < n; ++i) {
+    size_t failed = 0;
+    for (size_t i = 0; i < n; ++i) {
         const int code = tripod_3rps_pose(t + 3*i, R + 9*i, X + NQ*i);
         failed += record(&code, 1, status ? status + i : NULL);
     }
     return failed;
 }
 
-int tripod_3rps_X_dot(const tripod_3rps_real *X, const tripod_3rps_real *V, tripod_3rps_real
-    *X_dot)
+int tripod_3rps_X_dot(const real *X, const real *V, real *X_dot)
 {
     int code;
     X_dot_one(X, V, X_dot, &code);
     return code;
 }
 
-size_t tripod_3rps_X_dot_batch(size_t n, const tripod_3rps_real *X, const tripod_3rps_real *V,
-    tripod_3rps_real *X_dot, int *status)
+size_t tripod_3rps_X_dot_batch(size_t n, const real *X, const real *V, real *X_dot, int *status)
 {
-    size_t failed = 0, i = 0;
-    for (; i < n; ++i) {
+    size_t failed = 0;
+    for (size_t i = 0; i < n; ++i) {
         const int code = tripod_3rps_X_dot(X + NQ*i, V + NV*i, X_dot + NQ*i);
         failed += record(&code, 1, status ? status + i : NULL);
     }
     return failed;
 }
 
-int tripod_3rps_pose_from_rpy(const tripod_3rps_real *t, const tripod_3rps_real *rpy,
-    tripod_3rps_real *X)
+int tripod_3rps_pose_from_rpy(const real *t, const real *rpy, real *X)
 {
     int code;
     pose_from_rpy_one(t, rpy, X, &code);
     return code;
 }
 
-size_t tripod_3rps_pose_from_rpy_batch(size_t n, const tripod_3rps_real *t, const tripod_3rps_real
-    *rpy, tripod_3rps_real *X, int *status)
+size_t tripod_3rps_pose_from_rpy_batch(size_t n, const real *t, const real *rpy, real *X, int
+    *status)
 {
-    size_t failed = 0, i = 0;
-    for (; i < n; ++i) {
+    size_t failed = 0;
+    for (size_t i = 0; i < n; ++i) {
         const int code = tripod_3rps_pose_from_rpy(t + 3*i, rpy + 3*i, X + NQ*i);
         failed += record(&code, 1, status ? status + i : NULL);
     }
     return failed;
 }
 
-int tripod_3rps_retract(const tripod_3rps_real *X, const tripod_3rps_real *step, tripod_3rps_real
-    *X_moved)
+int tripod_3rps_retract(const real *X, const real *step, real *X_moved)
 {
     int code;
     retract_one(X, step, X_moved, &code);
     return code;
 }
 
-size_t tripod_3rps_retract_batch(size_t n, const tripod_3rps_real *X, const tripod_3rps_real
-    *step, tripod_3rps_real *X_moved, int *status)
+size_t tripod_3rps_retract_batch(size_t n, const real *X, const real *step, real *X_moved, int
+    *status)
 {
-    size_t failed = 0, i = 0;
-    for (; i < n; ++i) {
+    size_t failed = 0;
+    for (size_t i = 0; i < n; ++i) {
         const int code = tripod_3rps_retract(X + NQ*i, step + NV*i, X_moved + NQ*i);
         failed += record(&code, 1, status ? status + i : NULL);
     }
     return failed;
 }
 
-int tripod_3rps_difference(const tripod_3rps_real *X0, const tripod_3rps_real *X1,
-    tripod_3rps_real *step)
+int tripod_3rps_difference(const real *X0, const real *X1, real *step)
 {
     int code;
     difference_one(X0, X1, step, &code);
     return code;
 }
 
-size_t tripod_3rps_difference_batch(size_t n, const tripod_3rps_real *X0, const tripod_3rps_real
-    *X1, tripod_3rps_real *step, int *status)
+size_t tripod_3rps_difference_batch(size_t n, const real *X0, const real *X1, real *step, int
+    *status)
 {
-    size_t failed = 0, i = 0;
-    for (; i < n; ++i) {
+    size_t failed = 0;
+    for (size_t i = 0; i < n; ++i) {
         const int code = tripod_3rps_difference(X0 + NQ*i, X1 + NQ*i, step + NV*i);
         failed += record(&code, 1, status ? status + i : NULL);
     }
     return failed;
 }
 
-int tripod_3rps_interpolate(const tripod_3rps_real *X0, const tripod_3rps_real *X1, const
-    tripod_3rps_real *s, tripod_3rps_real *X)
+int tripod_3rps_interpolate(const real *X0, const real *X1, const real *s, real *X)
 {
     int code;
     interpolate_one(X0, X1, s, X, &code);
     return code;
 }
 
-size_t tripod_3rps_interpolate_batch(size_t n, const tripod_3rps_real *X0, const tripod_3rps_real
-    *X1, const tripod_3rps_real *s, tripod_3rps_real *X, int *status)
+size_t tripod_3rps_interpolate_batch(size_t n, const real *X0, const real *X1, const real *s, real
+    *X, int *status)
 {
-    size_t failed = 0, i = 0;
-    for (; i < n; ++i) {
+    size_t failed = 0;
+    for (size_t i = 0; i < n; ++i) {
         const int code = tripod_3rps_interpolate(X0 + NQ*i, X1 + NQ*i, s + i, X + NQ*i);
         failed += record(&code, 1, status ? status + i : NULL);
     }

@@ -260,6 +260,23 @@ int tripod_3rps_condition_constrained(const tripod_3rps_model *model, const trip
 size_t tripod_3rps_condition_constrained_batch(const tripod_3rps_model *model, size_t n, const
     tripod_3rps_real *X, tripod_3rps_real *sigma, tripod_3rps_real *legs, int *status);
 
+/* Manipulability of forces: the product of the singular values that condition has by default, and
+   the least over the largest of them. Of N^T H, N an orthonormal basis of the motions that
+   constraints leave. 130 mul, 99 add, 3 div, 7 sqrt, 0 trig; the singular values apart. In: X
+   (NQ). Out: measure (1), isotropy (1). */
+int tripod_3rps_manipulability(const tripod_3rps_model *model, const tripod_3rps_real *X,
+    tripod_3rps_real *measure, tripod_3rps_real *isotropy);
+size_t tripod_3rps_manipulability_batch(const tripod_3rps_model *model, size_t n, const
+    tripod_3rps_real *X, tripod_3rps_real *measure, tripod_3rps_real *isotropy, int *status);
+
+/* How near actuators and legs are to being singular: relative distances, 0 where they are. 130
+   mul, 99 add, 3 div, 7 sqrt, 0 trig; the singular values apart. In: X (NQ). Out: actuators (1),
+   legs (1). */
+int tripod_3rps_singularity_distance(const tripod_3rps_model *model, const tripod_3rps_real *X,
+    tripod_3rps_real *actuators, tripod_3rps_real *legs);
+size_t tripod_3rps_singularity_distance_batch(const tripod_3rps_model *model, size_t n, const
+    tripod_3rps_real *X, tripod_3rps_real *actuators, tripod_3rps_real *legs, int *status);
+
 /* X at which the actuated joints stand at q_actuated, by Gauss-Newton from X0. Extra coordinates
    that actuators do not determine stay. Impossible where no pose is found. In: q_actuated (NU),
    X0 (NQ). Out: X (NQ). */

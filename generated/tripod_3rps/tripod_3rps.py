@@ -65,6 +65,7 @@ __all__ = [
     "joint_margins",
     "joint_rates",
     "leg_reactions",
+    "manipulability",
     "momentum",
     "null_space",
     "pose",
@@ -73,6 +74,7 @@ __all__ = [
     "project",
     "retract",
     "rotation",
+    "singularity_distance",
     "within_limits",
 ]
 
@@ -798,6 +800,24 @@ def _constants(p, name):
     return p._cache[name]
 
 
+class _Vector(list):
+    """A vector, or a matrix row by row, of a single state."""
+
+    def __add__(self, other):
+        return _Vector([a + b for a, b in zip(self, other)])
+
+    def __sub__(self, other):
+        return _Vector([a - b for a, b in zip(self, other)])
+
+    def __neg__(self):
+        return _Vector([-a for a in self])
+
+
+def _are_finite(rows):
+    """Whether lists of floats have finite entries alone."""
+    return math.isfinite(sum(map(sum, rows))) or all(all(map(math.isfinite, row)) for row in rows)
+
+
 class _Floats:
     """Functions of a state after another, in Python floats: the way for few states."""
 
@@ -827,11 +847,32 @@ class _Floats:
         """Lists that a function gives at a state."""
         try:
             ok, arrays = function(self, *given)
-        except (ZeroDivisionError, OverflowError, ValueError):
+        except (ArithmeticError, ValueError):
             ok = False
-        if ok and all(all(map(math.isfinite, array)) for array in arrays):
+        if ok and _are_finite(arrays):
             return arrays
         return [[np.nan] * math.prod(_SHAPES[n]) for n in names]
+
+    def solved(self, order, a, b):
+        """Solutions, straight through; and which are beyond doubt."""
+        sure, x = np.zeros(self.states, dtype=bool), np.full(b.shape, np.nan)
+        for k, given in enumerate(zip(a.T.tolist(), b.T.tolist())):
+            try:
+                sure[k], (x[:, k],) = order(self, *given)
+            except ZeroDivisionError:
+                pass
+        return sure, x
+
+
+class _Single(_Floats):
+    """A single state in lists of floats throughout."""
+
+    def run(self, function, names, *vectors):
+        """Arrays of a function, row by row; ArithmeticError or ValueError where the state is impossible."""
+        ok, arrays = function(self, *vectors)
+        if not (ok and _are_finite(arrays)):
+            raise ArithmeticError
+        return [_Vector(a) for a in arrays]
 
 
 class _Arrays:
@@ -861,20 +902,27 @@ class _Arrays:
     def zeros(self, name):
         return np.zeros((math.prod(_SHAPES[name]), self.states))
 
-    def computed(self, function, names, vectors):
-        """Flags and arrays (*shape, states) of a function."""
+    def computed(self, function, *vectors):
+        """Flags and arrays (entries, states) of a function."""
         if self.kept is None:
-            flags, arrays = function(self, *vectors)
-        else:
-            if self.done not in self.kept:
-                self.kept[self.done] = _Replay(self.p, function, [len(v) for v in vectors], self.states)
-            flags, arrays = self.kept[self.done].run(vectors)
-            self.done += 1
-        return flags, [a.reshape(*_SHAPES[n], self.states) for a, n in zip(arrays, names)]
+            return function(self, *vectors)
+        if self.done not in self.kept:
+            self.kept[self.done] = _Replay(self.p, function, [len(v) for v in vectors], self.states)
+        self.done += 1
+        return self.kept[self.done - 1].run(vectors)
+
+    def shaped(self, names, arrays):
+        return [a.reshape(*_SHAPES[n], self.states) for a, n in zip(arrays, names)]
+
+    def solved(self, order, a, b):
+        """Solutions, straight through; and which are beyond doubt."""
+        sure, (x,) = self.computed(order, a, b)
+        return sure, np.array(x)
 
     def run(self, function, names, *vectors):
         """Arrays (*shape, states) of a function; NaN where the state is impossible."""
-        ok, arrays = self.computed(function, names, vectors)
+        ok, arrays = self.computed(function, *vectors)
+        arrays = self.shaped(names, arrays)
         ok = np.logical_and(ok, _finite(arrays, self.states))
         if not np.all(ok):
             for a in arrays:
@@ -891,10 +939,10 @@ class _Judged(_Arrays):
 
     def run(self, function, names, *vectors):
         """Arrays (*shape, states) of a function, also where they are nonsense."""
-        (valid, reached, clear), arrays = self.computed(function, names, vectors)
+        (valid, reached, clear), arrays = self.computed(function, *vectors)
         for code, good in ((3, valid), (1, reached), (2, clear)):
             self.failed[code] |= np.logical_not(good)
-        return arrays
+        return self.shaped(names, arrays)
 
     def closed(self, q):
         """q, noting where the iteration has not converged."""
@@ -906,26 +954,90 @@ class _Judged(_Arrays):
         return np.select(list(self.failed.values()), list(self.failed), np.where(possible, 0, 3))
 
 
+_IN_ONE = {}  # by function
+
+
+def _in_one(function):
+    """A function that tells whether a state is possible, of one that tells why not."""
+
+    def run(m, *vectors):
+        (valid, reached, clear), arrays = function(m, *vectors)
+        return valid & reached & clear, arrays
+
+    return _IN_ONE.setdefault(function, run)
+
+
 def _mode(p, states, kept=None):
     """The faster way for so many states."""
     return (_Floats if 0 < states <= _FEW else _Arrays)(p, states, kept)
 
 
-def _call(function, steps, p, *arguments, mode=_mode, unbounded=False):
+def _call(function, steps, p, *arguments, mode=_mode, unbounded=False, plain=()):
     """What the steps give at arguments (name, value, shape of a state, default, rule).
 
-    Where that may be infinite only NaN makes a state impossible.
+    Where that may be infinite only NaN makes a state impossible.  `plain` has the shapes of results
+    where a single state needs no arrays.
     """
+    p, read = _given(p), [a[-1] != "unused" for a in arguments]
+    lists = plain and _lists(arguments)
+    if lists:
+        found = _state(_Single(p, 1), steps, lists, read)
+        results = [_result(a, shape) for a, shape in zip(found or plain, plain)]
+        return results[0] if len(results) == 1 else tuple(results)
     given = [_argument(function, *a) for a in arguments]
     shapes = [a[2] for a in arguments]
     leads = {a[0]: v.shape[: v.ndim - len(a[2])] for a, v in zip(arguments, given)}
-    lead, p = _lead(leads), _given(p)
-    read = [a[4:] != ("unused",) for a in arguments]
-    if lead or mode is _Judged:
+    lead = _lead(leads)
+    if plain and 0 < math.prod(lead) <= _FEW:
+        results = _few(steps, p, lead, given, shapes, read, plain)
+    elif lead or mode is _Judged:
         results = _many(steps, p, lead, given, shapes, read, mode, unbounded)
     else:
         results = _one(steps, p, given, shapes, read, unbounded)
     return results[0] if len(results) == 1 else tuple(results)
+
+
+def _lists(arguments):
+    """Arguments of a single state as lists, where they are such arrays as they mostly are."""
+    found = []
+    for row in arguments:
+        value, shape = row[1:3]
+        if type(value) is np.ndarray:
+            if value.shape != shape or value.dtype is not _REAL or row[-1] == "positive":
+                return None
+            found.append(_Vector(value.tolist()))
+        elif value is None and len(row) > 3 and row[3] is not None:
+            found.append(_Vector(row[3] if isinstance(row[3], tuple) else [row[3]] * shape[0]))
+        else:
+            return None
+    return found
+
+
+def _state(m, steps, given, read):
+    """Lists that the steps give at a state; None where it is impossible."""
+    try:
+        found = steps(m, *given)
+    except (ArithmeticError, ValueError):
+        return None
+    return found if _are_finite(list(compress(given, read))) and _are_finite(found) else None
+
+
+def _result(found, shape):
+    """The array of a list; of an impossible state, for which its shape is given, NaN."""
+    if found is shape:
+        return np.full(shape, np.nan)
+    return np.array(found) if len(shape) == 1 else np.array(found).reshape(shape)
+
+
+def _few(steps, p, lead, given, shapes, read, plain):
+    """Results at a few states, one after another."""
+    m, rows = _Single(p, 1), []
+    for v, shape in zip(given, shapes):
+        flat = np.broadcast_to(v, lead + shape).reshape(math.prod(lead), -1)
+        rows.append(map(_Vector, flat.tolist()))
+    impossible = [[np.nan] * math.prod(shape) for shape in plain]
+    found = [_state(m, steps, state, read) or impossible for state in zip(*rows)]
+    return [np.array(a).reshape(lead + shape) for a, shape in zip(zip(*found), plain)]
 
 
 def _one(steps, p, given, shapes, read, unbounded):
@@ -944,7 +1056,11 @@ def _many(steps, p, lead, given, shapes, read, mode, unbounded):
     """Results at many states, block by block; the last block begins where it is as long as the others."""
     count = math.prod(lead)
     size, kept = min(count, _BLOCK), {} if count >= _MANY else None
-    flat = [np.broadcast_to(v, lead + s).reshape(count, *s) for v, s in zip(given, shapes)]
+    # one value for all states stands for itself
+    flat = [
+        np.broadcast_to(v, lead + s).reshape(count, *s) if v.ndim > len(s) else v
+        for v, s in zip(given, shapes)
+    ]
     possible, status, outputs = np.ones(count, dtype=bool), np.zeros(count, dtype=int), []
     if count > size:
         # Never touched, freed at once: the C library, which learns from it, then keeps the memory
@@ -953,7 +1069,7 @@ def _many(steps, p, lead, given, shapes, read, mode, unbounded):
     with np.errstate(all="ignore"):
         for stop in (*range(size, count, max(size, 1)), count):
             block = slice(stop - size, stop)
-            states = [_states_last(v[block]) for v in flat]
+            states = [_states_last(v, s, block) for v, s in zip(flat, shapes)]
             m, good = mode(p, size, kept), possible[block]
             found = steps(m, *states)
             if not outputs:
@@ -973,15 +1089,17 @@ def _many(steps, p, lead, given, shapes, read, mode, unbounded):
     return [a.reshape(lead + a.shape[1:])[()] for a in outputs]
 
 
-def _states_last(a):
-    """A contiguous array (*shape, states) of one (states, *shape)."""
-    return np.ascontiguousarray(a.transpose(*range(1, a.ndim), 0))
+def _states_last(a, shape, block):
+    """An array (*shape, states) of a block of one (states, *shape), or of a value for all."""
+    if a.ndim == len(shape):
+        return np.broadcast_to(a[..., None], (*shape, block.stop - block.start))
+    return np.ascontiguousarray(a[block].transpose(*range(1, a.ndim), 0))
 
 
 def _finite(arrays, states):
     """In which states all entries of arrays (*shape, states) are finite."""
     flat = [a.reshape(math.prod(a.shape[:-1]), states) for a in arrays]
-    good = np.isfinite(sum(np.add.reduce(a, axis=0) for a in flat))
+    good = np.isfinite(sum(np.einsum("es->s", a) for a in flat))
     if not np.all(good):  # or the sum is too large
         good = np.logical_and.reduce([np.isfinite(a).all(axis=0) for a in flat])
     return good
@@ -1090,6 +1208,8 @@ class _Record:
 
     def made(self, operation, *operands):
         """The result of an operation."""
+        if operation in _WITHOUT and operands[0] is _WITHOUT[operation]:
+            return operands[1]
         numbers = [self.number(operand) for operand in operands]
         if all(self.kinds[n] == "one" for n in numbers):
             kind = "one"
@@ -1126,6 +1246,7 @@ class _Record:
         return counts
 
 
+_WITHOUT = {np.logical_and: True}  # first operands that change nothing
 _OF_FLAGS = {np.logical_and, np.greater, np.greater_equal}
 _RECORDS = {}  # by function
 
@@ -1137,11 +1258,12 @@ class _Replay:
         if function not in _RECORDS:
             _RECORDS[function] = _Record(p, function, sizes)
         r = _RECORDS[function]
-        made = {kind: _rows(n, states, bool if kind == "flag" else float) for kind, n in r.counts.items()}
-        made["one"] = [np.empty(()) for _ in range(r.counts["one"])]
-        made["out"] = _rows(sum(r.sizes), states)
-        self.inputs = [_rows(size, states) for size in sizes]
-        self.arrays = np.split(made["out"], np.cumsum(r.sizes)[:-1])
+        rows = _rows(r.counts["state"] + sum(r.sizes) + sum(sizes), states)
+        given, out, state = np.split(rows, np.cumsum((sum(sizes), sum(r.sizes))))
+        made = {"state": state, "out": out, "one": [np.empty(()) for _ in range(r.counts["one"])]}
+        made["flag"] = np.empty((r.counts["flag"], states), dtype=bool)
+        self.inputs = np.split(given, np.cumsum(sizes)[:-1])
+        self.arrays = np.split(out, np.cumsum(r.sizes)[:-1])
         at = {number: np.array(value) for value, number in r.literals.items()}
         for values, given in zip(r.inputs, self.inputs):
             at |= {v.number: row for v, row in zip(values, given)}
@@ -1163,9 +1285,26 @@ class _Replay:
         return self.flags, self.arrays
 
 
-def _rows(count, states, kind=float):
-    """Rows of so many states, a cache line apart from each other."""
-    return np.empty((count, states + 8), dtype=kind)[:, :states]
+def _rows(count, states):
+    """Rows of so many states in one piece, which the system keeps in a few large pages if it is told.
+
+    NumPy tells it of pieces from 4 MB on.  It makes operations a third faster.
+    """
+    row = states + 8  # a cache line further: rows do not compete for the same places of the cache
+    piece = np.empty(max(count * row, 2 * _PAGE) + _PAGE)
+    start = -(piece.ctypes.data // piece.itemsize) % _PAGE
+    return piece[start : start + count * row].reshape(count, row)[:, :states]
+
+
+_PAGE = (2 << 20) // 8  # numbers in a large page
+
+
+def _times(a, b):
+    """Products of matrices (m, n, states) with vectors (n, states)."""
+    if isinstance(b, _Vector):
+        rows = (a[k : k + len(b)] for k in range(0, len(a), len(b)))
+        return _Vector([sum([x * y for x, y in zip(row, b)]) for row in rows])
+    return np.einsum("ijs,js->is", a, b)
 
 
 def _with_forces(a, amounts, directions, legs):
@@ -1286,8 +1425,10 @@ _CLEARLY = 2.0  # rows change places only for a pivot that is larger by this fac
 
 def _solve(a, b):
     """x with a x = b, a (n, n, states), b (n, states): rows scaled, partial pivoting; NaN if singular."""
+    if isinstance(b, _Vector):
+        return _Vector(_solve_one([a[k : k + len(b)] for k in range(0, len(a), len(b))], b))
     n, states = b.shape
-    if 0 < states <= _FEW:
+    if 0 < states <= 8:
         systems = zip(a.transpose(2, 0, 1).tolist(), b.T.tolist())
         return np.array([_solve_one(*each) for each in systems]).T.reshape(n, states)
     size = np.max(np.abs(a), axis=1, initial=0.0)
@@ -1312,6 +1453,38 @@ def _solve(a, b):
         known = np.einsum("js,js->s", rows[k, k + 1 : n], x[k + 1 :])
         x[k] = (rows[k, n] - known) / rows[k, k]
     x[:, ~(good & np.isfinite(x).all(axis=0))] = np.nan
+    return x
+
+
+class _Order:
+    """How a system is solved near home.
+
+    Args:
+        solve: the function for so many equations.
+        rows: in the order of their pivots.
+        limits: of multiples, column by column, and of 1/pivot.
+    """
+
+    def __init__(self, solve, rows, limits):
+        self.solve, self.rows, self.limits = solve, rows, limits
+
+    def __call__(self, m, a, b):
+        """Solutions of a x = b, and whether these are beyond doubt."""
+        return self.solve(a, b, self.rows, self.limits)
+
+
+def _straight(m, a, b, order):
+    """The same, in the order of rows at home; with a choice of rows only where that is in doubt."""
+    if isinstance(b, _Vector):
+        try:
+            sure, (x,) = order(m, a, b)
+        except ZeroDivisionError:
+            sure = False
+        return _Vector(x) if sure else _solve(a, b)
+    sure, x = m.solved(order, a.reshape(-1, m.states), b)
+    at = np.flatnonzero(np.logical_not(sure))
+    if at.size:
+        x[:, at] = _solve(a[..., at], b[:, at])
     return x
 
 
@@ -1376,6 +1549,16 @@ def _singular_values(a):
     values = np.linalg.svd(a, compute_uv=False).T.copy()
     values[:, bad] = np.nan
     return values
+
+
+def _least_entry(a):
+    """The least entry."""
+    return np.min(a, axis=0)
+
+
+def _spread(a, n):
+    """Of the first n entries the product, and the last over the first, 0 where that is 0."""
+    return np.prod(a[:n], axis=0), np.where(a[0] == 0.0, 0.0, a[n - 1] / a[0])
 
 
 def _least_squares(a, b, least):
@@ -1613,23 +1796,20 @@ def _run_dynamics(m, X, V):
         rps_S_x = rps_q_x + t_x - rps_base_point_x
         rps_S_y = rps_q_y + t_y - rps_base_point_y
         rps_S_z = rps_q_z + t_z - rps_base_point_z
-        # (rps-px_1) component along the reference direction
-        rps_px_1 = (
+        rps_S_in_turn1_x = (
         rps_S_x*rps_base_frame_xx + rps_S_y*rps_base_frame_yx + rps_S_z*rps_base_frame_zx
         )
-        # (rps-py_1) component across the reference direction
-        rps_py_1 = (
+        rps_S_in_turn1_y = (
         rps_S_x*rps_base_frame_xy + rps_S_y*rps_base_frame_yy + rps_S_z*rps_base_frame_zy
         )
-        # (rps-rho2_1) squared amplitude
-        rps_rho2_1 = rps_px_1*rps_px_1 + rps_py_1*rps_py_1
-        # (rps-root_1) amplitude, with the sign of the branch
-        rps_root_1 = rps_branch_1*sqrt(rps_rho2_1)
+        # (rps-q_2) displacement of joint 2
+        rps_q_2_t = rps_S_in_turn1_x*rps_S_in_turn1_x + rps_S_in_turn1_y*rps_S_in_turn1_y
+        rps_q_2 = rps_branch_1*sqrt(rps_q_2_t)
         # (rps-c_1) cosine of the angle of joint 1 from its reference direction
-        inv_rps_root_1 = 1.0/rps_root_1
-        rps_c_1 = inv_rps_root_1*rps_px_1
+        inv_rps_q_2 = 1.0/rps_q_2
+        rps_c_1 = inv_rps_q_2*rps_S_in_turn1_x
         # (rps-s_1) sine of the angle of joint 1 from its reference direction
-        rps_s_1 = inv_rps_root_1*rps_py_1
+        rps_s_1 = inv_rps_q_2*rps_S_in_turn1_y
         # (rps-S_dot) velocity of the connection point
         axis_x_rps_axes1_x = rps_base_frame_xx*rps_c_1 + rps_base_frame_xy*rps_s_1
         axis_x_rps_axes1_y = rps_base_frame_yx*rps_c_1 + rps_base_frame_yy*rps_s_1
@@ -1649,7 +1829,7 @@ def _run_dynamics(m, X, V):
         axis_y_rps_axes1_y = rps_base_frame_yy*rps_c_1 - rps_base_frame_yx*rps_s_1
         axis_y_rps_axes1_z = rps_base_frame_zy*rps_c_1 - rps_base_frame_zx*rps_s_1
         rps_qd_1 = (
-        inv_rps_root_1*(axis_y_rps_axes1_x*rps_S_dot_x + axis_y_rps_axes1_y*rps_S_dot_y +
+        inv_rps_q_2*(axis_y_rps_axes1_x*rps_S_dot_x + axis_y_rps_axes1_y*rps_S_dot_y +
             axis_y_rps_axes1_z*rps_S_dot_z)
         )
         # (rps-W_1) centripetal tensor of link 1
@@ -1667,7 +1847,7 @@ def _run_dynamics(m, X, V):
         # (rps-rel_o) remainder without the acceleration in: acceleration of the connection point left to the joint accelerations
         rps_rel_o_in_axes1_y = rps_u_1_in_axes1_y - 2.0*rps_S_dot_in_axes1_x*rps_qd_1
         # (rps-qdd_1_o) remainder without the acceleration in: acceleration of joint 1
-        rps_qdd_1_o = inv_rps_root_1*rps_rel_o_in_axes1_y
+        rps_qdd_1_o = inv_rps_q_2*rps_rel_o_in_axes1_y
         # (rps-acc_2_o) remainder without the acceleration in: acceleration of the reference point of link 2, less gravity
         rps_g_in_axes1_x = rps_acc_2_t*rps_c_1 + rps_acc_2_t_2*rps_s_1
         rps_g_in_axes1_y = rps_acc_2_t_2*rps_c_1 - rps_acc_2_t*rps_s_1
@@ -1693,13 +1873,13 @@ def _run_dynamics(m, X, V):
         )
         # (rps-d_G) coefficient of the acceleration in: force at the connection point that balances the leg's inertia and weight along all degrees of freedom
         rps_d_G_in_axes1_yy = (
-        inv_rps_root_1*(rps_h_2_in_spec1_x + inv_rps_root_1*rps_J_group_1_in_axes1_zz +
-            rps_root_1*(rps_link2_mass + inv_rps_root_1*rps_h_2_in_spec1_x))
+        inv_rps_q_2*(rps_h_2_in_spec1_x + inv_rps_q_2*rps_J_group_1_in_axes1_zz +
+            rps_q_2*(rps_link2_mass + inv_rps_q_2*rps_h_2_in_spec1_x))
         )
         # (rps-G_o) remainder without the acceleration in: force at the connection point that balances the leg's inertia and weight along all degrees of freedom
-        rps_G_o_in_axes1_y = rps_f_2_o_in_axes1_y + inv_rps_root_1*rps_mu_1_o_in_axes1_z
+        rps_G_o_in_axes1_y = rps_f_2_o_in_axes1_y + inv_rps_q_2*rps_mu_1_o_in_axes1_z
         # (rps-d_c) coefficient of the acceleration in: leg force on the platform without actuation and without the mass at the connection point
-        rps_d_c_in_axes1_xy = inv_rps_root_1*rps_h_2_in_spec1_y
+        rps_d_c_in_axes1_xy = inv_rps_q_2*rps_h_2_in_spec1_y
         rps_d_c_t = axis_y_rps_axes1_x*rps_d_c_in_axes1_xy - axis_x_rps_axes1_x*rps_link2_mass
         rps_d_c_t_2 = axis_y_rps_axes1_y*rps_d_c_in_axes1_xy - axis_x_rps_axes1_y*rps_link2_mass
         rps_d_c_t_3 = (
@@ -1756,8 +1936,8 @@ def _run_dynamics(m, X, V):
         rps_Hk_a_1_y = rps_base_frame_xz*rps_q_z - rps_base_frame_zz*rps_q_x
         rps_Hk_a_1_z = rps_base_frame_yz*rps_q_x - rps_base_frame_xz*rps_q_y
         ok = (
-        ok & (abs(rps_rho2_1) > _TOLERANCE * _TOLERANCE * 0.5625) & (abs(rps_root_1) > _TOLERANCE
-            * 0.75)
+        ok & (abs(rps_q_2_t) > _TOLERANCE * _TOLERANCE * 0.5625) & (abs(rps_q_2) > _TOLERANCE *
+            0.75)
         )
         # (M_tt) translational block of M
         M_tt_t += rps_d_c_xx
@@ -1977,37 +2157,34 @@ def _run_M(m, X):
         rps_S_x = rps_q_x + t_x - rps_base_point_x
         rps_S_y = rps_q_y + t_y - rps_base_point_y
         rps_S_z = rps_q_z + t_z - rps_base_point_z
-        # (rps-px_1) component along the reference direction
-        rps_px_1 = (
+        rps_S_in_turn1_x = (
         rps_S_x*rps_base_frame_xx + rps_S_y*rps_base_frame_yx + rps_S_z*rps_base_frame_zx
         )
-        # (rps-py_1) component across the reference direction
-        rps_py_1 = (
+        rps_S_in_turn1_y = (
         rps_S_x*rps_base_frame_xy + rps_S_y*rps_base_frame_yy + rps_S_z*rps_base_frame_zy
         )
-        # (rps-rho2_1) squared amplitude
-        rps_rho2_1 = rps_px_1*rps_px_1 + rps_py_1*rps_py_1
-        # (rps-root_1) amplitude, with the sign of the branch
-        rps_root_1 = rps_branch_1*sqrt(rps_rho2_1)
+        # (rps-q_2) displacement of joint 2
+        rps_q_2_t = rps_S_in_turn1_x*rps_S_in_turn1_x + rps_S_in_turn1_y*rps_S_in_turn1_y
+        rps_q_2 = rps_branch_1*sqrt(rps_q_2_t)
         # (rps-c_1) cosine of the angle of joint 1 from its reference direction
-        inv_rps_root_1 = 1.0/rps_root_1
-        rps_c_1 = inv_rps_root_1*rps_px_1
+        inv_rps_q_2 = 1.0/rps_q_2
+        rps_c_1 = inv_rps_q_2*rps_S_in_turn1_x
         # (rps-s_1) sine of the angle of joint 1 from its reference direction
-        rps_s_1 = inv_rps_root_1*rps_py_1
+        rps_s_1 = inv_rps_q_2*rps_S_in_turn1_y
         # (rps-w_2) reciprocal vector 2
         rps_w_2_x = rps_base_frame_xx*rps_c_1 + rps_base_frame_xy*rps_s_1
         rps_w_2_y = rps_base_frame_yx*rps_c_1 + rps_base_frame_yy*rps_s_1
         rps_w_2_z = rps_base_frame_zx*rps_c_1 + rps_base_frame_zy*rps_s_1
         # (rps-d_G) coefficient of the acceleration in: force at the connection point that balances the leg's inertia and weight along all degrees of freedom
         rps_d_G_in_axes1_yy = (
-        inv_rps_root_1*(rps_h_2_in_spec1_x + inv_rps_root_1*rps_J_group_1_in_axes1_zz +
-            rps_root_1*(rps_link2_mass + inv_rps_root_1*rps_h_2_in_spec1_x))
+        inv_rps_q_2*(rps_h_2_in_spec1_x + inv_rps_q_2*rps_J_group_1_in_axes1_zz +
+            rps_q_2*(rps_link2_mass + inv_rps_q_2*rps_h_2_in_spec1_x))
         )
         # (rps-d_c) coefficient of the acceleration in: leg force on the platform without actuation and without the mass at the connection point
         axis_y_rps_axes1_x = rps_base_frame_xy*rps_c_1 - rps_base_frame_xx*rps_s_1
         axis_y_rps_axes1_y = rps_base_frame_yy*rps_c_1 - rps_base_frame_yx*rps_s_1
         axis_y_rps_axes1_z = rps_base_frame_zy*rps_c_1 - rps_base_frame_zx*rps_s_1
-        rps_d_c_in_axes1_xy = inv_rps_root_1*rps_h_2_in_spec1_y
+        rps_d_c_in_axes1_xy = inv_rps_q_2*rps_h_2_in_spec1_y
         rps_d_c_t = axis_y_rps_axes1_x*rps_d_c_in_axes1_xy - rps_link2_mass*rps_w_2_x
         rps_d_c_t_2 = axis_y_rps_axes1_y*rps_d_c_in_axes1_xy - rps_link2_mass*rps_w_2_y
         rps_d_c_t_3 = rps_d_c_in_axes1_xy*rps_w_2_x - axis_y_rps_axes1_x*rps_d_G_in_axes1_yy
@@ -2043,8 +2220,8 @@ def _run_M(m, X):
         rps_M_aa_t_5 = rps_M_ta_t_5*rps_q_z - rps_M_ta_t_12*rps_q_x
         rps_M_aa_t_6 = rps_M_ta_t_9*rps_q_x - rps_M_ta_t_5*rps_q_y
         ok = (
-        ok & (abs(rps_rho2_1) > _TOLERANCE * _TOLERANCE * 0.5625) & (abs(rps_root_1) > _TOLERANCE
-            * 0.75)
+        ok & (abs(rps_q_2_t) > _TOLERANCE * _TOLERANCE * 0.5625) & (abs(rps_q_2) > _TOLERANCE *
+            0.75)
         )
         # (M_tt) translational block of M
         M_tt_t += rps_d_c_xx
@@ -2256,23 +2433,20 @@ def _run_Z(m, X, V):
         rps_S_x = rps_q_x + t_x - rps_base_point_x
         rps_S_y = rps_q_y + t_y - rps_base_point_y
         rps_S_z = rps_q_z + t_z - rps_base_point_z
-        # (rps-px_1) component along the reference direction
-        rps_px_1 = (
+        rps_S_in_turn1_x = (
         rps_S_x*rps_base_frame_xx + rps_S_y*rps_base_frame_yx + rps_S_z*rps_base_frame_zx
         )
-        # (rps-py_1) component across the reference direction
-        rps_py_1 = (
+        rps_S_in_turn1_y = (
         rps_S_x*rps_base_frame_xy + rps_S_y*rps_base_frame_yy + rps_S_z*rps_base_frame_zy
         )
-        # (rps-rho2_1) squared amplitude
-        rps_rho2_1 = rps_px_1*rps_px_1 + rps_py_1*rps_py_1
-        # (rps-root_1) amplitude, with the sign of the branch
-        rps_root_1 = rps_branch_1*sqrt(rps_rho2_1)
+        # (rps-q_2) displacement of joint 2
+        rps_q_2_t = rps_S_in_turn1_x*rps_S_in_turn1_x + rps_S_in_turn1_y*rps_S_in_turn1_y
+        rps_q_2 = rps_branch_1*sqrt(rps_q_2_t)
         # (rps-c_1) cosine of the angle of joint 1 from its reference direction
-        inv_rps_root_1 = 1.0/rps_root_1
-        rps_c_1 = inv_rps_root_1*rps_px_1
+        inv_rps_q_2 = 1.0/rps_q_2
+        rps_c_1 = inv_rps_q_2*rps_S_in_turn1_x
         # (rps-s_1) sine of the angle of joint 1 from its reference direction
-        rps_s_1 = inv_rps_root_1*rps_py_1
+        rps_s_1 = inv_rps_q_2*rps_S_in_turn1_y
         # (rps-S_dot) velocity of the connection point
         axis_x_rps_axes1_x = rps_base_frame_xx*rps_c_1 + rps_base_frame_xy*rps_s_1
         axis_x_rps_axes1_y = rps_base_frame_yx*rps_c_1 + rps_base_frame_yy*rps_s_1
@@ -2292,7 +2466,7 @@ def _run_Z(m, X, V):
         axis_y_rps_axes1_y = rps_base_frame_yy*rps_c_1 - rps_base_frame_yx*rps_s_1
         axis_y_rps_axes1_z = rps_base_frame_zy*rps_c_1 - rps_base_frame_zx*rps_s_1
         rps_qd_1 = (
-        inv_rps_root_1*(axis_y_rps_axes1_x*rps_S_dot_x + axis_y_rps_axes1_y*rps_S_dot_y +
+        inv_rps_q_2*(axis_y_rps_axes1_x*rps_S_dot_x + axis_y_rps_axes1_y*rps_S_dot_y +
             axis_y_rps_axes1_z*rps_S_dot_z)
         )
         # (rps-W_1) centripetal tensor of link 1
@@ -2307,7 +2481,7 @@ def _run_Z(m, X, V):
         # (rps-rel_o) remainder without the acceleration in: acceleration of the connection point left to the joint accelerations
         rps_rel_o_in_axes1_y = rps_u_1_in_axes1_y - 2.0*rps_S_dot_in_axes1_x*rps_qd_1
         # (rps-qdd_1_o) remainder without the acceleration in: acceleration of joint 1
-        rps_qdd_1_o = inv_rps_root_1*rps_rel_o_in_axes1_y
+        rps_qdd_1_o = inv_rps_q_2*rps_rel_o_in_axes1_y
         # (rps-acc_2_o) remainder without the acceleration in: acceleration of the reference point of link 2, less gravity
         rps_g_in_axes1_x = rps_acc_2_t*rps_c_1 + rps_acc_2_t_2*rps_s_1
         rps_g_in_axes1_y = rps_acc_2_t_2*rps_c_1 - rps_acc_2_t*rps_s_1
@@ -2332,7 +2506,7 @@ def _run_Z(m, X, V):
             rps_g_in_axes1_y*rps_h_1_in_spec1_x
         )
         # (rps-G_o) remainder without the acceleration in: force at the connection point that balances the leg's inertia and weight along all degrees of freedom
-        rps_G_o_in_axes1_y = rps_f_2_o_in_axes1_y + inv_rps_root_1*rps_mu_1_o_in_axes1_z
+        rps_G_o_in_axes1_y = rps_f_2_o_in_axes1_y + inv_rps_q_2*rps_mu_1_o_in_axes1_z
         # (rps-U) velocity and gravity terms of the leg force
         rps_U_x = axis_x_rps_axes1_x*rps_f_2_o_in_axes1_x + axis_y_rps_axes1_x*rps_G_o_in_axes1_y
         rps_U_y = axis_x_rps_axes1_y*rps_f_2_o_in_axes1_x + axis_y_rps_axes1_y*rps_G_o_in_axes1_y
@@ -2342,8 +2516,8 @@ def _run_Z(m, X, V):
         rps_Z_a_t_2 = rps_U_x*rps_q_z - rps_U_z*rps_q_x
         rps_Z_a_t_3 = rps_U_y*rps_q_x - rps_U_x*rps_q_y
         ok = (
-        ok & (abs(rps_rho2_1) > _TOLERANCE * _TOLERANCE * 0.5625) & (abs(rps_root_1) > _TOLERANCE
-            * 0.75)
+        ok & (abs(rps_q_2_t) > _TOLERANCE * _TOLERANCE * 0.5625) & (abs(rps_q_2) > _TOLERANCE *
+            0.75)
         )
         # (Z_t) translational part of Z
         Z_t_rps_x += rps_U_x
@@ -2433,23 +2607,20 @@ def _run_H(m, X):
         rps_S_x = rps_q_x + t_x - rps_base_point_x
         rps_S_y = rps_q_y + t_y - rps_base_point_y
         rps_S_z = rps_q_z + t_z - rps_base_point_z
-        # (rps-px_1) component along the reference direction
-        rps_px_1 = (
+        rps_S_in_turn1_x = (
         rps_S_x*rps_base_frame_xx + rps_S_y*rps_base_frame_yx + rps_S_z*rps_base_frame_zx
         )
-        # (rps-py_1) component across the reference direction
-        rps_py_1 = (
+        rps_S_in_turn1_y = (
         rps_S_x*rps_base_frame_xy + rps_S_y*rps_base_frame_yy + rps_S_z*rps_base_frame_zy
         )
-        # (rps-rho2_1) squared amplitude
-        rps_rho2_1 = rps_px_1*rps_px_1 + rps_py_1*rps_py_1
-        # (rps-root_1) amplitude, with the sign of the branch
-        rps_root_1 = rps_branch_1*sqrt(rps_rho2_1)
+        # (rps-q_2) displacement of joint 2
+        rps_q_2_t = rps_S_in_turn1_x*rps_S_in_turn1_x + rps_S_in_turn1_y*rps_S_in_turn1_y
+        rps_q_2 = rps_branch_1*sqrt(rps_q_2_t)
         # (rps-c_1) cosine of the angle of joint 1 from its reference direction
-        inv_rps_root_1 = 1.0/rps_root_1
-        rps_c_1 = inv_rps_root_1*rps_px_1
+        inv_rps_q_2 = 1.0/rps_q_2
+        rps_c_1 = inv_rps_q_2*rps_S_in_turn1_x
         # (rps-s_1) sine of the angle of joint 1 from its reference direction
-        rps_s_1 = inv_rps_root_1*rps_py_1
+        rps_s_1 = inv_rps_q_2*rps_S_in_turn1_y
         # (rps-w_2) reciprocal vector 2
         rps_w_2_x = rps_base_frame_xx*rps_c_1 + rps_base_frame_xy*rps_s_1
         rps_w_2_y = rps_base_frame_yx*rps_c_1 + rps_base_frame_yy*rps_s_1
@@ -2459,8 +2630,8 @@ def _run_H(m, X):
         rps_H_a_2_y = rps_q_z*rps_w_2_x - rps_q_x*rps_w_2_z
         rps_H_a_2_z = rps_q_x*rps_w_2_y - rps_q_y*rps_w_2_x
         ok = (
-        ok & (abs(rps_rho2_1) > _TOLERANCE * _TOLERANCE * 0.5625) & (abs(rps_root_1) > _TOLERANCE
-            * 0.75)
+        ok & (abs(rps_q_2_t) > _TOLERANCE * _TOLERANCE * 0.5625) & (abs(rps_q_2) > _TOLERANCE *
+            0.75)
         )
         # (rps-w_2) reciprocal vector 2
         out_H[_H_rps[0][leg]] = rps_w_2_x
@@ -2773,23 +2944,20 @@ def _run_required(m, X, V, A):
         rps_S_x = rps_q_x + t_x - rps_base_point_x
         rps_S_y = rps_q_y + t_y - rps_base_point_y
         rps_S_z = rps_q_z + t_z - rps_base_point_z
-        # (rps-px_1) component along the reference direction
-        rps_px_1 = (
+        rps_S_in_turn1_x = (
         rps_S_x*rps_base_frame_xx + rps_S_y*rps_base_frame_yx + rps_S_z*rps_base_frame_zx
         )
-        # (rps-py_1) component across the reference direction
-        rps_py_1 = (
+        rps_S_in_turn1_y = (
         rps_S_x*rps_base_frame_xy + rps_S_y*rps_base_frame_yy + rps_S_z*rps_base_frame_zy
         )
-        # (rps-rho2_1) squared amplitude
-        rps_rho2_1 = rps_px_1*rps_px_1 + rps_py_1*rps_py_1
-        # (rps-root_1) amplitude, with the sign of the branch
-        rps_root_1 = rps_branch_1*sqrt(rps_rho2_1)
+        # (rps-q_2) displacement of joint 2
+        rps_q_2_t = rps_S_in_turn1_x*rps_S_in_turn1_x + rps_S_in_turn1_y*rps_S_in_turn1_y
+        rps_q_2 = rps_branch_1*sqrt(rps_q_2_t)
         # (rps-c_1) cosine of the angle of joint 1 from its reference direction
-        inv_rps_root_1 = 1.0/rps_root_1
-        rps_c_1 = inv_rps_root_1*rps_px_1
+        inv_rps_q_2 = 1.0/rps_q_2
+        rps_c_1 = inv_rps_q_2*rps_S_in_turn1_x
         # (rps-s_1) sine of the angle of joint 1 from its reference direction
-        rps_s_1 = inv_rps_root_1*rps_py_1
+        rps_s_1 = inv_rps_q_2*rps_S_in_turn1_y
         # (rps-S_dot) velocity of the connection point
         axis_x_rps_axes1_x = rps_base_frame_xx*rps_c_1 + rps_base_frame_xy*rps_s_1
         axis_x_rps_axes1_y = rps_base_frame_yx*rps_c_1 + rps_base_frame_yy*rps_s_1
@@ -2809,7 +2977,7 @@ def _run_required(m, X, V, A):
         axis_y_rps_axes1_y = rps_base_frame_yy*rps_c_1 - rps_base_frame_yx*rps_s_1
         axis_y_rps_axes1_z = rps_base_frame_zy*rps_c_1 - rps_base_frame_zx*rps_s_1
         rps_qd_1 = (
-        inv_rps_root_1*(axis_y_rps_axes1_x*rps_S_dot_x + axis_y_rps_axes1_y*rps_S_dot_y +
+        inv_rps_q_2*(axis_y_rps_axes1_x*rps_S_dot_x + axis_y_rps_axes1_y*rps_S_dot_y +
             axis_y_rps_axes1_z*rps_S_dot_z)
         )
         # (rps-W_1) centripetal tensor of link 1
@@ -2829,7 +2997,7 @@ def _run_required(m, X, V, A):
         # (rps-rel) acceleration of the connection point left to the joint accelerations
         rps_rel_in_axes1_y = rps_S_ddot_in_axes1_y - 2.0*rps_S_dot_in_axes1_x*rps_qd_1
         # (rps-qdd_1) acceleration of joint 1
-        rps_qdd_1 = inv_rps_root_1*rps_rel_in_axes1_y
+        rps_qdd_1 = inv_rps_q_2*rps_rel_in_axes1_y
         # (rps-acc_2) acceleration of the reference point of link 2, less gravity
         rps_g_in_axes1_x = rps_acc_2_t*rps_c_1 + rps_acc_2_t_2*rps_s_1
         rps_g_in_axes1_y = rps_acc_2_t_2*rps_c_1 - rps_acc_2_t*rps_s_1
@@ -2854,7 +3022,7 @@ def _run_required(m, X, V, A):
             rps_g_in_axes1_y*rps_h_1_in_spec1_x
         )
         # (rps-G) force at the connection point that balances the leg's inertia and weight along all degrees of freedom
-        rps_G_in_axes1_y = rps_f_2_in_axes1_y + inv_rps_root_1*rps_mu_1_in_axes1_z
+        rps_G_in_axes1_y = rps_f_2_in_axes1_y + inv_rps_q_2*rps_mu_1_in_axes1_z
         # (rps-c) leg force on the platform without actuation and without the mass at the connection point
         rps_c_x = -axis_x_rps_axes1_x*rps_f_2_in_axes1_x - axis_y_rps_axes1_x*rps_G_in_axes1_y
         rps_c_y = -axis_x_rps_axes1_y*rps_f_2_in_axes1_x - axis_y_rps_axes1_y*rps_G_in_axes1_y
@@ -2872,8 +3040,8 @@ def _run_required(m, X, V, A):
         rps_Hk_a_1_y = rps_base_frame_xz*rps_q_z - rps_base_frame_zz*rps_q_x
         rps_Hk_a_1_z = rps_base_frame_yz*rps_q_x - rps_base_frame_xz*rps_q_y
         ok = (
-        ok & (abs(rps_rho2_1) > _TOLERANCE * _TOLERANCE * 0.5625) & (abs(rps_root_1) > _TOLERANCE
-            * 0.75)
+        ok & (abs(rps_q_2_t) > _TOLERANCE * _TOLERANCE * 0.5625) & (abs(rps_q_2) > _TOLERANCE *
+            0.75)
         )
         # (R_t) force that actuators and external wrench must give
         R_t_t += rps_c_x
@@ -2980,26 +3148,23 @@ def _run_inverse_kinematics(m, X):
         t_z + R_zx*rps_platform_point_x + R_zy*rps_platform_point_y + R_zz*rps_platform_point_z -
             rps_base_point_z
         )
-        # (rps-px_1) component along the reference direction
-        rps_px_1 = (
+        rps_S_in_turn1_x = (
         rps_S_x*rps_base_frame_xx + rps_S_y*rps_base_frame_yx + rps_S_z*rps_base_frame_zx
         )
-        # (rps-py_1) component across the reference direction
-        rps_py_1 = (
+        rps_S_in_turn1_y = (
         rps_S_x*rps_base_frame_xy + rps_S_y*rps_base_frame_yy + rps_S_z*rps_base_frame_zy
         )
-        # (rps-rho2_1) squared amplitude
-        rps_rho2_1 = rps_px_1*rps_px_1 + rps_py_1*rps_py_1
-        # (rps-root_1) amplitude, with the sign of the branch
-        rps_root_1 = rps_branch_1*sqrt(rps_rho2_1)
+        # (rps-q_2) displacement of joint 2
+        rps_q_2_t = rps_S_in_turn1_x*rps_S_in_turn1_x + rps_S_in_turn1_y*rps_S_in_turn1_y
+        rps_q_2 = rps_branch_1*sqrt(rps_q_2_t)
         # (rps-q_1) displacement of joint 1
-        inv_rps_root_1 = 1.0/rps_root_1
-        rps_q_1 = atan2(inv_rps_root_1*rps_py_1, inv_rps_root_1*rps_px_1)
-        ok = ok & (abs(rps_rho2_1) > _TOLERANCE * _TOLERANCE * 0.5625)
+        inv_rps_q_2 = 1.0/rps_q_2
+        rps_q_1 = atan2(inv_rps_q_2*rps_S_in_turn1_y, inv_rps_q_2*rps_S_in_turn1_x)
+        ok = ok & (abs(rps_q_2_t) > _TOLERANCE * _TOLERANCE * 0.5625)
         # (rps-q_1) displacement of joint 1
         out_q[_q_rps[0][leg]] = rps_q_1
         # (rps-q_2) displacement of joint 2
-        out_q[_q_rps[1][leg]] = rps_root_1
+        out_q[_q_rps[1][leg]] = rps_q_2
     return ok, (out_q,)
 
 
@@ -3077,23 +3242,20 @@ def _run_joint_rates(m, X, V):
         rps_S_x = rps_q_x + t_x - rps_base_point_x
         rps_S_y = rps_q_y + t_y - rps_base_point_y
         rps_S_z = rps_q_z + t_z - rps_base_point_z
-        # (rps-px_1) component along the reference direction
-        rps_px_1 = (
+        rps_S_in_turn1_x = (
         rps_S_x*rps_base_frame_xx + rps_S_y*rps_base_frame_yx + rps_S_z*rps_base_frame_zx
         )
-        # (rps-py_1) component across the reference direction
-        rps_py_1 = (
+        rps_S_in_turn1_y = (
         rps_S_x*rps_base_frame_xy + rps_S_y*rps_base_frame_yy + rps_S_z*rps_base_frame_zy
         )
-        # (rps-rho2_1) squared amplitude
-        rps_rho2_1 = rps_px_1*rps_px_1 + rps_py_1*rps_py_1
-        # (rps-root_1) amplitude, with the sign of the branch
-        rps_root_1 = rps_branch_1*sqrt(rps_rho2_1)
+        # (rps-q_2) displacement of joint 2
+        rps_q_2_t = rps_S_in_turn1_x*rps_S_in_turn1_x + rps_S_in_turn1_y*rps_S_in_turn1_y
+        rps_q_2 = rps_branch_1*sqrt(rps_q_2_t)
         # (rps-c_1) cosine of the angle of joint 1 from its reference direction
-        inv_rps_root_1 = 1.0/rps_root_1
-        rps_c_1 = inv_rps_root_1*rps_px_1
+        inv_rps_q_2 = 1.0/rps_q_2
+        rps_c_1 = inv_rps_q_2*rps_S_in_turn1_x
         # (rps-s_1) sine of the angle of joint 1 from its reference direction
-        rps_s_1 = inv_rps_root_1*rps_py_1
+        rps_s_1 = inv_rps_q_2*rps_S_in_turn1_y
         # (rps-S_dot) velocity of the connection point
         rps_S_dot_x = t_dot_x + omega_y*rps_q_z - omega_z*rps_q_y
         rps_S_dot_y = t_dot_y + omega_z*rps_q_x - omega_x*rps_q_z
@@ -3105,13 +3267,13 @@ def _run_joint_rates(m, X, V):
         )
         # (rps-qd_1) rate of joint 1
         rps_qd_1 = (
-        inv_rps_root_1*(rps_S_dot_x*(rps_base_frame_xy*rps_c_1 - rps_base_frame_xx*rps_s_1) +
+        inv_rps_q_2*(rps_S_dot_x*(rps_base_frame_xy*rps_c_1 - rps_base_frame_xx*rps_s_1) +
             rps_S_dot_y*(rps_base_frame_yy*rps_c_1 - rps_base_frame_yx*rps_s_1) +
             rps_S_dot_z*(rps_base_frame_zy*rps_c_1 - rps_base_frame_zx*rps_s_1))
         )
         ok = (
-        ok & (abs(rps_rho2_1) > _TOLERANCE * _TOLERANCE * 0.5625) & (abs(rps_root_1) > _TOLERANCE
-            * 0.75)
+        ok & (abs(rps_q_2_t) > _TOLERANCE * _TOLERANCE * 0.5625) & (abs(rps_q_2) > _TOLERANCE *
+            0.75)
         )
         # (rps-qd_1) rate of joint 1
         out_qd[_qd_rps[0][leg]] = rps_qd_1
@@ -3207,23 +3369,20 @@ def _run_joint_accelerations(m, X, V, A):
         rps_S_x = rps_q_x + t_x - rps_base_point_x
         rps_S_y = rps_q_y + t_y - rps_base_point_y
         rps_S_z = rps_q_z + t_z - rps_base_point_z
-        # (rps-px_1) component along the reference direction
-        rps_px_1 = (
+        rps_S_in_turn1_x = (
         rps_S_x*rps_base_frame_xx + rps_S_y*rps_base_frame_yx + rps_S_z*rps_base_frame_zx
         )
-        # (rps-py_1) component across the reference direction
-        rps_py_1 = (
+        rps_S_in_turn1_y = (
         rps_S_x*rps_base_frame_xy + rps_S_y*rps_base_frame_yy + rps_S_z*rps_base_frame_zy
         )
-        # (rps-rho2_1) squared amplitude
-        rps_rho2_1 = rps_px_1*rps_px_1 + rps_py_1*rps_py_1
-        # (rps-root_1) amplitude, with the sign of the branch
-        rps_root_1 = rps_branch_1*sqrt(rps_rho2_1)
+        # (rps-q_2) displacement of joint 2
+        rps_q_2_t = rps_S_in_turn1_x*rps_S_in_turn1_x + rps_S_in_turn1_y*rps_S_in_turn1_y
+        rps_q_2 = rps_branch_1*sqrt(rps_q_2_t)
         # (rps-c_1) cosine of the angle of joint 1 from its reference direction
-        inv_rps_root_1 = 1.0/rps_root_1
-        rps_c_1 = inv_rps_root_1*rps_px_1
+        inv_rps_q_2 = 1.0/rps_q_2
+        rps_c_1 = inv_rps_q_2*rps_S_in_turn1_x
         # (rps-s_1) sine of the angle of joint 1 from its reference direction
-        rps_s_1 = inv_rps_root_1*rps_py_1
+        rps_s_1 = inv_rps_q_2*rps_S_in_turn1_y
         # (rps-S_dot) velocity of the connection point
         axis_x_rps_axes1_x = rps_base_frame_xx*rps_c_1 + rps_base_frame_xy*rps_s_1
         axis_x_rps_axes1_y = rps_base_frame_yx*rps_c_1 + rps_base_frame_yy*rps_s_1
@@ -3243,7 +3402,7 @@ def _run_joint_accelerations(m, X, V, A):
         axis_y_rps_axes1_y = rps_base_frame_yy*rps_c_1 - rps_base_frame_yx*rps_s_1
         axis_y_rps_axes1_z = rps_base_frame_zy*rps_c_1 - rps_base_frame_zx*rps_s_1
         rps_qd_1 = (
-        inv_rps_root_1*(axis_y_rps_axes1_x*rps_S_dot_x + axis_y_rps_axes1_y*rps_S_dot_y +
+        inv_rps_q_2*(axis_y_rps_axes1_x*rps_S_dot_x + axis_y_rps_axes1_y*rps_S_dot_y +
             axis_y_rps_axes1_z*rps_S_dot_z)
         )
         # (rps-a_p) acceleration of the connection point without its centripetal part
@@ -3257,17 +3416,17 @@ def _run_joint_accelerations(m, X, V, A):
         # (rps-rel) acceleration of the connection point left to the joint accelerations
         rps_rel_in_axes1_x = (
         axis_x_rps_axes1_x*rps_S_ddot_x + axis_x_rps_axes1_y*rps_S_ddot_y +
-            axis_x_rps_axes1_z*rps_S_ddot_z + rps_qd_1*rps_qd_1*rps_root_1
+            axis_x_rps_axes1_z*rps_S_ddot_z + rps_q_2*rps_qd_1*rps_qd_1
         )
         rps_rel_in_axes1_y = (
         axis_y_rps_axes1_x*rps_S_ddot_x + axis_y_rps_axes1_y*rps_S_ddot_y +
             axis_y_rps_axes1_z*rps_S_ddot_z - 2.0*rps_S_dot_in_axes1_x*rps_qd_1
         )
         # (rps-qdd_1) acceleration of joint 1
-        rps_qdd_1 = inv_rps_root_1*rps_rel_in_axes1_y
+        rps_qdd_1 = inv_rps_q_2*rps_rel_in_axes1_y
         ok = (
-        ok & (abs(rps_rho2_1) > _TOLERANCE * _TOLERANCE * 0.5625) & (abs(rps_root_1) > _TOLERANCE
-            * 0.75)
+        ok & (abs(rps_q_2_t) > _TOLERANCE * _TOLERANCE * 0.5625) & (abs(rps_q_2) > _TOLERANCE *
+            0.75)
         )
         # (rps-qdd_1) acceleration of joint 1
         out_qdd[_qdd_rps[0][leg]] = rps_qdd_1
@@ -3335,11 +3494,11 @@ def _run_constraints(m, X):
         t_z + R_zx*rps_platform_point_x + R_zy*rps_platform_point_y + R_zz*rps_platform_point_z -
             rps_base_point_z
         )
-        rps_S_in_axes1_z = (
+        rps_S_in_turn1_z = (
         rps_S_x*rps_base_frame_xz + rps_S_y*rps_base_frame_yz + rps_S_z*rps_base_frame_zz
         )
         # (rps-phi_c1) loop-closure residual along the constraint force
-        out_constraints[_constraints_rps[0][leg]] = rps_S_in_axes1_z
+        out_constraints[_constraints_rps[0][leg]] = rps_S_in_turn1_z
     return ok, (out_constraints,)
 
 
@@ -3434,23 +3593,20 @@ def _run_legs(m, X, V, A):
         rps_S_x = rps_q_x + t_x - rps_base_point_x
         rps_S_y = rps_q_y + t_y - rps_base_point_y
         rps_S_z = rps_q_z + t_z - rps_base_point_z
-        # (rps-px_1) component along the reference direction
-        rps_px_1 = (
+        rps_S_in_turn1_x = (
         rps_S_x*rps_base_frame_xx + rps_S_y*rps_base_frame_yx + rps_S_z*rps_base_frame_zx
         )
-        # (rps-py_1) component across the reference direction
-        rps_py_1 = (
+        rps_S_in_turn1_y = (
         rps_S_x*rps_base_frame_xy + rps_S_y*rps_base_frame_yy + rps_S_z*rps_base_frame_zy
         )
-        # (rps-rho2_1) squared amplitude
-        rps_rho2_1 = rps_px_1*rps_px_1 + rps_py_1*rps_py_1
-        # (rps-root_1) amplitude, with the sign of the branch
-        rps_root_1 = rps_branch_1*sqrt(rps_rho2_1)
+        # (rps-q_2) displacement of joint 2
+        rps_q_2_t = rps_S_in_turn1_x*rps_S_in_turn1_x + rps_S_in_turn1_y*rps_S_in_turn1_y
+        rps_q_2 = rps_branch_1*sqrt(rps_q_2_t)
         # (rps-c_1) cosine of the angle of joint 1 from its reference direction
-        inv_rps_root_1 = 1.0/rps_root_1
-        rps_c_1 = inv_rps_root_1*rps_px_1
+        inv_rps_q_2 = 1.0/rps_q_2
+        rps_c_1 = inv_rps_q_2*rps_S_in_turn1_x
         # (rps-s_1) sine of the angle of joint 1 from its reference direction
-        rps_s_1 = inv_rps_root_1*rps_py_1
+        rps_s_1 = inv_rps_q_2*rps_S_in_turn1_y
         # (rps-S_dot) velocity of the connection point
         axis_x_rps_axes1_x = rps_base_frame_xx*rps_c_1 + rps_base_frame_xy*rps_s_1
         axis_x_rps_axes1_y = rps_base_frame_yx*rps_c_1 + rps_base_frame_yy*rps_s_1
@@ -3470,7 +3626,7 @@ def _run_legs(m, X, V, A):
         axis_y_rps_axes1_y = rps_base_frame_yy*rps_c_1 - rps_base_frame_yx*rps_s_1
         axis_y_rps_axes1_z = rps_base_frame_zy*rps_c_1 - rps_base_frame_zx*rps_s_1
         rps_qd_1 = (
-        inv_rps_root_1*(axis_y_rps_axes1_x*rps_S_dot_x + axis_y_rps_axes1_y*rps_S_dot_y +
+        inv_rps_q_2*(axis_y_rps_axes1_x*rps_S_dot_x + axis_y_rps_axes1_y*rps_S_dot_y +
             axis_y_rps_axes1_z*rps_S_dot_z)
         )
         # (rps-W_1) centripetal tensor of link 1
@@ -3490,7 +3646,7 @@ def _run_legs(m, X, V, A):
         # (rps-rel) acceleration of the connection point left to the joint accelerations
         rps_rel_in_axes1_y = rps_S_ddot_in_axes1_y - 2.0*rps_S_dot_in_axes1_x*rps_qd_1
         # (rps-qdd_1) acceleration of joint 1
-        rps_qdd_1 = inv_rps_root_1*rps_rel_in_axes1_y
+        rps_qdd_1 = inv_rps_q_2*rps_rel_in_axes1_y
         # (rps-acc_2) acceleration of the reference point of link 2, less gravity
         rps_g_in_axes1_x = rps_acc_2_t*rps_c_1 + rps_acc_2_t_2*rps_s_1
         rps_g_in_axes1_y = rps_acc_2_t_2*rps_c_1 - rps_acc_2_t*rps_s_1
@@ -3515,14 +3671,14 @@ def _run_legs(m, X, V, A):
             rps_g_in_axes1_y*rps_h_1_in_spec1_x
         )
         # (rps-G) force at the connection point that balances the leg's inertia and weight along all degrees of freedom
-        rps_G_in_axes1_y = rps_f_2_in_axes1_y + inv_rps_root_1*rps_mu_1_in_axes1_z
+        rps_G_in_axes1_y = rps_f_2_in_axes1_y + inv_rps_q_2*rps_mu_1_in_axes1_z
         # (rps-c) leg force on the platform without actuation and without the mass at the connection point
         rps_c_x = -axis_x_rps_axes1_x*rps_f_2_in_axes1_x - axis_y_rps_axes1_x*rps_G_in_axes1_y
         rps_c_y = -axis_x_rps_axes1_y*rps_f_2_in_axes1_x - axis_y_rps_axes1_y*rps_G_in_axes1_y
         rps_c_z = -axis_x_rps_axes1_z*rps_f_2_in_axes1_x - axis_y_rps_axes1_z*rps_G_in_axes1_y
         ok = (
-        ok & (abs(rps_rho2_1) > _TOLERANCE * _TOLERANCE * 0.5625) & (abs(rps_root_1) > _TOLERANCE
-            * 0.75)
+        ok & (abs(rps_q_2_t) > _TOLERANCE * _TOLERANCE * 0.5625) & (abs(rps_q_2) > _TOLERANCE *
+            0.75)
         )
         # (rps-c) leg force on the platform without actuation and without the mass at the connection point
         out_leg_force[_leg_force_rps[0][leg]] = rps_c_x
@@ -3614,34 +3770,31 @@ def _run_potential(m, X):
         t_z + R_zx*rps_platform_point_x + R_zy*rps_platform_point_y + R_zz*rps_platform_point_z -
             rps_base_point_z
         )
-        # (rps-px_1) component along the reference direction
-        rps_px_1 = (
+        rps_S_in_turn1_x = (
         rps_S_x*rps_base_frame_xx + rps_S_y*rps_base_frame_yx + rps_S_z*rps_base_frame_zx
         )
-        # (rps-py_1) component across the reference direction
-        rps_py_1 = (
+        rps_S_in_turn1_y = (
         rps_S_x*rps_base_frame_xy + rps_S_y*rps_base_frame_yy + rps_S_z*rps_base_frame_zy
         )
-        # (rps-rho2_1) squared amplitude
-        rps_rho2_1 = rps_px_1*rps_px_1 + rps_py_1*rps_py_1
-        # (rps-root_1) amplitude, with the sign of the branch
-        rps_root_1 = rps_branch_1*sqrt(rps_rho2_1)
+        # (rps-q_2) displacement of joint 2
+        rps_q_2_t = rps_S_in_turn1_x*rps_S_in_turn1_x + rps_S_in_turn1_y*rps_S_in_turn1_y
+        rps_q_2 = rps_branch_1*sqrt(rps_q_2_t)
         # (rps-c_1) cosine of the angle of joint 1 from its reference direction
-        inv_rps_root_1 = 1.0/rps_root_1
-        rps_c_1 = inv_rps_root_1*rps_px_1
+        inv_rps_q_2 = 1.0/rps_q_2
+        rps_c_1 = inv_rps_q_2*rps_S_in_turn1_x
         # (rps-s_1) sine of the angle of joint 1 from its reference direction
-        rps_s_1 = inv_rps_root_1*rps_py_1
+        rps_s_1 = inv_rps_q_2*rps_S_in_turn1_y
         # (potential) potential energy
         rps_b_in_spec1_x = rps_c_1*rps_potential_t + rps_potential_t_2*rps_s_1
         rps_b_in_spec1_y = rps_c_1*rps_potential_t_2 - rps_potential_t*rps_s_1
         rps_potential_t_4 = (
         rps_potential_t_3 + (rps_acc_2_t*rps_c_1 + rps_acc_2_t_2*rps_s_1)*(rps_h_1_in_spec1_x +
             rps_h_2_in_spec1_x + rps_b_in_spec1_x*rps_link1_mass +
-            rps_link2_mass*(rps_b_in_spec1_x + rps_root_1)) + (rps_acc_2_t_2*rps_c_1 -
+            rps_link2_mass*(rps_b_in_spec1_x + rps_q_2)) + (rps_acc_2_t_2*rps_c_1 -
             rps_acc_2_t*rps_s_1)*(rps_h_1_in_spec1_y + rps_h_2_in_spec1_y +
             rps_b_in_spec1_y*rps_link1_mass + rps_b_in_spec1_y*rps_link2_mass)
         )
-        ok = ok & (abs(rps_rho2_1) > _TOLERANCE * _TOLERANCE * 0.5625)
+        ok = ok & (abs(rps_q_2_t) > _TOLERANCE * _TOLERANCE * 0.5625)
         # (potential) potential energy
         potential_t_2 += rps_potential_t_4
     # (potential) potential energy
@@ -3723,30 +3876,27 @@ def _run_condition(m, X):
         rps_S_x = rps_q_x + t_x - rps_base_point_x
         rps_S_y = rps_q_y + t_y - rps_base_point_y
         rps_S_z = rps_q_z + t_z - rps_base_point_z
-        # (rps-px_1) component along the reference direction
-        rps_px_1 = (
+        rps_S_in_turn1_x = (
         rps_S_x*rps_base_frame_xx + rps_S_y*rps_base_frame_yx + rps_S_z*rps_base_frame_zx
         )
-        # (rps-py_1) component across the reference direction
-        rps_py_1 = (
+        rps_S_in_turn1_y = (
         rps_S_x*rps_base_frame_xy + rps_S_y*rps_base_frame_yy + rps_S_z*rps_base_frame_zy
         )
-        # (rps-rho2_1) squared amplitude
-        rps_rho2_1 = rps_px_1*rps_px_1 + rps_py_1*rps_py_1
-        # (rps-root_1) amplitude, with the sign of the branch
-        rps_root_1 = rps_branch_1*sqrt(rps_rho2_1)
+        # (rps-q_2) displacement of joint 2
+        rps_q_2_t = rps_S_in_turn1_x*rps_S_in_turn1_x + rps_S_in_turn1_y*rps_S_in_turn1_y
+        rps_q_2 = rps_branch_1*sqrt(rps_q_2_t)
         # (rps-c_1) cosine of the angle of joint 1 from its reference direction
-        inv_rps_root_1 = 1.0/rps_root_1
-        rps_c_1 = inv_rps_root_1*rps_px_1
+        inv_rps_q_2 = 1.0/rps_q_2
+        rps_c_1 = inv_rps_q_2*rps_S_in_turn1_x
         # (rps-s_1) sine of the angle of joint 1 from its reference direction
-        rps_s_1 = inv_rps_root_1*rps_py_1
+        rps_s_1 = inv_rps_q_2*rps_S_in_turn1_y
         # (rps-w_2) reciprocal vector 2
         rps_w_2_x = rps_base_frame_xx*rps_c_1 + rps_base_frame_xy*rps_s_1
         rps_w_2_y = rps_base_frame_yx*rps_c_1 + rps_base_frame_yy*rps_s_1
         rps_w_2_z = rps_base_frame_zx*rps_c_1 + rps_base_frame_zy*rps_s_1
         # (rps-G) force at the connection point that balances the leg's inertia and weight along all degrees of freedom
-        rps_pivot_size = abs(rps_rho2_1)
-        rps_pivot_size_2 = abs(rps_root_1)
+        rps_pivot_size = abs(rps_q_2_t)
+        rps_pivot_size_2 = abs(rps_q_2)
         rps_least_pivots = (
         least(1.3333333333333333*sqrt(rps_pivot_size), 1.3333333333333333*rps_pivot_size_2)
         )
@@ -3766,8 +3916,8 @@ def _run_condition(m, X):
         rps_spread_t*rps_spread_t + rps_spread_t_2*rps_spread_t_2 + rps_spread_t_3*rps_spread_t_3
         )
         clear = (
-        clear & (abs(rps_rho2_1) > _TOLERANCE * _TOLERANCE * 0.5625) & (abs(rps_root_1) >
-            _TOLERANCE * 0.75)
+        clear & (abs(rps_q_2_t) > _TOLERANCE * _TOLERANCE * 0.5625) & (abs(rps_q_2) > _TOLERANCE *
+            0.75)
         )
         # (spread) rms distance of the platform points from their centroid
         spread_rps += rps_spread_t_4
@@ -3796,6 +3946,129 @@ def _run_condition(m, X):
     return (valid, reached, clear), (out_H, out_Hk, out_lengths, out_pivots, out_reach,)
 
 
+def _straight_6(a, b, rows, limits):
+    """Solve 6 equations a x = b straight through; and whether that is beyond doubt."""
+    (
+    (a00, a01, a02, a03, a04, a05,), (a10, a11, a12, a13, a14, a15,), (a20, a21, a22, a23, a24,
+        a25,), (a30, a31, a32, a33, a34, a35,), (a40, a41, a42, a43, a44, a45,), (a50, a51, a52,
+        a53, a54, a55,),
+    ) = [a[6 * k : 6 * k + 6] for k in rows]
+    b0, b1, b2, b3, b4, b5, = [b[k] for k in rows]
+    (
+    l10, l20, l30, l40, l50, l21, l31, l41, l51, l32, l42, l52, l43, l53, l54, l0, l1, l2, l3, l4,
+        l5,
+    ) = limits
+    f0 = 1.0/a00
+    g10 = a10*f0
+    a11 = a11 - g10*a01
+    a12 = a12 - g10*a02
+    a13 = a13 - g10*a03
+    a14 = a14 - g10*a04
+    a15 = a15 - g10*a05
+    b1 = b1 - g10*b0
+    g20 = a20*f0
+    a21 = a21 - g20*a01
+    a22 = a22 - g20*a02
+    a23 = a23 - g20*a03
+    a24 = a24 - g20*a04
+    a25 = a25 - g20*a05
+    b2 = b2 - g20*b0
+    g30 = a30*f0
+    a31 = a31 - g30*a01
+    a32 = a32 - g30*a02
+    a33 = a33 - g30*a03
+    a34 = a34 - g30*a04
+    a35 = a35 - g30*a05
+    b3 = b3 - g30*b0
+    g40 = a40*f0
+    a41 = a41 - g40*a01
+    a42 = a42 - g40*a02
+    a43 = a43 - g40*a03
+    a44 = a44 - g40*a04
+    a45 = a45 - g40*a05
+    b4 = b4 - g40*b0
+    g50 = a50*f0
+    a51 = a51 - g50*a01
+    a52 = a52 - g50*a02
+    a53 = a53 - g50*a03
+    a54 = a54 - g50*a04
+    a55 = a55 - g50*a05
+    b5 = b5 - g50*b0
+    f1 = 1.0/a11
+    g21 = a21*f1
+    a22 = a22 - g21*a12
+    a23 = a23 - g21*a13
+    a24 = a24 - g21*a14
+    a25 = a25 - g21*a15
+    b2 = b2 - g21*b1
+    g31 = a31*f1
+    a32 = a32 - g31*a12
+    a33 = a33 - g31*a13
+    a34 = a34 - g31*a14
+    a35 = a35 - g31*a15
+    b3 = b3 - g31*b1
+    g41 = a41*f1
+    a42 = a42 - g41*a12
+    a43 = a43 - g41*a13
+    a44 = a44 - g41*a14
+    a45 = a45 - g41*a15
+    b4 = b4 - g41*b1
+    g51 = a51*f1
+    a52 = a52 - g51*a12
+    a53 = a53 - g51*a13
+    a54 = a54 - g51*a14
+    a55 = a55 - g51*a15
+    b5 = b5 - g51*b1
+    f2 = 1.0/a22
+    g32 = a32*f2
+    a33 = a33 - g32*a23
+    a34 = a34 - g32*a24
+    a35 = a35 - g32*a25
+    b3 = b3 - g32*b2
+    g42 = a42*f2
+    a43 = a43 - g42*a23
+    a44 = a44 - g42*a24
+    a45 = a45 - g42*a25
+    b4 = b4 - g42*b2
+    g52 = a52*f2
+    a53 = a53 - g52*a23
+    a54 = a54 - g52*a24
+    a55 = a55 - g52*a25
+    b5 = b5 - g52*b2
+    f3 = 1.0/a33
+    g43 = a43*f3
+    a44 = a44 - g43*a34
+    a45 = a45 - g43*a35
+    b4 = b4 - g43*b3
+    g53 = a53*f3
+    a54 = a54 - g53*a34
+    a55 = a55 - g53*a35
+    b5 = b5 - g53*b3
+    f4 = 1.0/a44
+    g54 = a54*f4
+    a55 = a55 - g54*a45
+    b5 = b5 - g54*b4
+    f5 = 1.0/a55
+    x5 = b5*f5
+    x4 = (b4 - a45*x5)*f4
+    x3 = (b3 - a35*x5 - a34*x4)*f3
+    x2 = (b2 - a25*x5 - a24*x4 - a23*x3)*f2
+    x1 = (b1 - a15*x5 - a14*x4 - a13*x3 - a12*x2)*f1
+    x0 = (b0 - a05*x5 - a04*x4 - a03*x3 - a02*x2 - a01*x1)*f0
+    sure = (
+    (abs(g10) <= l10) & (abs(g20) <= l20) & (abs(g30) <= l30) & (abs(g40) <= l40) & (abs(g50) <=
+        l50) & (abs(g21) <= l21) & (abs(g31) <= l31) & (abs(g41) <= l41) & (abs(g51) <= l51) &
+        (abs(g32) <= l32) & (abs(g42) <= l42) & (abs(g52) <= l52) & (abs(g43) <= l43) & (abs(g53)
+        <= l53) & (abs(g54) <= l54) & (abs(f0) <= l0) & (abs(f1) <= l1) & (abs(f2) <= l2) &
+        (abs(f3) <= l3) & (abs(f4) <= l4) & (abs(f5) <= l5) & (abs(x0 + x1 + x2 + x3 + x4 + x5 +
+        a00 + a11 + a22 + a33 + a44 + a55) < math.inf)
+    )
+    return sure, ([x0, x1, x2, x3, x4, x5],)
+
+
+_ORDERS = (  # how systems are solved near home
+    _Order(_straight_6, (2, 4, 3, 5, 1, 0), (2.5, 2.5, 2.5, 10, 10, 10, 10, 40, 40, 10, 40, 40, 40, 40, 10, 1000, 4000, 4000, 4000, 1000, 1000,)),
+)
 _Q = 3  # where a quaternion begins in X
 _DEFAULT = Parameters()
 
@@ -3857,7 +4130,7 @@ def _steps_inverse_dynamics(m, X, V, A, wrench, weights):
     extend_1 = wrench
     subtract_1 = required - extend_1
     beside_1 = np.concatenate((H, Hk), axis=1)
-    solve_1 = _solve(beside_1, subtract_1)
+    solve_1 = _straight(m, beside_1, subtract_1, _ORDERS[0])
     tau, lambda_ = solve_1[:3], solve_1[3:]
     return (tau, lambda_,)
 
@@ -3866,7 +4139,7 @@ def _steps_forward_dynamics(m, X, V, tau, wrench):
     (
     M, Z, H, Hk, constraint_bias,
     ) = m.run(_run_dynamics, ("M", "Z", "H", "Hk", "constraint_bias"), X, V)
-    times_1 = np.einsum("ijs,js->is", H, tau)
+    times_1 = _times(H, tau)
     extend_1 = wrench
     add_1 = times_1 + extend_1
     subtract_1 = add_1 - Z
@@ -3888,7 +4161,7 @@ def _steps_leg_reactions(m, X, V, A, wrench):
     extend_1 = wrench
     subtract_1 = required - extend_1
     beside_1 = np.concatenate((H, Hk), axis=1)
-    solve_1 = _solve(beside_1, subtract_1)
+    solve_1 = _straight(m, beside_1, subtract_1, _ORDERS[0])
     split_1, split_2 = solve_1[:3], solve_1[3:]
     (
     leg_force, actuator, constraint_direction,
@@ -3933,10 +4206,46 @@ def _steps_condition_constrained(m, X, length):
     return (sigma, legs,)
 
 
+def _steps_manipulability(m, X):
+    (
+    H, Hk, lengths, pivots, reach,
+    ) = m.run(_in_one(_run_condition), ("H", "Hk", "lengths", "pivots", "reach"), X)
+    entry_1 = lengths[0]
+    subtract_1 = entry_1 - entry_1
+    choose_length_1 = _chosen_length(lengths, subtract_1)
+    divide_rows_1 = _rows_divided(H, choose_length_1, [3, 4, 5])
+    entry_2 = lengths[0]
+    subtract_2 = entry_2 - entry_2
+    choose_length_2 = _chosen_length(lengths, subtract_2)
+    divide_rows_2 = _rows_divided(Hk, choose_length_2, [3, 4, 5])
+    transposed_1 = np.swapaxes(divide_rows_2, 0, 1)
+    null_basis_1 = _null_basis(transposed_1, 3)
+    transposed_2 = np.swapaxes(null_basis_1, 0, 1)
+    product_1 = np.einsum("iks,kjs->ijs", transposed_2, divide_rows_1)
+    singular_values_1 = _singular_values(product_1)
+    measure, isotropy = _spread(singular_values_1, 3)
+    return (measure, isotropy,)
+
+
+def _steps_singularity_distance(m, X):
+    (
+    H, Hk, lengths, pivots, reach,
+    ) = m.run(_in_one(_run_condition), ("H", "Hk", "lengths", "pivots", "reach"), X)
+    beside_1 = np.concatenate((H, Hk), axis=1)
+    entry_1 = lengths[0]
+    subtract_1 = entry_1 - entry_1
+    choose_length_1 = _chosen_length(lengths, subtract_1)
+    divide_rows_1 = _rows_divided(beside_1, choose_length_1, [3, 4, 5])
+    singular_values_1 = _singular_values(divide_rows_1)
+    spread_1, actuators = _spread(singular_values_1, 6)
+    legs = _least_entry(pivots)
+    return (actuators, legs,)
+
+
 def _steps_mismatch(m, X, q_actuated):
     q, = m.run(_run_inverse_kinematics, ("q",), X)
-    take_1 = q[[1, 3, 5]]
-    subtract_1 = q_actuated - take_1
+    q_of_inverse_kinematics_from_1 = q[[1, 3, 5]]
+    subtract_1 = q_actuated - q_of_inverse_kinematics_from_1
     constraints, = m.run(_run_constraints, ("constraints",), X)
     negative_1 = -constraints
     gap = np.concatenate((subtract_1, negative_1))
@@ -3979,7 +4288,7 @@ def _steps_dissipation(m, X, V):
 
 def _steps_momentum(m, X, V):
     M, = m.run(_run_M, ("M",), X)
-    momentum = np.einsum("ijs,js->is", M, V)
+    momentum = _times(M, V)
     return (momentum,)
 
 
@@ -4016,14 +4325,14 @@ def _steps_actuator_accelerations(m, X, V, A):
 
 def _steps_power(m, X, V, tau):
     H, = m.run(_run_H, ("H",), X)
-    times_1 = np.einsum("ijs,js->is", H, tau)
+    times_1 = _times(H, tau)
     power = np.sum(times_1 * V, axis=0)
     return (power,)
 
 
 def _steps_rotation(m, X):
-    take_1 = X[3:7]
-    R = _rotation_of_quaternion(take_1)
+    X_from_3 = X[3:7]
+    R = _rotation_of_quaternion(X_from_3)
     return (R,)
 
 
@@ -4035,11 +4344,11 @@ def _steps_pose(m, t, R):
 
 
 def _steps_X_dot(m, X, V):
-    take_1 = V[3:6]
-    take_2 = X[3:7]
-    quaternion_rate_1 = _quaternion_rate(take_2, take_1)
-    take_3 = V[0:3]
-    X_dot = np.concatenate((take_3, quaternion_rate_1))
+    V_from_3 = V[3:6]
+    X_from_3 = X[3:7]
+    quaternion_rate_1 = _quaternion_rate(X_from_3, V_from_3)
+    V_from_0 = V[0:3]
+    X_dot = np.concatenate((V_from_0, quaternion_rate_1))
     return (X_dot,)
 
 
@@ -4051,42 +4360,42 @@ def _steps_pose_from_rpy(m, t, rpy):
 
 
 def _steps_retract(m, X, step):
-    take_1 = X[0:3]
-    take_2 = X[3:7]
-    take_3 = step[0:3]
-    take_4 = step[3:6]
-    turn_quaternion_1 = _turned(take_2, take_4)
-    add_1 = take_1 + take_3
+    X_from_0 = X[0:3]
+    X_from_3 = X[3:7]
+    step_from_0 = step[0:3]
+    step_from_3 = step[3:6]
+    turn_quaternion_1 = _turned(X_from_3, step_from_3)
+    add_1 = X_from_0 + step_from_0
     X_moved = np.concatenate((add_1, turn_quaternion_1))
     return (X_moved,)
 
 
 def _steps_difference(m, X0, X1):
-    take_1 = X0[0:3]
-    take_2 = X0[3:7]
-    take_3 = X1[0:3]
-    take_4 = X1[3:7]
-    turn_between_1 = _turn_between(take_2, take_4)
-    subtract_1 = take_3 - take_1
+    X0_from_0 = X0[0:3]
+    X0_from_3 = X0[3:7]
+    X1_from_0 = X1[0:3]
+    X1_from_3 = X1[3:7]
+    turn_between_1 = _turn_between(X0_from_3, X1_from_3)
+    subtract_1 = X1_from_0 - X0_from_0
     step = np.concatenate((subtract_1, turn_between_1))
     return (step,)
 
 
 def _steps_interpolate(m, X0, X1, s):
-    take_1 = X0[0:3]
-    take_2 = X0[3:7]
-    take_3 = X1[0:3]
-    take_4 = X1[3:7]
-    turn_between_1 = _turn_between(take_2, take_4)
-    subtract_1 = take_3 - take_1
+    X0_from_0 = X0[0:3]
+    X0_from_3 = X0[3:7]
+    X1_from_0 = X1[0:3]
+    X1_from_3 = X1[3:7]
+    turn_between_1 = _turn_between(X0_from_3, X1_from_3)
+    subtract_1 = X1_from_0 - X0_from_0
     join_1 = np.concatenate((subtract_1, turn_between_1))
     scale_1 = join_1 * s
-    take_5 = X0[0:3]
-    take_6 = X0[3:7]
-    take_7 = scale_1[0:3]
-    take_8 = scale_1[3:6]
-    turn_quaternion_1 = _turned(take_6, take_8)
-    add_1 = take_5 + take_7
+    X0_from_0_2 = X0[0:3]
+    X0_from_3_2 = X0[3:7]
+    scale_1_from_0 = scale_1[0:3]
+    scale_1_from_3 = scale_1[3:6]
+    turn_quaternion_1 = _turned(X0_from_3_2, scale_1_from_3)
+    add_1 = X0_from_0_2 + scale_1_from_0
     X = np.concatenate((add_1, turn_quaternion_1))
     return (X,)
 
@@ -4104,6 +4413,7 @@ def M(X, p=None):
     return _call(
         "M", _steps_M, p,
         ("X", X, (NQ,)),
+        plain=((NV, NV,),),
     )
 
 
@@ -4122,6 +4432,7 @@ def Z(X, V, p=None):
         "Z", _steps_Z, p,
         ("X", X, (NQ,)),
         ("V", V, (NV,)),
+        plain=((NV,),),
     )
 
 
@@ -4138,6 +4449,7 @@ def H(X, p=None):
     return _call(
         "H", _steps_H, p,
         ("X", X, (NQ,)),
+        plain=((NV, NU,),),
     )
 
 
@@ -4154,6 +4466,7 @@ def Hk(X, p=None):
     return _call(
         "Hk", _steps_Hk, p,
         ("X", X, (NQ,)),
+        plain=((NV, NC,),),
     )
 
 
@@ -4171,6 +4484,7 @@ def constraints(X, p=None):
     return _call(
         "constraints", _steps_constraints, p,
         ("X", X, (NQ,)),
+        plain=((NC,),),
     )
 
 
@@ -4189,6 +4503,7 @@ def constraint_bias(X, V, p=None):
         "constraint_bias", _steps_constraint_bias, p,
         ("X", X, (NQ,)),
         ("V", V, (NV,)),
+        plain=((NC,),),
     )
 
 
@@ -4207,6 +4522,7 @@ def inverse_kinematics(X, p=None):
     return _call(
         "inverse_kinematics", _steps_inverse_kinematics, p,
         ("X", X, (NQ,)),
+        plain=((NJ,),),
     )
 
 
@@ -4225,6 +4541,7 @@ def joint_rates(X, V, p=None):
         "joint_rates", _steps_joint_rates, p,
         ("X", X, (NQ,)),
         ("V", V, (NV,)),
+        plain=((NJ,),),
     )
 
 
@@ -4245,6 +4562,7 @@ def joint_accelerations(X, V, A, p=None):
         ("X", X, (NQ,)),
         ("V", V, (NV,)),
         ("A", A, (NV,)),
+        plain=((NJ,),),
     )
 
 
@@ -4265,6 +4583,7 @@ def dynamics(X, V, p=None):
         "dynamics", _steps_dynamics, p,
         ("X", X, (NQ,)),
         ("V", V, (NV,)),
+        plain=((NV, NV,), (NV,), (NV, NU,),),
     )
 
 
@@ -4340,6 +4659,7 @@ def complete_acceleration(X, V, A, p=None, *, wrench=None):
         ("V", V, (NV,), None, "unused"),
         ("A", A, (NV,)),
         ("wrench", wrench, (NW,), 0.0, "unused"),
+        plain=((NV,),),
     )
 
 
@@ -4451,6 +4771,43 @@ def condition_constrained(X, p=None, *, length=None):
     )
 
 
+def manipulability(X, p=None):
+    """Manipulability of forces: the product of the singular values that `condition` has by
+    default, and the least over the largest of them.
+
+    Of N^T H, N an orthonormal basis of the motions that constraints leave.
+
+    Args:
+        X: pose, and extra coordinates (..., NQ).
+        p: parameters, by default those of the specification.
+
+    Returns:
+        measure: product of the singular values (...,).
+        isotropy: least over largest value, 1 where H is isotropic (...,).
+    """
+    return _call(
+        "manipulability", _steps_manipulability, p,
+        ("X", X, (NQ,)),
+    )
+
+
+def singularity_distance(X, p=None):
+    """How near actuators and legs are to being singular: relative distances, 0 where they are.
+
+    Args:
+        X: pose, and extra coordinates (..., NQ).
+        p: parameters, by default those of the specification.
+
+    Returns:
+        actuators: of [H Hk] from matrices of lower rank, over its norm (...,).
+        legs: least pivot of all legs (...,).
+    """
+    return _call(
+        "singularity_distance", _steps_singularity_distance, p,
+        ("X", X, (NQ,)),
+    )
+
+
 def forward_kinematics(q_actuated, X0, p=None):
     """X at which the actuated joints stand at q_actuated, by Gauss-Newton from X0.
 
@@ -4524,6 +4881,7 @@ def momentum(X, V, p=None):
         "momentum", _steps_momentum, p,
         ("X", X, (NQ,)),
         ("V", V, (NV,)),
+        plain=((NV,),),
     )
 
 

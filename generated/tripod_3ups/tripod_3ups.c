@@ -583,13 +583,13 @@ int tripod_3ups_prepare(const tripod_3ups_params *params, tripod_3ups_model *mod
         const real ups_J_group_2_in_axes2_zz = ups_link2_inertia_yy + ups_link3_inertia_yy -
             ups_link2_mass*(ups_J_group_2_t_2 - ups_J_group_2_t_4) -
             ups_link3_mass*(ups_J_group_2_t_6 - ups_J_group_2_t_8);
-        /* (ups-trace_J_2) half the trace of that inertia tensor */
-        const real ups_trace_J_2 = R(0.5)*ups_J_group_2_in_axes2_xx +
-            R(0.5)*ups_J_group_2_in_axes2_yy + R(0.5)*ups_J_group_2_in_axes2_zz;
         /* (ups-Sigma_2) second moment of mass of the links that turn with link 2 */
-        const real ups_Sigma_2_in_axes2_xx = ups_trace_J_2 - ups_J_group_2_in_axes2_xx;
-        const real ups_Sigma_2_in_axes2_yy = ups_trace_J_2 - ups_J_group_2_in_axes2_yy;
-        const real ups_Sigma_2_in_axes2_zz = ups_trace_J_2 - ups_J_group_2_in_axes2_zz;
+        const real ups_Sigma_2_t = ups_J_group_2_in_axes2_xx + ups_J_group_2_in_axes2_yy +
+            ups_J_group_2_in_axes2_zz;
+        const real ups_Sigma_2_t_2 = R(0.5)*ups_Sigma_2_t;
+        const real ups_Sigma_2_in_axes2_xx = ups_Sigma_2_t_2 - ups_J_group_2_in_axes2_xx;
+        const real ups_Sigma_2_in_axes2_yy = ups_Sigma_2_t_2 - ups_J_group_2_in_axes2_yy;
+        const real ups_Sigma_2_in_axes2_zz = ups_Sigma_2_t_2 - ups_J_group_2_in_axes2_zz;
         /* (ups-h_group_2) first moments of the links that turn with link 2 */
         const real ups_h_group_2_in_axes2_x = ups_h_2_in_spec2_x + ups_h_3_in_spec2_x;
         const real ups_h_group_2_in_axes2_y = -ups_h_2_in_spec2_z - ups_h_3_in_spec2_z;
@@ -1019,6 +1019,24 @@ INLINE void unlimited(size_t rows, size_t size, size_t w, const size_t *places, 
     }
 }
 
+INLINE void least_entry(size_t n, const real *a, real *x)
+{
+    *x = a[0];
+    for (size_t e = 1; e < n; ++e) {
+        *x = lesser(*x, a[e]);
+    }
+}
+
+/* Of the first n entries the product, and the last over the first, 0 where that is 0. */
+INLINE void spread(size_t n, const real *a, real *product_of, real *ratio)
+{
+    *product_of = 1;
+    for (size_t e = 0; e < n; ++e) {
+        *product_of *= a[e];
+    }
+    *ratio = magnitude(a[0]) > 0 ? a[n - 1]/a[0] : a[0];
+}
+
 /* 1 where no entry is negative, else 0. */
 INLINE void not_negative(size_t size, size_t w, const real *a, real *x, real *flags)
 {
@@ -1056,253 +1074,380 @@ static void moved(const real *X, const real *step, real part, real *to)
     }
 }
 
+/* ---- what functions of the state share; v: values for others ---- */
+
+typedef struct {
+    real ups_S_in_turn1_x, ups_S_in_turn1_y, ups_S_in_turn1_z, ups_root_1_t, ups_root_1,
+        inv_ups_root_1, ups_c_1, ups_s_1, ups_q_3_t, ups_q_3, inv_ups_q_3, ups_c_2,
+        axis_x_ups_axes2_x, axis_x_ups_axes2_y, axis_x_ups_axes2_z, axis_z_ups_axes2_x,
+        axis_z_ups_axes2_y, axis_z_ups_axes2_z, axis_y_ups_axes2_x, axis_y_ups_axes2_y,
+        axis_y_ups_axes2_z, ups_e_1_in_axes2_x, ups_g_in_axes2_z, ups_w_2_in_axes2_y, ups_w_3_x,
+        ups_w_3_y, ups_w_3_z, ups_S_dot_in_axes2_x, ups_qd_1, ups_qd_2, ups_omega_1_in_axes2_x,
+        ups_omega_1_in_axes2_y, ups_W_2_in_axes2_yz, ups_W_2_in_axes2_xz, ups_W_2_in_axes2_xy,
+        ups_bias_t, ups_bias_in_axes2_z, ups_U_x, ups_U_y, ups_U_z, ups_alpha_1_in_axes2_x,
+        ups_alpha_1_in_axes2_y, ups_B_2_in_axes2_yx, ups_B_2_in_axes2_xy, ups_B_2_in_axes2_zx,
+        ups_B_2_in_axes2_zy, ups_g_in_axes2_x, ups_g_in_axes2_y, ups_acc_3_in_axes2_x,
+        ups_acc_3_in_axes2_y, ups_acc_3_in_axes2_z, ups_mu_2_t;
+} values_ups;
+
+INLINE void stage_ups_X(const prepared *m, size_t w, size_t i, size_t j, const real *X, values_ups
+    *v)
+{
+    /* (ups-S) from the base point to the connection point */
+    const real t_x = X[0*w + j];
+    const real ups_base_point_x = m->ups_base_point_x[i];
+    const real ups_platform_point_x = m->ups_platform_point_x[i];
+    const real ups_S_x = t_x + ups_platform_point_x - ups_base_point_x;
+    const real t_y = X[1*w + j];
+    const real ups_base_point_y = m->ups_base_point_y[i];
+    const real ups_platform_point_y = m->ups_platform_point_y[i];
+    const real ups_S_y = t_y + ups_platform_point_y - ups_base_point_y;
+    const real t_z = X[2*w + j];
+    const real ups_base_point_z = m->ups_base_point_z[i];
+    const real ups_platform_point_z = m->ups_platform_point_z[i];
+    const real ups_S_z = t_z + ups_platform_point_z - ups_base_point_z;
+    const real ups_base_frame_xx = m->ups_base_frame_xx[i];
+    const real ups_base_frame_yx = m->ups_base_frame_yx[i];
+    const real ups_base_frame_zx = m->ups_base_frame_zx[i];
+    const real ups_S_in_turn1_x = ups_S_x*ups_base_frame_xx + ups_S_y*ups_base_frame_yx +
+        ups_S_z*ups_base_frame_zx;
+    const real ups_base_frame_xy = m->ups_base_frame_xy[i];
+    const real ups_base_frame_yy = m->ups_base_frame_yy[i];
+    const real ups_base_frame_zy = m->ups_base_frame_zy[i];
+    const real ups_S_in_turn1_y = ups_S_x*ups_base_frame_xy + ups_S_y*ups_base_frame_yy +
+        ups_S_z*ups_base_frame_zy;
+    const real ups_base_frame_xz = m->ups_base_frame_xz[i];
+    const real ups_base_frame_yz = m->ups_base_frame_yz[i];
+    const real ups_base_frame_zz = m->ups_base_frame_zz[i];
+    const real ups_S_in_turn1_z = ups_S_x*ups_base_frame_xz + ups_S_y*ups_base_frame_yz +
+        ups_S_z*ups_base_frame_zz;
+    /* (ups-root_1) amplitude, the length across axis 1, with the sign of the branch */
+    const real ups_root_1_t = ups_S_in_turn1_x*ups_S_in_turn1_x +
+        ups_S_in_turn1_y*ups_S_in_turn1_y;
+    const real ups_branch_1 = m->ups_branch_1[i];
+    const real ups_root_1 = ups_branch_1*root(ups_root_1_t);
+    /* (ups-c_1) cosine of the angle of joint 1 from its reference direction */
+    const real inv_ups_root_1 = 1/ups_root_1;
+    const real ups_c_1 = inv_ups_root_1*ups_S_in_turn1_x;
+    /* (ups-s_1) sine of the angle of joint 1 from its reference direction */
+    const real ups_s_1 = inv_ups_root_1*ups_S_in_turn1_y;
+    /* (ups-q_3) displacement of joint 3 */
+    const real ups_q_3_t = ups_S_in_turn1_z*ups_S_in_turn1_z + ups_root_1_t;
+    const real ups_branch_2 = m->ups_branch_2[i];
+    const real ups_q_3 = ups_branch_2*root(ups_q_3_t);
+    /* (ups-c_2) cosine of the angle of joint 2 from its reference direction */
+    const real inv_ups_q_3 = 1/ups_q_3;
+    const real ups_c_2 = inv_ups_q_3*ups_root_1;
+    /* (ups-S_dot) velocity of the connection point */
+    const real axis_x_ups_axes2_x = inv_ups_q_3*ups_S_x;
+    const real axis_x_ups_axes2_y = inv_ups_q_3*ups_S_y;
+    const real axis_x_ups_axes2_z = inv_ups_q_3*ups_S_z;
+    /* (ups-qd_1) rate of joint 1 */
+    const real axis_z_ups_axes2_x = ups_base_frame_xy*ups_c_1 - ups_base_frame_xx*ups_s_1;
+    const real axis_z_ups_axes2_y = ups_base_frame_yy*ups_c_1 - ups_base_frame_yx*ups_s_1;
+    const real axis_z_ups_axes2_z = ups_base_frame_zy*ups_c_1 - ups_base_frame_zx*ups_s_1;
+    /* (ups-qd_2) rate of joint 2 */
+    const real axis_y_ups_axes2_x = axis_x_ups_axes2_z*axis_z_ups_axes2_y -
+        axis_x_ups_axes2_y*axis_z_ups_axes2_z;
+    const real axis_y_ups_axes2_y = axis_x_ups_axes2_x*axis_z_ups_axes2_z -
+        axis_x_ups_axes2_z*axis_z_ups_axes2_x;
+    const real axis_y_ups_axes2_z = axis_x_ups_axes2_y*axis_z_ups_axes2_x -
+        axis_x_ups_axes2_x*axis_z_ups_axes2_y;
+    /* (ups-omega_1) angular velocity of link 1 */
+    const real ups_e_1_in_axes2_x = inv_ups_q_3*ups_S_in_turn1_z;
+    /* (ups-mu_2_o) remainder without the acceleration in: inertia moment of the links that turn with
+       link 2, about their reference points */
+    const real ups_acc_3_t = m->ups_acc_3_t[i];
+    const real ups_acc_3_t_2 = m->ups_acc_3_t_2[i];
+    const real ups_g_in_axes2_z = ups_acc_3_t_2*ups_c_1 - ups_acc_3_t*ups_s_1;
+    /* (ups-w_2) reciprocal vector 2 */
+    const real ups_w_2_in_axes2_y = 1/ups_q_3;
+    /* (ups-w_3) reciprocal vector 3 */
+    const real ups_w_3_x = ups_S_x*ups_w_2_in_axes2_y;
+    const real ups_w_3_y = ups_S_y*ups_w_2_in_axes2_y;
+    const real ups_w_3_z = ups_S_z*ups_w_2_in_axes2_y;
+    v->ups_S_in_turn1_x = ups_S_in_turn1_x;
+    v->ups_S_in_turn1_y = ups_S_in_turn1_y;
+    v->ups_S_in_turn1_z = ups_S_in_turn1_z;
+    v->ups_root_1_t = ups_root_1_t;
+    v->ups_root_1 = ups_root_1;
+    v->inv_ups_root_1 = inv_ups_root_1;
+    v->ups_c_1 = ups_c_1;
+    v->ups_s_1 = ups_s_1;
+    v->ups_q_3_t = ups_q_3_t;
+    v->ups_q_3 = ups_q_3;
+    v->inv_ups_q_3 = inv_ups_q_3;
+    v->ups_c_2 = ups_c_2;
+    v->axis_x_ups_axes2_x = axis_x_ups_axes2_x;
+    v->axis_x_ups_axes2_y = axis_x_ups_axes2_y;
+    v->axis_x_ups_axes2_z = axis_x_ups_axes2_z;
+    v->axis_z_ups_axes2_x = axis_z_ups_axes2_x;
+    v->axis_z_ups_axes2_y = axis_z_ups_axes2_y;
+    v->axis_z_ups_axes2_z = axis_z_ups_axes2_z;
+    v->axis_y_ups_axes2_x = axis_y_ups_axes2_x;
+    v->axis_y_ups_axes2_y = axis_y_ups_axes2_y;
+    v->axis_y_ups_axes2_z = axis_y_ups_axes2_z;
+    v->ups_e_1_in_axes2_x = ups_e_1_in_axes2_x;
+    v->ups_g_in_axes2_z = ups_g_in_axes2_z;
+    v->ups_w_2_in_axes2_y = ups_w_2_in_axes2_y;
+    v->ups_w_3_x = ups_w_3_x;
+    v->ups_w_3_y = ups_w_3_y;
+    v->ups_w_3_z = ups_w_3_z;
+}
+
+INLINE void stage_ups_V_X(size_t w, size_t j, const real *V, values_ups *v)
+{
+    /* (ups-S_dot) velocity of the connection point */
+    const real t_dot_x = V[0*w + j];
+    const real t_dot_y = V[1*w + j];
+    const real t_dot_z = V[2*w + j];
+    const real ups_S_dot_in_axes2_x = v->axis_x_ups_axes2_x*t_dot_x +
+        v->axis_x_ups_axes2_y*t_dot_y + v->axis_x_ups_axes2_z*t_dot_z;
+    /* (ups-qd_1) rate of joint 1 */
+    const real ups_qd_1 = v->inv_ups_root_1*(v->axis_z_ups_axes2_x*t_dot_x +
+        v->axis_z_ups_axes2_y*t_dot_y + v->axis_z_ups_axes2_z*t_dot_z);
+    /* (ups-qd_2) rate of joint 2 */
+    const real ups_qd_2 = v->inv_ups_q_3*(v->axis_y_ups_axes2_x*t_dot_x +
+        v->axis_y_ups_axes2_y*t_dot_y + v->axis_y_ups_axes2_z*t_dot_z);
+    /* (ups-omega_1) angular velocity of link 1 */
+    const real ups_omega_1_in_axes2_x = v->ups_e_1_in_axes2_x*ups_qd_1;
+    const real ups_omega_1_in_axes2_y = -v->ups_c_2*ups_qd_1;
+    /* (ups-W_2) centripetal tensor of link 2 */
+    const real ups_W_2_in_axes2_yz = ups_omega_1_in_axes2_y*ups_qd_2;
+    const real ups_W_2_in_axes2_xz = ups_omega_1_in_axes2_x*ups_qd_2;
+    const real ups_W_2_in_axes2_xy = ups_omega_1_in_axes2_x*ups_omega_1_in_axes2_y;
+    /* (ups-bias) acceleration of the connection point at zero joint accelerations */
+    const real ups_bias_t = 2*ups_S_dot_in_axes2_x;
+    const real ups_bias_in_axes2_z = 2*ups_W_2_in_axes2_xz*v->ups_q_3 -
+        ups_bias_t*ups_omega_1_in_axes2_y;
+    v->ups_S_dot_in_axes2_x = ups_S_dot_in_axes2_x;
+    v->ups_qd_1 = ups_qd_1;
+    v->ups_qd_2 = ups_qd_2;
+    v->ups_omega_1_in_axes2_x = ups_omega_1_in_axes2_x;
+    v->ups_omega_1_in_axes2_y = ups_omega_1_in_axes2_y;
+    v->ups_W_2_in_axes2_yz = ups_W_2_in_axes2_yz;
+    v->ups_W_2_in_axes2_xz = ups_W_2_in_axes2_xz;
+    v->ups_W_2_in_axes2_xy = ups_W_2_in_axes2_xy;
+    v->ups_bias_t = ups_bias_t;
+    v->ups_bias_in_axes2_z = ups_bias_in_axes2_z;
+}
+
+INLINE void stage_ups_Z_dynamics(const prepared *m, size_t i, values_ups *v)
+{
+    /* (ups-qdd_1_o) remainder without the acceleration in: acceleration of joint 1 */
+    const real ups_qdd_1_o_t = v->inv_ups_root_1*v->ups_bias_in_axes2_z;
+    /* (ups-alpha_1_o) remainder without the acceleration in: angular acceleration of link 1 */
+    const real ups_alpha_1_o_t = v->ups_e_1_in_axes2_x*ups_qdd_1_o_t;
+    const real ups_alpha_1_o_in_axes2_y = v->ups_c_2*ups_qdd_1_o_t;
+    /* (ups-alpha_2_o) remainder without the acceleration in: angular acceleration of link 2 */
+    const real ups_alpha_2_o_in_axes2_x = v->ups_W_2_in_axes2_yz - ups_alpha_1_o_t;
+    const real ups_alpha_2_o_in_axes2_y = ups_alpha_1_o_in_axes2_y - v->ups_W_2_in_axes2_xz;
+    /* (ups-B_2_o) remainder of the acceleration tensor of link 2 */
+    const real ups_B_2_o_t = v->inv_ups_q_3*v->ups_bias_t*v->ups_qd_2;
+    const real ups_B_2_o_in_axes2_xy = ups_B_2_o_t + 2*v->ups_W_2_in_axes2_xy;
+    const real ups_B_2_o_in_axes2_zx = v->ups_W_2_in_axes2_xz - ups_alpha_2_o_in_axes2_y;
+    const real ups_B_2_o_in_axes2_zy = v->ups_W_2_in_axes2_yz + ups_alpha_2_o_in_axes2_x;
+    /* (ups-phi_3_o) remainder without the acceleration in: inertia force of link 3 from its turning
+       about its reference point */
+    const real ups_phi_3_o_t = v->ups_omega_1_in_axes2_y*v->ups_omega_1_in_axes2_y;
+    const real ups_phi_3_o_t_2 = v->ups_qd_2*v->ups_qd_2;
+    const real ups_h_3_in_spec2_x = m->ups_h_3_in_spec2_x[i];
+    const real ups_h_3_in_spec2_y = m->ups_h_3_in_spec2_y[i];
+    const real ups_h_3_in_spec2_z = m->ups_h_3_in_spec2_z[i];
+    const real ups_phi_3_o_in_axes2_x = ups_alpha_1_o_in_axes2_y*ups_h_3_in_spec2_y +
+        ups_h_3_in_spec2_x*(-ups_phi_3_o_t - ups_phi_3_o_t_2) -
+        ups_B_2_o_in_axes2_xy*ups_h_3_in_spec2_z;
+    /* (ups-mu_2_o) remainder without the acceleration in: inertia moment of the links that turn with
+       link 2, about their reference points */
+    const real ups_mu_2_o_t = v->ups_omega_1_in_axes2_x*v->ups_omega_1_in_axes2_x;
+    const real ups_acc_3_t = m->ups_acc_3_t[i];
+    const real ups_acc_3_t_2 = m->ups_acc_3_t_2[i];
+    const real ups_mu_2_o_t_2 = ups_acc_3_t*v->ups_c_1 + ups_acc_3_t_2*v->ups_s_1;
+    const real ups_acc_3_t_3 = m->ups_acc_3_t_3[i];
+    const real ups_g_in_axes2_x = ups_acc_3_t_3*v->ups_e_1_in_axes2_x +
+        v->ups_c_2*ups_mu_2_o_t_2;
+    const real ups_g_in_axes2_y = v->ups_e_1_in_axes2_x*ups_mu_2_o_t_2 -
+        ups_acc_3_t_3*v->ups_c_2;
+    const real ups_J_group_2_in_axes2_xy = m->ups_J_group_2_in_axes2_xy[i];
+    const real ups_J_group_2_in_axes2_xz = m->ups_J_group_2_in_axes2_xz[i];
+    const real ups_J_group_2_in_axes2_yz = m->ups_J_group_2_in_axes2_yz[i];
+    const real ups_Sigma_2_in_axes2_yy = m->ups_Sigma_2_in_axes2_yy[i];
+    const real ups_Sigma_2_in_axes2_zz = m->ups_Sigma_2_in_axes2_zz[i];
+    const real ups_h_group_2_in_axes2_y = m->ups_h_group_2_in_axes2_y[i];
+    const real ups_h_group_2_in_axes2_z = m->ups_h_group_2_in_axes2_z[i];
+    const real ups_mu_2_o_in_axes2_x = ups_B_2_o_in_axes2_zy*ups_Sigma_2_in_axes2_yy +
+        ups_J_group_2_in_axes2_yz*(ups_phi_3_o_t - ups_phi_3_o_t_2) +
+        ups_g_in_axes2_y*ups_h_group_2_in_axes2_z -
+        ups_B_2_o_in_axes2_zx*ups_J_group_2_in_axes2_xy -
+        ups_B_2_o_t*ups_J_group_2_in_axes2_xz - ups_Sigma_2_in_axes2_zz*ups_alpha_1_o_t -
+        v->ups_g_in_axes2_z*ups_h_group_2_in_axes2_y;
+    const real ups_Sigma_2_in_axes2_xx = m->ups_Sigma_2_in_axes2_xx[i];
+    const real ups_h_group_2_in_axes2_x = m->ups_h_group_2_in_axes2_x[i];
+    const real ups_mu_2_o_in_axes2_y = ups_B_2_o_in_axes2_zy*ups_J_group_2_in_axes2_xy +
+        ups_Sigma_2_in_axes2_zz*ups_alpha_1_o_in_axes2_y +
+        v->ups_g_in_axes2_z*ups_h_group_2_in_axes2_x -
+        ups_B_2_o_in_axes2_xy*ups_J_group_2_in_axes2_yz -
+        ups_B_2_o_in_axes2_zx*ups_Sigma_2_in_axes2_xx -
+        ups_J_group_2_in_axes2_xz*(ups_mu_2_o_t - ups_phi_3_o_t_2) -
+        ups_g_in_axes2_x*ups_h_group_2_in_axes2_z;
+    const real ups_mu_2_o_in_axes2_z = ups_J_group_2_in_axes2_xy*(ups_mu_2_o_t -
+        ups_phi_3_o_t) + ups_J_group_2_in_axes2_yz*ups_alpha_1_o_in_axes2_y +
+        ups_g_in_axes2_x*ups_h_group_2_in_axes2_y -
+        ups_B_2_o_in_axes2_xy*ups_Sigma_2_in_axes2_yy - ups_B_2_o_t*ups_Sigma_2_in_axes2_xx -
+        ups_J_group_2_in_axes2_xz*ups_alpha_1_o_t - ups_g_in_axes2_y*ups_h_group_2_in_axes2_x;
+    /* (ups-c_o) remainder without the acceleration in: leg force on the platform without actuation
+       and without the mass at the connection point */
+    const real ups_c_o_in_axes2_y = ups_B_2_o_t*ups_h_3_in_spec2_x -
+        v->inv_ups_q_3*ups_mu_2_o_in_axes2_z - ups_alpha_1_o_t*ups_h_3_in_spec2_y -
+        ups_h_3_in_spec2_z*(ups_mu_2_o_t + ups_phi_3_o_t_2);
+    const real ups_c_o_in_axes2_z = v->inv_ups_root_1*(v->ups_c_2*ups_mu_2_o_in_axes2_y -
+        v->ups_e_1_in_axes2_x*ups_mu_2_o_in_axes2_x) +
+        ups_B_2_o_in_axes2_zy*ups_h_3_in_spec2_z + ups_h_3_in_spec2_y*(ups_mu_2_o_t +
+        ups_phi_3_o_t) - ups_B_2_o_in_axes2_zx*ups_h_3_in_spec2_x;
+    /* (ups-U) velocity and gravity terms of the leg force */
+    const real ups_U_x = v->axis_x_ups_axes2_x*ups_phi_3_o_in_axes2_x -
+        v->axis_y_ups_axes2_x*ups_c_o_in_axes2_y - v->axis_z_ups_axes2_x*ups_c_o_in_axes2_z;
+    const real ups_U_y = v->axis_x_ups_axes2_y*ups_phi_3_o_in_axes2_x -
+        v->axis_y_ups_axes2_y*ups_c_o_in_axes2_y - v->axis_z_ups_axes2_y*ups_c_o_in_axes2_z;
+    const real ups_U_z = v->axis_x_ups_axes2_z*ups_phi_3_o_in_axes2_x -
+        v->axis_y_ups_axes2_z*ups_c_o_in_axes2_y - v->axis_z_ups_axes2_z*ups_c_o_in_axes2_z;
+    v->ups_U_x = ups_U_x;
+    v->ups_U_y = ups_U_y;
+    v->ups_U_z = ups_U_z;
+}
+
+INLINE void stage_ups_legs_required(const prepared *m, size_t w, size_t i, size_t j, const real
+    *A, values_ups *v)
+{
+    /* (ups-S_ddot) acceleration of the connection point */
+    const real t_ddot_x = A[0*w + j];
+    const real t_ddot_y = A[1*w + j];
+    const real t_ddot_z = A[2*w + j];
+    const real ups_S_ddot_in_axes2_z = v->axis_z_ups_axes2_x*t_ddot_x +
+        v->axis_z_ups_axes2_y*t_ddot_y + v->axis_z_ups_axes2_z*t_ddot_z;
+    /* (ups-rel) acceleration of the connection point left to the joint accelerations */
+    const real ups_rel_in_axes2_z = ups_S_ddot_in_axes2_z - v->ups_bias_in_axes2_z;
+    /* (ups-qdd_1) acceleration of joint 1 */
+    const real ups_qdd_1 = v->inv_ups_root_1*ups_rel_in_axes2_z;
+    /* (ups-alpha_1) angular acceleration of link 1 */
+    const real ups_alpha_1_in_axes2_x = v->ups_e_1_in_axes2_x*ups_qdd_1;
+    const real ups_alpha_1_in_axes2_y = -v->ups_c_2*ups_qdd_1;
+    /* (ups-alpha_2) angular acceleration of link 2 */
+    const real ups_alpha_2_in_axes2_x = v->ups_W_2_in_axes2_yz + ups_alpha_1_in_axes2_x;
+    const real ups_alpha_2_in_axes2_y = ups_alpha_1_in_axes2_y - v->ups_W_2_in_axes2_xz;
+    /* (ups-B_2) acceleration tensor of link 2 */
+    const real ups_B_2_t = v->axis_y_ups_axes2_x*t_ddot_x;
+    const real ups_B_2_t_2 = v->axis_y_ups_axes2_y*t_ddot_y;
+    const real ups_B_2_t_3 = v->axis_y_ups_axes2_z*t_ddot_z;
+    const real ups_B_2_in_axes2_yx = v->inv_ups_q_3*(ups_B_2_t + ups_B_2_t_2 + ups_B_2_t_3 -
+        v->ups_bias_t*v->ups_qd_2);
+    const real ups_B_2_in_axes2_xy = 2*v->ups_W_2_in_axes2_xy - ups_B_2_in_axes2_yx;
+    const real ups_B_2_in_axes2_zx = v->ups_W_2_in_axes2_xz - ups_alpha_2_in_axes2_y;
+    const real ups_B_2_in_axes2_zy = v->ups_W_2_in_axes2_yz + ups_alpha_2_in_axes2_x;
+    /* (ups-acc_3) acceleration of the reference point of link 3, less gravity */
+    const real ups_acc_3_t = m->ups_acc_3_t[i];
+    const real ups_acc_3_t_2 = m->ups_acc_3_t_2[i];
+    const real ups_acc_3_t_4 = ups_acc_3_t*v->ups_c_1 + ups_acc_3_t_2*v->ups_s_1;
+    const real ups_acc_3_t_3 = m->ups_acc_3_t_3[i];
+    const real ups_g_in_axes2_x = ups_acc_3_t_3*v->ups_e_1_in_axes2_x +
+        ups_acc_3_t_4*v->ups_c_2;
+    const real ups_g_in_axes2_y = ups_acc_3_t_4*v->ups_e_1_in_axes2_x -
+        ups_acc_3_t_3*v->ups_c_2;
+    const real ups_acc_3_in_axes2_x = v->axis_x_ups_axes2_x*t_ddot_x +
+        v->axis_x_ups_axes2_y*t_ddot_y + v->axis_x_ups_axes2_z*t_ddot_z - ups_g_in_axes2_x;
+    const real ups_acc_3_in_axes2_y = ups_B_2_t + ups_B_2_t_2 + ups_B_2_t_3 -
+        ups_g_in_axes2_y;
+    const real ups_acc_3_in_axes2_z = ups_S_ddot_in_axes2_z - v->ups_g_in_axes2_z;
+    /* (ups-mu_2) inertia moment of the links that turn with link 2, about their reference points */
+    const real ups_mu_2_t = v->ups_omega_1_in_axes2_x*v->ups_omega_1_in_axes2_x;
+    v->ups_alpha_1_in_axes2_x = ups_alpha_1_in_axes2_x;
+    v->ups_alpha_1_in_axes2_y = ups_alpha_1_in_axes2_y;
+    v->ups_B_2_in_axes2_yx = ups_B_2_in_axes2_yx;
+    v->ups_B_2_in_axes2_xy = ups_B_2_in_axes2_xy;
+    v->ups_B_2_in_axes2_zx = ups_B_2_in_axes2_zx;
+    v->ups_B_2_in_axes2_zy = ups_B_2_in_axes2_zy;
+    v->ups_g_in_axes2_x = ups_g_in_axes2_x;
+    v->ups_g_in_axes2_y = ups_g_in_axes2_y;
+    v->ups_acc_3_in_axes2_x = ups_acc_3_in_axes2_x;
+    v->ups_acc_3_in_axes2_y = ups_acc_3_in_axes2_y;
+    v->ups_acc_3_in_axes2_z = ups_acc_3_in_axes2_z;
+    v->ups_mu_2_t = ups_mu_2_t;
+}
+
 /* ---- functions of the state: M, Z, H and the like ---- */
 
 /* ---- dynamics ---- */
-INLINE void dynamics_before(size_t w, const real *X, const real *V, real *s)
+INLINE void dynamics_before()
 {
-    for (size_t k = 0; k < w; ++k) {
-        /* X: named entries */
-        const real X_0 = X[0*w + k];
-        const real t_x = X_0;
-        const real X_1 = X[1*w + k];
-        const real t_y = X_1;
-        const real X_2 = X[2*w + k];
-        const real t_z = X_2;
-        /* V: named entries */
-        const real V_0 = V[0*w + k];
-        const real t_dot_x = V_0;
-        const real V_1 = V[1*w + k];
-        const real t_dot_y = V_1;
-        const real V_2 = V[2*w + k];
-        const real t_dot_z = V_2;
-        s[0*w + k] = t_x;
-        s[1*w + k] = t_y;
-        s[2*w + k] = t_z;
-        s[3*w + k] = t_dot_x;
-        s[4*w + k] = t_dot_y;
-        s[5*w + k] = t_dot_z;
-    }
 }
 
-INLINE void dynamics_legs_ups(const prepared *m, size_t w, size_t leg, size_t legs, const real *s,
-    size_t states, size_t count, int add, real *terms, real *o)
+INLINE void dynamics_legs_ups(const prepared *m, size_t w, size_t leg, size_t legs, size_t states,
+    size_t count, int add, const real *X, const real *V, real *terms, real *o)
 {
     for (size_t k = 0; k < count; ++k) {
         const size_t i = leg + legs*k;
         const size_t j = states*k;
-        /* (ups-S) from the base point to the connection point */
-        const real t_x = s[0*w + j];
-        const real ups_base_point_x = m->ups_base_point_x[i];
-        const real ups_platform_point_x = m->ups_platform_point_x[i];
-        const real ups_S_x = t_x + ups_platform_point_x - ups_base_point_x;
-        const real t_y = s[1*w + j];
-        const real ups_base_point_y = m->ups_base_point_y[i];
-        const real ups_platform_point_y = m->ups_platform_point_y[i];
-        const real ups_S_y = t_y + ups_platform_point_y - ups_base_point_y;
-        const real t_z = s[2*w + j];
-        const real ups_base_point_z = m->ups_base_point_z[i];
-        const real ups_platform_point_z = m->ups_platform_point_z[i];
-        const real ups_S_z = t_z + ups_platform_point_z - ups_base_point_z;
-        /* (ups-px_1) component along the reference direction */
-        const real ups_base_frame_xx = m->ups_base_frame_xx[i];
-        const real ups_base_frame_yx = m->ups_base_frame_yx[i];
-        const real ups_base_frame_zx = m->ups_base_frame_zx[i];
-        const real ups_px_1 = ups_S_x*ups_base_frame_xx + ups_S_y*ups_base_frame_yx +
-            ups_S_z*ups_base_frame_zx;
-        /* (ups-py_1) component across the reference direction */
-        const real ups_base_frame_xy = m->ups_base_frame_xy[i];
-        const real ups_base_frame_yy = m->ups_base_frame_yy[i];
-        const real ups_base_frame_zy = m->ups_base_frame_zy[i];
-        const real ups_py_1 = ups_S_x*ups_base_frame_xy + ups_S_y*ups_base_frame_yy +
-            ups_S_z*ups_base_frame_zy;
-        /* (ups-rho2_1) squared amplitude */
-        const real ups_rho2_1 = ups_px_1*ups_px_1 + ups_py_1*ups_py_1;
-        /* (ups-root_1) amplitude, with the sign of the branch */
-        const real ups_branch_1 = m->ups_branch_1[i];
-        const real ups_root_1 = ups_branch_1*root(ups_rho2_1);
-        /* (ups-c_1) cosine of the angle of joint 1 from its reference direction */
-        const real inv_ups_root_1 = 1/ups_root_1;
-        const real ups_c_1_t = inv_ups_root_1*ups_py_1;
-        /* (ups-s_1) sine of the angle of joint 1 from its reference direction */
-        const real ups_s_1 = inv_ups_root_1*ups_px_1;
-        /* (ups-xi_1) the vector from joint 1 to the connection point, resolved along link 1 */
-        const real ups_base_frame_xz = m->ups_base_frame_xz[i];
-        const real ups_base_frame_yz = m->ups_base_frame_yz[i];
-        const real ups_base_frame_zz = m->ups_base_frame_zz[i];
-        const real ups_xi_1_in_axes1_z = ups_S_x*ups_base_frame_xz + ups_S_y*ups_base_frame_yz +
-            ups_S_z*ups_base_frame_zz;
-        /* (ups-rho2_2) squared amplitude */
-        const real ups_rho2_2 = ups_rho2_1 + ups_xi_1_in_axes1_z*ups_xi_1_in_axes1_z;
-        /* (ups-root_2) amplitude, with the sign of the branch */
-        const real ups_branch_2 = m->ups_branch_2[i];
-        const real ups_root_2 = ups_branch_2*root(ups_rho2_2);
-        /* (ups-c_2) cosine of the angle of joint 2 from its reference direction */
-        const real inv_ups_root_2 = 1/ups_root_2;
-        const real ups_c_2 = -inv_ups_root_2*ups_root_1;
-        /* (ups-s_2) sine of the angle of joint 2 from its reference direction */
-        const real ups_s_2 = inv_ups_root_2*ups_xi_1_in_axes1_z;
-        /* (ups-S_dot) velocity of the connection point */
-        const real axis_x_ups_axes2_x = inv_ups_root_2*ups_S_x;
-        const real axis_x_ups_axes2_y = inv_ups_root_2*ups_S_y;
-        const real axis_x_ups_axes2_z = inv_ups_root_2*ups_S_z;
-        const real t_dot_x = s[3*w + j];
-        const real t_dot_y = s[4*w + j];
-        const real t_dot_z = s[5*w + j];
-        const real ups_S_dot_in_axes2_x = axis_x_ups_axes2_x*t_dot_x + axis_x_ups_axes2_y*t_dot_y
-            + axis_x_ups_axes2_z*t_dot_z;
-        /* (ups-qd_1) rate of joint 1 */
-        const real axis_z_ups_axes2_x = ups_base_frame_xy*ups_s_1 - ups_base_frame_xx*ups_c_1_t;
-        const real axis_z_ups_axes2_y = ups_base_frame_yy*ups_s_1 - ups_base_frame_yx*ups_c_1_t;
-        const real axis_z_ups_axes2_z = ups_base_frame_zy*ups_s_1 - ups_base_frame_zx*ups_c_1_t;
-        const real ups_qd_1 = inv_ups_root_1*(axis_z_ups_axes2_x*t_dot_x +
-            axis_z_ups_axes2_y*t_dot_y + axis_z_ups_axes2_z*t_dot_z);
-        /* (ups-qd_2) rate of joint 2 */
-        const real axis_y_ups_axes2_x = axis_x_ups_axes2_z*axis_z_ups_axes2_y -
-            axis_x_ups_axes2_y*axis_z_ups_axes2_z;
-        const real axis_y_ups_axes2_y = axis_x_ups_axes2_x*axis_z_ups_axes2_z -
-            axis_x_ups_axes2_z*axis_z_ups_axes2_x;
-        const real axis_y_ups_axes2_z = axis_x_ups_axes2_y*axis_z_ups_axes2_x -
-            axis_x_ups_axes2_x*axis_z_ups_axes2_y;
-        const real ups_qd_2 = inv_ups_root_2*(axis_y_ups_axes2_x*t_dot_x +
-            axis_y_ups_axes2_y*t_dot_y + axis_y_ups_axes2_z*t_dot_z);
-        /* (ups-omega_1) angular velocity of link 1 */
-        const real ups_omega_1_in_axes2_x = ups_qd_1*ups_s_2;
-        const real ups_omega_1_in_axes2_y = ups_c_2*ups_qd_1;
-        /* (ups-W_2) centripetal tensor of link 2 */
-        const real ups_W_2_in_axes2_yz = ups_omega_1_in_axes2_y*ups_qd_2;
-        const real ups_W_2_in_axes2_xz = ups_omega_1_in_axes2_x*ups_qd_2;
-        const real ups_W_2_in_axes2_xy = ups_omega_1_in_axes2_x*ups_omega_1_in_axes2_y;
-        /* (ups-bias) acceleration of the connection point at zero joint accelerations */
-        const real ups_bias_t = 2*ups_S_dot_in_axes2_x;
-        const real ups_bias_in_axes2_z = 2*ups_W_2_in_axes2_xz*ups_root_2 -
-            ups_bias_t*ups_omega_1_in_axes2_y;
-        /* (ups-qdd_1_o) remainder without the acceleration in: acceleration of joint 1 */
-        const real ups_qdd_1_o_t = inv_ups_root_1*ups_bias_in_axes2_z;
+        values_ups v;
+        stage_ups_X(m, w, i, j, X, &v);
+        stage_ups_V_X(w, j, V, &v);
+        stage_ups_Z_dynamics(m, i, &v);
         /* (ups-d_alpha_1) coefficient of the acceleration in: angular acceleration of link 1 */
-        const real ups_d_alpha_1_in_axes2_xz = inv_ups_root_1*ups_s_2;
-        /* (ups-alpha_1_o) remainder without the acceleration in: angular acceleration of link 1 */
-        const real ups_alpha_1_o_t = ups_qdd_1_o_t*ups_s_2;
-        const real ups_alpha_1_o_in_axes2_y = -ups_c_2*ups_qdd_1_o_t;
-        /* (ups-alpha_2_o) remainder without the acceleration in: angular acceleration of link 2 */
-        const real ups_alpha_2_o_in_axes2_x = ups_W_2_in_axes2_yz - ups_alpha_1_o_t;
-        const real ups_alpha_2_o_in_axes2_y = ups_alpha_1_o_in_axes2_y - ups_W_2_in_axes2_xz;
-        /* (ups-B_2_o) remainder of the acceleration tensor of link 2 */
-        const real ups_B_2_o_t = inv_ups_root_2*ups_bias_t*ups_qd_2;
-        const real ups_B_2_o_in_axes2_xy = ups_B_2_o_t + 2*ups_W_2_in_axes2_xy;
-        const real ups_B_2_o_in_axes2_zx = ups_W_2_in_axes2_xz - ups_alpha_2_o_in_axes2_y;
-        const real ups_B_2_o_in_axes2_zy = ups_W_2_in_axes2_yz + ups_alpha_2_o_in_axes2_x;
+        const real ups_d_alpha_1_in_axes2_xz = v.inv_ups_root_1*v.ups_e_1_in_axes2_x;
         /* (ups-d_phi_3) coefficient of the acceleration in: inertia force of link 3 from its turning
            about its reference point */
         const real ups_h_3_in_spec2_z = m->ups_h_3_in_spec2_z[i];
-        const real ups_d_phi_3_in_axes2_xy = inv_ups_root_2*ups_h_3_in_spec2_z;
+        const real ups_d_phi_3_in_axes2_xy = v.inv_ups_q_3*ups_h_3_in_spec2_z;
         const real ups_h_3_in_spec2_x = m->ups_h_3_in_spec2_x[i];
-        const real ups_d_phi_3_in_axes2_yy = inv_ups_root_2*ups_h_3_in_spec2_x;
-        /* (ups-phi_3_o) remainder without the acceleration in: inertia force of link 3 from its turning
-           about its reference point */
-        const real ups_phi_3_o_t = ups_omega_1_in_axes2_y*ups_omega_1_in_axes2_y;
-        const real ups_phi_3_o_t_2 = ups_qd_2*ups_qd_2;
-        const real ups_h_3_in_spec2_y = m->ups_h_3_in_spec2_y[i];
-        const real ups_phi_3_o_in_axes2_x = ups_alpha_1_o_in_axes2_y*ups_h_3_in_spec2_y +
-            ups_h_3_in_spec2_x*(-ups_phi_3_o_t - ups_phi_3_o_t_2) -
-            ups_B_2_o_in_axes2_xy*ups_h_3_in_spec2_z;
-        /* (ups-mu_2_o) remainder without the acceleration in: inertia moment of the links that turn with
-           link 2, about their reference points */
-        const real ups_mu_2_o_t = ups_omega_1_in_axes2_x*ups_omega_1_in_axes2_x;
-        const real ups_acc_3_t = m->ups_acc_3_t[i];
-        const real ups_acc_3_t_2 = m->ups_acc_3_t_2[i];
-        const real ups_g_in_axes2_z = ups_acc_3_t_2*ups_s_1 - ups_acc_3_t*ups_c_1_t;
-        const real ups_mu_2_o_t_2 = ups_acc_3_t*ups_s_1 + ups_acc_3_t_2*ups_c_1_t;
-        const real ups_acc_3_t_3 = m->ups_acc_3_t_3[i];
-        const real ups_g_in_axes2_x = ups_acc_3_t_3*ups_s_2 - ups_c_2*ups_mu_2_o_t_2;
-        const real ups_g_in_axes2_y = ups_acc_3_t_3*ups_c_2 + ups_mu_2_o_t_2*ups_s_2;
-        const real ups_J_group_2_in_axes2_xy = m->ups_J_group_2_in_axes2_xy[i];
-        const real ups_J_group_2_in_axes2_xz = m->ups_J_group_2_in_axes2_xz[i];
-        const real ups_J_group_2_in_axes2_yz = m->ups_J_group_2_in_axes2_yz[i];
-        const real ups_Sigma_2_in_axes2_yy = m->ups_Sigma_2_in_axes2_yy[i];
-        const real ups_Sigma_2_in_axes2_zz = m->ups_Sigma_2_in_axes2_zz[i];
-        const real ups_h_group_2_in_axes2_y = m->ups_h_group_2_in_axes2_y[i];
-        const real ups_h_group_2_in_axes2_z = m->ups_h_group_2_in_axes2_z[i];
-        const real ups_mu_2_o_in_axes2_x = ups_B_2_o_in_axes2_zy*ups_Sigma_2_in_axes2_yy +
-            ups_J_group_2_in_axes2_yz*(ups_phi_3_o_t - ups_phi_3_o_t_2) +
-            ups_g_in_axes2_y*ups_h_group_2_in_axes2_z -
-            ups_B_2_o_in_axes2_zx*ups_J_group_2_in_axes2_xy -
-            ups_B_2_o_t*ups_J_group_2_in_axes2_xz - ups_Sigma_2_in_axes2_zz*ups_alpha_1_o_t -
-            ups_g_in_axes2_z*ups_h_group_2_in_axes2_y;
-        const real ups_Sigma_2_in_axes2_xx = m->ups_Sigma_2_in_axes2_xx[i];
-        const real ups_h_group_2_in_axes2_x = m->ups_h_group_2_in_axes2_x[i];
-        const real ups_mu_2_o_in_axes2_y = ups_B_2_o_in_axes2_zy*ups_J_group_2_in_axes2_xy +
-            ups_Sigma_2_in_axes2_zz*ups_alpha_1_o_in_axes2_y +
-            ups_g_in_axes2_z*ups_h_group_2_in_axes2_x -
-            ups_B_2_o_in_axes2_xy*ups_J_group_2_in_axes2_yz -
-            ups_B_2_o_in_axes2_zx*ups_Sigma_2_in_axes2_xx -
-            ups_J_group_2_in_axes2_xz*(ups_mu_2_o_t - ups_phi_3_o_t_2) -
-            ups_g_in_axes2_x*ups_h_group_2_in_axes2_z;
-        const real ups_mu_2_o_in_axes2_z = ups_J_group_2_in_axes2_xy*(ups_mu_2_o_t -
-            ups_phi_3_o_t) + ups_J_group_2_in_axes2_yz*ups_alpha_1_o_in_axes2_y +
-            ups_g_in_axes2_x*ups_h_group_2_in_axes2_y -
-            ups_B_2_o_in_axes2_xy*ups_Sigma_2_in_axes2_yy - ups_B_2_o_t*ups_Sigma_2_in_axes2_xx -
-            ups_J_group_2_in_axes2_xz*ups_alpha_1_o_t - ups_g_in_axes2_y*ups_h_group_2_in_axes2_x;
+        const real ups_d_phi_3_in_axes2_yy = v.inv_ups_q_3*ups_h_3_in_spec2_x;
         /* (ups-d_c) coefficient of the acceleration in: leg force on the platform without actuation and
            without the mass at the connection point */
-        const real ups_d_c_in_axes2_xz = inv_ups_root_2*ups_h_3_in_spec2_y;
+        const real ups_h_3_in_spec2_y = m->ups_h_3_in_spec2_y[i];
+        const real ups_d_c_in_axes2_xz = v.inv_ups_q_3*ups_h_3_in_spec2_y;
         const real ups_J_group_2_in_axes2_zz = m->ups_J_group_2_in_axes2_zz[i];
         const real ups_d_c_in_axes2_yy = -ups_d_phi_3_in_axes2_yy -
-            inv_ups_root_2*(ups_h_3_in_spec2_x + inv_ups_root_2*ups_J_group_2_in_axes2_zz);
+            v.inv_ups_q_3*(ups_h_3_in_spec2_x + v.inv_ups_q_3*ups_J_group_2_in_axes2_zz);
+        const real ups_J_group_2_in_axes2_xz = m->ups_J_group_2_in_axes2_xz[i];
+        const real ups_J_group_2_in_axes2_yz = m->ups_J_group_2_in_axes2_yz[i];
         const real ups_d_c_in_axes2_yz = ups_d_alpha_1_in_axes2_xz*ups_h_3_in_spec2_y -
-            inv_ups_root_2*(ups_J_group_2_in_axes2_xz*ups_d_alpha_1_in_axes2_xz -
-            inv_ups_root_2*ups_J_group_2_in_axes2_yz);
+            v.inv_ups_q_3*(ups_J_group_2_in_axes2_xz*ups_d_alpha_1_in_axes2_xz -
+            v.inv_ups_q_3*ups_J_group_2_in_axes2_yz);
         const real ups_J_group_2_in_axes2_xx = m->ups_J_group_2_in_axes2_xx[i];
+        const real ups_J_group_2_in_axes2_xy = m->ups_J_group_2_in_axes2_xy[i];
         const real ups_J_group_2_in_axes2_yy = m->ups_J_group_2_in_axes2_yy[i];
         const real ups_d_c_in_axes2_zz = ups_d_alpha_1_in_axes2_xz*ups_h_3_in_spec2_z -
             ups_d_phi_3_in_axes2_yy -
-            inv_ups_root_1*(ups_c_2*(ups_J_group_2_in_axes2_xy*ups_d_alpha_1_in_axes2_xz -
-            ups_h_3_in_spec2_x - inv_ups_root_2*ups_J_group_2_in_axes2_yy) +
-            ups_s_2*(ups_J_group_2_in_axes2_xx*ups_d_alpha_1_in_axes2_xz - ups_h_3_in_spec2_z -
-            inv_ups_root_2*ups_J_group_2_in_axes2_xy));
-        /* (ups-c_o) remainder without the acceleration in: leg force on the platform without actuation
-           and without the mass at the connection point */
-        const real ups_c_o_in_axes2_y = ups_B_2_o_t*ups_h_3_in_spec2_x -
-            inv_ups_root_2*ups_mu_2_o_in_axes2_z - ups_alpha_1_o_t*ups_h_3_in_spec2_y -
-            ups_h_3_in_spec2_z*(ups_mu_2_o_t + ups_phi_3_o_t_2);
-        const real ups_c_o_in_axes2_z = ups_B_2_o_in_axes2_zy*ups_h_3_in_spec2_z +
-            ups_h_3_in_spec2_y*(ups_mu_2_o_t + ups_phi_3_o_t) -
-            inv_ups_root_1*(ups_c_2*ups_mu_2_o_in_axes2_y + ups_mu_2_o_in_axes2_x*ups_s_2) -
-            ups_B_2_o_in_axes2_zx*ups_h_3_in_spec2_x;
+            v.inv_ups_root_1*(v.ups_e_1_in_axes2_x*(ups_J_group_2_in_axes2_xx*ups_d_alpha_1_in_axes2_xz
+            - ups_h_3_in_spec2_z - v.inv_ups_q_3*ups_J_group_2_in_axes2_xy) -
+            v.ups_c_2*(ups_J_group_2_in_axes2_xy*ups_d_alpha_1_in_axes2_xz - ups_h_3_in_spec2_x -
+            v.inv_ups_q_3*ups_J_group_2_in_axes2_yy));
         /* (ups-Q) inertia of the leg at the connection point, without the mass gathered there */
         const real ups_Q_t = R(0.5)*ups_d_c_in_axes2_yy;
         const real ups_Q_t_2 = R(0.5)*ups_d_c_in_axes2_zz;
-        const real ups_Q_t_3 = axis_x_ups_axes2_x*ups_d_phi_3_in_axes2_xy -
-            axis_y_ups_axes2_x*ups_Q_t - axis_z_ups_axes2_x*ups_d_c_in_axes2_yz;
-        const real ups_Q_t_4 = axis_x_ups_axes2_y*ups_d_phi_3_in_axes2_xy -
-            axis_y_ups_axes2_y*ups_Q_t - axis_z_ups_axes2_y*ups_d_c_in_axes2_yz;
-        const real ups_Q_t_5 = axis_y_ups_axes2_z*ups_Q_t + axis_z_ups_axes2_z*ups_d_c_in_axes2_yz
-            - axis_x_ups_axes2_z*ups_d_phi_3_in_axes2_xy;
-        const real ups_Q_t_6 = axis_x_ups_axes2_x*ups_d_c_in_axes2_xz +
-            axis_z_ups_axes2_x*ups_Q_t_2;
-        const real ups_Q_t_7 = axis_x_ups_axes2_y*ups_d_c_in_axes2_xz +
-            axis_z_ups_axes2_y*ups_Q_t_2;
-        const real ups_Q_t_8 = axis_x_ups_axes2_z*ups_d_c_in_axes2_xz +
-            axis_z_ups_axes2_z*ups_Q_t_2;
-        const real ups_Q_t_9 = axis_z_ups_axes2_x*ups_Q_t_6 - axis_y_ups_axes2_x*ups_Q_t_3;
+        const real ups_Q_t_3 = v.axis_x_ups_axes2_x*ups_d_phi_3_in_axes2_xy -
+            v.axis_y_ups_axes2_x*ups_Q_t - v.axis_z_ups_axes2_x*ups_d_c_in_axes2_yz;
+        const real ups_Q_t_4 = v.axis_x_ups_axes2_y*ups_d_phi_3_in_axes2_xy -
+            v.axis_y_ups_axes2_y*ups_Q_t - v.axis_z_ups_axes2_y*ups_d_c_in_axes2_yz;
+        const real ups_Q_t_5 = v.axis_y_ups_axes2_z*ups_Q_t +
+            v.axis_z_ups_axes2_z*ups_d_c_in_axes2_yz -
+            v.axis_x_ups_axes2_z*ups_d_phi_3_in_axes2_xy;
+        const real ups_Q_t_6 = v.axis_x_ups_axes2_x*ups_d_c_in_axes2_xz +
+            v.axis_z_ups_axes2_x*ups_Q_t_2;
+        const real ups_Q_t_7 = v.axis_x_ups_axes2_y*ups_d_c_in_axes2_xz +
+            v.axis_z_ups_axes2_y*ups_Q_t_2;
+        const real ups_Q_t_8 = v.axis_x_ups_axes2_z*ups_d_c_in_axes2_xz +
+            v.axis_z_ups_axes2_z*ups_Q_t_2;
+        const real ups_Q_t_9 = v.axis_z_ups_axes2_x*ups_Q_t_6 - v.axis_y_ups_axes2_x*ups_Q_t_3;
         const real ups_Q_xx = -2*ups_Q_t_9;
-        const real ups_Q_xy = axis_y_ups_axes2_x*ups_Q_t_4 + axis_y_ups_axes2_y*ups_Q_t_3 -
-            axis_z_ups_axes2_x*ups_Q_t_7 - axis_z_ups_axes2_y*ups_Q_t_6;
-        const real ups_Q_xz = axis_y_ups_axes2_z*ups_Q_t_3 - axis_y_ups_axes2_x*ups_Q_t_5 -
-            axis_z_ups_axes2_x*ups_Q_t_8 - axis_z_ups_axes2_z*ups_Q_t_6;
-        const real ups_Q_t_10 = axis_z_ups_axes2_y*ups_Q_t_7 - axis_y_ups_axes2_y*ups_Q_t_4;
+        const real ups_Q_xy = v.axis_y_ups_axes2_x*ups_Q_t_4 + v.axis_y_ups_axes2_y*ups_Q_t_3 -
+            v.axis_z_ups_axes2_x*ups_Q_t_7 - v.axis_z_ups_axes2_y*ups_Q_t_6;
+        const real ups_Q_xz = v.axis_y_ups_axes2_z*ups_Q_t_3 - v.axis_y_ups_axes2_x*ups_Q_t_5 -
+            v.axis_z_ups_axes2_x*ups_Q_t_8 - v.axis_z_ups_axes2_z*ups_Q_t_6;
+        const real ups_Q_t_10 = v.axis_z_ups_axes2_y*ups_Q_t_7 - v.axis_y_ups_axes2_y*ups_Q_t_4;
         const real ups_Q_yy = -2*ups_Q_t_10;
-        const real ups_Q_yz = axis_y_ups_axes2_z*ups_Q_t_4 - axis_y_ups_axes2_y*ups_Q_t_5 -
-            axis_z_ups_axes2_y*ups_Q_t_8 - axis_z_ups_axes2_z*ups_Q_t_7;
-        const real ups_Q_t_11 = axis_y_ups_axes2_z*ups_Q_t_5 + axis_z_ups_axes2_z*ups_Q_t_8;
+        const real ups_Q_yz = v.axis_y_ups_axes2_z*ups_Q_t_4 - v.axis_y_ups_axes2_y*ups_Q_t_5 -
+            v.axis_z_ups_axes2_y*ups_Q_t_8 - v.axis_z_ups_axes2_z*ups_Q_t_7;
+        const real ups_Q_t_11 = v.axis_y_ups_axes2_z*ups_Q_t_5 + v.axis_z_ups_axes2_z*ups_Q_t_8;
         const real ups_Q_zz = -2*ups_Q_t_11;
-        /* (ups-U) velocity and gravity terms of the leg force */
-        const real ups_U_x = axis_x_ups_axes2_x*ups_phi_3_o_in_axes2_x -
-            axis_y_ups_axes2_x*ups_c_o_in_axes2_y - axis_z_ups_axes2_x*ups_c_o_in_axes2_z;
-        const real ups_U_y = axis_x_ups_axes2_y*ups_phi_3_o_in_axes2_x -
-            axis_y_ups_axes2_y*ups_c_o_in_axes2_y - axis_z_ups_axes2_y*ups_c_o_in_axes2_z;
-        const real ups_U_z = axis_x_ups_axes2_z*ups_phi_3_o_in_axes2_x -
-            axis_y_ups_axes2_z*ups_c_o_in_axes2_y - axis_z_ups_axes2_z*ups_c_o_in_axes2_z;
         /* (M_tt) translational block of M */
         gather(&terms[0*count + k], add, ups_Q_xx);  /* M_tt_xx_of_legs */
         gather(&terms[1*count + k], add, ups_Q_xy);  /* M_tt_xy */
@@ -1311,17 +1456,17 @@ INLINE void dynamics_legs_ups(const prepared *m, size_t w, size_t leg, size_t le
         gather(&terms[4*count + k], add, ups_Q_yz);  /* M_tt_yz */
         gather(&terms[5*count + k], add, ups_Q_zz);  /* M_tt_zz_of_legs */
         /* (Z_t) translational part of Z */
-        gather(&terms[6*count + k], add, ups_U_x);  /* Z_t_x_of_legs */
-        gather(&terms[7*count + k], add, ups_U_y);  /* Z_t_y_of_legs */
-        gather(&terms[8*count + k], add, ups_U_z);  /* Z_t_z_of_legs */
+        gather(&terms[6*count + k], add, v.ups_U_x);  /* Z_t_x_of_legs */
+        gather(&terms[7*count + k], add, v.ups_U_y);  /* Z_t_y_of_legs */
+        gather(&terms[8*count + k], add, v.ups_U_z);  /* Z_t_z_of_legs */
         /* (ups-w_3) reciprocal vector 3 */
-        o[0*count + k] = axis_x_ups_axes2_x;
-        o[1*count + k] = axis_x_ups_axes2_y;
-        o[2*count + k] = axis_x_ups_axes2_z;
-        o[4*count + k] = axis_x_ups_axes2_x + (axis_x_ups_axes2_y + axis_x_ups_axes2_z);
-        o[3*count + k] = UNLESS(magnitude(ups_rho2_1) > LEAST_1) + UNLESS(magnitude(ups_rho2_2) >
-            LEAST_1) + UNLESS(magnitude(ups_root_1) > LEAST_2) + UNLESS(magnitude(ups_root_2) >
-            LEAST_2);
+        o[0*count + k] = v.axis_x_ups_axes2_x;
+        o[1*count + k] = v.axis_x_ups_axes2_y;
+        o[2*count + k] = v.axis_x_ups_axes2_z;
+        o[4*count + k] = v.axis_x_ups_axes2_x + (v.axis_x_ups_axes2_y + v.axis_x_ups_axes2_z);
+        o[3*count + k] = UNLESS(magnitude(v.ups_root_1_t) > LEAST_1) +
+            UNLESS(magnitude(v.ups_q_3_t) > LEAST_1) + UNLESS(magnitude(v.ups_root_1) > LEAST_2) +
+            UNLESS(magnitude(v.ups_q_3) > LEAST_2);
     }
 }
 
@@ -1329,7 +1474,7 @@ INLINE void dynamics_place_ups(size_t w, size_t count, const real *o, size_t leg
     real *H, verdict *t)
 {
     for (size_t k = 0; k < w; ++k) {
-        H[(0*NU + leg)*w + k] = o[0*count + first + k];
+        H[leg*w + k] = o[0*count + first + k];
         H[(NU + leg)*w + k] = o[1*count + first + k];
         H[(2*NU + leg)*w + k] = o[2*count + first + k];
         t->singular[k] += o[3*count + first + k];
@@ -1360,12 +1505,12 @@ INLINE void dynamics_after(const prepared *m, size_t w, const real *sums, real *
         const real Z_t_z_of_legs = sums[8*w + k];
         const real Z_t_z = Z_p_z + Z_t_z_of_legs;
         /* (M_tt) translational block of M */
-        M[0*NV*w + k] = M_tt_xx;
+        M[0*w + k] = M_tt_xx;
         const real M_tt_xy = sums[1*w + k];
-        M[(0*NV + 1)*w + k] = M_tt_xy;
+        M[1*w + k] = M_tt_xy;
         M[NV*w + k] = M_tt_xy;
         const real M_tt_xz = sums[2*w + k];
-        M[(0*NV + 2)*w + k] = M_tt_xz;
+        M[2*w + k] = M_tt_xz;
         M[2*NV*w + k] = M_tt_xz;
         M[(NV + 1)*w + k] = M_tt_yy;
         const real M_tt_yz = sums[4*w + k];
@@ -1384,12 +1529,10 @@ INLINE void dynamics_after(const prepared *m, size_t w, const real *sums, real *
 INLINE void dynamics_run(const prepared *m, const real *X, const real *V, real *M, real *Z, real
     *H, verdict *t)
 {
-    real s[6] = {0};
     real sums[9] = {0};
-    real terms_ups[9*LEGS(LEGS_OF_ups)] = {0};
-    real o_ups[5*LEGS(LEGS_OF_ups)] = {0};
-    dynamics_before(1, X, V, s);
-    dynamics_legs_ups(m, 1, 0, 1, s, 0, LEGS(LEGS_OF_ups), 0, terms_ups, o_ups);
+    real terms_ups[9*LEGS(LEGS_OF_ups)] = {0}, o_ups[5*LEGS(LEGS_OF_ups)] = {0};
+    dynamics_before();
+    dynamics_legs_ups(m, 1, 0, 1, 0, LEGS(LEGS_OF_ups), 0, X, V, terms_ups, o_ups);
     for (size_t leg = 0; leg < LEGS_OF_ups; ++leg) {
         dynamics_place_ups(1, LEGS(LEGS_OF_ups), o_ups, leg, leg, H, t);
     }
@@ -1402,155 +1545,90 @@ INLINE void dynamics_run(const prepared *m, const real *X, const real *V, real *
 INLINE void dynamics_run_lanes(const prepared *m, const real *X, const real *V, real *M, real *Z,
     real *H, verdict *t)
 {
-    real s[6*LANES];
     real sums[9*LANES];
     real o_ups[5*LANES];
-    dynamics_before(LANES, X, V, s);
+    dynamics_before();
     clear(sums, 9*LANES);
     for (size_t leg = 0; leg < LEGS_OF_ups; ++leg) {
-        dynamics_legs_ups(m, LANES, leg, 0, s, 1, LANES, 1, sums, o_ups);
+        dynamics_legs_ups(m, LANES, leg, 0, 1, LANES, 1, X, V, sums, o_ups);
         dynamics_place_ups(LANES, LANES, o_ups, leg, 0, H, t);
     }
     dynamics_after(m, LANES, sums, M, Z, t);
 }
 
 /* ---- M ---- */
-INLINE void M_before(size_t w, const real *X, real *s)
+INLINE void M_before()
 {
-    for (size_t k = 0; k < w; ++k) {
-        /* X: named entries */
-        const real X_0 = X[0*w + k];
-        const real t_x = X_0;
-        const real X_1 = X[1*w + k];
-        const real t_y = X_1;
-        const real X_2 = X[2*w + k];
-        const real t_z = X_2;
-        s[0*w + k] = t_x;
-        s[1*w + k] = t_y;
-        s[2*w + k] = t_z;
-    }
 }
 
-INLINE void M_legs_ups(const prepared *m, size_t w, size_t leg, size_t legs, const real *s, size_t
-    states, size_t count, int add, real *terms, real *o)
+INLINE void M_legs_ups(const prepared *m, size_t w, size_t leg, size_t legs, size_t states, size_t
+    count, int add, const real *X, real *terms, real *o)
 {
     for (size_t k = 0; k < count; ++k) {
         const size_t i = leg + legs*k;
         const size_t j = states*k;
-        /* (ups-S) from the base point to the connection point */
-        const real t_x = s[0*w + j];
-        const real ups_base_point_x = m->ups_base_point_x[i];
-        const real ups_platform_point_x = m->ups_platform_point_x[i];
-        const real ups_S_x = t_x + ups_platform_point_x - ups_base_point_x;
-        const real t_y = s[1*w + j];
-        const real ups_base_point_y = m->ups_base_point_y[i];
-        const real ups_platform_point_y = m->ups_platform_point_y[i];
-        const real ups_S_y = t_y + ups_platform_point_y - ups_base_point_y;
-        const real t_z = s[2*w + j];
-        const real ups_base_point_z = m->ups_base_point_z[i];
-        const real ups_platform_point_z = m->ups_platform_point_z[i];
-        const real ups_S_z = t_z + ups_platform_point_z - ups_base_point_z;
-        /* (ups-px_1) component along the reference direction */
-        const real ups_base_frame_xx = m->ups_base_frame_xx[i];
-        const real ups_base_frame_yx = m->ups_base_frame_yx[i];
-        const real ups_base_frame_zx = m->ups_base_frame_zx[i];
-        const real ups_px_1 = ups_S_x*ups_base_frame_xx + ups_S_y*ups_base_frame_yx +
-            ups_S_z*ups_base_frame_zx;
-        /* (ups-py_1) component across the reference direction */
-        const real ups_base_frame_xy = m->ups_base_frame_xy[i];
-        const real ups_base_frame_yy = m->ups_base_frame_yy[i];
-        const real ups_base_frame_zy = m->ups_base_frame_zy[i];
-        const real ups_py_1 = ups_S_x*ups_base_frame_xy + ups_S_y*ups_base_frame_yy +
-            ups_S_z*ups_base_frame_zy;
-        /* (ups-rho2_1) squared amplitude */
-        const real ups_rho2_1 = ups_px_1*ups_px_1 + ups_py_1*ups_py_1;
-        /* (ups-root_1) amplitude, with the sign of the branch */
-        const real ups_branch_1 = m->ups_branch_1[i];
-        const real ups_root_1 = ups_branch_1*root(ups_rho2_1);
-        /* (ups-c_1) cosine of the angle of joint 1 from its reference direction */
-        const real inv_ups_root_1 = 1/ups_root_1;
-        const real ups_c_1_t = inv_ups_root_1*ups_py_1;
-        /* (ups-s_1) sine of the angle of joint 1 from its reference direction */
-        const real ups_s_1 = inv_ups_root_1*ups_px_1;
-        /* (ups-xi_1) the vector from joint 1 to the connection point, resolved along link 1 */
-        const real ups_base_frame_xz = m->ups_base_frame_xz[i];
-        const real ups_base_frame_yz = m->ups_base_frame_yz[i];
-        const real ups_base_frame_zz = m->ups_base_frame_zz[i];
-        const real ups_xi_1_in_axes1_z = ups_S_x*ups_base_frame_xz + ups_S_y*ups_base_frame_yz +
-            ups_S_z*ups_base_frame_zz;
-        /* (ups-rho2_2) squared amplitude */
-        const real ups_rho2_2 = ups_rho2_1 + ups_xi_1_in_axes1_z*ups_xi_1_in_axes1_z;
-        /* (ups-root_2) amplitude, with the sign of the branch */
-        const real ups_branch_2 = m->ups_branch_2[i];
-        const real ups_root_2 = ups_branch_2*root(ups_rho2_2);
-        /* (ups-s_2) sine of the angle of joint 2 from its reference direction */
-        const real inv_ups_root_2 = 1/ups_root_2;
-        const real ups_s_2 = inv_ups_root_2*ups_xi_1_in_axes1_z;
-        /* (ups-w_3) reciprocal vector 3 */
-        const real ups_w_3_x = inv_ups_root_2*ups_S_x;
-        const real ups_w_3_y = inv_ups_root_2*ups_S_y;
-        const real ups_w_3_z = inv_ups_root_2*ups_S_z;
+        values_ups v;
+        stage_ups_X(m, w, i, j, X, &v);
         /* (ups-d_alpha_1) coefficient of the acceleration in: angular acceleration of link 1 */
-        const real ups_d_alpha_1_in_axes2_xz = inv_ups_root_1*ups_s_2;
+        const real ups_e_1_in_axes2_x = v.ups_S_in_turn1_z*v.ups_w_2_in_axes2_y;
+        const real ups_d_alpha_1_in_axes2_xz = v.inv_ups_root_1*ups_e_1_in_axes2_x;
         /* (ups-d_phi_3) coefficient of the acceleration in: inertia force of link 3 from its turning
            about its reference point */
         const real ups_h_3_in_spec2_z = m->ups_h_3_in_spec2_z[i];
-        const real ups_d_phi_3_in_axes2_xy = inv_ups_root_2*ups_h_3_in_spec2_z;
+        const real ups_d_phi_3_in_axes2_xy = ups_h_3_in_spec2_z*v.ups_w_2_in_axes2_y;
         const real ups_h_3_in_spec2_x = m->ups_h_3_in_spec2_x[i];
-        const real ups_d_phi_3_in_axes2_yy = inv_ups_root_2*ups_h_3_in_spec2_x;
+        const real ups_d_phi_3_in_axes2_yy = ups_h_3_in_spec2_x*v.ups_w_2_in_axes2_y;
         /* (ups-d_c) coefficient of the acceleration in: leg force on the platform without actuation and
            without the mass at the connection point */
         const real ups_h_3_in_spec2_y = m->ups_h_3_in_spec2_y[i];
-        const real ups_d_c_in_axes2_xz = inv_ups_root_2*ups_h_3_in_spec2_y;
+        const real ups_d_c_in_axes2_xz = ups_h_3_in_spec2_y*v.ups_w_2_in_axes2_y;
         const real ups_J_group_2_in_axes2_zz = m->ups_J_group_2_in_axes2_zz[i];
         const real ups_d_c_in_axes2_yy = -ups_d_phi_3_in_axes2_yy -
-            inv_ups_root_2*(ups_h_3_in_spec2_x + inv_ups_root_2*ups_J_group_2_in_axes2_zz);
+            v.ups_w_2_in_axes2_y*(ups_h_3_in_spec2_x +
+            ups_J_group_2_in_axes2_zz*v.ups_w_2_in_axes2_y);
         const real ups_J_group_2_in_axes2_xz = m->ups_J_group_2_in_axes2_xz[i];
         const real ups_J_group_2_in_axes2_yz = m->ups_J_group_2_in_axes2_yz[i];
         const real ups_d_c_in_axes2_yz = ups_d_alpha_1_in_axes2_xz*ups_h_3_in_spec2_y -
-            inv_ups_root_2*(ups_J_group_2_in_axes2_xz*ups_d_alpha_1_in_axes2_xz -
-            inv_ups_root_2*ups_J_group_2_in_axes2_yz);
+            v.ups_w_2_in_axes2_y*(ups_J_group_2_in_axes2_xz*ups_d_alpha_1_in_axes2_xz -
+            ups_J_group_2_in_axes2_yz*v.ups_w_2_in_axes2_y);
         const real ups_J_group_2_in_axes2_xx = m->ups_J_group_2_in_axes2_xx[i];
         const real ups_J_group_2_in_axes2_xy = m->ups_J_group_2_in_axes2_xy[i];
         const real ups_J_group_2_in_axes2_yy = m->ups_J_group_2_in_axes2_yy[i];
         const real ups_d_c_in_axes2_zz = ups_d_alpha_1_in_axes2_xz*ups_h_3_in_spec2_z -
             ups_d_phi_3_in_axes2_yy -
-            inv_ups_root_1*(ups_s_2*(ups_J_group_2_in_axes2_xx*ups_d_alpha_1_in_axes2_xz -
-            ups_h_3_in_spec2_z - inv_ups_root_2*ups_J_group_2_in_axes2_xy) -
-            inv_ups_root_2*ups_root_1*(ups_J_group_2_in_axes2_xy*ups_d_alpha_1_in_axes2_xz -
-            ups_h_3_in_spec2_x - inv_ups_root_2*ups_J_group_2_in_axes2_yy));
+            v.inv_ups_root_1*(ups_e_1_in_axes2_x*(ups_J_group_2_in_axes2_xx*ups_d_alpha_1_in_axes2_xz
+            - ups_h_3_in_spec2_z - ups_J_group_2_in_axes2_xy*v.ups_w_2_in_axes2_y) -
+            v.ups_root_1*v.ups_w_2_in_axes2_y*(ups_J_group_2_in_axes2_xy*ups_d_alpha_1_in_axes2_xz
+            - ups_h_3_in_spec2_x - ups_J_group_2_in_axes2_yy*v.ups_w_2_in_axes2_y));
         /* (ups-Q) inertia of the leg at the connection point, without the mass gathered there */
-        const real axis_z_ups_axes2_x = ups_base_frame_xy*ups_s_1 - ups_base_frame_xx*ups_c_1_t;
-        const real axis_z_ups_axes2_y = ups_base_frame_yy*ups_s_1 - ups_base_frame_yx*ups_c_1_t;
-        const real axis_z_ups_axes2_z = ups_base_frame_zy*ups_s_1 - ups_base_frame_zx*ups_c_1_t;
-        const real axis_y_ups_axes2_x = axis_z_ups_axes2_y*ups_w_3_z -
-            axis_z_ups_axes2_z*ups_w_3_y;
-        const real axis_y_ups_axes2_y = axis_z_ups_axes2_z*ups_w_3_x -
-            axis_z_ups_axes2_x*ups_w_3_z;
-        const real axis_y_ups_axes2_z = axis_z_ups_axes2_x*ups_w_3_y -
-            axis_z_ups_axes2_y*ups_w_3_x;
+        const real axis_y_ups_axes2_x = v.axis_z_ups_axes2_y*v.ups_w_3_z -
+            v.axis_z_ups_axes2_z*v.ups_w_3_y;
+        const real axis_y_ups_axes2_y = v.axis_z_ups_axes2_z*v.ups_w_3_x -
+            v.axis_z_ups_axes2_x*v.ups_w_3_z;
+        const real axis_y_ups_axes2_z = v.axis_z_ups_axes2_x*v.ups_w_3_y -
+            v.axis_z_ups_axes2_y*v.ups_w_3_x;
         const real ups_Q_t = R(0.5)*ups_d_c_in_axes2_yy;
         const real ups_Q_t_2 = R(0.5)*ups_d_c_in_axes2_zz;
-        const real ups_Q_t_3 = ups_d_phi_3_in_axes2_xy*ups_w_3_x - axis_y_ups_axes2_x*ups_Q_t -
-            axis_z_ups_axes2_x*ups_d_c_in_axes2_yz;
-        const real ups_Q_t_4 = ups_d_phi_3_in_axes2_xy*ups_w_3_y - axis_y_ups_axes2_y*ups_Q_t -
-            axis_z_ups_axes2_y*ups_d_c_in_axes2_yz;
-        const real ups_Q_t_5 = axis_y_ups_axes2_z*ups_Q_t + axis_z_ups_axes2_z*ups_d_c_in_axes2_yz
-            - ups_d_phi_3_in_axes2_xy*ups_w_3_z;
-        const real ups_Q_t_6 = axis_z_ups_axes2_x*ups_Q_t_2 + ups_d_c_in_axes2_xz*ups_w_3_x;
-        const real ups_Q_t_7 = axis_z_ups_axes2_y*ups_Q_t_2 + ups_d_c_in_axes2_xz*ups_w_3_y;
-        const real ups_Q_t_8 = axis_z_ups_axes2_z*ups_Q_t_2 + ups_d_c_in_axes2_xz*ups_w_3_z;
-        const real ups_Q_t_9 = axis_z_ups_axes2_x*ups_Q_t_6 - axis_y_ups_axes2_x*ups_Q_t_3;
+        const real ups_Q_t_3 = ups_d_phi_3_in_axes2_xy*v.ups_w_3_x - axis_y_ups_axes2_x*ups_Q_t -
+            v.axis_z_ups_axes2_x*ups_d_c_in_axes2_yz;
+        const real ups_Q_t_4 = ups_d_phi_3_in_axes2_xy*v.ups_w_3_y - axis_y_ups_axes2_y*ups_Q_t -
+            v.axis_z_ups_axes2_y*ups_d_c_in_axes2_yz;
+        const real ups_Q_t_5 = axis_y_ups_axes2_z*ups_Q_t +
+            v.axis_z_ups_axes2_z*ups_d_c_in_axes2_yz - ups_d_phi_3_in_axes2_xy*v.ups_w_3_z;
+        const real ups_Q_t_6 = v.axis_z_ups_axes2_x*ups_Q_t_2 + ups_d_c_in_axes2_xz*v.ups_w_3_x;
+        const real ups_Q_t_7 = v.axis_z_ups_axes2_y*ups_Q_t_2 + ups_d_c_in_axes2_xz*v.ups_w_3_y;
+        const real ups_Q_t_8 = v.axis_z_ups_axes2_z*ups_Q_t_2 + ups_d_c_in_axes2_xz*v.ups_w_3_z;
+        const real ups_Q_t_9 = v.axis_z_ups_axes2_x*ups_Q_t_6 - axis_y_ups_axes2_x*ups_Q_t_3;
         const real ups_Q_xx = -2*ups_Q_t_9;
         const real ups_Q_xy = axis_y_ups_axes2_x*ups_Q_t_4 + axis_y_ups_axes2_y*ups_Q_t_3 -
-            axis_z_ups_axes2_x*ups_Q_t_7 - axis_z_ups_axes2_y*ups_Q_t_6;
+            v.axis_z_ups_axes2_x*ups_Q_t_7 - v.axis_z_ups_axes2_y*ups_Q_t_6;
         const real ups_Q_xz = axis_y_ups_axes2_z*ups_Q_t_3 - axis_y_ups_axes2_x*ups_Q_t_5 -
-            axis_z_ups_axes2_x*ups_Q_t_8 - axis_z_ups_axes2_z*ups_Q_t_6;
-        const real ups_Q_t_10 = axis_z_ups_axes2_y*ups_Q_t_7 - axis_y_ups_axes2_y*ups_Q_t_4;
+            v.axis_z_ups_axes2_x*ups_Q_t_8 - v.axis_z_ups_axes2_z*ups_Q_t_6;
+        const real ups_Q_t_10 = v.axis_z_ups_axes2_y*ups_Q_t_7 - axis_y_ups_axes2_y*ups_Q_t_4;
         const real ups_Q_yy = -2*ups_Q_t_10;
         const real ups_Q_yz = axis_y_ups_axes2_z*ups_Q_t_4 - axis_y_ups_axes2_y*ups_Q_t_5 -
-            axis_z_ups_axes2_y*ups_Q_t_8 - axis_z_ups_axes2_z*ups_Q_t_7;
-        const real ups_Q_t_11 = axis_y_ups_axes2_z*ups_Q_t_5 + axis_z_ups_axes2_z*ups_Q_t_8;
+            v.axis_z_ups_axes2_y*ups_Q_t_8 - v.axis_z_ups_axes2_z*ups_Q_t_7;
+        const real ups_Q_t_11 = axis_y_ups_axes2_z*ups_Q_t_5 + v.axis_z_ups_axes2_z*ups_Q_t_8;
         const real ups_Q_zz = -2*ups_Q_t_11;
         /* (M_tt) translational block of M */
         gather(&terms[0*count + k], add, ups_Q_xx);  /* M_tt_xx_of_legs */
@@ -1559,9 +1637,9 @@ INLINE void M_legs_ups(const prepared *m, size_t w, size_t leg, size_t legs, con
         gather(&terms[3*count + k], add, ups_Q_yy);  /* M_tt_yy_of_legs */
         gather(&terms[4*count + k], add, ups_Q_yz);  /* M_tt_yz */
         gather(&terms[5*count + k], add, ups_Q_zz);  /* M_tt_zz_of_legs */
-        o[0*count + k] = UNLESS(magnitude(ups_rho2_1) > LEAST_1) + UNLESS(magnitude(ups_rho2_2) >
-            LEAST_1) + UNLESS(magnitude(ups_root_1) > LEAST_2) + UNLESS(magnitude(ups_root_2) >
-            LEAST_2);
+        o[0*count + k] = UNLESS(magnitude(v.ups_root_1_t) > LEAST_1) +
+            UNLESS(magnitude(v.ups_q_3_t) > LEAST_1) + UNLESS(magnitude(v.ups_root_1) > LEAST_2) +
+            UNLESS(magnitude(v.ups_q_3) > LEAST_2);
     }
 }
 
@@ -1584,12 +1662,12 @@ INLINE void M_after(const prepared *m, size_t w, const real *sums, real *M, verd
         const real M_tt_zz_of_legs = sums[5*w + k];
         const real M_tt_zz = M_tt_zz_of_legs + m_star;
         /* (M_tt) translational block of M */
-        M[0*NV*w + k] = M_tt_xx;
+        M[0*w + k] = M_tt_xx;
         const real M_tt_xy = sums[1*w + k];
-        M[(0*NV + 1)*w + k] = M_tt_xy;
+        M[1*w + k] = M_tt_xy;
         M[NV*w + k] = M_tt_xy;
         const real M_tt_xz = sums[2*w + k];
-        M[(0*NV + 2)*w + k] = M_tt_xz;
+        M[2*w + k] = M_tt_xz;
         M[2*NV*w + k] = M_tt_xz;
         M[(NV + 1)*w + k] = M_tt_yy;
         const real M_tt_yz = sums[4*w + k];
@@ -1602,12 +1680,10 @@ INLINE void M_after(const prepared *m, size_t w, const real *sums, real *M, verd
 
 INLINE void M_run(const prepared *m, const real *X, real *M, verdict *t)
 {
-    real s[3] = {0};
     real sums[6] = {0};
-    real terms_ups[6*LEGS(LEGS_OF_ups)] = {0};
-    real o_ups[LEGS(LEGS_OF_ups)] = {0};
-    M_before(1, X, s);
-    M_legs_ups(m, 1, 0, 1, s, 0, LEGS(LEGS_OF_ups), 0, terms_ups, o_ups);
+    real terms_ups[6*LEGS(LEGS_OF_ups)] = {0}, o_ups[LEGS(LEGS_OF_ups)] = {0};
+    M_before();
+    M_legs_ups(m, 1, 0, 1, 0, LEGS(LEGS_OF_ups), 0, X, terms_ups, o_ups);
     for (size_t leg = 0; leg < LEGS_OF_ups; ++leg) {
         M_place_ups(1, LEGS(LEGS_OF_ups), o_ups, leg, t);
     }
@@ -1619,220 +1695,39 @@ INLINE void M_run(const prepared *m, const real *X, real *M, verdict *t)
 
 INLINE void M_run_lanes(const prepared *m, const real *X, real *M, verdict *t)
 {
-    real s[3*LANES];
     real sums[6*LANES];
     real o_ups[LANES];
-    M_before(LANES, X, s);
+    M_before();
     clear(sums, 6*LANES);
     for (size_t leg = 0; leg < LEGS_OF_ups; ++leg) {
-        M_legs_ups(m, LANES, leg, 0, s, 1, LANES, 1, sums, o_ups);
+        M_legs_ups(m, LANES, leg, 0, 1, LANES, 1, X, sums, o_ups);
         M_place_ups(LANES, LANES, o_ups, 0, t);
     }
     M_after(m, LANES, sums, M, t);
 }
 
 /* ---- Z ---- */
-INLINE void Z_before(size_t w, const real *X, const real *V, real *s)
+INLINE void Z_before()
 {
-    for (size_t k = 0; k < w; ++k) {
-        /* X: named entries */
-        const real X_0 = X[0*w + k];
-        const real t_x = X_0;
-        const real X_1 = X[1*w + k];
-        const real t_y = X_1;
-        const real X_2 = X[2*w + k];
-        const real t_z = X_2;
-        /* V: named entries */
-        const real V_0 = V[0*w + k];
-        const real t_dot_x = V_0;
-        const real V_1 = V[1*w + k];
-        const real t_dot_y = V_1;
-        const real V_2 = V[2*w + k];
-        const real t_dot_z = V_2;
-        s[0*w + k] = t_x;
-        s[1*w + k] = t_y;
-        s[2*w + k] = t_z;
-        s[3*w + k] = t_dot_x;
-        s[4*w + k] = t_dot_y;
-        s[5*w + k] = t_dot_z;
-    }
 }
 
-INLINE void Z_legs_ups(const prepared *m, size_t w, size_t leg, size_t legs, const real *s, size_t
-    states, size_t count, int add, real *terms, real *o)
+INLINE void Z_legs_ups(const prepared *m, size_t w, size_t leg, size_t legs, size_t states, size_t
+    count, int add, const real *X, const real *V, real *terms, real *o)
 {
     for (size_t k = 0; k < count; ++k) {
         const size_t i = leg + legs*k;
         const size_t j = states*k;
-        /* (ups-S) from the base point to the connection point */
-        const real t_x = s[0*w + j];
-        const real ups_base_point_x = m->ups_base_point_x[i];
-        const real ups_platform_point_x = m->ups_platform_point_x[i];
-        const real ups_S_x = t_x + ups_platform_point_x - ups_base_point_x;
-        const real t_y = s[1*w + j];
-        const real ups_base_point_y = m->ups_base_point_y[i];
-        const real ups_platform_point_y = m->ups_platform_point_y[i];
-        const real ups_S_y = t_y + ups_platform_point_y - ups_base_point_y;
-        const real t_z = s[2*w + j];
-        const real ups_base_point_z = m->ups_base_point_z[i];
-        const real ups_platform_point_z = m->ups_platform_point_z[i];
-        const real ups_S_z = t_z + ups_platform_point_z - ups_base_point_z;
-        /* (ups-px_1) component along the reference direction */
-        const real ups_base_frame_xx = m->ups_base_frame_xx[i];
-        const real ups_base_frame_yx = m->ups_base_frame_yx[i];
-        const real ups_base_frame_zx = m->ups_base_frame_zx[i];
-        const real ups_px_1 = ups_S_x*ups_base_frame_xx + ups_S_y*ups_base_frame_yx +
-            ups_S_z*ups_base_frame_zx;
-        /* (ups-py_1) component across the reference direction */
-        const real ups_base_frame_xy = m->ups_base_frame_xy[i];
-        const real ups_base_frame_yy = m->ups_base_frame_yy[i];
-        const real ups_base_frame_zy = m->ups_base_frame_zy[i];
-        const real ups_py_1 = ups_S_x*ups_base_frame_xy + ups_S_y*ups_base_frame_yy +
-            ups_S_z*ups_base_frame_zy;
-        /* (ups-rho2_1) squared amplitude */
-        const real ups_rho2_1 = ups_px_1*ups_px_1 + ups_py_1*ups_py_1;
-        /* (ups-root_1) amplitude, with the sign of the branch */
-        const real ups_branch_1 = m->ups_branch_1[i];
-        const real ups_root_1 = ups_branch_1*root(ups_rho2_1);
-        /* (ups-c_1) cosine of the angle of joint 1 from its reference direction */
-        const real inv_ups_root_1 = 1/ups_root_1;
-        const real ups_c_1_t = inv_ups_root_1*ups_py_1;
-        /* (ups-s_1) sine of the angle of joint 1 from its reference direction */
-        const real ups_s_1 = inv_ups_root_1*ups_px_1;
-        /* (ups-xi_1) the vector from joint 1 to the connection point, resolved along link 1 */
-        const real ups_base_frame_xz = m->ups_base_frame_xz[i];
-        const real ups_base_frame_yz = m->ups_base_frame_yz[i];
-        const real ups_base_frame_zz = m->ups_base_frame_zz[i];
-        const real ups_xi_1_in_axes1_z = ups_S_x*ups_base_frame_xz + ups_S_y*ups_base_frame_yz +
-            ups_S_z*ups_base_frame_zz;
-        /* (ups-rho2_2) squared amplitude */
-        const real ups_rho2_2 = ups_rho2_1 + ups_xi_1_in_axes1_z*ups_xi_1_in_axes1_z;
-        /* (ups-root_2) amplitude, with the sign of the branch */
-        const real ups_branch_2 = m->ups_branch_2[i];
-        const real ups_root_2 = ups_branch_2*root(ups_rho2_2);
-        /* (ups-c_2) cosine of the angle of joint 2 from its reference direction */
-        const real inv_ups_root_2 = 1/ups_root_2;
-        const real ups_c_2 = -inv_ups_root_2*ups_root_1;
-        /* (ups-s_2) sine of the angle of joint 2 from its reference direction */
-        const real ups_s_2 = inv_ups_root_2*ups_xi_1_in_axes1_z;
-        /* (ups-S_dot) velocity of the connection point */
-        const real axis_x_ups_axes2_x = inv_ups_root_2*ups_S_x;
-        const real axis_x_ups_axes2_y = inv_ups_root_2*ups_S_y;
-        const real axis_x_ups_axes2_z = inv_ups_root_2*ups_S_z;
-        const real t_dot_x = s[3*w + j];
-        const real t_dot_y = s[4*w + j];
-        const real t_dot_z = s[5*w + j];
-        const real ups_S_dot_in_axes2_x = axis_x_ups_axes2_x*t_dot_x + axis_x_ups_axes2_y*t_dot_y
-            + axis_x_ups_axes2_z*t_dot_z;
-        /* (ups-qd_1) rate of joint 1 */
-        const real axis_z_ups_axes2_x = ups_base_frame_xy*ups_s_1 - ups_base_frame_xx*ups_c_1_t;
-        const real axis_z_ups_axes2_y = ups_base_frame_yy*ups_s_1 - ups_base_frame_yx*ups_c_1_t;
-        const real axis_z_ups_axes2_z = ups_base_frame_zy*ups_s_1 - ups_base_frame_zx*ups_c_1_t;
-        const real ups_qd_1 = inv_ups_root_1*(axis_z_ups_axes2_x*t_dot_x +
-            axis_z_ups_axes2_y*t_dot_y + axis_z_ups_axes2_z*t_dot_z);
-        /* (ups-qd_2) rate of joint 2 */
-        const real axis_y_ups_axes2_x = axis_x_ups_axes2_z*axis_z_ups_axes2_y -
-            axis_x_ups_axes2_y*axis_z_ups_axes2_z;
-        const real axis_y_ups_axes2_y = axis_x_ups_axes2_x*axis_z_ups_axes2_z -
-            axis_x_ups_axes2_z*axis_z_ups_axes2_x;
-        const real axis_y_ups_axes2_z = axis_x_ups_axes2_y*axis_z_ups_axes2_x -
-            axis_x_ups_axes2_x*axis_z_ups_axes2_y;
-        const real ups_qd_2 = inv_ups_root_2*(axis_y_ups_axes2_x*t_dot_x +
-            axis_y_ups_axes2_y*t_dot_y + axis_y_ups_axes2_z*t_dot_z);
-        /* (ups-omega_1) angular velocity of link 1 */
-        const real ups_omega_1_in_axes2_x = ups_qd_1*ups_s_2;
-        const real ups_omega_1_in_axes2_y = ups_c_2*ups_qd_1;
-        /* (ups-W_2) centripetal tensor of link 2 */
-        const real ups_W_2_in_axes2_yz = ups_omega_1_in_axes2_y*ups_qd_2;
-        const real ups_W_2_in_axes2_xz = ups_omega_1_in_axes2_x*ups_qd_2;
-        const real ups_W_2_in_axes2_xy = ups_omega_1_in_axes2_x*ups_omega_1_in_axes2_y;
-        /* (ups-bias) acceleration of the connection point at zero joint accelerations */
-        const real ups_bias_t = 2*ups_S_dot_in_axes2_x;
-        const real ups_bias_in_axes2_z = 2*ups_W_2_in_axes2_xz*ups_root_2 -
-            ups_bias_t*ups_omega_1_in_axes2_y;
-        /* (ups-qdd_1_o) remainder without the acceleration in: acceleration of joint 1 */
-        const real ups_qdd_1_o_t = inv_ups_root_1*ups_bias_in_axes2_z;
-        /* (ups-alpha_1_o) remainder without the acceleration in: angular acceleration of link 1 */
-        const real ups_alpha_1_o_t = ups_qdd_1_o_t*ups_s_2;
-        const real ups_alpha_1_o_in_axes2_y = -ups_c_2*ups_qdd_1_o_t;
-        /* (ups-alpha_2_o) remainder without the acceleration in: angular acceleration of link 2 */
-        const real ups_alpha_2_o_in_axes2_x = ups_W_2_in_axes2_yz - ups_alpha_1_o_t;
-        const real ups_alpha_2_o_in_axes2_y = ups_alpha_1_o_in_axes2_y - ups_W_2_in_axes2_xz;
-        /* (ups-B_2_o) remainder of the acceleration tensor of link 2 */
-        const real ups_B_2_o_t = inv_ups_root_2*ups_bias_t*ups_qd_2;
-        const real ups_B_2_o_in_axes2_xy = ups_B_2_o_t + 2*ups_W_2_in_axes2_xy;
-        const real ups_B_2_o_in_axes2_zx = ups_W_2_in_axes2_xz - ups_alpha_2_o_in_axes2_y;
-        const real ups_B_2_o_in_axes2_zy = ups_W_2_in_axes2_yz + ups_alpha_2_o_in_axes2_x;
-        /* (ups-phi_3_o) remainder without the acceleration in: inertia force of link 3 from its turning
-           about its reference point */
-        const real ups_phi_3_o_t = ups_omega_1_in_axes2_y*ups_omega_1_in_axes2_y;
-        const real ups_phi_3_o_t_2 = ups_qd_2*ups_qd_2;
-        const real ups_h_3_in_spec2_x = m->ups_h_3_in_spec2_x[i];
-        const real ups_h_3_in_spec2_y = m->ups_h_3_in_spec2_y[i];
-        const real ups_h_3_in_spec2_z = m->ups_h_3_in_spec2_z[i];
-        const real ups_phi_3_o_in_axes2_x = ups_alpha_1_o_in_axes2_y*ups_h_3_in_spec2_y +
-            ups_h_3_in_spec2_x*(-ups_phi_3_o_t - ups_phi_3_o_t_2) -
-            ups_B_2_o_in_axes2_xy*ups_h_3_in_spec2_z;
-        /* (ups-mu_2_o) remainder without the acceleration in: inertia moment of the links that turn with
-           link 2, about their reference points */
-        const real ups_mu_2_o_t = ups_omega_1_in_axes2_x*ups_omega_1_in_axes2_x;
-        const real ups_acc_3_t = m->ups_acc_3_t[i];
-        const real ups_acc_3_t_2 = m->ups_acc_3_t_2[i];
-        const real ups_g_in_axes2_z = ups_acc_3_t_2*ups_s_1 - ups_acc_3_t*ups_c_1_t;
-        const real ups_mu_2_o_t_2 = ups_acc_3_t*ups_s_1 + ups_acc_3_t_2*ups_c_1_t;
-        const real ups_acc_3_t_3 = m->ups_acc_3_t_3[i];
-        const real ups_g_in_axes2_x = ups_acc_3_t_3*ups_s_2 - ups_c_2*ups_mu_2_o_t_2;
-        const real ups_g_in_axes2_y = ups_acc_3_t_3*ups_c_2 + ups_mu_2_o_t_2*ups_s_2;
-        const real ups_J_group_2_in_axes2_xy = m->ups_J_group_2_in_axes2_xy[i];
-        const real ups_J_group_2_in_axes2_xz = m->ups_J_group_2_in_axes2_xz[i];
-        const real ups_J_group_2_in_axes2_yz = m->ups_J_group_2_in_axes2_yz[i];
-        const real ups_Sigma_2_in_axes2_yy = m->ups_Sigma_2_in_axes2_yy[i];
-        const real ups_Sigma_2_in_axes2_zz = m->ups_Sigma_2_in_axes2_zz[i];
-        const real ups_h_group_2_in_axes2_y = m->ups_h_group_2_in_axes2_y[i];
-        const real ups_h_group_2_in_axes2_z = m->ups_h_group_2_in_axes2_z[i];
-        const real ups_mu_2_o_in_axes2_x = ups_B_2_o_in_axes2_zy*ups_Sigma_2_in_axes2_yy +
-            ups_J_group_2_in_axes2_yz*(ups_phi_3_o_t - ups_phi_3_o_t_2) +
-            ups_g_in_axes2_y*ups_h_group_2_in_axes2_z -
-            ups_B_2_o_in_axes2_zx*ups_J_group_2_in_axes2_xy -
-            ups_B_2_o_t*ups_J_group_2_in_axes2_xz - ups_Sigma_2_in_axes2_zz*ups_alpha_1_o_t -
-            ups_g_in_axes2_z*ups_h_group_2_in_axes2_y;
-        const real ups_Sigma_2_in_axes2_xx = m->ups_Sigma_2_in_axes2_xx[i];
-        const real ups_h_group_2_in_axes2_x = m->ups_h_group_2_in_axes2_x[i];
-        const real ups_mu_2_o_in_axes2_y = ups_B_2_o_in_axes2_zy*ups_J_group_2_in_axes2_xy +
-            ups_Sigma_2_in_axes2_zz*ups_alpha_1_o_in_axes2_y +
-            ups_g_in_axes2_z*ups_h_group_2_in_axes2_x -
-            ups_B_2_o_in_axes2_xy*ups_J_group_2_in_axes2_yz -
-            ups_B_2_o_in_axes2_zx*ups_Sigma_2_in_axes2_xx -
-            ups_J_group_2_in_axes2_xz*(ups_mu_2_o_t - ups_phi_3_o_t_2) -
-            ups_g_in_axes2_x*ups_h_group_2_in_axes2_z;
-        const real ups_mu_2_o_in_axes2_z = ups_J_group_2_in_axes2_xy*(ups_mu_2_o_t -
-            ups_phi_3_o_t) + ups_J_group_2_in_axes2_yz*ups_alpha_1_o_in_axes2_y +
-            ups_g_in_axes2_x*ups_h_group_2_in_axes2_y -
-            ups_B_2_o_in_axes2_xy*ups_Sigma_2_in_axes2_yy - ups_B_2_o_t*ups_Sigma_2_in_axes2_xx -
-            ups_J_group_2_in_axes2_xz*ups_alpha_1_o_t - ups_g_in_axes2_y*ups_h_group_2_in_axes2_x;
-        /* (ups-c_o) remainder without the acceleration in: leg force on the platform without actuation
-           and without the mass at the connection point */
-        const real ups_c_o_in_axes2_y = ups_B_2_o_t*ups_h_3_in_spec2_x -
-            inv_ups_root_2*ups_mu_2_o_in_axes2_z - ups_alpha_1_o_t*ups_h_3_in_spec2_y -
-            ups_h_3_in_spec2_z*(ups_mu_2_o_t + ups_phi_3_o_t_2);
-        const real ups_c_o_in_axes2_z = ups_B_2_o_in_axes2_zy*ups_h_3_in_spec2_z +
-            ups_h_3_in_spec2_y*(ups_mu_2_o_t + ups_phi_3_o_t) -
-            inv_ups_root_1*(ups_c_2*ups_mu_2_o_in_axes2_y + ups_mu_2_o_in_axes2_x*ups_s_2) -
-            ups_B_2_o_in_axes2_zx*ups_h_3_in_spec2_x;
-        /* (ups-U) velocity and gravity terms of the leg force */
-        const real ups_U_x = axis_x_ups_axes2_x*ups_phi_3_o_in_axes2_x -
-            axis_y_ups_axes2_x*ups_c_o_in_axes2_y - axis_z_ups_axes2_x*ups_c_o_in_axes2_z;
-        const real ups_U_y = axis_x_ups_axes2_y*ups_phi_3_o_in_axes2_x -
-            axis_y_ups_axes2_y*ups_c_o_in_axes2_y - axis_z_ups_axes2_y*ups_c_o_in_axes2_z;
-        const real ups_U_z = axis_x_ups_axes2_z*ups_phi_3_o_in_axes2_x -
-            axis_y_ups_axes2_z*ups_c_o_in_axes2_y - axis_z_ups_axes2_z*ups_c_o_in_axes2_z;
+        values_ups v;
+        stage_ups_X(m, w, i, j, X, &v);
+        stage_ups_V_X(w, j, V, &v);
+        stage_ups_Z_dynamics(m, i, &v);
         /* (Z_t) translational part of Z */
-        gather(&terms[0*count + k], add, ups_U_x);  /* Z_t_x_of_legs */
-        gather(&terms[1*count + k], add, ups_U_y);  /* Z_t_y_of_legs */
-        gather(&terms[2*count + k], add, ups_U_z);  /* Z_t_z_of_legs */
-        o[0*count + k] = UNLESS(magnitude(ups_rho2_1) > LEAST_1) + UNLESS(magnitude(ups_rho2_2) >
-            LEAST_1) + UNLESS(magnitude(ups_root_1) > LEAST_2) + UNLESS(magnitude(ups_root_2) >
-            LEAST_2);
+        gather(&terms[0*count + k], add, v.ups_U_x);  /* Z_t_x_of_legs */
+        gather(&terms[1*count + k], add, v.ups_U_y);  /* Z_t_y_of_legs */
+        gather(&terms[2*count + k], add, v.ups_U_z);  /* Z_t_z_of_legs */
+        o[0*count + k] = UNLESS(magnitude(v.ups_root_1_t) > LEAST_1) +
+            UNLESS(magnitude(v.ups_q_3_t) > LEAST_1) + UNLESS(magnitude(v.ups_root_1) > LEAST_2) +
+            UNLESS(magnitude(v.ups_q_3) > LEAST_2);
     }
 }
 
@@ -1866,12 +1761,10 @@ INLINE void Z_after(const prepared *m, size_t w, const real *sums, real *Z, verd
 
 INLINE void Z_run(const prepared *m, const real *X, const real *V, real *Z, verdict *t)
 {
-    real s[6] = {0};
     real sums[3] = {0};
-    real terms_ups[3*LEGS(LEGS_OF_ups)] = {0};
-    real o_ups[LEGS(LEGS_OF_ups)] = {0};
-    Z_before(1, X, V, s);
-    Z_legs_ups(m, 1, 0, 1, s, 0, LEGS(LEGS_OF_ups), 0, terms_ups, o_ups);
+    real terms_ups[3*LEGS(LEGS_OF_ups)] = {0}, o_ups[LEGS(LEGS_OF_ups)] = {0};
+    Z_before();
+    Z_legs_ups(m, 1, 0, 1, 0, LEGS(LEGS_OF_ups), 0, X, V, terms_ups, o_ups);
     for (size_t leg = 0; leg < LEGS_OF_ups; ++leg) {
         Z_place_ups(1, LEGS(LEGS_OF_ups), o_ups, leg, t);
     }
@@ -1883,92 +1776,37 @@ INLINE void Z_run(const prepared *m, const real *X, const real *V, real *Z, verd
 
 INLINE void Z_run_lanes(const prepared *m, const real *X, const real *V, real *Z, verdict *t)
 {
-    real s[6*LANES];
     real sums[3*LANES];
     real o_ups[LANES];
-    Z_before(LANES, X, V, s);
+    Z_before();
     clear(sums, 3*LANES);
     for (size_t leg = 0; leg < LEGS_OF_ups; ++leg) {
-        Z_legs_ups(m, LANES, leg, 0, s, 1, LANES, 1, sums, o_ups);
+        Z_legs_ups(m, LANES, leg, 0, 1, LANES, 1, X, V, sums, o_ups);
         Z_place_ups(LANES, LANES, o_ups, 0, t);
     }
     Z_after(m, LANES, sums, Z, t);
 }
 
 /* ---- H ---- */
-INLINE void H_before(size_t w, const real *X, real *s)
+INLINE void H_before()
 {
-    for (size_t k = 0; k < w; ++k) {
-        /* X: named entries */
-        const real X_0 = X[0*w + k];
-        const real t_x = X_0;
-        const real X_1 = X[1*w + k];
-        const real t_y = X_1;
-        const real X_2 = X[2*w + k];
-        const real t_z = X_2;
-        s[0*w + k] = t_x;
-        s[1*w + k] = t_y;
-        s[2*w + k] = t_z;
-    }
 }
 
-INLINE void H_legs_ups(const prepared *m, size_t w, size_t leg, size_t legs, const real *s, size_t
-    states, size_t count, real *o)
+INLINE void H_legs_ups(const prepared *m, size_t w, size_t leg, size_t legs, size_t states, size_t
+    count, const real *X, real *o)
 {
     for (size_t k = 0; k < count; ++k) {
         const size_t i = leg + legs*k;
         const size_t j = states*k;
-        /* (ups-S) from the base point to the connection point */
-        const real t_x = s[0*w + j];
-        const real ups_base_point_x = m->ups_base_point_x[i];
-        const real ups_platform_point_x = m->ups_platform_point_x[i];
-        const real ups_S_x = t_x + ups_platform_point_x - ups_base_point_x;
-        const real t_y = s[1*w + j];
-        const real ups_base_point_y = m->ups_base_point_y[i];
-        const real ups_platform_point_y = m->ups_platform_point_y[i];
-        const real ups_S_y = t_y + ups_platform_point_y - ups_base_point_y;
-        const real t_z = s[2*w + j];
-        const real ups_base_point_z = m->ups_base_point_z[i];
-        const real ups_platform_point_z = m->ups_platform_point_z[i];
-        const real ups_S_z = t_z + ups_platform_point_z - ups_base_point_z;
-        /* (ups-px_1) component along the reference direction */
-        const real ups_base_frame_xx = m->ups_base_frame_xx[i];
-        const real ups_base_frame_yx = m->ups_base_frame_yx[i];
-        const real ups_base_frame_zx = m->ups_base_frame_zx[i];
-        const real ups_px_1 = ups_S_x*ups_base_frame_xx + ups_S_y*ups_base_frame_yx +
-            ups_S_z*ups_base_frame_zx;
-        /* (ups-py_1) component across the reference direction */
-        const real ups_base_frame_xy = m->ups_base_frame_xy[i];
-        const real ups_base_frame_yy = m->ups_base_frame_yy[i];
-        const real ups_base_frame_zy = m->ups_base_frame_zy[i];
-        const real ups_py_1 = ups_S_x*ups_base_frame_xy + ups_S_y*ups_base_frame_yy +
-            ups_S_z*ups_base_frame_zy;
-        /* (ups-rho2_1) squared amplitude */
-        const real ups_rho2_1 = ups_px_1*ups_px_1 + ups_py_1*ups_py_1;
-        /* (ups-xi_1) the vector from joint 1 to the connection point, resolved along link 1 */
-        const real ups_base_frame_xz = m->ups_base_frame_xz[i];
-        const real ups_base_frame_yz = m->ups_base_frame_yz[i];
-        const real ups_base_frame_zz = m->ups_base_frame_zz[i];
-        const real ups_xi_1_in_axes1_z = ups_S_x*ups_base_frame_xz + ups_S_y*ups_base_frame_yz +
-            ups_S_z*ups_base_frame_zz;
-        /* (ups-rho2_2) squared amplitude */
-        const real ups_rho2_2 = ups_rho2_1 + ups_xi_1_in_axes1_z*ups_xi_1_in_axes1_z;
-        /* (ups-root_2) amplitude, with the sign of the branch */
-        const real ups_branch_2 = m->ups_branch_2[i];
-        const real ups_root_2 = ups_branch_2*root(ups_rho2_2);
-        /* (ups-w_2) reciprocal vector 2 */
-        const real ups_w_2_in_axes2_y = 1/ups_root_2;
+        values_ups v;
+        stage_ups_X(m, w, i, j, X, &v);
         /* (ups-w_3) reciprocal vector 3 */
-        const real ups_w_3_x = ups_S_x*ups_w_2_in_axes2_y;
-        const real ups_w_3_y = ups_S_y*ups_w_2_in_axes2_y;
-        const real ups_w_3_z = ups_S_z*ups_w_2_in_axes2_y;
-        /* (ups-w_3) reciprocal vector 3 */
-        o[0*count + k] = ups_w_3_x;
-        o[1*count + k] = ups_w_3_y;
-        o[2*count + k] = ups_w_3_z;
-        o[4*count + k] = ups_w_3_x + (ups_w_3_y + ups_w_3_z);
-        o[3*count + k] = UNLESS(magnitude(ups_rho2_1) > LEAST_1) + UNLESS(magnitude(ups_rho2_2) >
-            LEAST_1) + UNLESS(magnitude(ups_root_2) > LEAST_2);
+        o[0*count + k] = v.ups_w_3_x;
+        o[1*count + k] = v.ups_w_3_y;
+        o[2*count + k] = v.ups_w_3_z;
+        o[4*count + k] = v.ups_w_3_x + (v.ups_w_3_y + v.ups_w_3_z);
+        o[3*count + k] = UNLESS(magnitude(v.ups_root_1_t) > LEAST_1) +
+            UNLESS(magnitude(v.ups_q_3_t) > LEAST_1) + UNLESS(magnitude(v.ups_q_3) > LEAST_2);
     }
 }
 
@@ -1976,7 +1814,7 @@ INLINE void H_place_ups(size_t w, size_t count, const real *o, size_t leg, size_
     verdict *t)
 {
     for (size_t k = 0; k < w; ++k) {
-        H[(0*NU + leg)*w + k] = o[0*count + first + k];
+        H[leg*w + k] = o[0*count + first + k];
         H[(NU + leg)*w + k] = o[1*count + first + k];
         H[(2*NU + leg)*w + k] = o[2*count + first + k];
         t->singular[k] += o[3*count + first + k];
@@ -1986,10 +1824,9 @@ INLINE void H_place_ups(size_t w, size_t count, const real *o, size_t leg, size_
 
 INLINE void H_run(const prepared *m, const real *X, real *H, verdict *t)
 {
-    real s[3] = {0};
     real o_ups[5*LEGS(LEGS_OF_ups)] = {0};
-    H_before(1, X, s);
-    H_legs_ups(m, 1, 0, 1, s, 0, LEGS(LEGS_OF_ups), o_ups);
+    H_before();
+    H_legs_ups(m, 1, 0, 1, 0, LEGS(LEGS_OF_ups), X, o_ups);
     for (size_t leg = 0; leg < LEGS_OF_ups; ++leg) {
         H_place_ups(1, LEGS(LEGS_OF_ups), o_ups, leg, leg, H, t);
     }
@@ -1997,209 +1834,59 @@ INLINE void H_run(const prepared *m, const real *X, real *H, verdict *t)
 
 INLINE void H_run_lanes(const prepared *m, const real *X, real *H, verdict *t)
 {
-    real s[3*LANES];
     real o_ups[5*LANES];
-    H_before(LANES, X, s);
+    H_before();
     for (size_t leg = 0; leg < LEGS_OF_ups; ++leg) {
-        H_legs_ups(m, LANES, leg, 0, s, 1, LANES, o_ups);
+        H_legs_ups(m, LANES, leg, 0, 1, LANES, X, o_ups);
         H_place_ups(LANES, LANES, o_ups, leg, 0, H, t);
     }
 }
 
 /* ---- required ---- */
-INLINE void required_before(const prepared *m, size_t w, const real *X, const real *V, const real
-    *A, real *s)
+INLINE void required_before(const prepared *m, size_t w, const real *A, real *s)
 {
     for (size_t k = 0; k < w; ++k) {
-        /* X: named entries */
-        const real X_0 = X[0*w + k];
-        const real t_x = X_0;
-        const real X_1 = X[1*w + k];
-        const real t_y = X_1;
-        const real X_2 = X[2*w + k];
-        const real t_z = X_2;
-        /* V: named entries */
-        const real V_0 = V[0*w + k];
-        const real t_dot_x = V_0;
-        const real V_1 = V[1*w + k];
-        const real t_dot_y = V_1;
-        const real V_2 = V[2*w + k];
-        const real t_dot_z = V_2;
-        /* A: named entries */
-        const real A_0 = A[0*w + k];
-        const real t_ddot_x = A_0;
-        const real A_1 = A[1*w + k];
-        const real t_ddot_y = A_1;
-        const real A_2 = A[2*w + k];
-        const real t_ddot_z = A_2;
         /* (a_t) acceleration of the platform origin, less gravity */
         const real gravity_x = m->gravity_x;
+        const real t_ddot_x = A[0*w + k];
         const real a_t_x = t_ddot_x - gravity_x;
         const real gravity_y = m->gravity_y;
+        const real t_ddot_y = A[1*w + k];
         const real a_t_y = t_ddot_y - gravity_y;
         const real gravity_z = m->gravity_z;
+        const real t_ddot_z = A[2*w + k];
         const real a_t_z = t_ddot_z - gravity_z;
         /* (f_p) inertia force of the platform less its weight */
         const real m_star = m->m_star;
         const real f_p_x = a_t_x*m_star;
         const real f_p_y = a_t_y*m_star;
         const real f_p_z = a_t_z*m_star;
-        s[0*w + k] = t_x;
-        s[1*w + k] = t_y;
-        s[2*w + k] = t_z;
-        s[3*w + k] = t_dot_x;
-        s[4*w + k] = t_dot_y;
-        s[5*w + k] = t_dot_z;
-        s[6*w + k] = t_ddot_x;
-        s[7*w + k] = t_ddot_y;
-        s[8*w + k] = t_ddot_z;
-        s[9*w + k] = f_p_x;
-        s[10*w + k] = f_p_y;
-        s[11*w + k] = f_p_z;
+        s[0*w + k] = f_p_x;
+        s[1*w + k] = f_p_y;
+        s[2*w + k] = f_p_z;
     }
 }
 
-INLINE void required_legs_ups(const prepared *m, size_t w, size_t leg, size_t legs, const real *s,
-    size_t states, size_t count, int add, real *terms, real *o)
+INLINE void required_legs_ups(const prepared *m, size_t w, size_t leg, size_t legs, size_t states,
+    size_t count, int add, const real *X, const real *V, const real *A, real *terms, real *o)
 {
     for (size_t k = 0; k < count; ++k) {
         const size_t i = leg + legs*k;
         const size_t j = states*k;
-        /* (ups-S) from the base point to the connection point */
-        const real t_x = s[0*w + j];
-        const real ups_base_point_x = m->ups_base_point_x[i];
-        const real ups_platform_point_x = m->ups_platform_point_x[i];
-        const real ups_S_x = t_x + ups_platform_point_x - ups_base_point_x;
-        const real t_y = s[1*w + j];
-        const real ups_base_point_y = m->ups_base_point_y[i];
-        const real ups_platform_point_y = m->ups_platform_point_y[i];
-        const real ups_S_y = t_y + ups_platform_point_y - ups_base_point_y;
-        const real t_z = s[2*w + j];
-        const real ups_base_point_z = m->ups_base_point_z[i];
-        const real ups_platform_point_z = m->ups_platform_point_z[i];
-        const real ups_S_z = t_z + ups_platform_point_z - ups_base_point_z;
-        /* (ups-px_1) component along the reference direction */
-        const real ups_base_frame_xx = m->ups_base_frame_xx[i];
-        const real ups_base_frame_yx = m->ups_base_frame_yx[i];
-        const real ups_base_frame_zx = m->ups_base_frame_zx[i];
-        const real ups_px_1 = ups_S_x*ups_base_frame_xx + ups_S_y*ups_base_frame_yx +
-            ups_S_z*ups_base_frame_zx;
-        /* (ups-py_1) component across the reference direction */
-        const real ups_base_frame_xy = m->ups_base_frame_xy[i];
-        const real ups_base_frame_yy = m->ups_base_frame_yy[i];
-        const real ups_base_frame_zy = m->ups_base_frame_zy[i];
-        const real ups_py_1 = ups_S_x*ups_base_frame_xy + ups_S_y*ups_base_frame_yy +
-            ups_S_z*ups_base_frame_zy;
-        /* (ups-rho2_1) squared amplitude */
-        const real ups_rho2_1 = ups_px_1*ups_px_1 + ups_py_1*ups_py_1;
-        /* (ups-root_1) amplitude, with the sign of the branch */
-        const real ups_branch_1 = m->ups_branch_1[i];
-        const real ups_root_1 = ups_branch_1*root(ups_rho2_1);
-        /* (ups-c_1) cosine of the angle of joint 1 from its reference direction */
-        const real inv_ups_root_1 = 1/ups_root_1;
-        const real ups_c_1_t = inv_ups_root_1*ups_py_1;
-        /* (ups-s_1) sine of the angle of joint 1 from its reference direction */
-        const real ups_s_1 = inv_ups_root_1*ups_px_1;
-        /* (ups-xi_1) the vector from joint 1 to the connection point, resolved along link 1 */
-        const real ups_base_frame_xz = m->ups_base_frame_xz[i];
-        const real ups_base_frame_yz = m->ups_base_frame_yz[i];
-        const real ups_base_frame_zz = m->ups_base_frame_zz[i];
-        const real ups_xi_1_in_axes1_z = ups_S_x*ups_base_frame_xz + ups_S_y*ups_base_frame_yz +
-            ups_S_z*ups_base_frame_zz;
-        /* (ups-rho2_2) squared amplitude */
-        const real ups_rho2_2 = ups_rho2_1 + ups_xi_1_in_axes1_z*ups_xi_1_in_axes1_z;
-        /* (ups-root_2) amplitude, with the sign of the branch */
-        const real ups_branch_2 = m->ups_branch_2[i];
-        const real ups_root_2 = ups_branch_2*root(ups_rho2_2);
-        /* (ups-c_2) cosine of the angle of joint 2 from its reference direction */
-        const real inv_ups_root_2 = 1/ups_root_2;
-        const real ups_c_2 = -inv_ups_root_2*ups_root_1;
-        /* (ups-s_2) sine of the angle of joint 2 from its reference direction */
-        const real ups_s_2 = inv_ups_root_2*ups_xi_1_in_axes1_z;
-        /* (ups-S_dot) velocity of the connection point */
-        const real axis_x_ups_axes2_x = inv_ups_root_2*ups_S_x;
-        const real axis_x_ups_axes2_y = inv_ups_root_2*ups_S_y;
-        const real axis_x_ups_axes2_z = inv_ups_root_2*ups_S_z;
-        const real t_dot_x = s[3*w + j];
-        const real t_dot_y = s[4*w + j];
-        const real t_dot_z = s[5*w + j];
-        const real ups_S_dot_in_axes2_x = axis_x_ups_axes2_x*t_dot_x + axis_x_ups_axes2_y*t_dot_y
-            + axis_x_ups_axes2_z*t_dot_z;
-        /* (ups-qd_1) rate of joint 1 */
-        const real axis_z_ups_axes2_x = ups_base_frame_xy*ups_s_1 - ups_base_frame_xx*ups_c_1_t;
-        const real axis_z_ups_axes2_y = ups_base_frame_yy*ups_s_1 - ups_base_frame_yx*ups_c_1_t;
-        const real axis_z_ups_axes2_z = ups_base_frame_zy*ups_s_1 - ups_base_frame_zx*ups_c_1_t;
-        const real ups_qd_1 = inv_ups_root_1*(axis_z_ups_axes2_x*t_dot_x +
-            axis_z_ups_axes2_y*t_dot_y + axis_z_ups_axes2_z*t_dot_z);
-        /* (ups-qd_2) rate of joint 2 */
-        const real axis_y_ups_axes2_x = axis_x_ups_axes2_z*axis_z_ups_axes2_y -
-            axis_x_ups_axes2_y*axis_z_ups_axes2_z;
-        const real axis_y_ups_axes2_y = axis_x_ups_axes2_x*axis_z_ups_axes2_z -
-            axis_x_ups_axes2_z*axis_z_ups_axes2_x;
-        const real axis_y_ups_axes2_z = axis_x_ups_axes2_y*axis_z_ups_axes2_x -
-            axis_x_ups_axes2_x*axis_z_ups_axes2_y;
-        const real ups_qd_2 = inv_ups_root_2*(axis_y_ups_axes2_x*t_dot_x +
-            axis_y_ups_axes2_y*t_dot_y + axis_y_ups_axes2_z*t_dot_z);
-        /* (ups-omega_1) angular velocity of link 1 */
-        const real ups_omega_1_in_axes2_x = ups_qd_1*ups_s_2;
-        const real ups_omega_1_in_axes2_y = ups_c_2*ups_qd_1;
-        /* (ups-W_2) centripetal tensor of link 2 */
-        const real ups_W_2_in_axes2_yz = ups_omega_1_in_axes2_y*ups_qd_2;
-        const real ups_W_2_in_axes2_xz = ups_omega_1_in_axes2_x*ups_qd_2;
-        const real ups_W_2_in_axes2_xy = ups_omega_1_in_axes2_x*ups_omega_1_in_axes2_y;
-        /* (ups-S_ddot) acceleration of the connection point */
-        const real t_ddot_x = s[6*w + j];
-        const real t_ddot_y = s[7*w + j];
-        const real t_ddot_z = s[8*w + j];
-        const real ups_S_ddot_in_axes2_z = axis_z_ups_axes2_x*t_ddot_x +
-            axis_z_ups_axes2_y*t_ddot_y + axis_z_ups_axes2_z*t_ddot_z;
-        /* (ups-bias) acceleration of the connection point at zero joint accelerations */
-        const real ups_bias_t = 2*ups_S_dot_in_axes2_x;
-        const real ups_bias_in_axes2_z = 2*ups_W_2_in_axes2_xz*ups_root_2 -
-            ups_bias_t*ups_omega_1_in_axes2_y;
-        /* (ups-rel) acceleration of the connection point left to the joint accelerations */
-        const real ups_rel_in_axes2_z = ups_S_ddot_in_axes2_z - ups_bias_in_axes2_z;
-        /* (ups-qdd_1) acceleration of joint 1 */
-        const real ups_qdd_1 = inv_ups_root_1*ups_rel_in_axes2_z;
-        /* (ups-alpha_1) angular acceleration of link 1 */
-        const real ups_alpha_1_in_axes2_x = ups_qdd_1*ups_s_2;
-        const real ups_alpha_1_in_axes2_y = ups_c_2*ups_qdd_1;
-        /* (ups-alpha_2) angular acceleration of link 2 */
-        const real ups_alpha_2_in_axes2_x = ups_W_2_in_axes2_yz + ups_alpha_1_in_axes2_x;
-        const real ups_alpha_2_in_axes2_y = ups_alpha_1_in_axes2_y - ups_W_2_in_axes2_xz;
-        /* (ups-B_2) acceleration tensor of link 2 */
-        const real ups_B_2_t = axis_y_ups_axes2_x*t_ddot_x;
-        const real ups_B_2_t_2 = axis_y_ups_axes2_y*t_ddot_y;
-        const real ups_B_2_t_3 = axis_y_ups_axes2_z*t_ddot_z;
-        const real ups_B_2_in_axes2_yx = inv_ups_root_2*(ups_B_2_t + ups_B_2_t_2 + ups_B_2_t_3 -
-            ups_bias_t*ups_qd_2);
-        const real ups_B_2_in_axes2_xy = 2*ups_W_2_in_axes2_xy - ups_B_2_in_axes2_yx;
-        const real ups_B_2_in_axes2_zx = ups_W_2_in_axes2_xz - ups_alpha_2_in_axes2_y;
-        const real ups_B_2_in_axes2_zy = ups_W_2_in_axes2_yz + ups_alpha_2_in_axes2_x;
-        /* (ups-acc_3) acceleration of the reference point of link 3, less gravity */
-        const real ups_acc_3_t = m->ups_acc_3_t[i];
-        const real ups_acc_3_t_2 = m->ups_acc_3_t_2[i];
-        const real ups_g_in_axes2_z = ups_acc_3_t_2*ups_s_1 - ups_acc_3_t*ups_c_1_t;
-        const real ups_acc_3_t_4 = ups_acc_3_t*ups_s_1 + ups_acc_3_t_2*ups_c_1_t;
-        const real ups_acc_3_t_3 = m->ups_acc_3_t_3[i];
-        const real ups_g_in_axes2_x = ups_acc_3_t_3*ups_s_2 - ups_acc_3_t_4*ups_c_2;
-        const real ups_g_in_axes2_y = ups_acc_3_t_3*ups_c_2 + ups_acc_3_t_4*ups_s_2;
-        const real ups_acc_3_in_axes2_x = axis_x_ups_axes2_x*t_ddot_x +
-            axis_x_ups_axes2_y*t_ddot_y + axis_x_ups_axes2_z*t_ddot_z - ups_g_in_axes2_x;
-        const real ups_acc_3_in_axes2_y = ups_B_2_t + ups_B_2_t_2 + ups_B_2_t_3 -
-            ups_g_in_axes2_y;
-        const real ups_acc_3_in_axes2_z = ups_S_ddot_in_axes2_z - ups_g_in_axes2_z;
+        values_ups v;
+        stage_ups_X(m, w, i, j, X, &v);
+        stage_ups_V_X(w, j, V, &v);
+        stage_ups_legs_required(m, w, i, j, A, &v);
         /* (ups-phi_3) inertia force of link 3 from its turning about its reference point */
-        const real ups_phi_3_t = ups_omega_1_in_axes2_y*ups_omega_1_in_axes2_y;
-        const real ups_phi_3_t_2 = ups_qd_2*ups_qd_2;
+        const real ups_phi_3_t = v.ups_omega_1_in_axes2_y*v.ups_omega_1_in_axes2_y;
+        const real ups_phi_3_t_2 = v.ups_qd_2*v.ups_qd_2;
         const real ups_h_3_in_spec2_x = m->ups_h_3_in_spec2_x[i];
         const real ups_h_3_in_spec2_y = m->ups_h_3_in_spec2_y[i];
         const real ups_h_3_in_spec2_z = m->ups_h_3_in_spec2_z[i];
-        const real ups_phi_3_in_axes2_x = ups_alpha_1_in_axes2_y*ups_h_3_in_spec2_y +
+        const real ups_phi_3_in_axes2_x = v.ups_alpha_1_in_axes2_y*ups_h_3_in_spec2_y +
             ups_h_3_in_spec2_x*(-ups_phi_3_t - ups_phi_3_t_2) -
-            ups_B_2_in_axes2_xy*ups_h_3_in_spec2_z;
+            v.ups_B_2_in_axes2_xy*ups_h_3_in_spec2_z;
         /* (ups-mu_2) inertia moment of the links that turn with link 2, about their reference points */
-        const real ups_mu_2_t = ups_omega_1_in_axes2_x*ups_omega_1_in_axes2_x;
         const real ups_J_group_2_in_axes2_xy = m->ups_J_group_2_in_axes2_xy[i];
         const real ups_J_group_2_in_axes2_xz = m->ups_J_group_2_in_axes2_xz[i];
         const real ups_J_group_2_in_axes2_yz = m->ups_J_group_2_in_axes2_yz[i];
@@ -2207,54 +1894,54 @@ INLINE void required_legs_ups(const prepared *m, size_t w, size_t leg, size_t le
         const real ups_Sigma_2_in_axes2_zz = m->ups_Sigma_2_in_axes2_zz[i];
         const real ups_h_2_in_spec2_y = m->ups_h_2_in_spec2_y[i];
         const real ups_h_2_in_spec2_z = m->ups_h_2_in_spec2_z[i];
-        const real ups_mu_2_in_axes2_x = ups_B_2_in_axes2_yx*ups_J_group_2_in_axes2_xz +
-            ups_B_2_in_axes2_zy*ups_Sigma_2_in_axes2_yy + ups_J_group_2_in_axes2_yz*(ups_phi_3_t -
-            ups_phi_3_t_2) + ups_Sigma_2_in_axes2_zz*ups_alpha_1_in_axes2_x +
-            ups_g_in_axes2_y*ups_h_2_in_spec2_y + ups_g_in_axes2_z*ups_h_2_in_spec2_z -
-            ups_B_2_in_axes2_zx*ups_J_group_2_in_axes2_xy -
-            ups_acc_3_in_axes2_y*ups_h_3_in_spec2_y - ups_acc_3_in_axes2_z*ups_h_3_in_spec2_z;
+        const real ups_mu_2_in_axes2_x = v.ups_B_2_in_axes2_yx*ups_J_group_2_in_axes2_xz +
+            v.ups_B_2_in_axes2_zy*ups_Sigma_2_in_axes2_yy + ups_J_group_2_in_axes2_yz*(ups_phi_3_t
+            - ups_phi_3_t_2) + ups_Sigma_2_in_axes2_zz*v.ups_alpha_1_in_axes2_x +
+            v.ups_g_in_axes2_y*ups_h_2_in_spec2_y + v.ups_g_in_axes2_z*ups_h_2_in_spec2_z -
+            v.ups_B_2_in_axes2_zx*ups_J_group_2_in_axes2_xy -
+            v.ups_acc_3_in_axes2_y*ups_h_3_in_spec2_y - v.ups_acc_3_in_axes2_z*ups_h_3_in_spec2_z;
         const real ups_Sigma_2_in_axes2_xx = m->ups_Sigma_2_in_axes2_xx[i];
         const real ups_h_2_in_spec2_x = m->ups_h_2_in_spec2_x[i];
-        const real ups_mu_2_in_axes2_y = ups_B_2_in_axes2_zy*ups_J_group_2_in_axes2_xy +
-            ups_Sigma_2_in_axes2_zz*ups_alpha_1_in_axes2_y +
-            ups_acc_3_in_axes2_x*ups_h_3_in_spec2_y + ups_g_in_axes2_z*ups_h_2_in_spec2_x -
-            ups_B_2_in_axes2_xy*ups_J_group_2_in_axes2_yz -
-            ups_B_2_in_axes2_zx*ups_Sigma_2_in_axes2_xx - ups_J_group_2_in_axes2_xz*(ups_mu_2_t -
-            ups_phi_3_t_2) - ups_acc_3_in_axes2_z*ups_h_3_in_spec2_x -
-            ups_g_in_axes2_x*ups_h_2_in_spec2_y;
-        const real ups_mu_2_in_axes2_z = ups_B_2_in_axes2_yx*ups_Sigma_2_in_axes2_xx +
-            ups_J_group_2_in_axes2_xy*(ups_mu_2_t - ups_phi_3_t) +
-            ups_J_group_2_in_axes2_xz*ups_alpha_1_in_axes2_x +
-            ups_J_group_2_in_axes2_yz*ups_alpha_1_in_axes2_y +
-            ups_acc_3_in_axes2_x*ups_h_3_in_spec2_z + ups_acc_3_in_axes2_y*ups_h_3_in_spec2_x -
-            ups_B_2_in_axes2_xy*ups_Sigma_2_in_axes2_yy - ups_g_in_axes2_x*ups_h_2_in_spec2_z -
-            ups_g_in_axes2_y*ups_h_2_in_spec2_x;
+        const real ups_mu_2_in_axes2_y = v.ups_B_2_in_axes2_zy*ups_J_group_2_in_axes2_xy +
+            ups_Sigma_2_in_axes2_zz*v.ups_alpha_1_in_axes2_y +
+            v.ups_acc_3_in_axes2_x*ups_h_3_in_spec2_y + v.ups_g_in_axes2_z*ups_h_2_in_spec2_x -
+            v.ups_B_2_in_axes2_xy*ups_J_group_2_in_axes2_yz -
+            v.ups_B_2_in_axes2_zx*ups_Sigma_2_in_axes2_xx -
+            ups_J_group_2_in_axes2_xz*(v.ups_mu_2_t - ups_phi_3_t_2) -
+            v.ups_acc_3_in_axes2_z*ups_h_3_in_spec2_x - v.ups_g_in_axes2_x*ups_h_2_in_spec2_y;
+        const real ups_mu_2_in_axes2_z = v.ups_B_2_in_axes2_yx*ups_Sigma_2_in_axes2_xx +
+            ups_J_group_2_in_axes2_xy*(v.ups_mu_2_t - ups_phi_3_t) +
+            ups_J_group_2_in_axes2_xz*v.ups_alpha_1_in_axes2_x +
+            ups_J_group_2_in_axes2_yz*v.ups_alpha_1_in_axes2_y +
+            v.ups_acc_3_in_axes2_x*ups_h_3_in_spec2_z + v.ups_acc_3_in_axes2_y*ups_h_3_in_spec2_x
+            - v.ups_B_2_in_axes2_xy*ups_Sigma_2_in_axes2_yy -
+            v.ups_g_in_axes2_x*ups_h_2_in_spec2_z - v.ups_g_in_axes2_y*ups_h_2_in_spec2_x;
         /* (ups-c) leg force on the platform without actuation and without the mass at the connection
            point */
-        const real ups_c_in_axes2_y = ups_alpha_1_in_axes2_x*ups_h_3_in_spec2_y -
-            inv_ups_root_2*ups_mu_2_in_axes2_z - ups_B_2_in_axes2_yx*ups_h_3_in_spec2_x -
-            ups_h_3_in_spec2_z*(ups_mu_2_t + ups_phi_3_t_2);
-        const real ups_c_in_axes2_z = ups_B_2_in_axes2_zy*ups_h_3_in_spec2_z +
-            ups_h_3_in_spec2_y*(ups_mu_2_t + ups_phi_3_t) -
-            inv_ups_root_1*(ups_c_2*ups_mu_2_in_axes2_y + ups_mu_2_in_axes2_x*ups_s_2) -
-            ups_B_2_in_axes2_zx*ups_h_3_in_spec2_x;
-        const real ups_c_x = axis_y_ups_axes2_x*ups_c_in_axes2_y +
-            axis_z_ups_axes2_x*ups_c_in_axes2_z - axis_x_ups_axes2_x*ups_phi_3_in_axes2_x;
-        const real ups_c_y = axis_y_ups_axes2_y*ups_c_in_axes2_y +
-            axis_z_ups_axes2_y*ups_c_in_axes2_z - axis_x_ups_axes2_y*ups_phi_3_in_axes2_x;
-        const real ups_c_z = axis_y_ups_axes2_z*ups_c_in_axes2_y +
-            axis_z_ups_axes2_z*ups_c_in_axes2_z - axis_x_ups_axes2_z*ups_phi_3_in_axes2_x;
+        const real ups_c_in_axes2_y = v.ups_alpha_1_in_axes2_x*ups_h_3_in_spec2_y -
+            v.inv_ups_q_3*ups_mu_2_in_axes2_z - v.ups_B_2_in_axes2_yx*ups_h_3_in_spec2_x -
+            ups_h_3_in_spec2_z*(v.ups_mu_2_t + ups_phi_3_t_2);
+        const real ups_c_in_axes2_z = v.inv_ups_root_1*(v.ups_c_2*ups_mu_2_in_axes2_y -
+            v.ups_e_1_in_axes2_x*ups_mu_2_in_axes2_x) + v.ups_B_2_in_axes2_zy*ups_h_3_in_spec2_z +
+            ups_h_3_in_spec2_y*(v.ups_mu_2_t + ups_phi_3_t) -
+            v.ups_B_2_in_axes2_zx*ups_h_3_in_spec2_x;
+        const real ups_c_x = v.axis_y_ups_axes2_x*ups_c_in_axes2_y +
+            v.axis_z_ups_axes2_x*ups_c_in_axes2_z - v.axis_x_ups_axes2_x*ups_phi_3_in_axes2_x;
+        const real ups_c_y = v.axis_y_ups_axes2_y*ups_c_in_axes2_y +
+            v.axis_z_ups_axes2_y*ups_c_in_axes2_z - v.axis_x_ups_axes2_y*ups_phi_3_in_axes2_x;
+        const real ups_c_z = v.axis_y_ups_axes2_z*ups_c_in_axes2_y +
+            v.axis_z_ups_axes2_z*ups_c_in_axes2_z - v.axis_x_ups_axes2_z*ups_phi_3_in_axes2_x;
         /* (R_t) force that actuators and external wrench must give */
         gather(&terms[0*count + k], add, ups_c_x);  /* R_t_x_of_legs */
         gather(&terms[1*count + k], add, ups_c_y);  /* R_t_y_of_legs */
         gather(&terms[2*count + k], add, ups_c_z);  /* R_t_z_of_legs */
         /* (ups-w_3) reciprocal vector 3 */
-        o[0*count + k] = axis_x_ups_axes2_x;
-        o[1*count + k] = axis_x_ups_axes2_y;
-        o[2*count + k] = axis_x_ups_axes2_z;
-        o[3*count + k] = UNLESS(magnitude(ups_rho2_1) > LEAST_1) + UNLESS(magnitude(ups_rho2_2) >
-            LEAST_1) + UNLESS(magnitude(ups_root_1) > LEAST_2) + UNLESS(magnitude(ups_root_2) >
-            LEAST_2);
+        o[0*count + k] = v.axis_x_ups_axes2_x;
+        o[1*count + k] = v.axis_x_ups_axes2_y;
+        o[2*count + k] = v.axis_x_ups_axes2_z;
+        o[3*count + k] = UNLESS(magnitude(v.ups_root_1_t) > LEAST_1) +
+            UNLESS(magnitude(v.ups_q_3_t) > LEAST_1) + UNLESS(magnitude(v.ups_root_1) > LEAST_2) +
+            UNLESS(magnitude(v.ups_q_3) > LEAST_2);
     }
 }
 
@@ -2262,7 +1949,7 @@ INLINE void required_place_ups(size_t w, size_t count, const real *o, size_t leg
     real *H, verdict *t)
 {
     for (size_t k = 0; k < w; ++k) {
-        H[(0*NU + leg)*w + k] = o[0*count + first + k];
+        H[leg*w + k] = o[0*count + first + k];
         H[(NU + leg)*w + k] = o[1*count + first + k];
         H[(2*NU + leg)*w + k] = o[2*count + first + k];
         t->singular[k] += o[3*count + first + k];
@@ -2274,13 +1961,13 @@ INLINE void required_after(size_t w, const real *s, const real *sums, real *requ
     for (size_t k = 0; k < w; ++k) {
         /* (R_t) force that actuators and external wrench must give */
         const real R_t_x_of_legs = sums[0*w + k];
-        const real f_p_x = s[9*w + k];
+        const real f_p_x = s[0*w + k];
         const real R_t_x = f_p_x - R_t_x_of_legs;
         const real R_t_y_of_legs = sums[1*w + k];
-        const real f_p_y = s[10*w + k];
+        const real f_p_y = s[1*w + k];
         const real R_t_y = f_p_y - R_t_y_of_legs;
         const real R_t_z_of_legs = sums[2*w + k];
-        const real f_p_z = s[11*w + k];
+        const real f_p_z = s[2*w + k];
         const real R_t_z = f_p_z - R_t_z_of_legs;
         /* (R_t) force that actuators and external wrench must give */
         required[0*w + k] = R_t_x;
@@ -2292,12 +1979,10 @@ INLINE void required_after(size_t w, const real *s, const real *sums, real *requ
 INLINE void required_run(const prepared *m, const real *X, const real *V, const real *A, real
     *required, real *H, verdict *t)
 {
-    real s[12] = {0};
-    real sums[3] = {0};
-    real terms_ups[3*LEGS(LEGS_OF_ups)] = {0};
-    real o_ups[4*LEGS(LEGS_OF_ups)] = {0};
-    required_before(m, 1, X, V, A, s);
-    required_legs_ups(m, 1, 0, 1, s, 0, LEGS(LEGS_OF_ups), 0, terms_ups, o_ups);
+    real s[3] = {0}, sums[3] = {0};
+    real terms_ups[3*LEGS(LEGS_OF_ups)] = {0}, o_ups[4*LEGS(LEGS_OF_ups)] = {0};
+    required_before(m, 1, A, s);
+    required_legs_ups(m, 1, 0, 1, 0, LEGS(LEGS_OF_ups), 0, X, V, A, terms_ups, o_ups);
     for (size_t leg = 0; leg < LEGS_OF_ups; ++leg) {
         required_place_ups(1, LEGS(LEGS_OF_ups), o_ups, leg, leg, H, t);
     }
@@ -2310,98 +1995,44 @@ INLINE void required_run(const prepared *m, const real *X, const real *V, const 
 INLINE void required_run_lanes(const prepared *m, const real *X, const real *V, const real *A,
     real *required, real *H, verdict *t)
 {
-    real s[12*LANES];
-    real sums[3*LANES];
+    real s[3*LANES], sums[3*LANES];
     real o_ups[4*LANES];
-    required_before(m, LANES, X, V, A, s);
+    required_before(m, LANES, A, s);
     clear(sums, 3*LANES);
     for (size_t leg = 0; leg < LEGS_OF_ups; ++leg) {
-        required_legs_ups(m, LANES, leg, 0, s, 1, LANES, 1, sums, o_ups);
+        required_legs_ups(m, LANES, leg, 0, 1, LANES, 1, X, V, A, sums, o_ups);
         required_place_ups(LANES, LANES, o_ups, leg, 0, H, t);
     }
     required_after(LANES, s, sums, required);
 }
 
 /* ---- inverse_kinematics ---- */
-INLINE void inverse_kinematics_before(size_t w, const real *X, real *s)
+INLINE void inverse_kinematics_before()
 {
-    for (size_t k = 0; k < w; ++k) {
-        /* X: named entries */
-        const real X_0 = X[0*w + k];
-        const real t_x = X_0;
-        const real X_1 = X[1*w + k];
-        const real t_y = X_1;
-        const real X_2 = X[2*w + k];
-        const real t_z = X_2;
-        s[0*w + k] = t_x;
-        s[1*w + k] = t_y;
-        s[2*w + k] = t_z;
-    }
 }
 
 INLINE void inverse_kinematics_legs_ups(const prepared *m, size_t w, size_t leg, size_t legs,
-    const real *s, size_t states, size_t count, real *o)
+    size_t states, size_t count, const real *X, real *o)
 {
     for (size_t k = 0; k < count; ++k) {
         const size_t i = leg + legs*k;
         const size_t j = states*k;
-        /* (ups-S) from the base point to the connection point */
-        const real t_x = s[0*w + j];
-        const real ups_base_point_x = m->ups_base_point_x[i];
-        const real ups_platform_point_x = m->ups_platform_point_x[i];
-        const real ups_S_x = t_x + ups_platform_point_x - ups_base_point_x;
-        const real t_y = s[1*w + j];
-        const real ups_base_point_y = m->ups_base_point_y[i];
-        const real ups_platform_point_y = m->ups_platform_point_y[i];
-        const real ups_S_y = t_y + ups_platform_point_y - ups_base_point_y;
-        const real t_z = s[2*w + j];
-        const real ups_base_point_z = m->ups_base_point_z[i];
-        const real ups_platform_point_z = m->ups_platform_point_z[i];
-        const real ups_S_z = t_z + ups_platform_point_z - ups_base_point_z;
-        /* (ups-px_1) component along the reference direction */
-        const real ups_base_frame_xx = m->ups_base_frame_xx[i];
-        const real ups_base_frame_yx = m->ups_base_frame_yx[i];
-        const real ups_base_frame_zx = m->ups_base_frame_zx[i];
-        const real ups_px_1 = ups_S_x*ups_base_frame_xx + ups_S_y*ups_base_frame_yx +
-            ups_S_z*ups_base_frame_zx;
-        /* (ups-py_1) component across the reference direction */
-        const real ups_base_frame_xy = m->ups_base_frame_xy[i];
-        const real ups_base_frame_yy = m->ups_base_frame_yy[i];
-        const real ups_base_frame_zy = m->ups_base_frame_zy[i];
-        const real ups_py_1 = ups_S_x*ups_base_frame_xy + ups_S_y*ups_base_frame_yy +
-            ups_S_z*ups_base_frame_zy;
-        /* (ups-rho2_1) squared amplitude */
-        const real ups_rho2_1 = ups_px_1*ups_px_1 + ups_py_1*ups_py_1;
-        /* (ups-root_1) amplitude, with the sign of the branch */
-        const real ups_branch_1 = m->ups_branch_1[i];
-        const real ups_root_1 = ups_branch_1*root(ups_rho2_1);
+        values_ups v;
+        stage_ups_X(m, w, i, j, X, &v);
         /* (ups-q_1) displacement of joint 1 */
-        const real inv_ups_root_1 = 1/ups_root_1;
-        const real ups_q_1 = angle(inv_ups_root_1*ups_py_1, inv_ups_root_1*ups_px_1);
-        /* (ups-xi_1) the vector from joint 1 to the connection point, resolved along link 1 */
-        const real ups_base_frame_xz = m->ups_base_frame_xz[i];
-        const real ups_base_frame_yz = m->ups_base_frame_yz[i];
-        const real ups_base_frame_zz = m->ups_base_frame_zz[i];
-        const real ups_xi_1_in_axes1_z = ups_S_x*ups_base_frame_xz + ups_S_y*ups_base_frame_yz +
-            ups_S_z*ups_base_frame_zz;
-        /* (ups-rho2_2) squared amplitude */
-        const real ups_rho2_2 = ups_rho2_1 + ups_xi_1_in_axes1_z*ups_xi_1_in_axes1_z;
-        /* (ups-root_2) amplitude, with the sign of the branch */
-        const real ups_branch_2 = m->ups_branch_2[i];
-        const real ups_root_2 = ups_branch_2*root(ups_rho2_2);
+        const real ups_q_1 = angle(v.inv_ups_root_1*v.ups_S_in_turn1_y,
+            v.inv_ups_root_1*v.ups_S_in_turn1_x);
         /* (ups-q_2) displacement of joint 2 */
-        const real inv_ups_root_2 = 1/ups_root_2;
-        const real ups_q_2 = angle(-inv_ups_root_2*ups_xi_1_in_axes1_z,
-            inv_ups_root_2*ups_root_1);
+        const real ups_q_2 = angle(-v.inv_ups_q_3*v.ups_S_in_turn1_z, v.inv_ups_q_3*v.ups_root_1);
         /* (ups-q_1) displacement of joint 1 */
         o[0*count + k] = ups_q_1;
         /* (ups-q_2) displacement of joint 2 */
         o[1*count + k] = ups_q_2;
         /* (ups-q_3) displacement of joint 3 */
-        o[2*count + k] = ups_root_2;
-        o[4*count + k] = ups_q_1 + (ups_q_2 + ups_root_2);
-        o[3*count + k] = UNLESS(magnitude(ups_rho2_1) > LEAST_1) + UNLESS(magnitude(ups_rho2_2) >
-            LEAST_1);
+        o[2*count + k] = v.ups_q_3;
+        o[4*count + k] = ups_q_1 + (ups_q_2 + v.ups_q_3);
+        o[3*count + k] = UNLESS(magnitude(v.ups_root_1_t) > LEAST_1) +
+            UNLESS(magnitude(v.ups_q_3_t) > LEAST_1);
     }
 }
 
@@ -2419,10 +2050,9 @@ INLINE void inverse_kinematics_place_ups(size_t w, size_t count, const real *o, 
 
 INLINE void inverse_kinematics_run(const prepared *m, const real *X, real *q, verdict *t)
 {
-    real s[3] = {0};
     real o_ups[5*LEGS(LEGS_OF_ups)] = {0};
-    inverse_kinematics_before(1, X, s);
-    inverse_kinematics_legs_ups(m, 1, 0, 1, s, 0, LEGS(LEGS_OF_ups), o_ups);
+    inverse_kinematics_before();
+    inverse_kinematics_legs_ups(m, 1, 0, 1, 0, LEGS(LEGS_OF_ups), X, o_ups);
     for (size_t leg = 0; leg < LEGS_OF_ups; ++leg) {
         inverse_kinematics_place_ups(1, LEGS(LEGS_OF_ups), o_ups, leg, leg, q, t);
     }
@@ -2430,127 +2060,48 @@ INLINE void inverse_kinematics_run(const prepared *m, const real *X, real *q, ve
 
 INLINE void inverse_kinematics_run_lanes(const prepared *m, const real *X, real *q, verdict *t)
 {
-    real s[3*LANES];
     real o_ups[5*LANES];
-    inverse_kinematics_before(LANES, X, s);
+    inverse_kinematics_before();
     for (size_t leg = 0; leg < LEGS_OF_ups; ++leg) {
-        inverse_kinematics_legs_ups(m, LANES, leg, 0, s, 1, LANES, o_ups);
+        inverse_kinematics_legs_ups(m, LANES, leg, 0, 1, LANES, X, o_ups);
         inverse_kinematics_place_ups(LANES, LANES, o_ups, leg, 0, q, t);
     }
 }
 
 /* ---- joint_rates ---- */
-INLINE void joint_rates_before(size_t w, const real *X, const real *V, real *s)
+INLINE void joint_rates_before()
 {
-    for (size_t k = 0; k < w; ++k) {
-        /* X: named entries */
-        const real X_0 = X[0*w + k];
-        const real t_x = X_0;
-        const real X_1 = X[1*w + k];
-        const real t_y = X_1;
-        const real X_2 = X[2*w + k];
-        const real t_z = X_2;
-        /* V: named entries */
-        const real V_0 = V[0*w + k];
-        const real t_dot_x = V_0;
-        const real V_1 = V[1*w + k];
-        const real t_dot_y = V_1;
-        const real V_2 = V[2*w + k];
-        const real t_dot_z = V_2;
-        s[0*w + k] = t_x;
-        s[1*w + k] = t_y;
-        s[2*w + k] = t_z;
-        s[3*w + k] = t_dot_x;
-        s[4*w + k] = t_dot_y;
-        s[5*w + k] = t_dot_z;
-    }
 }
 
-INLINE void joint_rates_legs_ups(const prepared *m, size_t w, size_t leg, size_t legs, const real
-    *s, size_t states, size_t count, real *o)
+INLINE void joint_rates_legs_ups(const prepared *m, size_t w, size_t leg, size_t legs, size_t
+    states, size_t count, const real *X, const real *V, real *o)
 {
     for (size_t k = 0; k < count; ++k) {
         const size_t i = leg + legs*k;
         const size_t j = states*k;
-        /* (ups-S) from the base point to the connection point */
-        const real t_x = s[0*w + j];
-        const real ups_base_point_x = m->ups_base_point_x[i];
-        const real ups_platform_point_x = m->ups_platform_point_x[i];
-        const real ups_S_x = t_x + ups_platform_point_x - ups_base_point_x;
-        const real t_y = s[1*w + j];
-        const real ups_base_point_y = m->ups_base_point_y[i];
-        const real ups_platform_point_y = m->ups_platform_point_y[i];
-        const real ups_S_y = t_y + ups_platform_point_y - ups_base_point_y;
-        const real t_z = s[2*w + j];
-        const real ups_base_point_z = m->ups_base_point_z[i];
-        const real ups_platform_point_z = m->ups_platform_point_z[i];
-        const real ups_S_z = t_z + ups_platform_point_z - ups_base_point_z;
-        /* (ups-px_1) component along the reference direction */
-        const real ups_base_frame_xx = m->ups_base_frame_xx[i];
-        const real ups_base_frame_yx = m->ups_base_frame_yx[i];
-        const real ups_base_frame_zx = m->ups_base_frame_zx[i];
-        const real ups_px_1 = ups_S_x*ups_base_frame_xx + ups_S_y*ups_base_frame_yx +
-            ups_S_z*ups_base_frame_zx;
-        /* (ups-py_1) component across the reference direction */
-        const real ups_base_frame_xy = m->ups_base_frame_xy[i];
-        const real ups_base_frame_yy = m->ups_base_frame_yy[i];
-        const real ups_base_frame_zy = m->ups_base_frame_zy[i];
-        const real ups_py_1 = ups_S_x*ups_base_frame_xy + ups_S_y*ups_base_frame_yy +
-            ups_S_z*ups_base_frame_zy;
-        /* (ups-rho2_1) squared amplitude */
-        const real ups_rho2_1 = ups_px_1*ups_px_1 + ups_py_1*ups_py_1;
-        /* (ups-root_1) amplitude, with the sign of the branch */
-        const real ups_branch_1 = m->ups_branch_1[i];
-        const real ups_root_1 = ups_branch_1*root(ups_rho2_1);
-        /* (ups-c_1) cosine of the angle of joint 1 from its reference direction */
-        const real inv_ups_root_1 = 1/ups_root_1;
-        const real ups_c_1_t = inv_ups_root_1*ups_py_1;
-        /* (ups-s_1) sine of the angle of joint 1 from its reference direction */
-        const real ups_s_1 = inv_ups_root_1*ups_px_1;
-        /* (ups-xi_1) the vector from joint 1 to the connection point, resolved along link 1 */
-        const real ups_base_frame_xz = m->ups_base_frame_xz[i];
-        const real ups_base_frame_yz = m->ups_base_frame_yz[i];
-        const real ups_base_frame_zz = m->ups_base_frame_zz[i];
-        const real ups_xi_1_in_axes1_z = ups_S_x*ups_base_frame_xz + ups_S_y*ups_base_frame_yz +
-            ups_S_z*ups_base_frame_zz;
-        /* (ups-rho2_2) squared amplitude */
-        const real ups_rho2_2 = ups_rho2_1 + ups_xi_1_in_axes1_z*ups_xi_1_in_axes1_z;
-        /* (ups-root_2) amplitude, with the sign of the branch */
-        const real ups_branch_2 = m->ups_branch_2[i];
-        const real ups_root_2 = ups_branch_2*root(ups_rho2_2);
-        /* (ups-S_dot) velocity of the connection point */
-        const real inv_ups_root_2 = 1/ups_root_2;
-        const real axis_x_ups_axes2_x = inv_ups_root_2*ups_S_x;
-        const real axis_x_ups_axes2_y = inv_ups_root_2*ups_S_y;
-        const real axis_x_ups_axes2_z = inv_ups_root_2*ups_S_z;
-        const real t_dot_x = s[3*w + j];
-        const real t_dot_y = s[4*w + j];
-        const real t_dot_z = s[5*w + j];
-        const real ups_S_dot_in_axes2_x = axis_x_ups_axes2_x*t_dot_x + axis_x_ups_axes2_y*t_dot_y
-            + axis_x_ups_axes2_z*t_dot_z;
-        /* (ups-qd_1) rate of joint 1 */
-        const real axis_z_ups_axes2_x = ups_base_frame_xy*ups_s_1 - ups_base_frame_xx*ups_c_1_t;
-        const real axis_z_ups_axes2_y = ups_base_frame_yy*ups_s_1 - ups_base_frame_yx*ups_c_1_t;
-        const real axis_z_ups_axes2_z = ups_base_frame_zy*ups_s_1 - ups_base_frame_zx*ups_c_1_t;
-        const real ups_qd_1 = inv_ups_root_1*(axis_z_ups_axes2_x*t_dot_x +
-            axis_z_ups_axes2_y*t_dot_y + axis_z_ups_axes2_z*t_dot_z);
+        values_ups v;
+        stage_ups_X(m, w, i, j, X, &v);
+        stage_ups_V_X(w, j, V, &v);
         /* (ups-qd_2) rate of joint 2 */
-        const real ups_qd_2 = inv_ups_root_2*(t_dot_x*(axis_x_ups_axes2_z*axis_z_ups_axes2_y -
-            axis_x_ups_axes2_y*axis_z_ups_axes2_z) +
-            t_dot_y*(axis_x_ups_axes2_x*axis_z_ups_axes2_z -
-            axis_x_ups_axes2_z*axis_z_ups_axes2_x) +
-            t_dot_z*(axis_x_ups_axes2_y*axis_z_ups_axes2_x -
-            axis_x_ups_axes2_x*axis_z_ups_axes2_y));
+        const real t_dot_x = V[0*w + j];
+        const real t_dot_y = V[1*w + j];
+        const real t_dot_z = V[2*w + j];
+        const real ups_qd_2 = v.inv_ups_q_3*(t_dot_x*(v.axis_x_ups_axes2_z*v.axis_z_ups_axes2_y -
+            v.axis_x_ups_axes2_y*v.axis_z_ups_axes2_z) +
+            t_dot_y*(v.axis_x_ups_axes2_x*v.axis_z_ups_axes2_z -
+            v.axis_x_ups_axes2_z*v.axis_z_ups_axes2_x) +
+            t_dot_z*(v.axis_x_ups_axes2_y*v.axis_z_ups_axes2_x -
+            v.axis_x_ups_axes2_x*v.axis_z_ups_axes2_y));
         /* (ups-qd_1) rate of joint 1 */
-        o[0*count + k] = ups_qd_1;
+        o[0*count + k] = v.ups_qd_1;
         /* (ups-qd_2) rate of joint 2 */
         o[1*count + k] = ups_qd_2;
         /* (ups-qd_3) rate of joint 3 */
-        o[2*count + k] = ups_S_dot_in_axes2_x;
-        o[4*count + k] = ups_qd_1 + (ups_qd_2 + ups_S_dot_in_axes2_x);
-        o[3*count + k] = UNLESS(magnitude(ups_rho2_1) > LEAST_1) + UNLESS(magnitude(ups_rho2_2) >
-            LEAST_1) + UNLESS(magnitude(ups_root_1) > LEAST_2) + UNLESS(magnitude(ups_root_2) >
-            LEAST_2);
+        o[2*count + k] = v.ups_S_dot_in_axes2_x;
+        o[4*count + k] = v.ups_qd_1 + (ups_qd_2 + v.ups_S_dot_in_axes2_x);
+        o[3*count + k] = UNLESS(magnitude(v.ups_root_1_t) > LEAST_1) +
+            UNLESS(magnitude(v.ups_q_3_t) > LEAST_1) + UNLESS(magnitude(v.ups_root_1) > LEAST_2) +
+            UNLESS(magnitude(v.ups_q_3) > LEAST_2);
     }
 }
 
@@ -2568,10 +2119,9 @@ INLINE void joint_rates_place_ups(size_t w, size_t count, const real *o, size_t 
 
 INLINE void joint_rates_run(const prepared *m, const real *X, const real *V, real *qd, verdict *t)
 {
-    real s[6] = {0};
     real o_ups[5*LEGS(LEGS_OF_ups)] = {0};
-    joint_rates_before(1, X, V, s);
-    joint_rates_legs_ups(m, 1, 0, 1, s, 0, LEGS(LEGS_OF_ups), o_ups);
+    joint_rates_before();
+    joint_rates_legs_ups(m, 1, 0, 1, 0, LEGS(LEGS_OF_ups), X, V, o_ups);
     for (size_t leg = 0; leg < LEGS_OF_ups; ++leg) {
         joint_rates_place_ups(1, LEGS(LEGS_OF_ups), o_ups, leg, leg, qd, t);
     }
@@ -2580,152 +2130,49 @@ INLINE void joint_rates_run(const prepared *m, const real *X, const real *V, rea
 INLINE void joint_rates_run_lanes(const prepared *m, const real *X, const real *V, real *qd,
     verdict *t)
 {
-    real s[6*LANES];
     real o_ups[5*LANES];
-    joint_rates_before(LANES, X, V, s);
+    joint_rates_before();
     for (size_t leg = 0; leg < LEGS_OF_ups; ++leg) {
-        joint_rates_legs_ups(m, LANES, leg, 0, s, 1, LANES, o_ups);
+        joint_rates_legs_ups(m, LANES, leg, 0, 1, LANES, X, V, o_ups);
         joint_rates_place_ups(LANES, LANES, o_ups, leg, 0, qd, t);
     }
 }
 
 /* ---- joint_accelerations ---- */
-INLINE void joint_accelerations_before(size_t w, const real *X, const real *V, const real *A, real
-    *s)
+INLINE void joint_accelerations_before()
 {
-    for (size_t k = 0; k < w; ++k) {
-        /* X: named entries */
-        const real X_0 = X[0*w + k];
-        const real t_x = X_0;
-        const real X_1 = X[1*w + k];
-        const real t_y = X_1;
-        const real X_2 = X[2*w + k];
-        const real t_z = X_2;
-        /* V: named entries */
-        const real V_0 = V[0*w + k];
-        const real t_dot_x = V_0;
-        const real V_1 = V[1*w + k];
-        const real t_dot_y = V_1;
-        const real V_2 = V[2*w + k];
-        const real t_dot_z = V_2;
-        /* A: named entries */
-        const real A_0 = A[0*w + k];
-        const real t_ddot_x = A_0;
-        const real A_1 = A[1*w + k];
-        const real t_ddot_y = A_1;
-        const real A_2 = A[2*w + k];
-        const real t_ddot_z = A_2;
-        s[0*w + k] = t_x;
-        s[1*w + k] = t_y;
-        s[2*w + k] = t_z;
-        s[3*w + k] = t_dot_x;
-        s[4*w + k] = t_dot_y;
-        s[5*w + k] = t_dot_z;
-        s[6*w + k] = t_ddot_x;
-        s[7*w + k] = t_ddot_y;
-        s[8*w + k] = t_ddot_z;
-    }
 }
 
 INLINE void joint_accelerations_legs_ups(const prepared *m, size_t w, size_t leg, size_t legs,
-    const real *s, size_t states, size_t count, real *o)
+    size_t states, size_t count, const real *X, const real *V, const real *A, real *o)
 {
     for (size_t k = 0; k < count; ++k) {
         const size_t i = leg + legs*k;
         const size_t j = states*k;
-        /* (ups-S) from the base point to the connection point */
-        const real t_x = s[0*w + j];
-        const real ups_base_point_x = m->ups_base_point_x[i];
-        const real ups_platform_point_x = m->ups_platform_point_x[i];
-        const real ups_S_x = t_x + ups_platform_point_x - ups_base_point_x;
-        const real t_y = s[1*w + j];
-        const real ups_base_point_y = m->ups_base_point_y[i];
-        const real ups_platform_point_y = m->ups_platform_point_y[i];
-        const real ups_S_y = t_y + ups_platform_point_y - ups_base_point_y;
-        const real t_z = s[2*w + j];
-        const real ups_base_point_z = m->ups_base_point_z[i];
-        const real ups_platform_point_z = m->ups_platform_point_z[i];
-        const real ups_S_z = t_z + ups_platform_point_z - ups_base_point_z;
-        /* (ups-px_1) component along the reference direction */
-        const real ups_base_frame_xx = m->ups_base_frame_xx[i];
-        const real ups_base_frame_yx = m->ups_base_frame_yx[i];
-        const real ups_base_frame_zx = m->ups_base_frame_zx[i];
-        const real ups_px_1 = ups_S_x*ups_base_frame_xx + ups_S_y*ups_base_frame_yx +
-            ups_S_z*ups_base_frame_zx;
-        /* (ups-py_1) component across the reference direction */
-        const real ups_base_frame_xy = m->ups_base_frame_xy[i];
-        const real ups_base_frame_yy = m->ups_base_frame_yy[i];
-        const real ups_base_frame_zy = m->ups_base_frame_zy[i];
-        const real ups_py_1 = ups_S_x*ups_base_frame_xy + ups_S_y*ups_base_frame_yy +
-            ups_S_z*ups_base_frame_zy;
-        /* (ups-rho2_1) squared amplitude */
-        const real ups_rho2_1 = ups_px_1*ups_px_1 + ups_py_1*ups_py_1;
-        /* (ups-root_1) amplitude, with the sign of the branch */
-        const real ups_branch_1 = m->ups_branch_1[i];
-        const real ups_root_1 = ups_branch_1*root(ups_rho2_1);
-        /* (ups-c_1) cosine of the angle of joint 1 from its reference direction */
-        const real inv_ups_root_1 = 1/ups_root_1;
-        const real ups_c_1_t = inv_ups_root_1*ups_py_1;
-        /* (ups-s_1) sine of the angle of joint 1 from its reference direction */
-        const real ups_s_1 = inv_ups_root_1*ups_px_1;
-        /* (ups-xi_1) the vector from joint 1 to the connection point, resolved along link 1 */
-        const real ups_base_frame_xz = m->ups_base_frame_xz[i];
-        const real ups_base_frame_yz = m->ups_base_frame_yz[i];
-        const real ups_base_frame_zz = m->ups_base_frame_zz[i];
-        const real ups_xi_1_in_axes1_z = ups_S_x*ups_base_frame_xz + ups_S_y*ups_base_frame_yz +
-            ups_S_z*ups_base_frame_zz;
-        /* (ups-rho2_2) squared amplitude */
-        const real ups_rho2_2 = ups_rho2_1 + ups_xi_1_in_axes1_z*ups_xi_1_in_axes1_z;
-        /* (ups-root_2) amplitude, with the sign of the branch */
-        const real ups_branch_2 = m->ups_branch_2[i];
-        const real ups_root_2 = ups_branch_2*root(ups_rho2_2);
-        /* (ups-S_dot) velocity of the connection point */
-        const real inv_ups_root_2 = 1/ups_root_2;
-        const real axis_x_ups_axes2_x = inv_ups_root_2*ups_S_x;
-        const real axis_x_ups_axes2_y = inv_ups_root_2*ups_S_y;
-        const real axis_x_ups_axes2_z = inv_ups_root_2*ups_S_z;
-        const real t_dot_x = s[3*w + j];
-        const real t_dot_y = s[4*w + j];
-        const real t_dot_z = s[5*w + j];
-        const real ups_S_dot_in_axes2_x = axis_x_ups_axes2_x*t_dot_x + axis_x_ups_axes2_y*t_dot_y
-            + axis_x_ups_axes2_z*t_dot_z;
-        /* (ups-qd_1) rate of joint 1 */
-        const real axis_z_ups_axes2_x = ups_base_frame_xy*ups_s_1 - ups_base_frame_xx*ups_c_1_t;
-        const real axis_z_ups_axes2_y = ups_base_frame_yy*ups_s_1 - ups_base_frame_yx*ups_c_1_t;
-        const real axis_z_ups_axes2_z = ups_base_frame_zy*ups_s_1 - ups_base_frame_zx*ups_c_1_t;
-        const real ups_qd_1 = inv_ups_root_1*(axis_z_ups_axes2_x*t_dot_x +
-            axis_z_ups_axes2_y*t_dot_y + axis_z_ups_axes2_z*t_dot_z);
-        /* (ups-qd_2) rate of joint 2 */
-        const real axis_y_ups_axes2_x = axis_x_ups_axes2_z*axis_z_ups_axes2_y -
-            axis_x_ups_axes2_y*axis_z_ups_axes2_z;
-        const real axis_y_ups_axes2_y = axis_x_ups_axes2_x*axis_z_ups_axes2_z -
-            axis_x_ups_axes2_z*axis_z_ups_axes2_x;
-        const real axis_y_ups_axes2_z = axis_x_ups_axes2_y*axis_z_ups_axes2_x -
-            axis_x_ups_axes2_x*axis_z_ups_axes2_y;
-        const real ups_qd_2 = inv_ups_root_2*(axis_y_ups_axes2_x*t_dot_x +
-            axis_y_ups_axes2_y*t_dot_y + axis_y_ups_axes2_z*t_dot_z);
+        values_ups v;
+        stage_ups_X(m, w, i, j, X, &v);
+        stage_ups_V_X(w, j, V, &v);
         /* (ups-omega_1) angular velocity of link 1 */
-        const real ups_omega_1_in_axes2_x = inv_ups_root_2*ups_qd_1*ups_xi_1_in_axes1_z;
-        const real ups_omega_1_in_axes2_y = -inv_ups_root_2*ups_qd_1*ups_root_1;
+        const real ups_omega_1_in_axes2_x = v.inv_ups_q_3*v.ups_S_in_turn1_z*v.ups_qd_1;
+        const real ups_omega_1_in_axes2_y = -v.inv_ups_q_3*v.ups_qd_1*v.ups_root_1;
         /* (ups-bias) acceleration of the connection point at zero joint accelerations */
-        const real ups_bias_t = 2*ups_S_dot_in_axes2_x;
-        const real ups_bias_in_axes2_z = 2*ups_omega_1_in_axes2_x*ups_qd_2*ups_root_2 -
-            ups_bias_t*ups_omega_1_in_axes2_y;
+        const real ups_bias_in_axes2_z = 2*ups_omega_1_in_axes2_x*v.ups_q_3*v.ups_qd_2 -
+            v.ups_bias_t*ups_omega_1_in_axes2_y;
         /* (ups-rel) acceleration of the connection point left to the joint accelerations */
-        const real t_ddot_x = s[6*w + j];
-        const real t_ddot_y = s[7*w + j];
-        const real t_ddot_z = s[8*w + j];
-        const real ups_rel_in_axes2_x = axis_x_ups_axes2_x*t_ddot_x + axis_x_ups_axes2_y*t_ddot_y
-            + axis_x_ups_axes2_z*t_ddot_z -
-            ups_root_2*(-ups_omega_1_in_axes2_y*ups_omega_1_in_axes2_y - ups_qd_2*ups_qd_2);
-        const real ups_rel_in_axes2_z = axis_z_ups_axes2_x*t_ddot_x + axis_z_ups_axes2_y*t_ddot_y
-            + axis_z_ups_axes2_z*t_ddot_z - ups_bias_in_axes2_z;
+        const real t_ddot_x = A[0*w + j];
+        const real t_ddot_y = A[1*w + j];
+        const real t_ddot_z = A[2*w + j];
+        const real ups_rel_in_axes2_x = v.axis_x_ups_axes2_x*t_ddot_x +
+            v.axis_x_ups_axes2_y*t_ddot_y + v.axis_x_ups_axes2_z*t_ddot_z -
+            v.ups_q_3*(-ups_omega_1_in_axes2_y*ups_omega_1_in_axes2_y - v.ups_qd_2*v.ups_qd_2);
+        const real ups_rel_in_axes2_z = v.axis_z_ups_axes2_x*t_ddot_x +
+            v.axis_z_ups_axes2_y*t_ddot_y + v.axis_z_ups_axes2_z*t_ddot_z - ups_bias_in_axes2_z;
         /* (ups-qdd_1) acceleration of joint 1 */
-        const real ups_qdd_1 = inv_ups_root_1*ups_rel_in_axes2_z;
+        const real ups_qdd_1 = v.inv_ups_root_1*ups_rel_in_axes2_z;
         /* (ups-qdd_2) acceleration of joint 2 */
-        const real ups_qdd_2 = inv_ups_root_2*(axis_y_ups_axes2_x*t_ddot_x +
-            axis_y_ups_axes2_y*t_ddot_y + axis_y_ups_axes2_z*t_ddot_z - ups_bias_t*ups_qd_2) -
-            ups_omega_1_in_axes2_x*ups_omega_1_in_axes2_y;
+        const real ups_qdd_2 = v.inv_ups_q_3*(v.axis_y_ups_axes2_x*t_ddot_x +
+            v.axis_y_ups_axes2_y*t_ddot_y + v.axis_y_ups_axes2_z*t_ddot_z -
+            v.ups_bias_t*v.ups_qd_2) - ups_omega_1_in_axes2_x*ups_omega_1_in_axes2_y;
         /* (ups-qdd_1) acceleration of joint 1 */
         o[0*count + k] = ups_qdd_1;
         /* (ups-qdd_2) acceleration of joint 2 */
@@ -2733,9 +2180,9 @@ INLINE void joint_accelerations_legs_ups(const prepared *m, size_t w, size_t leg
         /* (ups-qdd_3) acceleration of joint 3 */
         o[2*count + k] = ups_rel_in_axes2_x;
         o[4*count + k] = ups_qdd_1 + (ups_qdd_2 + ups_rel_in_axes2_x);
-        o[3*count + k] = UNLESS(magnitude(ups_rho2_1) > LEAST_1) + UNLESS(magnitude(ups_rho2_2) >
-            LEAST_1) + UNLESS(magnitude(ups_root_1) > LEAST_2) + UNLESS(magnitude(ups_root_2) >
-            LEAST_2);
+        o[3*count + k] = UNLESS(magnitude(v.ups_root_1_t) > LEAST_1) +
+            UNLESS(magnitude(v.ups_q_3_t) > LEAST_1) + UNLESS(magnitude(v.ups_root_1) > LEAST_2) +
+            UNLESS(magnitude(v.ups_q_3) > LEAST_2);
     }
 }
 
@@ -2754,10 +2201,9 @@ INLINE void joint_accelerations_place_ups(size_t w, size_t count, const real *o,
 INLINE void joint_accelerations_run(const prepared *m, const real *X, const real *V, const real
     *A, real *qdd, verdict *t)
 {
-    real s[9] = {0};
     real o_ups[5*LEGS(LEGS_OF_ups)] = {0};
-    joint_accelerations_before(1, X, V, A, s);
-    joint_accelerations_legs_ups(m, 1, 0, 1, s, 0, LEGS(LEGS_OF_ups), o_ups);
+    joint_accelerations_before();
+    joint_accelerations_legs_ups(m, 1, 0, 1, 0, LEGS(LEGS_OF_ups), X, V, A, o_ups);
     for (size_t leg = 0; leg < LEGS_OF_ups; ++leg) {
         joint_accelerations_place_ups(1, LEGS(LEGS_OF_ups), o_ups, leg, leg, qdd, t);
     }
@@ -2766,186 +2212,32 @@ INLINE void joint_accelerations_run(const prepared *m, const real *X, const real
 INLINE void joint_accelerations_run_lanes(const prepared *m, const real *X, const real *V, const
     real *A, real *qdd, verdict *t)
 {
-    real s[9*LANES];
     real o_ups[5*LANES];
-    joint_accelerations_before(LANES, X, V, A, s);
+    joint_accelerations_before();
     for (size_t leg = 0; leg < LEGS_OF_ups; ++leg) {
-        joint_accelerations_legs_ups(m, LANES, leg, 0, s, 1, LANES, o_ups);
+        joint_accelerations_legs_ups(m, LANES, leg, 0, 1, LANES, X, V, A, o_ups);
         joint_accelerations_place_ups(LANES, LANES, o_ups, leg, 0, qdd, t);
     }
 }
 
 /* ---- legs ---- */
-INLINE void legs_before(size_t w, const real *X, const real *V, const real *A, real *s)
+INLINE void legs_before()
 {
-    for (size_t k = 0; k < w; ++k) {
-        /* X: named entries */
-        const real X_0 = X[0*w + k];
-        const real t_x = X_0;
-        const real X_1 = X[1*w + k];
-        const real t_y = X_1;
-        const real X_2 = X[2*w + k];
-        const real t_z = X_2;
-        /* V: named entries */
-        const real V_0 = V[0*w + k];
-        const real t_dot_x = V_0;
-        const real V_1 = V[1*w + k];
-        const real t_dot_y = V_1;
-        const real V_2 = V[2*w + k];
-        const real t_dot_z = V_2;
-        /* A: named entries */
-        const real A_0 = A[0*w + k];
-        const real t_ddot_x = A_0;
-        const real A_1 = A[1*w + k];
-        const real t_ddot_y = A_1;
-        const real A_2 = A[2*w + k];
-        const real t_ddot_z = A_2;
-        s[0*w + k] = t_x;
-        s[1*w + k] = t_y;
-        s[2*w + k] = t_z;
-        s[3*w + k] = t_dot_x;
-        s[4*w + k] = t_dot_y;
-        s[5*w + k] = t_dot_z;
-        s[6*w + k] = t_ddot_x;
-        s[7*w + k] = t_ddot_y;
-        s[8*w + k] = t_ddot_z;
-    }
 }
 
-INLINE void legs_legs_ups(const prepared *m, size_t w, size_t leg, size_t legs, const real *s,
-    size_t states, size_t count, real *o)
+INLINE void legs_legs_ups(const prepared *m, size_t w, size_t leg, size_t legs, size_t states,
+    size_t count, const real *X, const real *V, const real *A, real *o)
 {
     for (size_t k = 0; k < count; ++k) {
         const size_t i = leg + legs*k;
         const size_t j = states*k;
-        /* (ups-S) from the base point to the connection point */
-        const real t_x = s[0*w + j];
-        const real ups_base_point_x = m->ups_base_point_x[i];
-        const real ups_platform_point_x = m->ups_platform_point_x[i];
-        const real ups_S_x = t_x + ups_platform_point_x - ups_base_point_x;
-        const real t_y = s[1*w + j];
-        const real ups_base_point_y = m->ups_base_point_y[i];
-        const real ups_platform_point_y = m->ups_platform_point_y[i];
-        const real ups_S_y = t_y + ups_platform_point_y - ups_base_point_y;
-        const real t_z = s[2*w + j];
-        const real ups_base_point_z = m->ups_base_point_z[i];
-        const real ups_platform_point_z = m->ups_platform_point_z[i];
-        const real ups_S_z = t_z + ups_platform_point_z - ups_base_point_z;
-        /* (ups-px_1) component along the reference direction */
-        const real ups_base_frame_xx = m->ups_base_frame_xx[i];
-        const real ups_base_frame_yx = m->ups_base_frame_yx[i];
-        const real ups_base_frame_zx = m->ups_base_frame_zx[i];
-        const real ups_px_1 = ups_S_x*ups_base_frame_xx + ups_S_y*ups_base_frame_yx +
-            ups_S_z*ups_base_frame_zx;
-        /* (ups-py_1) component across the reference direction */
-        const real ups_base_frame_xy = m->ups_base_frame_xy[i];
-        const real ups_base_frame_yy = m->ups_base_frame_yy[i];
-        const real ups_base_frame_zy = m->ups_base_frame_zy[i];
-        const real ups_py_1 = ups_S_x*ups_base_frame_xy + ups_S_y*ups_base_frame_yy +
-            ups_S_z*ups_base_frame_zy;
-        /* (ups-rho2_1) squared amplitude */
-        const real ups_rho2_1 = ups_px_1*ups_px_1 + ups_py_1*ups_py_1;
-        /* (ups-root_1) amplitude, with the sign of the branch */
-        const real ups_branch_1 = m->ups_branch_1[i];
-        const real ups_root_1 = ups_branch_1*root(ups_rho2_1);
-        /* (ups-c_1) cosine of the angle of joint 1 from its reference direction */
-        const real inv_ups_root_1 = 1/ups_root_1;
-        const real ups_c_1_t = inv_ups_root_1*ups_py_1;
-        /* (ups-s_1) sine of the angle of joint 1 from its reference direction */
-        const real ups_s_1 = inv_ups_root_1*ups_px_1;
-        /* (ups-xi_1) the vector from joint 1 to the connection point, resolved along link 1 */
-        const real ups_base_frame_xz = m->ups_base_frame_xz[i];
-        const real ups_base_frame_yz = m->ups_base_frame_yz[i];
-        const real ups_base_frame_zz = m->ups_base_frame_zz[i];
-        const real ups_xi_1_in_axes1_z = ups_S_x*ups_base_frame_xz + ups_S_y*ups_base_frame_yz +
-            ups_S_z*ups_base_frame_zz;
-        /* (ups-rho2_2) squared amplitude */
-        const real ups_rho2_2 = ups_rho2_1 + ups_xi_1_in_axes1_z*ups_xi_1_in_axes1_z;
-        /* (ups-root_2) amplitude, with the sign of the branch */
-        const real ups_branch_2 = m->ups_branch_2[i];
-        const real ups_root_2 = ups_branch_2*root(ups_rho2_2);
-        /* (ups-c_2) cosine of the angle of joint 2 from its reference direction */
-        const real inv_ups_root_2 = 1/ups_root_2;
-        const real ups_c_2 = -inv_ups_root_2*ups_root_1;
-        /* (ups-s_2) sine of the angle of joint 2 from its reference direction */
-        const real ups_s_2 = inv_ups_root_2*ups_xi_1_in_axes1_z;
-        /* (ups-S_dot) velocity of the connection point */
-        const real axis_x_ups_axes2_x = inv_ups_root_2*ups_S_x;
-        const real axis_x_ups_axes2_y = inv_ups_root_2*ups_S_y;
-        const real axis_x_ups_axes2_z = inv_ups_root_2*ups_S_z;
-        const real t_dot_x = s[3*w + j];
-        const real t_dot_y = s[4*w + j];
-        const real t_dot_z = s[5*w + j];
-        const real ups_S_dot_in_axes2_x = axis_x_ups_axes2_x*t_dot_x + axis_x_ups_axes2_y*t_dot_y
-            + axis_x_ups_axes2_z*t_dot_z;
-        /* (ups-qd_1) rate of joint 1 */
-        const real axis_z_ups_axes2_x = ups_base_frame_xy*ups_s_1 - ups_base_frame_xx*ups_c_1_t;
-        const real axis_z_ups_axes2_y = ups_base_frame_yy*ups_s_1 - ups_base_frame_yx*ups_c_1_t;
-        const real axis_z_ups_axes2_z = ups_base_frame_zy*ups_s_1 - ups_base_frame_zx*ups_c_1_t;
-        const real ups_qd_1 = inv_ups_root_1*(axis_z_ups_axes2_x*t_dot_x +
-            axis_z_ups_axes2_y*t_dot_y + axis_z_ups_axes2_z*t_dot_z);
-        /* (ups-qd_2) rate of joint 2 */
-        const real axis_y_ups_axes2_x = axis_x_ups_axes2_z*axis_z_ups_axes2_y -
-            axis_x_ups_axes2_y*axis_z_ups_axes2_z;
-        const real axis_y_ups_axes2_y = axis_x_ups_axes2_x*axis_z_ups_axes2_z -
-            axis_x_ups_axes2_z*axis_z_ups_axes2_x;
-        const real axis_y_ups_axes2_z = axis_x_ups_axes2_y*axis_z_ups_axes2_x -
-            axis_x_ups_axes2_x*axis_z_ups_axes2_y;
-        const real ups_qd_2 = inv_ups_root_2*(axis_y_ups_axes2_x*t_dot_x +
-            axis_y_ups_axes2_y*t_dot_y + axis_y_ups_axes2_z*t_dot_z);
-        /* (ups-omega_1) angular velocity of link 1 */
-        const real ups_omega_1_in_axes2_x = ups_qd_1*ups_s_2;
-        const real ups_omega_1_in_axes2_y = ups_c_2*ups_qd_1;
-        /* (ups-W_2) centripetal tensor of link 2 */
-        const real ups_W_2_in_axes2_yz = ups_omega_1_in_axes2_y*ups_qd_2;
-        const real ups_W_2_in_axes2_xz = ups_omega_1_in_axes2_x*ups_qd_2;
-        const real ups_W_2_in_axes2_xy = ups_omega_1_in_axes2_x*ups_omega_1_in_axes2_y;
-        /* (ups-S_ddot) acceleration of the connection point */
-        const real t_ddot_x = s[6*w + j];
-        const real t_ddot_y = s[7*w + j];
-        const real t_ddot_z = s[8*w + j];
-        const real ups_S_ddot_in_axes2_z = axis_z_ups_axes2_x*t_ddot_x +
-            axis_z_ups_axes2_y*t_ddot_y + axis_z_ups_axes2_z*t_ddot_z;
-        /* (ups-bias) acceleration of the connection point at zero joint accelerations */
-        const real ups_bias_t = 2*ups_S_dot_in_axes2_x;
-        const real ups_bias_in_axes2_z = 2*ups_W_2_in_axes2_xz*ups_root_2 -
-            ups_bias_t*ups_omega_1_in_axes2_y;
-        /* (ups-rel) acceleration of the connection point left to the joint accelerations */
-        const real ups_rel_in_axes2_z = ups_S_ddot_in_axes2_z - ups_bias_in_axes2_z;
-        /* (ups-qdd_1) acceleration of joint 1 */
-        const real ups_qdd_1 = inv_ups_root_1*ups_rel_in_axes2_z;
-        /* (ups-alpha_1) angular acceleration of link 1 */
-        const real ups_alpha_1_in_axes2_x = ups_qdd_1*ups_s_2;
-        const real ups_alpha_1_in_axes2_y = ups_c_2*ups_qdd_1;
-        /* (ups-alpha_2) angular acceleration of link 2 */
-        const real ups_alpha_2_in_axes2_x = ups_W_2_in_axes2_yz + ups_alpha_1_in_axes2_x;
-        const real ups_alpha_2_in_axes2_y = ups_alpha_1_in_axes2_y - ups_W_2_in_axes2_xz;
-        /* (ups-B_2) acceleration tensor of link 2 */
-        const real ups_B_2_t = axis_y_ups_axes2_x*t_ddot_x;
-        const real ups_B_2_t_2 = axis_y_ups_axes2_y*t_ddot_y;
-        const real ups_B_2_t_3 = axis_y_ups_axes2_z*t_ddot_z;
-        const real ups_B_2_in_axes2_yx = inv_ups_root_2*(ups_B_2_t + ups_B_2_t_2 + ups_B_2_t_3 -
-            ups_bias_t*ups_qd_2);
-        const real ups_B_2_in_axes2_xy = 2*ups_W_2_in_axes2_xy - ups_B_2_in_axes2_yx;
-        const real ups_B_2_in_axes2_zx = ups_W_2_in_axes2_xz - ups_alpha_2_in_axes2_y;
-        const real ups_B_2_in_axes2_zy = ups_W_2_in_axes2_yz + ups_alpha_2_in_axes2_x;
-        /* (ups-acc_3) acceleration of the reference point of link 3, less gravity */
-        const real ups_acc_3_t = m->ups_acc_3_t[i];
-        const real ups_acc_3_t_2 = m->ups_acc_3_t_2[i];
-        const real ups_g_in_axes2_z = ups_acc_3_t_2*ups_s_1 - ups_acc_3_t*ups_c_1_t;
-        const real ups_acc_3_t_4 = ups_acc_3_t*ups_s_1 + ups_acc_3_t_2*ups_c_1_t;
-        const real ups_acc_3_t_3 = m->ups_acc_3_t_3[i];
-        const real ups_g_in_axes2_x = ups_acc_3_t_3*ups_s_2 - ups_acc_3_t_4*ups_c_2;
-        const real ups_g_in_axes2_y = ups_acc_3_t_3*ups_c_2 + ups_acc_3_t_4*ups_s_2;
-        const real ups_acc_3_in_axes2_x = axis_x_ups_axes2_x*t_ddot_x +
-            axis_x_ups_axes2_y*t_ddot_y + axis_x_ups_axes2_z*t_ddot_z - ups_g_in_axes2_x;
-        const real ups_acc_3_in_axes2_y = ups_B_2_t + ups_B_2_t_2 + ups_B_2_t_3 -
-            ups_g_in_axes2_y;
-        const real ups_acc_3_in_axes2_z = ups_S_ddot_in_axes2_z - ups_g_in_axes2_z;
+        values_ups v;
+        stage_ups_X(m, w, i, j, X, &v);
+        stage_ups_V_X(w, j, V, &v);
+        stage_ups_legs_required(m, w, i, j, A, &v);
         /* (ups-mu_2) inertia moment of the links that turn with link 2, about their reference points */
-        const real ups_mu_2_t = ups_omega_1_in_axes2_x*ups_omega_1_in_axes2_x;
-        const real ups_mu_2_t_2 = ups_omega_1_in_axes2_y*ups_omega_1_in_axes2_y;
-        const real ups_mu_2_t_3 = ups_qd_2*ups_qd_2;
+        const real ups_mu_2_t_2 = v.ups_omega_1_in_axes2_y*v.ups_omega_1_in_axes2_y;
+        const real ups_mu_2_t_3 = v.ups_qd_2*v.ups_qd_2;
         const real ups_J_group_2_in_axes2_xy = m->ups_J_group_2_in_axes2_xy[i];
         const real ups_J_group_2_in_axes2_xz = m->ups_J_group_2_in_axes2_xz[i];
         const real ups_J_group_2_in_axes2_yz = m->ups_J_group_2_in_axes2_yz[i];
@@ -2955,62 +2247,68 @@ INLINE void legs_legs_ups(const prepared *m, size_t w, size_t leg, size_t legs, 
         const real ups_h_2_in_spec2_z = m->ups_h_2_in_spec2_z[i];
         const real ups_h_3_in_spec2_y = m->ups_h_3_in_spec2_y[i];
         const real ups_h_3_in_spec2_z = m->ups_h_3_in_spec2_z[i];
-        const real ups_mu_2_in_axes2_x = ups_B_2_in_axes2_yx*ups_J_group_2_in_axes2_xz +
-            ups_B_2_in_axes2_zy*ups_Sigma_2_in_axes2_yy + ups_J_group_2_in_axes2_yz*(ups_mu_2_t_2
-            - ups_mu_2_t_3) + ups_Sigma_2_in_axes2_zz*ups_alpha_1_in_axes2_x +
-            ups_g_in_axes2_y*ups_h_2_in_spec2_y + ups_g_in_axes2_z*ups_h_2_in_spec2_z -
-            ups_B_2_in_axes2_zx*ups_J_group_2_in_axes2_xy -
-            ups_acc_3_in_axes2_y*ups_h_3_in_spec2_y - ups_acc_3_in_axes2_z*ups_h_3_in_spec2_z;
+        const real ups_mu_2_in_axes2_x = v.ups_B_2_in_axes2_yx*ups_J_group_2_in_axes2_xz +
+            v.ups_B_2_in_axes2_zy*ups_Sigma_2_in_axes2_yy +
+            ups_J_group_2_in_axes2_yz*(ups_mu_2_t_2 - ups_mu_2_t_3) +
+            ups_Sigma_2_in_axes2_zz*v.ups_alpha_1_in_axes2_x +
+            v.ups_g_in_axes2_y*ups_h_2_in_spec2_y + v.ups_g_in_axes2_z*ups_h_2_in_spec2_z -
+            v.ups_B_2_in_axes2_zx*ups_J_group_2_in_axes2_xy -
+            v.ups_acc_3_in_axes2_y*ups_h_3_in_spec2_y - v.ups_acc_3_in_axes2_z*ups_h_3_in_spec2_z;
         const real ups_Sigma_2_in_axes2_xx = m->ups_Sigma_2_in_axes2_xx[i];
         const real ups_h_2_in_spec2_x = m->ups_h_2_in_spec2_x[i];
         const real ups_h_3_in_spec2_x = m->ups_h_3_in_spec2_x[i];
-        const real ups_mu_2_in_axes2_y = ups_B_2_in_axes2_zy*ups_J_group_2_in_axes2_xy +
-            ups_Sigma_2_in_axes2_zz*ups_alpha_1_in_axes2_y +
-            ups_acc_3_in_axes2_x*ups_h_3_in_spec2_y + ups_g_in_axes2_z*ups_h_2_in_spec2_x -
-            ups_B_2_in_axes2_xy*ups_J_group_2_in_axes2_yz -
-            ups_B_2_in_axes2_zx*ups_Sigma_2_in_axes2_xx - ups_J_group_2_in_axes2_xz*(ups_mu_2_t -
-            ups_mu_2_t_3) - ups_acc_3_in_axes2_z*ups_h_3_in_spec2_x -
-            ups_g_in_axes2_x*ups_h_2_in_spec2_y;
-        const real ups_mu_2_in_axes2_z = ups_B_2_in_axes2_yx*ups_Sigma_2_in_axes2_xx +
-            ups_J_group_2_in_axes2_xy*(ups_mu_2_t - ups_mu_2_t_2) +
-            ups_J_group_2_in_axes2_xz*ups_alpha_1_in_axes2_x +
-            ups_J_group_2_in_axes2_yz*ups_alpha_1_in_axes2_y +
-            ups_acc_3_in_axes2_x*ups_h_3_in_spec2_z + ups_acc_3_in_axes2_y*ups_h_3_in_spec2_x -
-            ups_B_2_in_axes2_xy*ups_Sigma_2_in_axes2_yy - ups_g_in_axes2_x*ups_h_2_in_spec2_z -
-            ups_g_in_axes2_y*ups_h_2_in_spec2_x;
+        const real ups_mu_2_in_axes2_y = v.ups_B_2_in_axes2_zy*ups_J_group_2_in_axes2_xy +
+            ups_Sigma_2_in_axes2_zz*v.ups_alpha_1_in_axes2_y +
+            v.ups_acc_3_in_axes2_x*ups_h_3_in_spec2_y + v.ups_g_in_axes2_z*ups_h_2_in_spec2_x -
+            v.ups_B_2_in_axes2_xy*ups_J_group_2_in_axes2_yz -
+            v.ups_B_2_in_axes2_zx*ups_Sigma_2_in_axes2_xx -
+            ups_J_group_2_in_axes2_xz*(v.ups_mu_2_t - ups_mu_2_t_3) -
+            v.ups_acc_3_in_axes2_z*ups_h_3_in_spec2_x - v.ups_g_in_axes2_x*ups_h_2_in_spec2_y;
+        const real ups_mu_2_in_axes2_z = v.ups_B_2_in_axes2_yx*ups_Sigma_2_in_axes2_xx +
+            ups_J_group_2_in_axes2_xy*(v.ups_mu_2_t - ups_mu_2_t_2) +
+            ups_J_group_2_in_axes2_xz*v.ups_alpha_1_in_axes2_x +
+            ups_J_group_2_in_axes2_yz*v.ups_alpha_1_in_axes2_y +
+            v.ups_acc_3_in_axes2_x*ups_h_3_in_spec2_z + v.ups_acc_3_in_axes2_y*ups_h_3_in_spec2_x
+            - v.ups_B_2_in_axes2_xy*ups_Sigma_2_in_axes2_yy -
+            v.ups_g_in_axes2_x*ups_h_2_in_spec2_z - v.ups_g_in_axes2_y*ups_h_2_in_spec2_x;
         /* (ups-c) leg force on the platform without actuation and without the mass at the connection
            point */
-        const real ups_c_in_axes2_y = ups_alpha_1_in_axes2_x*ups_h_3_in_spec2_y -
-            inv_ups_root_2*ups_mu_2_in_axes2_z - ups_B_2_in_axes2_yx*ups_h_3_in_spec2_x -
-            ups_h_3_in_spec2_z*(ups_mu_2_t + ups_mu_2_t_3);
-        const real ups_c_in_axes2_z = ups_B_2_in_axes2_zy*ups_h_3_in_spec2_z +
-            ups_h_3_in_spec2_y*(ups_mu_2_t + ups_mu_2_t_2) -
-            inv_ups_root_1*(ups_c_2*ups_mu_2_in_axes2_y + ups_mu_2_in_axes2_x*ups_s_2) -
-            ups_B_2_in_axes2_zx*ups_h_3_in_spec2_x;
+        const real ups_c_in_axes2_y = v.ups_alpha_1_in_axes2_x*ups_h_3_in_spec2_y -
+            v.inv_ups_q_3*ups_mu_2_in_axes2_z - v.ups_B_2_in_axes2_yx*ups_h_3_in_spec2_x -
+            ups_h_3_in_spec2_z*(v.ups_mu_2_t + ups_mu_2_t_3);
+        const real ups_c_in_axes2_z = v.inv_ups_root_1*(v.ups_c_2*ups_mu_2_in_axes2_y -
+            v.ups_e_1_in_axes2_x*ups_mu_2_in_axes2_x) + v.ups_B_2_in_axes2_zy*ups_h_3_in_spec2_z +
+            ups_h_3_in_spec2_y*(v.ups_mu_2_t + ups_mu_2_t_2) -
+            v.ups_B_2_in_axes2_zx*ups_h_3_in_spec2_x;
         /* (ups-c_true) leg force on the platform without actuation, the last link's mass included */
         const real ups_link3_mass = m->ups_link3_mass[i];
-        const real ups_c_true_in_axes2_x = ups_B_2_in_axes2_xy*ups_h_3_in_spec2_z -
-            ups_acc_3_in_axes2_x*ups_link3_mass - ups_alpha_1_in_axes2_y*ups_h_3_in_spec2_y -
+        const real ups_c_true_in_axes2_x = v.ups_B_2_in_axes2_xy*ups_h_3_in_spec2_z -
+            v.ups_acc_3_in_axes2_x*ups_link3_mass - v.ups_alpha_1_in_axes2_y*ups_h_3_in_spec2_y -
             ups_h_3_in_spec2_x*(-ups_mu_2_t_2 - ups_mu_2_t_3);
-        const real ups_c_true_in_axes2_y = ups_c_in_axes2_y - ups_acc_3_in_axes2_y*ups_link3_mass;
-        const real ups_c_true_in_axes2_z = ups_c_in_axes2_z - ups_acc_3_in_axes2_z*ups_link3_mass;
-        const real ups_c_true_x = axis_x_ups_axes2_x*ups_c_true_in_axes2_x +
-            axis_y_ups_axes2_x*ups_c_true_in_axes2_y + axis_z_ups_axes2_x*ups_c_true_in_axes2_z;
-        const real ups_c_true_y = axis_x_ups_axes2_y*ups_c_true_in_axes2_x +
-            axis_y_ups_axes2_y*ups_c_true_in_axes2_y + axis_z_ups_axes2_y*ups_c_true_in_axes2_z;
-        const real ups_c_true_z = axis_x_ups_axes2_z*ups_c_true_in_axes2_x +
-            axis_y_ups_axes2_z*ups_c_true_in_axes2_y + axis_z_ups_axes2_z*ups_c_true_in_axes2_z;
+        const real ups_c_true_in_axes2_y = ups_c_in_axes2_y -
+            v.ups_acc_3_in_axes2_y*ups_link3_mass;
+        const real ups_c_true_in_axes2_z = ups_c_in_axes2_z -
+            v.ups_acc_3_in_axes2_z*ups_link3_mass;
+        const real ups_c_true_x = v.axis_x_ups_axes2_x*ups_c_true_in_axes2_x +
+            v.axis_y_ups_axes2_x*ups_c_true_in_axes2_y +
+            v.axis_z_ups_axes2_x*ups_c_true_in_axes2_z;
+        const real ups_c_true_y = v.axis_x_ups_axes2_y*ups_c_true_in_axes2_x +
+            v.axis_y_ups_axes2_y*ups_c_true_in_axes2_y +
+            v.axis_z_ups_axes2_y*ups_c_true_in_axes2_z;
+        const real ups_c_true_z = v.axis_x_ups_axes2_z*ups_c_true_in_axes2_x +
+            v.axis_y_ups_axes2_z*ups_c_true_in_axes2_y +
+            v.axis_z_ups_axes2_z*ups_c_true_in_axes2_z;
         /* (ups-c_true) leg force on the platform without actuation, the last link's mass included */
         o[0*count + k] = ups_c_true_x;
         o[1*count + k] = ups_c_true_y;
         o[2*count + k] = ups_c_true_z;
         /* (ups-w_3) reciprocal vector 3 */
-        o[3*count + k] = axis_x_ups_axes2_x;
-        o[4*count + k] = axis_x_ups_axes2_y;
-        o[5*count + k] = axis_x_ups_axes2_z;
-        o[6*count + k] = UNLESS(magnitude(ups_rho2_1) > LEAST_1) + UNLESS(magnitude(ups_rho2_2) >
-            LEAST_1) + UNLESS(magnitude(ups_root_1) > LEAST_2) + UNLESS(magnitude(ups_root_2) >
-            LEAST_2);
+        o[3*count + k] = v.axis_x_ups_axes2_x;
+        o[4*count + k] = v.axis_x_ups_axes2_y;
+        o[5*count + k] = v.axis_x_ups_axes2_z;
+        o[6*count + k] = UNLESS(magnitude(v.ups_root_1_t) > LEAST_1) +
+            UNLESS(magnitude(v.ups_q_3_t) > LEAST_1) + UNLESS(magnitude(v.ups_root_1) > LEAST_2) +
+            UNLESS(magnitude(v.ups_q_3) > LEAST_2);
     }
 }
 
@@ -3031,10 +2329,9 @@ INLINE void legs_place_ups(size_t w, size_t count, const real *o, size_t leg, si
 INLINE void legs_run(const prepared *m, const real *X, const real *V, const real *A, real
     *leg_force, real *actuator, verdict *t)
 {
-    real s[9] = {0};
     real o_ups[7*LEGS(LEGS_OF_ups)] = {0};
-    legs_before(1, X, V, A, s);
-    legs_legs_ups(m, 1, 0, 1, s, 0, LEGS(LEGS_OF_ups), o_ups);
+    legs_before();
+    legs_legs_ups(m, 1, 0, 1, 0, LEGS(LEGS_OF_ups), X, V, A, o_ups);
     for (size_t leg = 0; leg < LEGS_OF_ups; ++leg) {
         legs_place_ups(1, LEGS(LEGS_OF_ups), o_ups, leg, leg, leg_force, actuator, t);
     }
@@ -3044,13 +2341,6 @@ INLINE void legs_run(const prepared *m, const real *X, const real *V, const real
 INLINE void potential_before(const prepared *m, size_t w, const real *X, real *s)
 {
     for (size_t k = 0; k < w; ++k) {
-        /* X: named entries */
-        const real X_0 = X[0*w + k];
-        const real t_x = X_0;
-        const real X_1 = X[1*w + k];
-        const real t_y = X_1;
-        const real X_2 = X[2*w + k];
-        const real t_z = X_2;
         /* (potential) potential energy */
         const real gravity_x = m->gravity_x;
         const real gravity_y = m->gravity_y;
@@ -3059,79 +2349,30 @@ INLINE void potential_before(const prepared *m, size_t w, const real *X, real *s
         const real h_star_y = m->h_star_y;
         const real h_star_z = m->h_star_z;
         const real m_star = m->m_star;
+        const real t_x = X[0*w + k];
+        const real t_y = X[1*w + k];
+        const real t_z = X[2*w + k];
         const real potential_t = gravity_x*(h_star_x + m_star*t_x) + gravity_y*(h_star_y +
             m_star*t_y) + gravity_z*(h_star_z + m_star*t_z);
-        s[0*w + k] = t_x;
-        s[1*w + k] = t_y;
-        s[2*w + k] = t_z;
-        s[3*w + k] = potential_t;
+        s[0*w + k] = potential_t;
     }
 }
 
-INLINE void potential_legs_ups(const prepared *m, size_t w, size_t leg, size_t legs, const real
-    *s, size_t states, size_t count, int add, real *terms, real *o)
+INLINE void potential_legs_ups(const prepared *m, size_t w, size_t leg, size_t legs, size_t
+    states, size_t count, int add, const real *X, real *terms, real *o)
 {
     for (size_t k = 0; k < count; ++k) {
         const size_t i = leg + legs*k;
         const size_t j = states*k;
-        /* (ups-S) from the base point to the connection point */
-        const real t_x = s[0*w + j];
-        const real ups_base_point_x = m->ups_base_point_x[i];
-        const real ups_platform_point_x = m->ups_platform_point_x[i];
-        const real ups_S_x = t_x + ups_platform_point_x - ups_base_point_x;
-        const real t_y = s[1*w + j];
-        const real ups_base_point_y = m->ups_base_point_y[i];
-        const real ups_platform_point_y = m->ups_platform_point_y[i];
-        const real ups_S_y = t_y + ups_platform_point_y - ups_base_point_y;
-        const real t_z = s[2*w + j];
-        const real ups_base_point_z = m->ups_base_point_z[i];
-        const real ups_platform_point_z = m->ups_platform_point_z[i];
-        const real ups_S_z = t_z + ups_platform_point_z - ups_base_point_z;
-        /* (ups-px_1) component along the reference direction */
-        const real ups_base_frame_xx = m->ups_base_frame_xx[i];
-        const real ups_base_frame_yx = m->ups_base_frame_yx[i];
-        const real ups_base_frame_zx = m->ups_base_frame_zx[i];
-        const real ups_px_1 = ups_S_x*ups_base_frame_xx + ups_S_y*ups_base_frame_yx +
-            ups_S_z*ups_base_frame_zx;
-        /* (ups-py_1) component across the reference direction */
-        const real ups_base_frame_xy = m->ups_base_frame_xy[i];
-        const real ups_base_frame_yy = m->ups_base_frame_yy[i];
-        const real ups_base_frame_zy = m->ups_base_frame_zy[i];
-        const real ups_py_1 = ups_S_x*ups_base_frame_xy + ups_S_y*ups_base_frame_yy +
-            ups_S_z*ups_base_frame_zy;
-        /* (ups-rho2_1) squared amplitude */
-        const real ups_rho2_1 = ups_px_1*ups_px_1 + ups_py_1*ups_py_1;
-        /* (ups-root_1) amplitude, with the sign of the branch */
-        const real ups_branch_1 = m->ups_branch_1[i];
-        const real ups_root_1 = ups_branch_1*root(ups_rho2_1);
-        /* (ups-c_1) cosine of the angle of joint 1 from its reference direction */
-        const real inv_ups_root_1 = 1/ups_root_1;
-        const real ups_c_1_t = inv_ups_root_1*ups_py_1;
-        /* (ups-s_1) sine of the angle of joint 1 from its reference direction */
-        const real ups_s_1 = inv_ups_root_1*ups_px_1;
-        /* (ups-xi_1) the vector from joint 1 to the connection point, resolved along link 1 */
-        const real ups_base_frame_xz = m->ups_base_frame_xz[i];
-        const real ups_base_frame_yz = m->ups_base_frame_yz[i];
-        const real ups_base_frame_zz = m->ups_base_frame_zz[i];
-        const real ups_xi_1_in_axes1_z = ups_S_x*ups_base_frame_xz + ups_S_y*ups_base_frame_yz +
-            ups_S_z*ups_base_frame_zz;
-        /* (ups-rho2_2) squared amplitude */
-        const real ups_rho2_2 = ups_rho2_1 + ups_xi_1_in_axes1_z*ups_xi_1_in_axes1_z;
-        /* (ups-root_2) amplitude, with the sign of the branch */
-        const real ups_branch_2 = m->ups_branch_2[i];
-        const real ups_root_2 = ups_branch_2*root(ups_rho2_2);
-        /* (ups-c_2) cosine of the angle of joint 2 from its reference direction */
-        const real inv_ups_root_2 = 1/ups_root_2;
-        const real ups_c_2 = -inv_ups_root_2*ups_root_1;
-        /* (ups-s_2) sine of the angle of joint 2 from its reference direction */
-        const real ups_s_2 = inv_ups_root_2*ups_xi_1_in_axes1_z;
+        values_ups v;
+        stage_ups_X(m, w, i, j, X, &v);
         /* (potential) potential energy */
         const real ups_acc_3_t = m->ups_acc_3_t[i];
         const real ups_acc_3_t_2 = m->ups_acc_3_t_2[i];
-        const real ups_potential_t_4 = ups_acc_3_t*ups_s_1 + ups_acc_3_t_2*ups_c_1_t;
+        const real ups_potential_t_4 = ups_acc_3_t*v.ups_c_1 + ups_acc_3_t_2*v.ups_s_1;
         const real ups_potential_t = m->ups_potential_t[i];
         const real ups_potential_t_2 = m->ups_potential_t_2[i];
-        const real ups_potential_t_5 = -ups_c_1_t*ups_potential_t_2 - ups_potential_t*ups_s_1;
+        const real ups_potential_t_5 = v.ups_c_1*ups_potential_t + ups_potential_t_2*v.ups_s_1;
         const real ups_acc_3_t_3 = m->ups_acc_3_t_3[i];
         const real ups_h_2_in_spec2_x = m->ups_h_2_in_spec2_x[i];
         const real ups_h_2_in_spec2_y = m->ups_h_2_in_spec2_y[i];
@@ -3141,18 +2382,19 @@ INLINE void potential_legs_ups(const prepared *m, size_t w, size_t leg, size_t l
         const real ups_h_3_in_spec2_z = m->ups_h_3_in_spec2_z[i];
         const real ups_link2_mass = m->ups_link2_mass[i];
         const real ups_potential_t_3 = m->ups_potential_t_3[i];
-        const real ups_potential_t_6 = (ups_acc_3_t_3*ups_c_2 +
-            ups_potential_t_4*ups_s_2)*(ups_h_2_in_spec2_z + ups_h_3_in_spec2_z -
-            ups_link2_mass*(ups_c_2*ups_potential_t_3 - ups_potential_t_5*ups_s_2)) -
-            (ups_acc_3_t_2*ups_s_1 - ups_acc_3_t*ups_c_1_t)*(ups_h_2_in_spec2_y +
-            ups_h_3_in_spec2_y + ups_link2_mass*(ups_potential_t_2*ups_s_1 -
-            ups_c_1_t*ups_potential_t)) - (ups_acc_3_t_3*ups_s_2 -
-            ups_c_2*ups_potential_t_4)*(ups_h_2_in_spec2_x + ups_h_3_in_spec2_x +
-            ups_link2_mass*(ups_c_2*ups_potential_t_5 + ups_potential_t_3*ups_s_2));
+        const real ups_potential_t_6 = (v.ups_e_1_in_axes2_x*ups_potential_t_4 -
+            ups_acc_3_t_3*v.ups_c_2)*(ups_h_2_in_spec2_z + ups_h_3_in_spec2_z -
+            ups_link2_mass*(v.ups_e_1_in_axes2_x*ups_potential_t_5 - v.ups_c_2*ups_potential_t_3))
+            - (ups_acc_3_t_2*v.ups_c_1 - ups_acc_3_t*v.ups_s_1)*(ups_h_2_in_spec2_y +
+            ups_h_3_in_spec2_y + ups_link2_mass*(v.ups_c_1*ups_potential_t_2 -
+            ups_potential_t*v.ups_s_1)) - (ups_acc_3_t_3*v.ups_e_1_in_axes2_x +
+            v.ups_c_2*ups_potential_t_4)*(ups_h_2_in_spec2_x + ups_h_3_in_spec2_x +
+            ups_link2_mass*(v.ups_c_2*ups_potential_t_5 +
+            v.ups_e_1_in_axes2_x*ups_potential_t_3));
         /* (potential) potential energy */
         gather(&terms[0*count + k], add, ups_potential_t_6);  /* potential_of_legs */
-        o[0*count + k] = UNLESS(magnitude(ups_rho2_1) > LEAST_1) + UNLESS(magnitude(ups_rho2_2) >
-            LEAST_1);
+        o[0*count + k] = UNLESS(magnitude(v.ups_root_1_t) > LEAST_1) +
+            UNLESS(magnitude(v.ups_q_3_t) > LEAST_1);
     }
 }
 
@@ -3168,7 +2410,7 @@ INLINE void potential_after(size_t w, const real *s, const real *sums, real *pot
     for (size_t k = 0; k < w; ++k) {
         /* (potential) potential energy */
         const real potential_of_legs = sums[0*w + k];
-        const real potential_t = s[3*w + k];
+        const real potential_t = s[0*w + k];
         const real potential_ = potential_of_legs - potential_t;
         /* (potential) potential energy */
         potential[0*w + k] = potential_;
@@ -3177,12 +2419,10 @@ INLINE void potential_after(size_t w, const real *s, const real *sums, real *pot
 
 INLINE void potential_run(const prepared *m, const real *X, real *potential, verdict *t)
 {
-    real s[4] = {0};
-    real sums[1] = {0};
-    real terms_ups[LEGS(LEGS_OF_ups)] = {0};
-    real o_ups[LEGS(LEGS_OF_ups)] = {0};
+    real s[1] = {0}, sums[1] = {0};
+    real terms_ups[LEGS(LEGS_OF_ups)] = {0}, o_ups[LEGS(LEGS_OF_ups)] = {0};
     potential_before(m, 1, X, s);
-    potential_legs_ups(m, 1, 0, 1, s, 0, LEGS(LEGS_OF_ups), 0, terms_ups, o_ups);
+    potential_legs_ups(m, 1, 0, 1, 0, LEGS(LEGS_OF_ups), 0, X, terms_ups, o_ups);
     for (size_t leg = 0; leg < LEGS_OF_ups; ++leg) {
         potential_place_ups(1, LEGS(LEGS_OF_ups), o_ups, leg, t);
     }
@@ -3193,20 +2433,9 @@ INLINE void potential_run(const prepared *m, const real *X, real *potential, ver
 }
 
 /* ---- condition ---- */
-INLINE void condition_before(const prepared *m, size_t w, const real *X, real *s, real *lengths,
-    verdict *t)
+INLINE void condition_before(const prepared *m, size_t w, real *lengths, verdict *t)
 {
     for (size_t k = 0; k < w; ++k) {
-        /* X: named entries */
-        const real X_0 = X[0*w + k];
-        const real t_x = X_0;
-        const real X_1 = X[1*w + k];
-        const real t_y = X_1;
-        const real X_2 = X[2*w + k];
-        const real t_z = X_2;
-        s[0*w + k] = t_x;
-        s[1*w + k] = t_y;
-        s[2*w + k] = t_z;
         /* (legs_size) rms size of the legs, taken where the platform points coincide */
         const real legs_size = m->legs_size;
         lengths[1*w + k] = legs_size;
@@ -3214,89 +2443,47 @@ INLINE void condition_before(const prepared *m, size_t w, const real *X, real *s
     }
 }
 
-INLINE void condition_legs_ups(const prepared *m, size_t w, size_t leg, size_t legs, const real
-    *s, size_t states, size_t count, int add, real *terms, real *o)
+INLINE void condition_legs_ups(const prepared *m, size_t w, size_t leg, size_t legs, size_t
+    states, size_t count, int add, const real *X, real *terms, real *o)
 {
     for (size_t k = 0; k < count; ++k) {
         const size_t i = leg + legs*k;
         const size_t j = states*k;
-        /* (ups-S) from the base point to the connection point */
-        const real t_x = s[0*w + j];
-        const real ups_base_point_x = m->ups_base_point_x[i];
-        const real ups_platform_point_x = m->ups_platform_point_x[i];
-        const real ups_S_x = t_x + ups_platform_point_x - ups_base_point_x;
-        const real t_y = s[1*w + j];
-        const real ups_base_point_y = m->ups_base_point_y[i];
-        const real ups_platform_point_y = m->ups_platform_point_y[i];
-        const real ups_S_y = t_y + ups_platform_point_y - ups_base_point_y;
-        const real t_z = s[2*w + j];
-        const real ups_base_point_z = m->ups_base_point_z[i];
-        const real ups_platform_point_z = m->ups_platform_point_z[i];
-        const real ups_S_z = t_z + ups_platform_point_z - ups_base_point_z;
-        /* (ups-px_1) component along the reference direction */
-        const real ups_base_frame_xx = m->ups_base_frame_xx[i];
-        const real ups_base_frame_yx = m->ups_base_frame_yx[i];
-        const real ups_base_frame_zx = m->ups_base_frame_zx[i];
-        const real ups_px_1 = ups_S_x*ups_base_frame_xx + ups_S_y*ups_base_frame_yx +
-            ups_S_z*ups_base_frame_zx;
-        /* (ups-py_1) component across the reference direction */
-        const real ups_base_frame_xy = m->ups_base_frame_xy[i];
-        const real ups_base_frame_yy = m->ups_base_frame_yy[i];
-        const real ups_base_frame_zy = m->ups_base_frame_zy[i];
-        const real ups_py_1 = ups_S_x*ups_base_frame_xy + ups_S_y*ups_base_frame_yy +
-            ups_S_z*ups_base_frame_zy;
-        /* (ups-rho2_1) squared amplitude */
-        const real ups_rho2_1 = ups_px_1*ups_px_1 + ups_py_1*ups_py_1;
-        /* (ups-root_1) amplitude, with the sign of the branch */
-        const real ups_branch_1 = m->ups_branch_1[i];
-        const real ups_root_1 = ups_branch_1*root(ups_rho2_1);
-        /* (ups-xi_1) the vector from joint 1 to the connection point, resolved along link 1 */
-        const real ups_base_frame_xz = m->ups_base_frame_xz[i];
-        const real ups_base_frame_yz = m->ups_base_frame_yz[i];
-        const real ups_base_frame_zz = m->ups_base_frame_zz[i];
-        const real ups_xi_1_in_axes1_z = ups_S_x*ups_base_frame_xz + ups_S_y*ups_base_frame_yz +
-            ups_S_z*ups_base_frame_zz;
-        /* (ups-rho2_2) squared amplitude */
-        const real ups_rho2_2 = ups_rho2_1 + ups_xi_1_in_axes1_z*ups_xi_1_in_axes1_z;
-        /* (ups-root_2) amplitude, with the sign of the branch */
-        const real ups_branch_2 = m->ups_branch_2[i];
-        const real ups_root_2 = ups_branch_2*root(ups_rho2_2);
-        /* (ups-w_2) reciprocal vector 2 */
-        const real ups_w_2_in_axes2_y = 1/ups_root_2;
-        /* (ups-w_3) reciprocal vector 3 */
-        const real ups_w_3_x = ups_S_x*ups_w_2_in_axes2_y;
-        const real ups_w_3_y = ups_S_y*ups_w_2_in_axes2_y;
-        const real ups_w_3_z = ups_S_z*ups_w_2_in_axes2_y;
+        values_ups v;
+        stage_ups_X(m, w, i, j, X, &v);
         /* (ups-G) force at the connection point that balances the leg's inertia and weight along all
            degrees of freedom */
-        const real ups_pivot_size = magnitude(ups_rho2_1);
-        const real ups_pivot_size_2 = magnitude(ups_rho2_2);
-        const real ups_pivot_size_3 = magnitude(ups_root_1);
-        const real ups_pivot_size_4 = magnitude(ups_root_2);
+        const real ups_pivot_size = magnitude(v.ups_root_1_t);
+        const real ups_pivot_size_2 = magnitude(v.ups_q_3_t);
+        const real ups_pivot_size_3 = magnitude(v.ups_root_1);
+        const real ups_pivot_size_4 = magnitude(v.ups_q_3);
         const real ups_least_pivots = lesser(lesser(lesser(R(1.25)*root(ups_pivot_size),
             R(1.25)*root(ups_pivot_size_2)), R(1.25)*ups_pivot_size_3), R(1.25)*ups_pivot_size_4);
         /* (spread) rms distance of the platform points from their centroid */
         const real b_c_in_platform_x = m->b_c_in_platform_x;
+        const real ups_platform_point_x = m->ups_platform_point_x[i];
         const real ups_spread_t = b_c_in_platform_x - ups_platform_point_x;
         const real b_c_in_platform_y = m->b_c_in_platform_y;
+        const real ups_platform_point_y = m->ups_platform_point_y[i];
         const real ups_spread_t_2 = b_c_in_platform_y - ups_platform_point_y;
         const real b_c_in_platform_z = m->b_c_in_platform_z;
+        const real ups_platform_point_z = m->ups_platform_point_z[i];
         const real ups_spread_t_3 = b_c_in_platform_z - ups_platform_point_z;
         const real ups_spread_t_4 = ups_spread_t*ups_spread_t + ups_spread_t_2*ups_spread_t_2 +
             ups_spread_t_3*ups_spread_t_3;
         /* (spread) rms distance of the platform points from their centroid */
         gather(&terms[0*count + k], add, ups_spread_t_4);  /* spread_ups */
         /* (ups-w_3) reciprocal vector 3 */
-        o[0*count + k] = ups_w_3_x;
-        o[1*count + k] = ups_w_3_y;
-        o[2*count + k] = ups_w_3_z;
+        o[0*count + k] = v.ups_w_3_x;
+        o[1*count + k] = v.ups_w_3_y;
+        o[2*count + k] = v.ups_w_3_z;
         /* (ups-G) force at the connection point that balances the leg's inertia and weight along all
            degrees of freedom */
         o[3*count + k] = ups_least_pivots;
-        o[5*count + k] = (ups_w_3_x + ups_w_3_y) + (ups_w_3_z + ups_least_pivots);
-        o[4*count + k] = UNLESS(magnitude(ups_rho2_1) > LEAST_1) + UNLESS(magnitude(ups_rho2_2) >
-            LEAST_1) + UNLESS(magnitude(ups_root_1) > LEAST_2) + UNLESS(magnitude(ups_root_2) >
-            LEAST_2);
+        o[5*count + k] = (v.ups_w_3_x + v.ups_w_3_y) + (v.ups_w_3_z + ups_least_pivots);
+        o[4*count + k] = UNLESS(magnitude(v.ups_root_1_t) > LEAST_1) +
+            UNLESS(magnitude(v.ups_q_3_t) > LEAST_1) + UNLESS(magnitude(v.ups_root_1) > LEAST_2) +
+            UNLESS(magnitude(v.ups_q_3) > LEAST_2);
     }
 }
 
@@ -3304,7 +2491,7 @@ INLINE void condition_place_ups(size_t w, size_t count, const real *o, size_t le
     real *H, real *pivots, verdict *t)
 {
     for (size_t k = 0; k < w; ++k) {
-        H[(0*NU + leg)*w + k] = o[0*count + first + k];
+        H[leg*w + k] = o[0*count + first + k];
         H[(NU + leg)*w + k] = o[1*count + first + k];
         H[(2*NU + leg)*w + k] = o[2*count + first + k];
         pivots[leg*w + k] = o[3*count + first + k];
@@ -3330,13 +2517,11 @@ INLINE void condition_after(const prepared *m, size_t w, const real *sums, real 
 INLINE void condition_run(const prepared *m, const real *X, real *H, real *lengths, real *pivots,
     real *reach, verdict *t)
 {
-    real s[3] = {0};
     real sums[1] = {0};
-    real terms_ups[LEGS(LEGS_OF_ups)] = {0};
-    real o_ups[6*LEGS(LEGS_OF_ups)] = {0};
+    real terms_ups[LEGS(LEGS_OF_ups)] = {0}, o_ups[6*LEGS(LEGS_OF_ups)] = {0};
     clear(reach, NL);
-    condition_before(m, 1, X, s, lengths, t);
-    condition_legs_ups(m, 1, 0, 1, s, 0, LEGS(LEGS_OF_ups), 0, terms_ups, o_ups);
+    condition_before(m, 1, lengths, t);
+    condition_legs_ups(m, 1, 0, 1, 0, LEGS(LEGS_OF_ups), 0, X, terms_ups, o_ups);
     for (size_t leg = 0; leg < LEGS_OF_ups; ++leg) {
         condition_place_ups(1, LEGS(LEGS_OF_ups), o_ups, leg, leg, H, pivots, t);
     }
@@ -3841,10 +3026,55 @@ INLINE void condition_one(const prepared *m, const real *X, real *sigma_out, rea
     }
 }
 
+INLINE void manipulability_one(const prepared *m, const real *X, real *measure_out, real
+    *isotropy_out, int *code)
+{
+    real H[NV*NU] = {0}, lengths[2] = {0}, pivots[NL] = {0}, reach[NL] = {0}, singular_values_1[NV] =
+        {0}, measure[1] = {0}, isotropy[1] = {0};
+    verdict why;
+    start(1, &why);
+    check(NQ, 1, X, why.invalid);
+    condition_run(m, X, H, lengths, pivots, reach, &why);
+    singular_values(NV, NU, H, singular_values_1);
+    spread(NV, singular_values_1, measure, isotropy);
+    check(1, 1, measure, why.overflow);
+    check(1, 1, isotropy, why.overflow);
+    judge(&why, code);
+    copy(1, measure, measure_out);
+    copy(1, isotropy, isotropy_out);
+    if (*code != OK) {
+        refuse(1, measure_out);
+        refuse(1, isotropy_out);
+    }
+}
+
+INLINE void singularity_distance_one(const prepared *m, const real *X, real *actuators_out, real
+    *legs_out, int *code)
+{
+    real H[NV*NU] = {0}, lengths[2] = {0}, pivots[NL] = {0}, reach[NL] = {0}, singular_values_1[NV] =
+        {0}, spread_1[1] = {0}, actuators[1] = {0}, legs[1] = {0};
+    verdict why;
+    start(1, &why);
+    check(NQ, 1, X, why.invalid);
+    condition_run(m, X, H, lengths, pivots, reach, &why);
+    singular_values(NV, NU, H, singular_values_1);
+    spread(NV, singular_values_1, spread_1, actuators);
+    least_entry(NL, pivots, legs);
+    check(1, 1, actuators, why.overflow);
+    check(1, 1, legs, why.overflow);
+    judge(&why, code);
+    copy(1, actuators, actuators_out);
+    copy(1, legs, legs_out);
+    if (*code != OK) {
+        refuse(1, actuators_out);
+        refuse(1, legs_out);
+    }
+}
+
 static void mismatch_one(const prepared *m, const real *X, const real *q_actuated, real *gap_out,
     int *code)
 {
-    real q[NJ] = {0}, take_1[3] = {0}, gap[NU] = {0};
+    real q[NJ] = {0}, q_of_inverse_kinematics_from_2[3] = {0}, gap[NU] = {0};
     verdict why;
     start(1, &why);
     const real total_in = total(X, NQ) + total(q_actuated, NU);
@@ -3853,9 +3083,9 @@ static void mismatch_one(const prepared *m, const real *X, const real *q_actuate
         check(NU, 1, q_actuated, why.invalid);
     }
     inverse_kinematics_run(m, X, q, &why);
-    take(3, 1, tripod_3ups_ACTUATED, q, take_1);
+    take(3, 1, tripod_3ups_ACTUATED, q, q_of_inverse_kinematics_from_2);
     for (size_t i = 0; i < NU; ++i) {
-        gap[i] = q_actuated[i] - take_1[i];
+        gap[i] = q_actuated[i] - q_of_inverse_kinematics_from_2[i];
     }
     check(NU, 1, gap, why.overflow);
     judge(&why, code);
@@ -4286,284 +3516,259 @@ INLINE void interpolate_one(const real *X0, const real *X1, const real *s, real 
 
 /* ---- one state, and batches ---- */
 
-int tripod_3ups_M(const tripod_3ups_model *model, const tripod_3ups_real *X, tripod_3ups_real *M)
+int tripod_3ups_M(const prepared *model, const real *X, real *M)
 {
     int code;
     M_one(model, X, M, &code);
     return code;
 }
 
-size_t tripod_3ups_M_batch(const tripod_3ups_model *model, size_t n, const tripod_3ups_real *X,
-    tripod_3ups_real *M, int *status)
+size_t tripod_3ups_M_batch(const prepared *model, size_t n, const real *X, real *M, int *status)
 {
-    size_t failed = 0, i = 0;
-    for (; LANES > 1 && i + LANES <= n; i += LANES) {
-        int codes[LANES];
-        M_lanes(model, X + NQ*i, M + NV*NV*i, codes);
-        for (size_t k = 0; k < LANES; ++k) {
+    size_t failed = 0, w;
+    for (size_t i = 0; i < n; i += w) {
+        int codes[LANES] = {INVALID};
+        w = LANES > 1 && i + LANES <= n ? LANES : 1;
+        if (w > 1) {
+            M_lanes(model, X + NQ*i, M + NV*NV*i, codes);
+        }
+        for (size_t k = 0; k < w; ++k) {
             if (codes[k] != OK) {
                 codes[k] = tripod_3ups_M(model, X + NQ*(i + k), M + NV*NV*(i + k));
             }
         }
-        failed += record(codes, LANES, status ? status + i : NULL);
-    }
-    for (; i < n; ++i) {
-        const int code = tripod_3ups_M(model, X + NQ*i, M + NV*NV*i);
-        failed += record(&code, 1, status ? status + i : NULL);
+        failed += record(codes, w, status ? status + i : NULL);
     }
     return failed;
 }
 
-int tripod_3ups_Z(const tripod_3ups_model *model, const tripod_3ups_real *X, const
-    tripod_3ups_real *V, tripod_3ups_real *Z)
+int tripod_3ups_Z(const prepared *model, const real *X, const real *V, real *Z)
 {
     int code;
     Z_one(model, X, V, Z, &code);
     return code;
 }
 
-size_t tripod_3ups_Z_batch(const tripod_3ups_model *model, size_t n, const tripod_3ups_real *X,
-    const tripod_3ups_real *V, tripod_3ups_real *Z, int *status)
+size_t tripod_3ups_Z_batch(const prepared *model, size_t n, const real *X, const real *V, real *Z,
+    int *status)
 {
-    size_t failed = 0, i = 0;
-    for (; LANES > 1 && i + LANES <= n; i += LANES) {
-        int codes[LANES];
-        Z_lanes(model, X + NQ*i, V + NV*i, Z + NV*i, codes);
-        for (size_t k = 0; k < LANES; ++k) {
+    size_t failed = 0, w;
+    for (size_t i = 0; i < n; i += w) {
+        int codes[LANES] = {INVALID};
+        w = LANES > 1 && i + LANES <= n ? LANES : 1;
+        if (w > 1) {
+            Z_lanes(model, X + NQ*i, V + NV*i, Z + NV*i, codes);
+        }
+        for (size_t k = 0; k < w; ++k) {
             if (codes[k] != OK) {
                 codes[k] = tripod_3ups_Z(model, X + NQ*(i + k), V + NV*(i + k), Z + NV*(i + k));
             }
         }
-        failed += record(codes, LANES, status ? status + i : NULL);
-    }
-    for (; i < n; ++i) {
-        const int code = tripod_3ups_Z(model, X + NQ*i, V + NV*i, Z + NV*i);
-        failed += record(&code, 1, status ? status + i : NULL);
+        failed += record(codes, w, status ? status + i : NULL);
     }
     return failed;
 }
 
-int tripod_3ups_H(const tripod_3ups_model *model, const tripod_3ups_real *X, tripod_3ups_real *H)
+int tripod_3ups_H(const prepared *model, const real *X, real *H)
 {
     int code;
     H_one(model, X, H, &code);
     return code;
 }
 
-size_t tripod_3ups_H_batch(const tripod_3ups_model *model, size_t n, const tripod_3ups_real *X,
-    tripod_3ups_real *H, int *status)
+size_t tripod_3ups_H_batch(const prepared *model, size_t n, const real *X, real *H, int *status)
 {
-    size_t failed = 0, i = 0;
-    for (; LANES > 1 && i + LANES <= n; i += LANES) {
-        int codes[LANES];
-        H_lanes(model, X + NQ*i, H + NV*NU*i, codes);
-        for (size_t k = 0; k < LANES; ++k) {
+    size_t failed = 0, w;
+    for (size_t i = 0; i < n; i += w) {
+        int codes[LANES] = {INVALID};
+        w = LANES > 1 && i + LANES <= n ? LANES : 1;
+        if (w > 1) {
+            H_lanes(model, X + NQ*i, H + NV*NU*i, codes);
+        }
+        for (size_t k = 0; k < w; ++k) {
             if (codes[k] != OK) {
                 codes[k] = tripod_3ups_H(model, X + NQ*(i + k), H + NV*NU*(i + k));
             }
         }
-        failed += record(codes, LANES, status ? status + i : NULL);
-    }
-    for (; i < n; ++i) {
-        const int code = tripod_3ups_H(model, X + NQ*i, H + NV*NU*i);
-        failed += record(&code, 1, status ? status + i : NULL);
+        failed += record(codes, w, status ? status + i : NULL);
     }
     return failed;
 }
 
-int tripod_3ups_inverse_kinematics(const tripod_3ups_model *model, const tripod_3ups_real *X,
-    tripod_3ups_real *q)
+int tripod_3ups_inverse_kinematics(const prepared *model, const real *X, real *q)
 {
     int code;
     inverse_kinematics_one(model, X, q, &code);
     return code;
 }
 
-size_t tripod_3ups_inverse_kinematics_batch(const tripod_3ups_model *model, size_t n, const
-    tripod_3ups_real *X, tripod_3ups_real *q, int *status)
+size_t tripod_3ups_inverse_kinematics_batch(const prepared *model, size_t n, const real *X, real
+    *q, int *status)
 {
-    size_t failed = 0, i = 0;
-    for (; LANES > 1 && i + LANES <= n; i += LANES) {
-        int codes[LANES];
-        inverse_kinematics_lanes(model, X + NQ*i, q + NJ*i, codes);
-        for (size_t k = 0; k < LANES; ++k) {
+    size_t failed = 0, w;
+    for (size_t i = 0; i < n; i += w) {
+        int codes[LANES] = {INVALID};
+        w = LANES > 1 && i + LANES <= n ? LANES : 1;
+        if (w > 1) {
+            inverse_kinematics_lanes(model, X + NQ*i, q + NJ*i, codes);
+        }
+        for (size_t k = 0; k < w; ++k) {
             if (codes[k] != OK) {
                 codes[k] = tripod_3ups_inverse_kinematics(model, X + NQ*(i + k), q + NJ*(i + k));
             }
         }
-        failed += record(codes, LANES, status ? status + i : NULL);
-    }
-    for (; i < n; ++i) {
-        const int code = tripod_3ups_inverse_kinematics(model, X + NQ*i, q + NJ*i);
-        failed += record(&code, 1, status ? status + i : NULL);
+        failed += record(codes, w, status ? status + i : NULL);
     }
     return failed;
 }
 
-int tripod_3ups_joint_rates(const tripod_3ups_model *model, const tripod_3ups_real *X, const
-    tripod_3ups_real *V, tripod_3ups_real *rates)
+int tripod_3ups_joint_rates(const prepared *model, const real *X, const real *V, real *rates)
 {
     int code;
     joint_rates_one(model, X, V, rates, &code);
     return code;
 }
 
-size_t tripod_3ups_joint_rates_batch(const tripod_3ups_model *model, size_t n, const
-    tripod_3ups_real *X, const tripod_3ups_real *V, tripod_3ups_real *rates, int *status)
+size_t tripod_3ups_joint_rates_batch(const prepared *model, size_t n, const real *X, const real
+    *V, real *rates, int *status)
 {
-    size_t failed = 0, i = 0;
-    for (; LANES > 1 && i + LANES <= n; i += LANES) {
-        int codes[LANES];
-        joint_rates_lanes(model, X + NQ*i, V + NV*i, rates + NJ*i, codes);
-        for (size_t k = 0; k < LANES; ++k) {
+    size_t failed = 0, w;
+    for (size_t i = 0; i < n; i += w) {
+        int codes[LANES] = {INVALID};
+        w = LANES > 1 && i + LANES <= n ? LANES : 1;
+        if (w > 1) {
+            joint_rates_lanes(model, X + NQ*i, V + NV*i, rates + NJ*i, codes);
+        }
+        for (size_t k = 0; k < w; ++k) {
             if (codes[k] != OK) {
                 codes[k] = tripod_3ups_joint_rates(model, X + NQ*(i + k), V + NV*(i + k), rates + NJ*(i + k));
             }
         }
-        failed += record(codes, LANES, status ? status + i : NULL);
-    }
-    for (; i < n; ++i) {
-        const int code = tripod_3ups_joint_rates(model, X + NQ*i, V + NV*i, rates + NJ*i);
-        failed += record(&code, 1, status ? status + i : NULL);
+        failed += record(codes, w, status ? status + i : NULL);
     }
     return failed;
 }
 
-int tripod_3ups_joint_accelerations(const tripod_3ups_model *model, const tripod_3ups_real *X,
-    const tripod_3ups_real *V, const tripod_3ups_real *A, tripod_3ups_real *accelerations)
+int tripod_3ups_joint_accelerations(const prepared *model, const real *X, const real *V, const
+    real *A, real *accelerations)
 {
     int code;
     joint_accelerations_one(model, X, V, A, accelerations, &code);
     return code;
 }
 
-size_t tripod_3ups_joint_accelerations_batch(const tripod_3ups_model *model, size_t n, const
-    tripod_3ups_real *X, const tripod_3ups_real *V, const tripod_3ups_real *A, tripod_3ups_real
-    *accelerations, int *status)
+size_t tripod_3ups_joint_accelerations_batch(const prepared *model, size_t n, const real *X, const
+    real *V, const real *A, real *accelerations, int *status)
 {
-    size_t failed = 0, i = 0;
-    for (; LANES > 1 && i + LANES <= n; i += LANES) {
-        int codes[LANES];
-        joint_accelerations_lanes(model, X + NQ*i, V + NV*i, A + NV*i, accelerations + NJ*i, codes);
-        for (size_t k = 0; k < LANES; ++k) {
+    size_t failed = 0, w;
+    for (size_t i = 0; i < n; i += w) {
+        int codes[LANES] = {INVALID};
+        w = LANES > 1 && i + LANES <= n ? LANES : 1;
+        if (w > 1) {
+            joint_accelerations_lanes(model, X + NQ*i, V + NV*i, A + NV*i, accelerations + NJ*i, codes);
+        }
+        for (size_t k = 0; k < w; ++k) {
             if (codes[k] != OK) {
                 codes[k] = tripod_3ups_joint_accelerations(model, X + NQ*(i + k), V + NV*(i + k), A + NV*(i + k),
                     accelerations + NJ*(i + k));
             }
         }
-        failed += record(codes, LANES, status ? status + i : NULL);
-    }
-    for (; i < n; ++i) {
-        const int code = tripod_3ups_joint_accelerations(model, X + NQ*i, V + NV*i, A + NV*i,
-            accelerations + NJ*i);
-        failed += record(&code, 1, status ? status + i : NULL);
+        failed += record(codes, w, status ? status + i : NULL);
     }
     return failed;
 }
 
-int tripod_3ups_dynamics(const tripod_3ups_model *model, const tripod_3ups_real *X, const
-    tripod_3ups_real *V, tripod_3ups_real *M, tripod_3ups_real *Z, tripod_3ups_real *H)
+int tripod_3ups_dynamics(const prepared *model, const real *X, const real *V, real *M, real *Z,
+    real *H)
 {
     int code;
     dynamics_one(model, X, V, M, Z, H, &code);
     return code;
 }
 
-size_t tripod_3ups_dynamics_batch(const tripod_3ups_model *model, size_t n, const tripod_3ups_real
-    *X, const tripod_3ups_real *V, tripod_3ups_real *M, tripod_3ups_real *Z, tripod_3ups_real *H,
-    int *status)
+size_t tripod_3ups_dynamics_batch(const prepared *model, size_t n, const real *X, const real *V,
+    real *M, real *Z, real *H, int *status)
 {
-    size_t failed = 0, i = 0;
-    for (; LANES > 1 && i + LANES <= n; i += LANES) {
-        int codes[LANES];
-        dynamics_lanes(model, X + NQ*i, V + NV*i, M + NV*NV*i, Z + NV*i, H + NV*NU*i, codes);
-        for (size_t k = 0; k < LANES; ++k) {
+    size_t failed = 0, w;
+    for (size_t i = 0; i < n; i += w) {
+        int codes[LANES] = {INVALID};
+        w = LANES > 1 && i + LANES <= n ? LANES : 1;
+        if (w > 1) {
+            dynamics_lanes(model, X + NQ*i, V + NV*i, M + NV*NV*i, Z + NV*i, H + NV*NU*i, codes);
+        }
+        for (size_t k = 0; k < w; ++k) {
             if (codes[k] != OK) {
                 codes[k] = tripod_3ups_dynamics(model, X + NQ*(i + k), V + NV*(i + k), M + NV*NV*(i + k), Z +
                     NV*(i + k), H + NV*NU*(i + k));
             }
         }
-        failed += record(codes, LANES, status ? status + i : NULL);
-    }
-    for (; i < n; ++i) {
-        const int code = tripod_3ups_dynamics(model, X + NQ*i, V + NV*i, M + NV*NV*i, Z + NV*i, H +
-            NV*NU*i);
-        failed += record(&code, 1, status ? status + i : NULL);
+        failed += record(codes, w, status ? status + i : NULL);
     }
     return failed;
 }
 
-int tripod_3ups_inverse_dynamics(const tripod_3ups_model *model, const tripod_3ups_real *X, const
-    tripod_3ups_real *V, const tripod_3ups_real *A, const tripod_3ups_real *wrench,
-    tripod_3ups_real *tau)
+int tripod_3ups_inverse_dynamics(const prepared *model, const real *X, const real *V, const real
+    *A, const real *wrench, real *tau)
 {
     int code;
     inverse_dynamics_one(model, X, V, A, wrench, tau, &code);
     return code;
 }
 
-size_t tripod_3ups_inverse_dynamics_batch(const tripod_3ups_model *model, size_t n, const
-    tripod_3ups_real *X, const tripod_3ups_real *V, const tripod_3ups_real *A, const
-    tripod_3ups_real *wrench, tripod_3ups_real *tau, int *status)
+size_t tripod_3ups_inverse_dynamics_batch(const prepared *model, size_t n, const real *X, const
+    real *V, const real *A, const real *wrench, real *tau, int *status)
 {
-    size_t failed = 0, i = 0;
-    for (; LANES > 1 && i + LANES <= n; i += LANES) {
-        int codes[LANES];
-        inverse_dynamics_lanes(model, X + NQ*i, V + NV*i, A + NV*i, wrench ? wrench + NW*i : NULL, tau +
-            NU*i, codes);
-        for (size_t k = 0; k < LANES; ++k) {
+    size_t failed = 0, w;
+    for (size_t i = 0; i < n; i += w) {
+        int codes[LANES] = {INVALID};
+        w = LANES > 1 && i + LANES <= n ? LANES : 1;
+        if (w > 1) {
+            inverse_dynamics_lanes(model, X + NQ*i, V + NV*i, A + NV*i, wrench ? wrench + NW*i : NULL, tau +
+                NU*i, codes);
+        }
+        for (size_t k = 0; k < w; ++k) {
             if (codes[k] != OK) {
                 codes[k] = tripod_3ups_inverse_dynamics(model, X + NQ*(i + k), V + NV*(i + k), A + NV*(i + k),
                     wrench ? wrench + NW*(i + k) : NULL, tau + NU*(i + k));
             }
         }
-        failed += record(codes, LANES, status ? status + i : NULL);
-    }
-    for (; i < n; ++i) {
-        const int code = tripod_3ups_inverse_dynamics(model, X + NQ*i, V + NV*i, A + NV*i, wrench ? wrench
-            + NW*i : NULL, tau + NU*i);
-        failed += record(&code, 1, status ? status + i : NULL);
+        failed += record(codes, w, status ? status + i : NULL);
     }
     return failed;
 }
 
-int tripod_3ups_forward_dynamics(const tripod_3ups_model *model, const tripod_3ups_real *X, const
-    tripod_3ups_real *V, const tripod_3ups_real *tau, const tripod_3ups_real *wrench,
-    tripod_3ups_real *A)
+int tripod_3ups_forward_dynamics(const prepared *model, const real *X, const real *V, const real
+    *tau, const real *wrench, real *A)
 {
     int code;
     forward_dynamics_one(model, X, V, tau, wrench, A, &code);
     return code;
 }
 
-size_t tripod_3ups_forward_dynamics_batch(const tripod_3ups_model *model, size_t n, const
-    tripod_3ups_real *X, const tripod_3ups_real *V, const tripod_3ups_real *tau, const
-    tripod_3ups_real *wrench, tripod_3ups_real *A, int *status)
+size_t tripod_3ups_forward_dynamics_batch(const prepared *model, size_t n, const real *X, const
+    real *V, const real *tau, const real *wrench, real *A, int *status)
 {
-    size_t failed = 0, i = 0;
-    for (; LANES > 1 && i + LANES <= n; i += LANES) {
-        int codes[LANES];
-        forward_dynamics_lanes(model, X + NQ*i, V + NV*i, tau + NU*i, wrench ? wrench + NW*i : NULL, A +
-            NV*i, codes);
-        for (size_t k = 0; k < LANES; ++k) {
+    size_t failed = 0, w;
+    for (size_t i = 0; i < n; i += w) {
+        int codes[LANES] = {INVALID};
+        w = LANES > 1 && i + LANES <= n ? LANES : 1;
+        if (w > 1) {
+            forward_dynamics_lanes(model, X + NQ*i, V + NV*i, tau + NU*i, wrench ? wrench + NW*i : NULL, A +
+                NV*i, codes);
+        }
+        for (size_t k = 0; k < w; ++k) {
             if (codes[k] != OK) {
                 codes[k] = tripod_3ups_forward_dynamics(model, X + NQ*(i + k), V + NV*(i + k), tau + NU*(i + k),
                     wrench ? wrench + NW*(i + k) : NULL, A + NV*(i + k));
             }
         }
-        failed += record(codes, LANES, status ? status + i : NULL);
-    }
-    for (; i < n; ++i) {
-        const int code = tripod_3ups_forward_dynamics(model, X + NQ*i, V + NV*i, tau + NU*i, wrench ?
-            wrench + NW*i : NULL, A + NV*i);
-        failed += record(&code, 1, status ? status + i : NULL);
+        failed += record(codes, w, status ? status + i : NULL);
     }
     return failed;
 }
 
-int tripod_3ups_complete_acceleration(const tripod_3ups_model *model, const tripod_3ups_real *X,
-    const tripod_3ups_real *V, const tripod_3ups_real *A, const tripod_3ups_real *wrench,
-    tripod_3ups_real *completed)
+int tripod_3ups_complete_acceleration(const prepared *model, const real *X, const real *V, const
+    real *A, const real *wrench, real *completed)
 {
     int code;
     (void)model;
@@ -4574,12 +3779,11 @@ int tripod_3ups_complete_acceleration(const tripod_3ups_model *model, const trip
     return code;
 }
 
-size_t tripod_3ups_complete_acceleration_batch(const tripod_3ups_model *model, size_t n, const
-    tripod_3ups_real *X, const tripod_3ups_real *V, const tripod_3ups_real *A, const
-    tripod_3ups_real *wrench, tripod_3ups_real *completed, int *status)
+size_t tripod_3ups_complete_acceleration_batch(const prepared *model, size_t n, const real *X,
+    const real *V, const real *A, const real *wrench, real *completed, int *status)
 {
-    size_t failed = 0, i = 0;
-    for (; i < n; ++i) {
+    size_t failed = 0;
+    for (size_t i = 0; i < n; ++i) {
         const int code = tripod_3ups_complete_acceleration(model, X + NQ*i, V + NV*i, A + NV*i, wrench ?
             wrench + NW*i : NULL, completed + NV*i);
         failed += record(&code, 1, status ? status + i : NULL);
@@ -4587,21 +3791,19 @@ size_t tripod_3ups_complete_acceleration_batch(const tripod_3ups_model *model, s
     return failed;
 }
 
-int tripod_3ups_leg_reactions(const tripod_3ups_model *model, const tripod_3ups_real *X, const
-    tripod_3ups_real *V, const tripod_3ups_real *A, const tripod_3ups_real *wrench,
-    tripod_3ups_real *forces)
+int tripod_3ups_leg_reactions(const prepared *model, const real *X, const real *V, const real *A,
+    const real *wrench, real *forces)
 {
     int code;
     leg_reactions_one(model, X, V, A, wrench, forces, &code);
     return code;
 }
 
-size_t tripod_3ups_leg_reactions_batch(const tripod_3ups_model *model, size_t n, const
-    tripod_3ups_real *X, const tripod_3ups_real *V, const tripod_3ups_real *A, const
-    tripod_3ups_real *wrench, tripod_3ups_real *forces, int *status)
+size_t tripod_3ups_leg_reactions_batch(const prepared *model, size_t n, const real *X, const real
+    *V, const real *A, const real *wrench, real *forces, int *status)
 {
-    size_t failed = 0, i = 0;
-    for (; i < n; ++i) {
+    size_t failed = 0;
+    for (size_t i = 0; i < n; ++i) {
         const int code = tripod_3ups_leg_reactions(model, X + NQ*i, V + NV*i, A + NV*i, wrench ? wrench +
             NW*i : NULL, forces + 9*i);
         failed += record(&code, 1, status ? status + i : NULL);
@@ -4609,66 +3811,102 @@ size_t tripod_3ups_leg_reactions_batch(const tripod_3ups_model *model, size_t n,
     return failed;
 }
 
-int tripod_3ups_energy(const tripod_3ups_model *model, const tripod_3ups_real *X, const
-    tripod_3ups_real *V, tripod_3ups_real *kinetic, tripod_3ups_real *potential)
+int tripod_3ups_energy(const prepared *model, const real *X, const real *V, real *kinetic, real
+    *potential)
 {
     int code;
     energy_one(model, X, V, kinetic, potential, &code);
     return code;
 }
 
-size_t tripod_3ups_energy_batch(const tripod_3ups_model *model, size_t n, const tripod_3ups_real
-    *X, const tripod_3ups_real *V, tripod_3ups_real *kinetic, tripod_3ups_real *potential, int
-    *status)
+size_t tripod_3ups_energy_batch(const prepared *model, size_t n, const real *X, const real *V,
+    real *kinetic, real *potential, int *status)
 {
-    size_t failed = 0, i = 0;
-    for (; i < n; ++i) {
+    size_t failed = 0;
+    for (size_t i = 0; i < n; ++i) {
         const int code = tripod_3ups_energy(model, X + NQ*i, V + NV*i, kinetic + i, potential + i);
         failed += record(&code, 1, status ? status + i : NULL);
     }
     return failed;
 }
 
-int tripod_3ups_condition(const tripod_3ups_model *model, const tripod_3ups_real *X,
-    tripod_3ups_real *sigma, tripod_3ups_real *legs)
+int tripod_3ups_condition(const prepared *model, const real *X, real *sigma, real *legs)
 {
     int code;
     condition_one(model, X, sigma, legs, &code);
     return code;
 }
 
-size_t tripod_3ups_condition_batch(const tripod_3ups_model *model, size_t n, const
-    tripod_3ups_real *X, tripod_3ups_real *sigma, tripod_3ups_real *legs, int *status)
+size_t tripod_3ups_condition_batch(const prepared *model, size_t n, const real *X, real *sigma,
+    real *legs, int *status)
 {
-    size_t failed = 0, i = 0;
-    for (; i < n; ++i) {
+    size_t failed = 0;
+    for (size_t i = 0; i < n; ++i) {
         const int code = tripod_3ups_condition(model, X + NQ*i, sigma + 3*i, legs + 3*i);
         failed += record(&code, 1, status ? status + i : NULL);
     }
     return failed;
 }
 
-int tripod_3ups_forward_kinematics(const tripod_3ups_model *model, const tripod_3ups_real
-    *q_actuated, const tripod_3ups_real *X0, tripod_3ups_real *X)
+int tripod_3ups_manipulability(const prepared *model, const real *X, real *measure, real
+    *isotropy)
+{
+    int code;
+    manipulability_one(model, X, measure, isotropy, &code);
+    return code;
+}
+
+size_t tripod_3ups_manipulability_batch(const prepared *model, size_t n, const real *X, real
+    *measure, real *isotropy, int *status)
+{
+    size_t failed = 0;
+    for (size_t i = 0; i < n; ++i) {
+        const int code = tripod_3ups_manipulability(model, X + NQ*i, measure + i, isotropy + i);
+        failed += record(&code, 1, status ? status + i : NULL);
+    }
+    return failed;
+}
+
+int tripod_3ups_singularity_distance(const prepared *model, const real *X, real *actuators, real
+    *legs)
+{
+    int code;
+    singularity_distance_one(model, X, actuators, legs, &code);
+    return code;
+}
+
+size_t tripod_3ups_singularity_distance_batch(const prepared *model, size_t n, const real *X, real
+    *actuators, real *legs, int *status)
+{
+    size_t failed = 0;
+    for (size_t i = 0; i < n; ++i) {
+        const int code = tripod_3ups_singularity_distance(model, X + NQ*i, actuators + i, legs + i);
+        failed += record(&code, 1, status ? status + i : NULL);
+    }
+    return failed;
+}
+
+int tripod_3ups_forward_kinematics(const prepared *model, const real *q_actuated, const real *X0,
+    real *X)
 {
     int code;
     forward_kinematics_one(model, q_actuated, X0, X, &code);
     return code;
 }
 
-size_t tripod_3ups_forward_kinematics_batch(const tripod_3ups_model *model, size_t n, const
-    tripod_3ups_real *q_actuated, const tripod_3ups_real *X0, tripod_3ups_real *X, int *status)
+size_t tripod_3ups_forward_kinematics_batch(const prepared *model, size_t n, const real
+    *q_actuated, const real *X0, real *X, int *status)
 {
-    size_t failed = 0, i = 0;
-    for (; i < n; ++i) {
+    size_t failed = 0;
+    for (size_t i = 0; i < n; ++i) {
         const int code = tripod_3ups_forward_kinematics(model, q_actuated + NU*i, X0 + NQ*i, X + NQ*i);
         failed += record(&code, 1, status ? status + i : NULL);
     }
     return failed;
 }
 
-int tripod_3ups_dissipation(const tripod_3ups_model *model, const tripod_3ups_real *X, const
-    tripod_3ups_real *V, tripod_3ups_real *dissipation)
+int tripod_3ups_dissipation(const prepared *model, const real *X, const real *V, real
+    *dissipation)
 {
     int code;
     (void)model;
@@ -4677,276 +3915,258 @@ int tripod_3ups_dissipation(const tripod_3ups_model *model, const tripod_3ups_re
     return code;
 }
 
-size_t tripod_3ups_dissipation_batch(const tripod_3ups_model *model, size_t n, const
-    tripod_3ups_real *X, const tripod_3ups_real *V, tripod_3ups_real *dissipation, int *status)
+size_t tripod_3ups_dissipation_batch(const prepared *model, size_t n, const real *X, const real
+    *V, real *dissipation, int *status)
 {
-    size_t failed = 0, i = 0;
-    for (; i < n; ++i) {
+    size_t failed = 0;
+    for (size_t i = 0; i < n; ++i) {
         const int code = tripod_3ups_dissipation(model, X + NQ*i, V + NV*i, dissipation + i);
         failed += record(&code, 1, status ? status + i : NULL);
     }
     return failed;
 }
 
-int tripod_3ups_momentum(const tripod_3ups_model *model, const tripod_3ups_real *X, const
-    tripod_3ups_real *V, tripod_3ups_real *momentum)
+int tripod_3ups_momentum(const prepared *model, const real *X, const real *V, real *momentum)
 {
     int code;
     momentum_one(model, X, V, momentum, &code);
     return code;
 }
 
-size_t tripod_3ups_momentum_batch(const tripod_3ups_model *model, size_t n, const tripod_3ups_real
-    *X, const tripod_3ups_real *V, tripod_3ups_real *momentum, int *status)
+size_t tripod_3ups_momentum_batch(const prepared *model, size_t n, const real *X, const real *V,
+    real *momentum, int *status)
 {
-    size_t failed = 0, i = 0;
-    for (; LANES > 1 && i + LANES <= n; i += LANES) {
-        int codes[LANES];
-        momentum_lanes(model, X + NQ*i, V + NV*i, momentum + NV*i, codes);
-        for (size_t k = 0; k < LANES; ++k) {
+    size_t failed = 0, w;
+    for (size_t i = 0; i < n; i += w) {
+        int codes[LANES] = {INVALID};
+        w = LANES > 1 && i + LANES <= n ? LANES : 1;
+        if (w > 1) {
+            momentum_lanes(model, X + NQ*i, V + NV*i, momentum + NV*i, codes);
+        }
+        for (size_t k = 0; k < w; ++k) {
             if (codes[k] != OK) {
                 codes[k] = tripod_3ups_momentum(model, X + NQ*(i + k), V + NV*(i + k), momentum + NV*(i + k));
             }
         }
-        failed += record(codes, LANES, status ? status + i : NULL);
-    }
-    for (; i < n; ++i) {
-        const int code = tripod_3ups_momentum(model, X + NQ*i, V + NV*i, momentum + NV*i);
-        failed += record(&code, 1, status ? status + i : NULL);
+        failed += record(codes, w, status ? status + i : NULL);
     }
     return failed;
 }
 
-int tripod_3ups_joint_margins(const tripod_3ups_model *model, const tripod_3ups_real *X,
-    tripod_3ups_real *margins)
+int tripod_3ups_joint_margins(const prepared *model, const real *X, real *margins)
 {
     int code;
     joint_margins_one(model, X, margins, &code);
     return code;
 }
 
-size_t tripod_3ups_joint_margins_batch(const tripod_3ups_model *model, size_t n, const
-    tripod_3ups_real *X, tripod_3ups_real *margins, int *status)
+size_t tripod_3ups_joint_margins_batch(const prepared *model, size_t n, const real *X, real
+    *margins, int *status)
 {
-    size_t failed = 0, i = 0;
-    for (; LANES > 1 && i + LANES <= n; i += LANES) {
-        int codes[LANES];
-        joint_margins_lanes(model, X + NQ*i, margins + NJ*i, codes);
-        for (size_t k = 0; k < LANES; ++k) {
+    size_t failed = 0, w;
+    for (size_t i = 0; i < n; i += w) {
+        int codes[LANES] = {INVALID};
+        w = LANES > 1 && i + LANES <= n ? LANES : 1;
+        if (w > 1) {
+            joint_margins_lanes(model, X + NQ*i, margins + NJ*i, codes);
+        }
+        for (size_t k = 0; k < w; ++k) {
             if (codes[k] != OK) {
                 codes[k] = tripod_3ups_joint_margins(model, X + NQ*(i + k), margins + NJ*(i + k));
             }
         }
-        failed += record(codes, LANES, status ? status + i : NULL);
-    }
-    for (; i < n; ++i) {
-        const int code = tripod_3ups_joint_margins(model, X + NQ*i, margins + NJ*i);
-        failed += record(&code, 1, status ? status + i : NULL);
+        failed += record(codes, w, status ? status + i : NULL);
     }
     return failed;
 }
 
-int tripod_3ups_within_limits(const tripod_3ups_model *model, const tripod_3ups_real *X,
-    tripod_3ups_real *within)
+int tripod_3ups_within_limits(const prepared *model, const real *X, real *within)
 {
     int code;
     within_limits_one(model, X, within, &code);
     return code;
 }
 
-size_t tripod_3ups_within_limits_batch(const tripod_3ups_model *model, size_t n, const
-    tripod_3ups_real *X, tripod_3ups_real *within, int *status)
+size_t tripod_3ups_within_limits_batch(const prepared *model, size_t n, const real *X, real
+    *within, int *status)
 {
-    size_t failed = 0, i = 0;
-    for (; LANES > 1 && i + LANES <= n; i += LANES) {
-        int codes[LANES];
-        within_limits_lanes(model, X + NQ*i, within + i, codes);
-        for (size_t k = 0; k < LANES; ++k) {
+    size_t failed = 0, w;
+    for (size_t i = 0; i < n; i += w) {
+        int codes[LANES] = {INVALID};
+        w = LANES > 1 && i + LANES <= n ? LANES : 1;
+        if (w > 1) {
+            within_limits_lanes(model, X + NQ*i, within + i, codes);
+        }
+        for (size_t k = 0; k < w; ++k) {
             if (codes[k] != OK) {
                 codes[k] = tripod_3ups_within_limits(model, X + NQ*(i + k), within + (i + k));
             }
         }
-        failed += record(codes, LANES, status ? status + i : NULL);
-    }
-    for (; i < n; ++i) {
-        const int code = tripod_3ups_within_limits(model, X + NQ*i, within + i);
-        failed += record(&code, 1, status ? status + i : NULL);
+        failed += record(codes, w, status ? status + i : NULL);
     }
     return failed;
 }
 
-int tripod_3ups_actuator_positions(const tripod_3ups_model *model, const tripod_3ups_real *X,
-    tripod_3ups_real *q)
+int tripod_3ups_actuator_positions(const prepared *model, const real *X, real *q)
 {
     int code;
     actuator_positions_one(model, X, q, &code);
     return code;
 }
 
-size_t tripod_3ups_actuator_positions_batch(const tripod_3ups_model *model, size_t n, const
-    tripod_3ups_real *X, tripod_3ups_real *q, int *status)
+size_t tripod_3ups_actuator_positions_batch(const prepared *model, size_t n, const real *X, real
+    *q, int *status)
 {
-    size_t failed = 0, i = 0;
-    for (; LANES > 1 && i + LANES <= n; i += LANES) {
-        int codes[LANES];
-        actuator_positions_lanes(model, X + NQ*i, q + NU*i, codes);
-        for (size_t k = 0; k < LANES; ++k) {
+    size_t failed = 0, w;
+    for (size_t i = 0; i < n; i += w) {
+        int codes[LANES] = {INVALID};
+        w = LANES > 1 && i + LANES <= n ? LANES : 1;
+        if (w > 1) {
+            actuator_positions_lanes(model, X + NQ*i, q + NU*i, codes);
+        }
+        for (size_t k = 0; k < w; ++k) {
             if (codes[k] != OK) {
                 codes[k] = tripod_3ups_actuator_positions(model, X + NQ*(i + k), q + NU*(i + k));
             }
         }
-        failed += record(codes, LANES, status ? status + i : NULL);
-    }
-    for (; i < n; ++i) {
-        const int code = tripod_3ups_actuator_positions(model, X + NQ*i, q + NU*i);
-        failed += record(&code, 1, status ? status + i : NULL);
+        failed += record(codes, w, status ? status + i : NULL);
     }
     return failed;
 }
 
-int tripod_3ups_actuator_rates(const tripod_3ups_model *model, const tripod_3ups_real *X, const
-    tripod_3ups_real *V, tripod_3ups_real *rates)
+int tripod_3ups_actuator_rates(const prepared *model, const real *X, const real *V, real *rates)
 {
     int code;
     actuator_rates_one(model, X, V, rates, &code);
     return code;
 }
 
-size_t tripod_3ups_actuator_rates_batch(const tripod_3ups_model *model, size_t n, const
-    tripod_3ups_real *X, const tripod_3ups_real *V, tripod_3ups_real *rates, int *status)
+size_t tripod_3ups_actuator_rates_batch(const prepared *model, size_t n, const real *X, const real
+    *V, real *rates, int *status)
 {
-    size_t failed = 0, i = 0;
-    for (; LANES > 1 && i + LANES <= n; i += LANES) {
-        int codes[LANES];
-        actuator_rates_lanes(model, X + NQ*i, V + NV*i, rates + NU*i, codes);
-        for (size_t k = 0; k < LANES; ++k) {
+    size_t failed = 0, w;
+    for (size_t i = 0; i < n; i += w) {
+        int codes[LANES] = {INVALID};
+        w = LANES > 1 && i + LANES <= n ? LANES : 1;
+        if (w > 1) {
+            actuator_rates_lanes(model, X + NQ*i, V + NV*i, rates + NU*i, codes);
+        }
+        for (size_t k = 0; k < w; ++k) {
             if (codes[k] != OK) {
                 codes[k] = tripod_3ups_actuator_rates(model, X + NQ*(i + k), V + NV*(i + k), rates + NU*(i + k));
             }
         }
-        failed += record(codes, LANES, status ? status + i : NULL);
-    }
-    for (; i < n; ++i) {
-        const int code = tripod_3ups_actuator_rates(model, X + NQ*i, V + NV*i, rates + NU*i);
-        failed += record(&code, 1, status ? status + i : NULL);
+        failed += record(codes, w, status ? status + i : NULL);
     }
     return failed;
 }
 
-int tripod_3ups_actuator_accelerations(const tripod_3ups_model *model, const tripod_3ups_real *X,
-    const tripod_3ups_real *V, const tripod_3ups_real *A, tripod_3ups_real *accelerations)
+int tripod_3ups_actuator_accelerations(const prepared *model, const real *X, const real *V, const
+    real *A, real *accelerations)
 {
     int code;
     actuator_accelerations_one(model, X, V, A, accelerations, &code);
     return code;
 }
 
-size_t tripod_3ups_actuator_accelerations_batch(const tripod_3ups_model *model, size_t n, const
-    tripod_3ups_real *X, const tripod_3ups_real *V, const tripod_3ups_real *A, tripod_3ups_real
-    *accelerations, int *status)
+size_t tripod_3ups_actuator_accelerations_batch(const prepared *model, size_t n, const real *X,
+    const real *V, const real *A, real *accelerations, int *status)
 {
-    size_t failed = 0, i = 0;
-    for (; LANES > 1 && i + LANES <= n; i += LANES) {
-        int codes[LANES];
-        actuator_accelerations_lanes(model, X + NQ*i, V + NV*i, A + NV*i, accelerations + NU*i, codes);
-        for (size_t k = 0; k < LANES; ++k) {
+    size_t failed = 0, w;
+    for (size_t i = 0; i < n; i += w) {
+        int codes[LANES] = {INVALID};
+        w = LANES > 1 && i + LANES <= n ? LANES : 1;
+        if (w > 1) {
+            actuator_accelerations_lanes(model, X + NQ*i, V + NV*i, A + NV*i, accelerations + NU*i, codes);
+        }
+        for (size_t k = 0; k < w; ++k) {
             if (codes[k] != OK) {
                 codes[k] = tripod_3ups_actuator_accelerations(model, X + NQ*(i + k), V + NV*(i + k), A + NV*(i +
                     k), accelerations + NU*(i + k));
             }
         }
-        failed += record(codes, LANES, status ? status + i : NULL);
-    }
-    for (; i < n; ++i) {
-        const int code = tripod_3ups_actuator_accelerations(model, X + NQ*i, V + NV*i, A + NV*i,
-            accelerations + NU*i);
-        failed += record(&code, 1, status ? status + i : NULL);
+        failed += record(codes, w, status ? status + i : NULL);
     }
     return failed;
 }
 
-int tripod_3ups_power(const tripod_3ups_model *model, const tripod_3ups_real *X, const
-    tripod_3ups_real *V, const tripod_3ups_real *tau, tripod_3ups_real *power)
+int tripod_3ups_power(const prepared *model, const real *X, const real *V, const real *tau, real
+    *power)
 {
     int code;
     power_one(model, X, V, tau, power, &code);
     return code;
 }
 
-size_t tripod_3ups_power_batch(const tripod_3ups_model *model, size_t n, const tripod_3ups_real
-    *X, const tripod_3ups_real *V, const tripod_3ups_real *tau, tripod_3ups_real *power, int
-    *status)
+size_t tripod_3ups_power_batch(const prepared *model, size_t n, const real *X, const real *V,
+    const real *tau, real *power, int *status)
 {
-    size_t failed = 0, i = 0;
-    for (; LANES > 1 && i + LANES <= n; i += LANES) {
-        int codes[LANES];
-        power_lanes(model, X + NQ*i, V + NV*i, tau + NU*i, power + i, codes);
-        for (size_t k = 0; k < LANES; ++k) {
+    size_t failed = 0, w;
+    for (size_t i = 0; i < n; i += w) {
+        int codes[LANES] = {INVALID};
+        w = LANES > 1 && i + LANES <= n ? LANES : 1;
+        if (w > 1) {
+            power_lanes(model, X + NQ*i, V + NV*i, tau + NU*i, power + i, codes);
+        }
+        for (size_t k = 0; k < w; ++k) {
             if (codes[k] != OK) {
                 codes[k] = tripod_3ups_power(model, X + NQ*(i + k), V + NV*(i + k), tau + NU*(i + k), power + (i +
                     k));
             }
         }
-        failed += record(codes, LANES, status ? status + i : NULL);
-    }
-    for (; i < n; ++i) {
-        const int code = tripod_3ups_power(model, X + NQ*i, V + NV*i, tau + NU*i, power + i);
-        failed += record(&code, 1, status ? status + i : NULL);
+        failed += record(codes, w, status ? status + i : NULL);
     }
     return failed;
 }
 
-int tripod_3ups_retract(const tripod_3ups_real *X, const tripod_3ups_real *step, tripod_3ups_real
-    *X_moved)
+int tripod_3ups_retract(const real *X, const real *step, real *X_moved)
 {
     int code;
     retract_one(X, step, X_moved, &code);
     return code;
 }
 
-size_t tripod_3ups_retract_batch(size_t n, const tripod_3ups_real *X, const tripod_3ups_real
-    *step, tripod_3ups_real *X_moved, int *status)
+size_t tripod_3ups_retract_batch(size_t n, const real *X, const real *step, real *X_moved, int
+    *status)
 {
-    size_t failed = 0, i = 0;
-    for (; i < n; ++i) {
+    size_t failed = 0;
+    for (size_t i = 0; i < n; ++i) {
         const int code = tripod_3ups_retract(X + NQ*i, step + NV*i, X_moved + NQ*i);
         failed += record(&code, 1, status ? status + i : NULL);
     }
     return failed;
 }
 
-int tripod_3ups_difference(const tripod_3ups_real *X0, const tripod_3ups_real *X1,
-    tripod_3ups_real *step)
+int tripod_3ups_difference(const real *X0, const real *X1, real *step)
 {
     int code;
     difference_one(X0, X1, step, &code);
     return code;
 }
 
-size_t tripod_3ups_difference_batch(size_t n, const tripod_3ups_real *X0, const tripod_3ups_real
-    *X1, tripod_3ups_real *step, int *status)
+size_t tripod_3ups_difference_batch(size_t n, const real *X0, const real *X1, real *step, int
+    *status)
 {
-    size_t failed = 0, i = 0;
-    for (; i < n; ++i) {
+    size_t failed = 0;
+    for (size_t i = 0; i < n; ++i) {
         const int code = tripod_3ups_difference(X0 + NQ*i, X1 + NQ*i, step + NV*i);
         failed += record(&code, 1, status ? status + i : NULL);
     }
     return failed;
 }
 
-int tripod_3ups_interpolate(const tripod_3ups_real *X0, const tripod_3ups_real *X1, const
-    tripod_3ups_real *s, tripod_3ups_real *X)
+int tripod_3ups_interpolate(const real *X0, const real *X1, const real *s, real *X)
 {
     int code;
     interpolate_one(X0, X1, s, X, &code);
     return code;
 }
 
-size_t tripod_3ups_interpolate_batch(size_t n, const tripod_3ups_real *X0, const tripod_3ups_real
-    *X1, const tripod_3ups_real *s, tripod_3ups_real *X, int *status)
+size_t tripod_3ups_interpolate_batch(size_t n, const real *X0, const real *X1, const real *s, real
+    *X, int *status)
 {
-    size_t failed = 0, i = 0;
-    for (; i < n; ++i) {
+    size_t failed = 0;
+    for (size_t i = 0; i < n; ++i) {
         const int code = tripod_3ups_interpolate(X0 + NQ*i, X1 + NQ*i, s + i, X + NQ*i);
         failed += record(&code, 1, status ? status + i : NULL);
     }

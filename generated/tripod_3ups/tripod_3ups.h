@@ -230,6 +230,22 @@ int tripod_3ups_condition(const tripod_3ups_model *model, const tripod_3ups_real
 size_t tripod_3ups_condition_batch(const tripod_3ups_model *model, size_t n, const
     tripod_3ups_real *X, tripod_3ups_real *sigma, tripod_3ups_real *legs, int *status);
 
+/* Manipulability of forces: the product of the singular values that condition has by default, and
+   the least over the largest of them. 73 mul, 69 add, 3 div, 13 sqrt, 0 trig; the singular values
+   apart. In: X (NQ). Out: measure (1), isotropy (1). */
+int tripod_3ups_manipulability(const tripod_3ups_model *model, const tripod_3ups_real *X,
+    tripod_3ups_real *measure, tripod_3ups_real *isotropy);
+size_t tripod_3ups_manipulability_batch(const tripod_3ups_model *model, size_t n, const
+    tripod_3ups_real *X, tripod_3ups_real *measure, tripod_3ups_real *isotropy, int *status);
+
+/* How near actuators and legs are to being singular: relative distances, 0 where they are. 73
+   mul, 69 add, 3 div, 13 sqrt, 0 trig; the singular values apart. In: X (NQ). Out: actuators (1),
+   legs (1). */
+int tripod_3ups_singularity_distance(const tripod_3ups_model *model, const tripod_3ups_real *X,
+    tripod_3ups_real *actuators, tripod_3ups_real *legs);
+size_t tripod_3ups_singularity_distance_batch(const tripod_3ups_model *model, size_t n, const
+    tripod_3ups_real *X, tripod_3ups_real *actuators, tripod_3ups_real *legs, int *status);
+
 /* X at which the actuated joints stand at q_actuated, by Gauss-Newton from X0. Extra coordinates
    that actuators do not determine stay. Impossible where no pose is found. In: q_actuated (NU),
    X0 (NQ). Out: X (NQ). */

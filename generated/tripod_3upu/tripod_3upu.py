@@ -65,6 +65,7 @@ __all__ = [
     "joint_margins",
     "joint_rates",
     "leg_reactions",
+    "manipulability",
     "momentum",
     "null_space",
     "pose",
@@ -73,6 +74,7 @@ __all__ = [
     "project",
     "retract",
     "rotation",
+    "singularity_distance",
     "within_limits",
 ]
 
@@ -632,14 +634,14 @@ def _prepare(p):
     upu_link2_inertia_yy + upu_link3_inertia_yy - upu_link2_mass*(upu_J_group_2_t_2 -
         upu_J_group_2_t_4) - upu_link3_mass*(upu_J_group_2_t_6 - upu_J_group_2_t_8)
     )
-    # (upu-trace_J_2) half the trace of that inertia tensor
-    upu_trace_J_2 = (
-    0.5*upu_J_group_2_in_axes2_xx + 0.5*upu_J_group_2_in_axes2_yy + 0.5*upu_J_group_2_in_axes2_zz
-    )
     # (upu-Sigma_2) second moment of mass of the links that turn with link 2
-    upu_Sigma_2_in_axes2_xx = upu_trace_J_2 - upu_J_group_2_in_axes2_xx
-    upu_Sigma_2_in_axes2_yy = upu_trace_J_2 - upu_J_group_2_in_axes2_yy
-    upu_Sigma_2_in_axes2_zz = upu_trace_J_2 - upu_J_group_2_in_axes2_zz
+    upu_Sigma_2_t = (
+    upu_J_group_2_in_axes2_xx + upu_J_group_2_in_axes2_yy + upu_J_group_2_in_axes2_zz
+    )
+    upu_Sigma_2_t_2 = 0.5*upu_Sigma_2_t
+    upu_Sigma_2_in_axes2_xx = upu_Sigma_2_t_2 - upu_J_group_2_in_axes2_xx
+    upu_Sigma_2_in_axes2_yy = upu_Sigma_2_t_2 - upu_J_group_2_in_axes2_yy
+    upu_Sigma_2_in_axes2_zz = upu_Sigma_2_t_2 - upu_J_group_2_in_axes2_zz
     # (potential) potential energy
     upu_potential_t = (
     upu_base_frame_xx*upu_base_point_x + upu_base_frame_yx*upu_base_point_y +
@@ -899,6 +901,24 @@ def _constants(p, name):
     return p._cache[name]
 
 
+class _Vector(list):
+    """A vector, or a matrix row by row, of a single state."""
+
+    def __add__(self, other):
+        return _Vector([a + b for a, b in zip(self, other)])
+
+    def __sub__(self, other):
+        return _Vector([a - b for a, b in zip(self, other)])
+
+    def __neg__(self):
+        return _Vector([-a for a in self])
+
+
+def _are_finite(rows):
+    """Whether lists of floats have finite entries alone."""
+    return math.isfinite(sum(map(sum, rows))) or all(all(map(math.isfinite, row)) for row in rows)
+
+
 class _Floats:
     """Functions of a state after another, in Python floats: the way for few states."""
 
@@ -928,11 +948,32 @@ class _Floats:
         """Lists that a function gives at a state."""
         try:
             ok, arrays = function(self, *given)
-        except (ZeroDivisionError, OverflowError, ValueError):
+        except (ArithmeticError, ValueError):
             ok = False
-        if ok and all(all(map(math.isfinite, array)) for array in arrays):
+        if ok and _are_finite(arrays):
             return arrays
         return [[np.nan] * math.prod(_SHAPES[n]) for n in names]
+
+    def solved(self, order, a, b):
+        """Solutions, straight through; and which are beyond doubt."""
+        sure, x = np.zeros(self.states, dtype=bool), np.full(b.shape, np.nan)
+        for k, given in enumerate(zip(a.T.tolist(), b.T.tolist())):
+            try:
+                sure[k], (x[:, k],) = order(self, *given)
+            except ZeroDivisionError:
+                pass
+        return sure, x
+
+
+class _Single(_Floats):
+    """A single state in lists of floats throughout."""
+
+    def run(self, function, names, *vectors):
+        """Arrays of a function, row by row; ArithmeticError or ValueError where the state is impossible."""
+        ok, arrays = function(self, *vectors)
+        if not (ok and _are_finite(arrays)):
+            raise ArithmeticError
+        return [_Vector(a) for a in arrays]
 
 
 class _Arrays:
@@ -962,20 +1003,27 @@ class _Arrays:
     def zeros(self, name):
         return np.zeros((math.prod(_SHAPES[name]), self.states))
 
-    def computed(self, function, names, vectors):
-        """Flags and arrays (*shape, states) of a function."""
+    def computed(self, function, *vectors):
+        """Flags and arrays (entries, states) of a function."""
         if self.kept is None:
-            flags, arrays = function(self, *vectors)
-        else:
-            if self.done not in self.kept:
-                self.kept[self.done] = _Replay(self.p, function, [len(v) for v in vectors], self.states)
-            flags, arrays = self.kept[self.done].run(vectors)
-            self.done += 1
-        return flags, [a.reshape(*_SHAPES[n], self.states) for a, n in zip(arrays, names)]
+            return function(self, *vectors)
+        if self.done not in self.kept:
+            self.kept[self.done] = _Replay(self.p, function, [len(v) for v in vectors], self.states)
+        self.done += 1
+        return self.kept[self.done - 1].run(vectors)
+
+    def shaped(self, names, arrays):
+        return [a.reshape(*_SHAPES[n], self.states) for a, n in zip(arrays, names)]
+
+    def solved(self, order, a, b):
+        """Solutions, straight through; and which are beyond doubt."""
+        sure, (x,) = self.computed(order, a, b)
+        return sure, np.array(x)
 
     def run(self, function, names, *vectors):
         """Arrays (*shape, states) of a function; NaN where the state is impossible."""
-        ok, arrays = self.computed(function, names, vectors)
+        ok, arrays = self.computed(function, *vectors)
+        arrays = self.shaped(names, arrays)
         ok = np.logical_and(ok, _finite(arrays, self.states))
         if not np.all(ok):
             for a in arrays:
@@ -992,10 +1040,10 @@ class _Judged(_Arrays):
 
     def run(self, function, names, *vectors):
         """Arrays (*shape, states) of a function, also where they are nonsense."""
-        (valid, reached, clear), arrays = self.computed(function, names, vectors)
+        (valid, reached, clear), arrays = self.computed(function, *vectors)
         for code, good in ((3, valid), (1, reached), (2, clear)):
             self.failed[code] |= np.logical_not(good)
-        return arrays
+        return self.shaped(names, arrays)
 
     def closed(self, q):
         """q, noting where the iteration has not converged."""
@@ -1007,26 +1055,90 @@ class _Judged(_Arrays):
         return np.select(list(self.failed.values()), list(self.failed), np.where(possible, 0, 3))
 
 
+_IN_ONE = {}  # by function
+
+
+def _in_one(function):
+    """A function that tells whether a state is possible, of one that tells why not."""
+
+    def run(m, *vectors):
+        (valid, reached, clear), arrays = function(m, *vectors)
+        return valid & reached & clear, arrays
+
+    return _IN_ONE.setdefault(function, run)
+
+
 def _mode(p, states, kept=None):
     """The faster way for so many states."""
     return (_Floats if 0 < states <= _FEW else _Arrays)(p, states, kept)
 
 
-def _call(function, steps, p, *arguments, mode=_mode, unbounded=False):
+def _call(function, steps, p, *arguments, mode=_mode, unbounded=False, plain=()):
     """What the steps give at arguments (name, value, shape of a state, default, rule).
 
-    Where that may be infinite only NaN makes a state impossible.
+    Where that may be infinite only NaN makes a state impossible.  `plain` has the shapes of results
+    where a single state needs no arrays.
     """
+    p, read = _given(p), [a[-1] != "unused" for a in arguments]
+    lists = plain and _lists(arguments)
+    if lists:
+        found = _state(_Single(p, 1), steps, lists, read)
+        results = [_result(a, shape) for a, shape in zip(found or plain, plain)]
+        return results[0] if len(results) == 1 else tuple(results)
     given = [_argument(function, *a) for a in arguments]
     shapes = [a[2] for a in arguments]
     leads = {a[0]: v.shape[: v.ndim - len(a[2])] for a, v in zip(arguments, given)}
-    lead, p = _lead(leads), _given(p)
-    read = [a[4:] != ("unused",) for a in arguments]
-    if lead or mode is _Judged:
+    lead = _lead(leads)
+    if plain and 0 < math.prod(lead) <= _FEW:
+        results = _few(steps, p, lead, given, shapes, read, plain)
+    elif lead or mode is _Judged:
         results = _many(steps, p, lead, given, shapes, read, mode, unbounded)
     else:
         results = _one(steps, p, given, shapes, read, unbounded)
     return results[0] if len(results) == 1 else tuple(results)
+
+
+def _lists(arguments):
+    """Arguments of a single state as lists, where they are such arrays as they mostly are."""
+    found = []
+    for row in arguments:
+        value, shape = row[1:3]
+        if type(value) is np.ndarray:
+            if value.shape != shape or value.dtype is not _REAL or row[-1] == "positive":
+                return None
+            found.append(_Vector(value.tolist()))
+        elif value is None and len(row) > 3 and row[3] is not None:
+            found.append(_Vector(row[3] if isinstance(row[3], tuple) else [row[3]] * shape[0]))
+        else:
+            return None
+    return found
+
+
+def _state(m, steps, given, read):
+    """Lists that the steps give at a state; None where it is impossible."""
+    try:
+        found = steps(m, *given)
+    except (ArithmeticError, ValueError):
+        return None
+    return found if _are_finite(list(compress(given, read))) and _are_finite(found) else None
+
+
+def _result(found, shape):
+    """The array of a list; of an impossible state, for which its shape is given, NaN."""
+    if found is shape:
+        return np.full(shape, np.nan)
+    return np.array(found) if len(shape) == 1 else np.array(found).reshape(shape)
+
+
+def _few(steps, p, lead, given, shapes, read, plain):
+    """Results at a few states, one after another."""
+    m, rows = _Single(p, 1), []
+    for v, shape in zip(given, shapes):
+        flat = np.broadcast_to(v, lead + shape).reshape(math.prod(lead), -1)
+        rows.append(map(_Vector, flat.tolist()))
+    impossible = [[np.nan] * math.prod(shape) for shape in plain]
+    found = [_state(m, steps, state, read) or impossible for state in zip(*rows)]
+    return [np.array(a).reshape(lead + shape) for a, shape in zip(zip(*found), plain)]
 
 
 def _one(steps, p, given, shapes, read, unbounded):
@@ -1045,7 +1157,11 @@ def _many(steps, p, lead, given, shapes, read, mode, unbounded):
     """Results at many states, block by block; the last block begins where it is as long as the others."""
     count = math.prod(lead)
     size, kept = min(count, _BLOCK), {} if count >= _MANY else None
-    flat = [np.broadcast_to(v, lead + s).reshape(count, *s) for v, s in zip(given, shapes)]
+    # one value for all states stands for itself
+    flat = [
+        np.broadcast_to(v, lead + s).reshape(count, *s) if v.ndim > len(s) else v
+        for v, s in zip(given, shapes)
+    ]
     possible, status, outputs = np.ones(count, dtype=bool), np.zeros(count, dtype=int), []
     if count > size:
         # Never touched, freed at once: the C library, which learns from it, then keeps the memory
@@ -1054,7 +1170,7 @@ def _many(steps, p, lead, given, shapes, read, mode, unbounded):
     with np.errstate(all="ignore"):
         for stop in (*range(size, count, max(size, 1)), count):
             block = slice(stop - size, stop)
-            states = [_states_last(v[block]) for v in flat]
+            states = [_states_last(v, s, block) for v, s in zip(flat, shapes)]
             m, good = mode(p, size, kept), possible[block]
             found = steps(m, *states)
             if not outputs:
@@ -1074,15 +1190,17 @@ def _many(steps, p, lead, given, shapes, read, mode, unbounded):
     return [a.reshape(lead + a.shape[1:])[()] for a in outputs]
 
 
-def _states_last(a):
-    """A contiguous array (*shape, states) of one (states, *shape)."""
-    return np.ascontiguousarray(a.transpose(*range(1, a.ndim), 0))
+def _states_last(a, shape, block):
+    """An array (*shape, states) of a block of one (states, *shape), or of a value for all."""
+    if a.ndim == len(shape):
+        return np.broadcast_to(a[..., None], (*shape, block.stop - block.start))
+    return np.ascontiguousarray(a[block].transpose(*range(1, a.ndim), 0))
 
 
 def _finite(arrays, states):
     """In which states all entries of arrays (*shape, states) are finite."""
     flat = [a.reshape(math.prod(a.shape[:-1]), states) for a in arrays]
-    good = np.isfinite(sum(np.add.reduce(a, axis=0) for a in flat))
+    good = np.isfinite(sum(np.einsum("es->s", a) for a in flat))
     if not np.all(good):  # or the sum is too large
         good = np.logical_and.reduce([np.isfinite(a).all(axis=0) for a in flat])
     return good
@@ -1191,6 +1309,8 @@ class _Record:
 
     def made(self, operation, *operands):
         """The result of an operation."""
+        if operation in _WITHOUT and operands[0] is _WITHOUT[operation]:
+            return operands[1]
         numbers = [self.number(operand) for operand in operands]
         if all(self.kinds[n] == "one" for n in numbers):
             kind = "one"
@@ -1227,6 +1347,7 @@ class _Record:
         return counts
 
 
+_WITHOUT = {np.logical_and: True}  # first operands that change nothing
 _OF_FLAGS = {np.logical_and, np.greater, np.greater_equal}
 _RECORDS = {}  # by function
 
@@ -1238,11 +1359,12 @@ class _Replay:
         if function not in _RECORDS:
             _RECORDS[function] = _Record(p, function, sizes)
         r = _RECORDS[function]
-        made = {kind: _rows(n, states, bool if kind == "flag" else float) for kind, n in r.counts.items()}
-        made["one"] = [np.empty(()) for _ in range(r.counts["one"])]
-        made["out"] = _rows(sum(r.sizes), states)
-        self.inputs = [_rows(size, states) for size in sizes]
-        self.arrays = np.split(made["out"], np.cumsum(r.sizes)[:-1])
+        rows = _rows(r.counts["state"] + sum(r.sizes) + sum(sizes), states)
+        given, out, state = np.split(rows, np.cumsum((sum(sizes), sum(r.sizes))))
+        made = {"state": state, "out": out, "one": [np.empty(()) for _ in range(r.counts["one"])]}
+        made["flag"] = np.empty((r.counts["flag"], states), dtype=bool)
+        self.inputs = np.split(given, np.cumsum(sizes)[:-1])
+        self.arrays = np.split(out, np.cumsum(r.sizes)[:-1])
         at = {number: np.array(value) for value, number in r.literals.items()}
         for values, given in zip(r.inputs, self.inputs):
             at |= {v.number: row for v, row in zip(values, given)}
@@ -1264,9 +1386,26 @@ class _Replay:
         return self.flags, self.arrays
 
 
-def _rows(count, states, kind=float):
-    """Rows of so many states, a cache line apart from each other."""
-    return np.empty((count, states + 8), dtype=kind)[:, :states]
+def _rows(count, states):
+    """Rows of so many states in one piece, which the system keeps in a few large pages if it is told.
+
+    NumPy tells it of pieces from 4 MB on.  It makes operations a third faster.
+    """
+    row = states + 8  # a cache line further: rows do not compete for the same places of the cache
+    piece = np.empty(max(count * row, 2 * _PAGE) + _PAGE)
+    start = -(piece.ctypes.data // piece.itemsize) % _PAGE
+    return piece[start : start + count * row].reshape(count, row)[:, :states]
+
+
+_PAGE = (2 << 20) // 8  # numbers in a large page
+
+
+def _times(a, b):
+    """Products of matrices (m, n, states) with vectors (n, states)."""
+    if isinstance(b, _Vector):
+        rows = (a[k : k + len(b)] for k in range(0, len(a), len(b)))
+        return _Vector([sum([x * y for x, y in zip(row, b)]) for row in rows])
+    return np.einsum("ijs,js->is", a, b)
 
 
 def _with_forces(a, amounts, directions, legs):
@@ -1387,8 +1526,10 @@ _CLEARLY = 2.0  # rows change places only for a pivot that is larger by this fac
 
 def _solve(a, b):
     """x with a x = b, a (n, n, states), b (n, states): rows scaled, partial pivoting; NaN if singular."""
+    if isinstance(b, _Vector):
+        return _Vector(_solve_one([a[k : k + len(b)] for k in range(0, len(a), len(b))], b))
     n, states = b.shape
-    if 0 < states <= _FEW:
+    if 0 < states <= 8:
         systems = zip(a.transpose(2, 0, 1).tolist(), b.T.tolist())
         return np.array([_solve_one(*each) for each in systems]).T.reshape(n, states)
     size = np.max(np.abs(a), axis=1, initial=0.0)
@@ -1413,6 +1554,38 @@ def _solve(a, b):
         known = np.einsum("js,js->s", rows[k, k + 1 : n], x[k + 1 :])
         x[k] = (rows[k, n] - known) / rows[k, k]
     x[:, ~(good & np.isfinite(x).all(axis=0))] = np.nan
+    return x
+
+
+class _Order:
+    """How a system is solved near home.
+
+    Args:
+        solve: the function for so many equations.
+        rows: in the order of their pivots.
+        limits: of multiples, column by column, and of 1/pivot.
+    """
+
+    def __init__(self, solve, rows, limits):
+        self.solve, self.rows, self.limits = solve, rows, limits
+
+    def __call__(self, m, a, b):
+        """Solutions of a x = b, and whether these are beyond doubt."""
+        return self.solve(a, b, self.rows, self.limits)
+
+
+def _straight(m, a, b, order):
+    """The same, in the order of rows at home; with a choice of rows only where that is in doubt."""
+    if isinstance(b, _Vector):
+        try:
+            sure, (x,) = order(m, a, b)
+        except ZeroDivisionError:
+            sure = False
+        return _Vector(x) if sure else _solve(a, b)
+    sure, x = m.solved(order, a.reshape(-1, m.states), b)
+    at = np.flatnonzero(np.logical_not(sure))
+    if at.size:
+        x[:, at] = _solve(a[..., at], b[:, at])
     return x
 
 
@@ -1477,6 +1650,16 @@ def _singular_values(a):
     values = np.linalg.svd(a, compute_uv=False).T.copy()
     values[:, bad] = np.nan
     return values
+
+
+def _least_entry(a):
+    """The least entry."""
+    return np.min(a, axis=0)
+
+
+def _spread(a, n):
+    """Of the first n entries the product, and the last over the first, 0 where that is 0."""
+    return np.prod(a[:n], axis=0), np.where(a[0] == 0.0, 0.0, a[n - 1] / a[0])
 
 
 def _least_squares(a, b, least):
@@ -1719,52 +1902,46 @@ def _run_dynamics(m, X, V):
         upu_S_x = t_x + upu_q_x - upu_base_point_x
         upu_S_y = t_y + upu_q_y - upu_base_point_y
         upu_S_z = t_z + upu_q_z - upu_base_point_z
-        # (upu-px_1) component along the reference direction
-        upu_px_1 = (
+        upu_S_in_turn1_x = (
         upu_S_x*upu_base_frame_xx + upu_S_y*upu_base_frame_yx + upu_S_z*upu_base_frame_zx
         )
-        # (upu-py_1) component across the reference direction
-        upu_py_1 = (
+        upu_S_in_turn1_y = (
         upu_S_x*upu_base_frame_xy + upu_S_y*upu_base_frame_yy + upu_S_z*upu_base_frame_zy
         )
-        # (upu-rho2_1) squared amplitude
-        upu_rho2_1 = upu_px_1*upu_px_1 + upu_py_1*upu_py_1
-        # (upu-root_1) amplitude, with the sign of the branch
-        upu_root_1 = upu_branch_1*sqrt(upu_rho2_1)
-        # (upu-c_1) cosine of the angle of joint 1 from its reference direction
-        inv_upu_root_1 = 1.0/upu_root_1
-        upu_c_1_t = inv_upu_root_1*upu_py_1
-        # (upu-s_1) sine of the angle of joint 1 from its reference direction
-        upu_s_1 = inv_upu_root_1*upu_px_1
-        # (upu-xi_1) the vector from joint 1 to the connection point, resolved along link 1
-        upu_xi_1_in_axes1_z = (
+        upu_S_in_turn1_z = (
         upu_S_x*upu_base_frame_xz + upu_S_y*upu_base_frame_yz + upu_S_z*upu_base_frame_zz
         )
-        # (upu-rho2_2) squared amplitude
-        upu_rho2_2 = upu_rho2_1 + upu_xi_1_in_axes1_z*upu_xi_1_in_axes1_z
-        # (upu-root_2) amplitude, with the sign of the branch
-        upu_root_2 = upu_branch_2*sqrt(upu_rho2_2)
+        # (upu-root_1) amplitude, the length across axis 1, with the sign of the branch
+        upu_root_1_t = upu_S_in_turn1_x*upu_S_in_turn1_x + upu_S_in_turn1_y*upu_S_in_turn1_y
+        upu_root_1 = upu_branch_1*sqrt(upu_root_1_t)
+        # (upu-c_1) cosine of the angle of joint 1 from its reference direction
+        inv_upu_root_1 = 1.0/upu_root_1
+        upu_c_1 = inv_upu_root_1*upu_S_in_turn1_x
+        # (upu-s_1) sine of the angle of joint 1 from its reference direction
+        upu_s_1 = inv_upu_root_1*upu_S_in_turn1_y
+        # (upu-q_3) displacement of joint 3
+        upu_q_3_t = upu_S_in_turn1_z*upu_S_in_turn1_z + upu_root_1_t
+        upu_q_3 = upu_branch_2*sqrt(upu_q_3_t)
         # (upu-c_2) cosine of the angle of joint 2 from its reference direction
-        inv_upu_root_2 = 1.0/upu_root_2
-        upu_c_2 = -inv_upu_root_2*upu_root_1
-        # (upu-s_2) sine of the angle of joint 2 from its reference direction
-        upu_s_2 = inv_upu_root_2*upu_xi_1_in_axes1_z
+        inv_upu_q_3 = 1.0/upu_q_3
+        upu_c_2 = inv_upu_q_3*upu_root_1
         # (upu-S_dot) velocity of the connection point
-        axis_z_upu_axes2_x = upu_base_frame_xy*upu_s_1 - upu_base_frame_xx*upu_c_1_t
-        axis_z_upu_axes2_y = upu_base_frame_yy*upu_s_1 - upu_base_frame_yx*upu_c_1_t
-        axis_z_upu_axes2_z = upu_base_frame_zy*upu_s_1 - upu_base_frame_zx*upu_c_1_t
-        upu_S_dot_t = upu_s_1*upu_s_2
-        upu_S_dot_t_2 = upu_c_1_t*upu_s_2
+        upu_e_1_in_axes2_x = inv_upu_q_3*upu_S_in_turn1_z
+        axis_z_upu_axes2_x = upu_base_frame_xy*upu_c_1 - upu_base_frame_xx*upu_s_1
+        axis_z_upu_axes2_y = upu_base_frame_yy*upu_c_1 - upu_base_frame_yx*upu_s_1
+        axis_z_upu_axes2_z = upu_base_frame_zy*upu_c_1 - upu_base_frame_zx*upu_s_1
+        upu_S_dot_t = upu_c_1*upu_e_1_in_axes2_x
+        upu_S_dot_t_2 = upu_e_1_in_axes2_x*upu_s_1
         axis_y_upu_axes2_x = (
-        upu_S_dot_t*upu_base_frame_xx + upu_S_dot_t_2*upu_base_frame_xy +
+        upu_S_dot_t*upu_base_frame_xx + upu_S_dot_t_2*upu_base_frame_xy -
             upu_base_frame_xz*upu_c_2
         )
         axis_y_upu_axes2_y = (
-        upu_S_dot_t*upu_base_frame_yx + upu_S_dot_t_2*upu_base_frame_yy +
+        upu_S_dot_t*upu_base_frame_yx + upu_S_dot_t_2*upu_base_frame_yy -
             upu_base_frame_yz*upu_c_2
         )
         axis_y_upu_axes2_z = (
-        upu_S_dot_t*upu_base_frame_zx + upu_S_dot_t_2*upu_base_frame_zy +
+        upu_S_dot_t*upu_base_frame_zx + upu_S_dot_t_2*upu_base_frame_zy -
             upu_base_frame_zz*upu_c_2
         )
         axis_x_upu_axes2_x = (
@@ -1808,10 +1985,10 @@ def _run_dynamics(m, X, V):
             upu_platform_joint_axis_platform_z*(R_xz*upu_base_frame_xz + R_yz*upu_base_frame_yz +
             R_zz*upu_base_frame_zz)
         )
-        upu_n_m1_t_4 = upu_c_1_t*upu_n_m1_t_2 + upu_n_m1_t*upu_s_1
-        upu_n_m1_in_axes2_y = upu_n_m1_t_3*upu_s_2 - upu_c_2*upu_n_m1_t_4
-        upu_end_p1_in_axes2_y = upu_c_2*upu_n_m1_t_3 + upu_n_m1_t_4*upu_s_2
-        upu_n_m1_in_axes1_z = upu_c_2*upu_n_m1_in_axes2_y - upu_end_p1_in_axes2_y*upu_s_2
+        upu_n_m1_t_4 = upu_c_1*upu_n_m1_t + upu_n_m1_t_2*upu_s_1
+        upu_n_m1_in_axes2_y = upu_c_2*upu_n_m1_t_4 + upu_e_1_in_axes2_x*upu_n_m1_t_3
+        upu_end_p1_in_axes2_y = upu_e_1_in_axes2_x*upu_n_m1_t_4 - upu_c_2*upu_n_m1_t_3
+        upu_n_m1_t_5 = upu_c_2*upu_n_m1_in_axes2_y + upu_e_1_in_axes2_x*upu_end_p1_in_axes2_y
         upu_n_m1_x = (
         axis_y_upu_axes2_x*upu_n_m1_in_axes2_y - axis_x_upu_axes2_x*upu_end_p1_in_axes2_y
         )
@@ -1822,35 +1999,35 @@ def _run_dynamics(m, X, V):
         axis_y_upu_axes2_z*upu_n_m1_in_axes2_y - axis_x_upu_axes2_z*upu_end_p1_in_axes2_y
         )
         # (upu-volume_c) triple product of the velocity vectors
-        upu_volume_c_t = upu_root_1*upu_root_2
+        upu_volume_c_t = upu_q_3*upu_root_1
         # (upu-n_c) force part, zero on the manifold, of the constraint moment
-        upu_n_c_t = upu_n_m1_in_axes1_z*upu_root_2/upu_volume_c_t
-        upu_n_c_t_2 = axis_z_upu_axes2_x*upu_n_c_t
-        upu_n_c_t_3 = axis_z_upu_axes2_y*upu_n_c_t
-        upu_n_c_t_4 = axis_z_upu_axes2_z*upu_n_c_t
+        upu_n_c_in_axes2_z = upu_n_m1_t_5*upu_q_3/upu_volume_c_t
+        upu_n_c_x = axis_z_upu_axes2_x*upu_n_c_in_axes2_z
+        upu_n_c_y = axis_z_upu_axes2_y*upu_n_c_in_axes2_z
+        upu_n_c_z = axis_z_upu_axes2_z*upu_n_c_in_axes2_z
         # (upu-w_1) force part of reciprocal wrench 1
-        upu_w_1_t = upu_root_1 + upu_n_c_t*upu_n_m1_in_axes1_z
+        upu_w_1_t = upu_root_1 + upu_n_c_in_axes2_z*upu_n_m1_t_5
         upu_w_1_in_axes2_z = 1.0/upu_w_1_t
         # (upu-m1_w_1) moment part 1 of reciprocal wrench 1
-        upu_m1_w_1 = upu_n_c_t*upu_w_1_in_axes2_z
+        upu_m1_w_1_t = upu_n_c_in_axes2_z*upu_w_1_in_axes2_z
         # (upu-o_1) moment part of reciprocal wrench 1
-        upu_o_1_t = upu_end_p1_in_axes2_y*upu_m1_w_1
-        upu_o_1_in_axes2_y = upu_m1_w_1*upu_n_m1_in_axes2_y
+        upu_o_1_in_axes2_x = upu_end_p1_in_axes2_y*upu_m1_w_1_t
+        upu_o_1_t = upu_m1_w_1_t*upu_n_m1_in_axes2_y
         # (upu-eta_1) rate at which the joints turn along moment direction 1
         upu_eta_1 = omega_x*upu_n_m1_x + omega_y*upu_n_m1_y + omega_z*upu_n_m1_z
         # (upu-qd_1) rate of joint 1
         upu_qd_1 = (
         upu_w_1_in_axes2_z*(axis_z_upu_axes2_x*upu_S_dot_x + axis_z_upu_axes2_y*upu_S_dot_y +
-            axis_z_upu_axes2_z*upu_S_dot_z + upu_eta_1*upu_n_c_t)
+            axis_z_upu_axes2_z*upu_S_dot_z - upu_eta_1*upu_n_c_in_axes2_z)
         )
         # (upu-qd_2) rate of joint 2
         upu_qd_2 = (
-        inv_upu_root_2*(axis_y_upu_axes2_x*upu_S_dot_x + axis_y_upu_axes2_y*upu_S_dot_y +
+        inv_upu_q_3*(axis_y_upu_axes2_x*upu_S_dot_x + axis_y_upu_axes2_y*upu_S_dot_y +
             axis_y_upu_axes2_z*upu_S_dot_z)
         )
         # (upu-omega_1) angular velocity of link 1
-        upu_omega_1_in_axes2_x = upu_qd_1*upu_s_2
-        upu_omega_1_in_axes2_y = upu_c_2*upu_qd_1
+        upu_omega_1_in_axes2_x = upu_e_1_in_axes2_x*upu_qd_1
+        upu_omega_1_in_axes2_y = -upu_c_2*upu_qd_1
         # (upu-W_2) centripetal tensor of link 2
         upu_W_2_in_axes2_yz = upu_omega_1_in_axes2_y*upu_qd_2
         upu_W_2_in_axes2_xz = upu_omega_1_in_axes2_x*upu_qd_2
@@ -1862,14 +2039,14 @@ def _run_dynamics(m, X, V):
         # (upu-bias) acceleration of the connection point at zero joint accelerations
         upu_bias_t = 2.0*upu_S_dot_in_axes2_x
         upu_bias_t_2 = upu_bias_t*upu_omega_1_in_axes2_y
-        upu_bias_in_axes2_z = 2.0*upu_W_2_in_axes2_xz*upu_root_2 - upu_bias_t_2
+        upu_bias_in_axes2_z = 2.0*upu_W_2_in_axes2_xz*upu_q_3 - upu_bias_t_2
         # (upu-rel_o) remainder without the acceleration in: acceleration of the connection point left to the joint accelerations
         upu_rel_o_in_axes2_z = (
         axis_z_upu_axes2_x*upu_u_1_x + axis_z_upu_axes2_y*upu_u_1_y + axis_z_upu_axes2_z*upu_u_1_z
             - upu_bias_in_axes2_z
         )
         # (upu-nd_m1) rate of moment direction 1
-        upu_end_p1_in_axes2_z = upu_n_m1_t_2*upu_s_1 - upu_c_1_t*upu_n_m1_t
+        upu_end_p1_in_axes2_z = upu_c_1*upu_n_m1_t_2 - upu_n_m1_t*upu_s_1
         upu_omega_in_axes2_x = (
         axis_x_upu_axes2_x*omega_x + axis_x_upu_axes2_y*omega_y + axis_x_upu_axes2_z*omega_z
         )
@@ -1889,7 +2066,7 @@ def _run_dynamics(m, X, V):
         )
         # (upu-nu_1) bias of the angular acceleration along moment direction 1
         upu_nu_1_t = (
-        -upu_W_2_in_axes2_xz*upu_n_m1_in_axes2_y - upu_W_2_in_axes2_yz*upu_end_p1_in_axes2_y
+        upu_W_2_in_axes2_xz*upu_n_m1_in_axes2_y + upu_W_2_in_axes2_yz*upu_end_p1_in_axes2_y
         )
         upu_nu_1_t_2 = (
         upu_nd_m1_in_axes2_y*(upu_omega_in_axes2_y - upu_omega_1_in_axes2_y) -
@@ -1897,22 +2074,22 @@ def _run_dynamics(m, X, V):
             (upu_omega_in_axes2_z - upu_qd_2)*(-upu_end_p1_in_axes2_y*upu_omega_1_in_axes2_y -
             upu_n_m1_in_axes2_y*upu_omega_1_in_axes2_x)
         )
-        upu_nu_1 = upu_nu_1_t_2 - upu_nu_1_t
+        upu_nu_1 = upu_nu_1_t + upu_nu_1_t_2
         # (upu-qdd_1_o) remainder without the acceleration in: acceleration of joint 1
-        upu_qdd_1_o = upu_w_1_in_axes2_z*(upu_rel_o_in_axes2_z + upu_n_c_t*upu_nu_1)
+        upu_qdd_1_o_t = upu_w_1_in_axes2_z*(upu_n_c_in_axes2_z*upu_nu_1 - upu_rel_o_in_axes2_z)
         # (upu-dalpha_alpha_1) coefficient of the acceleration in: angular acceleration of link 1
-        upu_dalpha_alpha_1_t = upu_o_1_t*upu_s_2
-        upu_dalpha_alpha_1_in_axes2_xy = upu_o_1_in_axes2_y*upu_s_2
-        upu_dalpha_alpha_1_in_axes2_yx = -upu_c_2*upu_o_1_t
-        upu_dalpha_alpha_1_t_2 = -upu_c_2*upu_o_1_in_axes2_y
+        upu_dalpha_alpha_1_in_axes2_xx = upu_e_1_in_axes2_x*upu_o_1_in_axes2_x
+        upu_dalpha_alpha_1_t = upu_e_1_in_axes2_x*upu_o_1_t
+        upu_dalpha_alpha_1_t_2 = upu_c_2*upu_o_1_in_axes2_x
+        upu_dalpha_alpha_1_in_axes2_yy = upu_c_2*upu_o_1_t
         # (upu-d_alpha_1) coefficient of the acceleration in: angular acceleration of link 1
-        upu_d_alpha_1_in_axes2_xz = upu_s_2*upu_w_1_in_axes2_z
-        upu_d_alpha_1_t = -upu_c_2*upu_w_1_in_axes2_z
+        upu_d_alpha_1_in_axes2_xz = upu_e_1_in_axes2_x*upu_w_1_in_axes2_z
+        upu_d_alpha_1_t = upu_c_2*upu_w_1_in_axes2_z
         # (upu-alpha_1_o) remainder without the acceleration in: angular acceleration of link 1
-        upu_alpha_1_o_in_axes2_x = upu_qdd_1_o*upu_s_2
-        upu_alpha_1_o_in_axes2_y = upu_c_2*upu_qdd_1_o
+        upu_alpha_1_o_t = upu_e_1_in_axes2_x*upu_qdd_1_o_t
+        upu_alpha_1_o_in_axes2_y = upu_c_2*upu_qdd_1_o_t
         # (upu-alpha_2_o) remainder without the acceleration in: angular acceleration of link 2
-        upu_alpha_2_o_in_axes2_x = upu_W_2_in_axes2_yz + upu_alpha_1_o_in_axes2_x
+        upu_alpha_2_o_in_axes2_x = upu_W_2_in_axes2_yz - upu_alpha_1_o_t
         upu_alpha_2_o_in_axes2_y = upu_alpha_1_o_in_axes2_y - upu_W_2_in_axes2_xz
         # (upu-B_2_o) remainder of the acceleration tensor of link 2
         upu_B_2_o_t = upu_bias_t*upu_qd_2
@@ -1920,32 +2097,30 @@ def _run_dynamics(m, X, V):
         axis_y_upu_axes2_x*upu_u_1_x + axis_y_upu_axes2_y*upu_u_1_y + axis_y_upu_axes2_z*upu_u_1_z
             - upu_B_2_o_t
         )
-        upu_B_2_o_in_axes2_yx = inv_upu_root_2*upu_B_2_o_t_2
+        upu_B_2_o_in_axes2_yx = inv_upu_q_3*upu_B_2_o_t_2
         upu_B_2_o_in_axes2_xy = 2.0*upu_W_2_in_axes2_xy - upu_B_2_o_in_axes2_yx
         upu_B_2_o_in_axes2_zx = upu_W_2_in_axes2_xz - upu_alpha_2_o_in_axes2_y
         upu_B_2_o_in_axes2_zy = upu_W_2_in_axes2_yz + upu_alpha_2_o_in_axes2_x
         # (upu-dalpha_acc_3) coefficient of the acceleration in: acceleration of the reference point of link 3, less gravity
-        upu_dalpha_acc_3_t = upu_dalpha_alpha_1_in_axes2_yx*upu_root_2
-        upu_dalpha_acc_3_in_axes2_zy = upu_dalpha_alpha_1_t_2*upu_root_2
+        upu_dalpha_acc_3_in_axes2_zx = upu_dalpha_alpha_1_t_2*upu_q_3
+        upu_dalpha_acc_3_t = upu_dalpha_alpha_1_in_axes2_yy*upu_q_3
         # (upu-d_acc_3) coefficient of the acceleration in: acceleration of the reference point of link 3, less gravity
-        upu_d_acc_3_in_axes2_zz = upu_d_alpha_1_t*upu_root_2
+        upu_d_acc_3_in_axes2_zz = upu_d_alpha_1_t*upu_q_3
         # (upu-acc_3_o) remainder without the acceleration in: acceleration of the reference point of link 3, less gravity
-        upu_g_in_axes2_z = upu_acc_3_t_2*upu_s_1 - upu_acc_3_t*upu_c_1_t
-        upu_acc_3_o_t = upu_acc_3_t*upu_s_1 + upu_acc_3_t_2*upu_c_1_t
-        upu_g_in_axes2_x = upu_acc_3_t_3*upu_s_2 - upu_acc_3_o_t*upu_c_2
-        upu_g_in_axes2_y = upu_acc_3_o_t*upu_s_2 + upu_acc_3_t_3*upu_c_2
+        upu_acc_3_o_t = upu_acc_3_t*upu_c_1 + upu_acc_3_t_2*upu_s_1
+        upu_g_in_axes2_z = upu_acc_3_t_2*upu_c_1 - upu_acc_3_t*upu_s_1
+        upu_g_in_axes2_x = upu_acc_3_o_t*upu_c_2 + upu_acc_3_t_3*upu_e_1_in_axes2_x
+        upu_g_in_axes2_y = upu_acc_3_o_t*upu_e_1_in_axes2_x - upu_acc_3_t_3*upu_c_2
         upu_acc_3_o_in_axes2_x = (
         axis_x_upu_axes2_x*upu_u_1_x + axis_x_upu_axes2_y*upu_u_1_y + axis_x_upu_axes2_z*upu_u_1_z
             - upu_g_in_axes2_x
         )
         upu_acc_3_o_in_axes2_y = upu_B_2_o_t + upu_B_2_o_t_2 - upu_g_in_axes2_y
-        upu_acc_3_o_in_axes2_z = (
-        upu_B_2_o_in_axes2_zx*upu_root_2 - upu_bias_t_2 - upu_g_in_axes2_z
-        )
+        upu_acc_3_o_in_axes2_z = upu_B_2_o_in_axes2_zx*upu_q_3 - upu_bias_t_2 - upu_g_in_axes2_z
         # (upu-dalpha_phi_3) coefficient of the acceleration in: inertia force of link 3 from its turning about its reference point
-        upu_dalpha_phi_3_in_axes2_xx = upu_dalpha_alpha_1_in_axes2_yx*upu_h_3_in_spec2_y
+        upu_dalpha_phi_3_in_axes2_xy = upu_dalpha_alpha_1_in_axes2_yy*upu_h_3_in_spec2_y
         # (upu-d_phi_3) coefficient of the acceleration in: inertia force of link 3 from its turning about its reference point
-        upu_d_phi_3_in_axes2_xy = inv_upu_root_2*upu_h_3_in_spec2_z
+        upu_d_phi_3_in_axes2_xy = inv_upu_q_3*upu_h_3_in_spec2_z
         # (upu-f_3_o) remainder without the acceleration in: inertia force of link 3 less its weight
         upu_f_3_o_t = upu_omega_1_in_axes2_x*upu_omega_1_in_axes2_x
         upu_f_3_o_t_2 = upu_omega_1_in_axes2_y*upu_omega_1_in_axes2_y
@@ -1957,8 +2132,7 @@ def _run_dynamics(m, X, V):
         )
         upu_f_3_o_in_axes2_y = (
         upu_B_2_o_in_axes2_yx*upu_h_3_in_spec2_x + upu_acc_3_o_in_axes2_y*upu_link3_mass +
-            upu_h_3_in_spec2_z*(upu_f_3_o_t + upu_f_3_o_t_3) -
-            upu_alpha_1_o_in_axes2_x*upu_h_3_in_spec2_y
+            upu_alpha_1_o_t*upu_h_3_in_spec2_y + upu_h_3_in_spec2_z*(upu_f_3_o_t + upu_f_3_o_t_3)
         )
         upu_f_3_o_in_axes2_z = (
         upu_B_2_o_in_axes2_zx*upu_h_3_in_spec2_x + upu_acc_3_o_in_axes2_z*upu_link3_mass -
@@ -1970,10 +2144,10 @@ def _run_dynamics(m, X, V):
         upu_B_2_o_in_axes2_yx*upu_J_group_2_in_axes2_xz +
             upu_B_2_o_in_axes2_zy*upu_Sigma_2_in_axes2_yy +
             upu_J_group_2_in_axes2_yz*(upu_f_3_o_t_2 - upu_f_3_o_t_3) +
-            upu_Sigma_2_in_axes2_zz*upu_alpha_1_o_in_axes2_x + upu_g_in_axes2_y*upu_h_2_in_spec2_y
-            + upu_g_in_axes2_z*upu_h_2_in_spec2_z -
+            upu_g_in_axes2_y*upu_h_2_in_spec2_y + upu_g_in_axes2_z*upu_h_2_in_spec2_z -
             upu_B_2_o_in_axes2_zx*upu_J_group_2_in_axes2_xy -
-            upu_acc_3_o_in_axes2_y*upu_h_3_in_spec2_y - upu_acc_3_o_in_axes2_z*upu_h_3_in_spec2_z
+            upu_Sigma_2_in_axes2_zz*upu_alpha_1_o_t - upu_acc_3_o_in_axes2_y*upu_h_3_in_spec2_y -
+            upu_acc_3_o_in_axes2_z*upu_h_3_in_spec2_z
         )
         upu_mu_2_o_in_axes2_y = (
         upu_B_2_o_in_axes2_zy*upu_J_group_2_in_axes2_xy +
@@ -1986,72 +2160,70 @@ def _run_dynamics(m, X, V):
         )
         upu_mu_2_o_in_axes2_z = (
         upu_B_2_o_in_axes2_yx*upu_Sigma_2_in_axes2_xx + upu_J_group_2_in_axes2_xy*(upu_f_3_o_t -
-            upu_f_3_o_t_2) + upu_J_group_2_in_axes2_xz*upu_alpha_1_o_in_axes2_x +
-            upu_J_group_2_in_axes2_yz*upu_alpha_1_o_in_axes2_y +
+            upu_f_3_o_t_2) + upu_J_group_2_in_axes2_yz*upu_alpha_1_o_in_axes2_y +
             upu_acc_3_o_in_axes2_x*upu_h_3_in_spec2_z + upu_acc_3_o_in_axes2_y*upu_h_3_in_spec2_x
-            - upu_B_2_o_in_axes2_xy*upu_Sigma_2_in_axes2_yy - upu_g_in_axes2_x*upu_h_2_in_spec2_z
-            - upu_g_in_axes2_y*upu_h_2_in_spec2_x
+            - upu_B_2_o_in_axes2_xy*upu_Sigma_2_in_axes2_yy -
+            upu_J_group_2_in_axes2_xz*upu_alpha_1_o_t - upu_g_in_axes2_x*upu_h_2_in_spec2_z -
+            upu_g_in_axes2_y*upu_h_2_in_spec2_x
         )
         # (upu-N_2_o) remainder without the acceleration in: moment about joint 2 of the links from 2 outwards, the force at the connection point left out
-        upu_N_2_o_in_axes2_y = upu_mu_2_o_in_axes2_y - upu_f_3_o_in_axes2_z*upu_root_2
-        upu_N_2_o_in_axes1_z = upu_N_2_o_in_axes2_y*upu_c_2 + upu_mu_2_o_in_axes2_x*upu_s_2
+        upu_N_2_o_in_axes2_y = upu_mu_2_o_in_axes2_y - upu_f_3_o_in_axes2_z*upu_q_3
+        upu_N_2_o_t = upu_N_2_o_in_axes2_y*upu_c_2 - upu_e_1_in_axes2_x*upu_mu_2_o_in_axes2_x
         # (upu-dalpha_Gamma_1) coefficient of the acceleration in: moment about axis 1 of the distal links' inertia and weight
         upu_dalpha_Gamma_1_in_axes2_x = (
-        upu_c_2*(upu_J_group_2_in_axes2_yy*upu_dalpha_alpha_1_in_axes2_yx +
-            upu_dalpha_acc_3_t*upu_h_3_in_spec2_x - upu_J_group_2_in_axes2_xy*upu_dalpha_alpha_1_t
-            - upu_root_2*(upu_dalpha_alpha_1_t*upu_h_3_in_spec2_z -
-            upu_dalpha_acc_3_t*upu_link3_mass -
-            upu_dalpha_alpha_1_in_axes2_yx*upu_h_3_in_spec2_x)) +
-            upu_s_2*(upu_J_group_2_in_axes2_xy*upu_dalpha_alpha_1_in_axes2_yx +
-            upu_dalpha_acc_3_t*upu_h_3_in_spec2_z -
-            upu_J_group_2_in_axes2_xx*upu_dalpha_alpha_1_t)
+        upu_e_1_in_axes2_x*(upu_J_group_2_in_axes2_xx*upu_dalpha_alpha_1_in_axes2_xx -
+            upu_J_group_2_in_axes2_xy*upu_dalpha_alpha_1_t_2 -
+            upu_dalpha_acc_3_in_axes2_zx*upu_h_3_in_spec2_z) -
+            upu_c_2*(upu_J_group_2_in_axes2_xy*upu_dalpha_alpha_1_in_axes2_xx -
+            upu_J_group_2_in_axes2_yy*upu_dalpha_alpha_1_t_2 -
+            upu_dalpha_acc_3_in_axes2_zx*upu_h_3_in_spec2_x -
+            upu_q_3*(upu_dalpha_acc_3_in_axes2_zx*upu_link3_mass +
+            upu_dalpha_alpha_1_t_2*upu_h_3_in_spec2_x -
+            upu_dalpha_alpha_1_in_axes2_xx*upu_h_3_in_spec2_z))
         )
         upu_dalpha_Gamma_1_in_axes2_y = (
-        upu_c_2*(upu_J_group_2_in_axes2_xy*upu_dalpha_alpha_1_in_axes2_xy -
-            upu_J_group_2_in_axes2_yy*upu_dalpha_alpha_1_t_2 -
-            upu_dalpha_acc_3_in_axes2_zy*upu_h_3_in_spec2_x -
-            upu_root_2*(upu_dalpha_acc_3_in_axes2_zy*upu_link3_mass +
-            upu_dalpha_alpha_1_t_2*upu_h_3_in_spec2_x -
-            upu_dalpha_alpha_1_in_axes2_xy*upu_h_3_in_spec2_z)) +
-            upu_s_2*(upu_J_group_2_in_axes2_xx*upu_dalpha_alpha_1_in_axes2_xy -
-            upu_J_group_2_in_axes2_xy*upu_dalpha_alpha_1_t_2 -
-            upu_dalpha_acc_3_in_axes2_zy*upu_h_3_in_spec2_z)
+        upu_e_1_in_axes2_x*(upu_J_group_2_in_axes2_xy*upu_dalpha_alpha_1_in_axes2_yy +
+            upu_dalpha_acc_3_t*upu_h_3_in_spec2_z -
+            upu_J_group_2_in_axes2_xx*upu_dalpha_alpha_1_t) -
+            upu_c_2*(upu_J_group_2_in_axes2_yy*upu_dalpha_alpha_1_in_axes2_yy +
+            upu_dalpha_acc_3_t*upu_h_3_in_spec2_x - upu_J_group_2_in_axes2_xy*upu_dalpha_alpha_1_t
+            - upu_q_3*(upu_dalpha_alpha_1_t*upu_h_3_in_spec2_z - upu_dalpha_acc_3_t*upu_link3_mass
+            - upu_dalpha_alpha_1_in_axes2_yy*upu_h_3_in_spec2_x))
         )
         # (upu-d_Gamma_1) coefficient of the acceleration in: moment about axis 1 of the distal links' inertia and weight
         upu_d_Gamma_1_in_axes2_z = (
-        upu_c_2*(upu_J_group_2_in_axes2_xy*upu_d_alpha_1_in_axes2_xz -
-            upu_J_group_2_in_axes2_yy*upu_d_alpha_1_t - upu_d_acc_3_in_axes2_zz*upu_h_3_in_spec2_x
-            - upu_root_2*(upu_d_acc_3_in_axes2_zz*upu_link3_mass +
-            upu_d_alpha_1_t*upu_h_3_in_spec2_x - upu_d_alpha_1_in_axes2_xz*upu_h_3_in_spec2_z)) +
-            upu_s_2*(upu_J_group_2_in_axes2_xx*upu_d_alpha_1_in_axes2_xz -
+        upu_e_1_in_axes2_x*(upu_J_group_2_in_axes2_xx*upu_d_alpha_1_in_axes2_xz -
             upu_J_group_2_in_axes2_xy*upu_d_alpha_1_t -
-            upu_d_acc_3_in_axes2_zz*upu_h_3_in_spec2_z)
+            upu_d_acc_3_in_axes2_zz*upu_h_3_in_spec2_z) -
+            upu_c_2*(upu_J_group_2_in_axes2_xy*upu_d_alpha_1_in_axes2_xz -
+            upu_J_group_2_in_axes2_yy*upu_d_alpha_1_t - upu_d_acc_3_in_axes2_zz*upu_h_3_in_spec2_x
+            - upu_q_3*(upu_d_acc_3_in_axes2_zz*upu_link3_mass + upu_d_alpha_1_t*upu_h_3_in_spec2_x
+            - upu_d_alpha_1_in_axes2_xz*upu_h_3_in_spec2_z))
         )
         # (upu-dalpha_G) coefficient of the acceleration in: force at the connection point that balances the leg's inertia and weight along all degrees of freedom
         upu_dalpha_G_in_axes2_zx = upu_dalpha_Gamma_1_in_axes2_x*upu_w_1_in_axes2_z
         upu_dalpha_G_in_axes2_zy = upu_dalpha_Gamma_1_in_axes2_y*upu_w_1_in_axes2_z
         upu_dalpha_G_in_axes2_yx = (
-        inv_upu_root_2*(upu_J_group_2_in_axes2_yz*upu_dalpha_alpha_1_in_axes2_yx +
-            upu_dalpha_alpha_1_t*upu_h_3_in_spec2_y*upu_root_2 -
-            upu_J_group_2_in_axes2_xz*upu_dalpha_alpha_1_t)
+        inv_upu_q_3*(upu_J_group_2_in_axes2_xz*upu_dalpha_alpha_1_in_axes2_xx -
+            upu_J_group_2_in_axes2_yz*upu_dalpha_alpha_1_t_2 -
+            upu_dalpha_alpha_1_in_axes2_xx*upu_h_3_in_spec2_y*upu_q_3)
         )
         upu_dalpha_G_in_axes2_yy = (
-        inv_upu_root_2*(upu_J_group_2_in_axes2_xz*upu_dalpha_alpha_1_in_axes2_xy -
-            upu_J_group_2_in_axes2_yz*upu_dalpha_alpha_1_t_2 -
-            upu_dalpha_alpha_1_in_axes2_xy*upu_h_3_in_spec2_y*upu_root_2)
+        inv_upu_q_3*(upu_J_group_2_in_axes2_yz*upu_dalpha_alpha_1_in_axes2_yy +
+            upu_dalpha_alpha_1_t*upu_h_3_in_spec2_y*upu_q_3 -
+            upu_J_group_2_in_axes2_xz*upu_dalpha_alpha_1_t)
         )
         # (upu-d_G) coefficient of the acceleration in: force at the connection point that balances the leg's inertia and weight along all degrees of freedom
         upu_d_G_in_axes2_yz = (
-        inv_upu_root_2*(upu_J_group_2_in_axes2_xz*upu_d_alpha_1_in_axes2_xz -
+        inv_upu_q_3*(upu_J_group_2_in_axes2_xz*upu_d_alpha_1_in_axes2_xz -
             upu_J_group_2_in_axes2_yz*upu_d_alpha_1_t -
-            upu_d_alpha_1_in_axes2_xz*upu_h_3_in_spec2_y*upu_root_2)
+            upu_d_alpha_1_in_axes2_xz*upu_h_3_in_spec2_y*upu_q_3)
         )
         # (upu-G_o) remainder without the acceleration in: force at the connection point that balances the leg's inertia and weight along all degrees of freedom
-        upu_G_o_in_axes2_y = upu_f_3_o_in_axes2_y + inv_upu_root_2*upu_mu_2_o_in_axes2_z
-        upu_G_o_in_axes2_z = upu_N_2_o_in_axes1_z*upu_w_1_in_axes2_z
+        upu_G_o_in_axes2_y = upu_f_3_o_in_axes2_y + inv_upu_q_3*upu_mu_2_o_in_axes2_z
         # (upu-dalpha_G_m1) coefficient of the acceleration in: moment along moment direction 1 that balances the leg's inertia and weight along all degrees of freedom
-        upu_dalpha_G_m1_in_axes2_x = upu_dalpha_Gamma_1_in_axes2_x*upu_m1_w_1
-        upu_dalpha_G_m1_in_axes2_y = upu_dalpha_Gamma_1_in_axes2_y*upu_m1_w_1
+        upu_dalpha_G_m1_in_axes2_x = -upu_dalpha_Gamma_1_in_axes2_x*upu_m1_w_1_t
+        upu_dalpha_G_m1_in_axes2_y = -upu_dalpha_Gamma_1_in_axes2_y*upu_m1_w_1_t
         upu_dalpha_G_m1_y = (
         axis_x_upu_axes2_y*upu_dalpha_G_m1_in_axes2_x +
             axis_y_upu_axes2_y*upu_dalpha_G_m1_in_axes2_y
@@ -2061,26 +2233,26 @@ def _run_dynamics(m, X, V):
             axis_y_upu_axes2_z*upu_dalpha_G_m1_in_axes2_y
         )
         # (upu-d_G_m1) coefficient of the acceleration in: moment along moment direction 1 that balances the leg's inertia and weight along all degrees of freedom
-        upu_d_G_m1_in_axes2_x = upu_c_2*upu_h_3_in_spec2_y*upu_m1_w_1
-        upu_d_G_m1_in_axes2_y = (
-        upu_m1_w_1*(upu_s_2*(inv_upu_root_2*upu_J_group_2_in_axes2_xz - upu_h_3_in_spec2_y) +
-            inv_upu_root_2*upu_J_group_2_in_axes2_yz*upu_c_2)
+        upu_d_G_m1_in_axes2_x = upu_c_2*upu_h_3_in_spec2_y*upu_m1_w_1_t
+        upu_d_G_m1_t = (
+        upu_m1_w_1_t*(upu_e_1_in_axes2_x*(inv_upu_q_3*upu_J_group_2_in_axes2_xz -
+            upu_h_3_in_spec2_y) - inv_upu_q_3*upu_J_group_2_in_axes2_yz*upu_c_2)
         )
-        upu_d_G_m1_in_axes2_z = upu_d_Gamma_1_in_axes2_z*upu_m1_w_1
+        upu_d_G_m1_t_2 = upu_d_Gamma_1_in_axes2_z*upu_m1_w_1_t
         upu_d_G_m1_x = (
-        axis_x_upu_axes2_x*upu_d_G_m1_in_axes2_x + axis_y_upu_axes2_x*upu_d_G_m1_in_axes2_y +
-            axis_z_upu_axes2_x*upu_d_G_m1_in_axes2_z
+        axis_x_upu_axes2_x*upu_d_G_m1_in_axes2_x - axis_y_upu_axes2_x*upu_d_G_m1_t -
+            axis_z_upu_axes2_x*upu_d_G_m1_t_2
         )
         upu_d_G_m1_y = (
-        axis_x_upu_axes2_y*upu_d_G_m1_in_axes2_x + axis_y_upu_axes2_y*upu_d_G_m1_in_axes2_y +
-            axis_z_upu_axes2_y*upu_d_G_m1_in_axes2_z
+        axis_x_upu_axes2_y*upu_d_G_m1_in_axes2_x - axis_y_upu_axes2_y*upu_d_G_m1_t -
+            axis_z_upu_axes2_y*upu_d_G_m1_t_2
         )
         upu_d_G_m1_z = (
-        axis_x_upu_axes2_z*upu_d_G_m1_in_axes2_x + axis_y_upu_axes2_z*upu_d_G_m1_in_axes2_y +
-            axis_z_upu_axes2_z*upu_d_G_m1_in_axes2_z
+        axis_x_upu_axes2_z*upu_d_G_m1_in_axes2_x - axis_y_upu_axes2_z*upu_d_G_m1_t -
+            axis_z_upu_axes2_z*upu_d_G_m1_t_2
         )
         # (upu-G_m1_o) remainder without the acceleration in: moment along moment direction 1 that balances the leg's inertia and weight along all degrees of freedom
-        upu_G_m1_o = upu_N_2_o_in_axes1_z*upu_n_c_t*upu_w_1_in_axes2_z
+        upu_G_m1_o = upu_N_2_o_t*upu_n_c_in_axes2_z*upu_w_1_in_axes2_z
         # (upu-d_G_m) coefficient of the acceleration in: moment at the connection point that balances the leg's inertia and weight along all degrees of freedom
         upu_d_G_m_xx = upu_d_G_m1_x*upu_n_m1_x
         upu_d_G_m_xy = upu_d_G_m1_y*upu_n_m1_x
@@ -2089,13 +2261,15 @@ def _run_dynamics(m, X, V):
         # (upu-G_m_o) remainder without the acceleration in: moment at the connection point that balances the leg's inertia and weight along all degrees of freedom
         upu_G_m_o_in_axes2_y = upu_G_m1_o*upu_n_m1_in_axes2_y
         # (upu-dalpha_c) coefficient of the acceleration in: leg force on the platform without actuation and without the mass at the connection point
-        upu_dalpha_c_in_axes2_xy = upu_dalpha_alpha_1_t_2*upu_h_3_in_spec2_y
+        upu_dalpha_c_in_axes2_xx = upu_dalpha_alpha_1_t_2*upu_h_3_in_spec2_y
         # (upu-d_c) coefficient of the acceleration in: leg force on the platform without actuation and without the mass at the connection point
         upu_d_c_in_axes2_xz = upu_d_alpha_1_t*upu_h_3_in_spec2_y
+        # (upu-c_o) remainder without the acceleration in: leg force on the platform without actuation and without the mass at the connection point
+        upu_c_o_in_axes2_z = upu_N_2_o_t*upu_w_1_in_axes2_z
         # (upu-Q) inertia of the leg at the connection point, without the mass gathered there
         upu_Q_t = (
-        inv_upu_root_2*(upu_h_3_in_spec2_x + inv_upu_root_2*upu_J_group_2_in_axes2_zz +
-            upu_root_2*(upu_link3_mass + inv_upu_root_2*upu_h_3_in_spec2_x)) - upu_link3_mass
+        inv_upu_q_3*(upu_h_3_in_spec2_x + inv_upu_q_3*upu_J_group_2_in_axes2_zz +
+            upu_q_3*(upu_link3_mass + inv_upu_q_3*upu_h_3_in_spec2_x)) - upu_link3_mass
         )
         upu_Q_t_2 = 0.5*upu_Q_t
         upu_Q_t_3 = upu_d_Gamma_1_in_axes2_z*upu_w_1_in_axes2_z - upu_link3_mass
@@ -2137,44 +2311,44 @@ def _run_dynamics(m, X, V):
         upu_c_m_o_in_axes2_x = upu_G_m1_o*upu_end_p1_in_axes2_y
         # (upu-U) velocity and gravity terms of the leg force
         upu_U_x = (
-        axis_x_upu_axes2_x*upu_f_3_o_in_axes2_x + axis_y_upu_axes2_x*upu_G_o_in_axes2_y +
-            axis_z_upu_axes2_x*upu_G_o_in_axes2_z
+        axis_x_upu_axes2_x*upu_f_3_o_in_axes2_x + axis_y_upu_axes2_x*upu_G_o_in_axes2_y -
+            axis_z_upu_axes2_x*upu_c_o_in_axes2_z
         )
         upu_U_y = (
-        axis_x_upu_axes2_y*upu_f_3_o_in_axes2_x + axis_y_upu_axes2_y*upu_G_o_in_axes2_y +
-            axis_z_upu_axes2_y*upu_G_o_in_axes2_z
+        axis_x_upu_axes2_y*upu_f_3_o_in_axes2_x + axis_y_upu_axes2_y*upu_G_o_in_axes2_y -
+            axis_z_upu_axes2_y*upu_c_o_in_axes2_z
         )
         upu_U_z = (
-        axis_x_upu_axes2_z*upu_f_3_o_in_axes2_x + axis_y_upu_axes2_z*upu_G_o_in_axes2_y +
-            axis_z_upu_axes2_z*upu_G_o_in_axes2_z
+        axis_x_upu_axes2_z*upu_f_3_o_in_axes2_x + axis_y_upu_axes2_z*upu_G_o_in_axes2_y -
+            axis_z_upu_axes2_z*upu_c_o_in_axes2_z
         )
         # (M_ta) coupling block of M
         upu_M_ta_t = (
-        -axis_x_upu_axes2_x*upu_dalpha_phi_3_in_axes2_xx -
-            axis_y_upu_axes2_x*upu_dalpha_G_in_axes2_yx -
-            axis_z_upu_axes2_x*upu_dalpha_G_in_axes2_zx
+        axis_x_upu_axes2_x*upu_dalpha_c_in_axes2_xx - axis_y_upu_axes2_x*upu_dalpha_G_in_axes2_yx
+            - axis_z_upu_axes2_x*upu_dalpha_G_in_axes2_zx
         )
         upu_M_ta_t_2 = (
-        -axis_x_upu_axes2_y*upu_dalpha_phi_3_in_axes2_xx -
-            axis_y_upu_axes2_y*upu_dalpha_G_in_axes2_yx -
-            axis_z_upu_axes2_y*upu_dalpha_G_in_axes2_zx
+        axis_x_upu_axes2_y*upu_dalpha_c_in_axes2_xx - axis_y_upu_axes2_y*upu_dalpha_G_in_axes2_yx
+            - axis_z_upu_axes2_y*upu_dalpha_G_in_axes2_zx
         )
         upu_M_ta_t_3 = (
-        -axis_x_upu_axes2_z*upu_dalpha_phi_3_in_axes2_xx -
-            axis_y_upu_axes2_z*upu_dalpha_G_in_axes2_yx -
-            axis_z_upu_axes2_z*upu_dalpha_G_in_axes2_zx
+        axis_x_upu_axes2_z*upu_dalpha_c_in_axes2_xx - axis_y_upu_axes2_z*upu_dalpha_G_in_axes2_yx
+            - axis_z_upu_axes2_z*upu_dalpha_G_in_axes2_zx
         )
         upu_M_ta_t_4 = (
-        axis_x_upu_axes2_x*upu_dalpha_c_in_axes2_xy - axis_y_upu_axes2_x*upu_dalpha_G_in_axes2_yy
-            - axis_z_upu_axes2_x*upu_dalpha_G_in_axes2_zy
+        -axis_x_upu_axes2_x*upu_dalpha_phi_3_in_axes2_xy -
+            axis_y_upu_axes2_x*upu_dalpha_G_in_axes2_yy -
+            axis_z_upu_axes2_x*upu_dalpha_G_in_axes2_zy
         )
         upu_M_ta_t_5 = (
-        axis_x_upu_axes2_y*upu_dalpha_c_in_axes2_xy - axis_y_upu_axes2_y*upu_dalpha_G_in_axes2_yy
-            - axis_z_upu_axes2_y*upu_dalpha_G_in_axes2_zy
+        -axis_x_upu_axes2_y*upu_dalpha_phi_3_in_axes2_xy -
+            axis_y_upu_axes2_y*upu_dalpha_G_in_axes2_yy -
+            axis_z_upu_axes2_y*upu_dalpha_G_in_axes2_zy
         )
         upu_M_ta_t_6 = (
-        axis_x_upu_axes2_z*upu_dalpha_c_in_axes2_xy - axis_y_upu_axes2_z*upu_dalpha_G_in_axes2_yy
-            - axis_z_upu_axes2_z*upu_dalpha_G_in_axes2_zy
+        -axis_x_upu_axes2_z*upu_dalpha_phi_3_in_axes2_xy -
+            axis_y_upu_axes2_z*upu_dalpha_G_in_axes2_yy -
+            axis_z_upu_axes2_z*upu_dalpha_G_in_axes2_zy
         )
         upu_M_ta_t_7 = upu_Q_xy*upu_q_z
         upu_M_ta_t_8 = upu_Q_xz*upu_q_y
@@ -2260,16 +2434,16 @@ def _run_dynamics(m, X, V):
         upu_H_a_3_y = axis_x_upu_axes2_x*upu_q_z - axis_x_upu_axes2_z*upu_q_x
         upu_H_a_3_z = axis_x_upu_axes2_y*upu_q_x - axis_x_upu_axes2_x*upu_q_y
         # (upu-Hk_a_1) moment of the column's unit force about the platform origin
-        upu_Hk_a_1_x = upu_n_m1_x + upu_n_c_t_3*upu_q_z - upu_n_c_t_4*upu_q_y
-        upu_Hk_a_1_y = upu_n_m1_y + upu_n_c_t_4*upu_q_x - upu_n_c_t_2*upu_q_z
-        upu_Hk_a_1_z = upu_n_m1_z + upu_n_c_t_2*upu_q_y - upu_n_c_t_3*upu_q_x
+        upu_Hk_a_1_x = upu_n_m1_x + upu_n_c_z*upu_q_y - upu_n_c_y*upu_q_z
+        upu_Hk_a_1_y = upu_n_m1_y + upu_n_c_x*upu_q_z - upu_n_c_z*upu_q_x
+        upu_Hk_a_1_z = upu_n_m1_z + upu_n_c_y*upu_q_x - upu_n_c_x*upu_q_y
         # (upu-gamma_c1) part of the constraint's second derivative that does not hold the acceleration
-        upu_gamma_c1 = upu_nu_1 - upu_n_c_t*upu_rel_o_in_axes2_z
+        upu_gamma_c1 = upu_nu_1 + upu_n_c_in_axes2_z*upu_rel_o_in_axes2_z
         ok = (
-        ok & (abs(upu_rho2_1) > _TOLERANCE * _TOLERANCE * 0.6400000000000001) & (abs(upu_rho2_2) >
-            _TOLERANCE * _TOLERANCE * 0.6400000000000001) & (abs(upu_volume_c_t) > _TOLERANCE *
-            0.6400000000000001) & (abs(upu_root_2) > _TOLERANCE * 0.8) & (abs(upu_w_1_t) >
-            _TOLERANCE * 0.8)
+        ok & (abs(upu_root_1_t) > _TOLERANCE * _TOLERANCE * 0.6400000000000001) & (abs(upu_q_3_t)
+            > _TOLERANCE * _TOLERANCE * 0.6400000000000001) & (abs(upu_volume_c_t) > _TOLERANCE *
+            0.6400000000000001) & (abs(upu_q_3) > _TOLERANCE * 0.8) & (abs(upu_w_1_t) > _TOLERANCE
+            * 0.8)
         )
         # (M_tt) translational block of M
         M_tt_upu_xx += upu_Q_xx
@@ -2312,9 +2486,9 @@ def _run_dynamics(m, X, V):
         out_H[_H_upu[4][leg]] = upu_H_a_3_y
         out_H[_H_upu[5][leg]] = upu_H_a_3_z
         # (upu-n_c) force part, zero on the manifold, of the constraint moment
-        out_Hk[_Hk_upu[0][leg]] = -upu_n_c_t_2
-        out_Hk[_Hk_upu[1][leg]] = -upu_n_c_t_3
-        out_Hk[_Hk_upu[2][leg]] = -upu_n_c_t_4
+        out_Hk[_Hk_upu[0][leg]] = upu_n_c_x
+        out_Hk[_Hk_upu[1][leg]] = upu_n_c_y
+        out_Hk[_Hk_upu[2][leg]] = upu_n_c_z
         # (upu-Hk_a_1) moment of the column's unit force about the platform origin
         out_Hk[_Hk_upu[3][leg]] = upu_Hk_a_1_x
         out_Hk[_Hk_upu[4][leg]] = upu_Hk_a_1_y
@@ -2493,37 +2667,31 @@ def _run_M(m, X):
         upu_S_x = t_x + upu_q_x - upu_base_point_x
         upu_S_y = t_y + upu_q_y - upu_base_point_y
         upu_S_z = t_z + upu_q_z - upu_base_point_z
-        # (upu-px_1) component along the reference direction
-        upu_px_1 = (
+        upu_S_in_turn1_x = (
         upu_S_x*upu_base_frame_xx + upu_S_y*upu_base_frame_yx + upu_S_z*upu_base_frame_zx
         )
-        # (upu-py_1) component across the reference direction
-        upu_py_1 = (
+        upu_S_in_turn1_y = (
         upu_S_x*upu_base_frame_xy + upu_S_y*upu_base_frame_yy + upu_S_z*upu_base_frame_zy
         )
-        # (upu-rho2_1) squared amplitude
-        upu_rho2_1 = upu_px_1*upu_px_1 + upu_py_1*upu_py_1
-        # (upu-root_1) amplitude, with the sign of the branch
-        upu_root_1 = upu_branch_1*sqrt(upu_rho2_1)
-        # (upu-c_1) cosine of the angle of joint 1 from its reference direction
-        inv_upu_root_1 = 1.0/upu_root_1
-        upu_c_1_t = inv_upu_root_1*upu_py_1
-        # (upu-s_1) sine of the angle of joint 1 from its reference direction
-        upu_s_1 = inv_upu_root_1*upu_px_1
-        # (upu-xi_1) the vector from joint 1 to the connection point, resolved along link 1
-        upu_xi_1_in_axes1_z = (
+        upu_S_in_turn1_z = (
         upu_S_x*upu_base_frame_xz + upu_S_y*upu_base_frame_yz + upu_S_z*upu_base_frame_zz
         )
-        # (upu-rho2_2) squared amplitude
-        upu_rho2_2 = upu_rho2_1 + upu_xi_1_in_axes1_z*upu_xi_1_in_axes1_z
-        # (upu-root_2) amplitude, with the sign of the branch
-        upu_root_2 = upu_branch_2*sqrt(upu_rho2_2)
+        # (upu-root_1) amplitude, the length across axis 1, with the sign of the branch
+        upu_root_1_t = upu_S_in_turn1_x*upu_S_in_turn1_x + upu_S_in_turn1_y*upu_S_in_turn1_y
+        upu_root_1 = upu_branch_1*sqrt(upu_root_1_t)
+        # (upu-c_1) cosine of the angle of joint 1 from its reference direction
+        inv_upu_root_1 = 1.0/upu_root_1
+        upu_c_1 = inv_upu_root_1*upu_S_in_turn1_x
+        # (upu-s_1) sine of the angle of joint 1 from its reference direction
+        upu_s_1 = inv_upu_root_1*upu_S_in_turn1_y
+        # (upu-q_3) displacement of joint 3
+        upu_q_3_t = upu_S_in_turn1_z*upu_S_in_turn1_z + upu_root_1_t
+        upu_q_3 = upu_branch_2*sqrt(upu_q_3_t)
         # (upu-c_2) cosine of the angle of joint 2 from its reference direction
-        inv_upu_root_2 = 1.0/upu_root_2
-        upu_c_2 = -inv_upu_root_2*upu_root_1
-        # (upu-s_2) sine of the angle of joint 2 from its reference direction
-        upu_s_2 = inv_upu_root_2*upu_xi_1_in_axes1_z
+        inv_upu_q_3 = 1.0/upu_q_3
+        upu_c_2 = inv_upu_q_3*upu_root_1
         # (upu-n_m1) direction 1 of the moment that the platform joint transmits
+        upu_e_1_in_axes2_x = inv_upu_q_3*upu_S_in_turn1_z
         upu_n_m1_t = (
         upu_platform_joint_axis_platform_x*(R_xx*upu_base_frame_xx + R_yx*upu_base_frame_yx +
             R_zx*upu_base_frame_zx) + upu_platform_joint_axis_platform_y*(R_xy*upu_base_frame_xx +
@@ -2545,25 +2713,25 @@ def _run_M(m, X):
             upu_platform_joint_axis_platform_z*(R_xz*upu_base_frame_xz + R_yz*upu_base_frame_yz +
             R_zz*upu_base_frame_zz)
         )
-        upu_n_m1_t_4 = upu_c_1_t*upu_n_m1_t_2 + upu_n_m1_t*upu_s_1
-        upu_n_m1_in_axes2_y = upu_n_m1_t_3*upu_s_2 - upu_c_2*upu_n_m1_t_4
-        upu_end_p1_in_axes2_y = upu_c_2*upu_n_m1_t_3 + upu_n_m1_t_4*upu_s_2
-        upu_n_m1_in_axes1_z = upu_c_2*upu_n_m1_in_axes2_y - upu_end_p1_in_axes2_y*upu_s_2
-        axis_z_upu_axes2_x = upu_base_frame_xy*upu_s_1 - upu_base_frame_xx*upu_c_1_t
-        axis_z_upu_axes2_y = upu_base_frame_yy*upu_s_1 - upu_base_frame_yx*upu_c_1_t
-        axis_z_upu_axes2_z = upu_base_frame_zy*upu_s_1 - upu_base_frame_zx*upu_c_1_t
-        upu_n_m1_t_5 = upu_s_1*upu_s_2
-        upu_n_m1_t_6 = upu_c_1_t*upu_s_2
+        upu_n_m1_t_4 = upu_c_1*upu_n_m1_t + upu_n_m1_t_2*upu_s_1
+        upu_n_m1_in_axes2_y = upu_c_2*upu_n_m1_t_4 + upu_e_1_in_axes2_x*upu_n_m1_t_3
+        upu_end_p1_in_axes2_y = upu_e_1_in_axes2_x*upu_n_m1_t_4 - upu_c_2*upu_n_m1_t_3
+        upu_n_m1_t_5 = upu_c_2*upu_n_m1_in_axes2_y + upu_e_1_in_axes2_x*upu_end_p1_in_axes2_y
+        axis_z_upu_axes2_x = upu_base_frame_xy*upu_c_1 - upu_base_frame_xx*upu_s_1
+        axis_z_upu_axes2_y = upu_base_frame_yy*upu_c_1 - upu_base_frame_yx*upu_s_1
+        axis_z_upu_axes2_z = upu_base_frame_zy*upu_c_1 - upu_base_frame_zx*upu_s_1
+        upu_n_m1_t_6 = upu_c_1*upu_e_1_in_axes2_x
+        upu_n_m1_t_7 = upu_e_1_in_axes2_x*upu_s_1
         axis_y_upu_axes2_x = (
-        upu_base_frame_xx*upu_n_m1_t_5 + upu_base_frame_xy*upu_n_m1_t_6 +
+        upu_base_frame_xx*upu_n_m1_t_6 + upu_base_frame_xy*upu_n_m1_t_7 -
             upu_base_frame_xz*upu_c_2
         )
         axis_y_upu_axes2_y = (
-        upu_base_frame_yx*upu_n_m1_t_5 + upu_base_frame_yy*upu_n_m1_t_6 +
+        upu_base_frame_yx*upu_n_m1_t_6 + upu_base_frame_yy*upu_n_m1_t_7 -
             upu_base_frame_yz*upu_c_2
         )
         axis_y_upu_axes2_z = (
-        upu_base_frame_zx*upu_n_m1_t_5 + upu_base_frame_zy*upu_n_m1_t_6 +
+        upu_base_frame_zx*upu_n_m1_t_6 + upu_base_frame_zy*upu_n_m1_t_7 -
             upu_base_frame_zz*upu_c_2
         )
         axis_x_upu_axes2_x = (
@@ -2585,88 +2753,87 @@ def _run_M(m, X):
         axis_y_upu_axes2_z*upu_n_m1_in_axes2_y - axis_x_upu_axes2_z*upu_end_p1_in_axes2_y
         )
         # (upu-volume_c) triple product of the velocity vectors
-        upu_volume_c_t = upu_root_1*upu_root_2
+        upu_volume_c_t = upu_q_3*upu_root_1
         # (upu-n_c) force part, zero on the manifold, of the constraint moment
-        upu_n_c_t = upu_n_m1_in_axes1_z*upu_root_2/upu_volume_c_t
+        upu_n_c_in_axes2_z = upu_n_m1_t_5*upu_q_3/upu_volume_c_t
         # (upu-w_1) force part of reciprocal wrench 1
-        upu_w_1_t = upu_root_1 + upu_n_c_t*upu_n_m1_in_axes1_z
+        upu_w_1_t = upu_root_1 + upu_n_c_in_axes2_z*upu_n_m1_t_5
         upu_w_1_in_axes2_z = 1.0/upu_w_1_t
         # (upu-m1_w_1) moment part 1 of reciprocal wrench 1
-        upu_m1_w_1 = upu_n_c_t*upu_w_1_in_axes2_z
+        upu_m1_w_1_t = upu_n_c_in_axes2_z*upu_w_1_in_axes2_z
         # (upu-o_1) moment part of reciprocal wrench 1
-        upu_o_1_t = upu_end_p1_in_axes2_y*upu_m1_w_1
-        upu_o_1_in_axes2_y = upu_m1_w_1*upu_n_m1_in_axes2_y
+        upu_o_1_in_axes2_x = upu_end_p1_in_axes2_y*upu_m1_w_1_t
+        upu_o_1_t = upu_m1_w_1_t*upu_n_m1_in_axes2_y
         # (upu-dalpha_alpha_1) coefficient of the acceleration in: angular acceleration of link 1
-        upu_dalpha_alpha_1_t = upu_o_1_t*upu_s_2
-        upu_dalpha_alpha_1_in_axes2_xy = upu_o_1_in_axes2_y*upu_s_2
-        upu_dalpha_alpha_1_in_axes2_yx = -upu_c_2*upu_o_1_t
-        upu_dalpha_alpha_1_t_2 = -upu_c_2*upu_o_1_in_axes2_y
+        upu_dalpha_alpha_1_in_axes2_xx = upu_e_1_in_axes2_x*upu_o_1_in_axes2_x
+        upu_dalpha_alpha_1_t = upu_e_1_in_axes2_x*upu_o_1_t
+        upu_dalpha_alpha_1_t_2 = upu_c_2*upu_o_1_in_axes2_x
+        upu_dalpha_alpha_1_in_axes2_yy = upu_c_2*upu_o_1_t
         # (upu-d_alpha_1) coefficient of the acceleration in: angular acceleration of link 1
-        upu_d_alpha_1_in_axes2_xz = upu_s_2*upu_w_1_in_axes2_z
-        upu_d_alpha_1_t = -upu_c_2*upu_w_1_in_axes2_z
+        upu_d_alpha_1_in_axes2_xz = upu_e_1_in_axes2_x*upu_w_1_in_axes2_z
+        upu_d_alpha_1_t = upu_c_2*upu_w_1_in_axes2_z
         # (upu-dalpha_acc_3) coefficient of the acceleration in: acceleration of the reference point of link 3, less gravity
-        upu_dalpha_acc_3_t = upu_dalpha_alpha_1_in_axes2_yx*upu_root_2
-        upu_dalpha_acc_3_in_axes2_zy = upu_dalpha_alpha_1_t_2*upu_root_2
+        upu_dalpha_acc_3_in_axes2_zx = upu_dalpha_alpha_1_t_2*upu_q_3
+        upu_dalpha_acc_3_t = upu_dalpha_alpha_1_in_axes2_yy*upu_q_3
         # (upu-d_acc_3) coefficient of the acceleration in: acceleration of the reference point of link 3, less gravity
-        upu_d_acc_3_in_axes2_zz = upu_d_alpha_1_t*upu_root_2
+        upu_d_acc_3_in_axes2_zz = upu_d_alpha_1_t*upu_q_3
         # (upu-dalpha_phi_3) coefficient of the acceleration in: inertia force of link 3 from its turning about its reference point
-        upu_dalpha_phi_3_in_axes2_xx = upu_dalpha_alpha_1_in_axes2_yx*upu_h_3_in_spec2_y
+        upu_dalpha_phi_3_in_axes2_xy = upu_dalpha_alpha_1_in_axes2_yy*upu_h_3_in_spec2_y
         # (upu-d_phi_3) coefficient of the acceleration in: inertia force of link 3 from its turning about its reference point
-        upu_d_phi_3_in_axes2_xy = inv_upu_root_2*upu_h_3_in_spec2_z
+        upu_d_phi_3_in_axes2_xy = inv_upu_q_3*upu_h_3_in_spec2_z
         # (upu-dalpha_Gamma_1) coefficient of the acceleration in: moment about axis 1 of the distal links' inertia and weight
         upu_dalpha_Gamma_1_in_axes2_x = (
-        upu_c_2*(upu_J_group_2_in_axes2_yy*upu_dalpha_alpha_1_in_axes2_yx +
-            upu_dalpha_acc_3_t*upu_h_3_in_spec2_x - upu_J_group_2_in_axes2_xy*upu_dalpha_alpha_1_t
-            - upu_root_2*(upu_dalpha_alpha_1_t*upu_h_3_in_spec2_z -
-            upu_dalpha_acc_3_t*upu_link3_mass -
-            upu_dalpha_alpha_1_in_axes2_yx*upu_h_3_in_spec2_x)) +
-            upu_s_2*(upu_J_group_2_in_axes2_xy*upu_dalpha_alpha_1_in_axes2_yx +
-            upu_dalpha_acc_3_t*upu_h_3_in_spec2_z -
-            upu_J_group_2_in_axes2_xx*upu_dalpha_alpha_1_t)
+        upu_e_1_in_axes2_x*(upu_J_group_2_in_axes2_xx*upu_dalpha_alpha_1_in_axes2_xx -
+            upu_J_group_2_in_axes2_xy*upu_dalpha_alpha_1_t_2 -
+            upu_dalpha_acc_3_in_axes2_zx*upu_h_3_in_spec2_z) -
+            upu_c_2*(upu_J_group_2_in_axes2_xy*upu_dalpha_alpha_1_in_axes2_xx -
+            upu_J_group_2_in_axes2_yy*upu_dalpha_alpha_1_t_2 -
+            upu_dalpha_acc_3_in_axes2_zx*upu_h_3_in_spec2_x -
+            upu_q_3*(upu_dalpha_acc_3_in_axes2_zx*upu_link3_mass +
+            upu_dalpha_alpha_1_t_2*upu_h_3_in_spec2_x -
+            upu_dalpha_alpha_1_in_axes2_xx*upu_h_3_in_spec2_z))
         )
         upu_dalpha_Gamma_1_in_axes2_y = (
-        upu_c_2*(upu_J_group_2_in_axes2_xy*upu_dalpha_alpha_1_in_axes2_xy -
-            upu_J_group_2_in_axes2_yy*upu_dalpha_alpha_1_t_2 -
-            upu_dalpha_acc_3_in_axes2_zy*upu_h_3_in_spec2_x -
-            upu_root_2*(upu_dalpha_acc_3_in_axes2_zy*upu_link3_mass +
-            upu_dalpha_alpha_1_t_2*upu_h_3_in_spec2_x -
-            upu_dalpha_alpha_1_in_axes2_xy*upu_h_3_in_spec2_z)) +
-            upu_s_2*(upu_J_group_2_in_axes2_xx*upu_dalpha_alpha_1_in_axes2_xy -
-            upu_J_group_2_in_axes2_xy*upu_dalpha_alpha_1_t_2 -
-            upu_dalpha_acc_3_in_axes2_zy*upu_h_3_in_spec2_z)
+        upu_e_1_in_axes2_x*(upu_J_group_2_in_axes2_xy*upu_dalpha_alpha_1_in_axes2_yy +
+            upu_dalpha_acc_3_t*upu_h_3_in_spec2_z -
+            upu_J_group_2_in_axes2_xx*upu_dalpha_alpha_1_t) -
+            upu_c_2*(upu_J_group_2_in_axes2_yy*upu_dalpha_alpha_1_in_axes2_yy +
+            upu_dalpha_acc_3_t*upu_h_3_in_spec2_x - upu_J_group_2_in_axes2_xy*upu_dalpha_alpha_1_t
+            - upu_q_3*(upu_dalpha_alpha_1_t*upu_h_3_in_spec2_z - upu_dalpha_acc_3_t*upu_link3_mass
+            - upu_dalpha_alpha_1_in_axes2_yy*upu_h_3_in_spec2_x))
         )
         # (upu-d_Gamma_1) coefficient of the acceleration in: moment about axis 1 of the distal links' inertia and weight
         upu_d_Gamma_1_in_axes2_z = (
-        upu_c_2*(upu_J_group_2_in_axes2_xy*upu_d_alpha_1_in_axes2_xz -
-            upu_J_group_2_in_axes2_yy*upu_d_alpha_1_t - upu_d_acc_3_in_axes2_zz*upu_h_3_in_spec2_x
-            - upu_root_2*(upu_d_acc_3_in_axes2_zz*upu_link3_mass +
-            upu_d_alpha_1_t*upu_h_3_in_spec2_x - upu_d_alpha_1_in_axes2_xz*upu_h_3_in_spec2_z)) +
-            upu_s_2*(upu_J_group_2_in_axes2_xx*upu_d_alpha_1_in_axes2_xz -
+        upu_e_1_in_axes2_x*(upu_J_group_2_in_axes2_xx*upu_d_alpha_1_in_axes2_xz -
             upu_J_group_2_in_axes2_xy*upu_d_alpha_1_t -
-            upu_d_acc_3_in_axes2_zz*upu_h_3_in_spec2_z)
+            upu_d_acc_3_in_axes2_zz*upu_h_3_in_spec2_z) -
+            upu_c_2*(upu_J_group_2_in_axes2_xy*upu_d_alpha_1_in_axes2_xz -
+            upu_J_group_2_in_axes2_yy*upu_d_alpha_1_t - upu_d_acc_3_in_axes2_zz*upu_h_3_in_spec2_x
+            - upu_q_3*(upu_d_acc_3_in_axes2_zz*upu_link3_mass + upu_d_alpha_1_t*upu_h_3_in_spec2_x
+            - upu_d_alpha_1_in_axes2_xz*upu_h_3_in_spec2_z))
         )
         # (upu-dalpha_G) coefficient of the acceleration in: force at the connection point that balances the leg's inertia and weight along all degrees of freedom
         upu_dalpha_G_in_axes2_zx = upu_dalpha_Gamma_1_in_axes2_x*upu_w_1_in_axes2_z
         upu_dalpha_G_in_axes2_zy = upu_dalpha_Gamma_1_in_axes2_y*upu_w_1_in_axes2_z
         upu_dalpha_G_in_axes2_yx = (
-        inv_upu_root_2*(upu_J_group_2_in_axes2_yz*upu_dalpha_alpha_1_in_axes2_yx +
-            upu_dalpha_alpha_1_t*upu_h_3_in_spec2_y*upu_root_2 -
-            upu_J_group_2_in_axes2_xz*upu_dalpha_alpha_1_t)
+        inv_upu_q_3*(upu_J_group_2_in_axes2_xz*upu_dalpha_alpha_1_in_axes2_xx -
+            upu_J_group_2_in_axes2_yz*upu_dalpha_alpha_1_t_2 -
+            upu_dalpha_alpha_1_in_axes2_xx*upu_h_3_in_spec2_y*upu_q_3)
         )
         upu_dalpha_G_in_axes2_yy = (
-        inv_upu_root_2*(upu_J_group_2_in_axes2_xz*upu_dalpha_alpha_1_in_axes2_xy -
-            upu_J_group_2_in_axes2_yz*upu_dalpha_alpha_1_t_2 -
-            upu_dalpha_alpha_1_in_axes2_xy*upu_h_3_in_spec2_y*upu_root_2)
+        inv_upu_q_3*(upu_J_group_2_in_axes2_yz*upu_dalpha_alpha_1_in_axes2_yy +
+            upu_dalpha_alpha_1_t*upu_h_3_in_spec2_y*upu_q_3 -
+            upu_J_group_2_in_axes2_xz*upu_dalpha_alpha_1_t)
         )
         # (upu-d_G) coefficient of the acceleration in: force at the connection point that balances the leg's inertia and weight along all degrees of freedom
         upu_d_G_in_axes2_yz = (
-        inv_upu_root_2*(upu_J_group_2_in_axes2_xz*upu_d_alpha_1_in_axes2_xz -
+        inv_upu_q_3*(upu_J_group_2_in_axes2_xz*upu_d_alpha_1_in_axes2_xz -
             upu_J_group_2_in_axes2_yz*upu_d_alpha_1_t -
-            upu_d_alpha_1_in_axes2_xz*upu_h_3_in_spec2_y*upu_root_2)
+            upu_d_alpha_1_in_axes2_xz*upu_h_3_in_spec2_y*upu_q_3)
         )
         # (upu-dalpha_G_m1) coefficient of the acceleration in: moment along moment direction 1 that balances the leg's inertia and weight along all degrees of freedom
-        upu_dalpha_G_m1_in_axes2_x = upu_dalpha_Gamma_1_in_axes2_x*upu_m1_w_1
-        upu_dalpha_G_m1_in_axes2_y = upu_dalpha_Gamma_1_in_axes2_y*upu_m1_w_1
+        upu_dalpha_G_m1_in_axes2_x = -upu_dalpha_Gamma_1_in_axes2_x*upu_m1_w_1_t
+        upu_dalpha_G_m1_in_axes2_y = -upu_dalpha_Gamma_1_in_axes2_y*upu_m1_w_1_t
         upu_dalpha_G_m1_y = (
         axis_x_upu_axes2_y*upu_dalpha_G_m1_in_axes2_x +
             axis_y_upu_axes2_y*upu_dalpha_G_m1_in_axes2_y
@@ -2676,23 +2843,23 @@ def _run_M(m, X):
             axis_y_upu_axes2_z*upu_dalpha_G_m1_in_axes2_y
         )
         # (upu-d_G_m1) coefficient of the acceleration in: moment along moment direction 1 that balances the leg's inertia and weight along all degrees of freedom
-        upu_d_G_m1_in_axes2_x = upu_c_2*upu_h_3_in_spec2_y*upu_m1_w_1
-        upu_d_G_m1_in_axes2_y = (
-        upu_m1_w_1*(upu_s_2*(inv_upu_root_2*upu_J_group_2_in_axes2_xz - upu_h_3_in_spec2_y) +
-            inv_upu_root_2*upu_J_group_2_in_axes2_yz*upu_c_2)
+        upu_d_G_m1_in_axes2_x = upu_c_2*upu_h_3_in_spec2_y*upu_m1_w_1_t
+        upu_d_G_m1_t = (
+        upu_m1_w_1_t*(upu_e_1_in_axes2_x*(inv_upu_q_3*upu_J_group_2_in_axes2_xz -
+            upu_h_3_in_spec2_y) - inv_upu_q_3*upu_J_group_2_in_axes2_yz*upu_c_2)
         )
-        upu_d_G_m1_in_axes2_z = upu_d_Gamma_1_in_axes2_z*upu_m1_w_1
+        upu_d_G_m1_t_2 = upu_d_Gamma_1_in_axes2_z*upu_m1_w_1_t
         upu_d_G_m1_x = (
-        axis_x_upu_axes2_x*upu_d_G_m1_in_axes2_x + axis_y_upu_axes2_x*upu_d_G_m1_in_axes2_y +
-            axis_z_upu_axes2_x*upu_d_G_m1_in_axes2_z
+        axis_x_upu_axes2_x*upu_d_G_m1_in_axes2_x - axis_y_upu_axes2_x*upu_d_G_m1_t -
+            axis_z_upu_axes2_x*upu_d_G_m1_t_2
         )
         upu_d_G_m1_y = (
-        axis_x_upu_axes2_y*upu_d_G_m1_in_axes2_x + axis_y_upu_axes2_y*upu_d_G_m1_in_axes2_y +
-            axis_z_upu_axes2_y*upu_d_G_m1_in_axes2_z
+        axis_x_upu_axes2_y*upu_d_G_m1_in_axes2_x - axis_y_upu_axes2_y*upu_d_G_m1_t -
+            axis_z_upu_axes2_y*upu_d_G_m1_t_2
         )
         upu_d_G_m1_z = (
-        axis_x_upu_axes2_z*upu_d_G_m1_in_axes2_x + axis_y_upu_axes2_z*upu_d_G_m1_in_axes2_y +
-            axis_z_upu_axes2_z*upu_d_G_m1_in_axes2_z
+        axis_x_upu_axes2_z*upu_d_G_m1_in_axes2_x - axis_y_upu_axes2_z*upu_d_G_m1_t -
+            axis_z_upu_axes2_z*upu_d_G_m1_t_2
         )
         # (upu-d_G_m) coefficient of the acceleration in: moment at the connection point that balances the leg's inertia and weight along all degrees of freedom
         upu_d_G_m_xx = upu_d_G_m1_x*upu_n_m1_x
@@ -2700,13 +2867,13 @@ def _run_M(m, X):
         upu_d_G_m_xz = upu_d_G_m1_z*upu_n_m1_x
         upu_d_G_m_yx = upu_d_G_m1_x*upu_n_m1_y
         # (upu-dalpha_c) coefficient of the acceleration in: leg force on the platform without actuation and without the mass at the connection point
-        upu_dalpha_c_in_axes2_xy = upu_dalpha_alpha_1_t_2*upu_h_3_in_spec2_y
+        upu_dalpha_c_in_axes2_xx = upu_dalpha_alpha_1_t_2*upu_h_3_in_spec2_y
         # (upu-d_c) coefficient of the acceleration in: leg force on the platform without actuation and without the mass at the connection point
         upu_d_c_in_axes2_xz = upu_d_alpha_1_t*upu_h_3_in_spec2_y
         # (upu-Q) inertia of the leg at the connection point, without the mass gathered there
         upu_Q_t = (
-        inv_upu_root_2*(upu_h_3_in_spec2_x + inv_upu_root_2*upu_J_group_2_in_axes2_zz +
-            upu_root_2*(upu_link3_mass + inv_upu_root_2*upu_h_3_in_spec2_x)) - upu_link3_mass
+        inv_upu_q_3*(upu_h_3_in_spec2_x + inv_upu_q_3*upu_J_group_2_in_axes2_zz +
+            upu_q_3*(upu_link3_mass + inv_upu_q_3*upu_h_3_in_spec2_x)) - upu_link3_mass
         )
         upu_Q_t_2 = 0.5*upu_Q_t
         upu_Q_t_3 = upu_d_Gamma_1_in_axes2_z*upu_w_1_in_axes2_z - upu_link3_mass
@@ -2746,31 +2913,31 @@ def _run_M(m, X):
         upu_Q_zz = 2.0*upu_Q_t_13 + upu_link3_mass
         # (M_ta) coupling block of M
         upu_M_ta_t = (
-        -axis_x_upu_axes2_x*upu_dalpha_phi_3_in_axes2_xx -
-            axis_y_upu_axes2_x*upu_dalpha_G_in_axes2_yx -
-            axis_z_upu_axes2_x*upu_dalpha_G_in_axes2_zx
+        axis_x_upu_axes2_x*upu_dalpha_c_in_axes2_xx - axis_y_upu_axes2_x*upu_dalpha_G_in_axes2_yx
+            - axis_z_upu_axes2_x*upu_dalpha_G_in_axes2_zx
         )
         upu_M_ta_t_2 = (
-        -axis_x_upu_axes2_y*upu_dalpha_phi_3_in_axes2_xx -
-            axis_y_upu_axes2_y*upu_dalpha_G_in_axes2_yx -
-            axis_z_upu_axes2_y*upu_dalpha_G_in_axes2_zx
+        axis_x_upu_axes2_y*upu_dalpha_c_in_axes2_xx - axis_y_upu_axes2_y*upu_dalpha_G_in_axes2_yx
+            - axis_z_upu_axes2_y*upu_dalpha_G_in_axes2_zx
         )
         upu_M_ta_t_3 = (
-        -axis_x_upu_axes2_z*upu_dalpha_phi_3_in_axes2_xx -
-            axis_y_upu_axes2_z*upu_dalpha_G_in_axes2_yx -
-            axis_z_upu_axes2_z*upu_dalpha_G_in_axes2_zx
+        axis_x_upu_axes2_z*upu_dalpha_c_in_axes2_xx - axis_y_upu_axes2_z*upu_dalpha_G_in_axes2_yx
+            - axis_z_upu_axes2_z*upu_dalpha_G_in_axes2_zx
         )
         upu_M_ta_t_4 = (
-        axis_x_upu_axes2_x*upu_dalpha_c_in_axes2_xy - axis_y_upu_axes2_x*upu_dalpha_G_in_axes2_yy
-            - axis_z_upu_axes2_x*upu_dalpha_G_in_axes2_zy
+        -axis_x_upu_axes2_x*upu_dalpha_phi_3_in_axes2_xy -
+            axis_y_upu_axes2_x*upu_dalpha_G_in_axes2_yy -
+            axis_z_upu_axes2_x*upu_dalpha_G_in_axes2_zy
         )
         upu_M_ta_t_5 = (
-        axis_x_upu_axes2_y*upu_dalpha_c_in_axes2_xy - axis_y_upu_axes2_y*upu_dalpha_G_in_axes2_yy
-            - axis_z_upu_axes2_y*upu_dalpha_G_in_axes2_zy
+        -axis_x_upu_axes2_y*upu_dalpha_phi_3_in_axes2_xy -
+            axis_y_upu_axes2_y*upu_dalpha_G_in_axes2_yy -
+            axis_z_upu_axes2_y*upu_dalpha_G_in_axes2_zy
         )
         upu_M_ta_t_6 = (
-        axis_x_upu_axes2_z*upu_dalpha_c_in_axes2_xy - axis_y_upu_axes2_z*upu_dalpha_G_in_axes2_yy
-            - axis_z_upu_axes2_z*upu_dalpha_G_in_axes2_zy
+        -axis_x_upu_axes2_z*upu_dalpha_phi_3_in_axes2_xy -
+            axis_y_upu_axes2_z*upu_dalpha_G_in_axes2_yy -
+            axis_z_upu_axes2_z*upu_dalpha_G_in_axes2_zy
         )
         upu_M_ta_t_7 = upu_Q_xy*upu_q_z
         upu_M_ta_t_8 = upu_Q_xz*upu_q_y
@@ -2839,10 +3006,10 @@ def _run_M(m, X):
             upu_M_ta_t_12*upu_q_y - upu_d_G_m1_x*upu_n_m1_z*upu_q_y
         )
         ok = (
-        ok & (abs(upu_rho2_1) > _TOLERANCE * _TOLERANCE * 0.6400000000000001) & (abs(upu_rho2_2) >
-            _TOLERANCE * _TOLERANCE * 0.6400000000000001) & (abs(upu_volume_c_t) > _TOLERANCE *
-            0.6400000000000001) & (abs(upu_root_2) > _TOLERANCE * 0.8) & (abs(upu_w_1_t) >
-            _TOLERANCE * 0.8)
+        ok & (abs(upu_root_1_t) > _TOLERANCE * _TOLERANCE * 0.6400000000000001) & (abs(upu_q_3_t)
+            > _TOLERANCE * _TOLERANCE * 0.6400000000000001) & (abs(upu_volume_c_t) > _TOLERANCE *
+            0.6400000000000001) & (abs(upu_q_3) > _TOLERANCE * 0.8) & (abs(upu_w_1_t) > _TOLERANCE
+            * 0.8)
         )
         # (M_tt) translational block of M
         M_tt_upu_xx += upu_Q_xx
@@ -3059,52 +3226,46 @@ def _run_Z(m, X, V):
         upu_S_x = t_x + upu_q_x - upu_base_point_x
         upu_S_y = t_y + upu_q_y - upu_base_point_y
         upu_S_z = t_z + upu_q_z - upu_base_point_z
-        # (upu-px_1) component along the reference direction
-        upu_px_1 = (
+        upu_S_in_turn1_x = (
         upu_S_x*upu_base_frame_xx + upu_S_y*upu_base_frame_yx + upu_S_z*upu_base_frame_zx
         )
-        # (upu-py_1) component across the reference direction
-        upu_py_1 = (
+        upu_S_in_turn1_y = (
         upu_S_x*upu_base_frame_xy + upu_S_y*upu_base_frame_yy + upu_S_z*upu_base_frame_zy
         )
-        # (upu-rho2_1) squared amplitude
-        upu_rho2_1 = upu_px_1*upu_px_1 + upu_py_1*upu_py_1
-        # (upu-root_1) amplitude, with the sign of the branch
-        upu_root_1 = upu_branch_1*sqrt(upu_rho2_1)
-        # (upu-c_1) cosine of the angle of joint 1 from its reference direction
-        inv_upu_root_1 = 1.0/upu_root_1
-        upu_c_1_t = inv_upu_root_1*upu_py_1
-        # (upu-s_1) sine of the angle of joint 1 from its reference direction
-        upu_s_1 = inv_upu_root_1*upu_px_1
-        # (upu-xi_1) the vector from joint 1 to the connection point, resolved along link 1
-        upu_xi_1_in_axes1_z = (
+        upu_S_in_turn1_z = (
         upu_S_x*upu_base_frame_xz + upu_S_y*upu_base_frame_yz + upu_S_z*upu_base_frame_zz
         )
-        # (upu-rho2_2) squared amplitude
-        upu_rho2_2 = upu_rho2_1 + upu_xi_1_in_axes1_z*upu_xi_1_in_axes1_z
-        # (upu-root_2) amplitude, with the sign of the branch
-        upu_root_2 = upu_branch_2*sqrt(upu_rho2_2)
+        # (upu-root_1) amplitude, the length across axis 1, with the sign of the branch
+        upu_root_1_t = upu_S_in_turn1_x*upu_S_in_turn1_x + upu_S_in_turn1_y*upu_S_in_turn1_y
+        upu_root_1 = upu_branch_1*sqrt(upu_root_1_t)
+        # (upu-c_1) cosine of the angle of joint 1 from its reference direction
+        inv_upu_root_1 = 1.0/upu_root_1
+        upu_c_1 = inv_upu_root_1*upu_S_in_turn1_x
+        # (upu-s_1) sine of the angle of joint 1 from its reference direction
+        upu_s_1 = inv_upu_root_1*upu_S_in_turn1_y
+        # (upu-q_3) displacement of joint 3
+        upu_q_3_t = upu_S_in_turn1_z*upu_S_in_turn1_z + upu_root_1_t
+        upu_q_3 = upu_branch_2*sqrt(upu_q_3_t)
         # (upu-c_2) cosine of the angle of joint 2 from its reference direction
-        inv_upu_root_2 = 1.0/upu_root_2
-        upu_c_2 = -inv_upu_root_2*upu_root_1
-        # (upu-s_2) sine of the angle of joint 2 from its reference direction
-        upu_s_2 = inv_upu_root_2*upu_xi_1_in_axes1_z
+        inv_upu_q_3 = 1.0/upu_q_3
+        upu_c_2 = inv_upu_q_3*upu_root_1
         # (upu-S_dot) velocity of the connection point
-        axis_z_upu_axes2_x = upu_base_frame_xy*upu_s_1 - upu_base_frame_xx*upu_c_1_t
-        axis_z_upu_axes2_y = upu_base_frame_yy*upu_s_1 - upu_base_frame_yx*upu_c_1_t
-        axis_z_upu_axes2_z = upu_base_frame_zy*upu_s_1 - upu_base_frame_zx*upu_c_1_t
-        upu_S_dot_t = upu_s_1*upu_s_2
-        upu_S_dot_t_2 = upu_c_1_t*upu_s_2
+        upu_e_1_in_axes2_x = inv_upu_q_3*upu_S_in_turn1_z
+        axis_z_upu_axes2_x = upu_base_frame_xy*upu_c_1 - upu_base_frame_xx*upu_s_1
+        axis_z_upu_axes2_y = upu_base_frame_yy*upu_c_1 - upu_base_frame_yx*upu_s_1
+        axis_z_upu_axes2_z = upu_base_frame_zy*upu_c_1 - upu_base_frame_zx*upu_s_1
+        upu_S_dot_t = upu_c_1*upu_e_1_in_axes2_x
+        upu_S_dot_t_2 = upu_e_1_in_axes2_x*upu_s_1
         axis_y_upu_axes2_x = (
-        upu_S_dot_t*upu_base_frame_xx + upu_S_dot_t_2*upu_base_frame_xy +
+        upu_S_dot_t*upu_base_frame_xx + upu_S_dot_t_2*upu_base_frame_xy -
             upu_base_frame_xz*upu_c_2
         )
         axis_y_upu_axes2_y = (
-        upu_S_dot_t*upu_base_frame_yx + upu_S_dot_t_2*upu_base_frame_yy +
+        upu_S_dot_t*upu_base_frame_yx + upu_S_dot_t_2*upu_base_frame_yy -
             upu_base_frame_yz*upu_c_2
         )
         axis_y_upu_axes2_z = (
-        upu_S_dot_t*upu_base_frame_zx + upu_S_dot_t_2*upu_base_frame_zy +
+        upu_S_dot_t*upu_base_frame_zx + upu_S_dot_t_2*upu_base_frame_zy -
             upu_base_frame_zz*upu_c_2
         )
         axis_x_upu_axes2_x = (
@@ -3148,16 +3309,16 @@ def _run_Z(m, X, V):
             upu_platform_joint_axis_platform_z*(R_xz*upu_base_frame_xz + R_yz*upu_base_frame_yz +
             R_zz*upu_base_frame_zz)
         )
-        upu_n_m1_t_4 = upu_c_1_t*upu_n_m1_t_2 + upu_n_m1_t*upu_s_1
-        upu_n_m1_in_axes2_y = upu_n_m1_t_3*upu_s_2 - upu_c_2*upu_n_m1_t_4
-        upu_end_p1_in_axes2_y = upu_c_2*upu_n_m1_t_3 + upu_n_m1_t_4*upu_s_2
-        upu_n_m1_in_axes1_z = upu_c_2*upu_n_m1_in_axes2_y - upu_end_p1_in_axes2_y*upu_s_2
+        upu_n_m1_t_4 = upu_c_1*upu_n_m1_t + upu_n_m1_t_2*upu_s_1
+        upu_n_m1_in_axes2_y = upu_c_2*upu_n_m1_t_4 + upu_e_1_in_axes2_x*upu_n_m1_t_3
+        upu_end_p1_in_axes2_y = upu_e_1_in_axes2_x*upu_n_m1_t_4 - upu_c_2*upu_n_m1_t_3
+        upu_n_m1_t_5 = upu_c_2*upu_n_m1_in_axes2_y + upu_e_1_in_axes2_x*upu_end_p1_in_axes2_y
         # (upu-volume_c) triple product of the velocity vectors
-        upu_volume_c_t = upu_root_1*upu_root_2
+        upu_volume_c_t = upu_q_3*upu_root_1
         # (upu-n_c) force part, zero on the manifold, of the constraint moment
-        upu_n_c_t = upu_n_m1_in_axes1_z*upu_root_2/upu_volume_c_t
+        upu_n_c_in_axes2_z = upu_n_m1_t_5*upu_q_3/upu_volume_c_t
         # (upu-w_1) force part of reciprocal wrench 1
-        upu_w_1_t = upu_root_1 + upu_n_c_t*upu_n_m1_in_axes1_z
+        upu_w_1_t = upu_root_1 + upu_n_c_in_axes2_z*upu_n_m1_t_5
         upu_w_1_in_axes2_z = 1.0/upu_w_1_t
         # (upu-eta_1) rate at which the joints turn along moment direction 1
         upu_eta_1 = (
@@ -3171,16 +3332,16 @@ def _run_Z(m, X, V):
         # (upu-qd_1) rate of joint 1
         upu_qd_1 = (
         upu_w_1_in_axes2_z*(axis_z_upu_axes2_x*upu_S_dot_x + axis_z_upu_axes2_y*upu_S_dot_y +
-            axis_z_upu_axes2_z*upu_S_dot_z + upu_eta_1*upu_n_c_t)
+            axis_z_upu_axes2_z*upu_S_dot_z - upu_eta_1*upu_n_c_in_axes2_z)
         )
         # (upu-qd_2) rate of joint 2
         upu_qd_2 = (
-        inv_upu_root_2*(axis_y_upu_axes2_x*upu_S_dot_x + axis_y_upu_axes2_y*upu_S_dot_y +
+        inv_upu_q_3*(axis_y_upu_axes2_x*upu_S_dot_x + axis_y_upu_axes2_y*upu_S_dot_y +
             axis_y_upu_axes2_z*upu_S_dot_z)
         )
         # (upu-omega_1) angular velocity of link 1
-        upu_omega_1_in_axes2_x = upu_qd_1*upu_s_2
-        upu_omega_1_in_axes2_y = upu_c_2*upu_qd_1
+        upu_omega_1_in_axes2_x = upu_e_1_in_axes2_x*upu_qd_1
+        upu_omega_1_in_axes2_y = -upu_c_2*upu_qd_1
         # (upu-W_2) centripetal tensor of link 2
         upu_W_2_in_axes2_yz = upu_omega_1_in_axes2_y*upu_qd_2
         upu_W_2_in_axes2_xz = upu_omega_1_in_axes2_x*upu_qd_2
@@ -3192,14 +3353,14 @@ def _run_Z(m, X, V):
         # (upu-bias) acceleration of the connection point at zero joint accelerations
         upu_bias_t = 2.0*upu_S_dot_in_axes2_x
         upu_bias_t_2 = upu_bias_t*upu_omega_1_in_axes2_y
-        upu_bias_in_axes2_z = 2.0*upu_W_2_in_axes2_xz*upu_root_2 - upu_bias_t_2
+        upu_bias_in_axes2_z = 2.0*upu_W_2_in_axes2_xz*upu_q_3 - upu_bias_t_2
         # (upu-rel_o) remainder without the acceleration in: acceleration of the connection point left to the joint accelerations
         upu_rel_o_in_axes2_z = (
         axis_z_upu_axes2_x*upu_u_1_x + axis_z_upu_axes2_y*upu_u_1_y + axis_z_upu_axes2_z*upu_u_1_z
             - upu_bias_in_axes2_z
         )
         # (upu-nd_m1) rate of moment direction 1
-        upu_end_p1_in_axes2_z = upu_n_m1_t_2*upu_s_1 - upu_c_1_t*upu_n_m1_t
+        upu_end_p1_in_axes2_z = upu_c_1*upu_n_m1_t_2 - upu_n_m1_t*upu_s_1
         upu_omega_in_axes2_x = (
         axis_x_upu_axes2_x*omega_x + axis_x_upu_axes2_y*omega_y + axis_x_upu_axes2_z*omega_z
         )
@@ -3219,7 +3380,7 @@ def _run_Z(m, X, V):
         )
         # (upu-nu_1) bias of the angular acceleration along moment direction 1
         upu_nu_1_t = (
-        -upu_W_2_in_axes2_xz*upu_n_m1_in_axes2_y - upu_W_2_in_axes2_yz*upu_end_p1_in_axes2_y
+        upu_W_2_in_axes2_xz*upu_n_m1_in_axes2_y + upu_W_2_in_axes2_yz*upu_end_p1_in_axes2_y
         )
         upu_nu_1_t_2 = (
         upu_nd_m1_in_axes2_y*(upu_omega_in_axes2_y - upu_omega_1_in_axes2_y) -
@@ -3227,14 +3388,14 @@ def _run_Z(m, X, V):
             (upu_omega_in_axes2_z - upu_qd_2)*(-upu_end_p1_in_axes2_y*upu_omega_1_in_axes2_y -
             upu_n_m1_in_axes2_y*upu_omega_1_in_axes2_x)
         )
-        upu_nu_1 = upu_nu_1_t_2 - upu_nu_1_t
+        upu_nu_1 = upu_nu_1_t + upu_nu_1_t_2
         # (upu-qdd_1_o) remainder without the acceleration in: acceleration of joint 1
-        upu_qdd_1_o = upu_w_1_in_axes2_z*(upu_rel_o_in_axes2_z + upu_n_c_t*upu_nu_1)
+        upu_qdd_1_o_t = upu_w_1_in_axes2_z*(upu_n_c_in_axes2_z*upu_nu_1 - upu_rel_o_in_axes2_z)
         # (upu-alpha_1_o) remainder without the acceleration in: angular acceleration of link 1
-        upu_alpha_1_o_in_axes2_x = upu_qdd_1_o*upu_s_2
-        upu_alpha_1_o_in_axes2_y = upu_c_2*upu_qdd_1_o
+        upu_alpha_1_o_t = upu_e_1_in_axes2_x*upu_qdd_1_o_t
+        upu_alpha_1_o_in_axes2_y = upu_c_2*upu_qdd_1_o_t
         # (upu-alpha_2_o) remainder without the acceleration in: angular acceleration of link 2
-        upu_alpha_2_o_in_axes2_x = upu_W_2_in_axes2_yz + upu_alpha_1_o_in_axes2_x
+        upu_alpha_2_o_in_axes2_x = upu_W_2_in_axes2_yz - upu_alpha_1_o_t
         upu_alpha_2_o_in_axes2_y = upu_alpha_1_o_in_axes2_y - upu_W_2_in_axes2_xz
         # (upu-B_2_o) remainder of the acceleration tensor of link 2
         upu_B_2_o_t = upu_bias_t*upu_qd_2
@@ -3242,23 +3403,21 @@ def _run_Z(m, X, V):
         axis_y_upu_axes2_x*upu_u_1_x + axis_y_upu_axes2_y*upu_u_1_y + axis_y_upu_axes2_z*upu_u_1_z
             - upu_B_2_o_t
         )
-        upu_B_2_o_in_axes2_yx = inv_upu_root_2*upu_B_2_o_t_2
+        upu_B_2_o_in_axes2_yx = inv_upu_q_3*upu_B_2_o_t_2
         upu_B_2_o_in_axes2_xy = 2.0*upu_W_2_in_axes2_xy - upu_B_2_o_in_axes2_yx
         upu_B_2_o_in_axes2_zx = upu_W_2_in_axes2_xz - upu_alpha_2_o_in_axes2_y
         upu_B_2_o_in_axes2_zy = upu_W_2_in_axes2_yz + upu_alpha_2_o_in_axes2_x
         # (upu-acc_3_o) remainder without the acceleration in: acceleration of the reference point of link 3, less gravity
-        upu_g_in_axes2_z = upu_acc_3_t_2*upu_s_1 - upu_acc_3_t*upu_c_1_t
-        upu_acc_3_o_t = upu_acc_3_t*upu_s_1 + upu_acc_3_t_2*upu_c_1_t
-        upu_g_in_axes2_x = upu_acc_3_t_3*upu_s_2 - upu_acc_3_o_t*upu_c_2
-        upu_g_in_axes2_y = upu_acc_3_o_t*upu_s_2 + upu_acc_3_t_3*upu_c_2
+        upu_acc_3_o_t = upu_acc_3_t*upu_c_1 + upu_acc_3_t_2*upu_s_1
+        upu_g_in_axes2_z = upu_acc_3_t_2*upu_c_1 - upu_acc_3_t*upu_s_1
+        upu_g_in_axes2_x = upu_acc_3_o_t*upu_c_2 + upu_acc_3_t_3*upu_e_1_in_axes2_x
+        upu_g_in_axes2_y = upu_acc_3_o_t*upu_e_1_in_axes2_x - upu_acc_3_t_3*upu_c_2
         upu_acc_3_o_in_axes2_x = (
         axis_x_upu_axes2_x*upu_u_1_x + axis_x_upu_axes2_y*upu_u_1_y + axis_x_upu_axes2_z*upu_u_1_z
             - upu_g_in_axes2_x
         )
         upu_acc_3_o_in_axes2_y = upu_B_2_o_t + upu_B_2_o_t_2 - upu_g_in_axes2_y
-        upu_acc_3_o_in_axes2_z = (
-        upu_B_2_o_in_axes2_zx*upu_root_2 - upu_bias_t_2 - upu_g_in_axes2_z
-        )
+        upu_acc_3_o_in_axes2_z = upu_B_2_o_in_axes2_zx*upu_q_3 - upu_bias_t_2 - upu_g_in_axes2_z
         # (upu-f_3_o) remainder without the acceleration in: inertia force of link 3 less its weight
         upu_f_3_o_t = upu_omega_1_in_axes2_x*upu_omega_1_in_axes2_x
         upu_f_3_o_t_2 = upu_omega_1_in_axes2_y*upu_omega_1_in_axes2_y
@@ -3270,8 +3429,7 @@ def _run_Z(m, X, V):
         )
         upu_f_3_o_in_axes2_y = (
         upu_B_2_o_in_axes2_yx*upu_h_3_in_spec2_x + upu_acc_3_o_in_axes2_y*upu_link3_mass +
-            upu_h_3_in_spec2_z*(upu_f_3_o_t + upu_f_3_o_t_3) -
-            upu_alpha_1_o_in_axes2_x*upu_h_3_in_spec2_y
+            upu_alpha_1_o_t*upu_h_3_in_spec2_y + upu_h_3_in_spec2_z*(upu_f_3_o_t + upu_f_3_o_t_3)
         )
         upu_f_3_o_in_axes2_z = (
         upu_B_2_o_in_axes2_zx*upu_h_3_in_spec2_x + upu_acc_3_o_in_axes2_z*upu_link3_mass -
@@ -3283,10 +3441,10 @@ def _run_Z(m, X, V):
         upu_B_2_o_in_axes2_yx*upu_J_group_2_in_axes2_xz +
             upu_B_2_o_in_axes2_zy*upu_Sigma_2_in_axes2_yy +
             upu_J_group_2_in_axes2_yz*(upu_f_3_o_t_2 - upu_f_3_o_t_3) +
-            upu_Sigma_2_in_axes2_zz*upu_alpha_1_o_in_axes2_x + upu_g_in_axes2_y*upu_h_2_in_spec2_y
-            + upu_g_in_axes2_z*upu_h_2_in_spec2_z -
+            upu_g_in_axes2_y*upu_h_2_in_spec2_y + upu_g_in_axes2_z*upu_h_2_in_spec2_z -
             upu_B_2_o_in_axes2_zx*upu_J_group_2_in_axes2_xy -
-            upu_acc_3_o_in_axes2_y*upu_h_3_in_spec2_y - upu_acc_3_o_in_axes2_z*upu_h_3_in_spec2_z
+            upu_Sigma_2_in_axes2_zz*upu_alpha_1_o_t - upu_acc_3_o_in_axes2_y*upu_h_3_in_spec2_y -
+            upu_acc_3_o_in_axes2_z*upu_h_3_in_spec2_z
         )
         upu_mu_2_o_in_axes2_y = (
         upu_B_2_o_in_axes2_zy*upu_J_group_2_in_axes2_xy +
@@ -3299,36 +3457,37 @@ def _run_Z(m, X, V):
         )
         upu_mu_2_o_in_axes2_z = (
         upu_B_2_o_in_axes2_yx*upu_Sigma_2_in_axes2_xx + upu_J_group_2_in_axes2_xy*(upu_f_3_o_t -
-            upu_f_3_o_t_2) + upu_J_group_2_in_axes2_xz*upu_alpha_1_o_in_axes2_x +
-            upu_J_group_2_in_axes2_yz*upu_alpha_1_o_in_axes2_y +
+            upu_f_3_o_t_2) + upu_J_group_2_in_axes2_yz*upu_alpha_1_o_in_axes2_y +
             upu_acc_3_o_in_axes2_x*upu_h_3_in_spec2_z + upu_acc_3_o_in_axes2_y*upu_h_3_in_spec2_x
-            - upu_B_2_o_in_axes2_xy*upu_Sigma_2_in_axes2_yy - upu_g_in_axes2_x*upu_h_2_in_spec2_z
-            - upu_g_in_axes2_y*upu_h_2_in_spec2_x
+            - upu_B_2_o_in_axes2_xy*upu_Sigma_2_in_axes2_yy -
+            upu_J_group_2_in_axes2_xz*upu_alpha_1_o_t - upu_g_in_axes2_x*upu_h_2_in_spec2_z -
+            upu_g_in_axes2_y*upu_h_2_in_spec2_x
         )
         # (upu-N_2_o) remainder without the acceleration in: moment about joint 2 of the links from 2 outwards, the force at the connection point left out
-        upu_N_2_o_in_axes2_y = upu_mu_2_o_in_axes2_y - upu_f_3_o_in_axes2_z*upu_root_2
-        upu_N_2_o_in_axes1_z = upu_N_2_o_in_axes2_y*upu_c_2 + upu_mu_2_o_in_axes2_x*upu_s_2
+        upu_N_2_o_in_axes2_y = upu_mu_2_o_in_axes2_y - upu_f_3_o_in_axes2_z*upu_q_3
+        upu_N_2_o_t = upu_N_2_o_in_axes2_y*upu_c_2 - upu_e_1_in_axes2_x*upu_mu_2_o_in_axes2_x
         # (upu-G_o) remainder without the acceleration in: force at the connection point that balances the leg's inertia and weight along all degrees of freedom
-        upu_G_o_in_axes2_y = upu_f_3_o_in_axes2_y + inv_upu_root_2*upu_mu_2_o_in_axes2_z
-        upu_G_o_in_axes2_z = upu_N_2_o_in_axes1_z*upu_w_1_in_axes2_z
+        upu_G_o_in_axes2_y = upu_f_3_o_in_axes2_y + inv_upu_q_3*upu_mu_2_o_in_axes2_z
         # (upu-G_m1_o) remainder without the acceleration in: moment along moment direction 1 that balances the leg's inertia and weight along all degrees of freedom
-        upu_G_m1_o = upu_N_2_o_in_axes1_z*upu_n_c_t*upu_w_1_in_axes2_z
+        upu_G_m1_o = upu_N_2_o_t*upu_n_c_in_axes2_z*upu_w_1_in_axes2_z
         # (upu-G_m_o) remainder without the acceleration in: moment at the connection point that balances the leg's inertia and weight along all degrees of freedom
         upu_G_m_o_in_axes2_y = upu_G_m1_o*upu_n_m1_in_axes2_y
+        # (upu-c_o) remainder without the acceleration in: leg force on the platform without actuation and without the mass at the connection point
+        upu_c_o_in_axes2_z = upu_N_2_o_t*upu_w_1_in_axes2_z
         # (upu-c_m_o) remainder without the acceleration in: moment of the leg on the platform without actuation
         upu_c_m_o_in_axes2_x = upu_G_m1_o*upu_end_p1_in_axes2_y
         # (upu-U) velocity and gravity terms of the leg force
         upu_U_x = (
-        axis_x_upu_axes2_x*upu_f_3_o_in_axes2_x + axis_y_upu_axes2_x*upu_G_o_in_axes2_y +
-            axis_z_upu_axes2_x*upu_G_o_in_axes2_z
+        axis_x_upu_axes2_x*upu_f_3_o_in_axes2_x + axis_y_upu_axes2_x*upu_G_o_in_axes2_y -
+            axis_z_upu_axes2_x*upu_c_o_in_axes2_z
         )
         upu_U_y = (
-        axis_x_upu_axes2_y*upu_f_3_o_in_axes2_x + axis_y_upu_axes2_y*upu_G_o_in_axes2_y +
-            axis_z_upu_axes2_y*upu_G_o_in_axes2_z
+        axis_x_upu_axes2_y*upu_f_3_o_in_axes2_x + axis_y_upu_axes2_y*upu_G_o_in_axes2_y -
+            axis_z_upu_axes2_y*upu_c_o_in_axes2_z
         )
         upu_U_z = (
-        axis_x_upu_axes2_z*upu_f_3_o_in_axes2_x + axis_y_upu_axes2_z*upu_G_o_in_axes2_y +
-            axis_z_upu_axes2_z*upu_G_o_in_axes2_z
+        axis_x_upu_axes2_z*upu_f_3_o_in_axes2_x + axis_y_upu_axes2_z*upu_G_o_in_axes2_y -
+            axis_z_upu_axes2_z*upu_c_o_in_axes2_z
         )
         # (Z_a) rotational part of Z
         upu_Z_a_t = (
@@ -3344,10 +3503,10 @@ def _run_Z(m, X, V):
             axis_x_upu_axes2_z*upu_c_m_o_in_axes2_x - upu_U_x*upu_q_y
         )
         ok = (
-        ok & (abs(upu_rho2_1) > _TOLERANCE * _TOLERANCE * 0.6400000000000001) & (abs(upu_rho2_2) >
-            _TOLERANCE * _TOLERANCE * 0.6400000000000001) & (abs(upu_volume_c_t) > _TOLERANCE *
-            0.6400000000000001) & (abs(upu_root_2) > _TOLERANCE * 0.8) & (abs(upu_w_1_t) >
-            _TOLERANCE * 0.8)
+        ok & (abs(upu_root_1_t) > _TOLERANCE * _TOLERANCE * 0.6400000000000001) & (abs(upu_q_3_t)
+            > _TOLERANCE * _TOLERANCE * 0.6400000000000001) & (abs(upu_volume_c_t) > _TOLERANCE *
+            0.6400000000000001) & (abs(upu_q_3) > _TOLERANCE * 0.8) & (abs(upu_w_1_t) > _TOLERANCE
+            * 0.8)
         )
         # (Z_t) translational part of Z
         Z_t_upu_x += upu_U_x
@@ -3437,50 +3596,44 @@ def _run_H(m, X):
         upu_S_x = t_x + upu_q_x - upu_base_point_x
         upu_S_y = t_y + upu_q_y - upu_base_point_y
         upu_S_z = t_z + upu_q_z - upu_base_point_z
-        # (upu-px_1) component along the reference direction
-        upu_px_1 = (
+        upu_S_in_turn1_x = (
         upu_S_x*upu_base_frame_xx + upu_S_y*upu_base_frame_yx + upu_S_z*upu_base_frame_zx
         )
-        # (upu-py_1) component across the reference direction
-        upu_py_1 = (
+        upu_S_in_turn1_y = (
         upu_S_x*upu_base_frame_xy + upu_S_y*upu_base_frame_yy + upu_S_z*upu_base_frame_zy
         )
-        # (upu-rho2_1) squared amplitude
-        upu_rho2_1 = upu_px_1*upu_px_1 + upu_py_1*upu_py_1
-        # (upu-root_1) amplitude, with the sign of the branch
-        upu_root_1 = upu_branch_1*sqrt(upu_rho2_1)
-        # (upu-c_1) cosine of the angle of joint 1 from its reference direction
-        inv_upu_root_1 = 1.0/upu_root_1
-        upu_c_1_t = inv_upu_root_1*upu_py_1
-        # (upu-s_1) sine of the angle of joint 1 from its reference direction
-        upu_s_1 = inv_upu_root_1*upu_px_1
-        # (upu-xi_1) the vector from joint 1 to the connection point, resolved along link 1
-        upu_xi_1_in_axes1_z = (
+        upu_S_in_turn1_z = (
         upu_S_x*upu_base_frame_xz + upu_S_y*upu_base_frame_yz + upu_S_z*upu_base_frame_zz
         )
-        # (upu-rho2_2) squared amplitude
-        upu_rho2_2 = upu_rho2_1 + upu_xi_1_in_axes1_z*upu_xi_1_in_axes1_z
-        # (upu-root_2) amplitude, with the sign of the branch
-        upu_root_2 = upu_branch_2*sqrt(upu_rho2_2)
+        # (upu-root_1) amplitude, the length across axis 1, with the sign of the branch
+        upu_root_1_t = upu_S_in_turn1_x*upu_S_in_turn1_x + upu_S_in_turn1_y*upu_S_in_turn1_y
+        upu_root_1 = upu_branch_1*sqrt(upu_root_1_t)
+        # (upu-c_1) cosine of the angle of joint 1 from its reference direction
+        inv_upu_root_1 = 1.0/upu_root_1
+        upu_c_1 = inv_upu_root_1*upu_S_in_turn1_x
+        # (upu-s_1) sine of the angle of joint 1 from its reference direction
+        upu_s_1 = inv_upu_root_1*upu_S_in_turn1_y
+        # (upu-q_3) displacement of joint 3
+        upu_q_3_t = upu_S_in_turn1_z*upu_S_in_turn1_z + upu_root_1_t
+        upu_q_3 = upu_branch_2*sqrt(upu_q_3_t)
         # (upu-c_2) cosine of the angle of joint 2 from its reference direction
-        inv_upu_root_2 = 1.0/upu_root_2
-        upu_c_2 = -inv_upu_root_2*upu_root_1
-        # (upu-s_2) sine of the angle of joint 2 from its reference direction
-        upu_s_2 = inv_upu_root_2*upu_xi_1_in_axes1_z
+        inv_upu_q_3 = 1.0/upu_q_3
+        upu_c_2 = inv_upu_q_3*upu_root_1
         # (upu-w_3) force part of reciprocal wrench 3
-        axis_z_upu_axes2_x = upu_base_frame_xy*upu_s_1 - upu_base_frame_xx*upu_c_1_t
-        axis_z_upu_axes2_y = upu_base_frame_yy*upu_s_1 - upu_base_frame_yx*upu_c_1_t
-        axis_z_upu_axes2_z = upu_base_frame_zy*upu_s_1 - upu_base_frame_zx*upu_c_1_t
-        upu_w_3_t = upu_s_1*upu_s_2
-        upu_w_3_t_2 = upu_c_1_t*upu_s_2
+        upu_e_1_in_axes2_x = inv_upu_q_3*upu_S_in_turn1_z
+        axis_z_upu_axes2_x = upu_base_frame_xy*upu_c_1 - upu_base_frame_xx*upu_s_1
+        axis_z_upu_axes2_y = upu_base_frame_yy*upu_c_1 - upu_base_frame_yx*upu_s_1
+        axis_z_upu_axes2_z = upu_base_frame_zy*upu_c_1 - upu_base_frame_zx*upu_s_1
+        upu_w_3_t = upu_c_1*upu_e_1_in_axes2_x
+        upu_w_3_t_2 = upu_e_1_in_axes2_x*upu_s_1
         axis_y_upu_axes2_x = (
-        upu_base_frame_xx*upu_w_3_t + upu_base_frame_xy*upu_w_3_t_2 + upu_base_frame_xz*upu_c_2
+        upu_base_frame_xx*upu_w_3_t + upu_base_frame_xy*upu_w_3_t_2 - upu_base_frame_xz*upu_c_2
         )
         axis_y_upu_axes2_y = (
-        upu_base_frame_yx*upu_w_3_t + upu_base_frame_yy*upu_w_3_t_2 + upu_base_frame_yz*upu_c_2
+        upu_base_frame_yx*upu_w_3_t + upu_base_frame_yy*upu_w_3_t_2 - upu_base_frame_yz*upu_c_2
         )
         axis_y_upu_axes2_z = (
-        upu_base_frame_zx*upu_w_3_t + upu_base_frame_zy*upu_w_3_t_2 + upu_base_frame_zz*upu_c_2
+        upu_base_frame_zx*upu_w_3_t + upu_base_frame_zy*upu_w_3_t_2 - upu_base_frame_zz*upu_c_2
         )
         upu_w_3_x = axis_y_upu_axes2_y*axis_z_upu_axes2_z - axis_y_upu_axes2_z*axis_z_upu_axes2_y
         upu_w_3_y = axis_y_upu_axes2_z*axis_z_upu_axes2_x - axis_y_upu_axes2_x*axis_z_upu_axes2_z
@@ -3490,8 +3643,8 @@ def _run_H(m, X):
         upu_H_a_3_y = upu_q_z*upu_w_3_x - upu_q_x*upu_w_3_z
         upu_H_a_3_z = upu_q_x*upu_w_3_y - upu_q_y*upu_w_3_x
         ok = (
-        ok & (abs(upu_rho2_1) > _TOLERANCE * _TOLERANCE * 0.6400000000000001) & (abs(upu_rho2_2) >
-            _TOLERANCE * _TOLERANCE * 0.6400000000000001) & (abs(upu_root_2) > _TOLERANCE * 0.8)
+        ok & (abs(upu_root_1_t) > _TOLERANCE * _TOLERANCE * 0.6400000000000001) & (abs(upu_q_3_t)
+            > _TOLERANCE * _TOLERANCE * 0.6400000000000001) & (abs(upu_q_3) > _TOLERANCE * 0.8)
         )
         # (upu-w_3) force part of reciprocal wrench 3
         out_H[_H_upu[0][leg]] = upu_w_3_x
@@ -3567,37 +3720,31 @@ def _run_Hk(m, X):
         upu_S_x = t_x + upu_q_x - upu_base_point_x
         upu_S_y = t_y + upu_q_y - upu_base_point_y
         upu_S_z = t_z + upu_q_z - upu_base_point_z
-        # (upu-px_1) component along the reference direction
-        upu_px_1 = (
+        upu_S_in_turn1_x = (
         upu_S_x*upu_base_frame_xx + upu_S_y*upu_base_frame_yx + upu_S_z*upu_base_frame_zx
         )
-        # (upu-py_1) component across the reference direction
-        upu_py_1 = (
+        upu_S_in_turn1_y = (
         upu_S_x*upu_base_frame_xy + upu_S_y*upu_base_frame_yy + upu_S_z*upu_base_frame_zy
         )
-        # (upu-rho2_1) squared amplitude
-        upu_rho2_1 = upu_px_1*upu_px_1 + upu_py_1*upu_py_1
-        # (upu-root_1) amplitude, with the sign of the branch
-        upu_root_1 = upu_branch_1*sqrt(upu_rho2_1)
-        # (upu-c_1) cosine of the angle of joint 1 from its reference direction
-        inv_upu_root_1 = 1.0/upu_root_1
-        upu_c_1_t = inv_upu_root_1*upu_py_1
-        # (upu-s_1) sine of the angle of joint 1 from its reference direction
-        upu_s_1 = inv_upu_root_1*upu_px_1
-        # (upu-xi_1) the vector from joint 1 to the connection point, resolved along link 1
-        upu_xi_1_in_axes1_z = (
+        upu_S_in_turn1_z = (
         upu_S_x*upu_base_frame_xz + upu_S_y*upu_base_frame_yz + upu_S_z*upu_base_frame_zz
         )
-        # (upu-rho2_2) squared amplitude
-        upu_rho2_2 = upu_rho2_1 + upu_xi_1_in_axes1_z*upu_xi_1_in_axes1_z
-        # (upu-root_2) amplitude, with the sign of the branch
-        upu_root_2 = upu_branch_2*sqrt(upu_rho2_2)
+        # (upu-root_1) amplitude, the length across axis 1, with the sign of the branch
+        upu_root_1_t = upu_S_in_turn1_x*upu_S_in_turn1_x + upu_S_in_turn1_y*upu_S_in_turn1_y
+        upu_root_1 = upu_branch_1*sqrt(upu_root_1_t)
+        # (upu-c_1) cosine of the angle of joint 1 from its reference direction
+        inv_upu_root_1 = 1.0/upu_root_1
+        upu_c_1 = inv_upu_root_1*upu_S_in_turn1_x
+        # (upu-s_1) sine of the angle of joint 1 from its reference direction
+        upu_s_1 = inv_upu_root_1*upu_S_in_turn1_y
+        # (upu-q_3) displacement of joint 3
+        upu_q_3_t = upu_S_in_turn1_z*upu_S_in_turn1_z + upu_root_1_t
+        upu_q_3 = upu_branch_2*sqrt(upu_q_3_t)
         # (upu-c_2) cosine of the angle of joint 2 from its reference direction
-        inv_upu_root_2 = 1.0/upu_root_2
-        upu_c_2 = -inv_upu_root_2*upu_root_1
-        # (upu-s_2) sine of the angle of joint 2 from its reference direction
-        upu_s_2 = inv_upu_root_2*upu_xi_1_in_axes1_z
+        inv_upu_q_3 = 1.0/upu_q_3
+        upu_c_2 = inv_upu_q_3*upu_root_1
         # (upu-n_m1) direction 1 of the moment that the platform joint transmits
+        upu_e_1_in_axes2_x = inv_upu_q_3*upu_S_in_turn1_z
         upu_n_m1_t = (
         upu_platform_joint_axis_platform_x*(R_xx*upu_base_frame_xx + R_yx*upu_base_frame_yx +
             R_zx*upu_base_frame_zx) + upu_platform_joint_axis_platform_y*(R_xy*upu_base_frame_xx +
@@ -3619,60 +3766,61 @@ def _run_Hk(m, X):
             upu_platform_joint_axis_platform_z*(R_xz*upu_base_frame_xz + R_yz*upu_base_frame_yz +
             R_zz*upu_base_frame_zz)
         )
-        upu_n_m1_t_4 = upu_c_1_t*upu_n_m1_t_2 + upu_n_m1_t*upu_s_1
-        upu_n_m1_in_axes2_y = upu_n_m1_t_3*upu_s_2 - upu_c_2*upu_n_m1_t_4
+        upu_n_m1_t_4 = upu_c_1*upu_n_m1_t + upu_n_m1_t_2*upu_s_1
+        upu_n_m1_in_axes2_y = upu_c_2*upu_n_m1_t_4 + upu_e_1_in_axes2_x*upu_n_m1_t_3
         # (upu-volume_c) triple product of the velocity vectors
-        upu_volume_c_t = upu_root_1*upu_root_2
+        upu_volume_c_t = upu_q_3*upu_root_1
         # (upu-n_c) force part, zero on the manifold, of the constraint moment
-        upu_end_p1_in_axes2_y = upu_c_2*upu_n_m1_t_3 + upu_n_m1_t_4*upu_s_2
-        upu_n_c_t = (
-        upu_root_2*(upu_c_2*upu_n_m1_in_axes2_y - upu_end_p1_in_axes2_y*upu_s_2)/upu_volume_c_t
+        upu_end_p1_in_axes2_y = upu_e_1_in_axes2_x*upu_n_m1_t_4 - upu_c_2*upu_n_m1_t_3
+        upu_n_c_in_axes2_z = (
+        upu_q_3*(upu_c_2*upu_n_m1_in_axes2_y +
+            upu_e_1_in_axes2_x*upu_end_p1_in_axes2_y)/upu_volume_c_t
         )
-        axis_z_upu_axes2_x = upu_base_frame_xy*upu_s_1 - upu_base_frame_xx*upu_c_1_t
-        axis_z_upu_axes2_y = upu_base_frame_yy*upu_s_1 - upu_base_frame_yx*upu_c_1_t
-        axis_z_upu_axes2_z = upu_base_frame_zy*upu_s_1 - upu_base_frame_zx*upu_c_1_t
-        upu_n_c_t_2 = axis_z_upu_axes2_x*upu_n_c_t
-        upu_n_c_t_3 = axis_z_upu_axes2_y*upu_n_c_t
-        upu_n_c_t_4 = axis_z_upu_axes2_z*upu_n_c_t
+        axis_z_upu_axes2_x = upu_base_frame_xy*upu_c_1 - upu_base_frame_xx*upu_s_1
+        axis_z_upu_axes2_y = upu_base_frame_yy*upu_c_1 - upu_base_frame_yx*upu_s_1
+        axis_z_upu_axes2_z = upu_base_frame_zy*upu_c_1 - upu_base_frame_zx*upu_s_1
+        upu_n_c_x = axis_z_upu_axes2_x*upu_n_c_in_axes2_z
+        upu_n_c_y = axis_z_upu_axes2_y*upu_n_c_in_axes2_z
+        upu_n_c_z = axis_z_upu_axes2_z*upu_n_c_in_axes2_z
         # (upu-Hk_a_1) moment of the column's unit force about the platform origin
-        upu_Hk_a_1_t = upu_s_1*upu_s_2
-        upu_Hk_a_1_t_2 = upu_c_1_t*upu_s_2
+        upu_Hk_a_1_t = upu_c_1*upu_e_1_in_axes2_x
+        upu_Hk_a_1_t_2 = upu_e_1_in_axes2_x*upu_s_1
         axis_y_upu_axes2_x = (
-        upu_Hk_a_1_t*upu_base_frame_xx + upu_Hk_a_1_t_2*upu_base_frame_xy +
+        upu_Hk_a_1_t*upu_base_frame_xx + upu_Hk_a_1_t_2*upu_base_frame_xy -
             upu_base_frame_xz*upu_c_2
         )
         axis_y_upu_axes2_y = (
-        upu_Hk_a_1_t*upu_base_frame_yx + upu_Hk_a_1_t_2*upu_base_frame_yy +
+        upu_Hk_a_1_t*upu_base_frame_yx + upu_Hk_a_1_t_2*upu_base_frame_yy -
             upu_base_frame_yz*upu_c_2
         )
         axis_y_upu_axes2_z = (
-        upu_Hk_a_1_t*upu_base_frame_zx + upu_Hk_a_1_t_2*upu_base_frame_zy +
+        upu_Hk_a_1_t*upu_base_frame_zx + upu_Hk_a_1_t_2*upu_base_frame_zy -
             upu_base_frame_zz*upu_c_2
         )
         upu_Hk_a_1_x = (
-        axis_y_upu_axes2_x*upu_n_m1_in_axes2_y + upu_n_c_t_3*upu_q_z -
+        axis_y_upu_axes2_x*upu_n_m1_in_axes2_y + upu_n_c_z*upu_q_y -
             upu_end_p1_in_axes2_y*(axis_y_upu_axes2_y*axis_z_upu_axes2_z -
-            axis_y_upu_axes2_z*axis_z_upu_axes2_y) - upu_n_c_t_4*upu_q_y
+            axis_y_upu_axes2_z*axis_z_upu_axes2_y) - upu_n_c_y*upu_q_z
         )
         upu_Hk_a_1_y = (
-        axis_y_upu_axes2_y*upu_n_m1_in_axes2_y + upu_n_c_t_4*upu_q_x -
+        axis_y_upu_axes2_y*upu_n_m1_in_axes2_y + upu_n_c_x*upu_q_z -
             upu_end_p1_in_axes2_y*(axis_y_upu_axes2_z*axis_z_upu_axes2_x -
-            axis_y_upu_axes2_x*axis_z_upu_axes2_z) - upu_n_c_t_2*upu_q_z
+            axis_y_upu_axes2_x*axis_z_upu_axes2_z) - upu_n_c_z*upu_q_x
         )
         upu_Hk_a_1_z = (
-        axis_y_upu_axes2_z*upu_n_m1_in_axes2_y + upu_n_c_t_2*upu_q_y -
+        axis_y_upu_axes2_z*upu_n_m1_in_axes2_y + upu_n_c_y*upu_q_x -
             upu_end_p1_in_axes2_y*(axis_y_upu_axes2_x*axis_z_upu_axes2_y -
-            axis_y_upu_axes2_y*axis_z_upu_axes2_x) - upu_n_c_t_3*upu_q_x
+            axis_y_upu_axes2_y*axis_z_upu_axes2_x) - upu_n_c_x*upu_q_y
         )
         ok = (
-        ok & (abs(upu_rho2_1) > _TOLERANCE * _TOLERANCE * 0.6400000000000001) & (abs(upu_rho2_2) >
-            _TOLERANCE * _TOLERANCE * 0.6400000000000001) & (abs(upu_volume_c_t) > _TOLERANCE *
-            0.6400000000000001) & (abs(upu_root_2) > _TOLERANCE * 0.8)
+        ok & (abs(upu_root_1_t) > _TOLERANCE * _TOLERANCE * 0.6400000000000001) & (abs(upu_q_3_t)
+            > _TOLERANCE * _TOLERANCE * 0.6400000000000001) & (abs(upu_volume_c_t) > _TOLERANCE *
+            0.6400000000000001) & (abs(upu_q_3) > _TOLERANCE * 0.8)
         )
         # (upu-n_c) force part, zero on the manifold, of the constraint moment
-        out_Hk[_Hk_upu[0][leg]] = -upu_n_c_t_2
-        out_Hk[_Hk_upu[1][leg]] = -upu_n_c_t_3
-        out_Hk[_Hk_upu[2][leg]] = -upu_n_c_t_4
+        out_Hk[_Hk_upu[0][leg]] = upu_n_c_x
+        out_Hk[_Hk_upu[1][leg]] = upu_n_c_y
+        out_Hk[_Hk_upu[2][leg]] = upu_n_c_z
         # (upu-Hk_a_1) moment of the column's unit force about the platform origin
         out_Hk[_Hk_upu[3][leg]] = upu_Hk_a_1_x
         out_Hk[_Hk_upu[4][leg]] = upu_Hk_a_1_y
@@ -3756,52 +3904,46 @@ def _run_constraint_bias(m, X, V):
         upu_S_x = t_x + upu_q_x - upu_base_point_x
         upu_S_y = t_y + upu_q_y - upu_base_point_y
         upu_S_z = t_z + upu_q_z - upu_base_point_z
-        # (upu-px_1) component along the reference direction
-        upu_px_1 = (
+        upu_S_in_turn1_x = (
         upu_S_x*upu_base_frame_xx + upu_S_y*upu_base_frame_yx + upu_S_z*upu_base_frame_zx
         )
-        # (upu-py_1) component across the reference direction
-        upu_py_1 = (
+        upu_S_in_turn1_y = (
         upu_S_x*upu_base_frame_xy + upu_S_y*upu_base_frame_yy + upu_S_z*upu_base_frame_zy
         )
-        # (upu-rho2_1) squared amplitude
-        upu_rho2_1 = upu_px_1*upu_px_1 + upu_py_1*upu_py_1
-        # (upu-root_1) amplitude, with the sign of the branch
-        upu_root_1 = upu_branch_1*sqrt(upu_rho2_1)
-        # (upu-c_1) cosine of the angle of joint 1 from its reference direction
-        inv_upu_root_1 = 1.0/upu_root_1
-        upu_c_1_t = inv_upu_root_1*upu_py_1
-        # (upu-s_1) sine of the angle of joint 1 from its reference direction
-        upu_s_1 = inv_upu_root_1*upu_px_1
-        # (upu-xi_1) the vector from joint 1 to the connection point, resolved along link 1
-        upu_xi_1_in_axes1_z = (
+        upu_S_in_turn1_z = (
         upu_S_x*upu_base_frame_xz + upu_S_y*upu_base_frame_yz + upu_S_z*upu_base_frame_zz
         )
-        # (upu-rho2_2) squared amplitude
-        upu_rho2_2 = upu_rho2_1 + upu_xi_1_in_axes1_z*upu_xi_1_in_axes1_z
-        # (upu-root_2) amplitude, with the sign of the branch
-        upu_root_2 = upu_branch_2*sqrt(upu_rho2_2)
+        # (upu-root_1) amplitude, the length across axis 1, with the sign of the branch
+        upu_root_1_t = upu_S_in_turn1_x*upu_S_in_turn1_x + upu_S_in_turn1_y*upu_S_in_turn1_y
+        upu_root_1 = upu_branch_1*sqrt(upu_root_1_t)
+        # (upu-c_1) cosine of the angle of joint 1 from its reference direction
+        inv_upu_root_1 = 1.0/upu_root_1
+        upu_c_1 = inv_upu_root_1*upu_S_in_turn1_x
+        # (upu-s_1) sine of the angle of joint 1 from its reference direction
+        upu_s_1 = inv_upu_root_1*upu_S_in_turn1_y
+        # (upu-q_3) displacement of joint 3
+        upu_q_3_t = upu_S_in_turn1_z*upu_S_in_turn1_z + upu_root_1_t
+        upu_q_3 = upu_branch_2*sqrt(upu_q_3_t)
         # (upu-c_2) cosine of the angle of joint 2 from its reference direction
-        inv_upu_root_2 = 1.0/upu_root_2
-        upu_c_2 = -inv_upu_root_2*upu_root_1
-        # (upu-s_2) sine of the angle of joint 2 from its reference direction
-        upu_s_2 = inv_upu_root_2*upu_xi_1_in_axes1_z
+        inv_upu_q_3 = 1.0/upu_q_3
+        upu_c_2 = inv_upu_q_3*upu_root_1
         # (upu-S_dot) velocity of the connection point
-        axis_z_upu_axes2_x = upu_base_frame_xy*upu_s_1 - upu_base_frame_xx*upu_c_1_t
-        axis_z_upu_axes2_y = upu_base_frame_yy*upu_s_1 - upu_base_frame_yx*upu_c_1_t
-        axis_z_upu_axes2_z = upu_base_frame_zy*upu_s_1 - upu_base_frame_zx*upu_c_1_t
-        upu_S_dot_t = upu_s_1*upu_s_2
-        upu_S_dot_t_2 = upu_c_1_t*upu_s_2
+        upu_e_1_in_axes2_x = inv_upu_q_3*upu_S_in_turn1_z
+        axis_z_upu_axes2_x = upu_base_frame_xy*upu_c_1 - upu_base_frame_xx*upu_s_1
+        axis_z_upu_axes2_y = upu_base_frame_yy*upu_c_1 - upu_base_frame_yx*upu_s_1
+        axis_z_upu_axes2_z = upu_base_frame_zy*upu_c_1 - upu_base_frame_zx*upu_s_1
+        upu_S_dot_t = upu_c_1*upu_e_1_in_axes2_x
+        upu_S_dot_t_2 = upu_e_1_in_axes2_x*upu_s_1
         axis_y_upu_axes2_x = (
-        upu_S_dot_t*upu_base_frame_xx + upu_S_dot_t_2*upu_base_frame_xy +
+        upu_S_dot_t*upu_base_frame_xx + upu_S_dot_t_2*upu_base_frame_xy -
             upu_base_frame_xz*upu_c_2
         )
         axis_y_upu_axes2_y = (
-        upu_S_dot_t*upu_base_frame_yx + upu_S_dot_t_2*upu_base_frame_yy +
+        upu_S_dot_t*upu_base_frame_yx + upu_S_dot_t_2*upu_base_frame_yy -
             upu_base_frame_yz*upu_c_2
         )
         axis_y_upu_axes2_z = (
-        upu_S_dot_t*upu_base_frame_zx + upu_S_dot_t_2*upu_base_frame_zy +
+        upu_S_dot_t*upu_base_frame_zx + upu_S_dot_t_2*upu_base_frame_zy -
             upu_base_frame_zz*upu_c_2
         )
         axis_x_upu_axes2_x = (
@@ -3845,16 +3987,16 @@ def _run_constraint_bias(m, X, V):
             upu_platform_joint_axis_platform_z*(R_xz*upu_base_frame_xz + R_yz*upu_base_frame_yz +
             R_zz*upu_base_frame_zz)
         )
-        upu_n_m1_t_4 = upu_c_1_t*upu_n_m1_t_2 + upu_n_m1_t*upu_s_1
-        upu_n_m1_in_axes2_y = upu_n_m1_t_3*upu_s_2 - upu_c_2*upu_n_m1_t_4
-        upu_end_p1_in_axes2_y = upu_c_2*upu_n_m1_t_3 + upu_n_m1_t_4*upu_s_2
-        upu_n_m1_in_axes1_z = upu_c_2*upu_n_m1_in_axes2_y - upu_end_p1_in_axes2_y*upu_s_2
+        upu_n_m1_t_4 = upu_c_1*upu_n_m1_t + upu_n_m1_t_2*upu_s_1
+        upu_n_m1_in_axes2_y = upu_c_2*upu_n_m1_t_4 + upu_e_1_in_axes2_x*upu_n_m1_t_3
+        upu_end_p1_in_axes2_y = upu_e_1_in_axes2_x*upu_n_m1_t_4 - upu_c_2*upu_n_m1_t_3
+        upu_n_m1_t_5 = upu_c_2*upu_n_m1_in_axes2_y + upu_e_1_in_axes2_x*upu_end_p1_in_axes2_y
         # (upu-volume_c) triple product of the velocity vectors
-        upu_volume_c_t = upu_root_1*upu_root_2
+        upu_volume_c_t = upu_q_3*upu_root_1
         # (upu-n_c) force part, zero on the manifold, of the constraint moment
-        upu_n_c_t = upu_n_m1_in_axes1_z*upu_root_2/upu_volume_c_t
+        upu_n_c_in_axes2_z = upu_n_m1_t_5*upu_q_3/upu_volume_c_t
         # (upu-w_1) force part of reciprocal wrench 1
-        upu_w_1_t = upu_root_1 + upu_n_c_t*upu_n_m1_in_axes1_z
+        upu_w_1_t = upu_root_1 + upu_n_c_in_axes2_z*upu_n_m1_t_5
         # (upu-eta_1) rate at which the joints turn along moment direction 1
         upu_eta_1 = (
         omega_x*(axis_y_upu_axes2_x*upu_n_m1_in_axes2_y -
@@ -3867,21 +4009,21 @@ def _run_constraint_bias(m, X, V):
         # (upu-qd_1) rate of joint 1
         upu_qd_1 = (
         (axis_z_upu_axes2_x*upu_S_dot_x + axis_z_upu_axes2_y*upu_S_dot_y +
-            axis_z_upu_axes2_z*upu_S_dot_z + upu_eta_1*upu_n_c_t)/upu_w_1_t
+            axis_z_upu_axes2_z*upu_S_dot_z - upu_eta_1*upu_n_c_in_axes2_z)/upu_w_1_t
         )
         # (upu-qd_2) rate of joint 2
         upu_qd_2 = (
-        inv_upu_root_2*(axis_y_upu_axes2_x*upu_S_dot_x + axis_y_upu_axes2_y*upu_S_dot_y +
+        inv_upu_q_3*(axis_y_upu_axes2_x*upu_S_dot_x + axis_y_upu_axes2_y*upu_S_dot_y +
             axis_y_upu_axes2_z*upu_S_dot_z)
         )
         # (upu-omega_1) angular velocity of link 1
-        upu_omega_1_in_axes2_x = upu_qd_1*upu_s_2
-        upu_omega_1_in_axes2_y = upu_c_2*upu_qd_1
+        upu_omega_1_in_axes2_x = upu_e_1_in_axes2_x*upu_qd_1
+        upu_omega_1_in_axes2_y = -upu_c_2*upu_qd_1
         # (upu-W_2) centripetal tensor of link 2
         upu_W_2_in_axes2_xz = upu_omega_1_in_axes2_x*upu_qd_2
         # (upu-bias) acceleration of the connection point at zero joint accelerations
         upu_bias_in_axes2_z = (
-        2.0*upu_W_2_in_axes2_xz*upu_root_2 - 2.0*upu_S_dot_in_axes2_x*upu_omega_1_in_axes2_y
+        2.0*upu_W_2_in_axes2_xz*upu_q_3 - 2.0*upu_S_dot_in_axes2_x*upu_omega_1_in_axes2_y
         )
         # (upu-rel_o) remainder without the acceleration in: acceleration of the connection point left to the joint accelerations
         upu_rel_o_in_axes2_z = (
@@ -3891,7 +4033,7 @@ def _run_constraint_bias(m, X, V):
             upu_bias_in_axes2_z
         )
         # (upu-nd_m1) rate of moment direction 1
-        upu_end_p1_in_axes2_z = upu_n_m1_t_2*upu_s_1 - upu_c_1_t*upu_n_m1_t
+        upu_end_p1_in_axes2_z = upu_c_1*upu_n_m1_t_2 - upu_n_m1_t*upu_s_1
         upu_omega_in_axes2_x = (
         axis_x_upu_axes2_x*omega_x + axis_x_upu_axes2_y*omega_y + axis_x_upu_axes2_z*omega_z
         )
@@ -3911,7 +4053,7 @@ def _run_constraint_bias(m, X, V):
         )
         # (upu-nu_1) bias of the angular acceleration along moment direction 1
         upu_nu_1_t = (
-        -upu_W_2_in_axes2_xz*upu_n_m1_in_axes2_y -
+        upu_W_2_in_axes2_xz*upu_n_m1_in_axes2_y +
             upu_end_p1_in_axes2_y*upu_omega_1_in_axes2_y*upu_qd_2
         )
         upu_nu_1_t_2 = (
@@ -3920,14 +4062,14 @@ def _run_constraint_bias(m, X, V):
             (upu_omega_in_axes2_z - upu_qd_2)*(-upu_end_p1_in_axes2_y*upu_omega_1_in_axes2_y -
             upu_n_m1_in_axes2_y*upu_omega_1_in_axes2_x)
         )
-        upu_nu_1 = upu_nu_1_t_2 - upu_nu_1_t
+        upu_nu_1 = upu_nu_1_t + upu_nu_1_t_2
         # (upu-gamma_c1) part of the constraint's second derivative that does not hold the acceleration
-        upu_gamma_c1 = upu_nu_1 - upu_n_c_t*upu_rel_o_in_axes2_z
+        upu_gamma_c1 = upu_nu_1 + upu_n_c_in_axes2_z*upu_rel_o_in_axes2_z
         ok = (
-        ok & (abs(upu_rho2_1) > _TOLERANCE * _TOLERANCE * 0.6400000000000001) & (abs(upu_rho2_2) >
-            _TOLERANCE * _TOLERANCE * 0.6400000000000001) & (abs(upu_volume_c_t) > _TOLERANCE *
-            0.6400000000000001) & (abs(upu_root_2) > _TOLERANCE * 0.8) & (abs(upu_w_1_t) >
-            _TOLERANCE * 0.8)
+        ok & (abs(upu_root_1_t) > _TOLERANCE * _TOLERANCE * 0.6400000000000001) & (abs(upu_q_3_t)
+            > _TOLERANCE * _TOLERANCE * 0.6400000000000001) & (abs(upu_volume_c_t) > _TOLERANCE *
+            0.6400000000000001) & (abs(upu_q_3) > _TOLERANCE * 0.8) & (abs(upu_w_1_t) > _TOLERANCE
+            * 0.8)
         )
         # (upu-gamma_c1) part of the constraint's second derivative that does not hold the acceleration
         out_constraint_bias[_constraint_bias_upu[0][leg]] = upu_gamma_c1
@@ -4106,52 +4248,46 @@ def _run_required(m, X, V, A):
         upu_S_x = t_x + upu_q_x - upu_base_point_x
         upu_S_y = t_y + upu_q_y - upu_base_point_y
         upu_S_z = t_z + upu_q_z - upu_base_point_z
-        # (upu-px_1) component along the reference direction
-        upu_px_1 = (
+        upu_S_in_turn1_x = (
         upu_S_x*upu_base_frame_xx + upu_S_y*upu_base_frame_yx + upu_S_z*upu_base_frame_zx
         )
-        # (upu-py_1) component across the reference direction
-        upu_py_1 = (
+        upu_S_in_turn1_y = (
         upu_S_x*upu_base_frame_xy + upu_S_y*upu_base_frame_yy + upu_S_z*upu_base_frame_zy
         )
-        # (upu-rho2_1) squared amplitude
-        upu_rho2_1 = upu_px_1*upu_px_1 + upu_py_1*upu_py_1
-        # (upu-root_1) amplitude, with the sign of the branch
-        upu_root_1 = upu_branch_1*sqrt(upu_rho2_1)
-        # (upu-c_1) cosine of the angle of joint 1 from its reference direction
-        inv_upu_root_1 = 1.0/upu_root_1
-        upu_c_1_t = inv_upu_root_1*upu_py_1
-        # (upu-s_1) sine of the angle of joint 1 from its reference direction
-        upu_s_1 = inv_upu_root_1*upu_px_1
-        # (upu-xi_1) the vector from joint 1 to the connection point, resolved along link 1
-        upu_xi_1_in_axes1_z = (
+        upu_S_in_turn1_z = (
         upu_S_x*upu_base_frame_xz + upu_S_y*upu_base_frame_yz + upu_S_z*upu_base_frame_zz
         )
-        # (upu-rho2_2) squared amplitude
-        upu_rho2_2 = upu_rho2_1 + upu_xi_1_in_axes1_z*upu_xi_1_in_axes1_z
-        # (upu-root_2) amplitude, with the sign of the branch
-        upu_root_2 = upu_branch_2*sqrt(upu_rho2_2)
+        # (upu-root_1) amplitude, the length across axis 1, with the sign of the branch
+        upu_root_1_t = upu_S_in_turn1_x*upu_S_in_turn1_x + upu_S_in_turn1_y*upu_S_in_turn1_y
+        upu_root_1 = upu_branch_1*sqrt(upu_root_1_t)
+        # (upu-c_1) cosine of the angle of joint 1 from its reference direction
+        inv_upu_root_1 = 1.0/upu_root_1
+        upu_c_1 = inv_upu_root_1*upu_S_in_turn1_x
+        # (upu-s_1) sine of the angle of joint 1 from its reference direction
+        upu_s_1 = inv_upu_root_1*upu_S_in_turn1_y
+        # (upu-q_3) displacement of joint 3
+        upu_q_3_t = upu_S_in_turn1_z*upu_S_in_turn1_z + upu_root_1_t
+        upu_q_3 = upu_branch_2*sqrt(upu_q_3_t)
         # (upu-c_2) cosine of the angle of joint 2 from its reference direction
-        inv_upu_root_2 = 1.0/upu_root_2
-        upu_c_2 = -inv_upu_root_2*upu_root_1
-        # (upu-s_2) sine of the angle of joint 2 from its reference direction
-        upu_s_2 = inv_upu_root_2*upu_xi_1_in_axes1_z
+        inv_upu_q_3 = 1.0/upu_q_3
+        upu_c_2 = inv_upu_q_3*upu_root_1
         # (upu-S_dot) velocity of the connection point
-        axis_z_upu_axes2_x = upu_base_frame_xy*upu_s_1 - upu_base_frame_xx*upu_c_1_t
-        axis_z_upu_axes2_y = upu_base_frame_yy*upu_s_1 - upu_base_frame_yx*upu_c_1_t
-        axis_z_upu_axes2_z = upu_base_frame_zy*upu_s_1 - upu_base_frame_zx*upu_c_1_t
-        upu_S_dot_t = upu_s_1*upu_s_2
-        upu_S_dot_t_2 = upu_c_1_t*upu_s_2
+        upu_e_1_in_axes2_x = inv_upu_q_3*upu_S_in_turn1_z
+        axis_z_upu_axes2_x = upu_base_frame_xy*upu_c_1 - upu_base_frame_xx*upu_s_1
+        axis_z_upu_axes2_y = upu_base_frame_yy*upu_c_1 - upu_base_frame_yx*upu_s_1
+        axis_z_upu_axes2_z = upu_base_frame_zy*upu_c_1 - upu_base_frame_zx*upu_s_1
+        upu_S_dot_t = upu_c_1*upu_e_1_in_axes2_x
+        upu_S_dot_t_2 = upu_e_1_in_axes2_x*upu_s_1
         axis_y_upu_axes2_x = (
-        upu_S_dot_t*upu_base_frame_xx + upu_S_dot_t_2*upu_base_frame_xy +
+        upu_S_dot_t*upu_base_frame_xx + upu_S_dot_t_2*upu_base_frame_xy -
             upu_base_frame_xz*upu_c_2
         )
         axis_y_upu_axes2_y = (
-        upu_S_dot_t*upu_base_frame_yx + upu_S_dot_t_2*upu_base_frame_yy +
+        upu_S_dot_t*upu_base_frame_yx + upu_S_dot_t_2*upu_base_frame_yy -
             upu_base_frame_yz*upu_c_2
         )
         axis_y_upu_axes2_z = (
-        upu_S_dot_t*upu_base_frame_zx + upu_S_dot_t_2*upu_base_frame_zy +
+        upu_S_dot_t*upu_base_frame_zx + upu_S_dot_t_2*upu_base_frame_zy -
             upu_base_frame_zz*upu_c_2
         )
         axis_x_upu_axes2_x = (
@@ -4195,19 +4331,19 @@ def _run_required(m, X, V, A):
             upu_platform_joint_axis_platform_z*(R_xz*upu_base_frame_xz + R_yz*upu_base_frame_yz +
             R_zz*upu_base_frame_zz)
         )
-        upu_n_m1_t_4 = upu_c_1_t*upu_n_m1_t_2 + upu_n_m1_t*upu_s_1
-        upu_n_m1_in_axes2_y = upu_n_m1_t_3*upu_s_2 - upu_c_2*upu_n_m1_t_4
-        upu_end_p1_in_axes2_y = upu_c_2*upu_n_m1_t_3 + upu_n_m1_t_4*upu_s_2
-        upu_n_m1_in_axes1_z = upu_c_2*upu_n_m1_in_axes2_y - upu_end_p1_in_axes2_y*upu_s_2
+        upu_n_m1_t_4 = upu_c_1*upu_n_m1_t + upu_n_m1_t_2*upu_s_1
+        upu_n_m1_in_axes2_y = upu_c_2*upu_n_m1_t_4 + upu_e_1_in_axes2_x*upu_n_m1_t_3
+        upu_end_p1_in_axes2_y = upu_e_1_in_axes2_x*upu_n_m1_t_4 - upu_c_2*upu_n_m1_t_3
+        upu_n_m1_t_5 = upu_c_2*upu_n_m1_in_axes2_y + upu_e_1_in_axes2_x*upu_end_p1_in_axes2_y
         # (upu-volume_c) triple product of the velocity vectors
-        upu_volume_c_t = upu_root_1*upu_root_2
+        upu_volume_c_t = upu_q_3*upu_root_1
         # (upu-n_c) force part, zero on the manifold, of the constraint moment
-        upu_n_c_t = upu_n_m1_in_axes1_z*upu_root_2/upu_volume_c_t
-        upu_n_c_t_2 = axis_z_upu_axes2_x*upu_n_c_t
-        upu_n_c_t_3 = axis_z_upu_axes2_y*upu_n_c_t
-        upu_n_c_t_4 = axis_z_upu_axes2_z*upu_n_c_t
+        upu_n_c_in_axes2_z = upu_n_m1_t_5*upu_q_3/upu_volume_c_t
+        upu_n_c_x = axis_z_upu_axes2_x*upu_n_c_in_axes2_z
+        upu_n_c_y = axis_z_upu_axes2_y*upu_n_c_in_axes2_z
+        upu_n_c_z = axis_z_upu_axes2_z*upu_n_c_in_axes2_z
         # (upu-w_1) force part of reciprocal wrench 1
-        upu_w_1_t = upu_root_1 + upu_n_c_t*upu_n_m1_in_axes1_z
+        upu_w_1_t = upu_root_1 + upu_n_c_in_axes2_z*upu_n_m1_t_5
         upu_w_1_in_axes2_z = 1.0/upu_w_1_t
         # (upu-qd_1) rate of joint 1
         upu_omega_in_axes2_x = (
@@ -4218,17 +4354,18 @@ def _run_required(m, X, V, A):
         )
         upu_qd_1 = (
         upu_w_1_in_axes2_z*(axis_z_upu_axes2_x*upu_S_dot_x + axis_z_upu_axes2_y*upu_S_dot_y +
-            axis_z_upu_axes2_z*upu_S_dot_z - upu_n_c_t*(upu_end_p1_in_axes2_y*upu_omega_in_axes2_x
-            - upu_n_m1_in_axes2_y*upu_omega_in_axes2_y))
+            axis_z_upu_axes2_z*upu_S_dot_z +
+            upu_n_c_in_axes2_z*(upu_end_p1_in_axes2_y*upu_omega_in_axes2_x -
+            upu_n_m1_in_axes2_y*upu_omega_in_axes2_y))
         )
         # (upu-qd_2) rate of joint 2
         upu_qd_2 = (
-        inv_upu_root_2*(axis_y_upu_axes2_x*upu_S_dot_x + axis_y_upu_axes2_y*upu_S_dot_y +
+        inv_upu_q_3*(axis_y_upu_axes2_x*upu_S_dot_x + axis_y_upu_axes2_y*upu_S_dot_y +
             axis_y_upu_axes2_z*upu_S_dot_z)
         )
         # (upu-omega_1) angular velocity of link 1
-        upu_omega_1_in_axes2_x = upu_qd_1*upu_s_2
-        upu_omega_1_in_axes2_y = upu_c_2*upu_qd_1
+        upu_omega_1_in_axes2_x = upu_e_1_in_axes2_x*upu_qd_1
+        upu_omega_1_in_axes2_y = -upu_c_2*upu_qd_1
         # (upu-W_2) centripetal tensor of link 2
         upu_W_2_in_axes2_yz = upu_omega_1_in_axes2_y*upu_qd_2
         upu_W_2_in_axes2_xz = upu_omega_1_in_axes2_x*upu_qd_2
@@ -4244,14 +4381,14 @@ def _run_required(m, X, V, A):
         # (upu-bias) acceleration of the connection point at zero joint accelerations
         upu_bias_t = 2.0*upu_S_dot_in_axes2_x
         upu_bias_t_2 = upu_bias_t*upu_omega_1_in_axes2_y
-        upu_bias_in_axes2_z = 2.0*upu_W_2_in_axes2_xz*upu_root_2 - upu_bias_t_2
+        upu_bias_in_axes2_z = 2.0*upu_W_2_in_axes2_xz*upu_q_3 - upu_bias_t_2
         # (upu-rel) acceleration of the connection point left to the joint accelerations
         upu_rel_in_axes2_z = (
         axis_z_upu_axes2_x*upu_S_ddot_x + axis_z_upu_axes2_y*upu_S_ddot_y +
             axis_z_upu_axes2_z*upu_S_ddot_z - upu_bias_in_axes2_z
         )
         # (upu-nd_m1) rate of moment direction 1
-        upu_end_p1_in_axes2_z = upu_n_m1_t_2*upu_s_1 - upu_c_1_t*upu_n_m1_t
+        upu_end_p1_in_axes2_z = upu_c_1*upu_n_m1_t_2 - upu_n_m1_t*upu_s_1
         upu_omega_in_axes2_z = (
         axis_z_upu_axes2_x*omega_x + axis_z_upu_axes2_y*omega_y + axis_z_upu_axes2_z*omega_z
         )
@@ -4268,12 +4405,12 @@ def _run_required(m, X, V, A):
         -upu_W_2_in_axes2_xz*upu_n_m1_in_axes2_y - upu_W_2_in_axes2_yz*upu_end_p1_in_axes2_y
         )
         upu_nu_1_t_2 = (
-        upu_nd_m1_in_axes2_x*(upu_omega_1_in_axes2_x - upu_omega_in_axes2_x) +
+        upu_nd_m1_in_axes2_y*(upu_omega_in_axes2_y - upu_omega_1_in_axes2_y) -
+            upu_nd_m1_in_axes2_x*(upu_omega_1_in_axes2_x - upu_omega_in_axes2_x) -
             (upu_omega_in_axes2_z - upu_qd_2)*(-upu_end_p1_in_axes2_y*upu_omega_1_in_axes2_y -
-            upu_n_m1_in_axes2_y*upu_omega_1_in_axes2_x) -
-            upu_nd_m1_in_axes2_y*(upu_omega_in_axes2_y - upu_omega_1_in_axes2_y)
+            upu_n_m1_in_axes2_y*upu_omega_1_in_axes2_x)
         )
-        upu_nu_1 = -upu_nu_1_t - upu_nu_1_t_2
+        upu_nu_1 = upu_nu_1_t_2 - upu_nu_1_t
         # (upu-etad_1) acceleration with which the joints turn along moment direction 1
         upu_etad_1_t = (
         upu_end_p1_in_axes2_y*(alpha_x*axis_x_upu_axes2_x + alpha_y*axis_x_upu_axes2_y +
@@ -4282,12 +4419,12 @@ def _run_required(m, X, V, A):
         )
         upu_etad_1 = upu_nu_1 - upu_etad_1_t
         # (upu-qdd_1) acceleration of joint 1
-        upu_qdd_1 = upu_w_1_in_axes2_z*(upu_rel_in_axes2_z + upu_etad_1*upu_n_c_t)
+        upu_qdd_1_t = upu_w_1_in_axes2_z*(upu_etad_1*upu_n_c_in_axes2_z - upu_rel_in_axes2_z)
         # (upu-alpha_1) angular acceleration of link 1
-        upu_alpha_1_in_axes2_x = upu_qdd_1*upu_s_2
-        upu_alpha_1_in_axes2_y = upu_c_2*upu_qdd_1
+        upu_alpha_1_t = upu_e_1_in_axes2_x*upu_qdd_1_t
+        upu_alpha_1_in_axes2_y = upu_c_2*upu_qdd_1_t
         # (upu-alpha_2) angular acceleration of link 2
-        upu_alpha_2_in_axes2_x = upu_W_2_in_axes2_yz + upu_alpha_1_in_axes2_x
+        upu_alpha_2_in_axes2_x = upu_W_2_in_axes2_yz - upu_alpha_1_t
         upu_alpha_2_in_axes2_y = upu_alpha_1_in_axes2_y - upu_W_2_in_axes2_xz
         # (upu-B_2) acceleration tensor of link 2
         upu_B_2_t = upu_bias_t*upu_qd_2
@@ -4295,21 +4432,21 @@ def _run_required(m, X, V, A):
         axis_y_upu_axes2_x*upu_S_ddot_x + axis_y_upu_axes2_y*upu_S_ddot_y +
             axis_y_upu_axes2_z*upu_S_ddot_z - upu_B_2_t
         )
-        upu_B_2_in_axes2_yx = inv_upu_root_2*upu_B_2_t_2
+        upu_B_2_in_axes2_yx = inv_upu_q_3*upu_B_2_t_2
         upu_B_2_in_axes2_xy = 2.0*upu_W_2_in_axes2_xy - upu_B_2_in_axes2_yx
         upu_B_2_in_axes2_zx = upu_W_2_in_axes2_xz - upu_alpha_2_in_axes2_y
         upu_B_2_in_axes2_zy = upu_W_2_in_axes2_yz + upu_alpha_2_in_axes2_x
         # (upu-acc_3) acceleration of the reference point of link 3, less gravity
-        upu_g_in_axes2_z = upu_acc_3_t_2*upu_s_1 - upu_acc_3_t*upu_c_1_t
-        upu_acc_3_t_4 = upu_acc_3_t*upu_s_1 + upu_acc_3_t_2*upu_c_1_t
-        upu_g_in_axes2_x = upu_acc_3_t_3*upu_s_2 - upu_acc_3_t_4*upu_c_2
-        upu_g_in_axes2_y = upu_acc_3_t_3*upu_c_2 + upu_acc_3_t_4*upu_s_2
+        upu_acc_3_t_4 = upu_acc_3_t*upu_c_1 + upu_acc_3_t_2*upu_s_1
+        upu_g_in_axes2_z = upu_acc_3_t_2*upu_c_1 - upu_acc_3_t*upu_s_1
+        upu_g_in_axes2_x = upu_acc_3_t_3*upu_e_1_in_axes2_x + upu_acc_3_t_4*upu_c_2
+        upu_g_in_axes2_y = upu_acc_3_t_4*upu_e_1_in_axes2_x - upu_acc_3_t_3*upu_c_2
         upu_acc_3_in_axes2_x = (
         axis_x_upu_axes2_x*upu_S_ddot_x + axis_x_upu_axes2_y*upu_S_ddot_y +
             axis_x_upu_axes2_z*upu_S_ddot_z - upu_g_in_axes2_x
         )
         upu_acc_3_in_axes2_y = upu_B_2_t + upu_B_2_t_2 - upu_g_in_axes2_y
-        upu_acc_3_in_axes2_z = upu_B_2_in_axes2_zx*upu_root_2 - upu_bias_t_2 - upu_g_in_axes2_z
+        upu_acc_3_in_axes2_z = upu_B_2_in_axes2_zx*upu_q_3 - upu_bias_t_2 - upu_g_in_axes2_z
         # (upu-f_3) inertia force of link 3 less its weight
         upu_f_3_t = upu_qd_2*upu_qd_2
         upu_f_3_t_2 = upu_omega_1_in_axes2_x*upu_omega_1_in_axes2_x
@@ -4320,8 +4457,7 @@ def _run_required(m, X, V, A):
         )
         upu_f_3_in_axes2_y = (
         upu_B_2_in_axes2_yx*upu_h_3_in_spec2_x + upu_acc_3_in_axes2_y*upu_link3_mass +
-            upu_h_3_in_spec2_z*(upu_f_3_t + upu_f_3_t_2) -
-            upu_alpha_1_in_axes2_x*upu_h_3_in_spec2_y
+            upu_alpha_1_t*upu_h_3_in_spec2_y + upu_h_3_in_spec2_z*(upu_f_3_t + upu_f_3_t_2)
         )
         upu_f_3_in_axes2_z = (
         upu_B_2_in_axes2_zx*upu_h_3_in_spec2_x + upu_acc_3_in_axes2_z*upu_link3_mass -
@@ -4331,11 +4467,11 @@ def _run_required(m, X, V, A):
         # (upu-mu_2) inertia moment of the links that turn with link 2, about their reference points
         upu_mu_2_in_axes2_x = (
         upu_B_2_in_axes2_yx*upu_J_group_2_in_axes2_xz +
-            upu_B_2_in_axes2_zy*upu_Sigma_2_in_axes2_yy +
-            upu_Sigma_2_in_axes2_zz*upu_alpha_1_in_axes2_x + upu_g_in_axes2_y*upu_h_2_in_spec2_y +
+            upu_B_2_in_axes2_zy*upu_Sigma_2_in_axes2_yy + upu_g_in_axes2_y*upu_h_2_in_spec2_y +
             upu_g_in_axes2_z*upu_h_2_in_spec2_z - upu_B_2_in_axes2_zx*upu_J_group_2_in_axes2_xy -
             upu_J_group_2_in_axes2_yz*(upu_f_3_t - upu_f_3_t_3) -
-            upu_acc_3_in_axes2_y*upu_h_3_in_spec2_y - upu_acc_3_in_axes2_z*upu_h_3_in_spec2_z
+            upu_Sigma_2_in_axes2_zz*upu_alpha_1_t - upu_acc_3_in_axes2_y*upu_h_3_in_spec2_y -
+            upu_acc_3_in_axes2_z*upu_h_3_in_spec2_z
         )
         upu_mu_2_in_axes2_y = (
         upu_B_2_in_axes2_zy*upu_J_group_2_in_axes2_xy + upu_J_group_2_in_axes2_xz*(upu_f_3_t -
@@ -4347,34 +4483,33 @@ def _run_required(m, X, V, A):
         )
         upu_mu_2_in_axes2_z = (
         upu_B_2_in_axes2_yx*upu_Sigma_2_in_axes2_xx + upu_J_group_2_in_axes2_xy*(upu_f_3_t_2 -
-            upu_f_3_t_3) + upu_J_group_2_in_axes2_xz*upu_alpha_1_in_axes2_x +
-            upu_J_group_2_in_axes2_yz*upu_alpha_1_in_axes2_y +
+            upu_f_3_t_3) + upu_J_group_2_in_axes2_yz*upu_alpha_1_in_axes2_y +
             upu_acc_3_in_axes2_x*upu_h_3_in_spec2_z + upu_acc_3_in_axes2_y*upu_h_3_in_spec2_x -
-            upu_B_2_in_axes2_xy*upu_Sigma_2_in_axes2_yy - upu_g_in_axes2_x*upu_h_2_in_spec2_z -
-            upu_g_in_axes2_y*upu_h_2_in_spec2_x
+            upu_B_2_in_axes2_xy*upu_Sigma_2_in_axes2_yy - upu_J_group_2_in_axes2_xz*upu_alpha_1_t
+            - upu_g_in_axes2_x*upu_h_2_in_spec2_z - upu_g_in_axes2_y*upu_h_2_in_spec2_x
         )
         # (upu-N_2) moment about joint 2 of the links from 2 outwards, the force at the connection point left out
-        upu_N_2_in_axes2_y = upu_mu_2_in_axes2_y - upu_f_3_in_axes2_z*upu_root_2
-        upu_N_2_in_axes1_z = upu_N_2_in_axes2_y*upu_c_2 + upu_mu_2_in_axes2_x*upu_s_2
+        upu_N_2_in_axes2_y = upu_mu_2_in_axes2_y - upu_f_3_in_axes2_z*upu_q_3
+        upu_N_2_t = upu_N_2_in_axes2_y*upu_c_2 - upu_e_1_in_axes2_x*upu_mu_2_in_axes2_x
         # (upu-G) force at the connection point that balances the leg's inertia and weight along all degrees of freedom
-        upu_G_in_axes2_y = upu_f_3_in_axes2_y + inv_upu_root_2*upu_mu_2_in_axes2_z
-        upu_G_in_axes2_z = upu_N_2_in_axes1_z*upu_w_1_in_axes2_z
+        upu_G_in_axes2_y = upu_f_3_in_axes2_y + inv_upu_q_3*upu_mu_2_in_axes2_z
         # (upu-G_m1) moment along moment direction 1 that balances the leg's inertia and weight along all degrees of freedom
-        upu_G_m1 = upu_N_2_in_axes1_z*upu_n_c_t*upu_w_1_in_axes2_z
+        upu_G_m1 = upu_N_2_t*upu_n_c_in_axes2_z*upu_w_1_in_axes2_z
         # (upu-G_m) moment at the connection point that balances the leg's inertia and weight along all degrees of freedom
         upu_G_m_in_axes2_y = upu_G_m1*upu_n_m1_in_axes2_y
         # (upu-c) leg force on the platform without actuation and without the mass at the connection point
+        upu_c_in_axes2_z = upu_N_2_t*upu_w_1_in_axes2_z
         upu_c_x = (
-        -axis_x_upu_axes2_x*upu_f_3_in_axes2_x - axis_y_upu_axes2_x*upu_G_in_axes2_y -
-            axis_z_upu_axes2_x*upu_G_in_axes2_z
+        axis_z_upu_axes2_x*upu_c_in_axes2_z - axis_x_upu_axes2_x*upu_f_3_in_axes2_x -
+            axis_y_upu_axes2_x*upu_G_in_axes2_y
         )
         upu_c_y = (
-        -axis_x_upu_axes2_y*upu_f_3_in_axes2_x - axis_y_upu_axes2_y*upu_G_in_axes2_y -
-            axis_z_upu_axes2_y*upu_G_in_axes2_z
+        axis_z_upu_axes2_y*upu_c_in_axes2_z - axis_x_upu_axes2_y*upu_f_3_in_axes2_x -
+            axis_y_upu_axes2_y*upu_G_in_axes2_y
         )
         upu_c_z = (
-        -axis_x_upu_axes2_z*upu_f_3_in_axes2_x - axis_y_upu_axes2_z*upu_G_in_axes2_y -
-            axis_z_upu_axes2_z*upu_G_in_axes2_z
+        axis_z_upu_axes2_z*upu_c_in_axes2_z - axis_x_upu_axes2_z*upu_f_3_in_axes2_x -
+            axis_y_upu_axes2_z*upu_G_in_axes2_y
         )
         # (upu-c_m) moment of the leg on the platform without actuation
         upu_c_m_in_axes2_x = upu_G_m1*upu_end_p1_in_axes2_y
@@ -4397,22 +4532,22 @@ def _run_required(m, X, V, A):
         upu_H_a_3_z = axis_x_upu_axes2_y*upu_q_x - axis_x_upu_axes2_x*upu_q_y
         # (upu-Hk_a_1) moment of the column's unit force about the platform origin
         upu_Hk_a_1_x = (
-        axis_y_upu_axes2_x*upu_n_m1_in_axes2_y + upu_n_c_t_3*upu_q_z -
-            axis_x_upu_axes2_x*upu_end_p1_in_axes2_y - upu_n_c_t_4*upu_q_y
+        axis_y_upu_axes2_x*upu_n_m1_in_axes2_y + upu_n_c_z*upu_q_y -
+            axis_x_upu_axes2_x*upu_end_p1_in_axes2_y - upu_n_c_y*upu_q_z
         )
         upu_Hk_a_1_y = (
-        axis_y_upu_axes2_y*upu_n_m1_in_axes2_y + upu_n_c_t_4*upu_q_x -
-            axis_x_upu_axes2_y*upu_end_p1_in_axes2_y - upu_n_c_t_2*upu_q_z
+        axis_y_upu_axes2_y*upu_n_m1_in_axes2_y + upu_n_c_x*upu_q_z -
+            axis_x_upu_axes2_y*upu_end_p1_in_axes2_y - upu_n_c_z*upu_q_x
         )
         upu_Hk_a_1_z = (
-        axis_y_upu_axes2_z*upu_n_m1_in_axes2_y + upu_n_c_t_2*upu_q_y -
-            axis_x_upu_axes2_z*upu_end_p1_in_axes2_y - upu_n_c_t_3*upu_q_x
+        axis_y_upu_axes2_z*upu_n_m1_in_axes2_y + upu_n_c_y*upu_q_x -
+            axis_x_upu_axes2_z*upu_end_p1_in_axes2_y - upu_n_c_x*upu_q_y
         )
         ok = (
-        ok & (abs(upu_rho2_1) > _TOLERANCE * _TOLERANCE * 0.6400000000000001) & (abs(upu_rho2_2) >
-            _TOLERANCE * _TOLERANCE * 0.6400000000000001) & (abs(upu_volume_c_t) > _TOLERANCE *
-            0.6400000000000001) & (abs(upu_root_2) > _TOLERANCE * 0.8) & (abs(upu_w_1_t) >
-            _TOLERANCE * 0.8)
+        ok & (abs(upu_root_1_t) > _TOLERANCE * _TOLERANCE * 0.6400000000000001) & (abs(upu_q_3_t)
+            > _TOLERANCE * _TOLERANCE * 0.6400000000000001) & (abs(upu_volume_c_t) > _TOLERANCE *
+            0.6400000000000001) & (abs(upu_q_3) > _TOLERANCE * 0.8) & (abs(upu_w_1_t) > _TOLERANCE
+            * 0.8)
         )
         # (R_t) force that actuators and external wrench must give
         R_t_t += upu_c_x
@@ -4431,9 +4566,9 @@ def _run_required(m, X, V, A):
         out_H[_H_upu[4][leg]] = upu_H_a_3_y
         out_H[_H_upu[5][leg]] = upu_H_a_3_z
         # (upu-n_c) force part, zero on the manifold, of the constraint moment
-        out_Hk[_Hk_upu[0][leg]] = -upu_n_c_t_2
-        out_Hk[_Hk_upu[1][leg]] = -upu_n_c_t_3
-        out_Hk[_Hk_upu[2][leg]] = -upu_n_c_t_4
+        out_Hk[_Hk_upu[0][leg]] = upu_n_c_x
+        out_Hk[_Hk_upu[1][leg]] = upu_n_c_y
+        out_Hk[_Hk_upu[2][leg]] = upu_n_c_z
         # (upu-Hk_a_1) moment of the column's unit force about the platform origin
         out_Hk[_Hk_upu[3][leg]] = upu_Hk_a_1_x
         out_Hk[_Hk_upu[4][leg]] = upu_Hk_a_1_y
@@ -4519,42 +4654,37 @@ def _run_inverse_kinematics(m, X):
         t_z + R_zx*upu_platform_point_x + R_zy*upu_platform_point_y + R_zz*upu_platform_point_z -
             upu_base_point_z
         )
-        # (upu-px_1) component along the reference direction
-        upu_px_1 = (
+        upu_S_in_turn1_x = (
         upu_S_x*upu_base_frame_xx + upu_S_y*upu_base_frame_yx + upu_S_z*upu_base_frame_zx
         )
-        # (upu-py_1) component across the reference direction
-        upu_py_1 = (
+        upu_S_in_turn1_y = (
         upu_S_x*upu_base_frame_xy + upu_S_y*upu_base_frame_yy + upu_S_z*upu_base_frame_zy
         )
-        # (upu-rho2_1) squared amplitude
-        upu_rho2_1 = upu_px_1*upu_px_1 + upu_py_1*upu_py_1
-        # (upu-root_1) amplitude, with the sign of the branch
-        upu_root_1 = upu_branch_1*sqrt(upu_rho2_1)
-        # (upu-q_1) displacement of joint 1
-        inv_upu_root_1 = 1.0/upu_root_1
-        upu_q_1 = atan2(inv_upu_root_1*upu_py_1, inv_upu_root_1*upu_px_1)
-        # (upu-xi_1) the vector from joint 1 to the connection point, resolved along link 1
-        upu_xi_1_in_axes1_z = (
+        upu_S_in_turn1_z = (
         upu_S_x*upu_base_frame_xz + upu_S_y*upu_base_frame_yz + upu_S_z*upu_base_frame_zz
         )
-        # (upu-rho2_2) squared amplitude
-        upu_rho2_2 = upu_rho2_1 + upu_xi_1_in_axes1_z*upu_xi_1_in_axes1_z
-        # (upu-root_2) amplitude, with the sign of the branch
-        upu_root_2 = upu_branch_2*sqrt(upu_rho2_2)
+        # (upu-root_1) amplitude, the length across axis 1, with the sign of the branch
+        upu_root_1_t = upu_S_in_turn1_x*upu_S_in_turn1_x + upu_S_in_turn1_y*upu_S_in_turn1_y
+        upu_root_1 = upu_branch_1*sqrt(upu_root_1_t)
+        # (upu-q_1) displacement of joint 1
+        inv_upu_root_1 = 1.0/upu_root_1
+        upu_q_1 = atan2(inv_upu_root_1*upu_S_in_turn1_y, inv_upu_root_1*upu_S_in_turn1_x)
+        # (upu-q_3) displacement of joint 3
+        upu_q_3_t = upu_S_in_turn1_z*upu_S_in_turn1_z + upu_root_1_t
+        upu_q_3 = upu_branch_2*sqrt(upu_q_3_t)
         # (upu-q_2) displacement of joint 2
-        inv_upu_root_2 = 1.0/upu_root_2
-        upu_q_2 = atan2(-inv_upu_root_2*upu_xi_1_in_axes1_z, inv_upu_root_2*upu_root_1)
+        inv_upu_q_3 = 1.0/upu_q_3
+        upu_q_2 = atan2(-inv_upu_q_3*upu_S_in_turn1_z, inv_upu_q_3*upu_root_1)
         ok = (
-        ok & (abs(upu_rho2_1) > _TOLERANCE * _TOLERANCE * 0.6400000000000001) & (abs(upu_rho2_2) >
-            _TOLERANCE * _TOLERANCE * 0.6400000000000001)
+        ok & (abs(upu_root_1_t) > _TOLERANCE * _TOLERANCE * 0.6400000000000001) & (abs(upu_q_3_t)
+            > _TOLERANCE * _TOLERANCE * 0.6400000000000001)
         )
         # (upu-q_1) displacement of joint 1
         out_q[_q_upu[0][leg]] = upu_q_1
         # (upu-q_2) displacement of joint 2
         out_q[_q_upu[1][leg]] = upu_q_2
         # (upu-q_3) displacement of joint 3
-        out_q[_q_upu[2][leg]] = upu_root_2
+        out_q[_q_upu[2][leg]] = upu_q_3
     return ok, (out_q,)
 
 
@@ -4634,52 +4764,46 @@ def _run_joint_rates(m, X, V):
         upu_S_x = t_x + upu_q_x - upu_base_point_x
         upu_S_y = t_y + upu_q_y - upu_base_point_y
         upu_S_z = t_z + upu_q_z - upu_base_point_z
-        # (upu-px_1) component along the reference direction
-        upu_px_1 = (
+        upu_S_in_turn1_x = (
         upu_S_x*upu_base_frame_xx + upu_S_y*upu_base_frame_yx + upu_S_z*upu_base_frame_zx
         )
-        # (upu-py_1) component across the reference direction
-        upu_py_1 = (
+        upu_S_in_turn1_y = (
         upu_S_x*upu_base_frame_xy + upu_S_y*upu_base_frame_yy + upu_S_z*upu_base_frame_zy
         )
-        # (upu-rho2_1) squared amplitude
-        upu_rho2_1 = upu_px_1*upu_px_1 + upu_py_1*upu_py_1
-        # (upu-root_1) amplitude, with the sign of the branch
-        upu_root_1 = upu_branch_1*sqrt(upu_rho2_1)
-        # (upu-c_1) cosine of the angle of joint 1 from its reference direction
-        inv_upu_root_1 = 1.0/upu_root_1
-        upu_c_1_t = inv_upu_root_1*upu_py_1
-        # (upu-s_1) sine of the angle of joint 1 from its reference direction
-        upu_s_1 = inv_upu_root_1*upu_px_1
-        # (upu-xi_1) the vector from joint 1 to the connection point, resolved along link 1
-        upu_xi_1_in_axes1_z = (
+        upu_S_in_turn1_z = (
         upu_S_x*upu_base_frame_xz + upu_S_y*upu_base_frame_yz + upu_S_z*upu_base_frame_zz
         )
-        # (upu-rho2_2) squared amplitude
-        upu_rho2_2 = upu_rho2_1 + upu_xi_1_in_axes1_z*upu_xi_1_in_axes1_z
-        # (upu-root_2) amplitude, with the sign of the branch
-        upu_root_2 = upu_branch_2*sqrt(upu_rho2_2)
+        # (upu-root_1) amplitude, the length across axis 1, with the sign of the branch
+        upu_root_1_t = upu_S_in_turn1_x*upu_S_in_turn1_x + upu_S_in_turn1_y*upu_S_in_turn1_y
+        upu_root_1 = upu_branch_1*sqrt(upu_root_1_t)
+        # (upu-c_1) cosine of the angle of joint 1 from its reference direction
+        inv_upu_root_1 = 1.0/upu_root_1
+        upu_c_1 = inv_upu_root_1*upu_S_in_turn1_x
+        # (upu-s_1) sine of the angle of joint 1 from its reference direction
+        upu_s_1 = inv_upu_root_1*upu_S_in_turn1_y
+        # (upu-q_3) displacement of joint 3
+        upu_q_3_t = upu_S_in_turn1_z*upu_S_in_turn1_z + upu_root_1_t
+        upu_q_3 = upu_branch_2*sqrt(upu_q_3_t)
         # (upu-c_2) cosine of the angle of joint 2 from its reference direction
-        inv_upu_root_2 = 1.0/upu_root_2
-        upu_c_2 = -inv_upu_root_2*upu_root_1
-        # (upu-s_2) sine of the angle of joint 2 from its reference direction
-        upu_s_2 = inv_upu_root_2*upu_xi_1_in_axes1_z
+        inv_upu_q_3 = 1.0/upu_q_3
+        upu_c_2 = inv_upu_q_3*upu_root_1
         # (upu-S_dot) velocity of the connection point
-        axis_z_upu_axes2_x = upu_base_frame_xy*upu_s_1 - upu_base_frame_xx*upu_c_1_t
-        axis_z_upu_axes2_y = upu_base_frame_yy*upu_s_1 - upu_base_frame_yx*upu_c_1_t
-        axis_z_upu_axes2_z = upu_base_frame_zy*upu_s_1 - upu_base_frame_zx*upu_c_1_t
-        upu_S_dot_t = upu_s_1*upu_s_2
-        upu_S_dot_t_2 = upu_c_1_t*upu_s_2
+        upu_e_1_in_axes2_x = inv_upu_q_3*upu_S_in_turn1_z
+        axis_z_upu_axes2_x = upu_base_frame_xy*upu_c_1 - upu_base_frame_xx*upu_s_1
+        axis_z_upu_axes2_y = upu_base_frame_yy*upu_c_1 - upu_base_frame_yx*upu_s_1
+        axis_z_upu_axes2_z = upu_base_frame_zy*upu_c_1 - upu_base_frame_zx*upu_s_1
+        upu_S_dot_t = upu_c_1*upu_e_1_in_axes2_x
+        upu_S_dot_t_2 = upu_e_1_in_axes2_x*upu_s_1
         axis_y_upu_axes2_x = (
-        upu_S_dot_t*upu_base_frame_xx + upu_S_dot_t_2*upu_base_frame_xy +
+        upu_S_dot_t*upu_base_frame_xx + upu_S_dot_t_2*upu_base_frame_xy -
             upu_base_frame_xz*upu_c_2
         )
         axis_y_upu_axes2_y = (
-        upu_S_dot_t*upu_base_frame_yx + upu_S_dot_t_2*upu_base_frame_yy +
+        upu_S_dot_t*upu_base_frame_yx + upu_S_dot_t_2*upu_base_frame_yy -
             upu_base_frame_yz*upu_c_2
         )
         axis_y_upu_axes2_z = (
-        upu_S_dot_t*upu_base_frame_zx + upu_S_dot_t_2*upu_base_frame_zy +
+        upu_S_dot_t*upu_base_frame_zx + upu_S_dot_t_2*upu_base_frame_zy -
             upu_base_frame_zz*upu_c_2
         )
         axis_x_upu_axes2_x = (
@@ -4720,21 +4844,21 @@ def _run_joint_rates(m, X, V):
             upu_platform_joint_axis_platform_z*(R_xz*upu_base_frame_xz + R_yz*upu_base_frame_yz +
             R_zz*upu_base_frame_zz)
         )
-        upu_n_m1_t_4 = upu_c_1_t*upu_n_m1_t_2 + upu_n_m1_t*upu_s_1
-        upu_n_m1_in_axes2_y = upu_n_m1_t_3*upu_s_2 - upu_c_2*upu_n_m1_t_4
-        upu_end_p1_in_axes2_y = upu_c_2*upu_n_m1_t_3 + upu_n_m1_t_4*upu_s_2
-        upu_n_m1_in_axes1_z = upu_c_2*upu_n_m1_in_axes2_y - upu_end_p1_in_axes2_y*upu_s_2
+        upu_n_m1_t_4 = upu_c_1*upu_n_m1_t + upu_n_m1_t_2*upu_s_1
+        upu_n_m1_in_axes2_y = upu_c_2*upu_n_m1_t_4 + upu_e_1_in_axes2_x*upu_n_m1_t_3
+        upu_end_p1_in_axes2_y = upu_e_1_in_axes2_x*upu_n_m1_t_4 - upu_c_2*upu_n_m1_t_3
+        upu_n_m1_t_5 = upu_c_2*upu_n_m1_in_axes2_y + upu_e_1_in_axes2_x*upu_end_p1_in_axes2_y
         # (upu-volume_c) triple product of the velocity vectors
-        upu_volume_c_t = upu_root_1*upu_root_2
+        upu_volume_c_t = upu_q_3*upu_root_1
         # (upu-n_c) force part, zero on the manifold, of the constraint moment
-        upu_n_c_t = upu_n_m1_in_axes1_z*upu_root_2/upu_volume_c_t
+        upu_n_c_in_axes2_z = upu_n_m1_t_5*upu_q_3/upu_volume_c_t
         # (upu-w_1) force part of reciprocal wrench 1
-        upu_w_1_t = upu_root_1 + upu_n_c_t*upu_n_m1_in_axes1_z
+        upu_w_1_t = upu_root_1 + upu_n_c_in_axes2_z*upu_n_m1_t_5
         # (upu-qd_1) rate of joint 1
         upu_qd_1_t = (
         axis_z_upu_axes2_x*upu_S_dot_x + axis_z_upu_axes2_y*upu_S_dot_y +
-            axis_z_upu_axes2_z*upu_S_dot_z -
-            upu_n_c_t*(upu_end_p1_in_axes2_y*(axis_x_upu_axes2_x*omega_x +
+            axis_z_upu_axes2_z*upu_S_dot_z +
+            upu_n_c_in_axes2_z*(upu_end_p1_in_axes2_y*(axis_x_upu_axes2_x*omega_x +
             axis_x_upu_axes2_y*omega_y + axis_x_upu_axes2_z*omega_z) -
             upu_n_m1_in_axes2_y*(axis_y_upu_axes2_x*omega_x + axis_y_upu_axes2_y*omega_y +
             axis_y_upu_axes2_z*omega_z))
@@ -4742,14 +4866,14 @@ def _run_joint_rates(m, X, V):
         upu_qd_1 = upu_qd_1_t/upu_w_1_t
         # (upu-qd_2) rate of joint 2
         upu_qd_2 = (
-        inv_upu_root_2*(axis_y_upu_axes2_x*upu_S_dot_x + axis_y_upu_axes2_y*upu_S_dot_y +
+        inv_upu_q_3*(axis_y_upu_axes2_x*upu_S_dot_x + axis_y_upu_axes2_y*upu_S_dot_y +
             axis_y_upu_axes2_z*upu_S_dot_z)
         )
         ok = (
-        ok & (abs(upu_rho2_1) > _TOLERANCE * _TOLERANCE * 0.6400000000000001) & (abs(upu_rho2_2) >
-            _TOLERANCE * _TOLERANCE * 0.6400000000000001) & (abs(upu_volume_c_t) > _TOLERANCE *
-            0.6400000000000001) & (abs(upu_root_2) > _TOLERANCE * 0.8) & (abs(upu_w_1_t) >
-            _TOLERANCE * 0.8)
+        ok & (abs(upu_root_1_t) > _TOLERANCE * _TOLERANCE * 0.6400000000000001) & (abs(upu_q_3_t)
+            > _TOLERANCE * _TOLERANCE * 0.6400000000000001) & (abs(upu_volume_c_t) > _TOLERANCE *
+            0.6400000000000001) & (abs(upu_q_3) > _TOLERANCE * 0.8) & (abs(upu_w_1_t) > _TOLERANCE
+            * 0.8)
         )
         # (upu-qd_1) rate of joint 1
         out_qd[_qd_upu[0][leg]] = upu_qd_1
@@ -4849,52 +4973,46 @@ def _run_joint_accelerations(m, X, V, A):
         upu_S_x = t_x + upu_q_x - upu_base_point_x
         upu_S_y = t_y + upu_q_y - upu_base_point_y
         upu_S_z = t_z + upu_q_z - upu_base_point_z
-        # (upu-px_1) component along the reference direction
-        upu_px_1 = (
+        upu_S_in_turn1_x = (
         upu_S_x*upu_base_frame_xx + upu_S_y*upu_base_frame_yx + upu_S_z*upu_base_frame_zx
         )
-        # (upu-py_1) component across the reference direction
-        upu_py_1 = (
+        upu_S_in_turn1_y = (
         upu_S_x*upu_base_frame_xy + upu_S_y*upu_base_frame_yy + upu_S_z*upu_base_frame_zy
         )
-        # (upu-rho2_1) squared amplitude
-        upu_rho2_1 = upu_px_1*upu_px_1 + upu_py_1*upu_py_1
-        # (upu-root_1) amplitude, with the sign of the branch
-        upu_root_1 = upu_branch_1*sqrt(upu_rho2_1)
-        # (upu-c_1) cosine of the angle of joint 1 from its reference direction
-        inv_upu_root_1 = 1.0/upu_root_1
-        upu_c_1_t = inv_upu_root_1*upu_py_1
-        # (upu-s_1) sine of the angle of joint 1 from its reference direction
-        upu_s_1 = inv_upu_root_1*upu_px_1
-        # (upu-xi_1) the vector from joint 1 to the connection point, resolved along link 1
-        upu_xi_1_in_axes1_z = (
+        upu_S_in_turn1_z = (
         upu_S_x*upu_base_frame_xz + upu_S_y*upu_base_frame_yz + upu_S_z*upu_base_frame_zz
         )
-        # (upu-rho2_2) squared amplitude
-        upu_rho2_2 = upu_rho2_1 + upu_xi_1_in_axes1_z*upu_xi_1_in_axes1_z
-        # (upu-root_2) amplitude, with the sign of the branch
-        upu_root_2 = upu_branch_2*sqrt(upu_rho2_2)
+        # (upu-root_1) amplitude, the length across axis 1, with the sign of the branch
+        upu_root_1_t = upu_S_in_turn1_x*upu_S_in_turn1_x + upu_S_in_turn1_y*upu_S_in_turn1_y
+        upu_root_1 = upu_branch_1*sqrt(upu_root_1_t)
+        # (upu-c_1) cosine of the angle of joint 1 from its reference direction
+        inv_upu_root_1 = 1.0/upu_root_1
+        upu_c_1 = inv_upu_root_1*upu_S_in_turn1_x
+        # (upu-s_1) sine of the angle of joint 1 from its reference direction
+        upu_s_1 = inv_upu_root_1*upu_S_in_turn1_y
+        # (upu-q_3) displacement of joint 3
+        upu_q_3_t = upu_S_in_turn1_z*upu_S_in_turn1_z + upu_root_1_t
+        upu_q_3 = upu_branch_2*sqrt(upu_q_3_t)
         # (upu-c_2) cosine of the angle of joint 2 from its reference direction
-        inv_upu_root_2 = 1.0/upu_root_2
-        upu_c_2 = -inv_upu_root_2*upu_root_1
-        # (upu-s_2) sine of the angle of joint 2 from its reference direction
-        upu_s_2 = inv_upu_root_2*upu_xi_1_in_axes1_z
+        inv_upu_q_3 = 1.0/upu_q_3
+        upu_c_2 = inv_upu_q_3*upu_root_1
         # (upu-S_dot) velocity of the connection point
-        axis_z_upu_axes2_x = upu_base_frame_xy*upu_s_1 - upu_base_frame_xx*upu_c_1_t
-        axis_z_upu_axes2_y = upu_base_frame_yy*upu_s_1 - upu_base_frame_yx*upu_c_1_t
-        axis_z_upu_axes2_z = upu_base_frame_zy*upu_s_1 - upu_base_frame_zx*upu_c_1_t
-        upu_S_dot_t = upu_s_1*upu_s_2
-        upu_S_dot_t_2 = upu_c_1_t*upu_s_2
+        upu_e_1_in_axes2_x = inv_upu_q_3*upu_S_in_turn1_z
+        axis_z_upu_axes2_x = upu_base_frame_xy*upu_c_1 - upu_base_frame_xx*upu_s_1
+        axis_z_upu_axes2_y = upu_base_frame_yy*upu_c_1 - upu_base_frame_yx*upu_s_1
+        axis_z_upu_axes2_z = upu_base_frame_zy*upu_c_1 - upu_base_frame_zx*upu_s_1
+        upu_S_dot_t = upu_c_1*upu_e_1_in_axes2_x
+        upu_S_dot_t_2 = upu_e_1_in_axes2_x*upu_s_1
         axis_y_upu_axes2_x = (
-        upu_S_dot_t*upu_base_frame_xx + upu_S_dot_t_2*upu_base_frame_xy +
+        upu_S_dot_t*upu_base_frame_xx + upu_S_dot_t_2*upu_base_frame_xy -
             upu_base_frame_xz*upu_c_2
         )
         axis_y_upu_axes2_y = (
-        upu_S_dot_t*upu_base_frame_yx + upu_S_dot_t_2*upu_base_frame_yy +
+        upu_S_dot_t*upu_base_frame_yx + upu_S_dot_t_2*upu_base_frame_yy -
             upu_base_frame_yz*upu_c_2
         )
         axis_y_upu_axes2_z = (
-        upu_S_dot_t*upu_base_frame_zx + upu_S_dot_t_2*upu_base_frame_zy +
+        upu_S_dot_t*upu_base_frame_zx + upu_S_dot_t_2*upu_base_frame_zy -
             upu_base_frame_zz*upu_c_2
         )
         axis_x_upu_axes2_x = (
@@ -4938,16 +5056,16 @@ def _run_joint_accelerations(m, X, V, A):
             upu_platform_joint_axis_platform_z*(R_xz*upu_base_frame_xz + R_yz*upu_base_frame_yz +
             R_zz*upu_base_frame_zz)
         )
-        upu_n_m1_t_4 = upu_c_1_t*upu_n_m1_t_2 + upu_n_m1_t*upu_s_1
-        upu_n_m1_in_axes2_y = upu_n_m1_t_3*upu_s_2 - upu_c_2*upu_n_m1_t_4
-        upu_end_p1_in_axes2_y = upu_c_2*upu_n_m1_t_3 + upu_n_m1_t_4*upu_s_2
-        upu_n_m1_in_axes1_z = upu_c_2*upu_n_m1_in_axes2_y - upu_end_p1_in_axes2_y*upu_s_2
+        upu_n_m1_t_4 = upu_c_1*upu_n_m1_t + upu_n_m1_t_2*upu_s_1
+        upu_n_m1_in_axes2_y = upu_c_2*upu_n_m1_t_4 + upu_e_1_in_axes2_x*upu_n_m1_t_3
+        upu_end_p1_in_axes2_y = upu_e_1_in_axes2_x*upu_n_m1_t_4 - upu_c_2*upu_n_m1_t_3
+        upu_n_m1_t_5 = upu_c_2*upu_n_m1_in_axes2_y + upu_e_1_in_axes2_x*upu_end_p1_in_axes2_y
         # (upu-volume_c) triple product of the velocity vectors
-        upu_volume_c_t = upu_root_1*upu_root_2
+        upu_volume_c_t = upu_q_3*upu_root_1
         # (upu-n_c) force part, zero on the manifold, of the constraint moment
-        upu_n_c_t = upu_n_m1_in_axes1_z*upu_root_2/upu_volume_c_t
+        upu_n_c_in_axes2_z = upu_n_m1_t_5*upu_q_3/upu_volume_c_t
         # (upu-w_1) force part of reciprocal wrench 1
-        upu_w_1_t = upu_root_1 + upu_n_c_t*upu_n_m1_in_axes1_z
+        upu_w_1_t = upu_root_1 + upu_n_c_in_axes2_z*upu_n_m1_t_5
         upu_w_1_in_axes2_z = 1.0/upu_w_1_t
         # (upu-qd_1) rate of joint 1
         upu_omega_in_axes2_x = (
@@ -4958,17 +5076,18 @@ def _run_joint_accelerations(m, X, V, A):
         )
         upu_qd_1 = (
         upu_w_1_in_axes2_z*(axis_z_upu_axes2_x*upu_S_dot_x + axis_z_upu_axes2_y*upu_S_dot_y +
-            axis_z_upu_axes2_z*upu_S_dot_z - upu_n_c_t*(upu_end_p1_in_axes2_y*upu_omega_in_axes2_x
-            - upu_n_m1_in_axes2_y*upu_omega_in_axes2_y))
+            axis_z_upu_axes2_z*upu_S_dot_z +
+            upu_n_c_in_axes2_z*(upu_end_p1_in_axes2_y*upu_omega_in_axes2_x -
+            upu_n_m1_in_axes2_y*upu_omega_in_axes2_y))
         )
         # (upu-qd_2) rate of joint 2
         upu_qd_2 = (
-        inv_upu_root_2*(axis_y_upu_axes2_x*upu_S_dot_x + axis_y_upu_axes2_y*upu_S_dot_y +
+        inv_upu_q_3*(axis_y_upu_axes2_x*upu_S_dot_x + axis_y_upu_axes2_y*upu_S_dot_y +
             axis_y_upu_axes2_z*upu_S_dot_z)
         )
         # (upu-omega_1) angular velocity of link 1
-        upu_omega_1_in_axes2_x = upu_qd_1*upu_s_2
-        upu_omega_1_in_axes2_y = upu_c_2*upu_qd_1
+        upu_omega_1_in_axes2_x = upu_e_1_in_axes2_x*upu_qd_1
+        upu_omega_1_in_axes2_y = -upu_c_2*upu_qd_1
         # (upu-W_2) centripetal tensor of link 2
         upu_W_2_in_axes2_xz = upu_omega_1_in_axes2_x*upu_qd_2
         # (upu-a_p) acceleration of the connection point without its centripetal part
@@ -4981,21 +5100,19 @@ def _run_joint_accelerations(m, X, V, A):
         upu_S_ddot_z = upu_a_p_z + omega_x*upu_S_dot_t_4 - omega_y*upu_S_dot_t_3
         # (upu-bias) acceleration of the connection point at zero joint accelerations
         upu_bias_t = 2.0*upu_S_dot_in_axes2_x
-        upu_bias_in_axes2_z = (
-        2.0*upu_W_2_in_axes2_xz*upu_root_2 - upu_bias_t*upu_omega_1_in_axes2_y
-        )
+        upu_bias_in_axes2_z = 2.0*upu_W_2_in_axes2_xz*upu_q_3 - upu_bias_t*upu_omega_1_in_axes2_y
         # (upu-rel) acceleration of the connection point left to the joint accelerations
         upu_rel_in_axes2_x = (
         axis_x_upu_axes2_x*upu_S_ddot_x + axis_x_upu_axes2_y*upu_S_ddot_y +
             axis_x_upu_axes2_z*upu_S_ddot_z +
-            upu_root_2*(upu_omega_1_in_axes2_y*upu_omega_1_in_axes2_y + upu_qd_2*upu_qd_2)
+            upu_q_3*(upu_omega_1_in_axes2_y*upu_omega_1_in_axes2_y + upu_qd_2*upu_qd_2)
         )
         upu_rel_in_axes2_z = (
         axis_z_upu_axes2_x*upu_S_ddot_x + axis_z_upu_axes2_y*upu_S_ddot_y +
             axis_z_upu_axes2_z*upu_S_ddot_z - upu_bias_in_axes2_z
         )
         # (upu-nd_m1) rate of moment direction 1
-        upu_end_p1_in_axes2_z = upu_n_m1_t_2*upu_s_1 - upu_c_1_t*upu_n_m1_t
+        upu_end_p1_in_axes2_z = upu_c_1*upu_n_m1_t_2 - upu_n_m1_t*upu_s_1
         upu_omega_in_axes2_z = (
         axis_z_upu_axes2_x*omega_x + axis_z_upu_axes2_y*omega_y + axis_z_upu_axes2_z*omega_z
         )
@@ -5013,12 +5130,12 @@ def _run_joint_accelerations(m, X, V, A):
             upu_end_p1_in_axes2_y*upu_omega_1_in_axes2_y*upu_qd_2
         )
         upu_nu_1_t_2 = (
-        upu_nd_m1_in_axes2_x*(upu_omega_1_in_axes2_x - upu_omega_in_axes2_x) +
+        upu_nd_m1_in_axes2_y*(upu_omega_in_axes2_y - upu_omega_1_in_axes2_y) -
+            upu_nd_m1_in_axes2_x*(upu_omega_1_in_axes2_x - upu_omega_in_axes2_x) -
             (upu_omega_in_axes2_z - upu_qd_2)*(-upu_end_p1_in_axes2_y*upu_omega_1_in_axes2_y -
-            upu_n_m1_in_axes2_y*upu_omega_1_in_axes2_x) -
-            upu_nd_m1_in_axes2_y*(upu_omega_in_axes2_y - upu_omega_1_in_axes2_y)
+            upu_n_m1_in_axes2_y*upu_omega_1_in_axes2_x)
         )
-        upu_nu_1 = -upu_nu_1_t - upu_nu_1_t_2
+        upu_nu_1 = upu_nu_1_t_2 - upu_nu_1_t
         # (upu-etad_1) acceleration with which the joints turn along moment direction 1
         upu_etad_1_t = (
         upu_end_p1_in_axes2_y*(alpha_x*axis_x_upu_axes2_x + alpha_y*axis_x_upu_axes2_y +
@@ -5027,21 +5144,21 @@ def _run_joint_accelerations(m, X, V, A):
         )
         upu_etad_1 = upu_nu_1 - upu_etad_1_t
         # (upu-qdd_1) acceleration of joint 1
-        upu_qdd_1 = upu_w_1_in_axes2_z*(upu_rel_in_axes2_z + upu_etad_1*upu_n_c_t)
+        upu_qdd_1_t = upu_w_1_in_axes2_z*(upu_etad_1*upu_n_c_in_axes2_z - upu_rel_in_axes2_z)
         # (upu-qdd_2) acceleration of joint 2
         upu_qdd_2 = (
-        inv_upu_root_2*(axis_y_upu_axes2_x*upu_S_ddot_x + axis_y_upu_axes2_y*upu_S_ddot_y +
+        inv_upu_q_3*(axis_y_upu_axes2_x*upu_S_ddot_x + axis_y_upu_axes2_y*upu_S_ddot_y +
             axis_y_upu_axes2_z*upu_S_ddot_z - upu_bias_t*upu_qd_2) -
             upu_omega_1_in_axes2_x*upu_omega_1_in_axes2_y
         )
         ok = (
-        ok & (abs(upu_rho2_1) > _TOLERANCE * _TOLERANCE * 0.6400000000000001) & (abs(upu_rho2_2) >
-            _TOLERANCE * _TOLERANCE * 0.6400000000000001) & (abs(upu_volume_c_t) > _TOLERANCE *
-            0.6400000000000001) & (abs(upu_root_2) > _TOLERANCE * 0.8) & (abs(upu_w_1_t) >
-            _TOLERANCE * 0.8)
+        ok & (abs(upu_root_1_t) > _TOLERANCE * _TOLERANCE * 0.6400000000000001) & (abs(upu_q_3_t)
+            > _TOLERANCE * _TOLERANCE * 0.6400000000000001) & (abs(upu_volume_c_t) > _TOLERANCE *
+            0.6400000000000001) & (abs(upu_q_3) > _TOLERANCE * 0.8) & (abs(upu_w_1_t) > _TOLERANCE
+            * 0.8)
         )
         # (upu-qdd_1) acceleration of joint 1
-        out_qdd[_qdd_upu[0][leg]] = upu_qdd_1
+        out_qdd[_qdd_upu[0][leg]] = -upu_qdd_1_t
         # (upu-qdd_2) acceleration of joint 2
         out_qdd[_qdd_upu[1][leg]] = upu_qdd_2
         # (upu-qdd_3) acceleration of joint 3
@@ -5111,19 +5228,17 @@ def _run_constraints(m, X):
         t_z + R_zx*upu_platform_point_x + R_zy*upu_platform_point_y + R_zz*upu_platform_point_z -
             upu_base_point_z
         )
-        # (upu-px_1) component along the reference direction
-        upu_px_1 = (
+        upu_S_in_turn1_x = (
         upu_S_x*upu_base_frame_xx + upu_S_y*upu_base_frame_yx + upu_S_z*upu_base_frame_zx
         )
-        # (upu-py_1) component across the reference direction
-        upu_py_1 = (
+        upu_S_in_turn1_y = (
         upu_S_x*upu_base_frame_xy + upu_S_y*upu_base_frame_yy + upu_S_z*upu_base_frame_zy
         )
-        # (upu-rho2_1) squared amplitude
-        upu_rho2_1 = upu_px_1*upu_px_1 + upu_py_1*upu_py_1
-        # (upu-root_1) amplitude, with the sign of the branch
-        upu_root_1 = upu_branch_1*sqrt(upu_rho2_1)
+        # (upu-root_1) amplitude, the length across axis 1, with the sign of the branch
+        upu_root_1_t = upu_S_in_turn1_x*upu_S_in_turn1_x + upu_S_in_turn1_y*upu_S_in_turn1_y
+        upu_root_1 = upu_branch_1*sqrt(upu_root_1_t)
         # (upu-phi_c1) loop-closure residual about the constraint moment
+        inv_upu_root_1 = 1.0/upu_root_1
         upu_phi_c1_t = (
         upu_platform_joint_axis_platform_x*(R_xx*upu_base_frame_xx + R_yx*upu_base_frame_yx +
             R_zx*upu_base_frame_zx) + upu_platform_joint_axis_platform_y*(R_xy*upu_base_frame_xx +
@@ -5138,11 +5253,11 @@ def _run_constraints(m, X):
             upu_platform_joint_axis_platform_z*(R_xz*upu_base_frame_xy + R_yz*upu_base_frame_yy +
             R_zz*upu_base_frame_zy)
         )
-        inv_upu_root_1 = 1.0/upu_root_1
         upu_end_p1_in_axes2_z = (
-        inv_upu_root_1*upu_phi_c1_t_2*upu_px_1 - inv_upu_root_1*upu_phi_c1_t*upu_py_1
+        inv_upu_root_1*upu_S_in_turn1_x*upu_phi_c1_t_2 -
+            inv_upu_root_1*upu_S_in_turn1_y*upu_phi_c1_t
         )
-        ok = ok & (abs(upu_rho2_1) > _TOLERANCE * _TOLERANCE * 0.6400000000000001)
+        ok = ok & (abs(upu_root_1_t) > _TOLERANCE * _TOLERANCE * 0.6400000000000001)
         # (upu-phi_c1) loop-closure residual about the constraint moment
         out_constraints[_constraints_upu[0][leg]] = -upu_end_p1_in_axes2_z
     return ok, (out_constraints,)
@@ -5243,52 +5358,46 @@ def _run_legs(m, X, V, A):
         upu_S_x = t_x + upu_q_x - upu_base_point_x
         upu_S_y = t_y + upu_q_y - upu_base_point_y
         upu_S_z = t_z + upu_q_z - upu_base_point_z
-        # (upu-px_1) component along the reference direction
-        upu_px_1 = (
+        upu_S_in_turn1_x = (
         upu_S_x*upu_base_frame_xx + upu_S_y*upu_base_frame_yx + upu_S_z*upu_base_frame_zx
         )
-        # (upu-py_1) component across the reference direction
-        upu_py_1 = (
+        upu_S_in_turn1_y = (
         upu_S_x*upu_base_frame_xy + upu_S_y*upu_base_frame_yy + upu_S_z*upu_base_frame_zy
         )
-        # (upu-rho2_1) squared amplitude
-        upu_rho2_1 = upu_px_1*upu_px_1 + upu_py_1*upu_py_1
-        # (upu-root_1) amplitude, with the sign of the branch
-        upu_root_1 = upu_branch_1*sqrt(upu_rho2_1)
-        # (upu-c_1) cosine of the angle of joint 1 from its reference direction
-        inv_upu_root_1 = 1.0/upu_root_1
-        upu_c_1_t = inv_upu_root_1*upu_py_1
-        # (upu-s_1) sine of the angle of joint 1 from its reference direction
-        upu_s_1 = inv_upu_root_1*upu_px_1
-        # (upu-xi_1) the vector from joint 1 to the connection point, resolved along link 1
-        upu_xi_1_in_axes1_z = (
+        upu_S_in_turn1_z = (
         upu_S_x*upu_base_frame_xz + upu_S_y*upu_base_frame_yz + upu_S_z*upu_base_frame_zz
         )
-        # (upu-rho2_2) squared amplitude
-        upu_rho2_2 = upu_rho2_1 + upu_xi_1_in_axes1_z*upu_xi_1_in_axes1_z
-        # (upu-root_2) amplitude, with the sign of the branch
-        upu_root_2 = upu_branch_2*sqrt(upu_rho2_2)
+        # (upu-root_1) amplitude, the length across axis 1, with the sign of the branch
+        upu_root_1_t = upu_S_in_turn1_x*upu_S_in_turn1_x + upu_S_in_turn1_y*upu_S_in_turn1_y
+        upu_root_1 = upu_branch_1*sqrt(upu_root_1_t)
+        # (upu-c_1) cosine of the angle of joint 1 from its reference direction
+        inv_upu_root_1 = 1.0/upu_root_1
+        upu_c_1 = inv_upu_root_1*upu_S_in_turn1_x
+        # (upu-s_1) sine of the angle of joint 1 from its reference direction
+        upu_s_1 = inv_upu_root_1*upu_S_in_turn1_y
+        # (upu-q_3) displacement of joint 3
+        upu_q_3_t = upu_S_in_turn1_z*upu_S_in_turn1_z + upu_root_1_t
+        upu_q_3 = upu_branch_2*sqrt(upu_q_3_t)
         # (upu-c_2) cosine of the angle of joint 2 from its reference direction
-        inv_upu_root_2 = 1.0/upu_root_2
-        upu_c_2 = -inv_upu_root_2*upu_root_1
-        # (upu-s_2) sine of the angle of joint 2 from its reference direction
-        upu_s_2 = inv_upu_root_2*upu_xi_1_in_axes1_z
+        inv_upu_q_3 = 1.0/upu_q_3
+        upu_c_2 = inv_upu_q_3*upu_root_1
         # (upu-S_dot) velocity of the connection point
-        axis_z_upu_axes2_x = upu_base_frame_xy*upu_s_1 - upu_base_frame_xx*upu_c_1_t
-        axis_z_upu_axes2_y = upu_base_frame_yy*upu_s_1 - upu_base_frame_yx*upu_c_1_t
-        axis_z_upu_axes2_z = upu_base_frame_zy*upu_s_1 - upu_base_frame_zx*upu_c_1_t
-        upu_S_dot_t = upu_s_1*upu_s_2
-        upu_S_dot_t_2 = upu_c_1_t*upu_s_2
+        upu_e_1_in_axes2_x = inv_upu_q_3*upu_S_in_turn1_z
+        axis_z_upu_axes2_x = upu_base_frame_xy*upu_c_1 - upu_base_frame_xx*upu_s_1
+        axis_z_upu_axes2_y = upu_base_frame_yy*upu_c_1 - upu_base_frame_yx*upu_s_1
+        axis_z_upu_axes2_z = upu_base_frame_zy*upu_c_1 - upu_base_frame_zx*upu_s_1
+        upu_S_dot_t = upu_c_1*upu_e_1_in_axes2_x
+        upu_S_dot_t_2 = upu_e_1_in_axes2_x*upu_s_1
         axis_y_upu_axes2_x = (
-        upu_S_dot_t*upu_base_frame_xx + upu_S_dot_t_2*upu_base_frame_xy +
+        upu_S_dot_t*upu_base_frame_xx + upu_S_dot_t_2*upu_base_frame_xy -
             upu_base_frame_xz*upu_c_2
         )
         axis_y_upu_axes2_y = (
-        upu_S_dot_t*upu_base_frame_yx + upu_S_dot_t_2*upu_base_frame_yy +
+        upu_S_dot_t*upu_base_frame_yx + upu_S_dot_t_2*upu_base_frame_yy -
             upu_base_frame_yz*upu_c_2
         )
         axis_y_upu_axes2_z = (
-        upu_S_dot_t*upu_base_frame_zx + upu_S_dot_t_2*upu_base_frame_zy +
+        upu_S_dot_t*upu_base_frame_zx + upu_S_dot_t_2*upu_base_frame_zy -
             upu_base_frame_zz*upu_c_2
         )
         axis_x_upu_axes2_x = (
@@ -5332,10 +5441,10 @@ def _run_legs(m, X, V, A):
             upu_platform_joint_axis_platform_z*(R_xz*upu_base_frame_xz + R_yz*upu_base_frame_yz +
             R_zz*upu_base_frame_zz)
         )
-        upu_n_m1_t_4 = upu_c_1_t*upu_n_m1_t_2 + upu_n_m1_t*upu_s_1
-        upu_n_m1_in_axes2_y = upu_n_m1_t_3*upu_s_2 - upu_c_2*upu_n_m1_t_4
-        upu_end_p1_in_axes2_y = upu_c_2*upu_n_m1_t_3 + upu_n_m1_t_4*upu_s_2
-        upu_n_m1_in_axes1_z = upu_c_2*upu_n_m1_in_axes2_y - upu_end_p1_in_axes2_y*upu_s_2
+        upu_n_m1_t_4 = upu_c_1*upu_n_m1_t + upu_n_m1_t_2*upu_s_1
+        upu_n_m1_in_axes2_y = upu_c_2*upu_n_m1_t_4 + upu_e_1_in_axes2_x*upu_n_m1_t_3
+        upu_end_p1_in_axes2_y = upu_e_1_in_axes2_x*upu_n_m1_t_4 - upu_c_2*upu_n_m1_t_3
+        upu_n_m1_t_5 = upu_c_2*upu_n_m1_in_axes2_y + upu_e_1_in_axes2_x*upu_end_p1_in_axes2_y
         upu_n_m1_x = (
         axis_y_upu_axes2_x*upu_n_m1_in_axes2_y - axis_x_upu_axes2_x*upu_end_p1_in_axes2_y
         )
@@ -5346,14 +5455,14 @@ def _run_legs(m, X, V, A):
         axis_y_upu_axes2_z*upu_n_m1_in_axes2_y - axis_x_upu_axes2_z*upu_end_p1_in_axes2_y
         )
         # (upu-volume_c) triple product of the velocity vectors
-        upu_volume_c_t = upu_root_1*upu_root_2
+        upu_volume_c_t = upu_q_3*upu_root_1
         # (upu-n_c) force part, zero on the manifold, of the constraint moment
-        upu_n_c_t = upu_n_m1_in_axes1_z*upu_root_2/upu_volume_c_t
-        upu_n_c_t_2 = axis_z_upu_axes2_x*upu_n_c_t
-        upu_n_c_t_3 = axis_z_upu_axes2_y*upu_n_c_t
-        upu_n_c_t_4 = axis_z_upu_axes2_z*upu_n_c_t
+        upu_n_c_in_axes2_z = upu_n_m1_t_5*upu_q_3/upu_volume_c_t
+        upu_n_c_x = axis_z_upu_axes2_x*upu_n_c_in_axes2_z
+        upu_n_c_y = axis_z_upu_axes2_y*upu_n_c_in_axes2_z
+        upu_n_c_z = axis_z_upu_axes2_z*upu_n_c_in_axes2_z
         # (upu-w_1) force part of reciprocal wrench 1
-        upu_w_1_t = upu_root_1 + upu_n_c_t*upu_n_m1_in_axes1_z
+        upu_w_1_t = upu_root_1 + upu_n_c_in_axes2_z*upu_n_m1_t_5
         upu_w_1_in_axes2_z = 1.0/upu_w_1_t
         # (upu-qd_1) rate of joint 1
         upu_omega_in_axes2_x = (
@@ -5364,17 +5473,18 @@ def _run_legs(m, X, V, A):
         )
         upu_qd_1 = (
         upu_w_1_in_axes2_z*(axis_z_upu_axes2_x*upu_S_dot_x + axis_z_upu_axes2_y*upu_S_dot_y +
-            axis_z_upu_axes2_z*upu_S_dot_z - upu_n_c_t*(upu_end_p1_in_axes2_y*upu_omega_in_axes2_x
-            - upu_n_m1_in_axes2_y*upu_omega_in_axes2_y))
+            axis_z_upu_axes2_z*upu_S_dot_z +
+            upu_n_c_in_axes2_z*(upu_end_p1_in_axes2_y*upu_omega_in_axes2_x -
+            upu_n_m1_in_axes2_y*upu_omega_in_axes2_y))
         )
         # (upu-qd_2) rate of joint 2
         upu_qd_2 = (
-        inv_upu_root_2*(axis_y_upu_axes2_x*upu_S_dot_x + axis_y_upu_axes2_y*upu_S_dot_y +
+        inv_upu_q_3*(axis_y_upu_axes2_x*upu_S_dot_x + axis_y_upu_axes2_y*upu_S_dot_y +
             axis_y_upu_axes2_z*upu_S_dot_z)
         )
         # (upu-omega_1) angular velocity of link 1
-        upu_omega_1_in_axes2_x = upu_qd_1*upu_s_2
-        upu_omega_1_in_axes2_y = upu_c_2*upu_qd_1
+        upu_omega_1_in_axes2_x = upu_e_1_in_axes2_x*upu_qd_1
+        upu_omega_1_in_axes2_y = -upu_c_2*upu_qd_1
         # (upu-W_2) centripetal tensor of link 2
         upu_W_2_in_axes2_yz = upu_omega_1_in_axes2_y*upu_qd_2
         upu_W_2_in_axes2_xz = upu_omega_1_in_axes2_x*upu_qd_2
@@ -5390,14 +5500,14 @@ def _run_legs(m, X, V, A):
         # (upu-bias) acceleration of the connection point at zero joint accelerations
         upu_bias_t = 2.0*upu_S_dot_in_axes2_x
         upu_bias_t_2 = upu_bias_t*upu_omega_1_in_axes2_y
-        upu_bias_in_axes2_z = 2.0*upu_W_2_in_axes2_xz*upu_root_2 - upu_bias_t_2
+        upu_bias_in_axes2_z = 2.0*upu_W_2_in_axes2_xz*upu_q_3 - upu_bias_t_2
         # (upu-rel) acceleration of the connection point left to the joint accelerations
         upu_rel_in_axes2_z = (
         axis_z_upu_axes2_x*upu_S_ddot_x + axis_z_upu_axes2_y*upu_S_ddot_y +
             axis_z_upu_axes2_z*upu_S_ddot_z - upu_bias_in_axes2_z
         )
         # (upu-nd_m1) rate of moment direction 1
-        upu_end_p1_in_axes2_z = upu_n_m1_t_2*upu_s_1 - upu_c_1_t*upu_n_m1_t
+        upu_end_p1_in_axes2_z = upu_c_1*upu_n_m1_t_2 - upu_n_m1_t*upu_s_1
         upu_omega_in_axes2_z = (
         axis_z_upu_axes2_x*omega_x + axis_z_upu_axes2_y*omega_y + axis_z_upu_axes2_z*omega_z
         )
@@ -5414,12 +5524,12 @@ def _run_legs(m, X, V, A):
         -upu_W_2_in_axes2_xz*upu_n_m1_in_axes2_y - upu_W_2_in_axes2_yz*upu_end_p1_in_axes2_y
         )
         upu_nu_1_t_2 = (
-        upu_nd_m1_in_axes2_x*(upu_omega_1_in_axes2_x - upu_omega_in_axes2_x) +
+        upu_nd_m1_in_axes2_y*(upu_omega_in_axes2_y - upu_omega_1_in_axes2_y) -
+            upu_nd_m1_in_axes2_x*(upu_omega_1_in_axes2_x - upu_omega_in_axes2_x) -
             (upu_omega_in_axes2_z - upu_qd_2)*(-upu_end_p1_in_axes2_y*upu_omega_1_in_axes2_y -
-            upu_n_m1_in_axes2_y*upu_omega_1_in_axes2_x) -
-            upu_nd_m1_in_axes2_y*(upu_omega_in_axes2_y - upu_omega_1_in_axes2_y)
+            upu_n_m1_in_axes2_y*upu_omega_1_in_axes2_x)
         )
-        upu_nu_1 = -upu_nu_1_t - upu_nu_1_t_2
+        upu_nu_1 = upu_nu_1_t_2 - upu_nu_1_t
         # (upu-etad_1) acceleration with which the joints turn along moment direction 1
         upu_etad_1_t = (
         upu_end_p1_in_axes2_y*(alpha_x*axis_x_upu_axes2_x + alpha_y*axis_x_upu_axes2_y +
@@ -5428,12 +5538,12 @@ def _run_legs(m, X, V, A):
         )
         upu_etad_1 = upu_nu_1 - upu_etad_1_t
         # (upu-qdd_1) acceleration of joint 1
-        upu_qdd_1 = upu_w_1_in_axes2_z*(upu_rel_in_axes2_z + upu_etad_1*upu_n_c_t)
+        upu_qdd_1_t = upu_w_1_in_axes2_z*(upu_etad_1*upu_n_c_in_axes2_z - upu_rel_in_axes2_z)
         # (upu-alpha_1) angular acceleration of link 1
-        upu_alpha_1_in_axes2_x = upu_qdd_1*upu_s_2
-        upu_alpha_1_in_axes2_y = upu_c_2*upu_qdd_1
+        upu_alpha_1_t = upu_e_1_in_axes2_x*upu_qdd_1_t
+        upu_alpha_1_in_axes2_y = upu_c_2*upu_qdd_1_t
         # (upu-alpha_2) angular acceleration of link 2
-        upu_alpha_2_in_axes2_x = upu_W_2_in_axes2_yz + upu_alpha_1_in_axes2_x
+        upu_alpha_2_in_axes2_x = upu_W_2_in_axes2_yz - upu_alpha_1_t
         upu_alpha_2_in_axes2_y = upu_alpha_1_in_axes2_y - upu_W_2_in_axes2_xz
         # (upu-B_2) acceleration tensor of link 2
         upu_B_2_t = upu_bias_t*upu_qd_2
@@ -5441,21 +5551,21 @@ def _run_legs(m, X, V, A):
         axis_y_upu_axes2_x*upu_S_ddot_x + axis_y_upu_axes2_y*upu_S_ddot_y +
             axis_y_upu_axes2_z*upu_S_ddot_z - upu_B_2_t
         )
-        upu_B_2_in_axes2_yx = inv_upu_root_2*upu_B_2_t_2
+        upu_B_2_in_axes2_yx = inv_upu_q_3*upu_B_2_t_2
         upu_B_2_in_axes2_xy = 2.0*upu_W_2_in_axes2_xy - upu_B_2_in_axes2_yx
         upu_B_2_in_axes2_zx = upu_W_2_in_axes2_xz - upu_alpha_2_in_axes2_y
         upu_B_2_in_axes2_zy = upu_W_2_in_axes2_yz + upu_alpha_2_in_axes2_x
         # (upu-acc_3) acceleration of the reference point of link 3, less gravity
-        upu_g_in_axes2_z = upu_acc_3_t_2*upu_s_1 - upu_acc_3_t*upu_c_1_t
-        upu_acc_3_t_4 = upu_acc_3_t*upu_s_1 + upu_acc_3_t_2*upu_c_1_t
-        upu_g_in_axes2_x = upu_acc_3_t_3*upu_s_2 - upu_acc_3_t_4*upu_c_2
-        upu_g_in_axes2_y = upu_acc_3_t_3*upu_c_2 + upu_acc_3_t_4*upu_s_2
+        upu_acc_3_t_4 = upu_acc_3_t*upu_c_1 + upu_acc_3_t_2*upu_s_1
+        upu_g_in_axes2_z = upu_acc_3_t_2*upu_c_1 - upu_acc_3_t*upu_s_1
+        upu_g_in_axes2_x = upu_acc_3_t_3*upu_e_1_in_axes2_x + upu_acc_3_t_4*upu_c_2
+        upu_g_in_axes2_y = upu_acc_3_t_4*upu_e_1_in_axes2_x - upu_acc_3_t_3*upu_c_2
         upu_acc_3_in_axes2_x = (
         axis_x_upu_axes2_x*upu_S_ddot_x + axis_x_upu_axes2_y*upu_S_ddot_y +
             axis_x_upu_axes2_z*upu_S_ddot_z - upu_g_in_axes2_x
         )
         upu_acc_3_in_axes2_y = upu_B_2_t + upu_B_2_t_2 - upu_g_in_axes2_y
-        upu_acc_3_in_axes2_z = upu_B_2_in_axes2_zx*upu_root_2 - upu_bias_t_2 - upu_g_in_axes2_z
+        upu_acc_3_in_axes2_z = upu_B_2_in_axes2_zx*upu_q_3 - upu_bias_t_2 - upu_g_in_axes2_z
         # (upu-f_3) inertia force of link 3 less its weight
         upu_f_3_t = upu_qd_2*upu_qd_2
         upu_f_3_t_2 = upu_omega_1_in_axes2_x*upu_omega_1_in_axes2_x
@@ -5466,8 +5576,7 @@ def _run_legs(m, X, V, A):
         )
         upu_f_3_in_axes2_y = (
         upu_B_2_in_axes2_yx*upu_h_3_in_spec2_x + upu_acc_3_in_axes2_y*upu_link3_mass +
-            upu_h_3_in_spec2_z*(upu_f_3_t + upu_f_3_t_2) -
-            upu_alpha_1_in_axes2_x*upu_h_3_in_spec2_y
+            upu_alpha_1_t*upu_h_3_in_spec2_y + upu_h_3_in_spec2_z*(upu_f_3_t + upu_f_3_t_2)
         )
         upu_f_3_in_axes2_z = (
         upu_B_2_in_axes2_zx*upu_h_3_in_spec2_x + upu_acc_3_in_axes2_z*upu_link3_mass -
@@ -5477,11 +5586,11 @@ def _run_legs(m, X, V, A):
         # (upu-mu_2) inertia moment of the links that turn with link 2, about their reference points
         upu_mu_2_in_axes2_x = (
         upu_B_2_in_axes2_yx*upu_J_group_2_in_axes2_xz +
-            upu_B_2_in_axes2_zy*upu_Sigma_2_in_axes2_yy +
-            upu_Sigma_2_in_axes2_zz*upu_alpha_1_in_axes2_x + upu_g_in_axes2_y*upu_h_2_in_spec2_y +
+            upu_B_2_in_axes2_zy*upu_Sigma_2_in_axes2_yy + upu_g_in_axes2_y*upu_h_2_in_spec2_y +
             upu_g_in_axes2_z*upu_h_2_in_spec2_z - upu_B_2_in_axes2_zx*upu_J_group_2_in_axes2_xy -
             upu_J_group_2_in_axes2_yz*(upu_f_3_t - upu_f_3_t_3) -
-            upu_acc_3_in_axes2_y*upu_h_3_in_spec2_y - upu_acc_3_in_axes2_z*upu_h_3_in_spec2_z
+            upu_Sigma_2_in_axes2_zz*upu_alpha_1_t - upu_acc_3_in_axes2_y*upu_h_3_in_spec2_y -
+            upu_acc_3_in_axes2_z*upu_h_3_in_spec2_z
         )
         upu_mu_2_in_axes2_y = (
         upu_B_2_in_axes2_zy*upu_J_group_2_in_axes2_xy + upu_J_group_2_in_axes2_xz*(upu_f_3_t -
@@ -5493,34 +5602,33 @@ def _run_legs(m, X, V, A):
         )
         upu_mu_2_in_axes2_z = (
         upu_B_2_in_axes2_yx*upu_Sigma_2_in_axes2_xx + upu_J_group_2_in_axes2_xy*(upu_f_3_t_2 -
-            upu_f_3_t_3) + upu_J_group_2_in_axes2_xz*upu_alpha_1_in_axes2_x +
-            upu_J_group_2_in_axes2_yz*upu_alpha_1_in_axes2_y +
+            upu_f_3_t_3) + upu_J_group_2_in_axes2_yz*upu_alpha_1_in_axes2_y +
             upu_acc_3_in_axes2_x*upu_h_3_in_spec2_z + upu_acc_3_in_axes2_y*upu_h_3_in_spec2_x -
-            upu_B_2_in_axes2_xy*upu_Sigma_2_in_axes2_yy - upu_g_in_axes2_x*upu_h_2_in_spec2_z -
-            upu_g_in_axes2_y*upu_h_2_in_spec2_x
+            upu_B_2_in_axes2_xy*upu_Sigma_2_in_axes2_yy - upu_J_group_2_in_axes2_xz*upu_alpha_1_t
+            - upu_g_in_axes2_x*upu_h_2_in_spec2_z - upu_g_in_axes2_y*upu_h_2_in_spec2_x
         )
         # (upu-N_2) moment about joint 2 of the links from 2 outwards, the force at the connection point left out
-        upu_N_2_in_axes2_y = upu_mu_2_in_axes2_y - upu_f_3_in_axes2_z*upu_root_2
-        upu_N_2_in_axes1_z = upu_N_2_in_axes2_y*upu_c_2 + upu_mu_2_in_axes2_x*upu_s_2
+        upu_N_2_in_axes2_y = upu_mu_2_in_axes2_y - upu_f_3_in_axes2_z*upu_q_3
+        upu_N_2_t = upu_N_2_in_axes2_y*upu_c_2 - upu_e_1_in_axes2_x*upu_mu_2_in_axes2_x
         # (upu-G) force at the connection point that balances the leg's inertia and weight along all degrees of freedom
-        upu_G_in_axes2_y = upu_f_3_in_axes2_y + inv_upu_root_2*upu_mu_2_in_axes2_z
-        upu_G_in_axes2_z = upu_N_2_in_axes1_z*upu_w_1_in_axes2_z
+        upu_G_in_axes2_y = upu_f_3_in_axes2_y + inv_upu_q_3*upu_mu_2_in_axes2_z
         # (upu-G_m1) moment along moment direction 1 that balances the leg's inertia and weight along all degrees of freedom
-        upu_G_m1 = upu_N_2_in_axes1_z*upu_n_c_t*upu_w_1_in_axes2_z
+        upu_G_m1 = upu_N_2_t*upu_n_c_in_axes2_z*upu_w_1_in_axes2_z
         # (upu-G_m) moment at the connection point that balances the leg's inertia and weight along all degrees of freedom
         upu_G_m_in_axes2_y = upu_G_m1*upu_n_m1_in_axes2_y
         # (upu-c) leg force on the platform without actuation and without the mass at the connection point
+        upu_c_in_axes2_z = upu_N_2_t*upu_w_1_in_axes2_z
         upu_c_x = (
-        -axis_x_upu_axes2_x*upu_f_3_in_axes2_x - axis_y_upu_axes2_x*upu_G_in_axes2_y -
-            axis_z_upu_axes2_x*upu_G_in_axes2_z
+        axis_z_upu_axes2_x*upu_c_in_axes2_z - axis_x_upu_axes2_x*upu_f_3_in_axes2_x -
+            axis_y_upu_axes2_x*upu_G_in_axes2_y
         )
         upu_c_y = (
-        -axis_x_upu_axes2_y*upu_f_3_in_axes2_x - axis_y_upu_axes2_y*upu_G_in_axes2_y -
-            axis_z_upu_axes2_y*upu_G_in_axes2_z
+        axis_z_upu_axes2_y*upu_c_in_axes2_z - axis_x_upu_axes2_y*upu_f_3_in_axes2_x -
+            axis_y_upu_axes2_y*upu_G_in_axes2_y
         )
         upu_c_z = (
-        -axis_x_upu_axes2_z*upu_f_3_in_axes2_x - axis_y_upu_axes2_z*upu_G_in_axes2_y -
-            axis_z_upu_axes2_z*upu_G_in_axes2_z
+        axis_z_upu_axes2_z*upu_c_in_axes2_z - axis_x_upu_axes2_z*upu_f_3_in_axes2_x -
+            axis_y_upu_axes2_z*upu_G_in_axes2_y
         )
         # (upu-c_m) moment of the leg on the platform without actuation
         upu_c_m_in_axes2_x = upu_G_m1*upu_end_p1_in_axes2_y
@@ -5528,10 +5636,10 @@ def _run_legs(m, X, V, A):
         upu_c_m_y = axis_x_upu_axes2_y*upu_c_m_in_axes2_x - axis_y_upu_axes2_y*upu_G_m_in_axes2_y
         upu_c_m_z = axis_x_upu_axes2_z*upu_c_m_in_axes2_x - axis_y_upu_axes2_z*upu_G_m_in_axes2_y
         ok = (
-        ok & (abs(upu_rho2_1) > _TOLERANCE * _TOLERANCE * 0.6400000000000001) & (abs(upu_rho2_2) >
-            _TOLERANCE * _TOLERANCE * 0.6400000000000001) & (abs(upu_volume_c_t) > _TOLERANCE *
-            0.6400000000000001) & (abs(upu_root_2) > _TOLERANCE * 0.8) & (abs(upu_w_1_t) >
-            _TOLERANCE * 0.8)
+        ok & (abs(upu_root_1_t) > _TOLERANCE * _TOLERANCE * 0.6400000000000001) & (abs(upu_q_3_t)
+            > _TOLERANCE * _TOLERANCE * 0.6400000000000001) & (abs(upu_volume_c_t) > _TOLERANCE *
+            0.6400000000000001) & (abs(upu_q_3) > _TOLERANCE * 0.8) & (abs(upu_w_1_t) > _TOLERANCE
+            * 0.8)
         )
         # (upu-c) leg force on the platform without actuation and without the mass at the connection point
         out_leg_force[_leg_force_upu[0][leg]] = upu_c_x
@@ -5546,9 +5654,9 @@ def _run_legs(m, X, V, A):
         out_actuator[_actuator_upu[1][leg]] = axis_x_upu_axes2_y
         out_actuator[_actuator_upu[2][leg]] = axis_x_upu_axes2_z
         # (upu-n_c) force part, zero on the manifold, of the constraint moment
-        out_constraint_direction[_constraint_direction_upu[0][leg]] = -upu_n_c_t_2
-        out_constraint_direction[_constraint_direction_upu[1][leg]] = -upu_n_c_t_3
-        out_constraint_direction[_constraint_direction_upu[2][leg]] = -upu_n_c_t_4
+        out_constraint_direction[_constraint_direction_upu[0][leg]] = upu_n_c_x
+        out_constraint_direction[_constraint_direction_upu[1][leg]] = upu_n_c_y
+        out_constraint_direction[_constraint_direction_upu[2][leg]] = upu_n_c_z
         # (upu-mu_c) moment that goes with it
         out_constraint_direction[_constraint_direction_upu[3][leg]] = upu_n_m1_x
         out_constraint_direction[_constraint_direction_upu[4][leg]] = upu_n_m1_y
@@ -5633,55 +5741,49 @@ def _run_potential(m, X):
         t_z + R_zx*upu_platform_point_x + R_zy*upu_platform_point_y + R_zz*upu_platform_point_z -
             upu_base_point_z
         )
-        # (upu-px_1) component along the reference direction
-        upu_px_1 = (
+        upu_S_in_turn1_x = (
         upu_S_x*upu_base_frame_xx + upu_S_y*upu_base_frame_yx + upu_S_z*upu_base_frame_zx
         )
-        # (upu-py_1) component across the reference direction
-        upu_py_1 = (
+        upu_S_in_turn1_y = (
         upu_S_x*upu_base_frame_xy + upu_S_y*upu_base_frame_yy + upu_S_z*upu_base_frame_zy
         )
-        # (upu-rho2_1) squared amplitude
-        upu_rho2_1 = upu_px_1*upu_px_1 + upu_py_1*upu_py_1
-        # (upu-root_1) amplitude, with the sign of the branch
-        upu_root_1 = upu_branch_1*sqrt(upu_rho2_1)
-        # (upu-c_1) cosine of the angle of joint 1 from its reference direction
-        inv_upu_root_1 = 1.0/upu_root_1
-        upu_c_1_t = inv_upu_root_1*upu_py_1
-        # (upu-s_1) sine of the angle of joint 1 from its reference direction
-        upu_s_1 = inv_upu_root_1*upu_px_1
-        # (upu-xi_1) the vector from joint 1 to the connection point, resolved along link 1
-        upu_xi_1_in_axes1_z = (
+        upu_S_in_turn1_z = (
         upu_S_x*upu_base_frame_xz + upu_S_y*upu_base_frame_yz + upu_S_z*upu_base_frame_zz
         )
-        # (upu-rho2_2) squared amplitude
-        upu_rho2_2 = upu_rho2_1 + upu_xi_1_in_axes1_z*upu_xi_1_in_axes1_z
-        # (upu-root_2) amplitude, with the sign of the branch
-        upu_root_2 = upu_branch_2*sqrt(upu_rho2_2)
+        # (upu-root_1) amplitude, the length across axis 1, with the sign of the branch
+        upu_root_1_t = upu_S_in_turn1_x*upu_S_in_turn1_x + upu_S_in_turn1_y*upu_S_in_turn1_y
+        upu_root_1 = upu_branch_1*sqrt(upu_root_1_t)
+        # (upu-c_1) cosine of the angle of joint 1 from its reference direction
+        inv_upu_root_1 = 1.0/upu_root_1
+        upu_c_1 = inv_upu_root_1*upu_S_in_turn1_x
+        # (upu-s_1) sine of the angle of joint 1 from its reference direction
+        upu_s_1 = inv_upu_root_1*upu_S_in_turn1_y
+        # (upu-q_3) displacement of joint 3
+        upu_q_3_t = upu_S_in_turn1_z*upu_S_in_turn1_z + upu_root_1_t
+        upu_q_3 = upu_branch_2*sqrt(upu_q_3_t)
         # (upu-c_2) cosine of the angle of joint 2 from its reference direction
-        inv_upu_root_2 = 1.0/upu_root_2
-        upu_c_2 = -inv_upu_root_2*upu_root_1
-        # (upu-s_2) sine of the angle of joint 2 from its reference direction
-        upu_s_2 = inv_upu_root_2*upu_xi_1_in_axes1_z
+        inv_upu_q_3 = 1.0/upu_q_3
+        upu_c_2 = inv_upu_q_3*upu_root_1
         # (potential) potential energy
-        upu_potential_t_4 = upu_acc_3_t*upu_s_1 + upu_acc_3_t_2*upu_c_1_t
-        upu_b_in_spec2_y = upu_potential_t_2*upu_s_1 - upu_c_1_t*upu_potential_t
-        upu_potential_t_5 = -upu_c_1_t*upu_potential_t_2 - upu_potential_t*upu_s_1
-        upu_b_in_spec2_x = upu_c_2*upu_potential_t_5 + upu_potential_t_3*upu_s_2
-        upu_b_in_spec2_z = upu_potential_t_5*upu_s_2 - upu_c_2*upu_potential_t_3
+        upu_e_1_in_axes2_x = inv_upu_q_3*upu_S_in_turn1_z
+        upu_potential_t_4 = upu_acc_3_t*upu_c_1 + upu_acc_3_t_2*upu_s_1
+        upu_potential_t_5 = upu_c_1*upu_potential_t + upu_potential_t_2*upu_s_1
+        upu_b_in_spec2_y = upu_c_1*upu_potential_t_2 - upu_potential_t*upu_s_1
+        upu_b_in_spec2_x = upu_c_2*upu_potential_t_5 + upu_e_1_in_axes2_x*upu_potential_t_3
+        upu_b_in_spec2_z = upu_c_2*upu_potential_t_3 - upu_e_1_in_axes2_x*upu_potential_t_5
         upu_potential_t_6 = (
-        (upu_acc_3_t_3*upu_c_2 + upu_potential_t_4*upu_s_2)*(upu_h_2_in_spec2_z +
+        (upu_e_1_in_axes2_x*upu_potential_t_4 - upu_acc_3_t_3*upu_c_2)*(upu_h_2_in_spec2_z +
             upu_h_3_in_spec2_z + upu_b_in_spec2_z*upu_link2_mass +
-            upu_b_in_spec2_z*upu_link3_mass) - (upu_acc_3_t_2*upu_s_1 -
-            upu_acc_3_t*upu_c_1_t)*(upu_h_2_in_spec2_y + upu_h_3_in_spec2_y +
+            upu_b_in_spec2_z*upu_link3_mass) - (upu_acc_3_t_2*upu_c_1 -
+            upu_acc_3_t*upu_s_1)*(upu_h_2_in_spec2_y + upu_h_3_in_spec2_y +
             upu_b_in_spec2_y*upu_link2_mass + upu_b_in_spec2_y*upu_link3_mass) -
-            (upu_acc_3_t_3*upu_s_2 - upu_c_2*upu_potential_t_4)*(upu_h_2_in_spec2_x +
+            (upu_acc_3_t_3*upu_e_1_in_axes2_x + upu_c_2*upu_potential_t_4)*(upu_h_2_in_spec2_x +
             upu_h_3_in_spec2_x + upu_b_in_spec2_x*upu_link2_mass +
-            upu_link3_mass*(upu_b_in_spec2_x + upu_root_2))
+            upu_link3_mass*(upu_b_in_spec2_x + upu_q_3))
         )
         ok = (
-        ok & (abs(upu_rho2_1) > _TOLERANCE * _TOLERANCE * 0.6400000000000001) & (abs(upu_rho2_2) >
-            _TOLERANCE * _TOLERANCE * 0.6400000000000001)
+        ok & (abs(upu_root_1_t) > _TOLERANCE * _TOLERANCE * 0.6400000000000001) & (abs(upu_q_3_t)
+            > _TOLERANCE * _TOLERANCE * 0.6400000000000001)
         )
         # (potential) potential energy
         potential_upu += upu_potential_t_6
@@ -5766,37 +5868,31 @@ def _run_condition(m, X):
         upu_S_x = t_x + upu_q_x - upu_base_point_x
         upu_S_y = t_y + upu_q_y - upu_base_point_y
         upu_S_z = t_z + upu_q_z - upu_base_point_z
-        # (upu-px_1) component along the reference direction
-        upu_px_1 = (
+        upu_S_in_turn1_x = (
         upu_S_x*upu_base_frame_xx + upu_S_y*upu_base_frame_yx + upu_S_z*upu_base_frame_zx
         )
-        # (upu-py_1) component across the reference direction
-        upu_py_1 = (
+        upu_S_in_turn1_y = (
         upu_S_x*upu_base_frame_xy + upu_S_y*upu_base_frame_yy + upu_S_z*upu_base_frame_zy
         )
-        # (upu-rho2_1) squared amplitude
-        upu_rho2_1 = upu_px_1*upu_px_1 + upu_py_1*upu_py_1
-        # (upu-root_1) amplitude, with the sign of the branch
-        upu_root_1 = upu_branch_1*sqrt(upu_rho2_1)
-        # (upu-c_1) cosine of the angle of joint 1 from its reference direction
-        inv_upu_root_1 = 1.0/upu_root_1
-        upu_c_1_t = inv_upu_root_1*upu_py_1
-        # (upu-s_1) sine of the angle of joint 1 from its reference direction
-        upu_s_1 = inv_upu_root_1*upu_px_1
-        # (upu-xi_1) the vector from joint 1 to the connection point, resolved along link 1
-        upu_xi_1_in_axes1_z = (
+        upu_S_in_turn1_z = (
         upu_S_x*upu_base_frame_xz + upu_S_y*upu_base_frame_yz + upu_S_z*upu_base_frame_zz
         )
-        # (upu-rho2_2) squared amplitude
-        upu_rho2_2 = upu_rho2_1 + upu_xi_1_in_axes1_z*upu_xi_1_in_axes1_z
-        # (upu-root_2) amplitude, with the sign of the branch
-        upu_root_2 = upu_branch_2*sqrt(upu_rho2_2)
+        # (upu-root_1) amplitude, the length across axis 1, with the sign of the branch
+        upu_root_1_t = upu_S_in_turn1_x*upu_S_in_turn1_x + upu_S_in_turn1_y*upu_S_in_turn1_y
+        upu_root_1 = upu_branch_1*sqrt(upu_root_1_t)
+        # (upu-c_1) cosine of the angle of joint 1 from its reference direction
+        inv_upu_root_1 = 1.0/upu_root_1
+        upu_c_1 = inv_upu_root_1*upu_S_in_turn1_x
+        # (upu-s_1) sine of the angle of joint 1 from its reference direction
+        upu_s_1 = inv_upu_root_1*upu_S_in_turn1_y
+        # (upu-q_3) displacement of joint 3
+        upu_q_3_t = upu_S_in_turn1_z*upu_S_in_turn1_z + upu_root_1_t
+        upu_q_3 = upu_branch_2*sqrt(upu_q_3_t)
         # (upu-c_2) cosine of the angle of joint 2 from its reference direction
-        inv_upu_root_2 = 1.0/upu_root_2
-        upu_c_2 = -inv_upu_root_2*upu_root_1
-        # (upu-s_2) sine of the angle of joint 2 from its reference direction
-        upu_s_2 = inv_upu_root_2*upu_xi_1_in_axes1_z
+        inv_upu_q_3 = 1.0/upu_q_3
+        upu_c_2 = inv_upu_q_3*upu_root_1
         # (upu-n_m1) direction 1 of the moment that the platform joint transmits
+        upu_e_1_in_axes2_x = inv_upu_q_3*upu_S_in_turn1_z
         upu_n_m1_t = (
         upu_platform_joint_axis_platform_x*(R_xx*upu_base_frame_xx + R_yx*upu_base_frame_yx +
             R_zx*upu_base_frame_zx) + upu_platform_joint_axis_platform_y*(R_xy*upu_base_frame_xx +
@@ -5818,42 +5914,42 @@ def _run_condition(m, X):
             upu_platform_joint_axis_platform_z*(R_xz*upu_base_frame_xz + R_yz*upu_base_frame_yz +
             R_zz*upu_base_frame_zz)
         )
-        upu_n_m1_t_4 = upu_c_1_t*upu_n_m1_t_2 + upu_n_m1_t*upu_s_1
-        upu_n_m1_in_axes2_y = upu_n_m1_t_3*upu_s_2 - upu_c_2*upu_n_m1_t_4
-        upu_end_p1_in_axes2_y = upu_c_2*upu_n_m1_t_3 + upu_n_m1_t_4*upu_s_2
-        upu_n_m1_in_axes1_z = upu_c_2*upu_n_m1_in_axes2_y - upu_end_p1_in_axes2_y*upu_s_2
+        upu_n_m1_t_4 = upu_c_1*upu_n_m1_t + upu_n_m1_t_2*upu_s_1
+        upu_n_m1_in_axes2_y = upu_c_2*upu_n_m1_t_4 + upu_e_1_in_axes2_x*upu_n_m1_t_3
+        upu_end_p1_in_axes2_y = upu_e_1_in_axes2_x*upu_n_m1_t_4 - upu_c_2*upu_n_m1_t_3
+        upu_n_m1_t_5 = upu_c_2*upu_n_m1_in_axes2_y + upu_e_1_in_axes2_x*upu_end_p1_in_axes2_y
         # (upu-volume_c) triple product of the velocity vectors
-        upu_volume_c_t = upu_root_1*upu_root_2
+        upu_volume_c_t = upu_q_3*upu_root_1
         # (upu-n_c) force part, zero on the manifold, of the constraint moment
-        upu_n_c_t = upu_n_m1_in_axes1_z*upu_root_2/upu_volume_c_t
-        axis_z_upu_axes2_x = upu_base_frame_xy*upu_s_1 - upu_base_frame_xx*upu_c_1_t
-        axis_z_upu_axes2_y = upu_base_frame_yy*upu_s_1 - upu_base_frame_yx*upu_c_1_t
-        axis_z_upu_axes2_z = upu_base_frame_zy*upu_s_1 - upu_base_frame_zx*upu_c_1_t
-        upu_n_c_t_2 = axis_z_upu_axes2_x*upu_n_c_t
-        upu_n_c_t_3 = axis_z_upu_axes2_y*upu_n_c_t
-        upu_n_c_t_4 = axis_z_upu_axes2_z*upu_n_c_t
+        upu_n_c_in_axes2_z = upu_n_m1_t_5*upu_q_3/upu_volume_c_t
+        axis_z_upu_axes2_x = upu_base_frame_xy*upu_c_1 - upu_base_frame_xx*upu_s_1
+        axis_z_upu_axes2_y = upu_base_frame_yy*upu_c_1 - upu_base_frame_yx*upu_s_1
+        axis_z_upu_axes2_z = upu_base_frame_zy*upu_c_1 - upu_base_frame_zx*upu_s_1
+        upu_n_c_x = axis_z_upu_axes2_x*upu_n_c_in_axes2_z
+        upu_n_c_y = axis_z_upu_axes2_y*upu_n_c_in_axes2_z
+        upu_n_c_z = axis_z_upu_axes2_z*upu_n_c_in_axes2_z
         # (upu-w_1) force part of reciprocal wrench 1
-        upu_w_1_t = upu_root_1 + upu_n_c_t*upu_n_m1_in_axes1_z
+        upu_w_1_t = upu_root_1 + upu_n_c_in_axes2_z*upu_n_m1_t_5
         # (upu-w_3) force part of reciprocal wrench 3
-        upu_w_3_t = upu_s_1*upu_s_2
-        upu_w_3_t_2 = upu_c_1_t*upu_s_2
+        upu_w_3_t = upu_c_1*upu_e_1_in_axes2_x
+        upu_w_3_t_2 = upu_e_1_in_axes2_x*upu_s_1
         axis_y_upu_axes2_x = (
-        upu_base_frame_xx*upu_w_3_t + upu_base_frame_xy*upu_w_3_t_2 + upu_base_frame_xz*upu_c_2
+        upu_base_frame_xx*upu_w_3_t + upu_base_frame_xy*upu_w_3_t_2 - upu_base_frame_xz*upu_c_2
         )
         axis_y_upu_axes2_y = (
-        upu_base_frame_yx*upu_w_3_t + upu_base_frame_yy*upu_w_3_t_2 + upu_base_frame_yz*upu_c_2
+        upu_base_frame_yx*upu_w_3_t + upu_base_frame_yy*upu_w_3_t_2 - upu_base_frame_yz*upu_c_2
         )
         axis_y_upu_axes2_z = (
-        upu_base_frame_zx*upu_w_3_t + upu_base_frame_zy*upu_w_3_t_2 + upu_base_frame_zz*upu_c_2
+        upu_base_frame_zx*upu_w_3_t + upu_base_frame_zy*upu_w_3_t_2 - upu_base_frame_zz*upu_c_2
         )
         upu_w_3_x = axis_y_upu_axes2_y*axis_z_upu_axes2_z - axis_y_upu_axes2_z*axis_z_upu_axes2_y
         upu_w_3_y = axis_y_upu_axes2_z*axis_z_upu_axes2_x - axis_y_upu_axes2_x*axis_z_upu_axes2_z
         upu_w_3_z = axis_y_upu_axes2_x*axis_z_upu_axes2_y - axis_y_upu_axes2_y*axis_z_upu_axes2_x
         # (upu-G) force at the connection point that balances the leg's inertia and weight along all degrees of freedom
-        upu_pivot_size = abs(upu_rho2_1)
-        upu_pivot_size_2 = abs(upu_rho2_2)
+        upu_pivot_size = abs(upu_root_1_t)
+        upu_pivot_size_2 = abs(upu_q_3_t)
         upu_pivot_size_3 = abs(upu_volume_c_t)
-        upu_pivot_size_4 = abs(upu_root_2)
+        upu_pivot_size_4 = abs(upu_q_3)
         upu_pivot_size_5 = abs(upu_w_1_t)
         upu_least_pivots = (
         least(least(least(least(1.25*sqrt(upu_pivot_size), 1.25*sqrt(upu_pivot_size_2)),
@@ -5865,16 +5961,16 @@ def _run_condition(m, X):
         upu_H_a_3_z = upu_q_x*upu_w_3_y - upu_q_y*upu_w_3_x
         # (upu-Hk_a_1) moment of the column's unit force about the platform origin
         upu_Hk_a_1_x = (
-        axis_y_upu_axes2_x*upu_n_m1_in_axes2_y + upu_n_c_t_3*upu_q_z -
-            upu_end_p1_in_axes2_y*upu_w_3_x - upu_n_c_t_4*upu_q_y
+        axis_y_upu_axes2_x*upu_n_m1_in_axes2_y + upu_n_c_z*upu_q_y -
+            upu_end_p1_in_axes2_y*upu_w_3_x - upu_n_c_y*upu_q_z
         )
         upu_Hk_a_1_y = (
-        axis_y_upu_axes2_y*upu_n_m1_in_axes2_y + upu_n_c_t_4*upu_q_x -
-            upu_end_p1_in_axes2_y*upu_w_3_y - upu_n_c_t_2*upu_q_z
+        axis_y_upu_axes2_y*upu_n_m1_in_axes2_y + upu_n_c_x*upu_q_z -
+            upu_end_p1_in_axes2_y*upu_w_3_y - upu_n_c_z*upu_q_x
         )
         upu_Hk_a_1_z = (
-        axis_y_upu_axes2_z*upu_n_m1_in_axes2_y + upu_n_c_t_2*upu_q_y -
-            upu_end_p1_in_axes2_y*upu_w_3_z - upu_n_c_t_3*upu_q_x
+        axis_y_upu_axes2_z*upu_n_m1_in_axes2_y + upu_n_c_y*upu_q_x -
+            upu_end_p1_in_axes2_y*upu_w_3_z - upu_n_c_x*upu_q_y
         )
         # (spread) rms distance of the platform points from their centroid
         upu_spread_t = b_c_in_platform_x - upu_platform_point_x
@@ -5884,10 +5980,10 @@ def _run_condition(m, X):
         upu_spread_t*upu_spread_t + upu_spread_t_2*upu_spread_t_2 + upu_spread_t_3*upu_spread_t_3
         )
         clear = (
-        clear & (abs(upu_rho2_1) > _TOLERANCE * _TOLERANCE * 0.6400000000000001) &
-            (abs(upu_rho2_2) > _TOLERANCE * _TOLERANCE * 0.6400000000000001) &
-            (abs(upu_volume_c_t) > _TOLERANCE * 0.6400000000000001) & (abs(upu_root_2) >
-            _TOLERANCE * 0.8) & (abs(upu_w_1_t) > _TOLERANCE * 0.8)
+        clear & (abs(upu_root_1_t) > _TOLERANCE * _TOLERANCE * 0.6400000000000001) &
+            (abs(upu_q_3_t) > _TOLERANCE * _TOLERANCE * 0.6400000000000001) & (abs(upu_volume_c_t)
+            > _TOLERANCE * 0.6400000000000001) & (abs(upu_q_3) > _TOLERANCE * 0.8) &
+            (abs(upu_w_1_t) > _TOLERANCE * 0.8)
         )
         # (spread) rms distance of the platform points from their centroid
         spread_upu += upu_spread_t_4
@@ -5900,9 +5996,9 @@ def _run_condition(m, X):
         out_H[_H_upu[4][leg]] = upu_H_a_3_y
         out_H[_H_upu[5][leg]] = upu_H_a_3_z
         # (upu-n_c) force part, zero on the manifold, of the constraint moment
-        out_Hk[_Hk_upu[0][leg]] = -upu_n_c_t_2
-        out_Hk[_Hk_upu[1][leg]] = -upu_n_c_t_3
-        out_Hk[_Hk_upu[2][leg]] = -upu_n_c_t_4
+        out_Hk[_Hk_upu[0][leg]] = upu_n_c_x
+        out_Hk[_Hk_upu[1][leg]] = upu_n_c_y
+        out_Hk[_Hk_upu[2][leg]] = upu_n_c_z
         # (upu-Hk_a_1) moment of the column's unit force about the platform origin
         out_Hk[_Hk_upu[3][leg]] = upu_Hk_a_1_x
         out_Hk[_Hk_upu[4][leg]] = upu_Hk_a_1_y
@@ -5916,6 +6012,129 @@ def _run_condition(m, X):
     return (valid, reached, clear), (out_H, out_Hk, out_lengths, out_pivots, out_reach,)
 
 
+def _straight_6(a, b, rows, limits):
+    """Solve 6 equations a x = b straight through; and whether that is beyond doubt."""
+    (
+    (a00, a01, a02, a03, a04, a05,), (a10, a11, a12, a13, a14, a15,), (a20, a21, a22, a23, a24,
+        a25,), (a30, a31, a32, a33, a34, a35,), (a40, a41, a42, a43, a44, a45,), (a50, a51, a52,
+        a53, a54, a55,),
+    ) = [a[6 * k : 6 * k + 6] for k in rows]
+    b0, b1, b2, b3, b4, b5, = [b[k] for k in rows]
+    (
+    l10, l20, l30, l40, l50, l21, l31, l41, l51, l32, l42, l52, l43, l53, l54, l0, l1, l2, l3, l4,
+        l5,
+    ) = limits
+    f0 = 1.0/a00
+    g10 = a10*f0
+    a11 = a11 - g10*a01
+    a12 = a12 - g10*a02
+    a13 = a13 - g10*a03
+    a14 = a14 - g10*a04
+    a15 = a15 - g10*a05
+    b1 = b1 - g10*b0
+    g20 = a20*f0
+    a21 = a21 - g20*a01
+    a22 = a22 - g20*a02
+    a23 = a23 - g20*a03
+    a24 = a24 - g20*a04
+    a25 = a25 - g20*a05
+    b2 = b2 - g20*b0
+    g30 = a30*f0
+    a31 = a31 - g30*a01
+    a32 = a32 - g30*a02
+    a33 = a33 - g30*a03
+    a34 = a34 - g30*a04
+    a35 = a35 - g30*a05
+    b3 = b3 - g30*b0
+    g40 = a40*f0
+    a41 = a41 - g40*a01
+    a42 = a42 - g40*a02
+    a43 = a43 - g40*a03
+    a44 = a44 - g40*a04
+    a45 = a45 - g40*a05
+    b4 = b4 - g40*b0
+    g50 = a50*f0
+    a51 = a51 - g50*a01
+    a52 = a52 - g50*a02
+    a53 = a53 - g50*a03
+    a54 = a54 - g50*a04
+    a55 = a55 - g50*a05
+    b5 = b5 - g50*b0
+    f1 = 1.0/a11
+    g21 = a21*f1
+    a22 = a22 - g21*a12
+    a23 = a23 - g21*a13
+    a24 = a24 - g21*a14
+    a25 = a25 - g21*a15
+    b2 = b2 - g21*b1
+    g31 = a31*f1
+    a32 = a32 - g31*a12
+    a33 = a33 - g31*a13
+    a34 = a34 - g31*a14
+    a35 = a35 - g31*a15
+    b3 = b3 - g31*b1
+    g41 = a41*f1
+    a42 = a42 - g41*a12
+    a43 = a43 - g41*a13
+    a44 = a44 - g41*a14
+    a45 = a45 - g41*a15
+    b4 = b4 - g41*b1
+    g51 = a51*f1
+    a52 = a52 - g51*a12
+    a53 = a53 - g51*a13
+    a54 = a54 - g51*a14
+    a55 = a55 - g51*a15
+    b5 = b5 - g51*b1
+    f2 = 1.0/a22
+    g32 = a32*f2
+    a33 = a33 - g32*a23
+    a34 = a34 - g32*a24
+    a35 = a35 - g32*a25
+    b3 = b3 - g32*b2
+    g42 = a42*f2
+    a43 = a43 - g42*a23
+    a44 = a44 - g42*a24
+    a45 = a45 - g42*a25
+    b4 = b4 - g42*b2
+    g52 = a52*f2
+    a53 = a53 - g52*a23
+    a54 = a54 - g52*a24
+    a55 = a55 - g52*a25
+    b5 = b5 - g52*b2
+    f3 = 1.0/a33
+    g43 = a43*f3
+    a44 = a44 - g43*a34
+    a45 = a45 - g43*a35
+    b4 = b4 - g43*b3
+    g53 = a53*f3
+    a54 = a54 - g53*a34
+    a55 = a55 - g53*a35
+    b5 = b5 - g53*b3
+    f4 = 1.0/a44
+    g54 = a54*f4
+    a55 = a55 - g54*a45
+    b5 = b5 - g54*b4
+    f5 = 1.0/a55
+    x5 = b5*f5
+    x4 = (b4 - a45*x5)*f4
+    x3 = (b3 - a35*x5 - a34*x4)*f3
+    x2 = (b2 - a25*x5 - a24*x4 - a23*x3)*f2
+    x1 = (b1 - a15*x5 - a14*x4 - a13*x3 - a12*x2)*f1
+    x0 = (b0 - a05*x5 - a04*x4 - a03*x3 - a02*x2 - a01*x1)*f0
+    sure = (
+    (abs(g10) <= l10) & (abs(g20) <= l20) & (abs(g30) <= l30) & (abs(g40) <= l40) & (abs(g50) <=
+        l50) & (abs(g21) <= l21) & (abs(g31) <= l31) & (abs(g41) <= l41) & (abs(g51) <= l51) &
+        (abs(g32) <= l32) & (abs(g42) <= l42) & (abs(g52) <= l52) & (abs(g43) <= l43) & (abs(g53)
+        <= l53) & (abs(g54) <= l54) & (abs(f0) <= l0) & (abs(f1) <= l1) & (abs(f2) <= l2) &
+        (abs(f3) <= l3) & (abs(f4) <= l4) & (abs(f5) <= l5) & (abs(x0 + x1 + x2 + x3 + x4 + x5 +
+        a00 + a11 + a22 + a33 + a44 + a55) < math.inf)
+    )
+    return sure, ([x0, x1, x2, x3, x4, x5],)
+
+
+_ORDERS = (  # how systems are solved near home
+    _Order(_straight_6, (0, 1, 2, 3, 4, 5), (10, 40, 10, 10, 40, 40, 10, 10, 40, 2.5, 2.5, 10, 10, 40, 40, 4000, 4000, 1000, 4000, 4000, 1000,)),
+)
 _Q = 3  # where a quaternion begins in X
 _DEFAULT = Parameters()
 
@@ -5977,7 +6196,7 @@ def _steps_inverse_dynamics(m, X, V, A, wrench, weights):
     extend_1 = wrench
     subtract_1 = required - extend_1
     beside_1 = np.concatenate((H, Hk), axis=1)
-    solve_1 = _solve(beside_1, subtract_1)
+    solve_1 = _straight(m, beside_1, subtract_1, _ORDERS[0])
     tau, lambda_ = solve_1[:3], solve_1[3:]
     return (tau, lambda_,)
 
@@ -5986,7 +6205,7 @@ def _steps_forward_dynamics(m, X, V, tau, wrench):
     (
     M, Z, H, Hk, constraint_bias,
     ) = m.run(_run_dynamics, ("M", "Z", "H", "Hk", "constraint_bias"), X, V)
-    times_1 = np.einsum("ijs,js->is", H, tau)
+    times_1 = _times(H, tau)
     extend_1 = wrench
     add_1 = times_1 + extend_1
     subtract_1 = add_1 - Z
@@ -6008,7 +6227,7 @@ def _steps_leg_reactions(m, X, V, A, wrench):
     extend_1 = wrench
     subtract_1 = required - extend_1
     beside_1 = np.concatenate((H, Hk), axis=1)
-    solve_1 = _solve(beside_1, subtract_1)
+    solve_1 = _straight(m, beside_1, subtract_1, _ORDERS[0])
     split_1, split_2 = solve_1[:3], solve_1[3:]
     (
     leg_force, actuator, constraint_direction,
@@ -6053,10 +6272,46 @@ def _steps_condition_constrained(m, X, length):
     return (sigma, legs,)
 
 
+def _steps_manipulability(m, X):
+    (
+    H, Hk, lengths, pivots, reach,
+    ) = m.run(_in_one(_run_condition), ("H", "Hk", "lengths", "pivots", "reach"), X)
+    entry_1 = lengths[0]
+    subtract_1 = entry_1 - entry_1
+    choose_length_1 = _chosen_length(lengths, subtract_1)
+    divide_rows_1 = _rows_divided(H, choose_length_1, [3, 4, 5])
+    entry_2 = lengths[0]
+    subtract_2 = entry_2 - entry_2
+    choose_length_2 = _chosen_length(lengths, subtract_2)
+    divide_rows_2 = _rows_divided(Hk, choose_length_2, [3, 4, 5])
+    transposed_1 = np.swapaxes(divide_rows_2, 0, 1)
+    null_basis_1 = _null_basis(transposed_1, 3)
+    transposed_2 = np.swapaxes(null_basis_1, 0, 1)
+    product_1 = np.einsum("iks,kjs->ijs", transposed_2, divide_rows_1)
+    singular_values_1 = _singular_values(product_1)
+    measure, isotropy = _spread(singular_values_1, 3)
+    return (measure, isotropy,)
+
+
+def _steps_singularity_distance(m, X):
+    (
+    H, Hk, lengths, pivots, reach,
+    ) = m.run(_in_one(_run_condition), ("H", "Hk", "lengths", "pivots", "reach"), X)
+    beside_1 = np.concatenate((H, Hk), axis=1)
+    entry_1 = lengths[0]
+    subtract_1 = entry_1 - entry_1
+    choose_length_1 = _chosen_length(lengths, subtract_1)
+    divide_rows_1 = _rows_divided(beside_1, choose_length_1, [3, 4, 5])
+    singular_values_1 = _singular_values(divide_rows_1)
+    spread_1, actuators = _spread(singular_values_1, 6)
+    legs = _least_entry(pivots)
+    return (actuators, legs,)
+
+
 def _steps_mismatch(m, X, q_actuated):
     q, = m.run(_run_inverse_kinematics, ("q",), X)
-    take_1 = q[[2, 5, 8]]
-    subtract_1 = q_actuated - take_1
+    q_of_inverse_kinematics_from_2 = q[[2, 5, 8]]
+    subtract_1 = q_actuated - q_of_inverse_kinematics_from_2
     constraints, = m.run(_run_constraints, ("constraints",), X)
     negative_1 = -constraints
     gap = np.concatenate((subtract_1, negative_1))
@@ -6099,7 +6354,7 @@ def _steps_dissipation(m, X, V):
 
 def _steps_momentum(m, X, V):
     M, = m.run(_run_M, ("M",), X)
-    momentum = np.einsum("ijs,js->is", M, V)
+    momentum = _times(M, V)
     return (momentum,)
 
 
@@ -6136,14 +6391,14 @@ def _steps_actuator_accelerations(m, X, V, A):
 
 def _steps_power(m, X, V, tau):
     H, = m.run(_run_H, ("H",), X)
-    times_1 = np.einsum("ijs,js->is", H, tau)
+    times_1 = _times(H, tau)
     power = np.sum(times_1 * V, axis=0)
     return (power,)
 
 
 def _steps_rotation(m, X):
-    take_1 = X[3:7]
-    R = _rotation_of_quaternion(take_1)
+    X_from_3 = X[3:7]
+    R = _rotation_of_quaternion(X_from_3)
     return (R,)
 
 
@@ -6155,11 +6410,11 @@ def _steps_pose(m, t, R):
 
 
 def _steps_X_dot(m, X, V):
-    take_1 = V[3:6]
-    take_2 = X[3:7]
-    quaternion_rate_1 = _quaternion_rate(take_2, take_1)
-    take_3 = V[0:3]
-    X_dot = np.concatenate((take_3, quaternion_rate_1))
+    V_from_3 = V[3:6]
+    X_from_3 = X[3:7]
+    quaternion_rate_1 = _quaternion_rate(X_from_3, V_from_3)
+    V_from_0 = V[0:3]
+    X_dot = np.concatenate((V_from_0, quaternion_rate_1))
     return (X_dot,)
 
 
@@ -6171,42 +6426,42 @@ def _steps_pose_from_rpy(m, t, rpy):
 
 
 def _steps_retract(m, X, step):
-    take_1 = X[0:3]
-    take_2 = X[3:7]
-    take_3 = step[0:3]
-    take_4 = step[3:6]
-    turn_quaternion_1 = _turned(take_2, take_4)
-    add_1 = take_1 + take_3
+    X_from_0 = X[0:3]
+    X_from_3 = X[3:7]
+    step_from_0 = step[0:3]
+    step_from_3 = step[3:6]
+    turn_quaternion_1 = _turned(X_from_3, step_from_3)
+    add_1 = X_from_0 + step_from_0
     X_moved = np.concatenate((add_1, turn_quaternion_1))
     return (X_moved,)
 
 
 def _steps_difference(m, X0, X1):
-    take_1 = X0[0:3]
-    take_2 = X0[3:7]
-    take_3 = X1[0:3]
-    take_4 = X1[3:7]
-    turn_between_1 = _turn_between(take_2, take_4)
-    subtract_1 = take_3 - take_1
+    X0_from_0 = X0[0:3]
+    X0_from_3 = X0[3:7]
+    X1_from_0 = X1[0:3]
+    X1_from_3 = X1[3:7]
+    turn_between_1 = _turn_between(X0_from_3, X1_from_3)
+    subtract_1 = X1_from_0 - X0_from_0
     step = np.concatenate((subtract_1, turn_between_1))
     return (step,)
 
 
 def _steps_interpolate(m, X0, X1, s):
-    take_1 = X0[0:3]
-    take_2 = X0[3:7]
-    take_3 = X1[0:3]
-    take_4 = X1[3:7]
-    turn_between_1 = _turn_between(take_2, take_4)
-    subtract_1 = take_3 - take_1
+    X0_from_0 = X0[0:3]
+    X0_from_3 = X0[3:7]
+    X1_from_0 = X1[0:3]
+    X1_from_3 = X1[3:7]
+    turn_between_1 = _turn_between(X0_from_3, X1_from_3)
+    subtract_1 = X1_from_0 - X0_from_0
     join_1 = np.concatenate((subtract_1, turn_between_1))
     scale_1 = join_1 * s
-    take_5 = X0[0:3]
-    take_6 = X0[3:7]
-    take_7 = scale_1[0:3]
-    take_8 = scale_1[3:6]
-    turn_quaternion_1 = _turned(take_6, take_8)
-    add_1 = take_5 + take_7
+    X0_from_0_2 = X0[0:3]
+    X0_from_3_2 = X0[3:7]
+    scale_1_from_0 = scale_1[0:3]
+    scale_1_from_3 = scale_1[3:6]
+    turn_quaternion_1 = _turned(X0_from_3_2, scale_1_from_3)
+    add_1 = X0_from_0_2 + scale_1_from_0
     X = np.concatenate((add_1, turn_quaternion_1))
     return (X,)
 
@@ -6224,6 +6479,7 @@ def M(X, p=None):
     return _call(
         "M", _steps_M, p,
         ("X", X, (NQ,)),
+        plain=((NV, NV,),),
     )
 
 
@@ -6242,6 +6498,7 @@ def Z(X, V, p=None):
         "Z", _steps_Z, p,
         ("X", X, (NQ,)),
         ("V", V, (NV,)),
+        plain=((NV,),),
     )
 
 
@@ -6258,6 +6515,7 @@ def H(X, p=None):
     return _call(
         "H", _steps_H, p,
         ("X", X, (NQ,)),
+        plain=((NV, NU,),),
     )
 
 
@@ -6274,6 +6532,7 @@ def Hk(X, p=None):
     return _call(
         "Hk", _steps_Hk, p,
         ("X", X, (NQ,)),
+        plain=((NV, NC,),),
     )
 
 
@@ -6291,6 +6550,7 @@ def constraints(X, p=None):
     return _call(
         "constraints", _steps_constraints, p,
         ("X", X, (NQ,)),
+        plain=((NC,),),
     )
 
 
@@ -6309,6 +6569,7 @@ def constraint_bias(X, V, p=None):
         "constraint_bias", _steps_constraint_bias, p,
         ("X", X, (NQ,)),
         ("V", V, (NV,)),
+        plain=((NC,),),
     )
 
 
@@ -6327,6 +6588,7 @@ def inverse_kinematics(X, p=None):
     return _call(
         "inverse_kinematics", _steps_inverse_kinematics, p,
         ("X", X, (NQ,)),
+        plain=((NJ,),),
     )
 
 
@@ -6345,6 +6607,7 @@ def joint_rates(X, V, p=None):
         "joint_rates", _steps_joint_rates, p,
         ("X", X, (NQ,)),
         ("V", V, (NV,)),
+        plain=((NJ,),),
     )
 
 
@@ -6365,6 +6628,7 @@ def joint_accelerations(X, V, A, p=None):
         ("X", X, (NQ,)),
         ("V", V, (NV,)),
         ("A", A, (NV,)),
+        plain=((NJ,),),
     )
 
 
@@ -6385,6 +6649,7 @@ def dynamics(X, V, p=None):
         "dynamics", _steps_dynamics, p,
         ("X", X, (NQ,)),
         ("V", V, (NV,)),
+        plain=((NV, NV,), (NV,), (NV, NU,),),
     )
 
 
@@ -6460,6 +6725,7 @@ def complete_acceleration(X, V, A, p=None, *, wrench=None):
         ("V", V, (NV,), None, "unused"),
         ("A", A, (NV,)),
         ("wrench", wrench, (NW,), 0.0, "unused"),
+        plain=((NV,),),
     )
 
 
@@ -6571,6 +6837,43 @@ def condition_constrained(X, p=None, *, length=None):
     )
 
 
+def manipulability(X, p=None):
+    """Manipulability of forces: the product of the singular values that `condition` has by
+    default, and the least over the largest of them.
+
+    Of N^T H, N an orthonormal basis of the motions that constraints leave.
+
+    Args:
+        X: pose, and extra coordinates (..., NQ).
+        p: parameters, by default those of the specification.
+
+    Returns:
+        measure: product of the singular values (...,).
+        isotropy: least over largest value, 1 where H is isotropic (...,).
+    """
+    return _call(
+        "manipulability", _steps_manipulability, p,
+        ("X", X, (NQ,)),
+    )
+
+
+def singularity_distance(X, p=None):
+    """How near actuators and legs are to being singular: relative distances, 0 where they are.
+
+    Args:
+        X: pose, and extra coordinates (..., NQ).
+        p: parameters, by default those of the specification.
+
+    Returns:
+        actuators: of [H Hk] from matrices of lower rank, over its norm (...,).
+        legs: least pivot of all legs (...,).
+    """
+    return _call(
+        "singularity_distance", _steps_singularity_distance, p,
+        ("X", X, (NQ,)),
+    )
+
+
 def forward_kinematics(q_actuated, X0, p=None):
     """X at which the actuated joints stand at q_actuated, by Gauss-Newton from X0.
 
@@ -6644,6 +6947,7 @@ def momentum(X, V, p=None):
         "momentum", _steps_momentum, p,
         ("X", X, (NQ,)),
         ("V", V, (NV,)),
+        plain=((NV,),),
     )
 
 
