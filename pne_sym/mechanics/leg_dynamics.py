@@ -17,7 +17,6 @@ from typing import Any
 
 import sympy as sp
 
-from pne_sym.derivation import Book
 from pne_sym.mechanics.joint_forces import JointForces
 from pne_sym.mechanics.leg_balance import BalanceWriter
 from pne_sym.mechanics.leg_geometry import LegGeometry
@@ -51,6 +50,44 @@ c_true | \mathbf c^* | NEWTON | Eq. 3
 P_#    | P_{#} ; \mathbf M_{yt,#} | FREEDOM | Eqs. 6, 7
     inertia and weight of the leg along the extra degree of freedom of joint #
 """)
+
+_NEWTON_EULER = (
+    r"From the last link to the base; of the equilibrium of the links beyond a joint only the "
+    r"component along the joint's axis is taken, so that joint reactions never appear. "
+)
+_CARRIED = (
+    r"The inertia force $`\mathbf f`$ of the last link (its weight taken off) acts at the "
+    r"connection point like the force $`\mathbf F`$ on the platform; $`\Gamma_j`$ is what "
+    r"everything else needs along joint j. So "
+    r"$`\mathbf v_j\cdot(\mathbf F+\mathbf f)=\tau_j-\Gamma_j`$ for every joint, and the "
+    r"reciprocal vectors solve this: "
+    r"$`\mathbf F=\sum_j\mathbf w_j\,(\tau_j-\Gamma_j)-\mathbf f`$."
+)
+_KEPT = (
+    r"$`\Gamma_j`$ is what the links beyond joint j need along it, so that the force $`\mathbf F`$ "
+    r"on the platform obeys $`\mathbf v_j\cdot\mathbf F=\tau_j-\Gamma_j`$ for every joint; the "
+    r"reciprocal vectors solve this: $`\mathbf F=\sum_j\mathbf w_j\,(\tau_j-\Gamma_j)`$."
+)
+_RESTRICTED = (
+    r" Besides, the leg exerts a constraint wrench on the platform; its coefficient is the "
+    r"multiplier $`\lambda`$, a reaction that only the platform's equations determine."
+)
+_COMPOSITE = (
+    r" The links of this leg turn differently, so their inertia is collected in the accelerations "
+    r"of the joints first: all links from k outwards, frozen together, are one composite body with "
+    r"first moment $`\mathbf h^c_k`$ and inertia tensor $`\mathbf J^c_k`$; a unit acceleration of "
+    r"joint k takes the force $`\boldsymbol\Pi_k`$ and the moment $`\boldsymbol\Lambda_k`$, "
+    r"whose component along joint j is $`\mathcal M_{jk}`$. With $`\ddot q_k`$ in closed form, "
+    r"$`\Gamma_j`$ then holds the platform's acceleration through "
+    r"$`\sum_k \mathcal M_{jk}\,\ddot q_k`$."
+)
+_MOMENTS = (
+    r" The platform joint of this leg transmits moments along $`\mathbf n_{m1}`$ and on, which do "
+    r"work along the turning joints too: the equilibrium along joint j holds the parts of these "
+    r"moments times $`\mathbf e_j\cdot\mathbf n_{mi}`$ besides, and the reciprocal wrenches with "
+    r"force parts $`\mathbf w_j`$ and moment parts $`\mathbf o_j`$ solve for force and moment "
+    r"together."
+)
 
 
 @dataclass(frozen=True)
@@ -90,12 +127,16 @@ class DynamicsWriter:
         self.g: LegGeometry = links.g
         self.motion: LegMotion = links.motion
         self.frame = links.motion.chain.tip_frame
-        book: Book = links.book
+        book = self.book = links.book
         define = LinearWriter(book, self.g, self.motion.collection).define
         self.eq = Writer(book, self.g, _TERMS, define)
 
     def run(self) -> LegDynamics:
         """Write Newton-Euler from the last link to the base and solve for the leg's force."""
+        of = self.g.leg_type
+        self.book.chapter(
+            f"{of.name}-N", f"Newton-Euler of a {of.architecture} leg", self._text(), of.name
+        )
         found = self.links.forces()
         gamma = BalanceWriter(self.links, found, self.forces).write()
         G, G_m = self._force_balance(gamma), self._moment_balance(gamma)
@@ -119,6 +160,13 @@ class DynamicsWriter:
             moment_form=self.motion.known.get(moment, LinearForm({}, moment)),
             extra_rows={j: self._extra_row(j, gamma, G, G_m) for j in self.motion.ydd},
         )
+
+    def _text(self) -> str:
+        """What the chapter begins with: of what there is."""
+        carried = any(body.at_tip for body in self.links.bodies)
+        text = _NEWTON_EULER + (_CARRIED if carried else _KEPT)
+        text += _RESTRICTED * bool(self.motion.constraints) + _COMPOSITE * self.g.composite
+        return text + _MOMENTS * bool(self.g.pairs)
 
     def _named(self, stem: str, value: Any) -> Any:
         """A vector at the connection point, where there is any."""

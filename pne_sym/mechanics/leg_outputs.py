@@ -1,0 +1,87 @@
+"""What functions give of a leg: displacements, rates, forces, its loop closure."""
+
+from __future__ import annotations
+
+from typing import Any
+
+from pne_sym.derivation import (
+    Book,
+    Law,
+    Output,
+)
+from pne_sym.mechanics.inverse_kinematics import InverseKinematics
+from pne_sym.mechanics.legs import Leg
+from pne_sym.model.kinematics import TaskSpace
+from pne_sym.model.manipulator import Manipulator
+from pne_sym.vector import Dot, ZeroVector
+
+
+def joint_outputs(
+    book: Book, manipulator: Manipulator, leg: Leg, inverse: InverseKinematics
+) -> None:
+    """Displacements, rates and accelerations of the joints; the leg's force."""
+    first, indices = starts(manipulator), leg.g.leg_type.indices
+    for j in range(1, leg.g.count + 1):
+        rows = tuple(first[i] + j - 1 for i in indices)
+        for array, value in (
+            ("q", inverse.q.get(j)),
+            ("qd", leg.motion.qd[j]),
+            ("qdd", leg.motion.qdd[j]),
+        ):
+            if value is not None:
+                book.outputs.append(Output(array, value, ((0, 0),), (), leg.name, rows))
+    book.outputs.append(
+        Output(
+            "leg_force",
+            leg.dynamics.true_force,
+            ((0, 0),),
+            tuple((c, c) for c in range(3)),
+            leg.name,
+            tuple(indices),
+        )
+    )
+    if leg.dynamics.moment != ZeroVector:
+        book.outputs.append(
+            Output(
+                "leg_force",
+                leg.dynamics.moment,
+                ((0, 0),),
+                tuple((c, c + 3) for c in range(3)),
+                leg.name,
+                tuple(indices),
+            )
+        )
+
+
+def starts(manipulator: Manipulator) -> list[int]:
+    """Where the joints of each leg begin in q."""
+    return [sum(len(m.joints) for m in manipulator.legs[:i]) for i in range(len(manipulator.legs))]
+
+
+def closure_outputs(book: Book, leg: Leg, frame: str, space: TaskSpace) -> None:
+    """Misfit of the loop closure and its derivative by the joint displacements."""
+    g, motion, name = leg.g, leg.motion, leg.name
+    gap = book.define(
+        g.name("gap"),
+        motion.gap,
+        r"\mathbf S_r",
+        "from the connection point as the links reach it to the platform's",
+        Law.LOOP_CLOSURE,
+        body=frame,
+    )
+    joints = [j for j in range(1, g.count + 1) if not g.is_extra(j)]
+    axes = range(2 if space.planar else 3)
+    rows = tuple(range(g.leg_type.count))
+    width = len(joints)
+
+    def put(array: str, value: Any, columns: tuple[tuple[int, int], ...]) -> None:
+        book.outputs.append(Output(array, value, ((0, 0),), columns, name, rows, frame=frame))
+
+    put(f"gap_{name}", gap, tuple((c, c) for c in axes))
+    for k, j in enumerate(joints):
+        put(f"jacobian_{name}", motion.v[j], tuple((c, c * width + k) for c in axes))
+    for i, ((link, platform), n) in enumerate(zip(g.pairs, motion.n, strict=True), len(axes)):
+        put(f"gap_{name}", -Dot(link, platform), ((0, i),))
+        for k, j in enumerate(joints):
+            if g.turns(j):
+                put(f"jacobian_{name}", Dot(g.spin(j), n), ((0, i * width + k),))
