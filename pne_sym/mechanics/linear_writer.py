@@ -108,7 +108,7 @@ class LinearWriter:
                 g.name(f"{stem}_o"),
                 remainder,
                 f"{latex}^{{\\circ}}",
-                f"remainder without the acceleration in: {title}",
+                f"remainder of: {title}",
                 Law.RULES,
                 body=body,
                 forms=rest_forms,

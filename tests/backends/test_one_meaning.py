@@ -99,11 +99,11 @@ def test_one_meaning(name: str) -> None:
     ("name", "latex", "told"),
     [
         ("potential", "V", "V means"),  # joule, and the vector of velocities
-        ("rrr_q", r"\mathbf q", "q means"),  # a vector in m, and displacements
-        ("rrr_rho_1", r"\mathbf S^x_1", "both written"),
+        ("rrrs_q", r"\mathbf q", "q means"),  # a vector in m, and displacements
+        ("rrrs_rho_1", r"\mathbf S^x_1", "both written"),
     ],
 )
 def test_two_meanings_are_seen(name: str, latex: str, told: str) -> None:
-    d = derived("planar_3rrr")
+    d = derived("hybrid_3rrrs")
     changed = {**d.notation, name: replace(d.notation[name], latex=latex)}
     assert any(told in text for text in clashes(replace(d, notation=changed)))

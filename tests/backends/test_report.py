@@ -346,7 +346,7 @@ def test_a_driven_joint_is_a_small_change() -> None:
         ("\nA U", "## Given", 48),
         ("### Platform motion", "### Geometry", 2),
         ("### Platform inertia", "### M, Z", 8),
-        ("### M, Z", "### Lever", 50),
+        ("### M, Z", "### Lever", 52),
         ("### Lever", "## From", 4),
     ],
 )
