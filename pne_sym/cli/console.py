@@ -12,20 +12,14 @@ import os
 import re
 import sys
 from collections.abc import Iterator
-from typing import TextIO
-
-from rich.console import Console
-from rich.progress import (
-    BarColumn,
-    MofNCompleteColumn,
-    Progress,
-    SpinnerColumn,
-    TextColumn,
-    TimeElapsedColumn,
-)
-from rich.text import Text
+from typing import TYPE_CHECKING, TextIO
 
 from pne_sym.writer import OutputError
+
+if TYPE_CHECKING:
+    from rich.progress import Progress
+
+# rich is imported where there is a terminal: pipes and files need not wait for it.
 
 _CONTROL = re.compile(r"[\x00-\x08\x0b-\x1f\x7f-\x9f]")
 _DIFF_STYLES = (("+++", "bold"), ("---", "bold"), ("@@", "cyan"), ("+", "green"), ("-", "red"))
@@ -84,6 +78,8 @@ class Report:
         if self.quiet:
             return
         if self._live is not None and sys.stdout.isatty():
+            from rich.text import Text
+
             self._live.console.print(Text(_visible(text), style), soft_wrap=True)
         else:
             with _output_errors():
@@ -98,27 +94,33 @@ class Report:
     @contextlib.contextmanager
     def progress(self, total: int) -> Iterator[Step]:
         """Show progress through `total` models, on a terminal and unless quiet."""
-        console = Console(stderr=True)
-        if self.quiet or not console.is_terminal:
+        if self.quiet or not sys.stderr.isatty():
             yield Step()
             return
-        columns = [SpinnerColumn(), TextColumn("{task.description}")]
-        if total > 1:
-            columns += [BarColumn(), MofNCompleteColumn()]
-        progress = Progress(
-            *columns,
-            TimeElapsedColumn(),
-            console=console,
-            transient=True,
-            redirect_stdout=False,
-            redirect_stderr=False,
-        )
-        with progress:
+        with _progress(total) as progress:
             self._live = progress
             try:
                 yield Step(progress, total)
             finally:
                 self._live = None
+
+
+def _progress(total: int) -> Progress:
+    """The display on standard error."""
+    from rich import progress as rich
+    from rich.console import Console
+
+    columns = [rich.SpinnerColumn(), rich.TextColumn("{task.description}")]
+    if total > 1:
+        columns += [rich.BarColumn(), rich.MofNCompleteColumn()]
+    return rich.Progress(
+        *columns,
+        rich.TimeElapsedColumn(),
+        console=Console(stderr=True),
+        transient=True,
+        redirect_stdout=False,
+        redirect_stderr=False,
+    )
 
 
 class Step:
@@ -157,6 +159,9 @@ def _print(stream: TextIO, start: str, text: str, style: str) -> None:
     if not stream.isatty():
         stream.write(f"{start}{_visible(text)}\n")
         return
+    from rich.console import Console
+    from rich.text import Text
+
     line = Text(start, style) + Text(_visible(text), "" if start else style)
     Console(file=stream).print(line, soft_wrap=True)
 

@@ -119,7 +119,10 @@ class Builder:
         """Stage at which an expression can be computed."""
         if expr.is_Symbol:
             return self._stage[expr]
-        return algebra.joined(frozenset([self._stage[s] for s in algebra.symbols(expr)]))
+        stages = [self._stage[s] for s in algebra.symbols(expr)]
+        if stages and all(stage is stages[0] for stage in stages):
+            return stages[0]
+        return algebra.joined(frozenset(stages))
 
     def _fresh(self, hint: str) -> str:
         """A name that no other symbol has: the hint, or the hint and a number."""
@@ -409,7 +412,7 @@ class Builder:
 
     def cost(self, atoms: Iterable[Atom]) -> int:
         """Run-time operations needed for the atoms beyond what is live already."""
-        return sum(self.weight(s) for s in self._reach(atoms) if s.target not in self.live)
+        return sum(map(self.weight, self._reach(atoms)))
 
     def weight(self, statement: Statement) -> int:
         """Operations of a statement, over all legs; none at parameter stages."""
@@ -430,8 +433,10 @@ class Builder:
         stack = [s for atom in atoms for s in algebra.symbols(sp.sympify(atom))]
         while stack:
             symbol = stack.pop()
-            if symbol in found or symbol in self.live or symbol not in self.of:
+            if symbol in found or symbol in self.live:
                 continue
-            found[symbol] = self.of[symbol]
-            stack.extend(algebra.symbols(self.of[symbol].expr))
+            made = self.of.get(symbol)
+            if made is not None:
+                found[symbol] = made
+                stack.extend(algebra.symbols(made.expr))
         return list(found.values())
