@@ -112,15 +112,22 @@ class _Function:
             dict.fromkeys(k for each in calls for k in each if k[0] == self.name)
             for calls in (before, after)
         ]
-        if own[0].keys() != own[1].keys():
-            given = sorted({n for k in own[0].keys() ^ own[1].keys() for n in k[1]})
-            note = f"only one takes {', '.join(given)}"
-            return BlockDifference(title, Verdict.DIFFERENT, note=note)
+        taken = [{n for key in keys for n in key[1]} for keys in own]
+        given = sorted(taken[0] ^ taken[1])
+        if own[0].keys() != own[1].keys() and not given:
+            return BlockDifference(title, Verdict.DIFFERENT, note="not called in the same ways")
         if not sum(map(len, self.terms.kept)):
             verdict = Verdict.IDENTICAL if same else Verdict.NOT_COMPARED
             return BlockDifference(title, verdict, note="no state is possible")
-        gaps = [gap for key in own[0] for gap in self._gaps(key, before, after)]
+        common = [key for key in own[0] if key in own[1]]
+        gaps = [gap for key in common for gap in self._gaps(key, before, after)]
         worst = max(gaps, key=lambda g: g.size, default=None)
+        if given:
+            alike = worst is None or not worst.size > self.terms.tolerance
+            note = f"only one takes {', '.join(given)}; " + (
+                "without it they are the same" if alike else "without it values differ too"
+            )
+            return BlockDifference(title, Verdict.DIFFERENT, worst, note=note)
         if worst is not None and worst.size > self.terms.tolerance:
             return BlockDifference(title, Verdict.DIFFERENT, worst)
         return BlockDifference(title, Verdict.IDENTICAL if same else Verdict.EQUAL, worst)

@@ -9,6 +9,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from pne_sym.program.interpret import REST
 from pne_sym.review.alignment import Alignment
 from pne_sym.review.c_driver import Array, CAnswer, c_calls
 from pne_sym.review.correspondence import Correspondence, same_platform
@@ -221,13 +222,16 @@ class Runs:
     def samples(self) -> list[Sample]:
         """States for comparing equations: possible in both versions."""
         found = []
+        both_move = all(_takes_base(m.manifest) for m in self.models)
         for k in range(PARAMETER_SETS if self.comparable else 0):
             old, new = self.sets[0][k], self.sets[1][k]
             allowed = [_allowed(answer, k) for answer in self.answers]
             both = [s for s in self.kept[k] if all(version[s] for version in allowed)]
             for s in both[:_PER_SET]:
                 vectors = [
-                    {n: side.values[n][s] for n in ("X", "V", "A", "q")} for side in (old, new)
+                    {n: side.values[n][s] for n in ("X", "V", "A", "q", "base")}
+                    | ({} if both_move else {"base": REST})
+                    for side in (old, new)
                 ]
                 found.append(
                     Sample(old.parameters or {}, new.parameters or {}, (vectors[0], vectors[1]))
@@ -252,6 +256,11 @@ class Runs:
             except ExecutionError as error:
                 faults.append(str(error))
         return (None if faults else (found[0], found[1])), faults
+
+
+def _takes_base(manifest: Mapping[str, Any]) -> bool:
+    """Whether the base of a version moves; if that of one alone does, it is compared at rest."""
+    return any("base" in f.get("inputs", ()) for f in manifest.get("functions", {}).values())
 
 
 def _allowed(answer: Answer, k: int) -> Array:

@@ -85,6 +85,9 @@ _EVERYWHERE = {
     "spring",
     "motor",
     "payload",
+    "platform friction",
+    "moving base",
+    "coupled motors",
 }
 
 
@@ -102,5 +105,6 @@ def check_breadth(seeds: Sequence[int]) -> None:
     assert tally.derived >= 0.9 * len(seeds), tally
     assert not _EVERYWHERE - tally.features.keys(), tally
     assert tally.constrained, tally
+    assert tally.overconstrained, tally
     assert tally.iterated, tally
     assert tally.compiled, tally

@@ -128,6 +128,8 @@ MOVING = 0.2
 """Of so many mechanisms the base moves."""
 COUPLED = 0.3
 """Of so many the motors are coupled."""
+DOUBLED = 0.25
+"""Of so many of those with constraints a leg stands there twice."""
 
 
 def draw(seed: int, *, light: bool = False, anywhere: bool = True) -> Manipulator:
@@ -141,6 +143,7 @@ def draw(seed: int, *, light: bool = False, anywhere: bool = True) -> Manipulato
     """
     found = _structured(seed, light=light, anywhere=anywhere)
     moves = bool(np.random.default_rng([seed, 5]).random() < MOVING)
+    found = doubled(found, np.random.default_rng([seed, 7]))
     found = with_effects(replace(found, moving_base=moves), np.random.default_rng([seed, 4]))
     rng = np.random.default_rng([seed, 6])
     return with_coupling(found, rng) if rng.random() < COUPLED else found
@@ -537,6 +540,27 @@ class _Drawing:
             return False
         values = np.linalg.eigvalsh(state.M)
         return bool(values[0] > INERTIA_QUALITY * values[-1])
+
+
+def doubled(found: Manipulator, rng: np.random.Generator) -> Manipulator:
+    """Now and then the mechanism with a leg's passive copy in the same place.
+
+    What the copy constrains is constrained already, wherever the mechanism moves.
+    """
+    lacking = [k for k, leg in enumerate(found.legs) if _lacks(leg, planar=is_planar(found.space))]
+    if not lacking or rng.random() > DOUBLED:
+        return found
+    k = int(rng.choice(lacking))
+    ends = np.cumsum([0, *(len(leg.joints) for leg in found.legs)])
+    joints = tuple(replace(joint, actuated=False) for joint in found.legs[k].joints)
+    home = replace(found.home, q=(*found.home.q, *found.home.q[ends[k] : ends[k + 1]]))
+    return replace(found, legs=(*found.legs, replace(found.legs[k], joints=joints)), home=home)
+
+
+def _lacks(leg: Leg, *, planar: bool) -> bool:
+    """Whether a leg without extra coordinates restricts the platform."""
+    most = 2 if planar else 3 + _MOMENTS[leg.platform_joint.kind]
+    return len(leg.joints) < most and not any(joint.extra for joint in leg.joints)
 
 
 def driven_anywhere(drawn: Manipulator, rng: np.random.Generator) -> Manipulator | None:

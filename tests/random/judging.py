@@ -56,6 +56,7 @@ class Verdict:
         errors: worst error by quantity.
         iterated: whether displacements are found by iteration.
         constrained: whether legs restrict the platform.
+        overconstrained: whether some of these constraints follow from others.
         compiled: whether C was compared as well.
         other_branch: states at which iteration from home found another closure.
     """
@@ -65,6 +66,7 @@ class Verdict:
     errors: dict[str, float] = field(default_factory=dict)
     iterated: bool = False
     constrained: bool = False
+    overconstrained: bool = False
     compiled: bool = False
     other_branch: int = 0
 
@@ -106,6 +108,7 @@ def judge(
     drawn = [_under_drives(manipulator, rng, state) for state in drawn]
     verdict.iterated = any(not info.is_closed for info in bundle.derivation.leg_types)
     verdict.constrained = module.NC > 0
+    verdict.overconstrained = module.OVERCONSTRAINED > 0
     for state in drawn:
         _Comparison(manipulator, module, verdict, state, rng).run()
     if with_c:
@@ -250,9 +253,17 @@ class _Comparison:
         self.note("tau", found[0] if m.NC else found, ours.tau)
         mine = m.leg_reactions(s.X, s.V, s.A, wrench=s.wrench, **guess)
         theirs = np.array([leg.reaction for leg in ours.legs])[:, : mine.shape[-1]]
-        if any(self._has_idle_wrench(k) for k in range(len(ours.legs))):
+        idle = any(self._has_idle_wrench(k) for k in range(len(ours.legs)))
+        if m.OVERCONSTRAINED:  # how legs share them is a matter of choice
+            mine, theirs = (self._in_all(each, idle=idle) for each in (mine, theirs))
+        elif idle:
             mine, theirs = self._effect(mine), self._effect(theirs)
         self.note("reactions", mine, theirs)
+
+    def _in_all(self, reactions: Array, *, idle: bool) -> Array:
+        """Forces of all legs together, where these are not shared with a guidance, and effects."""
+        effect = np.sum(self._effect(reactions), axis=0)
+        return effect if idle else np.concatenate((np.sum(reactions[:, :3], axis=0), effect))
 
     def _has_idle_wrench(self, k: int) -> bool:
         """Whether a leg can hold the platform in a way that does no work along its motions."""

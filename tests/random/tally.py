@@ -111,6 +111,9 @@ def features(manipulator: Manipulator) -> frozenset[str]:
             *("spring" for joint in joints if joint.spring),
             *({"payload"} if manipulator.payload else ()),
             *("motor" for joint in joints if joint.actuator),
+            *("platform friction" for leg in manipulator.legs if leg.platform_joint.friction),
+            *({"moving base"} if manipulator.moving_base else ()),
+            *({"coupled motors"} if manipulator.coupling else ()),
             *_ranks(manipulator),
         }
     )  # fmt: skip
@@ -140,7 +143,7 @@ class Tally:
     """What became of the mechanisms drawn so far.
 
     Attributes:
-        drawn, derived, iterated, constrained, compiled, at_home: how many.
+        drawn, derived, iterated, constrained, overconstrained, compiled, at_home: how many.
         other_branch: states at which iteration from home found another closure.
         refused: reason -> how many.
         features: what occurs -> in how many of the derived.
@@ -152,6 +155,7 @@ class Tally:
     derived: int = 0
     iterated: int = 0
     constrained: int = 0
+    overconstrained: int = 0
     compiled: int = 0
     at_home: int = 0
     other_branch: int = 0
@@ -175,6 +179,7 @@ class Tally:
         self.features.update(found.features)
         self.iterated += verdict.iterated
         self.constrained += verdict.constrained
+        self.overconstrained += verdict.overconstrained
         self.compiled += verdict.compiled
         self.at_home += verdict.stateless
         self.other_branch += verdict.other_branch
@@ -186,6 +191,7 @@ class Tally:
         """For people."""
         lines = [
             f"drawn {self.drawn}, derived {self.derived} ({self.constrained} constrained, "
+            f"{self.overconstrained} of them more than once, "
             f"{self.iterated} by iteration, {self.compiled} also in C, {self.at_home} at home "
             f"only), refused {sum(self.refused.values())}, failed {len(self.failed)}; "
             f"{self.other_branch} states on another closure when iterated from home",

@@ -15,7 +15,9 @@ from pne_sym.model.manipulator import Manipulator
 from pne_sym.model.reader import checked, from_mapping, to_full_form
 from tests.backends.c_library import CLibrary
 from tests.models import bundle, catalogue, module, state_at
-from tests.oracle.base import base_of, rotation_of
+from tests.oracle.base import Base, base_of, rotation_of
+from tests.oracle.comparison import relative_error
+from tests.oracle.projection import project
 from tests.sampling import sampled
 from tests.whole.cases import assert_right, own
 from tests.whole.test_joint_forces import dressed
@@ -53,6 +55,40 @@ def test_at_rest_and_accelerated(name: str) -> None:
             found = np.hstack(getattr(m, function)(*given, **taken))
             wanted = np.hstack(getattr(fixed, function)(*given, p))
             np.testing.assert_allclose(found, wanted, rtol=0, atol=1e-12 * np.abs(wanted).max())
+
+
+@pytest.mark.parametrize("name", ["planar_3rpr", "tripod_3rps"])
+def test_each_part_of_the_motion_alone(name: str) -> None:
+    """R, omega, alpha, a: each as the projection has it, and each by its own law."""
+    spec = carried(name, plain=True)
+    m, s, base = module(spec), state_at(spec, 2), base_of(spec)
+    still = Base(np.eye(3), np.zeros(3), np.zeros(3), np.zeros(3))
+
+    def tau(V: Any, **part: Any) -> Any:
+        return np.hstack(m.inverse_dynamics(s.X, V, s.A, base=replace(still, **part).given))[: m.NU]
+
+    def adds(V: Any, **part: Any) -> Any:
+        return tau(V, **part) - tau(V)
+
+    parts = {n: getattr(base, n) for n in ("rotation", "spin", "spin_rate", "acceleration")}
+    rest = 0.0 * s.V
+    for field, value in parts.items():
+        moved = replace(still, **{field: value})
+        wanted = project(spec, s.X, s.q, s.V, s.A, base=moved).tau
+        assert relative_error(tau(s.V, **{field: value}), wanted) < 1e-9, field
+        assert np.abs(adds(s.V, **{field: value})).max() > 1e-3, field
+        # What the platform's velocity changes is Coriolis's acceleration alone.
+        of_velocity = adds(s.V, **{field: value}) - adds(rest, **{field: value})
+        size = 1e-10 * np.abs(wanted).max()
+        assert (np.abs(of_velocity).max() > size) == (field == "spin"), field
+        if field in ("spin_rate", "acceleration"):
+            twice = adds(s.V, **{field: 2.0 * value})
+            np.testing.assert_allclose(twice, 2.0 * adds(s.V, **{field: value}), atol=size)
+    twice = adds(rest, spin=2.0 * base.spin)
+    np.testing.assert_allclose(twice, 4.0 * adds(rest, spin=base.spin), atol=1e-9)
+    turned = base.rotation.T @ np.array(spec.gravity) - np.array(spec.gravity)
+    as_gravity = adds(s.V, acceleration=-turned)
+    np.testing.assert_allclose(adds(s.V, rotation=base.rotation), as_gravity, atol=1e-10)
 
 
 def pendulum() -> Manipulator:
