@@ -41,7 +41,7 @@ def line_of(model: Model, statement: Statement) -> str:
         (
             f"{model.name}.c",
             model.c,
-            rf"/\* ---- {statement.function}: ",
+            rf"/\* ---- {statement.function} ",
             rf"\s*const real {name} =",
         ),
         (f"{model.name}.py", model.python, rf"def _run_{statement.function}\(", rf"\s*{name} ="),

@@ -32,15 +32,19 @@ def main() -> None:
     os.dup2(2, 1)  # what the module prints is no answer
     sys.path.insert(0, request["folder"])
     warnings.simplefilter("ignore")
+    answer = answered(importlib.import_module(request["model"]), request)
+    with os.fdopen(answer_to, "w") as stream:
+        json.dump(answer, stream)
+
+
+def answered(model: Any, request: dict[str, Any]) -> dict[str, Any]:
+    """What a module answers to a request."""
     with np.errstate(all="ignore"):
-        model: Any = importlib.import_module(request["model"])
-        answer = {
+        return {
             "defaults": {n: _packed(getattr(model.Parameters(), n)) for n in request["defaults"]},
             "constants": dict(_constants(model)),
             "sets": [_run(model, each) for each in request["sets"]],
         }
-    with os.fdopen(answer_to, "w") as stream:
-        json.dump(answer, stream)
 
 
 def _run(model: Any, each: dict[str, Any]) -> dict[str, Any]:

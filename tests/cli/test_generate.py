@@ -179,14 +179,14 @@ def test_progress_names_the_model_at_work(
 
 
 @pytest.mark.parametrize(
-    "arguments", ["list", "check delta --out {}/none", "diff sixbar {}/changed.toml"]
+    "arguments", ["list", "check delta --out {}/none", "diff fivebar_revolute {}/changed.toml"]
 )
 def test_a_reader_that_leaves_early_is_told_nothing_but_not_0(
     arguments: str, tmp_path: Path
 ) -> None:
     """Neither is all done, nor is it known that nothing differs."""
-    sixbar = STEWART_SPEC.with_name("sixbar.toml").read_text()
-    (tmp_path / "changed.toml").write_text(sixbar.replace("mass = ", "mass = 1", 1))
+    fivebar = STEWART_SPEC.with_name("fivebar_revolute.toml").read_text()
+    (tmp_path / "changed.toml").write_text(fivebar.replace("mass = ", "mass = 1", 1))
     command = f"{PROGRAM} {arguments.format(tmp_path)} | true; echo ${{PIPESTATUS[0]}}"
     real = environment(real="diff" in arguments)
     done = subprocess.run(
@@ -196,7 +196,8 @@ def test_a_reader_that_leaves_early_is_told_nothing_but_not_0(
 
 
 @pytest.mark.parametrize(
-    "arguments", ["list", "check delta --out {}/none", "explain delta", "--help", "--version"]
+    "arguments",
+    ["list", "check delta --out {}/none", "explain fivebar_revolute", "--help", "--version"],
 )
 def test_a_full_disk_under_the_output_is_one_line(arguments: str, tmp_path: Path) -> None:
     real = environment(real="explain" in arguments)

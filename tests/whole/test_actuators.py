@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 
 from pne_sym.model.effects import Actuator, Friction, Limits
-from pne_sym.model.manipulator import Manipulator
+from pne_sym.model.manipulator import JointKind, Manipulator
 from pne_sym.model.reader import checked
 from tests.backends.c_library import CLibrary
 from tests.models import bundle, catalogue, module, state_at
@@ -103,7 +103,14 @@ def test_dissipation() -> None:
     assert (many > 0.0).all()
 
 
-@pytest.mark.parametrize("name", ["planar_3rpr", "hybrid_3rrrs_redundant"])
+@pytest.mark.parametrize(
+    "name",
+    sampled(
+        ["planar_3rpr", "planar_redundant", "hybrid_3rrrs_redundant"],
+        0,
+        keep=["planar_3rpr", "planar_redundant"],
+    ),
+)
 def test_margins(name: str) -> None:
     """Of hinges, slides and extra coordinates, some beyond their limits."""
     plain = catalogue(name)
@@ -127,6 +134,12 @@ def test_margins(name: str) -> None:
     np.testing.assert_array_equal(found[2:], np.broadcast_to(found[0], (10, m.NJ)))
     np.testing.assert_array_equal(m.within_limits(X), [0.0, np.nan, *[0.0] * 10])
     names = [n for n in vars(m.Parameters()) if n.endswith("_limits")]
+    turned = m.Parameters().replace(**{n: getattr(m.Parameters(), n) + 2.0 * np.pi for n in names})
+    joints = [joint for leg in legs for joint in leg.joints if joint.limits]
+    full = np.array([joint.kind is JointKind.REVOLUTE and not joint.extra for joint in joints])
+    at = np.isfinite(wanted)
+    same = np.abs(m.joint_margins(c.state.X, turned)[at] - found[0][at]) < 1e-9
+    np.testing.assert_array_equal(same, full)  # where full turns do not count
     wide = {n: np.add(getattr(m.Parameters(), n), [-9.0, 9.0]) for n in names}
     assert m.within_limits(c.state.X, m.Parameters().replace(**wide)) == 1.0
 
